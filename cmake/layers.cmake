@@ -1,0 +1,36 @@
+# Layers: a static library that sees only the folders it owns and the folders of the layers it uses.
+#
+#   ipos_layer(vm FOLDERS vm/verify vm/exec SOURCES verify/verify.cpp USES image LIBS fmt::fmt)
+#
+# Every layer gets a private tree of links, <build>/layers/<name>/<folder> -> <source>/<folder>, as its only
+# include root. A file that includes a folder of a layer not named in USES does not compile;
+# tests/architecture tries that.
+
+add_library(ipos_options INTERFACE)
+target_compile_options(ipos_options INTERFACE -Wall -Wextra -Wconversion -Wshadow -Werror)
+if(IPOS_SANITIZE)
+  target_compile_options(ipos_options INTERFACE -fsanitize=${IPOS_SANITIZE} -fno-omit-frame-pointer
+                         -fno-sanitize-recover=all)
+  target_link_options(ipos_options INTERFACE -fsanitize=${IPOS_SANITIZE})
+endif()
+if(IPOS_COVERAGE)
+  target_compile_options(ipos_options INTERFACE --coverage -O0)
+  target_link_options(ipos_options INTERFACE --coverage)
+endif()
+
+function(ipos_layer name)
+  cmake_parse_arguments(LAYER "" "" "FOLDERS;SOURCES;USES;LIBS" ${ARGN})
+  set(view ${PROJECT_BINARY_DIR}/layers/${name})
+  foreach(folder ${LAYER_FOLDERS})
+    get_filename_component(parent ${view}/${folder} DIRECTORY)
+    file(MAKE_DIRECTORY ${parent})
+    file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${folder} ${view}/${folder} SYMBOLIC)
+  endforeach()
+  add_library(ipos_${name} STATIC ${LAYER_SOURCES})
+  add_library(ipos::${name} ALIAS ipos_${name})
+  target_include_directories(ipos_${name} PUBLIC $<BUILD_INTERFACE:${view}>)
+  foreach(used ${LAYER_USES})
+    target_link_libraries(ipos_${name} PUBLIC ipos::${used})
+  endforeach()
+  target_link_libraries(ipos_${name} PRIVATE ipos_options ${LAYER_LIBS})
+endfunction()

@@ -1,0 +1,13 @@
+# The back end: assembler and disassembler, and the compiler proper from syntax tree to image.
+ipos_layer(asm
+  FOLDERS compiler/asm
+  SOURCES asm/assembler.cpp asm/disassembler.cpp asm/reader.cpp asm/text_forms.cpp
+  USES frontend isa image stdlib
+  LIBS fmt::fmt)
+
+file(GLOB compiler_sources CONFIGURE_DEPENDS sema/*.cpp codegen/*.cpp)
+ipos_layer(compiler
+  FOLDERS compiler/sema compiler/codegen
+  SOURCES ${compiler_sources}
+  USES frontend asm isa image stdlib
+  LIBS fmt::fmt)

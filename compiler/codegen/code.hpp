@@ -1,0 +1,33 @@
+// Commands of one function before they have addresses: jumps go to labels, calls to functions, and
+// intermediate results stand in numbered temporaries of the function.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "compiler/sema/call_graph.hpp"
+#include "compiler/source/source.hpp"
+#include "vm/isa/isa.hpp"
+
+namespace ipos::compiler {
+
+// A variable operand kTemporary + n stands for temporary n of the function.
+inline constexpr int32_t kTemporary = 1 << 16;
+inline bool is_temporary(int32_t variable) { return variable >= kTemporary; }
+
+struct Command {
+  vm::Instruction instruction;
+  Span span;
+  int label = -1;                      // where it jumps to
+  std::optional<Reference> reference;  // function it calls, starts or names
+  uint32_t held = 0;                   // temporaries whose values are needed after a call
+};
+
+struct FunctionCode {
+  std::vector<Command> commands;
+  std::vector<size_t> labels;  // command each label stands at
+  uint32_t temporaries = 0;
+};
+
+}  // namespace ipos::compiler

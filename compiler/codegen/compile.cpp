@@ -1,0 +1,52 @@
+// Front end, semantic check and code generation, one after the other; a stage runs when the one before it was
+// good.
+#include "compiler/codegen/compile.hpp"
+
+#include <algorithm>
+
+#include "compiler/codegen/codegen.hpp"
+#include "compiler/parse/parse.hpp"
+#include "compiler/sema/sema.hpp"
+#include "stdlib/headers.hpp"
+
+namespace ipos::compiler {
+namespace {
+
+// The headers of MOVIDRIVE B (IPOSplus p. 29).
+bool includes_b_headers(const SourceMap& sources) {
+  return std::any_of(sources.files().begin(), sources.files().end(), [](const auto& file) {
+    return file->path.empty() && (file->name == "constb.h" || file->name == "iob.h");
+  });
+}
+
+}  // namespace
+
+Compilation compile(const std::string& name, const std::string& path, std::string text,
+                    const CompileOptions& options) {
+  Compilation out;
+  out.diagnostics = Diagnostics(options.warnings);
+  PreprocessOptions preprocess;
+  preprocess.include_dirs = options.include_dirs;
+  preprocess.defines = options.defines;
+  preprocess.headers = stdlib::headers::embedded_files();
+  preprocess.read_file = options.read_file;
+
+  const SourceFile& main = out.sources->add(name, path, std::move(text));
+  const ast::Program tree = parse_program(*out.sources, main, preprocess, out.diagnostics);
+  out.unit = options.unit;
+  if (out.unit == nullptr)
+    out.unit = stdlib::find_unit(std::string_view(includes_b_headers(*out.sources) ? "mdxb" : "md60a"));
+  if (out.diagnostics.has_errors()) return out;
+  auto program = check(tree, *out.unit, *out.sources, out.diagnostics);
+  if (!program) return out;
+  auto generated = generate(*program, *out.unit, *out.sources, out.diagnostics);
+  if (!generated) return out;
+  out.image = std::move(generated->image);
+  out.map = std::move(program->map);
+  out.map.insert(out.map.end(), generated->temporaries.begin(), generated->temporaries.end());
+  std::stable_sort(out.map.begin(), out.map.end(),
+                   [](const auto& a, const auto& b) { return a.number < b.number; });
+  return out;
+}
+
+}  // namespace ipos::compiler

@@ -1,0 +1,39 @@
+// The whole compiler in one call: source text in, image and diagnostics out.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/diag/diag.hpp"
+#include "compiler/sema/checked.hpp"
+#include "stdlib/unit_types.hpp"
+#include "vm/image/image.hpp"
+
+namespace ipos::compiler {
+
+struct CompileOptions {
+  std::vector<std::string> include_dirs;  // -I
+  std::vector<std::string> defines;       // -D NAME or NAME=TEXT
+  // Text of a file, nothing when it cannot be read. Empty: only the built-in headers exist.
+  std::function<std::optional<std::string>(const std::string& path)> read_file;
+  WarningOptions warnings;
+  // Null: mdxb for a source that includes constb.h or iob.h, else md60a.
+  const stdlib::UnitType* unit = nullptr;
+};
+
+struct Compilation {
+  std::unique_ptr<SourceMap> sources = std::make_unique<SourceMap>();
+  Diagnostics diagnostics;
+  const stdlib::UnitType* unit = nullptr;  // the one compiled for
+  std::optional<vm::Image> image;          // set when there are no errors
+  std::vector<checked::MapEntry> map;      // with the image; temporaries included
+};
+
+// `name` is how messages call the file, `path` where it was read from ("" for standard input).
+Compilation compile(const std::string& name, const std::string& path, std::string text,
+                    const CompileOptions& options = {});
+
+}  // namespace ipos::compiler

@@ -1,0 +1,191 @@
+// Statements. Loops test at their end, so that a turn costs one jump.
+#include "compiler/codegen/generator.hpp"
+
+#include <algorithm>
+
+#include "compiler/sema/fold.hpp"
+
+namespace ipos::compiler {
+
+using vm::Opcode;
+
+namespace {
+
+// A condition that one command decides: worth testing twice, before the loop and at its end.
+bool one_command(const checked::Expr& condition) {
+  if (as_variable(condition)) return true;
+  if (const auto* negation = std::get_if<checked::Unary>(&condition.node))
+    return negation->op == checked::UnaryOp::Not && one_command(*negation->operand);
+  const auto* node = std::get_if<checked::Binary>(&condition.node);
+  return node != nullptr && is_comparison(node->op) && is_simple(*node->left) && is_simple(*node->right);
+}
+
+// for (i = 0; i < 10; ...) is true at first.
+bool true_after(const checked::ExprPtr& init, const checked::ExprPtr& condition) {
+  if (init == nullptr || condition == nullptr) return false;
+  const auto* set = std::get_if<checked::Assign>(&init->node);
+  const auto* test = std::get_if<checked::Binary>(&condition->node);
+  if (set == nullptr || set->op || set->target.offset || test == nullptr || !is_comparison(test->op))
+    return false;
+  const int32_t* first = as_constant(*set->value);
+  const int32_t* variable = as_variable(*test->left);
+  const int32_t* limit = as_constant(*test->right);
+  return first && variable && limit && *variable == set->target.number && !acts_at_once(*variable) &&
+         fold(test->op, *first, *limit) == 1;
+}
+
+}  // namespace
+
+FunctionCode FunctionGenerator::generate(const checked::Function& function) {
+  statement(*function.body);
+  // The end of the function belongs to its closing brace.
+  const Span body = function.body->span;
+  Location brace = body.end;
+  if (brace.valid() && !brace.in_macro()) --brace.value;
+  emit(ends_task_ ? Opcode::End : Opcode::Ret, {brace, body.end});
+  return std::move(code_);
+}
+
+void FunctionGenerator::statement(const checked::Stmt& stmt) {
+  std::visit([&](const auto& node) { emit_stmt(node, stmt.span); }, stmt.node);
+}
+
+void FunctionGenerator::emit_stmt(const checked::ExprStmt& node, Span) { effect(*node.expr); }
+
+void FunctionGenerator::emit_stmt(const checked::Block& node, Span) {
+  for (const checked::StmtPtr& stmt : node.body) statement(*stmt);
+}
+
+void FunctionGenerator::emit_stmt(const checked::If& node, Span span) {
+  const int otherwise = new_label();
+  branch(*node.condition, otherwise, false);
+  statement(*node.then);
+  if (node.otherwise == nullptr) return place(otherwise);
+  const int end = new_label();
+  jump(end, span);
+  place(otherwise);
+  statement(*node.otherwise);
+  place(end);
+}
+
+void FunctionGenerator::emit_stmt(const checked::While& node, Span) {
+  loop(node.condition, nullptr, *node.body, false);
+}
+
+void FunctionGenerator::emit_stmt(const checked::For& node, Span) {
+  if (node.init != nullptr) effect(*node.init);
+  loop(node.condition, node.step, *node.body, true_after(node.init, node.condition));
+}
+
+void FunctionGenerator::loop(const checked::ExprPtr& condition, const checked::ExprPtr& step,
+                             const checked::Stmt& body, bool first_test_known) {
+  const int top = new_label();
+  const int test = new_label();
+  const int next = new_label();
+  const int end = new_label();
+  const bool endless = condition == nullptr || (as_constant(*condition) && *as_constant(*condition) != 0);
+  if (!endless && !first_test_known) {
+    if (one_command(*condition))
+      branch(*condition, end, false);
+    else
+      jump(test, condition->span);
+  }
+  place(top);
+  breaks_.push_back(end);
+  continues_.push_back(next);
+  statement(body);
+  breaks_.pop_back();
+  continues_.pop_back();
+  place(next);
+  if (step != nullptr) effect(*step);
+  place(test);
+  if (endless)
+    jump(top, condition != nullptr ? condition->span : body.span);
+  else
+    branch(*condition, top, true);
+  place(end);
+}
+
+void FunctionGenerator::emit_stmt(const checked::DoWhile& node, Span) {
+  const int top = new_label();
+  const int next = new_label();
+  const int end = new_label();
+  place(top);
+  breaks_.push_back(end);
+  continues_.push_back(next);
+  statement(*node.body);
+  breaks_.pop_back();
+  continues_.pop_back();
+  place(next);
+  branch(*node.condition, top, true);
+  place(end);
+}
+
+void FunctionGenerator::emit_stmt(const checked::Switch& node, Span span) {
+  std::vector<int> labels;
+  for (size_t n = 0; n < node.labels; ++n) labels.push_back(new_label());
+  const int end = new_label();
+  const int otherwise = node.otherwise ? labels[*node.otherwise] : end;
+  {
+    const Hold hold(top_);
+    Operand selector = value(*node.value);
+    // Read once: a task, an interrupt or a bus may change the variable between two comparisons.
+    if (!selector.constant && !is_temporary(selector.value) && node.cases.size() > 1) {
+      const int32_t copy = temporary();
+      set(copy, selector, node.value->span);
+      selector.value = copy;
+    }
+    int target = otherwise;
+    for (const auto& [number, label] : node.cases) {
+      if (!selector.constant)
+        emit(Opcode::JmpEqHK, node.value->span, {selector.value, number}).label = labels[label];
+      else if (selector.value == number)
+        target = labels[label];
+    }
+    jump(target, span);
+  }
+  switches_.push_back(std::move(labels));
+  breaks_.push_back(end);
+  statement(*node.body);
+  breaks_.pop_back();
+  switches_.pop_back();
+  place(end);
+}
+
+void FunctionGenerator::emit_stmt(const checked::CaseLabel& node, Span) {
+  place(switches_.back()[node.label]);
+}
+
+void FunctionGenerator::emit_stmt(const checked::Break&, Span span) { jump(breaks_.back(), span); }
+
+void FunctionGenerator::emit_stmt(const checked::Continue&, Span span) { jump(continues_.back(), span); }
+
+void FunctionGenerator::emit_stmt(const checked::Return&, Span span) {
+  emit(ends_task_ ? Opcode::End : Opcode::Ret, span);
+}
+
+int FunctionGenerator::new_label() {
+  code_.labels.push_back(0);
+  return static_cast<int>(code_.labels.size() - 1);
+}
+
+void FunctionGenerator::place(int label) { code_.labels[static_cast<size_t>(label)] = code_.commands.size(); }
+
+Command& FunctionGenerator::emit(Opcode opcode, Span span, std::vector<int32_t> operands) {
+  Command& command = code_.commands.emplace_back();
+  command.instruction.opcode = opcode;
+  for (size_t n = 0; n < operands.size(); ++n) command.instruction.operands[n] = operands[n];
+  command.span = span;
+  command.held = top_;
+  return command;
+}
+
+void FunctionGenerator::jump(int label, Span span) { emit(Opcode::Jmp, span).label = label; }
+
+int32_t FunctionGenerator::temporary() {
+  const uint32_t number = top_++;
+  code_.temporaries = std::max(code_.temporaries, top_);
+  return kTemporary + static_cast<int32_t>(number);
+}
+
+}  // namespace ipos::compiler

@@ -1,0 +1,108 @@
+// Generates the commands of one function. Evaluation is left to right; where the order cannot be seen, the
+// cheaper one is taken.
+#pragma once
+
+#include "compiler/codegen/code.hpp"
+#include "compiler/sema/checked.hpp"
+
+namespace ipos::compiler {
+
+class FunctionGenerator {
+ public:
+  // `ends_task`: return is END instead of RET (main, unless something calls it).
+  explicit FunctionGenerator(bool ends_task) : ends_task_(ends_task) {}
+
+  FunctionCode generate(const checked::Function& function);
+
+ private:
+  // A constant, a variable or a temporary that holds a value.
+  struct Operand {
+    bool constant = false;
+    int32_t value = 0;  // or the number of the variable
+  };
+
+  // Temporaries taken since the hold began are free again when it ends.
+  class Hold {
+   public:
+    explicit Hold(uint32_t& top) : top_(top), mark_(top) {}
+    ~Hold() { top_ = mark_; }
+    Hold(const Hold&) = delete;
+    Hold& operator=(const Hold&) = delete;
+
+   private:
+    uint32_t& top_;
+    uint32_t mark_;
+  };
+
+  // generator.cpp: statements and the pieces all parts use
+  void statement(const checked::Stmt& stmt);
+  void emit_stmt(const checked::ExprStmt& node, Span span);
+  void emit_stmt(const checked::Block& node, Span span);
+  void emit_stmt(const checked::If& node, Span span);
+  void emit_stmt(const checked::While& node, Span span);
+  void emit_stmt(const checked::DoWhile& node, Span span);
+  void emit_stmt(const checked::For& node, Span span);
+  void emit_stmt(const checked::Switch& node, Span span);
+  void emit_stmt(const checked::CaseLabel& node, Span span);
+  void emit_stmt(const checked::Break& node, Span span);
+  void emit_stmt(const checked::Continue& node, Span span);
+  void emit_stmt(const checked::Return& node, Span span);
+  void loop(const checked::ExprPtr& condition, const checked::ExprPtr& step, const checked::Stmt& body,
+            bool first_test_known);
+  int new_label();
+  void place(int label);
+  Command& emit(vm::Opcode opcode, Span span, std::vector<int32_t> operands = {});
+  void jump(int label, Span span);
+  int32_t temporary();
+
+  // values.cpp: expressions that give a value
+  Operand value(const checked::Expr& expr);
+  int32_t variable(const checked::Expr& expr);  // the value in a variable, a constant is loaded into one
+  void into(const checked::Expr& expr, int32_t target);
+  void arithmetic(const checked::Binary& node, int32_t target, Span span);
+  void truth_into(const checked::Expr& expr, int32_t target);
+  void conditional_into(const checked::Conditional& node, int32_t target, Span span);
+  void load_into(const checked::Place& place, int32_t target, Span span);
+  void operate(checked::BinaryOp op, int32_t target, Operand right, Span span);
+  void set(int32_t target, Operand source, Span span);
+  int32_t address(const checked::Place& place, Span span);
+  Operand guarded(Operand operand, const checked::Expr& later, Span span);
+
+  // effects.cpp: assignments, steps, calls
+  void effect(const checked::Expr& expr);
+  Operand assign(const checked::Assign& node, Span span);
+  Operand assign_indirect(const checked::Assign& node, Span span);
+  Operand step(const checked::Step& node, Span span, bool value_used);
+  void system_call(const checked::SystemCall& node, const checked::Expr& expr);
+  void conditional_effect(const checked::Conditional& node, Span span);
+
+  // conditions.cpp
+  void branch(const checked::Expr& expr, int label, bool when);
+  void branch_binary(const checked::Binary& node, int label, bool when, Span span);
+  void compare(const checked::Binary& node, int label, bool when, Span span);
+  void test(const checked::Expr& expr, int label, bool when);
+
+  bool ends_task_;
+  FunctionCode code_;
+  uint32_t top_ = 0;  // temporaries in use
+  std::vector<int> breaks_;
+  std::vector<int> continues_;
+  std::vector<std::vector<int>> switches_;  // labels of the cases
+};
+
+// Whether evaluating `expr` may read or write a variable; indirect access and calls may do either to any.
+struct Uses {
+  bool read = false;
+  bool write = false;
+};
+Uses uses(const checked::Expr& expr, int32_t variable);
+
+// A variable whose every value the unit acts on at once: it must never show an intermediate result.
+bool acts_at_once(int32_t variable);
+
+// The constant or the directly named variable an expression is, if it is no more than that.
+const int32_t* as_constant(const checked::Expr& expr);
+const int32_t* as_variable(const checked::Expr& expr);
+inline bool is_simple(const checked::Expr& expr) { return as_constant(expr) || as_variable(expr); }
+
+}  // namespace ipos::compiler

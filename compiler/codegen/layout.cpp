@@ -1,0 +1,182 @@
+// Addresses, temporaries, line table: from the functions' commands to an image.
+#include "compiler/codegen/layout.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "compiler/codegen/roots.hpp"
+
+namespace ipos::compiler {
+namespace {
+
+class Layout {
+ public:
+  Layout(const checked::Program& program, const std::vector<FunctionCode>& functions,
+         const stdlib::UnitType& unit, const SourceMap& sources, Diagnostics& diagnostics)
+      : program_(program),
+        functions_(functions),
+        unit_(unit),
+        sources_(sources),
+        diagnostics_(diagnostics),
+        instances_(functions, program.main) {}
+
+  std::optional<GeneratedProgram> run() {
+    for (const Command* command : instances_.lost_temporaries())
+      diagnostics_.report(Diag::RecursionTemporary, command->span,
+                          {program_.functions[command->reference->function].name});
+    if (diagnostics_.has_errors()) return std::nullopt;
+    check_temporaries();
+    give_addresses();
+    if (diagnostics_.has_errors()) return std::nullopt;
+    out_.image.unit = unit_.code;
+    out_.image.symbols = program_.symbols;
+    for (size_t n = 0; n < instances_.all().size(); ++n) emit(n);
+    describe_temporaries();
+    return std::move(out_);
+  }
+
+ private:
+  const NumberRange& range() const { return program_.ranges.temporaries; }
+
+  void check_temporaries() {
+    const uint32_t count = instances_.temporaries();
+    const auto advice = [&] {
+      return range_advice(RangeKind::Temporaries, count, program_.ranges, program_.named, unit_);
+    };
+    const Span main = program_.functions[program_.main].span;
+    if (count > range().size()) {
+      diagnostics_.report(Diag::TemporaryOverflow, main,
+                          {fmt::format("{}", count), fmt::format("{}", range().low),
+                           fmt::format("{}", range().high), fmt::format("{}", range().size()), advice()});
+      return;
+    }
+    for (uint32_t n = range().low; n < range().low + count; ++n) {
+      if (!program_.named.test(n)) continue;
+      std::string owner = fmt::format("H{}", n);
+      for (const checked::MapEntry& row : program_.map)
+        if (n >= row.number && n < row.number + row.count) owner = row.name;
+      diagnostics_.report(Diag::TemporaryTaken, main, {fmt::format("{}", n), owner, advice()});
+      return;
+    }
+  }
+
+  void give_addresses() {
+    uint32_t address = 0;
+    for (const Instance& instance : instances_.all()) {
+      starts_.push_back(address);
+      for (const Command& command : functions_[instance.function].commands)
+        address += static_cast<uint32_t>(vm::info(command.instruction.opcode).words);
+    }
+    if (address > unit_.program_words)
+      diagnostics_.report(
+          Diag::ProgramTooLong, program_.functions[program_.main].span,
+          {fmt::format("{}", address), std::string(unit_.name), fmt::format("{}", unit_.program_words)});
+  }
+
+  void emit(size_t number) {
+    const Instance& instance = instances_.all()[number];
+    const FunctionCode& function = functions_[instance.function];
+    vm::Image& image = out_.image;
+    image.functions.push_back({instance_name(number), starts_[number]});
+
+    std::vector<uint32_t> addresses;
+    uint32_t next = starts_[number];
+    for (const Command& command : function.commands) {
+      addresses.push_back(next);
+      next += static_cast<uint32_t>(vm::info(command.instruction.opcode).words);
+    }
+    for (size_t n = 0; n < function.commands.size(); ++n) {
+      const Command& command = function.commands[n];
+      vm::Instruction instruction = command.instruction;
+      const vm::OpcodeInfo& row = vm::info(instruction.opcode);
+      for (size_t k = 0; k < static_cast<size_t>(row.operand_count); ++k) {
+        int32_t& operand = instruction.operands[k];
+        if (row.operands[k].kind == vm::OperandKind::Variable && is_temporary(operand))
+          operand =
+              static_cast<int32_t>(range().low + instances_.roots()[instance.root].first + instance.first) +
+              operand - kTemporary;
+        if (row.operands[k].kind != vm::OperandKind::Label) continue;
+        if (command.label >= 0)
+          operand = static_cast<int32_t>(addresses[function.labels[static_cast<size_t>(command.label)]]);
+        else if (command.reference)
+          operand = static_cast<int32_t>(starts_[instances_.target(instance, *command.reference)]);
+      }
+      add_line(addresses[n], command.span);
+      std::array<uint32_t, vm::kMaxWords> words{};
+      const uint32_t count = vm::encode(instruction, words);
+      image.code.insert(image.code.end(), words.begin(), words.begin() + count);
+    }
+  }
+
+  // The first instance has the name of the function, further ones name their root, too.
+  std::string instance_name(size_t number) const {
+    const Instance& instance = instances_.all()[number];
+    const std::string& name = program_.functions[instance.function].name;
+    size_t earlier = 0;
+    for (size_t n = 0; n < number; ++n) earlier += instances_.all()[n].function == instance.function;
+    if (earlier == 0) return name;
+    std::string copy = name + "@" + program_.functions[instances_.roots()[instance.root].function].name;
+    // One function may be several roots, say of two interrupts.
+    for (const vm::FunctionEntry& entry : out_.image.functions)
+      if (entry.name == copy) return fmt::format("{}@{}", copy, earlier + 1);
+    return copy;
+  }
+
+  void add_line(uint32_t address, Span span) {
+    const Position at = sources_.position(span.begin);
+    if (at.file == nullptr) return;
+    vm::Image& image = out_.image;
+    auto file = std::find(files_.begin(), files_.end(), at.file);
+    if (file == files_.end()) {
+      image.files.push_back(at.file->name);
+      file = files_.insert(files_.end(), at.file);
+    }
+    const vm::LineEntry entry{address, static_cast<uint16_t>(file - files_.begin()), at.line,
+                              static_cast<uint16_t>(std::min<uint32_t>(at.column, 0xFFFF))};
+    if (!image.lines.empty()) {
+      const vm::LineEntry& last = image.lines.back();
+      const bool new_function = std::binary_search(starts_.begin(), starts_.end(), address);
+      if (!new_function && last.file == entry.file && last.line == entry.line && last.column == entry.column)
+        return;
+    }
+    image.lines.push_back(entry);
+  }
+
+  void describe_temporaries() {
+    for (const Root& root : instances_.roots()) {
+      if (root.count == 0) continue;
+      const std::string& name = program_.functions[root.function].name;
+      out_.temporaries.push_back({"(" + name + ")",
+                                  "long",
+                                  range().low + root.first,
+                                  root.count,
+                                  "temporaries",
+                                  {name},
+                                  {name},
+                                  {}});
+    }
+  }
+
+  const checked::Program& program_;
+  const std::vector<FunctionCode>& functions_;
+  const stdlib::UnitType& unit_;
+  const SourceMap& sources_;
+  Diagnostics& diagnostics_;
+  Instances instances_;
+  std::vector<uint32_t> starts_;  // address of each instance
+  std::vector<const SourceFile*> files_;
+  GeneratedProgram out_;
+};
+
+}  // namespace
+
+std::optional<GeneratedProgram> lay_out(const checked::Program& program,
+                                        const std::vector<FunctionCode>& functions,
+                                        const stdlib::UnitType& unit, const SourceMap& sources,
+                                        Diagnostics& diagnostics) {
+  return Layout(program, functions, unit, sources, diagnostics).run();
+}
+
+}  // namespace ipos::compiler

@@ -1,0 +1,83 @@
+// Diagnostics as text for the terminal.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "compiler/diag/places.hpp"
+#include "compiler/diag/render.hpp"
+
+namespace ipos::compiler {
+namespace {
+
+constexpr size_t kWidth = 160;  // of a quoted line (ours); longer ones are cut around the place
+
+struct Colors {
+  std::string_view place, error, warning, note, caret, off;
+};
+constexpr Colors kPlain{};
+constexpr Colors kAnsi{"\x1b[1m", "\x1b[1;31m", "\x1b[1;35m", "\x1b[1;36m", "\x1b[1;32m", "\x1b[0m"};
+
+class TextRenderer {
+ public:
+  TextRenderer(const SourceMap& map, bool color) : map_(map), colors_(color ? kAnsi : kPlain) {}
+
+  void diagnostic(const Diagnostic& diagnostic) {
+    const std::string code(info(diagnostic.diag).code);
+    message(diagnostic.span, diagnostic.severity, diagnostic.text, " [" + code + "]");
+    for (const Note& note : all_notes(diagnostic, map_)) message(note.span, Severity::Note, note.text, "");
+  }
+
+  std::string take() { return std::move(out_); }
+
+ private:
+  void message(Span span, Severity severity, std::string_view text, std::string_view code) {
+    const Range range = range_of(span, map_);
+    if (range.begin.file != nullptr)
+      out_ += fmt::format("{}{}:{}:{}:{} ", colors_.place, printable(range.begin.file->name),
+                          range.begin.line, range.begin.column, colors_.off);
+    const std::string_view color = severity == Severity::Error     ? colors_.error
+                                   : severity == Severity::Warning ? colors_.warning
+                                                                   : colors_.note;
+    out_ += fmt::format("{}{}:{} {}{}\n", color, severity_word(severity), colors_.off, printable(text), code);
+    if (range.begin.file != nullptr) quote(range);
+  }
+
+  // The line and below it a caret under the first character and ~ under the others.
+  void quote(const Range& range) {
+    std::string_view line = SourceMap::line_text(*range.begin.file, range.begin.line);
+    size_t begin = std::min<size_t>(range.begin.column - 1, line.size());
+    size_t end = range.end.line == range.begin.line ? std::min<size_t>(range.end.column - 1, line.size())
+                                                    : line.size();
+    if (begin > kWidth / 2 && line.size() > kWidth) {
+      const size_t cut = begin - kWidth / 2;
+      line.remove_prefix(cut);
+      begin -= cut;
+      end -= cut;
+    }
+    line = line.substr(0, kWidth);
+    end = std::min(end, line.size());
+
+    std::string below;
+    for (char c : printable(line.substr(0, begin)))
+      if ((static_cast<unsigned char>(c) & 0xC0U) != 0x80U) below += c == '\t' ? '\t' : ' ';
+    below += colors_.caret;
+    below += '^';
+    if (end > begin) below.append(characters(line.substr(begin, end - begin)) - 1, '~');
+    below += colors_.off;
+    out_ += fmt::format("{:5} | {}\n      | {}\n", range.begin.line, printable(line), below);
+  }
+
+  const SourceMap& map_;
+  const Colors& colors_;
+  std::string out_;
+};
+
+}  // namespace
+
+std::string render_text(std::span<const Diagnostic> diagnostics, const SourceMap& map, bool color) {
+  TextRenderer renderer(map, color);
+  for (const Diagnostic& diagnostic : diagnostics) renderer.diagnostic(diagnostic);
+  return renderer.take();
+}
+
+}  // namespace ipos::compiler

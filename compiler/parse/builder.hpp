@@ -1,0 +1,146 @@
+// Makes the tree for the grammar: one function for each rule. Reports what the grammar accepts only to
+// explain it better than "expected ...": words of C that this language lacks, declarations inside functions,
+// and so on.
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "compiler/ast/ast.hpp"
+#include "compiler/diag/diag.hpp"
+
+namespace ipos::compiler {
+
+// Names that are types where they stand: the standard structures and every typedef so far.
+using TypeNames = std::set<std::string, std::less<>>;
+
+// A mistake in a declaration, held back until it is known what kind of declaration it is.
+struct Problem {
+  Diag diag;
+  Span span;
+  std::vector<std::string> args;
+};
+using Problems = std::vector<Problem>;
+
+struct ParsedType {
+  ast::Ident name;
+  Problems problems;
+};
+
+struct ParsedDeclarator {
+  ast::Declarator declarator;
+  Problems problems;
+};
+
+struct ParsedVariables {
+  ast::VariableDecl decl;
+  Problems problems;
+};
+
+struct ForHead {
+  ast::ExprPtr init;
+  ast::ExprPtr condition;
+  ast::ExprPtr step;
+};
+
+class Builder {
+ public:
+  // `open_brace`: a '}' is missing somewhere, so what looks local may be global.
+  Builder(ast::Program& program, TypeNames& types, const SourceMap& map, Diagnostics& diagnostics,
+          bool open_brace)
+      : program_(program), types_(types), map_(map), diagnostics_(diagnostics), open_brace_(open_brace) {}
+
+  template <typename T>
+  std::vector<T> list(T first) {
+    std::vector<T> items;
+    items.push_back(std::move(first));
+    return items;
+  }
+  template <typename T>
+  std::vector<T> append(std::vector<T> items, T next) {
+    items.push_back(std::move(next));
+    return items;
+  }
+
+  // builder.cpp: declarations.
+  void global(ParsedVariables variables);
+  void local(ParsedVariables variables);
+  void structure(Span span, ast::Ident name, std::vector<ParsedVariables> members);
+  void function(Span span, ast::Ident name, ast::StmtPtr body);
+  void function_with_result(Span span, Span type, ast::Ident name, ast::StmtPtr body);
+  void problem(Diag diag, Span span, std::string name = {});
+  ast::Ident new_type(ast::Ident name);
+  ParsedVariables variables(Span span, bool initial, ParsedType type,
+                            std::vector<ParsedDeclarator> declarators);
+  ParsedType type(ast::Ident word);
+  ParsedType qualified(ast::Ident qualifier, ParsedType type);
+  ParsedType struct_type(Span span, ast::Ident name);
+  ParsedType foreign_type(Span span, ast::Ident word);
+  ParsedType two_types(ParsedType first, ast::Ident second);
+  ParsedDeclarator declarator(ast::Ident name);
+  ParsedDeclarator declared_type(ast::Ident name);
+  ParsedDeclarator initialized(ParsedDeclarator declarator, Span assign);
+  ParsedDeclarator array(ParsedDeclarator declarator, Span bracket, ast::ExprPtr count);
+  ParsedDeclarator pointer(Span star, ParsedDeclarator declarator);
+  void pragma(Span span, ast::Ident kind);
+  void pragma_range(Span span, ast::Ident kind, ast::ExprPtr low, ast::ExprPtr high);
+  void alias(Span span, ast::Ident name, ast::Ident base);
+  void alias_behind(Span span, ast::Ident name, ast::Ident base, Span plus, ast::ExprPtr offset);
+
+  // build_statements.cpp
+  ast::StmtPtr block(Span span, std::vector<ast::StmtPtr> items);
+  ast::StmtPtr expression_statement(Span span, ast::ExprPtr expr);
+  ast::StmtPtr if_statement(Span span, ast::ExprPtr condition, ast::StmtPtr then, ast::StmtPtr otherwise);
+  ast::StmtPtr while_statement(Span span, ast::ExprPtr condition, ast::StmtPtr body);
+  ast::StmtPtr do_while(Span span, ast::StmtPtr body, ast::ExprPtr condition);
+  ForHead for_head(ast::ExprPtr init, ast::ExprPtr condition, ast::ExprPtr step);
+  ast::StmtPtr for_statement(Span span, ForHead head, ast::StmtPtr body);
+  ast::StmtPtr switch_statement(Span span, ast::ExprPtr value, ast::StmtPtr body);
+  ast::StmtPtr case_label(Span span, ast::ExprPtr value);
+  template <typename Node>
+  ast::StmtPtr simple(Span span) {
+    return make_stmt(span, Node{}, 0);
+  }
+
+  // build_expressions.cpp
+  ast::ExprPtr number(Span span, ast::Number number);
+  ast::ExprPtr name(ast::Ident ident);
+  ast::ExprPtr call(Span span, ast::Ident function, std::vector<ast::ExprPtr> arguments);
+  ast::ExprPtr parenthesized(Span span, ast::ExprPtr inner);
+  ast::ExprPtr numof(Span span, ast::ExprPtr object);
+  ast::ExprPtr index(Span span, ast::ExprPtr base, ast::ExprPtr index);
+  ast::ExprPtr member(Span span, ast::ExprPtr base, ast::Ident member);
+  ast::ExprPtr arrow(Span span, ast::ExprPtr base, Span arrow, ast::Ident member);
+  ast::ExprPtr step(Span span, ast::StepOp op, ast::ExprPtr operand);
+  ast::ExprPtr unary(Span span, ast::UnaryOp op, ast::ExprPtr operand);
+  ast::ExprPtr deref(Span span, ast::ExprPtr number);
+  ast::ExprPtr binary(Span span, ast::BinaryOp op, ast::ExprPtr left, Span op_span, ast::ExprPtr right);
+  ast::ExprPtr conditional(Span span, ast::ExprPtr condition, ast::ExprPtr then, ast::ExprPtr otherwise);
+  ast::ExprPtr assign(Span span, std::optional<ast::BinaryOp> op, ast::ExprPtr target, Span op_span,
+                      ast::ExprPtr value);
+  ast::ExprPtr comma(Span span, ast::ExprPtr left, ast::ExprPtr right);
+  // Reports a construct of C from `first` to `last` and goes on with its operand, or with 0.
+  ast::ExprPtr replaced(Diag diag, Span first, Span last, ast::ExprPtr operand);
+  ast::ExprPtr missing(Diag diag, Span span);
+
+ private:
+  void report(const Problems& problems);
+  bool is_line_head(Span span) const;
+  // Nodes over children of this depth; one that would be too deep is reported and replaced by a leaf.
+  ast::ExprPtr make_expr(Span span, decltype(ast::Expr::node) node, unsigned depth_below);
+  ast::StmtPtr make_stmt(Span span, decltype(ast::Stmt::node) node, unsigned depth_below);
+  bool too_deep(Span span, unsigned depth_below);
+  // What stands where recovery left nothing, so that the tree has no holes.
+  ast::ExprPtr whole(ast::ExprPtr expr, Span span);
+  ast::StmtPtr whole(ast::StmtPtr stmt, Span span);
+
+  ast::Program& program_;
+  TypeNames& types_;
+  const SourceMap& map_;
+  Diagnostics& diagnostics_;
+  bool open_brace_;
+  bool too_deep_reported_ = false;
+};
+
+}  // namespace ipos::compiler

@@ -1,0 +1,25 @@
+// Where #include looks for a file.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/preprocess/preprocess.hpp"
+
+namespace ipos::compiler {
+
+struct FoundFile {
+  std::string name;  // for messages
+  std::string path;  // empty: built in
+  std::string text;
+};
+
+// Order of IPOSplus p. 179: a name with an explicit path as it stands, else beside the source file, then the
+// configured directories; the built-in headers come last (ours). "Beside the source file" is tried for the
+// including file first and for the main file then (ours). `searched` receives the places tried.
+std::optional<FoundFile> find_include(const std::string& name, const SourceFile& includer,
+                                      const SourceFile& main, const PreprocessOptions& options,
+                                      std::vector<std::string>& searched);
+
+}  // namespace ipos::compiler

@@ -1,0 +1,38 @@
+// Macros without parameters: the table and the expansion.
+#pragma once
+
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "compiler/preprocess/token.hpp"
+
+namespace ipos::compiler {
+
+struct Macro {
+  Span name;  // in its #define
+  std::vector<Token> body;
+  bool expanding = false;  // its name inside its own text stays as it is, as in C
+};
+
+class Macros {
+ public:
+  explicit Macros(SourceMap& map) : map_(map) {}
+
+  // nullptr when the name is no macro. Names live in the source text.
+  const Macro* find(std::string_view name) const;
+  void define(std::string_view name, Macro macro) { macros_.insert_or_assign(name, std::move(macro)); }
+  void undefine(std::string_view name) { macros_.erase(name); }
+
+  // Appends what the token stands for: itself or the text of a macro. Counts every token made down from
+  // `budget`; false when that is used up.
+  bool expand(const Token& token, std::vector<Token>& out, size_t& budget);
+
+ private:
+  Macro* expandable(const Token& token);
+
+  SourceMap& map_;
+  std::unordered_map<std::string_view, Macro> macros_;
+};
+
+}  // namespace ipos::compiler

@@ -1,0 +1,38 @@
+// The preprocessor: from the main file to one list of tokens, with includes, macros and conditions done.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "compiler/diag/diag.hpp"
+#include "compiler/preprocess/token.hpp"
+#include "stdlib/embedded.hpp"
+
+namespace ipos::compiler {
+
+struct PreprocessOptions {
+  std::vector<std::string> include_dirs;          // -I, in order
+  std::vector<std::string> defines;               // -D: "NAME" (means 1) or "NAME=TEXT"
+  std::span<const stdlib::EmbeddedFile> headers;  // built-in ones, searched last
+  // Text of a file, nothing when it cannot be read. Empty function: only the built-in headers exist.
+  std::function<std::optional<std::string>(const std::string& path)> read_file;
+  // Tokens read or made by macros; more is an error. Far above any program a drive could hold (ours).
+  size_t max_tokens = 1'000'000;
+};
+
+struct PreprocessedText {
+  std::vector<Token> tokens;  // the last one is End
+  // False when an include failed or a limit was reached: names would be missing, so that syntax messages
+  // would mislead.
+  bool complete = true;
+};
+
+// The tokens refer to the text in `map`. #pragma and #declare stay in the list, each closed by a
+// DirectiveEnd.
+PreprocessedText preprocess(SourceMap& map, const SourceFile& main, const PreprocessOptions& options,
+                            Diagnostics& diagnostics);
+
+}  // namespace ipos::compiler

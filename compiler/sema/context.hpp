@@ -1,0 +1,47 @@
+// What the parts of the semantic check share while they work on one program.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "compiler/diag/diag.hpp"
+#include "compiler/sema/checked.hpp"
+#include "compiler/sema/scope.hpp"
+#include "stdlib/unit_types.hpp"
+
+namespace ipos::compiler {
+
+// Functions (by index) that read or write a variable, or take its number.
+struct Access {
+  std::set<size_t> readers;
+  std::set<size_t> writers;
+  std::set<size_t> takers;
+};
+
+// A constant assigned to a variable with a fixed number: what the SBus checks look at.
+struct ConstantStore {
+  uint32_t number;
+  int32_t value;
+  Span span;
+};
+
+struct Context {
+  const stdlib::UnitType& unit;
+  const SourceMap& sources;
+  Diagnostics& diagnostics;
+  Scope scope;
+  checked::Program program;
+  std::map<uint32_t, Access> accesses;                // by variable number
+  std::map<uint32_t, Span> raw_names;                 // first use of H5 and the like
+  std::set<std::string, std::less<>> reported_names;  // unknown ones, each reported once
+  std::vector<ConstantStore> stores;
+  size_t function = SIZE_MAX;  // index of the function being checked
+  size_t order = 0;            // its place among the declarations
+
+  // Marks H`number` as used by that name; false and a message when the unit has no such variable.
+  bool use_raw(uint32_t number, Span span);
+};
+
+}  // namespace ipos::compiler

@@ -1,0 +1,286 @@
+// Values, conditions and effects: operators, assignments and calls.
+#include "compiler/sema/expressions.hpp"
+
+#include <fmt/format.h>
+
+#include "compiler/sema/fold.hpp"
+#include "stdlib/language_tables.hpp"
+
+namespace ipos::compiler {
+
+using checked::ExprPtr;
+
+ExprPtr make_expr(Span span, decltype(checked::Expr::node) node) {
+  return std::make_unique<checked::Expr>(checked::Expr{span, std::move(node)});
+}
+
+const int32_t* constant_value(const ExprPtr& expr) {
+  if (expr == nullptr) return nullptr;
+  const auto* constant = std::get_if<checked::Constant>(&expr->node);
+  return constant == nullptr ? nullptr : &constant->value;
+}
+
+bool has_effect(const checked::Expr& expr) {
+  const auto in = [](const ExprPtr& part) { return part != nullptr && has_effect(*part); };
+  struct Visitor {
+    decltype(in)& part;
+    bool operator()(const checked::Constant&) { return false; }
+    bool operator()(const checked::Load& node) { return part(node.place.offset); }
+    bool operator()(const checked::Unary& node) { return part(node.operand); }
+    bool operator()(const checked::Step&) { return true; }
+    bool operator()(const checked::Binary& node) { return part(node.left) || part(node.right); }
+    bool operator()(const checked::Conditional& node) {
+      return part(node.condition) || part(node.then) || part(node.otherwise);
+    }
+    bool operator()(const checked::Assign&) { return true; }
+    bool operator()(const checked::Comma& node) { return part(node.left) || part(node.right); }
+    bool operator()(const checked::CopyBlock&) { return true; }
+    bool operator()(const checked::Call&) { return true; }
+    bool operator()(const checked::SystemCall&) { return true; }
+  };
+  return std::visit(Visitor{in}, expr.node);
+}
+
+ExprPtr ExpressionChecker::value(const ast::Expr& expr) {
+  return std::visit([&](const auto& node) { return value_of(node, expr); }, expr.node);
+}
+
+ExprPtr ExpressionChecker::condition(const ast::Expr& expr) {
+  const auto* assign = std::get_if<ast::Assign>(&expr.node);
+  if (assign != nullptr && !assign->op && !expr.parenthesized)
+    context_.diagnostics.report(Diag::AssignmentInCondition, expr.span);
+  return value(expr);
+}
+
+ExprPtr ExpressionChecker::effect(const ast::Expr& expr) {
+  if (const auto* node = std::get_if<ast::Call>(&expr.node)) return call(*node, expr.span);
+  if (const auto* node = std::get_if<ast::Comma>(&expr.node)) {
+    ExprPtr left = effect(*node->left);
+    ExprPtr right = effect(*node->right);
+    if (!left || !right) return nullptr;
+    return make_expr(expr.span, checked::Comma{std::move(left), std::move(right)});
+  }
+  if (const auto* node = std::get_if<ast::Conditional>(&expr.node)) {
+    ExprPtr when = condition(*node->condition);
+    ExprPtr then = effect(*node->then);
+    ExprPtr otherwise = effect(*node->otherwise);
+    if (!when || !then || !otherwise) return nullptr;
+    return make_expr(expr.span, checked::Conditional{std::move(when), std::move(then), std::move(otherwise)});
+  }
+  if (const auto* node = std::get_if<ast::Assign>(&expr.node); node != nullptr && !node->op) {
+    auto left = target(*node->target);
+    if (left && !left->type.scalar()) return copy_structure(*node, std::move(*left), expr.span);
+    return assign(*node, std::move(left), expr.span);
+  }
+  ExprPtr result = value(expr);
+  if (result != nullptr && !has_effect(*result)) context_.diagnostics.report(Diag::UnusedValue, expr.span);
+  return result;
+}
+
+std::optional<int32_t> ExpressionChecker::constant(const ast::Expr& expr, const char* what) {
+  in_constant_ = true;
+  const ExprPtr result = value(expr);
+  in_constant_ = false;
+  if (result == nullptr) return std::nullopt;
+  if (const int32_t* known = constant_value(result)) return *known;
+  const auto* division = std::get_if<checked::Binary>(&result->node);
+  if (division != nullptr && constant_value(division->left) && constant_value(division->right))
+    context_.diagnostics.report(Diag::ConstantDivision, expr.span);
+  else
+    context_.diagnostics.report(Diag::NotConstant, expr.span, {what});
+  return std::nullopt;
+}
+
+ExprPtr ExpressionChecker::value_of(const ast::Number& node, const ast::Expr& expr) {
+  return make_expr(expr.span, checked::Constant{node.value});
+}
+
+ExprPtr ExpressionChecker::value_of(const ast::Name&, const ast::Expr& expr) { return load(expr); }
+ExprPtr ExpressionChecker::value_of(const ast::Member&, const ast::Expr& expr) { return load(expr); }
+ExprPtr ExpressionChecker::value_of(const ast::Index&, const ast::Expr& expr) { return load(expr); }
+ExprPtr ExpressionChecker::value_of(const ast::Deref&, const ast::Expr& expr) { return load(expr); }
+
+ExprPtr ExpressionChecker::load(const ast::Expr& expr) {
+  auto from = object(expr);
+  if (!from) return nullptr;
+  if (!from->type.scalar()) {
+    const char* advice = from->type.count != 0 ? "one of its elements has" : "one of its members has";
+    context_.diagnostics.report(Diag::NotAValue, expr.span, {from->text, advice});
+    return nullptr;
+  }
+  record_read(*from);
+  return make_expr(expr.span, checked::Load{std::move(from->place)});
+}
+
+ExprPtr ExpressionChecker::value_of(const ast::Numof& node, const ast::Expr& expr) {
+  auto of = object(*node.object);
+  if (!of) return nullptr;
+  record_take(*of);
+  ExprPtr number = make_expr(expr.span, checked::Constant{of->place.number});
+  if (of->place.offset == nullptr) return number;
+  if (of->place.number == 0) return std::move(of->place.offset);
+  return make_expr(expr.span,
+                   checked::Binary{ast::BinaryOp::Add, std::move(of->place.offset), std::move(number)});
+}
+
+ExprPtr ExpressionChecker::value_of(const ast::Unary& node, const ast::Expr& expr) {
+  ExprPtr operand = value(*node.operand);
+  if (operand == nullptr || node.op == ast::UnaryOp::Plus) return operand;
+  if (const int32_t* known = constant_value(operand)) {
+    const int32_t result = node.op == ast::UnaryOp::Minus    ? *fold(ast::BinaryOp::Sub, 0, *known)
+                           : node.op == ast::UnaryOp::BitNot ? ~*known
+                                                             : *known == 0;
+    return make_expr(expr.span, checked::Constant{result});
+  }
+  const checked::UnaryOp op = node.op == ast::UnaryOp::Minus    ? checked::UnaryOp::Minus
+                              : node.op == ast::UnaryOp::BitNot ? checked::UnaryOp::BitNot
+                                                                : checked::UnaryOp::Not;
+  return make_expr(expr.span, checked::Unary{op, std::move(operand)});
+}
+
+ExprPtr ExpressionChecker::value_of(const ast::Step& node, const ast::Expr& expr) {
+  auto what = target(*node.operand);
+  if (!what) return nullptr;
+  if (!what->type.scalar()) {
+    context_.diagnostics.report(Diag::NotAValue, expr.span, {what->text, "++ and -- need one"});
+    return nullptr;
+  }
+  record_read(*what);
+  record_write(*what, node.operand->span);
+  const bool up = node.op == ast::StepOp::PreIncrement || node.op == ast::StepOp::PostIncrement;
+  const bool prefix = node.op == ast::StepOp::PreIncrement || node.op == ast::StepOp::PreDecrement;
+  return make_expr(expr.span, checked::Step{std::move(what->place), up ? 1 : -1, prefix});
+}
+
+ExprPtr ExpressionChecker::value_of(const ast::Binary& node, const ast::Expr& expr) {
+  using ast::BinaryOp;
+  ExprPtr left = value(*node.left);
+  ExprPtr right = value(*node.right);
+  if (!left || !right) return nullptr;
+  check_divisor(node.op, *right);
+  const int32_t* a = constant_value(left);
+  const int32_t* b = constant_value(right);
+  if (a != nullptr && b != nullptr) {
+    if (const auto result = fold(node.op, *a, *b)) return make_expr(expr.span, checked::Constant{*result});
+  } else if (a != nullptr && (node.op == BinaryOp::LogicalAnd || node.op == BinaryOp::LogicalOr)) {
+    const bool decided = (*a != 0) == (node.op == BinaryOp::LogicalOr);
+    if (decided) return make_expr(expr.span, checked::Constant{node.op == BinaryOp::LogicalOr});
+    ExprPtr zero = make_expr(expr.span, checked::Constant{0});
+    return make_expr(expr.span, checked::Binary{BinaryOp::Ne, std::move(right), std::move(zero)});
+  }
+  return make_expr(expr.span, checked::Binary{node.op, std::move(left), std::move(right)});
+}
+
+ExprPtr ExpressionChecker::value_of(const ast::Conditional& node, const ast::Expr& expr) {
+  ExprPtr when = condition(*node.condition);
+  ExprPtr then = value(*node.then);
+  ExprPtr otherwise = value(*node.otherwise);
+  if (!when || !then || !otherwise) return nullptr;
+  if (const int32_t* known = constant_value(when))
+    return *known != 0 ? std::move(then) : std::move(otherwise);
+  return make_expr(expr.span, checked::Conditional{std::move(when), std::move(then), std::move(otherwise)});
+}
+
+ExprPtr ExpressionChecker::value_of(const ast::Assign& node, const ast::Expr& expr) {
+  return assign(node, target(*node.target), expr.span);
+}
+
+ExprPtr ExpressionChecker::assign(const ast::Assign& node, std::optional<Object> left, Span span) {
+  ExprPtr right = value(*node.value);
+  if (!left || !right) return nullptr;
+  if (!left->type.scalar()) {
+    context_.diagnostics.report(Diag::NotAValue, node.target->span,
+                                {left->text, "it can be assigned as a statement of its own only"});
+    return nullptr;
+  }
+  if (node.op) {
+    check_divisor(*node.op, *right);
+    record_read(*left);
+  }
+  record_write(*left, node.target->span);
+  const int32_t* known = constant_value(right);
+  if (!node.op && known != nullptr && left->place.offset == nullptr)
+    context_.stores.push_back({static_cast<uint32_t>(left->place.number), *known, span});
+  return make_expr(span, checked::Assign{node.op, std::move(left->place), std::move(right)});
+}
+
+ExprPtr ExpressionChecker::copy_structure(const ast::Assign& node, Object target, Span span) {
+  const auto fixed = [&](const Object& object, Span at) {
+    if (object.place.offset == nullptr) return true;
+    context_.diagnostics.report(Diag::NotAValue, at, {object.text, "copy its members one by one"});
+    return false;
+  };
+  auto source = object(*node.value);
+  if (!source) return nullptr;
+  if (source->type.structure != target.type.structure || source->type.count != target.type.count) {
+    context_.diagnostics.report(Diag::StructureMismatch, span, {target.text, source->text});
+    return nullptr;
+  }
+  if (!fixed(target, node.target->span) || !fixed(*source, node.value->span)) return nullptr;
+  record_read(*source);
+  record_write(target, node.target->span);
+  return make_expr(span, checked::CopyBlock{static_cast<uint16_t>(target.place.number),
+                                            static_cast<uint16_t>(source->place.number),
+                                            static_cast<uint16_t>(target.type.size())});
+}
+
+ExprPtr ExpressionChecker::value_of(const ast::Comma& node, const ast::Expr& expr) {
+  ExprPtr left = effect(*node.left);
+  ExprPtr right = value(*node.right);
+  if (!left || !right) return nullptr;
+  return make_expr(expr.span, checked::Comma{std::move(left), std::move(right)});
+}
+
+ExprPtr ExpressionChecker::value_of(const ast::Call& node, const ast::Expr& expr) {
+  if (call(node, expr.span) != nullptr)
+    context_.diagnostics.report(Diag::CallHasNoValue, expr.span, {node.function.text});
+  return nullptr;
+}
+
+ExprPtr ExpressionChecker::call(const ast::Call& node, Span span) {
+  const Entity* entity = context_.scope.find(node.function.text);
+  if (entity == nullptr) {
+    if (stdlib::find_system_function(node.function.text) != nullptr)
+      return check_system_call(context_, *this, node, span);
+    uint32_t number = 0;
+    if (raw_number(node.function.text, number))
+      context_.diagnostics.report(Diag::NotAFunction, node.function.span, {node.function.text});
+    else
+      unknown_name(node.function.text, node.function.span, true);
+    return nullptr;
+  }
+  const auto* function = std::get_if<const FunctionName*>(entity);
+  if (function == nullptr) {
+    context_.diagnostics.report(Diag::NotAFunction, node.function.span, {node.function.text});
+    return nullptr;
+  }
+  if (!node.arguments.empty()) {
+    context_.diagnostics.report(
+        Diag::ArgumentCount, node.arguments.front()->span,
+        {node.function.text, "no arguments", fmt::format("{}", node.arguments.size())});
+    return nullptr;
+  }
+  return make_expr(span, checked::Call{(*function)->index});
+}
+
+// Division by a constant zero, and shift counts, which are brought into 0..31 here.
+void ExpressionChecker::check_divisor(ast::BinaryOp op, checked::Expr& right) {
+  auto* known = std::get_if<checked::Constant>(&right.node);
+  if (known == nullptr) return;
+  if ((op == ast::BinaryOp::Div || op == ast::BinaryOp::Mod) && known->value == 0 && !in_constant_)
+    context_.diagnostics.report(Diag::DivisionByZero, right.span);
+  if ((op == ast::BinaryOp::Shl || op == ast::BinaryOp::Shr) && (known->value < 0 || known->value > 31)) {
+    context_.diagnostics.report(Diag::ShiftCount, right.span,
+                                {fmt::format("{}", known->value), fmt::format("{}", known->value & 31)});
+    known->value &= 31;
+  }
+}
+
+void ExpressionChecker::unknown_name(std::string_view name, Span span, bool function) {
+  if (!context_.reported_names.emplace(name).second) return;
+  Diagnostic& message = context_.diagnostics.report(function ? Diag::UnknownFunction : Diag::UnknownName,
+                                                    span, {std::string(name)});
+  context_.scope.explain_unknown(message, name, function);
+}
+
+}  // namespace ipos::compiler

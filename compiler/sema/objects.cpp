@@ -1,0 +1,189 @@
+// Objects: names, members, elements and *p, resolved to places; and the record of who uses which variable.
+#include <fmt/format.h>
+
+#include "compiler/sema/expressions.hpp"
+#include "compiler/sema/fold.hpp"
+#include "stdlib/system_variables.hpp"
+
+namespace ipos::compiler {
+namespace {
+
+using checked::ExprPtr;
+
+// Takes `+ K` and `- K` out of an expression: it becomes part of the fixed number.
+ExprPtr split_constant(ExprPtr expr, int32_t& number) {
+  auto* sum = std::get_if<checked::Binary>(&expr->node);
+  if (sum == nullptr || (sum->op != ast::BinaryOp::Add && sum->op != ast::BinaryOp::Sub)) return expr;
+  const int32_t* known = constant_value(sum->right);
+  if (known == nullptr) return expr;
+  number = *fold(sum->op, number, *known);
+  return split_constant(std::move(sum->left), number);
+}
+
+ExprPtr combine(ast::BinaryOp op, ExprPtr left, ExprPtr right) {
+  const Span span = right->span;
+  return make_expr(span, checked::Binary{op, std::move(left), std::move(right)});
+}
+
+}  // namespace
+
+std::optional<Object> ExpressionChecker::object(const ast::Expr& expr) {
+  if (const auto* node = std::get_if<ast::Name>(&expr.node)) return object_of(*node, expr);
+  if (const auto* node = std::get_if<ast::Member>(&expr.node)) return object_of(*node, expr);
+  if (const auto* node = std::get_if<ast::Index>(&expr.node)) return object_of(*node, expr);
+  if (const auto* node = std::get_if<ast::Deref>(&expr.node)) return object_of(*node, expr);
+  // numof( 5 ), 5.x, (a + b)[1]: check what is inside for its own mistakes, then say what is wrong here.
+  if (value(expr) != nullptr)
+    context_.diagnostics.report(Diag::NotAssignable, expr.span, {"this expression is no variable and"});
+  return std::nullopt;
+}
+
+std::optional<Object> ExpressionChecker::target(const ast::Expr& expr) {
+  const bool place =
+      std::holds_alternative<ast::Name>(expr.node) || std::holds_alternative<ast::Member>(expr.node) ||
+      std::holds_alternative<ast::Index>(expr.node) || std::holds_alternative<ast::Deref>(expr.node);
+  if (place) return object(expr);
+  if (std::holds_alternative<ast::Number>(expr.node))
+    context_.diagnostics.report(Diag::NotAssignable, expr.span, {"a constant"});
+  else if (value(expr) != nullptr)
+    context_.diagnostics.report(Diag::NotAssignable, expr.span, {"the result of an expression"});
+  return std::nullopt;
+}
+
+std::optional<Object> ExpressionChecker::object_of(const ast::Name& node, const ast::Expr& expr) {
+  uint32_t number = 0;
+  if (raw_number(node.text, number)) {
+    if (!context_.use_raw(number, expr.span)) return std::nullopt;
+    return Object{
+        {}, {static_cast<int32_t>(number), nullptr}, node.text, NumberRange{number, number}, nullptr};
+  }
+  const Entity* entity = context_.scope.find(node.text);
+  if (entity == nullptr) {
+    unknown_name(node.text, expr.span, false);
+    return std::nullopt;
+  }
+  if (const auto* function = std::get_if<const FunctionName*>(entity)) {
+    context_.diagnostics.report(Diag::FunctionAsValue, expr.span, {(*function)->name, (*function)->name});
+    return std::nullopt;
+  }
+  const auto* found = std::get_if<const Variable*>(entity);
+  if (found == nullptr) {
+    context_.diagnostics.report(Diag::TypeAsValue, expr.span, {node.text});
+    return std::nullopt;
+  }
+  const Variable& variable = **found;
+  if (variable.order > context_.order)
+    context_.diagnostics.report(Diag::UsedBeforeDeclaration, expr.span, {node.text})
+        .notes.push_back({variable.span, "declared here"});
+  const NumberRange extent{variable.number, variable.number + variable.type.size() - 1};
+  return Object{variable.type,
+                {static_cast<int32_t>(variable.number), nullptr},
+                "'" + node.text + "'",
+                extent,
+                &variable};
+}
+
+std::optional<Object> ExpressionChecker::object_of(const ast::Member& node, const ast::Expr&) {
+  auto base = object(*node.base);
+  if (!base) return std::nullopt;
+  const StructType* type = base->type.structure;
+  if (type == nullptr || base->type.count != 0) {
+    context_.diagnostics.report(Diag::NotAStructure, node.member.span, {base->text, node.member.text});
+    return std::nullopt;
+  }
+  const StructMember* member = type->find(node.member.text);
+  if (member == nullptr) {
+    Diagnostic& message =
+        context_.diagnostics.report(Diag::UnknownMember, node.member.span, {type->name, node.member.text});
+    std::vector<std::string_view> names;
+    for (const StructMember& row : type->members)
+      names.insert(names.end(), row.names.begin(), row.names.end());
+    if (const std::string_view best = nearest(node.member.text, names); !best.empty())
+      message.notes.push_back({{}, fmt::format("did you mean '{}'?", best)});
+    return std::nullopt;
+  }
+  base->place.number += static_cast<int32_t>(member->offset);
+  base->type = member->type;
+  base->text = fmt::format("'{}'", node.member.text);
+  if (base->place.offset == nullptr) {
+    const auto first = static_cast<uint32_t>(base->place.number);
+    base->extent = NumberRange{first, first + member->type.size() - 1};
+  }
+  return base;
+}
+
+std::optional<Object> ExpressionChecker::object_of(const ast::Index& node, const ast::Expr&) {
+  auto base = object(*node.base);
+  ExprPtr index = value(*node.index);
+  if (!base || !index) return std::nullopt;
+  if (base->type.count == 0) {
+    context_.diagnostics.report(Diag::NotAnArray, node.base->span, {base->text});
+    return std::nullopt;
+  }
+  const auto count = static_cast<int32_t>(base->type.count);
+  base->type = base->type.element();
+  const auto size = static_cast<int32_t>(base->type.size());
+  if (const int32_t* known = constant_value(index)) {
+    if (*known < 0 || *known >= count) {
+      context_.diagnostics.report(Diag::IndexRange, node.index->span,
+                                  {fmt::format("{}", *known), base->text, fmt::format("{}", count - 1)});
+      return std::nullopt;
+    }
+    base->place.number += *known * size;
+    if (base->place.offset == nullptr) {
+      const auto first = static_cast<uint32_t>(base->place.number);
+      base->extent = NumberRange{first, first + base->type.size() - 1};
+    }
+    return base;
+  }
+  int32_t shift = 0;
+  index = split_constant(std::move(index), shift);
+  base->place.number = *fold(ast::BinaryOp::Add, base->place.number, *fold(ast::BinaryOp::Mul, shift, size));
+  if (size != 1) {
+    const Span span = index->span;
+    index = combine(ast::BinaryOp::Mul, std::move(index), make_expr(span, checked::Constant{size}));
+  }
+  if (base->place.offset != nullptr)
+    index = combine(ast::BinaryOp::Add, std::move(base->place.offset), std::move(index));
+  base->place.offset = std::move(index);
+  return base;
+}
+
+std::optional<Object> ExpressionChecker::object_of(const ast::Deref& node, const ast::Expr& expr) {
+  ExprPtr number = value(*node.number);
+  if (number == nullptr) return std::nullopt;
+  if (const int32_t* known = constant_value(number)) {
+    if (*known < 0 || *known >= context_.unit.variables) {
+      context_.diagnostics.report(Diag::InvalidVariable, expr.span,
+                                  {fmt::format("{}", *known), std::string(context_.unit.name),
+                                   fmt::format("{}", context_.unit.variables - 1)});
+      return std::nullopt;
+    }
+    const auto fixed = static_cast<uint32_t>(*known);
+    return Object{{}, {*known, nullptr}, fmt::format("H{}", fixed), NumberRange{fixed, fixed}, nullptr};
+  }
+  int32_t shift = 0;
+  number = split_constant(std::move(number), shift);
+  return Object{{}, {shift, std::move(number)}, "the variable behind the '*'", std::nullopt, nullptr};
+}
+
+template <typename Set>
+void ExpressionChecker::record(const Object& object, Set Access::*set) {
+  if (!object.extent) return;
+  for (uint32_t n = object.extent->low; n <= object.extent->high && n < kMaxNumbers; ++n)
+    (context_.accesses[n].*set).insert(context_.function);
+}
+
+void ExpressionChecker::record_read(const Object& object) { record(object, &Access::readers); }
+void ExpressionChecker::record_take(const Object& object) { record(object, &Access::takers); }
+
+void ExpressionChecker::record_write(const Object& object, Span span) {
+  record(object, &Access::writers);
+  if (object.place.offset != nullptr) return;
+  const auto* row = stdlib::find_system_variable(static_cast<uint16_t>(object.place.number));
+  if (row != nullptr && row->access == stdlib::VariableAccess::R)
+    context_.diagnostics.report(Diag::ReadOnlyVariable, span,
+                                {std::string(row->compiler_name), fmt::format("{}", row->number)});
+}
+
+}  // namespace ipos::compiler

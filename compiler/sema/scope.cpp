@@ -1,0 +1,172 @@
+// Names, types, and suggestions for misspelt names.
+#include "compiler/sema/scope.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "stdlib/language_tables.hpp"
+#include "stdlib/system_variables.hpp"
+#include "vm/isa/isa.hpp"
+
+namespace ipos::compiler {
+namespace {
+
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+// Edit distance where two neighbours that changed places count as one step; a different case counts nothing.
+size_t distance(std::string_view a, std::string_view b) {
+  std::vector<size_t> before, last(b.size() + 1), row(b.size() + 1);
+  for (size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  const auto same = [&](size_t i, size_t j) { return lower(a[i - 1]) == lower(b[j - 1]); };
+  for (size_t i = 1; i <= a.size(); ++i) {
+    before = std::exchange(last, row);
+    row[0] = i;
+    for (size_t j = 1; j <= b.size(); ++j) {
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (same(i, j) ? 0 : 1)});
+      if (i > 1 && j > 1 && same(i, j - 1) && same(i - 1, j)) row[j] = std::min(row[j], before[j - 2] + 1);
+    }
+  }
+  return row[b.size()];
+}
+
+Span span_of(const Entity& entity) {
+  return std::visit([](const auto* row) { return row->span; }, entity);
+}
+
+}  // namespace
+
+uint32_t Type::size() const {
+  const uint64_t one = structure != nullptr ? structure->size : 1;
+  return static_cast<uint32_t>(std::min<uint64_t>(one * std::max<uint32_t>(count, 1), kHugeSize));
+}
+
+std::string type_text(const Type& type) {
+  std::string out = type.structure != nullptr ? type.structure->name : "long";
+  if (type.count != 0) out += fmt::format("[{}]", type.count);
+  return out;
+}
+
+const StructMember* StructType::find(std::string_view member) const {
+  for (const StructMember& row : members)
+    if (std::find(row.names.begin(), row.names.end(), member) != row.names.end()) return &row;
+  return nullptr;
+}
+
+Scope::Scope() {
+  for (const stdlib::Structure& standard : stdlib::structures()) {
+    StructType type;
+    type.name = standard.name;
+    for (const auto& names : standard.members)
+      type.members.push_back({{names.begin(), names.end()}, {}, type.size++});
+    StructType& row = types_.emplace_back(std::move(type));
+    names_[row.name] = &row;
+  }
+}
+
+bool Scope::free_name(const std::string& name, Span span, Diagnostics& diagnostics) const {
+  uint32_t number = 0;
+  std::string_view reason;
+  const auto other = names_.find(name);
+  if (raw_number(name, number)) reason = "a variable of the unit";
+  if (stdlib::find_system_function(name) != nullptr) reason = "a system function";
+  if (other != names_.end() && !span_of(other->second).begin.valid()) reason = "a standard structure";
+  if (!reason.empty()) {
+    diagnostics.report(Diag::ReservedName, span, {name, std::string(reason)});
+    return false;
+  }
+  if (other == names_.end()) return true;
+  diagnostics.report(Diag::Redefined, span, {name})
+      .notes.push_back({span_of(other->second), "first declared here"});
+  return false;
+}
+
+StructType* Scope::add(StructType type, Diagnostics& diagnostics) {
+  if (!free_name(type.name, type.span, diagnostics)) return nullptr;
+  StructType& row = types_.emplace_back(std::move(type));
+  names_[row.name] = &row;
+  return &row;
+}
+
+Variable* Scope::add(Variable variable, Diagnostics& diagnostics) {
+  if (!free_name(variable.name, variable.span, diagnostics)) return nullptr;
+  Variable& row = variables_.emplace_back(std::move(variable));
+  names_[row.name] = &row;
+  return &row;
+}
+
+FunctionName* Scope::add(FunctionName function, Diagnostics& diagnostics) {
+  if (!free_name(function.name, function.span, diagnostics)) return nullptr;
+  FunctionName& row = functions_.emplace_back(std::move(function));
+  names_[row.name] = &row;
+  return &row;
+}
+
+const Entity* Scope::find(std::string_view name) const {
+  const auto found = names_.find(name);
+  return found == names_.end() ? nullptr : &found->second;
+}
+
+const StructType* Scope::find_type(std::string_view name) const {
+  const Entity* entity = find(name);
+  if (entity == nullptr) return nullptr;
+  const auto* type = std::get_if<const StructType*>(entity);
+  return type == nullptr ? nullptr : *type;
+}
+
+void Scope::explain_unknown(Diagnostic& diagnostic, std::string_view name, bool function) const {
+  const auto header = [&](std::string_view what) {
+    diagnostic.notes.push_back(
+        {{}, fmt::format("'{}' is {}; '#include <const.h>' makes it known", name, what)});
+  };
+  for (const vm::KeywordInfo& row : vm::keyword_table())
+    if (row.constant == name) return header("a constant of the standard headers");
+  if (const auto* row = stdlib::find_system_variable(name))
+    return header(fmt::format("the system variable H{}", row->number));
+
+  std::vector<std::string_view> candidates;
+  for (const auto& [known, entity] : names_)
+    if (std::holds_alternative<const FunctionName*>(entity) == function &&
+        !std::holds_alternative<const StructType*>(entity))
+      candidates.push_back(known);
+  if (function) {
+    for (const stdlib::SystemFunction& row : stdlib::system_functions()) candidates.push_back(row.name);
+  } else {
+    for (const stdlib::SystemVariable& row : stdlib::system_variables())
+      candidates.push_back(row.compiler_name);
+    for (const vm::KeywordInfo& row : vm::keyword_table()) candidates.push_back(row.constant);
+  }
+  const std::string_view best = nearest(name, candidates);
+  if (best.empty()) return;
+  const Entity* entity = find(best);
+  diagnostic.notes.push_back(
+      {entity != nullptr ? span_of(*entity) : Span{}, fmt::format("did you mean '{}'?", best)});
+}
+
+bool raw_number(std::string_view name, uint32_t& number) {
+  if (name.size() < 2 || name[0] != 'H') return false;
+  number = 0;
+  for (const char c : name.substr(1)) {
+    if (c < '0' || c > '9') return false;
+    number = std::min(number * 10 + static_cast<uint32_t>(c - '0'), kHugeSize);
+  }
+  return true;
+}
+
+std::string_view nearest(std::string_view name, const std::vector<std::string_view>& candidates) {
+  std::string_view best;
+  size_t least = std::min<size_t>(name.size() / 3, 3) + 1;
+  if (name.size() > 64) return best;
+  for (const std::string_view candidate : candidates) {
+    if (candidate.size() > name.size() + 3 || candidate.size() + 3 < name.size()) continue;
+    const size_t steps = distance(name, candidate);
+    if (steps < least) {
+      least = steps;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+}  // namespace ipos::compiler

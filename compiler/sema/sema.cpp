@@ -1,0 +1,62 @@
+// The order of the semantic check: declarations, function bodies, then what needs the whole program.
+#include "compiler/sema/sema.hpp"
+
+#include "compiler/sema/call_graph.hpp"
+#include "compiler/sema/context.hpp"
+#include "compiler/sema/declarations.hpp"
+#include "compiler/sema/map.hpp"
+#include "compiler/sema/sbus_check.hpp"
+#include "compiler/sema/statements.hpp"
+
+namespace ipos::compiler {
+namespace {
+
+void check_bodies(const ast::Program& program, Context& context) {
+  // Known by the name alone first, so that accesses can be told by function.
+  std::vector<const ast::FunctionDecl*> bodies;
+  std::vector<size_t> orders;
+  for (size_t order = 0; order < program.declarations.size(); ++order) {
+    const auto* function = std::get_if<ast::FunctionDecl>(&program.declarations[order]);
+    if (function == nullptr) continue;
+    // A second function of the same name, or one with a reserved name, has been reported.
+    const Entity* entity = context.scope.find(function->name.text);
+    const auto* name = entity != nullptr ? std::get_if<const FunctionName*>(entity) : nullptr;
+    if (name == nullptr || (*name)->span != function->name.span) continue;
+    context.program.functions.push_back({function->name.text, function->name.span, nullptr});
+    bodies.push_back(function);
+    orders.push_back(order);
+  }
+  for (size_t n = 0; n < bodies.size(); ++n) {
+    context.function = n;
+    context.order = orders[n];
+    context.program.functions[n].body = StatementChecker(context).function_body(*bodies[n]->body);
+  }
+}
+
+}  // namespace
+
+std::optional<checked::Program> check(const ast::Program& program, const stdlib::UnitType& unit,
+                                      const SourceMap& sources, Diagnostics& diagnostics) {
+  if (unit.tasks == 0) {
+    diagnostics.report(Diag::NoProgram, {}, {std::string(unit.name)});
+    return std::nullopt;
+  }
+  Context context{unit, sources, diagnostics, {}, {}, {}, {}, {}, {}};
+  declare(program, context);
+  check_bodies(program, context);
+  check_numbers(context);
+
+  const Entity* main = context.scope.find("main");
+  const auto* function = main != nullptr ? std::get_if<const FunctionName*>(main) : nullptr;
+  if (function == nullptr) diagnostics.report(Diag::NoMain, {});
+  // What follows looks at the program as a whole and would complain of the gaps that errors leave.
+  if (diagnostics.has_errors()) return std::nullopt;
+  context.program.main = (*function)->index;
+  describe_variables(context);
+  check_calls(context.program, unit, diagnostics);
+  check_sbus_objects(context);
+  if (diagnostics.has_errors()) return std::nullopt;
+  return std::move(context.program);
+}
+
+}  // namespace ipos::compiler

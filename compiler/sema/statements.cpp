@@ -1,0 +1,172 @@
+// Statements of a function.
+#include "compiler/sema/statements.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ipos::compiler {
+namespace {
+
+using checked::StmtPtr;
+
+StmtPtr make_stmt(Span span, decltype(checked::Stmt::node) node) {
+  return std::make_unique<checked::Stmt>(checked::Stmt{span, std::move(node)});
+}
+
+template <typename... Kinds>
+bool is_one_of(const ast::Stmt& stmt) {
+  return (std::holds_alternative<Kinds>(stmt.node) || ...);
+}
+
+bool always(const checked::ExprPtr& condition) {
+  const int32_t* known = constant_value(condition);
+  return known != nullptr && *known != 0;
+}
+
+}  // namespace
+
+StatementChecker::Result StatementChecker::statement(const ast::Stmt& stmt) {
+  return std::visit([&](const auto& node) { return check(node, stmt.span); }, stmt.node);
+}
+
+StatementChecker::Result StatementChecker::check(const ast::Empty&, Span span) {
+  return {make_stmt(span, checked::Block{}), true};
+}
+
+StatementChecker::Result StatementChecker::check(const ast::ExprStmt& node, Span span) {
+  return {make_stmt(span, checked::ExprStmt{expressions_.effect(*node.expr)}), true};
+}
+
+StatementChecker::Result StatementChecker::check(const ast::Block& node, Span span) {
+  return block(node, span, true);
+}
+
+StatementChecker::Result StatementChecker::block(const ast::Block& node, Span span, bool reached) {
+  checked::Block out;
+  bool reported = false;
+  for (const ast::StmtPtr& stmt : node.body) {
+    if (is_one_of<ast::Case, ast::Default>(*stmt)) {
+      reached = true;
+      reported = false;
+    } else if (!reached && !reported && !is_one_of<ast::Empty, ast::Break>(*stmt)) {
+      // A break behind a return is a habit of case branches, not a mistake.
+      context_.diagnostics.report(Diag::UnreachableCode, stmt->span);
+      reported = true;
+    }
+    Result result = statement(*stmt);
+    reached = reached && result.falls_through;
+    out.body.push_back(std::move(result.stmt));
+  }
+  return {make_stmt(span, std::move(out)), reached};
+}
+
+StatementChecker::Result StatementChecker::check(const ast::If& node, Span span) {
+  checked::ExprPtr condition = expressions_.condition(*node.condition);
+  if (is_one_of<ast::Empty>(*node.then) && node.otherwise == nullptr)
+    context_.diagnostics.report(Diag::EmptyIf, node.then->span);
+  Result then = statement(*node.then);
+  Result otherwise;
+  if (node.otherwise != nullptr) otherwise = statement(*node.otherwise);
+  const bool falls_through = then.falls_through || otherwise.falls_through;
+  return {make_stmt(span, checked::If{std::move(condition), std::move(then.stmt), std::move(otherwise.stmt)}),
+          falls_through};
+}
+
+StatementChecker::Result StatementChecker::check(const ast::While& node, Span span) {
+  checked::ExprPtr condition = expressions_.condition(*node.condition);
+  frames_.push_back({});
+  Result body = statement(*node.body);
+  const bool falls_through = frames_.back().left_by_break || !always(condition);
+  frames_.pop_back();
+  return {make_stmt(span, checked::While{std::move(condition), std::move(body.stmt)}), falls_through};
+}
+
+StatementChecker::Result StatementChecker::check(const ast::DoWhile& node, Span span) {
+  frames_.push_back({});
+  Result body = statement(*node.body);
+  checked::ExprPtr condition = expressions_.condition(*node.condition);
+  const bool falls_through = frames_.back().left_by_break || !always(condition);
+  frames_.pop_back();
+  return {make_stmt(span, checked::DoWhile{std::move(body.stmt), std::move(condition)}), falls_through};
+}
+
+StatementChecker::Result StatementChecker::check(const ast::For& node, Span span) {
+  checked::For out;
+  if (node.init != nullptr) out.init = expressions_.effect(*node.init);
+  if (node.condition != nullptr) out.condition = expressions_.condition(*node.condition);
+  if (node.step != nullptr) out.step = expressions_.effect(*node.step);
+  frames_.push_back({});
+  out.body = statement(*node.body).stmt;
+  const bool endless = node.condition == nullptr || always(out.condition);
+  const bool falls_through = frames_.back().left_by_break || !endless;
+  frames_.pop_back();
+  return {make_stmt(span, std::move(out)), falls_through};
+}
+
+StatementChecker::Result StatementChecker::check(const ast::Switch& node, Span span) {
+  checked::Switch out;
+  out.value = expressions_.value(*node.value);
+  frames_.push_back({&out});
+  const auto* body = std::get_if<ast::Block>(&node.body->node);
+  // Nothing in front of the first label is ever reached.
+  Result inside = body != nullptr ? block(*body, node.body->span, false) : statement(*node.body);
+  const bool falls_through = inside.falls_through || frames_.back().left_by_break || !out.otherwise;
+  frames_.pop_back();
+  out.body = std::move(inside.stmt);
+  return {make_stmt(span, std::move(out)), falls_through};
+}
+
+StatementChecker::Result StatementChecker::check(const ast::Case& node, Span span) {
+  const auto value = expressions_.constant(*node.value, "the value of a case");
+  checked::Switch* target = innermost_switch();
+  if (target == nullptr) {
+    context_.diagnostics.report(Diag::OutsideSwitch, span, {"case"});
+    return {make_stmt(span, checked::Block{}), true};
+  }
+  if (value) {
+    const auto same = [&](const auto& row) { return row.first == *value; };
+    if (std::any_of(target->cases.begin(), target->cases.end(), same))
+      context_.diagnostics.report(Diag::DuplicateCase, span, {fmt::format("{}", *value)});
+    target->cases.emplace_back(*value, target->labels);
+  }
+  return {make_stmt(span, checked::CaseLabel{target->labels++}), true};
+}
+
+StatementChecker::Result StatementChecker::check(const ast::Default&, Span span) {
+  checked::Switch* target = innermost_switch();
+  if (target == nullptr) {
+    context_.diagnostics.report(Diag::OutsideSwitch, span, {"default"});
+    return {make_stmt(span, checked::Block{}), true};
+  }
+  if (target->otherwise) context_.diagnostics.report(Diag::DuplicateDefault, span);
+  target->otherwise = target->labels;
+  return {make_stmt(span, checked::CaseLabel{target->labels++}), true};
+}
+
+StatementChecker::Result StatementChecker::check(const ast::Break&, Span span) {
+  if (frames_.empty())
+    context_.diagnostics.report(Diag::OutsideLoop, span, {"break", "loop or switch"});
+  else
+    frames_.back().left_by_break = true;
+  return {make_stmt(span, checked::Break{}), false};
+}
+
+StatementChecker::Result StatementChecker::check(const ast::Continue&, Span span) {
+  const auto is_loop = [](const Frame& frame) { return frame.target == nullptr; };
+  if (std::none_of(frames_.begin(), frames_.end(), is_loop))
+    context_.diagnostics.report(Diag::OutsideLoop, span, {"continue", "loop"});
+  return {make_stmt(span, checked::Continue{}), false};
+}
+
+StatementChecker::Result StatementChecker::check(const ast::Return&, Span span) {
+  return {make_stmt(span, checked::Return{}), false};
+}
+
+checked::Switch* StatementChecker::innermost_switch() {
+  for (auto frame = frames_.rbegin(); frame != frames_.rend(); ++frame)
+    if (frame->target != nullptr) return frame->target;
+  return nullptr;
+}
+
+}  // namespace ipos::compiler

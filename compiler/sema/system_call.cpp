@@ -1,0 +1,235 @@
+// Calls of system functions: arguments against the table of stdlib/system_functions.def, the command from
+// vm/isa/opcodes.def.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "compiler/sema/expressions.hpp"
+#include "stdlib/language_tables.hpp"
+
+namespace ipos::compiler {
+namespace {
+
+using checked::ExprPtr;
+using vm::OperandKind;
+
+// Structure a command's operand begins; -1: whatever the keyword (1053 1610 p. 47 and p. 54-56, IPOSplus p.
+// 347).
+struct Expected {
+  std::string_view mnemonic;
+  int32_t keyword;
+  std::string_view structure;
+};
+constexpr Expected kExpected[] = {
+    {"MOVLNK", -1, "MOVLNK"}, {"SCOM", 1, "SCTRCYCL"},  {"SCOM", 2, "SCTRACYCL"},
+    {"SCOM", 3, "SCREC"},     {"VARINT", -1, "VARINT"},
+};
+
+std::vector<std::string_view> split(std::string_view text) {
+  std::vector<std::string_view> parts;
+  for (size_t at = 0; at < text.size();) {
+    const size_t end = std::min(text.find(' ', at), text.size());
+    parts.push_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  return parts;
+}
+
+std::string constant_list(std::string_view set) {
+  std::string out;
+  for (const vm::KeywordInfo& row : vm::keyword_table())
+    if (row.set == set) out += (out.empty() ? "" : ", ") + std::string(row.constant);
+  return out;
+}
+
+}  // namespace
+
+class SystemCallChecker {
+ public:
+  SystemCallChecker(Context& context, ExpressionChecker& expressions, const ast::Call& call, Span span)
+      : context_(context),
+        expressions_(expressions),
+        call_(call),
+        span_(span),
+        function_(*stdlib::find_system_function(call.function.text)),
+        kinds_(split(function_.arguments)) {}
+
+  ExprPtr run() {
+    if (call_.arguments.size() != kinds_.size()) {
+      context_.diagnostics.report(
+          Diag::ArgumentCount, span_,
+          {call_.function.text, count_text(kinds_.size()), fmt::format("{}", call_.arguments.size())});
+      return nullptr;
+    }
+    bool good = task_exists();
+    for (size_t n = 0; n < kinds_.size(); ++n) good = argument(n) && good;
+    if (!good) return nullptr;
+    const vm::OpcodeInfo* row = command();
+    return make_expr(span_, checked::SystemCall{row->opcode, std::move(arguments_)});
+  }
+
+ private:
+  static std::string count_text(size_t count) {
+    if (count == 0) return "no arguments";
+    return fmt::format("{} argument{}", count, count == 1 ? "" : "s");
+  }
+
+  // The first command of the mnemonic whose operands take these arguments; `value` arguments choose between
+  // the form with a constant and the one with a variable.
+  const vm::OpcodeInfo* command() const {
+    for (const vm::OpcodeInfo& row : vm::opcode_table()) {
+      if (row.mnemonic() != function_.mnemonic) continue;
+      bool fits = true;
+      for (size_t n = 0; n < kinds_.size(); ++n)
+        if (kinds_[n] == "value")
+          fits = fits && (row.operands[n].kind == OperandKind::Constant) ==
+                             std::holds_alternative<int32_t>(arguments_[n]);
+      if (fits) return &row;
+    }
+    return nullptr;  // a test walks through all functions: each has its command
+  }
+
+  std::string_view keyword_set(size_t n) const {
+    for (const vm::OpcodeInfo& row : vm::opcode_table())
+      if (row.mnemonic() == function_.mnemonic) return row.operands[n].keyword_set;
+    return {};
+  }
+
+  bool task_exists() {
+    std::string missing;
+    if (function_.mnemonic == "TASK" && context_.unit.tasks < 3) missing = "task 3";
+    if (function_.mnemonic == "TASK2" && context_.unit.tasks < 2) missing = "task 2";
+    if (function_.mnemonic == "VARINT" && context_.unit.tasks < 3) missing = "variable interrupts";
+    if (missing.empty()) return true;
+    context_.diagnostics.report(Diag::MissingTask, call_.function.span,
+                                {call_.function.text, missing, std::string(context_.unit.name)});
+    return false;
+  }
+
+  bool argument(size_t n) {
+    const std::string_view kind = kinds_[n];
+    const ast::Expr& expr = *call_.arguments[n];
+    if (kind == "structure" || kind == "variable") return variable(n, expr);
+    if (kind == "function") return function(n, expr);
+    ExprPtr value = expressions_.value(expr);
+    if (value == nullptr) return false;
+    const int32_t* known = constant_value(value);
+    if (kind == "value" && known == nullptr) {
+      arguments_.emplace_back(std::move(value));
+      return true;
+    }
+    if (kind == "keyword") return keyword(n, known, expr.span);
+    if (known == nullptr) {
+      context_.diagnostics.report(Diag::NotConstant, expr.span,
+                                  {fmt::format("argument {} of '{}'", n + 1, call_.function.text)});
+      return false;
+    }
+    if (kind == "bit") return in_range(n, *known, 0, 31, expr.span);
+    if (kind == "count") return in_range(n, *known, 1, highest_count(), expr.span);
+    arguments_.emplace_back(*known);
+    return true;
+  }
+
+  bool keyword(size_t n, const int32_t* value, Span span) {
+    const std::string_view set = keyword_set(n);
+    if (value != nullptr && vm::find_keyword(set, *value) != nullptr) {
+      arguments_.emplace_back(*value);
+      return true;
+    }
+    context_.diagnostics.report(Diag::ArgumentKeyword, span,
+                                {fmt::format("{}", n + 1), call_.function.text, constant_list(set)});
+    return false;
+  }
+
+  bool in_range(size_t n, int32_t value, int32_t low, int32_t high, Span span) {
+    if (value < low || value > high) {
+      context_.diagnostics.report(Diag::ArgumentRange, span,
+                                  {fmt::format("{}", n + 1), call_.function.text, fmt::format("{}", low),
+                                   fmt::format("{}", high), fmt::format("{}", value)});
+      return false;
+    }
+    arguments_.emplace_back(value);
+    return true;
+  }
+
+  // A block must end at the last variable of the unit.
+  int32_t highest_count() const {
+    int32_t first = 0;
+    for (const checked::Argument& argument : arguments_)
+      if (const int32_t* number = std::get_if<int32_t>(&argument)) first = std::max(first, *number);
+    return context_.unit.variables - first;
+  }
+
+  bool variable(size_t n, const ast::Expr& expr) {
+    const bool named =
+        std::holds_alternative<ast::Name>(expr.node) || std::holds_alternative<ast::Member>(expr.node) ||
+        std::holds_alternative<ast::Index>(expr.node) || std::holds_alternative<ast::Deref>(expr.node);
+    auto object = named ? expressions_.object(expr) : std::nullopt;
+    if (named && !object) return false;
+    if (!object || object->place.offset != nullptr) {
+      context_.diagnostics.report(Diag::ArgumentVariable, expr.span,
+                                  {fmt::format("{}", n + 1), call_.function.text});
+      return false;
+    }
+    expressions_.record_take(*object);
+    if (!fits(n, *object, expr.span)) return false;
+    arguments_.emplace_back(object->place.number);
+    return true;
+  }
+
+  // A declared variable of another type is probably a mistake; raw names like H10 have no type to be wrong.
+  bool fits(size_t n, const Object& object, Span span) {
+    const int32_t* keyword = n > 0 && !arguments_.empty() ? std::get_if<int32_t>(&arguments_[0]) : nullptr;
+    for (const Expected& row : kExpected) {
+      if (row.mnemonic != function_.mnemonic) continue;
+      if (row.keyword != -1 && (keyword == nullptr || *keyword != row.keyword)) continue;
+      const auto size = static_cast<int32_t>(context_.scope.find_type(row.structure)->size);
+      const int32_t last = object.place.number + size - 1;
+      if (last >= context_.unit.variables) {
+        context_.diagnostics.report(Diag::InvalidVariable, span,
+                                    {fmt::format("{}", last), std::string(context_.unit.name),
+                                     fmt::format("{}", context_.unit.variables - 1)});
+        return false;
+      }
+      const bool right = object.type.structure != nullptr && object.type.structure->name == row.structure;
+      if (object.variable != nullptr && object.variable->storage != Storage::Alias && !right)
+        context_.diagnostics.report(Diag::StructureType, span,
+                                    {fmt::format("{}", n + 1), call_.function.text,
+                                     std::string(row.structure), object.text, type_text(object.type)});
+      return true;
+    }
+    return true;
+  }
+
+  bool function(size_t n, const ast::Expr& expr) {
+    const auto* name = std::get_if<ast::Name>(&expr.node);
+    const Entity* entity = name != nullptr ? context_.scope.find(name->text) : nullptr;
+    const auto* found = entity != nullptr ? std::get_if<const FunctionName*>(entity) : nullptr;
+    if (found != nullptr) {
+      arguments_.emplace_back(checked::FunctionRef{(*found)->index});
+      return true;
+    }
+    uint32_t number = 0;
+    if (name != nullptr && entity == nullptr && !raw_number(name->text, number))
+      expressions_.unknown_name(name->text, expr.span, true);
+    else
+      context_.diagnostics.report(Diag::ArgumentFunction, expr.span,
+                                  {fmt::format("{}", n + 1), call_.function.text});
+    return false;
+  }
+
+  Context& context_;
+  ExpressionChecker& expressions_;
+  const ast::Call& call_;
+  Span span_;
+  const stdlib::SystemFunction& function_;
+  std::vector<std::string_view> kinds_;
+  std::vector<checked::Argument> arguments_;
+};
+
+ExprPtr check_system_call(Context& context, ExpressionChecker& expressions, const ast::Call& call,
+                          Span span) {
+  return SystemCallChecker(context, expressions, call, span).run();
+}
+
+}  // namespace ipos::compiler

@@ -1,0 +1,8 @@
+# Virtual time, and the buses on it. The bus knows nothing of drives.
+
+ipos_layer(clock FOLDERS runtime/clock SOURCES clock/event_queue.cpp)
+ipos_layer(bus FOLDERS runtime/bus
+           SOURCES bus/can/frame_bits.cpp bus/can/transfer.cpp bus/can/line.cpp bus/log/candump.cpp
+                   bus/movilink/parameter_telegram.cpp bus/movilink/return_code.cpp
+                   bus/movilink/variable_telegram.cpp bus/movilink/sbus_slave.cpp bus/movilink/sbus_master.cpp
+           USES clock stdlib LIBS fmt::fmt)

@@ -1,0 +1,46 @@
+// A CAN frame of the classic format (ISO 11898-1): what a controller hands over or takes.
+// SBus MOVILINK uses 11-bit identifiers only (1053 1610 p. 37); the line carries both.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace ipos::runtime {
+
+inline constexpr uint32_t kStandardIdLimit = 1U << 11;
+inline constexpr uint32_t kExtendedIdLimit = 1U << 29;
+
+struct Frame {
+  uint32_t id = 0;
+  uint8_t length = 0;  // 0..8; of a remote frame: the length asked for
+  std::array<uint8_t, 8> data{};
+  bool extended = false;  // 29-bit identifier
+  bool remote = false;    // no data field
+
+  friend bool operator==(const Frame&, const Frame&) = default;
+};
+
+constexpr bool is_valid(const Frame& frame) {
+  return frame.length <= 8 && frame.id < (frame.extended ? kExtendedIdLimit : kStandardIdLimit);
+}
+
+// The same frame with every byte that does not go out set to 0: equal on the wire is then equal as a value.
+constexpr Frame canonical(Frame frame) {
+  for (size_t i = frame.remote ? 0 : frame.length; i < frame.data.size(); ++i) frame.data[i] = 0;
+  return frame;
+}
+
+// A plain data frame with an 11-bit identifier, as all SBus telegrams are.
+constexpr bool is_plain(const Frame& frame) { return !frame.extended && !frame.remote; }
+
+// The arbitration field as one number: the lower one wins. Identifier bits 28..18, RTR or SRR, IDE,
+// identifier bits 17..0, RTR: so a data frame beats the remote frame and a standard frame the extended one of
+// equal bits.
+constexpr uint32_t arbitration_key(const Frame& frame) {
+  const uint32_t remote = frame.remote ? 1U : 0U;
+  if (!frame.extended) return (frame.id << 21) | (remote << 20);
+  return ((frame.id >> 18) << 21) | (1U << 20) | (1U << 19) | ((frame.id & 0x3FFFF) << 1) | remote;
+}
+
+}  // namespace ipos::runtime

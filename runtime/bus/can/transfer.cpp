@@ -1,0 +1,94 @@
+// Who gets through after arbitration, and what an error frame costs (ISO 11898-1, error signalling).
+#include "runtime/bus/can/transfer.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "runtime/bus/can/frame_bits.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+constexpr uint32_t kErrorFlagBits = 6;
+constexpr uint32_t kErrorDelimiterBits = 8;
+
+void end_with_error(Transfer& transfer, Transfer::Outcome outcome, uint32_t flag_end) {
+  transfer.outcome = outcome;
+  transfer.end = flag_end + kErrorDelimiterBits;
+  transfer.bits = transfer.end + kIntermissionBits;
+}
+
+// First position where the two differ: different frames of one arbitration field do so before their CRC ends.
+uint32_t first_difference(const WireBits& a, const WireBits& b) {
+  uint32_t position = 0;
+  while (position < a.count && a.recessive[position] == b.recessive[position]) ++position;
+  return position;
+}
+
+uint32_t next_recessive(const WireBits& bits, uint32_t position) {
+  while (!bits.recessive[position]) ++position;
+  return position;
+}
+
+// End of the superposed error flags when an error-active sender sees a dominant bit at `error` in place of
+// its own recessive one. The sender of that dominant bit finds out at its next recessive bit, listeners at
+// the sixth equal bit or at the CRC delimiter.
+uint32_t collision_flag_end(const Transfer& transfer, const WireBits& dominant, uint32_t error,
+                            bool listeners) {
+  uint32_t end = error + 1 + kErrorFlagBits;
+  for (const Transfer::Sender& sender : transfer.senders) {
+    if (sender.lost || !sender.error_active) continue;
+    const WireBits bits = wire_bits(sender.frame);
+    if (!bits.recessive[error]) end = std::max(end, next_recessive(bits, error + 1) + 1 + kErrorFlagBits);
+  }
+  if (listeners) {
+    uint32_t run = 1;
+    while (run <= error && !dominant.recessive[error - run]) ++run;
+    const uint32_t crc_delimiter = dominant.count - 10;
+    end = std::max(end, std::min(error + 6 - run, crc_delimiter) + 1 + kErrorFlagBits);
+  }
+  return end;
+}
+
+}  // namespace
+
+const Transfer::Sender& Transfer::winner() const {
+  const auto found = std::find_if(senders.begin(), senders.end(), [](const Sender& s) { return !s.lost; });
+  return found == senders.end() ? senders.front() : *found;
+}
+
+void resolve(Transfer& transfer, Listeners listeners) {
+  assert(!transfer.senders.empty());
+  // The bus carries the frame that is dominant at each first difference.
+  const Frame* carried = &transfer.senders.front().frame;
+  WireBits bits = wire_bits(*carried);
+  for (const Transfer::Sender& sender : transfer.senders) {
+    if (sender.frame == *carried) continue;
+    const WireBits other = wire_bits(sender.frame);
+    if (!other.recessive[first_difference(bits, other)]) {
+      carried = &sender.frame;
+      bits = other;
+    }
+  }
+  // Senders of other frames notice in the order of their first difference; the first error-active one ends it
+  // all.
+  uint32_t error = bits.count;
+  for (const Transfer::Sender& sender : transfer.senders)
+    if (sender.frame != *carried && sender.error_active)
+      error = std::min(error, first_difference(bits, wire_bits(sender.frame)));
+  for (Transfer::Sender& sender : transfer.senders)
+    sender.lost = sender.frame != *carried && first_difference(bits, wire_bits(sender.frame)) < error;
+  if (error < bits.count) {
+    end_with_error(transfer, Transfer::Outcome::Collision,
+                   collision_flag_end(transfer, bits, error, listeners.error_active));
+  } else if (!listeners.any) {
+    const uint32_t acknowledge_slot = bits.count - 9;
+    end_with_error(transfer, Transfer::Outcome::NoAcknowledge, acknowledge_slot + 1 + kErrorFlagBits);
+  } else {
+    transfer.outcome = Transfer::Outcome::Delivered;
+    transfer.end = bits.count;
+    transfer.bits = bits.count + kIntermissionBits;
+  }
+}
+
+}  // namespace ipos::runtime

@@ -1,0 +1,112 @@
+// The slave side of one unit on SBus (1053 1610 p. 37-46): answers process and parameter telegrams to its
+// address, takes group telegrams in silence, and holds synchronous answers back until the sync telegram.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include <tl/expected.hpp>
+
+#include "runtime/bus/can/node.hpp"
+#include "runtime/bus/movilink/identifiers.hpp"
+#include "runtime/bus/movilink/parameter_telegram.hpp"
+#include "runtime/bus/movilink/process_data.hpp"
+#include "runtime/clock/event_queue.hpp"
+
+namespace ipos::runtime {
+
+struct ParameterRequest {
+  Service service;  // never None
+  uint16_t index;
+  uint8_t subindex;  // as received; MD_60A ignores it
+  int32_t value;     // of a write
+};
+
+// The parameters of the unit. A write returns the value stored.
+class ParameterServer {
+ public:
+  virtual tl::expected<int32_t, ReturnCode> serve(Time now, const ParameterRequest& request) = 0;
+
+ protected:
+  ~ParameterServer() = default;
+};
+
+enum class OutputChannel : uint8_t { Single, Group, Sync };
+
+class ProcessDataServer {
+ public:
+  virtual void take_output(Time now, OutputChannel channel, const ProcessWords& words) = 0;
+  virtual ProcessWords input(Time now) = 0;
+  virtual void synchronize(Time now) = 0;  // sync telegram, after its PO-sync words were taken
+
+ protected:
+  ~ProcessDataServer() = default;
+};
+
+// Why a telegram to this unit had no effect.
+enum class Ignored : uint8_t {
+#define IGNORED(name, text) name,
+#include "runtime/bus/movilink/ignored.def"
+};
+std::string_view ignored_text(Ignored reason);
+
+class SlaveObserver {
+ public:
+  // `code` is set for a refused group write.
+  virtual void on_ignored(Time now, const Frame& frame, Ignored reason, ReturnCode code) = 0;
+
+ protected:
+  ~SlaveObserver() = default;
+};
+
+struct SlaveSettings {
+  uint8_t address = 0;          // P813 or P881
+  uint8_t group = 0;            // P814 or P882
+  uint16_t sync_id = 0;         // P817 or P885
+  bool second_channel = false;  // P889, MOVIDRIVE B
+};
+
+// Both ours; a PI telegram must come within one millisecond (p. 39).
+struct SlaveTiming {
+  Time process_delay = 200 * kMicrosecond;
+  Time parameter_delay = 2 * kMillisecond;
+};
+
+class SbusSlave final : private EventTarget {
+ public:
+  // `tag` marks the frames of this slave at the sender.
+  SbusSlave(EventQueue& queue, uint32_t source, FrameSender& sender, uint64_t tag, SlaveSettings settings,
+            SlaveTiming timing, ParameterServer& parameters, ProcessDataServer& process_data,
+            SlaveObserver* observer = nullptr);
+
+  void configure(SlaveSettings settings);
+  const SlaveSettings& settings() const { return settings_; }
+
+  // True when the frame is a MOVILINK telegram to this unit, or its sync telegram.
+  bool on_frame(Time now, const Frame& frame);
+
+ private:
+  void on_event(Time now, uint32_t kind, uint64_t argument) override;
+  void take_telegram(Time now, const Frame& frame, Telegram telegram);
+  void take_request(Time now, const Frame& frame, uint8_t channel);
+  void take_group_request(Time now, const Frame& frame);
+  void take_sync(Time now);
+  ParameterTelegram execute(Time now, const ParameterTelegram& request);
+  void ignore(Time now, const Frame& frame, Ignored reason, ReturnCode code = {});
+
+  EventQueue& queue_;
+  uint32_t source_;
+  FrameSender& sender_;
+  uint64_t tag_;
+  SlaveSettings settings_;
+  SlaveTiming timing_;
+  ParameterServer& parameters_;
+  ProcessDataServer& process_data_;
+  SlaveObserver* observer_;
+  std::optional<ProcessWords> sync_output_;                         // waits for the sync telegram
+  std::array<std::optional<ParameterTelegram>, 2> sync_responses_;  // the same, one a channel
+};
+
+}  // namespace ipos::runtime

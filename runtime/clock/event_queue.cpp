@@ -1,0 +1,103 @@
+// A binary heap of small entries that know their slot, and slots that know their place in the heap: so an
+// event can be cancelled in logarithmic time, and nothing is allocated once both vectors have their size.
+#include "runtime/clock/event_queue.hpp"
+
+#include <algorithm>
+
+namespace ipos::runtime {
+
+EventQueue::EventQueue(size_t capacity) {
+  heap_.reserve(capacity);
+  slots_.reserve(capacity);
+  free_slots_.reserve(capacity);
+}
+
+bool EventQueue::before(const Entry& a, const Entry& b) {
+  if (a.at != b.at) return a.at < b.at;
+  if (a.source != b.source) return a.source < b.source;
+  return a.sequence < b.sequence;
+}
+
+void EventQueue::place(size_t position, const Entry& entry) {
+  heap_[position] = entry;
+  slots_[entry.slot].position = static_cast<uint32_t>(position);
+}
+
+void EventQueue::sift_up(size_t position, const Entry& entry) {
+  while (position > 0) {
+    const size_t parent = (position - 1) / 2;
+    if (!before(entry, heap_[parent])) break;
+    place(position, heap_[parent]);
+    position = parent;
+  }
+  place(position, entry);
+}
+
+void EventQueue::sift_down(size_t position, const Entry& entry) {
+  for (;;) {
+    size_t child = 2 * position + 1;
+    if (child >= heap_.size()) break;
+    if (child + 1 < heap_.size() && before(heap_[child + 1], heap_[child])) ++child;
+    if (!before(heap_[child], entry)) break;
+    place(position, heap_[child]);
+    position = child;
+  }
+  place(position, entry);
+}
+
+void EventQueue::remove(size_t position) {
+  const uint32_t slot = heap_[position].slot;
+  const Entry last = heap_.back();
+  heap_.pop_back();
+  if (position < heap_.size()) {
+    if (before(last, heap_[position]))
+      sift_up(position, last);
+    else
+      sift_down(position, last);
+  }
+  ++slots_[slot].generation;
+  free_slots_.push_back(slot);
+}
+
+EventId EventQueue::schedule(Time at, uint32_t source, EventTarget& target, uint32_t kind,
+                             uint64_t argument) {
+  if (free_slots_.empty()) {
+    free_slots_.push_back(static_cast<uint32_t>(slots_.size()));
+    slots_.push_back({nullptr, 0, 0, 1, 0});
+  }
+  const uint32_t index = free_slots_.back();
+  free_slots_.pop_back();
+  Slot& slot = slots_[index];
+  slot.target = &target;
+  slot.argument = argument;
+  slot.kind = kind;
+  const Entry entry{std::max(at, now_), next_sequence_++, source, index};
+  heap_.push_back(entry);
+  sift_up(heap_.size() - 1, entry);
+  return (EventId{slot.generation} << 32) | index;
+}
+
+bool EventQueue::cancel(EventId id) {
+  const uint32_t index = static_cast<uint32_t>(id);
+  if (id == kNoEvent || index >= slots_.size() || slots_[index].generation != id >> 32) return false;
+  remove(slots_[index].position);
+  return true;
+}
+
+bool EventQueue::step() {
+  if (heap_.empty()) return false;
+  const Entry entry = heap_.front();
+  const Slot event = slots_[entry.slot];
+  remove(0);
+  now_ = entry.at;
+  event.target->on_event(now_, event.kind, event.argument);
+  return true;
+}
+
+void EventQueue::run_until(Time end) {
+  while (next_time() <= end && step()) {
+  }
+  now_ = std::max(now_, end);
+}
+
+}  // namespace ipos::runtime

@@ -1,0 +1,38 @@
+// Indices of the parameters the drive itself acts on (1053 1610 p. 68-83). Only those: all others are data in
+// stdlib/parameters.
+#pragma once
+
+#include <cstdint>
+
+namespace ipos::runtime::index {
+
+inline constexpr uint16_t kPo1Description = 8304;  // P870..P872
+inline constexpr uint16_t kPi1Description = 8307;  // P873..P875
+inline constexpr uint16_t kStatus = 8310;          // P010..P013, low word is status word 1
+inline constexpr uint16_t kSpeed = 8318;
+inline constexpr uint16_t kOutputCurrent = 8321;
+inline constexpr uint16_t kActiveCurrent = 8322;
+inline constexpr uint16_t kMotorUtilization1 = 8323;
+inline constexpr uint16_t kMotorUtilization2 = 8324;
+inline constexpr uint16_t kDcLink = 8325;
+inline constexpr uint16_t kHeatSink = 8327;
+inline constexpr uint16_t kMainsOnTime = 8328;          // P015, minutes
+inline constexpr uint16_t kEnabledTime = 8329;          // P016, minutes
+inline constexpr uint16_t kEnergy = 8330;               // P017
+inline constexpr uint16_t kInputs = 8334;               // P036, DI00..DI05
+inline constexpr uint16_t kInputFunction = 8334;        // + n = function of DI0n, n = 1..5
+inline constexpr uint16_t kOptionInputFunction = 8340;  // + n = function of DI1n
+inline constexpr uint16_t kOptionInputs = 8348;         // P048, DI10..DI17
+inline constexpr uint16_t kOutputs = 8349;
+inline constexpr uint16_t kOptionOutputs = 8360;
+inline constexpr uint16_t kPoShown = 8455;          // P094..P096
+inline constexpr uint16_t kPiShown = 8458;          // P097..P099
+inline constexpr uint16_t kSetpointSource = 8461;   // P100
+inline constexpr uint16_t kControlSource = 8462;    // P101
+inline constexpr uint16_t kFactorySetting = 8594;   // P802
+inline constexpr uint16_t kParameterLock = 8595;    // P803
+inline constexpr uint16_t kResetStatistics = 8596;  // P804
+inline constexpr uint16_t kManualReset = 8617;      // P840
+inline constexpr uint16_t kPoEnable = 8622;         // P876
+
+}  // namespace ipos::runtime::index

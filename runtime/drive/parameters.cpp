@@ -1,0 +1,296 @@
+// Parameter services of one unit. Where the list leaves something open, the conformance list's reading is
+// taken.
+#include "runtime/drive/parameters.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runtime/drive/error_memory.hpp"
+#include "runtime/drive/indices.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+using stdlib::Parameter;
+using stdlib::ReturnCode;
+namespace codes = stdlib::return_codes;
+
+struct AreaRow {
+  uint16_t first;
+  uint16_t count;
+  bool m07;
+};
+
+constexpr AreaRow kAreas[] = {
+#define INDEX_AREA(name, first, count, m07, meaning) {first, count, m07},
+#include "stdlib/index_areas.def"
+};
+static_assert(std::size(kAreas) == 7, "ParameterStore::windows_ has one entry an area");
+
+// Bits of the answer to Read attribute, as the newer units document them (MOVITRAC B; 1053 1610 p. 32 has
+// none). Bits 7 and 8, the parameter set, are left at "general": no list says which set a parameter belongs
+// to.
+enum Attribute : int32_t {
+  kWritable = 1 << 0,
+  kStored = 1 << 1,
+  kFactoryRam = 1 << 2,
+  kFactoryEeprom = 1 << 3,
+  kRestored = 1 << 4,
+  kNoInhibitNeeded = 1 << 5,
+};
+
+constexpr int32_t bits(int64_t number) { return static_cast<int32_t>(static_cast<uint32_t>(number)); }
+
+bool is_write(ParameterService service) {
+  return service == ParameterService::Write || service == ParameterService::WriteVolatile;
+}
+
+}  // namespace
+
+ParameterStore::ParameterStore(const stdlib::UnitType& unit, DriveOptions options)
+    : unit_(unit), table_(stdlib::parameter_table(unit)), options_(options) {
+  slots_.reserve(table_.by_index().size());
+  for (const Parameter* parameter : table_.by_index()) {
+    const int32_t value = bits(parameter->default_value);
+    slots_.push_back({parameter, value, value, 0});
+  }
+}
+
+// MOVITRAC 07 has no limits and no scale to read (its manual, chapter 4.2).
+bool ParameterStore::knows_service(uint8_t service) const {
+  if (service > static_cast<uint8_t>(ParameterService::ReadAttribute)) return false;
+  if (unit_.generation != stdlib::Generation::M07) return true;
+  const auto s = static_cast<ParameterService>(service);
+  return s != ParameterService::ReadMinimum && s != ParameterService::ReadMaximum &&
+         s != ParameterService::ReadScale;
+}
+
+std::optional<ParameterStore::Place> ParameterStore::locate(uint16_t index) const {
+  for (size_t i = 0; i < std::size(kAreas); ++i) {
+    const auto area = static_cast<IndexArea>(i);
+    uint16_t count = kAreas[i].count;
+    if (area == IndexArea::Variables) count = unit_.variables;
+    if (area == IndexArea::Program) count = unit_.parameter_words;
+    if (unit_.generation == stdlib::Generation::M07 && !kAreas[i].m07) continue;
+    if (index >= kAreas[i].first && index - kAreas[i].first < count)
+      return Place{area, static_cast<uint16_t>(index - kAreas[i].first), count};
+  }
+  return std::nullopt;
+}
+
+ParameterStore::Slot* ParameterStore::find(uint16_t index) {
+  return const_cast<Slot*>(static_cast<const ParameterStore*>(this)->find(index));
+}
+
+const ParameterStore::Slot* ParameterStore::find(uint16_t index) const {
+  const auto at =
+      std::lower_bound(slots_.begin(), slots_.end(), index,
+                       [](const Slot& slot, uint16_t wanted) { return slot.parameter->index < wanted; });
+  return at != slots_.end() && at->parameter->index == index ? &*at : nullptr;
+}
+
+ParameterReply ParameterStore::execute(uint8_t service, uint16_t index, int32_t value) {
+  if (!knows_service(service)) return tl::unexpected(codes::kWrongManagement);
+  if (service == static_cast<uint8_t>(ParameterService::None)) return 0;
+  const auto known = static_cast<ParameterService>(service);
+  if (Slot* slot = find(index)) return serve(*slot, known, value);
+  const std::optional<Place> place = locate(index);
+  // MOVITRAC 07 prints no areas, so what it does not list is no index at all (M07-PAR-27).
+  if (!place || (place->area == IndexArea::Drive && unit_.generation == stdlib::Generation::M07))
+    return tl::unexpected(codes::kInvalidIndex);
+  return serve_window(*place, known, index, value);
+}
+
+ParameterReply ParameterStore::serve(Slot& slot, ParameterService service, int32_t value) {
+  const Parameter& parameter = *slot.parameter;
+  switch (service) {
+    case ParameterService::None: return 0;
+    case ParameterService::Read: return read(slot);
+    case ParameterService::ReadMinimum: return bits(parameter.minimum());
+    case ParameterService::ReadMaximum: return bits(parameter.maximum());
+    case ParameterService::ReadDefault: return bits(parameter.default_value);
+    case ParameterService::ReadScale:
+      return (parameter.quantity << 8) | static_cast<uint8_t>(parameter.conversion);
+    case ParameterService::ReadAttribute: return attribute(slot);
+    case ParameterService::Write:
+    case ParameterService::WriteVolatile: break;
+  }
+  if (const auto code = refusal(slot, value)) return tl::unexpected(*code);
+  store(slot, value, service == ParameterService::Write);
+  take_effect(parameter.index, value);
+  return value;
+}
+
+ParameterReply ParameterStore::serve_window(const Place& place, ParameterService service, uint16_t index,
+                                            int32_t value) {
+  IndexWindow* window = windows_[static_cast<size_t>(place.area)];
+  if (!window) return tl::unexpected(codes::kNotImplemented);
+  if (is_write(service) && factory_setting_) return tl::unexpected(codes::kFactorySetting);
+  switch (service) {
+    case ParameterService::Read: return window->read(place.offset);
+    case ParameterService::Write: return window->write(place.offset, value, true);
+    case ParameterService::WriteVolatile: return window->write(place.offset, value, false);
+    case ParameterService::ReadMinimum: return INT32_MIN;
+    case ParameterService::ReadMaximum: return INT32_MAX;
+    case ParameterService::ReadAttribute: {
+      const int32_t next = place.offset + 1 < place.count ? index + 1 : 0;
+      return bits(int64_t{next} << 16) | kWritable | kNoInhibitNeeded;
+    }
+    case ParameterService::None:
+    case ParameterService::ReadDefault:
+    case ParameterService::ReadScale: break;  // 0; quantity and conversion index 0 = plain number
+  }
+  return 0;
+}
+
+int32_t ParameterStore::read(const Slot& slot) const {
+  if (drive_)
+    if (const auto live = drive_->live_value(slot.parameter->index)) return *live;
+  return slot.working;
+}
+
+int32_t ParameterStore::value(uint16_t index) const {
+  const Slot* slot = find(index);
+  return slot ? read(*slot) : 0;
+}
+
+bool ParameterStore::has_card(stdlib::OptionCard card) const {
+  switch (card) {
+    case stdlib::OptionCard::Drs: return options_.drs;
+    case stdlib::OptionCard::Dio: return options_.dio;
+    case stdlib::OptionCard::Aio: return options_.aio;
+    case stdlib::OptionCard::None: break;
+  }
+  return true;
+}
+
+std::optional<ReturnCode> ParameterStore::refusal(const Slot& slot, int32_t value) const {
+  const Parameter& parameter = *slot.parameter;
+  if (!parameter.writable) return codes::kReadOnly;
+  // 1Eh answers a second order to do what is being done (ours; 1053 1610 p. 66 gives only its text).
+  if (factory_setting_)
+    return parameter.index == index::kFactorySetting && value == 1 ? codes::kFactorySettingStarted
+                                                                   : codes::kFactorySetting;
+  if (!has_card(parameter.option)) return codes::kOptionMissing;
+  if (!parameter.writable_locked && this->value(index::kParameterLock) == 1) return codes::kParameterLock;
+  if (parameter.needs_inhibit && drive_ && !drive_->controller_inhibited()) return codes::kInhibitRequired;
+  if (parameter.needs_output_stage_off && drive_ && drive_->output_stage_on())
+    return codes::kOutputStageEnabled;
+  return value_refusal(parameter, value);
+}
+
+std::optional<ReturnCode> ParameterStore::value_refusal(const Parameter& parameter, int32_t value) const {
+  const int64_t number = parameter.number_of(value);
+  if (number < parameter.minimum()) return codes::kTooSmall;
+  if (number > parameter.maximum()) return codes::kTooLarge;
+  if (parameter.ranges.empty() && parameter.texts.empty()) return std::nullopt;
+  // Off the grid and in a gap between codes: 1Dh (PAR-21).
+  for (const stdlib::ValueRange& range : parameter.ranges)
+    if (number >= range.minimum && number <= range.maximum && (number - range.minimum) % range.step == 0)
+      return std::nullopt;
+  for (const stdlib::ValueText& row : parameter.texts)
+    if (row.value == number && (options_.logodrive || !row.logodrive_only)) return std::nullopt;
+  return codes::kIncorrectValue;
+}
+
+void ParameterStore::store(Slot& slot, int32_t value, bool nonvolatile) {
+  slot.working = value;
+  if (!nonvolatile || !slot.parameter->nonvolatile) return;
+  slot.eeprom = value;
+  ++slot.eeprom_writes;
+}
+
+void ParameterStore::take_effect(uint16_t index, int32_t value) {
+  switch (index) {
+    case index::kFactorySetting: factory_setting_ = value == 1; break;
+    case index::kResetStatistics:
+      if (value == 1) clear_error_memory(*this);
+      if (value == 2) set_display(index::kEnergy, 0);
+      if (value == 3) {
+        set_display(index::kMainsOnTime, 0);
+        set_display(index::kEnabledTime, 0);
+      }
+      break;
+    default: break;
+  }
+  if (drive_) drive_->on_parameter_written(index, value);
+  // Orders, not settings: they read as 0 again once carried out.
+  if (index == index::kResetStatistics || index == index::kManualReset) find(index)->working = 0;
+}
+
+ParameterReply ParameterStore::preset(uint16_t index, int32_t value) {
+  Slot* slot = find(index);
+  if (!slot) return execute(ParameterService::Write, index, value);
+  if (!slot->parameter->writable) return tl::unexpected(codes::kReadOnly);
+  if (const auto code = value_refusal(*slot->parameter, value)) return tl::unexpected(*code);
+  slot->working = value;
+  slot->eeprom = value;
+  return value;
+}
+
+void ParameterStore::set_display(uint16_t index, int32_t value) {
+  Slot* slot = find(index);
+  if (!slot) return;
+  slot->working = value;
+  // Counters and error memory survive power-off; the drive spreads these writes, so they do not count as
+  // wear.
+  slot->eeprom = value;
+}
+
+void ParameterStore::power_cycle() {
+  factory_setting_ = false;
+  for (Slot& slot : slots_)
+    slot.working = slot.parameter->nonvolatile ? slot.eeprom : bits(slot.parameter->default_value);
+}
+
+void ParameterStore::finish_factory_setting() {
+  factory_setting_ = false;
+  for (Slot& slot : slots_) {
+    if (!slot.parameter->writable) continue;  // counters and error memory stay
+    const int32_t value = bits(slot.parameter->default_value);
+    slot.working = value;
+    if (slot.eeprom != value) ++slot.eeprom_writes;
+    slot.eeprom = value;
+  }
+}
+
+uint32_t ParameterStore::eeprom_writes(uint16_t index) const {
+  const Slot* slot = find(index);
+  return slot ? slot->eeprom_writes : 0;
+}
+
+int32_t ParameterStore::attribute(const Slot& slot) const {
+  const Parameter& parameter = *slot.parameter;
+  int32_t attributes = 0;
+  if (parameter.writable)
+    attributes |= kWritable | kFactoryRam | (parameter.nonvolatile ? kFactoryEeprom : 0);
+  if (parameter.nonvolatile) attributes |= kStored | kRestored;
+  if (!parameter.needs_inhibit) attributes |= kNoInhibitNeeded;
+  const bool last = &slot == &slots_.back();
+  const int32_t next = last ? 0 : (&slot + 1)->parameter->index;
+  return bits(int64_t{next} << 16) | attributes;
+}
+
+std::string ParameterStore::explain(uint8_t service, uint16_t index, int32_t value, ReturnCode code) const {
+  const Slot* slot = find(index);
+  std::string name = fmt::format("index {}", index);
+  if (slot && !slot->parameter->number.empty()) name = fmt::format("P{}", slot->parameter->number);
+  if (slot) name += fmt::format(" {}", slot->parameter->name);
+  const auto known = static_cast<ParameterService>(service);
+  if (is_write(known))
+    name += fmt::format(" := {}", slot ? slot->parameter->number_of(value) : int64_t{value});
+  const std::string_view meaning = stdlib::return_code_meaning(code);
+  std::string text = fmt::format("{}: ", name);
+  if (meaning.empty())
+    text += fmt::format("return code {:02X} {:02X} {:02X} {:02X}", code.error_class, code.code,
+                        code.additional >> 8, code.additional & 0xFF);
+  else
+    text += meaning;
+  if (slot && (code == codes::kTooLarge || code == codes::kTooSmall))
+    text += fmt::format(" ({}..{})", slot->parameter->minimum(), slot->parameter->maximum());
+  if (code == codes::kParameterLock) text += " (P803 = ON)";
+  return text;
+}
+
+}  // namespace ipos::runtime

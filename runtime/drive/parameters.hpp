@@ -1,0 +1,155 @@
+// The parameters of one unit and all services of the MOVILINK parameter channel on them (1053 1610 p. 31-32,
+// 65-83). Values live twice: the working value, and for parameters marked N the value in EEPROM that returns
+// at restart.
+//
+// Order in which a write is refused (ours): unknown service, index, read only, factory setting running,
+// option card, parameter lock, controller inhibit, output stage, value.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+#include "stdlib/parameters.hpp"
+#include "stdlib/return_codes.hpp"
+#include "stdlib/unit_types.hpp"
+
+namespace ipos::runtime {
+
+// Codes of management bits 0-3; 9..15 are refused.
+enum class ParameterService : uint8_t {
+  None,
+  Read,
+  Write,  // also into EEPROM
+  WriteVolatile,
+  ReadMinimum,
+  ReadMaximum,
+  ReadDefault,
+  ReadScale,      // bits 8-15 quantity index, 0-7 conversion index
+  ReadAttribute,  // bits 16-31 next index, 0 at the end; 0-15 attributes
+};
+
+using ParameterReply = tl::expected<int32_t, stdlib::ReturnCode>;
+
+// What the parameters ask of the drive around them.
+class DriveLink {
+ public:
+  // A value the drive computes; nothing where the stored value counts.
+  virtual std::optional<int32_t> live_value(uint16_t index) const = 0;
+  virtual bool controller_inhibited() const = 0;
+  virtual bool output_stage_on() const = 0;
+  // After a write that was carried out. Writing the value a parameter has counts.
+  virtual void on_parameter_written(uint16_t index, int32_t value) = 0;
+
+ protected:
+  ~DriveLink() = default;
+};
+
+enum class IndexArea : uint8_t {
+#define INDEX_AREA(name, first, count, m07, meaning) name,
+#include "stdlib/index_areas.def"
+};
+
+// An index area that somebody else holds: IPOS variables, program code, curve points. `offset` counts from
+// the first index of the area and is within it.
+class IndexWindow {
+ public:
+  virtual ParameterReply read(uint16_t offset) = 0;
+  virtual ParameterReply write(uint16_t offset, int32_t value, bool nonvolatile) = 0;
+
+ protected:
+  ~IndexWindow() = default;
+};
+
+struct DriveOptions {
+  // Option cards. All fitted, as no plant key names them yet (ours).
+  bool drs = true;
+  bool dio = true;
+  bool aio = true;
+  bool logodrive = true;  // MOVITRAC 07 with IPOS
+};
+
+class ParameterStore {
+ public:
+  explicit ParameterStore(const stdlib::UnitType& unit, DriveOptions options = {});
+
+  // Both must outlive the store; without them there are no live values, the inhibit is on, and an area
+  // answers 11h.
+  void connect(DriveLink& drive) { drive_ = &drive; }
+  void plug(IndexArea area, IndexWindow& window) { windows_[static_cast<size_t>(area)] = &window; }
+
+  // A service as it comes over a bus or from MOVLNK. `service` is the raw code; a write answers the value
+  // written.
+  ParameterReply execute(uint8_t service, uint16_t index, int32_t value = 0);
+  ParameterReply execute(ParameterService service, uint16_t index, int32_t value = 0) {
+    return execute(static_cast<uint8_t>(service), index, value);
+  }
+
+  // The working value for the drive itself; 0 for an index the unit does not have.
+  int32_t value(uint16_t index) const;
+
+  // A setting made before power-on, from the plant file: EEPROM and working value. Only index, access and
+  // value are checked; what needs inhibit needs none here.
+  ParameterReply preset(uint16_t index, int32_t value);
+
+  // The drive's own writes, for display values, counters and the error memory. Unknown indices are left
+  // alone.
+  void set_display(uint16_t index, int32_t value);
+
+  // Power off and on: N from EEPROM, everything else at its default.
+  void power_cycle();
+
+  // P802 was written: the unit is not ready and refuses writes until the drive says that it is done.
+  bool factory_setting_running() const { return factory_setting_; }
+  void finish_factory_setting();
+
+  // Writes into EEPROM since the store was made; PAR-03: cyclic ones wear it out.
+  uint32_t eeprom_writes(uint16_t index) const;
+
+  // "P813 SBus address := 64: parameter value too large (0..63)"
+  std::string explain(uint8_t service, uint16_t index, int32_t value, stdlib::ReturnCode code) const;
+
+  const stdlib::ParameterTable& table() const { return table_; }
+  const stdlib::UnitType& unit() const { return unit_; }
+
+ private:
+  struct Slot {
+    const stdlib::Parameter* parameter;
+    int32_t working;
+    int32_t eeprom;
+    uint32_t eeprom_writes;
+  };
+  struct Place {
+    IndexArea area;
+    uint16_t offset;
+    uint16_t count;
+  };
+
+  bool knows_service(uint8_t service) const;
+  std::optional<Place> locate(uint16_t index) const;
+  Slot* find(uint16_t index);
+  const Slot* find(uint16_t index) const;
+  int32_t read(const Slot& slot) const;
+  ParameterReply serve(Slot& slot, ParameterService service, int32_t value);
+  ParameterReply serve_window(const Place& place, ParameterService service, uint16_t index, int32_t value);
+  std::optional<stdlib::ReturnCode> refusal(const Slot& slot, int32_t value) const;
+  std::optional<stdlib::ReturnCode> value_refusal(const stdlib::Parameter& parameter, int32_t value) const;
+  bool has_card(stdlib::OptionCard card) const;
+  void store(Slot& slot, int32_t value, bool nonvolatile);
+  void take_effect(uint16_t index, int32_t value);
+  int32_t attribute(const Slot& slot) const;
+
+  const stdlib::UnitType& unit_;
+  const stdlib::ParameterTable& table_;
+  DriveOptions options_;
+  std::vector<Slot> slots_;  // in rising order of the indices
+  std::array<IndexWindow*, 7> windows_{};
+  DriveLink* drive_ = nullptr;
+  bool factory_setting_ = false;
+};
+
+}  // namespace ipos::runtime

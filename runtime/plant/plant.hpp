@@ -1,0 +1,69 @@
+// A plant: lines and stations on one virtual clock. Deterministic: the same plant file and programs give the same
+// run on any build.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/bus/can/line.hpp"
+#include "runtime/plant/plant_file.hpp"
+#include "runtime/plant/station.hpp"
+#include "runtime/services/journal.hpp"
+
+namespace ipos::runtime {
+
+struct ExpectationResult {
+  const Expectation* expectation;
+  bool met;
+  int32_t actual;
+};
+
+class Plant final : private CanObserver {
+ public:
+  // One program for each station of the file, empty where it has none. `rates` overrides P938 and P939.
+  // Errors (unknown parameters, refused values, programs the unit refuses, unknown variables) come back in
+  // `errors`; a plant with errors must not be run.
+  Plant(PlantFile file, std::vector<std::optional<vm::Image>> programs, std::optional<vm::Rates> rates,
+        std::vector<PlantError>& errors);
+
+  void add_observer(CanObserver& observer);
+
+  // Runs until `end`; expectations that fall due are checked. Returns false when `keep_going` said so: it is asked
+  // once a millisecond of virtual time.
+  bool run_until(Time end, const std::function<bool(Time)>& keep_going = {});
+
+  bool programs_over() const;
+  bool has_fault() const;
+  Time now() const { return queue_.now(); }
+  const PlantFile& file() const { return file_; }
+  std::vector<std::unique_ptr<Station>>& stations() { return stations_; }
+  const std::vector<std::unique_ptr<CanLine>>& lines() const { return lines_; }
+  const Journal& journal() const { return journal_; }
+  const std::vector<ExpectationResult>& results() const { return results_; }
+
+ private:
+  void on_frame(const CanLine& line, const FrameRecord& record) override;
+  void on_line_event(const CanLine& line, const LineEvent& event) override;
+  void check_expectations(Time until);
+  void resolve_expectations(std::vector<PlantError>& errors);
+
+  PlantFile file_;
+  EventQueue queue_;
+  Journal journal_;
+  std::vector<std::unique_ptr<CanLine>> lines_;
+  std::vector<std::unique_ptr<Station>> stations_;
+
+  struct Due {
+    const Expectation* expectation;
+    Station* station;
+    uint32_t variable;
+  };
+  std::vector<Due> due_;  // in order of time
+  size_t next_due_ = 0;
+  std::vector<ExpectationResult> results_;
+};
+
+}  // namespace ipos::runtime

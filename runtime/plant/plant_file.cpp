@@ -1,0 +1,277 @@
+// Reads the plant file with toml++. Each table has a list of the keys it knows; others are errors.
+#define TOML_EXCEPTIONS 0
+#include "runtime/plant/plant_file.hpp"
+
+#include <fmt/format.h>
+
+#include <toml++/toml.h>
+#include <algorithm>
+#include <charconv>
+#include <initializer_list>
+#include <set>
+
+namespace ipos::runtime {
+namespace {
+
+FilePlace place_of(const toml::source_region& region) { return {region.begin.line, region.begin.column}; }
+
+// Reads one plant file; collects all errors.
+class Reader {
+ public:
+  PlantFileResult read(std::string_view text) {
+    const toml::parse_result parsed = toml::parse(text);
+    if (!parsed) {
+      result_.errors.push_back(
+          {place_of(parsed.error().source()), fmt::format("{}", parsed.error().description())});
+      return std::move(result_);
+    }
+    const toml::table& root = parsed.table();
+    known_keys(root, "the plant", {"bus", "station", "expect"});
+    for_each_table(root, "bus", [this](const toml::table& table) { bus(table); });
+    for_each_table(root, "station", [this](const toml::table& table) { station(table); });
+    for_each_table(root, "expect", [this](const toml::table& table) { expectation(table); });
+    cross_check();
+    std::stable_sort(result_.errors.begin(), result_.errors.end(), [](const auto& a, const auto& b) {
+      return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
+    });
+    return std::move(result_);
+  }
+
+ private:
+  void error(FilePlace place, std::string text) { result_.errors.push_back({place, std::move(text)}); }
+
+  void known_keys(const toml::table& table, std::string_view what,
+                  std::initializer_list<std::string_view> keys) {
+    for (const auto& [key, value] : table) {
+      if (std::find(keys.begin(), keys.end(), key.str()) != keys.end()) continue;
+      error(place_of(key.source()),
+            fmt::format("unknown key '{}' in {}; known are {}", key.str(), what, fmt::join(keys, ", ")));
+    }
+  }
+
+  template <typename Action>
+  void for_each_table(const toml::table& root, std::string_view key, Action action) {
+    const toml::node* node = root.get(key);
+    if (node == nullptr) return;
+    const toml::array* tables = node->as_array();
+    if (tables == nullptr)
+      return error(place_of(node->source()), fmt::format("write [[{}]], one for each", key));
+    for (const toml::node& entry : *tables) {
+      if (const toml::table* table = entry.as_table())
+        action(*table);
+      else
+        error(place_of(entry.source()), fmt::format("write [[{}]], one for each", key));
+    }
+  }
+
+  // A text value, or the default; `required` makes absence an error.
+  std::string text(const toml::table& table, std::string_view key, std::string_view what, bool required) {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) {
+      if (required) error(place_of(table.source()), fmt::format("{} needs {} = \"...\"", what, key));
+      return {};
+    }
+    if (const auto* value = node->as_string()) return value->get();
+    error(place_of(node->source()), fmt::format("{} must be a text in quotes", key));
+    return {};
+  }
+
+  // A 32-bit value; hexadecimal numbers may use all 32 bits.
+  bool number(const toml::node& node, std::string_view what, int32_t& out) {
+    const auto* value = node.as_integer();
+    if (value == nullptr) {
+      error(place_of(node.source()), fmt::format("{} must be a whole number", what));
+      return false;
+    }
+    if (value->get() < INT32_MIN || value->get() > UINT32_MAX) {
+      error(place_of(node.source()), fmt::format("{} = {} does not fit into 32 bits", what, value->get()));
+      return false;
+    }
+    out = static_cast<int32_t>(static_cast<uint32_t>(value->get()));
+    return true;
+  }
+
+  void unique(std::set<std::string>& names, const std::string& name, std::string_view what, FilePlace place) {
+    if (!name.empty() && !names.insert(name).second)
+      error(place, fmt::format("there are two of {} '{}'", what, name));
+  }
+
+  void bus(const toml::table& table) {
+    known_keys(table, "[[bus]]", {"name", "kind", "baud"});
+    BusConfig config;
+    config.place = place_of(table.source());
+    config.name = text(table, "name", "a [[bus]]", true);
+    unique(bus_names_, config.name, "bus", config.place);
+    const std::string kind = text(table, "kind", "a [[bus]]", true);
+    if (kind == "rs485" || kind == "profibus")
+      error(place_of(table.get("kind")->source()),
+            fmt::format("buses of kind '{}' are not simulated yet", kind));
+    else if (!kind.empty() && kind != "can")
+      error(place_of(table.get("kind")->source()),
+            fmt::format("'{}' is no kind of bus; known are can, rs485, profibus", kind));
+    if (const toml::node* baud = table.get("baud")) {
+      int32_t value = 0;
+      if (number(*baud, "baud", value)) {
+        config.baud = static_cast<uint32_t>(value);
+        // 1053 1610 p. 8: the rates of the SBus
+        if (value != 125'000 && value != 250'000 && value != 500'000 && value != 1'000'000)
+          error(place_of(baud->source()),
+                fmt::format("the SBus has 125000, 250000, 500000 or 1000000 baud, not {}", value));
+      }
+    }
+    result_.plant.buses.push_back(std::move(config));
+  }
+
+  void station(const toml::table& table) {
+    known_keys(table, "[[station]]", {"name", "unit", "program", "sbus", "parameters", "inputs", "hex"});
+    StationConfig config;
+    config.place = place_of(table.source());
+    config.name = text(table, "name", "a [[station]]", true);
+    unique(station_names_, config.name, "station", config.place);
+    const std::string unit = text(table, "unit", "a [[station]]", true);
+    config.unit = stdlib::find_unit(unit);
+    if (config.unit == nullptr && !unit.empty()) {
+      std::vector<std::string_view> names;
+      for (const stdlib::UnitType& type : stdlib::unit_types()) names.push_back(type.name);
+      error(place_of(table.get("unit")->source()),
+            fmt::format("'{}' is no unit type; known are {}", unit, fmt::join(names, ", ")));
+    }
+    config.program = text(table, "program", "", false);
+    if (const toml::node* program = table.get("program")) {
+      config.program_place = place_of(program->source());
+      if (config.unit != nullptr && config.unit->tasks == 0)
+        error(config.program_place, fmt::format("unit type {} runs no program", config.unit->name));
+    }
+    config.sbus = text(table, "sbus", "", false);
+    if (const toml::node* sbus = table.get("sbus"))
+      bus_uses_.push_back({config.sbus, place_of(sbus->source())});
+    parameters(table, config);
+    inputs(table, config);
+    hex(table, config);
+    result_.plant.stations.push_back(std::move(config));
+  }
+
+  const toml::table* subtable(const toml::table& table, std::string_view key) {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) return nullptr;
+    if (!node->is_table()) error(place_of(node->source()), fmt::format("write [station.{}]", key));
+    return node->as_table();
+  }
+
+  void parameters(const toml::table& table, StationConfig& config) {
+    const toml::table* settings = subtable(table, "parameters");
+    if (settings == nullptr) return;
+    for (const auto& [key, value] : *settings) {
+      ParameterSetting setting;
+      setting.parameter = key.str();
+      setting.place = place_of(key.source());
+      if (number(value, setting.parameter, setting.value)) config.parameters.push_back(std::move(setting));
+    }
+    // TOML tables are sorted by key; the order of the file is the order of writing.
+    std::stable_sort(config.parameters.begin(), config.parameters.end(), [](const auto& a, const auto& b) {
+      return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
+    });
+  }
+
+  void inputs(const toml::table& table, StationConfig& config) {
+    const toml::table* settings = subtable(table, "inputs");
+    if (settings == nullptr) return;
+    for (const auto& [key, value] : *settings) {
+      const int input = parse_input(key.str());
+      int32_t level = 0;
+      if (input < 0)
+        error(place_of(key.source()),
+              fmt::format("'{}' is no input; inputs are DI00..DI07 and DI10..DI17", key.str()));
+      else if (value.is_boolean())
+        level = value.as_boolean()->get() ? 1 : 0;
+      else if (!number(value, key.str(), level))
+        continue;
+      if (level != 0 && level != 1) error(place_of(value.source()), fmt::format("{} is 0 or 1", key.str()));
+      if (input >= 0)
+        config.inputs.push_back({static_cast<uint8_t>(input), level == 1, place_of(key.source())});
+    }
+  }
+
+  void hex(const toml::table& table, StationConfig& config) {
+    const toml::node* node = table.get("hex");
+    if (node == nullptr) return;
+    const toml::array* names = node->as_array();
+    if (names == nullptr) return error(place_of(node->source()), "hex must be a list of variable names");
+    for (const toml::node& name : *names) {
+      if (const auto* value = name.as_string())
+        config.hex.push_back(value->get());
+      else
+        error(place_of(name.source()), "hex must be a list of variable names");
+    }
+  }
+
+  void expectation(const toml::table& table) {
+    known_keys(table, "[[expect]]", {"station", "at", "variable", "equals"});
+    Expectation expected;
+    expected.place = place_of(table.source());
+    expected.station = text(table, "station", "an [[expect]]", true);
+    expected.variable = text(table, "variable", "an [[expect]]", true);
+    const std::string at = text(table, "at", "an [[expect]]", true);
+    expected.at = parse_duration(at);
+    if (expected.at < 0 && !at.empty())
+      error(place_of(table.get("at")->source()),
+            fmt::format("'{}' is no time; write for example 500ms or 1.5s", at));
+    if (const toml::node* equals = table.get("equals"))
+      number(*equals, "equals", expected.equals);
+    else
+      error(expected.place, "an [[expect]] needs equals = ...");
+    if (const toml::node* station = table.get("station"))
+      station_uses_.push_back({expected.station, place_of(station->source())});
+    result_.plant.expectations.push_back(std::move(expected));
+  }
+
+  void cross_check() {
+    for (const auto& [name, place] : bus_uses_)
+      if (!bus_names_.contains(name)) error(place, fmt::format("there is no bus '{}'", name));
+    for (const auto& [name, place] : station_uses_)
+      if (!station_names_.contains(name)) error(place, fmt::format("there is no station '{}'", name));
+    if (result_.plant.stations.empty() && result_.errors.empty())
+      error({1, 1}, "the plant has no [[station]]");
+  }
+
+  PlantFileResult result_;
+  std::set<std::string> bus_names_;
+  std::set<std::string> station_names_;
+  std::vector<std::pair<std::string, FilePlace>> bus_uses_;
+  std::vector<std::pair<std::string, FilePlace>> station_uses_;
+};
+
+}  // namespace
+
+PlantFileResult read_plant_file(std::string_view text) { return Reader().read(text); }
+
+int64_t parse_duration(std::string_view text) {
+  struct Unit {
+    std::string_view name;
+    int64_t ns;
+  };
+  static constexpr Unit kUnits[] = {{"us", 1'000},
+                                    {"ms", 1'000'000},
+                                    {"min", 60'000'000'000},
+                                    {"s", 1'000'000'000},
+                                    {"h", 3'600'000'000'000}};
+  for (const Unit& unit : kUnits) {
+    if (!text.ends_with(unit.name)) continue;
+    const std::string_view number = text.substr(0, text.size() - unit.name.size());
+    double value = 0;
+    const auto [end, status] = std::from_chars(number.data(), number.data() + number.size(), value);
+    if (status != std::errc() || end != number.data() + number.size() || !(value >= 0) || value > 1e9)
+      return -1;
+    const double ns = value * static_cast<double>(unit.ns);
+    return ns > 9e18 ? -1 : static_cast<int64_t>(ns + 0.5);
+  }
+  return -1;
+}
+
+int parse_input(std::string_view name) {
+  if (name.size() != 4 || !name.starts_with("DI") || (name[2] != '0' && name[2] != '1')) return -1;
+  const int digit = name[3] - '0';
+  return digit < 0 || digit > 7 ? -1 : (name[2] - '0') * 8 + digit;
+}
+
+}  // namespace ipos::runtime

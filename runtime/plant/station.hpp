@@ -1,0 +1,93 @@
+// One station: the VM with its program, the drive with its parameters, and the ports to the buses. Everything that
+// happens in it happens in its millisecond tick or on the arrival of a frame; docs/cycle.md has the order.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "runtime/bus/can/line.hpp"
+#include "runtime/bus/movilink/sbus_slave.hpp"
+#include "runtime/plant/drive_server.hpp"
+#include "runtime/plant/plant_file.hpp"
+#include "runtime/services/journal.hpp"
+#include "runtime/services/movilink_command.hpp"
+#include "runtime/services/system_commands.hpp"
+#include "runtime/services/variable_objects.hpp"
+#include "vm/exec/machine.hpp"
+#include "vm/image/image.hpp"
+#include "vm/sched/scheduler.hpp"
+
+namespace ipos::runtime {
+
+// What a unit type allows a program.
+vm::Limits limits_of(const stdlib::UnitType& unit);
+
+class Station final : private CanNode, private EventTarget, private SlaveObserver {
+ public:
+  // `line` is null for a station without SBus; `program` is empty for one without IPOS program. The config and the
+  // journal must outlive the station. Parameters of the config must be checked before (plant.cpp).
+  // The program must pass verify() for the unit.
+  Station(EventQueue& queue, uint32_t source, const StationConfig& config, std::optional<vm::Image> program,
+          CanLine* line, Journal& journal, std::optional<vm::Rates> rates);
+
+  // Applies a parameter of the plant file; nothing when it was accepted, else why not.
+  std::optional<std::string> set_parameter(const ParameterSetting& setting);
+
+  // After all parameters are set: connects to the bus and starts the program.
+  void power_on();
+
+  const StationConfig& config() const { return config_; }
+  const vm::Image* image() const { return image_ ? &*image_ : nullptr; }
+  const vm::Machine* machine() const { return machine_ ? &*machine_ : nullptr; }
+  DriveServer& drive() { return drive_; }
+
+  // The program has ended, was never there, or a fault has stopped it.
+  bool program_over() const;
+  uint8_t fault() const;
+  uint16_t status_word_1() const;
+
+  // Number of a variable by symbol or as Hn; nothing when there is none.
+  std::optional<uint32_t> find_variable(std::string_view name) const;
+  int32_t variable(uint32_t number) const { return machine_->variables()[number]; }
+
+  // "SCOM1.IPC:12:5" of a word address, or empty.
+  std::string source_place(uint32_t address) const;
+
+ private:
+  void on_event(Time now, uint32_t kind, uint64_t argument) override;
+  void on_frame(Time now, const Frame& frame) override;
+  void on_sent(Time now, const Frame& frame, uint64_t tag) override;
+  void on_not_sent(Time now, const Frame& frame, uint64_t tag, NotSent reason) override;
+  void on_ignored(Time now, const Frame& frame, Ignored reason, ReturnCode code) override;
+
+  void connect_sbus();
+  void report_fault(Time now);
+
+  EventQueue& queue_;
+  uint32_t source_;
+  const StationConfig& config_;
+  CanLine* line_;
+  Journal& journal_;
+  DriveServer drive_;
+  std::optional<vm::Image> image_;
+
+  // The SBus port; empty without one.
+  struct SbusPort {
+    SbusPort(EventQueue& queue, uint32_t source, LinePort port, SlaveSettings settings, DriveServer& drive,
+             const stdlib::UnitType& unit, uint32_t baud, SlaveObserver& observer);
+    LinePort sender;
+    SbusSlave slave;
+    VariableObjects objects;
+    MovilinkCommand movilink;
+  };
+  std::unique_ptr<SbusPort> sbus_;
+
+  std::optional<SystemCommands> commands_;
+  std::optional<vm::Machine> machine_;
+  std::optional<vm::Rates> rates_;  // instead of P938 and P939
+  bool fault_reported_ = false;
+};
+
+}  // namespace ipos::runtime

@@ -1,0 +1,40 @@
+// What a user has to be told about a run: refused objects, silent stations, faults. The parts of a station write
+// here; the command line prints it.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/clock/event_queue.hpp"
+
+namespace ipos::runtime {
+
+enum class Weight : uint8_t {
+  Why,      // explains what a user may wonder about: shown with --why
+  Warning,  // something does not work as the program or the plant seems to want it
+  Fault,    // a drive fault
+};
+
+struct JournalEntry {
+  Time time;
+  Weight weight;
+  std::string station;  // empty: the plant
+  std::string text;
+};
+
+class Journal {
+ public:
+  // A text that the station has already said is not repeated: a cyclic cause gives one entry.
+  void note(Time time, Weight weight, std::string_view station, std::string text) {
+    for (const JournalEntry& entry : entries_)
+      if (entry.station == station && entry.text == text) return;
+    entries_.push_back({time, weight, std::string(station), std::move(text)});
+  }
+  const std::vector<JournalEntry>& entries() const { return entries_; }
+
+ private:
+  std::vector<JournalEntry> entries_;
+};
+
+}  // namespace ipos::runtime

@@ -1,0 +1,124 @@
+// MOVLNK from structure to result.
+#include "runtime/services/movilink_command.hpp"
+
+#include <fmt/format.h>
+
+#include "runtime/bus/movilink/return_code.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+// Elements of MOVLNK and MLDATA (1053 1610 p. 47).
+enum Element : uint32_t { kBusType, kAddress, kFormat, kService, kIndex, kDPointer, kResult };
+enum Data : uint32_t { kWritePar, kReadPar, kPO1, kPI1 = 5 };
+
+constexpr int32_t kBusSbus = 5;
+constexpr int32_t kOwnUnit = 253;
+
+// Variables of MLDATA that a format touches.
+uint32_t data_size(TelegramFormat format) { return format.words > 0 ? kPI1 + format.words : 2U; }
+
+SbusResult refused(ReturnCode code) {
+  SbusResult result;
+  result.result = code.packed();
+  return result;
+}
+
+}  // namespace
+
+MovilinkCommand::MovilinkCommand(EventQueue& queue, uint32_t source, FrameSender& sender, uint64_t tag,
+                                 ParameterServer& own, ProcessDataServer& own_data)
+    : own_(own), own_data_(own_data), master_(queue, source, sender, tag, kSbusReplyTimeout, *this) {}
+
+vm::HostReply MovilinkCommand::start(Time now, vm::Machine& machine, int task, uint32_t variable, std::string& why) {
+  const std::span<int32_t> h = machine.variables();
+  const auto element = [&](Element n) { return h[variable + n]; };
+  Job job{&machine, task, variable, static_cast<uint32_t>(element(kDPointer)),
+          {element(kAddress), element(kFormat), element(kService), element(kIndex), 0, {}}};
+
+  const auto format = telegram_format(job.bus.format);
+  if (!format) {
+    why = fmt::format("MOVLNK: Format {} is none of 0..6 and 128..134", job.bus.format);
+    store(job, refused(return_codes::kWrongManagement));
+    return {};
+  }
+  if (job.data >= h.size() || h.size() - job.data < data_size(*format))
+    return {vm::Answer::Fault, vm::kFaultIllop, "DPointer of MOVLNK does not lead to the variables of MLDATA"};
+  job.bus.write_value = h[job.data + kWritePar];
+  for (uint32_t n = 0; n < format->words; ++n) job.bus.output[n] = h[job.data + kPO1 + n];
+
+  if (job.bus.address == kOwnUnit) {
+    store(job, serve_own(now, job.bus, *format));
+    return {};
+  }
+  if (element(kBusType) != kBusSbus) {
+    why = fmt::format("MOVLNK: bus type {} is not simulated; only 5 (SBus) is", element(kBusType));
+    store(job, refused(return_codes::kWrongManagement));
+    return {};
+  }
+  jobs_.push_back(job);
+  if (jobs_.size() > 1) return {vm::Answer::Wait};
+  if (const auto code = master_.start(now, job.bus)) {
+    why = fmt::format("MOVLNK: address {}, format {}, service {} cannot be sent over SBus", job.bus.address,
+                      job.bus.format, job.bus.service);
+    jobs_.clear();
+    store(job, refused(*code));
+    return {};
+  }
+  return {vm::Answer::Wait};
+}
+
+void MovilinkCommand::stop() {
+  master_.abort();
+  jobs_.clear();
+}
+
+void MovilinkCommand::on_exchange_done(Time now, const SbusResult& result) {
+  const Job job = jobs_.front();
+  jobs_.erase(jobs_.begin());
+  store(job, result);
+  job.machine->resume(job.task);
+  begin_next(now);
+}
+
+void MovilinkCommand::begin_next(Time now) {
+  while (!jobs_.empty()) {
+    const auto code = master_.start(now, jobs_.front().bus);
+    if (!code) return;
+    store(jobs_.front(), refused(*code));
+    jobs_.front().machine->resume(jobs_.front().task);
+    jobs_.erase(jobs_.begin());
+  }
+}
+
+SbusResult MovilinkCommand::serve_own(Time now, const SbusJob& job, TelegramFormat format) {
+  SbusResult result;
+  if (format.parameter) {
+    const auto service = service_from_code(static_cast<uint32_t>(job.service));
+    if (!service || *service == Service::None || job.index < 0 || job.index > 0xFF'FFFF)
+      return refused(return_codes::kWrongManagement);
+    const auto value = own_.serve(
+        now, {*service, static_cast<uint16_t>(job.index), static_cast<uint8_t>(job.index >> 16), job.write_value});
+    if (!value) return refused(value.error());
+    if (!is_write(*service)) result.read_value = *value;
+  }
+  if (format.words > 0) {
+    ProcessWords output{};
+    for (size_t n = 0; n < format.words; ++n) output[n] = static_cast<uint16_t>(job.output[n]);
+    own_data_.take_output(now, OutputChannel::Single, output);
+    const ProcessWords input = own_data_.input(now);
+    for (size_t n = 0; n < format.words; ++n) result.input[n] = static_cast<int16_t>(input[n]);
+    result.words = format.words;
+  }
+  return result;
+}
+
+void MovilinkCommand::store(const Job& job, const SbusResult& result) {
+  const std::span<int32_t> h = job.machine->variables();
+  h[job.variable + kResult] = static_cast<int32_t>(result.result);
+  if (result.result != 0) return;  // after an error the data keep their values (1053 1610 p. 49)
+  if (result.read_value) h[job.data + kReadPar] = *result.read_value;
+  for (uint32_t n = 0; n < result.words; ++n) h[job.data + kPI1 + n] = result.input[n];
+}
+
+}  // namespace ipos::runtime

@@ -1,0 +1,256 @@
+// Reads the parameter lists that are compiled into the program. A fault in a list is a fault of the project:
+// it goes into problems(), which a test holds empty, and the row is left out.
+#include "stdlib/parameters.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <utility>
+
+#include "stdlib/units.hpp"
+
+namespace ipos::stdlib {
+
+namespace parameter_lists {
+std::span<const EmbeddedFile> embedded_files();  // generated, see CMakeLists.txt
+}
+
+namespace {
+
+enum Column {
+  kNumber,
+  kName,
+  kIndex,
+  kRole,
+  kDisplay,
+  kQuantity,
+  kConversion,
+  kAccess,
+  kDefault,
+  kRange,
+  kTexts,
+  kOption,
+  kNotes,
+  kColumns
+};
+
+// Cuts the text up to the separator off `rest`.
+std::string_view cut(std::string_view& rest, std::string_view separator) {
+  const size_t at = rest.find(separator);
+  const std::string_view part = rest.substr(0, at);
+  rest = at == std::string_view::npos ? std::string_view{} : rest.substr(at + separator.size());
+  return part;
+}
+
+template <typename Integer>
+std::optional<Integer> number(std::string_view text) {
+  Integer value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+bool read_access(std::string_view text, Parameter& p) {
+  while (!text.empty()) {
+    const std::string_view word = cut(text, "/");
+    if (word == "RW")
+      p.writable = true;
+    else if (word == "R")
+      p.needs_inhibit = true;
+    else if (word == "S")
+      p.writable_locked = true;
+    else if (word == "N")
+      p.nonvolatile = true;
+    else if (word == "E")
+      p.needs_output_stage_off = true;
+    else if (word != "RO")
+      return false;
+  }
+  return true;
+}
+
+// "0..1000/10;1000..10000/100"
+bool read_ranges(std::string_view text, Parameter& p) {
+  while (!text.empty()) {
+    std::string_view range = cut(text, ";");
+    const auto minimum = number<int64_t>(cut(range, ".."));
+    const auto maximum = number<int64_t>(cut(range, "/"));
+    const auto step = number<int64_t>(range);
+    if (!minimum || !maximum || !step || *step <= 0 || *minimum > *maximum) return false;
+    p.ranges.push_back({*minimum, *maximum, *step});
+  }
+  return true;
+}
+
+// "0=OFF|1=ON", "16*=IPOS input", or "=P600" for the list of that row.
+bool read_texts(std::string_view text, const std::vector<Parameter>& before, Parameter& p) {
+  if (text.starts_with("=P")) {
+    text.remove_prefix(2);
+    for (const Parameter& other : before)
+      if (other.number == text) return p.texts = other.texts, !other.texts.empty();
+    return false;
+  }
+  while (!text.empty()) {
+    std::string_view entry = cut(text, "|");
+    std::string_view code = cut(entry, "=");
+    const bool logodrive = code.ends_with('*');
+    if (logodrive) code.remove_suffix(1);
+    const auto value = number<int32_t>(code);
+    if (!value || entry.empty()) return false;
+    if (!p.texts.empty() && p.texts.back().value >= *value) return false;
+    p.texts.push_back({*value, entry, logodrive});
+  }
+  return true;
+}
+
+bool read_option(std::string_view text, Parameter& p) {
+  if (text == "DRS")
+    p.option = OptionCard::Drs;
+  else if (text == "DIO")
+    p.option = OptionCard::Dio;
+  else if (text == "AIO")
+    p.option = OptionCard::Aio;
+  return text.empty() || p.option != OptionCard::None;
+}
+
+bool read_row(std::string_view line, const std::vector<Parameter>& before, Parameter& p) {
+  std::string_view cells[kColumns];
+  int count = 1;
+  for (const char c : line) count += c == '\t';
+  if (count != kColumns) return false;
+  for (std::string_view& cell : cells) cell = cut(line, "\t");
+
+  p.number = cells[kNumber];
+  p.name = cells[kName];
+  p.display = cells[kDisplay];
+  p.notes = cells[kNotes];
+  p.view = cells[kRole] == "view";
+  const auto index = cells[kIndex].empty() ? std::optional<uint16_t>(0) : number<uint16_t>(cells[kIndex]);
+  if (p.name.empty() || !index || (!p.view && !cells[kRole].empty())) return false;
+  p.index = *index;
+  if (!read_texts(cells[kTexts], before, p)) return false;
+  if (p.view || p.index == 0) return true;
+
+  const auto quantity =
+      cells[kQuantity].empty() ? std::optional<uint8_t>(kNoQuantity) : number<uint8_t>(cells[kQuantity]);
+  const auto conversion = number<int8_t>(cells[kConversion]);
+  const auto default_value = number<int64_t>(cells[kDefault]);
+  if (!quantity || !conversion || !default_value) return false;
+  p.quantity = *quantity;
+  p.conversion = *conversion;
+  p.default_value = *default_value;
+  return read_access(cells[kAccess], p) && read_ranges(cells[kRange], p) && read_option(cells[kOption], p);
+}
+
+// A view with the rules of the row that leads its index.
+Parameter view_of(const Parameter& lead, const Parameter& view) {
+  Parameter row = lead;
+  row.number = view.number;
+  row.name = view.name;
+  row.view = true;
+  row.notes = view.notes;
+  if (!view.display.empty()) row.display = view.display;
+  if (!view.texts.empty()) row.texts = view.texts;
+  return row;
+}
+
+// Takes the place of the row with the same number, else its place in the order of the numbers.
+void replace_or_insert(std::vector<Parameter>& rows, Parameter row) {
+  auto at = std::find_if(rows.begin(), rows.end(), [&row](const Parameter& old) {
+    return !old.number.empty() && old.number >= row.number;
+  });
+  if (at != rows.end() && at->number == row.number)
+    *at = std::move(row);
+  else
+    rows.insert(at, std::move(row));
+}
+
+}  // namespace
+
+int64_t Parameter::minimum() const {
+  if (!ranges.empty()) return ranges.front().minimum;
+  return texts.empty() ? INT32_MIN : texts.front().value;
+}
+
+int64_t Parameter::maximum() const {
+  if (!ranges.empty()) return ranges.back().maximum;
+  return texts.empty() ? INT32_MAX : texts.back().value;
+}
+
+ParameterTable::ParameterTable(std::span<const EmbeddedFile* const> lists, bool option_cards) {
+  std::vector<Parameter> rows;
+  for (const EmbeddedFile* list : lists) {
+    const bool replaces = list != lists.front();
+    std::string_view rest = list->text;
+    bool header = true;
+    for (int line_number = 1; !rest.empty(); ++line_number) {
+      const std::string_view line = cut(rest, "\n");
+      if (line.empty() || line[0] == '#' || std::exchange(header, false)) continue;
+      Parameter row;
+      if (!read_row(line, rows, row))
+        problems_.push_back(std::string(list->name) + ":" + std::to_string(line_number) + ": " +
+                            std::string(line));
+      else if (replaces)
+        replace_or_insert(rows, std::move(row));
+      else
+        rows.push_back(std::move(row));
+    }
+  }
+  if (!option_cards) std::erase_if(rows, [](const Parameter& p) { return p.option != OptionCard::None; });
+
+  for (const Parameter& row : rows) {
+    const auto lead = std::find_if(rows.begin(), rows.end(), [&row](const Parameter& other) {
+      return !other.view && other.index == row.index;
+    });
+    if (!row.view)
+      rows_.push_back(row);
+    else if (lead != rows.end())
+      rows_.push_back(view_of(*lead, row));
+    else if (option_cards)
+      problems_.push_back("no row leads the index of " + std::string(row.name));
+  }
+  for (const Parameter& row : rows_)
+    if (!row.view && row.index != 0) by_index_.push_back(&row);
+  std::sort(by_index_.begin(), by_index_.end(),
+            [](const Parameter* a, const Parameter* b) { return a->index < b->index; });
+  for (size_t i = 1; i < by_index_.size(); ++i)
+    if (by_index_[i - 1]->index == by_index_[i]->index)
+      problems_.push_back("two rows lead index " + std::to_string(by_index_[i]->index));
+}
+
+const Parameter* ParameterTable::find(uint16_t index) const {
+  const auto at = std::lower_bound(by_index_.begin(), by_index_.end(), index,
+                                   [](const Parameter* p, uint16_t wanted) { return p->index < wanted; });
+  return at != by_index_.end() && (*at)->index == index ? *at : nullptr;
+}
+
+const Parameter* ParameterTable::find(std::string_view text) const {
+  if (text.starts_with('P') || text.starts_with('p'))
+    text.remove_prefix(1);
+  else if (const auto index = number<uint16_t>(text); index && *index > 999)
+    return find(*index);
+  for (const Parameter& row : rows_)
+    if (!row.number.empty() && row.number == text) return &row;
+  return nullptr;
+}
+
+const ParameterTable& parameter_table(const UnitType& unit) {
+  const auto list = [](std::string_view name) -> const EmbeddedFile* {
+    for (const EmbeddedFile& file : parameter_lists::embedded_files())
+      if (file.name == name) return &file;
+    return nullptr;
+  };
+  using Lists = std::vector<const EmbeddedFile*>;
+  static const ParameterTable md60a(Lists{list("md60a.tsv")}, true);
+  static const ParameterTable compact(Lists{list("md60a.tsv")}, false);
+  static const ParameterTable mdxb(Lists{list("md60a.tsv"), list("mdxb.tsv")}, true);
+  static const ParameterTable mc07(Lists{list("mc07.tsv")}, true);
+  static const ParameterTable none(Lists{}, true);
+  if (unit.name == "md60a") return md60a;
+  if (unit.name == "compact") return compact;
+  if (unit.name == "mdxb") return mdxb;
+  if (unit.name == "mc07") return mc07;
+  return none;
+}
+
+}  // namespace ipos::stdlib

@@ -1,0 +1,102 @@
+// The parameter lists of the units as data, from parameters/*.tsv.
+//
+// A row is a line of the printed list. Several lines may show one index (P031 and P600): then one of them
+// leads and decides access, range, default and coding, and the others are views that differ in number, name
+// and display only. find(index) gives the leading row, find("P031") the row of that number; both carry the
+// leading row's rules, but a view may name the values in its own words (texts).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+#include "stdlib/embedded.hpp"
+#include "stdlib/unit_types.hpp"
+
+namespace ipos::stdlib {
+
+// Values from minimum to maximum that are minimum + n x step. 64 bits because some parameters are unsigned.
+struct ValueRange {
+  int64_t minimum;
+  int64_t maximum;
+  int64_t step;
+};
+
+struct ValueText {
+  int32_t value;
+  std::string_view text;
+  bool logodrive_only;
+};
+
+// Card without which the parameter cannot be written; such parameters exist on MD_60A and MDX only.
+enum class OptionCard : uint8_t { None, Drs, Dio, Aio };
+
+struct Parameter {
+  std::string_view number;  // "813"; empty when none is printed
+  std::string_view name;
+  uint16_t index = 0;  // 0: a keypad setting without index
+  bool view = false;   // another row leads this index
+
+  bool writable = false;                // RW
+  bool needs_inhibit = false;           // R: written only under controller inhibit
+  bool writable_locked = false;         // S: written also under parameter lock
+  bool nonvolatile = false;             // N: from EEPROM at restart
+  bool needs_output_stage_off = false;  // E, ours
+  OptionCard option = OptionCard::None;
+
+  int64_t default_value = 0;
+  std::vector<ValueRange> ranges;  // empty: texts decide, or any value when there are none either
+  std::vector<ValueText> texts;    // in rising order
+
+  uint8_t quantity = 0;  // 255 = none given
+  int8_t conversion = 0;
+  std::string_view display;  // unit shown to people; "hex" for bit fields
+  std::string_view notes;    // doubts about the printed row and what was taken
+
+  // Limits by ranges, else texts, else all 32 bits. Above 2^31 the transferred bits count as unsigned.
+  int64_t minimum() const;
+  int64_t maximum() const;
+  bool is_unsigned() const { return maximum() > INT32_MAX; }
+  // The transferred 32 bits as a number of this parameter.
+  int64_t number_of(int32_t bits) const {
+    return is_unsigned() ? int64_t{static_cast<uint32_t>(bits)} : bits;
+  }
+};
+
+class ParameterTable {
+ public:
+  // Rows of `lists` in order; a row of a later list replaces those of the same number. Without `option_cards`
+  // the rows that need one are left out.
+  ParameterTable(std::span<const EmbeddedFile* const> lists, bool option_cards);
+
+  std::span<const Parameter> rows() const { return rows_; }
+  // The leading rows in rising order of their indices.
+  std::span<const Parameter* const> by_index() const { return by_index_; }
+  // Faults of the text; empty unless a list was edited badly.
+  std::span<const std::string> problems() const { return problems_; }
+
+  // nullptr when there is none. By text: "P813", "813", or an index such as "8600".
+  const Parameter* find(uint16_t index) const;
+  const Parameter* find(std::string_view text) const;
+
+ private:
+  std::vector<Parameter> rows_;
+  std::vector<const Parameter*> by_index_;
+  std::vector<std::string> problems_;
+};
+
+// The list of a unit; empty for units without one (mc31).
+const ParameterTable& parameter_table(const UnitType& unit);
+
+// The value as people read it: "2.000 s", "CTRL. WORD 1", "0x0202".
+std::string parameter_text(const Parameter& parameter, int32_t value);
+
+// The transferred value of such a text; the unit may be left out, a value of a list may be named by text or
+// code. The error says what would be accepted. Whether the value is in range is the unit's to say.
+tl::expected<int32_t, std::string> parse_parameter_text(const Parameter& parameter, std::string_view text);
+
+}  // namespace ipos::stdlib

@@ -1,0 +1,288 @@
+// Every message of the back end: its code, its place, and that nothing else is said.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "compiler/sema/map.hpp"
+#include "tests/compiler/backend_test.hpp"
+
+namespace ipos::compiler::test {
+namespace {
+
+// The message is expected at the '@' of the source, which is taken out before compiling.
+struct Mistake {
+  const char* code;
+  std::string source;
+  const char* contains = "";
+  const char* unit = "md60a";
+};
+
+std::string repeated(const char* text, int count) {
+  std::string out;
+  for (int n = 0; n < count; ++n) out += text;
+  return out;
+}
+
+std::string slow_objects(int count) {
+  std::string out = "SCTRCYCL t[" + std::to_string(count) + "]; main() {";
+  for (int n = 0; n < count; ++n) {
+    const std::string object = "t[" + std::to_string(n) + "]";
+    out += object + ".CycleTime = 100; " + object + ".ObjectNo = " + std::to_string(1024 + n) + ";";
+    out += std::string(n + 1 == count ? "@" : "") + "_SBusCommDef(1, " + object + ");";
+  }
+  return "#pragma globals 300 399\n" + out + "}";
+}
+
+std::vector<Mistake> mistakes() {
+  return {
+      {"E0201", "long speed;\nmain() { @sped = 1; speed = 2; }", "sped"},
+      {"E0201", "main() { H0 = @TargetPos; }", "TargetPos"},
+      {"E0202", "main() { @_MoviLin(H0); }", "_MoviLin"},
+      {"E0202", "main() { _SetTask2(1, @tsk); }", "tsk"},
+      {"E0203", "SCREC r; main() { r.@Lenn = 1; r.Len = 1; }", "Lenn"},
+      {"E0204", "long a, @a; main() { a = 1; }"},
+      {"E0204", "f() { } @f() { } main() { f(); }"},
+      {"E0204", "typedef struct { long x; long @x; } S; S s; main() { s.x = 1; }"},
+      {"E0205", "long @H12; main() { }", "H12"},
+      {"E0205", "long @_Wait; main() { }", "_Wait"},
+      {"E0206", "main() { @late = 1; } long late;"},
+      {"E0208", "f() { } main() { H0 = @f(); }"},
+      {"E0209", "main() { @5 = 1; }"},
+      {"E0209", "main() { @(H0 + 1)++; }"},
+      {"E0210", "long a; main() { a.@x = 1; a = 1; }"},
+      {"E0211", "long a; main() { @a[1] = 1; a = 1; }"},
+      {"E0212", "SCREC r; main() { H0 = @r; r.Len = 1; }"},
+      {"E0212", "long v[2]; main() { H0 = @v; v[0] = 1; }"},
+      {"E0213", "f() { } main() { H0 = @f; f(); }"},
+      {"E0214", "long a; main() { @a(); a = 1; }"},
+      {"E0215", "main() { @_Wait(); }"},
+      {"E0215", "f() { } main() { f(@1); f(); }"},
+      {"E0216", "main() { _SBusCommDef(@9, H0); }", "SCD_TRCYCL, SCD_TRACYCL, SCD_REC"},
+      {"E0216", "main() { _Go0(@H1); }"},
+      {"E0217", "main() { _BitSet(@5, 1); }"},
+      {"E0217", "long v[3], i; main() { i = 1; _Copy(@v[i], i, 1); }"},
+      {"E0218", "main() { _SetTask2(1, @H0); }"},
+      {"E0219", "main() { _BitSet(H0, @32); }", "0 to 31"},
+      {"E0219", "main() { _Copy(H0, H510, @3); }", "1 to 2"},
+      {"E0220", "long n; main() { switch (n) { case @n: ; } }"},
+      {"E0220", "long v[@H0]; main() { }"},
+      {"E0220", "main() { _BitSet(H0, @H1); }"},
+      {"E0221", "main() { switch (H0) { case 1: ; @case 1: ; } }"},
+      {"E0222", "main() { switch (H0) { default: ; @default: ; } }"},
+      {"E0223", "main() { @case 1: ; }"},
+      {"E0223", "main() { @default: ; }"},
+      {"E0224", "main() { @break; }", "loop or switch"},
+      {"E0224", "main() { switch (H0) { default: @continue; } }"},
+      {"E0225", "main() { @H512 = 1; }", "H0 to H511"},
+      {"E0225", "main() { @*-1 = 1; }"},
+      {"E0225", "main() { H0 = @*1024; }", "H0 to H1023", "mdxb"},
+      {"E0225", "#declare A @H511 + 1\nmain() { }"},
+      {"E0225", "main() { _SBusCommDef(1, @H507); }"},
+      {"E0226", "long v[@0]; main() { }"},
+      {"E0227", "long v[3]; main() { v[@3] = 1; v[0] = 1; }", "0 to 2"},
+      {"E0228", "@#pragma globals 452 420\nmain() { }"},
+      {"E0228", "@#pragma globals 430 460\nmain() { }", "H453 to H560"},
+      {"E0228", "@#pragma initials 0 H512\nmain() { }"},
+      {"E0229", "long a[30], @b[4]; main() { a[0] = 1; b[0] = 1; }", "'#pragma globals 366 399'"},
+      {"E0229", "initial long a[120], @b[9]; main() { a[0] = 1; b[0] = 1; }", "no 129 free variables"},
+      {"E0231", "#pragma var 400 400\n@main() { H0 = H1 - (H2 - (H3 - H4 * H0)) * H5; }", "'#pragma var"},
+      {"E0232", "@main() { H400 = 1; H0 = H1 * H2 + H0; }", "H400"},
+      {"E0234", "@main() {" + repeated(" H0 = 1;", 1100) + "}", "2048"},
+      {"E0235", "t() { H0++; } main() { @_SetTask(1, t); }", "task 3"},
+      {"E0235", "VARINT v; t() { H0++; } main() { v.Control = 1; @_SetVarInterrupt(v, t); }",
+       "variable interrupts"},
+      {"E0237", "long v[@1 / 0]; main() { }"},
+      {"E0238", "SCREC r; MLDATA d; main() { @r = d; r.Len = d.PO1; }"},
+      {"E0239", "typedef struct { } @S; main() { }"},
+      {"W0201", "long a, @b; main() { a = 1; }", "b"},
+      {"W0202", "@f() { } main() { }"},
+      {"W0203", "main() { return; @H0 = 1; }"},
+      {"W0203", "main() { while (1) ; @H0 = 1; }"},
+      {"W0203", "main() { switch (H0) { @H1 = 1; case 1: ; } }"},
+      {"W0204", "main() { if (@H0 = 1) H1 = 2; }"},
+      {"W0204", "main() { while (@H0 = H1) H2++; }"},
+      {"W0205", "main() { if (H0)@; H1 = 2; }"},
+      {"W0206", "main() { H0 = H1 / @0; }"},
+      {"W0206", "main() { H0 %= @0; }"},
+      {"W0207", "main() { @H473 = 1; }", "StatusWord"},
+      {"W0207", "main() { @H473++; }"},
+      {"W0208", "@#pragma var 400 430\nmain() { }"},
+      {"W0209", "f() { @g(); } g() { f(); } main() { f(); }", "f -> g -> f"},
+      {"W0210", "SCTRCYCL t; main() { @t.CycleTime = 15; _SBusCommDef(1, t); }", "15"},
+      {"W0210", "SCTRCYCL t; main() { @t.CycleTime = 5; _SBusCommDef(1, t); }", "5", "mc07"},
+      {"W0211", "SCTRCYCL t; main() { @t.ObjectNo = 2048; _SBusCommDef(1, t); }", "2048"},
+      {"W0211", "SCREC r; main() { @r.ObjectNo = 515; _SBusCommDef(3, r); }", "address 0"},
+      {"W0211",
+       "SCREC r, s; main() { r.ObjectNo = 1025; @s.ObjectNo = 1025; _SBusCommDef(3, r); _SBusCommDef(3, s); "
+       "}",
+       "another object"},
+      {"W0212", slow_objects(11), "10 transmit"},
+      {"W0213", "SCREC r; main() { _SBusCommDef(1, @r); }", "SCTRCYCL"},
+      {"W0214", "long a; main() { a = 1; @H420 = 2; }", "'a'"},
+      {"W0215", "@#pragma initials 0 130\nmain() { }", "H130"},
+      {"W0216", "main() { @H0 == 1; }"},
+      {"W0217", "main() { H0 = H1 << @33; }", "shift by 1"},
+      {"W0218", "#pragma var 300 310\n@#pragma var 311 320\nmain() { }"},
+  };
+}
+
+class LocatedMistakes : public testing::TestWithParam<Mistake> {};
+
+TEST_P(LocatedMistakes, HaveOneMessageAtTheirPlace) {
+  std::string source = GetParam().source;
+  const size_t place = source.find('@');
+  ASSERT_NE(std::string::npos, place);
+  source.erase(place, 1);
+  const auto line =
+      static_cast<uint32_t>(1 + std::count(source.begin(), source.begin() + static_cast<long>(place), '\n'));
+  const size_t line_start = place == 0 ? std::string::npos : source.rfind('\n', place - 1);
+  const auto column = static_cast<uint32_t>(line_start == std::string::npos ? place + 1 : place - line_start);
+
+  const Compilation c = compile_text(source, GetParam().unit);
+  const std::string text = render_text(c.diagnostics.all(), *c.sources, false);
+  ASSERT_EQ(1U, c.diagnostics.all().size()) << source << "\n" << text;
+  const Diagnostic& found = c.diagnostics.all()[0];
+  EXPECT_EQ(GetParam().code, info(found.diag).code) << text;
+  const Position at = c.sources->position(found.span.begin);
+  EXPECT_EQ(line, at.line) << text;
+  EXPECT_EQ(column, at.column) << text;
+  EXPECT_NE(std::string::npos, found.text.find(GetParam().contains)) << text;
+  EXPECT_EQ(c.image.has_value(), GetParam().code[0] == 'W');
+}
+
+INSTANTIATE_TEST_SUITE_P(All, LocatedMistakes, testing::ValuesIn(mistakes()));
+
+// Those with a test of their own below.
+TEST(Mistakes, EveryRowOfTheTableIsTested) {
+  std::set<std::string_view> tested{"E0207", "E0230", "E0233", "E0236"};
+  for (const Mistake& mistake : mistakes()) tested.insert(mistake.code);
+  for (const DiagInfo& row : diagnostic_table())
+    EXPECT_TRUE(row.code.substr(1, 2) != "02" || tested.contains(row.code)) << row.code << " " << row.name;
+}
+
+TEST(Mistakes, NoMain) {
+  const Compilation c = compile_text("f() { }");
+  ASSERT_EQ(1U, c.diagnostics.all().size());
+  EXPECT_EQ(Diag::NoMain, c.diagnostics.all()[0].diag);
+}
+
+std::vector<std::string> codes(const std::string& source) {
+  std::vector<std::string> out;
+  const Compilation c = compile_text(source);
+  for (const Diagnostic& d : c.diagnostics.all()) out.emplace_back(info(d.diag).code);
+  return out;
+}
+
+TEST(Mistakes, VariablesOfTwoRangesMeet) {
+  EXPECT_EQ((std::vector<std::string>{"W0208", "E0230"}),
+            codes("#pragma initials 100 127\n#pragma globals 120 140\n"
+                  "initial long a[28]; long b; main() { a[0] = b; }"));
+}
+
+TEST(Mistakes, RecursionThatLosesATemporary) {
+  EXPECT_EQ((std::vector<std::string>{"W0209", "E0233"}),
+            codes("long a, b; f() { a = a * b + (f(), b); } main() { f(); }"));
+}
+
+TEST(Mistakes, UnitWithoutPrograms) {
+  const Compilation c = compile_text("main() { }", "mc31");
+  ASSERT_EQ(1U, c.diagnostics.all().size());
+  EXPECT_EQ(Diag::NoProgram, c.diagnostics.all()[0].diag);
+}
+
+TEST(Mistakes, AllIndependentOnesInOneRun) {
+  // x is reported once.
+  EXPECT_EQ((std::vector<std::string>{"E0201", "E0227", "E0201", "E0224", "W0203", "E0202"}),
+            codes("long v[2];\nmain() {\n  x = 1;\n  v[2] = 1;\n  y = x;\n  break;\n  v[0] = 5 + f();\n}\n"));
+}
+
+std::string first_note(const std::string& source) {
+  const Compilation c = compile_text(source);
+  if (c.diagnostics.all().empty() || c.diagnostics.all()[0].notes.empty()) return "";
+  return c.diagnostics.all()[0].notes[0].text;
+}
+
+TEST(Suggestions, ForMisspeltNames) {
+  EXPECT_EQ("did you mean 'speed'?", first_note("long speed; main() { sped = 1; }"));
+  EXPECT_EQ("did you mean 'ObjectNo'?", first_note("SCREC r; main() { r.ObjectNr = 1; }"));
+  EXPECT_EQ("did you mean '_MoviLink'?", first_note("main() { _MovLink(H0); }"));
+  EXPECT_EQ("did you mean 'helper'?", first_note("helper() { } main() { Helper(); }"));
+  EXPECT_EQ("", first_note("long speed; main() { xyz = 1; }"));
+  EXPECT_NE(std::string::npos, first_note("main() { H0 = GO_WAIT; }").find("#include <const.h>"));
+  EXPECT_NE(std::string::npos, first_note("main() { H0 = TargetPos; }").find("H492"));
+}
+
+TEST(Correct, NoMessageFor) {
+  const char* const sources[] = {
+      "main() { while (!H483); }",
+      "main() { if ((H0 = H1)) H2++; }",
+      "main() { switch (H0) { case 1: return; break; default: H1 = 1; } }",
+      "initial long a; main() { a++; }",
+      "#pragma list\n#pragma globals H130 140\nlong a; main() { a = numof(a); }",
+      "long v[3]; main() { _Copy(v, H0, 3); }",
+      "typedef struct { long a[2]; SCREC r; } S; S s[2]; main() { s[1].r.Len = s[H0].a[1]; }",
+      "main() { f(); } f() { H0++; }",
+      "SCREC r; main() { r.Len = 8; r.Format = 8; _SBusCommDef(3, r); }",
+      "SCREC r; main() { r.ObjectNo = 0x1000000 | 1025; _SBusCommDef(3, r); }",
+      "main() { for (H0 = 0, H1 = 5; H0 < H1; H0++, H1--) ; }",
+      "main() { H0 ? f() : g(); } f() { H1++; } g() { H2++; }",
+  };
+  for (const char* source : sources) {
+    const Compilation c = compile_text(source, "mdxb");
+    EXPECT_EQ("", render_text(c.diagnostics.all(), *c.sources, false)) << source;
+  }
+}
+
+TEST(Warnings, AreSwitchedByTheirFlags) {
+  CompileOptions options;
+  EXPECT_TRUE(options.warnings.apply("no-unused-variable"));
+  EXPECT_TRUE(compile("t.IPC", "", "long a; main() { }", options).diagnostics.all().empty());
+  CompileOptions strict;
+  EXPECT_TRUE(strict.warnings.apply("error=unused-variable"));
+  EXPECT_FALSE(compile("t.IPC", "", "long a; main() { }", strict).image);
+}
+
+TEST(Allocation, FollowsTheWatchWindow) {
+  // 1053 1610 p. 57, figure 36: H420..H432.
+  const Compilation c = compile_text(
+      "SCTRCYCL TrCycl; long lTrDataLow; long lTrDataHigh; SCREC Rec; long lReDataLow; long lReDataHigh;"
+      "initial long kept; main() { lTrDataLow = lTrDataHigh; lReDataLow = lReDataHigh; kept = 1;"
+      "_SBusCommDef(1, TrCycl); _SBusCommDef(3, Rec); }");
+  ASSERT_TRUE(c.image);
+  std::vector<std::string> names;
+  for (const vm::Symbol& symbol : c.image->symbols)
+    names.push_back(std::to_string(symbol.variable) + " " + symbol.name);
+  EXPECT_EQ(
+      (std::vector<std::string>{"0 kept", "420 TrCycl.ObjectNo", "421 TrCycl.CycleTime", "422 TrCycl.Offset",
+                                "423 TrCycl.Format", "424 TrCycl.DPointer", "425 TrCycl.Result",
+                                "426 lTrDataLow", "427 lTrDataHigh", "428 Rec.ObjectNo", "429 Rec.Format",
+                                "430 Rec.DPointer", "431 lReDataLow", "432 lReDataHigh"}),
+      names);
+}
+
+TEST(Allocation, MapNamesReadersAndWriters) {
+  const Compilation c = compile_text("long a, p; f() { a = 1; } main() { f(); H5 = a; p = numof(a); }");
+  ASSERT_EQ(3U, c.map.size());
+  EXPECT_EQ("H5", c.map[0].name);
+  EXPECT_EQ("raw", c.map[0].range);
+  EXPECT_EQ((std::vector<std::string>{"main"}), c.map[0].writers);
+  EXPECT_EQ("a", c.map[1].name);
+  EXPECT_EQ(420U, c.map[1].number);
+  EXPECT_EQ("globals", c.map[1].range);
+  EXPECT_EQ((std::vector<std::string>{"main"}), c.map[1].readers);
+  EXPECT_EQ((std::vector<std::string>{"f"}), c.map[1].writers);
+  EXPECT_EQ((std::vector<std::string>{"main"}), c.map[1].takers);
+  EXPECT_NE(std::string::npos, map_text(c.map).find("H420"));
+}
+
+TEST(Allocation, AdviceForGlobalsWorks) {
+  const std::string text = "long a[30], b[4]; main() { a[0] = 1; b[0] = 1; }";
+  const std::string message = compile_text(text).diagnostics.all().at(0).text;
+  const size_t begin = message.find('\'') + 1;
+  EXPECT_TRUE(compile_text(message.substr(begin, message.find('\'', begin) - begin) + "\n" + text).image)
+      << message;
+}
+
+}  // namespace
+}  // namespace ipos::compiler::test

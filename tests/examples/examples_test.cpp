@@ -1,0 +1,161 @@
+// The examples against the manual (1053 1610 p. 47 to 61): watch windows, frames and their times.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/harness/proves.hpp"
+#include "tests/tools/command.hpp"
+
+namespace ipos::tests {
+namespace {
+
+struct LoggedFrame {
+  double ms;  // since the start of the run
+  std::string text;
+};
+
+struct ExampleRun {
+  CommandResult result;
+  nlohmann::json report;
+  std::vector<LoggedFrame> frames;
+
+  // Value of H<number> of a station.
+  int64_t h(size_t station, int number) const {
+    for (const auto& row : report["stations"][station]["variables"])
+      if (row["index"] == number) return row["value"];
+    ADD_FAILURE() << "no H" << number;
+    return 0;
+  }
+  std::string name(size_t station, int number) const {
+    for (const auto& row : report["stations"][station]["variables"])
+      if (row["index"] == number) return row["name"];
+    return "";
+  }
+  std::vector<LoggedFrame> with_id(const std::string& id) const {
+    std::vector<LoggedFrame> found;
+    for (const LoggedFrame& frame : frames)
+      if (frame.text.starts_with(id + "#")) found.push_back(frame);
+    return found;
+  }
+};
+
+std::vector<LoggedFrame> read_log(const std::string& text) {
+  std::vector<LoggedFrame> frames;
+  std::istringstream in(text);
+  std::string stamp, bus, frame;
+  while (in >> stamp >> bus >> frame) {
+    const double seconds = std::stod(stamp.substr(1)) - 946684800.0;
+    frames.push_back({seconds * 1000.0, frame});
+  }
+  return frames;
+}
+
+ExampleRun run_example(const std::string& plant, const std::string& duration = "1s") {
+  const TemporaryFolder folder;
+  const std::string log = (folder.path() / "can.log").string();
+  ExampleRun run;
+  run.result = run_ipos({"run", project("examples/" + plant).string(), "--for", duration, "--format", "json", "--log", log});
+  EXPECT_EQ(run.result.exit_code, 0) << run.result.err;
+  run.report = nlohmann::json::parse(run.result.out);
+  run.frames = read_log(read_text(log));
+  return run;
+}
+
+// The 13 values of a SCOM watch window, H420..H432.
+void expect_window(const ExampleRun& run, size_t station, const std::vector<int64_t>& values) {
+  ASSERT_EQ(values.size(), 13U);
+  for (size_t n = 0; n < values.size(); ++n)
+    EXPECT_EQ(run.h(station, 420 + static_cast<int>(n)), static_cast<int32_t>(values[n])) << "H" << 420 + n;
+}
+
+TEST(Scom, WatchWindowsInMotorolaFormat) {
+  PROVES("EX-20", "EX-21", "EX-22", "EX-25", "EX-26", "SCOM-04", "SCOM-05", "VAR-01");
+  const ExampleRun run = run_example("scom/scom.toml");
+  expect_window(run, 0, {1024, 100, 0, 0x8, 426, 99, 0x11223344, 0x55667788, 1025, 0x8, 431, 0x44332211, 0x88776655});
+  expect_window(run, 1, {1025, 120, 0, 0x8, 426, 99, 0x44332211, 0x88776655, 1024, 0x8, 431, 0x11223344, 0x55667788});
+  const std::vector<std::string> names{"TrCycl.ObjectNo", "TrCycl.CycleTime", "TrCycl.Offset", "TrCycl.Format",
+                                       "TrCycl.DPointer", "TrCycl.Result", "lTrDataLow", "lTrDataHigh",
+                                       "Rec.ObjectNo", "Rec.Format", "Rec.DPointer", "lReDataLow", "lReDataHigh"};
+  for (size_t n = 0; n < names.size(); ++n) EXPECT_EQ(run.name(0, 420 + static_cast<int>(n)), names[n]);
+}
+
+TEST(Scom, FramesAndTheirTimes) {
+  PROVES("EX-27", "EX-29", "VAR-02", "VAR-09");
+  const ExampleRun run = run_example("scom/scom.toml");
+  const auto first = run.with_id("400");
+  const auto second = run.with_id("401");
+  ASSERT_GE(first.size(), 9U);
+  ASSERT_GE(second.size(), 8U);
+  for (const LoggedFrame& frame : first) EXPECT_EQ(frame.text, "400#5566778811223344");
+  for (const LoggedFrame& frame : second) EXPECT_EQ(frame.text, "401#8877665544332211");
+  for (size_t n = 1; n < first.size(); ++n) EXPECT_NEAR(first[n].ms - first[n - 1].ms, 100, 1);
+  for (size_t n = 1; n < second.size(); ++n) EXPECT_NEAR(second[n].ms - second[n - 1].ms, 120, 1);
+  EXPECT_EQ(run.frames.size(), first.size() + second.size()) << "nothing else is on the bus";
+  // About 130 bits every 100 and 120 ms of 500 kbit/s.
+  const double load = run.report["buses"][0]["load_percent"];
+  EXPECT_NEAR(load, (130.0 / 0.100 + 130.0 / 0.120) / 5000.0, 0.05);
+}
+
+TEST(Scom, WatchWindowsInIntelFormat) {
+  PROVES("EX-23", "EX-24", "EX-30", "VAR-10", "VAR-11");
+  const ExampleRun run = run_example("scom-intel/scom-intel.toml");
+  expect_window(run, 0, {1024, 100, 0, 0x108, 426, 99, 0x11223344, 0x55667788, 1025, 0x108, 431, 0x44332211, 0x88776655});
+  expect_window(run, 1, {1025, 100, 0, 0x108, 426, 99, 0x44332211, 0x88776655, 1024, 0x108, 431, 0x11223344, 0x55667788});
+  for (const LoggedFrame& frame : run.with_id("400")) EXPECT_EQ(frame.text, "400#4433221188776655");
+  for (const LoggedFrame& frame : run.with_id("401")) EXPECT_EQ(frame.text, "401#1122334455667788");
+  EXPECT_FALSE(run.with_id("400").empty());
+  EXPECT_FALSE(run.with_id("401").empty());
+}
+
+// A MOTOROLA sender and an INTEL receiver: the bytes arrive reversed.
+TEST(Scom, MixedFormats) {
+  PROVES("EX-31");
+  const TemporaryFolder folder;
+  std::string plant = read_text(project("examples/scom/scom.toml"));
+  plant = plant.substr(0, plant.find("[[expect]]"));
+  plant.replace(plant.find("SCOM2.IPC"), 9, "RECEIVE.IPC");
+  folder.write("plant.toml", plant);
+  folder.write("SCOM1.IPC", read_text(project("examples/scom/SCOM1.IPC")));
+  folder.write("RECEIVE.IPC", read_text(project("examples/scom-intel/SCOM2_Intel.IPC")));
+  const CommandResult result = run_ipos({"run", "plant.toml", "--for", "1s", "--format", "json"}, folder.path());
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  ExampleRun run;
+  run.report = nlohmann::json::parse(result.out);
+  EXPECT_EQ(run.h(1, 431), static_cast<int32_t>(0x88776655));
+  EXPECT_EQ(run.h(1, 432), 0x44332211);
+}
+
+TEST(Movilink, WatchWindow) {
+  PROVES("EX-12", "EX-13", "MOVLNK-01", "MOVLNK-02", "MOVLNK-08");
+  const ExampleRun run = run_example("movilink/movilink.toml");
+  const std::vector<int32_t> values{5, 1, 4, 1, 8318, 427, 0, 0, 0, 6, 5000, 0, 514, 0, 0};
+  for (size_t n = 0; n < values.size(); ++n) EXPECT_EQ(run.h(0, 420 + static_cast<int>(n)), values[n]) << "H" << 420 + n;
+  EXPECT_EQ(run.name(0, 427), "Mld.WritePar");
+  EXPECT_EQ(run.name(0, 434), "Mld.PI3");
+}
+
+TEST(Movilink, FramesOfOneCall) {
+  PROVES("EX-15", "MOVLNK-11", "SBUS-07", "SBUS-17", "PD-01", "PD-02");
+  const ExampleRun run = run_example("movilink/movilink.toml");
+  ASSERT_GE(run.frames.size(), 8U);
+  // Request 523, response 524, PO 11, PI 12, again and again.
+  const std::vector<std::string> call{"20B#3100207E00000000", "20C#3100207E00000000", "00B#000613880000", "00C#020200000000"};
+  for (size_t n = 0; n < run.frames.size(); ++n) EXPECT_EQ(run.frames[n].text, call[n % 4]) << n;
+}
+
+TEST(AllExamples, MeetTheirExpectations) {
+  size_t plants = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(project("examples"))) {
+    if (entry.path().extension() != ".toml") continue;
+    ++plants;
+    const CommandResult result = run_ipos({"run", entry.path().string(), "--for", "1s"});
+    EXPECT_EQ(result.exit_code, 0) << entry.path() << "\n" << result.err;
+    EXPECT_NE(result.err.find(" expectations met"), std::string::npos) << entry.path() << " expects nothing";
+  }
+  EXPECT_GE(plants, 3U);
+}
+
+}  // namespace
+}  // namespace ipos::tests

@@ -1,0 +1,261 @@
+// Status words and process data of a standing drive.
+#include "runtime/drive/unit_state.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/harness/proves.hpp"
+#include "tests/runtime/drive/fake_drive.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+using Words = UnitState::Words;
+constexpr auto kWrite = ParameterService::Write;
+
+struct Unit {
+  explicit Unit(std::string_view name) : parameters(tests::unit(name)), state(parameters) {}
+  void set(uint16_t index, int32_t value) { EXPECT_TRUE(parameters.preset(index, value)) << index; }
+  void po(const Words& words) { state.take_po(PoSource::Sbus, words); }
+  void run_ms(int ms) {
+    for (int i = 0; i < ms; ++i) state.tick();
+  }
+  ParameterStore parameters;
+  UnitState state;
+};
+
+// Figure 33 of 1053 1610: PI1 = 514 with factory settings and DI00 = 1.
+TEST(UnitState, FactoryStateIsFigure33) {
+  Unit unit("md60a");
+  unit.state.set_inputs(1);
+  EXPECT_EQ(unit.state.status_word_1(), 0x0202);
+  EXPECT_EQ(unit.state.pi(), (Words{514, 0, 0}));
+  EXPECT_EQ(unit.state.condition(), UnitCondition::NoEnable);
+}
+
+TEST(UnitState, OpenInhibitTerminal) {
+  Unit unit("md60a");
+  EXPECT_EQ(unit.state.status_word_1(), 0x0102);
+  EXPECT_TRUE(unit.parameters.execute(kWrite, 8461, 10));  // R parameter under inhibit
+  unit.state.set_inputs(1);
+  EXPECT_FALSE(unit.parameters.execute(kWrite, 8461, 0));
+  EXPECT_EQ(unit.parameters.value(8461), 10);
+}
+
+TEST(UnitState, StatusIndexIsStatusWord) {
+  PROVES("PAR-28", "M07-SW-12");
+  for (const char* name : {"md60a", "mc07"}) {
+    Unit unit(name);
+    for (const uint16_t inputs : std::initializer_list<uint16_t>{0, 1, 0xFFFF})
+      for (const uint8_t fault : std::initializer_list<uint8_t>{0, 47}) {
+        unit.state.set_inputs(inputs);
+        fault ? unit.state.raise_fault(fault) : unit.state.reset_fault();
+        EXPECT_EQ(unit.parameters.value(8310) & 0xFFFF, unit.state.pi()[0]) << name;
+      }
+  }
+}
+
+TEST(UnitState, InputImage) {
+  Unit unit("md60a");
+  unit.state.set_inputs(0b101);
+  EXPECT_EQ(unit.parameters.value(8334), 5);
+  unit.state.set_inputs(0x8100);
+  EXPECT_EQ(unit.parameters.value(8334), 0);
+  EXPECT_EQ(unit.parameters.value(8348), 0x81);
+  Unit m07("mc07");
+  m07.state.set_inputs(0b1001);
+  EXPECT_EQ(m07.parameters.value(8334), 8);  // DI03; there is no DI00
+}
+
+TEST(UnitState, ProcessDataEnabled) {
+  PROVES("M07-SW-03");
+  for (const int32_t p876 : {0, 1})
+    for (const auto& [p100, p101] : {std::pair{1, 0}, {10, 0}, {1, 3}, {2, 1}, {10, 3}}) {
+      Unit unit("mc07");
+      unit.set(8622, p876);
+      unit.set(8461, p100);
+      unit.set(8462, p101);
+      const bool want = p876 == 1 && (p100 != 1 || p101 != 0);
+      EXPECT_EQ((unit.state.status_word_1() & 4) != 0, want) << p876 << " " << p100 << " " << p101;
+    }
+}
+
+TEST(UnitState, ProcessDataAreShown) {
+  PROVES("M07-MON-08");
+  for (const char* name : {"md60a", "mc07"}) {
+    Unit unit(name);
+    unit.state.set_inputs(1);
+    unit.set(8622, 0);  // even when they are not taken over
+    unit.po({0x0006, 0x1388, 0x3A98});
+    EXPECT_EQ(unit.parameters.value(8455), 6);
+    EXPECT_EQ(unit.parameters.value(8456), 5000);
+    EXPECT_EQ(unit.parameters.value(8457), 15000);
+    EXPECT_EQ(unit.parameters.value(8458), 514);
+    EXPECT_EQ(unit.parameters.value(8459), 0);
+    for (uint16_t index = 8455; index <= 8460; ++index)
+      EXPECT_EQ(unit.parameters.execute(kWrite, index, 1).error(), stdlib::return_codes::kReadOnly);
+    // A telegram with fewer words leaves the others.
+    const uint16_t one[] = {7};
+    unit.state.take_po(PoSource::Rs485, one);
+    EXPECT_EQ(unit.state.po(), (Words{7, 5000, 15000}));
+  }
+}
+
+TEST(UnitState, PiAssignments) {
+  PROVES("M07-PD-17");
+  for (const char* name : {"md60a", "mc07"}) {
+    Unit unit(name);
+    unit.state.set_inputs(1);
+    unit.state.set_ipos_pi({11, 22, 33});
+    for (const auto& [assignment, want] :
+         {std::pair{0, 0}, {1, 0}, {2, 0}, {3, 0}, {6, 0x0202}, {8, 0}, {9, 33}, {10, 0}}) {
+      unit.set(8309, assignment);
+      EXPECT_EQ(unit.state.pi()[2], want) << name << " " << assignment;
+    }
+    // P872 = NO FUNCTION: whatever PO3 holds, even the pattern of an inhibit, changes nothing.
+    unit.set(8462, 3);
+    unit.po({0x0006, 0, 0});
+    const uint16_t before = unit.state.status_word_1();
+    for (const uint16_t word : std::initializer_list<uint16_t>{0x0001, 0x0040, 0xFFFF}) {
+      unit.po({0x0006, 0, word});
+      EXPECT_EQ(unit.state.status_word_1(), before) << name;
+    }
+  }
+  Unit unit("md60a");
+  unit.state.set_inputs(1);
+  unit.set(8309, 7);
+  EXPECT_EQ(unit.state.pi()[2] & 0xFF, 0x02) << "the low byte of every status word is the same block";
+}
+
+TEST(UnitState, ControlWordInhibit) {
+  Unit unit("md60a");
+  unit.state.set_inputs(1);
+  unit.po({0x0001, 0, 0});
+  EXPECT_EQ(unit.state.status_word_1(), 0x0202) << "P101 = TERMINALS";
+  unit.set(8462, 3);
+  unit.po({0x0001, 0, 0});
+  EXPECT_EQ(unit.state.status_word_1(), 0x0106);
+  EXPECT_TRUE(unit.parameters.execute(kWrite, 8461, 10)) << "inhibit by bus counts for R parameters";
+  unit.po({0x0006, 0, 0});
+  EXPECT_EQ(unit.state.status_word_1(), 0x0206);
+  const uint16_t inhibit[] = {1};
+  unit.state.take_po(PoSource::Rs485, inhibit);
+  EXPECT_EQ(unit.state.status_word_1(), 0x0206) << "not the source of P101";
+  unit.po({0x0001, 0, 0});
+  unit.set(8622, 0);
+  EXPECT_EQ(unit.state.status_word_1(), 0x0202) << "P876 = OFF";
+}
+
+TEST(UnitState, FaultAndReset) {
+  PROVES("M07-CW-05", "M07-SW-08");
+  Unit unit("mc07");
+  unit.set(8462, 3);
+  unit.po({0x0046, 0, 0});  // bit 6 = 1 from before the fault
+  unit.state.raise_fault(1);
+  EXPECT_EQ(unit.state.status_word_1(), 0x0124);  // overcurrent, not ready, PO data enabled
+  unit.po({0x0046, 0, 0});
+  EXPECT_EQ(unit.state.fault(), 1);
+  unit.po({0x0006, 0, 0});
+  EXPECT_EQ(unit.state.fault(), 1);
+  unit.po({0x0046, 0, 0});
+  EXPECT_EQ(unit.state.fault(), 0);
+  EXPECT_EQ(unit.state.status_word_1(), 0x0206);
+  unit.state.raise_fault(1);
+  unit.state.raise_fault(47);
+  EXPECT_EQ(unit.state.fault(), 1) << "the first fault stays shown";
+  EXPECT_TRUE(unit.parameters.execute(kWrite, 8617, 1));  // P840
+  EXPECT_EQ(unit.state.fault(), 0);
+  EXPECT_EQ(unit.parameters.value(8617), 0);
+}
+
+TEST(UnitState, ErrorMemory) {
+  PROVES("PAR-40");
+  Unit unit("md60a");
+  unit.state.set_inputs(0x0203);  // DI00, DI01, DI11
+  unit.parameters.set_display(8325, 540000);
+  unit.state.raise_fault(26);
+  unit.state.reset_fault();
+  unit.state.set_inputs(0);
+  unit.parameters.set_display(8325, 560000);
+  unit.state.raise_fault(31);
+  const auto at = [&](int index) { return unit.parameters.value(static_cast<uint16_t>(index)); };
+  EXPECT_EQ(at(8366), 31);
+  EXPECT_EQ(at(8367), 26);
+  EXPECT_EQ(at(8368), 0);
+  EXPECT_EQ(at(8371), 0);
+  EXPECT_EQ(at(8372), 3);
+  EXPECT_EQ(at(8377), 2);
+  EXPECT_EQ(at(8392) & 0xFF00, 26 << 8);
+  EXPECT_EQ(at(8421), 560000);
+  EXPECT_EQ(at(8422), 540000);
+  for (int index = 8411; index <= 8414; ++index)
+    EXPECT_TRUE(unit.parameters.execute(ParameterService::Read, static_cast<uint16_t>(index)));
+  EXPECT_EQ(unit.parameters.execute(ParameterService::Read, 8415).error(),
+            stdlib::return_codes::kNotImplemented);
+  // Five entries; the sixth fault drops the oldest.
+  for (uint8_t fault = 1; fault <= 4; ++fault) {
+    unit.state.reset_fault();
+    unit.state.raise_fault(fault);
+  }
+  EXPECT_EQ(at(8370), 31);
+  unit.parameters.power_cycle();
+  EXPECT_EQ(at(8366), 4) << "the error memory survives power-off";
+  EXPECT_TRUE(unit.parameters.execute(kWrite, 8596, 1));  // P804
+  for (int index = 8366; index <= 8450; ++index) EXPECT_EQ(at(index), 0) << index;
+}
+
+TEST(UnitState, FactorySettingTakesItsTime) {
+  PROVES("M07-SW-02");
+  for (const auto& [name, running] : {std::pair{"md60a", 0x0800}, {"mc07", 0x0500}}) {
+    Unit unit(name);
+    unit.set(8600, 5);
+    EXPECT_TRUE(unit.parameters.execute(kWrite, 8594, 1));
+    unit.run_ms(1);
+    EXPECT_EQ(unit.state.status_word_1(), running) << name;
+    unit.run_ms(5000);
+    EXPECT_NE(unit.state.status_word_1() & 2, 0) << name;
+    EXPECT_EQ(unit.parameters.value(8600), 0);
+    unit.state.raise_fault(47);
+    EXPECT_EQ(unit.state.status_word_1() & 2, 0) << name;
+    unit.state.reset_fault();
+    EXPECT_NE(unit.state.status_word_1() & 2, 0) << name;
+  }
+}
+
+TEST(UnitState, OperatingHours) {
+  PROVES("PAR-25");
+  Unit unit("md60a");
+  unit.run_ms(2 * 3600 * 1000);
+  EXPECT_EQ(unit.parameters.value(8328), 120);
+  EXPECT_EQ(stdlib::parameter_text(*unit.parameters.table().find("P015"), 120), "2.000 h");
+  EXPECT_EQ(stdlib::parameter_text(*unit.parameters.table().find("P017"), 36), "1.000 kWh");
+}
+
+TEST(UnitState, LimitSwitches) {
+  Unit unit("md60a");
+  unit.set(8337, 14);  // DI03 = /LIM. SWITCH CW
+  unit.set(8347, 15);  // DI17 = /LIM. SWITCH CCW
+  unit.state.set_inputs(1);
+  EXPECT_EQ(unit.state.status_word_1(), 0x02C2);
+  unit.state.set_inputs(1 | 1 << 3);
+  EXPECT_EQ(unit.state.status_word_1(), 0x0282);
+  unit.state.set_inputs(1 | 1 << 3 | 1 << 15);
+  EXPECT_EQ(unit.state.status_word_1(), 0x0202);
+}
+
+TEST(UnitState, ReservedBitsOfMovitrac07) {
+  PROVES("M07-SW-05");
+  Unit unit("mc07");
+  for (const uint16_t inputs : std::initializer_list<uint16_t>{0, 0x3E})
+    for (const uint8_t fault : std::initializer_list<uint8_t>{0, 47})
+      for (const uint16_t word : std::initializer_list<uint16_t>{0x0000, 0x0001, 0x0006, 0xFFFF}) {
+        unit.set(8462, 3);
+        unit.state.set_inputs(inputs);
+        unit.po({word, word, word});
+        unit.state.reset_fault();
+        if (fault) unit.state.raise_fault(fault);
+        EXPECT_EQ(unit.state.status_word_1() & 0b1101'1000, 0) << inputs << fault << word;
+      }
+}
+
+}  // namespace
+}  // namespace ipos::runtime

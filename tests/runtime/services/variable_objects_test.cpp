@@ -1,0 +1,290 @@
+// _SBusCommDef and _SBusCommOn without a bus: results, limits and times of the objects. Expected values are those of
+// 1053 1610 p. 51 to 61 and of IPOSplus p. 232 and 320.
+#include "runtime/services/variable_objects.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/harness/proves.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+struct Outbox final : FrameSender {
+  struct Sent {
+    Frame frame;
+    uint64_t tag;
+  };
+  SendStatus send(const Frame& frame, uint64_t tag) override {
+    sent.push_back({frame, tag});
+    return status;
+  }
+  void withdraw(uint64_t tag) override { withdrawn.push_back(tag); }
+  std::vector<Sent> sent;
+  std::vector<uint64_t> withdrawn;
+  SendStatus status = SendStatus::Queued;
+};
+
+class Objects : public ::testing::Test {
+ protected:
+  explicit Objects(std::string_view unit = "md60a", uint32_t baud = 500'000)
+      : objects_(*stdlib::find_unit(unit), baud, outbox_, 100), h_(stdlib::find_unit(unit)->variables) {}
+
+  // SCTRCYCL at H420 with data at H426; returns Result.
+  int32_t cyclic(int32_t id, int32_t cycle, int32_t offset = 0, int32_t format = 8, int32_t data = 426) {
+    const int32_t elements[] = {id, cycle, offset, format, data, 12345};
+    std::copy(std::begin(elements), std::end(elements), h_.begin() + 420);
+    why_.clear();
+    EXPECT_TRUE(objects_.define(ObjectKind::TransmitCyclic, 420, h_, why_));
+    return h_[425];
+  }
+  void receive(int32_t id, int32_t format = 8, int32_t data = 431) {
+    h_[428] = id;
+    h_[429] = format;
+    h_[430] = data;
+    why_.clear();
+    EXPECT_TRUE(objects_.define(ObjectKind::Receive, 428, h_, why_));
+  }
+  bool arrives(uint32_t id, uint8_t length = 8) {
+    Frame frame;
+    frame.id = id;
+    frame.length = length;
+    frame.data = {0x55, 0x66, 0x77, 0x88, 0x11, 0x22, 0x33, 0x44};
+    return objects_.on_frame(frame, h_, why_);
+  }
+  std::vector<int64_t> send_times(int64_t until) {
+    std::vector<int64_t> times;
+    for (int64_t tick = 0; tick < until; ++tick) {
+      const size_t before = outbox_.sent.size();
+      objects_.tick(tick, h_);
+      if (outbox_.sent.size() != before) times.push_back(tick);
+    }
+    return times;
+  }
+
+  Outbox outbox_;
+  VariableObjects objects_;
+  std::vector<int32_t> h_;
+  std::string why_;
+};
+
+class ObjectsM07 : public Objects {
+ protected:
+  ObjectsM07() : Objects("mc07") {}
+};
+class ObjectsB : public Objects {
+ protected:
+  ObjectsB() : Objects("mdxb") {}
+};
+class ObjectsSlowBus : public Objects {
+ protected:
+  ObjectsSlowBus() : Objects("md60a", 125'000) {}
+};
+
+TEST_F(Objects, ResultIsTheFreeCapacityThatTheManualsPrint) {
+  PROVES("SCOM-11");
+  EXPECT_EQ(cyclic(1024, 100), 99);  // figures 36, 39, 40
+  int32_t before = 99;
+  for (int32_t id = 1025; id < 1030; ++id) {
+    const int32_t result = cyclic(id, 10);
+    EXPECT_LE(result, before);
+    before = result;
+  }
+}
+TEST_F(Objects, ResultOf120MillisecondsIs99) { EXPECT_EQ(cyclic(1025, 120), 99); }  // figure 37
+TEST_F(Objects, ResultOf10MillisecondsIs96) { EXPECT_EQ(cyclic(1025, 10), 96); }    // IPOSplus p. 320
+
+TEST_F(Objects, CycleTimes) {
+  PROVES("SCOM-07");
+  for (const int32_t cycle : {0, -1, 11, 15, 65'531, 65'540, INT32_MAX, INT32_MIN}) {
+    EXPECT_EQ(cyclic(1024, cycle), kWrongCycleTime) << cycle;
+    EXPECT_FALSE(why_.empty());
+  }
+  int32_t id = 1024;
+  for (const int32_t cycle : {9, 10, 20, 65'530}) EXPECT_GE(cyclic(id++, cycle), 0) << cycle;
+  EXPECT_GE(cyclic(id++, 1, 0, 0), 0);
+  objects_.start(0);
+  for (int64_t tick = 0; tick < 100; ++tick) objects_.tick(tick, h_);
+  for (const Outbox::Sent& sent : outbox_.sent) EXPECT_LT(sent.frame.id, static_cast<uint32_t>(id));
+}
+
+TEST_F(Objects, Offsets) {
+  PROVES("SCOM-08");
+  EXPECT_GE(cyclic(1024, 5, 65'534), 0);
+  EXPECT_GE(cyclic(1025, 10, 65'530), 0);
+  EXPECT_GE(cyclic(1026, 50, 120), 0);
+  EXPECT_EQ(cyclic(1027, 5, 65'535), kWrongCycleTime);
+  EXPECT_EQ(cyclic(1027, 10, 65'534), kWrongCycleTime);
+  EXPECT_EQ(cyclic(1027, 10, 5), kWrongCycleTime);
+  EXPECT_EQ(cyclic(1027, 10, -10), kWrongCycleTime);
+}
+
+TEST_F(Objects, AtMostFiveFastAndTenSlowOnes) {
+  PROVES("SCOM-09");
+  for (int32_t n = 0; n < 5; ++n) EXPECT_GE(cyclic(1024 + n, 5, 0, 0), 0);
+  EXPECT_EQ(cyclic(1040, 5, 0, 0), kTooManyObjects);
+  for (int32_t n = 0; n < 10; ++n) EXPECT_GE(cyclic(1050 + n, 100), 0);
+  EXPECT_EQ(cyclic(1041, 100), kTooManyObjects);
+  objects_.start(0);
+  objects_.tick(0, h_);
+  EXPECT_EQ(outbox_.sent.size(), 15U);
+}
+
+TEST_F(ObjectsSlowBus, OverloadIsRefused) {
+  PROVES("SCOM-10");
+  // 135 bits every 2 ms are 67 500 of 87 500 bit/s: 22.8 % stay free; another one would be too much.
+  EXPECT_EQ(cyclic(1024, 2), 22);
+  EXPECT_EQ(cyclic(1025, 2), kBusOverload);
+  EXPECT_EQ(cyclic(1025, 10), 7);  // 81 000 of 87 500
+  objects_.start(0);
+  objects_.tick(0, h_);
+  EXPECT_EQ(outbox_.sent.size(), 2U);
+}
+
+TEST_F(ObjectsM07, HasOnlySlowObjects) {
+  EXPECT_EQ(cyclic(1024, 9), kWrongCycleTime);
+  for (int32_t n = 0; n < 10; ++n) EXPECT_GE(cyclic(1024 + n, 10), 0);
+  EXPECT_EQ(cyclic(1040, 10), kTooManyObjects);
+}
+
+TEST_F(ObjectsB, OffsetIsSmallerThanTheCycle) {
+  EXPECT_EQ(cyclic(1024, 5, 5), kWrongCycleTime);
+  EXPECT_GE(cyclic(1024, 5, 4, 0), 0);
+  EXPECT_EQ(cyclic(1025, 50, 120), kWrongCycleTime);
+  EXPECT_GE(cyclic(1025, 120, 50), 0);
+}
+
+TEST_F(Objects, IdentifiersOfTheUnitAreClosed) {
+  PROVES("VAR-04");
+  for (const int32_t id : {3, 4, 5, 6, 515, 516, 518}) {
+    EXPECT_LT(cyclic(id, 100), 0) << id;
+    EXPECT_FALSE(why_.empty());
+    receive(id);
+    EXPECT_FALSE(why_.empty()) << id;
+  }
+  objects_.set_addresses(1, 2);
+  EXPECT_GE(cyclic(3, 100), 0);
+  for (const int32_t id : {11, 12, 13, 22, 523, 524, 534}) EXPECT_LT(cyclic(id, 100), 0) << id;
+}
+
+TEST_F(Objects, ObjectNumbersAndLengths) {
+  PROVES("VAR-07");
+  EXPECT_LT(cyclic(2048, 100), 0);
+  EXPECT_LT(cyclic(-1, 100), 0);
+  EXPECT_GE(cyclic(2047, 100), 0);
+  for (const int32_t format : {9, 0x200, 0x109, -1}) {
+    EXPECT_LT(cyclic(1024, 100, 0, format), 0) << format;
+    EXPECT_FALSE(why_.empty());
+  }
+  for (int32_t n = 0; n <= 8; ++n) EXPECT_GE(cyclic(1100 + n, 100, 0, n % 2 == 0 ? n : 0x100 + n), 0);
+  objects_.start(0);
+  objects_.tick(0, h_);
+  for (const Outbox::Sent& sent : outbox_.sent)
+    if (sent.frame.id >= 1100 && sent.frame.id <= 1108) {
+      EXPECT_EQ(sent.frame.length, sent.frame.id - 1100);
+    }
+}
+
+TEST_F(Objects, DataPointerOutsideTheVariables) {
+  const int32_t elements[] = {1024, 100, 0, 8, 511, 0};
+  std::copy(std::begin(elements), std::end(elements), h_.begin() + 420);
+  EXPECT_FALSE(objects_.define(ObjectKind::TransmitCyclic, 420, h_, why_));  // needs H511 and H512
+  EXPECT_GE(cyclic(1024, 100, 0, 4, 511), 0);
+  h_[424] = -1;
+  h_[420] = 1025;
+  EXPECT_FALSE(objects_.define(ObjectKind::TransmitCyclic, 420, h_, why_));
+}
+
+TEST_F(Objects, SendTimesFollowOffsetAndCycle) {
+  PROVES("SCOM-13", "EX-28");
+  EXPECT_GE(cyclic(1024, 50, 120), 0);
+  objects_.start(0);
+  EXPECT_EQ(send_times(300), (std::vector<int64_t>{120, 170, 220, 270}));  // figure 38
+}
+
+TEST_F(Objects, TimesCountFromTheStart) {
+  cyclic(1024, 100);
+  objects_.start(7);
+  EXPECT_EQ(send_times(220), (std::vector<int64_t>{7, 107, 207}));
+}
+
+TEST_F(Objects, SendsThePresentValues) {
+  PROVES("SCOM-14");
+  cyclic(1024, 10, 0, 4);
+  objects_.start(0);
+  h_[426] = 1;
+  objects_.tick(0, h_);
+  h_[426] = 2;
+  objects_.tick(10, h_);
+  ASSERT_EQ(outbox_.sent.size(), 2U);
+  EXPECT_EQ(outbox_.sent[0].frame.data[3], 1);
+  EXPECT_EQ(outbox_.sent[1].frame.data[3], 2);
+}
+
+TEST_F(Objects, NothingHappensBeforeTheStartAndAfterTheStop) {
+  PROVES("SCOM-12");
+  cyclic(1024, 10);
+  receive(1025);
+  EXPECT_TRUE(send_times(50).empty());
+  EXPECT_FALSE(arrives(1025));
+  EXPECT_EQ(h_[431], 0);
+  objects_.start(0);
+  EXPECT_TRUE(arrives(1025));
+  EXPECT_EQ(h_[431], 0x11223344);
+  EXPECT_EQ(h_[432], 0x55667788);
+  objects_.stop();
+  h_[431] = 0;
+  EXPECT_FALSE(arrives(1025));
+  EXPECT_EQ(h_[431], 0);
+  EXPECT_TRUE(send_times(50).empty());
+}
+
+TEST_F(Objects, WrongLengthIsIgnoredWithAReason) {
+  PROVES("VAR-13");
+  receive(1025);
+  objects_.start(0);
+  EXPECT_FALSE(arrives(1025, 6));
+  EXPECT_FALSE(why_.empty());
+  EXPECT_EQ(h_[431], 0);
+}
+
+TEST_F(Objects, ThirtyTwoReceiveObjects) {
+  PROVES("SCOM-15");
+  for (int32_t n = 0; n < 32; ++n) {
+    receive(1100 + n, 4, 100 + n);
+    EXPECT_TRUE(why_.empty());
+  }
+  receive(1132, 4, 132);
+  EXPECT_NE(why_.find("1132"), std::string::npos);
+  objects_.start(0);
+  for (uint32_t n = 0; n < 33; ++n) EXPECT_EQ(arrives(1100 + n, 4), n < 32);
+  receive(1200);
+  EXPECT_FALSE(why_.empty()) << "defined after the start";
+}
+
+TEST_F(Objects, AcyclicIsSentAtOnceAndReportsItsStatus) {
+  PROVES("SCOM-16", "SCOM-17");
+  const auto send = [&] {
+    h_[10] = 1024;
+    h_[11] = 8;
+    h_[12] = 20;
+    h_[13] = 0;
+    h_[20] = 0x11223344;
+    h_[21] = 0x55667788;
+    return objects_.define(ObjectKind::TransmitAcyclic, 10, h_, why_);
+  };
+  EXPECT_TRUE(send());
+  EXPECT_EQ(h_[13], 1);
+  ASSERT_EQ(outbox_.sent.size(), 1U);
+  EXPECT_EQ(outbox_.sent[0].frame.data, (std::array<uint8_t, 8>{0x55, 0x66, 0x77, 0x88, 0x11, 0x22, 0x33, 0x44}));
+  objects_.on_sent(outbox_.sent[0].tag, h_);
+  EXPECT_EQ(h_[13], 2);
+  EXPECT_TRUE(send());
+  objects_.on_not_sent(outbox_.sent[1].tag, h_);
+  EXPECT_EQ(h_[13], 3);
+  outbox_.status = SendStatus::NotActive;
+  EXPECT_TRUE(send());
+  EXPECT_EQ(h_[13], 3);
+}
+
+}  // namespace
+}  // namespace ipos::runtime

@@ -1,0 +1,195 @@
+// Quantities, units, conversion factors, and parameter values as text.
+#include "stdlib/units.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "stdlib/parameters.hpp"
+#include "stdlib/return_codes.hpp"
+#include "tests/harness/proves.hpp"
+
+namespace ipos::stdlib {
+namespace {
+
+const ParameterTable& md60a() { return parameter_table(*find_unit("md60a")); }
+
+TEST(Units, ConversionFactors) {
+  PROVES("PAR-23", "M07-PAR-20");
+  const struct {
+    int index;
+    double a, b;
+  } printed[] = {{66, 1.667e-5, 0},    {67, 1.667e-2, 0}, {68, 16.67, 0},    {70, 60, 0},
+                 {71, 2.778e-7, 0},    {72, 2.778e-4, 0}, {73, 0.2778, 0},   {74, 3600, 0},
+                 {75, 3.6e6, 0},       {76, 3.6e9, 0},    {77, 86400, 0},    {78, 2.909e-4, 0},
+                 {79, 4.848e-6, 0},    {80, 1.745e-2, 0}, {81, 1.571e-2, 0}, {100, 1, 273.15},
+                 {101, 0.5556, 255.37}};
+  for (const auto& row : printed) {
+    const auto conversion = find_conversion(row.index);
+    ASSERT_TRUE(conversion) << row.index;
+    EXPECT_NEAR(conversion->a / row.a, 1, 1e-3) << row.index;
+    EXPECT_DOUBLE_EQ(conversion->b, row.b) << row.index;
+  }
+  double power = 1e-9;
+  for (int n = -9; n <= 9; ++n, power *= 10) EXPECT_NEAR(find_conversion(n)->a / power, 1, 1e-9) << n;
+  for (const int index : {69, 65, 82, 99, 102, 127, -65}) EXPECT_FALSE(find_conversion(index)) << index;
+}
+
+TEST(Units, PhysicalValues) {
+  PROVES("PAR-22", "EX-08", "M07-PAR-21");
+  const auto physical = [](double value, int conversion) {
+    return value * find_conversion(conversion)->a + find_conversion(conversion)->b;
+  };
+  EXPECT_DOUBLE_EQ(physical(1500, -3), 1.5);
+  EXPECT_DOUBLE_EQ(physical(25, 100), 298.15);
+  EXPECT_DOUBLE_EQ(physical(1500000, 66), 25);
+  EXPECT_EQ(md60a().find("P302")->default_value, 1500000);
+  EXPECT_EQ(parameter_text(*md60a().find("P302"), 1500000), "1500.000 rpm");
+  EXPECT_EQ(parameter_text(*md60a().find("P130"), 1500), "1.500 s");
+}
+
+TEST(Units, QuantitiesAndUnits) {
+  PROVES("PAR-24");
+  const char* printed[] = {"dimensionless",
+                           "length",
+                           "area",
+                           "volume",
+                           "time",
+                           "force",
+                           "pressure",
+                           "mass",
+                           "energy, work",
+                           "effective power",
+                           "apparent power",
+                           "rotational velocity",
+                           "angle",
+                           "speed",
+                           "volume rate of flow",
+                           "mass rate of flow",
+                           "torque",
+                           "temperature",
+                           "temperature difference",
+                           "entropy",
+                           "enthalpy",
+                           "electrical voltage",
+                           "electrical current",
+                           "electrical resistance",
+                           "ratio",
+                           "relative humidity",
+                           "absolute humidity",
+                           "relative change",
+                           "frequency"};
+  for (size_t i = 0; i < std::size(printed); ++i)
+    EXPECT_EQ(quantity_name(static_cast<uint8_t>(i)), printed[i]);
+  EXPECT_EQ(quantity_name(29), "");
+  EXPECT_EQ(unit_abbreviation(4, 0), "s");
+  EXPECT_EQ(unit_abbreviation(4, 70), "min");
+  EXPECT_EQ(unit_abbreviation(4, 74), "h");
+  EXPECT_EQ(unit_abbreviation(4, 77), "d");
+  EXPECT_EQ(unit_abbreviation(4, -3), "ms");
+  EXPECT_EQ(unit_abbreviation(11, 67), "rpm");
+  EXPECT_EQ(unit_abbreviation(17, 100), "°C");
+  EXPECT_EQ(unit_abbreviation(22, -3), "mA");
+  EXPECT_EQ(unit_abbreviation(28, 3), "kHz");
+  EXPECT_EQ(unit_abbreviation(12, 81), "g");  // gon
+  EXPECT_EQ(unit_abbreviation(12, 82), "");
+  EXPECT_EQ(find_unit_conversion(11, "rpm"), 67);
+  EXPECT_FALSE(find_unit_conversion(11, "m"));
+}
+
+TEST(ParameterText, ReadsAsPeopleDo) {
+  const struct {
+    const char* number;
+    int32_t value;
+    const char* text;
+  } rows[] = {{"P000", 1000000, "1000.000 rpm"},
+              {"P000", -750, "-0.750 rpm"},
+              {"P014", 25, "25 °C"},
+              {"P015", 120, "2.000 h"},   // minutes
+              {"P017", 36, "1.000 kWh"},  // 1E5 Ws each
+              {"P111", -500, "-500 mV"},
+              {"P115", 5000, "5.000 ms"},  // microseconds
+              {"P303", 150000, "150.000 %In"},
+              {"P816", 2, "500 kBaud"},
+              {"P870", 9, "CTRL. WORD 1"},
+              {"P097", 0x0202, "0x0202"},
+              {"P817", 128000, "128.000"},
+              {"P092", -1, "4294967.295"},  // unsigned
+              {"P600", 26, "26"}};          // a code the list does not have
+  for (const auto& row : rows) {
+    const Parameter* parameter = md60a().find(row.number);
+    ASSERT_NE(parameter, nullptr) << row.number;
+    EXPECT_EQ(parameter_text(*parameter, row.value), row.text) << row.number;
+  }
+}
+
+TEST(ParameterText, IsReadBack) {
+  const struct {
+    const char* number;
+    const char* text;
+    int32_t value;
+  } rows[] = {{"P130", "2.5 s", 2500},
+              {"P130", "2.5", 2500},
+              {"P302", "1400 rpm", 1400000},
+              {"P816", "500 kBaud", 2},
+              {"P816", "500", 2},
+              {"P816", "1", 1},
+              {"P870", "SPEED [%]", 11},
+              {"P870", "8", 8},
+              {"P115", "0.01 ms", 10},
+              {"P221", "3999999999", static_cast<int32_t>(3999999999U)},
+              {"P094", "0x0006", 6},
+              {"P160", "-150.2", -150200}};
+  for (const auto& row : rows) {
+    const auto value = parse_parameter_text(*md60a().find(row.number), row.text);
+    ASSERT_TRUE(value) << row.number << " = " << row.text << ": " << value.error();
+    EXPECT_EQ(*value, row.value) << row.number << " = " << row.text;
+  }
+  for (const char* text : {"", "fast", "2.5 kg", "1e9999", "0.0001 s", "99999999999", "0xZZ", "--1"})
+    EXPECT_FALSE(parse_parameter_text(*md60a().find("P130"), text)) << text;
+  EXPECT_EQ(parse_parameter_text(*md60a().find("P130"), "x").error(),
+            "expected a number with up to 3 decimals in s");
+  EXPECT_EQ(parse_parameter_text(*md60a().find("P152"), "maybe").error(), "expected 0 = OFF or 1 = ON");
+}
+
+// Every legal limit and default survives the way to text and back.
+TEST(ParameterText, RoundTripsEveryLimit) {
+  for (const char* unit : {"md60a", "mc07", "mdxb"})
+    for (const Parameter* p : parameter_table(*find_unit(unit)).by_index())
+      for (const int64_t number : {p->minimum(), p->maximum(), p->default_value}) {
+        if (p->conversion == 70 || p->conversion == 5) continue;  // hours and kWh: shown rounded
+        const auto bits = static_cast<int32_t>(static_cast<uint32_t>(number));
+        const auto back = parse_parameter_text(*p, parameter_text(*p, bits));
+        ASSERT_TRUE(back) << p->index << " " << parameter_text(*p, bits);
+        EXPECT_EQ(*back, bits) << p->index << " " << parameter_text(*p, bits);
+      }
+}
+
+TEST(ReturnCodes, TablesAreComplete) {
+  PROVES("PAR-18", "PAR-19", "M07-PAR-10");
+  const struct {
+    uint16_t additional;
+    const char* word;  // a word of the meaning
+  } printed[] = {{0x00, "no error"},   {0x10, "index"},     {0x11, "not implemented"},
+                 {0x12, "read"},       {0x13, "lock"},      {0x14, "factory"},
+                 {0x15, "too large"},  {0x16, "too small"}, {0x17, "option"},
+                 {0x18, "system"},     {0x19, "X13"},       {0x1A, "diagnostic"},
+                 {0x1B, "protection"}, {0x1C, "inhibit"},   {0x1D, "incorrect"},
+                 {0x1E, "activated"},  {0x1F, "EEPROM"},    {0x20, "output stage"}};
+  for (const auto& row : printed)
+    EXPECT_NE(return_code_meaning({8, 0, row.additional}).find(row.word), std::string_view::npos)
+        << row.additional;
+  EXPECT_EQ(return_code_meaning({8, 0, 0x99}), "");
+  const char* classes[] = {"virtual field", "application", "definition",  "resource",
+                           "service",       "access",      "object list", "other"};
+  for (uint8_t i = 0; i < 8; ++i)
+    EXPECT_NE(return_class_meaning(static_cast<uint8_t>(i + 1)).find(classes[i]), std::string_view::npos)
+        << i + 1;
+  EXPECT_EQ(return_class_meaning(0), "");
+  EXPECT_EQ(return_class_meaning(9), "");
+  EXPECT_EQ(return_codes::kInvalidIndex.packed(), 0x08000010U);
+}
+
+}  // namespace
+}  // namespace ipos::stdlib

@@ -1,0 +1,257 @@
+// The command line contract: what goes where, exit codes, and a located message for each mistake a user can make.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/command.hpp"
+
+namespace ipos::tests {
+namespace {
+
+using ::testing::Test;
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+const std::string kProgram = "long a;\nmain()\n{\n  a = 5;\n}\n";
+
+TEST(Usage, WrongCommandLinesAre64) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{}, {"frobnicate"}, {"run"}, {"run", "x.IPC", "--for", "soon"}, {"run", "x.IPC", "--speed", "0"},
+        {"build", "x.IPC", "--emit=pdf"}, {"run", "x.IPC", "--format", "xml"}, {"build", "notes.txt"}}) {
+    const CommandResult result = run_ipos(arguments);
+    EXPECT_EQ(result.exit_code, 64);
+    EXPECT_EQ(result.out, "");
+    EXPECT_FALSE(result.err.empty());
+  }
+}
+
+TEST(Usage, HelpAndVersion) {
+  EXPECT_EQ(run_ipos({"--help"}).exit_code, 0);
+  EXPECT_TRUE(contains(run_ipos({"--version"}).out, "ipos "));
+  for (const std::string verb : {"build", "run", "disasm", "verify", "asm", "explain"}) {
+    const CommandResult result = run_ipos({verb, "--help"});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_TRUE(contains(result.out, "Example")) << verb;
+  }
+}
+
+TEST(Input, MissingFilesAre66) {
+  for (const std::string verb : {"build", "run"}) {
+    const CommandResult result = run_ipos({verb, "/nowhere/X.IPC"});
+    EXPECT_EQ(result.exit_code, 66) << verb;
+    EXPECT_TRUE(contains(result.err, "/nowhere/X.IPC")) << result.err;
+  }
+  EXPECT_EQ(run_ipos({"verify", "/nowhere/X.ipx"}).exit_code, 66);
+  EXPECT_EQ(run_ipos({"run", "/nowhere/plant.toml"}).exit_code, 66);
+}
+
+TEST(Input, UnwritableOutputIs74) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("A.IPC", kProgram);
+  EXPECT_EQ(run_ipos({"build", file, "-o", "/nowhere/a.ipx"}).exit_code, 74);
+  EXPECT_EQ(run_ipos({"run", file, "--for", "1ms", "--log", "/nowhere/a.log"}).exit_code, 74);
+}
+
+TEST(Build, SyntaxErrorIsLocated) {
+  const TemporaryFolder folder;
+  folder.write("A.IPC", "long a;\nmain()\n{\n  a = ;\n}\n");
+  const CommandResult result = run_ipos({"build", "A.IPC"}, folder.path());
+  EXPECT_EQ(result.exit_code, 65);
+  EXPECT_TRUE(result.err.starts_with("A.IPC:4:7: error: ")) << result.err;
+  EXPECT_TRUE(contains(result.err, "  a = ;\n")) << result.err;
+  EXPECT_TRUE(contains(result.err, "^")) << result.err;
+  EXPECT_EQ(result.out, "");
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "A.ipx"));
+}
+
+TEST(Build, UnknownNameIsLocated) {
+  const TemporaryFolder folder;
+  folder.write("A.IPC", "long speed;\nmain()\n{\n  spede = 1;\n}\n");
+  const CommandResult result = run_ipos({"build", "A.IPC"}, folder.path());
+  EXPECT_EQ(result.exit_code, 65);
+  EXPECT_TRUE(result.err.starts_with("A.IPC:4:3: error: ")) << result.err;
+  EXPECT_TRUE(contains(result.err, "speed")) << "a suggestion is expected: " << result.err;
+}
+
+TEST(Build, MissingIncludeIsLocated) {
+  const TemporaryFolder folder;
+  folder.write("A.IPC", "#include <missing.h>\nmain() { }\n");
+  const CommandResult result = run_ipos({"build", "A.IPC"}, folder.path());
+  EXPECT_EQ(result.exit_code, 65);
+  EXPECT_TRUE(result.err.starts_with("A.IPC:1:")) << result.err;
+  EXPECT_TRUE(contains(result.err, "missing.h")) << result.err;
+}
+
+TEST(Build, WritesAnImageThatIsTheSameEachTime) {
+  const TemporaryFolder folder;
+  const std::string source = project("examples/scom/SCOM1.IPC").string();
+  EXPECT_EQ(run_ipos({"build", source, "-o", "a.ipx"}, folder.path()).exit_code, 0);
+  EXPECT_EQ(run_ipos({"build", source, "-o", "b.ipx"}, folder.path()).exit_code, 0);
+  const std::string image = read_text(folder.path() / "a.ipx");
+  EXPECT_FALSE(image.empty());
+  EXPECT_EQ(image, read_text(folder.path() / "b.ipx"));
+  EXPECT_EQ(run_ipos({"verify", "a.ipx"}, folder.path()).exit_code, 0);
+}
+
+TEST(Build, EveryStageCanBePrinted) {
+  const std::string source = project("examples/scom/SCOM1.IPC").string();
+  const auto stage = [&](const std::string& name) {
+    const CommandResult result = run_ipos({"build", source, "--emit=" + name});
+    EXPECT_EQ(result.exit_code, 0) << name << result.err;
+    return result.out;
+  };
+  EXPECT_TRUE(contains(stage("tokens"), "TrCycl"));
+  EXPECT_TRUE(contains(stage("ast"), "main"));
+  EXPECT_TRUE(contains(stage("asm"), "SCOM TRANSMIT CYCLIC, H420"));
+  EXPECT_TRUE(contains(stage("image"), "TrCycl.ObjectNo"));
+  EXPECT_TRUE(contains(stage("map"), "lTrDataLow"));
+  EXPECT_TRUE(contains(stage("listing"), "SCOMON"));
+}
+
+TEST(Images, DisassembledTextAssemblesToTheSameBytes) {
+  const TemporaryFolder folder;
+  for (const std::string name : {"scom/SCOM1", "scom-intel/SCOM2_Intel", "movilink/Movilink"}) {
+    ASSERT_EQ(run_ipos({"build", project("examples/" + name + ".IPC").string(), "-o", "a.ipx"}, folder.path()).exit_code, 0);
+    const CommandResult text = run_ipos({"disasm", "a.ipx"}, folder.path());
+    ASSERT_EQ(text.exit_code, 0);
+    folder.write("a.ipa", text.out);
+    const CommandResult back = run_ipos({"asm", "a.ipa", "-o", "b.ipx"}, folder.path());
+    ASSERT_EQ(back.exit_code, 0) << back.err;
+    EXPECT_EQ(read_text(folder.path() / "a.ipx"), read_text(folder.path() / "b.ipx")) << name;
+  }
+}
+
+TEST(Images, OneFlippedByteIsRefused) {
+  const TemporaryFolder folder;
+  const std::string source = folder.write("A.IPC", kProgram);
+  ASSERT_EQ(run_ipos({"build", source}, folder.path()).exit_code, 0);
+  std::string image = read_text(folder.path() / "A.ipx");
+  image[image.size() / 2] = static_cast<char>(image[image.size() / 2] ^ 0x10);
+  folder.write("bad.ipx", image);
+  for (const std::string verb : {"verify", "disasm", "run"}) {
+    const CommandResult result = run_ipos({verb, "bad.ipx"}, folder.path());
+    EXPECT_EQ(result.exit_code, 1) << verb;
+    EXPECT_TRUE(contains(result.err, "bad.ipx")) << result.err;
+    EXPECT_TRUE(contains(result.err, "checksum")) << result.err;
+    EXPECT_EQ(result.out, "");
+  }
+}
+
+TEST(Run, FaultNamesTheSourceLine) {
+  const TemporaryFolder folder;
+  folder.write("A.IPC", "long a, b;\nmain()\n{\n  a = 1;\n  a = a / b;\n}\n");
+  const CommandResult result = run_ipos({"run", "A.IPC", "--for", "100ms", "--format", "json"}, folder.path());
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(contains(result.err, "F10")) << result.err;
+  EXPECT_TRUE(contains(result.err, "A.IPC:5:")) << result.err;
+  EXPECT_EQ(nlohmann::json::parse(result.out)["stations"][0]["fault"], 10);
+}
+
+TEST(Run, RecursionIsF32) {
+  const TemporaryFolder folder;
+  folder.write("A.IPC", "main()\n{\n  Again();\n}\nAgain()\n{\n  Again();\n}\n");
+  const CommandResult result = run_ipos({"run", "A.IPC", "--for", "1s", "--format", "json"}, folder.path());
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(contains(result.err, "F32")) << result.err;
+  EXPECT_TRUE(contains(result.err, "A.IPC:7:")) << result.err;
+  EXPECT_EQ(nlohmann::json::parse(result.out)["stations"][0]["fault"], 32);
+}
+
+TEST(Run, UntilEndStopsWithTheProgram) {
+  const TemporaryFolder folder;
+  folder.write("A.IPC", "long a;\nmain()\n{\n  _Wait(50);\n  a = 5;\n}\n");
+  const CommandResult result = run_ipos({"run", "A.IPC", "--until", "end", "--format", "json"}, folder.path());
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const auto report = nlohmann::json::parse(result.out);
+  EXPECT_GE(report["time_us"], 50'000);
+  EXPECT_LE(report["time_us"], 60'000);
+  EXPECT_EQ(report["stations"][0]["name"], "A");
+  EXPECT_EQ(report["stations"][0]["unit"], "md60a");
+  EXPECT_EQ(report["stations"][0]["variables"][0],
+            (nlohmann::json{{"name", "a"}, {"index", 420}, {"value", 5}}));
+  EXPECT_TRUE(contains(run_ipos({"run", "A.IPC", "--until", "end", "--watch"}, folder.path()).out, "H420 a  5\n"));
+}
+
+TEST(Run, SpeedSetsTheCommandsOfAMillisecond) {
+  const TemporaryFolder folder;
+  folder.write("A.IPC", "long a;\nmain()\n{\n  while (1) a++;\n}\n");  // two commands a round
+  const auto count = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"run", "A.IPC", "--for", "99ms", "--format", "json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return nlohmann::json::parse(run_ipos(arguments, folder.path()).out)["stations"][0]["variables"][0]["value"];
+  };
+  EXPECT_EQ(count({}), 50);  // ticks at 0, 1, .. 99 ms
+  EXPECT_EQ(count({"--speed", "20"}), 1000);
+}
+
+class PlantErrors : public Test {
+ protected:
+  CommandResult run(const std::string& plant) {
+    folder_.write("A.IPC", kProgram);
+    folder_.write("plant.toml", plant);
+    return run_ipos({"run", "plant.toml", "--for", "10ms"}, folder_.path());
+  }
+  void refuses(const std::string& plant, const std::string& place, const std::string& words, int exit_code = 65) {
+    const CommandResult result = run(plant);
+    EXPECT_EQ(result.exit_code, exit_code) << plant;
+    EXPECT_TRUE(contains(result.err, "plant.toml:" + place + ": error: ")) << result.err;
+    EXPECT_TRUE(contains(result.err, words)) << result.err;
+    EXPECT_EQ(result.out, "");
+  }
+  TemporaryFolder folder_;
+};
+
+const std::string kStation = "[[station]]\nname = \"u\"\nunit = \"md60a\"\nprogram = \"A.IPC\"\n";
+const std::string kBus = "[[bus]]\nname = \"b\"\nkind = \"can\"\n";
+
+TEST_F(PlantErrors, EachIsLocated) {
+  refuses(kStation + "colour = \"red\"\n", "5:1", "colour");
+  refuses(kStation + "[[bus\n", "5:6", "table header");
+  refuses("[[station]]\nname = \"u\"\nunit = \"md90\"\n", "3:8", "md90");
+  refuses("[[station]]\nunit = \"md60a\"\n", "1:1", "name");
+  refuses(kStation + "sbus = \"b\"\n", "5:8", "'b'");
+  refuses(kStation + kStation, "5:1", "two");
+  refuses(kBus + "baud = 800000\n" + kStation, "4:8", "800000");
+  refuses("[[bus]]\nname = \"b\"\nkind = \"token ring\"\n" + kStation, "3:8", "token ring");
+  refuses(kStation + "program = 5\n", "5:11", "program");
+  refuses(kStation + "[station.parameters]\nP99999 = 1\n", "6:1", "P99999");
+  refuses(kStation + "[station.parameters]\nP813 = 64\n", "6:1", "P813");
+  refuses(kStation + "[station.parameters]\nP813 = \"x\"\n", "6:8", "P813");
+  refuses(kStation + "[station.inputs]\nDI99 = 1\n", "6:1", "DI99");
+  refuses(kStation + "[station.inputs]\nDI00 = 2\n", "6:8", "DI00");
+  refuses(kStation + "[[expect]]\nstation = \"v\"\nat = \"1ms\"\nvariable = \"a\"\nequals = 5\n", "6:11", "'v'");
+  refuses(kStation + "[[expect]]\nstation = \"u\"\nat = \"later\"\nvariable = \"a\"\nequals = 5\n", "7:6", "later");
+  refuses(kStation + "[[expect]]\nstation = \"u\"\nat = \"1ms\"\nvariable = \"zz\"\nequals = 5\n", "5:1", "zz");
+  refuses(kStation + "[[expect]]\nstation = \"u\"\nat = \"1ms\"\nvariable = \"a\"\nequals = 5000000000\n", "9:10", "32 bits");
+  refuses("", "1:1", "[[station]]");
+  refuses("[[station]]\nname = \"u\"\nunit = \"md60a\"\nprogram = \"B.IPC\"\n", "4:11", "B.IPC", 66);
+}
+
+TEST_F(PlantErrors, AllAreReportedAtOnce) {
+  const CommandResult result = run(kStation + "colour = 1\nshape = 2\n[station.inputs]\nDI99 = 1\n");
+  EXPECT_EQ(result.exit_code, 65);
+  EXPECT_TRUE(contains(result.err, "plant.toml:5:1"));
+  EXPECT_TRUE(contains(result.err, "plant.toml:6:1"));
+  EXPECT_TRUE(contains(result.err, "plant.toml:8:1"));
+}
+
+TEST_F(PlantErrors, UnmetExpectationIsAFinding) {
+  const std::string expect = "[[expect]]\nstation = \"u\"\nat = \"5ms\"\nvariable = \"a\"\nequals = ";
+  EXPECT_EQ(run(kStation + expect + "5\n").exit_code, 0);
+  const CommandResult unmet = run(kStation + expect + "6\n");
+  EXPECT_EQ(unmet.exit_code, 1);
+  EXPECT_TRUE(contains(unmet.err, "plant.toml:5:1: expectation not met: a of u at 5.000 ms: is 5 (0x5), expected 6"))
+      << unmet.err;
+  const CommandResult late = run(kStation + "[[expect]]\nstation = \"u\"\nat = \"1h\"\nvariable = \"a\"\nequals = 5\n");
+  EXPECT_EQ(late.exit_code, 1);
+  EXPECT_TRUE(contains(late.err, "the run ended before")) << late.err;
+}
+
+TEST_F(PlantErrors, WrongBaudRateIsTold) {
+  const CommandResult result = run(kBus + "baud = 125000\n" + kStation + "sbus = \"b\"\n");
+  EXPECT_TRUE(contains(result.err, "baud rate")) << result.err;
+  EXPECT_TRUE(contains(result.err, "u")) << result.err;
+}
+
+}  // namespace
+}  // namespace ipos::tests

@@ -1,0 +1,293 @@
+// What each command does, and how tasks stop: budget, wait, end, fault. Expected values are the manual's
+// (IPOSplus p. 28, 305, 306, 342) or follow from 32-bit two's complement.
+#include "vm/exec/machine.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/vm/code.hpp"
+#include "vm/sched/scheduler.hpp"
+
+namespace ipos::vm {
+namespace {
+
+using tests::code_of;
+using tests::I;
+
+constexpr Limits kLimits{1024, 16384, 3, 4};
+constexpr int32_t kMin = INT32_MIN;
+constexpr int32_t kMax = INT32_MAX;
+
+// A program with the machine that runs it.
+class Program {
+ public:
+  Program(std::initializer_list<Instruction> commands, Host host = {})
+      : code_(code_of(commands)), machine_(verify(code_, kLimits, {}).image.value(), host) {
+    machine_.start();
+  }
+  Machine* operator->() { return &machine_; }
+  int32_t& h(size_t n) { return machine_.variables()[n]; }
+  RunResult run(uint32_t budget = 1000) { return machine_.run(1, budget); }
+
+ private:
+  std::vector<uint32_t> code_;
+  Machine machine_;
+};
+
+// The result of one two-operand command in its H,H and H,K form.
+int32_t both(Opcode hh, Opcode hk, int32_t a, int32_t b) {
+  Program variable({I(hh, 0, 1), I(Opcode::End)});
+  variable.h(0) = a;
+  variable.h(1) = b;
+  EXPECT_EQ(variable.run().stop, Stop::Ended);
+  Program constant({I(hk, 0, b), I(Opcode::End)});
+  constant.h(0) = a;
+  EXPECT_EQ(constant.run().stop, Stop::Ended);
+  EXPECT_EQ(variable.h(0), constant.h(0));
+  EXPECT_EQ(variable.h(1), b) << "the right operand must stay";
+  return variable.h(0);
+}
+
+TEST(Arithmetic, WrapsOnTheNumberCircle) {
+  EXPECT_EQ(both(Opcode::AddHH, Opcode::AddHK, kMax, 1), kMin);
+  EXPECT_EQ(both(Opcode::SubHH, Opcode::SubHK, kMin, 1), kMax);
+  EXPECT_EQ(both(Opcode::MulHH, Opcode::MulHK, 65536, 65536), 0);
+  EXPECT_EQ(both(Opcode::MulHH, Opcode::MulHK, kMin, -1), kMin);
+  EXPECT_EQ(both(Opcode::MulHH, Opcode::MulHK, -7, 6), -42);
+}
+
+TEST(Arithmetic, DivisionTruncatesTowardZero) {
+  EXPECT_EQ(both(Opcode::DivHH, Opcode::DivHK, 2, 3), 0);  // IPOSplus p. 196
+  EXPECT_EQ(both(Opcode::DivHH, Opcode::DivHK, -7, 2), -3);
+  EXPECT_EQ(both(Opcode::DivHH, Opcode::DivHK, 7, -2), -3);
+  EXPECT_EQ(both(Opcode::DivHH, Opcode::DivHK, kMin, -1), kMin);
+  EXPECT_EQ(both(Opcode::ModHH, Opcode::ModHK, 2, 3), 2);
+  EXPECT_EQ(both(Opcode::ModHH, Opcode::ModHK, -7, 2), -1);
+  EXPECT_EQ(both(Opcode::ModHH, Opcode::ModHK, 7, -2), 1);
+  EXPECT_EQ(both(Opcode::ModHH, Opcode::ModHK, kMin, -1), 0);
+}
+
+TEST(Arithmetic, BitwiseAndShifts) {
+  EXPECT_EQ(both(Opcode::AndHH, Opcode::AndHK, 0b10, 0b11), 0b10);  // IPOSplus p. 196
+  EXPECT_EQ(both(Opcode::OrHH, Opcode::OrHK, 0b10, 0b11), 0b11);
+  EXPECT_EQ(both(Opcode::XorHH, Opcode::XorHK, 0x0FFF, 0xF0F0), 0xFF0F);  // p. 305
+  EXPECT_EQ(both(Opcode::ShlHH, Opcode::ShlHK, 31, 1), 62);               // p. 305
+  EXPECT_EQ(both(Opcode::ShlHH, Opcode::ShlHK, 15, 6), 960);
+  EXPECT_EQ(both(Opcode::ShlHH, Opcode::ShlHK, 1, 33), 2);
+  EXPECT_EQ(both(Opcode::ShrHH, Opcode::ShrHK, 62, 1), 31);  // p. 306
+  EXPECT_EQ(both(Opcode::ShrHH, Opcode::ShrHK, 960, 6), 15);
+  EXPECT_EQ(both(Opcode::ShrHH, Opcode::ShrHK, -1, 28), 15);
+  EXPECT_EQ(both(Opcode::AshrHH, Opcode::AshrHK, 7, 2), 1);  // p. 306
+  EXPECT_EQ(both(Opcode::AshrHH, Opcode::AshrHK, -7, 1), -4);
+  EXPECT_EQ(both(Opcode::AshrHH, Opcode::AshrHK, kMin, 31), -1);
+  Program complement({I(Opcode::NotH, 0, 1), I(Opcode::End)});
+  complement.h(1) = 0x0F;
+  complement.run();
+  EXPECT_EQ(complement.h(0), -16);
+}
+
+TEST(Arithmetic, DivisionByZeroIsF10) {
+  for (const Instruction& command :
+       {I(Opcode::DivHH, 0, 1), I(Opcode::ModHH, 0, 1), I(Opcode::DivHK, 0, 0), I(Opcode::ModHK, 0, 0)}) {
+    Program run({I(Opcode::Nop), command, I(Opcode::End)});
+    run.h(0) = 5;
+    EXPECT_EQ(run.run().stop, Stop::Faulted);
+    EXPECT_EQ(run->fault().number, 10);
+    EXPECT_EQ(run->fault().address, 1U);
+    EXPECT_EQ(run->fault().task, 1);
+    EXPECT_EQ(run.h(0), 5);
+  }
+}
+
+TEST(Bits, SetClearMove) {
+  Program run({I(Opcode::BitSet, 0, 31), I(Opcode::BitClear, 1, 0), I(Opcode::BitMove, 2, 4, 0, 31),
+           I(Opcode::BitMoveNeg, 3, 5, 0, 31), I(Opcode::BitMoveNeg, 4, 6, 5, 1), I(Opcode::End)});
+  run.h(1) = 3;
+  run.h(3) = -1;
+  run.run();
+  EXPECT_EQ(run.h(0), kMin);
+  EXPECT_EQ(run.h(1), 2);
+  EXPECT_EQ(run.h(2), 16);
+  EXPECT_EQ(run.h(3), ~32);
+  EXPECT_EQ(run.h(4), 64);
+}
+
+TEST(Jumps, EveryConditionOnBothForms) {
+  struct Row {
+    Opcode hh, hk;
+    bool less, equal, greater;
+  };
+  const Row rows[] = {{Opcode::JmpEqHH, Opcode::JmpEqHK, false, true, false},
+                      {Opcode::JmpNeHH, Opcode::JmpNeHK, true, false, true},
+                      {Opcode::JmpLtHH, Opcode::JmpLtHK, true, false, false},
+                      {Opcode::JmpLeHH, Opcode::JmpLeHK, true, true, false},
+                      {Opcode::JmpGtHH, Opcode::JmpGtHK, false, false, true},
+                      {Opcode::JmpGeHH, Opcode::JmpGeHK, false, true, true}};
+  const auto taken = [](Instruction jump, int32_t a, int32_t b) {
+    Program run({jump, I(Opcode::SetHK, 9, 1), I(Opcode::End)});
+    run.h(0) = a;
+    run.h(1) = b;
+    run.run();
+    return run.h(9) == 0;
+  };
+  for (const Row& row : rows)
+    for (const auto& [a, b, expected] :
+         {std::tuple(kMin, kMax, row.less), std::tuple(-5, -5, row.equal), std::tuple(1, -1, row.greater)}) {
+      EXPECT_EQ(taken(I(row.hh, 0, 1, 4), a, b), expected) << info(row.hh).text << a << " " << b;
+      EXPECT_EQ(taken(I(row.hk, 0, b, 5), a, b), expected) << info(row.hk).text << a << " " << b;
+    }
+}
+
+// The SETI loop of IPOSplus p. 342: H10..H15 take 50, 60, .. 100.
+TEST(Indirect, ManualLoop) {
+  Program run({I(Opcode::SetHK, 0, 10), I(Opcode::SetHK, 1, 50), I(Opcode::SetiStore, 0, 1),
+           I(Opcode::AddHK, 0, 1), I(Opcode::AddHK, 1, 10), I(Opcode::JmpLeHK, 0, 15, 4), I(Opcode::End)});
+  run.run();
+  for (int32_t n = 0; n < 6; ++n) EXPECT_EQ(run.h(static_cast<size_t>(10 + n)), 50 + 10 * n);
+  EXPECT_EQ(run.h(0), 16);
+  EXPECT_EQ(run.h(1), 110);
+}
+
+TEST(Indirect, NumbersOutsideAreF10) {
+  for (const int32_t number : {-1, 1024, kMin, kMax}) {
+    Program store({I(Opcode::SetiStore, 0, 1), I(Opcode::End)});
+    store.h(0) = number;
+    EXPECT_EQ(store.run().stop, Stop::Faulted);
+    EXPECT_EQ(store->fault().number, 10);
+    Program load({I(Opcode::SetiLoad, 1, 0), I(Opcode::End)});
+    load.h(0) = number;
+    EXPECT_EQ(load.run().stop, Stop::Faulted);
+  }
+  Program edge({I(Opcode::SetiStore, 0, 1), I(Opcode::SetiLoad, 2, 0), I(Opcode::End)});
+  edge.h(0) = 1023;
+  edge.h(1) = 77;
+  EXPECT_EQ(edge.run().stop, Stop::Ended);
+  EXPECT_EQ(edge.h(1023), 77);
+  EXPECT_EQ(edge.h(2), 77);
+}
+
+TEST(Blocks, CopyOverlapping) {
+  Program up({I(Opcode::Copy, 1, 0, 3), I(Opcode::End)});
+  Program down({I(Opcode::Copy, 0, 1, 3), I(Opcode::End)});
+  for (size_t n = 0; n < 4; ++n) up.h(n) = down.h(n) = static_cast<int32_t>(n + 1);
+  up.run();
+  down.run();
+  EXPECT_EQ((std::array{up.h(0), up.h(1), up.h(2), up.h(3)}), (std::array{1, 1, 2, 3}));
+  EXPECT_EQ((std::array{down.h(0), down.h(1), down.h(2), down.h(3)}), (std::array{2, 3, 4, 4}));
+}
+
+TEST(Calls, ReturnBehindTheCallAndDepthLimit) {
+  Program run({I(Opcode::Call, 4), I(Opcode::SetHK, 1, 7), I(Opcode::SetHK, 0, 5), I(Opcode::Ret)});
+  EXPECT_EQ(run.run().stop, Stop::Ended);  // CALL, SET H0, RET, SET H1, SET H0, RET of task 1
+  EXPECT_EQ(run.h(0), 5);
+  EXPECT_EQ(run.h(1), 7);
+
+  Program recursion({I(Opcode::AddHK, 0, 1), I(Opcode::Call, 0), I(Opcode::End)});
+  EXPECT_EQ(recursion.run().stop, Stop::Faulted);
+  EXPECT_EQ(recursion->fault().number, 32);
+  EXPECT_EQ(recursion.h(0), 5) << "four nested calls are the limit given";
+}
+
+TEST(Budget, IsExact) {
+  Program run({I(Opcode::AddHK, 0, 1), I(Opcode::Jmp, 0)});
+  for (int step = 1; step <= 10; ++step) {
+    const RunResult result = run.run(1);
+    EXPECT_EQ(result.stop, Stop::Budget);
+    EXPECT_EQ(result.commands, 1U);
+    EXPECT_EQ(run.h(0), (step + 1) / 2);
+  }
+  EXPECT_EQ(run.run(0).commands, 0U);
+  EXPECT_EQ(run.run(7).commands, 7U);
+  EXPECT_EQ(run->task(1).commands, 17U);
+}
+
+TEST(Waiting, WaitTakesItsMilliseconds) {
+  Program run({I(Opcode::WaitK, 3), I(Opcode::SetHK, 0, 1), I(Opcode::WaitH, 5), I(Opcode::SetHK, 0, 2),
+           I(Opcode::End)});
+  run.h(5) = 0;  // no wait
+  const Rates rates{{10, 0, 0}};
+  EXPECT_EQ(run_tick(*run.operator->(), rates), 1U);
+  for (int ms = 1; ms < 3; ++ms) {
+    EXPECT_EQ(run_tick(*run.operator->(), rates), 0U) << ms;
+    EXPECT_EQ(run->task(1).state, TaskState::Waiting);
+  }
+  EXPECT_EQ(run_tick(*run.operator->(), rates), 4U);
+  EXPECT_EQ(run.h(0), 2);
+}
+
+// A host that answers what it is told and records what it was asked.
+struct Recorder {
+  HostReply reply;
+  std::vector<Instruction> asked;
+  Host host() {
+    return {this, [](void* self, Machine&, int, const Instruction& command) noexcept {
+              auto& recorder = *static_cast<Recorder*>(self);
+              recorder.asked.push_back(command);
+              return recorder.reply;
+            }};
+  }
+};
+
+TEST(HostCalls, DoneGoesOn) {
+  Recorder recorder;
+  Program run({I(Opcode::Scom, 1, 420), I(Opcode::ScomOn), I(Opcode::End)}, recorder.host());
+  EXPECT_EQ(run.run().stop, Stop::Ended);
+  ASSERT_EQ(recorder.asked.size(), 2U);
+  EXPECT_EQ(recorder.asked[0], I(Opcode::Scom, 1, 420));
+}
+
+TEST(HostCalls, WaitHoldsTheTaskUntilResume) {
+  Recorder recorder{{Answer::Wait}, {}};
+  Program run({I(Opcode::Movlnk, 0), I(Opcode::SetHK, 9, 1), I(Opcode::End)}, recorder.host());
+  EXPECT_EQ(run.run().stop, Stop::Waiting);
+  EXPECT_EQ(run.run().stop, Stop::Waiting);
+  run->tick();
+  EXPECT_EQ(run->task(1).state, TaskState::Waiting) << "a tick must not end a host's wait";
+  run->resume(1);
+  EXPECT_EQ(run.run().stop, Stop::Ended);
+  EXPECT_EQ(recorder.asked.size(), 1U);
+  EXPECT_EQ(run.h(9), 1);
+}
+
+TEST(HostCalls, FaultStopsAllTasks) {
+  Recorder recorder{{Answer::Fault, 42, "because"}, {}};
+  Program run({I(Opcode::Nop), I(Opcode::Movlnk, 0), I(Opcode::End)}, recorder.host());
+  run->start_task(2, 0);
+  EXPECT_EQ(run.run().stop, Stop::Faulted);
+  EXPECT_EQ(run->fault().number, 42);
+  EXPECT_STREQ(run->fault().reason, "because");
+  EXPECT_EQ(run->task(2).state, TaskState::Stopped);
+}
+
+TEST(HostCalls, EventCallsOnlyWhenTaken) {
+  Recorder recorder{{Answer::Taken}, {}};
+  const auto program = {I(Opcode::InputCall, 1, 8, 4), I(Opcode::End), I(Opcode::SetHK, 0, 1),
+                        I(Opcode::Ret)};
+  Program taken(program, recorder.host());
+  taken.run();
+  EXPECT_EQ(taken.h(0), 1);
+  recorder.reply = {Answer::Done};
+  Program not_taken(program, recorder.host());
+  not_taken.run();
+  EXPECT_EQ(not_taken.h(0), 0);
+}
+
+TEST(HostCalls, WithoutAHostIsF10) {
+  Program run({I(Opcode::Movlnk, 0), I(Opcode::End)});
+  EXPECT_EQ(run.run().stop, Stop::Faulted);
+  EXPECT_EQ(run->fault().number, 10);
+}
+
+TEST(Tasks, ShareTheMillisecond) {
+  Program run({I(Opcode::AddHK, 1, 1), I(Opcode::Jmp, 0), I(Opcode::AddHK, 2, 1), I(Opcode::Jmp, 4)});
+  run->start_task(2, 4);
+  const Rates rates{{3, 5, 20}};  // P938 = 2, P939 = 3: the example of IPOSplus p. 44
+  for (int tick = 0; tick < 10; ++tick) EXPECT_EQ(run_tick(*run.operator->(), rates), 8U);
+  EXPECT_EQ(run->task(1).commands, 30U);
+  EXPECT_EQ(run->task(2).commands, 50U);
+  run->start();
+  EXPECT_EQ(run->task(2).state, TaskState::Stopped);
+  EXPECT_EQ(run.h(1), 15) << "variables keep their values over a restart";
+}
+
+}  // namespace
+}  // namespace ipos::vm

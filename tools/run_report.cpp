@@ -1,0 +1,60 @@
+// Reports of a run.
+#include "tools/run_report.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tools/watch.hpp"
+
+namespace ipos::tools {
+
+double load_percent(const runtime::LineLoad& load) {
+  return load.elapsed_bits == 0 ? 0.0
+                                : 100.0 * static_cast<double>(load.busy_bits) / static_cast<double>(load.elapsed_bits);
+}
+
+std::string text_report(runtime::Plant& plant, const WatchChoice& watch) {
+  std::string text;
+  if (watch.on) {
+    for (const auto& station : plant.stations()) {
+      if (station->image() == nullptr) continue;
+      text += fmt::format("{} ({}), {}\n", station->config().name, station->config().unit->title,
+                          station->config().program);
+      text += watch_window(watch_rows(*station, watch.names)) + "\n";
+    }
+  }
+  for (const auto& line : plant.lines()) {
+    const runtime::LineLoad load = line->load(plant.now());
+    text += fmt::format("{}: {} frames in {:.3f} s, bus load {:.2f} % of {} baud\n", line->name(), load.frames,
+                        static_cast<double>(plant.now()) / 1e9, load_percent(load), line->baud());
+  }
+  return text;
+}
+
+std::string json_report(runtime::Plant& plant, const WatchChoice& watch) {
+  using nlohmann::ordered_json;
+  ordered_json report;
+  report["time_us"] = plant.now() / runtime::kMicrosecond;
+  report["stations"] = ordered_json::array();
+  for (const auto& station : plant.stations()) {
+    ordered_json entry;
+    entry["name"] = station->config().name;
+    entry["unit"] = station->config().unit->name;
+    entry["fault"] = station->fault();
+    entry["status_word_1"] = station->status_word_1();
+    entry["variables"] = ordered_json::array();
+    for (const WatchRow& row : watch_rows(*station, watch.names))
+      entry["variables"].push_back({{"name", row.name}, {"index", row.index}, {"value", row.value}});
+    report["stations"].push_back(std::move(entry));
+  }
+  report["buses"] = ordered_json::array();
+  for (const auto& line : plant.lines()) {
+    const runtime::LineLoad load = line->load(plant.now());
+    report["buses"].push_back(
+        {{"name", line->name()}, {"kind", "can"}, {"frames", load.frames}, {"load_percent", load_percent(load)}});
+  }
+  return report.dump() + "\n";
+}
+
+}  // namespace ipos::tools

@@ -1,0 +1,37 @@
+// ipos asm: assembler text to an image.
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "compiler/asm/assembler.hpp"
+#include "tools/failure.hpp"
+#include "tools/files.hpp"
+#include "tools/verbs.hpp"
+
+namespace ipos::tools {
+
+void add_asm(CLI::App& app, int& exit_code) {
+  auto file = std::make_shared<std::string>();
+  auto output = std::make_shared<std::string>();
+  auto diagnostics = std::make_shared<std::string>("text");
+  CLI::App* verb = app.add_subcommand("asm", "assemble text in the form 'ipos disasm' prints");
+  verb->add_option("FILE", *file, "assembler text, or - for standard input")->required();
+  verb->add_option("-o", *output, "image to write; default: the text's name with .ipx");
+  verb->add_option("--diagnostics", *diagnostics, "text, json or sarif")
+      ->check(CLI::IsMember({"text", "json", "sarif"}));
+  verb->footer("Example:\n  ipos asm SCOM1.ipa -o SCOM1.ipx");
+  verb->callback([file, output, diagnostics, &exit_code] {
+    compiler::SourceMap sources;
+    compiler::Diagnostics found;
+    const compiler::SourceFile& source = sources.add(*file, *file, read_file(*file));
+    const auto image = compiler::assemble(source, found);
+    print_diagnostics(sources, found, *diagnostics);
+    if (!image) throw Failure(kBadInput, "");
+    if (output->empty() && *file == "-") throw Failure(kUsage, "standard input needs -o FILE");
+    write_file(output->empty() ? std::filesystem::path(*file).replace_extension(".ipx").string() : *output,
+               vm::write_image(*image));
+    exit_code = kGood;
+  });
+}
+
+}  // namespace ipos::tools

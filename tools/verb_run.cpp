@@ -1,0 +1,235 @@
+// ipos run: a program or a plant in virtual time, then the watch windows, the bus load and what went wrong.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+#include "runtime/bus/log/candump.hpp"
+#include "runtime/plant/plant.hpp"
+#include "stdlib/unit_types.hpp"
+#include "tools/failure.hpp"
+#include "tools/files.hpp"
+#include "tools/program.hpp"
+#include "tools/run_report.hpp"
+#include "tools/verbs.hpp"
+#include "tools/watch.hpp"
+
+namespace ipos::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using runtime::Time;
+
+struct RunFlags {
+  std::string file;
+  std::string duration;
+  std::string until;
+  uint32_t speed = 0;
+  std::string watch;
+  std::string log;
+  std::string format = "text";
+  bool realtime = false;
+  bool why = false;
+  CompileFlags compile;
+};
+
+volatile std::sig_atomic_t interrupted = 0;
+void on_interrupt(int) { interrupted = 1; }
+
+bool is_plant(const std::string& path) { return fs::path(path).extension() == ".toml"; }
+
+// The plant of a file: a plant file, or one station named after the program.
+runtime::PlantFile plant_of(const RunFlags& flags) {
+  if (is_plant(flags.file)) {
+    runtime::PlantFileResult result = runtime::read_plant_file(read_file(flags.file));
+    for (const runtime::PlantError& error : result.errors)
+      fmt::print(stderr, "{}:{}:{}: error: {}\n", flags.file, error.place.line, error.place.column, error.text);
+    if (!result.errors.empty()) throw Failure(kBadInput, "");
+    return std::move(result.plant);
+  }
+  runtime::PlantFile plant;
+  runtime::StationConfig station;
+  station.name = fs::path(flags.file).stem().string();
+  station.program = flags.file;
+  plant.stations.push_back(std::move(station));
+  return plant;
+}
+
+// Compiles or loads the programs of all stations; a station's unit decides for which unit a source is compiled.
+std::vector<std::optional<vm::Image>> load_programs(runtime::PlantFile& plant, const RunFlags& flags) {
+  std::vector<std::optional<vm::Image>> programs;
+  for (runtime::StationConfig& station : plant.stations) {
+    if (station.program.empty()) {
+      programs.emplace_back();
+      continue;
+    }
+    CompileFlags compile = flags.compile;
+    if (station.unit != nullptr) compile.unit = station.unit->name;
+    const std::string path =
+        is_plant(flags.file) ? (fs::path(flags.file).parent_path() / station.program).string() : station.program;
+    if (is_plant(flags.file) && !fs::exists(path))
+      throw Failure(kNoInput, fmt::format("{}:{}:{}: error: station '{}': there is no program {}", flags.file,
+                                          station.program_place.line, station.program_place.column, station.name, path));
+    vm::Image image = load_program(path, compile);
+    const stdlib::UnitType* unit = stdlib::find_unit(image.unit);
+    if (unit == nullptr || unit->tasks == 0)
+      throw Failure(kFindings, fmt::format("{}: the image is for unit type {}, which runs no program", path, image.unit));
+    if (station.unit == nullptr) station.unit = unit;
+    if (station.unit != unit)
+      throw Failure(kFindings, fmt::format("{}: the image is for unit {}, station '{}' is {}", path, unit->name,
+                                           station.name, station.unit->name));
+    programs.emplace_back(std::move(image));
+  }
+  return programs;
+}
+
+// Asked once a virtual millisecond: keeps pace with the wall clock, shows progress, and says when to stop.
+class Pace {
+ public:
+  Pace(const RunFlags& flags, const runtime::Plant& plant, Time limit)
+      : flags_(flags), plant_(plant), limit_(limit), show_(isatty(STDERR_FILENO) != 0) {}
+  ~Pace() {
+    if (shown_) fmt::print(stderr, "\r\033[K");
+  }
+  Pace(const Pace&) = delete;
+  Pace& operator=(const Pace&) = delete;
+
+  bool keep_going(Time now) {
+    if (interrupted != 0) return false;
+    if (flags_.until == "end" && plant_.programs_over()) return false;
+    if (flags_.realtime) std::this_thread::sleep_until(start_ + std::chrono::nanoseconds(now));
+    if (show_ && now % (100 * runtime::kMillisecond) == 0) progress(now);
+    return true;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void progress(Time now) {
+    const auto wall = Clock::now();
+    if (wall - last_shown_ < std::chrono::milliseconds(500)) return;
+    last_shown_ = wall;
+    shown_ = true;
+    fmt::print(stderr, "\r{:.1f} s of {:.1f} s", static_cast<double>(now) / 1e9, static_cast<double>(limit_) / 1e9);
+  }
+
+  const RunFlags& flags_;
+  const runtime::Plant& plant_;
+  Time limit_;
+  bool show_;
+  bool shown_ = false;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point last_shown_ = start_;
+};
+
+void print_journal(const runtime::Plant& plant, bool why) {
+  for (const runtime::JournalEntry& entry : plant.journal().entries()) {
+    if (entry.weight == runtime::Weight::Why && !why) continue;
+    const char* weight = entry.weight == runtime::Weight::Fault     ? "fault"
+                         : entry.weight == runtime::Weight::Warning ? "warning"
+                                                                    : "note";
+    fmt::print(stderr, "{}{}{}: {} (at {:.3f} ms)\n", entry.station, entry.station.empty() ? "" : ": ", weight,
+               entry.text, static_cast<double>(entry.time) / 1e6);
+  }
+}
+
+// Prints expectations that were not met or not reached; returns how many.
+size_t print_expectations(const runtime::Plant& plant, const std::string& file) {
+  size_t failed = 0;
+  const auto print = [&](const runtime::Expectation& expectation, const std::string& what) {
+    ++failed;
+    fmt::print(stderr, "{}:{}:{}: expectation not met: {} of {} at {:.3f} ms: {}\n", file, expectation.place.line,
+               expectation.place.column, expectation.variable, expectation.station,
+               static_cast<double>(expectation.at) / 1e6, what);
+  };
+  for (const runtime::ExpectationResult& result : plant.results())
+    if (!result.met)
+      print(*result.expectation, fmt::format("is {} ({:#x}), expected {} ({:#x})", result.actual,
+                                             static_cast<uint32_t>(result.actual), result.expectation->equals,
+                                             static_cast<uint32_t>(result.expectation->equals)));
+  for (const runtime::Expectation& expectation : plant.file().expectations)
+    if (expectation.at > plant.now()) print(expectation, "the run ended before");
+  const size_t total = plant.file().expectations.size();
+  if (total != 0) fmt::print(stderr, "{} of {} expectations met\n", total - failed, total);
+  return failed;
+}
+
+int run(const RunFlags& flags) {
+  const Time limit = flags.duration.empty() ? 60 * runtime::kSecond : runtime::parse_duration(flags.duration);
+  runtime::PlantFile file = plant_of(flags);
+  std::vector<std::optional<vm::Image>> programs = load_programs(file, flags);
+
+  std::optional<vm::Rates> rates;
+  if (flags.speed != 0) rates = vm::Rates{{flags.speed, flags.speed, flags.speed}};
+  std::vector<runtime::PlantError> errors;
+  runtime::Plant plant(std::move(file), std::move(programs), rates, errors);
+  for (const runtime::PlantError& error : errors)
+    fmt::print(stderr, "{}:{}:{}: error: {}\n", flags.file, error.place.line, error.place.column, error.text);
+  if (!errors.empty()) return kBadInput;
+
+  std::ofstream log_file;
+  std::optional<runtime::CandumpLog> log;
+  if (!flags.log.empty()) {
+    log_file.open(flags.log, std::ios::binary);
+    if (!log_file) throw Failure(kIoError, fmt::format("{}: cannot be written", flags.log));
+    log.emplace(log_file);
+    plant.add_observer(*log);
+  }
+
+  std::signal(SIGINT, on_interrupt);
+  {
+    Pace pace(flags, plant, limit);
+    plant.run_until(limit, [&](Time now) { return pace.keep_going(now); });
+  }
+  if (log && !log_file.flush()) throw Failure(kIoError, fmt::format("{}: cannot be written", flags.log));
+
+  WatchChoice watch;
+  watch.on = !flags.watch.empty();
+  if (watch.on && flags.watch != "*") {
+    std::istringstream names(flags.watch);
+    for (std::string name; std::getline(names, name, ',');) watch.names.push_back(name);
+    for (const std::string& name : watch.names)
+      if (std::none_of(plant.stations().begin(), plant.stations().end(), [&](const auto& station) {
+            return !watch_rows(*station, {name}).empty();
+          }))
+        fmt::print(stderr, "ipos: warning: no station has a variable '{}'\n", name);
+  }
+  fmt::print("{}", flags.format == "json" ? json_report(plant, watch) : text_report(plant, watch));
+  print_journal(plant, flags.why);
+  const size_t unmet = print_expectations(plant, flags.file);
+  if (interrupted != 0) return kInterrupted;
+  return unmet != 0 || plant.has_fault() ? kFindings : kGood;
+}
+
+std::string check_duration(const std::string& text) {
+  return runtime::parse_duration(text) < 0 ? "'" + text + "' is no time; write for example 500ms or 1.5s" : "";
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, int& exit_code) {
+  auto flags = std::make_shared<RunFlags>();
+  CLI::App* verb = app.add_subcommand("run", "run a program or a plant in virtual time");
+  verb->add_option("FILE", flags->file, "source (.IPC), image (.ipx) or plant (.toml)")->required();
+  verb->add_option("--for", flags->duration, "virtual time to run, for example 500ms; default 60s")
+      ->check(CLI::Validator(check_duration, "TIME"));
+  verb->add_option("--until", flags->until, "'end': stop when every program has ended")->check(CLI::IsMember({"end"}));
+  verb->add_option("--speed", flags->speed, "commands per ms of every task, instead of P938 and P939")
+      ->check(CLI::Range(1U, 1'000'000U));
+  verb->add_flag("--watch{*}", flags->watch, "show named variables at the end, all or --watch=NAME,...");
+  verb->add_option("--log", flags->log, "write the frames of all buses in candump format");
+  verb->add_option("--format", flags->format, "text or json")->check(CLI::IsMember({"text", "json"}));
+  verb->add_flag("--realtime", flags->realtime, "keep pace with the wall clock");
+  verb->add_flag("--why", flags->why, "also tell what was ignored, and why");
+  add_compile_options(*verb, flags->compile);
+  verb->footer("Example:\n  ipos run examples/scom/scom.toml --for 1s --watch --log can.log");
+  verb->callback([flags, &exit_code] { exit_code = run(*flags); });
+}
+
+}  // namespace ipos::tools

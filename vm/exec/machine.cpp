@@ -1,0 +1,216 @@
+// The plain interpreter: decode, do, next. It is the reference that faster engines must equal command by
+// command.
+#include "vm/exec/machine.hpp"
+
+#include <algorithm>
+
+#include "vm/exec/arithmetic.hpp"
+
+namespace ipos::vm {
+
+Machine::Machine(const VerifiedImage& program, const Host& host) : program_(program), host_(host) {}
+
+void Machine::start() {
+  fault_ = {};
+  tasks_ = {};
+  start_task(1, 0);
+}
+
+void Machine::start_task(int task, uint32_t address) {
+  TaskContext& t = context(task);
+  t = {};
+  t.state = TaskState::Ready;
+  t.pc = address;
+}
+
+void Machine::stop_task(int task) { context(task).state = TaskState::Stopped; }
+
+void Machine::stop_all() {
+  for (TaskContext& t : tasks_) t.state = TaskState::Stopped;
+}
+
+RunResult Machine::run(int task, uint32_t budget) {
+  TaskContext& t = context(task);
+  uint32_t used = 0;
+  while (t.state == TaskState::Ready) {
+    if (used == budget) return {Stop::Budget, used};
+    ++used;
+    ++t.commands;
+    const Stop stop = execute(task, t);
+    if (stop != Stop::Budget) return {stop, used};
+  }
+  return {t.state == TaskState::Waiting ? Stop::Waiting : Stop::Ended, used};
+}
+
+void Machine::tick() {
+  for (int task = 1; task <= kTasks; ++task) {
+    TaskContext& t = context(task);
+    if (t.state == TaskState::Waiting && t.wait_ms != 0 && --t.wait_ms == 0) resume(task);
+  }
+}
+
+void Machine::resume(int task) {
+  TaskContext& t = context(task);
+  if (t.state != TaskState::Waiting) return;
+  t.state = TaskState::Ready;
+  t.wait_ms = 0;
+  t.pc += static_cast<uint32_t>(vm::info(decode(program_.code(), t.pc).instruction.opcode).words);
+}
+
+void Machine::raise(int task, uint8_t number, const char* reason) {
+  fault_ = {number, static_cast<uint8_t>(task), context(task).pc, reason};
+  stop_all();
+}
+
+// Executes the command at t.pc. Stop::Budget means: go on.
+Stop Machine::execute(int task, TaskContext& t) {
+  const Decoded decoded = decode(program_.code(), t.pc);
+  const Instruction& command = decoded.instruction;
+  const int32_t a = command.operands[0];
+  const int32_t b = command.operands[1];
+  const auto ha = [&]() -> int32_t& { return h_[static_cast<size_t>(a)]; };
+  const auto hb = [&]() -> int32_t& { return h_[static_cast<size_t>(b)]; };
+  const auto is_variable = [&](int32_t number) { return bits(number) < program_.limits().variables; };
+  const auto fail = [&](uint8_t number, const char* reason) {
+    raise(task, number, reason);
+    return Stop::Faulted;
+  };
+  const auto branch = [&](bool condition) {
+    t.pc = condition ? bits(command.operands[2]) : t.pc + decoded.words;
+    return Stop::Budget;
+  };
+  const auto call = [&](int32_t target) {
+    if (t.depth == program_.limits().call_depth || t.depth == kMaxCallDepth)
+      return fail(kFaultIndexOverflow, "calls are nested deeper than the unit allows");
+    t.calls[t.depth++] = t.pc + decoded.words;
+    t.pc = bits(target);
+    return Stop::Budget;
+  };
+  static constexpr const char* kDivision = "division by zero";
+  static constexpr const char* kNoVariable = "the unit has no variable with this number";
+
+  switch (command.opcode) {
+    case Opcode::Nop: break;
+    case Opcode::End: t.state = TaskState::Stopped; return Stop::Ended;
+    case Opcode::Ret:
+      if (t.depth == 0) {
+        t.state = TaskState::Stopped;
+        return Stop::Ended;
+      }
+      t.pc = t.calls[--t.depth];
+      return Stop::Budget;
+    case Opcode::Call: return call(a);
+
+    case Opcode::Jmp: t.pc = bits(a); return Stop::Budget;
+    case Opcode::JmpEqHH: return branch(ha() == hb());
+    case Opcode::JmpNeHH: return branch(ha() != hb());
+    case Opcode::JmpLtHH: return branch(ha() < hb());
+    case Opcode::JmpLeHH: return branch(ha() <= hb());
+    case Opcode::JmpGtHH: return branch(ha() > hb());
+    case Opcode::JmpGeHH: return branch(ha() >= hb());
+    case Opcode::JmpEqHK: return branch(ha() == b);
+    case Opcode::JmpNeHK: return branch(ha() != b);
+    case Opcode::JmpLtHK: return branch(ha() < b);
+    case Opcode::JmpLeHK: return branch(ha() <= b);
+    case Opcode::JmpGtHK: return branch(ha() > b);
+    case Opcode::JmpGeHK: return branch(ha() >= b);
+
+    case Opcode::SetHH: ha() = hb(); break;
+    case Opcode::SetHK: ha() = b; break;
+    case Opcode::SetiStore:
+      if (!is_variable(ha())) return fail(kFaultIllop, kNoVariable);
+      h_[bits(ha())] = hb();
+      break;
+    case Opcode::SetiLoad:
+      if (!is_variable(hb())) return fail(kFaultIllop, kNoVariable);
+      ha() = h_[bits(hb())];
+      break;
+    case Opcode::Copy: {
+      const auto* from = h_.data() + b;
+      auto* to = h_.data() + a;
+      const int32_t count = command.operands[2];
+      if (to < from)
+        std::copy(from, from + count, to);
+      else
+        std::copy_backward(from, from + count, to + count);
+      break;
+    }
+
+    case Opcode::AddHH: ha() = add(ha(), hb()); break;
+    case Opcode::SubHH: ha() = subtract(ha(), hb()); break;
+    case Opcode::MulHH: ha() = multiply(ha(), hb()); break;
+    case Opcode::DivHH:
+      if (hb() == 0) return fail(kFaultIllop, kDivision);
+      ha() = divide(ha(), hb());
+      break;
+    case Opcode::ModHH:
+      if (hb() == 0) return fail(kFaultIllop, kDivision);
+      ha() = remainder(ha(), hb());
+      break;
+    case Opcode::AndHH: ha() &= hb(); break;
+    case Opcode::OrHH: ha() |= hb(); break;
+    case Opcode::XorHH: ha() ^= hb(); break;
+    case Opcode::ShlHH: ha() = shift_left(ha(), hb()); break;
+    case Opcode::ShrHH: ha() = shift_right(ha(), hb()); break;
+    case Opcode::AshrHH: ha() = shift_right_sign(ha(), hb()); break;
+    case Opcode::NotH: ha() = ~hb(); break;
+    case Opcode::AddHK: ha() = add(ha(), b); break;
+    case Opcode::SubHK: ha() = subtract(ha(), b); break;
+    case Opcode::MulHK: ha() = multiply(ha(), b); break;
+    case Opcode::DivHK:
+      if (b == 0) return fail(kFaultIllop, kDivision);
+      ha() = divide(ha(), b);
+      break;
+    case Opcode::ModHK:
+      if (b == 0) return fail(kFaultIllop, kDivision);
+      ha() = remainder(ha(), b);
+      break;
+    case Opcode::AndHK: ha() &= b; break;
+    case Opcode::OrHK: ha() |= b; break;
+    case Opcode::XorHK: ha() ^= b; break;
+    case Opcode::ShlHK: ha() = shift_left(ha(), b); break;
+    case Opcode::ShrHK: ha() = shift_right(ha(), b); break;
+    case Opcode::AshrHK: ha() = shift_right_sign(ha(), b); break;
+
+    case Opcode::BitSet: ha() = set_bit(ha(), b, true); break;
+    case Opcode::BitClear: ha() = set_bit(ha(), b, false); break;
+    case Opcode::BitMove:
+    case Opcode::BitMoveNeg: {
+      const bool source = test_bit(h_[static_cast<size_t>(command.operands[2])], command.operands[3]);
+      ha() = set_bit(ha(), b, source == (command.opcode == Opcode::BitMove));
+      break;
+    }
+
+    case Opcode::WaitH:
+    case Opcode::WaitK: {
+      const int32_t ms = command.opcode == Opcode::WaitH ? ha() : a;
+      if (ms <= 0) break;  // nothing to wait for (ours)
+      t.wait_ms = bits(ms);
+      t.state = TaskState::Waiting;
+      return Stop::Waiting;
+    }
+
+    default: {  // everything else is the host's
+      const HostReply reply =
+          host_.execute == nullptr
+              ? HostReply{Answer::Fault, kFaultIllop, "the unit cannot carry out system commands"}
+              : host_.execute(host_.self, *this, task, command);
+      if (reply.answer == Answer::Fault) return fail(reply.fault, reply.reason);
+      if (t.state == TaskState::Stopped) return Stop::Ended;
+      if (t.commands == 0) return Stop::Budget;  // the command has started its own task anew
+      if (reply.answer == Answer::Wait) {
+        t.state = TaskState::Waiting;
+        return Stop::Waiting;
+      }
+      if (reply.answer == Answer::Taken) {
+        const OpcodeInfo& row = vm::info(command.opcode);
+        return call(command.operands[static_cast<size_t>(row.operand_count) - 1]);
+      }
+      break;
+    }
+  }
+  t.pc += decoded.words;
+  return Stop::Budget;
+}
+
+}  // namespace ipos::vm

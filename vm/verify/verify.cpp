@@ -1,0 +1,140 @@
+// One pass over the code finds the starts of commands and checks operands; a second one checks that labels
+// hit starts. Structures of the communication commands are checked for their whole length.
+#include "vm/verify/verify.hpp"
+
+#include <array>
+
+namespace ipos::vm {
+namespace {
+
+constexpr RuleInfo kRules[] = {
+#define RULE(code, name, meaning) {Rule::name, code < 10 ? "V0" #code : "V" #code, meaning},
+#include "vm/verify/rules.def"
+};
+
+// Variables the structure of a command covers, from its operand on.
+uint32_t structure_size(const Instruction& instruction) {
+  switch (instruction.opcode) {
+    case Opcode::Movlnk: return 7;  // 1053 1610 p. 47
+    case Opcode::VarInt: return 7;  // IPOSplus p. 347, see stdlib/structures.def
+    case Opcode::Scom:              // 1053 1610 p. 54 to 56
+      switch (instruction.operands[0]) {
+        case 1: return 6;
+        case 2: return 4;
+        default: return 3;
+      }
+    default: return 1;
+  }
+}
+
+bool ends_flow(Flow flow) { return flow == Flow::Jump || flow == Flow::Return || flow == Flow::End; }
+
+class Checker {
+ public:
+  Checker(std::span<const uint32_t> code, const Limits& limits, std::span<Violation> out)
+      : code_(code), limits_(limits), out_(out) {}
+
+  uint32_t run() {
+    const size_t longest =
+        limits_.program_words < kMaxProgramWords ? limits_.program_words : kMaxProgramWords;
+    if (code_.empty()) report(Rule::EmptyCode, 0);
+    if (code_.size() > longest) report(Rule::TooLong, static_cast<uint32_t>(longest));
+    if (count_ != 0) return count_;
+    for (uint32_t at = 0; at < code_.size();) at += command(at);
+    for (uint32_t at = 0; at < code_.size();) at += labels(at);
+    return count_;
+  }
+
+ private:
+  // Checks the command at `at`; returns its length, 1 for what is none.
+  uint32_t command(uint32_t at) {
+    const Decoded decoded = decode(code_, at);
+    if (decoded.status == DecodeStatus::UnknownOpcode) return report(Rule::UnknownOpcode, at), 1;
+    if (decoded.status == DecodeStatus::Truncated) return report(Rule::TruncatedCommand, at), 1;
+    if (decoded.status == DecodeStatus::ReservedBits) report(Rule::ReservedBits, at);
+    starts_[at / 32] |= 1U << (at % 32);
+
+    const Instruction& instruction = decoded.instruction;
+    const OpcodeInfo& row = info(instruction.opcode);
+    bool first_variable = true;
+    for (size_t n = 0; n < static_cast<size_t>(row.operand_count); ++n) {
+      const int32_t value = instruction.operands[n];
+      switch (row.operands[n].kind) {
+        case OperandKind::Variable: {
+          const auto number = static_cast<uint32_t>(value);
+          const uint32_t size = instruction.opcode == Opcode::Copy
+                                    ? static_cast<uint32_t>(instruction.operands[2])
+                                : first_variable ? structure_size(instruction)
+                                                 : 1;
+          first_variable = false;
+          if (number >= limits_.variables)
+            report(Rule::VariableRange, at);
+          else if (size > limits_.variables - number)
+            report(Rule::StructureRange, at);
+          break;
+        }
+        case OperandKind::Bit:
+          if (value > 31) report(Rule::BitRange, at);
+          break;
+        case OperandKind::Count:
+          if (value < 1) report(Rule::StructureRange, at);
+          break;
+        case OperandKind::Keyword:
+          if (find_keyword(row.operands[n].keyword_set, value) == nullptr) report(Rule::UnknownKeyword, at);
+          break;
+        case OperandKind::Constant:
+        case OperandKind::Label:
+        case OperandKind::None: break;
+      }
+    }
+    if ((instruction.opcode == Opcode::Task2 && limits_.tasks < 2) ||
+        (instruction.opcode == Opcode::Task && limits_.tasks < 3) ||
+        (instruction.opcode == Opcode::VarInt && limits_.tasks < 3))
+      report(Rule::TaskMissing, at);
+    if (at + decoded.words == code_.size() && !ends_flow(row.flow)) report(Rule::RunsOffEnd, at);
+    return decoded.words;
+  }
+
+  uint32_t labels(uint32_t at) {
+    const Decoded decoded = decode(code_, at);
+    if (decoded.words == 0) return 1;
+    const OpcodeInfo& row = info(decoded.instruction.opcode);
+    for (size_t n = 0; n < static_cast<size_t>(row.operand_count); ++n) {
+      if (row.operands[n].kind != OperandKind::Label) continue;
+      const auto target = static_cast<uint32_t>(decoded.instruction.operands[n]);
+      if (target >= code_.size() || (starts_[target / 32] >> (target % 32) & 1U) == 0)
+        report(Rule::LabelTarget, at);
+    }
+    return decoded.words;
+  }
+
+  void report(Rule rule, uint32_t address) {
+    if (count_ < out_.size()) out_[count_] = {rule, address};
+    ++count_;
+  }
+
+  std::span<const uint32_t> code_;
+  const Limits& limits_;
+  std::span<Violation> out_;
+  std::array<uint32_t, kMaxProgramWords / 32> starts_{};
+  uint32_t count_ = 0;
+};
+
+}  // namespace
+
+std::span<const RuleInfo> rule_table() { return kRules; }
+
+const RuleInfo& info(Rule rule) {
+  for (const RuleInfo& row : kRules)
+    if (row.rule == rule) return row;
+  return kRules[0];
+}
+
+Verification verify(std::span<const uint32_t> code, const Limits& limits, std::span<Violation> out) {
+  Verification result;
+  result.violations = Checker(code, limits, out).run();
+  if (result.violations == 0) result.image = VerifiedImage(code, limits);
+  return result;
+}
+
+}  // namespace ipos::vm
