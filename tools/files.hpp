@@ -1,4 +1,5 @@
-// Reading and writing whole files; "-" is standard input or output. Trouble is a Failure with the system's reason.
+// Reading and writing whole files; "-" is standard input or output. Trouble is a Failure with the system's
+// reason.
 #pragma once
 
 #include <cstdint>

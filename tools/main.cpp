@@ -13,10 +13,13 @@ namespace {
 int run(int argc, char** argv) {
   using namespace ipos::tools;
   int exit_code = kGood;
-  CLI::App app{"Toolchain for IPOSplus-style drive programs: compile, run and test them without a drive.", "ipos"};
+  CLI::App app{"Toolchain for IPOSplus-style drive programs: compile, run and test them without a drive.",
+               "ipos"};
   app.set_version_flag("--version", "ipos " IPOS_VERSION);
   app.require_subcommand(1);
-  app.footer("Example:\n  ipos run examples/scom/scom.toml --for 1s --watch\nEvery verb has --help with an example.");
+  app.footer(
+      "Example:\n  ipos run examples/scom/scom.toml --for 1s --watch\nEvery verb has --help with an "
+      "example.");
   add_build(app, exit_code);
   add_asm(app, exit_code);
   add_disasm(app, exit_code);
@@ -26,7 +29,8 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);  // --help, --version
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success))
+      return app.exit(error);  // --help, --version
     fmt::print(stderr, "ipos: {}\n", error.what());
     const auto verbs = app.get_subcommands();
     fmt::print(stderr, "Try 'ipos {}--help'.\n", verbs.empty() ? "" : verbs.front()->get_name() + " ");

@@ -27,7 +27,8 @@ const stdlib::UnitType* unit_of(const CompileFlags& flags) {
   if (flags.unit.empty()) return nullptr;
   const stdlib::UnitType* unit = stdlib::find_unit(flags.unit);
   if (unit == nullptr || unit->tasks == 0)
-    throw Failure(kUsage, fmt::format("'{}' is no unit type with IPOS; known are md60a, compact, mc07, mdxb", flags.unit));
+    throw Failure(kUsage, fmt::format("'{}' is no unit type with IPOS; known are md60a, compact, mc07, mdxb",
+                                      flags.unit));
   return unit;
 }
 
@@ -38,7 +39,8 @@ compiler::CompileOptions options_of(const CompileFlags& flags) {
   options.read_file = try_read_file;
   options.unit = unit_of(flags);
   for (const std::string& warning : flags.warnings)
-    if (!options.warnings.apply(warning)) throw Failure(kUsage, fmt::format("there is no warning -W{}", warning));
+    if (!options.warnings.apply(warning))
+      throw Failure(kUsage, fmt::format("there is no warning -W{}", warning));
   return options;
 }
 
@@ -76,7 +78,8 @@ compiler::SourceLines source_lines(const vm::Image& image) {
 bool is_source(std::string_view path) {
   if (path.size() < 4) return false;
   std::string ending(path.substr(path.size() - 4));
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::toupper(c); });
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return std::toupper(c); });
   return ending == ".IPC";
 }
 
@@ -93,13 +96,16 @@ void print_diagnostics(const compiler::SourceMap& sources, const compiler::Diagn
   }
 }
 
-vm::Image compile_file(const std::string& path, const CompileFlags& flags) { return *compile(path, flags).image; }
+vm::Image compile_file(const std::string& path, const CompileFlags& flags) {
+  return *compile(path, flags).image;
+}
 
 vm::Image load_image(const std::string& path) {
   const std::string bytes = read_file(path);
   vm::ImageResult result = vm::read_image({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
   if (result.error != vm::ImageError::None)
-    throw Failure(kFindings, fmt::format("{}: image refused at byte {}: {}", path, result.offset, to_text(result.error)));
+    throw Failure(kFindings, fmt::format("{}: image refused at byte {}: {}", path, result.offset,
+                                         to_text(result.error)));
   return std::move(result.image);
 }
 
@@ -117,8 +123,10 @@ std::string emit_stage(const std::string& path, const CompileFlags& flags, const
                                                     stdlib::headers::embedded_files(), options.read_file};
     const std::string text =
         stage == "tokens"
-            ? compiler::print_tokens(sources, main, compiler::preprocess(sources, main, preprocessing, diagnostics))
-            : compiler::ast::print(compiler::parse_program(sources, main, preprocessing, diagnostics), sources);
+            ? compiler::print_tokens(sources, main,
+                                     compiler::preprocess(sources, main, preprocessing, diagnostics))
+            : compiler::ast::print(compiler::parse_program(sources, main, preprocessing, diagnostics),
+                                   sources);
     print_diagnostics(sources, diagnostics, flags.diagnostics);
     if (diagnostics.has_errors()) throw Failure(kBadInput, "");
     return text;

@@ -10,8 +10,9 @@
 namespace ipos::tools {
 
 double load_percent(const runtime::LineLoad& load) {
-  return load.elapsed_bits == 0 ? 0.0
-                                : 100.0 * static_cast<double>(load.busy_bits) / static_cast<double>(load.elapsed_bits);
+  return load.elapsed_bits == 0
+             ? 0.0
+             : 100.0 * static_cast<double>(load.busy_bits) / static_cast<double>(load.elapsed_bits);
 }
 
 std::string text_report(runtime::Plant& plant, const WatchChoice& watch) {
@@ -26,8 +27,9 @@ std::string text_report(runtime::Plant& plant, const WatchChoice& watch) {
   }
   for (const auto& line : plant.lines()) {
     const runtime::LineLoad load = line->load(plant.now());
-    text += fmt::format("{}: {} frames in {:.3f} s, bus load {:.2f} % of {} baud\n", line->name(), load.frames,
-                        static_cast<double>(plant.now()) / 1e9, load_percent(load), line->baud());
+    text +=
+        fmt::format("{}: {} frames in {:.3f} s, bus load {:.2f} % of {} baud\n", line->name(), load.frames,
+                    static_cast<double>(plant.now()) / 1e9, load_percent(load), line->baud());
   }
   return text;
 }
@@ -51,8 +53,10 @@ std::string json_report(runtime::Plant& plant, const WatchChoice& watch) {
   report["buses"] = ordered_json::array();
   for (const auto& line : plant.lines()) {
     const runtime::LineLoad load = line->load(plant.now());
-    report["buses"].push_back(
-        {{"name", line->name()}, {"kind", "can"}, {"frames", load.frames}, {"load_percent", load_percent(load)}});
+    report["buses"].push_back({{"name", line->name()},
+                               {"kind", "can"},
+                               {"frames", load.frames},
+                               {"load_percent", load_percent(load)}});
   }
   return report.dump() + "\n";
 }

@@ -29,9 +29,11 @@ int build(const BuildFlags& flags) {
     fmt::print("{}", dump_image(image));
     return kGood;
   }
-  if (!verify_image(flags.file, image)) throw Failure(kInternal, "the compiler made an image the verifier refuses");
-  const std::string output =
-      flags.output.empty() ? std::filesystem::path(flags.file).replace_extension(".ipx").string() : flags.output;
+  if (!verify_image(flags.file, image))
+    throw Failure(kInternal, "the compiler made an image the verifier refuses");
+  const std::string output = flags.output.empty()
+                                 ? std::filesystem::path(flags.file).replace_extension(".ipx").string()
+                                 : flags.output;
   write_file(output, vm::write_image(image));
   return kGood;
 }
@@ -41,7 +43,8 @@ int build(const BuildFlags& flags) {
 void add_compile_options(CLI::App& verb, CompileFlags& flags) {
   verb.add_option("-I", flags.include_dirs, "folder for #include")->allow_extra_args(false);
   verb.add_option("-D", flags.defines, "NAME=VALUE, as #define")->allow_extra_args(false);
-  verb.add_option("-W", flags.warnings, "warning by name: -Wunused-variable, -Wno-..., -Werror")->allow_extra_args(false);
+  verb.add_option("-W", flags.warnings, "warning by name: -Wunused-variable, -Wno-..., -Werror")
+      ->allow_extra_args(false);
   verb.add_option("--unit", flags.unit, "unit type: md60a, compact, mc07 or mdxb");
   verb.add_option("--diagnostics", flags.diagnostics, "text, json or sarif")
       ->check(CLI::IsMember({"text", "json", "sarif"}));

@@ -49,7 +49,8 @@ runtime::PlantFile plant_of(const RunFlags& flags) {
   if (is_plant(flags.file)) {
     runtime::PlantFileResult result = runtime::read_plant_file(read_file(flags.file));
     for (const runtime::PlantError& error : result.errors)
-      fmt::print(stderr, "{}:{}:{}: error: {}\n", flags.file, error.place.line, error.place.column, error.text);
+      fmt::print(stderr, "{}:{}:{}: error: {}\n", flags.file, error.place.line, error.place.column,
+                 error.text);
     if (!result.errors.empty()) throw Failure(kBadInput, "");
     return std::move(result.plant);
   }
@@ -61,7 +62,8 @@ runtime::PlantFile plant_of(const RunFlags& flags) {
   return plant;
 }
 
-// Compiles or loads the programs of all stations; a station's unit decides for which unit a source is compiled.
+// Compiles or loads the programs of all stations; a station's unit decides for which unit a source is
+// compiled.
 std::vector<std::optional<vm::Image>> load_programs(runtime::PlantFile& plant, const RunFlags& flags) {
   std::vector<std::optional<vm::Image>> programs;
   for (runtime::StationConfig& station : plant.stations) {
@@ -71,19 +73,22 @@ std::vector<std::optional<vm::Image>> load_programs(runtime::PlantFile& plant, c
     }
     CompileFlags compile = flags.compile;
     if (station.unit != nullptr) compile.unit = station.unit->name;
-    const std::string path =
-        is_plant(flags.file) ? (fs::path(flags.file).parent_path() / station.program).string() : station.program;
+    const std::string path = is_plant(flags.file)
+                                 ? (fs::path(flags.file).parent_path() / station.program).string()
+                                 : station.program;
     if (is_plant(flags.file) && !fs::exists(path))
       throw Failure(kNoInput, fmt::format("{}:{}:{}: error: station '{}': there is no program {}", flags.file,
-                                          station.program_place.line, station.program_place.column, station.name, path));
+                                          station.program_place.line, station.program_place.column,
+                                          station.name, path));
     vm::Image image = load_program(path, compile);
     const stdlib::UnitType* unit = stdlib::find_unit(image.unit);
     if (unit == nullptr || unit->tasks == 0)
-      throw Failure(kFindings, fmt::format("{}: the image is for unit type {}, which runs no program", path, image.unit));
+      throw Failure(kFindings, fmt::format("{}: the image is for unit type {}, which runs no program", path,
+                                           image.unit));
     if (station.unit == nullptr) station.unit = unit;
     if (station.unit != unit)
-      throw Failure(kFindings, fmt::format("{}: the image is for unit {}, station '{}' is {}", path, unit->name,
-                                           station.name, station.unit->name));
+      throw Failure(kFindings, fmt::format("{}: the image is for unit {}, station '{}' is {}", path,
+                                           unit->name, station.name, station.unit->name));
     programs.emplace_back(std::move(image));
   }
   return programs;
@@ -116,7 +121,8 @@ class Pace {
     if (wall - last_shown_ < std::chrono::milliseconds(500)) return;
     last_shown_ = wall;
     shown_ = true;
-    fmt::print(stderr, "\r{:.1f} s of {:.1f} s", static_cast<double>(now) / 1e9, static_cast<double>(limit_) / 1e9);
+    fmt::print(stderr, "\r{:.1f} s of {:.1f} s", static_cast<double>(now) / 1e9,
+               static_cast<double>(limit_) / 1e9);
   }
 
   const RunFlags& flags_;
@@ -134,8 +140,8 @@ void print_journal(const runtime::Plant& plant, bool why) {
     const char* weight = entry.weight == runtime::Weight::Fault     ? "fault"
                          : entry.weight == runtime::Weight::Warning ? "warning"
                                                                     : "note";
-    fmt::print(stderr, "{}{}{}: {} (at {:.3f} ms)\n", entry.station, entry.station.empty() ? "" : ": ", weight,
-               entry.text, static_cast<double>(entry.time) / 1e6);
+    fmt::print(stderr, "{}{}{}: {} (at {:.3f} ms)\n", entry.station, entry.station.empty() ? "" : ": ",
+               weight, entry.text, static_cast<double>(entry.time) / 1e6);
   }
 }
 
@@ -144,8 +150,8 @@ size_t print_expectations(const runtime::Plant& plant, const std::string& file) 
   size_t failed = 0;
   const auto print = [&](const runtime::Expectation& expectation, const std::string& what) {
     ++failed;
-    fmt::print(stderr, "{}:{}:{}: expectation not met: {} of {} at {:.3f} ms: {}\n", file, expectation.place.line,
-               expectation.place.column, expectation.variable, expectation.station,
+    fmt::print(stderr, "{}:{}:{}: expectation not met: {} of {} at {:.3f} ms: {}\n", file,
+               expectation.place.line, expectation.place.column, expectation.variable, expectation.station,
                static_cast<double>(expectation.at) / 1e6, what);
   };
   for (const runtime::ExpectationResult& result : plant.results())
@@ -195,9 +201,8 @@ int run(const RunFlags& flags) {
     std::istringstream names(flags.watch);
     for (std::string name; std::getline(names, name, ',');) watch.names.push_back(name);
     for (const std::string& name : watch.names)
-      if (std::none_of(plant.stations().begin(), plant.stations().end(), [&](const auto& station) {
-            return !watch_rows(*station, {name}).empty();
-          }))
+      if (std::none_of(plant.stations().begin(), plant.stations().end(),
+                       [&](const auto& station) { return !watch_rows(*station, {name}).empty(); }))
         fmt::print(stderr, "ipos: warning: no station has a variable '{}'\n", name);
   }
   fmt::print("{}", flags.format == "json" ? json_report(plant, watch) : text_report(plant, watch));
@@ -208,7 +213,8 @@ int run(const RunFlags& flags) {
 }
 
 std::string check_duration(const std::string& text) {
-  return runtime::parse_duration(text) < 0 ? "'" + text + "' is no time; write for example 500ms or 1.5s" : "";
+  return runtime::parse_duration(text) < 0 ? "'" + text + "' is no time; write for example 500ms or 1.5s"
+                                           : "";
 }
 
 }  // namespace
@@ -219,7 +225,8 @@ void add_run(CLI::App& app, int& exit_code) {
   verb->add_option("FILE", flags->file, "source (.IPC), image (.ipx) or plant (.toml)")->required();
   verb->add_option("--for", flags->duration, "virtual time to run, for example 500ms; default 60s")
       ->check(CLI::Validator(check_duration, "TIME"));
-  verb->add_option("--until", flags->until, "'end': stop when every program has ended")->check(CLI::IsMember({"end"}));
+  verb->add_option("--until", flags->until, "'end': stop when every program has ended")
+      ->check(CLI::IsMember({"end"}));
   verb->add_option("--speed", flags->speed, "commands per ms of every task, instead of P938 and P939")
       ->check(CLI::Range(1U, 1'000'000U));
   verb->add_flag("--watch{*}", flags->watch, "show named variables at the end, all or --watch=NAME,...");

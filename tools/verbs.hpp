@@ -1,5 +1,5 @@
-// The verbs of the command line, one file each. Every function adds its subcommand and what it does to the app; the
-// exit code of the verb that ran is stored in `exit_code`.
+// The verbs of the command line, one file each. Every function adds its subcommand and what it does to the
+// app; the exit code of the verb that ran is stored in `exit_code`.
 #pragma once
 
 #include <CLI/CLI.hpp>

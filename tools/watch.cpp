@@ -34,7 +34,8 @@ std::vector<WatchRow> watch_rows(const runtime::Station& station, const std::vec
     for (const vm::Symbol& symbol : symbols)
       if (symbol.name == name || symbol.name.starts_with(name + ".")) add_symbol(station, symbol, rows);
     if (rows.size() != before) continue;
-    if (const auto number = station.find_variable(name)) rows.push_back({name, *number, station.variable(*number), false});
+    if (const auto number = station.find_variable(name))
+      rows.push_back({name, *number, station.variable(*number), false});
   }
   return rows;
 }

@@ -73,6 +73,7 @@ class Assembler {
       begin = end + 1;
     }
     resolve();
+    if (!failed_) check_tables();
     if (failed_) return std::nullopt;
     return std::move(image_);
   }
@@ -305,10 +306,12 @@ class Assembler {
       if (ok) {
         references_.push_back({*target, true, image_.functions.size()});
         image_.functions.push_back({*function, 0});
+        function_spans_.push_back(name_span);
       }
     } else if (name == "line") {
       form = "line [@ADDRESS] FILE LINE COLUMN";
       ok = line_entry(line);
+      if (ok) line_spans_.push_back(name_span);
     } else {
       return error(Diag::AsmUnknownDirective, name_span, {name});
     }
@@ -344,7 +347,7 @@ class Assembler {
     uint64_t count = 1;
     if (!line.done()) {
       const auto number = line.decimal();
-      if (!number || *number > 0xFFFF || !line.done()) return false;
+      if (!number || *number == 0 || *number > 0xFFFF || !line.done()) return false;
       count = *number;
     }
     image_.symbols.push_back({*name, static_cast<uint16_t>(*variable), static_cast<uint16_t>(count)});
@@ -386,9 +389,26 @@ class Assembler {
     }
   }
 
+  // What the image's reader will demand of its tables (docs/isa.md).
+  void check_tables() {
+    for (size_t n = 0; n < image_.functions.size(); ++n)
+      if (image_.functions[n].address >= image_.code.size())
+        error(Diag::AsmNumberRange, function_spans_[n], {"the address of a code word"});
+    for (size_t n = 0; n < image_.lines.size(); ++n) {
+      const vm::LineEntry& entry = image_.lines[n];
+      if (entry.file >= image_.files.size())
+        error(Diag::AsmNumberRange, line_spans_[n], {"that of a .file directive, counted from 0"});
+      else if (entry.address >= image_.code.size() || (n > 0 && entry.address < image_.lines[n - 1].address))
+        error(Diag::AsmNumberRange, line_spans_[n],
+              {"the address of a code word, not before that of the last .line"});
+    }
+  }
+
   const SourceFile& file_;
   Diagnostics& diagnostics_;
   vm::Image image_;
+  std::vector<Span> function_spans_;
+  std::vector<Span> line_spans_;
   std::map<uint64_t, uint32_t> labels_;
   std::vector<Reference> references_;
   bool unit_set_ = false;

@@ -3,6 +3,7 @@
 //   R  JMP to RET or END         -> RET or END
 //   I  branch over a JMP         -> the inverse branch to the target of the JMP
 //   N  jump to the next command  -> nothing (comparing changes nothing)
+//   S  branch in front of a JMP to the same place -> nothing
 //   U  command nobody reaches    -> nothing
 #include "compiler/codegen/peephole.hpp"
 
@@ -105,7 +106,10 @@ class Optimizer {
         command.label = code_.commands[n + 1].label;
         gone_[n + 1] = true;
       }
-      if (target(command) == n + 1) gone_[n] = true;
+      const bool same_way = is_branch(command) && n + 1 < code_.commands.size() && !gone_[n + 1] &&
+                            is_jump(code_.commands[n + 1]) &&
+                            target(code_.commands[n + 1]) == target(command);
+      if (target(command) == n + 1 || same_way) gone_[n] = true;
     }
   }
 

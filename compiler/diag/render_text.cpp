@@ -22,8 +22,9 @@ class TextRenderer {
   TextRenderer(const SourceMap& map, bool color) : map_(map), colors_(color ? kAnsi : kPlain) {}
 
   void diagnostic(const Diagnostic& diagnostic) {
-    const std::string code(info(diagnostic.diag).code);
-    message(diagnostic.span, diagnostic.severity, diagnostic.text, " [" + code + "]");
+    const DiagInfo& row = info(diagnostic.diag);
+    const std::string flag = row.flag.empty() ? "" : fmt::format(", -W{}", row.flag);
+    message(diagnostic.span, diagnostic.severity, diagnostic.text, fmt::format(" [{}{}]", row.code, flag));
     for (const Note& note : all_notes(diagnostic, map_)) message(note.span, Severity::Note, note.text, "");
   }
 

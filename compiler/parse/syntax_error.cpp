@@ -114,7 +114,8 @@ bool TokenFeed::explain_inside(const Expected& expected) {
   if (found().kind == TokenKind::LeftBrace && semicolon_fits_ && previous.kind == TokenKind::RightParen &&
       before(2).kind == TokenKind::LeftParen && before(3).kind == TokenKind::Name) {
     if (!brace_reported_)
-      diagnostics_.report(Diag::NestedFunction, before(3).span, {std::string(before(3).text)});
+      diagnostics_.report(Diag::NestedFunction, before(3).span, {std::string(before(3).text)})
+          .notes.push_back({tokens_[open_.back().token].span, "this '{' is still open"});
     brace_reported_ = true;
     return true;
   }

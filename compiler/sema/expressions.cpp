@@ -210,6 +210,14 @@ ExprPtr ExpressionChecker::copy_structure(const ast::Assign& node, Object target
     context_.diagnostics.report(Diag::NotAValue, at, {object.text, "copy its members one by one"});
     return false;
   };
+  const bool whole = std::holds_alternative<ast::Name>(node.value->node) ||
+                     std::holds_alternative<ast::Member>(node.value->node) ||
+                     std::holds_alternative<ast::Index>(node.value->node);
+  if (!whole) {
+    context_.diagnostics.report(Diag::NotAValue, node.target->span,
+                                {target.text, "one of its members or elements has"});
+    return nullptr;
+  }
   auto source = object(*node.value);
   if (!source) return nullptr;
   if (source->type.structure != target.type.structure || source->type.count != target.type.count) {

@@ -42,10 +42,6 @@ enum Attribute : int32_t {
 
 constexpr int32_t bits(int64_t number) { return static_cast<int32_t>(static_cast<uint32_t>(number)); }
 
-bool is_write(ParameterService service) {
-  return service == ParameterService::Write || service == ParameterService::WriteVolatile;
-}
-
 }  // namespace
 
 ParameterStore::ParameterStore(const stdlib::UnitType& unit, DriveOptions options)

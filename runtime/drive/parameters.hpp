@@ -16,22 +16,12 @@
 
 #include "stdlib/parameters.hpp"
 #include "stdlib/return_codes.hpp"
+#include "stdlib/services.hpp"
 #include "stdlib/unit_types.hpp"
 
 namespace ipos::runtime {
 
-// Codes of management bits 0-3; 9..15 are refused.
-enum class ParameterService : uint8_t {
-  None,
-  Read,
-  Write,  // also into EEPROM
-  WriteVolatile,
-  ReadMinimum,
-  ReadMaximum,
-  ReadDefault,
-  ReadScale,      // bits 8-15 quantity index, 0-7 conversion index
-  ReadAttribute,  // bits 16-31 next index, 0 at the end; 0-15 attributes
-};
+using ParameterService = stdlib::Service;
 
 using ParameterReply = tl::expected<int32_t, stdlib::ReturnCode>;
 

@@ -23,8 +23,9 @@ std::optional<std::string> DriveServer::set_parameter(std::string_view parameter
     return fmt::format("unit {} has no parameter {}", parameters_.unit().name, parameter);
   const ParameterReply reply = parameters_.preset(row->index, value);
   if (reply) return std::nullopt;
-  return fmt::format("{} = {} is refused: {}", parameter, value,
-                     parameters_.explain(static_cast<uint8_t>(ParameterService::Write), row->index, value, reply.error()));
+  return fmt::format(
+      "{} = {} is refused: {}", parameter, value,
+      parameters_.explain(static_cast<uint8_t>(ParameterService::Write), row->index, value, reply.error()));
 }
 
 uint16_t DriveServer::index_of(std::string_view number) const {

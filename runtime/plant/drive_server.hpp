@@ -1,5 +1,6 @@
-// The drive of a station as the rest of the station sees it: it serves the bus's parameter and process data telegrams
-// and MOVLNK address 253 from the drive's parameters and unit state, and opens the areas that belong to the program.
+// The drive of a station as the rest of the station sees it: it serves the bus's parameter and process data
+// telegrams and MOVLNK address 253 from the drive's parameters and unit state, and opens the areas that
+// belong to the program.
 #pragma once
 
 #include <optional>
@@ -47,20 +48,23 @@ class DriveServer final : public ParameterServer, public ProcessDataServer {
   void synchronize(Time now) override;
 
  private:
-  // IPOS variables, index 11000 + n. They are there without a program, too. Volatile and non-volatile writes are the
-  // same until there is a non-volatile memory.
+  // IPOS variables, index 11000 + n. They are there without a program, too. Volatile and non-volatile writes
+  // are the same until there is a non-volatile memory.
   class Variables final : public IndexWindow {
    public:
     explicit Variables(uint16_t count) : without_program_(count) {}
     void connect(vm::Machine& machine) { h_ = machine.variables(); }
     ParameterReply read(uint16_t offset) override { return h_[offset]; }
-    ParameterReply write(uint16_t offset, int32_t value, bool /*nonvolatile*/) override { return h_[offset] = value; }
+    ParameterReply write(uint16_t offset, int32_t value, bool /*nonvolatile*/) override {
+      return h_[offset] = value;
+    }
 
    private:
     std::vector<int32_t> without_program_;
     std::span<int32_t> h_ = without_program_;
   };
-  // IPOS program code, index 16000 + n: readable, words behind the program are 0. Writing is refused while it runs.
+  // IPOS program code, index 16000 + n: readable, words behind the program are 0. Writing is refused while it
+  // runs.
   class Code final : public IndexWindow {
    public:
     void connect(const vm::Machine& machine) { code_ = machine.program().code(); }

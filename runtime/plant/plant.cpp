@@ -16,9 +16,10 @@ std::vector<PlantError> verify_program(const StationConfig& station, const vm::I
   std::vector<PlantError> errors;
   for (size_t n = 0; n < std::min<size_t>(result.violations, violations.size()); ++n) {
     const vm::RuleInfo& rule = vm::info(violations[n].rule);
-    errors.push_back({station.program_place, fmt::format("station '{}', unit {}: word {} of {}: {} [{}]", station.name,
-                                                         station.unit->name, violations[n].address, station.program,
-                                                         rule.meaning, rule.code)});
+    errors.push_back(
+        {station.program_place,
+         fmt::format("station '{}', unit {}: word {} of {}: {} [{}]", station.name, station.unit->name,
+                     violations[n].address, station.program, rule.meaning, rule.code)});
   }
   return errors;
 }
@@ -28,7 +29,8 @@ std::vector<PlantError> verify_program(const StationConfig& station, const vm::I
 Plant::Plant(PlantFile file, std::vector<std::optional<vm::Image>> programs, std::optional<vm::Rates> rates,
              std::vector<PlantError>& errors)
     : file_(std::move(file)) {
-  // Sources order the events of one moment: first the lines, then the stations, each in the order of the file.
+  // Sources order the events of one moment: first the lines, then the stations, each in the order of the
+  // file.
   uint32_t source = 0;
   for (const BusConfig& bus : file_.buses) {
     lines_.push_back(std::make_unique<CanLine>(queue_, source++, bus.name, bus.baud));
@@ -43,7 +45,8 @@ Plant::Plant(PlantFile file, std::vector<std::optional<vm::Image>> programs, std
       errors.insert(errors.end(), refused.begin(), refused.end());
     }
     stations_.push_back(std::make_unique<Station>(queue_, source++, config, std::move(programs[n]),
-                                                  line == lines_.end() ? nullptr : line->get(), journal_, rates));
+                                                  line == lines_.end() ? nullptr : line->get(), journal_,
+                                                  rates));
     for (const ParameterSetting& setting : config.parameters)
       if (const auto refused = stations_.back()->set_parameter(setting))
         errors.push_back({setting.place, fmt::format("station '{}': {}", config.name, *refused)});
@@ -63,8 +66,8 @@ void Plant::resolve_expectations(std::vector<PlantError>& errors) {
     if (variable)
       due_.push_back({&expectation, station->get(), *variable});
     else
-      errors.push_back({expectation.place, fmt::format("station '{}' has no variable '{}'", expectation.station,
-                                                       expectation.variable)});
+      errors.push_back({expectation.place, fmt::format("station '{}' has no variable '{}'",
+                                                       expectation.station, expectation.variable)});
   }
   std::stable_sort(due_.begin(), due_.end(),
                    [](const Due& a, const Due& b) { return a.expectation->at < b.expectation->at; });
@@ -88,7 +91,8 @@ bool Plant::run_until(Time end, const std::function<bool(Time)>& keep_going) {
   return true;
 }
 
-// Runs up to each expectation that falls due before `until` and checks it, after all that happens at its time.
+// Runs up to each expectation that falls due before `until` and checks it, after all that happens at its
+// time.
 void Plant::check_expectations(Time until) {
   for (; next_due_ < due_.size() && due_[next_due_].expectation->at < until; ++next_due_) {
     const Due& due = due_[next_due_];
@@ -99,11 +103,13 @@ void Plant::check_expectations(Time until) {
 }
 
 bool Plant::programs_over() const {
-  return std::all_of(stations_.begin(), stations_.end(), [](const auto& station) { return station->program_over(); });
+  return std::all_of(stations_.begin(), stations_.end(),
+                     [](const auto& station) { return station->program_over(); });
 }
 
 bool Plant::has_fault() const {
-  return std::any_of(stations_.begin(), stations_.end(), [](const auto& station) { return station->fault() != 0; });
+  return std::any_of(stations_.begin(), stations_.end(),
+                     [](const auto& station) { return station->fault() != 0; });
 }
 
 void Plant::on_frame(const CanLine& /*line*/, const FrameRecord& /*record*/) {}

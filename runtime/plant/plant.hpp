@@ -1,5 +1,5 @@
-// A plant: lines and stations on one virtual clock. Deterministic: the same plant file and programs give the same
-// run on any build.
+// A plant: lines and stations on one virtual clock. Deterministic: the same plant file and programs give the
+// same run on any build.
 #pragma once
 
 #include <functional>
@@ -31,8 +31,8 @@ class Plant final : private CanObserver {
 
   void add_observer(CanObserver& observer);
 
-  // Runs until `end`; expectations that fall due are checked. Returns false when `keep_going` said so: it is asked
-  // once a millisecond of virtual time.
+  // Runs until `end`; expectations that fall due are checked. Returns false when `keep_going` said so: it is
+  // asked once a millisecond of virtual time.
   bool run_until(Time end, const std::function<bool(Time)>& keep_going = {});
 
   bool programs_over() const;

@@ -8,10 +8,48 @@
 #include <algorithm>
 #include <charconv>
 #include <initializer_list>
+#include <optional>
 #include <set>
 
 namespace ipos::runtime {
 namespace {
+
+// The first byte beyond ASCII outside of texts and comments, where TOML allows none; the parser must not see
+// it (toml++ 3.3 has undefined behaviour there). Nothing when there is none.
+std::optional<FilePlace> stray_character(std::string_view text) {
+  FilePlace place{1, 0};
+  std::string_view quote;  // of the text we are in
+  bool comment = false;
+  for (size_t at = 0; at < text.size(); ++at) {
+    ++place.column;
+    const char c = text[at];
+    if (c == '\n') {
+      place = {place.line + 1, 0};
+      comment = false;
+      if (quote.size() == 1) quote = {};  // such a text ends with its line; the parser reports it
+    } else if (comment) {
+      continue;
+    } else if (!quote.empty()) {
+      if (c == '\\' && quote[0] == '"' && at + 1 < text.size() && text[at + 1] != '\n') {
+        ++at, ++place.column;
+      } else if (text.substr(at).starts_with(quote)) {
+        at += quote.size() - 1;
+        place.column += static_cast<uint32_t>(quote.size() - 1);
+        quote = {};
+      }
+    } else if (c == '"' || c == '\'') {
+      const std::string_view rest = text.substr(at);
+      quote = rest.substr(0, rest.starts_with("\"\"\"") || rest.starts_with("'''") ? 3 : 1);
+      at += quote.size() - 1;
+      place.column += static_cast<uint32_t>(quote.size() - 1);
+    } else if (c == '#') {
+      comment = true;
+    } else if (static_cast<unsigned char>(c) >= 0x80 && !(at < 3 && text.starts_with("\xEF\xBB\xBF"))) {
+      return place;
+    }
+  }
+  return std::nullopt;
+}
 
 FilePlace place_of(const toml::source_region& region) { return {region.begin.line, region.begin.column}; }
 
@@ -19,6 +57,10 @@ FilePlace place_of(const toml::source_region& region) { return {region.begin.lin
 class Reader {
  public:
   PlantFileResult read(std::string_view text) {
+    if (const auto place = stray_character(text)) {
+      error(*place, "this character may only stand in a text or a comment");
+      return std::move(result_);
+    }
     const toml::parse_result parsed = toml::parse(text);
     if (!parsed) {
       result_.errors.push_back(
@@ -44,8 +86,13 @@ class Reader {
                   std::initializer_list<std::string_view> keys) {
     for (const auto& [key, value] : table) {
       if (std::find(keys.begin(), keys.end(), key.str()) != keys.end()) continue;
-      error(place_of(key.source()),
-            fmt::format("unknown key '{}' in {}; known are {}", key.str(), what, fmt::join(keys, ", ")));
+      if (key.str() == "port" || key.str() == "rs485")
+        error(place_of(key.source()),
+              fmt::format("'{}': real ports and RS-485 lines are not there yet, see docs/limits.md",
+                          key.str()));
+      else
+        error(place_of(key.source()),
+              fmt::format("unknown key '{}' in {}; known are {}", key.str(), what, fmt::join(keys, ", ")));
     }
   }
 

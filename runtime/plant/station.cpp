@@ -33,8 +33,9 @@ vm::Limits limits_of(const stdlib::UnitType& unit) {
   return {unit.variables, unit.program_words, unit.tasks, unit.call_depth};
 }
 
-Station::Station(EventQueue& queue, uint32_t source, const StationConfig& config, std::optional<vm::Image> program,
-                 CanLine* line, Journal& journal, std::optional<vm::Rates> rates)
+Station::Station(EventQueue& queue, uint32_t source, const StationConfig& config,
+                 std::optional<vm::Image> program, CanLine* line, Journal& journal,
+                 std::optional<vm::Rates> rates)
     : queue_(queue),
       source_(source),
       config_(config),
@@ -68,15 +69,17 @@ void Station::connect_sbus() {
   const auto baud_code = static_cast<size_t>(drive_.value(p.baud));
   const uint32_t baud = kBaudRates[std::min(baud_code, kBaudRates.size() - 1)];
   const LinePort port(*line_, line_->attach(config_.name, baud, *this));
-  const SlaveSettings settings{static_cast<uint8_t>(drive_.value(p.address)), static_cast<uint8_t>(drive_.value(p.group)),
-                               static_cast<uint16_t>(drive_.value(p.sync_id) / 1000), false};  // coded in thousandths
+  const SlaveSettings settings{
+      static_cast<uint8_t>(drive_.value(p.address)), static_cast<uint8_t>(drive_.value(p.group)),
+      static_cast<uint16_t>(drive_.value(p.sync_id) / 1000), false};  // coded in thousandths
   // The port's parts keep a reference to its sender, so it must not move.
   sbus_ = std::make_unique<SbusPort>(queue_, source_, port, settings, drive_, *config_.unit, baud,
                                      static_cast<SlaveObserver&>(*this));
 }
 
 Station::SbusPort::SbusPort(EventQueue& queue, uint32_t source, LinePort port, SlaveSettings settings,
-                            DriveServer& drive, const stdlib::UnitType& unit, uint32_t baud, SlaveObserver& observer)
+                            DriveServer& drive, const stdlib::UnitType& unit, uint32_t baud,
+                            SlaveObserver& observer)
     : sender(port),
       slave(queue, source, sender, kSlaveTag, settings, {}, drive, drive, &observer),
       objects(unit, baud, sender, kObjectTags),
@@ -160,8 +163,9 @@ std::optional<uint32_t> Station::find_variable(std::string_view name) const {
 
 std::string Station::source_place(uint32_t address) const {
   if (!image_) return {};
-  const auto next = std::upper_bound(image_->lines.begin(), image_->lines.end(), address,
-                                     [](uint32_t at, const vm::LineEntry& entry) { return at < entry.address; });
+  const auto next =
+      std::upper_bound(image_->lines.begin(), image_->lines.end(), address,
+                       [](uint32_t at, const vm::LineEntry& entry) { return at < entry.address; });
   if (next == image_->lines.begin()) return {};
   const vm::LineEntry& entry = *(next - 1);
   return fmt::format("{}:{}:{}", image_->files[entry.file], entry.line, entry.column);

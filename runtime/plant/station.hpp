@@ -1,5 +1,6 @@
-// One station: the VM with its program, the drive with its parameters, and the ports to the buses. Everything that
-// happens in it happens in its millisecond tick or on the arrival of a frame; docs/cycle.md has the order.
+// One station: the VM with its program, the drive with its parameters, and the ports to the buses. Everything
+// that happens in it happens in its millisecond tick or on the arrival of a frame; docs/cycle.md has the
+// order.
 #pragma once
 
 #include <memory>
@@ -26,8 +27,8 @@ vm::Limits limits_of(const stdlib::UnitType& unit);
 
 class Station final : private CanNode, private EventTarget, private SlaveObserver {
  public:
-  // `line` is null for a station without SBus; `program` is empty for one without IPOS program. The config and the
-  // journal must outlive the station. Parameters of the config must be checked before (plant.cpp).
+  // `line` is null for a station without SBus; `program` is empty for one without IPOS program. The config
+  // and the journal must outlive the station. Parameters of the config must be checked before (plant.cpp).
   // The program must pass verify() for the unit.
   Station(EventQueue& queue, uint32_t source, const StationConfig& config, std::optional<vm::Image> program,
           CanLine* line, Journal& journal, std::optional<vm::Rates> rates);

@@ -1,5 +1,5 @@
-// What a user has to be told about a run: refused objects, silent stations, faults. The parts of a station write
-// here; the command line prints it.
+// What a user has to be told about a run: refused objects, silent stations, faults. The parts of a station
+// write here; the command line prints it.
 #pragma once
 
 #include <string>

@@ -30,10 +30,14 @@ MovilinkCommand::MovilinkCommand(EventQueue& queue, uint32_t source, FrameSender
                                  ParameterServer& own, ProcessDataServer& own_data)
     : own_(own), own_data_(own_data), master_(queue, source, sender, tag, kSbusReplyTimeout, *this) {}
 
-vm::HostReply MovilinkCommand::start(Time now, vm::Machine& machine, int task, uint32_t variable, std::string& why) {
+vm::HostReply MovilinkCommand::start(Time now, vm::Machine& machine, int task, uint32_t variable,
+                                     std::string& why) {
   const std::span<int32_t> h = machine.variables();
   const auto element = [&](Element n) { return h[variable + n]; };
-  Job job{&machine, task, variable, static_cast<uint32_t>(element(kDPointer)),
+  Job job{&machine,
+          task,
+          variable,
+          static_cast<uint32_t>(element(kDPointer)),
           {element(kAddress), element(kFormat), element(kService), element(kIndex), 0, {}}};
 
   const auto format = telegram_format(job.bus.format);
@@ -43,7 +47,8 @@ vm::HostReply MovilinkCommand::start(Time now, vm::Machine& machine, int task, u
     return {};
   }
   if (job.data >= h.size() || h.size() - job.data < data_size(*format))
-    return {vm::Answer::Fault, vm::kFaultIllop, "DPointer of MOVLNK does not lead to the variables of MLDATA"};
+    return {vm::Answer::Fault, vm::kFaultIllop,
+            "DPointer of MOVLNK does not lead to the variables of MLDATA"};
   job.bus.write_value = h[job.data + kWritePar];
   for (uint32_t n = 0; n < format->words; ++n) job.bus.output[n] = h[job.data + kPO1 + n];
 
@@ -97,8 +102,8 @@ SbusResult MovilinkCommand::serve_own(Time now, const SbusJob& job, TelegramForm
     const auto service = service_from_code(static_cast<uint32_t>(job.service));
     if (!service || *service == Service::None || job.index < 0 || job.index > 0xFF'FFFF)
       return refused(return_codes::kWrongManagement);
-    const auto value = own_.serve(
-        now, {*service, static_cast<uint16_t>(job.index), static_cast<uint8_t>(job.index >> 16), job.write_value});
+    const auto value = own_.serve(now, {*service, static_cast<uint16_t>(job.index),
+                                        static_cast<uint8_t>(job.index >> 16), job.write_value});
     if (!value) return refused(value.error());
     if (!is_write(*service)) result.read_value = *value;
   }

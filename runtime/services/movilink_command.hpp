@@ -1,5 +1,5 @@
-// The MOVLNK command of one unit (1053 1610 p. 47 to 49): reads its structure, exchanges over the bus or with the
-// unit itself, and stores the result. The calling task waits; the others run on.
+// The MOVLNK command of one unit (1053 1610 p. 47 to 49): reads its structure, exchanges over the bus or with
+// the unit itself, and stores the result. The calling task waits; the others run on.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,8 @@ class MovilinkCommand final : private SbusMasterClient {
   MovilinkCommand(EventQueue& queue, uint32_t source, FrameSender& sender, uint64_t tag, ParameterServer& own,
                   ProcessDataServer& own_data);
 
-  // Begins the exchange of the structure at `variable` for a task. Done: the result is stored already; Wait: the
-  // task is resumed when it is. `why` says why an exchange could not be begun.
+  // Begins the exchange of the structure at `variable` for a task. Done: the result is stored already; Wait:
+  // the task is resumed when it is. `why` says why an exchange could not be begun.
   vm::HostReply start(Time now, vm::Machine& machine, int task, uint32_t variable, std::string& why);
 
   void stop();  // program stop: pending exchanges are given up

@@ -1,5 +1,5 @@
-// The VM's host: carries the system commands of a program to the service that knows them. A command nothing here
-// knows ends in F10 with a reason, never in silence (docs/limits.md lists them).
+// The VM's host: carries the system commands of a program to the service that knows them. A command nothing
+// here knows ends in F10 with a reason, never in silence (docs/limits.md lists them).
 #pragma once
 
 #include "runtime/services/journal.hpp"
@@ -12,8 +12,8 @@ namespace ipos::runtime {
 class SystemCommands {
  public:
   // `objects` and `movilink` are null for a unit that is on no SBus.
-  SystemCommands(const EventQueue& clock, Journal& journal, std::string_view station, VariableObjects* objects,
-                 MovilinkCommand* movilink);
+  SystemCommands(const EventQueue& clock, Journal& journal, std::string_view station,
+                 VariableObjects* objects, MovilinkCommand* movilink);
 
   vm::Host host();
 

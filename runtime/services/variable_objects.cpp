@@ -46,7 +46,8 @@ bool is_movilink_identifier(uint32_t id, uint8_t address, uint8_t group) {
 
 }  // namespace
 
-VariableObjects::VariableObjects(const stdlib::UnitType& unit, uint32_t baud, FrameSender& sender, uint64_t first_tag)
+VariableObjects::VariableObjects(const stdlib::UnitType& unit, uint32_t baud, FrameSender& sender,
+                                 uint64_t first_tag)
     : unit_(unit), baud_(baud), sender_(sender), first_tag_(first_tag) {}
 
 void VariableObjects::set_addresses(uint8_t address, uint8_t group) {
@@ -63,13 +64,15 @@ bool VariableObjects::define(ObjectKind kind, uint32_t variable, std::span<int32
 
   const auto format = variable_format(header.format);
   if (!format) {
-    why = fmt::format("object {}: Format {:#x} is not 0..8 or 0x100..0x108; the object is not set up", header.object,
-                      static_cast<uint32_t>(header.format));
+    why = fmt::format("object {}: Format {:#x} is not 0..8 or 0x100..0x108; the object is not set up",
+                      header.object, static_cast<uint32_t>(header.format));
   } else if (header.data < 0 || static_cast<uint32_t>(header.data) + format->variables() > unit_.variables) {
     return false;
   } else if (usable(header, why)) {
     switch (kind) {
-      case ObjectKind::TransmitCyclic: *result = define_cyclic(header, *format, element(1), element(2), why); break;
+      case ObjectKind::TransmitCyclic:
+        *result = define_cyclic(header, *format, element(1), element(2), why);
+        break;
       case ObjectKind::TransmitAcyclic: send_acyclic(header, *format, variable, h); break;
       case ObjectKind::Receive: define_receive(header, *format, why); break;
     }
@@ -87,22 +90,24 @@ bool VariableObjects::usable(const Header& header, std::string& why) const {
   }
   const auto id = static_cast<uint32_t>(header.object);
   if (is_movilink_identifier(id, address_, group_)) {
-    why = fmt::format("object number {} is an identifier of the unit's own MOVILINK telegrams; the object is not set up",
-                      id);
+    why = fmt::format(
+        "object number {} is an identifier of the unit's own MOVILINK telegrams; the object is not set up",
+        id);
     return false;
   }
   return true;
 }
 
-int32_t VariableObjects::define_cyclic(const Header& header, VariableFormat format, int32_t cycle, int32_t offset,
-                                       std::string& why) {
+int32_t VariableObjects::define_cyclic(const Header& header, VariableFormat format, int32_t cycle,
+                                       int32_t offset, std::string& why) {
   const auto id = static_cast<uint32_t>(header.object);
   if (!cycle_allowed(cycle, unit_.generation)) {
     why = fmt::format("object {}: a cycle time of {} ms is not allowed; the object is not sent", id, cycle);
     return kWrongCycleTime;
   }
   if (!offset_allowed(offset, cycle, unit_.generation)) {
-    why = fmt::format("object {}: an offset of {} ms is not allowed with {} ms; the object is not sent", id, offset, cycle);
+    why = fmt::format("object {}: an offset of {} ms is not allowed with {} ms; the object is not sent", id,
+                      offset, cycle);
     return kWrongCycleTime;
   }
   const auto same = [id](const Cyclic& object) { return object.id == id; };
@@ -110,19 +115,22 @@ int32_t VariableObjects::define_cyclic(const Header& header, VariableFormat form
     why = fmt::format("object {} is already sent by this unit; the second definition is not used", id);
     return kWrongCycleTime;
   }
-  const auto of_class = std::count_if(cyclic_.begin(), cyclic_.end(),
-                                      [&](const Cyclic& object) { return is_fast(object.cycle) == is_fast(cycle); });
+  const auto of_class = std::count_if(cyclic_.begin(), cyclic_.end(), [&](const Cyclic& object) {
+    return is_fast(object.cycle) == is_fast(cycle);
+  });
   const int limit = is_fast(cycle) ? unit_.fast_objects : unit_.slow_objects;
   if (of_class >= limit) {
-    why = fmt::format("object {}: the unit has only {} transmit objects of {}; the object is not sent", id, limit,
-                      is_fast(cycle) ? "1 to 9 ms" : "10 ms and more");
+    why = fmt::format("object {}: the unit has only {} transmit objects of {}; the object is not sent", id,
+                      limit, is_fast(cycle) ? "1 to 9 ms" : "10 ms and more");
     return kTooManyObjects;
   }
-  const Cyclic object{id, cycle, offset, format, static_cast<uint32_t>(header.data), first_tag_ + cyclic_.size()};
+  const Cyclic object{
+      id, cycle, offset, format, static_cast<uint32_t>(header.data), first_tag_ + cyclic_.size()};
   const int32_t free = free_capacity(object);
   if (free < 0) {
-    why = fmt::format("object {}: the cyclic objects of this unit would load the bus beyond 70 %; the object is not sent",
-                      id);
+    why = fmt::format(
+        "object {}: the cyclic objects of this unit would load the bus beyond 70 %; the object is not sent",
+        id);
     return kBusOverload;
   }
   cyclic_.push_back(object);
@@ -149,7 +157,8 @@ void VariableObjects::define_receive(const Header& header, VariableFormat format
   else if (std::any_of(receive_.begin(), receive_.end(), same))
     why = fmt::format("object {} is already received by this unit; the second definition is not used", id);
   else if (receive_.size() >= unit_.receive_objects)
-    why = fmt::format("receive object {}: the unit has only {} receive objects; it is not used", id, unit_.receive_objects);
+    why = fmt::format("receive object {}: the unit has only {} receive objects; it is not used", id,
+                      unit_.receive_objects);
   else
     receive_.push_back({id, format, static_cast<uint32_t>(header.data)});
 }
@@ -194,8 +203,9 @@ bool VariableObjects::on_frame(const Frame& frame, std::span<int32_t> h, std::st
     if (object.id != frame.id || !is_plain(frame)) continue;
     const auto pair = frame_variables(frame, object.format);
     if (!pair) {
-      why = fmt::format("object {} came with {} bytes, its receive object has {}; its variables stay as they are",
-                        frame.id, frame.length, object.format.length);
+      why = fmt::format(
+          "object {} came with {} bytes, its receive object has {}; its variables stay as they are", frame.id,
+          frame.length, object.format.length);
       return false;
     }
     if (object.format.variables() > 0) h[object.data] = pair->low;

@@ -1,5 +1,5 @@
-// The variable telegrams of one unit: what _SBusCommDef sets up and _SBusCommOn starts (1053 1610 p. 51 to 61).
-// Time is an argument: tick() is called once a millisecond, after the tasks of the unit have run.
+// The variable telegrams of one unit: what _SBusCommDef sets up and _SBusCommOn starts (1053 1610 p. 51 to
+// 61). Time is an argument: tick() is called once a millisecond, after the tasks of the unit have run.
 #pragma once
 
 #include <cstdint>
@@ -33,8 +33,8 @@ class VariableObjects {
   // The identifiers closed to the unit's objects follow from its addresses (1053 1610 p. 51 to 53).
   void set_addresses(uint8_t address, uint8_t group);
 
-  // SCOM: copies the structure that begins at `variable` and stores its result. An object that is refused is not
-  // set up; `why` then says so. False: the data pointer names no variable of the unit (F10).
+  // SCOM: copies the structure that begins at `variable` and stores its result. An object that is refused is
+  // not set up; `why` then says so. False: the data pointer names no variable of the unit (F10).
   bool define(ObjectKind kind, uint32_t variable, std::span<int32_t> h, std::string& why);
 
   void start(int64_t tick);  // SCOMON in this millisecond
@@ -71,7 +71,8 @@ class VariableObjects {
     int32_t data;
   };
 
-  int32_t define_cyclic(const Header& header, VariableFormat format, int32_t cycle, int32_t offset, std::string& why);
+  int32_t define_cyclic(const Header& header, VariableFormat format, int32_t cycle, int32_t offset,
+                        std::string& why);
   void define_receive(const Header& header, VariableFormat format, std::string& why);
   void send_acyclic(const Header& header, VariableFormat format, uint32_t variable, std::span<int32_t> h);
   bool usable(const Header& header, std::string& why) const;

@@ -80,13 +80,13 @@ TEST(Assembler, SystemVariablesByBothNames) {
 TEST(Assembler, Directives) {
   const auto result = assemble_text(
       ".unit mdxb\n.file \"a b.IPC\"\n.symbol H420 Tr.ObjectNo\n.symbol H430 buf 10\n.function main M01\n"
-      ".line 0 3 5\nM01 : END\nWORD 0xFF\n.line @7 0 4 1\n");
+      ".line 0 3 5\nM01 : END\nWORD 0xFF\n.line @1 0 4 1\n");
   ASSERT_TRUE(result->image);
   EXPECT_EQ(4, result->image->unit);
   EXPECT_EQ((std::vector<std::string>{"a b.IPC"}), result->image->files);
   EXPECT_EQ((std::vector<vm::Symbol>{{"Tr.ObjectNo", 420, 1}, {"buf", 430, 10}}), result->image->symbols);
   EXPECT_EQ((std::vector<vm::FunctionEntry>{{"main", 0}}), result->image->functions);
-  EXPECT_EQ((std::vector<vm::LineEntry>{{0, 0, 3, 5}, {7, 0, 4, 1}}), result->image->lines);
+  EXPECT_EQ((std::vector<vm::LineEntry>{{0, 0, 3, 5}, {1, 0, 4, 1}}), result->image->lines);
   EXPECT_EQ((std::vector<uint32_t>{0x02, 0xFF}), result->image->code);
 }
 
@@ -122,6 +122,9 @@ const Mistake kMistakes[] = {
     {"WORD", "E0302", 1, 5},
     {"SETI [H0 = H1", "E0302", 1, 10},
     {"SET H5000 = 1", "E0303", 1, 5},
+    {".file a.IPC\n.line 2 7 17\nEND", "E0303", 2, 1},
+    {".file a.IPC\n.line @5 0 7 17\nEND", "E0303", 2, 1},
+    {".function main @7\nEND", "E0303", 1, 1},
     {"SET H0 = 4294967296", "E0303", 1, 10},
     {"SET H0 = 2147483648", "E0303", 1, 10},
     {"JMP M5", "E0304", 1, 5},
@@ -193,12 +196,17 @@ TEST(RoundTrip, AnyWordsAndTables) {
     // Opcodes are dense in the low byte only: make commands likely.
     for (uint32_t& word : image.code)
       if (word % 3 != 0) word &= 0x0FFF00FFU;
+    // Tables as the image's reader accepts them.
     const auto name = rc::gen::arbitrary<std::string>();
-    for (int n = *rc::gen::inRange(0, 4); n > 0; --n) {
-      image.symbols.push_back({*name, *rc::gen::arbitrary<uint16_t>(), *rc::gen::arbitrary<uint16_t>()});
-      image.functions.push_back({*name, *rc::gen::inRange<uint32_t>(0, 60)});
+    const auto words = static_cast<uint32_t>(image.code.size());
+    for (int n = words == 0 ? 0 : *rc::gen::inRange(0, 4); n > 0; --n) {
+      image.symbols.push_back(
+          {*name, *rc::gen::arbitrary<uint16_t>(), *rc::gen::inRange<uint16_t>(1, 0xFFFF)});
+      image.functions.push_back({*name, *rc::gen::inRange<uint32_t>(0, words)});
       image.files.push_back(*name);
-      image.lines.push_back({*rc::gen::inRange<uint32_t>(0, 60), *rc::gen::arbitrary<uint16_t>(),
+      const uint32_t after = image.lines.empty() ? 0 : image.lines.back().address;
+      const auto files = static_cast<uint16_t>(image.files.size());
+      image.lines.push_back({*rc::gen::inRange<uint32_t>(after, words), *rc::gen::inRange<uint16_t>(0, files),
                              *rc::gen::arbitrary<uint32_t>(), *rc::gen::arbitrary<uint16_t>()});
     }
     expect_same(image);

@@ -162,6 +162,8 @@ const Construct kStatements[] = {
      {"M01 : SET H400 = H420", "JMP H400 == 1 , M02", "JMP H400 == 2 , M03", "JMP M04", "M02 : SET H421 = 1",
       "END", "M03 : SET H421 = 2", "M04 : SET H421 = 3", "END"}},
     {"switch (a) { case 1: b = 1; }", {"M01 : JMP H420 != 1 , M02", "SET H421 = 1", "M02 : END"}},
+    {"switch (a) { case 1: b = 1; break; case 2: default: b = 2; }",
+     {"M01 : SET H400 = H420", "JMP H400 != 1 , M02", "SET H421 = 1", "END", "M02 : SET H421 = 2", "END"}},
     {"switch (2) { case 1: b = 1; break; case 2: b = 2; }", {"M01 : SET H421 = 2", "END"}},
     {"if (a) return; b = 1;", {"M01 : JMP H420 == 0 , M02", "END", "M02 : SET H421 = 1", "END"}},
     {"return; ", {"M01 : END"}},

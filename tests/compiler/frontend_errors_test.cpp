@@ -216,6 +216,14 @@ TEST(FrontendErrorTexts, MissingBraceNamesItsPartner) {
   EXPECT_EQ(run.map.position(run.diagnostics.all()[0].notes[0].span.begin).line, 2U);
 }
 
+TEST(FrontendErrorTexts, NestedFunctionNamesTheOpenBrace) {
+  FrontendRun run("main() {\n if (a) {\n  x = 1;\n}\nfoo() { }");
+  run.parse();
+  ASSERT_EQ(run.messages(), Messages{"E0163 5:1"});
+  ASSERT_EQ(run.diagnostics.all()[0].notes.size(), 1U);
+  EXPECT_EQ(run.map.position(run.diagnostics.all()[0].notes[0].span.begin).line, 1U);
+}
+
 TEST(FrontendRecovery, KeepsWhatIsRight) {
   FrontendRun run("long a;\nmain() { x = ; y = 2; }\nfoo() { z = 3; }\nlong b;");
   run.parse();

@@ -56,7 +56,8 @@ ExampleRun run_example(const std::string& plant, const std::string& duration = "
   const TemporaryFolder folder;
   const std::string log = (folder.path() / "can.log").string();
   ExampleRun run;
-  run.result = run_ipos({"run", project("examples/" + plant).string(), "--for", duration, "--format", "json", "--log", log});
+  run.result = run_ipos(
+      {"run", project("examples/" + plant).string(), "--for", duration, "--format", "json", "--log", log});
   EXPECT_EQ(run.result.exit_code, 0) << run.result.err;
   run.report = nlohmann::json::parse(run.result.out);
   run.frames = read_log(read_text(log));
@@ -73,11 +74,14 @@ void expect_window(const ExampleRun& run, size_t station, const std::vector<int6
 TEST(Scom, WatchWindowsInMotorolaFormat) {
   PROVES("EX-20", "EX-21", "EX-22", "EX-25", "EX-26", "SCOM-04", "SCOM-05", "VAR-01");
   const ExampleRun run = run_example("scom/scom.toml");
-  expect_window(run, 0, {1024, 100, 0, 0x8, 426, 99, 0x11223344, 0x55667788, 1025, 0x8, 431, 0x44332211, 0x88776655});
-  expect_window(run, 1, {1025, 120, 0, 0x8, 426, 99, 0x44332211, 0x88776655, 1024, 0x8, 431, 0x11223344, 0x55667788});
-  const std::vector<std::string> names{"TrCycl.ObjectNo", "TrCycl.CycleTime", "TrCycl.Offset", "TrCycl.Format",
-                                       "TrCycl.DPointer", "TrCycl.Result", "lTrDataLow", "lTrDataHigh",
-                                       "Rec.ObjectNo", "Rec.Format", "Rec.DPointer", "lReDataLow", "lReDataHigh"};
+  expect_window(run, 0,
+                {1024, 100, 0, 0x8, 426, 99, 0x11223344, 0x55667788, 1025, 0x8, 431, 0x44332211, 0x88776655});
+  expect_window(run, 1,
+                {1025, 120, 0, 0x8, 426, 99, 0x44332211, 0x88776655, 1024, 0x8, 431, 0x11223344, 0x55667788});
+  const std::vector<std::string> names{
+      "TrCycl.ObjectNo", "TrCycl.CycleTime", "TrCycl.Offset", "TrCycl.Format", "TrCycl.DPointer",
+      "TrCycl.Result",   "lTrDataLow",       "lTrDataHigh",   "Rec.ObjectNo",  "Rec.Format",
+      "Rec.DPointer",    "lReDataLow",       "lReDataHigh"};
   for (size_t n = 0; n < names.size(); ++n) EXPECT_EQ(run.name(0, 420 + static_cast<int>(n)), names[n]);
 }
 
@@ -101,8 +105,12 @@ TEST(Scom, FramesAndTheirTimes) {
 TEST(Scom, WatchWindowsInIntelFormat) {
   PROVES("EX-23", "EX-24", "EX-30", "VAR-10", "VAR-11");
   const ExampleRun run = run_example("scom-intel/scom-intel.toml");
-  expect_window(run, 0, {1024, 100, 0, 0x108, 426, 99, 0x11223344, 0x55667788, 1025, 0x108, 431, 0x44332211, 0x88776655});
-  expect_window(run, 1, {1025, 100, 0, 0x108, 426, 99, 0x44332211, 0x88776655, 1024, 0x108, 431, 0x11223344, 0x55667788});
+  expect_window(
+      run, 0,
+      {1024, 100, 0, 0x108, 426, 99, 0x11223344, 0x55667788, 1025, 0x108, 431, 0x44332211, 0x88776655});
+  expect_window(
+      run, 1,
+      {1025, 100, 0, 0x108, 426, 99, 0x44332211, 0x88776655, 1024, 0x108, 431, 0x11223344, 0x55667788});
   for (const LoggedFrame& frame : run.with_id("400")) EXPECT_EQ(frame.text, "400#4433221188776655");
   for (const LoggedFrame& frame : run.with_id("401")) EXPECT_EQ(frame.text, "401#1122334455667788");
   EXPECT_FALSE(run.with_id("400").empty());
@@ -119,7 +127,8 @@ TEST(Scom, MixedFormats) {
   folder.write("plant.toml", plant);
   folder.write("SCOM1.IPC", read_text(project("examples/scom/SCOM1.IPC")));
   folder.write("RECEIVE.IPC", read_text(project("examples/scom-intel/SCOM2_Intel.IPC")));
-  const CommandResult result = run_ipos({"run", "plant.toml", "--for", "1s", "--format", "json"}, folder.path());
+  const CommandResult result =
+      run_ipos({"run", "plant.toml", "--for", "1s", "--format", "json"}, folder.path());
   ASSERT_EQ(result.exit_code, 0) << result.err;
   ExampleRun run;
   run.report = nlohmann::json::parse(result.out);
@@ -131,7 +140,8 @@ TEST(Movilink, WatchWindow) {
   PROVES("EX-12", "EX-13", "MOVLNK-01", "MOVLNK-02", "MOVLNK-08");
   const ExampleRun run = run_example("movilink/movilink.toml");
   const std::vector<int32_t> values{5, 1, 4, 1, 8318, 427, 0, 0, 0, 6, 5000, 0, 514, 0, 0};
-  for (size_t n = 0; n < values.size(); ++n) EXPECT_EQ(run.h(0, 420 + static_cast<int>(n)), values[n]) << "H" << 420 + n;
+  for (size_t n = 0; n < values.size(); ++n)
+    EXPECT_EQ(run.h(0, 420 + static_cast<int>(n)), values[n]) << "H" << 420 + n;
   EXPECT_EQ(run.name(0, 427), "Mld.WritePar");
   EXPECT_EQ(run.name(0, 434), "Mld.PI3");
 }
@@ -141,7 +151,8 @@ TEST(Movilink, FramesOfOneCall) {
   const ExampleRun run = run_example("movilink/movilink.toml");
   ASSERT_GE(run.frames.size(), 8U);
   // Request 523, response 524, PO 11, PI 12, again and again.
-  const std::vector<std::string> call{"20B#3100207E00000000", "20C#3100207E00000000", "00B#000613880000", "00C#020200000000"};
+  const std::vector<std::string> call{"20B#3100207E00000000", "20C#3100207E00000000", "00B#000613880000",
+                                      "00C#020200000000"};
   for (size_t n = 0; n < run.frames.size(); ++n) EXPECT_EQ(run.frames[n].text, call[n % 4]) << n;
 }
 

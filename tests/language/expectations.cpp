@@ -29,10 +29,9 @@ Expectations read_expectations(std::string_view source) {
     std::smatch match;
     if (std::regex_search(text, match, kUnit)) found.unit = match[1];
     if (std::regex_search(text, match, kSpeed)) found.speed = static_cast<uint32_t>(std::stoul(match[1]));
-    // A line may hold several expectations, each with its own //.
-    for (size_t at = text.find(kStart); at != std::string::npos;) {
-      const size_t next = text.find(kStart, at + 1);
-      const std::string one = text.substr(at, next - at);
+    // A line may hold several expectations, each with its own //; one ends where the next comment begins.
+    for (size_t at = text.find(kStart); at != std::string::npos; at = text.find(kStart, at + 1)) {
+      const std::string one = text.substr(at, text.find("//", at + 2) - at);
       if (std::regex_match(one, match, kValue)) {
         ExpectedValue value{line, match[1], number(match[2]), std::nullopt};
         if (match[3].matched) value.at = runtime::parse_duration(match[3].str());
@@ -45,7 +44,6 @@ Expectations read_expectations(std::string_view source) {
       } else {
         found.mistakes.push_back(one);
       }
-      at = next;
     }
   }
   return found;

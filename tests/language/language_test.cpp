@@ -23,7 +23,8 @@ constexpr Time kLimit = 10 * runtime::kSecond;  // a program that takes longer d
 std::vector<std::string> programs() {
   std::vector<std::string> names;
   for (const auto& entry : fs::recursive_directory_iterator(IPOS_LANGUAGE_DIR))
-    if (entry.path().extension() == ".IPC") names.push_back(fs::relative(entry.path(), IPOS_LANGUAGE_DIR).string());
+    if (entry.path().extension() == ".IPC")
+      names.push_back(fs::relative(entry.path(), IPOS_LANGUAGE_DIR).string());
   std::sort(names.begin(), names.end());
   return names;
 }
@@ -61,9 +62,11 @@ TEST_P(Language, DoesWhatItsCommentsSay) {
   }
   compiler::Compilation compiled = compiler::compile(GetParam(), path, text, options);
   std::vector<ExpectedDiagnostic> found;
-  for (const compiler::Diagnostic& diagnostic : compiled.diagnostics.all())
-    found.push_back({compiled.sources->position(diagnostic.span.begin).line,
-                     std::string(compiler::info(diagnostic.diag).code)});
+  for (const compiler::Diagnostic& diagnostic : compiled.diagnostics.all()) {
+    // Line 0 is a message about the program as a whole; its comment stands in line 1.
+    const uint32_t line = compiled.sources->position(diagnostic.span.begin).line;
+    found.push_back({std::max(line, 1U), std::string(compiler::info(diagnostic.diag).code)});
+  }
   const auto by_line = [](const ExpectedDiagnostic& a, const ExpectedDiagnostic& b) {
     return std::pair(a.line, a.code) < std::pair(b.line, b.code);
   };
@@ -72,7 +75,8 @@ TEST_P(Language, DoesWhatItsCommentsSay) {
   std::sort(wanted.begin(), wanted.end(), by_line);
   EXPECT_EQ(found, wanted) << compiler::render_text(compiled.diagnostics.all(), *compiled.sources, false);
   if (!compiled.image) {
-    EXPECT_TRUE(expected.values.empty() && !expected.fault) << "the program does not compile, but values are expected";
+    EXPECT_TRUE(expected.values.empty() && !expected.fault)
+        << "the program does not compile, but values are expected";
     return;
   }
 
@@ -115,7 +119,8 @@ TEST_P(Language, DoesWhatItsCommentsSay) {
   for (const ExpectedValue& value : values)
     if (!value.at) check(value);
   const vm::Fault& fault = station.machine()->fault();
-  EXPECT_EQ(fault.number, expected.fault ? expected.fault->number : 0) << (fault.reason == nullptr ? "" : fault.reason);
+  EXPECT_EQ(fault.number, expected.fault ? expected.fault->number : 0)
+      << (fault.reason == nullptr ? "" : fault.reason);
   if (expected.fault && fault.number != 0) {
     const std::string place = station.source_place(fault.address);
     EXPECT_TRUE(place.find(fmt::format(".IPC:{}:", expected.fault->line)) != std::string::npos) << place;
@@ -124,7 +129,8 @@ TEST_P(Language, DoesWhatItsCommentsSay) {
 
 std::string test_name(const ::testing::TestParamInfo<std::string>& info) {
   std::string name = info.param.substr(0, info.param.size() - 4);
-  std::replace_if(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
   return name;
 }
 

@@ -1,4 +1,5 @@
-// The command line contract: what goes where, exit codes, and a located message for each mistake a user can make.
+// The command line contract: what goes where, exit codes, and a located message for each mistake a user can
+// make.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -10,14 +11,21 @@ namespace {
 
 using ::testing::Test;
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 const std::string kProgram = "long a;\nmain()\n{\n  a = 5;\n}\n";
 
 TEST(Usage, WrongCommandLinesAre64) {
-  for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{}, {"frobnicate"}, {"run"}, {"run", "x.IPC", "--for", "soon"}, {"run", "x.IPC", "--speed", "0"},
-        {"build", "x.IPC", "--emit=pdf"}, {"run", "x.IPC", "--format", "xml"}, {"build", "notes.txt"}}) {
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{},
+                                                    {"frobnicate"},
+                                                    {"run"},
+                                                    {"run", "x.IPC", "--for", "soon"},
+                                                    {"run", "x.IPC", "--speed", "0"},
+                                                    {"build", "x.IPC", "--emit=pdf"},
+                                                    {"run", "x.IPC", "--format", "xml"},
+                                                    {"build", "notes.txt"}}) {
     const CommandResult result = run_ipos(arguments);
     EXPECT_EQ(result.exit_code, 64);
     EXPECT_EQ(result.out, "");
@@ -111,7 +119,9 @@ TEST(Build, EveryStageCanBePrinted) {
 TEST(Images, DisassembledTextAssemblesToTheSameBytes) {
   const TemporaryFolder folder;
   for (const std::string name : {"scom/SCOM1", "scom-intel/SCOM2_Intel", "movilink/Movilink"}) {
-    ASSERT_EQ(run_ipos({"build", project("examples/" + name + ".IPC").string(), "-o", "a.ipx"}, folder.path()).exit_code, 0);
+    ASSERT_EQ(run_ipos({"build", project("examples/" + name + ".IPC").string(), "-o", "a.ipx"}, folder.path())
+                  .exit_code,
+              0);
     const CommandResult text = run_ipos({"disasm", "a.ipx"}, folder.path());
     ASSERT_EQ(text.exit_code, 0);
     folder.write("a.ipa", text.out);
@@ -140,7 +150,8 @@ TEST(Images, OneFlippedByteIsRefused) {
 TEST(Run, FaultNamesTheSourceLine) {
   const TemporaryFolder folder;
   folder.write("A.IPC", "long a, b;\nmain()\n{\n  a = 1;\n  a = a / b;\n}\n");
-  const CommandResult result = run_ipos({"run", "A.IPC", "--for", "100ms", "--format", "json"}, folder.path());
+  const CommandResult result =
+      run_ipos({"run", "A.IPC", "--for", "100ms", "--format", "json"}, folder.path());
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_TRUE(contains(result.err, "F10")) << result.err;
   EXPECT_TRUE(contains(result.err, "A.IPC:5:")) << result.err;
@@ -160,7 +171,8 @@ TEST(Run, RecursionIsF32) {
 TEST(Run, UntilEndStopsWithTheProgram) {
   const TemporaryFolder folder;
   folder.write("A.IPC", "long a;\nmain()\n{\n  _Wait(50);\n  a = 5;\n}\n");
-  const CommandResult result = run_ipos({"run", "A.IPC", "--until", "end", "--format", "json"}, folder.path());
+  const CommandResult result =
+      run_ipos({"run", "A.IPC", "--until", "end", "--format", "json"}, folder.path());
   EXPECT_EQ(result.exit_code, 0) << result.err;
   const auto report = nlohmann::json::parse(result.out);
   EXPECT_GE(report["time_us"], 50'000);
@@ -169,7 +181,8 @@ TEST(Run, UntilEndStopsWithTheProgram) {
   EXPECT_EQ(report["stations"][0]["unit"], "md60a");
   EXPECT_EQ(report["stations"][0]["variables"][0],
             (nlohmann::json{{"name", "a"}, {"index", 420}, {"value", 5}}));
-  EXPECT_TRUE(contains(run_ipos({"run", "A.IPC", "--until", "end", "--watch"}, folder.path()).out, "H420 a  5\n"));
+  EXPECT_TRUE(
+      contains(run_ipos({"run", "A.IPC", "--until", "end", "--watch"}, folder.path()).out, "H420 a  5\n"));
 }
 
 TEST(Run, SpeedSetsTheCommandsOfAMillisecond) {
@@ -178,7 +191,8 @@ TEST(Run, SpeedSetsTheCommandsOfAMillisecond) {
   const auto count = [&](const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"run", "A.IPC", "--for", "99ms", "--format", "json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    return nlohmann::json::parse(run_ipos(arguments, folder.path()).out)["stations"][0]["variables"][0]["value"];
+    return nlohmann::json::parse(
+        run_ipos(arguments, folder.path()).out)["stations"][0]["variables"][0]["value"];
   };
   EXPECT_EQ(count({}), 50);  // ticks at 0, 1, .. 99 ms
   EXPECT_EQ(count({"--speed", "20"}), 1000);
@@ -191,7 +205,8 @@ class PlantErrors : public Test {
     folder_.write("plant.toml", plant);
     return run_ipos({"run", "plant.toml", "--for", "10ms"}, folder_.path());
   }
-  void refuses(const std::string& plant, const std::string& place, const std::string& words, int exit_code = 65) {
+  void refuses(const std::string& plant, const std::string& place, const std::string& words,
+               int exit_code = 65) {
     const CommandResult result = run(plant);
     EXPECT_EQ(result.exit_code, exit_code) << plant;
     EXPECT_TRUE(contains(result.err, "plant.toml:" + place + ": error: ")) << result.err;
@@ -206,6 +221,8 @@ const std::string kBus = "[[bus]]\nname = \"b\"\nkind = \"can\"\n";
 
 TEST_F(PlantErrors, EachIsLocated) {
   refuses(kStation + "colour = \"red\"\n", "5:1", "colour");
+  refuses(kStation + "hex = 3\u00b9\n", "5:8", "text or a comment");
+  refuses(kStation + "rs485 = \"line1\"\n", "5:1", "not there yet");
   refuses(kStation + "[[bus\n", "5:6", "table header");
   refuses("[[station]]\nname = \"u\"\nunit = \"md90\"\n", "3:8", "md90");
   refuses("[[station]]\nunit = \"md60a\"\n", "1:1", "name");
@@ -219,10 +236,14 @@ TEST_F(PlantErrors, EachIsLocated) {
   refuses(kStation + "[station.parameters]\nP813 = \"x\"\n", "6:8", "P813");
   refuses(kStation + "[station.inputs]\nDI99 = 1\n", "6:1", "DI99");
   refuses(kStation + "[station.inputs]\nDI00 = 2\n", "6:8", "DI00");
-  refuses(kStation + "[[expect]]\nstation = \"v\"\nat = \"1ms\"\nvariable = \"a\"\nequals = 5\n", "6:11", "'v'");
-  refuses(kStation + "[[expect]]\nstation = \"u\"\nat = \"later\"\nvariable = \"a\"\nequals = 5\n", "7:6", "later");
-  refuses(kStation + "[[expect]]\nstation = \"u\"\nat = \"1ms\"\nvariable = \"zz\"\nequals = 5\n", "5:1", "zz");
-  refuses(kStation + "[[expect]]\nstation = \"u\"\nat = \"1ms\"\nvariable = \"a\"\nequals = 5000000000\n", "9:10", "32 bits");
+  refuses(kStation + "[[expect]]\nstation = \"v\"\nat = \"1ms\"\nvariable = \"a\"\nequals = 5\n", "6:11",
+          "'v'");
+  refuses(kStation + "[[expect]]\nstation = \"u\"\nat = \"later\"\nvariable = \"a\"\nequals = 5\n", "7:6",
+          "later");
+  refuses(kStation + "[[expect]]\nstation = \"u\"\nat = \"1ms\"\nvariable = \"zz\"\nequals = 5\n", "5:1",
+          "zz");
+  refuses(kStation + "[[expect]]\nstation = \"u\"\nat = \"1ms\"\nvariable = \"a\"\nequals = 5000000000\n",
+          "9:10", "32 bits");
   refuses("", "1:1", "[[station]]");
   refuses("[[station]]\nname = \"u\"\nunit = \"md60a\"\nprogram = \"B.IPC\"\n", "4:11", "B.IPC", 66);
 }
@@ -240,9 +261,11 @@ TEST_F(PlantErrors, UnmetExpectationIsAFinding) {
   EXPECT_EQ(run(kStation + expect + "5\n").exit_code, 0);
   const CommandResult unmet = run(kStation + expect + "6\n");
   EXPECT_EQ(unmet.exit_code, 1);
-  EXPECT_TRUE(contains(unmet.err, "plant.toml:5:1: expectation not met: a of u at 5.000 ms: is 5 (0x5), expected 6"))
+  EXPECT_TRUE(
+      contains(unmet.err, "plant.toml:5:1: expectation not met: a of u at 5.000 ms: is 5 (0x5), expected 6"))
       << unmet.err;
-  const CommandResult late = run(kStation + "[[expect]]\nstation = \"u\"\nat = \"1h\"\nvariable = \"a\"\nequals = 5\n");
+  const CommandResult late =
+      run(kStation + "[[expect]]\nstation = \"u\"\nat = \"1h\"\nvariable = \"a\"\nequals = 5\n");
   EXPECT_EQ(late.exit_code, 1);
   EXPECT_TRUE(contains(late.err, "the run ended before")) << late.err;
 }

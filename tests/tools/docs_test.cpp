@@ -1,5 +1,5 @@
-// Dumps in the documentation are real: every block that begins with "$ ipos ..." is what the program prints, and
-// the tables of docs/isa.md are those of the code.
+// Dumps in the documentation are real: every block that begins with "$ ipos ..." is what the program prints,
+// and the tables of docs/isa.md are those of the code.
 #include <gtest/gtest.h>
 
 #include <regex>
@@ -64,12 +64,13 @@ TEST(Documentation, InstructionSetPageHasEveryRow) {
   for (const vm::OpcodeInfo& row : vm::opcode_table()) {
     char code[8];
     std::snprintf(code, sizeof code, "0x%02X", static_cast<unsigned>(row.opcode));
-    const std::string expected =
-        "| " + std::string(code) + " | `" + escaped(std::string(row.text)) + "` | " + std::string(row.meaning) + " |\n";
+    const std::string expected = "| " + std::string(code) + " | `" + escaped(std::string(row.text)) + "` | " +
+                                 std::string(row.meaning) + " |\n";
     EXPECT_NE(page.find(expected), std::string::npos) << expected;
   }
   for (const vm::RuleInfo& rule : vm::rule_table())
-    EXPECT_NE(page.find("| " + std::string(rule.code) + " | " + rule.meaning + " |\n"), std::string::npos) << rule.code;
+    EXPECT_NE(page.find("| " + std::string(rule.code) + " | " + rule.meaning + " |\n"), std::string::npos)
+        << rule.code;
 }
 
 }  // namespace

@@ -100,7 +100,7 @@ TEST(Arithmetic, DivisionByZeroIsF10) {
 
 TEST(Bits, SetClearMove) {
   Program run({I(Opcode::BitSet, 0, 31), I(Opcode::BitClear, 1, 0), I(Opcode::BitMove, 2, 4, 0, 31),
-           I(Opcode::BitMoveNeg, 3, 5, 0, 31), I(Opcode::BitMoveNeg, 4, 6, 5, 1), I(Opcode::End)});
+               I(Opcode::BitMoveNeg, 3, 5, 0, 31), I(Opcode::BitMoveNeg, 4, 6, 5, 1), I(Opcode::End)});
   run.h(1) = 3;
   run.h(3) = -1;
   run.run();
@@ -140,7 +140,8 @@ TEST(Jumps, EveryConditionOnBothForms) {
 // The SETI loop of IPOSplus p. 342: H10..H15 take 50, 60, .. 100.
 TEST(Indirect, ManualLoop) {
   Program run({I(Opcode::SetHK, 0, 10), I(Opcode::SetHK, 1, 50), I(Opcode::SetiStore, 0, 1),
-           I(Opcode::AddHK, 0, 1), I(Opcode::AddHK, 1, 10), I(Opcode::JmpLeHK, 0, 15, 4), I(Opcode::End)});
+               I(Opcode::AddHK, 0, 1), I(Opcode::AddHK, 1, 10), I(Opcode::JmpLeHK, 0, 15, 4),
+               I(Opcode::End)});
   run.run();
   for (int32_t n = 0; n < 6; ++n) EXPECT_EQ(run.h(static_cast<size_t>(10 + n)), 50 + 10 * n);
   EXPECT_EQ(run.h(0), 16);
@@ -202,7 +203,7 @@ TEST(Budget, IsExact) {
 
 TEST(Waiting, WaitTakesItsMilliseconds) {
   Program run({I(Opcode::WaitK, 3), I(Opcode::SetHK, 0, 1), I(Opcode::WaitH, 5), I(Opcode::SetHK, 0, 2),
-           I(Opcode::End)});
+               I(Opcode::End)});
   run.h(5) = 0;  // no wait
   const Rates rates{{10, 0, 0}};
   EXPECT_EQ(run_tick(*run.operator->(), rates), 1U);

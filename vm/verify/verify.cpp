@@ -50,7 +50,10 @@ class Checker {
   uint32_t command(uint32_t at) {
     const Decoded decoded = decode(code_, at);
     if (decoded.status == DecodeStatus::UnknownOpcode) return report(Rule::UnknownOpcode, at), 1;
-    if (decoded.status == DecodeStatus::Truncated) return report(Rule::TruncatedCommand, at), 1;
+    if (decoded.status == DecodeStatus::Truncated) {
+      report(Rule::TruncatedCommand, at);
+      return static_cast<uint32_t>(code_.size()) - at;  // what follows is part of it
+    }
     if (decoded.status == DecodeStatus::ReservedBits) report(Rule::ReservedBits, at);
     starts_[at / 32] |= 1U << (at % 32);
 
@@ -95,15 +98,16 @@ class Checker {
     return decoded.words;
   }
 
+  bool is_start(uint32_t at) const { return (starts_[at / 32] >> (at % 32) & 1U) != 0; }
+
   uint32_t labels(uint32_t at) {
+    if (!is_start(at)) return 1;
     const Decoded decoded = decode(code_, at);
-    if (decoded.words == 0) return 1;
     const OpcodeInfo& row = info(decoded.instruction.opcode);
     for (size_t n = 0; n < static_cast<size_t>(row.operand_count); ++n) {
       if (row.operands[n].kind != OperandKind::Label) continue;
       const auto target = static_cast<uint32_t>(decoded.instruction.operands[n]);
-      if (target >= code_.size() || (starts_[target / 32] >> (target % 32) & 1U) == 0)
-        report(Rule::LabelTarget, at);
+      if (target >= code_.size() || !is_start(target)) report(Rule::LabelTarget, at);
     }
     return decoded.words;
   }

@@ -3,32 +3,6 @@
 
 namespace ipos::runtime {
 
-namespace {
-
-struct ServiceRow {
-  Service service;
-  std::string_view text;
-};
-
-constexpr ServiceRow kServices[] = {
-#define SERVICE(name, code, text) {Service::name, text},
-#include "runtime/bus/movilink/services.def"
-};
-
-}  // namespace
-
-std::optional<Service> service_from_code(uint32_t code) {
-  for (const ServiceRow& row : kServices)
-    if (static_cast<uint32_t>(row.service) == code) return row.service;
-  return std::nullopt;
-}
-
-std::string_view service_text(Service service) {
-  for (const ServiceRow& row : kServices)
-    if (row.service == service) return row.text;
-  return {};
-}
-
 ParameterBytes encode(const ParameterTelegram& t) {
   const auto byte = [](uint32_t value, unsigned shift) { return static_cast<uint8_t>(value >> shift); };
   return {t.management,     t.subindex,       byte(t.index, 8), byte(t.index, 0),

@@ -8,19 +8,14 @@
 #include <string_view>
 
 #include "runtime/bus/movilink/return_code.hpp"
+#include "stdlib/services.hpp"
 
 namespace ipos::runtime {
 
-enum class Service : uint8_t {
-#define SERVICE(name, code, text) name = code,
-#include "runtime/bus/movilink/services.def"
-};
-
-std::optional<Service> service_from_code(uint32_t code);
-std::string_view service_text(Service service);
-constexpr bool is_write(Service service) {
-  return service == Service::Write || service == Service::WriteVolatile;
-}
+using stdlib::is_write;
+using stdlib::Service;
+using stdlib::service_from_code;
+using stdlib::service_text;
 
 // Bits of the management byte.
 namespace management {

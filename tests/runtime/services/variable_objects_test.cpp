@@ -1,5 +1,5 @@
-// _SBusCommDef and _SBusCommOn without a bus: results, limits and times of the objects. Expected values are those of
-// 1053 1610 p. 51 to 61 and of IPOSplus p. 232 and 320.
+// _SBusCommDef and _SBusCommOn without a bus: results, limits and times of the objects. Expected values are
+// those of 1053 1610 p. 51 to 61 and of IPOSplus p. 232 and 320.
 #include "runtime/services/variable_objects.hpp"
 
 #include <gtest/gtest.h>
@@ -275,7 +275,8 @@ TEST_F(Objects, AcyclicIsSentAtOnceAndReportsItsStatus) {
   EXPECT_TRUE(send());
   EXPECT_EQ(h_[13], 1);
   ASSERT_EQ(outbox_.sent.size(), 1U);
-  EXPECT_EQ(outbox_.sent[0].frame.data, (std::array<uint8_t, 8>{0x55, 0x66, 0x77, 0x88, 0x11, 0x22, 0x33, 0x44}));
+  EXPECT_EQ(outbox_.sent[0].frame.data,
+            (std::array<uint8_t, 8>{0x55, 0x66, 0x77, 0x88, 0x11, 0x22, 0x33, 0x44}));
   objects_.on_sent(outbox_.sent[0].tag, h_);
   EXPECT_EQ(h_[13], 2);
   EXPECT_TRUE(send());

@@ -1,0 +1,64 @@
+// ipos explain, for each kind of code.
+#include <gtest/gtest.h>
+
+#include "compiler/diag/diag.hpp"
+#include "tests/tools/command.hpp"
+#include "vm/verify/verify.hpp"
+
+namespace ipos::tests {
+namespace {
+
+std::string explained(const std::string& code) {
+  const CommandResult result = run_ipos({"explain", code});
+  EXPECT_EQ(result.exit_code, 0) << code << "\n" << result.err;
+  return result.out;
+}
+
+TEST(Explain, PageOfAMessageWithoutMarksOfMarkdown) {
+  const std::string text = explained("e0172");
+  EXPECT_TRUE(text.starts_with("E0172: address operator\n\n")) << text;
+  EXPECT_NE(text.find("\nWrong:\n\n    long target, p;\n    main() { p = &target; *p = 1; }\n\nRight:\n"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(text.find('`'), std::string::npos);
+  EXPECT_EQ(explained("E0236").find("<!--"), std::string::npos);
+}
+
+TEST(Explain, WarningsNameTheirFlag) {
+  EXPECT_NE(explained("W0201").find("-Wno-unused-variable"), std::string::npos);
+  EXPECT_EQ(explained("E0201").find("-Wno"), std::string::npos);
+}
+
+TEST(Explain, RuleOfTheVerifier) {
+  const vm::RuleInfo& rule = vm::rule_table()[2];
+  EXPECT_EQ(explained(rule.code),
+            std::string(rule.code) + ": rule of the verifier\n  " + rule.meaning + "\n");
+}
+
+TEST(Explain, ReturnCodesInEveryForm) {
+  // 1053 1610 p. 66: error class 8, code 0, additional code 10 hex.
+  const std::string text = explained("8/0/10");
+  EXPECT_NE(text.find("invalid parameter index"), std::string::npos) << text;
+  EXPECT_NE(text.find("class 8: other error"), std::string::npos) << text;
+  for (const char* same : {"0x08000010", "0X8000010", "134217744", "08/00/0010"})
+    EXPECT_EQ(explained(same), text);
+  EXPECT_NE(explained("6/2/0").find("no communication"), std::string::npos);
+  EXPECT_NE(explained("8/7/7").find("in no manual"), std::string::npos);
+}
+
+TEST(Explain, FaultsOfPrograms) {
+  EXPECT_NE(explained("F10").find("division by zero"), std::string::npos);
+  EXPECT_NE(explained("f32").find("deeper"), std::string::npos);
+}
+
+TEST(Explain, UnknownCodesAreErrors) {
+  for (const char* code :
+       {"E9999", "W", "V99", "F99", "8/0", "8/0/x", "9/0/0", "0x", "0x100000000", "-1x", "1/1/1/1"}) {
+    const CommandResult result = run_ipos({"explain", "--", code});
+    EXPECT_EQ(result.exit_code, 65) << code << result.out;
+    EXPECT_NE(result.err.find("code"), std::string::npos) << code << result.err;
+  }
+}
+
+}  // namespace
+}  // namespace ipos::tests

@@ -1,0 +1,3 @@
+.file a.IPC
+.line 2 7 17
+  END

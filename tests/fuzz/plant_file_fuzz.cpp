@@ -1,0 +1,36 @@
+// Any text to the plant file reader: errors with their place, or a plant whose references lead somewhere.
+#include "runtime/plant/plant_file.hpp"
+
+#include <algorithm>
+
+#include "tests/fuzz/fuzz.hpp"
+
+using namespace ipos::runtime;  // NOLINT
+using namespace ipos::tests;    // NOLINT
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  const std::string_view text = text_of(data, size);
+  require(parse_duration(text.substr(0, 40)) >= -1, "a duration is not negative");
+  require(parse_input(text.substr(0, 8)) < 16, "an input is a bit of 16");
+  const PlantFileResult result = read_plant_file(text);
+  for (const PlantError& error : result.errors) {
+    require(!error.text.empty(), "an error has a text");
+    require(error.place.line > 0 && error.place.column > 0, "an error has a place");
+  }
+  if (!result.errors.empty()) return 0;
+  const PlantFile& plant = result.plant;
+  for (const StationConfig& station : plant.stations) {
+    require(station.unit != nullptr && !station.name.empty(), "a station has a unit and a name");
+    const auto is_bus = [&](const BusConfig& bus) { return bus.name == station.sbus; };
+    require(station.sbus.empty() || std::any_of(plant.buses.begin(), plant.buses.end(), is_bus),
+            "a station is on a bus that exists");
+    for (const InputSetting& input : station.inputs) require(input.input < 16, "an input is a bit of 16");
+  }
+  for (const Expectation& expect : plant.expectations) {
+    const auto is_station = [&](const StationConfig& station) { return station.name == expect.station; };
+    require(std::any_of(plant.stations.begin(), plant.stations.end(), is_station),
+            "an expectation is of a station that exists");
+    require(expect.at >= 0, "an expectation is not before the start");
+  }
+  return 0;
+}
