@@ -52,7 +52,7 @@ class Declarations {
           context_.diagnostics.report(Diag::Redefined, declarator.name.span, {declarator.name.text});
           continue;
         }
-        type.members.push_back({{declarator.name.text}, *member_type, type.size});
+        type.members.push_back({{declarator.name.text}, *member_type, type.size, declarator.name.span});
         type.size = std::min(type.size + member_type->size(), kHugeSize);
       }
     }

@@ -99,7 +99,7 @@ std::optional<Object> ExpressionChecker::object_of(const ast::Member& node, cons
     for (const StructMember& row : type->members)
       names.insert(names.end(), row.names.begin(), row.names.end());
     if (const std::string_view best = nearest(node.member.text, names); !best.empty())
-      message.notes.push_back({{}, fmt::format("did you mean '{}'?", best)});
+      message.notes.push_back({type->find(best)->span, fmt::format("did you mean '{}'?", best)});
     return std::nullopt;
   }
   base->place.number += static_cast<int32_t>(member->offset);
@@ -125,8 +125,10 @@ std::optional<Object> ExpressionChecker::object_of(const ast::Index& node, const
   const auto size = static_cast<int32_t>(base->type.size());
   if (const int32_t* known = constant_value(index)) {
     if (*known < 0 || *known >= count) {
-      context_.diagnostics.report(Diag::IndexRange, node.index->span,
-                                  {fmt::format("{}", *known), base->text, fmt::format("{}", count - 1)});
+      Diagnostic& message =
+          context_.diagnostics.report(Diag::IndexRange, node.index->span,
+                                      {fmt::format("{}", *known), base->text, fmt::format("{}", count - 1)});
+      if (base->variable != nullptr) message.notes.push_back({base->variable->span, "declared here"});
       return std::nullopt;
     }
     base->place.number += *known * size;

@@ -59,7 +59,7 @@ Scope::Scope() {
     StructType type;
     type.name = standard.name;
     for (const auto& names : standard.members)
-      type.members.push_back({{names.begin(), names.end()}, {}, type.size++});
+      type.members.push_back({{names.begin(), names.end()}, {}, type.size++, {}});
     StructType& row = types_.emplace_back(std::move(type));
     names_[row.name] = &row;
   }

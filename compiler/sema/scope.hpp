@@ -34,6 +34,7 @@ struct StructMember {
   std::vector<std::string> names;
   Type type;
   uint32_t offset = 0;
+  Span span;  // of the declaration; invalid in a standard structure
 };
 
 struct StructType {

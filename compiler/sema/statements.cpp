@@ -119,27 +119,38 @@ StatementChecker::Result StatementChecker::check(const ast::Switch& node, Span s
 
 StatementChecker::Result StatementChecker::check(const ast::Case& node, Span span) {
   const auto value = expressions_.constant(*node.value, "the value of a case");
-  checked::Switch* target = innermost_switch();
-  if (target == nullptr) {
+  Frame* frame = innermost_switch();
+  if (frame == nullptr) {
     context_.diagnostics.report(Diag::OutsideSwitch, span, {"case"});
     return {make_stmt(span, checked::Block{}), true};
   }
+  checked::Switch* target = frame->target;
   if (value) {
     const auto same = [&](const auto& row) { return row.first == *value; };
-    if (std::any_of(target->cases.begin(), target->cases.end(), same))
-      context_.diagnostics.report(Diag::DuplicateCase, span, {fmt::format("{}", *value)});
+    const auto first = std::find_if(target->cases.begin(), target->cases.end(), same);
+    if (first != target->cases.end()) {
+      const Span place = frame->cases[static_cast<size_t>(first - target->cases.begin())];
+      context_.diagnostics.report(Diag::DuplicateCase, span, {fmt::format("{}", *value)})
+          .notes.push_back({place, "the first one is here"});
+    }
     target->cases.emplace_back(*value, target->labels);
+    frame->cases.push_back(span);
   }
   return {make_stmt(span, checked::CaseLabel{target->labels++}), true};
 }
 
 StatementChecker::Result StatementChecker::check(const ast::Default&, Span span) {
-  checked::Switch* target = innermost_switch();
-  if (target == nullptr) {
+  Frame* frame = innermost_switch();
+  if (frame == nullptr) {
     context_.diagnostics.report(Diag::OutsideSwitch, span, {"default"});
     return {make_stmt(span, checked::Block{}), true};
   }
-  if (target->otherwise) context_.diagnostics.report(Diag::DuplicateDefault, span);
+  checked::Switch* target = frame->target;
+  if (target->otherwise)
+    context_.diagnostics.report(Diag::DuplicateDefault, span)
+        .notes.push_back({frame->otherwise, "the first one is here"});
+  else
+    frame->otherwise = span;
   target->otherwise = target->labels;
   return {make_stmt(span, checked::CaseLabel{target->labels++}), true};
 }
@@ -163,9 +174,9 @@ StatementChecker::Result StatementChecker::check(const ast::Return&, Span span) 
   return {make_stmt(span, checked::Return{}), false};
 }
 
-checked::Switch* StatementChecker::innermost_switch() {
+StatementChecker::Frame* StatementChecker::innermost_switch() {
   for (auto frame = frames_.rbegin(); frame != frames_.rend(); ++frame)
-    if (frame->target != nullptr) return frame->target;
+    if (frame->target != nullptr) return &*frame;
   return nullptr;
 }
 

@@ -25,6 +25,8 @@ class StatementChecker {
   struct Frame {
     checked::Switch* target = nullptr;  // null: a loop
     bool left_by_break = false;
+    std::vector<Span> cases = {};  // of the switch, beside target->cases
+    Span otherwise = {};
   };
 
   Result statement(const ast::Stmt& stmt);
@@ -43,7 +45,7 @@ class StatementChecker {
   Result check(const ast::Return& node, Span span);
 
   Result block(const ast::Block& node, Span span, bool reached);
-  checked::Switch* innermost_switch();
+  Frame* innermost_switch();
 
   Context& context_;
   ExpressionChecker expressions_;

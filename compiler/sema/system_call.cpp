@@ -56,9 +56,11 @@ class SystemCallChecker {
 
   ExprPtr run() {
     if (call_.arguments.size() != kinds_.size()) {
-      context_.diagnostics.report(
+      Diagnostic& message = context_.diagnostics.report(
           Diag::ArgumentCount, span_,
           {call_.function.text, count_text(kinds_.size()), fmt::format("{}", call_.arguments.size())});
+      message.notes.push_back(
+          {{}, fmt::format("the form is {}( {} )", function_.name, fmt::join(kinds_, ", "))});
       return nullptr;
     }
     bool good = task_exists();

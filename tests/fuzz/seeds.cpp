@@ -28,11 +28,12 @@ int main(int argc, char** argv) {
   for (int i = 2; i < argc; ++i) {
     std::ifstream in(argv[i], std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-    const compiler::Compilation made = compiler::compile(fs::path(argv[i]).filename().string(), "", text);
+    const compiler::Compilation made = compiler::compile("seed.IPC", "", text);
     const fs::path folder = argv[1];
-    write(folder / "frontend" / fs::path(argv[i]).filename(), text);
+    const fs::path source = argv[i];
+    const std::string name = source.parent_path().filename().string() + "-" + source.stem().string();
+    write(folder / "frontend" / (name + ".IPC"), text);
     if (!made.image) continue;
-    const std::string name = fs::path(argv[i]).stem().string();
     const std::vector<uint8_t> bytes = vm::write_image(*made.image);
     const std::string image(bytes.begin(), bytes.end());
     std::string words;
