@@ -156,18 +156,20 @@ StatementChecker::Result StatementChecker::check(const ast::Default&, Span span)
 }
 
 StatementChecker::Result StatementChecker::check(const ast::Break&, Span span) {
-  if (frames_.empty())
+  // A misplaced break or continue leads nowhere; what follows it is not unreachable because of it.
+  const bool misplaced = frames_.empty();
+  if (misplaced)
     context_.diagnostics.report(Diag::OutsideLoop, span, {"break", "loop or switch"});
   else
     frames_.back().left_by_break = true;
-  return {make_stmt(span, checked::Break{}), false};
+  return {make_stmt(span, checked::Break{}), misplaced};
 }
 
 StatementChecker::Result StatementChecker::check(const ast::Continue&, Span span) {
   const auto is_loop = [](const Frame& frame) { return frame.target == nullptr; };
-  if (std::none_of(frames_.begin(), frames_.end(), is_loop))
-    context_.diagnostics.report(Diag::OutsideLoop, span, {"continue", "loop"});
-  return {make_stmt(span, checked::Continue{}), false};
+  const bool misplaced = std::none_of(frames_.begin(), frames_.end(), is_loop);
+  if (misplaced) context_.diagnostics.report(Diag::OutsideLoop, span, {"continue", "loop"});
+  return {make_stmt(span, checked::Continue{}), misplaced};
 }
 
 StatementChecker::Result StatementChecker::check(const ast::Return&, Span span) {
