@@ -1,4 +1,7 @@
-# The drive: parameters and unit state. It knows nothing of buses.
+# The drive: parameters, control logic, setpoints, faults. It knows nothing of buses.
 ipos_layer(drive FOLDERS runtime/drive
-           SOURCES drive/parameters.cpp drive/unit_state.cpp drive/error_memory.cpp
-           USES stdlib LIBS fmt::fmt)
+           SOURCES drive/parameters.cpp drive/error_memory.cpp drive/settings.cpp drive/terminals.cpp drive/process_data.cpp
+                   drive/fault_state.cpp drive/link_watch.cpp drive/control.cpp drive/setpoint.cpp
+                   drive/setpoint_memory.cpp drive/outputs.cpp drive/drive.cpp drive/drive_orders.cpp
+                   drive/drive_display.cpp
+           USES stdlib motion LIBS fmt::fmt)

@@ -10,6 +10,8 @@ inline constexpr uint16_t kPo1Description = 8304;  // P870..P872
 inline constexpr uint16_t kPi1Description = 8307;  // P873..P875
 inline constexpr uint16_t kStatus = 8310;          // P010..P013, low word is status word 1
 inline constexpr uint16_t kSpeed = 8318;
+inline constexpr uint16_t kFrequency = 8319;
+inline constexpr uint16_t kActualPosition = 8320;
 inline constexpr uint16_t kOutputCurrent = 8321;
 inline constexpr uint16_t kActiveCurrent = 8322;
 inline constexpr uint16_t kMotorUtilization1 = 8323;
@@ -23,7 +25,12 @@ inline constexpr uint16_t kInputs = 8334;               // P036, DI00..DI05
 inline constexpr uint16_t kInputFunction = 8334;        // + n = function of DI0n, n = 1..5
 inline constexpr uint16_t kOptionInputFunction = 8340;  // + n = function of DI1n
 inline constexpr uint16_t kOptionInputs = 8348;         // P048, DI10..DI17
+inline constexpr uint16_t kAnalogInput1 = 8331;         // P020, P021, P022
+inline constexpr uint16_t kAnalogInput2 = 8332;
+inline constexpr uint16_t kExternalLimit = 8333;
 inline constexpr uint16_t kOutputs = 8349;
+inline constexpr uint16_t kOutputFunction = 8350;        // + n = function of DO01, DO02
+inline constexpr uint16_t kOptionOutputFunction = 8352;  // + n = function of DO10..DO17
 inline constexpr uint16_t kOptionOutputs = 8360;
 inline constexpr uint16_t kPoShown = 8455;          // P094..P096
 inline constexpr uint16_t kPiShown = 8458;          // P097..P099

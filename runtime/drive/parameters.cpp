@@ -151,6 +151,11 @@ int32_t ParameterStore::value(uint16_t index) const {
   return slot ? read(*slot) : 0;
 }
 
+int32_t ParameterStore::stored(uint16_t index) const {
+  const Slot* slot = find(index);
+  return slot ? slot->working : 0;
+}
+
 bool ParameterStore::has_card(stdlib::OptionCard card) const {
   switch (card) {
     case stdlib::OptionCard::Drs: return options_.drs;
@@ -191,6 +196,7 @@ std::optional<ReturnCode> ParameterStore::value_refusal(const Parameter& paramet
 }
 
 void ParameterStore::store(Slot& slot, int32_t value, bool nonvolatile) {
+  ++changes_;
   slot.working = value;
   if (!nonvolatile || !slot.parameter->nonvolatile) return;
   slot.eeprom = value;
@@ -220,6 +226,7 @@ ParameterReply ParameterStore::preset(uint16_t index, int32_t value) {
   if (!slot) return execute(ParameterService::Write, index, value);
   if (!slot->parameter->writable) return tl::unexpected(codes::kReadOnly);
   if (const auto code = value_refusal(*slot->parameter, value)) return tl::unexpected(*code);
+  ++changes_;
   slot->working = value;
   slot->eeprom = value;
   return value;
@@ -235,12 +242,14 @@ void ParameterStore::set_display(uint16_t index, int32_t value) {
 }
 
 void ParameterStore::power_cycle() {
+  ++changes_;
   factory_setting_ = false;
   for (Slot& slot : slots_)
     slot.working = slot.parameter->nonvolatile ? slot.eeprom : bits(slot.parameter->default_value);
 }
 
 void ParameterStore::finish_factory_setting() {
+  ++changes_;
   factory_setting_ = false;
   for (Slot& slot : slots_) {
     if (!slot.parameter->writable) continue;  // counters and error memory stay

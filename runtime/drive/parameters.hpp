@@ -82,6 +82,11 @@ class ParameterStore {
   // The working value for the drive itself; 0 for an index the unit does not have.
   int32_t value(uint16_t index) const;
 
+  // The same without what the drive computes: what was set.
+  int32_t stored(uint16_t index) const;
+  // Grows with every change of a setting; display values do not count.
+  uint32_t changes() const { return changes_; }
+
   // A setting made before power-on, from the plant file: EEPROM and working value. Only index, access and
   // value are checked; what needs inhibit needs none here.
   ParameterReply preset(uint16_t index, int32_t value);
@@ -140,6 +145,7 @@ class ParameterStore {
   std::array<IndexWindow*, 7> windows_{};
   DriveLink* drive_ = nullptr;
   bool factory_setting_ = false;
+  uint32_t changes_ = 0;
 };
 
 }  // namespace ipos::runtime

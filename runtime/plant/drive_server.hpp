@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "runtime/bus/movilink/sbus_slave.hpp"
+#include "runtime/drive/drive.hpp"
 #include "runtime/drive/parameters.hpp"
-#include "runtime/drive/unit_state.hpp"
 #include "vm/exec/machine.hpp"
 #include "vm/sched/scheduler.hpp"
 
@@ -35,8 +35,8 @@ class DriveServer final : public ParameterServer, public ProcessDataServer {
   // From now on 11000 + n and 16000 + n lead to the machine's variables and code.
   void connect_program(vm::Machine& machine);
 
-  UnitState& state() { return state_; }
-  const UnitState& state() const { return state_; }
+  Drive& state() { return state_; }
+  const Drive& state() const { return state_; }
   ParameterStore& parameters() { return parameters_; }
 
   // Why the last access was refused, empty when it was not. Reading it clears it.
@@ -78,7 +78,7 @@ class DriveServer final : public ParameterServer, public ProcessDataServer {
   uint16_t index_of(std::string_view number) const;  // 0 for a parameter the unit does not have
 
   ParameterStore parameters_;
-  UnitState state_;
+  Drive state_;
   Variables variables_;
   Code code_;
   uint16_t task1_speed_;  // index of P938

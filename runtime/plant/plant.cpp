@@ -109,7 +109,7 @@ bool Plant::programs_over() const {
 
 bool Plant::has_fault() const {
   return std::any_of(stations_.begin(), stations_.end(),
-                     [](const auto& station) { return station->fault() != 0; });
+                     [](const auto& station) { return station->error(); });
 }
 
 void Plant::on_frame(const CanLine& /*line*/, const FrameRecord& /*record*/) {}

@@ -7,6 +7,7 @@
 #include <toml++/toml.h>
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <initializer_list>
 #include <optional>
 #include <set>
@@ -170,7 +171,8 @@ class Reader {
   }
 
   void station(const toml::table& table) {
-    known_keys(table, "[[station]]", {"name", "unit", "program", "sbus", "parameters", "inputs", "hex"});
+    known_keys(table, "[[station]]",
+               {"name", "unit", "program", "sbus", "parameters", "inputs", "analog", "hex"});
     StationConfig config;
     config.place = place_of(table.source());
     config.name = text(table, "name", "a [[station]]", true);
@@ -194,6 +196,7 @@ class Reader {
       bus_uses_.push_back({config.sbus, place_of(sbus->source())});
     parameters(table, config);
     inputs(table, config);
+    analog(table, config);
     hex(table, config);
     result_.plant.stations.push_back(std::move(config));
   }
@@ -237,6 +240,59 @@ class Reader {
       if (input >= 0)
         config.inputs.push_back({static_cast<uint8_t>(input), level == 1, place_of(key.source())});
     }
+  }
+
+  // Signals held from the start, as text with unit. What an input is wired for, voltage or current, the unit
+  // says.
+  void analog(const toml::table& table, StationConfig& config) {
+    const toml::table* settings = subtable(table, "analog");
+    if (settings == nullptr) return;
+    struct Kind {
+      std::string_view key;
+      std::string_view unit;
+      double factor;
+      double minimum;
+      double maximum;
+      int32_t& value;
+    };
+    AnalogInputs& a = config.analog;
+    const Kind kinds[] = {
+        {"AI1", "V", 1e3, -10, 10, a.ai1.millivolt},   {"AI1", "mA", 1e3, 0, 20, a.ai1.microampere},
+        {"AI2", "V", 1e3, -10, 10, a.ai2.millivolt},   {"AI2", "mA", 1e3, 0, 20, a.ai2.microampere},
+        {"frequency", "kHz", 1e3, 0, 65, a.frequency}, {"potentiometer", "%", 10, 0, 100, a.potentiometer}};
+    for (const auto& [key, value] : *settings) {
+      const auto known = [&](const Kind& kind) { return kind.key == key.str(); };
+      if (std::none_of(std::begin(kinds), std::end(kinds), known)) {
+        error(
+            place_of(key.source()),
+            fmt::format("'{}' is no analog input; known are AI1, AI2, frequency, potentiometer", key.str()));
+        continue;
+      }
+      const std::string signal = value.value_or(std::string());
+      const bool read = std::any_of(std::begin(kinds), std::end(kinds), [&](const Kind& kind) {
+        return known(kind) &&
+               parse_signal(signal, kind.unit, kind.factor, kind.minimum, kind.maximum, kind.value);
+      });
+      if (!read)
+        error(place_of(value.source()),
+              fmt::format(
+                  "{} needs a text such as \"5 V\" (-10..10), \"12 mA\" (0..20), for frequency \"5 kHz\" "
+                  "(0..65), for potentiometer \"50 %\" (0..100)",
+                  key.str()));
+    }
+  }
+
+  static bool parse_signal(std::string_view text, std::string_view unit, double factor, double minimum,
+                           double maximum, int32_t& out) {
+    if (!text.ends_with(unit)) return false;
+    text.remove_suffix(unit.size());
+    while (text.ends_with(' ')) text.remove_suffix(1);
+    double value = 0;
+    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (status != std::errc() || end != text.data() + text.size() || !(value >= minimum && value <= maximum))
+      return false;
+    out = static_cast<int32_t>(std::lround(value * factor));
+    return true;
   }
 
   void hex(const toml::table& table, StationConfig& config) {

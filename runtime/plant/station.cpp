@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <charconv>
 
+#include "runtime/services/drive_variables.hpp"
+#include "stdlib/faults.hpp"
+
 namespace ipos::runtime {
 namespace {
 
@@ -15,8 +18,6 @@ constexpr uint32_t kTick = 0;  // the only kind of event a station schedules
 constexpr uint64_t kSlaveTag = 1;
 constexpr uint64_t kMasterTag = 2;
 constexpr uint64_t kObjectTags = 0x100;  // and above
-
-constexpr uint32_t kInputLevel = 483;  // H483 InputLevel
 
 // The parameters of the SBus port (1053 1610 p. 41; MOVIDRIVE B: P881 to P885).
 struct SbusParameters {
@@ -53,6 +54,7 @@ void Station::power_on() {
   uint32_t inputs = 0;
   for (const InputSetting& input : config_.inputs) inputs |= (input.level ? 1U : 0U) << input.input;
   drive_.state().set_inputs(static_cast<uint16_t>(inputs));
+  drive_.state().set_analog(config_.analog);
   if (line_ != nullptr) connect_sbus();
   if (image_) {
     commands_.emplace(queue_, journal_, config_.name, sbus_ ? &sbus_->objects : nullptr,
@@ -89,9 +91,11 @@ Station::SbusPort::SbusPort(EventQueue& queue, uint32_t source, LinePort port, S
 
 void Station::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
   drive_.state().tick();
+  report_drive(now);
   if (machine_) {
-    machine_->variables()[kInputLevel] = drive_.state().inputs();
+    show_drive(drive_.state(), machine_->variables());
     vm::run_tick(*machine_, rates_.value_or(drive_.rates()));
+    take_program_orders(machine_->variables(), drive_.state());
     if (machine_->fault().number != 0 && !fault_reported_) report_fault(now);
   }
   if (sbus_ && machine_) sbus_->objects.tick(now / kMillisecond, machine_->variables());
@@ -138,6 +142,30 @@ void Station::report_fault(Time now) {
                             place.empty() ? "" : place + ", ", fault.address, fault.reason));
 }
 
+// Faults, and with --why every change of the reason why the drive is not enabled or takes another setpoint.
+void Station::report_drive(Time now) {
+  const Drive& drive = drive_.state();
+  const uint8_t fault = drive.fault();
+  if (fault != told_fault_ && fault != 0 && fault != (machine_ ? machine_->fault().number : 0)) {
+    const stdlib::FaultRow* row = stdlib::find_fault(fault);
+    journal_.note(now, drive.error() ? Weight::Fault : Weight::Warning, config_.name,
+                  row == nullptr ? fmt::format("F{:02}", fault)
+                                 : fmt::format("F{:02} {}: {}", fault, row->name, row->meaning));
+  }
+  told_fault_ = fault;
+  if (const Block block = drive.verdict().reason; block != told_block_) {
+    told_block_ = block;
+    journal_.note(now, Weight::Why, config_.name,
+                  block == Block::None ? std::string(block_text(block))
+                                       : fmt::format("not enabled: {}", block_text(block)));
+  }
+  if (const SetpointNote note = drive.setpoint().note; note != told_note_) {
+    told_note_ = note;
+    if (note != SetpointNote::None)
+      journal_.note(now, Weight::Why, config_.name, std::string(setpoint_note_text(note)));
+  }
+}
+
 bool Station::program_over() const {
   if (!machine_) return true;
   for (int task = 1; task <= vm::kTasks; ++task)
@@ -146,6 +174,8 @@ bool Station::program_over() const {
 }
 
 uint8_t Station::fault() const { return drive_.state().fault(); }
+
+bool Station::error() const { return drive_.state().error(); }
 
 uint16_t Station::status_word_1() const { return drive_.state().status_word_1(); }
 

@@ -46,7 +46,8 @@ class Station final : private CanNode, private EventTarget, private SlaveObserve
 
   // The program has ended, was never there, or a fault has stopped it.
   bool program_over() const;
-  uint8_t fault() const;
+  uint8_t fault() const;  // error or warning, 0 is none
+  bool error() const;     // a fault that stops the drive until it is reset
   uint16_t status_word_1() const;
 
   // Number of a variable by symbol or as Hn; nothing when there is none.
@@ -65,6 +66,7 @@ class Station final : private CanNode, private EventTarget, private SlaveObserve
 
   void connect_sbus();
   void report_fault(Time now);
+  void report_drive(Time now);
 
   EventQueue& queue_;
   uint32_t source_;
@@ -88,7 +90,11 @@ class Station final : private CanNode, private EventTarget, private SlaveObserve
   std::optional<SystemCommands> commands_;
   std::optional<vm::Machine> machine_;
   std::optional<vm::Rates> rates_;  // instead of P938 and P939
-  bool fault_reported_ = false;
+  bool fault_reported_ = false;     // of the program
+  // What was last told of the drive.
+  uint8_t told_fault_ = 0;
+  Block told_block_ = Block::None;
+  SetpointNote told_note_ = SetpointNote::None;
 };
 
 }  // namespace ipos::runtime

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "runtime/drive/unit_state.hpp"
+#include "runtime/drive/drive.hpp"
 #include "tests/harness/proves.hpp"
 #include "tests/runtime/drive/fake_drive.hpp"
 

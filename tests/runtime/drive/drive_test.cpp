@@ -1,5 +1,5 @@
-// Status words and process data of a standing drive.
-#include "runtime/drive/unit_state.hpp"
+// Status words, process data, faults and display values of a drive that stands.
+#include "runtime/drive/drive.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 namespace ipos::runtime {
 namespace {
 
-using Words = UnitState::Words;
+using Words = Drive::Words;
 constexpr auto kWrite = ParameterService::Write;
 
 struct Unit {
@@ -20,11 +20,11 @@ struct Unit {
     for (int i = 0; i < ms; ++i) state.tick();
   }
   ParameterStore parameters;
-  UnitState state;
+  Drive state;
 };
 
 // Figure 33 of 1053 1610: PI1 = 514 with factory settings and DI00 = 1.
-TEST(UnitState, FactoryStateIsFigure33) {
+TEST(Drive, FactoryStateIsFigure33) {
   Unit unit("md60a");
   unit.state.set_inputs(1);
   EXPECT_EQ(unit.state.status_word_1(), 0x0202);
@@ -32,7 +32,7 @@ TEST(UnitState, FactoryStateIsFigure33) {
   EXPECT_EQ(unit.state.condition(), UnitCondition::NoEnable);
 }
 
-TEST(UnitState, OpenInhibitTerminal) {
+TEST(Drive, OpenInhibitTerminal) {
   Unit unit("md60a");
   EXPECT_EQ(unit.state.status_word_1(), 0x0102);
   EXPECT_TRUE(unit.parameters.execute(kWrite, 8461, 10));  // R parameter under inhibit
@@ -41,7 +41,7 @@ TEST(UnitState, OpenInhibitTerminal) {
   EXPECT_EQ(unit.parameters.value(8461), 10);
 }
 
-TEST(UnitState, StatusIndexIsStatusWord) {
+TEST(Drive, StatusIndexIsStatusWord) {
   PROVES("PAR-28", "M07-SW-12");
   for (const char* name : {"md60a", "mc07"}) {
     Unit unit(name);
@@ -54,7 +54,7 @@ TEST(UnitState, StatusIndexIsStatusWord) {
   }
 }
 
-TEST(UnitState, InputImage) {
+TEST(Drive, InputImage) {
   Unit unit("md60a");
   unit.state.set_inputs(0b101);
   EXPECT_EQ(unit.parameters.value(8334), 5);
@@ -66,7 +66,7 @@ TEST(UnitState, InputImage) {
   EXPECT_EQ(m07.parameters.value(8334), 8);  // DI03; there is no DI00
 }
 
-TEST(UnitState, ProcessDataEnabled) {
+TEST(Drive, ProcessDataEnabled) {
   PROVES("M07-SW-03");
   for (const int32_t p876 : {0, 1})
     for (const auto& [p100, p101] : {std::pair{1, 0}, {10, 0}, {1, 3}, {2, 1}, {10, 3}}) {
@@ -79,7 +79,7 @@ TEST(UnitState, ProcessDataEnabled) {
     }
 }
 
-TEST(UnitState, ProcessDataAreShown) {
+TEST(Drive, ProcessDataAreShown) {
   PROVES("M07-MON-08");
   for (const char* name : {"md60a", "mc07"}) {
     Unit unit(name);
@@ -100,7 +100,7 @@ TEST(UnitState, ProcessDataAreShown) {
   }
 }
 
-TEST(UnitState, PiAssignments) {
+TEST(Drive, PiAssignments) {
   PROVES("M07-PD-17");
   for (const char* name : {"md60a", "mc07"}) {
     Unit unit(name);
@@ -126,7 +126,7 @@ TEST(UnitState, PiAssignments) {
   EXPECT_EQ(unit.state.pi()[2] & 0xFF, 0x02) << "the low byte of every status word is the same block";
 }
 
-TEST(UnitState, ControlWordInhibit) {
+TEST(Drive, ControlWordInhibit) {
   Unit unit("md60a");
   unit.state.set_inputs(1);
   unit.po({0x0001, 0, 0});
@@ -145,7 +145,7 @@ TEST(UnitState, ControlWordInhibit) {
   EXPECT_EQ(unit.state.status_word_1(), 0x0202) << "P876 = OFF";
 }
 
-TEST(UnitState, FaultAndReset) {
+TEST(Drive, FaultAndReset) {
   PROVES("M07-CW-05", "M07-SW-08");
   Unit unit("mc07");
   unit.set(8462, 3);
@@ -167,26 +167,26 @@ TEST(UnitState, FaultAndReset) {
   EXPECT_EQ(unit.parameters.value(8617), 0);
 }
 
-TEST(UnitState, ErrorMemory) {
+TEST(Drive, ErrorMemory) {
   PROVES("PAR-40");
   Unit unit("md60a");
   unit.state.set_inputs(0x0203);  // DI00, DI01, DI11
-  unit.parameters.set_display(8325, 540000);
+  unit.parameters.set_display(8328, 540);
   unit.state.raise_fault(26);
   unit.state.reset_fault();
   unit.state.set_inputs(0);
-  unit.parameters.set_display(8325, 560000);
-  unit.state.raise_fault(31);
+  unit.parameters.set_display(8328, 560);
+  unit.state.raise_fault(11);
   const auto at = [&](int index) { return unit.parameters.value(static_cast<uint16_t>(index)); };
-  EXPECT_EQ(at(8366), 31);
+  EXPECT_EQ(at(8366), 11);
   EXPECT_EQ(at(8367), 26);
   EXPECT_EQ(at(8368), 0);
   EXPECT_EQ(at(8371), 0);
   EXPECT_EQ(at(8372), 3);
   EXPECT_EQ(at(8377), 2);
   EXPECT_EQ(at(8392) & 0xFF00, 26 << 8);
-  EXPECT_EQ(at(8421), 560000);
-  EXPECT_EQ(at(8422), 540000);
+  EXPECT_EQ(at(8426), 560);
+  EXPECT_EQ(at(8427), 540);
   for (int index = 8411; index <= 8414; ++index)
     EXPECT_TRUE(unit.parameters.execute(ParameterService::Read, static_cast<uint16_t>(index)));
   EXPECT_EQ(unit.parameters.execute(ParameterService::Read, 8415).error(),
@@ -196,14 +196,14 @@ TEST(UnitState, ErrorMemory) {
     unit.state.reset_fault();
     unit.state.raise_fault(fault);
   }
-  EXPECT_EQ(at(8370), 31);
+  EXPECT_EQ(at(8370), 11);
   unit.parameters.power_cycle();
   EXPECT_EQ(at(8366), 4) << "the error memory survives power-off";
   EXPECT_TRUE(unit.parameters.execute(kWrite, 8596, 1));  // P804
   for (int index = 8366; index <= 8450; ++index) EXPECT_EQ(at(index), 0) << index;
 }
 
-TEST(UnitState, FactorySettingTakesItsTime) {
+TEST(Drive, FactorySettingTakesItsTime) {
   PROVES("M07-SW-02");
   for (const auto& [name, running] : {std::pair{"md60a", 0x0800}, {"mc07", 0x0500}}) {
     Unit unit(name);
@@ -221,7 +221,7 @@ TEST(UnitState, FactorySettingTakesItsTime) {
   }
 }
 
-TEST(UnitState, OperatingHours) {
+TEST(Drive, OperatingHours) {
   PROVES("PAR-25");
   Unit unit("md60a");
   unit.run_ms(2 * 3600 * 1000);
@@ -230,7 +230,7 @@ TEST(UnitState, OperatingHours) {
   EXPECT_EQ(stdlib::parameter_text(*unit.parameters.table().find("P017"), 36), "1.000 kWh");
 }
 
-TEST(UnitState, LimitSwitches) {
+TEST(Drive, LimitSwitches) {
   Unit unit("md60a");
   unit.set(8337, 14);  // DI03 = /LIM. SWITCH CW
   unit.set(8347, 15);  // DI17 = /LIM. SWITCH CCW
@@ -242,7 +242,7 @@ TEST(UnitState, LimitSwitches) {
   EXPECT_EQ(unit.state.status_word_1(), 0x0202);
 }
 
-TEST(UnitState, ReservedBitsOfMovitrac07) {
+TEST(Drive, ReservedBitsOfMovitrac07) {
   PROVES("M07-SW-05");
   Unit unit("mc07");
   for (const uint16_t inputs : std::initializer_list<uint16_t>{0, 0x3E})

@@ -1,0 +1,87 @@
+// Every source is heard, the most restrictive one wins.
+#include "runtime/drive/control.hpp"
+
+#include "runtime/drive/process_data.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+constexpr std::string_view kTexts[] = {
+#define BLOCK(name, text) text,
+#include "runtime/drive/blocks.def"
+};
+
+// Bits of H484: figure 19 of the MOVITRAC 07 manual keeps only these labels.
+constexpr uint32_t kIposNoEnable = 1U << 1;
+constexpr uint32_t kIposInhibit = 1U << 30;
+
+void hear_terminals(const ControlInputs& in, Verdict& verdict) {
+  using F = InputFunction;
+  const Terminals& t = in.terminals;
+  if (t.off(F::ControllerInhibit)) verdict.restrict_to(Command::Inhibit, Block::TerminalInhibit);
+  if (t.off(F::Enable)) {
+    // The same function is a rapid stop on MOVIDRIVE and a stop on MOVITRAC 07.
+    if (in.m07)
+      verdict.restrict_to(Command::Stop, Block::EnableTerminal);
+    else
+      verdict.restrict_to(Command::RapidStop, Block::RapidStopTerminal);
+  }
+  if (!in.cw && !in.ccw) verdict.restrict_to(Command::Stop, Block::NoDirection);
+  // Where the sign of a bus setpoint is the direction, MOVIDRIVE wants or allows both (MDX60B/61B p. 29).
+  if (in.cw && in.ccw && (in.m07 || !in.sign_decides))
+    verdict.restrict_to(Command::Stop, Block::BothDirections);
+  if (t.off(F::HoldControl)) verdict.restrict_to(Command::HoldControl, Block::HoldTerminal);
+}
+
+void hear_program(const ControlInputs& in, Verdict& verdict) {
+  if ((in.ipos_word & kIposInhibit) != 0) verdict.restrict_to(Command::Inhibit, Block::IposInhibit);
+  if ((in.ipos_word & kIposNoEnable) != 0) verdict.restrict_to(Command::Stop, Block::IposNoEnable);
+}
+
+void hear_bus(const ControlInputs& in, Verdict& verdict) {
+  if (!in.bus_word) return;
+  const uint16_t word = *in.bus_word;
+  if (in.bus_word_missing != Block::None) {
+    verdict.restrict_to(Command::RapidStop, in.bus_word_missing);
+    return;
+  }
+  using namespace control_bits;
+  if ((word & kInhibit) != 0) verdict.restrict_to(Command::Inhibit, Block::BusInhibit);
+  if ((word & kRapidStop) == 0) verdict.restrict_to(Command::RapidStop, Block::BusRapidStop);
+  if ((word & kStop) == 0) verdict.restrict_to(Command::Stop, Block::BusStop);
+  if (!in.m07 && (word & kHold) != 0) verdict.restrict_to(Command::HoldControl, Block::BusHold);
+}
+
+void hear_faults(const ControlInputs& in, Verdict& verdict) {
+  const Block why = in.fault_is_warning ? Block::Warning : Block::Fault;
+  if (in.factory_setting) verdict.restrict_to(Command::Inhibit, Block::FactorySetting);
+  switch (in.fault_stop) {
+    case FaultStop::None: break;
+    case FaultStop::Rapid: verdict.restrict_to(Command::RapidStop, why); break;
+    case FaultStop::Emergency: verdict.restrict_to(Command::EmergencyStop, why); break;
+    case FaultStop::Immediate: verdict.restrict_to(Command::Inhibit, why); break;
+  }
+}
+
+}  // namespace
+
+std::string_view block_text(Block block) { return kTexts[static_cast<size_t>(block)]; }
+
+Verdict decide_locally(const ControlInputs& inputs) {
+  Verdict verdict;
+  hear_terminals(inputs, verdict);
+  hear_program(inputs, verdict);
+  return verdict;
+}
+
+Verdict decide(const ControlInputs& inputs) {
+  Verdict verdict;
+  hear_faults(inputs, verdict);
+  hear_terminals(inputs, verdict);
+  hear_program(inputs, verdict);
+  if (inputs.waiting) verdict.restrict_to(Command::Stop, Block::Waiting);
+  hear_bus(inputs, verdict);
+  return verdict;
+}
+
+}  // namespace ipos::runtime

@@ -1,0 +1,178 @@
+// A drive: it turns terminals, process data, the program's words and the parameters into motion, and shows
+// what it does in status words, process data, outputs and display values (unit profile: 1053 1610 p. 41,
+// MOVITRAC 07 chapter 6, MDX60B/61B p. 84-93). One call of tick() a millisecond; docs/drive.md has the order.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "runtime/drive/control.hpp"
+#include "runtime/drive/link_watch.hpp"
+#include "runtime/drive/outputs.hpp"
+#include "runtime/drive/parameters.hpp"
+#include "runtime/drive/process_data.hpp"
+#include "runtime/drive/setpoint.hpp"
+#include "runtime/drive/setpoint_memory.hpp"
+#include "runtime/motion/axis.hpp"
+
+namespace ipos::runtime {
+
+// High byte of status word 1 without fault. MOVITRAC 07 knows 0..5, its 5 is the factory setting (its manual,
+// chapter 6.5); of MOVIDRIVE the manuals read print 1, 2 and 4 only, the others are common knowledge.
+enum class UnitCondition : uint8_t {
+  NotReady = 0,
+  ControllerInhibit = 1,
+  NoEnable = 2,
+  StandstillCurrent = 3,
+  Enable = 4,
+  SpeedControl = 5,
+  TorqueControl = 6,
+  HoldControl = 7,
+  FactorySetting = 8,
+  LimitSwitch = 9,
+  Waiting = 16,  // display t
+};
+
+class Drive final : private DriveLink {
+ public:
+  using Words = DriveWords;
+
+  // Connects itself to the parameters, which must outlive it.
+  explicit Drive(ParameterStore& parameters, const MachineData& machine = {},
+                 PotentiometerRule potentiometer_rule = PotentiometerRule::Fw15);
+  Drive(const Drive&) = delete;
+  Drive& operator=(const Drive&) = delete;
+
+  // --- what comes in ---
+  // Levels as in InputLevel H483: bits 0..7 DI00..DI07, bits 8..15 DI10..DI17. All 0 at first: open
+  // terminals.
+  void set_inputs(uint16_t levels) { inputs_ = levels; }
+  uint16_t inputs() const { return inputs_; }
+  void set_analog(const AnalogInputs& analog) { analog_ = analog; }
+  const AnalogInputs& analog() const { return analog_; }
+
+  // PO words of a telegram; words it does not carry keep their value. They show in P094..P096 in any case and
+  // act only if P876 is ON and the source is the one of P100 or P101. `cyclic` is false for acyclic RS-485
+  // requests, which do not restart the monitoring.
+  void take_po(PoSource source, std::span<const uint16_t> words, bool cyclic = true);
+  // A valid cyclic request without process data restarts the monitoring, too (1053 1610 p. 27).
+  void take_request(PoSource source);
+  const Words& po() const { return shown_po_; }
+
+  // From the program: H484, PI words with assignment IPOS PI-DATA, outputs with function IPOS OUTPUT (bits as
+  // outputs()).
+  void set_ipos_control_word(uint32_t word) { ipos_word_ = word; }
+  void set_ipos_pi(const Words& words) { ipos_pi_ = words; }
+  void set_ipos_outputs(uint16_t levels) { ipos_outputs_ = levels; }
+
+  // One millisecond has passed.
+  void tick();
+
+  // --- faults ---
+  // With the response its parameter chooses, or another one. An error stays until it is reset: by an input,
+  // control word bit 6, P840, the program, or auto reset P841.
+  void raise_fault(uint8_t number);
+  void raise_fault(uint8_t number, FaultResponse response);
+  void reset_fault();
+  uint8_t fault() const { return faults_.shown(); }  // error or warning, 0 is none
+  bool error() const { return faults_.error(); }
+
+  // --- what it shows ---
+  Words pi() const;
+  Verdict verdict() const;  // what it is told, and why not more
+  UnitCondition condition() const;
+  char display() const;  // the seven-segment display: a digit, 't' waiting, 'F' fault
+  bool ready() const { return !faults_.error() && !parameters_.factory_setting_running(); }
+  bool po_data_enabled() const;
+  uint16_t status_word_1() const;
+  uint16_t status_word_2() const;                            // high byte: virtual output terminals DO10..DO17
+  uint16_t status_word_3() const { return status_block(); }  // high byte in no manual read; 0 is ours
+  const Setpoint& setpoint() const { return setpoint_; }     // of the last tick
+  const AxisState& axis() const { return axis_.state(); }
+  uint16_t outputs() const { return outputs_.levels(); }
+
+  // What the master of a master/slave group sends (P750, P751): control word 1, speed, 0.
+  Words master_words() const;
+
+  // Power off and on: the parameters are the caller's.
+  void power_cycle();
+
+ private:
+  std::optional<int32_t> live_value(uint16_t index) const override;
+  bool controller_inhibited() const override;
+  bool output_stage_on() const override { return axis_.state().output_stage; }
+  void on_parameter_written(uint16_t index, int32_t value) override;
+
+  const Settings& settings() const;
+  const ParameterSet& set() const { return settings().sets[second_set_ ? 1 : 0]; }
+  const ParameterSet& other_set() const { return settings().sets[second_set_ ? 0 : 1]; }
+  Terminals terminals() const;
+  ControlInputs control_inputs() const;
+  BusOrder order_of(PoSource source) const;
+  BusOrder control_order() const;
+  BusOrder setpoint_order() const;
+  bool ipos_bit(InputFunction function) const {
+    return (ipos_word_ >> static_cast<unsigned>(function) & 1) != 0;
+  }
+  bool function_on(InputFunction function) const { return terminals().on(function) || ipos_bit(function); }
+  bool is_waiting() const;
+  const LinkWatch& watch(PoSource source) const { return watches_[static_cast<size_t>(source)]; }
+  FaultResponse response_of(uint8_t number) const;
+  UnitCondition enabled_condition() const;
+  uint8_t status_block() const;
+  uint16_t pi_word(size_t n) const;
+
+  void count_time();
+  void latch_three_wire();
+  void watch_links();
+  void watch_resets();
+  void watch_machine();
+  void note_fault(uint8_t number);
+  void select_parameter_set();
+  Setpoint next_setpoint();
+  AxisOrder axis_order(const Verdict& verdict) const;
+  void show_outputs();
+
+  ParameterStore& parameters_;
+  bool is_m07_;
+  PotentiometerRule potentiometer_rule_;
+  SettingsReader reader_;
+  mutable Settings settings_;
+  mutable uint32_t settings_version_;
+
+  uint16_t inputs_ = 0;
+  AnalogInputs analog_;
+  Words shown_po_{};
+  std::array<Words, kPoSources> po_{};
+  std::array<LinkWatch, kPoSources> watches_{};
+  uint16_t last_control_word_ = 0;  // for the edge of its reset bit
+  uint32_t ipos_word_ = 0;
+  Words ipos_pi_{};
+  uint16_t ipos_outputs_ = 0;
+
+  FaultState faults_;
+  bool reset_input_ = false;  // level at the last tick
+  int32_t auto_reset_ms_ = 0;
+  int auto_resets_ = 0;
+  int32_t limited_ms_ = 0;  // at the current limit
+
+  bool second_set_ = false;
+  bool three_wire_cw_ = false, three_wire_ccw_ = false;
+  bool cw_input_ = false, ccw_input_ = false;
+  bool stopped_by_setpoint_ = false;
+  MotorPotentiometer motor_pot_;
+  PiController pi_controller_;
+  int32_t pi_actual_ = 0;
+  SetpointFilter ai1_filter_;
+  Setpoint setpoint_;
+
+  Axis axis_;
+  Outputs outputs_;
+  uint32_t factory_setting_ms_ = 0;
+  uint32_t mains_ms_ = 0;
+  uint32_t enabled_ms_ = 0;
+  int64_t counted_energy_ = 0;
+};
+
+}  // namespace ipos::runtime

@@ -1,0 +1,144 @@
+// What the drive shows: unit condition, status words, process input data and display values.
+#include "runtime/drive/drive.hpp"
+#include "runtime/drive/indices.hpp"
+
+namespace ipos::runtime {
+
+// Operating modes of P700 (1053 1610 p. 80): VFC drives show 4, a speed control 5, a torque control 6.
+UnitCondition Drive::enabled_condition() const {
+  if (is_m07_) return UnitCondition::Enable;
+  const int32_t mode = set().operating_mode;
+  constexpr int32_t kVfcSpeedControl = 5, kCfcTorque = 12, kServoTorque = 17;
+  if (mode == kCfcTorque || mode == kServoTorque) return UnitCondition::TorqueControl;
+  return mode >= kVfcSpeedControl && !second_set_ ? UnitCondition::SpeedControl : UnitCondition::Enable;
+}
+
+UnitCondition Drive::condition() const {
+  if (parameters_.factory_setting_running()) return UnitCondition::FactorySetting;
+  if (faults_.error()) return UnitCondition::NotReady;
+  const Verdict now = verdict();
+  switch (now.command) {
+    case Command::Inhibit: return UnitCondition::ControllerInhibit;
+    case Command::Enable: return enabled_condition();
+    case Command::HoldControl: return UnitCondition::HoldControl;
+    case Command::EmergencyStop:
+    case Command::RapidStop:
+    case Command::Stop: break;
+  }
+  if (now.reason == Block::LimitCw || now.reason == Block::LimitCcw) return UnitCondition::LimitSwitch;
+  if (is_waiting() && !is_m07_ && decide_locally(control_inputs()).command == Command::Enable)
+    return UnitCondition::Waiting;
+  const AxisState& axis = axis_.state();
+  if (axis.standing && axis.output_stage && set().standstill_current > 0)
+    return UnitCondition::StandstillCurrent;
+  return UnitCondition::NoEnable;
+}
+
+char Drive::display() const {
+  if (faults_.shown() != 0) return 'F';
+  const UnitCondition now = condition();
+  return now == UnitCondition::Waiting ? 't' : static_cast<char>('0' + static_cast<int>(now));
+}
+
+uint8_t Drive::status_block() const {
+  const Terminals t = terminals();
+  unsigned block = 0;
+  if (output_stage_on()) block |= 1U << 0;
+  if (ready()) block |= 1U << 1;
+  if (po_data_enabled()) block |= 1U << 2;
+  if (faults_.shown() != 0) block |= 1U << 5;
+  if (is_m07_) return static_cast<uint8_t>(block);  // keeps bits 3, 4, 6, 7 at 0
+  if (function_on(InputFunction::RampSwitch) ||
+      (control_order().control_word.value_or(0) & control_bits::kRampSet) != 0)
+    block |= 1U << 3;
+  if (second_set_) block |= 1U << 4;
+  if (t.off(InputFunction::LimitCw)) block |= 1U << 6;  // low-active
+  if (t.off(InputFunction::LimitCcw)) block |= 1U << 7;
+  return static_cast<uint8_t>(block);
+}
+
+uint16_t Drive::status_word_1() const {
+  constexpr uint8_t kM07FactorySetting = 5;
+  const UnitCondition now = condition();
+  uint8_t high = static_cast<uint8_t>(now);
+  if (is_m07_ && now == UnitCondition::FactorySetting) high = kM07FactorySetting;
+  if (faults_.shown() != 0) high = faults_.shown();
+  return static_cast<uint16_t>((high << 8) | status_block());
+}
+
+uint16_t Drive::status_word_2() const {
+  return static_cast<uint16_t>((outputs_.levels() & 0xFF00U) | status_block());
+}
+
+Drive::Words Drive::pi() const {
+  Words words{};
+  for (size_t n = 0; n < kProcessWords; ++n) words[n] = pi_word(n);
+  return words;
+}
+
+uint16_t Drive::pi_word(size_t n) const {
+  const AxisState& axis = axis_.state();
+  const int32_t speed = set().change_direction == 1 ? -axis.speed : axis.speed;
+  switch (static_cast<PiAssignment>(settings().pi[n])) {
+    case PiAssignment::None: return 0;
+    case PiAssignment::Speed: return word_of_speed(speed);
+    case PiAssignment::RelativeSpeed: return relative_of_speed(speed, set().maximum_speed);
+    case PiAssignment::OutputCurrent: return word_of_current(axis.output_current);
+    case PiAssignment::ActiveCurrent: return word_of_current(axis.active_current);
+    case PiAssignment::PositionLow: return static_cast<uint16_t>(axis.position & 0xFFFF);
+    case PiAssignment::PositionHigh: return static_cast<uint16_t>(static_cast<uint32_t>(axis.position) >> 16);
+    case PiAssignment::StatusWord1: return status_word_1();
+    case PiAssignment::StatusWord2: return status_word_2();
+    case PiAssignment::StatusWord3: return status_word_3();
+    case PiAssignment::IposData: return ipos_pi_[n];
+    case PiAssignment::PiActual:  // 10 is RESERVED on MOVIDRIVE
+      return is_m07_ ? relative_of_speed(pi_actual_, 100'000) : 0;
+  }
+  return 0;
+}
+
+Drive::Words Drive::master_words() const {
+  const uint16_t control = verdict().command == Command::Enable      ? control_bits::kEnable
+                           : verdict().command == Command::Inhibit   ? control_bits::kInhibit
+                           : verdict().command == Command::RapidStop ? control_bits::kStop
+                                                                     : control_bits::kRapidStop;
+  const auto speed = static_cast<int32_t>(int64_t{axis_.state().setpoint} * settings().master_scale / 1000);
+  return {control, word_of_speed(speed), 0};
+}
+
+std::optional<int32_t> Drive::live_value(uint16_t index) const {
+  if (index >= index::kPoShown && index < index::kPoShown + kProcessWords)
+    return shown_po_[index - index::kPoShown];
+  if (index >= index::kPiShown && index < index::kPiShown + kProcessWords)
+    return pi_word(index - index::kPiShown);
+  // The firmware of a slave sets the assignments (MDX60B/61B p. 29).
+  if (is_master_slave(settings())) {
+    if (index >= index::kPo1Description && index < index::kPo1Description + kProcessWords)
+      return settings().po[index - index::kPo1Description];
+    if (index >= index::kPi1Description && index < index::kPi1Description + kProcessWords)
+      return settings().pi[index - index::kPi1Description];
+  }
+  const AxisState& axis = axis_.state();
+  const bool reversed = set().change_direction == 1;
+  switch (index) {
+    case index::kSpeed: return reversed ? -axis.speed : axis.speed;
+    case index::kFrequency: return axis.frequency;
+    case index::kActualPosition: return axis.position;
+    case index::kOutputCurrent: return axis.output_current;
+    case index::kActiveCurrent: return axis.active_current;
+    case index::kMotorUtilization1: return second_set_ ? 0 : axis.motor_utilization;
+    case index::kMotorUtilization2: return second_set_ ? axis.motor_utilization : 0;
+    case index::kDcLink: return axis.dc_link;
+    case index::kHeatSink: return axis.heat_sink;
+    case index::kAnalogInput1: return analog_.ai1.millivolt;
+    case index::kAnalogInput2: return analog_.ai2.millivolt;
+    case index::kStatus: return status_word_1();
+    case index::kInputs: return inputs_ & (is_m07_ ? 0x3E : 0x3F);  // M07 has no DI00
+    case index::kOptionInputs: return inputs_ >> 8;
+    case index::kOutputs: return outputs_.levels() & (is_m07_ ? 0x06 : 0x07);  // nor DB00
+    case index::kOptionOutputs: return outputs_.levels() >> 8;
+    default: return std::nullopt;
+  }
+}
+
+}  // namespace ipos::runtime

@@ -1,0 +1,39 @@
+// Monitoring of the process data of one bus: P812, P815, P819 (1053 1610 p. 27, 41, 64; MOVITRAC 07
+// chapters 4.1 and 7.1). Until the first telegram after power-on or a reset the drive waits (display t).
+#pragma once
+
+#include <cstdint>
+
+namespace ipos::runtime {
+
+class LinkWatch {
+ public:
+  struct Rules {
+    int32_t delay_ms = 0;        // 0 and 650 000: off
+    bool supervised = false;     // silence is a fault; else it only brings back the waiting
+    bool without_first = false;  // silence from the beginning is a fault, too (MOVITRAC 07)
+  };
+  static bool monitors(int32_t delay_ms) { return delay_ms != 0 && delay_ms != 650'000; }
+
+  // Process data for this unit have arrived; `restarts` is false for acyclic RS-485 requests, which are not
+  // monitored (1053 1610 p. 23). True when the silence had been reported.
+  bool on_process_data(bool restarts);
+
+  // A cyclic request without process data: it restarts the monitoring, but does not end the waiting (ours).
+  bool on_request();
+
+  // One millisecond. True once when the time has run out.
+  bool tick(const Rules& rules);
+
+  void forget() { *this = {}; }  // power-on, reset of a fault
+  bool seen() const { return seen_; }
+  bool silent() const { return reported_; }
+
+ private:
+  bool seen_ = false;     // process data have arrived
+  bool running_ = false;  // the time runs
+  bool reported_ = false;
+  int64_t silent_ms_ = 0;  // whole ticks since the last restart
+};
+
+}  // namespace ipos::runtime

@@ -1,0 +1,91 @@
+// The binary outputs: what P620..P637 put on them, and the reference signals P400..P442 with hysteresis and
+// delay (1053 1610 p. 76, 79).
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "runtime/drive/settings.hpp"
+
+namespace ipos::runtime {
+
+// Settings of P620..P637 the drive can show; the functions of the DRS card (16..18) stay at their quiet
+// level.
+enum class OutputFunction : uint8_t {
+  None = 0,
+  NoFault = 1,
+  Ready = 2,
+  OutputStageOn = 3,
+  RotatingField = 4,
+  BrakeReleased = 5,
+  BrakeApplied = 6,
+  Standstill = 7,
+  ParameterSet = 8,
+  SpeedReference = 9,
+  SpeedWindow = 10,
+  SetpointReached = 11,
+  CurrentReference = 12,
+  CurrentLimit = 13,
+  NoMotorUtilization1 = 14,
+  NoMotorUtilization2 = 15,
+  NoDrsPrewarning = 16,
+  NoDrsLagError = 17,
+  DrsInPosition = 18,
+  IposInPosition = 19,
+  IposReferenced = 20,
+  IposOutput = 21,
+  NoIposFault = 22,
+  PiReference = 23,
+};
+
+// A comparison with hysteresis whose result must last before it shows.
+class ReferenceSignal {
+ public:
+  // `above` the condition holds, `below` it does not; between the two the last one stays.
+  bool tick(bool above, bool below, int32_t delay_ms);
+  bool value() const { return shown_; }
+
+ private:
+  bool raw_ = false;
+  bool shown_ = false;
+  int32_t lasted_ms_ = 0;
+};
+
+// What the outputs show of the drive.
+struct OutputInputs {
+  bool fault = false;
+  bool ipos_fault = false;
+  bool ready = false;
+  bool output_stage = false;
+  bool brake_released = false;
+  bool standstill = false;
+  bool second_set = false;
+  bool motor_1_overloaded = false;
+  bool motor_2_overloaded = false;
+  bool in_position = false;
+  bool referenced = false;
+  int32_t speed = 0;  // 1/1000 rpm
+  int32_t setpoint = 0;
+  int32_t current = 0;  // 1/1000 % of IN
+  int32_t current_limit = 0;
+  uint16_t ipos_outputs = 0;  // by bit as below
+};
+
+class Outputs {
+ public:
+  // One millisecond. Bit 0 DB00, bit 1 DO01, bit 2 DO02, bit 8 DO10 .. bit 15 DO17.
+  uint16_t tick(const Settings& settings, const OutputInputs& inputs);
+  uint16_t levels() const { return levels_; }
+
+ private:
+  bool level(OutputFunction function, const OutputInputs& inputs, unsigned bit) const;
+
+  struct Signals {
+    bool speed, window, compare, current, limit;
+  };
+  ReferenceSignal speed_, window_, compare_, current_, limit_;
+  Signals signals_{};
+  uint16_t levels_ = 0;
+};
+
+}  // namespace ipos::runtime

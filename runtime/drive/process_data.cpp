@@ -1,0 +1,112 @@
+// Scaling of process data words, and the table of buses.
+#include "runtime/drive/process_data.hpp"
+
+#include <algorithm>
+
+namespace ipos::runtime {
+namespace {
+
+constexpr int32_t kSpeedDigit = 200;    // 0.2 rpm
+constexpr int32_t kCurrentDigit = 100;  // 0.1 %
+constexpr int64_t kFullScale = 0x4000;  // 100 %
+constexpr int64_t kPercent = 100'000;   // 100 % in 1/1000 %
+
+// P100 and P101 name the buses by different codes (1053 1610 p. 72). P837 to P101 of SBus 2 are MOVIDRIVE B's
+// and stand with that bus.
+struct Bus {
+  PoSource source;
+  int32_t p100;
+  int32_t p101;
+  int32_t p100_master;  // the same bus with master/slave telegrams; -1: none
+};
+constexpr Bus kBuses[] = {
+    {PoSource::Rs485, 2, 1, 9}, {PoSource::Fieldbus, 3, 2, -1}, {PoSource::Sbus, 10, 3, 8}};
+
+int64_t divide_rounded(int64_t value, int64_t by) {
+  return value >= 0 ? (value + by / 2) / by : -((-value + by / 2) / by);
+}
+
+uint16_t saturated(int64_t value) {
+  return static_cast<uint16_t>(static_cast<int16_t>(std::clamp<int64_t>(value, INT16_MIN, INT16_MAX)));
+}
+
+int32_t signed_word(uint16_t word) { return static_cast<int16_t>(word); }
+
+template <typename T>
+void set_first(std::optional<T>& field, T value) {
+  if (!field) field = value;
+}
+
+}  // namespace
+
+int32_t speed_of_word(uint16_t word) { return signed_word(word) * kSpeedDigit; }
+
+int32_t speed_of_relative(uint16_t word, int32_t maximum) {
+  return static_cast<int32_t>(divide_rounded(int64_t{signed_word(word)} * maximum, kFullScale));
+}
+
+uint16_t word_of_speed(int32_t speed) { return saturated(divide_rounded(speed, kSpeedDigit)); }
+
+uint16_t relative_of_speed(int32_t speed, int32_t maximum) {
+  return maximum == 0 ? 0 : saturated(divide_rounded(int64_t{speed} * kFullScale, maximum));
+}
+
+uint16_t word_of_current(int32_t current) { return saturated(divide_rounded(current, kCurrentDigit)); }
+
+BusOrder decode_order(const DriveWords& words, const std::array<uint8_t, kProcessWords>& assignments,
+                      int32_t maximum_speed) {
+  BusOrder order;
+  for (size_t n = 0; n < kProcessWords; ++n) {
+    const uint16_t word = words[n];
+    switch (static_cast<PoAssignment>(assignments[n])) {
+      case PoAssignment::Speed: set_first(order.speed, speed_of_word(word)); break;
+      case PoAssignment::RelativeSpeed: set_first(order.speed, speed_of_relative(word, maximum_speed)); break;
+      case PoAssignment::MaximumSpeed: set_first(order.maximum_speed, speed_of_word(word)); break;
+      case PoAssignment::MaximumCurrent:
+        set_first(order.maximum_current, signed_word(word) * kCurrentDigit);
+        break;
+      case PoAssignment::Slip: set_first(order.slip, speed_of_word(word)); break;
+      case PoAssignment::Ramp: set_first(order.ramp, int32_t{word}); break;
+      case PoAssignment::PiSetpoint:
+        set_first(order.pi_setpoint, static_cast<int32_t>(signed_word(word) * kPercent / kFullScale));
+        break;
+      case PoAssignment::ControlWord1:
+      case PoAssignment::ControlWord2:
+        if (order.control_word) break;
+        order.control_word = word;
+        order.is_control_word_1 = static_cast<PoAssignment>(assignments[n]) == PoAssignment::ControlWord1;
+        break;
+      // The current setpoint needs a torque control, the position the positioning of IPOS; the program reads
+      // its own words.
+      case PoAssignment::Current:
+      case PoAssignment::PositionLow:
+      case PoAssignment::PositionHigh:
+      case PoAssignment::IposData:
+      case PoAssignment::None: break;
+    }
+  }
+  return order;
+}
+
+std::optional<PoSource> setpoint_bus(const Settings& settings) {
+  for (const Bus& bus : kBuses)
+    if (settings.setpoint_source == bus.p100 || settings.setpoint_source == bus.p100_master)
+      return bus.source;
+  return std::nullopt;
+}
+
+// The master of a group sends the control word, too, whatever P101 says (MDX60B/61B p. 29).
+std::optional<PoSource> control_bus(const Settings& settings) {
+  if (is_master_slave(settings)) return setpoint_bus(settings);
+  for (const Bus& bus : kBuses)
+    if (settings.control_source == bus.p101) return bus.source;
+  return std::nullopt;
+}
+
+bool is_master_slave(const Settings& settings) {
+  for (const Bus& bus : kBuses)
+    if (settings.setpoint_source == bus.p100_master) return true;
+  return false;
+}
+
+}  // namespace ipos::runtime

@@ -1,0 +1,98 @@
+// The setpoint cascade: from the source P100 chooses to the speed the ramp is told (MOVITRAC 07 chapter 6.4;
+// 1053 1610 p. 72). Pure functions; speeds in 1/1000 rpm, positive is CW.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "runtime/drive/settings.hpp"
+
+namespace ipos::runtime {
+
+// What hangs on the analog terminals. An input is wired for voltage or for current; the other is 0.
+struct AnalogInputs {
+  struct Signal {
+    int32_t millivolt = 0;
+    int32_t microampere = 0;
+  };
+  Signal ai1;
+  Signal ai2;
+  int32_t frequency = 0;      // Hz, frequency input of MOVITRAC 07
+  int32_t potentiometer = 0;  // 1/1000 of full travel, built-in potentiometer of MOVITRAC 07
+};
+
+// Settings of P100 (1053 1610 p. 72; 11 MOVITRAC 07).
+enum class SetpointSource : uint8_t {
+  Bipolar = 0,
+  Unipolar = 1,
+  Rs485 = 2,
+  Fieldbus = 3,
+  MotorPot = 4,
+  MotorPotPlusAi1 = 5,
+  FixedPlusAi1 = 6,
+  FixedTimesAi1 = 7,
+  MasterSbus = 8,
+  MasterRs485 = 9,
+  Sbus = 10,
+  Frequency = 11,
+};
+
+// How the built-in potentiometer adds to the setpoint changed with the firmware (MOVITRAC 07 table 3).
+enum class PotentiometerRule : uint8_t {
+  Fw10,  // .10 to .12 of the standard unit
+  Fw13,  // from .13, LOGODrive .12
+  Fw15,  // from .15, LOGODrive .16
+};
+
+// Why a setpoint is other than one may think; shown with --why.
+enum class SetpointNote : uint8_t {
+#define SETPOINT_NOTE(name, text) name,
+#include "runtime/drive/setpoint_notes.def"
+};
+std::string_view setpoint_note_text(SetpointNote note);
+
+struct SetpointInputs {
+  bool m07 = false;
+  PotentiometerRule potentiometer_rule = PotentiometerRule::Fw15;
+  bool slave_free_run = false;  // input function: the local source instead of the master's
+  int fixed = 0;                // 0 none, 1..3: n11..n13 or n21..n23
+  bool other_set = false;       // fixed setpoint switchover
+  bool ccw = false;             // direction terminal; only where the sign does not decide
+  int32_t ai1_speed = 0;        // ai1_speed() after its filter
+  AnalogInputs analog;
+  int32_t motor_pot = 0;
+  bool motor_pot_ccw = false;
+  std::optional<int32_t> bus_speed;      // nothing: no PO word has SPEED
+  bool bus_accepted = false;             // P876, and the bus of P100 has sent
+  bool po_enabled = true;                // P876
+  std::optional<int32_t> maximum_speed;  // PO word MAX. SPEED
+  std::optional<int32_t> pi_output;      // PI controller on: its output in 1/1000 %
+};
+
+struct Setpoint {
+  int32_t speed = 0;      // what the ramp is told
+  int32_t requested = 0;  // before the limits
+  SetpointNote note = SetpointNote::None;
+};
+
+// `set` is the active one of settings.sets, `other` the other.
+Setpoint select_setpoint(const Settings& settings, const ParameterSet& set, const ParameterSet& other,
+                         const SetpointInputs& inputs);
+
+// Voltage or current of AI1 as a speed, by P110 to P114.
+int32_t ai1_speed(const Settings& settings, const ParameterSet& set, const AnalogInputs& analog);
+
+// Actual value of the PI controller in 1/1000 %: AI1 by P253 and P254, without the offset P255.
+int32_t pi_actual_value(const Settings& settings, const AnalogInputs& analog);
+
+// The built-in potentiometer as a speed, by P122.
+int32_t potentiometer_speed(const Settings& settings, const ParameterSet& set, int32_t position);
+
+// Magnitude between P301 and P302, moved out of the skip window, sign kept; 0 counts as CW.
+int32_t limit_setpoint(const ParameterSet& set, int32_t speed, int32_t maximum);
+
+// True while the sign of the setpoint is the direction of rotation.
+bool sign_decides(const Settings& settings, bool slave_free_run);
+
+}  // namespace ipos::runtime

@@ -1,0 +1,84 @@
+// Settings from the parameter table; what a unit lacks is taken from a neighbour.
+#include "runtime/drive/settings.hpp"
+
+#include "runtime/drive/indices.hpp"
+#include "runtime/drive/process_data.hpp"
+#include "runtime/drive/terminals.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+// DI01 of MOVITRAC 07 has no parameter: it is CW/STOP (its manual, chapter 10.3 begins with P601).
+constexpr size_t kM07FixedInput = 1;
+
+// The firmware of a slave in master/slave operation sets the assignments (MDX60B/61B p. 29). On the older
+// units the order of the words in the group telegram is the same (MS-07).
+constexpr std::array<uint8_t, kProcessWords> kSlavePo = {static_cast<uint8_t>(PoAssignment::ControlWord1),
+                                                         static_cast<uint8_t>(PoAssignment::Speed),
+                                                         static_cast<uint8_t>(PoAssignment::IposData)};
+constexpr std::array<uint8_t, kProcessWords> kSlavePi = {static_cast<uint8_t>(PiAssignment::StatusWord1),
+                                                         static_cast<uint8_t>(PiAssignment::Speed),
+                                                         static_cast<uint8_t>(PiAssignment::IposData)};
+
+void fill(int32_t& value, int32_t neighbour) {
+  if (value == kAbsent) value = neighbour;
+}
+
+void fill_set(ParameterSet& set) {
+  fill(set.ramp_up_ccw, set.ramp_up_cw);
+  fill(set.ramp_down_ccw, set.ramp_down_cw);
+  fill(set.ramp_second, set.ramp_up_cw);
+  fill(set.emergency_ramp, set.stop_ramp);
+}
+
+}  // namespace
+
+SettingsReader::SettingsReader(const ParameterStore& parameters)
+    : is_m07_(parameters.unit().generation == stdlib::Generation::M07) {
+  const auto index_of = [&](std::string_view number) -> uint16_t {
+    const stdlib::Parameter* row = parameters.table().find(number);
+    return row == nullptr ? 0 : row->index;
+  };
+#define SETTING(name, number, absent) \
+  if (const uint16_t index = index_of(number)) cells_.push_back({&Settings::name, index});
+#define SET_SETTING(name, first, second, absent) \
+  if (const uint16_t index = index_of(first))    \
+    set_cells_.push_back({&ParameterSet::name, {index, index_of(second)}});
+#include "runtime/drive/settings.def"
+}
+
+Settings SettingsReader::read(const ParameterStore& parameters) const {
+  Settings settings;
+  for (const Cell& cell : cells_) settings.*cell.member = parameters.stored(cell.index);
+  for (const SetCell& cell : set_cells_)
+    for (size_t n = 0; n < 2; ++n) {
+      const uint16_t index = cell.index[n] != 0 ? cell.index[n] : cell.index[0];
+      settings.sets[n].*cell.member = parameters.stored(index);
+    }
+  for (ParameterSet& set : settings.sets) fill_set(set);
+  fill(settings.motor_pot_down, settings.motor_pot_up);
+
+  const auto function = [&](uint32_t index) {
+    return static_cast<uint8_t>(parameters.stored(static_cast<uint16_t>(index)));
+  };
+  for (uint32_t n = 0; n < kProcessWords; ++n) {
+    settings.po[n] = function(index::kPo1Description + n);
+    settings.pi[n] = function(index::kPi1Description + n);
+  }
+  if (is_master_slave(settings)) {
+    settings.po = kSlavePo;
+    settings.pi = kSlavePi;
+  }
+  for (uint32_t n = 1; n <= 5; ++n) settings.inputs[n] = function(index::kInputFunction + n);
+  for (uint32_t n = 0; n < 8; ++n) settings.inputs[8 + n] = function(index::kOptionInputFunction + n);
+  settings.outputs[1] = function(index::kOutputFunction);
+  settings.outputs[2] = function(index::kOutputFunction + 1);
+  for (uint32_t n = 0; n < 8; ++n) settings.outputs[8 + n] = function(index::kOptionOutputFunction + n);
+  if (is_m07_)
+    settings.inputs[kM07FixedInput] = static_cast<uint8_t>(InputFunction::Cw);
+  else
+    settings.inputs[0] = static_cast<uint8_t>(InputFunction::ControllerInhibit);  // DI00
+  return settings;
+}
+
+}  // namespace ipos::runtime

@@ -1,0 +1,53 @@
+// What the parameters say, in the form the control reads every millisecond: read once after each change
+// instead of searched for. Values are coded as in the parameter channel (speeds in 1/1000 rpm, times in ms).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "runtime/drive/parameters.hpp"
+
+namespace ipos::runtime {
+
+inline constexpr int32_t kAbsent = INT32_MIN;
+
+// Parameters that exist twice, for motors 1 and 2 (parameter switchover).
+struct ParameterSet {
+#define SET_SETTING(member, first, second, absent) int32_t member = absent;
+#include "runtime/drive/settings.def"
+};
+
+struct Settings {
+#define SETTING(member, number, absent) int32_t member = absent;
+#include "runtime/drive/settings.def"
+  std::array<ParameterSet, 2> sets;
+  // Assignments of PO1..PO3 and PI1..PI3, P870..P875.
+  std::array<uint8_t, 3> po{};
+  std::array<uint8_t, 3> pi{};
+  // Functions of the inputs, by bit of InputLevel H483: bit 1 DI01 .. bit 5 DI05, bit 8 DI10 .. bit 15 DI17.
+  std::array<uint8_t, 16> inputs{};
+  // Functions of the outputs: bit 1 DO01, bit 2 DO02, bit 8 DO10 .. bit 15 DO17. DB00 is the brake.
+  std::array<uint8_t, 16> outputs{};
+};
+
+class SettingsReader {
+ public:
+  explicit SettingsReader(const ParameterStore& parameters);
+  Settings read(const ParameterStore& parameters) const;
+
+ private:
+  struct Cell {
+    int32_t Settings::*member;
+    uint16_t index;
+  };
+  struct SetCell {
+    int32_t ParameterSet::*member;
+    std::array<uint16_t, 2> index;
+  };
+  bool is_m07_;
+  std::vector<Cell> cells_;
+  std::vector<SetCell> set_cells_;
+};
+
+}  // namespace ipos::runtime
