@@ -1,0 +1,4 @@
+# Ramps, brake, motor and load of one axis. Pure arithmetic on integers; it knows neither drive nor bus.
+ipos_layer(motion FOLDERS runtime/motion
+           SOURCES motion/machine_data.cpp motion/ramp.cpp motion/brake_sequence.cpp motion/shaft.cpp motion/power_section.cpp
+                   motion/axis.cpp)

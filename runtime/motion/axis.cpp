@@ -1,0 +1,126 @@
+// The tick: sequence, setpoint, shaft, position, power section.
+#include "runtime/motion/axis.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+// 4096 increments a turn: speed in 1/1000 rpm x 4096 / 60000000 increments a millisecond. With twice the mean
+// speed the fraction is 8 / 234375.
+constexpr int64_t kIncrementShare = 8;
+constexpr int64_t kIncrement = 234'375 * kFine;
+
+FineSpeed target_of(const AxisOrder& order) {
+  const bool moves = order.command == AxisCommand::Run || order.command == AxisCommand::Follow;
+  return moves ? fine_speed(order.target) : 0;
+}
+
+}  // namespace
+
+Axis::Axis(const MachineData& machine)
+    : machine_(within_limits(machine)), ramp_(machine_.ramp_reference), shaft_(machine_), power_(machine_) {
+  state_.dc_link = power_.dc_link();
+  state_.heat_sink = power_.heat_sink();
+}
+
+const AxisState& Axis::tick(const AxisOrder& order) {
+  advance_sequence(order);
+  advance_setpoint(order);
+  const FineSpeed before = speed_;
+  const Motion motion = advance_shaft(order);
+  speed_ = motion.speed;
+  count_position(before, speed_);
+  show(order, motion);
+  return state_;
+}
+
+void Axis::set_position(int32_t position) {
+  position_ = static_cast<uint32_t>(position);
+  position_rest_ = 0;
+  state_.position = position;
+}
+
+// The motor is magnetized and follows the setpoint.
+bool Axis::has_torque(AxisPhase phase) {
+  return phase == AxisPhase::Releasing || phase == AxisPhase::Moving || phase == AxisPhase::Applying;
+}
+
+bool Axis::brake_open() const {
+  return sequence_.phase() == AxisPhase::Releasing || sequence_.phase() == AxisPhase::Moving;
+}
+
+void Axis::advance_sequence(const AxisOrder& order) {
+  BrakeTimes times{order.premagnetize_ms, order.brake_release_ms, order.brake_apply_ms};
+  if (!order.brake_function) times.release = times.apply = 0;
+  switch (order.command) {
+    case AxisCommand::Inhibit: return sequence_.inhibit();
+    case AxisCommand::Stop: {
+      const bool standing = speed_ == 0 && ramp_.output() == 0;
+      return sequence_.stop(times, standing, order.standstill_current > 0);
+    }
+    case AxisCommand::HoldZero:
+    case AxisCommand::Run:
+    case AxisCommand::Follow: return sequence_.enable(times);
+  }
+}
+
+void Axis::advance_setpoint(const AxisOrder& order) {
+  // A motor that still turns when its torque comes back is caught at its speed (ours).
+  if (!has_torque(state_.phase)) ramp_.set(speed_);
+  if (sequence_.phase() != AxisPhase::Moving) return;
+  if (order.command == AxisCommand::Follow) return ramp_.set(target_of(order));
+  // At the current limit the ramp waits for the shaft, or a stop would begin with more speed (ours).
+  if (state_.current_limited) ramp_.wait_at(speed_);
+  if (order.command == AxisCommand::Run) return ramp_.step(target_of(order), order.ramp);
+  const uint32_t ms = order.stop_ramp_ms;
+  ramp_.step(0, {ms, ms, ms, ms, 0});
+}
+
+Motion Axis::advance_shaft(const AxisOrder& order) {
+  const bool brake_acts = machine_.brake && order.brake_function && !brake_open();
+  const Resistance resistance{machine_.load_torque + std::clamp(order.load_torque, -kTopTorque, kTopTorque),
+                              machine_.friction + (brake_acts ? machine_.brake_torque : 0)};
+  if (has_torque(sequence_.phase()))
+    return shaft_.driven(speed_, ramp_.output(), power_.torque_limit(order.current_limit), resistance);
+  return {shaft_.free(speed_, 0, resistance), 0, false};
+}
+
+void Axis::count_position(FineSpeed before, FineSpeed after) {
+  position_rest_ += (before + after) * kIncrementShare;
+  int64_t increments = position_rest_ / kIncrement;
+  position_rest_ %= kIncrement;
+  if (position_rest_ < 0) {  // the counter rounds down in both directions
+    position_rest_ += kIncrement;
+    --increments;
+  }
+  position_ += static_cast<uint32_t>(increments);
+}
+
+void Axis::show(const AxisOrder& order, const Motion& motion) {
+  const AxisPhase phase = sequence_.phase();
+  Supply supply = Supply::Off;
+  if (phase == AxisPhase::Magnetizing) supply = Supply::Magnetizing;
+  if (phase == AxisPhase::StandstillCurrent) supply = Supply::DirectCurrent;
+  if (has_torque(phase)) supply = Supply::Driving;
+  power_.step({supply, speed_, motion.torque, order.current_limit, order.standstill_current});
+
+  state_.phase = phase;
+  state_.output_stage = phase != AxisPhase::Off;
+  state_.brake_released = brake_open();
+  state_.standing = speed_ == 0;
+  state_.ramping = phase == AxisPhase::Moving && ramp_.output() != target_of(order);
+  state_.current_limited = motion.limited;
+  state_.setpoint = has_torque(phase) ? whole_speed(ramp_.output()) : 0;
+  state_.speed = whole_speed(speed_);
+  state_.position = static_cast<int32_t>(position_);
+  state_.torque = static_cast<int32_t>(motion.torque);
+  state_.output_current = power_.output_current();
+  state_.active_current = power_.active_current();
+  state_.frequency = power_.frequency();
+  state_.dc_link = power_.dc_link();
+  state_.heat_sink = power_.heat_sink();
+  state_.utilization = power_.utilization();
+  state_.motor_utilization = power_.motor_utilization();
+  state_.energy = power_.energy();
+}
+
+}  // namespace ipos::runtime

@@ -1,0 +1,98 @@
+// One axis: ramp, brake, motor and load, advanced by one millisecond a tick. Everything is in the units of
+// the parameters: 1/1000 rpm, 1/1000 % of IN, ms, mV; the position counts 4096 increments a turn (IPOSplus p.
+// 34). Integers only, no allocation: an Axis is a plain value, a copy of it is a snapshot.
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+#include "runtime/motion/brake_sequence.hpp"
+#include "runtime/motion/machine_data.hpp"
+#include "runtime/motion/power_section.hpp"
+#include "runtime/motion/ramp.hpp"
+#include "runtime/motion/shaft.hpp"
+
+namespace ipos::runtime {
+
+enum class AxisCommand : uint8_t {
+  Inhibit,   // output stage off at once; the brake falls in, or the motor coasts (MOVITRAC 07 chapter 6.3)
+  Stop,      // down on the stop ramp, then brake, then output stage off or standstill current
+  HoldZero,  // down on the stop ramp, then held at 0 by the motor with the brake released
+  Run,       // ramp towards the target
+  Follow,    // the target is the setpoint as it is, without ramp: for positioning
+};
+
+struct AxisOrder {
+  AxisCommand command = AxisCommand::Inhibit;
+  int32_t target = 0;  // 1/1000 rpm, positive is clockwise; beyond 100000 rpm counts as that
+  RampTimes ramp;
+  uint32_t stop_ramp_ms = 0;        // of Stop and HoldZero, always linear
+  int32_t current_limit = 150'000;  // P303
+  int32_t load_torque = 0;          // added to MachineData::load_torque
+  int32_t standstill_current = 0;   // P710; 0: the output stage goes off at standstill
+
+  bool brake_function = true;     // P730; without it the brake times are 0 and no brake acts
+  uint16_t brake_release_ms = 0;  // P731
+  uint16_t brake_apply_ms = 0;    // P732
+  uint16_t premagnetize_ms = 0;   // P323
+};
+
+struct AxisState {
+  AxisPhase phase = AxisPhase::Off;
+  bool output_stage = false;
+  bool brake_released = false;   // as commanded: DB00
+  bool standing = true;          // the shaft
+  bool ramping = false;          // the ramp is on its way
+  bool current_limited = false;  // the shaft lags the setpoint
+  int32_t setpoint = 0;          // ramp output; 0 while no setpoint acts
+  int32_t speed = 0;
+  int32_t position = 0;  // wraps like the 32-bit counter
+  int32_t torque = 0;    // of the motor, 1/1000 % of its rated torque
+  int32_t output_current = 0;
+  int32_t active_current = 0;  // negative when the torque acts counter-clockwise
+  int32_t frequency = 0;       // mHz
+  int32_t dc_link = 0;         // mV
+  int32_t heat_sink = 0;       // °C
+  int32_t utilization = 0;     // of the unit, 1/1000 %
+  int32_t motor_utilization = 0;
+  int64_t energy = 0;  // Ws since reset
+};
+
+class Axis {
+ public:
+  explicit Axis(const MachineData& machine);
+
+  // One millisecond under this order.
+  const AxisState& tick(const AxisOrder& order);
+  const AxisState& state() const { return state_; }
+  const MachineData& machine() const { return machine_; }
+
+  // A reference travel, or the absolute encoder at power-on, sets the counter.
+  void set_position(int32_t position);
+  // Power off and on: everything stands and is cold, the counter at 0.
+  void reset() { *this = Axis(machine_); }
+
+ private:
+  void advance_sequence(const AxisOrder& order);
+  void advance_setpoint(const AxisOrder& order);
+  Motion advance_shaft(const AxisOrder& order);
+  void count_position(FineSpeed before, FineSpeed after);
+  void show(const AxisOrder& order, const Motion& motion);
+
+  static bool has_torque(AxisPhase phase);
+  bool brake_open() const;
+
+  MachineData machine_;
+  BrakeSequence sequence_;
+  Ramp ramp_;
+  Shaft shaft_;
+  PowerSection power_;
+  FineSpeed speed_ = 0;
+  uint32_t position_ = 0;
+  int64_t position_rest_ = 0;  // part of an increment
+  AxisState state_;
+};
+
+static_assert(std::is_trivially_copyable_v<Axis>, "a copy is a snapshot");
+
+}  // namespace ipos::runtime

@@ -1,0 +1,52 @@
+// What turns: motor, load, brake and the power section that feeds them. Torques in 1/1000 % of the motor's
+// rated torque, currents in 1/1000 % of the rated unit current IN. The defaults are a self-ventilated 4-pole
+// motor of 1.5 kW with brake on a matching 400 V inverter with braking resistor; the figures are ours,
+// docs/motion.md.
+#pragma once
+
+#include <cstdint>
+
+namespace ipos::runtime {
+
+struct MachineData {
+  // The unit: a ramp time is the time for this change of speed, 3000 rpm on MOVIDRIVE (ours) and 50 Hz on
+  // MOVITRAC 07 (its manual, chapter 6.1).
+  int32_t ramp_reference = 3'000'000;  // 1/1000 rpm
+
+  // The motor.
+  int32_t rated_speed = 1'500'000;  // synchronous speed at 50 Hz, 1/1000 rpm
+  int32_t rated_slip = 100'000;     // at rated torque, 1/1000 rpm
+  int32_t pole_pairs = 2;
+  int32_t rated_power = 1'500;             // W
+  int32_t rated_active_current = 80'000;   // at rated torque
+  int32_t magnetizing_current = 60'000;    // so rated apparent current = IN
+  int32_t rotor_run_up_ms = 50;            // the bare rotor from 0 to rated speed with rated torque
+  int32_t motor_heat_time_ms = 1'200'000;  // time constant of motor utilization
+
+  // The load. Static torque acts in one direction, like a hoist: positive pulls counter-clockwise.
+  int32_t inertia = 400;  // of the load, % of the rotor's
+  int32_t friction = 5'000;
+  int32_t load_torque = 0;
+
+  bool brake = true;  // a mechanical one is fitted
+  int32_t brake_torque = 200'000;
+
+  // The power section.
+  int32_t dc_link = 560'000;             // mV, mains 400 V
+  bool braking_resistor = true;          // holds the DC link at chopper_level
+  int32_t chopper_level = 780'000;       // mV
+  int32_t continuous_current = 125'000;  // 100 % unit utilization in the long run
+  int32_t unit_heat_time_ms = 50'000;    // time constant of unit utilization
+  int32_t ambient = 25;                  // °C
+  int32_t heat_sink_rise = 40;           // K at IN
+  int32_t heat_sink_time_ms = 300'000;
+};
+
+inline constexpr int32_t kTopTorque = 4'000'000;   // 40 x rated
+inline constexpr int32_t kTopCurrent = 1'000'000;  // 10 x IN
+inline constexpr int32_t kTopDcLink = 1'000'000;   // mV
+
+// Every figure brought to where the model computes without overflow and without division by 0.
+MachineData within_limits(MachineData machine);
+
+}  // namespace ipos::runtime

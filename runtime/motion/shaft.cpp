@@ -1,0 +1,37 @@
+// Torque to speed and back.
+#include "runtime/motion/shaft.hpp"
+
+#include <cstdlib>
+
+namespace ipos::runtime {
+
+Shaft::Shaft(const MachineData& machine) {
+  // Rated torque (100000) brings the shaft to rated speed within rotor x factor / 100 ms.
+  const int64_t factor = 100 + int64_t{machine.inertia};
+  gain_ = std::max<int64_t>(1, machine.rated_speed * kFine / (machine.rotor_run_up_ms * factor * 1'000));
+}
+
+FineSpeed Shaft::free(FineSpeed speed, int64_t torque, const Resistance& resistance) const {
+  const int64_t force = torque - resistance.load;
+  const bool holds = std::abs(force) <= resistance.friction;
+  if (speed == 0 && holds) return 0;
+  const int direction = sign_of(speed != 0 ? speed : force);
+  const FineSpeed next = speed + (force - direction * resistance.friction) * gain_;
+  if (holds && sign_of(next) != sign_of(speed)) return 0;
+  return std::clamp(next, -kTopFine, kTopFine);
+}
+
+Motion Shaft::driven(FineSpeed speed, FineSpeed setpoint, int64_t torque_limit,
+                     const Resistance& resistance) const {
+  const int direction = sign_of(setpoint != 0 ? setpoint : speed);
+  const int64_t needed = (setpoint - speed) / gain_ + resistance.load + direction * resistance.friction;
+  if (std::abs(needed) <= torque_limit) return {setpoint, needed, false};
+  const int64_t torque = sign_of(needed) * torque_limit;
+  const FineSpeed reached = free(speed, torque, resistance);
+  // Friction that helps while a reversal passes zero must not carry it past the setpoint.
+  return {needed > 0 ? std::min(reached, std::max(setpoint, speed))
+                     : std::max(reached, std::min(setpoint, speed)),
+          torque, true};
+}
+
+}  // namespace ipos::runtime

@@ -1,0 +1,39 @@
+// The mechanics: one shaft with inertia, static load and dry friction. Torques in 1/1000 % of the rated
+// torque.
+#pragma once
+
+#include <cstdint>
+
+#include "runtime/motion/fine_speed.hpp"
+#include "runtime/motion/machine_data.hpp"
+
+namespace ipos::runtime {
+
+// What acts on the shaft besides the motor.
+struct Resistance {
+  int64_t load;      // positive pulls counter-clockwise
+  int64_t friction;  // against the motion, brake included
+};
+
+struct Motion {
+  FineSpeed speed;
+  int64_t torque;  // of the motor
+  bool limited;    // the torque was not enough for the setpoint
+};
+
+class Shaft {
+ public:
+  explicit Shaft(const MachineData& machine);  // within_limits
+
+  // Speed after one millisecond of this motor torque.
+  FineSpeed free(FineSpeed speed, int64_t torque, const Resistance& resistance) const;
+
+  // The motor drives the shaft to the setpoint within one millisecond, as far as its torque reaches.
+  Motion driven(FineSpeed speed, FineSpeed setpoint, int64_t torque_limit,
+                const Resistance& resistance) const;
+
+ private:
+  int64_t gain_;  // change of speed in one millisecond by a torque of 1
+};
+
+}  // namespace ipos::runtime
