@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/motion/machine_data.hpp"
 #include "stdlib/unit_types.hpp"
 
 namespace ipos::runtime {
@@ -48,6 +49,7 @@ struct StationConfig {
   std::string sbus;     // name of a bus, or empty
   std::vector<ParameterSetting> parameters;
   std::vector<InputSetting> inputs;
+  MachineData machine;           // [station.load] on the default machine
   std::vector<std::string> hex;  // variables the watch shows in hexadecimal
   FilePlace place;
   FilePlace program_place;

@@ -236,6 +236,12 @@ TEST_F(PlantErrors, EachIsLocated) {
   refuses(kStation + "[station.parameters]\nP813 = \"x\"\n", "6:8", "P813");
   refuses(kStation + "[station.inputs]\nDI99 = 1\n", "6:1", "DI99");
   refuses(kStation + "[station.inputs]\nDI00 = 2\n", "6:8", "DI00");
+  refuses(kStation + "[station.load]\nmass = 3\n", "6:1", "mass");
+  refuses(kStation + "[station.load]\ninertia = -1\n", "6:11", "0 to 100000 %");
+  refuses(kStation + "[station.load]\nfriction = \"much\"\n", "6:12", "in %");
+  refuses(kStation + "[station.load]\ntorque = nan\n", "6:10", "-1000 to 1000 %");
+  refuses(kStation + "[station.load]\nbrake = 1\n", "6:9", "true or false");
+  refuses(kStation + "load = 5\n", "5:8", "[station.load]");
   refuses(kStation + "[[expect]]\nstation = \"v\"\nat = \"1ms\"\nvariable = \"a\"\nequals = 5\n", "6:11",
           "'v'");
   refuses(kStation + "[[expect]]\nstation = \"u\"\nat = \"later\"\nvariable = \"a\"\nequals = 5\n", "7:6",
