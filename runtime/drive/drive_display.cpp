@@ -4,6 +4,15 @@
 
 namespace ipos::runtime {
 
+std::string_view condition_text(UnitCondition condition) {
+  switch (condition) {
+#define UNIT_CONDITION(code, name, text) \
+  case UnitCondition::name: return text;
+#include "runtime/drive/unit_conditions.def"
+  }
+  return {};
+}
+
 // Operating modes of P700 (1053 1610 p. 80): VFC drives show 4, a speed control 5, a torque control 6.
 UnitCondition Drive::enabled_condition() const {
   if (is_m07_) return UnitCondition::Enable;
