@@ -35,7 +35,19 @@ std::string escaped(std::string_view text) {
   return out;
 }
 
-int decimals_of(double step) { return std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9))); }
+// As many digits as the ticks differ in; seven places and more before the point are written with a power of
+// ten.
+std::vector<std::string> tick_labels(const std::vector<double>& ticks) {
+  const auto places = [](double value) { return static_cast<int>(std::floor(std::log10(value) + 1e-9)); };
+  const int step = ticks.size() > 1 ? places(ticks[1] - ticks[0]) : 0;
+  double greatest = 1;
+  for (const double tick : ticks) greatest = std::max(greatest, std::abs(tick));
+  std::vector<std::string> labels;
+  for (const double tick : ticks)
+    labels.push_back(greatest >= 1e7 ? fmt::format("{:.{}g}", tick, places(greatest) - step + 1)
+                                     : fmt::format("{:.{}f}", tick, std::max(0, -step)));
+  return labels;
+}
 
 struct Scale {
   double least, most;  // values
@@ -165,13 +177,13 @@ class Plot {
         "text-anchor=\"end\">{}</text>\n",
         kLeft - 6, y - 8, escaped(panel.unit.empty() ? "value" : panel.unit));
     const std::vector<double> ticks = axis_ticks(scale.least, scale.most, 6);
-    const int decimals = ticks.size() > 1 ? decimals_of(ticks[1] - ticks[0]) : 0;
-    for (const double tick : ticks)
+    const std::vector<std::string> labels = tick_labels(ticks);
+    for (size_t n = 0; n < ticks.size(); ++n)
       out += fmt::format(
           "<line x1=\"{0:.0f}\" x2=\"{1:.0f}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" stroke=\"{3}\"/>\n"
-          "<text x=\"{4:.0f}\" y=\"{5:.1f}\" fill=\"#444\" text-anchor=\"end\">{6:.{7}f}</text>\n",
-          kLeft, kRight, scale(tick), tick == 0 ? "#909090" : "#e4e4e4", kLeft - 6, scale(tick) + 4, tick,
-          decimals);
+          "<text x=\"{4:.0f}\" y=\"{5:.1f}\" fill=\"#444\" text-anchor=\"end\">{6}</text>\n",
+          kLeft, kRight, scale(ticks[n]), ticks[n] == 0 ? "#909090" : "#e4e4e4", kLeft - 6,
+          scale(ticks[n]) + 4, labels[n]);
     out += vertical_grid(y);
     std::vector<NameTag> tags;
     for (size_t place = 0; place < panel.signals.size(); ++place) {
@@ -223,12 +235,12 @@ class Plot {
         fmt::format("<line x1=\"{:.0f}\" x2=\"{:.0f}\" y1=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#444\"/>\n",
                     kLeft, kRight, bottom_, bottom_);
     const std::vector<double> ticks = axis_ticks(time_.least, time_.most, 9);
-    const int decimals = ticks.size() > 1 ? decimals_of(ticks[1] - ticks[0]) : 0;
-    for (const double tick : ticks)
+    const std::vector<std::string> labels = tick_labels(ticks);
+    for (size_t n = 0; n < ticks.size(); ++n)
       out += fmt::format(
           "<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1:.1f}\" y2=\"{2:.1f}\" stroke=\"#444\"/>\n"
-          "<text x=\"{0:.1f}\" y=\"{3:.1f}\" fill=\"#444\" text-anchor=\"middle\">{4:.{5}f}</text>\n",
-          time_(tick), bottom_, bottom_ + 5, bottom_ + 19, tick, decimals);
+          "<text x=\"{0:.1f}\" y=\"{3:.1f}\" fill=\"#444\" text-anchor=\"middle\">{4}</text>\n",
+          time_(ticks[n]), bottom_, bottom_ + 5, bottom_ + 19, labels[n]);
     return out + fmt::format("<text x=\"{:.0f}\" y=\"{:.1f}\" fill=\"#222\" font-weight=\"bold\">{}</text>\n",
                              kRight + 22, bottom_ + 19, in_seconds_ ? "s" : "ms");
   }

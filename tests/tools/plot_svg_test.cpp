@@ -131,6 +131,16 @@ TEST(PlotSvg, NamesAreEscaped) {
   EXPECT_TRUE(picture.shows("R&D.toml"));
 }
 
+TEST(PlotSvg, TickLabelsAreAsExactAsTheirDistance) {
+  Recording recording = ramp(2);
+  recording.samples[1] = {20'000'000'000, 20'000'300'000};  // 1/1000
+  const Picture large(recording);
+  EXPECT_TRUE(large.shows("2.00001e+07") && large.shows("2.00002e+07"));
+  recording.samples[1] = {-15, 15};
+  const Picture small(recording);
+  EXPECT_TRUE(small.shows("-0.010") && small.shows("0.010"));
+}
+
 TEST(PlotSvg, NothingRecorded) {
   EXPECT_TRUE(Picture(Recording{}).lines.empty());
   EXPECT_TRUE(Picture(ramp(0)).lines.empty());

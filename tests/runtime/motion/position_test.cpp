@@ -5,7 +5,6 @@
 #include <random>
 
 #include "runtime/motion/axis.hpp"
-#include "tests/harness/proves.hpp"
 
 namespace ipos::runtime {
 namespace {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "runtime/motion/axis.hpp"
-#include "tests/harness/proves.hpp"
 
 namespace ipos::runtime {
 namespace {
