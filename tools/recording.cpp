@@ -89,7 +89,7 @@ bool Recorder::add(Station& station, std::string_view name) {
   signal.name = fmt::format("{}.{}", station.config().name, name);
   if (name == "status") {
     signal.is_status = true;
-    watched_.push_back({&station, station.status_word_1()});
+    watched_.push_back({&station, state_text(station)});
     add(std::move(signal), [&station] { return station.status_word_1(); });
     return true;
   }
@@ -139,11 +139,9 @@ void Recorder::sample(runtime::Time now) {
 
 void Recorder::note_changes(runtime::Time now) {
   for (Watched& watched : watched_) {
-    const uint16_t status = watched.station->status_word_1();
-    const stdlib::Generation generation = watched.station->config().unit->generation;
-    const std::string before = state_text(watched.status, generation), text = state_text(status, generation);
-    watched.status = status;
-    if (text == before) continue;
+    const std::string text = state_text(*watched.station);
+    if (text == watched.state) continue;
+    watched.state = text;
     const std::string who = plant_.stations().size() == 1 ? "" : watched.station->config().name + ": ";
     recording_.events.push_back({now, who + text, text.starts_with('F')});
   }

@@ -51,8 +51,8 @@ class Recorder {
  private:
   using Reader = std::function<int64_t()>;
   struct Watched {
-    const runtime::Station* station;
-    uint16_t status;
+    runtime::Station* station;
+    std::string state;  // last one told
   };
 
   void add(const std::string& name);

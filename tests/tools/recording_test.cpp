@@ -52,17 +52,19 @@ TEST_F(RecorderTest, UnitsAndDecimalsAreThoseOfTheParameters) {
 }
 
 TEST_F(RecorderTest, SamplesAreThoseOfTheirMillisecond) {
-  plant(unit("u", "md60a"));
+  plant(unit("u", "md60a") +
+        "[station.parameters]\nP115 = 0\nP130 = 2000\nP323 = 0\n[station.analog]\nAI1 = \"10 V\"\n");
   Recorder recorder(*plant_, {"u.P094", "u.setpoint"});
   run(recorder, 3);
+  station(0).drive().state().set_inputs(0b1011);  // DI00, CW, ENABLE
   station(0).drive().state().take_po(runtime::PoSource::Sbus, std::vector<uint16_t>{0x8006, 0xFFFF, 7});
   run(recorder, 2);
   EXPECT_EQ(recorder.recording().times,
             (std::vector<runtime::Time>{kMillisecond, 2 * kMillisecond, 3 * kMillisecond, 4 * kMillisecond,
                                         5 * kMillisecond}));
   EXPECT_EQ(recorder.recording().samples[0], (std::vector<int64_t>{0, 0, 0, 0x8006, 0x8006}));
-  // PO2 is SPEED in factory setting: FFFFh is -0.2 rpm.
-  EXPECT_EQ(recorder.recording().samples[1], (std::vector<int64_t>{0, 0, 0, -200, -200}));
+  // 3000 rpm in 2 s are 1.5 rpm a millisecond.
+  EXPECT_EQ(recorder.recording().samples[1], (std::vector<int64_t>{0, 0, 0, 1500, 3000}));
   EXPECT_EQ(recorder.recording().signals[1].text(-200), "-0.200");
 }
 
