@@ -115,6 +115,7 @@ void RealTimeRun::report(const runtime::Punctuality& punctuality) const {
     add(counts.lost_out, "lost on the way out");
     add(counts.lost_in, "lost on the way in");
     add(counts.waited, "times no room to send");
+    add(joined.port->waiting(), "not sent any more");
     add(bridge.undelivered, "not taken by any station");
     add(joined.bridge->waiting(), "not on the line yet");
     add(bridge.late, "late");

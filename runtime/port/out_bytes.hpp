@@ -37,6 +37,7 @@ class OutBytes {
     return 0;
   }
 
+  std::string_view waiting() const { return std::string_view(bytes_).substr(sent_); }
   bool empty() const { return sent_ == bytes_.size(); }
   void clear() {
     bytes_.clear();

@@ -49,6 +49,9 @@ class Port {
   // Sends what waits, as far as the system takes it. An error is for good.
   virtual tl::expected<void, PortError> flush() = 0;
 
+  // Frames or bytes that wait to be sent.
+  virtual size_t waiting() const = 0;
+
   virtual const PortCounts& counts() const = 0;
   virtual std::vector<std::string> take_notes() = 0;
 };

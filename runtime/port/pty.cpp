@@ -25,6 +25,11 @@ bool is_left_over(const std::string& path) {
   return target.starts_with("/dev/pts/") || (!target.empty() && stat(path.c_str(), &status) != 0);
 }
 
+// Speeds that no program asks for. The speed of a pseudo-terminal means nothing, but the C library refuses
+// settings with parity, which it cannot have, when they change nothing else; so a program's second opening
+// with 8E1 would fail. There are two of them, as the program's own comparison may just be under way.
+constexpr speed_t kMarks[] = {B50, B75};
+
 }  // namespace
 
 tl::expected<Pty, PortError> Pty::create(const std::string& path, size_t limit) {
@@ -48,6 +53,7 @@ tl::expected<Pty, PortError> Pty::create(const std::string& path, size_t limit) 
       return tl::unexpected(
           port_error(PortFault::NoPseudoTerminal, path, system_error(errno, device.data()).text));
     cfmakeraw(&settings);
+    cfsetspeed(&settings, kMarks[0]);
     tcsetattr(other.get(), TCSANOW, &settings);
   }
   if (symlink(device.data(), path.c_str()) != 0) {
@@ -62,7 +68,17 @@ Pty::~Pty() {
   if (!device_.empty() && master_.is_open() && link_target(path_) == device_) unlink(path_.c_str());
 }
 
+void Pty::renew_speed() {
+  termios settings{};
+  if (tcgetattr(master_.get(), &settings) != 0 || cfgetospeed(&settings) == kMarks[second_mark_ ? 1 : 0])
+    return;
+  second_mark_ = !second_mark_;
+  cfsetspeed(&settings, kMarks[second_mark_ ? 1 : 0]);
+  tcsetattr(master_.get(), TCSANOW, &settings);
+}
+
 size_t Pty::read(std::span<char> into) {
+  renew_speed();
   const ssize_t size = ::read(master_.get(), into.data(), into.size());
   if (size > 0) {
     attached_ = true;
@@ -70,8 +86,10 @@ size_t Pty::read(std::span<char> into) {
   }
   const bool attached = size < 0 && errno != EIO;
   if (attached_ && !attached) {
+    // What the program has not read is not for the next one.
     out_.clear();
-    tcflush(master_.get(), TCOFLUSH);
+    const Descriptor other(::open(device_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC));
+    tcflush(other.get(), TCIFLUSH);
   }
   attached_ = attached;
   return 0;

@@ -33,6 +33,7 @@ class Pty {
   // it.
   bool write(std::string_view bytes);
   void flush();
+  std::string_view waiting() const { return out_.waiting(); }
 
   // Nothing to poll while nobody is attached: the system would report the open end without pause.
   PortNeeds needs() const { return {attached_ ? master_.get() : -1, !out_.empty(), kNever}; }
@@ -43,11 +44,14 @@ class Pty {
   Pty(std::string path, std::string device, Descriptor master, size_t limit)
       : path_(std::move(path)), device_(std::move(device)), master_(std::move(master)), out_(limit) {}
 
+  void renew_speed();
+
   std::string path_;
   std::string device_;  // "/dev/pts/3"; empty once moved from
   Descriptor master_;
   OutBytes out_;
   bool attached_ = false;
+  bool second_mark_ = false;  // which of two speeds was set last
 };
 
 }  // namespace ipos::runtime

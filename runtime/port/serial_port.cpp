@@ -32,6 +32,7 @@ class Device final : public SerialPort {
   const std::string& name() const override { return name_; }
   PortNeeds needs() const override { return {tty_.descriptor(), !out_.empty(), kNever}; }
   bool has_parity() const override { return tty_.has_parity(); }
+  size_t waiting() const override { return out_.waiting().size(); }
   const PortCounts& counts() const override { return counts_; }
   std::vector<std::string> take_notes() override { return notes_.take(); }
 
@@ -97,6 +98,7 @@ class PseudoTerminal final : public SerialPort {
   const std::string& name() const override { return name_; }
   PortNeeds needs() const override { return pty_.needs(); }
   bool has_parity() const override { return false; }
+  size_t waiting() const override { return pty_.waiting().size(); }
   const PortCounts& counts() const override { return counts_; }
   std::vector<std::string> take_notes() override { return notes_.take(); }
 

@@ -42,6 +42,10 @@ std::string slcan_text(const Frame& frame, std::optional<uint16_t> stamp) {
   return text;
 }
 
+size_t slcan_lines(std::string_view text) {
+  return static_cast<size_t>(std::count(text.begin(), text.end(), kSlcanOk));
+}
+
 std::optional<SlcanFrame> parse_slcan(std::string_view line) {
   if (line.empty() || !is_slcan_frame_letter(line[0])) return std::nullopt;
   SlcanFrame result;

@@ -29,6 +29,9 @@ std::optional<char> slcan_rate_digit(uint32_t baud);
 // With its CR.
 std::string slcan_text(const Frame& frame, std::optional<uint16_t> stamp = std::nullopt);
 
+// How many lines stand in a text, a begun one counts.
+size_t slcan_lines(std::string_view text);
+
 struct SlcanFrame {
   Frame frame;
   std::optional<uint16_t> stamp;  // ms

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <linux/serial.h>
+#include <sys/file.h>
 #include <sys/ioctl.h>
 
 #include <cerrno>
@@ -57,6 +58,9 @@ tl::expected<Tty, PortError> Tty::open(const std::string& path, const TtySetting
   }
   termios former{};
   if (tcgetattr(descriptor.get(), &former) != 0) return tl::unexpected(system_error(errno, path));
+  // Other programs keep off by the lock, all but root's by the device's own flag.
+  if (flock(descriptor.get(), LOCK_EX | LOCK_NB) != 0)
+    return tl::unexpected(port_error(PortFault::InUse, path));
   if (ioctl(descriptor.get(), TIOCEXCL) != 0) return tl::unexpected(system_error(errno, path));
   Tty tty(std::move(descriptor), former);
   const int fd = tty.descriptor();
