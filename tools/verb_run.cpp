@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-#include <thread>
 
 #include "runtime/bus/log/candump.hpp"
 #include "runtime/plant/plant.hpp"
@@ -17,6 +16,7 @@
 #include "tools/files.hpp"
 #include "tools/plot_svg.hpp"
 #include "tools/program.hpp"
+#include "tools/real_time_run.hpp"
 #include "tools/recording.hpp"
 #include "tools/run_report.hpp"
 #include "tools/trace_csv.hpp"
@@ -100,21 +100,20 @@ std::vector<std::optional<vm::Image>> load_programs(runtime::PlantFile& plant, c
   return programs;
 }
 
-// Asked once a virtual millisecond: keeps pace with the wall clock, shows progress, and says when to stop.
-class Pace {
+// Asked once a virtual millisecond: shows progress and says when to stop.
+class Watcher {
  public:
-  Pace(const RunFlags& flags, const runtime::Plant& plant, Time limit)
+  Watcher(const RunFlags& flags, const runtime::Plant& plant, Time limit)
       : flags_(flags), plant_(plant), limit_(limit), show_(isatty(STDERR_FILENO) != 0) {}
-  ~Pace() {
+  ~Watcher() {
     if (shown_) fmt::print(stderr, "\r\033[K");
   }
-  Pace(const Pace&) = delete;
-  Pace& operator=(const Pace&) = delete;
+  Watcher(const Watcher&) = delete;
+  Watcher& operator=(const Watcher&) = delete;
 
   bool keep_going(Time now) {
     if (interrupted != 0) return false;
     if (flags_.until == "end" && plant_.programs_over()) return false;
-    if (flags_.realtime) std::this_thread::sleep_until(start_ + std::chrono::nanoseconds(now));
     if (show_ && now % (100 * runtime::kMillisecond) == 0) progress(now);
     return true;
   }
@@ -136,8 +135,7 @@ class Pace {
   Time limit_;
   bool show_;
   bool shown_ = false;
-  Clock::time_point start_ = Clock::now();
-  Clock::time_point last_shown_ = start_;
+  Clock::time_point last_shown_ = Clock::now();
 };
 
 void print_journal(const runtime::Plant& plant, bool why) {
@@ -188,6 +186,7 @@ void close_output(std::ofstream& file, const std::string& path) {
 int run(const RunFlags& flags) {
   const Time limit = flags.duration.empty() ? 60 * runtime::kSecond : runtime::parse_duration(flags.duration);
   runtime::PlantFile file = plant_of(flags);
+  if (!flags.realtime) refuse_ports(file, flags.file);
   std::vector<std::optional<vm::Image>> programs = load_programs(file, flags);
 
   std::optional<vm::Rates> rates;
@@ -212,12 +211,20 @@ int run(const RunFlags& flags) {
   }
 
   std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+  std::optional<RealTimeRun> real_time;
+  if (flags.realtime) real_time.emplace(plant, flags.file);
+  bool ports_there = true;
   {
-    Pace pace(flags, plant, limit);
-    plant.run_until(limit, [&](Time now) {
+    Watcher watcher(flags, plant, limit);
+    const auto keep_going = [&](Time now) {
       if (recorder) recorder->sample(now);
-      return pace.keep_going(now);
-    });
+      return watcher.keep_going(now);
+    };
+    if (real_time)
+      ports_there = real_time->run(limit, keep_going);
+    else
+      plant.run_until(limit, keep_going);
   }
   if (!flags.plot.empty())
     plot_file << plot_svg(recorder->recording(), fs::path(flags.file).filename().string());
@@ -240,6 +247,7 @@ int run(const RunFlags& flags) {
   print_journal(plant, flags.why);
   const size_t unmet = print_expectations(plant, flags.file);
   if (interrupted != 0) return kInterrupted;
+  if (!ports_there) return kIoError;
   return unmet != 0 || plant.has_fault() ? kFindings : kGood;
 }
 
@@ -271,7 +279,8 @@ void add_run(CLI::App& app, int& exit_code) {
       ->delimiter(',')
       ->allow_extra_args(false);
   verb->add_option("--format", flags->format, "text or json")->check(CLI::IsMember({"text", "json"}));
-  verb->add_flag("--realtime", flags->realtime, "keep pace with the wall clock");
+  verb->add_flag("--realtime", flags->realtime,
+                 "keep pace with the clock, and join buses that have a port to the real world");
   verb->add_flag("--why", flags->why, "also tell what was ignored, and why");
   add_compile_options(*verb, flags->compile);
   verb->footer("Example:\n  ipos run examples/scom/scom.toml --for 1s --watch --log can.log");

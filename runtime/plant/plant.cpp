@@ -31,9 +31,8 @@ Plant::Plant(PlantFile file, std::vector<std::optional<vm::Image>> programs, std
     : file_(std::move(file)) {
   // Sources order the events of one moment: first the lines, then the stations, each in the order of the
   // file.
-  uint32_t source = 0;
   for (const BusConfig& bus : file_.buses) {
-    lines_.push_back(std::make_unique<CanLine>(queue_, source++, bus.name, bus.baud));
+    lines_.push_back(std::make_unique<CanLine>(queue_, next_source_++, bus.name, bus.baud));
     lines_.back()->add_observer(*this);
   }
   for (size_t n = 0; n < file_.stations.size(); ++n) {
@@ -44,7 +43,7 @@ Plant::Plant(PlantFile file, std::vector<std::optional<vm::Image>> programs, std
       const std::vector<PlantError> refused = verify_program(config, *programs[n]);
       errors.insert(errors.end(), refused.begin(), refused.end());
     }
-    stations_.push_back(std::make_unique<Station>(queue_, source++, config, std::move(programs[n]),
+    stations_.push_back(std::make_unique<Station>(queue_, next_source_++, config, std::move(programs[n]),
                                                   line == lines_.end() ? nullptr : line->get(), journal_,
                                                   rates));
     for (const ParameterSetting& setting : config.parameters)

@@ -38,6 +38,13 @@ class Plant final : private CanObserver {
   bool programs_over() const;
   bool has_fault() const;
   Time now() const { return queue_.now(); }
+  Time next_time() const { return queue_.next_time(); }  // of the next event
+
+  // For what joins the plant from outside, before the first event runs: its events, and the number that puts them
+  // behind those of all others.
+  EventQueue& queue() { return queue_; }
+  uint32_t next_source() { return next_source_++; }
+
   const PlantFile& file() const { return file_; }
   std::vector<std::unique_ptr<Station>>& stations() { return stations_; }
   const std::vector<std::unique_ptr<CanLine>>& lines() const { return lines_; }
@@ -52,6 +59,7 @@ class Plant final : private CanObserver {
 
   PlantFile file_;
   EventQueue queue_;
+  uint32_t next_source_ = 0;
   Journal journal_;
   std::vector<std::unique_ptr<CanLine>> lines_;
   std::vector<std::unique_ptr<Station>> stations_;

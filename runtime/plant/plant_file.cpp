@@ -87,10 +87,8 @@ class Reader {
                   std::initializer_list<std::string_view> keys) {
     for (const auto& [key, value] : table) {
       if (std::find(keys.begin(), keys.end(), key.str()) != keys.end()) continue;
-      if (key.str() == "port" || key.str() == "rs485")
-        error(place_of(key.source()),
-              fmt::format("'{}': real ports and RS-485 lines are not there yet, see docs/limits.md",
-                          key.str()));
+      if (key.str() == "rs485")
+        error(place_of(key.source()), "'rs485': RS-485 lines are not there yet, see docs/limits.md");
       else
         error(place_of(key.source()),
               fmt::format("unknown key '{}' in {}; known are {}", key.str(), what, fmt::join(keys, ", ")));
@@ -145,7 +143,7 @@ class Reader {
   }
 
   void bus(const toml::table& table) {
-    known_keys(table, "[[bus]]", {"name", "kind", "baud"});
+    known_keys(table, "[[bus]]", {"name", "kind", "baud", "port"});
     BusConfig config;
     config.place = place_of(table.source());
     config.name = text(table, "name", "a [[bus]]", true);
@@ -166,6 +164,12 @@ class Reader {
           error(place_of(baud->source()),
                 fmt::format("the SBus has 125000, 250000, 500000 or 1000000 baud, not {}", value));
       }
+    }
+    config.port = text(table, "port", "", false);
+    if (const toml::node* port = table.get("port")) {
+      config.port_place = place_of(port->source());
+      if (config.port.empty() && port->is_string()) error(config.port_place, "port must not be empty");
+      unique(port_names_, config.port, "port", config.port_place);
     }
     result_.plant.buses.push_back(std::move(config));
   }
@@ -373,6 +377,7 @@ class Reader {
   PlantFileResult result_;
   std::set<std::string> bus_names_;
   std::set<std::string> station_names_;
+  std::set<std::string> port_names_;
   std::vector<std::pair<std::string, FilePlace>> bus_uses_;
   std::vector<std::pair<std::string, FilePlace>> station_uses_;
 };

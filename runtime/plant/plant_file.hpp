@@ -26,6 +26,8 @@ struct BusConfig {
   std::string name;
   BusKind kind = BusKind::Can;
   uint32_t baud = 500'000;  // bit/s
+  std::string port;         // of the real bus it is joined to, or empty
+  FilePlace port_place;
   FilePlace place;
 };
 
