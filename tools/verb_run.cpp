@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "runtime/bus/log/candump.hpp"
+#include "runtime/bus/log/serial_log.hpp"
 #include "runtime/plant/plant.hpp"
 #include "stdlib/unit_types.hpp"
 #include "tools/failure.hpp"
@@ -33,6 +34,7 @@ struct RunFlags {
   uint32_t speed = 0;
   std::string watch;
   std::string log;
+  std::string serial_log;
   std::string format = "text";
   bool realtime = false;
   bool why = false;
@@ -166,6 +168,19 @@ size_t print_expectations(const runtime::Plant& plant, const std::string& file) 
   return failed;
 }
 
+// Closed when no log is wanted.
+std::ofstream open_log(const std::string& path) {
+  std::ofstream file;
+  if (path.empty()) return file;
+  file.open(path, std::ios::binary);
+  if (!file) throw Failure(kIoError, fmt::format("{}: cannot be written", path));
+  return file;
+}
+
+void close_log(std::ofstream& file, const std::string& path) {
+  if (file.is_open() && !file.flush()) throw Failure(kIoError, fmt::format("{}: cannot be written", path));
+}
+
 int run(const RunFlags& flags) {
   const Time limit = flags.duration.empty() ? 60 * runtime::kSecond : runtime::parse_duration(flags.duration);
   runtime::PlantFile file = plant_of(flags);
@@ -179,21 +194,21 @@ int run(const RunFlags& flags) {
     fmt::print(stderr, "{}:{}:{}: error: {}\n", flags.file, error.place.line, error.place.column, error.text);
   if (!errors.empty()) return kBadInput;
 
-  std::ofstream log_file;
-  std::optional<runtime::CandumpLog> log;
-  if (!flags.log.empty()) {
-    log_file.open(flags.log, std::ios::binary);
-    if (!log_file) throw Failure(kIoError, fmt::format("{}: cannot be written", flags.log));
-    log.emplace(log_file);
-    plant.add_observer(*log);
-  }
+  std::ofstream log_file = open_log(flags.log);
+  std::ofstream serial_file = open_log(flags.serial_log);
+  runtime::CandumpLog log(log_file);
+  runtime::SerialLog serial_log(serial_file);
+  if (log_file.is_open()) plant.add_observer(log);
+  if (serial_file.is_open()) plant.add_observer(serial_log);
 
   std::signal(SIGINT, on_interrupt);
   {
     Pace pace(flags, plant, limit);
     plant.run_until(limit, [&](Time now) { return pace.keep_going(now); });
   }
-  if (log && !log_file.flush()) throw Failure(kIoError, fmt::format("{}: cannot be written", flags.log));
+  serial_log.finish();
+  close_log(log_file, flags.log);
+  close_log(serial_file, flags.serial_log);
 
   WatchChoice watch;
   watch.on = !flags.watch.empty();
@@ -230,7 +245,8 @@ void add_run(CLI::App& app, int& exit_code) {
   verb->add_option("--speed", flags->speed, "commands per ms of every task, instead of P938 and P939")
       ->check(CLI::Range(1U, 1'000'000U));
   verb->add_flag("--watch{*}", flags->watch, "show named variables at the end, all or --watch=NAME,...");
-  verb->add_option("--log", flags->log, "write the frames of all buses in candump format");
+  verb->add_option("--log", flags->log, "write the frames of all CAN buses in candump format");
+  verb->add_option("--serial-log", flags->serial_log, "write the telegrams of all RS-485 lines");
   verb->add_option("--format", flags->format, "text or json")->check(CLI::IsMember({"text", "json"}));
   verb->add_flag("--realtime", flags->realtime, "keep pace with the wall clock");
   verb->add_flag("--why", flags->why, "also tell what was ignored, and why");
