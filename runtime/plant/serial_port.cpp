@@ -18,8 +18,7 @@ SerialPort::SerialPort(EventQueue& queue, uint32_t source, Rs485Line& line, uint
       drive_(drive),
       journal_(journal),
       port_(line, line.attach(station, baud, *this)),
-      link_(queue, source, drive),
-      slave_(queue, source, port_, {}, {}, drive, drive.rs485_data(), link_, this),
+      slave_(queue, source, port_, {}, {}, drive, drive.rs485_data(), drive, this),
       requester_(queue, source, port_),
       master_(queue, requester_, client),
       setpoints_(queue, source, requester_, drive) {

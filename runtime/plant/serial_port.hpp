@@ -39,7 +39,6 @@ class SerialPort final : private SerialNode, private SerialSlaveObserver {
   DriveServer& drive_;
   Journal& journal_;
   SerialLinePort port_;
-  SetpointLink link_;
   SerialSlave slave_;
   SerialRequester requester_;
   SerialMaster master_;

@@ -12,31 +12,35 @@ void LineCheck::on_character(const Rs485Line& line, NodeId sender, const Charact
 }
 
 void LineCheck::on_serial_event(const Rs485Line& line, const SerialEvent& event) {
+  if (event.kind == SerialEventKind::Collision) collision_ = event;
   report_(event.time, describe(line, event));
 }
 
 void LineCheck::take(const Rs485Line& line, NodeId sender, const Reception& reception) {
+  const bool request = reception.bytes.size > 0 && reception.bytes.data[0] == kRequestStart;
+  if (request && sender == kNoNode && collision_)
+    check_masters(line, collision_->other, collision_->node, reception.end);
+  if (sender != kNoNode) collision_.reset();
   if (!reception.telegram) {
-    const bool request = reception.bytes.size > 0 && reception.bytes.data[0] == kRequestStart;
     if (request && reception.telegram.error() == SerialError::Gap) broken_off_ = reception.end;
     return;
   }
   ++telegrams_;
-  if (reception.telegram->response) return;
-  check_master(line, sender, reception);
+  if (!request) return;
+  if (sender != kNoNode) {
+    if (!master_) master_ = sender;
+    check_masters(line, *master_, sender, reception.end);
+  }
   check_pauses(line, reception);
   broadcast_end_.reset();
   broken_off_.reset();
   if (address_kind(reception.telegram->address) == AddressKind::Broadcast) broadcast_end_ = reception.end;
 }
 
-void LineCheck::check_master(const Rs485Line& line, NodeId sender, const Reception& reception) {
-  if (sender == kNoNode) return;
-  if (!master_) master_ = sender;
-  if (*master_ == sender) return;
-  report_(reception.end,
-          fmt::format("{}: {} and {} are both masters; only one may be active (1053 1610 p. 47)", line.name(),
-                      line.node_name(*master_), line.node_name(sender)));
+void LineCheck::check_masters(const Rs485Line& line, NodeId one, NodeId other, Time now) {
+  if (one == other) return;
+  report_(now, fmt::format("{}: {} and {} are both masters; only one may be active (1053 1610 p. 47)",
+                           line.name(), line.node_name(one), line.node_name(other)));
 }
 
 void LineCheck::check_pauses(const Rs485Line& line, const Reception& reception) {

@@ -24,13 +24,14 @@ class LineCheck final : public SerialObserver {
 
  private:
   void take(const Rs485Line& line, NodeId sender, const Reception& reception);
-  void check_master(const Rs485Line& line, NodeId sender, const Reception& reception);
+  void check_masters(const Rs485Line& line, NodeId one, NodeId other, Time now);
   void check_pauses(const Rs485Line& line, const Reception& reception);
 
   Report report_;
   SerialReceiver receiver_;
   uint64_t telegrams_ = 0;
   std::optional<NodeId> master_;
+  std::optional<SerialEvent> collision_;  // the last one, until a single station is heard
   std::optional<Time> broadcast_end_;
   std::optional<Time> broken_off_;  // end of a request that was not completed
 };

@@ -1,21 +1,9 @@
-// Both ends of the master/slave link.
+// The master's end of the master/slave link.
 #include "runtime/bus/movilink/master_slave.hpp"
 
 #include <utility>
 
 namespace ipos::runtime {
-
-void SetpointLink::take(Time now, const ProcessWords& words) {
-  queue_.cancel(timeout_);
-  timeout_ = queue_.schedule(now + kLinkTimeout, source_, *this, 0);
-  drive_.setpoint_received(now, words);
-}
-
-void SetpointLink::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
-  timeout_ = kNoEvent;
-  ++losses_;
-  drive_.link_lost(now);
-}
 
 void SetpointSender::start(Time now, uint8_t group) {
   if (running()) return;

@@ -1,5 +1,6 @@
 // Master/slave operation over RS-485 (P750, P751, P811; MDX60B/61B p. 29-30, 1053 1610 p. 72, 80): the master
-// sends control word and setpoint to its group over and over; a slave takes them and watches the connection.
+// sends control word and setpoint to its group over and over; a slave (serial_slave.hpp) takes them and
+// watches the connection.
 #pragma once
 
 #include "runtime/bus/movilink/process_data.hpp"
@@ -22,25 +23,6 @@ class MasterSlaveDrive {
 inline constexpr Time kLinkTimeout = 500 * kMillisecond;           // fixed (MDX60B/61B p. 30)
 inline constexpr Time kSetpointCycle = 20 * kMillisecond;          // ours: no manual names one for RS-485
 inline constexpr TelegramFormat kSetpointFormat{false, 3, false};  // 3PD cyclic
-
-// The slave's connection check. It begins with the first setpoint (ours), as P812 does.
-class SetpointLink final : private EventTarget {
- public:
-  SetpointLink(EventQueue& queue, uint32_t source, MasterSlaveDrive& drive)
-      : queue_(queue), source_(source), drive_(drive) {}
-
-  void take(Time now, const ProcessWords& words);
-  uint32_t losses() const { return losses_; }
-
- private:
-  void on_event(Time now, uint32_t kind, uint64_t argument) override;
-
-  EventQueue& queue_;
-  uint32_t source_;
-  MasterSlaveDrive& drive_;
-  EventId timeout_ = kNoEvent;
-  uint32_t losses_ = 0;
-};
 
 // The master's sender: a cyclic telegram of three words to the group, in turn with other requests of the
 // unit.

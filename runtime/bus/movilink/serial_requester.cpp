@@ -122,7 +122,10 @@ void SerialRequester::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*
   }
 }
 
+// The pause before the next request is kept from here on, so that a response that comes too late is heard
+// (ours).
 void SerialRequester::attempt_failed(Time now, RequestEnd reason) {
+  next_start_ = std::max(next_start_, now + kStartPause);
   if (attempts_ > timing_.repeats) return finish(now, reason, nullptr);
   begin_attempt(now);
 }

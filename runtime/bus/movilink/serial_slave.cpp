@@ -5,10 +5,16 @@
 #include <utility>
 
 namespace ipos::runtime {
+namespace {
+
+enum Event : uint32_t { kAnswer, kLink };
+
+}  // namespace
 
 SerialSlave::SerialSlave(EventQueue& queue, uint32_t source, SerialSender& sender,
                          SerialSlaveSettings settings, SerialSlaveTiming timing, ParameterServer& parameters,
-                         ProcessDataServer& process_data, SetpointLink& link, SerialSlaveObserver* observer)
+                         ProcessDataServer& process_data, MasterSlaveDrive& drive,
+                         SerialSlaveObserver* observer)
     : queue_(queue),
       source_(source),
       sender_(sender),
@@ -16,7 +22,7 @@ SerialSlave::SerialSlave(EventQueue& queue, uint32_t source, SerialSender& sende
       timing_(timing),
       parameters_(parameters),
       process_data_(process_data),
-      link_(link),
+      drive_(drive),
       observer_(observer),
       cyclic_(parameters, timing.processing) {}
 
@@ -54,7 +60,7 @@ void SerialSlave::take_request(Time now, const Reception& reception) {
   const std::span<const uint16_t> words(request.words.data(), request.format.words);
   if (settings_.follows_master && address_kind(request.address) == AddressKind::Group &&
       request.format == kSetpointFormat)
-    return link_.take(now, request.words);
+    return take_setpoint(now, request.words);
   if (!request.format.acyclic) process_data_.cyclic_request(now);
   if (request.format.parameter) take_parameter(now, request, answered);
   if (!words.empty())
@@ -62,7 +68,14 @@ void SerialSlave::take_request(Time now, const Reception& reception) {
   if (!answered) return;
   request_ = request;
   queue_.cancel(answer_);  // the master has not waited for the last one
-  answer_ = queue_.schedule(now + timing_.response_delay, source_, *this, 0);
+  answer_ = queue_.schedule(now + timing_.response_delay, source_, *this, kAnswer);
+}
+
+// The connection check begins with the first setpoint (ours), as P812 does.
+void SerialSlave::take_setpoint(Time now, const ProcessWords& words) {
+  queue_.cancel(link_timeout_);
+  link_timeout_ = queue_.schedule(now + kLinkTimeout, source_, *this, kLink);
+  drive_.setpoint_received(now, words);
 }
 
 // Nobody answers a group, so there is nothing to read (p. 21).
@@ -70,17 +83,24 @@ void SerialSlave::take_parameter(Time now, const SerialTelegram& request, bool a
   const auto service = service_from_code(request.parameter.service_code());
   if (!answered && service != Service::None && (!service || !is_write(*service)))
     return ignore(now, request, Ignored::GroupService);
-  bool executed = true;
-  if (request.format.acyclic)
-    acyclic_answer_ = execute(now, parameters_, request.parameter);
-  else
-    executed = cyclic_.take(now, request.parameter);
-  const ParameterTelegram& result = request.format.acyclic ? acyclic_answer_ : cyclic_.result();
-  if (!answered && executed && result.failed())
-    ignore(now, request, Ignored::GroupRefused, result.return_code());
+  if (request.format.acyclic) {
+    const ParameterTelegram result = execute(now, parameters_, request.parameter);
+    if (answered) acyclic_answer_ = result;
+    if (!answered && result.failed()) ignore(now, request, Ignored::GroupRefused, result.return_code());
+  } else if (cyclic_.take(now, request.parameter) && !answered && cyclic_.result().failed()) {
+    ignore(now, request, Ignored::GroupRefused, cyclic_.result().return_code());
+  }
 }
 
-void SerialSlave::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
+void SerialSlave::on_event(Time now, uint32_t kind, uint64_t /*argument*/) {
+  if (kind == kAnswer) return send_answer(now);
+  link_timeout_ = kNoEvent;
+  if (!settings_.follows_master) return;
+  statistics_.count(SerialError::Timeout);
+  drive_.link_lost(now);
+}
+
+void SerialSlave::send_answer(Time now) {
   answer_ = kNoEvent;
   SerialTelegram response = request_;
   response.response = true;

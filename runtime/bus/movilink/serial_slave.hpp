@@ -37,10 +37,10 @@ struct SerialSlaveTiming {
 
 class SerialSlave final : private EventTarget {
  public:
-  // `link` hears the setpoints of a master; only with follows_master.
+  // `drive` hears the setpoints of a master, and when they stop; only with follows_master.
   SerialSlave(EventQueue& queue, uint32_t source, SerialSender& sender, SerialSlaveSettings settings,
               SerialSlaveTiming timing, ParameterServer& parameters, ProcessDataServer& process_data,
-              SetpointLink& link, SerialSlaveObserver* observer = nullptr);
+              MasterSlaveDrive& drive, SerialSlaveObserver* observer = nullptr);
 
   void configure(SerialSlaveSettings settings) { settings_ = settings; }
   const SerialSlaveSettings& settings() const { return settings_; }
@@ -52,6 +52,8 @@ class SerialSlave final : private EventTarget {
  private:
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
   void take_request(Time now, const Reception& reception);
+  void take_setpoint(Time now, const ProcessWords& words);
+  void send_answer(Time now);
   void take_parameter(Time now, const SerialTelegram& request, bool answered);
   bool is_for_me(uint8_t address) const;
   void reject(Time now, const Reception& reception, SerialError error);
@@ -64,7 +66,7 @@ class SerialSlave final : private EventTarget {
   SerialSlaveTiming timing_;
   ParameterServer& parameters_;
   ProcessDataServer& process_data_;
-  SetpointLink& link_;
+  MasterSlaveDrive& drive_;
   SerialSlaveObserver* observer_;
   SerialReceiver receiver_;
   SerialStatistics statistics_;
@@ -73,6 +75,7 @@ class SerialSlave final : private EventTarget {
   SerialTelegram request_;  // that waits for its answer
   ParameterTelegram acyclic_answer_;
   EventId answer_ = kNoEvent;
+  EventId link_timeout_ = kNoEvent;
 };
 
 }  // namespace ipos::runtime
