@@ -59,8 +59,14 @@ void SerialRequester::abort(Time now, const RequesterClient& client) {
 
 void SerialRequester::send(Time now) {
   step_ = Step::Sending;
-  if (sender_.send(encode(jobs_.front().request).span())) return;
-  step_ = Step::Awaiting;  // cut off: no response will come
+  const SerialBytes bytes = encode(jobs_.front().request);
+  if (!sender_.send(bytes.span())) return cut_off(now);
+  set_timer(now + (bytes.size + 1) * timing_.character);  // on_sent() comes before, unless the line is cut
+}
+
+// No response will come.
+void SerialRequester::cut_off(Time now) {
+  step_ = Step::Awaiting;
   own_end_ = now;
   set_timer(now + timing_.response_delay);
 }
@@ -117,8 +123,8 @@ void SerialRequester::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*
     case Step::Receiving:  // the response stopped in the middle
       if (const auto cut = receiver_.give_up()) statistics_.count(cut->telegram.error());
       return attempt_failed(now, RequestEnd::Disturbed);
-    case Step::Idle:
-    case Step::Sending: return;
+    case Step::Sending: return cut_off(now);
+    case Step::Idle: return;
   }
 }
 

@@ -59,6 +59,7 @@ class SerialRequester final : private EventTarget {
   void begin(Time now);
   void begin_attempt(Time now);
   void send(Time now);
+  void cut_off(Time now);
   void attempt_failed(Time now, RequestEnd reason);
   void finish(Time now, RequestEnd end, const SerialTelegram* response);
   void set_timer(Time at);

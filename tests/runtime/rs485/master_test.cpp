@@ -209,6 +209,19 @@ TEST(Requester, NobodyNoLineNoSilence) {
   EXPECT_EQ(cut.master.ends, std::vector{RequestEnd::NoResponse});
   EXPECT_TRUE(cut.recorder.heard.empty());
 
+  Bus torn;
+  SlaveNode slave(torn.queue, 1, torn.line, "slave", {1});
+  torn.master.requester.start(0, kPoll, torn.master);
+  torn.queue.run_until(5 * kMillisecond);
+  torn.line.set_connected(torn.master.port.node(), false);
+  torn.queue.run_until(200 * kMillisecond);
+  torn.line.set_connected(torn.master.port.node(), true);
+  torn.queue.run_until(kSecond);
+  EXPECT_EQ(torn.master.ends, std::vector{RequestEnd::NoResponse});
+  torn.master.requester.start(torn.queue.now(), kPoll, torn.master);
+  torn.queue.run_until(2 * kSecond);
+  EXPECT_EQ(torn.master.ends.back(), RequestEnd::Answered);
+
   Bus noisy;
   HandNode babbler(noisy.line, "babbler");
   for (int n = 0; n < 10; ++n) noisy.queue.run_until(noisy.queue.now() + kMillisecond);
