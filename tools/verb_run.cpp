@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "runtime/bus/log/candump.hpp"
+#include "runtime/bus/log/serial_log.hpp"
 #include "runtime/plant/plant.hpp"
 #include "stdlib/unit_types.hpp"
 #include "tools/failure.hpp"
@@ -39,6 +40,7 @@ struct RunFlags {
   std::string plot;
   std::string trace;
   std::vector<std::string> signals;
+  std::string serial_log;
   std::string format = "text";
   bool realtime = false;
   bool why = false;
@@ -202,13 +204,12 @@ int run(const RunFlags& flags) {
   std::optional<Recorder> recorder;
   if (!flags.plot.empty() || !flags.trace.empty()) recorder.emplace(plant, flags.signals);
   // Opened before the run: a long one must not end without its result.
-  std::ofstream log_file = open_output(flags.log), plot_file = open_output(flags.plot),
-                trace_file = open_output(flags.trace);
-  std::optional<runtime::CandumpLog> log;
-  if (!flags.log.empty()) {
-    log.emplace(log_file);
-    plant.add_observer(*log);
-  }
+  std::ofstream log_file = open_output(flags.log), serial_file = open_output(flags.serial_log),
+                plot_file = open_output(flags.plot), trace_file = open_output(flags.trace);
+  runtime::CandumpLog log(log_file);
+  runtime::SerialLog serial_log(serial_file);
+  if (log_file.is_open()) plant.add_observer(log);
+  if (serial_file.is_open()) plant.add_observer(serial_log);
 
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
@@ -226,10 +227,12 @@ int run(const RunFlags& flags) {
     else
       plant.run_until(limit, keep_going);
   }
+  serial_log.finish();
   if (!flags.plot.empty())
     plot_file << plot_svg(recorder->recording(), fs::path(flags.file).filename().string());
   if (!flags.trace.empty()) write_csv(trace_file, recorder->recording());
   close_output(log_file, flags.log);
+  close_output(serial_file, flags.serial_log);
   close_output(plot_file, flags.plot);
   close_output(trace_file, flags.trace);
 
@@ -269,7 +272,8 @@ void add_run(CLI::App& app, int& exit_code) {
   verb->add_option("--speed", flags->speed, "commands per ms of every task, instead of P938 and P939")
       ->check(CLI::Range(1U, 1'000'000U));
   verb->add_flag("--watch{*}", flags->watch, "show named variables at the end, all or --watch=NAME,...");
-  verb->add_option("--log", flags->log, "write the frames of all buses in candump format");
+  verb->add_option("--log", flags->log, "write the frames of all CAN buses in candump format");
+  verb->add_option("--serial-log", flags->serial_log, "write the telegrams of all RS-485 lines");
   verb->add_option("--plot", flags->plot, "draw signals over time into an SVG file");
   verb->add_option("--trace", flags->trace, "write signals over time, one row a millisecond, as CSV");
   verb->add_option(
