@@ -3,5 +3,5 @@ ipos_layer(runtime
   FOLDERS runtime/services runtime/plant
   SOURCES services/variable_objects.cpp services/movilink_command.cpp services/system_commands.cpp services/drive_variables.cpp
           plant/plant_file.cpp plant/drive_server.cpp plant/station.cpp plant/plant.cpp
-  USES vm image bus drive stdlib
+  USES vm image bus drive motion stdlib
   LIBS fmt::fmt)

@@ -10,24 +10,7 @@
 namespace ipos::stdlib {
 namespace {
 
-// Shown value = number x factor. The offsets of temperatures cancel: they are transferred and shown in one
-// unit.
-struct Scale {
-  double factor;
-  int decimals;
-};
-
 constexpr int kMaxDecimals = 9;
-
-Scale display_scale(const Parameter& parameter) {
-  const Conversion transferred = find_conversion(parameter.conversion).value_or(Conversion{1, 0});
-  const int shown = find_unit_conversion(parameter.quantity, parameter.display).value_or(0);
-  const double factor = transferred.a / find_conversion(shown).value_or(Conversion{1, 0}).a;
-  // A power of ten is shown exactly; other factors (minutes as hours) with three decimals, ours.
-  for (int decimals = 0; decimals <= kMaxDecimals; ++decimals)
-    if (std::abs(factor * std::pow(10, decimals) - 1) < 1e-9) return {factor, decimals};
-  return {factor, 3};
-}
 
 std::string with_decimals(int64_t digits, int decimals) {
   const bool negative = digits < 0;
@@ -64,7 +47,7 @@ std::string accepted(const Parameter& parameter) {
     }
     return text;
   }
-  const Scale scale = display_scale(parameter);
+  const DisplayScale scale = display_scale(parameter);
   text += "a number";
   if (scale.decimals > 0) text += " with up to " + std::to_string(scale.decimals) + " decimals";
   if (!parameter.display.empty()) text += " in " + std::string(parameter.display);
@@ -72,6 +55,16 @@ std::string accepted(const Parameter& parameter) {
 }
 
 }  // namespace
+
+DisplayScale display_scale(const Parameter& parameter) {
+  const Conversion transferred = find_conversion(parameter.conversion).value_or(Conversion{1, 0});
+  const int shown = find_unit_conversion(parameter.quantity, parameter.display).value_or(0);
+  const double factor = transferred.a / find_conversion(shown).value_or(Conversion{1, 0}).a;
+  // A power of ten is shown exactly; other factors (minutes as hours) with three decimals, ours.
+  for (int decimals = 0; decimals <= kMaxDecimals; ++decimals)
+    if (std::abs(factor * std::pow(10, decimals) - 1) < 1e-9) return {factor, decimals};
+  return {factor, 3};
+}
 
 std::string parameter_text(const Parameter& parameter, int32_t value) {
   const std::string unit = parameter.display.empty() ? "" : " " + std::string(parameter.display);
@@ -82,7 +75,7 @@ std::string parameter_text(const Parameter& parameter, int32_t value) {
     std::snprintf(text, sizeof text, "0x%04X", static_cast<unsigned>(value));
     return text;
   }
-  const Scale scale = display_scale(parameter);
+  const DisplayScale scale = display_scale(parameter);
   const double digits =
       static_cast<double>(parameter.number_of(value)) * scale.factor * std::pow(10, scale.decimals);
   return with_decimals(std::llround(digits), scale.decimals) + unit;

@@ -95,6 +95,14 @@ class ParameterTable {
 // The list of a unit; empty for units without one (mc31).
 const ParameterTable& parameter_table(const UnitType& unit);
 
+// Number shown = transferred number x factor, with so many decimals. The offsets of temperatures cancel: they
+// are transferred and shown in one unit.
+struct DisplayScale {
+  double factor;
+  int decimals;
+};
+DisplayScale display_scale(const Parameter& parameter);
+
 // The value as people read it: "2.000 s", "CTRL. WORD 1", "0x0202".
 std::string parameter_text(const Parameter& parameter, int32_t value);
 

@@ -15,8 +15,11 @@
 #include "stdlib/unit_types.hpp"
 #include "tools/failure.hpp"
 #include "tools/files.hpp"
+#include "tools/plot_svg.hpp"
 #include "tools/program.hpp"
+#include "tools/recording.hpp"
 #include "tools/run_report.hpp"
+#include "tools/trace_csv.hpp"
 #include "tools/verbs.hpp"
 #include "tools/watch.hpp"
 
@@ -33,6 +36,9 @@ struct RunFlags {
   uint32_t speed = 0;
   std::string watch;
   std::string log;
+  std::string plot;
+  std::string trace;
+  std::vector<std::string> signals;
   std::string format = "text";
   bool realtime = false;
   bool why = false;
@@ -166,6 +172,19 @@ size_t print_expectations(const runtime::Plant& plant, const std::string& file) 
   return failed;
 }
 
+// Nothing is opened for an empty path.
+std::ofstream open_output(const std::string& path) {
+  std::ofstream file;
+  if (path.empty()) return file;
+  file.open(path, std::ios::binary);
+  if (!file) throw Failure(kIoError, fmt::format("{}: cannot be written", path));
+  return file;
+}
+
+void close_output(std::ofstream& file, const std::string& path) {
+  if (!path.empty() && !file.flush()) throw Failure(kIoError, fmt::format("{}: cannot be written", path));
+}
+
 int run(const RunFlags& flags) {
   const Time limit = flags.duration.empty() ? 60 * runtime::kSecond : runtime::parse_duration(flags.duration);
   runtime::PlantFile file = plant_of(flags);
@@ -179,11 +198,15 @@ int run(const RunFlags& flags) {
     fmt::print(stderr, "{}:{}:{}: error: {}\n", flags.file, error.place.line, error.place.column, error.text);
   if (!errors.empty()) return kBadInput;
 
-  std::ofstream log_file;
+  if (!flags.signals.empty() && flags.plot.empty() && flags.trace.empty())
+    throw Failure(kUsage, "--signals needs --plot or --trace");
+  std::optional<Recorder> recorder;
+  if (!flags.plot.empty() || !flags.trace.empty()) recorder.emplace(plant, flags.signals);
+  // Opened before the run: a long one must not end without its result.
+  std::ofstream log_file = open_output(flags.log), plot_file = open_output(flags.plot),
+                trace_file = open_output(flags.trace);
   std::optional<runtime::CandumpLog> log;
   if (!flags.log.empty()) {
-    log_file.open(flags.log, std::ios::binary);
-    if (!log_file) throw Failure(kIoError, fmt::format("{}: cannot be written", flags.log));
     log.emplace(log_file);
     plant.add_observer(*log);
   }
@@ -191,9 +214,17 @@ int run(const RunFlags& flags) {
   std::signal(SIGINT, on_interrupt);
   {
     Pace pace(flags, plant, limit);
-    plant.run_until(limit, [&](Time now) { return pace.keep_going(now); });
+    plant.run_until(limit, [&](Time now) {
+      if (recorder) recorder->sample(now);
+      return pace.keep_going(now);
+    });
   }
-  if (log && !log_file.flush()) throw Failure(kIoError, fmt::format("{}: cannot be written", flags.log));
+  if (!flags.plot.empty())
+    plot_file << plot_svg(recorder->recording(), fs::path(flags.file).filename().string());
+  if (!flags.trace.empty()) write_csv(trace_file, recorder->recording());
+  close_output(log_file, flags.log);
+  close_output(plot_file, flags.plot);
+  close_output(trace_file, flags.trace);
 
   WatchChoice watch;
   watch.on = !flags.watch.empty();
@@ -231,6 +262,14 @@ void add_run(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1U, 1'000'000U));
   verb->add_flag("--watch{*}", flags->watch, "show named variables at the end, all or --watch=NAME,...");
   verb->add_option("--log", flags->log, "write the frames of all buses in candump format");
+  verb->add_option("--plot", flags->plot, "draw signals over time into an SVG file");
+  verb->add_option("--trace", flags->trace, "write signals over time, one row a millisecond, as CSV");
+  verb->add_option(
+          "--signals", flags->signals,
+          "what to plot and trace, for example unit1.speed,unit1.P094,unit1.H500; default: speed, setpoint "
+          "and status of every station")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   verb->add_option("--format", flags->format, "text or json")->check(CLI::IsMember({"text", "json"}));
   verb->add_flag("--realtime", flags->realtime, "keep pace with the wall clock");
   verb->add_flag("--why", flags->why, "also tell what was ignored, and why");

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 #include "runtime/drive/control.hpp"
 #include "runtime/drive/link_watch.hpp"
@@ -18,21 +19,11 @@
 
 namespace ipos::runtime {
 
-// High byte of status word 1 without fault. MOVITRAC 07 knows 0..5, its 5 is the factory setting (its manual,
-// chapter 6.5); of MOVIDRIVE the manuals read print 1, 2 and 4 only, the others are common knowledge.
 enum class UnitCondition : uint8_t {
-  NotReady = 0,
-  ControllerInhibit = 1,
-  NoEnable = 2,
-  StandstillCurrent = 3,
-  Enable = 4,
-  SpeedControl = 5,
-  TorqueControl = 6,
-  HoldControl = 7,
-  FactorySetting = 8,
-  LimitSwitch = 9,
-  Waiting = 16,  // display t
+#define UNIT_CONDITION(code, name, text) name = code,
+#include "runtime/drive/unit_conditions.def"
 };
+std::string_view condition_text(UnitCondition condition);
 
 class Drive final : private DriveLink {
  public:

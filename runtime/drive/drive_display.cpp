@@ -4,11 +4,24 @@
 
 namespace ipos::runtime {
 
+namespace {
+
 // Part number of P076, as in the example of both lists (1053 1610 p. 69, MOVITRAC 07 chapter 10.3); that it
 // is the one of every unit is ours.
 constexpr int32_t kFirmwarePart = 822'609'700;
 // Rated current of the unit in mA, of the 1.5 kW the machine data describe (ours).
 constexpr int32_t kRatedCurrent = 4'000;
+
+}  // namespace
+
+std::string_view condition_text(UnitCondition condition) {
+  switch (condition) {
+#define UNIT_CONDITION(code, name, text) \
+  case UnitCondition::name: return text;
+#include "runtime/drive/unit_conditions.def"
+  }
+  return {};
+}
 
 // Operating modes of P700 (1053 1610 p. 80): VFC drives show 4, a speed control 5, a torque control 6.
 UnitCondition Drive::enabled_condition() const {

@@ -40,8 +40,7 @@ void Axis::set_position(int32_t position) {
 }
 
 // The motor is magnetized and follows the setpoint.
-bool Axis::has_torque() const {
-  const AxisPhase phase = sequence_.phase();
+bool Axis::has_torque(AxisPhase phase) {
   return phase == AxisPhase::Releasing || phase == AxisPhase::Moving || phase == AxisPhase::Applying;
 }
 
@@ -65,8 +64,8 @@ void Axis::advance_sequence(const AxisOrder& order) {
 }
 
 void Axis::advance_setpoint(const AxisOrder& order) {
-  // Without torque the ramp keeps to the shaft, so that a turning motor is caught at its speed (ours).
-  if (!has_torque()) return ramp_.set(speed_);
+  // A motor that still turns when its torque comes back is caught at its speed (ours).
+  if (!has_torque(state_.phase)) ramp_.set(speed_);
   if (sequence_.phase() != AxisPhase::Moving) return;
   if (order.command == AxisCommand::Follow) return ramp_.set(target_of(order));
   // At the current limit the ramp waits for the shaft, or a stop would begin with more speed (ours).
@@ -80,7 +79,7 @@ Motion Axis::advance_shaft(const AxisOrder& order) {
   const bool brake_acts = machine_.brake && order.brake_function && !brake_open();
   const Resistance resistance{machine_.load_torque + std::clamp(order.load_torque, -kTopTorque, kTopTorque),
                               machine_.friction + (brake_acts ? machine_.brake_torque : 0)};
-  if (has_torque())
+  if (has_torque(sequence_.phase()))
     return shaft_.driven(speed_, ramp_.output(), power_.torque_limit(order.current_limit), resistance);
   return {shaft_.free(speed_, 0, resistance), 0, false};
 }
@@ -101,7 +100,7 @@ void Axis::show(const AxisOrder& order, const Motion& motion) {
   Supply supply = Supply::Off;
   if (phase == AxisPhase::Magnetizing) supply = Supply::Magnetizing;
   if (phase == AxisPhase::StandstillCurrent) supply = Supply::DirectCurrent;
-  if (has_torque()) supply = Supply::Driving;
+  if (has_torque(phase)) supply = Supply::Driving;
   power_.step({supply, speed_, motion.torque, order.current_limit, order.standstill_current});
 
   state_.phase = phase;
@@ -110,7 +109,7 @@ void Axis::show(const AxisOrder& order, const Motion& motion) {
   state_.standing = speed_ == 0;
   state_.ramping = phase == AxisPhase::Moving && ramp_.output() != target_of(order);
   state_.current_limited = motion.limited;
-  state_.setpoint = has_torque() ? whole_speed(ramp_.output()) : 0;
+  state_.setpoint = has_torque(phase) ? whole_speed(ramp_.output()) : 0;
   state_.speed = whole_speed(speed_);
   state_.position = static_cast<int32_t>(position_);
   state_.torque = static_cast<int32_t>(motion.torque);

@@ -79,7 +79,7 @@ class Axis {
   void count_position(FineSpeed before, FineSpeed after);
   void show(const AxisOrder& order, const Motion& motion);
 
-  bool has_torque() const;
+  static bool has_torque(AxisPhase phase);
   bool brake_open() const;
 
   MachineData machine_;

@@ -1,6 +1,6 @@
 // From enable to motion and back: premagnetization (P323), brake release time (P731), motion, brake
 // application time (P732), output stage off or standstill current (P710). The order of the steps is ours; the
-// manuals at hand list the times only (1053 1610 p. 75, 80).
+// manuals at hand list the times only (1053 1610 p. 68-83).
 #pragma once
 
 #include <cstdint>

@@ -79,7 +79,8 @@ uint64_t Ramp::leg(FineSpeed goal, uint32_t ms, uint64_t left) {
   const int64_t whole = exact(std::min(ms, kLongestMs), 1);
   const int64_t step = left == kWholeMs ? whole : portion(whole, left);
   const int64_t distance = std::abs(goal - output_);
-  if (distance > step) {
+  // The share of a split millisecond is rounded: what it may lack counts as arrived.
+  if (distance > step + (whole >> 24)) {
     output_ += goal > output_ ? step : -step;
     return 0;
   }

@@ -7,9 +7,9 @@ namespace ipos::runtime {
 
 namespace codes = stdlib::return_codes;
 
-DriveServer::DriveServer(const stdlib::UnitType& unit)
+DriveServer::DriveServer(const stdlib::UnitType& unit, const MachineData& machine)
     : parameters_(unit),
-      state_(parameters_),
+      state_(parameters_, machine),
       variables_(unit.variables),
       task1_speed_(index_of("938")),
       task2_speed_(index_of("939")) {

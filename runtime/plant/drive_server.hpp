@@ -19,7 +19,7 @@ namespace ipos::runtime {
 
 class DriveServer final : public ParameterServer, public ProcessDataServer {
  public:
-  explicit DriveServer(const stdlib::UnitType& unit);
+  explicit DriveServer(const stdlib::UnitType& unit, const MachineData& machine = {});
   DriveServer(const DriveServer&) = delete;
   DriveServer& operator=(const DriveServer&) = delete;
 

@@ -172,7 +172,7 @@ class Reader {
 
   void station(const toml::table& table) {
     known_keys(table, "[[station]]",
-               {"name", "unit", "program", "sbus", "parameters", "inputs", "analog", "hex"});
+               {"name", "unit", "program", "sbus", "parameters", "inputs", "analog", "load", "hex"});
     StationConfig config;
     config.place = place_of(table.source());
     config.name = text(table, "name", "a [[station]]", true);
@@ -197,6 +197,7 @@ class Reader {
     parameters(table, config);
     inputs(table, config);
     analog(table, config);
+    load(table, config.machine);
     hex(table, config);
     result_.plant.stations.push_back(std::move(config));
   }
@@ -293,6 +294,38 @@ class Reader {
       return false;
     out = static_cast<int32_t>(std::lround(value * factor));
     return true;
+  }
+
+  void load(const toml::table& table, MachineData& machine) {
+    const toml::table* settings = subtable(table, "load");
+    if (settings == nullptr) return;
+    known_keys(*settings, "[station.load]", {"inertia", "friction", "torque", "brake", "braking_resistor"});
+    percentage(*settings, "inertia", 0, 100'000, 1, machine.inertia);
+    percentage(*settings, "friction", 0, 1'000, 1'000, machine.friction);
+    percentage(*settings, "torque", -1'000, 1'000, 1'000, machine.load_torque);
+    flag(*settings, "brake", machine.brake);
+    flag(*settings, "braking_resistor", machine.braking_resistor);
+  }
+
+  // A value in % between two ends, kept in parts of `parts` to the percent.
+  void percentage(const toml::table& table, std::string_view key, int32_t least, int32_t most, int32_t parts,
+                  int32_t& out) {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) return;
+    const std::optional<double> value = node->is_number() ? node->value<double>() : std::nullopt;
+    if (!value) return error(place_of(node->source()), fmt::format("{} must be a number, in %", key));
+    if (!(*value >= least && *value <= most))
+      return error(place_of(node->source()), fmt::format("{} is {} to {} %", key, least, most));
+    out = static_cast<int32_t>(std::lround(*value * parts));
+  }
+
+  void flag(const toml::table& table, std::string_view key, bool& out) {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) return;
+    if (node->is_boolean())
+      out = node->as_boolean()->get();
+    else
+      error(place_of(node->source()), fmt::format("{} is true or false", key));
   }
 
   void hex(const toml::table& table, StationConfig& config) {

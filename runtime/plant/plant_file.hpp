@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "runtime/drive/setpoint.hpp"
+#include "runtime/motion/machine_data.hpp"
 #include "stdlib/unit_types.hpp"
 
 namespace ipos::runtime {
@@ -50,6 +51,7 @@ struct StationConfig {
   std::vector<ParameterSetting> parameters;
   std::vector<InputSetting> inputs;
   AnalogInputs analog;
+  MachineData machine;           // [station.load] on the default machine
   std::vector<std::string> hex;  // variables the watch shows in hexadecimal
   FilePlace place;
   FilePlace program_place;

@@ -24,6 +24,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     const auto is_bus = [&](const BusConfig& bus) { return bus.name == station.sbus; };
     require(station.sbus.empty() || std::any_of(plant.buses.begin(), plant.buses.end(), is_bus),
             "a station is on a bus that exists");
+    require(station.machine.inertia >= 0 && station.machine.friction >= 0, "a load resists");
     for (const InputSetting& input : station.inputs) require(input.input < 16, "an input is a bit of 16");
   }
   for (const Expectation& expect : plant.expectations) {

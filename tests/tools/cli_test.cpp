@@ -198,6 +198,64 @@ TEST(Run, SpeedSetsTheCommandsOfAMillisecond) {
   EXPECT_EQ(count({"--speed", "20"}), 1000);
 }
 
+class Recordings : public Test {
+ protected:
+  Recordings() {
+    folder_.write("A.IPC", "long a;\nmain()\n{\n  while (1) a++;\n}\n");
+    folder_.write("two.toml",
+                  "[[station]]\nname = \"u1\"\nunit = \"md60a\"\nprogram = \"A.IPC\"\n"
+                  "[[station]]\nname = \"u2\"\nunit = \"mc07\"\n[station.inputs]\nDI00 = 1\n");
+  }
+  CommandResult run(std::vector<std::string> more) {
+    more.insert(more.begin(), {"run", "--for", "5ms"});
+    return run_ipos(more, folder_.path());
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(Recordings, TraceAndPlot) {
+  EXPECT_EQ(run({"two.toml", "--trace", "t.csv", "--plot", "p.svg", "--signals", "u1.a,u2.P302"}).exit_code,
+            0);
+  EXPECT_EQ(read_text(folder_.path() / "t.csv"),
+            "time_ms,u1.a,u2.P302 [rpm]\n1,1,1500.000\n2,2,1500.000\n3,2,1500.000\n4,3,1500.000\n"
+            "5,3,1500.000\n");
+  const std::string plot = read_text(folder_.path() / "p.svg");
+  EXPECT_TRUE(contains(plot, "<svg") && contains(plot, ">two.toml<") && contains(plot, ">u1.a<")) << plot;
+}
+
+TEST_F(Recordings, DefaultSignals) {
+  EXPECT_EQ(run({"two.toml", "--trace", "t.csv"}).exit_code, 0);
+  EXPECT_TRUE(read_text(folder_.path() / "t.csv")
+                  .starts_with("time_ms,u1.speed [rpm],u1.setpoint [rpm],u1.status,"
+                               "u2.speed [rpm],u2.setpoint [rpm],u2.status\n"));
+}
+
+TEST_F(Recordings, OneStationNeedsNoName) {
+  EXPECT_EQ(run({"--trace", "t.csv", "--signals", "a,H3,speed", "A.IPC"}).exit_code, 0);
+  EXPECT_TRUE(read_text(folder_.path() / "t.csv").starts_with("time_ms,A.a,A.H3,A.speed [rpm]\n"));
+}
+
+TEST_F(Recordings, MistakesAreTold) {
+  const auto refuses = [&](const std::vector<std::string>& arguments, const std::string& words,
+                           int exit_code) {
+    const CommandResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, exit_code) << words;
+    EXPECT_EQ(result.out, "");
+    EXPECT_TRUE(contains(result.err, words)) << result.err;
+  };
+  refuses({"two.toml", "--signals", "u1.speed"}, "--signals needs --plot or --trace", 64);
+  refuses({"two.toml", "--trace", "t.csv", "--signals", "speed"}, "signals begin with u1., u2.", 64);
+  refuses({"two.toml", "--trace", "t.csv", "--signals", "u3.speed"}, "signals begin with u1., u2.", 64);
+  refuses({"two.toml", "--trace", "t.csv", "--signals", "u1.sped"},
+          "station 'u1' has no signal 'sped'; it has speed, frequency, position, ", 64);
+  refuses({"two.toml", "--trace", "t.csv", "--signals", "u1.b"}, "variables H0 to H511, a", 64);
+  refuses({"two.toml", "--trace", "t.csv", "--signals", "u1.P99999"}, "parameters as P000", 64);
+  refuses({"two.toml", "--trace", "t.csv", "--signals", "u1.H512"}, "variables H0 to H511", 64);
+  refuses({"two.toml", "--trace", "t.csv", "--signals", "u2.H0"}, "it has speed, frequency, current, ", 64);
+  refuses({"two.toml", "--trace", "/nowhere/t.csv"}, "/nowhere/t.csv: cannot be written", 74);
+  refuses({"two.toml", "--plot", "/nowhere/p.svg"}, "/nowhere/p.svg: cannot be written", 74);
+}
+
 class PlantErrors : public Test {
  protected:
   CommandResult run(const std::string& plant) {
@@ -236,6 +294,12 @@ TEST_F(PlantErrors, EachIsLocated) {
   refuses(kStation + "[station.parameters]\nP813 = \"x\"\n", "6:8", "P813");
   refuses(kStation + "[station.inputs]\nDI99 = 1\n", "6:1", "DI99");
   refuses(kStation + "[station.inputs]\nDI00 = 2\n", "6:8", "DI00");
+  refuses(kStation + "[station.load]\nmass = 3\n", "6:1", "mass");
+  refuses(kStation + "[station.load]\ninertia = -1\n", "6:11", "0 to 100000 %");
+  refuses(kStation + "[station.load]\nfriction = \"much\"\n", "6:12", "in %");
+  refuses(kStation + "[station.load]\ntorque = nan\n", "6:10", "-1000 to 1000 %");
+  refuses(kStation + "[station.load]\nbrake = 1\n", "6:9", "true or false");
+  refuses(kStation + "load = 5\n", "5:8", "[station.load]");
   refuses(kStation + "[[expect]]\nstation = \"v\"\nat = \"1ms\"\nvariable = \"a\"\nequals = 5\n", "6:11",
           "'v'");
   refuses(kStation + "[[expect]]\nstation = \"u\"\nat = \"later\"\nvariable = \"a\"\nequals = 5\n", "7:6",

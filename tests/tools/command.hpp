@@ -14,7 +14,8 @@ struct CommandResult {
 };
 
 // Runs `ipos ARGUMENTS...`; `directory` is the working folder.
-CommandResult run_ipos(const std::vector<std::string>& arguments, const std::filesystem::path& directory = {});
+CommandResult run_ipos(const std::vector<std::string>& arguments,
+                       const std::filesystem::path& directory = {});
 
 // A folder of the project, for example "examples".
 std::filesystem::path project(const std::string& path);

@@ -1,0 +1,138 @@
+// Currents, frequency, DC link, energy and temperatures against the formulas of docs/motion.md, in floating
+// point.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "runtime/motion/axis.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+AxisOrder order_of(AxisCommand command, int32_t target, uint32_t ms) {
+  AxisOrder order;
+  order.command = command;
+  order.target = target;
+  order.ramp = {ms, ms, ms, ms, 0};
+  order.stop_ramp_ms = ms;
+  return order;
+}
+
+void run(Axis& axis, const AxisOrder& order, int ms) {
+  for (int n = 0; n < ms; ++n) axis.tick(order);
+}
+
+TEST(PowerSection, RatedPointIsRatedCurrent) {
+  Axis axis{{}};
+  AxisOrder order = order_of(AxisCommand::Run, 1'400'000, 2'000);
+  order.load_torque = 95'000;  // with 5 % friction: rated torque
+  run(axis, order, 2'000);
+  EXPECT_EQ(axis.state().torque, 100'000);
+  EXPECT_EQ(axis.state().active_current, 80'000);
+  EXPECT_EQ(axis.state().output_current, 100'000);
+  EXPECT_EQ(axis.state().frequency, 50'000);  // 1400 rpm + 100 rpm slip on two pole pairs
+}
+
+TEST(PowerSection, CurrentsByPythagoras) {
+  for (const int32_t load : {-80'000, -5'000, 0, 33'333, 120'000}) {
+    Axis axis{{}};
+    AxisOrder order = order_of(AxisCommand::Run, 600'000, 2'000);
+    order.load_torque = load;
+    run(axis, order, 1'000);
+    const double active = (load + 5'000) * 0.8;
+    EXPECT_NEAR(axis.state().active_current, active, 1);
+    EXPECT_NEAR(axis.state().output_current, std::hypot(active, 60'000), 1.5);
+  }
+}
+
+TEST(PowerSection, SlipMovesTheFrequency) {
+  Axis axis{{}};
+  AxisOrder order = order_of(AxisCommand::Run, 600'000, 2'000);
+  run(axis, order, 1'000);
+  EXPECT_NEAR(axis.state().frequency, (600'000 + 5'000) / 30.0, 1);
+  order.load_torque = -65'000;  // driven by the load: 60 % braking
+  run(axis, order, 1);
+  EXPECT_NEAR(axis.state().frequency, (600'000 - 60'000) / 30.0, 1);
+  EXPECT_EQ(axis.state().active_current, -48'000);
+  run(axis, order_of(AxisCommand::Inhibit, 0, 0), 1);
+  EXPECT_EQ(axis.state().frequency, 0);
+}
+
+// The square of the voltage takes the braking energy: 1e10 mV² a millisecond at rated power, less losses of
+// 20 % at IN (with the square of the current) and 1 % standby.
+TEST(PowerSection, DcLinkRisesWhenBraking) {
+  MachineData machine;
+  machine.braking_resistor = false;
+  Axis axis(machine);
+  run(axis, order_of(AxisCommand::Run, 1'500'000, 2'000), 2'000);
+  EXPECT_EQ(axis.state().dc_link, 560'000);
+  const AxisOrder stop = order_of(AxisCommand::Stop, 0, 600);  // 5 rpm a millisecond: 83.3 %, friction helps
+  double square = 560'000.0 * 560'000.0, most = 0;
+  for (int n = 1; n <= 300; ++n) {
+    const AxisState& state = axis.tick(stop);
+    const double speed = 1'500'000 - 5'000.0 * n, torque = -(5'000 / 6'000.0 - 0.05);
+    const double current = std::hypot(torque * 0.8, 0.6);
+    const double power = torque * speed / 1'500'000 + 0.2 * current * current + 0.01;
+    square = std::clamp(square - power * 1e10, 560'000.0 * 560'000.0, 1e12);
+    ASSERT_NEAR(state.dc_link, std::sqrt(square), 100) << n;
+    most = std::max<double>(most, state.dc_link);
+  }
+  EXPECT_GT(most, 900'000);
+  run(axis, {}, 10'000);  // standby discharges it
+  EXPECT_EQ(axis.state().dc_link, 560'000);
+}
+
+TEST(PowerSection, BrakingResistorHoldsTheDcLink) {
+  Axis axis{{}};
+  run(axis, order_of(AxisCommand::Run, 1'500'000, 2'000), 2'000);
+  const AxisOrder stop = order_of(AxisCommand::Stop, 0, 600);
+  int32_t most = 0;
+  for (int n = 1; n <= 300; ++n) most = std::max(most, axis.tick(stop).dc_link);
+  EXPECT_EQ(most, 780'000);
+}
+
+TEST(PowerSection, EnergyIsPowerTimesTime) {
+  Axis axis{{}};
+  AxisOrder order = order_of(AxisCommand::Run, 1'500'000, 2'000);
+  order.load_torque = 45'000;  // 50 % with friction
+  run(axis, order, 2'000);
+  const int64_t before = axis.state().energy;
+  run(axis, order, 60'000);
+  const double current_square = 0.4 * 0.4 + 0.6 * 0.6;
+  EXPECT_NEAR(static_cast<double>(axis.state().energy - before), 60 * 1'500 * (0.5 + 0.2 * current_square),
+              5);
+  const int64_t standing = axis.state().energy;
+  run(axis, {}, 100'000);
+  EXPECT_EQ(axis.state().energy, standing);
+}
+
+// I² with a time constant of 50 s and 125 % IN as continuous current: 150 % IN are reached cold after
+// 50 s x ln(1.44 / 0.44) = 59.3 s, near the 60 s that such inverters allow.
+TEST(PowerSection, UtilizationReaches100PercentAfterAMinuteOfOverload) {
+  Axis axis{{}};
+  AxisOrder order = order_of(AxisCommand::HoldZero, 0, 0);
+  order.current_limit = 150'000;
+  order.load_torque = 171'825 - 20;  // sqrt(150² - 60²) / 0.8
+  int ms = 0;
+  while (axis.state().utilization < 100'000 && ms < 100'000) run(axis, order, 1), ++ms;
+  EXPECT_NEAR(axis.state().output_current, 150'000, 40);
+  EXPECT_NEAR(ms, 50'000 * std::log(1.44 / 0.44), 100);
+}
+
+TEST(PowerSection, MotorAndHeatSinkWarmUp) {
+  Axis axis{{}};
+  EXPECT_EQ(axis.state().heat_sink, 25);
+  AxisOrder order = order_of(AxisCommand::HoldZero, 0, 0);
+  order.load_torque = 100'000;  // IN
+  run(axis, order, 300'000);
+  EXPECT_NEAR(axis.state().heat_sink, 25 + 40 * (1 - std::exp(-1.0)), 1);
+  EXPECT_NEAR(axis.state().motor_utilization, 100'000 * (1 - std::exp(-0.25)), 100);
+  run(axis, order, 4'000'000);
+  EXPECT_NEAR(axis.state().heat_sink, 65, 1);
+  EXPECT_NEAR(axis.state().utilization, 64'000, 50);  // (100 / 125)²
+  run(axis, {}, 3'000'000);
+  EXPECT_EQ(axis.state().heat_sink, 25);
+}
+
+}  // namespace
+}  // namespace ipos::runtime
