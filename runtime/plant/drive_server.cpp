@@ -7,8 +7,8 @@ namespace ipos::runtime {
 
 namespace codes = stdlib::return_codes;
 
-DriveServer::DriveServer(const stdlib::UnitType& unit, const MachineData& machine)
-    : parameters_(unit),
+DriveServer::DriveServer(const stdlib::UnitType& unit, const MachineData& machine, DriveOptions options)
+    : parameters_(unit, options),
       state_(parameters_, machine),
       variables_(unit.variables),
       task1_speed_(index_of("938")),

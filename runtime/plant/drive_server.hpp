@@ -19,7 +19,8 @@ namespace ipos::runtime {
 
 class DriveServer final : public ParameterServer, public ProcessDataServer {
  public:
-  explicit DriveServer(const stdlib::UnitType& unit, const MachineData& machine = {});
+  explicit DriveServer(const stdlib::UnitType& unit, const MachineData& machine = {},
+                       DriveOptions options = {});
   DriveServer(const DriveServer&) = delete;
   DriveServer& operator=(const DriveServer&) = delete;
 

@@ -171,8 +171,9 @@ class Reader {
   }
 
   void station(const toml::table& table) {
-    known_keys(table, "[[station]]",
-               {"name", "unit", "program", "sbus", "parameters", "inputs", "analog", "load", "hex"});
+    known_keys(
+        table, "[[station]]",
+        {"name", "unit", "firmware", "program", "sbus", "parameters", "inputs", "analog", "load", "hex"});
     StationConfig config;
     config.place = place_of(table.source());
     config.name = text(table, "name", "a [[station]]", true);
@@ -185,6 +186,7 @@ class Reader {
       error(place_of(table.get("unit")->source()),
             fmt::format("'{}' is no unit type; known are {}", unit, fmt::join(names, ", ")));
     }
+    firmware(table, config.options.firmware);
     config.program = text(table, "program", "", false);
     if (const toml::node* program = table.get("program")) {
       config.program_place = place_of(program->source());
@@ -200,6 +202,16 @@ class Reader {
     load(table, config.machine);
     hex(table, config);
     result_.plant.stations.push_back(std::move(config));
+  }
+
+  // The two digits behind the point, as the MOVITRAC 07 manual writes versions: 15 for .15.
+  void firmware(const toml::table& table, uint8_t& version) {
+    const toml::node* node = table.get("firmware");
+    int32_t value = 0;
+    if (node == nullptr || !number(*node, "firmware", value)) return;
+    if (value < 10 || value > 99)
+      return error(place_of(node->source()), "firmware is a version of two digits, 10..99");
+    version = static_cast<uint8_t>(value);
   }
 
   const toml::table* subtable(const toml::table& table, std::string_view key) {

@@ -42,7 +42,7 @@ Station::Station(EventQueue& queue, uint32_t source, const StationConfig& config
       config_(config),
       line_(line),
       journal_(journal),
-      drive_(*config.unit, config.machine),
+      drive_(*config.unit, config.machine, config.options),
       image_(std::move(program)),
       rates_(rates) {}
 
