@@ -82,7 +82,7 @@ bool read_ranges(std::string_view text, Parameter& p) {
   return true;
 }
 
-// "0=OFF|1=ON", "16*=IPOS input", or "=P600" for the list of that row.
+// "0=OFF|1=ON", "16*=IPOS input", "2@15/16=ON EXCEPT FSP", or "=P600" for the list of that row.
 bool read_texts(std::string_view text, const std::vector<Parameter>& before, Parameter& p) {
   if (text.starts_with("=P")) {
     text.remove_prefix(2);
@@ -93,12 +93,24 @@ bool read_texts(std::string_view text, const std::vector<Parameter>& before, Par
   while (!text.empty()) {
     std::string_view entry = cut(text, "|");
     std::string_view code = cut(entry, "=");
-    const bool logodrive = code.ends_with('*');
-    if (logodrive) code.remove_suffix(1);
+    ValueText row{};
+    if (const size_t at = code.find('@'); at != std::string_view::npos) {
+      std::string_view versions = code.substr(at + 1);
+      const auto standard = number<uint8_t>(cut(versions, "/"));
+      const auto logodrive = number<uint8_t>(versions);
+      if (!standard || !logodrive) return false;
+      row.from_standard = *standard;
+      row.from_logodrive = *logodrive;
+      code = code.substr(0, at);
+    }
+    row.logodrive_only = code.ends_with('*');
+    if (row.logodrive_only) code.remove_suffix(1);
     const auto value = number<int32_t>(code);
     if (!value || entry.empty()) return false;
     if (!p.texts.empty() && p.texts.back().value >= *value) return false;
-    p.texts.push_back({*value, entry, logodrive});
+    row.value = *value;
+    row.text = entry;
+    p.texts.push_back(row);
   }
   return true;
 }

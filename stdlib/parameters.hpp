@@ -30,6 +30,9 @@ struct ValueText {
   int32_t value;
   std::string_view text;
   bool logodrive_only;
+  // Firmware version that knows it first, of the standard unit and of LOGODrive; 0: every one.
+  uint8_t from_standard = 0;
+  uint8_t from_logodrive = 0;
 };
 
 // Card without which the parameter cannot be written; such parameters exist on MD_60A and MDX only.

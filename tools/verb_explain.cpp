@@ -1,5 +1,5 @@
-// ipos explain: what a code means: of a message, a verifier rule, a return code or a fault of the drive.
-// Messages have a page in docs/diagnostics, the others a line in their tables.
+// ipos explain: what a code means: of a message, a verifier rule, a return code, a fault or a parameter of
+// the drive. Messages have a page in docs/diagnostics, the others a row in their tables.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,27 +9,16 @@
 #include <vector>
 
 #include "compiler/diag/diag.hpp"
+#include "stdlib/faults.hpp"
+#include "stdlib/parameters.hpp"
 #include "stdlib/return_codes.hpp"
 #include "tools/failure.hpp"
 #include "tools/pages.hpp"
 #include "tools/verbs.hpp"
-#include "vm/exec/machine.hpp"
 #include "vm/verify/verify.hpp"
 
 namespace ipos::tools {
 namespace {
-
-struct FaultRow {
-  uint8_t number;
-  const char* meaning;
-};
-// The faults that programs cause; texts ours.
-constexpr FaultRow kFaults[] = {
-    {vm::kFaultIllop,
-     "IPOS ILLOP: a command cannot be carried out, for example division by zero, *p without such a "
-     "variable, or a command this version does not simulate (docs/limits.md)"},
-    {vm::kFaultIndexOverflow, "IPOS index overflow: functions call each other deeper than the unit allows"},
-};
 
 // A page for the terminal: no marks of Markdown, programs indented.
 std::string plain_text(std::string_view page) {
@@ -99,6 +88,60 @@ std::string explain_return_code(stdlib::ReturnCode code) {
       meaning.empty() ? "this code is in no manual" : meaning);
 }
 
+// The response in the words of P830, whose codes all responses have.
+std::string response_text(stdlib::FaultResponse response) {
+  const stdlib::Parameter* p830 = stdlib::parameter_table(*stdlib::find_unit("md60a")).find("P830");
+  return stdlib::parameter_text(*p830, static_cast<int32_t>(response));
+}
+
+std::string explain_fault(const stdlib::FaultRow& row) {
+  std::string text = fmt::format("F{:02}: fault of the drive, {}\n  {}\n", row.number, row.name, row.meaning);
+  if (row.parameter.empty()) return text + fmt::format("  response: {}\n", response_text(row.response));
+  return text +
+         fmt::format("  response: P{}, factory setting {}; RAPID STOP/ERROR on a MOVITRAC 07 without it\n",
+                     row.parameter, response_text(row.response));
+}
+
+std::string list_faults() {
+  std::string text;
+  for (const stdlib::FaultRow& row : stdlib::fault_table())
+    text += fmt::format("F{:02}  {}: {}\n", row.number, row.name, row.meaning);
+  return text;
+}
+
+// Units with the same row stand together.
+std::string explain_parameter(std::string_view number) {
+  std::vector<std::pair<std::string, std::string>> rows;  // units, text
+  for (const stdlib::UnitType& unit : stdlib::unit_types()) {
+    const stdlib::Parameter* row = stdlib::parameter_table(unit).find("P" + std::string(number));
+    if (row == nullptr || row->number.empty()) continue;
+    std::string text = fmt::format("{}, ", row->name);
+    text += row->index == 0 ? "at the keypad only" : fmt::format("index {}", row->index);
+    if (row->index != 0 && !row->writable) text += ", read only";
+    if (row->needs_inhibit) text += ", written under controller inhibit only";
+    if (row->writable) {
+      text += fmt::format("\n  factory setting {}",
+                          stdlib::parameter_text(*row, static_cast<int32_t>(row->default_value)));
+      for (const stdlib::ValueRange& range : row->ranges)
+        text += fmt::format("\n  {} .. {} in steps of {}",
+                            stdlib::parameter_text(*row, static_cast<int32_t>(range.minimum)),
+                            stdlib::parameter_text(*row, static_cast<int32_t>(range.maximum)),
+                            stdlib::parameter_text(*row, static_cast<int32_t>(range.step)));
+      for (const stdlib::ValueText& value : row->texts)
+        text += fmt::format("\n  {} = {}", value.value, value.text);
+    }
+    const auto same =
+        std::find_if(rows.begin(), rows.end(), [&](const auto& one) { return one.second == text; });
+    if (same == rows.end())
+      rows.emplace_back(unit.title, text);
+    else
+      same->first += fmt::format(", {}", unit.title);
+  }
+  std::string out;
+  for (const auto& [units, text] : rows) out += fmt::format("P{} of {}: {}\n", number, units, text);
+  return out;
+}
+
 std::string explain(std::string code) {
   const std::string typed = code;
   std::transform(code.begin(), code.end(), code.begin(), [](unsigned char c) { return std::toupper(c); });
@@ -106,23 +149,27 @@ std::string explain(std::string code) {
     if (row.code == code) return message_page(row);
   for (const vm::RuleInfo& row : vm::rule_table())
     if (row.code == code) return fmt::format("{}: rule of the verifier\n  {}\n", row.code, row.meaning);
-  for (const FaultRow& row : kFaults)
-    if (code == fmt::format("F{}", row.number))
-      return fmt::format("F{}: fault of the drive\n  {}\n", row.number, row.meaning);
+  if (code == "F") return list_faults();
+  if (uint8_t number = 0; code.starts_with('F') && parse(std::string_view(code).substr(1), 10, number))
+    if (const stdlib::FaultRow* row = stdlib::find_fault(number)) return explain_fault(*row);
+  if (code.starts_with('P'))
+    if (std::string text = explain_parameter(std::string_view(code).substr(1)); !text.empty()) return text;
   if (const auto number = return_code(code)) return explain_return_code(*number);
-  throw Failure(kBadInput,
-                fmt::format("there is no code '{}'; codes look like E0101, W0201 (messages), V03 (verifier), "
-                            "F10 (faults), 8/0/10 or 0x08000010 (return codes)",
-                            typed));
+  throw Failure(
+      kBadInput,
+      fmt::format("there is no code '{}'; codes look like E0101, W0201 (messages), V03 (verifier), "
+                  "F10 (faults; F lists them), P130 (parameters), 8/0/10 or 0x08000010 (return codes)",
+                  typed));
 }
 
 }  // namespace
 
 void add_explain(CLI::App& app, int& exit_code) {
   auto code = std::make_shared<std::string>();
-  CLI::App* verb =
-      app.add_subcommand("explain", "what a code means: message, verifier rule, return code, fault");
-  verb->add_option("CODE", *code, "for example E0203, V03, 8/0/10, 0x08000010, F10")->required();
+  CLI::App* verb = app.add_subcommand(
+      "explain", "what a code means: message, verifier rule, return code, fault, parameter");
+  verb->add_option("CODE", *code, "for example E0203, V03, 8/0/10, 0x08000010, F10, P130; F lists all faults")
+      ->required();
   verb->footer("Example:\n  ipos explain E0203");
   verb->callback([code, &exit_code] {
     fmt::print("{}", explain(*code));

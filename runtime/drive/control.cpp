@@ -42,6 +42,7 @@ void hear_bus(const ControlInputs& in, Verdict& verdict) {
   if (!in.bus_word) return;
   const uint16_t word = *in.bus_word;
   if (in.bus_word_missing != Block::None) {
+    if (in.waiting) return;  // which says the same
     verdict.restrict_to(Command::RapidStop, in.bus_word_missing);
     return;
   }

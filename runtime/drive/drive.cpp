@@ -16,8 +16,6 @@ constexpr uint32_t kMinuteMs = 60'000;
 constexpr int32_t kFullUtilization = 100'000;
 // More automatic resets than this without a manual one are not made (ours).
 constexpr int kAutoResets = 3;
-// Group telegrams over RS-485 must come within this time, whatever P812 says (MDX60B/61B p. 30).
-constexpr int32_t kMasterSlaveMs = 500;
 // Where the unit protects itself; ours.
 constexpr int32_t kOvervoltage = 900'000;  // mV
 constexpr int32_t kOvertemperature = 90;   // °C
@@ -40,21 +38,26 @@ constexpr uint8_t fault_of(PoSource source) {
   return faults::kSbus;
 }
 
-// A ramp time is the time for this change of speed: 3000 rpm on MOVIDRIVE, 50 Hz on MOVITRAC 07
-// (docs/motion.md).
+// A ramp time is the time for this change of speed: 3000 rpm on MOVIDRIVE (ours), 50 Hz on MOVITRAC 07 (its
+// manual, chapter 6.1).
 MachineData machine_of(MachineData machine, bool is_m07) {
-  if (is_m07) machine.ramp_reference = 1'500'000;
+  if (is_m07) machine.ramp_reference = machine.rated_speed;
   return machine;
+}
+
+// For output function /IPOS ERROR.
+bool is_ipos_fault(uint8_t number) {
+  const stdlib::FaultRow* row = stdlib::find_fault(number);
+  return row != nullptr && row->name.starts_with("IPOS");
 }
 
 constexpr PoSource kAllSources[] = {PoSource::Rs485, PoSource::Fieldbus, PoSource::Sbus};
 
 }  // namespace
 
-Drive::Drive(ParameterStore& parameters, const MachineData& machine, PotentiometerRule potentiometer_rule)
+Drive::Drive(ParameterStore& parameters, const MachineData& machine)
     : parameters_(parameters),
       is_m07_(parameters.unit().generation == stdlib::Generation::M07),
-      potentiometer_rule_(potentiometer_rule),
       reader_(parameters),
       settings_(reader_.read(parameters)),
       settings_version_(parameters.changes()),
@@ -75,8 +78,11 @@ const Settings& Drive::settings() const {
 void Drive::take_po(PoSource source, std::span<const uint16_t> words, bool cyclic) {
   const size_t count = std::min(words.size(), kProcessWords);
   std::copy_n(words.begin(), count, shown_po_.begin());
-  if (settings().po_enable != 1) return;
   const auto s = static_cast<size_t>(source);
+  if (settings().po_enable != 1) {
+    if (cyclic) take_request(source);  // the bus speaks, though nothing is taken over
+    return;
+  }
   std::copy_n(words.begin(), count, po_[s].begin());
   if (watches_[s].on_process_data(cyclic)) faults_.clear_cause(fault_of(source));
   if (control_bus(settings()) != source) return;
@@ -133,7 +139,7 @@ bool Drive::is_waiting() const {
     if (!bus || watch(*bus).seen()) continue;
     if (*bus == PoSource::Rs485) return true;
     if (*bus == PoSource::Sbus && is_m07_) continue;
-    if (LinkWatch::monitors(*bus == PoSource::Sbus ? s.sbus_timeout : s.fieldbus_timeout)) return true;
+    if (monitored(*bus == PoSource::Sbus ? s.sbus_timeout : s.fieldbus_timeout) != 0) return true;
   }
   return false;
 }
@@ -199,17 +205,19 @@ FaultResponse Drive::response_of(uint8_t number) const {
 
 void Drive::raise_fault(uint8_t number) { raise_fault(number, response_of(number)); }
 
+// Warnings pass by themselves and do not fill the error memory (ours).
 void Drive::raise_fault(uint8_t number, FaultResponse response) {
-  if (faults_.raise(number, response)) note_fault(number);
+  if (faults_.raise(number, response) && is_error(response))
+    remember_fault(parameters_, number, axis_.state().utilization);
 }
 
-// Warnings pass by themselves and do not fill the error memory (ours).
-void Drive::note_fault(uint8_t number) {
-  if (faults_.error()) remember_fault(parameters_, number);
+void Drive::reset_fault() {
+  auto_resets_ = 0;
+  clear_faults();
 }
 
 // After a reset the drive is safe until its bus speaks again (1053 1610 p. 27).
-void Drive::reset_fault() {
+void Drive::clear_faults() {
   if (faults_.error())
     for (LinkWatch& link : watches_) link.forget();
   faults_.reset();
@@ -217,10 +225,7 @@ void Drive::reset_fault() {
 }
 
 void Drive::on_parameter_written(uint16_t index, int32_t value) {
-  if (index == index::kManualReset && value == 1) {
-    auto_resets_ = 0;
-    reset_fault();
-  }
+  if (index == index::kManualReset && value == 1) reset_fault();
 }
 
 // --- the millisecond ---
@@ -233,8 +238,9 @@ void Drive::tick() {
   watch_machine();
   select_parameter_set();
   setpoint_ = next_setpoint();
-  axis_.tick(axis_order(verdict()));
-  show_outputs();
+  const AxisOrder order = axis_order(verdict());
+  axis_.tick(order);
+  show_outputs(order);
 }
 
 void Drive::count_time() {
@@ -270,18 +276,23 @@ void Drive::latch_three_wire() {
 
 void Drive::watch_resets() {
   const bool reset = function_on(InputFunction::Reset);
-  if (reset && !reset_input_) {
-    auto_resets_ = 0;
-    reset_fault();
-  }
+  if (reset && !reset_input_) reset_fault();
   reset_input_ = reset;
   if (!faults_.error()) return;
   if (settings().auto_reset != 1 || auto_resets_ >= kAutoResets) return;
   if (++auto_reset_ms_ < settings().auto_reset_time) return;
   ++auto_resets_;
-  reset_fault();
+  clear_faults();
 }
 
+// 0 switches the monitoring off, on MOVIDRIVE 650 s does, too (1053 1610 p. 41; of MOVITRAC 07 chapter 4.1
+// names 0 only).
+int32_t Drive::monitored(int32_t delay_ms) const {
+  constexpr int32_t kOff = 650'000;
+  return !is_m07_ && delay_ms == kOff ? 0 : delay_ms;
+}
+
+// Nothing is supervised that is not taken over (P876).
 void Drive::watch_links() {
   const Settings& s = settings();
   const auto setpoint = setpoint_bus(s);
@@ -289,18 +300,17 @@ void Drive::watch_links() {
   const bool enabled = decide_locally(control_inputs()).command == Command::Enable;
   const bool over_rs485 = is_master_slave(s) && setpoint == PoSource::Rs485;
   for (const PoSource source : kAllSources) {
-    const bool used = setpoint == source || control == source;
+    const bool used = s.po_enable == 1 && (setpoint == source || control == source);
     LinkWatch::Rules rules;
     switch (source) {
-      case PoSource::Rs485: rules = {over_rs485 ? kMasterSlaveMs : s.rs485_timeout, true, false}; break;
-      case PoSource::Fieldbus: rules = {s.fieldbus_timeout, used && enabled, false}; break;
-      case PoSource::Sbus: rules = {s.sbus_timeout, used && enabled, is_m07_}; break;
+      case PoSource::Rs485:
+        // A master/slave link watches itself, whatever P812 says (bus/movilink/serial_slave.hpp).
+        rules = {over_rs485 ? 0 : monitored(s.rs485_timeout), true, false};
+        break;
+      case PoSource::Fieldbus: rules = {monitored(s.fieldbus_timeout), used && enabled, false}; break;
+      case PoSource::Sbus: rules = {monitored(s.sbus_timeout), used && enabled, is_m07_}; break;
     }
-    if (!watches_[static_cast<size_t>(source)].tick(rules)) continue;
-    if (source == PoSource::Rs485 && over_rs485)
-      raise_fault(fault_of(source), FaultResponse::EmergencyError);
-    else
-      raise_fault(fault_of(source));
+    if (watches_[static_cast<size_t>(source)].tick(rules)) raise_fault(fault_of(source));
   }
 }
 
@@ -338,10 +348,11 @@ void Drive::select_parameter_set() {
                 (order.control_word.value_or(0) & control_bits::kParameterSet) != 0;
 }
 
-void Drive::show_outputs() {
+void Drive::show_outputs(const AxisOrder& order) {
   const AxisState& axis = axis_.state();
   OutputInputs in;
   in.fault = faults_.error();
+  in.ipos_fault = is_ipos_fault(faults_.error_number());
   in.ready = ready();
   in.output_stage = axis.output_stage;
   in.brake_released = axis.brake_released;
@@ -350,25 +361,38 @@ void Drive::show_outputs() {
   in.motor_1_overloaded = !second_set_ && axis.motor_utilization >= kFullUtilization;
   in.motor_2_overloaded = second_set_ && axis.motor_utilization >= kFullUtilization;
   in.speed = axis.speed;
-  in.setpoint = axis.setpoint;
+  // Compared with the setpoint before the ramp, so that P420 tells when it is reached (ours).
+  in.setpoint = order.command == AxisCommand::Run ? order.target : 0;
   in.current = axis.output_current;
-  in.current_limit = set().current_limit;
+  in.current_limit = order.current_limit;
   in.ipos_outputs = ipos_outputs_;
   outputs_.tick(settings(), in);
 }
 
 void Drive::power_cycle() {
-  faults_ = {};
-  for (LinkWatch& link : watches_) link.forget();
-  po_ = {};
   shown_po_ = {};
+  po_ = {};
+  for (LinkWatch& link : watches_) link.forget();
   last_control_word_ = 0;
   ipos_word_ = 0;
   ipos_pi_ = {};
   ipos_outputs_ = 0;
-  auto_resets_ = 0;
+
+  faults_ = {};
+  reset_input_ = false;
+  auto_reset_ms_ = auto_resets_ = limited_ms_ = 0;
+
+  second_set_ = three_wire_cw_ = three_wire_ccw_ = cw_input_ = ccw_input_ = stopped_by_setpoint_ = false;
+  if (settings().keep_motor_pot != 1) motor_pot_ = {};
+  pi_controller_ = {};
+  pi_actual_ = 0;
+  ai1_filter_ = {};
+  setpoint_ = {};
+
   axis_.reset();
-  if (settings().keep_motor_pot != 1) motor_pot_.set(0);
+  outputs_ = {};
+  factory_setting_ms_ = mains_ms_ = enabled_ms_ = 0;
+  counted_energy_ = 0;
 }
 
 }  // namespace ipos::runtime

@@ -30,8 +30,7 @@ class Drive final : private DriveLink {
   using Words = DriveWords;
 
   // Connects itself to the parameters, which must outlive it.
-  explicit Drive(ParameterStore& parameters, const MachineData& machine = {},
-                 PotentiometerRule potentiometer_rule = PotentiometerRule::Fw15);
+  explicit Drive(ParameterStore& parameters, const MachineData& machine = {});
   Drive(const Drive&) = delete;
   Drive& operator=(const Drive&) = delete;
 
@@ -65,7 +64,7 @@ class Drive final : private DriveLink {
   // control word bit 6, P840, the program, or auto reset P841.
   void raise_fault(uint8_t number);
   void raise_fault(uint8_t number, FaultResponse response);
-  void reset_fault();
+  void reset_fault();                                // by hand: auto reset counts anew
   uint8_t fault() const { return faults_.shown(); }  // error or warning, 0 is none
   bool error() const { return faults_.error(); }
 
@@ -86,7 +85,8 @@ class Drive final : private DriveLink {
   // What the master of a master/slave group sends (P750, P751): control word 1, speed, 0.
   Words master_words() const;
 
-  // Power off and on: the parameters are the caller's.
+  // Power off and on: everything as at first, but for the motor potentiometer with P152. The parameters are
+  // the caller's.
   void power_cycle();
 
  private:
@@ -119,15 +119,15 @@ class Drive final : private DriveLink {
   void watch_links();
   void watch_resets();
   void watch_machine();
-  void note_fault(uint8_t number);
+  void clear_faults();
+  int32_t monitored(int32_t delay_ms) const;
   void select_parameter_set();
   Setpoint next_setpoint();
   AxisOrder axis_order(const Verdict& verdict) const;
-  void show_outputs();
+  void show_outputs(const AxisOrder& order);
 
   ParameterStore& parameters_;
   bool is_m07_;
-  PotentiometerRule potentiometer_rule_;
   SettingsReader reader_;
   mutable Settings settings_;
   mutable uint32_t settings_version_;

@@ -4,6 +4,16 @@
 
 namespace ipos::runtime {
 
+namespace {
+
+// Part number of P076, as in the example of both lists (1053 1610 p. 69, MOVITRAC 07 chapter 10.3); that it
+// is the one of every unit is ours.
+constexpr int32_t kFirmwarePart = 822'609'700;
+// Rated current of the unit in mA, of the 1.5 kW the machine data describe (ours).
+constexpr int32_t kRatedCurrent = 4'000;
+
+}  // namespace
+
 std::string_view condition_text(UnitCondition condition) {
   switch (condition) {
 #define UNIT_CONDITION(code, name, text) \
@@ -134,6 +144,10 @@ std::optional<int32_t> Drive::live_value(uint16_t index) const {
     case index::kFrequency: return axis.frequency;
     case index::kActualPosition: return axis.position;
     case index::kOutputCurrent: return axis.output_current;
+    case index::kOutputCurrentAmpere:
+      return static_cast<int32_t>(int64_t{axis.output_current} * kRatedCurrent / 100'000);
+    case index::kRatedCurrent: return kRatedCurrent;
+    case index::kFirmware: return kFirmwarePart + parameters_.options().firmware;
     case index::kActiveCurrent: return axis.active_current;
     case index::kMotorUtilization1: return second_set_ ? 0 : axis.motor_utilization;
     case index::kMotorUtilization2: return second_set_ ? axis.motor_utilization : 0;

@@ -19,7 +19,7 @@ Setpoint Drive::next_setpoint() {
 
   SetpointInputs in;
   in.m07 = is_m07_;
-  in.potentiometer_rule = potentiometer_rule_;
+  in.fixed_plus_potentiometer = parameters_.options().firmware_from(13, 12);
   in.slave_free_run = t.on(InputFunction::SlaveFreeRun);
   const bool low = function_on(InputFunction::FixedLow);
   const bool high = function_on(InputFunction::FixedHigh);
@@ -30,6 +30,7 @@ Setpoint Drive::next_setpoint() {
   in.ai1_speed = ai1_filter_.tick(ai1_speed(s, active, analog_), s.setpoint_filter);
   in.po_enabled = s.po_enable == 1;
   in.bus_speed = bus.speed;
+  in.sent_speed = decode_order(shown_po_, s.po, active.maximum_speed).speed.value_or(0);
   const auto setpoint_from = setpoint_bus(s);
   in.bus_accepted = setpoint_from && watch(*setpoint_from).seen();
   in.maximum_speed = bus.maximum_speed ? bus.maximum_speed : control.maximum_speed;
@@ -94,12 +95,7 @@ AxisOrder Drive::axis_order(const Verdict& verdict) const {
     const uint32_t t = ms(p.ramp_second);
     order.ramp = {t, t, t, t, static_cast<uint8_t>(p.s_pattern)};
   }
-  const auto source = static_cast<SetpointSource>(s.setpoint_source);
-  if (source == SetpointSource::MotorPot) {
-    // The motor potentiometer is a ramp itself; a process ramp has no influence (MOVITRAC 07 chapter 6.3).
-    order.ramp.up_cw_ms = order.ramp.up_ccw_ms = ms(std::min(s.motor_pot_up, p.ramp_up_cw));
-    order.ramp.down_cw_ms = order.ramp.down_ccw_ms = ms(std::min(s.motor_pot_down, p.ramp_down_cw));
-  } else if (process_ramp) {
+  if (process_ramp) {
     const uint32_t t = ms(*process_ramp);
     order.ramp = {t, t, t, t, 0};
   }
@@ -107,6 +103,8 @@ AxisOrder Drive::axis_order(const Verdict& verdict) const {
     std::swap(order.ramp.up_cw_ms, order.ramp.up_ccw_ms);
     std::swap(order.ramp.down_cw_ms, order.ramp.down_ccw_ms);
   }
+  // A stop, and hold control (ours), go down on the ramp that is chosen.
+  order.stop_ramp_ms = axis_.state().setpoint < 0 ? order.ramp.down_ccw_ms : order.ramp.down_cw_ms;
 
   switch (verdict.command) {
     case Command::Inhibit: order.command = AxisCommand::Inhibit; break;
@@ -118,15 +116,17 @@ AxisOrder Drive::axis_order(const Verdict& verdict) const {
       order.command = AxisCommand::Stop;
       order.stop_ramp_ms = ms(p.stop_ramp);
       break;
-    case Command::Stop:
-      order.command = AxisCommand::Stop;
-      order.stop_ramp_ms = axis_.state().setpoint < 0 ? order.ramp.down_ccw_ms : order.ramp.down_cw_ms;
-      break;
+    case Command::Stop: order.command = AxisCommand::Stop; break;
     case Command::HoldControl: order.command = AxisCommand::HoldZero; break;
     case Command::Enable: order.command = AxisCommand::Run; break;
   }
-  // With a standstill current the output stage stays on after a stop (P710); a fault or inhibit ends it.
-  order.standstill_current = verdict.command >= Command::Stop && !faults_.error() ? p.standstill_current : 0;
+  // The motor potentiometer is a ramp itself; a process ramp has no influence (MOVITRAC 07 chapter 6.3).
+  if (static_cast<SetpointSource>(s.setpoint_source) == SetpointSource::MotorPot) {
+    order.ramp.up_cw_ms = order.ramp.up_ccw_ms = ms(std::min(s.motor_pot_up, p.ramp_up_cw));
+    order.ramp.down_cw_ms = order.ramp.down_ccw_ms = ms(std::min(s.motor_pot_down, p.ramp_down_cw));
+  }
+  // With a standstill current the output stage stays on after any stop (P710); a fault or inhibit ends it.
+  order.standstill_current = faults_.error() ? 0 : p.standstill_current;
   order.brake_function = p.brake_function == 1;
   order.brake_release_ms = static_cast<uint16_t>(p.brake_release);
   order.brake_apply_ms = static_cast<uint16_t>(p.brake_application);

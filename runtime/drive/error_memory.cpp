@@ -7,6 +7,7 @@ namespace ipos::runtime {
 namespace {
 
 constexpr uint16_t kFaultNumber = 8366;
+constexpr uint16_t kUnitUtilization = 8416;  // has no display value in the lists
 constexpr uint16_t kEntries = 5;
 
 struct Kind {
@@ -14,7 +15,6 @@ struct Kind {
   uint16_t source;  // index of the display value
 };
 
-// Unit utilization, 8416, has no display value in the list and stays 0.
 constexpr Kind kKinds[] = {
     {8371, index::kInputs},
     {8376, index::kOptionInputs},
@@ -42,14 +42,16 @@ void push(ParameterStore& parameters, uint16_t first, int32_t value) {
 
 }  // namespace
 
-void remember_fault(ParameterStore& parameters, uint8_t fault) {
+void remember_fault(ParameterStore& parameters, uint8_t fault, int32_t unit_utilization) {
   for (const Kind& kind : kKinds) push(parameters, kind.first, parameters.value(kind.source));
+  push(parameters, kUnitUtilization, unit_utilization);
   push(parameters, kFaultNumber, fault);
 }
 
 void clear_error_memory(ParameterStore& parameters) {
   for (uint16_t k = 0; k < kEntries; ++k) {
     parameters.set_display(static_cast<uint16_t>(kFaultNumber + k), 0);
+    parameters.set_display(static_cast<uint16_t>(kUnitUtilization + k), 0);
     for (const Kind& kind : kKinds) parameters.set_display(static_cast<uint16_t>(kind.first + k), 0);
   }
 }

@@ -9,7 +9,7 @@
 namespace ipos::runtime {
 
 // Moves the entries back by one and writes `fault` and the present display values into t-0.
-void remember_fault(ParameterStore& parameters, uint8_t fault);
+void remember_fault(ParameterStore& parameters, uint8_t fault, int32_t unit_utilization);
 
 // P804 = 1.
 void clear_error_memory(ParameterStore& parameters);

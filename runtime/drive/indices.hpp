@@ -8,6 +8,7 @@ namespace ipos::runtime::index {
 
 inline constexpr uint16_t kPo1Description = 8304;  // P870..P872
 inline constexpr uint16_t kPi1Description = 8307;  // P873..P875
+inline constexpr uint16_t kFirmware = 8300;        // P076
 inline constexpr uint16_t kStatus = 8310;          // P010..P013, low word is status word 1
 inline constexpr uint16_t kSpeed = 8318;
 inline constexpr uint16_t kFrequency = 8319;
@@ -17,6 +18,7 @@ inline constexpr uint16_t kActiveCurrent = 8322;
 inline constexpr uint16_t kMotorUtilization1 = 8323;
 inline constexpr uint16_t kMotorUtilization2 = 8324;
 inline constexpr uint16_t kDcLink = 8325;
+inline constexpr uint16_t kOutputCurrentAmpere = 8326;  // P009
 inline constexpr uint16_t kHeatSink = 8327;
 inline constexpr uint16_t kMainsOnTime = 8328;          // P015, minutes
 inline constexpr uint16_t kEnabledTime = 8329;          // P016, minutes
@@ -32,6 +34,7 @@ inline constexpr uint16_t kOutputs = 8349;
 inline constexpr uint16_t kOutputFunction = 8350;        // + n = function of DO01, DO02
 inline constexpr uint16_t kOptionOutputFunction = 8352;  // + n = function of DO10..DO17
 inline constexpr uint16_t kOptionOutputs = 8360;
+inline constexpr uint16_t kRatedCurrent = 8361;     // P071
 inline constexpr uint16_t kPoShown = 8455;          // P094..P096
 inline constexpr uint16_t kPiShown = 8458;          // P097..P099
 inline constexpr uint16_t kSetpointSource = 8461;   // P100

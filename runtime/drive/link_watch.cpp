@@ -17,7 +17,7 @@ bool LinkWatch::on_request() {
 }
 
 bool LinkWatch::tick(const Rules& rules) {
-  if (!monitors(rules.delay_ms)) {
+  if (rules.delay_ms == 0) {
     silent_ms_ = 0;
     return false;
   }

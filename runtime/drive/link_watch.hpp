@@ -9,11 +9,10 @@ namespace ipos::runtime {
 class LinkWatch {
  public:
   struct Rules {
-    int32_t delay_ms = 0;        // 0 and 650 000: off
+    int32_t delay_ms = 0;        // 0: off
     bool supervised = false;     // silence is a fault; else it only brings back the waiting
     bool without_first = false;  // silence from the beginning is a fault, too (MOVITRAC 07)
   };
-  static bool monitors(int32_t delay_ms) { return delay_ms != 0 && delay_ms != 650'000; }
 
   // Process data for this unit have arrived; `restarts` is false for acyclic RS-485 requests, which are not
   // monitored (1053 1610 p. 23). True when the silence had been reported.

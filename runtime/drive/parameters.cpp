@@ -191,7 +191,9 @@ std::optional<ReturnCode> ParameterStore::value_refusal(const Parameter& paramet
     if (number >= range.minimum && number <= range.maximum && (number - range.minimum) % range.step == 0)
       return std::nullopt;
   for (const stdlib::ValueText& row : parameter.texts)
-    if (row.value == number && (options_.logodrive || !row.logodrive_only)) return std::nullopt;
+    if (row.value == number && (options_.logodrive || !row.logodrive_only) &&
+        options_.firmware_from(row.from_standard, row.from_logodrive))
+      return std::nullopt;
   return codes::kIncorrectValue;
 }
 

@@ -61,6 +61,14 @@ struct DriveOptions {
   bool dio = true;
   bool aio = true;
   bool logodrive = true;  // MOVITRAC 07 with IPOS
+  // Version in the last two digits of P076; on MOVITRAC 07 it decides about the built-in potentiometer
+  // (its manual, table 3). The default is the newest one that table knows (ours).
+  uint8_t firmware = 16;
+
+  // The version is at least this one of the standard unit, or of LOGODrive.
+  bool firmware_from(uint8_t standard, uint8_t of_logodrive) const {
+    return firmware >= (logodrive ? of_logodrive : standard);
+  }
 };
 
 class ParameterStore {
@@ -110,6 +118,7 @@ class ParameterStore {
 
   const stdlib::ParameterTable& table() const { return table_; }
   const stdlib::UnitType& unit() const { return unit_; }
+  const DriveOptions& options() const { return options_; }
 
  private:
   struct Slot {

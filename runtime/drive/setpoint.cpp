@@ -49,12 +49,13 @@ int32_t fixed_setpoint(const ParameterSet& set, int which) {
 }
 
 // Table 3 of the MOVITRAC 07 manual: which setpoints get the built-in potentiometer added.
-bool adds_potentiometer(const Settings& settings, PotentiometerRule rule, SetpointSource source, bool fixed) {
+bool adds_potentiometer(const Settings& settings, const SetpointInputs& in, SetpointSource source,
+                        bool fixed) {
   constexpr int32_t kOff = 0;
   constexpr int32_t kExceptFixed = 2;
   if (settings.potentiometer_added == kOff) return false;
   if (source == SetpointSource::FixedPlusAi1 || source == SetpointSource::FixedTimesAi1) return false;
-  if (fixed) return rule != PotentiometerRule::Fw10 && settings.potentiometer_added != kExceptFixed;
+  if (fixed) return in.fixed_plus_potentiometer && settings.potentiometer_added != kExceptFixed;
   return source != SetpointSource::MotorPot;
 }
 
@@ -117,12 +118,23 @@ int32_t limit_setpoint(const ParameterSet& set, int32_t speed, int32_t maximum) 
   return static_cast<int32_t>(speed < 0 ? -magnitude : magnitude);
 }
 
+int32_t leave_skip_window(const ParameterSet& set, int32_t speed, int32_t maximum) {
+  const int64_t magnitude = std::abs(int64_t{speed});
+  const int64_t low = set.skip_center - set.skip_width / 2;
+  const int64_t high = set.skip_center + set.skip_width / 2;
+  if (magnitude <= low || magnitude >= high) return speed;
+  const bool upwards = (magnitude >= set.skip_center && high <= maximum) || low < set.minimum_speed;
+  const auto edge = static_cast<int32_t>(std::max<int64_t>(upwards ? high : low, 0));
+  return speed < 0 ? -edge : edge;
+}
+
 Setpoint select_setpoint(const Settings& settings, const ParameterSet& set, const ParameterSet& other,
                          const SetpointInputs& in) {
   const SetpointSource source = source_of(settings, in.slave_free_run);
   const int32_t fixed = fixed_setpoint(in.other_set ? other : set, in.fixed);
   const int32_t pot = in.m07 ? potentiometer_speed(settings, set, in.analog.potentiometer) : 0;
   bool fixed_used = false;
+  bool ccw = !is_bus(source) && in.ccw;
   Setpoint setpoint;
 
   if (in.pi_output) {
@@ -140,45 +152,43 @@ Setpoint select_setpoint(const Settings& settings, const ParameterSet& set, cons
   } else if (source == SetpointSource::FixedPlusAi1) {
     setpoint.speed = add(fixed, in.ai1_speed);
   } else if (source == SetpointSource::FixedTimesAi1) {
-    // 10 V are 100 %: ai1_speed / maximum speed is the factor.
-    setpoint.speed = scale(fixed, in.ai1_speed, set.maximum_speed);
+    // 10 V are 100 %, whatever speed P112 makes of them.
+    setpoint.speed = scale(fixed, in.ai1_speed, settings.ai1_mode == 0 ? kReferenceSpeed : set.maximum_speed);
   } else if (in.fixed != 0) {
     setpoint.speed = fixed;
     fixed_used = true;
   } else if (source == SetpointSource::MotorPot || source == SetpointSource::MotorPotPlusAi1) {
-    setpoint.speed = in.motor_pot_ccw ? -in.motor_pot : in.motor_pot;
+    setpoint.speed = in.motor_pot;
+    ccw = ccw || in.motor_pot_ccw;
     if (source == SetpointSource::MotorPotPlusAi1) setpoint.speed = add(setpoint.speed, in.ai1_speed);
   } else if (source == SetpointSource::Frequency) {
     setpoint.speed =
         scale(in.analog.frequency, set.maximum_speed, int64_t{settings.frequency_scale} * kThousand);
   } else {
-    setpoint.speed = source == SetpointSource::Unipolar ? std::abs(in.ai1_speed) : in.ai1_speed;
+    setpoint.speed = in.ai1_speed;
     constexpr int32_t kAi2IsSetpoint = 1;
     if (settings.ai2_mode == kAi2IsSetpoint)
       setpoint.speed = add(setpoint.speed, scale(in.analog.ai2.millivolt, set.maximum_speed, kFullVoltage));
+    // The amount counts (ours); AI1 of MOVITRAC 07 has no sign, but its factor P110 may have one.
+    if (source == SetpointSource::Unipolar && !in.m07) setpoint.speed = std::abs(setpoint.speed);
   }
-  if (in.m07 && !in.pi_output && adds_potentiometer(settings, in.potentiometer_rule, source, fixed_used))
+  if (in.m07 && !in.pi_output && adds_potentiometer(settings, in, source, fixed_used))
     setpoint.speed = add(setpoint.speed, pot);
-  if (!is_bus(source) && in.ccw) setpoint.speed = -setpoint.speed;
-  if (!is_bus(source) && in.bus_speed && *in.bus_speed != 0 && setpoint.note == SetpointNote::None)
+  if (!is_bus(source) && in.sent_speed != 0 && setpoint.note == SetpointNote::None)
     setpoint.note = SetpointNote::BusWordIgnored;
 
-  setpoint.requested = setpoint.speed;
   const int32_t maximum =
       in.maximum_speed ? std::clamp(*in.maximum_speed, 0, set.maximum_speed) : set.maximum_speed;
+  // The limits are for the amount; the direction comes after them, so that P301 acts in it, too.
+  const int direction = ccw ? -1 : 1;
   const int32_t limited = limit_setpoint(set, setpoint.speed, maximum);
+  setpoint.requested = direction * setpoint.speed;
   if (setpoint.note == SetpointNote::None && limited != setpoint.speed)
     setpoint.note = std::abs(int64_t{limited}) < std::abs(int64_t{setpoint.speed}) ? SetpointNote::Maximum
                                                                                    : SetpointNote::Minimum;
-  setpoint.speed = limited;
-  // Up to the middle of the skip window the lower edge counts, from there the upper one (ours).
-  const int64_t magnitude = std::abs(int64_t{limited});
-  const int64_t half = set.skip_width / 2;
-  if (half > 0 && magnitude > set.skip_center - half && magnitude < set.skip_center + half) {
-    const int64_t edge = magnitude < set.skip_center ? set.skip_center - half : set.skip_center + half;
-    setpoint.speed = static_cast<int32_t>(limited < 0 ? -edge : edge);
-    setpoint.note = SetpointNote::Skipped;
-  }
+  const int32_t passed = leave_skip_window(set, limited, maximum);
+  if (passed != limited) setpoint.note = SetpointNote::Skipped;
+  setpoint.speed = direction * passed;
   return setpoint;
 }
 

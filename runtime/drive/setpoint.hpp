@@ -38,13 +38,6 @@ enum class SetpointSource : uint8_t {
   Frequency = 11,
 };
 
-// How the built-in potentiometer adds to the setpoint changed with the firmware (MOVITRAC 07 table 3).
-enum class PotentiometerRule : uint8_t {
-  Fw10,  // .10 to .12 of the standard unit
-  Fw13,  // from .13, LOGODrive .12
-  Fw15,  // from .15, LOGODrive .16
-};
-
 // Why a setpoint is other than one may think; shown with --why.
 enum class SetpointNote : uint8_t {
 #define SETPOINT_NOTE(name, text) name,
@@ -54,16 +47,17 @@ std::string_view setpoint_note_text(SetpointNote note);
 
 struct SetpointInputs {
   bool m07 = false;
-  PotentiometerRule potentiometer_rule = PotentiometerRule::Fw15;
-  bool slave_free_run = false;  // input function: the local source instead of the master's
-  int fixed = 0;                // 0 none, 1..3: n11..n13 or n21..n23
-  bool other_set = false;       // fixed setpoint switchover
-  bool ccw = false;             // direction terminal; only where the sign does not decide
-  int32_t ai1_speed = 0;        // ai1_speed() after its filter
+  bool fixed_plus_potentiometer = true;  // firmware from .13, LOGODrive .12 (MOVITRAC 07 table 3)
+  bool slave_free_run = false;           // input function: the local source instead of the master's
+  int fixed = 0;                         // 0 none, 1..3: n11..n13 or n21..n23
+  bool other_set = false;                // fixed setpoint switchover
+  bool ccw = false;                      // direction terminal; only where the sign does not decide
+  int32_t ai1_speed = 0;                 // ai1_speed() after its filter
   AnalogInputs analog;
   int32_t motor_pot = 0;
   bool motor_pot_ccw = false;
-  std::optional<int32_t> bus_speed;      // nothing: no PO word has SPEED
+  std::optional<int32_t> bus_speed;      // of the bus of P100; nothing: no PO word has SPEED
+  int32_t sent_speed = 0;                // in the last telegram of any bus
   bool bus_accepted = false;             // P876, and the bus of P100 has sent
   bool po_enabled = true;                // P876
   std::optional<int32_t> maximum_speed;  // PO word MAX. SPEED
@@ -89,8 +83,12 @@ int32_t pi_actual_value(const Settings& settings, const AnalogInputs& analog);
 // The built-in potentiometer as a speed, by P122.
 int32_t potentiometer_speed(const Settings& settings, const ParameterSet& set, int32_t position);
 
-// Magnitude between P301 and P302, moved out of the skip window, sign kept; 0 counts as CW.
+// Magnitude between P301 and P302, sign kept; 0 counts as CW.
 int32_t limit_setpoint(const ParameterSet& set, int32_t speed, int32_t maximum);
+
+// Out of the skip window P740, P741 (ours): below its middle to the lower edge, from there to the upper one,
+// unless that is beyond a limit.
+int32_t leave_skip_window(const ParameterSet& set, int32_t speed, int32_t maximum);
 
 // True while the sign of the setpoint is the direction of rotation.
 bool sign_decides(const Settings& settings, bool slave_free_run);

@@ -55,7 +55,10 @@ Settings SettingsReader::read(const ParameterStore& parameters) const {
       const uint16_t index = cell.index[n] != 0 ? cell.index[n] : cell.index[0];
       settings.sets[n].*cell.member = parameters.stored(index);
     }
-  for (ParameterSet& set : settings.sets) fill_set(set);
+  for (ParameterSet& set : settings.sets) {
+    fill_set(set);
+    fill(set.brake_application, settings.braking_time);
+  }
   fill(settings.motor_pot_down, settings.motor_pot_up);
 
   const auto function = [&](uint32_t index) {

@@ -7,8 +7,8 @@ namespace ipos::runtime {
 
 namespace codes = stdlib::return_codes;
 
-DriveServer::DriveServer(const stdlib::UnitType& unit, const MachineData& machine)
-    : parameters_(unit),
+DriveServer::DriveServer(const stdlib::UnitType& unit, const MachineData& machine, DriveOptions options)
+    : parameters_(unit, options),
       state_(parameters_, machine),
       variables_(unit.variables),
       serial_{index_of("810"), index_of("811"), index_of("750"), index_of("100")},

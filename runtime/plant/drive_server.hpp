@@ -29,7 +29,8 @@ struct SerialParameters {
 // As ProcessDataServer it serves the SBus, rs485_data() serves both RS-485 interfaces.
 class DriveServer final : public ParameterServer, public ProcessDataServer, public MasterSlaveDrive {
  public:
-  explicit DriveServer(const stdlib::UnitType& unit, const MachineData& machine = {});
+  explicit DriveServer(const stdlib::UnitType& unit, const MachineData& machine = {},
+                       DriveOptions options = {});
   DriveServer(const DriveServer&) = delete;
   DriveServer& operator=(const DriveServer&) = delete;
 

@@ -213,7 +213,7 @@ class Reader {
 
   void station(const toml::table& table) {
     known_keys(table, "[[station]]",
-               {"name", "unit", "program", "sbus", "rs485", "rs485_xt", "keypad", "uss21a", "s13",
+               {"name", "unit", "firmware", "program", "sbus", "rs485", "rs485_xt", "keypad", "uss21a", "s13",
                 "parameters", "inputs", "analog", "load", "hex"});
     StationConfig config;
     config.place = place_of(table.source());
@@ -227,6 +227,7 @@ class Reader {
       error(place_of(table.get("unit")->source()),
             fmt::format("'{}' is no unit type; known are {}", unit, fmt::join(names, ", ")));
     }
+    firmware(table, config.options.firmware);
     config.program = text(table, "program", "", false);
     if (const toml::node* program = table.get("program")) {
       config.program_place = place_of(program->source());
@@ -270,6 +271,16 @@ class Reader {
     config.uss21a = flag(table, "uss21a", &config.uss21a_place);
     config.s13 = flag(table, "s13", &config.s13_place);
     return config;
+  }
+
+  // The two digits behind the point, as the MOVITRAC 07 manual writes versions: 15 for .15.
+  void firmware(const toml::table& table, uint8_t& version) {
+    const toml::node* node = table.get("firmware");
+    int32_t value = 0;
+    if (node == nullptr || !number(*node, "firmware", value)) return;
+    if (value < 10 || value > 99)
+      return error(place_of(node->source()), "firmware is a version of two digits, 10..99");
+    version = static_cast<uint8_t>(value);
   }
 
   const toml::table* subtable(const toml::table& table, std::string_view key) {

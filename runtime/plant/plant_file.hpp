@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/drive/parameters.hpp"
 #include "runtime/drive/setpoint.hpp"
 #include "runtime/motion/machine_data.hpp"
 #include "stdlib/unit_types.hpp"
@@ -72,6 +73,7 @@ struct SerialConfig {
 struct StationConfig {
   std::string name;
   const stdlib::UnitType* unit = nullptr;
+  DriveOptions options;
   std::string program;  // as written, relative to the plant file; empty: no program
   std::string sbus;     // name of a bus, or empty
   SerialConfig serial;

@@ -43,7 +43,7 @@ Station::Station(EventQueue& queue, uint32_t source, const StationConfig& config
       config_(config),
       lines_(lines),
       journal_(journal),
-      drive_(*config.unit, config.machine),
+      drive_(*config.unit, config.machine, config.options),
       movilink_(drive_, drive_, journal, config.name),
       image_(std::move(program)),
       rates_(rates) {}

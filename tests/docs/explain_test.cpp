@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/diag/diag.hpp"
+#include "stdlib/faults.hpp"
 #include "tests/tools/command.hpp"
 #include "vm/verify/verify.hpp"
 
@@ -51,9 +52,40 @@ TEST(Explain, FaultsOfPrograms) {
   EXPECT_NE(explained("f32").find("deeper"), std::string::npos);
 }
 
+TEST(Explain, FaultsOfTheDrive) {
+  // 1053 1610 p. 41, 64, 81: F47, P815, P836 = EMERG.STOP/ERROR.
+  const std::string text = explained("F47");
+  EXPECT_TRUE(text.starts_with("F47: fault of the drive, SBus timeout\n")) << text;
+  for (const char* part : {"P815", "P836", "EMERG.STOP/ERROR"})
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  EXPECT_EQ(explained("f047"), text);
+  EXPECT_NE(explained("F01").find("overcurrent"), std::string::npos);
+  EXPECT_NE(explained("F1").find("IMM. STOP/ERROR"), std::string::npos);
+  const std::string all = explained("F");
+  for (const stdlib::FaultRow& row : stdlib::fault_table())
+    EXPECT_NE(all.find(std::string(row.name) + ": " + std::string(row.meaning)), std::string::npos)
+        << row.name;
+}
+
+TEST(Explain, Parameters) {
+  const std::string ramp = explained("p130");
+  EXPECT_NE(
+      ramp.find(
+          "P130 of MOVIDRIVE MD_60A, MOVIDRIVE compact, MOVIDRIVE MDX60B/61B: Ramp t11 UP CW, index 8470"),
+      std::string::npos)
+      << ramp;
+  EXPECT_NE(ramp.find("P130 of MOVITRAC 07: Ramp t11 UP CW, index 8807"), std::string::npos) << ramp;
+  EXPECT_NE(ramp.find("factory setting 2.000 s"), std::string::npos) << ramp;
+  EXPECT_NE(ramp.find("0.000 s .. 1.000 s in steps of 0.010 s"), std::string::npos) << ramp;
+  EXPECT_NE(explained("P101").find("3 = SBus"), std::string::npos);
+  EXPECT_NE(explained("P101").find("under controller inhibit"), std::string::npos);
+  EXPECT_NE(explained("P000").find("read only"), std::string::npos);
+  EXPECT_NE(explained("P932").find("keypad"), std::string::npos);
+}
+
 TEST(Explain, UnknownCodesAreErrors) {
-  for (const char* code :
-       {"E9999", "W", "V99", "F99", "8/0", "8/0/x", "9/0/0", "0x", "0x100000000", "-1x", "1/1/1/1"}) {
+  for (const char* code : {"E9999", "W", "V99", "F98", "F0", "F300", "Fx", "P", "P999", "P8470", "8/0",
+                           "8/0/x", "9/0/0", "0x", "0x100000000", "-1x", "1/1/1/1"}) {
     const CommandResult result = run_ipos({"explain", "--", code});
     EXPECT_EQ(result.exit_code, 65) << code << result.out;
     EXPECT_NE(result.err.find("code"), std::string::npos) << code << result.err;

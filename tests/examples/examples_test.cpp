@@ -156,6 +156,22 @@ TEST(Movilink, FramesOfOneCall) {
   for (size_t n = 0; n < run.frames.size(); ++n) EXPECT_EQ(run.frames[n].text, call[n % 4]) << n;
 }
 
+// MOVITRAC 07 chapter 5.1, with the slave at the speed that is ordered.
+TEST(Movilink, SampleOfMovitrac07) {
+  PROVES("M07-SW-11", "M07-SCOM-08");
+  const ExampleRun run = run_example("movilink-m07/movilink-m07.toml");
+  const std::vector<int32_t> call{5, 1, 4, 1, 8318, 20, 0};
+  for (size_t n = 0; n < call.size(); ++n)
+    EXPECT_EQ(run.h(0, 420 + static_cast<int>(n)), call[n]) << "H" << 420 + n;
+  // H21 = 1000000, H25 = 0407h with 7 as its low byte, H26 = 5000, H27 = 0.
+  EXPECT_EQ(run.result.exit_code, 0);
+  EXPECT_NE(run.result.err.find("6 of 6 expectations met"), std::string::npos) << run.result.err;
+  const std::vector<std::string> ids{"20B#", "20C#", "00B#", "00C#"};
+  ASSERT_GE(run.frames.size(), 400U);
+  for (size_t n = 0; n < run.frames.size(); ++n)
+    ASSERT_TRUE(run.frames[n].text.starts_with(ids[n % 4])) << n << " " << run.frames[n].text;
+}
+
 TEST(AllExamples, MeetTheirExpectations) {
   size_t plants = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(project("examples"))) {

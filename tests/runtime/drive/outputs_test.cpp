@@ -1,0 +1,369 @@
+// Binary outputs P620.. and the reference signals P400..P442 with hysteresis, delay and sense (1053 1610 p.
+// 76, 79), and images and error memory of MOVITRAC 07 (its manual, chapter 10.3).
+#include "runtime/drive/outputs.hpp"
+
+#include "tests/runtime/drive/drive_rig.hpp"
+
+namespace ipos::tests {
+namespace {
+
+using runtime::OutputFunction;
+using runtime::OutputInputs;
+using runtime::Outputs;
+
+// One output with the function, fed with values of the test.
+struct Bench {
+  explicit Bench(OutputFunction function) { settings.outputs[1] = static_cast<uint8_t>(function); }
+  bool run(int ms = 1) {
+    for (int i = 0; i < ms; ++i) outputs.tick(settings, in);
+    return (outputs.levels() & 2) != 0;
+  }
+  runtime::ParameterStore store{unit("md60a")};
+  runtime::Settings settings = runtime::SettingsReader(store).read(store);
+  Outputs outputs;
+  OutputInputs in;
+};
+
+// Settles for a second, steps to `value`, and counts the milliseconds until the output changes; 0: it does
+// not within two seconds.
+int ms_until_change(Bench& bench, const std::function<void()>& step) {
+  bench.run(2000);
+  const bool before = bench.run();
+  step();
+  for (int ms = 1; ms <= 2000; ++ms)
+    if (bench.run() != before) return ms;
+  return 0;
+}
+
+// The change shows when it has lasted for the delay: in the tick of the change with no delay.
+void expect_signal(Bench& bench, int delay, bool want, const std::function<void()>& step, const char* what) {
+  const int ms = ms_until_change(bench, step);
+  EXPECT_EQ(ms, delay + 1) << what;
+  EXPECT_EQ(bench.run(), want) << what;
+}
+void expect_no_change(Bench& bench, const std::function<void()>& step, const char* what) {
+  EXPECT_EQ(ms_until_change(bench, step), 0) << what;
+}
+
+TEST(ReferenceSignals, Speed) {
+  for (const int32_t delay : {0, 500})
+    for (const int32_t when : {0, 1}) {
+      Bench bench(OutputFunction::SpeedReference);
+      bench.settings.speed_reference = 1'000'000;
+      bench.settings.speed_hysteresis = 100'000;
+      bench.settings.speed_delay = delay;
+      bench.settings.speed_when = when;
+      const bool above = when == 1;
+      const auto to = [&](int32_t speed) { return [&bench, speed] { bench.in.speed = speed; }; };
+      EXPECT_EQ(bench.run(2000), !above);
+      expect_no_change(bench, to(1'000'000), "not above the reference");
+      expect_signal(bench, delay, above, to(1'000'200), "above");
+      expect_no_change(bench, to(900'200), "inside the hysteresis");
+      expect_signal(bench, delay, !above, to(900'000), "below it");
+      expect_no_change(bench, to(-950'000), "the amount counts");
+      expect_signal(bench, delay, above, to(-1'000'200), "CCW");
+    }
+}
+
+TEST(ReferenceSignals, ShortChangesDoNotShow) {
+  Bench bench(OutputFunction::SpeedReference);
+  bench.settings.speed_delay = 100;
+  bench.settings.speed_when = 1;
+  bench.run(500);
+  for (int n = 0; n < 20; ++n) {
+    bench.in.speed = 2'000'000;
+    EXPECT_FALSE(bench.run(99));
+    bench.in.speed = 0;
+    EXPECT_FALSE(bench.run(50));
+  }
+}
+
+TEST(ReferenceSignals, SpeedWindow) {
+  for (const int32_t when : {0, 1}) {
+    Bench bench(OutputFunction::SpeedWindow);
+    bench.settings.window_center = 1'000'000;
+    bench.settings.window_width = 200'000;
+    bench.settings.window_delay = 300;
+    bench.settings.window_when = when;
+    const bool inside = when == 0;
+    const auto to = [&](int32_t speed) { return [&bench, speed] { bench.in.speed = speed; }; };
+    EXPECT_EQ(bench.run(2000), !inside);
+    expect_no_change(bench, to(899'800), "below");
+    expect_signal(bench, 300, inside, to(900'000), "lower edge");
+    expect_no_change(bench, to(1'100'000), "upper edge");
+    expect_signal(bench, 300, !inside, to(1'100'200), "above");
+    expect_signal(bench, 300, inside, to(-1'000'000), "CCW");
+  }
+}
+
+TEST(ReferenceSignals, SetpointReached) {
+  for (const int32_t when : {0, 1}) {
+    Bench bench(OutputFunction::SetpointReached);
+    bench.settings.compare_hysteresis = 50'000;
+    bench.settings.compare_delay = 200;
+    bench.settings.compare_when = when;
+    const bool reached = when == 1;
+    bench.in.setpoint = 1'000'000;
+    EXPECT_EQ(bench.run(2000), !reached);
+    expect_signal(
+        bench, 200, reached, [&] { bench.in.speed = 950'000; }, "within");
+    expect_no_change(
+        bench, [&] { bench.in.speed = 1'050'000; }, "within above");
+    expect_signal(
+        bench, 200, !reached, [&] { bench.in.speed = -1'000'000; }, "the sign counts");
+  }
+}
+
+TEST(ReferenceSignals, Current) {
+  for (const int32_t when : {0, 1}) {
+    Bench bench(OutputFunction::CurrentReference);
+    bench.settings.current_reference = 100'000;
+    bench.settings.current_hysteresis = 5'000;
+    bench.settings.current_delay = 400;
+    bench.settings.current_when = when;
+    const bool above = when == 1;
+    const auto to = [&](int32_t current) { return [&bench, current] { bench.in.current = current; }; };
+    EXPECT_EQ(bench.run(2000), !above);
+    expect_no_change(bench, to(100'000), "at the reference");
+    expect_signal(bench, 400, above, to(100'100), "above");
+    expect_no_change(bench, to(95'100), "inside the hysteresis");
+    expect_signal(bench, 400, !above, to(95'000), "below");
+  }
+}
+
+TEST(ReferenceSignals, CurrentLimit) {
+  for (const int32_t when : {0, 1}) {
+    Bench bench(OutputFunction::CurrentLimit);
+    bench.in.current_limit = 150'000;
+    bench.settings.limit_hysteresis = 10'000;
+    bench.settings.limit_delay = 100;
+    bench.settings.limit_when = when;
+    const bool limited = when == 0;
+    const auto to = [&](int32_t current) { return [&bench, current] { bench.in.current = current; }; };
+    EXPECT_EQ(bench.run(2000), !limited);
+    expect_no_change(bench, to(149'900), "below the limit");
+    expect_signal(bench, 100, limited, to(150'000), "at the limit");
+    expect_no_change(bench, to(140'000), "inside the hysteresis");
+    expect_signal(bench, 100, !limited, to(139'900), "below");
+  }
+}
+
+TEST(OutputFunctions, EachFollowsItsState) {
+  struct Row {
+    OutputFunction function;
+    std::function<void(OutputInputs&)> act;
+    bool before, after;
+  };
+  using F = OutputFunction;
+  const Row rows[] = {
+      {F::None, [](OutputInputs&) {}, false, false},
+      {F::NoFault, [](OutputInputs& in) { in.fault = true; }, true, false},
+      {F::Ready, [](OutputInputs& in) { in.ready = true; }, false, true},
+      {F::OutputStageOn, [](OutputInputs& in) { in.output_stage = true; }, false, true},
+      {F::RotatingField, [](OutputInputs& in) { in.output_stage = true; }, false, true},
+      {F::BrakeReleased, [](OutputInputs& in) { in.brake_released = true; }, false, true},
+      {F::BrakeApplied, [](OutputInputs& in) { in.brake_released = true; }, true, false},
+      {F::Standstill, [](OutputInputs& in) { in.standstill = true; }, false, true},
+      {F::ParameterSet, [](OutputInputs& in) { in.second_set = true; }, false, true},
+      {F::NoMotorUtilization1, [](OutputInputs& in) { in.motor_1_overloaded = true; }, true, false},
+      {F::NoMotorUtilization2, [](OutputInputs& in) { in.motor_2_overloaded = true; }, true, false},
+      {F::NoDrsPrewarning, [](OutputInputs&) {}, true, true},
+      {F::NoDrsLagError, [](OutputInputs&) {}, true, true},
+      {F::DrsInPosition, [](OutputInputs&) {}, false, false},
+      {F::IposInPosition, [](OutputInputs& in) { in.in_position = true; }, false, true},
+      {F::IposReferenced, [](OutputInputs& in) { in.referenced = true; }, false, true},
+      {F::IposOutput, [](OutputInputs& in) { in.ipos_outputs = 2; }, false, true},
+      {F::NoIposFault, [](OutputInputs& in) { in.ipos_fault = true; }, true, false},
+  };
+  for (const Row& row : rows) {
+    Bench bench(row.function);
+    EXPECT_EQ(bench.run(), row.before) << static_cast<int>(row.function);
+    row.act(bench.in);
+    EXPECT_EQ(bench.run(), row.after) << static_cast<int>(row.function);
+  }
+}
+
+TEST(OutputFunctions, OfADriveAtWork) {
+  DriveRig rig("md60a");
+  rig.bus_control();
+  rig.set("P731", 50);
+  rig.set("P732", 80);
+  // DO10..DO17: output stage, brake released, brake applied, standstill, setpoint reached, IPOS output, set.
+  constexpr int kFunctions[] = {3, 5, 6, 7, 11, 21, 22, 8};
+  const char* const kNumbers[] = {"P630", "P631", "P632", "P633", "P634", "P635", "P636", "P637"};
+  for (int n = 0; n < 8; ++n) rig.set(kNumbers[n], kFunctions[n]);
+  rig.set("P421", 0);
+  rig.run_ms(10);
+  EXPECT_FALSE(rig.output("DO10"));
+  EXPECT_FALSE(rig.output("DO11"));
+  EXPECT_TRUE(rig.output("DO12"));
+  EXPECT_TRUE(rig.output("DO13"));
+  EXPECT_TRUE(rig.output("DO01")) << "P620 = READY";
+  rig.po({0x0006, 5000, 0});
+  rig.run_ms(20);
+  EXPECT_TRUE(rig.output("DO10"));
+  EXPECT_TRUE(rig.output("DO11")) << "the brake opens";
+  EXPECT_TRUE(rig.output("DB00"));
+  EXPECT_TRUE(rig.output("DO13")) << "and the motor holds meanwhile";
+  EXPECT_FALSE(rig.output("DO14")) << "1000 rpm are ordered";
+  rig.settle();
+  rig.run_ms(700);
+  EXPECT_FALSE(rig.output("DO13"));
+  EXPECT_TRUE(rig.output("DO14"));
+  EXPECT_EQ(rig.drive.status_word_2() >> 8, rig.value("P068")) << "virtual outputs of status word 2";
+  EXPECT_EQ(rig.drive.outputs() >> 8, 0b0101'0011);
+  rig.drive.set_ipos_outputs(1U << 13);
+  rig.run_ms(1);
+  EXPECT_TRUE(rig.output("DO15"));
+  rig.drive.raise_fault(10);
+  rig.run_ms(1);
+  EXPECT_FALSE(rig.output("DO16")) << "/IPOS ERROR";
+  EXPECT_FALSE(rig.output("DO02")) << "P621 = /ERROR";
+  EXPECT_FALSE(rig.output("DO01"));
+}
+
+TEST(OutputFunctions, SpeedReferenceOfMovitrac07) {
+  PROVES("M07-PAR-30");
+  const DriveRig fresh("mc07");
+  EXPECT_EQ(fresh.value("P400"), 1'500'000);
+  EXPECT_EQ(fresh.value("P401"), 100'000);
+  EXPECT_EQ(fresh.value("P402"), 1000);
+  for (const int32_t when : {0, 1}) {
+    DriveRig rig("mc07");
+    rig.bus_control();
+    rig.set("P403", when);
+    rig.set("P620", 9);
+    rig.set("P400", 500'000);
+    rig.set("P130", 1500);  // 1 rpm a millisecond
+    rig.set("P131", 1500);
+    const bool above = when == 1;
+    rig.po({0x0006, 5000, 0});
+    rig.run_ms(1400);
+    EXPECT_EQ(rig.output("DO01"), !above) << "500 rpm are passed after 0.5 s, the delay is 1 s";
+    rig.run_ms(200);
+    EXPECT_EQ(rig.output("DO01"), above);
+    rig.po({0x0006, 2250, 0});  // 450 rpm: inside the hysteresis
+    rig.run_ms(3000);
+    EXPECT_EQ(rig.output("DO01"), above);
+    rig.po({0x0006, 1500, 0});  // 300 rpm, 400 passed after 50 ms
+    rig.run_ms(1000);
+    EXPECT_EQ(rig.output("DO01"), above);
+    rig.run_ms(100);
+    EXPECT_EQ(rig.output("DO01"), !above);
+  }
+}
+
+TEST(M07Parameters, InputAndOutputImages) {
+  PROVES("M07-PAR-25");
+  DriveRig rig("mc07");
+  rig.set("P621", 0);
+  rig.drive.set_inputs(0);
+  for (int n = 1; n <= 5; ++n) {
+    rig.drive.set_inputs(static_cast<uint16_t>(1U << n));
+    EXPECT_EQ(rig.parameters.value(8334), 1 << n);
+  }
+  rig.drive.set_inputs(1);
+  EXPECT_EQ(rig.parameters.value(8334), 0) << "bit 0 is unused";
+  rig.run_ms(1);
+  EXPECT_EQ(rig.parameters.value(8349), 2) << "DO01 = /FAULT";
+  rig.set("P620", 0);
+  rig.set("P621", 2);
+  rig.run_ms(1);
+  EXPECT_EQ(rig.parameters.value(8349), 4);
+}
+
+TEST(M07Parameters, FaultMemoryKeepsTheInstant) {
+  PROVES("M07-PAR-26");
+  MachineData machine = light_machine();
+  machine.load_torque = 50'000;
+  DriveRig rig("mc07", {}, machine);
+  rig.bus_control();
+  rig.po({0x0006, 2000, 0});
+  rig.settle();
+  rig.run_ms(20'000);
+  const auto now = rig.drive.axis();
+  const int32_t inputs = rig.value("P036"), outputs = rig.value("P053");
+  EXPECT_EQ(now.speed, 400'000);
+  EXPECT_GT(now.utilization, 0);
+  rig.drive.raise_fault(1);
+  rig.silence();
+  rig.input("DI01", false);
+  rig.run_ms(5000);
+  const auto at = [&](uint16_t index) { return rig.parameters.value(index); };
+  EXPECT_EQ(at(8366), 1);
+  EXPECT_EQ(at(8371), inputs);
+  EXPECT_EQ(at(8381), outputs);
+  EXPECT_EQ(at(8391) & 0xFFFF, 0x0125) << "status word 1 of the instant: F01, not ready, stage still on";
+  EXPECT_EQ(at(8396), now.heat_sink);
+  EXPECT_EQ(at(8401), 400'000);
+  EXPECT_EQ(at(8406), now.output_current);
+  EXPECT_EQ(at(8411), now.active_current);
+  EXPECT_EQ(at(8416), now.utilization);
+  EXPECT_EQ(at(8421), now.dc_link);
+  rig.drive.reset_fault();
+  EXPECT_EQ(at(8401), 400'000);
+  EXPECT_EQ(rig.write("P804", 1), 0);
+  for (const int index : {8366, 8371, 8381, 8391, 8396, 8401, 8406, 8411, 8416, 8421})
+    EXPECT_EQ(at(static_cast<uint16_t>(index)), 0) << index;
+}
+
+TEST(M07Parameters, MonitoringModesAndBrakeTime) {
+  PROVES("M07-PAR-32");
+  DriveRig rig("mc07");
+  const runtime::ParameterStore fresh(unit("mc07"));
+  EXPECT_EQ(fresh.value(8557), 3);
+  EXPECT_EQ(fresh.value(8558), 1000);
+  EXPECT_EQ(fresh.value(8574), 0);
+  EXPECT_EQ(fresh.value(8576), 0);
+  EXPECT_EQ(fresh.value(8828), 100) << "0.1 s";
+  const auto accepted = [&](const char* number, std::initializer_list<int> good, int last) {
+    for (int code = -1; code <= last + 1; ++code)
+      EXPECT_EQ(rig.write(number, code) == 0, std::find(good.begin(), good.end(), code) != good.end())
+          << number << " = " << code;
+  };
+  accepted("P500", {0, 3}, 3);
+  accepted("P700", {0, 2, 3, 4, 21, 22}, 22);
+  EXPECT_EQ(rig.write("P736", 2000), 0);
+  EXPECT_EQ(rig.write("P736", 2001), 0x15);
+  // P710: direct current at standstill without enable.
+  rig.bus_control();
+  rig.set("P736", 0);
+  rig.po({0x0000, 0, 0});
+  rig.run_ms(10);
+  EXPECT_EQ(rig.state(), 2);
+  rig.set("P710", 20'000);
+  rig.run_ms(1);
+  EXPECT_EQ(rig.state(), 3);
+  EXPECT_TRUE(rig.stage());
+  EXPECT_EQ(rig.drive.axis().output_current, 20'000);
+  rig.po({0x0001, 0, 0});
+  rig.run_ms(1);
+  EXPECT_EQ(rig.state(), 1) << "the inhibit ends it";
+  EXPECT_FALSE(rig.stage());
+  // P500 and P501: blocked by friction.
+  for (const int32_t mode : {0, 3}) {
+    MachineData machine = light_machine();
+    machine.friction = 300'000;
+    DriveRig blocked("mc07", {}, machine);
+    blocked.enable_terminals();
+    blocked.ai1(10'000);
+    blocked.set("P500", mode);
+    blocked.set("P501", 300);
+    blocked.run_ms(200);
+    EXPECT_EQ(blocked.drive.fault(), 0);
+    blocked.run_ms(200);
+    EXPECT_EQ(blocked.drive.fault(), mode == 3 ? 8 : 0);
+  }
+}
+
+TEST(M07Parameters, CurrentInAmperes) {
+  DriveRig rig("mc07");
+  rig.bus_control();
+  rig.po({0x0006, 0, 0});
+  rig.run_ms(10);
+  EXPECT_EQ(rig.value("P004"), 60'000);
+  EXPECT_EQ(rig.value("P009"), rig.value("P071") * 60 / 100);
+}
+
+}  // namespace
+}  // namespace ipos::tests

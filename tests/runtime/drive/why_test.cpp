@@ -1,0 +1,163 @@
+// `ipos run --why`: the drive gets into every row of blocks.def and setpoint_notes.def, and each text names
+// what a person at the machine can look at.
+#include <map>
+
+#include "tests/runtime/drive/drive_rig.hpp"
+
+namespace ipos::tests {
+namespace {
+
+const Block kBlocks[] = {
+#define BLOCK(name, text) Block::name,
+#include "runtime/drive/blocks.def"
+};
+const SetpointNote kNotes[] = {
+#define SETPOINT_NOTE(name, text) SetpointNote::name,
+#include "runtime/drive/setpoint_notes.def"
+};
+
+// Runs at 600 rpm by bus; each case spoils one thing.
+struct Running : DriveRig {
+  explicit Running(std::string_view name) : DriveRig(name) {
+    bus_control();
+    po({0x0006, 3000, 0});
+    settle();
+    EXPECT_EQ(drive.verdict().reason, Block::None);
+    EXPECT_EQ(drive.setpoint().note, SetpointNote::None);
+  }
+};
+
+using Spoil = void (*)(DriveRig&);
+
+TEST(Why, EveryBlockOccurs) {
+  struct Case {
+    Block block;
+    const char* unit;
+    Spoil spoil;
+  };
+  const Case cases[] = {
+      {Block::None, "md60a", [](DriveRig&) {}},
+      {Block::FactorySetting, "md60a",
+       [](DriveRig& rig) {
+         rig.input("DI00", false);
+         rig.run_ms(1000);
+         EXPECT_EQ(rig.write("P802", 1), 0);
+         rig.input("DI00", true);
+       }},
+      {Block::Fault, "md60a", [](DriveRig& rig) { rig.drive.raise_fault(1); }},
+      {Block::Warning, "md60a",
+       [](DriveRig& rig) {
+         rig.set("P830", 7);
+         rig.set("P604", 11);
+       }},
+      {Block::TerminalInhibit, "md60a", [](DriveRig& rig) { rig.input("DI00", false); }},
+      {Block::BusInhibit, "md60a",
+       [](DriveRig& rig) {
+         rig.po({0x0007, 3000, 0});
+       }},
+      {Block::IposInhibit, "md60a", [](DriveRig& rig) { rig.drive.set_ipos_control_word(1U << 30); }},
+      {Block::Waiting, "md60a",
+       [](DriveRig& rig) {
+         rig.silence();
+         rig.drive.power_cycle();
+         rig.set("P815", 100);
+       }},
+      {Block::NoControlWord, "md60a",
+       [](DriveRig& rig) {
+         rig.silence();
+         rig.drive.power_cycle();
+       }},
+      {Block::PoDisabled, "md60a", [](DriveRig& rig) { rig.set("P876", 0); }},
+      {Block::RapidStopTerminal, "md60a", [](DriveRig& rig) { rig.input("DI03", false); }},
+      {Block::EnableTerminal, "mc07", [](DriveRig& rig) { rig.input("DI03", false); }},
+      {Block::BusRapidStop, "md60a",
+       [](DriveRig& rig) {
+         rig.po({0x0004, 3000, 0});
+       }},
+      {Block::NoDirection, "md60a", [](DriveRig& rig) { rig.input("DI01", false); }},
+      {Block::BothDirections, "mc07", [](DriveRig& rig) { rig.input("DI02", true); }},
+      {Block::BusStop, "md60a",
+       [](DriveRig& rig) {
+         rig.po({0x0002, 3000, 0});
+       }},
+      {Block::IposNoEnable, "md60a", [](DriveRig& rig) { rig.drive.set_ipos_control_word(1U << 1); }},
+      {Block::HoldTerminal, "md60a", [](DriveRig& rig) { rig.set("P604", 13); }},
+      {Block::BusHold, "md60a",
+       [](DriveRig& rig) {
+         rig.po({0x000E, 3000, 0});
+       }},
+      {Block::StopFunction, "md60a",
+       [](DriveRig& rig) {
+         rig.set("P720", 1);
+         rig.po({0x0006, 100, 0});
+       }},
+      {Block::LimitCw, "md60a", [](DriveRig& rig) { rig.set("P604", 14); }},
+      {Block::LimitCcw, "md60a",
+       [](DriveRig& rig) {
+         rig.set("P604", 15);
+         rig.po({0x0006, static_cast<uint16_t>(-3000), 0});
+       }},
+  };
+  std::map<Block, int> seen;
+  for (const Case& one : cases) {
+    Running rig(one.unit);
+    one.spoil(rig);
+    rig.run_ms(20);
+    EXPECT_EQ(rig.drive.verdict().reason, one.block) << runtime::block_text(one.block);
+    const bool runs = rig.drive.verdict().command == runtime::Command::Enable;
+    EXPECT_EQ(runs, one.block == Block::None);
+    ++seen[rig.drive.verdict().reason];
+  }
+  for (const Block block : kBlocks) EXPECT_EQ(seen[block], 1) << runtime::block_text(block);
+}
+
+TEST(Why, EveryNoteOccurs) {
+  const std::pair<SetpointNote, Spoil> cases[] = {
+      {SetpointNote::None, [](DriveRig&) {}},
+      {SetpointNote::NoBusWord, [](DriveRig& rig) { rig.set("P871", 0); }},
+      {SetpointNote::PoDisabled, [](DriveRig& rig) { rig.set("P876", 0); }},
+      {SetpointNote::NoBusData, [](DriveRig& rig) { rig.set("P100", 2); }},
+      {SetpointNote::BusWordIgnored, [](DriveRig& rig) { rig.set("P100", 1); }},
+      {SetpointNote::FixedIgnored, [](DriveRig& rig) { rig.input("DI04", true); }},
+      {SetpointNote::Maximum,
+       [](DriveRig& rig) {
+         rig.po({0x0006, 10'000, 0});
+       }},
+      {SetpointNote::Minimum, [](DriveRig& rig) { rig.set("P301", 700'000); }},
+      {SetpointNote::Skipped,
+       [](DriveRig& rig) {
+         rig.set("P740", 600'000);
+         rig.set("P741", 100'000);
+       }},
+  };
+  std::map<SetpointNote, int> seen;
+  for (const auto& [note, spoil] : cases) {
+    Running rig("md60a");
+    spoil(rig);
+    rig.run_ms(20);
+    EXPECT_EQ(rig.drive.setpoint().note, note) << runtime::setpoint_note_text(note);
+    ++seen[rig.drive.setpoint().note];
+  }
+  for (const SetpointNote note : kNotes) EXPECT_EQ(seen[note], 1) << runtime::setpoint_note_text(note);
+}
+
+// A parameter number, or the variable of the program.
+bool names_its_place(std::string_view text) {
+  for (size_t at = 0; at + 1 < text.size(); ++at)
+    if (text[at] == 'P' && text[at + 1] >= '0' && text[at + 1] <= '9') return true;
+  return text.find("H484") != std::string_view::npos;
+}
+
+TEST(Why, TextsNameParameters) {
+  for (const Block block : kBlocks)
+    if (block != Block::None) {
+      EXPECT_TRUE(names_its_place(runtime::block_text(block))) << runtime::block_text(block);
+    }
+  for (const SetpointNote note : kNotes)
+    if (note != SetpointNote::None) {
+      EXPECT_TRUE(names_its_place(runtime::setpoint_note_text(note))) << runtime::setpoint_note_text(note);
+    }
+}
+
+}  // namespace
+}  // namespace ipos::tests

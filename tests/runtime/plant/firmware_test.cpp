@@ -1,0 +1,42 @@
+// Key `firmware` of a station: what it refuses, and what the unit shows and accepts.
+#include <gtest/gtest.h>
+
+#include "runtime/plant/plant.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+std::vector<PlantError> errors_of(const std::string& keys) {
+  PlantFileResult result = read_plant_file("[[station]]\nname = \"u\"\nunit = \"mc07\"\n" + keys);
+  if (!result.errors.empty()) return result.errors;
+  std::vector<PlantError> errors;
+  const Plant plant(std::move(result.plant), {std::nullopt}, std::nullopt, errors);
+  return errors;
+}
+
+TEST(Firmware, IsShownAndDecidesAboutCodes) {
+  EXPECT_TRUE(errors_of("[station.parameters]\nP121 = 2\nP100 = 11\n").empty())
+      << "the newest one by default";
+  EXPECT_TRUE(errors_of("firmware = 12\n[station.parameters]\nP100 = 11\n").empty());
+  const auto old = errors_of("firmware = 12\n[station.parameters]\nP121 = 2\n");
+  ASSERT_EQ(old.size(), 1U);
+  EXPECT_EQ(old[0].place.line, 6U);
+  EXPECT_NE(old[0].text.find("P121"), std::string::npos) << old[0].text;
+
+  PlantFileResult result = read_plant_file("[[station]]\nname = \"u\"\nunit = \"mc07\"\nfirmware = 13\n");
+  std::vector<PlantError> errors;
+  Plant plant(std::move(result.plant), {std::nullopt}, std::nullopt, errors);
+  EXPECT_EQ(plant.stations()[0]->drive().value("076") % 100, 13);
+}
+
+TEST(Firmware, HasTwoDigits) {
+  for (const char* value : {"9", "100", "-1", "1.15", "\"15\""}) {
+    const auto errors = errors_of(std::string("firmware = ") + value + "\n");
+    ASSERT_EQ(errors.size(), 1U) << value;
+    EXPECT_EQ(errors[0].place.line, 4U);
+    EXPECT_NE(errors[0].text.find("firmware"), std::string::npos) << errors[0].text;
+  }
+}
+
+}  // namespace
+}  // namespace ipos::runtime
