@@ -1,0 +1,109 @@
+// What a line tells: events in words, and its load.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runtime/bus/can/line.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+uint32_t percent_of(uint64_t part, uint64_t whole) {
+  return whole == 0 ? 0 : static_cast<uint32_t>(part * 100 / whole);
+}
+
+constexpr std::string_view kEventTexts[] = {
+#define LINE_EVENT(name, text) text,
+#include "runtime/bus/can/line_events.def"
+};
+
+// "sbus: planted fault 'cut': unit2 is cut"
+std::string describe_fault(const CanLine& line, const LineEvent& event) {
+  const FaultType& type = kFaultTypes[event.fault];
+  const std::string whose =
+      event.node == kNoNode ? std::string("the line") : fmt::format("{}", line.node_name(event.node));
+  std::string text = fmt::format("{}: {} '{}': {} {}", line.name(),
+                                 kEventTexts[static_cast<size_t>(event.kind)], type.word, whose, type.text);
+  if (type.scope == FaultScope::Frame) text += fmt::format(" (identifier {})", event.id);
+  return text;
+}
+
+}  // namespace
+
+void CanLine::add_observer(CanObserver& observer) {
+  observers_.push_back(&observer);
+  for (NodeId node = 0; node < nodes_.size(); ++node) report_absence(node, &observer);
+}
+
+void CanLine::report(const LineEvent& event) {
+  for (CanObserver* observer : observers_) observer->on_line_event(*this, event);
+}
+
+void CanLine::report_absence(NodeId node, CanObserver* only) {
+  const Node& n = nodes_[node];
+  if (n.connected && n.baud == baud_) return;
+  const LineEvent event{n.connected ? LineEventKind::WrongBaudRate : LineEventKind::NotConnected,
+                        queue_.now(), node};
+  if (only != nullptr)
+    only->on_line_event(*this, event);
+  else
+    report(event);
+}
+
+// --- load
+
+void CanLine::count_busy(uint64_t bit, uint64_t bits) {
+  busy_bits_ += bits;
+  while (bits > 0) {
+    const uint64_t window = bit / baud_;
+    if (window != window_) {
+      peak_window_busy_ = std::max(peak_window_busy_, window_busy_);
+      previous_window_busy_ = window == window_ + 1 ? window_busy_ : 0;
+      window_ = window;
+      window_busy_ = 0;
+    }
+    const uint64_t part = std::min(bits, (window + 1) * baud_ - bit);
+    window_busy_ += part;
+    bit += part;
+    bits -= part;
+  }
+}
+
+LineLoad CanLine::load(Time now) const {
+  LineLoad load;
+  load.frames = frames_;
+  load.busy_bits = busy_bits_;
+  load.elapsed_bits = static_cast<uint64_t>(now / bit_time_);
+  load.percent = percent_of(busy_bits_, load.elapsed_bits);
+  const uint64_t current = load.elapsed_bits / baud_;
+  uint64_t last = 0;
+  if (current == window_) last = previous_window_busy_;
+  if (current == window_ + 1) last = window_busy_;
+  load.window_percent = percent_of(last, baud_);
+  load.peak_window_percent =
+      percent_of(current > window_ ? std::max(peak_window_busy_, window_busy_) : peak_window_busy_, baud_);
+  return load;
+}
+
+std::string describe(const CanLine& line, const LineEvent& event) {
+  if (event.kind == LineEventKind::FaultStrikes || event.kind == LineEventKind::FaultEnds)
+    return describe_fault(line, event);
+  std::string text = fmt::format("{}: {} {}", line.name(), line.node_name(event.node),
+                                 kEventTexts[static_cast<size_t>(event.kind)]);
+  switch (event.kind) {
+    case LineEventKind::WrongBaudRate:
+      text +=
+          fmt::format(" ({} kbaud, line {} kbaud)", line.node_baud(event.node) / 1000, line.baud() / 1000);
+      break;
+    case LineEventKind::NoAcknowledge: text += fmt::format(" (identifier {})", event.id); break;
+    case LineEventKind::Collision:
+    case LineEventKind::SameFrame:
+      text += fmt::format(" (identifier {}, other station {})", event.id,
+                          event.other == kNoNode ? "unknown" : line.node_name(event.other));
+      break;
+    default: break;
+  }
+  return text;
+}
+
+}  // namespace ipos::runtime
