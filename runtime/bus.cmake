@@ -5,5 +5,7 @@ ipos_layer(bus FOLDERS runtime/bus
            SOURCES bus/can/frame_bits.cpp bus/can/bit_error.cpp bus/can/line_fault.cpp bus/can/transfer.cpp
                    bus/can/line.cpp bus/can/line_wiring.cpp bus/can/line_report.cpp bus/log/candump.cpp
                    bus/movilink/parameter_telegram.cpp bus/movilink/return_code.cpp
-                   bus/movilink/variable_telegram.cpp bus/movilink/sbus_slave.cpp bus/movilink/sbus_master.cpp
+                   bus/movilink/variable_telegram.cpp bus/movilink/profile.cpp bus/movilink/sbus_slave.cpp
+                   bus/movilink/sbus_master.cpp bus/movilink/master_slave.cpp bus/movilink/sbus_control.cpp
+                   bus/movilink/sbus_check.cpp
            USES clock stdlib LIBS fmt::fmt)

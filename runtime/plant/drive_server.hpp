@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "runtime/bus/movilink/master_slave.hpp"
 #include "runtime/bus/movilink/sbus_slave.hpp"
 #include "runtime/drive/parameters.hpp"
 #include "runtime/drive/unit_state.hpp"
@@ -17,7 +18,7 @@
 
 namespace ipos::runtime {
 
-class DriveServer final : public ParameterServer, public ProcessDataServer {
+class DriveServer final : public ParameterServer, public ProcessDataServer, public SlaveSetpointSource {
  public:
   explicit DriveServer(const stdlib::UnitType& unit);
   DriveServer(const DriveServer&) = delete;
@@ -38,14 +39,20 @@ class DriveServer final : public ParameterServer, public ProcessDataServer {
   UnitState& state() { return state_; }
   const UnitState& state() const { return state_; }
   ParameterStore& parameters() { return parameters_; }
+  const stdlib::UnitType& unit() const { return parameters_.unit(); }
 
   // Why the last access was refused, empty when it was not. Reading it clears it.
   std::string take_reason() { return std::exchange(reason_, {}); }
+
+  // What keeps process data that came over the SBus from acting, each told once.
+  std::vector<std::string> take_obstacles() { return std::exchange(obstacles_, {}); }
 
   tl::expected<int32_t, ReturnCode> serve(Time now, const ParameterRequest& request) override;
   void take_output(Time now, OutputChannel channel, const ProcessWords& words) override;
   ProcessWords input(Time now) override;
   void synchronize(Time now) override;
+  // For the slaves, as long as the drive stands: controller inhibit or no enable, speed 0, no IPOS word.
+  ProcessWords slave_setpoint(Time now) override;
 
  private:
   // IPOS variables, index 11000 + n. They are there without a program, too. Volatile and non-volatile writes
@@ -75,6 +82,10 @@ class DriveServer final : public ParameterServer, public ProcessDataServer {
     std::span<const uint32_t> code_;
   };
 
+  enum class Obstacle : uint8_t { PoDisabled, ControlSource, SetpointSource };
+  void look_for_obstacles(OutputChannel channel);
+  void obstruct(Obstacle obstacle, std::string_view what, std::string_view number, std::string_view wanted);
+
   uint16_t index_of(std::string_view number) const;  // 0 for a parameter the unit does not have
 
   ParameterStore parameters_;
@@ -84,6 +95,8 @@ class DriveServer final : public ParameterServer, public ProcessDataServer {
   uint16_t task1_speed_;  // index of P938
   uint16_t task2_speed_;  // index of P939
   std::string reason_;
+  std::vector<std::string> obstacles_;
+  uint32_t told_obstacles_ = 0;  // a bit each
 };
 
 }  // namespace ipos::runtime

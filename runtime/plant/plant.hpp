@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "runtime/bus/can/line.hpp"
+#include "runtime/bus/movilink/sbus_check.hpp"
 #include "runtime/plant/plant_file.hpp"
 #include "runtime/plant/station.hpp"
 #include "runtime/services/journal.hpp"
@@ -21,7 +22,15 @@ struct ExpectationResult {
   int32_t actual;
 };
 
-class Plant final : private CanObserver {
+// A master control and its place on a line.
+struct PlantControl {
+  const ControlConfig* config;
+  CanLine* line;
+  std::unique_ptr<SbusControl> control;
+  std::unique_ptr<LinePort> port;
+};
+
+class Plant final : private CanObserver, private SbusCheckClient {
  public:
   // One program for each station of the file, empty where it has none. `rates` overrides P938 and P939.
   // Errors (unknown parameters, refused values, programs the unit refuses, unknown variables) come back in
@@ -40,6 +49,8 @@ class Plant final : private CanObserver {
   Time now() const { return queue_.now(); }
   const PlantFile& file() const { return file_; }
   std::vector<std::unique_ptr<Station>>& stations() { return stations_; }
+  const std::vector<std::unique_ptr<Station>>& stations() const { return stations_; }
+  const std::vector<PlantControl>& controls() const { return controls_; }
   const std::vector<std::unique_ptr<CanLine>>& lines() const { return lines_; }
   const Journal& journal() const { return journal_; }
   const std::vector<ExpectationResult>& results() const { return results_; }
@@ -47,6 +58,14 @@ class Plant final : private CanObserver {
  private:
   void on_frame(const CanLine& line, const FrameRecord& record) override;
   void on_line_event(const CanLine& line, const LineEvent& event) override;
+  void on_sbus_finding(Time now, std::string text) override;
+  CanLine* find_line(std::string_view name) const;
+  void add_station(size_t number, uint32_t source, std::optional<vm::Image> program,
+                   std::optional<vm::Rates> rates, std::vector<PlantError>& errors);
+  void power_on();
+  void start_checks();
+  void plant_faults();
+  NodeId find_node(const CanLine& line, std::string_view station) const;
   void check_expectations(Time until);
   void resolve_expectations(std::vector<PlantError>& errors);
 
@@ -54,7 +73,9 @@ class Plant final : private CanObserver {
   EventQueue queue_;
   Journal journal_;
   std::vector<std::unique_ptr<CanLine>> lines_;
+  std::vector<std::unique_ptr<SbusCheck>> checks_;  // one a line
   std::vector<std::unique_ptr<Station>> stations_;
+  std::vector<PlantControl> controls_;
 
   struct Due {
     const Expectation* expectation;

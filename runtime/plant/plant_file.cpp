@@ -11,6 +11,8 @@
 #include <optional>
 #include <set>
 
+#include "runtime/plant/bus_tables.hpp"
+
 namespace ipos::runtime {
 namespace {
 
@@ -51,8 +53,6 @@ std::optional<FilePlace> stray_character(std::string_view text) {
   return std::nullopt;
 }
 
-FilePlace place_of(const toml::source_region& region) { return {region.begin.line, region.begin.column}; }
-
 // Reads one plant file; collects all errors.
 class Reader {
  public:
@@ -68,9 +68,13 @@ class Reader {
       return std::move(result_);
     }
     const toml::table& root = parsed.table();
-    known_keys(root, "the plant", {"bus", "station", "expect"});
+    known_keys(root, "the plant", {"bus", "station", "control", "fault", "expect"});
     for_each_table(root, "bus", [this](const toml::table& table) { bus(table); });
     for_each_table(root, "station", [this](const toml::table& table) { station(table); });
+    for_each_table(root, "control",
+                   [this](const toml::table& table) { read_control(*this, table, result_.plant); });
+    for_each_table(root, "fault",
+                   [this](const toml::table& table) { read_fault(*this, table, result_.plant); });
     for_each_table(root, "expect", [this](const toml::table& table) { expectation(table); });
     cross_check();
     std::stable_sort(result_.errors.begin(), result_.errors.end(), [](const auto& a, const auto& b) {
@@ -79,7 +83,7 @@ class Reader {
     return std::move(result_);
   }
 
- private:
+  // For the tables of bus_tables.hpp, too.
   void error(FilePlace place, std::string text) { result_.errors.push_back({place, std::move(text)}); }
 
   void known_keys(const toml::table& table, std::string_view what,
@@ -143,8 +147,53 @@ class Reader {
       error(place, fmt::format("there are two of {} '{}'", what, name));
   }
 
+  // A value without sign, or the default.
+  uint32_t count(const toml::table& table, std::string_view key, uint32_t limit, uint32_t otherwise) {
+    const toml::node* node = table.get(key);
+    int32_t value = 0;
+    if (node == nullptr || !number(*node, key, value)) return otherwise;
+    if (value >= 0 && static_cast<uint32_t>(value) <= limit) return static_cast<uint32_t>(value);
+    error(place_of(node->source()), fmt::format("{} is 0 to {}", key, limit));
+    return otherwise;
+  }
+
+  int64_t duration(const toml::table& table, std::string_view key, int64_t otherwise) {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) return otherwise;
+    const std::string written = text(table, key, "", false);
+    const int64_t value = parse_duration(written);
+    if (value < 0 && !written.empty())
+      error(place_of(node->source()),
+            fmt::format("'{}' is no time; write for example 500ms or 1.5s", written));
+    return value;
+  }
+
+  std::optional<bool> flag(const toml::table& table, std::string_view key) {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) return std::nullopt;
+    if (const auto* value = node->as_boolean()) return value->get();
+    error(place_of(node->source()), fmt::format("{} is true or false", key));
+    return std::nullopt;
+  }
+
+  // The name of a bus or of a station elsewhere in the file.
+  std::string bus_name(const toml::table& table, std::string_view key, std::string_view what, bool required) {
+    std::string name = text(table, key, what, required);
+    if (const toml::node* node = table.get(key)) bus_uses_.push_back({name, place_of(node->source())});
+    return name;
+  }
+  std::string station_name(const toml::table& table, std::string_view key) {
+    std::string name = text(table, key, "", false);
+    if (const toml::node* node = table.get(key)) station_uses_.push_back({name, place_of(node->source())});
+    return name;
+  }
+  void new_station(const std::string& name, FilePlace place) {
+    unique(station_names_, name, "station", place);
+  }
+
+ private:
   void bus(const toml::table& table) {
-    known_keys(table, "[[bus]]", {"name", "kind", "baud"});
+    known_keys(table, "[[bus]]", {"name", "kind", "baud", "length", "impedance", "capacitance"});
     BusConfig config;
     config.place = place_of(table.source());
     config.name = text(table, "name", "a [[bus]]", true);
@@ -166,15 +215,20 @@ class Reader {
                 fmt::format("the SBus has 125000, 250000, 500000 or 1000000 baud, not {}", value));
       }
     }
+    config.length = count(table, "length", 100'000, 0);
+    config.impedance = count(table, "impedance", 1000, 0);
+    config.capacitance = count(table, "capacitance", 1000, 0);
     result_.plant.buses.push_back(std::move(config));
   }
 
   void station(const toml::table& table) {
-    known_keys(table, "[[station]]", {"name", "unit", "program", "sbus", "parameters", "inputs", "hex"});
+    known_keys(table, "[[station]]",
+               {"name", "unit", "program", "sbus", "sbus2", "device", "terminator", "branch", "parameters",
+                "inputs", "hex"});
     StationConfig config;
     config.place = place_of(table.source());
     config.name = text(table, "name", "a [[station]]", true);
-    unique(station_names_, config.name, "station", config.place);
+    new_station(config.name, config.place);
     const std::string unit = text(table, "unit", "a [[station]]", true);
     config.unit = stdlib::find_unit(unit);
     if (config.unit == nullptr && !unit.empty()) {
@@ -189,9 +243,13 @@ class Reader {
       if (config.unit != nullptr && config.unit->tasks == 0)
         error(config.program_place, fmt::format("unit type {} runs no program", config.unit->name));
     }
-    config.sbus = text(table, "sbus", "", false);
-    if (const toml::node* sbus = table.get("sbus"))
-      bus_uses_.push_back({config.sbus, place_of(sbus->source())});
+    config.sbus = bus_name(table, "sbus", "", false);
+    config.sbus2 = bus_name(table, "sbus2", "", false);
+    if (!config.sbus2.empty() && config.unit != nullptr && config.unit->generation != stdlib::Generation::B)
+      error(place_of(table.get("sbus2")->source()), fmt::format("unit {} has no SBus 2", config.unit->name));
+    config.device = text(table, "device", "", false);
+    config.terminator = flag(table, "terminator");
+    config.branch = flag(table, "branch").value_or(false);
     parameters(table, config);
     inputs(table, config);
     hex(table, config);

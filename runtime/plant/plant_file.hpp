@@ -4,10 +4,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "runtime/bus/can/line_fault.hpp"
+#include "runtime/bus/movilink/sbus_control.hpp"
 #include "stdlib/unit_types.hpp"
 
 namespace ipos::runtime {
@@ -25,6 +28,10 @@ struct BusConfig {
   BusKind kind = BusKind::Can;
   uint32_t baud = 500'000;  // bit/s
   FilePlace place;
+  // The cable, for `ipos bus plan`; 0: not given.
+  uint32_t length = 0;       // m
+  uint32_t impedance = 0;    // ohm
+  uint32_t capacitance = 0;  // pF/m
 };
 
 // A value for a parameter named "P813" or by its index.
@@ -44,13 +51,34 @@ struct InputSetting {
 struct StationConfig {
   std::string name;
   const stdlib::UnitType* unit = nullptr;
-  std::string program;  // as written, relative to the plant file; empty: no program
-  std::string sbus;     // name of a bus, or empty
+  std::string program;             // as written, relative to the plant file; empty: no program
+  std::string sbus;                // name of a bus, or empty
+  std::string sbus2;               // SBus 2 of a MOVIDRIVE B
+  std::string device;              // type designation, where a rule needs it: "MCH42A"
+  std::optional<bool> terminator;  // S12, for `ipos bus plan`
+  bool branch = false;             // the cable goes on over SC21/SC22
   std::vector<ParameterSetting> parameters;
   std::vector<InputSetting> inputs;
   std::vector<std::string> hex;  // variables the watch shows in hexadecimal
   FilePlace place;
   FilePlace program_place;
+};
+
+// A master control on an SBus: process data to units, and the sync telegram.
+struct ControlConfig {
+  std::string name;
+  std::string sbus;
+  ControlSettings settings;
+  std::optional<bool> terminator;
+  FilePlace place;
+};
+
+// A planted fault; `fault.node` is found when the plant is built.
+struct FaultConfig {
+  std::string bus;
+  std::string station;  // empty: all
+  LineFault fault;
+  FilePlace place;
 };
 
 // At a point of virtual time a variable of a station has a value.
@@ -65,6 +93,8 @@ struct Expectation {
 struct PlantFile {
   std::vector<BusConfig> buses;
   std::vector<StationConfig> stations;
+  std::vector<ControlConfig> controls;
+  std::vector<FaultConfig> faults;
   std::vector<Expectation> expectations;
 };
 

@@ -3,19 +3,18 @@
 // order.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "runtime/bus/can/line.hpp"
-#include "runtime/bus/movilink/sbus_slave.hpp"
 #include "runtime/plant/drive_server.hpp"
 #include "runtime/plant/plant_file.hpp"
+#include "runtime/plant/sbus_port.hpp"
 #include "runtime/services/journal.hpp"
-#include "runtime/services/movilink_command.hpp"
 #include "runtime/services/system_commands.hpp"
-#include "runtime/services/variable_objects.hpp"
 #include "vm/exec/machine.hpp"
 #include "vm/image/image.hpp"
 #include "vm/sched/scheduler.hpp"
@@ -25,13 +24,13 @@ namespace ipos::runtime {
 // What a unit type allows a program.
 vm::Limits limits_of(const stdlib::UnitType& unit);
 
-class Station final : private CanNode, private EventTarget, private SlaveObserver {
+class Station final : private EventTarget {
  public:
-  // `line` is null for a station without SBus; `program` is empty for one without IPOS program. The config
-  // and the journal must outlive the station. Parameters of the config must be checked before (plant.cpp).
-  // The program must pass verify() for the unit.
+  // `lines` are those of SBus 1 and 2, null for one it is not on; `program` is empty for one without IPOS
+  // program. The config and the journal must outlive the station. Parameters of the config must be checked
+  // before (plant.cpp). The program must pass verify() for the unit.
   Station(EventQueue& queue, uint32_t source, const StationConfig& config, std::optional<vm::Image> program,
-          CanLine* line, Journal& journal, std::optional<vm::Rates> rates);
+          std::array<CanLine*, 2> lines, Journal& journal, std::optional<vm::Rates> rates);
 
   // Applies a parameter of the plant file; nothing when it was accepted, else why not.
   std::optional<std::string> set_parameter(const ParameterSetting& setting);
@@ -43,6 +42,11 @@ class Station final : private CanNode, private EventTarget, private SlaveObserve
   const vm::Image* image() const { return image_ ? &*image_ : nullptr; }
   const vm::Machine* machine() const { return machine_ ? &*machine_ : nullptr; }
   DriveServer& drive() { return drive_; }
+  const DriveServer& drive() const { return drive_; }
+
+  // SBus 1 or 2; null when the station is not on it.
+  const SbusPort* sbus(int number) const { return sbus_[static_cast<size_t>(number - 1)].get(); }
+  SbusPort* sbus(int number) { return sbus_[static_cast<size_t>(number - 1)].get(); }
 
   // The program has ended, was never there, or a fault has stopped it.
   bool program_over() const;
@@ -58,33 +62,17 @@ class Station final : private CanNode, private EventTarget, private SlaveObserve
 
  private:
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
-  void on_frame(Time now, const Frame& frame) override;
-  void on_sent(Time now, const Frame& frame, uint64_t tag) override;
-  void on_not_sent(Time now, const Frame& frame, uint64_t tag, NotSent reason) override;
-  void on_ignored(Time now, const Frame& frame, Ignored reason, ReturnCode code) override;
-
-  void connect_sbus();
+  void connect_sbus(int number);
   void report_fault(Time now);
 
   EventQueue& queue_;
   uint32_t source_;
   const StationConfig& config_;
-  CanLine* line_;
+  std::array<CanLine*, 2> lines_;
   Journal& journal_;
   DriveServer drive_;
   std::optional<vm::Image> image_;
-
-  // The SBus port; empty without one.
-  struct SbusPort {
-    SbusPort(EventQueue& queue, uint32_t source, LinePort port, SlaveSettings settings, DriveServer& drive,
-             const stdlib::UnitType& unit, uint32_t baud, SlaveObserver& observer);
-    LinePort sender;
-    SbusSlave slave;
-    VariableObjects objects;
-    MovilinkCommand movilink;
-  };
-  std::unique_ptr<SbusPort> sbus_;
-
+  std::array<std::unique_ptr<SbusPort>, 2> sbus_;
   std::optional<SystemCommands> commands_;
   std::optional<vm::Machine> machine_;
   std::optional<vm::Rates> rates_;  // instead of P938 and P939

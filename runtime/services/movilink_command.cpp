@@ -12,7 +12,6 @@ namespace {
 enum Element : uint32_t { kBusType, kAddress, kFormat, kService, kIndex, kDPointer, kResult };
 enum Data : uint32_t { kWritePar, kReadPar, kPO1, kPI1 = 5 };
 
-constexpr int32_t kBusSbus = 5;
 constexpr int32_t kOwnUnit = 253;
 
 // Variables of MLDATA that a format touches.
@@ -27,8 +26,11 @@ SbusResult refused(ReturnCode code) {
 }  // namespace
 
 MovilinkCommand::MovilinkCommand(EventQueue& queue, uint32_t source, FrameSender& sender, uint64_t tag,
-                                 ParameterServer& own, ProcessDataServer& own_data)
-    : own_(own), own_data_(own_data), master_(queue, source, sender, tag, kSbusReplyTimeout, *this) {}
+                                 ParameterServer& own, ProcessDataServer& own_data, int32_t bus_type)
+    : own_(own),
+      own_data_(own_data),
+      master_(queue, source, sender, tag, kSbusReplyTimeout, *this),
+      bus_type_(bus_type) {}
 
 vm::HostReply MovilinkCommand::start(Time now, vm::Machine& machine, int task, uint32_t variable,
                                      std::string& why) {
@@ -56,11 +58,12 @@ vm::HostReply MovilinkCommand::start(Time now, vm::Machine& machine, int task, u
     store(job, serve_own(now, job.bus, *format));
     return {};
   }
-  if (element(kBusType) != kBusSbus) {
-    why = fmt::format("MOVLNK: bus type {} is not simulated; only 5 (SBus) is", element(kBusType));
+  if (element(kBusType) != bus_type_) {
+    why = fmt::format("MOVLNK: the station has no bus of type {}", element(kBusType));
     store(job, refused(return_codes::kWrongManagement));
     return {};
   }
+  remember_partner(job.bus.address, *format);
   jobs_.push_back(job);
   if (jobs_.size() > 1) return {vm::Answer::Wait};
   if (const auto code = master_.start(now, job.bus)) {
@@ -71,6 +74,16 @@ vm::HostReply MovilinkCommand::start(Time now, vm::Machine& machine, int task, u
     return {};
   }
   return {vm::Answer::Wait};
+}
+
+void MovilinkCommand::remember_partner(int32_t address, TelegramFormat format) {
+  for (Partner& partner : partners_) {
+    if (partner.address != address) continue;
+    partner.parameter |= format.parameter;
+    partner.process_data |= format.words > 0;
+    return;
+  }
+  partners_.push_back({address, format.parameter, format.words > 0});
 }
 
 void MovilinkCommand::stop() {

@@ -17,14 +17,23 @@ namespace ipos::runtime {
 class MovilinkCommand final : private SbusMasterClient {
  public:
   // `own` and `own_data` serve address 253, the unit itself. Frames are queued at `sender` with `tag`.
+  // `bus_type` is the BusType of this line: 5 SBus, on MOVIDRIVE B SBus 1; 8 SBus 2 (IPOSplus p. 309).
   MovilinkCommand(EventQueue& queue, uint32_t source, FrameSender& sender, uint64_t tag, ParameterServer& own,
-                  ProcessDataServer& own_data);
+                  ProcessDataServer& own_data, int32_t bus_type = 5);
 
   // Begins the exchange of the structure at `variable` for a task. Done: the result is stored already; Wait:
   // the task is resumed when it is. `why` says why an exchange could not be begun.
   vm::HostReply start(Time now, vm::Machine& machine, int task, uint32_t variable, std::string& why);
 
   void stop();  // program stop: pending exchanges are given up
+
+  // Whom the program has called over the line, for tools: address as in MOVLNK, and what was exchanged.
+  struct Partner {
+    int32_t address;
+    bool parameter;
+    bool process_data;
+  };
+  const std::vector<Partner>& partners() const { return partners_; }
 
   bool on_frame(Time now, const Frame& frame) { return master_.on_frame(now, frame); }
   void on_sent(Time now, uint64_t tag) { master_.on_sent(now, tag); }
@@ -41,11 +50,14 @@ class MovilinkCommand final : private SbusMasterClient {
   void on_exchange_done(Time now, const SbusResult& result) override;
   void begin_next(Time now);
   SbusResult serve_own(Time now, const SbusJob& job, TelegramFormat format);
+  void remember_partner(int32_t address, TelegramFormat format);
   static void store(const Job& job, const SbusResult& result);
 
   ParameterServer& own_;
   ProcessDataServer& own_data_;
   SbusMaster master_;
+  int32_t bus_type_;
+  std::vector<Partner> partners_;
   std::vector<Job> jobs_;  // the first one is on the bus, the others wait for it
 };
 

@@ -9,23 +9,32 @@
 
 namespace ipos::runtime {
 
+// What one SBus gives to the program; null where the unit is not on it.
+struct SbusServices {
+  VariableObjects* objects = nullptr;
+  MovilinkCommand* movilink = nullptr;
+};
+
 class SystemCommands {
  public:
-  // `objects` and `movilink` are null for a unit that is on no SBus.
-  SystemCommands(const EventQueue& clock, Journal& journal, std::string_view station,
-                 VariableObjects* objects, MovilinkCommand* movilink);
+  SystemCommands(const EventQueue& clock, Journal& journal, std::string_view station, SbusServices sbus1,
+                 SbusServices sbus2 = {});
 
   vm::Host host();
 
  private:
   vm::HostReply execute(vm::Machine& machine, int task, const vm::Instruction& command);
+  vm::HostReply define_object(vm::Machine& machine, ObjectKind kind, uint32_t variable);
+  vm::HostReply start_objects();
+  vm::HostReply switch_objects(vm::Machine& machine, bool on, uint32_t state);
+  vm::HostReply exchange(vm::Machine& machine, int task, uint32_t variable);
   void explain(std::string why);
 
   const EventQueue& clock_;
   Journal& journal_;
   std::string station_;
-  VariableObjects* objects_;
-  MovilinkCommand* movilink_;
+  SbusServices sbus1_;
+  SbusServices sbus2_;
 };
 
 }  // namespace ipos::runtime

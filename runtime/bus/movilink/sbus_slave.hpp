@@ -13,6 +13,7 @@
 #include "runtime/bus/movilink/identifiers.hpp"
 #include "runtime/bus/movilink/parameter_telegram.hpp"
 #include "runtime/bus/movilink/process_data.hpp"
+#include "runtime/bus/movilink/profile.hpp"
 #include "runtime/clock/event_queue.hpp"
 
 namespace ipos::runtime {
@@ -61,13 +62,6 @@ class SlaveObserver {
   ~SlaveObserver() = default;
 };
 
-struct SlaveSettings {
-  uint8_t address = 0;          // P813 or P881
-  uint8_t group = 0;            // P814 or P882
-  uint16_t sync_id = 0;         // P817 or P885
-  bool second_channel = false;  // P889, MOVIDRIVE B
-};
-
 // Both ours; a PI telegram must come within one millisecond (p. 39).
 struct SlaveTiming {
   Time process_delay = 200 * kMicrosecond;
@@ -86,6 +80,7 @@ class SbusSlave final : private EventTarget {
 
   // True when the frame is a MOVILINK telegram to this unit, or its sync telegram.
   bool on_frame(Time now, const Frame& frame);
+  bool is_sync(const Frame& frame) const;  // has the identifier of this unit's sync telegram
 
  private:
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
