@@ -7,5 +7,6 @@ ipos_layer(bus FOLDERS runtime/bus
                    bus/movilink/parameter_telegram.cpp bus/movilink/return_code.cpp
                    bus/movilink/variable_telegram.cpp bus/movilink/profile.cpp bus/movilink/sbus_slave.cpp
                    bus/movilink/sbus_master.cpp bus/movilink/master_slave.cpp bus/movilink/sbus_control.cpp
-                   bus/movilink/sbus_check.cpp
+                   bus/movilink/sbus_check.cpp bus/movilink/process_words.cpp
+                   bus/movilink/describe.cpp
            USES clock stdlib LIBS fmt::fmt)

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "runtime/bus/movilink/return_code.hpp"
 
 namespace ipos::runtime {
@@ -42,6 +44,7 @@ vm::HostReply MovilinkCommand::start(Time now, vm::Machine& machine, int task, u
           static_cast<uint32_t>(element(kDPointer)),
           {element(kAddress), element(kFormat), element(kService), element(kIndex), 0, {}}};
 
+  if (!has_called(variable)) structures_.push_back(variable);
   const auto format = telegram_format(job.bus.format);
   if (!format) {
     why = fmt::format("MOVLNK: Format {} is none of 0..6 and 128..134", job.bus.format);
@@ -74,6 +77,10 @@ vm::HostReply MovilinkCommand::start(Time now, vm::Machine& machine, int task, u
     return {};
   }
   return {vm::Answer::Wait};
+}
+
+bool MovilinkCommand::has_called(uint32_t variable) const {
+  return std::find(structures_.begin(), structures_.end(), variable) != structures_.end();
 }
 
 void MovilinkCommand::remember_partner(int32_t address, TelegramFormat format) {

@@ -34,6 +34,8 @@ class MovilinkCommand final : private SbusMasterClient {
     bool process_data;
   };
   const std::vector<Partner>& partners() const { return partners_; }
+  // The command of this structure was carried out.
+  bool has_called(uint32_t variable) const;
 
   bool on_frame(Time now, const Frame& frame) { return master_.on_frame(now, frame); }
   void on_sent(Time now, uint64_t tag) { master_.on_sent(now, tag); }
@@ -58,7 +60,8 @@ class MovilinkCommand final : private SbusMasterClient {
   SbusMaster master_;
   int32_t bus_type_;
   std::vector<Partner> partners_;
-  std::vector<Job> jobs_;  // the first one is on the bus, the others wait for it
+  std::vector<uint32_t> structures_;  // of commands carried out
+  std::vector<Job> jobs_;             // the first one is on the bus, the others wait for it
 };
 
 }  // namespace ipos::runtime

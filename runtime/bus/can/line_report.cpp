@@ -17,13 +17,15 @@ constexpr std::string_view kEventTexts[] = {
 #include "runtime/bus/can/line_events.def"
 };
 
-// "sbus: planted fault 'cut': unit2 is cut"
+// "sbus: planted fault 'swap': unit2 has high and low interchanged", "... 'cut' is over: the line is cut
+// behind unit1"
 std::string describe_fault(const CanLine& line, const LineEvent& event) {
   const FaultType& type = kFaultTypes[event.fault];
-  const std::string whose =
-      event.node == kNoNode ? std::string("the line") : fmt::format("{}", line.node_name(event.node));
-  std::string text = fmt::format("{}: {} '{}': {} {}", line.name(),
-                                 kEventTexts[static_cast<size_t>(event.kind)], type.word, whose, type.text);
+  const bool over = event.kind == LineEventKind::FaultEnds;
+  std::string text =
+      fmt::format("{}: planted fault '{}'{}: {} {}", line.name(), type.word, over ? " is over" : "",
+                  event.node == kNoNode ? "the line" : line.node_name(event.node), type.text);
+  if (event.other != kNoNode) text += " behind " + line.node_name(event.other);
   if (type.scope == FaultScope::Frame) text += fmt::format(" (identifier {})", event.id);
   return text;
 }

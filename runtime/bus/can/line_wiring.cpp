@@ -36,7 +36,8 @@ void CanLine::plant(const LineFault& fault) {
 
 void CanLine::switch_fault(Time now, size_t number, bool on) {
   const LineFault fault = faults_[number];
-  report({on ? LineEventKind::FaultStrikes : LineEventKind::FaultEnds, now, fault.node, kNoNode, 0,
+  report({on ? LineEventKind::FaultStrikes : LineEventKind::FaultEnds, now,
+          fault.behind ? kNoNode : fault.node, fault.behind ? fault.node : kNoNode, 0,
           static_cast<uint8_t>(fault.kind)});
   switch (fault.kind) {
     case FaultKind::Cut:

@@ -62,7 +62,7 @@ struct LineEvent {
   LineEventKind kind;
   Time time;
   NodeId node;             // kNoNode: the line as a whole
-  NodeId other = kNoNode;  // the partner of a collision
+  NodeId other = kNoNode;  // the partner of a collision; the station before a cut
   uint32_t id = 0;         // identifier of the frame, where there is one
   uint8_t fault = 0;       // FaultKind of the events about planted faults
 };

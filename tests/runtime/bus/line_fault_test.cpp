@@ -285,7 +285,7 @@ TEST(LineFault, ACutLineIsTwoLines) {
   EXPECT_EQ(t.stations[2].received[0].id, 200U);
   // Both at the same time: they do not arbitrate.
   EXPECT_EQ(t.watcher.frames[0].start, t.watcher.frames[1].start);
-  EXPECT_TRUE(t.watcher.says("planted fault 'cut': unit2 is cut"));
+  EXPECT_TRUE(t.watcher.says("planted fault 'cut': the line is cut behind unit2"));
   t.run(3 * kMillisecond);
   t.send(0, 100);
   t.run(kMillisecond);
