@@ -8,5 +8,6 @@ ipos_layer(bus FOLDERS runtime/bus
                    bus/movilink/variable_telegram.cpp bus/movilink/profile.cpp bus/movilink/sbus_slave.cpp
                    bus/movilink/sbus_master.cpp bus/movilink/master_slave.cpp bus/movilink/sbus_control.cpp
                    bus/movilink/sbus_check.cpp bus/movilink/process_words.cpp
-                   bus/movilink/describe.cpp
+                   bus/movilink/describe.cpp bus/movilink/dbc.cpp
+                   bus/log/bus_load.cpp bus/log/replay.cpp
            USES clock stdlib LIBS fmt::fmt)

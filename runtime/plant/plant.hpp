@@ -40,6 +40,12 @@ class Plant final : private CanObserver, private SbusCheckClient {
 
   void add_observer(CanObserver& observer);
 
+  // For members that tools add to a line before the plant runs.
+  EventQueue& queue() { return queue_; }
+  uint32_t next_source() const {
+    return static_cast<uint32_t>(lines_.size() + stations_.size() + controls_.size());
+  }
+
   // Runs until `end`; expectations that fall due are checked. Returns false when `keep_going` said so: it is
   // asked once a millisecond of virtual time.
   bool run_until(Time end, const std::function<bool(Time)>& keep_going = {});
