@@ -56,7 +56,7 @@ bool VariableObjects::define(ObjectKind kind, uint32_t variable, std::span<int32
   const bool cyclic = kind == ObjectKind::TransmitCyclic;
   const auto element = [&](uint32_t n) -> int32_t& { return h[variable + n]; };
   const uint32_t at = cyclic ? 3 : 1;  // where length and pointer stand in the structure
-  const int32_t bus_bit = unit_.generation == Generation::B && element(0) >= 0 ? kSbus2Object : 0;
+  const int32_t bus_bit = sbus_ == 2 && element(0) >= 0 ? kSbus2Object : 0;
   const Header header{element(0) & ~bus_bit, element(at), element(at + 1)};
   int32_t* result = kind == ObjectKind::Receive ? nullptr : &element(cyclic ? 5 : 3);
   ObjectDefinition definition{kind,  variable, header.object, variable_format(header.format), 0, 0, 0,
@@ -109,6 +109,11 @@ void VariableObjects::remember(const ObjectDefinition& definition) {
 }
 
 bool VariableObjects::usable(const Header& header, std::string& why) const {
+  if (header.object >= kSbus2Object && unit_.generation == Generation::B) {
+    why = fmt::format("object {} is for SBus 2, which the station is not on; the object is not set up",
+                      header.object & ~kSbus2Object);
+    return false;
+  }
   if (header.object < 0 || static_cast<uint32_t>(header.object) >= kStandardIdLimit) {
     why = fmt::format("object number {} is not 0..2047; the object is not set up", header.object);
     return false;

@@ -7,7 +7,6 @@
 #include "runtime/bus/can/bit_error.hpp"
 #include "runtime/bus/can/frame_bits.hpp"
 #include "runtime/bus/can/line.hpp"
-#include "tests/harness/proves.hpp"
 #include "tests/runtime/bus/disturbance_model.hpp"
 
 namespace ipos::runtime {
@@ -312,7 +311,6 @@ TEST(LineFault, CutAndRepairWaitForTheFramesUnderWay) {
 }
 
 TEST(LineFault, AStationCutOffAloneGetsNoAcknowledge) {
-  PROVES("DIAG-01");
   Bench t;
   LineFault fault = t.fault(FaultKind::Cut);
   fault.node = 3;
