@@ -99,7 +99,7 @@ void SbusPort::on_not_sent(Time /*now*/, const Frame& /*frame*/, uint64_t tag, N
 }
 
 // No manual says what a drive does; it asks its controller to come back at once (ours).
-void SbusPort::on_bus_off(Time /*now*/) { line_.recover(sender_.node()); }
+void SbusPort::on_bus_off(Time /*now*/) { sender_.recover(); }
 
 void SbusPort::on_ignored(Time now, const Frame& frame, Ignored reason, ReturnCode code) {
   std::string text = fmt::format("SBus telegram {} had no effect: {}", frame.id, ignored_text(reason));

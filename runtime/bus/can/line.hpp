@@ -167,6 +167,7 @@ class LinePort final : public FrameSender {
   LinePort(CanLine& line, NodeId node) : line_(&line), node_(node) {}
   SendStatus send(const Frame& frame, uint64_t tag) override { return line_->send(node_, frame, tag); }
   void withdraw(uint64_t tag) override { line_->withdraw(node_, tag); }
+  void recover() override { line_->recover(node_); }
   NodeId node() const { return node_; }
 
  private:

@@ -27,7 +27,7 @@ class CanNode {
   virtual void on_frame(Time now, const Frame& frame) = 0;
   virtual void on_sent(Time now, const Frame& frame, uint64_t tag) = 0;
   virtual void on_not_sent(Time now, const Frame& frame, uint64_t tag, NotSent reason) = 0;
-  // Too many errors: it may ask the line to recover().
+  // Too many errors: it takes no part any more until it has recovered; its sender can ask for that.
   virtual void on_bus_off(Time /*now*/) {}
 
  protected:
@@ -40,6 +40,8 @@ class FrameSender {
   virtual SendStatus send(const Frame& frame, uint64_t tag) = 0;
   // Takes back every waiting frame with this tag; one on the wire is not sent again should it fail.
   virtual void withdraw(uint64_t tag) = 0;
+  // Asks to come back after bus-off.
+  virtual void recover() {}
 
  protected:
   ~FrameSender() = default;

@@ -56,6 +56,7 @@ class SbusControl final : public CanNode, private EventTarget {
   void on_frame(Time now, const Frame& frame) override;
   void on_sent(Time, const Frame&, uint64_t) override {}
   void on_not_sent(Time, const Frame&, uint64_t, NotSent) override {}
+  void on_bus_off(Time) override { sender_->recover(); }
 
  private:
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
