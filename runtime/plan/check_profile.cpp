@@ -25,6 +25,7 @@ class ProfileCheck {
       sync(identifier);
     }
     partners();
+    masters();
     for (const Member& member : roster_.members)
       if (member.station != nullptr) master_slave(member);
   }
@@ -107,6 +108,21 @@ class ProfileCheck {
         for (const ControlTarget& target : member.control->config->settings.targets)
           called(member.name, target.address, target.group, true);
     }
+  }
+
+  // MOVLNK needs the line for itself; master controls alone may be several.
+  void masters() {
+    std::vector<std::string> calling, all;
+    for (const Member& member : roster_.members) {
+      const bool calls = member.port != nullptr && !member.port->movilink().partners().empty();
+      if (calls) calling.push_back(member.name);
+      if (calls || (member.control != nullptr && !member.control->config->settings.targets.empty()))
+        all.push_back(member.name);
+    }
+    if (!calling.empty() && all.size() > 1)
+      find(FindingKind::SeveralMasters,
+           fmt::format("{} {} MOVLNK, but {} are masters on this line", fmt::join(calling, ", "),
+                       calling.size() == 1 ? "uses" : "use", fmt::join(all, ", ")));
   }
 
   // Each setting that keeps process data from acting (p. 41), once a station.

@@ -35,6 +35,8 @@ class Watcher final : public CanObserver {
 
 }  // namespace
 
+std::span<const FindingType> finding_types() { return kFindingTypes; }
+
 const FindingType& finding_type(FindingKind kind) { return kFindingTypes[static_cast<size_t>(kind)]; }
 
 bool BusPlan::has_errors() const {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,6 +27,7 @@ struct FindingType {
   FindingWeight weight;
   std::string_view meaning;
 };
+std::span<const FindingType> finding_types();
 const FindingType& finding_type(FindingKind kind);
 
 struct Finding {
