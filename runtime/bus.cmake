@@ -3,9 +3,14 @@
 ipos_layer(clock FOLDERS runtime/clock SOURCES clock/event_queue.cpp)
 ipos_layer(bus FOLDERS runtime/bus
            SOURCES bus/line_load.cpp
-                   bus/can/frame_bits.cpp bus/can/transfer.cpp bus/can/line.cpp bus/log/candump.cpp
+                   bus/can/frame_bits.cpp bus/can/bit_error.cpp bus/can/line_fault.cpp bus/can/transfer.cpp
+                   bus/can/line.cpp bus/can/line_wiring.cpp bus/can/line_report.cpp bus/log/candump.cpp
                    bus/movilink/parameter_telegram.cpp bus/movilink/return_code.cpp
-                   bus/movilink/variable_telegram.cpp bus/movilink/unit_servers.cpp bus/movilink/sbus_slave.cpp bus/movilink/sbus_master.cpp
+                   bus/movilink/variable_telegram.cpp bus/movilink/profile.cpp bus/movilink/unit_servers.cpp
+                   bus/movilink/sbus_slave.cpp bus/movilink/sbus_master.cpp bus/movilink/sbus_group_master.cpp
+                   bus/movilink/sbus_control.cpp bus/movilink/sbus_check.cpp bus/movilink/process_words.cpp
+                   bus/movilink/describe.cpp bus/movilink/dbc.cpp
+                   bus/log/bus_load.cpp bus/log/replay.cpp
                    bus/rs485/levels.cpp bus/rs485/line.cpp bus/log/serial_log.cpp
                    bus/movilink/serial_telegram.cpp bus/movilink/serial_receiver.cpp bus/movilink/handshake.cpp
                    bus/movilink/serial_slave.cpp bus/movilink/serial_requester.cpp bus/movilink/serial_master.cpp

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tools/watch.hpp"
 
@@ -13,6 +14,26 @@ double load_percent(const runtime::LineLoad& load) {
   return load.elapsed_bits == 0
              ? 0.0
              : 100.0 * static_cast<double>(load.busy_bits) / static_cast<double>(load.elapsed_bits);
+}
+
+WatchChoice watch_choice(const std::string& flag) {
+  WatchChoice watch;
+  watch.on = !flag.empty();
+  if (!watch.on || flag == "*") return watch;
+  std::istringstream names(flag);
+  for (std::string name; std::getline(names, name, ',');) watch.names.push_back(name);
+  return watch;
+}
+
+void print_journal(const runtime::Plant& plant, bool why) {
+  for (const runtime::JournalEntry& entry : plant.journal().entries()) {
+    if (entry.weight == runtime::Weight::Why && !why) continue;
+    const char* weight = entry.weight == runtime::Weight::Fault     ? "fault"
+                         : entry.weight == runtime::Weight::Warning ? "warning"
+                                                                    : "note";
+    fmt::print(stderr, "{}{}{}: {} (at {:.3f} ms)\n", entry.station, entry.station.empty() ? "" : ": ",
+               weight, entry.text, static_cast<double>(entry.time) / 1e6);
+  }
 }
 
 std::string text_report(runtime::Plant& plant, const WatchChoice& watch) {

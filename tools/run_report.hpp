@@ -13,6 +13,12 @@ struct WatchChoice {
   std::vector<std::string> names;  // empty: every named variable
 };
 
+// Of --watch: "" none, "*" all, else names with commas.
+WatchChoice watch_choice(const std::string& flag);
+
+// Warnings and faults to stderr, with `why` the notes, too.
+void print_journal(const runtime::Plant& plant, bool why);
+
 std::string text_report(runtime::Plant& plant, const WatchChoice& watch);
 
 // The object of the command line contract: time_us, stations, buses.

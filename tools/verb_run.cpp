@@ -7,16 +7,13 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 #include "runtime/bus/log/candump.hpp"
 #include "runtime/bus/log/serial_log.hpp"
 #include "runtime/plant/plant.hpp"
-#include "stdlib/unit_types.hpp"
 #include "tools/failure.hpp"
-#include "tools/files.hpp"
+#include "tools/plant_input.hpp"
 #include "tools/plot_svg.hpp"
-#include "tools/program.hpp"
 #include "tools/real_time_run.hpp"
 #include "tools/recording.hpp"
 #include "tools/run_report.hpp"
@@ -27,7 +24,6 @@
 namespace ipos::tools {
 namespace {
 
-namespace fs = std::filesystem;
 using runtime::Time;
 
 struct RunFlags {
@@ -49,58 +45,6 @@ struct RunFlags {
 
 volatile std::sig_atomic_t interrupted = 0;
 void on_interrupt(int) { interrupted = 1; }
-
-bool is_plant(const std::string& path) { return fs::path(path).extension() == ".toml"; }
-
-// The plant of a file: a plant file, or one station named after the program.
-runtime::PlantFile plant_of(const RunFlags& flags) {
-  if (is_plant(flags.file)) {
-    runtime::PlantFileResult result = runtime::read_plant_file(read_file(flags.file));
-    for (const runtime::PlantError& error : result.errors)
-      fmt::print(stderr, "{}:{}:{}: error: {}\n", flags.file, error.place.line, error.place.column,
-                 error.text);
-    if (!result.errors.empty()) throw Failure(kBadInput, "");
-    return std::move(result.plant);
-  }
-  runtime::PlantFile plant;
-  runtime::StationConfig station;
-  station.name = fs::path(flags.file).stem().string();
-  station.program = flags.file;
-  plant.stations.push_back(std::move(station));
-  return plant;
-}
-
-// Compiles or loads the programs of all stations; a station's unit decides for which unit a source is
-// compiled.
-std::vector<std::optional<vm::Image>> load_programs(runtime::PlantFile& plant, const RunFlags& flags) {
-  std::vector<std::optional<vm::Image>> programs;
-  for (runtime::StationConfig& station : plant.stations) {
-    if (station.program.empty()) {
-      programs.emplace_back();
-      continue;
-    }
-    CompileFlags compile = flags.compile;
-    if (station.unit != nullptr) compile.unit = station.unit->name;
-    const std::string path = is_plant(flags.file)
-                                 ? (fs::path(flags.file).parent_path() / station.program).string()
-                                 : station.program;
-    if (is_plant(flags.file) && !fs::exists(path))
-      throw Failure(kNoInput, fmt::format("{}:{}:{}: error: station '{}': there is no program {}", flags.file,
-                                          station.program_place.line, station.program_place.column,
-                                          station.name, path));
-    vm::Image image = load_program(path, compile);
-    const stdlib::UnitType* unit = stdlib::find_unit(image.unit);
-    if (unit == nullptr || unit->tasks == 0)
-      throw Failure(kFindings, fmt::format("{}: the image is for unit type {}, which runs no program", path,
-                                           image.unit));
-    if (station.unit == nullptr) station.unit = unit;
-    if (station.unit != unit)
-      throw Failure(kFindings, fmt::format("{}: the image is for unit {}, station '{}' is {}", path,
-                                           unit->name, station.name, station.unit->name));
-    programs.emplace_back(std::move(image));
-  }
-  return programs;
-}
 
 // Asked once a virtual millisecond: shows progress and says when to stop.
 class Watcher {
@@ -140,17 +84,6 @@ class Watcher {
   Clock::time_point last_shown_ = Clock::now();
 };
 
-void print_journal(const runtime::Plant& plant, bool why) {
-  for (const runtime::JournalEntry& entry : plant.journal().entries()) {
-    if (entry.weight == runtime::Weight::Why && !why) continue;
-    const char* weight = entry.weight == runtime::Weight::Fault     ? "fault"
-                         : entry.weight == runtime::Weight::Warning ? "warning"
-                                                                    : "note";
-    fmt::print(stderr, "{}{}{}: {} (at {:.3f} ms)\n", entry.station, entry.station.empty() ? "" : ": ",
-               weight, entry.text, static_cast<double>(entry.time) / 1e6);
-  }
-}
-
 // Prints expectations that were not met or not reached; returns how many.
 size_t print_expectations(const runtime::Plant& plant, const std::string& file) {
   size_t failed = 0;
@@ -187,17 +120,12 @@ void close_output(std::ofstream& file, const std::string& path) {
 
 int run(const RunFlags& flags) {
   const Time limit = flags.duration.empty() ? 60 * runtime::kSecond : runtime::parse_duration(flags.duration);
-  runtime::PlantFile file = plant_of(flags);
-  if (!flags.realtime) refuse_ports(file, flags.file);
-  std::vector<std::optional<vm::Image>> programs = load_programs(file, flags);
-
+  PlantInput input = read_plant_input(flags.file, flags.compile);
+  if (!flags.realtime) refuse_ports(input.file, flags.file);
   std::optional<vm::Rates> rates;
   if (flags.speed != 0) rates = vm::Rates{{flags.speed, flags.speed, flags.speed}};
-  std::vector<runtime::PlantError> errors;
-  runtime::Plant plant(std::move(file), std::move(programs), rates, errors);
-  for (const runtime::PlantError& error : errors)
-    fmt::print(stderr, "{}:{}:{}: error: {}\n", flags.file, error.place.line, error.place.column, error.text);
-  if (!errors.empty()) return kBadInput;
+  const std::unique_ptr<runtime::Plant> built = make_plant(std::move(input), rates);
+  runtime::Plant& plant = *built;
 
   if (!flags.signals.empty() && flags.plot.empty() && flags.trace.empty())
     throw Failure(kUsage, "--signals needs --plot or --trace");
@@ -229,23 +157,18 @@ int run(const RunFlags& flags) {
   }
   serial_log.finish();
   if (!flags.plot.empty())
-    plot_file << plot_svg(recorder->recording(), fs::path(flags.file).filename().string());
+    plot_file << plot_svg(recorder->recording(), std::filesystem::path(flags.file).filename().string());
   if (!flags.trace.empty()) write_csv(trace_file, recorder->recording());
   close_output(log_file, flags.log);
   close_output(serial_file, flags.serial_log);
   close_output(plot_file, flags.plot);
   close_output(trace_file, flags.trace);
 
-  WatchChoice watch;
-  watch.on = !flags.watch.empty();
-  if (watch.on && flags.watch != "*") {
-    std::istringstream names(flags.watch);
-    for (std::string name; std::getline(names, name, ',');) watch.names.push_back(name);
-    for (const std::string& name : watch.names)
-      if (std::none_of(plant.stations().begin(), plant.stations().end(),
-                       [&](const auto& station) { return !watch_rows(*station, {name}).empty(); }))
-        fmt::print(stderr, "ipos: warning: no station has a variable '{}'\n", name);
-  }
+  const WatchChoice watch = watch_choice(flags.watch);
+  for (const std::string& name : watch.names)
+    if (std::none_of(plant.stations().begin(), plant.stations().end(),
+                     [&](const auto& station) { return !watch_rows(*station, {name}).empty(); }))
+      fmt::print(stderr, "ipos: warning: no station has a variable '{}'\n", name);
   fmt::print("{}", flags.format == "json" ? json_report(plant, watch) : text_report(plant, watch));
   print_journal(plant, flags.why);
   const size_t unmet = print_expectations(plant, flags.file);

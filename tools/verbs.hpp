@@ -13,6 +13,7 @@ void add_asm(CLI::App& app, int& exit_code);
 void add_disasm(CLI::App& app, int& exit_code);
 void add_verify(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
+void add_bus(CLI::App& app, int& exit_code);
 void add_explain(CLI::App& app, int& exit_code);
 
 // -I, -D, -W, --unit and --diagnostics, for every verb that compiles.

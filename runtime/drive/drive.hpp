@@ -82,7 +82,7 @@ class Drive final : private DriveLink {
   const AxisState& axis() const { return axis_.state(); }
   uint16_t outputs() const { return outputs_.levels(); }
 
-  // What the master of a master/slave group sends (P750, P751): control word 1, speed, 0.
+  // What the master of a master/slave group sends (P750); its slaves scale it (P751): control word 1, speed, 0.
   Words master_words() const;
 
   // Power off and on: everything as at first, but for the motor potentiometer with P152. The parameters are

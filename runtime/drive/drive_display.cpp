@@ -121,8 +121,7 @@ Drive::Words Drive::master_words() const {
                            : verdict().command == Command::Inhibit   ? control_bits::kInhibit
                            : verdict().command == Command::RapidStop ? control_bits::kStop
                                                                      : control_bits::kRapidStop;
-  const auto speed = static_cast<int32_t>(int64_t{axis_.state().setpoint} * settings().master_scale / 1000);
-  return {control, word_of_speed(speed), 0};
+  return {control, word_of_speed(axis_.state().setpoint), 0};
 }
 
 std::optional<int32_t> Drive::live_value(uint16_t index) const {

@@ -3,9 +3,22 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "runtime/bus/movilink/sbus_group_master.hpp"
+
 namespace ipos::runtime {
 
 namespace codes = stdlib::return_codes;
+
+namespace {
+
+// P100 and P101 (1053 1610 p. 73).
+constexpr int32_t kMasterSbus = 8;
+constexpr int32_t kSetpointSbus = 10;
+constexpr int32_t kControlSbus = 3;
+
+}  // namespace
 
 DriveServer::DriveServer(const stdlib::UnitType& unit, const MachineData& machine, DriveOptions options)
     : parameters_(unit, options),
@@ -55,8 +68,35 @@ tl::expected<int32_t, ReturnCode> DriveServer::serve(Time /*now*/, const Paramet
   return reply;
 }
 
-void DriveServer::take_output(Time /*now*/, OutputChannel /*channel*/, std::span<const uint16_t> words) {
-  state_.take_po(PoSource::Sbus, words);
+void DriveServer::take_output(Time /*now*/, OutputChannel channel, std::span<const uint16_t> words) {
+  look_for_obstacles(channel);
+  const bool slave = channel == OutputChannel::Group && value("100") == kMasterSbus;
+  if (!slave) return state_.take_po(PoSource::Sbus, words);
+  ProcessWords scaled{};
+  std::copy_n(words.begin(), std::min(words.size(), scaled.size()), scaled.begin());
+  state_.take_po(PoSource::Sbus, scaled_for_slave(scaled, value("751")));
+}
+
+// P876, P101 and P100 (1053 1610 p. 41).
+void DriveServer::look_for_obstacles(OutputChannel channel) {
+  const int32_t setpoint = value("100");
+  const bool slave = channel == OutputChannel::Group && setpoint == kMasterSbus;
+  if (value("876") == 0) obstruct(Obstacle::PoDisabled, "PO data have no effect", "876", "ON");
+  if (!slave && value("101") != kControlSbus)
+    obstruct(Obstacle::ControlSource, "the control word has no effect", "101", "SBus");
+  if (!slave && setpoint != kSetpointSbus)
+    obstruct(Obstacle::SetpointSource, "the setpoints have no effect", "100", "SBus");
+}
+
+void DriveServer::obstruct(Obstacle obstacle, std::string_view what, std::string_view number,
+                           std::string_view wanted) {
+  const uint32_t bit = 1U << static_cast<uint32_t>(obstacle);
+  if ((told_obstacles_ & bit) != 0) return;
+  told_obstacles_ |= bit;
+  const stdlib::Parameter* row = parameters_.table().find(number);
+  if (row == nullptr) return;
+  obstacles_.push_back(fmt::format("{}: P{} {} is {}, not {}", what, number, row->name,
+                                   stdlib::parameter_text(*row, value(number)), wanted));
 }
 
 ProcessWords DriveServer::input(Time /*now*/) { return state_.pi(); }
@@ -82,7 +122,7 @@ void DriveServer::Rs485Data::cyclic_request(Time /*now*/) { drive_.state_.take_r
 ProcessWords DriveServer::setpoint_to_send(Time /*now*/) { return state_.master_words(); }
 
 void DriveServer::setpoint_received(Time /*now*/, const ProcessWords& words) {
-  state_.take_po(PoSource::Rs485, words);
+  state_.take_po(PoSource::Rs485, scaled_for_slave(words, value("751")));
 }
 
 void DriveServer::link_lost(Time /*now*/) {

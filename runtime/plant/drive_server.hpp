@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "runtime/bus/movilink/master_slave.hpp"
+#include "runtime/bus/movilink/sbus_slave.hpp"
 #include "runtime/bus/movilink/unit_servers.hpp"
 #include "runtime/drive/drive.hpp"
 #include "runtime/drive/parameters.hpp"
@@ -49,9 +50,13 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
   Drive& state() { return state_; }
   const Drive& state() const { return state_; }
   ParameterStore& parameters() { return parameters_; }
+  const stdlib::UnitType& unit() const { return parameters_.unit(); }
 
   // Why the last access was refused, empty when it was not. Reading it clears it.
   std::string take_reason() { return std::exchange(reason_, {}); }
+
+  // What keeps process data that came over the SBus from acting, each told once.
+  std::vector<std::string> take_obstacles() { return std::exchange(obstacles_, {}); }
 
   tl::expected<int32_t, ReturnCode> serve(Time now, const ParameterRequest& request) override;
   void take_output(Time now, OutputChannel channel, std::span<const uint16_t> words) override;
@@ -61,7 +66,7 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
   ProcessDataServer& rs485_data() { return rs485_data_; }
   SerialParameters serial_parameters() const;
 
-  // Master/slave operation over RS-485.
+  // Master/slave operation over RS-485 and SBus: what the master sends, and a slave takes.
   ProcessWords setpoint_to_send(Time now) override;
   void setpoint_received(Time now, const ProcessWords& words) override;
   void link_lost(Time now) override;
@@ -106,6 +111,10 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
     std::span<const uint32_t> code_;
   };
 
+  enum class Obstacle : uint8_t { PoDisabled, ControlSource, SetpointSource };
+  void look_for_obstacles(OutputChannel channel);
+  void obstruct(Obstacle obstacle, std::string_view what, std::string_view number, std::string_view wanted);
+
   uint16_t index_of(std::string_view number) const;  // 0 for a parameter the unit does not have
 
   ParameterStore parameters_;
@@ -120,6 +129,8 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
   uint16_t task1_speed_;  // index of P938
   uint16_t task2_speed_;  // index of P939
   std::string reason_;
+  std::vector<std::string> obstacles_;
+  uint32_t told_obstacles_ = 0;  // a bit each
 };
 
 }  // namespace ipos::runtime

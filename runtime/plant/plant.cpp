@@ -31,26 +31,89 @@ std::vector<PlantError> verify_program(const StationConfig& station, const vm::I
 Plant::Plant(PlantFile file, std::vector<std::optional<vm::Image>> programs, std::optional<vm::Rates> rates,
              std::vector<PlantError>& errors)
     : file_(std::move(file)) {
-  // Sources order the events of one moment: first the lines, then the stations, each in the order of the
-  // file.
+  // Sources order the events of one moment: first the lines, then stations and controls, each in the order of
+  // the file.
   make_lines();
-  for (size_t n = 0; n < file_.stations.size(); ++n) {
-    const StationConfig& config = file_.stations[n];
-    const StationLines lines = lines_of(config);
-    if (programs[n]) {
-      const std::vector<PlantError> refused = verify_program(config, *programs[n]);
-      errors.insert(errors.end(), refused.begin(), refused.end());
-    }
-    stations_.push_back(std::make_unique<Station>(queue_, next_source_++, config, std::move(programs[n]),
-                                                  lines, journal_, rates));
-    for (const ParameterSetting& setting : config.parameters)
-      if (const auto refused = stations_.back()->set_parameter(setting))
-        errors.push_back({setting.place, fmt::format("station '{}': {}", config.name, *refused)});
-  }
+  for (size_t n = 0; n < file_.stations.size(); ++n) add_station(n, std::move(programs[n]), rates, errors);
+  for (const ControlConfig& config : file_.controls)
+    controls_.push_back({&config, find_line(config.sbus),
+                         std::make_unique<SbusControl>(queue_, next_source_++, config.settings), nullptr});
   resolve_expectations(errors);
   if (!errors.empty()) return;
   tell_findings();
-  for (const auto& station : stations_) station->power_on();
+  power_on();
+  start_checks();
+  plant_faults();
+}
+
+void Plant::add_station(size_t number, std::optional<vm::Image> program, std::optional<vm::Rates> rates,
+                        std::vector<PlantError>& errors) {
+  const StationConfig& config = file_.stations[number];
+  const StationLines lines = lines_of(config);
+  if (program) {
+    const std::vector<PlantError> refused = verify_program(config, *program);
+    errors.insert(errors.end(), refused.begin(), refused.end());
+  }
+  stations_.push_back(
+      std::make_unique<Station>(queue_, next_source_++, config, std::move(program), lines, journal_, rates));
+  for (const ParameterSetting& setting : config.parameters)
+    if (const auto refused = stations_.back()->set_parameter(setting))
+      errors.push_back({setting.place, fmt::format("station '{}': {}", config.name, *refused)});
+}
+
+CanLine* Plant::find_line(std::string_view name) const {
+  const auto line = std::find_if(lines_.begin(), lines_.end(),
+                                 [&](const auto& candidate) { return candidate->name() == name; });
+  return line == lines_.end() ? nullptr : line->get();
+}
+
+// Stations and controls sit on the cable in the order in which they stand in the file.
+void Plant::power_on() {
+  size_t control = 0;
+  const auto begin_control = [&](PlantControl& started) {
+    if (started.line == nullptr) return;
+    const NodeId node = started.line->attach(started.config->name, started.line->baud(), *started.control);
+    started.port = std::make_unique<LinePort>(*started.line, node);
+    started.control->start(*started.port);
+  };
+  for (const auto& station : stations_) {
+    const FilePlace place = station->config().place;
+    while (control < controls_.size() && controls_[control].config->place.line < place.line)
+      begin_control(controls_[control++]);
+    station->power_on();
+  }
+  while (control < controls_.size()) begin_control(controls_[control++]);
+}
+
+void Plant::start_checks() {
+  for (const auto& station : stations_)
+    for (const int number : {1, 2}) {
+      const SbusPort* port = station->sbus(number);
+      if (port == nullptr) continue;
+      for (size_t n = 0; n < lines_.size(); ++n)
+        if (lines_[n].get() == &port->line())
+          checks_[n]->add_slave(queue_.now(), *lines_[n], port->node(), port->settings().slave);
+    }
+}
+
+void Plant::plant_faults() {
+  for (const FaultConfig& config : file_.faults) {
+    CanLine* line = find_line(config.bus);
+    LineFault fault = config.fault;
+    fault.node = config.station.empty() ? kNoNode : find_node(*line, config.station);
+    if (!config.station.empty() && fault.node == kNoNode)
+      journal_.note(
+          queue_.now(), Weight::Warning, config.station,
+          fmt::format("the fault planted on bus '{}' has no effect: the station is not on it", config.bus));
+    else
+      line->plant(fault);
+  }
+}
+
+NodeId Plant::find_node(const CanLine& line, std::string_view station) const {
+  for (NodeId node = 0; node < line.node_count(); ++node)
+    if (line.node_name(node) == station) return node;
+  return kNoNode;
 }
 
 void Plant::make_lines() {
@@ -61,6 +124,8 @@ void Plant::make_lines() {
     }
     lines_.push_back(std::make_unique<CanLine>(queue_, next_source_++, bus.name, bus.baud));
     lines_.back()->add_observer(*this);
+    checks_.push_back(std::make_unique<SbusCheck>(static_cast<SbusCheckClient&>(*this)));
+    lines_.back()->add_observer(*checks_.back());
   }
 }
 
@@ -78,8 +143,7 @@ StationLines Plant::lines_of(const StationConfig& station) {
     return nullptr;
   };
   StationLines found;
-  for (const auto& line : lines_)
-    if (line->name() == station.sbus) found.sbus = line.get();
+  found.sbus = {find_line(station.sbus), find_line(station.sbus2)};
   found.x13 = serial(station.serial.x13.bus);
   found.xt = serial(station.serial.xt.bus);
   if (station.serial.keypad) {
@@ -161,6 +225,10 @@ void Plant::on_frame(const CanLine& /*line*/, const FrameRecord& /*record*/) {}
 
 void Plant::on_line_event(const CanLine& line, const LineEvent& event) {
   journal_.note(event.time, Weight::Warning, "", describe(line, event));
+}
+
+void Plant::on_sbus_finding(Time now, std::string text) {
+  journal_.note(now, Weight::Warning, "", std::move(text));
 }
 
 }  // namespace ipos::runtime

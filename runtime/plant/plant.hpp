@@ -10,6 +10,7 @@
 
 #include "runtime/bus/can/line.hpp"
 #include "runtime/bus/movilink/line_check.hpp"
+#include "runtime/bus/movilink/sbus_check.hpp"
 #include "runtime/bus/rs485/line.hpp"
 #include "runtime/plant/plant_file.hpp"
 #include "runtime/plant/station.hpp"
@@ -34,7 +35,15 @@ struct SerialLine {
   LineCheck check;
 };
 
-class Plant final : private CanObserver {
+// A master control and its place on a line.
+struct PlantControl {
+  const ControlConfig* config;
+  CanLine* line;
+  std::unique_ptr<SbusControl> control;
+  std::unique_ptr<LinePort> port;
+};
+
+class Plant final : private CanObserver, private SbusCheckClient {
  public:
   // One program for each station of the file, empty where it has none. `rates` overrides P938 and P939.
   // Errors (unknown parameters, refused values, programs the unit refuses, unknown variables) come back in
@@ -61,6 +70,8 @@ class Plant final : private CanObserver {
 
   const PlantFile& file() const { return file_; }
   std::vector<std::unique_ptr<Station>>& stations() { return stations_; }
+  const std::vector<std::unique_ptr<Station>>& stations() const { return stations_; }
+  const std::vector<PlantControl>& controls() const { return controls_; }
   const std::vector<std::unique_ptr<CanLine>>& lines() const { return lines_; }
   const std::vector<std::unique_ptr<SerialLine>>& serial_lines() const { return serial_lines_; }
   const Journal& journal() const { return journal_; }
@@ -69,10 +80,18 @@ class Plant final : private CanObserver {
  private:
   void on_frame(const CanLine& line, const FrameRecord& record) override;
   void on_line_event(const CanLine& line, const LineEvent& event) override;
+  void on_sbus_finding(Time now, std::string text) override;
   void make_lines();
   StationLines lines_of(const StationConfig& station);
   void add_serial_line(const std::string& name, uint32_t baud, uint32_t source);
   void tell_findings();
+  CanLine* find_line(std::string_view name) const;
+  void add_station(size_t number, std::optional<vm::Image> program, std::optional<vm::Rates> rates,
+                   std::vector<PlantError>& errors);
+  void power_on();
+  void start_checks();
+  void plant_faults();
+  NodeId find_node(const CanLine& line, std::string_view station) const;
   void check_expectations(Time until);
   void resolve_expectations(std::vector<PlantError>& errors);
 
@@ -82,7 +101,9 @@ class Plant final : private CanObserver {
   Journal journal_;
   std::vector<std::unique_ptr<CanLine>> lines_;
   std::vector<std::unique_ptr<SerialLine>> serial_lines_;  // of the file, then those to keypads
+  std::vector<std::unique_ptr<SbusCheck>> checks_;         // one a line
   std::vector<std::unique_ptr<Station>> stations_;
+  std::vector<PlantControl> controls_;
 
   struct Due {
     const Expectation* expectation;

@@ -14,6 +14,8 @@
 #include <optional>
 #include <set>
 
+#include "runtime/plant/bus_tables.hpp"
+
 namespace ipos::runtime {
 namespace {
 
@@ -54,8 +56,6 @@ std::optional<FilePlace> stray_character(std::string_view text) {
   return std::nullopt;
 }
 
-FilePlace place_of(const toml::source_region& region) { return {region.begin.line, region.begin.column}; }
-
 // Reads one plant file; collects all errors.
 class Reader {
  public:
@@ -71,9 +71,13 @@ class Reader {
       return std::move(result_);
     }
     const toml::table& root = parsed.table();
-    known_keys(root, "the plant", {"bus", "station", "expect"});
+    known_keys(root, "the plant", {"bus", "station", "control", "fault", "expect"});
     for_each_table(root, "bus", [this](const toml::table& table) { bus(table); });
     for_each_table(root, "station", [this](const toml::table& table) { station(table); });
+    for_each_table(root, "control",
+                   [this](const toml::table& table) { read_control(*this, table, result_.plant); });
+    for_each_table(root, "fault",
+                   [this](const toml::table& table) { read_fault(*this, table, result_.plant); });
     for_each_table(root, "expect", [this](const toml::table& table) { expectation(table); });
     cross_check();
     std::stable_sort(result_.errors.begin(), result_.errors.end(), [](const auto& a, const auto& b) {
@@ -82,7 +86,7 @@ class Reader {
     return std::move(result_);
   }
 
- private:
+  // For the tables of bus_tables.hpp, too.
   void error(FilePlace place, std::string text) { result_.errors.push_back({place, std::move(text)}); }
 
   void known_keys(const toml::table& table, std::string_view what,
@@ -141,6 +145,52 @@ class Reader {
       error(place, fmt::format("there are two of {} '{}'", what, name));
   }
 
+  // A value without sign, or the default.
+  uint32_t count(const toml::table& table, std::string_view key, uint32_t limit, uint32_t otherwise) {
+    const toml::node* node = table.get(key);
+    int32_t value = 0;
+    if (node == nullptr || !number(*node, key, value)) return otherwise;
+    if (value >= 0 && static_cast<uint32_t>(value) <= limit) return static_cast<uint32_t>(value);
+    error(place_of(node->source()), fmt::format("{} is 0 to {}", key, limit));
+    return otherwise;
+  }
+
+  int64_t duration(const toml::table& table, std::string_view key, int64_t otherwise) {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) return otherwise;
+    const std::string written = text(table, key, "", false);
+    const int64_t value = parse_duration(written);
+    if (value < 0 && !written.empty())
+      error(place_of(node->source()),
+            fmt::format("'{}' is no time; write for example 500ms or 1.5s", written));
+    return value;
+  }
+
+  std::optional<bool> flag(const toml::table& table, std::string_view key) {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) return std::nullopt;
+    if (const auto* value = node->as_boolean()) return value->get();
+    error(place_of(node->source()), fmt::format("{} is true or false", key));
+    return std::nullopt;
+  }
+
+  // The name of a bus or of a station elsewhere in the file.
+  std::string bus_name(const toml::table& table, std::string_view key, std::string_view what, bool required) {
+    std::string name = text(table, key, what, required);
+    if (const toml::node* node = table.get(key))
+      bus_uses_.push_back({{name, place_of(node->source())}, BusKind::Can});
+    return name;
+  }
+  std::string station_name(const toml::table& table, std::string_view key) {
+    std::string name = text(table, key, "", false);
+    if (const toml::node* node = table.get(key)) station_uses_.push_back({name, place_of(node->source())});
+    return name;
+  }
+  void new_station(const std::string& name, FilePlace place) {
+    unique(station_names_, name, "station", place);
+  }
+
+ private:
   struct KindName {
     std::string_view name;
     BusKind kind;
@@ -152,7 +202,9 @@ class Reader {
                                         {"profibus", BusKind::Profibus, 0}};
 
   void bus(const toml::table& table) {
-    known_keys(table, "[[bus]]", {"name", "kind", "baud", "port", "length", "shielded", "terminated"});
+    known_keys(
+        table, "[[bus]]",
+        {"name", "kind", "baud", "port", "length", "impedance", "capacitance", "shielded", "terminated"});
     BusConfig config;
     config.place = place_of(table.source());
     config.name = text(table, "name", "a [[bus]]", true);
@@ -178,6 +230,8 @@ class Reader {
       if (config.port.empty() && port->is_string()) error(config.port_place, "port must not be empty");
       unique(port_names_, config.port, "port", config.port_place);
     }
+    config.impedance = count(table, "impedance", 1000, 0);
+    config.capacitance = count(table, "capacitance", 1000, 0);
     result_.plant.buses.push_back(std::move(config));
   }
 
@@ -200,8 +254,8 @@ class Reader {
   }
 
   void wiring(const toml::table& table, BusConfig& config) {
-    config.shielded = flag(table, "shielded", nullptr);
-    config.terminated = flag(table, "terminated", nullptr);
+    config.shielded = flag(table, "shielded").value_or(false);
+    config.terminated = flag(table, "terminated").value_or(false);
     const toml::node* length = table.get("length");
     if (length == nullptr) return;
     const auto metres = length->value<double>();
@@ -212,13 +266,14 @@ class Reader {
   }
 
   void station(const toml::table& table) {
-    known_keys(table, "[[station]]",
-               {"name", "unit", "firmware", "program", "sbus", "rs485", "rs485_xt", "keypad", "uss21a", "s13",
-                "parameters", "inputs", "analog", "load", "hex"});
+    known_keys(
+        table, "[[station]]",
+        {"name", "unit", "firmware", "program", "sbus", "sbus2", "device", "terminator", "branch", "rs485",
+         "rs485_xt", "keypad", "uss21a", "s13", "parameters", "inputs", "analog", "load", "hex"});
     StationConfig config;
     config.place = place_of(table.source());
     config.name = text(table, "name", "a [[station]]", true);
-    unique(station_names_, config.name, "station", config.place);
+    new_station(config.name, config.place);
     const std::string unit = text(table, "unit", "a [[station]]", true);
     config.unit = stdlib::find_unit(unit);
     if (config.unit == nullptr && !unit.empty()) {
@@ -234,7 +289,13 @@ class Reader {
       if (config.unit != nullptr && config.unit->tasks == 0)
         error(config.program_place, fmt::format("unit type {} runs no program", config.unit->name));
     }
-    config.sbus = bus_use(table, "sbus", BusKind::Can).bus;
+    config.sbus = bus_name(table, "sbus", "", false);
+    config.sbus2 = bus_name(table, "sbus2", "", false);
+    if (!config.sbus2.empty() && config.unit != nullptr && config.unit->generation != stdlib::Generation::B)
+      error(place_of(table.get("sbus2")->source()), fmt::format("unit {} has no SBus 2", config.unit->name));
+    config.device = text(table, "device", "", false);
+    config.terminator = flag(table, "terminator");
+    config.branch = flag(table, "branch").value_or(false);
     config.serial = serial(table);
     parameters(table, config);
     inputs(table, config);
@@ -253,23 +314,19 @@ class Reader {
     return use;
   }
 
-  // A switch; absent is false. `place` is set where it stands.
-  bool flag(const toml::table& table, std::string_view key, FilePlace* place) {
-    const toml::node* node = table.get(key);
-    if (node == nullptr) return false;
-    if (place != nullptr) *place = place_of(node->source());
-    if (const auto* value = node->as_boolean()) return value->get();
-    error(place_of(node->source()), fmt::format("{} is true or false", key));
-    return false;
+  // A switch of the unit; absent is false. `place` is set where it stands.
+  bool fitted(const toml::table& table, std::string_view key, FilePlace& place) {
+    if (const toml::node* node = table.get(key)) place = place_of(node->source());
+    return flag(table, key).value_or(false);
   }
 
   SerialConfig serial(const toml::table& table) {
     SerialConfig config;
     config.x13 = bus_use(table, "rs485", BusKind::Rs485);
     config.xt = bus_use(table, "rs485_xt", BusKind::Rs485);
-    config.keypad = flag(table, "keypad", &config.keypad_place);
-    config.uss21a = flag(table, "uss21a", &config.uss21a_place);
-    config.s13 = flag(table, "s13", &config.s13_place);
+    config.keypad = fitted(table, "keypad", config.keypad_place);
+    config.uss21a = fitted(table, "uss21a", config.uss21a_place);
+    config.s13 = fitted(table, "s13", config.s13_place);
     return config;
   }
 
@@ -384,8 +441,8 @@ class Reader {
     percentage(*settings, "inertia", 0, 100'000, 1, machine.inertia);
     percentage(*settings, "friction", 0, 1'000, 1'000, machine.friction);
     percentage(*settings, "torque", -1'000, 1'000, 1'000, machine.load_torque);
-    flag(*settings, "brake", machine.brake);
-    flag(*settings, "braking_resistor", machine.braking_resistor);
+    machine.brake = flag(*settings, "brake").value_or(machine.brake);
+    machine.braking_resistor = flag(*settings, "braking_resistor").value_or(machine.braking_resistor);
   }
 
   // A value in % between two ends, kept in parts of `parts` to the percent.
@@ -398,15 +455,6 @@ class Reader {
     if (!(*value >= least && *value <= most))
       return error(place_of(node->source()), fmt::format("{} is {} to {} %", key, least, most));
     out = static_cast<int32_t>(std::lround(*value * parts));
-  }
-
-  void flag(const toml::table& table, std::string_view key, bool& out) {
-    const toml::node* node = table.get(key);
-    if (node == nullptr) return;
-    if (node->is_boolean())
-      out = node->as_boolean()->get();
-    else
-      error(place_of(node->source()), fmt::format("{} is true or false", key));
   }
 
   void hex(const toml::table& table, StationConfig& config) {

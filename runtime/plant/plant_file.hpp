@@ -4,10 +4,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "runtime/bus/can/line_fault.hpp"
+#include "runtime/bus/movilink/sbus_control.hpp"
 #include "runtime/drive/parameters.hpp"
 #include "runtime/drive/setpoint.hpp"
 #include "runtime/motion/machine_data.hpp"
@@ -32,8 +35,10 @@ struct BusConfig {
   std::string port;         // of the real bus it is joined to, or empty
   FilePlace port_place;
   FilePlace place;
-  // Of a serial line, for the planning checks only (serial_plan.hpp).
-  uint32_t length_mm = 0;  // 0: not given
+  // The cable, for planning only; 0: not given.
+  uint32_t length_mm = 0;
+  uint32_t impedance = 0;    // ohm
+  uint32_t capacitance = 0;  // pF/m
   bool shielded = false;
   bool terminated = false;  // external terminating resistors
 };
@@ -76,7 +81,11 @@ struct StationConfig {
   DriveOptions options;
   std::string program;  // as written, relative to the plant file; empty: no program
   std::string sbus;     // name of a bus, or empty
+  std::string sbus2;    // SBus 2 of a MOVIDRIVE B
   SerialConfig serial;
+  std::string device;              // type designation, where a rule needs it: "MCH42A"
+  std::optional<bool> terminator;  // S12, for `ipos bus plan`
+  bool branch = false;             // the cable goes on over SC21/SC22
   std::vector<ParameterSetting> parameters;
   std::vector<InputSetting> inputs;
   AnalogInputs analog;
@@ -84,6 +93,23 @@ struct StationConfig {
   std::vector<std::string> hex;  // variables the watch shows in hexadecimal
   FilePlace place;
   FilePlace program_place;
+};
+
+// A master control on an SBus: process data to units, and the sync telegram.
+struct ControlConfig {
+  std::string name;
+  std::string sbus;
+  ControlSettings settings;
+  std::optional<bool> terminator;
+  FilePlace place;
+};
+
+// A planted fault; `fault.node` is found when the plant is built.
+struct FaultConfig {
+  std::string bus;
+  std::string station;  // empty: all
+  LineFault fault;
+  FilePlace place;
 };
 
 // At a point of virtual time a variable of a station has a value.
@@ -98,6 +124,8 @@ struct Expectation {
 struct PlantFile {
   std::vector<BusConfig> buses;
   std::vector<StationConfig> stations;
+  std::vector<ControlConfig> controls;
+  std::vector<FaultConfig> faults;
   std::vector<Expectation> expectations;
 };
 

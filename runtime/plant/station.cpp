@@ -15,20 +15,6 @@ namespace {
 
 constexpr uint32_t kTick = 0;  // the only kind of event a station schedules
 
-// Tags of frames by the part that sent them.
-constexpr uint64_t kSlaveTag = 1;
-constexpr uint64_t kMasterTag = 2;
-constexpr uint64_t kObjectTags = 0x100;  // and above
-
-// The parameters of the SBus port (1053 1610 p. 41; MOVIDRIVE B: P881 to P885).
-struct SbusParameters {
-  std::string_view address, group, baud, sync_id;
-};
-constexpr SbusParameters sbus_parameters(stdlib::Generation generation) {
-  if (generation == stdlib::Generation::B) return {"881", "882", "884", "885"};
-  return {"813", "814", "816", "817"};
-}
-
 }  // namespace
 
 vm::Limits limits_of(const stdlib::UnitType& unit) {
@@ -57,29 +43,34 @@ void Station::power_on() {
   for (const InputSetting& input : config_.inputs) inputs |= (input.level ? 1U : 0U) << input.input;
   drive_.state().set_inputs(static_cast<uint16_t>(inputs));
   drive_.state().set_analog(config_.analog);
-  if (lines_.sbus != nullptr) connect_sbus();
+  for (const int number : {1, 2}) connect_sbus(number);
   connect_serial();
   if (image_) {
-    commands_.emplace(queue_, journal_, config_.name, sbus_ ? &sbus_->objects : nullptr, movilink_);
+    const auto objects = [this](int number) {
+      SbusPort* port = sbus(number);
+      return port == nullptr ? nullptr : &port->objects();
+    };
+    commands_.emplace(queue_, journal_, config_.name, std::array{objects(1), objects(2)}, movilink_);
     machine_.emplace(*vm::verify(image_->code, limits_of(*config_.unit), {}).image, commands_->host());
     drive_.connect_program(*machine_);
+    for (const auto& port : sbus_)
+      if (port) port->connect_program(*machine_);
     machine_->start();
   }
   queue_.schedule(queue_.now(), source_, *this, kTick);
 }
 
-void Station::connect_sbus() {
-  const SbusParameters p = sbus_parameters(config_.unit->generation);
-  const auto baud_code = static_cast<size_t>(drive_.value(p.baud));
-  const uint32_t baud = kBaudRates[std::min(baud_code, kBaudRates.size() - 1)];
-  const LinePort port(*lines_.sbus, lines_.sbus->attach(config_.name, baud, *this));
-  const SlaveSettings settings{
-      static_cast<uint8_t>(drive_.value(p.address)), static_cast<uint8_t>(drive_.value(p.group)),
-      static_cast<uint16_t>(drive_.value(p.sync_id) / 1000), false};  // coded in thousandths
-  // The port's parts keep a reference to its sender, so it must not move.
-  sbus_ = std::make_unique<SbusPort>(queue_, source_, port, settings, drive_, *config_.unit, baud,
-                                     static_cast<SlaveObserver&>(*this), movilink_.client(MovilinkBus::Sbus));
-  movilink_.connect(MovilinkBus::Sbus, sbus_->master);
+void Station::connect_sbus(int number) {
+  CanLine* line = lines_.sbus[static_cast<size_t>(number - 1)];
+  if (line == nullptr) return;
+  const SbusSettings settings = sbus_settings(drive_, number);
+  if (!settings.movilink)
+    return journal_.note(
+        queue_.now(), Weight::Warning, config_.name,
+        fmt::format("SBus {} is silent: its protocol is CANopen (P{}), which is not simulated", number,
+                    number == 1 ? 880 : 890));
+  sbus_[static_cast<size_t>(number - 1)] = std::make_unique<SbusPort>(
+      queue_, source_, *line, number, config_.name, settings, drive_, movilink_, journal_);
 }
 
 void Station::connect_serial() {
@@ -97,16 +88,6 @@ void Station::connect_serial() {
     movilink_.connect(MovilinkBus::SerialXt, xt_->master());
 }
 
-Station::SbusPort::SbusPort(EventQueue& queue, uint32_t source, LinePort port, SlaveSettings settings,
-                            DriveServer& drive, const stdlib::UnitType& unit, uint32_t baud,
-                            SlaveObserver& observer, MovilinkClient& client)
-    : sender(port),
-      slave(queue, source, sender, kSlaveTag, settings, {}, drive, drive, &observer),
-      objects(unit, baud, sender, kObjectTags),
-      master(queue, source, sender, kMasterTag, kSbusReplyTimeout, client) {
-  objects.set_addresses(settings.address, settings.group);
-}
-
 void Station::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
   drive_.state().tick();
   report_drive(now);
@@ -118,40 +99,16 @@ void Station::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
     take_program_orders(machine_->variables(), drive_.state());
     if (machine_->fault().number != 0 && !fault_reported_) report_fault(now);
   }
-  if (sbus_ && machine_) sbus_->objects.tick(now / kMillisecond, machine_->variables());
+  for (const auto& port : sbus_)
+    if (port) port->tick(now);
   queue_.schedule(now + kMillisecond, source_, *this, kTick);
-}
-
-void Station::on_frame(Time now, const Frame& frame) {
-  if (!sbus_) return;  // a frame may arrive while the port is being made
-  if (sbus_->master.on_frame(now, frame)) return;
-  std::string why;
-  const bool received = machine_ && sbus_->objects.on_frame(frame, machine_->variables(), why);
-  if (!why.empty()) journal_.note(now, Weight::Warning, config_.name, std::move(why));
-  if (!received) sbus_->slave.on_frame(now, frame);
-  if (std::string refused = drive_.take_reason(); !refused.empty())
-    journal_.note(now, Weight::Why, config_.name, "refused " + std::move(refused));
-}
-
-void Station::on_sent(Time now, const Frame& /*frame*/, uint64_t tag) {
-  if (tag == kMasterTag) sbus_->master.on_sent(now, tag);
-  if (tag >= kObjectTags) sbus_->objects.on_sent(tag, machine_->variables());
-}
-
-void Station::on_not_sent(Time /*now*/, const Frame& /*frame*/, uint64_t tag, NotSent /*reason*/) {
-  if (tag >= kObjectTags) sbus_->objects.on_not_sent(tag, machine_->variables());
-}
-
-void Station::on_ignored(Time now, const Frame& frame, Ignored reason, ReturnCode code) {
-  std::string text = fmt::format("SBus telegram {} had no effect: {}", frame.id, ignored_text(reason));
-  if (code != ReturnCode{}) text += fmt::format(" ({})", describe(code));
-  journal_.note(now, Weight::Why, config_.name, std::move(text));
 }
 
 void Station::report_fault(Time now) {
   fault_reported_ = true;
   const vm::Fault& fault = machine_->fault();
-  if (sbus_) sbus_->objects.stop();  // a program stop ends cyclic sending and receiving (1053 1610 p. 54)
+  for (const auto& port : sbus_)
+    if (port) port->stop_program();
   movilink_.stop();
   drive_.state().raise_fault(fault.number);
   const std::string place = source_place(fault.address);

@@ -3,6 +3,7 @@
 // order.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,15 +11,12 @@
 
 #include "runtime/bus/can/line.hpp"
 #include "runtime/bus/movilink/keypad.hpp"
-#include "runtime/bus/movilink/sbus_master.hpp"
-#include "runtime/bus/movilink/sbus_slave.hpp"
 #include "runtime/plant/drive_server.hpp"
 #include "runtime/plant/plant_file.hpp"
+#include "runtime/plant/sbus_port.hpp"
 #include "runtime/plant/serial_port.hpp"
 #include "runtime/services/journal.hpp"
-#include "runtime/services/movilink_command.hpp"
 #include "runtime/services/system_commands.hpp"
-#include "runtime/services/variable_objects.hpp"
 #include "vm/exec/machine.hpp"
 #include "vm/image/image.hpp"
 #include "vm/sched/scheduler.hpp"
@@ -30,12 +28,12 @@ vm::Limits limits_of(const stdlib::UnitType& unit);
 
 // The lines of a station; null where it is not connected.
 struct StationLines {
-  CanLine* sbus = nullptr;
+  std::array<CanLine*, 2> sbus{};  // SBus 1 and 2
   Rs485Line* x13 = nullptr;
   Rs485Line* xt = nullptr;  // with a keypad the line to it
 };
 
-class Station final : private CanNode, private EventTarget, private SlaveObserver {
+class Station final : private EventTarget {
  public:
   // `program` is empty for a station without IPOS program. The config and the journal must outlive the
   // station. Parameters of the config must be checked before (plant.cpp). The program must pass verify() for
@@ -53,6 +51,11 @@ class Station final : private CanNode, private EventTarget, private SlaveObserve
   const vm::Image* image() const { return image_ ? &*image_ : nullptr; }
   const vm::Machine* machine() const { return machine_ ? &*machine_ : nullptr; }
   DriveServer& drive() { return drive_; }
+  const DriveServer& drive() const { return drive_; }
+
+  // SBus 1 or 2; null when the station is not on it.
+  const SbusPort* sbus(int number) const { return sbus_[static_cast<size_t>(number - 1)].get(); }
+  SbusPort* sbus(int number) { return sbus_[static_cast<size_t>(number - 1)].get(); }
 
   // The program has ended, was never there, or a fault has stopped it.
   bool program_over() const;
@@ -69,12 +72,7 @@ class Station final : private CanNode, private EventTarget, private SlaveObserve
 
  private:
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
-  void on_frame(Time now, const Frame& frame) override;
-  void on_sent(Time now, const Frame& frame, uint64_t tag) override;
-  void on_not_sent(Time now, const Frame& frame, uint64_t tag, NotSent reason) override;
-  void on_ignored(Time now, const Frame& frame, Ignored reason, ReturnCode code) override;
-
-  void connect_sbus();
+  void connect_sbus(int number);
   void connect_serial();
   void report_fault(Time now);
   void report_drive(Time now);
@@ -87,17 +85,7 @@ class Station final : private CanNode, private EventTarget, private SlaveObserve
   DriveServer drive_;
   MovilinkCommand movilink_;
   std::optional<vm::Image> image_;
-
-  // The SBus port; empty without one.
-  struct SbusPort {
-    SbusPort(EventQueue& queue, uint32_t source, LinePort port, SlaveSettings settings, DriveServer& drive,
-             const stdlib::UnitType& unit, uint32_t baud, SlaveObserver& observer, MovilinkClient& client);
-    LinePort sender;
-    SbusSlave slave;
-    VariableObjects objects;
-    SbusMaster master;
-  };
-  std::unique_ptr<SbusPort> sbus_;
+  std::array<std::unique_ptr<SbusPort>, 2> sbus_;
 
   // RS-485; empty without a line.
   std::unique_ptr<SerialPort> x13_;

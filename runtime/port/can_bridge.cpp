@@ -93,7 +93,8 @@ void CanBridge::on_sent(Time /*now*/, const Frame& /*frame*/, uint64_t /*tag*/) 
 
 void CanBridge::on_not_sent(Time now, const Frame& /*frame*/, uint64_t tag, NotSent reason) {
   switch (reason) {
-    case NotSent::Collision: return;  // the line sends it again
+    case NotSent::Collision:
+    case NotSent::Corrupted: return;  // the line sends it again
     case NotSent::NoAcknowledge:
       // On the real bus it has been acknowledged; here is nobody to take it.
       sender_.withdraw(tag);

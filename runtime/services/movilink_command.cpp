@@ -53,6 +53,7 @@ vm::HostReply MovilinkCommand::start(Time now, vm::Machine& machine, int task, u
           static_cast<uint32_t>(element(kDPointer)),
           {element(kAddress), element(kFormat), element(kService), element(kIndex), 0, {}}};
 
+  if (!has_called(variable)) structures_.push_back(variable);
   const auto format = telegram_format(job.bus.format);
   if (!format) {
     why = fmt::format("MOVLNK: Format {} is none of 0..6 and 128..134", job.bus.format);
@@ -78,11 +79,12 @@ vm::HostReply MovilinkCommand::start(Time now, vm::Machine& machine, int task, u
                                 [&](const BusRow& bus) { return bus.code == element(kBusType); });
   if (row == std::end(kBuses))
     return refuse(return_codes::kWrongManagement,
-                  fmt::format("MOVLNK: bus type {} is none of 1, 2 and 5", element(kBusType)));
+                  fmt::format("MOVLNK: bus type {} is none of 1, 2, 5 and 8", element(kBusType)));
   Route& route = routes_[static_cast<size_t>(row - std::begin(kBuses))];
   if (route.master == nullptr)
     return refuse(return_codes::kCommunication,
                   fmt::format("MOVLNK: the station is not connected to {}", row->text));
+  route.remember_partner(job.bus.address, *format);
   route.jobs.push_back(job);
   if (route.jobs.size() > 1) return {vm::Answer::Wait};
   if (const auto code = route.master->start(now, job.bus)) {
@@ -91,6 +93,20 @@ vm::HostReply MovilinkCommand::start(Time now, vm::Machine& machine, int task, u
                                      job.bus.address, job.bus.format, job.bus.service, row->text));
   }
   return {vm::Answer::Wait};
+}
+
+bool MovilinkCommand::has_called(uint32_t variable) const {
+  return std::find(structures_.begin(), structures_.end(), variable) != structures_.end();
+}
+
+void MovilinkCommand::Route::remember_partner(int32_t address, TelegramFormat format) {
+  for (Partner& partner : partners) {
+    if (partner.address != address) continue;
+    partner.parameter |= format.parameter;
+    partner.process_data |= format.words > 0;
+    return;
+  }
+  partners.push_back({address, format.parameter, format.words > 0});
 }
 
 void MovilinkCommand::stop() {

@@ -21,7 +21,7 @@ enum class MovilinkBus : uint8_t {
 #define MOVILINK_BUS(name, code, text) name,
 #include "runtime/services/movilink_buses.def"
 };
-inline constexpr size_t kMovilinkBuses = static_cast<size_t>(MovilinkBus::Sbus) + 1;
+inline constexpr size_t kMovilinkBuses = static_cast<size_t>(MovilinkBus::Sbus2) + 1;
 
 class MovilinkCommand final {
  public:
@@ -42,6 +42,18 @@ class MovilinkCommand final {
 
   void stop();  // program stop: pending exchanges are given up
 
+  // Whom the program has called over a bus, for tools: address as in MOVLNK, and what was exchanged.
+  struct Partner {
+    int32_t address;
+    bool parameter;
+    bool process_data;
+  };
+  const std::vector<Partner>& partners(MovilinkBus bus) const {
+    return routes_[static_cast<size_t>(bus)].partners;
+  }
+  // The command of this structure was carried out.
+  bool has_called(uint32_t variable) const;
+
  private:
   struct Job {
     vm::Machine* machine;
@@ -54,10 +66,12 @@ class MovilinkCommand final {
   struct Route final : MovilinkClient {
     void on_exchange_done(Time now, const MovilinkResult& result) override;
     void begin_next(Time now);
+    void remember_partner(int32_t address, TelegramFormat format);
 
     MovilinkCommand* command = nullptr;
     MovilinkMaster* master = nullptr;
     std::vector<Job> jobs;
+    std::vector<Partner> partners;
   };
 
   MovilinkResult serve_own(Time now, const MovilinkJob& job, TelegramFormat format);
@@ -68,6 +82,7 @@ class MovilinkCommand final {
   Journal& journal_;
   std::string station_;
   std::array<Route, kMovilinkBuses> routes_;
+  std::vector<uint32_t> structures_;  // of commands carried out
 };
 
 }  // namespace ipos::runtime

@@ -37,59 +37,89 @@ bool offset_allowed(int32_t offset, int32_t cycle, Generation generation) {
   return is_fast(cycle) ? offset >= 0 && offset <= kLongestFastOffset : in_tens(offset);
 }
 
-// Identifiers the unit's own MOVILINK profile uses (1053 1610 p. 51): closed to its objects.
-bool is_movilink_identifier(uint32_t id, uint8_t address, uint8_t group) {
+// The unit's own MOVILINK telegram with this identifier (1053 1610 p. 51): closed to its objects.
+bool is_movilink_identifier(uint32_t id, const SlaveSettings& profile) {
   const auto used = classify_identifier(id);
-  if (!used) return false;
-  return used->address == (telegram_type(used->telegram).grouped ? group : address);
+  if (!used || !has_telegram(profile, used->telegram)) return false;
+  return used->address == (telegram_type(used->telegram).grouped ? profile.group : profile.address);
 }
+
+constexpr uint32_t kReceiveFlags[] = {522, 523};  // of SBus 1 and 2, MOVIDRIVE B
 
 }  // namespace
 
 VariableObjects::VariableObjects(const stdlib::UnitType& unit, uint32_t baud, FrameSender& sender,
-                                 uint64_t first_tag)
-    : unit_(unit), baud_(baud), sender_(sender), first_tag_(first_tag) {}
-
-void VariableObjects::set_addresses(uint8_t address, uint8_t group) {
-  address_ = address;
-  group_ = group;
-}
+                                 uint64_t first_tag, int sbus)
+    : unit_(unit), baud_(baud), sender_(sender), first_tag_(first_tag), sbus_(sbus) {}
 
 bool VariableObjects::define(ObjectKind kind, uint32_t variable, std::span<int32_t> h, std::string& why) {
   const bool cyclic = kind == ObjectKind::TransmitCyclic;
   const auto element = [&](uint32_t n) -> int32_t& { return h[variable + n]; };
   const uint32_t at = cyclic ? 3 : 1;  // where length and pointer stand in the structure
-  const Header header{element(0), element(at), element(at + 1)};
+  const int32_t bus_bit = sbus_ == 2 && element(0) >= 0 ? kSbus2Object : 0;
+  const Header header{element(0) & ~bus_bit, element(at), element(at + 1)};
   int32_t* result = kind == ObjectKind::Receive ? nullptr : &element(cyclic ? 5 : 3);
+  ObjectDefinition definition{kind,  variable, header.object, variable_format(header.format), 0, 0, 0,
+                              false, {}};
+  if (cyclic) {
+    definition.cycle = element(1);
+    definition.offset = element(2);
+  }
 
-  const auto format = variable_format(header.format);
+  const auto format = definition.format;
   if (!format) {
     why = fmt::format("object {}: Format {:#x} is not 0..8 or 0x100..0x108; the object is not set up",
                       header.object, static_cast<uint32_t>(header.format));
   } else if (header.data < 0 || static_cast<uint32_t>(header.data) + format->variables() > unit_.variables) {
     return false;
   } else if (usable(header, why)) {
+    definition.data = static_cast<uint32_t>(header.data);
     switch (kind) {
       case ObjectKind::TransmitCyclic:
         *result = define_cyclic(header, *format, element(1), element(2), why);
+        definition.accepted = *result >= 0;
         break;
-      case ObjectKind::TransmitAcyclic: send_acyclic(header, *format, variable, h); break;
-      case ObjectKind::Receive: define_receive(header, *format, why); break;
+      case ObjectKind::TransmitAcyclic:
+        send_acyclic(header, *format, variable, h);
+        definition.accepted = true;
+        break;
+      case ObjectKind::Receive: definition.accepted = define_receive(header, *format, why); break;
     }
+    if (definition.accepted && profile_.synchronous && header.object == profile_.sync_id)
+      why = fmt::format("object number {} is also the sync telegram of this unit (P817 or P885)",
+                        header.object);
+    definition.why = why;
+    remember(definition);
     return true;
   }
   // No manual prints a result for these; ours are those of a refused object.
   if (result != nullptr) *result = cyclic ? kWrongCycleTime : static_cast<int32_t>(AcyclicStatus::Failed);
+  definition.why = why;
+  remember(definition);
   return true;
 }
 
+void VariableObjects::remember(const ObjectDefinition& definition) {
+  for (ObjectDefinition& known : definitions_) {
+    if (known.kind != definition.kind || known.variable != definition.variable) continue;
+    if (!known.accepted || definition.accepted) known = definition;
+    return;
+  }
+  definitions_.push_back(definition);
+}
+
 bool VariableObjects::usable(const Header& header, std::string& why) const {
+  if (header.object >= kSbus2Object && unit_.generation == Generation::B) {
+    why = fmt::format("object {} is for SBus 2, which the station is not on; the object is not set up",
+                      header.object & ~kSbus2Object);
+    return false;
+  }
   if (header.object < 0 || static_cast<uint32_t>(header.object) >= kStandardIdLimit) {
     why = fmt::format("object number {} is not 0..2047; the object is not set up", header.object);
     return false;
   }
   const auto id = static_cast<uint32_t>(header.object);
-  if (is_movilink_identifier(id, address_, group_)) {
+  if (is_movilink_identifier(id, profile_)) {
     why = fmt::format(
         "object number {} is an identifier of the unit's own MOVILINK telegrams; the object is not set up",
         id);
@@ -149,18 +179,24 @@ int32_t VariableObjects::free_capacity(const Cyclic& added) const {
   return used > budget ? -1 : static_cast<int32_t>((budget - used) / (budget / 100));
 }
 
-void VariableObjects::define_receive(const Header& header, VariableFormat format, std::string& why) {
+bool VariableObjects::define_receive(const Header& header, VariableFormat format, std::string& why) {
   const auto id = static_cast<uint32_t>(header.object);
   const auto same = [id](const Receive& object) { return object.id == id; };
-  if (started_)
+  if (receive_closed_) {
     why = fmt::format("receive object {} is defined after _SBusCommOn; it is not used", id);
-  else if (std::any_of(receive_.begin(), receive_.end(), same))
+    return false;
+  }
+  if (std::any_of(receive_.begin(), receive_.end(), same)) {
     why = fmt::format("object {} is already received by this unit; the second definition is not used", id);
-  else if (receive_.size() >= unit_.receive_objects)
+    return false;
+  }
+  if (receive_.size() >= unit_.receive_objects) {
     why = fmt::format("receive object {}: the unit has only {} receive objects; it is not used", id,
                       unit_.receive_objects);
-  else
-    receive_.push_back({id, format, static_cast<uint32_t>(header.data)});
+    return false;
+  }
+  receive_.push_back({id, format, static_cast<uint32_t>(header.data)});
+  return true;
 }
 
 void VariableObjects::send_acyclic(const Header& header, VariableFormat format, uint32_t variable,
@@ -173,13 +209,20 @@ void VariableObjects::send_acyclic(const Header& header, VariableFormat format, 
 }
 
 void VariableObjects::start(int64_t tick) {
+  if (started_) return;
   started_ = true;
+  receive_closed_ = true;
   start_tick_ = tick;
 }
 
-void VariableObjects::stop() {
+void VariableObjects::pause() {
   for (const Cyclic& object : cyclic_) sender_.withdraw(object.tag);
   started_ = false;
+}
+
+void VariableObjects::stop() {
+  pause();
+  receive_closed_ = false;
   cyclic_.clear();
   receive_.clear();
 }
@@ -199,7 +242,8 @@ void VariableObjects::tick(int64_t tick, std::span<const int32_t> h) {
 
 bool VariableObjects::on_frame(const Frame& frame, std::span<int32_t> h, std::string& why) const {
   if (!started_) return false;
-  for (const Receive& object : receive_) {
+  for (size_t n = 0; n < receive_.size(); ++n) {
+    const Receive& object = receive_[n];
     if (object.id != frame.id || !is_plain(frame)) continue;
     const auto pair = frame_variables(frame, object.format);
     if (!pair) {
@@ -210,6 +254,10 @@ bool VariableObjects::on_frame(const Frame& frame, std::span<int32_t> h, std::st
     }
     if (object.format.variables() > 0) h[object.data] = pair->low;
     if (object.format.variables() > 1) h[object.data + 1] = pair->high;
+    if (unit_.generation == Generation::B) {
+      int32_t& flags = h[kReceiveFlags[sbus_ - 1]];
+      flags = static_cast<int32_t>(static_cast<uint32_t>(flags) | 1U << n);
+    }
     return true;
   }
   return false;

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "runtime/bus/can/node.hpp"
+#include "runtime/bus/movilink/profile.hpp"
 #include "runtime/bus/movilink/variable_telegram.hpp"
 #include "runtime/clock/event_queue.hpp"
 #include "stdlib/unit_types.hpp"
@@ -25,26 +27,50 @@ enum class AcyclicStatus : int32_t { Ready = 0, Sending = 1, Sent = 2, Failed = 
 // First argument of _SBusCommDef; the values of the keyword set `scom`.
 enum class ObjectKind : int32_t { TransmitCyclic = 1, TransmitAcyclic = 2, Receive = 3 };
 
+// Bit 24 of the object number selects SBus 2 of a MOVIDRIVE B (IPOSplus p. 232).
+inline constexpr int32_t kSbus2Object = 0x100'0000;
+
+// What one _SBusCommDef asked for, for tools: the last one of each structure.
+struct ObjectDefinition {
+  ObjectKind kind;
+  uint32_t variable;  // of the structure
+  int32_t object;     // as written, without the bit of SBus 2
+  std::optional<VariableFormat> format;
+  uint32_t data = 0;
+  int32_t cycle = 0;  // ms
+  int32_t offset = 0;
+  bool accepted = false;
+  std::string why;  // why not, or a warning
+};
+
+// The objects of one SBus of a unit; the limits of the unit hold for each bus (ours: H522 and H523 have 32
+// flags each).
 class VariableObjects {
  public:
-  // Frames are queued at `sender` with tags from first_tag on; baud is that of the line in bit/s.
-  VariableObjects(const stdlib::UnitType& unit, uint32_t baud, FrameSender& sender, uint64_t first_tag);
+  // Frames are queued at `sender` with tags from first_tag on; baud is that of the line in bit/s. `sbus` is 1
+  // or 2.
+  VariableObjects(const stdlib::UnitType& unit, uint32_t baud, FrameSender& sender, uint64_t first_tag,
+                  int sbus = 1);
 
-  // The identifiers closed to the unit's objects follow from its addresses (1053 1610 p. 51 to 53).
-  void set_addresses(uint8_t address, uint8_t group);
+  // The identifiers closed to the unit's objects are those of its MOVILINK profile (1053 1610 p. 51 to 53).
+  void set_profile(const SlaveSettings& profile) { profile_ = profile; }
 
   // SCOM: copies the structure that begins at `variable` and stores its result. An object that is refused is
   // not set up; `why` then says so. False: the data pointer names no variable of the unit (F10).
   bool define(ObjectKind kind, uint32_t variable, std::span<int32_t> h, std::string& why);
 
-  void start(int64_t tick);  // SCOMON in this millisecond
+  void start(int64_t tick);  // SCOMON in this millisecond; nothing when it runs
+  void pause();              // SCOMST STOP: nothing is sent or received, the objects stay (ours)
   void stop();               // program stop: nothing is sent or received any more, all objects are gone
   bool started() const { return started_; }
+  const std::vector<ObjectDefinition>& definitions() const { return definitions_; }
 
   // Queues the cyclic objects due in this millisecond with the present values of their variables.
   void tick(int64_t tick, std::span<const int32_t> h);
 
-  // True when a receive object took the frame; `why` says why one did not.
+  // True when a receive object took the frame; `why` says why one did not. MOVIDRIVE B sets bit n of H522
+  // (SBus 1) or H523 (SBus 2) for its n-th receive object; the program clears it (order and clearing ours;
+  // IPOSplus p. 232).
   bool on_frame(const Frame& frame, std::span<int32_t> h, std::string& why) const;
 
   // For frames with a tag of this object; keeps the status of acyclic ones.
@@ -73,21 +99,25 @@ class VariableObjects {
 
   int32_t define_cyclic(const Header& header, VariableFormat format, int32_t cycle, int32_t offset,
                         std::string& why);
-  void define_receive(const Header& header, VariableFormat format, std::string& why);
+  bool define_receive(const Header& header, VariableFormat format, std::string& why);
   void send_acyclic(const Header& header, VariableFormat format, uint32_t variable, std::span<int32_t> h);
   bool usable(const Header& header, std::string& why) const;
   int32_t free_capacity(const Cyclic& added) const;
+
+  void remember(const ObjectDefinition& definition);
 
   const stdlib::UnitType& unit_;
   uint32_t baud_;
   FrameSender& sender_;
   uint64_t first_tag_;
-  uint8_t address_ = 0;
-  uint8_t group_ = 0;
+  int sbus_;
+  SlaveSettings profile_;
   bool started_ = false;
+  bool receive_closed_ = false;  // after the first start
   int64_t start_tick_ = 0;
   std::vector<Cyclic> cyclic_;
   std::vector<Receive> receive_;
+  std::vector<ObjectDefinition> definitions_;
 };
 
 }  // namespace ipos::runtime

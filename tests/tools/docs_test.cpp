@@ -5,6 +5,7 @@
 #include <regex>
 #include <sstream>
 
+#include "runtime/plan/plan.hpp"
 #include "tests/tools/command.hpp"
 #include "vm/isa/isa.hpp"
 #include "vm/verify/verify.hpp"
@@ -47,6 +48,25 @@ TEST(Documentation, DumpsOfTheTourAreReal) {
   for (const Dump& dump : dumps) {
     const CommandResult result = run_ipos(dump.arguments, folder.path());
     EXPECT_EQ(result.out + result.err, dump.output) << dump.arguments[0];
+  }
+}
+
+TEST(Documentation, DumpsOfTheBusToolsAreReal) {
+  const std::vector<Dump> dumps = dumps_of(read_text(project("docs/bus-tools.md")));
+  EXPECT_EQ(dumps.size(), 3U);
+  for (const Dump& dump : dumps) {
+    const CommandResult result = run_ipos(dump.arguments, project(""));
+    EXPECT_EQ(result.out + result.err, dump.output) << dump.arguments[1];
+  }
+}
+
+TEST(Documentation, BusToolsPageHasEveryFinding) {
+  const std::string page = read_text(project("docs/bus-tools.md"));
+  for (const runtime::FindingType& type : runtime::finding_types()) {
+    const std::string weight = type.weight == runtime::FindingWeight::Error ? "error" : "hint";
+    const std::string row =
+        "| " + std::string(type.code) + " | " + weight + " | " + std::string(type.meaning) + " |\n";
+    EXPECT_NE(page.find(row), std::string::npos) << row;
   }
 }
 

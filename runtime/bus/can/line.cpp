@@ -1,20 +1,18 @@
 // The line as a machine of two events: the start bit of the next transfer, and the end of the current one.
 #include "runtime/bus/can/line.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cassert>
 #include <utility>
 
 #include "runtime/bus/can/frame_bits.hpp"
+#include "runtime/bus/can/line_event_kinds.hpp"
 
 namespace ipos::runtime {
 namespace {
 
-enum Event : uint32_t { kStart, kEnd };
-
-constexpr uint32_t kSuspendBits = 8;  // pause of an error-passive sender after a transmission
+constexpr uint32_t kSuspendBits = 8;     // pause of an error-passive sender after a transmission
+constexpr uint32_t kRecessiveTail = 11;  // every transfer ends with delimiter bits and intermission
 
 }  // namespace
 
@@ -34,21 +32,23 @@ CanLine::CanLine(EventQueue& queue, uint32_t source, std::string name, uint32_t 
 
 NodeId CanLine::attach(std::string name, uint32_t baud, CanNode& node) {
   const NodeId id = static_cast<NodeId>(nodes_.size());
-  nodes_.push_back({std::move(name), baud, &node, true, false, {}, 0, {}});
+  Node added{};
+  added.name = std::move(name);
+  added.baud = baud;
+  added.node = &node;
+  nodes_.push_back(std::move(added));
   nodes_.back().queue.reserve(kSendQueueLimit);
-  transfer_.senders.reserve(nodes_.size());
   report_absence(id, nullptr);
   return id;
 }
 
-void CanLine::add_observer(CanObserver& observer) {
-  observers_.push_back(&observer);
-  for (NodeId node = 0; node < nodes_.size(); ++node) report_absence(node, &observer);
-}
-
 bool CanLine::is_active(NodeId node) const {
   const Node& n = nodes_[node];
-  return n.connected && n.baud == baud_ && n.counters.state() != ErrorState::BusOff;
+  return is_wired(n) && n.recovery_runs == 0 && n.counters.state() != ErrorState::BusOff;
+}
+
+bool CanLine::is_reachable(NodeId from, NodeId to) const {
+  return is_active(from) && is_active(to) && nodes_[from].segment == nodes_[to].segment;
 }
 
 // --- sending
@@ -63,7 +63,7 @@ SendStatus CanLine::send(NodeId node, const Frame& frame, uint64_t tag) {
   const auto place = std::upper_bound(n.queue.begin(), n.queue.end(), key,
                                       [](uint32_t wanted, const Pending& p) { return wanted < p.key; });
   n.queue.insert(place, {canonical(frame), tag, ready, key});
-  schedule_start();
+  schedule_start(n.segment);
   return SendStatus::Queued;
 }
 
@@ -72,7 +72,7 @@ void CanLine::withdraw(NodeId node, uint64_t tag) {
   for (Pending& pending : queue)
     if (pending.tag == tag && pending.on_wire) pending.withdrawn = true;
   std::erase_if(queue, [tag](const Pending& p) { return p.tag == tag && !p.on_wire; });
-  schedule_start();
+  schedule_start(nodes_[node].segment);
 }
 
 const CanLine::Pending* CanLine::first_ready(const Node& node, uint64_t bit) const {
@@ -88,119 +88,178 @@ uint64_t CanLine::next_ready(const Node& node) const {
   return node.queue.empty() ? bit : std::max(bit, node.suspended_until);
 }
 
-// Keeps the start event at the first bit at which somebody can send.
 void CanLine::schedule_start() {
-  if (busy_) return;
+  for (uint32_t segment = 0; segment < segments_.size(); ++segment) schedule_start(segment);
+}
+
+// Keeps the start event at the first bit at which somebody can send.
+void CanLine::schedule_start(uint32_t number) {
+  Segment& segment = segments_[number];
+  if (segment.busy) return;
   uint64_t bit = ~uint64_t{0};
-  for (const Node& node : nodes_) bit = std::min(bit, next_ready(node));
-  if (bit != ~uint64_t{0}) bit = std::max(bit, free_bit_);
-  if (start_event_ != kNoEvent && start_bit_ == bit) return;
-  queue_.cancel(std::exchange(start_event_, kNoEvent));
+  if (stuck_ == 0 && !rewire_)
+    for (const Node& node : nodes_)
+      if (node.segment == number) bit = std::min(bit, next_ready(node));
+  if (bit != ~uint64_t{0}) bit = std::max(bit, segment.free_bit);
+  if (segment.start_event != kNoEvent && segment.start_bit == bit) return;
+  queue_.cancel(std::exchange(segment.start_event, kNoEvent));
   if (bit == ~uint64_t{0}) return;
-  start_bit_ = bit;
-  start_event_ = queue_.schedule(static_cast<Time>(bit) * bit_time_, source_, *this, kStart);
+  segment.start_bit = bit;
+  segment.start_event =
+      queue_.schedule(static_cast<Time>(bit) * bit_time_, source_, *this, line_event::kStart, number);
 }
 
 // --- transfers
 
-void CanLine::on_event(Time now, uint32_t kind, uint64_t) {
-  if (kind == kEnd) return end_transfer(now);
-  start_event_ = kNoEvent;
-  begin_transfer(start_bit_);
+void CanLine::on_event(Time now, uint32_t kind, uint64_t argument) {
+  switch (kind) {
+    case line_event::kStart: {
+      const auto segment = static_cast<uint32_t>(argument);
+      segments_[segment].start_event = kNoEvent;
+      return begin_transfer(segment, segments_[segment].start_bit);
+    }
+    case line_event::kEnd: return end_transfer(now, static_cast<uint32_t>(argument));
+    case line_event::kFaultBegins: return switch_fault(now, argument, true);
+    case line_event::kFaultEnds: return switch_fault(now, argument, false);
+    case line_event::kLate: return deliver_late(now, argument);
+    default: return finish_recovery(now, static_cast<NodeId>(argument));
+  }
 }
 
-void CanLine::begin_transfer(uint64_t bit) {
+void CanLine::begin_transfer(uint32_t number, uint64_t bit) {
+  Segment& segment = segments_[number];
+  Transfer& transfer = segment.transfer;
   uint32_t lowest = ~0U;
   for (const Node& node : nodes_)
-    if (const Pending* pending = first_ready(node, bit)) lowest = std::min(lowest, pending->key);
-  transfer_.start_bit = bit;
-  transfer_.senders.clear();
+    if (node.segment == number)
+      if (const Pending* pending = first_ready(node, bit)) lowest = std::min(lowest, pending->key);
+  transfer.start_bit = bit;
+  transfer.senders.clear();
+  transfer.fault = {};
+  for (NodeId id = 0; id < nodes_.size(); ++id) {
+    Node& node = nodes_[id];
+    if (node.segment != number || !is_active(id)) continue;
+    const Pending* pending = first_ready(node, bit);
+    if (pending == nullptr || pending->key != lowest) continue;
+    node.queue[static_cast<size_t>(pending - node.queue.data())].on_wire = true;
+    transfer.senders.push_back(
+        {id, pending->frame, pending->tag, node.counters.state() == ErrorState::Active});
+  }
+  if (transfer.senders.empty()) return schedule_start(number);
+  pause_recovery(number, bit);
+  transfer.fault = faults_.strike(queue_.now(), transfer.senders.front().frame.id);
   Listeners listeners;
   for (NodeId id = 0; id < nodes_.size(); ++id) {
-    if (!is_active(id)) continue;
-    Node& node = nodes_[id];
-    const bool error_active = node.counters.state() == ErrorState::Active;
-    const Pending* pending = first_ready(node, bit);
-    if (pending != nullptr && pending->key == lowest) {
-      node.queue[static_cast<size_t>(pending - node.queue.data())].on_wire = true;
-      transfer_.senders.push_back({id, pending->frame, pending->tag, error_active});
+    const bool sends = std::any_of(transfer.senders.begin(), transfer.senders.end(),
+                                   [id](const Transfer::Sender& s) { return s.node == id; });
+    if (sends || nodes_[id].segment != number || !is_active(id)) continue;
+    const bool error_active = nodes_[id].counters.state() == ErrorState::Active;
+    listeners.any = true;
+    listeners.error_active |= error_active;
+    if (id == transfer.fault.node) {
+      listeners.struck = true;
+      listeners.struck_error_active = error_active;
     } else {
-      listeners.any = true;
-      listeners.error_active |= error_active;
+      listeners.others = true;
     }
   }
-  if (transfer_.senders.empty()) return schedule_start();
-  resolve(transfer_, listeners);
-  busy_ = true;
-  queue_.schedule(static_cast<Time>(bit + transfer_.end) * bit_time_, source_, *this, kEnd);
+  resolve(transfer, listeners, shorts_ > 0);
+  segment.busy = true;
+  queue_.schedule(static_cast<Time>(bit + transfer.end) * bit_time_, source_, *this, line_event::kEnd,
+                  number);
 }
 
-void CanLine::end_transfer(Time now) {
-  busy_ = false;
-  free_bit_ = transfer_.start_bit + transfer_.bits;
-  meter_.add(transfer_.start_bit, transfer_.bits);
-  // Callbacks below may send and withdraw; they change the queues, never transfer_, as the next one has not
-  // begun.
-  const bool delivered = transfer_.outcome == Transfer::Outcome::Delivered;
-  const Transfer::Sender& winner = transfer_.winner();
-  if (delivered) {
+void CanLine::end_transfer(Time now, uint32_t number) {
+  Segment& segment = segments_[number];
+  const Transfer& transfer = segment.transfer;
+  segment.busy = false;
+  segment.free_bit = transfer.start_bit + transfer.bits;
+  segment.recessive_from = segment.free_bit - kRecessiveTail;
+  meter_.add(transfer.start_bit, transfer.bits);
+  // Callbacks below may send and withdraw; they change the queues, never the transfer, as the next one has
+  // not begun.
+  if (transfer.fault.kind)
+    report({LineEventKind::FaultStrikes, now, transfer.fault.node, kNoNode, transfer.winner().frame.id,
+            static_cast<uint8_t>(*transfer.fault.kind)});
+  if (transfer.received()) {
     ++frames_;
-    const FrameRecord record{winner.frame, winner.node, static_cast<Time>(transfer_.start_bit) * bit_time_,
-                             now, transfer_.bits};
+    const Transfer::Sender& winner = transfer.winner();
+    const FrameRecord record{winner.frame, winner.node, static_cast<Time>(transfer.start_bit) * bit_time_,
+                             now, transfer.bits};
     for (CanObserver* observer : observers_) observer->on_frame(*this, record);
   }
-  for (NodeId id = 0; id < nodes_.size(); ++id) {
-    const bool sends = std::any_of(transfer_.senders.begin(), transfer_.senders.end(),
-                                   [id](const Transfer::Sender& s) { return s.node == id; });
-    if (sends || !is_active(id)) continue;
-    const ErrorState before = nodes_[id].counters.state();
-    if (delivered) {
-      nodes_[id].counters.received();
-      nodes_[id].node->on_frame(now, winner.frame);
-    } else {
-      nodes_[id].counters.receive_failed();
-      count_error_state(now, id, before);
-    }
+  if (transfer.received() && transfer.fault.is(FaultKind::Delay)) {
+    late_.push_back(LateFrame{transfer.winner().frame, transfer.winner().node, transfer.fault.node, number});
+    queue_.schedule(now + transfer.fault.lag, source_, *this, line_event::kLate, late_.size() - 1);
   }
-  for (const Transfer::Sender& sender : transfer_.senders) settle_sender(now, sender);
+  for (NodeId id = 0; id < nodes_.size(); ++id) {
+    const bool sends = std::any_of(transfer.senders.begin(), transfer.senders.end(),
+                                   [id](const Transfer::Sender& s) { return s.node == id; });
+    if (!sends && nodes_[id].segment == number && is_active(id)) deliver(now, segment, id);
+  }
+  for (const Transfer::Sender& sender : transfer.senders) settle_sender(now, segment, sender);
+  for (NodeId id = 0; id < nodes_.size(); ++id) schedule_recovery(id);
+  if (rewire_) rebuild_segments();
   schedule_start();
 }
 
-void CanLine::settle_sender(Time now, const Transfer::Sender& sender) {
+// What a transfer is to one listener.
+void CanLine::deliver(Time now, const Segment& segment, NodeId listener) {
+  const Transfer& transfer = segment.transfer;
+  const FrameFault& fault = transfer.fault;
+  Node& node = nodes_[listener];
+  const bool concerned = fault.kind && (fault.node == kNoNode || fault.node == listener);
+  const bool disturbed = fault.is(FaultKind::Corrupt) || fault.is(FaultKind::Terminator);
+  const ErrorState before = node.counters.state();
+  if (transfer.outcome == Transfer::Outcome::NoLevel) return;  // it hears nothing
+  if (!transfer.received() || (disturbed && concerned)) {
+    node.counters.receive_failed(fault.node == listener && before == ErrorState::Active);
+    return count_error_state(now, listener, before);
+  }
+  node.counters.received();
+  if (concerned && (fault.is(FaultKind::Drop) || fault.is(FaultKind::Delay))) return;
+  node.node->on_frame(now, transfer.winner().frame);
+}
+
+void CanLine::settle_sender(Time now, const Segment& segment, const Transfer::Sender& sender) {
+  using Outcome = Transfer::Outcome;
+  const Transfer& transfer = segment.transfer;
   Node& node = nodes_[sender.node];
   const auto pending =
       std::find_if(node.queue.begin(), node.queue.end(), [](const Pending& p) { return p.on_wire; });
   if (pending == node.queue.end()) return;  // cut off meanwhile: dropped and told
-  const bool sent = transfer_.outcome == Transfer::Outcome::Delivered && !sender.lost;
+  const bool sent = transfer.outcome == Outcome::Delivered && !sender.lost;
   if (sent || pending->withdrawn)
     node.queue.erase(pending);
   else
     pending->on_wire = false;
   NodeId partner = kNoNode;
-  for (const Transfer::Sender& other : transfer_.senders)
+  for (const Transfer::Sender& other : transfer.senders)
     if (other.node != sender.node) partner = other.node;
   const ErrorState before = node.counters.state();
+  NotSent reason = NotSent::Collision;
   if (sent) {
     node.counters.sent();
     node.unacknowledged = false;
-    if (partner != kNoNode && sender.node == transfer_.winner().node)
+    if (partner != kNoNode && sender.node == transfer.winner().node)
       report({LineEventKind::SameFrame, now, sender.node, partner, sender.frame.id});
-  } else if (transfer_.outcome == Transfer::Outcome::NoAcknowledge && !sender.lost) {
+  } else if (transfer.outcome == Outcome::NoAcknowledge && !sender.lost) {
+    reason = NotSent::NoAcknowledge;
     node.counters.not_acknowledged();
     if (!std::exchange(node.unacknowledged, true))
       report({LineEventKind::NoAcknowledge, now, sender.node, kNoNode, sender.frame.id});
-  } else {
+  } else if (transfer.outcome == Outcome::Collision || sender.lost) {
     node.counters.send_failed();
     report({LineEventKind::Collision, now, sender.node, partner, sender.frame.id});
+  } else {
+    reason = NotSent::Corrupted;
+    node.counters.send_failed();
   }
-  if (node.counters.state() == ErrorState::Passive) node.suspended_until = free_bit_ + kSuspendBits;
+  if (node.counters.state() == ErrorState::Passive) node.suspended_until = segment.free_bit + kSuspendBits;
   if (sent)
     node.node->on_sent(now, sender.frame, sender.tag);
   else
-    node.node->on_not_sent(now, sender.frame, sender.tag,
-                           transfer_.outcome == Transfer::Outcome::NoAcknowledge && !sender.lost
-                               ? NotSent::NoAcknowledge
-                               : NotSent::Collision);
+    node.node->on_not_sent(now, sender.frame, sender.tag, reason);
   count_error_state(now, sender.node, before);
 }
 
@@ -211,77 +270,16 @@ void CanLine::count_error_state(Time now, NodeId node, ErrorState before) {
   if (after != ErrorState::BusOff) return;
   report({LineEventKind::BusOff, now, node});
   drop_queue(node);
+  nodes_[node].node->on_bus_off(now);
 }
-
-// --- participation
-
-void CanLine::set_baud(NodeId node, uint32_t baud) {
-  nodes_[node].baud = baud;
-  if (!is_active(node)) drop_queue(node);
-  report_absence(node, nullptr);
-}
-
-void CanLine::set_connected(NodeId node, bool connected) {
-  nodes_[node].connected = connected;
-  if (!connected) drop_queue(node);
-  report_absence(node, nullptr);
-}
-
-void CanLine::restart(NodeId node) { nodes_[node].counters = {}; }
 
 // A frame on the wire at this moment is still carried to its end (ours).
 void CanLine::drop_queue(NodeId node) {
   const std::vector<Pending> dropped = std::exchange(nodes_[node].queue, {});
   nodes_[node].queue.reserve(kSendQueueLimit);
-  schedule_start();
+  schedule_start(nodes_[node].segment);
   for (const Pending& pending : dropped)
     nodes_[node].node->on_not_sent(queue_.now(), pending.frame, pending.tag, NotSent::Dropped);
-}
-
-void CanLine::report(const LineEvent& event) {
-  for (CanObserver* observer : observers_) observer->on_line_event(*this, event);
-}
-
-void CanLine::report_absence(NodeId node, CanObserver* only) {
-  const Node& n = nodes_[node];
-  if (n.connected && n.baud == baud_) return;
-  const LineEvent event{n.connected ? LineEventKind::WrongBaudRate : LineEventKind::NotConnected,
-                        queue_.now(), node};
-  if (only != nullptr)
-    only->on_line_event(*this, event);
-  else
-    report(event);
-}
-
-// --- load
-
-LineLoad CanLine::load(Time now) const {
-  LineLoad load = meter_.load(static_cast<uint64_t>(now / bit_time_));
-  load.frames = frames_;
-  return load;
-}
-
-std::string describe(const CanLine& line, const LineEvent& event) {
-  static constexpr std::string_view kTexts[] = {
-#define LINE_EVENT(name, text) text,
-#include "runtime/bus/can/line_events.def"
-  };
-  std::string text = fmt::format("{}: {} {}", line.name(), line.node_name(event.node),
-                                 kTexts[static_cast<size_t>(event.kind)]);
-  switch (event.kind) {
-    case LineEventKind::WrongBaudRate:
-      text +=
-          fmt::format(" ({} kbaud, line {} kbaud)", line.node_baud(event.node) / 1000, line.baud() / 1000);
-      break;
-    case LineEventKind::NoAcknowledge: text += fmt::format(" (identifier {})", event.id); break;
-    case LineEventKind::Collision:
-    case LineEventKind::SameFrame:
-      text += fmt::format(" (identifier {}, other station {})", event.id,
-                          event.other == kNoNode ? "unknown" : line.node_name(event.other));
-      break;
-    default: break;
-  }
-  return text;
 }
 
 }  // namespace ipos::runtime

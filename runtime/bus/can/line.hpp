@@ -4,15 +4,18 @@
 // Bit n begins at n times the bit time. A frame queued at time t takes part in the arbitration at the first
 // bit boundary after t (ours); if the line is busy then, at the end of the intermission. A frame is
 // delivered, and its sending confirmed, at the end of the last bit of its end-of-frame field: observers
-// first, then the receivers in order of attachment, then the sender.
+// first, then the receivers in order of attachment, then the sender. A cut line has segments, each a line of
+// its own.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "runtime/bus/can/error_counters.hpp"
+#include "runtime/bus/can/line_fault.hpp"
 #include "runtime/bus/can/node.hpp"
 #include "runtime/bus/can/transfer.hpp"
 #include "runtime/bus/line_load.hpp"
@@ -31,8 +34,8 @@ class CanLine final : private EventTarget {
   // `source` orders the line's events among those of equal time. `baud` must be one of kBaudRates.
   CanLine(EventQueue& queue, uint32_t source, std::string name, uint32_t baud);
 
-  // All nodes are attached before the first event runs. A node of another rate takes no part, and the
-  // observers hear why.
+  // All nodes are attached before the first event runs, in the order in which they sit on the cable. A node
+  // of another rate takes no part, and the observers hear why.
   NodeId attach(std::string name, uint32_t baud, CanNode& node);
   void add_observer(CanObserver& observer);
 
@@ -41,7 +44,13 @@ class CanLine final : private EventTarget {
 
   void set_baud(NodeId node, uint32_t baud);
   void set_connected(NodeId node, bool connected);
-  void restart(NodeId node);  // leaves bus-off with cleared counters
+  void restart(NodeId node);  // leaves bus-off at once with cleared counters
+  // Leaves bus-off once the node has seen 128 times 11 recessive bits in a row (ISO 11898-1).
+  void recover(NodeId node);
+
+  // Plants a fault; its node must be attached. A cut waits for the end of the frames under way, its repair
+  // also (ours).
+  void plant(const LineFault& fault);
 
   const std::string& name() const { return name_; }
   uint32_t baud() const { return baud_; }
@@ -50,7 +59,8 @@ class CanLine final : private EventTarget {
   const std::string& node_name(NodeId node) const { return nodes_[node].name; }
   uint32_t node_baud(NodeId node) const { return nodes_[node].baud; }
   const ErrorCounters& counters(NodeId node) const { return nodes_[node].counters; }
-  bool is_active(NodeId node) const;  // right rate, connected, not bus-off
+  bool is_active(NodeId node) const;                // right rate, connected, not bus-off
+  bool is_reachable(NodeId from, NodeId to) const;  // both active, and no cut between them
   LineLoad load(Time now) const;
 
  private:
@@ -67,21 +77,54 @@ class CanLine final : private EventTarget {
     uint32_t baud;
     CanNode* node;
     bool connected = true;
+    bool swapped = false;         // high and low interchanged
     bool unacknowledged = false;  // since its last frame that got through; reported once
     ErrorCounters counters;
     uint64_t suspended_until = 0;  // an error-passive sender pauses 8 bits
     std::vector<Pending> queue;    // by key, equal keys in order of sending
+    uint32_t segment = 0;
+    uint32_t recovery_runs = 0;  // of 11 recessive bits, still wanted
+    uint64_t recovery_from = 0;  // bits before this one do not count
+    EventId recovery = kNoEvent;
+  };
+  struct Segment {
+    bool busy = false;
+    uint64_t free_bit = 0;  // first bit after the last intermission
+    uint64_t recessive_from = 0;
+    EventId start_event = kNoEvent;
+    uint64_t start_bit = 0;  // of start_event
+    Transfer transfer;
+  };
+  struct LateFrame {
+    Frame frame;
+    NodeId sender;
+    NodeId only;  // kNoNode: all of the segment
+    uint32_t segment;
   };
 
+  // line.cpp: frames
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
-  void begin_transfer(uint64_t bit);
-  void end_transfer(Time now);
-  void settle_sender(Time now, const Transfer::Sender& sender);
+  void begin_transfer(uint32_t segment, uint64_t bit);
+  void end_transfer(Time now, uint32_t segment);
+  void deliver(Time now, const Segment& segment, NodeId listener);
+  void settle_sender(Time now, const Segment& segment, const Transfer::Sender& sender);
   void count_error_state(Time now, NodeId node, ErrorState before);
   void schedule_start();
+  void schedule_start(uint32_t segment);
   const Pending* first_ready(const Node& node, uint64_t bit) const;
   uint64_t next_ready(const Node& node) const;
   void drop_queue(NodeId node);
+
+  // line_wiring.cpp: who takes part
+  bool is_wired(const Node& node) const { return node.connected && !node.swapped && node.baud == baud_; }
+  void switch_fault(Time now, size_t fault, bool on);
+  void rebuild_segments();
+  void deliver_late(Time now, size_t number);
+  void pause_recovery(uint32_t segment, uint64_t bit);
+  void schedule_recovery(NodeId node);
+  void finish_recovery(Time now, NodeId node);
+
+  // line_report.cpp: what observers and users hear
   void report(const LineEvent& event);
   void report_absence(NodeId node, CanObserver* only);
 
@@ -92,12 +135,14 @@ class CanLine final : private EventTarget {
   Time bit_time_;
   std::vector<Node> nodes_;
   std::vector<CanObserver*> observers_;
+  std::vector<Segment> segments_{1};
 
-  bool busy_ = false;
-  uint64_t free_bit_ = 0;  // first bit after the last intermission
-  EventId start_event_ = kNoEvent;
-  uint64_t start_bit_ = 0;  // of start_event_
-  Transfer transfer_;
+  LineFaults faults_;
+  std::vector<NodeId> cuts_;  // behind these nodes
+  bool rewire_ = false;       // cuts_ has changed, the segments have not
+  uint32_t shorts_ = 0;
+  uint32_t stuck_ = 0;
+  std::vector<std::optional<LateFrame>> late_;
 
   uint64_t frames_ = 0;
   LoadMeter meter_;
@@ -109,6 +154,7 @@ class LinePort final : public FrameSender {
   LinePort(CanLine& line, NodeId node) : line_(&line), node_(node) {}
   SendStatus send(const Frame& frame, uint64_t tag) override { return line_->send(node_, frame, tag); }
   void withdraw(uint64_t tag) override { line_->withdraw(node_, tag); }
+  void recover() override { line_->recover(node_); }
   NodeId node() const { return node_; }
 
  private:

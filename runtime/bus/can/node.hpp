@@ -16,6 +16,7 @@ enum class SendStatus : uint8_t { Queued, NotActive, QueueFull, InvalidFrame };
 enum class NotSent : uint8_t {
   NoAcknowledge,  // nobody else on the line; the frame stays queued and is sent again
   Collision,      // same identifier, other data, at the same time; the frame stays queued and is sent again
+  Corrupted,      // a line fault destroyed the frame; it stays queued and is sent again
   Dropped,        // bus-off or cut off: the frame is gone
 };
 
@@ -25,6 +26,8 @@ class CanNode {
   virtual void on_frame(Time now, const Frame& frame) = 0;
   virtual void on_sent(Time now, const Frame& frame, uint64_t tag) = 0;
   virtual void on_not_sent(Time now, const Frame& frame, uint64_t tag, NotSent reason) = 0;
+  // Too many errors: it takes no part any more until it has recovered; its sender can ask for that.
+  virtual void on_bus_off(Time /*now*/) {}
 
  protected:
   ~CanNode() = default;
@@ -36,6 +39,8 @@ class FrameSender {
   virtual SendStatus send(const Frame& frame, uint64_t tag) = 0;
   // Takes back every waiting frame with this tag; one on the wire is not sent again should it fail.
   virtual void withdraw(uint64_t tag) = 0;
+  // Asks to come back after bus-off.
+  virtual void recover() {}
 
  protected:
   ~FrameSender() = default;
@@ -57,9 +62,10 @@ enum class LineEventKind : uint8_t {
 struct LineEvent {
   LineEventKind kind;
   Time time;
-  NodeId node;
-  NodeId other = kNoNode;  // the partner of a collision
+  NodeId node;             // kNoNode: the line as a whole
+  NodeId other = kNoNode;  // the partner of a collision; the station before a cut
   uint32_t id = 0;         // identifier of the frame, where there is one
+  uint8_t fault = 0;       // FaultKind of the events about planted faults
 };
 
 class CanObserver {

@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <cassert>
 
+#include "runtime/bus/can/bit_error.hpp"
 #include "runtime/bus/can/frame_bits.hpp"
 
 namespace ipos::runtime {
 namespace {
-
-constexpr uint32_t kErrorFlagBits = 6;
-constexpr uint32_t kErrorDelimiterBits = 8;
 
 void end_with_error(Transfer& transfer, Transfer::Outcome outcome, uint32_t flag_end) {
   transfer.outcome = outcome;
@@ -50,6 +48,55 @@ uint32_t collision_flag_end(const Transfer& transfer, const WireBits& dominant, 
   return end;
 }
 
+// No dominant bit between this one and the end of the CRC.
+bool is_silent_anyway(const WireBits& bits, uint32_t from) {
+  for (uint32_t i = from + 1; i < bits.count - 10; ++i)
+    if (!bits.recessive[i]) return false;
+  return true;
+}
+
+// A disturbed bit: of all stations, of the sender or of one listener.
+void disturb(Transfer& transfer, Listeners listeners, const WireBits& bits) {
+  const Transfer::Sender& sender = transfer.winner();
+  const uint32_t bit = disturbed_bit(bits, sender.frame.extended, transfer.fault.chance);
+  const bool by_sender = transfer.fault.node == kNoNode ||
+                         std::any_of(transfer.senders.begin(), transfer.senders.end(),
+                                     [&](const auto& s) { return s.node == transfer.fault.node; });
+  WireBits wrong = bits;
+  wrong.recessive.flip(bit);
+  if (by_sender) {
+    // The sender monitors what it sends, so it is the first to notice. Its flag begins with the next bit.
+    const WireBits& seen = transfer.fault.node == kNoNode ? wrong : bits;
+    if (!sender.error_active && transfer.fault.node != kNoNode && is_silent_anyway(bits, bit)) {
+      transfer.outcome = Transfer::Outcome::Repeated;  // nobody but the sender sees anything wrong
+      return;
+    }
+    const uint32_t end =
+        sender.error_active ? flags_end(seen, bit + 1, FirstFlag::Sender) : silence_end(seen, bit);
+    return end_with_error(transfer, Transfer::Outcome::Corrupted, end);
+  }
+  if (!listeners.struck) return;
+  if (listeners.struck_error_active) {
+    WireBits seen = bits;
+    if (listeners.others) {  // they have no reason not to acknowledge
+      seen.recessive.reset(bits.count - 9);
+      wrong.recessive.reset(bits.count - 9);
+    }
+    return end_with_error(transfer, Transfer::Outcome::Corrupted,
+                          flags_end(seen, receiver_notices(wrong, false) + 1, FirstFlag::Listener));
+  }
+  // An error-passive listener cannot make itself heard: it alone has no frame, and gives no acknowledge.
+  if (!listeners.others)
+    end_with_error(transfer, Transfer::Outcome::NoAcknowledge, bits.count - 9 + 1 + kErrorFlagBits);
+}
+
+// The sender sees its last bit dominant. The others have the frame already, for them it is an overload flag.
+void repeat(Transfer& transfer, const WireBits& bits) {
+  transfer.outcome = Transfer::Outcome::Repeated;
+  transfer.end = bits.count;
+  transfer.bits = bits.count + 1 + kErrorFlagBits + kErrorDelimiterBits + kIntermissionBits;
+}
+
 }  // namespace
 
 const Transfer::Sender& Transfer::winner() const {
@@ -57,8 +104,10 @@ const Transfer::Sender& Transfer::winner() const {
   return found == senders.end() ? senders.front() : *found;
 }
 
-void resolve(Transfer& transfer, Listeners listeners) {
+void resolve(Transfer& transfer, Listeners listeners, bool short_circuit) {
   assert(!transfer.senders.empty());
+  if (short_circuit)  // the start of frame already fails, and the flag is not seen
+    return end_with_error(transfer, Transfer::Outcome::NoLevel, 1 + kErrorFlagBits);
   // The bus carries the frame that is dominant at each first difference.
   const Frame* carried = &transfer.senders.front().frame;
   WireBits bits = wire_bits(*carried);
@@ -88,6 +137,9 @@ void resolve(Transfer& transfer, Listeners listeners) {
     transfer.outcome = Transfer::Outcome::Delivered;
     transfer.end = bits.count;
     transfer.bits = bits.count + kIntermissionBits;
+    const FrameFault& fault = transfer.fault;
+    if (fault.is(FaultKind::Corrupt) || fault.is(FaultKind::Terminator)) disturb(transfer, listeners, bits);
+    if (fault.is(FaultKind::Duplicate)) repeat(transfer, bits);
   }
 }
 

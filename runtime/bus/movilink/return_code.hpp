@@ -1,5 +1,5 @@
-// Return codes of the parameter channel on the bus: the table is stdlib/return_codes.def, this adds their text for
-// people.
+// Return codes of the parameter channel on the bus: the table is stdlib/return_codes.def, this adds their
+// text for people.
 #pragma once
 
 #include <string>

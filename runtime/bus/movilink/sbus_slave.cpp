@@ -43,14 +43,18 @@ void SbusSlave::configure(SlaveSettings settings) {
   sync_responses_ = {};
 }
 
+bool SbusSlave::is_sync(const Frame& frame) const {
+  return settings_.synchronous && frame.id == settings_.sync_id;
+}
+
 bool SbusSlave::on_frame(Time now, const Frame& frame) {
   const auto identifier = classify_identifier(frame.id);
   const bool movilink =
       identifier && telegram_type(identifier->telegram).from_master &&
       identifier->address ==
           (telegram_type(identifier->telegram).grouped ? settings_.group : settings_.address) &&
-      (identifier->telegram != Telegram::ParameterRequest2 || settings_.second_channel);
-  if (!movilink && frame.id != settings_.sync_id) return false;
+      has_telegram(settings_, identifier->telegram);
+  if (!movilink && !is_sync(frame)) return false;
   if (frame.extended) {
     ignore(now, frame, Ignored::Extended);
     return false;  // not in the SBus numbering at all
@@ -77,7 +81,10 @@ void SbusSlave::take_telegram(Time now, const Frame& frame, Telegram telegram) {
       if (sync_output_) ignore(now, frame, Ignored::SyncReplaced);
       sync_output_ = words;
       break;
-    case Telegram::GroupProcessOutput: process_data_.take_output(now, OutputChannel::Group, *words); break;
+    case Telegram::GroupProcessOutput:
+      if (!settings_.group_output) return ignore(now, frame, Ignored::GroupMaster);
+      process_data_.take_output(now, OutputChannel::Group, *words);
+      break;
     case Telegram::ParameterRequest: take_request(now, frame, 0); break;
     case Telegram::ParameterRequest2: take_request(now, frame, 1); break;
     case Telegram::GroupParameterRequest: take_group_request(now, frame); break;

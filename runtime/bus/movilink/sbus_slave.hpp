@@ -9,6 +9,7 @@
 #include "runtime/bus/can/node.hpp"
 #include "runtime/bus/movilink/identifiers.hpp"
 #include "runtime/bus/movilink/ignored.hpp"
+#include "runtime/bus/movilink/profile.hpp"
 #include "runtime/bus/movilink/unit_servers.hpp"
 #include "runtime/clock/event_queue.hpp"
 
@@ -21,13 +22,6 @@ class SlaveObserver {
 
  protected:
   ~SlaveObserver() = default;
-};
-
-struct SlaveSettings {
-  uint8_t address = 0;          // P813 or P881
-  uint8_t group = 0;            // P814 or P882
-  uint16_t sync_id = 0;         // P817 or P885
-  bool second_channel = false;  // P889, MOVIDRIVE B
 };
 
 // Both ours; a PI telegram must come within one millisecond (p. 39).
@@ -48,6 +42,7 @@ class SbusSlave final : private EventTarget {
 
   // True when the frame is a MOVILINK telegram to this unit, or its sync telegram.
   bool on_frame(Time now, const Frame& frame);
+  bool is_sync(const Frame& frame) const;  // has the identifier of this unit's sync telegram
 
  private:
   void on_event(Time now, uint32_t kind, uint64_t argument) override;

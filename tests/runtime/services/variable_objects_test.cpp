@@ -161,7 +161,7 @@ TEST_F(Objects, IdentifiersOfTheUnitAreClosed) {
     receive(id);
     EXPECT_FALSE(why_.empty()) << id;
   }
-  objects_.set_addresses(1, 2);
+  objects_.set_profile({1, 2, 0});
   EXPECT_GE(cyclic(3, 100), 0);
   for (const int32_t id : {11, 12, 13, 22, 523, 524, 534}) EXPECT_LT(cyclic(id, 100), 0) << id;
 }

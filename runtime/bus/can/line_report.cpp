@@ -1,0 +1,80 @@
+// What a line tells: events in words, and its load.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runtime/bus/can/line.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+constexpr std::string_view kEventTexts[] = {
+#define LINE_EVENT(name, text) text,
+#include "runtime/bus/can/line_events.def"
+};
+
+// "sbus: planted fault 'swap': unit2 has high and low interchanged", "... 'cut' is over: the line is cut
+// behind unit1"
+std::string describe_fault(const CanLine& line, const LineEvent& event) {
+  const FaultType& type = kFaultTypes[event.fault];
+  const bool over = event.kind == LineEventKind::FaultEnds;
+  std::string text =
+      fmt::format("{}: planted fault '{}'{}: {} {}", line.name(), type.word, over ? " is over" : "",
+                  event.node == kNoNode ? "the line" : line.node_name(event.node), type.text);
+  if (event.other != kNoNode) text += " behind " + line.node_name(event.other);
+  if (type.scope == FaultScope::Frame) text += fmt::format(" (identifier {})", event.id);
+  return text;
+}
+
+}  // namespace
+
+void CanLine::add_observer(CanObserver& observer) {
+  observers_.push_back(&observer);
+  for (NodeId node = 0; node < nodes_.size(); ++node) report_absence(node, &observer);
+}
+
+void CanLine::report(const LineEvent& event) {
+  for (CanObserver* observer : observers_) observer->on_line_event(*this, event);
+}
+
+void CanLine::report_absence(NodeId node, CanObserver* only) {
+  const Node& n = nodes_[node];
+  if (n.connected && n.baud == baud_) return;
+  const LineEvent event{n.connected ? LineEventKind::WrongBaudRate : LineEventKind::NotConnected,
+                        queue_.now(), node};
+  if (only != nullptr)
+    only->on_line_event(*this, event);
+  else
+    report(event);
+}
+
+// --- load
+
+LineLoad CanLine::load(Time now) const {
+  LineLoad load = meter_.load(static_cast<uint64_t>(now / bit_time_));
+  load.frames = frames_;
+  return load;
+}
+
+std::string describe(const CanLine& line, const LineEvent& event) {
+  if (event.kind == LineEventKind::FaultStrikes || event.kind == LineEventKind::FaultEnds)
+    return describe_fault(line, event);
+  std::string text = fmt::format("{}: {} {}", line.name(), line.node_name(event.node),
+                                 kEventTexts[static_cast<size_t>(event.kind)]);
+  switch (event.kind) {
+    case LineEventKind::WrongBaudRate:
+      text +=
+          fmt::format(" ({} kbaud, line {} kbaud)", line.node_baud(event.node) / 1000, line.baud() / 1000);
+      break;
+    case LineEventKind::NoAcknowledge: text += fmt::format(" (identifier {})", event.id); break;
+    case LineEventKind::Collision:
+    case LineEventKind::SameFrame:
+      text += fmt::format(" (identifier {}, other station {})", event.id,
+                          event.other == kNoNode ? "unknown" : line.node_name(event.other));
+      break;
+    default: break;
+  }
+  return text;
+}
+
+}  // namespace ipos::runtime

@@ -1,0 +1,171 @@
+// One telegram in words.
+#include "runtime/bus/movilink/describe.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runtime/bus/movilink/parameter_telegram.hpp"
+#include "runtime/bus/movilink/process_data.hpp"
+#include "stdlib/parameters.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+constexpr uint16_t kVariables = 11'000;  // index of H0 (1053 1610 p. 67)
+constexpr uint16_t kCode = 16'000;       // index of the first program word
+
+std::string bytes_text(const Frame& frame) {
+  if (frame.remote) return "remote frame";
+  std::string text;
+  for (size_t i = 0; i < frame.length; ++i) text += fmt::format("{}{:02X}", i == 0 ? "" : " ", frame.data[i]);
+  return text.empty() ? "no data" : text;
+}
+
+// Who is meant: "unit1", or "address 5" where nobody is known.
+std::string partner(const TelegramNames& names, const SbusIdentifier& identifier) {
+  if (telegram_type(identifier.telegram).grouped) return fmt::format("group {}", identifier.address);
+  const UnitNames* unit = names.unit_at(identifier.address);
+  return unit == nullptr ? fmt::format("address {}", identifier.address) : unit->name;
+}
+
+const char* arrow(const SbusIdentifier& identifier) {
+  return telegram_type(identifier.telegram).from_master ? "->" : "<-";
+}
+
+// The unit whose lists explain a telegram: the one addressed, of a group any member.
+const UnitNames* explaining_unit(const TelegramNames& names, const SbusIdentifier& identifier) {
+  if (!telegram_type(identifier.telegram).grouped) return names.unit_at(identifier.address);
+  const auto member = std::find_if(names.units.begin(), names.units.end(), [&](const UnitNames& unit) {
+    return unit.settings.group == identifier.address;
+  });
+  return member == names.units.end() ? nullptr : &*member;
+}
+
+const stdlib::UnitType& unit_type(const UnitNames* unit) {
+  return unit != nullptr && unit->unit != nullptr ? *unit->unit : *stdlib::find_unit("md60a");
+}
+
+struct IndexText {
+  std::string name;
+  const stdlib::Parameter* parameter = nullptr;
+};
+
+IndexText index_text(const UnitNames* unit, uint16_t index) {
+  const stdlib::UnitType& type = unit_type(unit);
+  if (index >= kVariables && index < kVariables + type.variables) {
+    const uint32_t number = index - kVariables;
+    const std::string name = unit == nullptr ? fmt::format("H{}", number) : unit->variable(number);
+    return {name, nullptr};
+  }
+  if (index >= kCode && index < kCode + type.parameter_words)
+    return {fmt::format("program word {}", index - kCode), nullptr};
+  const stdlib::Parameter* row = stdlib::parameter_table(type).find(index);
+  return row == nullptr ? IndexText{"unknown index", nullptr} : IndexText{std::string(row->name), row};
+}
+
+bool carries_value(Service service) {  // in the coding of the parameter itself
+  return service != Service::None && service != Service::ReadScale && service != Service::ReadAttribute;
+}
+
+std::string value_text(const IndexText& index, Service service, uint32_t data) {
+  if (!carries_value(service)) return fmt::format("{:08X}h", data);
+  const auto value = static_cast<int32_t>(data);
+  if (index.parameter == nullptr) return fmt::format("{}", value);
+  return stdlib::parameter_text(*index.parameter, value);
+}
+
+std::string parameter_text(const TelegramNames& names, const SbusIdentifier& identifier, const Frame& frame) {
+  if (frame.length != 8) return fmt::format("{} bytes in place of 8: {}", frame.length, bytes_text(frame));
+  const ParameterTelegram telegram = decode_parameter(frame.data);
+  const bool request = telegram_type(identifier.telegram).from_master;
+  const auto service = service_from_code(telegram.service_code());
+  const IndexText index = index_text(explaining_unit(names, identifier), telegram.index);
+  std::string text =
+      service ? std::string(service_text(*service)) : fmt::format("service {}", telegram.service_code());
+  text += fmt::format(" {} {}", telegram.index, index.name);
+  if (telegram.subindex != 0) text += fmt::format(", subindex {}", telegram.subindex);
+  if (!request && telegram.failed())
+    text += " refused: " + describe(telegram.return_code());
+  else if (service && (request ? is_write(*service) : *service != Service::None))
+    text += " = " + value_text(index, *service, telegram.data);
+  if (telegram.synchronous()) text += request ? ", answer after sync" : ", after sync";
+  return text;
+}
+
+std::string process_text(const TelegramNames& names, const SbusIdentifier& identifier, const Frame& frame) {
+  const auto words = process_words(frame);
+  if (!words) return fmt::format("{} bytes in place of 6: {}", frame.length, bytes_text(frame));
+  const bool input = !telegram_type(identifier.telegram).from_master;
+  const UnitNames* unit = explaining_unit(names, identifier);
+  std::string text = input ? "PI" : identifier.telegram == Telegram::ProcessOutputSync ? "PO-sync" : "PO";
+  for (size_t n = 0; n < words->size(); ++n) {
+    const uint8_t code = unit == nullptr ? 0 : (input ? unit->input : unit->output)[n];
+    const std::string_view name =
+        unit == nullptr ? std::string_view{} : process_word_name(unit_type(unit), input, code);
+    text += n == 0 ? " " : ", ";
+    if (unit == nullptr || code == 0 || name.empty())
+      text += fmt::format("{:04X}h", (*words)[n]);
+    else
+      text += fmt::format("{} {}", name, process_word_text(input, code, (*words)[n]));
+  }
+  return text;
+}
+
+Description object_text(const ObjectNames& object, const Frame& frame) {
+  const auto pair = frame_variables(frame, object.format);
+  if (!pair)
+    return {true, fmt::format("{} object of {} with {} bytes in place of {}: {}", frame.id, object.station,
+                              frame.length, object.format.length, bytes_text(frame))};
+  std::string text = fmt::format("{}", frame.id);
+  const std::array<int32_t, 2> values = {pair->low, pair->high};
+  for (size_t n = 0; n < object.format.variables(); ++n)
+    text += fmt::format("{} {} = {} ({:08X}h)", n == 0 ? "" : ",", object.variables[n], values[n],
+                        static_cast<uint32_t>(values[n]));
+  if (object.format.length == 0) text += " object without data";
+  return {true, fmt::format("{} {} {}", text, object.sent ? "<-" : "->", object.station)};
+}
+
+bool is_sync(const TelegramNames& names, const Frame& frame) {
+  return std::any_of(names.units.begin(), names.units.end(), [&](const UnitNames& unit) {
+    return unit.settings.synchronous && unit.settings.sync_id == frame.id;
+  });
+}
+
+}  // namespace
+
+std::string UnitNames::variable(uint32_t number) const {
+  for (const VariableName& row : variables)
+    if (row.number == number) return row.name;
+  return fmt::format("H{}", number);
+}
+
+const UnitNames* TelegramNames::unit_at(uint8_t address) const {
+  const auto found = std::find_if(units.begin(), units.end(),
+                                  [&](const UnitNames& unit) { return unit.settings.address == address; });
+  return found == units.end() ? nullptr : &*found;
+}
+
+const ObjectNames* TelegramNames::object(uint32_t id) const {
+  const ObjectNames* best = nullptr;
+  for (const ObjectNames& row : objects)
+    if (row.id == id && (best == nullptr || (row.sent && !best->sent))) best = &row;
+  return best;
+}
+
+Description describe(const TelegramNames& names, const Frame& frame) {
+  if (!is_plain(frame))
+    return {false, fmt::format("{}{} {}", frame.id, frame.extended ? " (29 bits)" : "", bytes_text(frame))};
+  if (const ObjectNames* object = names.object(frame.id)) return object_text(*object, frame);
+  const auto identifier = classify_identifier(frame.id);
+  if (!identifier) {
+    if (is_sync(names, frame)) return {true, fmt::format("{} sync telegram", frame.id)};
+    return {false, fmt::format("{} {}", frame.id, bytes_text(frame))};
+  }
+  const std::string what = telegram_type(identifier->telegram).parameter
+                               ? parameter_text(names, *identifier, frame)
+                               : process_text(names, *identifier, frame);
+  return {true, fmt::format("{} {} {} {}", frame.id, what, arrow(*identifier), partner(names, *identifier))};
+}
+
+}  // namespace ipos::runtime

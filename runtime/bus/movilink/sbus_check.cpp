@@ -1,0 +1,115 @@
+// The checks of a running SBus.
+#include "runtime/bus/movilink/sbus_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runtime/bus/can/line.hpp"
+#include "runtime/bus/movilink/sbus_control.hpp"
+#include "runtime/bus/movilink/sbus_master.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+// The identifier that answers a request, or nothing for one that is not answered at once.
+std::optional<uint32_t> answer_of(const SbusIdentifier& request) {
+  switch (request.telegram) {
+    case Telegram::ProcessOutput: return sbus_identifier(Telegram::ProcessInput, request.address);
+    case Telegram::ParameterRequest: return sbus_identifier(Telegram::ParameterResponse, request.address);
+    case Telegram::ParameterRequest2: return sbus_identifier(Telegram::ParameterResponse2, request.address);
+    default: return std::nullopt;
+  }
+}
+
+}  // namespace
+
+void SbusCheck::tell(Time now, std::string text) { client_.on_sbus_finding(now, std::move(text)); }
+
+void SbusCheck::add_slave(Time now, const CanLine& line, NodeId node, const SlaveSettings& settings) {
+  for (const Slave& slave : slaves_)
+    if (slave.settings.address == settings.address)
+      tell(now, fmt::format(
+                    "{}: {} and {} both have SBus address {}: both answer to it, and their answers collide",
+                    line.name(), line.node_name(slave.node), line.node_name(node), settings.address));
+  slaves_.push_back({node, settings});
+}
+
+void SbusCheck::on_frame(const CanLine& line, const FrameRecord& record) {
+  if (!is_plain(record.frame)) return;
+  check_sender(line, record);
+  if (const auto identifier = classify_identifier(record.frame.id)) {
+    check_address(line, record, *identifier);
+    check_masters(line, record, *identifier);
+    check_window(line, record, *identifier);
+  }
+  for (const Slave& slave : slaves_)
+    if (slave.settings.synchronous && slave.settings.sync_id == record.frame.id)
+      syncs_[record.frame.id] = record.start;
+}
+
+void SbusCheck::check_sender(const CanLine& line, const FrameRecord& record) {
+  const auto [entry, is_new] = senders_.emplace(record.frame.id, record.sender);
+  if (is_new || entry->second == record.sender) return;
+  if (!told_.emplace(record.frame.id, record.sender).second) return;
+  tell(record.end, fmt::format("{}: identifier {} is sent by {} and by {}; an identifier may have one sender",
+                               line.name(), record.frame.id, line.node_name(entry->second),
+                               line.node_name(record.sender)));
+}
+
+void SbusCheck::check_address(const CanLine& line, const FrameRecord& record,
+                              const SbusIdentifier& identifier) {
+  const TelegramType& type = telegram_type(identifier.telegram);
+  if (!type.from_master || slaves_.empty()) return;
+  const auto meant = [&](const Slave& slave) {
+    return (type.grouped ? slave.settings.group : slave.settings.address) == identifier.address;
+  };
+  if (std::any_of(slaves_.begin(), slaves_.end(), meant)) return;
+  if (!told_.emplace(record.frame.id, kNoNode).second) return;
+  std::string present;
+  for (const Slave& slave : slaves_)
+    present +=
+        fmt::format("{}{} ({})", present.empty() ? "" : ", ",
+                    type.grouped ? slave.settings.group : slave.settings.address, line.node_name(slave.node));
+  tell(record.end,
+       fmt::format("{}: {} calls {}address {}, which no station has; there are {}", line.name(),
+                   line.node_name(record.sender), type.grouped ? "group " : "", identifier.address, present));
+}
+
+// MOVLNK needs the line for itself from its request to the answer (1053 1610 p. 47).
+void SbusCheck::check_masters(const CanLine& line, const FrameRecord& record,
+                              const SbusIdentifier& identifier) {
+  std::erase_if(open_,
+                [&](const Exchange& e) { return e.until < record.end || e.answer == record.frame.id; });
+  const auto answer = answer_of(identifier);
+  if (!answer) return;
+  for (const Exchange& exchange : open_) {
+    if (exchange.master == record.sender) continue;
+    const auto pair = std::minmax(exchange.master, record.sender);
+    if (told_masters_.emplace(pair).second)
+      tell(record.end,
+           fmt::format("{}: {} and {} are masters at the same time; only one may be active in the network",
+                       line.name(), line.node_name(exchange.master), line.node_name(record.sender)));
+  }
+  open_.push_back({record.sender, *answer, record.end + kSbusReplyTimeout});
+}
+
+void SbusCheck::check_window(const CanLine& line, const FrameRecord& record,
+                             const SbusIdentifier& identifier) {
+  if (identifier.telegram != Telegram::ProcessOutputSync) return;
+  for (const Slave& slave : slaves_) {
+    if (slave.settings.address != identifier.address) continue;
+    const auto sync = syncs_.find(slave.settings.sync_id);
+    if (sync == syncs_.end()) continue;
+    const Time at = record.start - sync->second;
+    if (at >= kSyncWindowBegin && at <= kSyncWindowEnd) continue;
+    if (told_.emplace(record.frame.id, kNoNode).second)
+      tell(record.end,
+           fmt::format("{}: synchronous PO telegram {} of {} starts {:.3f} ms after the sync telegram; it "
+                       "belongs between 1.5 and 4.5 ms",
+                       line.name(), record.frame.id, line.node_name(record.sender),
+                       static_cast<double>(at) / 1e6));
+  }
+}
+
+}  // namespace ipos::runtime

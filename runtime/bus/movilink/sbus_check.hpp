@@ -1,0 +1,61 @@
+// Looks at the telegrams of an SBus and says what is against the rules of the manuals: an identifier with two
+// senders, two masters at a time, addresses nobody or two units have, PO-sync outside of its window.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "runtime/bus/can/node.hpp"
+#include "runtime/bus/movilink/profile.hpp"
+
+namespace ipos::runtime {
+
+class SbusCheckClient {
+ public:
+  virtual void on_sbus_finding(Time now, std::string text) = 0;
+
+ protected:
+  ~SbusCheckClient() = default;
+};
+
+// Observes one line; each finding is told once.
+class SbusCheck final : public CanObserver {
+ public:
+  explicit SbusCheck(SbusCheckClient& client) : client_(client) {}
+
+  // All units of the line, before the first frame.
+  void add_slave(Time now, const CanLine& line, NodeId node, const SlaveSettings& settings);
+
+  void on_frame(const CanLine& line, const FrameRecord& record) override;
+  void on_line_event(const CanLine&, const LineEvent&) override {}
+
+ private:
+  struct Slave {
+    NodeId node;
+    SlaveSettings settings;
+  };
+  struct Exchange {  // a request that waits for its answer
+    NodeId master;
+    uint32_t answer;
+    Time until;
+  };
+
+  void check_sender(const CanLine& line, const FrameRecord& record);
+  void check_address(const CanLine& line, const FrameRecord& record, const SbusIdentifier& identifier);
+  void check_masters(const CanLine& line, const FrameRecord& record, const SbusIdentifier& identifier);
+  void check_window(const CanLine& line, const FrameRecord& record, const SbusIdentifier& identifier);
+  void tell(Time now, std::string text);
+
+  SbusCheckClient& client_;
+  std::vector<Slave> slaves_;
+  std::map<uint32_t, NodeId> senders_;          // the first one of each identifier
+  std::set<std::pair<uint32_t, NodeId>> told_;  // identifier and second sender
+  std::set<std::pair<NodeId, NodeId>> told_masters_;
+  std::vector<Exchange> open_;
+  std::map<uint32_t, Time> syncs_;  // start of the last telegram, by identifier
+};
+
+}  // namespace ipos::runtime

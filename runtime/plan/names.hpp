@@ -1,0 +1,17 @@
+// The dictionary of a plant or of a single program for describing telegrams.
+#pragma once
+
+#include <string>
+
+#include "runtime/bus/movilink/describe.hpp"
+#include "runtime/plant/plant.hpp"
+
+namespace ipos::runtime {
+
+// Symbol of a variable, with index or member; "H426" without one.
+std::string variable_name(const vm::Image* image, uint32_t variable);
+
+// Units and the objects they have defined so far; of one line, or of all when it is null.
+TelegramNames telegram_names(const Plant& plant, const CanLine* line = nullptr);
+
+}  // namespace ipos::runtime

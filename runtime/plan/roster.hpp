@@ -1,0 +1,49 @@
+// Who is on each line of a plant, in the order of the cable, with all the planner has to know of him.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/plant/plant.hpp"
+
+namespace ipos::runtime {
+
+struct Member {
+  std::string name;
+  const Station* station = nullptr;  // null: a master control
+  const SbusPort* port = nullptr;
+  int sbus = 1;  // 1 or 2
+  const PlantControl* control = nullptr;
+  std::optional<bool> terminator;
+  bool branch = false;
+  uint32_t place = 0;  // line in the plant file
+};
+
+struct LineRoster {
+  const CanLine* line;
+  const BusConfig* config;
+  std::vector<Member> members;
+
+  const Member* slave_at(uint8_t address) const;
+  bool has_group(uint8_t group) const;
+};
+
+std::vector<LineRoster> line_rosters(const Plant& plant);
+
+// What the trial run showed of one identifier on a line.
+struct SeenTelegram {
+  uint64_t count = 0;
+  Time last = 0;
+  Time closest = kNever;  // shortest distance of two
+};
+using SeenTelegrams = std::map<uint32_t, SeenTelegram>;
+
+// "PO of address 33", "object 1024"
+std::string telegram_name(Telegram telegram, uint8_t address);
+
+// "TrCycl" for the structure of an object, or "H420".
+std::string structure_name(const Station& station, uint32_t variable);
+
+}  // namespace ipos::runtime

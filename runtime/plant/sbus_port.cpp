@@ -1,0 +1,110 @@
+// Who of the port's parts gets a frame, and what the user is told.
+#include "runtime/plant/sbus_port.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ipos::runtime {
+namespace {
+
+// Tags of frames by the part that sent them.
+constexpr uint64_t kSlaveTag = 1;
+constexpr uint64_t kMasterTag = 2;
+constexpr uint64_t kGroupTag = 3;
+constexpr uint64_t kObjectTags = 0x100;  // and above
+
+constexpr MovilinkBus kBuses[] = {MovilinkBus::Sbus, MovilinkBus::Sbus2};
+
+struct SbusParameters {
+  std::string_view protocol, address, group, baud, sync_id, second_channel;
+};
+constexpr SbusParameters kOlder = {"", "813", "814", "816", "817", ""};
+constexpr SbusParameters kSbus1 = {"880", "881", "882", "884", "885", "889"};
+constexpr SbusParameters kSbus2 = {"890", "891", "892", "894", "895", "899"};
+
+}  // namespace
+
+SbusSettings sbus_settings(const DriveServer& drive, int sbus) {
+  const stdlib::Generation generation = drive.unit().generation;
+  const SbusParameters& p = generation != stdlib::Generation::B ? kOlder : sbus == 1 ? kSbus1 : kSbus2;
+  const auto value = [&](std::string_view number) { return number.empty() ? 0 : drive.value(number); };
+  SbusSettings settings;
+  settings.slave.address = static_cast<uint8_t>(value(p.address));
+  settings.slave.group = static_cast<uint8_t>(value(p.group));
+  settings.slave.sync_id = static_cast<uint16_t>(value(p.sync_id) / 1000);  // coded in thousandths
+  settings.slave.second_channel = value(p.second_channel) != 0;
+  settings.slave.synchronous = generation != stdlib::Generation::M07;
+  settings.slave.group_output = sbus != 1 || !sends_over_sbus(drive.value("750"));
+  settings.baud = kBaudRates[std::min(static_cast<size_t>(value(p.baud)), kBaudRates.size() - 1)];
+  settings.movilink = value(p.protocol) == 0;
+  return settings;
+}
+
+SbusPort::SbusPort(EventQueue& queue, uint32_t source, CanLine& line, int sbus, std::string_view station,
+                   const SbusSettings& settings, DriveServer& drive, MovilinkCommand& movilink,
+                   Journal& journal)
+    : line_(line),
+      station_(station),
+      settings_(settings),
+      drive_(drive),
+      journal_(journal),
+      sender_(line, line.attach(std::string(station), settings.baud, *this)),
+      slave_(queue, source, sender_, kSlaveTag, settings.slave, {}, drive, drive, this),
+      objects_(drive.unit(), settings.baud, sender_, kObjectTags, sbus),
+      movilink_(movilink),
+      bus_(kBuses[sbus - 1]),
+      master_(queue, source, sender_, kMasterTag, kSbusReplyTimeout, movilink.client(bus_)),
+      group_master_(sender_, kGroupTag, drive) {
+  movilink.connect(bus_, master_);
+  objects_.set_profile(settings.slave);
+  // Master/slave operation is a matter of SBus 1 (MDX60B/61B chapter 5.5.1).
+  if (std::string why =
+          group_master_.configure(sbus == 1 ? drive.value("750") : 0, settings.slave.group, settings.baud);
+      !why.empty())
+    note(queue.now(), Weight::Warning, std::move(why));
+}
+
+void SbusPort::note(Time now, Weight weight, std::string text) {
+  journal_.note(now, weight, station_, std::move(text));
+}
+
+void SbusPort::stop_program() { objects_.stop(); }
+
+void SbusPort::tick(Time now) {
+  group_master_.tick(now);
+  if (machine_ != nullptr) objects_.tick(now / kMillisecond, machine_->variables());
+}
+
+void SbusPort::on_frame(Time now, const Frame& frame) {
+  if (master_.on_frame(now, frame)) return;
+  std::string why;
+  const bool received = machine_ != nullptr && objects_.on_frame(frame, machine_->variables(), why);
+  if (!why.empty()) note(now, Weight::Warning, std::move(why));
+  // A receive object with the sync identifier takes nothing away from the drive.
+  if (!received || slave_.is_sync(frame)) slave_.on_frame(now, frame);
+  if (std::string refused = drive_.take_reason(); !refused.empty())
+    note(now, Weight::Why, "refused " + std::move(refused));
+  for (std::string& obstacle : drive_.take_obstacles()) note(now, Weight::Why, std::move(obstacle));
+}
+
+void SbusPort::on_sent(Time now, const Frame& /*frame*/, uint64_t tag) {
+  if (tag == kMasterTag) master_.on_sent(now, tag);
+  if (tag >= kObjectTags) objects_.on_sent(tag, machine_->variables());
+}
+
+void SbusPort::on_not_sent(Time /*now*/, const Frame& /*frame*/, uint64_t tag, NotSent reason) {
+  // A disturbed frame is sent again by the controller; nobody else learns of it.
+  if (tag >= kObjectTags && reason != NotSent::Corrupted) objects_.on_not_sent(tag, machine_->variables());
+}
+
+// No manual says what a drive does; it asks its controller to come back at once (ours).
+void SbusPort::on_bus_off(Time /*now*/) { sender_.recover(); }
+
+void SbusPort::on_ignored(Time now, const Frame& frame, Ignored reason, ReturnCode code) {
+  std::string text = fmt::format("SBus telegram {} had no effect: {}", frame.id, ignored_text(reason));
+  if (code != ReturnCode{}) text += fmt::format(" ({})", describe(code));
+  note(now, Weight::Why, std::move(text));
+}
+
+}  // namespace ipos::runtime

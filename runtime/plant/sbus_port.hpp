@@ -1,0 +1,72 @@
+// One SBus connection of a station: the slave of its MOVILINK profile, the master of MOVLNK, the variable
+// objects and the group telegrams of master/slave operation share one place on the line.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "runtime/bus/can/line.hpp"
+#include "runtime/bus/movilink/sbus_group_master.hpp"
+#include "runtime/bus/movilink/sbus_master.hpp"
+#include "runtime/bus/movilink/sbus_slave.hpp"
+#include "runtime/plant/drive_server.hpp"
+#include "runtime/services/journal.hpp"
+#include "runtime/services/movilink_command.hpp"
+#include "runtime/services/variable_objects.hpp"
+#include "vm/exec/machine.hpp"
+
+namespace ipos::runtime {
+
+// Settings of SBus 1 or 2 from the parameters of a unit: P813.. (1053 1610 p. 41), MOVIDRIVE B P881.. and
+// P891...
+struct SbusSettings {
+  SlaveSettings slave;
+  uint32_t baud = 500'000;
+  bool movilink = true;  // P880 and P890 can select CANopen
+};
+SbusSettings sbus_settings(const DriveServer& drive, int sbus);
+
+class SbusPort final : private CanNode, private SlaveObserver {
+ public:
+  // Attaches to the line. `sbus` is 1 or 2. All references must outlive the port.
+  SbusPort(EventQueue& queue, uint32_t source, CanLine& line, int sbus, std::string_view station,
+           const SbusSettings& settings, DriveServer& drive, MovilinkCommand& movilink, Journal& journal);
+
+  void connect_program(vm::Machine& machine) { machine_ = &machine; }
+  void stop_program();  // a program stop ends cyclic sending and receiving (1053 1610 p. 54)
+  void tick(Time now);  // once a millisecond, after the tasks
+
+  NodeId node() const { return sender_.node(); }
+  CanLine& line() const { return line_; }
+  const SbusSettings& settings() const { return settings_; }
+  VariableObjects& objects() { return objects_; }
+  const VariableObjects& objects() const { return objects_; }
+  // Whom the program has called by MOVLNK over this bus.
+  const std::vector<MovilinkCommand::Partner>& partners() const { return movilink_.partners(bus_); }
+  bool has_called(uint32_t structure) const { return movilink_.has_called(structure); }
+  const GroupMaster& group_master() const { return group_master_; }
+
+ private:
+  void on_frame(Time now, const Frame& frame) override;
+  void on_sent(Time now, const Frame& frame, uint64_t tag) override;
+  void on_not_sent(Time now, const Frame& frame, uint64_t tag, NotSent reason) override;
+  void on_bus_off(Time now) override;
+  void on_ignored(Time now, const Frame& frame, Ignored reason, ReturnCode code) override;
+  void note(Time now, Weight weight, std::string text);
+
+  CanLine& line_;
+  std::string_view station_;
+  SbusSettings settings_;
+  DriveServer& drive_;
+  Journal& journal_;
+  vm::Machine* machine_ = nullptr;
+  LinePort sender_;
+  SbusSlave slave_;
+  VariableObjects objects_;
+  const MovilinkCommand& movilink_;
+  MovilinkBus bus_;
+  SbusMaster master_;
+  GroupMaster group_master_;
+};
+
+}  // namespace ipos::runtime

@@ -1,0 +1,272 @@
+// Which identifiers a unit uses by its profile, and telegrams in words.
+#include "runtime/bus/movilink/profile.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "runtime/bus/movilink/describe.hpp"
+#include "runtime/bus/movilink/process_data.hpp"
+#include "runtime/bus/movilink/variable_telegram.hpp"
+#include "tests/harness/proves.hpp"
+#include "tests/runtime/bus/sbus_rig.hpp"
+
+namespace ipos::tests {
+namespace {
+
+std::vector<uint32_t> ids(const std::vector<IdentifierUse>& uses) {
+  std::vector<uint32_t> out;
+  for (const IdentifierUse& use : uses) out.push_back(use.id);
+  return out;
+}
+
+SlaveSettings m07(uint8_t address, uint8_t group) {
+  SlaveSettings settings{address, group, 0};
+  settings.synchronous = false;
+  return settings;
+}
+
+TEST(Profile, IdentifiersOfAUnit) {
+  EXPECT_EQ(ids(slave_identifiers({0, 0, 0})), (std::vector<uint32_t>{3, 4, 5, 6, 515, 516, 518}));
+  EXPECT_EQ(ids(slave_identifiers({1, 2, 0})), (std::vector<uint32_t>{11, 12, 13, 22, 523, 524, 534}));
+  EXPECT_EQ(ids(slave_identifiers(m07(1, 2))), (std::vector<uint32_t>{11, 12, 22, 523, 524, 534}));
+  SlaveSettings b{1, 2, 0};
+  b.second_channel = true;
+  EXPECT_EQ(ids(slave_identifiers(b)), (std::vector<uint32_t>{11, 12, 13, 22, 523, 524, 525, 527, 534}));
+  for (const IdentifierUse& use : slave_identifiers(b))
+    EXPECT_EQ(use.transmits, use.id == 12 || use.id == 524 || use.id == 527) << use.id;
+  EXPECT_EQ(ids(master_identifiers(1, {})), (std::vector<uint32_t>{11, 12, 13, 523, 524}));
+  EXPECT_EQ(ids(master_identifiers(102, {})), (std::vector<uint32_t>{22, 534}));
+  for (const IdentifierUse& use : master_identifiers(1, b))
+    EXPECT_EQ(use.transmits, use.id != 12 && use.id != 524) << use.id;
+}
+
+TEST(Profile, FieldsOfTheIdentifier) {
+  PROVES("SBUS-01", "M07-SBUS-01", "M07-SBUS-02");
+  std::set<uint32_t> used;
+  for (int address = 0; address < 64; ++address)
+    for (const TelegramType& type : kTelegrams) {
+      const uint32_t id = sbus_identifier(type.telegram, static_cast<uint8_t>(address));
+      EXPECT_EQ(id & 7, type.function);
+      EXPECT_EQ(id >> 3 & 63, static_cast<uint32_t>(address));
+      EXPECT_EQ((id >> 9 & 1) != 0, type.parameter);
+      EXPECT_EQ(id >> 10, 0U);
+      EXPECT_EQ(classify_identifier(id), (SbusIdentifier{type.telegram, static_cast<uint8_t>(address)}));
+      if (has_telegram(m07(0, 0), type.telegram)) used.insert(id);
+    }
+  EXPECT_EQ(*used.begin(), 3U);
+  EXPECT_EQ(*used.rbegin(), 1022U);
+  EXPECT_EQ(classify_identifier(267), (SbusIdentifier{Telegram::ProcessOutput, 33}));
+  EXPECT_EQ(classify_identifier(918), (SbusIdentifier{Telegram::GroupParameterRequest, 50}));
+  EXPECT_EQ(sbus_identifier(Telegram::ProcessOutput, 33), 267U);
+  EXPECT_EQ(sbus_identifier(Telegram::GroupParameterRequest, 50), 918U);
+  for (uint32_t id = 1024; id < kStandardIdLimit; ++id) EXPECT_FALSE(classify_identifier(id));
+  // What the encoder makes is always standard; an extended frame is no telegram.
+  Frame frame = process_frame(11, {6, 0, 0});
+  EXPECT_FALSE(frame.extended);
+  frame.extended = true;
+  EXPECT_FALSE(process_words(frame));
+  EventQueue queue;
+  CanLine line(queue, 9, "sbus", 500'000);
+  Hand master(line, "control");
+  Unit unit(queue, 1, line, "unit1", SlaveSettings{1, 2, 0});
+  master.port.send(frame, 0);
+  queue.run_until(kMillisecond);
+  EXPECT_TRUE(unit.outputs.empty());
+  EXPECT_EQ(unit.ignored, std::vector<Ignored>{Ignored::Extended});
+}
+
+TEST(Profile, IdentifierTablesOfMovitrac07) {
+  PROVES("M07-SBUS-03", "M07-SBUS-04", "M07-SBUS-05");
+  const auto id = [](Telegram telegram, int address) {
+    return sbus_identifier(telegram, static_cast<uint8_t>(address));
+  };
+  EXPECT_EQ(id(Telegram::ProcessOutput, 17), 139U);
+  EXPECT_EQ(id(Telegram::ProcessInput, 17), 140U);
+  EXPECT_EQ(id(Telegram::ProcessOutput, 0), 3U);
+  EXPECT_EQ(id(Telegram::ProcessInput, 0), 4U);
+  EXPECT_EQ(id(Telegram::ProcessOutput, 63), 507U);
+  EXPECT_EQ(id(Telegram::ProcessInput, 63), 508U);
+  EXPECT_EQ(id(Telegram::ParameterRequest, 1), 523U);
+  EXPECT_EQ(id(Telegram::ParameterResponse, 1), 524U);
+  EXPECT_EQ(id(Telegram::ParameterRequest, 0), 515U);
+  EXPECT_EQ(id(Telegram::ParameterResponse, 0), 516U);
+  EXPECT_EQ(id(Telegram::GroupProcessOutput, 2), 22U);
+  EXPECT_EQ(id(Telegram::GroupParameterRequest, 2), 534U);
+  EXPECT_EQ(id(Telegram::GroupProcessOutput, 0), 6U);
+  EXPECT_EQ(id(Telegram::GroupParameterRequest, 0), 518U);
+}
+
+struct M07Rig {
+  EventQueue queue;
+  CanLine line{queue, 9, "sbus", 500'000};
+  Hand master{line, "control"};
+  Unit a{queue, 1, line, "a", m07(5, 50)};
+  Unit b{queue, 2, line, "b", m07(6, 50)};
+  Unit c{queue, 3, line, "c", m07(50, 50)};
+  std::vector<Frame> ask(const Frame& frame) {
+    master.frames.clear();
+    master.port.send(frame, 0);
+    queue.run_until(queue.now() + 10 * kMillisecond);
+    return master.frames;
+  }
+};
+
+TEST(Profile, ProcessDataOfMovitrac07) {
+  PROVES("M07-SBUS-06", "M07-SBUS-14", "M07-SBUS-15", "M07-SBUS-16");
+  M07Rig rig;
+  rig.queue.run_until(kSecond);
+  EXPECT_TRUE(rig.master.frames.empty());  // no PI without PO
+  for (int n = 0; n < 10; ++n) {
+    const std::vector<Frame> answer = rig.ask(process_frame(43, {6, 0, 0}));
+    ASSERT_EQ(answer.size(), 1U);
+    EXPECT_EQ(answer[0].id, 44U);
+    EXPECT_EQ(answer[0].length, 6);
+  }
+  EXPECT_EQ(rig.a.outputs.size(), 10U);
+  for (const uint8_t length : std::initializer_list<uint8_t>{0, 4, 5, 7, 8})
+    EXPECT_TRUE(rig.ask({43, length, {0, 7}, false, false}).empty());
+  EXPECT_EQ(rig.a.outputs.size(), 10U);
+  // Station c has address 50 and group 50: 403 is its PO, 406 the group's.
+  EXPECT_EQ(rig.ask(process_frame(403, {6, 1, 0})).size(), 1U);
+  EXPECT_TRUE(rig.ask(process_frame(406, {6, 2, 0})).empty());
+  EXPECT_EQ(rig.a.outputs.back(), (ProcessWords{6, 2, 0}));
+  EXPECT_EQ(rig.b.outputs.back(), (ProcessWords{6, 2, 0}));
+  EXPECT_EQ(rig.c.outputs, (std::vector<ProcessWords>{{6, 1, 0}, {6, 2, 0}}));
+  // The function decides, also where both numbers are equal: 46 is a group PO, 43 a single one.
+  Unit d(rig.queue, 4, rig.line, "d", m07(9, 9));
+  EXPECT_EQ(rig.ask(process_frame(8 * 9 + 3, {6, 3, 0})).size(), 1U);
+  EXPECT_TRUE(rig.ask(process_frame(8 * 9 + 6, {6, 4, 0})).empty());
+  EXPECT_EQ(d.channels, (std::vector<OutputChannel>{OutputChannel::Single, OutputChannel::Group}));
+  // No synchronous telegrams.
+  EXPECT_TRUE(rig.ask(process_frame(45, {6, 9, 0})).empty());
+  EXPECT_TRUE(rig.ask({0, 0, {}, false, false}).empty());
+  EXPECT_EQ(rig.a.outputs.back(), (ProcessWords{6, 2, 0}));
+  EXPECT_EQ(rig.a.syncs, 0);
+}
+
+TEST(Profile, ParametersOfMovitrac07) {
+  PROVES("M07-SBUS-17", "M07-SBUS-18");
+  M07Rig rig;
+  for (Unit* unit : {&rig.a, &rig.b, &rig.c}) unit->parameters[8517] = 0;  // P302 Maximum speed 1
+  const std::vector<Frame> answer = rig.ask({8 * 5 + 515, 8, {0x31, 0, 0x20, 0x7E}, false, false});
+  ASSERT_EQ(answer.size(), 1U);
+  EXPECT_EQ(answer[0].id, 8U * 5 + 516);
+  EXPECT_EQ(answer[0].length, 8);
+  EXPECT_TRUE(rig.ask({918, 8, {0x32, 0, 0x21, 0x45, 0, 0, 0x0B, 0xB8}, false, false}).empty());
+  for (Unit* unit : {&rig.a, &rig.b, &rig.c}) EXPECT_EQ(unit->parameters[8517], 3000);
+  EXPECT_TRUE(rig.ask({918, 8, {0x31, 0, 0x21, 0x45, 0, 0, 0, 1}, false, false}).empty());
+  for (Unit* unit : {&rig.a, &rig.b, &rig.c}) EXPECT_EQ(unit->parameters[8517], 3000);
+}
+
+TEST(Profile, VariableTelegramsOfMovitrac07) {
+  PROVES("M07-SCOM-27", "M07-SCOM-28");
+  const VariablePair pair{0x11223344, 0x55667788};
+  const Frame motorola = variable_frame(1024, {8, VariableLayout::Motorola}, pair);
+  EXPECT_EQ(motorola.data, (std::array<uint8_t, 8>{0x55, 0x66, 0x77, 0x88, 0x11, 0x22, 0x33, 0x44}));
+  EXPECT_EQ(frame_variables(motorola, {8, VariableLayout::Motorola}), pair);
+  const Frame intel = variable_frame(1024, {8, VariableLayout::Intel}, pair);
+  EXPECT_EQ(intel.data, (std::array<uint8_t, 8>{0x44, 0x33, 0x22, 0x11, 0x88, 0x77, 0x66, 0x55}));
+  EXPECT_EQ(frame_variables(intel, {8, VariableLayout::Intel}), pair);
+}
+
+// --- in words
+
+TelegramNames names() {
+  TelegramNames all;
+  UnitNames unit;
+  unit.name = "unit1";
+  unit.unit = stdlib::find_unit("md60a");
+  unit.settings = {1, 2, 0};
+  unit.output = {9, 1, 5};
+  unit.input = {6, 1, 2};
+  unit.variables = {{426, "lTrDataLow"}};
+  all.units.push_back(unit);
+  ObjectNames object;
+  object.id = 1024;
+  object.station = "unit1";
+  object.sent = true;
+  object.format = {8, VariableLayout::Motorola};
+  object.variables = {"lTrDataLow", "lTrDataHigh"};
+  object.cycle = 100;
+  all.objects.push_back(object);
+  return all;
+}
+
+std::string words(const Frame& frame) { return describe(names(), frame).text; }
+
+TEST(Describe, ParameterTelegrams) {
+  EXPECT_EQ(words({523, 8, {0x31, 0, 0x20, 0x7E}, false, false}), "523 read 8318 Speed -> unit1");
+  EXPECT_EQ(words({524, 8, {0x31, 0, 0x20, 0x7E, 0, 0x0F, 0x42, 0x40}, false, false}),
+            "524 read 8318 Speed = 1000.000 rpm <- unit1");
+  EXPECT_EQ(words({523, 8, {0x32, 0, 0x21, 0x16, 0, 0, 0x0B, 0xB8}, false, false}),
+            "523 write 8470 Ramp t11 UP CW = 3.000 s -> unit1");
+  EXPECT_EQ(words({524, 8, {0xB2, 0, 0x20, 0x7E, 8, 0, 0, 0x12}, false, false}).substr(0, 47),
+            "524 write 8318 Speed refused: class 8 code 0 ad");
+  EXPECT_EQ(words({534, 8, {0x33, 0, 0x2C, 0xA2, 0xFF, 0xFF, 0xFF, 0xFF}, false, false}),
+            "534 write volatile 11426 lTrDataLow = -1 -> group 2");
+  EXPECT_EQ(words({523, 8, {0x71, 0, 0x2A, 0xFD}, false, false}),
+            "523 read 11005 H5, answer after sync -> unit1");
+  EXPECT_EQ(words({523, 8, {0x37, 0, 0x20, 0x7E}, false, false}), "523 read scale 8318 Speed -> unit1");
+  EXPECT_EQ(words({523, 8, {0x3F, 0, 0xFF, 0xFF}, false, false}),
+            "523 service 15 65535 unknown index -> unit1");
+  EXPECT_EQ(words({523, 3, {0x31}, false, false}), "523 3 bytes in place of 8: 31 00 00 -> unit1");
+  EXPECT_EQ(words({531, 8, {0x31, 0, 0x20, 0x7E}, false, false}), "531 read 8318 Speed -> address 2");
+}
+
+TEST(Describe, RequestAndResponseAreNotMixedUp) {
+  PROVES("M07-SBUS-19");
+  for (uint32_t a = 0; a < 64; ++a) {
+    const Frame request{8 * a + 515, 8, {0x31, 0, 0x20, 0x7E}, false, false};
+    EXPECT_EQ(telegram_type(classify_identifier(request.id)->telegram).text, "parameter request");
+    EXPECT_NE(describe({}, request).text.find(" -> "), std::string::npos);
+    const Frame response{8 * a + 516, 8, {0x31, 0, 0x20, 0x7E}, false, false};
+    EXPECT_EQ(telegram_type(classify_identifier(response.id)->telegram).text, "parameter response");
+    EXPECT_NE(describe({}, response).text.find(" <- "), std::string::npos);
+  }
+}
+
+TEST(Describe, ProcessDataByAssignment) {
+  PROVES("M07-SCOM-09");
+  // The sample of MOVITRAC 07 chapter 5.1: P870..P872 control word, speed, max. speed; P873, P874 status
+  // word, speed.
+  EXPECT_EQ(words(process_frame(11, {6, 5000, 15000})),
+            "11 PO CTRL. WORD 1 0006h, SPEED 1000.0 rpm, MAX. SPEED 3000.0 rpm -> unit1");
+  EXPECT_EQ(words(process_frame(12, {7, 5011, 0})),
+            "12 PI STATUS WORD1 0007h, SPEED 1002.2 rpm, OUTP. CURRENT 0.0 % In <- unit1");
+  EXPECT_EQ(process_word_text(false, 1, 5000), "1000.0 rpm");
+  EXPECT_EQ(process_word_text(false, 5, 15000), "3000.0 rpm");
+  EXPECT_EQ(process_word_text(true, 1, 5011), "1002.2 rpm");
+}
+
+TEST(Describe, ScalesOfTheUnitProfile) {
+  // Examples of MOVITRAC 07 chapter 6.1.
+  EXPECT_EQ(process_word_text(false, 1, 2000), "400.0 rpm");
+  EXPECT_EQ(process_word_text(false, 1, 0xF15A), "-750.0 rpm");
+  EXPECT_EQ(process_word_text(false, 11, 0x1000), "25.00 %");
+  EXPECT_EQ(process_word_text(false, 11, 0xD000), "-75.00 %");
+  EXPECT_EQ(process_word_text(true, 2, 0x01C2), "45.0 % In");
+  EXPECT_EQ(process_word_text(true, 3, 0x0483), "115.5 % In");
+  EXPECT_EQ(process_word_text(false, 8, 0x012C), "300 ms");
+  EXPECT_EQ(process_word_text(false, 8, 0x0578), "1400 ms");
+  EXPECT_EQ(process_word_text(false, 8, 0xFFFF), "65535 ms");
+  EXPECT_EQ(process_word_text(false, 1, 0x8000), "-6553.6 rpm");
+  EXPECT_EQ(process_word_text(false, 3, 0xFFFF), "-1");
+  EXPECT_EQ(process_word_text(true, 6, 0x0202), "0202h");
+}
+
+TEST(Describe, VariableAndOtherTelegrams) {
+  EXPECT_EQ(words({1024, 8, {0x55, 0x66, 0x77, 0x88, 0x11, 0x22, 0x33, 0x44}, false, false}),
+            "1024 lTrDataLow = 287454020 (11223344h), lTrDataHigh = 1432778632 (55667788h) <- unit1");
+  EXPECT_EQ(words({1024, 2, {1, 2}, false, false}), "1024 object of unit1 with 2 bytes in place of 8: 01 02");
+  EXPECT_EQ(words({0, 0, {}, false, false}), "0 sync telegram");
+  const Description unknown = describe(names(), {2000, 2, {0xAB, 0xCD}, false, false});
+  EXPECT_FALSE(unknown.known);
+  EXPECT_EQ(unknown.text, "2000 AB CD");
+  EXPECT_FALSE(describe(names(), {11, 6, {}, true, false}).known);
+  EXPECT_FALSE(describe(names(), {523, 0, {}, false, true}).known);
+  EXPECT_EQ(describe({}, process_frame(11, {6, 0, 0})).text, "11 PO 0006h, 0000h, 0000h -> address 1");
+}
+
+}  // namespace
+}  // namespace ipos::tests

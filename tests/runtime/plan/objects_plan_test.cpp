@@ -1,0 +1,190 @@
+// Variable objects in the planner and in the run: identifiers that are not free, formats, the missing start
+// command.
+#include <gtest/gtest.h>
+
+#include "runtime/plan/names.hpp"
+#include "runtime/plan/plan.hpp"
+#include "tests/harness/proves.hpp"
+#include "tests/runtime/plan/plant_rig.hpp"
+
+namespace ipos::tests {
+namespace {
+
+std::string send_program(int id, const std::string& format = "4", bool start = true) {
+  return "#include <const.h>\nSCTRCYCL Tr; long lData, lMore;\nmain()\n{\n lData = 287454020; Tr.ObjectNo "
+         "= " +
+         std::to_string(id) + "; Tr.CycleTime = 10; Tr.Offset = 0; Tr.Format = " + format +
+         "; Tr.DPointer = numof(lData);\n _SBusCommDef(SCD_TRCYCL, Tr);\n" +
+         (start ? " _SBusCommOn();\n" : "") + " while (1) {}\n}\n";
+}
+
+std::string receive_program(int id, const std::string& format = "4", bool start = true) {
+  return "#include <const.h>\nSCREC Rec; long lData, lMore;\nmain()\n{\n Rec.ObjectNo = " +
+         std::to_string(id) + "; Rec.Format = " + format +
+         "; Rec.DPointer = numof(lData);\n _SBusCommDef(SCD_REC, Rec);\n" +
+         (start ? " _SBusCommOn();\n" : "") + " while (1) {}\n}\n";
+}
+
+std::string two(const std::string& unit = "md60a") {
+  return bus_text() + station_text("unit1", "P813 = 0\n", unit, "A.IPC") +
+         station_text("unit2", "P813 = 1\n", unit, "B.IPC");
+}
+
+BusPlan plan_of(const std::string& toml, const std::map<std::string, std::string>& sources) {
+  PlantRig rig(toml, sources);
+  return make_plan(rig.get(), {});
+}
+
+std::vector<std::string> texts(const BusPlan& plan, FindingKind kind) {
+  std::vector<std::string> list;
+  for (const Finding& finding : plan.findings)
+    if (finding.kind == kind) list.push_back(finding.text);
+  return list;
+}
+
+TEST(Objects, OneSenderAndNoMovilinkIdentifiers) {
+  PROVES("VAR-03");
+  BusPlan plan = plan_of(two(), {{"A.IPC", send_program(1024)}, {"B.IPC", send_program(1024)}});
+  EXPECT_EQ(
+      texts(plan, FindingKind::DoubleIdentifier),
+      std::vector<std::string>{"identifier 1024 is sent by unit1 (object Tr) and by unit2 (object Tr)"});
+  // 12 is the PI that unit 2 sends.
+  plan = plan_of(two(), {{"A.IPC", send_program(12)}, {"B.IPC", send_program(1025)}});
+  EXPECT_EQ(
+      texts(plan, FindingKind::MovilinkIdentifier),
+      std::vector<std::string>{"unit1: object 12 (Tr) cannot be sent: it is the process input data (PI) of "
+                               "address 1 that unit2 sends"});
+  // 11 it only receives: no rule against sending it, as long as nobody sends PO.
+  plan = plan_of(two(), {{"A.IPC", send_program(11)}, {"B.IPC", send_program(1025)}});
+  EXPECT_TRUE(texts(plan, FindingKind::MovilinkIdentifier).empty());
+}
+
+TEST(Objects, NumbersFrom0To2047) {
+  PROVES("VAR-06");
+  for (const int id : {2048, -1}) {
+    PlantRig rig(two(), {{"A.IPC", send_program(id)}, {"B.IPC", receive_program(1024)}});
+    rig.run_until(50 * kMillisecond);
+    EXPECT_TRUE(rig.frames.empty());
+    EXPECT_EQ(rig.says("unit1: object number " + std::to_string(id) + " is not 0..2047"), 1U);
+    EXPECT_EQ(texts(plan_of(two(), {{"A.IPC", send_program(id)}, {"B.IPC", receive_program(1024)}}),
+                    FindingKind::ObjectRefused)
+                  .size(),
+              1U);
+  }
+  for (const int id : {2047, 0}) {
+    PlantRig rig(two(), {{"A.IPC", send_program(id)}, {"B.IPC", receive_program(id)}});
+    rig.run_until(50 * kMillisecond);
+    EXPECT_EQ(rig.variable(1, "lData"), 287454020) << id;
+    // With P817 = 0 units take telegram 0 as sync: a warning, and a hint in the plan.
+    EXPECT_EQ(rig.says("object number 0 is also the sync telegram"), id == 0 ? 2U : 0U);
+    EXPECT_EQ(texts(plan_of(two(), {{"A.IPC", send_program(id)}, {"B.IPC", receive_program(id)}}),
+                    FindingKind::SyncObject)
+                  .empty(),
+              id != 0);
+  }
+}
+
+TEST(Objects, ObjectsOnIdentifiersOfMovilink) {
+  PROVES("DIAG-09", "M07-SCOM-31");
+  // Unit 1 is master to address 1, unit 3 sends an object 11: the slave takes it for PO.
+  const std::string call =
+      "#include <const.h>\nMOVLNK Ml; MLDATA Mld;\nmain() { Ml.BusType = 5; Ml.Address = 1; Ml.Format = 5; "
+      "Ml.DPointer = numof(Mld); Mld.PO1 = 6; while (1) { _MoviLink(Ml); _Wait(50); } }\n";
+  for (const char* unit : {"md60a", "mc07"}) {
+    const std::string plant = bus_text() + station_text("unit1", "P813 = 0\nP814 = 5\n", unit, "A.IPC") +
+                              station_text("unit2", "P813 = 1\nP814 = 6\n", unit, "B.IPC") +
+                              station_text("unit3", "P813 = 2\nP814 = 7\n", unit, "C.IPC");
+    const std::map<std::string, std::string> sources = {
+        {"A.IPC", call}, {"B.IPC", receive_program(523)}, {"C.IPC", send_program(11, "6")}};
+    PlantRig rig(plant, sources);
+    rig.run_until(30 * kMillisecond);
+    EXPECT_EQ(rig.station(1).drive().state().po()[1], 0x1122) << "the object's bytes are taken for PO";
+    EXPECT_EQ(rig.says("identifier 11 is sent by unit1 and by unit3"), 1U) << rig.journal();
+    EXPECT_EQ(rig.says("unit2: object number 523 is an identifier of the unit's own MOVILINK telegrams"), 1U);
+    EXPECT_EQ(rig.variable(1, "lData"), 0);
+    const BusPlan plan = plan_of(plant, sources);
+    const std::vector<std::string> found = texts(plan, FindingKind::MovilinkIdentifier);
+    ASSERT_EQ(found.size(), 2U);
+    EXPECT_EQ(found[0],
+              "unit2: object 523 (Rec) cannot be received: it is the parameter request of address 1 that "
+              "unit2 receives");
+    EXPECT_EQ(found[1],
+              "unit3: object 11 (Tr) cannot be sent: it is the process output data (PO) of address 1 that "
+              "unit1 sends");
+    // Different formats of one object.
+    EXPECT_EQ(texts(plan_of(two(unit),
+                            {{"A.IPC", send_program(1024, "8")}, {"B.IPC", receive_program(1024, "0x108")}}),
+                    FindingKind::Formats),
+              std::vector<std::string>{
+                  "object 1024 is sent by unit1 with 8 bytes MOTOROLA and received by unit2 with 8 "
+                  "bytes INTEL"});
+  }
+}
+
+TEST(Objects, MixedFormatsSwapTheContent) {
+  PROVES("DIAG-10", "M07-SCOM-30");
+  for (const char* unit : {"md60a", "mc07"}) {
+    const std::map<std::string, std::string> sources = {{"A.IPC", send_program(1024, "8")},
+                                                        {"B.IPC", receive_program(1024, "0x108")}};
+    PlantRig rig(two(unit), sources);
+    rig.run_until(50 * kMillisecond);
+    EXPECT_EQ(rig.variable(1, "lMore"), 0x44332211);
+    EXPECT_EQ(texts(plan_of(two(unit), sources), FindingKind::Formats).size(), 1U);
+    EXPECT_TRUE(texts(plan_of(two(unit), {{"A.IPC", send_program(1024, "0x108")},
+                                          {"B.IPC", receive_program(1024, "0x108")}}),
+                      FindingKind::Formats)
+                    .empty());
+  }
+  // Format and Len are one member: the same code.
+  std::string with_len = send_program(1024);
+  with_len.replace(with_len.find("Tr.Format"), 9, "Tr.Len");
+  EXPECT_EQ(compiler::compile("a", "a", with_len).image->code,
+            compiler::compile("a", "a", send_program(1024)).image->code);
+  std::string receive_len = receive_program(1024);
+  receive_len.replace(receive_len.find("Rec.Format"), 10, "Rec.Len");
+  EXPECT_EQ(compiler::compile("a", "a", receive_len).image->code,
+            compiler::compile("a", "a", receive_program(1024)).image->code);
+}
+
+TEST(Objects, WithoutTheStartCommandOnlyAcyclicOnesGoOut) {
+  PROVES("DIAG-11", "M07-SCOM-32");
+  std::string program = send_program(1024, "4", false);
+  program.insert(
+      program.find(" while"),
+      " As.ObjectNo = 1026; As.Format = 4; As.DPointer = numof(lData); _SBusCommDef(SCD_TRACYCL, As);\n");
+  program.replace(program.find("SCTRCYCL Tr;"), 12, "SCTRCYCL Tr; SCTRACYCL As;");
+  for (const char* unit : {"md60a", "mc07"}) {
+    const std::map<std::string, std::string> sources = {{"A.IPC", program},
+                                                        {"B.IPC", receive_program(1026, "4", false)}};
+    PlantRig rig(two(unit), sources);
+    rig.run_until(kSecond);
+    EXPECT_EQ(rig.ids(), std::vector<uint32_t>{1026});
+    EXPECT_EQ(rig.variable(1, "lData"), 0);
+    const std::vector<std::string> found = texts(plan_of(two(unit), sources), FindingKind::NotStarted);
+    ASSERT_EQ(found.size(), 2U);
+    EXPECT_NE(found[0].find("unit1 defines cyclic or receive objects, but _SBusCommOn was not reached"),
+              std::string::npos);
+  }
+}
+
+TEST(Objects, CommandsBeyondTheTrialAreNamed) {
+  std::string late = send_program(1024);
+  late.replace(late.find(" lData ="), 8, " _Wait(1000);\n lData =");
+  const BusPlan plan = plan_of(two(), {{"A.IPC", late}, {"B.IPC", receive_program(1024)}});
+  EXPECT_EQ(texts(plan, FindingKind::NotReached),
+            std::vector<std::string>{"unit1: SCOM at A.IPC:7:2 was not reached"});
+  EXPECT_FALSE(plan.has_errors());
+}
+
+TEST(Objects, DictionaryOfAPlant) {
+  PlantRig rig(two(), {{"A.IPC", send_program(1024, "8")}, {"B.IPC", receive_program(1024, "8")}});
+  rig.run_until(50 * kMillisecond);
+  const TelegramNames names = telegram_names(*rig.plant);
+  EXPECT_EQ(describe(names, rig.frames.back().frame).text,
+            "1024 lData = 287454020 (11223344h), lMore = 0 (00000000h) <- unit1");
+  EXPECT_EQ(describe(names, {523, 8, {0x31, 0, 0x2C, 0x9D}, false, false}).text,
+            "523 read 11421 Rec.Format -> unit2");
+}
+
+}  // namespace
+}  // namespace ipos::tests

@@ -1,0 +1,114 @@
+// A station that is silent or does not follow says why, in one line for each cause.
+#include <gtest/gtest.h>
+
+#include "tests/harness/proves.hpp"
+#include "tests/runtime/plan/plant_rig.hpp"
+
+namespace ipos::tests {
+namespace {
+
+const std::string kFollows = "P813 = 1\nP100 = 10\nP101 = 3\n";
+
+std::string controlled(const std::string& parameters, const std::string& more = "") {
+  return bus_text() + station_text("unit1", parameters) +
+         "[[control]]\nname = \"plc\"\nsbus = \"sbus\"\n[[control.target]]\naddress = 1\npo = [6, 5000, "
+         "0]\nevery = "
+         "\"10ms\"\n" +
+         more;
+}
+
+std::string why(const std::string& plant) {
+  PlantRig rig(plant);
+  rig.run_until(100 * kMillisecond);
+  return rig.journal();
+}
+
+TEST(Silence, NothingToSayWhenAllIsSet) { EXPECT_EQ(why(controlled(kFollows)), ""); }
+
+TEST(Silence, EachSettingThatIsMissing) {
+  PROVES("SBUS-22");
+  EXPECT_EQ(why(controlled("P813 = 1\nP101 = 3\n")),
+            "unit1: the setpoints have no effect: P100 Setpoint source is BIPOL./FIX.SETPT, not SBus\n");
+  EXPECT_EQ(why(controlled("P813 = 1\nP100 = 10\n")),
+            "unit1: the control word has no effect: P101 Control signal source is TERMINALS, not SBus\n");
+  EXPECT_EQ(why(controlled(kFollows + "P876 = 0\n")),
+            "unit1: PO data have no effect: P876 PO data enable is OFF, not ON\n");
+  // P813 missing, so 0.
+  EXPECT_EQ(why(controlled("P100 = 10\nP101 = 3\n")),
+            ": sbus: plc calls address 1, which no station has; there are 0 (unit1)\n");
+  // P816: 250 kbaud on a line of 500.
+  EXPECT_NE(why(controlled(kFollows + "P816 = 1\n"))
+                .find(": sbus: unit1 takes no part: its baud rate is not that of the "
+                      "line (250 kbaud, line 500 kbaud)\n"),
+            std::string::npos);
+}
+
+TEST(Silence, WrongBaudRate) {
+  PROVES("DIAG-03", "M07-SBUS-09");
+  const std::string call =
+      "#include <const.h>\nMOVLNK Ml; MLDATA Mld; long n;\nmain() { Ml.BusType = 5; Ml.Address = 1; "
+      "Ml.Format = 6; "
+      "Ml.Service = 1; Ml.Index = 8318; Ml.DPointer = numof(Mld); _MoviLink(Ml); n = 1; while (1) {} }\n";
+  for (const char* unit : {"md60a", "mc07"}) {
+    PlantRig rig(bus_text() + station_text("master", "P813 = 0\n", unit, "A.IPC") +
+                     station_text("slave", "P813 = 1\nP816 = 1\n", unit),
+                 {{"A.IPC", call}});
+    rig.run_until(200 * kMillisecond);
+    EXPECT_EQ(rig.variable(0, "Ml.Result"), 0x06020000);
+    EXPECT_EQ(rig.variable(0, "n"), 1);
+    EXPECT_EQ(
+        rig.says("slave takes no part: its baud rate is not that of the line (250 kbaud, line 500 kbaud)"),
+        1U);
+    EXPECT_TRUE(rig.frames.empty());
+  }
+}
+
+TEST(Silence, DoubleAddress) {
+  const std::string plant = bus_text() + station_text("a", "P813 = 1\n") + station_text("b", "P813 = 1\n");
+  EXPECT_EQ(why(plant),
+            ": sbus: a and b both have SBus address 1: both answer to it, and their answers collide\n");
+}
+
+TEST(Silence, CutCable) {
+  PlantRig rig(controlled(kFollows, fault_text("cut", "station = \"unit1\"\nfrom = \"50ms\"\n")));
+  rig.run_until(100 * kMillisecond);
+  EXPECT_EQ(rig.says("sbus: planted fault 'cut': unit1 is cut"), 1U);
+  EXPECT_EQ(rig.says("sbus: unit1 takes no part: it is not connected to the line"), 1U);
+  EXPECT_EQ(rig.says("sbus: plc gets no acknowledge: no other station on the line"), 1U);
+  EXPECT_LT(rig.with(12).back().end, 50 * kMillisecond);
+}
+
+TEST(Silence, SwappedWires) {
+  PROVES("DIAG-02");
+  PlantRig rig(
+      controlled(kFollows, station_text("unit2", "P813 = 2\n") +
+                               "[[control]]\nname = \"plc2\"\nsbus = \"sbus\"\n[[control.target]]\naddress = "
+                               "2\nevery = \"10ms\"\n" +
+                               fault_text("swap", "station = \"unit2\"\n")));
+  rig.run_until(100 * kMillisecond);
+  EXPECT_EQ(rig.says("sbus: planted fault 'swap': unit2 has high and low interchanged"), 1U);
+  EXPECT_EQ(rig.with(12).size(), 10U);  // the others go on
+  EXPECT_TRUE(rig.with(20).empty());
+}
+
+TEST(Silence, WrongAddress) {
+  PROVES("DIAG-06");
+  const std::string call =
+      "#include <const.h>\nMOVLNK Ml; MLDATA Mld;\nmain() { Ml.BusType = 5; Ml.Address = 2; Ml.Format = 6; "
+      "Ml.Service = 1; Ml.Index = 8318; Ml.DPointer = numof(Mld); _MoviLink(Ml); while (1) {} }\n";
+  PlantRig rig(bus_text() + station_text("master", "P813 = 0\n", "md60a", "A.IPC") +
+                   station_text("slave", "P813 = 3\n"),
+               {{"A.IPC", call}});
+  rig.run_until(200 * kMillisecond);
+  EXPECT_EQ(rig.variable(0, "Ml.Result"), 0x06020000);
+  EXPECT_EQ(rig.says("sbus: master calls address 2, which no station has; there are 0 (master), 3 (slave)"),
+            1U);
+}
+
+TEST(Silence, CanopenProtocol) {
+  PlantRig rig(bus_text() + station_text("u", "P880 = 1\n", "mdxb"));
+  EXPECT_EQ(rig.says("u: SBus 1 is silent: its protocol is CANopen (P880), which is not simulated"), 1U);
+}
+
+}  // namespace
+}  // namespace ipos::tests

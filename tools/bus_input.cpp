@@ -1,0 +1,45 @@
+// What the subcommands of `ipos bus` read: logs and dictionaries.
+#include <fmt/format.h>
+
+#include "runtime/plan/names.hpp"
+#include "runtime/plan/plan.hpp"
+#include "tools/bus_verbs.hpp"
+#include "tools/files.hpp"
+#include "tools/plant_input.hpp"
+
+namespace ipos::tools {
+
+size_t read_log(const std::string& path, const std::function<void(const runtime::LogEntry&, size_t)>& take) {
+  const std::string text = read_file(path);
+  std::string_view rest = text;
+  size_t bad = 0;
+  for (size_t line = 1; !rest.empty(); ++line) {
+    const size_t end = rest.find('\n');
+    const std::string_view row = rest.substr(0, end);
+    rest = end == std::string_view::npos ? std::string_view{} : rest.substr(end + 1);
+    if (row.find_first_not_of(" \t\r") == std::string_view::npos) continue;
+    const auto entry = runtime::parse_candump_line(row, line);
+    if (entry) {
+      take(*entry, line);
+      continue;
+    }
+    ++bad;
+    fmt::print(stderr, "{}:{}:{}: error: {}\n", path, entry.error().line, entry.error().column,
+               entry.error().message);
+  }
+  return bad;
+}
+
+runtime::TelegramNames names_of(const std::string& path, const CompileFlags& compile) {
+  if (path.empty()) return {};
+  const auto plant = make_plant(read_plant_input(path, compile, "sbus"));
+  plant->run_until(runtime::PlanOptions{}.trial);
+  return runtime::telegram_names(*plant);
+}
+
+std::string check_time(const std::string& text) {
+  return runtime::parse_duration(text) < 0 ? "'" + text + "' is no time; write for example 500ms or 1.5s"
+                                           : "";
+}
+
+}  // namespace ipos::tools

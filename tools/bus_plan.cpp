@@ -1,0 +1,183 @@
+// ipos bus plan: what a plant puts on its SBus lines and what is wrong with it, as text or JSON.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "runtime/plan/plan.hpp"
+#include "tools/bus_verbs.hpp"
+#include "tools/exit_codes.hpp"
+#include "tools/plant_input.hpp"
+
+namespace ipos::tools {
+namespace {
+
+using runtime::BusPlan;
+using runtime::Finding;
+using runtime::LinePlan;
+using runtime::PlannedTelegram;
+using runtime::Rhythm;
+using runtime::Time;
+
+struct PlanFlags {
+  std::string plant;
+  std::string trial;
+  std::string acyclic;
+  std::string format = "text";
+  CompileFlags compile;
+};
+
+constexpr const char* kRhythms[] = {"cyclic", "answer", "acyclic"};
+
+std::string millis(Time time) {
+  return fmt::format("{}.{:03}", time / runtime::kMillisecond,
+                     time % runtime::kMillisecond / runtime::kMicrosecond);
+}
+
+std::string per_mille(uint64_t part, uint64_t whole) {
+  const uint64_t value = part * 1000 / whole;
+  return fmt::format("{}.{} %", value / 10, value % 10);
+}
+
+std::string numbers(const std::vector<uint32_t>& ids) { return fmt::format("{}", fmt::join(ids, " ")); }
+
+std::string line_text(const LinePlan& line) {
+  std::string text = fmt::format("{}: {} baud, {} stations", line.name, line.baud, line.stations);
+  text += line.length == 0 ? fmt::format(", cable up to {} m\n", line.length_limit)
+                           : fmt::format(", {} m of cable, up to {} m\n", line.length, line.length_limit);
+  text += fmt::format("\n{} identifiers\n", line.identifiers.size());
+  for (const auto& identifier : line.identifiers)
+    for (const auto& use : identifier.uses)
+      text += fmt::format("{:>6}  {:<8}  {:<12}  {}\n", identifier.id, use.transmits ? "transmit" : "receive",
+                          use.station, use.what);
+  if (!line.closed.empty()) text += "\nclosed to variable objects\n";
+  for (const auto& closed : line.closed) {
+    text += fmt::format("  {}, transmit: {}\n", closed.station, numbers(closed.transmit));
+    text += fmt::format("  {}, receive:  {}\n", closed.station, numbers(closed.receive));
+  }
+  text +=
+      fmt::format("\ntelegrams, worst-case load {} of at most 70 %\n", per_mille(line.load_bits, line.baud));
+  if (!line.telegrams.empty())
+    text += fmt::format("{:>6}  {:<7}  {:>11}  {:>5}  {:>13}  {:<12}  {}\n", "id", "rhythm", "period ms",
+                        "bytes", "response ms", "sender", "telegram");
+  for (const PlannedTelegram& telegram : line.telegrams)
+    text +=
+        fmt::format("{:>6}  {:<7}  {:>11}  {:>5}  {:>13}  {:<12}  {}\n", telegram.id,
+                    kRhythms[static_cast<size_t>(telegram.rhythm)], millis(telegram.period), telegram.bytes,
+                    telegram.response.bounded ? millis(telegram.response.worst) : "unbounded",
+                    telegram.sender, telegram.what);
+  return text + "\n";
+}
+
+std::string assumptions(const BusPlan& plan) {
+  return fmt::format(
+      "assumed: worst-case stuffing, no errors on the line, each station offers its lowest identifier first; "
+      "PI\n"
+      "queued within 1 ms of its PO, parameter responses within 2 ms (ours); acyclic telegrams no closer "
+      "than in the\n"
+      "trial run of {} ms, those seen once or never {} ms apart. Response: from the event to the end of the "
+      "frame,\n"
+      "of answers from that of the request.\n",
+      millis(plan.trial), millis(plan.acyclic));
+}
+
+std::string finding_text(const Finding& finding) {
+  const runtime::FindingType& type = finding_type(finding.kind);
+  return fmt::format("{}{}: {} [{}]\n", finding.line.empty() ? "" : finding.line + ": ",
+                     type.weight == runtime::FindingWeight::Error ? "error" : "hint", finding.text,
+                     type.code);
+}
+
+nlohmann::ordered_json telegram_json(const PlannedTelegram& telegram) {
+  nlohmann::ordered_json entry = {{"id", telegram.id},
+                                  {"sender", telegram.sender},
+                                  {"telegram", telegram.what},
+                                  {"bytes", telegram.bytes},
+                                  {"rhythm", kRhythms[static_cast<size_t>(telegram.rhythm)]},
+                                  {"period_ns", telegram.period}};
+  if (telegram.response.bounded)
+    entry["response_ns"] = telegram.response.worst;
+  else
+    entry["response_ns"] = nullptr;
+  entry["blocking_ns"] = telegram.response.blocking;
+  entry["busy_period_ns"] = telegram.response.busy_period;
+  entry["instances"] = telegram.response.instances;
+  return entry;
+}
+
+nlohmann::ordered_json line_json(const LinePlan& line) {
+  using nlohmann::ordered_json;
+  ordered_json entry = {{"name", line.name},
+                        {"baud", line.baud},
+                        {"stations", line.stations},
+                        {"length_m", line.length},
+                        {"length_limit_m", line.length_limit},
+                        {"load_bits_per_s", line.load_bits}};
+  entry["identifiers"] = ordered_json::array();
+  for (const auto& identifier : line.identifiers) {
+    ordered_json uses = ordered_json::array();
+    for (const auto& use : identifier.uses)
+      uses.push_back({{"station", use.station}, {"transmits", use.transmits}, {"what", use.what}});
+    entry["identifiers"].push_back({{"id", identifier.id}, {"uses", std::move(uses)}});
+  }
+  entry["closed"] = ordered_json::array();
+  for (const auto& closed : line.closed)
+    entry["closed"].push_back(
+        {{"station", closed.station}, {"transmit", closed.transmit}, {"receive", closed.receive}});
+  entry["telegrams"] = ordered_json::array();
+  for (const PlannedTelegram& telegram : line.telegrams)
+    entry["telegrams"].push_back(telegram_json(telegram));
+  return entry;
+}
+
+std::string json_report(const BusPlan& plan) {
+  using nlohmann::ordered_json;
+  ordered_json report = {{"trial_ns", plan.trial}, {"acyclic_ns", plan.acyclic}};
+  report["lines"] = ordered_json::array();
+  for (const LinePlan& line : plan.lines) report["lines"].push_back(line_json(line));
+  report["findings"] = ordered_json::array();
+  for (const Finding& finding : plan.findings) {
+    const runtime::FindingType& type = finding_type(finding.kind);
+    report["findings"].push_back({{"code", type.code},
+                                  {"weight", type.weight == runtime::FindingWeight::Error ? "error" : "hint"},
+                                  {"line", finding.line},
+                                  {"text", finding.text}});
+  }
+  return report.dump() + "\n";
+}
+
+int plan_bus(const PlanFlags& flags) {
+  runtime::PlanOptions options;
+  if (!flags.trial.empty()) options.trial = runtime::parse_duration(flags.trial);
+  if (!flags.acyclic.empty()) options.acyclic = runtime::parse_duration(flags.acyclic);
+  if (options.acyclic == 0) options.acyclic = 1;
+  const auto plant = make_plant(read_plant_input(flags.plant, flags.compile, "sbus"));
+  const BusPlan plan = make_plan(*plant, options);
+  if (flags.format == "json") {
+    fmt::print("{}", json_report(plan));
+  } else {
+    for (const LinePlan& line : plan.lines) fmt::print("{}", line_text(line));
+    fmt::print("{}", assumptions(plan));
+    for (const Finding& finding : plan.findings) fmt::print(stderr, "{}", finding_text(finding));
+  }
+  return plan.has_errors() ? kFindings : kGood;
+}
+
+}  // namespace
+
+void add_bus_plan(CLI::App& bus, int& exit_code) {
+  auto flags = std::make_shared<PlanFlags>();
+  CLI::App* verb = bus.add_subcommand(
+      "plan", "identifiers, load and response times of a plant, and what is wrong with it");
+  verb->add_option("PLANT", flags->plant, "plant (.toml), or one program")->required();
+  verb->add_option("--trial", flags->trial, "virtual time the programs run first; default 100ms")
+      ->check(CLI::Validator(check_time, "TIME"));
+  verb->add_option("--acyclic", flags->acyclic,
+                   "assumed distance of telegrams the trial shows once; default 10ms")
+      ->check(CLI::Validator(check_time, "TIME"));
+  verb->add_option("--format", flags->format, "text or json")->check(CLI::IsMember({"text", "json"}));
+  add_compile_options(*verb, flags->compile);
+  verb->footer("Example:\n  ipos bus plan examples/scom/scom.toml");
+  verb->callback([flags, &exit_code] { exit_code = plan_bus(*flags); });
+}
+
+}  // namespace ipos::tools

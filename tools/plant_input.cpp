@@ -1,0 +1,87 @@
+// Reading plants and their programs.
+#include "tools/plant_input.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "stdlib/unit_types.hpp"
+#include "tools/failure.hpp"
+#include "tools/files.hpp"
+
+namespace ipos::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+void print_errors(const std::string& path, const std::vector<runtime::PlantError>& errors) {
+  for (const runtime::PlantError& error : errors)
+    fmt::print(stderr, "{}:{}:{}: error: {}\n", path, error.place.line, error.place.column, error.text);
+  if (!errors.empty()) throw Failure(kBadInput, "");
+}
+
+runtime::PlantFile plant_of(const std::string& path, const std::string& sbus) {
+  if (is_plant(path)) {
+    runtime::PlantFileResult result = runtime::read_plant_file(read_file(path));
+    print_errors(path, result.errors);
+    return std::move(result.plant);
+  }
+  runtime::PlantFile plant;
+  runtime::StationConfig station;
+  station.name = fs::path(path).stem().string();
+  station.program = path;
+  station.sbus = sbus;
+  plant.stations.push_back(std::move(station));
+  if (!sbus.empty()) {
+    plant.buses.emplace_back();
+    plant.buses.back().name = sbus;
+  }
+  return plant;
+}
+
+// A station's unit decides for which unit a source is compiled.
+vm::Image program_of(const PlantInput& input, runtime::StationConfig& station, CompileFlags compile) {
+  if (station.unit != nullptr) compile.unit = station.unit->name;
+  const std::string path = is_plant(input.path)
+                               ? (fs::path(input.path).parent_path() / station.program).string()
+                               : station.program;
+  if (is_plant(input.path) && !fs::exists(path))
+    throw Failure(kNoInput,
+                  fmt::format("{}:{}:{}: error: station '{}': there is no program {}", input.path,
+                              station.program_place.line, station.program_place.column, station.name, path));
+  vm::Image image = load_program(path, compile);
+  const stdlib::UnitType* unit = stdlib::find_unit(image.unit);
+  if (unit == nullptr || unit->tasks == 0)
+    throw Failure(kFindings,
+                  fmt::format("{}: the image is for unit type {}, which runs no program", path, image.unit));
+  if (station.unit == nullptr) station.unit = unit;
+  if (station.unit != unit)
+    throw Failure(kFindings, fmt::format("{}: the image is for unit {}, station '{}' is {}", path, unit->name,
+                                         station.name, station.unit->name));
+  return image;
+}
+
+}  // namespace
+
+bool is_plant(const std::string& path) { return fs::path(path).extension() == ".toml"; }
+
+PlantInput read_plant_input(const std::string& path, const CompileFlags& compile, const std::string& sbus) {
+  PlantInput input{path, plant_of(path, sbus), {}};
+  for (runtime::StationConfig& station : input.file.stations) {
+    if (station.program.empty())
+      input.programs.emplace_back();
+    else
+      input.programs.emplace_back(program_of(input, station, compile));
+  }
+  return input;
+}
+
+std::unique_ptr<runtime::Plant> make_plant(PlantInput input, std::optional<vm::Rates> rates) {
+  std::vector<runtime::PlantError> errors;
+  auto plant =
+      std::make_unique<runtime::Plant>(std::move(input.file), std::move(input.programs), rates, errors);
+  print_errors(input.path, errors);
+  return plant;
+}
+
+}  // namespace ipos::tools
