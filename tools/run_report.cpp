@@ -31,6 +31,12 @@ std::string text_report(runtime::Plant& plant, const WatchChoice& watch) {
         fmt::format("{}: {} frames in {:.3f} s, bus load {:.2f} % of {} baud\n", line->name(), load.frames,
                     static_cast<double>(plant.now()) / 1e9, load_percent(load), line->baud());
   }
+  for (const auto& serial : plant.serial_lines()) {
+    const runtime::LineLoad load = serial->line.load(plant.now());
+    text += fmt::format("{}: {} telegrams in {:.3f} s, bus load {:.2f} % of {} baud\n", serial->line.name(),
+                        serial->check.telegrams(), static_cast<double>(plant.now()) / 1e9, load_percent(load),
+                        serial->line.baud());
+  }
   return text;
 }
 
@@ -58,6 +64,11 @@ std::string json_report(runtime::Plant& plant, const WatchChoice& watch) {
                                {"frames", load.frames},
                                {"load_percent", load_percent(load)}});
   }
+  for (const auto& serial : plant.serial_lines())
+    report["buses"].push_back({{"name", serial->line.name()},
+                               {"kind", "rs485"},
+                               {"frames", serial->check.telegrams()},
+                               {"load_percent", load_percent(serial->line.load(plant.now()))}});
   return report.dump() + "\n";
 }
 

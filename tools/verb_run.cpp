@@ -8,15 +8,16 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-#include <thread>
 
 #include "runtime/bus/log/candump.hpp"
+#include "runtime/bus/log/serial_log.hpp"
 #include "runtime/plant/plant.hpp"
 #include "stdlib/unit_types.hpp"
 #include "tools/failure.hpp"
 #include "tools/files.hpp"
 #include "tools/plot_svg.hpp"
 #include "tools/program.hpp"
+#include "tools/real_time_run.hpp"
 #include "tools/recording.hpp"
 #include "tools/run_report.hpp"
 #include "tools/trace_csv.hpp"
@@ -39,6 +40,7 @@ struct RunFlags {
   std::string plot;
   std::string trace;
   std::vector<std::string> signals;
+  std::string serial_log;
   std::string format = "text";
   bool realtime = false;
   bool why = false;
@@ -100,21 +102,20 @@ std::vector<std::optional<vm::Image>> load_programs(runtime::PlantFile& plant, c
   return programs;
 }
 
-// Asked once a virtual millisecond: keeps pace with the wall clock, shows progress, and says when to stop.
-class Pace {
+// Asked once a virtual millisecond: shows progress and says when to stop.
+class Watcher {
  public:
-  Pace(const RunFlags& flags, const runtime::Plant& plant, Time limit)
+  Watcher(const RunFlags& flags, const runtime::Plant& plant, Time limit)
       : flags_(flags), plant_(plant), limit_(limit), show_(isatty(STDERR_FILENO) != 0) {}
-  ~Pace() {
+  ~Watcher() {
     if (shown_) fmt::print(stderr, "\r\033[K");
   }
-  Pace(const Pace&) = delete;
-  Pace& operator=(const Pace&) = delete;
+  Watcher(const Watcher&) = delete;
+  Watcher& operator=(const Watcher&) = delete;
 
   bool keep_going(Time now) {
     if (interrupted != 0) return false;
     if (flags_.until == "end" && plant_.programs_over()) return false;
-    if (flags_.realtime) std::this_thread::sleep_until(start_ + std::chrono::nanoseconds(now));
     if (show_ && now % (100 * runtime::kMillisecond) == 0) progress(now);
     return true;
   }
@@ -136,8 +137,7 @@ class Pace {
   Time limit_;
   bool show_;
   bool shown_ = false;
-  Clock::time_point start_ = Clock::now();
-  Clock::time_point last_shown_ = start_;
+  Clock::time_point last_shown_ = Clock::now();
 };
 
 void print_journal(const runtime::Plant& plant, bool why) {
@@ -188,6 +188,7 @@ void close_output(std::ofstream& file, const std::string& path) {
 int run(const RunFlags& flags) {
   const Time limit = flags.duration.empty() ? 60 * runtime::kSecond : runtime::parse_duration(flags.duration);
   runtime::PlantFile file = plant_of(flags);
+  if (!flags.realtime) refuse_ports(file, flags.file);
   std::vector<std::optional<vm::Image>> programs = load_programs(file, flags);
 
   std::optional<vm::Rates> rates;
@@ -203,26 +204,35 @@ int run(const RunFlags& flags) {
   std::optional<Recorder> recorder;
   if (!flags.plot.empty() || !flags.trace.empty()) recorder.emplace(plant, flags.signals);
   // Opened before the run: a long one must not end without its result.
-  std::ofstream log_file = open_output(flags.log), plot_file = open_output(flags.plot),
-                trace_file = open_output(flags.trace);
-  std::optional<runtime::CandumpLog> log;
-  if (!flags.log.empty()) {
-    log.emplace(log_file);
-    plant.add_observer(*log);
-  }
+  std::ofstream log_file = open_output(flags.log), serial_file = open_output(flags.serial_log),
+                plot_file = open_output(flags.plot), trace_file = open_output(flags.trace);
+  runtime::CandumpLog log(log_file);
+  runtime::SerialLog serial_log(serial_file);
+  if (log_file.is_open()) plant.add_observer(log);
+  if (serial_file.is_open()) plant.add_observer(serial_log);
 
   std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+  std::optional<RealTimeRun> real_time;
+  if (flags.realtime) real_time.emplace(plant, flags.file);
+  bool ports_there = true;
   {
-    Pace pace(flags, plant, limit);
-    plant.run_until(limit, [&](Time now) {
+    Watcher watcher(flags, plant, limit);
+    const auto keep_going = [&](Time now) {
       if (recorder) recorder->sample(now);
-      return pace.keep_going(now);
-    });
+      return watcher.keep_going(now);
+    };
+    if (real_time)
+      ports_there = real_time->run(limit, keep_going);
+    else
+      plant.run_until(limit, keep_going);
   }
+  serial_log.finish();
   if (!flags.plot.empty())
     plot_file << plot_svg(recorder->recording(), fs::path(flags.file).filename().string());
   if (!flags.trace.empty()) write_csv(trace_file, recorder->recording());
   close_output(log_file, flags.log);
+  close_output(serial_file, flags.serial_log);
   close_output(plot_file, flags.plot);
   close_output(trace_file, flags.trace);
 
@@ -240,6 +250,7 @@ int run(const RunFlags& flags) {
   print_journal(plant, flags.why);
   const size_t unmet = print_expectations(plant, flags.file);
   if (interrupted != 0) return kInterrupted;
+  if (!ports_there) return kIoError;
   return unmet != 0 || plant.has_fault() ? kFindings : kGood;
 }
 
@@ -261,7 +272,8 @@ void add_run(CLI::App& app, int& exit_code) {
   verb->add_option("--speed", flags->speed, "commands per ms of every task, instead of P938 and P939")
       ->check(CLI::Range(1U, 1'000'000U));
   verb->add_flag("--watch{*}", flags->watch, "show named variables at the end, all or --watch=NAME,...");
-  verb->add_option("--log", flags->log, "write the frames of all buses in candump format");
+  verb->add_option("--log", flags->log, "write the frames of all CAN buses in candump format");
+  verb->add_option("--serial-log", flags->serial_log, "write the telegrams of all RS-485 lines");
   verb->add_option("--plot", flags->plot, "draw signals over time into an SVG file");
   verb->add_option("--trace", flags->trace, "write signals over time, one row a millisecond, as CSV");
   verb->add_option(
@@ -271,7 +283,8 @@ void add_run(CLI::App& app, int& exit_code) {
       ->delimiter(',')
       ->allow_extra_args(false);
   verb->add_option("--format", flags->format, "text or json")->check(CLI::IsMember({"text", "json"}));
-  verb->add_flag("--realtime", flags->realtime, "keep pace with the wall clock");
+  verb->add_flag("--realtime", flags->realtime,
+                 "keep pace with the clock, and join buses that have a port to the real world");
   verb->add_flag("--why", flags->why, "also tell what was ignored, and why");
   add_compile_options(*verb, flags->compile);
   verb->footer("Example:\n  ipos run examples/scom/scom.toml --for 1s --watch --log can.log");

@@ -16,8 +16,6 @@ constexpr uint32_t kMinuteMs = 60'000;
 constexpr int32_t kFullUtilization = 100'000;
 // More automatic resets than this without a manual one are not made (ours).
 constexpr int kAutoResets = 3;
-// Group telegrams over RS-485 must come within this time, whatever P812 says (MDX60B/61B p. 30).
-constexpr int32_t kMasterSlaveMs = 500;
 // Where the unit protects itself; ours.
 constexpr int32_t kOvervoltage = 900'000;  // mV
 constexpr int32_t kOvertemperature = 90;   // °C
@@ -314,16 +312,13 @@ void Drive::watch_links() {
     LinkWatch::Rules rules;
     switch (source) {
       case PoSource::Rs485:
-        rules = {over_rs485 ? kMasterSlaveMs : monitored(s.rs485_timeout), true, false};
+        // A master/slave link watches itself, whatever P812 says (bus/movilink/serial_slave.hpp).
+        rules = {over_rs485 ? 0 : monitored(s.rs485_timeout), true, false};
         break;
       case PoSource::Fieldbus: rules = {monitored(s.fieldbus_timeout), used && enabled, false}; break;
       case PoSource::Sbus: rules = {monitored(s.sbus_timeout), used && enabled, is_m07_}; break;
     }
-    if (!watches_[static_cast<size_t>(source)].tick(rules)) continue;
-    if (source == PoSource::Rs485 && over_rs485)
-      raise_fault(fault_of(source), FaultResponse::EmergencyError);
-    else
-      raise_fault(fault_of(source));
+    if (watches_[static_cast<size_t>(source)].tick(rules)) raise_fault(fault_of(source));
   }
 }
 

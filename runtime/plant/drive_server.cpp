@@ -11,6 +11,7 @@ DriveServer::DriveServer(const stdlib::UnitType& unit, const MachineData& machin
     : parameters_(unit, options),
       state_(parameters_, machine),
       variables_(unit.variables),
+      serial_{index_of("810"), index_of("811"), index_of("750"), index_of("100")},
       task1_speed_(index_of("938")),
       task2_speed_(index_of("939")) {
   parameters_.plug(IndexArea::Variables, variables_);
@@ -54,13 +55,40 @@ tl::expected<int32_t, ReturnCode> DriveServer::serve(Time /*now*/, const Paramet
   return reply;
 }
 
-void DriveServer::take_output(Time /*now*/, OutputChannel /*channel*/, const ProcessWords& words) {
+void DriveServer::take_output(Time /*now*/, OutputChannel /*channel*/, std::span<const uint16_t> words) {
   state_.take_po(PoSource::Sbus, words);
 }
 
 ProcessWords DriveServer::input(Time /*now*/) { return state_.pi(); }
 
 void DriveServer::synchronize(Time /*now*/) {}
+
+SerialParameters DriveServer::serial_parameters() const {
+  return {static_cast<uint8_t>(parameters_.value(serial_.address)),
+          static_cast<uint8_t>(parameters_.value(serial_.group)), parameters_.value(serial_.slave_setpoint),
+          parameters_.value(serial_.setpoint_source)};
+}
+
+void DriveServer::Rs485Data::take_output(Time /*now*/, OutputChannel /*channel*/,
+                                         std::span<const uint16_t> words) {
+  // The monitoring is restarted by cyclic_request().
+  drive_.state_.take_po(PoSource::Rs485, words, false);
+}
+
+ProcessWords DriveServer::Rs485Data::input(Time now) { return drive_.input(now); }
+
+void DriveServer::Rs485Data::cyclic_request(Time /*now*/) { drive_.state_.take_request(PoSource::Rs485); }
+
+ProcessWords DriveServer::setpoint_to_send(Time /*now*/) { return state_.master_words(); }
+
+void DriveServer::setpoint_received(Time /*now*/, const ProcessWords& words) {
+  state_.take_po(PoSource::Rs485, words);
+}
+
+void DriveServer::link_lost(Time /*now*/) {
+  constexpr uint8_t kRs485Timeout = 43;
+  state_.raise_fault(kRs485Timeout, FaultResponse::EmergencyError);  // whatever P833 says (MDX60B/61B p. 30)
+}
 
 ParameterReply DriveServer::Code::read(uint16_t offset) {
   return offset < code_.size() ? static_cast<int32_t>(code_[offset]) : 0;

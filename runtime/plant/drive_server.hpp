@@ -9,7 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/bus/movilink/sbus_slave.hpp"
+#include "runtime/bus/movilink/master_slave.hpp"
+#include "runtime/bus/movilink/unit_servers.hpp"
 #include "runtime/drive/drive.hpp"
 #include "runtime/drive/parameters.hpp"
 #include "vm/exec/machine.hpp"
@@ -17,7 +18,16 @@
 
 namespace ipos::runtime {
 
-class DriveServer final : public ParameterServer, public ProcessDataServer {
+// What an RS-485 interface has to know of the unit.
+struct SerialParameters {
+  uint8_t address;          // P810
+  uint8_t group;            // P811
+  int32_t slave_setpoint;   // P750
+  int32_t setpoint_source;  // P100
+};
+
+// As ProcessDataServer it serves the SBus, rs485_data() serves both RS-485 interfaces.
+class DriveServer final : public ParameterServer, public ProcessDataServer, public MasterSlaveDrive {
  public:
   explicit DriveServer(const stdlib::UnitType& unit, const MachineData& machine = {},
                        DriveOptions options = {});
@@ -44,11 +54,31 @@ class DriveServer final : public ParameterServer, public ProcessDataServer {
   std::string take_reason() { return std::exchange(reason_, {}); }
 
   tl::expected<int32_t, ReturnCode> serve(Time now, const ParameterRequest& request) override;
-  void take_output(Time now, OutputChannel channel, const ProcessWords& words) override;
+  void take_output(Time now, OutputChannel channel, std::span<const uint16_t> words) override;
   ProcessWords input(Time now) override;
   void synchronize(Time now) override;
 
+  ProcessDataServer& rs485_data() { return rs485_data_; }
+  SerialParameters serial_parameters() const;
+
+  // Master/slave operation over RS-485.
+  ProcessWords setpoint_to_send(Time now) override;
+  void setpoint_received(Time now, const ProcessWords& words) override;
+  void link_lost(Time now) override;
+
  private:
+  // Process data of both RS-485 interfaces: one source, one monitoring.
+  class Rs485Data final : public ProcessDataServer {
+   public:
+    explicit Rs485Data(DriveServer& drive) : drive_(drive) {}
+    void take_output(Time now, OutputChannel channel, std::span<const uint16_t> words) override;
+    ProcessWords input(Time now) override;
+    void synchronize(Time) override {}  // there is no sync telegram on RS-485
+    void cyclic_request(Time now) override;
+
+   private:
+    DriveServer& drive_;
+  };
   // IPOS variables, index 11000 + n. They are there without a program, too. Volatile and non-volatile writes
   // are the same until there is a non-volatile memory.
   class Variables final : public IndexWindow {
@@ -82,6 +112,11 @@ class DriveServer final : public ParameterServer, public ProcessDataServer {
   Drive state_;
   Variables variables_;
   Code code_;
+  Rs485Data rs485_data_{*this};
+  struct SerialIndices {
+    uint16_t address, group, slave_setpoint, setpoint_source;
+  };
+  SerialIndices serial_;  // P810, P811, P750, P100
   uint16_t task1_speed_;  // index of P938
   uint16_t task2_speed_;  // index of P939
   std::string reason_;

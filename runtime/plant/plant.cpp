@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 
+#include "runtime/plant/serial_plan.hpp"
+
 namespace ipos::runtime {
 namespace {
 
@@ -31,29 +33,68 @@ Plant::Plant(PlantFile file, std::vector<std::optional<vm::Image>> programs, std
     : file_(std::move(file)) {
   // Sources order the events of one moment: first the lines, then the stations, each in the order of the
   // file.
-  uint32_t source = 0;
-  for (const BusConfig& bus : file_.buses) {
-    lines_.push_back(std::make_unique<CanLine>(queue_, source++, bus.name, bus.baud));
-    lines_.back()->add_observer(*this);
-  }
+  make_lines();
   for (size_t n = 0; n < file_.stations.size(); ++n) {
     const StationConfig& config = file_.stations[n];
-    const auto line = std::find_if(lines_.begin(), lines_.end(),
-                                   [&](const auto& candidate) { return candidate->name() == config.sbus; });
+    const StationLines lines = lines_of(config);
     if (programs[n]) {
       const std::vector<PlantError> refused = verify_program(config, *programs[n]);
       errors.insert(errors.end(), refused.begin(), refused.end());
     }
-    stations_.push_back(std::make_unique<Station>(queue_, source++, config, std::move(programs[n]),
-                                                  line == lines_.end() ? nullptr : line->get(), journal_,
-                                                  rates));
+    stations_.push_back(std::make_unique<Station>(queue_, next_source_++, config, std::move(programs[n]),
+                                                  lines, journal_, rates));
     for (const ParameterSetting& setting : config.parameters)
       if (const auto refused = stations_.back()->set_parameter(setting))
         errors.push_back({setting.place, fmt::format("station '{}': {}", config.name, *refused)});
   }
   resolve_expectations(errors);
   if (!errors.empty()) return;
+  tell_findings();
   for (const auto& station : stations_) station->power_on();
+}
+
+void Plant::make_lines() {
+  for (const BusConfig& bus : file_.buses) {
+    if (is_serial(bus.kind)) {
+      add_serial_line(bus.name, bus.baud, next_source_++);
+      continue;
+    }
+    lines_.push_back(std::make_unique<CanLine>(queue_, next_source_++, bus.name, bus.baud));
+    lines_.back()->add_observer(*this);
+  }
+}
+
+void Plant::add_serial_line(const std::string& name, uint32_t baud, uint32_t source) {
+  serial_lines_.push_back(std::make_unique<SerialLine>(
+      queue_, source, name, baud,
+      [this](Time now, std::string text) { journal_.note(now, Weight::Warning, "", std::move(text)); }));
+}
+
+// A keypad hangs on a line of its own, which comes right before its station.
+StationLines Plant::lines_of(const StationConfig& station) {
+  const auto serial = [this](const std::string& name) -> Rs485Line* {
+    for (const auto& line : serial_lines_)
+      if (!name.empty() && line->line.name() == name) return &line->line;
+    return nullptr;
+  };
+  StationLines found;
+  for (const auto& line : lines_)
+    if (line->name() == station.sbus) found.sbus = line.get();
+  found.x13 = serial(station.serial.x13.bus);
+  found.xt = serial(station.serial.xt.bus);
+  if (station.serial.keypad) {
+    add_serial_line(station.name + ".keypad", xt_baud(station), next_source_++);
+    found.xt = &serial_lines_.back()->line;
+  }
+  return found;
+}
+
+void Plant::tell_findings() {
+  const ParameterOf parameter = [this](size_t station, std::string_view number) {
+    return stations_[station]->drive().value(number);
+  };
+  for (const PlanFinding& finding : serial_findings(file_, parameter))
+    journal_.note(queue_.now(), Weight::Warning, finding.station, finding.text);
 }
 
 void Plant::resolve_expectations(std::vector<PlantError>& errors) {
@@ -75,6 +116,10 @@ void Plant::resolve_expectations(std::vector<PlantError>& errors) {
 
 void Plant::add_observer(CanObserver& observer) {
   for (const auto& line : lines_) line->add_observer(observer);
+}
+
+void Plant::add_observer(SerialObserver& observer) {
+  for (const auto& line : serial_lines_) line->line.add_observer(observer);
 }
 
 bool Plant::run_until(Time end, const std::function<bool(Time)>& keep_going) {

@@ -2,6 +2,8 @@
 #define TOML_EXCEPTIONS 0
 #include "runtime/plant/plant_file.hpp"
 
+#include "runtime/plant/serial_plan.hpp"
+
 #include <fmt/format.h>
 
 #include <toml++/toml.h>
@@ -87,13 +89,8 @@ class Reader {
                   std::initializer_list<std::string_view> keys) {
     for (const auto& [key, value] : table) {
       if (std::find(keys.begin(), keys.end(), key.str()) != keys.end()) continue;
-      if (key.str() == "port" || key.str() == "rs485")
-        error(place_of(key.source()),
-              fmt::format("'{}': real ports and RS-485 lines are not there yet, see docs/limits.md",
-                          key.str()));
-      else
-        error(place_of(key.source()),
-              fmt::format("unknown key '{}' in {}; known are {}", key.str(), what, fmt::join(keys, ", ")));
+      error(place_of(key.source()),
+            fmt::format("unknown key '{}' in {}; known are {}", key.str(), what, fmt::join(keys, ", ")));
     }
   }
 
@@ -144,36 +141,80 @@ class Reader {
       error(place, fmt::format("there are two of {} '{}'", what, name));
   }
 
+  struct KindName {
+    std::string_view name;
+    BusKind kind;
+    uint32_t baud;  // factory setting
+  };
+  static constexpr KindName kKinds[] = {{"can", BusKind::Can, 500'000},
+                                        {"rs485", BusKind::Rs485, 9'600},
+                                        {"rs232", BusKind::Rs232, 9'600},
+                                        {"profibus", BusKind::Profibus, 0}};
+
   void bus(const toml::table& table) {
-    known_keys(table, "[[bus]]", {"name", "kind", "baud"});
+    known_keys(table, "[[bus]]", {"name", "kind", "baud", "port", "length", "shielded", "terminated"});
     BusConfig config;
     config.place = place_of(table.source());
     config.name = text(table, "name", "a [[bus]]", true);
     unique(bus_names_, config.name, "bus", config.place);
     const std::string kind = text(table, "kind", "a [[bus]]", true);
-    if (kind == "rs485" || kind == "profibus")
+    const auto row =
+        std::find_if(std::begin(kKinds), std::end(kKinds), [&](const KindName& k) { return k.name == kind; });
+    if (row != std::end(kKinds)) {
+      config.kind = row->kind;
+      config.baud = row->baud;
+    } else if (!kind.empty()) {
+      error(place_of(table.get("kind")->source()),
+            fmt::format("'{}' is no kind of bus; known are can, rs485, rs232, profibus", kind));
+    }
+    if (config.kind == BusKind::Profibus)
       error(place_of(table.get("kind")->source()),
             fmt::format("buses of kind '{}' are not simulated yet", kind));
-    else if (!kind.empty() && kind != "can")
-      error(place_of(table.get("kind")->source()),
-            fmt::format("'{}' is no kind of bus; known are can, rs485, profibus", kind));
-    if (const toml::node* baud = table.get("baud")) {
-      int32_t value = 0;
-      if (number(*baud, "baud", value)) {
-        config.baud = static_cast<uint32_t>(value);
-        // 1053 1610 p. 8: the rates of the SBus
-        if (value != 125'000 && value != 250'000 && value != 500'000 && value != 1'000'000)
-          error(place_of(baud->source()),
-                fmt::format("the SBus has 125000, 250000, 500000 or 1000000 baud, not {}", value));
-      }
+    baud(table, config);
+    wiring(table, config);
+    config.port = text(table, "port", "", false);
+    if (const toml::node* port = table.get("port")) {
+      config.port_place = place_of(port->source());
+      if (config.port.empty() && port->is_string()) error(config.port_place, "port must not be empty");
+      unique(port_names_, config.port, "port", config.port_place);
     }
     result_.plant.buses.push_back(std::move(config));
   }
 
+  // 1053 1610 p. 8: the rates of the SBus and of RS-232; 57.6 kbaud MDX60B/61B p. 14.
+  void baud(const toml::table& table, BusConfig& config) {
+    const toml::node* node = table.get("baud");
+    int32_t value = 0;
+    if (node == nullptr || !number(*node, "baud", value)) return;
+    config.baud = static_cast<uint32_t>(value);
+    const auto is_one_of = [value](std::initializer_list<int32_t> rates) {
+      return std::find(rates.begin(), rates.end(), value) != rates.end();
+    };
+    if (config.kind == BusKind::Can && !is_one_of({125'000, 250'000, 500'000, 1'000'000}))
+      error(place_of(node->source()),
+            fmt::format("the SBus has 125000, 250000, 500000 or 1000000 baud, not {}", value));
+    if (config.kind == BusKind::Rs485 && !is_one_of({9'600, 57'600}))
+      error(place_of(node->source()), fmt::format("RS-485 has 9600 or 57600 baud, not {}", value));
+    if (config.kind == BusKind::Rs232 && !is_one_of({9'600}))
+      error(place_of(node->source()), fmt::format("RS-232 has 9600 baud, not {}", value));
+  }
+
+  void wiring(const toml::table& table, BusConfig& config) {
+    config.shielded = flag(table, "shielded", nullptr);
+    config.terminated = flag(table, "terminated", nullptr);
+    const toml::node* length = table.get("length");
+    if (length == nullptr) return;
+    const auto metres = length->value<double>();
+    constexpr double kLongest = 1e6;
+    if (!metres || !(*metres > 0) || *metres > kLongest)
+      return error(place_of(length->source()), "length is the length of the line in metres");
+    config.length_mm = static_cast<uint32_t>(*metres * 1000 + 0.5);
+  }
+
   void station(const toml::table& table) {
-    known_keys(
-        table, "[[station]]",
-        {"name", "unit", "firmware", "program", "sbus", "parameters", "inputs", "analog", "load", "hex"});
+    known_keys(table, "[[station]]",
+               {"name", "unit", "firmware", "program", "sbus", "rs485", "rs485_xt", "keypad", "uss21a", "s13",
+                "parameters", "inputs", "analog", "load", "hex"});
     StationConfig config;
     config.place = place_of(table.source());
     config.name = text(table, "name", "a [[station]]", true);
@@ -193,15 +234,43 @@ class Reader {
       if (config.unit != nullptr && config.unit->tasks == 0)
         error(config.program_place, fmt::format("unit type {} runs no program", config.unit->name));
     }
-    config.sbus = text(table, "sbus", "", false);
-    if (const toml::node* sbus = table.get("sbus"))
-      bus_uses_.push_back({config.sbus, place_of(sbus->source())});
+    config.sbus = bus_use(table, "sbus", BusKind::Can).bus;
+    config.serial = serial(table);
     parameters(table, config);
     inputs(table, config);
     analog(table, config);
     load(table, config.machine);
     hex(table, config);
     result_.plant.stations.push_back(std::move(config));
+  }
+
+  // The bus a key names; it must be of this kind (a serial key takes both serial kinds).
+  BusUse bus_use(const toml::table& table, std::string_view key, BusKind kind) {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) return {};
+    BusUse use{text(table, key, "", false), place_of(node->source())};
+    if (node->is_string()) bus_uses_.push_back({use, kind});
+    return use;
+  }
+
+  // A switch; absent is false. `place` is set where it stands.
+  bool flag(const toml::table& table, std::string_view key, FilePlace* place) {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) return false;
+    if (place != nullptr) *place = place_of(node->source());
+    if (const auto* value = node->as_boolean()) return value->get();
+    error(place_of(node->source()), fmt::format("{} is true or false", key));
+    return false;
+  }
+
+  SerialConfig serial(const toml::table& table) {
+    SerialConfig config;
+    config.x13 = bus_use(table, "rs485", BusKind::Rs485);
+    config.xt = bus_use(table, "rs485_xt", BusKind::Rs485);
+    config.keypad = flag(table, "keypad", &config.keypad_place);
+    config.uss21a = flag(table, "uss21a", &config.uss21a_place);
+    config.s13 = flag(table, "s13", &config.s13_place);
+    return config;
   }
 
   // The two digits behind the point, as the MOVITRAC 07 manual writes versions: 15 for .15.
@@ -374,8 +443,17 @@ class Reader {
   }
 
   void cross_check() {
-    for (const auto& [name, place] : bus_uses_)
-      if (!bus_names_.contains(name)) error(place, fmt::format("there is no bus '{}'", name));
+    for (const auto& [use, kind] : bus_uses_) {
+      const auto& buses = result_.plant.buses;
+      const auto bus =
+          std::find_if(buses.begin(), buses.end(), [&](const BusConfig& b) { return b.name == use.bus; });
+      if (bus == buses.end())
+        error(use.place, fmt::format("there is no bus '{}'", use.bus));
+      else if (is_serial(bus->kind) != is_serial(kind))
+        error(use.place,
+              fmt::format("bus '{}' is {} serial line", use.bus, is_serial(bus->kind) ? "a" : "no"));
+    }
+    for (PlantError& problem : check_serial_plan(result_.plant)) result_.errors.push_back(std::move(problem));
     for (const auto& [name, place] : station_uses_)
       if (!station_names_.contains(name)) error(place, fmt::format("there is no station '{}'", name));
     if (result_.plant.stations.empty() && result_.errors.empty())
@@ -385,7 +463,8 @@ class Reader {
   PlantFileResult result_;
   std::set<std::string> bus_names_;
   std::set<std::string> station_names_;
-  std::vector<std::pair<std::string, FilePlace>> bus_uses_;
+  std::set<std::string> port_names_;
+  std::vector<std::pair<BusUse, BusKind>> bus_uses_;
   std::vector<std::pair<std::string, FilePlace>> station_uses_;
 };
 

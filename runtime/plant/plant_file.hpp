@@ -21,13 +21,21 @@ struct FilePlace {
   uint32_t column = 0;
 };
 
-enum class BusKind : uint8_t { Can, Rs485, Profibus };
+enum class BusKind : uint8_t { Can, Rs485, Rs232, Profibus };
+
+constexpr bool is_serial(BusKind kind) { return kind == BusKind::Rs485 || kind == BusKind::Rs232; }
 
 struct BusConfig {
   std::string name;
   BusKind kind = BusKind::Can;
   uint32_t baud = 500'000;  // bit/s
+  std::string port;         // of the real bus it is joined to, or empty
+  FilePlace port_place;
   FilePlace place;
+  // Of a serial line, for the planning checks only (serial_plan.hpp).
+  uint32_t length_mm = 0;  // 0: not given
+  bool shielded = false;
+  bool terminated = false;  // external terminating resistors
 };
 
 // A value for a parameter named "P813" or by its index.
@@ -44,12 +52,31 @@ struct InputSetting {
   FilePlace place;
 };
 
+// A bus by its name, and where the station names it.
+struct BusUse {
+  std::string bus;  // empty: not connected
+  FilePlace place;
+};
+
+// The RS-485 side of a station. Which of it a unit type has is checked by serial_plan.hpp.
+struct SerialConfig {
+  BusUse x13;           // terminals X13: RS-485 no. 2, bus type 2 of MOVLNK
+  BusUse xt;            // socket XT or TERMINAL: RS-485 no. 1, bus type 1
+  bool keypad = false;  // plugged in there
+  bool uss21a = false;  // serial option there, MOVIDRIVE A
+  bool s13 = false;     // DIP switch of MOVIDRIVE B: ON is 9.6 kbaud at XT, OFF 57.6 (factory setting)
+  FilePlace keypad_place;
+  FilePlace uss21a_place;
+  FilePlace s13_place;
+};
+
 struct StationConfig {
   std::string name;
   const stdlib::UnitType* unit = nullptr;
   DriveOptions options;
   std::string program;  // as written, relative to the plant file; empty: no program
   std::string sbus;     // name of a bus, or empty
+  SerialConfig serial;
   std::vector<ParameterSetting> parameters;
   std::vector<InputSetting> inputs;
   AnalogInputs analog;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "runtime/plant/serial_plan.hpp"
 #include "runtime/services/drive_variables.hpp"
 #include "stdlib/faults.hpp"
 
@@ -35,14 +36,15 @@ vm::Limits limits_of(const stdlib::UnitType& unit) {
 }
 
 Station::Station(EventQueue& queue, uint32_t source, const StationConfig& config,
-                 std::optional<vm::Image> program, CanLine* line, Journal& journal,
+                 std::optional<vm::Image> program, StationLines lines, Journal& journal,
                  std::optional<vm::Rates> rates)
     : queue_(queue),
       source_(source),
       config_(config),
-      line_(line),
+      lines_(lines),
       journal_(journal),
       drive_(*config.unit, config.machine, config.options),
+      movilink_(drive_, drive_, journal, config.name),
       image_(std::move(program)),
       rates_(rates) {}
 
@@ -55,10 +57,10 @@ void Station::power_on() {
   for (const InputSetting& input : config_.inputs) inputs |= (input.level ? 1U : 0U) << input.input;
   drive_.state().set_inputs(static_cast<uint16_t>(inputs));
   drive_.state().set_analog(config_.analog);
-  if (line_ != nullptr) connect_sbus();
+  if (lines_.sbus != nullptr) connect_sbus();
+  connect_serial();
   if (image_) {
-    commands_.emplace(queue_, journal_, config_.name, sbus_ ? &sbus_->objects : nullptr,
-                      sbus_ ? &sbus_->movilink : nullptr);
+    commands_.emplace(queue_, journal_, config_.name, sbus_ ? &sbus_->objects : nullptr, movilink_);
     machine_.emplace(*vm::verify(image_->code, limits_of(*config_.unit), {}).image, commands_->host());
     drive_.connect_program(*machine_);
     machine_->start();
@@ -70,28 +72,46 @@ void Station::connect_sbus() {
   const SbusParameters p = sbus_parameters(config_.unit->generation);
   const auto baud_code = static_cast<size_t>(drive_.value(p.baud));
   const uint32_t baud = kBaudRates[std::min(baud_code, kBaudRates.size() - 1)];
-  const LinePort port(*line_, line_->attach(config_.name, baud, *this));
+  const LinePort port(*lines_.sbus, lines_.sbus->attach(config_.name, baud, *this));
   const SlaveSettings settings{
       static_cast<uint8_t>(drive_.value(p.address)), static_cast<uint8_t>(drive_.value(p.group)),
       static_cast<uint16_t>(drive_.value(p.sync_id) / 1000), false};  // coded in thousandths
   // The port's parts keep a reference to its sender, so it must not move.
   sbus_ = std::make_unique<SbusPort>(queue_, source_, port, settings, drive_, *config_.unit, baud,
-                                     static_cast<SlaveObserver&>(*this));
+                                     static_cast<SlaveObserver&>(*this), movilink_.client(MovilinkBus::Sbus));
+  movilink_.connect(MovilinkBus::Sbus, sbus_->master);
+}
+
+void Station::connect_serial() {
+  if (lines_.x13 != nullptr) {
+    x13_ = std::make_unique<SerialPort>(queue_, source_, *lines_.x13, kX13Baud, config_.name, "X13", true,
+                                        drive_, movilink_.client(MovilinkBus::SerialX13), journal_);
+    movilink_.connect(MovilinkBus::SerialX13, x13_->master());
+  }
+  if (lines_.xt == nullptr) return;
+  xt_ = std::make_unique<SerialPort>(queue_, source_, *lines_.xt, xt_baud(config_), config_.name, "XT", false,
+                                     drive_, movilink_.client(MovilinkBus::SerialXt), journal_);
+  if (config_.serial.keypad)
+    keypad_ = std::make_unique<Keypad>(queue_, source_, *lines_.xt);
+  else
+    movilink_.connect(MovilinkBus::SerialXt, xt_->master());
 }
 
 Station::SbusPort::SbusPort(EventQueue& queue, uint32_t source, LinePort port, SlaveSettings settings,
                             DriveServer& drive, const stdlib::UnitType& unit, uint32_t baud,
-                            SlaveObserver& observer)
+                            SlaveObserver& observer, MovilinkClient& client)
     : sender(port),
       slave(queue, source, sender, kSlaveTag, settings, {}, drive, drive, &observer),
       objects(unit, baud, sender, kObjectTags),
-      movilink(queue, source, sender, kMasterTag, drive, drive) {
+      master(queue, source, sender, kMasterTag, kSbusReplyTimeout, client) {
   objects.set_addresses(settings.address, settings.group);
 }
 
 void Station::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
   drive_.state().tick();
   report_drive(now);
+  if (x13_) x13_->configure(now);
+  if (xt_) xt_->configure(now);
   if (machine_) {
     show_drive(drive_.state(), machine_->variables());
     vm::run_tick(*machine_, rates_.value_or(drive_.rates()));
@@ -104,7 +124,7 @@ void Station::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
 
 void Station::on_frame(Time now, const Frame& frame) {
   if (!sbus_) return;  // a frame may arrive while the port is being made
-  if (sbus_->movilink.on_frame(now, frame)) return;
+  if (sbus_->master.on_frame(now, frame)) return;
   std::string why;
   const bool received = machine_ && sbus_->objects.on_frame(frame, machine_->variables(), why);
   if (!why.empty()) journal_.note(now, Weight::Warning, config_.name, std::move(why));
@@ -114,7 +134,7 @@ void Station::on_frame(Time now, const Frame& frame) {
 }
 
 void Station::on_sent(Time now, const Frame& /*frame*/, uint64_t tag) {
-  if (tag == kMasterTag) sbus_->movilink.on_sent(now, tag);
+  if (tag == kMasterTag) sbus_->master.on_sent(now, tag);
   if (tag >= kObjectTags) sbus_->objects.on_sent(tag, machine_->variables());
 }
 
@@ -131,10 +151,8 @@ void Station::on_ignored(Time now, const Frame& frame, Ignored reason, ReturnCod
 void Station::report_fault(Time now) {
   fault_reported_ = true;
   const vm::Fault& fault = machine_->fault();
-  if (sbus_) {
-    sbus_->objects.stop();  // a program stop ends cyclic sending and receiving (1053 1610 p. 54)
-    sbus_->movilink.stop();
-  }
+  if (sbus_) sbus_->objects.stop();  // a program stop ends cyclic sending and receiving (1053 1610 p. 54)
+  movilink_.stop();
   drive_.state().raise_fault(fault.number);
   const std::string place = source_place(fault.address);
   journal_.note(now, Weight::Fault, config_.name,

@@ -9,9 +9,12 @@
 #include <string_view>
 
 #include "runtime/bus/can/line.hpp"
+#include "runtime/bus/movilink/keypad.hpp"
+#include "runtime/bus/movilink/sbus_master.hpp"
 #include "runtime/bus/movilink/sbus_slave.hpp"
 #include "runtime/plant/drive_server.hpp"
 #include "runtime/plant/plant_file.hpp"
+#include "runtime/plant/serial_port.hpp"
 #include "runtime/services/journal.hpp"
 #include "runtime/services/movilink_command.hpp"
 #include "runtime/services/system_commands.hpp"
@@ -25,13 +28,20 @@ namespace ipos::runtime {
 // What a unit type allows a program.
 vm::Limits limits_of(const stdlib::UnitType& unit);
 
+// The lines of a station; null where it is not connected.
+struct StationLines {
+  CanLine* sbus = nullptr;
+  Rs485Line* x13 = nullptr;
+  Rs485Line* xt = nullptr;  // with a keypad the line to it
+};
+
 class Station final : private CanNode, private EventTarget, private SlaveObserver {
  public:
-  // `line` is null for a station without SBus; `program` is empty for one without IPOS program. The config
-  // and the journal must outlive the station. Parameters of the config must be checked before (plant.cpp).
-  // The program must pass verify() for the unit.
+  // `program` is empty for a station without IPOS program. The config and the journal must outlive the
+  // station. Parameters of the config must be checked before (plant.cpp). The program must pass verify() for
+  // the unit.
   Station(EventQueue& queue, uint32_t source, const StationConfig& config, std::optional<vm::Image> program,
-          CanLine* line, Journal& journal, std::optional<vm::Rates> rates);
+          StationLines lines, Journal& journal, std::optional<vm::Rates> rates);
 
   // Applies a parameter of the plant file; nothing when it was accepted, else why not.
   std::optional<std::string> set_parameter(const ParameterSetting& setting);
@@ -65,27 +75,34 @@ class Station final : private CanNode, private EventTarget, private SlaveObserve
   void on_ignored(Time now, const Frame& frame, Ignored reason, ReturnCode code) override;
 
   void connect_sbus();
+  void connect_serial();
   void report_fault(Time now);
   void report_drive(Time now);
 
   EventQueue& queue_;
   uint32_t source_;
   const StationConfig& config_;
-  CanLine* line_;
+  StationLines lines_;
   Journal& journal_;
   DriveServer drive_;
+  MovilinkCommand movilink_;
   std::optional<vm::Image> image_;
 
   // The SBus port; empty without one.
   struct SbusPort {
     SbusPort(EventQueue& queue, uint32_t source, LinePort port, SlaveSettings settings, DriveServer& drive,
-             const stdlib::UnitType& unit, uint32_t baud, SlaveObserver& observer);
+             const stdlib::UnitType& unit, uint32_t baud, SlaveObserver& observer, MovilinkClient& client);
     LinePort sender;
     SbusSlave slave;
     VariableObjects objects;
-    MovilinkCommand movilink;
+    SbusMaster master;
   };
   std::unique_ptr<SbusPort> sbus_;
+
+  // RS-485; empty without a line.
+  std::unique_ptr<SerialPort> x13_;
+  std::unique_ptr<SerialPort> xt_;
+  std::unique_ptr<Keypad> keypad_;
 
   std::optional<SystemCommands> commands_;
   std::optional<vm::Machine> machine_;

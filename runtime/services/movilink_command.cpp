@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "runtime/bus/movilink/return_code.hpp"
 
 namespace ipos::runtime {
@@ -12,23 +15,33 @@ namespace {
 enum Element : uint32_t { kBusType, kAddress, kFormat, kService, kIndex, kDPointer, kResult };
 enum Data : uint32_t { kWritePar, kReadPar, kPO1, kPI1 = 5 };
 
-constexpr int32_t kBusSbus = 5;
 constexpr int32_t kOwnUnit = 253;
+
+struct BusRow {
+  int32_t code;
+  const char* text;
+};
+constexpr BusRow kBuses[] = {
+#define MOVILINK_BUS(name, code, text) {code, text},
+#include "runtime/services/movilink_buses.def"
+};
 
 // Variables of MLDATA that a format touches.
 uint32_t data_size(TelegramFormat format) { return format.words > 0 ? kPI1 + format.words : 2U; }
 
-SbusResult refused(ReturnCode code) {
-  SbusResult result;
+MovilinkResult refused(ReturnCode code) {
+  MovilinkResult result;
   result.result = code.packed();
   return result;
 }
 
 }  // namespace
 
-MovilinkCommand::MovilinkCommand(EventQueue& queue, uint32_t source, FrameSender& sender, uint64_t tag,
-                                 ParameterServer& own, ProcessDataServer& own_data)
-    : own_(own), own_data_(own_data), master_(queue, source, sender, tag, kSbusReplyTimeout, *this) {}
+MovilinkCommand::MovilinkCommand(ParameterServer& own, ProcessDataServer& own_data, Journal& journal,
+                                 std::string_view station)
+    : own_(own), own_data_(own_data), journal_(journal), station_(station) {
+  for (Route& route : routes_) route.command = this;
+}
 
 vm::HostReply MovilinkCommand::start(Time now, vm::Machine& machine, int task, uint32_t variable,
                                      std::string& why) {
@@ -56,48 +69,60 @@ vm::HostReply MovilinkCommand::start(Time now, vm::Machine& machine, int task, u
     store(job, serve_own(now, job.bus, *format));
     return {};
   }
-  if (element(kBusType) != kBusSbus) {
-    why = fmt::format("MOVLNK: bus type {} is not simulated; only 5 (SBus) is", element(kBusType));
-    store(job, refused(return_codes::kWrongManagement));
-    return {};
-  }
-  jobs_.push_back(job);
-  if (jobs_.size() > 1) return {vm::Answer::Wait};
-  if (const auto code = master_.start(now, job.bus)) {
-    why = fmt::format("MOVLNK: address {}, format {}, service {} cannot be sent over SBus", job.bus.address,
-                      job.bus.format, job.bus.service);
-    jobs_.clear();
-    store(job, refused(*code));
-    return {};
+  const auto refuse = [&](ReturnCode code, std::string reason) {
+    why = std::move(reason);
+    store(job, refused(code));
+    return vm::HostReply{};
+  };
+  const auto row = std::find_if(std::begin(kBuses), std::end(kBuses),
+                                [&](const BusRow& bus) { return bus.code == element(kBusType); });
+  if (row == std::end(kBuses))
+    return refuse(return_codes::kWrongManagement,
+                  fmt::format("MOVLNK: bus type {} is none of 1, 2 and 5", element(kBusType)));
+  Route& route = routes_[static_cast<size_t>(row - std::begin(kBuses))];
+  if (route.master == nullptr)
+    return refuse(return_codes::kCommunication,
+                  fmt::format("MOVLNK: the station is not connected to {}", row->text));
+  route.jobs.push_back(job);
+  if (route.jobs.size() > 1) return {vm::Answer::Wait};
+  if (const auto code = route.master->start(now, job.bus)) {
+    route.jobs.clear();
+    return refuse(*code, fmt::format("MOVLNK: address {}, format {}, service {} cannot be sent over {}",
+                                     job.bus.address, job.bus.format, job.bus.service, row->text));
   }
   return {vm::Answer::Wait};
 }
 
 void MovilinkCommand::stop() {
-  master_.abort();
-  jobs_.clear();
+  for (Route& route : routes_) {
+    if (route.master != nullptr) route.master->abort();
+    route.jobs.clear();
+  }
 }
 
-void MovilinkCommand::on_exchange_done(Time now, const SbusResult& result) {
-  const Job job = jobs_.front();
-  jobs_.erase(jobs_.begin());
+void MovilinkCommand::Route::on_exchange_done(Time now, const MovilinkResult& result) {
+  const Job job = jobs.front();
+  jobs.erase(jobs.begin());
+  if (!result.reason.empty())
+    command->journal_.note(now, Weight::Why, command->station_,
+                           fmt::format("MOVLNK to address {}: {}", job.bus.address, result.reason));
   store(job, result);
   job.machine->resume(job.task);
   begin_next(now);
 }
 
-void MovilinkCommand::begin_next(Time now) {
-  while (!jobs_.empty()) {
-    const auto code = master_.start(now, jobs_.front().bus);
+void MovilinkCommand::Route::begin_next(Time now) {
+  while (!jobs.empty()) {
+    const auto code = master->start(now, jobs.front().bus);
     if (!code) return;
-    store(jobs_.front(), refused(*code));
-    jobs_.front().machine->resume(jobs_.front().task);
-    jobs_.erase(jobs_.begin());
+    store(jobs.front(), refused(*code));
+    jobs.front().machine->resume(jobs.front().task);
+    jobs.erase(jobs.begin());
   }
 }
 
-SbusResult MovilinkCommand::serve_own(Time now, const SbusJob& job, TelegramFormat format) {
-  SbusResult result;
+MovilinkResult MovilinkCommand::serve_own(Time now, const MovilinkJob& job, TelegramFormat format) {
+  MovilinkResult result;
   if (format.parameter) {
     const auto service = service_from_code(static_cast<uint32_t>(job.service));
     if (!service || *service == Service::None || job.index < 0 || job.index > 0xFF'FFFF)
@@ -110,7 +135,7 @@ SbusResult MovilinkCommand::serve_own(Time now, const SbusJob& job, TelegramForm
   if (format.words > 0) {
     ProcessWords output{};
     for (size_t n = 0; n < format.words; ++n) output[n] = static_cast<uint16_t>(job.output[n]);
-    own_data_.take_output(now, OutputChannel::Single, output);
+    own_data_.take_output(now, OutputChannel::Single, {output.data(), format.words});
     const ProcessWords input = own_data_.input(now);
     for (size_t n = 0; n < format.words; ++n) result.input[n] = static_cast<int16_t>(input[n]);
     result.words = format.words;
@@ -118,7 +143,7 @@ SbusResult MovilinkCommand::serve_own(Time now, const SbusJob& job, TelegramForm
   return result;
 }
 
-void MovilinkCommand::store(const Job& job, const SbusResult& result) {
+void MovilinkCommand::store(const Job& job, const MovilinkResult& result) {
   const std::span<int32_t> h = job.machine->variables();
   h[job.variable + kResult] = static_cast<int32_t>(result.result);
   if (result.result != 0) return;  // after an error the data keep their values (1053 1610 p. 49)

@@ -1,24 +1,40 @@
-// The MOVLNK command of one unit (1053 1610 p. 47 to 49): reads its structure, exchanges over the bus or with
-// the unit itself, and stores the result. The calling task waits; the others run on.
+// The MOVLNK command of one unit (1053 1610 p. 47 to 49): reads its structure, exchanges over the bus it
+// names or with the unit itself, and stores the result. The calling task waits; the others run on.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "runtime/bus/movilink/format.hpp"
-#include "runtime/bus/movilink/sbus_master.hpp"
-#include "runtime/bus/movilink/sbus_slave.hpp"
+#include "runtime/bus/movilink/exchange.hpp"
+#include "runtime/bus/movilink/unit_servers.hpp"
+#include "runtime/services/journal.hpp"
 #include "vm/exec/machine.hpp"
 
 namespace ipos::runtime {
 
-class MovilinkCommand final : private SbusMasterClient {
+// BusType of MOVLNK (1053 1610 p. 47).
+enum class MovilinkBus : uint8_t {
+#define MOVILINK_BUS(name, code, text) name,
+#include "runtime/services/movilink_buses.def"
+};
+inline constexpr size_t kMovilinkBuses = static_cast<size_t>(MovilinkBus::Sbus) + 1;
+
+class MovilinkCommand final {
  public:
-  // `own` and `own_data` serve address 253, the unit itself. Frames are queued at `sender` with `tag`.
-  MovilinkCommand(EventQueue& queue, uint32_t source, FrameSender& sender, uint64_t tag, ParameterServer& own,
-                  ProcessDataServer& own_data);
+  // `own` and `own_data` serve address 253, the unit itself. Exchanges without an answer are told to the
+  // journal.
+  MovilinkCommand(ParameterServer& own, ProcessDataServer& own_data, Journal& journal,
+                  std::string_view station);
+
+  // Whoever carries the exchanges of a bus reports to client(bus). A bus without master is not connected.
+  MovilinkClient& client(MovilinkBus bus) { return routes_[static_cast<size_t>(bus)]; }
+  void connect(MovilinkBus bus, MovilinkMaster& master) {
+    routes_[static_cast<size_t>(bus)].master = &master;
+  }
 
   // Begins the exchange of the structure at `variable` for a task. Done: the result is stored already; Wait:
   // the task is resumed when it is. `why` says why an exchange could not be begun.
@@ -26,27 +42,32 @@ class MovilinkCommand final : private SbusMasterClient {
 
   void stop();  // program stop: pending exchanges are given up
 
-  bool on_frame(Time now, const Frame& frame) { return master_.on_frame(now, frame); }
-  void on_sent(Time now, uint64_t tag) { master_.on_sent(now, tag); }
-
  private:
   struct Job {
     vm::Machine* machine;
     int task;
     uint32_t variable;  // of the structure
     uint32_t data;      // of MLDATA
-    SbusJob bus;
+    MovilinkJob bus;
+  };
+  // One bus: the first job is on it, the others wait.
+  struct Route final : MovilinkClient {
+    void on_exchange_done(Time now, const MovilinkResult& result) override;
+    void begin_next(Time now);
+
+    MovilinkCommand* command = nullptr;
+    MovilinkMaster* master = nullptr;
+    std::vector<Job> jobs;
   };
 
-  void on_exchange_done(Time now, const SbusResult& result) override;
-  void begin_next(Time now);
-  SbusResult serve_own(Time now, const SbusJob& job, TelegramFormat format);
-  static void store(const Job& job, const SbusResult& result);
+  MovilinkResult serve_own(Time now, const MovilinkJob& job, TelegramFormat format);
+  static void store(const Job& job, const MovilinkResult& result);
 
   ParameterServer& own_;
   ProcessDataServer& own_data_;
-  SbusMaster master_;
-  std::vector<Job> jobs_;  // the first one is on the bus, the others wait for it
+  Journal& journal_;
+  std::string station_;
+  std::array<Route, kMovilinkBuses> routes_;
 };
 
 }  // namespace ipos::runtime

@@ -9,7 +9,7 @@ constexpr vm::HostReply fail(const char* reason) { return {vm::Answer::Fault, vm
 }  // namespace
 
 SystemCommands::SystemCommands(const EventQueue& clock, Journal& journal, std::string_view station,
-                               VariableObjects* objects, MovilinkCommand* movilink)
+                               VariableObjects* objects, MovilinkCommand& movilink)
     : clock_(clock), journal_(journal), station_(station), objects_(objects), movilink_(movilink) {}
 
 vm::Host SystemCommands::host() {
@@ -35,9 +35,8 @@ vm::HostReply SystemCommands::execute(vm::Machine& machine, int task, const vm::
       if (!objects_->started()) objects_->start(clock_.now() / kMillisecond);
       return {};
     case Opcode::Movlnk: {
-      if (movilink_ == nullptr) return fail("MOVLNK: the station is on no bus");
       const auto variable = static_cast<uint32_t>(command.operands[0]);
-      const vm::HostReply reply = movilink_->start(clock_.now(), machine, task, variable, why);
+      const vm::HostReply reply = movilink_.start(clock_.now(), machine, task, variable, why);
       explain(std::move(why));
       return reply;
     }

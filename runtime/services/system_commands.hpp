@@ -11,9 +11,9 @@ namespace ipos::runtime {
 
 class SystemCommands {
  public:
-  // `objects` and `movilink` are null for a unit that is on no SBus.
+  // `objects` is null for a unit that is on no SBus.
   SystemCommands(const EventQueue& clock, Journal& journal, std::string_view station,
-                 VariableObjects* objects, MovilinkCommand* movilink);
+                 VariableObjects* objects, MovilinkCommand& movilink);
 
   vm::Host host();
 
@@ -25,7 +25,7 @@ class SystemCommands {
   Journal& journal_;
   std::string station_;
   VariableObjects* objects_;
-  MovilinkCommand* movilink_;
+  MovilinkCommand& movilink_;
 };
 
 }  // namespace ipos::runtime

@@ -24,9 +24,9 @@ struct Wire final : FrameSender {
   void withdraw(uint64_t) override {}
 };
 
-struct Client final : SbusMasterClient {
+struct Client final : MovilinkClient {
   int done = 0;
-  void on_exchange_done(Time, const SbusResult& result) override {
+  void on_exchange_done(Time, const MovilinkResult& result) override {
     ++done;
     require(result.words <= 3, "a telegram has at most three process data words");
     require(result.result == 0 || (!result.read_value && result.words == 0),
@@ -96,7 +96,7 @@ void check_master(Input input) {
   int started = 0;
   while (!input.empty()) {
     if (!master.busy()) {
-      SbusJob job{input.u8() - 4,           input.u8() % 140, input.u8() % 12 - 1,
+      MovilinkJob job{input.u8() - 4,           input.u8() % 140, input.u8() % 12 - 1,
                   input.i32() % 0x100'0000, input.i32(),      {}};
       for (int32_t& word : job.output) word = input.i32();
       const auto refused = master.start(queue.now(), job);

@@ -280,7 +280,8 @@ const std::string kBus = "[[bus]]\nname = \"b\"\nkind = \"can\"\n";
 TEST_F(PlantErrors, EachIsLocated) {
   refuses(kStation + "colour = \"red\"\n", "5:1", "colour");
   refuses(kStation + "hex = 3\u00b9\n", "5:8", "text or a comment");
-  refuses(kStation + "rs485 = \"line1\"\n", "5:1", "not there yet");
+  refuses(kStation + "port = \"vcan0\"\n", "5:1", "unknown key 'port'");
+  refuses(kStation + "rs485 = \"line1\"\n", "5:9", "'line1'");
   refuses(kStation + "[[bus\n", "5:6", "table header");
   refuses("[[station]]\nname = \"u\"\nunit = \"md90\"\n", "3:8", "md90");
   refuses("[[station]]\nunit = \"md60a\"\n", "1:1", "name");

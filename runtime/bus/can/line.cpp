@@ -16,10 +16,6 @@ enum Event : uint32_t { kStart, kEnd };
 
 constexpr uint32_t kSuspendBits = 8;  // pause of an error-passive sender after a transmission
 
-uint32_t percent_of(uint64_t part, uint64_t whole) {
-  return whole == 0 ? 0 : static_cast<uint32_t>(part * 100 / whole);
-}
-
 }  // namespace
 
 bool is_baud_rate(uint32_t baud) {
@@ -27,7 +23,12 @@ bool is_baud_rate(uint32_t baud) {
 }
 
 CanLine::CanLine(EventQueue& queue, uint32_t source, std::string name, uint32_t baud)
-    : queue_(queue), source_(source), name_(std::move(name)), baud_(baud), bit_time_(kSecond / baud) {
+    : queue_(queue),
+      source_(source),
+      name_(std::move(name)),
+      baud_(baud),
+      bit_time_(kSecond / baud),
+      meter_(baud) {
   assert(is_baud_rate(baud));
 }
 
@@ -137,7 +138,7 @@ void CanLine::begin_transfer(uint64_t bit) {
 void CanLine::end_transfer(Time now) {
   busy_ = false;
   free_bit_ = transfer_.start_bit + transfer_.bits;
-  count_busy(transfer_.start_bit, transfer_.bits);
+  meter_.add(transfer_.start_bit, transfer_.bits);
   // Callbacks below may send and withdraw; they change the queues, never transfer_, as the next one has not
   // begun.
   const bool delivered = transfer_.outcome == Transfer::Outcome::Delivered;
@@ -254,36 +255,9 @@ void CanLine::report_absence(NodeId node, CanObserver* only) {
 
 // --- load
 
-void CanLine::count_busy(uint64_t bit, uint64_t bits) {
-  busy_bits_ += bits;
-  while (bits > 0) {
-    const uint64_t window = bit / baud_;
-    if (window != window_) {
-      peak_window_busy_ = std::max(peak_window_busy_, window_busy_);
-      previous_window_busy_ = window == window_ + 1 ? window_busy_ : 0;
-      window_ = window;
-      window_busy_ = 0;
-    }
-    const uint64_t part = std::min(bits, (window + 1) * baud_ - bit);
-    window_busy_ += part;
-    bit += part;
-    bits -= part;
-  }
-}
-
 LineLoad CanLine::load(Time now) const {
-  LineLoad load;
+  LineLoad load = meter_.load(static_cast<uint64_t>(now / bit_time_));
   load.frames = frames_;
-  load.busy_bits = busy_bits_;
-  load.elapsed_bits = static_cast<uint64_t>(now / bit_time_);
-  load.percent = percent_of(busy_bits_, load.elapsed_bits);
-  const uint64_t current = load.elapsed_bits / baud_;
-  uint64_t last = 0;
-  if (current == window_) last = previous_window_busy_;
-  if (current == window_ + 1) last = window_busy_;
-  load.window_percent = percent_of(last, baud_);
-  load.peak_window_percent =
-      percent_of(current > window_ ? std::max(peak_window_busy_, window_busy_) : peak_window_busy_, baud_);
   return load;
 }
 

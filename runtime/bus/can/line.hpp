@@ -15,6 +15,7 @@
 #include "runtime/bus/can/error_counters.hpp"
 #include "runtime/bus/can/node.hpp"
 #include "runtime/bus/can/transfer.hpp"
+#include "runtime/bus/line_load.hpp"
 #include "runtime/clock/event_queue.hpp"
 
 namespace ipos::runtime {
@@ -24,15 +25,6 @@ inline constexpr std::array<uint32_t, 4> kBaudRates = {125'000, 250'000, 500'000
 bool is_baud_rate(uint32_t baud);
 
 inline constexpr size_t kSendQueueLimit = 64;  // waiting frames of one node (ours)
-
-struct LineLoad {
-  uint64_t frames = 0;               // delivered
-  uint64_t busy_bits = 0;            // frames and error frames with their intermission
-  uint64_t elapsed_bits = 0;         // since time 0
-  uint32_t percent = 0;              // whole run; all percentages are rounded down
-  uint32_t window_percent = 0;       // the last complete second
-  uint32_t peak_window_percent = 0;  // the busiest complete second
-};
 
 class CanLine final : private EventTarget {
  public:
@@ -92,7 +84,6 @@ class CanLine final : private EventTarget {
   void drop_queue(NodeId node);
   void report(const LineEvent& event);
   void report_absence(NodeId node, CanObserver* only);
-  void count_busy(uint64_t bit, uint64_t bits);
 
   EventQueue& queue_;
   uint32_t source_;
@@ -109,11 +100,7 @@ class CanLine final : private EventTarget {
   Transfer transfer_;
 
   uint64_t frames_ = 0;
-  uint64_t busy_bits_ = 0;
-  uint64_t window_ = 0;  // number of the second being counted
-  uint64_t window_busy_ = 0;
-  uint64_t previous_window_busy_ = 0;  // of second window_ - 1
-  uint64_t peak_window_busy_ = 0;      // of the seconds before window_
+  LoadMeter meter_;
 };
 
 // The sending half of an attached node.

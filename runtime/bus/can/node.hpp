@@ -4,13 +4,12 @@
 #include <cstdint>
 
 #include "runtime/bus/can/frame.hpp"
+#include "runtime/bus/node_id.hpp"
 #include "runtime/clock/event_queue.hpp"
 
 namespace ipos::runtime {
 
 class CanLine;
-using NodeId = uint32_t;
-inline constexpr NodeId kNoNode = ~0U;
 
 enum class SendStatus : uint8_t { Queued, NotActive, QueueFull, InvalidFrame };
 

@@ -23,4 +23,9 @@ constexpr std::optional<TelegramFormat> telegram_format(int32_t code) {
   return TelegramFormat{base % 2 == 0, static_cast<uint8_t>(base / 2 + 1), acyclic};
 }
 
+constexpr uint8_t format_code(TelegramFormat format) {
+  const int base = format.words == 0 ? 6 : 2 * (format.words - 1) + (format.parameter ? 0 : 1);
+  return static_cast<uint8_t>(base + (format.acyclic ? 128 : 0));
+}
+
 }  // namespace ipos::runtime

@@ -7,21 +7,17 @@
 namespace ipos::runtime {
 
 SbusMaster::SbusMaster(EventQueue& queue, uint32_t source, FrameSender& sender, uint64_t tag, Time timeout,
-                       SbusMasterClient& client)
+                       MovilinkClient& client)
     : queue_(queue), source_(source), sender_(sender), tag_(tag), timeout_(timeout), client_(client) {}
 
-std::optional<ReturnCode> SbusMaster::start(Time now, const SbusJob& job) {
+std::optional<ReturnCode> SbusMaster::start(Time now, const MovilinkJob& job) {
   const auto format = telegram_format(job.format);
   const bool group = job.address >= kGroupAddressBase;
   const int32_t address = group ? job.address - kGroupAddressBase : job.address;
   if (!format || address < 0 || address >= kSbusAddresses) return return_codes::kWrongManagement;
   if (format->parameter) {
-    const auto service = service_from_code(static_cast<uint32_t>(job.service));
-    if (!service || *service == Service::None || (group && !is_write(*service)) || job.index < 0 ||
-        job.index > 0xFFFFFF)
-      return return_codes::kWrongManagement;
-    request_ = parameter_request(*service, static_cast<uint16_t>(job.index),
-                                 static_cast<uint8_t>(job.index >> 16), job.write_value);
+    if (!has_valid_parameter(job, group)) return return_codes::kWrongManagement;
+    request_ = parameter_request(job);
   }
   format_ = *format;
   group_ = group;
@@ -106,6 +102,7 @@ void SbusMaster::finish_parameter(Time now) {
 void SbusMaster::on_event(Time now, uint32_t, uint64_t) {
   sender_.withdraw(tag_);
   result_.result = return_codes::kCommunication.packed();
+  result_.reason = "no answer";
   finish(now);
 }
 

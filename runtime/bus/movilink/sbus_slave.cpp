@@ -24,14 +24,6 @@ ParameterBytes unpack(uint64_t packed) {
 
 }  // namespace
 
-std::string_view ignored_text(Ignored reason) {
-  static constexpr std::string_view kTexts[] = {
-#define IGNORED(name, text) text,
-#include "runtime/bus/movilink/ignored.def"
-  };
-  return kTexts[static_cast<size_t>(reason)];
-}
-
 SbusSlave::SbusSlave(EventQueue& queue, uint32_t source, FrameSender& sender, uint64_t tag,
                      SlaveSettings settings, SlaveTiming timing, ParameterServer& parameters,
                      ProcessDataServer& process_data, SlaveObserver* observer)
@@ -97,7 +89,7 @@ void SbusSlave::take_telegram(Time now, const Frame& frame, Telegram telegram) {
 
 void SbusSlave::take_request(Time now, const Frame& frame, uint8_t channel) {
   const ParameterTelegram request = decode_parameter(frame.data);
-  const ParameterTelegram response = execute(now, request);
+  const ParameterTelegram response = execute(now, parameters_, request);
   if (!request.synchronous()) {
     queue_.schedule(now + timing_.parameter_delay, source_, *this, kSendResponse + channel, pack(response));
     return;
@@ -110,18 +102,8 @@ void SbusSlave::take_group_request(Time now, const Frame& frame) {
   const ParameterTelegram request = decode_parameter(frame.data);
   const auto service = service_from_code(request.service_code());
   if (!service || !is_write(*service)) return ignore(now, frame, Ignored::GroupService);
-  const ParameterTelegram response = execute(now, request);
+  const ParameterTelegram response = execute(now, parameters_, request);
   if (response.failed()) ignore(now, frame, Ignored::GroupRefused, response.return_code());
-}
-
-ParameterTelegram SbusSlave::execute(Time now, const ParameterTelegram& request) {
-  const auto service = service_from_code(request.service_code());
-  if (service == Service::None) return parameter_response(request, static_cast<int32_t>(request.data));
-  if (!service || (is_write(*service) && !request.four_bytes()))
-    return parameter_refusal(request, return_codes::kWrongManagement);
-  const auto value =
-      parameters_.serve(now, {*service, request.index, request.subindex, static_cast<int32_t>(request.data)});
-  return value ? parameter_response(request, *value) : parameter_refusal(request, value.error());
 }
 
 void SbusSlave::take_sync(Time now) {

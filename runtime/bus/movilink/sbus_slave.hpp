@@ -5,52 +5,14 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <string_view>
-
-#include <tl/expected.hpp>
 
 #include "runtime/bus/can/node.hpp"
 #include "runtime/bus/movilink/identifiers.hpp"
-#include "runtime/bus/movilink/parameter_telegram.hpp"
-#include "runtime/bus/movilink/process_data.hpp"
+#include "runtime/bus/movilink/ignored.hpp"
+#include "runtime/bus/movilink/unit_servers.hpp"
 #include "runtime/clock/event_queue.hpp"
 
 namespace ipos::runtime {
-
-struct ParameterRequest {
-  Service service;  // never None
-  uint16_t index;
-  uint8_t subindex;  // as received; MD_60A ignores it
-  int32_t value;     // of a write
-};
-
-// The parameters of the unit. A write returns the value stored.
-class ParameterServer {
- public:
-  virtual tl::expected<int32_t, ReturnCode> serve(Time now, const ParameterRequest& request) = 0;
-
- protected:
-  ~ParameterServer() = default;
-};
-
-enum class OutputChannel : uint8_t { Single, Group, Sync };
-
-class ProcessDataServer {
- public:
-  virtual void take_output(Time now, OutputChannel channel, const ProcessWords& words) = 0;
-  virtual ProcessWords input(Time now) = 0;
-  virtual void synchronize(Time now) = 0;  // sync telegram, after its PO-sync words were taken
-
- protected:
-  ~ProcessDataServer() = default;
-};
-
-// Why a telegram to this unit had no effect.
-enum class Ignored : uint8_t {
-#define IGNORED(name, text) name,
-#include "runtime/bus/movilink/ignored.def"
-};
-std::string_view ignored_text(Ignored reason);
 
 class SlaveObserver {
  public:
@@ -93,7 +55,6 @@ class SbusSlave final : private EventTarget {
   void take_request(Time now, const Frame& frame, uint8_t channel);
   void take_group_request(Time now, const Frame& frame);
   void take_sync(Time now);
-  ParameterTelegram execute(Time now, const ParameterTelegram& request);
   void ignore(Time now, const Frame& frame, Ignored reason, ReturnCode code = {});
 
   EventQueue& queue_;

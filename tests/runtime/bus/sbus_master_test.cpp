@@ -10,7 +10,7 @@
 namespace ipos::tests {
 namespace {
 
-class MasterNode final : public CanNode, public SbusMasterClient {
+class MasterNode final : public CanNode, public MovilinkClient {
  public:
   MasterNode(EventQueue& queue, CanLine& line)
       : port(line, line.attach("master", line.baud(), *this)),
@@ -18,7 +18,7 @@ class MasterNode final : public CanNode, public SbusMasterClient {
   void on_frame(Time now, const Frame& frame) override { master.on_frame(now, frame); }
   void on_sent(Time now, const Frame&, uint64_t tag) override { master.on_sent(now, tag); }
   void on_not_sent(Time, const Frame&, uint64_t, NotSent) override {}
-  void on_exchange_done(Time now, const SbusResult& result) override {
+  void on_exchange_done(Time now, const MovilinkResult& result) override {
     ++done;
     last = result;
     at = now;
@@ -26,7 +26,7 @@ class MasterNode final : public CanNode, public SbusMasterClient {
   LinePort port;
   SbusMaster master;
   int done = 0;
-  SbusResult last;
+  MovilinkResult last;
   Time at = 0;
 };
 
@@ -51,7 +51,7 @@ struct Rig {
   Rig() { line.add_observer(log); }
 
   // Runs one job to its end; nothing when it was refused.
-  std::optional<SbusResult> run(const SbusJob& job) {
+  std::optional<MovilinkResult> run(const MovilinkJob& job) {
     log.frames.clear();
     const int before = node.done;
     if (node.master.start(queue.now(), job)) return std::nullopt;
@@ -156,12 +156,12 @@ TEST(SbusMaster, GroupsGetTheirTelegramsAndGiveNone) {
 TEST(SbusMaster, JobsThatCannotBeSentAreRefused) {
   PROVES("MOVLNK-04");
   Rig rig;
-  const SbusJob bad[] = {{64, 5, 0, 0, 0, {}},    {-1, 5, 0, 0, 0, {}},   {99, 5, 0, 0, 0, {}},
+  const MovilinkJob bad[] = {{64, 5, 0, 0, 0, {}},    {-1, 5, 0, 0, 0, {}},   {99, 5, 0, 0, 0, {}},
                          {164, 5, 0, 0, 0, {}},   {253, 5, 0, 0, 0, {}},  {1, 7, 1, 8318, 0, {}},
                          {1, -1, 1, 8318, 0, {}}, {1, 6, 0, 8318, 0, {}}, {1, 6, 9, 8318, 0, {}},
                          {1, 6, -1, 8318, 0, {}}, {1, 6, 1, -1, 0, {}},   {1, 6, 1, 1 << 24, 0, {}},
                          {102, 4, 1, 8318, 0, {}}};
-  for (const SbusJob& job : bad) {
+  for (const MovilinkJob& job : bad) {
     const auto refused = rig.node.master.start(rig.queue.now(), job);
     ASSERT_TRUE(refused.has_value()) << job.address << ' ' << job.format << ' ' << job.service;
     EXPECT_EQ(refused->packed(), 0x05050000U);

@@ -1,7 +1,10 @@
 // A small SBus for tests: a unit with a few parameters as slave, and a hand-driven master station.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <map>
+#include <span>
 #include <vector>
 
 #include "runtime/bus/can/line.hpp"
@@ -33,8 +36,9 @@ class Unit final : public CanNode, public ParameterServer, public ProcessDataSer
     if (request.index == 8318) return tl::unexpected(return_codes::kReadOnly);
     return found->second = request.value;
   }
-  void take_output(Time now, OutputChannel channel, const ProcessWords& words) override {
-    outputs.push_back(words);
+  void take_output(Time now, OutputChannel channel, std::span<const uint16_t> words) override {
+    ASSERT_EQ(words.size(), 3U);
+    outputs.push_back({words[0], words[1], words[2]});
     output_times.push_back(now);
     channels.push_back(channel);
   }

@@ -1,0 +1,16 @@
+// The parameter channel between telegram and unit, the same on every interface.
+#include "runtime/bus/movilink/unit_servers.hpp"
+
+namespace ipos::runtime {
+
+ParameterTelegram execute(Time now, ParameterServer& parameters, const ParameterTelegram& request) {
+  const auto service = service_from_code(request.service_code());
+  if (service == Service::None) return parameter_response(request, static_cast<int32_t>(request.data));
+  if (!service || (is_write(*service) && !request.four_bytes()))
+    return parameter_refusal(request, return_codes::kWrongManagement);
+  const auto value =
+      parameters.serve(now, {*service, request.index, request.subindex, static_cast<int32_t>(request.data)});
+  return value ? parameter_response(request, *value) : parameter_refusal(request, value.error());
+}
+
+}  // namespace ipos::runtime

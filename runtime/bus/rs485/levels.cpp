@@ -1,0 +1,47 @@
+// The receiver of a UART (1053 1610 p. 26), on recorded levels.
+#include "runtime/bus/rs485/levels.hpp"
+
+namespace ipos::runtime {
+
+std::vector<bool> wire_bits(std::span<const uint8_t> bytes) {
+  std::vector<bool> bits;
+  bits.reserve(bytes.size() * kCharacterBits);
+  for (const uint8_t byte : bytes)
+    for (uint32_t n = 0; n < kCharacterBits; ++n) bits.push_back((wire_character(byte) >> n & 1) != 0);
+  return bits;
+}
+
+// While a station sends, its receiver is off (half duplex), unless it has an echo.
+bool level_at(std::span<const Transmission> line, const Ear& ear, Tick tick) {
+  bool level = true;
+  for (const Transmission& transmission : line) {
+    if (!transmission.covers(tick)) continue;
+    if (transmission.sender == ear.deaf_to && ear.deaf_to != kNoNode) return true;
+    level = level && transmission.bits[(tick - transmission.begin) / transmission.bit_ticks];
+  }
+  return level;
+}
+
+std::optional<Tick> next_start(std::span<const Transmission> line, const Ear& ear, Tick from, Tick until) {
+  bool before = from == 0 || level_at(line, ear, from - 1);
+  for (Tick tick = from; tick < until; ++tick) {
+    const bool level = level_at(line, ear, tick);
+    if (before && !level) return tick;
+    before = level;
+  }
+  return std::nullopt;
+}
+
+Reading read_character(std::span<const Transmission> line, const Ear& ear, Tick start) {
+  const Tick middle = start + ear.bit_ticks / 2;
+  if (level_at(line, ear, middle)) return {std::nullopt, middle};
+  uint16_t bits = 0;
+  for (uint32_t n = 1; n < kCharacterBits; ++n)
+    if (level_at(line, ear, middle + Tick{n} * ear.bit_ticks)) bits = static_cast<uint16_t>(bits | 1U << n);
+  Character character = read_wire(bits);
+  character.start = time_of(start);
+  character.end = time_of(start + character_ticks(ear));
+  return {character, middle + Tick{kCharacterBits - 1} * ear.bit_ticks + 1};
+}
+
+}  // namespace ipos::runtime

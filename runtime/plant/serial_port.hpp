@@ -1,0 +1,48 @@
+// One RS-485 interface of a station: slave, requests of its own and master/slave operation on one line.
+#pragma once
+
+#include <string>
+
+#include "runtime/bus/movilink/master_slave.hpp"
+#include "runtime/bus/movilink/serial_master.hpp"
+#include "runtime/bus/movilink/serial_slave.hpp"
+#include "runtime/bus/rs485/line.hpp"
+#include "runtime/plant/drive_server.hpp"
+#include "runtime/services/journal.hpp"
+
+namespace ipos::runtime {
+
+class SerialPort final : private SerialNode, private SerialSlaveObserver {
+ public:
+  // `socket` is XT or X13, for messages. Master/slave operation is on X13 only (MDX60B/61B p. 11). `client`
+  // hears the ends of the exchanges that MOVLNK begins at master().
+  SerialPort(EventQueue& queue, uint32_t source, Rs485Line& line, uint32_t baud, const std::string& station,
+             std::string socket, bool master_slave, DriveServer& drive, MovilinkClient& client,
+             Journal& journal);
+
+  // Takes over P810, P811, P750 and P100; once a millisecond.
+  void configure(Time now);
+
+  MovilinkMaster& master() { return master_; }
+  const SerialSlave& slave() const { return slave_; }
+
+ private:
+  void on_character(Time now, const Character& character) override;
+  void on_sent(Time now) override;
+  void on_rejected(Time now, const Reception& reception, SerialError error) override;
+  void on_ignored(Time now, const SerialTelegram& request, Ignored reason, ReturnCode code) override;
+  void explain(Time now, std::string text);
+
+  const std::string& station_;
+  std::string socket_;
+  bool master_slave_;
+  DriveServer& drive_;
+  Journal& journal_;
+  SerialLinePort port_;
+  SerialSlave slave_;
+  SerialRequester requester_;
+  SerialMaster master_;
+  SetpointSender setpoints_;
+};
+
+}  // namespace ipos::runtime

@@ -1,0 +1,109 @@
+// posix_openpt, and a link to the other end.
+#include "runtime/port/pty.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <termios.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+
+namespace ipos::runtime {
+namespace {
+
+// Where a link leads, empty when `path` is no link.
+std::string link_target(const std::string& path) {
+  std::array<char, 4096> target{};
+  const ssize_t size = readlink(path.c_str(), target.data(), target.size());
+  return size < 0 ? std::string() : std::string(target.data(), static_cast<size_t>(size));
+}
+
+bool is_left_over(const std::string& path) {
+  const std::string target = link_target(path);
+  struct stat status {};
+  return target.starts_with("/dev/pts/") || (!target.empty() && stat(path.c_str(), &status) != 0);
+}
+
+// Speeds that no program asks for. The speed of a pseudo-terminal means nothing, but the C library refuses
+// settings with parity, which it cannot have, when they change nothing else; so a program's second opening
+// with 8E1 would fail. There are two of them, as the program's own comparison may just be under way.
+constexpr speed_t kMarks[] = {B50, B75};
+
+}  // namespace
+
+tl::expected<Pty, PortError> Pty::create(const std::string& path, size_t limit) {
+  if (path.empty()) return tl::unexpected(port_error(PortFault::BadName, "pty:", "write pty:/path"));
+  struct stat status {};
+  if (lstat(path.c_str(), &status) == 0) {
+    if (!is_left_over(path)) return tl::unexpected(port_error(PortFault::PathTaken, path));
+    if (unlink(path.c_str()) != 0) return tl::unexpected(system_error(errno, path));
+  }
+  Descriptor master(posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  std::array<char, 128> device{};
+  if (!master.is_open() || grantpt(master.get()) != 0 || unlockpt(master.get()) != 0 ||
+      ptsname_r(master.get(), device.data(), device.size()) != 0)
+    return tl::unexpected(port_error(PortFault::NoPseudoTerminal, path, system_error(errno, "pty").text));
+  {
+    // Opened and closed once: from then on reading tells whether a program is attached. The raw setting
+    // stays.
+    const Descriptor other(::open(device.data(), O_RDWR | O_NOCTTY | O_CLOEXEC));
+    termios settings{};
+    if (!other.is_open() || tcgetattr(other.get(), &settings) != 0)
+      return tl::unexpected(
+          port_error(PortFault::NoPseudoTerminal, path, system_error(errno, device.data()).text));
+    cfmakeraw(&settings);
+    cfsetspeed(&settings, kMarks[0]);
+    tcsetattr(other.get(), TCSANOW, &settings);
+  }
+  if (symlink(device.data(), path.c_str()) != 0) {
+    const int error = errno;
+    return tl::unexpected(error == ENOENT ? port_error(PortFault::BadName, path, "the folder does not exist")
+                                          : system_error(error, path));
+  }
+  return Pty(path, device.data(), std::move(master), limit);
+}
+
+Pty::~Pty() {
+  if (!device_.empty() && master_.is_open() && link_target(path_) == device_) unlink(path_.c_str());
+}
+
+void Pty::renew_speed() {
+  termios settings{};
+  if (tcgetattr(master_.get(), &settings) != 0 || cfgetospeed(&settings) == kMarks[second_mark_ ? 1 : 0])
+    return;
+  second_mark_ = !second_mark_;
+  cfsetspeed(&settings, kMarks[second_mark_ ? 1 : 0]);
+  tcsetattr(master_.get(), TCSANOW, &settings);
+}
+
+size_t Pty::read(std::span<char> into) {
+  renew_speed();
+  const ssize_t size = ::read(master_.get(), into.data(), into.size());
+  if (size > 0) {
+    attached_ = true;
+    return static_cast<size_t>(size);
+  }
+  const bool attached = size < 0 && errno != EIO;
+  if (attached_ && !attached) {
+    // What the program has not read is not for the next one.
+    out_.clear();
+    const Descriptor other(::open(device_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC));
+    tcflush(other.get(), TCIFLUSH);
+  }
+  attached_ = attached;
+  return 0;
+}
+
+bool Pty::write(std::string_view bytes) {
+  if (!attached_) return true;
+  if (!out_.push(bytes)) return false;
+  flush();
+  return true;
+}
+
+void Pty::flush() {
+  if (out_.write_to(master_.get()) != 0) out_.clear();
+}
+
+}  // namespace ipos::runtime

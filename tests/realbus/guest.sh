@@ -1,0 +1,118 @@
+#!/bin/sh
+# First process of the guest: brings up CAN interfaces and lets ipos, can-utils and python3-can talk over them. Each
+# part leaves files in FOLDER, which realbus_test.cpp looks at.
+mount -t proc proc /proc
+mount -t sysfs sys /sys
+mount -t tmpfs tmp /run
+mkdir -p /dev/pts
+mount -t devpts devpts /dev/pts
+cd "$FOLDER" || busybox poweroff -f
+: >booted
+trap 'busybox poweroff -f' EXIT
+here=project/tests/realbus
+
+modules=$(echo /usr/lib/uml/modules/*/kernel)
+for module in drivers/net/can/dev/can-dev net/can/can net/can/can-raw drivers/net/can/vcan \
+  drivers/net/can/slcan/slcan net/sched/sch_tbf; do
+  busybox insmod "$modules/$module.ko" 2>no-can || exit
+done
+ip link add vcan0 type vcan 2>no-can && ip link set vcan0 up 2>no-can && ip link add vcan1 type vcan 2>no-can || exit
+rm no-can
+
+# Waits until a file contains a text, at most 10 s.
+wait_for() {
+  n=0
+  until grep -q "$1" "$2" 2>/dev/null; do
+    n=$((n + 1))
+    [ $n -lt 200 ] || return 1
+    busybox usleep 50000
+  done
+}
+
+# plant FILE PORT: a plant file with its bus joined to a port, on stdout.
+plant() { sed "s|^kind = \"can\"|&\nport = \"$2\"|" "$1"; }
+
+# Frame 7FF asks whether the log has begun, frames 7FE mark its parts.
+candump -L vcan0 >all.log &
+log=$!
+until grep -q 7FF# all.log; do cansend vcan0 7FF#; busybox usleep 50000; done
+canbusload -e vcan0@500000 >load.txt &
+load=$!
+wait_for vcan0 load.txt
+
+# The SCOM example, and parameter requests between its frames.
+cp project/examples/scom/*.IPC .
+plant project/examples/scom/scom.toml vcan0 >scom.toml
+cansend vcan0 7FE#01
+./ipos run scom.toml --realtime --for 3s --log scom.log >scom.out 2>scom.err &
+run=$!
+busybox usleep 1500000
+cansend vcan0 20B#3100211600000000
+cansend vcan0 20B#3200207E00000001
+wait $run
+echo $? >scom.code
+
+# A station driven through its profile, until we end it.
+cansend vcan0 7FE#02
+plant $here/profile.toml vcan0 >profile.toml
+./ipos run profile.toml --realtime --for 60s >profile.out 2>profile.err &
+run=$!
+wait_for joined profile.err
+/usr/bin/python3 -B $here/profile.py >profile.txt 2>&1
+kill -TERM $run
+wait $run
+echo $? >profile.code
+cansend vcan0 7FE#03
+busybox usleep 2200000
+kill $load $log
+
+# Interfaces that cannot be used.
+for port in vcan1 lo can7; do
+  plant project/examples/scom/scom.toml $port >refused.toml
+  ./ipos run refused.toml --realtime --for 1s 2>&1
+  echo "exit code $?"
+done >refused.txt
+
+# The kernel's slcan driver on our end of a pseudo-terminal.
+plant project/examples/scom/scom.toml "slcan:pty:$FOLDER/adapter" >slcan.toml
+./ipos run slcan.toml --realtime --for 20s >slcan.out 2>slcan.err &
+run=$!
+wait_for joined slcan.err
+slcand -o -c -s6 "..$FOLDER/adapter" slcan0
+busybox usleep 200000
+ip link set slcan0 up
+candump -L slcan0 >slcan.log &
+log=$!
+busybox usleep 300000
+cansend slcan0 20B#3100211600000000
+busybox usleep 500000
+kill $log
+ip link set slcan0 down
+ip link set slcan0 type can bitrate 250000
+ip link set slcan0 up
+plant project/examples/scom/scom.toml slcan0 >rate.toml
+./ipos run rate.toml --realtime --for 1s >rate.txt 2>&1
+echo "exit code $?" >>rate.txt
+kill -INT $run
+wait $run
+busybox killall slcand
+
+# An interface whose queue holds 10 frames and hardly sends for a while: the system says ENOBUFS.
+cp $here/load.IPC .
+ip link add vcan2 type vcan
+ip link set vcan2 up
+tc qdisc add dev vcan2 root tbf rate 1kbit burst 100 limit 160
+echo 4000000 >/proc/sys/net/core/rmem_max
+candump -L -r 4000000 vcan2 >full.log &
+log=$!
+busybox usleep 300000
+plant $here/load.toml vcan2 >load.toml
+./ipos run load.toml --realtime --for 1500ms --speed 100 --log load.log >load.out 2>load.err &
+run=$!
+wait_for joined load.err
+busybox usleep 600000
+tc qdisc change dev vcan2 root tbf rate 10mbit burst 10000 limit 160
+wait $run
+busybox usleep 100000
+kill $log
+: >done

@@ -1,0 +1,75 @@
+// Programs that know nothing of ipos attach to its pseudo-terminals: python3-can by slcan, python3-serial to
+// a serial line. No kernel CAN is needed.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <future>
+#include <regex>
+
+#include "runtime/port/serial_port.hpp"
+#include "runtime/port/system_clock.hpp"
+#include "tests/realbus/script.hpp"
+#include "tests/tools/command.hpp"
+
+namespace ipos::tests {
+namespace {
+
+using namespace ipos::runtime;  // NOLINT: ports and times
+
+bool python_has(const std::string& module) {
+  return run_script({kPython, "-c", "import " + module}).exit_code == 0;
+}
+
+std::string script(const std::string& name) { return project("tests/realbus/" + name).string(); }
+
+TEST(PythonPeers, SlcanInterfaceOfPythonCan) {
+  if (!python_has("can, serial")) GTEST_SKIP() << "there is no python3-can";
+  const TemporaryFolder folder;
+  const std::string path = (folder.path() / "adapter").string();
+  for (const char* program : {"SCOM1.IPC", "SCOM2.IPC"})
+    folder.write(program, read_text(project("examples/scom") / program));
+  const std::string plant = folder.write(
+      "scom.toml", std::regex_replace(read_text(project("examples/scom/scom.toml")),
+                                      std::regex("kind = \"can\""), "$&\nport = \"slcan:pty:" + path + "\""));
+  const ScriptResult result = run_script({kPython, "-B", script("slcan_peer.py"), IPOS_PROGRAM, plant, path});
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  expect_all_ok(result.output, 12);
+  EXPECT_FALSE(std::filesystem::exists(std::filesystem::symlink_status(path))) << "the link is left";
+}
+
+TEST(PythonPeers, SerialLineOfPythonSerial) {
+  if (!python_has("serial")) GTEST_SKIP() << "there is no python3-serial";
+  const TemporaryFolder folder;
+  const std::string path = (folder.path() / "line1").string();
+  SystemClock clock;
+  const SerialPortResult port = open_serial_port("pty:" + path, {}, clock);
+  ASSERT_TRUE(port) << port.error().text;
+  std::future<ScriptResult> peer = std::async(std::launch::async, [&] {
+    return run_script({kPython, "-B", script("serial_peer.py"), path});
+  });
+  Time last = 0;
+  while (peer.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+    std::array<ByteArrival, 64> arrived{};
+    const auto count = (*port)->receive(arrived);
+    ASSERT_TRUE(count) << count.error().text;
+    std::vector<uint8_t> answer;
+    for (const ByteArrival& byte : std::span(arrived).first(*count)) {
+      EXPECT_GE(byte.at, last);
+      EXPECT_FALSE(byte.bad);
+      last = byte.at;
+      answer.push_back(static_cast<uint8_t>(~byte.value));
+    }
+    (*port)->send(answer);
+    ASSERT_TRUE((*port)->flush());
+    const std::array<PortNeeds, 1> needs{(*port)->needs()};
+    clock.wait(clock.now() + kMillisecond, needs);
+  }
+  const ScriptResult result = peer.get();
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  expect_all_ok(result.output, 5);
+  EXPECT_EQ((*port)->counts().received, 256U + 1 + 10 + 300);
+  EXPECT_EQ((*port)->counts().lost_out, 0U);
+}
+
+}  // namespace
+}  // namespace ipos::tests
