@@ -32,7 +32,8 @@ TEST(StationProcessData, ReservedBitsAreNamed) {
     std::vector<PlantError> errors;
     Plant plant(std::move(file.plant), {std::nullopt}, std::nullopt, errors);
     ASSERT_TRUE(errors.empty());
-    plant.stations()[0]->drive().take_output(0, OutputChannel::Single, {static_cast<uint16_t>(word), 0, 0});
+    const uint16_t words[] = {static_cast<uint16_t>(word), 0, 0};
+    plant.stations()[0]->drive().take_output(0, OutputChannel::Single, words);
     plant.run_until(5 * kMillisecond);
     std::string warnings;
     for (const JournalEntry& entry : plant.journal().entries())
