@@ -115,6 +115,14 @@ bool Drive::po_data_enabled() const {
   return settings().po_enable == 1 && (setpoint_bus(settings()) || control_bus(settings()));
 }
 
+uint16_t Drive::reserved_control_bits() const {
+  using namespace control_bits;
+  const BusOrder order = control_order();
+  const unsigned reserved =
+      kReserved | (order.is_control_word_1 ? kReservedWord1 : 0U) | (is_m07_ ? kReservedM07 : 0U);
+  return static_cast<uint16_t>(order.control_word.value_or(0) & reserved);
+}
+
 // --- who controls ---
 
 // Control word 2 of MOVIDRIVE carries eight virtual inputs in its high byte; they act like DI10..DI17 (common

@@ -75,6 +75,8 @@ class Drive final : private DriveLink {
   char display() const;  // the seven-segment display: a digit, 't' waiting, 'F' fault
   bool ready() const { return !faults_.error() && !parameters_.factory_setting_running(); }
   bool po_data_enabled() const;
+  // Bits of the present control word that are 1 though they are to be sent as 0; they have no effect.
+  uint16_t reserved_control_bits() const;
   uint16_t status_word_1() const;
   uint16_t status_word_2() const;                            // high byte: virtual output terminals DO10..DO17
   uint16_t status_word_3() const { return status_block(); }  // high byte in no manual read; 0 is ours

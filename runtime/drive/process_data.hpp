@@ -64,6 +64,9 @@ inline constexpr uint16_t kPotDown = 1 << 10;
 inline constexpr unsigned kFixedShift = 11;  // bits 11, 12: n11, n12, n13
 inline constexpr uint16_t kFixedSwitch = 1 << 13;
 inline constexpr uint16_t kEnable = kRapidStop | kStop;
+inline constexpr uint16_t kReserved = 1 << 7;                               // in every control word
+inline constexpr uint16_t kReservedWord1 = 1 << 14 | 1 << 15;               // in control word 1
+inline constexpr uint16_t kReservedM07 = kHold | kRampSet | kParameterSet;  // on MOVITRAC 07
 }  // namespace control_bits
 
 // One digit of a speed word is 0.2 rpm, of a relative word 100 % / 4000h, of a current word 0.1 % of IN.

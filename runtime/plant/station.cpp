@@ -128,6 +128,15 @@ void Station::report_drive(Time now) {
                                  : fmt::format("F{:02} {}: {}", fault, row->name, row->meaning));
   }
   told_fault_ = fault;
+  if (const uint16_t reserved = drive.reserved_control_bits(); reserved != told_reserved_) {
+    told_reserved_ = reserved;
+    if (reserved != 0)
+      journal_.note(
+          now, Weight::Warning, config_.name,
+          fmt::format("reserved bits of the control word are 1 ({:04X}h): they have no effect and are "
+                      "to be sent as 0",
+                      reserved));
+  }
   if (const Block block = drive.verdict().reason; block != told_block_) {
     told_block_ = block;
     journal_.note(now, Weight::Why, config_.name,

@@ -98,6 +98,7 @@ class Station final : private EventTarget {
   bool fault_reported_ = false;     // of the program
   // What was last told of the drive.
   uint8_t told_fault_ = 0;
+  uint16_t told_reserved_ = 0;  // bits of the control word
   Block told_block_ = Block::None;
   SetpointNote told_note_ = SetpointNote::None;
 };

@@ -91,8 +91,9 @@ TEST(M07Control, PriorityOfTheThreeBits) {
   }
 }
 
-// Without the warning of a bus monitor this is only half of M07-CW-06.
+// The warning about them is in tests/runtime/plant.
 TEST(M07Control, ReservedBitsDoNothing) {
+  PROVES("M07-CW-06");
   for (const unsigned bit : {3U, 4U, 5U, 7U, 14U, 15U}) {
     BusRig rig;
     rig.run_up();
@@ -101,6 +102,7 @@ TEST(M07Control, ReservedBitsDoNothing) {
     rig.run_ms(100);
     EXPECT_EQ(rig.rpm(), 1000) << bit;
     EXPECT_EQ(rig.status(), before) << bit;
+    EXPECT_EQ(rig.drive.reserved_control_bits(), 1U << bit);
   }
 }
 

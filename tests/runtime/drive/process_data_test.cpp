@@ -119,6 +119,34 @@ TEST(ProcessWords, PiController) {
   EXPECT_NEAR(rig.setpoint_rpm(), 375, 0.1);
 }
 
+TEST(ProcessWords, DisplaysOfTheProcessData) {
+  PROVES("PAR-36");
+  DriveRig rig("md60a");
+  constexpr std::string_view kTexts[] = {"PARAM + 1PD", "1PD", "PARAM + 2PD",  "2PD", "PARAM + 3PD", "3PD",
+                                         "PARAM + 6PD", "6PD", "PARAM + 10PD", "10PD"};
+  const stdlib::Parameter* p090 = rig.parameters.table().find("P090");
+  ASSERT_NE(p090, nullptr);
+  EXPECT_EQ(p090->index, 8451);
+  ASSERT_EQ(p090->texts.size(), std::size(kTexts));
+  // Code 6 is not that of the telegram type 06h (ML_FT_PAR of const.h): those are numbers of their own.
+  for (size_t code = 0; code < std::size(kTexts); ++code) {
+    EXPECT_EQ(p090->texts[code].value, static_cast<int>(code));
+    EXPECT_EQ(p090->texts[code].text, kTexts[code]);
+  }
+  EXPECT_EQ(rig.value("P090"), 4);
+  rig.enable_terminals();
+  rig.po({0x0006, 0x1388, 0x3A98});
+  rig.run_ms(10);
+  EXPECT_EQ(rig.value("P094"), 6);
+  EXPECT_EQ(rig.value("P095"), 5000);
+  EXPECT_EQ(rig.value("P096"), 15'000);
+  const Words pi = rig.drive.pi();
+  EXPECT_NE(pi[0], 0);
+  EXPECT_EQ(rig.value("P097"), pi[0]);
+  EXPECT_EQ(rig.value("P098"), pi[1]);
+  EXPECT_EQ(rig.value("P099"), pi[2]);
+}
+
 TEST(ProcessWords, EnableP876) {
   PROVES("M07-PD-18", "PD-05");
   for (const char* name : {"mc07", "md60a"}) {
