@@ -23,6 +23,7 @@ bool python_has(const std::string& module) {
 std::string script(const std::string& name) { return project("tests/realbus/" + name).string(); }
 
 TEST(PythonPeers, SlcanInterfaceOfPythonCan) {
+  if (!has_pty()) GTEST_SKIP() << kNoPty;
   if (!python_has("can, serial")) GTEST_SKIP() << "there is no python3-can";
   const TemporaryFolder folder;
   const std::string path = (folder.path() / "adapter").string();
@@ -38,6 +39,7 @@ TEST(PythonPeers, SlcanInterfaceOfPythonCan) {
 }
 
 TEST(PythonPeers, SerialLineOfPythonSerial) {
+  if (!has_pty()) GTEST_SKIP() << kNoPty;
   if (!python_has("serial")) GTEST_SKIP() << "there is no python3-serial";
   const TemporaryFolder folder;
   const std::string path = (folder.path() / "line1").string();

@@ -7,6 +7,10 @@
 
 namespace ipos::tests {
 
+// Some containers have no /dev/pts, and so no pseudo-terminals; tests that need one are skipped there.
+inline constexpr const char* kNoPty = "there is no /dev/pts: no pseudo-terminals here";
+inline bool has_pty() { return std::filesystem::exists("/dev/pts/ptmx"); }
+
 struct CommandResult {
   int exit_code;
   std::string out;

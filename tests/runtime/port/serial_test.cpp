@@ -52,6 +52,7 @@ std::vector<ByteArrival> receive(SerialPort& port, size_t wanted) {
 }
 
 TEST(SerialDevice, PassesAllBytesWithTheirTimes) {
+  if (!has_pty()) GTEST_SKIP() << kNoPty;
   const Descriptor master(posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK));
   ASSERT_TRUE(master.is_open() && grantpt(master.get()) == 0 && unlockpt(master.get()) == 0);
   SystemClock clock;
@@ -86,6 +87,7 @@ TEST(SerialDevice, PassesAllBytesWithTheirTimes) {
 }
 
 TEST(SerialDevice, IsForOneProgramAndIsGivenBackAsItWas) {
+  if (!has_pty()) GTEST_SKIP() << kNoPty;
   const Descriptor master(posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK));
   ASSERT_TRUE(master.is_open() && grantpt(master.get()) == 0 && unlockpt(master.get()) == 0);
   SystemClock clock;
@@ -108,6 +110,7 @@ TEST(SerialDevice, IsForOneProgramAndIsGivenBackAsItWas) {
 }
 
 TEST(SerialDevice, ThatGoesIsAnError) {
+  if (!has_pty()) GTEST_SKIP() << kNoPty;
   Descriptor master(posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK));
   ASSERT_TRUE(master.is_open() && grantpt(master.get()) == 0 && unlockpt(master.get()) == 0);
   SystemClock clock;
@@ -121,6 +124,7 @@ TEST(SerialDevice, ThatGoesIsAnError) {
 }
 
 TEST(PseudoTerminal, SaysOnceThatItHasNoParity) {
+  if (!has_pty()) GTEST_SKIP() << kNoPty;
   const TemporaryFolder folder;
   SystemClock clock;
   const SerialPortResult port = open_serial_port("pty:" + (folder.path() / "line1").string(), {}, clock);
@@ -132,6 +136,7 @@ TEST(PseudoTerminal, SaysOnceThatItHasNoParity) {
 }
 
 TEST(PseudoTerminal, LinkComesAndGoes) {
+  if (!has_pty()) GTEST_SKIP() << kNoPty;
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "line1";
   {
@@ -144,6 +149,7 @@ TEST(PseudoTerminal, LinkComesAndGoes) {
 }
 
 TEST(PseudoTerminal, ALinkLeftOverIsReplacedAndNothingElse) {
+  if (!has_pty()) GTEST_SKIP() << kNoPty;
   const TemporaryFolder folder;
   const fs::path stale = folder.path() / "stale", file = folder.path() / "file",
                  link = folder.path() / "link";
@@ -166,6 +172,7 @@ TEST(PseudoTerminal, ALinkLeftOverIsReplacedAndNothingElse) {
 
 // Somebody else's link of the same name is not ours to remove.
 TEST(PseudoTerminal, LeavesALinkThatIsNoLongerItsOwn) {
+  if (!has_pty()) GTEST_SKIP() << kNoPty;
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "line1";
   {
@@ -178,6 +185,7 @@ TEST(PseudoTerminal, LeavesALinkThatIsNoLongerItsOwn) {
 }
 
 TEST(PseudoTerminal, BytesForNobodyAreGone) {
+  if (!has_pty()) GTEST_SKIP() << kNoPty;
   const TemporaryFolder folder;
   const std::string path = (folder.path() / "line1").string();
   SystemClock clock;

@@ -17,6 +17,9 @@ namespace {
 
 class SlcanPair : public ::testing::Test {
  protected:
+  void SetUp() override {
+    if (!has_pty()) GTEST_SKIP() << kNoPty;
+  }
   std::unique_ptr<CanPort> open(const std::string& name, uint32_t baud = 500'000) {
     CanPortResult port = open_can_port(name, baud, clock_);
     EXPECT_TRUE(port) << (port ? "" : port.error().text);
