@@ -5,9 +5,9 @@ ipos_layer(asm
   USES frontend isa image stdlib
   LIBS fmt::fmt)
 
-file(GLOB compiler_sources CONFIGURE_DEPENDS sema/*.cpp codegen/*.cpp)
+file(GLOB compiler_sources CONFIGURE_DEPENDS sema/*.cpp codegen/*.cpp index/*.cpp)
 ipos_layer(compiler
-  FOLDERS compiler/sema compiler/codegen
+  FOLDERS compiler/sema compiler/codegen compiler/index
   SOURCES ${compiler_sources}
   USES frontend asm isa image stdlib
   LIBS fmt::fmt)

@@ -19,11 +19,14 @@ enum class FaultResponse : uint8_t {
   RapidWarning = 7,
 };
 
+// Only _FaultReaction chooses another response.
+inline constexpr std::string_view kByCommand = "command";
+
 struct FaultRow {
   uint8_t number;
   std::string_view name;
   FaultResponse response;      // factory setting
-  std::string_view parameter;  // number of the parameter that chooses the response; empty: fixed
+  std::string_view parameter;  // number of the parameter that chooses the response; kByCommand; empty: fixed
   std::string_view meaning;
 };
 

@@ -5,7 +5,7 @@ namespace ipos::stdlib {
 namespace {
 
 constexpr SystemFunction kFunctions[] = {
-#define FUNCTION(name, mnemonic, arguments, meaning) {name, mnemonic, arguments, meaning},
+#define FUNCTION(name, mnemonic, arguments, meaning, source) {name, mnemonic, arguments, meaning, source},
 #include "stdlib/system_functions.def"
 };
 
@@ -15,7 +15,7 @@ struct Spelling {
 };
 
 constexpr Spelling kSpellings[] = {
-#define FUNCTION(name, mnemonic, arguments, meaning)
+#define FUNCTION(name, mnemonic, arguments, meaning, source)
 #define SPELLING(other, name) {other, name},
 #include "stdlib/system_functions.def"
 };

@@ -12,6 +12,7 @@ struct SystemFunction {
   std::string_view mnemonic;   // of the IPOS command
   std::string_view arguments;  // kinds separated by spaces, see system_functions.def
   std::string_view meaning;
+  std::string_view source;  // manual and page; empty: on no page read
 };
 
 // A member may have two names ("Format", "Len"); both mean the same variable.

@@ -15,6 +15,7 @@
 #include <tl/expected.hpp>
 
 #include "stdlib/embedded.hpp"
+#include "stdlib/return_codes.hpp"
 #include "stdlib/unit_types.hpp"
 
 namespace ipos::stdlib {
@@ -57,7 +58,7 @@ struct Parameter {
 
   uint8_t quantity = 0;  // 255 = none given
   int8_t conversion = 0;
-  std::string_view display;  // unit shown to people; "hex" for bit fields
+  std::string_view display;  // unit shown to people; "hex" for bit fields, "firmware", "ascii"
   std::string_view notes;    // doubts about the printed row and what was taken
 
   // Limits by ranges, else texts, else all 32 bits. Above 2^31 the transferred bits count as unsigned.
@@ -106,8 +107,16 @@ DisplayScale display_scale(const Parameter& parameter);
 // The value as people read it: "2.000 s", "CTRL. WORD 1", "0x0202".
 std::string parameter_text(const Parameter& parameter, int32_t value);
 
-// The transferred value of such a text; the unit may be left out, a value of a list may be named by text or
-// code. The error says what would be accepted. Whether the value is in range is the unit's to say.
+// The transferred value of such a text. The unit may be left out or be another one of the quantity ("2500
+// ms"); a value of a list may be named by text, in any case of letters, or by code. The error says what would
+// be accepted. Whether the value is in range is the unit's to say.
 tl::expected<int32_t, std::string> parse_parameter_text(const Parameter& parameter, std::string_view text);
+
+// What an index is called: "P130 Ramp t11 UP CW", "H20", "program word 5", "curve point 3", "index 9500".
+std::string index_name(const ParameterTable& table, uint16_t index);
+
+// Why a service was refused: "P813 SBus address := 64: parameter value too large (0..63)".
+std::string explain_refusal(const ParameterTable& table, uint8_t service, uint16_t index, int32_t value,
+                            ReturnCode code);
 
 }  // namespace ipos::stdlib

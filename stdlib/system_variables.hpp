@@ -1,6 +1,7 @@
 // System variables as data, from system_variables.def.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -26,5 +27,22 @@ std::span<const SystemVariable> system_variables();
 // By number, or by compiler or assembler name as written; nullptr when there is none.
 const SystemVariable* find_system_variable(uint16_t number);
 const SystemVariable* find_system_variable(std::string_view name);
+
+// The number of a compiler name, for code that serves one variable; a name that does not exist does not
+// compile.
+consteval size_t system_variable(std::string_view compiler_name) {
+  struct Row {
+    size_t number;
+    std::string_view name;
+  };
+  constexpr Row kRows[] = {
+#define SYSTEM_VARIABLE(number, compiler_name, assembler_name, access, units, source, meaning) \
+  {number, compiler_name},
+#include "stdlib/system_variables.def"
+  };
+  for (const Row& row : kRows)
+    if (row.name == compiler_name) return row.number;
+  throw "no such system variable";  // not reached at run time: this function runs in the compiler only
+}
 
 }  // namespace ipos::stdlib

@@ -46,8 +46,7 @@ void add_bus_decode(CLI::App& bus, int& exit_code) {
   CLI::App* verb =
       bus.add_subcommand("decode", "MOVILINK and variable telegrams of a candump log in words and units");
   verb->add_option("LOG", flags->log, "candump log; - is standard input")->required();
-  verb->add_option("--names", flags->names,
-                   "plant or program whose stations, parameters and variables are named");
+  add_names_option(*verb, flags->names);
   add_compile_options(*verb, flags->compile);
   verb->footer("Example:\n  ipos bus decode can.log --names examples/scom/scom.toml");
   verb->callback([flags, &exit_code] { exit_code = decode(*flags); });

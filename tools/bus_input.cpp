@@ -30,11 +30,27 @@ size_t read_log(const std::string& path, const std::function<void(const runtime:
   return bad;
 }
 
-runtime::TelegramNames names_of(const std::string& path, const CompileFlags& compile) {
-  if (path.empty()) return {};
-  const auto plant = make_plant(read_plant_input(path, compile, "sbus"));
+namespace {
+
+std::unique_ptr<runtime::Plant> trial_run(const std::string& path, const CompileFlags& compile) {
+  auto plant = make_plant(read_plant_input(path, compile, "sbus"));
   plant->run_until(runtime::PlanOptions{}.trial);
-  return runtime::telegram_names(*plant);
+  return plant;
+}
+
+}  // namespace
+
+runtime::TelegramNames names_of(const std::string& path, const CompileFlags& compile) {
+  return path.empty() ? runtime::TelegramNames{} : runtime::telegram_names(*trial_run(path, compile));
+}
+
+runtime::TelegramNames serial_names_of(const std::string& path, const CompileFlags& compile) {
+  return path.empty() ? runtime::TelegramNames{} : runtime::serial_names(*trial_run(path, compile));
+}
+
+void add_names_option(CLI::App& verb, std::string& path) {
+  verb.add_option("--names,--plant,--program", path,
+                  "plant or program whose stations, parameters and variables are named");
 }
 
 std::string check_time(const std::string& text) {

@@ -26,7 +26,14 @@ int run(int argc, char** argv) {
   add_verify(app, exit_code);
   add_run(app, exit_code);
   add_bus(app, exit_code);
+  add_param(app, exit_code);
+  add_watch(app, exit_code);
+  add_scan(app, exit_code);
   add_explain(app, exit_code);
+  add_fmt(app, exit_code);
+  add_lsp(app, exit_code);
+  add_debug(app, exit_code);
+  add_dap(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

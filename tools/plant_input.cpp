@@ -1,6 +1,8 @@
 // Reading plants and their programs.
 #include "tools/plant_input.hpp"
 
+#include "tools/plant_source.hpp"
+
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -22,9 +24,7 @@ void print_errors(const std::string& path, const std::vector<runtime::PlantError
 
 runtime::PlantFile plant_of(const std::string& path, const std::string& sbus) {
   if (is_plant(path)) {
-    runtime::PlantFileResult result = runtime::read_plant_file(read_file(path));
-    print_errors(path, result.errors);
-    return std::move(result.plant);
+    return read_plant(path);
   }
   runtime::PlantFile plant;
   runtime::StationConfig station;

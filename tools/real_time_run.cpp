@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "runtime/port/can_bridge.hpp"
+#include "runtime/port/serial_bridge.hpp"
 #include "tools/failure.hpp"
 
 namespace ipos::tools {
@@ -59,21 +61,40 @@ RealTimeRun::RealTimeRun(runtime::Plant& plant, const std::string& file) : plant
   bool failed = false;
   for (const runtime::BusConfig& bus : plant.file().buses) {
     if (bus.port.empty()) continue;
-    const auto line = std::find_if(plant.lines().begin(), plant.lines().end(),
-                                   [&](const auto& candidate) { return candidate->name() == bus.name; });
-    if (line == plant.lines().end()) continue;
-    runtime::CanPortResult port = runtime::open_can_port(bus.port, bus.baud, clock_);
-    if (!port) {
+    auto joined = join(bus);
+    if (!joined) {
       failed = true;
       fmt::print(stderr, "{}:{}:{}: error: {}\n", file, bus.port_place.line, bus.port_place.column,
-                 port.error().text);
+                 joined.error().text);
       continue;
     }
-    auto bridge = std::make_unique<runtime::CanBridge>(plant.queue(), plant.next_source(), **line, **port);
-    joined_.push_back({std::move(*port), std::move(bridge)});
+    joined_.push_back(std::move(*joined));
     message(fmt::format("bus '{}' is joined to {}", bus.name, bus.port));
   }
   if (failed) throw Failure(kIoError, "");
+}
+
+tl::expected<RealTimeRun::Joined, runtime::PortError> RealTimeRun::join(const runtime::BusConfig& bus) {
+  Joined joined;
+  if (runtime::is_serial(bus.kind)) {
+    const auto& lines = plant_.serial_lines();
+    const auto line = std::find_if(lines.begin(), lines.end(),
+                                   [&](const auto& candidate) { return candidate->line.name() == bus.name; });
+    runtime::SerialPortResult port = runtime::open_serial_port(bus.port, {bus.baud, true}, clock_);
+    if (!port) return tl::unexpected(port.error());
+    joined.bridge =
+        std::make_unique<runtime::SerialBridge>(plant_.queue(), plant_.next_source(), (*line)->line, **port);
+    joined.port = std::move(*port);
+  } else {
+    const auto line = std::find_if(plant_.lines().begin(), plant_.lines().end(),
+                                   [&](const auto& candidate) { return candidate->name() == bus.name; });
+    runtime::CanPortResult port = runtime::open_can_port(bus.port, bus.baud, clock_);
+    if (!port) return tl::unexpected(port.error());
+    joined.bridge =
+        std::make_unique<runtime::CanBridge>(plant_.queue(), plant_.next_source(), **line, **port);
+    joined.port = std::move(*port);
+  }
+  return joined;
 }
 
 bool RealTimeRun::run(Time limit, const std::function<bool(Time)>& keep_going) {
@@ -107,8 +128,8 @@ void RealTimeRun::report(const runtime::Punctuality& punctuality) const {
   for (const Joined& joined : joined_) {
     const runtime::PortCounts& counts = joined.port->counts();
     const runtime::BridgeCounts& bridge = joined.bridge->counts();
-    std::string text =
-        fmt::format("{}: {} frames sent, {} received", joined.port->name(), counts.sent, counts.received);
+    std::string text = fmt::format("{}: {} {} sent, {} received", joined.port->name(), counts.sent,
+                                   joined.bridge->goods(), counts.received);
     const auto add = [&text](uint64_t count, std::string_view what) {
       if (count != 0) text += fmt::format(", {} {}", count, what);
     };

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "runtime/plant/plant.hpp"
-#include "runtime/port/can_bridge.hpp"
+#include "runtime/port/bridge.hpp"
 #include "runtime/port/system_clock.hpp"
 
 namespace ipos::tools {
@@ -27,10 +27,11 @@ class RealTimeRun {
 
  private:
   struct Joined {
-    std::unique_ptr<runtime::CanPort> port;
-    std::unique_ptr<runtime::CanBridge> bridge;
+    std::unique_ptr<runtime::Port> port;
+    std::unique_ptr<runtime::Bridge> bridge;
   };
 
+  tl::expected<Joined, runtime::PortError> join(const runtime::BusConfig& bus);
   void tell_news(const runtime::RealTimeLoop& loop);
   void report(const runtime::Punctuality& punctuality) const;
 

@@ -5,10 +5,11 @@
 namespace ipos::tools {
 
 void add_bus(CLI::App& app, int& exit_code) {
-  CLI::App* verb = app.add_subcommand("bus", "plan, decode, measure and replay the traffic of an SBus");
+  CLI::App* verb = app.add_subcommand("bus", "plan, watch, decode, measure and replay the traffic of an SBus");
   verb->require_subcommand(1);
   add_bus_plan(*verb, exit_code);
   add_bus_decode(*verb, exit_code);
+  add_bus_monitor(*verb, exit_code);
   add_bus_load(*verb, exit_code);
   add_bus_replay(*verb, exit_code);
   add_bus_dbc(*verb, exit_code);

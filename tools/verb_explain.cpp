@@ -109,12 +109,17 @@ std::string list_faults() {
   return text;
 }
 
-// Units with the same row stand together.
-std::string explain_parameter(std::string_view number) {
-  std::vector<std::pair<std::string, std::string>> rows;  // units, text
+// `name` is a number as P130 or an index. Units with the same row stand together.
+std::string explain_parameter(std::string_view name) {
+  struct Row {
+    std::string label, units, text;
+  };
+  std::vector<Row> rows;
   for (const stdlib::UnitType& unit : stdlib::unit_types()) {
-    const stdlib::Parameter* row = stdlib::parameter_table(unit).find("P" + std::string(number));
-    if (row == nullptr || row->number.empty()) continue;
+    const stdlib::Parameter* row = stdlib::parameter_table(unit).find(name);
+    if (row == nullptr) continue;
+    const std::string label =
+        row->number.empty() ? fmt::format("index {}", row->index) : fmt::format("P{}", row->number);
     std::string text = fmt::format("{}, ", row->name);
     text += row->index == 0 ? "at the keypad only" : fmt::format("index {}", row->index);
     if (row->index != 0 && !row->writable) text += ", read only";
@@ -130,15 +135,15 @@ std::string explain_parameter(std::string_view number) {
       for (const stdlib::ValueText& value : row->texts)
         text += fmt::format("\n  {} = {}", value.value, value.text);
     }
-    const auto same =
-        std::find_if(rows.begin(), rows.end(), [&](const auto& one) { return one.second == text; });
+    const auto same = std::find_if(rows.begin(), rows.end(),
+                                   [&](const Row& one) { return one.label == label && one.text == text; });
     if (same == rows.end())
-      rows.emplace_back(unit.title, text);
+      rows.push_back({label, std::string(unit.title), text});
     else
-      same->first += fmt::format(", {}", unit.title);
+      same->units += fmt::format(", {}", unit.title);
   }
   std::string out;
-  for (const auto& [units, text] : rows) out += fmt::format("P{} of {}: {}\n", number, units, text);
+  for (const Row& row : rows) out += fmt::format("{} of {}: {}\n", row.label, row.units, row.text);
   return out;
 }
 
@@ -152,14 +157,17 @@ std::string explain(std::string code) {
   if (code == "F") return list_faults();
   if (uint8_t number = 0; code.starts_with('F') && parse(std::string_view(code).substr(1), 10, number))
     if (const stdlib::FaultRow* row = stdlib::find_fault(number)) return explain_fault(*row);
-  if (code.starts_with('P'))
-    if (std::string text = explain_parameter(std::string_view(code).substr(1)); !text.empty()) return text;
+  constexpr uint16_t kFirstIndex = 1000;  // below are numbers, which need their P
+  uint16_t index = 0;
+  if (code.starts_with('P') || (parse(std::string_view(code), 10, index) && index >= kFirstIndex))
+    if (std::string text = explain_parameter(code); !text.empty()) return text;
   if (const auto number = return_code(code)) return explain_return_code(*number);
   throw Failure(
       kBadInput,
-      fmt::format("there is no code '{}'; codes look like E0101, W0201 (messages), V03 (verifier), "
-                  "F10 (faults; F lists them), P130 (parameters), 8/0/10 or 0x08000010 (return codes)",
-                  typed));
+      fmt::format(
+          "there is no code '{}'; codes look like E0101, W0201 (messages), V03 (verifier), "
+          "F10 (faults; F lists them), P130 or 8470 (parameters), 8/0/10 or 0x08000010 (return codes)",
+          typed));
 }
 
 }  // namespace
@@ -168,7 +176,8 @@ void add_explain(CLI::App& app, int& exit_code) {
   auto code = std::make_shared<std::string>();
   CLI::App* verb = app.add_subcommand(
       "explain", "what a code means: message, verifier rule, return code, fault, parameter");
-  verb->add_option("CODE", *code, "for example E0203, V03, 8/0/10, 0x08000010, F10, P130; F lists all faults")
+  verb->add_option("CODE", *code,
+                   "for example E0203, V03, 8/0/10, 0x08000010, F10, P130, 8470; F lists all faults")
       ->required();
   verb->footer("Example:\n  ipos explain E0203");
   verb->callback([code, &exit_code] {

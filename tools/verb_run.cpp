@@ -4,14 +4,15 @@
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <filesystem>
 #include <fstream>
 
 #include "runtime/bus/log/candump.hpp"
 #include "runtime/bus/log/serial_log.hpp"
 #include "runtime/plant/plant.hpp"
+#include "stdlib/parameters.hpp"
 #include "tools/failure.hpp"
+#include "tools/interrupt.hpp"
 #include "tools/plant_input.hpp"
 #include "tools/plot_svg.hpp"
 #include "tools/real_time_run.hpp"
@@ -43,9 +44,6 @@ struct RunFlags {
   CompileFlags compile;
 };
 
-volatile std::sig_atomic_t interrupted = 0;
-void on_interrupt(int) { interrupted = 1; }
-
 // Asked once a virtual millisecond: shows progress and says when to stop.
 class Watcher {
  public:
@@ -58,7 +56,7 @@ class Watcher {
   Watcher& operator=(const Watcher&) = delete;
 
   bool keep_going(Time now) {
-    if (interrupted != 0) return false;
+    if (interrupted()) return false;
     if (flags_.until == "end" && plant_.programs_over()) return false;
     if (show_ && now % (100 * runtime::kMillisecond) == 0) progress(now);
     return true;
@@ -84,20 +82,30 @@ class Watcher {
   Clock::time_point last_shown_ = Clock::now();
 };
 
+// "2000 (0x7d0)"; of a parameter with the text people read: "2.500 s".
+std::string expected_text(const runtime::Plant& plant, const runtime::Signal& signal, int32_t value) {
+  for (const auto& station : plant.stations()) {
+    if (signal.kind != runtime::SignalKind::Parameter || station->config().name != signal.station) continue;
+    const auto* row = stdlib::parameter_table(*station->config().unit).find(signal.name);
+    if (row != nullptr) return stdlib::parameter_text(*row, value);
+  }
+  return fmt::format("{} ({:#x})", value, static_cast<uint32_t>(value));
+}
+
 // Prints expectations that were not met or not reached; returns how many.
 size_t print_expectations(const runtime::Plant& plant, const std::string& file) {
   size_t failed = 0;
   const auto print = [&](const runtime::Expectation& expectation, const std::string& what) {
     ++failed;
     fmt::print(stderr, "{}:{}:{}: expectation not met: {} of {} at {:.3f} ms: {}\n", file,
-               expectation.place.line, expectation.place.column, expectation.variable, expectation.station,
-               static_cast<double>(expectation.at) / 1e6, what);
+               expectation.place.line, expectation.place.column, expectation.signal.name,
+               expectation.signal.station, static_cast<double>(expectation.at) / 1e6, what);
   };
   for (const runtime::ExpectationResult& result : plant.results())
     if (!result.met)
-      print(*result.expectation, fmt::format("is {} ({:#x}), expected {} ({:#x})", result.actual,
-                                             static_cast<uint32_t>(result.actual), result.expectation->equals,
-                                             static_cast<uint32_t>(result.expectation->equals)));
+      print(*result.expectation,
+            fmt::format("is {}, expected {}", expected_text(plant, result.expectation->signal, result.actual),
+                        expected_text(plant, result.expectation->signal, result.expectation->equals)));
   for (const runtime::Expectation& expectation : plant.file().expectations)
     if (expectation.at > plant.now()) print(expectation, "the run ended before");
   const size_t total = plant.file().expectations.size();
@@ -139,8 +147,7 @@ int run(const RunFlags& flags) {
   if (log_file.is_open()) plant.add_observer(log);
   if (serial_file.is_open()) plant.add_observer(serial_log);
 
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
+  catch_interrupts();
   std::optional<RealTimeRun> real_time;
   if (flags.realtime) real_time.emplace(plant, flags.file);
   bool ports_there = true;
@@ -155,6 +162,7 @@ int run(const RunFlags& flags) {
     else
       plant.run_until(limit, keep_going);
   }
+  const bool stored = plant.store_memories();
   serial_log.finish();
   if (!flags.plot.empty())
     plot_file << plot_svg(recorder->recording(), std::filesystem::path(flags.file).filename().string());
@@ -172,8 +180,8 @@ int run(const RunFlags& flags) {
   fmt::print("{}", flags.format == "json" ? json_report(plant, watch) : text_report(plant, watch));
   print_journal(plant, flags.why);
   const size_t unmet = print_expectations(plant, flags.file);
-  if (interrupted != 0) return kInterrupted;
-  if (!ports_there) return kIoError;
+  if (interrupted()) return kInterrupted;
+  if (!ports_there || !stored) return kIoError;
   return unmet != 0 || plant.has_fault() ? kFindings : kGood;
 }
 

@@ -14,7 +14,14 @@ void add_disasm(CLI::App& app, int& exit_code);
 void add_verify(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
 void add_bus(CLI::App& app, int& exit_code);
+void add_param(CLI::App& app, int& exit_code);
+void add_watch(CLI::App& app, int& exit_code);
+void add_scan(CLI::App& app, int& exit_code);
 void add_explain(CLI::App& app, int& exit_code);
+void add_fmt(CLI::App& app, int& exit_code);
+void add_lsp(CLI::App& app, int& exit_code);
+void add_debug(CLI::App& app, int& exit_code);
+void add_dap(CLI::App& app, int& exit_code);
 
 // -I, -D, -W, --unit and --diagnostics, for every verb that compiles.
 void add_compile_options(CLI::App& verb, CompileFlags& flags);

@@ -23,8 +23,11 @@ bool misses_closing_brace(const std::vector<Token>& tokens) {
 ast::Program parse_program(SourceMap& map, const SourceFile& main, const PreprocessOptions& options,
                            Diagnostics& diagnostics) {
   const PreprocessedText text = preprocess(map, main, options, diagnostics);
+  return text.complete ? parse_tokens(map, text, diagnostics) : ast::Program{};
+}
+
+ast::Program parse_tokens(const SourceMap& map, const PreprocessedText& text, Diagnostics& diagnostics) {
   ast::Program program;
-  if (!text.complete) return program;
   TypeNames types;
   for (const stdlib::Structure& structure : stdlib::structures()) types.emplace(structure.name);
   Builder build(program, types, map, diagnostics, misses_closing_brace(text.tokens));

@@ -63,6 +63,7 @@ bool Preprocessor::holds(const Token& directive, const Line& line) {
   if (directive.text == "ifdef" || directive.text == "ifndef") {
     if (!macro_name(directive, line)) return false;
     no_more(directive, line, 1);
+    macro_used(line[0]);
     return (macros_.find(line[0].text) != nullptr) == (directive.text == "ifdef");
   }
   bool good = true;
@@ -88,6 +89,7 @@ Preprocessor::Line Preprocessor::replace_defined(const Token& directive, const L
       good = false;
       return plain;
     }
+    macro_used(line[name]);
     Token value = line[i];
     value.kind = TokenKind::Number;
     value.span.end = line[last].span.end;

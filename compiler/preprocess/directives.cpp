@@ -61,6 +61,11 @@ bool Preprocessor::macro_name(const Token& directive, const Line& line) {
   return true;
 }
 
+// In #undef, #ifdef and behind `defined`.
+void Preprocessor::macro_used(const Token& name) {
+  if (const Macro* macro = macros_.find(name.text)) result_.record.uses.push_back({name.span, macro->name});
+}
+
 void Preprocessor::no_more(const Token& directive, const Line& line, size_t used) {
   if (line.size() > used)
     diagnostics_.report(Diag::ExtraTokens, {line[used].span.begin, line.back().span.end},
@@ -81,12 +86,14 @@ void Preprocessor::define(const Token& directive) {
     Diagnostic& warning = diagnostics_.report(Diag::MacroRedefined, name.span, {std::string(name.text)});
     warning.notes.push_back({old->name, "the former text is here"});
   }
+  result_.record.definitions.push_back({name.span, line});
   macros_.define(name.text, {name.span, std::move(line)});
 }
 
 void Preprocessor::undefine(const Token& directive) {
   const Line line = read_line();
   if (!macro_name(directive, line)) return;
+  macro_used(line[0]);
   macros_.undefine(line[0].text);
   no_more(directive, line, 1);
 }
@@ -131,7 +138,10 @@ void Preprocessor::include(const Token& directive) {
     give_up("64 MB of text", header.span);
     return;
   }
-  open(map_.add(std::move(found->name), std::move(found->path), std::move(found->text), header.span.begin));
+  const SourceFile& file =
+      map_.add(std::move(found->name), std::move(found->path), std::move(found->text), header.span.begin);
+  result_.record.includes.push_back({header.span, &file});
+  open(file);
 }
 
 // The new name is taken as written, all behind it with macros expanded.

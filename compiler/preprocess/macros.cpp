@@ -11,7 +11,9 @@ const Macro* Macros::find(std::string_view name) const {
 Macro* Macros::expandable(const Token& token) {
   if (token.kind != TokenKind::Name) return nullptr;
   const auto found = macros_.find(token.text);
-  return found == macros_.end() || found->second.expanding ? nullptr : &found->second;
+  if (found == macros_.end() || found->second.expanding) return nullptr;
+  uses_.push_back({token.span, found->second.name});
+  return &found->second;
 }
 
 bool Macros::expand(const Token& token, std::vector<Token>& out, size_t& budget) {

@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "compiler/preprocess/token.hpp"
+#include "compiler/preprocess/preprocess.hpp"
 
 namespace ipos::compiler {
 
@@ -17,7 +17,7 @@ struct Macro {
 
 class Macros {
  public:
-  explicit Macros(SourceMap& map) : map_(map) {}
+  Macros(SourceMap& map, std::vector<PreprocessRecord::Use>& uses) : map_(map), uses_(uses) {}
 
   // nullptr when the name is no macro. Names live in the source text.
   const Macro* find(std::string_view name) const;
@@ -32,6 +32,7 @@ class Macros {
   Macro* expandable(const Token& token);
 
   SourceMap& map_;
+  std::vector<PreprocessRecord::Use>& uses_;
   std::unordered_map<std::string_view, Macro> macros_;
 };
 

@@ -23,8 +23,28 @@ struct PreprocessOptions {
   size_t max_tokens = 1'000'000;
 };
 
+// What the directives of the text were about; for editors, which look names up in them.
+struct PreprocessRecord {
+  struct Definition {
+    Span name;
+    std::vector<Token> body;
+  };
+  struct Use {
+    Span name;        // in the text or in the body of another macro
+    Span definition;  // name in the #define
+  };
+  struct Include {
+    Span header;  // with its quotes or brackets
+    const SourceFile* file;
+  };
+  std::vector<Definition> definitions;
+  std::vector<Use> uses;
+  std::vector<Include> includes;
+};
+
 struct PreprocessedText {
   std::vector<Token> tokens;  // the last one is End
+  PreprocessRecord record;
   // False when an include failed or a limit was reached: names would be missing, so that syntax messages
   // would mislead.
   bool complete = true;

@@ -14,7 +14,11 @@ class Preprocessor {
  public:
   Preprocessor(SourceMap& map, const SourceFile& main, const PreprocessOptions& options,
                Diagnostics& diagnostics)
-      : map_(map), main_(main), options_(options), diagnostics_(diagnostics), macros_(map) {}
+      : map_(map),
+        main_(main),
+        options_(options),
+        diagnostics_(diagnostics),
+        macros_(map, result_.record.uses) {}
 
   PreprocessedText run();
 
@@ -55,6 +59,7 @@ class Preprocessor {
   void pragma(const Token& directive);
   void user_error(const Token& directive);
   bool macro_name(const Token& directive, const Line& line);
+  void macro_used(const Token& name);
   void no_more(const Token& directive, const Line& line, size_t used);
 
   // conditions.cpp
@@ -69,9 +74,9 @@ class Preprocessor {
   const SourceFile& main_;
   const PreprocessOptions& options_;
   Diagnostics& diagnostics_;
+  PreprocessedText result_;
   Macros macros_;
   std::vector<OpenFile> files_;
-  PreprocessedText result_;
   std::set<std::string_view> long_names_;  // those warned of
   size_t token_budget_ = 0;
   size_t byte_budget_ = 0;

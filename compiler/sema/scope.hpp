@@ -79,7 +79,9 @@ class Scope {
   const Entity* find(std::string_view name) const;
   const StructType* find_type(std::string_view name) const;
 
+  const std::deque<StructType>& types() const { return types_; }
   const std::deque<Variable>& variables() const { return variables_; }
+  const std::deque<FunctionName>& functions() const { return functions_; }
 
   // Adds notes to a message about an unknown name: a similar name, or the header it comes with.
   void explain_unknown(Diagnostic& diagnostic, std::string_view name, bool function) const;

@@ -84,6 +84,14 @@ bool EventQueue::cancel(EventId id) {
   return true;
 }
 
+void EventQueue::cancel_all(const EventTarget& target) {
+  for (size_t position = heap_.size(); position-- > 0;)
+    if (position < heap_.size() && slots_[heap_[position].slot].target == &target) {
+      remove(position);
+      position = heap_.size();  // the order of the others has changed
+    }
+}
+
 bool EventQueue::step() {
   if (heap_.empty()) return false;
   const Entry entry = heap_.front();

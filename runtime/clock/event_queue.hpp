@@ -41,6 +41,9 @@ class EventQueue {
   // False when the event has run, is running or was cancelled before.
   bool cancel(EventId id);
 
+  // Cancels all events of a target, which may then end its life.
+  void cancel_all(const EventTarget& target);
+
   Time now() const { return now_; }
   Time next_time() const { return heap_.empty() ? kNever : heap_.front().at; }  // kNever: nothing pending
   size_t pending() const { return heap_.size(); }

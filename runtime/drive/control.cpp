@@ -26,9 +26,11 @@ void hear_terminals(const ControlInputs& in, Verdict& verdict) {
     else
       verdict.restrict_to(Command::RapidStop, Block::RapidStopTerminal);
   }
-  if (!in.cw && !in.ccw) verdict.restrict_to(Command::Stop, Block::NoDirection);
+  // A travel needs no direction, but an input that could give one still means stop at 0 (ours).
+  const bool no_input = in.positioning && !t.assigned(F::Cw) && !t.assigned(F::Ccw);
+  if (!in.cw && !in.ccw && !no_input) verdict.restrict_to(Command::Stop, Block::NoDirection);
   // Where the sign of a bus setpoint is the direction, MOVIDRIVE wants or allows both (MDX60B/61B p. 29).
-  if (in.cw && in.ccw && (in.m07 || !in.sign_decides))
+  if (in.cw && in.ccw && !in.positioning && (in.m07 || !in.sign_decides))
     verdict.restrict_to(Command::Stop, Block::BothDirections);
   if (t.off(F::HoldControl)) verdict.restrict_to(Command::HoldControl, Block::HoldTerminal);
 }
@@ -36,6 +38,7 @@ void hear_terminals(const ControlInputs& in, Verdict& verdict) {
 void hear_program(const ControlInputs& in, Verdict& verdict) {
   if ((in.ipos_word & kIposInhibit) != 0) verdict.restrict_to(Command::Inhibit, Block::IposInhibit);
   if ((in.ipos_word & kIposNoEnable) != 0) verdict.restrict_to(Command::Stop, Block::IposNoEnable);
+  verdict.restrict_to(in.axis_stop, Block::AxisStop);
 }
 
 void hear_bus(const ControlInputs& in, Verdict& verdict) {
@@ -55,6 +58,7 @@ void hear_bus(const ControlInputs& in, Verdict& verdict) {
 
 void hear_faults(const ControlInputs& in, Verdict& verdict) {
   const Block why = in.fault_is_warning ? Block::Warning : Block::Fault;
+  if (in.starting_up) verdict.restrict_to(Command::Inhibit, Block::StartUp);
   if (in.factory_setting) verdict.restrict_to(Command::Inhibit, Block::FactorySetting);
   switch (in.fault_stop) {
     case FaultStop::None: break;

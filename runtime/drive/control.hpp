@@ -36,11 +36,14 @@ struct ControlInputs {
   bool m07 = false;
   bool cw = false;  // direction terminals, after the three-wire latch
   bool ccw = false;
-  bool sign_decides = false;  // bus setpoint: its sign is the direction, the terminals only enable
-  uint32_t ipos_word = 0;     // H484
+  bool sign_decides = false;            // bus setpoint: its sign is the direction, the terminals only enable
+  uint32_t ipos_word = 0;               // H484
+  bool positioning = false;             // IPOS controls the axis: a position has its direction itself
+  Command axis_stop = Command::Enable;  // of the program
   FaultStop fault_stop = FaultStop::None;
   bool fault_is_warning = false;
   bool factory_setting = false;
+  bool starting_up = false;
   bool waiting = false;                  // display t
   std::optional<uint16_t> bus_word;      // of the bus of P101; nothing: terminals
   Block bus_word_missing = Block::None;  // why bus_word is a made-up 0

@@ -65,12 +65,9 @@ Drive::Drive(ParameterStore& parameters, const MachineData& machine)
   parameters.connect(*this);
 }
 
-const Settings& Drive::settings() const {
-  if (settings_version_ != parameters_.changes()) {
-    settings_version_ = parameters_.changes();
-    settings_ = reader_.read(parameters_);
-  }
-  return settings_;
+void Drive::read_settings() const {
+  settings_version_ = parameters_.changes();
+  settings_ = reader_.read(parameters_);
 }
 
 // --- process data ---
@@ -85,7 +82,7 @@ void Drive::take_po(PoSource source, std::span<const uint16_t> words, bool cycli
   }
   std::copy_n(words.begin(), count, po_[s].begin());
   if (watches_[s].on_process_data(cyclic)) faults_.clear_cause(fault_of(source));
-  if (control_bus(settings()) != source) return;
+  if (settings().control_bus != source) return;
   const uint16_t word = order_of(source).control_word.value_or(0);
   const bool reset_edge = (word & ~last_control_word_ & control_bits::kReset) != 0;
   last_control_word_ = word;
@@ -96,28 +93,37 @@ void Drive::take_request(PoSource source) {
   if (watches_[static_cast<size_t>(source)].on_request()) faults_.clear_cause(fault_of(source));
 }
 
-BusOrder Drive::order_of(PoSource source) const {
-  return decode_order(po_[static_cast<size_t>(source)], settings().po, set().maximum_speed);
+// Asked several times a millisecond, so what was decoded is kept until words or settings change.
+const BusOrder& Drive::order_of(PoSource source) const {
+  const Settings& s = settings();
+  const Words& words = po_[static_cast<size_t>(source)];
+  const int32_t maximum_speed = set().maximum_speed;
+  KnownOrder& known = known_orders_[static_cast<size_t>(source)];
+  if (known.version != settings_version_ || known.words != words || known.maximum_speed != maximum_speed)
+    known = {words, settings_version_, maximum_speed, decode_order(words, s.po, maximum_speed)};
+  return known.order;
 }
 
-BusOrder Drive::control_order() const {
-  const auto bus = control_bus(settings());
-  return bus && settings().po_enable == 1 ? order_of(*bus) : BusOrder{};
+const BusOrder& Drive::control_order() const {
+  static constexpr BusOrder kNone{};
+  const auto bus = settings().control_bus;
+  return bus && settings().po_enable == 1 ? order_of(*bus) : kNone;
 }
 
-BusOrder Drive::setpoint_order() const {
-  const auto bus = setpoint_bus(settings());
-  return bus && settings().po_enable == 1 ? order_of(*bus) : BusOrder{};
+const BusOrder& Drive::setpoint_order() const {
+  static constexpr BusOrder kNone{};
+  const auto bus = settings().setpoint_bus;
+  return bus && settings().po_enable == 1 ? order_of(*bus) : kNone;
 }
 
 // P876 and a source that is a bus (MDX60B/61B p. 93).
 bool Drive::po_data_enabled() const {
-  return settings().po_enable == 1 && (setpoint_bus(settings()) || control_bus(settings()));
+  return settings().po_enable == 1 && (settings().setpoint_bus || settings().control_bus);
 }
 
 uint16_t Drive::reserved_control_bits() const {
   using namespace control_bits;
-  const BusOrder order = control_order();
+  const BusOrder& order = control_order();
   const unsigned reserved =
       kReserved | (order.is_control_word_1 ? kReservedWord1 : 0U) | (is_m07_ ? kReservedM07 : 0U);
   return static_cast<uint16_t>(order.control_word.value_or(0) & reserved);
@@ -127,28 +133,36 @@ uint16_t Drive::reserved_control_bits() const {
 
 // Control word 2 of MOVIDRIVE carries eight virtual inputs in its high byte; they act like DI10..DI17 (common
 // knowledge, in no manual read). On MOVITRAC 07 those bits are free for the program.
-Terminals Drive::terminals() const {
+const Terminals& Drive::terminals() const {
   uint16_t levels = inputs_;
+  const Settings& s = settings();
   if (!is_m07_) {
-    const BusOrder order = control_order();
+    const BusOrder& order = control_order();
     if (order.control_word && !order.is_control_word_1)
       levels = static_cast<uint16_t>(levels | (*order.control_word & 0xFF00U));
   }
-  return {levels, settings().inputs};
+  if (known_terminals_version_ != settings_version_ || known_levels_ != levels) {
+    known_terminals_ = {levels, s.inputs};
+    known_terminals_version_ = settings_version_;
+    known_levels_ = levels;
+  }
+  return known_terminals_;
 }
 
 // Silence of a bus that nobody has heard yet: the drive waits (1053 1610 p. 27, 64). On MOVITRAC 07 the same
 // silence on the SBus is a fault (its manual, chapter 7.1). Over RS-485 the drive waits even with the
 // monitoring off (TIME-04), over the others it does not (DIAG-12).
+bool Drive::waits_for(PoSource bus) const {
+  if (bus == PoSource::Rs485) return true;
+  if (bus == PoSource::Sbus && is_m07_) return false;
+  return monitored(bus == PoSource::Sbus ? settings().sbus_timeout : settings().fieldbus_timeout) != 0;
+}
+
 bool Drive::is_waiting() const {
   const Settings& s = settings();
   if (s.po_enable != 1) return false;
-  for (const auto bus : {setpoint_bus(s), control_bus(s)}) {
-    if (!bus || watch(*bus).seen()) continue;
-    if (*bus == PoSource::Rs485) return true;
-    if (*bus == PoSource::Sbus && is_m07_) continue;
-    if (monitored(*bus == PoSource::Sbus ? s.sbus_timeout : s.fieldbus_timeout) != 0) return true;
-  }
+  for (const auto bus : {s.setpoint_bus, s.control_bus})
+    if (bus && !watch(*bus).seen() && waits_for(*bus)) return true;
   return false;
 }
 
@@ -163,16 +177,21 @@ ControlInputs Drive::control_inputs() const {
   in.ccw = three_wire ? three_wire_ccw_ : in.terminals.on(InputFunction::Ccw) || ipos_bit(InputFunction::Ccw);
   in.sign_decides = sign_decides(s, in.terminals.on(InputFunction::SlaveFreeRun));
   in.ipos_word = ipos_word_;
+  in.positioning = position_.controls;
+  in.axis_stop = position_.halt;
   in.fault_stop = faults_.stop();
   in.fault_is_warning = faults_.warning();
   in.factory_setting = parameters_.factory_setting_running();
+  in.starting_up = starting_up();
   in.waiting = is_waiting();
-  if (const auto bus = control_bus(s)) {
+  if (const auto bus = s.control_bus) {
     in.bus_word = 0;
     if (s.po_enable != 1)
       in.bus_word_missing = Block::PoDisabled;
-    else if (const BusOrder order = order_of(*bus); !order.control_word)
+    else if (const BusOrder& order = order_of(*bus); !order.control_word)
       in.bus_word = control_bits::kEnable;  // no PO word is a control word: as if enabled (unit profile)
+    else if (!watch(*bus).seen() && !is_m07_ && !waits_for(*bus))
+      in.bus_word = control_bits::kEnable;  // without monitoring the enable takes effect (1053 1610 p. 64)
     else if (!watch(*bus).seen())
       in.bus_word_missing = Block::NoControlWord;
     else
@@ -184,8 +203,9 @@ ControlInputs Drive::control_inputs() const {
 Verdict Drive::verdict() const {
   Verdict verdict = decide(control_inputs());
   if (stopped_by_setpoint_) verdict.restrict_to(Command::Stop, Block::StopFunction);
-  if (verdict.command != Command::Enable) return verdict;
-  const Terminals t = terminals();
+  // Positioning looks after the limit switches itself: a reference travel has to reach them.
+  if (verdict.command != Command::Enable || position_.controls) return verdict;
+  const Terminals& t = terminals();
   if (t.off(InputFunction::LimitCw) && setpoint_.speed > 0)
     verdict.restrict_to(Command::EmergencyStop, Block::LimitCw);
   if (t.off(InputFunction::LimitCcw) && setpoint_.speed < 0)
@@ -200,15 +220,50 @@ bool Drive::controller_inhibited() const {
   return decide(in).command == Command::Inhibit || (is_m07_ && !output_stage_on());
 }
 
+bool Drive::can_position() const {
+  if (is_m07_ || second_set_) return false;
+  constexpr int32_t kVfcIpos = 9, kCfcIpos = 13, kServoIpos = 18;
+  const int32_t mode = set().operating_mode;
+  return mode == kVfcIpos || mode == kCfcIpos || mode == kServoIpos;
+}
+
+bool Drive::follows() const {
+  return axis_.state().phase == AxisPhase::Moving && verdict().command == Command::Enable;
+}
+
+void Drive::set_position(int32_t counter) {
+  counter_shift_ += static_cast<uint32_t>(counter) - static_cast<uint32_t>(axis_.state().position);
+  axis_.set_position(counter);
+}
+
+int32_t Drive::shaft_position() const {
+  return static_cast<int32_t>(static_cast<uint32_t>(axis_.state().position) - counter_shift_);
+}
+
+std::optional<int32_t> Drive::bus_position() const {
+  for (const auto bus : {settings().setpoint_bus, settings().control_bus})
+    if (bus && settings().po_enable == 1 && watch(*bus).seen())
+      if (const auto position = order_of(*bus).position) return position;
+  return std::nullopt;
+}
+
 // --- faults ---
 
 FaultResponse Drive::response_of(uint8_t number) const {
   const stdlib::FaultRow* row = stdlib::find_fault(number);
   if (row == nullptr) return FaultResponse::ImmediateError;
-  if (row->parameter.empty()) return row->response;
+  if (row->parameter.empty() || row->parameter == stdlib::kByCommand)
+    return responses_[number].value_or(row->response);
   const stdlib::Parameter* parameter = parameters_.table().find(row->parameter);
   if (parameter != nullptr) return static_cast<FaultResponse>(parameters_.value(parameter->index));
   return is_m07_ ? FaultResponse::RapidError : row->response;  // fixed there (M07-MON-03)
+}
+
+bool Drive::set_fault_response(uint8_t number, FaultResponse response) {
+  const stdlib::FaultRow* row = stdlib::find_fault(number);
+  if (row == nullptr || row->parameter != stdlib::kByCommand) return false;
+  responses_[number] = response;
+  return true;
 }
 
 void Drive::raise_fault(uint8_t number) { raise_fault(number, response_of(number)); }
@@ -229,6 +284,7 @@ void Drive::clear_faults() {
   if (faults_.error())
     for (LinkWatch& link : watches_) link.forget();
   faults_.reset();
+  ++resets_;
   auto_reset_ms_ = 0;
 }
 
@@ -238,7 +294,8 @@ void Drive::on_parameter_written(uint16_t index, int32_t value) {
 
 // --- the millisecond ---
 
-void Drive::tick() {
+void Drive::tick(const PositionControl& position) {
+  position_ = position;
   count_time();
   latch_three_wire();
   watch_resets();
@@ -252,6 +309,7 @@ void Drive::tick() {
 }
 
 void Drive::count_time() {
+  if (starting_up()) ++up_ms_;
   const auto count = [&](uint32_t& ms, uint16_t minutes) {
     if (++ms < kMinuteMs) return;
     ms = 0;
@@ -272,7 +330,7 @@ void Drive::count_time() {
 // P101 = 3-WIRE-CONTROL: a pulse on a direction input starts, ENABLE/STOP at 0 ends (ours; the list only
 // names it).
 void Drive::latch_three_wire() {
-  const Terminals t = terminals();
+  const Terminals& t = terminals();
   const bool cw = t.on(InputFunction::Cw);
   const bool ccw = t.on(InputFunction::Ccw);
   if (cw && !cw_input_) three_wire_cw_ = true, three_wire_ccw_ = false;
@@ -303,9 +361,9 @@ int32_t Drive::monitored(int32_t delay_ms) const {
 // Nothing is supervised that is not taken over (P876).
 void Drive::watch_links() {
   const Settings& s = settings();
-  const auto setpoint = setpoint_bus(s);
-  const auto control = control_bus(s);
-  const bool enabled = decide_locally(control_inputs()).command == Command::Enable;
+  const auto setpoint = s.setpoint_bus;
+  const auto control = s.control_bus;
+  const bool enabled = !starting_up() && decide_locally(control_inputs()).command == Command::Enable;
   const bool over_rs485 = is_master_slave(s) && setpoint == PoSource::Rs485;
   for (const PoSource source : kAllSources) {
     const bool used = s.po_enable == 1 && (setpoint == source || control == source);
@@ -323,7 +381,7 @@ void Drive::watch_links() {
 }
 
 void Drive::watch_machine() {
-  const Terminals t = terminals();
+  const Terminals& t = terminals();
   const auto follow = [&](bool cause, uint8_t number) {
     if (cause)
       raise_fault(number);
@@ -351,7 +409,7 @@ void Drive::watch_machine() {
 // The set changes only while the output stage is off (ours).
 void Drive::select_parameter_set() {
   if (output_stage_on() || is_m07_) return;
-  const BusOrder order = control_order();
+  const BusOrder& order = control_order();
   second_set_ = function_on(InputFunction::ParameterSwitch) ||
                 (order.control_word.value_or(0) & control_bits::kParameterSet) != 0;
 }
@@ -373,11 +431,14 @@ void Drive::show_outputs(const AxisOrder& order) {
   in.setpoint = order.command == AxisCommand::Run ? order.target : 0;
   in.current = axis.output_current;
   in.current_limit = order.current_limit;
+  in.in_position = position_.in_position;
+  in.referenced = position_.referenced;
   in.ipos_outputs = ipos_outputs_;
   outputs_.tick(settings(), in);
 }
 
 void Drive::power_cycle() {
+  up_ms_ = 0;
   shown_po_ = {};
   po_ = {};
   for (LinkWatch& link : watches_) link.forget();
@@ -387,6 +448,7 @@ void Drive::power_cycle() {
   ipos_outputs_ = 0;
 
   faults_ = {};
+  responses_ = {};
   reset_input_ = false;
   auto_reset_ms_ = auto_resets_ = limited_ms_ = 0;
 
@@ -397,6 +459,8 @@ void Drive::power_cycle() {
   ai1_filter_ = {};
   setpoint_ = {};
 
+  position_ = {};
+  counter_shift_ = 0U - static_cast<uint32_t>(shaft_position());  // the shaft stays where it is
   axis_.reset();
   outputs_ = {};
   factory_setting_ms_ = mains_ms_ = enabled_ms_ = 0;

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -12,6 +13,7 @@
 #include "runtime/drive/link_watch.hpp"
 #include "runtime/drive/outputs.hpp"
 #include "runtime/drive/parameters.hpp"
+#include "runtime/drive/position_control.hpp"
 #include "runtime/drive/process_data.hpp"
 #include "runtime/drive/setpoint.hpp"
 #include "runtime/drive/setpoint_memory.hpp"
@@ -21,7 +23,7 @@ namespace ipos::runtime {
 
 enum class UnitCondition : uint8_t {
 #define UNIT_CONDITION(code, name, text) name = code,
-#include "runtime/drive/unit_conditions.def"
+#include "stdlib/unit_conditions.def"
 };
 std::string_view condition_text(UnitCondition condition);
 
@@ -57,14 +59,26 @@ class Drive final : private DriveLink {
   void set_ipos_outputs(uint16_t levels) { ipos_outputs_ = levels; }
 
   // One millisecond has passed.
-  void tick();
+  void tick(const PositionControl& position = {});
+
+  // --- for the positioning of IPOS ---
+  bool can_position() const;  // P700 is a mode with IPOS (1053 1610 p. 80)
+  bool follows() const;       // enabled, magnetized, brake open: a speed of PositionControl acts
+  const Terminals& terminals() const;
+  std::optional<int32_t> bus_position() const;  // POSITION LO and HI of the bus of P100 or P101
+  // Another count for where the shaft is; the shaft itself has not moved.
+  void set_position(int32_t counter);
+  int32_t shaft_position() const;  // increments turned ever, whatever the count
 
   // --- faults ---
   // With the response its parameter chooses, or another one. An error stays until it is reset: by an input,
   // control word bit 6, P840, the program, or auto reset P841.
   void raise_fault(uint8_t number);
   void raise_fault(uint8_t number, FaultResponse response);
-  void reset_fault();                                // by hand: auto reset counts anew
+  void reset_fault();                          // by hand: auto reset counts anew
+  uint32_t resets() const { return resets_; }  // how often a reset was ordered, by whomever
+  // _FaultReaction on a fault without a parameter for its response; false: that of this one is fixed.
+  bool set_fault_response(uint8_t number, FaultResponse response);
   uint8_t fault() const { return faults_.shown(); }  // error or warning, 0 is none
   bool error() const { return faults_.error(); }
 
@@ -73,7 +87,7 @@ class Drive final : private DriveLink {
   Verdict verdict() const;  // what it is told, and why not more
   UnitCondition condition() const;
   char display() const;  // the seven-segment display: a digit, 't' waiting, 'F' fault
-  bool ready() const { return !faults_.error() && !parameters_.factory_setting_running(); }
+  bool ready() const { return !faults_.error() && !parameters_.factory_setting_running() && !starting_up(); }
   bool po_data_enabled() const;
   // Bits of the present control word that are 1 though they are to be sent as 0; they have no effect.
   uint16_t reserved_control_bits() const;
@@ -84,7 +98,8 @@ class Drive final : private DriveLink {
   const AxisState& axis() const { return axis_.state(); }
   uint16_t outputs() const { return outputs_.levels(); }
 
-  // What the master of a master/slave group sends (P750); its slaves scale it (P751): control word 1, speed, 0.
+  // What the master of a master/slave group sends (P750); its slaves scale it (P751): control word 1, speed,
+  // 0.
   Words master_words() const;
 
   // Power off and on: everything as at first, but for the motor potentiometer with P152. The parameters are
@@ -97,19 +112,24 @@ class Drive final : private DriveLink {
   bool output_stage_on() const override { return axis_.state().output_stage; }
   void on_parameter_written(uint16_t index, int32_t value) override;
 
-  const Settings& settings() const;
+  const Settings& settings() const {
+    if (settings_version_ != parameters_.changes()) read_settings();
+    return settings_;
+  }
+  void read_settings() const;
   const ParameterSet& set() const { return settings().sets[second_set_ ? 1 : 0]; }
   const ParameterSet& other_set() const { return settings().sets[second_set_ ? 0 : 1]; }
-  Terminals terminals() const;
   ControlInputs control_inputs() const;
-  BusOrder order_of(PoSource source) const;
-  BusOrder control_order() const;
-  BusOrder setpoint_order() const;
+  const BusOrder& order_of(PoSource source) const;
+  const BusOrder& control_order() const;
+  const BusOrder& setpoint_order() const;
   bool ipos_bit(InputFunction function) const {
     return (ipos_word_ >> static_cast<unsigned>(function) & 1) != 0;
   }
   bool function_on(InputFunction function) const { return terminals().on(function) || ipos_bit(function); }
+  bool waits_for(PoSource bus) const;
   bool is_waiting() const;
+  bool starting_up() const { return up_ms_ < parameters_.options().start_up_ms; }
   const LinkWatch& watch(PoSource source) const { return watches_[static_cast<size_t>(source)]; }
   FaultResponse response_of(uint8_t number) const;
   UnitCondition enabled_condition() const;
@@ -134,6 +154,18 @@ class Drive final : private DriveLink {
   mutable Settings settings_;
   mutable uint32_t settings_version_;
 
+  // What was made of inputs and process data, and of which.
+  struct KnownOrder {
+    Words words{};
+    std::optional<uint32_t> version;  // of the settings
+    int32_t maximum_speed = 0;
+    BusOrder order;
+  };
+  mutable std::array<KnownOrder, kPoSources> known_orders_{};
+  mutable Terminals known_terminals_;
+  mutable std::optional<uint32_t> known_terminals_version_;  // of the settings
+  mutable uint16_t known_levels_ = 0;
+
   uint16_t inputs_ = 0;
   AnalogInputs analog_;
   Words shown_po_{};
@@ -143,8 +175,12 @@ class Drive final : private DriveLink {
   uint32_t ipos_word_ = 0;
   Words ipos_pi_{};
   uint16_t ipos_outputs_ = 0;
+  PositionControl position_;
+  uint32_t counter_shift_ = 0;  // by all of set_position
 
   FaultState faults_;
+  std::array<std::optional<FaultResponse>, 256> responses_{};  // chosen by the program, by fault number
+  uint32_t resets_ = 0;
   bool reset_input_ = false;  // level at the last tick
   int32_t auto_reset_ms_ = 0;
   int auto_resets_ = 0;
@@ -163,6 +199,7 @@ class Drive final : private DriveLink {
   Axis axis_;
   Outputs outputs_;
   uint32_t factory_setting_ms_ = 0;
+  uint32_t up_ms_ = 0;  // since power-on, up to the end of the start-up
   uint32_t mains_ms_ = 0;
   uint32_t enabled_ms_ = 0;
   int64_t counted_energy_ = 0;

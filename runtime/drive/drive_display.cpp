@@ -18,7 +18,7 @@ std::string_view condition_text(UnitCondition condition) {
   switch (condition) {
 #define UNIT_CONDITION(code, name, text) \
   case UnitCondition::name: return text;
-#include "runtime/drive/unit_conditions.def"
+#include "stdlib/unit_conditions.def"
   }
   return {};
 }
@@ -33,6 +33,7 @@ UnitCondition Drive::enabled_condition() const {
 }
 
 UnitCondition Drive::condition() const {
+  if (starting_up()) return UnitCondition::NotReady;
   if (parameters_.factory_setting_running()) return UnitCondition::FactorySetting;
   if (faults_.error()) return UnitCondition::NotReady;
   const Verdict now = verdict();
@@ -60,7 +61,7 @@ char Drive::display() const {
 }
 
 uint8_t Drive::status_block() const {
-  const Terminals t = terminals();
+  const Terminals& t = terminals();
   unsigned block = 0;
   if (output_stage_on()) block |= 1U << 0;
   if (ready()) block |= 1U << 1;

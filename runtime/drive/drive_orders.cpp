@@ -7,13 +7,17 @@
 namespace ipos::runtime {
 
 Setpoint Drive::next_setpoint() {
+  if (position_.controls) {
+    stopped_by_setpoint_ = false;
+    return {position_.speed, position_.speed, SetpointNote::None};
+  }
   const Settings& s = settings();
   const ParameterSet& active = set();
-  const Terminals t = terminals();
+  const Terminals& t = terminals();
   if (t.on(InputFunction::SetpointHold) || ipos_bit(InputFunction::SetpointHold)) return setpoint_;
 
-  const BusOrder control = control_order();
-  const BusOrder bus = setpoint_order();
+  const BusOrder& control = control_order();
+  const BusOrder& bus = setpoint_order();
   const uint16_t word = control.is_control_word_1 ? control.control_word.value_or(0) : 0;
   const ControlInputs controls = control_inputs();
 
@@ -31,7 +35,7 @@ Setpoint Drive::next_setpoint() {
   in.po_enabled = s.po_enable == 1;
   in.bus_speed = bus.speed;
   in.sent_speed = decode_order(shown_po_, s.po, active.maximum_speed).speed.value_or(0);
-  const auto setpoint_from = setpoint_bus(s);
+  const auto setpoint_from = s.setpoint_bus;
   in.bus_accepted = setpoint_from && watch(*setpoint_from).seen();
   in.maximum_speed = bus.maximum_speed ? bus.maximum_speed : control.maximum_speed;
 
@@ -80,8 +84,8 @@ Setpoint Drive::next_setpoint() {
 AxisOrder Drive::axis_order(const Verdict& verdict) const {
   const Settings& s = settings();
   const ParameterSet& p = set();
-  const BusOrder control = control_order();
-  const BusOrder bus = setpoint_order();
+  const BusOrder& control = control_order();
+  const BusOrder& bus = setpoint_order();
   const std::optional<int32_t> process_ramp = bus.ramp ? bus.ramp : control.ramp;
   const bool reversed = p.change_direction == 1;
   const auto ms = [](int32_t time) { return static_cast<uint32_t>(std::max(time, 0)); };
@@ -118,7 +122,10 @@ AxisOrder Drive::axis_order(const Verdict& verdict) const {
       break;
     case Command::Stop: order.command = AxisCommand::Stop; break;
     case Command::HoldControl: order.command = AxisCommand::HoldZero; break;
-    case Command::Enable: order.command = AxisCommand::Run; break;
+    case Command::Enable:
+      order.command = position_.controls ? AxisCommand::Follow : AxisCommand::Run;
+      if (position_.controls) order.target = position_.speed;  // P350 does not turn positions round (ours)
+      break;
   }
   // The motor potentiometer is a ramp itself; a process ramp has no influence (MOVITRAC 07 chapter 6.3).
   if (static_cast<SetpointSource>(s.setpoint_source) == SetpointSource::MotorPot) {

@@ -2,9 +2,8 @@
 // taken.
 #include "runtime/drive/parameters.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <utility>
 
 #include "runtime/drive/error_memory.hpp"
 #include "runtime/drive/indices.hpp"
@@ -49,7 +48,7 @@ ParameterStore::ParameterStore(const stdlib::UnitType& unit, DriveOptions option
   slots_.reserve(table_.by_index().size());
   for (const Parameter* parameter : table_.by_index()) {
     const int32_t value = bits(parameter->default_value);
-    slots_.push_back({parameter, value, value, 0});
+    slots_.push_back({parameter, value, value});
   }
 }
 
@@ -89,6 +88,7 @@ const ParameterStore::Slot* ParameterStore::find(uint16_t index) const {
 ParameterReply ParameterStore::execute(uint8_t service, uint16_t index, int32_t value) {
   if (!knows_service(service)) return tl::unexpected(codes::kWrongManagement);
   if (service == static_cast<uint8_t>(ParameterService::None)) return 0;
+  if (injected_) return tl::unexpected(*injected_);
   const auto known = static_cast<ParameterService>(service);
   if (Slot* slot = find(index)) return serve(*slot, known, value);
   const std::optional<Place> place = locate(index);
@@ -113,8 +113,9 @@ ParameterReply ParameterStore::serve(Slot& slot, ParameterService service, int32
     case ParameterService::WriteVolatile: break;
   }
   if (const auto code = refusal(slot, value)) return tl::unexpected(*code);
-  store(slot, value, service == ParameterService::Write);
+  const bool stored = store(slot, value, service == ParameterService::Write);
   take_effect(parameter.index, value);
+  if (!stored) return tl::unexpected(codes::kNotSaved);  // the working value is the new one
   return value;
 }
 
@@ -131,7 +132,8 @@ ParameterReply ParameterStore::serve_window(const Place& place, ParameterService
     case ParameterService::ReadMaximum: return INT32_MAX;
     case ParameterService::ReadAttribute: {
       const int32_t next = place.offset + 1 < place.count ? index + 1 : 0;
-      return bits(int64_t{next} << 16) | kWritable | kNoInhibitNeeded;
+      const int32_t kept = window->stored(place.offset) ? kStored | kRestored : 0;
+      return bits(int64_t{next} << 16) | kWritable | kNoInhibitNeeded | kept;
     }
     case ParameterService::None:
     case ParameterService::ReadDefault:
@@ -197,12 +199,20 @@ std::optional<ReturnCode> ParameterStore::value_refusal(const Parameter& paramet
   return codes::kIncorrectValue;
 }
 
-void ParameterStore::store(Slot& slot, int32_t value, bool nonvolatile) {
+// False: service Write could not store it, and the EEPROM keeps the value it had.
+bool ParameterStore::store(Slot& slot, int32_t value, bool nonvolatile) {
   ++changes_;
   slot.working = value;
-  if (!nonvolatile || !slot.parameter->nonvolatile) return;
-  slot.eeprom = value;
-  ++slot.eeprom_writes;
+  if (!nonvolatile || !slot.parameter->nonvolatile) return true;
+  count_eeprom_write(slot.parameter->index);
+  const int32_t before = std::exchange(slot.eeprom, value);
+  if (memory_ == nullptr || memory_->save(slot.parameter->index)) return true;
+  slot.eeprom = before;
+  return false;
+}
+
+void ParameterStore::tell_memory() {
+  if (memory_ != nullptr) memory_->changed();
 }
 
 void ParameterStore::take_effect(uint16_t index, int32_t value) {
@@ -231,6 +241,7 @@ ParameterReply ParameterStore::preset(uint16_t index, int32_t value) {
   ++changes_;
   slot->working = value;
   slot->eeprom = value;
+  tell_memory();
   return value;
 }
 
@@ -241,6 +252,15 @@ void ParameterStore::set_display(uint16_t index, int32_t value) {
   // Counters and error memory survive power-off; the drive spreads these writes, so they do not count as
   // wear.
   slot->eeprom = value;
+  if (slot->parameter->nonvolatile) tell_memory();
+}
+
+void ParameterStore::set_working(uint16_t index, int32_t value) {
+  Slot* slot = find(index);
+  if (!slot) return;
+  const Parameter& parameter = *slot->parameter;
+  ++changes_;
+  slot->working = bits(std::clamp(parameter.number_of(value), parameter.minimum(), parameter.maximum()));
 }
 
 void ParameterStore::power_cycle() {
@@ -257,14 +277,39 @@ void ParameterStore::finish_factory_setting() {
     if (!slot.parameter->writable) continue;  // counters and error memory stay
     const int32_t value = bits(slot.parameter->default_value);
     slot.working = value;
-    if (slot.eeprom != value) ++slot.eeprom_writes;
+    if (slot.parameter->nonvolatile && slot.eeprom != value) count_eeprom_write(slot.parameter->index);
     slot.eeprom = value;
   }
+  tell_memory();
+}
+
+std::vector<std::pair<uint16_t, int32_t>> ParameterStore::kept() const {
+  std::vector<std::pair<uint16_t, int32_t>> values;
+  values.reserve(slots_.size());
+  for (const Slot& slot : slots_)
+    if (slot.parameter->nonvolatile) values.emplace_back(slot.parameter->index, slot.eeprom);
+  return values;
+}
+
+std::vector<uint16_t> ParameterStore::restore(std::span<const std::pair<uint16_t, int32_t>> values) {
+  ++changes_;
+  for (Slot& slot : slots_) slot.working = slot.eeprom = bits(slot.parameter->default_value);
+  std::vector<uint16_t> dropped;
+  for (const auto& [index, value] : values) {
+    Slot* slot = find(index);
+    const bool legal = slot != nullptr && slot->parameter->nonvolatile &&
+                       (!slot->parameter->writable || !value_refusal(*slot->parameter, value));
+    if (legal)
+      slot->working = slot->eeprom = value;
+    else
+      dropped.push_back(index);
+  }
+  return dropped;
 }
 
 uint32_t ParameterStore::eeprom_writes(uint16_t index) const {
-  const Slot* slot = find(index);
-  return slot ? slot->eeprom_writes : 0;
+  const auto found = eeprom_writes_.find(index);
+  return found == eeprom_writes_.end() ? 0 : found->second;
 }
 
 int32_t ParameterStore::attribute(const Slot& slot) const {
@@ -277,27 +322,6 @@ int32_t ParameterStore::attribute(const Slot& slot) const {
   const bool last = &slot == &slots_.back();
   const int32_t next = last ? 0 : (&slot + 1)->parameter->index;
   return bits(int64_t{next} << 16) | attributes;
-}
-
-std::string ParameterStore::explain(uint8_t service, uint16_t index, int32_t value, ReturnCode code) const {
-  const Slot* slot = find(index);
-  std::string name = fmt::format("index {}", index);
-  if (slot && !slot->parameter->number.empty()) name = fmt::format("P{}", slot->parameter->number);
-  if (slot) name += fmt::format(" {}", slot->parameter->name);
-  const auto known = static_cast<ParameterService>(service);
-  if (is_write(known))
-    name += fmt::format(" := {}", slot ? slot->parameter->number_of(value) : int64_t{value});
-  const std::string_view meaning = stdlib::return_code_meaning(code);
-  std::string text = fmt::format("{}: ", name);
-  if (meaning.empty())
-    text += fmt::format("return code {:02X} {:02X} {:02X} {:02X}", code.error_class, code.code,
-                        code.additional >> 8, code.additional & 0xFF);
-  else
-    text += meaning;
-  if (slot && (code == codes::kTooLarge || code == codes::kTooSmall))
-    text += fmt::format(" ({}..{})", slot->parameter->minimum(), slot->parameter->maximum());
-  if (code == codes::kParameterLock) text += " (P803 = ON)";
-  return text;
 }
 
 }  // namespace ipos::runtime

@@ -8,8 +8,11 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <tl/expected.hpp>
@@ -39,6 +42,18 @@ class DriveLink {
   ~DriveLink() = default;
 };
 
+// What keeps the values of the unit when it is switched off.
+class NonvolatileMemory {
+ public:
+  // `index` was written by service Write and has its new value. False: it could not be stored.
+  virtual bool save(uint16_t index) = 0;
+  // The drive itself changed something that is kept: counters, error memory, factory setting.
+  virtual void changed() = 0;
+
+ protected:
+  ~NonvolatileMemory() = default;
+};
+
 enum class IndexArea : uint8_t {
 #define INDEX_AREA(name, first, count, m07, meaning) name,
 #include "stdlib/index_areas.def"
@@ -50,6 +65,8 @@ class IndexWindow {
  public:
   virtual ParameterReply read(uint16_t offset) = 0;
   virtual ParameterReply write(uint16_t offset, int32_t value, bool nonvolatile) = 0;
+  // Service Write stores it for good; otherwise both writing services are volatile.
+  virtual bool stored(uint16_t /*offset*/) const { return false; }
 
  protected:
   ~IndexWindow() = default;
@@ -64,6 +81,8 @@ struct DriveOptions {
   // Version in the last two digits of P076; on MOVITRAC 07 it decides about the built-in potentiometer
   // (its manual, table 3). The default is the newest one that table knows (ours).
   uint8_t firmware = 16;
+  // How long the unit is not ready after power-on. No manual read has a figure; 0 is ours.
+  uint32_t start_up_ms = 0;
 
   // The version is at least this one of the standard unit, or of LOGODrive.
   bool firmware_from(uint8_t standard, uint8_t of_logodrive) const {
@@ -78,6 +97,8 @@ class ParameterStore {
   // Both must outlive the store; without them there are no live values, the inhibit is on, and an area
   // answers 11h.
   void connect(DriveLink& drive) { drive_ = &drive; }
+  // Without a memory every write counts as stored.
+  void connect(NonvolatileMemory& memory) { memory_ = &memory; }
   void plug(IndexArea area, IndexWindow& window) { windows_[static_cast<size_t>(area)] = &window; }
 
   // A service as it comes over a bus or from MOVLNK. `service` is the raw code; a write answers the value
@@ -103,18 +124,36 @@ class ParameterStore {
   // alone.
   void set_display(uint16_t index, int32_t value);
 
+  // A working value the program sets (SETSYS, system variables that are parameters): brought into the range,
+  // any step of it; the EEPROM keeps its own.
+  void set_working(uint16_t index, int32_t value);
+
   // Power off and on: N from EEPROM, everything else at its default.
   void power_cycle();
+
+  // What the EEPROM holds: the value of every N parameter, in rising order of the indices.
+  std::vector<std::pair<uint16_t, int32_t>> kept() const;
+  // Takes over what the EEPROM held; what is not named gets its default. Returns the indices of the values
+  // that the unit has no parameter for or would refuse.
+  std::vector<uint16_t> restore(std::span<const std::pair<uint16_t, int32_t>> values);
+
+  // Fault injection: while a code is set, every service is answered with it and not carried out.
+  void inject(std::optional<stdlib::ReturnCode> code) { injected_ = code; }
 
   // P802 was written: the unit is not ready and refuses writes until the drive says that it is done.
   bool factory_setting_running() const { return factory_setting_; }
   void finish_factory_setting();
 
-  // Writes into EEPROM since the store was made; PAR-03: cyclic ones wear it out.
+  // Writes into EEPROM by index, over the whole life of the unit; PAR-03: cyclic ones wear it out.
   uint32_t eeprom_writes(uint16_t index) const;
+  const std::map<uint16_t, uint32_t>& eeprom_writes() const { return eeprom_writes_; }
+  void restore_writes(std::map<uint16_t, uint32_t> writes) { eeprom_writes_ = std::move(writes); }
+  void count_eeprom_write(uint16_t index) { ++eeprom_writes_[index]; }
 
   // "P813 SBus address := 64: parameter value too large (0..63)"
-  std::string explain(uint8_t service, uint16_t index, int32_t value, stdlib::ReturnCode code) const;
+  std::string explain(uint8_t service, uint16_t index, int32_t value, stdlib::ReturnCode code) const {
+    return stdlib::explain_refusal(table_, service, index, value, code);
+  }
 
   const stdlib::ParameterTable& table() const { return table_; }
   const stdlib::UnitType& unit() const { return unit_; }
@@ -125,7 +164,6 @@ class ParameterStore {
     const stdlib::Parameter* parameter;
     int32_t working;
     int32_t eeprom;
-    uint32_t eeprom_writes;
   };
   struct Place {
     IndexArea area;
@@ -143,7 +181,8 @@ class ParameterStore {
   std::optional<stdlib::ReturnCode> refusal(const Slot& slot, int32_t value) const;
   std::optional<stdlib::ReturnCode> value_refusal(const stdlib::Parameter& parameter, int32_t value) const;
   bool has_card(stdlib::OptionCard card) const;
-  void store(Slot& slot, int32_t value, bool nonvolatile);
+  bool store(Slot& slot, int32_t value, bool nonvolatile);
+  void tell_memory();
   void take_effect(uint16_t index, int32_t value);
   int32_t attribute(const Slot& slot) const;
 
@@ -152,7 +191,10 @@ class ParameterStore {
   DriveOptions options_;
   std::vector<Slot> slots_;  // in rising order of the indices
   std::array<IndexWindow*, 7> windows_{};
+  std::map<uint16_t, uint32_t> eeprom_writes_;
   DriveLink* drive_ = nullptr;
+  NonvolatileMemory* memory_ = nullptr;
+  std::optional<stdlib::ReturnCode> injected_;
   bool factory_setting_ = false;
   uint32_t changes_ = 0;
 };

@@ -56,6 +56,7 @@ uint16_t word_of_current(int32_t current) { return saturated(divide_rounded(curr
 BusOrder decode_order(const DriveWords& words, const std::array<uint8_t, kProcessWords>& assignments,
                       int32_t maximum_speed) {
   BusOrder order;
+  std::optional<uint16_t> position_low, position_high;
   for (size_t n = 0; n < kProcessWords; ++n) {
     const uint16_t word = words[n];
     switch (static_cast<PoAssignment>(assignments[n])) {
@@ -76,15 +77,16 @@ BusOrder decode_order(const DriveWords& words, const std::array<uint8_t, kProces
         order.control_word = word;
         order.is_control_word_1 = static_cast<PoAssignment>(assignments[n]) == PoAssignment::ControlWord1;
         break;
-      // The current setpoint needs a torque control, the position the positioning of IPOS; the program reads
-      // its own words.
+      case PoAssignment::PositionLow: set_first(position_low, word); break;
+      case PoAssignment::PositionHigh: set_first(position_high, word); break;
+      // The current setpoint needs a torque control; the program reads its own words.
       case PoAssignment::Current:
-      case PoAssignment::PositionLow:
-      case PoAssignment::PositionHigh:
       case PoAssignment::IposData:
       case PoAssignment::None: break;
     }
   }
+  if (position_low && position_high)
+    order.position = static_cast<int32_t>(uint32_t{*position_high} << 16 | *position_low);
   return order;
 }
 

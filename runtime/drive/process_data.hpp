@@ -11,9 +11,6 @@
 
 namespace ipos::runtime {
 
-enum class PoSource : uint8_t { Rs485, Fieldbus, Sbus };
-inline constexpr size_t kPoSources = 3;
-
 inline constexpr size_t kProcessWords = 3;
 using DriveWords = std::array<uint16_t, kProcessWords>;
 
@@ -87,6 +84,7 @@ struct BusOrder {
   std::optional<int32_t> maximum_current;  // 1/1000 %
   std::optional<int32_t> slip;             // 1/1000 rpm
   std::optional<int32_t> pi_setpoint;      // 1/1000 %
+  std::optional<int32_t> position;         // increments; only with both halves
 };
 BusOrder decode_order(const DriveWords& words, const std::array<uint8_t, kProcessWords>& assignments,
                       int32_t maximum_speed);

@@ -162,8 +162,7 @@ Setpoint select_setpoint(const Settings& settings, const ParameterSet& set, cons
     ccw = ccw || in.motor_pot_ccw;
     if (source == SetpointSource::MotorPotPlusAi1) setpoint.speed = add(setpoint.speed, in.ai1_speed);
   } else if (source == SetpointSource::Frequency) {
-    setpoint.speed =
-        scale(in.analog.frequency, set.maximum_speed, int64_t{settings.frequency_scale} * kThousand);
+    setpoint.speed = scale(in.analog.frequency, set.maximum_speed, int64_t{settings.frequency_scale} * 10);
   } else {
     setpoint.speed = in.ai1_speed;
     constexpr int32_t kAi2IsSetpoint = 1;

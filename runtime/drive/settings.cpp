@@ -68,6 +68,8 @@ Settings SettingsReader::read(const ParameterStore& parameters) const {
     settings.po[n] = function(index::kPo1Description + n);
     settings.pi[n] = function(index::kPi1Description + n);
   }
+  settings.setpoint_bus = setpoint_bus(settings);
+  settings.control_bus = control_bus(settings);
   if (is_master_slave(settings)) {
     settings.po = kSlavePo;
     settings.pi = kSlavePi;

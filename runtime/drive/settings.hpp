@@ -4,11 +4,15 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "runtime/drive/parameters.hpp"
 
 namespace ipos::runtime {
+
+enum class PoSource : uint8_t { Rs485, Fieldbus, Sbus };
+inline constexpr size_t kPoSources = 3;
 
 inline constexpr int32_t kAbsent = INT32_MIN;
 
@@ -22,6 +26,9 @@ struct Settings {
 #define SETTING(member, number, absent) int32_t member = absent;
 #include "runtime/drive/settings.def"
   std::array<ParameterSet, 2> sets;
+  // The bus the setpoint and the control word come from; nothing when it is none (P100, P101).
+  std::optional<PoSource> setpoint_bus;
+  std::optional<PoSource> control_bus;
   // Assignments of PO1..PO3 and PI1..PI3, P870..P875.
   std::array<uint8_t, 3> po{};
   std::array<uint8_t, 3> pi{};

@@ -13,11 +13,11 @@ WordAssignment assignment(const DriveServer& drive, int first) {
   return words;
 }
 
-UnitNames unit_names(const Station& station, const SbusPort& port) {
+UnitNames unit_names(const Station& station, const SlaveSettings& settings) {
   UnitNames unit;
   unit.name = station.config().name;
   unit.unit = station.config().unit;
-  unit.settings = port.settings().slave;
+  unit.settings = settings;
   unit.output = assignment(station.drive(), 870);
   unit.input = assignment(station.drive(), 873);
   if (station.image() != nullptr)
@@ -45,7 +45,7 @@ TelegramNames telegram_names(const Plant& plant, const CanLine* line) {
     for (const int number : {1, 2}) {
       const SbusPort* port = std::as_const(*station).sbus(number);
       if (port == nullptr || (line != nullptr && &port->line() != line)) continue;
-      names.units.push_back(unit_names(*station, *port));
+      names.units.push_back(unit_names(*station, port->settings().slave));
       for (const ObjectDefinition& definition : port->objects().definitions()) {
         if (!definition.accepted) continue;
         ObjectNames object;
@@ -59,6 +59,17 @@ TelegramNames telegram_names(const Plant& plant, const CanLine* line) {
         names.objects.push_back(std::move(object));
       }
     }
+  return names;
+}
+
+TelegramNames serial_names(const Plant& plant) {
+  TelegramNames names;
+  for (const auto& station : plant.stations()) {
+    SlaveSettings settings;
+    settings.address = static_cast<uint8_t>(station->drive().value("810"));
+    settings.group = static_cast<uint8_t>(station->drive().value("811"));
+    names.units.push_back(unit_names(*station, settings));
+  }
   return names;
 }
 

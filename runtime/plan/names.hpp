@@ -14,4 +14,7 @@ std::string variable_name(const vm::Image* image, uint32_t variable);
 // Units and the objects they have defined so far; of one line, or of all when it is null.
 TelegramNames telegram_names(const Plant& plant, const CanLine* line = nullptr);
 
+// The same for RS-485: P810 as address, P811 as group, no objects.
+TelegramNames serial_names(const Plant& plant);
+
 }  // namespace ipos::runtime

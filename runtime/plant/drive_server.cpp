@@ -13,22 +13,31 @@ namespace codes = stdlib::return_codes;
 
 namespace {
 
-// P100 and P101 (1053 1610 p. 73).
 constexpr int32_t kMasterSbus = 8;
-constexpr int32_t kSetpointSbus = 10;
-constexpr int32_t kControlSbus = 3;
 
 }  // namespace
 
+// Codes of P100 and P101 (1053 1610 p. 73).
+struct DriveServer::DataBus {
+  int32_t setpoint, control;
+  uint32_t told_shift;
+  static const DataBus sbus, rs485;
+};
+constexpr DriveServer::DataBus DriveServer::DataBus::sbus{10, 3, 0};
+constexpr DriveServer::DataBus DriveServer::DataBus::rs485{2, 1, 8};
+
 DriveServer::DriveServer(const stdlib::UnitType& unit, const MachineData& machine, DriveOptions options)
     : parameters_(unit, options),
+      memory_(parameters_),
       state_(parameters_, machine),
-      variables_(unit.variables),
       serial_{index_of("810"), index_of("811"), index_of("750"), index_of("100")},
       task1_speed_(index_of("938")),
-      task2_speed_(index_of("939")) {
-  parameters_.plug(IndexArea::Variables, variables_);
-  parameters_.plug(IndexArea::Program, code_);
+      task2_speed_(index_of("939")) {}
+
+void DriveServer::power_cycle() {
+  memory_.reload();
+  parameters_.power_cycle();
+  state_.power_cycle();
 }
 
 std::optional<std::string> DriveServer::set_parameter(std::string_view parameter, int32_t value) {
@@ -37,9 +46,7 @@ std::optional<std::string> DriveServer::set_parameter(std::string_view parameter
     return fmt::format("unit {} has no parameter {}", parameters_.unit().name, parameter);
   const ParameterReply reply = parameters_.preset(row->index, value);
   if (reply) return std::nullopt;
-  return fmt::format(
-      "{} = {} is refused: {}", parameter, value,
-      parameters_.explain(static_cast<uint8_t>(ParameterService::Write), row->index, value, reply.error()));
+  return parameters_.explain(static_cast<uint8_t>(ParameterService::Write), row->index, value, reply.error());
 }
 
 uint16_t DriveServer::index_of(std::string_view number) const {
@@ -50,27 +57,39 @@ uint16_t DriveServer::index_of(std::string_view number) const {
 int32_t DriveServer::value(std::string_view number) const { return parameters_.value(index_of(number)); }
 
 vm::Rates DriveServer::rates() const {
+  constexpr int32_t kSharedCommands = 9;
+  const int32_t first = parameters_.value(task1_speed_);
+  const int32_t second = std::min(parameters_.value(task2_speed_), kSharedCommands - first);
   vm::Rates rates;
-  rates.commands[0] = static_cast<uint32_t>(parameters_.value(task1_speed_)) + 1;
-  rates.commands[1] = static_cast<uint32_t>(parameters_.value(task2_speed_)) + 2;
+  rates.commands[0] = static_cast<uint32_t>(first + 1);
+  rates.commands[1] = static_cast<uint32_t>(second + 2);
   return rates;
 }
 
 void DriveServer::connect_program(vm::Machine& machine) {
-  variables_.connect(machine);
-  code_.connect(machine);
+  memory_.variables().use(machine.variables());
+  memory_.program().watch(&machine);
 }
 
-tl::expected<int32_t, ReturnCode> DriveServer::serve(Time /*now*/, const ParameterRequest& request) {
+void DriveServer::disconnect_program() {
+  memory_.variables().park();
+  memory_.program().watch(nullptr);
+}
+
+tl::expected<int32_t, ReturnCode> DriveServer::serve(Time now, const ParameterRequest& request) {
+  memory_.set_time(now);
   const auto service = static_cast<uint8_t>(request.service);
   const ParameterReply reply = parameters_.execute(service, request.index, request.value);
-  if (!reply) reason_ = parameters_.explain(service, request.index, request.value, reply.error());
+  if (!reply) {
+    reason_ = parameters_.explain(service, request.index, request.value, reply.error());
+    if (reply.error() == codes::kProtected) reason_ += " (a program is running)";
+  }
   return reply;
 }
 
 void DriveServer::take_output(Time /*now*/, OutputChannel channel, std::span<const uint16_t> words) {
-  look_for_obstacles(channel);
   const bool slave = channel == OutputChannel::Group && value("100") == kMasterSbus;
+  look_for_obstacles(DataBus::sbus, slave);
   if (!slave) return state_.take_po(PoSource::Sbus, words);
   ProcessWords scaled{};
   std::copy_n(words.begin(), std::min(words.size(), scaled.size()), scaled.begin());
@@ -78,30 +97,31 @@ void DriveServer::take_output(Time /*now*/, OutputChannel channel, std::span<con
 }
 
 // P876, P101 and P100 (1053 1610 p. 41).
-void DriveServer::look_for_obstacles(OutputChannel channel) {
-  const int32_t setpoint = value("100");
-  const bool slave = channel == OutputChannel::Group && setpoint == kMasterSbus;
-  if (value("876") == 0) obstruct(Obstacle::PoDisabled, "PO data have no effect", "876", "ON");
-  if (!slave && value("101") != kControlSbus)
-    obstruct(Obstacle::ControlSource, "the control word has no effect", "101", "SBus");
-  if (!slave && setpoint != kSetpointSbus)
-    obstruct(Obstacle::SetpointSource, "the setpoints have no effect", "100", "SBus");
+void DriveServer::look_for_obstacles(const DataBus& bus, bool slave) {
+  constexpr int32_t kOn = 1;
+  if (value("876") == 0) obstruct(bus, Obstacle::PoDisabled, "PO data have no effect", "876", kOn);
+  if (slave) return;
+  if (value("101") != bus.control)
+    obstruct(bus, Obstacle::ControlSource, "the control word has no effect", "101", bus.control);
+  if (value("100") != bus.setpoint)
+    obstruct(bus, Obstacle::SetpointSource, "the setpoints have no effect", "100", bus.setpoint);
 }
 
-void DriveServer::obstruct(Obstacle obstacle, std::string_view what, std::string_view number,
-                           std::string_view wanted) {
-  const uint32_t bit = 1U << static_cast<uint32_t>(obstacle);
+void DriveServer::obstruct(const DataBus& bus, Obstacle obstacle, std::string_view what,
+                           std::string_view number, int32_t wanted) {
+  const uint32_t bit = 1U << (static_cast<uint32_t>(obstacle) + bus.told_shift);
   if ((told_obstacles_ & bit) != 0) return;
   told_obstacles_ |= bit;
   const stdlib::Parameter* row = parameters_.table().find(number);
   if (row == nullptr) return;
   obstacles_.push_back(fmt::format("{}: P{} {} is {}, not {}", what, number, row->name,
-                                   stdlib::parameter_text(*row, value(number)), wanted));
+                                   stdlib::parameter_text(*row, value(number)),
+                                   stdlib::parameter_text(*row, wanted)));
 }
 
 ProcessWords DriveServer::input(Time /*now*/) { return state_.pi(); }
 
-void DriveServer::synchronize(Time /*now*/) {}
+void DriveServer::synchronize(Time /*now*/) { ++syncs_; }
 
 SerialParameters DriveServer::serial_parameters() const {
   return {static_cast<uint8_t>(parameters_.value(serial_.address)),
@@ -111,6 +131,7 @@ SerialParameters DriveServer::serial_parameters() const {
 
 void DriveServer::Rs485Data::take_output(Time /*now*/, OutputChannel /*channel*/,
                                          std::span<const uint16_t> words) {
+  drive_.look_for_obstacles(DataBus::rs485, false);
   // The monitoring is restarted by cyclic_request().
   drive_.state_.take_po(PoSource::Rs485, words, false);
 }
@@ -128,14 +149,6 @@ void DriveServer::setpoint_received(Time /*now*/, const ProcessWords& words) {
 void DriveServer::link_lost(Time /*now*/) {
   constexpr uint8_t kRs485Timeout = 43;
   state_.raise_fault(kRs485Timeout, FaultResponse::EmergencyError);  // whatever P833 says (MDX60B/61B p. 30)
-}
-
-ParameterReply DriveServer::Code::read(uint16_t offset) {
-  return offset < code_.size() ? static_cast<int32_t>(code_[offset]) : 0;
-}
-
-ParameterReply DriveServer::Code::write(uint16_t /*offset*/, int32_t /*value*/, bool /*nonvolatile*/) {
-  return tl::unexpected(codes::kProtected);
 }
 
 }  // namespace ipos::runtime

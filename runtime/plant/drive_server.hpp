@@ -1,6 +1,5 @@
 // The drive of a station as the rest of the station sees it: it serves the bus's parameter and process data
-// telegrams and MOVLNK address 253 from the drive's parameters and unit state, and opens the areas that
-// belong to the program.
+// telegrams and MOVLNK address 253 from the drive's parameters and unit state, and holds its memory.
 #pragma once
 
 #include <optional>
@@ -14,6 +13,7 @@
 #include "runtime/bus/movilink/unit_servers.hpp"
 #include "runtime/drive/drive.hpp"
 #include "runtime/drive/parameters.hpp"
+#include "runtime/plant/unit_memory.hpp"
 #include "vm/exec/machine.hpp"
 #include "vm/sched/scheduler.hpp"
 
@@ -41,27 +41,35 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
   // Working value of a parameter by its number ("813"); 0 for one the unit does not have.
   int32_t value(std::string_view number) const;
 
-  // Commands per millisecond from P938 and P939 (IPOSplus p. 44).
+  // Commands per millisecond from P938 and P939 (IPOSplus p. 44). Both together add 9 at most, as in the
+  // table there; what is more task 2 does not get (ours).
   vm::Rates rates() const;
 
-  // From now on 11000 + n and 16000 + n lead to the machine's variables and code.
+  // From now on 11000 + n leads to the machine's variables, and 16000 + n is open while it does not run.
   void connect_program(vm::Machine& machine);
+  // Before the machine vanishes.
+  void disconnect_program();
+
+  // Power was off and is back: values from the memory, no fault, no process data.
+  void power_cycle();
 
   Drive& state() { return state_; }
   const Drive& state() const { return state_; }
   ParameterStore& parameters() { return parameters_; }
   const stdlib::UnitType& unit() const { return parameters_.unit(); }
+  UnitMemory& memory() { return memory_; }
 
   // Why the last access was refused, empty when it was not. Reading it clears it.
   std::string take_reason() { return std::exchange(reason_, {}); }
 
-  // What keeps process data that came over the SBus from acting, each told once.
+  // What keeps process data that came over a bus from acting, each told once.
   std::vector<std::string> take_obstacles() { return std::exchange(obstacles_, {}); }
 
   tl::expected<int32_t, ReturnCode> serve(Time now, const ParameterRequest& request) override;
   void take_output(Time now, OutputChannel channel, std::span<const uint16_t> words) override;
   ProcessWords input(Time now) override;
   void synchronize(Time now) override;
+  uint32_t syncs() const { return syncs_; }  // sync telegrams so far
 
   ProcessDataServer& rs485_data() { return rs485_data_; }
   SerialParameters serial_parameters() const;
@@ -84,43 +92,18 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
    private:
     DriveServer& drive_;
   };
-  // IPOS variables, index 11000 + n. They are there without a program, too. Volatile and non-volatile writes
-  // are the same until there is a non-volatile memory.
-  class Variables final : public IndexWindow {
-   public:
-    explicit Variables(uint16_t count) : without_program_(count) {}
-    void connect(vm::Machine& machine) { h_ = machine.variables(); }
-    ParameterReply read(uint16_t offset) override { return h_[offset]; }
-    ParameterReply write(uint16_t offset, int32_t value, bool /*nonvolatile*/) override {
-      return h_[offset] = value;
-    }
-
-   private:
-    std::vector<int32_t> without_program_;
-    std::span<int32_t> h_ = without_program_;
-  };
-  // IPOS program code, index 16000 + n: readable, words behind the program are 0. Writing is refused while it
-  // runs.
-  class Code final : public IndexWindow {
-   public:
-    void connect(const vm::Machine& machine) { code_ = machine.program().code(); }
-    ParameterReply read(uint16_t offset) override;
-    ParameterReply write(uint16_t offset, int32_t value, bool nonvolatile) override;
-
-   private:
-    std::span<const uint32_t> code_;
-  };
 
   enum class Obstacle : uint8_t { PoDisabled, ControlSource, SetpointSource };
-  void look_for_obstacles(OutputChannel channel);
-  void obstruct(Obstacle obstacle, std::string_view what, std::string_view number, std::string_view wanted);
+  struct DataBus;  // a bus as P100 and P101 name it
+  void look_for_obstacles(const DataBus& bus, bool slave);
+  void obstruct(const DataBus& bus, Obstacle obstacle, std::string_view what, std::string_view number,
+                int32_t wanted);
 
   uint16_t index_of(std::string_view number) const;  // 0 for a parameter the unit does not have
 
   ParameterStore parameters_;
+  UnitMemory memory_;
   Drive state_;
-  Variables variables_;
-  Code code_;
   Rs485Data rs485_data_{*this};
   struct SerialIndices {
     uint16_t address, group, slave_setpoint, setpoint_source;
@@ -128,6 +111,7 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
   SerialIndices serial_;  // P810, P811, P750, P100
   uint16_t task1_speed_;  // index of P938
   uint16_t task2_speed_;  // index of P939
+  uint32_t syncs_ = 0;
   std::string reason_;
   std::vector<std::string> obstacles_;
   uint32_t told_obstacles_ = 0;  // a bit each

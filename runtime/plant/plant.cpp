@@ -7,6 +7,7 @@
 #include <array>
 
 #include "runtime/plant/serial_plan.hpp"
+#include "runtime/storage/posix_medium.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -26,20 +27,34 @@ std::vector<PlantError> verify_program(const StationConfig& station, const vm::I
   return errors;
 }
 
+// What the memory file holds is there before the parameters of the plant file are set.
+void open_memory(const StationConfig& config, Station& station, std::vector<PlantError>& errors) {
+  if (config.nvram.empty()) return;
+  auto medium = open_posix_medium(config.nvram, FileUse::Write);
+  if (!medium)
+    errors.push_back({config.nvram_place, fmt::format("station '{}': {} cannot be used: {}", config.name,
+                                                      config.nvram, medium.error())});
+  else if (const auto refused = station.use_memory(std::move(*medium), config.nvram))
+    errors.push_back({config.nvram_place, fmt::format("station '{}': {}", config.name, *refused)});
+}
+
 }  // namespace
 
 Plant::Plant(PlantFile file, std::vector<std::optional<vm::Image>> programs, std::optional<vm::Rates> rates,
              std::vector<PlantError>& errors)
     : file_(std::move(file)) {
-  // Sources order the events of one moment: first the lines, then stations and controls, each in the order of
-  // the file.
+  // Sources order the events of one moment: first the lines, then the surroundings, then stations and
+  // controls, each in the order of the file.
   make_lines();
+  surroundings_ = std::make_unique<Surroundings>(queue_, next_source_++, journal_);
   for (size_t n = 0; n < file_.stations.size(); ++n) add_station(n, std::move(programs[n]), rates, errors);
   for (const ControlConfig& config : file_.controls)
     controls_.push_back({&config, find_line(config.sbus),
                          std::make_unique<SbusControl>(queue_, next_source_++, config.settings), nullptr});
+  surroundings_->connect(file_, stations_, errors);
   resolve_expectations(errors);
   if (!errors.empty()) return;
+  surroundings_->start();
   tell_findings();
   power_on();
   start_checks();
@@ -56,6 +71,7 @@ void Plant::add_station(size_t number, std::optional<vm::Image> program, std::op
   }
   stations_.push_back(
       std::make_unique<Station>(queue_, next_source_++, config, std::move(program), lines, journal_, rates));
+  open_memory(config, *stations_.back(), errors);
   for (const ParameterSetting& setting : config.parameters)
     if (const auto refused = stations_.back()->set_parameter(setting))
       errors.push_back({setting.place, fmt::format("station '{}': {}", config.name, *refused)});
@@ -163,16 +179,10 @@ void Plant::tell_findings() {
 
 void Plant::resolve_expectations(std::vector<PlantError>& errors) {
   for (const Expectation& expectation : file_.expectations) {
-    const auto station = std::find_if(stations_.begin(), stations_.end(), [&](const auto& candidate) {
-      return candidate->config().name == expectation.station;
-    });
-    if (station == stations_.end()) continue;  // reported by read_plant_file
-    const auto variable = (*station)->find_variable(expectation.variable);
-    if (variable)
-      due_.push_back({&expectation, station->get(), *variable});
-    else
-      errors.push_back({expectation.place, fmt::format("station '{}' has no variable '{}'",
-                                                       expectation.station, expectation.variable)});
+    std::string why;
+    const auto port = SignalPort::find(stations_, expectation.signal, why);
+    if (port) due_.push_back({&expectation, *port});
+    if (!why.empty()) errors.push_back({expectation.place, why});
   }
   std::stable_sort(due_.begin(), due_.end(),
                    [](const Due& a, const Due& b) { return a.expectation->at < b.expectation->at; });
@@ -206,9 +216,15 @@ void Plant::check_expectations(Time until) {
   for (; next_due_ < due_.size() && due_[next_due_].expectation->at < until; ++next_due_) {
     const Due& due = due_[next_due_];
     if (due.expectation->at > queue_.now()) queue_.run_until(due.expectation->at);
-    const int32_t actual = due.station->variable(due.variable);
+    const int32_t actual = due.port.read();
     results_.push_back({due.expectation, actual == due.expectation->equals, actual});
   }
+}
+
+bool Plant::store_memories() {
+  bool all = true;
+  for (const auto& station : stations_) all &= station->store_memory();
+  return all;
 }
 
 bool Plant::programs_over() const {

@@ -13,7 +13,9 @@
 #include "runtime/bus/movilink/sbus_check.hpp"
 #include "runtime/bus/rs485/line.hpp"
 #include "runtime/plant/plant_file.hpp"
+#include "runtime/plant/signal_port.hpp"
 #include "runtime/plant/station.hpp"
+#include "runtime/plant/surroundings.hpp"
 #include "runtime/services/journal.hpp"
 
 namespace ipos::runtime {
@@ -57,6 +59,9 @@ class Plant final : private CanObserver, private SbusCheckClient {
   // Runs until `end`; expectations that fall due are checked. Returns false when `keep_going` said so: it is
   // asked once a millisecond of virtual time.
   bool run_until(Time end, const std::function<bool(Time)>& keep_going = {});
+
+  // The run is over: what is still to be stored is stored. False: the journal says what could not be.
+  bool store_memories();
 
   bool programs_over() const;
   bool has_fault() const;
@@ -102,13 +107,13 @@ class Plant final : private CanObserver, private SbusCheckClient {
   std::vector<std::unique_ptr<CanLine>> lines_;
   std::vector<std::unique_ptr<SerialLine>> serial_lines_;  // of the file, then those to keypads
   std::vector<std::unique_ptr<SbusCheck>> checks_;         // one a line
+  std::unique_ptr<Surroundings> surroundings_;
   std::vector<std::unique_ptr<Station>> stations_;
   std::vector<PlantControl> controls_;
 
   struct Due {
     const Expectation* expectation;
-    Station* station;
-    uint32_t variable;
+    SignalPort port;
   };
   std::vector<Due> due_;  // in order of time
   size_t next_due_ = 0;

@@ -14,15 +14,11 @@
 #include "runtime/drive/parameters.hpp"
 #include "runtime/drive/setpoint.hpp"
 #include "runtime/motion/machine_data.hpp"
+#include "runtime/plant/signal.hpp"
+#include "runtime/plant/toml_text.hpp"
 #include "stdlib/unit_types.hpp"
 
 namespace ipos::runtime {
-
-// Where something stands in the plant file, from 1; 0 when it does not stand there.
-struct FilePlace {
-  uint32_t line = 0;
-  uint32_t column = 0;
-};
 
 enum class BusKind : uint8_t { Can, Rs485, Rs232, Profibus };
 
@@ -82,6 +78,7 @@ struct StationConfig {
   std::string program;  // as written, relative to the plant file; empty: no program
   std::string sbus;     // name of a bus, or empty
   std::string sbus2;    // SBus 2 of a MOVIDRIVE B
+  std::string nvram;    // file of the non-volatile memory; empty: kept for the run only
   SerialConfig serial;
   std::string device;              // type designation, where a rule needs it: "MCH42A"
   std::optional<bool> terminator;  // S12, for `ipos bus plan`
@@ -93,6 +90,7 @@ struct StationConfig {
   std::vector<std::string> hex;  // variables the watch shows in hexadecimal
   FilePlace place;
   FilePlace program_place;
+  FilePlace nvram_place;
 };
 
 // A master control on an SBus: process data to units, and the sync telegram.
@@ -112,11 +110,45 @@ struct FaultConfig {
   FilePlace place;
 };
 
-// At a point of virtual time a variable of a station has a value.
+// Something outside of the stations that happens at its time: a hand on a switch, a write of an operator.
+struct Stimulus {
+  enum class Action : uint8_t {
+    Set,      // once
+    Force,    // held against program, wires and switches
+    Release,  // ends Force
+    Pulse,    // Force for a while, then what was before
+  };
+  Signal signal;
+  Action action = Action::Set;
+  int32_t value = 0;
+  int64_t at = 0;      // ns
+  int64_t length = 0;  // ns, of Pulse; of Force 0: until Release
+  int64_t every = 0;   // ns; 0: only once
+  int64_t times = 0;   // with `every`; 0: without end
+  FilePlace place;
+};
+
+// A binary output of a station on a binary input, of another one or the same.
+struct Wire {
+  Signal from;
+  Signal to;
+  bool invert = false;
+  FilePlace place;
+};
+
+// A limit switch or cam: an input that tells whether the axis is between two positions, both included.
+struct PositionSwitch {
+  Signal input;
+  int32_t from = INT32_MIN;  // increments
+  int32_t to = INT32_MAX;
+  bool active_high = true;  // level within
+  FilePlace place;
+};
+
+// At a point of virtual time a signal of a station has a value.
 struct Expectation {
-  std::string station;
-  int64_t at = 0;        // ns
-  std::string variable;  // symbol or Hn
+  Signal signal;
+  int64_t at = 0;  // ns
   int32_t equals = 0;
   FilePlace place;
 };
@@ -126,6 +158,9 @@ struct PlantFile {
   std::vector<StationConfig> stations;
   std::vector<ControlConfig> controls;
   std::vector<FaultConfig> faults;
+  std::vector<Stimulus> stimuli;
+  std::vector<Wire> wires;
+  std::vector<PositionSwitch> switches;
   std::vector<Expectation> expectations;
 };
 
@@ -143,8 +178,5 @@ PlantFileResult read_plant_file(std::string_view text);
 
 // "500ms", "1.5s", "20us", "2min": nanoseconds, or -1 when it is no duration.
 int64_t parse_duration(std::string_view text);
-
-// "DI03" or "DI12": bit of InputLevel H483, or -1. DI00..DI07 are bits 0..7, DI10..DI17 bits 8..15 (ours).
-int parse_input(std::string_view name);
 
 }  // namespace ipos::runtime

@@ -41,15 +41,25 @@ SbusSettings sbus_settings(const DriveServer& drive, int sbus) {
   return settings;
 }
 
-SbusPort::SbusPort(EventQueue& queue, uint32_t source, CanLine& line, int sbus, std::string_view station,
-                   const SbusSettings& settings, DriveServer& drive, MovilinkCommand& movilink,
-                   Journal& journal)
+NodeId SbusPort::connect(CanLine& line, std::optional<NodeId> node, std::string_view station, uint32_t baud,
+                         CanNode& port) {
+  if (!node) return line.attach(std::string(station), baud, port);
+  line.replace(*node, port);
+  line.set_baud(*node, baud);
+  line.restart(*node);
+  line.set_connected(*node, true);
+  return *node;
+}
+
+SbusPort::SbusPort(EventQueue& queue, uint32_t source, CanLine& line, std::optional<NodeId> node, int sbus,
+                   std::string_view station, const SbusSettings& settings, DriveServer& drive,
+                   MovilinkCommand& movilink, Journal& journal)
     : line_(line),
       station_(station),
       settings_(settings),
       drive_(drive),
       journal_(journal),
-      sender_(line, line.attach(std::string(station), settings.baud, *this)),
+      sender_(line, connect(line, node, station, settings.baud, *this)),
       slave_(queue, source, sender_, kSlaveTag, settings.slave, {}, drive, drive, this),
       objects_(drive.unit(), settings.baud, sender_, kObjectTags, sbus),
       movilink_(movilink),
@@ -71,6 +81,12 @@ void SbusPort::note(Time now, Weight weight, std::string text) {
 
 void SbusPort::stop_program() { objects_.stop(); }
 
+void SbusPort::power_off() {
+  objects_.stop();
+  machine_ = nullptr;
+  line_.set_connected(node(), false);
+}
+
 void SbusPort::tick(Time now) {
   group_master_.tick(now);
   if (machine_ != nullptr) objects_.tick(now / kMillisecond, machine_->variables());
@@ -90,12 +106,13 @@ void SbusPort::on_frame(Time now, const Frame& frame) {
 
 void SbusPort::on_sent(Time now, const Frame& /*frame*/, uint64_t tag) {
   if (tag == kMasterTag) master_.on_sent(now, tag);
-  if (tag >= kObjectTags) objects_.on_sent(tag, machine_->variables());
+  if (tag >= kObjectTags && machine_ != nullptr) objects_.on_sent(tag, machine_->variables());
 }
 
 void SbusPort::on_not_sent(Time /*now*/, const Frame& /*frame*/, uint64_t tag, NotSent reason) {
   // A disturbed frame is sent again by the controller; nobody else learns of it.
-  if (tag >= kObjectTags && reason != NotSent::Corrupted) objects_.on_not_sent(tag, machine_->variables());
+  if (tag >= kObjectTags && machine_ != nullptr && reason != NotSent::Corrupted)
+    objects_.on_not_sent(tag, machine_->variables());
 }
 
 // No manual says what a drive does; it asks its controller to come back at once (ours).

@@ -2,6 +2,7 @@
 // objects and the group telegrams of master/slave operation share one place on the line.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -28,12 +29,15 @@ SbusSettings sbus_settings(const DriveServer& drive, int sbus);
 
 class SbusPort final : private CanNode, private SlaveObserver {
  public:
-  // Attaches to the line. `sbus` is 1 or 2. All references must outlive the port.
-  SbusPort(EventQueue& queue, uint32_t source, CanLine& line, int sbus, std::string_view station,
-           const SbusSettings& settings, DriveServer& drive, MovilinkCommand& movilink, Journal& journal);
+  // Attaches to the line, or takes the place `node` of a port that went with a power-off. `sbus` is 1 or 2.
+  // All references must outlive the port.
+  SbusPort(EventQueue& queue, uint32_t source, CanLine& line, std::optional<NodeId> node, int sbus,
+           std::string_view station, const SbusSettings& settings, DriveServer& drive,
+           MovilinkCommand& movilink, Journal& journal);
 
   void connect_program(vm::Machine& machine) { machine_ = &machine; }
   void stop_program();  // a program stop ends cyclic sending and receiving (1053 1610 p. 54)
+  void power_off();     // the line is told first, as frames that were waiting come back
   void tick(Time now);  // once a millisecond, after the tasks
 
   NodeId node() const { return sender_.node(); }
@@ -47,6 +51,8 @@ class SbusPort final : private CanNode, private SlaveObserver {
   const GroupMaster& group_master() const { return group_master_; }
 
  private:
+  static NodeId connect(CanLine& line, std::optional<NodeId> node, std::string_view station, uint32_t baud,
+                        CanNode& port);
   void on_frame(Time now, const Frame& frame) override;
   void on_sent(Time now, const Frame& frame, uint64_t tag) override;
   void on_not_sent(Time now, const Frame& frame, uint64_t tag, NotSent reason) override;

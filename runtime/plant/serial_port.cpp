@@ -12,46 +12,67 @@ namespace ipos::runtime {
 SerialPort::SerialPort(EventQueue& queue, uint32_t source, Rs485Line& line, uint32_t baud,
                        const std::string& station, std::string socket, bool master_slave, DriveServer& drive,
                        MovilinkClient& client, Journal& journal)
-    : station_(station),
+    : queue_(queue),
+      source_(source),
+      line_(line),
+      station_(station),
       socket_(std::move(socket)),
       master_slave_(master_slave),
       drive_(drive),
+      client_(client),
       journal_(journal),
-      port_(line, line.attach(station, baud, *this)),
-      slave_(queue, source, port_, {}, {}, drive, drive.rs485_data(), drive, this),
-      requester_(queue, source, port_),
-      master_(queue, requester_, client),
-      setpoints_(queue, source, requester_, drive) {
+      port_(line, line.attach(station, baud, *this)) {
+  parts_.emplace(*this);
   configure(queue.now());
+}
+
+SerialPort::Parts::Parts(SerialPort& port)
+    : slave(port.queue_, port.source_, port.port_, {}, {}, port.drive_, port.drive_.rs485_data(), port.drive_,
+            &port),
+      requester(port.queue_, port.source_, port.port_),
+      master(port.queue_, requester, port.client_),
+      setpoints(port.queue_, port.source_, requester, port.drive_) {}
+
+void SerialPort::power_off() {
+  line_.set_connected(port_.node(), false);
+  parts_.reset();
+}
+
+void SerialPort::power_on(Time now) {
+  line_.set_connected(port_.node(), true);
+  parts_.emplace(*this);
+  configure(now);
 }
 
 void SerialPort::configure(Time now) {
   const SerialParameters p = drive_.serial_parameters();
   const bool sends = master_slave_ && sends_setpoints(p.slave_setpoint);
-  slave_.configure({p.address, p.group, sends, master_slave_ && p.setpoint_source == kFollowsRs485Master});
+  parts_->slave.configure(
+      {p.address, p.group, sends, master_slave_ && p.setpoint_source == kFollowsRs485Master});
   if (!sends || p.group <= kNoGroupAddress)
-    setpoints_.stop();
+    parts_->setpoints.stop();
   else
-    setpoints_.start(now, p.group);
+    parts_->setpoints.start(now, p.group);
 }
 
 void SerialPort::on_character(Time now, const Character& character) {
-  slave_.on_character(now, character);
-  requester_.on_character(now, character);
+  parts_->slave.on_character(now, character);
+  parts_->requester.on_character(now, character);
   if (std::string refused = drive_.take_reason(); !refused.empty())
     explain(now, "refused " + std::move(refused));
+  for (std::string& obstacle : drive_.take_obstacles()) explain(now, std::move(obstacle));
 }
 
 void SerialPort::on_sent(Time now) {
-  slave_.on_sent(now);
-  requester_.on_sent(now);
+  parts_->slave.on_sent(now);
+  parts_->requester.on_sent(now);
 }
 
 void SerialPort::on_rejected(Time now, const Reception& reception, SerialError error) {
   if (error == SerialError::Address && reception.telegram)
-    return explain(
-        now, fmt::format("request to {} is not for this unit: it has P810 = {} and P811 = {}",
-                         reception.telegram->address, slave_.settings().address, slave_.settings().group));
+    return explain(now, fmt::format("request to {} is not for this unit: it has P810 = {} and P811 = {}",
+                                    reception.telegram->address, parts_->slave.settings().address,
+                                    parts_->slave.settings().group));
   explain(now, fmt::format("telegram not accepted: {}", serial_error_text(error)));
 }
 

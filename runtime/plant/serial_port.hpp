@@ -1,6 +1,7 @@
 // One RS-485 interface of a station: slave, requests of its own and master/slave operation on one line.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "runtime/bus/movilink/master_slave.hpp"
@@ -20,11 +21,16 @@ class SerialPort final : private SerialNode, private SerialSlaveObserver {
              std::string socket, bool master_slave, DriveServer& drive, MovilinkClient& client,
              Journal& journal);
 
+  // Power of the unit: off it neither hears nor answers, and nothing it had under way is sent any more. On
+  // again, master() is another one.
+  void power_off();
+  void power_on(Time now);
+
   // Takes over P810, P811, P750 and P100; once a millisecond.
   void configure(Time now);
 
-  MovilinkMaster& master() { return master_; }
-  const SerialSlave& slave() const { return slave_; }
+  MovilinkMaster& master() { return parts_->master; }
+  const SerialSlave& slave() const { return parts_->slave; }
 
  private:
   void on_character(Time now, const Character& character) override;
@@ -33,16 +39,25 @@ class SerialPort final : private SerialNode, private SerialSlaveObserver {
   void on_ignored(Time now, const SerialTelegram& request, Ignored reason, ReturnCode code) override;
   void explain(Time now, std::string text);
 
+  struct Parts {
+    explicit Parts(SerialPort& port);
+    SerialSlave slave;
+    SerialRequester requester;
+    SerialMaster master;
+    SetpointSender setpoints;
+  };
+
+  EventQueue& queue_;
+  uint32_t source_;
+  Rs485Line& line_;
   const std::string& station_;
   std::string socket_;
   bool master_slave_;
   DriveServer& drive_;
+  MovilinkClient& client_;
   Journal& journal_;
   SerialLinePort port_;
-  SerialSlave slave_;
-  SerialRequester requester_;
-  SerialMaster master_;
-  SetpointSender setpoints_;
+  std::optional<Parts> parts_;  // while the power is on
 };
 
 }  // namespace ipos::runtime

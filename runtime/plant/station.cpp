@@ -8,11 +8,13 @@
 
 #include "runtime/plant/serial_plan.hpp"
 #include "runtime/services/drive_variables.hpp"
+#include "runtime/services/source_places.hpp"
 #include "stdlib/faults.hpp"
 
 namespace ipos::runtime {
 namespace {
 
+constexpr uint8_t kFaultWatchdog = 41;
 constexpr uint32_t kTick = 0;  // the only kind of event a station schedules
 
 }  // namespace
@@ -32,32 +34,51 @@ Station::Station(EventQueue& queue, uint32_t source, const StationConfig& config
       drive_(*config.unit, config.machine, config.options),
       movilink_(drive_, drive_, journal, config.name),
       image_(std::move(program)),
-      rates_(rates) {}
+      rates_(rates) {
+  for (const InputSetting& input : config.inputs) inputs_.line(input.input).set = input.level ? 1 : 0;
+  AnalogInputs analog = config.analog;
+  for (size_t n = kBinaryLines; n < kInputLines; ++n) inputs_.line(n).set = analog_value(analog, n);
+}
 
 std::optional<std::string> Station::set_parameter(const ParameterSetting& setting) {
   return drive_.set_parameter(setting.parameter, setting.value);
 }
 
 void Station::power_on() {
-  uint32_t inputs = 0;
-  for (const InputSetting& input : config_.inputs) inputs |= (input.level ? 1U : 0U) << input.input;
-  drive_.state().set_inputs(static_cast<uint16_t>(inputs));
-  drive_.state().set_analog(config_.analog);
+  if (powered_) return;
+  powered_ = true;
+  fault_reported_ = false;
+  told_fault_ = 0;
+  if (was_off_) {
+    drive_.disconnect_program();
+    machine_.reset();
+    drive_.power_cycle();
+  }
+  if (const uint8_t fault = drive_.memory().fault(); fault != 0) drive_.state().raise_fault(fault);
+  if (config_.unit->generation != stdlib::Generation::M07) {
+    positioning_.emplace(drive_.state(), drive_.parameters(), journal_, config_.name,
+                         [this](uint32_t address) { return source_place(address); });
+    positioning_commands_.emplace(*positioning_);
+  }
   for (const int number : {1, 2}) connect_sbus(number);
   connect_serial();
-  if (image_) {
-    const auto objects = [this](int number) {
-      SbusPort* port = sbus(number);
-      return port == nullptr ? nullptr : &port->objects();
-    };
-    commands_.emplace(queue_, journal_, config_.name, std::array{objects(1), objects(2)}, movilink_);
-    machine_.emplace(*vm::verify(image_->code, limits_of(*config_.unit), {}).image, commands_->host());
-    drive_.connect_program(*machine_);
-    for (const auto& port : sbus_)
-      if (port) port->connect_program(*machine_);
-    machine_->start();
-  }
-  queue_.schedule(queue_.now(), source_, *this, kTick);
+  restart_program_memory();
+  tick_ = queue_.schedule(queue_.now(), source_, *this, kTick);
+}
+
+StationServices Station::services() {
+  const auto objects = [this](int number) {
+    SbusPort* port = sbus(number);
+    return port == nullptr ? nullptr : &port->objects();
+  };
+  return {queue_,
+          drive_.state(),
+          drive_.parameters(),
+          timers_,
+          drive_.memory(),
+          movilink_,
+          {objects(1), objects(2)},
+          positioning_commands_ ? &*positioning_commands_ : nullptr};
 }
 
 void Station::connect_sbus(int number) {
@@ -69,11 +90,15 @@ void Station::connect_sbus(int number) {
         queue_.now(), Weight::Warning, config_.name,
         fmt::format("SBus {} is silent: its protocol is CANopen (P{}), which is not simulated", number,
                     number == 1 ? 880 : 890));
-  sbus_[static_cast<size_t>(number - 1)] = std::make_unique<SbusPort>(
-      queue_, source_, *line, number, config_.name, settings, drive_, movilink_, journal_);
+  // After a power-off the new port takes the place of the old one on the line.
+  auto& port = sbus_[static_cast<size_t>(number - 1)];
+  const std::optional<NodeId> node = port ? std::optional(port->node()) : std::nullopt;
+  port = std::make_unique<SbusPort>(queue_, source_, *line, node, number, config_.name, settings, drive_,
+                                    movilink_, journal_);
 }
 
 void Station::connect_serial() {
+  if (was_off_) return reconnect_serial();
   if (lines_.x13 != nullptr) {
     x13_ = std::make_unique<SerialPort>(queue_, source_, *lines_.x13, kX13Baud, config_.name, "X13", true,
                                         drive_, movilink_.client(MovilinkBus::SerialX13), journal_);
@@ -89,19 +114,94 @@ void Station::connect_serial() {
 }
 
 void Station::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
-  drive_.state().tick();
+  drive_.state().set_inputs(inputs_.levels());
+  drive_.state().set_analog(inputs_.analog());
+  drive_.state().tick(positioning_ && machine_
+                          ? positioning_->order(now, machine_->variables(), drive_.syncs())
+                          : PositionControl{});
   report_drive(now);
   if (x13_) x13_->configure(now);
   if (xt_) xt_->configure(now);
   if (machine_) {
-    show_drive(drive_.state(), machine_->variables());
-    vm::run_tick(*machine_, rates_.value_or(drive_.rates()));
-    take_program_orders(machine_->variables(), drive_.state());
-    if (machine_->fault().number != 0 && !fault_reported_) report_fault(now);
+    begin_program(now);
+    if (!run_commands()) return;
   }
+  end_tick(now);
+}
+
+bool Station::run_commands() {
+  const vm::Rates rates = rates_.value_or(drive_.rates());
+  if (runner_ == nullptr) {
+    vm::run_tick(*machine_, rates);
+    return true;
+  }
+  if (!in_tick_) steps_.begin(*machine_, rates);
+  in_tick_ = !runner_->run(*this, *machine_, steps_);
+  return !in_tick_;
+}
+
+void Station::resume_tick() {
+  if (in_tick_ && run_commands()) end_tick(queue_.now());
+}
+
+void Station::end_tick(Time now) {
+  if (machine_) end_program(now);
   for (const auto& port : sbus_)
     if (port) port->tick(now);
-  queue_.schedule(now + kMillisecond, source_, *this, kTick);
+  drive_.memory().tick(now);
+  note_memory(now);
+  tick_ = queue_.schedule(now + kMillisecond, source_, *this, kTick);
+}
+
+void Station::begin_program(Time now) {
+  const std::span<int32_t> h = machine_->variables();
+  raise_drive_events();
+  restart_after_reset(now);
+  mirrored_->show(h);
+  show_drive(drive_.state(), h);
+  if (positioning_) {
+    positioning_->show(now, h);
+    if (positioning_->positioner().touch_probes().probe(0).fresh)
+      machine_->raise_event(vm::Event::TouchProbe);
+    positioning_commands_->tick(*machine_);
+  }
+  if (machine_->fault().number == 0) {
+    const Timers::Expired expired = timers_.tick(h);
+    if (expired.timer_0) machine_->raise_event(vm::Event::Timer0);
+    if (expired.watchdog) machine_->raise_fault(kFaultWatchdog, "the watchdog has run out, H490 is 0");
+  }
+  if (pid_) pid_->tick(h);
+}
+
+void Station::end_program(Time now) {
+  const std::span<int32_t> h = machine_->variables();
+  mirrored_->take(h);
+  take_program_orders(h, drive_.state());
+  // MOVLNK to the own unit.
+  if (std::string refused = drive_.take_reason(); !refused.empty())
+    journal_.note(now, Weight::Why, config_.name, "refused " + std::move(refused));
+  if (machine_->fault().number != 0 && !fault_reported_) report_fault(now);
+}
+
+// An error that is new, or back after a reset, is the event of the ERROR interrupt; warnings are not (ours).
+void Station::raise_drive_events() {
+  const Drive& drive = drive_.state();
+  const uint8_t error = drive.error() ? drive.fault() : 0;
+  if (error != 0 && (error != error_seen_ || drive.resets() != resets_seen_))
+    machine_->raise_event(vm::Event::Error);
+  error_seen_ = error;
+}
+
+// A program that a fault has stopped begins anew when the fault is reset, by whatever (ours); its variables
+// keep their values.
+void Station::restart_after_reset(Time now) {
+  const uint32_t resets = drive_.state().resets();
+  if (resets != resets_seen_ && machine_->fault().number != 0) {
+    journal_.note(now, Weight::Why, config_.name, "the program starts anew after the reset of its fault");
+    machine_->start();
+    fault_reported_ = false;
+  }
+  resets_seen_ = resets;
 }
 
 void Station::report_fault(Time now) {
@@ -110,11 +210,15 @@ void Station::report_fault(Time now) {
   for (const auto& port : sbus_)
     if (port) port->stop_program();
   movilink_.stop();
+  timers_.stop_watchdog();
   drive_.state().raise_fault(fault.number);
+  resets_seen_ = drive_.state().resets();
   const std::string place = source_place(fault.address);
-  journal_.note(now, Weight::Fault, config_.name,
-                fmt::format("F{:02} in task {} at {}word {}: {}", fault.number, fault.task,
-                            place.empty() ? "" : place + ", ", fault.address, fault.reason));
+  journal_.note(
+      now, Weight::Fault, config_.name,
+      fmt::format("F{:02} in task {}{} at {}word {}: {}", fault.number, fault.task,
+                  fault.context == fault.task ? "" : fmt::format(" ({})", vm::context_name(fault.context)),
+                  place.empty() ? "" : place + ", ", fault.address, fault.reason));
 }
 
 // Faults, and with --why every change of the reason why the drive is not enabled or takes another setpoint.
@@ -176,13 +280,7 @@ std::optional<uint32_t> Station::find_variable(std::string_view name) const {
 }
 
 std::string Station::source_place(uint32_t address) const {
-  if (!image_) return {};
-  const auto next =
-      std::upper_bound(image_->lines.begin(), image_->lines.end(), address,
-                       [](uint32_t at, const vm::LineEntry& entry) { return at < entry.address; });
-  if (next == image_->lines.begin()) return {};
-  const vm::LineEntry& entry = *(next - 1);
-  return fmt::format("{}:{}:{}", image_->files[entry.file], entry.line, entry.column);
+  return image_ && code_ == image_->code ? runtime::source_place(*image_, address) : std::string();
 }
 
 }  // namespace ipos::runtime

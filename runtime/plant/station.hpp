@@ -15,9 +15,15 @@
 #include "runtime/plant/plant_file.hpp"
 #include "runtime/plant/sbus_port.hpp"
 #include "runtime/plant/serial_port.hpp"
+#include "runtime/plant/station_inputs.hpp"
 #include "runtime/services/journal.hpp"
+#include "runtime/services/mirrored_values.hpp"
+#include "runtime/services/pid_block.hpp"
+#include "runtime/services/positioning_commands.hpp"
 #include "runtime/services/system_commands.hpp"
+#include "runtime/services/timers.hpp"
 #include "vm/exec/machine.hpp"
+#include "vm/fast/predecode.hpp"
 #include "vm/image/image.hpp"
 #include "vm/sched/scheduler.hpp"
 
@@ -33,6 +39,19 @@ struct StationLines {
   Rs485Line* xt = nullptr;  // with a keypad the line to it
 };
 
+class Station;
+
+// Executes commands in place of the scheduler: a debugger.
+class CommandRunner {
+ public:
+  // The commands left of this millisecond. False: it stops between two of them; Station::resume_tick() goes
+  // on, and until then no other event may run.
+  virtual bool run(Station& station, vm::Machine& machine, vm::TickSteps& steps) = 0;
+
+ protected:
+  ~CommandRunner() = default;
+};
+
 class Station final : private EventTarget {
  public:
   // `program` is empty for a station without IPOS program. The config and the journal must outlive the
@@ -44,14 +63,39 @@ class Station final : private EventTarget {
   // Applies a parameter of the plant file; nothing when it was accepted, else why not.
   std::optional<std::string> set_parameter(const ParameterSetting& setting);
 
-  // After all parameters are set: connects to the bus and starts the program.
+  // Keeps what survives power-off on `medium`, and takes over what is there; nothing when that is possible,
+  // else why not. Before the parameters are set. Without it everything is kept for the run only.
+  std::optional<std::string> use_memory(std::unique_ptr<NvMedium> medium, std::string name) {
+    return drive_.memory().open(std::move(medium), std::move(name));
+  }
+
+  // The first time after all parameters are set: connects to the bus and starts the program. After
+  // power_off() the unit begins again with what its memory holds; parameters of the plant file are not set
+  // again.
   void power_on();
+  void power_off();
+  bool powered() const { return powered_; }
+
+  // The program memory, which may have been changed through indices 16000 + n, is verified and started from
+  // its beginning; variables keep their values. Nothing when it was started, else the rule it breaks.
+  std::optional<std::string> start_program();
+  void stop_program();
+
+  // From the next tick on; it must outlive the station.
+  void use_runner(CommandRunner& runner) { runner_ = &runner; }
+  // The station stands in the middle of its tick.
+  bool in_tick() const { return in_tick_; }
+  void resume_tick();
+
+  // Stores what is still to be stored, at the end of the run. False: that failed, the journal says why.
+  bool store_memory();
 
   const StationConfig& config() const { return config_; }
   const vm::Image* image() const { return image_ ? &*image_ : nullptr; }
   const vm::Machine* machine() const { return machine_ ? &*machine_ : nullptr; }
   DriveServer& drive() { return drive_; }
   const DriveServer& drive() const { return drive_; }
+  StationInputs& inputs() { return inputs_; }
 
   // SBus 1 or 2; null when the station is not on it.
   const SbusPort* sbus(int number) const { return sbus_[static_cast<size_t>(number - 1)].get(); }
@@ -73,7 +117,17 @@ class Station final : private EventTarget {
  private:
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
   void connect_sbus(int number);
+  void restart_program_memory();
+  void note_memory(Time now);
   void connect_serial();
+  void reconnect_serial();
+  void begin_program(Time now);
+  bool run_commands();
+  void end_program(Time now);
+  void end_tick(Time now);
+  void raise_drive_events();
+  void restart_after_reset(Time now);
+  StationServices services();
   void report_fault(Time now);
   void report_drive(Time now);
 
@@ -83,8 +137,12 @@ class Station final : private EventTarget {
   StationLines lines_;
   Journal& journal_;
   DriveServer drive_;
+  StationInputs inputs_;
   MovilinkCommand movilink_;
   std::optional<vm::Image> image_;
+  std::vector<uint32_t> code_;  // what the machine runs: the verified program memory
+  std::vector<vm::fast::Slot> slots_;
+  std::optional<vm::fast::Predecoded> predecoded_;  // in slots_
   std::array<std::unique_ptr<SbusPort>, 2> sbus_;
 
   // RS-485; empty without a line.
@@ -92,10 +150,24 @@ class Station final : private EventTarget {
   std::unique_ptr<SerialPort> xt_;
   std::unique_ptr<Keypad> keypad_;
 
+  // What the program works with.
+  Timers timers_;
+  std::optional<MirroredValues> mirrored_;
+  std::optional<PidBlock> pid_;                    // MOVIDRIVE B
+  std::optional<PositioningService> positioning_;  // of a unit that has it
+  std::optional<PositioningCommands> positioning_commands_;
   std::optional<SystemCommands> commands_;
   std::optional<vm::Machine> machine_;
   std::optional<vm::Rates> rates_;  // instead of P938 and P939
-  bool fault_reported_ = false;     // of the program
+  CommandRunner* runner_ = nullptr;
+  vm::TickSteps steps_;  // with a runner
+  bool in_tick_ = false;
+  bool powered_ = false;
+  bool was_off_ = false;
+  EventId tick_ = kNoEvent;
+  bool fault_reported_ = false;  // of the program
+  uint32_t resets_seen_ = 0;     // of the drive's faults
+  uint8_t error_seen_ = 0;       // error of the drive in the last millisecond
   // What was last told of the drive.
   uint8_t told_fault_ = 0;
   uint16_t told_reserved_ = 0;  // bits of the control word

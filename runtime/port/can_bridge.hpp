@@ -8,18 +8,12 @@
 #include <vector>
 
 #include "runtime/bus/can/line.hpp"
+#include "runtime/port/bridge.hpp"
 #include "runtime/port/can_port.hpp"
-#include "runtime/port/real_time.hpp"
 
 namespace ipos::runtime {
 
-struct BridgeCounts {
-  uint64_t undelivered = 0;  // from the port, while no simulated station took part in the line
-  uint64_t late = 0;         // from the port, at a virtual time that had passed: put on the line at once
-  Time worst_late = 0;
-};
-
-class CanBridge final : public RealTimeMember, private CanNode, private EventTarget {
+class CanBridge final : public Bridge, private CanNode, private EventTarget {
  public:
   // Attaches itself to the line, under the port's name. `source` orders its events. Line and port must
   // outlive it.
@@ -31,11 +25,12 @@ class CanBridge final : public RealTimeMember, private CanNode, private EventTar
   bool collect(Time epoch) override;
   bool flush() override;
 
-  const CanPort& port() const { return port_; }
+  const CanPort& port() const override { return port_; }
+  std::string_view goods() const override { return "frames"; }
   const CanLine& line() const { return line_; }
-  const BridgeCounts& counts() const { return counts_; }
-  size_t waiting() const { return arrivals_.size(); }  // from the port, not on the line yet
-  std::vector<std::string> take_notes();               // of the bridge and its port
+  const BridgeCounts& counts() const override { return counts_; }
+  size_t waiting() const override { return arrivals_.size(); }
+  std::vector<std::string> take_notes() override;
 
  private:
   struct Arrival {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cerrno>
+#include <charconv>
 
 #include "runtime/port/parity_marks.hpp"
 #include "runtime/port/pty.hpp"
@@ -18,10 +19,12 @@ std::string_view as_text(std::span<const uint8_t> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-class Device final : public SerialPort {
+class Device final : public BytePort {
  public:
-  Device(std::string name, Tty tty, const SerialSettings& settings, RealClock& clock, PortNotes notes)
+  Device(std::string name, Time latency, Tty tty, const SerialSettings& settings, RealClock& clock,
+         PortNotes notes)
       : name_(std::move(name)),
+        latency_(latency),
         tty_(std::move(tty)),
         clock_(clock),
         // start bit, 8 data bits, parity bit, stop bit
@@ -32,6 +35,8 @@ class Device final : public SerialPort {
   const std::string& name() const override { return name_; }
   PortNeeds needs() const override { return {tty_.descriptor(), !out_.empty(), kNever}; }
   bool has_parity() const override { return tty_.has_parity(); }
+  bool paces() const override { return true; }
+  Time latency() const override { return latency_; }
   size_t waiting() const override { return out_.waiting().size(); }
   const PortCounts& counts() const override { return counts_; }
   std::vector<std::string> take_notes() override { return notes_.take(); }
@@ -78,6 +83,7 @@ class Device final : public SerialPort {
 
  private:
   std::string name_;
+  Time latency_;
   Tty tty_;
   RealClock& clock_;
   Time character_time_;
@@ -88,7 +94,7 @@ class Device final : public SerialPort {
   PortNotes notes_;
 };
 
-class PseudoTerminal final : public SerialPort {
+class PseudoTerminal final : public BytePort {
  public:
   PseudoTerminal(std::string name, Pty pty, bool even_parity, RealClock& clock)
       : name_(std::move(name)), pty_(std::move(pty)), clock_(clock) {
@@ -98,6 +104,8 @@ class PseudoTerminal final : public SerialPort {
   const std::string& name() const override { return name_; }
   PortNeeds needs() const override { return pty_.needs(); }
   bool has_parity() const override { return false; }
+  bool paces() const override { return false; }
+  Time latency() const override { return 0; }
   size_t waiting() const override { return pty_.waiting().size(); }
   const PortCounts& counts() const override { return counts_; }
   std::vector<std::string> take_notes() override { return notes_.take(); }
@@ -133,6 +141,23 @@ class PseudoTerminal final : public SerialPort {
   PortNotes notes_;
 };
 
+// "/dev/ttyUSB0@16ms": path and latency; nothing when what stands behind the @ is no number of milliseconds.
+struct DeviceName {
+  std::string path;
+  Time latency = 0;
+};
+std::optional<DeviceName> parse_device(std::string_view name) {
+  const size_t at = name.rfind('@');
+  if (at == std::string_view::npos) return DeviceName{std::string(name)};
+  constexpr uint32_t kLongest = 1000;
+  const std::string_view text = name.substr(at + 1);
+  uint32_t ms = 0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), ms);
+  const std::string_view rest = text.substr(static_cast<size_t>(end - text.data()));
+  if (status != std::errc() || rest != "ms" || ms > kLongest) return std::nullopt;
+  return DeviceName{std::string(name.substr(0, at)), ms * kMillisecond};
+}
+
 }  // namespace
 
 SerialPortResult open_serial_port(std::string_view name, const SerialSettings& settings, RealClock& clock) {
@@ -143,12 +168,15 @@ SerialPortResult open_serial_port(std::string_view name, const SerialSettings& s
     if (!pty) return tl::unexpected(pty.error());
     return std::make_unique<PseudoTerminal>(std::string(name), std::move(*pty), settings.even_parity, clock);
   }
-  if (!name.starts_with('/'))
-    return tl::unexpected(port_error(PortFault::BadName, name, "a serial port is /dev/ttyUSB0 or pty:/path"));
+  const auto device = parse_device(name);
+  if (!device || !name.starts_with('/'))
+    return tl::unexpected(port_error(PortFault::BadName, name,
+                                     "a serial port is /dev/ttyUSB0, /dev/ttyUSB0@16ms or pty:/path"));
   PortNotes notes;
-  auto tty = Tty::open(std::string(name), {settings.baud, settings.even_parity, true}, notes);
+  auto tty = Tty::open(device->path, {settings.baud, settings.even_parity, true}, notes);
   if (!tty) return tl::unexpected(tty.error());
-  return std::make_unique<Device>(std::string(name), std::move(*tty), settings, clock, std::move(notes));
+  return std::make_unique<Device>(std::string(name), device->latency, std::move(*tty), settings, clock,
+                                  std::move(notes));
 }
 
 }  // namespace ipos::runtime

@@ -22,7 +22,8 @@ struct ByteArrival {
   bool bad = false;  // parity or framing error, or a break
 };
 
-class SerialPort : public Port {
+// Not SerialPort: that is the interface of a simulated station (runtime/plant).
+class BytePort : public Port {
  public:
   // Queues all bytes or, when there is no room, none: then they are lost, counted and told.
   virtual void send(std::span<const uint8_t> bytes) = 0;
@@ -34,14 +35,21 @@ class SerialPort : public Port {
 
   // False: parity is neither sent nor checked; whoever needs it has only the block check.
   virtual bool has_parity() const = 0;
+
+  // True: each byte takes its time on the wire once it is handed over, so bytes may be handed over early.
+  // False: they are at the other end at once.
+  virtual bool paces() const = 0;
+
+  // By how much bytes may come late and in groups: what the user says of the adapter.
+  virtual Time latency() const = 0;
 };
 
 inline constexpr size_t kSerialPortQueue = 4096;  // bytes waiting to be sent (ours)
 
-using SerialPortResult = tl::expected<std::unique_ptr<SerialPort>, PortError>;
+using SerialPortResult = tl::expected<std::unique_ptr<BytePort>, PortError>;
 
-// `/dev/ttyUSB0`: a device; `pty:/path/line1`: a pseudo-terminal linked at that path. The clock must outlive
-// the port.
+// `/dev/ttyUSB0`: a device; `pty:/path/line1`: a pseudo-terminal linked at that path; `/dev/ttyUSB0@16ms`:
+// one behind an adapter that passes bytes on up to 16 ms late. The clock must outlive the port.
 SerialPortResult open_serial_port(std::string_view name, const SerialSettings& settings, RealClock& clock);
 
 }  // namespace ipos::runtime

@@ -20,6 +20,7 @@ namespace {
 constexpr Time kRetry = kMillisecond;
 
 // A stamp further away than this comes from a clock that was set meanwhile (ours).
+constexpr Time kLongestReading = 100 * kMicrosecond;
 constexpr Time kPlausibleAge = kSecond;
 
 template <typename Value>
@@ -131,10 +132,16 @@ void SocketCan::drop_all(const char* why) {
   notes_.note(why);
 }
 
-// The stamp's age is taken from the clock it was made with.
+// The stamp's age is taken from the clock it was made with. Both clocks must be read without a pause in
+// between, or the pause would count as age.
 Time SocketCan::host_time(Time stamp) {
-  const Time age = clock_.wall() - stamp;
-  const Time now = clock_.now();
+  Time now = clock_.now();
+  Time wall = clock_.wall();
+  for (int tries = 0; tries < 4 && clock_.now() - now > kLongestReading; ++tries) {
+    now = clock_.now();
+    wall = clock_.wall();
+  }
+  const Time age = wall - stamp;
   const Time at = stamp == 0 || age < 0 || age > kPlausibleAge ? now : now - age;
   return last_arrival_ = std::max(last_arrival_, at);
 }

@@ -6,6 +6,8 @@
 #include <linux/serial.h>
 #include <sys/file.h>
 #include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
 
 #include <cerrno>
 
@@ -42,6 +44,14 @@ bool set_low_latency(int descriptor) {
   return ioctl(descriptor, TIOCSSERIAL, &serial) == 0;
 }
 
+// A pseudo-terminal (Linux: majors 136 to 143) has neither a speed nor parity, and the program at its other end
+// may change what it says of them at any time.
+bool is_pseudo_terminal(int descriptor) {
+  struct stat status {};
+  return fstat(descriptor, &status) == 0 && S_ISCHR(status.st_mode) && major(status.st_rdev) >= 136 &&
+         major(status.st_rdev) <= 143;
+}
+
 }  // namespace
 
 tl::expected<Tty, PortError> Tty::open(const std::string& path, const TtySettings& settings,
@@ -69,8 +79,9 @@ tl::expected<Tty, PortError> Tty::open(const std::string& path, const TtySetting
   wanted.c_cflag &= static_cast<tcflag_t>(~(CSTOPB | PARODD | CRTSCTS | CSIZE | PARENB));
   wanted.c_cflag |= CS8 | CREAD | CLOCAL;
   wanted.c_iflag &= static_cast<tcflag_t>(~(IXON | IXOFF | IXANY | IGNPAR));
+  const bool pseudo = is_pseudo_terminal(fd);
   if (settings.even_parity) {
-    wanted.c_cflag |= PARENB;
+    if (!pseudo) wanted.c_cflag |= PARENB;
     wanted.c_iflag |= INPCK | PARMRK;
   }
   cfsetispeed(&wanted, rate->code);
@@ -79,7 +90,7 @@ tl::expected<Tty, PortError> Tty::open(const std::string& path, const TtySetting
   termios got{};
   if (tcsetattr(fd, TCSANOW, &wanted) != 0 || tcgetattr(fd, &got) != 0)
     return tl::unexpected(system_error(errno, path));
-  if (cfgetospeed(&got) != rate->code)
+  if (!pseudo && cfgetospeed(&got) != rate->code)
     return tl::unexpected(port_error(PortFault::NoBaudRate, path, fmt::format("{} bit/s", settings.baud)));
   tty.parity_ = (got.c_cflag & PARENB) != 0;
   tty.marks_ = (got.c_iflag & PARMRK) != 0;

@@ -43,12 +43,12 @@ MovilinkCommand::MovilinkCommand(ParameterServer& own, ProcessDataServer& own_da
   for (Route& route : routes_) route.command = this;
 }
 
-vm::HostReply MovilinkCommand::start(Time now, vm::Machine& machine, int task, uint32_t variable,
+vm::HostReply MovilinkCommand::start(Time now, vm::Machine& machine, int context, uint32_t variable,
                                      std::string& why) {
   const std::span<int32_t> h = machine.variables();
   const auto element = [&](Element n) { return h[variable + n]; };
   Job job{&machine,
-          task,
+          context,
           variable,
           static_cast<uint32_t>(element(kDPointer)),
           {element(kAddress), element(kFormat), element(kService), element(kIndex), 0, {}}};
@@ -116,23 +116,31 @@ void MovilinkCommand::stop() {
   }
 }
 
+void MovilinkCommand::give_up(const vm::Machine& machine, int context) {
+  for (Route& route : routes_)
+    for (Job& job : route.jobs)
+      if (job.machine == &machine && job.context == context) job.machine = nullptr;
+}
+
 void MovilinkCommand::Route::on_exchange_done(Time now, const MovilinkResult& result) {
   const Job job = jobs.front();
   jobs.erase(jobs.begin());
   if (!result.reason.empty())
     command->journal_.note(now, Weight::Why, command->station_,
                            fmt::format("MOVLNK to address {}: {}", job.bus.address, result.reason));
-  store(job, result);
-  job.machine->resume(job.task);
+  finish(job, result);
   begin_next(now);
 }
 
 void MovilinkCommand::Route::begin_next(Time now) {
   while (!jobs.empty()) {
+    if (jobs.front().machine == nullptr) {
+      jobs.erase(jobs.begin());
+      continue;
+    }
     const auto code = master->start(now, jobs.front().bus);
     if (!code) return;
-    store(jobs.front(), refused(*code));
-    jobs.front().machine->resume(jobs.front().task);
+    finish(jobs.front(), refused(*code));
     jobs.erase(jobs.begin());
   }
 }
@@ -157,6 +165,12 @@ MovilinkResult MovilinkCommand::serve_own(Time now, const MovilinkJob& job, Tele
     result.words = format.words;
   }
   return result;
+}
+
+void MovilinkCommand::finish(const Job& job, const MovilinkResult& result) {
+  if (job.machine == nullptr) return;
+  store(job, result);
+  job.machine->resume(job.context);
 }
 
 void MovilinkCommand::store(const Job& job, const MovilinkResult& result) {

@@ -36,11 +36,15 @@ class MovilinkCommand final {
     routes_[static_cast<size_t>(bus)].master = &master;
   }
 
-  // Begins the exchange of the structure at `variable` for a task. Done: the result is stored already; Wait:
-  // the task is resumed when it is. `why` says why an exchange could not be begun.
-  vm::HostReply start(Time now, vm::Machine& machine, int task, uint32_t variable, std::string& why);
+  // Begins the exchange of the structure at `variable` for a context. Done: the result is stored already;
+  // Wait: the context is resumed when it is. `why` says why an exchange could not be begun.
+  vm::HostReply start(Time now, vm::Machine& machine, int context, uint32_t variable, std::string& why);
 
   void stop();  // program stop: pending exchanges are given up
+
+  // The context that waits for an exchange was stopped: the exchange ends on the bus, but nobody takes its
+  // result any more (ours).
+  void give_up(const vm::Machine& machine, int context);
 
   // Whom the program has called over a bus, for tools: address as in MOVLNK, and what was exchanged.
   struct Partner {
@@ -56,8 +60,8 @@ class MovilinkCommand final {
 
  private:
   struct Job {
-    vm::Machine* machine;
-    int task;
+    vm::Machine* machine;  // null: nobody waits any more
+    int context;
     uint32_t variable;  // of the structure
     uint32_t data;      // of MLDATA
     MovilinkJob bus;
@@ -76,6 +80,7 @@ class MovilinkCommand final {
 
   MovilinkResult serve_own(Time now, const MovilinkJob& job, TelegramFormat format);
   static void store(const Job& job, const MovilinkResult& result);
+  static void finish(const Job& job, const MovilinkResult& result);
 
   ParameterServer& own_;
   ProcessDataServer& own_data_;

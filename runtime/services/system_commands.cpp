@@ -1,84 +1,71 @@
-// Dispatch of system commands.
+// Dispatch of system commands: which family has which command.
 #include "runtime/services/system_commands.hpp"
+
+#include <fmt/format.h>
+
+#include "runtime/services/source_places.hpp"
 
 namespace ipos::runtime {
 namespace {
 
-constexpr vm::HostReply fail(const char* reason) { return {vm::Answer::Fault, vm::kFaultIllop, reason}; }
+vm::HostReply forward(CommandCall& call) {
+  using vm::Opcode;
+  if (PositioningCommands* positioning = call.services.positioning)
+    if (const auto reply = positioning->execute(call.machine, call.context, call.command)) return *reply;
+  switch (call.command.opcode) {
+    case Opcode::Scom:
+    case Opcode::ScomOn:
+    case Opcode::ScomState:
+    case Opcode::Movlnk: return communication_command(call);
+    case Opcode::InputCall:
+    case Opcode::SystemCall: return call_command(call);
+    case Opcode::SetFault:
+    case Opcode::Reset:
+    case Opcode::Memorize:
+    case Opcode::WdOnH:
+    case Opcode::WdOnK:
+    case Opcode::WdOff: return unit_command(call);
+    case Opcode::GetSys: return get_system_value(call);
+    case Opcode::SetSys: return set_system_value(call);
+    default: return illegal("this command is not simulated yet, see docs/limits.md");
+  }
+}
 
 }  // namespace
 
-SystemCommands::SystemCommands(const EventQueue& clock, Journal& journal, std::string_view station,
-                               std::array<VariableObjects*, 2> objects, MovilinkCommand& movilink)
-    : clock_(clock), journal_(journal), station_(station), objects_(objects), movilink_(movilink) {}
+SystemCommands::SystemCommands(const StationServices& services, Journal& journal, std::string_view station,
+                               const vm::Image* image)
+    : services_(services), journal_(journal), station_(station), image_(image) {}
 
 vm::Host SystemCommands::host() {
-  return {this, [](void* self, vm::Machine& machine, int task, const vm::Instruction& command) noexcept {
-            return static_cast<SystemCommands*>(self)->execute(machine, task, command);
+  return {this,
+          [](void* self, vm::Machine& machine, int context, const vm::Instruction& command) noexcept {
+            return static_cast<SystemCommands*>(self)->execute(machine, context, command);
+          },
+          [](void* self, vm::Machine& machine, int context) noexcept {
+            static_cast<SystemCommands*>(self)->cancel(machine, context);
           }};
 }
 
-vm::HostReply SystemCommands::execute(vm::Machine& machine, int task, const vm::Instruction& command) {
-  using vm::Opcode;
-  const auto operand = [&](size_t n) { return static_cast<uint32_t>(command.operands[n]); };
-  switch (command.opcode) {
-    case Opcode::Scom:
-      return define_object(machine, static_cast<ObjectKind>(command.operands[0]), operand(1));
-    case Opcode::ScomOn: return start_objects();
-    case Opcode::ScomState: return switch_objects(machine, command.operands[0] != 0, operand(1));
-    case Opcode::Movlnk: return exchange(machine, task, operand(0));
-    case Opcode::Task2:
-    case Opcode::Task: {
-      const int other = command.opcode == Opcode::Task2 ? 2 : 3;
-      if (command.operands[0] == 0)
-        machine.stop_task(other);
-      else
-        machine.start_task(other, static_cast<uint32_t>(command.operands[1]));
-      return {};
-    }
-    default: return fail("this command is not simulated yet, see docs/limits.md");
+vm::HostReply SystemCommands::execute(vm::Machine& machine, int context, const vm::Instruction& command) {
+  CommandCall call{services_, machine, context, command, {}, 0, {}};
+  const vm::HostReply reply = forward(call);
+  const Time now = services_.clock.now();
+  if (!call.why.empty()) journal_.note(now, Weight::Warning, station_, std::move(call.why));
+  if (call.caused_fault != 0) {
+    const std::string place =
+        image_ == nullptr ? std::string() : source_place(*image_, machine.context(context).pc);
+    journal_.note(now, Weight::Warning, station_,
+                  fmt::format("F{:02} caused by {}{}: {}", call.caused_fault, vm::context_name(context),
+                              place.empty() ? "" : " at " + place, call.cause));
+    services_.drive.raise_fault(call.caused_fault);
   }
-}
-
-vm::HostReply SystemCommands::define_object(vm::Machine& machine, ObjectKind kind, uint32_t variable) {
-  const int32_t object = machine.variables()[variable];
-  const bool second = object >= 0 && (object & kSbus2Object) != 0 && objects_[1] != nullptr;
-  VariableObjects* objects = objects_[second ? 1 : 0];
-  if (objects == nullptr) return fail("SCOM: the station is not on this SBus");
-  std::string why;
-  const bool data_exist = objects->define(kind, variable, machine.variables(), why);
-  explain(std::move(why));
-  return data_exist ? vm::HostReply{} : fail("DPointer of SCOM does not lead to variables of the unit");
-}
-
-vm::HostReply SystemCommands::start_objects() {
-  if (objects_[0] == nullptr && objects_[1] == nullptr) return fail("SCOMON: the station is on no SBus");
-  for (VariableObjects* objects : objects_)
-    if (objects != nullptr) objects->start(clock_.now() / kMillisecond);
-  return {};
-}
-
-// The variable takes the state: 1 sending and receiving, 0 not (ours: no manual read prints the arguments).
-vm::HostReply SystemCommands::switch_objects(vm::Machine& machine, bool on, uint32_t state) {
-  if (on) {
-    if (const vm::HostReply reply = start_objects(); reply.answer != vm::Answer::Done) return reply;
-  } else {
-    for (VariableObjects* objects : objects_)
-      if (objects != nullptr) objects->pause();
-  }
-  machine.variables()[state] = on ? 1 : 0;
-  return {};
-}
-
-vm::HostReply SystemCommands::exchange(vm::Machine& machine, int task, uint32_t variable) {
-  std::string why;
-  const vm::HostReply reply = movilink_.start(clock_.now(), machine, task, variable, why);
-  explain(std::move(why));
   return reply;
 }
 
-void SystemCommands::explain(std::string why) {
-  if (!why.empty()) journal_.note(clock_.now(), Weight::Warning, station_, std::move(why));
+void SystemCommands::cancel(vm::Machine& machine, int context) {
+  services_.movilink.give_up(machine, context);
+  if (services_.positioning != nullptr) services_.positioning->cancel(context);
 }
 
 }  // namespace ipos::runtime

@@ -2,36 +2,32 @@
 // here knows ends in F10 with a reason, never in silence (docs/limits.md lists them).
 #pragma once
 
-#include <array>
+#include <string>
+#include <string_view>
 
+#include "runtime/services/command_call.hpp"
 #include "runtime/services/journal.hpp"
-#include "runtime/services/movilink_command.hpp"
-#include "runtime/services/variable_objects.hpp"
-#include "vm/exec/machine.hpp"
+#include "vm/image/image.hpp"
 
 namespace ipos::runtime {
 
 class SystemCommands {
  public:
-  // The objects of SBus 1 and 2, null for a bus the unit is not on.
-  SystemCommands(const EventQueue& clock, Journal& journal, std::string_view station,
-                 std::array<VariableObjects*, 2> objects, MovilinkCommand& movilink);
+  // The image tells where in the source a command stands; null when the program is of another one. It and the
+  // journal must outlive this.
+  SystemCommands(const StationServices& services, Journal& journal, std::string_view station,
+                 const vm::Image* image);
 
   vm::Host host();
 
  private:
-  vm::HostReply execute(vm::Machine& machine, int task, const vm::Instruction& command);
-  vm::HostReply define_object(vm::Machine& machine, ObjectKind kind, uint32_t variable);
-  vm::HostReply start_objects();
-  vm::HostReply switch_objects(vm::Machine& machine, bool on, uint32_t state);
-  vm::HostReply exchange(vm::Machine& machine, int task, uint32_t variable);
-  void explain(std::string why);
+  vm::HostReply execute(vm::Machine& machine, int context, const vm::Instruction& command);
+  void cancel(vm::Machine& machine, int context);
 
-  const EventQueue& clock_;
+  StationServices services_;
   Journal& journal_;
   std::string station_;
-  std::array<VariableObjects*, 2> objects_;
-  MovilinkCommand& movilink_;
+  const vm::Image* image_;
 };
 
 }  // namespace ipos::runtime

@@ -9,26 +9,11 @@
 #include <vector>
 
 #include "runtime/bus/can/node.hpp"
-#include "runtime/bus/movilink/profile.hpp"
-#include "runtime/bus/movilink/variable_telegram.hpp"
 #include "runtime/clock/event_queue.hpp"
+#include "runtime/scom/object_table.hpp"
 #include "stdlib/unit_types.hpp"
 
 namespace ipos::runtime {
-
-// Result of SCTRCYCL (1053 1610 p. 54); 0..100 is the free bus capacity in percent.
-inline constexpr int32_t kWrongCycleTime = -1;
-inline constexpr int32_t kTooManyObjects = -2;
-inline constexpr int32_t kBusOverload = -3;
-
-// Status of SCTRACYCL (1053 1610 p. 56).
-enum class AcyclicStatus : int32_t { Ready = 0, Sending = 1, Sent = 2, Failed = 3 };
-
-// First argument of _SBusCommDef; the values of the keyword set `scom`.
-enum class ObjectKind : int32_t { TransmitCyclic = 1, TransmitAcyclic = 2, Receive = 3 };
-
-// Bit 24 of the object number selects SBus 2 of a MOVIDRIVE B (IPOSplus p. 232).
-inline constexpr int32_t kSbus2Object = 0x100'0000;
 
 // What one _SBusCommDef asked for, for tools: the last one of each structure.
 struct ObjectDefinition {
@@ -53,7 +38,7 @@ class VariableObjects {
                   int sbus = 1);
 
   // The identifiers closed to the unit's objects are those of its MOVILINK profile (1053 1610 p. 51 to 53).
-  void set_profile(const SlaveSettings& profile) { profile_ = profile; }
+  void set_profile(const SlaveSettings& profile) { table_.set_profile(profile); }
 
   // SCOM: copies the structure that begins at `variable` and stores its result. An object that is refused is
   // not set up; `why` then says so. False: the data pointer names no variable of the unit (F10).
@@ -62,15 +47,13 @@ class VariableObjects {
   void start(int64_t tick);  // SCOMON in this millisecond; nothing when it runs
   void pause();              // SCOMST STOP: nothing is sent or received, the objects stay (ours)
   void stop();               // program stop: nothing is sent or received any more, all objects are gone
-  bool started() const { return started_; }
+  bool started() const { return table_.started(); }
   const std::vector<ObjectDefinition>& definitions() const { return definitions_; }
 
   // Queues the cyclic objects due in this millisecond with the present values of their variables.
   void tick(int64_t tick, std::span<const int32_t> h);
 
-  // True when a receive object took the frame; `why` says why one did not. MOVIDRIVE B sets bit n of H522
-  // (SBus 1) or H523 (SBus 2) for its n-th receive object; the program clears it (order and clearing ours;
-  // IPOSplus p. 232).
+  // True when a receive object took the frame; `why` says why one did not.
   bool on_frame(const Frame& frame, std::span<int32_t> h, std::string& why) const;
 
   // For frames with a tag of this object; keeps the status of acyclic ones.
@@ -78,45 +61,13 @@ class VariableObjects {
   void on_not_sent(uint64_t tag, std::span<int32_t> h);
 
  private:
-  struct Cyclic {
-    uint32_t id;
-    int32_t cycle;   // ms
-    int32_t offset;  // ms after the start
-    VariableFormat format;
-    uint32_t data;  // number of the first variable
-    uint64_t tag;
-  };
-  struct Receive {
-    uint32_t id;
-    VariableFormat format;
-    uint32_t data;
-  };
-  struct Header {
-    int32_t object;
-    int32_t format;
-    int32_t data;
-  };
-
-  int32_t define_cyclic(const Header& header, VariableFormat format, int32_t cycle, int32_t offset,
-                        std::string& why);
-  bool define_receive(const Header& header, VariableFormat format, std::string& why);
-  void send_acyclic(const Header& header, VariableFormat format, uint32_t variable, std::span<int32_t> h);
-  bool usable(const Header& header, std::string& why) const;
-  int32_t free_capacity(const Cyclic& added) const;
-
   void remember(const ObjectDefinition& definition);
+  std::string reason(const ObjectRequest& request, ObjectVerdict verdict) const;
 
   const stdlib::UnitType& unit_;
-  uint32_t baud_;
   FrameSender& sender_;
   uint64_t first_tag_;
-  int sbus_;
-  SlaveSettings profile_;
-  bool started_ = false;
-  bool receive_closed_ = false;  // after the first start
-  int64_t start_tick_ = 0;
-  std::vector<Cyclic> cyclic_;
-  std::vector<Receive> receive_;
+  ObjectTable table_;
   std::vector<ObjectDefinition> definitions_;
 };
 

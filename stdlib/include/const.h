@@ -165,6 +165,13 @@
 #define SLS_right      H496       // common
 #define SLS_left       H497       // common
 #define RefOffset      H498       // common
+#define SetpointPosBus H499       // common
+#define TpPos2_Abs     H502       // common
+#define TpPos1_Abs     H503       // common
+#define TpPos2_Ext     H504       // common
+#define TpPos2_Mot     H505       // common
+#define TpPos1_Ext     H506       // common
+#define TpPos1_Mot     H507       // common
 #define ActPos_Abs     H509       // common; IPOSplus p. 86, 91 has the number
 #define ActPos_Ext     H510       // common; IPOSplus p. 86, 91 has the number
 #define ActPos_Mot     H511       // common; IPOSplus p. 86, 91 has the number

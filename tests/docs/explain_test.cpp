@@ -81,6 +81,10 @@ TEST(Explain, Parameters) {
   EXPECT_NE(explained("P101").find("under controller inhibit"), std::string::npos);
   EXPECT_NE(explained("P000").find("read only"), std::string::npos);
   EXPECT_NE(explained("P932").find("keypad"), std::string::npos);
+  EXPECT_EQ(explained("8807"), ramp.substr(ramp.find("P130 of MOVITRAC 07")));
+  const std::string address = explained("8600");
+  EXPECT_NE(address.find("P813 of MOVIDRIVE MD_60A"), std::string::npos) << address;
+  EXPECT_NE(address.find("P881 of MOVIDRIVE MDX60B/61B"), std::string::npos) << address;
 }
 
 TEST(Explain, UnknownCodesAreErrors) {

@@ -27,8 +27,19 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     require(station.machine.inertia >= 0 && station.machine.friction >= 0, "a load resists");
     for (const InputSetting& input : station.inputs) require(input.input < 16, "an input is a bit of 16");
   }
+  for (const Stimulus& stimulus : plant.stimuli) {
+    require(stimulus.at >= 0 && stimulus.length >= 0 && stimulus.every >= 0, "times are not negative");
+    require(stimulus.signal.line < kInputLines, "an input line exists");
+    require(stimulus.action != Stimulus::Action::Pulse || stimulus.length > 0, "a pulse has a length");
+  }
+  for (const Wire& wire : plant.wires)
+    require(wire.from.line < 16 && wire.to.line < 16, "a wire joins terminals that exist");
+  for (const PositionSwitch& row : plant.switches)
+    require(row.input.line < 16 && row.from <= row.to, "a switch has an input and a range");
   for (const Expectation& expect : plant.expectations) {
-    const auto is_station = [&](const StationConfig& station) { return station.name == expect.station; };
+    const auto is_station = [&](const StationConfig& station) {
+      return station.name == expect.signal.station;
+    };
     require(std::any_of(plant.stations.begin(), plant.stations.end(), is_station),
             "an expectation is of a station that exists");
     require(expect.at >= 0, "an expectation is not before the start");

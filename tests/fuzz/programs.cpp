@@ -1,5 +1,6 @@
 // The host keeps to its contract (vm/host/host.hpp) and is otherwise as unpleasant as it may be: it waits,
-// faults, starts and stops tasks, also its own, and writes variables.
+// faults, starts and stops tasks, also its own, writes variables, and raises events and requests of
+// interrupts.
 #include "tests/fuzz/programs.hpp"
 
 #include <algorithm>
@@ -21,28 +22,37 @@ constexpr uint8_t kHostFault = 77;
 constexpr int kRounds = 6;
 constexpr uint32_t kCommandsARound = 120;
 
+uint64_t begun = 0;  // interrupt routines
+
 struct RandomHost {
   Pcg random;
+  std::array<bool, vm::kContexts + 1> asked_to_wait{};
 
-  static vm::HostReply execute(void* self, Machine& machine, int task,
+  static vm::HostReply execute(void* self, Machine& machine, int context,
                                const vm::Instruction& command) noexcept {
-    return static_cast<RandomHost*>(self)->answer(machine, task, command);
+    auto& host = *static_cast<RandomHost*>(self);
+    const vm::HostReply reply = host.answer(machine, context, command);
+    // A context the command has stopped or started anew does not wait, whatever the answer is.
+    const vm::TaskContext& t = machine.context(context);
+    if (reply.answer == vm::Answer::Wait && t.state == TaskState::Ready && t.commands != 0)
+      host.asked_to_wait[static_cast<size_t>(context)] = true;
+    return reply;
+  }
+  static void cancel(void* self, Machine&, int context) noexcept {
+    bool& waits = static_cast<RandomHost*>(self)->asked_to_wait[static_cast<size_t>(context)];
+    require(waits, "only a wait for the host is cancelled");
+    waits = false;
   }
 
-  vm::HostReply answer(Machine& machine, int task, const vm::Instruction& command) {
-    if (command.opcode == vm::Opcode::Task || command.opcode == vm::Opcode::Task2) {
-      const int other = command.opcode == vm::Opcode::Task ? 3 : 2;
-      if (command.operands[0] != 0)
-        machine.start_task(other, static_cast<uint32_t>(command.operands[1]));
-      else
-        machine.stop_task(other);
-      return {};
-    }
+  vm::HostReply answer(Machine& machine, int context, const vm::Instruction& command) {
+    const int task = machine.context(context).task;
     const auto variables = machine.variables();
     if (random.one_in(4))
       variables[static_cast<size_t>(random.below(static_cast<int>(variables.size())))] =
           static_cast<int32_t>(random.next());
     if (random.one_in(40)) machine.stop_task(task);
+    if (random.one_in(60)) machine.start_task(1 + random.below(vm::kTasks), 0);
+    if (random.one_in(6)) machine.raise_event(static_cast<vm::Event>(random.below(vm::kEvents)));
     switch (random.below(10)) {
       case 0: return {vm::Answer::Wait, 0, nullptr};
       case 1:
@@ -60,28 +70,49 @@ struct RandomHost {
 class Session {
  public:
   Session(const vm::VerifiedImage& program, uint64_t seed)
-      : host_{Pcg(seed)}, machine_(program, {&host_, RandomHost::execute}), limits_(program.limits()) {
+      : host_{Pcg(seed)},
+        machine_(program, {&host_, RandomHost::execute, RandomHost::cancel}),
+        limits_(program.limits()) {
     starts_.resize(program.code().size());
     for (uint32_t at = 0; at < program.code().size(); at += vm::decode(program.code(), at).words)
       starts_[at] = true;
   }
 
   uint64_t run(uint32_t piece) {
+    // Small numbers, so that structures of interrupts make sense now and then.
+    for (int32_t& h : machine_.variables()) h = host_.random.below(13) - 1;
     machine_.start();
     for (int round = 0; round < kRounds && machine_.fault().number == 0; ++round) {
       for (int task = 1; task <= vm::kTasks; ++task) run_task(task, piece);
-      for (int task = 1; task <= vm::kTasks; ++task) {
-        const vm::TaskContext& t = machine_.task(task);
-        if (t.state == TaskState::Waiting && (t.wait_ms == 0 || host_.random.one_in(8)))
-          machine_.resume(task);
-      }
+      for (int context = 1; context <= vm::kContexts; ++context)
+        if (host_.random.one_in(2) || machine_.context(context).state == TaskState::Waiting) resume(context);
+      for (int n = host_.random.below(4); n > 0; --n)
+        machine_.raise_event(static_cast<vm::Event>(host_.random.below(vm::kEvents)));
+      if (limits_.variables > vm::kVarIntReq && host_.random.one_in(2))
+        machine_.variables()[vm::kVarIntReq] = static_cast<int32_t>(host_.random.next());
       machine_.tick();
       check_tasks();
+      for (int context = vm::kTasks + 1; context <= vm::kContexts; ++context)
+        begun +=
+            machine_.context(context).state == TaskState::Ready && machine_.context(context).commands == 0;
     }
     return digest();
   }
 
  private:
+  // Also answers that nobody waits for: they must have no effect.
+  void resume(int context) {
+    const vm::TaskContext before = machine_.context(context);
+    const bool waits = before.state == TaskState::Waiting && before.wait_ms == 0;
+    require(waits == host_.asked_to_wait[static_cast<size_t>(context)],
+            "who waits for the host has asked it");
+    host_.asked_to_wait[static_cast<size_t>(context)] = false;
+    machine_.resume(context);
+    const vm::TaskContext& after = machine_.context(context);
+    require(waits ? after.state == TaskState::Ready : after.state == before.state && after.pc == before.pc,
+            "an answer ends the wait for the host, and nothing else");
+  }
+
   void run_task(int task, uint32_t piece) {
     for (uint32_t done = 0; done < kCommandsARound;) {
       const uint32_t budget = std::min(piece, kCommandsARound - done);
@@ -89,7 +120,7 @@ class Session {
       require(result.commands <= budget, "run executes no more commands than its budget");
       done += result.commands;
       check_tasks();
-      const TaskState state = machine_.task(task).state;
+      const TaskState state = machine_.context(machine_.active_context(task)).state;
       switch (result.stop) {
         case vm::Stop::Budget:
           require(result.commands == budget, "Budget means that the budget is used up");
@@ -107,13 +138,17 @@ class Session {
   }
 
   void check_tasks() const {
-    for (int task = 1; task <= vm::kTasks; ++task) {
-      const vm::TaskContext& t = machine_.task(task);
+    for (int context = 1; context <= vm::kContexts; ++context) {
+      const vm::TaskContext& t = machine_.context(context);
       require(t.depth <= limits_.call_depth && t.depth <= vm::kMaxCallDepth,
               "calls stay within the depth of the unit");
-      if (t.state != TaskState::Stopped) require(starts(t.pc), "a task stands at the start of a command");
+      if (t.state == TaskState::Stopped) continue;
+      require(starts(t.pc), "a context stands at the start of a command");
       for (size_t n = 0; n < t.depth; ++n)
         require(starts(t.calls[n]), "calls return to the start of a command");
+      require(context <= vm::kTasks ? t.task == context && t.rank == 0 : t.rank > 0,
+              "a routine stands above its task");
+      require(machine_.task(t.task).state != TaskState::Stopped, "a stopped task has no routine");
     }
   }
   bool starts(uint32_t address) const { return address < starts_.size() && starts_[address]; }
@@ -123,16 +158,16 @@ class Session {
     require(fault.number == 10 || fault.number == 32 || fault.number == kHostFault,
             "a fault has a known number");
     require(fault.reason != nullptr && starts(fault.address), "a fault has a reason and a command");
-    for (int task = 1; task <= vm::kTasks; ++task)
-      require(machine_.task(task).state == TaskState::Stopped, "a fault stops all tasks");
+    for (int context = 1; context <= vm::kContexts; ++context)
+      require(machine_.context(context).state == TaskState::Stopped, "a fault stops all tasks and routines");
   }
 
   uint64_t digest() const {
     uint64_t hash = 14695981039346656037U;
     const auto add = [&](uint64_t value) { hash = (hash ^ value) * 1099511628211U; };
     for (const int32_t value : machine_.variables()) add(static_cast<uint32_t>(value));
-    for (int task = 1; task <= vm::kTasks; ++task) {
-      const vm::TaskContext& t = machine_.task(task);
+    for (int context = 1; context <= vm::kContexts; ++context) {
+      const vm::TaskContext& t = machine_.context(context);
       add(static_cast<uint64_t>(t.state));
       add(t.depth);
       add(t.pc);
@@ -149,25 +184,6 @@ class Session {
   vm::Limits limits_;
   std::vector<bool> starts_;
 };
-
-// An operand that the verifier accepts; labels are numbers of commands at first.
-int32_t operand(Input& input, const vm::OperandInfo& row, uint32_t commands) {
-  switch (row.kind) {
-    case vm::OperandKind::Variable: return static_cast<int32_t>(input.below(960));
-    case vm::OperandKind::Bit: return input.u8() % 32;
-    case vm::OperandKind::Count: return 1 + input.u8() % 64;
-    case vm::OperandKind::Constant: return input.u8() % 2 == 0 ? input.i32() : input.u8() - 20;
-    case vm::OperandKind::Label: return static_cast<int32_t>(input.below(commands + 1));
-    case vm::OperandKind::Keyword: {
-      std::vector<int32_t> values;
-      for (const vm::KeywordInfo& keyword : vm::keyword_table())
-        if (keyword.set == row.keyword_set) values.push_back(keyword.value);
-      return values[input.u8() % values.size()];
-    }
-    case vm::OperandKind::None: break;
-  }
-  return 0;
-}
 
 }  // namespace
 
@@ -188,6 +204,8 @@ void check_round_trips(const vm::Image& image) {
   require(*again == image, "the assembled image is the disassembled one");
 }
 
+uint64_t routines_begun() { return begun; }
+
 uint64_t run_program(const vm::VerifiedImage& program, uint64_t seed, uint32_t piece) {
   return Session(program, seed).run(piece);
 }
@@ -195,38 +213,6 @@ uint64_t run_program(const vm::VerifiedImage& program, uint64_t seed, uint32_t p
 void check_execution(const vm::VerifiedImage& program, uint64_t seed) {
   require(run_program(program, seed, kCommandsARound) == run_program(program, seed, 1),
           "single steps lead to the same state");
-}
-
-std::vector<uint32_t> valid_code(Input& input) {
-  std::vector<vm::Instruction> commands;
-  const uint32_t count = 1 + input.u8() % 64;
-  for (uint32_t n = 0; n < count; ++n) {
-    vm::Instruction command;
-    const vm::OpcodeInfo& row = vm::opcode_table()[input.u8() % vm::opcode_table().size()];
-    command.opcode = row.opcode;
-    for (size_t k = 0; k < static_cast<size_t>(row.operand_count); ++k)
-      command.operands[k] = operand(input, row.operands[k], count);
-    commands.push_back(command);
-  }
-  commands.push_back({vm::Opcode::End, {}});
-
-  std::vector<int32_t> addresses;
-  int32_t next = 0;
-  for (const vm::Instruction& command : commands) {
-    addresses.push_back(next);
-    next += vm::info(command.opcode).words;
-  }
-  std::vector<uint32_t> code;
-  for (vm::Instruction& command : commands) {
-    const vm::OpcodeInfo& row = vm::info(command.opcode);
-    for (size_t k = 0; k < static_cast<size_t>(row.operand_count); ++k)
-      if (row.operands[k].kind == vm::OperandKind::Label)
-        command.operands[k] = addresses[static_cast<size_t>(command.operands[k])];
-    std::array<uint32_t, vm::kMaxWords> words{};
-    const uint32_t length = vm::encode(command, words);
-    code.insert(code.end(), words.begin(), words.begin() + length);
-  }
-  return code;
 }
 
 }  // namespace ipos::tests

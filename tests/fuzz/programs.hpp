@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/valid_code.hpp"
 #include "vm/image/image.hpp"
 #include "vm/verify/verify.hpp"
 
@@ -22,10 +23,10 @@ void check_round_trips(const vm::Image& image);
 // depend on `piece`.
 uint64_t run_program(const vm::VerifiedImage& program, uint64_t seed, uint32_t piece);
 
+// How many interrupt routines run_program has seen running, over all its calls.
+uint64_t routines_begun();
+
 // The same in big pieces and in single steps; both must agree.
 void check_execution(const vm::VerifiedImage& program, uint64_t seed);
-
-// Commands made of the input that the verifier has to accept for a MOVIDRIVE B.
-std::vector<uint32_t> valid_code(Input& input);
 
 }  // namespace ipos::tests

@@ -9,6 +9,7 @@
 
 #include "compiler/codegen/compile.hpp"
 #include "tests/fuzz/programs.hpp"
+#include "tests/generated/pcg.hpp"
 
 namespace ipos::tests {
 namespace {
@@ -107,6 +108,28 @@ TEST(ImageSweep, EveryFlippedBitAndEveryTruncation) {
     EXPECT_EQ(sweep.images, sweep.refused_by_reader + sweep.refused_by_verifier + sweep.executed);
   }
   EXPECT_GT(flips.executed, 10'000U) << "most flips in operands leave a valid program";
+}
+
+// Programs made of random choices: tasks, interrupts and system commands in any order, under a host that
+// answers at random. No check of the machine's soundness (programs.cpp) may fail; interrupts have to come
+// about.
+TEST(RandomPrograms, CannotBreakTheMachine) {
+  constexpr int kPrograms = 5'000;
+  Pcg random(7);
+  uint64_t commands = 0;
+  for (int n = 0; n < kPrograms; ++n) {
+    std::vector<uint8_t> choices(300);
+    for (uint8_t& byte : choices) byte = static_cast<uint8_t>(random.next());
+    Input input(choices.data(), choices.size());
+    const std::vector<uint32_t> code = valid_code(input);
+    const vm::Verification verified = vm::verify(code, *limits_of(4), {});
+    ASSERT_TRUE(verified.image) << n;
+    check_execution(*verified.image, static_cast<uint64_t>(n));
+    commands += code.size();
+  }
+  std::printf("%d random programs, %llu words of code; routines begun: %llu\n", kPrograms,
+              static_cast<unsigned long long>(commands), static_cast<unsigned long long>(routines_begun()));
+  EXPECT_GT(routines_begun(), 10'000U);
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 # which leaves its findings in FOLDER. Exit code 77: it does not boot here; the reason is the last line of stdout.
 set -u
 folder=$1 ipos=$2 project=$3
-for tool in linux.uml candump cansend canbusload slcand busybox ip tc; do
+for tool in linux.uml candump cansend canbusload cangen slcand busybox ip tc; do
   command -v $tool >/dev/null || { echo "there is no $tool"; exit 77; }
 done
 ln -s "$ipos" "$folder/ipos"

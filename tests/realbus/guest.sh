@@ -43,6 +43,10 @@ wait_for vcan0 load.txt
 # The SCOM example, and parameter requests between its frames.
 cp project/examples/scom/*.IPC .
 plant project/examples/scom/scom.toml vcan0 >scom.toml
+./ipos bus monitor vcan0 --plant scom.toml >monitor.txt 2>monitor.err &
+monitor=$!
+wait_for monitoring monitor.err
+./ipos bus monitor vcan0 --plant scom.toml --station unit1 --count 10 >monitor1.txt 2>monitor1.err &
 cansend vcan0 7FE#01
 ./ipos run scom.toml --realtime --for 3s --log scom.log >scom.out 2>scom.err &
 run=$!
@@ -51,6 +55,9 @@ cansend vcan0 20B#3100211600000000
 cansend vcan0 20B#3200207E00000001
 wait $run
 echo $? >scom.code
+kill -INT $monitor
+wait $monitor
+echo $? >monitor.code
 
 # A station driven through its profile, until we end it.
 cansend vcan0 7FE#02
@@ -115,4 +122,27 @@ tc qdisc change dev vcan2 root tbf rate 10mbit burst 10000 limit 160
 wait $run
 busybox usleep 100000
 kill $log
+
+# A monitor that is stopped for a while loses frames, and an error frame of a controller: no acknowledge.
+ip link add vcan3 type vcan
+ip link set vcan3 up
+./ipos bus monitor vcan3 --station 1 >lost.txt 2>lost.err &
+monitor=$!
+wait_for monitoring lost.err
+kill -STOP $monitor
+cangen vcan3 -g 0 -I 20B -L 8 -D 3100207E00000000 -n 12000
+kill -CONT $monitor
+wait_for "523 read" lost.txt
+busybox usleep 300000
+cansend vcan3 20C#3100207E000F4240
+wait_for 1000.000 lost.txt
+for n in 1 2 3; do cansend vcan3 20000020#0000000000000000; done
+wait_for "no ack" lost.txt
+cansend vcan3 20C#31002116000007D0
+wait_for 2.000 lost.txt
+ip link set vcan3 down
+busybox usleep 300000
+kill -INT $monitor
+wait $monitor
+echo $? >lost.code
 : >done

@@ -1,5 +1,5 @@
 // Programs that know nothing of ipos attach to its pseudo-terminals: python3-can by slcan, python3-serial to
-// a serial line. No kernel CAN is needed.
+// a serial line and as a MOVILINK master. No kernel CAN is needed.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -71,6 +71,20 @@ TEST(PythonPeers, SerialLineOfPythonSerial) {
   expect_all_ok(result.output, 5);
   EXPECT_EQ((*port)->counts().received, 256U + 1 + 10 + 300);
   EXPECT_EQ((*port)->counts().lost_out, 0U);
+}
+
+TEST(PythonPeers, MovilinkMasterOfPythonSerial) {
+  if (!has_pty()) GTEST_SKIP() << kNoPty;
+  if (!python_has("serial")) GTEST_SKIP() << "there is no python3-serial";
+  const TemporaryFolder folder;
+  const std::string path = (folder.path() / "line1").string();
+  const std::string plant = folder.write(
+      "movilink.toml", std::regex_replace(read_text(project("tests/realbus/movilink.toml")),
+                                          std::regex("kind = \"rs485\""), "$&\nport = \"pty:" + path + "\""));
+  const ScriptResult result =
+      run_script({kPython, "-B", script("movilink_peer.py"), IPOS_PROGRAM, plant, path});
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  expect_all_ok(result.output, 35);
 }
 
 }  // namespace

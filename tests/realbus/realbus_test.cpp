@@ -1,10 +1,12 @@
 // Real SocketCAN: a Linux guest (user-mode-linux) with vcan and slcan interfaces, in which ipos, can-utils
 // and python3-can talk to each other (guest.sh). Here its findings are looked at; where the guest does not
 // boot, all tests are skipped with the reason.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
 
@@ -162,6 +164,109 @@ TEST_F(RealBus, CanbusloadAgreesWithOurLengths) {
   EXPECT_EQ(their_frames, frames);
   EXPECT_GE(frames, 100U);
   EXPECT_NEAR(static_cast<double>(their_bits), static_cast<double>(bits), static_cast<double>(bits) / 100);
+}
+
+// The same comparison with the verb, on the log that candump recorded.
+TEST_F(RealBus, CanbusloadAgreesWithBusLoad) {
+  // Frames behind the last probe, which canbusload may not have seen.
+  const std::string all = text("all.log");
+  const size_t probe = all.rfind("7FF#");
+  ASSERT_NE(probe, std::string::npos);
+  const TemporaryFolder folder;
+  folder.write("seen.log", all.substr(all.find('\n', probe) + 1));
+  const CommandResult result =
+      run_ipos({"bus", "load", "seen.log", "--baud", "500000", "--format", "json"}, folder.path());
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto ours = nlohmann::json::parse(result.out);
+  const std::string load = text("load.txt");
+  const std::regex row(R"(vcan0@500000\s+(\d+)\s+(\d+)\s+(\d+)\s+(\d+)%)");
+  uint64_t frames = 0, bits = 0, data_bits = 0;
+  for (std::sregex_iterator it(load.begin(), load.end(), row), end; it != end; ++it) {
+    frames += std::stoull((*it)[1]);
+    bits += std::stoull((*it)[2]);
+    data_bits += std::stoull((*it)[3]);
+  }
+  const auto exact_bits = ours["all"]["exact_bits"].get<double>();
+  EXPECT_EQ(ours["all"]["frames"].get<uint64_t>(), frames);
+  EXPECT_EQ(ours["all"]["data_bits"].get<uint64_t>(), data_bits);
+  EXPECT_NEAR(exact_bits, static_cast<double>(bits), static_cast<double>(bits) / 100);
+  // Both see the same share of the bus over the whole time, and windows are seconds with all frames in one.
+  uint64_t in_windows = 0;
+  for (const auto& window : ours["windows"]) in_windows += window["exact_bits"].get<uint64_t>();
+  EXPECT_EQ(in_windows, ours["all"]["exact_bits"].get<uint64_t>());
+}
+
+// What the monitor shows of the SCOM example are the frames that candump logs, in words.
+TEST_F(RealBus, TheMonitorShowsTheScomExampleInWords) {
+  EXPECT_EQ(text("monitor.code"), "130\n") << text("monitor.err");
+  const TemporaryFolder folder;
+  std::string frames;
+  for (const LogEntry& entry : part(1))
+    frames += runtime::candump_line(entry.time, entry.bus, entry.frame) + "\n";
+  folder.write("part.log", frames);
+  const CommandResult decoded = run_ipos(
+      {"bus", "decode", "part.log", "--names", project("examples/scom/scom.toml").string()}, folder.path());
+  ASSERT_EQ(decoded.exit_code, 0) << decoded.err;
+  // The mark of the part stands before.
+  std::istringstream theirs(decoded.out), ours(text("monitor.txt"));
+  const auto words = [](const std::string& line) { return line.substr(line.find(' ') + 1); };
+  const auto stamp = [](const std::string& line) { return std::stod(line.substr(1)); };
+  std::string expected, shown;
+  ASSERT_TRUE(std::getline(ours, shown));
+  EXPECT_EQ(words(shown), "vcan0 2046 01");
+  size_t rows = 0;
+  while (std::getline(theirs, expected)) {
+    ASSERT_TRUE(std::getline(ours, shown)) << "missing: " << expected;
+    EXPECT_EQ(words(shown), words(expected));
+    EXPECT_NEAR(stamp(shown), stamp(expected), 0.005) << "both have the kernel's stamps";
+    ++rows;
+  }
+  EXPECT_FALSE(std::getline(ours, shown)) << shown;
+  EXPECT_GE(rows, 55U);
+  EXPECT_NE(text("monitor.txt").find(" 524 read 8470 Ramp t11 UP CW = 2.000 s <- unit2\n"),
+            std::string::npos);
+  EXPECT_NE(text("monitor.err").find(fmt::format("ipos: {} telegrams, {} shown\n", rows + 1, rows + 1)),
+            std::string::npos)
+      << text("monitor.err");
+  // With a station and a count it ends by itself.
+  const std::string one = text("monitor1.txt");
+  EXPECT_EQ(std::count(one.begin(), one.end(), '\n'), 10);
+  EXPECT_EQ(one.find("unit2 "), std::string::npos);
+}
+
+// Stopped while 12000 frames come, the monitor tells how many the kernel had no room for; with those it shows
+// they are all.
+TEST_F(RealBus, TheMonitorTellsLostFramesAndBusErrors) {
+  const std::string shown = text("lost.txt");
+  EXPECT_EQ(text("lost.code"), "130\n") << text("lost.err");
+  size_t read = 0;
+  uint64_t lost = 0;
+  std::istringstream lines(shown);
+  std::vector<std::string> rest;
+  for (std::string line; std::getline(lines, line);) {
+    const std::string what =
+        line.substr(line.find("vcan3 ") == std::string::npos ? 0 : line.find("vcan3 ") + 6);
+    std::smatch found;
+    if (what == "523 read 8318 Speed -> address 1")
+      ++read;
+    else if (std::regex_match(what, found, std::regex("--- (\\d+) frames lost")))
+      lost += std::stoull(found[1]);
+    else
+      rest.push_back(what);
+  }
+  EXPECT_EQ(read + lost, 12000U);
+  EXPECT_GT(lost, 0U) << "the kernel had room for all of them";
+  EXPECT_GT(read, 0U);
+  ASSERT_EQ(rest.size(), 4U) << shown.substr(shown.size() > 2000 ? shown.size() - 2000 : 0);
+  EXPECT_EQ(rest[0], "524 read 8318 Speed = 1000.000 rpm <- address 1");
+  EXPECT_EQ(rest[1].substr(0, 29), "--- bus error: no acknowledge");
+  EXPECT_EQ(rest[2], "--- the same error 2 more times");
+  EXPECT_EQ(rest[3], "524 read 8470 Ramp t11 UP CW = 2.000 s <- address 1");
+  const std::string told = text("lost.err");
+  EXPECT_NE(told.find(fmt::format("{} lost, 3 bus errors", lost)), std::string::npos) << told;
+  EXPECT_NE(told.find("frames from it are lost: they came faster than they were read"), std::string::npos)
+      << told;
+  EXPECT_NE(told.find("the interface has been set down"), std::string::npos) << told;
 }
 
 TEST_F(RealBus, InterfacesThatCannotBeUsedSayWhy) {

@@ -153,6 +153,85 @@ TEST(ParameterText, IsReadBack) {
   EXPECT_EQ(parse_parameter_text(*md60a().find("P152"), "maybe").error(), "expected 0 = OFF or 1 = ON");
 }
 
+TEST(ParameterText, FirmwareNumbersAndAsciiTexts) {
+  PROVES("PAR-37", "M07-PAR-24");
+  for (const char* unit : {"md60a", "mc07"}) {
+    const Parameter& firmware = *parameter_table(*find_unit(unit)).find("P076");
+    EXPECT_EQ(parameter_text(firmware, 822609711), "822 609 7.11");
+    EXPECT_EQ(parameter_text(firmware, 1822609011), "822 609 X.11");
+    EXPECT_EQ(parameter_text(firmware, 823947913), "823 947 9.13");
+    EXPECT_EQ(parse_parameter_text(firmware, "822 609 7.11"), 822609711);
+    EXPECT_EQ(parse_parameter_text(firmware, "822 609 X.11"), 1822609011);
+    EXPECT_EQ(parameter_text(firmware, 0), "0");
+    for (const char* text : {"822 609 Y.11", "X", "822 609 X.1", "firmware"})
+      EXPECT_FALSE(parse_parameter_text(firmware, text)) << text;
+  }
+  // P852: two indices of four characters, the first one in the low byte.
+  const Parameter& first = *md60a().find(uint16_t{8772});
+  EXPECT_EQ(parameter_text(first, 1768763185), "1/mi");
+  EXPECT_EQ(parameter_text(*md60a().find(uint16_t{8773}), 110), "n");
+  EXPECT_EQ(parse_parameter_text(first, "1/mi"), 1768763185);
+  EXPECT_EQ(parse_parameter_text(first, "km"), 'k' + 256 * 'm');
+  EXPECT_EQ(parse_parameter_text(first, ""), 0);
+  EXPECT_EQ(parameter_text(first, 7), "0x0007") << "no character";
+  EXPECT_EQ(parse_parameter_text(first, "0x0007"), 7);
+  EXPECT_FALSE(parse_parameter_text(first, "1/min"));
+}
+
+TEST(ParameterText, TakesOtherUnitsOfTheQuantity) {
+  const struct {
+    const char* number;
+    const char* text;
+    int32_t value;
+  } rows[] = {{"P130", "2500 ms", 2500},   {"P130", "2500ms", 2500},  {"P130", "0.5 min", 30000},
+              {"P302", "25 rps", 1500000}, {"P115", "0.005 s", 5000}, {"P303", "120 %", 120000},
+              {"P111", "0.1 V", 100},      {"P816", "500 kbaud", 2},  {"P803", "on", 1},
+              {"P870", "speed", 1},        {"P015", "90 min", 90},    {"P205", "-20%", -20000}};
+  for (const auto& row : rows) {
+    const auto value = parse_parameter_text(*md60a().find(row.number), row.text);
+    ASSERT_TRUE(value) << row.number << " = " << row.text << ": " << value.error();
+    EXPECT_EQ(*value, row.value) << row.number << " = " << row.text;
+  }
+  for (const auto& [number, text] : {std::pair{"P130", "2.5 rps"},
+                                     {"P130", "2.5 kBaud"},
+                                     {"P816", "500 s"},
+                                     {"P014", "300 K"},
+                                     {"P813", "5 s"}})
+    EXPECT_FALSE(parse_parameter_text(*md60a().find(number), text)) << number << " = " << text;
+}
+
+TEST(ParameterText, RefusalsNameValueUnitAndRange) {
+  namespace codes = return_codes;
+  const struct {
+    uint8_t service;
+    uint16_t index;
+    int32_t value;
+    ReturnCode code;
+    const char* text;
+  } rows[] = {
+      {2, 8600, 64, codes::kTooLarge, "P813 SBus address := 64: parameter value too large (0..63)"},
+      {2, 8470, -10, codes::kTooSmall,
+       "P130 Ramp t11 UP CW := -0.010 s: parameter value too small (0.000 s..2000.000 s)"},
+      {2, 8470, 1005, codes::kIncorrectValue,
+       "P130 Ramp t11 UP CW := 1.005 s: incorrect parameter value (1.000 s..10.000 s in steps of 0.100 s)"},
+      {2, 8505, 0, codes::kIncorrectValue,
+       "P224 Slave counter := 0 Inc: incorrect parameter value (-99999999 Inc..-10 Inc or 10 Inc..99999999 "
+       "Inc)"},
+      {3, 8603, 4, codes::kTooLarge,
+       "P816 SBus baud rate := 4: parameter value too large (0 = 125, 1 = 250, 2 = 500 or 3 = 1000)"},
+      {2, 8470, 2500, codes::kParameterLock,
+       "P130 Ramp t11 UP CW := 2.500 s: parameter lock is active (P803 = ON)"},
+      {1, 8392, 0, codes::kCommunication,
+       "index 8392 Operational status, t-1: hardware error: no communication"},
+      {1, 9500, 0, codes::kInvalidIndex, "index 9500: invalid parameter index"},
+      {2, 11020, 5, codes::kFactorySetting, "H20 := 5: factory setting is active"},
+      {2, 16003, 5, codes::kProtected, "program word 3 := 5: parameter has access protection"},
+      {2, 20003, 5, codes::kNotSaved, "curve point 3 := 5: parameter was not saved in EEPROM"},
+      {1, 9500, 0, {8, 0, 0x99}, "index 9500: return code 08 00 00 99"}};
+  for (const auto& row : rows)
+    EXPECT_EQ(explain_refusal(md60a(), row.service, row.index, row.value, row.code), row.text);
+}
+
 // Every legal limit and default survives the way to text and back.
 TEST(ParameterText, RoundTripsEveryLimit) {
   for (const char* unit : {"md60a", "mc07", "mdxb"})

@@ -20,7 +20,7 @@ TEST(Bus, UsageAndHelp) {
   EXPECT_EQ(run_ipos({"bus", "load", "x.log"}).exit_code, 64);  // needs --baud
   EXPECT_EQ(run_ipos({"bus", "plan", "x.toml", "--trial", "soon"}).exit_code, 64);
   EXPECT_EQ(run_ipos({"bus", "replay", "a", "b", "--id", "xyz"}).exit_code, 64);
-  for (const std::string verb : {"plan", "decode", "load", "replay", "dbc"}) {
+  for (const std::string verb : {"plan", "decode", "monitor", "load", "replay", "dbc"}) {
     const CommandResult help = run_ipos({"bus", verb, "--help"});
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_TRUE(contains(help.out, "Example")) << verb;
@@ -61,8 +61,8 @@ TEST(Bus, RunDecodeLoadAndReplayFitTogether) {
   EXPECT_EQ(decoded.exit_code, 0);
   EXPECT_EQ(decoded.err, "");
   EXPECT_TRUE(contains(decoded.out, " sbus 0 sync telegram\n"));
-  EXPECT_TRUE(
-      contains(decoded.out, " sbus 269 PO-sync CTRL. WORD 1 0006h, SPEED 1000.0 rpm, 0000h -> inverter1\n"));
+  EXPECT_TRUE(contains(
+      decoded.out, " sbus 269 PO-sync CTRL. WORD 1 0006h (enable), SPEED 1000.0 rpm, 0000h -> inverter1\n"));
   EXPECT_TRUE(contains(decoded.out, " sbus 1024 lLength = 12346 (0000303Ah) <- inverter1\n"));
   // The load agrees with what the line itself counted in the run.
   const auto report =

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,19 +11,6 @@ namespace ipos::tests {
 // Some containers have no /dev/pts, and so no pseudo-terminals; tests that need one are skipped there.
 inline constexpr const char* kNoPty = "there is no /dev/pts: no pseudo-terminals here";
 inline bool has_pty() { return std::filesystem::exists("/dev/pts/ptmx"); }
-
-struct CommandResult {
-  int exit_code;
-  std::string out;
-  std::string err;
-};
-
-// Runs `ipos ARGUMENTS...`; `directory` is the working folder.
-CommandResult run_ipos(const std::vector<std::string>& arguments,
-                       const std::filesystem::path& directory = {});
-
-// A folder of the project, for example "examples".
-std::filesystem::path project(const std::string& path);
 
 // A fresh empty folder that is removed at the end of its life.
 class TemporaryFolder {
@@ -38,6 +26,39 @@ class TemporaryFolder {
  private:
   std::filesystem::path path_;
 };
+
+struct CommandResult {
+  int exit_code;
+  std::string out;
+  std::string err;
+};
+
+// Runs `ipos ARGUMENTS...`; `directory` is the working folder.
+CommandResult run_ipos(const std::vector<std::string>& arguments,
+                       const std::filesystem::path& directory = {});
+
+// The same in the background, for verbs that go on until a signal.
+class RunningIpos {
+ public:
+  RunningIpos(const std::vector<std::string>& arguments, const std::filesystem::path& directory = {});
+  ~RunningIpos();  // kills it if it still runs
+  RunningIpos(const RunningIpos&) = delete;
+  RunningIpos& operator=(const RunningIpos&) = delete;
+
+  // Waits until its standard output or its messages contain the text, at most 10 s.
+  bool prints(const std::string& text) const;
+  bool tells(const std::string& text) const;
+
+  void signal(int number) const;
+  CommandResult wait();
+
+ private:
+  std::unique_ptr<TemporaryFolder> folder_;
+  int child_;
+};
+
+// A folder of the project, for example "examples".
+std::filesystem::path project(const std::string& path);
 
 std::string read_text(const std::filesystem::path& path);
 

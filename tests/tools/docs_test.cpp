@@ -53,7 +53,7 @@ TEST(Documentation, DumpsOfTheTourAreReal) {
 
 TEST(Documentation, DumpsOfTheBusToolsAreReal) {
   const std::vector<Dump> dumps = dumps_of(read_text(project("docs/bus-tools.md")));
-  EXPECT_EQ(dumps.size(), 3U);
+  EXPECT_EQ(dumps.size(), 4U);
   for (const Dump& dump : dumps) {
     const CommandResult result = run_ipos(dump.arguments, project(""));
     EXPECT_EQ(result.out + result.err, dump.output) << dump.arguments[1];
@@ -68,6 +68,23 @@ TEST(Documentation, BusToolsPageHasEveryFinding) {
         "| " + std::string(type.code) + " | " + weight + " | " + std::string(type.meaning) + " |\n";
     EXPECT_NE(page.find(row), std::string::npos) << row;
   }
+}
+
+TEST(Documentation, DumpsOfTheParamPageAreReal) {
+  const TemporaryFolder folder;
+  const std::string page = read_text(project("docs/param.md"));
+  const size_t plant = page.find("```toml\n") + 8;
+  folder.write("plant.toml", page.substr(plant, page.find("```", plant) - plant));
+  const std::vector<Dump> dumps = dumps_of(page);
+  EXPECT_GE(dumps.size(), 7U);
+  for (const Dump& dump : dumps) {
+    const CommandResult result = run_ipos(dump.arguments, folder.path());
+    EXPECT_EQ(result.out + result.err, dump.output) << dump.arguments[1];
+  }
+  const std::string row = "  { number = \"P130\", index = 8470,";
+  const std::string file = read_text(folder.path() / "mine.settings");
+  const size_t at = page.find(row);
+  EXPECT_NE(file.find(page.substr(at, page.find('\n', at) - at)), std::string::npos);
 }
 
 TEST(Documentation, DemoOutputInTheReadmeIsReal) {

@@ -56,7 +56,7 @@ TEST_F(RecorderTest, SamplesAreThoseOfTheirMillisecond) {
         "[station.parameters]\nP115 = 0\nP130 = 2000\nP323 = 0\n[station.analog]\nAI1 = \"10 V\"\n");
   Recorder recorder(*plant_, {"u.P094", "u.setpoint"});
   run(recorder, 3);
-  station(0).drive().state().set_inputs(0b1011);  // DI00, CW, ENABLE
+  for (const size_t line : {0U, 1U, 3U}) station(0).inputs().line(line).set = 1;  // DI00, CW, ENABLE
   station(0).drive().state().take_po(runtime::PoSource::Sbus, std::vector<uint16_t>{0x8006, 0xFFFF, 7});
   run(recorder, 2);
   EXPECT_EQ(recorder.recording().times,
@@ -82,7 +82,7 @@ TEST_F(RecorderTest, StateChangesAndFaultsAreEvents) {
   plant(unit("a", "md60a") + unit("b", "mc07"));
   Recorder recorder(*plant_, {"a.status", "b.speed"});
   run(recorder, 2);
-  station(0).drive().state().set_inputs(1);  // DI00 ends the controller inhibit
+  station(0).inputs().line(0).set = 1;  // DI00 ends the controller inhibit
   run(recorder, 2);
   station(0).drive().state().raise_fault(28);
   station(1).drive().state().raise_fault(47);  // its status is not recorded

@@ -111,6 +111,38 @@ TEST(MoviLinkOverRs485, BusTypesLeadToTheirLines) {
   EXPECT_EQ(count(out.can, "\n"), 2U);
 }
 
+// The damaged table of MDX60B/61B section 3.3.1: XT 1, X13 2, fieldbus 3, SBus 1 5, SBus 2 8.
+TEST(MoviLinkOverRs485, BusTypesOfMovidriveB) {
+  PROVES("MDB-PAR-02");
+  std::string program = "#pragma globals 365 399\n" + kEachType;
+  program.replace(program.find("result[7]"), 9, "result[9]");
+  program.replace(program.find("value[7]"), 8, "value[9]");
+  program.replace(program.find("n < 7"), 5, "n < 9");
+  const std::string buses =
+      "[[bus]]\nname = \"sbus\"\nkind = \"can\"\n[[bus]]\nname = \"sbus2\"\nkind = \"can\"\n"
+      "[[bus]]\nname = \"x13\"\nkind = \"rs485\"\n"
+      "[[bus]]\nname = \"xt\"\nkind = \"rs485\"\nbaud = 57600\n";
+  const Outcome out = run(
+      buses +
+          station(
+              "master", "mdxb",
+              "program = \"A.IPC\"\nsbus = \"sbus\"\nsbus2 = \"sbus2\"\nrs485 = \"x13\"\nrs485_xt = \"xt\"\n",
+              "") +
+          station("on_x13", "md60a", "rs485 = \"x13\"\n", "P810 = 1\nP130 = 1300\n") +
+          station("on_xt", "mdxb", "rs485_xt = \"xt\"\n", "P810 = 1\nP130 = 1100\n") +
+          station("on_sbus", "md60a", "sbus = \"sbus\"\n", "P813 = 1\nP130 = 1500\n") +
+          station("on_sbus2", "md60a", "sbus = \"sbus2\"\n", "P813 = 1\nP130 = 1800\n"),
+      program);
+  ASSERT_EQ(out.variables.at("done"), 1);
+  const std::map<int, int64_t> expected = {{1, 1100}, {2, 1300}, {5, 1500}, {8, 1800}};
+  for (int type = 0; type < 9; ++type) {
+    const std::string at = "[" + std::to_string(type) + "]";
+    const auto good = expected.find(type);
+    EXPECT_EQ(out.variables.at("result" + at) == 0, good != expected.end()) << type;
+    EXPECT_EQ(out.variables.at("value" + at), good != expected.end() ? good->second : 77) << type;
+  }
+}
+
 TEST(MoviLinkOverRs485, Movitrac07) {
   PROVES("M07-SCOM-02");
   std::string program = kEachType;

@@ -39,6 +39,22 @@ TEST(Why, NamesTheFaultFirst) {
       << silence;
 }
 
+// By a program in its own unit; over buses: tests/runtime/plan/plan_test.cpp and rs485/slave_test.cpp.
+TEST(Why, NamesARefusedWriteOfTheProgram) {
+  const TemporaryFolder folder;
+  const std::string program = folder.write("A.IPC", R"(#include <const.h>
+MOVLNK m; MLDATA d;
+main() {
+  m.BusType = 5; m.Address = 253; m.Format = ML_FT_PAR; m.Service = ML_S_WR; m.Index = 8600;
+  m.DPointer = numof(d); d.WritePar = 64;
+  _MoviLink(m);
+}
+)");
+  const std::string err = run_ipos({"run", program, "--for", "50ms", "--why"}).err;
+  EXPECT_NE(err.find("refused P813 SBus address := 64: parameter value too large (0..63)"), std::string::npos)
+      << err;
+}
+
 TEST(Why, NamesWhatChangesTheSetpoint) {
   EXPECT_NE(told("", kEnabled).find("raised to the minimum speed (P301 or P311)"), std::string::npos);
   EXPECT_NE(told("P100 = 10\nP815 = 0\nP871 = 0\n", kEnabled).find("no PO word has the assignment SPEED"),

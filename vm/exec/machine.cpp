@@ -3,76 +3,123 @@
 #include "vm/exec/machine.hpp"
 
 #include <algorithm>
+#include <type_traits>
 
 #include "vm/exec/arithmetic.hpp"
+#include "vm/fast/engine.hpp"
 
 namespace ipos::vm {
+
+static_assert(std::is_trivially_copyable_v<Machine>, "a copy is a snapshot");
 
 Machine::Machine(const VerifiedImage& program, const Host& host) : program_(program), host_(host) {}
 
 void Machine::start() {
+  stop_all();
   fault_ = {};
-  tasks_ = {};
+  contexts_ = {};
+  interrupts_ = {};
   start_task(1, 0);
 }
 
-void Machine::start_task(int task, uint32_t address) {
-  TaskContext& t = context(task);
+void Machine::begin(int number, uint32_t address) {
+  TaskContext& t = context_at(number);
   t = {};
   t.state = TaskState::Ready;
   t.pc = address;
 }
 
-void Machine::stop_task(int task) { context(task).state = TaskState::Stopped; }
+void Machine::start_task(int task, uint32_t address) {
+  stop_task(task);
+  begin(task, address);
+  context_at(task).task = static_cast<uint8_t>(task);
+}
+
+void Machine::stop_context(int number) {
+  TaskContext& t = context_at(number);
+  const bool host_waits = t.state == TaskState::Waiting && t.wait_ms == 0;
+  t.state = TaskState::Stopped;
+  if (host_waits && host_.cancel != nullptr) host_.cancel(host_.self, *this, number);
+}
+
+void Machine::stop_task(int task) {
+  for (int number = 1; number <= kContexts; ++number)
+    if (number == task || (number > kTasks && context(number).task == task)) stop_context(number);
+}
 
 void Machine::stop_all() {
-  for (TaskContext& t : tasks_) t.state = TaskState::Stopped;
+  for (int number = 1; number <= kContexts; ++number) stop_context(number);
 }
 
 RunResult Machine::run(int task, uint32_t budget) {
-  TaskContext& t = context(task);
   uint32_t used = 0;
-  while (t.state == TaskState::Ready) {
-    if (used == budget) return {Stop::Budget, used};
-    ++used;
-    ++t.commands;
-    const Stop stop = execute(task, t);
-    if (stop != Stop::Budget) return {stop, used};
+  for (;;) {
+    const int number = active_context(task);
+    TaskContext& t = context_at(number);
+    while (t.state == TaskState::Ready) {
+      if constexpr (kFastEngine) {
+        if (fast_ != nullptr) {
+          const uint32_t piece = std::min(budget - used, fast::kMaxBudget);
+          const uint32_t done = fast::run(*fast_, native_, t, h_.data(), piece);
+          used += done;
+          if (done == piece && used != budget) continue;
+        }
+      }
+      if (used == budget) return {Stop::Budget, used};
+      ++used;
+      ++t.commands;
+      const Stop stop = execute(number, t);
+      if (stop == Stop::Faulted) return {stop, used};
+      if (stop != Stop::Budget) break;
+    }
+    if (t.state == TaskState::Waiting) return {Stop::Waiting, used};
+    // A routine has ended: what it interrupted goes on, if the task is still there.
+    if (t.state == TaskState::Stopped && context(task).state == TaskState::Stopped)
+      return {Stop::Ended, used};
   }
-  return {t.state == TaskState::Waiting ? Stop::Waiting : Stop::Ended, used};
 }
 
 void Machine::tick() {
-  for (int task = 1; task <= kTasks; ++task) {
-    TaskContext& t = context(task);
-    if (t.state == TaskState::Waiting && t.wait_ms != 0 && --t.wait_ms == 0) resume(task);
-  }
+  for (TaskContext& t : contexts_)
+    if (t.state == TaskState::Waiting && t.wait_ms != 0 && --t.wait_ms == 0) go_on(t);
+  take_events();
+  take_variable_interrupts();
 }
 
-void Machine::resume(int task) {
-  TaskContext& t = context(task);
-  if (t.state != TaskState::Waiting) return;
+void Machine::resume(int context) {
+  TaskContext& t = context_at(context);
+  if (t.state == TaskState::Waiting && t.wait_ms == 0) go_on(t);
+}
+
+void Machine::go_on(TaskContext& t) {
   t.state = TaskState::Ready;
-  t.wait_ms = 0;
-  t.pc += static_cast<uint32_t>(vm::info(decode(program_.code(), t.pc).instruction.opcode).words);
+  t.pc += decode(program_.code(), t.pc).words;
 }
 
-void Machine::raise(int task, uint8_t number, const char* reason) {
-  fault_ = {number, static_cast<uint8_t>(task), context(task).pc, reason};
+void Machine::raise_fault(uint8_t number, const char* reason) {
+  int task = 1;
+  for (int other = kTasks; other > 0; --other)
+    if (context(other).state != TaskState::Stopped) task = other;
+  raise(active_context(task), number, reason);
+}
+
+void Machine::raise(int number, uint8_t fault, const char* reason) {
+  const TaskContext& t = context(number);
+  fault_ = {fault, t.task, static_cast<uint8_t>(number), t.pc, reason};
   stop_all();
 }
 
 // Executes the command at t.pc. Stop::Budget means: go on.
-Stop Machine::execute(int task, TaskContext& t) {
+Stop Machine::execute(int number, TaskContext& t) {
   const Decoded decoded = decode(program_.code(), t.pc);
   const Instruction& command = decoded.instruction;
   const int32_t a = command.operands[0];
   const int32_t b = command.operands[1];
   const auto ha = [&]() -> int32_t& { return h_[static_cast<size_t>(a)]; };
   const auto hb = [&]() -> int32_t& { return h_[static_cast<size_t>(b)]; };
-  const auto is_variable = [&](int32_t number) { return bits(number) < program_.limits().variables; };
-  const auto fail = [&](uint8_t number, const char* reason) {
-    raise(task, number, reason);
+  const auto is_variable = [&](int32_t h) { return bits(h) < program_.limits().variables; };
+  const auto fail = [&](uint8_t fault, const char* reason) {
+    raise(number, fault, reason);
     return Stop::Faulted;
   };
   const auto branch = [&](bool condition) {
@@ -82,7 +129,7 @@ Stop Machine::execute(int task, TaskContext& t) {
   const auto call = [&](int32_t target) {
     if (t.depth == program_.limits().call_depth || t.depth == kMaxCallDepth)
       return fail(kFaultIndexOverflow, "calls are nested deeper than the unit allows");
-    t.calls[t.depth++] = t.pc + decoded.words;
+    t.calls[t.depth++] = static_cast<uint16_t>(t.pc + decoded.words);
     t.pc = bits(target);
     return Stop::Budget;
   };
@@ -91,7 +138,7 @@ Stop Machine::execute(int task, TaskContext& t) {
 
   switch (command.opcode) {
     case Opcode::Nop: break;
-    case Opcode::End: t.state = TaskState::Stopped; return Stop::Ended;
+    case Opcode::End: stop_task(t.task); return Stop::Ended;
     case Opcode::Ret:
       if (t.depth == 0) {
         t.state = TaskState::Stopped;
@@ -190,11 +237,27 @@ Stop Machine::execute(int task, TaskContext& t) {
       return Stop::Waiting;
     }
 
+    case Opcode::Task2:
+    case Opcode::Task: {
+      const int other = command.opcode == Opcode::Task2 ? 2 : 3;
+      if (a == 0)
+        stop_task(other);
+      else
+        start_task(other, bits(b));
+      if (t.state == TaskState::Stopped) return Stop::Ended;
+      if (a != 0 && other == number) return Stop::Budget;  // it has started itself anew
+      break;
+    }
+    case Opcode::SetInt: set_interrupt(a, bits(b)); break;
+    case Opcode::VarInt:
+      if (const char* reason = set_variable_interrupt(bits(a), bits(b))) return fail(kFaultIllop, reason);
+      break;
+
     default: {  // everything else is the host's
       const HostReply reply =
           host_.execute == nullptr
               ? HostReply{Answer::Fault, kFaultIllop, "the unit cannot carry out system commands"}
-              : host_.execute(host_.self, *this, task, command);
+              : host_.execute(host_.self, *this, number, command);
       if (reply.answer == Answer::Fault) return fail(reply.fault, reply.reason);
       if (t.state == TaskState::Stopped) return Stop::Ended;
       if (t.commands == 0) return Stop::Budget;  // the command has started its own task anew
@@ -203,8 +266,8 @@ Stop Machine::execute(int task, TaskContext& t) {
         return Stop::Waiting;
       }
       if (reply.answer == Answer::Taken) {
-        const OpcodeInfo& row = vm::info(command.opcode);
-        return call(command.operands[static_cast<size_t>(row.operand_count) - 1]);
+        const Coding& row = coding(command.opcode);
+        return call(command.operands[row.operand_count - 1]);
       }
       break;
     }

@@ -1,5 +1,5 @@
-// The VM of one unit: H variables and the tasks of a verified program. Everything it knows is in this object;
-// it takes no memory after construction, reads no clock and calls nothing but its host.
+// The VM of one unit: H variables, tasks and interrupts of a verified program. Everything it knows is in this
+// object, a copy is a snapshot; it takes no memory, reads no clock and calls nothing but its host.
 //
 // Time is counted in commands: run(task, budget) executes at most `budget` commands of one task and says why
 // it stopped. Who calls it how often is vm/sched.
@@ -10,29 +10,15 @@
 #include <optional>
 #include <span>
 
+#include "vm/exec/context.hpp"
+#include "vm/exec/interrupts.hpp"
+#include "vm/host/build.hpp"
 #include "vm/host/host.hpp"
 #include "vm/verify/verify.hpp"
 
 namespace ipos::vm {
 
-inline constexpr uint32_t kMaxVariables = 1024;
-inline constexpr uint32_t kMaxCallDepth = 64;
-inline constexpr int kTasks = 3;
-
-enum class TaskState : uint8_t {
-  Stopped,  // never started, ended, or stopped
-  Ready,    // executes when it gets commands
-  Waiting,  // inside a waiting command, for the host or for wait_ms to pass
-};
-
-struct TaskContext {
-  TaskState state = TaskState::Stopped;
-  uint8_t depth = 0;      // entries in use of `calls`
-  uint32_t pc = 0;        // word address of the command to be executed next, or being waited in
-  uint32_t wait_ms = 0;   // WAIT: ticks still to pass
-  uint64_t commands = 0;  // executed since the start
-  std::array<uint32_t, kMaxCallDepth> calls{};  // return addresses
-};
+inline constexpr uint64_t kIdleForever = UINT64_MAX;
 
 // Faults a program can cause by itself.
 inline constexpr uint8_t kFaultIllop = 10;          // F10 IPOS ILLOP
@@ -41,6 +27,7 @@ inline constexpr uint8_t kFaultIndexOverflow = 32;  // F32 IPOS index overflow
 struct Fault {
   uint8_t number = 0;            // drive fault number; 0 = none
   uint8_t task = 0;              // 1..3
+  uint8_t context = 0;           // the task itself, or the interrupt routine it was in
   uint32_t address = 0;          // word address of the command
   const char* reason = nullptr;  // static text
 };
@@ -57,41 +44,96 @@ struct RunResult {
   uint32_t commands;  // executed in this call
 };
 
+namespace fast {
+class Predecoded;
+struct Native;
+}  // namespace fast
+
 class Machine {
  public:
   explicit Machine(const VerifiedImage& program, const Host& host);
 
-  // Starts task 1 at word 0 with all tasks reset; variables keep their values.
+  // From now on the fast engine executes what it can, with the same results; null: the reference interpreter
+  // alone. With `native` machine code executes what it can of that (vm/jit). Both must be made of this
+  // machine's program and outlive the machine and its copies.
+  void use(const fast::Predecoded* program, const fast::Native* native = nullptr) {
+    fast_ = program;
+    native_ = native;
+  }
+
+  // Starts task 1 at word 0 with all tasks stopped and no interrupt installed; variables keep their values.
   void start();
   // Starts a task (1..3) at a verified command start, from its beginning even if it is running.
   void start_task(int task, uint32_t address);
+  // Ends a task in whatever it does, interrupt routines of it included.
   void stop_task(int task);
   void stop_all();
 
-  // Executes at most `budget` commands of a task. Exact: a budget of 1 is a single step.
+  // Executes at most `budget` commands of a task, its interrupt routines first. Exact: a budget of 1 is a
+  // single step.
   RunResult run(int task, uint32_t budget);
 
-  // One millisecond has passed: WAIT counts down, tasks whose wait is over become ready.
+  // One millisecond has passed: WAIT counts down, contexts whose wait is over become ready, interrupts that
+  // are due begin.
   void tick();
 
-  // The host has finished the command the task waits in: it goes on behind it.
-  void resume(int task);
+  // How many ticks from now on, each with these budgets of commands for the tasks, lead nowhere, if meanwhile
+  // nobody else writes variables, resumes, raises events or starts and stops tasks: tasks wait, have ended,
+  // or go round in a loop of at most `longest` commands that leaves all variables as they were and changes
+  // none that others look at. kIdleForever: no end to it. Costs up to `longest` commands for each task.
+  uint64_t idle_ticks(const std::array<uint32_t, kTasks>& budgets, uint32_t longest = 256);
+
+  // What `ticks` of tick() and run() would have done, not more than idle_ticks() has promised. Returns the
+  // commands they would have executed.
+  uint64_t skip_ticks(const std::array<uint32_t, kTasks>& budgets, uint64_t ticks);
+
+  // An event of task 1 has happened. Without an installed routine nothing follows.
+  void raise_event(Event event);
+
+  // The host has finished the command the context waits in: it goes on behind it. A context that no longer
+  // waits for the host is left alone.
+  void resume(int context);
+
+  // A fault the program caused in the eyes of the unit (watchdog): all tasks stop where they are. It is
+  // reported of the first task that runs, or of task 1.
+  void raise_fault(uint8_t number, const char* reason);
 
   std::span<int32_t> variables() { return {h_.data(), program_.limits().variables}; }
   std::span<const int32_t> variables() const { return {h_.data(), program_.limits().variables}; }
-  const TaskContext& task(int task) const { return tasks_[static_cast<size_t>(task - 1)]; }
+  const TaskContext& task(int task) const { return context(task); }
+  const TaskContext& context(int number) const { return contexts_[static_cast<size_t>(number - 1)]; }
+  // What executes when the task gets commands: an interrupt routine, or the task itself.
+  int active_context(int task) const;
+  const Interrupts& interrupts() const { return interrupts_; }
   const Fault& fault() const { return fault_; }
   const VerifiedImage& program() const { return program_; }
 
  private:
-  TaskContext& context(int task) { return tasks_[static_cast<size_t>(task - 1)]; }
-  void raise(int task, uint8_t number, const char* reason);
-  Stop execute(int task, TaskContext& t);
+  friend class SavedState;
+  TaskContext& context_at(int number) { return contexts_[static_cast<size_t>(number - 1)]; }
+  void begin(int number, uint32_t address);
+  void stop_context(int number);
+  void go_on(TaskContext& t);
+  void raise(int number, uint8_t fault, const char* reason);
+  Stop execute(int number, TaskContext& t);
+
+  void set_interrupt(int32_t keyword, uint32_t address);
+  const char* set_variable_interrupt(uint32_t structure, uint32_t address);  // why not, or nullptr
+  void take_events();
+  void take_variable_interrupts();
+  struct Spin;
+  Spin find_spin(int number, uint32_t longest);
+  bool try_command(int number, Spin& spin);
+  bool interrupts_rest() const;
+  bool begin_routine(int number, int task, uint8_t rank, uint32_t address);
 
   VerifiedImage program_;
   Host host_;
+  const fast::Predecoded* fast_ = nullptr;
+  const fast::Native* native_ = nullptr;
   Fault fault_;
-  std::array<TaskContext, kTasks> tasks_{};
+  Interrupts interrupts_;
+  std::array<TaskContext, kContexts> contexts_{};
   std::array<int32_t, kMaxVariables> h_{};
 };
 

@@ -25,8 +25,13 @@ struct HostReply {
 
 struct Host {
   void* self = nullptr;
-  // Carries out one system command. `task` is 1..3. Must not throw and not block.
-  HostReply (*execute)(void* self, Machine& machine, int task, const Instruction& command) noexcept = nullptr;
+  // Carries out one system command. `context` says who executes it (vm/exec/context.hpp), 1..3 are the tasks;
+  // with Answer::Wait it is what to give to Machine::resume. Must not throw and not block.
+  HostReply (*execute)(void* self, Machine& machine, int context,
+                       const Instruction& command) noexcept = nullptr;
+  // A context that was waiting for the host has been stopped: it must not be resumed for that command. May be
+  // left out by a host that never answers Wait.
+  void (*cancel)(void* self, Machine& machine, int context) noexcept = nullptr;
 };
 
 }  // namespace ipos::vm

@@ -1,38 +1,9 @@
-// Reader and writer of the .ipx container.
-//
-//   0  "IPX1"                    magic
-//   4  u32 version               1
-//   8  u32 unit                  row of stdlib/unit_types.def
-//  12  u32 number of sections
-//  16  sections: u32 kind, u32 offset, u32 size each, in rising order of offset, without gaps
-//   .  payloads
-//  -4  u32 CRC-32 over everything before it
-//
+// Reader and writer of whole images, for where there is a heap. The container is that of vm/image/view.cpp.
 // Text is stored as u16 length and bytes. Numbers are little endian.
 #include "vm/image/image.hpp"
 
-#include <array>
-#include <cstring>
-
 namespace ipos::vm {
 namespace {
-
-constexpr uint32_t kMagic = 0x31585049;  // "IPX1"
-constexpr uint32_t kHeaderSize = 16;
-constexpr uint32_t kSectionSize = 12;
-constexpr uint32_t kChecksumSize = 4;
-
-enum Section : uint32_t { kCode = 1, kSymbols = 2, kFunctions = 3, kLines = 4 };
-
-constexpr auto kCrcTable = [] {
-  std::array<uint32_t, 256> table{};
-  for (uint32_t n = 0; n < table.size(); ++n) {
-    uint32_t value = n;
-    for (int bit = 0; bit < 8; ++bit) value = (value & 1) != 0 ? (value >> 1) ^ 0xEDB88320U : value >> 1;
-    table[n] = value;
-  }
-  return table;
-}();
 
 class Writer {
  public:
@@ -50,46 +21,6 @@ class Writer {
 
  private:
   std::vector<uint8_t> bytes_;
-};
-
-// Reads without ever leaving its bytes: beyond the end all reads give 0 and ok() is false.
-class Reader {
- public:
-  Reader(std::span<const uint8_t> bytes, uint32_t base) : bytes_(bytes), base_(base) {}
-  uint32_t u8() {
-    if (at_ >= bytes_.size()) {
-      ok_ = false;
-      return 0;
-    }
-    return bytes_[at_++];
-  }
-  uint32_t u16() {
-    const uint32_t low = u8();
-    return low | u8() << 8;
-  }
-  uint32_t u32() {
-    const uint32_t low = u16();
-    return low | u16() << 16;
-  }
-  std::string text() {
-    const uint32_t length = u16();
-    if (bytes_.size() - at_ < length) {
-      ok_ = false;
-      return {};
-    }
-    std::string out(reinterpret_cast<const char*>(bytes_.data()) + at_, length);
-    at_ += length;
-    return out;
-  }
-  bool ok() const { return ok_; }
-  bool at_end() const { return ok_ && at_ == bytes_.size(); }
-  uint32_t offset() const { return base_ + static_cast<uint32_t>(at_); }
-
- private:
-  std::span<const uint8_t> bytes_;
-  uint32_t base_;
-  size_t at_ = 0;
-  bool ok_ = true;
 };
 
 Writer symbols_section(const Image& image) {
@@ -135,12 +66,9 @@ bool read_code(Reader& in, Image& image) {
 
 bool read_symbols(Reader& in, Image& image) {
   while (!in.at_end()) {
-    Symbol symbol;
-    symbol.variable = static_cast<uint16_t>(in.u16());
-    symbol.count = static_cast<uint16_t>(in.u16());
-    symbol.name = in.text();
-    if (!in.ok() || symbol.count == 0) return false;
-    image.symbols.push_back(std::move(symbol));
+    const auto symbol = read_symbol(in);
+    if (!symbol) return false;
+    image.symbols.push_back({std::string(symbol->name), symbol->variable, symbol->count});
   }
   return true;
 }
@@ -158,7 +86,7 @@ bool read_functions(Reader& in, Image& image) {
 
 bool read_lines(Reader& in, Image& image) {
   const uint32_t files = in.u16();
-  for (uint32_t n = 0; n < files && in.ok(); ++n) image.files.push_back(in.text());
+  for (uint32_t n = 0; n < files && in.ok(); ++n) image.files.emplace_back(in.text());
   while (in.ok() && !in.at_end()) {
     LineEntry entry;
     entry.address = in.u32();
@@ -173,49 +101,35 @@ bool read_lines(Reader& in, Image& image) {
 }
 
 struct SectionReader {
-  uint32_t kind;
+  Section kind;
   ImageError error;
   bool (*read)(Reader&, Image&);
 };
 // The code comes first: the other sections are checked against it.
-constexpr SectionReader kSections[] = {{kCode, ImageError::BadCode, read_code},
-                                       {kSymbols, ImageError::BadSymbols, read_symbols},
-                                       {kFunctions, ImageError::BadFunctions, read_functions},
-                                       {kLines, ImageError::BadLines, read_lines}};
-
-struct Place {
-  uint32_t kind;
-  uint32_t offset;
-  uint32_t size;
-};
-
-ImageResult refuse(ImageError error, uint32_t offset) { return {error, offset, {}}; }
+constexpr SectionReader kReaders[] = {{Section::Code, ImageError::BadCode, read_code},
+                                      {Section::Symbols, ImageError::BadSymbols, read_symbols},
+                                      {Section::Functions, ImageError::BadFunctions, read_functions},
+                                      {Section::Lines, ImageError::BadLines, read_lines}};
 
 }  // namespace
 
-uint32_t crc32(std::span<const uint8_t> bytes) {
-  uint32_t crc = 0xFFFFFFFFU;
-  for (const uint8_t byte : bytes) crc = kCrcTable[(crc ^ byte) & 0xFF] ^ (crc >> 8);
-  return ~crc;
-}
-
 std::vector<uint8_t> write_image(const Image& image) {
-  std::vector<std::pair<uint32_t, Writer>> sections;
+  std::vector<std::pair<Section, Writer>> sections;
   Writer code;
   for (const uint32_t word : image.code) code.u32(word);
-  sections.emplace_back(kCode, std::move(code));
-  if (!image.symbols.empty()) sections.emplace_back(kSymbols, symbols_section(image));
-  if (!image.functions.empty()) sections.emplace_back(kFunctions, functions_section(image));
-  if (!image.files.empty()) sections.emplace_back(kLines, lines_section(image));
+  sections.emplace_back(Section::Code, std::move(code));
+  if (!image.symbols.empty()) sections.emplace_back(Section::Symbols, symbols_section(image));
+  if (!image.functions.empty()) sections.emplace_back(Section::Functions, functions_section(image));
+  if (!image.files.empty()) sections.emplace_back(Section::Lines, lines_section(image));
 
   Writer out;
-  out.u32(kMagic);
+  out.u32(kImageMagic);
   out.u32(kImageVersion);
   out.u32(image.unit);
   out.u32(static_cast<uint32_t>(sections.size()));
-  uint32_t offset = kHeaderSize + kSectionSize * static_cast<uint32_t>(sections.size());
+  uint32_t offset = 16 + 12 * static_cast<uint32_t>(sections.size());
   for (const auto& [kind, payload] : sections) {
-    out.u32(kind);
+    out.u32(static_cast<uint32_t>(kind));
     out.u32(offset);
     out.u32(payload.size());
     offset += payload.size();
@@ -226,47 +140,14 @@ std::vector<uint8_t> write_image(const Image& image) {
 }
 
 ImageResult read_image(std::span<const uint8_t> bytes) {
-  Reader header(bytes, 0);
-  if (header.u32() != kMagic) return refuse(ImageError::BadMagic, 0);
-  if (bytes.size() < kHeaderSize + kChecksumSize || bytes.size() > 0xFFFF'FFFFU)
-    return refuse(ImageError::TooShort, static_cast<uint32_t>(bytes.size()));
-  if (header.u32() != kImageVersion) return refuse(ImageError::BadVersion, 4);
-
-  const auto payload = bytes.first(bytes.size() - kChecksumSize);
-  const auto end = static_cast<uint32_t>(payload.size());
-  Reader trailer(bytes.last(kChecksumSize), end);
-  if (trailer.u32() != crc32(payload)) return refuse(ImageError::BadChecksum, end);
-
+  const ImageViewResult container = view_image(bytes);
+  if (container.error != ImageError::None) return {container.error, container.offset, {}};
   ImageResult result;
-  const uint32_t unit = header.u32();
-  if (unit > 0xFF) return refuse(ImageError::BadSectionTable, 8);
-  result.image.unit = static_cast<uint8_t>(unit);
-  const uint32_t count = header.u32();
-  if (count > std::size(kSections) || end < kHeaderSize + count * kSectionSize)
-    return refuse(ImageError::BadSectionTable, 12);
-
-  std::vector<Place> places;
-  uint32_t expected = kHeaderSize + count * kSectionSize;
-  for (uint32_t n = 0; n < count; ++n) {
-    const uint32_t row = kHeaderSize + n * kSectionSize;
-    Place place{};
-    place.kind = header.u32();
-    place.offset = header.u32();
-    place.size = header.u32();
-    const bool in_file = place.offset == expected && place.size <= end - place.offset;
-    const bool ordered = places.empty() || places.back().kind < place.kind;
-    if (!in_file || !ordered || place.kind > kLines || place.kind == 0)
-      return refuse(ImageError::BadSectionTable, row);
-    expected += place.size;
-    places.push_back(place);
-  }
-  if (expected != end) return refuse(ImageError::BadSectionTable, expected);
-  if (places.empty() || places.front().kind != kCode) return refuse(ImageError::MissingCode, kHeaderSize);
-
-  for (const Place& place : places) {
-    Reader in(bytes.subspan(place.offset, place.size), place.offset);
-    const SectionReader& section = kSections[place.kind - 1];
-    if (!section.read(in, result.image)) return refuse(section.error, in.offset());
+  result.image.unit = container.view.unit;
+  for (const SectionReader& section : kReaders) {
+    if (container.view.section(section.kind).offset == 0) continue;
+    Reader in = container.view.reader(section.kind);
+    if (!section.read(in, result.image)) return {section.error, in.offset(), {}};
   }
   return result;
 }

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "vm/image/view.hpp"
+
 namespace ipos::vm {
 
 // A named variable, or a named run of them: a structure member is one symbol ("TrCycl.ObjectNo"), an array is
@@ -48,37 +50,17 @@ struct Image {
   bool operator==(const Image&) const = default;
 };
 
-// Why an image was refused. offset is the byte where the trouble was seen.
-enum class ImageError : uint8_t {
-  None,
-  TooShort,         // shorter than header and checksum
-  BadMagic,         // not an ipos image
-  BadVersion,       // written by a newer version
-  BadChecksum,      // CRC-32 differs: the file was damaged
-  BadSectionTable,  // section outside the file, overlapping or twice
-  MissingCode,      // no code section
-  BadCode,          // code section not a whole number of words
-  BadSymbols,       // symbol section cut or inconsistent
-  BadFunctions,     // function section cut or inconsistent
-  BadLines,         // line section cut or inconsistent
-};
-const char* to_text(ImageError error);
-
+// offset is the byte where the trouble was seen.
 struct ImageResult {
   ImageError error = ImageError::None;
   uint32_t offset = 0;
   Image image;
 };
 
-inline constexpr uint32_t kImageVersion = 1;
-
 // The same image always gives the same bytes.
 std::vector<uint8_t> write_image(const Image& image);
 
 // Any byte string gives an image or an error, never undefined behaviour.
 ImageResult read_image(std::span<const uint8_t> bytes);
-
-// CRC-32 (IEEE 802.3, reflected, initial value and final xor 0xFFFFFFFF), as zlib computes it.
-uint32_t crc32(std::span<const uint8_t> bytes);
 
 }  // namespace ipos::vm

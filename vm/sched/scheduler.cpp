@@ -1,6 +1,8 @@
 // One tick of all tasks.
 #include "vm/sched/scheduler.hpp"
 
+#include <algorithm>
+
 namespace ipos::vm {
 
 uint32_t run_tick(Machine& machine, const Rates& rates) {
@@ -9,6 +11,37 @@ uint32_t run_tick(Machine& machine, const Rates& rates) {
   for (int task = 1; task <= kTasks; ++task)
     executed += machine.run(task, rates.commands[static_cast<size_t>(task - 1)]).commands;
   return executed;
+}
+
+void TickSteps::begin(Machine& machine, const Rates& rates) {
+  machine.tick();
+  rates_ = rates;
+  task_ = 1;
+  used_ = 0;
+  settle(machine);
+}
+
+// Goes on to the next task that can execute a command.
+void TickSteps::settle(const Machine& machine) {
+  while (task_ <= kTasks && (used_ >= rates_.commands[static_cast<size_t>(task_ - 1)] ||
+                             machine.context(machine.active_context(task_)).state != TaskState::Ready)) {
+    ++task_;
+    used_ = 0;
+  }
+}
+
+uint32_t TickSteps::step(Machine& machine, uint32_t most) {
+  const uint32_t left = rates_.commands[static_cast<size_t>(task_ - 1)] - used_;
+  const uint32_t executed = machine.run(task_, std::min(left, most)).commands;
+  used_ += executed;
+  settle(machine);
+  return executed;
+}
+
+uint64_t skip_idle(Machine& machine, const Rates& rates, uint64_t most, uint64_t& executed) {
+  const uint64_t ticks = std::min(most, machine.idle_ticks(rates.commands));
+  if (ticks != 0) executed += machine.skip_ticks(rates.commands, ticks);
+  return ticks;
 }
 
 }  // namespace ipos::vm

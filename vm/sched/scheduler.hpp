@@ -18,4 +18,26 @@ struct Rates {
 // One millisecond: waits count down, then every task gets its commands. Returns the commands executed.
 uint32_t run_tick(Machine& machine, const Rates& rates);
 
+// A millisecond that can be left between any two commands, for debuggers: the commands of run_tick in the
+// same order.
+class TickSteps {
+ public:
+  void begin(Machine& machine, const Rates& rates);
+  // Whose command is next; 0: the millisecond is over.
+  int task() const { return task_ > kTasks ? 0 : task_; }
+  // Executes at most `most` commands, all of that task; returns how many.
+  uint32_t step(Machine& machine, uint32_t most = 1);
+
+ private:
+  void settle(const Machine& machine);
+
+  Rates rates_;
+  int task_ = kTasks + 1;
+  uint32_t used_ = 0;  // of the budget of the task
+};
+
+// The same as `ticks` of run_tick, as far as they are idle ones (Machine::idle_ticks): no more than `most`,
+// and 0 when the next one is not. Adds the commands to `executed`.
+uint64_t skip_idle(Machine& machine, const Rates& rates, uint64_t most, uint64_t& executed);
+
 }  // namespace ipos::vm

@@ -23,6 +23,20 @@ uint32_t structure_size(const Instruction& instruction) {
         case 2: return 4;
         default: return 3;
       }
+    case Opcode::GetSys:  // stdlib/structures.def, by keyword
+      switch (instruction.operands[1]) {
+        case 5: return 3;   // GSPODATA3
+        case 7: return 2;   // analog inputs 1 and 2
+        case 8: return 12;  // GSCAM_EXT; GSCAM has 14, which of them it is stands in its first variable
+        default: return 1;
+      }
+    case Opcode::SetSys:
+      switch (instruction.operands[0]) {
+        case 6: return 3;   // SSPIDATA3
+        case 9:             // SSPOSRAMP
+        case 10: return 2;  // SSPOSSPEED
+        default: return 1;
+      }
     default: return 1;
   }
 }
@@ -58,11 +72,11 @@ class Checker {
     starts_[at / 32] |= 1U << (at % 32);
 
     const Instruction& instruction = decoded.instruction;
-    const OpcodeInfo& row = info(instruction.opcode);
+    const Coding& row = coding(instruction.opcode);
     bool first_variable = true;
-    for (size_t n = 0; n < static_cast<size_t>(row.operand_count); ++n) {
+    for (size_t n = 0; n < row.operand_count; ++n) {
       const int32_t value = instruction.operands[n];
-      switch (row.operands[n].kind) {
+      switch (row.kinds[n]) {
         case OperandKind::Variable: {
           const auto number = static_cast<uint32_t>(value);
           const uint32_t size = instruction.opcode == Opcode::Copy
@@ -83,7 +97,7 @@ class Checker {
           if (value < 1) report(Rule::StructureRange, at);
           break;
         case OperandKind::Keyword:
-          if (find_keyword(row.operands[n].keyword_set, value) == nullptr) report(Rule::UnknownKeyword, at);
+          if (!row.has_keyword(value)) report(Rule::UnknownKeyword, at);
           break;
         case OperandKind::Constant:
         case OperandKind::Label:
@@ -103,9 +117,9 @@ class Checker {
   uint32_t labels(uint32_t at) {
     if (!is_start(at)) return 1;
     const Decoded decoded = decode(code_, at);
-    const OpcodeInfo& row = info(decoded.instruction.opcode);
-    for (size_t n = 0; n < static_cast<size_t>(row.operand_count); ++n) {
-      if (row.operands[n].kind != OperandKind::Label) continue;
+    const Coding& row = coding(decoded.instruction.opcode);
+    for (size_t n = 0; n < row.operand_count; ++n) {
+      if (row.kinds[n] != OperandKind::Label) continue;
       const auto target = static_cast<uint32_t>(decoded.instruction.operands[n]);
       if (target >= code_.size() || !is_start(target)) report(Rule::LabelTarget, at);
     }
@@ -120,7 +134,7 @@ class Checker {
   std::span<const uint32_t> code_;
   const Limits& limits_;
   std::span<Violation> out_;
-  std::array<uint32_t, kMaxProgramWords / 32> starts_{};
+  std::array<uint32_t, (kMaxProgramWords + 31) / 32> starts_{};
   uint32_t count_ = 0;
 };
 

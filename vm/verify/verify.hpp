@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "vm/host/build.hpp"
 #include "vm/isa/isa.hpp"
 
 namespace ipos::vm {
@@ -57,11 +58,8 @@ struct Verification {
 };
 
 // Checks all code. Violations are written to `out`, as many as fit, those of labels last. No heap; uses
-// about 2 KiB of stack. The verified image refers to `code`, which must stay alive and unchanged while in
-// use.
+// a bit of stack for each word of the longest program (kMaxProgramWords). The verified image refers to
+// `code`, which must stay alive and unchanged while in use.
 Verification verify(std::span<const uint32_t> code, const Limits& limits, std::span<Violation> out);
-
-// No unit has more program words (ours: mdxb images, see stdlib/unit_types.def).
-inline constexpr uint32_t kMaxProgramWords = 16384;
 
 }  // namespace ipos::vm

@@ -44,6 +44,7 @@ class CanLine final : private EventTarget {
 
   void set_baud(NodeId node, uint32_t baud);
   void set_connected(NodeId node, bool connected);
+  void replace(NodeId node, CanNode& by);  // the station behind it has been made anew
   void restart(NodeId node);  // leaves bus-off at once with cleared counters
   // Leaves bus-off once the node has seen 128 times 11 recessive bits in a row (ISO 11898-1).
   void recover(NodeId node);

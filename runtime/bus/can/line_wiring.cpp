@@ -154,4 +154,6 @@ void CanLine::finish_recovery(Time now, NodeId node) {
   report({LineEventKind::Recovered, now, node});
 }
 
+void CanLine::replace(NodeId node, CanNode& by) { nodes_[node].node = &by; }
+
 }  // namespace ipos::runtime

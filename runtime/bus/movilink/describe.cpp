@@ -5,15 +5,11 @@
 
 #include <algorithm>
 
-#include "runtime/bus/movilink/parameter_telegram.hpp"
 #include "runtime/bus/movilink/process_data.hpp"
-#include "stdlib/parameters.hpp"
+#include "runtime/bus/movilink/telegram_words.hpp"
 
 namespace ipos::runtime {
 namespace {
-
-constexpr uint16_t kVariables = 11'000;  // index of H0 (1053 1610 p. 67)
-constexpr uint16_t kCode = 16'000;       // index of the first program word
 
 std::string bytes_text(const Frame& frame) {
   if (frame.remote) return "remote frame";
@@ -42,53 +38,11 @@ const UnitNames* explaining_unit(const TelegramNames& names, const SbusIdentifie
   return member == names.units.end() ? nullptr : &*member;
 }
 
-const stdlib::UnitType& unit_type(const UnitNames* unit) {
-  return unit != nullptr && unit->unit != nullptr ? *unit->unit : *stdlib::find_unit("md60a");
-}
-
-struct IndexText {
-  std::string name;
-  const stdlib::Parameter* parameter = nullptr;
-};
-
-IndexText index_text(const UnitNames* unit, uint16_t index) {
-  const stdlib::UnitType& type = unit_type(unit);
-  if (index >= kVariables && index < kVariables + type.variables) {
-    const uint32_t number = index - kVariables;
-    const std::string name = unit == nullptr ? fmt::format("H{}", number) : unit->variable(number);
-    return {name, nullptr};
-  }
-  if (index >= kCode && index < kCode + type.parameter_words)
-    return {fmt::format("program word {}", index - kCode), nullptr};
-  const stdlib::Parameter* row = stdlib::parameter_table(type).find(index);
-  return row == nullptr ? IndexText{"unknown index", nullptr} : IndexText{std::string(row->name), row};
-}
-
-bool carries_value(Service service) {  // in the coding of the parameter itself
-  return service != Service::None && service != Service::ReadScale && service != Service::ReadAttribute;
-}
-
-std::string value_text(const IndexText& index, Service service, uint32_t data) {
-  if (!carries_value(service)) return fmt::format("{:08X}h", data);
-  const auto value = static_cast<int32_t>(data);
-  if (index.parameter == nullptr) return fmt::format("{}", value);
-  return stdlib::parameter_text(*index.parameter, value);
-}
-
 std::string parameter_text(const TelegramNames& names, const SbusIdentifier& identifier, const Frame& frame) {
   if (frame.length != 8) return fmt::format("{} bytes in place of 8: {}", frame.length, bytes_text(frame));
   const ParameterTelegram telegram = decode_parameter(frame.data);
   const bool request = telegram_type(identifier.telegram).from_master;
-  const auto service = service_from_code(telegram.service_code());
-  const IndexText index = index_text(explaining_unit(names, identifier), telegram.index);
-  std::string text =
-      service ? std::string(service_text(*service)) : fmt::format("service {}", telegram.service_code());
-  text += fmt::format(" {} {}", telegram.index, index.name);
-  if (telegram.subindex != 0) text += fmt::format(", subindex {}", telegram.subindex);
-  if (!request && telegram.failed())
-    text += " refused: " + describe(telegram.return_code());
-  else if (service && (request ? is_write(*service) : *service != Service::None))
-    text += " = " + value_text(index, *service, telegram.data);
+  std::string text = parameter_words(explaining_unit(names, identifier), telegram, request);
   if (telegram.synchronous()) text += request ? ", answer after sync" : ", after sync";
   return text;
 }
@@ -97,19 +51,8 @@ std::string process_text(const TelegramNames& names, const SbusIdentifier& ident
   const auto words = process_words(frame);
   if (!words) return fmt::format("{} bytes in place of 6: {}", frame.length, bytes_text(frame));
   const bool input = !telegram_type(identifier.telegram).from_master;
-  const UnitNames* unit = explaining_unit(names, identifier);
-  std::string text = input ? "PI" : identifier.telegram == Telegram::ProcessOutputSync ? "PO-sync" : "PO";
-  for (size_t n = 0; n < words->size(); ++n) {
-    const uint8_t code = unit == nullptr ? 0 : (input ? unit->input : unit->output)[n];
-    const std::string_view name =
-        unit == nullptr ? std::string_view{} : process_word_name(unit_type(unit), input, code);
-    text += n == 0 ? " " : ", ";
-    if (unit == nullptr || code == 0 || name.empty())
-      text += fmt::format("{:04X}h", (*words)[n]);
-    else
-      text += fmt::format("{} {}", name, process_word_text(input, code, (*words)[n]));
-  }
-  return text;
+  const char* what = input ? "PI" : identifier.telegram == Telegram::ProcessOutputSync ? "PO-sync" : "PO";
+  return process_words_text(explaining_unit(names, identifier), what, input, *words);
 }
 
 Description object_text(const ObjectNames& object, const Frame& frame) {

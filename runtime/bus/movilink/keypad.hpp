@@ -20,6 +20,9 @@ class Keypad final : private SerialNode, private EventTarget, private RequesterC
     queue_.schedule(queue_.now(), source_, *this, 0);
   }
 
+  // The unit feeds it.
+  void set_powered(bool powered) { powered_ = powered; }
+
  private:
   void on_character(Time now, const Character& character) override {
     requester_.on_character(now, character);
@@ -31,7 +34,7 @@ class Keypad final : private SerialNode, private EventTarget, private RequesterC
     request.address = kUniversalAddress;
     request.format = {true, 0, false};
     request.parameter = parameter_request(Service::None, 0, 0, 0);
-    if (!requester_.busy()) requester_.start(now, request, *this);
+    if (powered_ && !requester_.busy()) requester_.start(now, request, *this);
     queue_.schedule(now + kKeypadCycle, source_, *this, 0);
   }
 
@@ -39,6 +42,7 @@ class Keypad final : private SerialNode, private EventTarget, private RequesterC
   uint32_t source_;
   SerialLinePort port_;
   SerialRequester requester_;
+  bool powered_ = true;
 };
 
 }  // namespace ipos::runtime

@@ -30,6 +30,9 @@ class SetpointSender final : private EventTarget, private RequesterClient {
  public:
   SetpointSender(EventQueue& queue, uint32_t source, SerialRequester& requester, MasterSlaveDrive& drive)
       : queue_(queue), source_(source), requester_(requester), drive_(drive) {}
+  ~SetpointSender() { queue_.cancel_all(*this); }
+  SetpointSender(const SetpointSender&) = delete;
+  SetpointSender& operator=(const SetpointSender&) = delete;
 
   void start(Time now, uint8_t group);
   void stop();

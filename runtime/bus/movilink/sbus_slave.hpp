@@ -36,6 +36,9 @@ class SbusSlave final : private EventTarget {
   SbusSlave(EventQueue& queue, uint32_t source, FrameSender& sender, uint64_t tag, SlaveSettings settings,
             SlaveTiming timing, ParameterServer& parameters, ProcessDataServer& process_data,
             SlaveObserver* observer = nullptr);
+  ~SbusSlave() { queue_.cancel_all(*this); }  // answers under way
+  SbusSlave(const SbusSlave&) = delete;
+  SbusSlave& operator=(const SbusSlave&) = delete;
 
   void configure(SlaveSettings settings);
   const SlaveSettings& settings() const { return settings_; }

@@ -35,6 +35,9 @@ struct RequesterTiming {
 class SerialRequester final : private EventTarget {
  public:
   SerialRequester(EventQueue& queue, uint32_t source, SerialSender& sender, RequesterTiming timing = {});
+  ~SerialRequester() { queue_.cancel_all(*this); }
+  SerialRequester(const SerialRequester&) = delete;
+  SerialRequester& operator=(const SerialRequester&) = delete;
 
   // Sends now or after the requests before it. The client hears the end later, never from within this call.
   void start(Time now, const SerialTelegram& request, RequesterClient& client);

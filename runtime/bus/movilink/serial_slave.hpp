@@ -41,6 +41,9 @@ class SerialSlave final : private EventTarget {
   SerialSlave(EventQueue& queue, uint32_t source, SerialSender& sender, SerialSlaveSettings settings,
               SerialSlaveTiming timing, ParameterServer& parameters, ProcessDataServer& process_data,
               MasterSlaveDrive& drive, SerialSlaveObserver* observer = nullptr);
+  ~SerialSlave() { queue_.cancel_all(*this); }
+  SerialSlave(const SerialSlave&) = delete;
+  SerialSlave& operator=(const SerialSlave&) = delete;
 
   void configure(SerialSlaveSettings settings) { settings_ = settings; }
   const SerialSlaveSettings& settings() const { return settings_; }

@@ -51,11 +51,11 @@ Transmission* Rs485Line::sending(NodeId node) {
   return found == transmissions_.rend() ? nullptr : &*found;
 }
 
-bool Rs485Line::send(NodeId node, std::span<const uint8_t> bytes) {
+bool Rs485Line::send_bits(NodeId node, std::vector<bool> bits) {
   Node& n = nodes_[node];
-  if (!n.connected || n.sent != kNoEvent || bytes.empty()) return false;
+  if (!n.connected || n.sent != kNoEvent || bits.empty()) return false;
   forget_old();
-  Transmission transmission{node, tick_from(queue_.now()), n.ear.bit_ticks, wire_bits(bytes)};
+  Transmission transmission{node, tick_from(queue_.now()), n.ear.bit_ticks, std::move(bits)};
   if (faults_ != nullptr) faults_->disturb(node, transmission.bits);
   for (const Transmission& other : transmissions_)
     if (other.sender != node && other.end() > transmission.begin)
@@ -98,6 +98,12 @@ void Rs485Line::forget_old() {
   std::erase_if(transmissions_, [now](const Transmission& t) { return t.end() + kMemory < now; });
 }
 
+Tick Rs485Line::last_end() const {
+  Tick end = 0;
+  for (const Transmission& transmission : transmissions_) end = std::max(end, transmission.end());
+  return end;
+}
+
 // --- receiving
 
 // Finds the next start bit among what is on the wire already. A start bit in the future may still be
@@ -111,8 +117,7 @@ void Rs485Line::look_for_start(uint64_t number, Tick until) {
 }
 
 void Rs485Line::look_again() {
-  Tick until = 0;
-  for (const Transmission& transmission : transmissions_) until = std::max(until, transmission.end());
+  const Tick until = last_end();
   const Tick now = tick_from(queue_.now());
   const auto look = [&](uint64_t number) {
     Receiver& r = receiver(number);
@@ -131,9 +136,7 @@ void Rs485Line::end_character(uint64_t number) {
   const Tick end = start + character_ticks(r.ear);
   r.event = kNoEvent;
   r.from = reading.resume;
-  Tick until = 0;
-  for (const Transmission& transmission : transmissions_) until = std::max(until, transmission.end());
-  look_for_start(number, until);
+  look_for_start(number, last_end());
   if (!reading.character) return;
   if (number != kObservers) return nodes_[number].node->on_character(queue_.now(), *reading.character);
   ++characters_;
@@ -146,6 +149,17 @@ void Rs485Line::end_character(uint64_t number) {
   }
   if (senders != 1) sender = kNoNode;
   for (SerialObserver* observer : observers_) observer->on_character(*this, sender, *reading.character);
+}
+
+std::vector<Character> Rs485Line::upcoming(NodeId node) const {
+  const Node& n = nodes_[node];
+  std::vector<Character> characters;
+  for (std::optional<Tick> start = n.start; start;) {
+    const Reading reading = read_character(transmissions_, n.ear, *start);
+    if (reading.character) characters.push_back(*reading.character);
+    start = next_start(transmissions_, n.ear, reading.resume, last_end());
+  }
+  return characters;
 }
 
 void Rs485Line::on_event(Time now, uint32_t kind, uint64_t argument) {

@@ -31,12 +31,16 @@ class Rs485Line final : private EventTarget {
   void add_observer(SerialObserver& observer);
   void set_faults(SerialFaults* faults) { faults_ = faults; }
 
-  bool send(NodeId node, std::span<const uint8_t> bytes);
+  bool send(NodeId node, std::span<const uint8_t> bytes) { return send_bits(node, wire_bits(bytes)); }
+  bool send_bits(NodeId node, std::vector<bool> bits);  // also characters with errors
   void break_off(NodeId node);
 
   void set_baud(NodeId node, uint32_t baud);        // what it sends now keeps its rate
   void set_connected(NodeId node, bool connected);  // a cut ends a transmission at once
   void set_echo(NodeId node, bool echo);            // the station hears itself
+
+  // What the station will hear after now if nobody begins to send or falls silent meanwhile.
+  std::vector<Character> upcoming(NodeId node) const;
 
   const std::string& name() const { return name_; }
   uint32_t baud() const { return baud_; }
@@ -72,6 +76,7 @@ class Rs485Line final : private EventTarget {
   Transmission* sending(NodeId node);
   void shorten(NodeId node, Tick end);
   void forget_old();
+  Tick last_end() const;
   void report(const SerialEvent& event, SerialObserver* only = nullptr);
   void report_absence(NodeId node, SerialObserver* only);
 

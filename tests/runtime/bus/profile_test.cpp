@@ -1,5 +1,6 @@
 // Which identifiers a unit uses by its profile, and telegrams in words.
 #include "runtime/bus/movilink/profile.hpp"
+#include "runtime/bus/movilink/unit_words.hpp"
 
 #include <gtest/gtest.h>
 
@@ -231,12 +232,44 @@ TEST(Describe, ProcessDataByAssignment) {
   // The sample of MOVITRAC 07 chapter 5.1: P870..P872 control word, speed, max. speed; P873, P874 status
   // word, speed.
   EXPECT_EQ(words(process_frame(11, {6, 5000, 15000})),
-            "11 PO CTRL. WORD 1 0006h, SPEED 1000.0 rpm, MAX. SPEED 3000.0 rpm -> unit1");
+            "11 PO CTRL. WORD 1 0006h (enable), SPEED 1000.0 rpm, MAX. SPEED 3000.0 rpm -> unit1");
   EXPECT_EQ(words(process_frame(12, {7, 5011, 0})),
-            "12 PI STATUS WORD1 0007h, SPEED 1002.2 rpm, OUTP. CURRENT 0.0 % In <- unit1");
+            "12 PI STATUS WORD1 0007h (ready, output stage on, PO data on; state 0 not ready), SPEED 1002.2 "
+            "rpm, OUTP. CURRENT 0.0 % In <- unit1");
   EXPECT_EQ(process_word_text(false, 1, 5000), "1000.0 rpm");
   EXPECT_EQ(process_word_text(false, 5, 15000), "3000.0 rpm");
   EXPECT_EQ(process_word_text(true, 1, 5011), "1002.2 rpm");
+}
+
+// MOVITRAC 07 chapters 6.2, 6.3, 6.5.
+TEST(Describe, BitsOfTheUnitProfile) {
+  PROVES("M07-SW-06", "M07-MON-09");
+  const stdlib::UnitType& m07 = *stdlib::find_unit("mc07");
+  const stdlib::UnitType& mdx = *stdlib::find_unit("md60a");
+  EXPECT_EQ(status_word_text(m07, 1, 0x0000), "not ready; state 0 not ready");
+  EXPECT_EQ(status_word_text(m07, 1, 0x0020), "fault");
+  EXPECT_EQ(status_word_text(m07, 1, 0x0002), "ready; state 0 not ready");
+  EXPECT_EQ(status_word_text(m07, 1, 0x0022), "warning");
+  EXPECT_EQ(status_word_text(m07, 2, 0x0022), "warning");
+  EXPECT_EQ(status_word_text(m07, 1, 0x0407), "ready, output stage on, PO data on; state 4 enable");
+  EXPECT_EQ(status_word_text(m07, 1, 0x0500), "not ready; state 5 factory setting");
+  EXPECT_EQ(status_word_text(m07, 1, 0x2F24), "fault, PO data on; F47 SBus timeout");
+  EXPECT_EQ(status_word_text(mdx, 1, 0x0529), "fault, output stage on, ramp set 2; F05");
+  EXPECT_EQ(status_word_text(mdx, 2, 0x8142), "ready, CW limit switch, DO10, DO17");
+
+  EXPECT_EQ(control_word_text(m07, 1, 0x0000), "rapid stop");
+  EXPECT_EQ(control_word_text(m07, 1, 0x0001), "controller inhibit");
+  EXPECT_EQ(control_word_text(m07, 1, 0x0002), "stop");
+  EXPECT_EQ(control_word_text(m07, 1, 0x0046), "enable, reset");
+  EXPECT_EQ(control_word_text(m07, 2, 0xA506), "enable, data bit 8, data bit 10, data bit 13, data bit 15");
+  EXPECT_EQ(control_word_text(mdx, 2, 0x0106), "enable, DI10");
+  // One word under two assignments.
+  EXPECT_EQ(process_word_text(false, 1, 0xF15A), "-750.0 rpm");
+  EXPECT_EQ(
+      unit_word_text(m07, false, 9, 0xF15A),
+      "stop, reserved bit 3, reserved bit 4, reset, motor potentiometer CCW, fixed setpoint bit 1, other "
+      "set of fixed setpoints, reserved bit 14, reserved bit 15");
+  EXPECT_EQ(unit_word_text(m07, false, 1, 0xF15A), "");
 }
 
 TEST(Describe, ScalesOfTheUnitProfile) {

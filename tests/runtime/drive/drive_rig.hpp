@@ -110,7 +110,7 @@ class DriveRig {
         since_po_ = 0;
         drive.take_po(source_, words_);
       }
-      drive.tick();
+      drive.tick(positioning);
     }
   }
   // How long it takes; limit + 1 when it does not happen.
@@ -144,6 +144,7 @@ class DriveRig {
 
   runtime::ParameterStore parameters;
   Drive drive;
+  runtime::PositionControl positioning;  // nothing, unless the test wants it
 
  private:
   Words words_{};

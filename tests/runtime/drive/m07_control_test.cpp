@@ -365,10 +365,18 @@ TEST(M07Status, CompositeWords) {
   EXPECT_EQ(rig.drive.pi()[0], 0x2F24);
 }
 
-// The manual names state 0, too; this drive is never "not ready" without a fault number, so M07-SW-09 is not
-// claimed.
-TEST(M07Status, StatesOneToFive) {
-  BusRig rig;
+TEST(M07Status, StatesZeroToFive) {
+  PROVES("M07-SW-09");
+  DriveOptions options;
+  options.start_up_ms = 300;
+  BusRig rig(options);
+  rig.word(0x0006);
+  rig.run_ms(299);
+  EXPECT_EQ(rig.status(), 0x0004) << "not ready: bit 1 and the state are 0";
+  EXPECT_FALSE(rig.stage());
+  rig.word(0x0000);
+  rig.run_ms(1);
+  EXPECT_EQ(rig.status(), 0x0206);
   rig.word(0x0001);
   rig.run_ms(1);
   EXPECT_EQ(rig.state(), 1);

@@ -101,11 +101,20 @@ TEST(M07Setpoint, FactorOfAi1) {
   EXPECT_EQ(rig.parameters.table().find("P110")->conversion, -3);
 }
 
-// 0.1 and the hundredths of kHz cannot be written: the coded value is whole kHz (mc07.tsv), so M07-SETP-09 is
-// shown here but for its range.
+// Transmitted in hundredths of a kHz (mc07.tsv).
 TEST(M07Setpoint, FrequencyInput) {
+  PROVES("M07-SETP-09");
   M07 rig;
-  EXPECT_EQ(rig.value("P102"), 10);
+  EXPECT_EQ(rig.index("P102"), 8840);
+  const stdlib::Parameter& row = *rig.parameters.table().find("P102");
+  EXPECT_EQ(stdlib::parameter_text(row, rig.value("P102")), "10.00 kHz");
+  EXPECT_EQ(rig.write("P102", 10), 0);
+  EXPECT_EQ(stdlib::parameter_text(row, rig.value("P102")), "0.10 kHz");
+  EXPECT_EQ(rig.write("P102", 6500), 0);
+  EXPECT_EQ(stdlib::parameter_text(row, rig.value("P102")), "65.00 kHz");
+  EXPECT_EQ(rig.write("P102", 9), kTooSmall);
+  EXPECT_EQ(rig.write("P102", 6501), kTooLarge);
+  EXPECT_EQ(rig.write("P102", 1000), 0);
   rig.set("P100", 11);
   for (const auto& [hertz, want] : {std::pair{5000, 750}, {10'000, 1500}, {0, 0}}) {
     auto analog = rig.drive.analog();
@@ -113,7 +122,7 @@ TEST(M07Setpoint, FrequencyInput) {
     rig.drive.set_analog(analog);
     EXPECT_EQ(rig.setpoint_rpm(), want);
   }
-  rig.set("P102", 20);
+  rig.set("P102", 2000);
   auto analog = rig.drive.analog();
   analog.frequency = 5000;
   rig.drive.set_analog(analog);

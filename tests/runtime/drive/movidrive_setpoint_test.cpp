@@ -418,5 +418,22 @@ TEST(MovidriveLimits, SpeedMonitoring) {
     }
 }
 
+// 1053 1610 p. 32: value 3000 with conversion -3 is 3 s. Its text says UP, the lists (p. 72) and the other
+// languages DOWN.
+TEST(MovidriveRamp, P131IsTheRampDown) {
+  PROVES("EX-07");
+  const DriveRig fresh("md60a");
+  EXPECT_EQ(fresh.parameters.table().find(8471)->name, "Ramp t11 DOWN CW");
+  EXPECT_EQ(fresh.index("P131"), 8471);
+  DriveRig rig("md60a");
+  rig.bus_control();
+  rig.set("P302", 3'000'000);
+  EXPECT_EQ(rig.write("P131", 3000), 0);
+  rig.po({0x0006, 15000, 0});
+  EXPECT_NEAR(rig.ms_until([&] { return rig.rpm() >= 3000; }), 2000, 3) << "P130 is still 2 s";
+  rig.po({0x0006, 0, 0});
+  EXPECT_NEAR(rig.ms_until([&] { return rig.rpm() <= 0; }), 3000, 3);
+}
+
 }  // namespace
 }  // namespace ipos::tests

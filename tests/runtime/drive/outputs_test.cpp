@@ -193,6 +193,7 @@ TEST(OutputFunctions, OfADriveAtWork) {
   const char* const kNumbers[] = {"P630", "P631", "P632", "P633", "P634", "P635", "P636", "P637"};
   for (int n = 0; n < 8; ++n) rig.set(kNumbers[n], kFunctions[n]);
   rig.set("P421", 0);
+  rig.po({0, 0, 0});
   rig.run_ms(10);
   EXPECT_FALSE(rig.output("DO10"));
   EXPECT_FALSE(rig.output("DO11"));

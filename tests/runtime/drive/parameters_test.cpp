@@ -123,7 +123,7 @@ TEST_F(Md60a, InhibitLockAndOutputStage) {
   for (const uint16_t index : std::initializer_list<uint16_t>{8622, 8606, 8617, 8453, 8454})
     ask(kWrite, index, 0);
   EXPECT_EQ(store.explain(2, 8470, 2500, codes::kParameterLock),
-            "P130 Ramp t11 UP CW := 2500: parameter lock is active (P803 = ON)");
+            "P130 Ramp t11 UP CW := 2.500 s: parameter lock is active (P803 = ON)");
   ask(kWrite, 8595, 0);
   ask(kWrite, 8470, 2500);
 

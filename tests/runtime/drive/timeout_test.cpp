@@ -272,22 +272,38 @@ TEST(SbusTimeout, CausesOfF47) {
   }
 }
 
-// With P101 = TERMINALS. If P101 is the SBus, too, P815 = 0 ends the t, but a control word never received is
-// no enable (docs/drive.md); DIAG-12 is therefore not claimed.
+// Setpoint source, control source or both are the SBus; two cures.
 TEST(SbusTimeout, DisplayTWithoutProcessData) {
-  DriveRig rig("md60a");
-  rig.enable_terminals();
-  rig.set("P100", 10);
-  rig.set("P301", 60'000);
-  rig.set("P815", 100);
-  rig.run_ms(1000);
-  EXPECT_EQ(rig.drive.display(), 't');
-  EXPECT_FALSE(rig.stage());
-  rig.set("P815", 0);
-  rig.run_ms(1000);
-  EXPECT_EQ(rig.drive.display(), '4');
-  EXPECT_EQ(rig.rpm(), 60);
-  EXPECT_EQ(rig.drive.setpoint().note, SetpointNote::NoBusData);
+  PROVES("DIAG-12");
+  for (const auto& [p100, p101] : {std::pair{10, 3}, {10, 0}, {1, 3}})
+    for (const bool by_telegram : {false, true}) {
+      DriveRig rig("md60a");
+      rig.enable_terminals();
+      rig.set("P100", p100);
+      rig.set("P101", p101);
+      rig.set("P301", 60'000);
+      rig.set("P815", 100);
+      rig.run_ms(1000);
+      EXPECT_EQ(rig.drive.display(), 't');
+      EXPECT_FALSE(rig.stage());
+      EXPECT_EQ(rig.drive.verdict().reason, Block::Waiting);
+      const std::string_view hint = runtime::block_text(Block::Waiting);
+      EXPECT_NE(hint.find("send process data"), std::string_view::npos);
+      EXPECT_NE(hint.find("P815 or P883 = 0"), std::string_view::npos);
+      if (by_telegram)
+        rig.po({0x0006, 0, 0});
+      else
+        rig.set("P815", 0);
+      rig.run_ms(1000);
+      EXPECT_EQ(rig.drive.display(), '4') << p100 << p101;
+      EXPECT_EQ(rig.rpm(), 60) << "the minimum speed";
+      EXPECT_EQ(rig.drive.setpoint().note == SetpointNote::NoBusData, p100 == 10 && !by_telegram);
+    }
+  // MOVITRAC 07 has no t; there a control word that never came is no enable.
+  SbusRig m07("mc07", 0);
+  m07.run_ms(1000);
+  EXPECT_EQ(m07.drive.verdict().reason, Block::NoControlWord);
+  EXPECT_FALSE(m07.stage());
 }
 
 TEST(M07Timeout, P815) {

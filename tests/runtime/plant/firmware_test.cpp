@@ -1,4 +1,4 @@
-// Key `firmware` of a station: what it refuses, and what the unit shows and accepts.
+// Keys `firmware` and `start_up` of a station: what they refuse, and what the unit shows and accepts.
 #include <gtest/gtest.h>
 
 #include "runtime/plant/plant.hpp"
@@ -36,6 +36,24 @@ TEST(Firmware, HasTwoDigits) {
     EXPECT_EQ(errors[0].place.line, 4U);
     EXPECT_NE(errors[0].text.find("firmware"), std::string::npos) << errors[0].text;
   }
+}
+
+TEST(StartUp, TheUnitIsNotReadyMeanwhile) {
+  PlantFileResult result =
+      read_plant_file("[[station]]\nname = \"u\"\nunit = \"mc07\"\nstart_up = \"300ms\"\n");
+  ASSERT_TRUE(result.errors.empty());
+  std::vector<PlantError> errors;
+  Plant plant(std::move(result.plant), {std::nullopt}, std::nullopt, errors);
+  plant.run_until(298 * kMillisecond);
+  EXPECT_EQ(plant.stations()[0]->status_word_1(), 0x0000);
+  plant.run_until(301 * kMillisecond);
+  EXPECT_EQ(plant.stations()[0]->status_word_1(), 0x0202);
+  plant.stations()[0]->power_off();
+  plant.stations()[0]->power_on();
+  plant.run_until(400 * kMillisecond);
+  EXPECT_EQ(plant.stations()[0]->status_word_1(), 0x0000) << "after every power-on";
+  for (const char* value : {"300", "\"61s\"", "\"soon\""})
+    EXPECT_EQ(errors_of(std::string("start_up = ") + value + "\n").size(), 1U) << value;
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ TEST(ParityMarks, AreTakenOut) {
 }
 
 // What a port receives within a short time.
-std::vector<ByteArrival> receive(SerialPort& port, size_t wanted) {
+std::vector<ByteArrival> receive(BytePort& port, size_t wanted) {
   SystemClock clock;
   std::vector<ByteArrival> all;
   const Time end = clock.now() + kSecond;

@@ -1,21 +1,10 @@
 // RS-485 in a plant: what cannot be wired, what is told, both interfaces of a unit, keypad and master/slave
 // operation.
-#include "runtime/plant/plant.hpp"
-
 #include "runtime/plant/serial_plan.hpp"
-#include "tests/runtime/rs485/serial_rig.hpp"
+#include "tests/runtime/rs485/serial_plant_rig.hpp"
 
 namespace ipos::tests {
 namespace {
-
-std::string bus(const std::string& name, const std::string& more = "") {
-  return "[[bus]]\nname = \"" + name + "\"\nkind = \"rs485\"\n" + more;
-}
-std::string station(const std::string& name, const std::string& unit, const std::string& more,
-                    const std::string& parameters = "") {
-  return "[[station]]\nname = \"" + name + "\"\nunit = \"" + unit + "\"\n" + more + "[station.parameters]\n" +
-         parameters;
-}
 
 std::vector<std::string> errors_of(const std::string& text) {
   std::vector<std::string> texts;
@@ -34,48 +23,6 @@ void accepts(const std::string& text) {
   const auto errors = errors_of(text);
   EXPECT_TRUE(errors.empty()) << errors[0];
 }
-
-// A plant without programs, with a recorder and a hand-driven station on each line.
-struct PlantRun {
-  explicit PlantRun(const std::string& text) {
-    PlantFileResult file = read_plant_file(text);
-    EXPECT_TRUE(file.errors.empty()) << file.errors[0].text;
-    std::vector<PlantError> errors;
-    const size_t count = file.plant.stations.size();
-    plant = std::make_unique<Plant>(std::move(file.plant), std::vector<std::optional<vm::Image>>(count),
-                                    std::nullopt, errors);
-    EXPECT_TRUE(errors.empty()) << errors[0].text;
-    for (const auto& serial : plant->serial_lines()) {
-      recorders.push_back(std::make_unique<Recorder>());
-      serial->line.add_observer(*recorders.back());
-      hands.push_back(std::make_unique<HandNode>(serial->line, "hand"));
-    }
-  }
-  void run(Time time) { plant->run_until(plant->now() + time); }
-  // Asks over a line; the answers heard there.
-  std::vector<std::string> ask(size_t line, const std::string& text) {
-    run(30 * kMillisecond);
-    recorders[line]->clear();
-    hands[line]->send(telegram(text));
-    run(80 * kMillisecond);
-    std::vector<std::string> heard = recorders[line]->all();
-    if (!heard.empty()) heard.erase(heard.begin());
-    return heard;
-  }
-  bool told(const std::string& words) const {
-    for (const JournalEntry& entry : plant->journal().entries())
-      if (entry.text.find(words) != std::string::npos) return true;
-    return false;
-  }
-  Station& station(size_t n) { return *plant->stations()[n]; }
-  int32_t value(size_t n, uint16_t index) {
-    return station(n).drive().parameters().execute(1, index).value();
-  }
-
-  std::unique_ptr<Plant> plant;
-  std::vector<std::unique_ptr<Recorder>> recorders;
-  std::vector<std::unique_ptr<HandNode>> hands;
-};
 
 std::string many(int count, const std::string& unit, const std::string& key, const std::string& more = "") {
   std::string text;
@@ -265,10 +212,70 @@ TEST(SerialPlant, BothInterfacesFeedOneMonitoring) {
   EXPECT_EQ(fault(), 43);
 }
 
+TEST(SerialPlant, SaysWhyProcessDataHaveNoEffect) {
+  const std::string po = "02 01 05 00 06 3A 98 01 F4";
+  PlantRun deaf(bus("l") + station("a", "md60a", "rs485 = \"l\"\n", "P810 = 1\n"));
+  deaf.ask(0, po);
+  EXPECT_TRUE(
+      deaf.told("the control word has no effect: P101 Control signal source is TERMINALS, not RS-485"));
+  EXPECT_TRUE(
+      deaf.told("the setpoints have no effect: P100 Setpoint source is BIPOL./FIX.SETPT, not RS-485"));
+  PlantRun off(bus("l") +
+               station("a", "md60a", "rs485 = \"l\"\n", "P810 = 1\nP100 = 2\nP101 = 1\nP876 = 0\n"));
+  off.ask(0, po);
+  EXPECT_TRUE(off.told("PO data have no effect: P876 PO data enable is OFF, not ON"));
+  PlantRun good(bus("l") + station("a", "md60a", "rs485 = \"l\"\n", "P810 = 1\nP100 = 2\nP101 = 1\n"));
+  good.ask(0, po);
+  EXPECT_FALSE(good.told("no effect"));
+}
+
+// A unit with P812 = 500 ms on X13 that is asked every 110 ms.
+TEST(SerialPlant, OnlyValidCyclicRequestsAreMonitored) {
+  PROVES("TIME-02");
+  const std::string cyclic = "02 01 05 00 06 3A 98 01 F4";
+  const std::string acyclic = "02 01 86 31 00 20 7E 00 00 00 00";
+  const auto unit = [] {
+    return bus("l") + station("a", "md60a", "rs485 = \"l\"\n", "P810 = 1\nP812 = 500\n");
+  };
+  const auto repeat = [](PlantRun& run, const std::string& text, int times) {
+    for (int n = 0; n < times; ++n) run.ask(0, text);
+  };
+  PlantRun never(unit());
+  repeat(never, acyclic, 10);
+  never.run(5 * kSecond);
+  EXPECT_EQ(never.station(0).fault(), 0) << "acyclic ones start nothing";
+
+  PlantRun once(unit());
+  EXPECT_EQ(once.ask(0, cyclic).size(), 1U);
+  repeat(once, acyclic, 3);
+  EXPECT_EQ(once.station(0).fault(), 0);
+  repeat(once, acyclic, 3);
+  EXPECT_EQ(once.station(0).fault(), 43) << "nor do they restart it";
+
+  PlantRun broken(unit());
+  broken.ask(0, cyclic);
+  Bytes wrong = telegram(cyclic);
+  wrong.back() ^= 1;
+  for (int n = 0; n < 6; ++n) {
+    broken.run(100 * kMillisecond);
+    broken.hands[0]->send(wrong);
+  }
+  EXPECT_EQ(broken.station(0).fault(), 43) << "wrong block check";
+
+  PlantRun broadcast(unit());
+  const std::string to_all = "02 FF 05 00 06 3A 98 01 F4";
+  broadcast.ask(0, cyclic);
+  repeat(broadcast, to_all, 20);
+  EXPECT_EQ(broadcast.station(0).fault(), 0);
+  broadcast.run(600 * kMillisecond);
+  EXPECT_EQ(broadcast.station(0).fault(), 43);
+}
+
 TEST(SerialPlant, KeypadKeepsTheMonitoringAlive) {
   PROVES("TIME-07", "MDB-PAR-17");
   for (const bool keypad : {true, false}) {
-    PlantRun run(bus("l") + station("a", "md60a", keypad ? "rs485 = \"l\"\nkeypad = true\n" : "rs485 = \"l\"\n",
+    PlantRun run(bus("l") + station("a", "md60a",
+                                    keypad ? "rs485 = \"l\"\nkeypad = true\n" : "rs485 = \"l\"\n",
                                     "P810 = 1\nP812 = 1000\n"));
     EXPECT_EQ(run.told("P812 does not monitor the other RS-485 interface"), keypad);
     run.ask(0, "02 01 05 00 06 3A 98 01 F4");

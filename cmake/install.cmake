@@ -1,0 +1,47 @@
+# What `cmake --install` puts where: the libraries with their headers, the CMake package and the pkg-config files,
+# and the command line tool. CPack makes a Debian package of it.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+install(TARGETS ipos_embedded ipos_shared ipos_compile EXPORT ipos
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+        INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/runtime/api/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(TARGETS ipos RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/docs/embedding.md
+        DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/ipos)
+install(EXPORT ipos NAMESPACE ipos:: FILE iposTargets.cmake DESTINATION ${package_dir})
+file(WRITE ${PROJECT_BINARY_DIR}/iposConfig.cmake "include(\${CMAKE_CURRENT_LIST_DIR}/iposTargets.cmake)\n")
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/iposConfigVersion.cmake COMPATIBILITY SameMajorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/iposConfig.cmake ${PROJECT_BINARY_DIR}/iposConfigVersion.cmake
+        DESTINATION ${package_dir})
+
+# Found from where the file lies, so that an installed tree can be moved.
+foreach(part ipos ipos_compile)
+  set(libs "-l${part}")
+  set(requires "")
+  if(part STREQUAL ipos_compile)
+    set(requires "Requires: ipos\n")
+  endif()
+  file(WRITE ${PROJECT_BINARY_DIR}/${part}.pc "prefix=\${pcfiledir}/../..
+Name: ${part}
+Description: ${PROJECT_DESCRIPTION}
+Version: ${PROJECT_VERSION}
+${requires}Cflags: -I\${prefix}/${CMAKE_INSTALL_INCLUDEDIR} -DIPOS_VARIABLES=${IPOS_VARIABLES}
+Libs: -L\${pcfiledir}/.. ${libs}
+")
+  install(FILES ${PROJECT_BINARY_DIR}/${part}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endforeach()
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME ipos)
+set(CPACK_PACKAGE_CONTACT "the ipos authors <ipos@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_DEBIAN_PACKAGE_SECTION devel)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PRIVATE_SHLIBDEPS_DIRS ${PROJECT_BINARY_DIR}/lib)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+include(CPack)

@@ -1,0 +1,90 @@
+// From text to text: cut, lay out, print, and make certain that nothing but the layout changed.
+#include "compiler/format/format.hpp"
+
+#include <algorithm>
+
+#include "compiler/diag/places.hpp"
+#include "compiler/format/layout.hpp"
+#include "compiler/format/pieces.hpp"
+
+namespace ipos::compiler {
+namespace {
+
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+bool aligned(const Line& line) {
+  return !line.comment.empty() && !line.verbatim && line.code != "{" &&
+         line.code.find('\n') == std::string::npos;
+}
+
+// Comments behind the code of neighbouring lines of one depth stand in one column.
+size_t run_end(const std::vector<Line>& lines, size_t begin) {
+  size_t end = begin + 1;
+  while (end < lines.size() && aligned(lines[end]) && !lines[end].blank_before &&
+         lines[end].indent == lines[begin].indent)
+    ++end;
+  return end;
+}
+
+std::string print(const std::vector<Line>& lines) {
+  std::string out;
+  size_t end_of_run = 0;
+  size_t column = 0;
+  for (size_t n = 0; n < lines.size(); ++n) {
+    const Line& line = lines[n];
+    if (n >= end_of_run && aligned(line)) {
+      end_of_run = run_end(lines, n);
+      column = 0;
+      for (size_t k = n; k < end_of_run; ++k) column = std::max(column, characters(lines[k].code) + 2);
+    }
+    if (line.blank_before) out += '\n';
+    if (!line.verbatim) out.append(size_t{line.indent} * kTabWidth, ' ');
+    out += line.code;
+    if (!line.comment.empty()) {
+      out.append(n < end_of_run ? column - characters(line.code) : 2, ' ');
+      out += line.comment;
+    }
+    out += '\n';
+  }
+  return out;
+}
+
+std::string with_line_ends(const std::string& text, std::string_view line_end) {
+  std::string out;
+  for (const char c : text)
+    if (c == '\n')
+      out += line_end;
+    else
+      out += c;
+  return out;
+}
+
+}  // namespace
+
+tl::expected<std::string, FormatError> format_source(std::string_view text) {
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    return tl::unexpected(FormatError{1, "the text is UTF-16"});
+  const size_t first_end = text.find('\n');
+  const bool dos = first_end != std::string_view::npos && first_end > 0 && text[first_end - 1] == '\r';
+  std::string plain;
+  for (size_t n = 0; n < text.size(); ++n)
+    if (text[n] != '\r' || n + 1 == text.size() || text[n + 1] != '\n') plain += text[n];
+
+  SourceMap sources;
+  const SourceFile& before = sources.add("", "", std::move(plain));
+  const auto pieces = cut(before);
+  if (!pieces) return tl::unexpected(pieces.error());
+  const auto lines = Layout(*pieces).run();
+  if (!lines) return tl::unexpected(lines.error());
+  std::string out = print(*lines);
+  if (text.starts_with(kByteOrderMark)) out.insert(0, kByteOrderMark);
+
+  const SourceFile& after = sources.add("", "", out);
+  const auto again = cut(after);
+  const uint32_t line = again ? difference(*pieces, *again) : again.error().line;
+  if (line != 0)
+    return tl::unexpected(FormatError{line, "another layout would change the meaning of this line"});
+  return dos ? with_line_ends(out, "\r\n") : out;
+}
+
+}  // namespace ipos::compiler

@@ -1,0 +1,83 @@
+// Parameter channel and process data in words.
+#include "runtime/bus/movilink/telegram_words.hpp"
+
+#include <fmt/format.h>
+
+#include "runtime/bus/movilink/unit_words.hpp"
+#include "stdlib/parameters.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+constexpr uint16_t kVariables = 11'000;  // index of H0 (1053 1610 p. 67)
+constexpr uint16_t kCode = 16'000;       // index of the first program word
+
+const stdlib::UnitType& unit_type(const UnitNames* unit) {
+  return unit != nullptr && unit->unit != nullptr ? *unit->unit : *stdlib::find_unit("md60a");
+}
+
+struct IndexText {
+  std::string name;
+  const stdlib::Parameter* parameter = nullptr;
+};
+
+IndexText index_text(const UnitNames* unit, uint16_t index) {
+  const stdlib::UnitType& type = unit_type(unit);
+  if (index >= kVariables && index < kVariables + type.variables) {
+    const uint32_t number = index - kVariables;
+    const std::string name = unit == nullptr ? fmt::format("H{}", number) : unit->variable(number);
+    return {name, nullptr};
+  }
+  if (index >= kCode && index < kCode + type.parameter_words)
+    return {fmt::format("program word {}", index - kCode), nullptr};
+  const stdlib::Parameter* row = stdlib::parameter_table(type).find(index);
+  return row == nullptr ? IndexText{"unknown index", nullptr} : IndexText{std::string(row->name), row};
+}
+
+bool carries_value(Service service) {  // in the coding of the parameter itself
+  return service != Service::None && service != Service::ReadScale && service != Service::ReadAttribute;
+}
+
+std::string value_text(const IndexText& index, Service service, uint32_t data) {
+  if (!carries_value(service)) return fmt::format("{:08X}h", data);
+  const auto value = static_cast<int32_t>(data);
+  if (index.parameter == nullptr) return fmt::format("{}", value);
+  return stdlib::parameter_text(*index.parameter, value);
+}
+
+}  // namespace
+
+std::string parameter_words(const UnitNames* unit, const ParameterTelegram& telegram, bool request) {
+  const auto service = service_from_code(telegram.service_code());
+  const IndexText index = index_text(unit, telegram.index);
+  std::string text =
+      service ? std::string(service_text(*service)) : fmt::format("service {}", telegram.service_code());
+  text += fmt::format(" {} {}", telegram.index, index.name);
+  if (telegram.subindex != 0) text += fmt::format(", subindex {}", telegram.subindex);
+  if (!request && telegram.failed())
+    text += " refused: " + describe(telegram.return_code());
+  else if (service && (request ? is_write(*service) : *service != Service::None))
+    text += " = " + value_text(index, *service, telegram.data);
+  return text;
+}
+
+std::string process_words_text(const UnitNames* unit, const std::string& what, bool input,
+                               std::span<const uint16_t> words) {
+  std::string text = what;
+  for (size_t n = 0; n < words.size(); ++n) {
+    const uint8_t code = unit == nullptr ? 0 : (input ? unit->input : unit->output)[n];
+    const std::string_view name =
+        unit == nullptr ? std::string_view{} : process_word_name(unit_type(unit), input, code);
+    text += n == 0 ? " " : ", ";
+    if (unit == nullptr || code == 0 || name.empty()) {
+      text += fmt::format("{:04X}h", words[n]);
+      continue;
+    }
+    text += fmt::format("{} {}", name, process_word_text(input, code, words[n]));
+    const std::string bits = unit_word_text(unit_type(unit), input, code, words[n]);
+    if (!bits.empty()) text += fmt::format(" ({})", bits);
+  }
+  return text;
+}
+
+}  // namespace ipos::runtime

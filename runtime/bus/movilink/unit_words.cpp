@@ -1,0 +1,116 @@
+// Bits by table; what several bits say together by rule.
+#include "runtime/bus/movilink/unit_words.hpp"
+
+#include <fmt/format.h>
+
+#include "stdlib/faults.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+enum Units : uint8_t { Mdx = 1, M07 = 2, Both = 3 };
+
+struct ControlBit {
+  int word;
+  uint8_t units;
+  unsigned bit;
+  const char* text;
+};
+constexpr ControlBit kControlBits[] = {
+#define CONTROL_BIT(word, units, bit, text) {word, units, bit, text},
+#include "runtime/bus/movilink/unit_words.def"
+};
+
+struct StatusBit {
+  uint8_t units;
+  unsigned bit;
+  const char* text;
+};
+constexpr StatusBit kStatusBits[] = {
+#define STATUS_BIT(units, bit, text) {units, bit, text},
+#include "runtime/bus/movilink/unit_words.def"
+};
+
+struct Condition {
+  int code;
+  const char* text;
+};
+constexpr Condition kConditions[] = {
+#define UNIT_CONDITION(code, name, text) {code, text},
+#include "stdlib/unit_conditions.def"
+};
+
+constexpr bool bit(uint16_t word, unsigned number) { return (word >> number & 1) != 0; }
+uint8_t units_of(const stdlib::UnitType& unit) {
+  return unit.generation == stdlib::Generation::M07 ? M07 : Mdx;
+}
+
+// Bits 2..0: the most restrictive counts (MOVITRAC 07 chapter 6.3).
+const char* command_text(uint16_t word) {
+  if (bit(word, 0)) return "controller inhibit";
+  if (!bit(word, 1)) return "rapid stop";
+  return bit(word, 2) ? "enable" : "stop";
+}
+
+// Bits 1 and 5 (MOVITRAC 07 chapter 6.5).
+const char* readiness_text(uint16_t word) {
+  if (bit(word, 5)) return bit(word, 1) ? "warning" : "fault";
+  return bit(word, 1) ? "ready" : "not ready";
+}
+
+std::string condition_of(const stdlib::UnitType& unit, int code) {
+  constexpr int kFactorySettingM07 = 5, kFactorySetting = 8;
+  const bool m07 = unit.generation == stdlib::Generation::M07;
+  const int shown = m07 && code == kFactorySettingM07 ? kFactorySetting : code;
+  for (const Condition& row : kConditions)
+    if (row.code == shown) return fmt::format("; state {} {}", code, row.text);
+  return fmt::format("; state {}", code);
+}
+
+}  // namespace
+
+std::string control_word_text(const stdlib::UnitType& unit, int number, uint16_t word) {
+  std::string text = command_text(word);
+  for (unsigned n = 3; n < 16; ++n) {
+    if (!bit(word, n)) continue;
+    std::string name = fmt::format("reserved bit {}", n);
+    for (const ControlBit& row : kControlBits)
+      if (row.bit == n && (row.units & units_of(unit)) != 0 && (row.word == 0 || row.word == number))
+        name = row.text;
+    text += ", " + name;
+  }
+  return text;
+}
+
+std::string status_word_text(const stdlib::UnitType& unit, int number, uint16_t word) {
+  std::string text = readiness_text(word);
+  for (const StatusBit& row : kStatusBits)
+    if (bit(word, row.bit) && (row.units & units_of(unit)) != 0) text += fmt::format(", {}", row.text);
+  const int high = word >> 8;
+  if (number == 1 && bit(word, 5)) {
+    const stdlib::FaultRow* fault = stdlib::find_fault(static_cast<uint8_t>(high));
+    if (high != 0)
+      text += fmt::format("; F{:02}{}", high, fault == nullptr ? "" : fmt::format(" {}", fault->name));
+  } else if (number == 1) {
+    text += condition_of(unit, high);
+  } else if (number == 2) {
+    for (unsigned n = 8; n < 16; ++n)
+      if (bit(word, n)) text += fmt::format(", DO1{}", n - 8);
+  }
+  return text;
+}
+
+std::string unit_word_text(const stdlib::UnitType& unit, bool input, uint8_t code, uint16_t word) {
+  struct Word {
+    bool input;
+    uint8_t code;
+    int number;
+  };
+  constexpr Word kWords[] = {{false, 9, 1}, {false, 10, 2}, {true, 6, 1}, {true, 7, 2}, {true, 11, 3}};
+  for (const Word& row : kWords)
+    if (row.input == input && row.code == code)
+      return input ? status_word_text(unit, row.number, word) : control_word_text(unit, row.number, word);
+  return {};
+}
+
+}  // namespace ipos::runtime

@@ -1,0 +1,20 @@
+// What the positioning of IPOS orders of the drive, every millisecond. The logic of enable stays above it:
+// stop, rapid stop, inhibit and faults win.
+#pragma once
+
+#include <cstdint>
+
+#include "runtime/drive/control.hpp"
+
+namespace ipos::runtime {
+
+struct PositionControl {
+  // The enabled axis follows `speed`; setpoint source, ramps and minimum speed do not count.
+  bool controls = false;
+  int32_t speed = 0;               // 1/1000 rpm, positive is CW of the motor
+  Command halt = Command::Enable;  // _AxisStop: RapidStop or HoldControl as long as it lasts
+  bool in_position = false;        // for the outputs
+  bool referenced = false;
+};
+
+}  // namespace ipos::runtime

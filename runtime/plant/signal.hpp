@@ -1,0 +1,45 @@
+// What of a station has a value that a plant file can name: variables, parameters, inputs and outputs.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "runtime/drive/setpoint.hpp"
+
+namespace ipos::runtime {
+
+enum class SignalKind : uint8_t { Variable, Parameter, Input, Output };
+
+// The lines that lead into a station: 0..15 are the binary inputs by their bit in InputLevel H483, then the
+// analog ones.
+enum class AnalogLine : uint8_t { Ai1Voltage, Ai1Current, Ai2Voltage, Ai2Current, Frequency, Potentiometer };
+inline constexpr size_t kBinaryLines = 16;
+inline constexpr size_t kInputLines = kBinaryLines + 6;
+
+struct Signal {
+  std::string station;
+  SignalKind kind = SignalKind::Variable;
+  std::string name;  // as written: "lCount", "H10", "P301", "DI03", "AI1", "DO01"
+  uint8_t line = 0;  // Input: see above; Output: bit of OutputLevel H482
+};
+
+// "DI03" or "DI12": bit of InputLevel H483, or -1. DI00..DI07 are bits 0..7, DI10..DI17 bits 8..15 (ours).
+int parse_input(std::string_view name);
+
+// "DB00", "DO01".."DO05", "DO10".."DO17": bit of OutputLevel H482, or -1.
+int parse_output(std::string_view name);
+
+// What hangs on an analog terminal: "AI1", "5 V".
+struct AnalogSetting {
+  uint8_t line = 0;
+  int32_t value = 0;  // mV, uA, Hz, 1/1000
+};
+bool is_analog_input(std::string_view name);
+std::optional<AnalogSetting> parse_analog(std::string_view name, std::string_view text);
+
+// Where the value of an analog line (kBinaryLines and above) stands.
+int32_t& analog_value(AnalogInputs& inputs, size_t line);
+
+}  // namespace ipos::runtime

@@ -1,0 +1,56 @@
+// Variables are parameters 11000 + n (IPOSplus p. 28), so both go the same way.
+#include "runtime/plant/signal_port.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ipos::runtime {
+namespace {
+
+constexpr uint32_t kFirstVariable = 11'000;
+
+}  // namespace
+
+std::optional<SignalPort> SignalPort::find(const std::vector<std::unique_ptr<Station>>& stations,
+                                           const Signal& signal, std::string& why) {
+  why.clear();
+  const auto station = std::find_if(stations.begin(), stations.end(), [&](const auto& candidate) {
+    return candidate->config().name == signal.station;
+  });
+  if (station == stations.end()) return std::nullopt;
+  uint32_t index = 0;
+  if (signal.kind == SignalKind::Variable) {
+    const auto number = (*station)->find_variable(signal.name);
+    if (number) index = kFirstVariable + *number;
+  } else if (signal.kind == SignalKind::Parameter) {
+    const stdlib::Parameter* row = (*station)->drive().parameters().table().find(signal.name);
+    if (row != nullptr) index = row->index;
+  } else {
+    return SignalPort(**station, signal, 0);
+  }
+  if (index != 0) return SignalPort(**station, signal, static_cast<uint16_t>(index));
+  why = fmt::format("station '{}' has no {} '{}'", signal.station,
+                    signal.kind == SignalKind::Variable ? "variable" : "parameter", signal.name);
+  return std::nullopt;
+}
+
+int32_t SignalPort::read() const {
+  switch (kind_) {
+    case SignalKind::Input: return station_->inputs().line(line_).value();
+    case SignalKind::Output: return station_->drive().state().outputs() >> line_ & 1;
+    case SignalKind::Variable:
+    case SignalKind::Parameter: break;
+  }
+  return station_->drive().parameters().execute(ParameterService::Read, index_).value_or(0);
+}
+
+std::optional<std::string> SignalPort::write(int32_t value) const {
+  ParameterStore& parameters = station_->drive().parameters();
+  const auto service = ParameterService::WriteVolatile;
+  const ParameterReply reply = parameters.execute(service, index_, value);
+  if (reply) return std::nullopt;
+  return parameters.explain(static_cast<uint8_t>(service), index_, value, reply.error());
+}
+
+}  // namespace ipos::runtime

@@ -1,0 +1,42 @@
+// A signal of the plant file, found in its station: it can be read, and written as far as that makes sense.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/plant/station.hpp"
+
+namespace ipos::runtime {
+
+class SignalPort {
+ public:
+  // Nothing when the station is missing, or has no such thing: then `why` says so (empty for a missing
+  // station, which read_plant_file has reported).
+  static std::optional<SignalPort> find(const std::vector<std::unique_ptr<Station>>& stations,
+                                        const Signal& signal, std::string& why);
+
+  int32_t read() const;
+  // A variable or parameter, volatile; why not, or nothing.
+  std::optional<std::string> write(int32_t value) const;
+
+  // Of an input.
+  bool is_input() const { return kind_ == SignalKind::Input; }
+  InputLine& line() const { return station_->inputs().line(line_); }
+
+  const std::string& station_name() const { return station_->config().name; }
+  bool operator==(const SignalPort&) const = default;
+
+ private:
+  SignalPort(Station& station, const Signal& signal, uint16_t index)
+      : station_(&station), kind_(signal.kind), line_(signal.line), index_(index) {}
+
+  Station* station_;
+  SignalKind kind_;
+  uint8_t line_;    // Input, Output
+  uint16_t index_;  // Variable, Parameter: in the parameter channel
+};
+
+}  // namespace ipos::runtime

@@ -1,0 +1,120 @@
+// Wires and switches first, then what is due, then what is held.
+#include "runtime/plant/surroundings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ipos::runtime {
+
+void Surroundings::connect(const PlantFile& file, const std::vector<std::unique_ptr<Station>>& stations,
+                           std::vector<PlantError>& errors) {
+  const auto find = [&](const Signal& signal, FilePlace place) {
+    std::string why;
+    const auto port = SignalPort::find(stations, signal, why);
+    if (!why.empty()) errors.push_back({place, why});
+    return port;
+  };
+  for (const Wire& wire : file.wires) {
+    const auto from = find(wire.from, wire.place);
+    const auto to = find(wire.to, wire.place);
+    if (from && to) leads_.push_back({*from, *to, wire.invert});
+  }
+  for (const PositionSwitch& row : file.switches)
+    if (const auto input = find(row.input, row.place))
+      for (const auto& station : stations)
+        if (station->config().name == row.input.station)
+          cams_.push_back({*input, station.get(), row.from, row.to, row.active_high});
+  for (const Stimulus& stimulus : file.stimuli)
+    if (const auto port = find(stimulus.signal, stimulus.place)) {
+      due_.emplace(stimulus.at, Due{scripts_.size()});
+      scripts_.push_back({*port, stimulus});
+    }
+}
+
+void Surroundings::start() {
+  if (!leads_.empty() || !cams_.empty() || !due_.empty()) queue_.schedule(queue_.now(), source_, *this, 0);
+}
+
+void Surroundings::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
+  for (const Lead& lead : leads_) lead.to.line().driven = (lead.from.read() != 0) != lead.invert ? 1 : 0;
+  for (const Cam& cam : cams_) {
+    const int32_t position = cam.station->drive().state().shaft_position();
+    const bool within = position >= cam.from && position <= cam.to;
+    cam.input.line().driven = within == cam.active_high ? 1 : 0;
+  }
+  while (!due_.empty() && due_.begin()->first <= now) {
+    const Time at = due_.begin()->first;
+    const Due due = due_.begin()->second;
+    due_.erase(due_.begin());
+    if (due.ends != 0)
+      release(scripts_[due.script].port, due.ends);
+    else
+      perform(at, due.script);
+  }
+  for (const Hold& held : holds_)
+    if (held.port.read() != held.value) write(now, held.port, held.value);
+  schedule_next(now);
+}
+
+void Surroundings::perform(Time now, size_t script) {
+  Script& s = scripts_[script];
+  const Stimulus& stimulus = s.stimulus;
+  switch (stimulus.action) {
+    case Stimulus::Action::Set:
+      if (s.port.is_input())
+        s.port.line().set = stimulus.value;
+      else
+        write(now, s.port, stimulus.value);
+      break;
+    case Stimulus::Action::Force:
+    case Stimulus::Action::Pulse: hold(now, script); break;
+    case Stimulus::Action::Release: release(s.port, 0); break;
+  }
+  ++s.done;
+  if (stimulus.every != 0 && (stimulus.times == 0 || s.done < stimulus.times))
+    due_.emplace(now + stimulus.every, Due{script});
+}
+
+void Surroundings::hold(Time now, size_t script) {
+  const SignalPort& port = scripts_[script].port;
+  const Stimulus& stimulus = scripts_[script].stimulus;
+  const bool pulse = stimulus.action == Stimulus::Action::Pulse;
+  auto held =
+      std::find_if(holds_.begin(), holds_.end(), [&](const Hold& other) { return other.port == port; });
+  if (held == holds_.end()) held = holds_.insert(held, {port, 0, 0, std::nullopt});
+  held->value = stimulus.value;
+  held->number = ++holds_made_;
+  if (port.is_input())
+    port.line().forced = stimulus.value;
+  else if (pulse && !held->before)
+    held->before = port.read();
+  if (stimulus.length != 0) due_.emplace(now + stimulus.length, Due{script, held->number});
+}
+
+// `number` 0 releases whatever holds; the end of a pulse only its own hold.
+void Surroundings::release(const SignalPort& port, uint64_t number) {
+  const auto held =
+      std::find_if(holds_.begin(), holds_.end(), [&](const Hold& other) { return other.port == port; });
+  if (held == holds_.end() || (number != 0 && held->number != number)) return;
+  if (port.is_input()) port.line().forced.reset();
+  const std::optional<int32_t> before = held->before;
+  holds_.erase(held);
+  if (before) write(queue_.now(), port, *before);
+}
+
+void Surroundings::write(Time now, const SignalPort& port, int32_t value) {
+  if (const auto refused = port.write(value))
+    journal_.note(now, Weight::Warning, port.station_name(), "stimulus refused: " + *refused);
+}
+
+void Surroundings::schedule_next(Time now) {
+  Time next = now + kMillisecond;
+  if (leads_.empty() && cams_.empty() && holds_.empty()) {
+    if (due_.empty()) return;
+    next = std::max(next, (due_.begin()->first + kMillisecond - 1) / kMillisecond * kMillisecond);
+  }
+  queue_.schedule(next, source_, *this, 0);
+}
+
+}  // namespace ipos::runtime

@@ -1,0 +1,78 @@
+// What is outside of the stations and acts on them: wires between terminals, switches at the axis, and the
+// stimuli of the plant file. It acts at the beginning of a millisecond, before any station's tick, on all
+// stations alike: so a wire brings the level its output had at the end of the millisecond before (ours).
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "runtime/clock/event_queue.hpp"
+#include "runtime/plant/plant_file.hpp"
+#include "runtime/plant/signal_port.hpp"
+#include "runtime/services/journal.hpp"
+
+namespace ipos::runtime {
+
+class Surroundings final : private EventTarget {
+ public:
+  // `source` must be below those of the stations. The journal must outlive this.
+  Surroundings(EventQueue& queue, uint32_t source, Journal& journal)
+      : queue_(queue), source_(source), journal_(journal) {}
+
+  // Finds the signals of the file; adds what is missing to `errors`.
+  void connect(const PlantFile& file, const std::vector<std::unique_ptr<Station>>& stations,
+               std::vector<PlantError>& errors);
+
+  // At power-on, before the stations.
+  void start();
+
+ private:
+  struct Lead {  // a wire
+    SignalPort from;
+    SignalPort to;
+    bool invert;
+  };
+  struct Cam {
+    SignalPort input;
+    Station* station;
+    int32_t from;
+    int32_t to;
+    bool active_high;
+  };
+  struct Script {
+    SignalPort port;
+    Stimulus stimulus;
+    int64_t done = 0;  // how often it has happened
+  };
+  struct Hold {  // a signal that is forced
+    SignalPort port;
+    int32_t value;
+    uint64_t number;
+    std::optional<int32_t> before;  // to be written at the end
+  };
+  struct Due {
+    size_t script;
+    uint64_t ends = 0;  // number of the hold that ends; 0: the stimulus happens
+  };
+
+  void on_event(Time now, uint32_t kind, uint64_t argument) override;
+  void perform(Time now, size_t script);
+  void hold(Time now, size_t script);
+  void release(const SignalPort& port, uint64_t number);
+  void write(Time now, const SignalPort& port, int32_t value);
+  void schedule_next(Time now);
+
+  EventQueue& queue_;
+  uint32_t source_;
+  Journal& journal_;
+  std::vector<Lead> leads_;
+  std::vector<Cam> cams_;
+  std::vector<Script> scripts_;
+  std::vector<Hold> holds_;
+  uint64_t holds_made_ = 0;
+  std::multimap<Time, Due> due_;  // equal times in the order of the file
+};
+
+}  // namespace ipos::runtime

@@ -1,0 +1,60 @@
+// Positions of all encoders from what the motor has turned.
+#include "runtime/positioning/encoders.hpp"
+
+namespace ipos::runtime {
+
+void Encoders::configure(const PositioningSettings& settings) {
+  factor_ = settings.encoder_factor();
+  inverted_ = settings.absolute_inverted == 1;
+  absolute_zero_ = settings.absolute_zero;
+}
+
+void Encoders::power_on(int32_t shaft) {
+  turned_ = turned_before_ = shaft;
+  counter_ = 0;
+  absolute_offset_ = 0;
+  set_position(PositionSource::Motor, 0);
+  set_position(PositionSource::External, 0);
+}
+
+void Encoders::count(int32_t motor_counter) {
+  turned_before_ = turned_;
+  turned_ += wrapped(int64_t{motor_counter} - counter_);
+  counter_ = motor_counter;
+}
+
+int64_t Encoders::scaled(PositionSource source, int64_t motor) const {
+  if (source == PositionSource::Motor) return motor;
+  const int64_t count = floor_divide(motor * factor_.denominator, factor_.numerator);
+  return source == PositionSource::Absolute && inverted_ ? -count : count;
+}
+
+int64_t Encoders::offset(PositionSource source) const {
+  switch (source) {
+    case PositionSource::Motor: return motor_offset_;
+    case PositionSource::External: return external_offset_;
+    case PositionSource::Absolute: break;
+  }
+  return absolute_zero_ + absolute_offset_;
+}
+
+void Encoders::set_position(PositionSource source, int32_t position) {
+  const int64_t change = position - exact(source);
+  switch (source) {
+    case PositionSource::Motor: motor_offset_ += change; break;
+    case PositionSource::External: external_offset_ += change; break;
+    case PositionSource::Absolute: absolute_offset_ += change; break;
+  }
+}
+
+std::optional<int32_t> Encoders::zero_pulse(PositionSource source, int way) const {
+  // The pulses a shaft passes on its way from 1 to 4096 and back are the one at 4096 and the one at 0 or
+  // below.
+  const int64_t pulse =
+      way > 0 ? floor_divide(turned_, kTurn) * kTurn : -floor_divide(-turned_, kTurn) * kTurn;
+  const bool passed = way > 0 ? pulse > turned_before_ : pulse < turned_before_;
+  if (!passed || turned_ == turned_before_) return std::nullopt;
+  return wrapped(scaled(source, pulse) + offset(source));
+}
+
+}  // namespace ipos::runtime

@@ -1,0 +1,53 @@
+// The three encoders: motor X15, external X14, absolute DIP (H511, H510, H509). The simulated external ones
+// are coupled to the motor without slip, with the ratio P942 and P943 state (ours).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "runtime/positioning/fixed_point.hpp"
+#include "runtime/positioning/settings.hpp"
+
+namespace ipos::runtime {
+
+class Encoders {
+ public:
+  static constexpr int32_t kTurn = 4096;  // increments of the motor encoder; its zero pulse comes once a turn
+
+  // The parameters P942, P943, P951 and P954.
+  void configure(const PositioningSettings& settings);
+
+  // Incremental encoders begin at 0; the absolute one knows where the shaft is: increments it was ever
+  // turned.
+  void power_on(int32_t shaft);
+
+  // The counter of the motor encoder as the axis has it; it wraps.
+  void count(int32_t motor_counter);
+  // The axis was given another count; nothing has moved.
+  void recount(int32_t motor_counter) { counter_ = motor_counter; }
+
+  int32_t position(PositionSource source) const { return wrapped(exact(source)); }
+  // From now on the present position of this source has another number.
+  void set_position(PositionSource source, int32_t position);
+
+  // Position of the source at a zero pulse that the last millisecond passed in this direction.
+  std::optional<int32_t> zero_pulse(PositionSource source, int way) const;
+
+ private:
+  int64_t exact(PositionSource source) const { return scaled(source, turned_) + offset(source); }
+  int64_t scaled(PositionSource source, int64_t motor) const;
+  int64_t offset(PositionSource source) const;
+
+  EncoderFactor factor_;
+  bool inverted_ = false;
+  int64_t absolute_zero_ = 0;
+
+  int32_t counter_ = 0;
+  int64_t turned_ = 0;         // by the motor ever; zero pulses at multiples of a turn
+  int64_t turned_before_ = 0;  // a millisecond ago
+  int64_t motor_offset_ = 0;
+  int64_t external_offset_ = 0;
+  int64_t absolute_offset_ = 0;
+};
+
+}  // namespace ipos::runtime

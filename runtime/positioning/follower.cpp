@@ -1,0 +1,43 @@
+// The path of the master, a straight line from telegram to telegram.
+#include "runtime/positioning/follower.hpp"
+
+namespace ipos::runtime {
+
+// The line leads to where the master will be at the next telegram if it goes on as in the last cycle; so the
+// slave is behind by what it accelerates within a cycle, and nothing adds up.
+void Follower::take(int32_t position) {
+  const int64_t way = wrapped(int64_t{position} - last_);
+  last_ = position;
+  if (syncs_ == 0) {
+    reported_ = position;
+    path_ = from_ = to_ = fine(reported_);
+  } else {
+    reported_ += way;
+    cycle_ = std::max(since_, 1);
+    from_ = path_;
+    to_ = fine(reported_ + way);
+  }
+  since_ = 0;
+  if (syncs_ < kEnough) ++syncs_;
+}
+
+Fine Follower::scaled(Fine way, const MasterInputs& inputs) const {
+  const Wide product = Wide{way} * inputs.gear_slave;
+  const Wide by = inputs.gear_master;
+  const Wide whole_part = product / by;
+  return static_cast<Fine>(product % by != 0 && (product < 0) != (by < 0) ? whole_part - 1 : whole_part);
+}
+
+void Follower::tick(const MasterInputs& inputs) {
+  if (inputs.sync) take(inputs.position);
+  if (syncs_ == 0) return;
+  const Fine before = scaled(path_, inputs);
+  ++since_;
+  path_ = from_ + static_cast<Fine>(Wide{to_ - from_} * since_ / cycle_);
+  step_ = scaled(path_, inputs) - before;
+  if (since_ <= kLost * cycle_ || syncs_ < 2) return;
+  syncs_ = 0;
+  step_ = 0;
+}
+
+}  // namespace ipos::runtime

@@ -1,0 +1,282 @@
+// The millisecond of positioning, and travels.
+#include "runtime/positioning/positioner.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+struct EventRow {
+  uint8_t fault;
+  std::string_view text;
+};
+constexpr EventRow kEvents[] = {
+#define POSITIONING_EVENT(name, fault, text) {fault, text},
+#include "runtime/positioning/events.def"
+};
+
+constexpr int32_t kFullSpeed = 1000;
+constexpr uint32_t kKeepModuloTarget = 1;  // H453 bit 0
+
+}  // namespace
+
+uint8_t fault_of(PositioningEvent event) { return kEvents[static_cast<size_t>(event)].fault; }
+std::string_view text_of(PositioningEvent event) { return kEvents[static_cast<size_t>(event)].text; }
+
+// --- what the program orders ---
+
+void Positioner::write_target(int32_t target) {
+  if (reference_.active()) {
+    pending_ = Pending::Absolute;
+    pending_value_ = target;
+    return;
+  }
+  if (!inputs_.possible) report(PositioningEvent::NoPositioning);
+  target_ = target;
+  target_follows_ = given_up_ = false;
+}
+
+void Positioner::move_target(int64_t way) {
+  if (reference_.active()) {
+    const bool added = pending_ == Pending::Absolute || pending_ == Pending::Relative;
+    pending_value_ = added ? pending_value_ + way : way;
+    if (!added) pending_ = Pending::Relative;
+    return;
+  }
+  const int64_t target = target_ + way;
+  if (target != wrapped(target) && !modulo_.on()) return report(PositioningEvent::TargetOutOfRange);
+  write_target(wrapped(target));
+}
+
+void Positioner::write_modulo_target(int32_t target) {
+  modulo_target_ = target;
+  if (reference_.active()) {
+    pending_ = Pending::Modulo;
+    pending_value_ = target;
+    return;
+  }
+  if (!modulo_.on()) return report(PositioningEvent::ModuloOff);
+  // From where the axis can be stopped, so that a one-way axis never has to turn back.
+  const int64_t base = following_ ? profile_.stop_position(rules()) : in_position() ? target_ : actual();
+  write_target(wrapped(base + modulo_.way_to(target, high_resolution(), wrapped(base - actual()))));
+  modulo_target_ = modulo_.within_turn(target, high_resolution());
+}
+
+void Positioner::stop_here() {
+  reference_.end();
+  pending_ = Pending::None;
+  if (following_)
+    brake_here();
+  else
+    drop_target();
+}
+
+// --- what it shows ---
+
+int32_t Positioner::setpoint() const { return following_ ? wrapped(whole(profile_.position())) : actual(); }
+
+// With the modulo function positions are points on the circle of 2^32 increments, so that an axis may turn
+// for ever; without it they are points on a line.
+int64_t Positioner::distance(int32_t from, int32_t to) const {
+  const int64_t way = int64_t{to} - from;
+  return modulo_.on() ? wrapped(way) : way;
+}
+
+bool Positioner::in_position() const {
+  return inputs_.possible && !reference_.active() &&
+         magnitude(distance(actual(), target_)) <= std::max(settings_.window, 0);
+}
+
+bool Positioner::referenced() const { return referenced_ || source() == PositionSource::Absolute; }
+
+std::optional<int32_t> Positioner::take_motor_counter() {
+  const std::optional<int32_t> counter = motor_counter_;
+  motor_counter_.reset();
+  return counter;
+}
+
+std::bitset<kPositioningEvents> Positioner::take_events() {
+  const auto events = events_;
+  events_.reset();
+  return events;
+}
+
+// --- the millisecond ---
+
+void Positioner::power_on(const PositioningSettings& settings, int32_t shaft) {
+  encoders_.configure(settings);
+  encoders_.power_on(shaft);
+  take_over(settings);
+  modulo_.set(actual());
+}
+
+PositioningOrder Positioner::tick(const PositioningInputs& inputs, const PositioningSettings& settings) {
+  take_over(settings);
+  inputs_ = inputs;
+  touch_probes_.tick(inputs.levels, encoders_);
+  if (inputs.reference_start && !reference_input_) start_reference(false, false);
+  reference_input_ = inputs.reference_start;
+  follower_.tick(inputs.master);
+  if (!inputs.possible || !inputs.following) {
+    rest();
+    // Should the drive be enabled within this millisecond, it keeps the speed it has.
+    return {inputs.possible, inputs.speed, halt_};
+  }
+  if (!following_) resume();
+  if (reference_.active())
+    run_reference();
+  else if (!follow_master())
+    run_travel();
+  profile_.tick();
+  keep_in_range();
+  if (settings_.lag_window > 0 && magnitude(lag_) > settings_.lag_window) report(PositioningEvent::LagError);
+  return {true, speed_order(), halt_};
+}
+
+void Positioner::observe(int32_t motor_counter) {
+  const int32_t before = actual();
+  encoders_.count(motor_counter);
+  modulo_.move(wrapped(int64_t{actual()} - before));
+  lag_ = following_ ? wrapped(int64_t{setpoint()} - actual()) : 0;
+}
+
+// A position that counts otherwise from now on ends every travel.
+void Positioner::take_over(const PositioningSettings& settings) {
+  const bool other =
+      settings.source != settings_.source || !(settings.source_factor() == settings_.source_factor());
+  settings_ = settings;
+  encoders_.configure(settings_);
+  if (other) {
+    following_ = false;
+    target_follows_ = true;
+    modulo_.set(actual());
+  }
+  if (!modulo_.configure(settings_, actual())) report(PositioningEvent::ModuloTooFine);
+}
+
+TravelRules Positioner::rules() const {
+  return settings_.travel_rules(settings_.override_on == 1 ? inputs_.override_permille : kFullSpeed);
+}
+
+// Something else moves the axis, or nothing: position setpoint and actual position are one.
+void Positioner::rest() {
+  if (following_) {
+    interrupted_ = !reference_.active() && follow_state_ == FollowState::Free && !profile_.at_rest();
+    if (modulo_.on() && (inputs_.modulo_control & kKeepModuloTarget) == 0) target_follows_ = true;
+  }
+  if (given_up_ || !inputs_.possible) target_follows_ = true;
+  following_ = false;
+  follow_state_ = FollowState::Free;
+  profile_.hold(fine(actual()), 0);
+  planned_target_.reset();
+  refused_target_.reset();
+  at_limit_ = false;
+  lag_ = 0;
+  if (target_follows_) drop_target();
+  // Interrupted, it begins anew.
+  if (reference_.active()) reference_.start(settings_.reference_type, reference_.zero_pulse());
+  reference_failed_ = false;
+}
+
+void Positioner::resume() {
+  following_ = true;
+  profile_.hold(fine(actual()), rate_of_speed(inputs_.speed, settings_.source_factor()));
+  planned_target_.reset();
+  reference_order_ = {};
+  const bool goes_on = interrupted_ && !target_follows_ && target_allowed();
+  if (goes_on && profile_.overruns(target_on_line(), rules())) report(PositioningEvent::Overrun);
+  if (target_follows_) brake_here();
+  interrupted_ = given_up_ = false;
+}
+
+void Positioner::drop_target() {
+  target_ = actual();
+  target_follows_ = true;
+  if (modulo_.on()) modulo_target_ = modulo_.position(high_resolution());
+}
+
+void Positioner::brake_here() {
+  const TravelRules now = rules();
+  const int64_t end = profile_.stop_position(now);
+  profile_.stop(now);
+  target_ = wrapped(end);
+  planned_target_ = end;
+  planned_rules_ = now;
+  planned_full_ = settings_.travel_rules(kFullSpeed);
+}
+
+bool Positioner::target_allowed() const {
+  const bool limited = settings_.limit_cw != 0 || settings_.limit_ccw != 0;
+  if (!limited || !referenced() || modulo_.on()) return true;
+  return target_ <= settings_.limit_cw && target_ >= settings_.limit_ccw;
+}
+
+// In the profile's count, which does not wrap.
+int64_t Positioner::target_on_line() const {
+  if (!modulo_.on()) return target_;
+  const int64_t base = whole(profile_.position());
+  return base + distance(wrapped(base), target_);
+}
+
+void Positioner::run_travel() {
+  watch_limit_switches();
+  if (!target_allowed()) {
+    if (refused_target_ == target_) return;
+    refused_target_ = target_;
+    report(PositioningEvent::TargetBeyondLimit);
+    profile_.stop(rules());
+    planned_target_.reset();
+    return;
+  }
+  refused_target_.reset();
+  TravelRules now = rules();
+  if (planned_target_ && !profile_.at_rest()) {
+    if (planned_rules_.shape == RampShape::Linear) {
+      now.shape = RampShape::Linear;  // another type holds from the next travel on
+    } else {
+      const TravelRules full = settings_.travel_rules(kFullSpeed);
+      if (!(full == planned_full_)) report(PositioningEvent::RampChanged);
+      planned_full_ = full;
+      now = planned_rules_;
+    }
+  }
+  plan(target_on_line(), now);
+}
+
+void Positioner::plan(int64_t goal, const TravelRules& now) {
+  const bool kept = planned_target_ == goal;
+  if (kept && planned_rules_ == now) return;
+  profile_.travel(goal, now, kept ? Goal::Kept : Goal::New);
+  planned_target_ = goal;
+  planned_rules_ = now;
+  planned_full_ = settings_.travel_rules(kFullSpeed);
+}
+
+void Positioner::watch_limit_switches() {
+  const Rate speed = profile_.speed();
+  const bool against = (speed > 0 && inputs_.limit_cw) || (speed < 0 && inputs_.limit_ccw);
+  if (against && !at_limit_) {
+    report(PositioningEvent::LimitReached);
+    brake_here();
+    given_up_ = true;
+  }
+  at_limit_ = against;
+}
+
+// The profile's count goes on for ever with the modulo function; a circle of it is taken away in time.
+void Positioner::keep_in_range() {
+  const int64_t position = whole(profile_.position());
+  if (!modulo_.on() || magnitude(position) < (int64_t{1} << 33)) return;
+  const int64_t change = wrapped(position) - position;
+  profile_.shift(change);
+  if (planned_target_) *planned_target_ += change;
+}
+
+// P910 and P915. The unit of the gain is ours: with 1.000 a lag of one motor increment gives 0.5 rpm.
+int32_t Positioner::speed_order() const {
+  const EncoderFactor factor = settings_.source_factor();
+  const int64_t feed = speed_of_rate(profile_.speed(), factor) * settings_.feedforward / 100'000;
+  const int64_t lag = int64_t{lag_} * factor.numerator / factor.denominator;
+  const int64_t top = std::max(settings_.maximum_speed, 0);
+  return static_cast<int32_t>(std::clamp(feed + lag * settings_.gain / 2, -top, top));
+}
+
+}  // namespace ipos::runtime

@@ -1,0 +1,169 @@
+// Positioning of one axis: what the program orders becomes a speed the drive follows, once a millisecond, and
+// positions and bits the program sees. docs/positioning.md has the rules; no manual at hand describes them
+// beyond what is cited. A Positioner is a plain value, a copy of it is a snapshot.
+#pragma once
+
+#include <bitset>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <type_traits>
+
+#include "runtime/positioning/encoders.hpp"
+#include "runtime/positioning/follower.hpp"
+#include "runtime/positioning/modulo.hpp"
+#include "runtime/positioning/profile.hpp"
+#include "runtime/positioning/reference_travel.hpp"
+#include "runtime/positioning/settings.hpp"
+#include "runtime/positioning/touch_probe.hpp"
+
+namespace ipos::runtime {
+
+enum class PositioningEvent : uint8_t {
+#define POSITIONING_EVENT(name, fault, text) name,
+#include "runtime/positioning/events.def"
+};
+inline constexpr size_t kPositioningEvents = 0
+#define POSITIONING_EVENT(name, fault, text) +1
+#include "runtime/positioning/events.def"
+    ;
+uint8_t fault_of(PositioningEvent event);  // 0: none
+std::string_view text_of(PositioningEvent event);
+
+// Keywords of _AxisStop that hold the axis until it is enabled again.
+enum class Halt : uint8_t { None, RapidStop, HoldControl };
+
+struct PositioningInputs {
+  bool possible = false;   // the operating mode is one with positioning
+  bool following = false;  // enabled, magnetized, brake open: the axis turns as it is told
+  int32_t speed = 0;       // of the motor, 1/1000 rpm
+  uint16_t levels = 0;     // of the inputs, as InputLevel H483
+  bool cam = false;        // and by their functions; a limit switch is true where it is reached
+  bool limit_cw = false;
+  bool limit_ccw = false;
+  bool has_cam = false;
+  bool has_limits = false;
+  bool reference_start = false;
+  int32_t override_permille = 1000;
+  uint32_t modulo_control = 0;  // H453
+  MasterInputs master;
+};
+
+// For the drive.
+struct PositioningOrder {
+  bool controls = false;  // the speed below counts, not the setpoint of P100
+  int32_t speed = 0;      // 1/1000 rpm, without ramp
+  Halt halt = Halt::None;
+};
+
+class Positioner {
+ public:
+  // Once, after what holds the settings: not referenced, no target. `shaft`: increments it was ever turned.
+  void power_on(const PositioningSettings& settings, int32_t shaft);
+
+  // --- the millisecond ---
+  // Before the axis moves: sensors belong to where it is now.
+  PositioningOrder tick(const PositioningInputs& inputs, const PositioningSettings& settings);
+  // After it has moved: the counter of the motor encoder.
+  void observe(int32_t motor_counter);
+  // A reference travel has given the motor encoder another count, which the axis must take over.
+  std::optional<int32_t> take_motor_counter();
+  // What has been reported since the last call.
+  std::bitset<kPositioningEvents> take_events();
+
+  // --- the program ---
+  void write_target(int32_t target);                                  // H492, _GoAbs
+  void move_target(int64_t way);                                      // _GoRel
+  void write_modulo_target(int32_t target);                           // H454
+  void set_modulo_turns(int32_t turns) { modulo_.set_turns(turns); }  // H456
+  // _Go0; `conditional`: only an axis that is not referenced.
+  void start_reference(bool conditional, bool zero_pulse);
+  void end_reference();  // and not referenced any more
+  void halt(Halt halt) { halt_ = halt; }
+  void stop_here();  // on the positioning ramp; the target is where that ends
+  TouchProbes& touch_probes() { return touch_probes_; }
+  void report(PositioningEvent event) { events_.set(static_cast<size_t>(event)); }
+
+  // --- what it shows ---
+  int32_t setpoint() const;                   // H491
+  int32_t target() const { return target_; }  // H492
+  int32_t lag() const { return lag_; }        // H495
+  int32_t modulo_target() const { return modulo_target_; }
+  const Modulo& modulo() const { return modulo_; }
+  const Encoders& encoders() const { return encoders_; }
+  const TouchProbes& touch_probes() const { return touch_probes_; }
+  bool in_position() const;  // H473 bit 19
+  bool referenced() const;   // H473 bit 20
+  bool referencing() const { return reference_.active(); }
+  FollowState follow_state() const { return follow_state_; }  // H562
+
+ private:
+  int32_t actual() const { return encoders_.position(source()); }
+  bool high_resolution() const { return (inputs_.modulo_control >> 1 & 1) != 0; }
+  TravelRules rules() const;
+
+  PositionSource source() const { return settings_.position_source(); }
+  int64_t distance(int32_t from, int32_t to) const;
+  int64_t target_on_line() const;
+  bool target_allowed() const;
+
+  void take_over(const PositioningSettings& settings);
+  void rest();
+  void resume();
+  void run_travel();
+  bool follow_master();
+  void couple();
+  void watch_limit_switches();
+  void plan(int64_t goal, const TravelRules& rules);
+  void brake_here();
+  void drop_target();
+  void keep_in_range();
+  int32_t speed_order() const;
+
+  void run_reference();
+  void finish_reference(int32_t reference_point);
+  void take_pending();
+
+  PositioningSettings settings_;
+  PositioningInputs inputs_;
+  Encoders encoders_;
+  Modulo modulo_;
+  TouchProbes touch_probes_;
+  ReferenceTravel reference_;
+  Follower follower_;
+  Profile profile_;
+
+  int32_t target_ = 0;
+  bool target_follows_ = true;  // no target is wanted: it is where the axis is, until one is given
+  int32_t modulo_target_ = 0;
+  int32_t lag_ = 0;
+  Halt halt_ = Halt::None;
+  bool referenced_ = false;
+  bool following_ = false;       // in the last millisecond
+  bool interrupted_ = false;     // a travel was on its way when it ended
+  bool reference_input_ = true;  // at 1 from the beginning it starts nothing
+  bool reference_failed_ = false;
+  ReferenceTravel::Order reference_order_;
+  FollowState follow_state_ = FollowState::Free;
+  bool follow_refused_ = false;  // until the program gives it up
+
+  // Of the present plan; nothing: there is none.
+  std::optional<int64_t> planned_target_;
+  TravelRules planned_rules_;
+  TravelRules planned_full_;               // the same without override
+  std::optional<int32_t> refused_target_;  // beyond a software limit switch, already reported
+  bool at_limit_ = false;                  // moving into a limit switch, already reported
+  bool given_up_ = false;                  // the travel, for that
+
+  // Ordered during a reference travel, for behind it.
+  enum class Pending : uint8_t { None, Absolute, Relative, Modulo };
+  Pending pending_ = Pending::None;
+  int64_t pending_value_ = 0;
+
+  std::optional<int32_t> motor_counter_;
+  std::bitset<kPositioningEvents> events_;
+};
+
+static_assert(std::is_trivially_copyable_v<Positioner>, "a copy is a snapshot");
+
+}  // namespace ipos::runtime

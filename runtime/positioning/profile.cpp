@@ -1,0 +1,187 @@
+// Planning and reading out. All ramps, whatever their shape, run at their mean speed on average: time and
+// distance of a plan are those of the linear one.
+#include "runtime/positioning/profile.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+constexpr Span clamp_span(Wide span) { return span > kForever - 1 ? kForever - 1 : static_cast<Span>(span); }
+
+Span ramp_time(Rate change, int32_t ms, const TravelRules& rules) {
+  return static_cast<Span>(Wide{change} * ms * kMs / rules.reference);
+}
+
+// Covered by a ramp between rest and `speed`.
+Fine ramp_way(Rate speed, int32_t ms, const TravelRules& rules) {
+  return static_cast<Fine>((Wide{speed} * speed * ms / rules.reference) >> (kRateBits - kFineBits + 1));
+}
+
+// Time for a way at a speed.
+Span time_for(Fine way, Rate speed) { return clamp_span((Wide{way} << kRateBits) / speed); }
+
+// The whole square root.
+Rate root(Wide value) {
+  Rate result = 0;
+  for (Rate bit = Rate{1} << 60; bit != 0; bit >>= 1)
+    if (Wide{result + bit} * (result + bit) <= value) result += bit;
+  return result;
+}
+
+// Greatest speed of a travel over `way` that begins with `speed` and ends at rest.
+Rate peak_speed(Fine way, Rate speed, const TravelRules& rules) {
+  const Wide square =
+      ((Wide{rules.reference} * way) << (1 + kRateBits - kFineBits)) + Wide{speed} * speed * rules.up_ms;
+  return root(square / (rules.up_ms + rules.down_ms));
+}
+
+// The ramp, within rounding, or a harder one where the shape is steep anyway, stops within `way`.
+bool stops_within(Fine way, Fine brake, RampShape shape) {
+  return 2 * brake <= way * hardness_halves(shape) + brake / 512 + kIncrement / 1024;
+}
+
+}  // namespace
+
+void Profile::begin() {
+  origin_ = position_;
+  elapsed_ = 0;
+  phases_ = 0;
+  arrives_ = turns_ = false;
+}
+
+void Profile::add(Rate from, Rate to, Span duration, RampShape shape) {
+  plan_[phases_++] = {from, to, duration, shape};
+}
+
+void Profile::hold(Fine position, Rate speed) {
+  position_ = position;
+  speed_ = speed;
+  begin();
+}
+
+void Profile::brake_to(Fine goal, RampShape shape) {
+  goal_ = goal;
+  arrives_ = true;
+  add(speed_, 0, time_for(2 * magnitude(goal - position_), magnitude(speed_)), shape);
+}
+
+void Profile::travel(int64_t target, const TravelRules& rules, Goal kind) {
+  begin();
+  const Fine goal = fine(target);
+  Fine from = position_;
+  Rate speed = speed_;
+  if (speed != 0) {
+    const int way = sign(speed);
+    const Fine ahead = way * (goal - from);
+    const Fine brake = ramp_way(magnitude(speed), rules.down_ms, rules);
+    if (ahead >= 0 && brake >= ahead && (kind == Goal::Kept || stops_within(ahead, brake, rules.shape)))
+      return brake_to(goal, rules.shape);
+    if (brake >= ahead) {
+      add(speed, 0, ramp_time(magnitude(speed), rules.down_ms, rules), rules.shape);
+      turns_ = true;
+      from += way * brake;
+      speed = 0;
+    }
+  }
+  goal_ = goal;
+  const int way = sign(goal - from);
+  const Fine distance = magnitude(goal - from);
+  const Rate cap = way > 0 ? rules.cw : rules.ccw;
+  const Rate now = magnitude(speed);
+  const Rate top = std::min(cap, peak_speed(distance, now, rules));
+  if (top <= 0) {
+    // Not to be moved: at the target already, or a travel speed of 0.
+    if (now != 0) add(speed, 0, ramp_time(now, rules.down_ms, rules), rules.shape);
+    arrives_ = distance < kIncrement / 2 && cap > 0;
+    if (phases_ == 0 && arrives_) position_ = goal;
+    return;
+  }
+  const int32_t ms = top >= now ? rules.up_ms : rules.down_ms;
+  const Fine change = magnitude(ramp_way(top, ms, rules) - ramp_way(now, ms, rules));
+  const Fine brake = ramp_way(top, rules.down_ms, rules);
+  add(way * now, way * top, ramp_time(magnitude(top - now), ms, rules), rules.shape);
+  add(way * top, way * top, time_for(std::max<Fine>(0, distance - change - brake), top), rules.shape);
+  add(way * top, 0, ramp_time(top, rules.down_ms, rules), rules.shape);
+  arrives_ = true;
+}
+
+void Profile::run(int way, const TravelRules& rules) {
+  begin();
+  const Rate top = way > 0 ? rules.cw : -rules.ccw;
+  Rate now = speed_;
+  if (now != 0 && sign(now) != way) {
+    add(now, 0, ramp_time(magnitude(now), rules.down_ms, rules), rules.shape);
+    now = 0;
+  }
+  const bool up = magnitude(top) >= magnitude(now);
+  add(now, top, ramp_time(magnitude(top - now), up ? rules.up_ms : rules.down_ms, rules), rules.shape);
+  add(top, top, kForever, rules.shape);
+}
+
+void Profile::stop(const TravelRules& rules) {
+  const int64_t end = stop_position(rules);
+  if (speed_ == 0) return travel(end, rules, Goal::New);
+  begin();
+  brake_to(fine(end), rules.shape);
+}
+
+int64_t Profile::stop_position(const TravelRules& rules) const {
+  const Fine way = ramp_way(magnitude(speed_), rules.down_ms, rules);
+  if (speed_ < 0) return floor_whole(position_ - way);
+  if (speed_ > 0) return -floor_whole(-(position_ + way));
+  return whole(position_);
+}
+
+bool Profile::overruns(int64_t target, const TravelRules& rules) const {
+  const Fine ahead = sign(speed_) * (fine(target) - position_);
+  const Fine brake = ramp_way(magnitude(speed_), rules.down_ms, rules);
+  return speed_ != 0 && ahead >= 0 && brake > ahead && !stops_within(ahead, brake, rules.shape);
+}
+
+void Profile::shift(int64_t increments) {
+  position_ += fine(increments);
+  origin_ += fine(increments);
+  goal_ += fine(increments);
+}
+
+Fine Profile::way_in(const Phase& phase, Span time) {
+  if (phase.from == phase.to) return static_cast<Fine>((Wide{phase.from} * time) >> kRateBits);
+  const auto share = static_cast<int64_t>((Wide{time} << kShareBits) / phase.duration);
+  const Wide change = Wide{phase.to - phase.from} * phase.duration * distance_share(phase.shape, share);
+  return static_cast<Fine>((Wide{phase.from} * time + (change >> kShareBits)) >> kRateBits);
+}
+
+Rate Profile::speed_in(const Phase& phase, Span time) {
+  if (phase.from == phase.to) return phase.from;
+  const auto share = static_cast<int64_t>((Wide{time} << kShareBits) / phase.duration);
+  return phase.from +
+         static_cast<Rate>((Wide{phase.to - phase.from} * speed_share(phase.shape, share)) >> kShareBits);
+}
+
+void Profile::tick() {
+  if (phases_ == 0) return;
+  elapsed_ += kMs;
+  Span time = elapsed_;
+  Fine from = origin_;
+  for (size_t n = 0; n < phases_; ++n) {
+    const Phase& phase = plan_[n];
+    if (time < phase.duration) {
+      // The last phase is counted from its end, so that it ends exactly there.
+      const bool last = arrives_ && n + 1U == phases_;
+      position_ =
+          last ? goal_ - way_in(phase, phase.duration) + way_in(phase, time) : from + way_in(phase, time);
+      speed_ = speed_in(phase, time);
+      // Rounding must not carry it past the target.
+      const int way = sign(phase.from + phase.to);
+      if (arrives_ && !(turns_ && n == 0) && way * (position_ - goal_) > 0) position_ = goal_;
+      return;
+    }
+    if (phase.duration == 0) continue;
+    time -= phase.duration;
+    from += way_in(phase, phase.duration);
+  }
+  position_ = arrives_ ? goal_ : from;
+  speed_ = 0;
+  phases_ = 0;
+}
+
+}  // namespace ipos::runtime

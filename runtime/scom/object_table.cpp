@@ -1,0 +1,199 @@
+// Setting up variable telegrams. The order of checks decides which of several reasons a program sees.
+#include "runtime/scom/object_table.hpp"
+
+#include <algorithm>
+
+#include "runtime/bus/can/frame_bits.hpp"
+#include "runtime/bus/movilink/identifiers.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+using stdlib::Generation;
+
+constexpr int32_t kLongestCycle = 65'530;       // ms, 1053 1610 p. 54
+constexpr int32_t kLongestFastOffset = 65'534;  // ms, same table
+
+constexpr uint32_t kReceiveFlags[] = {522, 523};  // of SBus 1 and 2, MOVIDRIVE B
+
+#define UNIT(code, name, title, variables, parameter_words, program_words, tasks, depth, fast, slow, \
+             receive, ...)                                                                           \
+  static_assert((receive) <= ObjectTable::kMostReceive);
+#include "stdlib/unit_types.def"
+
+bool in_tens(int32_t value) { return value >= 0 && value <= kLongestCycle && value % 10 == 0; }
+
+// Permitted cycle times: 1..9 ms (not on MOVITRAC 07) and 10..65530 ms in tens.
+bool cycle_allowed(int32_t cycle, Generation generation) {
+  if (cycle >= 1 && cycle <= 9) return generation != Generation::M07;
+  return cycle >= 10 && in_tens(cycle);
+}
+
+// Permitted offsets: A p. 54 of 1053 1610; MOVITRAC 07 in tens; B p. 232 of IPOSplus, smaller than the cycle.
+bool offset_allowed(int32_t offset, int32_t cycle, Generation generation) {
+  if (generation == Generation::B) {
+    if (offset >= cycle) return false;
+    return is_fast_cycle(cycle) ? offset >= 0 && offset <= 8 : in_tens(offset);
+  }
+  return is_fast_cycle(cycle) ? offset >= 0 && offset <= kLongestFastOffset : in_tens(offset);
+}
+
+// The unit's own MOVILINK telegram with this identifier (1053 1610 p. 51): closed to its objects.
+bool is_movilink_identifier(uint32_t id, const SlaveSettings& profile) {
+  const auto used = classify_identifier(id);
+  if (!used || !has_telegram(profile, used->telegram)) return false;
+  return used->address == (telegram_type(used->telegram).grouped ? profile.group : profile.address);
+}
+
+uint8_t results_of(ObjectKind kind) { return kind == ObjectKind::TransmitCyclic ? 5 : 3; }
+
+}  // namespace
+
+bool is_fast_cycle(int32_t cycle) { return cycle < 10; }
+
+ObjectRequest ObjectTable::request(ObjectKind kind, uint32_t variable, std::span<const int32_t> h) const {
+  const bool cyclic = kind == ObjectKind::TransmitCyclic;
+  const uint32_t at = variable + (cyclic ? 3 : 1);  // where length and pointer stand in the structure
+  const int32_t object = h[variable];
+  ObjectRequest out{kind, object, 0, 0, h[at], h[at + 1], variable + results_of(kind)};
+  if (sbus_ == 2 && object >= 0) out.object &= ~kSbus2Object;
+  if (cyclic) {
+    out.cycle = h[variable + 1];
+    out.offset = h[variable + 2];
+  }
+  return out;
+}
+
+ObjectVerdict ObjectTable::judge(const ObjectRequest& request) const {
+  const auto format = variable_format(request.format);
+  if (!format) return ObjectVerdict::NoFormat;
+  if (request.data < 0 || request.data >= 0x1'0000 ||
+      static_cast<uint32_t>(request.data) + format->variables() > unit_->variables)
+    return ObjectVerdict::NoVariables;
+  if (request.object >= kSbus2Object && unit_->generation == Generation::B) return ObjectVerdict::OnSbus2;
+  if (request.object < 0 || static_cast<uint32_t>(request.object) >= kStandardIdLimit)
+    return ObjectVerdict::NoIdentifier;
+  if (is_movilink_identifier(static_cast<uint32_t>(request.object), profile_))
+    return ObjectVerdict::ClosedIdentifier;
+  return ObjectVerdict::Accepted;
+}
+
+ObjectVerdict ObjectTable::define(const ObjectRequest& request, std::span<int32_t> h) {
+  ObjectVerdict verdict = judge(request);
+  if (verdict == ObjectVerdict::NoVariables) return verdict;
+  // No manual prints results for what judge() refuses; ours are those of a refused object.
+  int32_t result = request.kind == ObjectKind::TransmitCyclic ? kWrongCycleTime
+                                                              : static_cast<int32_t>(AcyclicStatus::Failed);
+  if (verdict == ObjectVerdict::Accepted) switch (request.kind) {
+      case ObjectKind::TransmitCyclic: verdict = define_cyclic(request, result); break;
+      case ObjectKind::Receive: verdict = define_receive(request); break;
+      case ObjectKind::TransmitAcyclic: return verdict;
+    }
+  if (request.kind != ObjectKind::Receive) h[request.result] = result;
+  return verdict;
+}
+
+ObjectVerdict ObjectTable::define_cyclic(const ObjectRequest& request, int32_t& result) {
+  result = kWrongCycleTime;
+  if (!cycle_allowed(request.cycle, unit_->generation)) return ObjectVerdict::WrongCycleTime;
+  if (!offset_allowed(request.offset, request.cycle, unit_->generation)) return ObjectVerdict::WrongOffset;
+  const auto known = std::span(state_.cyclic).first(state_.cyclic_count);
+  int of_class = 0;
+  for (const Cyclic& object : known) {
+    if (object.id == request.object) return ObjectVerdict::SentTwice;
+    of_class += is_fast_cycle(object.cycle) == is_fast_cycle(request.cycle);
+  }
+  result = kTooManyObjects;
+  if (of_class >= (is_fast_cycle(request.cycle) ? unit_->fast_objects : unit_->slow_objects))
+    return ObjectVerdict::TooManyTransmit;
+  const Cyclic object{static_cast<uint16_t>(request.object), static_cast<uint16_t>(request.cycle),
+                      static_cast<uint16_t>(request.offset), static_cast<uint16_t>(request.data),
+                      *variable_format(request.format)};
+  result = free_capacity(object);
+  if (result == kBusOverload) return ObjectVerdict::Overload;
+  state_.cyclic[state_.cyclic_count++] = object;
+  return ObjectVerdict::Accepted;
+}
+
+// The whole percent of the 70 % budget still free (docs/stdlib.md).
+int32_t ObjectTable::free_capacity(const Cyclic& added) const {
+  constexpr uint64_t kMicro = 1'000'000;  // loads are summed in millionths of a bit per second
+  const auto load = [](const Cyclic& object) {
+    return worst_case_bits(object.format.length, false) * 1000 * kMicro / object.cycle;
+  };
+  uint64_t used = load(added);
+  for (const Cyclic& object : std::span(state_.cyclic).first(state_.cyclic_count)) used += load(object);
+  const uint64_t budget = uint64_t{baud_} * 70 / 100 * kMicro;
+  return used > budget ? kBusOverload : static_cast<int32_t>((budget - used) / (budget / 100));
+}
+
+ObjectVerdict ObjectTable::define_receive(const ObjectRequest& request) {
+  if (state_.closed) return ObjectVerdict::TooLate;
+  for (const Receive& object : std::span(state_.receive).first(state_.receive_count))
+    if (object.id == request.object) return ObjectVerdict::ReceivedTwice;
+  if (state_.receive_count >= unit_->receive_objects) return ObjectVerdict::TooManyReceive;
+  state_.receive[state_.receive_count++] = {static_cast<uint16_t>(request.object),
+                                            static_cast<uint16_t>(request.data),
+                                            *variable_format(request.format)};
+  return ObjectVerdict::Accepted;
+}
+
+Frame ObjectTable::object_frame(uint32_t id, VariableFormat format, uint32_t data,
+                                std::span<const int32_t> h) {
+  return variable_frame(id, format,
+                        {format.variables() > 0 ? h[data] : 0, format.variables() > 1 ? h[data + 1] : 0});
+}
+
+Frame ObjectTable::acyclic_frame(const ObjectRequest& request, std::span<const int32_t> h) {
+  return object_frame(static_cast<uint32_t>(request.object), *variable_format(request.format),
+                      static_cast<uint32_t>(request.data), h);
+}
+
+void ObjectTable::note_acyclic(uint32_t tag, AcyclicStatus status, std::span<int32_t> h) {
+  if (tag >= kAcyclicTags && tag - kAcyclicTags + 3 < h.size())
+    h[tag - kAcyclicTags + 3] = static_cast<int32_t>(status);
+}
+
+void ObjectTable::start(int64_t tick) {
+  if (state_.started) return;
+  state_.started = true;
+  state_.closed = true;
+  state_.start_tick = tick;
+}
+
+std::optional<size_t> ObjectTable::receiver(const Frame& frame) const {
+  if (!state_.started || !is_plain(frame)) return std::nullopt;
+  for (size_t n = 0; n < state_.receive_count; ++n)
+    if (state_.receive[n].id == frame.id) return n;
+  return std::nullopt;
+}
+
+bool ObjectTable::take(size_t receiver, const Frame& frame, std::span<int32_t> h) const {
+  const Receive& object = state_.receive[receiver];
+  const auto pair = frame_variables(frame, object.format);
+  if (!pair) return false;
+  if (object.format.variables() > 0) h[object.data] = pair->low;
+  if (object.format.variables() > 1) h[object.data + 1] = pair->high;
+  if (unit_->generation == Generation::B) {
+    int32_t& flags = h[kReceiveFlags[sbus_ - 1]];
+    flags = static_cast<int32_t>(static_cast<uint32_t>(flags) | 1U << receiver);
+  }
+  return true;
+}
+
+bool ObjectTable::is_sound(uint32_t id, VariableFormat format, uint32_t data) const {
+  return id < kStandardIdLimit && format.length <= 8 && format.layout <= VariableLayout::Intel &&
+         data + format.variables() <= unit_->variables;
+}
+
+bool ObjectTable::restore(const State& state) {
+  if (state.cyclic_count > kMostCyclic || state.receive_count > kMostReceive) return false;
+  for (const Cyclic& object : std::span(state.cyclic).first(state.cyclic_count))
+    if (object.cycle == 0 || !is_sound(object.id, object.format, object.data)) return false;
+  for (const Receive& object : std::span(state.receive).first(state.receive_count))
+    if (!is_sound(object.id, object.format, object.data)) return false;
+  state_ = state;
+  return true;
+}
+
+}  // namespace ipos::runtime

@@ -1,0 +1,60 @@
+// One system command on its way to the service that carries it out, and what all services may work on. Each
+// family of commands is a function over a CommandCall, in a file of its own.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "runtime/clock/event_queue.hpp"
+#include "runtime/drive/drive.hpp"
+#include "runtime/services/movilink_command.hpp"
+#include "runtime/services/positioning_commands.hpp"
+#include "runtime/services/retained_memory.hpp"
+#include "runtime/services/timers.hpp"
+#include "runtime/services/variable_objects.hpp"
+#include "vm/exec/machine.hpp"
+
+namespace ipos::runtime {
+
+// The parts of a station its program can reach.
+struct StationServices {
+  const EventQueue& clock;
+  Drive& drive;
+  ParameterStore& parameters;
+  Timers& timers;
+  RetainedMemory& memory;
+  MovilinkCommand& movilink;
+  std::array<VariableObjects*, 2> objects{};   // of SBus 1 and 2; null for a bus the station is not on
+  PositioningCommands* positioning = nullptr;  // null for a unit that cannot position
+};
+
+struct CommandCall {
+  const StationServices& services;
+  vm::Machine& machine;
+  int context;  // vm/exec/context.hpp
+  const vm::Instruction& command;
+
+  // What the user has to be told, whatever the answer is.
+  std::string why;
+  // A fault of the drive that the command causes while the program goes on (F77, F99), and how.
+  uint8_t caused_fault = 0;
+  std::string cause;
+
+  std::span<int32_t> h() const { return machine.variables(); }
+  int32_t operand(size_t n) const { return command.operands[n]; }
+  int32_t& variable(size_t operand_number, size_t element = 0) const {
+    return h()[static_cast<size_t>(operand(operand_number)) + element];
+  }
+};
+
+constexpr vm::HostReply illegal(const char* reason) { return {vm::Answer::Fault, vm::kFaultIllop, reason}; }
+
+vm::HostReply communication_command(CommandCall& call);  // SCOM, SCOMON, SCOMST, MOVLNK
+vm::HostReply call_command(CommandCall& call);           // INPCALL, SYSCALL
+vm::HostReply unit_command(CommandCall& call);           // SETFR, RESET, MEM, WDON, WDOFF
+vm::HostReply get_system_value(CommandCall& call);       // GETSYS
+vm::HostReply set_system_value(CommandCall& call);       // SETSYS
+
+}  // namespace ipos::runtime

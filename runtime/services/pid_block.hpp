@@ -1,0 +1,30 @@
+// The PID controller of MOVIDRIVE B, variables H524 and H540 to H559 (IPOSplus p. 38, 39), once a
+// millisecond. Printed are the variables, their limits and the bits of PID_Status; the formula is the
+// textbook's, in integers, and with P264, P265 and P276 for times and actual value ours.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "runtime/drive/parameters.hpp"
+
+namespace ipos::runtime {
+
+class PidBlock {
+ public:
+  // The parameters must outlive it.
+  explicit PidBlock(const ParameterStore& parameters);
+
+  void tick(std::span<int32_t> h);
+
+ private:
+  const ParameterStore& parameters_;
+  uint16_t integral_ms_;    // indices: P264; 0: no I share
+  uint16_t derivative_ms_;  // P265; 0: no D share
+  uint16_t actual_;         // P276: number of the variable with the actual value
+  int64_t integral_ = 0;    // 1/65536
+  int64_t last_error_ = 0;
+  bool started_ = false;  // last_error_ is there
+};
+
+}  // namespace ipos::runtime

@@ -1,0 +1,41 @@
+// The positioning commands of a program: GOA, GOR, GO0, ASTOP, TOUCHP, and of GETSYS and SETSYS what belongs
+// to positioning. Waiting commands block the context that runs them, nothing else.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "runtime/services/positioning_service.hpp"
+#include "vm/exec/machine.hpp"
+
+namespace ipos::runtime {
+
+class PositioningCommands {
+ public:
+  explicit PositioningCommands(PositioningService& service) : service_(service) {}
+
+  bool touched() const { return service_.positioner().touch_probes().probe(0).touched; }
+
+  // Nothing: the command belongs to another family.
+  std::optional<vm::HostReply> execute(vm::Machine& machine, int context, const vm::Instruction& command);
+
+  // Once a millisecond, after the service has shown what there is: contexts whose wait is over go on.
+  void tick(vm::Machine& machine);
+
+  // The context does not wait any more.
+  void cancel(int context) { waiting_[slot(context)] = false; }
+  void cancel_all() { waiting_ = {}; }
+
+ private:
+  static size_t slot(int context) { return static_cast<size_t>(context - 1); }
+
+  vm::HostReply wait(int context);
+  vm::HostReply travel(vm::Machine& machine, int context, const vm::Instruction& command);
+  std::optional<vm::HostReply> set_system_value(std::span<const int32_t> h, int32_t keyword, size_t variable);
+  vm::HostReply run_cam(std::span<int32_t> h, uint32_t structure);
+
+  PositioningService& service_;
+  std::array<bool, vm::kContexts> waiting_{};  // for the axis to be in position
+};
+
+}  // namespace ipos::runtime

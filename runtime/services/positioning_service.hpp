@@ -1,0 +1,87 @@
+// Positioning of one station: carries parameters, inputs and H variables to the Positioner, its order to the
+// drive, and what it reports to both. Called twice a millisecond, around the drive's tick.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/drive/drive.hpp"
+#include "runtime/positioning/cams.hpp"
+#include "runtime/positioning/positioner.hpp"
+#include "runtime/services/journal.hpp"
+
+namespace ipos::runtime {
+
+class PositioningService {
+ public:
+  // "SCOM1.IPC:12:5" of a word address, or empty.
+  using SourcePlace = std::function<std::string(uint32_t)>;
+
+  // All must outlive it.
+  PositioningService(Drive& drive, ParameterStore& parameters, Journal& journal, std::string_view station,
+                     SourcePlace place);
+
+  // Before the drive's tick: what the program wrote, what is to be done. `syncs`: sync telegrams so far.
+  PositionControl order(Time now, std::span<int32_t> h, uint32_t syncs);
+  // After it: the system variables of positioning, and the extended cams.
+  void show(Time now, std::span<int32_t> h);
+
+  // For commands, between two ticks.
+  const Positioner& positioner() const { return positioner_; }
+  Positioner& positioner() { return positioner_; }
+  void take_targets(std::span<const int32_t> h);                // written since the last look
+  void ordered_at(uint32_t address) { ordered_at_ = address; }  // the command, for what is reported of it
+  void show_targets(std::span<int32_t> h);                      // and the bits 19 and 20 of H473
+  CamSources& cam_sources() { return cam_sources_; }
+  ExtendedCams& extended_cams() { return extended_cams_; }
+  // A parameter by its number, as the program's own working value.
+  void set_parameter(std::string_view number, int32_t value);
+
+ private:
+  // A system variable and the parameter it is the same datum as.
+  struct Mirror {
+    size_t variable;
+    int32_t PositioningSettings::*member;
+    std::string_view number;
+    int32_t shown;
+  };
+
+  void read_settings();
+  void take_mirrors(std::span<int32_t> h);
+  PositioningInputs inputs(std::span<const int32_t> h) const;
+  MasterInputs master(std::span<const int32_t> h, uint32_t syncs);
+  void report_events(Time now);
+
+  Drive& drive_;
+  ParameterStore& parameters_;
+  Journal& journal_;
+  std::string station_;
+  SourcePlace place_;
+
+  struct Cell {
+    int32_t PositioningSettings::*member;
+    uint16_t index;
+  };
+  std::vector<Cell> cells_;  // of the parameters the unit has
+  PositioningSettings settings_;
+  uint32_t settings_version_;
+  std::vector<Mirror> mirrors_;
+
+  Positioner positioner_;
+  CamSources cam_sources_;
+  ExtendedCams extended_cams_;
+  // As last shown; the program has written what differs.
+  int32_t shown_target_ = 0;
+  int32_t shown_modulo_target_ = 0;
+  int32_t shown_turns_ = 0;
+  int32_t bus_position_ = 0;
+  uint32_t syncs_ = 0;                        // sync telegrams, as of the last millisecond
+  std::bitset<kPositioningEvents> reported_;  // in the last millisecond
+  std::optional<uint32_t> ordered_at_;        // nothing: by writing a variable
+};
+
+}  // namespace ipos::runtime

@@ -1,0 +1,64 @@
+// Commands to the unit as a whole: responses to faults, reset, memory, watchdog.
+#include <fmt/format.h>
+
+#include "runtime/services/command_call.hpp"
+#include "stdlib/faults.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+constexpr uint8_t kFaultMemory = 25;
+
+// SETFR. A fault with a parameter for its response: that parameter is written, volatile.
+vm::HostReply set_fault_response(CommandCall& call) {
+  const int32_t number = call.operand(0);
+  const int32_t response = call.operand(1);
+  const stdlib::FaultRow* row =
+      number >= 0 && number <= UINT8_MAX ? stdlib::find_fault(static_cast<uint8_t>(number)) : nullptr;
+  if (row == nullptr) return illegal("SETFR: the unit has no fault with this number");
+  if (call.services.drive.set_fault_response(row->number, static_cast<FaultResponse>(response))) return {};
+  if (row->parameter.empty()) return illegal("SETFR: the response to this fault is fixed");
+  ParameterStore& parameters = call.services.parameters;
+  const stdlib::Parameter* parameter = parameters.table().find(row->parameter);
+  if (parameter == nullptr) return illegal("SETFR: on this unit the response to this fault is fixed");
+  const ParameterReply reply =
+      parameters.execute(ParameterService::WriteVolatile, parameter->index, response);
+  if (reply) return {};
+  call.why = parameters.explain(static_cast<uint8_t>(ParameterService::WriteVolatile), parameter->index,
+                                response, reply.error());
+  return illegal("SETFR: the unit refuses this response");
+}
+
+vm::HostReply memorize(CommandCall& call) {
+  if (!call.services.memory.memorize(static_cast<Memorize>(call.operand(0)))) {
+    call.caused_fault = kFaultMemory;
+    call.cause = "the non-volatile memory does not work";
+  }
+  return {};
+}
+
+// 0 and more (IPOSplus p. 34); 0 runs out in the next millisecond.
+vm::HostReply start_watchdog(const CommandCall& call, int32_t ms) {
+  if (ms < 0) return illegal("WDON: the time is negative");
+  call.services.timers.start_watchdog(call.h(), ms);
+  return {};
+}
+
+}  // namespace
+
+vm::HostReply unit_command(CommandCall& call) {
+  Drive& drive = call.services.drive;
+  switch (call.command.opcode) {
+    case vm::Opcode::SetFault: return set_fault_response(call);
+    case vm::Opcode::Memorize: return memorize(call);
+    case vm::Opcode::WdOnH: return start_watchdog(call, call.variable(0));
+    case vm::Opcode::WdOnK: return start_watchdog(call, call.operand(0));
+    case vm::Opcode::WdOff: call.services.timers.stop_watchdog(); return {};
+    default:  // RESET
+      call.variable(0) = drive.fault();
+      if (drive.fault() != 0) drive.reset_fault();
+      return {};
+  }
+}
+
+}  // namespace ipos::runtime

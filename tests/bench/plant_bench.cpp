@@ -1,0 +1,185 @@
+// How many seconds of a plant one second of one core simulates: up to 64 MOVIDRIVE B on one SBus of 1 Mbit/s
+// near 70 % load, each with three busy tasks and a moving axis, or with programs that only wait. Counts
+// frames, commands and the memory taken from the heap once everything runs.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <new>
+#include <string>
+#include <string_view>
+
+#include "compiler/codegen/compile.hpp"
+#include "compiler/diag/render.hpp"
+#include "runtime/plant/plant.hpp"
+
+namespace {
+size_t allocations = 0;
+}  // namespace
+
+[[gnu::noinline]] void* operator new(size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+  std::abort();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, size_t) noexcept { std::free(memory); }
+
+namespace ipos {
+namespace {
+
+// Every drive sends seven bytes each 10 ms: 64 of them are 6400 frames a second.
+constexpr const char* kObjects = R"(
+#include <const.h>
+SCTRCYCL TrCycl;
+long lTrLow;
+long lTrHigh;
+SCREC Rec;
+long lReLow;
+long lReHigh;
+long lWork;
+long lSteps;
+long lState;
+
+Objects()
+{{
+  TrCycl.ObjectNo = {0};
+  TrCycl.CycleTime = 10;
+  TrCycl.Offset = 0;
+  TrCycl.Format = 7;
+  TrCycl.DPointer = numof(lTrLow);
+  _SBusCommDef(SCD_TRCYCL, TrCycl);
+  Rec.ObjectNo = {1};
+  Rec.Format = 7;
+  Rec.DPointer = numof(lReLow);
+  _SBusCommDef(SCD_REC, Rec);
+  _SBusCommOn();
+}}
+)";
+
+constexpr const char* kBusy = R"(
+Sequence()
+{
+  while (1)
+  {
+    lSteps++;
+    switch (lState) {
+      case 0: if (lReLow > 10) lState = 1; break;
+      case 1: lWork = lWork + lReHigh; lState = 2; break;
+      case 2: if (lWork < 0) lWork = 0; lState = 0; break;
+    }
+  }
+}
+
+Filter()
+{
+  while (1)
+  {
+    lTrHigh = (lTrHigh * 7 + lReLow) / 8;
+  }
+}
+
+main()
+{
+  Objects();
+  _SetTask2(T2_START, Sequence);
+  _SetTask(T2_START, Filter);
+  while (1)
+  {
+    lTrLow = lTrLow + 1;
+  }
+}
+)";
+
+constexpr const char* kIdle = R"(
+main()
+{
+  Objects();
+  while (1)
+  {
+  }
+}
+)";
+
+std::unique_ptr<runtime::Plant> make(int drives, bool busy, bool bus) {
+  std::string text = "[[bus]]\nname = \"sbus\"\nkind = \"can\"\nbaud = 1000000\n";
+  std::vector<std::optional<vm::Image>> programs;
+  for (int n = 0; n < drives; ++n) {
+    text += fmt::format(
+        "[[station]]\nname = \"unit{0}\"\nunit = \"mdxb\"\nprogram = \"P.IPC\"\nsbus = \"sbus\"\n"
+        "[station.parameters]\nP881 = {1}\nP884 = 3\nP130 = 500\nP160 = 1000000\n{2}",
+        n, n, busy ? "[station.inputs]\nDI00 = 1\nDI01 = 1\nDI03 = 1\nDI04 = 1\n" : "");
+    const std::string objects =
+        bus ? fmt::format(fmt::runtime(kObjects), 1100 + n, 1100 + (n + 1) % drives)
+            : "long lWork; long lTrLow; long lTrHigh; long lReLow; long lReHigh; long "
+              "lSteps; long lState;\nObjects() {}\n#include <const.h>\n";
+    compiler::CompileOptions options;
+    options.unit = stdlib::find_unit("mdxb");
+    const auto made = compiler::compile("P.IPC", "", objects + (busy ? kBusy : kIdle), options);
+    if (!made.image) {
+      fmt::print(stderr, "{}", compiler::render_text(made.diagnostics.all(), *made.sources, false));
+      std::exit(1);
+    }
+    programs.push_back(made.image);
+  }
+  runtime::PlantFileResult file = runtime::read_plant_file(text);
+  for (const auto& error : file.errors) fmt::print(stderr, "{}: {}\n", error.place.line, error.text);
+  std::vector<runtime::PlantError> errors;
+  auto plant =
+      std::make_unique<runtime::Plant>(std::move(file.plant), std::move(programs), std::nullopt, errors);
+  for (const auto& error : errors) fmt::print(stderr, "{}: {}\n", error.place.line, error.text);
+  if (!errors.empty()) std::exit(1);
+  return plant;
+}
+
+struct Frames final : runtime::CanObserver {
+  void on_frame(const runtime::CanLine&, const runtime::FrameRecord&) override { ++count; }
+  void on_line_event(const runtime::CanLine&, const runtime::LineEvent&) override {}
+  uint64_t count = 0;
+};
+
+uint64_t commands(runtime::Plant& plant) {
+  uint64_t sum = 0;
+  for (const auto& station : plant.stations())
+    for (int context = 1; context <= vm::kContexts; ++context)
+      sum += station->machine()->context(context).commands;
+  return sum;
+}
+
+void measure(const char* name, int drives, bool busy, bool bus, int seconds) {
+  const auto plant = make(drives, busy, bus);
+  Frames frames;
+  plant->add_observer(frames);
+  plant->run_until(runtime::kSecond);  // everything runs, no vector grows any more
+  const uint64_t frames_before = frames.count;
+  const uint64_t commands_before = commands(*plant);
+  const size_t allocations_before = allocations;
+  const auto begin = std::chrono::steady_clock::now();
+  plant->run_until((1 + seconds) * runtime::kSecond);
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+  fmt::print(
+      "{:28} {:3} drives: {:8.1f} simulated s per s, {:6} frames/s, {:8} commands/s, {:.2f} allocations/s\n",
+      name, drives, seconds / wall.count(), (frames.count - frames_before) / static_cast<uint64_t>(seconds),
+      (commands(*plant) - commands_before) / static_cast<uint64_t>(seconds),
+      static_cast<double>(allocations - allocations_before) / seconds);
+  std::fflush(stdout);
+}
+
+}  // namespace
+}  // namespace ipos
+
+// ipos_bench_plant [SECONDS]
+int main(int argc, char** argv) {
+  const int seconds = argc > 1 ? std::atoi(argv[1]) : 10;
+  if (argc > 2)
+    return ipos::measure("profile", std::atoi(argv[2]), argc > 3 && argv[3] == std::string_view("busy"), true,
+                         seconds),
+           0;
+  ipos::measure("busy, 70 % bus load", 64, true, true, seconds);
+  ipos::measure("busy, no frames", 64, true, false, seconds);
+  ipos::measure("idle programs, bus", 64, false, true, seconds);
+  ipos::measure("idle programs, no frames", 64, false, false, seconds);
+  ipos::measure("busy", 1, true, true, seconds * 10);
+}

@@ -1,0 +1,212 @@
+// The handlers of the language server, in process: what each answers about small programs.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/editor/client.hpp"
+#include "tools/lsp/transport.hpp"
+
+namespace ipos::tests {
+namespace {
+
+const std::string kPath = "/p/A.IPC";
+
+std::string hover_text(Client& client, int line, int character) {
+  const Json hover = client.request("textDocument/hover", Client::at(kPath, line, character));
+  return hover.is_null() ? "" : hover["contents"]["value"].get<std::string>();
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+std::vector<std::string> completions(Client& client, int line, int character) {
+  std::vector<std::string> labels;
+  for (const Json& one : client.request("textDocument/completion", Client::at(kPath, line, character)))
+    labels.push_back(one["label"]);
+  return labels;
+}
+
+bool has(const std::vector<std::string>& all, const std::string& one) {
+  return std::find(all.begin(), all.end(), one) != all.end();
+}
+
+TEST(LspDiagnostics, AllOfTheProgramAndItsHeaders) {
+  Client client(std::map<std::string, std::string>{{"/p/h.h", "long shared;\nlong 5;\n"}});
+  client.open(kPath, "#include \"h.h\"\nlong unused;\nmain() { shared = nothing; }\n");
+  EXPECT_EQ(client.codes("/p/h.h").size(), 1U);
+  client.open("/p/h.h", "long shared;\n");
+  EXPECT_TRUE(client.codes("/p/h.h").empty());
+  // E0201 unknown name, W0201 unused variable: docs/diagnostics.
+  EXPECT_TRUE(has(client.codes(kPath), "E0201"));
+  client.notify("textDocument/didClose", Client::document("/p/h.h"));
+  EXPECT_EQ(client.codes("/p/h.h").size(), 1U) << "the disk counts again";
+}
+
+TEST(LspDiagnostics, OptionsOfTheClient) {
+  Client client({}, {{"defines", {"SPEED=5"}}, {"unit", "mdxb"}, {"warnings", {"error=unused-variable"}}});
+  client.open(kPath, "long unused;\nmain() { H1000 = SPEED; }\n");
+  ASSERT_EQ(client.codes(kPath), std::vector<std::string>{"W0201"});
+  EXPECT_EQ(client.diagnostics["file://" + kPath][0]["severity"], 1);
+  EXPECT_EQ(client.diagnostics["file://" + kPath][0]["tags"], Json({1}));
+}
+
+TEST(LspHover, VariablesMembersAndElements) {
+  Client client;
+  client.open(kPath,
+              "typedef struct { long a; long b[2]; } T; // a pair\nT t[2];\ninitial long kept; // stays\n"
+              "main() { t[1].b[1] = kept; H0 = t[H1].a; f(); }\n// helps\nf() { }\n");
+  EXPECT_TRUE(contains(hover_text(client, 3, 9), "H420..H425"));   // t
+  EXPECT_TRUE(contains(hover_text(client, 3, 14), "H424..H425"));  // b of t[1]
+  EXPECT_TRUE(contains(hover_text(client, 3, 22), "kept at power-off"));
+  EXPECT_TRUE(contains(hover_text(client, 3, 22), "stays"));
+  EXPECT_TRUE(contains(hover_text(client, 3, 38), "variable 0 of T"));  // a of t[H1]
+  EXPECT_TRUE(contains(hover_text(client, 3, 41), "helps"));
+  EXPECT_TRUE(contains(hover_text(client, 1, 0), "long[2] b;"));
+}
+
+TEST(LspHover, WhatTheManualsSay) {
+  Client client;
+  client.open(kPath,
+              "#include <const.h>\nmain() { H490 = 0x10; ActPos_Mot; _SBusCommOn(); } // P130 and F10\n");
+  EXPECT_TRUE(contains(hover_text(client, 1, 10), "WdogTimer"));
+  EXPECT_TRUE(contains(hover_text(client, 1, 10), "IPOSplus p. 34"));
+  EXPECT_EQ(hover_text(client, 1, 17), "16 = 0x10 = 0b10000\n");
+  EXPECT_TRUE(contains(hover_text(client, 1, 36), "SCOMON"));
+  EXPECT_TRUE(contains(hover_text(client, 1, 36), "IPOSplus p. 319"));
+  EXPECT_TRUE(contains(hover_text(client, 1, 55), "8470"));  // 1053 1610 p. 70: P130 has index 8470
+  EXPECT_TRUE(contains(hover_text(client, 1, 64), "IPOS illegal command"));
+  EXPECT_EQ(hover_text(client, 1, 8), "");
+}
+
+TEST(LspCompletion, ByPlace) {
+  Client client;
+  client.open(kPath,
+              "#include <\n#pragma \n#\ntypedef struct { long a; MOVLNK b; } T;\nT t; T v[2];\n"
+              "main() {\n  t.b.;\n  v[0].;\n  v.;\n  // x.\n  \n}\n");
+  EXPECT_TRUE(has(completions(client, 0, 10), "const.h"));
+  EXPECT_EQ(completions(client, 1, 8), (std::vector<std::string>{"globals", "initials", "var", "list"}));
+  EXPECT_TRUE(has(completions(client, 2, 1), "define"));
+  EXPECT_TRUE(has(completions(client, 6, 6), "BusType"));
+  EXPECT_EQ(completions(client, 7, 7), (std::vector<std::string>{"a", "b"}));
+  EXPECT_TRUE(completions(client, 8, 4).empty());
+  EXPECT_TRUE(completions(client, 9, 7).empty());
+  const auto names = completions(client, 10, 2);
+  for (const char* name : {"t", "T", "_Wait", "while", "SCREC"}) EXPECT_TRUE(has(names, name)) << name;
+  for (const char* name : {"goto", "sizeof", "int", "BusType"}) EXPECT_FALSE(has(names, name)) << name;
+}
+
+TEST(LspRename, MacrosTheirUsesAndTheirBodies) {
+  Client client;
+  client.open(
+      kPath,
+      "#define A B\n#define B v\n#define UNUSED (v + A)\n#ifdef A\nlong v;\n#endif\nmain() { A = B + v; }\n");
+  const auto renamed = [&](int line, int character) {
+    Json params = Client::at(kPath, line, character);
+    params["newName"] = "other";
+    const Json answer = client.request("textDocument/rename", params);
+    return answer.is_null() ? size_t{0} : answer["changes"]["file://" + kPath].size();
+  };
+  EXPECT_EQ(renamed(6, 9), 4U);   // A: #define, UNUSED, #ifdef, main
+  EXPECT_EQ(renamed(6, 13), 3U);  // B: #define, A's text, main
+  EXPECT_EQ(renamed(6, 17), 4U);  // v: B's text, UNUSED, declaration, main
+}
+
+TEST(LspRename, WorksInAProgramWithMistakesButAddsNone) {
+  Client client;
+  client.open(kPath, "long a; long b;\nmain() { a = nothing; b = 1; }\n");
+  Json params = Client::at(kPath, 0, 5);
+  params["newName"] = "c";
+  EXPECT_EQ(client.request("textDocument/rename", params)["changes"]["file://" + kPath].size(), 2U);
+  params["newName"] = "b";
+  EXPECT_EQ(client.refused("textDocument/rename", params), -32803);
+}
+
+TEST(LspRename, AMacroOfTheSameNameIsAClash) {
+  Client client;
+  client.open(kPath, "#define X 5\nlong a;\nmain() { a = 1; H0 = a; }\n");
+  Json params = Client::at(kPath, 1, 5);
+  params["newName"] = "X";
+  EXPECT_EQ(client.refused("textDocument/rename", params), -32803);
+}
+
+TEST(LspReferences, WithAndWithoutTheDeclaration) {
+  Client client;
+  client.open(kPath, "long a;\nmain() { a++; H7 = a; H007 = 2; }\n");
+  const auto count = [&](int line, int character, bool declaration) {
+    Json params = Client::at(kPath, line, character);
+    params["context"] = {{"includeDeclaration", declaration}};
+    return client.request("textDocument/references", params).size();
+  };
+  EXPECT_EQ(count(0, 5, true), 3U);
+  EXPECT_EQ(count(0, 5, false), 2U);
+  EXPECT_EQ(count(1, 15, true), 2U);  // H7 is H007
+  EXPECT_EQ(client.request("textDocument/documentHighlight", Client::at(kPath, 1, 9)).size(), 3U);
+}
+
+TEST(LspSymbols, ExtentsHoldTheirNames) {
+  Client client;
+  client.open(kPath, "#define A \\\n  1\nlong a, b;\nmain()\n{\n  a = 1;\n}\n");
+  const Json outline = client.request("textDocument/documentSymbol", Client::document(kPath));
+  ASSERT_EQ(outline.size(), 4U);
+  for (const Json& one : outline) {
+    EXPECT_LE(one["range"]["start"]["line"], one["selectionRange"]["start"]["line"]) << one;
+    EXPECT_GE(one["range"]["end"]["line"], one["selectionRange"]["end"]["line"]) << one;
+    if (one["name"] == "main") {
+      EXPECT_EQ(one["range"]["end"]["line"], 6);
+    }
+  }
+}
+
+TEST(LspFormatting, RefusesWhatIposFmtRefuses) {
+  Client client;
+  client.open(kPath, "main() { /* open\n");
+  EXPECT_EQ(client.refused("textDocument/formatting", Client::document(kPath)), -32803);
+  client.open(kPath, "main()\n{\n}\n");
+  EXPECT_TRUE(client.request("textDocument/formatting", Client::document(kPath)).empty());
+}
+
+TEST(LspServer, LifeCycle) {
+  Client client;
+  EXPECT_EQ(client.refused("initialize", Json::object()), -32600);
+  EXPECT_EQ(client.refused("nonsense", Json::object()), -32601);
+  client.server().receive("{no json");
+  client.settle();
+  ASSERT_EQ(client.strays.size(), 1U);
+  EXPECT_EQ(client.strays[0]["error"]["code"], -32700);
+  EXPECT_TRUE(client.ask("shutdown", nullptr).contains("result"));
+  EXPECT_EQ(client.refused("textDocument/hover", Client::at(kPath, 0, 0)), -32600);
+  client.notify("exit", nullptr);
+  EXPECT_TRUE(client.server().ended());
+  EXPECT_EQ(client.server().exit_code(), 0);
+}
+
+TEST(LspServer, ACancelledRequestIsNotCarriedOut) {
+  Client client;
+  client.open(kPath, "main() { }\n");
+  const Json hover{
+      {"jsonrpc", "2.0"}, {"id", 77}, {"method", "textDocument/hover"}, {"params", Client::at(kPath, 0, 1)}};
+  client.server().receive(hover.dump());
+  client.server().receive(R"({"jsonrpc":"2.0","method":"$/cancelRequest","params":{"id":77}})");
+  client.server().receive(R"({"jsonrpc":"2.0","method":"$/cancelRequest","params":{"id":12345}})");
+  client.settle();
+  EXPECT_FALSE(client.server().waiting());
+}
+
+TEST(LspTransport, CutsTheStreamIntoMessages) {
+  tools::lsp::MessageReader reader;
+  const std::string stream = tools::lsp::framed("{}") + "Garbage\r\n\r\n" +
+                             "content-length: 3\r\nContent-Type: x\r\n\r\nabc" + tools::lsp::framed("");
+  std::vector<std::string> bodies;
+  for (const char c : stream) {
+    reader.feed({&c, 1});
+    while (const auto body = reader.next()) bodies.push_back(*body);
+  }
+  EXPECT_EQ(bodies, (std::vector<std::string>{"{}", "abc", ""}));
+  reader.feed("Content-Length: 99999999999999\r\n\r\n");
+  EXPECT_FALSE(reader.next());
+  EXPECT_TRUE(reader.broken());
+}
+
+}  // namespace
+}  // namespace ipos::tests

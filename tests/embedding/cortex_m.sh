@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# The sample firmware runs SCOM1 in QEMU, on a Cortex-M3 and a Cortex-M4F: values are those of the manual, the hash
+# over all commands and frames is that of the host, and flash and RAM stay within their limits (M3).
+set -euo pipefail
+. "$(dirname "$0")/folder.sh"
+need arm-none-eabi-g++
+need qemu-system-arm
+need ninja
+flash=24576 ram=2048
+firmware=$source/examples/embedding/cortex-m
+"$build/tools/ipos" build "$source/examples/scom/SCOM1.IPC" -o "$work/SCOM1.ipx"
+
+for core in m3:mps2-an385 m4f:mps2-an386; do
+  folder=$work/${core%:*}
+  (cd "$source" && cmake --preset "cortex-${core%:*}" -B "$folder" -DIPOS_IMAGE="$work/SCOM1.ipx" >/dev/null)
+  cmake --build "$folder" -j1 >"$work/log" || fail "$(tail -n 30 "$work/log")"
+  timeout 60 qemu-system-arm -M "${core#*:}" -nographic -semihosting-config enable=on,target=native \
+    -kernel "$folder/examples/embedding/cortex-m/firmware" </dev/null >"$work/${core%:*}.txt" 2>&1 ||
+    fail "$(cat "$work/${core%:*}.txt")"
+done
+
+generated=$work/m3/examples/embedding/cortex-m
+"$CC" -std=c11 -I "$source/runtime/api/include" "$firmware"/{scom,can_mock,board_host}.c "$generated/image.c" \
+  "$build/lib/libipos.a" -o "$work/host"
+"$work/host" | tee "$work/host.txt"
+for core in m3 m4f; do diff "$work/host.txt" "$work/$core.txt"; done
+grep -q '^as the manual prints it$' "$work/host.txt"
+python3 "$firmware/size_report.py" "$work/m3" --flash $flash --ram $ram

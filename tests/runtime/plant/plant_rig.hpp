@@ -1,0 +1,67 @@
+// A plant from the text of its file and of its programs, compiled for the stations' units.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <string>
+
+#include "compiler/codegen/compile.hpp"
+#include "compiler/diag/render.hpp"
+#include "runtime/plant/plant.hpp"
+
+namespace ipos::tests {
+
+inline std::unique_ptr<runtime::Plant> make_plant(const std::string& text,
+                                                  const std::map<std::string, std::string>& sources = {},
+                                                  std::optional<vm::Rates> rates = std::nullopt) {
+  runtime::PlantFileResult file = runtime::read_plant_file(text);
+  for (const auto& error : file.errors) ADD_FAILURE() << error.place.line << ": " << error.text;
+  if (!file.errors.empty()) return nullptr;
+  std::vector<std::optional<vm::Image>> programs;
+  for (const runtime::StationConfig& station : file.plant.stations) {
+    if (station.program.empty()) {
+      programs.emplace_back();
+      continue;
+    }
+    compiler::CompileOptions options;
+    options.unit = station.unit;
+    const auto made = compiler::compile(station.program, "", sources.at(station.program), options);
+    EXPECT_TRUE(made.image) << compiler::render_text(made.diagnostics.all(), *made.sources, false);
+    if (!made.image) return nullptr;
+    programs.push_back(made.image);
+  }
+  std::vector<runtime::PlantError> errors;
+  auto plant = std::make_unique<runtime::Plant>(std::move(file.plant), std::move(programs), rates, errors);
+  for (const auto& error : errors) ADD_FAILURE() << error.place.line << ": " << error.text;
+  return errors.empty() ? std::move(plant) : nullptr;
+}
+
+// One station "u" with a program P.IPC; `more` follows its first keys.
+inline std::unique_ptr<runtime::Plant> make_station(const std::string& source, const std::string& more = "",
+                                                    const std::string& unit = "mdxb") {
+  return make_plant("[[station]]\nname = \"u\"\nunit = \"" + unit + "\"\nprogram = \"P.IPC\"\n" + more,
+                    {{"P.IPC", source}});
+}
+
+inline int32_t value(const runtime::Plant& plant, const std::string& name, const std::string& station = "u") {
+  for (const auto& candidate : const_cast<runtime::Plant&>(plant).stations())
+    if (candidate->config().name == station) {
+      const auto number = candidate->find_variable(name);
+      EXPECT_TRUE(number) << name;
+      return number ? candidate->variable(*number) : 0;
+    }
+  ADD_FAILURE() << "no station " << station;
+  return 0;
+}
+
+// True when the journal has an entry with this text in it.
+inline bool told(const runtime::Plant& plant, const std::string& text) {
+  for (const auto& entry : plant.journal().entries())
+    if (entry.text.find(text) != std::string::npos) return true;
+  return false;
+}
+
+inline constexpr runtime::Time ms(int64_t n) { return n * runtime::kMillisecond; }
+
+}  // namespace ipos::tests

@@ -1,0 +1,147 @@
+// Cam controllers (IPOSplus p. 86, 91).
+#include "runtime/positioning/cams.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace ipos::runtime {
+namespace {
+
+struct Variables {
+  std::array<int32_t, 512> h{};
+  CamSources sources;
+  void put(size_t first, std::initializer_list<int32_t> values) {
+    std::copy(values.begin(), values.end(), &h[first]);
+  }
+};
+
+TEST(StandardCam, SetsItsBitInsideItsWindows) {
+  for (const int32_t polarity : {0, 1}) {
+    Variables v;
+    // Source H511, no dead time, bit 3 of H481, two of four windows.
+    v.put(100, {511, 0, 481, 3, polarity, 2, 10, 20, 30, 40, 50, 60, 70, 80});
+    v.h[481] = 0b1'0001;
+    for (int32_t position = 0; position <= 100; ++position) {
+      v.h[511] = position;
+      ASSERT_TRUE(run_standard_cam(100, v.h, v.sources));
+      const bool inside = (position >= 10 && position <= 20) || (position >= 30 && position <= 40);
+      ASSERT_EQ(v.h[481], 0b1'0001 | (inside != (polarity == 1) ? 0b1000 : 0)) << position;
+    }
+  }
+}
+
+TEST(StandardCam, LeftMustBeBelowRight) {
+  Variables v;
+  v.put(100, {511, 0, 481, 0, 0, 2, 20, 10, 30, 30});
+  for (const int32_t position : {5, 15, 30}) {
+    v.h[511] = position;
+    run_standard_cam(100, v.h, v.sources);
+    EXPECT_EQ(v.h[481], 0);
+  }
+}
+
+// 0.1 ms a digit: at 50 increments a ms, 4 ms early are 200 increments.
+TEST(StandardCam, SwitchesEarly) {
+  Variables v;
+  v.put(100, {511, 40, 481, 0, 0, 1, 1'000, 2'000});
+  int32_t on = 0, off = 0;
+  for (int32_t position = 0; position < 3'000; position += 50) {
+    v.h[511] = position;
+    v.sources.tick(v.h);
+    run_standard_cam(100, v.h, v.sources);
+    if (v.h[481] == 1 && on == 0) on = position;
+    if (v.h[481] == 0 && on != 0 && off == 0) off = position;
+  }
+  EXPECT_EQ(on, 800);
+  EXPECT_EQ(off, 1'850);
+}
+
+TEST(StandardCam, RefusesWhatIsNoVariable) {
+  Variables v;
+  v.put(100, {512, 0, 481, 0, 0, 1, 0, 10});
+  EXPECT_FALSE(run_standard_cam(100, v.h, v.sources));
+  v.put(100, {511, 0, -1});
+  EXPECT_FALSE(run_standard_cam(100, v.h, v.sources));
+  EXPECT_FALSE(run_standard_cam(500, v.h, v.sources)) << "the structure ends behind the variables";
+}
+
+constexpr int32_t bits(uint32_t value) { return static_cast<int32_t>(value); }
+
+struct Extended : Variables {
+  static constexpr uint32_t kStructure = 100, kData = 130;
+
+  // Eight outputs; number n is on in n x 100 .. n x 100 + 50.
+  explicit Extended(uint32_t state, int32_t count = 8) {
+    put(kStructure, {bits(state), 0, 4, 0, 0, 0, 200, count});
+    for (int32_t n = 0; n < 8; ++n) {
+      const size_t data = kData + static_cast<size_t>(n) * 10;
+      h[kStructure + 8 + static_cast<size_t>(n)] = static_cast<int32_t>(data);
+      put(data, {0, 1, n * 100, n * 100 + 50});
+    }
+    EXPECT_TRUE(cams.start(kStructure, h, sources));
+  }
+  int32_t at(int32_t position, uint64_t ms = 0, bool referenced = true) {
+    h[511] = position;
+    EXPECT_TRUE(cams.tick(h, sources, {referenced, ms}));
+    return h[200];
+  }
+  ExtendedCams cams;
+};
+
+TEST(ExtendedCam, ShiftsItsOutputs) {
+  Extended cam(0x8000'0003);
+  cam.h[200] = bits(0xF000'000F);
+  EXPECT_EQ(cam.at(20), bits(0xF000'001F)) << "bits that are no outputs stay";
+  EXPECT_EQ(cam.at(320), bits(0xF000'008F));
+  EXPECT_EQ(cam.at(720), bits(0xF000'080F));
+  EXPECT_EQ(cam.at(70), bits(0xF000'000F));
+}
+
+TEST(ExtendedCam, States) {
+  Extended cam(0x8000'0002);
+  EXPECT_EQ(cam.at(20, 0, false), 0);
+  EXPECT_EQ(cam.at(20), 1 << 4);
+  cam.h[100] = bits(0x8000'0000);
+  EXPECT_EQ(cam.at(70), 1 << 4) << "inactive: the outputs keep their state";
+  cam.h[100] = bits(0x8000'0001);
+  EXPECT_EQ(cam.at(20), 0) << "all off";
+  cam.h[100] = 3;
+  EXPECT_EQ(cam.at(20), 0) << "without bit 31 nothing is done";
+  cam.h[100] = bits(0x8000'0003);
+  EXPECT_EQ(cam.at(20, 0, false), 1 << 4);
+}
+
+TEST(ExtendedCam, ForceOffWinsOverForceOn) {
+  Extended cam(0x8000'0003);
+  cam.h[103] = 0b110;
+  cam.h[104] = 0b011;
+  EXPECT_EQ(cam.at(20), 0b100 << 4);
+}
+
+TEST(ExtendedCam, FourOutputsAMillisecondTheOthersEveryFour) {
+  Extended cam(0x8000'0003);
+  cam.at(20, 0);
+  for (uint64_t ms = 1; ms < 4; ++ms) {
+    EXPECT_EQ(cam.at(120, ms), 1 << 5);
+    EXPECT_EQ(cam.at(520, ms), 0) << "output 5 waits";
+  }
+  EXPECT_EQ(cam.at(520, 4), 1 << 9);
+}
+
+TEST(ExtendedCam, SourcesAndDeadTime) {
+  Extended cam(0x8000'0003, 1);
+  cam.h[105] = 1;
+  cam.h[510] = 20;
+  EXPECT_EQ(cam.at(999), 1 << 4);
+  cam.h[105] = bits(0x8000'0000 + 300);
+  cam.h[300] = 60;
+  EXPECT_EQ(cam.at(999), 0);
+  cam.h[300] = 30;
+  EXPECT_EQ(cam.at(999), 1 << 4);
+  cam.h[105] = 3;  // the virtual encoder is not simulated
+  EXPECT_FALSE(cam.cams.tick(cam.h, cam.sources, {true, 0}));
+}
+
+}  // namespace
+}  // namespace ipos::runtime

@@ -1,0 +1,203 @@
+// ISYNC: a slave axis that follows the position of a master, first the path of the master alone, then two
+// drives with programs on an SBus.
+#include "runtime/positioning/follower.hpp"
+#include "tests/harness/proves.hpp"
+#include "tests/runtime/plan/plant_rig.hpp"
+
+namespace ipos::tests {
+namespace {
+
+constexpr int kCycle = 5;
+
+// The slave's way for a master that is at `master(t)` ms, told every kCycle ms.
+template <typename F>
+std::vector<double> followed(F master, int ms, int gear_master = 1, int gear_slave = 1) {
+  Follower follower;
+  std::vector<double> path;
+  int64_t way = 0;
+  for (int t = 0; t < ms; ++t) {
+    MasterInputs inputs;
+    inputs.sync = t % kCycle == 0;
+    inputs.position = wrapped(master(t));
+    inputs.gear_master = gear_master;
+    inputs.gear_slave = gear_slave;
+    follower.tick(inputs);
+    way += follower.step();
+    path.push_back(static_cast<double>(way) / static_cast<double>(kIncrement));
+  }
+  return path;
+}
+
+// From the third telegram on the line is the master's: what it moves in a millisecond the slave moves.
+TEST(Follower, ConstantSpeedIsFollowedWithoutLag) {
+  const auto master = [](int t) { return int64_t{40} * t; };
+  const std::vector<double> path = followed(master, 200);
+  const double offset = path[20] - 40.0 * 20;
+  for (size_t t = 20; t < path.size(); ++t)
+    ASSERT_NEAR(path[t], offset + 40.0 * static_cast<double>(t), 1e-3) << t;
+}
+
+TEST(Follower, RestsWhereTheMasterRestsAndNothingAddsUp) {
+  const auto master = [](int t) { return int64_t{t < 1000 ? t : 2000 - t} * (t < 2000 ? 7 : 0); };
+  const std::vector<double> path = followed(master, 2'200);
+  EXPECT_NEAR(path.back(), 0, 1e-6);
+  const std::vector<double> geared =
+      followed([](int t) { return int64_t{3} * std::min(t, 1000); }, 1'100, 3, -2);
+  EXPECT_NEAR(geared.back(), -2'000, 1e-3);
+}
+
+TEST(Follower, PassesTheEndOfTheRange) {
+  const auto master = [](int t) { return int64_t{INT32_MAX} - 1'000 + 10 * t; };
+  const std::vector<double> path = followed(master, 300);
+  for (size_t t = 20; t < path.size(); ++t) ASSERT_NEAR(path[t] - path[t - 1], 10, 1e-3) << t;
+}
+
+TEST(Follower, IsLostAfterThreeCycles) {
+  Follower follower;
+  MasterInputs inputs;
+  for (int t = 0; t < 11; ++t) {
+    inputs.sync = t % kCycle == 0;
+    inputs.position = 10 * t;
+    follower.tick(inputs);
+    EXPECT_EQ(follower.known(), t == 10) << t;
+  }
+  inputs.sync = false;
+  for (int t = 0; t < 14; ++t) {
+    follower.tick(inputs);
+    EXPECT_TRUE(follower.known()) << t;
+    EXPECT_NEAR(static_cast<double>(follower.step()) / static_cast<double>(kIncrement), 10, 1e-3);
+  }
+  follower.tick(inputs);
+  EXPECT_FALSE(follower.known());
+  EXPECT_EQ(follower.step(), 0);
+}
+
+constexpr const char* kMaster = R"(#include <constb.h>
+SCTRCYCL Send;
+main() {
+  Send.ObjectNo = 1100; Send.CycleTime = 5; Send.Format = 4; Send.DPointer = numof(ActPos_Mot);
+  _SBusCommDef(SCD_TRCYCL, Send);
+  _SBusCommOn();
+  _Wait(500);
+  _GoAbs(GO_WAIT, 200000);
+  _Wait(500);
+  _GoAbs(GO_WAIT, 0);
+}
+)";
+constexpr const char* kSlave = R"(#include <constb.h>
+SCREC Receive; long lMaster;
+main() {
+  Receive.ObjectNo = 1100; Receive.Format = 4; Receive.DPointer = numof(lMaster);
+  _SBusCommDef(SCD_REC, Receive);
+  _SBusCommOn();
+  SyncSource = numof(lMaster);
+  _Wait(START);
+  SyncControl = 1;
+}
+)";
+
+class Pair {
+ public:
+  explicit Pair(const std::string& start = "100", const std::string& slave = "", const std::string& more = "",
+                const std::string& technology = "2")
+      : rig(bus_text() + station("master", "P881 = 1\n") +
+                station("slave", "P881 = 2\nP077 = " + technology + "\n" + slave) +
+                "[[control]]\nname = \"clock\"\nsbus = \"sbus\"\nsync = 300\ncycle = \"5ms\"\n" + more,
+            {{"master.ipc", kMaster}, {"slave.ipc", with_start(start)}}, vm::Rates{{20, 20, 20}}) {}
+
+  void run(int ms) { rig.run_until(end += ms * kMillisecond); }
+  int32_t master(const char* name) { return rig.variable(0, name); }
+  int32_t slave(const char* name) { return rig.variable(1, name); }
+
+  static std::string with_start(const std::string& start) {
+    std::string text = kSlave;
+    return text.replace(text.find("START"), 5, start);
+  }
+  static std::string station(const std::string& name, const std::string& parameters) {
+    return station_text(name, "P700 = 13\nP885 = 300000\n" + parameters, "mdxb", name + ".ipc") +
+           "[station.inputs]\nDI00 = 1\nDI01 = 1\nDI03 = 1\n";
+  }
+
+  PlantRig rig;
+  Time end = 0;
+};
+
+// A ramp of the master up, down and back: never further away than what the master does in a cycle of the bus,
+// and never with a lag error of the slave's own of that size.
+TEST(Isync, SlaveFollowsWithinOneCycle) {
+  PROVES("MDB-TOC-22");
+  Pair pair;
+  pair.run(480);
+  EXPECT_EQ(pair.slave("H562"), 2);
+  constexpr int kOneCycle = 512;  // 1500 rpm are 102.4 increments a millisecond
+  int fastest = 0, before = 0, behind = 0, own_lag = 0;
+  for (int t = 480; t < 6'500; ++t) {
+    pair.run(1);
+    const int32_t master = pair.master("H511");
+    fastest = std::max(fastest, std::abs(master - before));
+    before = master;
+    behind = std::max(behind, std::abs(master - pair.slave("H511")));
+    own_lag = std::max(own_lag, std::abs(pair.slave("H495")));
+    ASSERT_LT(std::abs(master - pair.slave("H511")), kOneCycle) << t << " ms";
+    ASSERT_EQ(pair.slave("H562"), 2) << t << " ms";
+    if (t == 3'300) {
+      EXPECT_EQ(master, 200'000);
+      EXPECT_EQ(pair.slave("H511"), 200'000);
+    }
+  }
+  EXPECT_GE(fastest, 102) << "the master was as fast as it may be";
+  EXPECT_LT(own_lag, kOneCycle);
+  EXPECT_EQ(pair.slave("H511"), 0);
+  RecordProperty("furthest_behind", behind);
+}
+
+// Coupled to a running master: up to its speed on the ramp P911, and what was lost stays lost.
+TEST(Isync, CouplesOnTheRamp) {
+  Pair pair("1200", "P911 = 500\n");
+  pair.run(1'199);
+  EXPECT_EQ(pair.slave("H511"), 0);
+  pair.run(3);
+  EXPECT_EQ(pair.slave("H562"), 1);
+  pair.run(258);  // 1500 rpm take 250 ms
+  EXPECT_EQ(pair.slave("H562"), 2);
+  const int32_t lost = pair.master("H511") - pair.slave("H511");
+  pair.run(1'800);  // until 3260 ms: the travel ends at 2953 ms, the next one begins at 3430 ms
+  EXPECT_NEAR(pair.master("H511") - pair.slave("H511"), lost, 110) << "the master has stopped";
+  EXPECT_EQ(pair.master("H511"), 200'000);
+}
+
+TEST(Isync, OnlyWithTheTechnologyFunction) {
+  Pair pair("100", "", "", "0");
+  pair.run(3'000);
+  EXPECT_EQ(pair.slave("H562"), 0);
+  EXPECT_EQ(pair.slave("H511"), 0);
+}
+
+// Without sync telegrams the axis stops on P912 and says why; H492 is where that ends.
+TEST(Isync, LosesTheMaster) {
+  Pair pair("100", "P912 = 800\n", fault_text("cut", "station = \"slave\"\nfrom = \"1200ms\"\n"));
+  pair.run(1'190);
+  EXPECT_EQ(pair.slave("H562"), 2);
+  pair.run(40);
+  EXPECT_EQ(pair.slave("H562"), 0);
+  pair.run(450);  // 1500 rpm in 400 ms
+  const int32_t place = pair.slave("H511");
+  EXPECT_EQ(place, pair.slave("H492"));
+  pair.run(500);
+  EXPECT_EQ(pair.slave("H511"), place);
+  const auto& entries = pair.rig.get().journal().entries();
+  EXPECT_TRUE(std::any_of(entries.begin(), entries.end(), [](const JournalEntry& entry) {
+    return entry.text.find("no sync telegram for three cycles") != std::string::npos;
+  }));
+}
+
+TEST(Isync, StopsAtASoftwareLimitSwitch) {
+  Pair pair("100", "P903 = 5\nP920 = 50000\nP921 = -50000\nP941 = 2\n");
+  pair.run(4'000);
+  EXPECT_EQ(pair.slave("H562"), 0);
+  EXPECT_GT(pair.slave("H509"), 50'000);
+  EXPECT_LT(pair.slave("H509"), 50'000 + 25'600 + 200) << "1500 rpm on P912 of 1 s for 3000 rpm";
+}
+
+}  // namespace
+}  // namespace ipos::tests

@@ -1,0 +1,152 @@
+// The modulo function (IPOSplus p. 29, 76, 81).
+#include <gtest/gtest.h>
+
+#include "runtime/positioning/modulo.hpp"
+#include "tests/runtime/positioning/rig.hpp"
+
+namespace ipos::tests {
+namespace {
+
+using runtime::Modulo;
+
+// A turn of the output is 10 turns of the motor: 40960 increments.
+struct ModuloRig : Rig {
+  explicit ModuloRig(int32_t mode, Settings more = {})
+      : Rig({{"960", mode}, {"961", 10}, {"962", 1}, {"963", 4096}, {"911", 300}, {"912", 300}}) {
+    for (const auto& [number, value] : more) set(number, value);
+    run(2);
+  }
+  // Increments travelled for this target.
+  int64_t travel(int32_t target) {
+    const int64_t from = mechanical;
+    h[454] = target;
+    run(1);
+    run_to_target();
+    return mechanical - from;
+  }
+};
+
+TEST(Modulo, ShortestWay) {
+  ModuloRig rig(1);
+  EXPECT_EQ(rig.travel(0x4000), 10'240);  // to 90 degrees
+  EXPECT_EQ(rig.h[455], 0x4000);
+  EXPECT_EQ(rig.travel(0xF000), -12'800);  // back through 0
+  EXPECT_EQ(rig.h[455], 0xF000);
+  EXPECT_EQ(rig.h[456], -1);
+  EXPECT_EQ(rig.travel(0x7000), 20'480);       // half a turn: CW
+  EXPECT_EQ(rig.travel(0x30000 + 0x7000), 0);  // full turns do not count
+}
+
+TEST(Modulo, OneWayOnly) {
+  ModuloRig cw(2);
+  EXPECT_EQ(cw.travel(0x4000), 10'240);
+  EXPECT_EQ(cw.travel(0), 30'720);
+  EXPECT_EQ(cw.h[456], 1);
+  EXPECT_EQ(cw.travel(0x10000), 40'960);  // a turn
+  EXPECT_EQ(cw.h[454], 0) << "the full turns are taken when the travel begins";
+  EXPECT_EQ(cw.travel(0x10000), 40'960);  // and another one
+  EXPECT_EQ(cw.travel(0x30000 + 0x8000), 3 * 40'960 + 20'480);
+  ModuloRig ccw(3);
+  EXPECT_EQ(ccw.travel(0x4000), -30'720);
+  EXPECT_EQ(ccw.travel(0x10000 + 0x4000), -40'960);
+  EXPECT_EQ(ccw.travel(0), -10'240);
+}
+
+TEST(Modulo, OneWayOnlyWhileMoving) {
+  ModuloRig rig(2);
+  rig.h[454] = 0x8000;
+  rig.run(200);
+  ASSERT_GT(rig.drive.axis().speed, 100'000);
+  // Just passed: it goes round, never back.
+  rig.h[454] = rig.h[455] + 16;
+  while (!rig.arrived()) {
+    rig.tick();
+    ASSERT_GE(rig.drive.axis().speed, -20'000);
+  }
+  EXPECT_GT(rig.mechanical, 40'960);
+}
+
+// IPOSplus p. 81: the example of a gear ratio 113553 / 1088 with 4096 increments.
+TEST(Modulo, AGearWithoutWholeIncrements) {
+  ModuloRig rig(2, {{"961", 113'553}, {"962", 1'088}});
+  const double turn = 113'553.0 * 4'096 / 1'088;
+  EXPECT_NEAR(static_cast<double>(rig.travel(0x8000)), turn / 2, 1);
+  for (int n = 1; n <= 5; ++n) {
+    rig.travel(0x10000 + 0x8000);
+    EXPECT_NEAR(static_cast<double>(rig.mechanical), (n + 0.5) * turn, 1) << "nothing drifts";
+    EXPECT_NEAR(rig.h[455], 0x8000, 1);
+    EXPECT_EQ(rig.h[456], n);
+  }
+}
+
+TEST(Modulo, HighResolution) {
+  ModuloRig rig(2, {{"962", 4}});
+  rig.h[453] = 2;
+  rig.run(2);
+  EXPECT_EQ(rig.travel(20'480), 5'120);  // half of 10 x 4096 units, 4 of them an increment
+  EXPECT_EQ(rig.h[455], 20'480);
+  EXPECT_EQ(rig.travel(40'960 + 20'480), 0) << "no several turns (IPOSplus p. 29)";
+}
+
+TEST(Modulo, TooFineATurnIsOff) {
+  Rig rig({{"960", 1}, {"961", 1'000'000}, {"963", 4'096}});
+  EXPECT_EQ(rig.h[455], 0);
+  EXPECT_TRUE(rig.said("2^31"));
+}
+
+TEST(Modulo, WithoutItTheTargetIsRefused) {
+  Rig rig;
+  rig.h[454] = 0x8000;
+  rig.run(100);
+  EXPECT_EQ(rig.h[511], 0);
+  EXPECT_TRUE(rig.said("H454"));
+}
+
+// IPOSplus p. 29: H453 bit 0.
+TEST(Modulo, InterruptedTheTargetIsDroppedOrKept) {
+  ModuloRig rig(2);
+  rig.h[454] = 0xC000;
+  rig.run(250);
+  rig.drive.set_inputs(0b0011);
+  rig.run(3000);
+  EXPECT_TRUE(rig.drive.axis().standing);
+  EXPECT_EQ(rig.h[454], rig.h[455]);
+  rig.drive.set_inputs(kEnabled);
+  const int64_t at = rig.mechanical;
+  rig.run(1000);
+  EXPECT_EQ(rig.mechanical, at);
+
+  ModuloRig kept(2);
+  kept.h[453] = 1;
+  kept.h[454] = 0xC000;
+  kept.run(250);
+  kept.drive.set_inputs(0b0011);
+  kept.run(3000);
+  EXPECT_EQ(kept.h[454], 0xC000);
+  kept.drive.set_inputs(kEnabled);
+  kept.run_to_target();
+  EXPECT_EQ(kept.h[455], 0xC000);
+}
+
+// An endless axis passes the end of the 32-bit count.
+TEST(Modulo, TurnsForEver) {
+  ModuloRig rig(2, {{"903", 5}, {"900", INT32_MAX - 60'000}});
+  rig.positioner().start_reference(false, false);
+  rig.run(2);
+  const int32_t start = rig.h[455];
+  EXPECT_EQ(rig.travel(0x30000 + start), 3 * 40'960);
+  EXPECT_LT(rig.h[511], 0);
+  EXPECT_EQ(rig.travel(0x30000 + start), 3 * 40'960);
+  EXPECT_EQ(rig.drive.fault(), 0);
+}
+
+TEST(Modulo, CountOfTurnsCanBeSet) {
+  ModuloRig rig(2);
+  rig.h[456] = 7;
+  rig.run(2);
+  rig.travel(0x10000);
+  EXPECT_EQ(rig.h[456], 8);
+}
+
+}  // namespace
+}  // namespace ipos::tests

@@ -1,0 +1,251 @@
+// The ramp generator against the closed form, and what it does when an order changes on the way.
+#include "runtime/positioning/profile.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "runtime/positioning/settings.hpp"
+#include "tests/runtime/positioning/closed_form.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+using tests::ClosedForm;
+
+TravelRules rules(int32_t rpm, int32_t up_ms, int32_t down_ms, RampShape shape = RampShape::Linear) {
+  PositioningSettings settings;
+  settings.speed_cw = settings.speed_ccw = rpm * 1000;
+  settings.maximum_speed = 5'500'000;
+  settings.ramp_up = up_ms;
+  settings.ramp_down = down_ms;
+  settings.ramp_shape = static_cast<int32_t>(shape);
+  return settings.travel_rules(1000);
+}
+
+struct Job {
+  int64_t from, to;
+  int32_t rpm, up_ms, down_ms;
+};
+
+// Trapezoids and triangles, both ways, at three speeds, with equal and unequal ramps.
+std::vector<Job> jobs() {
+  std::vector<Job> all;
+  for (const int64_t way : {400'000, 2'000})  // trapezoid, triangle
+    for (const int32_t rpm : {300, 1500, 4500})
+      for (const auto& [up, down] : {std::pair{1000, 1000}, std::pair{200, 700}, std::pair{1500, 90}})
+        for (const int sign : {1, -1}) all.push_back({-5000, -5000 + sign * way, rpm, up, down});
+  return all;
+}
+
+using Way = std::function<double(const ClosedForm&, double)>;
+
+// Every millisecond is where the closed form is; the end comes within one tick, exactly at the target, at
+// rest.
+void compare(const Job& job, RampShape shape, const Way& way) {
+  SCOPED_TRACE(testing::Message() << job.from << " to " << job.to << " at " << job.rpm << " rpm, ramps "
+                                  << job.up_ms << " and " << job.down_ms << " ms");
+  const ClosedForm form(static_cast<double>(job.to - job.from), job.rpm, job.up_ms, job.down_ms);
+  Profile profile;
+  profile.hold(fine(job.from), 0);
+  profile.travel(job.to, rules(job.rpm, job.up_ms, job.down_ms, shape), Goal::New);
+  const int sign = job.to > job.from ? 1 : -1;
+  int ticks = 0;
+  while (!profile.at_rest() && ticks < 100'000) {
+    profile.tick();
+    ++ticks;
+    const double expected = static_cast<double>(job.from) + sign * way(form, ticks);
+    ASSERT_NEAR(static_cast<double>(profile.position()) / kIncrement, expected, 0.01)
+        << "after " << ticks << " ms";
+  }
+  EXPECT_GE(ticks, form.duration() - 1e-6);
+  EXPECT_LT(ticks, form.duration() + 1);
+  EXPECT_EQ(profile.position(), fine(job.to));
+  EXPECT_EQ(profile.speed(), 0);
+}
+
+TEST(Profile, LinearIsTheClosedForm) {
+  int trapezoids = 0, triangles = 0;
+  for (const Job& job : jobs()) {
+    compare(job, RampShape::Linear, &ClosedForm::linear);
+    const ClosedForm form(static_cast<double>(job.to - job.from), job.rpm, job.up_ms, job.down_ms);
+    ++(form.triangle() ? triangles : trapezoids);
+  }
+  EXPECT_GE(trapezoids, 12);
+  EXPECT_GE(triangles, 12);
+}
+
+TEST(Profile, SineIsTheClosedForm) {
+  for (const Job& job : jobs()) compare(job, RampShape::Sine, &ClosedForm::sine);
+}
+
+TEST(Profile, SquaredIsTheClosedForm) {
+  for (const Job& job : jobs()) compare(job, RampShape::Squared, &ClosedForm::squared);
+}
+
+// The numbers of a travel that can be checked by head: 2^18 increments are 64 turns; 3000 rpm are 50 turns a
+// second, reached within 1 s over 25 turns.
+TEST(Profile, ByHead) {
+  Profile profile;
+  profile.travel(64 * 4096, rules(3000, 1000, 1000), Goal::New);
+  const auto at = [&](int ms) {
+    Profile copy = profile;
+    for (int n = 0; n < ms; ++n) copy.tick();
+    return copy;
+  };
+  EXPECT_EQ(whole(at(1000).position()), 25 * 4096);
+  EXPECT_EQ(speed_of_rate(at(1000).speed(), {}), 3'000'000);
+  EXPECT_EQ(whole(at(1280).position()), 39 * 4096);  // 14 turns at 50 turns a second
+  EXPECT_FALSE(at(2279).at_rest());
+  EXPECT_TRUE(at(2280).at_rest());
+  EXPECT_EQ(at(2280).position(), fine(64 * 4096));
+}
+
+TEST(Profile, FromOneEndOfTheRangeToTheOther) {
+  Profile profile;
+  profile.hold(fine(INT32_MIN), 0);
+  profile.travel(INT32_MAX, rules(5000, 10, 10), Goal::New);
+  const ClosedForm form(4294967295.0, 5000, 10, 10);
+  const auto ticks = static_cast<int64_t>(std::ceil(form.duration()));
+  for (int64_t n = 0; n < ticks; ++n) profile.tick();
+  EXPECT_TRUE(profile.at_rest());
+  EXPECT_EQ(profile.position(), fine(INT32_MAX));
+}
+
+struct Journey {
+  int64_t highest = INT64_MIN, lowest = INT64_MAX;
+  int ticks = 0;
+};
+
+Journey run_out(Profile& profile) {
+  Journey run;
+  while (!profile.at_rest() && run.ticks < 1'000'000) {
+    profile.tick();
+    ++run.ticks;
+    run.highest = std::max(run.highest, profile.position());
+    run.lowest = std::min(run.lowest, profile.position());
+  }
+  return run;
+}
+
+TEST(Profile, TargetFurtherAheadIsReachedWithoutAStop) {
+  for (const auto shape : {RampShape::Linear, RampShape::Sine, RampShape::Squared}) {
+    Profile profile;
+    const TravelRules r = rules(1500, 500, 500, shape);
+    profile.travel(100'000, r, Goal::New);
+    for (int n = 0; n < 700; ++n) profile.tick();
+    profile.travel(200'000, r, Goal::New);
+    const Journey run = run_out(profile);
+    EXPECT_EQ(run.highest, fine(200'000));
+    // At full speed already: the whole travel takes as long as one to 200000 from the start.
+    EXPECT_NEAR(700 + run.ticks, ClosedForm(200'000, 1500, 500, 500).duration(), 1.01);
+  }
+}
+
+// In the braking ramp, at any time, the same target again or one further away: it is never passed.
+TEST(Profile, NoOvershootThatNeedNotBe) {
+  for (const auto shape : {RampShape::Linear, RampShape::Sine, RampShape::Squared})
+    for (const int64_t further : {0, 1, 10, 1000})
+      for (int at = 1; at < 1200; at += 7) {
+        Profile profile;
+        const TravelRules r = rules(1500, 700, 900, shape);
+        profile.travel(50'000, r, Goal::New);
+        for (int n = 0; n < at; ++n) profile.tick();
+        profile.travel(50'000 + further, r, Goal::New);
+        const Journey run = run_out(profile);
+        ASSERT_LE(run.highest, fine(50'000 + further)) << "after " << at << " ms, " << further << " further";
+        ASSERT_EQ(profile.position(), fine(50'000 + further));
+      }
+}
+
+// A target behind the axis, or too near: it brakes on the ramp, in the shortest way, and comes back.
+TEST(Profile, TargetTooNearIsPassedByTheBrakingWay) {
+  Profile profile;
+  const TravelRules r = rules(1500, 1000, 1000);
+  profile.travel(1'000'000, r, Goal::New);
+  for (int n = 0; n < 1000; ++n) profile.tick();  // 25600 after 500 ms, then 102.4 a ms
+  const int64_t now = 25'600 + 51'200;
+  ASSERT_EQ(whole(profile.position()), now);
+  profile.travel(now + 100, r, Goal::New);
+  const Journey run = run_out(profile);
+  EXPECT_NEAR(static_cast<double>(run.highest) / kIncrement, static_cast<double>(now + 25'600), 1);
+  EXPECT_EQ(profile.position(), fine(now + 100));
+  EXPECT_NEAR(run.ticks, 500 + ClosedForm(25'500, 1500, 1000, 1000).duration(), 1.01);
+}
+
+// A longer ramp in the middle of braking does not push the axis past its target.
+TEST(Profile, OtherRampOnTheWayKeepsTheTarget) {
+  for (int at = 600; at < 900; at += 3) {
+    Profile profile;
+    profile.travel(50'000, rules(1500, 500, 500), Goal::New);
+    for (int n = 0; n < at; ++n) profile.tick();
+    profile.travel(50'000, rules(1500, 500, 5000), Goal::Kept);
+    const Journey run = run_out(profile);
+    ASSERT_LE(run.highest, fine(50'000)) << at;
+    ASSERT_EQ(profile.position(), fine(50'000));
+  }
+}
+
+TEST(Profile, OtherSpeedOnTheWay) {
+  Profile profile;
+  profile.travel(400'000, rules(1500, 1000, 1000), Goal::New);
+  for (int n = 0; n < 1000; ++n) profile.tick();
+  profile.travel(400'000, rules(600, 1000, 1000), Goal::Kept);
+  for (int n = 0; n < 299; ++n) profile.tick();
+  EXPECT_GT(speed_of_rate(profile.speed(), {}), 600'000);
+  for (int n = 0; n < 2; ++n) profile.tick();  // 900 rpm less take 300 ms
+  EXPECT_EQ(speed_of_rate(profile.speed(), {}), 600'000);
+  profile.travel(400'000, rules(3000, 1000, 1000), Goal::Kept);
+  for (int n = 0; n < 400; ++n) profile.tick();
+  EXPECT_NEAR(static_cast<double>(speed_of_rate(profile.speed(), {})), 1'800'000, 1);
+  run_out(profile);
+  EXPECT_EQ(profile.position(), fine(400'000));
+}
+
+TEST(Profile, WithoutSpeedThereIsNoTravel) {
+  Profile profile;
+  profile.travel(1000, rules(0, 1000, 1000), Goal::New);
+  profile.tick();
+  EXPECT_EQ(profile.position(), 0);
+  profile.travel(1000, rules(10, 1000, 1000), Goal::Kept);
+  run_out(profile);
+  EXPECT_EQ(profile.position(), fine(1000));
+}
+
+TEST(Profile, StopEndsAtTheNextIncrementInReach) {
+  Profile profile;
+  const TravelRules r = rules(1500, 1000, 1000);
+  profile.run(-1, r);
+  for (int n = 0; n < 500; ++n) profile.tick();
+  EXPECT_EQ(whole(profile.position()), -25'600);
+  EXPECT_EQ(profile.stop_position(r), -51'200);
+  for (int n = 0; n < 123; ++n) profile.tick();
+  const int64_t end = profile.stop_position(r);
+  profile.stop(r);
+  const Journey run = run_out(profile);
+  EXPECT_EQ(run.lowest, fine(end));
+  EXPECT_EQ(profile.position(), fine(end));
+  EXPECT_NEAR(run.ticks, 500, 1);
+}
+
+TEST(RampShapes, AreSymmetric) {
+  for (const auto shape : {RampShape::Linear, RampShape::Sine, RampShape::Squared}) {
+    EXPECT_EQ(speed_share(shape, 0), 0);
+    EXPECT_EQ(speed_share(shape, kWholeShare), kWholeShare);
+    EXPECT_EQ(distance_share(shape, 0), 0);
+    EXPECT_EQ(distance_share(shape, kWholeShare), kWholeShare / 2);
+    for (int64_t t = 0; t <= kWholeShare; t += kWholeShare / 997) {
+      EXPECT_NEAR(static_cast<double>(speed_share(shape, t) + speed_share(shape, kWholeShare - t)),
+                  static_cast<double>(kWholeShare), 2);
+      const double x = static_cast<double>(t) / kWholeShare;
+      const double speed = shape == RampShape::Linear ? x
+                           : shape == RampShape::Sine ? (1 - std::cos(M_PI * x)) / 2
+                           : x < 0.5                  ? 2 * x * x
+                                                      : 1 - 2 * (1 - x) * (1 - x);
+      EXPECT_NEAR(static_cast<double>(speed_share(shape, t)) / kWholeShare, speed, 1e-8);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ipos::runtime

@@ -1,0 +1,85 @@
+// ipos bus monitor: the telegrams of a port or a log in words, as they come.
+#include <fmt/format.h>
+
+#include "runtime/bus/rs485/timing.hpp"
+#include "runtime/plant/plant_file.hpp"
+#include "tools/bus_verbs.hpp"
+#include "tools/failure.hpp"
+#include "tools/interrupt.hpp"
+#include "tools/monitor_sources.hpp"
+
+namespace ipos::tools {
+namespace {
+
+constexpr uint32_t kCanBaud = 500'000;  // factory setting of P816 (1053 1610 p. 41)
+
+struct MonitorFlags {
+  std::string source;
+  std::string names;
+  std::vector<std::string> stations;
+  uint64_t count = 0;
+  std::string duration;
+  uint32_t baud = 0;
+  bool follow = false;
+  CompileFlags compile;
+};
+
+runtime::StationFilter filter_of(const MonitorFlags& flags, const runtime::TelegramNames& names) {
+  runtime::StationFilter filter;
+  for (const std::string& station : flags.stations)
+    if (!filter.add(names, station))
+      throw Failure(kUsage, fmt::format("--station {}: {} has no such station, and it is no address", station,
+                                        flags.names.empty() ? "nothing known" : flags.names));
+  return filter;
+}
+
+int monitor(const MonitorFlags& flags) {
+  const MonitorSource source = monitor_source(flags.source);
+  if (flags.follow && source != MonitorSource::Log)
+    throw Failure(kUsage, "--follow is for logs: a port is followed anyway");
+  if (flags.follow && flags.source == "-")
+    throw Failure(kUsage, "--follow is for files: standard input is read as it comes");
+  if (flags.baud != 0 && source == MonitorSource::Log)
+    throw Failure(kUsage, "--baud is for ports: a log has none");
+  const runtime::Time duration =
+      flags.duration.empty() ? runtime::kNever : runtime::parse_duration(flags.duration);
+  const runtime::TelegramNames names = source == MonitorSource::Serial
+                                           ? serial_names_of(flags.names, flags.compile)
+                                           : names_of(flags.names, flags.compile);
+  Monitor view(names, filter_of(flags, names), flags.count);
+  catch_interrupts();
+  switch (source) {
+    case MonitorSource::Can:
+      return monitor_can(view, flags.source, flags.baud == 0 ? kCanBaud : flags.baud, duration);
+    case MonitorSource::Serial:
+      return monitor_serial(view, flags.source, flags.baud == 0 ? runtime::kSerialBaudRates[0] : flags.baud,
+                            duration);
+    case MonitorSource::Log: break;
+  }
+  return monitor_log(view, flags.source, flags.follow, duration);
+}
+
+}  // namespace
+
+void add_bus_monitor(CLI::App& bus, int& exit_code) {
+  auto flags = std::make_shared<MonitorFlags>();
+  CLI::App* verb = bus.add_subcommand("monitor", "telegrams of a port or a log in words and units, live");
+  verb->add_option("PORT|LOG", flags->source,
+                   "can0, slcan:/dev/ttyACM0, slcan:pty:/path, /dev/ttyUSB0, pty:/path, a candump log, or -")
+      ->required();
+  add_names_option(*verb, flags->names);
+  verb->add_option("--station", flags->stations, "only telegrams of this station, by name or address")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  verb->add_option("--count", flags->count, "end after so many telegrams shown")
+      ->check(CLI::Range(uint64_t{1}, UINT64_MAX));
+  verb->add_option("--for", flags->duration, "end after this time, for example 10s")
+      ->check(CLI::Validator(check_time, "TIME"));
+  verb->add_option("--baud", flags->baud, "of the port; default 500000, of a serial line 9600");
+  verb->add_flag("--follow,-f", flags->follow, "wait for more at the end of a log");
+  add_compile_options(*verb, flags->compile);
+  verb->footer("Example:\n  ipos bus monitor can0 --plant examples/scom/scom.toml --station unit1");
+  verb->callback([flags, &exit_code] { exit_code = monitor(*flags); });
+}
+
+}  // namespace ipos::tools

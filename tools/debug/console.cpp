@@ -1,0 +1,232 @@
+// The words, running, and what is said at a stop.
+#include "tools/debug/console.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+namespace ipos::tools::debug {
+
+struct Console::Command {
+  std::string_view name, alias, arguments, meaning;
+  void (*run)(Console&, const std::string&);
+};
+
+const std::vector<Console::Command>& Console::commands() {
+  using C = Console;
+  using S = std::string;
+  static const std::vector<Command> kCommands = {
+      {"break", "b", "LINE|FILE:LINE|FUNCTION|*ADDRESS [if EXPR]", "stop there; UNIT@... at another station",
+       [](C& c, const S& a) { c.breakpoint(a, false); }},
+      {"tbreak", "tb", "as break", "stop there once", [](C& c, const S& a) { c.breakpoint(a, true); }},
+      {"dprintf", "", "PLACE,TEXT", "print TEXT there, {EXPR} with values, and go on",
+       [](C& c, const S& a) { c.logpoint(a); }},
+      {"watch", "", "VALUE [if EXPR]", "stop behind changes of a variable, parameter, input or output",
+       [](C& c, const S& a) { c.watch(a); }},
+      {"condition", "", "N [EXPR]", "change the condition of a breakpoint",
+       [](C& c, const S& a) { c.condition(a); }},
+      {"hits", "", "N [COUNT|>= N|% N]", "stop only at such hits", [](C& c, const S& a) { c.hits(a); }},
+      {"delete", "d", "[N...]", "remove breakpoints, all or some", [](C& c, const S& a) { c.remove(a); }},
+      {"enable", "", "[N...]", "", [](C& c, const S& a) { c.enable(a, true); }},
+      {"disable", "", "[N...]", "", [](C& c, const S& a) { c.enable(a, false); }},
+      {"continue", "c", "", "run on", [](C& c, const S& a) { c.go(Motion::Continue, false, a); }},
+      {"step", "s", "[N]", "to the next line, into functions",
+       [](C& c, const S& a) { c.go(Motion::Into, false, a); }},
+      {"next", "n", "[N]", "to the next line, over functions",
+       [](C& c, const S& a) { c.go(Motion::Over, false, a); }},
+      {"stepi", "si", "[N]", "one command of the task",
+       [](C& c, const S& a) { c.go(Motion::Instruction, false, a); }},
+      {"nexti", "ni", "[N]", "one command, over calls",
+       [](C& c, const S& a) { c.go(Motion::InstructionOver, false, a); }},
+      {"finish", "", "", "to the end of the function", [](C& c, const S& a) { c.go(Motion::Out, false, a); }},
+      {"until", "u", "LINE|PLACE|TIME", "to a place, or a time such as 1.5s",
+       [](C& c, const S& a) { c.until(a); }},
+      {"reverse-continue", "rc", "", "back to the last stop",
+       [](C& c, const S& a) { c.go(Motion::Continue, true, a); }},
+      {"reverse-step", "rs", "[N]", "back to the line before, into functions",
+       [](C& c, const S& a) { c.go(Motion::Into, true, a); }},
+      {"reverse-next", "rn", "[N]", "back to the line before, over functions",
+       [](C& c, const S& a) { c.go(Motion::Over, true, a); }},
+      {"reverse-stepi", "rsi", "[N]", "one command back",
+       [](C& c, const S& a) { c.go(Motion::Instruction, true, a); }},
+      {"reverse-finish", "", "", "back to the call of the function",
+       [](C& c, const S& a) { c.go(Motion::Out, true, a); }},
+      {"backtrace", "bt", "", "the calls", [](C& c, const S&) { c.backtrace(); }},
+      {"list", "l", "[LINE]", "source lines", [](C& c, const S& a) { c.list(a); }},
+      {"print", "p", "[/x] EXPR", "a value, a structure, an array", [](C& c, const S& a) { c.print(a); }},
+      {"x", "", "[/N[i|x|d]] VARIABLE|ADDRESS", "variables in a row, or commands",
+       [](C& c, const S& a) { c.examine(a); }},
+      {"set", "", "VALUE = EXPR", "write a variable, parameter or input", [](C& c, const S& a) { c.set(a); }},
+      {"disassemble", "disas", "[FUNCTION|ADDRESS]", "the commands around",
+       [](C& c, const S& a) { c.disassemble(a); }},
+      {"info", "i", "tasks|sbus|breakpoints|io|snapshots", "", [](C& c, const S& a) { c.info(a); }},
+      {"task", "", "[UNIT] N", "look at another task", [](C& c, const S& a) { c.select_task(a); }},
+      {"help", "h", "", "", [](C& c, const S&) { c.help(); }},
+      {"quit", "q", "", "", [](C& c, const S&) { c.over_ = true; }},
+  };
+  return kCommands;
+}
+
+// By name, alias, or the beginning of only one name.
+const Console::Command* Console::find(std::string_view word) {
+  const Command* found = nullptr;
+  for (const Command& command : commands()) {
+    if (command.name == word || (!command.alias.empty() && command.alias == word)) return &command;
+    if (!command.name.starts_with(word)) continue;
+    if (found != nullptr) throw ValueError(fmt::format("'{}' is {} or {}", word, found->name, command.name));
+    found = &command;
+  }
+  return found;
+}
+
+void Console::attach(Debugger& debugger) {
+  debugger_ = &debugger;
+  const std::vector<TaskRef> tasks = debugger.tasks();
+  if (!tasks.empty()) current_ = tasks.front();
+}
+
+bool Console::execute(const std::string& line) {
+  size_t begin = line.find_first_not_of(" \t\r");
+  if (begin != std::string::npos && line[begin] == '#') return true;
+  const std::string text = begin == std::string::npos ? last_line_ : line.substr(begin);
+  last_line_ = text;
+  if (text.empty()) return true;
+  const size_t end = std::min(text.find_first_of(" \t/"), text.size());
+  const std::string word = text.substr(0, end);
+  std::string arguments = text.substr(end);
+  arguments.erase(0, arguments.find_first_not_of(" \t"));
+  arguments.erase(arguments.find_last_not_of(" \t\r") + 1);
+  try {
+    const Command* command = find(word);
+    if (command == nullptr) throw ValueError(fmt::format("'{}' is no command; see help", word));
+    command->run(*this, arguments);
+  } catch (const ValueError& error) {
+    print_(fmt::format("{}\n", error.what()));
+  }
+  return !over_;
+}
+
+void Console::go(Motion motion, bool backward, const std::string& count) {
+  int times = 1;
+  if (!count.empty() &&
+      (std::from_chars(count.data(), count.data() + count.size(), times).ec != std::errc() || times < 1))
+    throw ValueError(fmt::format("'{}' is no count", count));
+  if (motion != Motion::Continue && current_.task == 0) throw ValueError("no task runs");
+  if (backward && times != 1) throw ValueError("one step back at a time");
+  more_ = times - 1;
+  run(debugger_->order_for(motion, current_, backward));
+}
+
+// Behind Debugger::run another process may go on, which knows nothing of locals: only members are used.
+void Console::run(const Order& order) {
+  motion_ = order.motion;
+  Stop stop = debugger_->run(order);
+  while (more_ > 0 && stop.reason == Reason::Step) {
+    --more_;
+    stop = debugger_->run(debugger_->order_for(motion_, current_));
+  }
+  more_ = 0;
+  show_stop(stop);
+}
+
+void Console::show_journal() {
+  const auto& entries = debugger_->plant().journal().entries();
+  for (; told_ < entries.size(); ++told_)
+    if (entries[told_].weight != runtime::Weight::Why)
+      print_(fmt::format("{:.3f} ms {}: {}\n", static_cast<double>(entries[told_].time) / 1e6,
+                         entries[told_].station.empty() ? "plant" : entries[told_].station,
+                         entries[told_].text));
+}
+
+void Console::show_stop(const Stop& stop) {
+  show_journal();
+  if (stop.task.task != 0 && stop.task != current_) {
+    current_ = stop.task;
+    print_(fmt::format("[now {}]\n", debugger_->task_name(current_)));
+  }
+  listed_ = 0;
+  std::string ids;
+  for (const int id : stop.ids) ids += fmt::format("{}{}", ids.empty() ? "" : ", ", id);
+  switch (stop.reason) {
+    case Reason::Breakpoint: print_(fmt::format("Breakpoint {}\n", ids)); break;
+    case Reason::Data: print_(fmt::format("Watchpoint {}: {}\n", ids, stop.text)); break;
+    case Reason::Pause: print_("Interrupted\n"); break;
+    case Reason::Entry:
+    case Reason::Step: break;
+    case Reason::Fault:
+    case Reason::TaskEnded:
+    case Reason::AllEnded:
+    case Reason::Limit:
+    case Reason::Beginning: print_(stop.text + "\n"); break;
+  }
+  show_place();
+}
+
+TaskRef Console::task_with_frames() const {
+  if (current_.task == 0) throw ValueError("the plant has no program");
+  return current_;
+}
+
+void Console::show_place() {
+  const Position& at = debugger_->position();
+  const std::string when =
+      fmt::format("{:.3f} ms, {} commands", static_cast<double>(at.time) / 1e6, at.commands);
+  if (current_.task == 0) return print_(fmt::format("at {}\n", when));
+  const std::vector<Frame> frames = debugger_->frames(current_);
+  if (frames.empty())
+    return print_(fmt::format("{} is stopped at {}\n", debugger_->task_name(current_), when));
+  const Frame& frame = frames.front();
+  print_(fmt::format("{}, {} at {} ({})\n", debugger_->task_name(current_),
+                     frame.function.empty() ? fmt::format("word {}", frame.address) : frame.function,
+                     frame.place.line == 0 ? fmt::format("word {}", frame.address) : frame.place.text(),
+                     when));
+  const bool line = debugger_->code(current_.station)->starts_line(frame.address);
+  const std::string source = source_line(frame.place.file, frame.place.line);
+  if (frame.place.line != 0 && !source.empty()) print_(fmt::format("{}\t{}\n", frame.place.line, source));
+  if (!line || source.empty())
+    print_(fmt::format("=> {}\t{}\n", frame.address, debugger_->code(current_.station)->text(frame.address)));
+}
+
+std::vector<std::string> Console::complete(std::string_view line) const {
+  std::vector<std::string> words;
+  const size_t begin = line.find_last_of(" \t(=,") + 1;
+  const std::string_view part = line.substr(begin);
+  const auto offer = [&](std::string_view word) {
+    if (word.starts_with(part) && std::find(words.begin(), words.end(), word) == words.end())
+      words.emplace_back(word);
+  };
+  if (begin == 0) {
+    for (const Command& command : commands()) offer(command.name);
+    return words;
+  }
+  for (const char* word : {"tasks", "sbus", "breakpoints", "io", "snapshots"})
+    if (line.starts_with("i")) offer(word);
+  for (const auto& station : debugger_->plant().stations()) {
+    if (station->image() == nullptr) continue;
+    for (const vm::Symbol& symbol : station->image()->symbols) offer(symbol.name);
+    for (const vm::FunctionEntry& function : station->image()->functions) offer(function.name);
+  }
+  return words;
+}
+
+Json Console::save() {
+  return {{"task", current_}, {"last", last_line_}, {"told", told_}, {"input", save_input()}};
+}
+
+void Console::load(const Json& state) {
+  current_ = state["task"].get<TaskRef>();
+  last_line_ = state["last"].get<std::string>();
+  more_ = 0;
+  told_ = state["told"];
+  load_input(state["input"]);
+}
+
+void Console::help() {
+  for (const Command& command : commands())
+    print_(fmt::format("{:<24}{:<44} {}\n",
+                       fmt::format("{}{}{}", command.name, command.alias.empty() ? "" : ", ", command.alias),
+                       command.arguments, command.meaning));
+}
+
+}  // namespace ipos::tools::debug

@@ -1,0 +1,93 @@
+// The debugger on a terminal or a script, in gdb's words. execute() takes a line and what it answers goes to
+// `print`; reading lines is the caller's.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/debug/debugger.hpp"
+
+namespace ipos::tools::debug {
+
+class Console final : public FrontEnd {
+ public:
+  using Print = std::function<void(const std::string&)>;
+  explicit Console(Print print) : print_(std::move(print)) {}
+  // Before anything else; a debugger needs its front end, too.
+  void attach(Debugger& debugger);
+
+  // What another process must know of the input; and whether to go on.
+  std::function<Json()> save_input = [] { return Json(); };
+  std::function<void(const Json&)> load_input = [](const Json&) {};
+  std::function<bool()> not_interrupted = [] { return true; };
+
+  // False: the session is over.
+  bool execute(const std::string& line);
+  // Words a line that ends so can go on with.
+  std::vector<std::string> complete(std::string_view line) const;
+
+  Json save() override;
+  void load(const Json& state) override;
+  bool keep_going() override { return not_interrupted(); }
+  void output(const std::string& text) override { print_(text); }
+
+ private:
+  struct Command;
+  static const std::vector<Command>& commands();
+  static const Command* find(std::string_view word);
+
+  void go(Motion motion, bool backward, const std::string& count);
+  void run(const Order& order);
+  void show_stop(const Stop& stop);
+  void show_place();
+  void show_journal();
+
+  void breakpoint(const std::string& arguments, bool temporary);
+  void logpoint(const std::string& arguments);
+  void watch(const std::string& arguments);
+  void condition(const std::string& arguments);
+  void hits(const std::string& arguments);
+  void remove(const std::string& arguments);
+  void enable(const std::string& arguments, bool on);
+  void until(const std::string& arguments);
+  void backtrace();
+  void list(const std::string& arguments);
+  void print(const std::string& arguments);
+  void examine(const std::string& arguments);
+  void set(const std::string& arguments);
+  void disassemble(const std::string& arguments);
+  void info(const std::string& arguments);
+  void info_tasks();
+  void info_sbus();
+  void info_breakpoints();
+  void info_io();
+  void info_snapshots();
+  void select_task(const std::string& arguments);
+  void help();
+
+  struct Location {
+    uint32_t station;
+    uint32_t address;
+  };
+  Location locate(std::string text) const;
+  std::string describe(uint32_t station, uint32_t address) const;
+  std::string source_line(const std::string& file, uint32_t line);
+  uint32_t station_named(std::string_view name) const;  // throws ValueError
+  TaskRef task_with_frames() const;
+
+  Debugger* debugger_ = nullptr;
+  Print print_;
+  TaskRef current_;
+  bool over_ = false;
+  std::string last_line_;  // an empty line repeats it
+  Motion motion_ = Motion::Continue;
+  int more_ = 0;         // steps of that kind to go
+  uint32_t listed_ = 0;  // line behind the last one listed
+  size_t told_ = 0;      // entries of the journal
+  std::map<std::string, std::vector<std::string>> sources_;
+};
+
+}  // namespace ipos::tools::debug

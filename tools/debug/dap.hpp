@@ -1,0 +1,112 @@
+// The debug adapter: messages in, messages out. Knows nothing of streams, so tests talk to it directly.
+// Tasks are threads; time stands still for the whole plant when one of them stops.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/debug/debugger.hpp"
+
+namespace ipos::tools::debug {
+
+// What the editor wants to debug.
+struct DapLaunch {
+  std::string file;
+  std::string unit;
+};
+
+class DapServer final : public FrontEnd {
+ public:
+  using Make = std::function<MakePlant(const DapLaunch&)>;  // may throw
+  using Send = std::function<void(const Json&)>;
+  DapServer(Make make, Send send, bool snapshots)
+      : make_(std::move(make)), send_(std::move(send)), snapshots_(snapshots) {}
+
+  // Asked for messages while the plant runs; and what another process must know of the input.
+  std::function<void()> poll = [] {};
+  std::function<Json()> save_input = [] { return Json::object(); };
+  std::function<void(const Json&)> load_input = [](const Json&) {};
+
+  // Takes the body of a message; handle_next() answers it. Pauses and the end act while the plant runs.
+  void receive(std::string_view body);
+  // False when there was nothing to do.
+  bool handle_next();
+  void close() { pause_ = ended_ = true; }  // nobody listens any more
+  bool ended() const { return ended_; }
+
+  Json save() override;
+  void load(const Json& state) override;
+  bool keep_going() override;
+  void output(const std::string& text) override;
+
+ private:
+  using Handler = Json (DapServer::*)(const Json& arguments);
+  struct Request;
+  static const std::vector<Request>& requests();
+
+  Json initialize(const Json& arguments);
+  Json launch(const Json& arguments);
+  Json configured(const Json& arguments);
+  Json set_breakpoints(const Json& arguments);
+  Json set_instruction_breakpoints(const Json& arguments);
+  Json data_breakpoint_info(const Json& arguments);
+  Json set_data_breakpoints(const Json& arguments);
+  Json nothing(const Json& arguments);
+  Json threads(const Json& arguments);
+  Json stack_trace(const Json& arguments);
+  Json scopes(const Json& arguments);
+  Json variables(const Json& arguments);
+  Json set_variable(const Json& arguments);
+  Json set_expression(const Json& arguments);
+  Json evaluate_text(const Json& arguments);
+  Json disassemble(const Json& arguments);
+  Json resume(const Json& arguments);
+  Json next(const Json& arguments);
+  Json step_in(const Json& arguments);
+  Json step_out(const Json& arguments);
+  Json step_back(const Json& arguments);
+  Json reverse_continue(const Json& arguments);
+  Json pause(const Json& arguments);
+  Json disconnect(const Json& arguments);
+
+  void go();
+  void report(const Stop& stop);
+  void tell_journal();
+  void event(const std::string& name, Json body);
+  void order(Motion line, Motion instruction, bool backward, const Json& arguments);
+  Debugger& debugger();
+  TaskRef task_of(const Json& arguments, const char* key) const;
+  Json breakpoint_json(const Breakpoint& breakpoint) const;
+  uint32_t reference(uint32_t station, int scope, uint32_t first = 0, uint32_t count = 0,
+                     std::string name = {});
+  Json value_json(const ValuePlace& place) const;
+  Json scope_values(uint32_t station, int scope) const;
+
+  Make make_;
+  Send send_;
+  bool snapshots_;
+  std::optional<Debugger> debugger_;
+  std::deque<Json> queue_;
+  int64_t seq_ = 0;
+  bool stop_on_entry_ = true;
+  bool pause_ = false;
+  bool ended_ = false;
+  size_t told_ = 0;                                          // entries of the journal
+  std::optional<Order> order_;                               // given, not yet carried out
+  std::map<int, std::pair<std::string, uint32_t>> sources_;  // of source breakpoints: file, line asked for
+
+  // What the editor may ask for by number until the next stop.
+  struct Reference {
+    uint32_t station;
+    int scope;
+    uint32_t first, count;
+    std::string name;
+  };
+  std::vector<Reference> references_;
+};
+
+}  // namespace ipos::tools::debug

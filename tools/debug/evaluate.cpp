@@ -1,0 +1,198 @@
+// Expressions of the debugger: precedence climbing over the operators of C, on 32-bit numbers that wrap as
+// those of the programs do.
+#include <fmt/format.h>
+
+#include <array>
+#include <cctype>
+#include <charconv>
+
+#include "tools/debug/values.hpp"
+#include "vm/exec/arithmetic.hpp"
+
+namespace ipos::tools::debug {
+namespace {
+
+struct Operator {
+  std::string_view text;
+  int precedence;
+};
+// Longer ones first where one begins another.
+constexpr std::array<Operator, 18> kOperators{{{"||", 1},
+                                               {"&&", 2},
+                                               {"==", 6},
+                                               {"!=", 6},
+                                               {"<<", 8},
+                                               {">>", 8},
+                                               {"<=", 7},
+                                               {">=", 7},
+                                               {"<", 7},
+                                               {">", 7},
+                                               {"|", 3},
+                                               {"^", 4},
+                                               {"&", 5},
+                                               {"+", 9},
+                                               {"-", 9},
+                                               {"*", 10},
+                                               {"/", 10},
+                                               {"%", 10}}};
+constexpr int kMostNested = 100;
+
+class Reader {
+ public:
+  Reader(const runtime::Plant& plant, uint32_t station, std::string_view text, std::optional<int32_t> hits)
+      : plant_(plant), station_(station), text_(text), hits_(hits) {}
+
+  int32_t all() {
+    const int32_t value = binary(1);
+    expect_end();
+    return value;
+  }
+  ValuePlace place() {
+    skip();
+    const ValuePlace found = named(word());
+    expect_end();
+    return found;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw ValueError(fmt::format("{} in '{}'", what, text_));
+  }
+  void skip() {
+    while (at_ < text_.size() && std::isspace(static_cast<unsigned char>(text_[at_])) != 0) ++at_;
+  }
+  bool take(char c) {
+    skip();
+    if (at_ == text_.size() || text_[at_] != c) return false;
+    ++at_;
+    return true;
+  }
+  void expect_end() {
+    skip();
+    if (at_ != text_.size()) fail(fmt::format("'{}' is not understood", text_.substr(at_)));
+  }
+  std::string_view word() {
+    const size_t begin = at_;
+    const auto belongs = [](char c) {
+      return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.';
+    };
+    while (at_ < text_.size() && belongs(text_[at_])) ++at_;
+    return text_.substr(begin, at_ - begin);
+  }
+
+  const Operator* peek_operator() {
+    skip();
+    for (const Operator& row : kOperators)
+      if (text_.substr(at_).starts_with(row.text)) return &row;
+    return nullptr;
+  }
+
+  int32_t binary(int least) {
+    int32_t left = unary();
+    for (const Operator* row = peek_operator(); row != nullptr && row->precedence >= least;
+         row = peek_operator()) {
+      at_ += row->text.size();
+      left = apply(row->text, left, binary(row->precedence + 1));
+    }
+    return left;
+  }
+
+  int32_t apply(std::string_view op, int32_t a, int32_t b) const {
+    if ((op == "/" || op == "%") && b == 0) fail("division by zero");
+    if (op == "||") return a != 0 || b != 0;
+    if (op == "&&") return a != 0 && b != 0;
+    if (op == "==") return a == b;
+    if (op == "!=") return a != b;
+    if (op == "<=") return a <= b;
+    if (op == ">=") return a >= b;
+    if (op == "<<") return vm::shift_left(a, b);
+    if (op == ">>") return vm::shift_right_sign(a, b);
+    switch (op[0]) {
+      case '<': return a < b;
+      case '>': return a > b;
+      case '|': return a | b;
+      case '^': return a ^ b;
+      case '&': return a & b;
+      case '+': return vm::add(a, b);
+      case '-': return vm::subtract(a, b);
+      case '*': return vm::multiply(a, b);
+      case '/': return vm::divide(a, b);
+      default: return vm::remainder(a, b);
+    }
+  }
+
+  int32_t unary() {
+    if (++nested_ > kMostNested) fail("nested too deep");
+    const int32_t value = unary_inner();
+    --nested_;
+    return value;
+  }
+  int32_t unary_inner() {
+    if (take('-')) return vm::subtract(0, unary());
+    if (take('+')) return unary();
+    if (take('!')) return unary() == 0;
+    if (take('~')) return ~unary();
+    if (take('(')) {
+      const int32_t value = binary(1);
+      if (!take(')')) fail("')' is missing");
+      return value;
+    }
+    skip();
+    const std::string_view text = word();
+    if (text.empty()) fail("a value is missing");
+    if (std::isdigit(static_cast<unsigned char>(text[0])) != 0) return number(text);
+    if (text == "hits" && hits_) return *hits_;
+    return read_value(plant_, named(text));
+  }
+
+  int32_t number(std::string_view text) const {
+    const bool hex = text.starts_with("0x") || text.starts_with("0X");
+    const std::string_view digits = hex ? text.substr(2) : text;
+    uint64_t value = 0;
+    const auto [end, status] =
+        std::from_chars(digits.data(), digits.data() + digits.size(), value, hex ? 16 : 10);
+    if (status != std::errc() || end != digits.data() + digits.size() || value > UINT32_MAX)
+      fail(fmt::format("'{}' is no number", text));
+    return vm::wrap(static_cast<uint32_t>(value));
+  }
+
+  ValuePlace named(std::string_view name) {
+    const bool any_variable = name == "H" || name.ends_with(".H");
+    const std::string whole(any_variable ? fmt::format("{}0", name) : name);
+    auto found = find_value(plant_, station_, whole);
+    if (!found) fail(fmt::format("there is no '{}'", name));
+    if (!take('[')) {
+      if (any_variable) fail("H needs a number: H5 or H[5]");
+      return *found;
+    }
+    const int32_t index = binary(1);
+    if (!take(']')) fail("']' is missing");
+    const uint32_t variables = plant_.stations()[found->station]->config().unit->variables;
+    if (found->kind != ValueKind::Variable || index < 0 || found->number + vm::bits(index) >= variables)
+      fail(fmt::format("there is no {}[{}]", name, index));
+    found->number += vm::bits(index);
+    found->elements = 1;
+    found->name = any_variable ? fmt::format("{}{}", name, index) : fmt::format("{}[{}]", name, index);
+    return *found;
+  }
+
+  const runtime::Plant& plant_;
+  uint32_t station_;
+  std::string_view text_;
+  std::optional<int32_t> hits_;
+  size_t at_ = 0;
+  int nested_ = 0;
+};
+
+}  // namespace
+
+ValuePlace evaluate_place(const runtime::Plant& plant, uint32_t station, std::string_view text) {
+  return Reader(plant, station, text, {}).place();
+}
+
+int32_t evaluate(const runtime::Plant& plant, uint32_t station, std::string_view text,
+                 std::optional<int32_t> hits) {
+  return Reader(plant, station, text, hits).all();
+}
+
+}  // namespace ipos::tools::debug

@@ -1,0 +1,168 @@
+// fork(), a pipe to each copy, and nothing else. A copy whose pipe nobody can write to any more ends, so none
+// is left behind.
+#include "tools/debug/snapshots.hpp"
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+
+namespace ipos::tools::debug {
+namespace {
+
+// More cost memory and gain little: a step back replays what lies between two of them.
+constexpr size_t kMost = 48;
+constexpr size_t kKeptDense = 16;  // the latest ones are never thinned out
+
+bool write_all(int file, const char* bytes, size_t size) {
+  while (size != 0) {
+    const ssize_t count = write(file, bytes, size);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return false;
+    bytes += count;
+    size -= static_cast<size_t>(count);
+  }
+  return true;
+}
+
+bool read_all(int file, char* bytes, size_t size) {
+  while (size != 0) {
+    const ssize_t count = read(file, bytes, size);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return false;
+    bytes += count;
+    size -= static_cast<size_t>(count);
+  }
+  return true;
+}
+
+// Size 0 tells it to end.
+bool send(int file, const std::string& bytes) {
+  const uint64_t size = bytes.size();
+  return write_all(file, reinterpret_cast<const char*>(&size), sizeof size) &&
+         write_all(file, bytes.data(), bytes.size());
+}
+
+std::string receive(int file) {
+  uint64_t size = 0;
+  if (!read_all(file, reinterpret_cast<char*>(&size), sizeof size)) return {};
+  std::string bytes(size, '\0');
+  if (!read_all(file, bytes.data(), bytes.size())) return {};
+  return bytes;
+}
+
+}  // namespace
+
+Snapshots::~Snapshots() {
+  while (!held_.empty()) drop(held_.size() - 1);
+}
+
+void Snapshots::drop(size_t n) {
+  send(held_[n].pipe, {});
+  close(held_[n].pipe);
+  held_.erase(held_.begin() + static_cast<ptrdiff_t>(n));
+}
+
+// Every second one of the older ones goes: the way back to them gets longer the older they are.
+void Snapshots::thin_out() {
+  for (size_t n = 1; n + kKeptDense < held_.size(); ++n) drop(n);
+}
+
+std::optional<std::string> Snapshots::take(const Position& now) {
+  std::array<int, 2> ends{};
+  if (pipe(ends.data()) != 0) return std::nullopt;
+  std::fflush(nullptr);
+  const pid_t copy = fork();
+  if (copy != 0) {
+    close(ends[0]);
+    if (copy < 0) {
+      close(ends[1]);  // no memory for another one: the way back is longer, that is all
+      return std::nullopt;
+    }
+    held_.push_back({now, ends[1], copy});
+    if (held_.size() > kMost) thin_out();
+    return std::nullopt;
+  }
+  const auto on_interrupt = std::signal(SIGINT, SIG_IGN);
+  for (;;) {
+    close(ends[1]);
+    std::string bytes = receive(ends[0]);
+    close(ends[0]);
+    // A new pipe, as the end to write to belongs to who goes on from here.
+    if (bytes.empty() || pipe(ends.data()) != 0) _exit(0);
+    const pid_t next = fork();
+    if (next != 0) continue;
+    close(ends[0]);
+    held_.push_back({now, ends[1], getppid()});
+    std::signal(SIGINT, on_interrupt);
+    return bytes;
+  }
+}
+
+const Position* Snapshots::before(const Position& position, bool strictly) const {
+  const Position* found = nullptr;
+  for (const Held& held : held_)
+    if (strictly ? held.position < position : held.position <= position) found = &held.position;
+  return found;
+}
+
+void Snapshots::go_on_from(const Position& snapshot, const std::string& bytes) {
+  std::fflush(nullptr);
+  for (size_t n = held_.size(); n-- > 0;) {
+    if (held_[n].position > snapshot)
+      drop(n);
+    else if (send(held_[n].pipe, bytes))
+      _exit(0);
+    else
+      drop(n);
+  }
+}
+
+Snapshots::Memory Snapshots::memory() const {
+  Memory sum;
+  for (const Held& held : held_) {
+    std::ifstream file(fmt::format("/proc/{}/smaps_rollup", held.process));
+    std::string line;
+    while (std::getline(file, line)) {
+      size_t kib = 0;
+      if (std::sscanf(line.c_str(), "Pss: %zu", &kib) == 1) sum.shared_out += kib;
+      if (std::sscanf(line.c_str(), "Private_Dirty: %zu", &kib) == 1) sum.own += kib;
+    }
+  }
+  return sum;
+}
+
+int run_replaceable(const std::function<int()>& body) {
+  std::array<int, 2> ends{};
+  if (pipe(ends.data()) != 0) return body();
+  std::fflush(nullptr);
+  const pid_t worker = fork();
+  if (worker < 0) {
+    close(ends[0]);
+    close(ends[1]);
+    return body();
+  }
+  if (worker != 0) {
+    close(ends[1]);
+    std::signal(SIGINT, SIG_IGN);
+    int32_t code = -1;
+    if (!read_all(ends[0], reinterpret_cast<char*>(&code), sizeof code)) code = -1;
+    close(ends[0]);
+    return code;
+  }
+  close(ends[0]);
+  std::signal(SIGCHLD, SIG_IGN);  // snapshots end without being waited for
+  std::signal(SIGPIPE, SIG_IGN);
+  const int32_t code = body();
+  std::fflush(nullptr);
+  write_all(ends[1], reinterpret_cast<const char*>(&code), sizeof code);
+  _exit(0);
+}
+
+}  // namespace ipos::tools::debug

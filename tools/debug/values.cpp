@@ -1,0 +1,121 @@
+// Names to values. Parameters are read as the drive shows them and written as over the parameter channel,
+// volatile; so are variables, which are parameters 11000 + n (IPOSplus p. 28).
+#include "tools/debug/values.hpp"
+
+#include <fmt/format.h>
+
+#include "runtime/plant/signal.hpp"
+#include "stdlib/parameters.hpp"
+#include "stdlib/system_variables.hpp"
+
+namespace ipos::tools::debug {
+namespace {
+
+using runtime::Station;
+
+constexpr uint32_t kFirstVariable = 11'000;
+
+std::optional<ValuePlace> find_variable(const Station& station, uint32_t number, std::string_view name) {
+  if (station.machine() == nullptr) return std::nullopt;
+  ValuePlace place{number, ValueKind::Variable, 0, 1, std::string(name)};
+  for (const vm::Symbol& symbol : station.image()->symbols)
+    if (symbol.name == name) {
+      place.number = symbol.variable;
+      place.elements = symbol.count;
+      return place;
+    }
+  if (const auto found = station.find_variable(name))
+    place.number = *found;
+  else if (const auto* row = stdlib::find_system_variable(name);
+           row != nullptr && row->number < station.config().unit->variables)
+    place.number = row->number;
+  else
+    return std::nullopt;
+  return place;
+}
+
+std::optional<ValuePlace> find_in(const Station& station, uint32_t number, std::string_view name) {
+  if (auto variable = find_variable(station, number, name)) return variable;
+  ValuePlace place{number, ValueKind::Input, 0, 1, std::string(name)};
+  if (const int line = runtime::parse_input(name); line >= 0) {
+    place.number = static_cast<uint32_t>(line);
+    return place;
+  }
+  place.kind = ValueKind::Output;
+  if (const int bit = runtime::parse_output(name); bit >= 0) {
+    place.number = static_cast<uint32_t>(bit);
+    return place;
+  }
+  place.kind = ValueKind::Parameter;
+  const auto* row =
+      name.starts_with('P') ? stdlib::parameter_table(*station.config().unit).find(name) : nullptr;
+  if (row != nullptr && row->index != 0) {
+    place.number = row->index;
+    return place;
+  }
+  place.kind = ValueKind::Fault;
+  if (name == "fault") return place;
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<ValuePlace> find_value(const runtime::Plant& plant, uint32_t station, std::string_view name) {
+  if (name == "now") return ValuePlace{station, ValueKind::Time, 0, 1, "now"};
+  const auto& stations = plant.stations();
+  if (station < stations.size())
+    if (auto found = find_in(*stations[station], station, name)) return found;
+  for (uint32_t n = 0; n < stations.size(); ++n) {
+    const std::string prefix = stations[n]->config().name + ".";
+    if (!name.starts_with(prefix)) continue;
+    if (auto found = find_in(*stations[n], n, name.substr(prefix.size()))) {
+      found->name = name;
+      return found;
+    }
+  }
+  return std::nullopt;
+}
+
+int32_t read_value(const runtime::Plant& plant, const ValuePlace& place) {
+  Station& station = *plant.stations()[place.station];
+  switch (place.kind) {
+    case ValueKind::Variable: return station.machine() == nullptr ? 0 : station.variable(place.number);
+    case ValueKind::Parameter: return station.drive().parameters().value(static_cast<uint16_t>(place.number));
+    case ValueKind::Input: return station.inputs().line(place.number).value();
+    case ValueKind::Output: return station.drive().state().outputs() >> place.number & 1;
+    case ValueKind::Time: return static_cast<int32_t>(plant.now() / runtime::kMillisecond);
+    case ValueKind::Fault: break;
+  }
+  return station.fault();
+}
+
+void write_value(runtime::Plant& plant, const ValuePlace& place, int32_t value) {
+  Station& station = *plant.stations()[place.station];
+  uint32_t index = place.number;
+  switch (place.kind) {
+    case ValueKind::Input: station.inputs().line(place.number).forced = value; return;
+    case ValueKind::Variable: index = kFirstVariable + place.number; break;
+    case ValueKind::Parameter: break;
+    case ValueKind::Output:
+    case ValueKind::Time:
+    case ValueKind::Fault: throw ValueError(fmt::format("{} cannot be set", place.name));
+  }
+  runtime::ParameterStore& parameters = station.drive().parameters();
+  const auto service = runtime::ParameterService::WriteVolatile;
+  const auto reply = parameters.execute(service, static_cast<uint16_t>(index), value);
+  if (!reply)
+    throw ValueError(parameters.explain(static_cast<uint8_t>(service), static_cast<uint16_t>(index), value,
+                                        reply.error()));
+}
+
+std::string value_text(const runtime::Plant& plant, const ValuePlace& place, int32_t value) {
+  if (place.kind != ValueKind::Parameter) return fmt::format("{}", value);
+  const Station& station = *plant.stations()[place.station];
+  const auto& table = stdlib::parameter_table(*station.config().unit);
+  const auto* row = table.find(place.name.substr(place.name.rfind('.') + 1));
+  if (row == nullptr) row = table.find(static_cast<uint16_t>(place.number));
+  if (row == nullptr) return fmt::format("{}", value);
+  return fmt::format("{} ({})", row->number_of(value), stdlib::parameter_text(*row, value));
+}
+
+}  // namespace ipos::tools::debug

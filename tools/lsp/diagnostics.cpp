@@ -1,0 +1,102 @@
+// Messages of the compiler for the editor, and formatting, which has a message, too.
+#include <algorithm>
+#include <filesystem>
+
+#include "compiler/diag/places.hpp"
+#include "compiler/format/format.hpp"
+#include "tools/lsp/features.hpp"
+
+namespace ipos::tools::lsp {
+namespace {
+
+using compiler::Diagnostic;
+using compiler::Severity;
+
+Json range(const compiler::Range& place, Encoding encoding) {
+  if (place.begin.file == nullptr) return range_of("", 0, 0, encoding);
+  const compiler::SourceFile& file = *place.begin.file;
+  const auto offset = [&](const compiler::Position& at) {
+    return file.line_starts[at.line - 1] + at.column - 1;
+  };
+  return range_of(file.text, offset(place.begin), offset(place.end), encoding);
+}
+
+std::string clean(const compiler::SourceFile& file) {
+  return file.path.empty() ? file.name : std::filesystem::path(file.path).lexically_normal().string();
+}
+
+Json message(const Diagnostic& diagnostic, const Program& program, const Workspace& workspace) {
+  const compiler::SourceMap& map = *program.compiled.sources;
+  const compiler::DiagInfo& row = compiler::info(diagnostic.diag);
+  Json out{{"range", range(compiler::range_of(diagnostic.span, map), workspace.encoding)},
+           {"severity", diagnostic.severity == Severity::Error ? 1 : 2},
+           {"code", row.code},
+           {"source", "ipos"}};
+  std::string text = diagnostic.text;
+  for (const compiler::Note& note : compiler::all_notes(diagnostic, map)) {
+    const compiler::Range place = compiler::range_of(note.span, map);
+    if (place.begin.file == nullptr)
+      text += "\n" + note.text;
+    else
+      out["relatedInformation"].push_back(
+          {{"location",
+            {{"uri", uri_of(clean(*place.begin.file))}, {"range", range(place, workspace.encoding)}}},
+           {"message", compiler::printable(note.text)}});
+  }
+  // Notes of several lines stay several lines.
+  std::string shown;
+  for (size_t begin = 0; begin <= text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    shown +=
+        (begin == 0 ? "" : "\n") + compiler::printable(std::string_view(text).substr(begin, end - begin));
+    begin = end + 1;
+  }
+  out["message"] = shown;
+  if (row.flag.starts_with("unused")) out["tags"] = {1};  // shown faded
+  return out;
+}
+
+}  // namespace
+
+std::map<std::string, Json> diagnostics_of(const Workspace& workspace, const Program& program) {
+  std::map<std::string, Json> out{{program.path, Json::array()}};
+  for (const std::string& file : program.files) out.emplace(file, Json::array());
+  const bool header = !is_program(program.path);
+  for (const Diagnostic& diagnostic : program.compiled.diagnostics.all()) {
+    // A header on its own has no main() and uses nothing of what it declares.
+    if (header && (diagnostic.severity != Severity::Error || diagnostic.diag == compiler::Diag::NoMain))
+      continue;
+    const compiler::Position at = program.compiled.sources->position(diagnostic.span.begin);
+    const std::string path = at.file == nullptr || at.file->path.empty() ? program.path : clean(*at.file);
+    out[path].push_back(message(diagnostic, program, workspace));
+  }
+  return out;
+}
+
+Json formatting(Workspace& workspace, const Json& params) {
+  const std::string path = document_path(params);
+  const auto before = workspace.text(path);
+  if (!before) throw RequestError(ErrorCode::InvalidParams, path + " cannot be read");
+  const auto after = compiler::format_source(*before);
+  if (!after)
+    throw RequestError(ErrorCode::RequestFailed, "line " + std::to_string(after.error().line) +
+                                                     ": not formatted: " + after.error().text);
+  Json edits = Json::array();
+  if (*after == *before) return edits;
+  // One edit of the lines that differ, so that the cursor elsewhere stays where it is.
+  size_t head = 0;
+  const size_t shorter = std::min(before->size(), after->size());
+  while (head < shorter && (*before)[head] == (*after)[head]) ++head;
+  head = head == 0 ? 0 : before->rfind('\n', head - 1) + 1;
+  size_t tail = 0;
+  while (tail < shorter - head && (*before)[before->size() - 1 - tail] == (*after)[after->size() - 1 - tail])
+    ++tail;
+  // Not within a line, nor within a character.
+  while (tail > 0 && (*before)[before->size() - tail] != '\n') --tail;
+  edits.push_back({{"range", range_of(*before, static_cast<uint32_t>(head),
+                                      static_cast<uint32_t>(before->size() - tail), workspace.encoding)},
+                   {"newText", after->substr(head, after->size() - tail - head)}});
+  return edits;
+}
+
+}  // namespace ipos::tools::lsp

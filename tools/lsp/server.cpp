@@ -1,0 +1,221 @@
+// Life cycle, dispatch by method, and publishing of diagnostics.
+#include "tools/lsp/server.hpp"
+
+#include <algorithm>
+
+#include "tools/lsp/features.hpp"
+
+namespace ipos::tools::lsp {
+namespace {
+
+struct Method {
+  std::string_view name;
+  Json (*answer)(Workspace&, const Json&);
+};
+
+constexpr Method kMethods[] = {
+    {"textDocument/hover", hover},
+    {"textDocument/completion", completion},
+    {"textDocument/signatureHelp", signature_help},
+    {"textDocument/definition", definition},
+    {"textDocument/references", references},
+    {"textDocument/documentHighlight", highlights},
+    {"textDocument/prepareRename", prepare_rename},
+    {"textDocument/rename", rename},
+    {"textDocument/documentSymbol", document_symbols},
+    {"textDocument/formatting", formatting},
+    {"workspace/symbol", workspace_symbols},
+    {"ipos/header", header_text},
+};
+
+Json capabilities(Encoding encoding) {
+  return {{"positionEncoding", encoding == Encoding::Utf8 ? "utf-8" : "utf-16"},
+          {"textDocumentSync", {{"openClose", true}, {"change", 2}, {"save", true}}},
+          {"hoverProvider", true},
+          {"completionProvider", {{"triggerCharacters", {".", "#", "<", "\""}}}},
+          {"signatureHelpProvider", {{"triggerCharacters", {"(", ","}}}},
+          {"definitionProvider", true},
+          {"referencesProvider", true},
+          {"documentHighlightProvider", true},
+          {"documentSymbolProvider", true},
+          {"workspaceSymbolProvider", true},
+          {"documentFormattingProvider", true},
+          {"renameProvider", {{"prepareProvider", true}}}};
+}
+
+std::string string_or(const Json& object, const char* name) {
+  if (!object.is_object()) return {};
+  const auto found = object.find(name);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+Json member(const Json& object, const char* name) {
+  if (!object.is_object()) return nullptr;
+  const auto found = object.find(name);
+  return found == object.end() ? Json() : *found;
+}
+
+}  // namespace
+
+void Server::receive(std::string_view body) {
+  Json message = Json::parse(body, nullptr, false);
+  if (message.is_discarded()) {
+    refuse(nullptr, ErrorCode::ParseError, "the message is no JSON");
+    return;
+  }
+  if (string_or(message, "method") != "$/cancelRequest") {
+    queue_.push_back(std::move(message));
+    return;
+  }
+  const Json id = member(member(message, "params"), "id");
+  const auto found = std::find_if(queue_.begin(), queue_.end(), [&](const Json& one) {
+    return !id.is_null() && member(one, "id") == id && one.contains("method");
+  });
+  if (found == queue_.end()) return;  // answered already
+  queue_.erase(found);
+  refuse(id, ErrorCode::RequestCancelled, "cancelled");
+}
+
+bool Server::run() {
+  if (!queue_.empty()) {
+    const Json message = std::move(queue_.front());
+    queue_.pop_front();
+    handle(message);
+    return true;
+  }
+  if (!outdated_) return false;
+  outdated_ = false;
+  publish();
+  return true;
+}
+
+void Server::handle(const Json& message) {
+  const std::string method = string_or(message, "method");
+  const Json id = member(message, "id");
+  if (method.empty()) {
+    // An answer of the editor has an id and no method; this server asks nothing.
+    if (!message.is_object() || !(message.contains("result") || message.contains("error")))
+      refuse(id, ErrorCode::InvalidRequest, "the message has no method");
+    return;
+  }
+  Json params = member(message, "params");
+  if (!params.is_object()) params = Json::object();
+  try {
+    if (id.is_null())
+      notification(method, params);
+    else
+      request(id, method, params);
+  } catch (const RequestError& error) {
+    if (!id.is_null()) refuse(id, error.code(), error.what());
+  } catch (const Json::exception& error) {
+    if (!id.is_null()) refuse(id, ErrorCode::InvalidParams, error.what());
+  } catch (const std::exception& error) {
+    if (!id.is_null()) refuse(id, ErrorCode::InternalError, error.what());
+  }
+}
+
+void Server::request(const Json& id, const std::string& method, const Json& params) {
+  if (method == "initialize") {
+    if (initialized_) throw RequestError(ErrorCode::InvalidRequest, "initialize came before");
+    respond(id, initialize(params));
+    return;
+  }
+  if (!initialized_) throw RequestError(ErrorCode::NotInitialized, "initialize has to come first");
+  if (shut_down_) throw RequestError(ErrorCode::InvalidRequest, "shutdown came before");
+  if (method == "shutdown") {
+    shut_down_ = true;
+    respond(id, nullptr);
+    return;
+  }
+  for (const Method& row : kMethods) {
+    if (row.name != method) continue;
+    respond(id, row.answer(workspace_, params));
+    return;
+  }
+  throw RequestError(ErrorCode::MethodNotFound, "unknown method " + method);
+}
+
+Json Server::initialize(const Json& params) {
+  std::vector<std::string> folders;
+  for (const Json& folder : member(params, "workspaceFolders"))
+    if (const std::string uri = string_or(folder, "uri"); !uri.empty()) folders.push_back(path_of(uri));
+  if (const std::string root = string_or(params, "rootUri"); folders.empty() && !root.empty())
+    folders.push_back(path_of(root));
+  workspace_.set_folders(std::move(folders));
+  workspace_.set_options(member(params, "initializationOptions"));
+  const Json encodings = member(member(member(params, "capabilities"), "general"), "positionEncodings");
+  if (encodings.is_array() && std::find(encodings.begin(), encodings.end(), "utf-8") != encodings.end())
+    workspace_.encoding = Encoding::Utf8;
+  initialized_ = true;
+  return {{"capabilities", capabilities(workspace_.encoding)},
+          {"serverInfo", {{"name", "ipos"}, {"version", IPOS_VERSION}}}};
+}
+
+void Server::notification(const std::string& method, const Json& params) {
+  if (method == "exit") {
+    ended_ = true;
+  } else if (!initialized_ || shut_down_) {
+    // Only exit counts then.
+  } else if (method.starts_with("textDocument/did")) {
+    document(method, params);
+    outdated_ = true;
+  } else if (method == "workspace/didChangeWatchedFiles") {
+    for (const Json& change : member(params, "changes"))
+      if (const std::string uri = string_or(change, "uri"); !uri.empty()) workspace_.touched(path_of(uri));
+    outdated_ = true;
+  } else if (method == "workspace/didChangeConfiguration") {
+    const Json settings = member(member(params, "settings"), "ipos");
+    if (settings.is_object()) workspace_.set_options(settings);
+    outdated_ = true;
+  }
+}
+
+void Server::document(const std::string& method, const Json& params) {
+  const std::string path = document_path(params);
+  if (method == "textDocument/didOpen")
+    workspace_.open(path, string_or(member(params, "textDocument"), "text"));
+  else if (method == "textDocument/didChange")
+    workspace_.change(path, member(params, "contentChanges"));
+  else if (method == "textDocument/didClose")
+    workspace_.close(path);
+  else
+    workspace_.touched(path);
+}
+
+// The messages of all programs that are open or that an open header belongs to. Files that had some and have
+// none any more are told so.
+void Server::publish() {
+  std::map<std::string, Json> all;
+  std::set<const Program*> programs;
+  for (const std::string& path : workspace_.open_documents()) programs.insert(&workspace_.program(path));
+  for (const Program* program : programs) {
+    for (auto& [path, messages] : diagnostics_of(workspace_, *program)) {
+      Json& target = all.try_emplace(path, Json::array()).first->second;
+      for (Json& one : messages)
+        if (std::find(target.begin(), target.end(), one) == target.end()) target.push_back(std::move(one));
+    }
+  }
+  for (const std::string& path : published_) all.try_emplace(path, Json::array());
+  for (auto& [path, messages] : all) {
+    const bool empty = messages.empty();
+    if (empty && !published_.contains(path) && !workspace_.is_open(path)) continue;
+    send_({{"jsonrpc", "2.0"},
+           {"method", "textDocument/publishDiagnostics"},
+           {"params", {{"uri", uri_of(path)}, {"diagnostics", std::move(messages)}}}});
+    if (empty)
+      published_.erase(path);
+    else
+      published_.insert(path);
+  }
+}
+
+void Server::respond(const Json& id, const Json& result) {
+  send_({{"jsonrpc", "2.0"}, {"id", id}, {"result", result}});
+}
+
+void Server::refuse(const Json& id, ErrorCode code, const std::string& message) {
+  send_(
+      {{"jsonrpc", "2.0"}, {"id", id}, {"error", {{"code", static_cast<int>(code)}, {"message", message}}}});
+}
+
+}  // namespace ipos::tools::lsp

@@ -1,0 +1,49 @@
+// The language server: messages in, messages out. Knows nothing of streams, so tests talk to it directly.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <set>
+
+#include "tools/lsp/workspace.hpp"
+
+namespace ipos::tools::lsp {
+
+class Server {
+ public:
+  // `send` takes the body of a message to the editor.
+  Server(ReadFile read_file, std::function<void(const Json&)> send)
+      : workspace_(std::move(read_file)), send_(std::move(send)) {}
+
+  // Takes a message; it is answered by run(). A cancellation takes effect on what waits.
+  void receive(std::string_view body);
+  // Answers the next message that waits; when none does, tells what changes mean for the diagnostics. False
+  // when there was nothing to do.
+  bool run();
+  bool waiting() const { return !queue_.empty(); }
+
+  bool ended() const { return ended_; }
+  // After exit: 0 when shutdown came before it, as the protocol wants.
+  int exit_code() const { return shut_down_ ? 0 : 1; }
+
+ private:
+  void handle(const Json& message);
+  void request(const Json& id, const std::string& method, const Json& params);
+  void notification(const std::string& method, const Json& params);
+  Json initialize(const Json& params);
+  void document(const std::string& method, const Json& params);
+  void respond(const Json& id, const Json& result);
+  void refuse(const Json& id, ErrorCode code, const std::string& message);
+  void publish();
+
+  Workspace workspace_;
+  std::function<void(const Json&)> send_;
+  std::deque<Json> queue_;
+  std::set<std::string> published_;  // paths with messages shown
+  bool outdated_ = false;            // texts changed since publish()
+  bool initialized_ = false;
+  bool shut_down_ = false;
+  bool ended_ = false;
+};
+
+}  // namespace ipos::tools::lsp

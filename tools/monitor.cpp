@@ -1,0 +1,95 @@
+// The lines of the monitor and its totals.
+#include "tools/monitor.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "runtime/bus/movilink/describe_serial.hpp"
+
+namespace ipos::tools {
+namespace {
+
+using runtime::Time;
+
+constexpr size_t kNamedUnknown = 10;  // identifiers named at the end (ours)
+
+// "(0946684800.000102)", the form of candump logs.
+std::string stamp(Time time) {
+  const std::string line = runtime::candump_line(time, "-", {});
+  return line.substr(0, line.find(' '));
+}
+
+}  // namespace
+
+void Monitor::take(const runtime::LogEntry& entry) {
+  ++seen_;
+  if (!filter_.passes(entry.frame) || full()) return;
+  ++shown_;
+  const runtime::Description description = runtime::describe(names_, entry.frame);
+  if (!description.known) unknown_.emplace(entry.frame.extended, entry.frame.id);
+  show(entry.time, entry.bus, description.text);
+}
+
+void Monitor::take(Time time, const std::string& line, const runtime::Reception& reception) {
+  ++seen_;
+  if (!reception.telegram) ++void_;
+  // What was no telegram concerns everybody.
+  if ((reception.telegram && !filter_.passes(*reception.telegram)) || full()) return;
+  ++shown_;
+  show(time, line, runtime::describe(names_, reception));
+}
+
+void Monitor::lost(Time time, const std::string& line, uint64_t count, const char* what) {
+  lost_ += count;
+  show(time, line, fmt::format("--- {} {} lost", count, what));
+}
+
+void Monitor::bus_error(Time time, const std::string& line, const std::string& text) {
+  ++errors_;
+  if (text == last_error_) {
+    ++repeated_;
+    return;
+  }
+  show(time, line, "--- bus error: " + text);
+  last_error_ = text;
+}
+
+void Monitor::note(const std::string& text) const { fmt::print(stderr, "ipos: warning: {}\n", text); }
+
+void Monitor::show(Time time, const std::string& line, const std::string& text) {
+  end_repetition();
+  last_error_.clear();
+  fmt::print("{} {} {}\n", stamp(time), line, text);
+}
+
+void Monitor::end_repetition() {
+  if (repeated_ != 0) fmt::print("--- the same error {} more times\n", repeated_);
+  repeated_ = 0;
+}
+
+void Monitor::flush() { std::fflush(stdout); }
+
+void Monitor::finish() {
+  end_repetition();
+  flush();
+  std::string text = fmt::format("ipos: {} telegrams, {} shown", seen_, shown_);
+  const auto add = [&text](uint64_t count, const char* what) {
+    if (count != 0) text += fmt::format(", {} {}", count, what);
+  };
+  add(void_, "void");
+  add(lost_, "lost");
+  add(errors_, "bus errors");
+  fmt::print(stderr, "{}\n", text);
+  if (unknown_.empty()) return;
+  std::string list;
+  size_t n = 0;
+  for (const auto& [extended, id] : unknown_) {
+    if (n++ == kNamedUnknown) break;
+    list += fmt::format("{}{}{}", list.empty() ? "" : ", ", id, extended ? " (29 bits)" : "");
+  }
+  fmt::print(stderr, "ipos: nothing is known about {} identifiers: {}{}\n", unknown_.size(), list,
+             unknown_.size() > kNamedUnknown ? ", ..." : "");
+}
+
+}  // namespace ipos::tools

@@ -1,0 +1,55 @@
+// What `ipos bus monitor` shows: telegrams in words, one a line, with what the line lost and the errors of
+// the bus between them where they came. The sources (monitor_sources.hpp) bring the telegrams.
+#pragma once
+
+#include <cstdint>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "runtime/bus/log/candump.hpp"
+#include "runtime/bus/movilink/describe.hpp"
+#include "runtime/bus/movilink/serial_receiver.hpp"
+#include "runtime/bus/movilink/station_filter.hpp"
+
+namespace ipos::tools {
+
+class Monitor {
+ public:
+  // `count` telegrams are shown, 0: no limit.
+  Monitor(runtime::TelegramNames names, runtime::StationFilter filter, uint64_t count)
+      : names_(std::move(names)), filter_(std::move(filter)), limit_(count) {}
+
+  // Times as in candump logs (kCandumpEpoch).
+  void take(const runtime::LogEntry& entry);
+  void take(runtime::Time time, const std::string& line, const runtime::Reception& reception);
+  // Frames or bytes that were lost before they could be read.
+  void lost(runtime::Time time, const std::string& line, uint64_t count, const char* what);
+  // An error of the bus. Equal ones in a row are shown once and counted.
+  void bus_error(runtime::Time time, const std::string& line, const std::string& text);
+  void note(const std::string& text) const;
+
+  bool full() const { return limit_ != 0 && shown_ >= limit_; }
+  void flush();
+
+  // Totals, to standard error.
+  void finish();
+
+ private:
+  void show(runtime::Time time, const std::string& line, const std::string& text);
+  void end_repetition();
+
+  runtime::TelegramNames names_;
+  runtime::StationFilter filter_;
+  uint64_t limit_;
+  uint64_t seen_ = 0;
+  uint64_t shown_ = 0;
+  uint64_t void_ = 0;
+  uint64_t lost_ = 0;
+  uint64_t errors_ = 0;
+  std::string last_error_;
+  uint64_t repeated_ = 0;
+  std::set<std::pair<bool, uint32_t>> unknown_;  // extended, identifier
+};
+
+}  // namespace ipos::tools

@@ -1,0 +1,25 @@
+// What a name on the command line means in a unit: a parameter, a variable or an index.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "stdlib/parameters.hpp"
+
+namespace ipos::tools {
+
+inline constexpr uint16_t kFirstVariable = 11000;  // index of H0 (1053 1610 p. 74)
+
+struct Target {
+  uint16_t index;
+  const stdlib::Parameter* parameter;  // nullptr for variables, program words and curve points
+};
+
+// "P130", "130", an index such as 8470, or "H20"; anything else is a Failure.
+Target find_target(const stdlib::UnitType& unit, const std::string& name);
+
+std::string text_of(const Target& target, int32_t value);
+// "P130 Ramp t11 UP CW"; a view has its own name.
+std::string name_of(const stdlib::ParameterTable& table, const Target& target);
+
+}  // namespace ipos::tools

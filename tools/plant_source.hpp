@@ -1,0 +1,18 @@
+// Plant files for the verbs: read, checked, and the files they name found beside them.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "runtime/plant/plant_file.hpp"
+
+namespace ipos::tools {
+
+// *.toml
+bool is_plant(std::string_view path);
+
+// Errors are printed with their places, then a Failure ends the verb. Memory files are relative to the plant
+// file, and so they come back.
+runtime::PlantFile read_plant(const std::string& path);
+
+}  // namespace ipos::tools

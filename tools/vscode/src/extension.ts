@@ -1,0 +1,123 @@
+// The extension: language client, debugger, tasks, and the text of built-in headers.
+import * as vscode from "vscode";
+import { LanguageClient, TransportKind } from "vscode-languageclient/node";
+
+import * as launch from "./launch";
+
+let client: LanguageClient | undefined;
+
+function settings(): launch.Settings {
+  const all = vscode.workspace.getConfiguration("ipos");
+  return {
+    path: all.get("path", "ipos"),
+    includeDirs: all.get("includeDirs", []),
+    defines: all.get("defines", []),
+    unit: all.get("unit", ""),
+    warnings: all.get("warnings", []),
+  };
+}
+
+async function startServer(): Promise<void> {
+  const { command, args } = launch.serverCommand(settings());
+  client = new LanguageClient(
+    "ipos",
+    "ipos",
+    { command, args, transport: TransportKind.stdio },
+    {
+      documentSelector: [
+        { language: "ipos", scheme: "file" },
+        { language: "ipos", scheme: "untitled" },
+      ],
+      initializationOptions: launch.serverOptions(settings()),
+      synchronize: { fileEvents: vscode.workspace.createFileSystemWatcher("**/*.{IPC,ipc,h,H}") },
+    },
+  );
+  try {
+    await client.start();
+  } catch (error) {
+    client = undefined;
+    const reason = error instanceof Error ? error.message : String(error);
+    void vscode.window.showErrorMessage(`ipos: '${command} ${args.join(" ")}' did not start: ${reason}. See ipos.path.`);
+  }
+}
+
+async function restartServer(): Promise<void> {
+  await client?.stop();
+  await startServer();
+}
+
+// const.h and its like live in the compiler.
+const headers: vscode.TextDocumentContentProvider = {
+  async provideTextDocumentContent(uri: vscode.Uri): Promise<string> {
+    const answer = await client?.sendRequest<{ text: string }>("ipos/header", { uri: uri.toString() });
+    return answer?.text ?? "";
+  },
+};
+
+const debuggers: vscode.DebugAdapterDescriptorFactory = {
+  createDebugAdapterDescriptor(session: vscode.DebugSession): vscode.DebugAdapterDescriptor {
+    const { command, args } = launch.debugCommand(session.configuration as launch.LaunchConfiguration, settings());
+    return new vscode.DebugAdapterExecutable(command, args);
+  },
+};
+
+const configurations: vscode.DebugConfigurationProvider = {
+  resolveDebugConfigurationWithSubstitutedVariables(
+    _folder: vscode.WorkspaceFolder | undefined,
+    configuration: vscode.DebugConfiguration,
+  ): vscode.DebugConfiguration | undefined {
+    const mistake = launch.launchMistake(configuration as launch.LaunchConfiguration);
+    if (mistake === "") return configuration;
+    void vscode.window.showErrorMessage(mistake);
+    return undefined;
+  },
+  resolveDebugConfiguration(
+    _folder: vscode.WorkspaceFolder | undefined,
+    configuration: vscode.DebugConfiguration,
+  ): vscode.DebugConfiguration {
+    // F5 without launch.json.
+    if (configuration.type) return configuration;
+    return { type: "ipos", request: "launch", name: "Debug the open program", program: "${file}" };
+  },
+};
+
+function makeTask(definition: launch.TaskDefinition & vscode.TaskDefinition): vscode.Task {
+  const { command, args } = launch.taskCommand(definition, settings(), "${file}");
+  const task = new vscode.Task(
+    definition,
+    vscode.TaskScope.Workspace,
+    `${definition.task} ${definition.file ?? "the open file"}`,
+    "ipos",
+    new vscode.ProcessExecution(command, args),
+    "$ipos",
+  );
+  if (definition.task === "build") task.group = vscode.TaskGroup.Build;
+  return task;
+}
+
+const tasks: vscode.TaskProvider = {
+  provideTasks: () => [makeTask({ type: "ipos", task: "build" }), makeTask({ type: "ipos", task: "fmt" })],
+  resolveTask: (task) => makeTask(task.definition as launch.TaskDefinition & vscode.TaskDefinition),
+};
+
+export async function activate(context: vscode.ExtensionContext): Promise<void> {
+  context.subscriptions.push(
+    vscode.workspace.registerTextDocumentContentProvider("ipos", headers),
+    vscode.debug.registerDebugAdapterDescriptorFactory("ipos", debuggers),
+    vscode.debug.registerDebugConfigurationProvider("ipos", configurations),
+    vscode.tasks.registerTaskProvider("ipos", tasks),
+    vscode.commands.registerCommand("ipos.restart", restartServer),
+    vscode.workspace.onDidChangeConfiguration(async (change) => {
+      if (change.affectsConfiguration("ipos.path")) await restartServer();
+      else if (change.affectsConfiguration("ipos"))
+        await client?.sendNotification("workspace/didChangeConfiguration", {
+          settings: { ipos: launch.serverOptions(settings()) },
+        });
+    }),
+  );
+  await startServer();
+}
+
+export async function deactivate(): Promise<void> {
+  await client?.stop();
+}

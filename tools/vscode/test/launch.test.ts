@@ -1,0 +1,116 @@
+// What the extension starts, what its manifest promises, and that its problem matcher reads what ipos prints.
+import assert from "node:assert";
+import { type SpawnSyncReturns, spawnSync } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import test from "node:test";
+
+import * as launch from "../src/launch";
+
+const root = join(__dirname, "..", "..");
+const read = (name: string): string => readFileSync(join(root, name), "utf8");
+
+interface Manifest {
+  contributes: {
+    problemMatchers: { pattern: { regexp: string } }[];
+    debuggers: { type: string; configurationAttributes: { launch: { properties: Record<string, unknown> } } }[];
+    taskDefinitions: { properties: { task: { enum: string[] } } }[];
+  };
+}
+const manifest = JSON.parse(read("package.json")) as Manifest;
+
+const settings: launch.Settings = {
+  path: "/opt/ipos",
+  includeDirs: ["inc"],
+  defines: ["A=1"],
+  unit: "mdxb",
+  warnings: ["error"],
+};
+
+test("the server takes all settings but the path", () => {
+  assert.deepStrictEqual(launch.serverCommand(settings), { command: "/opt/ipos", args: ["lsp"] });
+  assert.deepStrictEqual(launch.serverOptions(settings), {
+    includeDirs: ["inc"],
+    defines: ["A=1"],
+    unit: "mdxb",
+    warnings: ["error"],
+  });
+});
+
+test("tasks name the verb, the file and the settings of the compiler", () => {
+  assert.deepStrictEqual(launch.taskCommand({ task: "build" }, settings, "a.IPC").args, [
+    "build", "a.IPC", "-Iinc", "-DA=1", "-Werror", "--unit", "mdxb",
+  ]);
+  assert.deepStrictEqual(launch.taskCommand({ task: "fmt", file: "b.IPC", args: ["--check"] }, settings, "a.IPC").args, [
+    "fmt", "b.IPC", "--check",
+  ]);
+  assert.deepStrictEqual(manifest.contributes.taskDefinitions[0]?.properties.task.enum, ["build", "fmt"]);
+});
+
+test("the debugger is ipos dap, for a program or a plant", () => {
+  const [debuggerType] = manifest.contributes.debuggers;
+  assert.strictEqual(debuggerType?.type, "ipos");
+  assert.ok("program" in debuggerType.configurationAttributes.launch.properties);
+  assert.ok("plant" in debuggerType.configurationAttributes.launch.properties);
+  assert.deepStrictEqual(launch.debugCommand({ program: "a.IPC" }, settings).args, ["dap"]);
+  assert.strictEqual(launch.launchMistake({ program: "a.IPC" }), "");
+  assert.strictEqual(launch.launchMistake({ plant: "p.toml" }), "");
+  assert.notStrictEqual(launch.launchMistake({}), "");
+  assert.notStrictEqual(launch.launchMistake({ program: "a.IPC", plant: "p.toml" }), "");
+});
+
+test("the problem matcher reads the messages of ipos build", (context) => {
+  const program = process.env["IPOS_PROGRAM"];
+  if (program === undefined) return context.skip("IPOS_PROGRAM names no ipos");
+  const folder = mkdtempSync(join(tmpdir(), "ipos-vscode-"));
+  try {
+    const file = join(folder, "bad.IPC");
+    writeFileSync(file, "long unused;\nmain() { speed = 1; H0 = 5 / 0; }\n");
+    const { stderr, status } = spawnSync(program, ["build", file], { encoding: "utf8" });
+    assert.strictEqual(status, 65);
+    const pattern = new RegExp(manifest.contributes.problemMatchers[0]?.pattern.regexp ?? "");
+    const found = stderr.split("\n").flatMap((line) => {
+      const match = pattern.exec(line);
+      return match === null ? [] : [[match[1], match[2], match[3], match[4], match[6]].join("|")];
+    });
+    assert.ok(found.includes(`${file}|2|10|error|E0201`), stderr);
+    assert.ok(found.some((one) => one.includes("|warning|W0206")), stderr);
+  } finally {
+    rmSync(folder, { recursive: true });
+  }
+  return undefined;
+});
+
+test("grammar, snippets and configuration are JSON; snippets need no more than they name", () => {
+  for (const name of ["syntaxes/ipos.tmLanguage.json", "language-configuration.json"]) JSON.parse(read(name));
+  const snippets = JSON.parse(read("snippets/ipos.json")) as Record<string, { prefix: string; body: string[] }>;
+  for (const [name, one] of Object.entries(snippets)) assert.ok(one.prefix !== "" && one.body.length > 0, name);
+});
+
+test("snippets compile", (context) => {
+  const program = process.env["IPOS_PROGRAM"];
+  if (program === undefined) return context.skip("IPOS_PROGRAM names no ipos");
+  const snippets = JSON.parse(read("snippets/ipos.json")) as Record<string, { body: string[] }>;
+  const plain = (body: string[]): string =>
+    body.join("\n").replace(/\$\{\d+\|([^,|]*)[^}]*\}/g, "$1").replace(/\$\{\d+:([^}]*)\}/g, "$1").replace(/\$\d+/g, "");
+  const declarations = "MOVLNK Ml; MLDATA Data; SCTRCYCL Tr; SCREC Rec; long lData, i, condition, value;\n";
+  const folder = mkdtempSync(join(tmpdir(), "ipos-vscode-"));
+  try {
+    for (const [name, one] of Object.entries(snippets)) {
+      const text = plain(one.body);
+      const whole = text.includes("main()")
+        ? text
+        : text.includes("name()")
+          ? `${text}\nmain() { name(); }\n`
+          : `#include <const.h>\n${declarations}main() {\n${text}\n}\n`;
+      const file = join(folder, "snippet.IPC");
+      writeFileSync(file, whole);
+      const result: SpawnSyncReturns<string> = spawnSync(program, ["build", file], { encoding: "utf8" });
+      assert.strictEqual(result.status, 0, `${name}: ${result.stderr}`);
+    }
+  } finally {
+    rmSync(folder, { recursive: true });
+  }
+  return undefined;
+});

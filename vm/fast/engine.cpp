@@ -1,0 +1,309 @@
+// Handlers of all operations. Each one jumps to the next: with g++ by an offset that stands in the slot, in
+// units of the alignment of labels; with clang, which does not align them, by a table; else by a switch. The
+// budget is looked at where a jump leads, for the line of commands behind it; when it may not suffice, step()
+// does what is left of it command by command.
+#include "vm/fast/engine.hpp"
+
+#include <algorithm>
+#include <functional>
+
+#include "vm/fast/fill_loop.hpp"
+
+namespace ipos::vm::fast {
+namespace {
+
+struct State {
+  const Slot* ip;
+  int32_t left;  // see slot.hpp
+};
+
+enum class Exit : uint8_t { Left, Spent };
+
+uint32_t call_depth(const Predecoded& program) {
+  return std::min<uint32_t>(program.program().limits().call_depth, kMaxCallDepth);
+}
+
+#if IPOS_LABEL_ALIGNMENT
+#define DISPATCH() goto*(base + size_t{ip->command.handler} * IPOS_LABEL_ALIGNMENT)
+#elif IPOS_THREADED
+#define DISPATCH() goto* kLabels[ip->command.handler]
+#endif
+#if IPOS_THREADED
+#define BEGIN(name) L_##name:
+#define LABEL(name) &&L_##name,
+#else
+#define BEGIN(name) case static_cast<uint16_t>(Operation::name):
+#define DISPATCH() goto next
+#endif
+
+#define FALL(words) \
+  do {              \
+    ip += (words);  \
+    DISPATCH();     \
+  } while (false)
+
+// A jump by the route at `at`.
+#define TAKE(at)                               \
+  do {                                         \
+    const Slot* const route = (at);            \
+    left -= route->route.delta;                \
+    ip = route + route->route.offset;          \
+    if (left < route->route.bound) goto spent; \
+    DISPATCH();                                \
+  } while (false)
+
+#define CALL()                                                  \
+  do {                                                          \
+    if (t.depth == depth_limit) goto leave;                     \
+    t.calls[t.depth++] = static_cast<uint16_t>(ip - slots + 2); \
+    TAKE(ip + 1);                                               \
+  } while (false)
+
+#define RETURN()                                                                           \
+  do {                                                                                     \
+    if (t.depth == 0) goto leave;                                                          \
+    const uint32_t back = t.calls[--t.depth];                                              \
+    left -= ip->command.number + 1;                                                        \
+    ip = slots + back;                                                                     \
+    left += ip->command.number;                                                            \
+    if (left < static_cast<int32_t>(ip->command.number + program->line(back))) goto spent; \
+    DISPATCH();                                                                            \
+  } while (false)
+
+// Does the parts of an operation and leaves the handler if that ends it.
+#define PARTS(...)                                    \
+  using F = Fused<__VA_ARGS__>;                       \
+  const int end = F::run(ip, h, variables);           \
+  if constexpr (F::kExits[0] != 0)                    \
+    if (end == F::kExits[0]) TAKE(ip + F::kExits[0]); \
+  if constexpr (F::kExits[1] != 0)                    \
+    if (end == F::kExits[1]) TAKE(ip + F::kExits[1]); \
+  if constexpr (F::kFaults)                           \
+    if (end < 0) [[unlikely]] {                       \
+      ip += ~end;                                     \
+      goto leave;                                     \
+    }
+
+// Without a program it gives the table of labels instead.
+Exit execute(const Predecoded* program, TaskContext* context, int32_t* h, State& state,
+             [[maybe_unused]] const void* const** labels) {
+#if IPOS_THREADED
+  static const void* const kLabels[] = {
+#define SPECIAL(name) LABEL(name)
+#define PLAIN(name) LABEL(name)
+#define FUSED(name, ...) LABEL(name)
+#define FUSED_CALL(name, ...) LABEL(name)
+#define FUSED_RET(name, ...) LABEL(name)
+#define FILL(name, ...) LABEL(name)
+#include "vm/fast/operations.def"
+  };
+  if (program == nullptr) {
+    *labels = kLabels;
+    return Exit::Left;
+  }
+  [[maybe_unused]] const char* const base = static_cast<const char*>(program->base());
+#endif
+  TaskContext& t = *context;
+  const Slot* const slots = program->slots();
+  const uint32_t variables = program->program().limits().variables;
+  const uint32_t depth_limit = call_depth(*program);
+  const Slot* ip = state.ip;
+  int32_t left = state.left;
+
+#if IPOS_THREADED
+  DISPATCH();
+#else
+next:
+  switch (ip->command.handler) {
+#endif
+
+#define SPECIAL(name)
+#define PLAIN(name) FUSED(name, O<name>)
+#define FUSED(name, ...)                             \
+  BEGIN(name) {                                      \
+    PARTS(__VA_ARGS__)                               \
+    if constexpr (!F::kAlwaysJumps) FALL(F::kWords); \
+  }
+#define FUSED_CALL(name, ...) \
+  BEGIN(name) {               \
+    PARTS(__VA_ARGS__)        \
+    ip += F::kWords;          \
+    CALL();                   \
+  }
+#define FUSED_RET(name, ...) \
+  BEGIN(name) {              \
+    PARTS(__VA_ARGS__)       \
+    ip += F::kWords;         \
+    RETURN();                \
+  }
+#define FILL(name, ...)                                                  \
+  BEGIN(name) {                                                          \
+    using L = FillLoop<__VA_ARGS__>;                                     \
+    switch (L::run(ip, h, variables, left, ip[L::kRoute].route.bound)) { \
+      case L::End::Done: FALL(L::kWords);                                \
+      case L::End::Spent: goto spent;                                    \
+      case L::End::Fault: ip += L::kStore; goto leave;                   \
+    }                                                                    \
+  }
+#include "vm/fast/operations.def"
+
+  BEGIN(Call) { CALL(); }
+  BEGIN(Ret) { RETURN(); }
+
+  BEGIN(SetSwitchDense) {
+    h[ip->command.a] = h[ip->command.b];
+    ip += 1;
+    goto dense;
+  }
+  BEGIN(SwitchDense) {
+  dense:
+    const uint32_t which = bits(h[ip->command.a]) - bits(ip[1].constant.value);
+    const uint32_t count = ip->command.b;
+    if (which < count) TAKE(ip + 3 * which + 2);
+    FALL(3 * count);
+  }
+  BEGIN(SetSwitchSparse) {
+    h[ip->command.a] = h[ip->command.b];
+    ip += 1;
+    goto sparse;
+  }
+  BEGIN(SwitchSparse) {
+  sparse:
+    const int32_t value = h[ip->command.a];
+    const Slot* const end = ip + 3 * ip->command.b;
+    for (; ip != end; ip += 3)
+      if (ip[1].constant.value == value) TAKE(ip + 2);
+    DISPATCH();
+  }
+  BEGIN(Leave) {
+  leave:
+    state = {ip, left};
+    return Exit::Left;
+  }
+#if !IPOS_THREADED
+  default: goto leave;
+}
+#endif
+spent : state = {ip, left};
+return Exit::Spent;
+}
+
+// Exactly `left` commands, or those in front of one that is left to the reference interpreter. Ends early
+// behind a jump when the budget would do for the line there.
+Exit step(const Predecoded& program, TaskContext& t, int32_t* h, const Slot*& ip, uint32_t& left) {
+  const Slot* const slots = program.slots();
+  const uint32_t* const code = program.program().code().data();
+  const uint32_t variables = program.program().limits().variables;
+  const uint32_t depth_limit = call_depth(program);
+  while (left != 0) {
+    const Slot* to = nullptr;
+    switch (static_cast<Opcode>(code[ip - slots] & 0xFF)) {
+#define SPECIAL(name)
+#define FUSED(name, ...)
+#define FUSED_CALL(name, ...)
+#define FUSED_RET(name, ...)
+#define FILL(name, ...)
+#define PLAIN(name)                               \
+  case Opcode::name: {                            \
+    using F = Fused<O<name>>;                     \
+    const int end = F::run(ip, h, variables);     \
+    if (F::kFaults && end < 0) return Exit::Left; \
+    if (F::kTests && end > 0)                     \
+      to = ip + end + ip[end].route.offset;       \
+    else                                          \
+      ip += F::kWords;                            \
+    break;                                        \
+  }
+#include "vm/fast/operations.def"
+      case Opcode::Call:
+        if (t.depth == depth_limit) return Exit::Left;
+        t.calls[t.depth++] = static_cast<uint16_t>(ip - slots + 2);
+        to = ip + 1 + ip[1].route.offset;
+        break;
+      case Opcode::Ret:
+        if (t.depth == 0) return Exit::Left;
+        to = slots + t.calls[--t.depth];
+        break;
+      default: return Exit::Left;
+    }
+    --left;
+    if (to == nullptr) continue;
+    ip = to;
+    if (left >= program.line(static_cast<uint32_t>(ip - slots))) break;
+  }
+  return Exit::Spent;
+}
+
+#undef BEGIN
+#undef DISPATCH
+#undef LABEL
+#undef FALL
+#undef TAKE
+#undef CALL
+#undef RETURN
+#undef PARTS
+
+}  // namespace
+
+#if IPOS_LABEL_ALIGNMENT
+namespace {
+
+const void* const* labels() {
+  const void* const* out = nullptr;
+  State none{};
+  execute(nullptr, nullptr, nullptr, none, &out);
+  return out;
+}
+
+}  // namespace
+
+const void* handler_base() {
+  const void* const* const all = labels();
+  return *std::min_element(all, all + static_cast<size_t>(Operation::kCount), std::less<>());
+}
+
+uint16_t handler_of(Operation operation, const void* base) {
+  const auto distance =
+      static_cast<const char*>(labels()[static_cast<size_t>(operation)]) - static_cast<const char*>(base);
+  return static_cast<uint16_t>(distance / IPOS_LABEL_ALIGNMENT);
+}
+#else
+const void* handler_base() { return nullptr; }
+uint16_t handler_of(Operation operation, const void*) { return static_cast<uint16_t>(operation); }
+#endif
+
+uint32_t run(const Predecoded& program, const Native* native, TaskContext& t, int32_t* h, uint32_t budget) {
+  const Slot* const slots = program.slots();
+  const Slot* ip = slots + t.pc;
+  uint32_t left = budget;
+  for (;;) {
+    Exit exit = Exit::Spent;
+    if (native != nullptr && left != 0) {
+      const auto enters = [&] { return native->needs[static_cast<size_t>(ip - slots)] != 0; };
+      // Where there is no way in one command is done here, so that it is found behind it.
+      if (!enters()) {
+        uint32_t one = 1;
+        if (step(program, t, h, ip, one) == Exit::Left) break;
+        --left;
+        continue;
+      }
+      t.pc = static_cast<uint32_t>(ip - slots);
+      if (left >= native->needs[t.pc]) left = native->run(*native, t, h, left);
+      ip = slots + t.pc;
+      if (left != 0 && !enters()) continue;
+    }
+    if (left >= program.line(static_cast<uint32_t>(ip - slots))) {
+      State state{ip, static_cast<int32_t>(left + ip->command.number)};
+      exit = execute(&program, &t, h, state, nullptr);
+      ip = state.ip;
+      left = static_cast<uint32_t>(state.left) - ip->command.number;
+    }
+    if (exit == Exit::Spent) exit = step(program, t, h, ip, left);
+    if (exit == Exit::Left || left == 0) break;
+  }
+  t.pc = static_cast<uint32_t>(ip - slots);
+  t.commands += budget - left;
+  return budget - left;
+}
+
+}  // namespace ipos::vm::fast

@@ -1,0 +1,121 @@
+// The way into machine code, out of it, and back from subroutines it has not called itself.
+//
+// The code's stack is a block of 1 KiB whose address is a multiple of that. It begins so far above the
+// block's start that as many calls fit below as may still nest: a CALL has to look only whether the low bits
+// of the stack pointer are 0. Where calls of the context return to, returns_to_context() stands instead.
+// Above them are the caller's stack pointer and the frame.
+#include <cstddef>
+
+#include "vm/jit/emitter.hpp"
+
+namespace ipos::vm::jit {
+namespace {
+
+constexpr int32_t kCaller = kBlock - 16;
+constexpr int32_t kFrame = kBlock - 8;
+static_assert((kMaxCallDepth + 2) * 8 < kCaller);
+
+constexpr x86::Gp kSaved[] = {x86::rbx, x86::rbp, x86::r12, x86::r13, x86::r14, x86::r15};
+
+x86::Mem field(x86::Gp frame, size_t offset) { return x86::ptr(frame, static_cast<int32_t>(offset)); }
+
+}  // namespace
+
+void Emitter::block_base(x86::Gp to) {
+  a_.mov(to, x86::rsp);
+  a_.and_(to, -kBlock);
+}
+
+void Emitter::move_pins(bool stores) {
+  for (size_t n = 0; n < pinned_.size(); ++n) {
+    if (stores)
+      a_.mov(memory(pinned_[n]), kPins[n]);
+    else
+      a_.mov(kPins[n], memory(pinned_[n]));
+  }
+}
+
+// The first byte of the code: void enter(Frame*).
+void Emitter::enter() {
+  for (const x86::Gp& saved : kSaved) a_.push(saved);
+  a_.mov(x86::rax, x86::rsp);
+  a_.sub(x86::rsp, 2 * kBlock);
+  a_.and_(x86::rsp, -kBlock);
+  a_.mov(x86::ptr(x86::rsp, kCaller), x86::rax);
+  a_.mov(x86::ptr(x86::rsp, kFrame), x86::rdi);
+  a_.mov(x86::rcx, field(x86::rdi, offsetof(Frame, free_calls)));
+  a_.lea(x86::rsi, x86::ptr(x86::rsp, x86::rcx, 3));
+  a_.mov(x86::rdx, field(x86::rdi, offsetof(Frame, context)));
+  a_.movzx(x86::ecx, x86::byte_ptr(x86::rdx, offsetof(TaskContext, depth)));
+  a_.lea(x86::rax, x86::ptr(returned_));
+  const asmjit::Label again = a_.newLabel();
+  a_.bind(again);
+  a_.mov(x86::ptr(x86::rsi, x86::rcx, 3), x86::rax);
+  a_.sub(x86::ecx, 1);
+  a_.jns(again);
+  a_.mov(x86::rsp, x86::rsi);
+  a_.mov(h_, field(x86::rdi, offsetof(Frame, h)));
+  a_.mov(number_, field(x86::rdi, offsetof(Frame, number)));
+  a_.mov(x86::rax, field(x86::rdi, offsetof(Frame, target)));
+  move_pins(false);
+  a_.jmp(x86::rax);
+}
+
+// eax is the word address, the number is that of the commands left.
+void Emitter::leave() {
+  a_.bind(leave_);
+  move_pins(true);
+  block_base(x86::rbx);
+  a_.mov(x86::rdi, x86::ptr(x86::rbx, kFrame));
+  a_.mov(field(x86::rdi, offsetof(Frame, pc)), x86::eax);
+  a_.mov(field(x86::rdi, offsetof(Frame, number)), number_);
+  a_.mov(x86::rsi, x86::rsp);
+  a_.and_(x86::rsp, -16);
+  a_.mov(x86::rax, asmjit::Imm(reinterpret_cast<uintptr_t>(unwind_)));
+  a_.call(x86::rax);
+  a_.mov(x86::rsp, x86::ptr(x86::rbx, kCaller));
+  for (size_t n = std::size(kSaved); n-- > 0;) a_.pop(kSaved[n]);
+  a_.ret();
+}
+
+// A RET has found no call of machine code. eax is its word address.
+void Emitter::returns_to_context() {
+  static_assert(sizeof(TaskContext{}.calls[0]) == 2, "the loads of `calls` below are of words");
+  const asmjit::Label ends = a_.newLabel(), unknown = a_.newLabel(), table = a_.newLabel();
+  const auto context = [&] {
+    block_base(x86::rcx);
+    a_.mov(x86::rcx, x86::ptr(x86::rcx, kFrame));
+    a_.mov(x86::rcx, field(x86::rcx, offsetof(Frame, context)));
+  };
+  const x86::Mem depth = x86::byte_ptr(x86::rcx, offsetof(TaskContext, depth));
+  a_.bind(returned_);
+  context();
+  a_.cmp(depth, 0);
+  a_.je(ends);
+  a_.dec(depth);
+  a_.movzx(x86::eax, depth);
+  a_.movzx(x86::eax, x86::word_ptr(x86::rcx, x86::rax, 1, offsetof(TaskContext, calls)));
+  a_.lea(x86::rcx, x86::ptr(table));
+  a_.movsxd(x86::rax, x86::dword_ptr(x86::rcx, x86::rax, 2));
+  a_.add(x86::rax, x86::rcx);
+  a_.jmp(x86::rax);
+  // Where no machine code is: the engines go on there.
+  a_.bind(unknown);
+  context();
+  a_.movzx(x86::eax, depth);
+  a_.movzx(x86::eax, x86::word_ptr(x86::rcx, x86::rax, 1, offsetof(TaskContext, calls)));
+  a_.jmp(leave_);
+  // Nothing was called: the RET is not for machine code.
+  a_.bind(ends);
+  a_.sub(x86::rsp, 8);
+  a_.add(number_, 1);
+  a_.jmp(leave_);
+  a_.align(asmjit::AlignMode::kData, 4);
+  a_.bind(table);
+  for (const uint32_t n : program_.index)
+    a_.embedLabelDelta(
+        n != kNowhere && program_.commands[n].called && labels_[n].isValid() ? labels_[n] : unknown, table,
+        4);
+}
+
+}  // namespace ipos::vm::jit

@@ -1,0 +1,281 @@
+// Commands that work on variables, as machine code.
+#include <bit>
+
+#include "vm/exec/arithmetic.hpp"
+#include "vm/jit/emitter.hpp"
+
+namespace ipos::vm::jit {
+namespace {
+
+using asmjit::Imm;
+using Id = x86::Inst::Id;
+
+}  // namespace
+
+// Two commands in one: SET a = b and what works on a then.
+bool Emitter::fused(const Instruction& first, const Instruction& second) {
+  if (first.opcode != Opcode::SetHH || second.operands[0] != first.operands[0]) return false;
+  const auto to = pin(first.operands[0]);
+  const auto from = pin(first.operands[1]);
+  if (!to || first.operands[0] == first.operands[1]) return false;
+  const int32_t operand = second.operands[1];
+  switch (second.opcode) {
+    case Opcode::MulHK: multiply_constant(*to, first.operands[1], operand); return true;
+    case Opcode::AddHK:
+      if (from) a_.lea(*to, x86::ptr(from->r64(), operand));
+      return from.has_value();
+    case Opcode::SubHK:
+      if (from) a_.lea(*to, x86::ptr(from->r64(), subtract(0, operand)));
+      return from.has_value();
+    case Opcode::AddHH: {
+      const auto other = pin(operand);
+      if (!from || !other || operand == first.operands[0]) return false;
+      a_.lea(*to, x86::ptr(from->r64(), other->r64()));
+      return true;
+    }
+    default: return false;
+  }
+}
+
+void Emitter::data(uint32_t n) {
+  const Instruction& command = program_.commands[n].instruction;
+  const int32_t a = command.operands[0];
+  const int32_t b = command.operands[1];
+  switch (command.opcode) {
+    case Opcode::SetHH: set(a, b); break;
+    case Opcode::SetHK: a_.emit(Id::kIdMov, place(a), Imm(b)); break;
+    case Opcode::NotH:
+      set(a, b);
+      a_.emit(Id::kIdNot, place(a));
+      break;
+    case Opcode::AddHH: alu(Id::kIdAdd, a, command, false); break;
+    case Opcode::SubHH: alu(Id::kIdSub, a, command, false); break;
+    case Opcode::AndHH: alu(Id::kIdAnd, a, command, false); break;
+    case Opcode::OrHH: alu(Id::kIdOr, a, command, false); break;
+    case Opcode::XorHH: alu(Id::kIdXor, a, command, false); break;
+    case Opcode::AddHK: alu(Id::kIdAdd, a, command, true); break;
+    case Opcode::SubHK: alu(Id::kIdSub, a, command, true); break;
+    case Opcode::AndHK: alu(Id::kIdAnd, a, command, true); break;
+    case Opcode::OrHK: alu(Id::kIdOr, a, command, true); break;
+    case Opcode::XorHK: alu(Id::kIdXor, a, command, true); break;
+    case Opcode::MulHH: multiply(a, command, false); break;
+    case Opcode::MulHK: multiply(a, command, true); break;
+    case Opcode::ShlHH: shift(Id::kIdShl, a, command, false); break;
+    case Opcode::ShrHH: shift(Id::kIdShr, a, command, false); break;
+    case Opcode::AshrHH: shift(Id::kIdSar, a, command, false); break;
+    case Opcode::ShlHK: shift(Id::kIdShl, a, command, true); break;
+    case Opcode::ShrHK: shift(Id::kIdShr, a, command, true); break;
+    case Opcode::AshrHK: shift(Id::kIdSar, a, command, true); break;
+    case Opcode::DivHH: divide(n, true); break;
+    case Opcode::ModHH: divide(n, false); break;
+    case Opcode::DivHK: divide_constant(command, true); break;
+    case Opcode::ModHK: divide_constant(command, false); break;
+    case Opcode::SetiLoad: load(n); break;
+    case Opcode::SetiStore: store(n); break;
+    case Opcode::BitSet: a_.emit(Id::kIdOr, place(a), Imm(wrap(1U << b))); break;
+    case Opcode::BitClear: a_.emit(Id::kIdAnd, place(a), Imm(wrap(~(1U << b)))); break;
+    case Opcode::BitMove: move_bit(command, false); break;
+    case Opcode::BitMoveNeg: move_bit(command, true); break;
+    default: break;  // NOP
+  }
+}
+
+void Emitter::set(int32_t to, int32_t from) {
+  if (to == from) return;
+  if (pin(to) || pin(from)) {
+    a_.emit(Id::kIdMov, place(to), place(from));
+  } else {
+    a_.mov(x86::eax, memory(from));
+    a_.mov(memory(to), x86::eax);
+  }
+}
+
+void Emitter::alu(asmjit::InstId id, int32_t to, const Instruction& command, bool constant) {
+  const int32_t b = command.operands[1];
+  if (constant) {
+    a_.emit(id, place(to), Imm(b));
+  } else if (pin(to) || pin(b)) {
+    a_.emit(id, place(to), place(b));
+  } else {
+    a_.mov(x86::eax, memory(b));
+    a_.emit(id, place(to), x86::eax);
+  }
+  flags_of_ = to;
+}
+
+void Emitter::multiply(int32_t to, const Instruction& command, bool constant) {
+  const x86::Gp result = pin(to).value_or(x86::eax);
+  if (constant) {
+    multiply_constant(result, to, command.operands[1]);
+  } else {
+    if (!pin(to)) a_.mov(result, memory(to));
+    a_.emit(Id::kIdImul, result, place(command.operands[1]));
+  }
+  if (!pin(to)) a_.mov(memory(to), result);
+}
+
+void Emitter::multiply_constant(x86::Gp to, int32_t from, int32_t factor) {
+  const auto source = pin(from);
+  const auto move = [&] {
+    if (source != to) a_.emit(Id::kIdMov, to, place(from));
+  };
+  if (source && (factor == 3 || factor == 5 || factor == 9)) {
+    const uint32_t shift = factor == 3 ? 1 : factor == 5 ? 2 : 3;
+    a_.lea(to, x86::ptr(source->r64(), source->r64(), shift));
+  } else if (factor == -1) {
+    move();
+    a_.neg(to);
+  } else if (std::has_single_bit(bits(factor))) {
+    move();
+    if (factor != 1) a_.shl(to, std::countr_zero(bits(factor)));
+  } else {
+    a_.emit(Id::kIdImul, to, place(from), Imm(factor));
+  }
+}
+
+void Emitter::shift(asmjit::InstId id, int32_t to, const Instruction& command, bool constant) {
+  if (constant) {
+    const int32_t count = command.operands[1] & 31;
+    if (count != 0) a_.emit(id, place(to), Imm(count));
+  } else {
+    a_.emit(Id::kIdMov, x86::ecx, place(command.operands[1]));
+    a_.emit(id, place(to), x86::cl);
+  }
+}
+
+// The divisor 0 is left to the engines; by -1 it is a negation, as the processor has no answer for the
+// smallest number. edx may be a variable's: it rests in the stack's red zone.
+void Emitter::divide(uint32_t n, bool quotient) {
+  const Command& command = program_.commands[n];
+  const int32_t a = command.instruction.operands[0];
+  const asmjit::Label usual = a_.newLabel(), done = a_.newLabel();
+  a_.emit(Id::kIdMov, x86::ecx, place(command.instruction.operands[1]));
+  a_.test(x86::ecx, x86::ecx);
+  a_.jz(exit(n, command.credit));
+  a_.cmp(x86::ecx, -1);
+  a_.jne(usual);
+  if (quotient)
+    a_.emit(Id::kIdNeg, place(a));
+  else
+    a_.emit(Id::kIdMov, place(a), Imm(0));
+  a_.jmp(done);
+  a_.bind(usual);
+  a_.emit(Id::kIdMov, x86::eax, place(a));
+  const bool in_use = pinned_.size() == kPins.size();
+  if (in_use) a_.mov(x86::dword_ptr(x86::rsp, -8), x86::edx);
+  a_.cdq();
+  a_.idiv(x86::ecx);
+  a_.mov(x86::ecx, quotient ? x86::eax : x86::edx);
+  if (in_use) a_.mov(x86::edx, x86::dword_ptr(x86::rsp, -8));
+  a_.emit(Id::kIdMov, place(a), x86::ecx);
+  a_.bind(done);
+}
+
+// By multiplication with 2^(32 + s) / divisor, rounded up, where 2^s is the power of 2 not below half of the
+// divisor: below 2^32, and exact for all 32-bit dividends (Granlund and Montgomery, 1994). Toward zero: one
+// more for what is negative.
+void Emitter::divide_constant(const Instruction& command, bool quotient) {
+  const int32_t a = command.operands[0];
+  const int32_t divisor = command.operands[1];
+  const uint32_t size = divisor < 0 ? 0U - bits(divisor) : bits(divisor);
+  if (size == 1) {
+    if (!quotient)
+      a_.emit(Id::kIdMov, place(a), Imm(0));
+    else if (divisor == -1)
+      a_.emit(Id::kIdNeg, place(a));
+    return;
+  }
+  const int power = 32 + std::bit_width(size - 1) - 1;
+  const uint64_t factor = (uint64_t{1} << power) / size + 1;
+  a_.emit(Id::kIdMovsxd, x86::rax, place(a));
+  a_.mov(x86::ecx, static_cast<uint32_t>(factor));
+  a_.imul(x86::rax, x86::rcx);
+  a_.sar(x86::rax, power);
+  a_.emit(Id::kIdMov, x86::ecx, place(a));
+  a_.shr(x86::ecx, 31);
+  a_.add(x86::eax, x86::ecx);
+  if (divisor < 0) a_.neg(x86::eax);
+  if (quotient) {
+    a_.emit(Id::kIdMov, place(a), x86::eax);
+  } else {
+    a_.imul(x86::eax, x86::eax, divisor);
+    a_.emit(Id::kIdSub, place(a), x86::eax);
+  }
+}
+
+void Emitter::move_bit(const Instruction& command, bool inverted) {
+  const int32_t a = command.operands[0];
+  const int32_t bit = command.operands[1];
+  a_.emit(Id::kIdMov, x86::eax, place(command.operands[2]));
+  if (inverted) a_.not_(x86::eax);
+  if (command.operands[3] != 0) a_.shr(x86::eax, command.operands[3]);
+  a_.and_(x86::eax, 1);
+  if (bit != 0) a_.shl(x86::eax, bit);
+  a_.emit(Id::kIdAnd, place(a), Imm(wrap(~(1U << bit))));
+  a_.emit(Id::kIdOr, place(a), x86::eax);
+}
+
+void Emitter::compare(const Instruction& command, bool constant) {
+  const int32_t a = command.operands[0];
+  const int32_t b = command.operands[1];
+  if (constant && b == 0 && pin(a)) {
+    a_.test(*pin(a), *pin(a));
+  } else if (constant) {
+    a_.emit(Id::kIdCmp, place(a), Imm(b));
+  } else if (pin(a) || pin(b)) {
+    a_.emit(Id::kIdCmp, place(a), place(b));
+  } else {
+    a_.mov(x86::eax, memory(a));
+    a_.cmp(x86::eax, memory(b));
+  }
+}
+
+// The range of variables in memory an index most likely leads to; where nothing tells, the longest.
+Emitter::Range Emitter::range_for(uint32_t n) const {
+  const int32_t table = program_.commands[n].table;
+  Range longest{0, 0};
+  for (const Range& range : ranges_) {
+    if (table >= 0 && bits(table) - range.first < range.count) return range;
+    if (range.count > longest.count) longest = range;
+  }
+  return longest;
+}
+
+// A register with the number of a variable in memory; ecx when it was not in one.
+x86::Gp Emitter::checked_index(uint32_t n, int32_t variable, const asmjit::Label& slow) {
+  const Range range = range_for(n);
+  const x86::Gp index = pin(variable).value_or(x86::ecx);
+  if (!pin(variable)) a_.mov(index, memory(variable));
+  if (range.first == 0) {
+    a_.cmp(index, range.count);
+  } else {
+    a_.lea(x86::eax, x86::ptr(index.r64(), -static_cast<int32_t>(range.first)));
+    a_.cmp(x86::eax, range.count);
+  }
+  a_.jae(slow);
+  return index;
+}
+
+void Emitter::load(uint32_t n) {
+  const auto& operands = program_.commands[n].instruction.operands;
+  const Slow slow{a_.newLabel(), a_.newLabel(), n};
+  const x86::Gp index = checked_index(n, operands[1], slow.label);
+  const x86::Gp result = pin(operands[0]).value_or(x86::eax);
+  a_.mov(result, indexed(index));
+  if (!pin(operands[0])) a_.mov(memory(operands[0]), result);
+  a_.bind(slow.back);
+  slow_.push_back(slow);
+}
+
+void Emitter::store(uint32_t n) {
+  const auto& operands = program_.commands[n].instruction.operands;
+  const Slow slow{a_.newLabel(), a_.newLabel(), n};
+  const x86::Gp index = checked_index(n, operands[0], slow.label);
+  const x86::Gp value = pin(operands[1]).value_or(x86::eax);
+  if (!pin(operands[1])) a_.mov(value, memory(operands[1]));
+  a_.mov(indexed(index), value);
+  a_.bind(slow.back);
+  slow_.push_back(slow);
+}
+
+}  // namespace ipos::vm::jit
