@@ -19,6 +19,7 @@
 #include "tools/recording.hpp"
 #include "tools/run_report.hpp"
 #include "tools/trace_csv.hpp"
+#include "tools/trace_hash.hpp"
 #include "tools/verbs.hpp"
 #include "tools/watch.hpp"
 
@@ -41,6 +42,7 @@ struct RunFlags {
   std::string format = "text";
   bool realtime = false;
   bool why = false;
+  bool trace_hash = false;
   CompileFlags compile;
 };
 
@@ -147,6 +149,9 @@ int run(const RunFlags& flags) {
   if (log_file.is_open()) plant.add_observer(log);
   if (serial_file.is_open()) plant.add_observer(serial_log);
 
+  std::optional<TraceHash> trace_hash;
+  if (flags.trace_hash) trace_hash.emplace(plant);
+
   catch_interrupts();
   std::optional<RealTimeRun> real_time;
   if (flags.realtime) real_time.emplace(plant, flags.file);
@@ -155,6 +160,7 @@ int run(const RunFlags& flags) {
     Watcher watcher(flags, plant, limit);
     const auto keep_going = [&](Time now) {
       if (recorder) recorder->sample(now);
+      if (trace_hash) trace_hash->sample(now);
       return watcher.keep_going(now);
     };
     if (real_time)
@@ -179,6 +185,7 @@ int run(const RunFlags& flags) {
       fmt::print(stderr, "ipos: warning: no station has a variable '{}'\n", name);
   fmt::print("{}", flags.format == "json" ? json_report(plant, watch) : text_report(plant, watch));
   print_journal(plant, flags.why);
+  if (trace_hash) fmt::print(stderr, "trace hash {}\n", trace_hash->text());
   const size_t unmet = print_expectations(plant, flags.file);
   if (interrupted()) return kInterrupted;
   if (!ports_there || !stored) return kIoError;
@@ -214,6 +221,8 @@ void add_run(CLI::App& app, int& exit_code) {
       ->delimiter(',')
       ->allow_extra_args(false);
   verb->add_option("--format", flags->format, "text or json")->check(CLI::IsMember({"text", "json"}));
+  verb->add_flag("--trace-hash", flags->trace_hash,
+                 "print one number over all states, frames and telegrams, to compare runs and builds");
   verb->add_flag("--realtime", flags->realtime,
                  "keep pace with the clock, and join buses that have a port to the real world");
   verb->add_flag("--why", flags->why, "also tell what was ignored, and why");
