@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -32,7 +33,7 @@ std::map<std::string, uint64_t> recorded() {
 }
 
 uint64_t count_operations(const std::string& name) {
-  const std::string path = std::string(IPOS_BENCH_DIR) + "/programs/" + name + ".IPC";
+  const auto path = std::filesystem::path(IPOS_BENCH_DIR) / "programs" / (name + ".IPC");
   std::ifstream in(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   compiler::CompileOptions options;

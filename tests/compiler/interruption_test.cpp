@@ -12,13 +12,8 @@
 namespace ipos::compiler::test {
 namespace {
 
-// All three compute with temporaries, through a function they share and through conditions, steps and
-// pointers.
-const char* const kProgram = R"(
-long r1, r2, r3, in, p, v[4], w, q, i, sum;
-// Reached by all three: each has a copy with temporaries of its own.
-shared() { if ((in + 3) * (in - 5) - (in << 2) * (7 - in) == 0) sum = (in + 1) * (in + 2); }
-t2() {
+// Tasks 2 and 3 of both programs.
+const std::string kTasks2And3 = R"(t2() {
   r2 = (in + 1) * (in + 2) - (in + 3) * (in - (in + 4) * 3);
   shared();
   v[in & 3] = r2 * (in - 1) + (r2 > in) * 2;
@@ -29,7 +24,15 @@ t3() {
   shared();
   r3 = r3 * 2 - (r3 + 7) * (r3 - 3) + (in == 11) * (r3 - 1);
 }
-main() {
+)";
+
+// All three compute with temporaries, through a function they share and through conditions, steps and
+// pointers.
+const std::string kProgram = R"(
+long r1, r2, r3, in, p, v[4], w, q, i, sum;
+// Reached by all three: each has a copy with temporaries of its own.
+shared() { if ((in + 3) * (in - 5) - (in << 2) * (7 - in) == 0) sum = (in + 1) * (in + 2); }
+)" + kTasks2And3 + R"(main() {
   _SetTask2(T2_START, t2);
   _SetTask(T2_START, t3);
   r1 = (in * 3 + 4) * (in - 7) - (in + 2) * (in - (in + 1) * (in - 3));
@@ -47,7 +50,7 @@ main() {
 )";
 
 // Three interrupts of task 1 and a variable interrupt each of tasks 2 and 3; all of them compute as above.
-const char* const kInterrupted = R"(
+const std::string kInterrupted = R"(
 #pragma globals 200 259
 #pragma var 260 359
 long r1, r2, r3, rt, rp, re, v2, v3, in, p, v[4], w, q, i, sum, e2, e3;
@@ -58,18 +61,7 @@ probe() { rp = (in + 2) * (in - 3) - (in + 4) * (in - (in + 5)); shared(); rp = 
 error() { re = (in + 3) * (in - 4) - (in + 5) * (in - (in + 6)); shared(); re = re * 9 - (re + 3) * (in < 12); }
 i2() { v2 = (in + 4) * (in - 5) - (in + 6) * (in - (in + 7)); shared(); v2 = v2 * 3 - (v2 + 4) * (in != 3); }
 i3() { v3 = (in + 5) * (in - 6) - (in + 7) * (in - (in + 8)); shared(); v3 = v3 * 2 - (v3 + 5) * (in >= 9); }
-t2() {
-  r2 = (in + 1) * (in + 2) - (in + 3) * (in - (in + 4) * 3);
-  shared();
-  v[in & 3] = r2 * (in - 1) + (r2 > in) * 2;
-  r2 = r2 * 3 - (r2 + v[in & 3]) * (r2 - 2) + (in < r2) * (in + 5);
-}
-t3() {
-  r3 = (in + 4) * (in - 2) - ((in ^ 9) + 3) * (in - (in << 1) * 5);
-  shared();
-  r3 = r3 * 2 - (r3 + 7) * (r3 - 3) + (in == 11) * (r3 - 1);
-}
-main() {
+)" + kTasks2And3 + R"(main() {
   _SetInterrupt(SI_ERROR, error);
   _SetInterrupt(SI_TOUCHP1, probe);
   _SetInterrupt(SI_TIMER0, timer);
@@ -95,7 +87,7 @@ class Interruption : public testing::Test {
  protected:
   void SetUp() override { compile_program(kProgram); }
 
-  void compile_program(const char* text) {
+  void compile_program(const std::string& text) {
     compilation_ = compile_text(std::string("#include <const.h>") + text, "mdxb");
     ASSERT_TRUE(compilation_.image) << render_text(compilation_.diagnostics.all(), *compilation_.sources,
                                                    false);

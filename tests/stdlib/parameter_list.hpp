@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -27,7 +28,7 @@ inline std::vector<std::string> split(const std::string& text, char separator) {
 
 inline std::vector<Cells> read_list(const std::string& file) {
   std::vector<Cells> rows;
-  std::ifstream in(std::string(IPOS_PARAMETER_LISTS) + "/" + file);
+  std::ifstream in(std::filesystem::path(IPOS_PARAMETER_LISTS) / file);
   std::vector<std::string> columns;
   std::string line;
   while (std::getline(in, line)) {
