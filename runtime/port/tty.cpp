@@ -44,8 +44,8 @@ bool set_low_latency(int descriptor) {
   return ioctl(descriptor, TIOCSSERIAL, &serial) == 0;
 }
 
-// A pseudo-terminal (Linux: majors 136 to 143) has neither a speed nor parity, and the program at its other end
-// may change what it says of them at any time.
+// A pseudo-terminal (Linux: majors 136 to 143) has neither a speed nor parity, and the program at its other
+// end may change what it says of them at any time.
 bool is_pseudo_terminal(int descriptor) {
   struct stat status {};
   return fstat(descriptor, &status) == 0 && S_ISCHR(status.st_mode) && major(status.st_rdev) >= 136 &&
