@@ -14,8 +14,8 @@ void Builder::report(const Problems& problems) {
   for (const Problem& problem : problems) diagnostics_.report(problem.diag, problem.span, problem.args);
 }
 
-void Builder::problem(Diag diag, Span span, std::string name) {
-  diagnostics_.report(diag, span, {std::move(name)});
+void Builder::problem(Diag diag, Span span, std::string_view name) {
+  diagnostics_.report(diag, span, {std::string(name)});
 }
 
 void Builder::global(ParsedVariables variables) {
@@ -28,7 +28,7 @@ void Builder::local(ParsedVariables variables) {
   // Where a '}' is missing before it the declaration is innocent; the missing brace is reported elsewhere.
   const ast::Ident& first = variables.decl.declarators[0].name;
   if (!(open_brace_ && is_line_head(variables.decl.span)))
-    diagnostics_.report(Diag::LocalDeclaration, variables.decl.span, {first.text});
+    diagnostics_.report(Diag::LocalDeclaration, variables.decl.span, {std::string(first.text)});
   program_.declarations.emplace_back(std::move(variables.decl));
 }
 
@@ -48,7 +48,7 @@ void Builder::function(Span span, ast::Ident name, ast::StmtPtr body) {
 }
 
 void Builder::function_with_result(Span span, Span type, ast::Ident name, ast::StmtPtr body) {
-  diagnostics_.report(Diag::FunctionResult, type, {name.text});
+  diagnostics_.report(Diag::FunctionResult, type, {std::string(name.text)});
   function(span, std::move(name), std::move(body));
 }
 
@@ -70,23 +70,24 @@ ParsedVariables Builder::variables(Span span, bool initial, ParsedType type,
 ParsedType Builder::type(ast::Ident word) { return {std::move(word), {}}; }
 
 ParsedType Builder::qualified(ast::Ident qualifier, ParsedType type) {
-  type.problems.push_back({Diag::ForeignQualifier, qualifier.span, {qualifier.text}});
+  type.problems.push_back({Diag::ForeignQualifier, qualifier.span, {std::string(qualifier.text)}});
   return type;
 }
 
 ParsedType Builder::struct_type(Span span, ast::Ident name) {
-  Problem problem{Diag::StructWithoutTypedef, span, {name.text, name.text}};
+  Problem problem{Diag::StructWithoutTypedef, span, {std::string(name.text), std::string(name.text)}};
   return {std::move(name), {std::move(problem)}};
 }
 
 ParsedType Builder::foreign_type(Span span, ast::Ident word) {
-  return {{"long", span}, {{Diag::ForeignType, span, {word.text}}}};
+  return {{"long", span}, {{Diag::ForeignType, span, {std::string(word.text)}}}};
 }
 
 // `unsigned long`, `long int`, `long long`: one message for all the words.
 ParsedType Builder::two_types(ParsedType first, ast::Ident second) {
   const std::string words =
-      (first.problems.empty() ? first.name.text : first.problems[0].args[0]) + ' ' + second.text;
+      (first.problems.empty() ? std::string(first.name.text) : first.problems[0].args[0]) + ' ' +
+      std::string(second.text);
   const Span span{first.name.span.begin, second.span.end};
   return {{"long", span}, {{Diag::ForeignType, span, {words}}}};
 }
@@ -94,31 +95,33 @@ ParsedType Builder::two_types(ParsedType first, ast::Ident second) {
 ParsedDeclarator Builder::declarator(ast::Ident name) { return {{std::move(name), nullptr}, {}}; }
 
 ParsedDeclarator Builder::declared_type(ast::Ident name) {
-  Problem problem{Diag::NameIsType, name.span, {name.text}};
+  Problem problem{Diag::NameIsType, name.span, {std::string(name.text)}};
   return {{std::move(name), nullptr}, {std::move(problem)}};
 }
 
 ParsedDeclarator Builder::initialized(ParsedDeclarator declarator, Span assign) {
-  declarator.problems.push_back({Diag::Initializer, assign, {declarator.declarator.name.text}});
+  declarator.problems.push_back({Diag::Initializer, assign, {std::string(declarator.declarator.name.text)}});
   return declarator;
 }
 
 ParsedDeclarator Builder::array(ParsedDeclarator declarator, Span bracket, ast::ExprPtr count) {
   if (declarator.declarator.count != nullptr)
-    declarator.problems.push_back({Diag::ArrayOfArrays, bracket, {declarator.declarator.name.text}});
+    declarator.problems.push_back(
+        {Diag::ArrayOfArrays, bracket, {std::string(declarator.declarator.name.text)}});
   else
     declarator.declarator.count = std::move(count);
   return declarator;
 }
 
 ParsedDeclarator Builder::pointer(Span star, ParsedDeclarator declarator) {
-  declarator.problems.push_back({Diag::PointerDeclaration, star, {declarator.declarator.name.text}});
+  declarator.problems.push_back(
+      {Diag::PointerDeclaration, star, {std::string(declarator.declarator.name.text)}});
   return declarator;
 }
 
 void Builder::pragma(Span span, ast::Ident kind) {
   if (kind.text != "list") {
-    diagnostics_.report(Diag::BadPragma, span, {kind.text + " LOW HIGH"});
+    diagnostics_.report(Diag::BadPragma, span, {std::string(kind.text) + " LOW HIGH"});
     return;
   }
   program_.declarations.emplace_back(ast::PragmaDecl{span, std::move(kind), std::nullopt});
@@ -126,7 +129,7 @@ void Builder::pragma(Span span, ast::Ident kind) {
 
 void Builder::pragma_range(Span span, ast::Ident kind, ast::ExprPtr low, ast::ExprPtr high) {
   if (kind.text == "list") {
-    diagnostics_.report(Diag::BadPragma, span, {kind.text});
+    diagnostics_.report(Diag::BadPragma, span, {std::string(kind.text)});
     return;
   }
   program_.declarations.emplace_back(

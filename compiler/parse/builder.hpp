@@ -3,8 +3,9 @@
 // and so on.
 #pragma once
 
-#include <set>
 #include <string>
+#include <string_view>
+#include <unordered_set>
 #include <vector>
 
 #include "compiler/ast/ast.hpp"
@@ -13,7 +14,7 @@
 namespace ipos::compiler {
 
 // Names that are types where they stand: the standard structures and every typedef so far.
-using TypeNames = std::set<std::string, std::less<>>;
+using TypeNames = std::unordered_set<std::string_view>;
 
 // A mistake in a declaration, held back until it is known what kind of declaration it is.
 struct Problem {
@@ -39,9 +40,9 @@ struct ParsedVariables {
 };
 
 struct ForHead {
-  ast::ExprPtr init;
-  ast::ExprPtr condition;
-  ast::ExprPtr step;
+  ast::ExprPtr init = nullptr;
+  ast::ExprPtr condition = nullptr;
+  ast::ExprPtr step = nullptr;
 };
 
 class Builder {
@@ -69,7 +70,7 @@ class Builder {
   void structure(Span span, ast::Ident name, std::vector<ParsedVariables> members);
   void function(Span span, ast::Ident name, ast::StmtPtr body);
   void function_with_result(Span span, Span type, ast::Ident name, ast::StmtPtr body);
-  void problem(Diag diag, Span span, std::string name = {});
+  void problem(Diag diag, Span span, std::string_view name = {});
   ast::Ident new_type(ast::Ident name);
   ParsedVariables variables(Span span, bool initial, ParsedType type,
                             std::vector<ParsedDeclarator> declarators);
@@ -128,8 +129,16 @@ class Builder {
   void report(const Problems& problems);
   bool is_line_head(Span span) const;
   // Nodes over children of this depth; one that would be too deep is reported and replaced by a leaf.
-  ast::ExprPtr make_expr(Span span, decltype(ast::Expr::node) node, unsigned depth_below);
-  ast::StmtPtr make_stmt(Span span, decltype(ast::Stmt::node) node, unsigned depth_below);
+  template <typename Node>
+  ast::ExprPtr make_expr(Span span, const Node& node, unsigned depth_below) {
+    if (too_deep(span, depth_below)) return number(span, {0});
+    return program_.arena.make(ast::Expr{span, node, false, static_cast<uint16_t>(depth_below + 1)});
+  }
+  template <typename Node>
+  ast::StmtPtr make_stmt(Span span, const Node& node, unsigned depth_below) {
+    if (too_deep(span, depth_below)) return simple<ast::Empty>(span);
+    return program_.arena.make(ast::Stmt{span, node, static_cast<uint16_t>(depth_below + 1)});
+  }
   bool too_deep(Span span, unsigned depth_below);
   // What stands where recovery left nothing, so that the tree has no holes.
   ast::ExprPtr whole(ast::ExprPtr expr, Span span);

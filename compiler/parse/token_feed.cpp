@@ -54,7 +54,7 @@ void TokenFeed::stray() {
 
 Parser::symbol_type TokenFeed::symbol(const Token& token) {
   const Span span = token.span;
-  const auto ident = [&token] { return ast::Ident{std::string(token.text), token.span}; };
+  const auto ident = [&token] { return ast::Ident{token.text, token.span}; };
   switch (token.kind) {
     case TokenKind::Name: {
       const TokenKind previous = before(1).kind;
