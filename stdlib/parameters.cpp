@@ -212,7 +212,6 @@ int64_t Parameter::maximum() const {
 ParameterTable::ParameterTable(std::span<const EmbeddedFile* const> lists, bool option_cards) {
   std::vector<Parameter> rows;
   for (const EmbeddedFile* list : lists) {
-    rows.reserve(rows.size() + static_cast<size_t>(std::count(list->text.begin(), list->text.end(), '\n')));
     const bool replaces = list != lists.front();
     std::string_view rest = list->text;
     bool header = true;

@@ -16,10 +16,12 @@ ast::ExprPtr Builder::number(Span span, ast::Number number) { return make_expr(s
 
 ast::ExprPtr Builder::name(ast::Ident ident) { return make_expr(ident.span, ast::Name{ident.text}, 0); }
 
-ast::ExprPtr Builder::call(Span span, ast::Ident function, std::vector<ast::ExprPtr> arguments) {
+ast::ExprPtr Builder::call(Span span, ast::Ident function, std::vector<ast::ExprPtr>* arguments) {
+  std::span<const ast::ExprPtr> listed;
+  if (arguments != nullptr) listed = program_.arena.list(*arguments);
   unsigned deepest = 0;
-  for (const ast::Expr* argument : arguments) deepest = std::max(deepest, depth(argument));
-  return make_expr(span, ast::Call{function, program_.arena.list(arguments)}, deepest);
+  for (const ast::Expr* argument : listed) deepest = std::max(deepest, depth(argument));
+  return make_expr(span, ast::Call{function, listed}, deepest);
 }
 
 ast::ExprPtr Builder::parenthesized(Span span, ast::ExprPtr inner) {

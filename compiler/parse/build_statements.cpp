@@ -25,11 +25,11 @@ ast::ExprPtr Builder::whole(ast::ExprPtr expr, Span span) {
   return expr == nullptr ? number(span, {0}) : expr;
 }
 
-ast::StmtPtr Builder::block(Span span, std::vector<ast::StmtPtr> items) {
-  std::erase(items, nullptr);  // declarations and what was skipped
+ast::StmtPtr Builder::block(Span span, std::vector<ast::StmtPtr>* items) {
+  std::erase(*items, nullptr);  // declarations and what was skipped
   unsigned deepest = 0;
-  for (const ast::Stmt* item : items) deepest = std::max(deepest, depth(item));
-  return make_stmt(span, ast::Block{program_.arena.list(items)}, deepest);
+  for (const ast::Stmt* item : *items) deepest = std::max(deepest, depth(item));
+  return make_stmt(span, ast::Block{program_.arena.list(*items)}, deepest);
 }
 
 ast::StmtPtr Builder::expression_statement(Span span, ast::ExprPtr expr) {
