@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <initializer_list>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 #include "stdlib/units.hpp"
@@ -34,11 +36,14 @@ enum Column {
   kColumns
 };
 
-// Cuts the text up to the separator off `rest`.
-std::string_view cut(std::string_view& rest, std::string_view separator) {
+// Cuts the text up to the separator, a character or several, off `rest`.
+template <typename Separator>
+std::string_view cut(std::string_view& rest, Separator separator) {
+  size_t size = 1;
+  if constexpr (!std::is_same_v<Separator, char>) size = std::string_view(separator).size();
   const size_t at = rest.find(separator);
   const std::string_view part = rest.substr(0, at);
-  rest = at == std::string_view::npos ? std::string_view{} : rest.substr(at + separator.size());
+  rest = at == std::string_view::npos ? std::string_view{} : rest.substr(at + size);
   return part;
 }
 
@@ -52,7 +57,7 @@ std::optional<Integer> number(std::string_view text) {
 
 bool read_access(std::string_view text, Parameter& p) {
   while (!text.empty()) {
-    const std::string_view word = cut(text, "/");
+    const std::string_view word = cut(text, '/');
     if (word == "RW")
       p.writable = true;
     else if (word == "R")
@@ -72,9 +77,9 @@ bool read_access(std::string_view text, Parameter& p) {
 // "0..1000/10;1000..10000/100"
 bool read_ranges(std::string_view text, Parameter& p) {
   while (!text.empty()) {
-    std::string_view range = cut(text, ";");
+    std::string_view range = cut(text, ';');
     const auto minimum = number<int64_t>(cut(range, ".."));
-    const auto maximum = number<int64_t>(cut(range, "/"));
+    const auto maximum = number<int64_t>(cut(range, '/'));
     const auto step = number<int64_t>(range);
     if (!minimum || !maximum || !step || *step <= 0 || *minimum > *maximum) return false;
     p.ranges.push_back({*minimum, *maximum, *step});
@@ -91,12 +96,12 @@ bool read_texts(std::string_view text, const std::vector<Parameter>& before, Par
     return false;
   }
   while (!text.empty()) {
-    std::string_view entry = cut(text, "|");
-    std::string_view code = cut(entry, "=");
+    std::string_view entry = cut(text, '|');
+    std::string_view code = cut(entry, '=');
     ValueText row{};
     if (const size_t at = code.find('@'); at != std::string_view::npos) {
       std::string_view versions = code.substr(at + 1);
-      const auto standard = number<uint8_t>(cut(versions, "/"));
+      const auto standard = number<uint8_t>(cut(versions, '/'));
       const auto logodrive = number<uint8_t>(versions);
       if (!standard || !logodrive) return false;
       row.from_standard = *standard;
@@ -127,10 +132,8 @@ bool read_option(std::string_view text, Parameter& p) {
 
 bool read_row(std::string_view line, const std::vector<Parameter>& before, Parameter& p) {
   std::string_view cells[kColumns];
-  int count = 1;
-  for (const char c : line) count += c == '\t';
-  if (count != kColumns) return false;
-  for (std::string_view& cell : cells) cell = cut(line, "\t");
+  if (std::count(line.begin(), line.end(), '\t') != kColumns - 1) return false;
+  for (std::string_view& cell : cells) cell = cut(line, '\t');
 
   p.number = cells[kNumber];
   p.name = cells[kName];
@@ -177,6 +180,23 @@ void replace_or_insert(std::vector<Parameter>& rows, Parameter row) {
     rows.insert(at, std::move(row));
 }
 
+// The rows that lead an index, in rising order.
+std::vector<const Parameter*> leading_rows(const std::vector<Parameter>& rows) {
+  std::vector<const Parameter*> leads;
+  leads.reserve(rows.size());
+  for (const Parameter& row : rows)
+    if (!row.view && row.index != 0) leads.push_back(&row);
+  std::sort(leads.begin(), leads.end(),
+            [](const Parameter* a, const Parameter* b) { return a->index < b->index; });
+  return leads;
+}
+
+const Parameter* find_index(const std::vector<const Parameter*>& leads, uint16_t index) {
+  const auto at = std::lower_bound(leads.begin(), leads.end(), index,
+                                   [](const Parameter* p, uint16_t wanted) { return p->index < wanted; });
+  return at != leads.end() && (*at)->index == index ? *at : nullptr;
+}
+
 }  // namespace
 
 int64_t Parameter::minimum() const {
@@ -196,7 +216,7 @@ ParameterTable::ParameterTable(std::span<const EmbeddedFile* const> lists, bool 
     std::string_view rest = list->text;
     bool header = true;
     for (int line_number = 1; !rest.empty(); ++line_number) {
-      const std::string_view line = cut(rest, "\n");
+      const std::string_view line = cut(rest, '\n');
       if (line.empty() || line[0] == '#' || std::exchange(header, false)) continue;
       Parameter row;
       if (!read_row(line, rows, row))
@@ -210,58 +230,68 @@ ParameterTable::ParameterTable(std::span<const EmbeddedFile* const> lists, bool 
   }
   if (!option_cards) std::erase_if(rows, [](const Parameter& p) { return p.option != OptionCard::None; });
 
-  for (const Parameter& row : rows) {
-    const auto lead = std::find_if(rows.begin(), rows.end(), [&row](const Parameter& other) {
-      return !other.view && other.index == row.index;
-    });
-    if (!row.view)
-      rows_.push_back(row);
-    else if (lead != rows.end())
-      rows_.push_back(view_of(*lead, row));
+  const std::vector<const Parameter*> leads = leading_rows(rows);
+  for (Parameter& row : rows) {
+    if (!row.view) continue;
+    const Parameter* lead = find_index(leads, row.index);
+    if (lead != nullptr)
+      row = view_of(*lead, row);
     else if (option_cards)
       problems_.push_back("no row leads the index of " + std::string(row.name));
+    if (lead == nullptr) row.index = 0;
   }
-  for (const Parameter& row : rows_)
-    if (!row.view && row.index != 0) by_index_.push_back(&row);
-  std::sort(by_index_.begin(), by_index_.end(),
-            [](const Parameter* a, const Parameter* b) { return a->index < b->index; });
+  std::erase_if(rows, [](const Parameter& row) { return row.view && row.index == 0; });
+  rows_ = std::move(rows);
+  by_index_ = leading_rows(rows_);
   for (size_t i = 1; i < by_index_.size(); ++i)
     if (by_index_[i - 1]->index == by_index_[i]->index)
       problems_.push_back("two rows lead index " + std::to_string(by_index_[i]->index));
+  for (const Parameter& row : rows_)
+    if (!row.number.empty()) by_number_.push_back(&row);
+  std::stable_sort(by_number_.begin(), by_number_.end(),
+                   [](const Parameter* a, const Parameter* b) { return a->number < b->number; });
 }
 
-const Parameter* ParameterTable::find(uint16_t index) const {
-  const auto at = std::lower_bound(by_index_.begin(), by_index_.end(), index,
-                                   [](const Parameter* p, uint16_t wanted) { return p->index < wanted; });
-  return at != by_index_.end() && (*at)->index == index ? *at : nullptr;
-}
+const Parameter* ParameterTable::find(uint16_t index) const { return find_index(by_index_, index); }
 
 const Parameter* ParameterTable::find(std::string_view text) const {
   if (text.starts_with('P') || text.starts_with('p'))
     text.remove_prefix(1);
   else if (const auto index = number<uint16_t>(text); index && *index > 999)
     return find(*index);
-  for (const Parameter& row : rows_)
-    if (!row.number.empty() && row.number == text) return &row;
-  return nullptr;
+  const auto at =
+      std::lower_bound(by_number_.begin(), by_number_.end(), text,
+                       [](const Parameter* p, std::string_view wanted) { return p->number < wanted; });
+  return at != by_number_.end() && (*at)->number == text ? *at : nullptr;
 }
 
+// Each table is read when the first unit that has it asks.
 const ParameterTable& parameter_table(const UnitType& unit) {
-  const auto list = [](std::string_view name) -> const EmbeddedFile* {
-    for (const EmbeddedFile& file : parameter_lists::embedded_files())
-      if (file.name == name) return &file;
-    return nullptr;
-  };
   using Lists = std::vector<const EmbeddedFile*>;
-  static const ParameterTable md60a(Lists{list("md60a.tsv")}, true);
-  static const ParameterTable compact(Lists{list("md60a.tsv")}, false);
-  static const ParameterTable mdxb(Lists{list("md60a.tsv"), list("mdxb.tsv")}, true);
-  static const ParameterTable mc07(Lists{list("mc07.tsv")}, true);
+  const auto lists = [](std::initializer_list<std::string_view> names) {
+    Lists found;
+    for (const std::string_view name : names)
+      for (const EmbeddedFile& file : parameter_lists::embedded_files())
+        if (file.name == name) found.push_back(&file);
+    return found;
+  };
+  if (unit.name == "md60a") {
+    static const ParameterTable md60a(lists({"md60a.tsv"}), true);
+    return md60a;
+  }
+  if (unit.name == "compact") {
+    static const ParameterTable compact(lists({"md60a.tsv"}), false);
+    return compact;
+  }
+  if (unit.name == "mdxb") {
+    static const ParameterTable mdxb(lists({"md60a.tsv", "mdxb.tsv"}), true);
+    return mdxb;
+  }
+  if (unit.name == "mc07") {
+    static const ParameterTable mc07(lists({"mc07.tsv"}), true);
+    return mc07;
+  }
   static const ParameterTable none(Lists{}, true);
-  if (unit.name == "md60a") return md60a;
-  if (unit.name == "compact") return compact;
-  if (unit.name == "mdxb") return mdxb;
-  if (unit.name == "mc07") return mc07;
   return none;
 }
 

@@ -90,10 +90,11 @@ class ParameterTable {
  private:
   std::vector<Parameter> rows_;
   std::vector<const Parameter*> by_index_;
+  std::vector<const Parameter*> by_number_;
   std::vector<std::string> problems_;
 };
 
-// The list of a unit; empty for units without one (mc31).
+// The list of a unit, read on first use; empty for units without one (mc31).
 const ParameterTable& parameter_table(const UnitType& unit);
 
 // Number shown = transferred number x factor, with so many decimals. The offsets of temperatures cancel: they

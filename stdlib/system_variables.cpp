@@ -1,6 +1,9 @@
 // System variables from their table.
 #include "stdlib/system_variables.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 namespace ipos::stdlib {
 namespace {
 
@@ -10,14 +13,18 @@ constexpr SystemVariable kVariables[] = {
 #include "stdlib/system_variables.def"
 };
 
+constexpr bool in_front(const SystemVariable& a, const SystemVariable& b) { return a.number < b.number; }
+static_assert(std::is_sorted(std::begin(kVariables), std::end(kVariables), in_front));
+
 }  // namespace
 
 std::span<const SystemVariable> system_variables() { return kVariables; }
 
 const SystemVariable* find_system_variable(uint16_t number) {
-  for (const SystemVariable& variable : kVariables)
-    if (variable.number == number) return &variable;
-  return nullptr;
+  const auto* const at =
+      std::lower_bound(std::begin(kVariables), std::end(kVariables), number,
+                       [](const SystemVariable& row, uint16_t wanted) { return row.number < wanted; });
+  return at != std::end(kVariables) && at->number == number ? at : nullptr;
 }
 
 const SystemVariable* find_system_variable(std::string_view name) {

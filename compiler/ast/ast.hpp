@@ -2,12 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
-#include <string>
+#include <span>
+#include <string_view>
 #include <variant>
 #include <vector>
 
+#include "compiler/ast/arena.hpp"
 #include "compiler/source/source.hpp"
 
 namespace ipos::compiler::ast {
@@ -17,12 +18,12 @@ constexpr uint16_t kMaxDepth = 256;
 
 struct Expr;
 struct Stmt;
-using ExprPtr = std::unique_ptr<Expr>;
-using StmtPtr = std::unique_ptr<Stmt>;
+using ExprPtr = Expr*;  // in the arena of the Program
+using StmtPtr = Stmt*;
 
-// A name as written, with its place.
+// A name as written, with its place. The text is part of the source, or a word of the language.
 struct Ident {
-  std::string text;
+  std::string_view text;
   Span span;
 };
 
@@ -54,54 +55,54 @@ struct Number {
   bool hex = false;
 };
 struct Name {
-  std::string text;
+  std::string_view text;
 };  // variable, Hn, alias, or a function as an argument
 struct Member {
-  ExprPtr base;
+  ExprPtr base = nullptr;
   Ident member;
 };  // base.member
 struct Index {
-  ExprPtr base;
-  ExprPtr index;
+  ExprPtr base = nullptr;
+  ExprPtr index = nullptr;
 };  // base[index]
 struct Deref {
-  ExprPtr number;
+  ExprPtr number = nullptr;
 };  // *number
 struct Numof {
-  ExprPtr object;
+  ExprPtr object = nullptr;
 };  // numof( object )
 struct Unary {
   UnaryOp op;
-  ExprPtr operand;
+  ExprPtr operand = nullptr;
 };
 struct Step {
   StepOp op;
-  ExprPtr operand;
+  ExprPtr operand = nullptr;
 };
 struct Binary {
   BinaryOp op;
-  ExprPtr left;
-  ExprPtr right;
+  ExprPtr left = nullptr;
+  ExprPtr right = nullptr;
   Span op_span;
 };
 struct Conditional {
-  ExprPtr condition;
-  ExprPtr then;
-  ExprPtr otherwise;
+  ExprPtr condition = nullptr;
+  ExprPtr then = nullptr;
+  ExprPtr otherwise = nullptr;
 };
 struct Assign {
   std::optional<BinaryOp> op;
-  ExprPtr target;
-  ExprPtr value;
+  ExprPtr target = nullptr;
+  ExprPtr value = nullptr;
   Span op_span;
 };  // op: compound
 struct Comma {
-  ExprPtr left;
-  ExprPtr right;
+  ExprPtr left = nullptr;
+  ExprPtr right = nullptr;
 };
 struct Call {
   Ident function;
-  std::vector<ExprPtr> arguments;
+  std::span<const ExprPtr> arguments;
 };
 
 struct Expr {
@@ -115,36 +116,36 @@ struct Expr {
 
 struct Empty {};  // ;
 struct ExprStmt {
-  ExprPtr expr;
+  ExprPtr expr = nullptr;
 };
 struct Block {
-  std::vector<StmtPtr> body;
+  std::span<const StmtPtr> body;
 };
 struct If {
-  ExprPtr condition;
-  StmtPtr then;
-  StmtPtr otherwise;
+  ExprPtr condition = nullptr;
+  StmtPtr then = nullptr;
+  StmtPtr otherwise = nullptr;
 };  // otherwise may be null
 struct While {
-  ExprPtr condition;
-  StmtPtr body;
+  ExprPtr condition = nullptr;
+  StmtPtr body = nullptr;
 };
 struct DoWhile {
-  StmtPtr body;
-  ExprPtr condition;
+  StmtPtr body = nullptr;
+  ExprPtr condition = nullptr;
 };
 struct For {
-  ExprPtr init;
-  ExprPtr condition;
-  ExprPtr step;
-  StmtPtr body;
+  ExprPtr init = nullptr;
+  ExprPtr condition = nullptr;
+  ExprPtr step = nullptr;
+  StmtPtr body = nullptr;
 };  // each expression may be null
 struct Switch {
-  ExprPtr value;
-  StmtPtr body;
+  ExprPtr value = nullptr;
+  StmtPtr body = nullptr;
 };
 struct Case {
-  ExprPtr value;
+  ExprPtr value = nullptr;
 };  // a label on its own; the statements behind it follow in the block
 struct Default {};
 struct Break {};
@@ -161,7 +162,7 @@ struct Stmt {
 
 struct Declarator {
   Ident name;
-  ExprPtr count;  // null: not an array
+  ExprPtr count = nullptr;  // null: not an array
 };
 
 // `initial long a, b[4];` or `SCTRCYCL TrCycl;`
@@ -182,14 +183,14 @@ struct StructDecl {
 struct FunctionDecl {
   Span span;
   Ident name;
-  StmtPtr body;  // a Block
+  StmtPtr body = nullptr;  // a Block
 };
 
 // #declare NAME BASE [+ K]
 struct AliasDecl {
   Span span;
   Ident name;
-  ExprPtr base;  // a name, or name + constant expression
+  ExprPtr base = nullptr;  // a name, or name + constant expression
 };
 
 // #pragma globals|initials|var LO HI, #pragma list
@@ -201,8 +202,10 @@ struct PragmaDecl {
 
 using Decl = std::variant<VariableDecl, StructDecl, FunctionDecl, AliasDecl, PragmaDecl>;
 
+// Refers to the text of its SourceMap.
 struct Program {
   std::vector<Decl> declarations;  // in source order
+  Arena arena;                     // of statements and expressions
 };
 
 }  // namespace ipos::compiler::ast

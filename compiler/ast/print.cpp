@@ -70,7 +70,7 @@ class Printer {
   }
 
   template <typename Node>
-  void child(const std::unique_ptr<Node>& node) {
+  void child(const Node* node) {
     if (node == nullptr) return;
     ++level_;
     print(*node);

@@ -43,9 +43,12 @@ Compilation compile(const std::string& name, const std::string& path, std::strin
   if (!generated) return out;
   out.image = std::move(generated->image);
   out.map = std::move(program->map);
-  out.map.insert(out.map.end(), generated->temporaries.begin(), generated->temporaries.end());
-  std::stable_sort(out.map.begin(), out.map.end(),
-                   [](const auto& a, const auto& b) { return a.number < b.number; });
+  for (checked::MapEntry& row : generated->temporaries)
+    out.map.insert(std::upper_bound(out.map.begin(), out.map.end(), row,
+                                    [](const checked::MapEntry& a, const checked::MapEntry& b) {
+                                      return a.number < b.number;
+                                    }),
+                   std::move(row));
   return out;
 }
 

@@ -52,7 +52,7 @@ const Expr* single_bit(const Expr& expr, int32_t& mask) {
   const auto* shift = std::get_if<checked::Binary>(&both->left->node);
   if (shift == nullptr || shift->op != BinaryOp::Shr || !as_constant(*shift->right)) return nullptr;
   mask = *fold(BinaryOp::Shl, 1, *as_constant(*shift->right));
-  return shift->left.get();
+  return shift->left;
 }
 
 }  // namespace

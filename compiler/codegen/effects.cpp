@@ -118,14 +118,17 @@ FunctionGenerator::Operand FunctionGenerator::step(const checked::Step& node, Sp
 }
 
 void FunctionGenerator::system_call(const checked::SystemCall& node, const Expr& expr) {
-  std::vector<int32_t> operands;
+  decltype(vm::Instruction::operands) operands{};
+  size_t count = 0;
   for (const checked::Argument& argument : node.arguments) {
     if (const int32_t* known = std::get_if<int32_t>(&argument))
-      operands.push_back(*known);
+      operands[count++] = *known;
     else if (const checked::ExprPtr* value = std::get_if<checked::ExprPtr>(&argument))
-      operands.push_back(variable(**value));
+      operands[count++] = variable(**value);
   }
-  emit(node.opcode, expr.span, operands).reference = reference_of(expr);
+  Command& command = emit(node.opcode, expr.span);
+  command.instruction.operands = operands;
+  command.reference = reference_of(expr);
 }
 
 }  // namespace ipos::compiler

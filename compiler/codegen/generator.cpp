@@ -171,10 +171,10 @@ int FunctionGenerator::new_label() {
 
 void FunctionGenerator::place(int label) { code_.labels[static_cast<size_t>(label)] = code_.commands.size(); }
 
-Command& FunctionGenerator::emit(Opcode opcode, Span span, std::vector<int32_t> operands) {
+Command& FunctionGenerator::emit(Opcode opcode, Span span, std::initializer_list<int32_t> operands) {
   Command& command = code_.commands.emplace_back();
   command.instruction.opcode = opcode;
-  for (size_t n = 0; n < operands.size(); ++n) command.instruction.operands[n] = operands[n];
+  std::copy(operands.begin(), operands.end(), command.instruction.operands.begin());
   command.span = span;
   command.held = top_;
   return command;

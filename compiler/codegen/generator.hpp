@@ -51,7 +51,7 @@ class FunctionGenerator {
             bool first_test_known);
   int new_label();
   void place(int label);
-  Command& emit(vm::Opcode opcode, Span span, std::vector<int32_t> operands = {});
+  Command& emit(vm::Opcode opcode, Span span, std::initializer_list<int32_t> operands = {});
   void jump(int label, Span span);
   int32_t temporary();
 

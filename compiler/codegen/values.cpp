@@ -157,8 +157,8 @@ void FunctionGenerator::into(const Expr& expr, int32_t target) {
 }
 
 void FunctionGenerator::arithmetic(const checked::Binary& node, int32_t target, Span span) {
-  const Expr* left = node.left.get();
-  const Expr* right = node.right.get();
+  const Expr* left = node.left;
+  const Expr* right = node.right;
   const bool order_unseen = !has_effect(*left) && !has_effect(*right);
   if (arithmetic_row(node.op)->commutes && order_unseen && !is_variable(*left, target) &&
       (is_variable(*right, target) || (is_simple(*left) && !is_simple(*right))))

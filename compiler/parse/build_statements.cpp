@@ -6,7 +6,7 @@
 namespace ipos::compiler {
 namespace {
 
-unsigned depth(const ast::StmtPtr& stmt) { return stmt == nullptr ? 0 : stmt->depth; }
+unsigned depth(const ast::Stmt* stmt) { return stmt == nullptr ? 0 : stmt->depth; }
 
 }  // namespace
 
@@ -17,72 +17,57 @@ bool Builder::too_deep(Span span, unsigned depth_below) {
   return true;
 }
 
-ast::StmtPtr Builder::make_stmt(Span span, decltype(ast::Stmt::node) node, unsigned depth_below) {
-  if (too_deep(span, depth_below)) return simple<ast::Empty>(span);
-  auto stmt = std::make_unique<ast::Stmt>();
-  stmt->span = span;
-  stmt->node = std::move(node);
-  stmt->depth = static_cast<uint16_t>(depth_below + 1);
-  return stmt;
-}
-
 ast::StmtPtr Builder::whole(ast::StmtPtr stmt, Span span) {
-  return stmt == nullptr ? simple<ast::Empty>(span) : std::move(stmt);
+  return stmt == nullptr ? simple<ast::Empty>(span) : stmt;
 }
 
 ast::ExprPtr Builder::whole(ast::ExprPtr expr, Span span) {
-  return expr == nullptr ? number(span, {0}) : std::move(expr);
+  return expr == nullptr ? number(span, {0}) : expr;
 }
 
-ast::StmtPtr Builder::block(Span span, std::vector<ast::StmtPtr> items) {
-  std::erase(items, nullptr);  // declarations and what was skipped
+ast::StmtPtr Builder::block(Span span, std::vector<ast::StmtPtr>* items) {
+  std::erase(*items, nullptr);  // declarations and what was skipped
   unsigned deepest = 0;
-  for (const ast::StmtPtr& item : items) deepest = std::max(deepest, depth(item));
-  return make_stmt(span, ast::Block{std::move(items)}, deepest);
+  for (const ast::Stmt* item : *items) deepest = std::max(deepest, depth(item));
+  return make_stmt(span, ast::Block{program_.arena.list(*items)}, deepest);
 }
 
 ast::StmtPtr Builder::expression_statement(Span span, ast::ExprPtr expr) {
-  return make_stmt(span, ast::ExprStmt{std::move(expr)}, 0);
+  return make_stmt(span, ast::ExprStmt{expr}, 0);
 }
 
 ast::StmtPtr Builder::if_statement(Span span, ast::ExprPtr condition, ast::StmtPtr then,
                                    ast::StmtPtr otherwise) {
   const unsigned below = std::max(depth(then), depth(otherwise));
-  return make_stmt(
-      span, ast::If{whole(std::move(condition), span), whole(std::move(then), span), std::move(otherwise)},
-      below);
+  return make_stmt(span, ast::If{whole(condition, span), whole(then, span), otherwise}, below);
 }
 
 ast::StmtPtr Builder::while_statement(Span span, ast::ExprPtr condition, ast::StmtPtr body) {
   const unsigned below = depth(body);
-  return make_stmt(span, ast::While{whole(std::move(condition), span), whole(std::move(body), span)}, below);
+  return make_stmt(span, ast::While{whole(condition, span), whole(body, span)}, below);
 }
 
 ast::StmtPtr Builder::do_while(Span span, ast::StmtPtr body, ast::ExprPtr condition) {
   const unsigned below = depth(body);
-  return make_stmt(span, ast::DoWhile{whole(std::move(body), span), whole(std::move(condition), span)},
-                   below);
+  return make_stmt(span, ast::DoWhile{whole(body, span), whole(condition, span)}, below);
 }
 
 ForHead Builder::for_head(ast::ExprPtr init, ast::ExprPtr condition, ast::ExprPtr step) {
-  return {std::move(init), std::move(condition), std::move(step)};
+  return {init, condition, step};
 }
 
 ast::StmtPtr Builder::for_statement(Span span, ForHead head, ast::StmtPtr body) {
   const unsigned below = depth(body);
-  return make_stmt(span,
-                   ast::For{std::move(head.init), std::move(head.condition), std::move(head.step),
-                            whole(std::move(body), span)},
-                   below);
+  return make_stmt(span, ast::For{head.init, head.condition, head.step, whole(body, span)}, below);
 }
 
 ast::StmtPtr Builder::switch_statement(Span span, ast::ExprPtr value, ast::StmtPtr body) {
   const unsigned below = depth(body);
-  return make_stmt(span, ast::Switch{whole(std::move(value), span), whole(std::move(body), span)}, below);
+  return make_stmt(span, ast::Switch{whole(value, span), whole(body, span)}, below);
 }
 
 ast::StmtPtr Builder::case_label(Span span, ast::ExprPtr value) {
-  return make_stmt(span, ast::Case{std::move(value)}, 0);
+  return make_stmt(span, ast::Case{value}, 0);
 }
 
 }  // namespace ipos::compiler

@@ -3,8 +3,11 @@
 // and so on.
 #pragma once
 
-#include <set>
+#include <deque>
 #include <string>
+#include <string_view>
+#include <tuple>
+#include <unordered_set>
 #include <vector>
 
 #include "compiler/ast/ast.hpp"
@@ -13,7 +16,7 @@
 namespace ipos::compiler {
 
 // Names that are types where they stand: the standard structures and every typedef so far.
-using TypeNames = std::set<std::string, std::less<>>;
+using TypeNames = std::unordered_set<std::string_view>;
 
 // A mistake in a declaration, held back until it is known what kind of declaration it is.
 struct Problem {
@@ -39,9 +42,27 @@ struct ParsedVariables {
 };
 
 struct ForHead {
-  ast::ExprPtr init;
-  ast::ExprPtr condition;
-  ast::ExprPtr step;
+  ast::ExprPtr init = nullptr;
+  ast::ExprPtr condition = nullptr;
+  ast::ExprPtr step = nullptr;
+};
+
+// What a symbol of the grammar stands for, cheap to copy. What is pointed to belongs to the Builder or the
+// tree.
+union SemanticValue {
+  SemanticValue() : expr(nullptr) {}
+  ast::Number number;
+  ast::Ident ident;
+  ast::ExprPtr expr;
+  ast::StmtPtr stmt;
+  ForHead for_head;
+  ParsedType* type;
+  ParsedDeclarator* declarator;
+  ParsedVariables* variables;
+  std::vector<ast::ExprPtr>* exprs;
+  std::vector<ast::StmtPtr>* stmts;
+  std::vector<ParsedDeclarator>* declarators;
+  std::vector<ParsedVariables>* members;
 };
 
 class Builder {
@@ -51,45 +72,52 @@ class Builder {
           bool open_brace)
       : program_(program), types_(types), map_(map), diagnostics_(diagnostics), open_brace_(open_brace) {}
 
+  // A value as long as the Builder lives.
   template <typename T>
-  std::vector<T> list(T first) {
-    std::vector<T> items;
-    items.push_back(std::move(first));
+  T* keep(T value) {
+    return &std::get<std::deque<T>>(kept_).emplace_back(std::move(value));
+  }
+  template <typename T>
+  std::vector<T>* list() {
+    return keep(std::vector<T>());
+  }
+  template <typename T>
+  std::vector<T>* append(std::vector<T>* items, T next) {
+    items->push_back(std::move(next));
     return items;
   }
   template <typename T>
-  std::vector<T> append(std::vector<T> items, T next) {
-    items.push_back(std::move(next));
-    return items;
+  std::vector<T>* append(std::vector<T>* items, T* next) {
+    return append(items, std::move(*next));
   }
 
   // builder.cpp: declarations.
-  void global(ParsedVariables variables);
-  void local(ParsedVariables variables);
-  void structure(Span span, ast::Ident name, std::vector<ParsedVariables> members);
+  void global(ParsedVariables* variables);
+  void local(ParsedVariables* variables);
+  void structure(Span span, ast::Ident name, std::vector<ParsedVariables>* members);
   void function(Span span, ast::Ident name, ast::StmtPtr body);
   void function_with_result(Span span, Span type, ast::Ident name, ast::StmtPtr body);
-  void problem(Diag diag, Span span, std::string name = {});
+  void problem(Diag diag, Span span, std::string_view name = {});
   ast::Ident new_type(ast::Ident name);
-  ParsedVariables variables(Span span, bool initial, ParsedType type,
-                            std::vector<ParsedDeclarator> declarators);
-  ParsedType type(ast::Ident word);
-  ParsedType qualified(ast::Ident qualifier, ParsedType type);
-  ParsedType struct_type(Span span, ast::Ident name);
-  ParsedType foreign_type(Span span, ast::Ident word);
-  ParsedType two_types(ParsedType first, ast::Ident second);
-  ParsedDeclarator declarator(ast::Ident name);
-  ParsedDeclarator declared_type(ast::Ident name);
-  ParsedDeclarator initialized(ParsedDeclarator declarator, Span assign);
-  ParsedDeclarator array(ParsedDeclarator declarator, Span bracket, ast::ExprPtr count);
-  ParsedDeclarator pointer(Span star, ParsedDeclarator declarator);
+  ParsedVariables* variables(Span span, bool initial, ParsedType* type,
+                             std::vector<ParsedDeclarator>* declarators);
+  ParsedType* type(ast::Ident word);
+  ParsedType* qualified(ast::Ident qualifier, ParsedType* type);
+  ParsedType* struct_type(Span span, ast::Ident name);
+  ParsedType* foreign_type(Span span, ast::Ident word);
+  ParsedType* two_types(ParsedType* first, ast::Ident second);
+  ParsedDeclarator* declarator(ast::Ident name);
+  ParsedDeclarator* declared_type(ast::Ident name);
+  ParsedDeclarator* initialized(ParsedDeclarator* declarator, Span assign);
+  ParsedDeclarator* array(ParsedDeclarator* declarator, Span bracket, ast::ExprPtr count);
+  ParsedDeclarator* pointer(Span star, ParsedDeclarator* declarator);
   void pragma(Span span, ast::Ident kind);
   void pragma_range(Span span, ast::Ident kind, ast::ExprPtr low, ast::ExprPtr high);
   void alias(Span span, ast::Ident name, ast::Ident base);
   void alias_behind(Span span, ast::Ident name, ast::Ident base, Span plus, ast::ExprPtr offset);
 
   // build_statements.cpp
-  ast::StmtPtr block(Span span, std::vector<ast::StmtPtr> items);
+  ast::StmtPtr block(Span span, std::vector<ast::StmtPtr>* items);
   ast::StmtPtr expression_statement(Span span, ast::ExprPtr expr);
   ast::StmtPtr if_statement(Span span, ast::ExprPtr condition, ast::StmtPtr then, ast::StmtPtr otherwise);
   ast::StmtPtr while_statement(Span span, ast::ExprPtr condition, ast::StmtPtr body);
@@ -106,7 +134,8 @@ class Builder {
   // build_expressions.cpp
   ast::ExprPtr number(Span span, ast::Number number);
   ast::ExprPtr name(ast::Ident ident);
-  ast::ExprPtr call(Span span, ast::Ident function, std::vector<ast::ExprPtr> arguments);
+  // `arguments`: null when there are none.
+  ast::ExprPtr call(Span span, ast::Ident function, std::vector<ast::ExprPtr>* arguments);
   ast::ExprPtr parenthesized(Span span, ast::ExprPtr inner);
   ast::ExprPtr numof(Span span, ast::ExprPtr object);
   ast::ExprPtr index(Span span, ast::ExprPtr base, ast::ExprPtr index);
@@ -128,8 +157,16 @@ class Builder {
   void report(const Problems& problems);
   bool is_line_head(Span span) const;
   // Nodes over children of this depth; one that would be too deep is reported and replaced by a leaf.
-  ast::ExprPtr make_expr(Span span, decltype(ast::Expr::node) node, unsigned depth_below);
-  ast::StmtPtr make_stmt(Span span, decltype(ast::Stmt::node) node, unsigned depth_below);
+  template <typename Node>
+  ast::ExprPtr make_expr(Span span, const Node& node, unsigned depth_below) {
+    if (too_deep(span, depth_below)) return number(span, {0});
+    return program_.arena.make(ast::Expr{span, node, false, static_cast<uint16_t>(depth_below + 1)});
+  }
+  template <typename Node>
+  ast::StmtPtr make_stmt(Span span, const Node& node, unsigned depth_below) {
+    if (too_deep(span, depth_below)) return simple<ast::Empty>(span);
+    return program_.arena.make(ast::Stmt{span, node, static_cast<uint16_t>(depth_below + 1)});
+  }
   bool too_deep(Span span, unsigned depth_below);
   // What stands where recovery left nothing, so that the tree has no holes.
   ast::ExprPtr whole(ast::ExprPtr expr, Span span);
@@ -139,6 +176,10 @@ class Builder {
   TypeNames& types_;
   const SourceMap& map_;
   Diagnostics& diagnostics_;
+  std::tuple<std::deque<ParsedType>, std::deque<ParsedDeclarator>, std::deque<ParsedVariables>,
+             std::deque<std::vector<ast::ExprPtr>>, std::deque<std::vector<ast::StmtPtr>>,
+             std::deque<std::vector<ParsedDeclarator>>, std::deque<std::vector<ParsedVariables>>>
+      kept_;
   bool open_brace_;
   bool too_deep_reported_ = false;
 };

@@ -7,9 +7,7 @@
 %require "3.8"
 %define api.namespace {ipos::compiler}
 %define api.parser.class {Parser}
-%define api.value.type variant
-%define api.value.automove
-%define api.token.constructor
+%define api.value.type {SemanticValue}
 %define api.token.raw
 %define api.location.type {Span}
 %define parse.lac full
@@ -26,7 +24,16 @@ class TokenFeed;
 %code {
 #include "compiler/parse/token_feed.hpp"
 
-#define yylex(feed) (feed).next()
+namespace {
+
+int yylex(ipos::compiler::SemanticValue* value, ipos::compiler::Span* span, ipos::compiler::TokenFeed& feed) {
+  const ipos::compiler::Symbol symbol = feed.next();
+  *value = symbol.value;
+  *span = symbol.span;
+  return symbol.kind;
+}
+
+}  // namespace
 }
 %param { TokenFeed& feed }
 %parse-param { Builder& build }
@@ -44,21 +51,21 @@ class TokenFeed;
   Break "break"  Continue "continue"  Return "return"  Goto "goto"  Sizeof "sizeof"
   Pragma "#pragma"  Declare "#declare"  DirectiveEnd "end of line"
   Sync SyncBlock SyncBody
-%token <ast::Number> Number "number"
-%token <ast::Ident> Identifier "name"  TypeName "structure type"
-%token <ast::Ident> ForeignType "foreign type"  ForeignQualifier "foreign qualifier"
+%token <number> Number "number"
+%token <ident> Identifier "name"  TypeName "structure type"
+%token <ident> ForeignType "foreign type"  ForeignQualifier "foreign qualifier"
 
-%nterm <ast::Ident> name new_type
-%nterm <ParsedType> type basic_type
-%nterm <ParsedDeclarator> declarator init_declarator
-%nterm <std::vector<ParsedDeclarator>> declarators
-%nterm <ParsedVariables> variables member
-%nterm <std::vector<ParsedVariables>> members
-%nterm <ast::StmtPtr> statement item block
-%nterm <std::vector<ast::StmtPtr>> items
-%nterm <ForHead> for_head
-%nterm <ast::ExprPtr> expression expr condition optional bound
-%nterm <std::vector<ast::ExprPtr>> arguments
+%nterm <ident> name new_type
+%nterm <type> type basic_type
+%nterm <declarator> declarator init_declarator
+%nterm <declarators> declarators
+%nterm <variables> variables member
+%nterm <members> members
+%nterm <stmt> statement item block
+%nterm <stmts> items
+%nterm <for_head> for_head
+%nterm <expr> expression expr condition optional bound
+%nterm <exprs> arguments
 
 %precedence Then
 %precedence "else"
@@ -105,13 +112,13 @@ new_type: name                                 { $$ = build.new_type($1); };
 name: Identifier | TypeName;
 
 members:
-    %empty                                     {}
+    %empty                                     { $$ = build.list<ParsedVariables>(); }
   | members member                             { $$ = build.append($1, $2); }
   ;
 
 member:
     type declarators ";"                       { $$ = build.variables(@$, false, $1, $2); }
-  | error Sync                                 { yyerrok; }
+  | error Sync                                 { yyerrok; $$ = build.keep(ParsedVariables{}); }
   ;
 
 variables:
@@ -134,7 +141,7 @@ basic_type:
   ;
 
 declarators:
-    init_declarator                            { $$ = build.list($1); }
+    init_declarator                            { $$ = build.append(build.list<ParsedDeclarator>(), $1); }
   | declarators "," init_declarator            { $$ = build.append($1, $3); }
   ;
 
@@ -169,7 +176,7 @@ bound:
 block: "{" items "}"                           { $$ = build.block(@$, $2); };
 
 items:
-    %empty                                     {}
+    %empty                                     { $$ = build.list<ast::StmtPtr>(); }
   | items item                                 { $$ = build.append($1, $2); }
   ;
 
@@ -177,9 +184,9 @@ item:
     statement
   | "case" expr ":"                            { $$ = build.case_label(@$, $2); }
   | "default" ":"                              { $$ = build.simple<ast::Default>(@$); }
-  | variables                                  { build.local($1); }
-  | directive                                  {}
-  | Identifier ":"                             { build.problem(Diag::Label, @$, $1.text); }
+  | variables                                  { build.local($1); $$ = nullptr; }
+  | directive                                  { $$ = nullptr; }
+  | Identifier ":"                             { build.problem(Diag::Label, @$, $1.text); $$ = nullptr; }
   ;
 
 statement:
@@ -190,36 +197,36 @@ statement:
   | "if" condition statement "else" statement  { $$ = build.if_statement(@$, $2, $3, $5); }
   | "while" condition statement                { $$ = build.while_statement(@$, $2, $3); }
   | "do" statement "while" condition ";"       { $$ = build.do_while(@$, $2, $4); }
-  | "do" statement error Sync                  { yyerrok; }
-  | "do" statement "while" condition error Sync  { yyerrok; }
+  | "do" statement error Sync                  { yyerrok; $$ = nullptr; }
+  | "do" statement "while" condition error Sync  { yyerrok; $$ = nullptr; }
   | "for" for_head statement                   { $$ = build.for_statement(@$, $2, $3); }
   | "switch" condition statement               { $$ = build.switch_statement(@$, $2, $3); }
   | "break" ";"                                { $$ = build.simple<ast::Break>(@$); }
   | "continue" ";"                             { $$ = build.simple<ast::Continue>(@$); }
   | "return" ";"                               { $$ = build.simple<ast::Return>(@$); }
-  | "return" expression ";"                    { build.problem(Diag::ReturnValue, @2); }
-  | "goto" Identifier ";"                      { build.problem(Diag::Goto, @$); }
-  | error Sync                                 { yyerrok; }
+  | "return" expression ";"                    { build.problem(Diag::ReturnValue, @2); $$ = nullptr; }
+  | "goto" Identifier ";"                      { build.problem(Diag::Goto, @$); $$ = nullptr; }
+  | error Sync                                 { yyerrok; $$ = nullptr; }
   ;
 
 condition:
     "(" expression ")"                         { $$ = $2; }
-  | error Sync                                 { yyerrok; }
+  | error Sync                                 { yyerrok; $$ = nullptr; }
   ;
 
 for_head:
     "(" optional ";" optional ";" optional ")" { $$ = build.for_head($2, $4, $6); }
-  | "(" variables optional ";" optional ")"    { build.local($2); }
-  | error Sync                                 { yyerrok; }
+  | "(" variables optional ";" optional ")"    { build.local($2); $$ = {}; }
+  | error Sync                                 { yyerrok; $$ = {}; }
   ;
 
 optional:
-    %empty                                     {}
+    %empty                                     { $$ = nullptr; }
   | expression
   ;
 
 arguments:
-    expr                                       { $$ = build.list($1); }
+    expr                                       { $$ = build.append(build.list<ast::ExprPtr>(), $1); }
   | arguments "," expr                         { $$ = build.append($1, $3); }
   ;
 
@@ -231,7 +238,7 @@ expression:
 expr:
     Number                                     { $$ = build.number(@$, $1); }
   | Identifier                                 { $$ = build.name($1); }
-  | Identifier "(" ")"                         { $$ = build.call(@$, $1, {}); }
+  | Identifier "(" ")"                         { $$ = build.call(@$, $1, nullptr); }
   | Identifier "(" arguments ")"               { $$ = build.call(@$, $1, $3); }
   | "(" expression ")"                         { $$ = build.parenthesized(@$, $2); }
   | "(" type ")" expr %prec Prefix             { $$ = build.replaced(Diag::Cast, @1, @3, $4); }

@@ -23,7 +23,7 @@ bool ends_operand(TokenKind kind) {
 
 }  // namespace
 
-Parser::symbol_type TokenFeed::resume() {
+Symbol TokenFeed::resume() {
   resuming_ = false;
   // A second error at the same token: leave it behind, or there would be no end.
   const size_t at = repeated_ && found().kind != TokenKind::End ? last_ + 1 : last_;
@@ -56,16 +56,16 @@ Parser::symbol_type TokenFeed::resume() {
   return sync(stop, place);
 }
 
-Parser::symbol_type TokenFeed::sync(size_t at, Place place) {
+Symbol TokenFeed::sync(size_t at, Place place) {
   next_ = at;
   last_ = SIZE_MAX;
   const Span span{tokens_[at].span.begin, tokens_[at].span.begin};
   switch (place) {
-    case Place::Block: return Parser::make_SyncBlock(span);
-    case Place::Body: return Parser::make_SyncBody(span);
+    case Place::Block: return {Parser::token::SyncBlock, span, {}};
+    case Place::Body: return {Parser::token::SyncBody, span, {}};
     case Place::Next: break;
   }
-  return Parser::make_Sync(span);
+  return {Parser::token::Sync, span, {}};
 }
 
 size_t TokenFeed::behind_directive(size_t at) const {

@@ -20,7 +20,7 @@ std::string describe_byte(std::string_view text) {
 
 }  // namespace
 
-Parser::symbol_type TokenFeed::next() {
+Symbol TokenFeed::next() {
   if (resuming_) return resume();
   if (last_ < tokens_.size()) accepted(last_);
   if (!stopped_ && diagnostics_.error_count() >= kMaxErrors) {
@@ -52,42 +52,51 @@ void TokenFeed::stray() {
   diagnostics_.report(Diag::StrayCharacter, span, {describe_byte(first.text)});
 }
 
-Parser::symbol_type TokenFeed::symbol(const Token& token) {
+Symbol TokenFeed::symbol(const Token& token) {
   const Span span = token.span;
-  const auto ident = [&token] { return ast::Ident{std::string(token.text), token.span}; };
+  const auto ident = [&token](Parser::token_kind_type kind) {
+    Symbol named{kind, token.span, {}};
+    named.value.ident = {token.text, token.span};
+    return named;
+  };
+  const auto constant = [&token](ast::Number number) {
+    Symbol made{Parser::token::Number, token.span, {}};
+    made.value.number = number;
+    return made;
+  };
   switch (token.kind) {
     case TokenKind::Name: {
       const TokenKind previous = before(1).kind;
       const bool member = previous == TokenKind::Dot || previous == TokenKind::Arrow;
-      return !member && types_.contains(token.text) ? Parser::make_TypeName(ident(), span)
-                                                    : Parser::make_Identifier(ident(), span);
+      return ident(!member && types_.contains(token.text) ? Parser::token::TypeName
+                                                          : Parser::token::Identifier);
     }
     case TokenKind::BadName:
       diagnostics_.report(Diag::BadIdentifier, span, {std::string(token.text)});
-      return Parser::make_Identifier(ident(), span);
-    case TokenKind::Number: return Parser::make_Number(number(token), span);
+      return ident(Parser::token::Identifier);
+    case TokenKind::Number: return constant(number(token));
     case TokenKind::String: diagnostics_.report(Diag::StringConstant, span); break;
     case TokenKind::Character: diagnostics_.report(Diag::CharConstant, span); break;
     case TokenKind::OpenQuote: diagnostics_.report(Diag::UnterminatedString, span); break;
-    case TokenKind::Pragma: return Parser::make_Pragma(span);
-    case TokenKind::Declare: return Parser::make_Declare(span);
+    case TokenKind::Pragma: return {Parser::token::Pragma, span, {}};
+    case TokenKind::Declare: return {Parser::token::Declare, span, {}};
     case TokenKind::DirectiveEnd:
-      return Parser::make_DirectiveEnd(span);
+      return {Parser::token::DirectiveEnd, span, {}};
 // clang-format off
-#define PUNCTUATOR(kind, spelling) case TokenKind::kind: return Parser::make_##kind(span);
-#define KEYWORD(kind, spelling) case TokenKind::kind: return Parser::make_##kind(span);
-#define FOREIGN_TYPE(kind, spelling) case TokenKind::kind: return Parser::make_ForeignType(ident(), span);
+#define PUNCTUATOR(kind, spelling) case TokenKind::kind: return {Parser::token::kind, span, {}};
+#define KEYWORD(kind, spelling) case TokenKind::kind: return {Parser::token::kind, span, {}};
+#define FOREIGN_TYPE(kind, spelling) case TokenKind::kind: return ident(Parser::token::ForeignType);
 #define FOREIGN_QUALIFIER(kind, spelling) \
-  case TokenKind::kind: return Parser::make_ForeignQualifier(ident(), span);
+  case TokenKind::kind: return ident(Parser::token::ForeignQualifier);
 #include "compiler/preprocess/tokens.def"
       // clang-format on
     case TokenKind::End:
     case TokenKind::Newline:  // these four never leave preprocessor and next()
     case TokenKind::HeaderName:
     case TokenKind::Stray:
-    case TokenKind::Hash: return Parser::make_YYEOF(span);
+    case TokenKind::Hash: return {Parser::token::YYEOF, span, {}};
   }
-  return Parser::make_Number({0}, span);
+  return constant({0});
 }
 
 ast::Number TokenFeed::number(const Token& token) {

@@ -10,6 +10,13 @@
 
 namespace ipos::compiler {
 
+// What the parser takes: a token of the grammar with its place and value.
+struct Symbol {
+  Parser::token_kind_type kind;
+  Span span;
+  SemanticValue value;
+};
+
 class TokenFeed {
  public:
   // `tokens` ends with End.
@@ -17,7 +24,7 @@ class TokenFeed {
       : tokens_(tokens), types_(types), diagnostics_(diagnostics) {}
 
   // The parser's next symbol; behind an error, Sync or SyncBlock from the place to go on.
-  Parser::symbol_type next();
+  Symbol next();
 
   // Called by the parser when the symbol delivered last fits nowhere.
   void syntax_error(const Parser::context& context);
@@ -39,7 +46,7 @@ class TokenFeed {
   };
 
   // token_feed.cpp
-  Parser::symbol_type symbol(const Token& token);
+  Symbol symbol(const Token& token);
   ast::Number number(const Token& token);
   void stray();
   void accepted(size_t token);
@@ -59,9 +66,9 @@ class TokenFeed {
   const Token& before(size_t distance) const;
 
   // recovery.cpp
-  Parser::symbol_type resume();
+  Symbol resume();
   enum class Place : uint8_t { Next, Block, Body };  // for Sync, SyncBlock, SyncBody
-  Parser::symbol_type sync(size_t at, Place place = Place::Next);
+  Symbol sync(size_t at, Place place = Place::Next);
   size_t behind_directive(size_t at) const;
   size_t behind_head(size_t at, size_t head) const;
   size_t behind_statement(size_t at) const;

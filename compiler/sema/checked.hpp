@@ -5,8 +5,8 @@
 
 #include <bitset>
 #include <cstdint>
-#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <variant>
@@ -21,15 +21,15 @@ namespace ipos::compiler::checked {
 
 struct Expr;
 struct Stmt;
-using ExprPtr = std::unique_ptr<Expr>;
-using StmtPtr = std::unique_ptr<Stmt>;
+using ExprPtr = Expr*;  // in the arena of the Program
+using StmtPtr = Stmt*;
 using ast::BinaryOp;
 
 // The variable of a fixed number; or, with an offset, the one whose number is found at run time: number +
 // offset.
 struct Place {
   int32_t number = 0;
-  ExprPtr offset;
+  ExprPtr offset = nullptr;
 };
 
 enum class UnaryOp : uint8_t { Minus, BitNot, Not };
@@ -37,35 +37,35 @@ enum class UnaryOp : uint8_t { Minus, BitNot, Not };
 // clang-format off
 struct Constant { int32_t value; };
 struct Load { Place place; };
-struct Unary { UnaryOp op; ExprPtr operand; };
+struct Unary { UnaryOp op; ExprPtr operand = nullptr; };
 struct Step { Place place; int32_t delta; bool prefix; };          // ++ and --
-struct Binary { BinaryOp op; ExprPtr left; ExprPtr right; };       // comparisons, && and || give 0 or 1
-struct Conditional { ExprPtr condition; ExprPtr then; ExprPtr otherwise; };
-struct Assign { std::optional<BinaryOp> op; Place target; ExprPtr value; };
-struct Comma { ExprPtr left; ExprPtr right; };
+struct Binary { BinaryOp op; ExprPtr left = nullptr; ExprPtr right = nullptr; };       // comparisons, && and || give 0 or 1
+struct Conditional { ExprPtr condition = nullptr; ExprPtr then = nullptr; ExprPtr otherwise = nullptr; };
+struct Assign { std::optional<BinaryOp> op; Place target; ExprPtr value = nullptr; };
+struct Comma { ExprPtr left = nullptr; ExprPtr right = nullptr; };
 
 // Without a value: on their own, in a comma expression, or as a branch of ?: on its own.
 struct CopyBlock { uint16_t target; uint16_t source; uint16_t count; };
 struct Call { size_t function; };
 struct FunctionRef { size_t function; };
 using Argument = std::variant<int32_t, ExprPtr, FunctionRef>;      // in the order of the command's operands
-struct SystemCall { vm::Opcode opcode; std::vector<Argument> arguments; };
+struct SystemCall { vm::Opcode opcode; std::span<const Argument> arguments; };
 
 struct Expr {
   Span span;
   std::variant<Constant, Load, Unary, Step, Binary, Conditional, Assign, Comma, CopyBlock, Call, SystemCall> node;
 };
 
-struct ExprStmt { ExprPtr expr; };
-struct Block { std::vector<StmtPtr> body; };
-struct If { ExprPtr condition; StmtPtr then; StmtPtr otherwise; };             // otherwise may be null
-struct While { ExprPtr condition; StmtPtr body; };
-struct DoWhile { StmtPtr body; ExprPtr condition; };
-struct For { ExprPtr init; ExprPtr condition; ExprPtr step; StmtPtr body; };   // expressions may be null
+struct ExprStmt { ExprPtr expr = nullptr; };
+struct Block { std::span<const StmtPtr> body; };
+struct If { ExprPtr condition = nullptr; StmtPtr then = nullptr; StmtPtr otherwise = nullptr; };             // otherwise may be null
+struct While { ExprPtr condition = nullptr; StmtPtr body = nullptr; };
+struct DoWhile { StmtPtr body = nullptr; ExprPtr condition = nullptr; };
+struct For { ExprPtr init = nullptr; ExprPtr condition = nullptr; ExprPtr step = nullptr; StmtPtr body = nullptr; };   // expressions may be null
 struct Switch {
-  ExprPtr value;
-  StmtPtr body;
-  std::vector<std::pair<int32_t, size_t>> cases;  // value and label, in source order
+  ExprPtr value = nullptr;
+  StmtPtr body = nullptr;
+  std::span<const std::pair<int32_t, size_t>> cases;  // value and label, in source order
   std::optional<size_t> otherwise;                // label of default
   size_t labels = 0;
 };
@@ -83,7 +83,7 @@ struct Stmt {
 struct Function {
   std::string name;
   Span span;  // of the name
-  StmtPtr body;
+  StmtPtr body = nullptr;
 };
 
 // A row of the allocation map: who reads and writes a variable, and where its number is taken for indirect
@@ -101,6 +101,7 @@ struct MapEntry {
 
 struct Program {
   std::vector<Function> functions;  // in source order
+  Arena arena;                      // of statements and expressions
   size_t main = 0;
   std::vector<vm::Symbol> symbols;
   std::vector<MapEntry> map;  // in rising order of number

@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "compiler/diag/diag.hpp"
@@ -13,11 +14,11 @@
 
 namespace ipos::compiler {
 
-// Functions (by index) that read or write a variable, or take its number.
+// Functions (by index, in the order they are checked) that read or write a variable, or take its number.
 struct Access {
-  std::set<size_t> readers;
-  std::set<size_t> writers;
-  std::set<size_t> takers;
+  std::vector<size_t> readers;
+  std::vector<size_t> writers;
+  std::vector<size_t> takers;
 };
 
 // A constant assigned to a variable with a fixed number: what the SBus checks look at.
@@ -33,7 +34,7 @@ struct Context {
   Diagnostics& diagnostics;
   Scope scope;
   checked::Program program;
-  std::map<uint32_t, Access> accesses;                // by variable number
+  std::unordered_map<uint32_t, Access> accesses;      // by variable number
   std::map<uint32_t, Span> raw_names;                 // first use of H5 and the like
   std::set<std::string, std::less<>> reported_names;  // unknown ones, each reported once
   std::vector<ConstantStore> stores;

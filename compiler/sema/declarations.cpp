@@ -36,7 +36,8 @@ class Declarations {
   void declare_one(const ast::PragmaDecl&) {}
 
   void declare_one(const ast::FunctionDecl& decl) {
-    if (context_.scope.add(FunctionName{decl.name.text, functions_, decl.name.span}, context_.diagnostics))
+    if (context_.scope.add(FunctionName{std::string(decl.name.text), functions_, decl.name.span},
+                           context_.diagnostics))
       ++functions_;
   }
 
@@ -49,15 +50,17 @@ class Declarations {
         const auto member_type = type_of(line.type, declarator);
         if (!member_type) continue;
         if (type.find(declarator.name.text) != nullptr) {
-          context_.diagnostics.report(Diag::Redefined, declarator.name.span, {declarator.name.text});
+          context_.diagnostics.report(Diag::Redefined, declarator.name.span,
+                                      {std::string(declarator.name.text)});
           continue;
         }
-        type.members.push_back({{declarator.name.text}, *member_type, type.size, declarator.name.span});
+        type.members.push_back(
+            {{std::string(declarator.name.text)}, *member_type, type.size, declarator.name.span});
         type.size = std::min(type.size + member_type->size(), kHugeSize);
       }
     }
     if (type.members.empty())
-      context_.diagnostics.report(Diag::EmptyStructure, decl.name.span, {decl.name.text});
+      context_.diagnostics.report(Diag::EmptyStructure, decl.name.span, {std::string(decl.name.text)});
     context_.scope.add(std::move(type), context_.diagnostics);
   }
 
@@ -65,7 +68,7 @@ class Declarations {
     for (const ast::Declarator& declarator : decl.declarators) {
       const auto type = type_of(decl.type, declarator);
       if (!type) {
-        context_.reported_names.insert(declarator.name.text);  // no second message where it is used
+        context_.reported_names.emplace(declarator.name.text);  // no second message where it is used
         continue;
       }
       const RangeKind kind = decl.initial ? RangeKind::Initials : RangeKind::Globals;
@@ -74,7 +77,7 @@ class Declarations {
       fill.count = std::min(fill.count + type->size(), kHugeSize);
       if (fill.count > context_.program.ranges.of(kind).size() && !fill.overflow.begin.valid())
         fill.overflow = declarator.name.span;
-      context_.scope.add(Variable{declarator.name.text, *type, std::min(number, kHugeSize),
+      context_.scope.add(Variable{std::string(declarator.name.text), *type, std::min(number, kHugeSize),
                                   decl.initial ? Storage::Initial : Storage::Global, declarator.name.span,
                                   context_.order, is_standard(decl.span)},
                          context_.diagnostics);
@@ -83,16 +86,16 @@ class Declarations {
 
   void declare_one(const ast::AliasDecl& decl) {
     // BASE is a name, so its place is fixed; BASE + K is the long K variables behind its first one.
-    const ast::Expr* base = decl.base.get();
+    const ast::Expr* base = decl.base;
     const auto* sum = std::get_if<ast::Binary>(&base->node);
     std::optional<int32_t> offset = 0;
     if (sum != nullptr && sum->op == ast::BinaryOp::Add) {
-      base = sum->left.get();
+      base = sum->left;
       offset = expressions_.constant(*sum->right, "the offset of an alias");
     }
     auto object = expressions_.object(*base);
     if (!object || !offset) {
-      context_.reported_names.insert(decl.name.text);
+      context_.reported_names.emplace(decl.name.text);
       return;
     }
     const int64_t number = int64_t{object->place.number} + *offset;
@@ -103,8 +106,8 @@ class Declarations {
       return;
     }
     const Type type = *offset == 0 ? object->type : Type{};
-    context_.scope.add(Variable{decl.name.text, type, static_cast<uint32_t>(number), Storage::Alias,
-                                decl.name.span, context_.order, is_standard(decl.span)},
+    context_.scope.add(Variable{std::string(decl.name.text), type, static_cast<uint32_t>(number),
+                                Storage::Alias, decl.name.span, context_.order, is_standard(decl.span)},
                        context_.diagnostics);
   }
 
@@ -113,7 +116,7 @@ class Declarations {
     if (name.text != "long") {
       type.structure = context_.scope.find_type(name.text);
       if (type.structure == nullptr) {
-        context_.diagnostics.report(Diag::UnknownType, name.span, {name.text});
+        context_.diagnostics.report(Diag::UnknownType, name.span, {std::string(name.text)});
         return std::nullopt;
       }
     }
@@ -145,7 +148,7 @@ class Declarations {
       if (!low || !high || !possible(*low, *high, decl.span)) return;
       Span& set = pragmas_[static_cast<size_t>(kind)];
       if (set.begin.valid())
-        context_.diagnostics.report(Diag::PragmaRepeated, decl.span, {decl.kind.text})
+        context_.diagnostics.report(Diag::PragmaRepeated, decl.span, {std::string(decl.kind.text)})
             .notes.push_back({set, "the earlier one"});
       set = decl.span;
       context_.program.ranges.of(kind) = {static_cast<uint32_t>(*low), static_cast<uint32_t>(*high)};

@@ -10,10 +10,6 @@ namespace ipos::compiler {
 
 using checked::ExprPtr;
 
-ExprPtr make_expr(Span span, decltype(checked::Expr::node) node) {
-  return std::make_unique<checked::Expr>(checked::Expr{span, std::move(node)});
-}
-
 const int32_t* constant_value(const ExprPtr& expr) {
   if (expr == nullptr) return nullptr;
   const auto* constant = std::get_if<checked::Constant>(&expr->node);
@@ -58,19 +54,19 @@ ExprPtr ExpressionChecker::effect(const ast::Expr& expr) {
     ExprPtr left = effect(*node->left);
     ExprPtr right = effect(*node->right);
     if (!left || !right) return nullptr;
-    return make_expr(expr.span, checked::Comma{std::move(left), std::move(right)});
+    return make_expr(expr.span, checked::Comma{left, right});
   }
   if (const auto* node = std::get_if<ast::Conditional>(&expr.node)) {
     ExprPtr when = condition(*node->condition);
     ExprPtr then = effect(*node->then);
     ExprPtr otherwise = effect(*node->otherwise);
     if (!when || !then || !otherwise) return nullptr;
-    return make_expr(expr.span, checked::Conditional{std::move(when), std::move(then), std::move(otherwise)});
+    return make_expr(expr.span, checked::Conditional{when, then, otherwise});
   }
   if (const auto* node = std::get_if<ast::Assign>(&expr.node); node != nullptr && !node->op) {
     auto left = target(*node->target);
     if (left && !left->type.scalar()) return copy_structure(*node, std::move(*left), expr.span);
-    return assign(*node, std::move(left), expr.span);
+    return assign(*node, left, expr.span);
   }
   ExprPtr result = value(expr);
   if (result != nullptr && !has_effect(*result)) context_.diagnostics.report(Diag::UnusedValue, expr.span);
@@ -105,11 +101,11 @@ ExprPtr ExpressionChecker::load(const ast::Expr& expr) {
   if (!from) return nullptr;
   if (!from->type.scalar()) {
     const char* advice = from->type.count != 0 ? "one of its elements has" : "one of its members has";
-    context_.diagnostics.report(Diag::NotAValue, expr.span, {from->text, advice});
+    context_.diagnostics.report(Diag::NotAValue, expr.span, {from->text(), advice});
     return nullptr;
   }
   record_read(*from);
-  return make_expr(expr.span, checked::Load{std::move(from->place)});
+  return make_expr(expr.span, checked::Load{from->place});
 }
 
 ExprPtr ExpressionChecker::value_of(const ast::Numof& node, const ast::Expr& expr) {
@@ -118,9 +114,8 @@ ExprPtr ExpressionChecker::value_of(const ast::Numof& node, const ast::Expr& exp
   record_take(*of);
   ExprPtr number = make_expr(expr.span, checked::Constant{of->place.number});
   if (of->place.offset == nullptr) return number;
-  if (of->place.number == 0) return std::move(of->place.offset);
-  return make_expr(expr.span,
-                   checked::Binary{ast::BinaryOp::Add, std::move(of->place.offset), std::move(number)});
+  if (of->place.number == 0) return of->place.offset;
+  return make_expr(expr.span, checked::Binary{ast::BinaryOp::Add, of->place.offset, number});
 }
 
 ExprPtr ExpressionChecker::value_of(const ast::Unary& node, const ast::Expr& expr) {
@@ -135,21 +130,21 @@ ExprPtr ExpressionChecker::value_of(const ast::Unary& node, const ast::Expr& exp
   const checked::UnaryOp op = node.op == ast::UnaryOp::Minus    ? checked::UnaryOp::Minus
                               : node.op == ast::UnaryOp::BitNot ? checked::UnaryOp::BitNot
                                                                 : checked::UnaryOp::Not;
-  return make_expr(expr.span, checked::Unary{op, std::move(operand)});
+  return make_expr(expr.span, checked::Unary{op, operand});
 }
 
 ExprPtr ExpressionChecker::value_of(const ast::Step& node, const ast::Expr& expr) {
   auto what = target(*node.operand);
   if (!what) return nullptr;
   if (!what->type.scalar()) {
-    context_.diagnostics.report(Diag::NotAValue, expr.span, {what->text, "++ and -- need one"});
+    context_.diagnostics.report(Diag::NotAValue, expr.span, {what->text(), "++ and -- need one"});
     return nullptr;
   }
   record_read(*what);
   record_write(*what, node.operand->span);
   const bool up = node.op == ast::StepOp::PreIncrement || node.op == ast::StepOp::PostIncrement;
   const bool prefix = node.op == ast::StepOp::PreIncrement || node.op == ast::StepOp::PreDecrement;
-  return make_expr(expr.span, checked::Step{std::move(what->place), up ? 1 : -1, prefix});
+  return make_expr(expr.span, checked::Step{what->place, up ? 1 : -1, prefix});
 }
 
 ExprPtr ExpressionChecker::value_of(const ast::Binary& node, const ast::Expr& expr) {
@@ -166,9 +161,9 @@ ExprPtr ExpressionChecker::value_of(const ast::Binary& node, const ast::Expr& ex
     const bool decided = (*a != 0) == (node.op == BinaryOp::LogicalOr);
     if (decided) return make_expr(expr.span, checked::Constant{node.op == BinaryOp::LogicalOr});
     ExprPtr zero = make_expr(expr.span, checked::Constant{0});
-    return make_expr(expr.span, checked::Binary{BinaryOp::Ne, std::move(right), std::move(zero)});
+    return make_expr(expr.span, checked::Binary{BinaryOp::Ne, right, zero});
   }
-  return make_expr(expr.span, checked::Binary{node.op, std::move(left), std::move(right)});
+  return make_expr(expr.span, checked::Binary{node.op, left, right});
 }
 
 ExprPtr ExpressionChecker::value_of(const ast::Conditional& node, const ast::Expr& expr) {
@@ -176,9 +171,8 @@ ExprPtr ExpressionChecker::value_of(const ast::Conditional& node, const ast::Exp
   ExprPtr then = value(*node.then);
   ExprPtr otherwise = value(*node.otherwise);
   if (!when || !then || !otherwise) return nullptr;
-  if (const int32_t* known = constant_value(when))
-    return *known != 0 ? std::move(then) : std::move(otherwise);
-  return make_expr(expr.span, checked::Conditional{std::move(when), std::move(then), std::move(otherwise)});
+  if (const int32_t* known = constant_value(when)) return *known != 0 ? then : otherwise;
+  return make_expr(expr.span, checked::Conditional{when, then, otherwise});
 }
 
 ExprPtr ExpressionChecker::value_of(const ast::Assign& node, const ast::Expr& expr) {
@@ -190,7 +184,7 @@ ExprPtr ExpressionChecker::assign(const ast::Assign& node, std::optional<Object>
   if (!left || !right) return nullptr;
   if (!left->type.scalar()) {
     context_.diagnostics.report(Diag::NotAValue, node.target->span,
-                                {left->text, "it can be assigned as a statement of its own only"});
+                                {left->text(), "it can be assigned as a statement of its own only"});
     return nullptr;
   }
   if (node.op) {
@@ -201,13 +195,13 @@ ExprPtr ExpressionChecker::assign(const ast::Assign& node, std::optional<Object>
   const int32_t* known = constant_value(right);
   if (!node.op && known != nullptr && left->place.offset == nullptr)
     context_.stores.push_back({static_cast<uint32_t>(left->place.number), *known, span});
-  return make_expr(span, checked::Assign{node.op, std::move(left->place), std::move(right)});
+  return make_expr(span, checked::Assign{node.op, left->place, right});
 }
 
 ExprPtr ExpressionChecker::copy_structure(const ast::Assign& node, Object target, Span span) {
   const auto fixed = [&](const Object& object, Span at) {
     if (object.place.offset == nullptr) return true;
-    context_.diagnostics.report(Diag::NotAValue, at, {object.text, "copy its members one by one"});
+    context_.diagnostics.report(Diag::NotAValue, at, {object.text(), "copy its members one by one"});
     return false;
   };
   const bool whole = std::holds_alternative<ast::Name>(node.value->node) ||
@@ -215,13 +209,13 @@ ExprPtr ExpressionChecker::copy_structure(const ast::Assign& node, Object target
                      std::holds_alternative<ast::Index>(node.value->node);
   if (!whole) {
     context_.diagnostics.report(Diag::NotAValue, node.target->span,
-                                {target.text, "one of its members or elements has"});
+                                {target.text(), "one of its members or elements has"});
     return nullptr;
   }
   auto source = object(*node.value);
   if (!source) return nullptr;
   if (source->type.structure != target.type.structure || source->type.count != target.type.count) {
-    context_.diagnostics.report(Diag::StructureMismatch, span, {target.text, source->text});
+    context_.diagnostics.report(Diag::StructureMismatch, span, {target.text(), source->text()});
     return nullptr;
   }
   if (!fixed(target, node.target->span) || !fixed(*source, node.value->span)) return nullptr;
@@ -236,12 +230,12 @@ ExprPtr ExpressionChecker::value_of(const ast::Comma& node, const ast::Expr& exp
   ExprPtr left = effect(*node.left);
   ExprPtr right = value(*node.right);
   if (!left || !right) return nullptr;
-  return make_expr(expr.span, checked::Comma{std::move(left), std::move(right)});
+  return make_expr(expr.span, checked::Comma{left, right});
 }
 
 ExprPtr ExpressionChecker::value_of(const ast::Call& node, const ast::Expr& expr) {
   if (call(node, expr.span) != nullptr)
-    context_.diagnostics.report(Diag::CallHasNoValue, expr.span, {node.function.text});
+    context_.diagnostics.report(Diag::CallHasNoValue, expr.span, {std::string(node.function.text)});
   return nullptr;
 }
 
@@ -252,20 +246,20 @@ ExprPtr ExpressionChecker::call(const ast::Call& node, Span span) {
       return check_system_call(context_, *this, node, span);
     uint32_t number = 0;
     if (raw_number(node.function.text, number))
-      context_.diagnostics.report(Diag::NotAFunction, node.function.span, {node.function.text});
+      context_.diagnostics.report(Diag::NotAFunction, node.function.span, {std::string(node.function.text)});
     else
       unknown_name(node.function.text, node.function.span, true);
     return nullptr;
   }
   const auto* function = std::get_if<const FunctionName*>(entity);
   if (function == nullptr) {
-    context_.diagnostics.report(Diag::NotAFunction, node.function.span, {node.function.text});
+    context_.diagnostics.report(Diag::NotAFunction, node.function.span, {std::string(node.function.text)});
     return nullptr;
   }
   if (!node.arguments.empty()) {
     context_.diagnostics.report(
         Diag::ArgumentCount, node.arguments.front()->span,
-        {node.function.text, "no arguments", fmt::format("{}", node.arguments.size())});
+        {std::string(node.function.text), "no arguments", fmt::format("{}", node.arguments.size())});
     return nullptr;
   }
   return make_expr(span, checked::Call{(*function)->index});

@@ -14,9 +14,11 @@ namespace ipos::compiler {
 struct Object {
   Type type;
   checked::Place place;
-  std::string text;                    // for messages
+  std::string_view name;               // of the variable or member, for messages; empty behind a '*'
   std::optional<NumberRange> extent;   // variables it may be, when they are known
   const Variable* variable = nullptr;  // declared one it is (part of)
+
+  std::string text() const;  // for messages
 };
 
 class ExpressionChecker {
@@ -56,6 +58,11 @@ class ExpressionChecker {
   std::optional<Object> object_of(const ast::Index& node, const ast::Expr& expr);
   std::optional<Object> object_of(const ast::Deref& node, const ast::Expr& expr);
 
+  template <typename Node>
+  checked::ExprPtr make_expr(Span span, const Node& node) {
+    return context_.program.arena.make(checked::Expr{span, node});
+  }
+  checked::ExprPtr combine(ast::BinaryOp op, checked::ExprPtr left, checked::ExprPtr right);
   checked::ExprPtr load(const ast::Expr& expr);
   // The object on the left of an assignment; reports what cannot be assigned to.
   std::optional<Object> target(const ast::Expr& expr);
@@ -68,14 +75,12 @@ class ExpressionChecker {
   void record_read(const Object& object);
   void record_write(const Object& object, Span span);
   void record_take(const Object& object);
-  template <typename Set>
-  void record(const Object& object, Set Access::*set);
+  void record(const Object& object, std::vector<size_t> Access::*list);
 
   Context& context_;
   bool in_constant_ = false;  // where division by zero is an error of its own
 };
 
-checked::ExprPtr make_expr(Span span, decltype(checked::Expr::node) node);
 // The value of a constant expression.
 const int32_t* constant_value(const checked::ExprPtr& expr);
 // True when evaluating may change something (or call, or fault on purpose).

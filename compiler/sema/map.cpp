@@ -24,7 +24,9 @@ void add_symbols(const std::string& name, const Type& type, uint32_t number, std
   }
 }
 
-std::vector<std::string> names(const Context& context, const std::set<size_t>& functions) {
+std::vector<std::string> names(const Context& context, std::vector<size_t> functions) {
+  std::sort(functions.begin(), functions.end());
+  functions.erase(std::unique(functions.begin(), functions.end()), functions.end());
   std::vector<std::string> out;
   for (const size_t function : functions)
     if (function < context.program.functions.size()) out.push_back(context.program.functions[function].name);
@@ -37,9 +39,8 @@ checked::MapEntry make_entry(const Context& context, std::string name, std::stri
   for (uint32_t n = number; n < number + count; ++n) {
     const auto found = context.accesses.find(n);
     if (found == context.accesses.end()) continue;
-    all.readers.insert(found->second.readers.begin(), found->second.readers.end());
-    all.writers.insert(found->second.writers.begin(), found->second.writers.end());
-    all.takers.insert(found->second.takers.begin(), found->second.takers.end());
+    for (const auto list : {&Access::readers, &Access::writers, &Access::takers})
+      (all.*list).insert((all.*list).end(), (found->second.*list).begin(), (found->second.*list).end());
   }
   return {std::move(name),
           std::move(type),

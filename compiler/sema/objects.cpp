@@ -17,15 +17,21 @@ ExprPtr split_constant(ExprPtr expr, int32_t& number) {
   const int32_t* known = constant_value(sum->right);
   if (known == nullptr) return expr;
   number = *fold(sum->op, number, *known);
-  return split_constant(std::move(sum->left), number);
-}
-
-ExprPtr combine(ast::BinaryOp op, ExprPtr left, ExprPtr right) {
-  const Span span = right->span;
-  return make_expr(span, checked::Binary{op, std::move(left), std::move(right)});
+  return split_constant(sum->left, number);
 }
 
 }  // namespace
+
+std::string Object::text() const {
+  uint32_t number = 0;
+  if (variable == nullptr && raw_number(name, number)) return std::string(name);
+  if (!name.empty()) return fmt::format("'{}'", name);
+  return place.offset != nullptr ? "the variable behind the '*'" : fmt::format("H{}", place.number);
+}
+
+ExprPtr ExpressionChecker::combine(ast::BinaryOp op, ExprPtr left, ExprPtr right) {
+  return make_expr(right->span, checked::Binary{op, left, right});
+}
 
 std::optional<Object> ExpressionChecker::object(const ast::Expr& expr) {
   if (const auto* node = std::get_if<ast::Name>(&expr.node)) return object_of(*node, expr);
@@ -68,19 +74,16 @@ std::optional<Object> ExpressionChecker::object_of(const ast::Name& node, const 
   }
   const auto* found = std::get_if<const Variable*>(entity);
   if (found == nullptr) {
-    context_.diagnostics.report(Diag::TypeAsValue, expr.span, {node.text});
+    context_.diagnostics.report(Diag::TypeAsValue, expr.span, {std::string(node.text)});
     return std::nullopt;
   }
   const Variable& variable = **found;
   if (variable.order > context_.order)
-    context_.diagnostics.report(Diag::UsedBeforeDeclaration, expr.span, {node.text})
+    context_.diagnostics.report(Diag::UsedBeforeDeclaration, expr.span, {std::string(node.text)})
         .notes.push_back({variable.span, "declared here"});
   const NumberRange extent{variable.number, variable.number + variable.type.size() - 1};
-  return Object{variable.type,
-                {static_cast<int32_t>(variable.number), nullptr},
-                "'" + node.text + "'",
-                extent,
-                &variable};
+  return Object{
+      variable.type, {static_cast<int32_t>(variable.number), nullptr}, node.text, extent, &variable};
 }
 
 std::optional<Object> ExpressionChecker::object_of(const ast::Member& node, const ast::Expr&) {
@@ -88,13 +91,14 @@ std::optional<Object> ExpressionChecker::object_of(const ast::Member& node, cons
   if (!base) return std::nullopt;
   const StructType* type = base->type.structure;
   if (type == nullptr || base->type.count != 0) {
-    context_.diagnostics.report(Diag::NotAStructure, node.member.span, {base->text, node.member.text});
+    context_.diagnostics.report(Diag::NotAStructure, node.member.span,
+                                {base->text(), std::string(node.member.text)});
     return std::nullopt;
   }
   const StructMember* member = type->find(node.member.text);
   if (member == nullptr) {
-    Diagnostic& message =
-        context_.diagnostics.report(Diag::UnknownMember, node.member.span, {type->name, node.member.text});
+    Diagnostic& message = context_.diagnostics.report(Diag::UnknownMember, node.member.span,
+                                                      {type->name, std::string(node.member.text)});
     std::vector<std::string_view> names;
     for (const StructMember& row : type->members)
       names.insert(names.end(), row.names.begin(), row.names.end());
@@ -104,7 +108,7 @@ std::optional<Object> ExpressionChecker::object_of(const ast::Member& node, cons
   }
   base->place.number += static_cast<int32_t>(member->offset);
   base->type = member->type;
-  base->text = fmt::format("'{}'", node.member.text);
+  base->name = node.member.text;
   if (base->place.offset == nullptr) {
     const auto first = static_cast<uint32_t>(base->place.number);
     base->extent = NumberRange{first, first + member->type.size() - 1};
@@ -117,7 +121,7 @@ std::optional<Object> ExpressionChecker::object_of(const ast::Index& node, const
   ExprPtr index = value(*node.index);
   if (!base || !index) return std::nullopt;
   if (base->type.count == 0) {
-    context_.diagnostics.report(Diag::NotAnArray, node.base->span, {base->text});
+    context_.diagnostics.report(Diag::NotAnArray, node.base->span, {base->text()});
     return std::nullopt;
   }
   const auto count = static_cast<int32_t>(base->type.count);
@@ -125,9 +129,9 @@ std::optional<Object> ExpressionChecker::object_of(const ast::Index& node, const
   const auto size = static_cast<int32_t>(base->type.size());
   if (const int32_t* known = constant_value(index)) {
     if (*known < 0 || *known >= count) {
-      Diagnostic& message =
-          context_.diagnostics.report(Diag::IndexRange, node.index->span,
-                                      {fmt::format("{}", *known), base->text, fmt::format("{}", count - 1)});
+      Diagnostic& message = context_.diagnostics.report(
+          Diag::IndexRange, node.index->span,
+          {fmt::format("{}", *known), base->text(), fmt::format("{}", count - 1)});
       if (base->variable != nullptr) message.notes.push_back({base->variable->span, "declared here"});
       return std::nullopt;
     }
@@ -139,15 +143,14 @@ std::optional<Object> ExpressionChecker::object_of(const ast::Index& node, const
     return base;
   }
   int32_t shift = 0;
-  index = split_constant(std::move(index), shift);
+  index = split_constant(index, shift);
   base->place.number = *fold(ast::BinaryOp::Add, base->place.number, *fold(ast::BinaryOp::Mul, shift, size));
   if (size != 1) {
     const Span span = index->span;
-    index = combine(ast::BinaryOp::Mul, std::move(index), make_expr(span, checked::Constant{size}));
+    index = combine(ast::BinaryOp::Mul, index, make_expr(span, checked::Constant{size}));
   }
-  if (base->place.offset != nullptr)
-    index = combine(ast::BinaryOp::Add, std::move(base->place.offset), std::move(index));
-  base->place.offset = std::move(index);
+  if (base->place.offset != nullptr) index = combine(ast::BinaryOp::Add, base->place.offset, index);
+  base->place.offset = index;
   return base;
 }
 
@@ -162,18 +165,19 @@ std::optional<Object> ExpressionChecker::object_of(const ast::Deref& node, const
       return std::nullopt;
     }
     const auto fixed = static_cast<uint32_t>(*known);
-    return Object{{}, {*known, nullptr}, fmt::format("H{}", fixed), NumberRange{fixed, fixed}, nullptr};
+    return Object{{}, {*known, nullptr}, {}, NumberRange{fixed, fixed}, nullptr};
   }
   int32_t shift = 0;
-  number = split_constant(std::move(number), shift);
-  return Object{{}, {shift, std::move(number)}, "the variable behind the '*'", std::nullopt, nullptr};
+  number = split_constant(number, shift);
+  return Object{{}, {shift, number}, {}, std::nullopt, nullptr};
 }
 
-template <typename Set>
-void ExpressionChecker::record(const Object& object, Set Access::*set) {
+void ExpressionChecker::record(const Object& object, std::vector<size_t> Access::*list) {
   if (!object.extent) return;
-  for (uint32_t n = object.extent->low; n <= object.extent->high && n < kMaxNumbers; ++n)
-    (context_.accesses[n].*set).insert(context_.function);
+  for (uint32_t n = object.extent->low; n <= object.extent->high && n < kMaxNumbers; ++n) {
+    std::vector<size_t>& functions = context_.accesses[n].*list;
+    if (functions.empty() || functions.back() != context_.function) functions.push_back(context_.function);
+  }
 }
 
 void ExpressionChecker::record_read(const Object& object) { record(object, &Access::readers); }

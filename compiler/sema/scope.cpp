@@ -130,6 +130,7 @@ void Scope::explain_unknown(Diagnostic& diagnostic, std::string_view name, bool 
     if (std::holds_alternative<const FunctionName*>(entity) == function &&
         !std::holds_alternative<const StructType*>(entity))
       candidates.push_back(known);
+  std::sort(candidates.begin(), candidates.end());
   if (function) {
     for (const stdlib::SystemFunction& row : stdlib::system_functions()) candidates.push_back(row.name);
   } else {

@@ -4,9 +4,9 @@
 
 #include <cstdint>
 #include <deque>
-#include <map>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <variant>
 #include <vector>
 
@@ -92,7 +92,7 @@ class Scope {
   std::deque<StructType> types_;  // deques: entities stay where they are
   std::deque<Variable> variables_;
   std::deque<FunctionName> functions_;
-  std::map<std::string, Entity, std::less<>> names_;
+  std::unordered_map<std::string_view, Entity> names_;  // by the name in the entity
 };
 
 // The number of H0, H007, ...; kHugeSize when it is larger than any variable number. False: no such name.

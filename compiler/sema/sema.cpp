@@ -22,7 +22,7 @@ void check_bodies(const ast::Program& program, Context& context) {
     const Entity* entity = context.scope.find(function->name.text);
     const auto* name = entity != nullptr ? std::get_if<const FunctionName*>(entity) : nullptr;
     if (name == nullptr || (*name)->span != function->name.span) continue;
-    context.program.functions.push_back({function->name.text, function->name.span, nullptr});
+    context.program.functions.push_back({std::string(function->name.text), function->name.span, nullptr});
     bodies.push_back(function);
     orders.push_back(order);
   }

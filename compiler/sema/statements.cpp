@@ -10,10 +10,6 @@ namespace {
 
 using checked::StmtPtr;
 
-StmtPtr make_stmt(Span span, decltype(checked::Stmt::node) node) {
-  return std::make_unique<checked::Stmt>(checked::Stmt{span, std::move(node)});
-}
-
 template <typename... Kinds>
 bool is_one_of(const ast::Stmt& stmt) {
   return (std::holds_alternative<Kinds>(stmt.node) || ...);
@@ -43,9 +39,9 @@ StatementChecker::Result StatementChecker::check(const ast::Block& node, Span sp
 }
 
 StatementChecker::Result StatementChecker::block(const ast::Block& node, Span span, bool reached) {
-  checked::Block out;
+  std::vector<StmtPtr> body;
   bool reported = false;
-  for (const ast::StmtPtr& stmt : node.body) {
+  for (const ast::Stmt* stmt : node.body) {
     if (is_one_of<ast::Case, ast::Default>(*stmt)) {
       reached = true;
       reported = false;
@@ -56,9 +52,9 @@ StatementChecker::Result StatementChecker::block(const ast::Block& node, Span sp
     }
     Result result = statement(*stmt);
     reached = reached && result.falls_through;
-    out.body.push_back(std::move(result.stmt));
+    body.push_back(result.stmt);
   }
-  return {make_stmt(span, std::move(out)), reached};
+  return {make_stmt(span, checked::Block{context_.program.arena.list(body)}), reached};
 }
 
 StatementChecker::Result StatementChecker::check(const ast::If& node, Span span) {
@@ -69,8 +65,7 @@ StatementChecker::Result StatementChecker::check(const ast::If& node, Span span)
   Result otherwise;
   if (node.otherwise != nullptr) otherwise = statement(*node.otherwise);
   const bool falls_through = then.falls_through || otherwise.falls_through;
-  return {make_stmt(span, checked::If{std::move(condition), std::move(then.stmt), std::move(otherwise.stmt)}),
-          falls_through};
+  return {make_stmt(span, checked::If{condition, then.stmt, otherwise.stmt}), falls_through};
 }
 
 StatementChecker::Result StatementChecker::check(const ast::While& node, Span span) {
@@ -79,7 +74,7 @@ StatementChecker::Result StatementChecker::check(const ast::While& node, Span sp
   Result body = statement(*node.body);
   const bool falls_through = frames_.back().left_by_break || !always(condition);
   frames_.pop_back();
-  return {make_stmt(span, checked::While{std::move(condition), std::move(body.stmt)}), falls_through};
+  return {make_stmt(span, checked::While{condition, body.stmt}), falls_through};
 }
 
 StatementChecker::Result StatementChecker::check(const ast::DoWhile& node, Span span) {
@@ -88,7 +83,7 @@ StatementChecker::Result StatementChecker::check(const ast::DoWhile& node, Span 
   checked::ExprPtr condition = expressions_.condition(*node.condition);
   const bool falls_through = frames_.back().left_by_break || !always(condition);
   frames_.pop_back();
-  return {make_stmt(span, checked::DoWhile{std::move(body.stmt), std::move(condition)}), falls_through};
+  return {make_stmt(span, checked::DoWhile{body.stmt, condition}), falls_through};
 }
 
 StatementChecker::Result StatementChecker::check(const ast::For& node, Span span) {
@@ -101,7 +96,7 @@ StatementChecker::Result StatementChecker::check(const ast::For& node, Span span
   const bool endless = node.condition == nullptr || always(out.condition);
   const bool falls_through = frames_.back().left_by_break || !endless;
   frames_.pop_back();
-  return {make_stmt(span, std::move(out)), falls_through};
+  return {make_stmt(span, out), falls_through};
 }
 
 StatementChecker::Result StatementChecker::check(const ast::Switch& node, Span span) {
@@ -112,9 +107,10 @@ StatementChecker::Result StatementChecker::check(const ast::Switch& node, Span s
   // Nothing in front of the first label is ever reached.
   Result inside = body != nullptr ? block(*body, node.body->span, false) : statement(*node.body);
   const bool falls_through = inside.falls_through || frames_.back().left_by_break || !out.otherwise;
+  out.cases = context_.program.arena.list(frames_.back().cases);
   frames_.pop_back();
-  out.body = std::move(inside.stmt);
-  return {make_stmt(span, std::move(out)), falls_through};
+  out.body = inside.stmt;
+  return {make_stmt(span, out), falls_through};
 }
 
 StatementChecker::Result StatementChecker::check(const ast::Case& node, Span span) {
@@ -127,14 +123,14 @@ StatementChecker::Result StatementChecker::check(const ast::Case& node, Span spa
   checked::Switch* target = frame->target;
   if (value) {
     const auto same = [&](const auto& row) { return row.first == *value; };
-    const auto first = std::find_if(target->cases.begin(), target->cases.end(), same);
-    if (first != target->cases.end()) {
-      const Span place = frame->cases[static_cast<size_t>(first - target->cases.begin())];
+    const auto first = std::find_if(frame->cases.begin(), frame->cases.end(), same);
+    if (first != frame->cases.end()) {
+      const Span place = frame->places[static_cast<size_t>(first - frame->cases.begin())];
       context_.diagnostics.report(Diag::DuplicateCase, span, {fmt::format("{}", *value)})
           .notes.push_back({place, "the first one is here"});
     }
-    target->cases.emplace_back(*value, target->labels);
-    frame->cases.push_back(span);
+    frame->cases.emplace_back(*value, target->labels);
+    frame->places.push_back(span);
   }
   return {make_stmt(span, checked::CaseLabel{target->labels++}), true};
 }

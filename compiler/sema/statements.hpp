@@ -17,7 +17,7 @@ class StatementChecker {
  private:
   // A checked statement, and whether what stands behind it can be reached.
   struct Result {
-    checked::StmtPtr stmt;
+    checked::StmtPtr stmt = nullptr;
     bool falls_through = true;
   };
 
@@ -25,10 +25,15 @@ class StatementChecker {
   struct Frame {
     checked::Switch* target = nullptr;  // null: a loop
     bool left_by_break = false;
-    std::vector<Span> cases = {};  // of the switch, beside target->cases
+    std::vector<std::pair<int32_t, size_t>> cases = {};  // of the switch: value and label
+    std::vector<Span> places = {};                       // of these
     Span otherwise = {};
   };
 
+  template <typename Node>
+  checked::StmtPtr make_stmt(Span span, const Node& node) {
+    return context_.program.arena.make(checked::Stmt{span, node});
+  }
   Result statement(const ast::Stmt& stmt);
   Result check(const ast::Empty& node, Span span);
   Result check(const ast::ExprStmt& node, Span span);

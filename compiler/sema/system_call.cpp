@@ -56,9 +56,10 @@ class SystemCallChecker {
 
   ExprPtr run() {
     if (call_.arguments.size() != kinds_.size()) {
-      Diagnostic& message = context_.diagnostics.report(
-          Diag::ArgumentCount, span_,
-          {call_.function.text, count_text(kinds_.size()), fmt::format("{}", call_.arguments.size())});
+      Diagnostic& message =
+          context_.diagnostics.report(Diag::ArgumentCount, span_,
+                                      {std::string(call_.function.text), count_text(kinds_.size()),
+                                       fmt::format("{}", call_.arguments.size())});
       message.notes.push_back(
           {{}, fmt::format("the form is {}( {} )", function_.name, fmt::join(kinds_, ", "))});
       return nullptr;
@@ -67,7 +68,8 @@ class SystemCallChecker {
     for (size_t n = 0; n < kinds_.size(); ++n) good = argument(n) && good;
     if (!good) return nullptr;
     const vm::OpcodeInfo* row = command();
-    return make_expr(span_, checked::SystemCall{row->opcode, std::move(arguments_)});
+    return expressions_.make_expr(span_,
+                                  checked::SystemCall{row->opcode, context_.program.arena.list(arguments_)});
   }
 
  private:
@@ -104,7 +106,7 @@ class SystemCallChecker {
     if (function_.mnemonic == "VARINT" && context_.unit.tasks < 3) missing = "variable interrupts";
     if (missing.empty()) return true;
     context_.diagnostics.report(Diag::MissingTask, call_.function.span,
-                                {call_.function.text, missing, std::string(context_.unit.name)});
+                                {std::string(call_.function.text), missing, std::string(context_.unit.name)});
     return false;
   }
 
@@ -117,7 +119,7 @@ class SystemCallChecker {
     if (value == nullptr) return false;
     const int32_t* known = constant_value(value);
     if (kind == "value" && known == nullptr) {
-      arguments_.emplace_back(std::move(value));
+      arguments_.emplace_back(value);
       return true;
     }
     if (kind == "keyword") return keyword(n, known, expr.span);
@@ -138,16 +140,18 @@ class SystemCallChecker {
       arguments_.emplace_back(*value);
       return true;
     }
-    context_.diagnostics.report(Diag::ArgumentKeyword, span,
-                                {fmt::format("{}", n + 1), call_.function.text, constant_list(set)});
+    context_.diagnostics.report(
+        Diag::ArgumentKeyword, span,
+        {fmt::format("{}", n + 1), std::string(call_.function.text), constant_list(set)});
     return false;
   }
 
   bool in_range(size_t n, int32_t value, int32_t low, int32_t high, Span span) {
     if (value < low || value > high) {
-      context_.diagnostics.report(Diag::ArgumentRange, span,
-                                  {fmt::format("{}", n + 1), call_.function.text, fmt::format("{}", low),
-                                   fmt::format("{}", high), fmt::format("{}", value)});
+      context_.diagnostics.report(
+          Diag::ArgumentRange, span,
+          {fmt::format("{}", n + 1), std::string(call_.function.text), fmt::format("{}", low),
+           fmt::format("{}", high), fmt::format("{}", value)});
       return false;
     }
     arguments_.emplace_back(value);
@@ -170,7 +174,7 @@ class SystemCallChecker {
     if (named && !object) return false;
     if (!object || object->place.offset != nullptr) {
       context_.diagnostics.report(Diag::ArgumentVariable, expr.span,
-                                  {fmt::format("{}", n + 1), call_.function.text});
+                                  {fmt::format("{}", n + 1), std::string(call_.function.text)});
       return false;
     }
     expressions_.record_take(*object);
@@ -196,8 +200,8 @@ class SystemCallChecker {
       const bool right = object.type.structure != nullptr && object.type.structure->name == row.structure;
       if (object.variable != nullptr && object.variable->storage != Storage::Alias && !right)
         context_.diagnostics.report(Diag::StructureType, span,
-                                    {fmt::format("{}", n + 1), call_.function.text,
-                                     std::string(row.structure), object.text, type_text(object.type)});
+                                    {fmt::format("{}", n + 1), std::string(call_.function.text),
+                                     std::string(row.structure), object.text(), type_text(object.type)});
       return true;
     }
     return true;
@@ -216,7 +220,7 @@ class SystemCallChecker {
       expressions_.unknown_name(name->text, expr.span, true);
     else
       context_.diagnostics.report(Diag::ArgumentFunction, expr.span,
-                                  {fmt::format("{}", n + 1), call_.function.text});
+                                  {fmt::format("{}", n + 1), std::string(call_.function.text)});
     return false;
   }
 

@@ -33,9 +33,7 @@ const SourceFile& SourceMap::add(std::string name, std::string path, std::string
 }
 
 Location SourceMap::add_expansion(std::string_view macro, Location spelling, Location use) {
-  auto name = macro_names_.find(macro);
-  if (name == macro_names_.end()) name = macro_names_.emplace(macro).first;
-  expansions_.push_back({*name, spelling, use});
+  expansions_.push_back({macro, spelling, use});
   return {kMacroBit | static_cast<uint32_t>(expansions_.size() - 1)};
 }
 

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,8 +46,8 @@ class SourceMap {
   // Adds a file and returns it; it stays where it is for the life of the map.
   const SourceFile& add(std::string name, std::string path, std::string text, Location included_at = {});
 
-  // A token of macro `name`: written at `spelling` in the #define, used at `use` (which may be in a macro
-  // again).
+  // A token of a macro: written at `spelling` in the #define, used at `use` (which may be in a macro again).
+  // The name is text of a file of this map.
   Location add_expansion(std::string_view macro, Location spelling, Location use);
 
   // Where the text of a location stands: in a file, through any macros.
@@ -78,7 +77,6 @@ class SourceMap {
  private:
   std::vector<std::unique_ptr<SourceFile>> files_;
   std::vector<Expansion> expansions_;
-  std::set<std::string, std::less<>> macro_names_;
 };
 
 }  // namespace ipos::compiler

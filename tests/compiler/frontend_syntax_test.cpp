@@ -14,8 +14,10 @@ std::string shape(const ast::ExprPtr& expr) { return shape(*expr); }
 
 struct Shape {
   std::string operator()(const ast::Number& n) const { return std::to_string(n.value); }
-  std::string operator()(const ast::Name& n) const { return n.text; }
-  std::string operator()(const ast::Member& n) const { return shape(n.base) + "." + n.member.text; }
+  std::string operator()(const ast::Name& n) const { return std::string(n.text); }
+  std::string operator()(const ast::Member& n) const {
+    return shape(n.base) + "." + std::string(n.member.text);
+  }
   std::string operator()(const ast::Index& n) const { return shape(n.base) + "[" + shape(n.index) + "]"; }
   std::string operator()(const ast::Deref& n) const { return "(*" + shape(n.number) + ")"; }
   std::string operator()(const ast::Numof& n) const { return "numof(" + shape(n.object) + ")"; }
@@ -44,7 +46,7 @@ struct Shape {
   std::string operator()(const ast::Call& n) const {
     std::string all;
     for (const ast::ExprPtr& argument : n.arguments) all += (all.empty() ? "" : ";") + shape(argument);
-    return n.function.text + "(" + all + ")";
+    return std::string(n.function.text) + "(" + all + ")";
   }
 };
 
@@ -56,7 +58,7 @@ std::string shape_of(const std::string& expression) {
   if (!run.messages().empty()) return run.messages()[0];
   const auto& function = std::get<ast::FunctionDecl>(run.program.declarations.at(0));
   const auto& body = std::get<ast::Block>(function.body->node).body;
-  return shape(std::get<ast::ExprStmt>(body.at(0)->node).expr);
+  return shape(std::get<ast::ExprStmt>(body.front()->node).expr);
 }
 
 // The binary operators from the loosest to the tightest class, IPOSplus p. 195 and the C standard.
