@@ -6,11 +6,14 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "runtime/bus/log/candump.hpp"
 #include "runtime/bus/log/serial_log.hpp"
 #include "runtime/plant/plant.hpp"
 #include "stdlib/parameters.hpp"
+#include "tools/coverage/collector.hpp"
+#include "tools/coverage/write.hpp"
 #include "tools/failure.hpp"
 #include "tools/interrupt.hpp"
 #include "tools/plant_input.hpp"
@@ -38,6 +41,7 @@ struct RunFlags {
   std::string trace;
   std::vector<std::string> signals;
   std::string serial_log;
+  std::vector<std::string> coverage;
   std::string format = "text";
   bool realtime = false;
   bool why = false;
@@ -126,6 +130,61 @@ void close_output(std::ofstream& file, const std::string& path) {
   if (!path.empty() && !file.flush()) throw Failure(kIoError, fmt::format("{}: cannot be written", path));
 }
 
+using CoverageWriter = void (*)(std::ostream&, const coverage::Coverage&);
+
+// By the ending of the file's name; "-" is text to standard output.
+CoverageWriter coverage_writer(const std::string& path) {
+  const std::string ending = std::filesystem::path(path).extension().string();
+  if (path == "-" || ending == ".txt") return coverage::write_text;
+  if (ending == ".info") return coverage::write_lcov;
+  if (ending == ".xml") return coverage::write_cobertura;
+  throw Failure(kUsage,
+                fmt::format("--coverage {}: the name must end in .info, .xml or .txt, or be -", path));
+}
+
+// Opened before the run; its part of standard output comes behind the report.
+class CoverageReports {
+ public:
+  CoverageReports(const std::vector<std::string>& paths, const std::string& format, runtime::Plant& plant) {
+    if (paths.empty()) return;
+    for (const std::string& path : paths) {
+      if (path == "-" && format == "json")
+        throw Failure(kUsage, "--coverage - does not go with --format json; write it to a file");
+      reports_.push_back({path, coverage_writer(path), {}});
+    }
+    collector_.emplace(plant);
+    if (collector_->empty())
+      throw Failure(kBadInput, "--coverage: no station has a program that knows its source lines");
+    for (Report& report : reports_)
+      if (report.path != "-") report.file = open_output(report.path);
+  }
+
+  void write() {
+    if (!collector_) return;
+    const coverage::Coverage all = collector_->coverage();
+    for (Report& report : reports_) {
+      if (report.path == "-") {
+        std::ostringstream text;
+        report.write(text, all);
+        fmt::print("\n{}", text.str());
+      } else {
+        report.write(report.file, all);
+        close_output(report.file, report.path);
+      }
+    }
+  }
+
+ private:
+  struct Report {
+    std::string path;
+    CoverageWriter write;
+    std::ofstream file;
+  };
+
+  std::vector<Report> reports_;
+  std::optional<coverage::Collector> collector_;
+};
+
 int run(const RunFlags& flags) {
   const Time limit = flags.duration.empty() ? 60 * runtime::kSecond : runtime::parse_duration(flags.duration);
   PlantInput input = read_plant_input(flags.file, flags.compile);
@@ -146,6 +205,7 @@ int run(const RunFlags& flags) {
   runtime::SerialLog serial_log(serial_file);
   if (log_file.is_open()) plant.add_observer(log);
   if (serial_file.is_open()) plant.add_observer(serial_log);
+  CoverageReports coverage(flags.coverage, flags.format, plant);
 
   catch_interrupts();
   std::optional<RealTimeRun> real_time;
@@ -178,6 +238,7 @@ int run(const RunFlags& flags) {
                      [&](const auto& station) { return !watch_rows(*station, {name}).empty(); }))
       fmt::print(stderr, "ipos: warning: no station has a variable '{}'\n", name);
   fmt::print("{}", flags.format == "json" ? json_report(plant, watch) : text_report(plant, watch));
+  coverage.write();
   print_journal(plant, flags.why);
   const size_t unmet = print_expectations(plant, flags.file);
   if (interrupted()) return kInterrupted;
@@ -212,6 +273,11 @@ void add_run(CLI::App& app, int& exit_code) {
           "what to plot and trace, for example unit1.speed,unit1.P094,unit1.H500; default: speed, setpoint "
           "and status of every station")
       ->delimiter(',')
+      ->allow_extra_args(false);
+  verb->add_option(
+          "--coverage", flags->coverage,
+          "write which source lines and branches were executed: .info (lcov), .xml (Cobertura), .txt, "
+          "or - for text to the terminal; may be given several times")
       ->allow_extra_args(false);
   verb->add_option("--format", flags->format, "text or json")->check(CLI::IsMember({"text", "json"}));
   verb->add_flag("--realtime", flags->realtime,
