@@ -231,6 +231,27 @@ TEST(Coverage, TheRunIsTheSame) {
   }
 }
 
+// _InputCall and _SystemCall call or do not; SC_UC always does, which is no branch.
+TEST(Coverage, ConditionalCallsAreBranches) {
+  const Coverage coverage = coverage_of(
+      "long n;\n"
+      "called()\n"                           // 2
+      "{\n"                                  // 3
+      "  n++;\n"                             // 4
+      "}\n"                                  // 5
+      "main()\n"                             // 6
+      "{\n"                                  // 7
+      "  _SystemCall(SC_UC, called);\n"      // 8
+      "  _SystemCall(SC_N, called);\n"       // 9: the axis stands still
+      "  _SystemCall(SC_TP1, called);\n"     // 10: no touch probe is enabled
+      "  _InputCall(IC_HIGH, 1, called);\n"  // 11: DI00 is 0
+      "}\n",
+      {"SC_UC=0", "SC_N=1", "SC_TP1=4", "IC_HIGH=1"});
+  const SourceFile& file = coverage.files.at("S.IPC");
+  EXPECT_EQ(ways(file), (std::vector<std::array<uint64_t, 3>>{{9, 0, 1}, {10, 1, 0}, {11, 1, 0}}));
+  EXPECT_EQ(file.functions.at("called").count, 2U);
+}
+
 // A program that was changed in the program memory is not that of the source.
 TEST(Coverage, ChangedCodeIsNotCounted) {
   const auto plant = plant_of({compiled("main()\n{\n  while (1) H200 = H200 + 1;\n}\n", {})});
@@ -248,6 +269,7 @@ TEST(Coverage, ChangedCodeIsNotCounted) {
   EXPECT_EQ(collector.coverage().files.at("S.IPC").lines.at(3), before);
 }
 
+// Places are those of the line table: of an assignment the expression it computes.
 TEST(CoverageForms, TextTellsWhatIsMissing) {
   const std::string text = text_of(write_text, coverage_of(kSample, {"TURNS=1"}));
   EXPECT_EQ(text,
@@ -256,9 +278,9 @@ TEST(CoverageForms, TextTellsWhatIsMissing) {
             "\n"
             "S.IPC:\n"
             "  lines not executed: 25-26\n"
-            "  6:16: never goes to 9:5, 1 times to 7:5\n"
-            "  14:18: never goes to 16:7, 1 times to 29:1\n"
-            "  22:13: never goes to 22:13, 1 times to 24:15\n"
+            "  6:16: never goes to 9:11, 1 time to 7:11\n"
+            "  14:18: never goes to 16:5, 1 time to 29:1\n"
+            "  22:13: never goes to 22:13, 1 time to 24:21\n"
             "  22:13: never tested\n");
 }
 

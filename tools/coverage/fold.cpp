@@ -94,10 +94,13 @@ class Fold {
     times = std::max(times, counts_[item.address].executed);
   }
 
-  bool is_condition(const CodeItem& item) const {
-    const Flow flow = vm::coding(item.command->opcode).flow;
-    return (flow == Flow::Branch || flow == Flow::SystemCall) &&
-           compiler::label_operand(*item.command) != item.address + item.words;
+  static bool is_condition(const CodeItem& item) {
+    const vm::Instruction& command = *item.command;
+    const Flow flow = vm::coding(command.opcode).flow;
+    if (flow != Flow::Branch && flow != Flow::SystemCall) return false;
+    constexpr int32_t kAlways = 0;  // SC_UC, a call like any other
+    if (command.opcode == Opcode::SystemCall && command.operands[0] == kAlways) return false;
+    return compiler::label_operand(command) != item.address + item.words;
   }
 
   // The same command in the first copy of its function.

@@ -49,9 +49,9 @@ std::string missed_branches(const SourceFile& file) {
     }
     for (size_t n = 0; n < condition.ways.size(); ++n)
       if (condition.ways[n].count == 0)
-        out += fmt::format("  {}: never goes to {}, {} times to {}\n", place_text(key.at),
+        out += fmt::format("  {}: never goes to {}, {} time{} to {}\n", place_text(key.at),
                            place_text(condition.ways[n].to), condition.ways[1 - n].count,
-                           place_text(condition.ways[1 - n].to));
+                           condition.ways[1 - n].count == 1 ? "" : "s", place_text(condition.ways[1 - n].to));
   }
   return out;
 }
@@ -59,7 +59,7 @@ std::string missed_branches(const SourceFile& file) {
 }  // namespace
 
 void write_text(std::ostream& out, const Coverage& coverage) {
-  size_t width = std::string_view("total").size();
+  size_t width = std::string_view("coverage").size();
   for (const auto& [name, file] : coverage.files) width = std::max(width, name.size());
   out << fmt::format("{:<{}}{:>18}{:>18}{:>18}\n", "coverage", width, "lines", "branches", "functions");
   for (const auto& [name, file] : coverage.files) out << row(name, width, figures(file));
