@@ -21,7 +21,7 @@
 #include "tools/real_time_run.hpp"
 #include "tools/recording.hpp"
 #include "tools/run_report.hpp"
-#include "tools/trace_csv.hpp"
+#include "tools/trace.hpp"
 #include "tools/verbs.hpp"
 #include "tools/watch.hpp"
 
@@ -130,6 +130,17 @@ void close_output(std::ofstream& file, const std::string& path) {
   if (!path.empty() && !file.flush()) throw Failure(kIoError, fmt::format("{}: cannot be written", path));
 }
 
+using TraceWriter = void (*)(std::ostream&, const Recording&);
+
+// By the ending of the file's name.
+TraceWriter trace_writer(const std::string& path) {
+  const std::string ending = std::filesystem::path(path).extension().string();
+  if (path.empty() || ending == ".csv") return write_csv;
+  if (ending == ".vcd") return write_vcd;
+  if (ending == ".jsonl") return write_jsonl;
+  throw Failure(kUsage, fmt::format("--trace {}: the name must end in .csv, .vcd or .jsonl", path));
+}
+
 using CoverageWriter = void (*)(std::ostream&, const coverage::Coverage&);
 
 // By the ending of the file's name; "-" is text to standard output.
@@ -196,6 +207,7 @@ int run(const RunFlags& flags) {
 
   if (!flags.signals.empty() && flags.plot.empty() && flags.trace.empty())
     throw Failure(kUsage, "--signals needs --plot or --trace");
+  const TraceWriter write_trace = trace_writer(flags.trace);
   std::optional<Recorder> recorder;
   if (!flags.plot.empty() || !flags.trace.empty()) recorder.emplace(plant, flags.signals);
   // Opened before the run: a long one must not end without its result.
@@ -224,9 +236,10 @@ int run(const RunFlags& flags) {
   }
   const bool stored = plant.store_memories();
   serial_log.finish();
+  if (recorder) recorder->finish();
   if (!flags.plot.empty())
     plot_file << plot_svg(recorder->recording(), std::filesystem::path(flags.file).filename().string());
-  if (!flags.trace.empty()) write_csv(trace_file, recorder->recording());
+  if (!flags.trace.empty()) write_trace(trace_file, recorder->recording());
   close_output(log_file, flags.log);
   close_output(serial_file, flags.serial_log);
   close_output(plot_file, flags.plot);
@@ -267,11 +280,11 @@ void add_run(CLI::App& app, int& exit_code) {
   verb->add_option("--log", flags->log, "write the frames of all CAN buses in candump format");
   verb->add_option("--serial-log", flags->serial_log, "write the telegrams of all RS-485 lines");
   verb->add_option("--plot", flags->plot, "draw signals over time into an SVG file");
-  verb->add_option("--trace", flags->trace, "write signals over time, one row a millisecond, as CSV");
-  verb->add_option(
-          "--signals", flags->signals,
-          "what to plot and trace, for example unit1.speed,unit1.P094,unit1.H500; default: speed, setpoint "
-          "and status of every station")
+  verb->add_option("--trace", flags->trace, "write signals over time: .csv, .vcd or .jsonl");
+  verb->add_option("--signals", flags->signals,
+                   "what to plot and trace, for example unit1.speed,unit1.P094,unit1.H500,sbus1.frames; "
+                   "default: speed, "
+                   "setpoint and status of every station")
       ->delimiter(',')
       ->allow_extra_args(false);
   verb->add_option(
