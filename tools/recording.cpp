@@ -113,16 +113,18 @@ void Recorder::add(const std::string& name) {
   if (owner == nullptr && stations.size() == 1) owner = stations.front().get();
   if (owner != nullptr && add(*owner, rest)) return;
   if (add_frames(name)) return;
+  std::vector<std::string> buses;
+  for (const auto& line : plant_.lines()) buses.push_back(line->name() + std::string(kFrames));
+  for (const auto& line : plant_.serial_lines()) buses.push_back(line->line.name() + std::string(kFrames));
+  const std::string frames = buses.empty() ? "" : fmt::format("; the buses have {}", fmt::join(buses, ", "));
   if (owner == nullptr) {
     std::vector<std::string> known;
     for (const auto& station : stations) known.push_back(station->config().name + ".");
-    for (const auto& line : plant_.lines()) known.push_back(line->name() + std::string(kFrames));
-    for (const auto& line : plant_.serial_lines()) known.push_back(line->line.name() + std::string(kFrames));
-    throw Failure(kUsage,
-                  fmt::format("'{}' is no signal; signals begin with {}", name, fmt::join(known, ", ")));
+    throw Failure(kUsage, fmt::format("'{}' is no signal; signals begin with {}{}", name,
+                                      fmt::join(known, ", "), frames));
   }
-  throw Failure(kUsage, fmt::format("station '{}' has no signal '{}'; it has {}", owner->config().name, rest,
-                                    signals_of(*owner)));
+  throw Failure(kUsage, fmt::format("station '{}' has no signal '{}'; it has {}{}", owner->config().name,
+                                    rest, signals_of(*owner), frames));
 }
 
 // False when the station has no such signal.
