@@ -1,4 +1,5 @@
-// Layout of the plot, from top to bottom: title, labels of the events, panels, time axis.
+// Layout of the plot, from top to bottom: title, labels of the events, panels, strips of the buses, time
+// axis.
 #include "tools/plot_svg.hpp"
 
 #include <fmt/format.h>
@@ -10,8 +11,9 @@
 namespace ipos::tools {
 namespace {
 
-constexpr double kWidth = 1000, kLeft = 72, kRight = 830;  // the lines' names stand right of kRight
+constexpr double kLeastWidth = 1000, kLeft = 72, kRight = 830;  // the lines' names stand right of kRight
 constexpr double kTitleHeight = 30, kRowHeight = 15, kPanelHeight = 170, kPanelGap = 30, kAxisHeight = 48;
+constexpr double kStripHeight = 22;
 constexpr double kLetter = 6.3;  // mean width of a letter at this size
 constexpr size_t kEventRows = 4;
 
@@ -73,6 +75,11 @@ class Plot {
     in_seconds_ = end > 2'000;
     time_ = {0, in_seconds_ ? end / 1e3 : end, kLeft, kRight};
     for (const runtime::Time time : recording.times) xs_.push_back(x_of(time));
+    const auto make_room = [this](const std::string& name) {
+      width_ = std::max(width_, kRight + 14 + kLetter * static_cast<double>(name.size()));
+    };
+    for (const Signal& signal : recording.signals) make_room(signal.name);
+    for (const FrameTrack& track : recording.tracks) make_room(strip_name(track));
   }
 
   std::string draw() {
@@ -81,12 +88,17 @@ class Plot {
     top_ = kTitleHeight + kRowHeight * static_cast<double>(rows_.size()) + 18;
     bottom_ = top_ + static_cast<double>(panels_.size()) * (kPanelHeight + kPanelGap) - kPanelGap;
     if (panels_.empty()) bottom_ = top_ + kPanelHeight;
+    const double strips = bottom_ + kRowHeight;
+    if (!recording_.tracks.empty())
+      bottom_ = strips + kStripHeight * static_cast<double>(recording_.tracks.size());
     std::string body = labels;
     double y = top_;
     for (const Panel& panel : panels_) {
       body += draw_panel(panel, y);
       y += kPanelHeight + kPanelGap;
     }
+    for (size_t n = 0; n < recording_.tracks.size(); ++n)
+      body += draw_strip(n, strips + kStripHeight * static_cast<double>(n));
     body += event_lines() + time_axis();
     const double height = bottom_ + kAxisHeight;
     return fmt::format(
@@ -94,7 +106,7 @@ class Plot {
                "viewBox=\"0 0 {0:.0f} {1:.0f}\" font-family=\"sans-serif\" font-size=\"12\">\n"
                "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
                "<text x=\"{2:.0f}\" y=\"20\" font-size=\"15\" fill=\"#222\">{3}</text>\n",
-               kWidth, height, kLeft, escaped(title_)) +
+               width_, height, kLeft, escaped(title_)) +
            body + "</svg>\n";
   }
 
@@ -120,7 +132,7 @@ class Plot {
     std::string out;
     for (const RecordedEvent& event : recording_.events) {
       const double width = kLetter * static_cast<double>(event.text.size());
-      const double x = std::min(x_of(event.time), kWidth - width - 4);
+      const double x = std::min(x_of(event.time), width_ - width - 4);
       auto row = std::find_if(rows_.begin(), rows_.end(), [&](double end) { return end + 10 < x; });
       if (row == rows_.end()) {
         if (rows_.size() == kEventRows) continue;
@@ -206,6 +218,26 @@ class Plot {
     return out + name_tags(std::move(tags), y);
   }
 
+  static std::string strip_name(const FrameTrack& track) { return track.bus + ".frames"; }
+
+  // A stroke for each frame; those that would fall together are one.
+  std::string draw_strip(size_t track, double y) const {
+    std::string strokes;
+    double before = -1;
+    for (const RecordedFrame& frame : recording_.frames) {
+      if (frame.track != track) continue;
+      const double x = std::min(x_of(frame.time), kRight);
+      if (x - before < 0.5) continue;
+      before = x;
+      strokes += fmt::format("M{:.1f} {:.1f}v12", x, y + 2);
+    }
+    return fmt::format(
+        "<path d=\"{}\" stroke=\"{}\" fill=\"none\"/>\n<text x=\"{:.0f}\" y=\"{:.1f}\" "
+        "fill=\"#222\">{}</text>\n",
+        strokes, kColours[track % std::size(kColours)], kRight + 7, y + 12,
+        escaped(strip_name(recording_.tracks[track])));
+  }
+
   // Names keep their lines' order and a line's height of distance.
   static std::string name_tags(std::vector<NameTag> tags, double y) {
     std::stable_sort(tags.begin(), tags.end(), [](const NameTag& a, const NameTag& b) { return a.y < b.y; });
@@ -253,6 +285,7 @@ class Plot {
   std::vector<Panel> panels_;
   std::vector<double> rows_;  // of event labels: where the last one of the row ends
   double top_ = 0, bottom_ = 0;
+  double width_ = kLeastWidth;  // of the picture, so that the longest name has room
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 // A recording as a picture: one panel a unit of measure over a common time axis, names at the ends of the
-// lines, state changes and faults as labelled vertical lines. Plain SVG 1.1 of a fixed width.
+// lines, state changes and faults as labelled vertical lines, the frames of a bus as strokes. Plain SVG 1.1.
 #pragma once
 
 #include <cstdint>

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "runtime/bus/log/candump.hpp"
+#include "runtime/bus/log/serial_log.hpp"
 #include "runtime/drive/indices.hpp"
 #include "tools/failure.hpp"
 
@@ -13,14 +15,45 @@ namespace {
 
 using runtime::Station;
 
-// Display values by name: those of the parameters that a drive keeps up to date.
-struct NamedParameter {
-  std::string_view name, number;
+// The signals with a name of their own: a display value, which the drive keeps up to date in its parameter; a
+// variable; or what only the simulation knows.
+struct NamedSignal {
+  std::string_view name;
+  std::string_view parameter;  // number
+  int variable = -1;           // of units that position
+  int64_t (*read)(const Station&) = nullptr;
+  std::string_view unit{};
+  double factor = 1;
+  int decimals = 0;
+  int bits = 0;
 };
-constexpr NamedParameter kNamedParameters[] = {
-    {"speed", "000"},          {"frequency", "002"},         {"position", "003"}, {"current", "004"},
-    {"active_current", "005"}, {"motor_utilization", "006"}, {"dc_link", "008"},  {"temperature", "014"},
+
+template <int32_t runtime::AxisState::*member>
+int64_t axis(const Station& station) {
+  return station.drive().state().axis().*member;
+}
+
+using runtime::AxisState;
+constexpr NamedSignal kNamedSignals[] = {
+    {"speed", "000"},
+    {"frequency", "002"},
+    {"position", "003"},
+    {"current", "004"},
+    {"active_current", "005"},
+    {"motor_utilization", "006"},
+    {"dc_link", "008"},
+    {"temperature", "014"},
+    {"setpoint", "", -1, axis<&AxisState::setpoint>, "rpm", 0.001, 3},
+    {"shaft_speed", "", -1, axis<&AxisState::speed>, "rpm", 0.001, 3},
+    {"torque", "", -1, axis<&AxisState::torque>, "%Mn", 0.001, 3},
+    {"position_setpoint", "", 491, nullptr, "inc"},
+    {"position_target", "", 492, nullptr, "inc"},
+    {"lag", "", 495, nullptr, "inc"},
+    {"status", "", -1, [](const Station& station) -> int64_t { return station.status_word_1(); }, "", 1, 0,
+     16},
+    {"fault", "", -1, [](const Station& station) -> int64_t { return station.fault(); }},
 };
+constexpr std::string_view kFrames = ".frames";
 
 // Fault number, or the condition of the unit.
 std::string state_text(Station& station) {
@@ -33,11 +66,17 @@ const stdlib::Parameter* find_parameter(const Station& station, std::string_view
   return stdlib::parameter_table(*station.config().unit).find(number);
 }
 
+bool has(const Station& station, const NamedSignal& row) {
+  if (row.read != nullptr) return true;
+  if (row.variable >= 0)
+    return station.image() != nullptr && station.config().unit->generation != stdlib::Generation::M07;
+  return find_parameter(station, row.parameter) != nullptr;
+}
+
 std::string signals_of(const Station& station) {
   std::vector<std::string> names;
-  for (const NamedParameter& row : kNamedParameters)
-    if (find_parameter(station, row.number) != nullptr) names.emplace_back(row.name);
-  names.insert(names.end(), {"setpoint", "status"});
+  for (const NamedSignal& row : kNamedSignals)
+    if (has(station, row)) names.emplace_back(row.name);
   if (find_parameter(station, "000") != nullptr) names.emplace_back("parameters as P000");
   if (station.image() != nullptr) {
     names.push_back(fmt::format("variables H0 to H{}", station.config().unit->variables - 1));
@@ -72,44 +111,58 @@ void Recorder::add(const std::string& name) {
     rest = std::string_view(name).substr(prefix.size());
   }
   if (owner == nullptr && stations.size() == 1) owner = stations.front().get();
+  if (owner != nullptr && add(*owner, rest)) return;
+  if (add_frames(name)) return;
+  std::vector<std::string> buses;
+  for (const auto& line : plant_.lines()) buses.push_back(line->name() + std::string(kFrames));
+  for (const auto& line : plant_.serial_lines()) buses.push_back(line->line.name() + std::string(kFrames));
+  const std::string frames = buses.empty() ? "" : fmt::format("; the buses have {}", fmt::join(buses, ", "));
   if (owner == nullptr) {
     std::vector<std::string> known;
     for (const auto& station : stations) known.push_back(station->config().name + ".");
-    throw Failure(kUsage,
-                  fmt::format("'{}' is no signal; signals begin with {}", name, fmt::join(known, ", ")));
+    throw Failure(kUsage, fmt::format("'{}' is no signal; signals begin with {}{}", name,
+                                      fmt::join(known, ", "), frames));
   }
-  if (!add(*owner, rest))
-    throw Failure(kUsage, fmt::format("station '{}' has no signal '{}'; it has {}", owner->config().name,
-                                      rest, signals_of(*owner)));
+  throw Failure(kUsage, fmt::format("station '{}' has no signal '{}'; it has {}{}", owner->config().name,
+                                    rest, signals_of(*owner), frames));
 }
 
 // False when the station has no such signal.
 bool Recorder::add(Station& station, std::string_view name) {
   Signal signal;
   signal.name = fmt::format("{}.{}", station.config().name, name);
-  if (name == "status") {
-    signal.is_status = true;
-    watched_.push_back({&station, state_text(station)});
-    add(std::move(signal), [&station] { return station.status_word_1(); });
-    return true;
-  }
-  if (name == "setpoint") {
-    signal.unit = "rpm";
-    signal.factor = 0.001;
-    signal.decimals = 3;
-    add(std::move(signal), [&station] { return int64_t{station.drive().state().axis().setpoint}; });
-    return true;
-  }
-  const auto* named = std::find_if(std::begin(kNamedParameters), std::end(kNamedParameters),
-                                   [&](const NamedParameter& row) { return row.name == name; });
+  signal.station = station.config().name;
+  const auto* named = std::find_if(std::begin(kNamedSignals), std::end(kNamedSignals),
+                                   [&](const NamedSignal& row) { return row.name == name; });
   const stdlib::Parameter* parameter = nullptr;
-  if (named != std::end(kNamedParameters))
-    parameter = find_parameter(station, named->number);
-  else if (name.starts_with('P') || name.find_first_not_of("0123456789") == std::string_view::npos)
+  if (named != std::end(kNamedSignals) && has(station, *named)) {
+    signal.unit = named->unit;
+    signal.factor = named->factor;
+    signal.decimals = named->decimals;
+    signal.bits = named->bits;
+    if (name == "status") {
+      signal.is_status = true;
+      watched_.push_back({&station, state_text(station)});
+    }
+    if (named->read != nullptr) {
+      add(std::move(signal), [&station, read = named->read] { return read(station); });
+      return true;
+    }
+    if (named->variable >= 0) {
+      add(std::move(signal),
+          [&station, number = static_cast<uint32_t>(named->variable)] { return station.variable(number); });
+      return true;
+    }
+    parameter = find_parameter(station, named->parameter);
+  } else if (name.starts_with('P') || name.find_first_not_of("0123456789") == std::string_view::npos) {
     parameter = find_parameter(station, name);
+  }
   if (parameter != nullptr && parameter->index != 0) {
     const stdlib::DisplayScale scale = stdlib::display_scale(*parameter);
-    if (parameter->display != "hex") signal.unit = parameter->display;
+    if (parameter->display == "hex")
+      signal.bits = 32;
+    else
+      signal.unit = parameter->display;
     signal.factor = scale.factor;
     signal.decimals = scale.decimals;
     add(std::move(signal), [&station, parameter] {
@@ -128,6 +181,70 @@ void Recorder::add(Signal signal, Reader reader) {
   recording_.signals.push_back(std::move(signal));
   recording_.samples.emplace_back();
   readers_.push_back(std::move(reader));
+}
+
+bool Recorder::add_frames(std::string_view name) {
+  if (!name.ends_with(kFrames)) return false;
+  const std::string bus(name.substr(0, name.size() - kFrames.size()));
+  const auto& can = plant_.lines();
+  const auto& serial = plant_.serial_lines();
+  const bool is_can =
+      std::any_of(can.begin(), can.end(), [&](const auto& line) { return line->name() == bus; });
+  if (!is_can &&
+      std::none_of(serial.begin(), serial.end(), [&](const auto& line) { return line->line.name() == bus; }))
+    return false;
+  if (track_of(bus)) return true;
+  const auto observed = [&](const FrameTrack& track) { return track.is_can == is_can; };
+  if (std::none_of(recording_.tracks.begin(), recording_.tracks.end(), observed)) {
+    if (is_can)
+      plant_.add_observer(static_cast<runtime::CanObserver&>(*this));
+    else
+      plant_.add_observer(static_cast<runtime::SerialObserver&>(*this));
+  }
+  recording_.tracks.push_back({bus, is_can});
+  return true;
+}
+
+std::optional<size_t> Recorder::track_of(const std::string& bus) const {
+  for (size_t n = 0; n < recording_.tracks.size(); ++n)
+    if (recording_.tracks[n].bus == bus) return n;
+  return std::nullopt;
+}
+
+// A telegram is known to be void some time after its last character.
+void Recorder::add_frame(RecordedFrame frame) {
+  auto& frames = recording_.frames;
+  const auto behind =
+      std::upper_bound(frames.begin(), frames.end(), frame.time,
+                       [](runtime::Time time, const RecordedFrame& other) { return time < other.time; });
+  frames.insert(behind, std::move(frame));
+}
+
+void Recorder::on_frame(const runtime::CanLine& line, const runtime::FrameRecord& record) {
+  const std::optional<size_t> track = track_of(line.name());
+  if (!track) return;
+  const runtime::Frame& frame = record.frame;
+  const std::string text = runtime::candump_line(record.end, line.name(), frame);
+  const auto length = static_cast<std::ptrdiff_t>(frame.remote ? 0 : frame.length);
+  add_frame({record.end, *track, frame.id, frame.extended, frame.remote,
+             std::vector<uint8_t>(frame.data.begin(), frame.data.begin() + length),
+             text.substr(text.rfind(' ') + 1)});
+}
+
+void Recorder::on_character(const runtime::Rs485Line& line, runtime::NodeId /*sender*/,
+                            const runtime::Character& character) {
+  if (track_of(line.name())) add_telegram(line.name(), receivers_[line.name()].take(character));
+}
+
+void Recorder::add_telegram(const std::string& bus, const std::optional<runtime::Reception>& reception) {
+  if (!reception) return;
+  const auto bytes = reception->bytes.span();
+  add_frame({reception->end, *track_of(bus), 0, false, false,
+             std::vector<uint8_t>(bytes.begin(), bytes.end()), runtime::reception_text(*reception)});
+}
+
+void Recorder::finish() {
+  for (auto& [bus, receiver] : receivers_) add_telegram(bus, receiver.give_up());
 }
 
 void Recorder::sample(runtime::Time now) {

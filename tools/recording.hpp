@@ -1,14 +1,17 @@
-// What `ipos run --plot` and `--trace` record: chosen signals of the stations once a virtual millisecond, and
-// what happened to the units meanwhile. Plain data; the writers of its forms (trace_csv, plot_svg) only read
-// it.
+// What `ipos run --plot` and `--trace` record: chosen signals of the stations once a virtual millisecond, the
+// frames of chosen buses, and what happened to the units meanwhile. Plain data; the writers of its forms
+// (trace, plot_svg) only read it.
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "runtime/bus/movilink/serial_receiver.hpp"
 #include "runtime/plant/plant.hpp"
 
 namespace ipos::tools {
@@ -19,6 +22,8 @@ struct Signal {
   double factor = 1;  // number shown = sample x factor
   int decimals = 0;
   bool is_status = false;  // a plot shows its changes as events
+  std::string station{};   // the name begins with it and a dot
+  int bits = 0;            // width of a bit field; 0: a number
 
   std::string text(int64_t sample) const;  // "1500.000"
 };
@@ -29,22 +34,43 @@ struct RecordedEvent {
   bool is_fault;
 };
 
+struct FrameTrack {
+  std::string bus;
+  bool is_can = true;  // else RS-485
+};
+
+struct RecordedFrame {
+  runtime::Time time;  // of delivery
+  size_t track;        // number of its bus in Recording::tracks
+  uint32_t id = 0;     // CAN
+  bool extended = false, remote = false;
+  std::vector<uint8_t> bytes;
+  std::string
+      text;  // CAN: as candump writes it, "40A#8006"; RS-485: what the telegram says, or why it is void
+};
+
 struct Recording {
   std::vector<Signal> signals;
   std::vector<runtime::Time> times;           // of the samples
   std::vector<std::vector<int64_t>> samples;  // one list a signal, as long as `times`
   std::vector<RecordedEvent> events;
+  std::vector<FrameTrack> tracks;
+  std::vector<RecordedFrame> frames;  // of the tracks, in order of time
 };
 
-class Recorder {
+class Recorder final : private runtime::CanObserver, private runtime::SerialObserver {
  public:
   // Signals as "unit1.speed", "unit1.P094" or its index, "unit1.H500" or "unit1.symbol"; with one station its
-  // name may be left out. None: speed, setpoint and status of every station that has them. A name that leads
-  // nowhere is a Failure that lists what exists. The plant must outlive the recorder.
+  // name may be left out. "sbus1.frames": the frames of that bus. None: speed, setpoint and status of every
+  // station that has them. A name that leads nowhere is a Failure that lists what exists. Before the plant
+  // runs; each must outlive the other's part in the run.
   Recorder(runtime::Plant& plant, const std::vector<std::string>& names);
 
   // For Plant::run_until: takes a sample at whole milliseconds, after all that happened at that time.
   void sample(runtime::Time now);
+
+  // At the end of a run: telegrams that were not completed.
+  void finish();
 
   const Recording& recording() const { return recording_; }
 
@@ -58,12 +84,22 @@ class Recorder {
   void add(const std::string& name);
   bool add(runtime::Station& station, std::string_view name);
   void add(Signal signal, Reader reader);
+  bool add_frames(std::string_view name);
+  void add_frame(RecordedFrame frame);
+  void add_telegram(const std::string& bus, const std::optional<runtime::Reception>& reception);
+  std::optional<size_t> track_of(const std::string& bus) const;
   void note_changes(runtime::Time now);
+  void on_frame(const runtime::CanLine& line, const runtime::FrameRecord& record) override;
+  void on_line_event(const runtime::CanLine&, const runtime::LineEvent&) override {}
+  void on_character(const runtime::Rs485Line& line, runtime::NodeId sender,
+                    const runtime::Character& character) override;
+  void on_serial_event(const runtime::Rs485Line&, const runtime::SerialEvent&) override {}
 
   runtime::Plant& plant_;
   Recording recording_;
   std::vector<Reader> readers_;
   std::vector<Watched> watched_;
+  std::map<std::string, runtime::SerialReceiver> receivers_;  // by line
 };
 
 }  // namespace ipos::tools

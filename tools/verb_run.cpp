@@ -6,11 +6,14 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "runtime/bus/log/candump.hpp"
 #include "runtime/bus/log/serial_log.hpp"
 #include "runtime/plant/plant.hpp"
 #include "stdlib/parameters.hpp"
+#include "tools/coverage/collector.hpp"
+#include "tools/coverage/write.hpp"
 #include "tools/failure.hpp"
 #include "tools/interrupt.hpp"
 #include "tools/plant_input.hpp"
@@ -18,7 +21,7 @@
 #include "tools/real_time_run.hpp"
 #include "tools/recording.hpp"
 #include "tools/run_report.hpp"
-#include "tools/trace_csv.hpp"
+#include "tools/trace.hpp"
 #include "tools/trace_hash.hpp"
 #include "tools/verbs.hpp"
 #include "tools/watch.hpp"
@@ -39,6 +42,7 @@ struct RunFlags {
   std::string trace;
   std::vector<std::string> signals;
   std::string serial_log;
+  std::vector<std::string> coverage;
   std::string format = "text";
   bool realtime = false;
   bool why = false;
@@ -128,6 +132,72 @@ void close_output(std::ofstream& file, const std::string& path) {
   if (!path.empty() && !file.flush()) throw Failure(kIoError, fmt::format("{}: cannot be written", path));
 }
 
+using TraceWriter = void (*)(std::ostream&, const Recording&);
+
+// By the ending of the file's name.
+TraceWriter trace_writer(const std::string& path) {
+  const std::string ending = std::filesystem::path(path).extension().string();
+  if (path.empty() || ending == ".csv") return write_csv;
+  if (ending == ".vcd") return write_vcd;
+  if (ending == ".jsonl") return write_jsonl;
+  throw Failure(kUsage, fmt::format("--trace {}: the name must end in .csv, .vcd or .jsonl", path));
+}
+
+using CoverageWriter = void (*)(std::ostream&, const coverage::Coverage&);
+
+// By the ending of the file's name; "-" is text to standard output.
+CoverageWriter coverage_writer(const std::string& path) {
+  const std::string ending = std::filesystem::path(path).extension().string();
+  if (path == "-" || ending == ".txt") return coverage::write_text;
+  if (ending == ".info") return coverage::write_lcov;
+  if (ending == ".xml") return coverage::write_cobertura;
+  throw Failure(kUsage,
+                fmt::format("--coverage {}: the name must end in .info, .xml or .txt, or be -", path));
+}
+
+// Opened before the run; its part of standard output comes behind the report.
+class CoverageReports {
+ public:
+  CoverageReports(const std::vector<std::string>& paths, const std::string& format, runtime::Plant& plant) {
+    if (paths.empty()) return;
+    for (const std::string& path : paths) {
+      if (path == "-" && format == "json")
+        throw Failure(kUsage, "--coverage - does not go with --format json; write it to a file");
+      reports_.push_back({path, coverage_writer(path), {}});
+    }
+    collector_.emplace(plant);
+    if (collector_->empty())
+      throw Failure(kBadInput, "--coverage: no station has a program that knows its source lines");
+    for (Report& report : reports_)
+      if (report.path != "-") report.file = open_output(report.path);
+  }
+
+  void write() {
+    if (!collector_) return;
+    const coverage::Coverage all = collector_->coverage();
+    for (Report& report : reports_) {
+      if (report.path == "-") {
+        std::ostringstream text;
+        report.write(text, all);
+        fmt::print("\n{}", text.str());
+      } else {
+        report.write(report.file, all);
+        close_output(report.file, report.path);
+      }
+    }
+  }
+
+ private:
+  struct Report {
+    std::string path;
+    CoverageWriter write;
+    std::ofstream file;
+  };
+
+  std::vector<Report> reports_;
+  std::optional<coverage::Collector> collector_;
+};
+
 int run(const RunFlags& flags) {
   const Time limit = flags.duration.empty() ? 60 * runtime::kSecond : runtime::parse_duration(flags.duration);
   PlantInput input = read_plant_input(flags.file, flags.compile);
@@ -139,6 +209,7 @@ int run(const RunFlags& flags) {
 
   if (!flags.signals.empty() && flags.plot.empty() && flags.trace.empty())
     throw Failure(kUsage, "--signals needs --plot or --trace");
+  const TraceWriter write_trace = trace_writer(flags.trace);
   std::optional<Recorder> recorder;
   if (!flags.plot.empty() || !flags.trace.empty()) recorder.emplace(plant, flags.signals);
   // Opened before the run: a long one must not end without its result.
@@ -148,6 +219,7 @@ int run(const RunFlags& flags) {
   runtime::SerialLog serial_log(serial_file);
   if (log_file.is_open()) plant.add_observer(log);
   if (serial_file.is_open()) plant.add_observer(serial_log);
+  CoverageReports coverage(flags.coverage, flags.format, plant);
 
   std::optional<TraceHash> trace_hash;
   if (flags.trace_hash) trace_hash.emplace(plant);
@@ -170,9 +242,10 @@ int run(const RunFlags& flags) {
   }
   const bool stored = plant.store_memories();
   serial_log.finish();
+  if (recorder) recorder->finish();
   if (!flags.plot.empty())
     plot_file << plot_svg(recorder->recording(), std::filesystem::path(flags.file).filename().string());
-  if (!flags.trace.empty()) write_csv(trace_file, recorder->recording());
+  if (!flags.trace.empty()) write_trace(trace_file, recorder->recording());
   close_output(log_file, flags.log);
   close_output(serial_file, flags.serial_log);
   close_output(plot_file, flags.plot);
@@ -184,6 +257,7 @@ int run(const RunFlags& flags) {
                      [&](const auto& station) { return !watch_rows(*station, {name}).empty(); }))
       fmt::print(stderr, "ipos: warning: no station has a variable '{}'\n", name);
   fmt::print("{}", flags.format == "json" ? json_report(plant, watch) : text_report(plant, watch));
+  coverage.write();
   print_journal(plant, flags.why);
   if (trace_hash) fmt::print(stderr, "trace hash {}\n", trace_hash->text());
   const size_t unmet = print_expectations(plant, flags.file);
@@ -213,12 +287,17 @@ void add_run(CLI::App& app, int& exit_code) {
   verb->add_option("--log", flags->log, "write the frames of all CAN buses in candump format");
   verb->add_option("--serial-log", flags->serial_log, "write the telegrams of all RS-485 lines");
   verb->add_option("--plot", flags->plot, "draw signals over time into an SVG file");
-  verb->add_option("--trace", flags->trace, "write signals over time, one row a millisecond, as CSV");
-  verb->add_option(
-          "--signals", flags->signals,
-          "what to plot and trace, for example unit1.speed,unit1.P094,unit1.H500; default: speed, setpoint "
-          "and status of every station")
+  verb->add_option("--trace", flags->trace, "write signals over time: .csv, .vcd or .jsonl");
+  verb->add_option("--signals", flags->signals,
+                   "what to plot and trace, for example unit1.speed,unit1.P094,unit1.H500,sbus1.frames; "
+                   "default: speed, "
+                   "setpoint and status of every station")
       ->delimiter(',')
+      ->allow_extra_args(false);
+  verb->add_option(
+          "--coverage", flags->coverage,
+          "write which source lines and branches were executed: .info (lcov), .xml (Cobertura), .txt, "
+          "or - for text to the terminal; may be given several times")
       ->allow_extra_args(false);
   verb->add_option("--format", flags->format, "text or json")->check(CLI::IsMember({"text", "json"}));
   verb->add_flag("--trace-hash", flags->trace_hash,

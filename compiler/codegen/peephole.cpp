@@ -16,25 +16,6 @@ using vm::Opcode;
 bool is_branch(const Command& command) { return vm::info(command.instruction.opcode).flow == Flow::Branch; }
 bool is_jump(const Command& command) { return command.instruction.opcode == Opcode::Jmp; }
 
-// The branch codes come in pairs of opposites: == !=, < >=, <= >.
-Opcode inverse(Opcode opcode) {
-  switch (opcode) {
-    case Opcode::JmpEqHH: return Opcode::JmpNeHH;
-    case Opcode::JmpNeHH: return Opcode::JmpEqHH;
-    case Opcode::JmpLtHH: return Opcode::JmpGeHH;
-    case Opcode::JmpGeHH: return Opcode::JmpLtHH;
-    case Opcode::JmpLeHH: return Opcode::JmpGtHH;
-    case Opcode::JmpGtHH: return Opcode::JmpLeHH;
-    case Opcode::JmpEqHK: return Opcode::JmpNeHK;
-    case Opcode::JmpNeHK: return Opcode::JmpEqHK;
-    case Opcode::JmpLtHK: return Opcode::JmpGeHK;
-    case Opcode::JmpGeHK: return Opcode::JmpLtHK;
-    case Opcode::JmpLeHK: return Opcode::JmpGtHK;
-    case Opcode::JmpGtHK: return Opcode::JmpLeHK;
-    default: return opcode;
-  }
-}
-
 class Optimizer {
  public:
   explicit Optimizer(FunctionCode& code) : code_(code) {}
@@ -156,5 +137,24 @@ class Optimizer {
 }  // namespace
 
 void optimize(FunctionCode& code) { Optimizer(code).run(); }
+
+// The branch codes come in pairs of opposites: == !=, < >=, <= >.
+Opcode inverse(Opcode opcode) {
+  switch (opcode) {
+    case Opcode::JmpEqHH: return Opcode::JmpNeHH;
+    case Opcode::JmpNeHH: return Opcode::JmpEqHH;
+    case Opcode::JmpLtHH: return Opcode::JmpGeHH;
+    case Opcode::JmpGeHH: return Opcode::JmpLtHH;
+    case Opcode::JmpLeHH: return Opcode::JmpGtHH;
+    case Opcode::JmpGtHH: return Opcode::JmpLeHH;
+    case Opcode::JmpEqHK: return Opcode::JmpNeHK;
+    case Opcode::JmpNeHK: return Opcode::JmpEqHK;
+    case Opcode::JmpLtHK: return Opcode::JmpGeHK;
+    case Opcode::JmpGeHK: return Opcode::JmpLtHK;
+    case Opcode::JmpLeHK: return Opcode::JmpGtHK;
+    case Opcode::JmpGtHK: return Opcode::JmpLeHK;
+    default: return opcode;
+  }
+}
 
 }  // namespace ipos::compiler

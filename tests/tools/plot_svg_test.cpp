@@ -24,8 +24,10 @@ class Picture {
       if (name == "polyline") lines.push_back(points_of(node->Attribute("points")));
       if (name == "line" && node->Attribute("stroke-dasharray"))
         events.push_back(node->DoubleAttribute("x1"));
+      if (name == "path") strips.push_back(node->Attribute("d"));
       for (const char* y : {"y", "y1", "y2"}) lowest = std::max(lowest, node->DoubleAttribute(y));
     }
+    width = document_.RootElement()->DoubleAttribute("width");
     height = document_.RootElement()->DoubleAttribute("height");
   }
   bool shows(const std::string& text) const { return std::count(texts.begin(), texts.end(), text) == 1; }
@@ -33,7 +35,8 @@ class Picture {
   std::vector<std::string> texts;
   std::vector<std::vector<PlotPoint>> lines;
   std::vector<double> events;
-  double height = 0, lowest = 0;
+  std::vector<std::string> strips;
+  double width = 0, height = 0, lowest = 0;
 
  private:
   static std::vector<PlotPoint> points_of(const char* text) {
@@ -119,6 +122,27 @@ TEST(PlotSvg, EventsHaveLinesAndLabelsThatDoNotCollide) {
   EXPECT_TRUE(picture.shows("unit1: F47"));
   // Four rows; what finds no room is only a line.
   EXPECT_EQ(std::count(picture.texts.begin(), picture.texts.end(), "unit1: no enable"), 4);
+}
+
+TEST(PlotSvg, BusesHaveAStripWithAStrokeForEachFrame) {
+  Recording recording = ramp(100);
+  recording.tracks = {{"sbus1", true}, {"line1", false}};
+  for (const int t : {10, 50, 90}) recording.frames.push_back({t * kMillisecond, 0, 1, false, false, {}, ""});
+  recording.frames.push_back({50 * kMillisecond, 1, 0, false, false, {1}, ""});
+  const Picture picture(recording);
+  EXPECT_TRUE(picture.shows("sbus1.frames"));
+  EXPECT_TRUE(picture.shows("line1.frames"));
+  ASSERT_EQ(picture.strips.size(), 2U);
+  EXPECT_EQ(std::count(picture.strips[0].begin(), picture.strips[0].end(), 'M'), 3);
+  EXPECT_EQ(std::count(picture.strips[1].begin(), picture.strips[1].end(), 'M'), 1);
+  EXPECT_LE(picture.lowest, picture.height);
+}
+
+TEST(PlotSvg, LongNamesHaveRoom) {
+  Recording recording = ramp(100);
+  EXPECT_EQ(Picture(recording).width, 1000);
+  recording.signals[0].name = std::string(60, 'n');
+  EXPECT_GE(Picture(recording).width, 830 + 60 * 6);  // names begin at 830, letters are 6 wide
 }
 
 TEST(PlotSvg, NamesAreEscaped) {

@@ -100,6 +100,21 @@ TEST_F(RecorderTest, StateChangesAndFaultsAreEvents) {
   EXPECT_EQ(recorder.recording().samples[0].front(), 0x0102);
 }
 
+TEST_F(RecorderTest, MotionValuesAndFault) {
+  plant(unit("u", "md60a"));
+  Recorder recorder(*plant_, {"u.shaft_speed", "u.torque", "u.fault", "u.status", "u.P094"});
+  const auto& recording = recorder.recording();
+  EXPECT_EQ(recording.signals[0].unit, "rpm");
+  EXPECT_EQ(recording.signals[0].text(1'500'001), "1500.001");
+  EXPECT_EQ(recording.signals[3].bits, 16);
+  EXPECT_EQ(recording.signals[4].bits, 32);
+  station(0).drive().state().raise_fault(28);
+  run(recorder, 1);
+  EXPECT_EQ(recording.samples[0], (std::vector<int64_t>{0}));
+  EXPECT_EQ(recording.samples[2], (std::vector<int64_t>{28}));
+  EXPECT_THROW(Recorder(*plant_, {"u.lag"}), Failure) << "a variable, and there is no program";
+}
+
 TEST_F(RecorderTest, WithoutParameterListOnlyWhatThereIs) {
   plant(unit("old", "mc31"));
   Recorder recorder(*plant_, {});

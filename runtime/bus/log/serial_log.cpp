@@ -16,12 +16,14 @@ std::string seconds(Time time) {
 
 }  // namespace
 
+std::string reception_text(const Reception& reception) {
+  return reception.telegram ? describe(*reception.telegram)
+                            : "void: " + std::string(serial_error_text(reception.telegram.error()));
+}
+
 std::string serial_log_line(std::string_view line, const Reception& reception) {
   return fmt::format("{} {} {} {:02X} | {}", seconds(reception.start), seconds(reception.end), line,
-                     fmt::join(reception.bytes.span(), " "),
-                     reception.telegram
-                         ? describe(*reception.telegram)
-                         : "void: " + std::string(serial_error_text(reception.telegram.error())));
+                     fmt::join(reception.bytes.span(), " "), reception_text(reception));
 }
 
 void SerialLog::on_character(const Rs485Line& line, NodeId /*sender*/, const Character& character) {

@@ -14,6 +14,9 @@
 
 namespace ipos::runtime {
 
+// What a telegram says, or why it is void.
+std::string reception_text(const Reception& reception);
+
 // One line without line end.
 std::string serial_log_line(std::string_view line, const Reception& reception);
 
