@@ -25,7 +25,7 @@ vm::Limits limits_of(const stdlib::UnitType& unit) {
 
 Station::Station(EventQueue& queue, uint32_t source, const StationConfig& config,
                  std::optional<vm::Image> program, StationLines lines, Journal& journal,
-                 std::optional<vm::Rates> rates)
+                 std::optional<vm::Rates> rates, const Execution& execution)
     : queue_(queue),
       source_(source),
       config_(config),
@@ -34,7 +34,8 @@ Station::Station(EventQueue& queue, uint32_t source, const StationConfig& config
       drive_(*config.unit, config.machine, config.options),
       movilink_(drive_, drive_, journal, config.name),
       image_(std::move(program)),
-      rates_(rates) {
+      rates_(rates),
+      execution_(execution) {
   for (const InputSetting& input : config.inputs) inputs_.line(input.input).set = input.level ? 1 : 0;
   AnalogInputs analog = config.analog;
   for (size_t n = kBinaryLines; n < kInputLines; ++n) inputs_.line(n).set = analog_value(analog, n);

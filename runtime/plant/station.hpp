@@ -12,6 +12,7 @@
 #include "runtime/bus/can/line.hpp"
 #include "runtime/bus/movilink/keypad.hpp"
 #include "runtime/plant/drive_server.hpp"
+#include "runtime/plant/execution.hpp"
 #include "runtime/plant/plant_file.hpp"
 #include "runtime/plant/sbus_port.hpp"
 #include "runtime/plant/serial_port.hpp"
@@ -58,7 +59,8 @@ class Station final : private EventTarget {
   // station. Parameters of the config must be checked before (plant.cpp). The program must pass verify() for
   // the unit.
   Station(EventQueue& queue, uint32_t source, const StationConfig& config, std::optional<vm::Image> program,
-          StationLines lines, Journal& journal, std::optional<vm::Rates> rates);
+          StationLines lines, Journal& journal, std::optional<vm::Rates> rates,
+          const Execution& execution = {});
 
   // Applies a parameter of the plant file; nothing when it was accepted, else why not.
   std::optional<std::string> set_parameter(const ParameterSetting& setting);
@@ -118,6 +120,7 @@ class Station final : private EventTarget {
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
   void connect_sbus(int number);
   void restart_program_memory();
+  void choose_engine(const vm::VerifiedImage& program);
   void note_memory(Time now);
   void connect_serial();
   void reconnect_serial();
@@ -143,6 +146,7 @@ class Station final : private EventTarget {
   std::vector<uint32_t> code_;  // what the machine runs: the verified program memory
   std::vector<vm::fast::Slot> slots_;
   std::optional<vm::fast::Predecoded> predecoded_;  // in slots_
+  std::shared_ptr<const vm::fast::Native> native_;  // null: no machine code
   std::array<std::unique_ptr<SbusPort>, 2> sbus_;
 
   // RS-485; empty without a line.
@@ -159,6 +163,7 @@ class Station final : private EventTarget {
   std::optional<SystemCommands> commands_;
   std::optional<vm::Machine> machine_;
   std::optional<vm::Rates> rates_;  // instead of P938 and P939
+  Execution execution_;
   CommandRunner* runner_ = nullptr;
   vm::TickSteps steps_;  // with a runner
   bool in_tick_ = false;

@@ -63,10 +63,8 @@ std::optional<std::string> Station::start_program() {
   const bool of_image = image_ && code_ == image_->code;
   commands_.emplace(services(), journal_, config_.name, of_image ? &*image_ : nullptr);
   const vm::VerifiedImage program = *vm::verify(code_, limits, {}).image;
-  slots_.assign(vm::fast::Predecoded::slots_needed(code_.size()), {});
-  predecoded_.emplace(program, slots_);
   machine_.emplace(program, commands_->host());
-  machine_->use(&*predecoded_);
+  choose_engine(program);
   if (positioning_commands_) positioning_commands_->cancel_all();
   drive_.connect_program(*machine_);
   for (const auto& port : sbus_)
@@ -76,6 +74,14 @@ std::optional<std::string> Station::start_program() {
   resets_seen_ = drive_.state().resets();
   error_seen_ = 0;
   return std::nullopt;
+}
+
+void Station::choose_engine(const vm::VerifiedImage& program) {
+  if (!execution_.fast) return;
+  slots_.assign(vm::fast::Predecoded::slots_needed(code_.size()), {});
+  predecoded_.emplace(program, slots_);
+  native_ = execution_.compiler == nullptr ? nullptr : execution_.compiler(program);
+  machine_->use(&*predecoded_, native_.get());
 }
 
 void Station::stop_program() {

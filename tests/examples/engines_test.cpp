@@ -1,0 +1,58 @@
+// Every example gives the same run, whatever executes its programs: report, journal, frames, telegrams and
+// all recorded signals. The run of the reference interpreter is the expected value.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "tests/tools/command.hpp"
+#include "vm/jit/jit.hpp"
+
+namespace ipos::tests {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> plants() {
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::recursive_directory_iterator(project("examples")))
+    if (entry.path().extension() == ".toml") found.push_back(entry.path());
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+struct Run {
+  std::vector<std::string> texts;  // what was printed and written
+  bool operator==(const Run&) const = default;
+};
+
+Run run(const fs::path& plant, const std::vector<std::string>& how) {
+  const TemporaryFolder folder;
+  const auto file = [&](const char* name) { return (folder.path() / name).string(); };
+  std::vector<std::string> arguments{
+      "run",     plant.string(), "--for",         "2s",           "--watch",
+      "--why",   "--log",        file("can.log"), "--serial-log", file("serial.log"),
+      "--trace", file("run.csv")};
+  arguments.insert(arguments.end(), how.begin(), how.end());
+  const CommandResult result = run_ipos(arguments);
+  return {{std::to_string(result.exit_code), result.out, result.err, read_text(file("can.log")),
+           read_text(file("serial.log")), read_text(file("run.csv"))}};
+}
+
+TEST(Engines, EveryExampleRunsTheSameWithEach) {
+  ASSERT_GE(plants().size(), 18U);
+  for (const fs::path& plant : plants()) {
+    const Run expected = run(plant, {"--engine", "reference"});
+    EXPECT_TRUE(run(plant, {"--engine", "fast"}) == expected) << plant;
+    EXPECT_TRUE(run(plant, {}) == expected) << plant;
+  }
+}
+
+TEST(Engines, MachineCodeIsRefusedWhereThereIsNone) {
+  const CommandResult result =
+      run_ipos({"run", project("examples/tour/TOUR.IPC").string(), "--engine", "native", "--for", "1ms"});
+  EXPECT_EQ(result.exit_code, vm::jit::available() ? 0 : 64) << result.err;
+}
+
+}  // namespace
+}  // namespace ipos::tests
