@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "runtime/drive/indices.hpp"
 #include "tools/failure.hpp"
@@ -23,7 +24,7 @@ constexpr NamedParameter kNamedParameters[] = {
 };
 
 // Fault number, or the condition of the unit.
-std::string state_text(Station& station) {
+std::string state_text(const Station& station) {
   const runtime::Drive& drive = station.drive().state();
   if (drive.fault() != 0) return fmt::format("F{:02}", drive.fault());
   return std::string(runtime::condition_text(drive.condition()));
@@ -97,7 +98,8 @@ bool Recorder::add(Station& station, std::string_view name) {
     signal.unit = "rpm";
     signal.factor = 0.001;
     signal.decimals = 3;
-    add(std::move(signal), [&station] { return int64_t{station.drive().state().axis().setpoint}; });
+    add(std::move(signal),
+        [&station] { return int64_t{std::as_const(station).drive().state().axis().setpoint}; });
     return true;
   }
   const auto* named = std::find_if(std::begin(kNamedParameters), std::end(kNamedParameters),
@@ -113,7 +115,7 @@ bool Recorder::add(Station& station, std::string_view name) {
     signal.factor = scale.factor;
     signal.decimals = scale.decimals;
     add(std::move(signal), [&station, parameter] {
-      return parameter->number_of(station.drive().parameters().value(parameter->index));
+      return parameter->number_of(std::as_const(station).drive().parameters().value(parameter->index));
     });
     return true;
   }

@@ -16,6 +16,7 @@ struct Execution {
 
   bool fast = true;             // the fast engine; else the reference interpreter alone
   Compiler compiler = nullptr;  // for the fast engine; null: no machine code
+  bool skip_idle = true;        // milliseconds of a station in which nothing happens are left out
 };
 
 }  // namespace ipos::runtime

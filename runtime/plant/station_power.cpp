@@ -10,6 +10,7 @@ namespace ipos::runtime {
 // The bus ports are off the line until the next power-on makes them anew.
 void Station::power_off() {
   if (!powered_) return;
+  wake();
   store_memory();
   powered_ = false;
   was_off_ = true;
@@ -46,6 +47,7 @@ void Station::restart_program_memory() {
 
 std::optional<std::string> Station::start_program() {
   if (!powered_) return "the station is off";
+  wake();
   const vm::Limits limits = limits_of(*config_.unit);
   std::vector<uint32_t> code = drive_.memory().program().code();
   std::array<vm::Violation, 1> violations{};
@@ -85,6 +87,7 @@ void Station::choose_engine(const vm::VerifiedImage& program) {
 }
 
 void Station::stop_program() {
+  wake();
   if (machine_) machine_->stop_all();
   movilink_.stop();
   for (const auto& port : sbus_)
@@ -92,6 +95,7 @@ void Station::stop_program() {
 }
 
 bool Station::store_memory() {
+  make_up();
   const bool stored = drive_.memory().commit();
   drive_.memory().report_wear();
   note_memory(queue_.now());
