@@ -76,10 +76,11 @@ PlantInput read_plant_input(const std::string& path, const CompileFlags& compile
   return input;
 }
 
-std::unique_ptr<runtime::Plant> make_plant(PlantInput input, std::optional<vm::Rates> rates) {
+std::unique_ptr<runtime::Plant> make_plant(PlantInput input, std::optional<vm::Rates> rates,
+                                           const runtime::Execution& execution) {
   std::vector<runtime::PlantError> errors;
-  auto plant =
-      std::make_unique<runtime::Plant>(std::move(input.file), std::move(input.programs), rates, errors);
+  auto plant = std::make_unique<runtime::Plant>(std::move(input.file), std::move(input.programs), rates,
+                                                errors, execution);
   print_errors(input.path, errors);
   return plant;
 }

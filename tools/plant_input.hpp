@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "runtime/plant/plant.hpp"
+#include "tools/engine.hpp"
 #include "tools/program.hpp"
 
 namespace ipos::tools {
@@ -27,6 +28,7 @@ PlantInput read_plant_input(const std::string& path, const CompileFlags& compile
                             const std::string& sbus = {});
 
 // Builds it.
-std::unique_ptr<runtime::Plant> make_plant(PlantInput input, std::optional<vm::Rates> rates = {});
+std::unique_ptr<runtime::Plant> make_plant(PlantInput input, std::optional<vm::Rates> rates = {},
+                                           const runtime::Execution& execution = execution_of());
 
 }  // namespace ipos::tools

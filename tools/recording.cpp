@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "runtime/bus/log/candump.hpp"
 #include "runtime/bus/log/serial_log.hpp"
@@ -56,7 +57,7 @@ constexpr NamedSignal kNamedSignals[] = {
 constexpr std::string_view kFrames = ".frames";
 
 // Fault number, or the condition of the unit.
-std::string state_text(Station& station) {
+std::string state_text(const Station& station) {
   const runtime::Drive& drive = station.drive().state();
   if (drive.fault() != 0) return fmt::format("F{:02}", drive.fault());
   return std::string(runtime::condition_text(drive.condition()));
@@ -166,7 +167,7 @@ bool Recorder::add(Station& station, std::string_view name) {
     signal.factor = scale.factor;
     signal.decimals = scale.decimals;
     add(std::move(signal), [&station, parameter] {
-      return parameter->number_of(station.drive().parameters().value(parameter->index));
+      return parameter->number_of(std::as_const(station).drive().parameters().value(parameter->index));
     });
     return true;
   }

@@ -36,6 +36,8 @@ struct RunFlags {
   std::string duration;
   std::string until;
   uint32_t speed = 0;
+  std::string engine;
+  bool no_skip = false;
   std::string watch;
   std::string log;
   std::string plot;
@@ -204,7 +206,9 @@ int run(const RunFlags& flags) {
   if (!flags.realtime) refuse_ports(input.file, flags.file);
   std::optional<vm::Rates> rates;
   if (flags.speed != 0) rates = vm::Rates{{flags.speed, flags.speed, flags.speed}};
-  const std::unique_ptr<runtime::Plant> built = make_plant(std::move(input), rates);
+  runtime::Execution execution = execution_of(flags.engine);
+  execution.skip_idle = !flags.no_skip;
+  const std::unique_ptr<runtime::Plant> built = make_plant(std::move(input), rates, execution);
   runtime::Plant& plant = *built;
 
   if (!flags.signals.empty() && flags.plot.empty() && flags.trace.empty())
@@ -283,6 +287,9 @@ void add_run(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"end"}));
   verb->add_option("--speed", flags->speed, "commands per ms of every task, instead of P938 and P939")
       ->check(CLI::Range(1U, 1'000'000U));
+  add_engine_option(*verb, flags->engine);
+  verb->add_flag("--no-skip", flags->no_skip,
+                 "also execute milliseconds in which nothing happens, with equal results");
   verb->add_flag("--watch{*}", flags->watch, "show named variables at the end, all or --watch=NAME,...");
   verb->add_option("--log", flags->log, "write the frames of all CAN buses in candump format");
   verb->add_option("--serial-log", flags->serial_log, "write the telegrams of all RS-485 lines");

@@ -97,6 +97,7 @@ bool EventQueue::step() {
   const Entry entry = heap_.front();
   const Slot event = slots_[entry.slot];
   remove(0);
+  reached_ = entry.at == now_ ? std::max(reached_, entry.source) : entry.source;
   now_ = entry.at;
   event.target->on_event(now_, event.kind, event.argument);
   return true;
@@ -105,7 +106,9 @@ bool EventQueue::step() {
 void EventQueue::run_until(Time end) {
   while (next_time() <= end && step()) {
   }
-  now_ = std::max(now_, end);
+  if (end < now_) return;
+  now_ = end;
+  reached_ = UINT32_MAX;
 }
 
 }  // namespace ipos::runtime

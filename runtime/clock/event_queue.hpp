@@ -48,6 +48,9 @@ class EventQueue {
   Time next_time() const { return heap_.empty() ? kNever : heap_.front().at; }  // kNever: nothing pending
   size_t pending() const { return heap_.size(); }
 
+  // An event that `source` has had for now() since before that time has run, as the order of events goes.
+  bool has_passed(uint32_t source) const { return source < reached_; }
+
   // Runs the next event; false when there is none.
   bool step();
 
@@ -76,6 +79,7 @@ class EventQueue {
   void remove(size_t position);
 
   Time now_ = 0;
+  uint32_t reached_ = 0;  // the highest source that had an event at now()
   uint64_t next_sequence_ = 0;
   std::vector<Entry> heap_;
   std::vector<Slot> slots_;

@@ -12,13 +12,9 @@ namespace {
 
 // How long installing the factory setting takes; ours.
 constexpr uint32_t kFactorySettingMs = 2000;
-constexpr uint32_t kMinuteMs = 60'000;
-constexpr int32_t kFullUtilization = 100'000;
 // More automatic resets than this without a manual one are not made (ours).
 constexpr int kAutoResets = 3;
-// Where the unit protects itself; ours.
-constexpr int32_t kOvervoltage = 900'000;  // mV
-constexpr int32_t kOvertemperature = 90;   // °C
+constexpr int32_t kOvervoltage = 900'000;  // mV, where the unit protects itself; ours
 // P017 counts in 1E5 Ws (quantity 8, conversion index 5).
 constexpr int64_t kEnergyDigit = 100'000;
 

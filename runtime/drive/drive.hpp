@@ -107,6 +107,12 @@ class Drive final : private DriveLink {
   void power_cycle();
 
  private:
+  friend class DriveRest;
+  static constexpr uint32_t kMinuteMs = 60'000;
+  static constexpr int32_t kOvertemperature =
+      90;  // °C of the heat sink, where the unit protects itself; ours
+  static constexpr int32_t kFullUtilization = 100'000;
+
   std::optional<int32_t> live_value(uint16_t index) const override;
   bool controller_inhibited() const override;
   bool output_stage_on() const override { return axis_.state().output_stage; }

@@ -12,7 +12,7 @@ int64_t magnitude(int32_t value) { return std::abs(int64_t{value}); }
 
 bool ReferenceSignal::tick(bool above, bool below, int32_t delay_ms) {
   const bool raw = above || (!below && raw_);
-  lasted_ms_ = raw == raw_ ? lasted_ms_ + (lasted_ms_ < INT32_MAX) : 0;
+  lasted_ms_ = raw == raw_ && raw != shown_ ? lasted_ms_ + (lasted_ms_ < INT32_MAX) : 0;
   raw_ = raw;
   if (raw_ != shown_ && lasted_ms_ >= delay_ms) shown_ = raw_;
   return shown_;

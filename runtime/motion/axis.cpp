@@ -117,10 +117,19 @@ void Axis::show(const AxisOrder& order, const Motion& motion) {
   state_.active_current = power_.active_current();
   state_.frequency = power_.frequency();
   state_.dc_link = power_.dc_link();
+  state_.energy = power_.energy();
+  show_heat();
+}
+
+void Axis::show_heat() {
   state_.heat_sink = power_.heat_sink();
   state_.utilization = power_.utilization();
   state_.motor_utilization = power_.motor_utilization();
-  state_.energy = power_.energy();
+}
+
+void Axis::cool(uint64_t ticks) {
+  power_.cool(ticks);
+  show_heat();
 }
 
 }  // namespace ipos::runtime

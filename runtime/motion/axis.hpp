@@ -64,6 +64,8 @@ class Axis {
 
   // One millisecond under this order.
   const AxisState& tick(const AxisOrder& order);
+  // What so many ticks do while the output stage is off, the shaft stands and the DC link is at rest.
+  void cool(uint64_t ticks);
   const AxisState& state() const { return state_; }
   const MachineData& machine() const { return machine_; }
 
@@ -78,6 +80,7 @@ class Axis {
   Motion advance_shaft(const AxisOrder& order);
   void count_position(FineSpeed before, FineSpeed after);
   void show(const AxisOrder& order, const Motion& motion);
+  void show_heat();
 
   static bool has_torque(AxisPhase phase);
   bool brake_open() const;

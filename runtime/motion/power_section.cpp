@@ -67,6 +67,17 @@ void PowerSection::step(const Load& load) {
   heat_sink_.follow(std::min<int64_t>(1'000'000, heat / 10'000'000 * machine_.heat_sink_rise));
 }
 
+void PowerSection::cool(uint64_t steps) {
+  unit_.fall(steps);
+  motor_.fall(steps);
+  heat_sink_.fall(steps);
+}
+
+// Below one digit of the division nothing changes any more.
+void PowerSection::Lag::fall(uint64_t steps) {
+  for (; steps != 0 && value_ >= time_ms_; --steps) value_ -= value_ / time_ms_;
+}
+
 // Mechanical power in 1/1000 % of the rated power; losses are added, what comes back charges the DC link.
 void PowerSection::step_power(int64_t mechanical) {
   const int64_t power = mechanical + kLosses * square(output_current_) / square(kHundredPercent);

@@ -27,6 +27,8 @@ class PowerSection {
     int32_t direct_current;  // of Supply::DirectCurrent
   };
   void step(const Load& load);
+  // What so many steps with Supply::Off and a DC link at rest do: the slow quantities fall.
+  void cool(uint64_t steps);
 
   int32_t output_current() const { return output_current_; }  // 1/1000 % IN
   int32_t active_current() const { return active_current_; }  // signed as the torque
@@ -43,6 +45,7 @@ class PowerSection {
    public:
     explicit Lag(int32_t time_ms) : time_ms_(time_ms) {}
     void follow(int64_t target) { value_ += ((target << 24) - value_) / time_ms_; }
+    void fall(uint64_t steps);
     int32_t whole() const { return static_cast<int32_t>(value_ >> 24); }
 
    private:

@@ -14,6 +14,7 @@
 #include "runtime/drive/drive.hpp"
 #include "runtime/drive/parameters.hpp"
 #include "runtime/plant/unit_memory.hpp"
+#include "runtime/services/sleeper.hpp"
 #include "vm/exec/machine.hpp"
 #include "vm/sched/scheduler.hpp"
 
@@ -34,6 +35,15 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
                        DriveOptions options = {});
   DriveServer(const DriveServer&) = delete;
   DriveServer& operator=(const DriveServer&) = delete;
+
+  // Is told before a bus or a program touches the drive. It must outlive this.
+  void use(Sleeper& sleeper) { sleeper_ = &sleeper; }
+  void make_up() {
+    if (sleeper_ != nullptr) sleeper_->make_up();
+  }
+  void wake() {
+    if (sleeper_ != nullptr) sleeper_->wake();
+  }
 
   // Sets a parameter before power-on, named "P813" or by index; nothing when accepted, else why not.
   std::optional<std::string> set_parameter(std::string_view parameter, int32_t value);
@@ -56,6 +66,7 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
   Drive& state() { return state_; }
   const Drive& state() const { return state_; }
   ParameterStore& parameters() { return parameters_; }
+  const ParameterStore& parameters() const { return parameters_; }
   const stdlib::UnitType& unit() const { return parameters_.unit(); }
   UnitMemory& memory() { return memory_; }
 
@@ -101,6 +112,7 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
 
   uint16_t index_of(std::string_view number) const;  // 0 for a parameter the unit does not have
 
+  Sleeper* sleeper_ = nullptr;
   ParameterStore parameters_;
   UnitMemory memory_;
   Drive state_;

@@ -41,13 +41,14 @@ void open_memory(const StationConfig& config, Station& station, std::vector<Plan
 }  // namespace
 
 Plant::Plant(PlantFile file, std::vector<std::optional<vm::Image>> programs, std::optional<vm::Rates> rates,
-             std::vector<PlantError>& errors)
+             std::vector<PlantError>& errors, const Execution& execution)
     : file_(std::move(file)) {
   // Sources order the events of one moment: first the lines, then the surroundings, then stations and
   // controls, each in the order of the file.
   make_lines();
   surroundings_ = std::make_unique<Surroundings>(queue_, next_source_++, journal_);
-  for (size_t n = 0; n < file_.stations.size(); ++n) add_station(n, std::move(programs[n]), rates, errors);
+  for (size_t n = 0; n < file_.stations.size(); ++n)
+    add_station(n, std::move(programs[n]), rates, errors, execution);
   for (const ControlConfig& config : file_.controls)
     controls_.push_back({&config, find_line(config.sbus),
                          std::make_unique<SbusControl>(queue_, next_source_++, config.settings), nullptr});
@@ -62,15 +63,15 @@ Plant::Plant(PlantFile file, std::vector<std::optional<vm::Image>> programs, std
 }
 
 void Plant::add_station(size_t number, std::optional<vm::Image> program, std::optional<vm::Rates> rates,
-                        std::vector<PlantError>& errors) {
+                        std::vector<PlantError>& errors, const Execution& execution) {
   const StationConfig& config = file_.stations[number];
   const StationLines lines = lines_of(config);
   if (program) {
     const std::vector<PlantError> refused = verify_program(config, *program);
     errors.insert(errors.end(), refused.begin(), refused.end());
   }
-  stations_.push_back(
-      std::make_unique<Station>(queue_, next_source_++, config, std::move(program), lines, journal_, rates));
+  stations_.push_back(std::make_unique<Station>(queue_, next_source_++, config, std::move(program), lines,
+                                                journal_, rates, execution));
   open_memory(config, *stations_.back(), errors);
   for (const ParameterSetting& setting : config.parameters)
     if (const auto refused = stations_.back()->set_parameter(setting))

@@ -51,7 +51,7 @@ class Plant final : private CanObserver, private SbusCheckClient {
   // Errors (unknown parameters, refused values, programs the unit refuses, unknown variables) come back in
   // `errors`; a plant with errors must not be run.
   Plant(PlantFile file, std::vector<std::optional<vm::Image>> programs, std::optional<vm::Rates> rates,
-        std::vector<PlantError>& errors);
+        std::vector<PlantError>& errors, const Execution& execution = {});
 
   void add_observer(CanObserver& observer);
   void add_observer(SerialObserver& observer);
@@ -92,7 +92,7 @@ class Plant final : private CanObserver, private SbusCheckClient {
   void tell_findings();
   CanLine* find_line(std::string_view name) const;
   void add_station(size_t number, std::optional<vm::Image> program, std::optional<vm::Rates> rates,
-                   std::vector<PlantError>& errors);
+                   std::vector<PlantError>& errors, const Execution& execution);
   void power_on();
   void start_checks();
   void plant_faults();

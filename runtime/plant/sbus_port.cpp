@@ -13,6 +13,7 @@ constexpr uint64_t kSlaveTag = 1;
 constexpr uint64_t kMasterTag = 2;
 constexpr uint64_t kGroupTag = 3;
 constexpr uint64_t kObjectTags = 0x100;  // and above
+constexpr uint64_t kAcyclicObjectTags = kObjectTags + ObjectTable::kAcyclicTags;
 
 constexpr MovilinkBus kBuses[] = {MovilinkBus::Sbus, MovilinkBus::Sbus2};
 
@@ -92,10 +93,16 @@ void SbusPort::tick(Time now) {
   if (machine_ != nullptr) objects_.tick(now / kMillisecond, machine_->variables());
 }
 
+Time SbusPort::next_due(Time now) const {
+  if (group_master_.active()) return now + kMillisecond;
+  const int64_t tick = machine_ == nullptr ? INT64_MAX : objects_.next_due(now / kMillisecond);
+  return tick == INT64_MAX ? kNever : tick * kMillisecond;
+}
+
 void SbusPort::on_frame(Time now, const Frame& frame) {
   if (master_.on_frame(now, frame)) return;
   std::string why;
-  const bool received = machine_ != nullptr && objects_.on_frame(frame, machine_->variables(), why);
+  const bool received = machine_ != nullptr && objects_.expects(frame) && receive(frame, why);
   if (!why.empty()) note(now, Weight::Warning, std::move(why));
   // A receive object with the sync identifier takes nothing away from the drive.
   if (!received || slave_.is_sync(frame)) slave_.on_frame(now, frame);
@@ -104,15 +111,25 @@ void SbusPort::on_frame(Time now, const Frame& frame) {
   for (std::string& obstacle : drive_.take_obstacles()) note(now, Weight::Why, std::move(obstacle));
 }
 
+// A frame that brings the values that are there already wakes nobody.
+bool SbusPort::receive(const Frame& frame, std::string& why) {
+  drive_.make_up();
+  if (!objects_.unchanged(frame, machine_->variables())) drive_.wake();
+  return objects_.on_frame(frame, machine_->variables(), why);
+}
+
 void SbusPort::on_sent(Time now, const Frame& /*frame*/, uint64_t tag) {
   if (tag == kMasterTag) master_.on_sent(now, tag);
-  if (tag >= kObjectTags && machine_ != nullptr) objects_.on_sent(tag, machine_->variables());
+  if (tag < kAcyclicObjectTags || machine_ == nullptr) return;
+  drive_.wake();
+  objects_.on_sent(tag, machine_->variables());
 }
 
 void SbusPort::on_not_sent(Time /*now*/, const Frame& /*frame*/, uint64_t tag, NotSent reason) {
   // A disturbed frame is sent again by the controller; nobody else learns of it.
-  if (tag >= kObjectTags && machine_ != nullptr && reason != NotSent::Corrupted)
-    objects_.on_not_sent(tag, machine_->variables());
+  if (tag < kAcyclicObjectTags || machine_ == nullptr || reason == NotSent::Corrupted) return;
+  drive_.wake();
+  objects_.on_not_sent(tag, machine_->variables());
 }
 
 // No manual says what a drive does; it asks its controller to come back at once (ours).

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace ipos::runtime {
 namespace {
@@ -37,12 +38,16 @@ std::optional<SignalPort> SignalPort::find(const std::vector<std::unique_ptr<Sta
 
 int32_t SignalPort::read() const {
   switch (kind_) {
-    case SignalKind::Input: return station_->inputs().line(line_).value();
-    case SignalKind::Output: return station_->drive().state().outputs() >> line_ & 1;
+    case SignalKind::Input: return std::as_const(*station_).inputs().line(line_).value();
+    case SignalKind::Output: return station_->outputs() >> line_ & 1;
     case SignalKind::Variable:
     case SignalKind::Parameter: break;
   }
-  return station_->drive().parameters().execute(ParameterService::Read, index_).value_or(0);
+  return station_->read(index_);
+}
+
+void SignalPort::drive(int32_t level) const {
+  if (std::as_const(*station_).inputs().line(line_).driven != level) line().driven = level;
 }
 
 std::optional<std::string> SignalPort::write(int32_t value) const {

@@ -25,6 +25,7 @@ class SignalPort {
   // Of an input.
   bool is_input() const { return kind_ == SignalKind::Input; }
   InputLine& line() const { return station_->inputs().line(line_); }
+  void drive(int32_t level) const;  // what a wire or switch says
 
   const std::string& station_name() const { return station_->config().name; }
   bool operator==(const SignalPort&) const = default;

@@ -15,7 +15,6 @@ namespace ipos::runtime {
 namespace {
 
 constexpr uint8_t kFaultWatchdog = 41;
-constexpr uint32_t kTick = 0;  // the only kind of event a station schedules
 
 }  // namespace
 
@@ -25,7 +24,7 @@ vm::Limits limits_of(const stdlib::UnitType& unit) {
 
 Station::Station(EventQueue& queue, uint32_t source, const StationConfig& config,
                  std::optional<vm::Image> program, StationLines lines, Journal& journal,
-                 std::optional<vm::Rates> rates)
+                 std::optional<vm::Rates> rates, const Execution& execution)
     : queue_(queue),
       source_(source),
       config_(config),
@@ -34,7 +33,10 @@ Station::Station(EventQueue& queue, uint32_t source, const StationConfig& config
       drive_(*config.unit, config.machine, config.options),
       movilink_(drive_, drive_, journal, config.name),
       image_(std::move(program)),
-      rates_(rates) {
+      rates_(rates),
+      execution_(execution) {
+  drive_.use(*this);
+  movilink_.use(*this);
   for (const InputSetting& input : config.inputs) inputs_.line(input.input).set = input.level ? 1 : 0;
   AnalogInputs analog = config.analog;
   for (size_t n = kBinaryLines; n < kInputLines; ++n) inputs_.line(n).set = analog_value(analog, n);
@@ -114,6 +116,7 @@ void Station::connect_serial() {
 }
 
 void Station::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
+  if (sleeps_through(now)) return;
   drive_.state().set_inputs(inputs_.levels());
   drive_.state().set_analog(inputs_.analog());
   drive_.state().tick(positioning_ && machine_
@@ -124,6 +127,7 @@ void Station::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
   if (xt_) xt_->configure(now);
   if (machine_) {
     begin_program(now);
+    try_program();
     if (!run_commands()) return;
   }
   end_tick(now);
@@ -150,7 +154,7 @@ void Station::end_tick(Time now) {
     if (port) port->tick(now);
   drive_.memory().tick(now);
   note_memory(now);
-  tick_ = queue_.schedule(now + kMillisecond, source_, *this, kTick);
+  schedule_tick(now);
 }
 
 void Station::begin_program(Time now) {
@@ -266,6 +270,13 @@ uint8_t Station::fault() const { return drive_.state().fault(); }
 bool Station::error() const { return drive_.state().error(); }
 
 uint16_t Station::status_word_1() const { return drive_.state().status_word_1(); }
+
+int32_t Station::read(uint16_t index) const {
+  look();
+  // Reading is a service like others, though it changes nothing.
+  auto& parameters = const_cast<Station*>(this)->drive_.parameters();
+  return parameters.execute(ParameterService::Read, index).value_or(0);
+}
 
 std::optional<uint32_t> Station::find_variable(std::string_view name) const {
   if (!image_) return std::nullopt;

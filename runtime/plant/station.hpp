@@ -11,7 +11,9 @@
 
 #include "runtime/bus/can/line.hpp"
 #include "runtime/bus/movilink/keypad.hpp"
+#include "runtime/drive/rest.hpp"
 #include "runtime/plant/drive_server.hpp"
+#include "runtime/plant/execution.hpp"
 #include "runtime/plant/plant_file.hpp"
 #include "runtime/plant/sbus_port.hpp"
 #include "runtime/plant/serial_port.hpp"
@@ -20,6 +22,7 @@
 #include "runtime/services/mirrored_values.hpp"
 #include "runtime/services/pid_block.hpp"
 #include "runtime/services/positioning_commands.hpp"
+#include "runtime/services/sleeper.hpp"
 #include "runtime/services/system_commands.hpp"
 #include "runtime/services/timers.hpp"
 #include "vm/exec/machine.hpp"
@@ -52,13 +55,14 @@ class CommandRunner {
   ~CommandRunner() = default;
 };
 
-class Station final : private EventTarget {
+class Station final : private EventTarget, private Sleeper {
  public:
   // `program` is empty for a station without IPOS program. The config and the journal must outlive the
   // station. Parameters of the config must be checked before (plant.cpp). The program must pass verify() for
   // the unit.
   Station(EventQueue& queue, uint32_t source, const StationConfig& config, std::optional<vm::Image> program,
-          StationLines lines, Journal& journal, std::optional<vm::Rates> rates);
+          StationLines lines, Journal& journal, std::optional<vm::Rates> rates,
+          const Execution& execution = {});
 
   // Applies a parameter of the plant file; nothing when it was accepted, else why not.
   std::optional<std::string> set_parameter(const ParameterSetting& setting);
@@ -82,7 +86,17 @@ class Station final : private EventTarget {
   void stop_program();
 
   // From the next tick on; it must outlive the station.
-  void use_runner(CommandRunner& runner) { runner_ = &runner; }
+  void use_runner(CommandRunner& runner) {
+    wake();
+    runner_ = &runner;
+  }
+  // From now on no tick is left out.
+  void stay_awake() {
+    wake();
+    execution_.skip_idle = false;
+  }
+  // A tick was left out and not made up for yet, or those behind it will be.
+  bool asleep() const { return asleep_; }
   // The station stands in the middle of its tick.
   bool in_tick() const { return in_tick_; }
   void resume_tick();
@@ -92,10 +106,29 @@ class Station final : private EventTarget {
 
   const StationConfig& config() const { return config_; }
   const vm::Image* image() const { return image_ ? &*image_ : nullptr; }
-  const vm::Machine* machine() const { return machine_ ? &*machine_ : nullptr; }
-  DriveServer& drive() { return drive_; }
-  const DriveServer& drive() const { return drive_; }
-  StationInputs& inputs() { return inputs_; }
+  const vm::Machine* machine() const {
+    look();
+    return machine_ ? &*machine_ : nullptr;
+  }
+  // To change something; what only reads takes the others, which let a station sleep.
+  DriveServer& drive() {
+    wake();
+    return drive_;
+  }
+  const DriveServer& drive() const {
+    look();
+    return drive_;
+  }
+  // These stay as they are while a station sleeps.
+  uint16_t outputs() const { return drive_.state().outputs(); }
+  int32_t shaft_position() const { return drive_.state().shaft_position(); }
+  StationInputs& inputs() {
+    wake();
+    return inputs_;
+  }
+  const StationInputs& inputs() const { return inputs_; }
+  // As the parameter channel reads an index; 0 where it refuses.
+  int32_t read(uint16_t index) const;
 
   // SBus 1 or 2; null when the station is not on it.
   const SbusPort* sbus(int number) const { return sbus_[static_cast<size_t>(number - 1)].get(); }
@@ -109,15 +142,33 @@ class Station final : private EventTarget {
 
   // Number of a variable by symbol or as Hn; nothing when there is none.
   std::optional<uint32_t> find_variable(std::string_view name) const;
-  int32_t variable(uint32_t number) const { return machine_->variables()[number]; }
+  int32_t variable(uint32_t number) const {
+    look();
+    return machine_->variables()[number];
+  }
 
   // "SCOM1.IPC:12:5" of a word address, or empty.
   std::string source_place(uint32_t address) const;
 
  private:
+  static constexpr uint32_t kTick = 0;  // the only kind of event a station schedules
+
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
+  void make_up() override;
+  void wake() override;
+  // Left-out ticks are made up for by whoever looks first: nobody can tell.
+  void look() const { const_cast<Station*>(this)->make_up(); }
+  void make_up_to(Time last);
+  void schedule_tick(Time now);
+  Time next_event(Time now) const;
+  bool sleeps_through(Time now);
+  void begin_trial();
+  void try_program();
+  uint64_t end_trial();
+  void hesitate();
   void connect_sbus(int number);
   void restart_program_memory();
+  void choose_engine(const vm::VerifiedImage& program);
   void note_memory(Time now);
   void connect_serial();
   void reconnect_serial();
@@ -143,6 +194,7 @@ class Station final : private EventTarget {
   std::vector<uint32_t> code_;  // what the machine runs: the verified program memory
   std::vector<vm::fast::Slot> slots_;
   std::optional<vm::fast::Predecoded> predecoded_;  // in slots_
+  std::shared_ptr<const vm::fast::Native> native_;  // null: no machine code
   std::array<std::unique_ptr<SbusPort>, 2> sbus_;
 
   // RS-485; empty without a line.
@@ -159,12 +211,27 @@ class Station final : private EventTarget {
   std::optional<SystemCommands> commands_;
   std::optional<vm::Machine> machine_;
   std::optional<vm::Rates> rates_;  // instead of P938 and P939
+  Execution execution_;
   CommandRunner* runner_ = nullptr;
   vm::TickSteps steps_;  // with a runner
   bool in_tick_ = false;
   bool powered_ = false;
   bool was_off_ = false;
   EventId tick_ = kNoEvent;
+
+  // Sleep.
+  bool asleep_ = false;
+  bool trial_ = false;     // this tick is compared with what was before it
+  uint32_t trial_in_ = 0;  // ticks until the next one
+  uint32_t pause_ = 1;
+  uint64_t idle_ticks_ = 0;  // of the program, from the tick of the trial on
+  Time next_tick_ = 0;       // the first that was not made up for
+  Time sleeps_until_ = 0;    // the tick that is executed again
+  struct {
+    DriveRest drive;
+    Bytes<PositioningService> positioning;
+    std::array<int32_t, vm::kMaxVariables> h;
+  } rest_;                       // before the trial
   bool fault_reported_ = false;  // of the program
   uint32_t resets_seen_ = 0;     // of the drive's faults
   uint8_t error_seen_ = 0;       // error of the drive in the last millisecond

@@ -10,6 +10,7 @@ namespace ipos::runtime {
 // The bus ports are off the line until the next power-on makes them anew.
 void Station::power_off() {
   if (!powered_) return;
+  wake();
   store_memory();
   powered_ = false;
   was_off_ = true;
@@ -46,6 +47,7 @@ void Station::restart_program_memory() {
 
 std::optional<std::string> Station::start_program() {
   if (!powered_) return "the station is off";
+  wake();
   const vm::Limits limits = limits_of(*config_.unit);
   std::vector<uint32_t> code = drive_.memory().program().code();
   std::array<vm::Violation, 1> violations{};
@@ -63,10 +65,8 @@ std::optional<std::string> Station::start_program() {
   const bool of_image = image_ && code_ == image_->code;
   commands_.emplace(services(), journal_, config_.name, of_image ? &*image_ : nullptr);
   const vm::VerifiedImage program = *vm::verify(code_, limits, {}).image;
-  slots_.assign(vm::fast::Predecoded::slots_needed(code_.size()), {});
-  predecoded_.emplace(program, slots_);
   machine_.emplace(program, commands_->host());
-  machine_->use(&*predecoded_);
+  choose_engine(program);
   if (positioning_commands_) positioning_commands_->cancel_all();
   drive_.connect_program(*machine_);
   for (const auto& port : sbus_)
@@ -78,7 +78,16 @@ std::optional<std::string> Station::start_program() {
   return std::nullopt;
 }
 
+void Station::choose_engine(const vm::VerifiedImage& program) {
+  if (!execution_.fast) return;
+  slots_.assign(vm::fast::Predecoded::slots_needed(code_.size()), {});
+  predecoded_.emplace(program, slots_);
+  native_ = execution_.compiler == nullptr ? nullptr : execution_.compiler(program);
+  machine_->use(&*predecoded_, native_.get());
+}
+
 void Station::stop_program() {
+  wake();
   if (machine_) machine_->stop_all();
   movilink_.stop();
   for (const auto& port : sbus_)
@@ -86,6 +95,7 @@ void Station::stop_program() {
 }
 
 bool Station::store_memory() {
+  make_up();
   const bool stored = drive_.memory().commit();
   drive_.memory().report_wear();
   note_memory(queue_.now());

@@ -37,11 +37,11 @@ void Surroundings::start() {
 }
 
 void Surroundings::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
-  for (const Lead& lead : leads_) lead.to.line().driven = (lead.from.read() != 0) != lead.invert ? 1 : 0;
+  for (const Lead& lead : leads_) lead.to.drive((lead.from.read() != 0) != lead.invert ? 1 : 0);
   for (const Cam& cam : cams_) {
-    const int32_t position = cam.station->drive().state().shaft_position();
+    const int32_t position = cam.station->shaft_position();
     const bool within = position >= cam.from && position <= cam.to;
-    cam.input.line().driven = within == cam.active_high ? 1 : 0;
+    cam.input.drive(within == cam.active_high ? 1 : 0);
   }
   while (!due_.empty() && due_.begin()->first <= now) {
     const Time at = due_.begin()->first;

@@ -16,6 +16,7 @@ class CamSources {
   void watch(uint32_t variable, std::span<const int32_t> h);
   void tick(std::span<const int32_t> h);
   int32_t change(uint32_t variable) const;  // in the last millisecond
+  bool watches_none() const { return !sources_[0].used; }
 
  private:
   struct Source {
@@ -45,6 +46,11 @@ class ExtendedCams {
   // One millisecond. False: a structure leads to no variable; it is stopped.
   bool tick(std::span<int32_t> h, CamSources& sources, const Status& status);
   void stop() { cams_ = {}; }
+  bool runs() const {
+    for (const Cam& cam : cams_)
+      if (cam.used) return true;
+    return false;
+  }
 
  private:
   struct Cam {

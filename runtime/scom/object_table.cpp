@@ -161,6 +161,17 @@ void ObjectTable::start(int64_t tick) {
   state_.start_tick = tick;
 }
 
+int64_t ObjectTable::next_due(int64_t tick) const {
+  int64_t next = INT64_MAX;
+  if (!state_.started) return next;
+  for (const Cyclic& object : std::span(state_.cyclic).first(state_.cyclic_count)) {
+    const int64_t first = state_.start_tick + object.offset;
+    const int64_t done = tick < first ? 0 : (tick - first) / object.cycle + 1;
+    next = std::min(next, first + done * object.cycle);
+  }
+  return next;
+}
+
 std::optional<size_t> ObjectTable::receiver(const Frame& frame) const {
   if (!state_.started || !is_plain(frame)) return std::nullopt;
   for (size_t n = 0; n < state_.receive_count; ++n)
@@ -179,6 +190,16 @@ bool ObjectTable::take(size_t receiver, const Frame& frame, std::span<int32_t> h
     flags = static_cast<int32_t>(static_cast<uint32_t>(flags) | 1U << receiver);
   }
   return true;
+}
+
+bool ObjectTable::has_taken(size_t receiver, const Frame& frame, std::span<const int32_t> h) const {
+  const Receive& object = state_.receive[receiver];
+  const auto pair = frame_variables(frame, object.format);
+  if (!pair) return true;
+  if (object.format.variables() > 0 && h[object.data] != pair->low) return false;
+  if (object.format.variables() > 1 && h[object.data + 1] != pair->high) return false;
+  return unit_->generation != Generation::B ||
+         (static_cast<uint32_t>(h[kReceiveFlags[sbus_ - 1]]) >> receiver & 1) != 0;
 }
 
 bool ObjectTable::is_sound(uint32_t id, VariableFormat format, uint32_t data) const {

@@ -130,12 +130,17 @@ class ObjectTable {
     }
   }
 
+  // The first millisecond behind `tick` in which an object is due; INT64_MAX for none.
+  int64_t next_due(int64_t tick) const;
+
   // The receive object a frame is for; nothing when there is none.
   std::optional<size_t> receiver(const Frame& frame) const;
   // Its variables take the frame's values; false when the length is another one. MOVIDRIVE B sets bit n of
   // H522 (SBus 1) or H523 (SBus 2) for its n-th receive object; the program clears it (order and clearing
   // ours; IPOSplus p. 232).
   bool take(size_t receiver, const Frame& frame, std::span<int32_t> h) const;
+  // take() would leave the variables as they are.
+  bool has_taken(size_t receiver, const Frame& frame, std::span<const int32_t> h) const;
 
   const State& state() const { return state_; }
   // A state that was saved; false, and nothing changes, when it cannot be one of this unit.

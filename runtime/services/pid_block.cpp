@@ -44,6 +44,11 @@ PidBlock::PidBlock(const ParameterStore& parameters) : parameters_(parameters) {
   actual_ = index_of("276");
 }
 
+bool PidBlock::is_off(std::span<const int32_t> h) {
+  const int32_t mode = h[system_variable("PID_Mode")];
+  return mode != kControl && mode != kStepResponse;
+}
+
 void PidBlock::tick(std::span<int32_t> h) {
   const int32_t mode = h[system_variable("PID_Mode")];
   if (mode != kControl) {

@@ -16,6 +16,8 @@ class PidBlock {
   explicit PidBlock(const ParameterStore& parameters);
 
   void tick(std::span<int32_t> h);
+  // With this mode H540 a tick does nothing.
+  static bool is_off(std::span<const int32_t> h);
 
  private:
   const ParameterStore& parameters_;

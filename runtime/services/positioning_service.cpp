@@ -39,6 +39,8 @@ enum SystemVariable : size_t {
   kGearSlave = 564,
 };
 
+constexpr int32_t kIsync = 2;  // setting of P077 (1053 1610 p. 69)
+
 constexpr unsigned kInPosition = 19;  // IPOSplus p. 34
 constexpr unsigned kReferenced = 20;  // IPOSplus p. 91
 
@@ -152,9 +154,12 @@ PositioningInputs PositioningService::inputs(std::span<const int32_t> h) const {
   return in;
 }
 
-// P077 = 2 ISync (1053 1610 p. 69). A gear of 0 is one of 1.
+bool PositioningService::minds_system_variables_only() const {
+  return settings_.technology_function != kIsync && cam_sources_.watches_none() && !extended_cams_.runs();
+}
+
+// A gear of 0 is one of 1.
 MasterInputs PositioningService::master(std::span<const int32_t> h, uint32_t syncs) {
-  constexpr int32_t kIsync = 2;
   MasterInputs master;
   master.sync = syncs != syncs_;
   syncs_ = syncs;

@@ -30,6 +30,9 @@ class PositioningService {
   // After it: the system variables of positioning, and the extended cams.
   void show(Time now, std::span<int32_t> h);
 
+  // Looks at no variable but system variables: no cam controller runs, no master is followed.
+  bool minds_system_variables_only() const;
+
   // For commands, between two ticks.
   const Positioner& positioner() const { return positioner_; }
   Positioner& positioner() { return positioner_; }

@@ -53,6 +53,14 @@ class VariableObjects {
   // Queues the cyclic objects due in this millisecond with the present values of their variables.
   void tick(int64_t tick, std::span<const int32_t> h);
 
+  // The first millisecond behind `tick` in which tick() sends something; INT64_MAX for none.
+  int64_t next_due(int64_t tick) const { return table_.next_due(tick); }
+
+  // A receive object is for this frame; `unchanged` when its variables have the frame's values already.
+  bool expects(const Frame& frame) const { return table_.receiver(frame).has_value(); }
+  bool unchanged(const Frame& frame, std::span<const int32_t> h) const {
+    return table_.has_taken(*table_.receiver(frame), frame, h);
+  }
   // True when a receive object took the frame; `why` says why one did not.
   bool on_frame(const Frame& frame, std::span<int32_t> h, std::string& why) const;
 

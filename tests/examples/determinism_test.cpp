@@ -3,25 +3,14 @@
 // compares builds.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <filesystem>
 #include <set>
 
-#include "tests/tools/command.hpp"
+#include "tests/examples/plants.hpp"
 
 namespace ipos::tests {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::vector<fs::path> example_plants() {
-  std::vector<fs::path> plants;
-  for (const auto& entry : fs::recursive_directory_iterator(project("examples")))
-    if (entry.path().extension() == ".toml" && entry.path().stem().extension() != ".test")
-      plants.push_back(entry.path());
-  std::sort(plants.begin(), plants.end());
-  return plants;
-}
 
 // The line "trace hash 0123456789abcdef".
 std::string trace_hash(const CommandResult& run) {

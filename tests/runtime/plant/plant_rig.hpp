@@ -14,7 +14,8 @@ namespace ipos::tests {
 
 inline std::unique_ptr<runtime::Plant> make_plant(const std::string& text,
                                                   const std::map<std::string, std::string>& sources = {},
-                                                  std::optional<vm::Rates> rates = std::nullopt) {
+                                                  std::optional<vm::Rates> rates = std::nullopt,
+                                                  const runtime::Execution& execution = {}) {
   runtime::PlantFileResult file = runtime::read_plant_file(text);
   for (const auto& error : file.errors) ADD_FAILURE() << error.place.line << ": " << error.text;
   if (!file.errors.empty()) return nullptr;
@@ -32,7 +33,8 @@ inline std::unique_ptr<runtime::Plant> make_plant(const std::string& text,
     programs.push_back(made.image);
   }
   std::vector<runtime::PlantError> errors;
-  auto plant = std::make_unique<runtime::Plant>(std::move(file.plant), std::move(programs), rates, errors);
+  auto plant =
+      std::make_unique<runtime::Plant>(std::move(file.plant), std::move(programs), rates, errors, execution);
   for (const auto& error : errors) ADD_FAILURE() << error.place.line << ": " << error.text;
   return errors.empty() ? std::move(plant) : nullptr;
 }

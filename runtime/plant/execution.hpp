@@ -1,0 +1,22 @@
+// How the programs of a plant are executed. Whatever is chosen, the results are the same
+// (docs/performance.md).
+#pragma once
+
+#include <memory>
+
+#include "vm/fast/native.hpp"
+#include "vm/verify/verify.hpp"
+
+namespace ipos::runtime {
+
+struct Execution {
+  // Machine code of a program, which lives as long as somebody holds it; null when there is none for it.
+  // vm/jit can make it, which the runtime does not know.
+  using Compiler = std::shared_ptr<const vm::fast::Native> (*)(const vm::VerifiedImage&);
+
+  bool fast = true;             // the fast engine; else the reference interpreter alone
+  Compiler compiler = nullptr;  // for the fast engine; null: no machine code
+  bool skip_idle = true;        // milliseconds of a station in which nothing happens are left out
+};
+
+}  // namespace ipos::runtime

@@ -1,0 +1,123 @@
+// Sleep: ticks that would change nothing are left out, and made up for when somebody looks or something
+// happens. A tick is a function of what the station is; so when one has left drive, positioning and variables
+// as they were, and the program goes round in a loop that leads nowhere, those behind it do the same.
+#include <algorithm>
+
+#include "runtime/plant/station.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+// A station that did not rest is tried again after 2, 4, 8.. ticks, so that trying costs a busy one nothing.
+constexpr uint32_t kLongestPause = 1024;
+
+}  // namespace
+
+// What could still change while nobody touches the station is looked at when a tick has passed.
+void Station::begin_trial() {
+  const Drive& drive = drive_.state();
+  const bool stands_off = !drive.axis().output_stage && drive.axis().standing;
+  const bool minds_variables = machine_ && ((pid_ && !PidBlock::is_off(machine_->variables())) ||
+                                            (positioning_ && !positioning_->minds_system_variables_only()));
+  if (!stands_off || minds_variables) return hesitate();
+  rest_.drive.note(drive);
+  if (positioning_) rest_.positioning.note(*positioning_);
+  if (machine_) std::ranges::copy(machine_->variables(), rest_.h.begin());
+  trial_ = true;
+}
+
+// In the middle of the tick, before the tasks: nobody has written a variable, so the tasks' own promise
+// holds.
+void Station::try_program() {
+  if (!trial_) return;
+  const std::span<const int32_t> h = machine_->variables();
+  idle_ticks_ = std::equal(h.begin(), h.end(), rest_.h.begin())
+                    ? machine_->idle_ticks(rates_.value_or(drive_.rates()).commands)
+                    : 0;
+  trial_ = idle_ticks_ != 0;
+  if (!trial_) hesitate();
+}
+
+void Station::hesitate() {
+  trial_ = false;
+  trial_in_ = pause_ = std::min(2 * pause_, kLongestPause);
+}
+
+// How many ticks may be left out behind that of the trial.
+uint64_t Station::end_trial() {
+  const uint64_t ticks = rest_.drive.ticks(drive_.state());
+  if (positioning_ && !rest_.positioning.same(*positioning_)) return 0;
+  return machine_ ? std::min(ticks, idle_ticks_ - 1) : ticks;
+}
+
+void Station::schedule_tick(Time now) {
+  Time next = now + kMillisecond;
+  if (execution_.skip_idle && runner_ == nullptr) {
+    const uint64_t ticks = trial_ ? end_trial() : 0;
+    if (ticks != 0) {
+      trial_ = false;
+      pause_ = 1;
+      asleep_ = true;
+      next_tick_ = next;
+      sleeps_until_ = next + static_cast<Time>(ticks) * kMillisecond;
+      next = next_event(now);
+    } else if (trial_) {
+      hesitate();
+    } else if (trial_in_ != 0) {
+      --trial_in_;
+    } else {
+      begin_trial();
+    }
+  }
+  tick_ = queue_.schedule(next, source_, *this, kTick);
+}
+
+Time Station::next_event(Time now) const {
+  Time next = sleeps_until_;
+  for (const auto& port : sbus_)
+    if (port) next = std::min(next, port->next_due(now));
+  return next;
+}
+
+// The event of a station that sleeps: a telegram is due, or the sleep is over.
+bool Station::sleeps_through(Time now) {
+  if (!asleep_) return false;
+  make_up_to(std::min(now, sleeps_until_ - kMillisecond));
+  asleep_ = now < sleeps_until_;
+  if (!asleep_) return false;
+  for (const auto& port : sbus_)
+    if (port) port->tick(now);
+  if (asleep_) tick_ = queue_.schedule(next_event(now), source_, *this, kTick);
+  return true;
+}
+
+// All ticks up to that at `last`.
+void Station::make_up_to(Time last) {
+  if (last < next_tick_) return;
+  const auto ticks = static_cast<uint64_t>((last - next_tick_) / kMillisecond + 1);
+  if (machine_) machine_->skip_ticks(rates_.value_or(drive_.rates()).commands, ticks);
+  DriveRest::skip(drive_.state(), ticks);
+  drive_.memory().set_time(last);
+  next_tick_ = last + kMillisecond;
+}
+
+// The tick of this moment counts when its turn is over.
+void Station::make_up() {
+  if (!asleep_) return;
+  const Time now = queue_.now();
+  Time last = now / kMillisecond * kMillisecond;
+  if (last == now && !queue_.has_passed(source_)) last -= kMillisecond;
+  make_up_to(std::min(last, sleeps_until_ - kMillisecond));
+}
+
+void Station::wake() {
+  trial_ = false;
+  if (!asleep_) return;
+  make_up();
+  asleep_ = false;
+  trial_in_ = 0;
+  queue_.cancel(tick_);
+  tick_ = queue_.schedule(next_tick_, source_, *this, kTick);
+}
+
+}  // namespace ipos::runtime

@@ -1,0 +1,18 @@
+// Who may have left out milliseconds in which nothing happened. What comes from outside tells it before it
+// looks at or touches anything that changes with time.
+#pragma once
+
+namespace ipos::runtime {
+
+class Sleeper {
+ public:
+  // Makes up for what was left out: everything is as it is now. It may sleep on.
+  virtual void make_up() = 0;
+  // The same, and from now on nothing is left out until it rests again: something will change.
+  virtual void wake() = 0;
+
+ protected:
+  ~Sleeper() = default;
+};
+
+}  // namespace ipos::runtime

@@ -1,0 +1,284 @@
+// Left-out milliseconds: a plant that skips is at every moment what one is that executes them all. The run
+// without skipping is the expected value, in random plants: programs that wait, look, count, send, receive
+// and ask each other, buses, wires, switches, and stimuli at random times.
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <random>
+#include <sstream>
+
+#include "runtime/bus/log/candump.hpp"
+#include "runtime/bus/log/serial_log.hpp"
+#include "tests/harness/proves.hpp"
+#include "tests/runtime/plant/plant_rig.hpp"
+
+namespace ipos::tests {
+namespace {
+
+using runtime::Plant;
+using runtime::Time;
+
+constexpr const char* kHead = R"(
+#include <constb.h>
+#pragma globals 361 399
+SCTRCYCL Tr; long d1; long d2;
+SCTRACYCL Ta; long e1; long e2;
+SCREC Re; long r1; long r2;
+MOVLNK Ml; MLDATA Mld;
+long a; long b; long c; long n; long m;
+Clock() { m = m + 1; }
+Trouble() { b = b + 1; _Wait(5); H484 = 64; _Wait(5); H484 = 0; }
+)";
+
+// Loop bodies; K and L are replaced by numbers, PEER by the address of another station.
+constexpr const char* kBodies[] = {
+    "",
+    "_Wait(K); n = n + 1;",
+    "if (H483 & L) n = n + 1;",
+    "a = H483; a = a & 3; if (a == 3) b = b + 1;",
+    "H488 = K; while (H488 > 0); n = n + 1; _Wait(L * 50);",
+    "if (r1 > c) { c = r1; n = n + 1; }",
+    "d1 = d1 + 1; _Wait(K);",
+    "d1 = H483; d1 = d1 * 3; d2 = H511;",
+    "_Wait(L * 100); _MoviLink(Ml); if (Ml.Result) n = n + 1;",
+    "_Wait(K); n = n + 1; H481 = n & 255;",
+    "H492 = H492 + L * 1000; _Wait(L * 300);",
+    "_Wait(L * 200); _Memorize(MEM_STDATA);",
+    "H490 = 200; if (r1 == 1) n = n + 1;",
+    "if (H473 & 2) H484 = L; else H484 = 0; _Wait(K);",
+    "_Wait(K); n = n + 1; if (n > L) return;",
+    "_Wait(L * 300); a = 5 / (3 - c); c = c + 1;",
+    "_SBusCommDef(SCD_TRACYCL, Ta); e1 = e1 + 1; _Wait(K * 3);",
+    "_Wait(L * 400); _WdOn(K); _Wait(K / 2); _WdOff();",
+    "_Wait(L * 50); _GoAbs(GO_WAIT, L * 3000); _Wait(L * 100); _GoAbs(GO_WAIT, 0);",
+    // MOVIDRIVE B only.
+    "while (H522 & 1) { H522 = 0; n = n + 1; }",
+    "H540 = 1; H546 = L; _Wait(K); H540 = 0; _Wait(L * 100);",
+};
+
+class RandomPlant {
+ public:
+  explicit RandomPlant(uint64_t seed) : random_(seed) {
+    stations_ = pick(1, 4);
+    text_ =
+        "[[bus]]\nname = \"can\"\nkind = \"can\"\nbaud = 500000\n[[bus]]\nname = \"line\"\nkind = "
+        "\"rs485\"\n";
+    for (int n = 0; n < stations_; ++n) station(n);
+    for (int n = pick(0, 2); n > 0; --n)
+      text_ += fmt::format("[[wire]]\nfrom = \"u{}.DO0{}\"\nto = \"u{}.DI0{}\"\n", pick(0, stations_ - 1),
+                           pick(1, 2), pick(0, stations_ - 1), wires_++ + 4);
+    if (pick(0, 3) == 0) text_ += "[[switch]]\nstation = \"u0\"\ninput = \"DI10\"\nfrom = 1000\nto = 30000\n";
+    for (int n = pick(0, 8); n > 0; --n) stimulus();
+    if (pick(0, 3) == 0)
+      text_ +=
+          "[[fault]]\nbus = \"can\"\nkind = \"cut\"\nstation = \"u0\"\nfrom = \"700ms\"\nuntil = "
+          "\"1500ms\"\n";
+  }
+
+  std::unique_ptr<Plant> make(bool skip) const {
+    runtime::Execution execution;
+    execution.skip_idle = skip;
+    return make_plant(text_, sources_, std::nullopt, execution);
+  }
+  const std::string& text() const { return text_; }
+  int pick(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random_); }
+
+ private:
+  std::string body() {
+    std::string text = kBodies[static_cast<size_t>(pick(0, static_cast<int>(std::size(kBodies)) - 1))];
+    const auto replace = [&](char letter, int value) {
+      for (size_t at; (at = text.find(letter)) != std::string::npos;) {
+        const bool word = at + 1 < text.size() && std::isalnum(static_cast<unsigned char>(text[at + 1])) != 0;
+        const bool tail =
+            at > 0 && (std::isalnum(static_cast<unsigned char>(text[at - 1])) != 0 || text[at - 1] == '_');
+        if (word || tail)
+          text[at] = '\1';  // part of a name
+        else
+          text.replace(at, 1, std::to_string(value));
+      }
+      std::replace(text.begin(), text.end(), '\1', letter);
+    };
+    replace('K', pick(1, 300));
+    replace('L', pick(1, 9));
+    return text;
+  }
+
+  void station(int n) {
+    static constexpr const char* kUnits[] = {"mdxb", "mdxb", "md60a", "mc07"};
+    const std::string unit = kUnits[pick(0, 3)];
+    const bool b = unit == "mdxb", m07 = unit == "mc07";
+    const bool has_program = pick(0, 5) != 0;
+    text_ += fmt::format("[[station]]\nname = \"u{0}\"\nunit = \"{1}\"\n{2}sbus = \"can\"\n{3}", n, unit,
+                         has_program ? fmt::format("program = \"P{}.IPC\"\n", n) : "",
+                         !m07 || pick(0, 1) == 0 ? "rs485 = \"line\"\n" : "");
+    text_ += fmt::format("[station.parameters]\nP{0} = {1}\nP810 = {1}\nP130 = 200\nP136 = 100\n",
+                         b ? 881 : 813, n + 1);
+    if (!m07 && pick(0, 2) == 0) text_ += "P841 = 1\n";
+    if (pick(0, 2) == 0) text_ += "P100 = 10\nP101 = 3\n";
+    if (b && pick(0, 1) == 0) text_ += "P700 = 13\nP903 = 5\n";
+    if (b && pick(0, 1) == 0) text_ += fmt::format("P938 = {}\n", pick(0, 9));
+    text_ += fmt::format("[station.inputs]\nDI0{} = 1\nDI0{} = 1\n", pick(0, 1), pick(3, 4));
+    if (pick(0, 3) == 0) text_ += "[station.analog]\nAI1 = \"4 V\"\n";
+    if (!has_program) return;
+    std::string source = std::string(kHead) + "T2() { while (1) { " + body() + " } }\nT3() { while (1) { " +
+                         body() + " } }\nmain() {\n";
+    source += fmt::format(
+        "Tr.ObjectNo = {0}; Tr.CycleTime = {1}; Tr.Offset = 0; Tr.Format = 8; Tr.DPointer = numof(d1);\n"
+        "Re.ObjectNo = {2}; Re.Format = 8; Re.DPointer = numof(r1);\n"
+        "Ta.ObjectNo = {3}; Ta.Format = 4; Ta.DPointer = numof(e1);\n"
+        "Ml.BusType = {4}; Ml.Address = {5}; Ml.Format = {6}; Ml.Service = ML_S_RD; Ml.Index = {7};\n"
+        "Ml.DPointer = numof(Mld); Mld.PO1 = {8}; Mld.PO2 = 1000;\n",
+        1100 + n, pick(1, 20) * 10, 1100 + (n + 1) % stations_, 1200 + n, pick(0, 1) == 0 ? 5 : 2,
+        (n + 1) % stations_ + 1, pick(1, 5), pick(0, 1) == 0 ? 8318 : 11000 + pick(0, 500), pick(0, 7));
+    if (pick(0, 1) == 0) source += "_SBusCommDef(SCD_TRCYCL, Tr);\n";
+    if (pick(0, 1) == 0) source += "_SBusCommDef(SCD_REC, Re);\n";
+    if (pick(0, 2) != 0) source += "_SBusCommOn();\n";
+    if (!m07 && pick(0, 3) == 0)
+      source += fmt::format("H485 = {}; H489 = 10; _SetInterrupt(SI_TIMER0, Clock);\n",
+                            pick(0, 1) * pick(50, 2000));
+    if (!m07 && pick(0, 3) == 0) source += "_SetInterrupt(SI_ERROR, Trouble);\n";
+    if (pick(0, 1) == 0) source += "_SetTask2(T2_START, T2);\n";
+    if (b && pick(0, 1) == 0) source += "_SetTask(T2_START, T3);\n";
+    source += "while (1) { " + body() + " }\n}\n";
+    sources_[fmt::format("P{}.IPC", n)] = source;
+  }
+
+  void stimulus() {
+    static constexpr const char* kWhat[] = {
+        "input = \"DI00\"\npulse = 1\nfor = \"900ms\"\n",
+        "input = \"DI01\"\nset = 1\n",
+        "input = \"DI03\"\nset = 0\n",
+        "input = \"DI02\"\npulse = 1\nfor = \"20ms\"\nevery = \"777ms\"\n",
+        "parameter = \"P160\"\nset = 300000\n",
+        "analog = \"AI1\"\nset = \"2 V\"\n",
+        "parameter = \"P130\"\nset = 400\n"};
+    text_ += fmt::format("[[stimulus]]\nstation = \"u{}\"\nat = \"{}us\"\n{}", pick(0, stations_ - 1),
+                         pick(0, 3'000'000), kWhat[pick(0, static_cast<int>(std::size(kWhat)) - 1)]);
+  }
+
+  std::mt19937_64 random_;
+  int stations_ = 0;
+  int wires_ = 0;
+  std::string text_;
+  std::map<std::string, std::string> sources_;
+};
+
+// All that can be seen of a plant.
+std::string picture(const Plant& plant) {
+  std::string out;
+  for (const auto& owned : plant.stations()) {
+    const runtime::Station& station = *owned;
+    const runtime::DriveServer& drive = station.drive();
+    out += fmt::format("{}: {:04x} {:04x}", station.config().name, station.status_word_1(),
+                       drive.state().outputs());
+    for (const stdlib::Parameter& row : drive.parameters().table().rows())
+      if (row.index != 0) out += fmt::format(" {}", drive.parameters().value(row.index));
+    out += '\n';
+    if (const vm::Machine* machine = station.machine()) {
+      for (int n = 1; n <= vm::kContexts; ++n) {
+        const vm::TaskContext& t = machine->context(n);
+        out += fmt::format("[{} {} {} {}]", t.pc, t.wait_ms, static_cast<int>(t.state), t.commands);
+      }
+      for (const int32_t value : machine->variables()) out += fmt::format(" {}", value);
+    }
+    out += '\n';
+  }
+  for (const auto& entry : plant.journal().entries()) out += fmt::format("{} {}\n", entry.time, entry.text);
+  return out;
+}
+
+struct Watched {
+  explicit Watched(std::unique_ptr<Plant> made) : plant(std::move(made)), log(frames), serial(telegrams) {
+    plant->add_observer(log);
+    plant->add_observer(serial);
+  }
+  std::unique_ptr<Plant> plant;
+  std::ostringstream frames, telegrams;
+  runtime::CandumpLog log;
+  runtime::SerialLog serial;
+};
+
+TEST(Sleep, RandomPlantsAreTheSameAsWithoutIt) {
+  uint64_t asleep = 0, looked = 0;
+  for (uint64_t seed = 1; seed <= 150; ++seed) {
+    RandomPlant random(seed);
+    Watched expected(random.make(false)), skipping(random.make(true));
+    ASSERT_TRUE(expected.plant && skipping.plant) << random.text();
+    Time now = 0;
+    while (now < 4 * runtime::kSecond) {
+      now += random.pick(0, 3) == 0 ? random.pick(1, 5'000'000) : ms(random.pick(1, 600));
+      expected.plant->run_until(now);
+      skipping.plant->run_until(now);
+      for (const auto& station : skipping.plant->stations()) asleep += station->asleep() ? 1 : 0, ++looked;
+      if (random.pick(0, 3) == 0) {
+        const auto touch = [&](Plant& plant, size_t n, int level) {
+          plant.stations()[n]->inputs().line(2).forced = level;
+        };
+        const auto n =
+            static_cast<size_t>(random.pick(0, static_cast<int>(expected.plant->stations().size()) - 1));
+        const int level = random.pick(0, 1);
+        touch(*expected.plant, n, level);
+        touch(*skipping.plant, n, level);
+      }
+      ASSERT_EQ(picture(*skipping.plant), picture(*expected.plant))
+          << "seed " << seed << " at " << now << "\n"
+          << random.text();
+      ASSERT_EQ(skipping.frames.str(), expected.frames.str()) << "seed " << seed;
+      ASSERT_EQ(skipping.telegrams.str(), expected.telegrams.str()) << "seed " << seed;
+    }
+  }
+  EXPECT_GT(asleep * 4, looked) << "of " << looked << " looks at a station " << asleep << " found it asleep";
+}
+
+// How often a tick was executed shows in the events that the plant still has to run.
+TEST(Sleep, AWaitingProgramSleepsUntilItsWaitIsOver) {
+  const auto plant = make_station("long n; main() { while (1) { _Wait(5000); n = n + 1; } }");
+  ASSERT_TRUE(plant);
+  plant->run_until(ms(100));
+  EXPECT_TRUE(plant->stations()[0]->asleep());
+  EXPECT_EQ(plant->next_time(), ms(5000));
+  EXPECT_EQ(value(*plant, "n"), 0);
+  plant->run_until(ms(5000));
+  EXPECT_EQ(value(*plant, "n"), 1);
+}
+
+TEST(Sleep, OperatingHoursAreExact) {
+  const auto plant = make_station("main() { while (1); }");
+  ASSERT_TRUE(plant);
+  const uint16_t hours = plant->stations()[0]->drive().parameters().table().find("015")->index;
+  plant->run_until(60 * runtime::kSecond - ms(2));
+  EXPECT_EQ(plant->stations()[0]->read(hours), 0);
+  plant->run_until(60 * runtime::kSecond);
+  EXPECT_EQ(plant->stations()[0]->read(hours), 1);
+  plant->run_until(3600 * runtime::kSecond);
+  EXPECT_EQ(plant->stations()[0]->read(hours), 60);
+  EXPECT_EQ(plant->stations()[0]->machine()->task(1).commands, 3'600'001U);
+}
+
+TEST(Sleep, AnInputIsSeenInTheNextTick) {
+  const auto plant = make_station("long n; main() { while (1) if (H483 & 4) n = H483; }",
+                                  "[station.parameters]\nP938 = 9\n");
+  ASSERT_TRUE(plant);
+  plant->run_until(ms(1000) + 500'000);
+  ASSERT_TRUE(plant->stations()[0]->asleep());
+  plant->stations()[0]->inputs().line(2).set = 1;
+  EXPECT_EQ(plant->next_time(), ms(1001));
+  plant->run_until(ms(1001));
+  EXPECT_EQ(value(*plant, "n"), 4);
+}
+
+TEST(Sleep, WhoStaysAwakeLeavesOutNothing) {
+  const auto plant = make_station("main() { while (1); }");
+  ASSERT_TRUE(plant);
+  plant->run_until(ms(100));
+  ASSERT_TRUE(plant->stations()[0]->asleep());
+  plant->stations()[0]->stay_awake();
+  plant->run_until(ms(200));
+  EXPECT_FALSE(plant->stations()[0]->asleep());
+  EXPECT_EQ(plant->next_time(), ms(201));
+}
+
+}  // namespace
+}  // namespace ipos::tests
