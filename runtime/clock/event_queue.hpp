@@ -3,6 +3,7 @@
 // a clock.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -45,8 +46,11 @@ class EventQueue {
   void cancel_all(const EventTarget& target);
 
   Time now() const { return now_; }
-  Time next_time() const { return heap_.empty() ? kNever : heap_.front().at; }  // kNever: nothing pending
-  size_t pending() const { return heap_.size(); }
+  Time next_time() const {  // kNever: nothing pending
+    const Time in_row = row_begin_ == row_end_ ? kNever : row_at(row_begin_).at;
+    return heap_.empty() ? in_row : std::min(in_row, heap_.front().at);
+  }
+  size_t pending() const { return heap_.size() + row_count_; }
 
   // An event that `source` has had for now() since before that time has run, as the order of events goes.
   bool has_passed(uint32_t source) const { return source < reached_; }
@@ -69,18 +73,42 @@ class EventQueue {
     uint64_t argument;
     uint32_t kind;
     uint32_t generation;  // makes an id of an earlier use of the slot invalid
-    uint32_t position;    // in heap_
+    uint32_t position;    // in heap_, or number in the row
+    bool in_row;
   };
+  static constexpr uint32_t kGone = ~0U;  // slot of a cancelled entry of the row
+  static constexpr Time kNear = kMillisecond;
 
-  static bool before(const Entry& a, const Entry& b);
+  static bool before(const Entry& a, const Entry& b) {
+    if (a.at != b.at) return a.at < b.at;
+    if (a.source != b.source) return a.source < b.source;
+    return a.sequence < b.sequence;
+  }
   void place(size_t position, const Entry& entry);
   void sift_up(size_t position, const Entry& entry);
   void sift_down(size_t position, const Entry& entry);
   void remove(size_t position);
+  Entry& row_at(uint32_t number) { return row_[number & (row_.size() - 1)]; }
+  const Entry& row_at(uint32_t number) const { return row_[number & (row_.size() - 1)]; }
+  bool joins_row(const Entry& entry) const {
+    return entry.at - now_ <= kNear && row_end_ - row_begin_ < row_.size() &&
+           (row_begin_ == row_end_ || !before(entry, row_at(row_end_ - 1)));
+  }
+  void remove_from_row(uint32_t number);
+  void release(uint32_t slot) {
+    ++slots_[slot].generation;
+    free_slots_.push_back(slot);
+  }
 
   Time now_ = 0;
   uint32_t reached_ = 0;  // the highest source that had an event at now()
   uint64_t next_sequence_ = 0;
+  // What is scheduled in its order anyway, as the ticks of all stations are, stands in a row; the heap has
+  // the rest. Far events stay out of the row, or nothing could join behind them.
+  std::vector<Entry> row_;  // a ring, its size a power of 2
+  uint32_t row_begin_ = 0;  // numbers of its entries, first and behind the last
+  uint32_t row_end_ = 0;
+  uint32_t row_count_ = 0;  // of them not cancelled
   std::vector<Entry> heap_;
   std::vector<Slot> slots_;
   std::vector<uint32_t> free_slots_;

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "runtime/drive/control.hpp"
+#include "runtime/drive/decisions.hpp"
 #include "runtime/drive/link_watch.hpp"
 #include "runtime/drive/outputs.hpp"
 #include "runtime/drive/parameters.hpp"
@@ -39,10 +40,10 @@ class Drive final : private DriveLink {
   // --- what comes in ---
   // Levels as in InputLevel H483: bits 0..7 DI00..DI07, bits 8..15 DI10..DI17. All 0 at first: open
   // terminals.
-  void set_inputs(uint16_t levels) { inputs_ = levels; }
-  uint16_t inputs() const { return inputs_; }
-  void set_analog(const AnalogInputs& analog) { analog_ = analog; }
-  const AnalogInputs& analog() const { return analog_; }
+  void set_inputs(uint16_t levels) { now_.set(&Situation::inputs, levels); }
+  uint16_t inputs() const { return now_->inputs; }
+  void set_analog(const AnalogInputs& analog) { now_.set(&Situation::analog, analog); }
+  const AnalogInputs& analog() const { return now_->analog; }
 
   // PO words of a telegram; words it does not carry keep their value. They show in P094..P096 in any case and
   // act only if P876 is ON and the source is the one of P100 or P101. `cyclic` is false for acyclic RS-485
@@ -50,11 +51,11 @@ class Drive final : private DriveLink {
   void take_po(PoSource source, std::span<const uint16_t> words, bool cyclic = true);
   // A valid cyclic request without process data restarts the monitoring, too (1053 1610 p. 27).
   void take_request(PoSource source);
-  const Words& po() const { return shown_po_; }
+  const Words& po() const { return now_->shown_po; }
 
   // From the program: H484, PI words with assignment IPOS PI-DATA, outputs with function IPOS OUTPUT (bits as
   // outputs()).
-  void set_ipos_control_word(uint32_t word) { ipos_word_ = word; }
+  void set_ipos_control_word(uint32_t word) { now_.set(&Situation::ipos_word, word); }
   void set_ipos_pi(const Words& words) { ipos_pi_ = words; }
   void set_ipos_outputs(uint16_t levels) { ipos_outputs_ = levels; }
 
@@ -62,10 +63,11 @@ class Drive final : private DriveLink {
   void tick(const PositionControl& position = {});
 
   // --- for the positioning of IPOS ---
-  bool can_position() const;  // P700 is a mode with IPOS (1053 1610 p. 80)
-  bool follows() const;       // enabled, magnetized, brake open: a speed of PositionControl acts
-  const Terminals& terminals() const;
-  std::optional<int32_t> bus_position() const;  // POSITION LO and HI of the bus of P100 or P101
+  bool can_position() const { return decided().can_position; }  // P700 is a mode with IPOS (1053 1610 p. 80)
+  bool follows() const;  // enabled, magnetized, brake open: a speed of PositionControl acts
+  const Terminals& terminals() const { return decided().terminals; }
+  // POSITION LO and HI of the bus of P100 or P101.
+  std::optional<int32_t> bus_position() const { return decided().bus_position; }
   // Another count for where the shaft is; the shaft itself has not moved.
   void set_position(int32_t counter);
   int32_t shaft_position() const;  // increments turned ever, whatever the count
@@ -79,18 +81,18 @@ class Drive final : private DriveLink {
   uint32_t resets() const { return resets_; }  // how often a reset was ordered, by whomever
   // _FaultReaction on a fault without a parameter for its response; false: that of this one is fixed.
   bool set_fault_response(uint8_t number, FaultResponse response);
-  uint8_t fault() const { return faults_.shown(); }  // error or warning, 0 is none
-  bool error() const { return faults_.error(); }
+  uint8_t fault() const { return now_->faults.shown(); }  // error or warning, 0 is none
+  bool error() const { return now_->faults.error(); }
 
   // --- what it shows ---
   Words pi() const;
   Verdict verdict() const;  // what it is told, and why not more
   UnitCondition condition() const;
   char display() const;  // the seven-segment display: a digit, 't' waiting, 'F' fault
-  bool ready() const { return !faults_.error() && !parameters_.factory_setting_running() && !starting_up(); }
+  bool ready() const { return decided().ready; }
   bool po_data_enabled() const;
   // Bits of the present control word that are 1 though they are to be sent as 0; they have no effect.
-  uint16_t reserved_control_bits() const;
+  uint16_t reserved_control_bits() const { return decided().reserved_control_bits; }
   uint16_t status_word_1() const;
   uint16_t status_word_2() const;                            // high byte: virtual output terminals DO10..DO17
   uint16_t status_word_3() const { return status_block(); }  // high byte in no manual read; 0 is ours
@@ -105,6 +107,13 @@ class Drive final : private DriveLink {
   // Power off and on: everything as at first, but for the motor potentiometer with P152. The parameters are
   // the caller's.
   void power_cycle();
+
+  // Decides anew at the next occasion. Changes nothing but the time it takes; for tests that compare a drive
+  // with one that decides everything every millisecond.
+  void forget_decisions() {
+    now_.change();
+    decisions_known_ = false;
+  }
 
  private:
   friend class DriveRest;
@@ -123,20 +132,40 @@ class Drive final : private DriveLink {
     return settings_;
   }
   void read_settings() const;
-  const ParameterSet& set() const { return settings().sets[second_set_ ? 1 : 0]; }
-  const ParameterSet& other_set() const { return settings().sets[second_set_ ? 0 : 1]; }
-  ControlInputs control_inputs() const;
+  const ParameterSet& set() const { return settings().sets[now_->second_set ? 1 : 0]; }
+  const ParameterSet& other_set() const { return settings().sets[now_->second_set ? 0 : 1]; }
+
+  // What is decided for the present situation.
+  const Decisions& decided() const {
+    if (now_.changed() || look_again_ || now_->settings != parameters_.changes() ||
+        now_->factory_setting != parameters_.factory_setting_running())
+      look_around();
+    return decisions_;
+  }
+  void look_around() const;
+  void decide_anew() const;
+
+  // drive_decisions.cpp: how it is decided, from situation and settings; `t` are the terminals in them.
+  Terminals read_terminals() const;
+  ControlInputs control_inputs(const Terminals& t) const;
+  std::array<LinkWatch::Rules, kPoSources> link_rules(bool enabled_locally) const;
+  void decide_setpoint(Decisions& d) const;
+  bool mode_can_position() const;
+  std::optional<int32_t> read_bus_position() const;
+  uint16_t read_reserved_bits() const;
   const BusOrder& order_of(PoSource source) const;
   const BusOrder& control_order() const;
   const BusOrder& setpoint_order() const;
   bool ipos_bit(InputFunction function) const {
-    return (ipos_word_ >> static_cast<unsigned>(function) & 1) != 0;
+    return (now_->ipos_word >> static_cast<unsigned>(function) & 1) != 0;
   }
-  bool function_on(InputFunction function) const { return terminals().on(function) || ipos_bit(function); }
+  bool function_on(const Terminals& t, InputFunction function) const {
+    return t.on(function) || ipos_bit(function);
+  }
   bool waits_for(PoSource bus) const;
   bool is_waiting() const;
   bool starting_up() const { return up_ms_ < parameters_.options().start_up_ms; }
-  const LinkWatch& watch(PoSource source) const { return watches_[static_cast<size_t>(source)]; }
+  bool heard(PoSource source) const { return now_->heard[static_cast<size_t>(source)]; }
   FaultResponse response_of(uint8_t number) const;
   UnitCondition enabled_condition() const;
   uint8_t status_block() const;
@@ -144,15 +173,18 @@ class Drive final : private DriveLink {
 
   void count_time();
   void latch_three_wire();
-  void watch_links();
+  bool watch_links();
   void watch_resets();
+  bool machine_suffers() const;
   void watch_machine();
   void clear_faults();
   int32_t monitored(int32_t delay_ms) const;
   void select_parameter_set();
-  Setpoint next_setpoint();
-  AxisOrder axis_order(const Verdict& verdict) const;
-  void show_outputs(const AxisOrder& order);
+  Setpoint next_setpoint(const Decisions& d);
+  Verdict verdict_of(const Decisions& d) const;
+  const AxisOrder& next_order(Command command);
+  AxisOrder axis_order(Command command) const;
+  void show_outputs(const Decisions& d, const AxisOrder& order);
 
   ParameterStore& parameters_;
   bool is_m07_;
@@ -160,7 +192,7 @@ class Drive final : private DriveLink {
   mutable Settings settings_;
   mutable uint32_t settings_version_;
 
-  // What was made of inputs and process data, and of which.
+  // What was made of process data, and of which.
   struct KnownOrder {
     Words words{};
     std::optional<uint32_t> version;  // of the settings
@@ -168,23 +200,34 @@ class Drive final : private DriveLink {
     BusOrder order;
   };
   mutable std::array<KnownOrder, kPoSources> known_orders_{};
-  mutable Terminals known_terminals_;
-  mutable std::optional<uint32_t> known_terminals_version_;  // of the settings
-  mutable uint16_t known_levels_ = 0;
 
-  uint16_t inputs_ = 0;
-  AnalogInputs analog_;
-  Words shown_po_{};
-  std::array<Words, kPoSources> po_{};
+  // Inputs, process data, faults and modes are kept where they are compared. What others keep for the drive
+  // is copied there by look_around().
+  mutable WatchedSituation now_;
+  mutable Situation decided_for_;
+  mutable Decisions decisions_;
+  mutable bool look_again_ = true;  // what others keep may be other than in now_
+  mutable bool decisions_known_ = false;
+  mutable bool settled_ = false;  // latches, faults and parameter set follow from these decisions already
+  // The rest of what follows from them, as far as it has been asked for.
+  mutable std::optional<Command> order_for_;
+  AxisOrder order_;
+  struct SetpointMemory {
+    int32_t ai1_speed = 0;
+    int32_t motor_pot = 0;
+    int32_t pi_output = 0;
+    bool operator==(const SetpointMemory&) const = default;
+  };
+  mutable std::optional<SetpointMemory> selected_for_;
+  Setpoint selected_;
+
   std::array<LinkWatch, kPoSources> watches_{};
   uint16_t last_control_word_ = 0;  // for the edge of its reset bit
-  uint32_t ipos_word_ = 0;
   Words ipos_pi_{};
   uint16_t ipos_outputs_ = 0;
   PositionControl position_;
   uint32_t counter_shift_ = 0;  // by all of set_position
 
-  FaultState faults_;
   std::array<std::optional<FaultResponse>, 256> responses_{};  // chosen by the program, by fault number
   uint32_t resets_ = 0;
   bool reset_input_ = false;  // level at the last tick
@@ -192,8 +235,6 @@ class Drive final : private DriveLink {
   int auto_resets_ = 0;
   int32_t limited_ms_ = 0;  // at the current limit
 
-  bool second_set_ = false;
-  bool three_wire_cw_ = false, three_wire_ccw_ = false;
   bool cw_input_ = false, ccw_input_ = false;
   bool stopped_by_setpoint_ = false;
   MotorPotentiometer motor_pot_;

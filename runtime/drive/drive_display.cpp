@@ -29,13 +29,13 @@ UnitCondition Drive::enabled_condition() const {
   const int32_t mode = set().operating_mode;
   constexpr int32_t kVfcSpeedControl = 5, kCfcTorque = 12, kServoTorque = 17;
   if (mode == kCfcTorque || mode == kServoTorque) return UnitCondition::TorqueControl;
-  return mode >= kVfcSpeedControl && !second_set_ ? UnitCondition::SpeedControl : UnitCondition::Enable;
+  return mode >= kVfcSpeedControl && !now_->second_set ? UnitCondition::SpeedControl : UnitCondition::Enable;
 }
 
 UnitCondition Drive::condition() const {
   if (starting_up()) return UnitCondition::NotReady;
   if (parameters_.factory_setting_running()) return UnitCondition::FactorySetting;
-  if (faults_.error()) return UnitCondition::NotReady;
+  if (now_->faults.error()) return UnitCondition::NotReady;
   const Verdict now = verdict();
   switch (now.command) {
     case Command::Inhibit: return UnitCondition::ControllerInhibit;
@@ -46,7 +46,7 @@ UnitCondition Drive::condition() const {
     case Command::Stop: break;
   }
   if (now.reason == Block::LimitCw || now.reason == Block::LimitCcw) return UnitCondition::LimitSwitch;
-  if (is_waiting() && !is_m07_ && decide_locally(control_inputs()).command == Command::Enable)
+  if (decided().waiting && !is_m07_ && decided().enabled_locally)
     return UnitCondition::Waiting;
   const AxisState& axis = axis_.state();
   if (axis.standing && axis.output_stage && set().standstill_current > 0)
@@ -55,7 +55,7 @@ UnitCondition Drive::condition() const {
 }
 
 char Drive::display() const {
-  if (faults_.shown() != 0) return 'F';
+  if (now_->faults.shown() != 0) return 'F';
   const UnitCondition now = condition();
   return now == UnitCondition::Waiting ? 't' : static_cast<char>('0' + static_cast<int>(now));
 }
@@ -66,12 +66,12 @@ uint8_t Drive::status_block() const {
   if (output_stage_on()) block |= 1U << 0;
   if (ready()) block |= 1U << 1;
   if (po_data_enabled()) block |= 1U << 2;
-  if (faults_.shown() != 0) block |= 1U << 5;
+  if (now_->faults.shown() != 0) block |= 1U << 5;
   if (is_m07_) return static_cast<uint8_t>(block);  // keeps bits 3, 4, 6, 7 at 0
-  if (function_on(InputFunction::RampSwitch) ||
+  if (function_on(t, InputFunction::RampSwitch) ||
       (control_order().control_word.value_or(0) & control_bits::kRampSet) != 0)
     block |= 1U << 3;
-  if (second_set_) block |= 1U << 4;
+  if (now_->second_set) block |= 1U << 4;
   if (t.off(InputFunction::LimitCw)) block |= 1U << 6;  // low-active
   if (t.off(InputFunction::LimitCcw)) block |= 1U << 7;
   return static_cast<uint8_t>(block);
@@ -82,7 +82,7 @@ uint16_t Drive::status_word_1() const {
   const UnitCondition now = condition();
   uint8_t high = static_cast<uint8_t>(now);
   if (is_m07_ && now == UnitCondition::FactorySetting) high = kM07FactorySetting;
-  if (faults_.shown() != 0) high = faults_.shown();
+  if (now_->faults.shown() != 0) high = now_->faults.shown();
   return static_cast<uint16_t>((high << 8) | status_block());
 }
 
@@ -127,7 +127,7 @@ Drive::Words Drive::master_words() const {
 
 std::optional<int32_t> Drive::live_value(uint16_t index) const {
   if (index >= index::kPoShown && index < index::kPoShown + kProcessWords)
-    return shown_po_[index - index::kPoShown];
+    return now_->shown_po[index - index::kPoShown];
   if (index >= index::kPiShown && index < index::kPiShown + kProcessWords)
     return pi_word(index - index::kPiShown);
   // The firmware of a slave sets the assignments (MDX60B/61B p. 29).
@@ -149,15 +149,15 @@ std::optional<int32_t> Drive::live_value(uint16_t index) const {
     case index::kRatedCurrent: return kRatedCurrent;
     case index::kFirmware: return kFirmwarePart + parameters_.options().firmware;
     case index::kActiveCurrent: return axis.active_current;
-    case index::kMotorUtilization1: return second_set_ ? 0 : axis.motor_utilization;
-    case index::kMotorUtilization2: return second_set_ ? axis.motor_utilization : 0;
+    case index::kMotorUtilization1: return now_->second_set ? 0 : axis.motor_utilization;
+    case index::kMotorUtilization2: return now_->second_set ? axis.motor_utilization : 0;
     case index::kDcLink: return axis.dc_link;
     case index::kHeatSink: return axis.heat_sink;
-    case index::kAnalogInput1: return analog_.ai1.millivolt;
-    case index::kAnalogInput2: return analog_.ai2.millivolt;
+    case index::kAnalogInput1: return now_->analog.ai1.millivolt;
+    case index::kAnalogInput2: return now_->analog.ai2.millivolt;
     case index::kStatus: return status_word_1();
-    case index::kInputs: return inputs_ & (is_m07_ ? 0x3E : 0x3F);  // M07 has no DI00
-    case index::kOptionInputs: return inputs_ >> 8;
+    case index::kInputs: return now_->inputs & (is_m07_ ? 0x3E : 0x3F);  // M07 has no DI00
+    case index::kOptionInputs: return now_->inputs >> 8;
     case index::kOutputs: return outputs_.levels() & (is_m07_ ? 0x06 : 0x07);  // nor DB00
     case index::kOptionOutputs: return outputs_.levels() >> 8;
     default: return std::nullopt;

@@ -16,13 +16,9 @@ bool LinkWatch::on_request() {
   return was_silent;
 }
 
-bool LinkWatch::tick(const Rules& rules) {
-  if (rules.delay_ms == 0) {
-    silent_ms_ = 0;
-    return false;
-  }
-  if (rules.without_first && rules.supervised) running_ = true;
-  if (!running_ || reported_) return false;
+bool LinkWatch::run(const Rules& rules) {
+  running_ = true;
+  if (reported_) return false;
   ++silent_ms_;
   // A telegram may have come right before the first tick, so that tick counts for nothing: never early, at
   // most a millisecond late.

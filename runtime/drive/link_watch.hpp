@@ -22,13 +22,19 @@ class LinkWatch {
   bool on_request();
 
   // One millisecond. True once when the time has run out.
-  bool tick(const Rules& rules);
+  bool tick(const Rules& rules) {
+    if (rules.delay_ms != 0 && (running_ || (rules.without_first && rules.supervised))) return run(rules);
+    if (rules.delay_ms == 0) silent_ms_ = 0;
+    return false;
+  }
 
   void forget() { *this = {}; }  // power-on, reset of a fault
   bool seen() const { return seen_; }
   bool silent() const { return reported_; }
 
  private:
+  bool run(const Rules& rules);
+
   bool seen_ = false;     // process data have arrived
   bool running_ = false;  // the time runs
   bool reported_ = false;

@@ -8,15 +8,15 @@ namespace {
 
 int64_t magnitude(int32_t value) { return std::abs(int64_t{value}); }
 
-}  // namespace
-
-bool ReferenceSignal::tick(bool above, bool below, int32_t delay_ms) {
-  const bool raw = above || (!below && raw_);
-  lasted_ms_ = raw == raw_ && raw != shown_ ? lasted_ms_ + (lasted_ms_ < INT32_MAX) : 0;
-  raw_ = raw;
-  if (raw_ != shown_ && lasted_ms_ >= delay_ms) shown_ = raw_;
-  return shown_;
+uint32_t flags_of(const OutputInputs& in) {
+  const auto bit = [](bool flag, unsigned n) { return (flag ? 1U : 0U) << n; };
+  return bit(in.fault, 0) | bit(in.ipos_fault, 1) | bit(in.ready, 2) | bit(in.output_stage, 3) |
+         bit(in.brake_released, 4) | bit(in.standstill, 5) | bit(in.second_set, 6) |
+         bit(in.motor_1_overloaded, 7) | bit(in.motor_2_overloaded, 8) | bit(in.in_position, 9) |
+         bit(in.referenced, 10);
 }
+
+}  // namespace
 
 uint16_t Outputs::tick(const Settings& s, const OutputInputs& in) {
   const int64_t speed = magnitude(in.speed);
@@ -37,6 +37,11 @@ uint16_t Outputs::tick(const Settings& s, const OutputInputs& in) {
               compare_.value() == (s.compare_when == 1), current_.value() == (s.current_when == 1),
               limit_.value() == (s.limit_when == 0)};
 
+  // With no input 1, no signal shown and no function chosen every level is 0, so the first basis is good,
+  // too.
+  const Basis basis{flags_of(in), in.ipos_outputs, signals_, s.outputs};
+  if (basis == basis_) return levels_;
+  basis_ = basis;
   uint16_t levels = in.brake_released ? 1 : 0;  // DB00
   for (unsigned bit = 1; bit < s.outputs.size(); ++bit)
     if (level(static_cast<OutputFunction>(s.outputs[bit]), in, bit))

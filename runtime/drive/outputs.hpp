@@ -42,13 +42,23 @@ enum class OutputFunction : uint8_t {
 class ReferenceSignal {
  public:
   // `above` the condition holds, `below` it does not; between the two the last one stays.
-  bool tick(bool above, bool below, int32_t delay_ms);
+  bool tick(bool above, bool below, int32_t delay_ms) {
+    const bool raw = above || (!below && raw_);
+    if (raw == shown_) {
+      raw_ = raw;
+      return shown_;
+    }
+    lasted_ms_ = raw == raw_ ? lasted_ms_ + (lasted_ms_ < INT32_MAX) : 0;
+    raw_ = raw;
+    if (lasted_ms_ >= delay_ms) shown_ = raw;
+    return shown_;
+  }
   bool value() const { return shown_; }
 
  private:
   bool raw_ = false;
   bool shown_ = false;
-  int32_t lasted_ms_ = 0;
+  int32_t lasted_ms_ = 0;  // while it does not show
 };
 
 // What the outputs show of the drive.
@@ -82,9 +92,19 @@ class Outputs {
 
   struct Signals {
     bool speed, window, compare, current, limit;
+    bool operator==(const Signals&) const = default;
+  };
+  // What the levels follow from; found again when one of it changes.
+  struct Basis {
+    uint32_t flags = 0;  // of OutputInputs
+    uint16_t ipos_outputs = 0;
+    Signals signals{};
+    std::array<uint8_t, 16> functions{};
+    bool operator==(const Basis&) const = default;
   };
   ReferenceSignal speed_, window_, compare_, current_, limit_;
   Signals signals_{};
+  Basis basis_;
   uint16_t levels_ = 0;
 };
 

@@ -15,11 +15,13 @@ struct AnalogInputs {
   struct Signal {
     int32_t millivolt = 0;
     int32_t microampere = 0;
+    bool operator==(const Signal&) const = default;
   };
   Signal ai1;
   Signal ai2;
   int32_t frequency = 0;      // Hz, frequency input of MOVITRAC 07
   int32_t potentiometer = 0;  // 1/1000 of full travel, built-in potentiometer of MOVITRAC 07
+  bool operator==(const AnalogInputs&) const = default;
 };
 
 // Settings of P100 (1053 1610 p. 72; 11 MOVITRAC 07).

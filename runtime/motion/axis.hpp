@@ -1,6 +1,6 @@
 // One axis: ramp, brake, motor and load, advanced by one millisecond a tick. Everything is in the units of
 // the parameters: 1/1000 rpm, 1/1000 % of IN, ms, mV; the position counts 4096 increments a turn (IPOSplus p.
-// 34). Integers only, no allocation: an Axis is a plain value, a copy of it is a snapshot.
+// 34). Exact integers, no allocation: an Axis is a plain value, a copy of it is a snapshot.
 #pragma once
 
 #include <cstdint>
@@ -56,6 +56,8 @@ struct AxisState {
   int32_t utilization = 0;     // of the unit, 1/1000 %
   int32_t motor_utilization = 0;
   int64_t energy = 0;  // Ws since reset
+
+  bool operator==(const AxisState&) const = default;
 };
 
 class Axis {

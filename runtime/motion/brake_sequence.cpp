@@ -3,7 +3,7 @@
 
 namespace ipos::runtime {
 
-void BrakeSequence::enable(const BrakeTimes& times) {
+void BrakeSequence::begin_motion(const BrakeTimes& times) {
   if (phase_ == AxisPhase::Off) enter(AxisPhase::Magnetizing);
   // The motor is magnetized already.
   if (phase_ == AxisPhase::Applying || phase_ == AxisPhase::StandstillCurrent) enter(AxisPhase::Releasing);

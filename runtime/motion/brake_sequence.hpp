@@ -27,11 +27,14 @@ class BrakeSequence {
 
   // One of these each millisecond. A time of 0 is passed within the same one.
   void inhibit() { enter(AxisPhase::Off); }
-  void enable(const BrakeTimes& times);
+  void enable(const BrakeTimes& times) {
+    if (phase_ != AxisPhase::Moving) begin_motion(times);
+  }
   // `standing`: ramp output and shaft are at 0. `hold_current`: standstill current is wanted.
   void stop(const BrakeTimes& times, bool standing, bool hold_current);
 
  private:
+  void begin_motion(const BrakeTimes& times);
   void enter(AxisPhase phase) {
     phase_ = phase;
     elapsed_ = 0;

@@ -2,7 +2,7 @@
 #include "runtime/motion/power_section.hpp"
 
 #include <algorithm>
-#include <cstdlib>
+#include <cmath>
 
 namespace ipos::runtime {
 namespace {
@@ -16,11 +16,12 @@ constexpr int64_t kChargePerPower = 100'000;  // mV² per 1/1000 %
 
 int64_t square(int64_t value) { return value * value; }
 
-// The whole square root.
+// The whole square root. What floating point gives is only where to look: the result is exact whatever it
+// rounds.
 int64_t root(int64_t value) {
-  int64_t result = 0;
-  for (int64_t bit = int64_t{1} << 30; bit != 0; bit >>= 1)
-    if (square(result + bit) <= value) result += bit;
+  auto result = static_cast<int64_t>(std::sqrt(static_cast<double>(value)));
+  while (square(result) > value) --result;
+  while (square(result + 1) <= value) ++result;
   return result;
 }
 
@@ -28,43 +29,68 @@ int64_t root(int64_t value) {
 
 PowerSection::PowerSection(const MachineData& machine)
     : machine_(machine),
+      continuous_heat_(square(machine.continuous_current) / kHundredPercent),
+      rated_heat_(std::max<int64_t>(
+          1, (square(machine.rated_active_current) + square(machine.magnetizing_current)) / kHundredPercent)),
       idle_charge_(square(machine.dc_link)),
       charge_(idle_charge_),
       most_charge_(square(machine.braking_resistor ? machine.chopper_level : kTopDcLink)),
+      dc_link_(machine.dc_link),
       unit_(machine.unit_heat_time_ms),
       motor_(machine.motor_heat_time_ms),
-      heat_sink_(machine.heat_sink_time_ms) {}
+      heat_sink_(machine.heat_sink_time_ms) {
+  find_torque_limit(0);
+  find_currents({});
+  find_power({});
+}
 
-int64_t PowerSection::torque_limit(int32_t current_limit) const {
+void PowerSection::find_torque_limit(int32_t current_limit) {
+  limit_for_ = current_limit;
   const int64_t limit = std::clamp(current_limit, 0, kTopCurrent);
   const int64_t magnetizing = std::min<int64_t>(machine_.magnetizing_current, limit);
   const int64_t active = root(square(limit) - square(magnetizing));
-  return std::min<int64_t>(kTopTorque, active * kHundredPercent / machine_.rated_active_current);
+  torque_limit_ = std::min<int64_t>(kTopTorque, active * kHundredPercent / machine_.rated_active_current);
 }
 
 void PowerSection::step(const Load& load) {
   const bool driving = load.supply == Supply::Driving;
   const int64_t torque = driving ? load.torque : 0;
-  const int64_t active = torque * machine_.rated_active_current / kHundredPercent;
+  const Currents currents{load.supply, torque, load.current_limit, load.direct_current};
+  if (!(currents == currents_)) find_currents(currents);
+  const Speed speed{whole_speed(load.speed), torque, driving};
+  if (!(speed == speed_)) find_power(speed);
+  step_power();
+  unit_.follow(unit_target_);
+  motor_.follow(motor_target_);
+  heat_sink_.follow(heat_sink_target_);
+}
+
+void PowerSection::find_currents(const Currents& currents) {
+  currents_ = currents;
+  const bool driving = currents.supply == Supply::Driving;
+  const int64_t active = currents.torque * machine_.rated_active_current / kHundredPercent;
   int64_t reactive = 0;
-  if (driving || load.supply == Supply::Magnetizing)
-    reactive = std::clamp(load.current_limit, 0, machine_.magnetizing_current);
-  if (load.supply == Supply::DirectCurrent) reactive = std::clamp(load.direct_current, 0, kTopCurrent);
+  if (driving || currents.supply == Supply::Magnetizing)
+    reactive = std::clamp(currents.current_limit, 0, machine_.magnetizing_current);
+  if (currents.supply == Supply::DirectCurrent)
+    reactive = std::clamp(currents.direct_current, 0, kTopCurrent);
   active_current_ = static_cast<int32_t>(active);
   output_current_ = static_cast<int32_t>(root(square(active) + square(reactive)));
 
-  const int64_t mrpm = whole_speed(load.speed);
-  const int64_t slip = machine_.rated_slip * torque / kHundredPercent;
-  frequency_ = driving ? static_cast<int32_t>((mrpm + slip) * machine_.pole_pairs / 60) : 0;
-  step_power(torque * mrpm / machine_.rated_speed);
-
   constexpr int64_t kTopUtilization = 10'000'000;  // 1/1000 %
   const int64_t heat = square(output_current_);
-  unit_.follow(std::min(kTopUtilization, heat / (square(machine_.continuous_current) / kHundredPercent)));
-  const int64_t rated = square(machine_.rated_active_current) + square(machine_.magnetizing_current);
-  motor_.follow(std::min(kTopUtilization, heat / std::max<int64_t>(1, rated / kHundredPercent)));
+  losses_ = kLosses * heat / square(kHundredPercent);
+  unit_target_ = std::min(kTopUtilization, heat / continuous_heat_);
+  motor_target_ = std::min(kTopUtilization, heat / rated_heat_);
   // In 1/1000 K, as whole() is to be divided.
-  heat_sink_.follow(std::min<int64_t>(1'000'000, heat / 10'000'000 * machine_.heat_sink_rise));
+  heat_sink_target_ = std::min<int64_t>(1'000'000, heat / 10'000'000 * machine_.heat_sink_rise);
+}
+
+void PowerSection::find_power(const Speed& speed) {
+  speed_ = speed;
+  const int64_t slip = machine_.rated_slip * speed.torque / kHundredPercent;
+  frequency_ = speed.driving ? static_cast<int32_t>((speed.mrpm + slip) * machine_.pole_pairs / 60) : 0;
+  mechanical_ = speed.torque * speed.mrpm / machine_.rated_speed;
 }
 
 void PowerSection::cool(uint64_t steps) {
@@ -79,18 +105,20 @@ void PowerSection::Lag::fall(uint64_t steps) {
 }
 
 // Mechanical power in 1/1000 % of the rated power; losses are added, what comes back charges the DC link.
-void PowerSection::step_power(int64_t mechanical) {
-  const int64_t power = mechanical + kLosses * square(output_current_) / square(kHundredPercent);
+void PowerSection::step_power() {
+  const int64_t power = mechanical_ + losses_;
   const int64_t change = std::clamp<int64_t>(power + kStandby, -100'000'000, 100'000'000) * kChargePerPower;
-  charge_ = std::clamp(charge_ - change, idle_charge_, most_charge_);
+  const int64_t charge = std::clamp(charge_ - change, idle_charge_, most_charge_);
+  if (charge != charge_) {
+    charge_ = charge;
+    dc_link_ = static_cast<int32_t>(root(charge));
+  }
   if (power <= 0) return;
   constexpr int64_t kPerWs = kHundredPercent * 1'000;
   energy_rest_ += std::min<int64_t>(power, 100'000'000) * machine_.rated_power;
   energy_ += energy_rest_ / kPerWs;
   energy_rest_ %= kPerWs;
 }
-
-int32_t PowerSection::dc_link() const { return static_cast<int32_t>(root(charge_)); }
 
 int32_t PowerSection::heat_sink() const { return machine_.ambient + heat_sink_.whole() / 1'000; }
 

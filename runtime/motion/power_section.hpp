@@ -17,7 +17,10 @@ class PowerSection {
   explicit PowerSection(const MachineData& machine);  // within_limits
 
   // Greatest torque within a current limit (P303), 1/1000 % of the rated torque.
-  int64_t torque_limit(int32_t current_limit) const;
+  int64_t torque_limit(int32_t current_limit) {
+    if (current_limit != limit_for_) find_torque_limit(current_limit);
+    return torque_limit_;
+  }
 
   struct Load {
     Supply supply;
@@ -33,7 +36,7 @@ class PowerSection {
   int32_t output_current() const { return output_current_; }  // 1/1000 % IN
   int32_t active_current() const { return active_current_; }  // signed as the torque
   int32_t frequency() const { return frequency_; }            // mHz, signed as the field turns
-  int32_t dc_link() const;                                    // mV
+  int32_t dc_link() const { return dc_link_; }                // mV
   int32_t heat_sink() const;                                  // °C
   int32_t utilization() const { return unit_.whole(); }       // 1/1000 %
   int32_t motor_utilization() const { return motor_.whole(); }
@@ -53,15 +56,43 @@ class PowerSection {
     int32_t time_ms_;
   };
 
-  void step_power(int64_t mechanical);
+  // What torque and limits make of the currents, found again when one of them changes.
+  struct Currents {
+    Supply supply = Supply::Off;
+    int64_t torque = 0;
+    int32_t current_limit = 0;
+    int32_t direct_current = 0;
+    bool operator==(const Currents&) const = default;
+  };
+  struct Speed {
+    int64_t mrpm = 0;
+    int64_t torque = 0;
+    bool driving = false;
+    bool operator==(const Speed&) const = default;
+  };
+
+  void find_torque_limit(int32_t current_limit);
+  void find_currents(const Currents& currents);
+  void find_power(const Speed& speed);
+  void step_power();
 
   MachineData machine_;
+  int64_t continuous_heat_;  // 100 % of unit and motor utilization; the square of the current in 1/1000 %
+  int64_t rated_heat_;
+  int32_t limit_for_ = 0;
+  int64_t torque_limit_ = 0;
+  Currents currents_;
+  Speed speed_;
+  int64_t losses_ = 0;      // 1/1000 % of the rated power
+  int64_t mechanical_ = 0;  // the same
+  int64_t unit_target_ = 0, motor_target_ = 0, heat_sink_target_ = 0;
   int32_t output_current_ = 0;
   int32_t active_current_ = 0;
   int32_t frequency_ = 0;
   int64_t idle_charge_;  // square of the DC link voltage in mV², at mains
   int64_t charge_;       // now
   int64_t most_charge_;  // where the chopper holds it
+  int32_t dc_link_;
   int64_t energy_ = 0;
   int64_t energy_rest_ = 0;
   Lag unit_, motor_, heat_sink_;

@@ -39,7 +39,7 @@ void Ramp::set(FineSpeed speed) {
   level_ = 0;
 }
 
-void Ramp::step(FineSpeed target, const RampTimes& times) {
+void Ramp::go_on(FineSpeed target, const RampTimes& times) {
   if (times.s_pattern == 0) return step_linear(target, times);
   constexpr int32_t kShare[] = {8, 4, 2};
   const uint32_t ms = std::min(times.up_cw_ms, kLongestMs);
@@ -49,13 +49,17 @@ void Ramp::step(FineSpeed target, const RampTimes& times) {
 
 // level x reference / divisor for this millisecond; what cannot be divided is kept for the next ones.
 int64_t Ramp::exact(int64_t divisor, int64_t level) {
-  if (divisor != divisor_) rest_ = 0;
-  divisor_ = divisor;
-  const int64_t whole = reference_ * kFine / divisor;
-  rest_ += reference_ * kFine % divisor * level;
+  if (divisor != divisor_) {
+    divisor_ = divisor;
+    whole_ = reference_ * kFine / divisor;
+    part_ = reference_ * kFine % divisor;
+    rest_ = 0;
+  }
+  rest_ += part_ * level;
+  if (rest_ < divisor) return whole_ * level;
   const int64_t carry = rest_ / divisor;
   rest_ %= divisor;
-  return whole * level + carry;
+  return whole_ * level + carry;
 }
 
 void Ramp::step_linear(FineSpeed target, const RampTimes& times) {

@@ -24,14 +24,19 @@ struct RampTimes {
 class Ramp {
  public:
   // `reference`: 1/1000 rpm, see MachineData::ramp_reference.
-  explicit Ramp(int32_t reference) : reference_(reference) {}
+  explicit Ramp(int32_t reference) : reference_(reference), whole_(reference * kFine) {}
 
   FineSpeed output() const { return output_; }
   // Goes on from this speed, without slope.
   void set(FineSpeed speed);
   // Goes on from this speed with the slope it has.
   void wait_at(FineSpeed speed) { output_ = speed; }
-  void step(FineSpeed target, const RampTimes& times);
+  void step(FineSpeed target, const RampTimes& times) {
+    if (times.s_pattern == 0 && output_ == target)
+      level_ = 0;  // it is there
+    else
+      go_on(target, times);
+  }
 
  private:
   // Slope of an S pattern: level times reference / (ms x levels) per millisecond.
@@ -41,6 +46,7 @@ class Ramp {
     bool operator==(const Slope&) const = default;
   };
 
+  void go_on(FineSpeed target, const RampTimes& times);
   void step_linear(FineSpeed target, const RampTimes& times);
   uint64_t leg(FineSpeed goal, uint32_t ms, uint64_t left);
   void step_s_pattern(FineSpeed target, Slope slope);
@@ -49,6 +55,8 @@ class Ramp {
   int32_t reference_;
   FineSpeed output_ = 0;
   int64_t divisor_ = 1;  // of the running slope
+  int64_t whole_;        // reference / divisor_
+  int64_t part_ = 0;     // and what is left of that
   int64_t rest_ = 0;     // what its steps so far left undivided
   Slope slope_;
   int32_t level_ = 0;  // signed: the present slope of an S pattern

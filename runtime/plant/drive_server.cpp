@@ -57,13 +57,14 @@ uint16_t DriveServer::index_of(std::string_view number) const {
 int32_t DriveServer::value(std::string_view number) const { return parameters_.value(index_of(number)); }
 
 vm::Rates DriveServer::rates() const {
+  if (rates_for_ == parameters_.changes()) return rates_;
+  rates_for_ = parameters_.changes();
   constexpr int32_t kSharedCommands = 9;
   const int32_t first = parameters_.value(task1_speed_);
   const int32_t second = std::min(parameters_.value(task2_speed_), kSharedCommands - first);
-  vm::Rates rates;
-  rates.commands[0] = static_cast<uint32_t>(first + 1);
-  rates.commands[1] = static_cast<uint32_t>(second + 2);
-  return rates;
+  rates_.commands[0] = static_cast<uint32_t>(first + 1);
+  rates_.commands[1] = static_cast<uint32_t>(second + 2);
+  return rates_;
 }
 
 void DriveServer::connect_program(vm::Machine& machine) {

@@ -123,6 +123,8 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
   SerialIndices serial_;  // P810, P811, P750, P100
   uint16_t task1_speed_;  // index of P938
   uint16_t task2_speed_;  // index of P939
+  mutable vm::Rates rates_;
+  mutable std::optional<uint32_t> rates_for_;  // ParameterStore::changes()
   uint32_t syncs_ = 0;
   std::string reason_;
   std::vector<std::string> obstacles_;

@@ -44,11 +44,15 @@ SbusSettings sbus_settings(const DriveServer& drive, int sbus) {
 
 NodeId SbusPort::connect(CanLine& line, std::optional<NodeId> node, std::string_view station, uint32_t baud,
                          CanNode& port) {
-  if (!node) return line.attach(std::string(station), baud, port);
-  line.replace(*node, port);
-  line.set_baud(*node, baud);
-  line.restart(*node);
-  line.set_connected(*node, true);
+  if (!node) {
+    node = line.attach(std::string(station), baud, port);
+  } else {
+    line.replace(*node, port);
+    line.set_baud(*node, baud);
+    line.restart(*node);
+    line.set_connected(*node, true);
+  }
+  line.close_filter(*node);  // the parts of the port open it for what they take
   return *node;
 }
 

@@ -20,22 +20,36 @@ struct InputLine {
 
 class StationInputs {
  public:
-  InputLine& line(size_t n) { return lines_[n]; }
+  // To be written at once, not kept: what the lines say together is found anew after this.
+  InputLine& line(size_t n) {
+    known_ = false;
+    return lines_[n];
+  }
   const InputLine& line(size_t n) const { return lines_[n]; }
 
   uint16_t levels() const {  // as InputLevel H483
-    uint32_t levels = 0;
-    for (size_t n = 0; n < kBinaryLines; ++n) levels |= (lines_[n].value() != 0 ? 1U : 0U) << n;
-    return static_cast<uint16_t>(levels);
+    look();
+    return levels_;
   }
-  AnalogInputs analog() const {
-    AnalogInputs inputs;
-    for (size_t n = kBinaryLines; n < kInputLines; ++n) analog_value(inputs, n) = lines_[n].value();
-    return inputs;
+  const AnalogInputs& analog() const {
+    look();
+    return analog_;
   }
 
  private:
+  void look() const {
+    if (known_) return;
+    uint32_t levels = 0;
+    for (size_t n = 0; n < kBinaryLines; ++n) levels |= (lines_[n].value() != 0 ? 1U : 0U) << n;
+    levels_ = static_cast<uint16_t>(levels);
+    for (size_t n = kBinaryLines; n < kInputLines; ++n) analog_value(analog_, n) = lines_[n].value();
+    known_ = true;
+  }
+
   std::array<InputLine, kInputLines> lines_{};
+  mutable bool known_ = false;
+  mutable uint16_t levels_ = 0;
+  mutable AnalogInputs analog_;
 };
 
 }  // namespace ipos::runtime

@@ -70,7 +70,7 @@ void CamSources::watch(uint32_t variable, std::span<const int32_t> h) {
 
 void CamSources::tick(std::span<const int32_t> h) {
   for (Source& source : sources_) {
-    if (!source.used) continue;
+    if (!source.used) break;  // they are taken in order
     const int32_t now = h[source.variable];
     source.change = static_cast<int32_t>(static_cast<uint32_t>(now) - static_cast<uint32_t>(source.value));
     source.value = now;

@@ -23,21 +23,6 @@ void Encoders::count(int32_t motor_counter) {
   counter_ = motor_counter;
 }
 
-int64_t Encoders::scaled(PositionSource source, int64_t motor) const {
-  if (source == PositionSource::Motor) return motor;
-  const int64_t count = floor_divide(motor * factor_.denominator, factor_.numerator);
-  return source == PositionSource::Absolute && inverted_ ? -count : count;
-}
-
-int64_t Encoders::offset(PositionSource source) const {
-  switch (source) {
-    case PositionSource::Motor: return motor_offset_;
-    case PositionSource::External: return external_offset_;
-    case PositionSource::Absolute: break;
-  }
-  return absolute_zero_ + absolute_offset_;
-}
-
 void Encoders::set_position(PositionSource source, int32_t position) {
   const int64_t change = position - exact(source);
   switch (source) {

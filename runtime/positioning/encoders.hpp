@@ -35,8 +35,20 @@ class Encoders {
 
  private:
   int64_t exact(PositionSource source) const { return scaled(source, turned_) + offset(source); }
-  int64_t scaled(PositionSource source, int64_t motor) const;
-  int64_t offset(PositionSource source) const;
+  int64_t scaled(PositionSource source, int64_t motor) const {
+    if (source == PositionSource::Motor) return motor;
+    const bool equal = factor_.numerator == factor_.denominator;
+    const int64_t count = equal ? motor : floor_divide(motor * factor_.denominator, factor_.numerator);
+    return source == PositionSource::Absolute && inverted_ ? -count : count;
+  }
+  int64_t offset(PositionSource source) const {
+    switch (source) {
+      case PositionSource::Motor: return motor_offset_;
+      case PositionSource::External: return external_offset_;
+      case PositionSource::Absolute: break;
+    }
+    return absolute_zero_ + absolute_offset_;
+  }
 
   EncoderFactor factor_;
   bool inverted_ = false;

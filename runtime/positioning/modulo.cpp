@@ -32,6 +32,10 @@ void Modulo::set(int32_t position) {
 
 void Modulo::move(int32_t increments) {
   const int64_t units = units_ + increments * increment_;
+  if (units >= 0 && units < turn_) {
+    units_ = units;
+    return;
+  }
   const int64_t turns = floor_divide(units, turn_);
   turns_ += turns;
   units_ = units - turns * turn_;

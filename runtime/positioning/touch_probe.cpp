@@ -11,12 +11,13 @@ void TouchProbes::enable(size_t n, bool rising, bool falling) {
 }
 
 void TouchProbes::tick(uint16_t levels, const Encoders& encoders) {
+  for (Probe& probe : probes_) probe.fresh = false;
+  if (levels == levels_) return;
   constexpr unsigned kFirstInput = 2;  // DI02
   for (unsigned n = 0; n < kProbes; ++n) {
     const bool before = (levels_ >> (kFirstInput + n) & 1) != 0;
     const bool now = (levels >> (kFirstInput + n) & 1) != 0;
     Probe& probe = probes_[n];
-    probe.fresh = false;
     if (before == now || !(now ? probe.rising : probe.falling)) continue;
     probe.touched = probe.fresh = true;
     probe.motor = encoders.position(PositionSource::Motor);

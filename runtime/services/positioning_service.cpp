@@ -105,6 +105,10 @@ void PositioningService::set_parameter(std::string_view number, int32_t value) {
 
 // The last one to write wins: over a bus the parameter, in the program the variable.
 void PositioningService::take_mirrors(std::span<int32_t> h) {
+  const bool agreed = std::all_of(mirrors_.begin(), mirrors_.end(), [&](const Mirror& mirror) {
+    return h[mirror.variable] == mirror.shown && settings_.*mirror.member == mirror.shown;
+  });
+  if (agreed) return;
   for (Mirror& mirror : mirrors_)
     if (h[mirror.variable] != mirror.shown && settings_.*mirror.member == mirror.shown)
       set_parameter(mirror.number, h[mirror.variable]);
@@ -188,6 +192,10 @@ PositionControl PositioningService::order(Time now, std::span<int32_t> h, uint32
 
 void PositioningService::report_events(Time now) {
   const auto events = positioner_.take_events();
+  if (events.none()) {
+    reported_.reset();
+    return;
+  }
   const auto fresh = events & ~reported_;
   reported_ = events;
   for (size_t n = 0; n < fresh.size(); ++n) {

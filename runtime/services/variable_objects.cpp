@@ -29,6 +29,7 @@ bool VariableObjects::define(ObjectKind kind, uint32_t variable, std::span<int32
           sender_.send(ObjectTable::acyclic_frame(request, h), first_tag_ + tag) == SendStatus::Queued;
       ObjectTable::note_acyclic(tag, queued ? AcyclicStatus::Sending : AcyclicStatus::Failed, h);
     }
+    if (kind == ObjectKind::Receive) sender_.listen(static_cast<uint32_t>(request.object));
     const SlaveSettings& profile = table_.profile();
     if (profile.synchronous && request.object == profile.sync_id)
       why = fmt::format("object number {} is also the sync telegram of this unit (P817 or P885)",

@@ -151,7 +151,7 @@ void Machine::take_variable_interrupts() {
     }
   }
   // The highest priority first, of equals the lowest number.
-  for (uint8_t priority = kMaxPriority; priority > 0; --priority)
+  for (uint8_t priority = requests != 0 ? kMaxPriority : 0; priority > 0; --priority)
     for (size_t n = 0; n < interrupts_.variables.size(); ++n) {
       const VariableInterrupt& interrupt = interrupts_.variables[n];
       if (interrupt.priority == priority && (requests & request(n)) != 0 &&

@@ -2,6 +2,8 @@
 // equal bits from the start of frame to the end of the CRC.
 #include "runtime/bus/can/frame_bits.hpp"
 
+#include <array>
+
 namespace ipos::runtime {
 namespace {
 
@@ -68,6 +70,85 @@ WireBits wire_bits(const Frame& frame) {
   return out.bits();
 }
 
-uint32_t frame_bits(const Frame& frame) { return wire_bits(frame).count + kIntermissionBits; }
+namespace {
+
+// The same by bytes, for the length alone. State of the stuffing: the last bit, and how many bits before it
+// are equal to it (0..3; after four equal ones a fifth ends the run).
+struct StuffStep {
+  uint8_t state;  // last bit * 4 + equal bits before it
+  uint8_t added;  // stuff bits
+};
+
+struct Tables {
+  std::array<std::array<StuffStep, 256>, 8> stuff{};
+  std::array<uint16_t, 256> crc{};
+
+  constexpr Tables() {
+    for (uint32_t begin = 0; begin < 8; ++begin)
+      for (uint32_t byte = 0; byte < 256; ++byte) {
+        uint32_t last = begin / 4, before = begin % 4, added = 0;
+        for (uint32_t i = 8; i-- > 0;) {
+          const uint32_t bit = byte >> i & 1;
+          before = bit == last ? before + 1 : 0;
+          last = bit;
+          if (before < 4) continue;
+          last = 1 - bit;  // the stuff bit
+          before = 0;
+          ++added;
+        }
+        stuff[begin][byte] = {static_cast<uint8_t>(last * 4 + before), static_cast<uint8_t>(added)};
+      }
+    for (uint32_t byte = 0; byte < 256; ++byte) {
+      uint32_t value = byte << 7;
+      for (int i = 0; i < 8; ++i) value = (value << 1) ^ ((value & 0x4000) != 0 ? kCrcPolynomial : 0);
+      crc[byte] = static_cast<uint16_t>(value & 0x7FFF);
+    }
+  }
+};
+constexpr Tables kTables;
+
+class LengthCounter {
+ public:
+  // `state` of the stuffing after the three bits that come before the first byte.
+  explicit LengthCounter(uint8_t state) : state_(state) {}
+
+  void put(uint32_t byte) {
+    const StuffStep step = kTables.stuff[state_][byte];
+    state_ = step.state;
+    added_ += step.added;
+  }
+  uint32_t added() const { return added_; }
+
+ private:
+  uint32_t state_;
+  uint32_t added_ = 0;
+};
+
+uint32_t next_crc(uint32_t crc, uint32_t byte) {
+  return ((crc << 8) ^ kTables.crc[(crc >> 7 ^ byte) & 0xFF]) & 0x7FFF;
+}
+
+}  // namespace
+
+uint32_t frame_bits(const Frame& frame) {
+  if (frame.extended) return wire_bits(frame).count + kIntermissionBits;
+  // Start of frame, identifier, RTR, IDE, r0 and length are 19 bits. Zeros in front do not change the CRC.
+  const uint32_t header = frame.id << 7 | (frame.remote ? 1U << 6 : 0U) | frame.length;
+  constexpr uint8_t kBehindStart[] = {2, 4, 0, 5};  // of 0 and the two highest bits of the identifier
+  LengthCounter length(kBehindStart[header >> 16]);
+  uint32_t crc = next_crc(0, header >> 16);
+  const auto put = [&](uint32_t byte) {
+    length.put(byte);
+    crc = next_crc(crc, byte);
+  };
+  put(header >> 8 & 0xFF);
+  put(header & 0xFF);
+  const uint32_t bytes = frame.remote ? 0 : frame.length;
+  for (uint32_t i = 0; i < bytes; ++i) put(frame.data[i]);
+  // The CRC has 15 bits; a 16th that is unlike the last one adds no stuff bit.
+  length.put(crc >> 7);
+  length.put((crc << 1 & 0xFF) | (~crc & 1));
+  return unstuffed_bits(bytes, false) + length.added();
+}
 
 }  // namespace ipos::runtime

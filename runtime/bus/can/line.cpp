@@ -38,6 +38,11 @@ NodeId CanLine::attach(std::string name, uint32_t baud, CanNode& node) {
   added.node = &node;
   nodes_.push_back(std::move(added));
   nodes_.back().queue.reserve(kSendQueueLimit);
+  contenders_.emplace_back();
+  waiting_.grow(nodes_.size());
+  winners_.reserve(nodes_.size());
+  filter_.grow(nodes_.size());
+  erring_.grow(nodes_.size());
   report_absence(id, nullptr);
   return id;
 }
@@ -63,7 +68,11 @@ SendStatus CanLine::send(NodeId node, const Frame& frame, uint64_t tag) {
   const auto place = std::upper_bound(n.queue.begin(), n.queue.end(), key,
                                       [](uint32_t wanted, const Pending& p) { return wanted < p.key; });
   n.queue.insert(place, {canonical(frame), tag, ready, key});
-  schedule_start(n.segment);
+  queue_changed(node);
+  const Segment& segment = segments_[n.segment];
+  const bool in_time = segment.start_event != kNoEvent &&
+                       segment.start_bit <= std::max(contenders_[node].ready, segment.free_bit);
+  if (!segment.busy && !in_time) schedule_start(n.segment);
   return SendStatus::Queued;
 }
 
@@ -71,11 +80,15 @@ void CanLine::withdraw(NodeId node, uint64_t tag) {
   std::vector<Pending>& queue = nodes_[node].queue;
   for (Pending& pending : queue)
     if (pending.tag == tag && pending.on_wire) pending.withdrawn = true;
-  std::erase_if(queue, [tag](const Pending& p) { return p.tag == tag && !p.on_wire; });
+  const bool changed =
+      std::erase_if(queue, [tag](const Pending& p) { return p.tag == tag && !p.on_wire; }) != 0;
+  const Segment& segment = segments_[nodes_[node].segment];
+  if (!changed && (segment.busy || segment.start_event != kNoEvent)) return;
+  queue_changed(node);
   schedule_start(nodes_[node].segment);
 }
 
-const CanLine::Pending* CanLine::first_ready(const Node& node, uint64_t bit) const {
+const CanLine::Pending* CanLine::first_ready(const Node& node, uint64_t bit) {
   if (node.suspended_until > bit) return nullptr;
   for (const Pending& pending : node.queue)
     if (pending.ready_bit <= bit) return &pending;
@@ -88,6 +101,18 @@ uint64_t CanLine::next_ready(const Node& node) const {
   return node.queue.empty() ? bit : std::max(bit, node.suspended_until);
 }
 
+// Queue or pause of the node are other ones, or its segment.
+void CanLine::queue_changed(NodeId id) {
+  const Node& node = nodes_[id];
+  waiting_.put(id, !node.queue.empty());
+  Contender& contender = contenders_[id];
+  contender.segment = node.segment;
+  contender.ready = next_ready(node);
+  if (node.queue.empty()) return;
+  contender.first_ready = std::max(node.queue.front().ready_bit, node.suspended_until);
+  contender.key = node.queue.front().key;
+}
+
 void CanLine::schedule_start() {
   for (uint32_t segment = 0; segment < segments_.size(); ++segment) schedule_start(segment);
 }
@@ -98,8 +123,10 @@ void CanLine::schedule_start(uint32_t number) {
   if (segment.busy) return;
   uint64_t bit = ~uint64_t{0};
   if (stuck_ == 0 && !rewire_)
-    for (const Node& node : nodes_)
-      if (node.segment == number) bit = std::min(bit, next_ready(node));
+    waiting_.each([&](NodeId id) {
+      const Contender& contender = contenders_[id];
+      if (contender.segment == number) bit = std::min(bit, contender.ready);
+    });
   if (bit != ~uint64_t{0}) bit = std::max(bit, segment.free_bit);
   if (segment.start_event != kNoEvent && segment.start_bit == bit) return;
   queue_.cancel(std::exchange(segment.start_event, kNoEvent));
@@ -130,29 +157,34 @@ void CanLine::begin_transfer(uint32_t number, uint64_t bit) {
   Segment& segment = segments_[number];
   Transfer& transfer = segment.transfer;
   uint32_t lowest = ~0U;
-  for (const Node& node : nodes_)
-    if (node.segment == number)
-      if (const Pending* pending = first_ready(node, bit)) lowest = std::min(lowest, pending->key);
+  waiting_.each([&](NodeId id) {
+    const Contender& contender = contenders_[id];
+    if (contender.segment != number || contender.ready > bit) return;
+    const uint32_t key = contender.first_ready <= bit ? contender.key : first_ready(nodes_[id], bit)->key;
+    if (key > lowest) return;
+    if (key < lowest) winners_.clear();
+    lowest = key;
+    winners_.push_back(id);
+  });
   transfer.start_bit = bit;
   transfer.senders.clear();
   transfer.fault = {};
-  for (NodeId id = 0; id < nodes_.size(); ++id) {
+  for (const NodeId id : winners_) {
     Node& node = nodes_[id];
-    if (node.segment != number || !is_active(id)) continue;
+    if (!is_active(id)) continue;
     const Pending* pending = first_ready(node, bit);
-    if (pending == nullptr || pending->key != lowest) continue;
     node.queue[static_cast<size_t>(pending - node.queue.data())].on_wire = true;
     transfer.senders.push_back(
         {id, pending->frame, pending->tag, node.counters.state() == ErrorState::Active});
   }
+  winners_.clear();
   if (transfer.senders.empty()) return schedule_start(number);
   pause_recovery(number, bit);
   transfer.fault = faults_.strike(queue_.now(), transfer.senders.front().frame.id);
   Listeners listeners;
   for (NodeId id = 0; id < nodes_.size(); ++id) {
-    const bool sends = std::any_of(transfer.senders.begin(), transfer.senders.end(),
-                                   [id](const Transfer::Sender& s) { return s.node == id; });
-    if (sends || nodes_[id].segment != number || !is_active(id)) continue;
+    if (listeners.error_active && !transfer.fault.kind) break;  // no other listener makes a difference
+    if (transfer.sent_by(id) || nodes_[id].segment != number || !is_active(id)) continue;
     const bool error_active = nodes_[id].counters.state() == ErrorState::Active;
     listeners.any = true;
     listeners.error_active |= error_active;
@@ -192,15 +224,37 @@ void CanLine::end_transfer(Time now, uint32_t number) {
     late_.push_back(LateFrame{transfer.winner().frame, transfer.winner().node, transfer.fault.node, number});
     queue_.schedule(now + transfer.fault.lag, source_, *this, line_event::kLate, late_.size() - 1);
   }
-  for (NodeId id = 0; id < nodes_.size(); ++id) {
-    const bool sends = std::any_of(transfer.senders.begin(), transfer.senders.end(),
-                                   [id](const Transfer::Sender& s) { return s.node == id; });
-    if (!sends && nodes_[id].segment == number && is_active(id)) deliver(now, segment, id);
+  if (transfer.outcome == Transfer::Outcome::Delivered && !transfer.fault.kind &&
+      !transfer.winner().frame.extended) {
+    deliver_clean(now, segment);
+  } else {
+    for (NodeId id = 0; id < nodes_.size(); ++id) {
+      if (!transfer.sent_by(id) && nodes_[id].segment == number && is_active(id)) deliver(now, segment, id);
+      erring_.put(id, nodes_[id].counters.receive != 0);
+    }
   }
   for (const Transfer::Sender& sender : transfer.senders) settle_sender(now, segment, sender);
-  for (NodeId id = 0; id < nodes_.size(); ++id) schedule_recovery(id);
+  if (recovering_) {
+    recovering_ = false;
+    for (NodeId id = 0; id < nodes_.size(); ++id) {
+      schedule_recovery(id);
+      recovering_ |= nodes_[id].recovery_runs != 0;
+    }
+  }
   if (rewire_) rebuild_segments();
   schedule_start();
+}
+
+// To listeners without a receive error that do not want it, a good frame is nothing at all.
+void CanLine::deliver_clean(Time now, const Segment& segment) {
+  const Transfer& transfer = segment.transfer;
+  const auto number = static_cast<uint32_t>(&segment - segments_.data());
+  const std::span<const uint64_t> takers = filter_.takers(transfer.winner().frame.id);
+  const auto visit = [&](NodeId id) {
+    if (!transfer.sent_by(id) && nodes_[id].segment == number && is_active(id)) deliver(now, segment, id);
+    erring_.put(id, nodes_[id].counters.receive != 0);
+  };
+  for (size_t n = 0; n < takers.size(); ++n) NodeSet::each_bit(takers[n] | erring_.words()[n], n, visit);
 }
 
 // What a transfer is to one listener.
@@ -256,6 +310,7 @@ void CanLine::settle_sender(Time now, const Segment& segment, const Transfer::Se
     node.counters.send_failed();
   }
   if (node.counters.state() == ErrorState::Passive) node.suspended_until = segment.free_bit + kSuspendBits;
+  queue_changed(sender.node);
   if (sent)
     node.node->on_sent(now, sender.frame, sender.tag);
   else
@@ -277,6 +332,7 @@ void CanLine::count_error_state(Time now, NodeId node, ErrorState before) {
 void CanLine::drop_queue(NodeId node) {
   const std::vector<Pending> dropped = std::exchange(nodes_[node].queue, {});
   nodes_[node].queue.reserve(kSendQueueLimit);
+  queue_changed(node);
   schedule_start(nodes_[node].segment);
   for (const Pending& pending : dropped)
     nodes_[node].node->on_not_sent(queue_.now(), pending.frame, pending.tag, NotSent::Dropped);

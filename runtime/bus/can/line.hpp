@@ -17,6 +17,7 @@
 #include "runtime/bus/can/error_counters.hpp"
 #include "runtime/bus/can/line_fault.hpp"
 #include "runtime/bus/can/node.hpp"
+#include "runtime/bus/can/node_set.hpp"
 #include "runtime/bus/can/transfer.hpp"
 #include "runtime/bus/line_load.hpp"
 #include "runtime/clock/event_queue.hpp"
@@ -39,13 +40,20 @@ class CanLine final : private EventTarget {
   NodeId attach(std::string name, uint32_t baud, CanNode& node);
   void add_observer(CanObserver& observer);
 
+  // From now on the node is told only of data and remote frames with the standard identifiers it listens to,
+  // and of all extended ones. Frames it is not told of count and are acknowledged like the others.
+  void close_filter(NodeId node) { filter_.close(node); }
+  void listen(NodeId node, uint32_t id) {
+    if (id < kStandardIdLimit) filter_.open(node, id);
+  }
+
   SendStatus send(NodeId node, const Frame& frame, uint64_t tag);
   void withdraw(NodeId node, uint64_t tag);
 
   void set_baud(NodeId node, uint32_t baud);
   void set_connected(NodeId node, bool connected);
   void replace(NodeId node, CanNode& by);  // the station behind it has been made anew
-  void restart(NodeId node);  // leaves bus-off at once with cleared counters
+  void restart(NodeId node);               // leaves bus-off at once with cleared counters
   // Leaves bus-off once the node has seen 128 times 11 recessive bits in a row (ISO 11898-1).
   void recover(NodeId node);
 
@@ -112,8 +120,10 @@ class CanLine final : private EventTarget {
   void count_error_state(Time now, NodeId node, ErrorState before);
   void schedule_start();
   void schedule_start(uint32_t segment);
-  const Pending* first_ready(const Node& node, uint64_t bit) const;
+  static const Pending* first_ready(const Node& node, uint64_t bit);
   uint64_t next_ready(const Node& node) const;
+  void queue_changed(NodeId node);
+  void deliver_clean(Time now, const Segment& segment);
   void drop_queue(NodeId node);
 
   // line_wiring.cpp: who takes part
@@ -135,6 +145,19 @@ class CanLine final : private EventTarget {
   uint32_t baud_;
   Time bit_time_;
   std::vector<Node> nodes_;
+  // What every arbitration asks, kept together; queue_changed() keeps it up to date.
+  struct Contender {
+    uint64_t ready = ~uint64_t{0};  // can send from this bit on
+    uint64_t first_ready = 0;       // the first of its queue can
+    uint32_t key = 0;               // of that one
+    uint32_t segment = 0;
+  };
+  std::vector<Contender> contenders_;
+  NodeSet waiting_;              // have a queue
+  std::vector<NodeId> winners_;  // of an arbitration
+  AcceptanceFilter filter_;
+  NodeSet erring_;           // receive counter not 0
+  bool recovering_ = false;  // some node may be
   std::vector<CanObserver*> observers_;
   std::vector<Segment> segments_{1};
 
@@ -156,6 +179,7 @@ class LinePort final : public FrameSender {
   SendStatus send(const Frame& frame, uint64_t tag) override { return line_->send(node_, frame, tag); }
   void withdraw(uint64_t tag) override { line_->withdraw(node_, tag); }
   void recover() override { line_->recover(node_); }
+  void listen(uint32_t id) override { line_->listen(node_, id); }
   NodeId node() const { return node_; }
 
  private:

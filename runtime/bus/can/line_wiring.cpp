@@ -69,6 +69,7 @@ void CanLine::switch_fault(Time now, size_t number, bool on) {
         const ErrorState before = nodes_[id].counters.state();
         while (nodes_[id].counters.receive < 128) nodes_[id].counters.receive_failed(true);
         count_error_state(now, id, before);
+        erring_.put(id, true);
       }
       break;
     default: break;
@@ -98,6 +99,7 @@ void CanLine::rebuild_segments() {
   for (NodeId id = 0; id < nodes_.size(); ++id)
     nodes_[id].segment = static_cast<uint32_t>(
         std::count_if(cuts_.begin(), cuts_.end(), [id](NodeId cut) { return cut < id; }));
+  for (NodeId id = 0; id < nodes_.size(); ++id) queue_changed(id);
 }
 
 void CanLine::deliver_late(Time now, size_t number) {
@@ -120,12 +122,14 @@ void CanLine::restart(NodeId node) {
 void CanLine::recover(NodeId node) {
   if (nodes_[node].counters.state() != ErrorState::BusOff) return;
   nodes_[node].recovery_runs = kRecoveryRuns;
+  recovering_ = true;
   nodes_[node].recovery_from = static_cast<uint64_t>(queue_.now() / bit_time_) + 1;
   schedule_recovery(node);
 }
 
 // A frame begins: the recessive bits up to here are counted, those of the frame hold no run of 11.
 void CanLine::pause_recovery(uint32_t segment, uint64_t bit) {
+  if (!recovering_) return;
   for (Node& node : nodes_) {
     if (node.recovery_runs == 0 || node.segment != segment) continue;
     queue_.cancel(std::exchange(node.recovery, kNoEvent));

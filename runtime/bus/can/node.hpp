@@ -41,6 +41,8 @@ class FrameSender {
   virtual void withdraw(uint64_t tag) = 0;
   // Asks to come back after bus-off.
   virtual void recover() {}
+  // Frames with this standard identifier are wanted from now on. Without effect where all are heard anyway.
+  virtual void listen(uint32_t /*id*/) {}
 
  protected:
   ~FrameSender() = default;

@@ -108,6 +108,12 @@ void resolve(Transfer& transfer, Listeners listeners, bool short_circuit) {
   assert(!transfer.senders.empty());
   if (short_circuit)  // the start of frame already fails, and the flag is not seen
     return end_with_error(transfer, Transfer::Outcome::NoLevel, 1 + kErrorFlagBits);
+  if (transfer.senders.size() == 1 && listeners.any && !transfer.fault.kind) {
+    transfer.outcome = Transfer::Outcome::Delivered;
+    transfer.bits = frame_bits(transfer.senders.front().frame);
+    transfer.end = transfer.bits - kIntermissionBits;
+    return;
+  }
   // The bus carries the frame that is dominant at each first difference.
   const Frame* carried = &transfer.senders.front().frame;
   WireBits bits = wire_bits(*carried);

@@ -35,6 +35,11 @@ struct Transfer {
   std::vector<Sender> senders;  // all with the winning arbitration field
   FrameFault fault;
 
+  bool sent_by(NodeId node) const {
+    for (const Sender& sender : senders)
+      if (sender.node == node) return true;
+    return false;
+  }
   const Sender& winner() const;  // the first sender whose frame the line carries
   bool received() const { return outcome == Outcome::Delivered || outcome == Outcome::Repeated; }
 };

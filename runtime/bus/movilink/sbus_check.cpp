@@ -33,6 +33,9 @@ void SbusCheck::add_slave(Time now, const CanLine& line, NodeId node, const Slav
                     "{}: {} and {} both have SBus address {}: both answer to it, and their answers collide",
                     line.name(), line.node_name(slave.node), line.node_name(node), settings.address));
   slaves_.push_back({node, settings});
+  if (settings.synchronous &&
+      std::find(sync_ids_.begin(), sync_ids_.end(), settings.sync_id) == sync_ids_.end())
+    sync_ids_.push_back(settings.sync_id);
 }
 
 void SbusCheck::on_frame(const CanLine& line, const FrameRecord& record) {
@@ -43,9 +46,8 @@ void SbusCheck::on_frame(const CanLine& line, const FrameRecord& record) {
     check_masters(line, record, *identifier);
     check_window(line, record, *identifier);
   }
-  for (const Slave& slave : slaves_)
-    if (slave.settings.synchronous && slave.settings.sync_id == record.frame.id)
-      syncs_[record.frame.id] = record.start;
+  for (const uint32_t id : sync_ids_)
+    if (id == record.frame.id) syncs_[id] = record.start;
 }
 
 void SbusCheck::check_sender(const CanLine& line, const FrameRecord& record) {

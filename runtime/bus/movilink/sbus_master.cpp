@@ -23,6 +23,10 @@ std::optional<ReturnCode> SbusMaster::start(Time now, const MovilinkJob& job) {
   group_ = group;
   address_ = static_cast<uint8_t>(address);
   result_ = {};
+  if (!group) {
+    sender_.listen(sbus_identifier(Telegram::ParameterResponse, address_));
+    sender_.listen(sbus_identifier(Telegram::ProcessInput, address_));
+  }
   // SBus always carries three words: those beyond the format are 0.
   output_ = {};
   for (size_t i = 0; i < format_.words; ++i) output_[i] = static_cast<uint16_t>(job.output[i]);

@@ -35,10 +35,13 @@ SbusSlave::SbusSlave(EventQueue& queue, uint32_t source, FrameSender& sender, ui
       timing_(timing),
       parameters_(parameters),
       process_data_(process_data),
-      observer_(observer) {}
+      observer_(observer) {
+  listen();
+}
 
 void SbusSlave::configure(SlaveSettings settings) {
   settings_ = settings;
+  listen();
   sync_output_.reset();
   sync_responses_ = {};
 }
@@ -47,13 +50,22 @@ bool SbusSlave::is_sync(const Frame& frame) const {
   return settings_.synchronous && frame.id == settings_.sync_id;
 }
 
+bool SbusSlave::is_movilink(uint32_t id) const {
+  const auto identifier = classify_identifier(id);
+  return identifier && telegram_type(identifier->telegram).from_master &&
+         identifier->address ==
+             (telegram_type(identifier->telegram).grouped ? settings_.group : settings_.address) &&
+         has_telegram(settings_, identifier->telegram);
+}
+
+void SbusSlave::listen() {
+  for (uint32_t id = 0; id < kStandardIdLimit; ++id)
+    if (is_movilink(id)) sender_.listen(id);
+  if (settings_.synchronous) sender_.listen(settings_.sync_id);
+}
+
 bool SbusSlave::on_frame(Time now, const Frame& frame) {
-  const auto identifier = classify_identifier(frame.id);
-  const bool movilink =
-      identifier && telegram_type(identifier->telegram).from_master &&
-      identifier->address ==
-          (telegram_type(identifier->telegram).grouped ? settings_.group : settings_.address) &&
-      has_telegram(settings_, identifier->telegram);
+  const bool movilink = is_movilink(frame.id);
   if (!movilink && !is_sync(frame)) return false;
   if (frame.extended) {
     ignore(now, frame, Ignored::Extended);
@@ -62,7 +74,7 @@ bool SbusSlave::on_frame(Time now, const Frame& frame) {
   if (frame.remote)
     ignore(now, frame, Ignored::Remote);
   else if (movilink)
-    take_telegram(now, frame, identifier->telegram);
+    take_telegram(now, frame, classify_identifier(frame.id)->telegram);
   else
     take_sync(now);  // of any length and content (ours: the manual names none)
   return true;

@@ -48,6 +48,8 @@ class SbusSlave final : private EventTarget {
   bool is_sync(const Frame& frame) const;  // has the identifier of this unit's sync telegram
 
  private:
+  bool is_movilink(uint32_t id) const;  // a MOVILINK telegram from a master to this unit
+  void listen();
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
   void take_telegram(Time now, const Frame& frame, Telegram telegram);
   void take_request(Time now, const Frame& frame, uint8_t channel);

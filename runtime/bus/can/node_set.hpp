@@ -1,0 +1,81 @@
+// A set of the nodes of one line, visited in order of attachment.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "runtime/bus/node_id.hpp"
+
+namespace ipos::runtime {
+
+class NodeSet {
+ public:
+  static constexpr NodeId kWordBits = 64;
+
+  void grow(size_t nodes) { words_.resize((nodes + kWordBits - 1) / kWordBits); }
+  void put(NodeId node, bool in) {
+    const uint64_t bit = uint64_t{1} << (node % kWordBits);
+    uint64_t& word = words_[node / kWordBits];
+    word = in ? word | bit : word & ~bit;
+  }
+  bool empty() const {
+    for (const uint64_t word : words_)
+      if (word != 0) return false;
+    return true;
+  }
+
+  // Those that were in it when their word was reached. `visit` may change the set.
+  template <typename Visit>
+  void each(Visit visit) const {
+    for (size_t n = 0; n < words_.size(); ++n) each_bit(words_[n], n, visit);
+  }
+  template <typename Visit>
+  static void each_bit(uint64_t word, size_t n, Visit& visit) {
+    for (; word != 0; word &= word - 1)
+      visit(static_cast<NodeId>(n * kWordBits + static_cast<size_t>(std::countr_zero(word))));
+  }
+  std::span<const uint64_t> words() const { return words_; }
+
+ private:
+  std::vector<uint64_t> words_;
+};
+
+// Which nodes want which standard identifiers. All want everything until they are closed.
+class AcceptanceFilter {
+ public:
+  static constexpr size_t kIdentifiers = 2048;
+
+  void grow(size_t nodes) {
+    const size_t width = (nodes + NodeSet::kWordBits - 1) / NodeSet::kWordBits;
+    if (width != width_) {
+      std::vector<uint64_t> words(width * kIdentifiers, 0);
+      for (size_t id = 0; id < kIdentifiers; ++id)
+        for (size_t n = 0; n < width_; ++n) words[id * width + n] = words_[id * width_ + n];
+      words_ = std::move(words);
+      width_ = width;
+    }
+    for (size_t id = 0; id < kIdentifiers; ++id) put(static_cast<uint32_t>(id), nodes - 1, true);
+  }
+  void close(NodeId node) {
+    for (size_t id = 0; id < kIdentifiers; ++id) put(static_cast<uint32_t>(id), node, false);
+  }
+  void open(NodeId node, uint32_t id) { put(id, node, true); }
+  std::span<const uint64_t> takers(uint32_t id) const {
+    return std::span(words_).subspan(id * width_, width_);
+  }
+
+ private:
+  void put(uint32_t id, size_t node, bool in) {
+    const uint64_t bit = uint64_t{1} << (node % NodeSet::kWordBits);
+    uint64_t& word = words_[id * width_ + node / NodeSet::kWordBits];
+    word = in ? word | bit : word & ~bit;
+  }
+  size_t width_ = 0;
+  std::vector<uint64_t> words_;  // for each identifier the words of a set
+};
+
+}  // namespace ipos::runtime
