@@ -25,6 +25,7 @@ int run(int argc, char** argv) {
   add_disasm(app, exit_code);
   add_verify(app, exit_code);
   add_run(app, exit_code);
+  add_test(app, exit_code);
   add_bus(app, exit_code);
   add_param(app, exit_code);
   add_watch(app, exit_code);
