@@ -114,7 +114,7 @@ void add_test(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1U, 1'000'000U));
   verb->add_flag("--fail-fast", flags->suite.fail_fast, "begin no test any more when one has not passed");
   verb->add_option("--speed", flags->suite.run.speed,
-                   "commands per ms of every task, instead of P938 and P939")
+                   "commands per ms of every task, instead of P938 and P939, where the test does not say")
       ->check(CLI::Range(1U, 1'000'000U));
   verb->add_option("--junit", flags->junit, "write a report as JUnit XML; - is standard output");
   verb->add_option("--tap", flags->tap, "write a report as TAP 14");

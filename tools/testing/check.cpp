@@ -58,7 +58,8 @@ void Check::sample(Time now, int64_t value) {
                          expect_.condition.text()));
       break;
     default:
-      if (holds && !held_) occur(now);
+      // What is so from the beginning has not become so.
+      if (holds && !held_ && (!first || expect_.kind == Expect::Kind::Within)) occur(now);
   }
   held_ = holds;
 }

@@ -78,7 +78,7 @@ BuiltPlant build_plant(const TestCase& test, Programs& programs, const RunOption
     complete &= images.back().has_value();
   }
   if (!complete) return built;
-  const uint32_t speed = options.speed != 0 ? options.speed : test.speed;
+  const uint32_t speed = test.speed != 0 ? test.speed : options.speed;
   std::optional<vm::Rates> rates;
   if (speed != 0) rates = vm::Rates{{speed, speed, speed}};
   std::vector<runtime::PlantError> errors;

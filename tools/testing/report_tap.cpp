@@ -24,7 +24,7 @@ std::string description(std::string_view text) {
 std::string scalar(std::string_view text) { return nlohmann::json(utf8(text)).dump(); }
 
 std::string block(std::string_view key, const std::string& text) {
-  std::string out = fmt::format("  {}: |\n", key);
+  std::string out = fmt::format("  {}: |2\n", key);
   std::istringstream lines(utf8(text));
   for (std::string line; std::getline(lines, line);) out += "    " + line + "\n";
   return out;

@@ -11,7 +11,7 @@
 namespace ipos::tools::testing {
 
 struct RunOptions {
-  uint32_t speed = 0;  // commands per ms of every task; 0: what the test or the parameters say
+  uint32_t speed = 0;  // commands per ms of every task where the test does not say; 0: P938 and P939
   uint64_t seed = 0;   // moves the seeds of faults that strike by chance
 
   // Called when a plant is built, before its first event: here collectors attach themselves to the machines

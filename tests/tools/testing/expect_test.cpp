@@ -152,7 +152,8 @@ TEST(Expectations, Sequence) {
 
 TEST(Expectations, Frames) {
   passes(kFrame + "within = \"150ms\"\n");
-  fails(kFrame + "within = \"50ms\"\n", "frame 400#* on sbus did not come from 0 ms to 50 ms");
+  fails(kFrame + "at = \"120ms\"\nwithin = \"50ms\"\n",
+        "frame 400#* on sbus did not come from 120 ms to 170 ms");
   passes(kFrame + "every = \"100ms\"\ntolerance = \"1ms\"\nduring = \"1s\"\n");
   fails(kFrame + "every = \"90ms\"\ntolerance = \"1ms\"\nduring = \"1s\"\n", "expected every 90 ms");
   fails(kFrame + "never = true\n" + kToEnd, "400#01020304 came on sbus at ");
@@ -212,6 +213,29 @@ TEST(Steps, SendAndAwaitFrames) {
   passes(send + "[[step]]\nbus = \"sbus\"\nawait = \"00C#*\"\nwithin = \"5ms\"\n" + kCount + "max = 2\n");
   fails(send + "[[step]]\nbus = \"sbus\"\nawait = \"00D#*\"\nwithin = \"5ms\"\n" + kCount + "equals = 99\n",
         "frame 00D#* on sbus did not come from 10 ms to 15 ms");
+}
+
+// The telegram of 1053 1610 p. 28 with its block check 57h, worked out by the step; the slave answers.
+TEST(Steps, SendAndAwaitTelegrams) {
+  const TemporaryFolder folder;
+  const std::string plant =
+      "[[bus]]\nname = \"line1\"\nkind = \"rs485\"\n"
+      "[[station]]\nname = \"unit1\"\nunit = \"md60a\"\nrs485 = \"line1\"\n[station.parameters]\nP810 = 1\n";
+  const std::string expect =
+      "[[expect]]\nbus = \"line1\"\nsequence = [\"02 01 05 00 06 3A 98 01 F4 57\", \"1D 01 05 *\"]\nduring = "
+      "\"100ms\"\n";
+  const std::string send =
+      "[[step]]\nat = \"10ms\"\nbus = \"line1\"\nsend = \"02 01 05 00 06 3A 98 01 F4 bcc\"\n";
+  const std::string await = "[[step]]\nbus = \"line1\"\nawait = \"response of 1, 3PD*\"\nwithin = \"70ms\"\n";
+  folder.write("a.test.toml", plant + expect + send + await);
+  CommandResult result = run_ipos({"test", "a.test.toml"}, folder.path());
+  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+  folder.write(
+      "a.test.toml",
+      plant + send + "[[expect]]\nbus = \"line1\"\ntelegram = \"1D *\"\nnever = true\nduring = \"100ms\"\n");
+  result = run_ipos({"test", "a.test.toml"}, folder.path());
+  EXPECT_EQ(result.exit_code, 1) << result.out << result.err;
+  EXPECT_TRUE(contains(result.out, "(response of 1, 3PD")) << result.out;
 }
 
 TEST(Steps, FaultsOfLinesAndDrives) {

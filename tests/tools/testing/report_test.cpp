@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "tests/tools/command.hpp"
+#include "tools/testing/test_case.hpp"
 
 namespace ipos::tests {
 namespace {
@@ -43,6 +44,14 @@ TEST(Report, InTheDocumentationIsReal) {
   const size_t begin = at + command.size();
   EXPECT_EQ(page.substr(begin, page.find("```", begin) - begin),
             run_ipos({"test", kFeeder}, project("")).out);
+}
+
+TEST(Report, DocumentationHasEveryState) {
+  const std::string page = read_text(project("docs/testing.md"));
+  for (const tools::testing::StationState& state : tools::testing::kStationStates) {
+    const std::string row = "| `" + std::string(state.name) + "` | " + std::string(state.meaning) + " |\n";
+    EXPECT_TRUE(contains(page, row)) << row;
+  }
 }
 
 TEST(Report, SaysWhenAValueComesTooLate) {

@@ -3,7 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <atomic>
+#include <set>
+
 #include "tests/tools/command.hpp"
+#include "tools/testing/read_tests.hpp"
+#include "tools/testing/suite.hpp"
 
 namespace ipos::tests {
 namespace {
@@ -248,6 +254,27 @@ TEST_F(Runner, CommentsOfAProgram) {
   result = run({"D.IPC"});
   EXPECT_EQ(result.exit_code, 65);
   EXPECT_TRUE(contains(result.out, "D.IPC:4:11: error: not understood")) << result.out;
+}
+
+// Where collectors attach themselves: once a test, before anything happens, and gone before the plant is.
+TEST(Prepare, SeesEachPlantBeforeItsFirstEvent) {
+  const TemporaryFolder folder;
+  folder.write("A.IPC", kProgram);
+  const auto tests = tools::testing::read_test_file((folder.path() / "a.test.toml").string(), kGood);
+  tools::testing::SuiteOptions options;
+  options.repeat = 3;
+  options.jobs = 2;
+  std::atomic<int> begun = 0, ended = 0;
+  options.run.prepare = [&](runtime::Plant& plant) -> std::shared_ptr<void> {
+    EXPECT_EQ(plant.now(), 0);
+    EXPECT_NE(plant.stations()[0]->machine(), nullptr);
+    ++begun;
+    return {nullptr, [&](void*) { ++ended; }};
+  };
+  for (const auto& result : tools::testing::run_suite(tests, options))
+    EXPECT_EQ(result.outcome, tools::testing::Outcome::Passed);
+  EXPECT_EQ(begun, 3);
+  EXPECT_EQ(ended, 3);
 }
 
 // The programs of the compiler's own suite say in the same words what must come out.
