@@ -15,19 +15,22 @@ namespace fs = std::filesystem;
 
 const std::vector<std::string_view> kOwnKeys = {"plant", "plant_expects", "speed", "step", "expect", "case"};
 
+struct CaseValue {
+  std::string name;
+  std::string toml;   // as TOML writes it
+  std::string plain;  // the characters of a text, else the same
+};
 struct Case {
   std::string name;
-  std::vector<std::pair<std::string, std::string>> values;  // as TOML writes them
+  std::vector<CaseValue> values;
   FilePlace place;
 };
 
-std::string toml_text(const toml::node& node) {
+CaseValue case_value(std::string_view name, const toml::node& node) {
   std::ostringstream out;
-  if (const auto* text = node.as_string())
-    out << toml::value<std::string>(text->get());
-  else
-    node.visit([&](const auto& value) { out << value; });
-  return out.str();
+  node.visit([&](const auto& value) { out << value; });
+  const auto* text = node.as_string();
+  return {std::string(name), out.str(), text == nullptr ? out.str() : text->get()};
 }
 
 std::vector<Case> read_cases(PlantReader& reader, const toml::table& root) {
@@ -35,12 +38,12 @@ std::vector<Case> read_cases(PlantReader& reader, const toml::table& root) {
   reader.for_each_table(root, "case", [&](const toml::table& table) {
     Case one{std::to_string(cases.size() + 1), {}, place_of(table)};
     if (table.contains("name")) one.name = reader.text(table, "name", "a [[case]]", true);
-    one.values.emplace_back("name", toml_text(toml::value<std::string>(one.name)));
+    one.values.push_back(case_value("name", toml::value<std::string>(one.name)));
     for (const auto& [key, node] : table) {
       if (node.is_table() || node.is_array_of_tables())
         reader.error(place_of(node), "a [[case]] has names and values");
       else if (key.str() != "name")
-        one.values.emplace_back(key.str(), toml_text(node));
+        one.values.push_back(case_value(key.str(), node));
     }
     cases.push_back(std::move(one));
   });
@@ -74,17 +77,14 @@ std::string substitute(PlantReader& reader, const std::string& text, const Case&
     }
     const std::string name = text.substr(at + 2, end - at - 2);
     const auto value = std::find_if(one.values.begin(), one.values.end(),
-                                    [&](const auto& candidate) { return candidate.first == name; });
-    if (value == one.values.end()) {
+                                    [&](const CaseValue& candidate) { return candidate.name == name; });
+    if (value == one.values.end())
       reader.error(place_at(text, at),
                    one.place.line == 0
                        ? fmt::format("'${}' is a value of a [[case]], and there is none", name)
                        : fmt::format("case '{}' has no value '{}'", one.name, name));
-    } else if (quoted || value->second.front() != '"') {
-      out += value->second;
-    } else {
-      out += value->second.substr(1, value->second.size() - 2);
-    }
+    else
+      out += quoted ? value->toml : value->plain;
     at = end + 1;
   }
   return out;

@@ -215,7 +215,7 @@ TEST(Steps, SendAndAwaitFrames) {
         "frame 00D#* on sbus did not come from 10 ms to 15 ms");
 }
 
-// The telegram of 1053 1610 p. 28 with its block check 57h, worked out by the step; the slave answers.
+// The block check is worked out by the step: the exclusive-or of all bytes, 57h by hand. The slave answers.
 TEST(Steps, SendAndAwaitTelegrams) {
   const TemporaryFolder folder;
   const std::string plant =

@@ -224,7 +224,7 @@ TEST_F(Runner, ProgramsThatDoNotCompileAreErrors) {
 }
 
 TEST_F(Runner, AFaultThatNothingExpectsFailsTheTest) {
-  folder_.write("F.IPC", "long a, *p;\nmain()\n{\n  a = 5;\n  p = 100000;\n  *p = 1;\n}\n");
+  folder_.write("F.IPC", "long a, p;\nmain()\n{\n  a = 5;\n  p = 100000;\n  *p = 1;\n}\n");
   const std::string station = "[[station]]\nname = \"u\"\nunit = \"md60a\"\nprogram = \"F.IPC\"\n";
   const std::string expect = "[[expect]]\nvariable = \"a\"\nequals = 5\nat = \"100ms\"\n";
   folder_.write("f.test.toml", station + expect);
