@@ -58,4 +58,16 @@ void write_file(const std::string& path, std::span<const uint8_t> bytes) {
   if (!good) throw Failure(kIoError, fmt::format("{}: {}", path, std::strerror(errno)));
 }
 
+std::ofstream open_output(const std::string& path) {
+  std::ofstream file;
+  if (path.empty()) return file;
+  file.open(path, std::ios::binary);
+  if (!file) throw Failure(kIoError, fmt::format("{}: cannot be written", path));
+  return file;
+}
+
+void close_output(std::ofstream& file, const std::string& path) {
+  if (!path.empty() && !file.flush()) throw Failure(kIoError, fmt::format("{}: cannot be written", path));
+}
+
 }  // namespace ipos::tools

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <fstream>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,5 +14,9 @@ namespace ipos::tools {
 std::string read_file(const std::string& path);
 std::optional<std::string> try_read_file(const std::string& path);  // nothing when it cannot be read
 void write_file(const std::string& path, std::span<const uint8_t> bytes);
+
+// For what is written bit by bit. Nothing is opened for an empty path.
+std::ofstream open_output(const std::string& path);
+void close_output(std::ofstream& file, const std::string& path);
 
 }  // namespace ipos::tools

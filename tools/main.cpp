@@ -20,13 +20,14 @@ struct Verb {
 
 // In the order of --help.
 constexpr Verb kVerbs[] = {
-    {"build", ipos::tools::add_build},   {"asm", ipos::tools::add_asm},
-    {"disasm", ipos::tools::add_disasm}, {"verify", ipos::tools::add_verify},
-    {"run", ipos::tools::add_run},       {"bus", ipos::tools::add_bus},
-    {"param", ipos::tools::add_param},   {"watch", ipos::tools::add_watch},
-    {"scan", ipos::tools::add_scan},     {"explain", ipos::tools::add_explain},
-    {"fmt", ipos::tools::add_fmt},       {"lsp", ipos::tools::add_lsp},
-    {"debug", ipos::tools::add_debug},   {"dap", ipos::tools::add_dap},
+    {"build", ipos::tools::add_build},     {"asm", ipos::tools::add_asm},
+    {"disasm", ipos::tools::add_disasm},   {"verify", ipos::tools::add_verify},
+    {"run", ipos::tools::add_run},         {"test", ipos::tools::add_test},
+    {"bus", ipos::tools::add_bus},         {"param", ipos::tools::add_param},
+    {"watch", ipos::tools::add_watch},     {"scan", ipos::tools::add_scan},
+    {"explain", ipos::tools::add_explain}, {"fmt", ipos::tools::add_fmt},
+    {"lsp", ipos::tools::add_lsp},         {"debug", ipos::tools::add_debug},
+    {"dap", ipos::tools::add_dap},
 };
 
 // All verbs cost a third of the start of a short run: only the one asked for is made, all for help and

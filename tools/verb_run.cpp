@@ -6,15 +6,15 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 #include "runtime/bus/log/candump.hpp"
 #include "runtime/bus/log/serial_log.hpp"
 #include "runtime/plant/plant.hpp"
 #include "stdlib/parameters.hpp"
 #include "tools/coverage/collector.hpp"
-#include "tools/coverage/write.hpp"
+#include "tools/coverage_reports.hpp"
 #include "tools/failure.hpp"
+#include "tools/files.hpp"
 #include "tools/interrupt.hpp"
 #include "tools/plant_input.hpp"
 #include "tools/plot_svg.hpp"
@@ -121,19 +121,6 @@ size_t print_expectations(const runtime::Plant& plant, const std::string& file) 
   return failed;
 }
 
-// Nothing is opened for an empty path.
-std::ofstream open_output(const std::string& path) {
-  std::ofstream file;
-  if (path.empty()) return file;
-  file.open(path, std::ios::binary);
-  if (!file) throw Failure(kIoError, fmt::format("{}: cannot be written", path));
-  return file;
-}
-
-void close_output(std::ofstream& file, const std::string& path) {
-  if (!path.empty() && !file.flush()) throw Failure(kIoError, fmt::format("{}: cannot be written", path));
-}
-
 using TraceWriter = void (*)(std::ostream&, const Recording&);
 
 // By the ending of the file's name.
@@ -144,61 +131,6 @@ TraceWriter trace_writer(const std::string& path) {
   if (ending == ".jsonl") return write_jsonl;
   throw Failure(kUsage, fmt::format("--trace {}: the name must end in .csv, .vcd or .jsonl", path));
 }
-
-using CoverageWriter = void (*)(std::ostream&, const coverage::Coverage&);
-
-// By the ending of the file's name; "-" is text to standard output.
-CoverageWriter coverage_writer(const std::string& path) {
-  const std::string ending = std::filesystem::path(path).extension().string();
-  if (path == "-" || ending == ".txt") return coverage::write_text;
-  if (ending == ".info") return coverage::write_lcov;
-  if (ending == ".xml") return coverage::write_cobertura;
-  throw Failure(kUsage,
-                fmt::format("--coverage {}: the name must end in .info, .xml or .txt, or be -", path));
-}
-
-// Opened before the run; its part of standard output comes behind the report.
-class CoverageReports {
- public:
-  CoverageReports(const std::vector<std::string>& paths, const std::string& format, runtime::Plant& plant) {
-    if (paths.empty()) return;
-    for (const std::string& path : paths) {
-      if (path == "-" && format == "json")
-        throw Failure(kUsage, "--coverage - does not go with --format json; write it to a file");
-      reports_.push_back({path, coverage_writer(path), {}});
-    }
-    collector_.emplace(plant);
-    if (collector_->empty())
-      throw Failure(kBadInput, "--coverage: no station has a program that knows its source lines");
-    for (Report& report : reports_)
-      if (report.path != "-") report.file = open_output(report.path);
-  }
-
-  void write() {
-    if (!collector_) return;
-    const coverage::Coverage all = collector_->coverage();
-    for (Report& report : reports_) {
-      if (report.path == "-") {
-        std::ostringstream text;
-        report.write(text, all);
-        fmt::print("\n{}", text.str());
-      } else {
-        report.write(report.file, all);
-        close_output(report.file, report.path);
-      }
-    }
-  }
-
- private:
-  struct Report {
-    std::string path;
-    CoverageWriter write;
-    std::ofstream file;
-  };
-
-  std::vector<Report> reports_;
-  std::optional<coverage::Collector> collector_;
-};
 
 int run(const RunFlags& flags) {
   const Time limit = flags.duration.empty() ? 60 * runtime::kSecond : runtime::parse_duration(flags.duration);
@@ -213,6 +145,7 @@ int run(const RunFlags& flags) {
 
   if (!flags.signals.empty() && flags.plot.empty() && flags.trace.empty())
     throw Failure(kUsage, "--signals needs --plot or --trace");
+  CoverageReports coverage(flags.coverage, flags.format == "json");
   const TraceWriter write_trace = trace_writer(flags.trace);
   std::optional<Recorder> recorder;
   if (!flags.plot.empty() || !flags.trace.empty()) recorder.emplace(plant, flags.signals);
@@ -223,7 +156,13 @@ int run(const RunFlags& flags) {
   runtime::SerialLog serial_log(serial_file);
   if (log_file.is_open()) plant.add_observer(log);
   if (serial_file.is_open()) plant.add_observer(serial_log);
-  CoverageReports coverage(flags.coverage, flags.format, plant);
+  std::optional<coverage::Collector> collector;
+  if (coverage.wanted()) {
+    collector.emplace(plant);
+    if (collector->empty())
+      throw Failure(kBadInput, "--coverage: no station has a program that knows its source lines");
+    coverage.open();
+  }
 
   std::optional<TraceHash> trace_hash;
   if (flags.trace_hash) trace_hash.emplace(plant);
@@ -261,7 +200,7 @@ int run(const RunFlags& flags) {
                      [&](const auto& station) { return !watch_rows(*station, {name}).empty(); }))
       fmt::print(stderr, "ipos: warning: no station has a variable '{}'\n", name);
   fmt::print("{}", flags.format == "json" ? json_report(plant, watch) : text_report(plant, watch));
-  coverage.write();
+  if (collector) coverage.write(collector->coverage());
   print_journal(plant, flags.why);
   if (trace_hash) fmt::print(stderr, "trace hash {}\n", trace_hash->text());
   const size_t unmet = print_expectations(plant, flags.file);
@@ -301,11 +240,7 @@ void add_run(CLI::App& app, int& exit_code) {
                    "setpoint and status of every station")
       ->delimiter(',')
       ->allow_extra_args(false);
-  verb->add_option(
-          "--coverage", flags->coverage,
-          "write which source lines and branches were executed: .info (lcov), .xml (Cobertura), .txt, "
-          "or - for text to the terminal; may be given several times")
-      ->allow_extra_args(false);
+  add_coverage_option(*verb, flags->coverage);
   verb->add_option("--format", flags->format, "text or json")->check(CLI::IsMember({"text", "json"}));
   verb->add_flag("--trace-hash", flags->trace_hash,
                  "print one number over all states, frames and telegrams, to compare runs and builds");

@@ -13,6 +13,7 @@ void add_asm(CLI::App& app, int& exit_code);
 void add_disasm(CLI::App& app, int& exit_code);
 void add_verify(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
+void add_test(CLI::App& app, int& exit_code);
 void add_bus(CLI::App& app, int& exit_code);
 void add_param(CLI::App& app, int& exit_code);
 void add_watch(CLI::App& app, int& exit_code);

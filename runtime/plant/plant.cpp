@@ -114,17 +114,20 @@ void Plant::start_checks() {
 }
 
 void Plant::plant_faults() {
-  for (const FaultConfig& config : file_.faults) {
-    CanLine* line = find_line(config.bus);
-    LineFault fault = config.fault;
-    fault.node = config.station.empty() ? kNoNode : find_node(*line, config.station);
-    if (!config.station.empty() && fault.node == kNoNode)
+  for (const FaultConfig& config : file_.faults)
+    if (!plant_fault(config))
       journal_.note(
           queue_.now(), Weight::Warning, config.station,
           fmt::format("the fault planted on bus '{}' has no effect: the station is not on it", config.bus));
-    else
-      line->plant(fault);
-  }
+}
+
+bool Plant::plant_fault(const FaultConfig& config) {
+  CanLine* line = find_line(config.bus);
+  LineFault fault = config.fault;
+  fault.node = config.station.empty() ? kNoNode : find_node(*line, config.station);
+  if (!config.station.empty() && fault.node == kNoNode) return false;
+  line->plant(fault);
+  return true;
 }
 
 NodeId Plant::find_node(const CanLine& line, std::string_view station) const {

@@ -73,6 +73,11 @@ class Plant final : private CanObserver, private SbusCheckClient {
   EventQueue& queue() { return queue_; }
   uint32_t next_source() { return next_source_++; }
 
+  // For a test that acts on the plant from outside while it runs.
+  Surroundings& surroundings() { return *surroundings_; }
+  // Plants a fault of a line, whose times are those of the plant. False: its station is not on the bus.
+  bool plant_fault(const FaultConfig& config);
+
   const PlantFile& file() const { return file_; }
   std::vector<std::unique_ptr<Station>>& stations() { return stations_; }
   const std::vector<std::unique_ptr<Station>>& stations() const { return stations_; }

@@ -8,9 +8,8 @@
 #include "runtime/plant/serial_plan.hpp"
 
 namespace ipos::runtime {
-namespace {
 
-void cross_check(PlantReader& reader) {
+void check_plant(PlantReader& reader) {
   for (const auto& [use, kind] : reader.bus_uses) {
     const auto& buses = reader.result.plant.buses;
     const auto bus =
@@ -28,35 +27,44 @@ void cross_check(PlantReader& reader) {
       reader.error(place, fmt::format("there is no station '{}'", name));
   if (reader.result.plant.stations.empty() && reader.result.errors.empty())
     reader.error({1, 1}, "the plant has no [[station]]");
+  std::stable_sort(reader.result.errors.begin(), reader.result.errors.end(),
+                   [](const auto& a, const auto& b) {
+                     return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
+                   });
 }
 
-}  // namespace
-
-PlantFileResult read_plant_file(std::string_view text) {
-  PlantReader reader;
+std::optional<toml::table> parse_toml(PlantReader& reader, std::string_view text) {
   if (const auto place = stray_character(text)) {
     reader.error(*place, "this character may only stand in a text or a comment");
-    return std::move(reader.result);
+    return std::nullopt;
   }
-  const toml::parse_result parsed = toml::parse(text);
+  toml::parse_result parsed = toml::parse(text);
   if (!parsed) {
     reader.error(place_of(parsed.error().source()), fmt::format("{}", parsed.error().description()));
-    return std::move(reader.result);
+    return std::nullopt;
   }
-  const toml::table& root = parsed.table();
-  reader.known_keys(root, "the plant",
-                    {"bus", "station", "control", "fault", "stimulus", "wire", "switch", "expect"});
+  return std::move(parsed).table();
+}
+
+void read_plant_sections(PlantReader& reader, const toml::table& root,
+                         const std::vector<std::string_view>& also) {
+  std::vector<std::string_view> known = {"bus", "station", "control", "fault", "stimulus", "wire", "switch"};
+  known.insert(known.end(), also.begin(), also.end());
+  reader.known_keys(root, "the plant", known);
   read_buses(reader, root);
   read_stations(reader, root);
   read_controls(reader, root);
   read_faults(reader, root);
   read_surroundings(reader, root);
-  read_expectations(reader, root);
-  cross_check(reader);
-  std::stable_sort(reader.result.errors.begin(), reader.result.errors.end(),
-                   [](const auto& a, const auto& b) {
-                     return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
-                   });
+}
+
+PlantFileResult read_plant_file(std::string_view text) {
+  PlantReader reader;
+  const auto root = parse_toml(reader, text);
+  if (!root) return std::move(reader.result);
+  read_plant_sections(reader, *root, {"expect"});
+  read_expectations(reader, *root);
+  check_plant(reader);
   return std::move(reader.result);
 }
 

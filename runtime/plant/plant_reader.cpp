@@ -8,7 +8,7 @@
 namespace ipos::runtime {
 
 void PlantReader::known_keys(const toml::table& table, std::string_view what,
-                             std::initializer_list<std::string_view> keys) {
+                             const std::vector<std::string_view>& keys) {
   for (const auto& [key, value] : table) {
     if (std::find(keys.begin(), keys.end(), key.str()) != keys.end()) continue;
     error(place_of(key.source()),

@@ -44,8 +44,7 @@ class PlantReader {
   void error(FilePlace place, std::string text) { result.errors.push_back({place, std::move(text)}); }
 
   // Every other key is an error. `what` names the table.
-  void known_keys(const toml::table& table, std::string_view what,
-                  std::initializer_list<std::string_view> keys);
+  void known_keys(const toml::table& table, std::string_view what, const std::vector<std::string_view>& keys);
 
   template <typename Action>
   void for_each_table(const toml::table& root, std::string_view key, Action action) {
@@ -100,6 +99,14 @@ class PlantReader {
               Signal& out);
 };
 
+// The table of a TOML text; nothing with an error.
+std::optional<toml::table> parse_toml(PlantReader& reader, std::string_view text);
+// All sections of a plant but [[expect]]. `also` are keys of the root beside them, which the caller reads.
+void read_plant_sections(PlantReader& reader, const toml::table& root,
+                         const std::vector<std::string_view>& also);
+// At the end: what the sections say of each other; the errors come into the order of the file.
+void check_plant(PlantReader& reader);
+
 // The sections, each with its own file.
 void read_buses(PlantReader& reader, const toml::table& root);
 void read_stations(PlantReader& reader, const toml::table& root);
@@ -107,5 +114,9 @@ void read_controls(PlantReader& reader, const toml::table& root);
 void read_faults(PlantReader& reader, const toml::table& root);
 void read_surroundings(PlantReader& reader, const toml::table& root);  // stimulus, wire, switch
 void read_expectations(PlantReader& reader, const toml::table& root);
+
+// Parts of them that a test file has, too. Signal, action and times of a stimulus, but for station and `at`.
+bool read_stimulus(PlantReader& reader, const toml::table& table, std::string_view what, Stimulus& stimulus);
+void read_fault(PlantReader& reader, const toml::table& table);  // adds it to the result
 
 }  // namespace ipos::runtime

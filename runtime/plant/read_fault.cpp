@@ -48,6 +48,8 @@ void read_fault_choice(PlantReader& reader, const toml::table& table, LineFault&
                  "a fault strikes the n-th frame, or a rate of them: not both");
 }
 
+}  // namespace
+
 void read_fault(PlantReader& reader, const toml::table& table) {
   reader.known_keys(
       table, "[[fault]]",
@@ -78,8 +80,6 @@ void read_fault(PlantReader& reader, const toml::table& table) {
     reader.error(config.place, "until must be after from");
   reader.result.plant.faults.push_back(std::move(config));
 }
-
-}  // namespace
 
 void read_faults(PlantReader& reader, const toml::table& root) {
   reader.for_each_table(root, "fault", [&](const toml::table& table) { read_fault(reader, table); });

@@ -41,17 +41,17 @@ bool read_value(PlantReader& reader, const toml::node& node, std::string_view ke
   return false;
 }
 
-void read_action(PlantReader& reader, const toml::table& table, Stimulus& stimulus) {
+void read_action(PlantReader& reader, const toml::table& table, std::string_view what, Stimulus& stimulus) {
   const ActionKey* found = nullptr;
   for (const ActionKey& row : kActions) {
     if (table.get(row.key) == nullptr) continue;
     if (found != nullptr)
       return reader.error(place_of(*table.get(row.key)),
-                          fmt::format("a [[stimulus]] has either {} or {}", found->key, row.key));
+                          fmt::format("{} has either {} or {}", what, found->key, row.key));
     found = &row;
   }
   if (found == nullptr)
-    return reader.error(stimulus.place, "a [[stimulus]] needs set, force, pulse or release");
+    return reader.error(stimulus.place, fmt::format("{} needs set, force, pulse or release", what));
   stimulus.action = found->action;
   const toml::node& node = *table.get(found->key);
   if (found->action == Stimulus::Action::Release) {
@@ -61,12 +61,10 @@ void read_action(PlantReader& reader, const toml::table& table, Stimulus& stimul
   }
 }
 
-void read_times(PlantReader& reader, const toml::table& table, Stimulus& stimulus) {
-  constexpr std::string_view kWhat = "a [[stimulus]]";
+void read_times(PlantReader& reader, const toml::table& table, std::string_view what, Stimulus& stimulus) {
   const bool pulse = stimulus.action == Stimulus::Action::Pulse;
-  stimulus.at = reader.duration(table, "at", kWhat, true);
-  stimulus.length = reader.duration(table, "for", pulse ? "a pulse" : kWhat, pulse);
-  stimulus.every = reader.duration(table, "every", kWhat, false);
+  stimulus.length = reader.duration(table, "for", pulse ? "a pulse" : what, pulse);
+  stimulus.every = reader.duration(table, "every", what, false);
   if (const toml::node* node = table.get("for")) {
     if (!pulse && stimulus.action != Stimulus::Action::Force)
       reader.error(place_of(*node), "only force and pulse have a length (for)");
@@ -84,18 +82,17 @@ void read_times(PlantReader& reader, const toml::table& table, Stimulus& stimulu
   }
 }
 
-void read_stimulus(PlantReader& reader, const toml::table& table) {
+void read_stimuli(PlantReader& reader, const toml::table& table) {
+  constexpr std::string_view kWhat = "a [[stimulus]]";
   reader.known_keys(table, "[[stimulus]]",
                     {"station", "at", "variable", "parameter", "input", "analog", "set", "force", "pulse",
                      "release", "for", "every", "times"});
   Stimulus stimulus;
   stimulus.place = place_of(table);
-  stimulus.signal.station = reader.station(table, "a [[stimulus]]");
-  if (!reader.signal(table, "a [[stimulus]]", {"variable", "parameter", "input", "analog"}, stimulus.signal))
-    return;
-  read_action(reader, table, stimulus);
-  read_times(reader, table, stimulus);
-  reader.result.plant.stimuli.push_back(std::move(stimulus));
+  stimulus.signal.station = reader.station(table, kWhat);
+  stimulus.at = reader.duration(table, "at", kWhat, true);
+  if (read_stimulus(reader, table, kWhat, stimulus))
+    reader.result.plant.stimuli.push_back(std::move(stimulus));
 }
 
 // "unit1.DO01": station and terminal.
@@ -176,8 +173,16 @@ void check_drivers(PlantReader& reader) {
 
 }  // namespace
 
+bool read_stimulus(PlantReader& reader, const toml::table& table, std::string_view what, Stimulus& stimulus) {
+  if (!reader.signal(table, what, {"variable", "parameter", "input", "analog"}, stimulus.signal))
+    return false;
+  read_action(reader, table, what, stimulus);
+  read_times(reader, table, what, stimulus);
+  return true;
+}
+
 void read_surroundings(PlantReader& reader, const toml::table& root) {
-  reader.for_each_table(root, "stimulus", [&](const toml::table& table) { read_stimulus(reader, table); });
+  reader.for_each_table(root, "stimulus", [&](const toml::table& table) { read_stimuli(reader, table); });
   reader.for_each_table(root, "wire", [&](const toml::table& table) { read_wire(reader, table); });
   reader.for_each_table(root, "switch", [&](const toml::table& table) { read_switch(reader, table); });
   check_drivers(reader);

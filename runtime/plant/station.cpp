@@ -280,8 +280,15 @@ int32_t Station::read(uint16_t index) const {
 
 std::optional<uint32_t> Station::find_variable(std::string_view name) const {
   if (!image_) return std::nullopt;
+  const size_t bracket = std::min(name.find('['), name.size());
+  uint32_t element = 0;
+  if (bracket < name.size()) {
+    const char* last = name.data() + name.size() - 1;
+    const auto [end, status] = std::from_chars(name.data() + bracket + 1, last, element);
+    if (*last != ']' || end != last || status != std::errc()) return std::nullopt;
+  }
   for (const vm::Symbol& symbol : image_->symbols)
-    if (symbol.name == name) return symbol.variable;
+    if (symbol.name == name.substr(0, bracket) && element < symbol.count) return symbol.variable + element;
   if (name.size() < 2 || name[0] != 'H') return std::nullopt;
   uint32_t number = 0;
   const auto [end, status] = std::from_chars(name.data() + 1, name.data() + name.size(), number);

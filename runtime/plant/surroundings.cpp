@@ -27,16 +27,36 @@ void Surroundings::connect(const PlantFile& file, const std::vector<std::unique_
           cams_.push_back({*input, station.get(), row.from, row.to, row.active_high});
   for (const Stimulus& stimulus : file.stimuli)
     if (const auto port = find(stimulus.signal, stimulus.place)) {
-      due_.emplace(stimulus.at, Due{scripts_.size()});
+      due_.emplace(stimulus.at, Due{scripts_.size(), 0, {}});
       scripts_.push_back({*port, stimulus});
     }
 }
 
 void Surroundings::start() {
-  if (!leads_.empty() || !cams_.empty() || !due_.empty()) queue_.schedule(queue_.now(), source_, *this, 0);
+  wake(queue_.now());
+}
+
+void Surroundings::add(const SignalPort& port, const Stimulus& stimulus) {
+  due_.emplace(stimulus.at, Due{scripts_.size(), 0, {}});
+  scripts_.push_back({port, stimulus});
+  schedule_next(queue_.now());
+}
+
+void Surroundings::act(Time at, std::function<void()> action) {
+  due_.emplace(at, Due{0, 0, std::move(action)});
+  schedule_next(queue_.now());
+}
+
+// The earlier of this time and what was scheduled.
+void Surroundings::wake(Time at) {
+  if (at >= event_at_) return;
+  if (event_at_ != kNever) queue_.cancel(event_);
+  event_at_ = at;
+  event_ = queue_.schedule(at, source_, *this, 0);
 }
 
 void Surroundings::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
+  event_at_ = kNever;
   for (const Lead& lead : leads_) lead.to.drive((lead.from.read() != 0) != lead.invert ? 1 : 0);
   for (const Cam& cam : cams_) {
     const int32_t position = cam.station->shaft_position();
@@ -45,9 +65,11 @@ void Surroundings::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) 
   }
   while (!due_.empty() && due_.begin()->first <= now) {
     const Time at = due_.begin()->first;
-    const Due due = due_.begin()->second;
+    const Due due = std::move(due_.begin()->second);
     due_.erase(due_.begin());
-    if (due.ends != 0)
+    if (due.action)
+      due.action();
+    else if (due.ends != 0)
       release(scripts_[due.script].port, due.ends);
     else
       perform(at, due.script);
@@ -73,7 +95,7 @@ void Surroundings::perform(Time now, size_t script) {
   }
   ++s.done;
   if (stimulus.every != 0 && (stimulus.times == 0 || s.done < stimulus.times))
-    due_.emplace(now + stimulus.every, Due{script});
+    due_.emplace(now + stimulus.every, Due{script, 0, {}});
 }
 
 void Surroundings::hold(Time now, size_t script) {
@@ -89,7 +111,7 @@ void Surroundings::hold(Time now, size_t script) {
     port.line().forced = stimulus.value;
   else if (pulse && !held->before)
     held->before = port.read();
-  if (stimulus.length != 0) due_.emplace(now + stimulus.length, Due{script, held->number});
+  if (stimulus.length != 0) due_.emplace(now + stimulus.length, Due{script, held->number, {}});
 }
 
 // `number` 0 releases whatever holds; the end of a pulse only its own hold.
@@ -109,12 +131,12 @@ void Surroundings::write(Time now, const SignalPort& port, int32_t value) {
 }
 
 void Surroundings::schedule_next(Time now) {
-  Time next = now + kMillisecond;
+  Time next = (now / kMillisecond + 1) * kMillisecond;
   if (leads_.empty() && cams_.empty() && holds_.empty()) {
     if (due_.empty()) return;
     next = std::max(next, (due_.begin()->first + kMillisecond - 1) / kMillisecond * kMillisecond);
   }
-  queue_.schedule(next, source_, *this, 0);
+  wake(next);
 }
 
 }  // namespace ipos::runtime

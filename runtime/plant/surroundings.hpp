@@ -3,6 +3,7 @@
 // stations alike: so a wire brings the level its output had at the end of the millisecond before (ours).
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -27,6 +28,12 @@ class Surroundings final : private EventTarget {
 
   // At power-on, before the stations.
   void start();
+
+  // While the plant runs: one more stimulus, or anything else that acts from outside. Both happen at the
+  // beginning of the millisecond of their time, or of the next one if that has begun, behind what is due
+  // then already.
+  void add(const SignalPort& port, const Stimulus& stimulus);
+  void act(Time at, std::function<void()> action);
 
  private:
   struct Lead {  // a wire
@@ -54,7 +61,8 @@ class Surroundings final : private EventTarget {
   };
   struct Due {
     size_t script;
-    uint64_t ends = 0;  // number of the hold that ends; 0: the stimulus happens
+    uint64_t ends = 0;             // number of the hold that ends; 0: the stimulus happens
+    std::function<void()> action;  // of act(), which has no script
   };
 
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
@@ -63,6 +71,7 @@ class Surroundings final : private EventTarget {
   void release(const SignalPort& port, uint64_t number);
   void write(Time now, const SignalPort& port, int32_t value);
   void schedule_next(Time now);
+  void wake(Time at);
 
   EventQueue& queue_;
   uint32_t source_;
@@ -73,6 +82,8 @@ class Surroundings final : private EventTarget {
   std::vector<Hold> holds_;
   uint64_t holds_made_ = 0;
   std::multimap<Time, Due> due_;  // equal times in the order of the file
+  EventId event_ = kNoEvent;
+  Time event_at_ = kNever;  // of event_; kNever: none is pending
 };
 
 }  // namespace ipos::runtime

@@ -36,7 +36,7 @@ TEST(Usage, WrongCommandLinesAre64) {
 TEST(Usage, HelpAndVersion) {
   EXPECT_EQ(run_ipos({"--help"}).exit_code, 0);
   EXPECT_TRUE(contains(run_ipos({"--version"}).out, "ipos "));
-  for (const std::string verb : {"build", "run", "disasm", "verify", "asm", "explain", "fmt", "lsp"}) {
+  for (const std::string verb : {"build", "run", "test", "disasm", "verify", "asm", "explain", "fmt", "lsp"}) {
     const CommandResult result = run_ipos({verb, "--help"});
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_TRUE(contains(result.out, "Example")) << verb;

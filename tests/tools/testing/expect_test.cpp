@@ -1,0 +1,283 @@
+// Every kind of expectation, met and not met. The plant: a counter that goes up by one every 10 ms from 10 ms
+// on, a signal that is on every second count, and a cyclic frame of 100 ms.
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include "tests/tools/command.hpp"
+
+namespace ipos::tests {
+namespace {
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+const std::string kProgram = R"(#include <const.h>
+SCTRCYCL Tr;
+long lCount, lEven, lOther, lData;
+main()
+{
+  Tr.ObjectNo = 1024;
+  Tr.CycleTime = 100;
+  Tr.Offset = 0;
+  Tr.Format = 4;
+  Tr.DPointer = numof(lData);
+  lData = 0x01020304;
+  _SBusCommDef(SCD_TRCYCL, Tr);
+  _SBusCommOn();
+  lEven = 1;
+  while (1)
+  {
+    _Wait(10);
+    lCount++;
+    lEven = 1 - lEven;
+  }
+}
+)";
+
+const std::string kPlant = R"([[bus]]
+name = "sbus"
+kind = "can"
+
+[[station]]
+name = "unit1"
+unit = "md60a"
+program = "A.IPC"
+sbus = "sbus"
+
+[[station]]
+name = "unit2"
+unit = "md60a"
+sbus = "sbus"
+[station.parameters]
+P813 = 1
+P100 = "SBus"
+P101 = "SBus"
+[station.inputs]
+DI00 = 1
+DI01 = 1
+DI03 = 1
+
+)";
+
+// The test file: the plant and `items`.
+CommandResult run_items(const std::string& items, const std::vector<std::string>& flags = {}) {
+  const TemporaryFolder folder;
+  folder.write("A.IPC", kProgram);
+  folder.write("a.test.toml", kPlant + items);
+  std::vector<std::string> arguments = {"test", "a.test.toml", "--speed", "1000"};
+  arguments.insert(arguments.end(), flags.begin(), flags.end());
+  return run_ipos(arguments, folder.path());
+}
+
+void passes(const std::string& items) {
+  const CommandResult result = run_items(items);
+  EXPECT_EQ(result.exit_code, 0) << items << result.out << result.err;
+}
+
+void fails(const std::string& items, const std::string& because) {
+  const CommandResult result = run_items(items);
+  EXPECT_EQ(result.exit_code, 1) << items << result.out << result.err;
+  EXPECT_TRUE(contains(result.out, because)) << items << result.out;
+}
+
+const std::string kCount = "[[expect]]\nstation = \"unit1\"\nvariable = \"lCount\"\n";
+const std::string kEven = "[[expect]]\nstation = \"unit1\"\nvariable = \"lEven\"\n";
+const std::string kFrame = "[[expect]]\nbus = \"sbus\"\nframe = \"400#*\"\n";
+const std::string kToEnd = "[[step]]\nuntil = \"500ms\"\n";
+
+TEST(Expectations, Equality) {
+  passes(kCount + "at = \"95ms\"\nequals = 9\n");
+  fails(kCount + "at = \"95ms\"\nequals = 10\n", "lCount of unit1 is 9 at 95 ms, expected 10");
+  passes(kCount + "at = \"95ms\"\nequals = 10\ntolerance = 1\n");
+  passes(kCount + "at = \"95ms\"\nnot = 8\n");
+  fails(kCount + "at = \"95ms\"\nnot = 9\n", "expected not 9");
+}
+
+TEST(Expectations, RangeAndChoice) {
+  passes(kCount + "at = \"95ms\"\nmin = 9\nmax = 9\n");
+  passes(kCount + "at = \"95ms\"\nmin = 9\n");
+  fails(kCount + "at = \"95ms\"\nmin = 10\n", "is 9 at 95 ms, expected at least 10");
+  fails(kCount + "at = \"95ms\"\nmax = 8\n", "expected at most 8");
+  fails(kCount + "at = \"95ms\"\nmin = 1\nmax = 3\n", "expected 1 to 3");
+  passes(kCount + "at = \"95ms\"\none_of = [1, 9]\n");
+  fails(kCount + "at = \"95ms\"\none_of = [1, 8]\n", "expected one of 1, 8");
+}
+
+// The script goes on when it is met: 5 comes at 50 or 51 ms, 7 is met 20 ms later.
+TEST(Expectations, WithinATime) {
+  passes(kCount + "equals = 5\nwithin = \"60ms\"\n" + kCount + "equals = 7\nafter = \"23ms\"\n");
+  fails(kCount + "equals = 5\nwithin = \"40ms\"\n",
+        "lCount of unit1 did not become 5 from 0 ms to 40 ms, is ");
+}
+
+TEST(Expectations, Always) {
+  passes(kCount + "max = 50\nalways = true\n" + kToEnd);
+  fails(kCount + "max = 20\nalways = true\n" + kToEnd, "expected always at most 20");
+  passes(kCount + "max = 20\nalways = true\nduring = \"150ms\"\n" + kToEnd);
+}
+
+TEST(Expectations, Never) {
+  passes(kCount + "equals = 70\nnever = true\n" + kToEnd);
+  fails(kCount + "equals = 20\nnever = true\n" + kToEnd, "lCount of unit1 is 20 at 20");
+}
+
+TEST(Expectations, NumberOfTimes) {
+  // Even counts from 95 to 195 ms: 10, 12, 14, 16, 18.
+  const std::string window = "equals = 1\nat = \"95ms\"\nduring = \"100ms\"\n";
+  passes(kEven + window + "times = 5\n");
+  fails(kEven + window + "times = 6\n", "expected 6");
+  passes(kEven + window + "at_most = 5\n");
+  fails(kEven + window + "at_most = 4\n", "for the 5. time");
+  passes(kEven + window + "at_least = 5\n");
+  fails(kEven + window + "at_least = 6\n", "5 times from 95 ms to 195 ms, expected 6 at least");
+  passes(kEven + "equals = 1\nat_least = 3\nwithin = \"70ms\"\n");
+}
+
+TEST(Expectations, Period) {
+  passes(kEven + "equals = 1\nat = \"95ms\"\nduring = \"100ms\"\nevery = \"20ms\"\ntolerance = \"1ms\"\n");
+  fails(kEven + "equals = 1\nat = \"95ms\"\nduring = \"100ms\"\nevery = \"25ms\"\ntolerance = \"1ms\"\n",
+        "after the one before, expected every 25 ms");
+  fails(kCount + "equals = 5\nduring = \"100ms\"\nevery = \"20ms\"\n", "1 times from 0 ms to 100 ms");
+}
+
+TEST(Expectations, Sequence) {
+  passes(kCount + "sequence = [0, 1, 2, 3]\nduring = \"45ms\"\n");
+  passes(kCount + "sequence = [1, 2, 3]\nwithin = \"45ms\"\n");
+  fails(kCount + "sequence = [0, 1, 3]\nduring = \"45ms\"\n", "became 2 at 2");
+  fails(kCount + "sequence = [0, 1, 2, 3, 4, 5, 6]\nduring = \"45ms\"\n", "of the sequence, ");
+  passes(kEven + "sequence = [0, 1]\nrepeat = true\nat = \"5ms\"\nduring = \"300ms\"\n");
+}
+
+TEST(Expectations, Frames) {
+  passes(kFrame + "within = \"150ms\"\n");
+  fails(kFrame + "at = \"120ms\"\nwithin = \"50ms\"\n",
+        "frame 400#* on sbus did not come from 120 ms to 170 ms");
+  passes(kFrame + "every = \"100ms\"\ntolerance = \"1ms\"\nduring = \"1s\"\n");
+  fails(kFrame + "every = \"90ms\"\ntolerance = \"1ms\"\nduring = \"1s\"\n", "expected every 90 ms");
+  fails(kFrame + "never = true\n" + kToEnd, "400#01020304 came on sbus at ");
+  passes("[[expect]]\nbus = \"sbus\"\nframe = \"401#*\"\nnever = true\n" + kToEnd);
+  passes(kFrame + "always = true\n" + kToEnd);
+  fails("[[expect]]\nbus = \"sbus\"\nframe = \"401#*\"\nalways = true\n" + kToEnd, "expected only 401#*");
+  passes("[[expect]]\nbus = \"sbus\"\nsequence = [\"400#01020304\"]\nrepeat = true\nduring = \"450ms\"\n");
+  fails("[[expect]]\nbus = \"sbus\"\nsequence = [\"400#*\", \"401#*\"]\nduring = \"450ms\"\n",
+        "expected 401#*, element 2");
+  fails(kFrame + "at_most = 2\n" + kToEnd, "for the 3. time");
+}
+
+TEST(Expectations, StatesParametersAndProcessData) {
+  passes("[[expect]]\nstation = \"unit1\"\nstate = \"running\"\nequals = 1\nat = \"50ms\"\n");
+  fails("[[expect]]\nstation = \"unit1\"\nstate = \"fault\"\nequals = 8\nat = \"50ms\"\n",
+        "fault of unit1 is 0");
+  passes("[[expect]]\nstation = \"unit2\"\nparameter = \"P813\"\nequals = 1\nat = \"1ms\"\n");
+  passes("[[expect]]\nstation = \"unit2\"\nparameter = \"P101\"\nequals = \"SBus\"\nat = \"1ms\"\n");
+  fails("[[expect]]\nstation = \"unit2\"\nparameter = \"P101\"\nequals = \"RS-485\"\nat = \"1ms\"\n",
+        "P101 of unit2 is 3");
+  passes("[[expect]]\nstation = \"unit2\"\nprocess_data = \"PI2\"\nequals = 0\nat = \"10ms\"\n");
+}
+
+TEST(Expectations, ManyMayFailAndAllAreTold) {
+  const CommandResult result =
+      run_items(kCount + "at = \"95ms\"\nequals = 1\n" + kCount + "at = \"195ms\"\nequals = 2\n");
+  EXPECT_TRUE(contains(result.out, "is 9 at 95 ms, expected 1"));
+  EXPECT_TRUE(contains(result.out, "is 19 at 195 ms, expected 2"));
+}
+
+TEST(Steps, SetForceAndRelease) {
+  const std::string step = "[[step]]\nat = \"100ms\"\nstation = \"unit1\"\nvariable = \"lCount\"\n";
+  passes(step + "set = 1000\n" + kCount + "at = \"155ms\"\nmin = 1004\nmax = 1006\n");
+  passes(step + "force = 1000\n" + kCount + "at = \"155ms\"\nmin = 1000\nmax = 1001\n" +
+         "[[step]]\nat = \"200ms\"\nstation = \"unit1\"\nvariable = \"lCount\"\nrelease = true\n" + kCount +
+         "at = \"255ms\"\nmin = 1004\nmax = 1006\n");
+  passes(
+      "[[step]]\nat = \"10ms\"\nstation = \"unit2\"\nparameter = \"P130\"\nset = \"2.5 s\"\n"
+      "[[expect]]\nstation = \"unit2\"\nparameter = \"P130\"\nequals = 2500\n");
+  passes(
+      "[[step]]\nstation = \"unit2\"\ninput = \"DI02\"\nset = 1\n"
+      "[[expect]]\nstation = \"unit2\"\ninput = \"DI02\"\nequals = true\n");
+  fails("[[step]]\nstation = \"unit2\"\nparameter = \"P813\"\nset = 64\n" + kToEnd, "too large");
+}
+
+TEST(Steps, ProcessData) {
+  passes(
+      "[[step]]\nat = \"10ms\"\nstation = \"unit2\"\nprocess_data = \"PO2\"\nset = 5000\n"
+      "[[step]]\nat = \"10ms\"\nstation = \"unit2\"\nprocess_data = \"PO1\"\nforce = 6\n"
+      "[[expect]]\nstation = \"unit2\"\nprocess_data = \"PO2\"\nequals = 5000\n"
+      "[[expect]]\nstation = \"unit2\"\nstate = \"setpoint\"\nmin = 1\nwithin = \"1s\"\n");
+}
+
+// Control word, setpoint 1000 rpm, as a master sends them: the slave answers with its status.
+TEST(Steps, SendAndAwaitFrames) {
+  const std::string send = "[[step]]\nat = \"10ms\"\nbus = \"sbus\"\nsend = \"00B#000613880000\"\n";
+  passes(send + "[[step]]\nbus = \"sbus\"\nawait = \"00C#*\"\nwithin = \"5ms\"\n" + kCount + "max = 2\n");
+  fails(send + "[[step]]\nbus = \"sbus\"\nawait = \"00D#*\"\nwithin = \"5ms\"\n" + kCount + "equals = 99\n",
+        "frame 00D#* on sbus did not come from 10 ms to 15 ms");
+}
+
+// The block check is worked out by the step: the exclusive-or of all bytes, 57h by hand. The slave answers.
+TEST(Steps, SendAndAwaitTelegrams) {
+  const TemporaryFolder folder;
+  const std::string plant =
+      "[[bus]]\nname = \"line1\"\nkind = \"rs485\"\n"
+      "[[station]]\nname = \"unit1\"\nunit = \"md60a\"\nrs485 = \"line1\"\n[station.parameters]\nP810 = 1\n";
+  const std::string expect =
+      "[[expect]]\nbus = \"line1\"\nsequence = [\"02 01 05 00 06 3A 98 01 F4 57\", \"1D 01 05 *\"]\nduring = "
+      "\"100ms\"\n";
+  const std::string send =
+      "[[step]]\nat = \"10ms\"\nbus = \"line1\"\nsend = \"02 01 05 00 06 3A 98 01 F4 bcc\"\n";
+  const std::string await = "[[step]]\nbus = \"line1\"\nawait = \"response of 1, 3PD*\"\nwithin = \"70ms\"\n";
+  folder.write("a.test.toml", plant + expect + send + await);
+  CommandResult result = run_ipos({"test", "a.test.toml"}, folder.path());
+  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+  folder.write(
+      "a.test.toml",
+      plant + send + "[[expect]]\nbus = \"line1\"\ntelegram = \"1D *\"\nnever = true\nduring = \"100ms\"\n");
+  result = run_ipos({"test", "a.test.toml"}, folder.path());
+  EXPECT_EQ(result.exit_code, 1) << result.out << result.err;
+  EXPECT_TRUE(contains(result.out, "(response of 1, 3PD")) << result.out;
+}
+
+TEST(Steps, FaultsOfLinesAndDrives) {
+  const std::string cut =
+      "[[step]]\nat = \"150ms\"\nfault = { bus = \"sbus\", kind = \"cut\", station = \"unit1\", until = "
+      "\"200ms\" }\n";
+  passes(cut + kFrame + "at = \"160ms\"\nnever = true\nduring = \"180ms\"\n" + kFrame +
+         "at = \"360ms\"\nwithin = \"150ms\"\n");
+  passes(
+      "[[step]]\nat = \"10ms\"\nstation = \"unit2\"\ndrive_fault = 8\n"
+      "[[expect]]\nstation = \"unit2\"\nstate = \"fault\"\nequals = 8\n"
+      "[[step]]\nstation = \"unit2\"\nparameter = \"P840\"\nset = 1\nafter = \"10ms\"\n"
+      "[[expect]]\nstation = \"unit2\"\nstate = \"fault\"\nequals = 0\nafter = \"10ms\"\n");
+}
+
+TEST(Steps, ProgramsStopAndBeginAnew) {
+  const std::string stop = "[[step]]\nat = \"100ms\"\nstation = \"unit1\"\nprogram = \"stop\"\n";
+  passes(stop + kCount + "at = \"300ms\"\nmax = 10\n" +
+         "[[step]]\nstation = \"unit1\"\nprogram = \"start\"\n"
+         "[[expect]]\nstation = \"unit1\"\nstate = \"running\"\nequals = 1\n" +
+         kCount + "min = 12\nwithin = \"100ms\"\n");
+  fails("[[step]]\nat = \"100ms\"\nstation = \"unit1\"\nprogram = \"start\"\n" + kToEnd,
+        "the program runs already");
+}
+
+TEST(Steps, PowerOffAndOn) {
+  passes(
+      "[[step]]\nat = \"100ms\"\nstation = \"unit1\"\npower = \"off\"\n"
+      "[[expect]]\nstation = \"unit1\"\nstate = \"powered\"\nequals = 0\n" +
+      kFrame +
+      "after = \"1ms\"\nnever = true\nduring = \"200ms\"\n"
+      "[[step]]\nat = \"350ms\"\nstation = \"unit1\"\npower = \"on\"\n" +
+      kCount + "note = \"variables begin at 0\"\nafter = \"55ms\"\nmin = 4\nmax = 6\n" + kFrame +
+      "within = \"150ms\"\n");
+}
+
+TEST(Steps, AStepActsInItsMillisecondAndAnExpectationLooksAfterIt) {
+  passes(
+      "[[step]]\nat = \"100ms\"\nstation = \"unit1\"\nvariable = \"lOther\"\nset = 7\n"
+      "[[expect]]\nstation = \"unit1\"\nvariable = \"lOther\"\nequals = 0\nat = \"99ms\"\n"
+      "[[expect]]\nstation = \"unit1\"\nvariable = \"lOther\"\nequals = 7\nat = \"100ms\"\n");
+}
+
+}  // namespace
+}  // namespace ipos::tests

@@ -1,0 +1,226 @@
+// What comes out of a run: the text for people, JUnit XML by the rules of Jenkins' junit-10.xsd, TAP 14,
+// JSON.
+#include <gtest/gtest.h>
+#include <tinyxml2.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "tests/tools/command.hpp"
+#include "tools/testing/test_case.hpp"
+
+namespace ipos::tests {
+namespace {
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+const std::string kFeeder = "tests/tools/testing/broken/feeder.test.toml";
+
+// What a stranger needs to see what to mend: the program waits for DI11, the light barrier is at DI10.
+TEST(Report, OfABrokenProgramShowsWhatToMend) {
+  const CommandResult result = run_ipos({"test", kFeeder}, project(""));
+  EXPECT_EQ(result.exit_code, 1);
+  for (const char* part :
+       {"FAILED  tests/tools/testing/broken/feeder  2 checks in 0.400 s\n",
+        "feeder.test.toml:15:1: DO01 of feeder did not become 1 from 100 ms to 120 ms, is 0\n",
+        "(the pusher comes out when the light barrier sees a piece)\n", "> 15 | [[expect]]\n",
+        "    17 | output = \"DO01\"\n", "feeder.DI10 = 1 since 100 ms, 0 from ",
+        "feeder: task 1 is at tests/tools/testing/broken/FEEDER.IPC:12:", "while (!DI11)\n",
+        "feeder.test.toml:21:1: lPieces of feeder is 0 at 400 ms, expected 1\n",
+        "lPieces of feeder does not become 1 until 400 ms, the end of the test\n",
+        "1 test, 0 passed, 1 failed\n"})
+    EXPECT_TRUE(contains(result.out, part)) << part << "\n" << result.out;
+}
+
+TEST(Report, InTheDocumentationIsReal) {
+  const std::string page = read_text(project("docs/testing.md"));
+  const std::string command = "$ ipos test " + kFeeder + "\n";
+  const size_t at = page.find(command);
+  ASSERT_NE(at, std::string::npos);
+  const size_t begin = at + command.size();
+  EXPECT_EQ(page.substr(begin, page.find("```", begin) - begin),
+            run_ipos({"test", kFeeder}, project("")).out);
+}
+
+TEST(Report, DocumentationHasEveryState) {
+  const std::string page = read_text(project("docs/testing.md"));
+  for (const tools::testing::StationState& state : tools::testing::kStationStates) {
+    const std::string row = "| `" + std::string(state.name) + "` | " + std::string(state.meaning) + " |\n";
+    EXPECT_TRUE(contains(page, row)) << row;
+  }
+}
+
+TEST(Report, SaysWhenAValueComesTooLate) {
+  const TemporaryFolder folder;
+  folder.write("A.IPC", "long a;\nmain()\n{\n  _Wait(150);\n  a = 5;\n}\n");
+  folder.write("a.test.toml",
+               "[[station]]\nname = \"u\"\nunit = \"md60a\"\nprogram = \"A.IPC\"\n"
+               "[[expect]]\nvariable = \"a\"\nequals = 5\nat = \"100ms\"\n[[step]]\nuntil = \"300ms\"\n");
+  const CommandResult result = run_ipos({"test", "a.test.toml"}, folder.path());
+  EXPECT_TRUE(contains(result.out, "a of u becomes 5 at 15")) << result.out;
+  EXPECT_TRUE(contains(result.out, "u: task 1 waits at A.IPC:4:3: _Wait(150);\n")) << result.out;
+}
+
+// A run with a test that passes, one that fails, one that is malformed and one with characters that XML and
+// TAP have to escape.
+class Forms : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_.write("A.IPC", "long a;\nmain()\n{\n  a = 5;\n  while (1) ;\n}\n");
+    const std::string station = "[[station]]\nname = \"u\"\nunit = \"md60a\"\nprogram = \"A.IPC\"\n";
+    const std::string expect = "[[expect]]\nvariable = \"a\"\nat = \"100ms\"\nequals = ";
+    folder_.write("good.test.toml", station + expect + "5\n");
+    folder_.write("bad.test.toml", station + expect + "6\nnote = \"<&\\\"# \\u00e4\"\n" + expect + "7\n");
+    folder_.write("broken.test.toml", "x = 1\n");
+    folder_.write("odd & <#1>.test.toml", station + expect + "5\n");
+    result_ =
+        run_ipos({"test", ".", "--junit", "r.xml", "--tap", "r.tap", "--json", "r.json"}, folder_.path());
+  }
+  std::string report(const char* name) const { return read_text(folder_.path() / name); }
+  TemporaryFolder folder_;
+  CommandResult result_;
+};
+
+// Elements, their attributes (required ones with !) and children, as in junit-10.xsd.
+struct Rule {
+  std::set<std::string> attributes, required, children;
+};
+const std::map<std::string, Rule> kJunit = {
+    {"testsuites", {{"name", "time", "tests", "failures", "errors"}, {}, {"testsuite"}}},
+    {"testsuite",
+     {{"name", "tests", "failures", "errors", "group", "time", "skipped", "timestamp", "hostname", "id",
+       "package", "file", "log", "url"},
+      {"name", "tests", "failures", "errors"},
+      {"testsuite", "properties", "testcase", "system-out", "system-err"}}},
+    {"testcase",
+     {{"name", "time", "classname", "group"},
+      {"name"},
+      {"skipped", "error", "failure", "system-out", "system-err"}}},
+    {"failure", {{"type", "message"}, {}, {}}},
+    {"error", {{"type", "message"}, {}, {}}},
+    {"skipped", {{"type", "message"}, {}, {}}},
+};
+
+void check_element(const tinyxml2::XMLElement& element) {
+  const auto rule = kJunit.find(element.Name());
+  ASSERT_NE(rule, kJunit.end()) << element.Name();
+  std::set<std::string> names;
+  for (const auto* attribute = element.FirstAttribute(); attribute != nullptr;
+       attribute = attribute->Next()) {
+    names.insert(attribute->Name());
+    EXPECT_TRUE(rule->second.attributes.contains(attribute->Name()))
+        << element.Name() << " " << attribute->Name();
+  }
+  for (const std::string& name : rule->second.required)
+    EXPECT_TRUE(names.contains(name)) << element.Name() << " " << name;
+  for (const auto* child = element.FirstChildElement(); child != nullptr;
+       child = child->NextSiblingElement()) {
+    EXPECT_TRUE(rule->second.children.contains(child->Name())) << element.Name() << " " << child->Name();
+    check_element(*child);
+  }
+}
+
+void check_junit(const std::string& text) {
+  tinyxml2::XMLDocument document;
+  ASSERT_EQ(document.Parse(text.c_str(), text.size()), tinyxml2::XML_SUCCESS) << text;
+  ASSERT_STREQ(document.RootElement()->Name(), "testsuites");
+  check_element(*document.RootElement());
+}
+
+TEST_F(Forms, JunitIsAsJenkinsReadsIt) {
+  EXPECT_EQ(result_.exit_code, 65) << result_.out << result_.err;
+  const std::string text = report("r.xml");
+  check_junit(text);
+  tinyxml2::XMLDocument document;
+  ASSERT_EQ(document.Parse(text.c_str(), text.size()), tinyxml2::XML_SUCCESS);
+  const tinyxml2::XMLElement& root = *document.RootElement();
+  EXPECT_EQ(root.IntAttribute("tests"), 4);
+  EXPECT_EQ(root.IntAttribute("failures"), 1);
+  EXPECT_EQ(root.IntAttribute("errors"), 1);
+  const tinyxml2::XMLElement* suite = root.FirstChildElement("testsuite");
+  EXPECT_STREQ(suite->Attribute("name"), "bad.test.toml");
+  const tinyxml2::XMLElement* failure = suite->FirstChildElement("testcase")->FirstChildElement("failure");
+  ASSERT_NE(failure, nullptr);
+  EXPECT_STREQ(failure->Attribute("message"), "a of u is 5 at 100 ms, expected 6");
+  EXPECT_TRUE(contains(failure->GetText(), "(<&\"# \u00e4)"));
+  EXPECT_NE(failure->NextSiblingElement("failure"), nullptr);
+  suite = suite->NextSiblingElement();
+  EXPECT_NE(suite->FirstChildElement("testcase")->FirstChildElement("error"), nullptr);
+  suite = suite->NextSiblingElement()->NextSiblingElement();
+  EXPECT_STREQ(suite->FirstChildElement("testcase")->Attribute("name"), "odd & <#1>");
+}
+
+TEST_F(Forms, TapVersion14) {
+  std::istringstream in(report("r.tap"));
+  std::vector<std::string> points;
+  std::string line;
+  std::getline(in, line);
+  EXPECT_EQ(line, "TAP version 14");
+  std::getline(in, line);
+  EXPECT_EQ(line, "1..4");
+  bool in_yaml = false;
+  while (std::getline(in, line)) {
+    if (line == "  ---") {
+      EXPECT_FALSE(in_yaml);
+      EXPECT_TRUE(points.back().starts_with("not ok")) << points.back();
+      in_yaml = true;
+    } else if (line == "  ...") {
+      in_yaml = false;
+    } else if (in_yaml) {
+      EXPECT_TRUE(line.starts_with("  ")) << line;
+    } else {
+      points.push_back(line);
+    }
+  }
+  EXPECT_FALSE(in_yaml);
+  EXPECT_EQ(points, (std::vector<std::string>{"not ok 1 - bad", "not ok 2 - broken", "ok 3 - good",
+                                              "ok 4 - odd & <\\#1>"}));
+  EXPECT_TRUE(contains(report("r.tap"),
+                       "  message: \"a of u is 5 at 100 ms, expected 6\"\n  severity: fail\n  at:\n    file: "
+                       "\"bad.test.toml\"\n    line: 5\n    column: 1\n"));
+}
+
+TEST_F(Forms, Json) {
+  const nlohmann::json json = nlohmann::json::parse(report("r.json"));
+  EXPECT_EQ(json["tests"], 4);
+  EXPECT_EQ(json["passed"], 2);
+  EXPECT_EQ(json["failed"], 1);
+  EXPECT_EQ(json["error"], 1);
+  const nlohmann::json& bad = json["results"][0];
+  EXPECT_EQ(bad["name"], "bad");
+  EXPECT_EQ(bad["outcome"], "failed");
+  EXPECT_EQ(bad["checks"], 2);
+  EXPECT_EQ(bad["time_us"], 100'000);
+  EXPECT_EQ(bad["findings"][0]["line"], 5);
+  EXPECT_EQ(bad["findings"][0]["source"][0], "[[expect]]");
+  EXPECT_EQ(bad["findings"][1]["message"], "a of u is 5 at 100 ms, expected 7");
+  EXPECT_TRUE(contains(json["results"][1]["messages"], "broken.test.toml:1:1: error: unknown key 'x'"));
+}
+
+TEST_F(Forms, AReportOnStandardOutputStandsAlone) {
+  const CommandResult xml = run_ipos({"test", "good.test.toml", "--junit", "-"}, folder_.path());
+  check_junit(xml.out);
+  EXPECT_EQ(xml.exit_code, 0);
+  EXPECT_EQ(run_ipos({"test", "good.test.toml", "--junit", "-", "--tap", "-"}, folder_.path()).exit_code, 64);
+}
+
+TEST(Examples, HaveATestEach) {
+  namespace fs = std::filesystem;
+  const TemporaryFolder folder;
+  const std::string xml = (folder.path() / "examples.xml").string();
+  const CommandResult result = run_ipos({"test", "examples", "--junit", xml}, project(""));
+  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+  check_junit(read_text(xml));
+  for (const auto& entry : fs::recursive_directory_iterator(project("examples"))) {
+    const std::string path = entry.path().string();
+    if (!path.ends_with(".toml") || path.ends_with(".test.toml")) continue;
+    EXPECT_TRUE(fs::exists(path.substr(0, path.size() - 5) + ".test.toml")) << path << " has no test";
+  }
+}
+
+}  // namespace
+}  // namespace ipos::tests

@@ -1,0 +1,49 @@
+// The hands of a test: carries out its steps in the plant, at the beginning of the millisecond of their time,
+// before the stations. Sends from a station of its own on each bus the test sends on.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/testing/test_case.hpp"
+
+namespace ipos::tools::testing {
+
+class Actor {
+ public:
+  // `on_problem` hears what could not be done, when the step's time has come. Its stations are attached
+  // before the first event of the plant; `seed` moves the seeds of faults.
+  using Problem = std::function<void(const Item&, std::string)>;
+  Actor(runtime::Plant& plant, const std::vector<Item>& items, uint64_t seed, Problem on_problem);
+  ~Actor();
+  Actor(const Actor&) = delete;
+  Actor& operator=(const Actor&) = delete;
+
+  // Plans the step of an item; the item must outlive the run. Not for waits and awaits.
+  void plan(const Item& item, const Step& step, Time at);
+
+ private:
+  class Sender;
+
+  void attach(const std::string& bus);
+  runtime::Station& station(const std::string& name);
+  std::optional<std::string> set(const runtime::Stimulus& stimulus);
+  void write_words(const std::string& name, const runtime::DriveWords& words);
+  void set_word(const ProcessDataStep& step);
+  void plan_forced(const std::string& name, uint8_t word);
+  std::optional<std::string> control(const ProgramStep& step);
+  std::optional<std::string> plant_fault(runtime::FaultConfig fault, Time at);
+
+  runtime::Plant& plant_;
+  uint64_t seed_;
+  Problem on_problem_;
+  std::map<std::string, std::unique_ptr<Sender>> senders_;                // by bus
+  std::map<std::string, std::array<std::optional<uint16_t>, 3>> forced_;  // PO words by station
+};
+
+}  // namespace ipos::tools::testing

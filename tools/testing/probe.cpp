@@ -1,0 +1,144 @@
+// Readers of signals, and what a report shows of them.
+#include "tools/testing/probe.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <sstream>
+
+#include "runtime/bus/log/candump.hpp"
+#include "runtime/plant/signal_port.hpp"
+#include "tools/files.hpp"
+
+namespace ipos::tools::testing {
+namespace {
+
+constexpr size_t kChanges = 4;
+constexpr size_t kFrames = 8;
+constexpr size_t kReasons = 8;
+
+// "CONVEYOR.IPC:31:5: _Wait(300);" of "CONVEYOR.IPC:31:5"
+std::string with_source(const std::string& place) {
+  const size_t column = place.rfind(':');
+  const size_t line = column == std::string::npos ? column : place.rfind(':', column - 1);
+  if (line == std::string::npos) return place;
+  size_t number = 0;
+  std::from_chars(place.data() + line + 1, place.data() + column, number);
+  std::istringstream in(try_read_file(place.substr(0, line)).value_or(""));
+  std::string text;
+  for (size_t n = 0; n < number && std::getline(in, text);) ++n;
+  const size_t begin = text.find_first_not_of(" \t");
+  return begin == std::string::npos ? place : place + ": " + text.substr(begin);
+}
+
+}  // namespace
+
+Probe::Probe(runtime::Plant& plant, Listener on_event) : plant_(plant), on_event_(std::move(on_event)) {
+  plant.add_observer(static_cast<runtime::CanObserver&>(*this));
+  plant.add_observer(static_cast<runtime::SerialObserver&>(*this));
+}
+
+runtime::Station& Probe::station(const std::string& name) {
+  return **std::find_if(plant_.stations().begin(), plant_.stations().end(),
+                        [&](const auto& station) { return station->config().name == name; });
+}
+
+Reader Probe::reader_of(const Subject& subject, std::string& why) {
+  runtime::Station& station = this->station(subject.signal.station);
+  if (subject.kind == Subject::Kind::State)
+    return [&station, read = subject.state->read] { return int64_t{read(station)}; };
+  if (subject.kind == Subject::Kind::ProcessData)
+    return [&station, word = subject.word] {
+      const runtime::Drive& drive = station.drive().state();
+      return int64_t{word < 3 ? drive.po()[word] : drive.pi()[word - 3U]};
+    };
+  const auto port = runtime::SignalPort::find(plant_.stations(), subject.signal, why);
+  if (!port) return {};
+  return [port = *port] { return int64_t{port.read()}; };
+}
+
+Reader Probe::follow(const Subject& subject, std::string& why) {
+  for (const Followed& known : followed_)
+    if (known.subject == subject) return known.read;
+  Reader read = reader_of(subject, why);
+  if (read) followed_.push_back({subject, read, {}});
+  return read;
+}
+
+void Probe::sample(Time now) {
+  for (Followed& followed : followed_) {
+    const int64_t value = followed.read();
+    if (!followed.changes.empty() && followed.changes.back().value == value) continue;
+    followed.changes.push_back({now, value});
+    if (followed.changes.size() > kChanges) followed.changes.pop_front();
+  }
+}
+
+void Probe::note(Shown shown) {
+  on_event_(shown.bus, shown.time, shown.text, shown.meaning);
+  shown_.push_back(std::move(shown));
+  if (shown_.size() > kFrames) shown_.pop_front();
+}
+
+void Probe::on_frame(const runtime::CanLine& line, const runtime::FrameRecord& record) {
+  const std::string text = runtime::candump_line(record.end, line.name(), record.frame);
+  note({record.end, line.name(), text.substr(text.rfind(' ') + 1), ""});
+}
+
+void Probe::on_character(const runtime::Rs485Line& line, runtime::NodeId /*sender*/,
+                         const runtime::Character& character) {
+  const auto reception = receivers_[line.name()].take(character);
+  if (!reception) return;
+  note({reception->end, line.name(), fmt::format("{:02X}", fmt::join(reception->bytes.span(), " ")),
+        reception->telegram ? runtime::describe(*reception->telegram)
+                            : "void: " + std::string(serial_error_text(reception->telegram.error()))});
+}
+
+std::vector<std::string> Probe::tasks_of(const std::string& name) const {
+  std::vector<std::string> tasks;
+  for (const auto& station : plant_.stations()) {
+    const vm::Machine* machine = station->machine();
+    if (machine == nullptr || (!name.empty() && station->config().name != name)) continue;
+    const vm::Fault& fault = machine->fault();
+    if (fault.number != 0)
+      tasks.push_back(fmt::format("{}: ended by F{:02}, {}, at {}", station->config().name, fault.number,
+                                  fault.reason, with_source(station->source_place(fault.address))));
+    else if (station->program_over())
+      tasks.push_back(fmt::format("{}: the program has ended", station->config().name));
+    for (int task = 1; task <= vm::kTasks; ++task) {
+      const vm::TaskContext& context = machine->task(task);
+      if (context.state == vm::TaskState::Stopped) continue;
+      tasks.push_back(fmt::format("{}: task {} {} {}", station->config().name, task,
+                                  context.state == vm::TaskState::Waiting ? "waits at" : "is at",
+                                  with_source(station->source_place(context.pc))));
+    }
+  }
+  return tasks;
+}
+
+void Probe::describe(const Subject& subject, Finding& finding) const {
+  const std::string& station = subject.signal.station;
+  for (const Followed& followed : followed_) {
+    if (followed.changes.empty() || (!station.empty() && followed.subject.signal.station != station))
+      continue;
+    const Change& last = followed.changes.back();
+    std::string text = fmt::format("{}.{} = {} since {}", followed.subject.signal.station,
+                                   followed.subject.signal.name, last.value, time_text(last.time));
+    for (size_t n = followed.changes.size() - 1; n-- > 0;)
+      text += fmt::format(", {} from {}", followed.changes[n].value, time_text(followed.changes[n].time));
+    finding.values.push_back(std::move(text));
+  }
+  finding.tasks = tasks_of(station);
+  for (const Shown& shown : shown_)
+    finding.frames.push_back(fmt::format("{:>12}  {} {}{}", time_text(shown.time), shown.bus, shown.text,
+                                         shown.meaning.empty() ? "" : " | " + shown.meaning));
+  for (const runtime::JournalEntry& entry : plant_.journal().entries()) {
+    if (!station.empty() && !entry.station.empty() && entry.station != station) continue;
+    finding.reasons.push_back(fmt::format("{:>12}  {}{}{}", time_text(entry.time), entry.station,
+                                          entry.station.empty() ? "" : ": ", entry.text));
+    if (finding.reasons.size() > kReasons) finding.reasons.erase(finding.reasons.begin());
+  }
+}
+
+}  // namespace ipos::tools::testing

@@ -1,0 +1,64 @@
+// Compiling and loading without a word on the terminal.
+#include "tools/testing/programs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "compiler/codegen/compile.hpp"
+#include "compiler/diag/render.hpp"
+#include "tools/files.hpp"
+
+namespace ipos::tools::testing {
+namespace {
+
+Program read_image(const std::string& path, const std::string& bytes) {
+  Program program;
+  vm::ImageResult result = vm::read_image({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
+  if (result.error != vm::ImageError::None) {
+    program.messages =
+        fmt::format("{}: image refused at byte {}: {}\n", path, result.offset, to_text(result.error));
+    return program;
+  }
+  program.unit = stdlib::find_unit(result.image.unit);
+  program.image = std::move(result.image);
+  return program;
+}
+
+}  // namespace
+
+std::shared_ptr<const Program> Programs::load(const std::string& path, const stdlib::UnitType* unit) {
+  const std::lock_guard lock(mutex_);
+  auto& known = known_[{path, unit}];
+  if (!known) known = std::make_shared<const Program>(make(path, unit));
+  return known;
+}
+
+Program Programs::make(const std::string& path, const stdlib::UnitType* unit) const {
+  Program program;
+  const auto text = try_read_file(path);
+  if (!text) {
+    program.messages = fmt::format("{}: there is no such program\n", path);
+    return program;
+  }
+  if (!is_source(path)) return read_image(path, *text);
+  compiler::CompileOptions options;
+  options.include_dirs = flags_.include_dirs;
+  options.defines = flags_.defines;
+  options.read_file = try_read_file;
+  options.unit = unit != nullptr || flags_.unit.empty() ? unit : stdlib::find_unit(flags_.unit);
+  for (const std::string& warning : flags_.warnings) options.warnings.apply(warning);
+  compiler::Compilation compiled = compiler::compile(path, path, *text, options);
+  const auto& all = compiled.diagnostics.all();
+  program.messages = compiler::render_text(all, *compiled.sources, false);
+  for (const compiler::Diagnostic& diagnostic : all) {
+    const uint32_t line = compiled.sources->position(diagnostic.span.begin).line;
+    program.diagnostics.push_back({std::max(line, 1U), std::string(compiler::info(diagnostic.diag).code)});
+  }
+  std::sort(program.diagnostics.begin(), program.diagnostics.end());
+  program.unit = compiled.unit;
+  program.image = std::move(compiled.image);
+  return program;
+}
+
+}  // namespace ipos::tools::testing

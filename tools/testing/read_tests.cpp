@@ -1,0 +1,54 @@
+// Searches folders.
+#include "tools/testing/read_tests.hpp"
+
+#include <fmt/format.h>
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "tools/failure.hpp"
+#include "tools/files.hpp"
+#include "tools/program.hpp"
+
+namespace ipos::tools::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_test_file(const std::string& path) { return path.ends_with(".test.toml"); }
+
+std::vector<TestCase> tests_of(const std::string& path, const std::string& text) {
+  if (!is_source(path)) return read_test_file(path, text);
+  std::vector<TestCase> tests;
+  tests.push_back(read_program_test(path, text));
+  return tests;
+}
+
+}  // namespace
+
+std::vector<TestCase> read_tests(const std::string& path) {
+  if (!fs::is_directory(path)) {
+    if (!is_source(path) && !path.ends_with(".toml"))
+      throw Failure(kUsage, fmt::format("{}: a test is a folder, a .toml file or an .IPC source", path));
+    return tests_of(path, read_file(path));
+  }
+  std::vector<std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(path))
+    if (is_test_file(entry.path().string()) || is_source(entry.path().string()))
+      files.push_back(entry.path().lexically_normal().string());
+  std::sort(files.begin(), files.end());
+  std::vector<TestCase> tests;
+  for (const std::string& file : files) {
+    const std::string text = read_file(file);
+    if (is_source(file) && !expects_something(text)) continue;
+    for (TestCase& test : tests_of(file, text)) tests.push_back(std::move(test));
+  }
+  return tests;
+}
+
+bool matches(const std::string& pattern, const std::string& text) {
+  return fnmatch(pattern.c_str(), text.c_str(), 0) == 0;
+}
+
+}  // namespace ipos::tools::testing

@@ -1,0 +1,28 @@
+// Carries out one test: builds its plant, goes through its items in virtual time, looks at everything that is
+// expected meanwhile. Tests share nothing, so several can run at a time.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "tools/testing/programs.hpp"
+#include "tools/testing/result.hpp"
+
+namespace ipos::tools::testing {
+
+struct RunOptions {
+  uint32_t speed = 0;  // commands per ms of every task where the test does not say; 0: P938 and P939
+  uint64_t seed = 0;   // moves the seeds of faults that strike by chance
+
+  // Called when a plant is built, before its first event: here collectors attach themselves to the machines
+  // of its stations. What it returns lives until the test is over, but not longer than the plant. Called
+  // from the thread of the test.
+  std::function<std::shared_ptr<void>(runtime::Plant&)> prepare;
+};
+
+TestResult run_test(const TestCase& test, Programs& programs, const RunOptions& options);
+
+// How long a program may run that is expected to end.
+inline constexpr Time kProgramLimit = 60 * runtime::kSecond;
+
+}  // namespace ipos::tools::testing

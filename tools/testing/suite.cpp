@@ -1,0 +1,86 @@
+// Workers take the next test; results are told in the order of the tests.
+#include "tools/testing/suite.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "tools/interrupt.hpp"
+
+namespace ipos::tools::testing {
+namespace {
+
+class Suite {
+ public:
+  Suite(const std::vector<TestCase>& tests, const SuiteOptions& options, const ResultListener& on_result)
+      : tests_(tests),
+        options_(options),
+        on_result_(on_result),
+        programs_(options.compile),
+        results_(tests.size() * options.repeat) {}
+
+  std::vector<TestResult> run() {
+    std::vector<std::thread> workers;
+    const size_t wanted = std::min<size_t>(std::max(options_.jobs, 1U), results_.size());
+    for (size_t n = 1; n < wanted; ++n) workers.emplace_back([this] { work(); });
+    work();
+    for (std::thread& worker : workers) worker.join();
+    std::vector<TestResult> results;
+    for (std::optional<TestResult>& result : results_) results.push_back(std::move(*result));
+    return results;
+  }
+
+ private:
+  void work() {
+    for (size_t n = next_++; n < results_.size(); n = next_++) {
+      TestResult result = run_one(n);
+      const bool good = result.outcome == Outcome::Passed;
+      const std::lock_guard lock(mutex_);
+      if (!good && options_.fail_fast) stop_ = true;
+      results_[n] = std::move(result);
+      for (; told_ < results_.size() && results_[told_]; ++told_)
+        if (on_result_) on_result_(*results_[told_], told_ + 1, results_.size());
+    }
+  }
+
+  TestResult run_one(size_t n) {
+    const TestCase& test = tests_[n % tests_.size()];
+    const size_t turn = n / tests_.size();
+    TestResult result;
+    if (stop_ || interrupted()) {
+      result.name = test.name;
+      result.file = test.file;
+      result.place = test.place;
+      result.outcome = Outcome::NotRun;
+    } else {
+      RunOptions options = options_.run;
+      options.seed += turn;
+      result = run_test(test, programs_, options);
+    }
+    if (options_.repeat > 1) result.name += fmt::format("#{}", turn + 1);
+    return result;
+  }
+
+  const std::vector<TestCase>& tests_;
+  const SuiteOptions& options_;
+  const ResultListener& on_result_;
+  Programs programs_;
+  std::vector<std::optional<TestResult>> results_;
+  std::atomic<size_t> next_ = 0;
+  std::atomic<bool> stop_ = false;
+  std::mutex mutex_;
+  size_t told_ = 0;
+};
+
+}  // namespace
+
+std::vector<TestResult> run_suite(const std::vector<TestCase>& tests, const SuiteOptions& options,
+                                  const ResultListener& on_result) {
+  return Suite(tests, options, on_result).run();
+}
+
+}  // namespace ipos::tools::testing
