@@ -113,12 +113,14 @@ uint32_t Emitter::command(uint32_t n) {
       }
       branch(command, n);
       return 1;
-    default:
+    default: {
       flags_of_ = -1;
-      if (!program_.commands[n + 1].joins && fused(command.instruction, program_.commands[n + 1].instruction))
+      const Command& next = program_.commands[n + 1];
+      if (next.native && !next.joins && fused(command.instruction, next.instruction))
         taken = 2;
       else
         data(n);
+    }
   }
   correct(program_.correction(program_.commands[n + taken - 1], program_.commands[n + taken]));
   return taken;

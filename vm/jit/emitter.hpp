@@ -81,8 +81,8 @@ class Emitter {
   // control.cpp: the number of flow.hpp, jumps and calls.
   virtual void correct(int32_t by) = 0;
   virtual void correct_with_result(int32_t by) = 0;  // the same; the flags stay as they are
-  virtual void check(int32_t charge,
-                     const asmjit::Label& exit) = 0;  // takes it; exits when the rest is negative
+  // Takes the charge from the number; exits when that is negative then.
+  virtual void check(int32_t charge, const asmjit::Label& exit) = 0;
   virtual void leave_at(uint32_t at) = 0;
   virtual void jump_to(const asmjit::Label& to) = 0;
   virtual void jump_if(const Instruction& branch, const asmjit::Label& to) = 0;
@@ -97,8 +97,10 @@ class Emitter {
 
   // templates.cpp: commands that work on variables.
   virtual void data(uint32_t n) = 0;
-  virtual bool fused(const Instruction& first, const Instruction& second) = 0;  // both, if there is a way
-  virtual void slow_access(const Slow& slow) = 0;  // with the variables of registers in memory
+  // Two in one; false where there is no way that is better.
+  virtual bool fused(const Instruction& first, const Instruction& second) = 0;
+  // SETI with all variables in memory meanwhile; exits when the index leads to none.
+  virtual void slow_access(const Slow& slow) = 0;
 
   // ---- For it.
   asmjit::Label exit(uint32_t n, int32_t credit);

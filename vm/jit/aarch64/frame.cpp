@@ -45,8 +45,8 @@ void EmitterA64::enter() {
   a_.add(calls_, a64::x1, a64::x2, asmjit::arm::lsl(3));
   a_.ldr(a64::x1, field(frame_, offsetof(Frame, context)));
   a_.ldrb(a64::w1, field(a64::x1, offsetof(TaskContext, depth)));
-  a_.adr(a64::x2, returned_);
-  const asmjit::Label again = a_.newLabel();
+  const asmjit::Label again = a_.newLabel(), returned = a_.newLabel();
+  a_.adr(a64::x2, returned);  // to what reaches farther
   a_.bind(again);
   a_.str(a64::x2, a64::ptr(calls_, a64::x1, asmjit::arm::lsl(3)));
   a_.subs(a64::x1, a64::x1, 1);
@@ -56,6 +56,8 @@ void EmitterA64::enter() {
   a_.ldr(a64::x0, field(frame_, offsetof(Frame, target)));
   move_pins(false);
   a_.br(a64::x0);
+  a_.bind(returned);
+  a_.b(returned_);
 }
 
 // w0 is the word address, the number is that of the commands left.
