@@ -1,72 +1,60 @@
 #include "tests/engines/campaign.hpp"
 
-#include <set>
+#include <istream>
+#include <ostream>
 
-#include "compiler/codegen/compile.hpp"
 #include "tests/engines/pair.hpp"
-#include "tests/generated/program_generator.hpp"
-#include "tests/generated/source_text.hpp"
-#include "vm/fast/predecode.hpp"
 
 namespace ipos::tests {
-namespace {
 
-constexpr uint32_t kOrders = 120;
-constexpr vm::Limits kLimits{1024, 16384, 3, 6};  // few calls, so that F32 is met
-
-class Runner {
- public:
-  EngineCampaign out;
-
-  void run(const std::vector<uint32_t>& code, const vm::Limits& limits, uint64_t seed, const char* what) {
-    if (code.empty()) return;
-    const vm::Verification verified = vm::verify(code, limits, {});
-    if (!verified.image) {
-      out.difference = std::string(what) + " " + std::to_string(seed) + " is not verified";
-      return;
-    }
-    std::vector<vm::fast::Slot> slots(vm::fast::Predecoded::slots_needed(code.size()));
-    const vm::fast::Predecoded program(*verified.image, slots);
-    for (uint32_t at = 0; at < code.size(); at += vm::decode(code, at).words)
-      seen_.insert(program.operation(at));
-    out.operations = seen_.size();
-    const PairRun pair = run_pair(*verified.image, seed, kOrders);
-    ++out.programs;
-    out.orders += pair.orders;
-    out.commands += pair.commands;
-    if (!pair.difference.empty()) out.difference = std::string(what) + ": " + pair.difference;
-  }
-
- private:
-  std::set<vm::fast::Operation> seen_;
-};
-
-}  // namespace
-
-EngineCampaign run_engine_campaign(uint64_t first, uint64_t count) {
-  Runner runner;
-  for (uint64_t seed = first; seed < first + count && runner.out.difference.empty(); ++seed) {
-    Program program = generate_program(seed);
-    compiler::CompileOptions options;
-    options.unit = stdlib::find_unit(std::string_view(program.unit));
-    const compiler::Compilation made = compiler::compile("generated.IPC", "", source_text(program), options);
-    if (made.image) {
-      const stdlib::UnitType& unit = *options.unit;
-      const vm::Limits limits{unit.variables, unit.program_words, unit.tasks, unit.call_depth};
-      runner.run(made.image->code, limits, seed, "generated");
-      if (!runner.out.difference.empty()) break;
-      runner.run(with_interrupts(made.image->code, limits, seed), limits, seed, "generated with interrupts");
-      if (!runner.out.difference.empty()) break;
-    }
-    runner.run(with_interrupts(sequence_soup(seed), kLimits, seed), kLimits, seed, "soup");
-  }
-  return runner.out;
+void write(std::ostream& out, const EngineProgram& program) {
+  const vm::Limits& limits = program.limits;
+  out << program.name << '\n'
+      << limits.variables << ' ' << limits.program_words << ' ' << int{limits.tasks} << ' '
+      << int{limits.call_depth} << ' ' << program.seed << ' ' << program.orders << ' ' << program.code.size();
+  for (const uint32_t word : program.code) out << ' ' << word;
+  out << '\n';
 }
 
-std::string summary(const EngineCampaign& campaign) {
-  return std::to_string(campaign.programs) + " programs, " + std::to_string(campaign.orders) + " orders, " +
-         std::to_string(campaign.commands) + " commands, " + std::to_string(campaign.operations) +
-         " operations met" + (campaign.difference.empty() ? "" : "; " + campaign.difference);
+bool read(std::istream& in, EngineProgram& program) {
+  int tasks = 0, call_depth = 0;
+  size_t words = 0;
+  vm::Limits& limits = program.limits;
+  if (!std::getline(in >> std::ws, program.name)) return false;
+  in >> limits.variables >> limits.program_words >> tasks >> call_depth >> program.seed >> program.orders >>
+      words;
+  if (!in || words > limits.program_words) return false;
+  limits.tasks = static_cast<uint8_t>(tasks);
+  limits.call_depth = static_cast<uint8_t>(call_depth);
+  program.code.resize(words);
+  for (uint32_t& word : program.code) in >> word;
+  return static_cast<bool>(in);
+}
+
+void EngineCampaign::run(const EngineProgram& program) {
+  if (!difference.empty()) return;
+  const vm::Verification verified = vm::verify(program.code, program.limits, {});
+  if (!verified.image) {
+    difference = program.name + " is not verified";
+    return;
+  }
+  std::vector<vm::fast::Slot> slots(vm::fast::Predecoded::slots_needed(program.code.size()));
+  const vm::fast::Predecoded predecoded(*verified.image, slots);
+  for (uint32_t at = 0; at < program.code.size(); at += vm::decode(program.code, at).words)
+    operations.insert(predecoded.operation(at));
+  const PairRun pair = run_pair(*verified.image, program.seed, program.orders);
+  ++programs;
+  native += pair.native;
+  orders += pair.orders;
+  commands += pair.commands;
+  if (!pair.difference.empty()) difference = program.name + ": " + pair.difference;
+}
+
+std::string EngineCampaign::summary() const {
+  return std::to_string(programs) + " programs, " + std::to_string(native) + " of them as machine code, " +
+         std::to_string(orders) + " orders, " + std::to_string(commands) + " commands, " +
+         std::to_string(operations.size()) + " operations met" +
+         (difference.empty() ? "" : "; " + difference);
 }
 
 }  // namespace ipos::tests

@@ -1,14 +1,14 @@
-// Machine code where random programs seldom go: division by constants, indexes that lead to variables in
-// registers, calls and returns around system commands, protection of its memory. Expected values are computed
-// here.
+// Machine code where random programs seldom go: constants of every shape, division by constants, indexes that
+// lead to variables in registers, calls and returns around system commands, protection of its memory.
+// Expected values are computed here.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <limits>
 #include <string>
 
-#include "compiler/codegen/compile.hpp"
-#include "tests/engines/pair.hpp"
+#include "vm/exec/arithmetic.hpp"
 #include "vm/exec/machine.hpp"
 #include "vm/fast/predecode.hpp"
 #include "vm/jit/jit.hpp"
@@ -33,24 +33,19 @@ class Native : public testing::Test {
     code_.insert(code_.end(), words.begin(), words.begin() + length);
   }
   int32_t here() const { return static_cast<int32_t>(code_.size()); }
+  static int32_t words(Opcode opcode) { return vm::info(opcode).words; }
 
-  void compile(const std::string& source) {
-    compiler::CompileOptions options;
-    options.unit = stdlib::find_unit(std::string_view("mdxb"));
-    const compiler::Compilation made = compiler::compile("native.IPC", "", source, options);
-    ASSERT_TRUE(made.image);
-    code_ = made.image->code;
-  }
-
-  // Executes with machine code and leaves the machine in machine_.
-  vm::RunResult run() {
+  // Executes with machine code, these in H500.., and leaves the machine in machine_.
+  vm::RunResult run(const std::vector<int32_t>& numbers = {}) {
     const vm::Verification verified = vm::verify(code_, kLimits, {});
     EXPECT_TRUE(verified.image);
     slots_.resize(vm::fast::Predecoded::slots_needed(code_.size()));
     predecoded_.emplace(*verified.image, slots_);
     native_ = vm::jit::compile(*verified.image);
+    EXPECT_NE(native_, nullptr);
     machine_.emplace(*verified.image, vm::Host{});
-    machine_->use(&*predecoded_, &native_->native());
+    machine_->use(&*predecoded_, native_ ? &native_->native() : nullptr);
+    std::copy(numbers.begin(), numbers.end(), machine_->variables().begin() + 500);
     machine_->start();
     return machine_->run(1, kBudget);
   }
@@ -63,7 +58,8 @@ class Native : public testing::Test {
   std::optional<vm::Machine> machine_;
 };
 
-TEST_F(Native, DividesByConstantsTowardZero) {
+// Numbers around which processors change their mind: powers of 2, what they can hold in an instruction.
+std::vector<int32_t> telling_numbers() {
   constexpr int32_t kLeast = std::numeric_limits<int32_t>::min();
   constexpr int32_t kMost = std::numeric_limits<int32_t>::max();
   std::vector<int32_t> numbers = {kLeast, kLeast + 1, kMost, kMost - 1, 0};
@@ -72,10 +68,15 @@ TEST_F(Native, DividesByConstantsTowardZero) {
       numbers.push_back((1 << bit) + near);
       numbers.push_back(-(1 << bit) + near);
     }
-  for (const int32_t odd : {7, 10, 100, 641, 1000, 3600, 65537, 1'000'000, 715827883}) {
-    numbers.push_back(odd);
-    numbers.push_back(-odd);
+  for (const int32_t other : {7, 10, 100, 641, 1000, 3600, 0xFFF000, 0x555555, 715827883}) {
+    numbers.push_back(other);
+    numbers.push_back(-other);
   }
+  return numbers;
+}
+
+TEST_F(Native, DividesByConstantsTowardZero) {
+  const std::vector<int32_t> numbers = telling_numbers();
   for (const int32_t divisor : numbers) {
     if (divisor == 0) continue;
     code_.clear();
@@ -93,35 +94,107 @@ TEST_F(Native, DividesByConstantsTowardZero) {
     add(Opcode::AddHK, {11, 1, 0, 0});
     add(Opcode::JmpLtHK, {10, 500 + static_cast<int32_t>(numbers.size()), again, 0});
     add(Opcode::End, {});
-    const vm::Verification verified = vm::verify(code_, kLimits, {});
-    ASSERT_TRUE(verified.image);
-    slots_.resize(vm::fast::Predecoded::slots_needed(code_.size()));
-    predecoded_.emplace(*verified.image, slots_);
-    native_ = vm::jit::compile(*verified.image);
-    vm::Machine machine(*verified.image, {});
-    machine.use(&*predecoded_, &native_->native());
-    for (size_t n = 0; n < numbers.size(); ++n) machine.variables()[500 + n] = numbers[n];
-    machine.start();
-    ASSERT_EQ(machine.run(1, kBudget).stop, vm::Stop::Ended);
+    ASSERT_EQ(run(numbers).stop, vm::Stop::Ended);
     for (size_t n = 0; n < numbers.size(); ++n) {
       const int64_t x = numbers[n];
-      EXPECT_EQ(machine.variables()[500 + n], static_cast<int32_t>(x / divisor)) << x << " / " << divisor;
-      EXPECT_EQ(machine.variables()[750 + n], static_cast<int32_t>(x % divisor)) << x << " % " << divisor;
+      EXPECT_EQ(h(500 + n), static_cast<int32_t>(x / divisor)) << x << " / " << divisor;
+      EXPECT_EQ(h(750 + n), static_cast<int32_t>(x % divisor)) << x << " % " << divisor;
     }
   }
 }
 
-// The loop's own variables lie in the table it writes: k jumps from 12 over 13 and 14 to 99.
+// What a command with a constant does, in 64 bits.
+struct WithConstant {
+  Opcode opcode;
+  int64_t (*result)(int64_t x, int64_t k);
+};
+uint32_t low(int64_t x) { return static_cast<uint32_t>(x); }
+constexpr WithConstant kWithConstant[] = {
+    {Opcode::AddHK, [](int64_t x, int64_t k) { return x + k; }},
+    {Opcode::SubHK, [](int64_t x, int64_t k) { return x - k; }},
+    {Opcode::MulHK, [](int64_t x, int64_t k) { return x * k; }},
+    {Opcode::AndHK, [](int64_t x, int64_t k) { return x & k; }},
+    {Opcode::OrHK, [](int64_t x, int64_t k) { return x | k; }},
+    {Opcode::XorHK, [](int64_t x, int64_t k) { return x ^ k; }},
+    {Opcode::ShlHK, [](int64_t x, int64_t k) { return x * (int64_t{1} << (k & 31)); }},
+    {Opcode::ShrHK, [](int64_t x, int64_t k) -> int64_t { return low(x) >> (k & 31); }},
+    {Opcode::AshrHK, [](int64_t x, int64_t k) { return x >> (k & 31); }},
+};
+constexpr WithConstant kTests[] = {
+    {Opcode::JmpEqHK, [](int64_t x, int64_t k) -> int64_t { return x == k; }},
+    {Opcode::JmpNeHK, [](int64_t x, int64_t k) -> int64_t { return x != k; }},
+    {Opcode::JmpLtHK, [](int64_t x, int64_t k) -> int64_t { return x < k; }},
+    {Opcode::JmpLeHK, [](int64_t x, int64_t k) -> int64_t { return x <= k; }},
+    {Opcode::JmpGtHK, [](int64_t x, int64_t k) -> int64_t { return x > k; }},
+    {Opcode::JmpGeHK, [](int64_t x, int64_t k) -> int64_t { return x >= k; }},
+};
+
+// In registers, as a loop has its variables: the result in place, whether the test jumps in H750..; then the
+// same in memory, as nothing else than loops has registers.
+TEST_F(Native, ConstantsOfEveryShape) {
+  const std::vector<int32_t> numbers = telling_numbers();
+  for (const int32_t constant : numbers)
+    for (const bool loop : {true, false}) {
+      const int32_t count = loop ? static_cast<int32_t>(numbers.size()) : 8;
+      for (size_t pair = 0; pair < std::size(kWithConstant); ++pair) {
+        const WithConstant& operation = kWithConstant[pair];
+        const WithConstant& test = kTests[pair % std::size(kTests)];
+        code_.clear();
+        add(Opcode::SetHK, {10, 500, 0, 0});
+        add(Opcode::SetHK, {11, 750, 0, 0});
+        const int32_t again = here();
+        for (int32_t n = 0; n < (loop ? 1 : count); ++n) {
+          const int32_t value = loop ? 12 : 500 + n;
+          const int32_t taken = loop ? 13 : 750 + n;
+          if (loop) add(Opcode::SetiLoad, {12, 10, 0, 0});
+          add(Opcode::SetHK, {taken, 1, 0, 0});
+          add(test.opcode, {value, constant, here() + words(test.opcode) + words(Opcode::SetHK), 0});
+          add(Opcode::SetHK, {taken, 0, 0, 0});
+          add(operation.opcode, {value, constant, 0, 0});
+        }
+        if (loop) {
+          add(Opcode::SetiStore, {10, 12, 0, 0});
+          add(Opcode::SetiStore, {11, 13, 0, 0});
+          add(Opcode::AddHK, {10, 1, 0, 0});
+          add(Opcode::AddHK, {11, 1, 0, 0});
+          add(Opcode::JmpLtHK, {10, 500 + count, again, 0});
+        }
+        add(Opcode::End, {});
+        ASSERT_EQ(run(numbers).stop, vm::Stop::Ended);
+        for (size_t n = 0; n < static_cast<size_t>(count); ++n) {
+          const int64_t x = numbers[n];
+          ASSERT_EQ(vm::bits(h(500 + n)), low(operation.result(x, constant)))
+              << vm::info(operation.opcode).name << " " << x << ", " << constant << (loop ? ", loop" : "");
+          ASSERT_EQ(h(750 + n), test.result(x, constant))
+              << vm::info(test.opcode).name << " " << x << ", " << constant << (loop ? ", loop" : "");
+        }
+      }
+    }
+}
+
+// The longest program, of the commands with most machine code a word: H500 and H501 lead to each other.
+TEST_F(Native, TheLongestProgram) {
+  int32_t loads = 0;
+  add(Opcode::SetHK, {10, 500, 0, 0});
+  for (; here() + words(Opcode::End) < kLimits.program_words; ++loads) add(Opcode::SetiLoad, {10, 10, 0, 0});
+  add(Opcode::End, {});
+  EXPECT_EQ(run({501, 500}).stop, vm::Stop::Ended);
+  EXPECT_EQ(h(10), 500 + loads % 2);
+}
+
+// The loop's own variables lie in the table it writes: k jumps from 12 over 13 and 14 to 99. k is H12.
 TEST_F(Native, AnIndexReachesVariablesInRegisters) {
-  compile(R"(#pragma globals 12 30
-             long k, sum, turns;
-             main() {
-               for (k = 10; k < 99; k++) {
-                 *k = k + 80;
-                 sum += *k;
-                 turns++;
-               }
-             })");
+  add(Opcode::SetHK, {12, 10, 0, 0});
+  const int32_t again = here();
+  add(Opcode::SetHH, {200, 12, 0, 0});  // *k = k + 80
+  add(Opcode::AddHK, {200, 80, 0, 0});
+  add(Opcode::SetiStore, {12, 200, 0, 0});
+  add(Opcode::SetiLoad, {200, 12, 0, 0});  // sum += *k
+  add(Opcode::AddHH, {13, 200, 0, 0});
+  add(Opcode::AddHK, {14, 1, 0, 0});  // turns++
+  add(Opcode::AddHK, {12, 1, 0, 0});
+  add(Opcode::JmpLtHK, {12, 99, again, 0});
+  add(Opcode::End, {});
   EXPECT_EQ(run().stop, vm::Stop::Ended);
   // k = 10 and 11 write H10 and H11; k = 12 writes itself: 92, then adds *92, which is still 0.
   EXPECT_EQ(h(10), 90);
@@ -136,10 +209,28 @@ TEST_F(Native, AnIndexReachesVariablesInRegisters) {
 
 // A budget ends anywhere, in any depth of calls; the machine goes on as if nothing had been.
 TEST_F(Native, AnyBudgetGivesTheSameEnd) {
-  compile(R"(long result, i, n;
-             add() { result += n; }
-             twice() { add(); n++; add(); }
-             main() { for (i = 0; i < 40; i++) { n = i; twice(); if (i == 20) continue; result ^= i; } })");
+  constexpr int32_t kResult = 10, kI = 11, kN = 12;
+  const int32_t add_n = words(Opcode::Jmp);
+  const int32_t twice = add_n + words(Opcode::AddHH) + words(Opcode::Ret);
+  const int32_t main = twice + 2 * words(Opcode::Call) + words(Opcode::AddHK) + words(Opcode::Ret);
+  add(Opcode::Jmp, {main, 0, 0, 0});
+  add(Opcode::AddHH, {kResult, kN, 0, 0});
+  add(Opcode::Ret, {});
+  ASSERT_EQ(here(), twice);
+  add(Opcode::Call, {add_n, 0, 0, 0});
+  add(Opcode::AddHK, {kN, 1, 0, 0});
+  add(Opcode::Call, {add_n, 0, 0, 0});
+  add(Opcode::Ret, {});
+  ASSERT_EQ(here(), main);
+  add(Opcode::SetHK, {kI, 0, 0, 0});
+  const int32_t again = here();
+  add(Opcode::SetHH, {kN, kI, 0, 0});
+  add(Opcode::Call, {twice, 0, 0, 0});
+  add(Opcode::JmpEqHK, {kI, 20, here() + words(Opcode::JmpEqHK) + words(Opcode::XorHH), 0});
+  add(Opcode::XorHH, {kResult, kI, 0, 0});
+  add(Opcode::AddHK, {kI, 1, 0, 0});
+  add(Opcode::JmpLtHK, {kI, 40, again, 0});
+  add(Opcode::End, {});
   const uint32_t commands = run().commands;
   const std::vector<int32_t> end(machine_->variables().begin(), machine_->variables().end());
   int32_t expected = 0;
@@ -147,7 +238,7 @@ TEST_F(Native, AnyBudgetGivesTheSameEnd) {
     expected += i + i + 1;
     if (i != 20) expected ^= i;
   }
-  EXPECT_NE(std::find(end.begin(), end.end(), expected), end.end());
+  EXPECT_EQ(h(kResult), expected);
   for (uint32_t budget = 1; budget < 200; ++budget) {
     machine_.emplace(machine_->program(), vm::Host{});
     machine_->use(&*predecoded_, &native_->native());
@@ -165,17 +256,24 @@ TEST_F(Native, AnyBudgetGivesTheSameEnd) {
 }
 
 TEST_F(Native, CallsTooDeepAreAFault) {
-  compile("long n; down() { n++; down(); } main() { down(); }");
+  const int32_t down = words(Opcode::Call) + words(Opcode::End);
+  add(Opcode::Call, {down, 0, 0, 0});
+  add(Opcode::End, {});
+  add(Opcode::AddHK, {10, 1, 0, 0});
+  add(Opcode::Call, {down, 0, 0, 0});
+  add(Opcode::Ret, {});
   const vm::RunResult result = run();
   EXPECT_EQ(result.stop, vm::Stop::Faulted);
   EXPECT_EQ(machine_->fault().number, vm::kFaultIndexOverflow);
   EXPECT_EQ(machine_->task(1).depth, kLimits.call_depth);
-  EXPECT_EQ(
-      std::count(machine_->variables().begin(), machine_->variables().end(), int32_t{kLimits.call_depth}), 1);
+  EXPECT_EQ(h(10), kLimits.call_depth);
 }
 
 TEST_F(Native, NoPageIsWritableAndExecutable) {
-  compile("long n; main() { for (n = 0; n < 100; n++); }");
+  const int32_t again = here();
+  add(Opcode::AddHK, {10, 1, 0, 0});
+  add(Opcode::JmpLtHK, {10, 100, again, 0});
+  add(Opcode::End, {});
   run();
   std::ifstream maps("/proc/self/maps");
   if (!maps) GTEST_SKIP() << "no /proc";

@@ -112,7 +112,8 @@ PairRun run_pair(const vm::VerifiedImage& program, uint64_t seed, uint32_t order
   for (RandomHost& host : hosts) machines.push_back(Machine(program, {&host, RandomHost::execute}));
   machines[1].use(&predecoded);
   machines[2].use(&predecoded, code == nullptr ? nullptr : &code->native());
-  if (code == nullptr) machines.pop_back();
+  out.native = code != nullptr;
+  if (!out.native) machines.pop_back();
   constexpr const char* kEngines[] = {"", "fast engine", "machine code"};
   Pcg random(seed ^ 0x5EED);
   for (Machine& machine : machines) machine.start();

@@ -15,6 +15,7 @@ struct PairRun {
   std::string difference;  // empty: none
   uint64_t commands = 0;   // executed by each of them
   uint64_t orders = 0;
+  bool native = false;  // one of them had machine code
 };
 
 // Random orders: budgets of 1 and more for all tasks, ticks, events, resumed waits, variables written from

@@ -1,4 +1,4 @@
-// Control: order of the code, budget, jumps, calls and exits.
+// The order of the code, see emitter.hpp.
 #include "vm/jit/emitter.hpp"
 
 #include "vm/exec/arithmetic.hpp"
@@ -11,39 +11,6 @@ using asmjit::Label;
 constexpr uint32_t kLoopAlignment = 32;
 constexpr uint32_t kShortestSwitch = 4;
 
-x86::CondCode condition_of(Opcode opcode) {
-  switch (opcode) {
-    case Opcode::JmpEqHH:
-    case Opcode::JmpEqHK: return x86::CondCode::kE;
-    case Opcode::JmpNeHH:
-    case Opcode::JmpNeHK: return x86::CondCode::kNE;
-    case Opcode::JmpLtHH:
-    case Opcode::JmpLtHK: return x86::CondCode::kL;
-    case Opcode::JmpLeHH:
-    case Opcode::JmpLeHK: return x86::CondCode::kLE;
-    case Opcode::JmpGtHH:
-    case Opcode::JmpGtHK: return x86::CondCode::kG;
-    default: return x86::CondCode::kGE;
-  }
-}
-
-// The condition after an operation with this result instead of a comparison with 0; none where the flags do
-// not tell it.
-std::optional<x86::CondCode> condition_of_result(const Instruction& command) {
-  if (command.operands[1] != 0) return std::nullopt;
-  switch (command.opcode) {
-    case Opcode::JmpEqHK: return x86::CondCode::kZ;
-    case Opcode::JmpNeHK: return x86::CondCode::kNZ;
-    case Opcode::JmpLtHK: return x86::CondCode::kS;
-    case Opcode::JmpGeHK: return x86::CondCode::kNS;
-    default: return std::nullopt;
-  }
-}
-
-bool has_constant(const Instruction& command) {
-  return info(command.opcode).operands[1].kind == OperandKind::Constant;
-}
-
 bool has_exit(Opcode opcode) {
   return opcode == Opcode::SetiLoad || opcode == Opcode::SetiStore || opcode == Opcode::DivHH ||
          opcode == Opcode::ModHH;
@@ -51,17 +18,17 @@ bool has_exit(Opcode opcode) {
 
 }  // namespace
 
-Emitter::Emitter(const Program& program, asmjit::CodeHolder& code, Unwind unwind)
-    : entries(program.index.size()),
-      program_(program),
-      a_(&code),
+Emitter::Emitter(const Program& program, asmjit::BaseAssembler& assembler, Unwind unwind, size_t registers)
+    : program_(program),
       unwind_(unwind),
-      pinned_(hottest_variables(program, kPins.size())),
-      pin_of_(program.limits.variables, -1),
-      leave_(a_.newLabel()),
-      store_pins_(a_.newLabel()),
-      load_pins_(a_.newLabel()),
-      returned_(a_.newLabel()) {
+      leave_(assembler.newLabel()),
+      store_pins_(assembler.newLabel()),
+      load_pins_(assembler.newLabel()),
+      returned_(assembler.newLabel()),
+      a_(assembler),
+      pinned_(hottest_variables(program, registers)),
+      pin_of_(program.limits.variables, -1) {
+  out_.entries.resize(program.index.size());
   for (size_t n = 0; n < pinned_.size(); ++n) pin_of_[pinned_[n]] = static_cast<int8_t>(n);
   choose_ranges();
 }
@@ -75,7 +42,7 @@ void Emitter::choose_ranges() {
   }
 }
 
-bool Emitter::run() {
+bool Emitter::run(Emitted& out) {
   asmjit::Error error = asmjit::kErrorOk;
   struct Handler : asmjit::ErrorHandler {
     void handleError(asmjit::Error code, const char*, asmjit::BaseEmitter*) override { *first = code; }
@@ -83,7 +50,6 @@ bool Emitter::run() {
   } handler;
   handler.first = &error;
   a_.setErrorHandler(&handler);
-  a_.addEncodingOptions(asmjit::EncodingOptions::kOptimizedAlign);  // one long NOP instead of many
 
   const auto size = static_cast<uint32_t>(program_.commands.size());
   labels_.resize(size);
@@ -96,17 +62,13 @@ bool Emitter::run() {
   leave();
   for (const bool stores : {true, false}) {
     a_.bind(stores ? store_pins_ : load_pins_);
-    move_pins(stores);
-    a_.ret();
+    pins_subroutine(stores);
   }
   returns_to_context();
   tables();
   a_.setErrorHandler(nullptr);
+  out = std::move(out_);
   return error == asmjit::kErrorOk;
-}
-
-void Emitter::correct(int32_t by) {
-  if (by != 0) a_.add(number_, by);
 }
 
 Label Emitter::exit(uint32_t n, int32_t credit) {
@@ -123,14 +85,7 @@ void Emitter::begin(uint32_t n) {
     flags_of_ = -1;
   }
   if (labels_[n].isValid()) a_.bind(labels_[n]);
-  if (command.checks && command.native) {
-    const int32_t charge = command.need - command.arrival;
-    if (charge != 0)
-      a_.sub(number_, charge);
-    else
-      a_.test(number_, number_);
-    a_.js(exit(n, command.need));
-  }
+  if (command.checks && command.native) check(command.need - command.arrival, exit(n, command.need));
 }
 
 // Returns how many commands it has taken.
@@ -138,13 +93,13 @@ uint32_t Emitter::command(uint32_t n) {
   const Command& command = program_.commands[n];
   begin(n);
   if (!command.native) {
-    a_.jmp(exit(n, command.credit_of_arrival()));
+    jump_to(exit(n, command.credit_of_arrival()));
     return 1;
   }
   const bool test_only = command.flow == Flow::Branch && flags_of_ == command.instruction.operands[0] &&
-                         condition_of_result(command.instruction);
+                         tests_flags(command.instruction);
   if (!test_only)
-    entries[command.at] = {static_cast<uint32_t>(a_.offset()), static_cast<uint16_t>(command.credit)};
+    out_.entries[command.at] = {static_cast<uint32_t>(a_.offset()), static_cast<uint16_t>(command.credit)};
   uint32_t taken = 1;
   switch (command.flow) {
     case Flow::Jump: jump(n); return 1;
@@ -158,12 +113,14 @@ uint32_t Emitter::command(uint32_t n) {
       }
       branch(command, n);
       return 1;
-    default:
+    default: {
       flags_of_ = -1;
-      if (!program_.commands[n + 1].joins && fused(command.instruction, program_.commands[n + 1].instruction))
+      const Command& next = program_.commands[n + 1];
+      if (next.native && !next.joins && fused(command.instruction, next.instruction))
         taken = 2;
       else
         data(n);
+    }
   }
   correct(program_.correction(program_.commands[n + taken - 1], program_.commands[n + taken]));
   return taken;
@@ -176,7 +133,7 @@ void Emitter::jump(uint32_t n) {
     repeat(command.target, last, command.credit - 1);
   } else {
     correct(program_.correction(command, program_.commands[command.target]));
-    if (command.target != n + 1) a_.jmp(labels_[command.target]);
+    if (command.target != n + 1) jump_to(labels_[command.target]);
   }
 }
 
@@ -201,7 +158,7 @@ void Emitter::repeat(uint32_t first, uint32_t last, int32_t credit) {
     ret(end);
   } else {
     branch(end, last);
-    a_.jmp(label_of(last + 1));
+    jump_to(label_of(last + 1));
   }
 }
 
@@ -223,12 +180,7 @@ void Emitter::jump_to_case(uint32_t n, uint32_t count) {
   const auto& operands = program_.commands[n].instruction.operands;
   const Label other = a_.newLabel();
   Table table{a_.newLabel(), {}};
-  a_.emit(x86::Inst::kIdMov, x86::eax, place(operands[0]));
-  if (operands[1] != 0) a_.sub(x86::eax, operands[1]);
-  a_.cmp(x86::eax, count);
-  a_.jae(other);
-  a_.lea(x86::rcx, x86::ptr(table.label));
-  a_.jmp(x86::qword_ptr(x86::rcx, x86::rax, 3));
+  jump_by_table(operands[0], operands[1], count, table.label, other);
   for (uint32_t at = n; at < n + count; ++at) {
     const Command& command = program_.commands[at];
     const int32_t by = program_.correction(command, program_.commands[command.target]);
@@ -236,7 +188,7 @@ void Emitter::jump_to_case(uint32_t n, uint32_t count) {
     if (by == 0) continue;
     a_.bind(table.cases.back());
     correct(by);
-    a_.jmp(labels_[command.target]);
+    jump_to(labels_[command.target]);
   }
   a_.bind(other);
   tables_.push_back(std::move(table));
@@ -256,19 +208,13 @@ void Emitter::branch(const Command& command, uint32_t n) {
   const int32_t taken = program_.correction(command, program_.commands[command.target]);
   const int32_t straight = program_.correction(command, program_.commands[n + 1]);
   const bool leaves = program_.commands[command.target].depth < command.depth;
-  if (taken != 0 && !leaves) a_.lea(number_.r64(), x86::ptr(number_.r64(), taken));
-  x86::CondCode condition = condition_of(command.instruction.opcode);
-  const auto of_result = condition_of_result(command.instruction);
-  if (flags_of_ == command.instruction.operands[0] && of_result)
-    condition = *of_result;
-  else
-    compare(command.instruction, has_constant(command.instruction));
   if (taken != 0 && leaves) {
     detours_.push_back({a_.newLabel(), labels_[command.target], taken});
-    a_.j(condition, detours_.back().label);
+    jump_if(command.instruction, detours_.back().label);
     correct(straight);
   } else {
-    a_.j(condition, labels_[command.target]);
+    correct_with_result(taken);
+    jump_if(command.instruction, labels_[command.target]);
     correct(straight - taken);
   }
   flags_of_ = -1;
@@ -276,17 +222,15 @@ void Emitter::branch(const Command& command, uint32_t n) {
 
 void Emitter::call(uint32_t n) {
   const Command& command = program_.commands[n];
-  a_.test(x86::esp, kBlock - 1);
-  a_.jz(exit(n, command.credit));
+  check_calls(exit(n, command.credit));
   correct(program_.correction(command, program_.commands[command.target]));
-  a_.call(labels_[command.target]);
-  returns.push_back({static_cast<uint32_t>(a_.offset()), program_.commands[n + 1].at});
+  call_to(labels_[command.target]);
+  out_.returns.push_back({static_cast<uint32_t>(a_.offset()), program_.commands[n + 1].at});
 }
 
 void Emitter::ret(const Command& command) {
   correct(command.credit - 1);
-  a_.mov(x86::eax, command.at);
-  a_.ret();
+  return_from(command.at);
 }
 
 Label Emitter::label_of(uint32_t n) {
@@ -298,50 +242,41 @@ void Emitter::exit_paths() {
   for (const Detour& detour : detours_) {
     a_.bind(detour.label);
     correct(detour.by);
-    a_.jmp(detour.target);
+    jump_to(detour.target);
   }
   for (const Exit& exit : exits_) {
     a_.bind(exit.label);
     correct(exit.credit);
-    a_.mov(x86::eax, exit.at);
-    a_.jmp(leave_);
+    leave_at(exit.at);
   }
 }
 
 // An index that leads to a variable in a register, or to none.
 void Emitter::slow_paths() {
   for (const Slow& slow : slow_) {
-    const Command& command = program_.commands[slow.command];
-    const auto& operands = command.instruction.operands;
-    const bool loads = command.instruction.opcode == Opcode::SetiLoad;
     a_.bind(slow.label);
-    a_.call(store_pins_);
-    a_.mov(x86::eax, memory(operands[loads ? 1 : 0]));
-    a_.cmp(x86::eax, uint32_t{program_.limits.variables});
-    a_.jae(exit(slow.command, command.credit));
-    if (loads) {
-      a_.mov(x86::ecx, indexed(x86::eax));
-      a_.mov(memory(operands[0]), x86::ecx);
-    } else {
-      a_.mov(x86::ecx, memory(operands[1]));
-      a_.mov(indexed(x86::eax), x86::ecx);
-    }
-    a_.call(load_pins_);
-    a_.jmp(slow.back);
+    slow_access(slow);
+    jump_to(slow.back);
   }
 }
 
-std::optional<x86::Gp> Emitter::pin(int32_t variable) const {
-  const int8_t number = pin_of_[static_cast<size_t>(variable)];
-  if (number < 0) return std::nullopt;
-  return kPins[static_cast<size_t>(number)];
+// The range of variables in memory an index most likely leads to; where nothing tells, the longest.
+Emitter::Range Emitter::range_for(uint32_t n) const {
+  const int32_t table = program_.commands[n].table;
+  Range longest{0, 0};
+  for (const Range& range : ranges_) {
+    if (table >= 0 && bits(table) - range.first < range.count) return range;
+    if (range.count > longest.count) longest = range;
+  }
+  return longest;
 }
 
-x86::Mem Emitter::memory(int32_t variable) const { return x86::dword_ptr(h_, variable * 4); }
-
-asmjit::Operand Emitter::place(int32_t variable) const {
-  if (const auto reg = pin(variable)) return *reg;
-  return memory(variable);
+void Emitter::table_of_returns(const Label& table, const Label& none) {
+  a_.align(asmjit::AlignMode::kData, 4);
+  a_.bind(table);
+  for (const uint32_t n : program_.index)
+    a_.embedLabelDelta(
+        n != kNowhere && program_.commands[n].called && labels_[n].isValid() ? labels_[n] : none, table, 4);
 }
 
 }  // namespace ipos::vm::jit

@@ -1,14 +1,13 @@
-// Makes x86-64 code of a program, command by command. H variables that loops use most have a register each as
-// long as machine code runs; the others are where they always are.
-//
-// Registers: r15 the variables, r14d the number of flow.hpp, eax and ecx for the moment, the others for
-// variables. CALL and RET are the processor's own: the stack pointer counts the calls, see frame.cpp.
+// Makes machine code of a program, command by command: the order of the code, the budget, jumps, calls and
+// exits. What it says in instructions is the processor's part, a class of its own for each: x86_64/ and
+// aarch64/. H variables that loops use most have a register each as long as machine code runs; the others are
+// where they always are.
 #pragma once
 
-#include <asmjit/x86.h>
+#include <asmjit/core.h>
 
-#include <array>
-#include <optional>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "vm/exec/context.hpp"
@@ -16,9 +15,7 @@
 
 namespace ipos::vm::jit {
 
-namespace x86 = asmjit::x86;
-
-// What enters machine code and what comes back from it.
+// What enters machine code and what comes back from it. The code's first byte is void enter(Frame*).
 struct Frame {
   TaskContext* context;
   int32_t* h;
@@ -29,11 +26,15 @@ struct Frame {
   const void* code;       // the caller's
 };
 
-// The calls that machine code has nested are on its stack; this appends them to those of the context.
-using Unwind = void (*)(Frame* frame, const uint64_t* top);
-
-// The stack of machine code stands in a block of this size, see frame.cpp.
+// Where calls return to stands on a stack in a block of this size whose address is a multiple of it. It grows
+// down and begins so far above the block's start that as many calls fit below as may still nest: a CALL has
+// to look only whether the low bits of the stack's address are 0. Where calls of the context return to,
+// code stands instead that looks for it there. Above are fields of the processor's part.
 inline constexpr int32_t kBlock = 1024;
+inline constexpr int32_t kReturnsEnd = (kMaxCallDepth + 2) * 8;
+
+// The calls that machine code has nested are on that stack; this appends them to those of the context.
+using Unwind = void (*)(Frame* frame, const uint64_t* top);
 
 struct Entry {
   uint32_t offset = 0;  // 0: none
@@ -43,16 +44,77 @@ struct ReturnSite {
   uint32_t offset;
   uint32_t at;  // word address behind the CALL
 };
+struct Emitted {
+  std::vector<Entry> entries;       // by word address
+  std::vector<ReturnSite> returns;  // in rising order of offset
+};
+
+// Fills `code`, which is made for this processor. False when asmjit reports an error, as when the code is
+// longer than the processor's jumps reach; `out` is valid otherwise only.
+bool emit(const Program& program, asmjit::CodeHolder& code, Unwind unwind, Emitted& out);
 
 class Emitter {
  public:
-  Emitter(const Program& program, asmjit::CodeHolder& code, Unwind unwind);
+  virtual ~Emitter() = default;
+  bool run(Emitted& out);
 
-  // False when asmjit reports an error. What follows is valid then only.
-  bool run();
+ protected:
+  // A run of variables that are all in memory.
+  struct Range {
+    uint32_t first, count;
+  };
+  // The code for an index that is none of a variable in memory.
+  struct Slow {
+    asmjit::Label label, back;
+    uint32_t command;
+  };
 
-  std::vector<Entry> entries;       // by word address
-  std::vector<ReturnSite> returns;  // in rising order of offset
+  Emitter(const Program& program, asmjit::BaseAssembler& assembler, Unwind unwind, size_t registers);
+
+  // ---- The processor's part. frame.cpp: the way in; the way out, from leave_, with the word address in a
+  // register; the code at returned_; the subroutines store_pins_ and load_pins_.
+  virtual void enter() = 0;
+  virtual void leave() = 0;
+  virtual void returns_to_context() = 0;
+  virtual void pins_subroutine(bool stores) = 0;
+
+  // control.cpp: the number of flow.hpp, jumps and calls.
+  virtual void correct(int32_t by) = 0;
+  virtual void correct_with_result(int32_t by) = 0;  // the same; the flags stay as they are
+  // Takes the charge from the number; exits when that is negative then.
+  virtual void check(int32_t charge, const asmjit::Label& exit) = 0;
+  virtual void leave_at(uint32_t at) = 0;
+  virtual void jump_to(const asmjit::Label& to) = 0;
+  virtual void jump_if(const Instruction& branch, const asmjit::Label& to) = 0;
+  // Whether that looks at the flags when they tell of the variable it tests.
+  virtual bool tests_flags(const Instruction& branch) const = 0;
+  // To the address in a table of `count`, by the variable's value less `first`; or to `other`.
+  virtual void jump_by_table(int32_t variable, int32_t first, uint32_t count, const asmjit::Label& table,
+                             const asmjit::Label& other) = 0;
+  virtual void check_calls(const asmjit::Label& exit) = 0;  // exits when no more may nest
+  virtual void call_to(const asmjit::Label& to) = 0;        // ends where it returns to
+  virtual void return_from(uint32_t at) = 0;
+
+  // templates.cpp: commands that work on variables.
+  virtual void data(uint32_t n) = 0;
+  // Two in one; false where there is no way that is better.
+  virtual bool fused(const Instruction& first, const Instruction& second) = 0;
+  // SETI with all variables in memory meanwhile; exits when the index leads to none.
+  virtual void slow_access(const Slow& slow) = 0;
+
+  // ---- For it.
+  asmjit::Label exit(uint32_t n, int32_t credit);
+  Range range_for(uint32_t n) const;
+  int pin_of(int32_t variable) const { return pin_of_[static_cast<size_t>(variable)]; }  // -1: in memory
+  const std::vector<uint16_t>& pinned() const { return pinned_; }
+  // For each word address the way from the table to the code of a return to it.
+  void table_of_returns(const asmjit::Label& table, const asmjit::Label& none);
+  void add_slow(const Slow& slow) { slow_.push_back(slow); }
+
+  const Program& program_;
+  const Unwind unwind_;
+  const asmjit::Label leave_, store_pins_, load_pins_, returned_;
+  int32_t flags_of_ = -1;  // the processor's flags tell of this variable
 
  private:
   struct Exit {
@@ -65,33 +127,15 @@ class Emitter {
     asmjit::Label label, target;
     int32_t by;
   };
-  // The code for an index that is none of a variable in memory.
-  struct Slow {
-    asmjit::Label label, back;
-    uint32_t command;
-  };
   // Where the cases of a switch begin.
   struct Table {
     asmjit::Label label;
     std::vector<asmjit::Label> cases;
   };
-  struct Range {
-    uint32_t first, count;
-  };
 
-  // frame.cpp
-  void enter();
-  void leave();
-  void returns_to_context();
-  void move_pins(bool store);
-  void block_base(x86::Gp to);
-
-  // emitter.cpp
   void choose_ranges();
   uint32_t command(uint32_t n);
   void begin(uint32_t n);
-  void correct(int32_t by);
-  asmjit::Label exit(uint32_t n, int32_t credit);
   void jump(uint32_t n);
   void branch(const Command& command, uint32_t n);
   void call(uint32_t n);
@@ -105,49 +149,16 @@ class Emitter {
   void exit_paths();
   void tables();
 
-  // templates.cpp
-  bool fused(const Instruction& first, const Instruction& second);
-  void data(uint32_t n);
-  void alu(asmjit::InstId id, int32_t to, const Instruction& command, bool constant);
-  void multiply(int32_t to, const Instruction& command, bool constant);
-  void multiply_constant(x86::Gp to, int32_t from, int32_t factor);
-  void shift(asmjit::InstId id, int32_t to, const Instruction& command, bool constant);
-  void set(int32_t to, int32_t from);
-  void divide(uint32_t n, bool quotient);
-  void divide_constant(const Instruction& command, bool quotient);
-  void move_bit(const Instruction& command, bool inverted);
-  void load(uint32_t n);
-  void store(uint32_t n);
-  x86::Gp checked_index(uint32_t n, int32_t variable, const asmjit::Label& slow);
-  Range range_for(uint32_t n) const;
-  void compare(const Instruction& command, bool constant);
-
-  std::optional<x86::Gp> pin(int32_t variable) const;
-  x86::Mem memory(int32_t variable) const;
-  x86::Mem indexed(x86::Gp number) const { return x86::dword_ptr(h_, number.r64(), 2); }
-  asmjit::Operand place(int32_t variable) const;
-
-  const Program& program_;
-  x86::Assembler a_;
-  Unwind unwind_;
+  asmjit::BaseAssembler& a_;
+  Emitted out_;
   std::vector<uint16_t> pinned_;
-  std::vector<int8_t> pin_of_;  // by variable; -1: in memory
-  std::vector<Range> ranges_;   // of variables that are all in memory
+  std::vector<int8_t> pin_of_;  // by variable
+  std::vector<Range> ranges_;
   std::vector<asmjit::Label> labels_;
   std::vector<Exit> exits_;
   std::vector<Detour> detours_;
   std::vector<Slow> slow_;
   std::vector<Table> tables_;
-  int32_t flags_of_ = -1;  // the processor's flags tell of this variable
-  asmjit::Label leave_, store_pins_, load_pins_, returned_;
-
-  const x86::Gp h_ = x86::r15;
-  const x86::Gp number_ = x86::r14d;
 };
-
-// Registers for variables, the one first that is least in the way.
-inline constexpr std::array<x86::Gp, 11> kPins = {x86::ebx,  x86::ebp,  x86::esi,  x86::edi,
-                                                  x86::r8d,  x86::r9d,  x86::r10d, x86::r11d,
-                                                  x86::r12d, x86::r13d, x86::edx};
 
 }  // namespace ipos::vm::jit

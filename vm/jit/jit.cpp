@@ -23,7 +23,9 @@ class Pages {
     return asmjit::VirtMem::alloc(&start_, size_, asmjit::VirtMem::MemoryFlags::kAccessRW) ==
            asmjit::kErrorOk;
   }
-  bool make_executable() {
+  // What has been written may still be in the data cache only.
+  bool make_executable(size_t written) {
+    asmjit::VirtMem::flushInstructionCache(start_, written);
     return asmjit::VirtMem::protect(start_, size_, asmjit::VirtMem::MemoryFlags::kAccessRX) ==
            asmjit::kErrorOk;
   }
@@ -40,17 +42,18 @@ class HostCode : public Code {
     const Program program(image);
     asmjit::CodeHolder holder;
     if (holder.init(asmjit::Environment::host()) != asmjit::kErrorOk) return false;
-    Emitter emitter(program, holder, unwind);
-    if (!emitter.run() || holder.flatten() != asmjit::kErrorOk ||
+    Emitted emitted;
+    if (!emit(program, holder, unwind, emitted) || holder.flatten() != asmjit::kErrorOk ||
         holder.resolveUnresolvedLinks() != asmjit::kErrorOk)
       return false;
     bytes_ = holder.codeSize();
     if (!pages_.take(bytes_) ||
         holder.relocateToBase(reinterpret_cast<uintptr_t>(pages_.start())) != asmjit::kErrorOk ||
-        holder.copyFlattenedData(pages_.start(), bytes_) != asmjit::kErrorOk || !pages_.make_executable())
+        holder.copyFlattenedData(pages_.start(), bytes_) != asmjit::kErrorOk ||
+        !pages_.make_executable(bytes_))
       return false;
-    entries_ = std::move(emitter.entries);
-    returns_ = std::move(emitter.returns);
+    entries_ = std::move(emitted.entries);
+    returns_ = std::move(emitted.returns);
     needs_.assign(entries_.size(), 0);
     for (const Command& command : program.commands)
       if (entries_[command.at].offset != 0) needs_[command.at] = static_cast<uint16_t>(command.need);

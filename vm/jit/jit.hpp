@@ -1,6 +1,6 @@
-// Machine code for verified programs (x86-64): all commands but those of the host become native ones, the
-// variables loops use most stay in registers. Takes memory from the heap and from the operating system, so it
-// is a layer of its own beside the VM; a build without it has a compile() that says no.
+// Machine code for verified programs (x86-64, AArch64): all commands but those of the host become native
+// ones, the variables loops use most stay in registers. Takes memory from the heap and from the operating
+// system, so it is a layer of its own beside the VM; a build without it has a compile() that says no.
 #pragma once
 
 #include <memory>

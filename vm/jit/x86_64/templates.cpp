@@ -1,8 +1,9 @@
-// Commands that work on variables, as machine code.
+// Commands that work on variables, for x86-64.
 #include <bit>
 
 #include "vm/exec/arithmetic.hpp"
-#include "vm/jit/emitter.hpp"
+#include "vm/jit/reciprocal.hpp"
+#include "vm/jit/x86_64/emitter.hpp"
 
 namespace ipos::vm::jit {
 namespace {
@@ -13,7 +14,7 @@ using Id = x86::Inst::Id;
 }  // namespace
 
 // Two commands in one: SET a = b and what works on a then.
-bool Emitter::fused(const Instruction& first, const Instruction& second) {
+bool EmitterX86::fused(const Instruction& first, const Instruction& second) {
   if (first.opcode != Opcode::SetHH || second.operands[0] != first.operands[0]) return false;
   const auto to = pin(first.operands[0]);
   const auto from = pin(first.operands[1]);
@@ -37,7 +38,7 @@ bool Emitter::fused(const Instruction& first, const Instruction& second) {
   }
 }
 
-void Emitter::data(uint32_t n) {
+void EmitterX86::data(uint32_t n) {
   const Instruction& command = program_.commands[n].instruction;
   const int32_t a = command.operands[0];
   const int32_t b = command.operands[1];
@@ -80,7 +81,7 @@ void Emitter::data(uint32_t n) {
   }
 }
 
-void Emitter::set(int32_t to, int32_t from) {
+void EmitterX86::set(int32_t to, int32_t from) {
   if (to == from) return;
   if (pin(to) || pin(from)) {
     a_.emit(Id::kIdMov, place(to), place(from));
@@ -90,7 +91,7 @@ void Emitter::set(int32_t to, int32_t from) {
   }
 }
 
-void Emitter::alu(asmjit::InstId id, int32_t to, const Instruction& command, bool constant) {
+void EmitterX86::alu(asmjit::InstId id, int32_t to, const Instruction& command, bool constant) {
   const int32_t b = command.operands[1];
   if (constant) {
     a_.emit(id, place(to), Imm(b));
@@ -103,7 +104,7 @@ void Emitter::alu(asmjit::InstId id, int32_t to, const Instruction& command, boo
   flags_of_ = to;
 }
 
-void Emitter::multiply(int32_t to, const Instruction& command, bool constant) {
+void EmitterX86::multiply(int32_t to, const Instruction& command, bool constant) {
   const x86::Gp result = pin(to).value_or(x86::eax);
   if (constant) {
     multiply_constant(result, to, command.operands[1]);
@@ -114,7 +115,7 @@ void Emitter::multiply(int32_t to, const Instruction& command, bool constant) {
   if (!pin(to)) a_.mov(memory(to), result);
 }
 
-void Emitter::multiply_constant(x86::Gp to, int32_t from, int32_t factor) {
+void EmitterX86::multiply_constant(x86::Gp to, int32_t from, int32_t factor) {
   const auto source = pin(from);
   const auto move = [&] {
     if (source != to) a_.emit(Id::kIdMov, to, place(from));
@@ -133,7 +134,7 @@ void Emitter::multiply_constant(x86::Gp to, int32_t from, int32_t factor) {
   }
 }
 
-void Emitter::shift(asmjit::InstId id, int32_t to, const Instruction& command, bool constant) {
+void EmitterX86::shift(asmjit::InstId id, int32_t to, const Instruction& command, bool constant) {
   if (constant) {
     const int32_t count = command.operands[1] & 31;
     if (count != 0) a_.emit(id, place(to), Imm(count));
@@ -145,7 +146,7 @@ void Emitter::shift(asmjit::InstId id, int32_t to, const Instruction& command, b
 
 // The divisor 0 is left to the engines; by -1 it is a negation, as the processor has no answer for the
 // smallest number. edx may be a variable's: it rests in the stack's red zone.
-void Emitter::divide(uint32_t n, bool quotient) {
+void EmitterX86::divide(uint32_t n, bool quotient) {
   const Command& command = program_.commands[n];
   const int32_t a = command.instruction.operands[0];
   const asmjit::Label usual = a_.newLabel(), done = a_.newLabel();
@@ -161,7 +162,7 @@ void Emitter::divide(uint32_t n, bool quotient) {
   a_.jmp(done);
   a_.bind(usual);
   a_.emit(Id::kIdMov, x86::eax, place(a));
-  const bool in_use = pinned_.size() == kPins.size();
+  const bool in_use = pinned().size() == kPins.size();
   if (in_use) a_.mov(x86::dword_ptr(x86::rsp, -8), x86::edx);
   a_.cdq();
   a_.idiv(x86::ecx);
@@ -171,10 +172,7 @@ void Emitter::divide(uint32_t n, bool quotient) {
   a_.bind(done);
 }
 
-// By multiplication with 2^(32 + s) / divisor, rounded up, where 2^s is the power of 2 not below half of the
-// divisor: below 2^32, and exact for all 32-bit dividends (Granlund and Montgomery, 1994). Toward zero: one
-// more for what is negative.
-void Emitter::divide_constant(const Instruction& command, bool quotient) {
+void EmitterX86::divide_constant(const Instruction& command, bool quotient) {
   const int32_t a = command.operands[0];
   const int32_t divisor = command.operands[1];
   const uint32_t size = divisor < 0 ? 0U - bits(divisor) : bits(divisor);
@@ -185,12 +183,11 @@ void Emitter::divide_constant(const Instruction& command, bool quotient) {
       a_.emit(Id::kIdNeg, place(a));
     return;
   }
-  const int power = 32 + std::bit_width(size - 1) - 1;
-  const uint64_t factor = (uint64_t{1} << power) / size + 1;
+  const Reciprocal by(size);
   a_.emit(Id::kIdMovsxd, x86::rax, place(a));
-  a_.mov(x86::ecx, static_cast<uint32_t>(factor));
+  a_.mov(x86::ecx, by.factor);
   a_.imul(x86::rax, x86::rcx);
-  a_.sar(x86::rax, power);
+  a_.sar(x86::rax, by.power);
   a_.emit(Id::kIdMov, x86::ecx, place(a));
   a_.shr(x86::ecx, 31);
   a_.add(x86::eax, x86::ecx);
@@ -203,7 +200,7 @@ void Emitter::divide_constant(const Instruction& command, bool quotient) {
   }
 }
 
-void Emitter::move_bit(const Instruction& command, bool inverted) {
+void EmitterX86::move_bit(const Instruction& command, bool inverted) {
   const int32_t a = command.operands[0];
   const int32_t bit = command.operands[1];
   a_.emit(Id::kIdMov, x86::eax, place(command.operands[2]));
@@ -215,34 +212,8 @@ void Emitter::move_bit(const Instruction& command, bool inverted) {
   a_.emit(Id::kIdOr, place(a), x86::eax);
 }
 
-void Emitter::compare(const Instruction& command, bool constant) {
-  const int32_t a = command.operands[0];
-  const int32_t b = command.operands[1];
-  if (constant && b == 0 && pin(a)) {
-    a_.test(*pin(a), *pin(a));
-  } else if (constant) {
-    a_.emit(Id::kIdCmp, place(a), Imm(b));
-  } else if (pin(a) || pin(b)) {
-    a_.emit(Id::kIdCmp, place(a), place(b));
-  } else {
-    a_.mov(x86::eax, memory(a));
-    a_.cmp(x86::eax, memory(b));
-  }
-}
-
-// The range of variables in memory an index most likely leads to; where nothing tells, the longest.
-Emitter::Range Emitter::range_for(uint32_t n) const {
-  const int32_t table = program_.commands[n].table;
-  Range longest{0, 0};
-  for (const Range& range : ranges_) {
-    if (table >= 0 && bits(table) - range.first < range.count) return range;
-    if (range.count > longest.count) longest = range;
-  }
-  return longest;
-}
-
 // A register with the number of a variable in memory; ecx when it was not in one.
-x86::Gp Emitter::checked_index(uint32_t n, int32_t variable, const asmjit::Label& slow) {
+x86::Gp EmitterX86::checked_index(uint32_t n, int32_t variable, const asmjit::Label& slow) {
   const Range range = range_for(n);
   const x86::Gp index = pin(variable).value_or(x86::ecx);
   if (!pin(variable)) a_.mov(index, memory(variable));
@@ -256,7 +227,7 @@ x86::Gp Emitter::checked_index(uint32_t n, int32_t variable, const asmjit::Label
   return index;
 }
 
-void Emitter::load(uint32_t n) {
+void EmitterX86::load(uint32_t n) {
   const auto& operands = program_.commands[n].instruction.operands;
   const Slow slow{a_.newLabel(), a_.newLabel(), n};
   const x86::Gp index = checked_index(n, operands[1], slow.label);
@@ -264,10 +235,10 @@ void Emitter::load(uint32_t n) {
   a_.mov(result, indexed(index));
   if (!pin(operands[0])) a_.mov(memory(operands[0]), result);
   a_.bind(slow.back);
-  slow_.push_back(slow);
+  add_slow(slow);
 }
 
-void Emitter::store(uint32_t n) {
+void EmitterX86::store(uint32_t n) {
   const auto& operands = program_.commands[n].instruction.operands;
   const Slow slow{a_.newLabel(), a_.newLabel(), n};
   const x86::Gp index = checked_index(n, operands[0], slow.label);
@@ -275,7 +246,38 @@ void Emitter::store(uint32_t n) {
   if (!pin(operands[1])) a_.mov(value, memory(operands[1]));
   a_.mov(indexed(index), value);
   a_.bind(slow.back);
-  slow_.push_back(slow);
+  add_slow(slow);
+}
+
+void EmitterX86::slow_access(const Slow& slow) {
+  const Command& command = program_.commands[slow.command];
+  const auto& operands = command.instruction.operands;
+  const bool loads = command.instruction.opcode == Opcode::SetiLoad;
+  a_.call(store_pins_);
+  a_.mov(x86::eax, memory(operands[loads ? 1 : 0]));
+  a_.cmp(x86::eax, uint32_t{program_.limits.variables});
+  a_.jae(exit(slow.command, command.credit));
+  if (loads) {
+    a_.mov(x86::ecx, indexed(x86::eax));
+    a_.mov(memory(operands[0]), x86::ecx);
+  } else {
+    a_.mov(x86::ecx, memory(operands[1]));
+    a_.mov(indexed(x86::eax), x86::ecx);
+  }
+  a_.call(load_pins_);
+}
+
+std::optional<x86::Gp> EmitterX86::pin(int32_t variable) const {
+  const int number = pin_of(variable);
+  if (number < 0) return std::nullopt;
+  return kPins[static_cast<size_t>(number)];
+}
+
+x86::Mem EmitterX86::memory(int32_t variable) const { return x86::dword_ptr(h_, variable * 4); }
+
+asmjit::Operand EmitterX86::place(int32_t variable) const {
+  if (const auto reg = pin(variable)) return *reg;
+  return memory(variable);
 }
 
 }  // namespace ipos::vm::jit

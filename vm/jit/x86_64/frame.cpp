@@ -1,19 +1,17 @@
-// The way into machine code, out of it, and back from subroutines it has not called itself.
+// The way into machine code, out of it, and back from subroutines it has not called itself, on x86-64.
 //
-// The code's stack is a block of 1 KiB whose address is a multiple of that. It begins so far above the
-// block's start that as many calls fit below as may still nest: a CALL has to look only whether the low bits
-// of the stack pointer are 0. Where calls of the context return to, returns_to_context() stands instead.
-// Above them are the caller's stack pointer and the frame.
+// The block of emitter.hpp is on the caller's stack, and the stack pointer points into it. Above the return
+// addresses are the caller's stack pointer and the frame.
 #include <cstddef>
 
-#include "vm/jit/emitter.hpp"
+#include "vm/jit/x86_64/emitter.hpp"
 
 namespace ipos::vm::jit {
 namespace {
 
 constexpr int32_t kCaller = kBlock - 16;
 constexpr int32_t kFrame = kBlock - 8;
-static_assert((kMaxCallDepth + 2) * 8 < kCaller);
+static_assert(kReturnsEnd <= kCaller);
 
 constexpr x86::Gp kSaved[] = {x86::rbx, x86::rbp, x86::r12, x86::r13, x86::r14, x86::r15};
 
@@ -21,22 +19,26 @@ x86::Mem field(x86::Gp frame, size_t offset) { return x86::ptr(frame, static_cas
 
 }  // namespace
 
-void Emitter::block_base(x86::Gp to) {
+void EmitterX86::block_base(x86::Gp to) {
   a_.mov(to, x86::rsp);
   a_.and_(to, -kBlock);
 }
 
-void Emitter::move_pins(bool stores) {
-  for (size_t n = 0; n < pinned_.size(); ++n) {
+void EmitterX86::move_pins(bool stores) {
+  for (size_t n = 0; n < pinned().size(); ++n) {
     if (stores)
-      a_.mov(memory(pinned_[n]), kPins[n]);
+      a_.mov(memory(pinned()[n]), kPins[n]);
     else
-      a_.mov(kPins[n], memory(pinned_[n]));
+      a_.mov(kPins[n], memory(pinned()[n]));
   }
 }
 
-// The first byte of the code: void enter(Frame*).
-void Emitter::enter() {
+void EmitterX86::pins_subroutine(bool stores) {
+  move_pins(stores);
+  a_.ret();
+}
+
+void EmitterX86::enter() {
   for (const x86::Gp& saved : kSaved) a_.push(saved);
   a_.mov(x86::rax, x86::rsp);
   a_.sub(x86::rsp, 2 * kBlock);
@@ -62,7 +64,7 @@ void Emitter::enter() {
 }
 
 // eax is the word address, the number is that of the commands left.
-void Emitter::leave() {
+void EmitterX86::leave() {
   a_.bind(leave_);
   move_pins(true);
   block_base(x86::rbx);
@@ -79,7 +81,7 @@ void Emitter::leave() {
 }
 
 // A RET has found no call of machine code. eax is its word address.
-void Emitter::returns_to_context() {
+void EmitterX86::returns_to_context() {
   static_assert(sizeof(TaskContext{}.calls[0]) == 2, "the loads of `calls` below are of words");
   const asmjit::Label ends = a_.newLabel(), unknown = a_.newLabel(), table = a_.newLabel();
   const auto context = [&] {
@@ -110,12 +112,7 @@ void Emitter::returns_to_context() {
   a_.sub(x86::rsp, 8);
   a_.add(number_, 1);
   a_.jmp(leave_);
-  a_.align(asmjit::AlignMode::kData, 4);
-  a_.bind(table);
-  for (const uint32_t n : program_.index)
-    a_.embedLabelDelta(
-        n != kNowhere && program_.commands[n].called && labels_[n].isValid() ? labels_[n] : unknown, table,
-        4);
+  table_of_returns(table, unknown);
 }
 
 }  // namespace ipos::vm::jit

@@ -1,0 +1,78 @@
+#include "tests/engines/programs.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "compiler/codegen/compile.hpp"
+#include "tests/engines/pair.hpp"
+#include "tests/generated/program_generator.hpp"
+#include "tests/generated/source_text.hpp"
+
+namespace ipos::tests {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr uint32_t kOrders = 120;
+constexpr uint32_t kOrdersOfRepository = 1000;
+constexpr vm::Limits kSoupLimits{1024, 16384, 3, 6};  // few calls, so that F32 is met
+
+vm::Limits limits_of(const stdlib::UnitType& unit) {
+  return {unit.variables, unit.program_words, unit.tasks, unit.call_depth};
+}
+
+std::optional<std::string> read_text(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return std::nullopt;
+  return std::string{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+}  // namespace
+
+std::vector<EngineProgram> programs_of(uint64_t seed) {
+  std::vector<EngineProgram> programs;
+  const auto add = [&](const char* what, std::vector<uint32_t> code, const vm::Limits& limits) {
+    if (!code.empty())
+      programs.push_back({what + (" " + std::to_string(seed)), std::move(code), limits, seed, kOrders});
+  };
+  Program program = generate_program(seed);
+  compiler::CompileOptions options;
+  options.unit = stdlib::find_unit(std::string_view(program.unit));
+  const compiler::Compilation made = compiler::compile("generated.IPC", "", source_text(program), options);
+  if (made.image) {
+    const vm::Limits limits = limits_of(*options.unit);
+    add("generated", made.image->code, limits);
+    add("generated with interrupts", with_interrupts(made.image->code, limits, seed), limits);
+  }
+  add("soup", with_interrupts(sequence_soup(seed), kSoupLimits, seed), kSoupLimits);
+  return programs;
+}
+
+std::vector<EngineProgram> programs_of_the_repository() {
+  std::vector<EngineProgram> programs;
+  for (const char* folder : {"examples", "tests/language", "tests/bench/programs"})
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(IPOS_SOURCE_DIR) / folder)) {
+      if (entry.path().extension() != ".IPC") continue;
+      const std::string path = entry.path().string();
+      compiler::CompileOptions options;
+      options.read_file = read_text;
+      for (const char* unit : {"", "mdxb"}) {
+        options.unit = *unit == 0 ? nullptr : stdlib::find_unit(std::string_view(unit));
+        const compiler::Compilation made =
+            compiler::compile(path, path, read_text(path).value_or(""), options);
+        if (!made.image) continue;
+        const vm::Limits limits = limits_of(*made.unit);
+        const std::string name = fs::relative(path, IPOS_SOURCE_DIR).string();
+        for (uint64_t seed = 1; seed <= 2; ++seed) {
+          const auto code = seed == 1 ? made.image->code : with_interrupts(made.image->code, limits, seed);
+          if (vm::verify(code, limits, {}).image)
+            programs.push_back({name, code, limits, seed, kOrdersOfRepository});
+        }
+      }
+    }
+  return programs;
+}
+
+}  // namespace ipos::tests
