@@ -72,6 +72,8 @@ void check_flags(const TestFlags& flags) {
   const CompileFlags& compile = flags.suite.compile;
   if (!compile.unit.empty() && stdlib::find_unit(compile.unit) == nullptr)
     throw Failure(kUsage, fmt::format("'{}' is no unit type", compile.unit));
+  if (compile.diagnostics != "text")
+    throw Failure(kUsage, "the messages of programs are part of the report; --json has them");
   const auto to_stdout = [](const std::string& path) { return path == "-"; };
   if (to_stdout(flags.junit) + to_stdout(flags.tap) + to_stdout(flags.json) > 1)
     throw Failure(kUsage, "only one report can go to standard output");

@@ -45,7 +45,7 @@ runtime::Station& Probe::station(const std::string& name) {
 }
 
 Reader Probe::reader_of(const Subject& subject, std::string& why) {
-  runtime::Station& station = this->station(subject.signal.station);
+  const runtime::Station& station = this->station(subject.signal.station);
   if (subject.kind == Subject::Kind::State)
     return [&station, read = subject.state->read] { return int64_t{read(station)}; };
   if (subject.kind == Subject::Kind::ProcessData)

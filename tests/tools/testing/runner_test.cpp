@@ -81,6 +81,8 @@ TEST_F(Runner, ExitCodes) {
   EXPECT_EQ(run({}).exit_code, 64);
   EXPECT_EQ(run({"notes.txt"}).exit_code, 64);
   EXPECT_EQ(run({"good.test.toml", "--jobs", "0"}).exit_code, 64);
+  EXPECT_EQ(run({"good.test.toml", "--diagnostics", "json"}).exit_code, 64);
+  EXPECT_EQ(run({"good.test.toml", "--unit", "robot"}).exit_code, 64);
 }
 
 TEST_F(Runner, ATestThatLooksAtNothingFails) {
