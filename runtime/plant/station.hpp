@@ -166,7 +166,7 @@ class Station final : private EventTarget, private Sleeper {
   void begin_trial();
   void try_program();
   uint64_t end_trial();
-  void hesitate();
+  void hesitate(uint32_t longest);
   void connect_sbus(int number);
   void restart_program_memory();
   void choose_engine(const vm::VerifiedImage& program);

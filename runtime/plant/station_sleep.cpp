@@ -9,7 +9,8 @@ namespace ipos::runtime {
 namespace {
 
 // A station that did not rest is tried again after 2, 4, 8.. ticks, so that trying costs a busy one nothing.
-constexpr uint32_t kLongestPause = 1024;
+// To go through its program is what costs most.
+constexpr uint32_t kLongestPause = 32, kLongestPauseOfProgram = 1024;
 
 }  // namespace
 
@@ -19,7 +20,7 @@ void Station::begin_trial() {
   const bool stands_off = !drive.axis().output_stage && drive.axis().standing;
   const bool minds_variables = machine_ && ((pid_ && !PidBlock::is_off(machine_->variables())) ||
                                             (positioning_ && !positioning_->minds_system_variables_only()));
-  if (!stands_off || minds_variables) return hesitate();
+  if (!stands_off || minds_variables) return;
   rest_.drive.note(drive);
   if (positioning_) rest_.positioning.note(*positioning_);
   if (machine_) std::ranges::copy(machine_->variables(), rest_.h.begin());
@@ -35,12 +36,12 @@ void Station::try_program() {
                     ? machine_->idle_ticks(rates_.value_or(drive_.rates()).commands)
                     : 0;
   trial_ = idle_ticks_ != 0;
-  if (!trial_) hesitate();
+  if (!trial_) hesitate(kLongestPauseOfProgram);
 }
 
-void Station::hesitate() {
+void Station::hesitate(uint32_t longest) {
   trial_ = false;
-  trial_in_ = pause_ = std::min(2 * pause_, kLongestPause);
+  trial_in_ = pause_ = std::min(2 * pause_, longest);
 }
 
 // How many ticks may be left out behind that of the trial.
@@ -62,7 +63,7 @@ void Station::schedule_tick(Time now) {
       sleeps_until_ = next + static_cast<Time>(ticks) * kMillisecond;
       next = next_event(now);
     } else if (trial_) {
-      hesitate();
+      hesitate(kLongestPause);
     } else if (trial_in_ != 0) {
       --trial_in_;
     } else {
