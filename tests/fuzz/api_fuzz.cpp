@@ -228,19 +228,22 @@ void init(Station& station, uint8_t twist) {
   require(ipos_program_of(made) == session.program && ipos_ticks(made) == 0, "a machine begins");
 }
 
-// The structure of a variable telegram, where commands may find it (valid_code.hpp).
-void write_telegram(Station& station, Input& in) {
-  const uint32_t kind = in.u8();
-  const uint32_t at = in.u8() % 16 * 8;
-  const int32_t id = 1200 + in.u8() % 8;
-  const int32_t format = in.u8() % 10 + (kind & 2 ? 0x100 : 0);
-  const int32_t data = in.u8() * 4;
-  const int32_t cycle = 1 + in.u8() % 9;
-  const int32_t cyclic[] = {id, kind & 4 ? 10 * cycle : cycle, in.u8() % 3, format, data};
-  const int32_t other[] = {id, format, data};
-  const std::span<const int32_t> values = kind & 1 ? std::span<const int32_t>(cyclic) : other;
-  for (size_t n = 0; n < values.size(); ++n)
-    known(ipos_write(station.vm, at + static_cast<uint32_t>(n), values[n]));
+// Structures of variable telegrams at all the places where commands look for them (valid_code.hpp); bit n of
+// `kinds` makes the one at H(8 n) a cyclic one. Most of them are in order.
+void write_telegrams(Station& station, Input& in) {
+  const uint32_t kinds = in.u16();
+  const int32_t format = in.u8() % 10 + (kinds & 1 ? 0x100 : 0);
+  const int32_t first_id = in.u8() % 8 != 0 ? 1200 : in.u16() % 2100;
+  const int32_t cycle = 1 + in.u8() % 10, offset = in.u8() % 4 * 10, data = in.u8() * 4;
+  for (int32_t n = 0; n < 16; ++n) {
+    const int32_t id = first_id + n % 12;
+    const int32_t cyclic[] = {id, n % 2 == 0 ? 10 * cycle : cycle, offset, format, data};
+    const int32_t other[] = {id, format, data};
+    const bool is_cyclic = (kinds >> static_cast<uint32_t>(n) & 1) != 0;
+    uint32_t at = static_cast<uint32_t>(n) * 8;
+    for (const int32_t value : is_cyclic ? std::span<const int32_t>(cyclic) : other)
+      known(ipos_write(station.vm, at++, value));
+  }
 }
 
 void look_around(const Session& session, ipos_vm* vm, uint8_t twist, Input& in) {
@@ -258,6 +261,10 @@ void look_around(const Session& session, ipos_vm* vm, uint8_t twist, Input& in) 
   ipos_fault fault;
   if (known(ipos_fault_of(vm, twist == 254 ? nullptr : &fault)) == IPOS_OK)
     require(fault.reason != nullptr, "a fault has a text");
+  require(ipos_version() == IPOS_VERSION && ipos_most_variables() >= session.info.variables &&
+              ipos_most_words() >= session.info.words &&
+              (ipos_features() | IPOS_FEATURE_FAST) == IPOS_FEATURE_FAST,
+          "the library is what its header says");
   require(ipos_rule_text(number) != nullptr && ipos_status_text(number) != nullptr, "texts are texts");
   if (int32_t* const h = ipos_variables(vm)) h[session.info.variables - 1U] = h[0];
   require(ipos_state_size(vm) != 0 || vm == nullptr, "a machine has a state");
@@ -354,7 +361,7 @@ void call(Session& session, Station* self) {
       for (int32_t n = 0; n < session.info.variables; ++n) ipos_variables(station.vm)[n] = n * factor % most;
       break;
     }
-    case 25: write_telegram(station, in); break;
+    case 25: write_telegrams(station, in); break;
     case 26: save(station, vm, twist); break;
     case 27: restore(station, *session.stations[in.u8() % session.stations.size()], vm, twist); break;
     case 28:
