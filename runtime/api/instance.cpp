@@ -214,12 +214,14 @@ ipos_status ipos_start_task(ipos_vm* vm, uint8_t task, uint32_t address) {
   uint32_t at = 0;
   while (at < address && at < code.size()) at += vm::decode(code, at).words;
   if (at != address || at >= code.size()) return IPOS_INVALID_ARGUMENT;
+  const Busy busy(*vm);
   vm->machine.start_task(task, address);
   return IPOS_OK;
 }
 
 ipos_status ipos_stop_task(ipos_vm* vm, uint8_t task) {
   if (vm == nullptr || !is_task(task)) return IPOS_INVALID_ARGUMENT;
+  const Busy busy(*vm);
   vm->machine.stop_task(task);
   return IPOS_OK;
 }

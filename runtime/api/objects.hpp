@@ -53,16 +53,17 @@ vm::Host machine_host(ipos_vm& self);
 // Tells the host about a fault of the program, once, and ends its telegrams.
 void tell_fault(ipos_vm& self);
 
-// Marks the time in which callbacks may come.
+// Marks the time in which callbacks may come; also inside of one.
 class Busy {
  public:
-  explicit Busy(ipos_vm& self) : self_(self) { self_.busy = true; }
-  ~Busy() { self_.busy = false; }
+  explicit Busy(ipos_vm& self) : self_(self), before_(self.busy) { self_.busy = true; }
+  ~Busy() { self_.busy = before_; }
   Busy(const Busy&) = delete;
   Busy& operator=(const Busy&) = delete;
 
  private:
   ipos_vm& self_;
+  bool before_;
 };
 
 // Aligned, and large enough?

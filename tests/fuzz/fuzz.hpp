@@ -26,6 +26,14 @@ class Input {
   Input(const uint8_t* data, size_t size) : data_(data), left_(size) {}
   bool empty() const { return left_ == 0; }
   size_t left() const { return left_; }
+
+  // The next `size` bytes, or what is left of them, as an input of their own.
+  Input part(size_t size) {
+    const Input out(data_, size < left_ ? size : left_);
+    data_ += out.left_;
+    left_ -= out.left_;
+    return out;
+  }
   const uint8_t* rest() const { return data_; }
 
   uint8_t u8() {

@@ -148,6 +148,24 @@ TEST(ApiMachine, StoppingCancelsWhatTheHostWasDoing) {
   EXPECT_EQ(host.cancelled, std::vector<int>{1});
 }
 
+// `cancel` is a callback in whichever function it comes, also in those callbacks may use.
+TEST(ApiMachine, StoppingATaskIsNoWayIntoItsMachine) {
+  const LoadedProgram loaded("#include <const.h>\nmain() { _AxisStop(AS_PSTOP); while (1) ; }");
+  RecordingHost host;
+  const ipos_host callbacks = host.callbacks();
+  host.reply.answer = IPOS_ANSWER_WAIT;
+  for (const bool anew : {false, true}) {
+    RunningMachine machine(loaded, &callbacks);
+    ASSERT_EQ(ipos_run_ticks(machine.vm, 1, nullptr), IPOS_OK);
+    host.nested = IPOS_OK;
+    host.cancelled.clear();
+    ASSERT_EQ(anew ? ipos_start_task(machine.vm, 1, 0) : ipos_stop_task(machine.vm, 1), IPOS_OK);
+    EXPECT_EQ(host.cancelled, std::vector<int>{1});
+    EXPECT_EQ(host.nested, IPOS_BUSY);
+    EXPECT_EQ(ipos_run_ticks(machine.vm, 1, nullptr), anew ? IPOS_OK : IPOS_ENDED);
+  }
+}
+
 TEST(ApiMachine, WrongAnswersAreFaults) {
   const LoadedProgram loaded("#include <const.h>\nmain() { _AxisStop(AS_PSTOP); while (1) ; }");
   for (const ipos_reply reply : {ipos_reply{IPOS_ANSWER_TAKEN, 0, nullptr},

@@ -78,7 +78,10 @@ struct RecordingHost {
       of(self).nested = ipos_run_ticks(vm, 1, nullptr);
       return of(self).reply;
     };
-    host.cancel = [](void* self, ipos_vm*, uint8_t context) { of(self).cancelled.push_back(context); };
+    host.cancel = [](void* self, ipos_vm* vm, uint8_t context) {
+      of(self).cancelled.push_back(context);
+      of(self).nested = ipos_run_ticks(vm, 1, nullptr);
+    };
     host.send = [](void* self, ipos_vm* vm, const ipos_frame* frame, uint32_t tag) {
       of(self).frames.emplace_back(ipos_ticks(vm), *frame);
       of(self).tags.push_back(tag);
