@@ -335,6 +335,9 @@ void Drive::show_outputs(const Decisions& d, const AxisOrder& order) {
   in.in_position = position_.in_position;
   in.referenced = position_.referenced;
   in.ipos_outputs = ipos_outputs_;
+  if (in == shown_ && shown_for_ == settings_version_ && outputs_.settled()) return;
+  shown_ = in;
+  shown_for_ = settings_version_;
   outputs_.tick(settings_, in);
 }
 
@@ -365,6 +368,7 @@ void Drive::power_cycle() {
   counter_shift_ = 0U - static_cast<uint32_t>(shaft_position());  // the shaft stays where it is
   axis_.reset();
   outputs_ = {};
+  shown_for_.reset();
   factory_setting_ms_ = mains_ms_ = enabled_ms_ = 0;
   counted_energy_ = 0;
 }

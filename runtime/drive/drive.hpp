@@ -113,6 +113,7 @@ class Drive final : private DriveLink {
   void forget_decisions() {
     now_.change();
     decisions_known_ = false;
+    shown_for_.reset();
   }
 
  private:
@@ -245,6 +246,8 @@ class Drive final : private DriveLink {
 
   Axis axis_;
   Outputs outputs_;
+  OutputInputs shown_;  // what they were last told, and under which settings
+  std::optional<uint32_t> shown_for_;
   uint32_t factory_setting_ms_ = 0;
   uint32_t up_ms_ = 0;  // since power-on, up to the end of the start-up
   uint32_t mains_ms_ = 0;

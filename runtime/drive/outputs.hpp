@@ -54,6 +54,7 @@ class ReferenceSignal {
     return shown_;
   }
   bool value() const { return shown_; }
+  bool settled() const { return raw_ == shown_; }  // no delay runs
 
  private:
   bool raw_ = false;
@@ -79,6 +80,8 @@ struct OutputInputs {
   int32_t current = 0;  // 1/1000 % of IN
   int32_t current_limit = 0;
   uint16_t ipos_outputs = 0;  // by bit as below
+
+  bool operator==(const OutputInputs&) const = default;
 };
 
 class Outputs {
@@ -86,6 +89,11 @@ class Outputs {
   // One millisecond. Bit 0 DB00, bit 1 DO01, bit 2 DO02, bit 8 DO10 .. bit 15 DO17.
   uint16_t tick(const Settings& settings, const OutputInputs& inputs);
   uint16_t levels() const { return levels_; }
+  // Another tick with the same settings and inputs changes nothing.
+  bool settled() const {
+    return speed_.settled() && window_.settled() && compare_.settled() && current_.settled() &&
+           limit_.settled();
+  }
 
  private:
   bool level(OutputFunction function, const OutputInputs& inputs, unsigned bit) const;

@@ -167,7 +167,8 @@ void measure(const char* name, int drives, bool busy, bool bus, int seconds) {
   plant->run_until((1 + seconds) * runtime::kSecond);
   const double used = cpu_seconds() - begin;
   fmt::print(
-      "{:28} {:3} drives: {:8.1f} simulated s per CPU s, {:6} frames/s, {:8} commands/s, {:.2f} allocations/s\n",
+      "{:28} {:3} drives: {:8.1f} simulated s per CPU s, {:6} frames/s, {:8} commands/s, {:.2f} "
+      "allocations/s\n",
       name, drives, seconds / used, (frames.count - frames_before) / static_cast<uint64_t>(seconds),
       (commands(*plant) - commands_before) / static_cast<uint64_t>(seconds),
       static_cast<double>(allocations - allocations_before) / seconds);
