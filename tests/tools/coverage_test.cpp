@@ -358,6 +358,21 @@ TEST(CoverageVerb, RunsOfAPlantAreTheSame) {
   EXPECT_NE(tests::read_text(folder.path() / "b.info").find("SCOM2.IPC"), std::string::npos);
 }
 
+// Tests run on several threads, each with a plant of its own.
+TEST(CoverageVerb, TestsAddUp) {
+  const tests::TemporaryFolder folder;
+  folder.write("A.IPC", "main()\n{\n  H0 = 1;\n}\n// expect H0 == 1\n");
+  const tests::CommandResult run = tests::run_ipos(
+      {"test", "A.IPC", "--repeat", "20", "--jobs", "4", "--coverage", "a.info", "--coverage", "-"},
+      folder.path());
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("20 tests, 20 passed"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("2/2 100.0%"), std::string::npos) << run.out;
+  const std::string info = tests::read_text(folder.path() / "a.info");
+  EXPECT_NE(info.find("\nDA:3,20\n"), std::string::npos) << info;
+  EXPECT_EQ(tests::run_ipos({"test", "A.IPC", "--tap", "-", "--coverage", "-"}, folder.path()).exit_code, 64);
+}
+
 TEST(CoverageVerb, Mistakes) {
   const tests::TemporaryFolder folder;
   const std::string file = folder.write("A.IPC", "main()\n{\n  H0 = 1;\n}\n");
