@@ -184,6 +184,8 @@ void Station::end_program(Time now) {
   // MOVLNK to the own unit.
   if (std::string refused = drive_.take_reason(); !refused.empty())
     journal_.note(now, Weight::Why, config_.name, "refused " + std::move(refused));
+  for (std::string& obstacle : drive_.take_obstacles())
+    journal_.note(now, Weight::Why, config_.name, std::move(obstacle));
   if (machine_->fault().number != 0 && !fault_reported_) report_fault(now);
 }
 

@@ -281,6 +281,23 @@ main() { while (1) { _GetSys(po, GS_PODATA); high = (po.PO1 >> 8) & 255; } }
   EXPECT_EQ(plant->stations()[0]->drive().value("000"), 1'000'000);
 }
 
+// MOVLNK to the own unit (address 253) with process data: why they do nothing is told without any frame.
+TEST(ProcessData, ToTheOwnUnitTellWhyTheyHaveNoEffect) {
+  const auto plant = make_station(R"(
+#include <const.h>
+MOVLNK m; MLDATA d;
+main() {
+  m.BusType = ML_BT_SBUS; m.Address = 253; m.Format = ML_FT_3; m.DPointer = numof(d);
+  d.PO1 = 6; _MoviLink(m);
+  while (1) ;
+}
+)",
+                                  "");
+  plant->run_until(ms(20));
+  EXPECT_EQ(value(*plant, "m.Result"), 0);
+  EXPECT_TRUE(told(*plant, "the control word has no effect: P101"));
+}
+
 // A slave copies its PO data to its PI data; the echo goes out in its PI telegram.
 TEST(ProcessData, OfTheProgramAreEchoed) {
   PROVES("PD-12");
