@@ -1,6 +1,7 @@
 // Layout of the plot, from top to bottom: title, labels of the events, panels, strips of the buses, time
 // axis.
 #include "tools/plot_svg.hpp"
+#include "tools/xml_text.hpp"
 
 #include <fmt/format.h>
 
@@ -21,21 +22,6 @@ constexpr size_t kEventRows = 4;
 constexpr std::string_view kColours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                          "#E69F00", "#56B4E9", "#000000"};
 constexpr std::string_view kFaultColour = "#C00000", kEventColour = "#808080";
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (static_cast<unsigned char>(c) >= ' ')
-      out += c;
-  }
-  return out;
-}
 
 // As many digits as the ticks differ in; seven places and more before the point are written with a power of
 // ten.
@@ -106,7 +92,7 @@ class Plot {
                "viewBox=\"0 0 {0:.0f} {1:.0f}\" font-family=\"sans-serif\" font-size=\"12\">\n"
                "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
                "<text x=\"{2:.0f}\" y=\"20\" font-size=\"15\" fill=\"#222\">{3}</text>\n",
-               width_, height, kLeft, escaped(title_)) +
+               width_, height, kLeft, xml_text(title_)) +
            body + "</svg>\n";
   }
 
@@ -141,7 +127,7 @@ class Plot {
       *row = x + width;
       out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" fill=\"{}\">{}</text>\n", x,
                          kTitleHeight + kRowHeight * static_cast<double>(row - rows_.begin() + 1),
-                         event.is_fault ? kFaultColour : kEventColour, escaped(event.text));
+                         event.is_fault ? kFaultColour : kEventColour, xml_text(event.text));
     }
     return out;
   }
@@ -187,7 +173,7 @@ class Plot {
     std::string out = fmt::format(
         "<text x=\"{:.0f}\" y=\"{:.1f}\" fill=\"#222\" font-weight=\"bold\" "
         "text-anchor=\"end\">{}</text>\n",
-        kLeft - 6, y - 8, escaped(panel.unit.empty() ? "value" : panel.unit));
+        kLeft - 6, y - 8, xml_text(panel.unit.empty() ? "value" : panel.unit));
     const std::vector<double> ticks = axis_ticks(scale.least, scale.most, 6);
     const std::vector<std::string> labels = tick_labels(ticks);
     for (size_t n = 0; n < ticks.size(); ++n)
@@ -235,7 +221,7 @@ class Plot {
         "<path d=\"{}\" stroke=\"{}\" fill=\"none\"/>\n<text x=\"{:.0f}\" y=\"{:.1f}\" "
         "fill=\"#222\">{}</text>\n",
         strokes, kColours[track % std::size(kColours)], kRight + 7, y + 12,
-        escaped(strip_name(recording_.tracks[track])));
+        xml_text(strip_name(recording_.tracks[track])));
   }
 
   // Names keep their lines' order and a line's height of distance.
@@ -248,7 +234,7 @@ class Plot {
       tag->y = std::min(tag->y, lowest);
       lowest = tag->y - kRowHeight;
       out += fmt::format("<text x=\"{:.0f}\" y=\"{:.1f}\" fill=\"{}\">{}</text>\n", kRight + 7, tag->y + 4,
-                         kColours[tag->colour], escaped(tag->text));
+                         kColours[tag->colour], xml_text(tag->text));
     }
     return out;
   }

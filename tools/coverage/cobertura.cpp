@@ -8,24 +8,10 @@
 #include <vector>
 
 #include "tools/coverage/write.hpp"
+#include "tools/xml_text.hpp"
 
 namespace ipos::tools::coverage {
 namespace {
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
 
 std::string rates(const Figures& all) {
   return fmt::format("line-rate=\"{:.4f}\" branch-rate=\"{:.4f}\"", all.lines.rate(), all.branches.rate());
@@ -56,14 +42,14 @@ std::string line_element(uint32_t line, uint64_t times, const std::vector<const 
 std::string class_element(const std::string& name, const SourceFile& file) {
   std::string out =
       fmt::format("        <class name=\"{}\" filename=\"{}\" {} complexity=\"0\">\n          <methods>\n",
-                  escaped(name.substr(name.rfind('/') + 1)), escaped(name), rates(figures(file)));
+                  xml_text(name.substr(name.rfind('/') + 1)), xml_text(name), rates(figures(file)));
   for (const auto& [function, entry] : file.functions) {
     const int rate = entry.count != 0 ? 1 : 0;
     out += fmt::format(
         "            <method name=\"{0}\" signature=\"()\" line-rate=\"{1}\" branch-rate=\"{1}\" "
         "complexity=\"0\">\n"
         "              <lines><line number=\"{2}\" hits=\"{3}\"/></lines>\n            </method>\n",
-        escaped(function), rate, entry.line, entry.count);
+        xml_text(function), rate, entry.line, entry.count);
   }
   out += "          </methods>\n          <lines>\n";
   auto condition = file.conditions.begin();

@@ -4,44 +4,25 @@
 
 #include "tools/testing/report_words.hpp"
 #include "tools/testing/reports.hpp"
+#include "tools/xml_text.hpp"
 
 namespace ipos::tools::testing {
 namespace {
 
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : utf8(text)) {
-    switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += c;
-    }
-  }
-  return out;
-}
-
-// A line end in an attribute would be read as a blank.
-std::string attribute(std::string_view text) {
-  std::string out;
-  for (const char c : escaped(text)) out += c == '\n' ? "&#10;" : std::string(1, c);
-  return out;
-}
-
 std::string testcase(const TestResult& result) {
-  const std::string head = fmt::format("    <testcase name=\"{}\" classname=\"{}\" time=\"{:.3f}\"",
-                                       attribute(result.name), attribute(result.file), result.seconds);
+  const std::string head =
+      fmt::format("    <testcase name=\"{}\" classname=\"{}\" time=\"{:.3f}\"", xml_attribute(result.name),
+                  xml_attribute(result.file), result.seconds);
   if (result.outcome == Outcome::Passed) return head + "/>\n";
   std::string text = head + ">\n";
   if (result.outcome == Outcome::NotRun) text += "      <skipped message=\"a test before it failed\"/>\n";
   if (result.outcome == Outcome::Malformed)
     text += fmt::format("      <error type=\"malformed\" message=\"{}\">{}</error>\n",
-                        attribute(result.messages.substr(0, result.messages.find('\n'))),
-                        escaped(result.messages));
+                        xml_attribute(result.messages.substr(0, result.messages.find('\n'))),
+                        xml_text(result.messages));
   for (const Finding& finding : result.findings)
     text += fmt::format("      <failure type=\"expectation\" message=\"{}\">{}</failure>\n",
-                        attribute(finding.text), escaped(text_of_finding(finding)));
+                        xml_attribute(finding.text), xml_text(text_of_finding(finding)));
   return text + "    </testcase>\n";
 }
 
@@ -66,8 +47,8 @@ std::string junit_report(const std::vector<TestResult>& results) {
   }
   for (const std::vector<TestResult>& suite : suites) {
     text += fmt::format("  <testsuite name=\"{}\" {} skipped=\"{}\" file=\"{}\">\n",
-                        attribute(suite.front().file), counts(suite), count(suite, Outcome::NotRun),
-                        attribute(suite.front().file));
+                        xml_attribute(suite.front().file), counts(suite), count(suite, Outcome::NotRun),
+                        xml_attribute(suite.front().file));
     for (const TestResult& result : suite) text += testcase(result);
     text += "  </testsuite>\n";
   }

@@ -6,6 +6,7 @@
 
 #include "tools/testing/report_words.hpp"
 #include "tools/testing/reports.hpp"
+#include "tools/xml_text.hpp"
 
 namespace ipos::tools::testing {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "compiler/diag/places.hpp"
 #include "tools/testing/report_words.hpp"
 #include "tools/testing/reports.hpp"
+#include "tools/xml_text.hpp"
 
 namespace ipos::tools::testing {
 namespace {
@@ -69,17 +69,6 @@ std::string summary(const std::vector<TestResult>& results) {
     if (const size_t number = count(results, outcome); number != 0)
       text += fmt::format(", {} {}", number, word);
   return text + '\n';
-}
-
-std::string utf8(std::string_view text) {
-  std::string out;
-  while (true) {
-    const size_t end = text.find('\n');
-    out += compiler::printable(text.substr(0, end));
-    if (end == std::string_view::npos) return out;
-    out += '\n';
-    text.remove_prefix(end + 1);
-  }
 }
 
 }  // namespace ipos::tools::testing

@@ -12,7 +12,5 @@ namespace ipos::tools::testing {
 std::string_view word_of(Outcome outcome);  // "ok", "FAILED", "ERROR", "not run"
 size_t count(const std::vector<TestResult>& results, Outcome outcome);
 std::string text_of_finding(const Finding& finding);
-// Lines of valid UTF-8 without control characters.
-std::string utf8(std::string_view text);
 
 }  // namespace ipos::tools::testing
