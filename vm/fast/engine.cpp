@@ -23,6 +23,11 @@ uint32_t call_depth(const Predecoded& program) {
   return std::min<uint32_t>(program.program().limits().call_depth, kMaxCallDepth);
 }
 
+// Whatever its options say, g++ aligns labels only in code it optimises for speed.
+#if !defined(__OPTIMIZE__) || defined(__OPTIMIZE_SIZE__)
+#undef IPOS_LABEL_ALIGNMENT
+#define IPOS_LABEL_ALIGNMENT 0
+#endif
 #if IPOS_LABEL_ALIGNMENT
 #define DISPATCH() goto*(base + size_t{ip->command.handler} * IPOS_LABEL_ALIGNMENT)
 #elif IPOS_THREADED
