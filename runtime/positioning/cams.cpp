@@ -40,7 +40,7 @@ constexpr size_t kSourceVar = 0, kDeadTime = 1, kDestVar = 2, kBitPosition = 3, 
 }
 namespace extended {
 constexpr size_t kState = 0, kShift = 2, kForceOn = 3, kForceOff = 4, kSource = 5, kDestination = 6,
-                 kOutputs = 7, kData = 8, kLength = 16;
+                 kCount = 7, kData = 8, kLength = 16;
 }
 namespace output {
 constexpr size_t kDeadTime = 0, kWindows = 1, kLimits = 2, kLength = 10;
@@ -127,7 +127,7 @@ bool ExtendedCams::run(Cam& cam, Variables h, CamSources& sources, const Status&
   enum State : uint32_t { Inactive = 0x8000'0000, Off, IfReferenced, Always };
   const auto state = static_cast<uint32_t>(element(kState));
   if (state < Inactive || state > Always || state == Inactive) return true;
-  const auto count = static_cast<size_t>(std::clamp<int32_t>(element(kOutputs), 0, ExtendedCams::kOutputs));
+  const auto count = static_cast<size_t>(std::clamp<int32_t>(element(kCount), 0, kOutputs));
   const int64_t source = source_of(element(kSource));
   if (!exists(h, source, 1) || !exists(h, element(kDestination), 1)) return false;
 

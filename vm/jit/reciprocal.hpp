@@ -10,7 +10,7 @@ namespace ipos::vm::jit {
 
 struct Reciprocal {
   explicit constexpr Reciprocal(uint32_t divisor)  // 2 and above
-      : power(32 + std::bit_width(divisor - 1) - 1),
+      : power(31 + static_cast<int>(std::bit_width(divisor - 1))),
         factor(static_cast<uint32_t>((uint64_t{1} << power) / divisor + 1)) {}
 
   int power;

@@ -112,6 +112,16 @@ TEST(ExtendedCam, States) {
   EXPECT_EQ(cam.at(20, 0, false), 1 << 4);
 }
 
+TEST(ExtendedCam, OutputsBehindTheirNumberAreLeftAlone) {
+  Extended cam(0x8000'0003, 2);
+  EXPECT_EQ(cam.at(120), 1 << 5);
+  EXPECT_EQ(cam.at(220), 0) << "the third is not in use";
+  cam.h[200] = 1 << 6;
+  EXPECT_EQ(cam.at(20), (1 << 6) | (1 << 4)) << "nor is its bit";
+  Extended none(0x8000'0003, 0);
+  EXPECT_EQ(none.at(20), 0);
+}
+
 TEST(ExtendedCam, ForceOffWinsOverForceOn) {
   Extended cam(0x8000'0003);
   cam.h[103] = 0b110;
