@@ -188,7 +188,12 @@ void Drive::on_parameter_written(uint16_t index, int32_t value) {
 // --- the millisecond ---
 
 void Drive::tick(const PositionControl& position) {
-  position_ = position;
+  // One by one: a copy of the whole would bring along the bytes between them, and DriveRest compares those.
+  position_.controls = position.controls;
+  position_.speed = position.speed;
+  position_.halt = position.halt;
+  position_.in_position = position.in_position;
+  position_.referenced = position.referenced;
   now_.set(&Situation::positioning, position.controls);
   now_.set(&Situation::halt, position.halt);
   count_time();

@@ -18,9 +18,10 @@ constexpr uint32_t kLongestPause = 32, kLongestPauseOfProgram = 1024;
 void Station::begin_trial() {
   const Drive& drive = drive_.state();
   const bool stands_off = !drive.axis().output_stage && drive.axis().standing;
+  if (!stands_off) return;
   const bool minds_variables = machine_ && ((pid_ && !PidBlock::is_off(machine_->variables())) ||
                                             (positioning_ && !positioning_->minds_system_variables_only()));
-  if (!stands_off || minds_variables) return;
+  if (minds_variables) return;
   rest_.drive.note(drive);
   if (positioning_) rest_.positioning.note(*positioning_);
   if (machine_) std::ranges::copy(machine_->variables(), rest_.h.begin());

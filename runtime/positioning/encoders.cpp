@@ -17,12 +17,6 @@ void Encoders::power_on(int32_t shaft) {
   set_position(PositionSource::External, 0);
 }
 
-void Encoders::count(int32_t motor_counter) {
-  turned_before_ = turned_;
-  turned_ += wrapped(int64_t{motor_counter} - counter_);
-  counter_ = motor_counter;
-}
-
 void Encoders::set_position(PositionSource source, int32_t position) {
   const int64_t change = position - exact(source);
   switch (source) {

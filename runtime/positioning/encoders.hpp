@@ -22,11 +22,23 @@ class Encoders {
   void power_on(int32_t shaft);
 
   // The counter of the motor encoder as the axis has it; it wraps.
-  void count(int32_t motor_counter);
+  void count(int32_t motor_counter) {
+    turned_before_ = turned_;
+    turned_ += wrapped(int64_t{motor_counter} - counter_);
+    counter_ = motor_counter;
+  }
   // The axis was given another count; nothing has moved.
   void recount(int32_t motor_counter) { counter_ = motor_counter; }
 
   int32_t position(PositionSource source) const { return wrapped(exact(source)); }
+  struct Positions {
+    int32_t motor, external, absolute;
+  };
+  Positions positions() const {
+    const int64_t count = counted(turned_);
+    return {wrapped(turned_ + motor_offset_), wrapped(count + external_offset_),
+            wrapped((inverted_ ? -count : count) + absolute_zero_ + absolute_offset_)};
+  }
   // From now on the present position of this source has another number.
   void set_position(PositionSource source, int32_t position);
 
@@ -37,9 +49,12 @@ class Encoders {
   int64_t exact(PositionSource source) const { return scaled(source, turned_) + offset(source); }
   int64_t scaled(PositionSource source, int64_t motor) const {
     if (source == PositionSource::Motor) return motor;
-    const bool equal = factor_.numerator == factor_.denominator;
-    const int64_t count = equal ? motor : floor_divide(motor * factor_.denominator, factor_.numerator);
+    const int64_t count = counted(motor);
     return source == PositionSource::Absolute && inverted_ ? -count : count;
+  }
+  int64_t counted(int64_t motor) const {  // by the encoders P942 and P943 are for
+    const bool equal = factor_.numerator == factor_.denominator;
+    return equal ? motor : floor_divide(motor * factor_.denominator, factor_.numerator);
   }
   int64_t offset(PositionSource source) const {
     switch (source) {

@@ -29,6 +29,7 @@ class Follower {
 
   // Cycle and speed are known, and the last telegram is not too old.
   bool known() const { return syncs_ == kEnough; }
+  bool silent() const { return syncs_ == 0; }
   // What the master moved on in this millisecond, in increments of the slave.
   Fine step() const { return step_; }
 

@@ -32,6 +32,11 @@ void Modulo::set(int32_t position) {
 
 void Modulo::move(int32_t increments) {
   const int64_t units = units_ + increments * increment_;
+  if (turn_ == 1) {  // as without the function: no division
+    turns_ += units;
+    units_ = 0;
+    return;
+  }
   if (units >= 0 && units < turn_) {
     units_ = units;
     return;

@@ -131,6 +131,17 @@ PositioningOrder Positioner::tick(const PositioningInputs& inputs, const Positio
   return {true, speed_order(), halt_};
 }
 
+bool Positioner::idles() const {
+  return !inputs_.possible && !reference_.active() && follower_.silent() && !touch_probes_.probe(0).fresh &&
+         !touch_probes_.probe(1).fresh && events_.none();
+}
+
+PositioningOrder Positioner::idle(int32_t speed) {
+  profile_.hold(fine(actual()), 0);
+  drop_target();
+  return {false, speed, halt_};
+}
+
 void Positioner::observe(int32_t motor_counter) {
   const int32_t before = actual();
   encoders_.count(motor_counter);

@@ -64,6 +64,10 @@ class Positioner {
   // --- the millisecond ---
   // Before the axis moves: sensors belong to where it is now.
   PositioningOrder tick(const PositioningInputs& inputs, const PositioningSettings& settings);
+  // Nothing can act: the mode is one without positioning, nothing is under way and nothing has just happened.
+  // Then idle() is tick() with settings and inputs that are the same but for the speed.
+  bool idles() const;
+  PositioningOrder idle(int32_t speed);
   // After it has moved: the counter of the motor encoder.
   void observe(int32_t motor_counter);
   // A reference travel has given the motor encoder another count, which the axis must take over.
@@ -92,8 +96,9 @@ class Positioner {
   const Modulo& modulo() const { return modulo_; }
   const Encoders& encoders() const { return encoders_; }
   const TouchProbes& touch_probes() const { return touch_probes_; }
-  bool in_position() const;  // H473 bit 19
-  bool referenced() const;   // H473 bit 20
+  const PositioningInputs& inputs() const { return inputs_; }  // of the last tick()
+  bool in_position() const;                                    // H473 bit 19
+  bool referenced() const;                                     // H473 bit 20
   bool referencing() const { return reference_.active(); }
   FollowState follow_state() const { return follow_state_; }  // H562
 

@@ -30,7 +30,6 @@ std::optional<vm::HostReply> PositioningCommands::execute(vm::Machine& machine, 
                                                           const vm::Instruction& command) {
   const auto h = machine.variables();
   const int32_t a = command.operands[0];
-  Positioner& positioner = service_.positioner();
   const uint32_t address = machine.context(context).pc;
   switch (command.opcode) {
     case Opcode::GoAbsH:
@@ -42,19 +41,19 @@ std::optional<vm::HostReply> PositioningCommands::execute(vm::Machine& machine, 
       service_.take_targets(h);
       service_.ordered_at(address);
       if (a == kGo0Reset)
-        positioner.end_reference();
+        service_.change_positioner().end_reference();
       else
-        positioner.start_reference((a & kConditional) != 0, (a & kCam) == 0);
+        service_.change_positioner().start_reference((a & kConditional) != 0, (a & kCam) == 0);
       service_.show_targets(h);
-      return positioner.referencing() && (a & kNoWait) == 0 ? wait(context) : vm::HostReply{};
+      return service_.positioner().referencing() && (a & kNoWait) == 0 ? wait(context) : vm::HostReply{};
 
     case Opcode::AxisStop:
       service_.take_targets(h);
       switch (a) {
-        case kRapidStop: positioner.halt(Halt::RapidStop); break;
-        case kHoldControl: positioner.halt(Halt::HoldControl); break;
-        case kPositionStop: positioner.stop_here(); break;
-        case kEnable: positioner.halt(Halt::None); break;
+        case kRapidStop: service_.change_positioner().halt(Halt::RapidStop); break;
+        case kHoldControl: service_.change_positioner().halt(Halt::HoldControl); break;
+        case kPositionStop: service_.change_positioner().stop_here(); break;
+        case kEnable: service_.change_positioner().halt(Halt::None); break;
         default: break;
       }
       service_.show_targets(h);
@@ -62,9 +61,9 @@ std::optional<vm::HostReply> PositioningCommands::execute(vm::Machine& machine, 
 
     case Opcode::TouchProbe: {
       const int32_t edges = a % kProbeKeywords;
-      positioner.touch_probes().enable(static_cast<size_t>(a / kProbeKeywords),
-                                       edges == kBothEdges || edges == kRising,
-                                       edges == kBothEdges || edges == kFalling);
+      service_.change_positioner().touch_probes().enable(static_cast<size_t>(a / kProbeKeywords),
+                                                         edges == kBothEdges || edges == kRising,
+                                                         edges == kBothEdges || edges == kFalling);
       return vm::HostReply{};
     }
 
@@ -87,9 +86,9 @@ vm::HostReply PositioningCommands::travel(vm::Machine& machine, int context, con
   service_.take_targets(h);
   service_.ordered_at(machine.context(context).pc);
   if (relative)
-    service_.positioner().move_target(value);
+    service_.change_positioner().move_target(value);
   else
-    service_.positioner().write_target(value);
+    service_.change_positioner().write_target(value);
   service_.show_targets(h);
   return command.operands[0] == kWait ? wait(context) : vm::HostReply{};
 }

@@ -177,7 +177,25 @@ MasterInputs PositioningService::master(std::span<const int32_t> h, uint32_t syn
   return master;
 }
 
+// Nothing that positioning follows has changed since a millisecond in which there was nothing to do; so there
+// is nothing to do in this one.
+bool PositioningService::stays_idle(std::span<const int32_t> h) const {
+  const PositioningInputs& last = positioner_.inputs();
+  return idles_ && settings_version_ == parameters_.changes() && drive_.inputs() == last.levels &&
+         !drive_.can_position() &&
+         drive_.terminals().on(InputFunction::ReferenceStart) == last.reference_start &&
+         h[kTargetPos] == shown_target_ && h[kModTagPos] == shown_modulo_target_ &&
+         h[kModCount] == shown_turns_ && static_cast<uint32_t>(h[kModuloCtrl]) == last.modulo_control &&
+         std::all_of(mirrors_.begin(), mirrors_.end(),
+                     [&](const Mirror& mirror) { return h[mirror.variable] == mirror.shown; });
+}
+
 PositionControl PositioningService::order(Time now, std::span<int32_t> h, uint32_t syncs) {
+  if (stays_idle(h)) {
+    syncs_ = syncs;
+    const PositioningOrder order = positioner_.idle(drive_.axis().speed);
+    return {order.controls, order.speed, command_of(order.halt), false, positioner_.referenced()};
+  }
   read_settings();
   take_mirrors(h);
   take_targets(h);
@@ -185,6 +203,7 @@ PositionControl PositioningService::order(Time now, std::span<int32_t> h, uint32
   in.master = master(h, syncs);
   const PositioningOrder order = positioner_.tick(in, settings_);
   report_events(now);
+  idles_ = positioner_.idles() && reported_.none() && settings_.technology_function != kIsync;
   if (const auto counter = positioner_.take_motor_counter()) drive_.set_position(*counter);
   return {order.controls, order.speed, command_of(order.halt), positioner_.in_position(),
           positioner_.referenced()};
@@ -215,14 +234,14 @@ void PositioningService::report_events(Time now) {
 void PositioningService::show(Time now, std::span<int32_t> h) {
   positioner_.observe(drive_.axis().position);
   show_targets(h);
-  const Encoders& encoders = positioner_.encoders();
+  const Encoders::Positions positions = positioner_.encoders().positions();
   const uint32_t control = static_cast<uint32_t>(h[kModuloCtrl]);
   h[kModActPos] = positioner_.modulo().position((control >> 1 & 1) != 0);
   h[kSetpointPos] = positioner_.setpoint();
   h[kLagDistance] = positioner_.lag();
-  h[kActPosMot] = encoders.position(PositionSource::Motor);
-  h[kActPosExt] = encoders.position(PositionSource::External);
-  h[kActPosAbs] = encoders.position(PositionSource::Absolute);
+  h[kActPosMot] = positions.motor;
+  h[kActPosExt] = positions.external;
+  h[kActPosAbs] = positions.absolute;
   if (h.size() > kGearSlave) h[kSyncState] = static_cast<int32_t>(positioner_.follow_state());
   h[kSetpointPosBus] = bus_position_ = drive_.bus_position().value_or(bus_position_);
   const TouchProbes::Probe& first = positioner_.touch_probes().probe(0);
@@ -235,7 +254,7 @@ void PositioningService::show(Time now, std::span<int32_t> h) {
   h[kTpPos2Abs] = second.absolute;
   cam_sources_.tick(h);
   const auto ms = static_cast<uint64_t>(now / kMillisecond);
-  if (!extended_cams_.tick(h, cam_sources_, {positioner_.referenced(), ms}))
+  if (extended_cams_.runs() && !extended_cams_.tick(h, cam_sources_, {positioner_.referenced(), ms}))
     journal_.note(now, Weight::Warning, station_,
                   "GSCAM_EXT: the structure names a variable the unit does not have; this cam controller is "
                   "stopped");

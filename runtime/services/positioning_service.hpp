@@ -35,7 +35,10 @@ class PositioningService {
 
   // For commands, between two ticks.
   const Positioner& positioner() const { return positioner_; }
-  Positioner& positioner() { return positioner_; }
+  Positioner& change_positioner() {
+    idles_ = false;
+    return positioner_;
+  }
   void take_targets(std::span<const int32_t> h);                // written since the last look
   void ordered_at(uint32_t address) { ordered_at_ = address; }  // the command, for what is reported of it
   void show_targets(std::span<int32_t> h);                      // and the bits 19 and 20 of H473
@@ -54,6 +57,7 @@ class PositioningService {
   };
 
   void read_settings();
+  bool stays_idle(std::span<const int32_t> h) const;
   void take_mirrors(std::span<int32_t> h);
   PositioningInputs inputs(std::span<const int32_t> h) const;
   MasterInputs master(std::span<const int32_t> h, uint32_t syncs);
@@ -82,7 +86,8 @@ class PositioningService {
   int32_t shown_modulo_target_ = 0;
   int32_t shown_turns_ = 0;
   int32_t bus_position_ = 0;
-  uint32_t syncs_ = 0;                        // sync telegrams, as of the last millisecond
+  bool idles_ = false;  // there was nothing to do in the last millisecond, and no command came since
+  uint32_t syncs_ = 0;  // sync telegrams, as of the last millisecond
   std::bitset<kPositioningEvents> reported_;  // in the last millisecond
   std::optional<uint32_t> ordered_at_;        // nothing: by writing a variable
 };

@@ -195,11 +195,15 @@ return Exit::Spent;
 
 // Exactly `left` commands, or those in front of one that is left to the reference interpreter. Ends early
 // behind a jump when the budget would do for the line there.
-Exit step(const Predecoded& program, TaskContext& t, int32_t* h, const Slot*& ip, uint32_t& left) {
+struct Steps {
+  const Slot* ip;
+  uint32_t left;
+  Exit exit;
+};
+Steps step(const Predecoded& program, TaskContext& t, int32_t* h, const Slot* ip, uint32_t left) {
   const Slot* const slots = program.slots();
   const uint32_t* const code = program.program().code().data();
   const uint32_t variables = program.program().limits().variables;
-  const uint32_t depth_limit = call_depth(program);
   while (left != 0) {
     const Slot* to = nullptr;
     switch (static_cast<Opcode>(code[ip - slots] & 0xFF)) {
@@ -208,35 +212,35 @@ Exit step(const Predecoded& program, TaskContext& t, int32_t* h, const Slot*& ip
 #define FUSED_CALL(name, ...)
 #define FUSED_RET(name, ...)
 #define FILL(name, ...)
-#define PLAIN(name)                               \
-  case Opcode::name: {                            \
-    using F = Fused<O<name>>;                     \
-    const int end = F::run(ip, h, variables);     \
-    if (F::kFaults && end < 0) return Exit::Left; \
-    if (F::kTests && end > 0)                     \
-      to = ip + end + ip[end].route.offset;       \
-    else                                          \
-      ip += F::kWords;                            \
-    break;                                        \
+#define PLAIN(name)                                           \
+  case Opcode::name: {                                        \
+    using F = Fused<O<name>>;                                 \
+    const int end = F::run(ip, h, variables);                 \
+    if (F::kFaults && end < 0) return {ip, left, Exit::Left}; \
+    if (F::kTests && end > 0)                                 \
+      to = ip + end + ip[end].route.offset;                   \
+    else                                                      \
+      ip += F::kWords;                                        \
+    break;                                                    \
   }
 #include "vm/fast/operations.def"
       case Opcode::Call:
-        if (t.depth == depth_limit) return Exit::Left;
+        if (t.depth == call_depth(program)) return {ip, left, Exit::Left};
         t.calls[t.depth++] = static_cast<uint16_t>(ip - slots + 2);
         to = ip + 1 + ip[1].route.offset;
         break;
       case Opcode::Ret:
-        if (t.depth == 0) return Exit::Left;
+        if (t.depth == 0) return {ip, left, Exit::Left};
         to = slots + t.calls[--t.depth];
         break;
-      default: return Exit::Left;
+      default: return {ip, left, Exit::Left};
     }
     --left;
     if (to == nullptr) continue;
     ip = to;
-    if (left >= program.line(static_cast<uint32_t>(ip - slots))) break;
+    if (left != 0 && left >= program.line(static_cast<uint32_t>(ip - slots))) break;
   }
-  return Exit::Spent;
+  return {ip, left, Exit::Spent};
 }
 
 #undef BEGIN
@@ -283,27 +287,31 @@ uint32_t run(const Predecoded& program, const Native* native, TaskContext& t, in
   uint32_t left = budget;
   for (;;) {
     Exit exit = Exit::Spent;
+    bool single = false;
     if (native != nullptr && left != 0) {
       const auto enters = [&] { return native->needs[static_cast<size_t>(ip - slots)] != 0; };
       // Where there is no way in one command is done here, so that it is found behind it.
-      if (!enters()) {
-        uint32_t one = 1;
-        if (step(program, t, h, ip, one) == Exit::Left) break;
-        --left;
-        continue;
+      single = !enters();
+      if (!single) {
+        t.pc = static_cast<uint32_t>(ip - slots);
+        if (left >= native->needs[t.pc]) left = native->run(*native, t, h, left);
+        ip = slots + t.pc;
+        if (left != 0 && !enters()) continue;
       }
-      t.pc = static_cast<uint32_t>(ip - slots);
-      if (left >= native->needs[t.pc]) left = native->run(*native, t, h, left);
-      ip = slots + t.pc;
-      if (left != 0 && !enters()) continue;
     }
-    if (left >= program.line(static_cast<uint32_t>(ip - slots))) {
+    if (!single && left >= program.line(static_cast<uint32_t>(ip - slots))) {
       State state{ip, static_cast<int32_t>(left + ip->command.number)};
       exit = execute(&program, &t, h, state, nullptr);
       ip = state.ip;
       left = static_cast<uint32_t>(state.left) - ip->command.number;
     }
-    if (exit == Exit::Spent) exit = step(program, t, h, ip, left);
+    if (exit == Exit::Spent) {
+      const uint32_t most = single ? 1 : left;
+      const Steps steps = step(program, t, h, ip, most);
+      ip = steps.ip;
+      left -= most - steps.left;
+      exit = steps.exit;
+    }
     if (exit == Exit::Left || left == 0) break;
   }
   t.pc = static_cast<uint32_t>(ip - slots);

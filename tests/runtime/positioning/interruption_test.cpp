@@ -150,7 +150,7 @@ TEST(Interruption, ATargetOnceGivenIsKept) {
   rig.drive.set_inputs(kInhibited);
   rig.run(500);
   rig.drive.set_position(1'300);
-  rig.service.positioner().observe(1'300);
+  rig.positioner().observe(1'300);
   rig.run(2);
   EXPECT_EQ(rig.h[511], 1'300);
   rig.drive.set_inputs(kEnabled);

@@ -77,15 +77,15 @@ struct Rig {
   // What the commands do with their keywords.
   void go(int32_t target) {
     service.take_targets(h);
-    service.positioner().write_target(target);
+    service.change_positioner().write_target(target);
     service.show_targets(h);
   }
   void go_by(int32_t way) {
     service.take_targets(h);
-    service.positioner().move_target(way);
+    service.change_positioner().move_target(way);
     service.show_targets(h);
   }
-  Positioner& positioner() { return service.positioner(); }
+  Positioner& positioner() { return service.change_positioner(); }
 
   bool in_position() const { return (h[473] >> 19 & 1) != 0; }
   bool referenced() const { return (h[473] >> 20 & 1) != 0; }

@@ -1,0 +1,137 @@
+// Positioning that leaves out milliseconds in which it has nothing to do against one that never does: the
+// same random variables, parameters, inputs, telegrams and commands, compared in every millisecond.
+#include <random>
+
+#include "tests/runtime/positioning/rig.hpp"
+
+namespace ipos::tests {
+namespace {
+
+class Pair {
+ public:
+  explicit Pair(uint32_t seed) : random_(seed) {
+    // Speed control as from the factory: a mode without positioning.
+    for (Rig* rig : {&idles_, &never_}) rig->set("700", 11);
+  }
+
+  void step() {
+    for (uint32_t orders = below(3); orders > 0; --orders) order();
+    for (uint32_t ticks = below(8) == 0 ? below(200) : 1 + below(4); ticks > 0; --ticks) {
+      never_.positioner();  // who may have changed it has to be looked at
+      idles_.tick();
+      never_.tick();
+      ASSERT_EQ(idles_.h, never_.h);
+      ASSERT_EQ(idles_.drive.axis().speed, never_.drive.axis().speed);
+      ASSERT_EQ(idles_.drive.outputs(), never_.drive.outputs());
+      ASSERT_EQ(idles_.parameters.changes(), never_.parameters.changes());
+      ASSERT_EQ(idles_.journal.entries().size(), never_.journal.entries().size());
+      possible_ += idles_.drive.can_position();
+      turned_ += idles_.drive.axis().speed != 0;
+      ++ticks_;
+    }
+  }
+
+  int ticks_ = 0, possible_ = 0, turned_ = 0;
+
+ private:
+  uint32_t below(uint32_t limit) { return static_cast<uint32_t>(random_()) % limit; }
+  int32_t value() {
+    return below(4) == 0 ? static_cast<int32_t>(random_()) : static_cast<int32_t>(below(40'001)) - 20'000;
+  }
+  template <typename Act>
+  void both(Act act) {
+    act(idles_);
+    act(never_);
+  }
+
+  void order() {
+    switch (below(8)) {
+      case 0: {  // what positioning reads or shows
+        static constexpr size_t kVariables[] = {453, 454, 455, 456, 473, 491, 492, 493, 494, 495, 496,
+                                                497, 498, 499, 502, 503, 506, 507, 509, 510, 511};
+        const size_t variable = kVariables[below(std::size(kVariables))];
+        const int32_t x = below(3) == 0 ? static_cast<int32_t>(below(4)) : value();
+        return both([&](Rig& rig) { rig.h[variable] = x; });
+      }
+      case 1: {
+        struct Choice {
+          const char* number;
+          int32_t highest;  // from 0
+        };
+        static constexpr Choice kChoices[] = {
+            {"903", 7},     {"941", 2},     {"942", 4},      {"943", 4},     {"922", 99},
+            {"923", 9'999}, {"900", 9'999}, {"920", 50'000}, {"951", 1},     {"954", 50'000},
+            {"960", 3},     {"961", 5},     {"962", 5},      {"963", 5'000}, {"302", 3'000'000}};
+        const Choice& choice = kChoices[below(std::size(kChoices))];
+        const auto x = static_cast<int32_t>(below(static_cast<uint32_t>(choice.highest) + 1));
+        return both(
+            [&](Rig& rig) { rig.parameters.preset(rig.parameters.table().find(choice.number)->index, x); });
+      }
+      case 2: {
+        const int32_t mode = below(3) == 0 ? 13 : 11;
+        return both([&](Rig& rig) { rig.set("700", mode); });
+      }
+      case 3:
+      case 4: {
+        const auto levels =
+            static_cast<uint16_t>(below(2) == 0 ? uint32_t{kEnabled} : kEnabled ^ 1U << below(16));
+        return both([&](Rig& rig) { rig.drive.set_inputs(levels); });
+      }
+      case 5: {
+        static constexpr int32_t kFunctions[] = {0, 14, 15, 17, 18};
+        const int32_t function = kFunctions[below(std::size(kFunctions))];
+        const char* input = below(2) == 0 ? "602" : "603";
+        return both([&](Rig& rig) { rig.set(input, function); });
+      }
+      case 6: {
+        const size_t probe = below(2);
+        const uint32_t edges = below(4);
+        return both([&](Rig& rig) {
+          rig.positioner().touch_probes().enable(probe, (edges & 1) != 0, (edges & 2) != 0);
+        });
+      }
+      default: {
+        const uint32_t what = below(8);
+        const int32_t x = value();
+        return both([&](Rig& rig) {
+          rig.service.take_targets(rig.h);
+          switch (what) {
+            case 0: rig.positioner().start_reference(false, true); break;
+            case 1: rig.positioner().end_reference(); break;
+            case 2: rig.positioner().stop_here(); break;
+            case 3: rig.positioner().halt(runtime::Halt::HoldControl); break;
+            case 4: rig.go(x); break;
+            case 5: rig.go_by(x); break;
+            default: rig.positioner().halt(runtime::Halt::None); break;
+          }
+          rig.service.show_targets(rig.h);
+        });
+      }
+    }
+  }
+
+  std::mt19937 random_;
+  Rig idles_, never_;
+};
+
+TEST(Idle, LeavesOutNothingThatShows) {
+  int possible = 0, turned = 0, ticks = 0;
+  for (uint32_t seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(seed);
+    Pair pair(seed);
+    for (int n = 0; n < 150; ++n) {
+      pair.step();
+      if (HasFatalFailure()) return;
+    }
+    ticks += pair.ticks_;
+    possible += pair.possible_;
+    turned += pair.turned_;
+  }
+  // All of it has been there.
+  EXPECT_GT(possible, ticks / 20);
+  EXPECT_LT(possible, ticks * 19 / 20);
+  EXPECT_GT(turned, ticks / 20);
+}
+
+}  // namespace
+}  // namespace ipos::tests
