@@ -26,7 +26,7 @@ struct NamedSignal {
   std::string_view unit{};
   double factor = 1;
   int decimals = 0;
-  int bits = 0;
+  size_t bits = 0;
 };
 
 template <int32_t runtime::AxisState::*member>

@@ -23,7 +23,7 @@ struct Signal {
   int decimals = 0;
   bool is_status = false;  // a plot shows its changes as events
   std::string station{};   // the name begins with it and a dot
-  int bits = 0;            // width of a bit field; 0: a number
+  size_t bits = 0;         // width of a bit field; 0: a number
 
   std::string text(int64_t sample) const;  // "1500.000"
 };

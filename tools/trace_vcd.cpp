@@ -128,7 +128,7 @@ class Dump {
     if (signal.bits == 0 && (signal.factor != 1 || signal.decimals != 0)) return "r" + signal.text(sample);
     auto bits = static_cast<uint64_t>(sample);
     const bool wide = std::find(wide_.begin(), wide_.end(), n) != wide_.end();
-    const int width = signal.bits != 0 ? signal.bits : wide ? 64 : 32;
+    const size_t width = signal.bits != 0 ? signal.bits : wide ? 64 : 32;
     if (width < 64) bits &= (uint64_t{1} << width) - 1;
     return binary(bits);
   }

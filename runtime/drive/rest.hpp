@@ -17,7 +17,7 @@ namespace ipos::runtime {
 template <class T>
 class Bytes {
  public:
-  void note(const T& object) { std::memcpy(noted_.data(), &object, sizeof(T)); }
+  void note(const T& object) { std::memcpy(noted_.data(), static_cast<const void*>(&object), sizeof(T)); }
   const std::byte* at(size_t offset) const { return noted_.data() + offset; }
   bool same(const T& object, size_t begin = 0, size_t end = sizeof(T)) const {
     return std::memcmp(noted_.data() + begin, reinterpret_cast<const std::byte*>(&object) + begin,

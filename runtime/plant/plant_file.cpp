@@ -12,8 +12,8 @@ namespace ipos::runtime {
 void check_plant(PlantReader& reader) {
   for (const auto& [use, kind] : reader.bus_uses) {
     const auto& buses = reader.result.plant.buses;
-    const auto bus =
-        std::find_if(buses.begin(), buses.end(), [&](const BusConfig& b) { return b.name == use.bus; });
+    const auto bus = std::find_if(buses.begin(), buses.end(),
+                                  [&name = use.bus](const BusConfig& b) { return b.name == name; });
     if (bus == buses.end())
       reader.error(use.place, fmt::format("there is no bus '{}'", use.bus));
     else if (is_serial(bus->kind) != is_serial(kind))

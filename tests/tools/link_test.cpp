@@ -171,10 +171,17 @@ TEST_F(Link, NobodyAtTheAddress) {
       ipos({"param", "get", "--port", at("line1"), "--baud", "57600", "--address", "9", "P130"});
   EXPECT_EQ(serial_get.exit_code, 74);
   EXPECT_TRUE(contains(serial_get.err, "response delay time elapsed; nothing came back")) << serial_get.err;
-  const CommandResult can_get =
-      ipos({"param", "get", "--port", "slcan:" + at("can1"), "--address", "9", "P130"});
-  EXPECT_EQ(can_get.exit_code, 74);
-  EXPECT_TRUE(contains(can_get.err, "is P813 (P881) = 9 anywhere?")) << can_get.err;
+  // The plant sends every 100 ms. On a loaded machine it may not get to that while the tool listens, which
+  // then rightly says that it hears nothing.
+  bool heard = false;
+  for (int n = 0; n < 20 && !heard; ++n) {
+    const CommandResult can_get =
+        ipos({"param", "get", "--port", "slcan:" + at("can1"), "--address", "9", "P130"});
+    EXPECT_EQ(can_get.exit_code, 74);
+    heard = contains(can_get.err, "is P813 (P881) = 9 anywhere?");
+    EXPECT_TRUE(heard || contains(can_get.err, "nothing is heard at all")) << can_get.err;
+  }
+  EXPECT_TRUE(heard);
 }
 
 TEST(Watch, StationOfAPlant) {
