@@ -44,6 +44,10 @@ int main(int argc, char** argv) {
     else
       file = word;
   }
+  if (engine != "reference" && engine != "fast" && engine != "jit") {
+    std::fprintf(stderr, "'%s' is no engine: reference, fast or jit\n", engine.c_str());
+    return 64;
+  }
   std::ifstream in(file, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   compiler::CompileOptions options;
