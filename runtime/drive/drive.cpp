@@ -15,8 +15,6 @@ constexpr uint32_t kFactorySettingMs = 2000;
 // More automatic resets than this without a manual one are not made (ours).
 constexpr int kAutoResets = 3;
 constexpr int32_t kOvervoltage = 900'000;  // mV, where the unit protects itself; ours
-// P017 counts in 1E5 Ws (quantity 8, conversion index 5).
-constexpr int64_t kEnergyDigit = 100'000;
 
 namespace faults {
 constexpr uint8_t kDcLink = 7, kSpeedMonitoring = 8, kHeatSink = 11, kExternal = 26, kLimitSwitches = 27,
@@ -54,6 +52,7 @@ Drive::Drive(ParameterStore& parameters, const MachineData& machine)
 }
 
 void Drive::read_settings() const {
+  course_left_ = 0;
   settings_version_ = parameters_.changes();
   settings_ = reader_.read(parameters_);
 }
@@ -61,15 +60,18 @@ void Drive::read_settings() const {
 // --- process data ---
 
 void Drive::take_po(PoSource source, std::span<const uint16_t> words, bool cyclic) {
-  const size_t count = std::min(words.size(), kProcessWords);
-  std::copy_n(words.begin(), count, now_.change().shown_po.begin());
+  const auto with_words = [&](Words known) {
+    std::copy_n(words.begin(), std::min(words.size(), kProcessWords), known.begin());
+    return known;
+  };
+  now_.set(&Situation::shown_po, with_words(now_->shown_po));
   const auto s = static_cast<size_t>(source);
   if (settings().po_enable != 1) {
     if (cyclic) take_request(source);  // the bus speaks, though nothing is taken over
     return;
   }
-  std::copy_n(words.begin(), count, now_.change().po[s].begin());
-  if (watches_[s].on_process_data(cyclic)) now_.change().faults.clear_cause(fault_of(source));
+  if (const Words po = with_words(now_->po[s]); po != now_->po[s]) now_.change().po[s] = po;
+  if (touched_watch(source).on_process_data(cyclic)) now_.change().faults.clear_cause(fault_of(source));
   if (settings().control_bus != source) return;
   const uint16_t word = order_of(source).control_word.value_or(0);
   const bool reset_edge = (word & ~last_control_word_ & control_bits::kReset) != 0;
@@ -78,7 +80,14 @@ void Drive::take_po(PoSource source, std::span<const uint16_t> words, bool cycli
 }
 
 void Drive::take_request(PoSource source) {
-  if (watches_[static_cast<size_t>(source)].on_request()) now_.change().faults.clear_cause(fault_of(source));
+  if (touched_watch(source).on_request()) now_.change().faults.clear_cause(fault_of(source));
+}
+
+// A telegram takes the drive off its course unless it only begins the time of silence anew.
+LinkWatch& Drive::touched_watch(PoSource source) {
+  LinkWatch& watch = watches_[static_cast<size_t>(source)];
+  if (!watch.alert()) course_left_ = 0;
+  return watch;
 }
 
 // --- who controls ---
@@ -95,6 +104,7 @@ void Drive::look_around() const {
   now_.set(&Situation::reversing, axis_.state().setpoint < 0);
   look_again_ = false;
   if (!now_.changed()) return;
+  course_left_ = 0;
   now_.looked();
   if (!decisions_known_ || !(*now_ == decided_for_)) decide_anew();
 }
@@ -188,7 +198,8 @@ void Drive::on_parameter_written(uint16_t index, int32_t value) {
 // --- the millisecond ---
 
 void Drive::tick(const PositionControl& position) {
-  // One by one: a copy of the whole would bring along the bytes between them, and DriveRest compares those.
+  course_left_ = 0;
+  // One by one: a copy of the whole would bring along the bytes between them, and DriveCourse compares those.
   position_.controls = position.controls;
   position_.speed = position.speed;
   position_.halt = position.halt;
@@ -217,6 +228,14 @@ void Drive::tick(const PositionControl& position) {
   axis_.tick(order);
   show_outputs(d, order);
   look_again_ = true;  // the axis has moved
+}
+
+void Drive::go_on(uint32_t ticks) {
+  course_left_ -= ticks;
+  mains_ms_ += ticks;
+  if (output_stage_on()) enabled_ms_ += ticks;
+  axis_.go_on(ticks);
+  for (size_t n = 0; n < watches_.size(); ++n) watches_[n].go_on(decisions_.links[n], ticks);
 }
 
 void Drive::count_time() {

@@ -57,10 +57,24 @@ class Drive final : private DriveLink {
   // outputs()).
   void set_ipos_control_word(uint32_t word) { now_.set(&Situation::ipos_word, word); }
   void set_ipos_pi(const Words& words) { ipos_pi_ = words; }
-  void set_ipos_outputs(uint16_t levels) { ipos_outputs_ = levels; }
+  void set_ipos_outputs(uint16_t levels) {
+    if (levels != ipos_outputs_) course_left_ = 0;
+    ipos_outputs_ = levels;
+  }
 
   // One millisecond has passed.
   void tick(const PositionControl& position = {});
+
+  // --- ticks that only go on (course.hpp) ---
+  // The next ticks are of that kind while nobody touches the drive.
+  void hold_course(uint32_t ticks) { course_left_ = ticks; }
+  // How many of them are left: the next ones are go_on() instead of tick(), if position_control() is ordered
+  // again.
+  uint32_t course_left() const {
+    return now_.changed() || settings_version_ != parameters_.changes() ? 0 : course_left_;
+  }
+  void go_on(uint32_t ticks = 1);
+  const PositionControl& position_control() const { return position_; }  // of the last tick
 
   // --- for the positioning of IPOS ---
   bool can_position() const { return decided().can_position; }  // P700 is a mode with IPOS (1053 1610 p. 80)
@@ -117,8 +131,10 @@ class Drive final : private DriveLink {
   }
 
  private:
-  friend class DriveRest;
+  friend class DriveCourse;
   static constexpr uint32_t kMinuteMs = 60'000;
+  // P017 counts in 1E5 Ws (quantity 8, conversion index 5).
+  static constexpr int64_t kEnergyDigit = 100'000;
   static constexpr int32_t kOvertemperature =
       90;  // °C of the heat sink, where the unit protects itself; ours
   static constexpr int32_t kFullUtilization = 100'000;
@@ -222,6 +238,8 @@ class Drive final : private DriveLink {
   mutable std::optional<SetpointMemory> selected_for_;
   Setpoint selected_;
 
+  LinkWatch& touched_watch(PoSource source);
+
   std::array<LinkWatch, kPoSources> watches_{};
   uint16_t last_control_word_ = 0;  // for the edge of its reset bit
   Words ipos_pi_{};
@@ -253,6 +271,7 @@ class Drive final : private DriveLink {
   uint32_t mains_ms_ = 0;
   uint32_t enabled_ms_ = 0;
   int64_t counted_energy_ = 0;
+  mutable uint32_t course_left_ = 0;
 };
 
 }  // namespace ipos::runtime

@@ -2,6 +2,7 @@
 // chapters 4.1 and 7.1). Until the first telegram after power-on or a reset the drive waits (display t).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 namespace ipos::runtime {
@@ -28,12 +29,24 @@ class LinkWatch {
     return false;
   }
 
+  // Ticks from now on that only count the silence, and what they do. Telegrams that come while it is alert
+  // only begin the count anew.
+  uint64_t ticks_left(const Rules& rules) const {
+    return counts(rules) ? static_cast<uint64_t>(std::max<int64_t>(rules.delay_ms - silent_ms_, 0))
+                         : UINT64_MAX;
+  }
+  void go_on(const Rules& rules, uint64_t ticks) {
+    if (counts(rules)) silent_ms_ += static_cast<int64_t>(ticks);
+  }
+  bool alert() const { return seen_ && running_ && !reported_; }
+
   void forget() { *this = {}; }  // power-on, reset of a fault
   bool seen() const { return seen_; }
   bool silent() const { return reported_; }
 
  private:
   bool run(const Rules& rules);
+  bool counts(const Rules& rules) const { return rules.delay_ms != 0 && running_ && !reported_; }
 
   bool seen_ = false;     // process data have arrived
   bool running_ = false;  // the time runs

@@ -15,6 +15,8 @@ struct PositionControl {
   Command halt = Command::Enable;  // _AxisStop: RapidStop or HoldControl as long as it lasts
   bool in_position = false;        // for the outputs
   bool referenced = false;
+
+  bool operator==(const PositionControl&) const = default;
 };
 
 }  // namespace ipos::runtime

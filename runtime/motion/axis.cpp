@@ -111,25 +111,28 @@ void Axis::show(const AxisOrder& order, const Motion& motion) {
   state_.current_limited = motion.limited;
   state_.setpoint = has_torque(phase) ? whole_speed(ramp_.output()) : 0;
   state_.speed = whole_speed(speed_);
-  state_.position = static_cast<int32_t>(position_);
   state_.torque = static_cast<int32_t>(motion.torque);
   state_.output_current = power_.output_current();
   state_.active_current = power_.active_current();
   state_.frequency = power_.frequency();
   state_.dc_link = power_.dc_link();
-  state_.energy = power_.energy();
-  show_heat();
+  show_counts();
 }
 
-void Axis::show_heat() {
+// What changes though the drive does not.
+void Axis::show_counts() {
+  state_.position = static_cast<int32_t>(position_);
+  state_.energy = power_.energy();
   state_.heat_sink = power_.heat_sink();
   state_.utilization = power_.utilization();
   state_.motor_utilization = power_.motor_utilization();
 }
 
-void Axis::cool(uint64_t ticks) {
-  power_.cool(ticks);
-  show_heat();
+void Axis::go_on(uint64_t ticks) {
+  if (speed_ != 0)
+    for (uint64_t n = 0; n != ticks; ++n) count_position(speed_, speed_);
+  power_.go_on(ticks);
+  show_counts();
 }
 
 }  // namespace ipos::runtime

@@ -66,10 +66,15 @@ class Axis {
 
   // One millisecond under this order.
   const AxisState& tick(const AxisOrder& order);
-  // What so many ticks do while the output stage is off, the shaft stands and the DC link is at rest.
-  void cool(uint64_t ticks);
+  // What so many ticks under the last order do when nothing changes but what moves, warms and counts: none is
+  // on its way but to a speed that is reached, and the DC link stays as it is. At most a minute.
+  void go_on(uint64_t ticks);
   const AxisState& state() const { return state_; }
   const MachineData& machine() const { return machine_; }
+  // Of the next ticks while it goes on: the highest values, and the most energy for one tick (Ws).
+  int32_t heat_sink_ahead() const { return power_.heat_sink_ahead(); }
+  int32_t motor_utilization_ahead() const { return power_.motor_utilization_ahead(); }
+  int64_t energy_ahead() const { return power_.energy_ahead(); }
 
   // A reference travel, or the absolute encoder at power-on, sets the counter.
   void set_position(int32_t position);
@@ -82,7 +87,7 @@ class Axis {
   Motion advance_shaft(const AxisOrder& order);
   void count_position(FineSpeed before, FineSpeed after);
   void show(const AxisOrder& order, const Motion& motion);
-  void show_heat();
+  void show_counts();
 
   static bool has_torque(AxisPhase phase);
   bool brake_open() const;

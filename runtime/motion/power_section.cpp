@@ -93,33 +93,38 @@ void PowerSection::find_power(const Speed& speed) {
   mechanical_ = speed.torque * speed.mrpm / machine_.rated_speed;
 }
 
-void PowerSection::cool(uint64_t steps) {
-  unit_.fall(steps);
-  motor_.fall(steps);
-  heat_sink_.fall(steps);
+void PowerSection::go_on(uint64_t steps) {
+  draw(steps);
+  unit_.follow(unit_target_, steps);
+  motor_.follow(motor_target_, steps);
+  heat_sink_.follow(heat_sink_target_, steps);
 }
 
 // Below one digit of the division nothing changes any more.
-void PowerSection::Lag::fall(uint64_t steps) {
-  for (; steps != 0 && value_ >= time_ms_; --steps) value_ -= value_ / time_ms_;
+void PowerSection::Lag::follow(int64_t target, uint64_t steps) {
+  for (; steps != 0; --steps) {
+    const int64_t change = ((target << 24) - value_) / time_ms_;
+    if (change == 0) return;
+    value_ += change;
+  }
 }
 
 // Mechanical power in 1/1000 % of the rated power; losses are added, what comes back charges the DC link.
 void PowerSection::step_power() {
-  const int64_t power = mechanical_ + losses_;
-  const int64_t change = std::clamp<int64_t>(power + kStandby, -100'000'000, 100'000'000) * kChargePerPower;
+  const int64_t change = std::clamp<int64_t>(power() + kStandby, -kMostPower, kMostPower) * kChargePerPower;
   const int64_t charge = std::clamp(charge_ - change, idle_charge_, most_charge_);
   if (charge != charge_) {
     charge_ = charge;
     dc_link_ = static_cast<int32_t>(root(charge));
   }
-  if (power <= 0) return;
-  constexpr int64_t kPerWs = kHundredPercent * 1'000;
-  energy_rest_ += std::min<int64_t>(power, 100'000'000) * machine_.rated_power;
+  draw(1);
+}
+
+void PowerSection::draw(uint64_t steps) {
+  energy_rest_ += drawn() * static_cast<int64_t>(steps);
+  if (energy_rest_ < kPerWs) return;
   energy_ += energy_rest_ / kPerWs;
   energy_rest_ %= kPerWs;
 }
-
-int32_t PowerSection::heat_sink() const { return machine_.ambient + heat_sink_.whole() / 1'000; }
 
 }  // namespace ipos::runtime

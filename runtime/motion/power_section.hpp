@@ -2,6 +2,7 @@
 // temperature and utilizations. All models are ours and simple on purpose, docs/motion.md.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "runtime/motion/fine_speed.hpp"
@@ -30,17 +31,27 @@ class PowerSection {
     int32_t direct_current;  // of Supply::DirectCurrent
   };
   void step(const Load& load);
-  // What so many steps with Supply::Off and a DC link at rest do: the slow quantities fall.
-  void cool(uint64_t steps);
+  // What so many steps with the last load do while the DC link stays as it is: energy and the slow
+  // quantities. At most a minute.
+  void go_on(uint64_t steps);
 
-  int32_t output_current() const { return output_current_; }  // 1/1000 % IN
-  int32_t active_current() const { return active_current_; }  // signed as the torque
-  int32_t frequency() const { return frequency_; }            // mHz, signed as the field turns
-  int32_t dc_link() const { return dc_link_; }                // mV
-  int32_t heat_sink() const;                                  // °C
-  int32_t utilization() const { return unit_.whole(); }       // 1/1000 %
+  int32_t output_current() const { return output_current_; }             // 1/1000 % IN
+  int32_t active_current() const { return active_current_; }             // signed as the torque
+  int32_t frequency() const { return frequency_; }                       // mHz, signed as the field turns
+  int32_t dc_link() const { return dc_link_; }                           // mV
+  int32_t heat_sink() const { return temperature(heat_sink_.whole()); }  // °C
+  int32_t utilization() const { return unit_.whole(); }                  // 1/1000 %
   int32_t motor_utilization() const { return motor_.whole(); }
   int64_t energy() const { return energy_; }  // Ws drawn since the start; braking gives nothing back
+
+  // The most of each while the load stays as it is, and what is drawn of energy at most in a step.
+  int32_t heat_sink_ahead() const {
+    return temperature(std::max<int64_t>(heat_sink_.whole(), heat_sink_target_));
+  }
+  int32_t motor_utilization_ahead() const {
+    return static_cast<int32_t>(std::max<int64_t>(motor_.whole(), motor_target_));
+  }
+  int64_t energy_ahead() const { return drawn() / kPerWs + 1; }
 
  private:
   // Follows a target with a time constant, in steps of 2^-24.
@@ -48,7 +59,7 @@ class PowerSection {
    public:
     explicit Lag(int32_t time_ms) : time_ms_(time_ms) {}
     void follow(int64_t target) { value_ += ((target << 24) - value_) / time_ms_; }
-    void fall(uint64_t steps);
+    void follow(int64_t target, uint64_t steps);
     int32_t whole() const { return static_cast<int32_t>(value_ >> 24); }
 
    private:
@@ -75,6 +86,14 @@ class PowerSection {
   void find_currents(const Currents& currents);
   void find_power(const Speed& speed);
   void step_power();
+  void draw(uint64_t steps);
+  int64_t power() const { return mechanical_ + losses_; }
+  // In one step, of kPerWs for a Ws.
+  int64_t drawn() const { return std::clamp<int64_t>(power(), 0, kMostPower) * machine_.rated_power; }
+  int32_t temperature(int64_t rise) const { return static_cast<int32_t>(machine_.ambient + rise / 1'000); }
+
+  static constexpr int64_t kMostPower = 100'000'000;  // 1/1000 % of the rated power
+  static constexpr int64_t kPerWs = int64_t{100'000} * 1'000;
 
   MachineData machine_;
   int64_t continuous_heat_;  // 100 % of unit and motor utilization; the square of the current in 1/1000 %

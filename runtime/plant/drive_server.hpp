@@ -73,6 +73,8 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
   // Why the last access was refused, empty when it was not. Reading it clears it.
   std::string take_reason() { return std::exchange(reason_, {}); }
 
+  bool has_news() const { return !reason_.empty() || !obstacles_.empty(); }
+
   // What keeps process data that came over a bus from acting, each told once.
   std::vector<std::string> take_obstacles() { return std::exchange(obstacles_, {}); }
 

@@ -117,20 +117,36 @@ void Station::connect_serial() {
 
 void Station::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
   if (sleeps_through(now)) return;
-  drive_.state().set_inputs(inputs_.levels());
-  drive_.state().set_analog(inputs_.analog());
-  drive_.state().tick(positioning_ && machine_
-                          ? positioning_->order(now, machine_->variables(), drive_.syncs())
-                          : PositionControl{});
-  report_drive(now);
-  if (x13_) x13_->configure(now);
-  if (xt_) xt_->configure(now);
+  move_drive(now);
+  if (!on_course_) {
+    report_drive(now);
+    if (x13_) x13_->configure(now);
+    if (xt_) xt_->configure(now);
+  }
   if (machine_) {
     begin_program(now);
     try_program();
     if (!run_commands()) return;
   }
   end_tick(now);
+}
+
+void Station::move_drive(Time now) {
+  Drive& drive = drive_.state();
+  if (on_course_ && !stays_on_course()) on_course_ = false;
+  if (on_course_ && positioning_idles()) return drive.go_on();
+  if (!on_course_) {
+    drive.set_inputs(inputs_.levels());
+    drive.set_analog(inputs_.analog());
+  }
+  const PositionControl position = positioning_ && machine_
+                                       ? positioning_->order(now, machine_->variables(), drive_.syncs())
+                                       : PositionControl{};
+  on_course_ = on_course_ && position == drive.position_control();
+  if (on_course_)
+    drive.go_on();
+  else
+    drive.tick(position);
 }
 
 bool Station::run_commands() {
@@ -159,26 +175,37 @@ void Station::end_tick(Time now) {
 
 void Station::begin_program(Time now) {
   const std::span<int32_t> h = machine_->variables();
-  raise_drive_events();
-  restart_after_reset(now);
-  mirrored_->show(h);
-  show_drive(drive_.state(), h);
-  if (positioning_) {
-    positioning_->show(now, h);
-    if (positioning_->positioner().touch_probes().probe(0).fresh)
-      machine_->raise_event(vm::Event::TouchProbe);
-    positioning_commands_->tick(*machine_);
+  if (!on_course_) {
+    raise_drive_events();
+    restart_after_reset(now);
+    mirrored_->show(h);
+  }
+  if (on_course_ && positioning_idles()) {
+    positioning_->go_on(h, drive_.syncs());
+  } else {
+    show_drive(drive_.state(), h);
+    if (positioning_) show_positioning(now);
   }
   if (machine_->fault().number == 0) {
     const Timers::Expired expired = timers_.tick(h);
     if (expired.timer_0) machine_->raise_event(vm::Event::Timer0);
     if (expired.watchdog) machine_->raise_fault(kFaultWatchdog, "the watchdog has run out, H490 is 0");
   }
-  if (pid_) pid_->tick(h);
+  if (!on_course_ && pid_) pid_->tick(h);
+  if (on_course_ || course_noted_) noted_.note(h);
+}
+
+void Station::show_positioning(Time now) {
+  positioning_->show(now, machine_->variables());
+  if (positioning_->positioner().touch_probes().probe(0).fresh) machine_->raise_event(vm::Event::TouchProbe);
+  positioning_commands_->tick(*machine_);
 }
 
 void Station::end_program(Time now) {
   const std::span<int32_t> h = machine_->variables();
+  const bool fresh_fault = machine_->fault().number != 0 && !fault_reported_;
+  on_course_ = on_course_ && noted_.same(h) && !drive_.has_news() && !fresh_fault;
+  if (on_course_) return;
   mirrored_->take(h);
   take_program_orders(h, drive_.state());
   // MOVLNK to the own unit.
@@ -186,7 +213,7 @@ void Station::end_program(Time now) {
     journal_.note(now, Weight::Why, config_.name, "refused " + std::move(refused));
   for (std::string& obstacle : drive_.take_obstacles())
     journal_.note(now, Weight::Why, config_.name, std::move(obstacle));
-  if (machine_->fault().number != 0 && !fault_reported_) report_fault(now);
+  if (fresh_fault) report_fault(now);
 }
 
 // An error that is new, or back after a reset, is the event of the ERROR interrupt; warnings are not (ours).

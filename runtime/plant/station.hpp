@@ -11,7 +11,7 @@
 
 #include "runtime/bus/can/line.hpp"
 #include "runtime/bus/movilink/keypad.hpp"
-#include "runtime/drive/rest.hpp"
+#include "runtime/drive/course.hpp"
 #include "runtime/plant/drive_server.hpp"
 #include "runtime/plant/execution.hpp"
 #include "runtime/plant/plant_file.hpp"
@@ -20,6 +20,7 @@
 #include "runtime/plant/station_inputs.hpp"
 #include "runtime/services/journal.hpp"
 #include "runtime/services/mirrored_values.hpp"
+#include "runtime/services/noted_variables.hpp"
 #include "runtime/services/pid_block.hpp"
 #include "runtime/services/positioning_commands.hpp"
 #include "runtime/services/sleeper.hpp"
@@ -87,12 +88,12 @@ class Station final : private EventTarget, private Sleeper {
 
   // From the next tick on; it must outlive the station.
   void use_runner(CommandRunner& runner) {
-    wake();
+    leave_course();
     runner_ = &runner;
   }
-  // From now on no tick is left out.
+  // From now on no tick is left out or shortened.
   void stay_awake() {
-    wake();
+    leave_course();
     execution_.skip_idle = false;
   }
   // A tick was left out and not made up for yet, or those behind it will be.
@@ -160,9 +161,15 @@ class Station final : private EventTarget, private Sleeper {
   // Left-out ticks are made up for by whoever looks first: nobody can tell.
   void look() const { const_cast<Station*>(this)->make_up(); }
   void make_up_to(Time last);
+  void move_drive(Time now);
+  bool stays_on_course();
+  bool positioning_idles() const { return positioning_ && machine_ && positioning_->idles(); }
+  void leave_course();
+  void try_course();
   void schedule_tick(Time now);
   Time next_event(Time now) const;
   bool sleeps_through(Time now);
+  void try_sleep(Time now, Time& next);
   void begin_trial();
   void try_program();
   uint64_t end_trial();
@@ -174,6 +181,7 @@ class Station final : private EventTarget, private Sleeper {
   void connect_serial();
   void reconnect_serial();
   void begin_program(Time now);
+  void show_positioning(Time now);
   bool run_commands();
   void end_program(Time now);
   void end_tick(Time now);
@@ -220,7 +228,16 @@ class Station final : private EventTarget, private Sleeper {
   bool was_off_ = false;
   EventId tick_ = kNoEvent;
 
-  // Sleep.
+  // Ticks that only go on (station_course.cpp).
+  bool on_course_ = false;
+  bool touched_ = false;  // by somebody outside, since the last tick
+  NotedVariables noted_;
+  DriveCourse course_;
+  bool course_noted_ = false;  // this tick is compared with what was before it
+  uint32_t course_in_ = 0;     // ticks until the next comparison
+  uint32_t course_pause_ = 1;
+
+  // Sleep (station_sleep.cpp).
   bool asleep_ = false;
   bool trial_ = false;     // this tick is compared with what was before it
   uint32_t trial_in_ = 0;  // ticks until the next one
@@ -229,7 +246,6 @@ class Station final : private EventTarget, private Sleeper {
   Time next_tick_ = 0;       // the first that was not made up for
   Time sleeps_until_ = 0;    // the tick that is executed again
   struct {
-    DriveRest drive;
     Bytes<PositioningService> positioning;
     std::array<int32_t, vm::kMaxVariables> h;
   } rest_;                       // before the trial

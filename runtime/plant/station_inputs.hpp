@@ -27,6 +27,8 @@ class StationInputs {
   }
   const InputLine& line(size_t n) const { return lines_[n]; }
 
+  bool known() const { return known_; }  // no line was written since somebody looked
+
   uint16_t levels() const {  // as InputLevel H483
     look();
     return levels_;

@@ -1,5 +1,5 @@
 // Sleep: ticks that would change nothing are left out, and made up for when somebody looks or something
-// happens. A tick is a function of what the station is; so when one has left drive, positioning and variables
+// happens. When a drive on its course (station_course.cpp) stands, a tick has left positioning and variables
 // as they were, and the program goes round in a loop that leads nowhere, those behind it do the same.
 #include <algorithm>
 
@@ -16,13 +16,10 @@ constexpr uint32_t kLongestPause = 32, kLongestPauseOfProgram = 1024;
 
 // What could still change while nobody touches the station is looked at when a tick has passed.
 void Station::begin_trial() {
-  const Drive& drive = drive_.state();
-  const bool stands_off = !drive.axis().output_stage && drive.axis().standing;
-  if (!stands_off) return;
+  if (!drive_.state().axis().standing) return;
   const bool minds_variables = machine_ && ((pid_ && !PidBlock::is_off(machine_->variables())) ||
                                             (positioning_ && !positioning_->minds_system_variables_only()));
   if (minds_variables) return;
-  rest_.drive.note(drive);
   if (positioning_) rest_.positioning.note(*positioning_);
   if (machine_) std::ranges::copy(machine_->variables(), rest_.h.begin());
   trial_ = true;
@@ -47,7 +44,7 @@ void Station::hesitate(uint32_t longest) {
 
 // How many ticks may be left out behind that of the trial.
 uint64_t Station::end_trial() {
-  const uint64_t ticks = rest_.drive.ticks(drive_.state());
+  const uint64_t ticks = on_course_ ? drive_.state().course_left() : 0;
   if (positioning_ && !rest_.positioning.same(*positioning_)) return 0;
   return machine_ ? std::min(ticks, idle_ticks_ - 1) : ticks;
 }
@@ -55,23 +52,28 @@ uint64_t Station::end_trial() {
 void Station::schedule_tick(Time now) {
   Time next = now + kMillisecond;
   if (execution_.skip_idle && runner_ == nullptr) {
-    const uint64_t ticks = trial_ ? end_trial() : 0;
-    if (ticks != 0) {
-      trial_ = false;
-      pause_ = 1;
-      asleep_ = true;
-      next_tick_ = next;
-      sleeps_until_ = next + static_cast<Time>(ticks) * kMillisecond;
-      next = next_event(now);
-    } else if (trial_) {
-      hesitate(kLongestPause);
-    } else if (trial_in_ != 0) {
-      --trial_in_;
-    } else {
-      begin_trial();
-    }
+    if (!on_course_) try_course();
+    if (on_course_ || trial_) try_sleep(now, next);
   }
   tick_ = queue_.schedule(next, source_, *this, kTick);
+}
+
+void Station::try_sleep(Time now, Time& next) {
+  const uint64_t ticks = trial_ ? end_trial() : 0;
+  if (ticks != 0) {
+    trial_ = false;
+    pause_ = 1;
+    asleep_ = true;
+    next_tick_ = next;
+    sleeps_until_ = next + static_cast<Time>(ticks) * kMillisecond;
+    next = next_event(now);
+  } else if (trial_) {
+    hesitate(kLongestPause);
+  } else if (trial_in_ != 0) {
+    --trial_in_;
+  } else {
+    begin_trial();
+  }
 }
 
 Time Station::next_event(Time now) const {
@@ -98,7 +100,7 @@ void Station::make_up_to(Time last) {
   if (last < next_tick_) return;
   const auto ticks = static_cast<uint64_t>((last - next_tick_) / kMillisecond + 1);
   if (machine_) machine_->skip_ticks(rates_.value_or(drive_.rates()).commands, ticks);
-  DriveRest::skip(drive_.state(), ticks);
+  drive_.state().go_on(static_cast<uint32_t>(ticks));
   drive_.memory().set_time(last);
   next_tick_ = last + kMillisecond;
 }
@@ -113,6 +115,7 @@ void Station::make_up() {
 }
 
 void Station::wake() {
+  touched_ = true;
   trial_ = false;
   if (!asleep_) return;
   make_up();

@@ -27,6 +27,10 @@ class Encoders {
     turned_ += wrapped(int64_t{motor_counter} - counter_);
     counter_ = motor_counter;
   }
+  // It was told this count twice.
+  bool stands_at(int32_t motor_counter) const {
+    return motor_counter == counter_ && turned_before_ == turned_;
+  }
   // The axis was given another count; nothing has moved.
   void recount(int32_t motor_counter) { counter_ = motor_counter; }
 

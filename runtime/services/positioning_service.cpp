@@ -231,8 +231,16 @@ void PositioningService::report_events(Time now) {
   }
 }
 
-void PositioningService::show(Time now, std::span<int32_t> h) {
-  positioner_.observe(drive_.axis().position);
+void PositioningService::go_on(std::span<int32_t> h, uint32_t syncs) {
+  syncs_ = syncs;
+  const AxisState& axis = drive_.axis();
+  if (positioner_.encoders().stands_at(axis.position)) return;
+  positioner_.idle(axis.speed);
+  positioner_.observe(axis.position);
+  show_positions(h);
+}
+
+void PositioningService::show_positions(std::span<int32_t> h) {
   show_targets(h);
   const Encoders::Positions positions = positioner_.encoders().positions();
   const uint32_t control = static_cast<uint32_t>(h[kModuloCtrl]);
@@ -242,6 +250,11 @@ void PositioningService::show(Time now, std::span<int32_t> h) {
   h[kActPosMot] = positions.motor;
   h[kActPosExt] = positions.external;
   h[kActPosAbs] = positions.absolute;
+}
+
+void PositioningService::show(Time now, std::span<int32_t> h) {
+  positioner_.observe(drive_.axis().position);
+  show_positions(h);
   if (h.size() > kGearSlave) h[kSyncState] = static_cast<int32_t>(positioner_.follow_state());
   h[kSetpointPosBus] = bus_position_ = drive_.bus_position().value_or(bus_position_);
   const TouchProbes::Probe& first = positioner_.touch_probes().probe(0);

@@ -33,6 +33,11 @@ class PositioningService {
   // Looks at no variable but system variables: no cam controller runs, no master is followed.
   bool minds_system_variables_only() const;
 
+  // The last millisecond has found nothing to do, and no command came since. While inputs, parameters and
+  // system variables stay as they are, too, go_on() is order() and show() around a tick of the drive.
+  bool idles() const { return idles_ && minds_system_variables_only(); }
+  void go_on(std::span<int32_t> h, uint32_t syncs);
+
   // For commands, between two ticks.
   const Positioner& positioner() const { return positioner_; }
   Positioner& change_positioner() {
@@ -61,6 +66,7 @@ class PositioningService {
   void take_mirrors(std::span<int32_t> h);
   PositioningInputs inputs(std::span<const int32_t> h) const;
   MasterInputs master(std::span<const int32_t> h, uint32_t syncs);
+  void show_positions(std::span<int32_t> h);
   void report_events(Time now);
 
   Drive& drive_;

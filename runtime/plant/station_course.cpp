@@ -1,0 +1,55 @@
+// Ticks on a course: drive and positioning go on as in the last millisecond, and only what moves, warms and
+// counts is computed. A tick is a function of what the station is; so when one has changed nothing else
+// (DriveCourse), and nobody has touched what it follows since, the next one need not be decided anew.
+#include <algorithm>
+
+#include "runtime/plant/station.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+// A drive that was not on a course is tried again after 2, 4, 8.. ticks, so that trying costs little.
+constexpr uint32_t kLongestPause = 16;
+
+}  // namespace
+
+// What the program wrote has been looked at behind its tasks; what came from outside is looked at here.
+bool Station::stays_on_course() {
+  const bool touched = std::exchange(touched_, false);
+  return drive_.state().course_left() != 0 && inputs_.known() &&
+         (!touched || !machine_ || noted_.same(machine_->variables()));
+}
+
+void Station::leave_course() {
+  wake();
+  on_course_ = false;
+}
+
+// Behind a tick that was executed in full.
+void Station::try_course() {
+  if (!course_noted_) {
+    if (course_in_ != 0) {
+      --course_in_;
+      return;
+    }
+    course_.note(drive_.state());
+    course_noted_ = true;
+    touched_ = false;
+    return;
+  }
+  course_noted_ = false;
+  const uint32_t ticks = touched_ ? 0 : course_.ticks(drive_.state());
+  on_course_ = ticks != 0;
+  if (on_course_ && machine_) {
+    const std::span<const int32_t> h = machine_->variables();
+    on_course_ = noted_.same(h) && (!pid_ || PidBlock::is_off(h));
+  }
+  if (on_course_) {
+    drive_.state().hold_course(ticks);
+    course_pause_ = 1;
+  } else {
+    course_in_ = course_pause_ = std::min(2 * course_pause_, kLongestPause);
+  }
+}
+
+}  // namespace ipos::runtime
