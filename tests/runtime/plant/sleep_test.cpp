@@ -203,7 +203,7 @@ struct Watched {
 
 TEST(Sleep, RandomPlantsAreTheSameAsWithoutIt) {
   uint64_t asleep = 0, looked = 0;
-  for (uint64_t seed = 1; seed <= 1500; ++seed) {
+  for (uint64_t seed = 1; seed <= 150; ++seed) {
     RandomPlant random(seed);
     auto all = random.make(false), some = random.make(true);
     ASSERT_TRUE(all && some) << random.text();
