@@ -83,10 +83,10 @@ void Drive::take_request(PoSource source) {
   if (touched_watch(source).on_request()) now_.change().faults.clear_cause(fault_of(source));
 }
 
-// A telegram takes the drive off its course unless it only begins the time of silence anew.
+// A telegram changes what is decided unless it only begins the time of silence anew.
 LinkWatch& Drive::touched_watch(PoSource source) {
   LinkWatch& watch = watches_[static_cast<size_t>(source)];
-  if (!watch.alert()) course_left_ = 0;
+  if (!watch.alert()) now_.change();
   return watch;
 }
 

@@ -98,6 +98,8 @@ class Station final : private EventTarget, private Sleeper {
   }
   // A tick was left out and not made up for yet, or those behind it will be.
   bool asleep() const { return asleep_; }
+  // The next tick goes on where nothing is to be decided, unless somebody touches the station.
+  bool on_course() const { return on_course_; }
   // The station stands in the middle of its tick.
   bool in_tick() const { return in_tick_; }
   void resume_tick();

@@ -1,4 +1,5 @@
-// Left-out milliseconds: a plant that skips is at every moment what one is that executes them all. The run
+// Left-out milliseconds, and those that only go on: a plant that has them is at every moment what one is that
+// executes all of each. The run
 // without skipping is the expected value, in random plants: programs that wait, look, count, send, receive
 // and ask each other, buses, wires, switches, and stimuli at random times.
 #include <gtest/gtest.h>
@@ -37,6 +38,8 @@ constexpr int kOfMovidriveB = 2;  // the last ones
 constexpr const char* kBodies[] = {
     "",
     "_Wait(K); n = n + 1;",
+    "n = n + 1;",
+    "d1 = d1 + 1; d2 = H511; H488 = L;",
     "if (H483 & L) n = n + 1;",
     "a = H483; a = a & 3; if (a == 3) b = b + 1;",
     "H488 = K; while (H488 > 0); n = n + 1; _Wait(L * 50);",
@@ -202,7 +205,7 @@ struct Watched {
 };
 
 TEST(Sleep, RandomPlantsAreTheSameAsWithoutIt) {
-  uint64_t asleep = 0, looked = 0;
+  uint64_t asleep = 0, on_course = 0, looked = 0;
   for (uint64_t seed = 1; seed <= 150; ++seed) {
     RandomPlant random(seed);
     auto all = random.make(false), some = random.make(true);
@@ -213,7 +216,11 @@ TEST(Sleep, RandomPlantsAreTheSameAsWithoutIt) {
       now += random.pick(0, 3) == 0 ? random.pick(1, 5'000'000) : ms(random.pick(1, 600));
       expected.plant->run_until(now);
       skipping.plant->run_until(now);
-      for (const auto& station : skipping.plant->stations()) asleep += station->asleep() ? 1 : 0, ++looked;
+      for (const auto& station : skipping.plant->stations()) {
+        asleep += station->asleep() ? 1 : 0;
+        on_course += station->on_course() && !station->asleep() ? 1 : 0;
+        ++looked;
+      }
       if (random.pick(0, 3) == 0) {
         const auto touch = [&](Plant& plant, size_t n, int level) {
           plant.stations()[n]->inputs().line(2).forced = level;
@@ -232,6 +239,8 @@ TEST(Sleep, RandomPlantsAreTheSameAsWithoutIt) {
     }
   }
   EXPECT_GT(asleep * 4, looked) << "of " << looked << " looks at a station " << asleep << " found it asleep";
+  EXPECT_GT(on_course * 8, looked) << "of " << looked << " looks at a station " << on_course
+                                   << " found it on its course";
 }
 
 // Within the first second the reference signals P400..P434 come to rest.
