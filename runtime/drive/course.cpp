@@ -38,6 +38,7 @@ uint32_t DriveCourse::ticks(const Drive& drive) const {
 
   Axis moved = noted(drive, axis);
   moved.go_on(1);
+  moved.state();  // nothing is left to be computed later
   if (!same_bytes(moved, axis)) return 0;
   auto watches = noted(drive, drive.watches_);
   for (size_t n = 0; n < watches.size(); ++n) watches[n].go_on(drive.decisions_.links[n], 1);

@@ -145,7 +145,7 @@ void Drive::set_position(int32_t counter) {
 }
 
 int32_t Drive::shaft_position() const {
-  return static_cast<int32_t>(static_cast<uint32_t>(axis_.state().position) - counter_shift_);
+  return static_cast<int32_t>(static_cast<uint32_t>(axis_.position()) - counter_shift_);
 }
 
 // --- faults ---
@@ -230,11 +230,18 @@ void Drive::tick(const PositionControl& position) {
   look_again_ = true;  // the axis has moved
 }
 
+void Drive::hold_course(uint32_t ticks) {
+  course_left_ = ticks;
+  links_count_ = false;
+  for (size_t n = 0; n < watches_.size(); ++n) links_count_ |= watches_[n].counts(decisions_.links[n]);
+}
+
 void Drive::go_on(uint32_t ticks) {
   course_left_ -= ticks;
   mains_ms_ += ticks;
-  if (output_stage_on()) enabled_ms_ += ticks;
+  if (now_->output_stage) enabled_ms_ += ticks;
   axis_.go_on(ticks);
+  if (!links_count_) return;
   for (size_t n = 0; n < watches_.size(); ++n) watches_[n].go_on(decisions_.links[n], ticks);
 }
 

@@ -67,7 +67,7 @@ class Drive final : private DriveLink {
 
   // --- ticks that only go on (course.hpp) ---
   // The next ticks are of that kind while nobody touches the drive.
-  void hold_course(uint32_t ticks) { course_left_ = ticks; }
+  void hold_course(uint32_t ticks);
   // How many of them are left: the next ones are go_on() instead of tick(), if position_control() is ordered
   // again.
   uint32_t course_left() const {
@@ -112,6 +112,10 @@ class Drive final : private DriveLink {
   uint16_t status_word_3() const { return status_block(); }  // high byte in no manual read; 0 is ours
   const Setpoint& setpoint() const { return setpoint_; }     // of the last tick
   const AxisState& axis() const { return axis_.state(); }
+  // Of axis(), for who looks every millisecond.
+  int32_t position() const { return axis_.position(); }
+  int32_t speed() const { return axis_.speed(); }
+  bool standing() const { return axis_.standing(); }
   uint16_t outputs() const { return outputs_.levels(); }
 
   // What the master of a master/slave group sends (P750); its slaves scale it (P751): control word 1, speed,
@@ -272,6 +276,7 @@ class Drive final : private DriveLink {
   uint32_t enabled_ms_ = 0;
   int64_t counted_energy_ = 0;
   mutable uint32_t course_left_ = 0;
+  bool links_count_ = false;  // while on the course
 };
 
 }  // namespace ipos::runtime

@@ -29,6 +29,7 @@ class LinkWatch {
     return false;
   }
 
+  bool counts(const Rules& rules) const { return rules.delay_ms != 0 && running_ && !reported_; }
   // Ticks from now on that only count the silence, and what they do. Telegrams that come while it is alert
   // only begin the count anew.
   uint64_t ticks_left(const Rules& rules) const {
@@ -46,7 +47,6 @@ class LinkWatch {
 
  private:
   bool run(const Rules& rules);
-  bool counts(const Rules& rules) const { return rules.delay_ms != 0 && running_ && !reported_; }
 
   bool seen_ = false;     // process data have arrived
   bool running_ = false;  // the time runs

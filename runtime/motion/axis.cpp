@@ -1,6 +1,8 @@
 // The tick: sequence, setpoint, shaft, position, power section.
 #include "runtime/motion/axis.hpp"
 
+#include <utility>
+
 namespace ipos::runtime {
 namespace {
 
@@ -23,6 +25,7 @@ Axis::Axis(const MachineData& machine)
 }
 
 const AxisState& Axis::tick(const AxisOrder& order) {
+  catch_up();
   advance_sequence(order);
   advance_setpoint(order);
   const FineSpeed before = speed_;
@@ -111,6 +114,7 @@ void Axis::show(const AxisOrder& order, const Motion& motion) {
   state_.current_limited = motion.limited;
   state_.setpoint = has_torque(phase) ? whole_speed(ramp_.output()) : 0;
   state_.speed = whole_speed(speed_);
+  state_.position = static_cast<int32_t>(position_);
   state_.torque = static_cast<int32_t>(motion.torque);
   state_.output_current = power_.output_current();
   state_.active_current = power_.active_current();
@@ -120,18 +124,22 @@ void Axis::show(const AxisOrder& order, const Motion& motion) {
 }
 
 // What changes though the drive does not.
-void Axis::show_counts() {
-  state_.position = static_cast<int32_t>(position_);
+void Axis::show_counts() const {
   state_.energy = power_.energy();
   state_.heat_sink = power_.heat_sink();
   state_.utilization = power_.utilization();
   state_.motor_utilization = power_.motor_utilization();
 }
 
-void Axis::go_on(uint64_t ticks) {
-  if (speed_ != 0)
-    for (uint64_t n = 0; n != ticks; ++n) count_position(speed_, speed_);
-  power_.go_on(ticks);
+void Axis::go_on(uint32_t ticks) {
+  behind_ += ticks;
+  if (speed_ == 0) return;
+  for (; ticks != 0; --ticks) count_position(speed_, speed_);
+  state_.position = static_cast<int32_t>(position_);
+}
+
+void Axis::draw_and_warm() const {
+  power_.go_on(std::exchange(behind_, 0));
   show_counts();
 }
 

@@ -68,8 +68,15 @@ class Axis {
   const AxisState& tick(const AxisOrder& order);
   // What so many ticks under the last order do when nothing changes but what moves, warms and counts: none is
   // on its way but to a speed that is reached, and the DC link stays as it is. At most a minute.
-  void go_on(uint64_t ticks);
-  const AxisState& state() const { return state_; }
+  void go_on(uint32_t ticks);
+  const AxisState& state() const {
+    catch_up();
+    return state_;
+  }
+  // Of state(), for who looks every millisecond: what warms and counts is computed when somebody asks for it.
+  int32_t position() const { return state_.position; }
+  int32_t speed() const { return state_.speed; }
+  bool standing() const { return state_.standing; }
   const MachineData& machine() const { return machine_; }
   // Of the next ticks while it goes on: the highest values, and the most energy for one tick (Ws).
   int32_t heat_sink_ahead() const { return power_.heat_sink_ahead(); }
@@ -87,7 +94,11 @@ class Axis {
   Motion advance_shaft(const AxisOrder& order);
   void count_position(FineSpeed before, FineSpeed after);
   void show(const AxisOrder& order, const Motion& motion);
-  void show_counts();
+  void catch_up() const {
+    if (behind_ != 0) draw_and_warm();
+  }
+  void draw_and_warm() const;
+  void show_counts() const;
 
   static bool has_torque(AxisPhase phase);
   bool brake_open() const;
@@ -96,11 +107,12 @@ class Axis {
   BrakeSequence sequence_;
   Ramp ramp_;
   Shaft shaft_;
-  PowerSection power_;
+  mutable PowerSection power_;
   FineSpeed speed_ = 0;
   uint32_t position_ = 0;
   int64_t position_rest_ = 0;  // part of an increment
-  AxisState state_;
+  mutable AxisState state_;
+  mutable uint32_t behind_ = 0;  // ticks of go_on() that power section and state have not seen yet
 };
 
 static_assert(std::is_trivially_copyable_v<Axis>, "a copy is a snapshot");

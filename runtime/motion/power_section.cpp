@@ -93,7 +93,7 @@ void PowerSection::find_power(const Speed& speed) {
   mechanical_ = speed.torque * speed.mrpm / machine_.rated_speed;
 }
 
-void PowerSection::go_on(uint64_t steps) {
+void PowerSection::go_on(uint32_t steps) {
   draw(steps);
   unit_.follow(unit_target_, steps);
   motor_.follow(motor_target_, steps);
@@ -101,7 +101,7 @@ void PowerSection::go_on(uint64_t steps) {
 }
 
 // Below one digit of the division nothing changes any more.
-void PowerSection::Lag::follow(int64_t target, uint64_t steps) {
+void PowerSection::Lag::follow(int64_t target, uint32_t steps) {
   for (; steps != 0; --steps) {
     const int64_t change = ((target << 24) - value_) / time_ms_;
     if (change == 0) return;
@@ -120,8 +120,8 @@ void PowerSection::step_power() {
   draw(1);
 }
 
-void PowerSection::draw(uint64_t steps) {
-  energy_rest_ += drawn() * static_cast<int64_t>(steps);
+void PowerSection::draw(uint32_t steps) {
+  energy_rest_ += drawn() * int64_t{steps};
   if (energy_rest_ < kPerWs) return;
   energy_ += energy_rest_ / kPerWs;
   energy_rest_ %= kPerWs;

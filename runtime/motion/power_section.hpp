@@ -33,7 +33,7 @@ class PowerSection {
   void step(const Load& load);
   // What so many steps with the last load do while the DC link stays as it is: energy and the slow
   // quantities. At most a minute.
-  void go_on(uint64_t steps);
+  void go_on(uint32_t steps);
 
   int32_t output_current() const { return output_current_; }             // 1/1000 % IN
   int32_t active_current() const { return active_current_; }             // signed as the torque
@@ -59,7 +59,7 @@ class PowerSection {
    public:
     explicit Lag(int32_t time_ms) : time_ms_(time_ms) {}
     void follow(int64_t target) { value_ += ((target << 24) - value_) / time_ms_; }
-    void follow(int64_t target, uint64_t steps);
+    void follow(int64_t target, uint32_t steps);
     int32_t whole() const { return static_cast<int32_t>(value_ >> 24); }
 
    private:
@@ -86,7 +86,7 @@ class PowerSection {
   void find_currents(const Currents& currents);
   void find_power(const Speed& speed);
   void step_power();
-  void draw(uint64_t steps);
+  void draw(uint32_t steps);
   int64_t power() const { return mechanical_ + losses_; }
   // In one step, of kPerWs for a Ws.
   int64_t drawn() const { return std::clamp<int64_t>(power(), 0, kMostPower) * machine_.rated_power; }

@@ -169,7 +169,7 @@ void Station::end_tick(Time now) {
   for (const auto& port : sbus_)
     if (port) port->tick(now);
   drive_.memory().tick(now);
-  note_memory(now);
+  if (drive_.memory().has_messages()) note_memory(now);
   schedule_tick(now);
 }
 

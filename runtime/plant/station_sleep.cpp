@@ -16,7 +16,7 @@ constexpr uint32_t kLongestPause = 32, kLongestPauseOfProgram = 1024;
 
 // What could still change while nobody touches the station is looked at when a tick has passed.
 void Station::begin_trial() {
-  if (!drive_.state().axis().standing) return;
+  if (!drive_.state().standing()) return;
   const bool minds_variables = machine_ && ((pid_ && !PidBlock::is_off(machine_->variables())) ||
                                             (positioning_ && !positioning_->minds_system_variables_only()));
   if (minds_variables) return;

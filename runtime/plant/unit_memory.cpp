@@ -121,11 +121,6 @@ void UnitMemory::report_wear() {
                      use.interval / kMillisecond % 1000, memory_life(use.interval))});
 }
 
-void UnitMemory::tick(Time now) {
-  now_ = now;
-  if (dirty_) commit();
-}
-
 void UnitMemory::count(uint16_t index) {
   const std::string name = stdlib::index_name(parameters_.table(), index);
   if (auto warning = wear_.note(now_, index, parameters_.eeprom_writes(index), name))

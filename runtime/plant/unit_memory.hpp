@@ -38,7 +38,10 @@ class UnitMemory final : public NonvolatileMemory, public RetainedMemory {
   void report_wear();
 
   // The end of a millisecond.
-  void tick(Time now);
+  void tick(Time now) {
+    now_ = now;
+    if (dirty_) commit();
+  }
   void set_time(Time now) { now_ = now; }
 
   ValueWindow& variables() { return variables_; }
@@ -49,6 +52,7 @@ class UnitMemory final : public NonvolatileMemory, public RetainedMemory {
     Weight weight;
     std::string text;
   };
+  bool has_messages() const { return !messages_.empty(); }
   // What there is to tell since the last call.
   std::vector<Message> take_messages() { return std::exchange(messages_, {}); }
 

@@ -142,6 +142,12 @@ PositioningOrder Positioner::idle(int32_t speed) {
   return {false, speed, halt_};
 }
 
+// The profile holds the position again before anybody travels from it.
+void Positioner::glide(int32_t motor_counter) {
+  drop_target();
+  observe(motor_counter);
+}
+
 void Positioner::observe(int32_t motor_counter) {
   const int32_t before = actual();
   encoders_.count(motor_counter);

@@ -32,7 +32,7 @@ vm::HostReply system_call(const CommandCall& call) {
   const auto off = [&](unsigned bit) { return call_if((static_cast<uint32_t>(status) >> bit & 1) == 0); };
   switch (call.operand(0)) {
     case kAlways: return call_if(true);
-    case kStandstill: return call_if(call.services.drive.axis().standing);
+    case kStandstill: return call_if(call.services.drive.standing());
     case kNotInPosition: return off(19);  // IPOSplus p. 34
     case kNotReferenced: return off(20);  // p. 91
     case kTouchProbe:

@@ -13,7 +13,7 @@ using stdlib::system_variable;
 void show_drive(const Drive& drive, std::span<int32_t> h) {
   h[system_variable("OutputLevel")] = drive.outputs();
   h[system_variable("InputLevel")] = drive.inputs();
-  h[system_variable("ActPos_Mot")] = drive.axis().position;
+  h[system_variable("ActPos_Mot")] = drive.position();
 }
 
 // Bits 0..7 of OptOutpIPOS are DO10..DO17; both words together are in the order of OutputLevel.

@@ -131,10 +131,14 @@ void PositioningService::take_targets(std::span<const int32_t> h) {
   shown_turns_ = h[kModCount];
 }
 
-void PositioningService::show_targets(std::span<int32_t> h) {
+void PositioningService::show_target_positions(std::span<int32_t> h) {
   h[kTargetPos] = shown_target_ = positioner_.target();
   h[kModTagPos] = shown_modulo_target_ = positioner_.modulo_target();
   h[kModCount] = shown_turns_ = positioner_.modulo().turns();
+}
+
+void PositioningService::show_targets(std::span<int32_t> h) {
+  show_target_positions(h);
   set_bit(h[kStatusWord], kInPosition, positioner_.in_position());
   set_bit(h[kStatusWord], kReferenced, positioner_.referenced());
 }
@@ -145,7 +149,7 @@ PositioningInputs PositioningService::inputs(std::span<const int32_t> h) const {
   PositioningInputs in;
   in.possible = drive_.can_position();
   in.following = drive_.follows();
-  in.speed = drive_.axis().speed;
+  in.speed = drive_.speed();
   in.levels = drive_.inputs();
   in.cam = t.on(F::ReferenceCam);
   in.limit_cw = t.off(F::LimitCw);  // low-active
@@ -159,7 +163,7 @@ PositioningInputs PositioningService::inputs(std::span<const int32_t> h) const {
 }
 
 bool PositioningService::minds_system_variables_only() const {
-  return settings_.technology_function != kIsync && cam_sources_.watches_none() && !extended_cams_.runs();
+  return settings_.technology_function != kIsync && !cams_run_;
 }
 
 // A gear of 0 is one of 1.
@@ -193,7 +197,7 @@ bool PositioningService::stays_idle(std::span<const int32_t> h) const {
 PositionControl PositioningService::order(Time now, std::span<int32_t> h, uint32_t syncs) {
   if (stays_idle(h)) {
     syncs_ = syncs;
-    const PositioningOrder order = positioner_.idle(drive_.axis().speed);
+    const PositioningOrder order = positioner_.idle(drive_.speed());
     return {order.controls, order.speed, command_of(order.halt), false, positioner_.referenced()};
   }
   read_settings();
@@ -233,15 +237,14 @@ void PositioningService::report_events(Time now) {
 
 void PositioningService::go_on(std::span<int32_t> h, uint32_t syncs) {
   syncs_ = syncs;
-  const AxisState& axis = drive_.axis();
-  if (positioner_.encoders().stands_at(axis.position)) return;
-  positioner_.idle(axis.speed);
-  positioner_.observe(axis.position);
+  const int32_t counter = drive_.position();
+  if (positioner_.encoders().stands_at(counter)) return;
+  positioner_.glide(counter);
+  show_target_positions(h);
   show_positions(h);
 }
 
 void PositioningService::show_positions(std::span<int32_t> h) {
-  show_targets(h);
   const Encoders::Positions positions = positioner_.encoders().positions();
   const uint32_t control = static_cast<uint32_t>(h[kModuloCtrl]);
   h[kModActPos] = positioner_.modulo().position((control >> 1 & 1) != 0);
@@ -253,7 +256,8 @@ void PositioningService::show_positions(std::span<int32_t> h) {
 }
 
 void PositioningService::show(Time now, std::span<int32_t> h) {
-  positioner_.observe(drive_.axis().position);
+  positioner_.observe(drive_.position());
+  show_targets(h);
   show_positions(h);
   if (h.size() > kGearSlave) h[kSyncState] = static_cast<int32_t>(positioner_.follow_state());
   h[kSetpointPosBus] = bus_position_ = drive_.bus_position().value_or(bus_position_);
@@ -265,12 +269,14 @@ void PositioningService::show(Time now, std::span<int32_t> h) {
   h[kTpPos2Mot] = second.motor;
   h[kTpPos2Ext] = second.external;
   h[kTpPos2Abs] = second.absolute;
+  if (!cams_run_) return;
   cam_sources_.tick(h);
   const auto ms = static_cast<uint64_t>(now / kMillisecond);
   if (extended_cams_.runs() && !extended_cams_.tick(h, cam_sources_, {positioner_.referenced(), ms}))
     journal_.note(now, Weight::Warning, station_,
                   "GSCAM_EXT: the structure names a variable the unit does not have; this cam controller is "
                   "stopped");
+  cams_run_ = extended_cams_.runs() || !cam_sources_.watches_none();
 }
 
 }  // namespace ipos::runtime

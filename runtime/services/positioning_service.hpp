@@ -47,8 +47,14 @@ class PositioningService {
   void take_targets(std::span<const int32_t> h);                // written since the last look
   void ordered_at(uint32_t address) { ordered_at_ = address; }  // the command, for what is reported of it
   void show_targets(std::span<int32_t> h);                      // and the bits 19 and 20 of H473
-  CamSources& cam_sources() { return cam_sources_; }
-  ExtendedCams& extended_cams() { return extended_cams_; }
+  CamSources& cam_sources() {
+    cams_run_ = true;
+    return cam_sources_;
+  }
+  ExtendedCams& extended_cams() {
+    cams_run_ = true;
+    return extended_cams_;
+  }
   // A parameter by its number, as the program's own working value.
   void set_parameter(std::string_view number, int32_t value);
 
@@ -66,6 +72,7 @@ class PositioningService {
   void take_mirrors(std::span<int32_t> h);
   PositioningInputs inputs(std::span<const int32_t> h) const;
   MasterInputs master(std::span<const int32_t> h, uint32_t syncs);
+  void show_target_positions(std::span<int32_t> h);
   void show_positions(std::span<int32_t> h);
   void report_events(Time now);
 
@@ -87,6 +94,7 @@ class PositioningService {
   Positioner positioner_;
   CamSources cam_sources_;
   ExtendedCams extended_cams_;
+  bool cams_run_ = false;  // or one may have been started since the last look
   // As last shown; the program has written what differs.
   int32_t shown_target_ = 0;
   int32_t shown_modulo_target_ = 0;
