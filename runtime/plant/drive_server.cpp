@@ -56,15 +56,13 @@ uint16_t DriveServer::index_of(std::string_view number) const {
 
 int32_t DriveServer::value(std::string_view number) const { return parameters_.value(index_of(number)); }
 
-vm::Rates DriveServer::rates() const {
-  if (rates_for_ == parameters_.changes()) return rates_;
+void DriveServer::find_rates() const {
   rates_for_ = parameters_.changes();
   constexpr int32_t kSharedCommands = 9;
   const int32_t first = parameters_.value(task1_speed_);
   const int32_t second = std::min(parameters_.value(task2_speed_), kSharedCommands - first);
   rates_.commands[0] = static_cast<uint32_t>(first + 1);
   rates_.commands[1] = static_cast<uint32_t>(second + 2);
-  return rates_;
 }
 
 void DriveServer::connect_program(vm::Machine& machine) {

@@ -53,7 +53,10 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
 
   // Commands per millisecond from P938 and P939 (IPOSplus p. 44). Both together add 9 at most, as in the
   // table there; what is more task 2 does not get (ours).
-  vm::Rates rates() const;
+  const vm::Rates& rates() const {
+    if (rates_for_ != parameters_.changes()) find_rates();
+    return rates_;
+  }
 
   // From now on 11000 + n leads to the machine's variables, and 16000 + n is open while it does not run.
   void connect_program(vm::Machine& machine);
@@ -112,6 +115,7 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
   void obstruct(const DataBus& bus, Obstacle obstacle, std::string_view what, std::string_view number,
                 int32_t wanted);
 
+  void find_rates() const;
   uint16_t index_of(std::string_view number) const;  // 0 for a parameter the unit does not have
 
   Sleeper* sleeper_ = nullptr;
@@ -126,7 +130,7 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
   uint16_t task1_speed_;  // index of P938
   uint16_t task2_speed_;  // index of P939
   mutable vm::Rates rates_;
-  mutable std::optional<uint32_t> rates_for_;  // ParameterStore::changes()
+  mutable uint32_t rates_for_ = UINT32_MAX;  // ParameterStore::changes()
   uint32_t syncs_ = 0;
   std::string reason_;
   std::vector<std::string> obstacles_;

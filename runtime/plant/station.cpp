@@ -116,7 +116,7 @@ void Station::connect_serial() {
 }
 
 void Station::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
-  if (sleeps_through(now)) return;
+  if (asleep_ && sleeps_through(now)) return;
   move_drive(now);
   if (!on_course_) {
     report_drive(now);
@@ -150,7 +150,7 @@ void Station::move_drive(Time now) {
 }
 
 bool Station::run_commands() {
-  const vm::Rates rates = rates_.value_or(drive_.rates());
+  const vm::Rates& rates = this->rates();
   if (runner_ == nullptr) {
     vm::run_tick(*machine_, rates);
     return true;

@@ -184,6 +184,7 @@ class Station final : private EventTarget, private Sleeper {
   void reconnect_serial();
   void begin_program(Time now);
   void show_positioning(Time now);
+  const vm::Rates& rates() const { return rates_ ? *rates_ : drive_.rates(); }
   bool run_commands();
   void end_program(Time now);
   void end_tick(Time now);

@@ -16,7 +16,6 @@ constexpr uint32_t kLongestPause = 32, kLongestPauseOfProgram = 1024;
 
 // What could still change while nobody touches the station is looked at when a tick has passed.
 void Station::begin_trial() {
-  if (!drive_.state().standing()) return;
   const bool minds_variables = machine_ && ((pid_ && !PidBlock::is_off(machine_->variables())) ||
                                             (positioning_ && !positioning_->minds_system_variables_only()));
   if (minds_variables) return;
@@ -30,9 +29,7 @@ void Station::begin_trial() {
 void Station::try_program() {
   if (!trial_) return;
   const std::span<const int32_t> h = machine_->variables();
-  idle_ticks_ = std::equal(h.begin(), h.end(), rest_.h.begin())
-                    ? machine_->idle_ticks(rates_.value_or(drive_.rates()).commands)
-                    : 0;
+  idle_ticks_ = std::equal(h.begin(), h.end(), rest_.h.begin()) ? machine_->idle_ticks(rates().commands) : 0;
   trial_ = idle_ticks_ != 0;
   if (!trial_) hesitate(kLongestPauseOfProgram);
 }
@@ -53,7 +50,7 @@ void Station::schedule_tick(Time now) {
   Time next = now + kMillisecond;
   if (execution_.skip_idle && runner_ == nullptr) {
     if (!on_course_) try_course();
-    if (on_course_ || trial_) try_sleep(now, next);
+    if (trial_ || (on_course_ && drive_.state().standing())) try_sleep(now, next);
   }
   tick_ = queue_.schedule(next, source_, *this, kTick);
 }
@@ -85,7 +82,6 @@ Time Station::next_event(Time now) const {
 
 // The event of a station that sleeps: a telegram is due, or the sleep is over.
 bool Station::sleeps_through(Time now) {
-  if (!asleep_) return false;
   make_up_to(std::min(now, sleeps_until_ - kMillisecond));
   asleep_ = now < sleeps_until_;
   if (!asleep_) return false;
@@ -99,7 +95,7 @@ bool Station::sleeps_through(Time now) {
 void Station::make_up_to(Time last) {
   if (last < next_tick_) return;
   const auto ticks = static_cast<uint64_t>((last - next_tick_) / kMillisecond + 1);
-  if (machine_) machine_->skip_ticks(rates_.value_or(drive_.rates()).commands, ticks);
+  if (machine_) machine_->skip_ticks(rates().commands, ticks);
   drive_.state().go_on(static_cast<uint32_t>(ticks));
   drive_.memory().set_time(last);
   next_tick_ = last + kMillisecond;

@@ -37,6 +37,11 @@ class Encoders {
   int32_t position(PositionSource source) const { return wrapped(exact(source)); }
   struct Positions {
     int32_t motor, external, absolute;
+    int32_t of(PositionSource source) const {
+      return source == PositionSource::Motor      ? motor
+             : source == PositionSource::External ? external
+                                                  : absolute;
+    }
   };
   Positions positions() const {
     const int64_t count = counted(turned_);

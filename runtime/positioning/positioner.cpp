@@ -143,9 +143,13 @@ PositioningOrder Positioner::idle(int32_t speed) {
 }
 
 // The profile holds the position again before anybody travels from it.
-void Positioner::glide(int32_t motor_counter) {
+Encoders::Positions Positioner::glide(int32_t motor_counter) {
   drop_target();
-  observe(motor_counter);
+  const int32_t before = target_;
+  encoders_.count(motor_counter);
+  const Encoders::Positions now = encoders_.positions();
+  modulo_.move(wrapped(int64_t{now.of(source())} - before));
+  return now;
 }
 
 void Positioner::observe(int32_t motor_counter) {

@@ -68,8 +68,8 @@ class Positioner {
   // Then idle() is tick() with settings and inputs that are the same but for the speed.
   bool idles() const;
   PositioningOrder idle(int32_t speed);
-  // idle() and observe() where nobody looks at the order.
-  void glide(int32_t motor_counter);
+  // idle() and observe() where nobody looks at the order. Returns encoders().positions().
+  Encoders::Positions glide(int32_t motor_counter);
   // After it has moved: the counter of the motor encoder.
   void observe(int32_t motor_counter);
   // A reference travel has given the motor encoder another count, which the axis must take over.
@@ -101,6 +101,7 @@ class Positioner {
   const PositioningInputs& inputs() const { return inputs_; }  // of the last tick()
   bool in_position() const;                                    // H473 bit 19
   bool referenced() const;                                     // H473 bit 20
+  PositionSource source() const { return settings_.position_source(); }
   bool referencing() const { return reference_.active(); }
   FollowState follow_state() const { return follow_state_; }  // H562
 
@@ -109,7 +110,6 @@ class Positioner {
   bool high_resolution() const { return (inputs_.modulo_control >> 1 & 1) != 0; }
   TravelRules rules() const;
 
-  PositionSource source() const { return settings_.position_source(); }
   int64_t distance(int32_t from, int32_t to) const;
   int64_t target_on_line() const;
   bool target_allowed() const;

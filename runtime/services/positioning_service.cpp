@@ -239,17 +239,16 @@ void PositioningService::go_on(std::span<int32_t> h, uint32_t syncs) {
   syncs_ = syncs;
   const int32_t counter = drive_.position();
   if (positioner_.encoders().stands_at(counter)) return;
-  positioner_.glide(counter);
+  const Encoders::Positions positions = positioner_.glide(counter);
   show_target_positions(h);
-  show_positions(h);
+  show_positions(h, positions, positions.of(positioner_.source()));
 }
 
-void PositioningService::show_positions(std::span<int32_t> h) {
-  const Encoders::Positions positions = positioner_.encoders().positions();
+void PositioningService::show_positions(std::span<int32_t> h, const Encoders::Positions& positions,
+                                        int32_t setpoint) {
   const uint32_t control = static_cast<uint32_t>(h[kModuloCtrl]);
-  h[kModActPos] = positioner_.modulo().position((control >> 1 & 1) != 0);
-  h[kSetpointPos] = positioner_.setpoint();
-  h[kLagDistance] = positioner_.lag();
+  if (positioner_.modulo().on()) h[kModActPos] = positioner_.modulo().position((control >> 1 & 1) != 0);
+  h[kSetpointPos] = setpoint;
   h[kActPosMot] = positions.motor;
   h[kActPosExt] = positions.external;
   h[kActPosAbs] = positions.absolute;
@@ -258,7 +257,9 @@ void PositioningService::show_positions(std::span<int32_t> h) {
 void PositioningService::show(Time now, std::span<int32_t> h) {
   positioner_.observe(drive_.position());
   show_targets(h);
-  show_positions(h);
+  h[kModActPos] = 0;
+  show_positions(h, positioner_.encoders().positions(), positioner_.setpoint());
+  h[kLagDistance] = positioner_.lag();
   if (h.size() > kGearSlave) h[kSyncState] = static_cast<int32_t>(positioner_.follow_state());
   h[kSetpointPosBus] = bus_position_ = drive_.bus_position().value_or(bus_position_);
   const TouchProbes::Probe& first = positioner_.touch_probes().probe(0);

@@ -73,7 +73,7 @@ class PositioningService {
   PositioningInputs inputs(std::span<const int32_t> h) const;
   MasterInputs master(std::span<const int32_t> h, uint32_t syncs);
   void show_target_positions(std::span<int32_t> h);
-  void show_positions(std::span<int32_t> h);
+  void show_positions(std::span<int32_t> h, const Encoders::Positions& positions, int32_t setpoint);
   void report_events(Time now);
 
   Drive& drive_;
