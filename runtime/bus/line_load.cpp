@@ -12,7 +12,8 @@ uint32_t percent_of(uint64_t part, uint64_t whole) {
 
 }  // namespace
 
-void LoadMeter::add(uint64_t begin, uint64_t count) {
+// Not all of it in the second being counted.
+void LoadMeter::add_beyond(uint64_t begin, uint64_t count) {
   busy_ += count;
   while (count > 0) {
     const uint64_t window = begin / rate_;
@@ -20,9 +21,10 @@ void LoadMeter::add(uint64_t begin, uint64_t count) {
       peak_window_busy_ = std::max(peak_window_busy_, window_busy_);
       previous_window_busy_ = window == window_ + 1 ? window_busy_ : 0;
       window_ = window;
+      window_end_ = (window + 1) * rate_;
       window_busy_ = 0;
     }
-    const uint64_t part = std::min(count, (window + 1) * rate_ - begin);
+    const uint64_t part = std::min(count, window_end_ - begin);
     window_busy_ += part;
     begin += part;
     count -= part;

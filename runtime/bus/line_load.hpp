@@ -17,18 +17,25 @@ struct LineLoad {
 
 class LoadMeter {
  public:
-  explicit LoadMeter(uint32_t units_per_second) : rate_(units_per_second) {}
+  explicit LoadMeter(uint32_t units_per_second) : rate_(units_per_second), window_end_(units_per_second) {}
 
   // Units `begin` to `begin` + `count` were occupied. Calls come in rising order and do not overlap.
-  void add(uint64_t begin, uint64_t count);
+  void add(uint64_t begin, uint64_t count) {
+    if (begin + count > window_end_) return add_beyond(begin, count);
+    busy_ += count;
+    window_busy_ += count;
+  }
 
   // With `elapsed` units since time 0; `frames` is left to the caller.
   LineLoad load(uint64_t elapsed) const;
 
  private:
+  void add_beyond(uint64_t begin, uint64_t count);
+
   uint32_t rate_;
   uint64_t busy_ = 0;
   uint64_t window_ = 0;  // number of the second being counted
+  uint64_t window_end_;  // its end
   uint64_t window_busy_ = 0;
   uint64_t previous_window_busy_ = 0;  // of second window_ - 1
   uint64_t peak_window_busy_ = 0;      // of the seconds before window_

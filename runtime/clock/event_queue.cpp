@@ -1,6 +1,6 @@
 // A binary heap of small entries that know their slot, and slots that know their place in the heap: so an
 // event can be cancelled in logarithmic time, and nothing is allocated once both vectors have their size. In
-// front of it the row, where most events come and go in constant time.
+// front of it two rows, where most events come and go in constant time.
 #include "runtime/clock/event_queue.hpp"
 
 #include <algorithm>
@@ -8,8 +8,11 @@
 #include <utility>
 
 namespace ipos::runtime {
-
-EventQueue::EventQueue(size_t capacity) : row_(std::bit_ceil(capacity + 1)) {
+EventQueue::EventQueue(size_t capacity) {
+  for (Row& row : rows_) {
+    row.ring.resize(std::bit_ceil(capacity + 1));
+    row.mask = row.ring.size() - 1;
+  }
   heap_.reserve(capacity);
   slots_.reserve(capacity);
   free_slots_.reserve(capacity);
@@ -18,7 +21,6 @@ EventQueue::EventQueue(size_t capacity) : row_(std::bit_ceil(capacity + 1)) {
 void EventQueue::place(size_t position, const Entry& entry) {
   heap_[position] = entry;
   slots_[entry.slot].position = static_cast<uint32_t>(position);
-  slots_[entry.slot].in_row = false;
 }
 
 void EventQueue::sift_up(size_t position, const Entry& entry) {
@@ -53,21 +55,26 @@ void EventQueue::remove(size_t position) {
     else
       sift_down(position, last);
   }
-  release(slot);
-}
-
-// Its order stays known when it is cancelled; only at the front it must not stand.
-void EventQueue::remove_from_row(uint32_t number) {
-  release(std::exchange(row_at(number).slot, kGone));
-  --row_count_;
-  while (row_begin_ != row_end_ && row_at(row_begin_).slot == kGone) ++row_begin_;
+  heap_changed();
+  if (++slots_[slot].generation == kGenerations) slots_[slot].generation = 1;
+  free_slots_.push_back(slot);
 }
 
 EventId EventQueue::schedule(Time at, uint32_t source, EventTarget& target, uint32_t kind,
                              uint64_t argument) {
+  at = std::max(at, now_);
+  if (!rows_[0].takes(at, source, now_)) return schedule_behind(at, source, target, kind, argument);
+  return row_id(0, rows_[0].join({{at, next_sequence_++, source}, kind, &target, argument}));
+}
+
+// What the first row does not take.
+EventId EventQueue::schedule_behind(Time at, uint32_t source, EventTarget& target, uint32_t kind,
+                                    uint64_t argument) {
+  const Order order{at, next_sequence_++, source};
+  if (rows_[1].takes(at, source, now_)) return row_id(1, rows_[1].join({order, kind, &target, argument}));
   if (free_slots_.empty()) {
     free_slots_.push_back(static_cast<uint32_t>(slots_.size()));
-    slots_.push_back({nullptr, 0, 0, 1, 0, false});
+    slots_.push_back({nullptr, 0, 0, 1, 0});
   }
   const uint32_t index = free_slots_.back();
   free_slots_.pop_back();
@@ -75,26 +82,24 @@ EventId EventQueue::schedule(Time at, uint32_t source, EventTarget& target, uint
   slot.target = &target;
   slot.argument = argument;
   slot.kind = kind;
-  const Entry entry{std::max(at, now_), next_sequence_++, source, index};
-  if (joins_row(entry)) {
-    slot.position = row_end_;
-    slot.in_row = true;
-    row_at(row_end_++) = entry;
-    ++row_count_;
-  } else {
-    heap_.push_back(entry);
-    sift_up(heap_.size() - 1, entry);
-  }
+  const Entry entry{order, index};
+  heap_.push_back(entry);
+  sift_up(heap_.size() - 1, entry);
+  heap_changed();
   return (EventId{slot.generation} << 32) | index;
 }
 
 bool EventQueue::cancel(EventId id) {
+  if ((id & kInRow) != 0) {
+    Row& row = rows_[id >> kRowShift & 1];
+    const uint64_t number = id & ((EventId{1} << kRowShift) - 1);
+    if (number < row.begin || number >= row.end || row.at(number).target == nullptr) return false;
+    row.cancel(number);
+    return true;
+  }
   const uint32_t index = static_cast<uint32_t>(id);
   if (id == kNoEvent || index >= slots_.size() || slots_[index].generation != id >> 32) return false;
-  if (slots_[index].in_row)
-    remove_from_row(slots_[index].position);
-  else
-    remove(slots_[index].position);
+  remove(slots_[index].position);
   return true;
 }
 
@@ -104,33 +109,73 @@ void EventQueue::cancel_all(const EventTarget& target) {
       remove(position);
       position = heap_.size();  // the order of the others has changed
     }
-  for (uint32_t number = row_begin_; number != row_end_; ++number)
-    if (row_at(number).slot != kGone && slots_[row_at(number).slot].target == &target)
-      remove_from_row(number);
+  for (Row& row : rows_)
+    for (uint64_t number = row.begin; number != row.end; ++number)
+      if (row.at(number).target == &target) row.cancel(number);
 }
 
-bool EventQueue::step() {
-  const bool in_row = row_begin_ != row_end_;
-  if (heap_.empty() && !in_row) return false;
-  const bool from_row = in_row && (heap_.empty() || before(row_at(row_begin_), heap_.front()));
-  const Entry entry = from_row ? row_at(row_begin_) : heap_.front();
-  const Slot event = slots_[entry.slot];
-  if (from_row)
-    remove_from_row(row_begin_);
-  else
-    remove(0);
-  reached_ = entry.at == now_ ? std::max(reached_, entry.source) : entry.source;
-  now_ = entry.at;
-  event.target->on_event(now_, event.kind, event.argument);
+const EventQueue::Order* EventQueue::next() const {
+  const Row& row = first_row();
+  if (in_heap(row)) return &heap_.front();
+  return row.empty() ? nullptr : &row.front();
+}
+
+Time EventQueue::next_time() const {
+  const Order* event = next();
+  return event == nullptr ? kNever : event->at;
+}
+
+size_t EventQueue::pending() const {
+  size_t count = heap_.size();
+  for (const Row& row : rows_)
+    for (uint64_t number = row.begin; number != row.end; ++number) count += row.at(number).target != nullptr;
+  return count;
+}
+
+// The next event, when it is not later than `end`, which is before kNever, or all of them.
+bool EventQueue::run(Time end, bool all) {
+  do {
+    Row& row = const_cast<Row&>(first_row());
+    if (in_heap(row)) {
+      if (!run_from_heap(end)) return false;
+      continue;
+    }
+    if (row.first_at > end) return false;
+    const Waiting& event = row.front();
+    reach(row.first_at, event.source);
+    row.pop();
+    event.target->on_event(now_, event.kind, event.argument);
+  } while (all);
   return true;
 }
 
+bool EventQueue::run_from_heap(Time end) {
+  if (heap_first_at_ > end) return false;
+  const Entry entry = heap_.front();
+  const Slot event = slots_[entry.slot];
+  remove(0);
+  reach(entry.at, entry.source);
+  event.target->on_event(entry.at, event.kind, event.argument);
+  return true;
+}
+
+bool EventQueue::step() { return run(kNever - 1, false); }
+
 void EventQueue::run_until(Time end) {
-  while (next_time() <= end && step()) {
-  }
+  run_end_ = end;
+  run(std::min(end, kNever - 1), true);
+  run_end_ = -1;
   if (end < now_) return;
   now_ = end;
   reached_ = UINT32_MAX;
+}
+
+bool EventQueue::advance(Time at, uint32_t source) {
+  const Order order{at, next_sequence_, source};
+  if (at > run_end_) return false;
+  if (const Order* event = next(); event != nullptr && before(*event, order)) return false;
+  reach(at, source);
+  return true;
 }
 
 }  // namespace ipos::runtime

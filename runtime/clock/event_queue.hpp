@@ -4,9 +4,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace ipos::runtime {
@@ -36,7 +38,7 @@ class EventQueue {
   explicit EventQueue(size_t capacity = 256);
 
   // `source` is the number the plant gives each of its members; among events of one time the lower source
-  // goes first. A time before now() counts as now().
+  // goes first. A time before now() counts as now(); what is to come at kNever does not.
   EventId schedule(Time at, uint32_t source, EventTarget& target, uint32_t kind, uint64_t argument = 0);
 
   // False when the event has run, is running or was cancelled before.
@@ -46,11 +48,8 @@ class EventQueue {
   void cancel_all(const EventTarget& target);
 
   Time now() const { return now_; }
-  Time next_time() const {  // kNever: nothing pending
-    const Time in_row = row_begin_ == row_end_ ? kNever : row_at(row_begin_).at;
-    return heap_.empty() ? in_row : std::min(in_row, heap_.front().at);
-  }
-  size_t pending() const { return heap_.size() + row_count_; }
+  Time next_time() const;  // kNever: nothing pending
+  size_t pending() const;
 
   // An event that `source` has had for now() since before that time has run, as the order of events goes.
   bool has_passed(uint32_t source) const { return source < reached_; }
@@ -61,11 +60,22 @@ class EventQueue {
   // Runs every event up to and including `end`; now() is `end` afterwards.
   void run_until(Time end);
 
+  // From within an event: an event of `source` at `at` would be the next of all, and this run goes so far.
+  // Then it is that time now, and the caller does at once what it would have scheduled.
+  bool advance(Time at, uint32_t source);
+
  private:
-  struct Entry {
+  // Ids of events in a row: this bit, the row, the number there. Others have generation and slot.
+  static constexpr EventId kInRow = EventId{1} << 63;
+  static constexpr int kRowShift = 62;
+  static constexpr uint32_t kGenerations = 1U << 31;
+
+  struct Order {
     Time at;
     uint64_t sequence;
     uint32_t source;
+  };
+  struct Entry : Order {  // of the heap
     uint32_t slot;
   };
   struct Slot {
@@ -73,43 +83,97 @@ class EventQueue {
     uint64_t argument;
     uint32_t kind;
     uint32_t generation;  // makes an id of an earlier use of the slot invalid
-    uint32_t position;    // in heap_, or number in the row
-    bool in_row;
+    uint32_t position;    // in heap_
   };
-  static constexpr uint32_t kGone = ~0U;  // slot of a cancelled entry of the row
-  static constexpr Time kNear = kMillisecond;
-
-  static bool before(const Entry& a, const Entry& b) {
+  struct Waiting : Order {  // of a row
+    uint32_t kind;
+    EventTarget* target;  // null: cancelled
+    uint64_t argument;
+  };
+  static bool before(const Order& a, const Order& b) {
     if (a.at != b.at) return a.at < b.at;
     if (a.source != b.source) return a.source < b.source;
     return a.sequence < b.sequence;
   }
+
+  // Events that were scheduled in their order. None of them is farther away than `reach` when it comes: or
+  // nothing could join behind it.
+  struct Row {
+    Time reach;
+    std::vector<Waiting> ring{};  // its size is a power of 2
+    uint64_t mask = 0;
+    uint64_t begin = 0;  // numbers of its entries, first and behind the last
+    uint64_t end = 0;
+    Time first_at = kNever;  // of the first entry
+    Time last_at = 0;        // of the last one, and its source
+    uint32_t last_source = 0;
+
+    bool empty() const { return begin == end; }
+    Waiting& at(uint64_t number) { return ring[number & mask]; }
+    const Waiting& at(uint64_t number) const { return ring[number & mask]; }
+    const Waiting& front() const { return at(begin); }
+    bool takes(Time time, uint32_t source, Time now) const {
+      return time - now <= reach && end - begin <= mask &&
+             (last_at < time || (last_at == time && last_source <= source) || empty());
+    }
+    uint64_t join(const Waiting& event) {
+      if (empty()) first_at = event.at;
+      last_at = event.at;
+      last_source = event.source;
+      at(end) = event;
+      return end++;
+    }
+    void pop() {
+      do {
+        if (++begin == end) {
+          first_at = kNever;
+          return;
+        }
+      } while (front().target == nullptr);
+      first_at = front().at;
+    }
+    // Its order stays known when it is cancelled; only at the front it must not stand.
+    void cancel(uint64_t number) {
+      at(number).target = nullptr;
+      if (number == begin) pop();
+    }
+  };
+
+  // That with the next event; empty when both are.
+  const Row& first_row() const {
+    const Row& near = rows_[0];
+    const Row& far = rows_[1];
+    if (near.first_at != far.first_at) return near.first_at < far.first_at ? near : far;
+    return near.empty() || (!far.empty() && before(far.front(), near.front())) ? far : near;
+  }
+  bool in_heap(const Row& first) const {  // the next event is there, not in the row
+    return heap_first_at_ <= first.first_at && !heap_.empty() &&
+           (first.empty() || before(heap_.front(), first.front()));
+  }
+  static EventId row_id(EventId row, uint64_t number) { return kInRow | row << kRowShift | number; }
+  const Order* next() const;
+  bool run(Time end, bool all);
+  bool run_from_heap(Time end);
+  void reach(Time at, uint32_t source) {
+    reached_ = at == now_ ? std::max(reached_, source) : source;
+    now_ = at;
+  }
+  EventId schedule_behind(Time at, uint32_t source, EventTarget& target, uint32_t kind, uint64_t argument);
   void place(size_t position, const Entry& entry);
   void sift_up(size_t position, const Entry& entry);
   void sift_down(size_t position, const Entry& entry);
   void remove(size_t position);
-  Entry& row_at(uint32_t number) { return row_[number & (row_.size() - 1)]; }
-  const Entry& row_at(uint32_t number) const { return row_[number & (row_.size() - 1)]; }
-  bool joins_row(const Entry& entry) const {
-    return entry.at - now_ <= kNear && row_end_ - row_begin_ < row_.size() &&
-           (row_begin_ == row_end_ || !before(entry, row_at(row_end_ - 1)));
-  }
-  void remove_from_row(uint32_t number);
-  void release(uint32_t slot) {
-    ++slots_[slot].generation;
-    free_slots_.push_back(slot);
-  }
+  void heap_changed() { heap_first_at_ = heap_.empty() ? kNever : heap_.front().at; }
 
   Time now_ = 0;
   uint32_t reached_ = 0;  // the highest source that had an event at now()
+  Time run_end_ = -1;     // of run_until()
   uint64_t next_sequence_ = 0;
   // What is scheduled in its order anyway, as the ticks of all stations are, stands in a row; the heap has
-  // the rest. Far events stay out of the row, or nothing could join behind them.
-  std::vector<Entry> row_;  // a ring, its size a power of 2
-  uint32_t row_begin_ = 0;  // numbers of its entries, first and behind the last
-  uint32_t row_end_ = 0;
-  uint32_t row_count_ = 0;  // of them not cancelled
+  // the rest. One row is for ticks of a millisecond, one for the telegrams of stations that sleep.
+  std::array<Row, 2> rows_{{{kMillisecond}, {10 * kMillisecond}}};
   std::vector<Entry> heap_;
+  Time heap_first_at_ = kNever;
   std::vector<Slot> slots_;
   std::vector<uint32_t> free_slots_;
 };

@@ -38,8 +38,8 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
 
   // Is told before a bus or a program touches the drive. It must outlive this.
   void use(Sleeper& sleeper) { sleeper_ = &sleeper; }
-  void make_up() {
-    if (sleeper_ != nullptr) sleeper_->make_up();
+  void make_up_variables() {
+    if (sleeper_ != nullptr) sleeper_->make_up_variables();
   }
   void wake() {
     if (sleeper_ != nullptr) sleeper_->wake();
@@ -76,7 +76,8 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
   // Why the last access was refused, empty when it was not. Reading it clears it.
   std::string take_reason() { return std::exchange(reason_, {}); }
 
-  bool has_news() const { return !reason_.empty() || !obstacles_.empty(); }
+  // One of the two has something.
+  bool has_reasons() const { return !reason_.empty() || !obstacles_.empty(); }
 
   // What keeps process data that came over a bus from acting, each told once.
   std::vector<std::string> take_obstacles() { return std::exchange(obstacles_, {}); }

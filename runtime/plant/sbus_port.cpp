@@ -104,22 +104,30 @@ Time SbusPort::next_due(Time now) const {
 }
 
 void SbusPort::on_frame(Time now, const Frame& frame) {
-  if (master_.on_frame(now, frame)) return;
-  std::string why;
-  const bool received = machine_ != nullptr && objects_.expects(frame) && receive(frame, why);
-  if (!why.empty()) note(now, Weight::Warning, std::move(why));
+  if (master_.busy() && master_.on_frame(now, frame)) return;
+  const bool received = machine_ != nullptr && receive(now, frame);
   // A receive object with the sync identifier takes nothing away from the drive.
   if (!received || slave_.is_sync(frame)) slave_.on_frame(now, frame);
+  if (drive_.has_reasons()) tell_reasons(now);
+}
+
+void SbusPort::tell_reasons(Time now) {
   if (std::string refused = drive_.take_reason(); !refused.empty())
     note(now, Weight::Why, "refused " + std::move(refused));
   for (std::string& obstacle : drive_.take_obstacles()) note(now, Weight::Why, std::move(obstacle));
 }
 
-// A frame that brings the values that are there already wakes nobody.
-bool SbusPort::receive(const Frame& frame, std::string& why) {
-  drive_.make_up();
-  if (!objects_.unchanged(frame, machine_->variables())) drive_.wake();
-  return objects_.on_frame(frame, machine_->variables(), why);
+// A receive object takes the frame. One that brings the values that are there already wakes nobody.
+bool SbusPort::receive(Time now, const Frame& frame) {
+  const auto receiver = objects_.receiver(frame);
+  if (!receiver) return false;
+  drive_.make_up_variables();
+  if (objects_.has_taken(*receiver, frame, machine_->variables())) return true;
+  drive_.wake();
+  std::string why;
+  const bool taken = objects_.on_frame(frame, machine_->variables(), why);
+  if (!why.empty()) note(now, Weight::Warning, std::move(why));
+  return taken;
 }
 
 void SbusPort::on_sent(Time now, const Frame& /*frame*/, uint64_t tag) {

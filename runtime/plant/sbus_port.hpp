@@ -40,6 +40,7 @@ class SbusPort final : private CanNode, private SlaveObserver {
   void power_off();               // the line is told first, as frames that were waiting come back
   void tick(Time now);            // once a millisecond, after the tasks
   Time next_due(Time now) const;  // the first tick behind `now` that does something; kNever for none
+  bool sends_more_than_variables() const { return group_master_.active(); }
 
   NodeId node() const { return sender_.node(); }
   CanLine& line() const { return line_; }
@@ -55,7 +56,8 @@ class SbusPort final : private CanNode, private SlaveObserver {
   static NodeId connect(CanLine& line, std::optional<NodeId> node, std::string_view station, uint32_t baud,
                         CanNode& port);
   void on_frame(Time now, const Frame& frame) override;
-  bool receive(const Frame& frame, std::string& why);
+  bool receive(Time now, const Frame& frame);
+  void tell_reasons(Time now);
   void on_sent(Time now, const Frame& frame, uint64_t tag) override;
   void on_not_sent(Time now, const Frame& frame, uint64_t tag, NotSent reason) override;
   void on_bus_off(Time now) override;

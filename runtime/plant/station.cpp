@@ -204,7 +204,7 @@ void Station::show_positioning(Time now) {
 void Station::end_program(Time now) {
   const std::span<int32_t> h = machine_->variables();
   const bool fresh_fault = machine_->fault().number != 0 && !fault_reported_;
-  on_course_ = on_course_ && noted_.same(h) && !drive_.has_news() && !fresh_fault;
+  on_course_ = on_course_ && noted_.same(h) && !drive_.has_reasons() && !fresh_fault;
   if (on_course_) return;
   mirrored_->take(h);
   take_program_orders(h, drive_.state());

@@ -158,7 +158,8 @@ class Station final : private EventTarget, private Sleeper {
   static constexpr uint32_t kTick = 0;  // the only kind of event a station schedules
 
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
-  void make_up() override;
+  void make_up();
+  void make_up_variables() override;
   void wake() override;
   // Left-out ticks are made up for by whoever looks first: nobody can tell.
   void look() const { const_cast<Station*>(this)->make_up(); }
@@ -246,6 +247,7 @@ class Station final : private EventTarget, private Sleeper {
   uint32_t trial_in_ = 0;  // ticks until the next one
   uint32_t pause_ = 1;
   uint64_t idle_ticks_ = 0;  // of the program, from the tick of the trial on
+  bool steady_ = true;       // it changes no variable then, not even for a moment
   Time next_tick_ = 0;       // the first that was not made up for
   Time sleeps_until_ = 0;    // the tick that is executed again
   struct {

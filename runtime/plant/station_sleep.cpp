@@ -29,7 +29,9 @@ void Station::begin_trial() {
 void Station::try_program() {
   if (!trial_) return;
   const std::span<const int32_t> h = machine_->variables();
-  idle_ticks_ = std::equal(h.begin(), h.end(), rest_.h.begin()) ? machine_->idle_ticks(rates().commands) : 0;
+  idle_ticks_ = std::equal(h.begin(), h.end(), rest_.h.begin())
+                    ? machine_->idle_ticks(rates().commands, 256, &steady_)
+                    : 0;
   trial_ = idle_ticks_ != 0;
   if (!trial_) hesitate(kLongestPauseOfProgram);
 }
@@ -82,11 +84,16 @@ Time Station::next_event(Time now) const {
 
 // The event of a station that sleeps: a telegram is due, or the sleep is over.
 bool Station::sleeps_through(Time now) {
-  make_up_to(std::min(now, sleeps_until_ - kMillisecond));
-  asleep_ = now < sleeps_until_;
-  if (!asleep_) return false;
-  for (const auto& port : sbus_)
-    if (port) port->tick(now);
+  if (now >= sleeps_until_) {
+    make_up_to(sleeps_until_ - kMillisecond);
+    asleep_ = false;
+    return false;
+  }
+  for (const auto& port : sbus_) {
+    if (!port) continue;
+    if (!steady_ || port->sends_more_than_variables()) make_up_to(now);
+    port->tick(now);
+  }
   if (asleep_) tick_ = queue_.schedule(next_event(now), source_, *this, kTick);
   return true;
 }
@@ -108,6 +115,10 @@ void Station::make_up() {
   Time last = now / kMillisecond * kMillisecond;
   if (last == now && !queue_.has_passed(source_)) last -= kMillisecond;
   make_up_to(std::min(last, sleeps_until_ - kMillisecond));
+}
+
+void Station::make_up_variables() {
+  if (!steady_) make_up();
 }
 
 void Station::wake() {

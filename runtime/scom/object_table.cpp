@@ -195,7 +195,7 @@ bool ObjectTable::take(size_t receiver, const Frame& frame, std::span<int32_t> h
 bool ObjectTable::has_taken(size_t receiver, const Frame& frame, std::span<const int32_t> h) const {
   const Receive& object = state_.receive[receiver];
   const auto pair = frame_variables(frame, object.format);
-  if (!pair) return true;
+  if (!pair) return false;
   if (object.format.variables() > 0 && h[object.data] != pair->low) return false;
   if (object.format.variables() > 1 && h[object.data + 1] != pair->high) return false;
   return unit_->generation != Generation::B ||

@@ -13,6 +13,7 @@ VariableObjects::VariableObjects(const stdlib::UnitType& unit, uint32_t baud, Fr
 bool VariableObjects::define(ObjectKind kind, uint32_t variable, std::span<int32_t> h, std::string& why) {
   const ObjectRequest request = table_.request(kind, variable, h);
   const ObjectVerdict verdict = table_.define(request, h);
+  due_ = kUnknown;
   if (verdict == ObjectVerdict::NoVariables) return false;
   ObjectDefinition definition{kind, variable,      request.object, variable_format(request.format),
                               0,    request.cycle, request.offset, verdict == ObjectVerdict::Accepted,
@@ -95,9 +96,13 @@ void VariableObjects::remember(const ObjectDefinition& definition) {
   definitions_.push_back(definition);
 }
 
-void VariableObjects::start(int64_t tick) { table_.start(tick); }
+void VariableObjects::start(int64_t tick) {
+  table_.start(tick);
+  due_ = kUnknown;
+}
 
 void VariableObjects::pause() {
+  due_ = kUnknown;
   for (uint32_t n = 0; n < table_.state().cyclic_count; ++n) sender_.withdraw(first_tag_ + n);
   table_.pause();
 }
@@ -107,12 +112,13 @@ void VariableObjects::stop() {
   table_.stop();
 }
 
-void VariableObjects::tick(int64_t tick, std::span<const int32_t> h) {
+void VariableObjects::send_due(int64_t tick, std::span<const int32_t> h) {
   table_.due(tick, h, [this](uint32_t tag, const Frame& frame) {
     // A telegram that is still waiting for the bus is overtaken by the new values.
     sender_.withdraw(first_tag_ + tag);
     sender_.send(frame, first_tag_ + tag);
   });
+  due_ = table_.next_due(tick);
 }
 
 bool VariableObjects::on_frame(const Frame& frame, std::span<int32_t> h, std::string& why) const {

@@ -51,15 +51,17 @@ class VariableObjects {
   const std::vector<ObjectDefinition>& definitions() const { return definitions_; }
 
   // Queues the cyclic objects due in this millisecond with the present values of their variables.
-  void tick(int64_t tick, std::span<const int32_t> h);
+  void tick(int64_t tick, std::span<const int32_t> h) {
+    if (tick >= due_) send_due(tick, h);
+  }
 
   // The first millisecond behind `tick` in which tick() sends something; INT64_MAX for none.
-  int64_t next_due(int64_t tick) const { return table_.next_due(tick); }
+  int64_t next_due(int64_t tick) const { return tick < due_ ? due_ : table_.next_due(tick); }
 
-  // A receive object is for this frame; `unchanged` when its variables have the frame's values already.
-  bool expects(const Frame& frame) const { return table_.receiver(frame).has_value(); }
-  bool unchanged(const Frame& frame, std::span<const int32_t> h) const {
-    return table_.has_taken(*table_.receiver(frame), frame, h);
+  // The receive object a frame is for, and whether its variables have the frame's values already.
+  std::optional<size_t> receiver(const Frame& frame) const { return table_.receiver(frame); }
+  bool has_taken(size_t receiver, const Frame& frame, std::span<const int32_t> h) const {
+    return table_.has_taken(receiver, frame, h);
   }
   // True when a receive object took the frame; `why` says why one did not.
   bool on_frame(const Frame& frame, std::span<int32_t> h, std::string& why) const;
@@ -69,6 +71,9 @@ class VariableObjects {
   void on_not_sent(uint64_t tag, std::span<int32_t> h);
 
  private:
+  static constexpr int64_t kUnknown = INT64_MIN;
+
+  void send_due(int64_t tick, std::span<const int32_t> h);
   void remember(const ObjectDefinition& definition);
   std::string reason(const ObjectRequest& request, ObjectVerdict verdict) const;
 
@@ -76,6 +81,7 @@ class VariableObjects {
   FrameSender& sender_;
   uint64_t first_tag_;
   ObjectTable table_;
+  int64_t due_ = kUnknown;  // before this millisecond nothing is
   std::vector<ObjectDefinition> definitions_;
 };
 

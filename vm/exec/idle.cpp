@@ -114,7 +114,7 @@ bool Machine::interrupts_rest() const {
   return true;
 }
 
-uint64_t Machine::idle_ticks(const std::array<uint32_t, kTasks>& budgets, uint32_t longest) {
+uint64_t Machine::idle_ticks(const std::array<uint32_t, kTasks>& budgets, uint32_t longest, bool* steady) {
   if (!interrupts_rest()) return 0;
   uint64_t ticks = kIdleForever;
   for (const TaskContext& t : contexts_)
@@ -133,6 +133,7 @@ uint64_t Machine::idle_ticks(const std::array<uint32_t, kTasks>& budgets, uint32
     changed |= spin.changed;
     used |= spin.used;
   }
+  if (steady != nullptr) *steady = changed.none();
   return ticks;
 }
 

@@ -81,7 +81,9 @@ class Machine {
   // nobody else writes variables, resumes, raises events or starts and stops tasks: tasks wait, have ended,
   // or go round in a loop of at most `longest` commands that leaves all variables as they were and changes
   // none that others look at. kIdleForever: no end to it. Costs up to `longest` commands for each task.
-  uint64_t idle_ticks(const std::array<uint32_t, kTasks>& budgets, uint32_t longest = 256);
+  // `steady` becomes whether no variable changes even for a moment.
+  uint64_t idle_ticks(const std::array<uint32_t, kTasks>& budgets, uint32_t longest = 256,
+                      bool* steady = nullptr);
 
   // What `ticks` of tick() and run() would have done, not more than idle_ticks() has promised. Returns the
   // commands they would have executed.

@@ -2,6 +2,7 @@
 // planning. All lengths count the 3 bits of intermission, as bus load and the rule of _SBusCommDef do.
 #pragma once
 
+#include <array>
 #include <bitset>
 #include <cstdint>
 
@@ -22,6 +23,24 @@ WireBits wire_bits(const Frame& frame);
 
 // Exact length with stuff bits.
 uint32_t frame_bits(const Frame& frame);
+
+// The same for frames that come again: of each identifier the last one is remembered, as cyclic telegrams
+// often bring the same values.
+class FrameLengths {
+ public:
+  uint32_t of(const Frame& frame) {
+    Known& known = known_[frame.id % known_.size()];
+    if (known.bits == 0 || known.frame != frame) known = {frame, frame_bits(frame)};
+    return known.bits;
+  }
+
+ private:
+  struct Known {
+    Frame frame;
+    uint32_t bits = 0;
+  };
+  std::array<Known, 256> known_{};
+};
 
 // Without any stuff bit: 47 + 8 n, extended 67 + 8 n.
 constexpr uint32_t unstuffed_bits(uint32_t length, bool extended) {

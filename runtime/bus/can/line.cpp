@@ -5,7 +5,6 @@
 #include <cassert>
 #include <utility>
 
-#include "runtime/bus/can/frame_bits.hpp"
 #include "runtime/bus/can/line_event_kinds.hpp"
 
 namespace ipos::runtime {
@@ -13,6 +12,7 @@ namespace {
 
 constexpr uint32_t kSuspendBits = 8;     // pause of an error-passive sender after a transmission
 constexpr uint32_t kRecessiveTail = 11;  // every transfer ends with delimiter bits and intermission
+constexpr uint64_t kNoBit = ~uint64_t{0};
 
 }  // namespace
 
@@ -38,8 +38,7 @@ NodeId CanLine::attach(std::string name, uint32_t baud, CanNode& node) {
   added.node = &node;
   nodes_.push_back(std::move(added));
   nodes_.back().queue.reserve(kSendQueueLimit);
-  contenders_.emplace_back();
-  waiting_.grow(nodes_.size());
+  contenders_.grow(nodes_.size());
   winners_.reserve(nodes_.size());
   filter_.grow(nodes_.size());
   erring_.grow(nodes_.size());
@@ -64,10 +63,13 @@ SendStatus CanLine::send(NodeId node, const Frame& frame, uint64_t tag) {
   if (!is_active(node)) return SendStatus::NotActive;
   if (n.queue.size() >= kSendQueueLimit) return SendStatus::QueueFull;
   const uint64_t ready = static_cast<uint64_t>(queue_.now() / bit_time_) + 1;
-  const uint32_t key = arbitration_key(frame);
-  const auto place = std::upper_bound(n.queue.begin(), n.queue.end(), key,
-                                      [](uint32_t wanted, const Pending& p) { return wanted < p.key; });
-  n.queue.insert(place, {canonical(frame), tag, ready, key});
+  const Pending pending{canonical(frame), tag, ready, arbitration_key(frame)};
+  if (n.queue.empty() || n.queue.back().key <= pending.key)
+    n.queue.push_back(pending);
+  else
+    n.queue.insert(std::upper_bound(n.queue.begin(), n.queue.end(), pending.key,
+                                    [](uint32_t wanted, const Pending& p) { return wanted < p.key; }),
+                   pending);
   queue_changed(node);
   const Segment& segment = segments_[n.segment];
   const bool in_time = segment.start_event != kNoEvent &&
@@ -96,41 +98,43 @@ const CanLine::Pending* CanLine::first_ready(const Node& node, uint64_t bit) {
 }
 
 uint64_t CanLine::next_ready(const Node& node) const {
-  uint64_t bit = ~uint64_t{0};
+  uint64_t bit = kNoBit;
   for (const Pending& pending : node.queue) bit = std::min(bit, pending.ready_bit);
   return node.queue.empty() ? bit : std::max(bit, node.suspended_until);
 }
 
-// Queue or pause of the node are other ones, or its segment.
+// Queue or pause of the node are other ones.
 void CanLine::queue_changed(NodeId id) {
   const Node& node = nodes_[id];
-  waiting_.put(id, !node.queue.empty());
-  Contender& contender = contenders_[id];
-  contender.segment = node.segment;
-  contender.ready = next_ready(node);
-  if (node.queue.empty()) return;
-  contender.first_ready = std::max(node.queue.front().ready_bit, node.suspended_until);
-  contender.key = node.queue.front().key;
+  if (node.queue.empty()) return contenders_.remove(id);
+  const Pending& first = node.queue.front();
+  contenders_.put(id, {next_ready(node), std::max(first.ready_bit, node.suspended_until), first.key});
 }
 
 void CanLine::schedule_start() {
   for (uint32_t segment = 0; segment < segments_.size(); ++segment) schedule_start(segment);
 }
 
-// Keeps the start event at the first bit at which somebody can send.
+// The first bit at which somebody can send; kNoBit: nobody.
+uint64_t CanLine::next_start(uint32_t number) const {
+  if (stuck_ != 0 || rewire_ || contenders_.empty()) return kNoBit;
+  const uint64_t free_bit = segments_[number].free_bit;
+  if (segments_.size() == 1 && contenders_.all_ready(free_bit)) return free_bit;
+  uint64_t bit = kNoBit;
+  contenders_.each([&](NodeId id) {
+    if (nodes_[id].segment == number) bit = std::min(bit, contenders_[id].ready);
+  });
+  return bit == kNoBit ? bit : std::max(bit, free_bit);
+}
+
+// Keeps the start event at that bit.
 void CanLine::schedule_start(uint32_t number) {
   Segment& segment = segments_[number];
   if (segment.busy) return;
-  uint64_t bit = ~uint64_t{0};
-  if (stuck_ == 0 && !rewire_)
-    waiting_.each([&](NodeId id) {
-      const Contender& contender = contenders_[id];
-      if (contender.segment == number) bit = std::min(bit, contender.ready);
-    });
-  if (bit != ~uint64_t{0}) bit = std::max(bit, segment.free_bit);
+  const uint64_t bit = next_start(number);
   if (segment.start_event != kNoEvent && segment.start_bit == bit) return;
   queue_.cancel(std::exchange(segment.start_event, kNoEvent));
-  if (bit == ~uint64_t{0}) return;
+  if (bit == kNoBit) return;
   segment.start_bit = bit;
   segment.start_event =
       queue_.schedule(static_cast<Time>(bit) * bit_time_, source_, *this, line_event::kStart, number);
@@ -140,12 +144,8 @@ void CanLine::schedule_start(uint32_t number) {
 
 void CanLine::on_event(Time now, uint32_t kind, uint64_t argument) {
   switch (kind) {
-    case line_event::kStart: {
-      const auto segment = static_cast<uint32_t>(argument);
-      segments_[segment].start_event = kNoEvent;
-      return begin_transfer(segment, segments_[segment].start_bit);
-    }
-    case line_event::kEnd: return end_transfer(now, static_cast<uint32_t>(argument));
+    case line_event::kStart: return begin_and_end(static_cast<uint32_t>(argument), true);
+    case line_event::kEnd: return begin_and_end(static_cast<uint32_t>(argument), false);
     case line_event::kFaultBegins: return switch_fault(now, argument, true);
     case line_event::kFaultEnds: return switch_fault(now, argument, false);
     case line_event::kLate: return deliver_late(now, argument);
@@ -153,34 +153,62 @@ void CanLine::on_event(Time now, uint32_t kind, uint64_t argument) {
   }
 }
 
-void CanLine::begin_transfer(uint32_t number, uint64_t bit) {
+// One transfer after the other without the queue, as long as nothing happens in between.
+void CanLine::begin_and_end(uint32_t number, bool begins) {
+  for (;; begins = !begins) {
+    Segment& segment = segments_[number];
+    uint64_t bit = segment.start_bit;
+    if (begins) {
+      segment.start_event = kNoEvent;
+      if (!begin_transfer(number, bit)) return schedule_start(number);
+      bit += segment.transfer.end;
+      if (queue_.advance(static_cast<Time>(bit) * bit_time_, source_)) continue;
+      queue_.schedule(static_cast<Time>(bit) * bit_time_, source_, *this, line_event::kEnd, number);
+      return;
+    }
+    end_transfer(queue_.now(), number);
+    if (segments_.size() != 1 || segments_[0].start_event != kNoEvent) return schedule_start();
+    bit = next_start(0);
+    if (bit == kNoBit) return;
+    if (!queue_.advance(static_cast<Time>(bit) * bit_time_, source_)) return schedule_start(0);
+    number = 0;
+    segments_[0].start_bit = bit;
+  }
+}
+
+// False: nobody sends.
+bool CanLine::begin_transfer(uint32_t number, uint64_t bit) {
   Segment& segment = segments_[number];
   Transfer& transfer = segment.transfer;
-  uint32_t lowest = ~0U;
-  waiting_.each([&](NodeId id) {
-    const Contender& contender = contenders_[id];
-    if (contender.segment != number || contender.ready > bit) return;
-    const uint32_t key = contender.first_ready <= bit ? contender.key : first_ready(nodes_[id], bit)->key;
-    if (key > lowest) return;
-    if (key < lowest) winners_.clear();
-    lowest = key;
-    winners_.push_back(id);
-  });
   transfer.start_bit = bit;
   transfer.senders.clear();
   transfer.fault = {};
-  for (const NodeId id : winners_) {
+  const auto send = [&](NodeId id) {
+    if (!is_active(id)) return;
     Node& node = nodes_[id];
-    if (!is_active(id)) continue;
-    const Pending* pending = first_ready(node, bit);
-    node.queue[static_cast<size_t>(pending - node.queue.data())].on_wire = true;
-    transfer.senders.push_back(
-        {id, pending->frame, pending->tag, node.counters.state() == ErrorState::Active});
+    Pending& pending = node.queue[static_cast<size_t>(first_ready(node, bit) - node.queue.data())];
+    pending.on_wire = true;
+    transfer.senders.push_back({id, pending.frame, pending.tag, node.counters.state() == ErrorState::Active});
+  };
+  if (segments_.size() == 1 && contenders_.all_ready(bit) && !contenders_.empty()) {
+    contenders_.each_first(send);
+  } else {
+    uint32_t lowest = ~0U;
+    contenders_.each([&](NodeId id) {
+      const Contender& contender = contenders_[id];
+      if (nodes_[id].segment != number || contender.ready > bit) return;
+      const uint32_t key = contender.first_ready <= bit ? contender.key : first_ready(nodes_[id], bit)->key;
+      if (key > lowest) return;
+      if (key < lowest) winners_.clear();
+      lowest = key;
+      winners_.push_back(id);
+    });
+    for (const NodeId id : winners_) send(id);
+    winners_.clear();
   }
-  winners_.clear();
-  if (transfer.senders.empty()) return schedule_start(number);
+  if (transfer.senders.empty()) return false;
   pause_recovery(number, bit);
-  transfer.fault = faults_.strike(queue_.now(), transfer.senders.front().frame.id);
+  if (!faults_.empty()) transfer.fault = faults_.strike(queue_.now(), transfer.senders.front().frame.id);
   Listeners listeners;
   for (NodeId id = 0; id < nodes_.size(); ++id) {
     if (listeners.error_active && !transfer.fault.kind) break;  // no other listener makes a difference
@@ -195,10 +223,9 @@ void CanLine::begin_transfer(uint32_t number, uint64_t bit) {
       listeners.others = true;
     }
   }
-  resolve(transfer, listeners, shorts_ > 0);
+  resolve(transfer, listeners, lengths_, shorts_ > 0);
   segment.busy = true;
-  queue_.schedule(static_cast<Time>(bit + transfer.end) * bit_time_, source_, *this, line_event::kEnd,
-                  number);
+  return true;
 }
 
 void CanLine::end_transfer(Time now, uint32_t number) {
@@ -242,19 +269,28 @@ void CanLine::end_transfer(Time now, uint32_t number) {
     }
   }
   if (rewire_) rebuild_segments();
-  schedule_start();
 }
 
 // To listeners without a receive error that do not want it, a good frame is nothing at all.
 void CanLine::deliver_clean(Time now, const Segment& segment) {
   const Transfer& transfer = segment.transfer;
   const auto number = static_cast<uint32_t>(&segment - segments_.data());
-  const std::span<const uint64_t> takers = filter_.takers(transfer.winner().frame.id);
+  const Frame& frame = transfer.winner().frame;
+  const std::span<const uint64_t> takers = filter_.takers(frame.id);
   const auto visit = [&](NodeId id) {
     if (!transfer.sent_by(id) && nodes_[id].segment == number && is_active(id)) deliver(now, segment, id);
     erring_.put(id, nodes_[id].counters.receive != 0);
   };
-  for (size_t n = 0; n < takers.size(); ++n) NodeSet::each_bit(takers[n] | erring_.words()[n], n, visit);
+  const auto hand_over = [&](NodeId id) {  // its counter stays at 0
+    const Node& node = nodes_[id];
+    if (!transfer.sent_by(id) && node.segment == number && is_active(id)) node.node->on_frame(now, frame);
+  };
+  for (size_t n = 0; n < takers.size(); ++n) {
+    if (erring_.words()[n] != 0)
+      NodeSet::each_bit(takers[n] | erring_.words()[n], n, visit);
+    else
+      NodeSet::each_bit(takers[n], n, hand_over);
+  }
 }
 
 // What a transfer is to one listener.

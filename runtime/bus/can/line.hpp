@@ -14,7 +14,9 @@
 #include <string>
 #include <vector>
 
+#include "runtime/bus/can/contenders.hpp"
 #include "runtime/bus/can/error_counters.hpp"
+#include "runtime/bus/can/frame_bits.hpp"
 #include "runtime/bus/can/line_fault.hpp"
 #include "runtime/bus/can/node.hpp"
 #include "runtime/bus/can/node_set.hpp"
@@ -113,11 +115,13 @@ class CanLine final : private EventTarget {
 
   // line.cpp: frames
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
-  void begin_transfer(uint32_t segment, uint64_t bit);
+  void begin_and_end(uint32_t segment, bool begins);
+  bool begin_transfer(uint32_t segment, uint64_t bit);
   void end_transfer(Time now, uint32_t segment);
   void deliver(Time now, const Segment& segment, NodeId listener);
   void settle_sender(Time now, const Segment& segment, const Transfer::Sender& sender);
   void count_error_state(Time now, NodeId node, ErrorState before);
+  uint64_t next_start(uint32_t segment) const;
   void schedule_start();
   void schedule_start(uint32_t segment);
   static const Pending* first_ready(const Node& node, uint64_t bit);
@@ -145,21 +149,14 @@ class CanLine final : private EventTarget {
   uint32_t baud_;
   Time bit_time_;
   std::vector<Node> nodes_;
-  // What every arbitration asks, kept together; queue_changed() keeps it up to date.
-  struct Contender {
-    uint64_t ready = ~uint64_t{0};  // can send from this bit on
-    uint64_t first_ready = 0;       // the first of its queue can
-    uint32_t key = 0;               // of that one
-    uint32_t segment = 0;
-  };
-  std::vector<Contender> contenders_;
-  NodeSet waiting_;              // have a queue
+  Contenders contenders_;        // queue_changed() keeps them up to date
   std::vector<NodeId> winners_;  // of an arbitration
   AcceptanceFilter filter_;
   NodeSet erring_;           // receive counter not 0
   bool recovering_ = false;  // some node may be
   std::vector<CanObserver*> observers_;
   std::vector<Segment> segments_{1};
+  FrameLengths lengths_;
 
   LineFaults faults_;
   std::vector<NodeId> cuts_;  // behind these nodes

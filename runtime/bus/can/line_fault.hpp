@@ -64,6 +64,7 @@ class LineFaults {
 
   // Of several that strike the same frame the first one planted counts. Repetitions are frames of their own.
   FrameFault strike(Time now, uint32_t id);
+  bool empty() const { return faults_.empty(); }
 
  private:
   struct Planted {

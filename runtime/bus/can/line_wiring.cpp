@@ -99,7 +99,6 @@ void CanLine::rebuild_segments() {
   for (NodeId id = 0; id < nodes_.size(); ++id)
     nodes_[id].segment = static_cast<uint32_t>(
         std::count_if(cuts_.begin(), cuts_.end(), [id](NodeId cut) { return cut < id; }));
-  for (NodeId id = 0; id < nodes_.size(); ++id) queue_changed(id);
 }
 
 void CanLine::deliver_late(Time now, size_t number) {

@@ -5,7 +5,6 @@
 #include <cassert>
 
 #include "runtime/bus/can/bit_error.hpp"
-#include "runtime/bus/can/frame_bits.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -99,18 +98,13 @@ void repeat(Transfer& transfer, const WireBits& bits) {
 
 }  // namespace
 
-const Transfer::Sender& Transfer::winner() const {
-  const auto found = std::find_if(senders.begin(), senders.end(), [](const Sender& s) { return !s.lost; });
-  return found == senders.end() ? senders.front() : *found;
-}
-
-void resolve(Transfer& transfer, Listeners listeners, bool short_circuit) {
+void resolve(Transfer& transfer, Listeners listeners, FrameLengths& lengths, bool short_circuit) {
   assert(!transfer.senders.empty());
   if (short_circuit)  // the start of frame already fails, and the flag is not seen
     return end_with_error(transfer, Transfer::Outcome::NoLevel, 1 + kErrorFlagBits);
   if (transfer.senders.size() == 1 && listeners.any && !transfer.fault.kind) {
     transfer.outcome = Transfer::Outcome::Delivered;
-    transfer.bits = frame_bits(transfer.senders.front().frame);
+    transfer.bits = lengths.of(transfer.senders.front().frame);
     transfer.end = transfer.bits - kIntermissionBits;
     return;
   }

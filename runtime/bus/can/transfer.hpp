@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runtime/bus/can/frame.hpp"
+#include "runtime/bus/can/frame_bits.hpp"
 #include "runtime/bus/can/line_fault.hpp"
 #include "runtime/bus/can/node.hpp"
 
@@ -40,7 +41,11 @@ struct Transfer {
       if (sender.node == node) return true;
     return false;
   }
-  const Sender& winner() const;  // the first sender whose frame the line carries
+  const Sender& winner() const {  // the first sender whose frame the line carries
+    for (const Sender& sender : senders)
+      if (!sender.lost) return sender;
+    return senders.front();
+  }
   bool received() const { return outcome == Outcome::Delivered || outcome == Outcome::Repeated; }
 };
 
@@ -55,6 +60,6 @@ struct Listeners {
 };
 
 // Fills outcome, lengths and losers from the senders. `short_circuit`: the line carries no dominant level.
-void resolve(Transfer& transfer, Listeners listeners, bool short_circuit = false);
+void resolve(Transfer& transfer, Listeners listeners, FrameLengths& lengths, bool short_circuit = false);
 
 }  // namespace ipos::runtime

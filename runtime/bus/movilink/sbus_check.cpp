@@ -51,12 +51,13 @@ void SbusCheck::on_frame(const CanLine& line, const FrameRecord& record) {
 }
 
 void SbusCheck::check_sender(const CanLine& line, const FrameRecord& record) {
-  const auto [entry, is_new] = senders_.emplace(record.frame.id, record.sender);
-  if (is_new || entry->second == record.sender) return;
+  NodeId& first = senders_[record.frame.id];
+  if (first == kNoNode) first = record.sender;
+  if (first == record.sender) return;
   if (!told_.emplace(record.frame.id, record.sender).second) return;
-  tell(record.end, fmt::format("{}: identifier {} is sent by {} and by {}; an identifier may have one sender",
-                               line.name(), record.frame.id, line.node_name(entry->second),
-                               line.node_name(record.sender)));
+  tell(record.end,
+       fmt::format("{}: identifier {} is sent by {} and by {}; an identifier may have one sender",
+                   line.name(), record.frame.id, line.node_name(first), line.node_name(record.sender)));
 }
 
 void SbusCheck::check_address(const CanLine& line, const FrameRecord& record,

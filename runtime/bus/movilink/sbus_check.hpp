@@ -51,9 +51,10 @@ class SbusCheck final : public CanObserver {
 
   SbusCheckClient& client_;
   std::vector<Slave> slaves_;
-  std::vector<uint32_t> sync_ids_;              // of the slaves, each once
-  std::map<uint32_t, NodeId> senders_;          // the first one of each identifier
-  std::set<std::pair<uint32_t, NodeId>> told_;  // identifier and second sender
+  std::vector<uint32_t> sync_ids_;  // of the slaves, each once
+  std::vector<NodeId> senders_ =
+      std::vector<NodeId>(kStandardIdLimit, kNoNode);  // the first of each identifier
+  std::set<std::pair<uint32_t, NodeId>> told_;         // identifier and second sender
   std::set<std::pair<NodeId, NodeId>> told_masters_;
   std::vector<Exchange> open_;
   std::map<uint32_t, Time> syncs_;  // start of the last telegram, by identifier

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <random>
 #include <tuple>
 
@@ -89,7 +90,10 @@ TEST(EventQueue, SchedulesFromWithinAnEvent) {
   EXPECT_EQ(queue.pending(), 1U);
 }
 
-TEST(EventQueue, AgreesWithASortedListUnderRandomUse) {
+class EventQueueDistances : public testing::TestWithParam<std::array<Time, 3>> {};
+
+TEST_P(EventQueueDistances, AgreesWithASortedListUnderRandomUse) {
+  const auto [unit, far, tick] = GetParam();
   std::mt19937 random(1);
   EventQueue queue(4);
   Recorder recorder;
@@ -99,8 +103,10 @@ TEST(EventQueue, AgreesWithASortedListUnderRandomUse) {
   Time now = 0;
   for (int round = 0; round < 2000; ++round) {
     for (int i = 0; i < 10; ++i) {
-      const Time at = now + static_cast<Time>(random() % 50);
-      const uint32_t source = static_cast<uint32_t>(random() % 4);
+      const bool regular = random() % 2 == 0;  // in the order of their sources, as ticks are
+      const Time at =
+          now + (regular ? tick : static_cast<Time>(random() % static_cast<uint64_t>(far)) * unit);
+      const uint32_t source = regular ? static_cast<uint32_t>(i) : static_cast<uint32_t>(random() % 4);
       ids.emplace_back(queue.schedule(at, source, recorder, 0, number), number);
       model.emplace_back(at, source, number++);
     }
@@ -111,7 +117,7 @@ TEST(EventQueue, AgreesWithASortedListUnderRandomUse) {
       EXPECT_EQ(queue.cancel(id), found != model.end());
       if (found != model.end()) model.erase(found);
     }
-    now += static_cast<Time>(random() % 40);
+    now += static_cast<Time>(random() % 40) * unit;
     std::sort(model.begin(), model.end());
     const auto end =
         std::find_if(model.begin(), model.end(), [now](const auto& row) { return std::get<0>(row) > now; });
@@ -125,6 +131,78 @@ TEST(EventQueue, AgreesWithASortedListUnderRandomUse) {
     model.erase(model.begin(), end);
     ASSERT_EQ(queue.pending(), model.size());
   }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EventQueueDistances,
+                         testing::Values(std::array<Time, 3>{1, 50, 40},
+                                         std::array<Time, 3>{kMillisecond / 4, 40, kMillisecond},
+                                         std::array<Time, 3>{kMillisecond, 5, 10 * kMillisecond},
+                                         std::array<Time, 3>{kMillisecond, 100, 2 * kMillisecond}));
+
+TEST(EventQueue, CancelledTargetsAreGoneEverywhere) {
+  EventQueue queue;
+  Recorder recorder;
+  Recorder other;
+  for (const Time at : {Time{1}, Time{2}, kMillisecond, 10 * kMillisecond, kSecond, Time{3}}) {
+    queue.schedule(at, 0, other, 0);
+    queue.schedule(at, 0, recorder, 0);
+    queue.schedule(at, 1, other, 0);
+  }
+  queue.cancel_all(other);
+  EXPECT_EQ(queue.pending(), 6U);
+  EXPECT_EQ(queue.next_time(), 1);
+  queue.run_until(2 * kSecond);
+  EXPECT_EQ(recorder.calls.size(), 6U);
+  EXPECT_TRUE(other.calls.empty());
+}
+
+// One that goes on without the queue while it may.
+class Runner final : public EventTarget {
+ public:
+  explicit Runner(EventQueue& q) : queue(q) {}
+  void on_event(Time now, uint32_t, uint64_t) override {
+    do times.push_back(now);
+    while (queue.advance(now += 10, 5));
+    if (times.size() < 20) queue.schedule(now, 5, *this, 0);
+  }
+  EventQueue& queue;
+  std::vector<Time> times;
+};
+
+TEST(EventQueue, AdvancesToWhatIsNextAnyway) {
+  EventQueue queue;
+  Runner runner(queue);
+  Recorder recorder;
+  queue.schedule(0, 5, runner, 0);
+  for (const uint32_t source : {4U, 6U}) queue.schedule(30, source, recorder, source);
+  queue.run_until(25);  // no run goes farther than it was asked to
+  EXPECT_EQ(runner.times, (std::vector<Time>{0, 10, 20}));
+  EXPECT_EQ(queue.now(), 25);
+  EXPECT_EQ(queue.next_time(), 30);
+  EXPECT_TRUE(queue.step());
+  EXPECT_EQ(recorder.calls.size(), 1U);
+  EXPECT_TRUE(queue.step());  // a single step is no more than that
+  EXPECT_EQ(runner.times, (std::vector<Time>{0, 10, 20, 30}));
+  EXPECT_EQ(queue.now(), 30);
+  EXPECT_EQ(recorder.calls.size(), 1U);
+  EXPECT_TRUE(queue.has_passed(4));
+  EXPECT_FALSE(queue.has_passed(5));
+  queue.run_until(55);
+  EXPECT_EQ(recorder.calls.size(), 2U);
+  EXPECT_EQ(runner.times, (std::vector<Time>{0, 10, 20, 30, 40, 50}));
+  EXPECT_EQ(queue.now(), 55);
+}
+
+TEST(EventQueue, AnEventOfTheSameSourceComesFirst) {
+  EventQueue queue;
+  Runner runner(queue);
+  Recorder recorder;
+  queue.schedule(0, 5, runner, 0);
+  queue.schedule(10, 5, recorder, 0);
+  queue.run_until(0);
+  EXPECT_TRUE(queue.step());
+  EXPECT_EQ(recorder.calls.size(), 1U);
+  EXPECT_EQ(runner.times, std::vector<Time>{0});
 }
 
 }  // namespace

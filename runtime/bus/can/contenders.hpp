@@ -1,0 +1,98 @@
+// Who wants to send on a line: of each node with waiting frames what arbitration asks about it, ranked by the
+// arbitration field of its first frame. So the winner is found without a look at the others.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "runtime/bus/node_id.hpp"
+
+namespace ipos::runtime {
+
+struct Contender {
+  uint64_t ready = 0;        // can send from this bit on
+  uint64_t first_ready = 0;  // the first of its queue can
+  uint32_t key = 0;          // of that one; the lowest one wins
+};
+
+class Contenders {
+ public:
+  void grow(size_t nodes) {
+    rows_.resize(nodes);
+    ranks_.reserve(2 * nodes);
+  }
+
+  bool empty() const { return first_ == ranks_.size(); }
+  const Contender& operator[](NodeId node) const { return rows_[node]; }
+
+  void put(NodeId node, const Contender& contender) {
+    Row& row = rows_[node];
+    if (!row.waits || row.key != contender.key) {
+      if (row.waits) erase(rank(node, row.key));
+      insert(rank(node, contender.key));
+    }
+    row = {contender, true};
+    ready_by_ = std::max(ready_by_, contender.first_ready);
+  }
+  void remove(NodeId node) {
+    if (!rows_[node].waits) return;
+    rows_[node].waits = false;
+    erase(rank(node, rows_[node].key));
+  }
+
+  // At this bit each of them can send the first frame of its queue.
+  bool all_ready(uint64_t bit) const { return ready_by_ <= bit; }
+
+  // Those whose first frame has the lowest key, in order of attachment. There must be one.
+  template <typename Visit>
+  void each_first(Visit visit) const {
+    const uint64_t lowest = ranks_[first_] >> kKeyShift;
+    for (size_t n = first_; n < ranks_.size() && ranks_[n] >> kKeyShift == lowest; ++n)
+      visit(static_cast<NodeId>(ranks_[n]));
+  }
+  // All in order of attachment.
+  template <typename Visit>
+  void each(Visit visit) const {
+    for (NodeId node = 0; node < rows_.size(); ++node)
+      if (rows_[node].waits) visit(node);
+  }
+
+ private:
+  struct Row : Contender {
+    bool waits = false;
+  };
+  static constexpr int kKeyShift = 32;
+  static uint64_t rank(NodeId node, uint32_t key) { return uint64_t{key} << kKeyShift | node; }
+
+  void insert(uint64_t rank) {
+    if (ranks_.size() == ranks_.capacity()) {
+      ranks_.erase(ranks_.begin(), ranks_.begin() + static_cast<ptrdiff_t>(first_));
+      first_ = 0;
+    }
+    if (empty() || ranks_.back() < rank) return ranks_.push_back(rank);
+    if (first_ > 0 && rank < ranks_[first_])
+      ranks_[--first_] = rank;
+    else
+      ranks_.insert(place(rank), rank);
+  }
+  void erase(uint64_t rank) {
+    if (ranks_[first_] != rank) {
+      ranks_.erase(place(rank));
+    } else if (++first_ == ranks_.size()) {
+      ranks_.clear();
+      first_ = 0;
+    }
+  }
+  std::vector<uint64_t>::iterator place(uint64_t rank) {
+    return std::lower_bound(ranks_.begin() + static_cast<ptrdiff_t>(first_), ranks_.end(), rank);
+  }
+
+  std::vector<Row> rows_;
+  std::vector<uint64_t> ranks_;  // key and node, rising, from first_ on
+  size_t first_ = 0;
+  uint64_t ready_by_ = 0;  // the latest first_ready there was
+};
+
+}  // namespace ipos::runtime
