@@ -1,6 +1,6 @@
 // How many seconds of a plant one second of CPU time simulates: up to 64 MOVIDRIVE B on one SBus of 1 Mbit/s
-// near 70 % load, each with three busy tasks and a moving axis, or with programs that only wait. Counts
-// frames, commands and the memory taken from the heap once everything runs.
+// near 70 % load, each with three busy tasks and a moving axis, or with programs that only wait, executed as
+// `ipos run` does it. Counts frames, commands and the memory taken from the heap once everything runs.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -14,6 +14,7 @@
 #include "compiler/codegen/compile.hpp"
 #include "compiler/diag/render.hpp"
 #include "runtime/plant/plant.hpp"
+#include "tools/engine.hpp"
 
 namespace {
 size_t allocations = 0;
@@ -103,7 +104,7 @@ main()
 }
 )";
 
-std::unique_ptr<runtime::Plant> make(int drives, bool busy, bool bus) {
+std::unique_ptr<runtime::Plant> make(int drives, bool busy, bool bus, const runtime::Execution& execution) {
   std::string text = "[[bus]]\nname = \"sbus\"\nkind = \"can\"\nbaud = 1000000\n";
   std::vector<std::optional<vm::Image>> programs;
   for (int n = 0; n < drives; ++n) {
@@ -127,8 +128,8 @@ std::unique_ptr<runtime::Plant> make(int drives, bool busy, bool bus) {
   runtime::PlantFileResult file = runtime::read_plant_file(text);
   for (const auto& error : file.errors) fmt::print(stderr, "{}: {}\n", error.place.line, error.text);
   std::vector<runtime::PlantError> errors;
-  auto plant =
-      std::make_unique<runtime::Plant>(std::move(file.plant), std::move(programs), std::nullopt, errors);
+  auto plant = std::make_unique<runtime::Plant>(std::move(file.plant), std::move(programs), std::nullopt,
+                                                errors, execution);
   for (const auto& error : errors) fmt::print(stderr, "{}: {}\n", error.place.line, error.text);
   if (!errors.empty()) std::exit(1);
   return plant;
@@ -155,8 +156,8 @@ double cpu_seconds() {
   return static_cast<double>(used.tv_sec) + static_cast<double>(used.tv_nsec) * 1e-9;
 }
 
-void measure(const char* name, int drives, bool busy, bool bus, int seconds) {
-  const auto plant = make(drives, busy, bus);
+void measure(const char* name, int drives, bool busy, bool bus, int seconds, const std::string& engine = {}) {
+  const auto plant = make(drives, busy, bus, tools::execution_of(engine));
   Frames frames;
   plant->add_observer(frames);
   plant->run_until(runtime::kSecond);  // everything runs, no vector grows any more
@@ -178,12 +179,12 @@ void measure(const char* name, int drives, bool busy, bool bus, int seconds) {
 }  // namespace
 }  // namespace ipos
 
-// ipos_bench_plant [SECONDS]
+// ipos_bench_plant [SECONDS [DRIVES busy|idle [ENGINE]]]
 int main(int argc, char** argv) {
   const int seconds = argc > 1 ? std::atoi(argv[1]) : 10;
   if (argc > 2)
     return ipos::measure("profile", std::atoi(argv[2]), argc > 3 && argv[3] == std::string_view("busy"), true,
-                         seconds),
+                         seconds, argc > 4 ? argv[4] : ""),
            0;
   ipos::measure("busy, 70 % bus load", 64, true, true, seconds);
   ipos::measure("busy, no frames", 64, true, false, seconds);
