@@ -10,6 +10,7 @@
 #include <new>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "compiler/codegen/compile.hpp"
 #include "compiler/diag/render.hpp"
@@ -60,7 +61,8 @@ Objects()
 }}
 )";
 
-constexpr const char* kBusy = R"(
+// Tasks 2 and 3 of the busy programs.
+constexpr const char* kTasks = R"(
 Sequence()
 {
   while (1)
@@ -82,14 +84,37 @@ Filter()
   }
 }
 
-main()
+Start()
 {
   Objects();
   _SetTask2(T2_START, Sequence);
   _SetTask(T2_START, Filter);
+}
+)";
+
+constexpr const char* kTurning = R"(
+main()
+{
+  Start();
   while (1)
   {
     lTrLow = lTrLow + 1;
+  }
+}
+)";
+
+// Never at a constant speed for long.
+constexpr const char* kTravelling = R"(
+main()
+{
+  Start();
+  while (1)
+  {
+    lTrLow = lTrLow + 1;
+    if (H473 & 0x80000) {
+      if (H492 == 0) _GoAbs(GO_NOWAIT, 20000);
+      else _GoAbs(GO_NOWAIT, 0);
+    }
   }
 }
 )";
@@ -104,21 +129,32 @@ main()
 }
 )";
 
-std::unique_ptr<runtime::Plant> make(int drives, bool busy, bool bus, const runtime::Execution& execution) {
+struct Kind {
+  std::string_view name;
+  std::vector<const char*> program;
+  const char* settings;
+};
+#define ENABLED "[station.inputs]\nDI00 = 1\nDI01 = 1\nDI03 = 1\nDI04 = 1\n"
+const Kind kKinds[] = {{"busy", {kTasks, kTurning}, "P130 = 500\nP160 = 1000000\n" ENABLED},
+                       {"travel", {kTasks, kTravelling}, "P700 = 13\nP911 = 300\nP912 = 300\n" ENABLED},
+                       {"idle", {kIdle}, ""}};
+
+std::unique_ptr<runtime::Plant> make(const Kind& kind, int drives, bool bus,
+                                     const runtime::Execution& execution) {
   std::string text = "[[bus]]\nname = \"sbus\"\nkind = \"can\"\nbaud = 1000000\n";
   std::vector<std::optional<vm::Image>> programs;
   for (int n = 0; n < drives; ++n) {
     text += fmt::format(
         "[[station]]\nname = \"unit{0}\"\nunit = \"mdxb\"\nprogram = \"P.IPC\"\nsbus = \"sbus\"\n"
-        "[station.parameters]\nP881 = {1}\nP884 = 3\nP130 = 500\nP160 = 1000000\n{2}",
-        n, n, busy ? "[station.inputs]\nDI00 = 1\nDI01 = 1\nDI03 = 1\nDI04 = 1\n" : "");
-    const std::string objects =
-        bus ? fmt::format(fmt::runtime(kObjects), 1100 + n, 1100 + (n + 1) % drives)
-            : "long lWork; long lTrLow; long lTrHigh; long lReLow; long lReHigh; long "
-              "lSteps; long lState;\nObjects() {}\n#include <const.h>\n";
+        "[station.parameters]\nP881 = {0}\nP884 = 3\n{1}",
+        n, kind.settings);
+    std::string program = bus ? fmt::format(fmt::runtime(kObjects), 1100 + n, 1100 + (n + 1) % drives)
+                              : "long lWork; long lTrLow; long lTrHigh; long lReLow; long lReHigh; long "
+                                "lSteps; long lState;\nObjects() {}\n#include <const.h>\n";
+    for (const char* part : kind.program) program += part;
     compiler::CompileOptions options;
     options.unit = stdlib::find_unit("mdxb");
-    const auto made = compiler::compile("P.IPC", "", objects + (busy ? kBusy : kIdle), options);
+    const auto made = compiler::compile("P.IPC", "", program, options);
     if (!made.image) {
       fmt::print(stderr, "{}", compiler::render_text(made.diagnostics.all(), *made.sources, false));
       std::exit(1);
@@ -156,8 +192,8 @@ double cpu_seconds() {
   return static_cast<double>(used.tv_sec) + static_cast<double>(used.tv_nsec) * 1e-9;
 }
 
-void measure(const char* name, int drives, bool busy, bool bus, int seconds, const std::string& engine = {}) {
-  const auto plant = make(drives, busy, bus, tools::execution_of(engine));
+void measure(const Kind& kind, int drives, bool bus, int seconds, const std::string& engine = {}) {
+  const auto plant = make(kind, drives, bus, tools::execution_of(engine));
   Frames frames;
   plant->add_observer(frames);
   plant->run_until(runtime::kSecond);  // everything runs, no vector grows any more
@@ -168,9 +204,10 @@ void measure(const char* name, int drives, bool busy, bool bus, int seconds, con
   plant->run_until((1 + seconds) * runtime::kSecond);
   const double used = cpu_seconds() - begin;
   fmt::print(
-      "{:28} {:3} drives: {:8.1f} simulated s per CPU s, {:6} frames/s, {:8} commands/s, {:.2f} "
+      "{:7}{:10} {:3} drives: {:8.1f} simulated s per CPU s, {:6} frames/s, {:8} commands/s, {:.2f} "
       "allocations/s\n",
-      name, drives, seconds / used, (frames.count - frames_before) / static_cast<uint64_t>(seconds),
+      kind.name, bus ? ", frames" : "", drives, seconds / used,
+      (frames.count - frames_before) / static_cast<uint64_t>(seconds),
       (commands(*plant) - commands_before) / static_cast<uint64_t>(seconds),
       static_cast<double>(allocations - allocations_before) / seconds);
   std::fflush(stdout);
@@ -179,17 +216,18 @@ void measure(const char* name, int drives, bool busy, bool bus, int seconds, con
 }  // namespace
 }  // namespace ipos
 
-// ipos_bench_plant [SECONDS [DRIVES busy|idle [ENGINE]]]
+// ipos_bench_plant [SECONDS [DRIVES busy|travel|idle [ENGINE]]]
 int main(int argc, char** argv) {
+  using ipos::kKinds;
   const int seconds = argc > 1 ? std::atoi(argv[1]) : 10;
-  if (argc > 2)
-    return ipos::measure("profile", std::atoi(argv[2]), argc > 3 && argv[3] == std::string_view("busy"), true,
-                         seconds, argc > 4 ? argv[4] : ""),
-           0;
-  ipos::measure("busy, 70 % bus load", 64, true, true, seconds);
-  ipos::measure("busy, no frames", 64, true, false, seconds);
-  ipos::measure("idle programs, bus", 64, false, true, seconds);
-  ipos::measure("idle programs, no frames", 64, false, false, seconds);
+  if (argc > 3) {
+    for (const ipos::Kind& kind : kKinds)
+      if (kind.name == argv[3])
+        ipos::measure(kind, std::atoi(argv[2]), true, seconds, argc > 4 ? argv[4] : "");
+    return 0;
+  }
+  for (const ipos::Kind& kind : kKinds)
+    for (const bool bus : {true, false}) ipos::measure(kind, 64, bus, seconds);
   // Alone on its bus it would repeat a frame that nobody acknowledges.
-  ipos::measure("busy, no frames", 1, true, false, seconds * 10);
+  ipos::measure(kKinds[0], 1, false, seconds * 10);
 }
