@@ -198,6 +198,7 @@ void Drive::on_parameter_written(uint16_t index, int32_t value) {
 // --- the millisecond ---
 
 void Drive::tick(const PositionControl& position) {
+  calm_ = !now_.changed() && settings_version_ == parameters_.changes();
   course_left_ = 0;
   // One by one: a copy of the whole would bring along the bytes between them, and DriveCourse compares those.
   position_.controls = position.controls;

@@ -277,6 +277,7 @@ class Drive final : private DriveLink {
   int64_t counted_energy_ = 0;
   mutable uint32_t course_left_ = 0;
   bool links_count_ = false;  // while on the course
+  bool calm_ = false;         // nobody had touched the drive before the last tick
 };
 
 }  // namespace ipos::runtime

@@ -133,8 +133,10 @@ void Station::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
 
 void Station::move_drive(Time now) {
   Drive& drive = drive_.state();
-  if (on_course_ && !stays_on_course()) on_course_ = false;
-  if (on_course_ && positioning_idles()) return drive.go_on();
+  on_course_ = on_course_ && stays_on_course();
+  touched_ = false;
+  glides_ = on_course_ && positioning_ && machine_ && positioning_->idles();
+  if (glides_) return drive.go_on();
   if (!on_course_) {
     drive.set_inputs(inputs_.levels());
     drive.set_analog(inputs_.analog());
@@ -180,7 +182,7 @@ void Station::begin_program(Time now) {
     restart_after_reset(now);
     mirrored_->show(h);
   }
-  if (on_course_ && positioning_idles()) {
+  if (glides_) {
     positioning_->go_on(h, drive_.syncs());
   } else {
     show_drive(drive_.state(), h);
@@ -192,7 +194,7 @@ void Station::begin_program(Time now) {
     if (expired.watchdog) machine_->raise_fault(kFaultWatchdog, "the watchdog has run out, H490 is 0");
   }
   if (!on_course_ && pid_) pid_->tick(h);
-  if (on_course_ || course_noted_) noted_.note(h);
+  if (on_course_ ? !quiet_ : course_noted_) noted_.note(h);
 }
 
 void Station::show_positioning(Time now) {
@@ -204,7 +206,8 @@ void Station::show_positioning(Time now) {
 void Station::end_program(Time now) {
   const std::span<int32_t> h = machine_->variables();
   const bool fresh_fault = machine_->fault().number != 0 && !fault_reported_;
-  on_course_ = on_course_ && noted_.same(h) && !drive_.has_reasons() && !fresh_fault;
+  on_course_ =
+      on_course_ && ((quiet_ && !touched_) || noted_.same(h)) && !drive_.has_reasons() && !fresh_fault;
   if (on_course_) return;
   mirrored_->take(h);
   take_program_orders(h, drive_.state());

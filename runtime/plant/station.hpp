@@ -160,13 +160,16 @@ class Station final : private EventTarget, private Sleeper {
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
   void make_up();
   void make_up_variables() override;
+  void touch() override;
   void wake() override;
   // Left-out ticks are made up for by whoever looks first: nobody can tell.
   void look() const { const_cast<Station*>(this)->make_up(); }
   void make_up_to(Time last);
   void move_drive(Time now);
-  bool stays_on_course();
-  bool positioning_idles() const { return positioning_ && machine_ && positioning_->idles(); }
+  bool stays_on_course() {
+    return drive_.state().course_left() != 0 && inputs_.known() && (!touched_ || unwritten());
+  }
+  bool unwritten() { return !machine_ || noted_.same(machine_->variables()); }
   void leave_course();
   void try_course();
   void schedule_tick(Time now);
@@ -234,7 +237,9 @@ class Station final : private EventTarget, private Sleeper {
 
   // Ticks that only go on (station_course.cpp).
   bool on_course_ = false;
-  bool touched_ = false;  // by somebody outside, since the last tick
+  bool glides_ = false;   // in this tick; positioning has nothing to do either
+  bool quiet_ = false;    // the program's own commands write none of the noted variables
+  bool touched_ = false;  // somebody else may have written them since the last tick
   NotedVariables noted_;
   DriveCourse course_;
   bool course_noted_ = false;  // this tick is compared with what was before it

@@ -13,11 +13,12 @@ constexpr uint32_t kLongestPause = 16;
 
 }  // namespace
 
-// What the program wrote has been looked at behind its tasks; what came from outside is looked at here.
-bool Station::stays_on_course() {
-  const bool touched = std::exchange(touched_, false);
-  return drive_.state().course_left() != 0 && inputs_.known() &&
-         (!touched || !machine_ || noted_.same(machine_->variables()));
+// What is written is compared with what was there before. A program that can write it with commands of its
+// own is not asked: there the variables are noted each time before it runs.
+void Station::touch() {
+  if (touched_) return;
+  touched_ = true;
+  if (on_course_ && quiet_) noted_.note(machine_->variables());
 }
 
 void Station::leave_course() {
@@ -34,11 +35,10 @@ void Station::try_course() {
     }
     course_.note(drive_.state());
     course_noted_ = true;
-    touched_ = false;
     return;
   }
   course_noted_ = false;
-  const uint32_t ticks = touched_ ? 0 : course_.ticks(drive_.state());
+  const uint32_t ticks = course_.ticks(drive_.state());
   on_course_ = ticks != 0;
   if (on_course_ && machine_) {
     const std::span<const int32_t> h = machine_->variables();

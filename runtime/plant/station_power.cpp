@@ -4,6 +4,7 @@
 #include <array>
 
 #include "runtime/plant/station.hpp"
+#include "vm/verify/writes.hpp"
 
 namespace ipos::runtime {
 
@@ -63,9 +64,12 @@ std::optional<std::string> Station::start_program() {
   mirrored_.emplace(drive_.parameters());
   if (config_.unit->generation == stdlib::Generation::B) pid_.emplace(drive_.parameters());
   const bool of_image = image_ && code_ == image_->code;
-  commands_.emplace(services(), journal_, config_.name, of_image ? &*image_ : nullptr);
+  commands_.emplace(services(), static_cast<Sleeper&>(*this), journal_, config_.name,
+                    of_image ? &*image_ : nullptr);
   const vm::VerifiedImage program = *vm::verify(code_, limits, {}).image;
   machine_.emplace(program, commands_->host());
+  on_course_ = false;
+  quiet_ = !vm::may_write(program, NotedVariables::kFirst, NotedVariables::kLast);
   choose_engine(program);
   if (positioning_commands_) positioning_commands_->cancel_all();
   drive_.connect_program(*machine_);

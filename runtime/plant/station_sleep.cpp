@@ -122,7 +122,7 @@ void Station::make_up_variables() {
 }
 
 void Station::wake() {
-  touched_ = true;
+  touch();
   trial_ = false;
   if (!asleep_) return;
   make_up();

@@ -15,6 +15,10 @@ namespace ipos::runtime {
 
 class NotedVariables {
  public:
+  // All of them lie between these.
+  static constexpr size_t kFirst = stdlib::system_variable("ModuloCtrl");
+  static constexpr size_t kLast = stdlib::system_variable("SyncGearSlave");  // MOVIDRIVE B
+
   void note(std::span<const int32_t> h) {
     each_range(h, [](int32_t* noted, const int32_t* now, auto count) {
       std::memcpy(noted, now, count() * sizeof(int32_t));
@@ -58,8 +62,6 @@ class NotedVariables {
     if (h.size() > kLast) range<system_variable("PID_Mode"), kLast>(h, act);
   }
 
-  static constexpr size_t kFirst = stdlib::system_variable("ModuloCtrl");
-  static constexpr size_t kLast = stdlib::system_variable("SyncGearSlave");  // MOVIDRIVE B
   std::array<int32_t, kLast - kFirst + 1> noted_{};
 };
 

@@ -39,8 +39,6 @@ enum SystemVariable : size_t {
   kGearSlave = 564,
 };
 
-constexpr int32_t kIsync = 2;  // setting of P077 (1053 1610 p. 69)
-
 constexpr unsigned kInPosition = 19;  // IPOSplus p. 34
 constexpr unsigned kReferenced = 20;  // IPOSplus p. 91
 
@@ -160,10 +158,6 @@ PositioningInputs PositioningService::inputs(std::span<const int32_t> h) const {
   in.override_permille = override_of(drive_.analog());
   in.modulo_control = static_cast<uint32_t>(h[kModuloCtrl]);
   return in;
-}
-
-bool PositioningService::minds_system_variables_only() const {
-  return settings_.technology_function != kIsync && !cams_run_;
 }
 
 // A gear of 0 is one of 1.

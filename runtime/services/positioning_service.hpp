@@ -31,7 +31,7 @@ class PositioningService {
   void show(Time now, std::span<int32_t> h);
 
   // Looks at no variable but system variables: no cam controller runs, no master is followed.
-  bool minds_system_variables_only() const;
+  bool minds_system_variables_only() const { return settings_.technology_function != kIsync && !cams_run_; }
 
   // The last millisecond has found nothing to do, and no command came since. While inputs, parameters and
   // system variables stay as they are, too, go_on() is order() and show() around a tick of the drive.
@@ -59,6 +59,8 @@ class PositioningService {
   void set_parameter(std::string_view number, int32_t value);
 
  private:
+  static constexpr int32_t kIsync = 2;  // setting of P077 (1053 1610 p. 69)
+
   // A system variable and the parameter it is the same datum as.
   struct Mirror {
     size_t variable;
