@@ -60,6 +60,20 @@ TEST_F(Idle, ALoopThatLooksIsIdleForEver) {
   EXPECT_EQ(m.idle_ticks(rates_.commands), 0U);
 }
 
+// It passes the same command many times before everything is as it was.
+TEST_F(Idle, ALoopOfManyTurnsIsIdleWhereverItStands) {
+  vm::Machine skips = machine("main() { while (1) { H1 = H1 + 1; if (H1 == 30) H1 = 0; } }");
+  vm::Machine runs = skips;
+  for (uint64_t ticks = 1; ticks < 200; ++ticks) {
+    uint64_t executed = 0;
+    EXPECT_EQ(vm::skip_idle(skips, rates_, ticks, executed), ticks);
+    for (uint64_t n = 0; n < ticks; ++n) vm::run_tick(runs, rates_);
+    ASSERT_EQ(skips.variables()[1], runs.variables()[1]) << "after " << ticks;
+    ASSERT_EQ(skips.task(1).pc, runs.task(1).pc);
+    ASSERT_EQ(skips.task(1).commands, runs.task(1).commands);
+  }
+}
+
 TEST_F(Idle, WhatOthersSeeChangeIsNotIdle) {
   const std::string loop = "while (1) { H1 = H5; H1 = H1 + 1; }";
   vm::Machine alone = machine("main() { " + loop + " }");

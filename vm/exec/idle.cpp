@@ -79,7 +79,7 @@ bool Machine::try_command(int number, Spin& spin) {
   return true;
 }
 
-// The loop a context is in now. Leaves everything as it is.
+// The loop a context is in now, which may pass the same command several times. Leaves everything as it is.
 Machine::Spin Machine::find_spin(int number, uint32_t longest) {
   TaskContext& t = context_at(number);
   const TaskContext before = t;
@@ -90,8 +90,8 @@ Machine::Spin Machine::find_spin(int number, uint32_t longest) {
     return true;
   };
   for (uint32_t n = 1; n <= longest && try_command(number, spin) && t.depth >= before.depth; ++n) {
-    if (t.pc != before.pc || t.depth != before.depth) continue;
-    if (as_before()) spin.length = n;
+    if (t.pc != before.pc || t.depth != before.depth || !as_before()) continue;
+    spin.length = n;
     break;
   }
   for (uint32_t n = 0; n < spin.count; ++n) h_[spin.numbers[n]] = spin.originals[n];
