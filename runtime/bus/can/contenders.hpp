@@ -45,6 +45,12 @@ class Contenders {
   // At this bit each of them can send the first frame of its queue.
   bool all_ready(uint64_t bit) const { return ready_by_ <= bit; }
 
+  // The one whose first frame has the lowest key; kNoNode when another has the same one.
+  NodeId only_first() const {
+    const uint64_t rank = ranks_[first_];
+    const bool alone = first_ + 1 == ranks_.size() || ranks_[first_ + 1] >> kKeyShift != rank >> kKeyShift;
+    return alone ? static_cast<NodeId>(rank) : kNoNode;
+  }
   // Those whose first frame has the lowest key, in order of attachment. There must be one.
   template <typename Visit>
   void each_first(Visit visit) const {

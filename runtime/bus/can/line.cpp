@@ -80,12 +80,14 @@ SendStatus CanLine::send(NodeId node, const Frame& frame, uint64_t tag) {
 
 void CanLine::withdraw(NodeId node, uint64_t tag) {
   std::vector<Pending>& queue = nodes_[node].queue;
+  const Segment& segment = segments_[nodes_[node].segment];
+  const bool settled = segment.busy || segment.start_event != kNoEvent;
+  if (queue.empty() && settled) return;
   for (Pending& pending : queue)
     if (pending.tag == tag && pending.on_wire) pending.withdrawn = true;
   const bool changed =
       std::erase_if(queue, [tag](const Pending& p) { return p.tag == tag && !p.on_wire; }) != 0;
-  const Segment& segment = segments_[nodes_[node].segment];
-  if (!changed && (segment.busy || segment.start_event != kNoEvent)) return;
+  if (!changed && settled) return;
   queue_changed(node);
   schedule_start(nodes_[node].segment);
 }
@@ -176,10 +178,43 @@ void CanLine::begin_and_end(uint32_t number, bool begins) {
   }
 }
 
+// What nearly all transfers are: one node has the lowest key, no fault is planted, and no error counter makes
+// a difference. False: all that is to be looked at.
+bool CanLine::begin_plain(uint64_t bit) {
+  if (segments_.size() != 1 || !faults_.empty() || !contenders_.all_ready(bit) || contenders_.empty())
+    return false;
+  const NodeId id = contenders_.only_first();
+  if (id == kNoNode || !is_active(id) || !nodes_[id].counters.untouched() || !is_acknowledged(id))
+    return false;
+  Pending& pending = nodes_[id].queue.front();
+  if (pending.frame.extended) return false;
+  pause_recovery(0, bit);
+  pending.on_wire = true;
+  Transfer& transfer = segments_[0].transfer;
+  transfer.senders.resize(1);
+  transfer.senders.front() = {id, pending.frame, pending.tag, true};
+  transfer.outcome = Transfer::Outcome::Delivered;
+  transfer.start_bit = bit;
+  transfer.bits = lengths_.of(pending.frame);
+  transfer.end = transfer.bits - kIntermissionBits;
+  transfer.fault.kind.reset();
+  transfer.plain = true;
+  segments_[0].busy = true;
+  return true;
+}
+
+bool CanLine::is_acknowledged(NodeId sender) const {
+  for (NodeId id = 0; id < nodes_.size(); ++id)
+    if (id != sender && is_active(id)) return true;
+  return false;
+}
+
 // False: nobody sends.
 bool CanLine::begin_transfer(uint32_t number, uint64_t bit) {
+  if (begin_plain(bit)) return true;
   Segment& segment = segments_[number];
   Transfer& transfer = segment.transfer;
+  transfer.plain = false;
   transfer.start_bit = bit;
   transfer.senders.clear();
   transfer.fault = {};
@@ -251,16 +286,20 @@ void CanLine::end_transfer(Time now, uint32_t number) {
     late_.push_back(LateFrame{transfer.winner().frame, transfer.winner().node, transfer.fault.node, number});
     queue_.schedule(now + transfer.fault.lag, source_, *this, line_event::kLate, late_.size() - 1);
   }
-  if (transfer.outcome == Transfer::Outcome::Delivered && !transfer.fault.kind &&
-      !transfer.winner().frame.extended) {
+  if (transfer.plain) {
     deliver_clean(now, segment);
+    settle_plain(now, transfer.senders.front());
+  } else if (transfer.outcome == Transfer::Outcome::Delivered && !transfer.fault.kind &&
+             !transfer.winner().frame.extended) {
+    deliver_clean(now, segment);
+    for (const Transfer::Sender& sender : transfer.senders) settle_sender(now, segment, sender);
   } else {
     for (NodeId id = 0; id < nodes_.size(); ++id) {
       if (!transfer.sent_by(id) && nodes_[id].segment == number && is_active(id)) deliver(now, segment, id);
       erring_.put(id, nodes_[id].counters.receive != 0);
     }
+    for (const Transfer::Sender& sender : transfer.senders) settle_sender(now, segment, sender);
   }
-  for (const Transfer::Sender& sender : transfer.senders) settle_sender(now, segment, sender);
   if (recovering_) {
     recovering_ = false;
     for (NodeId id = 0; id < nodes_.size(); ++id) {
@@ -309,6 +348,20 @@ void CanLine::deliver(Time now, const Segment& segment, NodeId listener) {
   node.counters.received();
   if (concerned && (fault.is(FaultKind::Drop) || fault.is(FaultKind::Delay))) return;
   node.node->on_frame(now, transfer.winner().frame);
+}
+
+// Of a plain transfer.
+void CanLine::settle_plain(Time now, const Transfer::Sender& sender) {
+  Node& node = nodes_[sender.node];
+  if (node.queue.empty() || !node.queue.front().on_wire || !node.counters.untouched())
+    return settle_sender(now, segments_[node.segment], sender);
+  if (node.queue.size() == 1)
+    node.queue.pop_back();
+  else
+    node.queue.erase(node.queue.begin());
+  node.unacknowledged = false;
+  queue_changed(sender.node);
+  node.node->on_sent(now, sender.frame, sender.tag);
 }
 
 void CanLine::settle_sender(Time now, const Segment& segment, const Transfer::Sender& sender) {

@@ -116,7 +116,9 @@ class CanLine final : private EventTarget {
   // line.cpp: frames
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
   void begin_and_end(uint32_t segment, bool begins);
+  bool begin_plain(uint64_t bit);
   bool begin_transfer(uint32_t segment, uint64_t bit);
+  bool is_acknowledged(NodeId sender) const;
   void end_transfer(Time now, uint32_t segment);
   void deliver(Time now, const Segment& segment, NodeId listener);
   void settle_sender(Time now, const Segment& segment, const Transfer::Sender& sender);
@@ -128,6 +130,7 @@ class CanLine final : private EventTarget {
   uint64_t next_ready(const Node& node) const;
   void queue_changed(NodeId node);
   void deliver_clean(Time now, const Segment& segment);
+  void settle_plain(Time now, const Transfer::Sender& sender);
   void drop_queue(NodeId node);
 
   // line_wiring.cpp: who takes part
