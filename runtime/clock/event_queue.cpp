@@ -170,12 +170,10 @@ void EventQueue::run_until(Time end) {
   reached_ = UINT32_MAX;
 }
 
-bool EventQueue::advance(Time at, uint32_t source) {
-  const Order order{at, next_sequence_, source};
-  if (at > run_end_) return false;
-  if (const Order* event = next(); event != nullptr && before(*event, order)) return false;
-  reach(at, source);
-  return true;
+// Before the next event, if it were scheduled now.
+bool EventQueue::comes_first(Time at, uint32_t source) const {
+  const Order* event = next();
+  return event == nullptr || before({at, next_sequence_, source}, *event);
 }
 
 }  // namespace ipos::runtime

@@ -62,7 +62,12 @@ class EventQueue {
 
   // From within an event: an event of `source` at `at` would be the next of all, and this run goes so far.
   // Then it is that time now, and the caller does at once what it would have scheduled.
-  bool advance(Time at, uint32_t source);
+  bool advance(Time at, uint32_t source) {
+    const Time first_at = std::min({rows_[0].first_at, rows_[1].first_at, heap_first_at_});
+    if (at > run_end_ || at > first_at || (at == first_at && !comes_first(at, source))) return false;
+    reach(at, source);
+    return true;
+  }
 
  private:
   // Ids of events in a row: this bit, the row, the number there. Others have generation and slot.
@@ -152,6 +157,7 @@ class EventQueue {
   }
   static EventId row_id(EventId row, uint64_t number) { return kInRow | row << kRowShift | number; }
   const Order* next() const;
+  bool comes_first(Time at, uint32_t source) const;
   bool run(Time end, bool all);
   bool run_from_heap(Time end);
   void reach(Time at, uint32_t source) {

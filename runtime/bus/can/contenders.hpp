@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "runtime/bus/node_id.hpp"
@@ -21,10 +22,10 @@ class Contenders {
  public:
   void grow(size_t nodes) {
     rows_.resize(nodes);
-    ranks_.reserve(2 * nodes);
+    ranks_.resize(2 * nodes);
   }
 
-  bool empty() const { return first_ == ranks_.size(); }
+  bool empty() const { return first_ == end_; }
   const Contender& operator[](NodeId node) const { return rows_[node]; }
 
   void put(NodeId node, const Contender& contender) {
@@ -45,11 +46,17 @@ class Contenders {
   // At this bit each of them can send the first frame of its queue.
   bool all_ready(uint64_t bit) const { return ready_by_ <= bit; }
 
+  // The one whose first frame has the lowest key; kNoNode when another has the same one.
+  NodeId only_first() const {
+    const uint64_t rank = ranks_[first_];
+    const bool alone = first_ + 1 == end_ || ranks_[first_ + 1] >> kKeyShift != rank >> kKeyShift;
+    return alone ? static_cast<NodeId>(rank) : kNoNode;
+  }
   // Those whose first frame has the lowest key, in order of attachment. There must be one.
   template <typename Visit>
   void each_first(Visit visit) const {
     const uint64_t lowest = ranks_[first_] >> kKeyShift;
-    for (size_t n = first_; n < ranks_.size() && ranks_[n] >> kKeyShift == lowest; ++n)
+    for (size_t n = first_; n < end_ && ranks_[n] >> kKeyShift == lowest; ++n)
       visit(static_cast<NodeId>(ranks_[n]));
   }
   // All in order of attachment.
@@ -67,31 +74,36 @@ class Contenders {
   static uint64_t rank(NodeId node, uint32_t key) { return uint64_t{key} << kKeyShift | node; }
 
   void insert(uint64_t rank) {
-    if (ranks_.size() == ranks_.capacity()) {
-      ranks_.erase(ranks_.begin(), ranks_.begin() + static_cast<ptrdiff_t>(first_));
-      first_ = 0;
+    if (end_ == ranks_.size()) {  // at least half of it is free
+      std::copy(at(first_), at(end_), at(0));
+      end_ -= std::exchange(first_, 0);
     }
-    if (empty() || ranks_.back() < rank) return ranks_.push_back(rank);
-    if (first_ > 0 && rank < ranks_[first_])
+    if (empty() || ranks_[end_ - 1] < rank) {
+      ranks_[end_++] = rank;
+    } else if (first_ > 0 && rank < ranks_[first_]) {
       ranks_[--first_] = rank;
-    else
-      ranks_.insert(place(rank), rank);
+    } else {
+      const auto place = std::lower_bound(at(first_), at(end_), rank);
+      std::copy_backward(place, at(end_), at(end_ + 1));
+      *place = rank;
+      ++end_;
+    }
   }
   void erase(uint64_t rank) {
-    if (ranks_[first_] != rank) {
-      ranks_.erase(place(rank));
-    } else if (++first_ == ranks_.size()) {
-      ranks_.clear();
-      first_ = 0;
+    if (ranks_[first_] == rank) {
+      if (++first_ == end_) first_ = end_ = 0;
+    } else {
+      const auto place = std::lower_bound(at(first_), at(end_), rank);
+      std::copy(place + 1, at(end_), place);
+      --end_;
     }
   }
-  std::vector<uint64_t>::iterator place(uint64_t rank) {
-    return std::lower_bound(ranks_.begin() + static_cast<ptrdiff_t>(first_), ranks_.end(), rank);
-  }
+  std::vector<uint64_t>::iterator at(size_t n) { return ranks_.begin() + static_cast<ptrdiff_t>(n); }
 
   std::vector<Row> rows_;
-  std::vector<uint64_t> ranks_;  // key and node, rising, from first_ on
+  std::vector<uint64_t> ranks_;  // key and node, rising, from first_ to end_
   size_t first_ = 0;
+  size_t end_ = 0;
   uint64_t ready_by_ = 0;  // the latest first_ready there was
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <bitset>
 #include <cstdint>
 
@@ -29,14 +30,18 @@ uint32_t frame_bits(const Frame& frame);
 class FrameLengths {
  public:
   uint32_t of(const Frame& frame) {
+    const uint64_t head =
+        uint64_t{frame.id} << 16 | uint64_t{frame.extended} << 9 | uint64_t{frame.remote} << 8 | frame.length;
+    const auto data = std::bit_cast<uint64_t>(frame.data);
     Known& known = known_[frame.id % known_.size()];
-    if (known.bits == 0 || known.frame != frame) known = {frame, frame_bits(frame)};
+    if (known.bits == 0 || known.head != head || known.data != data) known = {head, data, frame_bits(frame)};
     return known.bits;
   }
 
  private:
   struct Known {
-    Frame frame;
+    uint64_t head = 0;  // all but the data
+    uint64_t data = 0;
     uint32_t bits = 0;
   };
   std::array<Known, 256> known_{};

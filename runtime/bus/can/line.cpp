@@ -36,6 +36,7 @@ NodeId CanLine::attach(std::string name, uint32_t baud, CanNode& node) {
   added.name = std::move(name);
   added.baud = baud;
   added.node = &node;
+  wire(added);
   nodes_.push_back(std::move(added));
   nodes_.back().queue.reserve(kSendQueueLimit);
   contenders_.grow(nodes_.size());
@@ -44,11 +45,6 @@ NodeId CanLine::attach(std::string name, uint32_t baud, CanNode& node) {
   erring_.grow(nodes_.size());
   report_absence(id, nullptr);
   return id;
-}
-
-bool CanLine::is_active(NodeId node) const {
-  const Node& n = nodes_[node];
-  return is_wired(n) && n.recovery_runs == 0 && n.counters.state() != ErrorState::BusOff;
 }
 
 bool CanLine::is_reachable(NodeId from, NodeId to) const {
@@ -60,17 +56,20 @@ bool CanLine::is_reachable(NodeId from, NodeId to) const {
 SendStatus CanLine::send(NodeId node, const Frame& frame, uint64_t tag) {
   Node& n = nodes_[node];
   if (!is_valid(frame)) return SendStatus::InvalidFrame;
-  if (!is_active(node)) return SendStatus::NotActive;
+  if (!is_active(n)) return SendStatus::NotActive;
   if (n.queue.size() >= kSendQueueLimit) return SendStatus::QueueFull;
   const uint64_t ready = static_cast<uint64_t>(queue_.now() / bit_time_) + 1;
   const Pending pending{canonical(frame), tag, ready, arbitration_key(frame)};
-  if (n.queue.empty() || n.queue.back().key <= pending.key)
+  if (n.queue.empty()) {
     n.queue.push_back(pending);
-  else
+    const uint64_t can_send = std::max(ready, n.suspended_until);
+    contenders_.put(node, {can_send, can_send, pending.key});
+  } else {
     n.queue.insert(std::upper_bound(n.queue.begin(), n.queue.end(), pending.key,
                                     [](uint32_t wanted, const Pending& p) { return wanted < p.key; }),
                    pending);
-  queue_changed(node);
+    queue_changed(node);
+  }
   const Segment& segment = segments_[n.segment];
   const bool in_time = segment.start_event != kNoEvent &&
                        segment.start_bit <= std::max(contenders_[node].ready, segment.free_bit);
@@ -80,12 +79,14 @@ SendStatus CanLine::send(NodeId node, const Frame& frame, uint64_t tag) {
 
 void CanLine::withdraw(NodeId node, uint64_t tag) {
   std::vector<Pending>& queue = nodes_[node].queue;
+  const Segment& segment = segments_[nodes_[node].segment];
+  const bool settled = segment.busy || segment.start_event != kNoEvent;
+  if (queue.empty() && settled) return;
   for (Pending& pending : queue)
     if (pending.tag == tag && pending.on_wire) pending.withdrawn = true;
   const bool changed =
       std::erase_if(queue, [tag](const Pending& p) { return p.tag == tag && !p.on_wire; }) != 0;
-  const Segment& segment = segments_[nodes_[node].segment];
-  if (!changed && (segment.busy || segment.start_event != kNoEvent)) return;
+  if (!changed && settled) return;
   queue_changed(node);
   schedule_start(nodes_[node].segment);
 }
@@ -153,6 +154,122 @@ void CanLine::on_event(Time now, uint32_t kind, uint64_t argument) {
   }
 }
 
+// What nearly all transfers are: one node has the lowest key, no fault is planted, and no error counter makes
+// a difference. False: all that is to be looked at.
+inline bool CanLine::begin_plain(uint64_t bit) {
+  if (segments_.size() != 1 || !faults_.empty() || !contenders_.all_ready(bit) || contenders_.empty())
+    return false;
+  const NodeId id = contenders_.only_first();
+  if (id == kNoNode) return false;
+  Node& node = nodes_[id];
+  Pending& pending = node.queue.front();
+  if (!is_active(node) || !node.counters.untouched() || pending.frame.extended || !is_acknowledged(id))
+    return false;
+  if (recovering_) pause_recovery(0, bit);
+  pending.on_wire = true;
+  Segment& segment = segments_[0];
+  segment.busy = true;
+  Transfer& transfer = segment.transfer;
+  transfer.senders.resize(1);
+  Transfer::Sender& sender = transfer.senders.front();
+  sender.node = id;
+  sender.frame = pending.frame;
+  sender.tag = pending.tag;
+  sender.error_active = true;
+  sender.lost = false;
+  transfer.outcome = Transfer::Outcome::Delivered;
+  transfer.plain = true;
+  transfer.start_bit = bit;
+  transfer.bits = lengths_.of(pending.frame);
+  transfer.end = transfer.bits - kIntermissionBits;
+  return true;
+}
+
+bool CanLine::is_acknowledged(NodeId sender) {
+  if (acknowledges_ != sender && is_active(nodes_[acknowledges_])) return true;
+  for (NodeId id = 0; id < nodes_.size(); ++id) {
+    if (id == sender || !is_active(nodes_[id])) continue;
+    acknowledges_ = id;
+    return true;
+  }
+  return false;
+}
+
+inline void CanLine::release(Segment& segment) {
+  const Transfer& transfer = segment.transfer;
+  segment.busy = false;
+  segment.free_bit = transfer.start_bit + transfer.bits;
+  segment.recessive_from = segment.free_bit - kRecessiveTail;
+  meter_.add(transfer.start_bit, transfer.bits);
+}
+
+inline void CanLine::report_frame(Time now, const Transfer& transfer) {
+  ++frames_;
+  const Transfer::Sender& winner = transfer.winner();
+  const FrameRecord record{winner.frame, winner.node, static_cast<Time>(transfer.start_bit) * bit_time_, now,
+                           transfer.bits};
+  for (CanObserver* observer : observers_) observer->on_frame(*this, record);
+}
+
+// What waited for the end of the transfer.
+inline void CanLine::settle_line() {
+  if (recovering_) {
+    recovering_ = false;
+    for (NodeId id = 0; id < nodes_.size(); ++id) {
+      schedule_recovery(id);
+      recovering_ |= nodes_[id].recovery_runs != 0;
+    }
+  }
+  if (rewire_) rebuild_segments();
+}
+
+// To listeners without a receive error that do not want it, a good frame is nothing at all.
+void CanLine::deliver_clean(Time now, const Segment& segment) {
+  const Transfer& transfer = segment.transfer;
+  const auto number = static_cast<uint32_t>(&segment - segments_.data());
+  const Frame& frame = transfer.winner().frame;
+  const std::span<const uint64_t> takers = filter_.takers(frame.id);
+  const auto visit = [&](NodeId id) {
+    if (!transfer.sent_by(id) && nodes_[id].segment == number && is_active(id)) deliver(now, segment, id);
+    erring_.put(id, nodes_[id].counters.receive != 0);
+  };
+  const auto hand_over = [&](NodeId id) {  // its counter stays at 0
+    const Node& node = nodes_[id];
+    if (!transfer.sent_by(id) && node.segment == number && is_active(node)) node.node->on_frame(now, frame);
+  };
+  for (size_t n = 0; n < takers.size(); ++n) {
+    if (erring_.words()[n] != 0)
+      NodeSet::each_bit(takers[n] | erring_.words()[n], n, visit);
+    else
+      NodeSet::each_bit(takers[n], n, hand_over);
+  }
+}
+
+// Its sender may have been cut off meanwhile, or counts errors now.
+inline void CanLine::end_plain(Time now) {
+  Segment& segment = segments_[0];
+  const Transfer& transfer = segment.transfer;
+  release(segment);
+  report_frame(now, transfer);
+  deliver_clean(now, segment);
+  const Transfer::Sender& sender = transfer.senders.front();
+  Node& node = nodes_[sender.node];
+  if (node.queue.empty() || !node.queue.front().on_wire || !node.counters.untouched()) {
+    settle_sender(now, segment, sender);
+  } else {
+    node.unacknowledged = false;
+    if (node.queue.size() == 1) {
+      node.queue.pop_back();
+      contenders_.remove(sender.node);
+    } else {
+      node.queue.erase(node.queue.begin());
+      queue_changed(sender.node);
+    }
+    node.node->on_sent(now, sender.frame, sender.tag);
+  }
+  settle_line();
+}
+
 // One transfer after the other without the queue, as long as nothing happens in between.
 void CanLine::begin_and_end(uint32_t number, bool begins) {
   for (;; begins = !begins) {
@@ -160,13 +277,16 @@ void CanLine::begin_and_end(uint32_t number, bool begins) {
     uint64_t bit = segment.start_bit;
     if (begins) {
       segment.start_event = kNoEvent;
-      if (!begin_transfer(number, bit)) return schedule_start(number);
+      if (!begin_plain(bit) && !begin_transfer(number, bit)) return schedule_start(number);
       bit += segment.transfer.end;
       if (queue_.advance(static_cast<Time>(bit) * bit_time_, source_)) continue;
       queue_.schedule(static_cast<Time>(bit) * bit_time_, source_, *this, line_event::kEnd, number);
       return;
     }
-    end_transfer(queue_.now(), number);
+    if (segment.transfer.plain)
+      end_plain(queue_.now());
+    else
+      end_transfer(queue_.now(), number);
     if (segments_.size() != 1 || segments_[0].start_event != kNoEvent) return schedule_start();
     bit = next_start(0);
     if (bit == kNoBit) return;
@@ -180,6 +300,7 @@ void CanLine::begin_and_end(uint32_t number, bool begins) {
 bool CanLine::begin_transfer(uint32_t number, uint64_t bit) {
   Segment& segment = segments_[number];
   Transfer& transfer = segment.transfer;
+  transfer.plain = false;
   transfer.start_bit = bit;
   transfer.senders.clear();
   transfer.fault = {};
@@ -231,22 +352,13 @@ bool CanLine::begin_transfer(uint32_t number, uint64_t bit) {
 void CanLine::end_transfer(Time now, uint32_t number) {
   Segment& segment = segments_[number];
   const Transfer& transfer = segment.transfer;
-  segment.busy = false;
-  segment.free_bit = transfer.start_bit + transfer.bits;
-  segment.recessive_from = segment.free_bit - kRecessiveTail;
-  meter_.add(transfer.start_bit, transfer.bits);
+  release(segment);
   // Callbacks below may send and withdraw; they change the queues, never the transfer, as the next one has
   // not begun.
   if (transfer.fault.kind)
     report({LineEventKind::FaultStrikes, now, transfer.fault.node, kNoNode, transfer.winner().frame.id,
             static_cast<uint8_t>(*transfer.fault.kind)});
-  if (transfer.received()) {
-    ++frames_;
-    const Transfer::Sender& winner = transfer.winner();
-    const FrameRecord record{winner.frame, winner.node, static_cast<Time>(transfer.start_bit) * bit_time_,
-                             now, transfer.bits};
-    for (CanObserver* observer : observers_) observer->on_frame(*this, record);
-  }
+  if (transfer.received()) report_frame(now, transfer);
   if (transfer.received() && transfer.fault.is(FaultKind::Delay)) {
     late_.push_back(LateFrame{transfer.winner().frame, transfer.winner().node, transfer.fault.node, number});
     queue_.schedule(now + transfer.fault.lag, source_, *this, line_event::kLate, late_.size() - 1);
@@ -261,36 +373,7 @@ void CanLine::end_transfer(Time now, uint32_t number) {
     }
   }
   for (const Transfer::Sender& sender : transfer.senders) settle_sender(now, segment, sender);
-  if (recovering_) {
-    recovering_ = false;
-    for (NodeId id = 0; id < nodes_.size(); ++id) {
-      schedule_recovery(id);
-      recovering_ |= nodes_[id].recovery_runs != 0;
-    }
-  }
-  if (rewire_) rebuild_segments();
-}
-
-// To listeners without a receive error that do not want it, a good frame is nothing at all.
-void CanLine::deliver_clean(Time now, const Segment& segment) {
-  const Transfer& transfer = segment.transfer;
-  const auto number = static_cast<uint32_t>(&segment - segments_.data());
-  const Frame& frame = transfer.winner().frame;
-  const std::span<const uint64_t> takers = filter_.takers(frame.id);
-  const auto visit = [&](NodeId id) {
-    if (!transfer.sent_by(id) && nodes_[id].segment == number && is_active(id)) deliver(now, segment, id);
-    erring_.put(id, nodes_[id].counters.receive != 0);
-  };
-  const auto hand_over = [&](NodeId id) {  // its counter stays at 0
-    const Node& node = nodes_[id];
-    if (!transfer.sent_by(id) && node.segment == number && is_active(id)) node.node->on_frame(now, frame);
-  };
-  for (size_t n = 0; n < takers.size(); ++n) {
-    if (erring_.words()[n] != 0)
-      NodeSet::each_bit(takers[n] | erring_.words()[n], n, visit);
-    else
-      NodeSet::each_bit(takers[n], n, hand_over);
-  }
+  settle_line();
 }
 
 // What a transfer is to one listener.

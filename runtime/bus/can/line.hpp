@@ -70,7 +70,9 @@ class CanLine final : private EventTarget {
   const std::string& node_name(NodeId node) const { return nodes_[node].name; }
   uint32_t node_baud(NodeId node) const { return nodes_[node].baud; }
   const ErrorCounters& counters(NodeId node) const { return nodes_[node].counters; }
-  bool is_active(NodeId node) const;                // right rate, connected, not bus-off
+  bool is_active(NodeId node) const {  // right rate, connected, not bus-off
+    return is_active(nodes_[node]);
+  }
   bool is_reachable(NodeId from, NodeId to) const;  // both active, and no cut between them
   LineLoad load(Time now) const;
 
@@ -89,6 +91,7 @@ class CanLine final : private EventTarget {
     CanNode* node;
     bool connected = true;
     bool swapped = false;         // high and low interchanged
+    bool wired = false;           // connected as it should be, with the rate of the line
     bool unacknowledged = false;  // since its last frame that got through; reported once
     ErrorCounters counters;
     uint64_t suspended_until = 0;  // an error-passive sender pauses 8 bits
@@ -116,7 +119,16 @@ class CanLine final : private EventTarget {
   // line.cpp: frames
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
   void begin_and_end(uint32_t segment, bool begins);
+  static bool is_active(const Node& node) {
+    return node.wired && node.recovery_runs == 0 && node.counters.state() != ErrorState::BusOff;
+  }
+  bool begin_plain(uint64_t bit);
+  void end_plain(Time now);
   bool begin_transfer(uint32_t segment, uint64_t bit);
+  bool is_acknowledged(NodeId sender);
+  void release(Segment& segment);
+  void report_frame(Time now, const Transfer& transfer);
+  void settle_line();
   void end_transfer(Time now, uint32_t segment);
   void deliver(Time now, const Segment& segment, NodeId listener);
   void settle_sender(Time now, const Segment& segment, const Transfer::Sender& sender);
@@ -131,7 +143,7 @@ class CanLine final : private EventTarget {
   void drop_queue(NodeId node);
 
   // line_wiring.cpp: who takes part
-  bool is_wired(const Node& node) const { return node.connected && !node.swapped && node.baud == baud_; }
+  void wire(Node& node) const { node.wired = node.connected && !node.swapped && node.baud == baud_; }
   void switch_fault(Time now, size_t fault, bool on);
   void rebuild_segments();
   void deliver_late(Time now, size_t number);
@@ -153,6 +165,7 @@ class CanLine final : private EventTarget {
   std::vector<NodeId> winners_;  // of an arbitration
   AcceptanceFilter filter_;
   NodeSet erring_;           // receive counter not 0
+  NodeId acknowledges_ = 0;  // probably
   bool recovering_ = false;  // some node may be
   std::vector<CanObserver*> observers_;
   std::vector<Segment> segments_{1};

@@ -15,12 +15,14 @@ constexpr uint32_t kRecoveryBits = 11;
 
 void CanLine::set_baud(NodeId node, uint32_t baud) {
   nodes_[node].baud = baud;
+  wire(nodes_[node]);
   if (!is_active(node)) drop_queue(node);
   report_absence(node, nullptr);
 }
 
 void CanLine::set_connected(NodeId node, bool connected) {
   nodes_[node].connected = connected;
+  wire(nodes_[node]);
   if (!connected) drop_queue(node);
   report_absence(node, nullptr);
 }
@@ -51,6 +53,7 @@ void CanLine::switch_fault(Time now, size_t number, bool on) {
       break;
     case FaultKind::Swap:
       nodes_[fault.node].swapped = on;
+      wire(nodes_[fault.node]);
       if (on) drop_queue(fault.node);
       break;
     case FaultKind::Short: shorts_ += on ? 1 : ~0U; break;

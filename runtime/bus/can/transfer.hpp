@@ -35,6 +35,7 @@ struct Transfer {
   uint32_t bits = 0;            // bits from start_bit to the end of intermission
   std::vector<Sender> senders;  // all with the winning arbitration field
   FrameFault fault;
+  bool plain = false;  // one sender, somebody acknowledges, nothing is disturbed: delivered
 
   bool sent_by(NodeId node) const {
     for (const Sender& sender : senders)
