@@ -7,10 +7,7 @@ namespace ipos::vm {
 
 uint32_t run_tick(Machine& machine, const Rates& rates) {
   machine.tick();
-  uint32_t executed = 0;
-  for (int task = 1; task <= kTasks; ++task)
-    executed += machine.run(task, rates.commands[static_cast<size_t>(task - 1)]).commands;
-  return executed;
+  return machine.run_tasks(rates.commands);
 }
 
 void TickSteps::begin(Machine& machine, const Rates& rates) {
