@@ -61,7 +61,7 @@ void Machine::stop_all() {
 // Returns how many of the budget are left in front of a command that is the reference interpreter's.
 inline uint32_t Machine::run_fast(TaskContext& t, uint32_t budget) {
   if constexpr (kFastEngine)
-    if (fast_ != nullptr) return fast::run(*fast_, native_, t, h_.data(), budget);
+    if (fast_ != nullptr) return fast::run(*fast_, t, h_.data(), budget, native_);
   return budget;
 }
 

@@ -20,8 +20,9 @@ struct State {
 
 enum class Exit : uint8_t { Left, Spent };
 
-// So many commands are done sooner one by one than by a way that is faster for many.
+// So many commands are done sooner one by one than by the ways into execute() and into machine code.
 constexpr uint32_t kFew = 8;
+constexpr uint32_t kFewForNative = 16;
 
 constexpr uint32_t kMaxBudget = 1U << 30;  // so that State::left has room for it
 
@@ -199,14 +200,15 @@ spent : state = {ip, left};
 return Exit::Spent;
 }
 
-// Exactly `left` commands, or those in front of one that is left to the reference interpreter. Ends early
-// behind a jump, too, where many are left and would do for the line there. Returns how many are left then.
-uint32_t step(const Predecoded& program, TaskContext& t, int32_t* h, uint32_t left) {
+// Exactly `budget` commands, at least one, or those in front of one that is left to the reference
+// interpreter. Ends early behind a jump, too, where many are left and would do for the line there. Returns
+// what is left.
+uint32_t step(const Predecoded& program, TaskContext& t, int32_t* h, uint32_t budget) {
   const Slot* const slots = program.slots();
   const uint32_t* const code = program.program().code().data();
   uint32_t at = t.pc;
-  t.commands += left;
-  while (left != 0) {
+  uint32_t left = budget;
+  do {
     const Slot* const ip = slots + at;
     switch (static_cast<Opcode>(code[at] & 0xFF)) {
 #define SPECIAL(name)
@@ -244,10 +246,10 @@ uint32_t step(const Predecoded& program, TaskContext& t, int32_t* h, uint32_t le
       default: goto leave;
     }
     if (left > kFew && left >= program.line(at)) break;
-  }
+  } while (left != 0);
 leave:
   t.pc = at;
-  t.commands -= left;
+  t.commands += budget - left;
   return left;
 }
 
@@ -261,16 +263,17 @@ leave:
 #undef PARTS
 
 // As run(), for budgets that may be worth the way into what is faster.
-[[gnu::noinline]] uint32_t run_many(const Predecoded& program, const Native* native, TaskContext& t,
-                                    int32_t* h, uint32_t budget) {
-  uint32_t left = std::min(budget, kMaxBudget);
-  const uint32_t beyond = budget - left;
+[[gnu::noinline]] uint32_t run_many(const Predecoded& program, TaskContext& t, int32_t* h, uint32_t budget,
+                                    const Native* native) {
+  if (budget > kMaxBudget) [[unlikely]]
+    return budget - kMaxBudget + run_many(program, t, h, kMaxBudget, native);
+  uint32_t left = budget;
   const auto done_but = [&](uint32_t rest) {
     t.commands += left - rest;
     left = rest;
   };
   while (left != 0) {
-    if (native != nullptr && left > kFew) {
+    if (native != nullptr && left > kFewForNative) {
       const uint32_t need = native->needs[t.pc];
       if (need == 0) {  // no way in: one command is done here, so that it is found behind it
         if (step(program, t, h, 1) != 0) break;
@@ -288,13 +291,13 @@ leave:
       const Exit exit = execute(&program, &t, h, state, nullptr);
       t.pc = static_cast<uint32_t>(state.ip - program.slots());
       done_but(static_cast<uint32_t>(state.left) - state.ip->command.number);
-      if (exit == Exit::Left) break;
+      if (exit == Exit::Left || left == 0) break;
     }
     const uint32_t before = left;
     left = step(program, t, h, left);
     if (left == before) break;
   }
-  return beyond + left;
+  return left;
 }
 
 }  // namespace
@@ -326,8 +329,9 @@ const void* handler_base() { return nullptr; }
 uint16_t handler_of(Operation operation, const void*) { return static_cast<uint16_t>(operation); }
 #endif
 
-uint32_t run(const Predecoded& program, const Native* native, TaskContext& t, int32_t* h, uint32_t budget) {
-  return budget <= kFew ? step(program, t, h, budget) : run_many(program, native, t, h, budget);
+uint32_t run(const Predecoded& program, TaskContext& t, int32_t* h, uint32_t budget, const Native* native) {
+  const bool few = budget - 1 < kFew;  // but not none
+  return few ? step(program, t, h, budget) : run_many(program, t, h, budget, native);
 }
 
 }  // namespace ipos::vm::fast

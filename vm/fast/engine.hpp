@@ -12,7 +12,7 @@ namespace ipos::vm::fast {
 // this engine: system commands, what would end a task, what would fault. Returns how many of them are left;
 // pc, calls and the count of commands are up to date. Does at most 2^30 at a time. With machine code of the
 // same program it executes that as far as the budget goes.
-uint32_t run(const Predecoded& program, const Native* native, TaskContext& t, int32_t* h, uint32_t budget);
+uint32_t run(const Predecoded& program, TaskContext& t, int32_t* h, uint32_t budget, const Native* native);
 
 // What stands for an operation in Slot::Command::handler: its number, or with computed goto the distance of
 // its handler from handler_base().

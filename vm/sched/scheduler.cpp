@@ -1,14 +1,9 @@
-// One tick of all tasks.
+// Single steps and idle skipping.
 #include "vm/sched/scheduler.hpp"
 
 #include <algorithm>
 
 namespace ipos::vm {
-
-uint32_t run_tick(Machine& machine, const Rates& rates) {
-  machine.tick();
-  return machine.run_tasks(rates.commands);
-}
 
 void TickSteps::begin(Machine& machine, const Rates& rates) {
   machine.tick();
