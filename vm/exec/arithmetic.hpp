@@ -22,8 +22,8 @@ constexpr int32_t divide(int32_t a, int32_t b) { return b == -1 ? wrap(0U - bits
 constexpr int32_t remainder(int32_t a, int32_t b) { return b == -1 ? 0 : a % b; }
 
 constexpr int32_t set_bit(int32_t value, int32_t bit, bool on) {
-  const uint32_t mask = 1U << (bits(bit) & 31U);
-  return wrap(on ? bits(value) | mask : bits(value) & ~mask);
+  const uint32_t at = bits(bit) & 31U;
+  return wrap((bits(value) & ~(1U << at)) | uint32_t{on} << at);
 }
 constexpr bool test_bit(int32_t value, int32_t bit) { return (bits(value) >> (bits(bit) & 31U) & 1U) != 0; }
 

@@ -104,7 +104,7 @@ bool Machine::interrupts_rest() const {
   for (const EventInterrupt& interrupt : interrupts_.events)
     if (interrupt.pending) return false;
   if (program_.limits().variables <= kVarIntReq) return true;
-  if ((h_[kVarIntReq] & ((1 << kVariableInterrupts) - 1)) != 0) return false;
+  if ((h_[kVarIntReq] & kAllRequests) != 0) return false;
   for (const VariableInterrupt& interrupt : interrupts_.variables) {
     if (!interrupt.installed || context(interrupt.task).state == TaskState::Stopped) continue;
     VariableInterrupt next = interrupt;

@@ -61,12 +61,14 @@ void Machine::raise_event(Event event) {
 void Machine::set_interrupt(int32_t keyword, uint32_t address) {
   if (keyword == 0) {
     interrupts_.events = {};
+    see_interrupts();
     return;
   }
   static constexpr Event kByKeyword[] = {Event::Error, Event::Timer0, Event::TouchProbe};
   EventInterrupt& interrupt = interrupts_.events[static_cast<size_t>(kByKeyword[keyword - 1])];
   interrupt.installed = true;
   interrupt.address = address;
+  see_interrupts();
 }
 
 // VARINT copies its structure, so that later changes of it do nothing (IPOSplus p. 347).
@@ -74,6 +76,7 @@ const char* Machine::set_variable_interrupt(uint32_t structure, uint32_t address
   const auto element = [&](Element n) { return h_[structure + n]; };
   if (element(kControl) == 0) {
     interrupts_.variables = {};
+    see_interrupts();
     return nullptr;
   }
   if (element(kControl) < 0 || element(kControl) > 2) return "Control of VARINT is none of 0, 1, 2";
@@ -95,16 +98,27 @@ const char* Machine::set_variable_interrupt(uint32_t structure, uint32_t address
   interrupt.compare = element(kCompareVar);
   interrupt.last = h_[interrupt.source];
   interrupt.address = address;
+  see_interrupts();
   return nullptr;
 }
 
-int Machine::active_context(int task) const {
+// After a routine has begun or ended.
+void Machine::choose_active(int task) {
   int active = task;
   for (int number = kTasks + 1; number <= kContexts; ++number) {
     const TaskContext& t = context(number);
     if (t.state != TaskState::Stopped && t.task == task && t.rank > context(active).rank) active = number;
   }
-  return active;
+  active_[static_cast<size_t>(task - 1)] = static_cast<uint8_t>(active - 1);
+}
+
+// After interrupts have been installed or removed.
+void Machine::see_interrupts() {
+  installed_ = false;
+  for (const EventInterrupt& interrupt : interrupts_.events)
+    installed_ = installed_ || interrupt.installed || interrupt.pending;
+  for (const VariableInterrupt& interrupt : interrupts_.variables)
+    installed_ = installed_ || interrupt.installed;
 }
 
 // Begins the routine unless the task runs one that is not below it.
@@ -114,6 +128,7 @@ bool Machine::begin_routine(int number, int task, uint8_t rank, uint32_t address
   begin(number, address);
   context_at(number).task = static_cast<uint8_t>(task);
   context_at(number).rank = rank;
+  choose_active(task);
   return true;
 }
 

@@ -11,6 +11,7 @@
 namespace ipos::vm {
 
 inline constexpr uint32_t kVarIntReq = 530;  // bits 0..3 request variable interrupts 0..3 (IPOSplus p. 38)
+inline constexpr int32_t kAllRequests = (1 << kVariableInterrupts) - 1;
 inline constexpr int32_t kMaxPriority = 10;  // of variable interrupts; ours
 
 enum class CompareMode : uint8_t {

@@ -19,6 +19,7 @@ void Machine::start() {
   fault_ = {};
   contexts_ = {};
   interrupts_ = {};
+  installed_ = false;
   start_task(1, 0);
 }
 
@@ -35,10 +36,16 @@ void Machine::start_task(int task, uint32_t address) {
   context_at(task).task = static_cast<uint8_t>(task);
 }
 
+void Machine::end(TaskContext& t) {
+  t.state = TaskState::Stopped;
+  choose_active(t.task);
+}
+
 void Machine::stop_context(int number) {
   TaskContext& t = context_at(number);
+  if (t.state == TaskState::Stopped) return;
   const bool host_waits = t.state == TaskState::Waiting && t.wait_ms == 0;
-  t.state = TaskState::Stopped;
+  end(t);
   if (host_waits && host_.cancel != nullptr) host_.cancel(host_.self, *this, number);
 }
 
@@ -51,39 +58,65 @@ void Machine::stop_all() {
   for (int number = 1; number <= kContexts; ++number) stop_context(number);
 }
 
-RunResult Machine::run(int task, uint32_t budget) {
-  uint32_t used = 0;
+// Returns how many of the budget are left in front of a command that is the reference interpreter's.
+inline uint32_t Machine::run_fast(TaskContext& t, uint32_t budget) {
+  if constexpr (kFastEngine)
+    if (fast_ != nullptr) return fast::run(*fast_, t, h_.data(), budget, native_);
+  return budget;
+}
+
+inline RunResult Machine::run_task(int task, uint32_t budget) {
+  TaskContext& t = contexts_[active_[static_cast<size_t>(task - 1)]];
+  if (t.state != TaskState::Ready) return run_on(task, budget, 0);
+  const uint32_t left = run_fast(t, budget);
+  return left == 0 ? RunResult{Stop::Budget, budget} : run_on(task, budget, budget - left);
+}
+
+RunResult Machine::run(int task, uint32_t budget) { return run_task(task, budget); }
+
+uint32_t Machine::run_tasks(const std::array<uint32_t, kTasks>& budgets) {
+  uint32_t executed = 0;
+  for (int task = 1; task <= kTasks; ++task)
+    executed += run_task(task, budgets[static_cast<size_t>(task - 1)]).commands;
+  return executed;
+}
+
+// From a command on that is the reference interpreter's, if there is one to be executed.
+RunResult Machine::run_on(int task, uint32_t budget, uint32_t used) {
   for (;;) {
     const int number = active_context(task);
     TaskContext& t = context_at(number);
-    while (t.state == TaskState::Ready) {
-      if constexpr (kFastEngine) {
-        if (fast_ != nullptr) {
-          const uint32_t piece = std::min(budget - used, fast::kMaxBudget);
-          const uint32_t done = fast::run(*fast_, native_, t, h_.data(), piece);
-          used += done;
-          if (done == piece && used != budget) continue;
-        }
-      }
-      if (used == budget) return {Stop::Budget, used};
-      ++used;
-      ++t.commands;
-      const Stop stop = execute(number, t);
-      if (stop == Stop::Faulted) return {stop, used};
-      if (stop != Stop::Budget) break;
-    }
     if (t.state == TaskState::Waiting) return {Stop::Waiting, used};
-    // A routine has ended: what it interrupted goes on, if the task is still there.
-    if (t.state == TaskState::Stopped && context(task).state == TaskState::Stopped)
-      return {Stop::Ended, used};
+    if (t.state == TaskState::Stopped) return {Stop::Ended, used};
+    if (used == budget) return {Stop::Budget, used};
+    ++used;
+    ++t.commands;
+    if (execute(number, t) == Stop::Faulted) return {Stop::Faulted, used};
+    // It may have ended a routine: then what that interrupted goes on.
+    TaskContext& next = context_at(active_context(task));
+    if (next.state == TaskState::Ready) used = budget - run_fast(next, budget - used);
   }
 }
 
 void Machine::tick() {
-  for (TaskContext& t : contexts_)
-    if (t.state == TaskState::Waiting && t.wait_ms != 0 && --t.wait_ms == 0) go_on(t);
-  take_events();
-  take_variable_interrupts();
+  if (waits_) pass_millisecond();
+  if (installed_) {
+    take_events();
+    take_variable_interrupts();
+  } else if (program_.limits().variables > kVarIntReq) {
+    h_[kVarIntReq] &= ~kAllRequests;  // nobody is there to take them
+  }
+}
+
+void Machine::pass_millisecond() {
+  waits_ = false;
+  for (TaskContext& t : contexts_) {
+    if (t.state != TaskState::Waiting || t.wait_ms == 0) continue;
+    if (--t.wait_ms == 0)
+      go_on(t);
+    else
+      waits_ = true;
+  }
 }
 
 void Machine::resume(int context) {
@@ -141,7 +174,7 @@ Stop Machine::execute(int number, TaskContext& t) {
     case Opcode::End: stop_task(t.task); return Stop::Ended;
     case Opcode::Ret:
       if (t.depth == 0) {
-        t.state = TaskState::Stopped;
+        end(t);
         return Stop::Ended;
       }
       t.pc = t.calls[--t.depth];
@@ -234,6 +267,7 @@ Stop Machine::execute(int number, TaskContext& t) {
       if (ms <= 0) break;  // nothing to wait for (ours)
       t.wait_ms = bits(ms);
       t.state = TaskState::Waiting;
+      waits_ = true;
       return Stop::Waiting;
     }
 

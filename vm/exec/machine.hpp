@@ -72,6 +72,8 @@ class Machine {
   // Executes at most `budget` commands of a task, its interrupt routines first. Exact: a budget of 1 is a
   // single step.
   RunResult run(int task, uint32_t budget);
+  // The same of all tasks in turn. Returns the commands executed.
+  uint32_t run_tasks(const std::array<uint32_t, kTasks>& budgets);
 
   // One millisecond has passed: WAIT counts down, contexts whose wait is over become ready, interrupts that
   // are due begin.
@@ -105,7 +107,7 @@ class Machine {
   const TaskContext& task(int task) const { return context(task); }
   const TaskContext& context(int number) const { return contexts_[static_cast<size_t>(number - 1)]; }
   // What executes when the task gets commands: an interrupt routine, or the task itself.
-  int active_context(int task) const;
+  int active_context(int task) const { return active_[static_cast<size_t>(task - 1)] + 1; }
   const Interrupts& interrupts() const { return interrupts_; }
   const Fault& fault() const { return fault_; }
   const VerifiedImage& program() const { return program_; }
@@ -114,15 +116,22 @@ class Machine {
   friend class SavedState;
   TaskContext& context_at(int number) { return contexts_[static_cast<size_t>(number - 1)]; }
   void begin(int number, uint32_t address);
+  void end(TaskContext& t);
   void stop_context(int number);
   void go_on(TaskContext& t);
+  uint32_t run_fast(TaskContext& t, uint32_t budget);
+  RunResult run_task(int task, uint32_t budget);
+  RunResult run_on(int task, uint32_t budget, uint32_t used);
   void raise(int number, uint8_t fault, const char* reason);
   Stop execute(int number, TaskContext& t);
 
   void set_interrupt(int32_t keyword, uint32_t address);
   const char* set_variable_interrupt(uint32_t structure, uint32_t address);  // why not, or nullptr
+  void pass_millisecond();
   void take_events();
   void take_variable_interrupts();
+  void choose_active(int task);
+  void see_interrupts();
   struct Spin;
   Spin find_spin(int number, uint32_t longest);
   bool try_command(int number, Spin& spin);
@@ -135,6 +144,10 @@ class Machine {
   const fast::Native* native_ = nullptr;
   Fault fault_;
   Interrupts interrupts_;
+  // What follows from contexts and interrupts and is asked for in every millisecond.
+  std::array<uint8_t, kTasks> active_{0, 1, 2};  // in contexts_, what executes of each task
+  bool installed_ = false;                       // interrupts are installed
+  bool waits_ = false;                           // a context may wait for time to pass
   std::array<TaskContext, kContexts> contexts_{};
   std::array<int32_t, kMaxVariables> h_{};
 };

@@ -126,6 +126,9 @@ const uint8_t* SavedState::read(const uint8_t* bytes, Machine& machine) {
   visit_fault(in, machine.fault_);
   machine.fault_.reason = "";
   for (int32_t& value : machine.variables()) in(value);
+  for (int task = 1; task <= kTasks; ++task) machine.choose_active(task);
+  machine.see_interrupts();
+  machine.waits_ = true;
   return in.at();
 }
 

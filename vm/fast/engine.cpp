@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <type_traits>
 
 #include "vm/fast/fill_loop.hpp"
 
@@ -18,6 +19,12 @@ struct State {
 };
 
 enum class Exit : uint8_t { Left, Spent };
+
+// So many commands are done sooner one by one than by the ways into execute() and into machine code.
+constexpr uint32_t kFew = 8;
+constexpr uint32_t kFewForNative = 16;
+
+constexpr uint32_t kMaxBudget = 1U << 30;  // so that State::left has room for it
 
 uint32_t call_depth(const Predecoded& program) {
   return std::min<uint32_t>(program.program().limits().call_depth, kMaxCallDepth);
@@ -193,54 +200,57 @@ spent : state = {ip, left};
 return Exit::Spent;
 }
 
-// Exactly `left` commands, or those in front of one that is left to the reference interpreter. Ends early
-// behind a jump when the budget would do for the line there.
-struct Steps {
-  const Slot* ip;
-  uint32_t left;
-  Exit exit;
-};
-Steps step(const Predecoded& program, TaskContext& t, int32_t* h, const Slot* ip, uint32_t left) {
+// Exactly `budget` commands, at least one, or those in front of one that is left to the reference
+// interpreter. Ends early behind a jump, too, where many are left and would do for the line there. Returns
+// what is left.
+uint32_t step(const Predecoded& program, TaskContext& t, int32_t* h, uint32_t budget) {
   const Slot* const slots = program.slots();
   const uint32_t* const code = program.program().code().data();
-  const uint32_t variables = program.program().limits().variables;
-  while (left != 0) {
-    const Slot* to = nullptr;
-    switch (static_cast<Opcode>(code[ip - slots] & 0xFF)) {
+  uint32_t at = t.pc;
+  uint32_t left = budget;
+  do {
+    const Slot* const ip = slots + at;
+    switch (static_cast<Opcode>(code[at] & 0xFF)) {
 #define SPECIAL(name)
 #define FUSED(name, ...)
 #define FUSED_CALL(name, ...)
 #define FUSED_RET(name, ...)
 #define FILL(name, ...)
-#define PLAIN(name)                                           \
-  case Opcode::name: {                                        \
-    using F = Fused<O<name>>;                                 \
-    const int end = F::run(ip, h, variables);                 \
-    if (F::kFaults && end < 0) return {ip, left, Exit::Left}; \
-    if (F::kTests && end > 0)                                 \
-      to = ip + end + ip[end].route.offset;                   \
-    else                                                      \
-      ip += F::kWords;                                        \
-    break;                                                    \
+#define PLAIN(name)                                                      \
+  case Opcode::name: {                                                   \
+    using F = Fused<O<name>>;                                            \
+    /* It calls a function: all others would pay for that. */            \
+    if (std::is_same_v<name, Copy>) goto leave;                          \
+    const int end = F::run(ip, h, program.program().limits().variables); \
+    if (F::kFaults && end < 0) goto leave;                               \
+    --left;                                                              \
+    if (!F::kTests || end == 0) {                                        \
+      at += F::kWords;                                                   \
+      continue;                                                          \
+    }                                                                    \
+    at += static_cast<uint32_t>(end + ip[end].route.offset);             \
+    break;                                                               \
   }
 #include "vm/fast/operations.def"
       case Opcode::Call:
-        if (t.depth == call_depth(program)) return {ip, left, Exit::Left};
-        t.calls[t.depth++] = static_cast<uint16_t>(ip - slots + 2);
-        to = ip + 1 + ip[1].route.offset;
+        if (t.depth == call_depth(program)) goto leave;
+        t.calls[t.depth++] = static_cast<uint16_t>(at + 2);
+        at += static_cast<uint32_t>(1 + ip[1].route.offset);
+        --left;
         break;
       case Opcode::Ret:
-        if (t.depth == 0) return {ip, left, Exit::Left};
-        to = slots + t.calls[--t.depth];
+        if (t.depth == 0) goto leave;
+        at = t.calls[--t.depth];
+        --left;
         break;
-      default: return {ip, left, Exit::Left};
+      default: goto leave;
     }
-    --left;
-    if (to == nullptr) continue;
-    ip = to;
-    if (left != 0 && left >= program.line(static_cast<uint32_t>(ip - slots))) break;
-  }
-  return {ip, left, Exit::Spent};
+    if (left > kFew && left >= program.line(at)) break;
+  } while (left != 0);
+leave:
+  t.pc = at;
+  t.commands += budget - left;
+  return left;
 }
 
 #undef BEGIN
@@ -251,6 +261,44 @@ Steps step(const Predecoded& program, TaskContext& t, int32_t* h, const Slot* ip
 #undef CALL
 #undef RETURN
 #undef PARTS
+
+// As run(), for budgets that may be worth the way into what is faster.
+[[gnu::noinline]] uint32_t run_many(const Predecoded& program, TaskContext& t, int32_t* h, uint32_t budget,
+                                    const Native* native) {
+  if (budget > kMaxBudget) [[unlikely]]
+    return budget - kMaxBudget + run_many(program, t, h, kMaxBudget, native);
+  uint32_t left = budget;
+  const auto done_but = [&](uint32_t rest) {
+    t.commands += left - rest;
+    left = rest;
+  };
+  while (left != 0) {
+    if (native != nullptr && left > kFewForNative) {
+      const uint32_t need = native->needs[t.pc];
+      if (need == 0) {  // no way in: one command is done here, so that it is found behind it
+        if (step(program, t, h, 1) != 0) break;
+        --left;
+        continue;
+      }
+      if (left >= need) {
+        done_but(native->run(*native, t, h, left));
+        if (left == 0 || native->needs[t.pc] == 0) continue;
+      }
+    }
+    if (left >= program.line(t.pc)) {
+      const Slot* const ip = program.slots() + t.pc;
+      State state{ip, static_cast<int32_t>(left + ip->command.number)};
+      const Exit exit = execute(&program, &t, h, state, nullptr);
+      t.pc = static_cast<uint32_t>(state.ip - program.slots());
+      done_but(static_cast<uint32_t>(state.left) - state.ip->command.number);
+      if (exit == Exit::Left || left == 0) break;
+    }
+    const uint32_t before = left;
+    left = step(program, t, h, left);
+    if (left == before) break;
+  }
+  return left;
+}
 
 }  // namespace
 
@@ -281,42 +329,9 @@ const void* handler_base() { return nullptr; }
 uint16_t handler_of(Operation operation, const void*) { return static_cast<uint16_t>(operation); }
 #endif
 
-uint32_t run(const Predecoded& program, const Native* native, TaskContext& t, int32_t* h, uint32_t budget) {
-  const Slot* const slots = program.slots();
-  const Slot* ip = slots + t.pc;
-  uint32_t left = budget;
-  for (;;) {
-    Exit exit = Exit::Spent;
-    bool single = false;
-    if (native != nullptr && left != 0) {
-      const auto enters = [&] { return native->needs[static_cast<size_t>(ip - slots)] != 0; };
-      // Where there is no way in one command is done here, so that it is found behind it.
-      single = !enters();
-      if (!single) {
-        t.pc = static_cast<uint32_t>(ip - slots);
-        if (left >= native->needs[t.pc]) left = native->run(*native, t, h, left);
-        ip = slots + t.pc;
-        if (left != 0 && !enters()) continue;
-      }
-    }
-    if (!single && left >= program.line(static_cast<uint32_t>(ip - slots))) {
-      State state{ip, static_cast<int32_t>(left + ip->command.number)};
-      exit = execute(&program, &t, h, state, nullptr);
-      ip = state.ip;
-      left = static_cast<uint32_t>(state.left) - ip->command.number;
-    }
-    if (exit == Exit::Spent) {
-      const uint32_t most = single ? 1 : left;
-      const Steps steps = step(program, t, h, ip, most);
-      ip = steps.ip;
-      left -= most - steps.left;
-      exit = steps.exit;
-    }
-    if (exit == Exit::Left || left == 0) break;
-  }
-  t.pc = static_cast<uint32_t>(ip - slots);
-  t.commands += budget - left;
-  return budget - left;
+uint32_t run(const Predecoded& program, TaskContext& t, int32_t* h, uint32_t budget, const Native* native) {
+  const bool few = budget - 1 < kFew;  // but not none
+  return few ? step(program, t, h, budget) : run_many(program, t, h, budget, native);
 }
 
 }  // namespace ipos::vm::fast

@@ -9,12 +9,10 @@
 namespace ipos::vm::fast {
 
 // Executes commands of a context until `budget` of them are done or until it stands at one that is not for
-// this engine: system commands, what would end a task, what would fault. Returns how many it has executed;
-// pc, calls and the count of commands are up to date. At most 2^30 at a time. With machine code of the same
-// program it executes that as far as the budget goes.
-uint32_t run(const Predecoded& program, const Native* native, TaskContext& t, int32_t* h, uint32_t budget);
-
-inline constexpr uint32_t kMaxBudget = 1U << 30;
+// this engine: system commands, what would end a task, what would fault. Returns how many of them are left;
+// pc, calls and the count of commands are up to date. Does at most 2^30 at a time. With machine code of the
+// same program it executes that as far as the budget goes.
+uint32_t run(const Predecoded& program, TaskContext& t, int32_t* h, uint32_t budget, const Native* native);
 
 // What stands for an operation in Slot::Command::handler: its number, or with computed goto the distance of
 // its handler from handler_base().

@@ -1,17 +1,9 @@
-// One tick of all tasks.
+// Single steps and idle skipping.
 #include "vm/sched/scheduler.hpp"
 
 #include <algorithm>
 
 namespace ipos::vm {
-
-uint32_t run_tick(Machine& machine, const Rates& rates) {
-  machine.tick();
-  uint32_t executed = 0;
-  for (int task = 1; task <= kTasks; ++task)
-    executed += machine.run(task, rates.commands[static_cast<size_t>(task - 1)]).commands;
-  return executed;
-}
 
 void TickSteps::begin(Machine& machine, const Rates& rates) {
   machine.tick();

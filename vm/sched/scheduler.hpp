@@ -16,7 +16,10 @@ struct Rates {
 };
 
 // One millisecond: waits count down, then every task gets its commands. Returns the commands executed.
-uint32_t run_tick(Machine& machine, const Rates& rates);
+inline uint32_t run_tick(Machine& machine, const Rates& rates) {
+  machine.tick();
+  return machine.run_tasks(rates.commands);
+}
 
 // A millisecond that can be left between any two commands, for debuggers: the commands of run_tick in the
 // same order.

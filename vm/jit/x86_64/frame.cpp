@@ -2,6 +2,7 @@
 //
 // The block of emitter.hpp is on the caller's stack, and the stack pointer points into it. Above the return
 // addresses are the caller's stack pointer and the frame.
+#include <algorithm>
 #include <cstddef>
 
 #include "vm/jit/x86_64/emitter.hpp"
@@ -72,9 +73,18 @@ void EmitterX86::leave() {
   a_.mov(field(x86::rdi, offsetof(Frame, pc)), x86::eax);
   a_.mov(field(x86::rdi, offsetof(Frame, number)), number_);
   a_.mov(x86::rsi, x86::rsp);
+  // Where no call of machine code is open there is nothing to unwind.
+  const asmjit::Label unwound = a_.newLabel();
+  const auto most_calls = static_cast<int32_t>(std::min<uint32_t>(program_.limits.call_depth, kMaxCallDepth));
+  a_.mov(x86::rcx, field(x86::rdi, offsetof(Frame, context)));
+  a_.movzx(x86::ecx, x86::byte_ptr(x86::rcx, offsetof(TaskContext, depth)));
+  a_.lea(x86::rcx, x86::ptr(x86::rsp, x86::rcx, 3, -8 * most_calls));
+  a_.cmp(x86::rcx, x86::rbx);
+  a_.je(unwound);
   a_.and_(x86::rsp, -16);
   a_.mov(x86::rax, asmjit::Imm(reinterpret_cast<uintptr_t>(unwind_)));
   a_.call(x86::rax);
+  a_.bind(unwound);
   a_.mov(x86::rsp, x86::ptr(x86::rbx, kCaller));
   for (size_t n = std::size(kSaved); n-- > 0;) a_.pop(kSaved[n]);
   a_.ret();
