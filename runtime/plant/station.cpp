@@ -117,6 +117,9 @@ void Station::connect_serial() {
 
 void Station::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
   if (asleep_ && sleeps_through(now)) return;
+  on_course_ = on_course_ && stays_on_course();
+  touched_ = false;
+  if (on_course_ && machine_ && (!positioning_ || positioning_->idles())) return glide(now);
   move_drive(now);
   if (!on_course_) {
     report_drive(now);
@@ -133,10 +136,6 @@ void Station::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
 
 void Station::move_drive(Time now) {
   Drive& drive = drive_.state();
-  on_course_ = on_course_ && stays_on_course();
-  touched_ = false;
-  glides_ = on_course_ && positioning_ && machine_ && positioning_->idles();
-  if (glides_) return drive.go_on();
   if (!on_course_) {
     drive.set_inputs(inputs_.levels());
     drive.set_analog(inputs_.analog());
@@ -168,6 +167,10 @@ void Station::resume_tick() {
 
 void Station::end_tick(Time now) {
   if (machine_) end_program(now);
+  finish_tick(now);
+}
+
+void Station::finish_tick(Time now) {
   for (const auto& port : sbus_)
     if (port) port->tick(now);
   drive_.memory().tick(now);
@@ -182,19 +185,18 @@ void Station::begin_program(Time now) {
     restart_after_reset(now);
     mirrored_->show(h);
   }
-  if (glides_) {
-    positioning_->go_on(h, drive_.syncs());
-  } else {
-    show_drive(drive_.state(), h);
-    if (positioning_) show_positioning(now);
-  }
-  if (machine_->fault().number == 0) {
-    const Timers::Expired expired = timers_.tick(h);
-    if (expired.timer_0) machine_->raise_event(vm::Event::Timer0);
-    if (expired.watchdog) machine_->raise_fault(kFaultWatchdog, "the watchdog has run out, H490 is 0");
-  }
+  show_drive(drive_.state(), h);
+  if (positioning_) show_positioning(now);
+  count_timers(h);
   if (!on_course_ && pid_) pid_->tick(h);
   if (on_course_ ? !quiet_ : course_noted_) noted_.note(h);
+}
+
+void Station::count_timers(std::span<int32_t> h) {
+  if (machine_->fault().number != 0) return;
+  const Timers::Expired expired = timers_.tick(h);
+  if (expired.timer_0) machine_->raise_event(vm::Event::Timer0);
+  if (expired.watchdog) machine_->raise_fault(kFaultWatchdog, "the watchdog has run out, H490 is 0");
 }
 
 void Station::show_positioning(Time now) {
@@ -205,9 +207,7 @@ void Station::show_positioning(Time now) {
 
 void Station::end_program(Time now) {
   const std::span<int32_t> h = machine_->variables();
-  const bool fresh_fault = machine_->fault().number != 0 && !fault_reported_;
-  on_course_ =
-      on_course_ && ((quiet_ && !touched_) || noted_.same(h)) && !drive_.has_reasons() && !fresh_fault;
+  on_course_ = on_course_ && !has_news();
   if (on_course_) return;
   mirrored_->take(h);
   take_program_orders(h, drive_.state());
@@ -216,7 +216,7 @@ void Station::end_program(Time now) {
     journal_.note(now, Weight::Why, config_.name, "refused " + std::move(refused));
   for (std::string& obstacle : drive_.take_obstacles())
     journal_.note(now, Weight::Why, config_.name, std::move(obstacle));
-  if (fresh_fault) report_fault(now);
+  if (has_fresh_fault()) report_fault(now);
 }
 
 // An error that is new, or back after a reset, is the event of the ERROR interrupt; warnings are not (ours).

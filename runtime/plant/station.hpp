@@ -169,6 +169,12 @@ class Station final : private EventTarget, private Sleeper {
   bool stays_on_course() {
     return drive_.state().course_left() != 0 && inputs_.known() && (!touched_ || unwritten());
   }
+  void glide(Time now);
+  // Behind the tasks: somebody has to look what has happened.
+  bool has_fresh_fault() const { return machine_->fault().number != 0 && !fault_reported_; }
+  bool has_news() {
+    return drive_.has_reasons() || has_fresh_fault() || ((!quiet_ || touched_) && !unwritten());
+  }
   bool unwritten() { return !machine_ || noted_.same(machine_->variables()); }
   void leave_course();
   void try_course();
@@ -188,10 +194,12 @@ class Station final : private EventTarget, private Sleeper {
   void reconnect_serial();
   void begin_program(Time now);
   void show_positioning(Time now);
+  void count_timers(std::span<int32_t> h);
   const vm::Rates& rates() const { return rates_ ? *rates_ : drive_.rates(); }
   bool run_commands();
   void end_program(Time now);
   void end_tick(Time now);
+  void finish_tick(Time now);
   void raise_drive_events();
   void restart_after_reset(Time now);
   StationServices services();
@@ -237,7 +245,6 @@ class Station final : private EventTarget, private Sleeper {
 
   // Ticks that only go on (station_course.cpp).
   bool on_course_ = false;
-  bool glides_ = false;   // in this tick; positioning has nothing to do either
   bool quiet_ = false;    // the program's own commands write none of the noted variables
   bool touched_ = false;  // somebody else may have written them since the last tick
   NotedVariables noted_;

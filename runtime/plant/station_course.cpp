@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "runtime/plant/station.hpp"
+#include "runtime/services/drive_variables.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -12,6 +13,22 @@ namespace {
 constexpr uint32_t kLongestPause = 16;
 
 }  // namespace
+
+// The tick of a station on its course whose positioning has nothing to do.
+void Station::glide(Time now) {
+  drive_.state().go_on();
+  const std::span<int32_t> h = machine_->variables();
+  if (positioning_)
+    positioning_->go_on(h, drive_.syncs());
+  else
+    show_drive(drive_.state(), h);
+  count_timers(h);
+  if (!quiet_) noted_.note(h);
+  try_program();
+  vm::run_tick(*machine_, rates());
+  if (has_news()) end_program(now);
+  finish_tick(now);
+}
 
 // What is written is compared with what was there before. A program that can write it with commands of its
 // own is not asked: there the variables are noted each time before it runs.
