@@ -156,7 +156,8 @@ class Station final : private EventTarget, private Sleeper {
 
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
   void make_up();
-  void make_up_variables() override;
+  bool make_up_variables() override;
+  void get_up();
   void wake() override;
   // Left-out ticks are made up for by whoever looks first: nobody can tell.
   void look() const { const_cast<Station*>(this)->make_up(); }
