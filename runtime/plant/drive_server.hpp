@@ -38,9 +38,7 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
 
   // Is told before a bus or a program touches the drive. It must outlive this.
   void use(Sleeper& sleeper) { sleeper_ = &sleeper; }
-  void make_up_variables() {
-    if (sleeper_ != nullptr) sleeper_->make_up_variables();
-  }
+  bool make_up_variables() { return sleeper_ != nullptr && sleeper_->make_up_variables(); }
   void wake() {
     if (sleeper_ != nullptr) sleeper_->wake();
   }

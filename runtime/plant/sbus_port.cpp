@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace ipos::runtime {
 namespace {
@@ -117,12 +118,23 @@ void SbusPort::tell_reasons(Time now) {
   for (std::string& obstacle : drive_.take_obstacles()) note(now, Weight::Why, std::move(obstacle));
 }
 
+void SbusPort::stir() {
+  if (!std::exchange(rests_, false)) return;
+  objects_.each_received([this](uint32_t id) { line_.stir(node(), id); });
+}
+
 // A receive object takes the frame. One that brings the values that are there already wakes nobody.
 bool SbusPort::receive(Time now, const Frame& frame) {
   const auto receiver = objects_.receiver(frame);
   if (!receiver) return false;
-  drive_.make_up_variables();
-  if (objects_.has_taken(*receiver, frame, machine_->variables())) return true;
+  const bool steady = drive_.make_up_variables();
+  if (objects_.has_taken(*receiver, frame, machine_->variables())) {
+    if (steady && !master_.busy() && !slave_.is_sync(frame)) {
+      line_.rest(node(), frame);
+      rests_ = true;
+    }
+    return true;
+  }
   drive_.wake();
   std::string why;
   const bool taken = objects_.on_frame(frame, machine_->variables(), why);

@@ -41,6 +41,7 @@ class SbusPort final : private CanNode, private SlaveObserver {
   void tick(Time now);            // once a millisecond, after the tasks
   Time next_due(Time now) const;  // the first tick behind `now` that does something; kNever for none
   bool sends_more_than_variables() const { return group_master_.active(); }
+  void stir();  // the variables may change from now on
 
   NodeId node() const { return sender_.node(); }
   CanLine& line() const { return line_; }
@@ -77,6 +78,7 @@ class SbusPort final : private CanNode, private SlaveObserver {
   MovilinkBus bus_;
   SbusMaster master_;
   GroupMaster group_master_;
+  bool rests_ = false;  // the line need not tell it of some frames
 };
 
 }  // namespace ipos::runtime

@@ -27,14 +27,14 @@ Station::Station(EventQueue& queue, uint32_t source, const StationConfig& config
                  std::optional<vm::Rates> rates, const Execution& execution)
     : queue_(queue),
       source_(source),
+      execution_(execution),
+      rates_(rates),
+      drive_(*config.unit, config.machine, config.options),
       config_(config),
       lines_(lines),
       journal_(journal),
-      drive_(*config.unit, config.machine, config.options),
       movilink_(drive_, drive_, journal, config.name),
-      image_(std::move(program)),
-      rates_(rates),
-      execution_(execution) {
+      image_(std::move(program)) {
   drive_.use(*this);
   movilink_.use(*this);
   for (const InputSetting& input : config.inputs) inputs_.line(input.input).set = input.level ? 1 : 0;

@@ -159,7 +159,8 @@ class Station final : private EventTarget, private Sleeper {
 
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
   void make_up();
-  void make_up_variables() override;
+  bool make_up_variables() override;
+  void get_up();
   void touch() override;
   void wake() override;
   // Left-out ticks are made up for by whoever looks first: nobody can tell.
@@ -208,18 +209,37 @@ class Station final : private EventTarget, private Sleeper {
 
   EventQueue& queue_;
   uint32_t source_;
+
+  // What every tick looks at stands together, as many stations take turns.
+  bool asleep_ = false;
+  bool on_course_ = false;
+  bool quiet_ = false;           // the program's own commands write none of the noted variables
+  bool touched_ = false;         // somebody else may have written them since the last tick
+  bool trial_ = false;           // this tick is compared with what was before it, for sleep
+  bool course_noted_ = false;    // the same, for a course
+  bool fault_reported_ = false;  // of the program
+  bool in_tick_ = false;
+  EventId tick_ = kNoEvent;
+  CommandRunner* runner_ = nullptr;
+  Execution execution_;
+  std::optional<vm::Rates> rates_;  // instead of P938 and P939
+  std::array<std::unique_ptr<SbusPort>, 2> sbus_;
+  StationInputs inputs_;
+  Timers timers_;
+
+  DriveServer drive_;
+  std::optional<vm::Machine> machine_;
+  std::optional<PositioningService> positioning_;  // of a unit that has it
+
   const StationConfig& config_;
   StationLines lines_;
   Journal& journal_;
-  DriveServer drive_;
-  StationInputs inputs_;
   MovilinkCommand movilink_;
   std::optional<vm::Image> image_;
   std::vector<uint32_t> code_;  // what the machine runs: the verified program memory
   std::vector<vm::fast::Slot> slots_;
   std::optional<vm::fast::Predecoded> predecoded_;  // in slots_
   std::shared_ptr<const vm::fast::Native> native_;  // null: no machine code
-  std::array<std::unique_ptr<SbusPort>, 2> sbus_;
 
   // RS-485; empty without a line.
   std::unique_ptr<SerialPort> x13_;
@@ -227,36 +247,22 @@ class Station final : private EventTarget, private Sleeper {
   std::unique_ptr<Keypad> keypad_;
 
   // What the program works with.
-  Timers timers_;
   std::optional<MirroredValues> mirrored_;
-  std::optional<PidBlock> pid_;                    // MOVIDRIVE B
-  std::optional<PositioningService> positioning_;  // of a unit that has it
+  std::optional<PidBlock> pid_;  // MOVIDRIVE B
   std::optional<PositioningCommands> positioning_commands_;
   std::optional<SystemCommands> commands_;
-  std::optional<vm::Machine> machine_;
-  std::optional<vm::Rates> rates_;  // instead of P938 and P939
-  Execution execution_;
-  CommandRunner* runner_ = nullptr;
   vm::TickSteps steps_;  // with a runner
-  bool in_tick_ = false;
   bool powered_ = false;
   bool was_off_ = false;
-  EventId tick_ = kNoEvent;
 
   // Ticks that only go on (station_course.cpp).
-  bool on_course_ = false;
-  bool quiet_ = false;    // the program's own commands write none of the noted variables
-  bool touched_ = false;  // somebody else may have written them since the last tick
   NotedVariables noted_;
   DriveCourse course_;
-  bool course_noted_ = false;  // this tick is compared with what was before it
-  uint32_t course_in_ = 0;     // ticks until the next comparison
+  uint32_t course_in_ = 0;  // ticks until the next comparison
   uint32_t course_pause_ = 1;
 
   // Sleep (station_sleep.cpp).
-  bool asleep_ = false;
-  bool trial_ = false;     // this tick is compared with what was before it
-  uint32_t trial_in_ = 0;  // ticks until the next one
+  uint32_t trial_in_ = 0;  // ticks until the next trial
   uint32_t pause_ = 1;
   uint64_t idle_ticks_ = 0;  // of the program, from the tick of the trial on
   bool steady_ = true;       // it changes no variable then, not even for a moment
@@ -265,10 +271,10 @@ class Station final : private EventTarget, private Sleeper {
   struct {
     Bytes<PositioningService> positioning;
     std::array<int32_t, vm::kMaxVariables> h;
-  } rest_;                       // before the trial
-  bool fault_reported_ = false;  // of the program
-  uint32_t resets_seen_ = 0;     // of the drive's faults
-  uint8_t error_seen_ = 0;       // error of the drive in the last millisecond
+  } rest_;  // before the trial
+
+  uint32_t resets_seen_ = 0;  // of the drive's faults
+  uint8_t error_seen_ = 0;    // error of the drive in the last millisecond
   // What was last told of the drive.
   uint8_t told_fault_ = 0;
   uint16_t told_reserved_ = 0;  // bits of the control word

@@ -86,7 +86,7 @@ Time Station::next_event(Time now) const {
 bool Station::sleeps_through(Time now) {
   if (now >= sleeps_until_) {
     make_up_to(sleeps_until_ - kMillisecond);
-    asleep_ = false;
+    get_up();
     return false;
   }
   for (const auto& port : sbus_) {
@@ -117,8 +117,16 @@ void Station::make_up() {
   make_up_to(std::min(last, sleeps_until_ - kMillisecond));
 }
 
-void Station::make_up_variables() {
+bool Station::make_up_variables() {
+  if (!asleep_) return false;
   if (!steady_) make_up();
+  return steady_;
+}
+
+void Station::get_up() {
+  asleep_ = false;
+  for (const auto& port : sbus_)
+    if (port) port->stir();
 }
 
 void Station::wake() {
@@ -126,7 +134,7 @@ void Station::wake() {
   trial_ = false;
   if (!asleep_) return;
   make_up();
-  asleep_ = false;
+  get_up();
   trial_in_ = 0;
   queue_.cancel(tick_);
   tick_ = queue_.schedule(next_tick_, source_, *this, kTick);

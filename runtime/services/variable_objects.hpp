@@ -60,6 +60,10 @@ class VariableObjects {
 
   // The receive object a frame is for, and whether its variables have the frame's values already.
   std::optional<size_t> receiver(const Frame& frame) const { return table_.receiver(frame); }
+  template <typename Visit>
+  void each_received(Visit visit) const {
+    for (size_t n = 0; n < table_.state().receive_count; ++n) visit(uint32_t{table_.state().receive[n].id});
+  }
   bool has_taken(size_t receiver, const Frame& frame, std::span<const int32_t> h) const {
     return table_.has_taken(receiver, frame, h);
   }

@@ -2,8 +2,6 @@
 // planning. All lengths count the 3 bits of intermission, as bus load and the rule of _SBusCommDef do.
 #pragma once
 
-#include <array>
-#include <bit>
 #include <bitset>
 #include <cstdint>
 
@@ -24,28 +22,6 @@ WireBits wire_bits(const Frame& frame);
 
 // Exact length with stuff bits.
 uint32_t frame_bits(const Frame& frame);
-
-// The same for frames that come again: of each identifier the last one is remembered, as cyclic telegrams
-// often bring the same values.
-class FrameLengths {
- public:
-  uint32_t of(const Frame& frame) {
-    const uint64_t head =
-        uint64_t{frame.id} << 16 | uint64_t{frame.extended} << 9 | uint64_t{frame.remote} << 8 | frame.length;
-    const auto data = std::bit_cast<uint64_t>(frame.data);
-    Known& known = known_[frame.id % known_.size()];
-    if (known.bits == 0 || known.head != head || known.data != data) known = {head, data, frame_bits(frame)};
-    return known.bits;
-  }
-
- private:
-  struct Known {
-    uint64_t head = 0;  // all but the data
-    uint64_t data = 0;
-    uint32_t bits = 0;
-  };
-  std::array<Known, 256> known_{};
-};
 
 // Without any stuff bit: 47 + 8 n, extended 67 + 8 n.
 constexpr uint32_t unstuffed_bits(uint32_t length, bool extended) {

@@ -180,7 +180,7 @@ inline bool CanLine::begin_plain(uint64_t bit) {
   transfer.outcome = Transfer::Outcome::Delivered;
   transfer.plain = true;
   transfer.start_bit = bit;
-  transfer.bits = lengths_.of(pending.frame);
+  transfer.bits = known_.bits(pending.frame);
   transfer.end = transfer.bits - kIntermissionBits;
   return true;
 }
@@ -223,8 +223,9 @@ inline void CanLine::settle_line() {
   if (rewire_) rebuild_segments();
 }
 
-// To listeners without a receive error that do not want it, a good frame is nothing at all.
-void CanLine::deliver_clean(Time now, const Segment& segment) {
+// To listeners without a receive error that do not want it, a good frame is nothing at all. Of the first word
+// of them some may rest.
+void CanLine::deliver_clean(Time now, const Segment& segment, uint64_t resting) {
   const Transfer& transfer = segment.transfer;
   const auto number = static_cast<uint32_t>(&segment - segments_.data());
   const Frame& frame = transfer.winner().frame;
@@ -238,10 +239,11 @@ void CanLine::deliver_clean(Time now, const Segment& segment) {
     if (!transfer.sent_by(id) && node.segment == number && is_active(node)) node.node->on_frame(now, frame);
   };
   for (size_t n = 0; n < takers.size(); ++n) {
+    const uint64_t wanted = takers[n] & ~(n == 0 ? resting : 0);
     if (erring_.words()[n] != 0)
-      NodeSet::each_bit(takers[n] | erring_.words()[n], n, visit);
+      NodeSet::each_bit(wanted | erring_.words()[n], n, visit);
     else
-      NodeSet::each_bit(takers[n], n, hand_over);
+      NodeSet::each_bit(wanted, n, hand_over);
   }
 }
 
@@ -251,8 +253,8 @@ inline void CanLine::end_plain(Time now) {
   const Transfer& transfer = segment.transfer;
   release(segment);
   report_frame(now, transfer);
-  deliver_clean(now, segment);
   const Transfer::Sender& sender = transfer.senders.front();
+  deliver_clean(now, segment, known_.resting(sender.frame));
   Node& node = nodes_[sender.node];
   if (node.queue.empty() || !node.queue.front().on_wire || !node.counters.untouched()) {
     settle_sender(now, segment, sender);
@@ -344,7 +346,7 @@ bool CanLine::begin_transfer(uint32_t number, uint64_t bit) {
       listeners.others = true;
     }
   }
-  resolve(transfer, listeners, lengths_, shorts_ > 0);
+  resolve(transfer, listeners, known_, shorts_ > 0);
   segment.busy = true;
   return true;
 }
@@ -365,7 +367,7 @@ void CanLine::end_transfer(Time now, uint32_t number) {
   }
   if (transfer.outcome == Transfer::Outcome::Delivered && !transfer.fault.kind &&
       !transfer.winner().frame.extended) {
-    deliver_clean(now, segment);
+    deliver_clean(now, segment, 0);
   } else {
     for (NodeId id = 0; id < nodes_.size(); ++id) {
       if (!transfer.sent_by(id) && nodes_[id].segment == number && is_active(id)) deliver(now, segment, id);

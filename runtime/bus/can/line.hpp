@@ -16,7 +16,7 @@
 
 #include "runtime/bus/can/contenders.hpp"
 #include "runtime/bus/can/error_counters.hpp"
-#include "runtime/bus/can/frame_bits.hpp"
+#include "runtime/bus/can/known_frames.hpp"
 #include "runtime/bus/can/line_fault.hpp"
 #include "runtime/bus/can/node.hpp"
 #include "runtime/bus/can/node_set.hpp"
@@ -48,6 +48,11 @@ class CanLine final : private EventTarget {
   void listen(NodeId node, uint32_t id) {
     if (id < kStandardIdLimit) filter_.open(node, id);
   }
+
+  // The node, which is told of this frame, need not be told of it again before it stirs or another frame with
+  // the identifier has come. It may be told all the same.
+  void rest(NodeId node, const Frame& frame) { known_.rest(node, frame); }
+  void stir(NodeId node, uint32_t id) { known_.stir(node, id); }
 
   SendStatus send(NodeId node, const Frame& frame, uint64_t tag);
   void withdraw(NodeId node, uint64_t tag);
@@ -139,7 +144,7 @@ class CanLine final : private EventTarget {
   static const Pending* first_ready(const Node& node, uint64_t bit);
   uint64_t next_ready(const Node& node) const;
   void queue_changed(NodeId node);
-  void deliver_clean(Time now, const Segment& segment);
+  void deliver_clean(Time now, const Segment& segment, uint64_t resting);
   void drop_queue(NodeId node);
 
   // line_wiring.cpp: who takes part
@@ -169,7 +174,7 @@ class CanLine final : private EventTarget {
   bool recovering_ = false;  // some node may be
   std::vector<CanObserver*> observers_;
   std::vector<Segment> segments_{1};
-  FrameLengths lengths_;
+  KnownFrames known_;
 
   LineFaults faults_;
   std::vector<NodeId> cuts_;  // behind these nodes

@@ -5,6 +5,7 @@
 #include <cassert>
 
 #include "runtime/bus/can/bit_error.hpp"
+#include "runtime/bus/can/frame_bits.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -98,13 +99,13 @@ void repeat(Transfer& transfer, const WireBits& bits) {
 
 }  // namespace
 
-void resolve(Transfer& transfer, Listeners listeners, FrameLengths& lengths, bool short_circuit) {
+void resolve(Transfer& transfer, Listeners listeners, KnownFrames& known, bool short_circuit) {
   assert(!transfer.senders.empty());
   if (short_circuit)  // the start of frame already fails, and the flag is not seen
     return end_with_error(transfer, Transfer::Outcome::NoLevel, 1 + kErrorFlagBits);
   if (transfer.senders.size() == 1 && listeners.any && !transfer.fault.kind) {
     transfer.outcome = Transfer::Outcome::Delivered;
-    transfer.bits = lengths.of(transfer.senders.front().frame);
+    transfer.bits = known.bits(transfer.senders.front().frame);
     transfer.end = transfer.bits - kIntermissionBits;
     return;
   }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "runtime/bus/can/frame.hpp"
-#include "runtime/bus/can/frame_bits.hpp"
+#include "runtime/bus/can/known_frames.hpp"
 #include "runtime/bus/can/line_fault.hpp"
 #include "runtime/bus/can/node.hpp"
 
@@ -61,6 +61,6 @@ struct Listeners {
 };
 
 // Fills outcome, lengths and losers from the senders. `short_circuit`: the line carries no dominant level.
-void resolve(Transfer& transfer, Listeners listeners, FrameLengths& lengths, bool short_circuit = false);
+void resolve(Transfer& transfer, Listeners listeners, KnownFrames& known, bool short_circuit = false);
 
 }  // namespace ipos::runtime

@@ -64,10 +64,10 @@ TEST(Collision, LastsAsLongAsInTheBitModel) {
       b.data[random() % a.length] ^= static_cast<uint8_t>(1U << random() % 8);
     }
     const bool listener = i % 2 == 0;
-    FrameLengths lengths;
+    KnownFrames known;
     Transfer transfer;
     transfer.senders = {{0, a, 0, true, false}, {1, b, 0, true, false}};
-    resolve(transfer, {listener, listener}, lengths);
+    resolve(transfer, {listener, listener}, known);
     ASSERT_EQ(transfer.outcome, Transfer::Outcome::Collision);
     ASSERT_EQ(transfer.end, collision_model(tests::wire(a), tests::wire(b), listener))
         << tests::wire(a) << '\n'

@@ -98,13 +98,13 @@ TEST(LineFault, DisturbedFramesLastAsLongAsInTheBitModel) {
     const bool sender_active = who == 1 || random() % 4 != 0;
     const tests::Disturbed model = tests::disturb(wire, bit, who, {sender_active, true, true});
     if (who == 1 && model.received[0]) continue;  // a CRC that fits by chance: not modelled by the line
-    FrameLengths lengths;
+    KnownFrames known;
     Transfer transfer;
     transfer.senders = {{0, frame, 0, sender_active, false}};
     transfer.fault.kind = FaultKind::Corrupt;
     transfer.fault.node = who == -1 ? kNoNode : static_cast<NodeId>(who);
     transfer.fault.chance = chance;
-    resolve(transfer, {true, true, who == 1, who == 1, true}, lengths);
+    resolve(transfer, {true, true, who == 1, who == 1, true}, known);
     if (model.received[0]) {  // a passive sender that stops where the frame is recessive anyway
       ASSERT_EQ(transfer.outcome, Transfer::Outcome::Repeated) << wire << ' ' << bit << ' ' << who;
       continue;

@@ -1,0 +1,57 @@
+// What is known of frames that come again, as cyclic telegrams often bring the same values: of each
+// identifier the last frame, how long it is on the wire, and which nodes need not be told of it another time.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+
+#include "runtime/bus/can/frame.hpp"
+#include "runtime/bus/can/frame_bits.hpp"
+#include "runtime/bus/node_id.hpp"
+
+namespace ipos::runtime {
+
+class KnownFrames {
+ public:
+  static constexpr NodeId kMostNodes = 64;  // others are told of every frame
+
+  // frame_bits(). Another frame than the last one is told to everybody.
+  uint32_t bits(const Frame& frame) {
+    const uint64_t head = head_of(frame);
+    const auto data = std::bit_cast<uint64_t>(frame.data);
+    Known& known = known_[frame.id % known_.size()];
+    if (known.bits == 0 || known.head != head || known.data != data)
+      known = {head, data, 0, frame_bits(frame)};
+    return known.bits;
+  }
+
+  // Nothing when the frame is not the last one of its identifier.
+  void rest(NodeId node, const Frame& frame) {
+    Known& known = known_[frame.id % known_.size()];
+    if (node < kMostNodes && known.head == head_of(frame) &&
+        known.data == std::bit_cast<uint64_t>(frame.data))
+      known.resting |= uint64_t{1} << node;
+  }
+  void stir(NodeId node, uint32_t id) {
+    if (node < kMostNodes) known_[id % known_.size()].resting &= ~(uint64_t{1} << node);
+  }
+  // A bit for each node that need not be told of this frame, the last one.
+  uint64_t resting(const Frame& frame) const { return known_[frame.id % known_.size()].resting; }
+
+ private:
+  struct Known {
+    uint64_t head = 0;  // all but the data
+    uint64_t data = 0;
+    uint64_t resting = 0;
+    uint32_t bits = 0;  // 0: there was no frame
+  };
+  static uint64_t head_of(const Frame& frame) {
+    return uint64_t{frame.id} << 16 | uint64_t{frame.extended} << 9 | uint64_t{frame.remote} << 8 |
+           frame.length;
+  }
+
+  std::array<Known, 256> known_{};
+};
+
+}  // namespace ipos::runtime
