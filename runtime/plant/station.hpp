@@ -223,11 +223,11 @@ class Station final : private EventTarget, private Sleeper {
   CommandRunner* runner_ = nullptr;
   Execution execution_;
   std::optional<vm::Rates> rates_;  // instead of P938 and P939
-  std::array<std::unique_ptr<SbusPort>, 2> sbus_;
   StationInputs inputs_;
   Timers timers_;
 
   DriveServer drive_;
+  std::array<std::unique_ptr<SbusPort>, 2> sbus_;
   std::optional<vm::Machine> machine_;
   std::optional<PositioningService> positioning_;  // of a unit that has it
 
