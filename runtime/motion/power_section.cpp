@@ -2,10 +2,13 @@
 #include "runtime/motion/power_section.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace ipos::runtime {
 namespace {
+
+__extension__ using Wide = unsigned __int128;
 
 constexpr int64_t kHundredPercent = 100'000;
 constexpr int64_t kLosses = 20'000;  // of motor and inverter at IN, 1/1000 % of the rated power
@@ -95,18 +98,26 @@ void PowerSection::find_power(const Speed& speed) {
 
 void PowerSection::go_on(uint32_t steps) {
   draw(steps);
-  unit_.follow(unit_target_, steps);
-  motor_.follow(motor_target_, steps);
-  heat_sink_.follow(heat_sink_target_, steps);
+  for (; steps != 0; --steps) {
+    bool moved = unit_.follow(unit_target_);
+    moved |= motor_.follow(motor_target_);
+    moved |= heat_sink_.follow(heat_sink_target_);
+    if (!moved) return;
+  }
 }
 
-// Below one digit of the division nothing changes any more.
-void PowerSection::Lag::follow(int64_t target, uint32_t steps) {
-  for (; steps != 0; --steps) {
-    const int64_t change = ((target << 24) - value_) / time_ms_;
-    if (change == 0) return;
-    value_ += change;
-  }
+// Of distances below 2^48 (targets below 2^24) the product has the whole part of distance / time exactly: the
+// reciprocal is too large by less than 2^-shift, so the product by less than 2^(48 - shift) = 2^-w < 1 /
+// time, where w is the number of digits of the time.
+PowerSection::Lag::Lag(int32_t time_ms)
+    : shift_(48 + static_cast<int>(std::bit_width(static_cast<uint32_t>(time_ms)))) {
+  reciprocal_ = static_cast<uint64_t>((Wide{1} << shift_) / static_cast<Wide>(time_ms)) + 1;
+}
+
+int64_t PowerSection::Lag::divided(int64_t distance) const {
+  const auto magnitude = static_cast<uint64_t>(distance < 0 ? -distance : distance);
+  const auto quotient = static_cast<int64_t>((Wide{magnitude} * reciprocal_) >> shift_);
+  return distance < 0 ? -quotient : quotient;
 }
 
 // Mechanical power in 1/1000 % of the rated power; losses are added, what comes back charges the DC link.

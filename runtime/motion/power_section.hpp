@@ -57,14 +57,21 @@ class PowerSection {
   // Follows a target with a time constant, in steps of 2^-24.
   class Lag {
    public:
-    explicit Lag(int32_t time_ms) : time_ms_(time_ms) {}
-    void follow(int64_t target) { value_ += ((target << 24) - value_) / time_ms_; }
-    void follow(int64_t target, uint32_t steps);
+    explicit Lag(int32_t time_ms);
+    // False: it is there, as far as the division has digits.
+    bool follow(int64_t target) {
+      const int64_t change = divided((target << 24) - value_);
+      value_ += change;
+      return change != 0;
+    }
     int32_t whole() const { return static_cast<int32_t>(value_ >> 24); }
 
    private:
+    int64_t divided(int64_t distance) const;
+
     int64_t value_ = 0;
-    int32_t time_ms_;
+    uint64_t reciprocal_;  // of the time constant, in units of 2^-shift_
+    int shift_;
   };
 
   // What torque and limits make of the currents, found again when one of them changes.

@@ -143,13 +143,10 @@ PositioningOrder Positioner::idle(int32_t speed) {
 }
 
 // The profile holds the position again before anybody travels from it.
-Encoders::Positions Positioner::glide(int32_t motor_counter) {
+void Positioner::glide(int32_t motor_counter) {
   drop_target();
-  const int32_t before = target_;
   encoders_.count(motor_counter);
-  const Encoders::Positions now = encoders_.positions();
-  modulo_.move(wrapped(int64_t{now.of(source())} - before));
-  return now;
+  modulo_.move(wrapped(int64_t{actual()} - target_));
 }
 
 void Positioner::observe(int32_t motor_counter) {

@@ -68,8 +68,8 @@ class Positioner {
   // Then idle() is tick() with settings and inputs that are the same but for the speed.
   bool idles() const;
   PositioningOrder idle(int32_t speed);
-  // idle() and observe() where nobody looks at the order. Returns encoders().positions().
-  Encoders::Positions glide(int32_t motor_counter);
+  // idle() and observe() where nobody looks at the order.
+  void glide(int32_t motor_counter);
   // After it has moved: the counter of the motor encoder.
   void observe(int32_t motor_counter);
   // A reference travel has given the motor encoder another count, which the axis must take over.

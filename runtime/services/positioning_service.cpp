@@ -233,7 +233,8 @@ void PositioningService::go_on(std::span<int32_t> h, uint32_t syncs) {
   syncs_ = syncs;
   const int32_t counter = drive_.position();
   if (positioner_.encoders().stands_at(counter)) return;
-  const Encoders::Positions positions = positioner_.glide(counter);
+  positioner_.glide(counter);
+  const Encoders::Positions positions = positioner_.encoders().positions();
   show_target_positions(h);
   show_positions(h, positions, positions.of(positioner_.source()));
 }
