@@ -63,15 +63,14 @@ void EventQueue::remove(size_t position) {
 EventId EventQueue::schedule(Time at, uint32_t source, EventTarget& target, uint32_t kind,
                              uint64_t argument) {
   at = std::max(at, now_);
-  if (!rows_[0].takes(at, source, now_)) return schedule_behind(at, source, target, kind, argument);
-  return row_id(0, rows_[0].join({{at, next_sequence_++, source}, kind, &target, argument}));
+  Row* row = &rows_[0];
+  if (!row->takes(at, source, now_)) row = &rows_[1];
+  if (!row->takes(at, source, now_)) return push(at, source, target, kind, argument);
+  return row->id | row->join({{at, next_sequence_++, source}, kind, &target, argument});
 }
 
-// What the first row does not take.
-EventId EventQueue::schedule_behind(Time at, uint32_t source, EventTarget& target, uint32_t kind,
-                                    uint64_t argument) {
+EventId EventQueue::push(Time at, uint32_t source, EventTarget& target, uint32_t kind, uint64_t argument) {
   const Order order{at, next_sequence_++, source};
-  if (rows_[1].takes(at, source, now_)) return row_id(1, rows_[1].join({order, kind, &target, argument}));
   if (free_slots_.empty()) {
     free_slots_.push_back(static_cast<uint32_t>(slots_.size()));
     slots_.push_back({nullptr, 0, 0, 1, 0});

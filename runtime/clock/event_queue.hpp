@@ -104,6 +104,7 @@ class EventQueue {
   // Events that were scheduled in their order. None of them is farther away than `reach` when it comes: or
   // nothing could join behind it.
   struct Row {
+    EventId id;  // kInRow and the number of the row
     Time reach;
     std::vector<Waiting> ring{};  // its size is a power of 2
     uint64_t mask = 0;
@@ -155,7 +156,6 @@ class EventQueue {
     return heap_first_at_ <= first.first_at && !heap_.empty() &&
            (first.empty() || before(heap_.front(), first.front()));
   }
-  static EventId row_id(EventId row, uint64_t number) { return kInRow | row << kRowShift | number; }
   const Order* next() const;
   bool comes_first(Time at, uint32_t source) const;
   bool run(Time end, bool all);
@@ -164,7 +164,7 @@ class EventQueue {
     reached_ = at == now_ ? std::max(reached_, source) : source;
     now_ = at;
   }
-  EventId schedule_behind(Time at, uint32_t source, EventTarget& target, uint32_t kind, uint64_t argument);
+  EventId push(Time at, uint32_t source, EventTarget& target, uint32_t kind, uint64_t argument);
   void place(size_t position, const Entry& entry);
   void sift_up(size_t position, const Entry& entry);
   void sift_down(size_t position, const Entry& entry);
@@ -177,7 +177,7 @@ class EventQueue {
   uint64_t next_sequence_ = 0;
   // What is scheduled in its order anyway, as the ticks of all stations are, stands in a row; the heap has
   // the rest. One row is for ticks of a millisecond, one for the telegrams of stations that sleep.
-  std::array<Row, 2> rows_{{{kMillisecond}, {10 * kMillisecond}}};
+  std::array<Row, 2> rows_{{{kInRow, kMillisecond}, {kInRow | EventId{1} << kRowShift, 10 * kMillisecond}}};
   std::vector<Entry> heap_;
   Time heap_first_at_ = kNever;
   std::vector<Slot> slots_;

@@ -93,17 +93,6 @@ void SbusPort::power_off() {
   line_.set_connected(node(), false);
 }
 
-void SbusPort::tick(Time now) {
-  group_master_.tick(now);
-  if (machine_ != nullptr) objects_.tick(now / kMillisecond, machine_->variables());
-}
-
-Time SbusPort::next_due(Time now) const {
-  if (group_master_.active()) return now + kMillisecond;
-  const int64_t tick = machine_ == nullptr ? INT64_MAX : objects_.next_due(now / kMillisecond);
-  return tick == INT64_MAX ? kNever : tick * kMillisecond;
-}
-
 void SbusPort::on_frame(Time now, const Frame& frame) {
   if (master_.busy() && master_.on_frame(now, frame)) return;
   const bool received = machine_ != nullptr && receive(now, frame);

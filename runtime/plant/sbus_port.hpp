@@ -36,10 +36,17 @@ class SbusPort final : private CanNode, private SlaveObserver {
            MovilinkCommand& movilink, Journal& journal);
 
   void connect_program(vm::Machine& machine) { machine_ = &machine; }
-  void stop_program();            // a program stop ends cyclic sending and receiving (1053 1610 p. 54)
-  void power_off();               // the line is told first, as frames that were waiting come back
-  void tick(Time now);            // once a millisecond, after the tasks
-  Time next_due(Time now) const;  // the first tick behind `now` that does something; kNever for none
+  void stop_program();   // a program stop ends cyclic sending and receiving (1053 1610 p. 54)
+  void power_off();      // the line is told first, as frames that were waiting come back
+  void tick(Time now) {  // once a millisecond, after the tasks
+    if (group_master_.active()) group_master_.tick(now);
+    if (machine_ != nullptr) objects_.tick(now / kMillisecond, machine_->variables());
+  }
+  Time next_due(Time now) const {  // the first tick behind `now` that does something; kNever for none
+    if (group_master_.active()) return now + kMillisecond;
+    const int64_t tick = machine_ == nullptr ? INT64_MAX : objects_.next_due(now / kMillisecond);
+    return tick == INT64_MAX ? kNever : tick * kMillisecond;
+  }
   bool sends_more_than_variables() const { return group_master_.active(); }
   void stir();  // the variables may change from now on
 

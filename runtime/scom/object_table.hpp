@@ -3,6 +3,7 @@
 // firmware (runtime/api) both use it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -118,16 +119,19 @@ class ObjectTable {
   void stop() { state_ = {}; }              // program stop: all objects are gone
   bool started() const { return state_.started; }
 
-  // send(tag, frame) for each cyclic object due in this millisecond.
+  // send(tag, frame) for each cyclic object due in this millisecond. Returns next_due().
   template <class Send>
-  void due(int64_t tick, std::span<const int32_t> h, Send send) const {
-    if (!state_.started) return;
+  int64_t due(int64_t tick, std::span<const int32_t> h, Send send) const {
+    int64_t next = INT64_MAX;
+    if (!state_.started) return next;
     for (uint32_t n = 0; n < state_.cyclic_count; ++n) {
       const Cyclic& object = state_.cyclic[n];
       const int64_t elapsed = tick - state_.start_tick - object.offset;
-      if (elapsed < 0 || elapsed % object.cycle != 0) continue;
-      send(n, object_frame(object.id, object.format, object.data, h));
+      const int64_t since = elapsed < 0 ? elapsed + object.cycle : elapsed % object.cycle;
+      next = std::min(next, tick - since + object.cycle);
+      if (since == 0 && elapsed >= 0) send(n, object_frame(object.id, object.format, object.data, h));
     }
+    return next;
   }
 
   // The first millisecond behind `tick` in which an object is due; INT64_MAX for none.

@@ -113,12 +113,9 @@ void VariableObjects::stop() {
 }
 
 void VariableObjects::send_due(int64_t tick, std::span<const int32_t> h) {
-  table_.due(tick, h, [this](uint32_t tag, const Frame& frame) {
-    // A telegram that is still waiting for the bus is overtaken by the new values.
-    sender_.withdraw(first_tag_ + tag);
-    sender_.send(frame, first_tag_ + tag);
-  });
-  due_ = table_.next_due(tick);
+  // A telegram that is still waiting for the bus is overtaken by the new values.
+  due_ = table_.due(
+      tick, h, [this](uint32_t tag, const Frame& frame) { sender_.send_latest(frame, first_tag_ + tag); });
 }
 
 bool VariableObjects::on_frame(const Frame& frame, std::span<int32_t> h, std::string& why) const {

@@ -254,7 +254,10 @@ inline void CanLine::end_plain(Time now) {
   release(segment);
   report_frame(now, transfer);
   const Transfer::Sender& sender = transfer.senders.front();
-  deliver_clean(now, segment, known_.resting(sender.frame));
+  const std::span<const uint64_t> takers = filter_.takers(sender.frame.id);
+  const uint64_t resting = known_.resting(sender.frame);
+  if (takers.size() > 1 || ((takers[0] & ~resting) | erring_.words()[0]) != 0)
+    deliver_clean(now, segment, resting);
   Node& node = nodes_[sender.node];
   if (node.queue.empty() || !node.queue.front().on_wire || !node.counters.untouched()) {
     settle_sender(now, segment, sender);

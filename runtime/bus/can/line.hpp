@@ -56,6 +56,10 @@ class CanLine final : private EventTarget {
 
   SendStatus send(NodeId node, const Frame& frame, uint64_t tag);
   void withdraw(NodeId node, uint64_t tag);
+  void send_latest(NodeId node, const Frame& frame, uint64_t tag) {
+    if (!nodes_[node].queue.empty()) withdraw(node, tag);
+    send(node, frame, tag);
+  }
 
   void set_baud(NodeId node, uint32_t baud);
   void set_connected(NodeId node, bool connected);
@@ -193,6 +197,7 @@ class LinePort final : public FrameSender {
   LinePort(CanLine& line, NodeId node) : line_(&line), node_(node) {}
   SendStatus send(const Frame& frame, uint64_t tag) override { return line_->send(node_, frame, tag); }
   void withdraw(uint64_t tag) override { line_->withdraw(node_, tag); }
+  void send_latest(const Frame& frame, uint64_t tag) override { line_->send_latest(node_, frame, tag); }
   void recover() override { line_->recover(node_); }
   void listen(uint32_t id) override { line_->listen(node_, id); }
   NodeId node() const { return node_; }

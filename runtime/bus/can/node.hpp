@@ -39,6 +39,11 @@ class FrameSender {
   virtual SendStatus send(const Frame& frame, uint64_t tag) = 0;
   // Takes back every waiting frame with this tag; one on the wire is not sent again should it fail.
   virtual void withdraw(uint64_t tag) = 0;
+  // Both: of the frames with this tag only this one still waits.
+  virtual void send_latest(const Frame& frame, uint64_t tag) {
+    withdraw(tag);
+    send(frame, tag);
+  }
   // Asks to come back after bus-off.
   virtual void recover() {}
   // Frames with this standard identifier are wanted from now on. Without effect where all are heard anyway.

@@ -40,7 +40,9 @@ void SbusCheck::add_slave(Time now, const CanLine& line, NodeId node, const Slav
 
 void SbusCheck::on_frame(const CanLine& line, const FrameRecord& record) {
   if (!is_plain(record.frame)) return;
-  check_sender(line, record);
+  NodeId& first = senders_[record.frame.id];
+  if (first == kNoNode) first = record.sender;
+  if (first != record.sender) tell_second_sender(line, record, first);
   if (const auto identifier = classify_identifier(record.frame.id)) {
     check_address(line, record, *identifier);
     check_masters(line, record, *identifier);
@@ -50,10 +52,7 @@ void SbusCheck::on_frame(const CanLine& line, const FrameRecord& record) {
     if (id == record.frame.id) syncs_[id] = record.start;
 }
 
-void SbusCheck::check_sender(const CanLine& line, const FrameRecord& record) {
-  NodeId& first = senders_[record.frame.id];
-  if (first == kNoNode) first = record.sender;
-  if (first == record.sender) return;
+void SbusCheck::tell_second_sender(const CanLine& line, const FrameRecord& record, NodeId first) {
   if (!told_.emplace(record.frame.id, record.sender).second) return;
   tell(record.end,
        fmt::format("{}: identifier {} is sent by {} and by {}; an identifier may have one sender",

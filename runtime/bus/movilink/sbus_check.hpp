@@ -43,7 +43,7 @@ class SbusCheck final : public CanObserver {
     Time until;
   };
 
-  void check_sender(const CanLine& line, const FrameRecord& record);
+  void tell_second_sender(const CanLine& line, const FrameRecord& record, NodeId first);
   void check_address(const CanLine& line, const FrameRecord& record, const SbusIdentifier& identifier);
   void check_masters(const CanLine& line, const FrameRecord& record, const SbusIdentifier& identifier);
   void check_window(const CanLine& line, const FrameRecord& record, const SbusIdentifier& identifier);
