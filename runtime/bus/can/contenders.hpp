@@ -28,14 +28,17 @@ class Contenders {
   bool empty() const { return first_ == end_; }
   const Contender& operator[](NodeId node) const { return rows_[node]; }
 
-  void put(NodeId node, const Contender& contender) {
+  void put(NodeId node, uint64_t ready, uint64_t first_ready, uint32_t key) {
     Row& row = rows_[node];
-    if (!row.waits || row.key != contender.key) {
+    if (!row.waits || row.key != key) {
       if (row.waits) erase(rank(node, row.key));
-      insert(rank(node, contender.key));
+      insert(rank(node, key));
     }
-    row = {contender, true};
-    ready_by_ = std::max(ready_by_, contender.first_ready);
+    row.ready = ready;
+    row.first_ready = first_ready;
+    row.key = key;
+    row.waits = true;
+    ready_by_ = std::max(ready_by_, first_ready);
   }
   void remove(NodeId node) {
     if (!rows_[node].waits) return;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -25,10 +26,19 @@ constexpr bool is_valid(const Frame& frame) {
   return frame.length <= 8 && frame.id < (frame.extended ? kExtendedIdLimit : kStandardIdLimit);
 }
 
-// The same frame with every byte that does not go out set to 0: equal on the wire is then equal as a value.
-constexpr Frame canonical(Frame frame) {
-  for (size_t i = frame.remote ? 0 : frame.length; i < frame.data.size(); ++i) frame.data[i] = 0;
-  return frame;
+// Its data with every byte that does not go out set to 0.
+constexpr std::array<uint8_t, 8> canonical_data(const Frame& frame) {
+  const unsigned length = frame.remote ? 0 : frame.length;
+  if (length >= 8) return frame.data;
+  const unsigned bits = 8 * length;
+  const uint64_t kept =
+      std::endian::native == std::endian::little ? (uint64_t{1} << bits) - 1 : ~(UINT64_MAX >> bits);
+  return std::bit_cast<std::array<uint8_t, 8>>(std::bit_cast<uint64_t>(frame.data) & kept);
+}
+
+// The same frame with these: equal on the wire is then equal as a value.
+constexpr Frame canonical(const Frame& frame) {
+  return {frame.id, frame.length, canonical_data(frame), frame.extended, frame.remote};
 }
 
 // A plain data frame with an 11-bit identifier, as all SBus telegrams are.

@@ -59,15 +59,15 @@ SendStatus CanLine::send(NodeId node, const Frame& frame, uint64_t tag) {
   if (!is_active(n)) return SendStatus::NotActive;
   if (n.queue.size() >= kSendQueueLimit) return SendStatus::QueueFull;
   const uint64_t ready = static_cast<uint64_t>(queue_.now() / bit_time_) + 1;
-  const Pending pending{canonical(frame), tag, ready, arbitration_key(frame)};
+  const uint32_t key = arbitration_key(frame);
   if (n.queue.empty()) {
-    n.queue.push_back(pending);
+    n.queue.emplace_back().set(frame, tag, ready, key);
     const uint64_t can_send = std::max(ready, n.suspended_until);
-    contenders_.put(node, {can_send, can_send, pending.key});
+    contenders_.put(node, can_send, can_send, key);
   } else {
-    n.queue.insert(std::upper_bound(n.queue.begin(), n.queue.end(), pending.key,
-                                    [](uint32_t wanted, const Pending& p) { return wanted < p.key; }),
-                   pending);
+    const auto behind = std::upper_bound(n.queue.begin(), n.queue.end(), key,
+                                         [](uint32_t wanted, const Pending& p) { return wanted < p.key; });
+    n.queue.emplace(behind)->set(frame, tag, ready, key);
     queue_changed(node);
   }
   const Segment& segment = segments_[n.segment];
@@ -109,7 +109,7 @@ void CanLine::queue_changed(NodeId id) {
   const Node& node = nodes_[id];
   if (node.queue.empty()) return contenders_.remove(id);
   const Pending& first = node.queue.front();
-  contenders_.put(id, {next_ready(node), std::max(first.ready_bit, node.suspended_until), first.key});
+  contenders_.put(id, next_ready(node), std::max(first.ready_bit, node.suspended_until), first.key);
 }
 
 void CanLine::schedule_start() {

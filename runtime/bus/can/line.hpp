@@ -88,11 +88,23 @@ class CanLine final : private EventTarget {
  private:
   struct Pending {
     Frame frame;
-    uint64_t tag;
-    uint64_t ready_bit;  // takes part in arbitration from here on
-    uint32_t key;
+    uint64_t tag = 0;
+    uint64_t ready_bit = 0;  // takes part in arbitration from here on
+    uint32_t key = 0;
     bool on_wire = false;
     bool withdrawn = false;  // while on the wire
+
+    // Part by part, as they were written just now: a copy of the whole would wait until all have arrived.
+    void set(const Frame& sent, uint64_t its_tag, uint64_t ready, uint32_t its_key) {
+      frame.id = sent.id;
+      frame.length = sent.length;
+      frame.extended = sent.extended;
+      frame.remote = sent.remote;
+      frame.data = canonical_data(sent);
+      tag = its_tag;
+      ready_bit = ready;
+      key = its_key;
+    }
   };
   struct Node {
     std::string name;
