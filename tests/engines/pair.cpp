@@ -4,7 +4,7 @@
 #include <array>
 
 #include "tests/generated/pcg.hpp"
-#include "vm/exec/machine.hpp"
+#include "vm/exec/saved_state.hpp"
 #include "vm/fast/predecode.hpp"
 #include "vm/jit/jit.hpp"
 #include "vm/sched/scheduler.hpp"
@@ -46,6 +46,20 @@ struct RandomHost {
   }
 };
 
+// What a machine keeps besides its state has to follow from it: the machine is written and read back, which
+// makes that anew. The reason of a fault would not come back.
+void forget(Machine& machine) {
+  if (machine.fault().number != 0) return;
+  std::vector<uint8_t> bytes(vm::SavedState::size(machine.program()));
+  vm::SavedState::write(machine, bytes.data());
+  vm::SavedState::read(bytes.data(), machine);
+}
+
+void start(Machine& machine) {
+  machine.start();
+  forget(machine);  // so that machines without a fault have equal reasons
+}
+
 std::string difference(const Machine& a, const Machine& b) {
   for (size_t n = 0; n < a.variables().size(); ++n)
     if (a.variables()[n] != b.variables()[n])
@@ -61,6 +75,8 @@ std::string difference(const Machine& a, const Machine& b) {
         x.wait_ms != y.wait_ms || !std::equal(x.calls.begin(), x.calls.begin() + x.depth, y.calls.begin()))
       return name + ": state, calls or wait";
   }
+  for (int task = 1; task <= vm::kTasks; ++task)
+    if (a.active_context(task) != b.active_context(task)) return "what executes of a task";
   const vm::Fault &f = a.fault(), &g = b.fault();
   if (f.number != g.number || f.task != g.task || f.context != g.context || f.address != g.address ||
       f.reason != g.reason)
@@ -116,7 +132,7 @@ PairRun run_pair(const vm::VerifiedImage& program, uint64_t seed, uint32_t order
   if (!out.native) machines.pop_back();
   constexpr const char* kEngines[] = {"", "fast engine", "machine code"};
   Pcg random(seed ^ 0x5EED);
-  for (Machine& machine : machines) machine.start();
+  for (Machine& machine : machines) start(machine);
   for (; out.orders < orders; ++out.orders) {
     // The order is drawn once, then given to both.
     const int kind = random.below(12);
@@ -126,6 +142,7 @@ PairRun run_pair(const vm::VerifiedImage& program, uint64_t seed, uint32_t order
     const int32_t value = random.one_in(2) ? random.below(40) : static_cast<int32_t>(random.next());
     const auto variable = static_cast<size_t>(random.below(static_cast<int>(program.limits().variables)));
     const int context = 1 + random.below(vm::kContexts);
+    forget(machines[0]);
     std::array<vm::RunResult, 3> results{};
     for (size_t n = 0; n < machines.size(); ++n) {
       Machine& machine = machines[n];
@@ -159,7 +176,7 @@ PairRun run_pair(const vm::VerifiedImage& program, uint64_t seed, uint32_t order
     }
     if (machines[0].fault().number != 0) {
       if (random.one_in(3)) return out;
-      for (Machine& machine : machines) machine.start();
+      for (Machine& machine : machines) start(machine);
     }
   }
   return out;
@@ -177,8 +194,8 @@ std::string run_idle_pair(const vm::VerifiedImage& program, uint64_t seed, uint3
   Pcg random(seed ^ 0x1D1E);
   const auto budget = [&](int most) { return static_cast<uint32_t>(1 + random.below(most)); };
   const vm::Rates rates{{budget(10), budget(10), budget(40)}};
-  a.start();
-  b.start();
+  start(a);
+  start(b);
   for (uint32_t order = 0; order < orders; ++order) {
     const auto variable = static_cast<size_t>(random.one_in(2) ? 300 + random.below(12) : random.below(1024));
     const int32_t value = random.below(8);
@@ -191,6 +208,7 @@ std::string run_idle_pair(const vm::VerifiedImage& program, uint64_t seed, uint3
       if (kind == 2)
         for (int number = 1; number <= vm::kContexts; ++number) machine->resume(number);
     }
+    forget(a);
     for (uint64_t n = 0; n < ticks; ++n) executed_a += vm::run_tick(a, rates);
     for (uint64_t n = 0; n < ticks;) {
       const uint64_t idle = vm::skip_idle(b, rates, ticks - n, executed_b);

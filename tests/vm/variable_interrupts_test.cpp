@@ -114,6 +114,13 @@ TEST(VariableInterrupts, RequestsInH530) {
   EXPECT_EQ(run.h(530), 0);
 }
 
+TEST(VariableInterrupts, RequestsOfNone) {
+  Assembled run("M01 : JMP M01\n");
+  run.h(530) = 0b111111;
+  run.tick(8);
+  EXPECT_EQ(run.h(530), 0b110000) << "the others are nobody's";
+}
+
 TEST(VariableInterrupts, ControlZeroEndsAll) {
   Assembled run(kOne);
   run.set(10, {1, 0, 20, 7, 4, 5});

@@ -114,11 +114,10 @@ void Machine::choose_active(int task) {
 
 // After interrupts have been installed or removed.
 void Machine::see_interrupts() {
-  installed_ = false;
+  events_ = watches_ = false;
   for (const EventInterrupt& interrupt : interrupts_.events)
-    installed_ = installed_ || interrupt.installed || interrupt.pending;
-  for (const VariableInterrupt& interrupt : interrupts_.variables)
-    installed_ = installed_ || interrupt.installed;
+    events_ = events_ || interrupt.installed || interrupt.pending;
+  for (const VariableInterrupt& interrupt : interrupts_.variables) watches_ = watches_ || interrupt.installed;
 }
 
 // Begins the routine unless the task runs one that is not below it.

@@ -19,7 +19,7 @@ void Machine::start() {
   fault_ = {};
   contexts_ = {};
   interrupts_ = {};
-  installed_ = false;
+  see_interrupts();
   start_task(1, 0);
 }
 
@@ -100,8 +100,8 @@ RunResult Machine::run_on(int task, uint32_t budget, uint32_t used) {
 
 void Machine::tick() {
   if (waits_) pass_millisecond();
-  if (installed_) {
-    take_events();
+  if (events_) take_events();
+  if (watches_) {
     take_variable_interrupts();
   } else if (program_.limits().variables > kVarIntReq) {
     h_[kVarIntReq] &= ~kAllRequests;  // nobody is there to take them

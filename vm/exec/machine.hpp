@@ -146,7 +146,8 @@ class Machine {
   Interrupts interrupts_;
   // What follows from contexts and interrupts and is asked for in every millisecond.
   std::array<uint8_t, kTasks> active_{0, 1, 2};  // in contexts_, what executes of each task
-  bool installed_ = false;                       // interrupts are installed
+  bool events_ = false;                          // an interrupt of task 1 is installed or pending
+  bool watches_ = false;                         // a variable interrupt is installed
   bool waits_ = false;                           // a context may wait for time to pass
   std::array<TaskContext, kContexts> contexts_{};
   std::array<int32_t, kMaxVariables> h_{};
