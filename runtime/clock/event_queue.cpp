@@ -63,10 +63,15 @@ void EventQueue::remove(size_t position) {
 EventId EventQueue::schedule(Time at, uint32_t source, EventTarget& target, uint32_t kind,
                              uint64_t argument) {
   at = std::max(at, now_);
-  Row* row = &rows_[0];
-  if (!row->takes(at, source, now_)) row = &rows_[1];
-  if (!row->takes(at, source, now_)) return push(at, source, target, kind, argument);
-  return row->id | row->join({{at, next_sequence_++, source}, kind, &target, argument});
+  if (!rows_[0].takes(at, source, now_)) return schedule_behind(at, source, target, kind, argument);
+  return rows_[0].join({{at, next_sequence_++, source}, kind, &target, argument});
+}
+
+// What the first row does not take.
+EventId EventQueue::schedule_behind(Time at, uint32_t source, EventTarget& target, uint32_t kind,
+                                    uint64_t argument) {
+  if (!rows_[1].takes(at, source, now_)) return push(at, source, target, kind, argument);
+  return rows_[1].join({{at, next_sequence_++, source}, kind, &target, argument});
 }
 
 EventId EventQueue::push(Time at, uint32_t source, EventTarget& target, uint32_t kind, uint64_t argument) {

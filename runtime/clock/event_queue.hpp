@@ -104,7 +104,7 @@ class EventQueue {
   // Events that were scheduled in their order. None of them is farther away than `reach` when it comes: or
   // nothing could join behind it.
   struct Row {
-    EventId id;  // kInRow and the number of the row
+    EventId ids;  // from this one on: kInRow and the number of the row
     Time reach;
     std::vector<Waiting> ring{};  // its size is a power of 2
     uint64_t mask = 0;
@@ -122,12 +122,12 @@ class EventQueue {
       return time - now <= reach && end - begin <= mask &&
              (last_at < time || (last_at == time && last_source <= source) || empty());
     }
-    uint64_t join(const Waiting& event) {
+    EventId join(const Waiting& event) {
       if (empty()) first_at = event.at;
       last_at = event.at;
       last_source = event.source;
       at(end) = event;
-      return end++;
+      return ids | end++;
     }
     void pop() {
       do {
@@ -164,6 +164,7 @@ class EventQueue {
     reached_ = at == now_ ? std::max(reached_, source) : source;
     now_ = at;
   }
+  EventId schedule_behind(Time at, uint32_t source, EventTarget& target, uint32_t kind, uint64_t argument);
   EventId push(Time at, uint32_t source, EventTarget& target, uint32_t kind, uint64_t argument);
   void place(size_t position, const Entry& entry);
   void sift_up(size_t position, const Entry& entry);

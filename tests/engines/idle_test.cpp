@@ -74,6 +74,18 @@ TEST_F(Idle, ALoopOfManyTurnsIsIdleWhereverItStands) {
   }
 }
 
+TEST_F(Idle, VariablesThatChangeForAMomentAreNotSteady) {
+  bool steady = false;
+  vm::Machine rests = machine("main() { while (1); }");
+  for (int n = 0; n < 3; ++n) vm::run_tick(rests, rates_);
+  EXPECT_EQ(rests.idle_ticks(rates_.commands, 256, &steady), vm::kIdleForever);
+  EXPECT_TRUE(steady);
+  vm::Machine counts = machine("main() { while (1) { H1 = H5; H1 = H1 + 1; } }");
+  for (int n = 0; n < 3; ++n) vm::run_tick(counts, rates_);
+  EXPECT_EQ(counts.idle_ticks(rates_.commands, 256, &steady), vm::kIdleForever);
+  EXPECT_FALSE(steady);
+}
+
 TEST_F(Idle, WhatOthersSeeChangeIsNotIdle) {
   const std::string loop = "while (1) { H1 = H5; H1 = H1 + 1; }";
   vm::Machine alone = machine("main() { " + loop + " }");

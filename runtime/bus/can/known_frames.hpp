@@ -36,6 +36,8 @@ class KnownFrames {
   void stir(NodeId node, uint32_t id) {
     if (node < kMostNodes) known_[id % known_.size()].resting &= ~(uint64_t{1} << node);
   }
+  // This frame is told to everybody, though it may not be the last one known.
+  void stir_all(const Frame& frame) { known_[frame.id % known_.size()].resting = 0; }
   // A bit for each node that need not be told of this frame, the last one.
   uint64_t resting(const Frame& frame) const { return known_[frame.id % known_.size()].resting; }
 

@@ -170,7 +170,7 @@ inline bool CanLine::begin_plain(uint64_t bit) {
   Segment& segment = segments_[0];
   segment.busy = true;
   Transfer& transfer = segment.transfer;
-  transfer.senders.resize(1);
+  if (transfer.senders.size() != 1) transfer.senders.resize(1);
   Transfer::Sender& sender = transfer.senders.front();
   sender.node = id;
   sender.frame = pending.frame;
@@ -203,9 +203,8 @@ inline void CanLine::release(Segment& segment) {
   meter_.add(transfer.start_bit, transfer.bits);
 }
 
-inline void CanLine::report_frame(Time now, const Transfer& transfer) {
+inline void CanLine::report_frame(Time now, const Transfer& transfer, const Transfer::Sender& winner) {
   ++frames_;
-  const Transfer::Sender& winner = transfer.winner();
   const FrameRecord record{winner.frame, winner.node, static_cast<Time>(transfer.start_bit) * bit_time_, now,
                            transfer.bits};
   for (CanObserver* observer : observers_) observer->on_frame(*this, record);
@@ -252,8 +251,8 @@ inline void CanLine::end_plain(Time now) {
   Segment& segment = segments_[0];
   const Transfer& transfer = segment.transfer;
   release(segment);
-  report_frame(now, transfer);
   const Transfer::Sender& sender = transfer.senders.front();
+  report_frame(now, transfer, sender);
   const std::span<const uint64_t> takers = filter_.takers(sender.frame.id);
   const uint64_t resting = known_.resting(sender.frame);
   if (takers.size() > 1 || ((takers[0] & ~resting) | erring_.words()[0]) != 0)
@@ -363,7 +362,8 @@ void CanLine::end_transfer(Time now, uint32_t number) {
   if (transfer.fault.kind)
     report({LineEventKind::FaultStrikes, now, transfer.fault.node, kNoNode, transfer.winner().frame.id,
             static_cast<uint8_t>(*transfer.fault.kind)});
-  if (transfer.received()) report_frame(now, transfer);
+  if (transfer.received()) report_frame(now, transfer, transfer.winner());
+  known_.stir_all(transfer.winner().frame);
   if (transfer.received() && transfer.fault.is(FaultKind::Delay)) {
     late_.push_back(LateFrame{transfer.winner().frame, transfer.winner().node, transfer.fault.node, number});
     queue_.schedule(now + transfer.fault.lag, source_, *this, line_event::kLate, late_.size() - 1);

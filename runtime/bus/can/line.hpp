@@ -148,7 +148,7 @@ class CanLine final : private EventTarget {
   bool begin_transfer(uint32_t segment, uint64_t bit);
   bool is_acknowledged(NodeId sender);
   void release(Segment& segment);
-  void report_frame(Time now, const Transfer& transfer);
+  void report_frame(Time now, const Transfer& transfer, const Transfer::Sender& winner);
   void settle_line();
   void end_transfer(Time now, uint32_t segment);
   void deliver(Time now, const Segment& segment, NodeId listener);

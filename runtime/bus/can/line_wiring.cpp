@@ -107,6 +107,7 @@ void CanLine::rebuild_segments() {
 void CanLine::deliver_late(Time now, size_t number) {
   const LateFrame late = *std::exchange(late_[number], std::nullopt);
   while (!late_.empty() && !late_.back()) late_.pop_back();
+  known_.stir_all(late.frame);
   for (NodeId id = 0; id < nodes_.size(); ++id)
     if (id != late.sender && (late.only == kNoNode || late.only == id) &&
         nodes_[id].segment == late.segment && is_active(id))

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <memory>
+#include <optional>
 #include <random>
 #include <tuple>
 #include <vector>
@@ -148,6 +150,125 @@ TEST_P(AcceptanceFilters, NobodyMissesAFrameAndNothingElseChanges) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, AcceptanceFilters, ::testing::Range(1U, 21U));
+
+// A node that keeps the last frame of each identifier, and may say that it need not hear it again.
+class Keeper final : public CanNode {
+ public:
+  explicit Keeper(bool rests) : rests_(rests) {}
+  void on_frame(Time, const Frame& frame) override {
+    ++told;
+    auto& known = last[frame.id];
+    if (known == frame) {
+      if (rests_) line->rest(node, frame);
+      return;
+    }
+    known = frame;
+    news.push_back(frame);
+  }
+  void on_sent(Time, const Frame&, uint64_t) override {}
+  void on_not_sent(Time, const Frame&, uint64_t, NotSent) override {}
+  void forget(uint32_t id) {
+    last.erase(id);
+    line->stir(node, id);
+  }
+
+  CanLine* line = nullptr;
+  NodeId node = 0;
+  uint64_t told = 0;
+  std::map<uint32_t, std::optional<Frame>> last;
+  std::vector<Frame> news;
+
+ private:
+  bool rests_;
+};
+
+struct Keepers {
+  explicit Keepers(bool rest) {
+    for (uint32_t n = 0; n < kNodes; ++n) {
+      nodes.push_back(std::make_unique<Keeper>(rest));
+      nodes.back()->line = &line;
+      nodes.back()->node = line.attach("unit", 1'000'000, *nodes.back());
+    }
+  }
+  EventQueue queue;
+  CanLine line{queue, 1, "sbus", 1'000'000};
+  std::vector<std::unique_ptr<Keeper>> nodes;
+};
+
+TEST(RestingNodes, MissNothingThatIsNew) {
+  uint64_t told = 0, told_some = 0;
+  for (uint32_t seed = 1; seed <= 20; ++seed) {
+    std::mt19937 random(seed);
+    const auto below = [&](uint32_t limit) { return static_cast<uint32_t>(random()) % limit; };
+    Keepers all(false), some(true);
+    for (Time now = 0; now < 200 * kMillisecond; now += kMillisecond) {
+      if (seed % 4 == 0 && now == 100 * kMillisecond) {
+        LineFault fault;
+        fault.kind = FaultKind::Corrupt;
+        fault.per_mille = 200;
+        fault.from = now;
+        all.line.plant(fault);
+        some.line.plant(fault);
+      }
+      for (uint32_t n = below(9); n > 0; --n) {
+        Frame frame;
+        frame.id = 500 + 64 * below(8);  // some share their place
+        frame.remote = below(20) == 0;
+        frame.length = static_cast<uint8_t>(below(10) == 0 ? 2 : 1);
+        frame.data[0] = static_cast<uint8_t>(below(12) / 10);
+        const uint32_t node = below(kNodes);
+        const bool forgets = below(4) == 0;
+        for (Keepers* line : {&all, &some}) {
+          line->line.send(node, frame, 0);
+          if (forgets) line->nodes[(node + 1) % kNodes]->forget(frame.id);
+        }
+      }
+      all.queue.run_until(now + kMillisecond);
+      some.queue.run_until(now + kMillisecond);
+    }
+    for (uint32_t n = 0; n < kNodes; ++n) {
+      EXPECT_EQ(all.nodes[n]->news, some.nodes[n]->news) << "seed " << seed << " node " << n;
+      told += all.nodes[n]->told;
+      told_some += some.nodes[n]->told;
+    }
+  }
+  EXPECT_LT(told_some, told);
+}
+
+TEST(Contending, TheFirstIsTheLowestKey) {
+  std::mt19937 random(1);
+  Contenders contenders;
+  contenders.grow(kNodes);
+  std::map<NodeId, Contender> model;
+  for (int n = 0; n < 20'000; ++n) {
+    const NodeId node = static_cast<NodeId>(random() % kNodes);
+    if (random() % 3 == 0) {
+      contenders.remove(node);
+      model.erase(node);
+    } else {
+      const uint64_t ready = random() % 1000;
+      model[node] = {ready, ready + random() % 2, static_cast<uint32_t>(random() % 60)};
+      contenders.put(node, model[node]);
+    }
+    ASSERT_EQ(contenders.empty(), model.empty());
+    if (model.empty()) continue;
+    uint32_t lowest = ~0U;
+    for (const auto& [id, contender] : model) lowest = std::min(lowest, contender.key);
+    std::vector<NodeId> expected, first, everybody;
+    for (const auto& [id, contender] : model)
+      if (contender.key == lowest) expected.push_back(id);
+    contenders.each_first([&](NodeId id) { first.push_back(id); });
+    ASSERT_EQ(first, expected);
+    ASSERT_EQ(contenders.only_first(), expected.size() == 1 ? expected[0] : kNoNode);
+    contenders.each([&](NodeId id) {
+      everybody.push_back(id);
+      EXPECT_EQ(contenders[id].ready, model[id].ready);
+      EXPECT_TRUE(!contenders.all_ready(500) || contenders[id].first_ready <= 500);
+    });
+    ASSERT_EQ(everybody.size(), model.size());
+  }
+  EXPECT_TRUE(contenders.all_ready(1000));
+}
 
 }  // namespace
 }  // namespace ipos::runtime

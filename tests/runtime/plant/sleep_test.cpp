@@ -293,6 +293,40 @@ TEST(Sleep, AnInputIsSeenInTheNextTick) {
   EXPECT_EQ(value(*plant, "n"), 4);
 }
 
+// A receiver that sleeps is not told of telegrams that bring nothing new; whatever changes its variables ends
+// that.
+TEST(Sleep, ATelegramThatBringsNothingNewIsTakenWhenItDoesAgain) {
+  const std::string units =
+      "[[bus]]\nname = \"can\"\nkind = \"can\"\nbaud = 500000\n"
+      "[[station]]\nname = \"sends\"\nunit = \"mdxb\"\nprogram = \"S.IPC\"\nsbus = \"can\"\n"
+      "[[station]]\nname = \"hears\"\nunit = \"mdxb\"\nprogram = \"R.IPC\"\nsbus = \"can\"\n"
+      "[station.parameters]\nP881 = 2\n";
+  const std::string sender =
+      "main() { d1 = 7; Tr.ObjectNo = 1100; Tr.CycleTime = 10; Tr.Format = 8; Tr.DPointer = numof(d1);"
+      "_SBusCommDef(SCD_TRCYCL, Tr); _SBusCommOn(); _Wait(6000); d1 = 8; while (1); }";
+  const std::string receiver =
+      "main() { Re.ObjectNo = 1100; Re.Format = 8; Re.DPointer = numof(r1);"
+      "_SBusCommDef(SCD_REC, Re); _SBusCommOn(); while (1); }";
+  const auto plant =
+      make_plant(units, {{"S.IPC", kHead + sender}, {"R.IPC", kHead + receiver}}, std::nullopt, {});
+  ASSERT_TRUE(plant);
+  runtime::Station& hears = *plant->stations()[1];
+  const uint32_t r1 = *hears.find_variable("r1");
+  plant->run_until(ms(3002));
+  ASSERT_TRUE(hears.asleep());
+  EXPECT_EQ(hears.variable(r1), 7);
+  const auto written = hears.drive().parameters().execute(runtime::ParameterService::WriteVolatile,
+                                                          static_cast<uint16_t>(11000 + r1), 5);
+  ASSERT_TRUE(written);
+  EXPECT_EQ(hears.variable(r1), 5);
+  plant->run_until(ms(3013));
+  EXPECT_EQ(hears.variable(r1), 7);
+  plant->run_until(ms(5999));
+  EXPECT_TRUE(hears.asleep());
+  plant->run_until(ms(6020));
+  EXPECT_EQ(hears.variable(r1), 8);
+}
+
 TEST(Sleep, WhoStaysAwakeLeavesOutNothing) {
   const auto plant = make_station("main() { while (1); }");
   ASSERT_TRUE(plant);
