@@ -37,6 +37,8 @@ MachineData machine_of(MachineData machine, bool is_m07) {
   return machine;
 }
 
+bool is_reversing(const AxisState& axis) { return axis.setpoint < 0; }
+
 constexpr PoSource kAllSources[] = {PoSource::Rs485, PoSource::Fieldbus, PoSource::Sbus};
 
 }  // namespace
@@ -86,7 +88,10 @@ void Drive::take_request(PoSource source) {
 // A telegram changes what is decided unless it only begins the time of silence anew.
 LinkWatch& Drive::touched_watch(PoSource source) {
   LinkWatch& watch = watches_[static_cast<size_t>(source)];
-  if (!watch.alert()) now_.change();
+  if (!watch.alert()) {
+    now_.change();
+    links_run_ = true;
+  }
   return watch;
 }
 
@@ -101,7 +106,7 @@ void Drive::look_around() const {
   now_.set(&Situation::starting_up, starting_up());
   now_.set(&Situation::factory_setting, parameters_.factory_setting_running());
   now_.set(&Situation::output_stage, axis_.state().output_stage);
-  now_.set(&Situation::reversing, axis_.state().setpoint < 0);
+  now_.set(&Situation::reversing, is_reversing(axis_.state()));
   look_again_ = false;
   if (!now_.changed()) return;
   course_left_ = 0;
@@ -114,9 +119,7 @@ bool Drive::po_data_enabled() const {
   return settings().po_enable == 1 && (settings().setpoint_bus || settings().control_bus);
 }
 
-Verdict Drive::verdict() const { return verdict_of(decided()); }
-
-Verdict Drive::verdict_of(const Decisions& d) const {
+Verdict Drive::verdict_with_setpoint(const Decisions& d) const {
   Verdict verdict = d.controls;
   if (stopped_by_setpoint_) verdict.restrict_to(Command::Stop, Block::StopFunction);
   // Positioning looks after the limit switches itself: a reference travel has to reach them.
@@ -133,10 +136,6 @@ bool Drive::controller_inhibited() const {
   ControlInputs in = control_inputs(terminals());
   in.fault_stop = FaultStop::None;
   return decide(in).command == Command::Inhibit || (is_m07_ && !output_stage_on());
-}
-
-bool Drive::follows() const {
-  return axis_.state().phase == AxisPhase::Moving && verdict().command == Command::Enable;
 }
 
 void Drive::set_position(int32_t counter) {
@@ -219,30 +218,26 @@ void Drive::tick(const PositionControl& position) {
     watch_resets();
     decided();
   }
-  if (watch_links() || restless) {
+  if ((links_run_ || restless) && (watch_links() || restless)) {
     watch_machine();
     select_parameter_set();
   }
   const Decisions& d = decided();
   setpoint_ = next_setpoint(d);
   const AxisOrder& order = next_order(verdict_of(d).command);
-  axis_.tick(order);
-  show_outputs(d, order);
-  look_again_ = true;  // the axis has moved
+  const AxisState& axis = axis_.tick(order);
+  show_outputs(d, order, axis);
+  if (axis.output_stage != now_->output_stage || is_reversing(axis) != now_->reversing) look_again_ = true;
 }
 
-void Drive::hold_course(uint32_t ticks) {
-  course_left_ = ticks;
-  links_count_ = false;
-  for (size_t n = 0; n < watches_.size(); ++n) links_count_ |= watches_[n].counts(decisions_.links[n]);
-}
+void Drive::hold_course(uint32_t ticks) { course_left_ = ticks; }
 
 void Drive::go_on(uint32_t ticks) {
   course_left_ -= ticks;
   mains_ms_ += ticks;
   if (now_->output_stage) enabled_ms_ += ticks;
   axis_.go_on(ticks);
-  if (!links_count_) return;
+  if (!links_run_) return;
   for (size_t n = 0; n < watches_.size(); ++n) watches_[n].go_on(decisions_.links[n], ticks);
 }
 
@@ -296,9 +291,11 @@ void Drive::watch_resets() {
 bool Drive::watch_links() {
   const auto& rules = decisions_.links;
   bool missed = false;
+  links_run_ = false;
   for (const PoSource source : kAllSources) {
     const auto n = static_cast<size_t>(source);
     const bool out = watches_[n].tick(rules[n]);
+    links_run_ |= watches_[n].runs(rules[n]);
     look_again_ |= watches_[n].seen() != now_->heard[n];
     if (!out) continue;
     raise_fault(fault_of(source));
@@ -346,8 +343,7 @@ void Drive::select_parameter_set() {
   now_.set(&Situation::second_set, decided().parameter_switch);
 }
 
-void Drive::show_outputs(const Decisions& d, const AxisOrder& order) {
-  const AxisState& axis = axis_.state();
+void Drive::show_outputs(const Decisions& d, const AxisOrder& order, const AxisState& axis) {
   const bool overloaded = axis.motor_utilization >= kFullUtilization;
   OutputInputs in;
   in.fault = now_->faults.error();
@@ -367,8 +363,7 @@ void Drive::show_outputs(const Decisions& d, const AxisOrder& order) {
   in.in_position = position_.in_position;
   in.referenced = position_.referenced;
   in.ipos_outputs = ipos_outputs_;
-  if (in == shown_ && shown_for_ == settings_version_ && outputs_.settled()) return;
-  shown_ = in;
+  if (shown_for_ == settings_version_ && outputs_.go_on(in)) return;
   shown_for_ = settings_version_;
   outputs_.tick(settings_, in);
 }

@@ -78,7 +78,8 @@ class Drive final : private DriveLink {
 
   // --- for the positioning of IPOS ---
   bool can_position() const { return decided().can_position; }  // P700 is a mode with IPOS (1053 1610 p. 80)
-  bool follows() const;  // enabled, magnetized, brake open: a speed of PositionControl acts
+  // Enabled, magnetized, brake open: a speed of PositionControl acts.
+  bool follows() const { return axis_.phase() == AxisPhase::Moving && verdict().command == Command::Enable; }
   const Terminals& terminals() const { return decided().terminals; }
   // POSITION LO and HI of the bus of P100 or P101.
   std::optional<int32_t> bus_position() const { return decided().bus_position; }
@@ -100,7 +101,7 @@ class Drive final : private DriveLink {
 
   // --- what it shows ---
   Words pi() const;
-  Verdict verdict() const;  // what it is told, and why not more
+  Verdict verdict() const { return verdict_of(decided()); }  // what it is told, and why not more
   UnitCondition condition() const;
   char display() const;  // the seven-segment display: a digit, 't' waiting, 'F' fault
   bool ready() const { return decided().ready; }
@@ -202,10 +203,14 @@ class Drive final : private DriveLink {
   int32_t monitored(int32_t delay_ms) const;
   void select_parameter_set();
   Setpoint next_setpoint(const Decisions& d);
-  Verdict verdict_of(const Decisions& d) const;
+  Verdict verdict_of(const Decisions& d) const {
+    const bool more = stopped_by_setpoint_ || (d.controls.command == Command::Enable && !now_->positioning);
+    return more ? verdict_with_setpoint(d) : d.controls;
+  }
+  Verdict verdict_with_setpoint(const Decisions& d) const;
   const AxisOrder& next_order(Command command);
   AxisOrder axis_order(Command command) const;
-  void show_outputs(const Decisions& d, const AxisOrder& order);
+  void show_outputs(const Decisions& d, const AxisOrder& order, const AxisState& axis);
 
   ParameterStore& parameters_;
   bool is_m07_;
@@ -268,16 +273,15 @@ class Drive final : private DriveLink {
 
   Axis axis_;
   Outputs outputs_;
-  OutputInputs shown_;  // what they were last told, and under which settings
-  std::optional<uint32_t> shown_for_;
+  std::optional<uint32_t> shown_for_;  // the settings of their last tick
   uint32_t factory_setting_ms_ = 0;
   uint32_t up_ms_ = 0;  // since power-on, up to the end of the start-up
   uint32_t mains_ms_ = 0;
   uint32_t enabled_ms_ = 0;
   int64_t counted_energy_ = 0;
   mutable uint32_t course_left_ = 0;
-  bool links_count_ = false;  // while on the course
   bool calm_ = false;         // nobody had touched the drive before the last tick
+  bool links_run_ = true;  // or may do so: a telegram has come since the last look
 };
 
 }  // namespace ipos::runtime

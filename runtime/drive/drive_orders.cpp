@@ -49,7 +49,7 @@ const AxisOrder& Drive::next_order(Command command) {
     order_for_ = command;
   }
   // P350 does not turn positions round (ours).
-  const bool reversed = set().change_direction == 1 && order_.command != AxisCommand::Follow;
+  const bool reversed = order_.command != AxisCommand::Follow && set().change_direction == 1;
   order_.target = reversed ? -setpoint_.speed : setpoint_.speed;
   return order_;
 }

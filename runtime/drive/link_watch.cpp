@@ -18,7 +18,6 @@ bool LinkWatch::on_request() {
 
 bool LinkWatch::run(const Rules& rules) {
   running_ = true;
-  if (reported_) return false;
   ++silent_ms_;
   // A telegram may have come right before the first tick, so that tick counts for nothing: never early, at
   // most a millisecond late.

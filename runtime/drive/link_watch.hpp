@@ -24,11 +24,15 @@ class LinkWatch {
 
   // One millisecond. True once when the time has run out.
   bool tick(const Rules& rules) {
-    if (rules.delay_ms != 0 && (running_ || (rules.without_first && rules.supervised))) return run(rules);
+    if (runs(rules)) return run(rules);
     if (rules.delay_ms == 0) silent_ms_ = 0;
     return false;
   }
 
+  // A tick does something; else so it stays until telegrams come or the rules change.
+  bool runs(const Rules& rules) const {
+    return rules.delay_ms != 0 && !reported_ && (running_ || (rules.without_first && rules.supervised));
+  }
   bool counts(const Rules& rules) const { return rules.delay_ms != 0 && running_ && !reported_; }
   // Ticks from now on that only count the silence, and what they do. Telegrams that come while it is alert
   // only begin the count anew.

@@ -1,29 +1,15 @@
 // Reference signals first, then a level for each output.
 #include "runtime/drive/outputs.hpp"
 
-#include <cstdlib>
-
 namespace ipos::runtime {
-namespace {
-
-int64_t magnitude(int32_t value) { return std::abs(int64_t{value}); }
-
-uint32_t flags_of(const OutputInputs& in) {
-  const auto bit = [](bool flag, unsigned n) { return (flag ? 1U : 0U) << n; };
-  return bit(in.fault, 0) | bit(in.ipos_fault, 1) | bit(in.ready, 2) | bit(in.output_stage, 3) |
-         bit(in.brake_released, 4) | bit(in.standstill, 5) | bit(in.second_set, 6) |
-         bit(in.motor_1_overloaded, 7) | bit(in.motor_2_overloaded, 8) | bit(in.in_position, 9) |
-         bit(in.referenced, 10);
-}
-
-}  // namespace
 
 uint16_t Outputs::tick(const Settings& s, const OutputInputs& in) {
+  for (ReferenceSignal* signal : {&speed_, &window_, &compare_, &current_, &limit_}) signal->go_on(ticks_);
   const int64_t speed = magnitude(in.speed);
   const int64_t current = magnitude(in.current);
-  const int64_t deviation = std::abs(int64_t{in.speed} - in.setpoint);
+  const int64_t deviation = magnitude(int64_t{in.speed} - in.setpoint);
   const int64_t half = s.window_width / 2;
-  const int64_t from_center = std::abs(speed - s.window_center);
+  const int64_t from_center = magnitude(speed - s.window_center);
   speed_.tick(speed > s.speed_reference, speed <= int64_t{s.speed_reference} - s.speed_hysteresis,
               s.speed_delay);
   window_.tick(from_center <= half, from_center > half, s.window_delay);
@@ -32,6 +18,7 @@ uint16_t Outputs::tick(const Settings& s, const OutputInputs& in) {
                 s.current_delay);
   limit_.tick(current >= in.current_limit, current < int64_t{in.current_limit} - s.limit_hysteresis,
               s.limit_delay);
+  find_ranges(s, in);
 
   signals_ = {speed_.value() == (s.speed_when == 1), window_.value() == (s.window_when == 0),
               compare_.value() == (s.compare_when == 1), current_.value() == (s.current_when == 1),
@@ -39,7 +26,7 @@ uint16_t Outputs::tick(const Settings& s, const OutputInputs& in) {
 
   // With no input 1, no signal shown and no function chosen every level is 0, so the first basis is good,
   // too.
-  const Basis basis{flags_of(in), in.ipos_outputs, signals_, s.outputs};
+  const Basis basis{in.flags(), in.ipos_outputs, signals_, s.outputs};
   if (basis == basis_) return levels_;
   basis_ = basis;
   uint16_t levels = in.brake_released ? 1 : 0;  // DB00
@@ -47,6 +34,36 @@ uint16_t Outputs::tick(const Settings& s, const OutputInputs& in) {
     if (level(static_cast<OutputFunction>(s.outputs[bit]), in, bit))
       levels |= static_cast<uint16_t>(1U << bit);
   return levels_ = levels;
+}
+
+void Outputs::find_ranges(const Settings& s, const OutputInputs& in) {
+  const int64_t speed = magnitude(in.speed);
+  const int64_t half = s.window_width / 2;
+  speeds_ =
+      both(staying(speed_, int64_t{s.speed_reference} + 1, int64_t{s.speed_reference} - s.speed_hysteresis),
+           around(window_, s.window_center - half, s.window_center + half, speed));
+  const int64_t deviation = magnitude(int64_t{in.speed} - in.setpoint);
+  deviations_ = around(compare_, 0, s.compare_hysteresis, deviation);
+  const int64_t limit = in.current_limit;
+  currents_ = both(staying(current_, int64_t{s.current_reference} + 1,
+                           int64_t{s.current_reference} - s.current_hysteresis),
+                   staying(limit_, limit, limit - s.limit_hysteresis - 1));
+  current_limit_ = in.current_limit;
+  settled_ =
+      speed_.settled() && window_.settled() && compare_.settled() && current_.settled() && limit_.settled();
+  ticks_left_ = std::min({speed_.ticks_left(s.speed_delay), window_.ticks_left(s.window_delay),
+                          compare_.ticks_left(s.compare_delay), current_.ticks_left(s.current_delay),
+                          limit_.ticks_left(s.limit_delay)});
+  ticks_ = 0;
+}
+
+Outputs::Range Outputs::staying(const ReferenceSignal& signal, int64_t above_from, int64_t below_to) {
+  return signal.raw() ? Range{below_to + 1, INT64_MAX} : Range{INT64_MIN, above_from - 1};
+}
+
+Outputs::Range Outputs::around(const ReferenceSignal& signal, int64_t from, int64_t to, int64_t value) {
+  if (signal.raw()) return {from, to};
+  return value < from ? Range{INT64_MIN, from - 1} : Range{to + 1, INT64_MAX};
 }
 
 // P403, P413, P422, P432, P442 say for which case the signal is 1.

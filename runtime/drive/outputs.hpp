@@ -2,6 +2,7 @@
 // delay (1053 1610 p. 76, 79).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -54,7 +55,13 @@ class ReferenceSignal {
     return shown_;
   }
   bool value() const { return shown_; }
+  bool raw() const { return raw_; }
   bool settled() const { return raw_ == shown_; }  // no delay runs
+  // Ticks that only count while the result stays as it is, and what they do.
+  int32_t ticks_left(int32_t delay_ms) const { return settled() ? INT32_MAX : delay_ms - 1 - lasted_ms_; }
+  void go_on(int32_t ticks) {
+    if (!settled()) lasted_ms_ += ticks;
+  }
 
  private:
   bool raw_ = false;
@@ -81,7 +88,12 @@ struct OutputInputs {
   int32_t current_limit = 0;
   uint16_t ipos_outputs = 0;  // by bit as below
 
-  bool operator==(const OutputInputs&) const = default;
+  uint32_t flags() const {
+    const auto bit = [](bool flag, unsigned n) { return (flag ? 1U : 0U) << n; };
+    return bit(fault, 0) | bit(ipos_fault, 1) | bit(ready, 2) | bit(output_stage, 3) |
+           bit(brake_released, 4) | bit(standstill, 5) | bit(second_set, 6) | bit(motor_1_overloaded, 7) |
+           bit(motor_2_overloaded, 8) | bit(in_position, 9) | bit(referenced, 10);
+  }
 };
 
 class Outputs {
@@ -89,13 +101,23 @@ class Outputs {
   // One millisecond. Bit 0 DB00, bit 1 DO01, bit 2 DO02, bit 8 DO10 .. bit 15 DO17.
   uint16_t tick(const Settings& settings, const OutputInputs& inputs);
   uint16_t levels() const { return levels_; }
-  // Another tick with the same settings and inputs changes nothing.
-  bool settled() const {
-    return speed_.settled() && window_.settled() && compare_.settled() && current_.settled() &&
-           limit_.settled();
+  // A tick with the settings of the last one. False: nothing was done, for it takes tick().
+  bool go_on(const OutputInputs& in) {
+    const bool same = in.flags() == basis_.flags && in.ipos_outputs == basis_.ipos_outputs &&
+                      in.current_limit == current_limit_ && speeds_.have(magnitude(in.speed)) &&
+                      deviations_.have(magnitude(int64_t{in.speed} - in.setpoint)) &&
+                      currents_.have(magnitude(in.current));
+    if (!same) return false;
+    if (settled_) return true;
+    if (ticks_left_ == 0) return false;
+    --ticks_left_;
+    ++ticks_;
+    return true;
   }
 
  private:
+  static int64_t magnitude(int64_t value) { return value < 0 ? -value : value; }
+  void find_ranges(const Settings& settings, const OutputInputs& inputs);
   bool level(OutputFunction function, const OutputInputs& inputs, unsigned bit) const;
 
   struct Signals {
@@ -110,7 +132,26 @@ class Outputs {
     std::array<uint8_t, 16> functions{};
     bool operator==(const Basis&) const = default;
   };
+  // Values with which no comparison has another result.
+  struct Range {
+    int64_t low = 0;
+    int64_t high = -1;
+    bool have(int64_t value) const { return low <= value && value <= high; }
+  };
+  static Range both(const Range& a, const Range& b) {
+    return {std::max(a.low, b.low), std::min(a.high, b.high)};
+  }
+  // With the limits of tick(), and within or outside of two limits.
+  static Range staying(const ReferenceSignal& signal, int64_t above_from, int64_t below_to);
+  static Range around(const ReferenceSignal& signal, int64_t from, int64_t to, int64_t value);
+
   ReferenceSignal speed_, window_, compare_, current_, limit_;
+  // As of the last tick(): where go_on() holds, how long, and how often it was.
+  Range speeds_, deviations_, currents_;
+  int32_t current_limit_ = 0;
+  bool settled_ = true;
+  int32_t ticks_left_ = 0;
+  int32_t ticks_ = 0;
   Signals signals_{};
   Basis basis_;
   uint16_t levels_ = 0;

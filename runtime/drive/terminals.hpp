@@ -46,6 +46,8 @@ class Terminals {
   bool on(InputFunction f) const { return (on_ >> static_cast<unsigned>(f) & 1) != 0; }
   bool off(InputFunction f) const { return (off_ >> static_cast<unsigned>(f) & 1) != 0; }
 
+  bool operator==(const Terminals&) const = default;
+
  private:
   uint64_t on_ = 0;  // a bit a function
   uint64_t off_ = 0;

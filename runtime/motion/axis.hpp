@@ -74,6 +74,7 @@ class Axis {
     return state_;
   }
   // Of state(), for who looks every millisecond: what warms and counts is computed when somebody asks for it.
+  AxisPhase phase() const { return state_.phase; }
   int32_t position() const { return state_.position; }
   int32_t speed() const { return state_.speed; }
   bool standing() const { return state_.standing; }

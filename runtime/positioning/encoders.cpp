@@ -7,6 +7,7 @@ void Encoders::configure(const PositioningSettings& settings) {
   factor_ = settings.encoder_factor();
   inverted_ = settings.absolute_inverted == 1;
   absolute_zero_ = settings.absolute_zero;
+  find_positions();
 }
 
 void Encoders::power_on(int32_t shaft) {
@@ -24,6 +25,7 @@ void Encoders::set_position(PositionSource source, int32_t position) {
     case PositionSource::External: external_offset_ += change; break;
     case PositionSource::Absolute: absolute_offset_ += change; break;
   }
+  find_positions();
 }
 
 std::optional<int32_t> Encoders::zero_pulse(PositionSource source, int way) const {

@@ -26,6 +26,7 @@ class Encoders {
     turned_before_ = turned_;
     turned_ += wrapped(int64_t{motor_counter} - counter_);
     counter_ = motor_counter;
+    find_positions();
   }
   // It was told this count twice.
   bool stands_at(int32_t motor_counter) const {
@@ -34,20 +35,16 @@ class Encoders {
   // The axis was given another count; nothing has moved.
   void recount(int32_t motor_counter) { counter_ = motor_counter; }
 
-  int32_t position(PositionSource source) const { return wrapped(exact(source)); }
+  int32_t position(PositionSource source) const { return positions_.of(source); }
   struct Positions {
-    int32_t motor, external, absolute;
+    int32_t motor = 0, external = 0, absolute = 0;
     int32_t of(PositionSource source) const {
       return source == PositionSource::Motor      ? motor
              : source == PositionSource::External ? external
                                                   : absolute;
     }
   };
-  Positions positions() const {
-    const int64_t count = counted(turned_);
-    return {wrapped(turned_ + motor_offset_), wrapped(count + external_offset_),
-            wrapped((inverted_ ? -count : count) + absolute_zero_ + absolute_offset_)};
-  }
+  const Positions& positions() const { return positions_; }
   // From now on the present position of this source has another number.
   void set_position(PositionSource source, int32_t position);
 
@@ -55,6 +52,11 @@ class Encoders {
   std::optional<int32_t> zero_pulse(PositionSource source, int way) const;
 
  private:
+  void find_positions() {
+    const int64_t count = counted(turned_);
+    positions_ = {wrapped(turned_ + motor_offset_), wrapped(count + external_offset_),
+                  wrapped((inverted_ ? -count : count) + absolute_zero_ + absolute_offset_)};
+  }
   int64_t exact(PositionSource source) const { return scaled(source, turned_) + offset(source); }
   int64_t scaled(PositionSource source, int64_t motor) const {
     if (source == PositionSource::Motor) return motor;
@@ -84,6 +86,7 @@ class Encoders {
   int64_t motor_offset_ = 0;
   int64_t external_offset_ = 0;
   int64_t absolute_offset_ = 0;
+  Positions positions_;  // found again when one of the above changes
 };
 
 }  // namespace ipos::runtime

@@ -28,9 +28,7 @@ Fine Follower::scaled(Fine way, const MasterInputs& inputs) const {
   return static_cast<Fine>(product % by != 0 && (product < 0) != (by < 0) ? whole_part - 1 : whole_part);
 }
 
-void Follower::tick(const MasterInputs& inputs) {
-  if (inputs.sync) take(inputs.position);
-  if (syncs_ == 0) return;
+void Follower::advance(const MasterInputs& inputs) {
   const Fine before = scaled(path_, inputs);
   ++since_;
   path_ = from_ + static_cast<Fine>(Wide{to_ - from_} * since_ / cycle_);

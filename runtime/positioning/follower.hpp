@@ -25,7 +25,10 @@ enum class FollowState : uint8_t { Free = 0, Coupling = 1, Synchronous = 2 };
 class Follower {
  public:
   // A millisecond of the master.
-  void tick(const MasterInputs& inputs);
+  void tick(const MasterInputs& inputs) {
+    if (inputs.sync) take(inputs.position);
+    if (syncs_ != 0) advance(inputs);
+  }
 
   // Cycle and speed are known, and the last telegram is not too old.
   bool known() const { return syncs_ == kEnough; }
@@ -38,6 +41,7 @@ class Follower {
   static constexpr int kLost = 3;    // cycles without a telegram
 
   void take(int32_t position);
+  void advance(const MasterInputs& inputs);
   Fine scaled(Fine way, const MasterInputs& inputs) const;
 
   int32_t syncs_ = 0;

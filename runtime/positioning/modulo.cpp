@@ -13,15 +13,15 @@ constexpr int64_t remainder(Wide value, int64_t by) {
 
 bool Modulo::configure(const PositioningSettings& s, int32_t position) {
   const int64_t turn = int64_t{s.modulo_numerator} * s.modulo_resolution;
-  const bool possible = turn > 0 && turn <= INT32_MAX && s.modulo_denominator > 0;
-  const ModuloMode mode = possible ? static_cast<ModuloMode>(s.modulo) : ModuloMode::Off;
+  possible_ = turn > 0 && turn <= INT32_MAX && s.modulo_denominator > 0;
+  const ModuloMode mode = possible_ ? static_cast<ModuloMode>(s.modulo) : ModuloMode::Off;
   if (mode != mode_ || turn != turn_ || s.modulo_denominator != increment_) {
     mode_ = mode;
-    turn_ = possible ? turn : 1;
-    increment_ = possible ? s.modulo_denominator : 1;
+    turn_ = possible_ ? turn : 1;
+    increment_ = possible_ ? s.modulo_denominator : 1;
     set(position);
   }
-  return possible || s.modulo == 0;
+  return possible_ || s.modulo == 0;
 }
 
 void Modulo::set(int32_t position) {
@@ -30,17 +30,7 @@ void Modulo::set(int32_t position) {
   units_ = units - turns_ * turn_;
 }
 
-void Modulo::move(int32_t increments) {
-  const int64_t units = units_ + increments * increment_;
-  if (turn_ == 1) {  // as without the function: no division
-    turns_ += units;
-    units_ = 0;
-    return;
-  }
-  if (units >= 0 && units < turn_) {
-    units_ = units;
-    return;
-  }
+void Modulo::pass_turns(int64_t units) {
   const int64_t turns = floor_divide(units, turn_);
   turns_ += turns;
   units_ = units - turns * turn_;

@@ -16,14 +16,26 @@ class Modulo {
  public:
   static constexpr int64_t kSteps = 1 << 16;
 
-  // False when P961 x P963 is not below 2^31 (IPOSplus p. 81); the function is off then.
+  // False when P961 x P963 is not below 2^31 (IPOSplus p. 81) and the function is wanted; it is off then.
   bool configure(const PositioningSettings& settings, int32_t position);
+  // Else configure() is called every millisecond: turns follow the position.
+  bool possible() const { return possible_; }
 
   ModuloMode mode() const { return mode_; }
   bool on() const { return mode_ != ModuloMode::Off; }
 
   // The source has another position: by moving, or by being given another number.
-  void move(int32_t increments);
+  void move(int32_t increments) {
+    const int64_t units = units_ + increments * increment_;
+    if (turn_ == 1) {  // as without the function: no division
+      turns_ += units;
+      units_ = 0;
+    } else if (units >= 0 && units < turn_) {
+      units_ = units;
+    } else {
+      pass_turns(units);
+    }
+  }
   void set(int32_t position);
 
   int32_t position(bool high_resolution) const;
@@ -38,9 +50,11 @@ class Modulo {
   int64_t way_to(int32_t target, bool high_resolution, int64_t offset) const;
 
  private:
+  void pass_turns(int64_t units);
   int64_t units_within(int32_t target, bool high_resolution) const;
 
   ModuloMode mode_ = ModuloMode::Off;
+  bool possible_ = true;
   int64_t turn_ = 1;       // units
   int64_t increment_ = 1;  // units
   int64_t units_ = 0;      // 0..turn_ - 1

@@ -13,7 +13,7 @@ constexpr EventRow kEvents[] = {
 #include "runtime/positioning/events.def"
 };
 
-constexpr int32_t kFullSpeed = 1000;
+constexpr int32_t kFullSpeed = 1000;       // permille
 constexpr uint32_t kKeepModuloTarget = 1;  // H453 bit 0
 
 }  // namespace
@@ -55,7 +55,7 @@ void Positioner::write_modulo_target(int32_t target) {
   }
   if (!modulo_.on()) return report(PositioningEvent::ModuloOff);
   // From where the axis can be stopped, so that a one-way axis never has to turn back.
-  const int64_t base = following_ ? profile_.stop_position(rules()) : in_position() ? target_ : actual();
+  const int64_t base = following_ ? profile_.stop_position(rules_) : in_position() ? target_ : actual();
   write_target(wrapped(base + modulo_.way_to(target, high_resolution(), wrapped(base - actual()))));
   modulo_target_ = modulo_.within_turn(target, high_resolution());
 }
@@ -69,36 +69,6 @@ void Positioner::stop_here() {
     drop_target();
 }
 
-// --- what it shows ---
-
-int32_t Positioner::setpoint() const { return following_ ? wrapped(whole(profile_.position())) : actual(); }
-
-// With the modulo function positions are points on the circle of 2^32 increments, so that an axis may turn
-// for ever; without it they are points on a line.
-int64_t Positioner::distance(int32_t from, int32_t to) const {
-  const int64_t way = int64_t{to} - from;
-  return modulo_.on() ? wrapped(way) : way;
-}
-
-bool Positioner::in_position() const {
-  return inputs_.possible && !reference_.active() &&
-         magnitude(distance(actual(), target_)) <= std::max(settings_.window, 0);
-}
-
-bool Positioner::referenced() const { return referenced_ || source() == PositionSource::Absolute; }
-
-std::optional<int32_t> Positioner::take_motor_counter() {
-  const std::optional<int32_t> counter = motor_counter_;
-  motor_counter_.reset();
-  return counter;
-}
-
-std::bitset<kPositioningEvents> Positioner::take_events() {
-  const auto events = events_;
-  events_.reset();
-  return events;
-}
-
 // --- the millisecond ---
 
 void Positioner::power_on(const PositioningSettings& settings, int32_t shaft) {
@@ -108,9 +78,10 @@ void Positioner::power_on(const PositioningSettings& settings, int32_t shaft) {
   modulo_.set(actual());
 }
 
-PositioningOrder Positioner::tick(const PositioningInputs& inputs, const PositioningSettings& settings) {
-  take_over(settings);
+PositioningOrder Positioner::tick(const PositioningInputs& inputs) {
+  if (!modulo_.possible()) configure_modulo();
   inputs_ = inputs;
+  find_rules();
   touch_probes_.tick(inputs.levels, encoders_);
   if (inputs.reference_start && !reference_input_) start_reference(false, false);
   reference_input_ = inputs.reference_start;
@@ -129,11 +100,6 @@ PositioningOrder Positioner::tick(const PositioningInputs& inputs, const Positio
   keep_in_range();
   if (settings_.lag_window > 0 && magnitude(lag_) > settings_.lag_window) report(PositioningEvent::LagError);
   return {true, speed_order(), halt_};
-}
-
-bool Positioner::idles() const {
-  return !inputs_.possible && !reference_.active() && follower_.silent() && !touch_probes_.probe(0).fresh &&
-         !touch_probes_.probe(1).fresh && events_.none();
 }
 
 PositioningOrder Positioner::idle(int32_t speed) {
@@ -161,17 +127,28 @@ void Positioner::take_over(const PositioningSettings& settings) {
   const bool other =
       settings.source != settings_.source || !(settings.source_factor() == settings_.source_factor());
   settings_ = settings;
+  factor_ = settings_.source_factor();
+  full_rules_ = rules_ = settings_.travel_rules(kFullSpeed);
+  rules_override_ = kFullSpeed;
+  plan_follows_ = false;
   encoders_.configure(settings_);
   if (other) {
     following_ = false;
     target_follows_ = true;
     modulo_.set(actual());
   }
+  configure_modulo();
+}
+
+void Positioner::configure_modulo() {
   if (!modulo_.configure(settings_, actual())) report(PositioningEvent::ModuloTooFine);
 }
 
-TravelRules Positioner::rules() const {
-  return settings_.travel_rules(settings_.override_on == 1 ? inputs_.override_permille : kFullSpeed);
+void Positioner::find_rules() {
+  if (rules_override_ == inputs_.override_permille) return;
+  rules_override_ = inputs_.override_permille;
+  rules_ = settings_.travel_rules(rules_override_);
+  plan_follows_ = false;
 }
 
 // Something else moves the axis, or nothing: position setpoint and actual position are one.
@@ -196,11 +173,11 @@ void Positioner::rest() {
 
 void Positioner::resume() {
   following_ = true;
-  profile_.hold(fine(actual()), rate_of_speed(inputs_.speed, settings_.source_factor()));
+  profile_.hold(fine(actual()), rate_of_speed(inputs_.speed, factor_));
   planned_target_.reset();
   reference_order_ = {};
   const bool goes_on = interrupted_ && !target_follows_ && target_allowed();
-  if (goes_on && profile_.overruns(target_on_line(), rules())) report(PositioningEvent::Overrun);
+  if (goes_on && profile_.overruns(target_on_line(), rules_)) report(PositioningEvent::Overrun);
   if (target_follows_) brake_here();
   interrupted_ = given_up_ = false;
 }
@@ -212,13 +189,12 @@ void Positioner::drop_target() {
 }
 
 void Positioner::brake_here() {
-  const TravelRules now = rules();
-  const int64_t end = profile_.stop_position(now);
-  profile_.stop(now);
+  const int64_t end = profile_.stop_position(rules_);
+  profile_.stop(rules_);
   target_ = wrapped(end);
   planned_target_ = end;
-  planned_rules_ = now;
-  planned_full_ = settings_.travel_rules(kFullSpeed);
+  planned_rules_ = rules_;
+  planned_full_ = full_rules_;
 }
 
 bool Positioner::target_allowed() const {
@@ -240,23 +216,25 @@ void Positioner::run_travel() {
     if (refused_target_ == target_) return;
     refused_target_ = target_;
     report(PositioningEvent::TargetBeyondLimit);
-    profile_.stop(rules());
+    profile_.stop(rules_);
     planned_target_.reset();
     return;
   }
   refused_target_.reset();
-  TravelRules now = rules();
+  const int64_t goal = target_on_line();
+  if (plan_holds(goal)) return;
+  TravelRules now = rules_;
   if (planned_target_ && !profile_.at_rest()) {
     if (planned_rules_.shape == RampShape::Linear) {
       now.shape = RampShape::Linear;  // another type holds from the next travel on
     } else {
-      const TravelRules full = settings_.travel_rules(kFullSpeed);
-      if (!(full == planned_full_)) report(PositioningEvent::RampChanged);
-      planned_full_ = full;
+      if (!(full_rules_ == planned_full_)) report(PositioningEvent::RampChanged);
+      planned_full_ = full_rules_;
       now = planned_rules_;
     }
   }
-  plan(target_on_line(), now);
+  plan(goal, now);
+  plan_follows_ = planned_rules_ == rules_ && planned_full_ == full_rules_;
 }
 
 void Positioner::plan(int64_t goal, const TravelRules& now) {
@@ -265,7 +243,7 @@ void Positioner::plan(int64_t goal, const TravelRules& now) {
   profile_.travel(goal, now, kept ? Goal::Kept : Goal::New);
   planned_target_ = goal;
   planned_rules_ = now;
-  planned_full_ = settings_.travel_rules(kFullSpeed);
+  planned_full_ = full_rules_;
 }
 
 void Positioner::watch_limit_switches() {
@@ -281,8 +259,9 @@ void Positioner::watch_limit_switches() {
 
 // The profile's count goes on for ever with the modulo function; a circle of it is taken away in time.
 void Positioner::keep_in_range() {
+  if (!modulo_.on()) return;
   const int64_t position = whole(profile_.position());
-  if (!modulo_.on() || magnitude(position) < (int64_t{1} << 33)) return;
+  if (magnitude(position) < (int64_t{1} << 33)) return;
   const int64_t change = wrapped(position) - position;
   profile_.shift(change);
   if (planned_target_) *planned_target_ += change;
@@ -290,9 +269,8 @@ void Positioner::keep_in_range() {
 
 // P910 and P915. The unit of the gain is ours: with 1.000 a lag of one motor increment gives 0.5 rpm.
 int32_t Positioner::speed_order() const {
-  const EncoderFactor factor = settings_.source_factor();
-  const int64_t feed = speed_of_rate(profile_.speed(), factor) * settings_.feedforward / 100'000;
-  const int64_t lag = int64_t{lag_} * factor.numerator / factor.denominator;
+  const int64_t feed = speed_of_rate(profile_.speed(), factor_) * settings_.feedforward / 100'000;
+  const int64_t lag = motor_way(lag_, factor_);
   const int64_t top = std::max(settings_.maximum_speed, 0);
   return static_cast<int32_t>(std::clamp(feed + lag * settings_.gain / 2, -top, top));
 }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 #include "runtime/positioning/encoders.hpp"
 #include "runtime/positioning/follower.hpp"
@@ -44,8 +45,8 @@ struct PositioningInputs {
   bool has_cam = false;
   bool has_limits = false;
   bool reference_start = false;
-  int32_t override_permille = 1000;
-  uint32_t modulo_control = 0;  // H453
+  int32_t override_permille = 1000;  // 1000 with P930 = OFF
+  uint32_t modulo_control = 0;       // H453
   MasterInputs master;
 };
 
@@ -60,22 +61,27 @@ class Positioner {
  public:
   // Once, after what holds the settings: not referenced, no target. `shaft`: increments it was ever turned.
   void power_on(const PositioningSettings& settings, int32_t shaft);
+  // Other settings, before a tick.
+  void take_over(const PositioningSettings& settings);
 
   // --- the millisecond ---
   // Before the axis moves: sensors belong to where it is now.
-  PositioningOrder tick(const PositioningInputs& inputs, const PositioningSettings& settings);
+  PositioningOrder tick(const PositioningInputs& inputs);
   // Nothing can act: the mode is one without positioning, nothing is under way and nothing has just happened.
   // Then idle() is tick() with settings and inputs that are the same but for the speed.
-  bool idles() const;
+  bool idles() const {
+    return !inputs_.possible && !reference_.active() && follower_.silent() && !touch_probes_.probe(0).fresh &&
+           !touch_probes_.probe(1).fresh && events_.none();
+  }
   PositioningOrder idle(int32_t speed);
   // idle() and observe() where nobody looks at the order.
   void glide(int32_t motor_counter);
   // After it has moved: the counter of the motor encoder.
   void observe(int32_t motor_counter);
   // A reference travel has given the motor encoder another count, which the axis must take over.
-  std::optional<int32_t> take_motor_counter();
+  std::optional<int32_t> take_motor_counter() { return std::exchange(motor_counter_, std::nullopt); }
   // What has been reported since the last call.
-  std::bitset<kPositioningEvents> take_events();
+  std::bitset<kPositioningEvents> take_events() { return std::exchange(events_, {}); }
 
   // --- the program ---
   void write_target(int32_t target);                                  // H492, _GoAbs
@@ -91,7 +97,9 @@ class Positioner {
   void report(PositioningEvent event) { events_.set(static_cast<size_t>(event)); }
 
   // --- what it shows ---
-  int32_t setpoint() const;                   // H491
+  int32_t setpoint() const {  // H491
+    return following_ ? wrapped(whole(profile_.position())) : actual();
+  }
   int32_t target() const { return target_; }  // H492
   int32_t lag() const { return lag_; }        // H495
   int32_t modulo_target() const { return modulo_target_; }
@@ -99,8 +107,11 @@ class Positioner {
   const Encoders& encoders() const { return encoders_; }
   const TouchProbes& touch_probes() const { return touch_probes_; }
   const PositioningInputs& inputs() const { return inputs_; }  // of the last tick()
-  bool in_position() const;                                    // H473 bit 19
-  bool referenced() const;                                     // H473 bit 20
+  bool in_position() const {                                   // H473 bit 19
+    return inputs_.possible && !reference_.active() &&
+           magnitude(distance(actual(), target_)) <= std::max(settings_.window, 0);
+  }
+  bool referenced() const { return referenced_ || source() == PositionSource::Absolute; }  // H473 bit 20
   PositionSource source() const { return settings_.position_source(); }
   bool referencing() const { return reference_.active(); }
   FollowState follow_state() const { return follow_state_; }  // H562
@@ -108,19 +119,25 @@ class Positioner {
  private:
   int32_t actual() const { return encoders_.position(source()); }
   bool high_resolution() const { return (inputs_.modulo_control >> 1 & 1) != 0; }
-  TravelRules rules() const;
 
-  int64_t distance(int32_t from, int32_t to) const;
+  // With the modulo function positions are points on the circle of 2^32 increments, so that an axis may turn
+  // for ever; without it they are points on a line.
+  int64_t distance(int32_t from, int32_t to) const {
+    const int64_t way = int64_t{to} - from;
+    return modulo_.on() ? wrapped(way) : way;
+  }
   int64_t target_on_line() const;
   bool target_allowed() const;
 
-  void take_over(const PositioningSettings& settings);
+  void configure_modulo();
+  void find_rules();
   void rest();
   void resume();
   void run_travel();
   bool follow_master();
   void couple();
   void watch_limit_switches();
+  bool plan_holds(int64_t goal) const { return plan_follows_ && planned_target_ == goal; }
   void plan(int64_t goal, const TravelRules& rules);
   void brake_here();
   void drop_target();
@@ -132,6 +149,12 @@ class Positioner {
   void take_pending();
 
   PositioningSettings settings_;
+  // Made of the settings.
+  EncoderFactor factor_;  // of the source
+  TravelRules full_rules_;
+  TravelRules rules_;  // with the override of
+  int32_t rules_override_ = 0;
+
   PositioningInputs inputs_;
   Encoders encoders_;
   Modulo modulo_;
@@ -158,6 +181,7 @@ class Positioner {
   std::optional<int64_t> planned_target_;
   TravelRules planned_rules_;
   TravelRules planned_full_;               // the same without override
+  bool plan_follows_ = false;              // these are those that hold now: only another target can change it
   std::optional<int32_t> refused_target_;  // beyond a software limit switch, already reported
   bool at_limit_ = false;                  // moving into a limit switch, already reported
   bool given_up_ = false;                  // the travel, for that

@@ -21,10 +21,9 @@ bool Positioner::follow_master() {
 
 // P911 up to the speed of the master; the way lost meanwhile stays lost. From then on every increment counts.
 void Positioner::couple() {
-  const TravelRules ramp = rules();
   const Rate wanted = follower_.step() * (Rate{1} << (kRateBits - kFineBits));
   const Rate now = profile_.speed();
-  const Rate change = std::max<Rate>(1, ramp.reference / ramp.up_ms);
+  const Rate change = std::max<Rate>(1, rules_.reference / rules_.up_ms);
   Rate next = wanted;
   Fine step = follower_.step();
   if (follow_state_ == FollowState::Coupling) {

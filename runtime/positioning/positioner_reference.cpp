@@ -27,7 +27,7 @@ void Positioner::run_reference() {
   const auto fail = [this](PositioningEvent why) {
     report(why);
     reference_failed_ = true;
-    profile_.stop(rules());
+    profile_.stop(rules_);
   };
   ReferenceInputs in;
   in.cam = inputs_.cam;

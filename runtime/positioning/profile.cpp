@@ -42,8 +42,10 @@ bool stops_within(Fine way, Fine brake, RampShape shape) {
 }  // namespace
 
 void Profile::begin() {
-  origin_ = position_;
+  begin_ = position_;
   elapsed_ = 0;
+  phase_ = 0;
+  entered_ = false;
   phases_ = 0;
   arrives_ = turns_ = false;
 }
@@ -139,47 +141,59 @@ bool Profile::overruns(int64_t target, const TravelRules& rules) const {
 
 void Profile::shift(int64_t increments) {
   position_ += fine(increments);
+  begin_ += fine(increments);
   origin_ += fine(increments);
   goal_ += fine(increments);
 }
 
-Fine Profile::way_in(const Phase& phase, Span time) {
-  if (phase.from == phase.to) return static_cast<Fine>((Wide{phase.from} * time) >> kRateBits);
-  const auto share = static_cast<int64_t>((Wide{time} << kShareBits) / phase.duration);
+// With 34 bits, 16 s, the product below has 64.
+int64_t Profile::share_in(const Phase& phase, Span time) {
+  if (phase.duration < Span{1} << (64 - kShareBits))
+    return static_cast<int64_t>((static_cast<uint64_t>(time) << kShareBits) /
+                                static_cast<uint64_t>(phase.duration));
+  return static_cast<int64_t>((Wide{time} << kShareBits) / phase.duration);
+}
+
+Fine Profile::way_in(const Phase& phase, Span time, int64_t share) {
   const Wide change = Wide{phase.to - phase.from} * phase.duration * distance_share(phase.shape, share);
   return static_cast<Fine>((Wide{phase.from} * time + (change >> kShareBits)) >> kRateBits);
 }
 
-Rate Profile::speed_in(const Phase& phase, Span time) {
-  if (phase.from == phase.to) return phase.from;
-  const auto share = static_cast<int64_t>((Wide{time} << kShareBits) / phase.duration);
+Rate Profile::speed_in(const Phase& phase, int64_t share) {
   return phase.from +
          static_cast<Rate>((Wide{phase.to - phase.from} * speed_share(phase.shape, share)) >> kShareBits);
 }
 
+// What is the same in all its milliseconds. The last phase is counted from its end, so that it ends exactly
+// there.
+void Profile::enter_phase() {
+  const Phase& phase = plan_[phase_];
+  way_ = phase.duration == 0 ? 0 : way_in(phase, phase.duration, kWholeShare);
+  origin_ = at_last_phase() ? goal_ - way_ : begin_;
+  entered_ = true;
+}
+
 void Profile::tick() {
   if (phases_ == 0) return;
+  if (!entered_) enter_phase();
   elapsed_ += kMs;
-  Span time = elapsed_;
-  Fine from = origin_;
-  for (size_t n = 0; n < phases_; ++n) {
-    const Phase& phase = plan_[n];
-    if (time < phase.duration) {
-      // The last phase is counted from its end, so that it ends exactly there.
-      const bool last = arrives_ && n + 1U == phases_;
-      position_ =
-          last ? goal_ - way_in(phase, phase.duration) + way_in(phase, time) : from + way_in(phase, time);
-      speed_ = speed_in(phase, time);
-      // Rounding must not carry it past the target.
-      const int way = sign(phase.from + phase.to);
-      if (arrives_ && !(turns_ && n == 0) && way * (position_ - goal_) > 0) position_ = goal_;
-      return;
-    }
-    if (phase.duration == 0) continue;
-    time -= phase.duration;
-    from += way_in(phase, phase.duration);
+  while (elapsed_ >= plan_[phase_].duration) {
+    elapsed_ -= plan_[phase_].duration;
+    begin_ += way_;
+    if (++phase_ == phases_) return arrive();
+    enter_phase();
   }
-  position_ = arrives_ ? goal_ : from;
+  const Phase& phase = plan_[phase_];
+  const int64_t share = phase.from == phase.to ? 0 : share_in(phase, elapsed_);
+  position_ = origin_ + way_in(phase, elapsed_, share);
+  speed_ = speed_in(phase, share);
+  // Rounding must not carry it past the target.
+  const int way = sign(phase.from + phase.to);
+  if (arrives_ && !(turns_ && phase_ == 0) && way * (position_ - goal_) > 0) position_ = goal_;
+}
+
+void Profile::arrive() {
+  position_ = arrives_ ? goal_ : begin_;
   speed_ = 0;
   phases_ = 0;
 }

@@ -67,14 +67,22 @@ class Profile {
   void add(Rate from, Rate to, Span duration, RampShape shape);
   void brake_to(Fine goal, RampShape shape);
 
-  static Fine way_in(const Phase& phase, Span time);
-  static Rate speed_in(const Phase& phase, Span time);
+  void enter_phase();
+  bool at_last_phase() const { return arrives_ && phase_ + 1U == phases_; }
+  void arrive();
+  static int64_t share_in(const Phase& phase, Span time);
+  static Fine way_in(const Phase& phase, Span time, int64_t share);
+  static Rate speed_in(const Phase& phase, int64_t share);
 
   Fine position_ = 0;
   Rate speed_ = 0;
 
-  Fine origin_ = 0;  // of the plan
-  Span elapsed_ = 0;
+  uint8_t phase_ = 0;  // the one that runs
+  bool entered_ = false;
+  Span elapsed_ = 0;  // since it began
+  Fine begin_ = 0;    // where it began
+  Fine way_ = 0;      // all of it
+  Fine origin_ = 0;   // where its way is counted from
   Fine goal_ = 0;
   bool arrives_ = false;  // the last phase ends at goal_
   bool turns_ = false;    // the first one passes it, or leads away from it

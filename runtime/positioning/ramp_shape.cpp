@@ -34,13 +34,11 @@ int64_t early_distance(RampShape shape, int64_t time) {
 
 }  // namespace
 
-int64_t speed_share(RampShape shape, int64_t time) {
-  if (shape == RampShape::Linear) return time;
+int64_t curved_speed_share(RampShape shape, int64_t time) {
   return time <= kHalf ? early_speed(shape, time) : kWholeShare - early_speed(shape, kWholeShare - time);
 }
 
-int64_t distance_share(RampShape shape, int64_t time) {
-  if (shape == RampShape::Linear) return times(time, time) / 2;
+int64_t curved_distance_share(RampShape shape, int64_t time) {
   return time <= kHalf ? early_distance(shape, time)
                        : time - kHalf + early_distance(shape, kWholeShare - time);
 }

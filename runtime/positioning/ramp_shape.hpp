@@ -17,9 +17,15 @@ inline constexpr int kShareBits = 30;
 inline constexpr int64_t kWholeShare = int64_t{1} << kShareBits;
 
 // At a share of the ramp time: the share of the change of speed already made, 0..1.
-int64_t speed_share(RampShape shape, int64_t time);
+int64_t curved_speed_share(RampShape shape, int64_t time);
+inline int64_t speed_share(RampShape shape, int64_t time) {
+  return shape == RampShape::Linear ? time : curved_speed_share(shape, time);
+}
 // And its integral over the time, 0..1/2.
-int64_t distance_share(RampShape shape, int64_t time);
+int64_t curved_distance_share(RampShape shape, int64_t time);
+inline int64_t distance_share(RampShape shape, int64_t time) {
+  return shape == RampShape::Linear ? (time * time) >> (kShareBits + 1) : curved_distance_share(shape, time);
+}
 
 // How much harder than on average a ramp of this shape may brake, in halves: a curved ramp that is taken up
 // again in its steepest part still ends where it would have ended (docs/positioning.md).

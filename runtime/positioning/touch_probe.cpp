@@ -10,9 +10,7 @@ void TouchProbes::enable(size_t n, bool rising, bool falling) {
   probe.touched = false;
 }
 
-void TouchProbes::tick(uint16_t levels, const Encoders& encoders) {
-  for (Probe& probe : probes_) probe.fresh = false;
-  if (levels == levels_) return;
+void TouchProbes::take_levels(uint16_t levels, const Encoders& encoders) {
   constexpr unsigned kFirstInput = 2;  // DI02
   for (unsigned n = 0; n < kProbes; ++n) {
     const bool before = (levels_ >> (kFirstInput + n) & 1) != 0;

@@ -25,11 +25,16 @@ class TouchProbes {
   void enable(size_t probe, bool rising, bool falling);
 
   // One millisecond. `levels` as InputLevel H483.
-  void tick(uint16_t levels, const Encoders& encoders);
+  void tick(uint16_t levels, const Encoders& encoders) {
+    for (Probe& probe : probes_) probe.fresh = false;
+    if (levels != levels_) take_levels(levels, encoders);
+  }
 
   const Probe& probe(size_t n) const { return probes_[n]; }
 
  private:
+  void take_levels(uint16_t levels, const Encoders& encoders);
+
   std::array<Probe, kProbes> probes_{};
   uint16_t levels_ = 0;
 };

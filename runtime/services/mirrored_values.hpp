@@ -2,10 +2,10 @@
 // in the other within a millisecond.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "runtime/drive/parameters.hpp"
 
@@ -13,7 +13,7 @@ namespace ipos::runtime {
 
 class MirroredValues {
  public:
-  // Parameters the unit does not have are left out.
+  // A unit has all of these parameters or none.
   explicit MirroredValues(ParameterStore& parameters);
 
   // Before the tasks run: changed parameters, and at first all of them, into the variables.
@@ -23,14 +23,15 @@ class MirroredValues {
   void take(std::span<int32_t> h);
 
  private:
-  struct Pair {
-    size_t variable;
-    uint16_t index;
-    std::optional<int32_t> agreed;
-  };
+  bool written(std::span<const int32_t> h) const;
+
+  static constexpr size_t kPairs = 6;
+
   ParameterStore& parameters_;
-  std::vector<Pair> pairs_;
-  std::optional<uint32_t> seen_;  // parameters_.changes() at the last look
+  std::array<uint16_t, kPairs> indices_{};  // of the parameters
+  std::array<int32_t, kPairs> agreed_{};
+  bool exist_ = true;
+  std::optional<uint32_t> seen_;  // parameters_.changes() when they were shown
 };
 
 }  // namespace ipos::runtime

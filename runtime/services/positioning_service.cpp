@@ -39,14 +39,22 @@ enum SystemVariable : size_t {
   kGearSlave = 564,
 };
 
+// System variables that are the same datum as a parameter; every unit with positioning has these.
+struct Mirror {
+  size_t variable;
+  int32_t PositioningSettings::*member;
+  std::string_view number;
+};
+constexpr Mirror kMirrorRows[] = {{kPosWindow, &PositioningSettings::window, "922"},
+                                  {kLagWindow, &PositioningSettings::lag_window, "923"},
+                                  {kSlsRight, &PositioningSettings::limit_cw, "920"},
+                                  {kSlsLeft, &PositioningSettings::limit_ccw, "921"},
+                                  {kRefOffset, &PositioningSettings::reference_offset, "900"}};
+
 constexpr unsigned kInPosition = 19;  // IPOSplus p. 34
 constexpr unsigned kReferenced = 20;  // IPOSplus p. 91
 
-void set_bit(int32_t& word, unsigned bit, bool on) {
-  const uint32_t mask = 1U << bit;
-  const auto bits = static_cast<uint32_t>(word);
-  word = static_cast<int32_t>(on ? bits | mask : bits & ~mask);
-}
+constexpr int32_t kNoOverride = 1'000;
 
 // P930: 0..10 V at AI1 are 0..150 % of the travel speeds (common knowledge, in no manual read).
 int32_t override_of(const AnalogInputs& analog) {
@@ -80,19 +88,16 @@ PositioningService::PositioningService(Drive& drive, ParameterStore& parameters,
 #define POSITIONING_SETTING(member, number, value) \
   if (const uint16_t index = index_of(number)) cells_.push_back({&PositioningSettings::member, index});
 #include "runtime/positioning/settings.def"
-  using P = PositioningSettings;
-  for (const Mirror& mirror :
-       {Mirror{kPosWindow, &P::window, "922", 0}, Mirror{kLagWindow, &P::lag_window, "923", 0},
-        Mirror{kSlsRight, &P::limit_cw, "920", 0}, Mirror{kSlsLeft, &P::limit_ccw, "921", 0},
-        Mirror{kRefOffset, &P::reference_offset, "900", 0}})
-    if (index_of(mirror.number) != 0) mirrors_.push_back(mirror);
+  static_assert(std::size(kMirrorRows) == kMirrors);
   read_settings();
   positioner_.power_on(settings_, drive.shaft_position());
+  positioner_version_ = settings_version_;
 }
 
 void PositioningService::read_settings() {
   if (settings_version_ == parameters_.changes()) return;
   settings_version_ = parameters_.changes();
+  mirrors_agree_ = false;
   for (const Cell& cell : cells_) settings_.*cell.member = parameters_.stored(cell.index);
 }
 
@@ -101,20 +106,34 @@ void PositioningService::set_parameter(std::string_view number, int32_t value) {
     parameters_.set_working(row->index, value);
 }
 
+bool PositioningService::mirrors_written(std::span<const int32_t> h) const {
+  return [&]<size_t... n>(std::index_sequence<n...>) {
+    return ((h[kMirrorRows[n].variable] ^ mirrored_[n]) | ...) != 0;
+  }
+  (std::make_index_sequence<kMirrors>());
+}
+
 // The last one to write wins: over a bus the parameter, in the program the variable.
 void PositioningService::take_mirrors(std::span<int32_t> h) {
-  const bool agreed = std::all_of(mirrors_.begin(), mirrors_.end(), [&](const Mirror& mirror) {
-    return h[mirror.variable] == mirror.shown && settings_.*mirror.member == mirror.shown;
-  });
-  if (agreed) return;
-  for (Mirror& mirror : mirrors_)
-    if (h[mirror.variable] != mirror.shown && settings_.*mirror.member == mirror.shown)
-      set_parameter(mirror.number, h[mirror.variable]);
+  if (mirrors_agree_ && !mirrors_written(h)) return;
+  for (size_t n = 0; n < kMirrors; ++n) {
+    const Mirror& row = kMirrorRows[n];
+    if (h[row.variable] != mirrored_[n] && settings_.*row.member == mirrored_[n])
+      set_parameter(row.number, h[row.variable]);
+  }
   read_settings();
-  for (Mirror& mirror : mirrors_) h[mirror.variable] = mirror.shown = settings_.*mirror.member;
+  for (size_t n = 0; n < kMirrors; ++n)
+    h[kMirrorRows[n].variable] = mirrored_[n] = settings_.*kMirrorRows[n].member;
+  mirrors_agree_ = true;
+}
+
+bool PositioningService::targets_written(std::span<const int32_t> h) const {
+  return h[kTargetPos] != shown_target_ || h[kModTagPos] != shown_modulo_target_ ||
+         h[kModCount] != shown_turns_;
 }
 
 void PositioningService::take_targets(std::span<const int32_t> h) {
+  if (!targets_written(h)) return;
   if (h[kTargetPos] != shown_target_) {
     ordered_at_.reset();
     positioner_.write_target(h[kTargetPos]);
@@ -137,37 +156,42 @@ void PositioningService::show_target_positions(std::span<int32_t> h) {
 
 void PositioningService::show_targets(std::span<int32_t> h) {
   show_target_positions(h);
-  set_bit(h[kStatusWord], kInPosition, positioner_.in_position());
-  set_bit(h[kStatusWord], kReferenced, positioner_.referenced());
+  constexpr uint32_t kBits = 1U << kInPosition | 1U << kReferenced;
+  const uint32_t bits = (positioner_.in_position() ? 1U << kInPosition : 0) |
+                        (positioner_.referenced() ? 1U << kReferenced : 0);
+  h[kStatusWord] = static_cast<int32_t>((static_cast<uint32_t>(h[kStatusWord]) & ~kBits) | bits);
 }
 
-PositioningInputs PositioningService::inputs(std::span<const int32_t> h) const {
+void PositioningService::read_terminals(const Terminals& t) {
   using F = InputFunction;
-  const Terminals t = drive_.terminals();
-  PositioningInputs in;
-  in.possible = drive_.can_position();
-  in.following = drive_.follows();
-  in.speed = drive_.speed();
-  in.levels = drive_.inputs();
-  in.cam = t.on(F::ReferenceCam);
-  in.limit_cw = t.off(F::LimitCw);  // low-active
-  in.limit_ccw = t.off(F::LimitCcw);
-  in.has_cam = t.assigned(F::ReferenceCam);
-  in.has_limits = t.assigned(F::LimitCw) && t.assigned(F::LimitCcw);
-  in.reference_start = t.on(F::ReferenceStart);
-  in.override_permille = override_of(drive_.analog());
-  in.modulo_control = static_cast<uint32_t>(h[kModuloCtrl]);
-  return in;
+  terminals_ = t;
+  inputs_.cam = t.on(F::ReferenceCam);
+  inputs_.limit_cw = t.off(F::LimitCw);  // low-active
+  inputs_.limit_ccw = t.off(F::LimitCcw);
+  inputs_.has_cam = t.assigned(F::ReferenceCam);
+  inputs_.has_limits = t.assigned(F::LimitCw) && t.assigned(F::LimitCcw);
+  inputs_.reference_start = t.on(F::ReferenceStart);
+}
+
+void PositioningService::read_inputs(std::span<const int32_t> h, uint32_t syncs) {
+  if (const Terminals& t = drive_.terminals(); !(t == terminals_)) read_terminals(t);
+  inputs_.possible = drive_.can_position();
+  inputs_.following = drive_.follows();
+  inputs_.speed = drive_.speed();
+  inputs_.levels = drive_.inputs();
+  inputs_.override_permille = settings_.override_on == 1 ? override_of(drive_.analog()) : kNoOverride;
+  inputs_.modulo_control = static_cast<uint32_t>(h[kModuloCtrl]);
+  inputs_.master = settings_.technology_function == kIsync ? master(h, syncs != syncs_) : MasterInputs{};
+  syncs_ = syncs;
 }
 
 // A gear of 0 is one of 1.
-MasterInputs PositioningService::master(std::span<const int32_t> h, uint32_t syncs) {
-  MasterInputs master;
-  master.sync = syncs != syncs_;
-  syncs_ = syncs;
+MasterInputs PositioningService::master(std::span<const int32_t> h, bool sync) const {
   if (h.size() <= kGearSlave) return {};
   const auto source = static_cast<uint32_t>(h[kSyncSource]);
-  if (settings_.technology_function != kIsync || source == 0 || source >= h.size()) return {};
+  if (source == 0 || source >= h.size()) return {};
+  MasterInputs master;
+  master.sync = sync;
   master.follow = (h[kSyncControl] & 1) != 0;
   master.position = h[source];
   if (h[kGearMaster] != 0) master.gear_master = h[kGearMaster];
@@ -179,17 +203,15 @@ MasterInputs PositioningService::master(std::span<const int32_t> h, uint32_t syn
 // is nothing to do in this one.
 bool PositioningService::stays_idle(std::span<const int32_t> h) const {
   const PositioningInputs& last = positioner_.inputs();
-  return idles_ && settings_version_ == parameters_.changes() && drive_.inputs() == last.levels &&
+  return settings_version_ == parameters_.changes() && drive_.inputs() == last.levels &&
          !drive_.can_position() &&
          drive_.terminals().on(InputFunction::ReferenceStart) == last.reference_start &&
-         h[kTargetPos] == shown_target_ && h[kModTagPos] == shown_modulo_target_ &&
-         h[kModCount] == shown_turns_ && static_cast<uint32_t>(h[kModuloCtrl]) == last.modulo_control &&
-         std::all_of(mirrors_.begin(), mirrors_.end(),
-                     [&](const Mirror& mirror) { return h[mirror.variable] == mirror.shown; });
+         !targets_written(h) && static_cast<uint32_t>(h[kModuloCtrl]) == last.modulo_control &&
+         !mirrors_written(h);
 }
 
 PositionControl PositioningService::order(Time now, std::span<int32_t> h, uint32_t syncs) {
-  if (stays_idle(h)) {
+  if (idles_ && stays_idle(h)) {
     syncs_ = syncs;
     const PositioningOrder order = positioner_.idle(drive_.speed());
     return {order.controls, order.speed, command_of(order.halt), false, positioner_.referenced()};
@@ -197,9 +219,12 @@ PositionControl PositioningService::order(Time now, std::span<int32_t> h, uint32
   read_settings();
   take_mirrors(h);
   take_targets(h);
-  PositioningInputs in = inputs(h);
-  in.master = master(h, syncs);
-  const PositioningOrder order = positioner_.tick(in, settings_);
+  if (positioner_version_ != settings_version_) {
+    positioner_version_ = settings_version_;
+    positioner_.take_over(settings_);
+  }
+  read_inputs(h, syncs);
+  const PositioningOrder order = positioner_.tick(inputs_);
   report_events(now);
   idles_ = positioner_.idles() && reported_.none() && settings_.technology_function != kIsync;
   if (const auto counter = positioner_.take_motor_counter()) drive_.set_position(*counter);

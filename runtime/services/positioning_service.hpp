@@ -2,6 +2,7 @@
 // drive, and what it reports to both. Called twice a millisecond, around the drive's tick.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <span>
@@ -60,20 +61,16 @@ class PositioningService {
 
  private:
   static constexpr int32_t kIsync = 2;  // setting of P077 (1053 1610 p. 69)
-
-  // A system variable and the parameter it is the same datum as.
-  struct Mirror {
-    size_t variable;
-    int32_t PositioningSettings::*member;
-    std::string_view number;
-    int32_t shown;
-  };
+  static constexpr size_t kMirrors = 5;
 
   void read_settings();
   bool stays_idle(std::span<const int32_t> h) const;
+  bool mirrors_written(std::span<const int32_t> h) const;
+  bool targets_written(std::span<const int32_t> h) const;
   void take_mirrors(std::span<int32_t> h);
-  PositioningInputs inputs(std::span<const int32_t> h) const;
-  MasterInputs master(std::span<const int32_t> h, uint32_t syncs);
+  void read_terminals(const Terminals& terminals);
+  void read_inputs(std::span<const int32_t> h, uint32_t syncs);
+  MasterInputs master(std::span<const int32_t> h, bool sync) const;
   void show_target_positions(std::span<int32_t> h);
   void show_positions(std::span<int32_t> h, const Encoders::Positions& positions, int32_t setpoint);
   void report_events(Time now);
@@ -91,9 +88,13 @@ class PositioningService {
   std::vector<Cell> cells_;  // of the parameters the unit has
   PositioningSettings settings_;
   uint32_t settings_version_;
-  std::vector<Mirror> mirrors_;
+  std::array<int32_t, kMirrors> mirrored_{};  // as last shown in the variables
+  bool mirrors_agree_ = false;                // that is what the settings say
 
   Positioner positioner_;
+  uint32_t positioner_version_;  // of the settings it has
+  PositioningInputs inputs_;
+  Terminals terminals_;  // of which they tell
   CamSources cam_sources_;
   ExtendedCams extended_cams_;
   bool cams_run_ = false;  // or one may have been started since the last look
