@@ -143,7 +143,7 @@ class ObjectTable {
   // H522 (SBus 1) or H523 (SBus 2) for its n-th receive object; the program clears it (order and clearing
   // ours; IPOSplus p. 232).
   bool take(size_t receiver, const Frame& frame, std::span<int32_t> h) const;
-  // take() would leave the variables as they are.
+  // take() would take it and leave the variables as they are.
   bool has_taken(size_t receiver, const Frame& frame, std::span<const int32_t> h) const;
 
   const State& state() const { return state_; }

@@ -1,4 +1,4 @@
-// A set of the nodes of one line, visited in order of attachment.
+// A set of the nodes of one line, visited in order of attachment, and which of them want which identifiers.
 #pragma once
 
 #include <bit>
@@ -22,17 +22,7 @@ class NodeSet {
     uint64_t& word = words_[node / kWordBits];
     word = in ? word | bit : word & ~bit;
   }
-  bool empty() const {
-    for (const uint64_t word : words_)
-      if (word != 0) return false;
-    return true;
-  }
-
-  // Those that were in it when their word was reached. `visit` may change the set.
-  template <typename Visit>
-  void each(Visit visit) const {
-    for (size_t n = 0; n < words_.size(); ++n) each_bit(words_[n], n, visit);
-  }
+  // The nodes of word `n` of a set.
   template <typename Visit>
   static void each_bit(uint64_t word, size_t n, Visit& visit) {
     for (; word != 0; word &= word - 1)

@@ -247,8 +247,9 @@ TEST(Contending, TheFirstIsTheLowestKey) {
       model.erase(node);
     } else {
       const uint64_t ready = random() % 1000;
-      model[node] = {ready, ready + random() % 2, static_cast<uint32_t>(random() % 60)};
-      contenders.put(node, model[node]);
+      const Contender& put =
+          model[node] = {ready, ready + random() % 2, static_cast<uint32_t>(random() % 60)};
+      contenders.put(node, put.ready, put.first_ready, put.key);
     }
     ASSERT_EQ(contenders.empty(), model.empty());
     if (model.empty()) continue;

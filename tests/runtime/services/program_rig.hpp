@@ -17,6 +17,14 @@
 
 namespace ipos::tests {
 
+// Counts how often it was told that system variables may be written.
+struct TouchCount final : runtime::Sleeper {
+  void touch() override { ++touches; }
+  bool make_up_variables() override { return false; }
+  void wake() override {}
+  int touches = 0;
+};
+
 class ProgramRig {
  public:
   explicit ProgramRig(const std::string& text, const char* unit_name = "mdxb")
@@ -26,7 +34,7 @@ class ProgramRig {
         mirrored(parameters),
         pid(parameters),
         image(assembled(text)),
-        commands(services(server.memory()), journal, "unit1", &image),
+        commands(services(server.memory()), touched, journal, "unit1", &image),
         machine(verified(), commands.host()) {
     server.connect_program(machine);
     machine.start();
@@ -79,6 +87,7 @@ class ProgramRig {
   runtime::Timers timers;
   runtime::MirroredValues mirrored;
   runtime::PidBlock pid;
+  TouchCount touched;
   vm::Image image;
   runtime::SystemCommands commands;
   vm::Machine machine;
