@@ -223,7 +223,13 @@ void Drive::tick(const PositionControl& position) {
     select_parameter_set();
   }
   const Decisions& d = decided();
-  setpoint_ = next_setpoint(d);
+  if (position.controls) {
+    stopped_by_setpoint_ = false;
+    setpoint_.speed = setpoint_.requested = position.speed;
+    setpoint_.note = SetpointNote::None;
+  } else {
+    setpoint_ = next_setpoint(d);
+  }
   const AxisOrder& order = next_order(verdict_of(d).command);
   const AxisState& axis = axis_.tick(order);
   show_outputs(d, order, axis);

@@ -79,7 +79,12 @@ class Drive final : private DriveLink {
   // --- for the positioning of IPOS ---
   bool can_position() const { return decided().can_position; }  // P700 is a mode with IPOS (1053 1610 p. 80)
   // Enabled, magnetized, brake open: a speed of PositionControl acts.
-  bool follows() const { return axis_.phase() == AxisPhase::Moving && verdict().command == Command::Enable; }
+  bool follows() const { return follows(decided()); }
+  bool follows(const Decisions& d) const {
+    return axis_.phase() == AxisPhase::Moving && verdict_of(d).command == Command::Enable;
+  }
+  // For who asks for more than one thing.
+  const Decisions& decisions() const { return decided(); }
   const Terminals& terminals() const { return decided().terminals; }
   // POSITION LO and HI of the bus of P100 or P101.
   std::optional<int32_t> bus_position() const { return decided().bus_position; }

@@ -9,10 +9,6 @@ namespace ipos::runtime {
 // Filter, motor potentiometer and PI controller go on every millisecond; the choice is made again when one of
 // them gives something else.
 Setpoint Drive::next_setpoint(const Decisions& d) {
-  if (position_.controls) {
-    stopped_by_setpoint_ = false;
-    return {position_.speed, position_.speed, SetpointNote::None};
-  }
   if (d.setpoint_held) return setpoint_;
   const ParameterSet& active = set();
   SetpointMemory memory;

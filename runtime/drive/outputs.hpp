@@ -102,7 +102,7 @@ class Outputs {
   uint16_t tick(const Settings& settings, const OutputInputs& inputs);
   uint16_t levels() const { return levels_; }
   // A tick with the settings of the last one. False: nothing was done, for it takes tick().
-  bool go_on(const OutputInputs& in) {
+  [[gnu::always_inline]] bool go_on(const OutputInputs& in) {
     const bool same = in.flags() == basis_.flags && in.ipos_outputs == basis_.ipos_outputs &&
                       in.current_limit == current_limit_ && speeds_.have(magnitude(in.speed)) &&
                       deviations_.have(magnitude(int64_t{in.speed} - in.setpoint)) &&

@@ -24,18 +24,6 @@ Axis::Axis(const MachineData& machine)
   state_.heat_sink = power_.heat_sink();
 }
 
-const AxisState& Axis::tick(const AxisOrder& order) {
-  catch_up();
-  advance_sequence(order);
-  advance_setpoint(order);
-  const FineSpeed before = speed_;
-  const Motion motion = advance_shaft(order);
-  speed_ = motion.speed;
-  count_position(before, speed_);
-  show(order, motion);
-  return state_;
-}
-
 void Axis::set_position(int32_t position) {
   position_ = static_cast<uint32_t>(position);
   position_rest_ = 0;
@@ -43,15 +31,15 @@ void Axis::set_position(int32_t position) {
 }
 
 // The motor is magnetized and follows the setpoint.
-bool Axis::has_torque(AxisPhase phase) {
+inline bool Axis::has_torque(AxisPhase phase) {
   return phase == AxisPhase::Releasing || phase == AxisPhase::Moving || phase == AxisPhase::Applying;
 }
 
-bool Axis::brake_open() const {
+inline bool Axis::brake_open() const {
   return sequence_.phase() == AxisPhase::Releasing || sequence_.phase() == AxisPhase::Moving;
 }
 
-void Axis::advance_sequence(const AxisOrder& order) {
+inline void Axis::advance_sequence(const AxisOrder& order) {
   BrakeTimes times{order.premagnetize_ms, order.brake_release_ms, order.brake_apply_ms};
   if (!order.brake_function) times.release = times.apply = 0;
   switch (order.command) {
@@ -66,7 +54,7 @@ void Axis::advance_sequence(const AxisOrder& order) {
   }
 }
 
-void Axis::advance_setpoint(const AxisOrder& order) {
+inline void Axis::advance_setpoint(const AxisOrder& order) {
   // A motor that still turns when its torque comes back is caught at its speed (ours).
   if (!has_torque(state_.phase)) ramp_.set(speed_);
   if (sequence_.phase() != AxisPhase::Moving) return;
@@ -78,7 +66,7 @@ void Axis::advance_setpoint(const AxisOrder& order) {
   ramp_.step(0, {ms, ms, ms, ms, 0});
 }
 
-Motion Axis::advance_shaft(const AxisOrder& order) {
+inline Motion Axis::advance_shaft(const AxisOrder& order) {
   const bool brake_acts = machine_.brake && order.brake_function && !brake_open();
   const Resistance resistance{machine_.load_torque + std::clamp(order.load_torque, -kTopTorque, kTopTorque),
                               machine_.friction + (brake_acts ? machine_.brake_torque : 0)};
@@ -87,7 +75,7 @@ Motion Axis::advance_shaft(const AxisOrder& order) {
   return {shaft_.free(speed_, 0, resistance), 0, false};
 }
 
-void Axis::count_position(FineSpeed before, FineSpeed after) {
+inline void Axis::count_position(FineSpeed before, FineSpeed after) {
   position_rest_ += (before + after) * kIncrementShare;
   int64_t increments = position_rest_ / kIncrement;
   position_rest_ %= kIncrement;
@@ -98,7 +86,15 @@ void Axis::count_position(FineSpeed before, FineSpeed after) {
   position_ += static_cast<uint32_t>(increments);
 }
 
-void Axis::show(const AxisOrder& order, const Motion& motion) {
+// What changes though the drive does not.
+inline void Axis::show_counts() const {
+  state_.energy = power_.energy();
+  state_.heat_sink = power_.heat_sink();
+  state_.utilization = power_.utilization();
+  state_.motor_utilization = power_.motor_utilization();
+}
+
+inline void Axis::show(const AxisOrder& order, const Motion& motion) {
   const AxisPhase phase = sequence_.phase();
   Supply supply = Supply::Off;
   if (phase == AxisPhase::Magnetizing) supply = Supply::Magnetizing;
@@ -112,8 +108,10 @@ void Axis::show(const AxisOrder& order, const Motion& motion) {
   state_.standing = speed_ == 0;
   state_.ramping = phase == AxisPhase::Moving && ramp_.output() != target_of(order);
   state_.current_limited = motion.limited;
-  state_.setpoint = has_torque(phase) ? whole_speed(ramp_.output()) : 0;
   state_.speed = whole_speed(speed_);
+  // Most of the time the shaft is where the ramp is.
+  const bool same = ramp_.output() == speed_;
+  state_.setpoint = !has_torque(phase) ? 0 : same ? state_.speed : whole_speed(ramp_.output());
   state_.position = static_cast<int32_t>(position_);
   state_.torque = static_cast<int32_t>(motion.torque);
   state_.output_current = power_.output_current();
@@ -123,12 +121,16 @@ void Axis::show(const AxisOrder& order, const Motion& motion) {
   show_counts();
 }
 
-// What changes though the drive does not.
-void Axis::show_counts() const {
-  state_.energy = power_.energy();
-  state_.heat_sink = power_.heat_sink();
-  state_.utilization = power_.utilization();
-  state_.motor_utilization = power_.motor_utilization();
+const AxisState& Axis::tick(const AxisOrder& order) {
+  catch_up();
+  advance_sequence(order);
+  advance_setpoint(order);
+  const FineSpeed before = speed_;
+  const Motion motion = advance_shaft(order);
+  speed_ = motion.speed;
+  count_position(before, speed_);
+  show(order, motion);
+  return state_;
 }
 
 void Axis::go_on(uint32_t ticks) {

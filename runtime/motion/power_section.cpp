@@ -8,14 +8,8 @@
 namespace ipos::runtime {
 namespace {
 
-__extension__ using Wide = unsigned __int128;
-
 constexpr int64_t kHundredPercent = 100'000;
 constexpr int64_t kLosses = 20'000;  // of motor and inverter at IN, 1/1000 % of the rated power
-constexpr int64_t kStandby = 1'000;  // always taken from the DC link
-
-// Rated power lifts the square of the DC link voltage by 10000 V² a millisecond: about 200 µF a kilowatt.
-constexpr int64_t kChargePerPower = 100'000;  // mV² per 1/1000 %
 
 int64_t square(int64_t value) { return value * value; }
 
@@ -53,19 +47,6 @@ void PowerSection::find_torque_limit(int32_t current_limit) {
   const int64_t magnetizing = std::min<int64_t>(machine_.magnetizing_current, limit);
   const int64_t active = root(square(limit) - square(magnetizing));
   torque_limit_ = std::min<int64_t>(kTopTorque, active * kHundredPercent / machine_.rated_active_current);
-}
-
-void PowerSection::step(const Load& load) {
-  const bool driving = load.supply == Supply::Driving;
-  const int64_t torque = driving ? load.torque : 0;
-  const Currents currents{load.supply, torque, load.current_limit, load.direct_current};
-  if (!(currents == currents_)) find_currents(currents);
-  const Speed speed{whole_speed(load.speed), torque, driving};
-  if (!(speed == speed_)) find_power(speed);
-  step_power();
-  unit_.follow(unit_target_);
-  motor_.follow(motor_target_);
-  heat_sink_.follow(heat_sink_target_);
 }
 
 void PowerSection::find_currents(const Currents& currents) {
@@ -106,36 +87,11 @@ void PowerSection::go_on(uint32_t steps) {
   }
 }
 
-// Of distances below 2^48 (targets below 2^24) the product has the whole part of distance / time exactly: the
-// reciprocal is too large by less than 2^-shift, so the product by less than 2^(48 - shift) = 2^-w < 1 /
-// time, where w is the number of digits of the time.
 PowerSection::Lag::Lag(int32_t time_ms)
     : shift_(48 + static_cast<int>(std::bit_width(static_cast<uint32_t>(time_ms)))) {
   reciprocal_ = static_cast<uint64_t>((Wide{1} << shift_) / static_cast<Wide>(time_ms)) + 1;
 }
 
-int64_t PowerSection::Lag::divided(int64_t distance) const {
-  const auto magnitude = static_cast<uint64_t>(distance < 0 ? -distance : distance);
-  const auto quotient = static_cast<int64_t>((Wide{magnitude} * reciprocal_) >> shift_);
-  return distance < 0 ? -quotient : quotient;
-}
-
-// Mechanical power in 1/1000 % of the rated power; losses are added, what comes back charges the DC link.
-void PowerSection::step_power() {
-  const int64_t change = std::clamp<int64_t>(power() + kStandby, -kMostPower, kMostPower) * kChargePerPower;
-  const int64_t charge = std::clamp(charge_ - change, idle_charge_, most_charge_);
-  if (charge != charge_) {
-    charge_ = charge;
-    dc_link_ = static_cast<int32_t>(root(charge));
-  }
-  draw(1);
-}
-
-void PowerSection::draw(uint32_t steps) {
-  energy_rest_ += drawn() * int64_t{steps};
-  if (energy_rest_ < kPerWs) return;
-  energy_ += energy_rest_ / kPerWs;
-  energy_rest_ %= kPerWs;
-}
+void PowerSection::find_dc_link() { dc_link_ = static_cast<int32_t>(root(charge_)); }
 
 }  // namespace ipos::runtime

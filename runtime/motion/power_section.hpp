@@ -30,7 +30,18 @@ class PowerSection {
     int32_t current_limit;   // bounds the magnetizing current, too
     int32_t direct_current;  // of Supply::DirectCurrent
   };
-  void step(const Load& load);
+  void step(const Load& load) {
+    const bool driving = load.supply == Supply::Driving;
+    const int64_t torque = driving ? load.torque : 0;
+    const Currents currents{load.supply, torque, load.current_limit, load.direct_current};
+    if (!(currents == currents_)) find_currents(currents);
+    const Speed speed{whole_speed(load.speed), torque, driving};
+    if (!(speed == speed_)) find_power(speed);
+    step_power();
+    unit_.follow(unit_target_);
+    motor_.follow(motor_target_);
+    heat_sink_.follow(heat_sink_target_);
+  }
   // What so many steps with the last load do while the DC link stays as it is: energy and the slow
   // quantities. At most a minute.
   void go_on(uint32_t steps);
@@ -67,7 +78,15 @@ class PowerSection {
     int32_t whole() const { return static_cast<int32_t>(value_ >> 24); }
 
    private:
-    int64_t divided(int64_t distance) const;
+    // Of distances below 2^48 (targets below 2^24) the product has the whole part of distance / time exactly:
+    // the reciprocal is too large by less than 2^-shift, so the product by less than 2^(48 - shift) = 2^-w <
+    // 1 / time, where w is the number of digits of the time.
+    __extension__ using Wide = unsigned __int128;
+    int64_t divided(int64_t distance) const {
+      const auto magnitude = static_cast<uint64_t>(distance < 0 ? -distance : distance);
+      const auto quotient = static_cast<int64_t>((Wide{magnitude} * reciprocal_) >> shift_);
+      return distance < 0 ? -quotient : quotient;
+    }
 
     int64_t value_ = 0;
     uint64_t reciprocal_;  // of the time constant, in units of 2^-shift_
@@ -92,14 +111,32 @@ class PowerSection {
   void find_torque_limit(int32_t current_limit);
   void find_currents(const Currents& currents);
   void find_power(const Speed& speed);
-  void step_power();
-  void draw(uint32_t steps);
+  // Mechanical power in 1/1000 % of the rated power; losses are added, what comes back charges the DC link.
+  void step_power() {
+    const int64_t change = std::clamp<int64_t>(power() + kStandby, -kMostPower, kMostPower) * kChargePerPower;
+    const int64_t charge = std::clamp(charge_ - change, idle_charge_, most_charge_);
+    if (charge != charge_) {
+      charge_ = charge;
+      find_dc_link();
+    }
+    draw(1);
+  }
+  void find_dc_link();
+  void draw(uint32_t steps) {
+    energy_rest_ += drawn() * int64_t{steps};
+    if (energy_rest_ < kPerWs) return;
+    energy_ += energy_rest_ / kPerWs;
+    energy_rest_ %= kPerWs;
+  }
   int64_t power() const { return mechanical_ + losses_; }
   // In one step, of kPerWs for a Ws.
   int64_t drawn() const { return std::clamp<int64_t>(power(), 0, kMostPower) * machine_.rated_power; }
   int32_t temperature(int64_t rise) const { return static_cast<int32_t>(machine_.ambient + rise / 1'000); }
 
   static constexpr int64_t kMostPower = 100'000'000;  // 1/1000 % of the rated power
+  static constexpr int64_t kStandby = 1'000;          // always taken from the DC link
+  // Rated power lifts the square of the DC link voltage by 10000 V² a millisecond: about 200 µF a kilowatt.
+  static constexpr int64_t kChargePerPower = 100'000;  // mV² per 1/1000 %
   static constexpr int64_t kPerWs = int64_t{100'000} * 1'000;
 
   MachineData machine_;

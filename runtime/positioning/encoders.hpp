@@ -2,6 +2,7 @@
 // are coupled to the motor without slip, with the ratio P942 and P943 state (ours).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -37,12 +38,8 @@ class Encoders {
 
   int32_t position(PositionSource source) const { return positions_.of(source); }
   struct Positions {
-    int32_t motor = 0, external = 0, absolute = 0;
-    int32_t of(PositionSource source) const {
-      return source == PositionSource::Motor      ? motor
-             : source == PositionSource::External ? external
-                                                  : absolute;
-    }
+    std::array<int32_t, 3> by_source{};
+    int32_t of(PositionSource source) const { return by_source[static_cast<size_t>(source)]; }
   };
   const Positions& positions() const { return positions_; }
   // From now on the present position of this source has another number.
@@ -54,8 +51,8 @@ class Encoders {
  private:
   void find_positions() {
     const int64_t count = counted(turned_);
-    positions_ = {wrapped(turned_ + motor_offset_), wrapped(count + external_offset_),
-                  wrapped((inverted_ ? -count : count) + absolute_zero_ + absolute_offset_)};
+    positions_.by_source = {wrapped(turned_ + motor_offset_), wrapped(count + external_offset_),
+                            wrapped((inverted_ ? -count : count) + absolute_zero_ + absolute_offset_)};
   }
   int64_t exact(PositionSource source) const { return scaled(source, turned_) + offset(source); }
   int64_t scaled(PositionSource source, int64_t motor) const {

@@ -78,30 +78,6 @@ void Positioner::power_on(const PositioningSettings& settings, int32_t shaft) {
   modulo_.set(actual());
 }
 
-PositioningOrder Positioner::tick(const PositioningInputs& inputs) {
-  if (!modulo_.possible()) configure_modulo();
-  inputs_ = inputs;
-  find_rules();
-  touch_probes_.tick(inputs.levels, encoders_);
-  if (inputs.reference_start && !reference_input_) start_reference(false, false);
-  reference_input_ = inputs.reference_start;
-  follower_.tick(inputs.master);
-  if (!inputs.possible || !inputs.following) {
-    rest();
-    // Should the drive be enabled within this millisecond, it keeps the speed it has.
-    return {inputs.possible, inputs.speed, halt_};
-  }
-  if (!following_) resume();
-  if (reference_.active())
-    run_reference();
-  else if (!follow_master())
-    run_travel();
-  profile_.tick();
-  keep_in_range();
-  if (settings_.lag_window > 0 && magnitude(lag_) > settings_.lag_window) report(PositioningEvent::LagError);
-  return {true, speed_order(), halt_};
-}
-
 PositioningOrder Positioner::idle(int32_t speed) {
   profile_.hold(fine(actual()), 0);
   drop_target();
@@ -210,7 +186,7 @@ int64_t Positioner::target_on_line() const {
   return base + distance(wrapped(base), target_);
 }
 
-void Positioner::run_travel() {
+inline void Positioner::run_travel() {
   watch_limit_switches();
   if (!target_allowed()) {
     if (refused_target_ == target_) return;
@@ -258,7 +234,7 @@ void Positioner::watch_limit_switches() {
 }
 
 // The profile's count goes on for ever with the modulo function; a circle of it is taken away in time.
-void Positioner::keep_in_range() {
+inline void Positioner::keep_in_range() {
   if (!modulo_.on()) return;
   const int64_t position = whole(profile_.position());
   if (magnitude(position) < (int64_t{1} << 33)) return;
@@ -268,11 +244,35 @@ void Positioner::keep_in_range() {
 }
 
 // P910 and P915. The unit of the gain is ours: with 1.000 a lag of one motor increment gives 0.5 rpm.
-int32_t Positioner::speed_order() const {
+inline int32_t Positioner::speed_order() const {
   const int64_t feed = speed_of_rate(profile_.speed(), factor_) * settings_.feedforward / 100'000;
   const int64_t lag = motor_way(lag_, factor_);
   const int64_t top = std::max(settings_.maximum_speed, 0);
   return static_cast<int32_t>(std::clamp(feed + lag * settings_.gain / 2, -top, top));
+}
+
+PositioningOrder Positioner::tick(const PositioningInputs& inputs) {
+  if (!modulo_.possible()) configure_modulo();
+  inputs_ = inputs;
+  find_rules();
+  touch_probes_.tick(inputs.levels, encoders_);
+  if (inputs.reference_start && !reference_input_) start_reference(false, false);
+  reference_input_ = inputs.reference_start;
+  follower_.tick(inputs.master);
+  if (!inputs.possible || !inputs.following) {
+    rest();
+    // Should the drive be enabled within this millisecond, it keeps the speed it has.
+    return {inputs.possible, inputs.speed, halt_};
+  }
+  if (!following_) resume();
+  if (reference_.active())
+    run_reference();
+  else if (!follow_master())
+    run_travel();
+  profile_.tick();
+  keep_in_range();
+  if (settings_.lag_window > 0 && magnitude(lag_) > settings_.lag_window) report(PositioningEvent::LagError);
+  return {true, speed_order(), halt_};
 }
 
 }  // namespace ipos::runtime

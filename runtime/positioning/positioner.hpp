@@ -80,6 +80,7 @@ class Positioner {
   void observe(int32_t motor_counter);
   // A reference travel has given the motor encoder another count, which the axis must take over.
   std::optional<int32_t> take_motor_counter() { return std::exchange(motor_counter_, std::nullopt); }
+  bool has_events() const { return events_.any(); }
   // What has been reported since the last call.
   std::bitset<kPositioningEvents> take_events() { return std::exchange(events_, {}); }
 

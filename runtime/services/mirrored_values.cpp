@@ -32,13 +32,19 @@ MirroredValues::MirroredValues(ParameterStore& parameters) : parameters_(paramet
   }
 }
 
-void MirroredValues::show(std::span<int32_t> h) {
-  if (!exist_ || seen_ == parameters_.changes()) return;
+void MirroredValues::show_changed(std::span<int32_t> h) {
   const bool first = !seen_;
   seen_ = parameters_.changes();
   for (size_t n = 0; n < kPairs; ++n)
     if (const int32_t value = parameters_.stored(indices_[n]); first || agreed_[n] != value)
       agreed_[n] = h[kRows[n].variable] = value;
+}
+
+inline bool MirroredValues::written(std::span<const int32_t> h) const {
+  return [&]<size_t... n>(std::index_sequence<n...>) {
+    return ((h[kRows[n].variable] ^ agreed_[n]) | ...) != 0;
+  }
+  (std::make_index_sequence<kPairs>());
 }
 
 void MirroredValues::take(std::span<int32_t> h) {
@@ -50,13 +56,6 @@ void MirroredValues::take(std::span<int32_t> h) {
     if (parameters_.execute(ParameterService::WriteVolatile, indices_[n], value)) agreed_[n] = value;
     value = agreed_[n];
   }
-}
-
-bool MirroredValues::written(std::span<const int32_t> h) const {
-  return [&]<size_t... n>(std::index_sequence<n...>) {
-    return ((h[kRows[n].variable] ^ agreed_[n]) | ...) != 0;
-  }
-  (std::make_index_sequence<kPairs>());
 }
 
 }  // namespace ipos::runtime

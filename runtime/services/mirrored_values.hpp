@@ -17,12 +17,15 @@ class MirroredValues {
   explicit MirroredValues(ParameterStore& parameters);
 
   // Before the tasks run: changed parameters, and at first all of them, into the variables.
-  void show(std::span<int32_t> h);
+  void show(std::span<int32_t> h) {
+    if (exist_ && seen_ != parameters_.changes()) show_changed(h);
+  }
   // After them: changed variables into the parameters, volatile. A value the parameter refuses is taken back
   // (ours).
   void take(std::span<int32_t> h);
 
  private:
+  void show_changed(std::span<int32_t> h);
   bool written(std::span<const int32_t> h) const;
 
   static constexpr size_t kPairs = 6;

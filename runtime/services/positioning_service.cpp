@@ -94,8 +94,7 @@ PositioningService::PositioningService(Drive& drive, ParameterStore& parameters,
   positioner_version_ = settings_version_;
 }
 
-void PositioningService::read_settings() {
-  if (settings_version_ == parameters_.changes()) return;
+void PositioningService::read_changed_settings() {
   settings_version_ = parameters_.changes();
   mirrors_agree_ = false;
   for (const Cell& cell : cells_) settings_.*cell.member = parameters_.stored(cell.index);
@@ -106,7 +105,7 @@ void PositioningService::set_parameter(std::string_view number, int32_t value) {
     parameters_.set_working(row->index, value);
 }
 
-bool PositioningService::mirrors_written(std::span<const int32_t> h) const {
+inline bool PositioningService::mirrors_written(std::span<const int32_t> h) const {
   return [&]<size_t... n>(std::index_sequence<n...>) {
     return ((h[kMirrorRows[n].variable] ^ mirrored_[n]) | ...) != 0;
   }
@@ -115,7 +114,6 @@ bool PositioningService::mirrors_written(std::span<const int32_t> h) const {
 
 // The last one to write wins: over a bus the parameter, in the program the variable.
 void PositioningService::take_mirrors(std::span<int32_t> h) {
-  if (mirrors_agree_ && !mirrors_written(h)) return;
   for (size_t n = 0; n < kMirrors; ++n) {
     const Mirror& row = kMirrorRows[n];
     if (h[row.variable] != mirrored_[n] && settings_.*row.member == mirrored_[n])
@@ -127,13 +125,16 @@ void PositioningService::take_mirrors(std::span<int32_t> h) {
   mirrors_agree_ = true;
 }
 
-bool PositioningService::targets_written(std::span<const int32_t> h) const {
+inline bool PositioningService::targets_written(std::span<const int32_t> h) const {
   return h[kTargetPos] != shown_target_ || h[kModTagPos] != shown_modulo_target_ ||
          h[kModCount] != shown_turns_;
 }
 
 void PositioningService::take_targets(std::span<const int32_t> h) {
-  if (!targets_written(h)) return;
+  if (targets_written(h)) take_written_targets(h);
+}
+
+void PositioningService::take_written_targets(std::span<const int32_t> h) {
   if (h[kTargetPos] != shown_target_) {
     ordered_at_.reset();
     positioner_.write_target(h[kTargetPos]);
@@ -148,18 +149,22 @@ void PositioningService::take_targets(std::span<const int32_t> h) {
   shown_turns_ = h[kModCount];
 }
 
-void PositioningService::show_target_positions(std::span<int32_t> h) {
+inline void PositioningService::show_target_positions(std::span<int32_t> h) {
   h[kTargetPos] = shown_target_ = positioner_.target();
   h[kModTagPos] = shown_modulo_target_ = positioner_.modulo_target();
   h[kModCount] = shown_turns_ = positioner_.modulo().turns();
 }
 
-void PositioningService::show_targets(std::span<int32_t> h) {
-  show_target_positions(h);
+inline void PositioningService::show_bits(std::span<int32_t> h) {
   constexpr uint32_t kBits = 1U << kInPosition | 1U << kReferenced;
   const uint32_t bits = (positioner_.in_position() ? 1U << kInPosition : 0) |
                         (positioner_.referenced() ? 1U << kReferenced : 0);
   h[kStatusWord] = static_cast<int32_t>((static_cast<uint32_t>(h[kStatusWord]) & ~kBits) | bits);
+}
+
+void PositioningService::show_targets(std::span<int32_t> h) {
+  show_target_positions(h);
+  show_bits(h);
 }
 
 void PositioningService::read_terminals(const Terminals& t) {
@@ -173,10 +178,11 @@ void PositioningService::read_terminals(const Terminals& t) {
   inputs_.reference_start = t.on(F::ReferenceStart);
 }
 
-void PositioningService::read_inputs(std::span<const int32_t> h, uint32_t syncs) {
-  if (const Terminals& t = drive_.terminals(); !(t == terminals_)) read_terminals(t);
-  inputs_.possible = drive_.can_position();
-  inputs_.following = drive_.follows();
+inline void PositioningService::read_inputs(std::span<const int32_t> h, uint32_t syncs) {
+  const Decisions& decisions = drive_.decisions();
+  if (!(decisions.terminals == terminals_)) read_terminals(decisions.terminals);
+  inputs_.possible = decisions.can_position;
+  inputs_.following = drive_.follows(decisions);
   inputs_.speed = drive_.speed();
   inputs_.levels = drive_.inputs();
   inputs_.override_permille = settings_.override_on == 1 ? override_of(drive_.analog()) : kNoOverride;
@@ -217,7 +223,7 @@ PositionControl PositioningService::order(Time now, std::span<int32_t> h, uint32
     return {order.controls, order.speed, command_of(order.halt), false, positioner_.referenced()};
   }
   read_settings();
-  take_mirrors(h);
+  if (!mirrors_agree_ || mirrors_written(h)) take_mirrors(h);
   take_targets(h);
   if (positioner_version_ != settings_version_) {
     positioner_version_ = settings_version_;
@@ -225,7 +231,7 @@ PositionControl PositioningService::order(Time now, std::span<int32_t> h, uint32
   }
   read_inputs(h, syncs);
   const PositioningOrder order = positioner_.tick(inputs_);
-  report_events(now);
+  if (positioner_.has_events() || reported_.any()) report_events(now);
   idles_ = positioner_.idles() && reported_.none() && settings_.technology_function != kIsync;
   if (const auto counter = positioner_.take_motor_counter()) drive_.set_position(*counter);
   return {order.controls, order.speed, command_of(order.halt), positioner_.in_position(),
@@ -234,10 +240,6 @@ PositionControl PositioningService::order(Time now, std::span<int32_t> h, uint32
 
 void PositioningService::report_events(Time now) {
   const auto events = positioner_.take_events();
-  if (events.none()) {
-    reported_.reset();
-    return;
-  }
   const auto fresh = events & ~reported_;
   reported_ = events;
   for (size_t n = 0; n < fresh.size(); ++n) {
@@ -254,6 +256,16 @@ void PositioningService::report_events(Time now) {
   }
 }
 
+inline void PositioningService::show_positions(std::span<int32_t> h, const Encoders::Positions& positions,
+                                               int32_t setpoint) {
+  const uint32_t control = static_cast<uint32_t>(h[kModuloCtrl]);
+  if (positioner_.modulo().on()) h[kModActPos] = positioner_.modulo().position((control >> 1 & 1) != 0);
+  h[kSetpointPos] = setpoint;
+  h[kActPosMot] = positions.of(PositionSource::Motor);
+  h[kActPosExt] = positions.of(PositionSource::External);
+  h[kActPosAbs] = positions.of(PositionSource::Absolute);
+}
+
 void PositioningService::go_on(std::span<int32_t> h, uint32_t syncs) {
   syncs_ = syncs;
   const int32_t counter = drive_.position();
@@ -264,19 +276,10 @@ void PositioningService::go_on(std::span<int32_t> h, uint32_t syncs) {
   show_positions(h, positions, positions.of(positioner_.source()));
 }
 
-void PositioningService::show_positions(std::span<int32_t> h, const Encoders::Positions& positions,
-                                        int32_t setpoint) {
-  const uint32_t control = static_cast<uint32_t>(h[kModuloCtrl]);
-  if (positioner_.modulo().on()) h[kModActPos] = positioner_.modulo().position((control >> 1 & 1) != 0);
-  h[kSetpointPos] = setpoint;
-  h[kActPosMot] = positions.motor;
-  h[kActPosExt] = positions.external;
-  h[kActPosAbs] = positions.absolute;
-}
-
 void PositioningService::show(Time now, std::span<int32_t> h) {
   positioner_.observe(drive_.position());
-  show_targets(h);
+  show_target_positions(h);
+  show_bits(h);
   h[kModActPos] = 0;
   show_positions(h, positioner_.encoders().positions(), positioner_.setpoint());
   h[kLagDistance] = positioner_.lag();

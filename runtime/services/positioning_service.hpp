@@ -63,15 +63,20 @@ class PositioningService {
   static constexpr int32_t kIsync = 2;  // setting of P077 (1053 1610 p. 69)
   static constexpr size_t kMirrors = 5;
 
-  void read_settings();
+  void read_settings() {
+    if (settings_version_ != parameters_.changes()) read_changed_settings();
+  }
+  void read_changed_settings();
   bool stays_idle(std::span<const int32_t> h) const;
   bool mirrors_written(std::span<const int32_t> h) const;
   bool targets_written(std::span<const int32_t> h) const;
   void take_mirrors(std::span<int32_t> h);
+  void take_written_targets(std::span<const int32_t> h);
   void read_terminals(const Terminals& terminals);
   void read_inputs(std::span<const int32_t> h, uint32_t syncs);
   MasterInputs master(std::span<const int32_t> h, bool sync) const;
   void show_target_positions(std::span<int32_t> h);
+  void show_bits(std::span<int32_t> h);
   void show_positions(std::span<int32_t> h, const Encoders::Positions& positions, int32_t setpoint);
   void report_events(Time now);
 

@@ -2,6 +2,9 @@
 // 76, 79), and images and error memory of MOVITRAC 07 (its manual, chapter 10.3).
 #include "runtime/drive/outputs.hpp"
 
+#include <algorithm>
+#include <random>
+
 #include "tests/runtime/drive/drive_rig.hpp"
 
 namespace ipos::tests {
@@ -43,6 +46,48 @@ void expect_signal(Bench& bench, int delay, bool want, const std::function<void(
 }
 void expect_no_change(Bench& bench, const std::function<void()>& step, const char* what) {
   EXPECT_EQ(ms_until_change(bench, step), 0) << what;
+}
+
+// go_on() is a tick with other values where nothing but time passes; random walks across all limits.
+TEST(ReferenceSignals, GoOnAsTicksDo) {
+  std::mt19937 random(1);
+  const auto pick = [&](int low, int high) { return std::uniform_int_distribution<int>(low, high)(random); };
+  int gone_on = 0;
+  for (int run = 0; run < 200; ++run) {
+    Bench kept(OutputFunction::SpeedReference), ticked(OutputFunction::SpeedReference);
+    runtime::Settings& s = kept.settings;
+    for (uint8_t f = 9; f <= 13; ++f) s.outputs[f - 1] = f;  // all reference signals
+    for (int32_t* delay :
+         {&s.speed_delay, &s.window_delay, &s.compare_delay, &s.current_delay, &s.limit_delay})
+      *delay = pick(0, 2) * pick(0, 40);
+    s.speed_reference = pick(0, 60);
+    s.speed_hysteresis = pick(0, 20);
+    s.window_center = pick(0, 60);
+    s.window_width = pick(0, 40);
+    s.compare_hysteresis = pick(0, 30);
+    s.current_reference = pick(0, 60);
+    s.current_hysteresis = pick(0, 20);
+    s.limit_hysteresis = pick(0, 20);
+    ticked.settings = s;
+    const int step = pick(0, 4);
+    for (int ms = 0; ms < 1000; ++ms) {
+      OutputInputs& in = kept.in;
+      in.speed = std::clamp(in.speed + pick(-step, step), -80, 80);
+      in.current = std::clamp(in.current + pick(-step, step), -80, 80);
+      if (pick(0, 99) == 0) in.setpoint = pick(-60, 60);
+      if (pick(0, 99) == 0) in.current_limit = pick(0, 60);
+      if (pick(0, 99) == 0) in.fault = !in.fault;
+      if (pick(0, 99) == 0) in.ipos_outputs = static_cast<uint16_t>(pick(0, 0xFFFF));
+      ticked.in = in;
+      if (ms != 0 && kept.outputs.go_on(in))
+        ++gone_on;
+      else
+        kept.run();
+      ticked.run();
+      ASSERT_EQ(kept.outputs.levels(), ticked.outputs.levels()) << "run " << run << " after " << ms << " ms";
+    }
+  }
+  EXPECT_GT(gone_on, 100'000);
 }
 
 TEST(ReferenceSignals, Speed) {

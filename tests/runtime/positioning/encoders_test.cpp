@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "runtime/positioning/touch_probe.hpp"
 #include "tests/runtime/positioning/rig.hpp"
 
@@ -18,6 +20,29 @@ PositioningSettings factor(int32_t numerator, int32_t denominator) {
   settings.factor_numerator = numerator;
   settings.factor_denominator = denominator;
   return settings;
+}
+
+// The definition, in one division.
+int64_t rounded_speed(Rate rate, EncoderFactor factor) {
+  const Wide value = Wide{rate} * 234'375 * factor.numerator;
+  const Wide unit = (Wide{1} << 32) * factor.denominator;
+  return static_cast<int64_t>((value + (value < 0 ? -unit : unit) / 2) / unit);
+}
+
+TEST(EncoderFactors, SpeedIsRoundedToTheNearest) {
+  std::mt19937_64 random(1);
+  constexpr int32_t kMost = 32'767;  // of P942 and P943
+  const auto factor = [&] { return static_cast<int32_t>(random() % kMost) + 1; };
+  for (int n = 0; n < 200'000; ++n) {
+    const Rate rate = static_cast<Rate>(random()) >> random() % 64;
+    for (const EncoderFactor f : {EncoderFactor{}, EncoderFactor{factor(), factor()}, EncoderFactor{kMost, 1},
+                                  EncoderFactor{1, kMost}, EncoderFactor{kMost, kMost}})
+      ASSERT_EQ(speed_of_rate(rate, f), rounded_speed(rate, f)) << rate << " " << f.numerator;
+  }
+  for (const Rate rate : {INT64_MIN, INT64_MAX}) {
+    const EncoderFactor f{kMost, kMost};
+    ASSERT_EQ(speed_of_rate(rate, f), rounded_speed(rate, f));
+  }
 }
 
 TEST(Encoders, FactorIsMotorOverExternal) {
