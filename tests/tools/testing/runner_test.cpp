@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <set>
+#include <stdexcept>
 
 #include "tests/tools/command.hpp"
 #include "tools/testing/read_tests.hpp"
@@ -277,6 +278,21 @@ TEST(Prepare, SeesEachPlantBeforeItsFirstEvent) {
     EXPECT_EQ(result.outcome, tools::testing::Outcome::Passed);
   EXPECT_EQ(begun, 3);
   EXPECT_EQ(ended, 3);
+}
+
+// As on a full disk: the program tells it and ends in good order, whichever thread it happens in.
+TEST(Listener, PassesItsExceptionOnFromEveryThread) {
+  const TemporaryFolder folder;
+  folder.write("A.IPC", kProgram);
+  const auto tests = tools::testing::read_test_file((folder.path() / "a.test.toml").string(), kGood);
+  tools::testing::SuiteOptions options;
+  options.repeat = 50;
+  for (options.jobs = 1; options.jobs <= 4; ++options.jobs) {
+    const auto listen = [](const auto&, size_t done, size_t) {
+      if (done >= 5) throw std::runtime_error("no space");
+    };
+    EXPECT_THROW(tools::testing::run_suite(tests, options, listen), std::runtime_error) << options.jobs;
+  }
 }
 
 // The programs of the compiler's own suite say in the same words what must come out.
