@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <csignal>
 #include <set>
 #include <stdexcept>
 
@@ -257,6 +258,19 @@ TEST_F(Runner, CommentsOfAProgram) {
   result = run({"D.IPC"});
   EXPECT_EQ(result.exit_code, 65);
   EXPECT_TRUE(contains(result.out, "D.IPC:4:11: error: not understood")) << result.out;
+}
+
+// Each worker asks whether there was a signal, whichever thread it came to.
+TEST_F(Runner, ASignalEndsAllWorkers) {
+  folder_.write("a.test.toml", kGood);
+  for (const char* name : {"b.test.toml", "c.test.toml", "d.test.toml", "e.test.toml"})
+    folder_.write(name, kStation + "[[expect]]\nvariable = \"a\"\nequals = 5\nat = \"1000000s\"\n");
+  RunningIpos tests({"test", ".", "--jobs", "4"}, folder_.path());
+  ASSERT_TRUE(tests.prints("ok      a"));
+  tests.signal(SIGINT);
+  const CommandResult result = tests.wait();
+  EXPECT_EQ(result.exit_code, 130) << result.err;
+  EXPECT_TRUE(contains(result.out, "interrupted")) << result.out;
 }
 
 // Where collectors attach themselves: once a test, before anything happens, and gone before the plant is.
