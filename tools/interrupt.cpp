@@ -1,13 +1,16 @@
-// The signal handlers, and the flag they set.
+// The signal handlers, and the flag they set. The threads of a suite of tests ask for it, too, so it is
+// atomic; a handler may set it as it takes no lock.
 #include "tools/interrupt.hpp"
 
+#include <atomic>
 #include <csignal>
 
 namespace ipos::tools {
 namespace {
 
-volatile std::sig_atomic_t signalled = 0;
-void on_signal(int) { signalled = 1; }
+std::atomic<bool> signalled = false;
+static_assert(std::atomic<bool>::is_always_lock_free);
+void on_signal(int) { signalled = true; }
 
 }  // namespace
 
@@ -16,6 +19,6 @@ void catch_interrupts() {
   std::signal(SIGTERM, on_signal);
 }
 
-bool interrupted() { return signalled != 0; }
+bool interrupted() { return signalled; }
 
 }  // namespace ipos::tools

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -24,18 +25,32 @@ class Suite {
         results_(tests.size() * options.repeat) {}
 
   std::vector<TestResult> run() {
-    std::vector<std::thread> workers;
-    const size_t wanted = std::min<size_t>(std::max(options_.jobs, 1U), results_.size());
-    for (size_t n = 1; n < wanted; ++n) workers.emplace_back([this] { work(); });
-    work();
-    for (std::thread& worker : workers) worker.join();
+    {
+      std::vector<std::jthread> workers;
+      const size_t wanted = std::min<size_t>(std::max(options_.jobs, 1U), results_.size());
+      for (size_t n = 1; n < wanted; ++n) workers.emplace_back([this] { work(); });
+      work();
+    }
+    if (failure_) std::rethrow_exception(failure_);
     std::vector<TestResult> results;
     for (std::optional<TestResult>& result : results_) results.push_back(std::move(*result));
     return results;
   }
 
  private:
+  // An exception, say of the listener when nothing can be written, would end the program in a thread: nothing
+  // is begun any more, and run() passes the first on when all workers are done.
   void work() {
+    try {
+      take_tests();
+    } catch (...) {
+      next_ = results_.size();
+      const std::lock_guard lock(mutex_);
+      if (!failure_) failure_ = std::current_exception();
+    }
+  }
+
+  void take_tests() {
     for (size_t n = next_++; n < results_.size(); n = next_++) {
       TestResult result = run_one(n);
       const bool good = result.outcome == Outcome::Passed;
@@ -74,6 +89,7 @@ class Suite {
   std::atomic<bool> stop_ = false;
   std::mutex mutex_;
   size_t told_ = 0;
+  std::exception_ptr failure_;
 };
 
 }  // namespace

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <csignal>
 #include <set>
+#include <stdexcept>
 
 #include "tests/tools/command.hpp"
 #include "tools/testing/read_tests.hpp"
@@ -258,6 +260,19 @@ TEST_F(Runner, CommentsOfAProgram) {
   EXPECT_TRUE(contains(result.out, "D.IPC:4:11: error: not understood")) << result.out;
 }
 
+// Each worker asks whether there was a signal, whichever thread it came to.
+TEST_F(Runner, ASignalEndsAllWorkers) {
+  folder_.write("a.test.toml", kGood);
+  for (const char* name : {"b.test.toml", "c.test.toml", "d.test.toml", "e.test.toml"})
+    folder_.write(name, kStation + "[[expect]]\nvariable = \"a\"\nequals = 5\nat = \"1000000s\"\n");
+  RunningIpos tests({"test", ".", "--jobs", "4"}, folder_.path());
+  ASSERT_TRUE(tests.prints("ok      a"));
+  tests.signal(SIGINT);
+  const CommandResult result = tests.wait();
+  EXPECT_EQ(result.exit_code, 130) << result.err;
+  EXPECT_TRUE(contains(result.out, "interrupted")) << result.out;
+}
+
 // Where collectors attach themselves: once a test, before anything happens, and gone before the plant is.
 TEST(Prepare, SeesEachPlantBeforeItsFirstEvent) {
   const TemporaryFolder folder;
@@ -277,6 +292,21 @@ TEST(Prepare, SeesEachPlantBeforeItsFirstEvent) {
     EXPECT_EQ(result.outcome, tools::testing::Outcome::Passed);
   EXPECT_EQ(begun, 3);
   EXPECT_EQ(ended, 3);
+}
+
+// As on a full disk: the program tells it and ends in good order, whichever thread it happens in.
+TEST(Listener, PassesItsExceptionOnFromEveryThread) {
+  const TemporaryFolder folder;
+  folder.write("A.IPC", kProgram);
+  const auto tests = tools::testing::read_test_file((folder.path() / "a.test.toml").string(), kGood);
+  tools::testing::SuiteOptions options;
+  options.repeat = 50;
+  for (options.jobs = 1; options.jobs <= 4; ++options.jobs) {
+    const auto listen = [](const auto&, size_t done, size_t) {
+      if (done >= 5) throw std::runtime_error("no space");
+    };
+    EXPECT_THROW(tools::testing::run_suite(tests, options, listen), std::runtime_error) << options.jobs;
+  }
 }
 
 // The programs of the compiler's own suite say in the same words what must come out.
