@@ -22,8 +22,7 @@ std::string GroupMaster::configure(int32_t p750, uint8_t group, uint32_t baud) {
       baud / 1000);
 }
 
-void GroupMaster::tick(Time now) {
-  if (!active_) return;
+void GroupMaster::send_setpoints(Time now) {
   sender_.withdraw(tag_);
   sender_.send(
       process_frame(sbus_identifier(Telegram::GroupProcessOutput, group_), drive_.setpoint_to_send(now)),

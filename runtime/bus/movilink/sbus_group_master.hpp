@@ -28,9 +28,13 @@ class GroupMaster {
   bool active() const { return active_; }
 
   // Once a millisecond. A telegram that still waits for the line is overtaken by the new setpoint.
-  void tick(Time now);
+  void tick(Time now) {
+    if (active_) send_setpoints(now);
+  }
 
  private:
+  void send_setpoints(Time now);
+
   FrameSender& sender_;
   uint64_t tag_;
   MasterSlaveDrive& drive_;
