@@ -11,7 +11,7 @@ namespace ipos::runtime {
 // The bus ports are off the line until the next power-on makes them anew.
 void Station::power_off() {
   if (!powered_) return;
-  wake();
+  leave_course();
   store_memory();
   powered_ = false;
   was_off_ = true;
