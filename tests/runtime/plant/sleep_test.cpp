@@ -338,5 +338,53 @@ TEST(Sleep, WhoStaysAwakeLeavesOutNothing) {
   EXPECT_EQ(plant->next_time(), ms(3101));
 }
 
+// The programs themselves write no variable that the station follows, so it does not look what they have
+// written. What a system function or a telegram writes there must act all the same, and in its millisecond.
+class WrittenByOthers : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(WrittenByOthers, ActsInTheSameMillisecond) {
+  const std::string text =
+      "[[bus]]\nname = \"can\"\nkind = \"can\"\nbaud = 500000\n"
+      "[[station]]\nname = \"u\"\nunit = \"mdxb\"\nprogram = \"U.IPC\"\nsbus = \"can\"\n"
+      "[station.parameters]\nP881 = 1\nP130 = 200\nP160 = 100600\nP620 = 21\nP938 = 9\n"
+      "[station.inputs]\nDI00 = 1\nDI01 = 1\nDI03 = 1\nDI04 = 1\n"
+      "[[station]]\nname = \"v\"\nunit = \"mdxb\"\nprogram = \"V.IPC\"\nsbus = \"can\"\n"
+      "[station.parameters]\nP881 = 2\n";
+  const std::map<std::string, std::string> sources = {
+      {"U.IPC", std::string("#include <constb.h>\nSCREC Re; long n; main() {\n") + GetParam()},
+      {"V.IPC",
+       "#include <constb.h>\nSCTRCYCL Tr; long d; main() { Tr.ObjectNo = 1100; Tr.CycleTime = 10;\n"
+       "Tr.Format = 4; Tr.DPointer = numof(d); _SBusCommDef(SCD_TRCYCL, Tr); _SBusCommOn();\n"
+       "_Wait(1503); d = 2; while (1) ; }"}};
+  runtime::Execution every_tick;
+  every_tick.skip_idle = false;
+  const auto expected = make_plant(text, sources, std::nullopt, every_tick),
+             plant = make_plant(text, sources);
+  ASSERT_TRUE(expected && plant);
+  const runtime::Station& station = *plant->stations()[0];
+  constexpr uint16_t kDo01 = 2;
+  bool was_on_course = false, on_course = false;
+  int64_t acted = 0;
+  for (int64_t n = 1; n <= 2500; ++n) {
+    on_course = station.on_course();
+    expected->run_until(ms(n));
+    plant->run_until(ms(n));
+    ASSERT_EQ(picture(*plant), picture(*expected)) << "after " << n << " ms";
+    EXPECT_TRUE(n != 1490 || on_course);
+    if (acted == 0 && n > 1000 && (station.outputs() & kDo01) != 0) {
+      acted = n;
+      was_on_course = on_course;
+    }
+  }
+  EXPECT_GE(acted, 1500) << "DO01 follows H481";
+  EXPECT_FALSE(was_on_course) << "the tick of the output itself is one in full";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Course, WrittenByOthers,
+    ::testing::Values("_Wait(1500); _GetSys(H481, GS_ACTSPEED); while (1) n++; }",
+                      "Re.ObjectNo = 1100; Re.Format = 4; Re.DPointer = 481; _SBusCommDef(SCD_REC, Re);\n"
+                      "_SBusCommOn(); while (1) n++; }"));
+
 }  // namespace
 }  // namespace ipos::tests
