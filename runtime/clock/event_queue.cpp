@@ -8,6 +8,7 @@
 #include <utility>
 
 namespace ipos::runtime {
+
 EventQueue::EventQueue(size_t capacity) {
   for (Row& row : rows_) {
     row.ring.resize(std::bit_ceil(capacity + 1));

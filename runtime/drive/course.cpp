@@ -34,7 +34,8 @@ uint32_t DriveCourse::ticks(const Drive& drive) const {
   if (axis.heat_sink_ahead() > Drive::kOvertemperature ||
       axis.motor_utilization_ahead() >= Drive::kFullUtilization)
     return 0;
-  if (!drive.calm_ || drive.now_.changed() || drive.settings_version_ != drive.parameters_.changes()) return 0;
+  if (!drive.calm_ || drive.now_.changed() || drive.settings_version_ != drive.parameters_.changes())
+    return 0;
 
   Axis moved = noted(drive, axis);
   moved.go_on(1);

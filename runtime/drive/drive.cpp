@@ -236,8 +236,6 @@ void Drive::tick(const PositionControl& position) {
   if (axis.output_stage != now_->output_stage || is_reversing(axis) != now_->reversing) look_again_ = true;
 }
 
-void Drive::hold_course(uint32_t ticks) { course_left_ = ticks; }
-
 void Drive::go_on(uint32_t ticks) {
   course_left_ -= ticks;
   mains_ms_ += ticks;

@@ -67,7 +67,7 @@ class Drive final : private DriveLink {
 
   // --- ticks that only go on (course.hpp) ---
   // The next ticks are of that kind while nobody touches the drive.
-  void hold_course(uint32_t ticks);
+  void hold_course(uint32_t ticks) { course_left_ = ticks; }
   // How many of them are left: the next ones are go_on() instead of tick(), if position_control() is ordered
   // again.
   uint32_t course_left() const {
@@ -198,6 +198,7 @@ class Drive final : private DriveLink {
   uint8_t status_block() const;
   uint16_t pi_word(size_t n) const;
 
+  LinkWatch& touched_watch(PoSource source);
   void count_time();
   void latch_three_wire();
   bool watch_links();
@@ -252,8 +253,6 @@ class Drive final : private DriveLink {
   mutable std::optional<SetpointMemory> selected_for_;
   Setpoint selected_;
 
-  LinkWatch& touched_watch(PoSource source);
-
   std::array<LinkWatch, kPoSources> watches_{};
   uint16_t last_control_word_ = 0;  // for the edge of its reset bit
   Words ipos_pi_{};
@@ -285,7 +284,7 @@ class Drive final : private DriveLink {
   uint32_t enabled_ms_ = 0;
   int64_t counted_energy_ = 0;
   mutable uint32_t course_left_ = 0;
-  bool calm_ = false;         // nobody had touched the drive before the last tick
+  bool calm_ = false;      // nobody had touched the drive before the last tick
   bool links_run_ = true;  // or may do so: a telegram has come since the last look
 };
 
