@@ -60,6 +60,28 @@ class EventQueue {
   // Runs every event up to and including `end`; now() is `end` afterwards.
   void run_until(Time end);
 
+  // What is executed late finds the time that it belongs to, and what has happened by then. Nothing may be
+  // scheduled in it.
+  class Past {
+   public:
+    Past(EventQueue& queue, Time at, uint32_t source)
+        : queue_(queue), now_(queue.now_), reached_(queue.reached_) {
+      queue.now_ = at;
+      queue.reached_ = source;
+    }
+    ~Past() {
+      queue_.now_ = now_;
+      queue_.reached_ = reached_;
+    }
+    Past(const Past&) = delete;
+    Past& operator=(const Past&) = delete;
+
+   private:
+    EventQueue& queue_;
+    Time now_;
+    uint32_t reached_;
+  };
+
   // From within an event: an event of `source` at `at` would be the next of all, and this run goes so far.
   // Then it is that time now, and the caller does at once what it would have scheduled.
   bool advance(Time at, uint32_t source) {

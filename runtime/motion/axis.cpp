@@ -75,8 +75,8 @@ inline Motion Axis::advance_shaft(const AxisOrder& order) {
   return {shaft_.free(speed_, 0, resistance), 0, false};
 }
 
-inline void Axis::count_position(FineSpeed before, FineSpeed after) {
-  position_rest_ += (before + after) * kIncrementShare;
+inline void Axis::count_position(int64_t way) {
+  position_rest_ += way;
   int64_t increments = position_rest_ / kIncrement;
   position_rest_ %= kIncrement;
   if (position_rest_ < 0) {  // the counter rounds down in both directions
@@ -128,7 +128,7 @@ const AxisState& Axis::tick(const AxisOrder& order) {
   const FineSpeed before = speed_;
   const Motion motion = advance_shaft(order);
   speed_ = motion.speed;
-  count_position(before, speed_);
+  count_position((before + speed_) * kIncrementShare);
   show(order, motion);
   return state_;
 }
@@ -136,7 +136,12 @@ const AxisState& Axis::tick(const AxisOrder& order) {
 void Axis::go_on(uint32_t ticks) {
   behind_ += ticks;
   if (speed_ == 0) return;
-  for (; ticks != 0; --ticks) count_position(speed_, speed_);
+  // The whole increments of a tick and what is left, so that no product overflows.
+  const int64_t way = 2 * speed_ * kIncrementShare;
+  position_ += static_cast<uint32_t>(way / kIncrement * ticks);
+  constexpr uint32_t kMost = 1 << 12;
+  for (; ticks > kMost; ticks -= kMost) count_position(way % kIncrement * kMost);
+  count_position(way % kIncrement * ticks);
   state_.position = static_cast<int32_t>(position_);
 }
 

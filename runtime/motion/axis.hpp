@@ -93,7 +93,7 @@ class Axis {
   void advance_sequence(const AxisOrder& order);
   void advance_setpoint(const AxisOrder& order);
   Motion advance_shaft(const AxisOrder& order);
-  void count_position(FineSpeed before, FineSpeed after);
+  void count_position(int64_t way);
   void show(const AxisOrder& order, const Motion& motion);
   void catch_up() const {
     if (behind_ != 0) draw_and_warm();

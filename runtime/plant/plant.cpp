@@ -43,6 +43,7 @@ void open_memory(const StationConfig& config, Station& station, std::vector<Plan
 Plant::Plant(PlantFile file, std::vector<std::optional<vm::Image>> programs, std::optional<vm::Rates> rates,
              std::vector<PlantError>& errors, const Execution& execution)
     : file_(std::move(file)) {
+  journal_.ask_first([this] { look(); });
   // Sources order the events of one moment: first the lines, then the surroundings, then stations and
   // controls, each in the order of the file.
   make_lines();
@@ -229,6 +230,10 @@ bool Plant::store_memories() {
   bool all = true;
   for (const auto& station : stations_) all &= station->store_memory();
   return all;
+}
+
+void Plant::look() const {
+  for (const auto& station : stations_) station->look();
 }
 
 bool Plant::programs_over() const {

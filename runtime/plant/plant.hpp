@@ -84,10 +84,14 @@ class Plant final : private CanObserver, private SbusCheckClient {
   const std::vector<PlantControl>& controls() const { return controls_; }
   const std::vector<std::unique_ptr<CanLine>>& lines() const { return lines_; }
   const std::vector<std::unique_ptr<SerialLine>>& serial_lines() const { return serial_lines_; }
-  const Journal& journal() const { return journal_; }
+  const Journal& journal() const {
+    look();
+    return journal_;
+  }
   const std::vector<ExpectationResult>& results() const { return results_; }
 
  private:
+  void look() const;  // what stations are late with they make up for
   void on_frame(const CanLine& line, const FrameRecord& record) override;
   void on_line_event(const CanLine& line, const LineEvent& event) override;
   void on_sbus_finding(Time now, std::string text) override;

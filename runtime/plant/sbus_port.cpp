@@ -94,6 +94,7 @@ void SbusPort::power_off() {
 }
 
 void SbusPort::on_frame(Time now, const Frame& frame) {
+  drive_.catch_up();
   if (master_.busy() && master_.on_frame(now, frame)) return;
   const bool received = machine_ != nullptr && receive(now, frame);
   // A receive object with the sync identifier takes nothing away from the drive.
@@ -124,7 +125,7 @@ bool SbusPort::receive(Time now, const Frame& frame) {
     }
     return true;
   }
-  drive_.wake();
+  drive_.expect_variables();
   std::string why;
   const bool taken = objects_.on_frame(frame, machine_->variables(), why);
   if (!why.empty()) note(now, Weight::Warning, std::move(why));

@@ -47,6 +47,7 @@ class SbusPort final : private CanNode, private SlaveObserver {
     const int64_t tick = machine_ == nullptr ? INT64_MAX : objects_.next_due(now / kMillisecond);
     return tick == INT64_MAX ? kNever : tick * kMillisecond;
   }
+  bool has_waiting_frames() const { return line_.has_waiting(node()); }
   bool sends_more_than_variables() const { return group_master_.active(); }
   void stir();  // the variables may change from now on
 

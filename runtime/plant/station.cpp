@@ -117,9 +117,24 @@ void Station::connect_serial() {
 
 void Station::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
   if (asleep_ && sleeps_through(now)) return;
+  if (late_) {
+    execute_to(now);
+  } else {
+    next_tick_ = now + kMillisecond;
+    if (!execute(now)) return;
+  }
+  send_telegrams(now);
+  schedule_tick(now);
+}
+
+// The tick, but for its telegrams. False: the runner stops in the middle.
+bool Station::execute(Time now) {
   on_course_ = on_course_ && stays_on_course();
   touched_ = false;
-  if (on_course_ && machine_ && (!positioning_ || positioning_->idles())) return glide(now);
+  if (on_course_ && machine_ && (!positioning_ || positioning_->idles())) {
+    glide(now);
+    return true;
+  }
   move_drive(now);
   if (!on_course_) {
     report_drive(now);
@@ -129,9 +144,11 @@ void Station::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
   if (machine_) {
     begin_program(now);
     try_program();
-    if (!run_commands()) return;
+    if (!run_commands()) return false;
+    end_program(now);
   }
-  end_tick(now);
+  settle(now);
+  return true;
 }
 
 void Station::move_drive(Time now) {
@@ -162,20 +179,23 @@ bool Station::run_commands() {
 }
 
 void Station::resume_tick() {
-  if (in_tick_ && run_commands()) end_tick(queue_.now());
+  if (!in_tick_ || !run_commands()) return;
+  const Time now = queue_.now();
+  end_program(now);
+  settle(now);
+  send_telegrams(now);
+  schedule_tick(now);
 }
 
-void Station::end_tick(Time now) {
-  if (machine_) end_program(now);
-  finish_tick(now);
-}
-
-void Station::finish_tick(Time now) {
+void Station::send_telegrams(Time now) {
   for (const auto& port : sbus_)
     if (port) port->tick(now);
+}
+
+void Station::settle(Time now) {
   drive_.memory().tick(now);
   if (drive_.memory().has_messages()) note_memory(now);
-  schedule_tick(now);
+  if (!on_course_ && execution_.skip_idle && runner_ == nullptr) try_course();
 }
 
 void Station::begin_program(Time now) {
@@ -235,6 +255,7 @@ void Station::restart_after_reset(Time now) {
   if (resets != resets_seen_ && machine_->fault().number != 0) {
     journal_.note(now, Weight::Why, config_.name, "the program starts anew after the reset of its fault");
     machine_->start();
+    forget_outlook();
     fault_reported_ = false;
   }
   resets_seen_ = resets;
@@ -291,17 +312,27 @@ void Station::report_drive(Time now) {
 }
 
 bool Station::program_over() const {
+  look();
   if (!machine_) return true;
   for (int task = 1; task <= vm::kTasks; ++task)
     if (machine_->task(task).state != vm::TaskState::Stopped) return false;
   return true;
 }
 
-uint8_t Station::fault() const { return drive_.state().fault(); }
+uint8_t Station::fault() const {
+  look();
+  return drive_.state().fault();
+}
 
-bool Station::error() const { return drive_.state().error(); }
+bool Station::error() const {
+  look();
+  return drive_.state().error();
+}
 
-uint16_t Station::status_word_1() const { return drive_.state().status_word_1(); }
+uint16_t Station::status_word_1() const {
+  look();
+  return drive_.state().status_word_1();
+}
 
 int32_t Station::read(uint16_t index) const {
   look();

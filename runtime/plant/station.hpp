@@ -97,9 +97,17 @@ class Station final : private EventTarget, private Sleeper {
     execution_.skip_idle = false;
   }
   // A tick was left out and not made up for yet, or those behind it will be.
-  bool asleep() const { return asleep_; }
+  bool asleep() const {
+    look();
+    return asleep_;
+  }
   // The next tick goes on where nothing is to be decided, unless somebody touches the station.
-  bool on_course() const { return on_course_; }
+  bool on_course() const {
+    look();
+    return on_course_;
+  }
+  // It executes its ticks when it has something to tell, or somebody looks.
+  bool late() const { return late_; }
   // The station stands in the middle of its tick.
   bool in_tick() const { return in_tick_; }
   void resume_tick();
@@ -122,20 +130,33 @@ class Station final : private EventTarget, private Sleeper {
     look();
     return drive_;
   }
-  // These stay as they are while a station sleeps.
-  uint16_t outputs() const { return drive_.state().outputs(); }
-  int32_t shaft_position() const { return drive_.state().shaft_position(); }
+  uint16_t outputs() const {
+    look();
+    return drive_.state().outputs();
+  }
+  int32_t shaft_position() const {
+    look();
+    return drive_.state().shaft_position();
+  }
   StationInputs& inputs() {
     wake();
     return inputs_;
   }
   const StationInputs& inputs() const { return inputs_; }
+  // Left-out and late ticks are made up for by whoever looks first: nobody can tell.
+  void look() const { const_cast<Station*>(this)->make_up(); }
   // As the parameter channel reads an index; 0 where it refuses.
   int32_t read(uint16_t index) const;
 
   // SBus 1 or 2; null when the station is not on it.
-  const SbusPort* sbus(int number) const { return sbus_[static_cast<size_t>(number - 1)].get(); }
-  SbusPort* sbus(int number) { return sbus_[static_cast<size_t>(number - 1)].get(); }
+  const SbusPort* sbus(int number) const {
+    look();
+    return sbus_[static_cast<size_t>(number - 1)].get();
+  }
+  SbusPort* sbus(int number) {
+    look();
+    return sbus_[static_cast<size_t>(number - 1)].get();
+  }
 
   // The program has ended, was never there, or a fault has stopped it.
   bool program_over() const;
@@ -158,19 +179,23 @@ class Station final : private EventTarget, private Sleeper {
   static constexpr uint32_t kTick = 0;  // the only kind of event a station schedules
 
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
-  void make_up();
+  bool execute(Time now);
+  void make_up() override;
   bool make_up_variables() override;
   void get_up();
   void touch() override;
+  void expect_variables() override;
   void wake() override;
-  // Left-out ticks are made up for by whoever looks first: nobody can tell.
-  void look() const { const_cast<Station*>(this)->make_up(); }
   void make_up_to(Time last);
+  void leave_out_to(Time last);
+  void execute_to(Time last);
+  bool stride(Time last);
   void move_drive(Time now);
   bool stays_on_course() {
     return drive_.state().course_left() != 0 && inputs_.known() && (!touched_ || unwritten());
   }
   void glide(Time now);
+  void go_on(std::span<int32_t> h);
   // Behind the tasks: somebody has to look what has happened.
   bool has_fresh_fault() const { return machine_->fault().number != 0 && !fault_reported_; }
   bool has_news() {
@@ -182,11 +207,15 @@ class Station final : private EventTarget, private Sleeper {
   void schedule_tick(Time now);
   Time next_event(Time now) const;
   bool sleeps_through(Time now);
-  void try_sleep(Time now, Time& next);
+  void try_sleep();
   void begin_trial();
   void try_program();
   uint64_t end_trial();
   void hesitate(uint32_t longest);
+  void try_late(Time now);
+  bool can_be_late() const;
+  void look_ahead();
+  void forget_outlook();
   void connect_sbus(int number);
   void restart_program_memory();
   void choose_engine(const vm::VerifiedImage& program);
@@ -199,8 +228,8 @@ class Station final : private EventTarget, private Sleeper {
   const vm::Rates& rates() const { return rates_ ? *rates_ : drive_.rates(); }
   bool run_commands();
   void end_program(Time now);
-  void end_tick(Time now);
-  void finish_tick(Time now);
+  void send_telegrams(Time now);
+  void settle(Time now);
   void raise_drive_events();
   void restart_after_reset(Time now);
   StationServices services();
@@ -212,6 +241,7 @@ class Station final : private EventTarget, private Sleeper {
 
   // What every tick looks at stands together, as many stations take turns.
   bool asleep_ = false;
+  bool mute_ = false;  // the program will not call the bus any more
   bool on_course_ = false;
   bool quiet_ = false;           // the program's own commands write none of the noted variables
   bool touched_ = false;         // somebody else may have written them since the last tick
@@ -262,16 +292,25 @@ class Station final : private EventTarget, private Sleeper {
   uint32_t course_pause_ = 1;
 
   // Sleep (station_sleep.cpp).
-  uint32_t trial_in_ = 0;  // ticks until the next trial
+  Time trial_at_ = 0;  // not tried again before this tick
   uint32_t pause_ = 1;
   uint64_t idle_ticks_ = 0;  // of the program, from the tick of the trial on
   bool steady_ = true;       // it changes no variable then, not even for a moment
-  Time next_tick_ = 0;       // the first that was not made up for
-  Time sleeps_until_ = 0;    // the tick that is executed again
+  Time next_tick_ = 0;       // the first that was neither executed nor made up for
+  Time back_at_ = 0;         // the tick that is executed in its turn again
   struct {
     Bytes<PositioningService> positioning;
     std::array<int32_t, vm::kMaxVariables> h;
   } rest_;  // before the trial
+
+  // Late ticks (station_late.cpp).
+  Time outlook_at_ = 0;  // the program is not looked at again before this tick
+  uint32_t outlook_pause_ = 1;
+  bool may_order_ = true;          // the program can write the control word of the drive
+  bool may_fault_ = true;          // it can cause a fault
+  bool apart_ = false;             // its tasks, and the unit, do not mind how their commands alternate
+  bool minds_motion_ = true;       // but for variables that show the position
+  std::vector<uint16_t> written_;  // variables
 
   uint32_t resets_seen_ = 0;  // of the drive's faults
   uint8_t error_seen_ = 0;    // error of the drive in the last millisecond

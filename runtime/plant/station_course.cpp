@@ -16,18 +16,25 @@ constexpr uint32_t kLongestPause = 16;
 
 // The tick of a station on its course whose positioning has nothing to do.
 void Station::glide(Time now) {
-  drive_.state().go_on();
   const std::span<int32_t> h = machine_->variables();
-  if (positioning_)
-    positioning_->go_on(h, drive_.syncs());
-  else
-    show_drive(drive_.state(), h);
+  go_on(h);
   count_timers(h);
   if (!quiet_) noted_.note(h);
   try_program();
   vm::run_tick(*machine_, rates());
   if (has_news()) end_program(now);
-  finish_tick(now);
+  settle(now);
+}
+
+// Drive and positioning, and what the variables show of them.
+void Station::go_on(std::span<int32_t> h) {
+  Drive& drive = drive_.state();
+  const int32_t before = drive.position();
+  drive.go_on(1);
+  if (positioning_)
+    positioning_->go_on(h, drive_.syncs(), before);
+  else
+    show_drive(drive, h);
 }
 
 // What is written is compared with what was there before. A program that can write it with commands of its

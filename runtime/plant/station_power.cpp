@@ -7,6 +7,11 @@
 #include "vm/verify/writes.hpp"
 
 namespace ipos::runtime {
+namespace {
+
+constexpr size_t kControlWord = stdlib::system_variable("ControlWord");
+
+}  // namespace
 
 // The bus ports are off the line until the next power-on makes them anew.
 void Station::power_off() {
@@ -70,6 +75,8 @@ std::optional<std::string> Station::start_program() {
   machine_.emplace(program, commands_->host());
   on_course_ = false;
   quiet_ = !vm::may_write(program, NotedVariables::kFirst, NotedVariables::kLast);
+  may_order_ = vm::may_write(program, kControlWord, kControlWord);
+  forget_outlook();
   choose_engine(program);
   if (positioning_commands_) positioning_commands_->cancel_all();
   drive_.connect_program(*machine_);

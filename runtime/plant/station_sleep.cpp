@@ -38,7 +38,8 @@ void Station::try_program() {
 
 void Station::hesitate(uint32_t longest) {
   trial_ = false;
-  trial_in_ = pause_ = std::min(2 * pause_, longest);
+  pause_ = std::min(2 * pause_, longest);
+  trial_at_ = next_tick_ + pause_ * kMillisecond;
 }
 
 // How many ticks may be left out behind that of the trial.
@@ -49,34 +50,30 @@ uint64_t Station::end_trial() {
 }
 
 void Station::schedule_tick(Time now) {
-  Time next = now + kMillisecond;
+  late_ = false;
   if (execution_.skip_idle && runner_ == nullptr) {
-    if (!on_course_) try_course();
-    if (trial_ || (on_course_ && drive_.state().standing())) try_sleep(now, next);
+    if (trial_ || (on_course_ && drive_.state().standing())) try_sleep();
+    if (!asleep_ && !trial_) try_late(now);
   }
-  tick_ = queue_.schedule(next, source_, *this, kTick);
+  tick_ = queue_.schedule(asleep_ || late_ ? next_event(now) : next_tick_, source_, *this, kTick);
 }
 
-void Station::try_sleep(Time now, Time& next) {
+void Station::try_sleep() {
   const uint64_t ticks = trial_ ? end_trial() : 0;
   if (ticks != 0) {
     trial_ = false;
     pause_ = 1;
     asleep_ = true;
-    next_tick_ = next;
-    sleeps_until_ = next + static_cast<Time>(ticks) * kMillisecond;
-    next = next_event(now);
+    back_at_ = next_tick_ + static_cast<Time>(ticks) * kMillisecond;
   } else if (trial_) {
     hesitate(kLongestPause);
-  } else if (trial_in_ != 0) {
-    --trial_in_;
-  } else {
+  } else if (next_tick_ >= trial_at_) {
     begin_trial();
   }
 }
 
 Time Station::next_event(Time now) const {
-  Time next = sleeps_until_;
+  Time next = back_at_;
   for (const auto& port : sbus_)
     if (port) next = std::min(next, port->next_due(now));
   return next;
@@ -84,14 +81,14 @@ Time Station::next_event(Time now) const {
 
 // The event of a station that sleeps: a telegram is due, or the sleep is over.
 bool Station::sleeps_through(Time now) {
-  if (now >= sleeps_until_) {
-    make_up_to(sleeps_until_ - kMillisecond);
+  if (now >= back_at_) {
+    leave_out_to(back_at_ - kMillisecond);
     get_up();
     return false;
   }
   for (const auto& port : sbus_) {
     if (!port) continue;
-    if (!steady_ || port->sends_more_than_variables()) make_up_to(now);
+    if (!steady_ || port->sends_more_than_variables()) leave_out_to(now);
     port->tick(now);
   }
   if (asleep_) tick_ = queue_.schedule(next_event(now), source_, *this, kTick);
@@ -99,7 +96,7 @@ bool Station::sleeps_through(Time now) {
 }
 
 // All ticks up to that at `last`.
-void Station::make_up_to(Time last) {
+void Station::leave_out_to(Time last) {
   if (last < next_tick_) return;
   const auto ticks = static_cast<uint64_t>((last - next_tick_) / kMillisecond + 1);
   if (machine_) machine_->skip_ticks(rates().commands, ticks);
@@ -110,11 +107,18 @@ void Station::make_up_to(Time last) {
 
 // The tick of this moment counts when its turn is over.
 void Station::make_up() {
-  if (!asleep_) return;
+  if (!asleep_ && !late_) return;
   const Time now = queue_.now();
   Time last = now / kMillisecond * kMillisecond;
   if (last == now && !queue_.has_passed(source_)) last -= kMillisecond;
-  make_up_to(std::min(last, sleeps_until_ - kMillisecond));
+  make_up_to(std::min(last, back_at_ - kMillisecond));
+}
+
+void Station::make_up_to(Time last) {
+  if (late_)
+    execute_to(last);
+  else
+    leave_out_to(last);
 }
 
 bool Station::make_up_variables() {
@@ -124,18 +128,18 @@ bool Station::make_up_variables() {
 }
 
 void Station::get_up() {
-  asleep_ = false;
+  asleep_ = late_ = false;
   for (const auto& port : sbus_)
     if (port) port->stir();
 }
 
 void Station::wake() {
+  make_up();
   touch();
   trial_ = false;
-  if (!asleep_) return;
-  make_up();
+  if (!asleep_ && !late_) return;
   get_up();
-  trial_in_ = 0;
+  trial_at_ = 0;
   queue_.cancel(tick_);
   tick_ = queue_.schedule(next_tick_, source_, *this, kTick);
 }

@@ -29,6 +29,7 @@ class Encoders {
     counter_ = motor_counter;
     find_positions();
   }
+  int32_t counter() const { return counter_; }  // as last counted
   // It was told this count twice.
   bool stands_at(int32_t motor_counter) const {
     return motor_counter == counter_ && turned_before_ == turned_;

@@ -85,16 +85,20 @@ PositioningOrder Positioner::idle(int32_t speed) {
 }
 
 // The profile holds the position again before anybody travels from it.
-void Positioner::glide(int32_t motor_counter) {
+void Positioner::glide(int32_t before, int32_t motor_counter) {
+  if (encoders_.counter() != before) move(before);
   drop_target();
-  encoders_.count(motor_counter);
-  modulo_.move(wrapped(int64_t{actual()} - target_));
+  move(motor_counter);
 }
 
-void Positioner::observe(int32_t motor_counter) {
+inline void Positioner::move(int32_t motor_counter) {
   const int32_t before = actual();
   encoders_.count(motor_counter);
   modulo_.move(wrapped(int64_t{actual()} - before));
+}
+
+void Positioner::observe(int32_t motor_counter) {
+  move(motor_counter);
   lag_ = following_ ? wrapped(int64_t{setpoint()} - actual()) : 0;
 }
 

@@ -74,8 +74,9 @@ class Positioner {
            !touch_probes_.probe(1).fresh && events_.none();
   }
   PositioningOrder idle(int32_t speed);
-  // idle() and observe() where nobody looks at the order.
-  void glide(int32_t motor_counter);
+  // idle() and observe() where nobody looks at the order, once or several times: the last one finds the
+  // counter at `before`.
+  void glide(int32_t before, int32_t motor_counter);
   // After it has moved: the counter of the motor encoder.
   void observe(int32_t motor_counter);
   // A reference travel has given the motor encoder another count, which the axis must take over.
@@ -142,6 +143,7 @@ class Positioner {
   void plan(int64_t goal, const TravelRules& rules);
   void brake_here();
   void drop_target();
+  void move(int32_t motor_counter);
   void keep_in_range();
   int32_t speed_order() const;
 

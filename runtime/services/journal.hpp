@@ -2,8 +2,10 @@
 // write here; the command line prints it.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "runtime/clock/event_queue.hpp"
@@ -25,8 +27,12 @@ struct JournalEntry {
 
 class Journal {
  public:
+  // Is called before a note: who is late with what comes before it makes up for that.
+  void ask_first(std::function<void()> latecomers) { latecomers_ = std::move(latecomers); }
+
   // A text that the station has already said is not repeated: a cyclic cause gives one entry.
   void note(Time time, Weight weight, std::string_view station, std::string text) {
+    if (latecomers_) latecomers_();
     for (const JournalEntry& entry : entries_)
       if (entry.station == station && entry.text == text) return;
     entries_.push_back({time, weight, std::string(station), std::move(text)});
@@ -34,6 +40,7 @@ class Journal {
   const std::vector<JournalEntry>& entries() const { return entries_; }
 
  private:
+  std::function<void()> latecomers_;
   std::vector<JournalEntry> entries_;
 };
 

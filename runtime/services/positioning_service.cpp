@@ -266,11 +266,11 @@ inline void PositioningService::show_positions(std::span<int32_t> h, const Encod
   h[kActPosAbs] = positions.of(PositionSource::Absolute);
 }
 
-void PositioningService::go_on(std::span<int32_t> h, uint32_t syncs) {
+void PositioningService::go_on(std::span<int32_t> h, uint32_t syncs, int32_t before) {
   syncs_ = syncs;
   const int32_t counter = drive_.position();
   if (positioner_.encoders().stands_at(counter)) return;
-  positioner_.glide(counter);
+  positioner_.glide(before, counter);
   const Encoders::Positions positions = positioner_.encoders().positions();
   show_target_positions(h);
   show_positions(h, positions, positions.of(positioner_.source()));

@@ -14,6 +14,7 @@
 #include "runtime/positioning/cams.hpp"
 #include "runtime/positioning/positioner.hpp"
 #include "runtime/services/journal.hpp"
+#include "stdlib/system_variables.hpp"
 
 namespace ipos::runtime {
 
@@ -35,9 +36,16 @@ class PositioningService {
   bool minds_system_variables_only() const { return settings_.technology_function != kIsync && !cams_run_; }
 
   // The last millisecond has found nothing to do, and no command came since. While inputs, parameters and
-  // system variables stay as they are, too, go_on() is order() and show() around a tick of the drive.
+  // system variables stay as they are, too, go_on() is order() and show() around a tick of the drive, or
+  // around several; before the last of them its counter was `before`.
   bool idles() const { return idles_ && minds_system_variables_only(); }
-  void go_on(std::span<int32_t> h, uint32_t syncs);
+  void go_on(std::span<int32_t> h, uint32_t syncs, int32_t before);
+  // The variables that it changes then.
+  static constexpr size_t kMoving[] = {
+      stdlib::system_variable("ModTagPos"),  stdlib::system_variable("ModActPos"),
+      stdlib::system_variable("ModCount"),   stdlib::system_variable("SetpointPos"),
+      stdlib::system_variable("TargetPos"),  stdlib::system_variable("ActPos_Abs"),
+      stdlib::system_variable("ActPos_Ext"), stdlib::system_variable("ActPos_Mot")};
 
   // For commands, between two ticks.
   const Positioner& positioner() const { return positioner_; }

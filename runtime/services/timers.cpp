@@ -29,6 +29,12 @@ Timers::Expired Timers::tick(std::span<int32_t> h) {
   return expired;
 }
 
+bool Timers::rest(std::span<const int32_t> h) const {
+  const int32_t timer_0 = h[system_variable("Timer_0")];
+  return !watchdog_ && h[system_variable("Timer_1")] <= 0 && h[system_variable("Timer_2")] <= 0 &&
+         (timer_0 < 0 || (timer_0 == 0 && h[system_variable("T0_Reload")] <= 0));
+}
+
 void Timers::start_watchdog(std::span<int32_t> h, int32_t ms) {
   h[system_variable("WdogTimer")] = ms;
   watchdog_ = true;

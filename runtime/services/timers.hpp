@@ -19,9 +19,12 @@ class Timers {
   // way to 0 and takes T0_Reload if that is above 0, so it reports every T0_Reload ms; standing at 0 it takes
   // it without a report.
   Expired tick(std::span<int32_t> h);
+  // It would change nothing and report nothing.
+  bool rest(std::span<const int32_t> h) const;
 
   // WDON: from now on WdogTimer counts, and its end is fault F41. The program writes it again before that.
   void start_watchdog(std::span<int32_t> h, int32_t ms);
+  bool watchdog_runs() const { return watchdog_; }
   void stop_watchdog() { watchdog_ = false; }  // WDOFF, end of the program by a fault
 
  private:

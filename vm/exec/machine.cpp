@@ -10,6 +10,31 @@
 
 namespace ipos::vm {
 
+namespace {
+
+// What the fast engine changes of a context.
+struct Stand {
+  uint32_t pc;
+  uint8_t depth;
+  uint64_t commands;
+  uint16_t calls[kMaxCallDepth];
+
+  void note(const TaskContext& t) {
+    pc = t.pc;
+    depth = t.depth;
+    commands = t.commands;
+    for (size_t n = 0; n < t.depth; ++n) calls[n] = t.calls[n];
+  }
+  void give_back(TaskContext& t) const {
+    t.pc = pc;
+    t.depth = depth;
+    t.commands = commands;
+    for (size_t n = 0; n < depth; ++n) t.calls[n] = calls[n];
+  }
+};
+
+}  // namespace
+
 static_assert(std::is_trivially_copyable_v<Machine>, "a copy is a snapshot");
 
 Machine::Machine(const VerifiedImage& program, const Host& host) : program_(program), host_(host) {}
@@ -79,6 +104,34 @@ uint32_t Machine::run_tasks(const std::array<uint32_t, kTasks>& budgets) {
   for (int task = 1; task <= kTasks; ++task)
     executed += run_task(task, budgets[static_cast<size_t>(task - 1)]).commands;
   return executed;
+}
+
+bool Machine::run_ahead(const std::array<uint32_t, kTasks>& budgets, uint32_t ticks,
+                        std::span<const uint16_t> written) {
+  if (fast_ == nullptr || events_ || watches_ || written.size() > kMostWrittenAhead) return false;
+  if (waits_)
+    for (const TaskContext& t : contexts_)
+      if (t.state == TaskState::Waiting && t.wait_ms != 0 && t.wait_ms <= ticks) return false;
+  if (program_.limits().variables > kVarIntReq) h_[kVarIntReq] &= ~kAllRequests;
+
+  std::array<int32_t, kMostWrittenAhead> values;  // before
+  for (size_t n = 0; n < written.size(); ++n) values[n] = h_[written[n]];
+  std::array<Stand, kTasks> stands;
+  for (size_t n = 0; n < kTasks; ++n) {
+    TaskContext& t = contexts_[active_[n]];
+    if (t.state != TaskState::Ready) continue;
+    stands[n].note(t);
+    if (run_fast(t, budgets[n] * ticks) == 0) continue;
+    for (size_t other = 0; other <= n; ++other)
+      if (TaskContext& back = contexts_[active_[other]]; back.state == TaskState::Ready)
+        stands[other].give_back(back);
+    for (size_t variable = 0; variable < written.size(); ++variable) h_[written[variable]] = values[variable];
+    return false;
+  }
+  if (waits_)
+    for (TaskContext& t : contexts_)
+      if (t.state == TaskState::Waiting && t.wait_ms != 0) t.wait_ms -= ticks;
+  return true;
 }
 
 // From a command on that is the reference interpreter's, if there is one to be executed.

@@ -91,6 +91,15 @@ class Machine {
   // commands they would have executed.
   uint64_t skip_ticks(const std::array<uint32_t, kTasks>& budgets, uint64_t ticks);
 
+  // `ticks` times tick() and run() with these budgets, the tasks one behind the other instead of in turn.
+  // False, and nothing has changed: that is not possible, as something else than variables and jumps would
+  // come in between, or without the fast engine. Only for tasks that use no variable another one writes
+  // (vm/sched/outlook.hpp), nor one that anybody else changes in these ticks; `written` has all that they
+  // write.
+  bool run_ahead(const std::array<uint32_t, kTasks>& budgets, uint32_t ticks,
+                 std::span<const uint16_t> written);
+  static constexpr size_t kMostWrittenAhead = 64;
+
   // An event of task 1 has happened. Without an installed routine nothing follows.
   void raise_event(Event event);
 

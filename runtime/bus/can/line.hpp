@@ -61,6 +61,8 @@ class CanLine final : private EventTarget {
     send(node, frame, tag);
   }
 
+  bool has_waiting(NodeId node) const { return !nodes_[node].queue.empty(); }  // frames, or one on the wire
+
   void set_baud(NodeId node, uint32_t baud);
   void set_connected(NodeId node, bool connected);
   void replace(NodeId node, CanNode& by);  // the station behind it has been made anew

@@ -193,6 +193,26 @@ TEST(EventQueue, AdvancesToWhatIsNextAnyway) {
   EXPECT_EQ(queue.now(), 55);
 }
 
+TEST(EventQueue, ThePastIsAsItWas) {
+  EventQueue queue;
+  queue.run_until(50);
+  {
+    const EventQueue::Past late(queue, 20, 5);
+    EXPECT_EQ(queue.now(), 20);
+    EXPECT_TRUE(queue.has_passed(4));
+    EXPECT_FALSE(queue.has_passed(5)) << "its turn is now";
+    {
+      const EventQueue::Past later_still(queue, 10, 7);
+      EXPECT_EQ(queue.now(), 10);
+      EXPECT_TRUE(queue.has_passed(5));
+    }
+    EXPECT_EQ(queue.now(), 20);
+    EXPECT_FALSE(queue.has_passed(5));
+  }
+  EXPECT_EQ(queue.now(), 50);
+  EXPECT_TRUE(queue.has_passed(1000));
+}
+
 TEST(EventQueue, AnEventOfTheSameSourceComesFirst) {
   EventQueue queue;
   Runner runner(queue);

@@ -48,6 +48,29 @@ TEST(Position, ConstantSpeedLosesNothing) {
               std::fmod(increments, 4294967296.0), 1.0);
 }
 
+// At the top speed a minute of increments does not fit in 64 bits with its fractions.
+TEST(Position, ManyMillisecondsAtOnce) {
+  MachineData light;
+  light.rotor_run_up_ms = 1;
+  light.inertia = 0;
+  for (const int32_t speed : {1, -1, 333, 1'234'567, -1'234'567, kTopSpeed, -kTopSpeed}) {
+    AxisOrder order = order_of(AxisCommand::Follow, speed, 0);
+    order.current_limit = INT32_MAX;
+    Axis each(light);
+    for (int n = 0; n < 1000; ++n) each.tick(order);
+    ASSERT_EQ(each.speed(), speed);
+    Axis many = each;
+    for (const uint32_t ticks : {1U, 2U, 7U, 31U, 4096U, 4097U, 60'000U}) {
+      for (uint32_t n = 0; n < ticks; ++n) each.tick(order);
+      many.go_on(ticks);
+      ASSERT_EQ(many.position(), each.position()) << speed << ", " << ticks << " ms";
+    }
+    each.tick(order);
+    many.tick(order);
+    ASSERT_EQ(many.position(), each.position()) << "the part of an increment is the same";
+  }
+}
+
 TEST(Position, IntegralOfShownSpeeds) {
   std::mt19937_64 random(11);
   Axis axis{{}};

@@ -54,6 +54,26 @@ M01 : JMP H488 > 0 , M01
   EXPECT_EQ(ms, 21) << "set in the first tick, seen 20 ms later";
 }
 
+TEST(Timers, RestWhenATickDoesNothing) {
+  ProgramRig rig("END\n");
+  for (const char* name : {"Timer_0", "Timer_1", "Timer_2", "T0_Reload", "WdogTimer"})
+    for (const int32_t value : {-1, 0, 1, 2}) {
+      rig.h(name) = value;
+      const bool rests = rig.timers.rest(rig.machine.variables());
+      const std::vector<int32_t> before(rig.machine.variables().begin(), rig.machine.variables().end());
+      Timers timers = rig.timers;
+      const auto expired = timers.tick(rig.machine.variables());
+      const bool same = std::ranges::equal(rig.machine.variables(), before);
+      EXPECT_EQ(rests, same && !expired.timer_0 && !expired.watchdog) << name << " = " << value;
+      for (const char* other : {"Timer_0", "Timer_1", "Timer_2", "T0_Reload", "WdogTimer"}) rig.h(other) = 0;
+    }
+  rig.timers.start_watchdog(rig.machine.variables(), 5);
+  EXPECT_TRUE(rig.timers.watchdog_runs());
+  EXPECT_FALSE(rig.timers.rest(rig.machine.variables()));
+  rig.timers.stop_watchdog();
+  EXPECT_FALSE(rig.timers.watchdog_runs());
+}
+
 TEST(Watchdog, RunsOutUnlessRenewed) {
   ProgramRig rig(R"(
       WDON 10

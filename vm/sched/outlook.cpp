@@ -1,0 +1,127 @@
+// Follows every way through the code, for each task from where its contexts stand.
+#include "vm/sched/outlook.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+namespace ipos::vm {
+namespace {
+
+constexpr Opcode kFaulting[] = {Opcode::DivHH,     Opcode::ModHH,    Opcode::DivHK, Opcode::ModHK,
+                                Opcode::SetiStore, Opcode::SetiLoad, Opcode::Call,  Opcode::VarInt};
+// Of the system commands those the machine carries out by itself.
+constexpr Opcode kOwn[] = {Opcode::WaitH, Opcode::WaitK, Opcode::Task, Opcode::Task2, Opcode::SetInt};
+
+template <size_t count>
+bool is_one_of(const Opcode (&rows)[count], Opcode opcode) {
+  return std::find(std::begin(rows), std::end(rows), opcode) != std::end(rows);
+}
+
+bool can_fault(const Instruction& command) {
+  if (command.opcode == Opcode::DivHK || command.opcode == Opcode::ModHK) return command.operands[1] == 0;
+  const Flow flow = coding(command.opcode).flow;
+  if (flow == Flow::System || flow == Flow::SystemCall) return !is_one_of(kOwn, command.opcode);
+  return is_one_of(kFaulting, command.opcode);
+}
+
+}  // namespace
+
+class Outlook::Walk {
+ public:
+  explicit Walk(const VerifiedImage& program) : program_(program) {}
+
+  void begin(int task, uint32_t address) {
+    Task& t = tasks_[static_cast<size_t>(task - 1)];
+    if (t.seen[address]) return;
+    t.seen[address] = true;
+    waiting_[waiting_count_++] = {static_cast<uint16_t>(address), static_cast<uint8_t>(task)};
+  }
+
+  void finish(Outlook& outlook) {
+    while (waiting_count_ != 0) {
+      const Place place = waiting_[--waiting_count_];
+      pass(place.task, place.address, outlook);
+    }
+    for (const Task& t : tasks_) {
+      outlook.apart_ &= (outlook.written_ & t.used).none() && (outlook.used_ & t.written).none();
+      outlook.used_ |= t.used;
+      outlook.written_ |= t.written;
+    }
+  }
+
+ private:
+  struct Task {
+    std::bitset<kMaxProgramWords> seen;
+    Variables used, written;
+  };
+  struct Place {
+    uint16_t address;
+    uint8_t task;
+  };
+
+  void pass(int task, uint32_t address, Outlook& outlook) {
+    const Decoded decoded = decode(program_.code(), address);
+    const Instruction& command = decoded.instruction;
+    const Coding& row = coding(command.opcode);
+    outlook.commands_[static_cast<size_t>(command.opcode)] = true;
+    outlook.faults_ |= can_fault(command);
+    note_variables(tasks_[static_cast<size_t>(task - 1)], command, row);
+    for (size_t n = 0; n < row.operand_count; ++n)
+      if (row.kinds[n] == OperandKind::Label)
+        follow(task, command, static_cast<uint32_t>(command.operands[n]));
+    if (row.flow != Flow::Jump && row.flow != Flow::Return && row.flow != Flow::End)
+      begin(task, address + decoded.words);
+  }
+
+  // Who begins at the label of a command.
+  void follow(int task, const Instruction& command, uint32_t label) {
+    const bool on = command.operands[0] != 0;
+    switch (command.opcode) {
+      case Opcode::Task2: return on ? begin(2, label) : void();
+      case Opcode::Task: return on ? begin(3, label) : void();
+      case Opcode::SetInt: return on ? begin(1, label) : void();
+      case Opcode::VarInt:  // its structure says whose it is
+        for (int other = 1; other <= kTasks; ++other) begin(other, label);
+        return;
+      default: begin(task, label);
+    }
+  }
+
+  static void note_variables(Task& t, const Instruction& command, const Coding& row) {
+    for (size_t n = 0; n < row.operand_count; ++n)
+      if (row.kinds[n] == OperandKind::Variable) t.used[static_cast<size_t>(command.operands[n])] = true;
+    if (command.opcode == Opcode::SetiLoad || command.opcode == Opcode::SetiStore) t.used.set();
+    if (command.opcode == Opcode::SetiStore) t.written.set();
+    if (row.flow != Flow::Next || command.opcode == Opcode::Nop || command.opcode == Opcode::SetiStore)
+      return;
+    t.written[static_cast<size_t>(command.operands[0])] = true;
+    if (command.opcode != Opcode::Copy) return;
+    for (size_t n = 0; n < static_cast<size_t>(command.operands[2]); ++n) {
+      t.written[static_cast<size_t>(command.operands[0]) + n] = true;
+      t.used[static_cast<size_t>(command.operands[0]) + n] = true;
+      t.used[static_cast<size_t>(command.operands[1]) + n] = true;
+    }
+  }
+
+  const VerifiedImage& program_;
+  std::array<Task, kTasks> tasks_{};
+  std::array<Place, kTasks * kMaxProgramWords> waiting_;  // each address once for each task
+  size_t waiting_count_ = 0;
+};
+
+Outlook::Outlook(const Machine& machine) {
+  Walk walk(machine.program());
+  for (int number = 1; number <= kContexts; ++number) {
+    const TaskContext& t = machine.context(number);
+    if (t.state == TaskState::Stopped) continue;
+    walk.begin(t.task, t.pc);
+    for (size_t n = 0; n < t.depth; ++n) walk.begin(t.task, t.calls[n]);
+  }
+  for (const EventInterrupt& interrupt : machine.interrupts().events)
+    if (interrupt.installed || interrupt.pending) walk.begin(1, interrupt.address);
+  for (const VariableInterrupt& interrupt : machine.interrupts().variables)
+    if (interrupt.installed) walk.begin(interrupt.task, interrupt.address);
+  walk.finish(*this);
+}
+
+}  // namespace ipos::vm

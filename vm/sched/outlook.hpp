@@ -1,0 +1,43 @@
+// What the program of a machine can still do from where its tasks are. The commands a task can reach are
+// closed: whatever happens it executes no other ones, until the program is started anew. So what is missing
+// here stays missing.
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <cstdint>
+
+#include "vm/exec/machine.hpp"
+
+namespace ipos::vm {
+
+class Outlook {
+ public:
+  using Variables = std::bitset<kMaxVariables>;
+
+  explicit Outlook(const Machine& machine);
+
+  bool reaches(Opcode opcode) const { return commands_[static_cast<size_t>(opcode)]; }
+
+  // False: no command can cause a fault, whatever the variables are.
+  bool may_fault() const { return faults_; }
+
+  // Of all tasks, without what the host does for system commands. One of the two has all variables where a
+  // command computes which one it means.
+  const Variables& used() const { return used_; }  // read or written
+  const Variables& written() const { return written_; }
+
+  // No task writes what another one uses: with system commands left aside, it does not matter how their
+  // commands alternate.
+  bool apart() const { return apart_; }
+
+ private:
+  class Walk;
+
+  std::bitset<256> commands_;
+  Variables used_, written_;
+  bool faults_ = false;
+  bool apart_ = true;
+};
+
+}  // namespace ipos::vm
