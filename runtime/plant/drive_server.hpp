@@ -39,14 +39,17 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
   // Is told before a bus or a program touches the drive. It must outlive this.
   void use(Sleeper& sleeper) { sleeper_ = &sleeper; }
   bool make_up_variables() { return sleeper_ != nullptr && sleeper_->make_up_variables(); }
-  void expect_variables() {
-    if (sleeper_ != nullptr) sleeper_->expect_variables();
+  void expect_variables(uint32_t first) {
+    if (sleeper_ != nullptr) sleeper_->expect_variables(first);
   }
   void wake() {
     if (sleeper_ != nullptr) sleeper_->wake();
   }
   void catch_up() {
     if (sleeper_ != nullptr) sleeper_->catch_up();
+  }
+  void make_up() {
+    if (sleeper_ != nullptr) sleeper_->make_up();
   }
 
   // Sets a parameter before power-on, named "P813" or by index; nothing when accepted, else why not.

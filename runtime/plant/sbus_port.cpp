@@ -98,7 +98,10 @@ void SbusPort::on_frame(Time now, const Frame& frame) {
   if (master_.busy() && master_.on_frame(now, frame)) return;
   const bool received = machine_ != nullptr && receive(now, frame);
   // A receive object with the sync identifier takes nothing away from the drive.
-  if (!received || slave_.is_sync(frame)) slave_.on_frame(now, frame);
+  if (!received || slave_.is_sync(frame)) {
+    drive_.make_up();
+    slave_.on_frame(now, frame);
+  }
   if (drive_.has_reasons()) tell_reasons(now);
 }
 
@@ -110,7 +113,8 @@ void SbusPort::tell_reasons(Time now) {
 
 void SbusPort::stir() {
   if (!std::exchange(rests_, false)) return;
-  objects_.each_received([this](uint32_t id) { line_.stir(node(), id); });
+  objects_.each_received(
+      [this](uint32_t id, uint32_t /*data*/, VariableFormat /*format*/) { line_.stir(node(), id); });
 }
 
 // A receive object takes the frame. One that brings the values that are there already wakes nobody.
@@ -125,7 +129,7 @@ bool SbusPort::receive(Time now, const Frame& frame) {
     }
     return true;
   }
-  drive_.expect_variables();
+  drive_.expect_variables(objects_.data_of(*receiver));
   std::string why;
   const bool taken = objects_.on_frame(frame, machine_->variables(), why);
   if (!why.empty()) note(now, Weight::Warning, std::move(why));

@@ -129,6 +129,7 @@ void Station::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
 
 // The tick, but for its telegrams. False: the runner stops in the middle.
 bool Station::execute(Time now) {
+  end_cruise();
   on_course_ = on_course_ && stays_on_course();
   touched_ = false;
   if (on_course_ && machine_ && (!positioning_ || positioning_->idles())) {
@@ -188,6 +189,7 @@ void Station::resume_tick() {
 }
 
 void Station::send_telegrams(Time now) {
+  if (prospect_.tells_motion) end_cruise();
   for (const auto& port : sbus_)
     if (port) port->tick(now);
 }
@@ -255,7 +257,7 @@ void Station::restart_after_reset(Time now) {
   if (resets != resets_seen_ && machine_->fault().number != 0) {
     journal_.note(now, Weight::Why, config_.name, "the program starts anew after the reset of its fault");
     machine_->start();
-    forget_outlook();
+    forget_prospect();
     fault_reported_ = false;
   }
   resets_seen_ = resets;

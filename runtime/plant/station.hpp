@@ -15,6 +15,7 @@
 #include "runtime/plant/drive_server.hpp"
 #include "runtime/plant/execution.hpp"
 #include "runtime/plant/plant_file.hpp"
+#include "runtime/plant/prospect.hpp"
 #include "runtime/plant/sbus_port.hpp"
 #include "runtime/plant/serial_port.hpp"
 #include "runtime/plant/station_inputs.hpp"
@@ -108,6 +109,8 @@ class Station final : private EventTarget, private Sleeper {
   }
   // It executes its ticks when it has something to tell, or somebody looks.
   bool late() const { return late_; }
+  // Late, and its drive and positioning follow its tasks only when they are asked for.
+  bool cruises() const { return cruise_left_ != 0; }
   // The station stands in the middle of its tick.
   bool in_tick() const { return in_tick_; }
   void resume_tick();
@@ -184,12 +187,18 @@ class Station final : private EventTarget, private Sleeper {
   bool make_up_variables() override;
   void get_up();
   void touch() override;
-  void expect_variables() override;
+  void run_late() override;
+  void expect_variables(uint32_t first) override;
   void wake() override;
-  void make_up_to(Time last);
+  Time last_tick() const;
   void leave_out_to(Time last);
   void execute_to(Time last);
   bool stride(Time last);
+  bool begin_cruise();
+  void end_cruise() {
+    if (cruise_left_ != 0 || owed_ != 0) finish_cruise();
+  }
+  void finish_cruise();
   void move_drive(Time now);
   bool stays_on_course() {
     return drive_.state().course_left() != 0 && inputs_.known() && (!touched_ || unwritten());
@@ -215,7 +224,7 @@ class Station final : private EventTarget, private Sleeper {
   void try_late(Time now);
   bool can_be_late() const;
   void look_ahead();
-  void forget_outlook();
+  void forget_prospect();
   void connect_sbus(int number);
   void restart_program_memory();
   void choose_engine(const vm::VerifiedImage& program);
@@ -240,8 +249,22 @@ class Station final : private EventTarget, private Sleeper {
   uint32_t source_;
 
   // What every tick looks at stands together, as many stations take turns.
+  Time next_tick_ = 0;  // the first that was neither executed nor made up for
+  Time back_at_ = 0;    // asleep or late: the tick that is executed in its turn again
+  EventId tick_ = kNoEvent;
+
+  // Late ticks (station_late.cpp).
+  uint32_t cruise_left_ = 0;  // ticks of which only the tasks need be executed
+  uint32_t owed_ = 0;         // those in which drive and positioning are behind them
+  vm::Rates cruise_rates_;
+  Time cruise_at_ = 0;  // not before this tick again
+  uint32_t cruise_pause_ = 1;
+  Prospect prospect_;
+  bool may_order_ = true;  // the program can write the control word of the drive
+  Time prospect_at_ = 0;   // the program is not looked at again before this tick
+  uint32_t prospect_pause_ = 1;
+
   bool asleep_ = false;
-  bool mute_ = false;  // the program will not call the bus any more
   bool on_course_ = false;
   bool quiet_ = false;           // the program's own commands write none of the noted variables
   bool touched_ = false;         // somebody else may have written them since the last tick
@@ -249,7 +272,6 @@ class Station final : private EventTarget, private Sleeper {
   bool course_noted_ = false;    // the same, for a course
   bool fault_reported_ = false;  // of the program
   bool in_tick_ = false;
-  EventId tick_ = kNoEvent;
   CommandRunner* runner_ = nullptr;
   Execution execution_;
   std::optional<vm::Rates> rates_;  // instead of P938 and P939
@@ -296,21 +318,10 @@ class Station final : private EventTarget, private Sleeper {
   uint32_t pause_ = 1;
   uint64_t idle_ticks_ = 0;  // of the program, from the tick of the trial on
   bool steady_ = true;       // it changes no variable then, not even for a moment
-  Time next_tick_ = 0;       // the first that was neither executed nor made up for
-  Time back_at_ = 0;         // the tick that is executed in its turn again
   struct {
     Bytes<PositioningService> positioning;
     std::array<int32_t, vm::kMaxVariables> h;
   } rest_;  // before the trial
-
-  // Late ticks (station_late.cpp).
-  Time outlook_at_ = 0;  // the program is not looked at again before this tick
-  uint32_t outlook_pause_ = 1;
-  bool may_order_ = true;          // the program can write the control word of the drive
-  bool may_fault_ = true;          // it can cause a fault
-  bool apart_ = false;             // its tasks, and the unit, do not mind how their commands alternate
-  bool minds_motion_ = true;       // but for variables that show the position
-  std::vector<uint16_t> written_;  // variables
 
   uint32_t resets_seen_ = 0;  // of the drive's faults
   uint8_t error_seen_ = 0;    // error of the drive in the last millisecond

@@ -1,18 +1,17 @@
 // Late ticks: a station that can tell nobody anything before its next telegram need not execute its ticks in
 // turn with those of the others. It executes them all in one go when that telegram is due, when something
 // comes from outside, or when somebody looks; each finds the time it belongs to. So what it works with is in
-// the cache once for many ticks, and where nothing comes in between the tasks can run for many ticks at a
-// time.
+// the cache once for many ticks.
+//
+// A late station cruises when its ticks only go on (station_course.cpp) and its tasks mind neither each other
+// nor what the unit does meanwhile: then each task runs for many ticks at a time, and drive and positioning
+// follow when they are asked for.
 #include <algorithm>
 
 #include "runtime/plant/station.hpp"
-#include "runtime/services/drive_variables.hpp"
-#include "vm/sched/outlook.hpp"
 
 namespace ipos::runtime {
 namespace {
-
-using stdlib::system_variable;
 
 // How late it may be, so that who watches the run sees it move on.
 constexpr Time kLatest = 32 * kMillisecond;
@@ -20,36 +19,25 @@ constexpr Time kLatest = 32 * kMillisecond;
 // The program is looked at again after 16, 32, 64.. ticks.
 constexpr uint32_t kFirstPause = 8, kLongestPause = 4096;
 
-// What every tick writes when it is not at rest.
-constexpr size_t kCounting[] = {system_variable("Timer_0"),   system_variable("Timer_1"),
-                                system_variable("Timer_2"),   system_variable("T0_Reload"),
-                                system_variable("WdogTimer"), system_variable("VarIntReq")};
+// A program that stops on its way is let run ahead again after 2, 4, 8.. ticks.
+constexpr uint32_t kLongestCruisePause = 64;
 
 }  // namespace
 
-void Station::forget_outlook() {
-  mute_ = apart_ = false;
-  outlook_at_ = 0;
-  outlook_pause_ = kFirstPause;
+void Station::forget_prospect() {
+  prospect_ = {};
+  prospect_at_ = 0;
+  prospect_pause_ = kFirstPause;
 }
 
-// What the program can reach only gets less until it is started anew: so what has been found stays true.
 void Station::look_ahead() {
-  const vm::Outlook outlook(*machine_);
-  using vm::Opcode;
-  mute_ = true;
-  for (const Opcode call : {Opcode::Movlnk, Opcode::Scom, Opcode::ScomOn, Opcode::ScomState})
-    mute_ = mute_ && !outlook.reaches(call);
-  may_fault_ = outlook.may_fault();
-  const auto uses = [&](size_t variable) { return outlook.used()[variable]; };
-  apart_ = quiet_ && outlook.apart() && outlook.written().count() <= vm::Machine::kMostWrittenAhead &&
-           std::none_of(std::begin(kCounting), std::end(kCounting), uses);
-  minds_motion_ =
-      std::any_of(std::begin(PositioningService::kMoving), std::end(PositioningService::kMoving), uses);
-  written_.clear();
-  if (apart_)
-    for (size_t n = 0; n < outlook.written().size(); ++n)
-      if (outlook.written()[n]) written_.push_back(static_cast<uint16_t>(n));
+  std::array<const VariableObjects*, 2> objects{};
+  size_t count = 0;
+  for (const auto& port : sbus_)
+    if (port) objects[count++] = &port->objects();
+  prospect_ = Prospect(*machine_, std::span(objects).first(count));
+  prospect_pause_ = std::min(2 * prospect_pause_, kLongestPause);
+  prospect_at_ = next_tick_ + prospect_pause_ * kMillisecond;
 }
 
 // Nothing the station does reaches anybody before its next telegram. A fault of the program would: it takes
@@ -58,19 +46,18 @@ void Station::look_ahead() {
 bool Station::can_be_late() const {
   if (x13_ || xt_) return false;
   if (!machine_) return true;
-  if (!mute_ || machine_->fault().number != 0) return false;
-  if (!may_fault_ && !timers_.watchdog_runs()) return true;
+  if (!prospect_.mute || machine_->fault().number != 0) return false;
+  if (!prospect_.may_fault && !timers_.watchdog_runs()) return true;
   return !may_order_ && std::none_of(sbus_.begin(), sbus_.end(),
                                      [](const auto& port) { return port && port->has_waiting_frames(); });
 }
 
 void Station::try_late(Time now) {
-  if (machine_ && !(mute_ && apart_) && next_tick_ >= outlook_at_ && machine_->fault().number == 0) {
-    look_ahead();
-    outlook_pause_ = std::min(2 * outlook_pause_, kLongestPause);
-    outlook_at_ = next_tick_ + outlook_pause_ * kMillisecond;
+  if (cruise_left_ == 0 || prospect_.may_fault) {
+    const bool known = prospect_.mute && prospect_.apart;
+    if (machine_ && !known && next_tick_ >= prospect_at_ && machine_->fault().number == 0) look_ahead();
+    if (!can_be_late()) return;
   }
-  if (!can_be_late()) return;
   back_at_ = now + kLatest;
   late_ = next_event(now) > next_tick_;
 }
@@ -86,31 +73,50 @@ void Station::execute_to(Time last) {
   }
 }
 
-// Ticks that only go on, and whose tasks run as if the others were not there: many at a time.
 bool Station::stride(Time last) {
-  if (!apart_ || last <= next_tick_) return false;
-  on_course_ = on_course_ && stays_on_course();
-  touched_ = false;
-  Drive& drive = drive_.state();
-  if (!on_course_ || !machine_ || (positioning_ && !positioning_->idles()) || has_news()) return false;
-  const std::span<int32_t> h = machine_->variables();
-  if ((minds_motion_ && !drive.standing()) || !timers_.rest(h)) return false;
-  const auto ticks =
-      std::min(static_cast<uint32_t>((last - next_tick_) / kMillisecond + 1), drive.course_left());
-  if (ticks < 2) return false;
-  if (!machine_->run_ahead(rates().commands, ticks, written_)) return false;
-  drive.go_on(ticks - 1);
-  go_on(h);
+  if (cruise_left_ == 0 && (next_tick_ < cruise_at_ || !begin_cruise())) return false;
+  const auto ticks = std::min(static_cast<uint32_t>((last - next_tick_) / kMillisecond + 1), cruise_left_);
+  if (!machine_->run_ahead(cruise_rates_.commands, ticks, prospect_.undone)) {
+    end_cruise();
+    cruise_pause_ = std::min(2 * cruise_pause_, kLongestCruisePause);
+    cruise_at_ = next_tick_ + cruise_pause_ * kMillisecond;
+    return false;
+  }
+  cruise_pause_ = 1;
+  cruise_left_ -= ticks;
+  owed_ += ticks;
   next_tick_ += ticks * kMillisecond;
-  settle(next_tick_ - kMillisecond);
   return true;
 }
 
-// A fault of the program must not be found too late: see can_be_late().
-void Station::expect_variables() {
-  if (!late_ || may_fault_) return wake();
-  make_up();
-  touch();
+// Nothing that is asked here changes before somebody touches the station.
+bool Station::begin_cruise() {
+  if (!prospect_.apart || !quiet_ || touched_ || owed_ != 0 || !machine_) return false;
+  if (!on_course_ || !stays_on_course() || (positioning_ && !positioning_->idles()) || has_news())
+    return false;
+  const bool moves = !drive_.state().standing();
+  if ((prospect_.minds_motion && moves) || !timers_.rest(machine_->variables())) return false;
+  cruise_rates_ = rates();
+  cruise_left_ = drive_.state().course_left();
+  return true;
+}
+
+// The last tick by itself: some values are those of the tick before.
+void Station::finish_cruise() {
+  cruise_left_ = 0;
+  if (owed_ == 0) return;
+  drive_.state().go_on(owed_ - 1);
+  go_on(machine_->variables());
+  drive_.memory().set_time(next_tick_ - kMillisecond);
+  owed_ = 0;
+}
+
+void Station::run_late() { execute_to(last_tick()); }
+
+// What no part of the unit looks at does not end a cruise.
+void Station::expect_variables(uint32_t first) {
+  if (!late_ || is_system_variable(first) || is_system_variable(first + 1)) return wake();
+  run_late();
 }
 
 }  // namespace ipos::runtime

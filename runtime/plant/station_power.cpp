@@ -76,7 +76,7 @@ std::optional<std::string> Station::start_program() {
   on_course_ = false;
   quiet_ = !vm::may_write(program, NotedVariables::kFirst, NotedVariables::kLast);
   may_order_ = vm::may_write(program, kControlWord, kControlWord);
-  forget_outlook();
+  forget_prospect();
   choose_engine(program);
   if (positioning_commands_) positioning_commands_->cancel_all();
   drive_.connect_program(*machine_);

@@ -55,6 +55,7 @@ void Station::schedule_tick(Time now) {
     if (trial_ || (on_course_ && drive_.state().standing())) try_sleep();
     if (!asleep_ && !trial_) try_late(now);
   }
+  if (!late_) end_cruise();
   tick_ = queue_.schedule(asleep_ || late_ ? next_event(now) : next_tick_, source_, *this, kTick);
 }
 
@@ -106,19 +107,18 @@ void Station::leave_out_to(Time last) {
 }
 
 // The tick of this moment counts when its turn is over.
-void Station::make_up() {
-  if (!asleep_ && !late_) return;
+Time Station::last_tick() const {
   const Time now = queue_.now();
   Time last = now / kMillisecond * kMillisecond;
   if (last == now && !queue_.has_passed(source_)) last -= kMillisecond;
-  make_up_to(std::min(last, back_at_ - kMillisecond));
+  return std::min(last, back_at_ - kMillisecond);
 }
 
-void Station::make_up_to(Time last) {
-  if (late_)
-    execute_to(last);
-  else
-    leave_out_to(last);
+void Station::make_up() {
+  if (asleep_) return leave_out_to(last_tick());
+  if (!late_) return;
+  run_late();
+  end_cruise();
 }
 
 bool Station::make_up_variables() {

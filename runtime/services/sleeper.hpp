@@ -2,6 +2,8 @@
 // outside tells it before it looks at or touches anything that changes with time.
 #pragma once
 
+#include <cstdint>
+
 namespace ipos::runtime {
 
 class Sleeper {
@@ -11,18 +13,20 @@ class Sleeper {
   // Makes up for what was left out as far as variables show it. It may sleep on; true: then they stay as they
   // are, until it stirs its buses.
   virtual bool make_up_variables() = 0;
-  // Variables will be written: makes up for everything. Who is late with its ticks may go on so.
-  virtual void expect_variables() = 0;
-  // Makes up for everything, and from now on nothing is left out until it rests again: something will change.
-  virtual void wake() = 0;
-  // Executes the ticks it is late with.
+  // The program of one that is late has done all that it does up to now.
   void catch_up() {
-    if (late_) make_up();
+    if (late_) run_late();
   }
+  // A telegram writes variables, from this one on: it wakes, or is late with the next ticks, too.
+  virtual void expect_variables(uint32_t first) = 0;
+  // Makes up for everything: all is as it is now.
+  virtual void make_up() = 0;
+  // The same, and from now on nothing is left out until it rests again: something will change.
+  virtual void wake() = 0;
 
  protected:
   ~Sleeper() = default;
-  virtual void make_up() = 0;
+  virtual void run_late() = 0;
 
   bool late_ = false;
 };

@@ -62,8 +62,19 @@ class VariableObjects {
   std::optional<size_t> receiver(const Frame& frame) const { return table_.receiver(frame); }
   template <typename Visit>
   void each_received(Visit visit) const {
-    for (size_t n = 0; n < table_.state().receive_count; ++n) visit(uint32_t{table_.state().receive[n].id});
+    for (const ObjectTable::Receive& object :
+         std::span(table_.state().receive).first(table_.state().receive_count))
+      visit(uint32_t{object.id}, uint32_t{object.data}, object.format);
   }
+  // The cyclic ones.
+  template <typename Visit>
+  void each_sent(Visit visit) const {
+    for (const ObjectTable::Cyclic& object :
+         std::span(table_.state().cyclic).first(table_.state().cyclic_count))
+      visit(uint32_t{object.data}, object.format);
+  }
+  // The first variable that a receive object writes.
+  uint32_t data_of(size_t receiver) const { return table_.state().receive[receiver].data; }
   bool has_taken(size_t receiver, const Frame& frame, std::span<const int32_t> h) const {
     return table_.has_taken(receiver, frame, h);
   }

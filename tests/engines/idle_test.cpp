@@ -74,6 +74,23 @@ TEST_F(Idle, ALoopOfManyTurnsIsIdleWhereverItStands) {
   }
 }
 
+// And it may call functions, from several places.
+TEST_F(Idle, ALoopIsIdleInItsFunctionsToo) {
+  vm::Machine skips = machine(
+      "g() { H3 = H2; } f() { H1 = H2 * 3; g(); } main() { while (1) { f(); g(); f(); if (H4) H5++; } }");
+  for (int n = 0; n < 20; ++n) vm::run_tick(skips, rates_);
+  vm::Machine runs = skips;
+  for (uint64_t ticks = 1; ticks < 200; ++ticks) {
+    uint64_t executed = 0;
+    EXPECT_EQ(vm::skip_idle(skips, rates_, ticks, executed), ticks);
+    for (uint64_t n = 0; n < ticks; ++n) vm::run_tick(runs, rates_);
+    ASSERT_EQ(skips.task(1).pc, runs.task(1).pc) << "after " << ticks;
+    ASSERT_EQ(skips.task(1).depth, runs.task(1).depth);
+    ASSERT_EQ(skips.task(1).calls[0], runs.task(1).calls[0]);
+    ASSERT_EQ(skips.task(1).commands, runs.task(1).commands);
+  }
+}
+
 TEST_F(Idle, VariablesThatChangeForAMomentAreNotSteady) {
   bool steady = false;
   vm::Machine rests = machine("main() { while (1); }");

@@ -89,8 +89,10 @@ Machine::Spin Machine::find_spin(int number, uint32_t longest) {
       if (h_[spin.numbers[n]] != spin.originals[n]) return false;
     return true;
   };
-  for (uint32_t n = 1; n <= longest && try_command(number, spin) && t.depth >= before.depth; ++n) {
-    if (t.pc != before.pc || t.depth != before.depth || !as_before()) continue;
+  for (uint32_t n = 1; n <= longest && try_command(number, spin); ++n) {
+    if (t.pc != before.pc || t.depth != before.depth) continue;
+    if (!std::equal(t.calls.begin(), t.calls.begin() + t.depth, before.calls.begin()) || !as_before())
+      continue;
     spin.length = n;
     break;
   }

@@ -107,15 +107,13 @@ uint32_t Machine::run_tasks(const std::array<uint32_t, kTasks>& budgets) {
 }
 
 bool Machine::run_ahead(const std::array<uint32_t, kTasks>& budgets, uint32_t ticks,
-                        std::span<const uint16_t> written) {
-  if (fast_ == nullptr || events_ || watches_ || written.size() > kMostWrittenAhead) return false;
+                        std::span<const uint16_t> undone) {
+  if (fast_ == nullptr || events_ || watches_ || undone.size() > kMostUndone) return false;
   if (waits_)
     for (const TaskContext& t : contexts_)
       if (t.state == TaskState::Waiting && t.wait_ms != 0 && t.wait_ms <= ticks) return false;
-  if (program_.limits().variables > kVarIntReq) h_[kVarIntReq] &= ~kAllRequests;
-
-  std::array<int32_t, kMostWrittenAhead> values;  // before
-  for (size_t n = 0; n < written.size(); ++n) values[n] = h_[written[n]];
+  std::array<int32_t, kMostUndone> values;  // before
+  for (size_t n = 0; n < undone.size(); ++n) values[n] = h_[undone[n]];
   std::array<Stand, kTasks> stands;
   for (size_t n = 0; n < kTasks; ++n) {
     TaskContext& t = contexts_[active_[n]];
@@ -125,7 +123,7 @@ bool Machine::run_ahead(const std::array<uint32_t, kTasks>& budgets, uint32_t ti
     for (size_t other = 0; other <= n; ++other)
       if (TaskContext& back = contexts_[active_[other]]; back.state == TaskState::Ready)
         stands[other].give_back(back);
-    for (size_t variable = 0; variable < written.size(); ++variable) h_[written[variable]] = values[variable];
+    for (size_t variable = 0; variable < undone.size(); ++variable) h_[undone[variable]] = values[variable];
     return false;
   }
   if (waits_)

@@ -93,12 +93,12 @@ class Machine {
 
   // `ticks` times tick() and run() with these budgets, the tasks one behind the other instead of in turn.
   // False, and nothing has changed: that is not possible, as something else than variables and jumps would
-  // come in between, or without the fast engine. Only for tasks that use no variable another one writes
-  // (vm/sched/outlook.hpp), nor one that anybody else changes in these ticks; `written` has all that they
-  // write.
+  // come in between, or without the fast engine. Only for tasks that use no variable another one writes, nor
+  // one that anybody else changes in these ticks (vm/sched/outlook.hpp), and not when interrupts have been
+  // requested since the last tick. `undone` are the variables that they can write, if they can stop at all.
   bool run_ahead(const std::array<uint32_t, kTasks>& budgets, uint32_t ticks,
-                 std::span<const uint16_t> written);
-  static constexpr size_t kMostWrittenAhead = 64;
+                 std::span<const uint16_t> undone);
+  static constexpr size_t kMostUndone = 64;
 
   // An event of task 1 has happened. Without an installed routine nothing follows.
   void raise_event(Event event);

@@ -65,6 +65,8 @@ class Outlook::Walk {
     const Coding& row = coding(command.opcode);
     outlook.commands_[static_cast<size_t>(command.opcode)] = true;
     outlook.faults_ |= can_fault(command);
+    outlook.stops_ |=
+        can_fault(command) || (row.flow != Flow::Next && row.flow != Flow::Jump && row.flow != Flow::Branch);
     note_variables(tasks_[static_cast<size_t>(task - 1)], command, row);
     for (size_t n = 0; n < row.operand_count; ++n)
       if (row.kinds[n] == OperandKind::Label)

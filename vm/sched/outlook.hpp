@@ -22,6 +22,9 @@ class Outlook {
   // False: no command can cause a fault, whatever the variables are.
   bool may_fault() const { return faults_; }
 
+  // False: the tasks go round for ever, and all they do is to change variables.
+  bool may_stop() const { return stops_; }
+
   // Of all tasks, without what the host does for system commands. One of the two has all variables where a
   // command computes which one it means.
   const Variables& used() const { return used_; }  // read or written
@@ -37,6 +40,7 @@ class Outlook {
   std::bitset<256> commands_;
   Variables used_, written_;
   bool faults_ = false;
+  bool stops_ = false;
   bool apart_ = true;
 };
 

@@ -8,11 +8,9 @@
 
 #include <algorithm>
 #include <random>
-#include <sstream>
 
-#include "runtime/bus/log/candump.hpp"
-#include "runtime/bus/log/serial_log.hpp"
 #include "tests/harness/proves.hpp"
+#include "tests/runtime/plant/picture.hpp"
 #include "tests/runtime/plant/plant_rig.hpp"
 
 namespace ipos::tests {
@@ -30,7 +28,7 @@ SCREC Re; long r1; long r2;
 MOVLNK Ml; MLDATA Mld;
 long a; long b; long c; long n; long m;
 Clock() { m = m + 1; }
-Trouble() { b = b + 1; _Wait(5); H484 = 64; _Wait(5); H484 = 0; }
+Trouble() { b = b + 1; _Wait(5); H484 = 4096; _Wait(5); H484 = 0; }
 )";
 
 // Loop bodies; K and L are replaced by numbers.
@@ -180,41 +178,6 @@ class RandomPlant {
   std::map<std::string, std::string> sources_;
 };
 
-// All that can be seen of a plant.
-std::string picture(const Plant& plant) {
-  std::string out;
-  for (const auto& owned : plant.stations()) {
-    const runtime::Station& station = *owned;
-    const runtime::DriveServer& drive = station.drive();
-    out += fmt::format("{}: {:04x} {:04x}", station.config().name, station.status_word_1(),
-                       drive.state().outputs());
-    for (const stdlib::Parameter& row : drive.parameters().table().rows())
-      if (row.index != 0) out += fmt::format(" {}", drive.parameters().value(row.index));
-    out += '\n';
-    if (const vm::Machine* machine = station.machine()) {
-      for (int n = 1; n <= vm::kContexts; ++n) {
-        const vm::TaskContext& t = machine->context(n);
-        out += fmt::format("[{} {} {} {}]", t.pc, t.wait_ms, static_cast<int>(t.state), t.commands);
-      }
-      for (const int32_t value : machine->variables()) out += fmt::format(" {}", value);
-    }
-    out += '\n';
-  }
-  for (const auto& entry : plant.journal().entries()) out += fmt::format("{} {}\n", entry.time, entry.text);
-  return out;
-}
-
-struct Watched {
-  explicit Watched(std::unique_ptr<Plant> made) : plant(std::move(made)), log(frames), serial(telegrams) {
-    plant->add_observer(log);
-    plant->add_observer(serial);
-  }
-  std::unique_ptr<Plant> plant;
-  std::ostringstream frames, telegrams;
-  runtime::CandumpLog log;
-  runtime::SerialLog serial;
-};
-
 TEST(Sleep, RandomPlantsAreTheSameAsWithoutIt) {
   uint64_t asleep = 0, on_course = 0, late = 0, looked = 0;
   for (uint64_t seed = 1; seed <= 150; ++seed) {
@@ -325,56 +288,6 @@ TEST(Sleep, ATelegramThatBringsNothingNewIsTakenWhenItDoesAgain) {
   EXPECT_TRUE(hears.asleep());
   plant->run_until(ms(6020));
   EXPECT_EQ(hears.variable(r1), 8);
-}
-
-// Both are late when their programs fault; what is told of them stands in the order in which it happened.
-TEST(Late, FaultsAreToldInTheirOrder) {
-  const std::string units =
-      "[[station]]\nname = \"second\"\nunit = \"mdxb\"\nprogram = \"A.IPC\"\n"
-      "[[station]]\nname = \"first\"\nunit = \"mdxb\"\nprogram = \"B.IPC\"\n";
-  const auto program = [](int turns) {
-    return fmt::format("long n; long d; main() {{ while (1) {{ n = n + 1; d = 1 / ({} - n); }} }}", turns);
-  };
-  const auto plant = make_plant(units, {{"A.IPC", program(404)}, {"B.IPC", program(403)}});
-  ASSERT_TRUE(plant);
-  plant->run_until(ms(1500));
-  for (const auto& station : plant->stations()) EXPECT_TRUE(station->late());
-  plant->run_until(ms(5000));
-  std::vector<runtime::JournalEntry> entries;
-  std::ranges::copy_if(plant->journal().entries(), std::back_inserter(entries),
-                       [](const auto& entry) { return entry.text.starts_with("F10 in task 1"); });
-  ASSERT_EQ(entries.size(), 2U);
-  EXPECT_EQ(entries[0].station, "first");
-  EXPECT_EQ(entries[1].station, "second");
-  EXPECT_EQ(entries[1].time - entries[0].time, ms(6)) << "six commands a turn, one a millisecond";
-  EXPECT_TRUE(plant->has_fault());
-  for (const auto& station : plant->stations()) EXPECT_EQ(station->fault(), 10);
-}
-
-// Who looks finds all that has happened by then, whatever it looks at.
-TEST(Late, WhoLooksSeesThePresent) {
-  const auto plant = make_station("long n; main() { while (1) { n = n + 1; H481 = n >> 3; } }",
-                                  "[station.parameters]\nP620 = 21\nP130 = 200\nP160 = 1000000\n"
-                                  "[station.inputs]\nDI00 = 1\nDI01 = 1\nDI03 = 1\nDI04 = 1\n");
-  ASSERT_TRUE(plant);
-  const runtime::Station& station = *plant->stations()[0];
-  const auto late_at = [&](int64_t at) {
-    plant->run_until(ms(at));
-    return station.late();
-  };
-  ASSERT_TRUE(late_at(2003));
-  const uint64_t commands = station.machine()->task(1).commands;
-  EXPECT_EQ(commands, 2004U) << "one a millisecond, from 0 ms on";
-  ASSERT_TRUE(late_at(2010));
-  const int32_t n = value(*plant, "n");
-  EXPECT_EQ(station.read(11481), n >> 3);
-  ASSERT_TRUE(late_at(2017));
-  const int32_t position = station.shaft_position();
-  EXPECT_EQ(position, station.drive().state().shaft_position());
-  ASSERT_TRUE(late_at(2040));
-  EXPECT_GT(station.shaft_position(), position);
-  ASSERT_TRUE(late_at(2050));
-  EXPECT_EQ(station.outputs() >> 1 & 1, station.variable(481) >> 1 & 1);
 }
 
 TEST(Sleep, WhoStaysAwakeLeavesOutNothing) {

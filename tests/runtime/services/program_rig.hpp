@@ -21,7 +21,8 @@ namespace ipos::tests {
 struct TouchCount final : runtime::Sleeper {
   void touch() override { ++touches; }
   bool make_up_variables() override { return false; }
-  void expect_variables() override {}
+  void expect_variables(uint32_t) override {}
+  void run_late() override {}
   void wake() override {}
   void make_up() override {}
   int touches = 0;

@@ -1,0 +1,53 @@
+// The outlook of the machine, and what it means for positions and telegrams.
+#include "runtime/plant/prospect.hpp"
+
+#include <algorithm>
+
+#include "runtime/services/noted_variables.hpp"
+#include "runtime/services/positioning_service.hpp"
+#include "vm/sched/outlook.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+using vm::Opcode;
+
+constexpr Opcode kBusCalls[] = {Opcode::Movlnk, Opcode::Scom, Opcode::ScomOn, Opcode::ScomState};
+
+bool has_system_variables(uint32_t first, VariableFormat format) {
+  for (uint32_t n = 0; n < format.variables(); ++n)
+    if (is_system_variable(first + n)) return true;
+  return false;
+}
+
+}  // namespace
+
+bool is_system_variable(size_t variable) {
+  return variable >= NotedVariables::kFirst && variable <= NotedVariables::kLast;
+}
+
+Prospect::Prospect(const vm::Machine& machine, std::span<const VariableObjects* const> objects) {
+  const vm::Outlook outlook(machine);
+  const auto reached = [&](Opcode call) { return outlook.reaches(call); };
+  const auto used = [&](size_t variable) { return outlook.used()[variable]; };
+  mute = std::none_of(std::begin(kBusCalls), std::end(kBusCalls), reached);
+  may_fault = outlook.may_fault();
+  minds_motion =
+      std::any_of(std::begin(PositioningService::kMoving), std::end(PositioningService::kMoving), used);
+  tells_motion = false;
+  apart = outlook.apart();
+  for (const VariableObjects* of_bus : objects) {
+    of_bus->each_sent([&](uint32_t data, VariableFormat format) {
+      tells_motion = tells_motion || has_system_variables(data, format);
+    });
+    of_bus->each_received([&](uint32_t /*id*/, uint32_t data, VariableFormat format) {
+      apart = apart && !has_system_variables(data, format);
+    });
+  }
+  if (!mute || !apart || !outlook.may_stop()) return;
+  for (size_t n = 0; n < outlook.written().size(); ++n)
+    if (outlook.written()[n]) undone.push_back(static_cast<uint16_t>(n));
+  apart = apart && undone.size() <= vm::Machine::kMostUndone;
+}
+
+}  // namespace ipos::runtime

@@ -1,0 +1,53 @@
+// All that a plant shows, as text: to compare two runs of it.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <sstream>
+#include <string>
+
+#include "runtime/bus/log/candump.hpp"
+#include "runtime/bus/log/serial_log.hpp"
+#include "runtime/plant/plant.hpp"
+
+namespace ipos::tests {
+
+// At this moment.
+inline std::string picture(const runtime::Plant& plant) {
+  std::string out;
+  for (const auto& owned : plant.stations()) {
+    const runtime::Station& station = *owned;
+    const runtime::DriveServer& drive = station.drive();
+    out += fmt::format("{}: {:04x} {:04x}", station.config().name, station.status_word_1(),
+                       drive.state().outputs());
+    for (const stdlib::Parameter& row : drive.parameters().table().rows())
+      if (row.index != 0) out += fmt::format(" {}", drive.parameters().value(row.index));
+    out += '\n';
+    if (const vm::Machine* machine = station.machine()) {
+      for (int n = 1; n <= vm::kContexts; ++n) {
+        const vm::TaskContext& t = machine->context(n);
+        out += fmt::format("[{} {} {} {}]", t.pc, t.wait_ms, static_cast<int>(t.state), t.commands);
+      }
+      for (const int32_t value : machine->variables()) out += fmt::format(" {}", value);
+    }
+    out += '\n';
+  }
+  for (const auto& entry : plant.journal().entries()) out += fmt::format("{} {}\n", entry.time, entry.text);
+  return out;
+}
+
+// And what has passed on its buses.
+struct Watched {
+  explicit Watched(std::unique_ptr<runtime::Plant> made)
+      : plant(std::move(made)), log(frames), serial(telegrams) {
+    plant->add_observer(log);
+    plant->add_observer(serial);
+  }
+  std::unique_ptr<runtime::Plant> plant;
+  std::ostringstream frames, telegrams;
+  runtime::CandumpLog log;
+  runtime::SerialLog serial;
+};
+
+}  // namespace ipos::tests
