@@ -246,8 +246,6 @@ bool Plant::has_fault() const {
                      [](const auto& station) { return station->error(); });
 }
 
-void Plant::on_frame(const CanLine& /*line*/, const FrameRecord& /*record*/) {}
-
 void Plant::on_line_event(const CanLine& line, const LineEvent& event) {
   journal_.note(event.time, Weight::Warning, "", describe(line, event));
 }

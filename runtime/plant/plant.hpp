@@ -45,7 +45,7 @@ struct PlantControl {
   std::unique_ptr<LinePort> port;
 };
 
-class Plant final : private CanObserver, private SbusCheckClient {
+class Plant final : private LineObserver, private SbusCheckClient {
  public:
   // One program for each station of the file, empty where it has none. `rates` overrides P938 and P939.
   // Errors (unknown parameters, refused values, programs the unit refuses, unknown variables) come back in
@@ -92,7 +92,6 @@ class Plant final : private CanObserver, private SbusCheckClient {
 
  private:
   void look() const;  // what stations are late with they make up for
-  void on_frame(const CanLine& line, const FrameRecord& record) override;
   void on_line_event(const CanLine& line, const LineEvent& event) override;
   void on_sbus_finding(Time now, std::string text) override;
   void make_lines();

@@ -138,12 +138,6 @@ ObjectVerdict ObjectTable::define_receive(const ObjectRequest& request) {
   return ObjectVerdict::Accepted;
 }
 
-Frame ObjectTable::object_frame(uint32_t id, VariableFormat format, uint32_t data,
-                                std::span<const int32_t> h) {
-  return variable_frame(id, format,
-                        {format.variables() > 0 ? h[data] : 0, format.variables() > 1 ? h[data + 1] : 0});
-}
-
 Frame ObjectTable::acyclic_frame(const ObjectRequest& request, std::span<const int32_t> h) {
   return object_frame(static_cast<uint32_t>(request.object), *variable_format(request.format),
                       static_cast<uint32_t>(request.data), h);
@@ -161,14 +155,16 @@ void ObjectTable::start(int64_t tick) {
   state_.start_tick = tick;
 }
 
+int64_t ObjectTable::next_due(size_t n, int64_t tick) const {
+  const Cyclic& object = state_.cyclic[n];
+  const int64_t first = state_.start_tick + object.offset;
+  const int64_t done = tick < first ? 0 : (tick - first) / object.cycle + 1;
+  return first + done * object.cycle;
+}
+
 int64_t ObjectTable::next_due(int64_t tick) const {
   int64_t next = INT64_MAX;
-  if (!state_.started) return next;
-  for (const Cyclic& object : std::span(state_.cyclic).first(state_.cyclic_count)) {
-    const int64_t first = state_.start_tick + object.offset;
-    const int64_t done = tick < first ? 0 : (tick - first) / object.cycle + 1;
-    next = std::min(next, first + done * object.cycle);
-  }
+  for (size_t n = 0; n < sending(); ++n) next = std::min(next, next_due(n, tick));
   return next;
 }
 

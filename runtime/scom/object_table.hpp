@@ -137,6 +137,14 @@ class ObjectTable {
   // The first millisecond behind `tick` in which an object is due; INT64_MAX for none.
   int64_t next_due(int64_t tick) const;
 
+  // The same object by object: so many are sent, when the n-th is due next, and its frame.
+  size_t sending() const { return state_.started ? state_.cyclic_count : 0; }
+  int64_t next_due(size_t n, int64_t tick) const;
+  Frame frame(size_t n, std::span<const int32_t> h) const {
+    const Cyclic& object = state_.cyclic[n];
+    return object_frame(object.id, object.format, object.data, h);
+  }
+
   // The receive object a frame is for; nothing when there is none.
   std::optional<size_t> receiver(const Frame& frame) const;
   // Its variables take the frame's values; false when the length is another one. MOVIDRIVE B sets bit n of
@@ -151,7 +159,11 @@ class ObjectTable {
   bool restore(const State& state);
 
  private:
-  static Frame object_frame(uint32_t id, VariableFormat format, uint32_t data, std::span<const int32_t> h);
+  static Frame object_frame(uint32_t id, const VariableFormat& format, uint32_t data,
+                            std::span<const int32_t> h) {
+    return variable_frame(id, format,
+                          {format.variables() > 0 ? h[data] : 0, format.variables() > 1 ? h[data + 1] : 0});
+  }
   ObjectVerdict judge(const ObjectRequest& request) const;
   ObjectVerdict define_cyclic(const ObjectRequest& request, int32_t& result);
   ObjectVerdict define_receive(const ObjectRequest& request);

@@ -4,16 +4,20 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace ipos::runtime {
 
 VariableObjects::VariableObjects(const stdlib::UnitType& unit, uint32_t baud, FrameSender& sender,
                                  uint64_t first_tag, int sbus)
-    : unit_(unit), sender_(sender), first_tag_(first_tag), table_(unit, baud, sbus) {}
+    : unit_(unit), sender_(sender), first_tag_(first_tag), table_(unit, baud, sbus) {
+  forget_due();
+}
 
 bool VariableObjects::define(ObjectKind kind, uint32_t variable, std::span<int32_t> h, std::string& why) {
   const ObjectRequest request = table_.request(kind, variable, h);
   const ObjectVerdict verdict = table_.define(request, h);
-  due_ = kUnknown;
+  forget_due();
   if (verdict == ObjectVerdict::NoVariables) return false;
   ObjectDefinition definition{kind, variable,      request.object, variable_format(request.format),
                               0,    request.cycle, request.offset, verdict == ObjectVerdict::Accepted,
@@ -98,11 +102,11 @@ void VariableObjects::remember(const ObjectDefinition& definition) {
 
 void VariableObjects::start(int64_t tick) {
   table_.start(tick);
-  due_ = kUnknown;
+  forget_due();
 }
 
 void VariableObjects::pause() {
-  due_ = kUnknown;
+  forget_due();
   for (uint32_t n = 0; n < table_.state().cyclic_count; ++n) sender_.withdraw(first_tag_ + n);
   table_.pause();
 }
@@ -113,9 +117,23 @@ void VariableObjects::stop() {
 }
 
 void VariableObjects::send_due(int64_t tick, std::span<const int32_t> h) {
-  // A telegram that is still waiting for the bus is overtaken by the new values.
-  due_ = table_.due(
-      tick, h, [this](uint32_t tag, const Frame& frame) { sender_.send_latest(frame, first_tag_ + tag); });
+  int64_t next = INT64_MAX;
+  for (size_t n = 0; n < table_.sending(); ++n) {
+    int64_t& due = due_of_[n];
+    if (due < tick) due = table_.next_due(n, tick - 1);
+    if (due == tick) {
+      // A telegram that is still waiting for the bus is overtaken by the new values.
+      sender_.send_latest(table_.frame(n, h), first_tag_ + n);
+      due += table_.state().cyclic[n].cycle;
+    }
+    next = std::min(next, due);
+  }
+  due_ = next;
+}
+
+void VariableObjects::forget_due() {
+  due_ = kUnknown;
+  due_of_.fill(kUnknown);
 }
 
 bool VariableObjects::on_frame(const Frame& frame, std::span<int32_t> h, std::string& why) const {

@@ -2,6 +2,7 @@
 // 61). Time is an argument: tick() is called once a millisecond, after the tasks of the unit have run.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -89,14 +90,16 @@ class VariableObjects {
   static constexpr int64_t kUnknown = INT64_MIN;
 
   void send_due(int64_t tick, std::span<const int32_t> h);
+  void forget_due();
   void remember(const ObjectDefinition& definition);
   std::string reason(const ObjectRequest& request, ObjectVerdict verdict) const;
 
   const stdlib::UnitType& unit_;
   FrameSender& sender_;
   uint64_t first_tag_;
+  int64_t due_;                                           // before this millisecond nothing is
+  std::array<int64_t, ObjectTable::kMostCyclic> due_of_;  // when each object is
   ObjectTable table_;
-  int64_t due_ = kUnknown;  // before this millisecond nothing is
   std::vector<ObjectDefinition> definitions_;
 };
 

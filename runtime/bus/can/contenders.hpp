@@ -28,17 +28,18 @@ class Contenders {
   bool empty() const { return first_ == end_; }
   const Contender& operator[](NodeId node) const { return rows_[node]; }
 
+  // A node that did not wait has one frame now.
+  void join(NodeId node, uint64_t ready, uint32_t key) {
+    insert(rank(node, key));
+    set(node, ready, ready, key);
+  }
   void put(NodeId node, uint64_t ready, uint64_t first_ready, uint32_t key) {
-    Row& row = rows_[node];
+    const Row& row = rows_[node];
     if (!row.waits || row.key != key) {
       if (row.waits) erase(rank(node, row.key));
       insert(rank(node, key));
     }
-    row.ready = ready;
-    row.first_ready = first_ready;
-    row.key = key;
-    row.waits = true;
-    ready_by_ = std::max(ready_by_, first_ready);
+    set(node, ready, first_ready, key);
   }
   void remove(NodeId node) {
     if (!rows_[node].waits) return;
@@ -76,22 +77,21 @@ class Contenders {
   static constexpr int kKeyShift = 32;
   static uint64_t rank(NodeId node, uint32_t key) { return uint64_t{key} << kKeyShift | node; }
 
-  void insert(uint64_t rank) {
-    if (end_ == ranks_.size()) {  // at least half of it is free
-      std::copy(at(first_), at(end_), at(0));
-      end_ -= std::exchange(first_, 0);
-    }
-    if (empty() || ranks_[end_ - 1] < rank) {
-      ranks_[end_++] = rank;
-    } else if (first_ > 0 && rank < ranks_[first_]) {
-      ranks_[--first_] = rank;
-    } else {
-      const auto place = std::lower_bound(at(first_), at(end_), rank);
-      std::copy_backward(place, at(end_), at(end_ + 1));
-      *place = rank;
-      ++end_;
-    }
+  void set(NodeId node, uint64_t ready, uint64_t first_ready, uint32_t key) {
+    Row& row = rows_[node];
+    row.ready = ready;
+    row.first_ready = first_ready;
+    row.key = key;
+    row.waits = true;
+    ready_by_ = std::max(ready_by_, first_ready);
   }
+  void insert(uint64_t rank) {
+    if (end_ != ranks_.size() && (empty() || ranks_[end_ - 1] < rank))
+      ranks_[end_++] = rank;
+    else
+      insert_between(rank);
+  }
+  void insert_between(uint64_t rank);
   void erase(uint64_t rank) {
     if (ranks_[first_] == rank) {
       if (++first_ == end_) first_ = end_ = 0;
@@ -109,5 +109,20 @@ class Contenders {
   size_t end_ = 0;
   uint64_t ready_by_ = 0;  // the latest first_ready there was
 };
+
+inline void Contenders::insert_between(uint64_t rank) {
+  if (end_ == ranks_.size()) {  // at least half of it is free
+    std::copy(at(first_), at(end_), at(0));
+    end_ -= std::exchange(first_, 0);
+  }
+  if (first_ > 0 && rank < ranks_[first_]) {
+    ranks_[--first_] = rank;
+    return;
+  }
+  const auto place = std::lower_bound(at(first_), at(end_), rank);
+  std::copy_backward(place, at(end_), at(end_ + 1));
+  *place = rank;
+  ++end_;
+}
 
 }  // namespace ipos::runtime

@@ -13,11 +13,17 @@ inline constexpr uint32_t kStandardIdLimit = 1U << 11;
 inline constexpr uint32_t kExtendedIdLimit = 1U << 29;
 
 struct Frame {
+  constexpr Frame() = default;
+  constexpr Frame(uint32_t its_id, uint8_t its_length, const std::array<uint8_t, 8>& its_data = {},
+                  bool is_extended = false, bool is_remote = false)
+      : id(its_id), length(its_length), extended(is_extended), remote(is_remote), data(its_data) {}
+
   uint32_t id = 0;
-  uint8_t length = 0;  // 0..8; of a remote frame: the length asked for
-  std::array<uint8_t, 8> data{};
+  uint8_t length = 0;     // 0..8; of a remote frame: the length asked for
   bool extended = false;  // 29-bit identifier
   bool remote = false;    // no data field
+  // A machine word of its own, as both halves are copied and compared by words.
+  alignas(uint64_t) std::array<uint8_t, 8> data{};
 
   friend bool operator==(const Frame&, const Frame&) = default;
 };

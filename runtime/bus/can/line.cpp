@@ -61,20 +61,30 @@ SendStatus CanLine::send(NodeId node, const Frame& frame, uint64_t tag) {
   const uint64_t ready = static_cast<uint64_t>(queue_.now() / bit_time_) + 1;
   const uint32_t key = arbitration_key(frame);
   if (n.queue.empty()) {
-    n.queue.emplace_back().set(frame, tag, ready, key);
-    const uint64_t can_send = std::max(ready, n.suspended_until);
-    contenders_.put(node, can_send, can_send, key);
+    n.queue.emplace_back(frame, tag, ready, key);
+    contenders_.join(node, std::max(ready, n.suspended_until), key);
   } else {
-    const auto behind = std::upper_bound(n.queue.begin(), n.queue.end(), key,
-                                         [](uint32_t wanted, const Pending& p) { return wanted < p.key; });
-    n.queue.emplace(behind)->set(frame, tag, ready, key);
-    queue_changed(node);
+    queue_behind(node, {frame, tag, ready, key});
   }
   const Segment& segment = segments_[n.segment];
   const bool in_time = segment.start_event != kNoEvent &&
                        segment.start_bit <= std::max(contenders_[node].ready, segment.free_bit);
   if (!segment.busy && !in_time) schedule_start(n.segment);
   return SendStatus::Queued;
+}
+
+void CanLine::overtake(NodeId node, const Frame& frame, uint64_t tag) {
+  withdraw(node, tag);
+  send(node, frame, tag);
+}
+
+// Others of this node are waiting already.
+void CanLine::queue_behind(NodeId node, const Pending& pending) {
+  std::vector<Pending>& queue = nodes_[node].queue;
+  const auto behind = std::upper_bound(queue.begin(), queue.end(), pending.key,
+                                       [](uint32_t wanted, const Pending& p) { return wanted < p.key; });
+  queue.insert(behind, pending);
+  queue_changed(node);
 }
 
 void CanLine::withdraw(NodeId node, uint64_t tag) {
@@ -117,7 +127,7 @@ void CanLine::schedule_start() {
 }
 
 // The first bit at which somebody can send; kNoBit: nobody.
-uint64_t CanLine::next_start(uint32_t number) const {
+inline uint64_t CanLine::next_start(uint32_t number) const {
   if (stuck_ != 0 || rewire_ || contenders_.empty()) return kNoBit;
   const uint64_t free_bit = segments_[number].free_bit;
   if (segments_.size() == 1 && contenders_.all_ready(free_bit)) return free_bit;
@@ -155,38 +165,50 @@ void CanLine::on_event(Time now, uint32_t kind, uint64_t argument) {
 }
 
 // What nearly all transfers are: one node has the lowest key, no fault is planted, and no error counter makes
-// a difference. False: all that is to be looked at.
-inline bool CanLine::begin_plain(uint64_t bit) {
+// a difference. kNoNode: all that is to be looked at.
+inline NodeId CanLine::plain_sender(uint64_t bit) {
   if (segments_.size() != 1 || !faults_.empty() || !contenders_.all_ready(bit) || contenders_.empty())
-    return false;
+    return kNoNode;
   const NodeId id = contenders_.only_first();
-  if (id == kNoNode) return false;
-  Node& node = nodes_[id];
-  Pending& pending = node.queue.front();
-  if (!is_active(node) || !node.counters.untouched() || pending.frame.extended || !is_acknowledged(id))
-    return false;
-  if (recovering_) pause_recovery(0, bit);
+  if (id == kNoNode) return kNoNode;
+  const Node& node = nodes_[id];
+  const bool plain = node.counters.untouched() && is_active(node) && !node.queue.front().frame.extended &&
+                     is_acknowledged(id);
+  return plain ? id : kNoNode;
+}
+
+// The plain transfer of this bit, from its begin to its end. False: something else happens in between.
+inline bool CanLine::pass_plain(NodeId id, uint64_t bit) {
+  if (recovering_) return false;
+  Pending& pending = nodes_[id].queue.front();
+  const uint32_t bits = known_.bits(pending.frame);
+  const Time end = static_cast<Time>(bit + bits - kIntermissionBits) * bit_time_;
+  if (!queue_.advance(end, source_)) return false;
   pending.on_wire = true;
-  Segment& segment = segments_[0];
-  segment.busy = true;
-  Transfer& transfer = segment.transfer;
-  if (transfer.senders.size() != 1) transfer.senders.resize(1);
-  Transfer::Sender& sender = transfer.senders.front();
-  sender.node = id;
-  sender.frame = pending.frame;
-  sender.tag = pending.tag;
-  sender.error_active = true;
-  sender.lost = false;
-  transfer.outcome = Transfer::Outcome::Delivered;
-  transfer.plain = true;
-  transfer.start_bit = bit;
-  transfer.bits = known_.bits(pending.frame);
-  transfer.end = transfer.bits - kIntermissionBits;
+  end_plain({pending.frame, id, static_cast<Time>(bit) * bit_time_, end, bits}, bit, pending.tag);
   return true;
 }
 
-bool CanLine::is_acknowledged(NodeId sender) {
-  if (acknowledges_ != sender && is_active(nodes_[acknowledges_])) return true;
+void CanLine::begin_plain(NodeId id, uint64_t bit) {
+  if (recovering_) pause_recovery(0, bit);
+  Pending& pending = nodes_[id].queue.front();
+  pending.on_wire = true;
+  note_plain(id, pending.frame, pending.tag, bit, known_.bits(pending.frame));
+  segments_[0].busy = true;
+}
+
+void CanLine::note_plain(NodeId id, const Frame& frame, uint64_t tag, uint64_t bit, uint32_t bits) {
+  Transfer& transfer = segments_[0].transfer;
+  transfer.senders.assign(1, {id, frame, tag, true});
+  transfer.outcome = Transfer::Outcome::Delivered;
+  transfer.plain = true;
+  transfer.start_bit = bit;
+  transfer.bits = bits;
+  transfer.end = bits - kIntermissionBits;
+}
+
+// Another one than the last time.
+bool CanLine::find_acknowledge(NodeId sender) {
   for (NodeId id = 0; id < nodes_.size(); ++id) {
     if (id == sender || !is_active(nodes_[id])) continue;
     acknowledges_ = id;
@@ -195,19 +217,16 @@ bool CanLine::is_acknowledged(NodeId sender) {
   return false;
 }
 
-inline void CanLine::release(Segment& segment) {
-  const Transfer& transfer = segment.transfer;
+inline void CanLine::release(Segment& segment, uint64_t begin, uint32_t bits) {
   segment.busy = false;
-  segment.free_bit = transfer.start_bit + transfer.bits;
+  segment.free_bit = begin + bits;
   segment.recessive_from = segment.free_bit - kRecessiveTail;
-  meter_.add(transfer.start_bit, transfer.bits);
+  meter_.add(begin, bits);
 }
 
-inline void CanLine::report_frame(Time now, const Transfer& transfer, const Transfer::Sender& winner) {
+inline void CanLine::report_frame(const FrameRecord& record) {
   ++frames_;
-  const FrameRecord record{winner.frame, winner.node, static_cast<Time>(transfer.start_bit) * bit_time_, now,
-                           transfer.bits};
-  for (CanObserver* observer : observers_) observer->on_frame(*this, record);
+  for (CanObserver* observer : frame_observers_) observer->on_frame(*this, record);
 }
 
 // What waited for the end of the transfer.
@@ -247,56 +266,65 @@ void CanLine::deliver_clean(Time now, const Segment& segment, uint64_t resting) 
 }
 
 // Its sender may have been cut off meanwhile, or counts errors now.
-inline void CanLine::end_plain(Time now) {
-  Segment& segment = segments_[0];
-  const Transfer& transfer = segment.transfer;
-  release(segment);
-  const Transfer::Sender& sender = transfer.senders.front();
-  report_frame(now, transfer, sender);
-  const std::span<const uint64_t> takers = filter_.takers(sender.frame.id);
-  const uint64_t resting = known_.resting(sender.frame);
-  if (takers.size() > 1 || ((takers[0] & ~resting) | erring_.words()[0]) != 0)
-    deliver_clean(now, segment, resting);
-  Node& node = nodes_[sender.node];
+inline void CanLine::end_plain(const FrameRecord& record, uint64_t begin, uint64_t tag) {
+  release(segments_[0], begin, record.bits);
+  report_frame(record);
+  const std::span<const uint64_t> takers = filter_.takers(record.frame.id);
+  const uint64_t resting = known_.resting(record.frame);
+  const uint64_t wanted = takers[0] & ~resting;
+  if (takers.size() > 1 || erring_.words()[0] != 0) {
+    note_plain(record.sender, record.frame, tag, begin, record.bits);
+    deliver_clean(record.end, segments_[0], resting);
+  } else if (wanted != 0) {
+    const auto hand_over = [&](NodeId id) {
+      if (id != record.sender && is_active(nodes_[id])) nodes_[id].node->on_frame(record.end, record.frame);
+    };
+    NodeSet::each_bit(wanted, 0, hand_over);
+  }
+  Node& node = nodes_[record.sender];
   if (node.queue.empty() || !node.queue.front().on_wire || !node.counters.untouched()) {
-    settle_sender(now, segment, sender);
+    note_plain(record.sender, record.frame, tag, begin, record.bits);
+    settle_sender(record.end, segments_[0], segments_[0].transfer.senders.front());
   } else {
     node.unacknowledged = false;
     if (node.queue.size() == 1) {
       node.queue.pop_back();
-      contenders_.remove(sender.node);
+      contenders_.remove(record.sender);
     } else {
       node.queue.erase(node.queue.begin());
-      queue_changed(sender.node);
+      queue_changed(record.sender);
     }
-    node.node->on_sent(now, sender.frame, sender.tag);
+    node.node->on_sent(record.end, record.frame, tag);
   }
   settle_line();
 }
 
 // One transfer after the other without the queue, as long as nothing happens in between.
 void CanLine::begin_and_end(uint32_t number, bool begins) {
-  for (;; begins = !begins) {
-    Segment& segment = segments_[number];
-    uint64_t bit = segment.start_bit;
-    if (begins) {
-      segment.start_event = kNoEvent;
-      if (!begin_plain(bit) && !begin_transfer(number, bit)) return schedule_start(number);
-      bit += segment.transfer.end;
-      if (queue_.advance(static_cast<Time>(bit) * bit_time_, source_)) continue;
-      queue_.schedule(static_cast<Time>(bit) * bit_time_, source_, *this, line_event::kEnd, number);
-      return;
-    }
-    if (segment.transfer.plain)
-      end_plain(queue_.now());
-    else
+  uint64_t bit = segments_[number].start_bit;
+  if (begins) segments_[number].start_event = kNoEvent;
+  for (;; begins = true) {
+    const NodeId plain = begins ? plain_sender(bit) : kNoNode;
+    if (!begins) {
       end_transfer(queue_.now(), number);
+    } else if (plain == kNoNode || !pass_plain(plain, bit)) {
+      const Time begin = static_cast<Time>(bit) * bit_time_;
+      if (begin > queue_.now() && !queue_.advance(begin, source_)) return schedule_start(number);
+      if (plain != kNoNode)
+        begin_plain(plain, bit);
+      else if (!begin_transfer(number, bit))
+        return schedule_start(number);
+      const Time end = begin + segments_[number].transfer.end * bit_time_;
+      if (!queue_.advance(end, source_)) {
+        queue_.schedule(end, source_, *this, line_event::kEnd, number);
+        return;
+      }
+      end_transfer(end, number);
+    }
     if (segments_.size() != 1 || segments_[0].start_event != kNoEvent) return schedule_start();
     bit = next_start(0);
     if (bit == kNoBit) return;
-    if (!queue_.advance(static_cast<Time>(bit) * bit_time_, source_)) return schedule_start(0);
     number = 0;
-    segments_[0].start_bit = bit;
   }
 }
 
@@ -356,13 +384,17 @@ bool CanLine::begin_transfer(uint32_t number, uint64_t bit) {
 void CanLine::end_transfer(Time now, uint32_t number) {
   Segment& segment = segments_[number];
   const Transfer& transfer = segment.transfer;
-  release(segment);
+  const Transfer::Sender& winner = transfer.winner();
+  const FrameRecord record{winner.frame, winner.node, static_cast<Time>(transfer.start_bit) * bit_time_, now,
+                           transfer.bits};
+  if (transfer.plain) return end_plain(record, transfer.start_bit, winner.tag);
+  release(segment, transfer.start_bit, transfer.bits);
   // Callbacks below may send and withdraw; they change the queues, never the transfer, as the next one has
   // not begun.
   if (transfer.fault.kind)
     report({LineEventKind::FaultStrikes, now, transfer.fault.node, kNoNode, transfer.winner().frame.id,
             static_cast<uint8_t>(*transfer.fault.kind)});
-  if (transfer.received()) report_frame(now, transfer, transfer.winner());
+  if (transfer.received()) report_frame(record);
   known_.stir_all(transfer.winner().frame);
   if (transfer.received() && transfer.fault.is(FaultKind::Delay)) {
     late_.push_back(LateFrame{transfer.winner().frame, transfer.winner().node, transfer.fault.node, number});

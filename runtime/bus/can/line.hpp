@@ -41,6 +41,7 @@ class CanLine final : private EventTarget {
   // of another rate takes no part, and the observers hear why.
   NodeId attach(std::string name, uint32_t baud, CanNode& node);
   void add_observer(CanObserver& observer);
+  void add_observer(LineObserver& observer);
 
   // From now on the node is told only of data and remote frames with the standard identifiers it listens to,
   // and of all extended ones. Frames it is not told of count and are acknowledged like the others.
@@ -57,7 +58,7 @@ class CanLine final : private EventTarget {
   SendStatus send(NodeId node, const Frame& frame, uint64_t tag);
   void withdraw(NodeId node, uint64_t tag);
   void send_latest(NodeId node, const Frame& frame, uint64_t tag) {
-    if (!nodes_[node].queue.empty()) withdraw(node, tag);
+    if (!nodes_[node].queue.empty()) return overtake(node, frame, tag);
     send(node, frame, tag);
   }
 
@@ -90,39 +91,36 @@ class CanLine final : private EventTarget {
  private:
   struct Pending {
     Frame frame;
-    uint64_t tag = 0;
-    uint64_t ready_bit = 0;  // takes part in arbitration from here on
-    uint32_t key = 0;
+    uint64_t tag;
+    uint64_t ready_bit;  // takes part in arbitration from here on
+    uint32_t key;
     bool on_wire = false;
     bool withdrawn = false;  // while on the wire
 
     // Part by part, as they were written just now: a copy of the whole would wait until all have arrived.
-    void set(const Frame& sent, uint64_t its_tag, uint64_t ready, uint32_t its_key) {
-      frame.id = sent.id;
-      frame.length = sent.length;
-      frame.extended = sent.extended;
-      frame.remote = sent.remote;
-      frame.data = canonical_data(sent);
-      tag = its_tag;
-      ready_bit = ready;
-      key = its_key;
-    }
+    Pending(const Frame& sent, uint64_t its_tag, uint64_t ready, uint32_t its_key)
+        : frame{sent.id, sent.length, canonical_data(sent), sent.extended, sent.remote},
+          tag(its_tag),
+          ready_bit(ready),
+          key(its_key) {}
   };
-  struct Node {
-    std::string name;
-    uint32_t baud;
-    CanNode* node;
-    bool connected = true;
-    bool swapped = false;         // high and low interchanged
+  struct alignas(64) Node {
+    // What every frame asks for stands in one line of memory.
+    CanNode* node = nullptr;
+    std::vector<Pending> queue;    // by key, equal keys in order of sending
+    uint64_t suspended_until = 0;  // an error-passive sender pauses 8 bits
+    ErrorCounters counters;
+    uint32_t segment = 0;
+    uint32_t recovery_runs = 0;   // of 11 recessive bits, still wanted
     bool wired = false;           // connected as it should be, with the rate of the line
     bool unacknowledged = false;  // since its last frame that got through; reported once
-    ErrorCounters counters;
-    uint64_t suspended_until = 0;  // an error-passive sender pauses 8 bits
-    std::vector<Pending> queue;    // by key, equal keys in order of sending
-    uint32_t segment = 0;
-    uint32_t recovery_runs = 0;  // of 11 recessive bits, still wanted
+
+    bool connected = true;
+    bool swapped = false;  // high and low interchanged
+    uint32_t baud = 0;
     uint64_t recovery_from = 0;  // bits before this one do not count
     EventId recovery = kNoEvent;
+    std::string name;
   };
   struct Segment {
     bool busy = false;
@@ -145,12 +143,18 @@ class CanLine final : private EventTarget {
   static bool is_active(const Node& node) {
     return node.wired && node.recovery_runs == 0 && node.counters.state() != ErrorState::BusOff;
   }
-  bool begin_plain(uint64_t bit);
-  void end_plain(Time now);
+  NodeId plain_sender(uint64_t bit);
+  bool pass_plain(NodeId id, uint64_t bit);
+  void begin_plain(NodeId id, uint64_t bit);
+  void note_plain(NodeId id, const Frame& frame, uint64_t tag, uint64_t bit, uint32_t bits);
+  void end_plain(const FrameRecord& record, uint64_t begin, uint64_t tag);
   bool begin_transfer(uint32_t segment, uint64_t bit);
-  bool is_acknowledged(NodeId sender);
-  void release(Segment& segment);
-  void report_frame(Time now, const Transfer& transfer, const Transfer::Sender& winner);
+  bool is_acknowledged(NodeId sender) {
+    return (acknowledges_ != sender && is_active(nodes_[acknowledges_])) || find_acknowledge(sender);
+  }
+  bool find_acknowledge(NodeId sender);
+  void release(Segment& segment, uint64_t begin, uint32_t bits);
+  void report_frame(const FrameRecord& record);
   void settle_line();
   void end_transfer(Time now, uint32_t segment);
   void deliver(Time now, const Segment& segment, NodeId listener);
@@ -163,6 +167,8 @@ class CanLine final : private EventTarget {
   uint64_t next_ready(const Node& node) const;
   void queue_changed(NodeId node);
   void deliver_clean(Time now, const Segment& segment, uint64_t resting);
+  void overtake(NodeId node, const Frame& frame, uint64_t tag);
+  void queue_behind(NodeId node, const Pending& pending);
   void drop_queue(NodeId node);
 
   // line_wiring.cpp: who takes part
@@ -176,7 +182,7 @@ class CanLine final : private EventTarget {
 
   // line_report.cpp: what observers and users hear
   void report(const LineEvent& event);
-  void report_absence(NodeId node, CanObserver* only);
+  void report_absence(NodeId node, LineObserver* only);
 
   EventQueue& queue_;
   uint32_t source_;
@@ -190,7 +196,8 @@ class CanLine final : private EventTarget {
   NodeSet erring_;           // receive counter not 0
   NodeId acknowledges_ = 0;  // probably
   bool recovering_ = false;  // some node may be
-  std::vector<CanObserver*> observers_;
+  std::vector<LineObserver*> observers_;
+  std::vector<CanObserver*> frame_observers_;  // those of them who look at frames
   std::vector<Segment> segments_{1};
   KnownFrames known_;
 

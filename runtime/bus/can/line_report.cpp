@@ -29,15 +29,20 @@ std::string describe_fault(const CanLine& line, const LineEvent& event) {
 }  // namespace
 
 void CanLine::add_observer(CanObserver& observer) {
+  frame_observers_.push_back(&observer);
+  add_observer(static_cast<LineObserver&>(observer));
+}
+
+void CanLine::add_observer(LineObserver& observer) {
   observers_.push_back(&observer);
   for (NodeId node = 0; node < nodes_.size(); ++node) report_absence(node, &observer);
 }
 
 void CanLine::report(const LineEvent& event) {
-  for (CanObserver* observer : observers_) observer->on_line_event(*this, event);
+  for (LineObserver* observer : observers_) observer->on_line_event(*this, event);
 }
 
-void CanLine::report_absence(NodeId node, CanObserver* only) {
+void CanLine::report_absence(NodeId node, LineObserver* only) {
   const Node& n = nodes_[node];
   if (n.connected && n.baud == baud_) return;
   const LineEvent event{n.connected ? LineEventKind::WrongBaudRate : LineEventKind::NotConnected,

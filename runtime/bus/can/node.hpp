@@ -75,10 +75,18 @@ struct LineEvent {
   uint8_t fault = 0;       // FaultKind of the events about planted faults
 };
 
-class CanObserver {
+// Looks at what happens to a line, but not at its frames.
+class LineObserver {
+ public:
+  virtual void on_line_event(const CanLine& line, const LineEvent& event) = 0;
+
+ protected:
+  ~LineObserver() = default;
+};
+
+class CanObserver : public LineObserver {
  public:
   virtual void on_frame(const CanLine& line, const FrameRecord& record) = 0;
-  virtual void on_line_event(const CanLine& line, const LineEvent& event) = 0;
 
  protected:
   ~CanObserver() = default;

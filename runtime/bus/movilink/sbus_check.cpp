@@ -24,6 +24,11 @@ std::optional<uint32_t> answer_of(const SbusIdentifier& request) {
 
 }  // namespace
 
+SbusCheck::SbusCheck(SbusCheckClient& client) : client_(client) {
+  for (uint32_t id = 0; id < kStandardIdLimit; ++id)
+    identifiers_[id].watched = classify_identifier(id).has_value();
+}
+
 void SbusCheck::tell(Time now, std::string text) { client_.on_sbus_finding(now, std::move(text)); }
 
 void SbusCheck::add_slave(Time now, const CanLine& line, NodeId node, const SlaveSettings& settings) {
@@ -36,13 +41,19 @@ void SbusCheck::add_slave(Time now, const CanLine& line, NodeId node, const Slav
   if (settings.synchronous &&
       std::find(sync_ids_.begin(), sync_ids_.end(), settings.sync_id) == sync_ids_.end())
     sync_ids_.push_back(settings.sync_id);
+  if (settings.synchronous && settings.sync_id < identifiers_.size())
+    identifiers_[settings.sync_id].watched = true;
 }
 
 void SbusCheck::on_frame(const CanLine& line, const FrameRecord& record) {
   if (!is_plain(record.frame)) return;
-  NodeId& first = senders_[record.frame.id];
-  if (first == kNoNode) first = record.sender;
-  if (first != record.sender) tell_second_sender(line, record, first);
+  Identifier& known = identifiers_[record.frame.id];
+  if (known.sender == kNoNode) known.sender = record.sender;
+  if (known.sender != record.sender) tell_second_sender(line, record, known.sender);
+  if (known.watched) check_telegram(line, record);
+}
+
+void SbusCheck::check_telegram(const CanLine& line, const FrameRecord& record) {
   if (const auto identifier = classify_identifier(record.frame.id)) {
     check_address(line, record, *identifier);
     check_masters(line, record, *identifier);

@@ -24,7 +24,7 @@ class SbusCheckClient {
 // Observes one line; each finding is told once.
 class SbusCheck final : public CanObserver {
  public:
-  explicit SbusCheck(SbusCheckClient& client) : client_(client) {}
+  explicit SbusCheck(SbusCheckClient& client);
 
   // All units of the line, before the first frame.
   void add_slave(Time now, const CanLine& line, NodeId node, const SlaveSettings& settings);
@@ -43,6 +43,12 @@ class SbusCheck final : public CanObserver {
     Time until;
   };
 
+  struct Identifier {
+    NodeId sender = kNoNode;  // the first one
+    bool watched = false;     // its telegrams mean something to the checks
+  };
+
+  void check_telegram(const CanLine& line, const FrameRecord& record);
   void tell_second_sender(const CanLine& line, const FrameRecord& record, NodeId first);
   void check_address(const CanLine& line, const FrameRecord& record, const SbusIdentifier& identifier);
   void check_masters(const CanLine& line, const FrameRecord& record, const SbusIdentifier& identifier);
@@ -52,9 +58,8 @@ class SbusCheck final : public CanObserver {
   SbusCheckClient& client_;
   std::vector<Slave> slaves_;
   std::vector<uint32_t> sync_ids_;  // of the slaves, each once
-  std::vector<NodeId> senders_ =
-      std::vector<NodeId>(kStandardIdLimit, kNoNode);  // the first of each identifier
-  std::set<std::pair<uint32_t, NodeId>> told_;         // identifier and second sender
+  std::vector<Identifier> identifiers_ = std::vector<Identifier>(kStandardIdLimit);
+  std::set<std::pair<uint32_t, NodeId>> told_;  // identifier and second sender
   std::set<std::pair<NodeId, NodeId>> told_masters_;
   std::vector<Exchange> open_;
   std::map<uint32_t, Time> syncs_;  // start of the last telegram, by identifier

@@ -4,6 +4,8 @@
 // ours.
 #pragma once
 
+#include <array>
+#include <bit>
 #include <cstdint>
 #include <optional>
 
@@ -37,7 +39,29 @@ struct VariablePair {
   friend bool operator==(const VariablePair&, const VariablePair&) = default;
 };
 
-Frame variable_frame(uint32_t id, VariableFormat format, VariablePair variables);
+namespace detail {
+
+// The number that stands in memory as this one does in a telegram of eight bytes.
+inline uint64_t in_order(uint64_t value, VariableLayout layout) {
+  const bool low_first = layout == VariableLayout::Intel;
+  return low_first == (std::endian::native == std::endian::little) ? value : __builtin_bswap64(value);
+}
+
+// Bits of the eight bytes that a telegram does not carry.
+inline unsigned missing_bits(const VariableFormat& format) { return 64U - 8U * format.length; }
+
+}  // namespace detail
+
+inline Frame variable_frame(uint32_t id, const VariableFormat& format, const VariablePair& variables) {
+  if (format.length == 0) return {id, 0};
+  const uint64_t value =
+      uint64_t{static_cast<uint32_t>(variables.high)} << 32 | static_cast<uint32_t>(variables.low);
+  const unsigned missing = detail::missing_bits(format);
+  const bool low_first = format.layout == VariableLayout::Intel;
+  const uint64_t bytes =
+      detail::in_order(low_first ? value << missing >> missing : value << missing, format.layout);
+  return {id, format.length, std::bit_cast<std::array<uint8_t, 8>>(bytes)};
+}
 
 // Bytes a short telegram does not carry are 0; only format.variables() of the pair count. Nothing when the
 // frame's length differs from the object's or the frame is extended or remote: then the object is to be left

@@ -4,7 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <utility>
+#include <vector>
+
 #include "runtime/bus/can/frame_bits.hpp"
+#include "runtime/clock/random.hpp"
 #include "tests/harness/proves.hpp"
 
 namespace ipos::runtime {
@@ -314,6 +319,72 @@ TEST(CanLine, LoadCountsStuffedBitsPerSecond) {
   EXPECT_EQ(load.peak_window_percent, 1000U * bits * 100 / 500'000);
   t.queue.run_until(9 * kSecond);
   EXPECT_EQ(t.line.load(t.queue.now()).window_percent, 0U);
+}
+
+// Comes again and again and does nothing but keep transfers from ending in the step in which they begin.
+struct Interruption final : EventTarget {
+  EventQueue& queue;
+  Time every;
+  Interruption(EventQueue& of, Time time) : queue(of), every(time) { queue.schedule(0, 99, *this, 0); }
+  void on_event(Time now, uint32_t, uint64_t) override { queue.schedule(now + every, 99, *this, 0); }
+};
+
+// All that nodes and observers hear of 2000 frames of five nodes, with answers and frames that come again.
+std::vector<std::pair<Time, Frame>> story(Time interrupted_every) {
+  Bench t;
+  Station d, e;
+  std::vector<NodeId> nodes;
+  for (Station* station : {&t.a, &t.b, &t.c, &d, &e}) nodes.push_back(t.line.attach("n", 500'000, *station));
+  LinePort port(t.line, nodes[1]);
+  t.b.port = &port;
+  t.b.reply = data_frame(12);
+  std::optional<Interruption> interruption;
+  if (interrupted_every != 0) interruption.emplace(t.queue, interrupted_every);
+  Random random(1);
+  for (Time at = 0; at < kSecond;) {
+    at += random.below(800 * kMicrosecond);
+    t.queue.run_until(at);
+    t.b.reply_on = random.below(4) == 0;
+    for (uint32_t n = random.below(4); n-- > 0;) {
+      const uint32_t sender = random.below(5);
+      t.line.send(nodes[sender], data_frame(100 * sender + random.below(3), random.below(2) != 0), n);
+      if (random.below(8) == 0) t.line.withdraw(nodes[sender], n);
+    }
+  }
+  t.queue.run_until(2 * kSecond);
+  std::vector<std::pair<Time, Frame>> told;
+  for (const FrameRecord& record : t.watcher.frames) {
+    told.emplace_back(record.start, record.frame);
+    told.emplace_back(record.end, Frame{record.bits, 0});
+  }
+  for (const Station* station : {&t.a, &t.b, &t.c, &d, &e}) {
+    for (const Station::Got& got : station->received) told.emplace_back(got.time, got.frame);
+    for (const Station::Got& got : station->sent) told.emplace_back(got.time, got.frame);
+  }
+  const LineLoad load = t.line.load(t.queue.now());
+  told.emplace_back(static_cast<Time>(load.busy_bits), Frame{static_cast<uint32_t>(load.frames), 0});
+  return told;
+}
+
+TEST(CanLine, EventsWithinTransfersChangeNothing) {
+  const auto alone = story(0);
+  EXPECT_GT(alone.size(), 2000U);
+  for (const Time every : {kMicrosecond, 37 * kMicrosecond, 200 * kMicrosecond})
+    EXPECT_EQ(story(every), alone);
+}
+
+TEST(CanLine, WhoWatchesTheLineAloneHearsItsEvents) {
+  struct : LineObserver {
+    void on_line_event(const CanLine&, const LineEvent& event) override { kinds.push_back(event.kind); }
+    std::vector<LineEventKind> kinds;
+  } observer;
+  Bench t;
+  t.line.add_observer(observer);
+  const NodeId a = t.line.attach("a", 500'000, t.a);
+  t.line.attach("b", 125'000, t.b);
+  t.line.send(a, data_frame(1024), 0);
+  t.queue.run_until(kMillisecond);
+  EXPECT_EQ(observer.kinds, (std::vector{LineEventKind::WrongBaudRate, LineEventKind::NoAcknowledge}));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "runtime/clock/random.hpp"
 #include "tests/harness/proves.hpp"
 
 namespace ipos::runtime {
@@ -205,6 +206,44 @@ TEST_F(Objects, TimesCountFromTheStart) {
   cyclic(1024, 100);
   objects_.start(7);
   EXPECT_EQ(send_times(220), (std::vector<int64_t>{7, 107, 207}));
+}
+
+// Whatever was left out before: an object is due when whole cycles have passed since its first time.
+TEST_F(ObjectsB, AMillisecondSendsWhatIsDueInIt) {
+  struct Object {
+    int32_t cycle, offset;
+  };
+  const std::vector<Object> objects = {{3, 0}, {7, 2}, {10, 0}, {50, 20}};
+  Random random(1);
+  int64_t tick = 0;
+  for (int round = 0; round < 20; ++round) {
+    size_t defined = 2;
+    for (size_t n = 0; n < defined; ++n)
+      ASSERT_GE(cyclic(1024 + static_cast<int32_t>(n), objects[n].cycle, objects[n].offset), 0);
+    const int64_t start = tick + random.below(5);
+    objects_.start(start);
+    for (int step = 0; step < 200; ++step) {
+      if (step % 60 == 59 && defined < objects.size()) {
+        ASSERT_GE(
+            cyclic(1024 + static_cast<int32_t>(defined), objects[defined].cycle, objects[defined].offset), 0);
+        ++defined;
+      }
+      std::vector<uint64_t> due;
+      for (size_t n = 0; n < defined; ++n) {
+        const int64_t since = tick - start - objects[n].offset;
+        if (since >= 0 && since % objects[n].cycle == 0) due.push_back(100 + n);
+      }
+      outbox_.sent.clear();
+      objects_.tick(tick, h_);
+      std::vector<uint64_t> sent;
+      for (const Outbox::Sent& frame : outbox_.sent) sent.push_back(frame.tag);
+      EXPECT_EQ(sent, due) << tick << " started at " << start;
+      const int64_t next = objects_.next_due(tick);
+      EXPECT_GT(next, tick);
+      tick = random.below(3) == 0 ? next : tick + 1 + random.below(4);
+    }
+    objects_.stop();
+  }
 }
 
 TEST_F(Objects, SendsThePresentValues) {
