@@ -36,16 +36,16 @@ class SbusPort final : private CanNode, private SlaveObserver {
            MovilinkCommand& movilink, Journal& journal);
 
   void connect_program(vm::Machine& machine) { machine_ = &machine; }
-  void stop_program();   // a program stop ends cyclic sending and receiving (1053 1610 p. 54)
-  void power_off();      // the line is told first, as frames that were waiting come back
-  void tick(Time now) {  // once a millisecond, after the tasks
+  void stop_program();  // a program stop ends cyclic sending and receiving (1053 1610 p. 54)
+  void power_off();     // the line is told first, as frames that were waiting come back
+  // Once a millisecond, after the tasks. Returns the first tick behind this one that does something; kNever
+  // for none.
+  Time tick(Time now) {
     if (group_master_.active()) group_master_.tick(now);
-    if (machine_ != nullptr) objects_.tick(now / kMillisecond, machine_->variables());
-  }
-  Time next_due(Time now) const {  // the first tick behind `now` that does something; kNever for none
+    int64_t due = INT64_MAX;
+    if (machine_ != nullptr) due = objects_.tick(now / kMillisecond, machine_->variables());
     if (group_master_.active()) return now + kMillisecond;
-    const int64_t tick = machine_ == nullptr ? INT64_MAX : objects_.next_due(now / kMillisecond);
-    return tick == INT64_MAX ? kNever : tick * kMillisecond;
+    return due == INT64_MAX ? kNever : due * kMillisecond;
   }
   bool has_waiting_frames() const { return line_.has_waiting(node()); }
   bool sends_more_than_variables() const { return group_master_.active(); }

@@ -123,8 +123,7 @@ void Station::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
     next_tick_ = now + kMillisecond;
     if (!execute(now)) return;
   }
-  send_telegrams(now);
-  schedule_tick(now);
+  schedule_tick(now, send_telegrams(now));
 }
 
 // The tick, but for its telegrams. False: the runner stops in the middle.
@@ -184,14 +183,16 @@ void Station::resume_tick() {
   const Time now = queue_.now();
   end_program(now);
   settle(now);
-  send_telegrams(now);
-  schedule_tick(now);
+  schedule_tick(now, send_telegrams(now));
 }
 
-void Station::send_telegrams(Time now) {
+// Returns when the next one is due.
+Time Station::send_telegrams(Time now) {
   if (prospect_.tells_motion) end_cruise();
+  Time next = kNever;
   for (const auto& port : sbus_)
-    if (port) port->tick(now);
+    if (port) next = std::min(next, port->tick(now));
+  return next;
 }
 
 void Station::settle(Time now) {

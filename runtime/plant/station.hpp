@@ -213,15 +213,14 @@ class Station final : private EventTarget, private Sleeper {
   bool unwritten() { return !machine_ || noted_.same(machine_->variables()); }
   void leave_course();
   void try_course();
-  void schedule_tick(Time now);
-  Time next_event(Time now) const;
+  void schedule_tick(Time now, Time telegram);
   bool sleeps_through(Time now);
   void try_sleep();
   void begin_trial();
   void try_program();
   uint64_t end_trial();
   void hesitate(uint32_t longest);
-  void try_late(Time now);
+  void try_late(Time now, Time telegram);
   bool can_be_late() const;
   void look_ahead();
   void forget_prospect();
@@ -237,7 +236,7 @@ class Station final : private EventTarget, private Sleeper {
   const vm::Rates& rates() const { return rates_ ? *rates_ : drive_.rates(); }
   bool run_commands();
   void end_program(Time now);
-  void send_telegrams(Time now);
+  Time send_telegrams(Time now);
   void settle(Time now);
   void raise_drive_events();
   void restart_after_reset(Time now);
@@ -252,6 +251,7 @@ class Station final : private EventTarget, private Sleeper {
   Time next_tick_ = 0;  // the first that was neither executed nor made up for
   Time back_at_ = 0;    // asleep or late: the tick that is executed in its turn again
   EventId tick_ = kNoEvent;
+  std::array<std::unique_ptr<SbusPort>, 2> sbus_;
 
   // Late ticks (station_late.cpp).
   uint32_t cruise_left_ = 0;  // ticks of which only the tasks need be executed
@@ -265,6 +265,7 @@ class Station final : private EventTarget, private Sleeper {
   uint32_t prospect_pause_ = 1;
 
   bool asleep_ = false;
+  bool steady_ = true;  // the program then changes no variable, not even for a moment
   bool on_course_ = false;
   bool quiet_ = false;           // the program's own commands write none of the noted variables
   bool touched_ = false;         // somebody else may have written them since the last tick
@@ -279,7 +280,6 @@ class Station final : private EventTarget, private Sleeper {
   Timers timers_;
 
   DriveServer drive_;
-  std::array<std::unique_ptr<SbusPort>, 2> sbus_;
   std::optional<vm::Machine> machine_;
   std::optional<PositioningService> positioning_;  // of a unit that has it
 
@@ -317,7 +317,6 @@ class Station final : private EventTarget, private Sleeper {
   Time trial_at_ = 0;  // not tried again before this tick
   uint32_t pause_ = 1;
   uint64_t idle_ticks_ = 0;  // of the program, from the tick of the trial on
-  bool steady_ = true;       // it changes no variable then, not even for a moment
   struct {
     Bytes<PositioningService> positioning;
     std::array<int32_t, vm::kMaxVariables> h;

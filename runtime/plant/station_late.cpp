@@ -52,14 +52,14 @@ bool Station::can_be_late() const {
                                      [](const auto& port) { return port && port->has_waiting_frames(); });
 }
 
-void Station::try_late(Time now) {
+void Station::try_late(Time now, Time telegram) {
   if (cruise_left_ == 0 || prospect_.may_fault) {
     const bool known = prospect_.mute && prospect_.apart;
     if (machine_ && !known && next_tick_ >= prospect_at_ && machine_->fault().number == 0) look_ahead();
     if (!can_be_late()) return;
   }
   back_at_ = now + kLatest;
-  late_ = next_event(now) > next_tick_;
+  late_ = telegram > next_tick_;
 }
 
 // All late ticks up to that at `last`.

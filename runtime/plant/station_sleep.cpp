@@ -49,14 +49,15 @@ uint64_t Station::end_trial() {
   return machine_ ? std::min(ticks, idle_ticks_ - 1) : ticks;
 }
 
-void Station::schedule_tick(Time now) {
+void Station::schedule_tick(Time now, Time telegram) {
   late_ = false;
   if (execution_.skip_idle && runner_ == nullptr) {
     if (trial_ || (on_course_ && drive_.state().standing())) try_sleep();
-    if (!asleep_ && !trial_) try_late(now);
+    if (!asleep_ && !trial_) try_late(now, telegram);
   }
   if (!late_) end_cruise();
-  tick_ = queue_.schedule(asleep_ || late_ ? next_event(now) : next_tick_, source_, *this, kTick);
+  const Time next = asleep_ || late_ ? std::min(back_at_, telegram) : next_tick_;
+  tick_ = queue_.schedule(next, source_, *this, kTick);
 }
 
 void Station::try_sleep() {
@@ -73,13 +74,6 @@ void Station::try_sleep() {
   }
 }
 
-Time Station::next_event(Time now) const {
-  Time next = back_at_;
-  for (const auto& port : sbus_)
-    if (port) next = std::min(next, port->next_due(now));
-  return next;
-}
-
 // The event of a station that sleeps: a telegram is due, or the sleep is over.
 bool Station::sleeps_through(Time now) {
   if (now >= back_at_) {
@@ -87,12 +81,13 @@ bool Station::sleeps_through(Time now) {
     get_up();
     return false;
   }
+  Time next = back_at_;
   for (const auto& port : sbus_) {
     if (!port) continue;
     if (!steady_ || port->sends_more_than_variables()) leave_out_to(now);
-    port->tick(now);
+    next = std::min(next, port->tick(now));
   }
-  if (asleep_) tick_ = queue_.schedule(next_event(now), source_, *this, kTick);
+  if (asleep_) tick_ = queue_.schedule(next, source_, *this, kTick);
   return true;
 }
 

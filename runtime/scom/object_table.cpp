@@ -162,12 +162,6 @@ int64_t ObjectTable::next_due(size_t n, int64_t tick) const {
   return first + done * object.cycle;
 }
 
-int64_t ObjectTable::next_due(int64_t tick) const {
-  int64_t next = INT64_MAX;
-  for (size_t n = 0; n < sending(); ++n) next = std::min(next, next_due(n, tick));
-  return next;
-}
-
 std::optional<size_t> ObjectTable::receiver(const Frame& frame) const {
   if (!state_.started || !is_plain(frame)) return std::nullopt;
   for (size_t n = 0; n < state_.receive_count; ++n)

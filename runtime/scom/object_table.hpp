@@ -119,25 +119,19 @@ class ObjectTable {
   void stop() { state_ = {}; }              // program stop: all objects are gone
   bool started() const { return state_.started; }
 
-  // send(tag, frame) for each cyclic object due in this millisecond. Returns next_due().
+  // send(tag, frame) for each cyclic object due in this millisecond.
   template <class Send>
-  int64_t due(int64_t tick, std::span<const int32_t> h, Send send) const {
-    int64_t next = INT64_MAX;
-    if (!state_.started) return next;
+  void due(int64_t tick, std::span<const int32_t> h, Send send) const {
+    if (!state_.started) return;
     for (uint32_t n = 0; n < state_.cyclic_count; ++n) {
       const Cyclic& object = state_.cyclic[n];
       const int64_t elapsed = tick - state_.start_tick - object.offset;
-      const int64_t since = elapsed < 0 ? elapsed + object.cycle : elapsed % object.cycle;
-      next = std::min(next, tick - since + object.cycle);
-      if (since == 0 && elapsed >= 0) send(n, object_frame(object.id, object.format, object.data, h));
+      if (elapsed >= 0 && elapsed % object.cycle == 0)
+        send(n, object_frame(object.id, object.format, object.data, h));
     }
-    return next;
   }
 
-  // The first millisecond behind `tick` in which an object is due; INT64_MAX for none.
-  int64_t next_due(int64_t tick) const;
-
-  // The same object by object: so many are sent, when the n-th is due next, and its frame.
+  // The same object by object: so many are sent, when the n-th is due behind `tick`, and its frame.
   size_t sending() const { return state_.started ? state_.cyclic_count : 0; }
   int64_t next_due(size_t n, int64_t tick) const;
   Frame frame(size_t n, std::span<const int32_t> h) const {

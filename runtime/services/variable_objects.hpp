@@ -51,13 +51,12 @@ class VariableObjects {
   bool started() const { return table_.started(); }
   const std::vector<ObjectDefinition>& definitions() const { return definitions_; }
 
-  // Queues the cyclic objects due in this millisecond with the present values of their variables.
-  void tick(int64_t tick, std::span<const int32_t> h) {
+  // Queues the cyclic objects due in this millisecond with the present values of their variables. Returns the
+  // next one in which it would; INT64_MAX for none.
+  int64_t tick(int64_t tick, std::span<const int32_t> h) {
     if (tick >= due_) send_due(tick, h);
+    return due_;
   }
-
-  // The first millisecond behind `tick` in which tick() sends something; INT64_MAX for none.
-  int64_t next_due(int64_t tick) const { return tick < due_ ? due_ : table_.next_due(tick); }
 
   // The receive object a frame is for, and whether its variables have the frame's values already.
   std::optional<size_t> receiver(const Frame& frame) const { return table_.receiver(frame); }
