@@ -32,6 +32,7 @@ Prospect::Prospect(const vm::Machine& machine, std::span<const VariableObjects* 
   const auto used = [&](size_t variable) { return outlook.used()[variable]; };
   mute = std::none_of(std::begin(kBusCalls), std::end(kBusCalls), reached);
   may_fault = outlook.may_fault();
+  may_stop = outlook.may_stop();
   minds_motion =
       std::any_of(std::begin(PositioningService::kMoving), std::end(PositioningService::kMoving), used);
   tells_motion = false;
@@ -44,7 +45,7 @@ Prospect::Prospect(const vm::Machine& machine, std::span<const VariableObjects* 
       apart = apart && !has_system_variables(data, format);
     });
   }
-  if (!mute || !apart || !outlook.may_stop()) return;
+  if (!mute || !apart || !may_stop) return;
   for (size_t n = 0; n < outlook.written().size(); ++n)
     if (outlook.written()[n]) undone.push_back(static_cast<uint16_t>(n));
   apart = apart && undone.size() <= vm::Machine::kMostUndone;

@@ -19,6 +19,7 @@ struct Prospect {
 
   bool mute = false;      // it does not call the bus
   bool may_fault = true;  // it can cause a fault
+  bool may_stop = true;   // it can do anything but to change variables for ever
   // Its tasks use no variable that another one of them writes, and no telegram brings a system variable.
   bool apart = false;
   bool minds_motion = true;  // a task uses variables that show the position

@@ -32,9 +32,9 @@ class Journal {
 
   // A text that the station has already said is not repeated: a cyclic cause gives one entry.
   void note(Time time, Weight weight, std::string_view station, std::string text) {
-    if (latecomers_) latecomers_();
     for (const JournalEntry& entry : entries_)
       if (entry.station == station && entry.text == text) return;
+    if (latecomers_) latecomers_();
     entries_.push_back({time, weight, std::string(station), std::move(text)});
   }
   const std::vector<JournalEntry>& entries() const { return entries_; }
