@@ -315,7 +315,7 @@ void Station::report_drive(Time now) {
 }
 
 bool Station::program_over() const {
-  if (late_ && !prospect_.may_stop && !timers_.watchdog_runs()) return false;  // the same without looking
+  if (cruises() && !prospect_.may_stop) return false;  // the same without looking
   look();
   if (!machine_) return true;
   for (int task = 1; task <= vm::kTasks; ++task)
