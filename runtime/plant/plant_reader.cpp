@@ -147,7 +147,7 @@ bool PlantReader::signal(const toml::table& table, std::string_view what,
     bit = parse_output(out.name);
   } else {
     out.kind = SignalKind::Input;
-    bit = is_analog_input(out.name) ? static_cast<int>(kBinaryLines) : -1;
+    bit = parse_analog_input(out.name);
   }
   if (bit < 0) {
     error(place_of(*table.get(found)), fmt::format("'{}' is no {}", out.name, found));

@@ -102,7 +102,7 @@ void read_analog(PlantReader& reader, const toml::table& table, StationConfig& c
   if (settings == nullptr) return;
   for (const auto& [key, value] : *settings) {
     const std::string signal = value.value_or(std::string());
-    if (!is_analog_input(key.str()))
+    if (parse_analog_input(key.str()) < 0)
       reader.error(
           place_of(key.source()),
           fmt::format("'{}' is no analog input; known are AI1, AI2, frequency, potentiometer", key.str()));

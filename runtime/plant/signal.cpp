@@ -16,6 +16,7 @@ struct AnalogKind {
   double maximum;
   AnalogLine line;
 };
+// In the order of their lines.
 constexpr AnalogKind kAnalogKinds[] = {
     {"AI1", "V", 1e3, -10, 10, AnalogLine::Ai1Voltage},
     {"AI1", "mA", 1e3, 0, 20, AnalogLine::Ai1Current},
@@ -24,6 +25,10 @@ constexpr AnalogKind kAnalogKinds[] = {
     {"frequency", "kHz", 1e3, 0, 65, AnalogLine::Frequency},
     {"potentiometer", "%", 10, 0, 100, AnalogLine::Potentiometer},
 };
+
+constexpr uint8_t line_of(const AnalogKind& kind) {
+  return static_cast<uint8_t>(kBinaryLines + static_cast<size_t>(kind.line));
+}
 
 std::optional<int32_t> parse_amount(std::string_view text, const AnalogKind& kind) {
   if (!text.ends_with(kind.unit)) return std::nullopt;
@@ -54,16 +59,21 @@ int parse_output(std::string_view name) {
   return bit == 0 || (bit > kLastUnitOutput && bit < 8) ? -1 : bit;
 }
 
-bool is_analog_input(std::string_view name) {
-  return std::any_of(std::begin(kAnalogKinds), std::end(kAnalogKinds),
-                     [&](const AnalogKind& kind) { return kind.name == name; });
+int parse_analog_input(std::string_view name) {
+  for (const AnalogKind& kind : kAnalogKinds)
+    if (kind.name == name) return static_cast<int>(line_of(kind));
+  return -1;
+}
+
+bool same_terminal(size_t line, size_t other) {
+  if (line < kBinaryLines || other < kBinaryLines) return line == other;
+  return kAnalogKinds[line - kBinaryLines].name == kAnalogKinds[other - kBinaryLines].name;
 }
 
 std::optional<AnalogSetting> parse_analog(std::string_view name, std::string_view text) {
   for (const AnalogKind& kind : kAnalogKinds) {
     if (kind.name != name) continue;
-    if (const auto value = parse_amount(text, kind))
-      return AnalogSetting{static_cast<uint8_t>(kBinaryLines + static_cast<size_t>(kind.line)), *value};
+    if (const auto value = parse_amount(text, kind)) return AnalogSetting{line_of(kind), *value};
   }
   return std::nullopt;
 }

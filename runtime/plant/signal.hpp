@@ -31,12 +31,17 @@ int parse_input(std::string_view name);
 // "DB00", "DO01".."DO05", "DO10".."DO17": bit of OutputLevel H482, or -1.
 int parse_output(std::string_view name);
 
+// "AI1", "AI2", "frequency", "potentiometer": the first line of the terminal, or -1.
+int parse_analog_input(std::string_view name);
+
+// AI1 and AI2 have a line for a voltage and one for a current; every other terminal has one.
+bool same_terminal(size_t line, size_t other);
+
 // What hangs on an analog terminal: "AI1", "5 V".
 struct AnalogSetting {
   uint8_t line = 0;
   int32_t value = 0;  // mV, uA, Hz, 1/1000
 };
-bool is_analog_input(std::string_view name);
 std::optional<AnalogSetting> parse_analog(std::string_view name, std::string_view text);
 
 // Where the value of an analog line (kBinaryLines and above) stands.

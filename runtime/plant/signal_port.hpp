@@ -27,6 +27,12 @@ class SignalPort {
   InputLine& line() const { return station_->inputs().line(line_); }
   void drive(int32_t level) const;  // what a wire or switch says
 
+  // The same signal; or the other line of an analog input.
+  bool shares_terminal(const SignalPort& other) const {
+    return station_ == other.station_ && kind_ == other.kind_ && index_ == other.index_ &&
+           same_terminal(line_, other.line_);
+  }
+
   const std::string& station_name() const { return station_->config().name; }
   bool operator==(const SignalPort&) const = default;
 

@@ -32,9 +32,7 @@ void Surroundings::connect(const PlantFile& file, const std::vector<std::unique_
     }
 }
 
-void Surroundings::start() {
-  wake(queue_.now());
-}
+void Surroundings::start() { wake(queue_.now()); }
 
 void Surroundings::add(const SignalPort& port, const Stimulus& stimulus) {
   due_.emplace(stimulus.at, Due{scripts_.size(), 0, {}});
@@ -114,15 +112,18 @@ void Surroundings::hold(Time now, size_t script) {
   if (stimulus.length != 0) due_.emplace(now + stimulus.length, Due{script, held->number, {}});
 }
 
-// `number` 0 releases whatever holds; the end of a pulse only its own hold.
+// `number` 0 releases whatever holds the terminal; the end of a pulse only its own hold.
 void Surroundings::release(const SignalPort& port, uint64_t number) {
-  const auto held =
-      std::find_if(holds_.begin(), holds_.end(), [&](const Hold& other) { return other.port == port; });
-  if (held == holds_.end() || (number != 0 && held->number != number)) return;
-  if (port.is_input()) port.line().forced.reset();
-  const std::optional<int32_t> before = held->before;
-  holds_.erase(held);
-  if (before) write(queue_.now(), port, *before);
+  const auto ends = [&](const Hold& held) {
+    return number == 0 ? held.port.shares_terminal(port) : held.number == number;
+  };
+  for (auto held = std::find_if(holds_.begin(), holds_.end(), ends); held != holds_.end();
+       held = std::find_if(holds_.begin(), holds_.end(), ends)) {
+    const Hold ended = *held;
+    holds_.erase(held);
+    if (ended.port.is_input()) ended.port.line().forced.reset();
+    if (ended.before) write(queue_.now(), ended.port, *ended.before);
+  }
 }
 
 void Surroundings::write(Time now, const SignalPort& port, int32_t value) {

@@ -2,6 +2,14 @@
 #include "runtime/positioning/follower.hpp"
 
 namespace ipos::runtime {
+namespace {
+
+// Increments that a master may go before its count is brought back; 63 days at 6000 rpm.
+constexpr int64_t kFar = int64_t{1} << 41;
+// No axis is so fast; a gear may ask for any way.
+constexpr Wide kFastest = Wide{1} << (32 + kFineBits);
+
+}  // namespace
 
 // The line leads to where the master will be at the next telegram if it goes on as in the last cycle; so the
 // slave is behind by what it accelerates within a cycle, and nothing adds up.
@@ -13,6 +21,11 @@ void Follower::take(int32_t position) {
     path_ = from_ = to_ = fine(reported_);
   } else {
     reported_ += way;
+    if (magnitude(reported_) >= kFar) {
+      const int64_t change = wrapped(reported_) - reported_;
+      reported_ += change;
+      path_ += fine(change);
+    }
     cycle_ = std::max(since_, 1);
     from_ = path_;
     to_ = fine(reported_ + way);
@@ -21,18 +34,18 @@ void Follower::take(int32_t position) {
   if (syncs_ < kEnough) ++syncs_;
 }
 
-Fine Follower::scaled(Fine way, const MasterInputs& inputs) const {
+Wide Follower::scaled(Fine way, const MasterInputs& inputs) {
   const Wide product = Wide{way} * inputs.gear_slave;
   const Wide by = inputs.gear_master;
   const Wide whole_part = product / by;
-  return static_cast<Fine>(product % by != 0 && (product < 0) != (by < 0) ? whole_part - 1 : whole_part);
+  return product % by != 0 && (product < 0) != (by < 0) ? whole_part - 1 : whole_part;
 }
 
 void Follower::advance(const MasterInputs& inputs) {
-  const Fine before = scaled(path_, inputs);
+  const Wide before = scaled(path_, inputs);
   ++since_;
   path_ = from_ + static_cast<Fine>(Wide{to_ - from_} * since_ / cycle_);
-  step_ = scaled(path_, inputs) - before;
+  step_ = static_cast<Fine>(std::clamp(scaled(path_, inputs) - before, -kFastest, kFastest));
   if (since_ <= kLost * cycle_ || syncs_ < 2) return;
   syncs_ = 0;
   step_ = 0;

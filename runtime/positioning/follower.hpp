@@ -33,7 +33,7 @@ class Follower {
   // Cycle and speed are known, and the last telegram is not too old.
   bool known() const { return syncs_ == kEnough; }
   bool silent() const { return syncs_ == 0; }
-  // What the master moved on in this millisecond, in increments of the slave.
+  // What the master moved on in this millisecond, in increments of the slave; at most 2^32.
   Fine step() const { return step_; }
 
  private:
@@ -42,7 +42,7 @@ class Follower {
 
   void take(int32_t position);
   void advance(const MasterInputs& inputs);
-  Fine scaled(Fine way, const MasterInputs& inputs) const;
+  static Wide scaled(Fine way, const MasterInputs& inputs);
 
   int32_t syncs_ = 0;
   int32_t last_ = 0;      // position of the last telegram

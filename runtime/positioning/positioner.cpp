@@ -237,9 +237,10 @@ void Positioner::watch_limit_switches() {
   at_limit_ = against;
 }
 
-// The profile's count goes on for ever with the modulo function; a circle of it is taken away in time.
+// The profile's count goes on for ever with the modulo function or behind a master; a circle of it is taken
+// away in time.
 inline void Positioner::keep_in_range() {
-  if (!modulo_.on()) return;
+  if (!modulo_.on() && follow_state_ == FollowState::Free) return;
   const int64_t position = whole(profile_.position());
   if (magnitude(position) < (int64_t{1} << 33)) return;
   const int64_t change = wrapped(position) - position;

@@ -21,7 +21,9 @@ bool Positioner::follow_master() {
 
 // P911 up to the speed of the master; the way lost meanwhile stays lost. From then on every increment counts.
 void Positioner::couple() {
-  const Rate wanted = follower_.step() * (Rate{1} << (kRateBits - kFineBits));
+  // More than twice what P302 allows; a ramp from more has no room in the numbers of a profile.
+  const Rate top = 4 * rules_.reference;
+  const Rate wanted = std::clamp(follower_.step() * (Rate{1} << (kRateBits - kFineBits)), -top, top);
   const Rate now = profile_.speed();
   const Rate change = std::max<Rate>(1, rules_.reference / rules_.up_ms);
   Rate next = wanted;

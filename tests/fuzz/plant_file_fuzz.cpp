@@ -1,12 +1,33 @@
-// Any text to the plant file reader: errors with their place, or a plant whose references lead somewhere.
+// Any text to the plant file reader: errors with their place, or a plant whose references lead somewhere and
+// that runs, or says why not.
 #include "runtime/plant/plant_file.hpp"
 
 #include <algorithm>
 
+#include "runtime/plant/plant.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 using namespace ipos::runtime;  // NOLINT
 using namespace ipos::tests;    // NOLINT
+
+namespace {
+
+constexpr size_t kStations = 8;  // more tell nothing new
+constexpr Time kRun = 30 * kMillisecond;
+
+// Without programs and without memory files.
+void check_run(PlantFile file) {
+  if (file.stations.size() > kStations) return;
+  for (StationConfig& station : file.stations) station.nvram.clear();
+  std::vector<std::optional<ipos::vm::Image>> programs(file.stations.size());
+  std::vector<PlantError> errors;
+  Plant plant(std::move(file), std::move(programs), std::nullopt, errors);
+  for (const PlantError& error : errors) require(!error.text.empty(), "an error has a text");
+  if (!errors.empty()) return;
+  require(plant.run_until(kRun) && plant.now() == kRun, "a plant runs as long as asked for");
+}
+
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::string_view text = text_of(data, size);
@@ -44,5 +65,6 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
             "an expectation is of a station that exists");
     require(expect.at >= 0, "an expectation is not before the start");
   }
+  check_run(plant);
   return 0;
 }

@@ -187,6 +187,34 @@ for = "5ms"
   EXPECT_EQ(value(*plant, "H421"), 0);
 }
 
+// A release names the terminal, not whether a voltage or a current hangs there.
+TEST(Stimuli, ReleaseOfAnalogInputs) {
+  const auto plant = make_station(R"(#include <constb.h>
+long a[2]; main() { while (1) _GetSys(a, GS_ANINP); }
+)",
+                                  R"(
+[station.analog]
+AI2 = "1 V"
+[[stimulus]]
+station = "u"
+at = "10ms"
+analog = "AI2"
+force = "5 V"
+[[stimulus]]
+station = "u"
+at = "15ms"
+analog = "AI1"       # not that one
+release = true
+[[stimulus]]
+station = "u"
+at = "20ms"
+analog = "AI2"
+release = true
+)");
+  const std::string second = "H" + std::to_string(*plant->stations()[0]->find_variable("a") + 1);
+  EXPECT_EQ(changes(*plant, second, 30), (Changes{{0, 1000}, {10, 5000}, {20, 1000}}));
+}
+
 // unit1 sets DO01 and clears it, unit2 sees DI03 in the next millisecond, whichever stands first in the file.
 TEST(Wires, BringTheOutputInTheNextMillisecond) {
   const char* const sender = R"(#include <iob.h>

@@ -52,6 +52,31 @@ TEST(Follower, PassesTheEndOfTheRange) {
   for (size_t t = 20; t < path.size(); ++t) ASSERT_NEAR(path[t] - path[t - 1], 10, 1e-3) << t;
 }
 
+// Numbers of a program: what comes of them is bounded, and keeps its direction.
+TEST(Follower, TakesAnyGear) {
+  constexpr double kMost = 4'294'967'296.0;
+  const auto master = [](int t) { return int64_t{1'000'000} * t; };
+  for (const auto& [gear, sign] : {std::pair{INT32_MAX, 1.0}, std::pair{INT32_MIN, -1.0}}) {
+    const std::vector<double> path = followed(master, 300, 1, gear);
+    for (size_t t = 20; t < path.size(); ++t) ASSERT_EQ(path[t] - path[t - 1], sign * kMost) << t;
+  }
+}
+
+// Half a circle each cycle counts as backwards: 2^41 increments are reached after 5 s.
+TEST(Follower, TakesAnyWay) {
+  Follower follower;
+  MasterInputs inputs;
+  for (int t = 0; t < 30'000; ++t) {
+    inputs.sync = t % kCycle == 0;
+    inputs.position = t / kCycle % 2 == 0 ? 0 : INT32_MIN;
+    follower.tick(inputs);
+    if (t < 20) continue;
+    ASSERT_NEAR(static_cast<double>(follower.step()) / static_cast<double>(kIncrement),
+                static_cast<double>(INT32_MIN) / kCycle, 1e-3)
+        << t;
+  }
+}
+
 TEST(Follower, IsLostAfterThreeCycles) {
   Follower follower;
   MasterInputs inputs;
@@ -189,6 +214,16 @@ TEST(Isync, LosesTheMaster) {
   EXPECT_TRUE(std::any_of(entries.begin(), entries.end(), [](const JournalEntry& entry) {
     return entry.text.find("no sync telegram for three cycles") != std::string::npos;
   }));
+}
+
+// Whatever the program writes, the slave follows as far as it can.
+TEST(Isync, AnyGear) {
+  for (const char* gear : {"2147483647", "-2147483647"}) {
+    Pair pair("100); H564 = " + std::string(gear) + "; _Wait(1", "P923 = 0\n");
+    pair.run(7'000);
+    EXPECT_EQ(pair.slave("H564"), std::stoi(gear));
+    EXPECT_NE(pair.slave("H562"), 0);
+  }
 }
 
 TEST(Isync, StopsAtASoftwareLimitSwitch) {
