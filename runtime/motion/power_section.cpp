@@ -79,17 +79,22 @@ void PowerSection::find_power(const Speed& speed) {
 
 void PowerSection::go_on(uint32_t steps) {
   draw(steps);
+  Lag::Way unit = unit_.begin(unit_target_), motor = motor_.begin(motor_target_),
+           heat_sink = heat_sink_.begin(heat_sink_target_);
   for (; steps != 0; --steps) {
-    bool moved = unit_.follow(unit_target_);
-    moved |= motor_.follow(motor_target_);
-    moved |= heat_sink_.follow(heat_sink_target_);
-    if (!moved) return;
+    const uint64_t moved = unit_.step(unit) | motor_.step(motor) | heat_sink_.step(heat_sink);
+    if (moved == 0) break;
   }
+  unit_.finish(unit);
+  motor_.finish(motor);
+  heat_sink_.finish(heat_sink);
 }
 
-PowerSection::Lag::Lag(int32_t time_ms)
-    : shift_(48 + static_cast<int>(std::bit_width(static_cast<uint32_t>(time_ms)))) {
-  reciprocal_ = static_cast<uint64_t>((Wide{1} << shift_) / static_cast<Wide>(time_ms)) + 1;
+PowerSection::Lag::Lag(int32_t time_ms) {
+  const int digits = 48 + static_cast<int>(std::bit_width(static_cast<uint32_t>(time_ms)));
+  const Wide exact = (Wide{1} << digits) / static_cast<Wide>(time_ms) + 1;
+  shift_ = std::max(digits - 63, 0);
+  reciprocal_ = static_cast<uint64_t>(exact << (63 + shift_ - digits));
 }
 
 void PowerSection::find_dc_link() { dc_link_ = static_cast<int32_t>(root(charge_)); }

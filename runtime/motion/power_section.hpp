@@ -69,27 +69,49 @@ class PowerSection {
   class Lag {
    public:
     explicit Lag(int32_t time_ms);
-    // False: it is there, as far as the division has digits.
-    bool follow(int64_t target) {
-      const int64_t change = divided((target << 24) - value_);
-      value_ += change;
-      return change != 0;
+    void follow(int64_t target) {
+      const int64_t distance = (target << 24) - value_;
+      const int64_t change = static_cast<int64_t>(divided(magnitude(distance)));
+      value_ += distance < 0 ? -change : change;
     }
     int32_t whole() const { return static_cast<int32_t>(value_ >> 24); }
+
+    // Several steps towards one target: its distance gets less and never turns its sign.
+    struct Way {
+      int64_t end;
+      bool falls;
+      uint64_t distance;
+    };
+    Way begin(int64_t target) const {
+      const int64_t end = target << 24, distance = end - value_;
+      return {end, distance < 0, magnitude(distance)};
+    }
+    // How far it went: 0 when it is there, as far as the division has digits.
+    uint64_t step(Way& way) const {
+      const uint64_t change = divided(way.distance);
+      way.distance -= change;
+      return change;
+    }
+    void finish(const Way& way) {
+      value_ = way.falls ? way.end + static_cast<int64_t>(way.distance)
+                         : way.end - static_cast<int64_t>(way.distance);
+    }
 
    private:
     // Of distances below 2^48 (targets below 2^24) the product has the whole part of distance / time exactly:
     // the reciprocal is too large by less than 2^-shift, so the product by less than 2^(48 - shift) = 2^-w <
-    // 1 / time, where w is the number of digits of the time.
+    // 1 / time, where w is the number of digits of the time. It is kept so that at least 63 digits go away,
+    // of which the distance brings one along.
     __extension__ using Wide = unsigned __int128;
-    int64_t divided(int64_t distance) const {
-      const auto magnitude = static_cast<uint64_t>(distance < 0 ? -distance : distance);
-      const auto quotient = static_cast<int64_t>((Wide{magnitude} * reciprocal_) >> shift_);
-      return distance < 0 ? -quotient : quotient;
+    static uint64_t magnitude(int64_t distance) {
+      return static_cast<uint64_t>(distance < 0 ? -distance : distance);
+    }
+    uint64_t divided(uint64_t distance) const {
+      return static_cast<uint64_t>(Wide{distance << 1} * reciprocal_ >> 64) >> shift_;
     }
 
     int64_t value_ = 0;
-    uint64_t reciprocal_;  // of the time constant, in units of 2^-shift_
+    uint64_t reciprocal_;  // of the time constant, in units of 2^-(63 + shift_)
     int shift_;
   };
 

@@ -60,14 +60,14 @@ NodeId SbusPort::connect(CanLine& line, std::optional<NodeId> node, std::string_
 SbusPort::SbusPort(EventQueue& queue, uint32_t source, CanLine& line, std::optional<NodeId> node, int sbus,
                    std::string_view station, const SbusSettings& settings, DriveServer& drive,
                    MovilinkCommand& movilink, Journal& journal)
-    : line_(line),
+    : sender_(line, connect(line, node, station, settings.baud, *this)),
+      objects_(drive.unit(), settings.baud, sender_, kObjectTags, sbus),
+      line_(line),
       station_(station),
       settings_(settings),
       drive_(drive),
       journal_(journal),
-      sender_(line, connect(line, node, station, settings.baud, *this)),
       slave_(queue, source, sender_, kSlaveTag, settings.slave, {}, drive, drive, this),
-      objects_(drive.unit(), settings.baud, sender_, kObjectTags, sbus),
       movilink_(movilink),
       bus_(kBuses[sbus - 1]),
       master_(queue, source, sender_, kMasterTag, kSbusReplyTimeout, movilink.client(bus_)),
@@ -79,6 +79,7 @@ SbusPort::SbusPort(EventQueue& queue, uint32_t source, CanLine& line, std::optio
           group_master_.configure(sbus == 1 ? drive.value("750") : 0, settings.slave.group, settings.baud);
       !why.empty())
     note(queue.now(), Weight::Warning, std::move(why));
+  leads_ = group_master_.active();
 }
 
 void SbusPort::note(Time now, Weight weight, std::string text) {
@@ -89,14 +90,14 @@ void SbusPort::stop_program() { objects_.stop(); }
 
 void SbusPort::power_off() {
   objects_.stop();
-  machine_ = nullptr;
+  variables_ = {};
   line_.set_connected(node(), false);
 }
 
 void SbusPort::on_frame(Time now, const Frame& frame) {
   drive_.catch_up();
   if (master_.busy() && master_.on_frame(now, frame)) return;
-  const bool received = machine_ != nullptr && receive(now, frame);
+  const bool received = !variables_.empty() && receive(now, frame);
   // A receive object with the sync identifier takes nothing away from the drive.
   if (!received || slave_.is_sync(frame)) {
     drive_.make_up();
@@ -122,7 +123,7 @@ bool SbusPort::receive(Time now, const Frame& frame) {
   const auto receiver = objects_.receiver(frame);
   if (!receiver) return false;
   const bool steady = drive_.make_up_variables();
-  if (objects_.has_taken(*receiver, frame, machine_->variables())) {
+  if (objects_.has_taken(*receiver, frame, variables_)) {
     if (steady && !master_.busy() && !slave_.is_sync(frame)) {
       line_.rest(node(), frame);
       rests_ = true;
@@ -131,23 +132,23 @@ bool SbusPort::receive(Time now, const Frame& frame) {
   }
   drive_.expect_variables(objects_.data_of(*receiver));
   std::string why;
-  const bool taken = objects_.on_frame(frame, machine_->variables(), why);
+  const bool taken = objects_.on_frame(frame, variables_, why);
   if (!why.empty()) note(now, Weight::Warning, std::move(why));
   return taken;
 }
 
 void SbusPort::on_sent(Time now, const Frame& /*frame*/, uint64_t tag) {
   if (tag == kMasterTag) master_.on_sent(now, tag);
-  if (tag < kAcyclicObjectTags || machine_ == nullptr) return;
+  if (tag < kAcyclicObjectTags || variables_.empty()) return;
   drive_.wake();
-  objects_.on_sent(tag, machine_->variables());
+  objects_.on_sent(tag, variables_);
 }
 
 void SbusPort::on_not_sent(Time /*now*/, const Frame& /*frame*/, uint64_t tag, NotSent reason) {
   // A disturbed frame is sent again by the controller; nobody else learns of it.
-  if (tag < kAcyclicObjectTags || machine_ == nullptr || reason == NotSent::Corrupted) return;
+  if (tag < kAcyclicObjectTags || variables_.empty() || reason == NotSent::Corrupted) return;
   drive_.wake();
-  objects_.on_not_sent(tag, machine_->variables());
+  objects_.on_not_sent(tag, variables_);
 }
 
 // No manual says what a drive does; it asks its controller to come back at once (ours).

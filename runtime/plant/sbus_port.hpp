@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -35,20 +36,20 @@ class SbusPort final : private CanNode, private SlaveObserver {
            std::string_view station, const SbusSettings& settings, DriveServer& drive,
            MovilinkCommand& movilink, Journal& journal);
 
-  void connect_program(vm::Machine& machine) { machine_ = &machine; }
+  void connect_program(vm::Machine& machine) { variables_ = machine.variables(); }
   void stop_program();  // a program stop ends cyclic sending and receiving (1053 1610 p. 54)
   void power_off();     // the line is told first, as frames that were waiting come back
   // Once a millisecond, after the tasks. Returns the first tick behind this one that does something; kNever
   // for none.
   Time tick(Time now) {
-    if (group_master_.active()) group_master_.tick(now);
+    if (leads_) group_master_.tick(now);
     int64_t due = INT64_MAX;
-    if (machine_ != nullptr) due = objects_.tick(now / kMillisecond, machine_->variables());
-    if (group_master_.active()) return now + kMillisecond;
+    if (!variables_.empty()) due = objects_.tick(now / kMillisecond, variables_);
+    if (leads_) return now + kMillisecond;
     return due == INT64_MAX ? kNever : due * kMillisecond;
   }
   bool has_waiting_frames() const { return line_.has_waiting(node()); }
-  bool sends_more_than_variables() const { return group_master_.active(); }
+  bool sends_more_than_variables() const { return leads_; }
   void stir();  // the variables may change from now on
 
   NodeId node() const { return sender_.node(); }
@@ -73,20 +74,23 @@ class SbusPort final : private CanNode, private SlaveObserver {
   void on_ignored(Time now, const Frame& frame, Ignored reason, ReturnCode code) override;
   void note(Time now, Weight weight, std::string text);
 
+  // What every tick looks at stands together.
+  bool leads_ = false;            // a group of slaves
+  bool rests_ = false;            // the line need not tell it of some frames
+  std::span<int32_t> variables_;  // of the program; none without one
+  LinePort sender_;
+  VariableObjects objects_;
+
   CanLine& line_;
   std::string_view station_;
   SbusSettings settings_;
   DriveServer& drive_;
   Journal& journal_;
-  vm::Machine* machine_ = nullptr;
-  LinePort sender_;
   SbusSlave slave_;
-  VariableObjects objects_;
   const MovilinkCommand& movilink_;
   MovilinkBus bus_;
   SbusMaster master_;
   GroupMaster group_master_;
-  bool rests_ = false;  // the line need not tell it of some frames
 };
 
 }  // namespace ipos::runtime

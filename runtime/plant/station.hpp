@@ -244,14 +244,17 @@ class Station final : private EventTarget, private Sleeper {
   void report_fault(Time now);
   void report_drive(Time now);
 
+  // What every tick looks at stands together, as many stations take turns.
   EventQueue& queue_;
   uint32_t source_;
-
-  // What every tick looks at stands together, as many stations take turns.
-  Time next_tick_ = 0;  // the first that was neither executed nor made up for
+  bool asleep_ = false;
+  bool steady_ = true;  // the program then changes no variable, not even for a moment
+  bool on_course_ = false;
+  bool trial_ = false;  // this tick is compared with what was before it, for sleep
   Time back_at_ = 0;    // asleep or late: the tick that is executed in its turn again
   EventId tick_ = kNoEvent;
   std::array<std::unique_ptr<SbusPort>, 2> sbus_;
+  Time next_tick_ = 0;  // the first that was neither executed nor made up for
 
   // Late ticks (station_late.cpp).
   uint32_t cruise_left_ = 0;  // ticks of which only the tasks need be executed
@@ -264,13 +267,9 @@ class Station final : private EventTarget, private Sleeper {
   Time prospect_at_ = 0;   // the program is not looked at again before this tick
   uint32_t prospect_pause_ = 1;
 
-  bool asleep_ = false;
-  bool steady_ = true;  // the program then changes no variable, not even for a moment
-  bool on_course_ = false;
   bool quiet_ = false;           // the program's own commands write none of the noted variables
   bool touched_ = false;         // somebody else may have written them since the last tick
-  bool trial_ = false;           // this tick is compared with what was before it, for sleep
-  bool course_noted_ = false;    // the same, for a course
+  bool course_noted_ = false;    // this tick is compared with what was before it, for a course
   bool fault_reported_ = false;  // of the program
   bool in_tick_ = false;
   CommandRunner* runner_ = nullptr;

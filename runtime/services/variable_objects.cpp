@@ -10,7 +10,7 @@ namespace ipos::runtime {
 
 VariableObjects::VariableObjects(const stdlib::UnitType& unit, uint32_t baud, FrameSender& sender,
                                  uint64_t first_tag, int sbus)
-    : unit_(unit), sender_(sender), first_tag_(first_tag), table_(unit, baud, sbus) {
+    : sender_(sender), first_tag_(first_tag), unit_(unit), table_(unit, baud, sbus) {
   forget_due();
 }
 

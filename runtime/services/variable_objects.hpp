@@ -93,11 +93,11 @@ class VariableObjects {
   void remember(const ObjectDefinition& definition);
   std::string reason(const ObjectRequest& request, ObjectVerdict verdict) const;
 
-  const stdlib::UnitType& unit_;
+  int64_t due_;  // before this millisecond nothing is
   FrameSender& sender_;
   uint64_t first_tag_;
-  int64_t due_;                                           // before this millisecond nothing is
   std::array<int64_t, ObjectTable::kMostCyclic> due_of_;  // when each object is
+  const stdlib::UnitType& unit_;
   ObjectTable table_;
   std::vector<ObjectDefinition> definitions_;
 };
