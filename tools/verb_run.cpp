@@ -228,7 +228,7 @@ void add_run(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1U, 1'000'000U));
   add_engine_option(*verb, flags->engine);
   verb->add_flag("--no-skip", flags->no_skip,
-                 "also execute milliseconds in which nothing happens, with equal results");
+                 "execute every millisecond in its turn, also where nothing happens, with equal results");
   verb->add_flag("--watch{*}", flags->watch, "show named variables at the end, all or --watch=NAME,...");
   verb->add_option("--log", flags->log, "write the frames of all CAN buses in candump format");
   verb->add_option("--serial-log", flags->serial_log, "write the telegrams of all RS-485 lines");

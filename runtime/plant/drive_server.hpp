@@ -39,6 +39,10 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
   // Is told before a bus or a program touches the drive. It must outlive this.
   void use(Sleeper& sleeper) { sleeper_ = &sleeper; }
   bool make_up_variables() { return sleeper_ != nullptr && sleeper_->make_up_variables(); }
+  bool late() const { return sleeper_ != nullptr && sleeper_->late(); }
+  bool keep(ObjectReader& reader, size_t object, const Frame& frame) {
+    return sleeper_ != nullptr && sleeper_->keep(reader, object, frame);
+  }
   void expect_variables(uint32_t first) {
     if (sleeper_ != nullptr) sleeper_->expect_variables(first);
   }

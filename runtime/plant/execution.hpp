@@ -16,7 +16,9 @@ struct Execution {
 
   bool fast = true;             // the fast engine; else the reference interpreter alone
   Compiler compiler = nullptr;  // for the fast engine; null: no machine code
-  bool skip_idle = true;        // milliseconds of a station in which nothing happens are left out
+  // Milliseconds of a station in which nothing happens are left out, and those of one that can tell nobody
+  // anything are executed later.
+  bool skip_idle = true;
 };
 
 }  // namespace ipos::runtime

@@ -95,6 +95,7 @@ void SbusPort::power_off() {
 }
 
 void SbusPort::on_frame(Time now, const Frame& frame) {
+  if (drive_.late() && keeps(frame)) return;
   drive_.catch_up();
   if (master_.busy() && master_.on_frame(now, frame)) return;
   const bool received = !variables_.empty() && receive(now, frame);
@@ -104,6 +105,13 @@ void SbusPort::on_frame(Time now, const Frame& frame) {
     slave_.on_frame(now, frame);
   }
   if (drive_.has_reasons()) tell_reasons(now);
+}
+
+// It is for variables alone and can wait until the program has come so far.
+bool SbusPort::keeps(const Frame& frame) {
+  if (variables_.empty() || master_.busy() || slave_.is_sync(frame)) return false;
+  const auto receiver = objects_.receiver(frame);
+  return receiver && objects_.fits(*receiver, frame) && drive_.keep(*this, *receiver, frame);
 }
 
 void SbusPort::tell_reasons(Time now) {

@@ -28,7 +28,7 @@ struct SbusSettings {
 };
 SbusSettings sbus_settings(const DriveServer& drive, int sbus);
 
-class SbusPort final : private CanNode, private SlaveObserver {
+class SbusPort final : private CanNode, private SlaveObserver, private ObjectReader {
  public:
   // Attaches to the line, or takes the place `node` of a port that went with a power-off. `sbus` is 1 or 2.
   // All references must outlive the port.
@@ -66,7 +66,9 @@ class SbusPort final : private CanNode, private SlaveObserver {
   static NodeId connect(CanLine& line, std::optional<NodeId> node, std::string_view station, uint32_t baud,
                         CanNode& port);
   void on_frame(Time now, const Frame& frame) override;
+  bool keeps(const Frame& frame);
   bool receive(Time now, const Frame& frame);
+  void read(size_t object, const Frame& frame) override { objects_.take(object, frame, variables_); }
   void tell_reasons(Time now);
   void on_sent(Time now, const Frame& frame, uint64_t tag) override;
   void on_not_sent(Time now, const Frame& frame, uint64_t tag, NotSent reason) override;

@@ -107,8 +107,7 @@ class Station final : private EventTarget, private Sleeper {
     look();
     return on_course_;
   }
-  // It executes its ticks when it has something to tell, or somebody looks.
-  bool late() const { return late_; }
+  using Sleeper::late;
   // Late, and its drive and positioning follow its tasks only when they are asked for.
   bool cruises() const { return cruise_left_ != 0; }
   // The station stands in the middle of its tick.
@@ -188,11 +187,13 @@ class Station final : private EventTarget, private Sleeper {
   void get_up();
   void touch() override;
   void run_late() override;
+  bool keep(ObjectReader& reader, size_t object, const Frame& frame) override;
   void expect_variables(uint32_t first) override;
   void wake() override;
   Time last_tick() const;
   void leave_out_to(Time last);
   void execute_to(Time last);
+  void execute_all_to(Time last);
   bool stride(Time last);
   bool begin_cruise();
   void end_cruise() {
@@ -262,6 +263,16 @@ class Station final : private EventTarget, private Sleeper {
   vm::Rates cruise_rates_;
   Time cruise_at_ = 0;  // not before this tick again
   uint32_t cruise_pause_ = 1;
+  // Telegrams that wait until the tasks have come so far.
+  struct Letter {
+    Time after;  // this tick
+    ObjectReader* reader;
+    size_t object;
+    Frame frame;
+  };
+  std::array<Letter, 4> letters_;
+  uint8_t letters_ahead_ = 0;
+  uint8_t letters_read_ = 0;
   Prospect prospect_;
   bool may_order_ = true;  // the program can write the control word of the drive
   Time prospect_at_ = 0;   // the program is not looked at again before this tick

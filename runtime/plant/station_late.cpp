@@ -62,8 +62,18 @@ void Station::try_late(Time now, Time telegram) {
   late_ = telegram > next_tick_;
 }
 
-// All late ticks up to that at `last`.
+// All late ticks up to that at `last`, and the telegrams that came in between.
 void Station::execute_to(Time last) {
+  for (; letters_read_ != letters_ahead_ && letters_[letters_read_].after <= last; ++letters_read_) {
+    const Letter& letter = letters_[letters_read_];
+    execute_all_to(letter.after);
+    letter.reader->read(letter.object, letter.frame);
+  }
+  if (letters_read_ == letters_ahead_) letters_read_ = letters_ahead_ = 0;
+  execute_all_to(last);
+}
+
+void Station::execute_all_to(Time last) {
   while (next_tick_ <= last) {
     if (stride(last)) continue;
     const Time now = next_tick_;
@@ -71,6 +81,13 @@ void Station::execute_to(Time last) {
     const EventQueue::Past past(queue_, now, source_);
     execute(now);
   }
+}
+
+// A program that cannot fault keeps its receive objects.
+bool Station::keep(ObjectReader& reader, size_t object, const Frame& frame) {
+  if (!cruises() || prospect_.may_fault || letters_ahead_ == letters_.size()) return false;
+  letters_[letters_ahead_++] = {last_tick(), &reader, object, frame};
+  return true;
 }
 
 bool Station::stride(Time last) {

@@ -2,9 +2,21 @@
 // outside tells it before it looks at or touches anything that changes with time.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
+#include "runtime/bus/can/frame.hpp"
+
 namespace ipos::runtime {
+
+// Who puts telegrams of receive objects into variables.
+class ObjectReader {
+ public:
+  virtual void read(size_t object, const Frame& frame) = 0;
+
+ protected:
+  ~ObjectReader() = default;
+};
 
 class Sleeper {
  public:
@@ -13,10 +25,15 @@ class Sleeper {
   // Makes up for what was left out as far as variables show it. It may sleep on; true: then they stay as they
   // are, until it stirs its buses.
   virtual bool make_up_variables() = 0;
+  // It executes its ticks when it has something to tell, or somebody looks.
+  bool late() const { return late_; }
   // The program of one that is late has done all that it does up to now.
   void catch_up() {
     if (late_) run_late();
   }
+  // True: the telegram waits until the program has come as far as now; then the reader reads it, once for all
+  // that happens by then. Only for telegrams that do nothing but write variables.
+  virtual bool keep(ObjectReader& reader, size_t object, const Frame& frame) = 0;
   // A telegram writes variables, from this one on: it wakes, or is late with the next ticks, too.
   virtual void expect_variables(uint32_t first) = 0;
   // Makes up for everything: all is as it is now.

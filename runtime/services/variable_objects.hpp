@@ -73,6 +73,13 @@ class VariableObjects {
          std::span(table_.state().cyclic).first(table_.state().cyclic_count))
       visit(uint32_t{object.data}, object.format);
   }
+  // The frame has the length that the object takes; then take() does.
+  bool fits(size_t receiver, const Frame& frame) const {
+    return frame_variables(frame, table_.state().receive[receiver].format).has_value();
+  }
+  void take(size_t receiver, const Frame& frame, std::span<int32_t> h) const {
+    table_.take(receiver, frame, h);
+  }
   // The first variable that a receive object writes.
   uint32_t data_of(size_t receiver) const { return table_.state().receive[receiver].data; }
   bool has_taken(size_t receiver, const Frame& frame, std::span<const int32_t> h) const {

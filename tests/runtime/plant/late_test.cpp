@@ -11,6 +11,7 @@
 #include "tests/harness/proves.hpp"
 #include "tests/runtime/plant/picture.hpp"
 #include "tests/runtime/plant/plant_rig.hpp"
+#include "vm/jit/jit.hpp"
 
 namespace ipos::tests {
 namespace {
@@ -51,6 +52,11 @@ constexpr const char* kBodies[] = {
     "if (H522 & 1) { H522 = 0; n = n + r1; }",
 };
 
+std::shared_ptr<const vm::fast::Native> machine_code(const vm::VerifiedImage& program) {
+  const std::shared_ptr<const vm::jit::Code> code = vm::jit::compile(program);
+  return code ? std::shared_ptr<const vm::fast::Native>(code, &code->native()) : nullptr;
+}
+
 class LatePlant {
  public:
   explicit LatePlant(uint64_t seed) : random_(seed) {
@@ -71,9 +77,16 @@ class LatePlant {
           pick(0, 1) == 0 ? "input = \"DI03\"\nset = 0\n" : "parameter = \"P160\"\nset = 300000\n");
   }
 
-  std::unique_ptr<Plant> make(bool skip) const {
+  std::unique_ptr<Plant> make_in_turn() const {
     runtime::Execution execution;
-    execution.skip_idle = skip;
+    execution.skip_idle = false;
+    return make_plant(text_, sources_, std::nullopt, execution);
+  }
+  // By any of the engines.
+  std::unique_ptr<Plant> make() {
+    runtime::Execution execution;
+    execution.fast = pick(0, 5) != 0;
+    if (pick(0, 1) == 0) execution.compiler = machine_code;
     return make_plant(text_, sources_, std::nullopt, execution);
   }
   const std::string& text() const { return text_; }
@@ -150,7 +163,7 @@ TEST(Late, RandomPlantsAreTheSameAsInTurn) {
   uint64_t late = 0, cruising = 0, looked = 0;
   for (uint64_t seed = 1; seed <= 120; ++seed) {
     LatePlant random(seed);
-    auto all = random.make(false), some = random.make(true);
+    auto all = random.make_in_turn(), some = random.make();
     ASSERT_TRUE(all && some) << random.text();
     Watched expected(std::move(all)), skipping(std::move(some));
     Time now = 0;

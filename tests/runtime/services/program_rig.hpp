@@ -21,6 +21,7 @@ namespace ipos::tests {
 struct TouchCount final : runtime::Sleeper {
   void touch() override { ++touches; }
   bool make_up_variables() override { return false; }
+  bool keep(runtime::ObjectReader&, size_t, const runtime::Frame&) override { return false; }
   void expect_variables(uint32_t) override {}
   void run_late() override {}
   void wake() override {}
