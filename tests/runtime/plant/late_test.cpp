@@ -338,6 +338,52 @@ TEST(Late, AFaultTakesBackTheTelegramThatWaits) {
   }
 }
 
+constexpr const char* kSenderAndReceiver =
+    "[[bus]]\nname = \"can\"\nkind = \"can\"\nbaud = 500000\n"
+    "[[station]]\nname = \"sends\"\nunit = \"mdxb\"\nprogram = \"S.IPC\"\nsbus = \"can\"\n"
+    "[[station]]\nname = \"hears\"\nunit = \"mdxb\"\nprogram = \"R.IPC\"\nsbus = \"can\"\n"
+    "[station.parameters]\nP881 = 2\n";
+constexpr const char* kSender =
+    "#include <constb.h>\nSCTRCYCL Tr; long d; main() { Tr.ObjectNo = 1100; Tr.CycleTime = 3;\n"
+    "Tr.Format = 4; Tr.DPointer = numof(d); _SBusCommDef(SCD_TRCYCL, Tr); _SBusCommOn(); while (1) d++; }";
+
+std::string receiver(const std::string& body, int format) {
+  return fmt::format(
+      "#include <constb.h>\nSCREC Re; long r; long r2; long n; long z; main() {{ Re.ObjectNo = 1100; "
+      "Re.Format = {};\n"
+      "Re.DPointer = numof(r); _SBusCommDef(SCD_REC, Re); _SBusCommOn(); while (1) {{ {} }} }}",
+      format, body);
+}
+
+// A program that has faulted receives nothing any more, also while nobody has noticed.
+TEST(Late, AFaultEndsReceiving) {
+  runtime::Execution every_tick;
+  every_tick.skip_idle = false;
+  for (int turns = 300; turns < 312; ++turns) {
+    const std::map<std::string, std::string> sources = {
+        {"S.IPC", kSender}, {"R.IPC", receiver(fmt::format("n = n + 1; z = 1 / ({} - n);", turns), 4)}};
+    const auto expected = make_plant(kSenderAndReceiver, sources, std::nullopt, every_tick),
+               plant = make_plant(kSenderAndReceiver, sources);
+    expected->run_until(ms(2500));
+    plant->run_until(ms(1000));
+    EXPECT_TRUE(plant->stations()[1]->late());
+    plant->run_until(ms(2500));
+    EXPECT_EQ(plant->stations()[1]->fault(), 10);
+    ASSERT_EQ(picture(*plant), picture(*expected)) << turns;
+  }
+}
+
+TEST(Late, ATelegramOfAnotherLengthIsToldOf) {
+  const std::map<std::string, std::string> sources = {{"S.IPC", kSender},
+                                                      {"R.IPC", receiver("n = n + 1 + r;", 8)}};
+  const auto plant = make_plant(kSenderAndReceiver, sources);
+  ASSERT_TRUE(plant);
+  plant->run_until(ms(1500));
+  EXPECT_TRUE(plant->stations()[1]->late());
+  EXPECT_TRUE(told(*plant, "object 1100 came with 4 bytes, its receive object has 8"));
+  EXPECT_EQ(value(*plant, "r", "hears"), 0);
+}
+
 // The words another unit gets over RS-485 are those of the moment.
 TEST(Late, ProcessDataOverRs485AreOfNow) {
   const std::string text =
