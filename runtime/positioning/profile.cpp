@@ -139,11 +139,13 @@ bool Profile::overruns(int64_t target, const TravelRules& rules) const {
   return speed_ != 0 && ahead >= 0 && brake > ahead && !stops_within(ahead, brake, rules.shape);
 }
 
+// What an earlier plan has left behind is no position.
 void Profile::shift(int64_t increments) {
-  position_ += fine(increments);
-  begin_ += fine(increments);
-  origin_ += fine(increments);
-  goal_ += fine(increments);
+  const Fine change = fine(increments);
+  position_ += change;
+  begin_ += change;
+  if (entered_) origin_ += change;
+  if (arrives_) goal_ += change;
 }
 
 // With 34 bits, 16 s, the product below has 64.
