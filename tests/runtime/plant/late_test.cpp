@@ -177,11 +177,8 @@ TEST(Late, RandomPlantsAreTheSameAsInTurn) {
         ++looked;
       }
       if (random.pick(0, 2) == 0) continue;  // nobody looks
-      ASSERT_EQ(picture(*skipping.plant), picture(*expected.plant))
-          << "seed " << seed << " at " << now << "\n"
-          << random.text();
-      ASSERT_EQ(skipping.frames.str(), expected.frames.str()) << "seed " << seed << "\n" << random.text();
-      ASSERT_EQ(skipping.telegrams.str(), expected.telegrams.str()) << "seed " << seed;
+      ASSERT_NO_FATAL_FAILURE(
+          expect_same(skipping, expected, fmt::format("seed {} at {}\n{}", seed, now, random.text())));
     }
   }
   EXPECT_GT(late * 5, looked) << "of " << looked << " looks at a station " << late << " found it late";
@@ -299,8 +296,7 @@ TEST(Late, AProgramMayOrderTheResetOfItsOwnFault) {
     for (int64_t n = 1; n <= 30; ++n) {
       expected.plant->run_until(ms(n * 50));
       plant.plant->run_until(ms(n * 50));
-      ASSERT_EQ(picture(*plant.plant), picture(*expected.plant));
-      ASSERT_EQ(plant.frames.str(), expected.frames.str());
+      ASSERT_NO_FATAL_FAILURE(expect_same(plant, expected));
     }
     begun_anew += value(*plant.plant, "d") > 1 ? 1 : 0;
   }
@@ -333,8 +329,7 @@ TEST(Late, AFaultTakesBackTheTelegramThatWaits) {
       plant.plant->run_until(ms(n * 100));
     }
     EXPECT_EQ(plant.plant->stations()[kStations - 1]->fault(), 10);
-    ASSERT_EQ(plant.frames.str(), expected.frames.str()) << turns;
-    ASSERT_EQ(picture(*plant.plant), picture(*expected.plant)) << turns;
+    ASSERT_NO_FATAL_FAILURE(expect_same(plant, expected, std::to_string(turns)));
   }
 }
 
@@ -406,8 +401,7 @@ TEST(Late, ProcessDataOverRs485AreOfNow) {
     expected.plant->run_until(ms(n * 150));
     plant.plant->run_until(ms(n * 150));
     EXPECT_FALSE(plant.plant->stations()[0]->late()) << "who is on a serial line";
-    ASSERT_EQ(plant.telegrams.str(), expected.telegrams.str());
-    ASSERT_EQ(picture(*plant.plant), picture(*expected.plant));
+    ASSERT_NO_FATAL_FAILURE(expect_same(plant, expected));
   }
 }
 

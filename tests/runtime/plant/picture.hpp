@@ -2,6 +2,7 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
 #include <memory>
 #include <sstream>
@@ -49,5 +50,12 @@ struct Watched {
   runtime::CandumpLog log;
   runtime::SerialLog serial;
 };
+
+// For ASSERT_NO_FATAL_FAILURE.
+inline void expect_same(const Watched& plant, const Watched& expected, const std::string& where = {}) {
+  ASSERT_EQ(picture(*plant.plant), picture(*expected.plant)) << where;
+  ASSERT_EQ(plant.frames.str(), expected.frames.str()) << where;
+  ASSERT_EQ(plant.telegrams.str(), expected.telegrams.str()) << where;
+}
 
 }  // namespace ipos::tests

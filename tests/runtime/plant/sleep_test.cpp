@@ -206,11 +206,8 @@ TEST(Sleep, RandomPlantsAreTheSameAsWithoutIt) {
         touch(*expected.plant, n, level);
         touch(*skipping.plant, n, level);
       }
-      ASSERT_EQ(picture(*skipping.plant), picture(*expected.plant))
-          << "seed " << seed << " at " << now << "\n"
-          << random.text();
-      ASSERT_EQ(skipping.frames.str(), expected.frames.str()) << "seed " << seed;
-      ASSERT_EQ(skipping.telegrams.str(), expected.telegrams.str()) << "seed " << seed;
+      ASSERT_NO_FATAL_FAILURE(
+          expect_same(skipping, expected, fmt::format("seed {} at {}\n{}", seed, now, random.text())));
     }
   }
   EXPECT_GT(asleep * 4, looked) << "of " << looked << " looks at a station " << asleep << " found it asleep";
