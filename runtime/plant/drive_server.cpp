@@ -120,7 +120,11 @@ void DriveServer::obstruct(const DataBus& bus, Obstacle obstacle, std::string_vi
                                    stdlib::parameter_text(*row, wanted)));
 }
 
-ProcessWords DriveServer::input(Time /*now*/) { return state_.pi(); }
+// Some time after the telegram that is answered.
+ProcessWords DriveServer::input(Time /*now*/) {
+  make_up();
+  return state_.pi();
+}
 
 void DriveServer::synchronize(Time /*now*/) {
   wake();
@@ -148,7 +152,10 @@ void DriveServer::Rs485Data::cyclic_request(Time /*now*/) {
   drive_.state_.take_request(PoSource::Rs485);
 }
 
-ProcessWords DriveServer::setpoint_to_send(Time /*now*/) { return state_.master_words(); }
+ProcessWords DriveServer::setpoint_to_send(Time /*now*/) {
+  make_up();
+  return state_.master_words();
+}
 
 void DriveServer::setpoint_received(Time /*now*/, const ProcessWords& words) {
   wake();

@@ -52,9 +52,6 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
   void catch_up() {
     if (sleeper_ != nullptr) sleeper_->catch_up();
   }
-  void make_up() {
-    if (sleeper_ != nullptr) sleeper_->make_up();
-  }
 
   // Sets a parameter before power-on, named "P813" or by index; nothing when accepted, else why not.
   std::optional<std::string> set_parameter(std::string_view parameter, int32_t value);
@@ -127,6 +124,9 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
   void obstruct(const DataBus& bus, Obstacle obstacle, std::string_view what, std::string_view number,
                 int32_t wanted);
 
+  void make_up() {
+    if (sleeper_ != nullptr) sleeper_->make_up();
+  }
   void find_rates() const;
   uint16_t index_of(std::string_view number) const;  // 0 for a parameter the unit does not have
 

@@ -100,10 +100,7 @@ void SbusPort::on_frame(Time now, const Frame& frame) {
   if (master_.busy() && master_.on_frame(now, frame)) return;
   const bool received = !variables_.empty() && receive(now, frame);
   // A receive object with the sync identifier takes nothing away from the drive.
-  if (!received || slave_.is_sync(frame)) {
-    drive_.make_up();
-    slave_.on_frame(now, frame);
-  }
+  if (!received || slave_.is_sync(frame)) slave_.on_frame(now, frame);
   if (drive_.has_reasons()) tell_reasons(now);
 }
 

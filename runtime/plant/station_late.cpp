@@ -132,8 +132,7 @@ void Station::run_late() { execute_to(last_tick()); }
 
 // What no part of the unit looks at does not end a cruise.
 void Station::expect_variables(uint32_t first) {
-  if (!late_ || is_system_variable(first) || is_system_variable(first + 1)) return wake();
-  run_late();
+  if (!late_ || is_system_variable(first) || is_system_variable(first + 1)) wake();
 }
 
 }  // namespace ipos::runtime

@@ -34,7 +34,7 @@ class Sleeper {
   // True: the telegram waits until the program has come as far as now; then the reader reads it, once for all
   // that happens by then. Only for telegrams that do nothing but write variables.
   virtual bool keep(ObjectReader& reader, size_t object, const Frame& frame) = 0;
-  // A telegram writes variables, from this one on: it wakes, or is late with the next ticks, too.
+  // Behind catch_up(): a telegram writes variables, from this one on. It wakes, or goes on being late.
   virtual void expect_variables(uint32_t first) = 0;
   // Makes up for everything: all is as it is now.
   virtual void make_up() = 0;
