@@ -9,6 +9,7 @@
 #include <random>
 
 #include "tests/harness/proves.hpp"
+#include "tests/runtime/plant/loop_body.hpp"
 #include "tests/runtime/plant/picture.hpp"
 #include "tests/runtime/plant/plant_rig.hpp"
 #include "vm/jit/jit.hpp"
@@ -77,11 +78,7 @@ class LatePlant {
           pick(0, 1) == 0 ? "input = \"DI03\"\nset = 0\n" : "parameter = \"P160\"\nset = 300000\n");
   }
 
-  std::unique_ptr<Plant> make_in_turn() const {
-    runtime::Execution execution;
-    execution.skip_idle = false;
-    return make_plant(text_, sources_, std::nullopt, execution);
-  }
+  std::unique_ptr<Plant> make_in_turn() const { return make_plant(text_, sources_, std::nullopt, in_turn()); }
   // By any of the engines.
   std::unique_ptr<Plant> make() {
     runtime::Execution execution;
@@ -96,18 +93,9 @@ class LatePlant {
   std::string body(bool b) {
     const int bodies = static_cast<int>(std::size(kBodies)) - (b ? 0 : kOfMovidriveB);
     const int calm = pick(0, 2) == 0 ? kCalm : bodies;
-    std::string text = kBodies[static_cast<size_t>(pick(0, calm - 1))];
-    const auto replace = [&](const std::string& from, int value) {
-      for (size_t at = 0; (at = text.find(from, at)) != std::string::npos;) {
-        const bool word = at > 0 && std::isalpha(static_cast<unsigned char>(text[at - 1])) != 0;
-        if (!word && (at + 1 == text.size() || std::isalpha(static_cast<unsigned char>(text[at + 1])) == 0))
-          text.replace(at, 1, std::to_string(value));
-        ++at;
-      }
-    };
-    replace("K", pick(1, 200));
-    replace("L", pick(1, 9));
-    return text;
+    const char* const text = kBodies[static_cast<size_t>(pick(0, calm - 1))];
+    const int k = pick(1, 200), l = pick(1, 9);
+    return numbered(text, k, l);
   }
 
   void station(int n) {
@@ -242,9 +230,7 @@ TEST(Late, OperatingHoursAndEnergyAreExact) {
   const std::string unit =
       "[[station]]\nname = \"u\"\nunit = \"mdxb\"\nprogram = \"P.IPC\"\n"
       "[station.parameters]\nP130 = 200\nP160 = 1000000\n[station.inputs]\nDI00 = 1\nDI01 = 1\nDI03 = 1\n";
-  runtime::Execution every_tick;
-  every_tick.skip_idle = false;
-  const auto expected = make_plant(unit, {{"P.IPC", source}}, std::nullopt, every_tick);
+  const auto expected = make_plant(unit, {{"P.IPC", source}}, std::nullopt, in_turn());
   const auto plant = make_plant(unit, {{"P.IPC", source}});
   ASSERT_TRUE(expected && plant);
   const Station& station = *plant->stations()[0];
@@ -277,8 +263,6 @@ TEST(Late, AProgramMayOrderTheResetOfItsOwnFault) {
       "[[bus]]\nname = \"can\"\nkind = \"can\"\nbaud = 500000\n"
       "[[station]]\nname = \"u\"\nunit = \"mdxb\"\nprogram = \"U.IPC\"\nsbus = \"can\"\n"
       "[[station]]\nname = \"v\"\nunit = \"mdxb\"\nsbus = \"can\"\n[station.parameters]\nP881 = 2\n";
-  runtime::Execution every_tick;
-  every_tick.skip_idle = false;
   int begun_anew = 0;
   for (int turns = 400; turns < 410;
        ++turns) {  // the fault is in the millisecond of the order, or in the next
@@ -292,7 +276,7 @@ TEST(Late, AProgramMayOrderTheResetOfItsOwnFault) {
              "= numof(d);\n"
              "_SBusCommDef(SCD_TRCYCL, Tr); _SBusCommOn(); _SetTask(T2_START, T3); while (1) ; }}",
              turns)}};
-    Watched expected(make_plant(text, sources, std::nullopt, every_tick)), plant(make_plant(text, sources));
+    Watched expected(make_plant(text, sources, std::nullopt, in_turn())), plant(make_plant(text, sources));
     for (int64_t n = 1; n <= 30; ++n) {
       expected.plant->run_until(ms(n * 50));
       plant.plant->run_until(ms(n * 50));
@@ -314,8 +298,6 @@ TEST(Late, AFaultTakesBackTheTelegramThatWaits) {
         "[[station]]\nname = \"u{0}\"\nunit = \"mdxb\"\nprogram = \"P{0}.IPC\"\nsbus = \"can\"\n"
         "[station.parameters]\nP881 = {1}\nP884 = 0\n",
         n, n + 1);
-  runtime::Execution every_tick;
-  every_tick.skip_idle = false;
   for (int turns = 200; turns < 220; ++turns) {
     for (int n = 0; n < kStations; ++n)
       sources[fmt::format("P{}.IPC", n)] = fmt::format(
@@ -323,7 +305,7 @@ TEST(Late, AFaultTakesBackTheTelegramThatWaits) {
           "main() {{ Tr.ObjectNo = {}; Tr.CycleTime = 20; Tr.Format = 8; Tr.DPointer = numof(n);\n"
           "_SBusCommDef(SCD_TRCYCL, Tr); _SBusCommOn(); while (1) {{ n = n + 1; d = 1 / ({} - n); }} }}",
           1100 + n, n + 1 < kStations ? 100'000 : turns);
-    Watched expected(make_plant(text, sources, std::nullopt, every_tick)), plant(make_plant(text, sources));
+    Watched expected(make_plant(text, sources, std::nullopt, in_turn())), plant(make_plant(text, sources));
     for (int64_t n = 1; n <= 25; ++n) {
       expected.plant->run_until(ms(n * 100));
       plant.plant->run_until(ms(n * 100));
@@ -352,12 +334,10 @@ std::string receiver(const std::string& body, int format) {
 
 // A program that has faulted receives nothing any more, also while nobody has noticed.
 TEST(Late, AFaultEndsReceiving) {
-  runtime::Execution every_tick;
-  every_tick.skip_idle = false;
   for (int turns = 300; turns < 312; ++turns) {
     const std::map<std::string, std::string> sources = {
         {"S.IPC", kSender}, {"R.IPC", receiver(fmt::format("n = n + 1; z = 1 / ({} - n);", turns), 4)}};
-    const auto expected = make_plant(kSenderAndReceiver, sources, std::nullopt, every_tick),
+    const auto expected = make_plant(kSenderAndReceiver, sources, std::nullopt, in_turn()),
                plant = make_plant(kSenderAndReceiver, sources);
     expected->run_until(ms(2500));
     plant->run_until(ms(1000));
@@ -394,9 +374,7 @@ TEST(Late, ProcessDataOverRs485AreOfNow) {
        "#include <constb.h>\nMOVLNK Ml; MLDATA Mld; long sum; main() { Ml.BusType = 2; Ml.Address = 1;\n"
        "Ml.Format = 1; Ml.Service = ML_S_RD; Ml.Index = 8318; Ml.DPointer = numof(Mld);\n"
        "while (1) { _MoviLink(Ml); sum = sum * 3 + Mld.PI2 + Mld.PI3; _Wait(37); } }"}};
-  runtime::Execution every_tick;
-  every_tick.skip_idle = false;
-  Watched expected(make_plant(text, sources, std::nullopt, every_tick)), plant(make_plant(text, sources));
+  Watched expected(make_plant(text, sources, std::nullopt, in_turn())), plant(make_plant(text, sources));
   for (int64_t n = 1; n <= 20; ++n) {
     expected.plant->run_until(ms(n * 150));
     plant.plant->run_until(ms(n * 150));

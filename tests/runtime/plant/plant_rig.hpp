@@ -64,6 +64,13 @@ inline bool told(const runtime::Plant& plant, const std::string& text) {
   return false;
 }
 
+// Every millisecond of every station in its turn.
+inline runtime::Execution in_turn() {
+  runtime::Execution execution;
+  execution.skip_idle = false;
+  return execution;
+}
+
 inline constexpr runtime::Time ms(int64_t n) { return n * runtime::kMillisecond; }
 
 }  // namespace ipos::tests

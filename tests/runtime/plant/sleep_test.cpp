@@ -10,6 +10,7 @@
 #include <random>
 
 #include "tests/harness/proves.hpp"
+#include "tests/runtime/plant/loop_body.hpp"
 #include "tests/runtime/plant/picture.hpp"
 #include "tests/runtime/plant/plant_rig.hpp"
 
@@ -98,22 +99,9 @@ class RandomPlant {
  private:
   std::string body(bool b) {
     const int bodies = static_cast<int>(std::size(kBodies)) - (b ? 0 : kOfMovidriveB);
-    std::string text = kBodies[static_cast<size_t>(pick(0, bodies - 1))];
-    const auto replace = [&](char letter, int value) {
-      for (size_t at; (at = text.find(letter)) != std::string::npos;) {
-        const bool word = at + 1 < text.size() && std::isalnum(static_cast<unsigned char>(text[at + 1])) != 0;
-        const bool tail =
-            at > 0 && (std::isalnum(static_cast<unsigned char>(text[at - 1])) != 0 || text[at - 1] == '_');
-        if (word || tail)
-          text[at] = '\1';  // part of a name
-        else
-          text.replace(at, 1, std::to_string(value));
-      }
-      std::replace(text.begin(), text.end(), '\1', letter);
-    };
-    replace('K', pick(1, 300));
-    replace('L', pick(1, 9));
-    return text;
+    const char* const text = kBodies[static_cast<size_t>(pick(0, bodies - 1))];
+    const int k = pick(1, 300), l = pick(1, 9);
+    return numbered(text, k, l);
   }
 
   void station(int n) {
@@ -316,10 +304,7 @@ TEST_P(WrittenByOthers, ActsInTheSameMillisecond) {
        "#include <constb.h>\nSCTRCYCL Tr; long d; main() { Tr.ObjectNo = 1100; Tr.CycleTime = 10;\n"
        "Tr.Format = 4; Tr.DPointer = numof(d); _SBusCommDef(SCD_TRCYCL, Tr); _SBusCommOn();\n"
        "_Wait(1503); d = 2; while (1) ; }"}};
-  runtime::Execution every_tick;
-  every_tick.skip_idle = false;
-  const auto expected = make_plant(text, sources, std::nullopt, every_tick),
-             plant = make_plant(text, sources);
+  const auto expected = make_plant(text, sources, std::nullopt, in_turn()), plant = make_plant(text, sources);
   ASSERT_TRUE(expected && plant);
   const runtime::Station& station = *plant->stations()[0];
   constexpr uint16_t kDo01 = 2;

@@ -1,0 +1,20 @@
+// Loop bodies of random programs: IPOS text in which the words K and L stand for numbers.
+#pragma once
+
+#include <cctype>
+#include <string>
+#include <utility>
+
+namespace ipos::tests {
+
+inline std::string numbered(std::string text, int k, int l) {
+  const auto in_name = [&](size_t at) {
+    return at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) != 0 || text[at] == '_');
+  };
+  for (const auto& [letter, value] : {std::pair{'K', k}, std::pair{'L', l}})
+    for (size_t at = 0; (at = text.find(letter, at)) != std::string::npos; ++at)
+      if ((at == 0 || !in_name(at - 1)) && !in_name(at + 1)) text.replace(at, 1, std::to_string(value));
+  return text;
+}
+
+}  // namespace ipos::tests
