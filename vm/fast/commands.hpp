@@ -125,6 +125,16 @@ struct Fused {
     return exits;
   }();
   static constexpr bool kTests = kExits[0] != 0;
+  // A JMP and nothing that could jump before it; a variable that is stepped and tested, as at the end of loops.
+  static constexpr bool kJumps = kAlwaysJumps && kExits[1] == 0;
+  static constexpr bool kEndsLoop = [] {
+    bool ends = false;
+    bool stepped = false;
+    ((ends = stepped && Parts::Command::kind == Kind::Test && Parts::meets == Meets::Left,
+      stepped = Parts::Command::opcode == Opcode::AddHK || Parts::Command::opcode == Opcode::SubHK),
+     ...);
+    return ends;
+  }();
 
   // Whether the commands at s, which have these opcodes, meet as the parts say.
   static bool fits(const Slot* s) {

@@ -64,6 +64,33 @@ uint32_t call_depth(const Predecoded& program) {
     DISPATCH();                                \
   } while (false)
 
+// The same for jumps that mostly lead where the one before them led, as from the end of a loop or of a case:
+// the processor goes on from there without waiting for the route, which it only has to find equal. HIDE keeps the
+// compiler from seeing that the two are the same.
+#if IPOS_THREADED
+#define HIDE(pointer) asm("" : "+r"(pointer))
+#define TAKE_AGAIN(at, before)                              \
+  do {                                                      \
+    const Slot* const route = (at);                         \
+    const Slot* const target = route + route->route.offset; \
+    const Slot* guess = before;                             \
+    HIDE(guess);                                            \
+    left -= route->route.delta;                             \
+    if (left < route->route.bound) {                        \
+      ip = target;                                          \
+      goto spent;                                           \
+    }                                                       \
+    if (target == before) [[likely]] {                      \
+      ip = guess;                                           \
+      DISPATCH();                                           \
+    }                                                       \
+    ip = before = target;                                   \
+    DISPATCH();                                             \
+  } while (false)
+#else
+#define TAKE_AGAIN(at, before) TAKE(at)
+#endif
+
 #define CALL()                                                  \
   do {                                                          \
     if (t.depth == depth_limit) goto leave;                     \
@@ -87,7 +114,14 @@ uint32_t call_depth(const Predecoded& program) {
   using F = Fused<__VA_ARGS__>;                       \
   const int end = F::run(ip, h, variables);           \
   if constexpr (F::kExits[0] != 0)                    \
-    if (end == F::kExits[0]) TAKE(ip + F::kExits[0]); \
+    if (end == F::kExits[0]) {                        \
+      if constexpr (F::kEndsLoop)                     \
+        TAKE_AGAIN(ip + F::kExits[0], loop);          \
+      else if constexpr (F::kJumps)                   \
+        TAKE_AGAIN(ip + F::kExits[0], join);          \
+      else                                            \
+        TAKE(ip + F::kExits[0]);                      \
+    }                                                 \
   if constexpr (F::kExits[1] != 0)                    \
     if (end == F::kExits[1]) TAKE(ip + F::kExits[1]); \
   if constexpr (F::kFaults)                           \
@@ -120,6 +154,8 @@ Exit execute(const Predecoded* program, TaskContext* context, int32_t* h, State&
   const uint32_t variables = program->program().limits().variables;
   const uint32_t depth_limit = call_depth(*program);
   const Slot* ip = state.ip;
+  [[maybe_unused]] const Slot* loop = nullptr;  // where the last loop that ended went on
+  [[maybe_unused]] const Slot* join = nullptr;  // where the last JMP led
   int32_t left = state.left;
 
 #if IPOS_THREADED
@@ -258,6 +294,8 @@ leave:
 #undef LABEL
 #undef FALL
 #undef TAKE
+#undef TAKE_AGAIN
+#undef HIDE
 #undef CALL
 #undef RETURN
 #undef PARTS
