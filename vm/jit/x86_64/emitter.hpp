@@ -46,6 +46,8 @@ class EmitterX86 final : public Emitter {
   void data(uint32_t n) override;
   bool fused(const Instruction& first, const Instruction& second) override;
   void slow_access(const Slow& slow) override;
+  bool set_and_operate(const Instruction& first, const Instruction& second);
+  bool accumulate(const Instruction& first, const Instruction& second);
   void alu(asmjit::InstId id, int32_t to, const Instruction& command, bool constant);
   void multiply(int32_t to, const Instruction& command, bool constant);
   void multiply_constant(x86::Gp to, int32_t from, int32_t factor);

@@ -13,8 +13,32 @@ using Id = x86::Inst::Id;
 
 }  // namespace
 
-// Two commands in one: SET a = b and what works on a then.
 bool EmitterX86::fused(const Instruction& first, const Instruction& second) {
+  return set_and_operate(first, second) || accumulate(first, second);
+}
+
+// Two sums on the same variable, as a = a + b - c: they meet first, so that a, which waits for the round of
+// the loop before, is added once.
+bool EmitterX86::accumulate(const Instruction& first, const Instruction& second) {
+  const auto adds = [](const Instruction& command) { return command.opcode == Opcode::AddHH; };
+  const auto sums = [&](const Instruction& command) { return adds(command) || command.opcode == Opcode::SubHH; };
+  const int32_t a = first.operands[0];
+  if (!sums(first) || !sums(second) || second.operands[0] != a) return false;
+  const auto b = pin(first.operands[1]), c = pin(second.operands[1]);
+  if (!pin(a) || !b || !c || b == pin(a) || c == pin(a)) return false;
+  if (adds(first) == adds(second)) {
+    a_.lea(x86::eax, x86::ptr(b->r64(), c->r64()));
+  } else {
+    a_.mov(x86::eax, adds(first) ? *b : *c);
+    a_.sub(x86::eax, adds(first) ? *c : *b);
+  }
+  a_.emit(adds(first) || adds(second) ? Id::kIdAdd : Id::kIdSub, *pin(a), x86::eax);
+  flags_of_ = a;
+  return true;
+}
+
+// SET a = b and what works on a then.
+bool EmitterX86::set_and_operate(const Instruction& first, const Instruction& second) {
   if (first.opcode != Opcode::SetHH || second.operands[0] != first.operands[0]) return false;
   const auto to = pin(first.operands[0]);
   const auto from = pin(first.operands[1]);
