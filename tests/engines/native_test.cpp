@@ -172,6 +172,48 @@ TEST_F(Native, ConstantsOfEveryShape) {
     }
 }
 
+// Two sums on one variable, and the tests for 0 behind them, of it and of another.
+TEST_F(Native, SumsOfTwo) {
+  const std::vector<int32_t> numbers = telling_numbers();
+  const auto count = static_cast<int32_t>(numbers.size());
+  constexpr int32_t kSum = 13, kX = 12, kOther = 14, kTaken = 15, kFirst = 5, kSecond = -5;
+  for (const Opcode one : {Opcode::AddHH, Opcode::SubHH})
+    for (const Opcode two : {Opcode::AddHH, Opcode::SubHH})
+      for (const int32_t tested : {kSum, kX})
+        for (const Opcode test : {Opcode::JmpEqHK, Opcode::JmpNeHK, Opcode::JmpLtHK, Opcode::JmpGeHK}) {
+          code_.clear();
+          add(Opcode::SetHK, {10, 500, 0, 0});
+          const int32_t again = here();
+          add(Opcode::SetiLoad, {kX, 10, 0, 0});
+          add(Opcode::SetHK, {kOther, kSecond, 0, 0});
+          add(Opcode::SetHK, {kTaken, 1, 0, 0});
+          add(Opcode::SetHK, {kSum, kFirst, 0, 0});
+          add(one, {kSum, kX, 0, 0});
+          add(two, {kSum, kOther, 0, 0});
+          add(test, {tested, 0, here() + words(test) + words(Opcode::SetHK), 0});
+          add(Opcode::SetHK, {kTaken, 0, 0, 0});
+          add(Opcode::SetHH, {kX, 10, 0, 0});
+          add(Opcode::SetiStore, {10, kSum, 0, 0});
+          add(Opcode::AddHK, {kX, 250, 0, 0});
+          add(Opcode::SetiStore, {kX, kTaken, 0, 0});
+          add(Opcode::AddHK, {10, 1, 0, 0});
+          add(Opcode::JmpLtHK, {10, 500 + count, again, 0});
+          add(Opcode::End, {});
+          ASSERT_EQ(run(numbers).stop, vm::Stop::Ended);
+          for (size_t n = 0; n < numbers.size(); ++n) {
+            const int64_t x = numbers[n];
+            const int64_t sum = kFirst + (one == Opcode::AddHH ? x : -x) + (two == Opcode::AddHH ? kSecond : -kSecond);
+            ASSERT_EQ(vm::bits(h(500 + n)), low(sum)) << x;
+            const int64_t y = tested == kX ? x : static_cast<int32_t>(low(sum));
+            const bool taken = test == Opcode::JmpEqHK   ? y == 0
+                               : test == Opcode::JmpNeHK ? y != 0
+                               : test == Opcode::JmpLtHK ? y < 0
+                                                         : y >= 0;
+            ASSERT_EQ(h(750 + n), taken) << vm::info(test).name << " " << x << (tested == kX ? ", not the sum" : "");
+          }
+        }
+}
+
 // The longest program, of the commands with most machine code a word: H500 and H501 lead to each other.
 TEST_F(Native, TheLongestProgram) {
   int32_t loads = 0;
@@ -205,6 +247,30 @@ TEST_F(Native, AnIndexReachesVariablesInRegisters) {
   EXPECT_EQ(h(13), sum);
   EXPECT_EQ(h(14), turns);
   EXPECT_EQ(h(98), 178);
+}
+
+// In a loop whose indexes all seem to lie in a table, a store changes the variable the next index is in, as there
+// are too many others for it to be in a register.
+TEST_F(Native, AnIndexInMemoryIsOverwritten) {
+  constexpr int32_t kCounter = 10, kValue = 11, kIndex = 150;
+  add(Opcode::SetHK, {kCounter, 100, 0, 0});
+  add(Opcode::SetHK, {kValue, 2000, 0, 0});
+  const int32_t again = here();
+  for (int32_t busy = 20; busy < 45; ++busy)
+    for (int n = 0; n < 8; ++n) add(Opcode::AddHK, {busy, n, 0, 0});
+  for (int n = 0; n < 8; ++n) add(Opcode::AddHH, {20, kCounter, 0, 0});
+  add(Opcode::SetHH, {kIndex, kCounter, 0, 0});
+  add(Opcode::AddHK, {kIndex, 50, 0, 0});
+  add(Opcode::SetiStore, {kCounter, kValue, 0, 0});
+  add(Opcode::SetiStore, {kIndex, kCounter, 0, 0});
+  add(Opcode::AddHK, {kCounter, 1, 0, 0});
+  add(Opcode::JmpLtHK, {kCounter, 160, again, 0});
+  add(Opcode::End, {});
+  EXPECT_EQ(run().stop, vm::Stop::Faulted);
+  EXPECT_EQ(machine_->fault().number, vm::kFaultIllop);
+  EXPECT_EQ(h(kCounter), kIndex);
+  EXPECT_EQ(h(kIndex), 2000);
+  EXPECT_EQ(h(kIndex + 49), kIndex - 1) << "the turn before";
 }
 
 // A budget ends anywhere, in any depth of calls; the machine goes on as if nothing had been.

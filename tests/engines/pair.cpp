@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "tests/generated/pcg.hpp"
 #include "vm/exec/saved_state.hpp"
@@ -256,6 +257,28 @@ std::vector<uint32_t> with_interrupts(const std::vector<uint32_t>& code, const v
   return out.size() <= limits.program_words ? out : std::vector<uint32_t>{};
 }
 
+namespace {
+
+// The code of commands whose labels are numbers of commands.
+std::vector<uint32_t> assembled(std::vector<vm::Instruction> commands) {
+  std::vector<int32_t> addresses;
+  int32_t next = 0;
+  for (const vm::Instruction& command : commands) {
+    addresses.push_back(next);
+    next += vm::info(command.opcode).words;
+  }
+  std::vector<uint32_t> code;
+  for (vm::Instruction& command : commands) {
+    const size_t label = label_of(vm::info(command.opcode));
+    if (label < vm::kMaxOperands)
+      command.operands[label] = addresses[static_cast<size_t>(command.operands[label])];
+    append(code, command);
+  }
+  return code;
+}
+
+}  // namespace
+
 std::vector<uint32_t> sequence_soup(uint64_t seed) {
   Pcg random(seed);
   constexpr int kVariables = 6;
@@ -307,23 +330,83 @@ std::vector<uint32_t> sequence_soup(uint64_t seed) {
     }
   }
   commands.push_back({random.one_in(2) ? vm::Opcode::End : vm::Opcode::Ret, {}});
-  std::vector<int32_t> addresses;
-  int32_t next = 0;
-  for (const vm::Instruction& command : commands) {
-    addresses.push_back(next);
-    next += vm::info(command.opcode).words;
-  }
-  std::vector<uint32_t> code;
   for (vm::Instruction& command : commands) {
     const size_t label = label_of(vm::info(command.opcode));
-    if (label < vm::kMaxOperands) {
-      int32_t& operand = command.operands[label];
-      const int32_t to = operand < 0 ? ~operand : random.below(static_cast<int>(commands.size()));
-      operand = addresses[static_cast<size_t>(to)];
-    }
-    append(code, command);
+    if (label == vm::kMaxOperands) continue;
+    int32_t& operand = command.operands[label];
+    operand = operand < 0 ? ~operand : random.below(static_cast<int>(commands.size()));
   }
-  return code;
+  return assembled(commands);
+}
+
+std::vector<uint32_t> table_loops(uint64_t seed, const vm::Limits& limits) {
+  Pcg random(seed);
+  using vm::Opcode;
+  // Eight variables for all, in a row somewhere, so that they divide the others into two tables; and others for
+  // temporaries now and then, as they would be where there are too many for registers.
+  const int most = limits.variables - 1;
+  const int base = random.one_in(2) ? random.below(4) : random.below(most - 8);
+  const int32_t counter = base, step = base + 1, limit = base + 2, value = base + 3;
+  std::vector<vm::Instruction> commands;
+  const auto put = [&](Opcode opcode, int32_t a = 0, int32_t b = 0, int32_t c = 0) {
+    commands.push_back({opcode, {a, b, c}});
+  };
+  const auto near = [&](int number) { return number + random.below(7) - 3; };
+  const auto edge = [&] {
+    const int edges[] = {0, base, base + 8, limits.variables, random.below(limits.variables)};
+    return random.one_in(30) ? static_cast<int32_t>(random.next()) : near(edges[random.below(5)]);
+  };
+  const int loops = 1 + random.below(3);
+  for (int loop = 0; loop < loops; ++loop) {
+    const int32_t constant = random.one_in(3) ? 0 : near(random.below(limits.variables));
+    const int32_t by = random.one_in(6)   ? edge()
+                       : random.one_in(20) ? std::numeric_limits<int32_t>::max() - random.below(80)
+                                           : 1 + random.below(5);
+    put(Opcode::SetHK, counter, edge() - constant);
+    put(Opcode::SetHK, step, by);
+    put(Opcode::SetHK, limit, edge() - constant);
+    const auto first = static_cast<int32_t>(commands.size());
+    for (int access = 1 + random.below(3); access > 0; --access) {
+      int32_t index = counter;
+      if (!random.one_in(4)) {
+        index = random.one_in(3) ? random.below(limits.variables) : base + 4 + random.below(2);
+        const int32_t added = near(constant);
+        put(Opcode::SetHH, index, random.one_in(20) ? value : counter);
+        if (random.one_in(5))
+          put(Opcode::SubHK, index, -added);
+        else
+          put(Opcode::AddHK, index, added);
+        if (random.one_in(20)) put(Opcode::MulHK, index, 2);
+      }
+      if (random.one_in(4)) put(Opcode::SetiStore, counter, value);
+      if (random.one_in(3)) put(Opcode::SetHK, value, near(0));
+      if (random.one_in(2)) {
+        put(Opcode::SetiStore, index, value);
+      } else {
+        put(Opcode::SetiLoad, base + 6, index);
+        put(Opcode::AddHH, base + 7, base + 6);
+        if (random.one_in(4)) put(random.one_in(2) ? Opcode::SubHH : Opcode::AddHH, base + 7, value);
+      }
+      // What makes the loop another.
+      if (random.one_in(12)) put(Opcode::AddHK, base + random.below(3), random.below(12));
+      if (random.one_in(16)) put(Opcode::DivHH, base + random.below(8), base + random.below(8));
+    }
+    if (random.one_in(2))
+      put(Opcode::AddHK, counter, by);
+    else
+      put(Opcode::AddHH, counter, step);
+    const Opcode tests_k[] = {Opcode::JmpLtHK, Opcode::JmpLeHK, Opcode::JmpNeHK};
+    const Opcode tests_h[] = {Opcode::JmpLtHH, Opcode::JmpLeHH, Opcode::JmpGeHH};
+    const int which = random.one_in(10) ? 2 : random.below(2);
+    if (random.one_in(2))
+      put(tests_k[which], counter, edge() - constant, first);
+    else
+      put(tests_h[which], counter, limit, first);
+    if (random.one_in(4))
+      put(Opcode::JmpEqHK, value, near(0), random.below(static_cast<int>(commands.size())));
+  }
+  put(random.one_in(8) ? Opcode::End : Opcode::Jmp);
+  return assembled(commands);
 }
 
 }  // namespace ipos::tests

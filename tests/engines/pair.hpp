@@ -36,4 +36,7 @@ std::vector<uint32_t> with_interrupts(const std::vector<uint32_t>& code, const v
 // and many jumps.
 std::vector<uint32_t> sequence_soup(uint64_t seed);
 
+// Loops over tables that begin, end and step near where variables in registers and the last variable are.
+std::vector<uint32_t> table_loops(uint64_t seed, const vm::Limits& limits);
+
 }  // namespace ipos::tests

@@ -17,6 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr uint32_t kOrders = 120;
 constexpr uint32_t kOrdersOfRepository = 1000;
+constexpr vm::Limits kLoopLimits{64, 1024, 3, 6};
 constexpr vm::Limits kSoupLimits{1024, 16384, 3, 6};  // few calls, so that F32 is met
 
 vm::Limits limits_of(const stdlib::UnitType& unit) {
@@ -46,6 +47,7 @@ std::vector<EngineProgram> programs_of(uint64_t seed) {
     add("generated", made.image->code, limits);
     add("generated with interrupts", with_interrupts(made.image->code, limits, seed), limits);
   }
+  add("loops over tables", table_loops(seed, kLoopLimits), kLoopLimits);
   add("soup", with_interrupts(sequence_soup(seed), kSoupLimits, seed), kSoupLimits);
   return programs;
 }

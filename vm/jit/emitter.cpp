@@ -1,6 +1,8 @@
 // The order of the code, see emitter.hpp.
 #include "vm/jit/emitter.hpp"
 
+#include <algorithm>
+
 #include "vm/exec/arithmetic.hpp"
 
 namespace ipos::vm::jit {
@@ -58,6 +60,7 @@ bool Emitter::run(Emitted& out) {
   enter();
   for (uint32_t n = 0; n < size;) n += command(n);
   slow_paths();
+  unchecked_loops();
   exit_paths();
   leave();
   for (const bool stores : {true, false}) {
@@ -85,7 +88,47 @@ void Emitter::begin(uint32_t n) {
     flags_of_ = -1;
   }
   if (labels_[n].isValid()) a_.bind(labels_[n]);
+  leave_checks_out(n);
   if (command.checks && command.native) check(command.need - command.arrival, exit(n, command.need));
+}
+
+// At the beginning of a loop: a way to the same without checks, taken when all its indexes will be good.
+void Emitter::leave_checks_out(uint32_t first) {
+  const auto loop = counted_loop(program_, first);
+  if (!loop || std::any_of(loop->fixed.begin(), loop->fixed.end(), [&](int32_t v) { return pin_of(v) < 0; })) return;
+  const Range range = range_for(loop->access);
+  const auto doubts = loop->doubts(range.first, range.count);
+  if (!doubts) return;
+  const Label checked = a_.newLabel();
+  for (const Instruction& doubt : *doubts) jump_if(doubt, checked);
+  unchecked_.push_back({a_.newLabel(), *loop});
+  label_of(loop->last + 1);
+  jump_to(unchecked_.back().label);
+  a_.align(asmjit::AlignMode::kCode, kLoopAlignment);
+  a_.bind(checked);
+}
+
+void Emitter::unchecked_loops() {
+  in_range_ = true;
+  for (const auto& [label, loop] : unchecked_) {
+    const Command& first = program_.commands[loop.first];
+    a_.align(asmjit::AlignMode::kCode, kLoopAlignment);
+    a_.bind(label);
+    check(first.need - first.arrival, exit(loop.first, first.need));
+    for (uint32_t n = loop.first; n < loop.last;) n += next(n);
+    branch(program_.commands[loop.last], loop.last, label);
+    jump_to(labels_[loop.last + 1]);
+  }
+  in_range_ = false;
+}
+
+// A command on variables, with the one behind it where two make one. Returns how many.
+uint32_t Emitter::next(uint32_t n) {
+  const Command& behind = program_.commands[n + 1];
+  flags_of_ = -1;
+  if (behind.native && !behind.joins && fused(program_.commands[n].instruction, behind.instruction)) return 2;
+  data(n);
+  return 1;
 }
 
 // Returns how many commands it has taken.
@@ -111,16 +154,9 @@ uint32_t Emitter::command(uint32_t n) {
         jump_to_case(n, taken);
         break;
       }
-      branch(command, n);
+      branch(command, n, labels_[command.target]);
       return 1;
-    default: {
-      flags_of_ = -1;
-      const Command& next = program_.commands[n + 1];
-      if (next.native && !next.joins && fused(command.instruction, next.instruction))
-        taken = 2;
-      else
-        data(n);
-    }
+    default: taken = next(n);
   }
   correct(program_.correction(program_.commands[n + taken - 1], program_.commands[n + taken]));
   return taken;
@@ -157,7 +193,7 @@ void Emitter::repeat(uint32_t first, uint32_t last, int32_t credit) {
   if (end.flow == Flow::Return) {
     ret(end);
   } else {
-    branch(end, last);
+    branch(end, last, labels_[end.target]);
     jump_to(label_of(last + 1));
   }
 }
@@ -204,17 +240,17 @@ void Emitter::tables() {
 
 // Either way may need a correction. The one of the jump comes first and does not touch the flags, and the
 // other takes it back; or it stands apart where the jump leaves a loop, which it does once.
-void Emitter::branch(const Command& command, uint32_t n) {
+void Emitter::branch(const Command& command, uint32_t n, const Label& to) {
   const int32_t taken = program_.correction(command, program_.commands[command.target]);
   const int32_t straight = program_.correction(command, program_.commands[n + 1]);
   const bool leaves = program_.commands[command.target].depth < command.depth;
   if (taken != 0 && leaves) {
-    detours_.push_back({a_.newLabel(), labels_[command.target], taken});
+    detours_.push_back({a_.newLabel(), to, taken});
     jump_if(command.instruction, detours_.back().label);
     correct(straight);
   } else {
     correct_with_result(taken);
-    jump_if(command.instruction, labels_[command.target]);
+    jump_if(command.instruction, to);
     correct(straight - taken);
   }
   flags_of_ = -1;
@@ -258,6 +294,12 @@ void Emitter::slow_paths() {
     slow_access(slow);
     jump_to(slow.back);
   }
+}
+
+void Emitter::finish_access(const Slow& slow) {
+  if (in_range_) return;
+  a_.bind(slow.back);
+  slow_.push_back(slow);
 }
 
 // The range of variables in memory an index most likely leads to; where nothing tells, the longest.

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "vm/exec/context.hpp"
-#include "vm/jit/flow.hpp"
+#include "vm/jit/counted.hpp"
 
 namespace ipos::vm::jit {
 
@@ -109,12 +109,14 @@ class Emitter {
   const std::vector<uint16_t>& pinned() const { return pinned_; }
   // For each word address the way from the table to the code of a return to it.
   void table_of_returns(const asmjit::Label& table, const asmjit::Label& none);
-  void add_slow(const Slow& slow) { slow_.push_back(slow); }
+  // Behind an access: where the code for any other index comes back to.
+  void finish_access(const Slow& slow);
 
   const Program& program_;
   const Unwind unwind_;
   const asmjit::Label leave_, store_pins_, load_pins_, returned_;
   int32_t flags_of_ = -1;  // the processor's flags tell of this variable
+  bool in_range_ = false;  // what is being made is executed with indexes in range_for() only
 
  private:
   struct Exit {
@@ -127,6 +129,11 @@ class Emitter {
     asmjit::Label label, target;
     int32_t by;
   };
+  // A loop once more, for indexes that need no check.
+  struct Unchecked {
+    asmjit::Label label;
+    CountedLoop loop;
+  };
   // Where the cases of a switch begin.
   struct Table {
     asmjit::Label label;
@@ -136,8 +143,10 @@ class Emitter {
   void choose_ranges();
   uint32_t command(uint32_t n);
   void begin(uint32_t n);
+  void leave_checks_out(uint32_t first);
+  uint32_t next(uint32_t n);
   void jump(uint32_t n);
-  void branch(const Command& command, uint32_t n);
+  void branch(const Command& command, uint32_t n, const asmjit::Label& to);
   void call(uint32_t n);
   void ret(const Command& command);
   uint32_t end_of_short_line(uint32_t first) const;
@@ -146,6 +155,7 @@ class Emitter {
   void jump_to_case(uint32_t n, uint32_t count);
   asmjit::Label label_of(uint32_t n);
   void slow_paths();
+  void unchecked_loops();
   void exit_paths();
   void tables();
 
@@ -158,6 +168,7 @@ class Emitter {
   std::vector<Exit> exits_;
   std::vector<Detour> detours_;
   std::vector<Slow> slow_;
+  std::vector<Unchecked> unchecked_;
   std::vector<Table> tables_;
 };
 

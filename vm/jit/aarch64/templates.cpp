@@ -210,6 +210,7 @@ void EmitterA64::move_bit(const Instruction& command, bool inverted) {
 a64::Gp EmitterA64::checked_index(uint32_t n, int32_t variable, const asmjit::Label& slow) {
   const Range range = range_for(n);
   const a64::Gp index = value(variable, w0);
+  if (in_range_) return index;
   if (range.first == 0) {
     compare(index, wrap(range.count));
   } else {
@@ -227,8 +228,7 @@ void EmitterA64::load(uint32_t n) {
   const a64::Gp to = result(operands[0], w0);
   a_.ldr(to, indexed(index));
   finish(operands[0], to);
-  a_.bind(slow.back);
-  add_slow(slow);
+  finish_access(slow);
 }
 
 void EmitterA64::store(uint32_t n) {
@@ -236,8 +236,7 @@ void EmitterA64::store(uint32_t n) {
   const Slow slow{a_.newLabel(), a_.newLabel(), n};
   const a64::Gp index = checked_index(n, operands[0], slow.label);
   a_.str(value(operands[1], w1), indexed(index));
-  a_.bind(slow.back);
-  add_slow(slow);
+  finish_access(slow);
 }
 
 void EmitterA64::slow_access(const Slow& slow) {

@@ -241,6 +241,7 @@ x86::Gp EmitterX86::checked_index(uint32_t n, int32_t variable, const asmjit::La
   const Range range = range_for(n);
   const x86::Gp index = pin(variable).value_or(x86::ecx);
   if (!pin(variable)) a_.mov(index, memory(variable));
+  if (in_range_) return index;
   if (range.first == 0) {
     a_.cmp(index, range.count);
   } else {
@@ -258,8 +259,7 @@ void EmitterX86::load(uint32_t n) {
   const x86::Gp result = pin(operands[0]).value_or(x86::eax);
   a_.mov(result, indexed(index));
   if (!pin(operands[0])) a_.mov(memory(operands[0]), result);
-  a_.bind(slow.back);
-  add_slow(slow);
+  finish_access(slow);
 }
 
 void EmitterX86::store(uint32_t n) {
@@ -269,8 +269,7 @@ void EmitterX86::store(uint32_t n) {
   const x86::Gp value = pin(operands[1]).value_or(x86::eax);
   if (!pin(operands[1])) a_.mov(value, memory(operands[1]));
   a_.mov(indexed(index), value);
-  a_.bind(slow.back);
-  add_slow(slow);
+  finish_access(slow);
 }
 
 void EmitterX86::slow_access(const Slow& slow) {
