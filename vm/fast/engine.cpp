@@ -64,10 +64,10 @@ uint32_t call_depth(const Predecoded& program) {
     DISPATCH();                                \
   } while (false)
 
-// The same for jumps that mostly lead where the one before them led, as from the end of a loop or of a case:
-// the processor goes on from there without waiting for the route, which it only has to find equal. HIDE keeps the
-// compiler from seeing that the two are the same.
-#if IPOS_THREADED
+// The same for jumps that mostly lead where the one before them led, as from the end of a loop or of a case: the
+// processor goes on from there without waiting for the route, which it only has to find equal. HIDE keeps the
+// compiler from seeing that the two are the same. Not with clang, which takes minutes for this file without it.
+#if IPOS_LABEL_ALIGNMENT
 #define HIDE(pointer) asm("" : "+r"(pointer))
 #define TAKE_AGAIN(at, before)                              \
   do {                                                      \
@@ -154,7 +154,7 @@ Exit execute(const Predecoded* program, TaskContext* context, int32_t* h, State&
   const uint32_t variables = program->program().limits().variables;
   const uint32_t depth_limit = call_depth(*program);
   const Slot* ip = state.ip;
-  [[maybe_unused]] const Slot* loop = nullptr;  // where the last loop that ended went on
+  [[maybe_unused]] const Slot* loop = nullptr;  // where the last end of a loop led
   [[maybe_unused]] const Slot* join = nullptr;  // where the last JMP led
   int32_t left = state.left;
 
