@@ -202,14 +202,16 @@ TEST_F(Native, SumsOfTwo) {
           ASSERT_EQ(run(numbers).stop, vm::Stop::Ended);
           for (size_t n = 0; n < numbers.size(); ++n) {
             const int64_t x = numbers[n];
-            const int64_t sum = kFirst + (one == Opcode::AddHH ? x : -x) + (two == Opcode::AddHH ? kSecond : -kSecond);
+            const int64_t sum =
+                kFirst + (one == Opcode::AddHH ? x : -x) + (two == Opcode::AddHH ? kSecond : -kSecond);
             ASSERT_EQ(vm::bits(h(500 + n)), low(sum)) << x;
             const int64_t y = tested == kX ? x : static_cast<int32_t>(low(sum));
             const bool taken = test == Opcode::JmpEqHK   ? y == 0
                                : test == Opcode::JmpNeHK ? y != 0
                                : test == Opcode::JmpLtHK ? y < 0
                                                          : y >= 0;
-            ASSERT_EQ(h(750 + n), taken) << vm::info(test).name << " " << x << (tested == kX ? ", not the sum" : "");
+            ASSERT_EQ(h(750 + n), taken)
+                << vm::info(test).name << " " << x << (tested == kX ? ", not the sum" : "");
           }
         }
 }
@@ -249,8 +251,8 @@ TEST_F(Native, AnIndexReachesVariablesInRegisters) {
   EXPECT_EQ(h(98), 178);
 }
 
-// In a loop whose indexes all seem to lie in a table, a store changes the variable the next index is in, as there
-// are too many others for it to be in a register.
+// In a loop whose indexes all seem to lie in a table, a store changes the variable the next index is in, as
+// there are too many others for it to be in a register.
 TEST_F(Native, AnIndexInMemoryIsOverwritten) {
   constexpr int32_t kCounter = 10, kValue = 11, kIndex = 150;
   add(Opcode::SetHK, {kCounter, 100, 0, 0});

@@ -342,8 +342,8 @@ std::vector<uint32_t> sequence_soup(uint64_t seed) {
 std::vector<uint32_t> table_loops(uint64_t seed, const vm::Limits& limits) {
   Pcg random(seed);
   using vm::Opcode;
-  // Eight variables for all, in a row somewhere, so that they divide the others into two tables; and others for
-  // temporaries now and then, as they would be where there are too many for registers.
+  // Eight variables for all, in a row somewhere, so that they divide the others into two tables; and others
+  // for temporaries now and then, as they would be where there are too many for registers.
   const int most = limits.variables - 1;
   const int base = random.one_in(2) ? random.below(4) : random.below(most - 8);
   const int32_t counter = base, step = base + 1, limit = base + 2, value = base + 3;
@@ -359,7 +359,7 @@ std::vector<uint32_t> table_loops(uint64_t seed, const vm::Limits& limits) {
   const int loops = 1 + random.below(3);
   for (int loop = 0; loop < loops; ++loop) {
     const int32_t constant = random.one_in(3) ? 0 : near(random.below(limits.variables));
-    const int32_t by = random.one_in(6)   ? edge()
+    const int32_t by = random.one_in(6)    ? edge()
                        : random.one_in(20) ? std::numeric_limits<int32_t>::max() - random.below(80)
                                            : 1 + random.below(5);
     put(Opcode::SetHK, counter, edge() - constant);

@@ -125,7 +125,8 @@ struct Fused {
     return exits;
   }();
   static constexpr bool kTests = kExits[0] != 0;
-  // A JMP and nothing that could jump before it; a variable that is stepped and tested, as at the end of loops.
+  // A JMP and nothing that could jump before it; a variable that is stepped and tested, as at the end of
+  // loops.
   static constexpr bool kJumps = kAlwaysJumps && kExits[1] == 0;
   static constexpr bool kEndsLoop = [] {
     bool ends = false;

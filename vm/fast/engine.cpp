@@ -64,9 +64,10 @@ uint32_t call_depth(const Predecoded& program) {
     DISPATCH();                                \
   } while (false)
 
-// The same for jumps that mostly lead where the one before them led, as from the end of a loop or of a case: the
-// processor goes on from there without waiting for the route, which it only has to find equal. HIDE keeps the
-// compiler from seeing that the two are the same. Not with clang, which takes minutes for this file without it.
+// The same for jumps that mostly lead where the one before them led, as from the end of a loop or of a case:
+// the processor goes on from there without waiting for the route, which it only has to find equal. HIDE keeps
+// the compiler from seeing that the two are the same. Not with clang, which takes minutes for this file
+// without it.
 #if IPOS_LABEL_ALIGNMENT
 #define HIDE(pointer) asm("" : "+r"(pointer))
 #define TAKE_AGAIN(at, before)                              \

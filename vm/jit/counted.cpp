@@ -14,8 +14,8 @@ int32_t set_by(const Instruction& command) {
   return command.opcode == Opcode::Nop || command.opcode == Opcode::SetiStore ? -1 : command.operands[0];
 }
 
-// What is added to the counter to get this index at a command of the loop; nothing when it is not that. Notes the
-// variables it is made in.
+// What is added to the counter to get this index at a command of the loop; nothing when it is not that. Notes
+// the variables it is made in.
 std::optional<int32_t> constant_of(const Program& program, CountedLoop& loop, uint32_t at, int32_t index) {
   int64_t sum = 0;
   while (index != loop.counter) {
@@ -47,11 +47,16 @@ std::optional<CountedLoop> counted_loop(const Program& program, uint32_t first) 
     ++last;
   if (last >= commands.size() || last < first + 2 || commands[last].joins || commands[last].target != first)
     return std::nullopt;
-  CountedLoop loop{first, last, 0, commands[last - 1].instruction, commands[last].instruction, 0, 0, first, {}};
+  CountedLoop loop;
+  loop.first = first;
+  loop.last = last;
+  loop.step = commands[last - 1].instruction;
+  loop.test = commands[last].instruction;
   loop.counter = loop.test.operands[0];
   const bool below = loop.test.opcode == Opcode::JmpLtHK || loop.test.opcode == Opcode::JmpLtHH;
   const bool up_to = loop.test.opcode == Opcode::JmpLeHK || loop.test.opcode == Opcode::JmpLeHH;
-  const bool steps = (loop.step.opcode == Opcode::AddHK && loop.step.operands[1] > 0) || loop.step.opcode == Opcode::AddHH;
+  const bool steps =
+      (loop.step.opcode == Opcode::AddHK && loop.step.operands[1] > 0) || loop.step.opcode == Opcode::AddHH;
   if ((!below && !up_to) || !steps || loop.step.operands[0] != loop.counter) return std::nullopt;
 
   // Nothing else changes the counter, and nothing step or limit.
@@ -61,7 +66,6 @@ std::optional<CountedLoop> counted_loop(const Program& program, uint32_t first) 
     loop.fixed.push_back(loop.test.operands[1]);
   const std::vector<int32_t> given = loop.fixed;
   if (std::count(given.begin(), given.end(), loop.counter) != 1) return std::nullopt;
-  bool any = false;
   for (uint32_t n = first; n + 1 < last; ++n) {
     const Instruction& command = commands[n].instruction;
     if (std::find(given.begin(), given.end(), set_by(command)) != given.end()) return std::nullopt;
@@ -69,18 +73,18 @@ std::optional<CountedLoop> counted_loop(const Program& program, uint32_t first) 
     if (!loads && command.opcode != Opcode::SetiStore) continue;
     const auto constant = constant_of(program, loop, n, command.operands[loads ? 1 : 0]);
     if (!constant) return std::nullopt;
-    if (!any) loop.lowest = loop.highest = *constant, loop.access = n;
-    any = true;
+    if (!loop.access) loop.lowest = loop.highest = *constant;
+    loop.access = loop.access.value_or(n);
     loop.lowest = std::min(loop.lowest, *constant);
     loop.highest = std::max(loop.highest, *constant);
   }
-  if (!any) return std::nullopt;
+  if (!loop.access) return std::nullopt;
   return loop;
 }
 
-// With the counter at least `begin` and below `end` all indexes are in these variables. What is tested behind the
-// step keeps it below the limit, and the step keeps it from falling, as it is above 0 and so small that the sum does
-// not overflow.
+// With the counter at least `begin` and below `end` all indexes are in these variables. What is tested behind
+// the step keeps it below the limit, and the step keeps it from falling, as it is above 0 and so small that
+// the sum does not overflow.
 std::optional<std::vector<Instruction>> CountedLoop::doubts(uint32_t in, uint32_t count) const {
   const int32_t begin = static_cast<int32_t>(in) - lowest;
   const int32_t end = static_cast<int32_t>(in + count) - highest;

@@ -95,8 +95,9 @@ void Emitter::begin(uint32_t n) {
 // At the beginning of a loop: a way to the same without checks, taken when all its indexes will be good.
 void Emitter::leave_checks_out(uint32_t first) {
   const auto loop = counted_loop(program_, first);
-  if (!loop || std::any_of(loop->fixed.begin(), loop->fixed.end(), [&](int32_t v) { return pin_of(v) < 0; })) return;
-  const Range range = range_for(loop->access);
+  if (!loop || std::any_of(loop->fixed.begin(), loop->fixed.end(), [&](int32_t v) { return pin_of(v) < 0; }))
+    return;
+  const Range range = range_for(*loop->access);
   const auto doubts = loop->doubts(range.first, range.count);
   if (!doubts) return;
   const Label checked = a_.newLabel();

@@ -21,7 +21,9 @@ bool EmitterX86::fused(const Instruction& first, const Instruction& second) {
 // the loop before, is added once.
 bool EmitterX86::accumulate(const Instruction& first, const Instruction& second) {
   const auto adds = [](const Instruction& command) { return command.opcode == Opcode::AddHH; };
-  const auto sums = [&](const Instruction& command) { return adds(command) || command.opcode == Opcode::SubHH; };
+  const auto sums = [&](const Instruction& command) {
+    return adds(command) || command.opcode == Opcode::SubHH;
+  };
   const int32_t a = first.operands[0];
   if (!sums(first) || !sums(second) || second.operands[0] != a) return false;
   const auto b = pin(first.operands[1]), c = pin(second.operands[1]);
