@@ -92,22 +92,22 @@ uint32_t call_depth(const Predecoded& program) {
 #define TAKE_AGAIN(at, before) TAKE(at)
 #endif
 
-#define CALL()                                                  \
-  do {                                                          \
-    if (t.depth == depth_limit) goto leave;                     \
-    t.calls[t.depth++] = static_cast<uint16_t>(ip - slots + 2); \
-    TAKE(ip + 1);                                               \
+#define CALL()                               \
+  do {                                       \
+    if (t.depth == depth_limit) goto leave;  \
+    t.calls[t.depth++] = ip[1].route.behind; \
+    TAKE(ip + 1);                            \
   } while (false)
 
-#define RETURN()                                                                           \
-  do {                                                                                     \
-    if (t.depth == 0) goto leave;                                                          \
-    const uint32_t back = t.calls[--t.depth];                                              \
-    left -= ip->command.number + 1;                                                        \
-    ip = slots + back;                                                                     \
-    left += ip->command.number;                                                            \
-    if (left < static_cast<int32_t>(ip->command.number + program->line(back))) goto spent; \
-    DISPATCH();                                                                            \
+#define RETURN()                                                                   \
+  do {                                                                             \
+    if (t.depth == 0) goto leave;                                                  \
+    const uint32_t back = t.calls[--t.depth];                                      \
+    left -= ip->command.number + 1;                                                \
+    ip = slots + back;                                                             \
+    left += ip->command.number;                                                    \
+    if (left < static_cast<int32_t>(ip->command.number + lines[back])) goto spent; \
+    DISPATCH();                                                                    \
   } while (false)
 
 // Does the parts of an operation and leaves the handler if that ends it.
@@ -152,6 +152,7 @@ Exit execute(const Predecoded* program, TaskContext* context, int32_t* h, State&
 #endif
   TaskContext& t = *context;
   const Slot* const slots = program->slots();
+  const uint16_t* const lines = program->lines();
   const uint32_t variables = program->program().limits().variables;
   const uint32_t depth_limit = call_depth(*program);
   const Slot* ip = state.ip;
@@ -271,7 +272,7 @@ uint32_t step(const Predecoded& program, TaskContext& t, int32_t* h, uint32_t bu
 #include "vm/fast/operations.def"
       case Opcode::Call:
         if (t.depth == call_depth(program)) goto leave;
-        t.calls[t.depth++] = static_cast<uint16_t>(at + 2);
+        t.calls[t.depth++] = ip[1].route.behind;
         at += static_cast<uint32_t>(1 + ip[1].route.offset);
         --left;
         break;

@@ -155,8 +155,10 @@ void Predecoded::set_routes(uint32_t address, uint32_t words, uint32_t target) {
   const uint32_t last = address + words - 1;
   const int32_t from = slots_[address].command.number;
   const int32_t to = slots_[target].command.number;
-  slots_[last].route = {static_cast<int16_t>(from + 1 - to), static_cast<uint16_t>(slots_[target].command.number + line(target)),
-                        static_cast<int16_t>(static_cast<int32_t>(target) - static_cast<int32_t>(last)), 0};
+  slots_[last].route = {static_cast<int16_t>(from + 1 - to),
+                        static_cast<uint16_t>(slots_[target].command.number + line(target)),
+                        static_cast<int16_t>(static_cast<int32_t>(target) - static_cast<int32_t>(last)),
+                        static_cast<uint16_t>(last + 1)};
 }
 
 void Predecoded::choose() {

@@ -39,19 +39,15 @@ class Predecoded {
   const void* base() const { return base_; }  // handler_base()
 
   // Commands that follow each other from here on until one that always leads elsewhere, itself included.
-  uint32_t line(uint32_t address) const { return line_at(address); }
+  uint32_t line(uint32_t address) const { return lines()[address]; }
+  const uint16_t* lines() const { return slots_[program_.code().size()].lines.data(); }  // by address
 
   // The operation that begins at a command, and how many commands it has as long as nothing jumps.
   Operation operation(uint32_t address) const;
   uint32_t commands(uint32_t address) const;
 
  private:
-  uint16_t& line_at(uint32_t address) {
-    return slots_[program_.code().size() + address / 4].lines[address % 4];
-  }
-  const uint16_t& line_at(uint32_t address) const {
-    return slots_[program_.code().size() + address / 4].lines[address % 4];
-  }
+  uint16_t& line_at(uint32_t address) { return slots_[program_.code().size()].lines.data()[address]; }
   void fill();
   void choose();
   void set_routes(uint32_t address, uint32_t words, uint32_t target);

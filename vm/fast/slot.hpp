@@ -24,10 +24,10 @@ union Slot {
   // plus the number of the command it stands at. In a line of commands `left` stays the same; a jump changes
   // it by what is known beforehand.
   struct Route {
-    int16_t delta;   // number of the command + 1 - number of the target
-    uint16_t bound;  // number of the target + what stands in a line from there on: `left` must reach it
-    int16_t offset;  // slots from here to the target
-    uint16_t unused;
+    int16_t delta;    // number of the command + 1 - number of the target
+    uint16_t bound;   // number of the target + what stands in a line from there on: `left` must reach it
+    int16_t offset;   // slots from here to the target
+    uint16_t behind;  // word address behind the command, where a CALL returns to
   };
   Command command;
   Constant constant;
