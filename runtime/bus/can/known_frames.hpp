@@ -47,10 +47,7 @@ class KnownFrames {
     uint64_t resting = 0;
     uint32_t bits = 0;
   };
-  static uint64_t head_of(const Frame& frame) {
-    return uint64_t{frame.id} << 16 | uint64_t{frame.extended} << 9 | uint64_t{frame.remote} << 8 |
-           frame.length;
-  }
+  static uint64_t head_of(const Frame& frame) { return std::bit_cast<std::array<uint64_t, 2>>(frame)[0]; }
 
   std::array<Known, 256> known_{};
 };
