@@ -56,11 +56,10 @@ class Contenders {
     for (size_t n = first_; n < end_ && ranks_[n] >> kKeyShift == lowest; ++n)
       visit(static_cast<NodeId>(ranks_[n]));
   }
-  // All in order of attachment.
+  // All of them, by rank.
   template <typename Visit>
   void each(Visit visit) const {
-    for (NodeId node = 0; node < rank_of_.size(); ++node)
-      if (rank_of_[node] != kNoRank) visit(node);
+    for (size_t n = first_; n < end_; ++n) visit(static_cast<NodeId>(ranks_[n]));
   }
 
  private:

@@ -350,6 +350,7 @@ bool CanLine::begin_transfer(uint32_t number, uint64_t bit) {
       lowest = first->key;
       winners_.push_back(id);
     });
+    std::sort(winners_.begin(), winners_.end());  // in order of attachment
     for (const NodeId id : winners_) send(id);
     winners_.clear();
   }

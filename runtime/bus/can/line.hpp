@@ -89,13 +89,13 @@ class CanLine final : private EventTarget {
   struct Pending {
     Frame frame;
     uint64_t tag;
-    uint64_t ready_bit;  // takes part in arbitration from here on
     uint32_t key;
     bool on_wire = false;
     bool withdrawn = false;  // while on the wire
+    uint64_t ready_bit;      // takes part in arbitration from here on
 
     Pending(const Frame& sent, uint64_t its_tag, uint64_t ready, uint32_t its_key)
-        : frame(canonical(sent)), tag(its_tag), ready_bit(ready), key(its_key) {}
+        : frame(canonical(sent)), tag(its_tag), key(its_key), ready_bit(ready) {}
   };
   struct alignas(64) Node {
     // What every frame asks for stands in one line of memory.
