@@ -85,8 +85,8 @@ class EventQueue {
   // From within an event: an event of `source` at `at` would be the next of all, and this run goes so far.
   // Then it is that time now, and the caller does at once what it would have scheduled.
   bool advance(Time at, uint32_t source) {
-    const Time first_at = std::min({rows_[0].first_at, rows_[1].first_at, heap_first_at_});
-    if (at > run_end_ || at > first_at || (at == first_at && !comes_first(at, source))) return false;
+    const bool first = at < rows_[0].first_at && at < rows_[1].first_at && at < heap_first_at_;
+    if (at > run_end_ || (!first && !comes_first(at, source))) return false;
     reach(at, source);
     return true;
   }

@@ -203,7 +203,7 @@ void Plant::add_observer(SerialObserver& observer) {
 
 bool Plant::run_until(Time end, const std::function<bool(Time)>& keep_going) {
   for (Time at = queue_.now(); at < end;) {
-    at = std::min(end, (at / kMillisecond + 1) * kMillisecond);
+    at = keep_going ? std::min(end, (at / kMillisecond + 1) * kMillisecond) : end;
     check_expectations(at);
     queue_.run_until(at);
     if (keep_going && !keep_going(at)) {

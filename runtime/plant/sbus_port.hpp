@@ -43,8 +43,7 @@ class SbusPort final : private CanNode, private SlaveObserver, private ObjectRea
   // for none.
   Time tick(Time now) {
     if (leads_) group_master_.tick(now);
-    int64_t due = INT64_MAX;
-    if (!variables_.empty()) due = objects_.tick(now / kMillisecond, variables_);
+    const int64_t due = objects_.tick(now / kMillisecond, variables_);
     if (leads_) return now + kMillisecond;
     return due == INT64_MAX ? kNever : due * kMillisecond;
   }

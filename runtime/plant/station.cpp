@@ -116,7 +116,15 @@ void Station::connect_serial() {
 }
 
 void Station::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
-  if (asleep_ && sleeps_through(now)) return;
+  if (asleep_ && now < back_at_) return sleep_through(now);
+  tick(now);
+}
+
+void Station::tick(Time now) {
+  if (asleep_) {
+    leave_out_to(back_at_ - kMillisecond);
+    get_up();
+  }
   if (late_) {
     execute_to(now);
   } else {

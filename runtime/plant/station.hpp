@@ -181,6 +181,7 @@ class Station final : private EventTarget, private Sleeper {
   static constexpr uint32_t kTick = 0;  // the only kind of event a station schedules
 
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
+  void tick(Time now);
   bool execute(Time now);
   void make_up() override;
   bool make_up_variables() override;
@@ -215,7 +216,7 @@ class Station final : private EventTarget, private Sleeper {
   void leave_course();
   void try_course();
   void schedule_tick(Time now, Time telegram);
-  bool sleeps_through(Time now);
+  void sleep_through(Time now);
   void try_sleep();
   void begin_trial();
   void try_program();

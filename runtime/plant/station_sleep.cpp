@@ -74,13 +74,8 @@ void Station::try_sleep() {
   }
 }
 
-// The event of a station that sleeps: a telegram is due, or the sleep is over.
-bool Station::sleeps_through(Time now) {
-  if (now >= back_at_) {
-    leave_out_to(back_at_ - kMillisecond);
-    get_up();
-    return false;
-  }
+// A telegram of a station that sleeps is due.
+void Station::sleep_through(Time now) {
   Time next = back_at_;
   for (const auto& port : sbus_) {
     if (!port) continue;
@@ -88,7 +83,6 @@ bool Station::sleeps_through(Time now) {
     next = std::min(next, port->tick(now));
   }
   if (asleep_) tick_ = queue_.schedule(next, source_, *this, kTick);
-  return true;
 }
 
 // All ticks up to that at `last`.

@@ -1,5 +1,5 @@
-// Who wants to send on a line: of each node with waiting frames what arbitration asks about it, ranked by the
-// arbitration field of its first frame. So the winner is found without a look at the others.
+// Who wants to send on a line: the nodes with waiting frames, ranked by the arbitration field of the first
+// frame of each. So the winner is found without a look at the others.
 #pragma once
 
 #include <algorithm>
@@ -12,39 +12,32 @@
 
 namespace ipos::runtime {
 
-struct Contender {
-  uint64_t ready = 0;        // can send from this bit on
-  uint64_t first_ready = 0;  // the first of its queue can
-  uint32_t key = 0;          // of that one; the lowest one wins
-};
-
 class Contenders {
  public:
   void grow(size_t nodes) {
-    rows_.resize(nodes);
+    rank_of_.resize(nodes, kNoRank);
     ranks_.resize(2 * nodes);
   }
 
   bool empty() const { return first_ == end_; }
-  const Contender& operator[](NodeId node) const { return rows_[node]; }
 
-  // A node that did not wait has one frame now.
-  void join(NodeId node, uint64_t ready, uint32_t key) {
-    insert(rank(node, key));
-    set(node, ready, ready, key);
-  }
-  void put(NodeId node, uint64_t ready, uint64_t first_ready, uint32_t key) {
-    const Row& row = rows_[node];
-    if (!row.waits || row.key != key) {
-      if (row.waits) erase(rank(node, row.key));
-      insert(rank(node, key));
+  // The first frame of its queue has this key, the lowest one wins, and can be sent from the bit `ready` on.
+  void put(NodeId node, uint64_t ready, uint32_t key) {
+    if (rank_of_[node] == rank(node, key)) {
+      ready_by_ = std::max(ready_by_, ready);
+    } else {
+      remove(node);
+      join(node, ready, key);
     }
-    set(node, ready, first_ready, key);
+  }
+  void join(NodeId node, uint64_t ready, uint32_t key) {  // one that did not wait
+    rank_of_[node] = rank(node, key);
+    insert(rank(node, key));
+    ready_by_ = std::max(ready_by_, ready);
   }
   void remove(NodeId node) {
-    if (!rows_[node].waits) return;
-    rows_[node].waits = false;
-    erase(rank(node, rows_[node].key));
+    const uint64_t rank = std::exchange(rank_of_[node], kNoRank);
+    if (rank != kNoRank) erase(rank);
   }
 
   // At this bit each of them can send the first frame of its queue.
@@ -63,66 +56,38 @@ class Contenders {
     for (size_t n = first_; n < end_ && ranks_[n] >> kKeyShift == lowest; ++n)
       visit(static_cast<NodeId>(ranks_[n]));
   }
-  // All in order of attachment.
+  // All of them, by rank.
   template <typename Visit>
   void each(Visit visit) const {
-    for (NodeId node = 0; node < rows_.size(); ++node)
-      if (rows_[node].waits) visit(node);
+    for (size_t n = first_; n < end_; ++n) visit(static_cast<NodeId>(ranks_[n]));
   }
 
  private:
-  struct Row : Contender {
-    bool waits = false;
-  };
   static constexpr int kKeyShift = 32;
+  static constexpr uint64_t kNoRank = ~uint64_t{0};  // of kNoNode
   static uint64_t rank(NodeId node, uint32_t key) { return uint64_t{key} << kKeyShift | node; }
 
-  void set(NodeId node, uint64_t ready, uint64_t first_ready, uint32_t key) {
-    Row& row = rows_[node];
-    row.ready = ready;
-    row.first_ready = first_ready;
-    row.key = key;
-    row.waits = true;
-    ready_by_ = std::max(ready_by_, first_ready);
-  }
   void insert(uint64_t rank) {
     if (end_ != ranks_.size() && (empty() || ranks_[end_ - 1] < rank))
       ranks_[end_++] = rank;
     else
       insert_between(rank);
   }
-  void insert_between(uint64_t rank);
   void erase(uint64_t rank) {
-    if (ranks_[first_] == rank) {
-      if (++first_ == end_) first_ = end_ = 0;
-    } else {
-      const auto place = std::lower_bound(at(first_), at(end_), rank);
-      std::copy(place + 1, at(end_), place);
-      --end_;
-    }
+    if (ranks_[first_] != rank)
+      erase_between(rank);
+    else if (++first_ == end_)
+      first_ = end_ = 0;
   }
+  void insert_between(uint64_t rank);
+  void erase_between(uint64_t rank);
   std::vector<uint64_t>::iterator at(size_t n) { return ranks_.begin() + static_cast<ptrdiff_t>(n); }
 
-  std::vector<Row> rows_;
-  std::vector<uint64_t> ranks_;  // key and node, rising, from first_ to end_
+  std::vector<uint64_t> rank_of_;  // by node: key and node; kNoRank: it does not wait
+  std::vector<uint64_t> ranks_;    // of all that wait, rising, from first_ to end_
   size_t first_ = 0;
   size_t end_ = 0;
-  uint64_t ready_by_ = 0;  // the latest first_ready there was
+  uint64_t ready_by_ = 0;  // the latest `ready` there was
 };
-
-inline void Contenders::insert_between(uint64_t rank) {
-  if (end_ == ranks_.size()) {  // at least half of it is free
-    std::copy(at(first_), at(end_), at(0));
-    end_ -= std::exchange(first_, 0);
-  }
-  if (first_ > 0 && rank < ranks_[first_]) {
-    ranks_[--first_] = rank;
-    return;
-  }
-  const auto place = std::lower_bound(at(first_), at(end_), rank);
-  std::copy_backward(place, at(end_), at(end_ + 1));
-  *place = rank;
-  ++end_;
-}
 
 }  // namespace ipos::runtime

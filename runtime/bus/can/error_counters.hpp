@@ -16,7 +16,7 @@ struct ErrorCounters {
     if (transmit > 255) return ErrorState::BusOff;
     return transmit > 127 || receive > 127 ? ErrorState::Passive : ErrorState::Active;
   }
-  bool untouched() const { return transmit == 0 && receive == 0; }
+  bool untouched() const { return (transmit | receive) == 0; }
   void sent() { transmit -= transmit > 0 ? 1 : 0; }
   void send_failed() { transmit += 8; }
   // An error-passive sender that misses the acknowledge and sees no dominant bit during its flag does not

@@ -21,7 +21,7 @@ class KnownFrames {
     const uint64_t head = head_of(frame);
     const auto data = std::bit_cast<uint64_t>(frame.data);
     Known& known = known_[frame.id % known_.size()];
-    if (known.head != head || known.data != data) known = {head, data, 0, frame_bits(frame)};
+    if (known.head != head || known.data != data) known = {head, 0, data, frame_bits(frame)};
     return known.bits;
   }
 
@@ -43,14 +43,11 @@ class KnownFrames {
  private:
   struct Known {
     uint64_t head = UINT64_MAX;  // all but the data; at first that of no frame
-    uint64_t data = 0;
     uint64_t resting = 0;
+    uint64_t data = 0;
     uint32_t bits = 0;
   };
-  static uint64_t head_of(const Frame& frame) {
-    return uint64_t{frame.id} << 16 | uint64_t{frame.extended} << 9 | uint64_t{frame.remote} << 8 |
-           frame.length;
-  }
+  static uint64_t head_of(const Frame& frame) { return std::bit_cast<std::array<uint64_t, 2>>(frame)[0]; }
 
   std::array<Known, 256> known_{};
 };

@@ -12,7 +12,6 @@ namespace {
 
 constexpr uint32_t kSuspendBits = 8;     // pause of an error-passive sender after a transmission
 constexpr uint32_t kRecessiveTail = 11;  // every transfer ends with delimiter bits and intermission
-constexpr uint64_t kNoBit = ~uint64_t{0};
 
 }  // namespace
 
@@ -53,29 +52,27 @@ bool CanLine::is_reachable(NodeId from, NodeId to) const {
 
 // --- sending
 
-SendStatus CanLine::send(NodeId node, const Frame& frame, uint64_t tag) {
+SendStatus CanLine::send(NodeId node, const Frame& frame, uint64_t tag, bool overtakes) {
   Node& n = nodes_[node];
   if (!is_valid(frame)) return SendStatus::InvalidFrame;
   if (!is_active(n)) return SendStatus::NotActive;
-  if (n.queue.size() >= kSendQueueLimit) return SendStatus::QueueFull;
   const uint64_t ready = static_cast<uint64_t>(queue_.now() / bit_time_) + 1;
   const uint32_t key = arbitration_key(frame);
+  const uint64_t wanted = std::max(ready, n.suspended_until);
   if (n.queue.empty()) {
     n.queue.emplace_back(frame, tag, ready, key);
-    contenders_.join(node, std::max(ready, n.suspended_until), key);
-  } else {
+    contenders_.join(node, wanted, key);
+  } else if (overtakes) {
+    withdraw(node, tag);
+    return send(node, frame, tag);
+  } else if (n.queue.size() < kSendQueueLimit) {
     queue_behind(node, {frame, tag, ready, key});
+  } else {
+    return SendStatus::QueueFull;
   }
   const Segment& segment = segments_[n.segment];
-  const bool in_time = segment.start_event != kNoEvent &&
-                       segment.start_bit <= std::max(contenders_[node].ready, segment.free_bit);
-  if (!segment.busy && !in_time) schedule_start(n.segment);
+  if (std::max(wanted, segment.free_bit) < segment.start_bit) schedule_start(n.segment);
   return SendStatus::Queued;
-}
-
-void CanLine::overtake(NodeId node, const Frame& frame, uint64_t tag) {
-  withdraw(node, tag);
-  send(node, frame, tag);
 }
 
 // Others of this node are waiting already.
@@ -90,7 +87,7 @@ void CanLine::queue_behind(NodeId node, const Pending& pending) {
 void CanLine::withdraw(NodeId node, uint64_t tag) {
   std::vector<Pending>& queue = nodes_[node].queue;
   const Segment& segment = segments_[nodes_[node].segment];
-  const bool settled = segment.busy || segment.start_event != kNoEvent;
+  const bool settled = segment.start_bit != kNoBit;
   if (queue.empty() && settled) return;
   for (Pending& pending : queue)
     if (pending.tag == tag && pending.on_wire) pending.withdrawn = true;
@@ -119,7 +116,7 @@ void CanLine::queue_changed(NodeId id) {
   const Node& node = nodes_[id];
   if (node.queue.empty()) return contenders_.remove(id);
   const Pending& first = node.queue.front();
-  contenders_.put(id, next_ready(node), std::max(first.ready_bit, node.suspended_until), first.key);
+  contenders_.put(id, std::max(first.ready_bit, node.suspended_until), first.key);
 }
 
 void CanLine::schedule_start() {
@@ -133,7 +130,7 @@ inline uint64_t CanLine::next_start(uint32_t number) const {
   if (segments_.size() == 1 && contenders_.all_ready(free_bit)) return free_bit;
   uint64_t bit = kNoBit;
   contenders_.each([&](NodeId id) {
-    if (nodes_[id].segment == number) bit = std::min(bit, contenders_[id].ready);
+    if (nodes_[id].segment == number) bit = std::min(bit, next_ready(nodes_[id]));
   });
   return bit == kNoBit ? bit : std::max(bit, free_bit);
 }
@@ -141,10 +138,10 @@ inline uint64_t CanLine::next_start(uint32_t number) const {
 // Keeps the start event at that bit.
 void CanLine::schedule_start(uint32_t number) {
   Segment& segment = segments_[number];
-  if (segment.busy) return;
+  if (segment.busy()) return;
   const uint64_t bit = next_start(number);
-  if (segment.start_event != kNoEvent && segment.start_bit == bit) return;
-  queue_.cancel(std::exchange(segment.start_event, kNoEvent));
+  if (segment.start_bit == bit) return;
+  cancel_start(segment);
   if (bit == kNoBit) return;
   segment.start_bit = bit;
   segment.start_event =
@@ -164,37 +161,39 @@ void CanLine::on_event(Time now, uint32_t kind, uint64_t argument) {
   }
 }
 
-// What nearly all transfers are: one node has the lowest key, no fault is planted, and no error counter makes
-// a difference. kNoNode: all that is to be looked at.
+// What nearly all transfers are: on a sound line one node has the lowest key, and no error counter makes a
+// difference. kNoNode: all that is to be looked at.
 inline NodeId CanLine::plain_sender(uint64_t bit) {
-  if (segments_.size() != 1 || !faults_.empty() || !contenders_.all_ready(bit) || contenders_.empty())
-    return kNoNode;
+  if (contenders_.empty() || !contenders_.all_ready(bit) || (!sound_ && !find_sound())) return kNoNode;
   const NodeId id = contenders_.only_first();
   if (id == kNoNode) return kNoNode;
   const Node& node = nodes_[id];
-  const bool plain = node.counters.untouched() && is_active(node) && !node.queue.front().frame.extended &&
-                     is_acknowledged(id);
-  return plain ? id : kNoNode;
+  return node.counters.untouched() && !node.queue.front().frame.extended ? id : kNoNode;
 }
 
-// The plain transfer of this bit, from its begin to its end. False: something else happens in between.
-inline bool CanLine::pass_plain(NodeId id, uint64_t bit) {
-  if (recovering_) return false;
-  Pending& pending = nodes_[id].queue.front();
-  const uint32_t bits = known_.bits(pending.frame);
-  const Time end = static_cast<Time>(bit + bits - kIntermissionBits) * bit_time_;
-  if (!queue_.advance(end, source_)) return false;
-  pending.on_wire = true;
-  end_plain({pending.frame, id, static_cast<Time>(bit) * bit_time_, end, bits}, bit, pending.tag);
-  return true;
+// Plain transfers from this bit on, each from its begin to its end, as long as nothing else happens in
+// between. False: not even one.
+inline bool CanLine::pass_plain(uint64_t bit) {
+  const Segment& segment = segments_[0];
+  for (bool any = false;; any = true) {
+    const NodeId id = plain_sender(bit);
+    if (id == kNoNode) return any;
+    Pending& pending = nodes_[id].queue.front();
+    const uint32_t bits = known_.bits(pending.frame);
+    const Time end = static_cast<Time>(bit + bits - kIntermissionBits) * bit_time_;
+    if (!queue_.advance(end, source_)) return any;
+    pending.on_wire = true;
+    end_plain({pending.frame, id, static_cast<Time>(bit) * bit_time_, end, bits}, bit, pending.tag);
+    if (segment.start_bit != kNoBit) return true;
+    bit = segment.free_bit;
+  }
 }
 
 void CanLine::begin_plain(NodeId id, uint64_t bit) {
-  if (recovering_) pause_recovery(0, bit);
   Pending& pending = nodes_[id].queue.front();
   pending.on_wire = true;
   note_plain(id, pending.frame, pending.tag, bit, known_.bits(pending.frame));
-  segments_[0].busy = true;
+  segments_[0].start_bit = kBusy;
 }
 
 void CanLine::note_plain(NodeId id, const Frame& frame, uint64_t tag, uint64_t bit, uint32_t bits) {
@@ -207,18 +206,15 @@ void CanLine::note_plain(NodeId id, const Frame& frame, uint64_t tag, uint64_t b
   transfer.end = bits - kIntermissionBits;
 }
 
-// Another one than the last time.
-bool CanLine::find_acknowledge(NodeId sender) {
-  for (NodeId id = 0; id < nodes_.size(); ++id) {
-    if (id == sender || !is_active(nodes_[id])) continue;
-    acknowledges_ = id;
-    return true;
-  }
-  return false;
+// A line without planted faults has one segment.
+bool CanLine::find_sound() {
+  const auto active = [](const Node& node) { return is_active(node); };
+  sound_ = faults_.empty() && !recovering_ && std::count_if(nodes_.begin(), nodes_.end(), active) > 1;
+  return sound_;
 }
 
 inline void CanLine::release(Segment& segment, uint64_t begin, uint32_t bits) {
-  segment.busy = false;
+  segment.start_bit = kNoBit;
   segment.free_bit = begin + bits;
   segment.recessive_from = segment.free_bit - kRecessiveTail;
   meter_.add(begin, bits);
@@ -266,7 +262,8 @@ void CanLine::deliver_clean(Time now, const Segment& segment, uint64_t resting) 
 }
 
 // Its sender may have been cut off meanwhile, or counts errors now.
-inline void CanLine::end_plain(const FrameRecord& record, uint64_t begin, uint64_t tag) {
+[[gnu::always_inline]] inline void CanLine::end_plain(const FrameRecord& record, uint64_t begin,
+                                                      uint64_t tag) {
   release(segments_[0], begin, record.bits);
   report_frame(record);
   const std::span<const uint64_t> takers = filter_.takers(record.frame.id);
@@ -296,18 +293,17 @@ inline void CanLine::end_plain(const FrameRecord& record, uint64_t begin, uint64
     }
     node.node->on_sent(record.end, record.frame, tag);
   }
-  settle_line();
+  if (!sound_) settle_line();
 }
 
 // One transfer after the other without the queue, as long as nothing happens in between.
 void CanLine::begin_and_end(uint32_t number, bool begins) {
-  uint64_t bit = segments_[number].start_bit;
-  if (begins) segments_[number].start_event = kNoEvent;
+  uint64_t bit = begins ? std::exchange(segments_[number].start_bit, kNoBit) : kNoBit;
   for (;; begins = true) {
-    const NodeId plain = begins ? plain_sender(bit) : kNoNode;
     if (!begins) {
       end_transfer(queue_.now(), number);
-    } else if (plain == kNoNode || !pass_plain(plain, bit)) {
+    } else if (!pass_plain(bit)) {
+      const NodeId plain = plain_sender(bit);
       const Time begin = static_cast<Time>(bit) * bit_time_;
       if (begin > queue_.now() && !queue_.advance(begin, source_)) return schedule_start(number);
       if (plain != kNoNode)
@@ -321,7 +317,7 @@ void CanLine::begin_and_end(uint32_t number, bool begins) {
       }
       end_transfer(end, number);
     }
-    if (segments_.size() != 1 || segments_[0].start_event != kNoEvent) return schedule_start();
+    if (segments_.size() != 1 || segments_[0].start_bit != kNoBit) return schedule_start();
     bit = next_start(0);
     if (bit == kNoBit) return;
     number = 0;
@@ -348,14 +344,13 @@ bool CanLine::begin_transfer(uint32_t number, uint64_t bit) {
   } else {
     uint32_t lowest = ~0U;
     contenders_.each([&](NodeId id) {
-      const Contender& contender = contenders_[id];
-      if (nodes_[id].segment != number || contender.ready > bit) return;
-      const uint32_t key = contender.first_ready <= bit ? contender.key : first_ready(nodes_[id], bit)->key;
-      if (key > lowest) return;
-      if (key < lowest) winners_.clear();
-      lowest = key;
+      const Pending* first = nodes_[id].segment == number ? first_ready(nodes_[id], bit) : nullptr;
+      if (first == nullptr || first->key > lowest) return;
+      if (first->key < lowest) winners_.clear();
+      lowest = first->key;
       winners_.push_back(id);
     });
+    std::sort(winners_.begin(), winners_.end());  // in order of attachment
     for (const NodeId id : winners_) send(id);
     winners_.clear();
   }
@@ -377,7 +372,7 @@ bool CanLine::begin_transfer(uint32_t number, uint64_t bit) {
     }
   }
   resolve(transfer, listeners, known_, shorts_ > 0);
-  segment.busy = true;
+  segment.start_bit = kBusy;
   return true;
 }
 
@@ -479,6 +474,7 @@ void CanLine::count_error_state(Time now, NodeId node, ErrorState before) {
   if (after == before) return;
   if (after == ErrorState::Passive) report({LineEventKind::ErrorPassive, now, node});
   if (after != ErrorState::BusOff) return;
+  sound_ = false;
   report({LineEventKind::BusOff, now, node});
   drop_queue(node);
   nodes_[node].node->on_bus_off(now);

@@ -55,12 +55,9 @@ class CanLine final : private EventTarget {
   void rest(NodeId node, const Frame& frame) { known_.rest(node, frame); }
   void stir(NodeId node, uint32_t id) { known_.stir(node, id); }
 
-  SendStatus send(NodeId node, const Frame& frame, uint64_t tag);
+  // `overtakes`: those of the node with this tag that still wait are withdrawn.
+  SendStatus send(NodeId node, const Frame& frame, uint64_t tag, bool overtakes = false);
   void withdraw(NodeId node, uint64_t tag);
-  void send_latest(NodeId node, const Frame& frame, uint64_t tag) {
-    if (!nodes_[node].queue.empty()) return overtake(node, frame, tag);
-    send(node, frame, tag);
-  }
 
   bool has_waiting(NodeId node) const { return !nodes_[node].queue.empty(); }  // frames, or one on the wire
 
@@ -92,17 +89,13 @@ class CanLine final : private EventTarget {
   struct Pending {
     Frame frame;
     uint64_t tag;
-    uint64_t ready_bit;  // takes part in arbitration from here on
     uint32_t key;
     bool on_wire = false;
     bool withdrawn = false;  // while on the wire
+    uint64_t ready_bit;      // takes part in arbitration from here on
 
-    // Part by part, as they were written just now: a copy of the whole would wait until all have arrived.
     Pending(const Frame& sent, uint64_t its_tag, uint64_t ready, uint32_t its_key)
-        : frame{sent.id, sent.length, canonical_data(sent), sent.extended, sent.remote},
-          tag(its_tag),
-          ready_bit(ready),
-          key(its_key) {}
+        : frame(canonical(sent)), tag(its_tag), key(its_key), ready_bit(ready) {}
   };
   struct alignas(64) Node {
     // What every frame asks for stands in one line of memory.
@@ -111,7 +104,7 @@ class CanLine final : private EventTarget {
     uint64_t suspended_until = 0;  // an error-passive sender pauses 8 bits
     ErrorCounters counters;
     uint32_t segment = 0;
-    uint32_t recovery_runs = 0;   // of 11 recessive bits, still wanted
+    uint32_t recovery_runs = 0;   // of 11 recessive bits, still wanted on the way back from bus-off
     bool wired = false;           // connected as it should be, with the rate of the line
     bool unacknowledged = false;  // since its last frame that got through; reported once
 
@@ -122,13 +115,15 @@ class CanLine final : private EventTarget {
     EventId recovery = kNoEvent;
     std::string name;
   };
+  static constexpr uint64_t kBusy = 0, kNoBit = ~uint64_t{0};
   struct Segment {
-    bool busy = false;
-    uint64_t free_bit = 0;  // first bit after the last intermission
+    uint64_t start_bit = kNoBit;  // when the next transfer begins; kBusy: one is under way
+    uint64_t free_bit = 0;        // first bit after the last intermission
     uint64_t recessive_from = 0;
     EventId start_event = kNoEvent;
-    uint64_t start_bit = 0;  // of start_event
     Transfer transfer;
+
+    bool busy() const { return start_bit == kBusy; }
   };
   struct LateFrame {
     Frame frame;
@@ -141,18 +136,15 @@ class CanLine final : private EventTarget {
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
   void begin_and_end(uint32_t segment, bool begins);
   static bool is_active(const Node& node) {
-    return node.wired && node.recovery_runs == 0 && node.counters.state() != ErrorState::BusOff;
+    return node.wired && node.counters.state() != ErrorState::BusOff;
   }
   NodeId plain_sender(uint64_t bit);
-  bool pass_plain(NodeId id, uint64_t bit);
+  bool pass_plain(uint64_t bit);
   void begin_plain(NodeId id, uint64_t bit);
   void note_plain(NodeId id, const Frame& frame, uint64_t tag, uint64_t bit, uint32_t bits);
   void end_plain(const FrameRecord& record, uint64_t begin, uint64_t tag);
   bool begin_transfer(uint32_t segment, uint64_t bit);
-  bool is_acknowledged(NodeId sender) {
-    return (acknowledges_ != sender && is_active(nodes_[acknowledges_])) || find_acknowledge(sender);
-  }
-  bool find_acknowledge(NodeId sender);
+  bool find_sound();
   void release(Segment& segment, uint64_t begin, uint32_t bits);
   void report_frame(const FrameRecord& record);
   void settle_line();
@@ -163,16 +155,22 @@ class CanLine final : private EventTarget {
   uint64_t next_start(uint32_t segment) const;
   void schedule_start();
   void schedule_start(uint32_t segment);
+  void cancel_start(Segment& segment) {
+    queue_.cancel(segment.start_event);
+    segment.start_bit = kNoBit;
+  }
   static const Pending* first_ready(const Node& node, uint64_t bit);
   uint64_t next_ready(const Node& node) const;
   void queue_changed(NodeId node);
   void deliver_clean(Time now, const Segment& segment, uint64_t resting);
-  void overtake(NodeId node, const Frame& frame, uint64_t tag);
   void queue_behind(NodeId node, const Pending& pending);
   void drop_queue(NodeId node);
 
   // line_wiring.cpp: who takes part
-  void wire(Node& node) const { node.wired = node.connected && !node.swapped && node.baud == baud_; }
+  void wire(Node& node) {
+    node.wired = node.connected && !node.swapped && node.baud == baud_;
+    sound_ = false;
+  }
   void switch_fault(Time now, size_t fault, bool on);
   void rebuild_segments();
   void deliver_late(Time now, size_t number);
@@ -190,12 +188,13 @@ class CanLine final : private EventTarget {
   uint32_t baud_;
   Time bit_time_;
   std::vector<Node> nodes_;
-  Contenders contenders_;        // queue_changed() keeps them up to date
+  Contenders contenders_;        // queue_changed() keeps them up to date; all of them are active
   std::vector<NodeId> winners_;  // of an arbitration
   AcceptanceFilter filter_;
   NodeSet erring_;           // receive counter not 0
-  NodeId acknowledges_ = 0;  // probably
   bool recovering_ = false;  // some node may be
+  // No fault is planted, nobody recovers, and whoever sends is acknowledged. False: to be found out.
+  bool sound_ = false;
   std::vector<LineObserver*> observers_;
   std::vector<CanObserver*> frame_observers_;  // those of them who look at frames
   std::vector<Segment> segments_{1};
@@ -218,7 +217,7 @@ class LinePort final : public FrameSender {
   LinePort(CanLine& line, NodeId node) : line_(&line), node_(node) {}
   SendStatus send(const Frame& frame, uint64_t tag) override { return line_->send(node_, frame, tag); }
   void withdraw(uint64_t tag) override { line_->withdraw(node_, tag); }
-  void send_latest(const Frame& frame, uint64_t tag) override { line_->send_latest(node_, frame, tag); }
+  void send_latest(const Frame& frame, uint64_t tag) override { line_->send(node_, frame, tag, true); }
   void recover() override { line_->recover(node_); }
   void listen(uint32_t id) override { line_->listen(node_, id); }
   NodeId node() const { return node_; }

@@ -31,6 +31,7 @@ void CanLine::set_connected(NodeId node, bool connected) {
 
 void CanLine::plant(const LineFault& fault) {
   const size_t number = faults_.add(fault);
+  sound_ = false;
   if (fault_type(fault.kind).scope == FaultScope::Frame) return;  // strikes by itself
   queue_.schedule(fault.from, source_, *this, line_event::kFaultBegins, number);
   if (fault.until != kNever) queue_.schedule(fault.until, source_, *this, line_event::kFaultEnds, number);
@@ -82,15 +83,16 @@ void CanLine::switch_fault(Time now, size_t number, bool on) {
 
 // Once no frame is under way: each node belongs to the segment between the cuts around it.
 void CanLine::rebuild_segments() {
-  if (std::any_of(segments_.begin(), segments_.end(), [](const Segment& s) { return s.busy; })) {
-    for (Segment& segment : segments_) queue_.cancel(std::exchange(segment.start_event, kNoEvent));
+  if (std::any_of(segments_.begin(), segments_.end(), [](const Segment& s) { return s.busy(); })) {
+    for (Segment& segment : segments_)
+      if (!segment.busy()) cancel_start(segment);
     return;
   }
   rewire_ = false;
   uint64_t free_bit = 0;
   uint64_t recessive_from = 0;
   for (Segment& segment : segments_) {
-    queue_.cancel(std::exchange(segment.start_event, kNoEvent));
+    cancel_start(segment);
     free_bit = std::max(free_bit, segment.free_bit);
     recessive_from = std::max(recessive_from, segment.recessive_from);
   }
@@ -126,6 +128,7 @@ void CanLine::recover(NodeId node) {
   if (nodes_[node].counters.state() != ErrorState::BusOff) return;
   nodes_[node].recovery_runs = kRecoveryRuns;
   recovering_ = true;
+  sound_ = false;
   nodes_[node].recovery_from = static_cast<uint64_t>(queue_.now() / bit_time_) + 1;
   schedule_recovery(node);
 }
@@ -147,7 +150,7 @@ void CanLine::pause_recovery(uint32_t segment, uint64_t bit) {
 void CanLine::schedule_recovery(NodeId id) {
   Node& node = nodes_[id];
   const Segment& segment = segments_[node.segment];
-  if (node.recovery_runs == 0 || node.recovery != kNoEvent || segment.busy || stuck_ > 0) return;
+  if (node.recovery_runs == 0 || node.recovery != kNoEvent || segment.busy() || stuck_ > 0) return;
   const uint64_t from = std::max(segment.recessive_from, node.recovery_from);
   const uint64_t done = from + uint64_t{node.recovery_runs} * kRecoveryBits;
   node.recovery =

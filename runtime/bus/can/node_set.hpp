@@ -54,9 +54,7 @@ class AcceptanceFilter {
     for (size_t id = 0; id < kIdentifiers; ++id) put(static_cast<uint32_t>(id), node, false);
   }
   void open(NodeId node, uint32_t id) { put(id, node, true); }
-  std::span<const uint64_t> takers(uint32_t id) const {
-    return std::span(words_).subspan(id * width_, width_);
-  }
+  std::span<const uint64_t> takers(uint32_t id) const { return {words_.data() + id * width_, width_}; }
 
  private:
   void put(uint32_t id, size_t node, bool in) {

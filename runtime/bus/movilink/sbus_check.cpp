@@ -47,13 +47,15 @@ void SbusCheck::add_slave(Time now, const CanLine& line, NodeId node, const Slav
 
 void SbusCheck::on_frame(const CanLine& line, const FrameRecord& record) {
   if (!is_plain(record.frame)) return;
-  Identifier& known = identifiers_[record.frame.id];
-  if (known.sender == kNoNode) known.sender = record.sender;
-  if (known.sender != record.sender) tell_second_sender(line, record, known.sender);
-  if (known.watched) check_telegram(line, record);
+  const Identifier& known = identifiers_[record.frame.id];
+  if (known.sender != record.sender || known.watched) check_telegram(line, record);
 }
 
 void SbusCheck::check_telegram(const CanLine& line, const FrameRecord& record) {
+  Identifier& known = identifiers_[record.frame.id];
+  if (known.sender == kNoNode) known.sender = record.sender;
+  if (known.sender != record.sender) tell_second_sender(line, record, known.sender);
+  if (!known.watched) return;
   if (const auto identifier = classify_identifier(record.frame.id)) {
     check_address(line, record, *identifier);
     check_masters(line, record, *identifier);

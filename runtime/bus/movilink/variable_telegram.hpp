@@ -53,13 +53,13 @@ inline unsigned missing_bits(const VariableFormat& format) { return 64U - 8U * f
 }  // namespace detail
 
 inline Frame variable_frame(uint32_t id, const VariableFormat& format, const VariablePair& variables) {
-  if (format.length == 0) return {id, 0};
   const uint64_t value =
       uint64_t{static_cast<uint32_t>(variables.high)} << 32 | static_cast<uint32_t>(variables.low);
   const unsigned missing = detail::missing_bits(format);
   const bool low_first = format.layout == VariableLayout::Intel;
-  const uint64_t bytes =
-      detail::in_order(low_first ? value << missing >> missing : value << missing, format.layout);
+  uint64_t bytes = 0;
+  if (format.length != 0)
+    bytes = detail::in_order(low_first ? value << missing >> missing : value << missing, format.layout);
   return {id, format.length, std::bit_cast<std::array<uint8_t, 8>>(bytes)};
 }
 

@@ -165,6 +165,31 @@ TEST(CanLine, AnObserverThatComesLateHearsWhoIsAbsent) {
   EXPECT_EQ(late.count(LineEventKind::WrongBaudRate), 1U);
 }
 
+TEST(CanLine, WhoAcknowledgesMayLeaveAndComeBack) {
+  Bench t;
+  const NodeId a = t.line.attach("a", 500'000, t.a);
+  const NodeId b = t.line.attach("b", 500'000, t.b);
+  const Frame frame = data_frame(100);
+  t.line.send(a, frame, 1);
+  t.queue.run_until(kMillisecond);
+  EXPECT_EQ(t.a.sent.size(), 1U);
+  t.line.send(a, frame, 2);
+  t.queue.run_until(kMillisecond + 50 * kMicrosecond);  // on the wire
+  t.line.set_connected(b, false);
+  t.queue.run_until(2 * kMillisecond);
+  EXPECT_EQ(t.a.sent.size(), 2U);
+  EXPECT_EQ(t.b.received.size(), 1U);
+  t.line.send(a, frame, 3);
+  t.queue.run_until(3 * kMillisecond);
+  EXPECT_EQ(t.a.sent.size(), 2U);
+  EXPECT_FALSE(t.a.failed.empty());
+  for (const NotSent reason : t.a.failed) EXPECT_EQ(reason, NotSent::NoAcknowledge);
+  t.line.set_connected(b, true);
+  t.queue.run_until(4 * kMillisecond);
+  EXPECT_EQ(t.a.sent.size(), 3U);
+  EXPECT_EQ(t.b.received.size(), 2U);
+}
+
 TEST(CanLine, ALoneStationRepeatsBecomesPassiveAndNeverBusOff) {
   Bench t;
   const NodeId a = t.line.attach("unit1", 500'000, t.a);
