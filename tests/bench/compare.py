@@ -4,7 +4,8 @@
 compare.py RUNNER [--rounds N] [--peers lua5.4,c] [PROGRAM...]
 RUNNER is ipos_bench_run. Every round runs every engine once, so that a change of the machine's speed meets all
 of them; a cell is the median over the rounds of the ratios within a round. CPU time, the system's included (it
-tells the two apart by samples, too coarse for runs of 20 ms), without what an empty program takes. All engines must print the same number.
+tells the two apart by samples, too coarse for runs of 20 ms), without what an empty program takes. All engines must
+print the same number.
 """
 import argparse
 import math
