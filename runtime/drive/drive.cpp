@@ -37,7 +37,7 @@ MachineData machine_of(MachineData machine, bool is_m07) {
   return machine;
 }
 
-bool is_reversing(const AxisState& axis) { return axis.setpoint < 0; }
+bool is_reversing(int32_t setpoint) { return setpoint < 0; }
 
 constexpr PoSource kAllSources[] = {PoSource::Rs485, PoSource::Fieldbus, PoSource::Sbus};
 
@@ -55,6 +55,7 @@ Drive::Drive(ParameterStore& parameters, const MachineData& machine)
 
 void Drive::read_settings() const {
   course_left_ = 0;
+  travels_ = false;
   settings_version_ = parameters_.changes();
   settings_ = reader_.read(parameters_);
 }
@@ -106,10 +107,11 @@ void Drive::look_around() const {
   now_.set(&Situation::starting_up, starting_up());
   now_.set(&Situation::factory_setting, parameters_.factory_setting_running());
   now_.set(&Situation::output_stage, axis_.state().output_stage);
-  now_.set(&Situation::reversing, is_reversing(axis_.state()));
+  now_.set(&Situation::reversing, is_reversing(axis_.setpoint()));
   look_again_ = false;
   if (!now_.changed()) return;
   course_left_ = 0;
+  travels_ = false;
   now_.looked();
   if (!decisions_known_ || !(*now_ == decided_for_)) decide_anew();
 }
@@ -196,15 +198,21 @@ void Drive::on_parameter_written(uint16_t index, int32_t value) {
 
 // --- the millisecond ---
 
-void Drive::tick(const PositionControl& position) {
-  calm_ = !now_.changed() && settings_version_ == parameters_.changes();
-  course_left_ = 0;
-  // One by one: a copy of the whole would bring along the bytes between them, and DriveCourse compares those.
+// One by one: a copy of the whole would bring along the bytes between them, and DriveCourse compares those.
+inline void Drive::take(const PositionControl& position) {
   position_.controls = position.controls;
   position_.speed = position.speed;
   position_.halt = position.halt;
   position_.in_position = position.in_position;
   position_.referenced = position.referenced;
+}
+
+void Drive::tick(const PositionControl& position) {
+  travelled_ = travels() && position.controls && position.halt == position_.halt;
+  if (travelled_) return travel(position);
+  calm_ = !now_.changed() && settings_version_ == parameters_.changes();
+  course_left_ = 0;
+  take(position);
   now_.set(&Situation::positioning, position.controls);
   now_.set(&Situation::halt, position.halt);
   count_time();
@@ -233,7 +241,27 @@ void Drive::tick(const PositionControl& position) {
   const AxisOrder& order = next_order(verdict_of(d).command);
   const AxisState& axis = axis_.tick(order);
   show_outputs(d, order, axis);
-  if (axis.output_stage != now_->output_stage || is_reversing(axis) != now_->reversing) look_again_ = true;
+  if (axis.output_stage != now_->output_stage || is_reversing(axis.setpoint) != now_->reversing)
+    look_again_ = true;
+  travels_ = position.controls && order.command == AxisCommand::Follow && axis.phase == AxisPhase::Moving &&
+             !restless && settled_ && !links_run_ && !look_again_ && !now_.changed() && !starting_up() &&
+             !parameters_.factory_setting_running() && !machine_suffers();
+}
+
+// What tick() does when it decides nothing: time, the speed, the shaft, and the outputs that follow it.
+void Drive::travel(const PositionControl& position) {
+  calm_ = true;
+  course_left_ = 0;
+  take(position);
+  count_time();
+  setpoint_.speed = setpoint_.requested = order_.target = position.speed;
+  axis_.follow(order_);
+  const bool overloaded = axis_.power().motor_utilization() >= kFullUtilization;
+  const OutputMotion motion{axis_.standing(), position.in_position, position.referenced, axis_.speed(),
+                            axis_.output_current()};
+  if (overloaded || !outputs_.go_on(motion)) show_outputs(decisions_, order_, axis_.state());
+  look_again_ = is_reversing(axis_.setpoint()) != now_->reversing;
+  travels_ = !look_again_ && !machine_suffers();
 }
 
 void Drive::go_on(uint32_t ticks) {
@@ -245,19 +273,20 @@ void Drive::go_on(uint32_t ticks) {
   for (size_t n = 0; n < watches_.size(); ++n) watches_[n].go_on(decisions_.links[n], ticks);
 }
 
-void Drive::count_time() {
+void Drive::count_minute(uint32_t& ms, uint16_t minutes) {
+  ms = 0;
+  parameters_.set_display(minutes, parameters_.value(minutes) + 1);
+}
+
+inline void Drive::count_time() {
   if (starting_up()) {
     ++up_ms_;
     look_again_ = true;
   }
-  const auto count = [&](uint32_t& ms, uint16_t minutes) {
-    if (++ms < kMinuteMs) return;
-    ms = 0;
-    parameters_.set_display(minutes, parameters_.value(minutes) + 1);
-  };
-  count(mains_ms_, index::kMainsOnTime);
-  if (output_stage_on()) count(enabled_ms_, index::kEnabledTime);
-  if (axis_.state().energy - counted_energy_ >= kEnergyDigit) {
+  if (++mains_ms_ >= kMinuteMs) count_minute(mains_ms_, index::kMainsOnTime);
+  if (axis_.phase() != AxisPhase::Off && ++enabled_ms_ >= kMinuteMs)
+    count_minute(enabled_ms_, index::kEnabledTime);
+  if (axis_.power().energy() - counted_energy_ >= kEnergyDigit) {
     counted_energy_ += kEnergyDigit;
     parameters_.set_display(index::kEnergy, parameters_.value(index::kEnergy) + 1);
   }
@@ -310,9 +339,9 @@ bool Drive::watch_links() {
 
 // Something of the axis is, or was, beyond where watch_machine() lets it be.
 bool Drive::machine_suffers() const {
-  const AxisState& axis = axis_.state();
-  return axis.current_limited || limited_ms_ != 0 || axis.dc_link > kOvervoltage ||
-         axis.heat_sink > kOvertemperature || axis.motor_utilization >= kFullUtilization;
+  const PowerSection& power = axis_.power();
+  return axis_.current_limited() || limited_ms_ != 0 || power.dc_link() > kOvervoltage ||
+         power.heat_sink() > kOvertemperature || power.motor_utilization() >= kFullUtilization;
 }
 
 void Drive::watch_machine() {

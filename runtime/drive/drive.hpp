@@ -58,7 +58,7 @@ class Drive final : private DriveLink {
   void set_ipos_control_word(uint32_t word) { now_.set(&Situation::ipos_word, word); }
   void set_ipos_pi(const Words& words) { ipos_pi_ = words; }
   void set_ipos_outputs(uint16_t levels) {
-    if (levels != ipos_outputs_) course_left_ = 0;
+    if (levels != ipos_outputs_) course_left_ = 0, travels_ = false;
     ipos_outputs_ = levels;
   }
 
@@ -75,6 +75,13 @@ class Drive final : private DriveLink {
   }
   void go_on(uint32_t ticks = 1);
   const PositionControl& position_control() const { return position_; }  // of the last tick
+
+  // --- ticks that only travel ---
+  // The last tick has found nothing to decide, and positioning moves the axis: while nobody touches the drive
+  // and that only orders other speeds, the next one is travel(), which tick() then is by itself.
+  bool travels() const { return travels_ && !now_.changed() && settings_version_ == parameters_.changes(); }
+  // That is all the last tick was: what is decided, ordered and reported is as before.
+  bool travelled() const { return travelled_; }
 
   // --- for the positioning of IPOS ---
   bool can_position() const { return decided().can_position; }  // P700 is a mode with IPOS (1053 1610 p. 80)
@@ -199,7 +206,10 @@ class Drive final : private DriveLink {
   uint16_t pi_word(size_t n) const;
 
   LinkWatch& touched_watch(PoSource source);
+  void travel(const PositionControl& position);
+  void take(const PositionControl& position);
   void count_time();
+  void count_minute(uint32_t& ms, uint16_t minutes);
   void latch_three_wire();
   bool watch_links();
   void watch_resets();
@@ -284,6 +294,8 @@ class Drive final : private DriveLink {
   uint32_t enabled_ms_ = 0;
   int64_t counted_energy_ = 0;
   mutable uint32_t course_left_ = 0;
+  mutable bool travels_ = false;
+  bool travelled_ = false;
   bool calm_ = false;      // nobody had touched the drive before the last tick
   bool links_run_ = true;  // or may do so: a telegram has come since the last look
 };

@@ -137,7 +137,7 @@ bool Station::execute(Time now) {
   }
   move_drive(now);
   if (!on_course_) {
-    report_drive(now);
+    if (!drive_.state().travelled()) report_drive(now);
     if (x13_) x13_->configure(now);
     if (xt_) xt_->configure(now);
   }
@@ -153,7 +153,7 @@ bool Station::execute(Time now) {
 
 void Station::move_drive(Time now) {
   Drive& drive = drive_.state();
-  if (!on_course_) {
+  if (!on_course_ && !inputs_.known()) {
     drive.set_inputs(inputs_.levels());
     drive.set_analog(inputs_.analog());
   }
@@ -203,7 +203,7 @@ void Station::settle(Time now) {
 
 void Station::begin_program(Time now) {
   const std::span<int32_t> h = machine_->variables();
-  if (!on_course_) {
+  if (!on_course_ && !drive_.state().travelled()) {
     raise_drive_events();
     restart_after_reset(now);
     mirrored_->show(h);
@@ -234,12 +234,16 @@ void Station::end_program(Time now) {
   if (on_course_) return;
   mirrored_->take(h);
   take_program_orders(h, drive_.state());
+  if (drive_.has_reasons()) report_reasons(now);
+  if (has_fresh_fault()) report_fault(now);
+}
+
+void Station::report_reasons(Time now) {
   // MOVLNK to the own unit.
   if (std::string refused = drive_.take_reason(); !refused.empty())
     journal_.note(now, Weight::Why, config_.name, "refused " + std::move(refused));
   for (std::string& obstacle : drive_.take_obstacles())
     journal_.note(now, Weight::Why, config_.name, std::move(obstacle));
-  if (has_fresh_fault()) report_fault(now);
 }
 
 // An error that is new, or back after a reset, is the event of the ERROR interrupt; warnings are not (ours).

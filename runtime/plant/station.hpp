@@ -242,6 +242,7 @@ class Station final : private EventTarget, private Sleeper {
   void raise_drive_events();
   void restart_after_reset(Time now);
   StationServices services();
+  void report_reasons(Time now);
   void report_fault(Time now);
   void report_drive(Time now);
 
