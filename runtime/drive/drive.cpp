@@ -200,6 +200,7 @@ void Drive::on_parameter_written(uint16_t index, int32_t value) {
 
 // One by one: a copy of the whole would bring along the bytes between them, and DriveCourse compares those.
 inline void Drive::take(const PositionControl& position) {
+  accelerates_ = position.speed != position_.speed;
   position_.controls = position.controls;
   position_.speed = position.speed;
   position_.halt = position.halt;

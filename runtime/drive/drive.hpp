@@ -82,6 +82,8 @@ class Drive final : private DriveLink {
   bool travels() const { return travels_ && !now_.changed() && settings_version_ == parameters_.changes(); }
   // That is all the last tick was: what is decided, ordered and reported is as before.
   bool travelled() const { return travelled_; }
+  // It was told another speed than before.
+  bool accelerates() const { return accelerates_; }
 
   // --- for the positioning of IPOS ---
   bool can_position() const { return decided().can_position; }  // P700 is a mode with IPOS (1053 1610 p. 80)
@@ -296,6 +298,7 @@ class Drive final : private DriveLink {
   mutable uint32_t course_left_ = 0;
   mutable bool travels_ = false;
   bool travelled_ = false;
+  bool accelerates_ = false;
   bool calm_ = false;      // nobody had touched the drive before the last tick
   bool links_run_ = true;  // or may do so: a telegram has come since the last look
 };

@@ -50,7 +50,7 @@ class PositioningService {
   // For commands, between two ticks.
   const Positioner& positioner() const { return positioner_; }
   Positioner& change_positioner() {
-    idles_ = false;
+    idles_ = travels_ = false;
     return positioner_;
   }
   void take_targets(std::span<const int32_t> h);                // written since the last look
@@ -76,6 +76,7 @@ class PositioningService {
   }
   void read_changed_settings();
   bool stays_idle(std::span<const int32_t> h) const;
+  bool goes_on(std::span<const int32_t> h) const;
   bool mirrors_written(std::span<const int32_t> h) const;
   bool targets_written(std::span<const int32_t> h) const;
   void take_mirrors(std::span<int32_t> h);
@@ -116,8 +117,10 @@ class PositioningService {
   int32_t shown_modulo_target_ = 0;
   int32_t shown_turns_ = 0;
   int32_t bus_position_ = 0;
-  bool idles_ = false;  // there was nothing to do in the last millisecond, and no command came since
-  uint32_t syncs_ = 0;  // sync telegrams, as of the last millisecond
+  bool idles_ = false;        // there was nothing to do in the last millisecond, and no command came since
+  bool travels_ = false;      // it has only gone on in the last millisecond, and no command came since
+  bool in_position_ = false;  // as last shown
+  uint32_t syncs_ = 0;        // sync telegrams, as of the last millisecond
   std::bitset<kPositioningEvents> reported_;  // in the last millisecond
   std::optional<uint32_t> ordered_at_;        // nothing: by writing a variable
 };
