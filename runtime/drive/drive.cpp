@@ -208,9 +208,24 @@ inline void Drive::take(const PositionControl& position) {
   position_.referenced = position.referenced;
 }
 
-void Drive::tick(const PositionControl& position) {
-  travelled_ = travels() && position.controls && position.halt == position_.halt;
-  if (travelled_) return travel(position);
+inline bool Drive::machine_overstrained() const {
+  const PowerSection& power = axis_.power();
+  return power.dc_link() > kOvervoltage || power.heat_sink() > kOvertemperature ||
+         power.motor_utilization() >= kFullUtilization;
+}
+
+// Something of the axis is, or was, beyond where watch_machine() lets it be.
+inline bool Drive::machine_suffers() const {
+  return axis_.current_limited() || limited_ms_ != 0 || machine_overstrained();
+}
+
+// The next tick has nothing to look around for, and no fault of the machine to raise.
+inline bool Drive::may_travel() const {
+  const bool limited_long = axis_.current_limited() && limited_ms_ >= set().speed_monitoring_delay;
+  return !look_again_ && !limited_long && !machine_overstrained();
+}
+
+void Drive::tick_anew(const PositionControl& position) {
   calm_ = !now_.changed() && settings_version_ == parameters_.changes();
   course_left_ = 0;
   take(position);
@@ -220,7 +235,8 @@ void Drive::tick(const PositionControl& position) {
   decided();
   // Latches, edges, faults and parameter set have been brought up to these decisions; without a new one only
   // time and the machine can add something.
-  const bool restless = !settled_ || now_->faults.shown() != 0 || machine_suffers();
+  const bool unsettled = !settled_ || now_->faults.shown() != 0;
+  const bool restless = unsettled || machine_suffers();
   settled_ = true;  // unless what follows leads to other decisions
   if (restless) {
     latch_three_wire();
@@ -245,8 +261,8 @@ void Drive::tick(const PositionControl& position) {
   if (axis.output_stage != now_->output_stage || is_reversing(axis.setpoint) != now_->reversing)
     look_again_ = true;
   travels_ = position.controls && order.command == AxisCommand::Follow && axis.phase == AxisPhase::Moving &&
-             !restless && settled_ && !links_run_ && !look_again_ && !now_.changed() && !starting_up() &&
-             !parameters_.factory_setting_running() && !machine_suffers();
+             !unsettled && settled_ && !links_run_ && !now_.changed() && !starting_up() &&
+             !parameters_.factory_setting_running() && may_travel();
 }
 
 // What tick() does when it decides nothing: time, the speed, the shaft, and the outputs that follow it.
@@ -254,7 +270,8 @@ void Drive::travel(const PositionControl& position) {
   calm_ = true;
   course_left_ = 0;
   take(position);
-  count_time();
+  count_running();
+  if (axis_.current_limited() || limited_ms_ != 0) count_limited();
   setpoint_.speed = setpoint_.requested = order_.target = position.speed;
   axis_.follow(order_);
   const bool overloaded = axis_.power().motor_utilization() >= kFullUtilization;
@@ -262,7 +279,7 @@ void Drive::travel(const PositionControl& position) {
                             axis_.output_current()};
   if (overloaded || !outputs_.go_on(motion)) show_outputs(decisions_, order_, axis_.state());
   look_again_ = is_reversing(axis_.setpoint()) != now_->reversing;
-  travels_ = !look_again_ && !machine_suffers();
+  travels_ = may_travel();
 }
 
 void Drive::go_on(uint32_t ticks) {
@@ -279,11 +296,7 @@ void Drive::count_minute(uint32_t& ms, uint16_t minutes) {
   parameters_.set_display(minutes, parameters_.value(minutes) + 1);
 }
 
-inline void Drive::count_time() {
-  if (starting_up()) {
-    ++up_ms_;
-    look_again_ = true;
-  }
+inline void Drive::count_running() {
   if (++mains_ms_ >= kMinuteMs) count_minute(mains_ms_, index::kMainsOnTime);
   if (axis_.phase() != AxisPhase::Off && ++enabled_ms_ >= kMinuteMs)
     count_minute(enabled_ms_, index::kEnabledTime);
@@ -291,6 +304,14 @@ inline void Drive::count_time() {
     counted_energy_ += kEnergyDigit;
     parameters_.set_display(index::kEnergy, parameters_.value(index::kEnergy) + 1);
   }
+}
+
+void Drive::count_time() {
+  if (starting_up()) {
+    ++up_ms_;
+    look_again_ = true;
+  }
+  count_running();
   if (parameters_.factory_setting_running() && ++factory_setting_ms_ >= kFactorySettingMs) {
     factory_setting_ms_ = 0;
     parameters_.finish_factory_setting();
@@ -338,13 +359,6 @@ bool Drive::watch_links() {
   return missed;
 }
 
-// Something of the axis is, or was, beyond where watch_machine() lets it be.
-bool Drive::machine_suffers() const {
-  const PowerSection& power = axis_.power();
-  return axis_.current_limited() || limited_ms_ != 0 || power.dc_link() > kOvervoltage ||
-         power.heat_sink() > kOvertemperature || power.motor_utilization() >= kFullUtilization;
-}
-
 void Drive::watch_machine() {
   const Decisions& d = decided();
   const auto follow = [&](bool cause, uint8_t number) {
@@ -361,14 +375,18 @@ void Drive::watch_machine() {
   if (axis.dc_link > kOvervoltage) raise_fault(faults::kDcLink);
   if (axis.heat_sink > kOvertemperature) raise_fault(faults::kHeatSink);
   follow(set().motor_protection == 1 && axis.motor_utilization >= kFullUtilization, faults::kMotorOverload);
+  count_limited();
+  if (limited_ms_ > set().speed_monitoring_delay) raise_fault(faults::kSpeedMonitoring);
+}
 
-  // P500: 1 motor mode, 2 regenerative, 3 both (1053 1610 p. 77).
+// P500: 1 motor mode, 2 regenerative, 3 both (1053 1610 p. 77).
+void Drive::count_limited() {
+  const AxisState& axis = axis_.state();
   const int32_t mode = set().speed_monitoring;
   const bool regenerative = (axis.torque < 0) != (axis.speed < 0);
   const bool counts =
       axis.current_limited && (mode == 3 || (mode == 1 && !regenerative) || (mode == 2 && regenerative));
   limited_ms_ = counts ? limited_ms_ + 1 : 0;
-  if (counts && limited_ms_ > set().speed_monitoring_delay) raise_fault(faults::kSpeedMonitoring);
 }
 
 // The set changes only while the output stage is off (ours).

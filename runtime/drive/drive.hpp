@@ -63,7 +63,13 @@ class Drive final : private DriveLink {
   }
 
   // One millisecond has passed.
-  void tick(const PositionControl& position = {});
+  void tick(const PositionControl& position = {}) {
+    travelled_ = travels() && position.controls && position.halt == position_.halt;
+    if (travelled_)
+      travel(position);
+    else
+      tick_anew(position);
+  }
 
   // --- ticks that only go on (course.hpp) ---
   // The next ticks are of that kind while nobody touches the drive.
@@ -78,11 +84,12 @@ class Drive final : private DriveLink {
 
   // --- ticks that only travel ---
   // The last tick has found nothing to decide, and positioning moves the axis: while nobody touches the drive
-  // and that only orders other speeds, the next one is travel(), which tick() then is by itself.
+  // and positioning only orders other speeds, the next tick() moves the shaft and decides nothing.
   bool travels() const { return travels_ && !now_.changed() && settings_version_ == parameters_.changes(); }
+  void leave_travel() { travels_ = false; }
   // That is all the last tick was: what is decided, ordered and reported is as before.
   bool travelled() const { return travelled_; }
-  // It was told another speed than before.
+  // Positioning has ordered another speed than the time before.
   bool accelerates() const { return accelerates_; }
 
   // --- for the positioning of IPOS ---
@@ -209,13 +216,18 @@ class Drive final : private DriveLink {
 
   LinkWatch& touched_watch(PoSource source);
   void travel(const PositionControl& position);
+  void tick_anew(const PositionControl& position);
   void take(const PositionControl& position);
+  bool may_travel() const;
   void count_time();
+  void count_running();
   void count_minute(uint32_t& ms, uint16_t minutes);
   void latch_three_wire();
   bool watch_links();
   void watch_resets();
   bool machine_suffers() const;
+  bool machine_overstrained() const;
+  void count_limited();
   void watch_machine();
   void clear_faults();
   int32_t monitored(int32_t delay_ms) const;

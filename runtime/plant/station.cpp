@@ -130,7 +130,9 @@ void Station::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
 bool Station::execute(Time now) {
   end_cruise();
   on_course_ = on_course_ && stays_on_course();
+  unwritten_ = quiet_ && !touched_ && execution_.skip_idle && runner_ == nullptr;
   touched_ = false;
+  if (!execution_.skip_idle) drive_.state().leave_travel();
   if (on_course_ && machine_ && (!positioning_ || positioning_->idles())) {
     glide(now);
     return true;
@@ -157,9 +159,9 @@ void Station::move_drive(Time now) {
     drive.set_inputs(inputs_.levels());
     drive.set_analog(inputs_.analog());
   }
-  const PositionControl position = positioning_ && machine_
-                                       ? positioning_->order(now, machine_->variables(), drive_.syncs())
-                                       : PositionControl{};
+  const PositionControl position =
+      positioning_ && machine_ ? positioning_->order(now, machine_->variables(), drive_.syncs(), unwritten_)
+                               : PositionControl{};
   on_course_ = on_course_ && position == drive.position_control();
   if (on_course_)
     drive.go_on();
@@ -203,9 +205,11 @@ void Station::settle(Time now) {
 
 void Station::begin_program(Time now) {
   const std::span<int32_t> h = machine_->variables();
-  if (!on_course_ && !drive_.state().travelled()) {
-    raise_drive_events();
-    restart_after_reset(now);
+  if (!on_course_) {
+    if (!drive_.state().travelled()) {
+      raise_drive_events();
+      restart_after_reset(now);
+    }
     mirrored_->show(h);
   }
   show_drive(drive_.state(), h);
@@ -223,7 +227,7 @@ void Station::count_timers(std::span<int32_t> h) {
 }
 
 void Station::show_positioning(Time now) {
-  positioning_->show(now, machine_->variables());
+  positioning_->show(now, machine_->variables(), unwritten_);
   if (positioning_->positioner().touch_probes().probe(0).fresh) machine_->raise_event(vm::Event::TouchProbe);
   positioning_commands_->tick(*machine_);
 }
@@ -232,8 +236,10 @@ void Station::end_program(Time now) {
   const std::span<int32_t> h = machine_->variables();
   on_course_ = on_course_ && !has_news();
   if (on_course_) return;
-  mirrored_->take(h);
-  take_program_orders(h, drive_.state());
+  if (!unwritten_ || touched_) {
+    mirrored_->take(h);
+    take_program_orders(h, drive_.state());
+  }
   if (drive_.has_reasons()) report_reasons(now);
   if (has_fresh_fault()) report_fault(now);
 }

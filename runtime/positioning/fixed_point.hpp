@@ -12,6 +12,7 @@ using Fine = int64_t;
 using Rate = int64_t;
 using Span = int64_t;
 __extension__ using Wide = __int128;
+__extension__ using WideAmount = unsigned __int128;
 
 inline constexpr int kFineBits = 20;
 inline constexpr int kRateBits = 28;
@@ -50,7 +51,9 @@ constexpr Rate rate_of_speed(int64_t mrpm, EncoderFactor factor) {
 constexpr int64_t speed_of_rate(Rate rate, EncoderFactor factor) {
   static_assert(Wide{16} << kRateBits == Wide{1} << 32);
   const auto denominator = static_cast<uint64_t>(factor.denominator);
-  const Wide value = Wide{magnitude(rate)} * (int64_t{234'375} * factor.numerator) + (denominator << 31);
+  const uint64_t amount = rate < 0 ? 0 - static_cast<uint64_t>(rate) : static_cast<uint64_t>(rate);
+  const auto value = WideAmount{amount} * (uint64_t{234'375} * static_cast<uint64_t>(factor.numerator)) +
+                     (denominator << 31);
   const auto speed = static_cast<int64_t>(static_cast<uint64_t>(value >> 32) / denominator);
   return rate < 0 ? -speed : speed;
 }

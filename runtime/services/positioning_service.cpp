@@ -218,22 +218,24 @@ bool PositioningService::stays_idle(std::span<const int32_t> h) const {
          !mirrors_written(h);
 }
 
-// The same for a millisecond in which there was only a travel to go on with.
-inline bool PositioningService::goes_on(std::span<const int32_t> h) const {
-  return drive_.travels() && settings_version_ == parameters_.changes() && !targets_written(h) &&
-         static_cast<uint32_t>(h[kModuloCtrl]) == inputs_.modulo_control && !mirrors_written(h);
+bool PositioningService::written(std::span<const int32_t> h) const {
+  return targets_written(h) || static_cast<uint32_t>(h[kModuloCtrl]) != inputs_.modulo_control ||
+         mirrors_written(h);
 }
 
-PositionControl PositioningService::order(Time now, std::span<int32_t> h, uint32_t syncs) {
-  if (travels_ && goes_on(h)) {
-    syncs_ = syncs;
-    const PositioningOrder order = positioner_.go_on();
-    if (positioner_.has_events()) {
-      report_events(now);
-      travels_ = false;
-    }
-    return {order.controls, order.speed, command_of(order.halt), in_position_, positioner_.referenced()};
+PositionControl PositioningService::travel(Time now, uint32_t syncs) {
+  travelled_ = true;
+  syncs_ = syncs;
+  const PositioningOrder order = positioner_.go_on();
+  if (positioner_.has_events()) {
+    report_events(now);
+    travels_ = false;
   }
+  return {order.controls, order.speed, command_of(order.halt), in_position_, positioner_.referenced()};
+}
+
+PositionControl PositioningService::order_anew(Time now, std::span<int32_t> h, uint32_t syncs) {
+  travelled_ = false;
   if (idles_ && stays_idle(h)) {
     syncs_ = syncs;
     const PositioningOrder order = positioner_.idle(drive_.speed());
@@ -295,7 +297,16 @@ void PositioningService::go_on(std::span<int32_t> h, uint32_t syncs, int32_t bef
   show_positions(h, positions, positions.of(positioner_.source()));
 }
 
-void PositioningService::show(Time now, std::span<int32_t> h) {
+// What a travel moves.
+void PositioningService::show_travel(std::span<int32_t> h) {
+  positioner_.observe(drive_.position());
+  h[kModCount] = shown_turns_ = positioner_.modulo().turns();
+  if (positioner_.in_position() != in_position_) show_bits(h);
+  show_positions(h, positioner_.encoders().positions(), positioner_.setpoint());
+  h[kLagDistance] = positioner_.lag();
+}
+
+void PositioningService::show_all(Time now, std::span<int32_t> h) {
   positioner_.observe(drive_.position());
   show_target_positions(h);
   show_bits(h);
@@ -303,8 +314,7 @@ void PositioningService::show(Time now, std::span<int32_t> h) {
   show_positions(h, positioner_.encoders().positions(), positioner_.setpoint());
   h[kLagDistance] = positioner_.lag();
   if (h.size() > kGearSlave) h[kSyncState] = static_cast<int32_t>(positioner_.follow_state());
-  if (!drive_.travelled()) bus_position_ = drive_.bus_position().value_or(bus_position_);
-  h[kSetpointPosBus] = bus_position_;
+  h[kSetpointPosBus] = bus_position_ = drive_.bus_position().value_or(bus_position_);
   const TouchProbes::Probe& first = positioner_.touch_probes().probe(0);
   const TouchProbes::Probe& second = positioner_.touch_probes().probe(1);
   h[kTpPos1Mot] = first.motor;

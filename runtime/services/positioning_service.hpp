@@ -28,9 +28,16 @@ class PositioningService {
                      SourcePlace place);
 
   // Before the drive's tick: what the program wrote, what is to be done. `syncs`: sync telegrams so far.
-  PositionControl order(Time now, std::span<int32_t> h, uint32_t syncs);
+  // `unwritten`: no system variable was written since show().
+  PositionControl order(Time now, std::span<int32_t> h, uint32_t syncs, bool unwritten = false) {
+    if (travels_ && goes_on(h, unwritten)) return travel(now, syncs);
+    return order_anew(now, h, syncs);
+  }
   // After it: the system variables of positioning, and the extended cams.
-  void show(Time now, std::span<int32_t> h);
+  void show(Time now, std::span<int32_t> h, bool unwritten = false) {
+    if (unwritten && travelled_ && !cams_run_) return show_travel(h);
+    show_all(now, h);
+  }
 
   // Looks at no variable but system variables: no cam controller runs, no master is followed.
   bool minds_system_variables_only() const { return settings_.technology_function != kIsync && !cams_run_; }
@@ -76,7 +83,16 @@ class PositioningService {
   }
   void read_changed_settings();
   bool stays_idle(std::span<const int32_t> h) const;
-  bool goes_on(std::span<const int32_t> h) const;
+  // Nothing that positioning follows has changed since a millisecond in which there was only a travel to go
+  // on with.
+  bool goes_on(std::span<const int32_t> h, bool unwritten) const {
+    return drive_.travels() && settings_version_ == parameters_.changes() && (unwritten || !written(h));
+  }
+  bool written(std::span<const int32_t> h) const;
+  PositionControl travel(Time now, uint32_t syncs);
+  void show_travel(std::span<int32_t> h);
+  void show_all(Time now, std::span<int32_t> h);
+  PositionControl order_anew(Time now, std::span<int32_t> h, uint32_t syncs);
   bool mirrors_written(std::span<const int32_t> h) const;
   bool targets_written(std::span<const int32_t> h) const;
   void take_mirrors(std::span<int32_t> h);
@@ -119,6 +135,7 @@ class PositioningService {
   int32_t bus_position_ = 0;
   bool idles_ = false;        // there was nothing to do in the last millisecond, and no command came since
   bool travels_ = false;      // it has only gone on in the last millisecond, and no command came since
+  bool travelled_ = false;    // nothing else was done in the last millisecond
   bool in_position_ = false;  // as last shown
   uint32_t syncs_ = 0;        // sync telegrams, as of the last millisecond
   std::bitset<kPositioningEvents> reported_;  // in the last millisecond
