@@ -227,6 +227,10 @@ void Station::count_timers(std::span<int32_t> h) {
 }
 
 void Station::show_positioning(Time now) {
+  if (positioning_->writes_variables()) {
+    touch();
+    on_course_ = false;
+  }
   positioning_->show(now, machine_->variables(), unwritten_);
   if (positioning_->positioner().touch_probes().probe(0).fresh) machine_->raise_event(vm::Event::TouchProbe);
   positioning_commands_->tick(*machine_);

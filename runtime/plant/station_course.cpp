@@ -52,7 +52,7 @@ void Station::leave_course() {
 
 // Behind a tick that was executed in full.
 void Station::try_course() {
-  if (drive_.state().accelerates()) {
+  if (drive_.state().accelerates() || (positioning_ && positioning_->writes_variables())) {
     course_noted_ = false;
     return;
   }

@@ -42,6 +42,9 @@ class PositioningService {
   // Looks at no variable but system variables: no cam controller runs, no master is followed.
   bool minds_system_variables_only() const { return settings_.technology_function != kIsync && !cams_run_; }
 
+  // In every millisecond, of the program's choice: an extended cam controller runs.
+  bool writes_variables() const { return cams_run_ && extended_cams_.runs(); }
+
   // The last millisecond has found nothing to do, and no command came since. While inputs, parameters and
   // system variables stay as they are, too, go_on() is order() and show() around a tick of the drive, or
   // around several; before the last of them its counter was `before`.
