@@ -31,6 +31,7 @@ Member DriveCourse::noted(const Drive& drive, const Member& member) const {
 uint32_t DriveCourse::ticks(const Drive& drive) const {
   // A limit that is, or will be, exceeded shows when it is.
   const Axis& axis = drive.axis_;
+  axis.state();  // nothing is left to be computed later
   if (axis.heat_sink_ahead() > Drive::kOvertemperature ||
       axis.motor_utilization_ahead() >= Drive::kFullUtilization)
     return 0;
@@ -39,7 +40,7 @@ uint32_t DriveCourse::ticks(const Drive& drive) const {
 
   Axis moved = noted(drive, axis);
   moved.go_on(1);
-  moved.state();  // nothing is left to be computed later
+  moved.state();
   if (!same_bytes(moved, axis)) return 0;
   auto watches = noted(drive, drive.watches_);
   for (size_t n = 0; n < watches.size(); ++n) watches[n].go_on(drive.decisions_.links[n], 1);

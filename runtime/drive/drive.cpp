@@ -37,7 +37,7 @@ MachineData machine_of(MachineData machine, bool is_m07) {
   return machine;
 }
 
-bool is_reversing(const AxisState& axis) { return axis.setpoint < 0; }
+bool is_reversing(int32_t setpoint) { return setpoint < 0; }
 
 constexpr PoSource kAllSources[] = {PoSource::Rs485, PoSource::Fieldbus, PoSource::Sbus};
 
@@ -55,6 +55,7 @@ Drive::Drive(ParameterStore& parameters, const MachineData& machine)
 
 void Drive::read_settings() const {
   course_left_ = 0;
+  travels_ = false;
   settings_version_ = parameters_.changes();
   settings_ = reader_.read(parameters_);
 }
@@ -106,10 +107,11 @@ void Drive::look_around() const {
   now_.set(&Situation::starting_up, starting_up());
   now_.set(&Situation::factory_setting, parameters_.factory_setting_running());
   now_.set(&Situation::output_stage, axis_.state().output_stage);
-  now_.set(&Situation::reversing, is_reversing(axis_.state()));
+  now_.set(&Situation::reversing, is_reversing(axis_.setpoint()));
   look_again_ = false;
   if (!now_.changed()) return;
   course_left_ = 0;
+  travels_ = false;
   now_.looked();
   if (!decisions_known_ || !(*now_ == decided_for_)) decide_anew();
 }
@@ -196,22 +198,45 @@ void Drive::on_parameter_written(uint16_t index, int32_t value) {
 
 // --- the millisecond ---
 
-void Drive::tick(const PositionControl& position) {
-  calm_ = !now_.changed() && settings_version_ == parameters_.changes();
-  course_left_ = 0;
-  // One by one: a copy of the whole would bring along the bytes between them, and DriveCourse compares those.
+// One by one: a copy of the whole would bring along the bytes between them, and DriveCourse compares those.
+inline void Drive::take(const PositionControl& position) {
+  accelerates_ = position.speed != position_.speed;
   position_.controls = position.controls;
   position_.speed = position.speed;
   position_.halt = position.halt;
   position_.in_position = position.in_position;
   position_.referenced = position.referenced;
+}
+
+inline bool Drive::machine_overstrained() const {
+  const PowerSection& power = axis_.power();
+  return power.dc_link() > kOvervoltage || power.heat_sink() > kOvertemperature ||
+         power.motor_utilization() >= kFullUtilization;
+}
+
+// Something of the axis is, or was, beyond where watch_machine() lets it be.
+inline bool Drive::machine_suffers() const {
+  return axis_.current_limited() || limited_ms_ != 0 || machine_overstrained();
+}
+
+// The next tick has nothing to look around for, and no fault of the machine to raise.
+inline bool Drive::may_travel() const {
+  const bool limited_long = axis_.current_limited() && limited_ms_ >= set().speed_monitoring_delay;
+  return !look_again_ && !limited_long && !machine_overstrained();
+}
+
+void Drive::tick_anew(const PositionControl& position) {
+  calm_ = !now_.changed() && settings_version_ == parameters_.changes();
+  course_left_ = 0;
+  take(position);
   now_.set(&Situation::positioning, position.controls);
   now_.set(&Situation::halt, position.halt);
   count_time();
   decided();
   // Latches, edges, faults and parameter set have been brought up to these decisions; without a new one only
   // time and the machine can add something.
-  const bool restless = !settled_ || now_->faults.shown() != 0 || machine_suffers();
+  const bool unsettled = !settled_ || now_->faults.shown() != 0;
+  const bool restless = unsettled || machine_suffers();
   settled_ = true;  // unless what follows leads to other decisions
   if (restless) {
     latch_three_wire();
@@ -233,7 +258,28 @@ void Drive::tick(const PositionControl& position) {
   const AxisOrder& order = next_order(verdict_of(d).command);
   const AxisState& axis = axis_.tick(order);
   show_outputs(d, order, axis);
-  if (axis.output_stage != now_->output_stage || is_reversing(axis) != now_->reversing) look_again_ = true;
+  if (axis.output_stage != now_->output_stage || is_reversing(axis.setpoint) != now_->reversing)
+    look_again_ = true;
+  travels_ = position.controls && order.command == AxisCommand::Follow && axis.phase == AxisPhase::Moving &&
+             !unsettled && settled_ && !links_run_ && !now_.changed() && !starting_up() &&
+             !parameters_.factory_setting_running() && may_travel();
+}
+
+// What tick() does when it decides nothing: time, the speed, the shaft, and the outputs that follow it.
+void Drive::travel(const PositionControl& position) {
+  calm_ = true;
+  course_left_ = 0;
+  take(position);
+  count_running();
+  if (axis_.current_limited() || limited_ms_ != 0) count_limited();
+  setpoint_.speed = setpoint_.requested = order_.target = position.speed;
+  axis_.follow(order_);
+  const bool overloaded = axis_.power().motor_utilization() >= kFullUtilization;
+  const OutputMotion motion{axis_.standing(), position.in_position, position.referenced, axis_.speed(),
+                            axis_.output_current()};
+  if (overloaded || !outputs_.go_on(motion)) show_outputs(decisions_, order_, axis_.state());
+  look_again_ = is_reversing(axis_.setpoint()) != now_->reversing;
+  travels_ = may_travel();
 }
 
 void Drive::go_on(uint32_t ticks) {
@@ -245,22 +291,27 @@ void Drive::go_on(uint32_t ticks) {
   for (size_t n = 0; n < watches_.size(); ++n) watches_[n].go_on(decisions_.links[n], ticks);
 }
 
+void Drive::count_minute(uint32_t& ms, uint16_t minutes) {
+  ms = 0;
+  parameters_.set_display(minutes, parameters_.value(minutes) + 1);
+}
+
+inline void Drive::count_running() {
+  if (++mains_ms_ >= kMinuteMs) count_minute(mains_ms_, index::kMainsOnTime);
+  if (axis_.phase() != AxisPhase::Off && ++enabled_ms_ >= kMinuteMs)
+    count_minute(enabled_ms_, index::kEnabledTime);
+  if (axis_.power().energy() - counted_energy_ >= kEnergyDigit) {
+    counted_energy_ += kEnergyDigit;
+    parameters_.set_display(index::kEnergy, parameters_.value(index::kEnergy) + 1);
+  }
+}
+
 void Drive::count_time() {
   if (starting_up()) {
     ++up_ms_;
     look_again_ = true;
   }
-  const auto count = [&](uint32_t& ms, uint16_t minutes) {
-    if (++ms < kMinuteMs) return;
-    ms = 0;
-    parameters_.set_display(minutes, parameters_.value(minutes) + 1);
-  };
-  count(mains_ms_, index::kMainsOnTime);
-  if (output_stage_on()) count(enabled_ms_, index::kEnabledTime);
-  if (axis_.state().energy - counted_energy_ >= kEnergyDigit) {
-    counted_energy_ += kEnergyDigit;
-    parameters_.set_display(index::kEnergy, parameters_.value(index::kEnergy) + 1);
-  }
+  count_running();
   if (parameters_.factory_setting_running() && ++factory_setting_ms_ >= kFactorySettingMs) {
     factory_setting_ms_ = 0;
     parameters_.finish_factory_setting();
@@ -308,13 +359,6 @@ bool Drive::watch_links() {
   return missed;
 }
 
-// Something of the axis is, or was, beyond where watch_machine() lets it be.
-bool Drive::machine_suffers() const {
-  const AxisState& axis = axis_.state();
-  return axis.current_limited || limited_ms_ != 0 || axis.dc_link > kOvervoltage ||
-         axis.heat_sink > kOvertemperature || axis.motor_utilization >= kFullUtilization;
-}
-
 void Drive::watch_machine() {
   const Decisions& d = decided();
   const auto follow = [&](bool cause, uint8_t number) {
@@ -331,14 +375,18 @@ void Drive::watch_machine() {
   if (axis.dc_link > kOvervoltage) raise_fault(faults::kDcLink);
   if (axis.heat_sink > kOvertemperature) raise_fault(faults::kHeatSink);
   follow(set().motor_protection == 1 && axis.motor_utilization >= kFullUtilization, faults::kMotorOverload);
+  count_limited();
+  if (limited_ms_ > set().speed_monitoring_delay) raise_fault(faults::kSpeedMonitoring);
+}
 
-  // P500: 1 motor mode, 2 regenerative, 3 both (1053 1610 p. 77).
+// P500: 1 motor mode, 2 regenerative, 3 both (1053 1610 p. 77).
+void Drive::count_limited() {
+  const AxisState& axis = axis_.state();
   const int32_t mode = set().speed_monitoring;
   const bool regenerative = (axis.torque < 0) != (axis.speed < 0);
   const bool counts =
       axis.current_limited && (mode == 3 || (mode == 1 && !regenerative) || (mode == 2 && regenerative));
   limited_ms_ = counts ? limited_ms_ + 1 : 0;
-  if (counts && limited_ms_ > set().speed_monitoring_delay) raise_fault(faults::kSpeedMonitoring);
 }
 
 // The set changes only while the output stage is off (ours).

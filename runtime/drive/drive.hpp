@@ -58,12 +58,18 @@ class Drive final : private DriveLink {
   void set_ipos_control_word(uint32_t word) { now_.set(&Situation::ipos_word, word); }
   void set_ipos_pi(const Words& words) { ipos_pi_ = words; }
   void set_ipos_outputs(uint16_t levels) {
-    if (levels != ipos_outputs_) course_left_ = 0;
+    if (levels != ipos_outputs_) course_left_ = 0, travels_ = false;
     ipos_outputs_ = levels;
   }
 
   // One millisecond has passed.
-  void tick(const PositionControl& position = {});
+  void tick(const PositionControl& position = {}) {
+    travelled_ = travels() && position.controls && position.halt == position_.halt;
+    if (travelled_)
+      travel(position);
+    else
+      tick_anew(position);
+  }
 
   // --- ticks that only go on (course.hpp) ---
   // The next ticks are of that kind while nobody touches the drive.
@@ -75,6 +81,16 @@ class Drive final : private DriveLink {
   }
   void go_on(uint32_t ticks = 1);
   const PositionControl& position_control() const { return position_; }  // of the last tick
+
+  // --- ticks that only travel ---
+  // The last tick has found nothing to decide, and positioning moves the axis: while nobody touches the drive
+  // and positioning only orders other speeds, the next tick() moves the shaft and decides nothing.
+  bool travels() const { return travels_ && !now_.changed() && settings_version_ == parameters_.changes(); }
+  void leave_travel() { travels_ = false; }
+  // That is all the last tick was: what is decided, ordered and reported is as before.
+  bool travelled() const { return travelled_; }
+  // Positioning has ordered another speed than the time before.
+  bool accelerates() const { return accelerates_; }
 
   // --- for the positioning of IPOS ---
   bool can_position() const { return decided().can_position; }  // P700 is a mode with IPOS (1053 1610 p. 80)
@@ -199,11 +215,19 @@ class Drive final : private DriveLink {
   uint16_t pi_word(size_t n) const;
 
   LinkWatch& touched_watch(PoSource source);
+  void travel(const PositionControl& position);
+  void tick_anew(const PositionControl& position);
+  void take(const PositionControl& position);
+  bool may_travel() const;
   void count_time();
+  void count_running();
+  void count_minute(uint32_t& ms, uint16_t minutes);
   void latch_three_wire();
   bool watch_links();
   void watch_resets();
   bool machine_suffers() const;
+  bool machine_overstrained() const;
+  void count_limited();
   void watch_machine();
   void clear_faults();
   int32_t monitored(int32_t delay_ms) const;
@@ -284,6 +308,9 @@ class Drive final : private DriveLink {
   uint32_t enabled_ms_ = 0;
   int64_t counted_energy_ = 0;
   mutable uint32_t course_left_ = 0;
+  mutable bool travels_ = false;
+  bool travelled_ = false;
+  bool accelerates_ = false;
   bool calm_ = false;      // nobody had touched the drive before the last tick
   bool links_run_ = true;  // or may do so: a telegram has come since the last look
 };

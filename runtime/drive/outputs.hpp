@@ -96,6 +96,20 @@ struct OutputInputs {
   }
 };
 
+// Of a drive that positioning moves, where the rest stays as it is; there a setpoint is not compared.
+struct OutputMotion {
+  bool standstill;
+  bool in_position;
+  bool referenced;
+  int32_t speed;
+  int32_t current;
+
+  static constexpr uint32_t kFlags = 1U << 5 | 1U << 9 | 1U << 10;  // of OutputInputs
+  uint32_t flags() const {
+    return (standstill ? 1U : 0U) << 5 | (in_position ? 1U : 0U) << 9 | (referenced ? 1U : 0U) << 10;
+  }
+};
+
 class Outputs {
  public:
   // One millisecond. Bit 0 DB00, bit 1 DO01, bit 2 DO02, bit 8 DO10 .. bit 15 DO17.
@@ -103,10 +117,18 @@ class Outputs {
   uint16_t levels() const { return levels_; }
   // A tick with the settings of the last one. False: nothing was done, for it takes tick().
   [[gnu::always_inline]] bool go_on(const OutputInputs& in) {
-    const bool same = in.flags() == basis_.flags && in.ipos_outputs == basis_.ipos_outputs &&
-                      in.current_limit == current_limit_ && speeds_.have(magnitude(in.speed)) &&
-                      deviations_.have(magnitude(int64_t{in.speed} - in.setpoint)) &&
-                      currents_.have(magnitude(in.current));
+    return in.flags() == basis_.flags && in.ipos_outputs == basis_.ipos_outputs &&
+           in.current_limit == current_limit_ && go_on(in.speed, in.setpoint, in.current);
+  }
+  [[gnu::always_inline]] bool go_on(const OutputMotion& in) {
+    return in.flags() == (basis_.flags & OutputMotion::kFlags) && go_on(in.speed, 0, in.current);
+  }
+
+ private:
+  [[gnu::always_inline]] bool go_on(int32_t speed, int32_t setpoint, int32_t current) {
+    const bool same = speeds_.have(magnitude(speed)) &&
+                      deviations_.have(magnitude(int64_t{speed} - setpoint)) &&
+                      currents_.have(magnitude(current));
     if (!same) return false;
     if (settled_) return true;
     if (ticks_left_ == 0) return false;
@@ -115,7 +137,6 @@ class Outputs {
     return true;
   }
 
- private:
   static int64_t magnitude(int64_t value) { return value < 0 ? -value : value; }
   void find_ranges(const Settings& settings, const OutputInputs& inputs);
   bool level(OutputFunction function, const OutputInputs& inputs, unsigned bit) const;

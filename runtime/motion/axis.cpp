@@ -20,8 +20,7 @@ FineSpeed target_of(const AxisOrder& order) {
 
 Axis::Axis(const MachineData& machine)
     : machine_(within_limits(machine)), ramp_(machine_.ramp_reference), shaft_(machine_), power_(machine_) {
-  state_.dc_link = power_.dc_link();
-  state_.heat_sink = power_.heat_sink();
+  show_power();
 }
 
 void Axis::set_position(int32_t position) {
@@ -66,10 +65,14 @@ inline void Axis::advance_setpoint(const AxisOrder& order) {
   ramp_.step(0, {ms, ms, ms, ms, 0});
 }
 
+inline Resistance Axis::resistance(const AxisOrder& order, bool brake_acts) const {
+  return {machine_.load_torque + std::clamp(order.load_torque, -kTopTorque, kTopTorque),
+          machine_.friction + (brake_acts ? machine_.brake_torque : 0)};
+}
+
 inline Motion Axis::advance_shaft(const AxisOrder& order) {
-  const bool brake_acts = machine_.brake && order.brake_function && !brake_open();
-  const Resistance resistance{machine_.load_torque + std::clamp(order.load_torque, -kTopTorque, kTopTorque),
-                              machine_.friction + (brake_acts ? machine_.brake_torque : 0)};
+  const Resistance resistance =
+      this->resistance(order, machine_.brake && order.brake_function && !brake_open());
   if (has_torque(sequence_.phase()))
     return shaft_.driven(speed_, ramp_.output(), power_.torque_limit(order.current_limit), resistance);
   return {shaft_.free(speed_, 0, resistance), 0, false};
@@ -86,55 +89,64 @@ inline void Axis::count_position(int64_t way) {
   position_ += static_cast<uint32_t>(increments);
 }
 
-// What changes though the drive does not.
-inline void Axis::show_counts() const {
+// The power section follows the shaft; what nobody looks at every millisecond is shown when somebody asks.
+[[gnu::always_inline]] inline void Axis::move(const AxisOrder& order, Supply supply, const Motion& motion) {
+  count_position((speed_ + motion.speed) * kIncrementShare);
+  speed_ = motion.speed;
+  state_.standing = speed_ == 0;
+  state_.current_limited = motion.limited;
+  state_.speed = whole_speed(speed_);
+  state_.position = static_cast<int32_t>(position_);
+  state_.torque = static_cast<int32_t>(motion.torque);
+  power_.step({supply, state_.speed, motion.torque, order.current_limit, order.standstill_current});
+  state_.output_current = power_.output_current();
+  power_shown_ = false;
+}
+
+void Axis::show_power() const {
+  power_shown_ = true;
+  state_.active_current = power_.active_current();
+  state_.frequency = power_.frequency();
+  state_.dc_link = power_.dc_link();
   state_.energy = power_.energy();
   state_.heat_sink = power_.heat_sink();
   state_.utilization = power_.utilization();
   state_.motor_utilization = power_.motor_utilization();
 }
 
-inline void Axis::show(const AxisOrder& order, const Motion& motion) {
+const AxisState& Axis::tick(const AxisOrder& order) {
+  catch_up();
+  advance_sequence(order);
+  advance_setpoint(order);
   const AxisPhase phase = sequence_.phase();
   Supply supply = Supply::Off;
   if (phase == AxisPhase::Magnetizing) supply = Supply::Magnetizing;
   if (phase == AxisPhase::StandstillCurrent) supply = Supply::DirectCurrent;
   if (has_torque(phase)) supply = Supply::Driving;
-  power_.step({supply, speed_, motion.torque, order.current_limit, order.standstill_current});
+  move(order, supply, advance_shaft(order));
 
   state_.phase = phase;
   state_.output_stage = phase != AxisPhase::Off;
   state_.brake_released = brake_open();
-  state_.standing = speed_ == 0;
   state_.ramping = phase == AxisPhase::Moving && ramp_.output() != target_of(order);
-  state_.current_limited = motion.limited;
-  state_.speed = whole_speed(speed_);
   // Most of the time the shaft is where the ramp is.
   const bool same = ramp_.output() == speed_;
   state_.setpoint = !has_torque(phase) ? 0 : same ? state_.speed : whole_speed(ramp_.output());
-  state_.position = static_cast<int32_t>(position_);
-  state_.torque = static_cast<int32_t>(motion.torque);
-  state_.output_current = power_.output_current();
-  state_.active_current = power_.active_current();
-  state_.frequency = power_.frequency();
-  state_.dc_link = power_.dc_link();
-  show_counts();
+  return state();
 }
 
-const AxisState& Axis::tick(const AxisOrder& order) {
+void Axis::follow(const AxisOrder& order) {
   catch_up();
-  advance_sequence(order);
-  advance_setpoint(order);
-  const FineSpeed before = speed_;
-  const Motion motion = advance_shaft(order);
-  speed_ = motion.speed;
-  count_position((before + speed_) * kIncrementShare);
-  show(order, motion);
-  return state_;
+  ramp_.set(fine_speed(order.target));
+  const int64_t torque_limit = power_.torque_limit(order.current_limit);
+  move(order, Supply::Driving, shaft_.driven(speed_, ramp_.output(), torque_limit, resistance(order, false)));
+  state_.ramping = false;
+  state_.setpoint = whole_speed(ramp_.output());
 }
 
 void Axis::go_on(uint32_t ticks) {
   behind_ += ticks;
+  power_shown_ = false;
   if (speed_ == 0) return;
   // The whole increments of a tick and what is left, so that no product overflows.
   const int64_t way = 2 * speed_ * kIncrementShare;
@@ -145,9 +157,6 @@ void Axis::go_on(uint32_t ticks) {
   state_.position = static_cast<int32_t>(position_);
 }
 
-void Axis::draw_and_warm() const {
-  power_.go_on(std::exchange(behind_, 0));
-  show_counts();
-}
+void Axis::draw_and_warm() const { power_.go_on(std::exchange(behind_, 0)); }
 
 }  // namespace ipos::runtime

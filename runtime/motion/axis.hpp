@@ -66,18 +66,28 @@ class Axis {
 
   // One millisecond under this order.
   const AxisState& tick(const AxisOrder& order);
+  // The same for an axis in AxisPhase::Moving with AxisCommand::Follow: only the shaft moves.
+  void follow(const AxisOrder& order);
   // What so many ticks under the last order do when nothing changes but what moves, warms and counts: none is
   // on its way but to a speed that is reached, and the DC link stays as it is. At most a minute.
   void go_on(uint32_t ticks);
   const AxisState& state() const {
     catch_up();
+    if (!power_shown_) show_power();
     return state_;
+  }
+  const PowerSection& power() const {
+    catch_up();
+    return power_;
   }
   // Of state(), for who looks every millisecond: what warms and counts is computed when somebody asks for it.
   AxisPhase phase() const { return state_.phase; }
   int32_t position() const { return state_.position; }
   int32_t speed() const { return state_.speed; }
   bool standing() const { return state_.standing; }
+  bool current_limited() const { return state_.current_limited; }
+  int32_t setpoint() const { return state_.setpoint; }
+  int32_t output_current() const { return state_.output_current; }
   const MachineData& machine() const { return machine_; }
   // Of the next ticks while it goes on: the highest values, and the most energy for one tick (Ws).
   int32_t heat_sink_ahead() const { return power_.heat_sink_ahead(); }
@@ -93,13 +103,14 @@ class Axis {
   void advance_sequence(const AxisOrder& order);
   void advance_setpoint(const AxisOrder& order);
   Motion advance_shaft(const AxisOrder& order);
+  Resistance resistance(const AxisOrder& order, bool brake_acts) const;
+  void move(const AxisOrder& order, Supply supply, const Motion& motion);
   void count_position(int64_t way);
-  void show(const AxisOrder& order, const Motion& motion);
   void catch_up() const {
     if (behind_ != 0) draw_and_warm();
   }
   void draw_and_warm() const;
-  void show_counts() const;
+  void show_power() const;
 
   static bool has_torque(AxisPhase phase);
   bool brake_open() const;
@@ -113,7 +124,8 @@ class Axis {
   uint32_t position_ = 0;
   int64_t position_rest_ = 0;  // part of an increment
   mutable AxisState state_;
-  mutable uint32_t behind_ = 0;  // ticks of go_on() that power section and state have not seen yet
+  mutable uint32_t behind_ = 0;      // ticks of go_on() that the power section has not seen yet
+  mutable bool power_shown_ = true;  // the state is as the power section
 };
 
 static_assert(std::is_trivially_copyable_v<Axis>, "a copy is a snapshot");

@@ -16,10 +16,10 @@ inline constexpr FineSpeed kTopFine = kTopSpeed * kFine;
 
 constexpr FineSpeed fine_speed(int32_t mrpm) { return std::clamp(mrpm, -kTopSpeed, kTopSpeed) * kFine; }
 
-// Rounded to the nearest 1/1000 rpm, halves away from zero: both directions read alike.
+// Rounded to the nearest 1/1000 rpm, halves away from zero: both directions read alike. Below zero the shift,
+// which rounds down, has to pass one half less.
 constexpr int32_t whole_speed(FineSpeed speed) {
-  const FineSpeed half = speed < 0 ? -kFine / 2 : kFine / 2;
-  return static_cast<int32_t>((speed + half) / kFine);
+  return static_cast<int32_t>((speed + kFine / 2 - (speed < 0 ? 1 : 0)) >> 32);
 }
 
 constexpr int sign_of(int64_t value) { return value < 0 ? -1 : value > 0 ? 1 : 0; }

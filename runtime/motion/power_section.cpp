@@ -38,7 +38,6 @@ PowerSection::PowerSection(const MachineData& machine)
       heat_sink_(machine.heat_sink_time_ms) {
   find_torque_limit(0);
   find_currents({});
-  find_power({});
 }
 
 void PowerSection::find_torque_limit(int32_t current_limit) {
@@ -70,11 +69,10 @@ void PowerSection::find_currents(const Currents& currents) {
   heat_sink_target_ = std::min<int64_t>(1'000'000, heat / 10'000'000 * machine_.heat_sink_rise);
 }
 
-void PowerSection::find_power(const Speed& speed) {
-  speed_ = speed;
-  const int64_t slip = machine_.rated_slip * speed.torque / kHundredPercent;
-  frequency_ = speed.driving ? static_cast<int32_t>((speed.mrpm + slip) * machine_.pole_pairs / 60) : 0;
-  mechanical_ = speed.torque * speed.mrpm / machine_.rated_speed;
+int32_t PowerSection::frequency() const {
+  if (!speed_.driving) return 0;
+  const int64_t slip = machine_.rated_slip * speed_.torque / kHundredPercent;
+  return static_cast<int32_t>((speed_.mrpm + slip) * machine_.pole_pairs / 60);
 }
 
 void PowerSection::go_on(uint32_t steps) {

@@ -25,18 +25,21 @@ class PowerSection {
 
   struct Load {
     Supply supply;
-    FineSpeed speed;
+    int32_t speed;  // 1/1000 rpm
     int64_t torque;
     int32_t current_limit;   // bounds the magnetizing current, too
     int32_t direct_current;  // of Supply::DirectCurrent
   };
-  void step(const Load& load) {
+  [[gnu::always_inline]] void step(const Load& load) {
     const bool driving = load.supply == Supply::Driving;
     const int64_t torque = driving ? load.torque : 0;
     const Currents currents{load.supply, torque, load.current_limit, load.direct_current};
     if (!(currents == currents_)) find_currents(currents);
-    const Speed speed{whole_speed(load.speed), torque, driving};
-    if (!(speed == speed_)) find_power(speed);
+    const Speed speed{load.speed, torque, driving};
+    if (!(speed == speed_)) {
+      speed_ = speed;
+      mechanical_ = torque * speed.mrpm / machine_.rated_speed;
+    }
     step_power();
     unit_.follow(unit_target_);
     motor_.follow(motor_target_);
@@ -48,7 +51,7 @@ class PowerSection {
 
   int32_t output_current() const { return output_current_; }             // 1/1000 % IN
   int32_t active_current() const { return active_current_; }             // signed as the torque
-  int32_t frequency() const { return frequency_; }                       // mHz, signed as the field turns
+  int32_t frequency() const;                                             // mHz, signed as the field turns
   int32_t dc_link() const { return dc_link_; }                           // mV
   int32_t heat_sink() const { return temperature(heat_sink_.whole()); }  // °C
   int32_t utilization() const { return unit_.whole(); }                  // 1/1000 %
@@ -132,7 +135,6 @@ class PowerSection {
 
   void find_torque_limit(int32_t current_limit);
   void find_currents(const Currents& currents);
-  void find_power(const Speed& speed);
   // Mechanical power in 1/1000 % of the rated power; losses are added, what comes back charges the DC link.
   void step_power() {
     const int64_t change = std::clamp<int64_t>(power() + kStandby, -kMostPower, kMostPower) * kChargePerPower;
@@ -173,7 +175,6 @@ class PowerSection {
   int64_t unit_target_ = 0, motor_target_ = 0, heat_sink_target_ = 0;
   int32_t output_current_ = 0;
   int32_t active_current_ = 0;
-  int32_t frequency_ = 0;
   int64_t idle_charge_;  // square of the DC link voltage in mV², at mains
   int64_t charge_;       // now
   int64_t most_charge_;  // where the chopper holds it

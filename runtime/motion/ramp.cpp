@@ -34,11 +34,6 @@ constexpr int64_t triangle(int64_t level) { return level * (level + 1) / 2; }
 
 }  // namespace
 
-void Ramp::set(FineSpeed speed) {
-  output_ = std::clamp(speed, -kTopFine, kTopFine);
-  level_ = 0;
-}
-
 void Ramp::go_on(FineSpeed target, const RampTimes& times) {
   if (times.s_pattern == 0) return step_linear(target, times);
   constexpr int32_t kShare[] = {8, 4, 2};

@@ -9,6 +9,7 @@
 // A target that is taken back while the speed still rises is passed and then approached from the other side.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "runtime/motion/fine_speed.hpp"
@@ -28,7 +29,10 @@ class Ramp {
 
   FineSpeed output() const { return output_; }
   // Goes on from this speed, without slope.
-  void set(FineSpeed speed);
+  void set(FineSpeed speed) {
+    output_ = std::clamp(speed, -kTopFine, kTopFine);
+    level_ = 0;
+  }
   // Goes on from this speed with the slope it has.
   void wait_at(FineSpeed speed) { output_ = speed; }
   void step(FineSpeed target, const RampTimes& times) {

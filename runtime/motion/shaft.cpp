@@ -21,11 +21,8 @@ FineSpeed Shaft::free(FineSpeed speed, int64_t torque, const Resistance& resista
   return std::clamp(next, -kTopFine, kTopFine);
 }
 
-Motion Shaft::driven(FineSpeed speed, FineSpeed setpoint, int64_t torque_limit,
-                     const Resistance& resistance) const {
-  const int direction = sign_of(setpoint != 0 ? setpoint : speed);
-  const int64_t needed = (setpoint - speed) / gain_ + resistance.load + direction * resistance.friction;
-  if (std::abs(needed) <= torque_limit) return {setpoint, needed, false};
+Motion Shaft::limited(FineSpeed speed, FineSpeed setpoint, int64_t needed, int64_t torque_limit,
+                      const Resistance& resistance) const {
   const int64_t torque = sign_of(needed) * torque_limit;
   const FineSpeed reached = free(speed, torque, resistance);
   // Friction that helps while a reversal passes zero must not carry it past the setpoint.

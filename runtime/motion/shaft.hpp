@@ -30,9 +30,17 @@ class Shaft {
 
   // The motor drives the shaft to the setpoint within one millisecond, as far as its torque reaches.
   Motion driven(FineSpeed speed, FineSpeed setpoint, int64_t torque_limit,
-                const Resistance& resistance) const;
+                const Resistance& resistance) const {
+    const int direction = sign_of(setpoint != 0 ? setpoint : speed);
+    const int64_t needed = (setpoint - speed) / gain_ + resistance.load + direction * resistance.friction;
+    if (-torque_limit <= needed && needed <= torque_limit) return {setpoint, needed, false};
+    return limited(speed, setpoint, needed, torque_limit, resistance);
+  }
 
  private:
+  Motion limited(FineSpeed speed, FineSpeed setpoint, int64_t needed, int64_t torque_limit,
+                 const Resistance& resistance) const;
+
   int64_t gain_;  // change of speed in one millisecond by a torque of 1
 };
 

@@ -138,14 +138,16 @@ void Station::tick(Time now) {
 bool Station::execute(Time now) {
   end_cruise();
   on_course_ = on_course_ && stays_on_course();
+  unwritten_ = quiet_ && !touched_ && execution_.skip_idle && runner_ == nullptr;
   touched_ = false;
+  if (!execution_.skip_idle) drive_.state().leave_travel();
   if (on_course_ && machine_ && (!positioning_ || positioning_->idles())) {
     glide(now);
     return true;
   }
   move_drive(now);
   if (!on_course_) {
-    report_drive(now);
+    if (!drive_.state().travelled()) report_drive(now);
     if (x13_) x13_->configure(now);
     if (xt_) xt_->configure(now);
   }
@@ -161,13 +163,13 @@ bool Station::execute(Time now) {
 
 void Station::move_drive(Time now) {
   Drive& drive = drive_.state();
-  if (!on_course_) {
+  if (!on_course_ && !inputs_.known()) {
     drive.set_inputs(inputs_.levels());
     drive.set_analog(inputs_.analog());
   }
-  const PositionControl position = positioning_ && machine_
-                                       ? positioning_->order(now, machine_->variables(), drive_.syncs())
-                                       : PositionControl{};
+  const PositionControl position =
+      positioning_ && machine_ ? positioning_->order(now, machine_->variables(), drive_.syncs(), unwritten_)
+                               : PositionControl{};
   on_course_ = on_course_ && position == drive.position_control();
   if (on_course_)
     drive.go_on();
@@ -212,8 +214,10 @@ void Station::settle(Time now) {
 void Station::begin_program(Time now) {
   const std::span<int32_t> h = machine_->variables();
   if (!on_course_) {
-    raise_drive_events();
-    restart_after_reset(now);
+    if (!drive_.state().travelled()) {
+      raise_drive_events();
+      restart_after_reset(now);
+    }
     mirrored_->show(h);
   }
   show_drive(drive_.state(), h);
@@ -231,7 +235,11 @@ void Station::count_timers(std::span<int32_t> h) {
 }
 
 void Station::show_positioning(Time now) {
-  positioning_->show(now, machine_->variables());
+  if (positioning_->writes_variables()) {
+    touch();
+    on_course_ = false;
+  }
+  positioning_->show(now, machine_->variables(), unwritten_);
   if (positioning_->positioner().touch_probes().probe(0).fresh) machine_->raise_event(vm::Event::TouchProbe);
   positioning_commands_->tick(*machine_);
 }
@@ -240,14 +248,20 @@ void Station::end_program(Time now) {
   const std::span<int32_t> h = machine_->variables();
   on_course_ = on_course_ && !has_news();
   if (on_course_) return;
-  mirrored_->take(h);
-  take_program_orders(h, drive_.state());
+  if (!unwritten_ || touched_) {
+    mirrored_->take(h);
+    take_program_orders(h, drive_.state());
+  }
+  if (drive_.has_reasons()) report_reasons(now);
+  if (has_fresh_fault()) report_fault(now);
+}
+
+void Station::report_reasons(Time now) {
   // MOVLNK to the own unit.
   if (std::string refused = drive_.take_reason(); !refused.empty())
     journal_.note(now, Weight::Why, config_.name, "refused " + std::move(refused));
   for (std::string& obstacle : drive_.take_obstacles())
     journal_.note(now, Weight::Why, config_.name, std::move(obstacle));
-  if (has_fresh_fault()) report_fault(now);
 }
 
 // An error that is new, or back after a reset, is the event of the ERROR interrupt; warnings are not (ours).

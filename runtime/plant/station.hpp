@@ -243,6 +243,7 @@ class Station final : private EventTarget, private Sleeper {
   void raise_drive_events();
   void restart_after_reset(Time now);
   StationServices services();
+  void report_reasons(Time now);
   void report_fault(Time now);
   void report_drive(Time now);
 
@@ -280,6 +281,7 @@ class Station final : private EventTarget, private Sleeper {
   uint32_t prospect_pause_ = 1;
 
   bool quiet_ = false;           // the program's own commands write none of the noted variables
+  bool unwritten_ = false;       // before this tick nobody had written them since the last one
   bool touched_ = false;         // somebody else may have written them since the last tick
   bool course_noted_ = false;    // this tick is compared with what was before it, for a course
   bool fault_reported_ = false;  // of the program

@@ -52,6 +52,10 @@ void Station::leave_course() {
 
 // Behind a tick that was executed in full.
 void Station::try_course() {
+  if (drive_.state().accelerates() || (positioning_ && positioning_->writes_variables())) {
+    course_noted_ = false;
+    return;
+  }
   if (!course_noted_) {
     if (course_in_ != 0) {
       --course_in_;

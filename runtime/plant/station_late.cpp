@@ -91,7 +91,7 @@ bool Station::keep(ObjectReader& reader, size_t object, const Frame& frame) {
 }
 
 bool Station::stride(Time last) {
-  if (cruise_left_ == 0 && (next_tick_ < cruise_at_ || !begin_cruise())) return false;
+  if (cruise_left_ == 0 && (!on_course_ || next_tick_ < cruise_at_ || !begin_cruise())) return false;
   const auto ticks = std::min(static_cast<uint32_t>((last - next_tick_) / kMillisecond + 1), cruise_left_);
   if (!machine_->run_ahead(cruise_rates_.commands, ticks, prospect_.undone)) {
     end_cruise();
@@ -109,8 +109,7 @@ bool Station::stride(Time last) {
 // Nothing that is asked here changes before somebody touches the station.
 bool Station::begin_cruise() {
   if (!prospect_.apart || !quiet_ || touched_ || owed_ != 0 || !machine_) return false;
-  if (!on_course_ || !stays_on_course() || (positioning_ && !positioning_->idles()) || has_news())
-    return false;
+  if (!stays_on_course() || (positioning_ && !positioning_->idles()) || has_news()) return false;
   const bool moves = !drive_.state().standing();
   if ((prospect_.minds_motion && moves) || !timers_.rest(machine_->variables())) return false;
   cruise_rates_ = rates();

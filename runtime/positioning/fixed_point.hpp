@@ -12,6 +12,7 @@ using Fine = int64_t;
 using Rate = int64_t;
 using Span = int64_t;
 __extension__ using Wide = __int128;
+__extension__ using WideAmount = unsigned __int128;
 
 inline constexpr int kFineBits = 20;
 inline constexpr int kRateBits = 28;
@@ -46,14 +47,15 @@ constexpr Rate rate_of_speed(int64_t mrpm, EncoderFactor factor) {
 }
 // Rounded to the nearest, halves away from 0. The unit is 2^32 x denominator: to divide by its parts one
 // behind the other gives the same whole number. With a numerator of 15 bits (P942) the amount has less than
-// 96, so 64 are left for the second one.
+// 96, so 64 are left for the second one. Both parts of the factor are above 0.
 constexpr int64_t speed_of_rate(Rate rate, EncoderFactor factor) {
   static_assert(Wide{16} << kRateBits == Wide{1} << 32);
-  const Wide value = Wide{rate} * (int64_t{234'375} * factor.numerator);
-  const Wide half = Wide{factor.denominator} << 31;
-  const auto amount = static_cast<uint64_t>(((value < 0 ? -value : value) + half) >> 32);
-  const auto speed = static_cast<int64_t>(amount / static_cast<uint64_t>(factor.denominator));
-  return value < 0 ? -speed : speed;
+  const auto denominator = static_cast<uint64_t>(factor.denominator);
+  const uint64_t amount = rate < 0 ? 0 - static_cast<uint64_t>(rate) : static_cast<uint64_t>(rate);
+  const auto value = WideAmount{amount} * (uint64_t{234'375} * static_cast<uint64_t>(factor.numerator)) +
+                     (denominator << 31);
+  const auto speed = static_cast<int64_t>(static_cast<uint64_t>(value >> 32) / denominator);
+  return rate < 0 ? -speed : speed;
 }
 
 // A way of the source as one of the motor, rounded towards 0.

@@ -91,17 +91,6 @@ void Positioner::glide(int32_t before, int32_t motor_counter) {
   move(motor_counter);
 }
 
-inline void Positioner::move(int32_t motor_counter) {
-  const int32_t before = actual();
-  encoders_.count(motor_counter);
-  modulo_.move(wrapped(int64_t{actual()} - before));
-}
-
-void Positioner::observe(int32_t motor_counter) {
-  move(motor_counter);
-  lag_ = following_ ? wrapped(int64_t{setpoint()} - actual()) : 0;
-}
-
 // A position that counts otherwise from now on ends every travel.
 void Positioner::take_over(const PositioningSettings& settings) {
   const bool other =
@@ -256,6 +245,16 @@ inline int32_t Positioner::speed_order() const {
   return static_cast<int32_t>(std::clamp(feed + lag * settings_.gain / 2, -top, top));
 }
 
+// The millisecond of an axis that follows.
+[[gnu::always_inline]] inline PositioningOrder Positioner::advance() {
+  profile_.tick();
+  keep_in_range();
+  if (settings_.lag_window > 0 && magnitude(lag_) > settings_.lag_window) report(PositioningEvent::LagError);
+  return {true, speed_order(), halt_};
+}
+
+PositioningOrder Positioner::go_on() { return advance(); }
+
 PositioningOrder Positioner::tick(const PositioningInputs& inputs) {
   if (!modulo_.possible()) configure_modulo();
   inputs_ = inputs;
@@ -274,10 +273,17 @@ PositioningOrder Positioner::tick(const PositioningInputs& inputs) {
     run_reference();
   else if (!follow_master())
     run_travel();
-  profile_.tick();
-  keep_in_range();
-  if (settings_.lag_window > 0 && magnitude(lag_) > settings_.lag_window) report(PositioningEvent::LagError);
-  return {true, speed_order(), halt_};
+  return advance();
+}
+
+// Nothing that tick() asks before it advances has another answer.
+bool Positioner::goes_on() const {
+  const bool alone = !reference_.active() && !inputs_.master.follow && follower_.silent() &&
+                     follow_state_ == FollowState::Free;
+  const bool sensed =
+      inputs_.limit_cw || inputs_.limit_ccw || touch_probes_.probe(0).fresh || touch_probes_.probe(1).fresh;
+  return following_ && alone && !sensed && !modulo_.on() && modulo_.possible() && target_allowed() &&
+         plan_holds(target_) && events_.none();
 }
 
 }  // namespace ipos::runtime

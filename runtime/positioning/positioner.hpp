@@ -74,11 +74,18 @@ class Positioner {
            !touch_probes_.probe(1).fresh && events_.none();
   }
   PositioningOrder idle(int32_t speed);
+  // The last tick() has gone on with its plan, or rested at the end of it. Then go_on() is tick() with
+  // settings and inputs that are the same but for the speed.
+  bool goes_on() const;
+  PositioningOrder go_on();
   // idle() and observe() where nobody looks at the order, once or several times: the last one finds the
   // counter at `before`.
   void glide(int32_t before, int32_t motor_counter);
   // After it has moved: the counter of the motor encoder.
-  void observe(int32_t motor_counter);
+  void observe(int32_t motor_counter) {
+    move(motor_counter);
+    lag_ = following_ ? wrapped(int64_t{setpoint()} - actual()) : 0;
+  }
   // A reference travel has given the motor encoder another count, which the axis must take over.
   std::optional<int32_t> take_motor_counter() { return std::exchange(motor_counter_, std::nullopt); }
   bool has_events() const { return events_.any(); }
@@ -143,8 +150,13 @@ class Positioner {
   void plan(int64_t goal, const TravelRules& rules);
   void brake_here();
   void drop_target();
-  void move(int32_t motor_counter);
+  void move(int32_t motor_counter) {
+    const int32_t before = actual();
+    encoders_.count(motor_counter);
+    modulo_.move(wrapped(int64_t{actual()} - before));
+  }
   void keep_in_range();
+  PositioningOrder advance();
   int32_t speed_order() const;
 
   void run_reference();

@@ -149,46 +149,62 @@ void Profile::shift(int64_t increments) {
 }
 
 // With 34 bits, 16 s, the product below has 64.
-int64_t Profile::share_in(const Phase& phase, Span time) {
+inline int64_t Profile::share_in(const Phase& phase, Span time) {
   if (phase.duration < Span{1} << (64 - kShareBits))
     return static_cast<int64_t>((static_cast<uint64_t>(time) << kShareBits) /
                                 static_cast<uint64_t>(phase.duration));
   return static_cast<int64_t>((Wide{time} << kShareBits) / phase.duration);
 }
 
-Fine Profile::way_in(const Phase& phase, Span time, int64_t share) {
-  const Wide change = Wide{phase.to - phase.from} * phase.duration * distance_share(phase.shape, share);
+inline Fine Profile::way_in(const Phase& phase, Span time, int64_t distance_share) {
+  const Wide change = Wide{phase.to - phase.from} * phase.duration * distance_share;
   return static_cast<Fine>((Wide{phase.from} * time + (change >> kShareBits)) >> kRateBits);
-}
-
-Rate Profile::speed_in(const Phase& phase, int64_t share) {
-  return phase.from +
-         static_cast<Rate>((Wide{phase.to - phase.from} * speed_share(phase.shape, share)) >> kShareBits);
 }
 
 // What is the same in all its milliseconds. The last phase is counted from its end, so that it ends exactly
 // there.
 void Profile::enter_phase() {
   const Phase& phase = plan_[phase_];
-  way_ = phase.duration == 0 ? 0 : way_in(phase, phase.duration, kWholeShare);
+  way_ = phase.duration == 0 ? 0 : way_in(phase, phase.duration, distance_share(phase.shape, kWholeShare));
   origin_ = at_last_phase() ? goal_ - way_ : begin_;
   entered_ = true;
+}
+
+// False: there is none left.
+bool Profile::next_phase() {
+  while (elapsed_ >= plan_[phase_].duration) {
+    elapsed_ -= plan_[phase_].duration;
+    begin_ += way_;
+    if (++phase_ == phases_) {
+      arrive();
+      return false;
+    }
+    enter_phase();
+  }
+  return true;
 }
 
 void Profile::tick() {
   if (phases_ == 0) return;
   if (!entered_) enter_phase();
   elapsed_ += kMs;
-  while (elapsed_ >= plan_[phase_].duration) {
-    elapsed_ -= plan_[phase_].duration;
-    begin_ += way_;
-    if (++phase_ == phases_) return arrive();
-    enter_phase();
-  }
+  if (elapsed_ >= plan_[phase_].duration && !next_phase()) return;
   const Phase& phase = plan_[phase_];
   const int64_t share = phase.from == phase.to ? 0 : share_in(phase, elapsed_);
-  position_ = origin_ + way_in(phase, elapsed_, share);
-  speed_ = speed_in(phase, share);
+  if (phase.shape == RampShape::Linear)
+    read_out(phase, share, linear_distance_share(share));
+  else
+    read_out_curve(phase, share);
+}
+
+void Profile::read_out_curve(const Phase& phase, int64_t share) {
+  read_out(phase, curved_speed_share(phase.shape, share), curved_distance_share(phase.shape, share));
+}
+
+[[gnu::always_inline]] inline void Profile::read_out(const Phase& phase, int64_t speed_share,
+                                                     int64_t distance_share) {
+  position_ = origin_ + way_in(phase, elapsed_, distance_share);
+  speed_ = phase.from + static_cast<Rate>((Wide{phase.to - phase.from} * speed_share) >> kShareBits);
   // Rounding must not carry it past the target.
   const int way = sign(phase.from + phase.to);
   if (arrives_ && !(turns_ && phase_ == 0) && way * (position_ - goal_) > 0) position_ = goal_;

@@ -68,11 +68,13 @@ class Profile {
   void brake_to(Fine goal, RampShape shape);
 
   void enter_phase();
+  bool next_phase();
   bool at_last_phase() const { return arrives_ && phase_ + 1U == phases_; }
   void arrive();
   static int64_t share_in(const Phase& phase, Span time);
-  static Fine way_in(const Phase& phase, Span time, int64_t share);
-  static Rate speed_in(const Phase& phase, int64_t share);
+  static Fine way_in(const Phase& phase, Span time, int64_t distance_share);
+  void read_out(const Phase& phase, int64_t speed_share, int64_t distance_share);
+  void read_out_curve(const Phase& phase, int64_t share);
 
   Fine position_ = 0;
   Rate speed_ = 0;

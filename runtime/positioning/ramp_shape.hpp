@@ -23,8 +23,9 @@ inline int64_t speed_share(RampShape shape, int64_t time) {
 }
 // And its integral over the time, 0..1/2.
 int64_t curved_distance_share(RampShape shape, int64_t time);
+inline int64_t linear_distance_share(int64_t time) { return (time * time) >> (kShareBits + 1); }
 inline int64_t distance_share(RampShape shape, int64_t time) {
-  return shape == RampShape::Linear ? (time * time) >> (kShareBits + 1) : curved_distance_share(shape, time);
+  return shape == RampShape::Linear ? linear_distance_share(time) : curved_distance_share(shape, time);
 }
 
 // How much harder than on average a ramp of this shape may brake, in halves: a curved ramp that is taken up

@@ -10,8 +10,6 @@ namespace {
 
 using stdlib::system_variable;
 
-enum Mode : int32_t { kOff = 0, kControl = 1, kStepResponse = 2 };
-
 // Bits of PID_Status (IPOSplus p. 39). 0 and 1 need limits of the actual value, which are on no page read.
 enum Status : int32_t {
   kLimitedP = 1 << 2,
@@ -44,17 +42,11 @@ PidBlock::PidBlock(const ParameterStore& parameters) : parameters_(parameters) {
   actual_ = index_of("276");
 }
 
-bool PidBlock::is_off(std::span<const int32_t> h) {
-  const int32_t mode = h[system_variable("PID_Mode")];
-  return mode != kControl && mode != kStepResponse;
-}
-
-void PidBlock::tick(std::span<int32_t> h) {
+void PidBlock::control(std::span<int32_t> h) {
   const int32_t mode = h[system_variable("PID_Mode")];
   if (mode != kControl) {
     integral_ = 0;
     started_ = false;
-    if (mode != kStepResponse) return;
   }
   const int64_t integral_ms = parameters_.value(integral_ms_);
   const int64_t gain = std::clamp(h[system_variable("PID_K_p")], 0, 32'000);  // 1/1000

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "runtime/drive/parameters.hpp"
+#include "stdlib/system_variables.hpp"
 
 namespace ipos::runtime {
 
@@ -15,11 +16,22 @@ class PidBlock {
   // The parameters must outlive it.
   explicit PidBlock(const ParameterStore& parameters);
 
-  void tick(std::span<int32_t> h);
+  void tick(std::span<int32_t> h) {
+    if (!is_off(h)) return control(h);
+    integral_ = 0;
+    started_ = false;
+  }
   // With this mode H540 a tick does nothing.
-  static bool is_off(std::span<const int32_t> h);
+  static bool is_off(std::span<const int32_t> h) {
+    const int32_t mode = h[stdlib::system_variable("PID_Mode")];
+    return mode != kControl && mode != kStepResponse;
+  }
 
  private:
+  enum Mode : int32_t { kOff = 0, kControl = 1, kStepResponse = 2 };
+
+  void control(std::span<int32_t> h);
+
   const ParameterStore& parameters_;
   uint16_t integral_ms_;    // indices: P264; 0: no I share
   uint16_t derivative_ms_;  // P265; 0: no D share

@@ -95,12 +95,12 @@ vm::HostReply PositioningCommands::travel(vm::Machine& machine, int context, con
 
 vm::HostReply PositioningCommands::wait(int context) {
   if (service_.positioner().in_position()) return {};
-  waiting_[slot(context)] = true;
+  waiting_[slot(context)] = may_wait_ = true;
   return {vm::Answer::Wait, 0, nullptr};
 }
 
-void PositioningCommands::tick(vm::Machine& machine) {
-  if (!service_.positioner().in_position()) return;
+void PositioningCommands::resume(vm::Machine& machine) {
+  may_wait_ = false;
   for (int context = 1; context <= vm::kContexts; ++context)
     if (std::exchange(waiting_[slot(context)], false)) machine.resume(context);
 }

@@ -20,7 +20,9 @@ class PositioningCommands {
   std::optional<vm::HostReply> execute(vm::Machine& machine, int context, const vm::Instruction& command);
 
   // Once a millisecond, after the service has shown what there is: contexts whose wait is over go on.
-  void tick(vm::Machine& machine);
+  void tick(vm::Machine& machine) {
+    if (may_wait_ && service_.positioner().in_position()) resume(machine);
+  }
 
   // The context does not wait any more.
   void cancel(int context) { waiting_[slot(context)] = false; }
@@ -29,6 +31,7 @@ class PositioningCommands {
  private:
   static size_t slot(int context) { return static_cast<size_t>(context - 1); }
 
+  void resume(vm::Machine& machine);
   vm::HostReply wait(int context);
   vm::HostReply travel(vm::Machine& machine, int context, const vm::Instruction& command);
   std::optional<vm::HostReply> set_system_value(std::span<const int32_t> h, int32_t keyword, size_t variable);
@@ -36,6 +39,7 @@ class PositioningCommands {
 
   PositioningService& service_;
   std::array<bool, vm::kContexts> waiting_{};  // for the axis to be in position
+  bool may_wait_ = false;                      // one of them does, or did before it was stopped
 };
 
 }  // namespace ipos::runtime

@@ -135,6 +135,7 @@ void PositioningService::take_targets(std::span<const int32_t> h) {
 }
 
 void PositioningService::take_written_targets(std::span<const int32_t> h) {
+  travels_ = false;
   if (h[kTargetPos] != shown_target_) {
     ordered_at_.reset();
     positioner_.write_target(h[kTargetPos]);
@@ -157,8 +158,9 @@ inline void PositioningService::show_target_positions(std::span<int32_t> h) {
 
 inline void PositioningService::show_bits(std::span<int32_t> h) {
   constexpr uint32_t kBits = 1U << kInPosition | 1U << kReferenced;
-  const uint32_t bits = (positioner_.in_position() ? 1U << kInPosition : 0) |
-                        (positioner_.referenced() ? 1U << kReferenced : 0);
+  in_position_ = positioner_.in_position();
+  const uint32_t bits =
+      (in_position_ ? 1U << kInPosition : 0) | (positioner_.referenced() ? 1U << kReferenced : 0);
   h[kStatusWord] = static_cast<int32_t>((static_cast<uint32_t>(h[kStatusWord]) & ~kBits) | bits);
 }
 
@@ -216,7 +218,24 @@ bool PositioningService::stays_idle(std::span<const int32_t> h) const {
          !mirrors_written(h);
 }
 
-PositionControl PositioningService::order(Time now, std::span<int32_t> h, uint32_t syncs) {
+bool PositioningService::written(std::span<const int32_t> h) const {
+  return targets_written(h) || static_cast<uint32_t>(h[kModuloCtrl]) != inputs_.modulo_control ||
+         mirrors_written(h);
+}
+
+PositionControl PositioningService::travel(Time now, uint32_t syncs) {
+  travelled_ = true;
+  syncs_ = syncs;
+  const PositioningOrder order = positioner_.go_on();
+  if (positioner_.has_events()) {
+    report_events(now);
+    travels_ = false;
+  }
+  return {order.controls, order.speed, command_of(order.halt), in_position_, positioner_.referenced()};
+}
+
+PositionControl PositioningService::order_anew(Time now, std::span<int32_t> h, uint32_t syncs) {
+  travelled_ = false;
   if (idles_ && stays_idle(h)) {
     syncs_ = syncs;
     const PositioningOrder order = positioner_.idle(drive_.speed());
@@ -232,7 +251,9 @@ PositionControl PositioningService::order(Time now, std::span<int32_t> h, uint32
   read_inputs(h, syncs);
   const PositioningOrder order = positioner_.tick(inputs_);
   if (positioner_.has_events() || reported_.any()) report_events(now);
-  idles_ = positioner_.idles() && reported_.none() && settings_.technology_function != kIsync;
+  const bool undisturbed = reported_.none() && settings_.technology_function != kIsync;
+  idles_ = undisturbed && positioner_.idles();
+  travels_ = undisturbed && positioner_.goes_on();
   if (const auto counter = positioner_.take_motor_counter()) drive_.set_position(*counter);
   return {order.controls, order.speed, command_of(order.halt), positioner_.in_position(),
           positioner_.referenced()};
@@ -276,7 +297,16 @@ void PositioningService::go_on(std::span<int32_t> h, uint32_t syncs, int32_t bef
   show_positions(h, positions, positions.of(positioner_.source()));
 }
 
-void PositioningService::show(Time now, std::span<int32_t> h) {
+// What a travel moves.
+void PositioningService::show_travel(std::span<int32_t> h) {
+  positioner_.observe(drive_.position());
+  h[kModCount] = shown_turns_ = positioner_.modulo().turns();
+  if (positioner_.in_position() != in_position_) show_bits(h);
+  show_positions(h, positioner_.encoders().positions(), positioner_.setpoint());
+  h[kLagDistance] = positioner_.lag();
+}
+
+void PositioningService::show_all(Time now, std::span<int32_t> h) {
   positioner_.observe(drive_.position());
   show_target_positions(h);
   show_bits(h);

@@ -28,12 +28,22 @@ class PositioningService {
                      SourcePlace place);
 
   // Before the drive's tick: what the program wrote, what is to be done. `syncs`: sync telegrams so far.
-  PositionControl order(Time now, std::span<int32_t> h, uint32_t syncs);
+  // `unwritten`: no system variable was written since show().
+  PositionControl order(Time now, std::span<int32_t> h, uint32_t syncs, bool unwritten = false) {
+    if (travels_ && goes_on(h, unwritten)) return travel(now, syncs);
+    return order_anew(now, h, syncs);
+  }
   // After it: the system variables of positioning, and the extended cams.
-  void show(Time now, std::span<int32_t> h);
+  void show(Time now, std::span<int32_t> h, bool unwritten = false) {
+    if (unwritten && travelled_ && !cams_run_) return show_travel(h);
+    show_all(now, h);
+  }
 
   // Looks at no variable but system variables: no cam controller runs, no master is followed.
   bool minds_system_variables_only() const { return settings_.technology_function != kIsync && !cams_run_; }
+
+  // In every millisecond, of the program's choice: an extended cam controller runs.
+  bool writes_variables() const { return cams_run_ && extended_cams_.runs(); }
 
   // The last millisecond has found nothing to do, and no command came since. While inputs, parameters and
   // system variables stay as they are, too, go_on() is order() and show() around a tick of the drive, or
@@ -50,7 +60,7 @@ class PositioningService {
   // For commands, between two ticks.
   const Positioner& positioner() const { return positioner_; }
   Positioner& change_positioner() {
-    idles_ = false;
+    idles_ = travels_ = false;
     return positioner_;
   }
   void take_targets(std::span<const int32_t> h);                // written since the last look
@@ -76,6 +86,16 @@ class PositioningService {
   }
   void read_changed_settings();
   bool stays_idle(std::span<const int32_t> h) const;
+  // Nothing that positioning follows has changed since a millisecond in which there was only a travel to go
+  // on with.
+  bool goes_on(std::span<const int32_t> h, bool unwritten) const {
+    return drive_.travels() && settings_version_ == parameters_.changes() && (unwritten || !written(h));
+  }
+  bool written(std::span<const int32_t> h) const;
+  PositionControl travel(Time now, uint32_t syncs);
+  void show_travel(std::span<int32_t> h);
+  void show_all(Time now, std::span<int32_t> h);
+  PositionControl order_anew(Time now, std::span<int32_t> h, uint32_t syncs);
   bool mirrors_written(std::span<const int32_t> h) const;
   bool targets_written(std::span<const int32_t> h) const;
   void take_mirrors(std::span<int32_t> h);
@@ -116,8 +136,11 @@ class PositioningService {
   int32_t shown_modulo_target_ = 0;
   int32_t shown_turns_ = 0;
   int32_t bus_position_ = 0;
-  bool idles_ = false;  // there was nothing to do in the last millisecond, and no command came since
-  uint32_t syncs_ = 0;  // sync telegrams, as of the last millisecond
+  bool idles_ = false;        // there was nothing to do in the last millisecond, and no command came since
+  bool travels_ = false;      // it has only gone on in the last millisecond, and no command came since
+  bool travelled_ = false;    // nothing else was done in the last millisecond
+  bool in_position_ = false;  // as last shown
+  uint32_t syncs_ = 0;        // sync telegrams, as of the last millisecond
   std::bitset<kPositioningEvents> reported_;  // in the last millisecond
   std::optional<uint32_t> ordered_at_;        // nothing: by writing a variable
 };

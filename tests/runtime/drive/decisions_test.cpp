@@ -1,6 +1,7 @@
 // A drive that keeps its decisions, and goes on where nothing is to be decided, against one that decides
 // everything anew every millisecond and before every question: the same random commands, inputs, telegrams,
 // faults and parameter writes, compared after each of them.
+#include <algorithm>
 #include <random>
 
 #include "runtime/drive/course.hpp"
@@ -30,6 +31,7 @@ struct Twin {
     }
     course.note(drive());
     rig.drive.tick(position);
+    travelled += rig.drive.travelled() ? 1 : 0;
     if (!forgets) rig.drive.hold_course(course.ticks(rig.drive));
   }
 
@@ -37,6 +39,7 @@ struct Twin {
   bool forgets;
   runtime::DriveCourse course;
   uint32_t gone_on = 0;
+  uint32_t travelled = 0;
 };
 
 // Some get hot within seconds, and their motors are too weak for some ramps.
@@ -85,6 +88,7 @@ class Pair {
     }
     const uint32_t ticks = below(8) == 0 ? 1 + below(300) : 1 + below(4);
     for (uint32_t n = 0; n < ticks; ++n) {
+      if (position_.controls && below(3) != 0) travel();
       kept_.tick(position_);
       anew_.tick(position_);
       compare();
@@ -94,6 +98,10 @@ class Pair {
 
   uint32_t moved() const { return moved_; }
   uint32_t gone_on() const { return kept_.gone_on; }
+  uint32_t travelled() const {
+    EXPECT_EQ(anew_.travelled, 0U);
+    return kept_.travelled;
+  }
 
  private:
   uint32_t below(uint32_t limit) { return static_cast<uint32_t>(random_()) % limit; }
@@ -101,6 +109,15 @@ class Pair {
   void both(Act act) {
     act(kept_);
     act(anew_);
+  }
+
+  // A speed not far from the last one, rarely one that is more than the motor can follow.
+  void travel() {
+    const int32_t most = below(40) == 0 ? 1'000'000 : 20'000;
+    const int32_t change = static_cast<int32_t>(below(static_cast<uint32_t>(2 * most))) - most;
+    position_.speed = std::clamp(position_.speed + change, -3'000'000, 3'000'000);
+    if (below(8) == 0) position_.in_position = !position_.in_position;
+    if (below(40) == 0) position_.referenced = !position_.referenced;
   }
 
   void order() {
@@ -267,7 +284,7 @@ class Pair {
 class KeptDecisions : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(KeptDecisions, EqualDecisionsMadeAnew) {
-  uint32_t moved = 0, gone_on = 0;
+  uint32_t moved = 0, gone_on = 0, travelled = 0;
   for (uint32_t seed = 1; seed <= 12 && !HasFailure(); ++seed) {
     DriveOptions options;
     options.start_up_ms = seed % 3 == 0 ? 50 : 0;
@@ -278,9 +295,11 @@ TEST_P(KeptDecisions, EqualDecisionsMadeAnew) {
     }
     moved += pair.moved();
     gone_on += pair.gone_on();
+    travelled += pair.travelled();
   }
-  std::printf("%u ticks gone on\n", gone_on);
+  std::printf("%u ticks gone on, %u travelled\n", gone_on, travelled);
   EXPECT_GT(moved, 10'000U) << "the random orders should let the axis move";
+  EXPECT_GT(travelled, 1'000U) << "and positioning, too";
 }
 
 // What gets too hot at a constant speed is told in the millisecond in which it does.

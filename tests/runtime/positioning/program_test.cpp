@@ -292,7 +292,8 @@ main() {
                  {{"P601", 16}, {"P602", 16}, {"P603", 1}});
   const auto inputs = [&](unsigned probes) {
     const unsigned levels = 0b10011 | probes << 2;
-    for (unsigned n = 0; n < 5; ++n) rig.station().inputs().line(n).set = static_cast<int32_t>(levels >> n & 1);
+    for (unsigned n = 0; n < 5; ++n)
+      rig.station().inputs().line(n).set = static_cast<int32_t>(levels >> n & 1);
   };
   inputs(0b10);
   rig.run(500);
@@ -333,6 +334,32 @@ main() {
     seen += inside;
   }
   EXPECT_GT(seen, 50);
+}
+
+// An axis that turns at a constant speed is on a course; what a cam then writes goes to the outputs all the
+// same, a millisecond later.
+TEST(PositioningProgram, CamsSwitchOutputsAtConstantSpeed) {
+  ProgramRig rig(R"(
+#pragma globals 300 399
+GSCAM_EXT ext; CAM_OUTPUT out;
+main() {
+  ext.CamState = 0x80000003; ext.CamSource = 0; ext.CamDestination = 481; ext.CamOutShiftLeft = 1;
+  ext.CamOutputs = 1; ext.CamData1 = numof(out);
+  out.NumOfCam = 1; out.PosL1 = 40000; out.PosR1 = 50000;
+  _GetSys(ext, GS_CAM);
+}
+)",
+                 {{"P700", 0}, {"P130", 500}, {"P160", 300'000}, {"P620", 21}});
+  rig.station().inputs().line(4).set = 1;
+  int32_t ordered = 0;
+  int seen = 0;
+  for (int ms = 0; ms < 4000; ++ms) {
+    rig.run(1);
+    ASSERT_EQ(rig["H482"] & 2, ordered) << rig["H511"];
+    ordered = rig["H481"] & 2;
+    seen += ordered != 0;
+  }
+  EXPECT_GT(seen, 100);
 }
 
 TEST(PositioningProgram, ACamWithoutVariablesIsF10) {
