@@ -389,6 +389,49 @@ TEST(LineFault, RecoveryOnABusyLineTakesARunAFrame) {
   EXPECT_LT(frames, 135U);
 }
 
+// Frames that nothing had disturbed went before.
+TEST(LineFault, AFaultPlantedLaterStrikes) {
+  Bench t;
+  t.send(0, 100);
+  t.run(kMillisecond);
+  t.line.plant(t.fault(FaultKind::Corrupt));
+  t.send(0, 101);
+  t.run(kMillisecond);
+  EXPECT_EQ(t.stations[0].sent.size(), 2U);
+  EXPECT_EQ(t.stations[0].failed, std::vector<NotSent>{NotSent::Corrupted});
+}
+
+// Nothing was planted: passive for want of an acknowledge, station 1 loses collisions against station 0 until
+// it is bus-off. The others have no error counter then.
+TEST(LineFault, RecoveryAmongSoundStationsTakesARunAFrame) {
+  Bench t;
+  for (const NodeId other : {0, 2, 3}) t.line.set_connected(other, false);
+  t.send(1, 1, 0x80);
+  t.run(10 * kMillisecond);
+  t.line.withdraw(1, 1);
+  t.line.set_connected(0, true);
+  for (int n = 0; n < 100 && t.stations[1].bus_off == 0; ++n) {
+    t.send(0, 1, 0x00);
+    t.send(1, 1, 0x80);
+    t.run(5 * kMillisecond);
+  }
+  ASSERT_EQ(t.stations[1].bus_off, 1);
+  t.line.set_connected(2, true);
+  t.line.set_connected(3, true);
+  t.send(2, 300);
+  t.run(kMillisecond);
+  const size_t before = t.watcher.frames.size();
+  t.line.recover(1);
+  for (int n = 0; n < 400 && !t.watcher.says("back on the line"); ++n) {
+    t.send(2, 200);
+    t.send(3, 201);
+    t.run(static_cast<Time>(frame_bits({200, 8, {0, 2, 3, 4, 5, 6, 7, 8}, false, false})) * 2 * 2000);
+  }
+  const size_t frames = t.watcher.frames.size() - before;
+  EXPECT_GT(frames, 100U);
+  EXPECT_LT(frames, 135U);
+}
+
 TEST(LineFault, ALineHeldDominantCarriesNothingAndRecovers) {
   Bench t;
   LineFault fault = t.fault(FaultKind::Stuck);

@@ -330,6 +330,33 @@ TEST(Course, HeatIsToldInItsMillisecond) {
   }
 }
 
+// Ticks that only travel count the time at the current limit, too: P500, P501. The load is more than the
+// motor holds, so the axis is dragged down while positioning orders more and more.
+TEST(Travel, TheTimeAtTheCurrentLimitIsCounted) {
+  for (const int32_t mode : {0, 1, 2, 3}) {
+    MachineData machine;
+    machine.load_torque = 200'000;
+    Twin kept("mdxb", {}, machine, false), anew("mdxb", {}, machine, true);
+    for (Twin* twin : {&kept, &anew}) {
+      twin->rig.set("500", mode);
+      twin->rig.set("501", 300);
+      twin->rig.set("700", 13);
+      twin->drive().set_inputs(0x1B);
+    }
+    PositionControl position;
+    position.controls = true;
+    int ms = 0;
+    for (; ms < 2000 && anew.drive().fault() == 0; ++ms) {
+      position.speed += 500;
+      kept.tick(position);
+      anew.tick(position);
+      ASSERT_EQ(kept.drive().fault(), anew.drive().fault()) << "mode " << mode << " after " << ms << " ms";
+    }
+    EXPECT_EQ(anew.drive().fault(), mode == 2 || mode == 3 ? 8 : 0) << "mode " << mode;
+    EXPECT_GT(kept.travelled, 100U) << "mode " << mode;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Units, KeptDecisions, ::testing::Values("mdxb", "md60a", "mc07"));
 
 }  // namespace
