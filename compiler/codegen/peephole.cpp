@@ -83,7 +83,7 @@ class Optimizer {
       if (command.label < 0 || gone_[n]) continue;
       if (n + 2 < code_.commands.size() && is_branch(command) && target(command) == n + 2 &&
           is_jump(code_.commands[n + 1]) && !is_target[n + 1]) {
-        command.instruction.opcode = inverse(command.instruction.opcode);
+        command.instruction.opcode = vm::inverse(command.instruction.opcode);
         command.label = code_.commands[n + 1].label;
         gone_[n + 1] = true;
       }
@@ -137,24 +137,5 @@ class Optimizer {
 }  // namespace
 
 void optimize(FunctionCode& code) { Optimizer(code).run(); }
-
-// The branch codes come in pairs of opposites: == !=, < >=, <= >.
-Opcode inverse(Opcode opcode) {
-  switch (opcode) {
-    case Opcode::JmpEqHH: return Opcode::JmpNeHH;
-    case Opcode::JmpNeHH: return Opcode::JmpEqHH;
-    case Opcode::JmpLtHH: return Opcode::JmpGeHH;
-    case Opcode::JmpGeHH: return Opcode::JmpLtHH;
-    case Opcode::JmpLeHH: return Opcode::JmpGtHH;
-    case Opcode::JmpGtHH: return Opcode::JmpLeHH;
-    case Opcode::JmpEqHK: return Opcode::JmpNeHK;
-    case Opcode::JmpNeHK: return Opcode::JmpEqHK;
-    case Opcode::JmpLtHK: return Opcode::JmpGeHK;
-    case Opcode::JmpGeHK: return Opcode::JmpLtHK;
-    case Opcode::JmpLeHK: return Opcode::JmpGtHK;
-    case Opcode::JmpGtHK: return Opcode::JmpLeHK;
-    default: return opcode;
-  }
-}
 
 }  // namespace ipos::compiler

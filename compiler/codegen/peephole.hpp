@@ -8,7 +8,4 @@ namespace ipos::compiler {
 
 void optimize(FunctionCode& code);
 
-// The branch that jumps when this one does not; other commands as they are.
-vm::Opcode inverse(vm::Opcode opcode);
-
 }  // namespace ipos::compiler

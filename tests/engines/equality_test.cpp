@@ -7,6 +7,7 @@
 #include "tests/engines/programs.hpp"
 #include "vm/fast/commands.hpp"
 #include "vm/fast/predecode.hpp"
+#include "vm/jit/jit.hpp"
 
 namespace ipos::tests {
 namespace {
@@ -25,7 +26,10 @@ TEST(Engines, AgreeOnRandomPrograms) {
     for (const EngineProgram& program : programs_of(seed)) campaign.run(program);
   std::printf("%s\n", campaign.summary().c_str());
   EXPECT_EQ(campaign.difference, "");
-  EXPECT_GT(campaign.programs, 1500U);
+  EXPECT_GT(campaign.programs, 2500U);
+  if (vm::jit::available()) {
+    EXPECT_EQ(campaign.native, campaign.programs) << "machine code for each of them";
+  }
   EXPECT_GT(campaign.operations.size() * 10, static_cast<size_t>(vm::fast::Operation::kCount) * 8)
       << "random programs have to contain most operations";
 }

@@ -409,4 +409,59 @@ std::vector<uint32_t> table_loops(uint64_t seed, const vm::Limits& limits) {
   return assembled(commands);
 }
 
+std::vector<uint32_t> state_machine(uint64_t seed) {
+  Pcg random(seed);
+  using vm::Opcode;
+  constexpr int32_t kState = 1, kSeen = 2, kCount = 3, kOther = 4;
+  std::vector<vm::Instruction> commands;
+  std::vector<size_t> to_end;
+  const auto put = [&](Opcode opcode, int32_t a = 0, int32_t b = 0, int32_t c = 0) {
+    commands.push_back({opcode, {a, b, c}});
+  };
+  const int states = 2 + random.below(6);
+  const auto any_state = [&] { return random.below(states + 1) - (random.one_in(10) ? 1 : 0); };
+  put(Opcode::SetHK, kState, any_state());
+  const auto head = static_cast<int32_t>(commands.size());
+  if (random.one_in(6)) put(Opcode::AddHK, kCount, 1);
+  const bool copied = !random.one_in(3);
+  if (copied) put(Opcode::SetHH, kSeen, kState);
+  if (random.one_in(6)) put(Opcode::SetHH, kOther, random.one_in(2) ? kSeen : kState);
+  const size_t tests = commands.size();
+  for (int state = 0; state < states; ++state) {
+    const int32_t of = random.one_in(12) ? kOther : copied ? kSeen : kState;
+    put(random.one_in(8) ? Opcode::JmpNeHK : Opcode::JmpEqHK, of, random.one_in(10) ? any_state() : state);
+  }
+  if (random.one_in(2)) put(Opcode::AddHK, kOther, 1);
+  to_end.push_back(commands.size());
+  put(Opcode::Jmp);
+  for (int state = 0; state < states; ++state) {
+    const size_t test = tests + static_cast<size_t>(state);
+    commands[test].operands[2] = random.one_in(20) ? random.below(static_cast<int>(commands.size()))
+                                                   : static_cast<int32_t>(commands.size());
+    if (random.one_in(2)) put(Opcode::AddHH, kOther, kCount);
+    if (random.one_in(3)) {  // one of two
+      const auto at = static_cast<int32_t>(commands.size());
+      put(Opcode::JmpLtHK, kOther, random.below(9) - 4, at + 3);
+      put(Opcode::SetHK, kState, any_state());
+      to_end.push_back(commands.size());
+      put(Opcode::Jmp);
+    }
+    if (!random.one_in(8)) put(Opcode::SetHK, random.one_in(8) ? kOther : kState, any_state());
+    if (random.one_in(8)) put(Opcode::Nop);
+    if (state + 1 == states && random.one_in(2)) break;
+    to_end.push_back(commands.size());
+    put(Opcode::Jmp);
+  }
+  const auto end = static_cast<int32_t>(commands.size());
+  for (const size_t jump : to_end) commands[jump].operands[0] = random.one_in(5) ? head : end;
+  if (random.one_in(6)) put(Opcode::AddHK, random.one_in(2) ? kState : kOther, 1);
+  if (random.one_in(2)) {
+    put(Opcode::AddHK, kCount, 1);
+    put(random.one_in(4) ? Opcode::JmpNeHK : Opcode::JmpLtHK, kCount, 5 + random.below(40), head);
+    put(Opcode::SetHK, kCount, 0);
+  }
+  put(random.one_in(8) ? Opcode::End : Opcode::Jmp, random.one_in(2) ? head : 0);
+  return assembled(commands);
+}
+
 }  // namespace ipos::tests

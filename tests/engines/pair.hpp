@@ -39,4 +39,7 @@ std::vector<uint32_t> sequence_soup(uint64_t seed);
 // Loops over tables that begin, end and step near where variables in registers and the last variable are.
 std::vector<uint32_t> table_loops(uint64_t seed, const vm::Limits& limits);
 
+// A loop around a switch whose cases set the next case, at random.
+std::vector<uint32_t> state_machine(uint64_t seed);
+
 }  // namespace ipos::tests

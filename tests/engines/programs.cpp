@@ -48,6 +48,7 @@ std::vector<EngineProgram> programs_of(uint64_t seed) {
     add("generated with interrupts", with_interrupts(made.image->code, limits, seed), limits);
   }
   add("loops over tables", table_loops(seed, kLoopLimits), kLoopLimits);
+  add("state machine", state_machine(seed), kLoopLimits);
   add("soup", with_interrupts(sequence_soup(seed), kSoupLimits, seed), kSoupLimits);
   return programs;
 }

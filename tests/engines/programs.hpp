@@ -1,5 +1,5 @@
-// What campaigns run: programs of the generator, with and without interrupts, loops over tables, soups of
-// sequences, and all programs of the repository.
+// What campaigns run: programs of the generator, with and without interrupts, loops over tables, state
+// machines, soups of sequences, and all programs of the repository.
 #pragma once
 
 #include <string>
@@ -9,7 +9,8 @@
 
 namespace ipos::tests {
 
-// One generated program, the same with interrupts, loops over tables and a soup; fewer where they do not fit.
+// One generated program, the same with interrupts, loops over tables, a state machine and a soup; fewer where
+// they do not fit.
 std::vector<EngineProgram> programs_of(uint64_t seed);
 
 // Each .IPC file of examples, language tests and benchmarks that compiles, without and with interrupts.

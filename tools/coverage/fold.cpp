@@ -10,7 +10,6 @@
 
 #include "compiler/asm/disassembler.hpp"
 #include "compiler/asm/text_forms.hpp"
-#include "compiler/codegen/peephole.hpp"
 
 namespace ipos::tools::coverage {
 namespace {
@@ -120,7 +119,7 @@ class Fold {
     vm::Instruction first = first_of(item);
     first.operands[static_cast<size_t>(compiler::label_position(opcode))] = 0;
     auto [known, is_new] = sites_.try_emplace(
-        Site{entry.file, at, std::min(opcode, compiler::inverse(opcode)), first.operands}, Known{opcode, {}});
+        Site{entry.file, at, std::min(opcode, vm::inverse(opcode)), first.operands}, Known{opcode, {}});
     auto& conditions = out_.files[file(entry.file)].conditions;
     if (is_new) {
       ConditionKey& key = known->second.key;

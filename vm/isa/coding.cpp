@@ -110,4 +110,23 @@ uint32_t encode(const Instruction& instruction, std::span<uint32_t, kMaxWords> o
   return next;
 }
 
+// The branch codes come in pairs of opposites: == !=, < >=, <= >.
+Opcode inverse(Opcode opcode) {
+  switch (opcode) {
+    case Opcode::JmpEqHH: return Opcode::JmpNeHH;
+    case Opcode::JmpNeHH: return Opcode::JmpEqHH;
+    case Opcode::JmpLtHH: return Opcode::JmpGeHH;
+    case Opcode::JmpGeHH: return Opcode::JmpLtHH;
+    case Opcode::JmpLeHH: return Opcode::JmpGtHH;
+    case Opcode::JmpGtHH: return Opcode::JmpLeHH;
+    case Opcode::JmpEqHK: return Opcode::JmpNeHK;
+    case Opcode::JmpNeHK: return Opcode::JmpEqHK;
+    case Opcode::JmpLtHK: return Opcode::JmpGeHK;
+    case Opcode::JmpGeHK: return Opcode::JmpLtHK;
+    case Opcode::JmpLeHK: return Opcode::JmpGtHK;
+    case Opcode::JmpGtHK: return Opcode::JmpLeHK;
+    default: return opcode;
+  }
+}
+
 }  // namespace ipos::vm

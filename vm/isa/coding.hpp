@@ -42,6 +42,9 @@ const Coding* find_coding(uint32_t code);
 // The row of a valid opcode.
 const Coding& coding(Opcode opcode);
 
+// The branch that jumps when this one does not; other commands as they are.
+Opcode inverse(Opcode opcode);
+
 // One decoded command. operands stand in the order of the text form; labels are word addresses.
 struct Instruction {
   Opcode opcode = Opcode::Nop;

@@ -18,6 +18,11 @@ bool has_exit(Opcode opcode) {
          opcode == Opcode::ModHH;
 }
 
+// Of commands without exits.
+bool sets(const Instruction& command, int32_t variable) {
+  return command.opcode != Opcode::Nop && command.operands[0] == variable;
+}
+
 }  // namespace
 
 Emitter::Emitter(const Program& program, asmjit::BaseAssembler& assembler, Unwind unwind, size_t registers)
@@ -167,7 +172,9 @@ void Emitter::jump(uint32_t n) {
   const Command& command = program_.commands[n];
   const uint32_t last = command.target > n + 1 ? end_of_short_line(command.target) : kNowhere;
   if (last != kNowhere) {
-    repeat(command.target, last, command.credit - 1);
+    repeat(n, last);
+  } else if (const auto decided = decide(known_at(n), command.target)) {
+    jump_decided(n, command, *decided);
   } else {
     correct(program_.correction(command, program_.commands[command.target]));
     if (command.target != n + 1) jump_to(labels_[command.target]);
@@ -186,17 +193,79 @@ uint32_t Emitter::end_of_short_line(uint32_t first) const {
   return kNowhere;
 }
 
-void Emitter::repeat(uint32_t first, uint32_t last, int32_t credit) {
+// What the line a jump leads to does, up to its last command.
+void Emitter::repeat(uint32_t jump, uint32_t last) {
+  const Command& from = program_.commands[jump];
+  std::optional<Known> known = known_at(jump);
   flags_of_ = -1;
-  for (uint32_t n = first; n < last; ++n) data(n);
+  for (uint32_t n = from.target; n < last; ++n) {
+    data(n);
+    if (known && sets(program_.commands[n].instruction, known->variable)) known.reset();
+  }
   Command end = program_.commands[last];
-  end.credit = credit - static_cast<int32_t>(last - first);
-  if (end.flow == Flow::Return) {
-    ret(end);
+  end.credit = from.credit - 1 - static_cast<int32_t>(last - from.target);
+  if (end.flow == Flow::Return) return ret(end);
+  if (const auto decided = decide(known, end.target)) {
+    const int32_t straight = program_.correction(end, program_.commands[last + 1]);
+    Label out = label_of(last + 1);
+    if (straight != 0) out = detours_.emplace_back(a_.newLabel(), out, straight).label;
+    Instruction leaves = end.instruction;
+    leaves.opcode = inverse(leaves.opcode);
+    jump_if(leaves, out);
+    jump_decided(jump, end, *decided);
   } else {
     branch(end, last, labels_[end.target]);
     jump_to(label_of(last + 1));
   }
+}
+
+// A variable whose value is known when control reaches a command.
+std::optional<Emitter::Known> Emitter::known_at(uint32_t n) const {
+  if (n == 0 || program_.commands[n].joins) return std::nullopt;
+  const Instruction& before = program_.commands[n - 1].instruction;
+  if (before.opcode != Opcode::SetHK) return std::nullopt;
+  return Known{before.operands[0], before.operands[1]};
+}
+
+// Where control gets to from a command on through tests of that variable, as in a loop around a switch whose
+// case has just been set.
+std::optional<Emitter::Decided> Emitter::decide(const std::optional<Known>& known, uint32_t to) const {
+  constexpr uint32_t kMost = 64;
+  if (!known) return std::nullopt;
+  Decided out{to, 0, {}};
+  std::vector<int32_t> same{known->variable};
+  const auto is_same = [&](int32_t v) { return std::find(same.begin(), same.end(), v) != same.end(); };
+  bool tested = false;
+  for (; out.commands < kMost; ++out.commands) {
+    const Command& command = program_.commands[out.end];
+    const auto& operands = command.instruction.operands;
+    if (!command.native || (out.commands != 0 && command.checks)) break;
+    if (command.instruction.opcode == Opcode::SetHH && is_same(operands[1])) {
+      out.sets.push_back(out.end++);
+      same.push_back(operands[0]);
+      continue;
+    }
+    const bool equal = command.instruction.opcode == Opcode::JmpEqHK;
+    if (!equal && command.instruction.opcode != Opcode::JmpNeHK) break;
+    if (!is_same(operands[0])) break;
+    tested = true;
+    out.end = (operands[1] == known->value) == equal ? command.target : out.end + 1;
+  }
+  if (!tested || !program_.commands[out.end].joins) return std::nullopt;
+  return out;
+}
+
+// Behind the command `jump`, which nobody may enter by itself: who did not come through the SET before it may
+// find another value.
+void Emitter::jump_decided(uint32_t jump, const Command& from, const Decided& decided) {
+  out_.entries[program_.commands[jump].at] = {};
+  Command last = program_.commands[from.target];
+  correct(program_.correction(from, last));
+  if (last.checks) check(last.need - last.arrival, exit(from.target, last.need));
+  for (const uint32_t n : decided.sets) data(n);
+  last.credit -= static_cast<int32_t>(decided.commands) - 1;
+  correct(program_.correction(last, program_.commands[decided.end]));
+  jump_to(labels_[decided.end]);
 }
 
 // Comparisons of one variable with constants that follow each other.

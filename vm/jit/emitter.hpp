@@ -7,6 +7,7 @@
 #include <asmjit/core.h>
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -150,7 +151,19 @@ class Emitter {
   void call(uint32_t n);
   void ret(const Command& command);
   uint32_t end_of_short_line(uint32_t first) const;
-  void repeat(uint32_t first, uint32_t last, int32_t credit);
+  void repeat(uint32_t jump, uint32_t last);
+  struct Known {
+    int32_t variable, value;
+  };
+  // The way through commands whose tests are decided while the code is made.
+  struct Decided {
+    uint32_t end;                // the first that is not
+    uint32_t commands;           // in front of it
+    std::vector<uint32_t> sets;  // those of them that do something
+  };
+  std::optional<Known> known_at(uint32_t n) const;
+  std::optional<Decided> decide(const std::optional<Known>& known, uint32_t to) const;
+  void jump_decided(uint32_t jump, const Command& from, const Decided& decided);
   uint32_t cases(uint32_t n) const;
   void jump_to_case(uint32_t n, uint32_t count);
   asmjit::Label label_of(uint32_t n);
