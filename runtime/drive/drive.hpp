@@ -308,11 +308,11 @@ class Drive final : private DriveLink {
   uint32_t enabled_ms_ = 0;
   int64_t counted_energy_ = 0;
   mutable uint32_t course_left_ = 0;
-  mutable bool travels_ = false;
-  bool travelled_ = false;
-  bool accelerates_ = false;
-  bool calm_ = false;      // nobody had touched the drive before the last tick
-  bool links_run_ = true;  // or may do so: a telegram has come since the last look
+  mutable bool travels_ = false;  // the next tick can be one that only travels,
+  bool travelled_ = false;        // the last one was
+  bool accelerates_ = false;      // and found another speed ordered
+  bool calm_ = false;             // nobody had touched the drive before the last tick
+  bool links_run_ = true;         // or may do so: a telegram has come since the last look
 };
 
 }  // namespace ipos::runtime

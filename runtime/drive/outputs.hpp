@@ -88,7 +88,7 @@ struct OutputInputs {
   int32_t current_limit = 0;
   uint16_t ipos_outputs = 0;  // by bit as below
 
-  uint32_t flags() const {
+  constexpr uint32_t flags() const {
     const auto bit = [](bool flag, unsigned n) { return (flag ? 1U : 0U) << n; };
     return bit(fault, 0) | bit(ipos_fault, 1) | bit(ready, 2) | bit(output_stage, 3) |
            bit(brake_released, 4) | bit(standstill, 5) | bit(second_set, 6) | bit(motor_1_overloaded, 7) |
@@ -104,11 +104,16 @@ struct OutputMotion {
   int32_t speed;
   int32_t current;
 
-  static constexpr uint32_t kFlags = 1U << 5 | 1U << 9 | 1U << 10;  // of OutputInputs
-  uint32_t flags() const {
-    return (standstill ? 1U : 0U) << 5 | (in_position ? 1U : 0U) << 9 | (referenced ? 1U : 0U) << 10;
+  // Those of OutputInputs, where all others are 0.
+  constexpr uint32_t flags() const {
+    OutputInputs in;
+    in.standstill = standstill;
+    in.in_position = in_position;
+    in.referenced = referenced;
+    return in.flags();
   }
 };
+inline constexpr uint32_t kMotionFlags = OutputMotion{true, true, true, 0, 0}.flags();
 
 class Outputs {
  public:
@@ -121,7 +126,7 @@ class Outputs {
            in.current_limit == current_limit_ && go_on(in.speed, in.setpoint, in.current);
   }
   [[gnu::always_inline]] bool go_on(const OutputMotion& in) {
-    return in.flags() == (basis_.flags & OutputMotion::kFlags) && go_on(in.speed, 0, in.current);
+    return in.flags() == (basis_.flags & kMotionFlags) && go_on(in.speed, 0, in.current);
   }
 
  private:

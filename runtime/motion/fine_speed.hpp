@@ -10,8 +10,9 @@ namespace ipos::runtime {
 
 using FineSpeed = int64_t;
 
-inline constexpr int64_t kFine = int64_t{1} << 32;  // one 1/1000 rpm
-inline constexpr int32_t kTopSpeed = 100'000'000;   // 1/1000 rpm
+inline constexpr int kFineSpeedBits = 32;
+inline constexpr int64_t kFine = int64_t{1} << kFineSpeedBits;  // one 1/1000 rpm
+inline constexpr int32_t kTopSpeed = 100'000'000;               // 1/1000 rpm
 inline constexpr FineSpeed kTopFine = kTopSpeed * kFine;
 
 constexpr FineSpeed fine_speed(int32_t mrpm) { return std::clamp(mrpm, -kTopSpeed, kTopSpeed) * kFine; }
@@ -19,7 +20,7 @@ constexpr FineSpeed fine_speed(int32_t mrpm) { return std::clamp(mrpm, -kTopSpee
 // Rounded to the nearest 1/1000 rpm, halves away from zero: both directions read alike. Below zero the shift,
 // which rounds down, has to pass one half less.
 constexpr int32_t whole_speed(FineSpeed speed) {
-  return static_cast<int32_t>((speed + kFine / 2 - (speed < 0 ? 1 : 0)) >> 32);
+  return static_cast<int32_t>((speed + kFine / 2 - (speed < 0 ? 1 : 0)) >> kFineSpeedBits);
 }
 
 constexpr int sign_of(int64_t value) { return value < 0 ? -1 : value > 0 ? 1 : 0; }

@@ -367,6 +367,19 @@ TEST(LineFault, ShortCircuitEndsInBusOffAndTheStationComesBack) {
   EXPECT_EQ(t.stations[1].received.size(), 1U);
 }
 
+// Frame on frame of two others: each holds one run of 11 recessive bits, and 128 bring a station back.
+void expect_return_among(Bench& t, NodeId one, NodeId other) {
+  const size_t before = t.watcher.frames.size();
+  for (int n = 0; n < 400 && !t.watcher.says("back on the line"); ++n) {
+    t.send(one, 200);
+    t.send(other, 201);
+    t.run(static_cast<Time>(frame_bits({200, 8, {0, 2, 3, 4, 5, 6, 7, 8}, false, false})) * 2 * 2000);
+  }
+  const size_t frames = t.watcher.frames.size() - before;
+  EXPECT_GT(frames, 100U);
+  EXPECT_LT(frames, 135U);
+}
+
 TEST(LineFault, RecoveryOnABusyLineTakesARunAFrame) {
   Bench t;
   t.stations[0].line = &t.line;
@@ -377,16 +390,7 @@ TEST(LineFault, RecoveryOnABusyLineTakesARunAFrame) {
   t.send(0, 100);
   t.run(1500 * kMicrosecond);
   ASSERT_EQ(t.stations[0].bus_off, 1);
-  // Frame on frame: each holds one run of 11 recessive bits.
-  const size_t before = t.watcher.frames.size();
-  for (int n = 0; n < 400 && !t.watcher.says("back on the line"); ++n) {
-    t.send(1, 200);
-    t.send(2, 201);
-    t.run(static_cast<Time>(frame_bits({200, 8, {0, 2, 3, 4, 5, 6, 7, 8}, false, false})) * 2 * 2000);
-  }
-  const size_t frames = t.watcher.frames.size() - before;
-  EXPECT_GT(frames, 100U);
-  EXPECT_LT(frames, 135U);
+  expect_return_among(t, 1, 2);
 }
 
 // Frames that nothing had disturbed went before.
@@ -420,16 +424,8 @@ TEST(LineFault, RecoveryAmongSoundStationsTakesARunAFrame) {
   t.line.set_connected(3, true);
   t.send(2, 300);
   t.run(kMillisecond);
-  const size_t before = t.watcher.frames.size();
   t.line.recover(1);
-  for (int n = 0; n < 400 && !t.watcher.says("back on the line"); ++n) {
-    t.send(2, 200);
-    t.send(3, 201);
-    t.run(static_cast<Time>(frame_bits({200, 8, {0, 2, 3, 4, 5, 6, 7, 8}, false, false})) * 2 * 2000);
-  }
-  const size_t frames = t.watcher.frames.size() - before;
-  EXPECT_GT(frames, 100U);
-  EXPECT_LT(frames, 135U);
+  expect_return_among(t, 2, 3);
 }
 
 TEST(LineFault, ALineHeldDominantCarriesNothingAndRecovers) {
