@@ -2,6 +2,7 @@
 // wrong.
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <random>
@@ -120,16 +121,28 @@ class SlcanAdapterCommands : public SlcanPair {
     program_ = Descriptor(::open(path().c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK));
     ASSERT_TRUE(program_.is_open());
   }
-  // The answer to what a program writes; frames go to `got_`.
+  // The answer to what a program writes; frames go to `got_`. The system hands on what is written a little
+  // later, now and then in two pieces: each line has an answer that ends in CR or BEL, which is waited for.
   std::string talk(const std::string& text) {
     EXPECT_EQ(::write(program_.get(), text.data(), text.size()), static_cast<ssize_t>(text.size()));
+    const auto lines = std::count(text.begin(), text.end(), '\r');
+    std::string answer;
+    for (int waits = 0;; ++waits) {
+      take_frames();
+      answer += heard();
+      const auto ends =
+          std::count_if(answer.begin(), answer.end(), [](char c) { return c == '\r' || c == '\a'; });
+      if (ends >= lines || waits == 20) return answer;
+      ::poll(nullptr, 0, 5);
+    }
+  }
+  void take_frames() {
     for (;;) {
       auto got = adapter_->receive();
       EXPECT_TRUE(got);
-      if (!got || !*got) break;
+      if (!got || !*got) return;
       got_.push_back((*got)->frame);
     }
-    return heard();
   }
   std::string heard() {
     EXPECT_TRUE(adapter_->flush());
