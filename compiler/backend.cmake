@@ -1,12 +1,12 @@
 # The back end: assembler and disassembler, and the compiler proper from syntax tree to image.
-ipos_layer(asm
+ipos_layer(asm PIC
   FOLDERS compiler/asm
   SOURCES asm/assembler.cpp asm/disassembler.cpp asm/reader.cpp asm/text_forms.cpp
   USES frontend isa image stdlib
   LIBS fmt::fmt)
 
 file(GLOB compiler_sources CONFIGURE_DEPENDS sema/*.cpp codegen/*.cpp index/*.cpp)
-ipos_layer(compiler
+ipos_layer(compiler PIC
   FOLDERS compiler/sema compiler/codegen compiler/index
   SOURCES ${compiler_sources}
   USES frontend asm isa image stdlib

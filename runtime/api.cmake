@@ -28,7 +28,4 @@ if(NOT IPOS_LIBRARY_ONLY)
   set_target_properties(ipos_compile PROPERTIES EXPORT_NAME compile VERSION ${PROJECT_VERSION}
                         SOVERSION ${PROJECT_VERSION_MAJOR} LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
   add_library(ipos::compile ALIAS ipos_compile)
-  foreach(part isa image stdlib frontend asm compiler)
-    set_target_properties(ipos_${part} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-  endforeach()
 endif()

@@ -20,7 +20,7 @@ using stdlib::Service;
 constexpr std::string_view kKey = "ipos-parameters";
 constexpr int64_t kVersion = 1;
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') out += '\\';
@@ -206,12 +206,12 @@ std::string to_text(const ParameterSet& set) {
       "# The settings of a unit. value is for people, raw is what the unit has; change both, or one and "
       "delete the "
       "other.\n{} = {}\nunit = {}\nparameters = [\n",
-      kKey, kVersion, quoted(set.unit->name));
+      kKey, kVersion, in_quotes(set.unit->name));
   for (const SetRow& row : set.rows)
     text += fmt::format(
         "  {{ number = {}, index = {}, name = {}, value = {}, raw = {} }},\n",
-        quoted("P" + std::string(row.parameter->number)), row.parameter->index, quoted(row.parameter->name),
-        quoted(stdlib::parameter_text(*row.parameter, row.value)), row.parameter->number_of(row.value));
+        in_quotes("P" + std::string(row.parameter->number)), row.parameter->index, in_quotes(row.parameter->name),
+        in_quotes(stdlib::parameter_text(*row.parameter, row.value)), row.parameter->number_of(row.value));
   return text + "]\n";
 }
 

@@ -8,7 +8,7 @@
 namespace ipos::tools {
 namespace {
 
-std::string quoted(const std::string& text) {
+std::string in_quotes(const std::string& text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
@@ -23,11 +23,11 @@ std::string time_text(runtime::Time time) {
 }
 
 std::string frame_text(const FrameTrack& track, const RecordedFrame& frame) {
-  std::string line = fmt::format("{{\"time_ms\":{},\"frame\":{}", time_text(frame.time), quoted(track.bus));
+  std::string line = fmt::format("{{\"time_ms\":{},\"frame\":{}", time_text(frame.time), in_quotes(track.bus));
   if (track.is_can)
     line += fmt::format(",\"id\":{},\"extended\":{},\"remote\":{}", frame.id, frame.extended, frame.remote);
   line += fmt::format(",\"data\":\"{:02X}\"", fmt::join(frame.bytes, ""));
-  if (!track.is_can) line += fmt::format(",\"text\":{}", quoted(frame.text));
+  if (!track.is_can) line += fmt::format(",\"text\":{}", in_quotes(frame.text));
   return line + "}\n";
 }
 
@@ -35,7 +35,7 @@ std::string frame_text(const FrameTrack& track, const RecordedFrame& frame) {
 
 void write_jsonl(std::ostream& out, const Recording& recording) {
   for (const Signal& signal : recording.signals)
-    out << fmt::format("{{\"signal\":{},\"unit\":{}}}\n", quoted(signal.name), quoted(signal.unit));
+    out << fmt::format("{{\"signal\":{},\"unit\":{}}}\n", in_quotes(signal.name), in_quotes(signal.unit));
   auto frame = recording.frames.begin();
   auto event = recording.events.begin();
   const auto write_until = [&](runtime::Time time) {
@@ -43,7 +43,7 @@ void write_jsonl(std::ostream& out, const Recording& recording) {
       out << frame_text(recording.tracks[frame->track], *frame);
     for (; event != recording.events.end() && event->time <= time; ++event)
       out << fmt::format("{{\"time_ms\":{},\"event\":{},\"fault\":{}}}\n", time_text(event->time),
-                         quoted(event->text), event->is_fault);
+                         in_quotes(event->text), event->is_fault);
   };
   for (size_t row = 0; row < recording.times.size(); ++row) {
     write_until(recording.times[row]);
@@ -51,7 +51,7 @@ void write_jsonl(std::ostream& out, const Recording& recording) {
       const std::vector<int64_t>& samples = recording.samples[n];
       if (row != 0 && samples[row] == samples[row - 1]) continue;
       out << fmt::format("{{\"time_ms\":{},\"signal\":{},\"value\":{}}}\n", time_text(recording.times[row]),
-                         quoted(recording.signals[n].name), recording.signals[n].text(samples[row]));
+                         in_quotes(recording.signals[n].name), recording.signals[n].text(samples[row]));
     }
   }
   write_until(runtime::kNever);

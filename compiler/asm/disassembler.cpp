@@ -62,14 +62,14 @@ std::string header(const vm::Image& image, const Labels& labels) {
   std::string out;
   const stdlib::UnitType* unit = stdlib::find_unit(image.unit);
   out += unit != nullptr ? fmt::format(".unit {}\n", unit->name) : fmt::format(".unit {}\n", image.unit);
-  for (const std::string& file : image.files) out += fmt::format(".file {}\n", quoted(file));
+  for (const std::string& file : image.files) out += fmt::format(".file {}\n", in_quotes(file));
   for (const vm::Symbol& symbol : image.symbols) {
-    out += fmt::format(".symbol H{} {}", symbol.variable, quoted(symbol.name));
+    out += fmt::format(".symbol H{} {}", symbol.variable, in_quotes(symbol.name));
     if (symbol.count != 1) out += fmt::format(" {}", symbol.count);
     out += '\n';
   }
   for (const vm::FunctionEntry& function : image.functions)
-    out += fmt::format(".function {} {}\n", quoted(function.name), labels.text(function.address));
+    out += fmt::format(".function {} {}\n", in_quotes(function.name), labels.text(function.address));
   return out;
 }
 

@@ -25,7 +25,7 @@ bool is_bare(char c) {
          c == '[' || c == ']' || c == '@';
 }
 
-std::string quoted(std::string_view name) {
+std::string in_quotes(std::string_view name) {
   if (!name.empty() && std::all_of(name.begin(), name.end(), is_bare)) return std::string(name);
   std::string out = "\"";
   for (const char c : name) {

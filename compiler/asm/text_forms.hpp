@@ -19,7 +19,7 @@ std::optional<uint32_t> label_operand(const vm::Instruction& command);
 // A name as a directive takes it: bare when it has only letters, digits and _ . [ ] @, else in quotes. Inside
 // quotes a backslash stands before a quote or backslash, and begins \xNN for a byte that is no printable
 // ASCII.
-std::string quoted(std::string_view name);
+std::string in_quotes(std::string_view name);
 bool is_bare(char c);
 
 }  // namespace ipos::compiler
