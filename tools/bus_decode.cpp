@@ -41,15 +41,14 @@ int decode(const DecodeFlags& flags) {
 
 }  // namespace
 
-void add_bus_decode(CLI::App& bus, int& exit_code) {
+void add_bus_decode(cli::Verb& bus) {
   auto flags = std::make_shared<DecodeFlags>();
-  CLI::App* verb =
-      bus.add_subcommand("decode", "MOVILINK and variable telegrams of a candump log in words and units");
-  verb->add_option("LOG", flags->log, "candump log; - is standard input")->required();
-  add_names_option(*verb, flags->names);
-  add_compile_options(*verb, flags->compile);
-  verb->footer("Example:\n  ipos bus decode can.log --names examples/scom/scom.toml");
-  verb->callback([flags, &exit_code] { exit_code = decode(*flags); });
+  cli::Verb& verb = bus.verb("decode", "MOVILINK and variable telegrams of a candump log in words and units");
+  verb.option("LOG", flags->log, "candump log; - is standard input").required();
+  add_names_option(verb, flags->names);
+  add_compile_options(verb, flags->compile);
+  verb.footer("Example:\n  ipos bus decode can.log --names examples/scom/scom.toml");
+  verb.runs([flags] { return decode(*flags); });
 }
 
 }  // namespace ipos::tools

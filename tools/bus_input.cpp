@@ -48,9 +48,9 @@ runtime::TelegramNames serial_names_of(const std::string& path, const CompileFla
   return path.empty() ? runtime::TelegramNames{} : runtime::serial_names(*trial_run(path, compile));
 }
 
-void add_names_option(CLI::App& verb, std::string& path) {
-  verb.add_option("--names,--plant,--program", path,
-                  "plant or program whose stations, parameters and variables are named");
+void add_names_option(cli::Verb& verb, std::string& path) {
+  verb.option("--names,--plant,--program", path,
+              "plant or program whose stations, parameters and variables are named");
 }
 
 std::string check_time(const std::string& text) {

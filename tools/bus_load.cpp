@@ -92,16 +92,14 @@ int measure(const LoadFlags& flags) {
 
 }  // namespace
 
-void add_bus_load(CLI::App& bus, int& exit_code) {
+void add_bus_load(cli::Verb& bus) {
   auto flags = std::make_shared<LoadFlags>();
-  CLI::App* verb = bus.add_subcommand("load", "load of a candump log, exact with stuff bits and at worst");
-  verb->add_option("LOG", flags->log, "candump log of one line; - is standard input")->required();
-  verb->add_option("--baud", flags->baud, "of the line, for example 500000")
-      ->required()
-      ->check(CLI::Range(1000U, 1'000'000U));
-  verb->add_option("--format", flags->format, "text or json")->check(CLI::IsMember({"text", "json"}));
-  verb->footer("Example:\n  ipos bus load can.log --baud 500000");
-  verb->callback([flags, &exit_code] { exit_code = measure(*flags); });
+  cli::Verb& verb = bus.verb("load", "load of a candump log, exact with stuff bits and at worst");
+  verb.option("LOG", flags->log, "candump log of one line; - is standard input").required();
+  verb.option("--baud", flags->baud, "of the line, for example 500000").required().between(1000U, 1'000'000U);
+  verb.option("--format", flags->format, "text or json").one_of({"text", "json"});
+  verb.footer("Example:\n  ipos bus load can.log --baud 500000");
+  verb.runs([flags] { return measure(*flags); });
 }
 
 }  // namespace ipos::tools

@@ -61,25 +61,23 @@ int monitor(const MonitorFlags& flags) {
 
 }  // namespace
 
-void add_bus_monitor(CLI::App& bus, int& exit_code) {
+void add_bus_monitor(cli::Verb& bus) {
   auto flags = std::make_shared<MonitorFlags>();
-  CLI::App* verb = bus.add_subcommand("monitor", "telegrams of a port or a log in words and units, live");
-  verb->add_option("PORT|LOG", flags->source,
-                   "can0, slcan:/dev/ttyACM0, slcan:pty:/path, /dev/ttyUSB0, pty:/path, a candump log, or -")
-      ->required();
-  add_names_option(*verb, flags->names);
-  verb->add_option("--station", flags->stations, "only telegrams of this station, by name or address")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  verb->add_option("--count", flags->count, "end after so many telegrams shown")
-      ->check(CLI::Range(uint64_t{1}, UINT64_MAX));
-  verb->add_option("--for", flags->duration, "end after this time, for example 10s")
-      ->check(CLI::Validator(check_time, "TIME"));
-  verb->add_option("--baud", flags->baud, "of the port; default 500000, of a serial line 9600");
-  verb->add_flag("--follow,-f", flags->follow, "wait for more at the end of a log");
-  add_compile_options(*verb, flags->compile);
-  verb->footer("Example:\n  ipos bus monitor can0 --plant examples/scom/scom.toml --station unit1");
-  verb->callback([flags, &exit_code] { exit_code = monitor(*flags); });
+  cli::Verb& verb = bus.verb("monitor", "telegrams of a port or a log in words and units, live");
+  verb.option("PORT|LOG", flags->source,
+              "can0, slcan:/dev/ttyACM0, slcan:pty:/path, /dev/ttyUSB0, pty:/path, a candump log, or -")
+      .required();
+  add_names_option(verb, flags->names);
+  verb.option("--station", flags->stations, "only telegrams of this station, by name or address")
+      .separated_by(',')
+      .one_each();
+  verb.option("--count", flags->count, "end after so many telegrams shown").at_least(1);
+  verb.option("--for", flags->duration, "end after this time, for example 10s").check(check_time, "TIME");
+  verb.option("--baud", flags->baud, "of the port; default 500000, of a serial line 9600");
+  verb.flag("--follow,-f", flags->follow, "wait for more at the end of a log");
+  add_compile_options(verb, flags->compile);
+  verb.footer("Example:\n  ipos bus monitor can0 --plant examples/scom/scom.toml --station unit1");
+  verb.runs([flags] { return monitor(*flags); });
 }
 
 }  // namespace ipos::tools

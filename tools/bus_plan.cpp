@@ -164,20 +164,19 @@ int plan_bus(const PlanFlags& flags) {
 
 }  // namespace
 
-void add_bus_plan(CLI::App& bus, int& exit_code) {
+void add_bus_plan(cli::Verb& bus) {
   auto flags = std::make_shared<PlanFlags>();
-  CLI::App* verb = bus.add_subcommand(
-      "plan", "identifiers, load and response times of a plant, and what is wrong with it");
-  verb->add_option("PLANT", flags->plant, "plant (.toml), or one program")->required();
-  verb->add_option("--trial", flags->trial, "virtual time the programs run first; default 100ms")
-      ->check(CLI::Validator(check_time, "TIME"));
-  verb->add_option("--acyclic", flags->acyclic,
-                   "assumed distance of telegrams the trial shows once; default 10ms")
-      ->check(CLI::Validator(check_time, "TIME"));
-  verb->add_option("--format", flags->format, "text or json")->check(CLI::IsMember({"text", "json"}));
-  add_compile_options(*verb, flags->compile);
-  verb->footer("Example:\n  ipos bus plan examples/scom/scom.toml");
-  verb->callback([flags, &exit_code] { exit_code = plan_bus(*flags); });
+  cli::Verb& verb =
+      bus.verb("plan", "identifiers, load and response times of a plant, and what is wrong with it");
+  verb.option("PLANT", flags->plant, "plant (.toml), or one program").required();
+  verb.option("--trial", flags->trial, "virtual time the programs run first; default 100ms")
+      .check(check_time, "TIME");
+  verb.option("--acyclic", flags->acyclic, "assumed distance of telegrams the trial shows once; default 10ms")
+      .check(check_time, "TIME");
+  verb.option("--format", flags->format, "text or json").one_of({"text", "json"});
+  add_compile_options(verb, flags->compile);
+  verb.footer("Example:\n  ipos bus plan examples/scom/scom.toml");
+  verb.runs([flags] { return plan_bus(*flags); });
 }
 
 }  // namespace ipos::tools

@@ -81,26 +81,25 @@ std::string check_identifier(const std::string& text) {
 
 }  // namespace
 
-void add_bus_replay(CLI::App& bus, int& exit_code) {
+void add_bus_replay(cli::Verb& bus) {
   auto flags = std::make_shared<ReplayFlags>();
-  CLI::App* verb =
-      bus.add_subcommand("replay", "put the frames of a candump log on a simulated line at their times");
-  verb->add_option("LOG", flags->log, "candump log; - is standard input")->required();
-  verb->add_option("PLANT", flags->plant, "plant (.toml)")->required();
-  verb->add_option("--bus", flags->bus, "line of the plant; default: the first one");
-  verb->add_option("--id", flags->ids, "only frames with these identifiers, in hexadecimal")
-      ->delimiter(',')
-      ->check(CLI::Validator(check_identifier, "ID"));
-  verb->add_option("--at", flags->begin, "virtual time of the first frame, for example 50ms; default 0ms")
-      ->check(CLI::Validator(check_time, "TIME"));
-  verb->add_option("--for", flags->duration, "virtual time to run; default: 100ms longer than the log")
-      ->check(CLI::Validator(check_time, "TIME"));
-  verb->add_option("--log", flags->record, "write the frames of all buses in candump format");
-  verb->add_flag("--watch{*}", flags->watch, "show named variables at the end, all or --watch=NAME,...");
-  verb->add_flag("--why", flags->why, "also tell what was ignored, and why");
-  add_compile_options(*verb, flags->compile);
-  verb->footer("Example:\n  ipos bus replay can.log plant.toml --id 400,401 --watch");
-  verb->callback([flags, &exit_code] { exit_code = replay(*flags); });
+  cli::Verb& verb = bus.verb("replay", "put the frames of a candump log on a simulated line at their times");
+  verb.option("LOG", flags->log, "candump log; - is standard input").required();
+  verb.option("PLANT", flags->plant, "plant (.toml)").required();
+  verb.option("--bus", flags->bus, "line of the plant; default: the first one");
+  verb.option("--id", flags->ids, "only frames with these identifiers, in hexadecimal")
+      .separated_by(',')
+      .check(check_identifier, "ID");
+  verb.option("--at", flags->begin, "virtual time of the first frame, for example 50ms; default 0ms")
+      .check(check_time, "TIME");
+  verb.option("--for", flags->duration, "virtual time to run; default: 100ms longer than the log")
+      .check(check_time, "TIME");
+  verb.option("--log", flags->record, "write the frames of all buses in candump format");
+  verb.flag("--watch", flags->watch, "*", "show named variables at the end, all or --watch=NAME,...");
+  verb.flag("--why", flags->why, "also tell what was ignored, and why");
+  add_compile_options(verb, flags->compile);
+  verb.footer("Example:\n  ipos bus replay can.log plant.toml --id 400,401 --watch");
+  verb.runs([flags] { return replay(*flags); });
 }
 
 }  // namespace ipos::tools

@@ -1,22 +1,22 @@
 // The subcommands of `ipos bus`, one file each.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
 
 #include "runtime/bus/log/candump.hpp"
 #include "runtime/bus/movilink/describe.hpp"
+#include "tools/cli/verb.hpp"
 #include "tools/verbs.hpp"
 
 namespace ipos::tools {
 
-void add_bus_plan(CLI::App& bus, int& exit_code);
-void add_bus_decode(CLI::App& bus, int& exit_code);
-void add_bus_monitor(CLI::App& bus, int& exit_code);
-void add_bus_load(CLI::App& bus, int& exit_code);
-void add_bus_replay(CLI::App& bus, int& exit_code);
-void add_bus_dbc(CLI::App& bus, int& exit_code);
+void add_bus_plan(cli::Verb& bus);
+void add_bus_decode(cli::Verb& bus);
+void add_bus_monitor(cli::Verb& bus);
+void add_bus_load(cli::Verb& bus);
+void add_bus_replay(cli::Verb& bus);
+void add_bus_dbc(cli::Verb& bus);
 
 // Calls `take` for each good line of a candump log, with its number; prints the others as "LOG:line:column:
 // error: ...". Returns how many were bad.
@@ -28,7 +28,7 @@ runtime::TelegramNames names_of(const std::string& path, const CompileFlags& com
 runtime::TelegramNames serial_names_of(const std::string& path, const CompileFlags& compile);
 
 // --names FILE, also as --plant and --program.
-void add_names_option(CLI::App& verb, std::string& path);
+void add_names_option(cli::Verb& verb, std::string& path);
 
 // For options that take a duration.
 std::string check_time(const std::string& text);

@@ -52,12 +52,11 @@ void CoverageReports::write(const coverage::Coverage& coverage) {
   }
 }
 
-void add_coverage_option(CLI::App& verb, std::vector<std::string>& paths) {
-  verb.add_option(
-          "--coverage", paths,
-          "write which source lines and branches were executed: .info (lcov), .xml (Cobertura), .txt, "
-          "or - for text to the terminal; may be given several times")
-      ->allow_extra_args(false);
+void add_coverage_option(cli::Verb& verb, std::vector<std::string>& paths) {
+  verb.option("--coverage", paths,
+              "write which source lines and branches were executed: .info (lcov), .xml (Cobertura), .txt, "
+              "or - for text to the terminal; may be given several times")
+      .one_each();
 }
 
 }  // namespace ipos::tools

@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
+#include "tools/cli/verb.hpp"
 #include "tools/coverage/coverage.hpp"
 
 namespace ipos::tools {
@@ -30,6 +29,6 @@ class CoverageReports {
   std::vector<Report> reports_;
 };
 
-void add_coverage_option(CLI::App& verb, std::vector<std::string>& paths);
+void add_coverage_option(cli::Verb& verb, std::vector<std::string>& paths);
 
 }  // namespace ipos::tools

@@ -14,11 +14,11 @@ std::shared_ptr<const vm::fast::Native> machine_code(const vm::VerifiedImage& pr
 
 }  // namespace
 
-void add_engine_option(CLI::App& verb, std::string& engine) {
-  verb.add_option("--engine", engine,
-                  "what executes the programs, with equal results: reference, fast or native (machine code); "
-                  "default: native where this build has it, else fast")
-      ->check(CLI::IsMember({"reference", "fast", "native"}));
+void add_engine_option(cli::Verb& verb, std::string& engine) {
+  verb.option("--engine", engine,
+              "what executes the programs, with equal results: reference, fast or native (machine code); "
+              "default: native where this build has it, else fast")
+      .one_of({"reference", "fast", "native"});
 }
 
 runtime::Execution execution_of(const std::string& engine) {

@@ -8,13 +8,12 @@
 
 namespace ipos::tools {
 
-void add_link_options(CLI::App& verb, LinkFlags& flags, bool port) {
+void add_link_options(cli::Verb& verb, LinkFlags& flags, bool port) {
   if (port)
-    verb.add_option(
-        "--port", flags.port,
-        "reach a unit over a real port: can0, slcan:/dev/ttyACM0, /dev/ttyUSB0 or /dev/ttyUSB0@16ms");
-  verb.add_option("--baud", flags.baud, "rate of the bus; default 500000 on SBus, 9600 on RS-485")
-      ->check(CLI::IsMember({9'600, 57'600, 125'000, 250'000, 500'000, 1'000'000}));
+    verb.option("--port", flags.port,
+                "reach a unit over a real port: can0, slcan:/dev/ttyACM0, /dev/ttyUSB0 or /dev/ttyUSB0@16ms");
+  verb.option("--baud", flags.baud, "rate of the bus; default 500000 on SBus, 9600 on RS-485")
+      .one_of({"9600", "57600", "125000", "250000", "500000", "1000000"});
 }
 
 std::string check_unit(const std::string& name) {

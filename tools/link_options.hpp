@@ -1,15 +1,15 @@
 // Options of the verbs that reach a unit over a port.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "tools/bus_link.hpp"
+#include "tools/cli/verb.hpp"
 
 namespace ipos::tools {
 
 // --baud, and --port unless the port is a word of its own.
-void add_link_options(CLI::App& verb, LinkFlags& flags, bool port);
+void add_link_options(cli::Verb& verb, LinkFlags& flags, bool port);
 
 // For options that name a unit type with parameters, and for addresses of single units.
 std::string check_unit(const std::string& name);

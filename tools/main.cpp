@@ -1,25 +1,25 @@
 // ipos: one program, a verb for each arrow of the toolchain.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <iterator>
 #include <string_view>
 
+#include "tools/cli/parser.hpp"
 #include "tools/failure.hpp"
 #include "tools/verbs.hpp"
 
 namespace {
 
-struct Verb {
+struct Row {
   std::string_view name;
-  void (*add)(CLI::App& app, int& exit_code);
+  void (*add)(ipos::tools::cli::Verb& program);
 };
 
 // In the order of --help.
-constexpr Verb kVerbs[] = {
+constexpr Row kVerbs[] = {
     {"build", ipos::tools::add_build},     {"asm", ipos::tools::add_asm},
     {"disasm", ipos::tools::add_disasm},   {"verify", ipos::tools::add_verify},
     {"run", ipos::tools::add_run},         {"test", ipos::tools::add_test},
@@ -32,35 +32,21 @@ constexpr Verb kVerbs[] = {
 
 // All verbs cost a third of the start of a short run: only the one asked for is made, all for help and
 // mistakes.
-void add_verbs(CLI::App& app, std::string_view asked, int& exit_code) {
+void add_verbs(ipos::tools::cli::Verb& program, std::string_view asked) {
   const auto* const one = std::find_if(std::begin(kVerbs), std::end(kVerbs),
-                                       [asked](const Verb& verb) { return verb.name == asked; });
-  if (one != std::end(kVerbs)) return one->add(app, exit_code);
-  for (const Verb& verb : kVerbs) verb.add(app, exit_code);
+                                       [asked](const Row& row) { return row.name == asked; });
+  if (one != std::end(kVerbs)) return one->add(program);
+  for (const Row& row : kVerbs) row.add(program);
 }
 
 int run(int argc, char** argv) {
-  using namespace ipos::tools;
-  int exit_code = kGood;
-  CLI::App app{"Toolchain for IPOSplus-style drive programs: compile, run and test them without a drive.",
-               "ipos"};
-  app.set_version_flag("--version", "ipos " IPOS_VERSION);
-  app.require_subcommand(1);
-  app.footer(
+  ipos::tools::cli::Verb program(
+      "ipos", "Toolchain for IPOSplus-style drive programs: compile, run and test them without a drive.");
+  program.footer(
       "Example:\n  ipos run examples/scom/scom.toml --for 1s --watch\nEvery verb has --help with an "
       "example.");
-  add_verbs(app, argc > 1 ? argv[1] : "", exit_code);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success))
-      return app.exit(error);  // --help, --version
-    fmt::print(stderr, "ipos: {}\n", error.what());
-    const auto verbs = app.get_subcommands();
-    fmt::print(stderr, "Try 'ipos {}--help'.\n", verbs.empty() ? "" : verbs.front()->get_name() + " ");
-    return kUsage;
-  }
-  return exit_code;
+  add_verbs(program, argc > 1 ? argv[1] : "");
+  return ipos::tools::cli::run(program, "ipos " IPOS_VERSION, argc, argv);
 }
 
 }  // namespace

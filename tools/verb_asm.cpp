@@ -10,17 +10,16 @@
 
 namespace ipos::tools {
 
-void add_asm(CLI::App& app, int& exit_code) {
+void add_asm(cli::Verb& app) {
   auto file = std::make_shared<std::string>();
   auto output = std::make_shared<std::string>();
   auto diagnostics = std::make_shared<std::string>("text");
-  CLI::App* verb = app.add_subcommand("asm", "assemble text in the form 'ipos disasm' prints");
-  verb->add_option("FILE", *file, "assembler text, or - for standard input")->required();
-  verb->add_option("-o", *output, "image to write; default: the text's name with .ipx");
-  verb->add_option("--diagnostics", *diagnostics, "text, json or sarif")
-      ->check(CLI::IsMember({"text", "json", "sarif"}));
-  verb->footer("Example:\n  ipos asm SCOM1.ipa -o SCOM1.ipx");
-  verb->callback([file, output, diagnostics, &exit_code] {
+  cli::Verb& verb = app.verb("asm", "assemble text in the form 'ipos disasm' prints");
+  verb.option("FILE", *file, "assembler text, or - for standard input").required();
+  verb.option("-o", *output, "image to write; default: the text's name with .ipx");
+  verb.option("--diagnostics", *diagnostics, "text, json or sarif").one_of({"text", "json", "sarif"});
+  verb.footer("Example:\n  ipos asm SCOM1.ipa -o SCOM1.ipx");
+  verb.runs([file, output, diagnostics] {
     compiler::SourceMap sources;
     compiler::Diagnostics found;
     const compiler::SourceFile& source = sources.add(*file, *file, read_file(*file));
@@ -30,7 +29,7 @@ void add_asm(CLI::App& app, int& exit_code) {
     if (output->empty() && *file == "-") throw Failure(kUsage, "standard input needs -o FILE");
     write_file(output->empty() ? std::filesystem::path(*file).replace_extension(".ipx").string() : *output,
                vm::write_image(*image));
-    exit_code = kGood;
+    return kGood;
   });
 }
 

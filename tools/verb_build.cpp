@@ -40,26 +40,24 @@ int build(const BuildFlags& flags) {
 
 }  // namespace
 
-void add_compile_options(CLI::App& verb, CompileFlags& flags) {
-  verb.add_option("-I", flags.include_dirs, "folder for #include")->allow_extra_args(false);
-  verb.add_option("-D", flags.defines, "NAME=VALUE, as #define")->allow_extra_args(false);
-  verb.add_option("-W", flags.warnings, "warning by name: -Wunused-variable, -Wno-..., -Werror")
-      ->allow_extra_args(false);
-  verb.add_option("--unit", flags.unit, "unit type: md60a, compact, mc07 or mdxb");
-  verb.add_option("--diagnostics", flags.diagnostics, "text, json or sarif")
-      ->check(CLI::IsMember({"text", "json", "sarif"}));
+void add_compile_options(cli::Verb& verb, CompileFlags& flags) {
+  verb.option("-I", flags.include_dirs, "folder for #include").one_each();
+  verb.option("-D", flags.defines, "NAME=VALUE, as #define").one_each();
+  verb.option("-W", flags.warnings, "warning by name: -Wunused-variable, -Wno-..., -Werror").one_each();
+  verb.option("--unit", flags.unit, "unit type: md60a, compact, mc07 or mdxb");
+  verb.option("--diagnostics", flags.diagnostics, "text, json or sarif").one_of({"text", "json", "sarif"});
 }
 
-void add_build(CLI::App& app, int& exit_code) {
+void add_build(cli::Verb& app) {
   auto flags = std::make_shared<BuildFlags>();
-  CLI::App* verb = app.add_subcommand("build", "compile a source file to an image");
-  verb->add_option("FILE", flags->file, "source, *.IPC")->required();
-  verb->add_option("-o", flags->output, "image to write; default: the source's name with .ipx");
-  verb->add_option("--emit", flags->emit, "print a stage instead: tokens, ast, asm, image, map or listing")
-      ->check(CLI::IsMember({"tokens", "ast", "asm", "image", "map", "listing"}));
-  add_compile_options(*verb, flags->compile);
-  verb->footer("Example:\n  ipos build SCOM1.IPC --emit=asm");
-  verb->callback([flags, &exit_code] { exit_code = build(*flags); });
+  cli::Verb& verb = app.verb("build", "compile a source file to an image");
+  verb.option("FILE", flags->file, "source, *.IPC").required();
+  verb.option("-o", flags->output, "image to write; default: the source's name with .ipx");
+  verb.option("--emit", flags->emit, "print a stage instead: tokens, ast, asm, image, map or listing")
+      .one_of({"tokens", "ast", "asm", "image", "map", "listing"});
+  add_compile_options(verb, flags->compile);
+  verb.footer("Example:\n  ipos build SCOM1.IPC --emit=asm");
+  verb.runs([flags] { return build(*flags); });
 }
 
 }  // namespace ipos::tools

@@ -4,16 +4,15 @@
 
 namespace ipos::tools {
 
-void add_bus(CLI::App& app, int& exit_code) {
-  CLI::App* verb = app.add_subcommand("bus", "plan, watch, decode, measure and replay the traffic of an SBus");
-  verb->require_subcommand(1);
-  add_bus_plan(*verb, exit_code);
-  add_bus_decode(*verb, exit_code);
-  add_bus_monitor(*verb, exit_code);
-  add_bus_load(*verb, exit_code);
-  add_bus_replay(*verb, exit_code);
-  add_bus_dbc(*verb, exit_code);
-  verb->footer("Example:\n  ipos bus plan examples/scom/scom.toml");
+void add_bus(cli::Verb& app) {
+  cli::Verb& verb = app.verb("bus", "plan, watch, decode, measure and replay the traffic of an SBus");
+  add_bus_plan(verb);
+  add_bus_decode(verb);
+  add_bus_monitor(verb);
+  add_bus_load(verb);
+  add_bus_replay(verb);
+  add_bus_dbc(verb);
+  verb.footer("Example:\n  ipos bus plan examples/scom/scom.toml");
 }
 
 }  // namespace ipos::tools

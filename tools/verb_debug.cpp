@@ -34,7 +34,7 @@ struct DebugFlags {
   std::string duration = "60s";
   uint32_t speed = 0;
   bool snapshots = true;
-  uint16_t port = 0;
+  std::optional<uint16_t> port;
   CompileFlags compile;
 };
 
@@ -205,13 +205,13 @@ int serve_port(const DebugFlags& flags) {
   const int listener = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
-  address.sin_port = htons(flags.port);
+  address.sin_port = htons(*flags.port);
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   const int on = 1;
   setsockopt(listener, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
   if (listener < 0 || bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
       listen(listener, 1) != 0)
-    throw Failure(kIoError, fmt::format("port {} cannot be listened at", flags.port));
+    throw Failure(kIoError, fmt::format("port {} cannot be listened at", *flags.port));
   socklen_t size = sizeof address;
   getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size);
   fmt::print(stderr, "ipos: debug adapter at 127.0.0.1:{}\n", ntohs(address.sin_port));
@@ -239,38 +239,34 @@ std::string check_time(const std::string& text) {
                                            : "";
 }
 
-void add_common(CLI::App& verb, DebugFlags& flags) {
-  verb.add_option("--speed", flags.speed, "commands per ms of every task, instead of P938 and P939")
-      ->check(CLI::Range(1U, 1'000'000U));
-  verb.add_flag("--snapshots,!--no-snapshots", flags.snapshots,
-                "step back by running again from the beginning");
+void add_common(cli::Verb& verb, DebugFlags& flags) {
+  verb.option("--speed", flags.speed, "commands per ms of every task, instead of P938 and P939")
+      .between(1U, 1'000'000U);
+  verb.off("--no-snapshots", flags.snapshots, "step back by running again from the beginning");
   add_compile_options(verb, flags.compile);
 }
 
 }  // namespace
 
-void add_debug(CLI::App& app, int& exit_code) {
+void add_debug(cli::Verb& app) {
   auto flags = std::make_shared<DebugFlags>();
-  CLI::App* verb = app.add_subcommand("debug", "step through a program or a plant, forward and back");
-  verb->add_option("FILE", flags->file, "source (.IPC), image (.ipx) or plant (.toml)")->required();
-  verb->add_option("--for", flags->duration, "virtual time to run at most; default 60s")
-      ->check(CLI::Validator(check_time, "TIME"));
-  add_common(*verb, *flags);
-  verb->footer("Example, 'help' lists the words:\n  ipos debug examples/scom/scom.toml");
-  verb->callback([flags, &exit_code] { exit_code = replaceable([&] { return debug_console(*flags); }); });
+  cli::Verb& verb = app.verb("debug", "step through a program or a plant, forward and back");
+  verb.option("FILE", flags->file, "source (.IPC), image (.ipx) or plant (.toml)").required();
+  verb.option("--for", flags->duration, "virtual time to run at most; default 60s").check(check_time, "TIME");
+  add_common(verb, *flags);
+  verb.footer("Example, 'help' lists the words:\n  ipos debug examples/scom/scom.toml");
+  verb.runs([flags] { return replaceable([&] { return debug_console(*flags); }); });
 }
 
-void add_dap(CLI::App& app, int& exit_code) {
+void add_dap(cli::Verb& app) {
   auto flags = std::make_shared<DebugFlags>();
-  CLI::App* verb = app.add_subcommand("dap", "debug adapter for editors, on standard input and output");
-  auto port = std::make_shared<bool>(false);
-  verb->add_option("--port", flags->port, "listen at this port of the loopback instead; 0: any free one")
-      ->each([port](const std::string&) { *port = true; });
-  add_common(*verb, *flags);
-  verb->footer("Example, in an editor's settings:\n  command: ipos dap");
-  verb->callback([flags, port, &exit_code] {
-    exit_code =
-        replaceable([&] { return *port ? serve_port(*flags) : serve(*flags, STDIN_FILENO, STDOUT_FILENO); });
+  cli::Verb& verb = app.verb("dap", "debug adapter for editors, on standard input and output");
+  verb.option("--port", flags->port, "listen at this port of the loopback instead; 0: any free one");
+  add_common(verb, *flags);
+  verb.footer("Example, in an editor's settings:\n  command: ipos dap");
+  verb.runs([flags] {
+    return replaceable(
+        [&] { return flags->port ? serve_port(*flags) : serve(*flags, STDIN_FILENO, STDOUT_FILENO); });
   });
 }
 

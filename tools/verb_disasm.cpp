@@ -20,20 +20,21 @@ const std::map<std::string, VariableNames> kNames{{"numbers", VariableNames::Num
 
 }  // namespace
 
-void add_disasm(CLI::App& app, int& exit_code) {
+void add_disasm(cli::Verb& app) {
   auto file = std::make_shared<std::string>();
-  auto names = std::make_shared<VariableNames>(VariableNames::Numbers);
+  auto names = std::make_shared<std::string>("numbers");
   auto with_source = std::make_shared<bool>(false);
-  CLI::App* verb = app.add_subcommand("disasm", "print an image as assembler text");
-  verb->add_option("FILE", *file, "image, *.ipx")->required();
-  verb->add_option("--names", *names, "system variables as numbers, assembler or compiler names")
-      ->transform(CLI::CheckedTransformer(kNames));
-  verb->add_flag("--listing", *with_source, "word addresses, code words and source lines instead");
-  verb->footer("Example:\n  ipos disasm SCOM1.ipx --listing");
-  verb->callback([file, names, with_source, &exit_code] {
+  cli::Verb& verb = app.verb("disasm", "print an image as assembler text");
+  verb.option("FILE", *file, "image, *.ipx").required();
+  verb.option("--names", *names, "system variables as numbers, assembler or compiler names")
+      .one_of({"numbers", "assembler", "compiler"});
+  verb.flag("--listing", *with_source, "word addresses, code words and source lines instead");
+  verb.footer("Example:\n  ipos disasm SCOM1.ipx --listing");
+  verb.runs([file, names, with_source] {
     const vm::Image image = load_image(*file);
-    fmt::print("{}", *with_source ? program_listing(image, *names) : compiler::disassemble(image, *names));
-    exit_code = kGood;
+    const VariableNames form = kNames.at(*names);
+    fmt::print("{}", *with_source ? program_listing(image, form) : compiler::disassemble(image, form));
+    return kGood;
   });
 }
 

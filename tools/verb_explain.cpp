@@ -172,17 +172,17 @@ std::string explain(std::string code) {
 
 }  // namespace
 
-void add_explain(CLI::App& app, int& exit_code) {
+void add_explain(cli::Verb& app) {
   auto code = std::make_shared<std::string>();
-  CLI::App* verb = app.add_subcommand(
-      "explain", "what a code means: message, verifier rule, return code, fault, parameter");
-  verb->add_option("CODE", *code,
-                   "for example E0203, V03, 8/0/10, 0x08000010, F10, P130, 8470; F lists all faults")
-      ->required();
-  verb->footer("Example:\n  ipos explain E0203");
-  verb->callback([code, &exit_code] {
+  cli::Verb& verb =
+      app.verb("explain", "what a code means: message, verifier rule, return code, fault, parameter");
+  verb.option("CODE", *code,
+              "for example E0203, V03, 8/0/10, 0x08000010, F10, P130, 8470; F lists all faults")
+      .required();
+  verb.footer("Example:\n  ipos explain E0203");
+  verb.runs([code] {
     fmt::print("{}", explain(*code));
-    exit_code = kGood;
+    return kGood;
   });
 }
 

@@ -73,15 +73,15 @@ int format(const FmtFlags& flags) {
 
 }  // namespace
 
-void add_fmt(CLI::App& app, int& exit_code) {
+void add_fmt(cli::Verb& app) {
   auto flags = std::make_shared<FmtFlags>();
-  CLI::App* verb = app.add_subcommand("fmt", "bring sources into the one layout");
-  verb->add_option("PATH", flags->paths,
-                   "sources and folders, changed in place; - or none: standard input to standard output");
-  verb->add_flag("--check", flags->check, "change nothing; print what would be changed and end with 1");
-  verb->add_flag("--diff", flags->diff, "change nothing; print the changes");
-  verb->footer("Example:\n  ipos fmt --check examples");
-  verb->callback([flags, &exit_code] { exit_code = format(*flags); });
+  cli::Verb& verb = app.verb("fmt", "bring sources into the one layout");
+  verb.option("PATH", flags->paths,
+              "sources and folders, changed in place; - or none: standard input to standard output");
+  verb.flag("--check", flags->check, "change nothing; print what would be changed and end with 1");
+  verb.flag("--diff", flags->diff, "change nothing; print the changes");
+  verb.footer("Example:\n  ipos fmt --check examples");
+  verb.runs([flags] { return format(*flags); });
 }
 
 }  // namespace ipos::tools

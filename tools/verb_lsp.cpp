@@ -55,12 +55,12 @@ int serve() {
 
 }  // namespace
 
-void add_lsp(CLI::App& app, int& exit_code) {
-  CLI::App* verb = app.add_subcommand("lsp", "language server for editors, on standard input and output");
+void add_lsp(cli::Verb& app) {
+  cli::Verb& verb = app.verb("lsp", "language server for editors, on standard input and output");
   auto stdio = std::make_shared<bool>(true);
-  verb->add_flag("--stdio", *stdio, "the only way to talk; accepted for editors that say so");
-  verb->footer("Example, in an editor's settings:\n  command: ipos lsp");
-  verb->callback([stdio, &exit_code] { exit_code = serve(); });
+  verb.flag("--stdio", *stdio, "the only way to talk; accepted for editors that say so");
+  verb.footer("Example, in an editor's settings:\n  command: ipos lsp");
+  verb.runs([stdio] { return serve(); });
 }
 
 }  // namespace ipos::tools

@@ -98,78 +98,74 @@ int diff_with_unit(ParamFlags& flags) {
 
 class Actions {
  public:
-  Actions(CLI::App& verb, std::shared_ptr<ParamFlags> flags, int& exit_code)
-      : verb_(verb), flags_(std::move(flags)), exit_code_(exit_code) {}
+  Actions(cli::Verb& verb, std::shared_ptr<ParamFlags> flags) : verb_(verb), flags_(std::move(flags)) {}
 
   template <typename Action>
-  CLI::App* add(const char* name, const char* what, const char* words, const char* about, const char* example,
-                Action action) {
-    CLI::App* app = verb_.add_subcommand(name, what);
-    app->add_option(words, flags_->words, about);
-    app->add_option("--station", flags_->station, "which station, where the plant has several");
-    add_link_options(*app, flags_->link, true);
-    app->add_option("--address", flags_->address, "with --port: address of the unit")
-        ->check(CLI::Validator(check_address, "0..99"));
-    app->footer(std::string("Example:\n  ipos param ") + example);
-    app->callback([flags = flags_, action, &exit_code = exit_code_] { exit_code = action(*flags); });
+  cli::Verb& add(const char* name, const char* what, const char* words, const char* about,
+                 const char* example, Action action) {
+    cli::Verb& app = verb_.verb(name, what);
+    app.option(words, flags_->words, about);
+    app.option("--station", flags_->station, "which station, where the plant has several");
+    add_link_options(app, flags_->link, true);
+    app.option("--address", flags_->address, "with --port: address of the unit")
+        .check(check_address, "0..99");
+    app.footer(std::string("Example:\n  ipos param ") + example);
+    app.runs([flags = flags_, action] { return action(*flags); });
     return app;
   }
 
-  void unit(CLI::App* app) {
-    app->add_option(
-           "--unit", flags_->unit,
-           "instead of a plant: a unit as delivered (md60a, compact, mc07, mdxb); with --port: do not "
-           "ask the unit what it is")
-        ->check(CLI::Validator(check_unit, "UNIT"));
+  void unit(cli::Verb& app) {
+    app.option("--unit", flags_->unit,
+               "instead of a plant: a unit as delivered (md60a, compact, mc07, mdxb); with --port: do not "
+               "ask the unit what it is")
+        .check(check_unit, "UNIT");
   }
-  void format(CLI::App* app) {
-    app->add_option("--format", flags_->format, "text or json")->check(CLI::IsMember({"text", "json"}));
+  void format(cli::Verb& app) {
+    app.option("--format", flags_->format, "text or json").one_of({"text", "json"});
   }
-  void writes(CLI::App* app) {
-    app->add_flag("--yes", flags_->yes, "with --port: write into the non-volatile memory of the unit");
-    app->add_flag("--volatile", flags_->is_volatile,
-                  "service 3, write volatile: not into the non-volatile memory");
+  void writes(cli::Verb& app) {
+    app.flag("--yes", flags_->yes, "with --port: write into the non-volatile memory of the unit");
+    app.flag("--volatile", flags_->is_volatile,
+             "service 3, write volatile: not into the non-volatile memory");
   }
 
  private:
-  CLI::App& verb_;
+  cli::Verb& verb_;
   std::shared_ptr<ParamFlags> flags_;
-  int& exit_code_;
 };
 
 }  // namespace
 
-void add_param(CLI::App& app, int& exit_code) {
+void add_param(cli::Verb& app) {
   auto flags = std::make_shared<ParamFlags>();
-  CLI::App* verb = app.add_subcommand("param", "parameters of a unit: list, get, set, save, load, diff");
-  verb->require_subcommand(1);
-  verb->footer("Example:\n  ipos param set plant.toml P130=2.5s\nEach of them has --help with an example.");
-  Actions actions(*verb, flags, exit_code);
+  cli::Verb& verb = app.verb("param", "parameters of a unit: list, get, set, save, load, diff");
+  verb.footer("Example:\n  ipos param set plant.toml P130=2.5s\nEach of them has --help with an example.");
+  Actions actions(verb, flags);
 
-  CLI::App* list = actions.add("list", "values with names and units", "PLANT", "plant file",
-                               "list plant.toml --group P1", [](ParamFlags& f) {
-                                 const auto access = open(f, FileUse::Read);
-                                 no_more_words(f);
-                                 f.list.json = f.json();
-                                 return list_parameters(*access, f.list);
-                               });
-  list->add_option("--group", flags->list.group, "numbers that begin so, for example P1 or P13");
-  list->add_flag("--changed", flags->list.changed, "only settings that differ from the factory setting");
-  list->add_flag("--long", flags->list.detailed, "also access, default, minimum and maximum");
+  cli::Verb& list = actions.add("list", "values with names and units", "PLANT", "plant file",
+                                "list plant.toml --group P1", [](ParamFlags& f) {
+                                  const auto access = open(f, FileUse::Read);
+                                  no_more_words(f);
+                                  f.list.json = f.json();
+                                  return list_parameters(*access, f.list);
+                                });
+  list.option("--group", flags->list.group, "numbers that begin so, for example P1 or P13");
+  list.flag("--changed", flags->list.changed, "only settings that differ from the factory setting");
+  list.flag("--long", flags->list.detailed, "also access, default, minimum and maximum");
   actions.unit(list);
   actions.format(list);
 
-  CLI::App* get = actions.add("get", "single values", "PLANT NAME", "plant file, then P130, 8470, H20, ...",
-                              "get plant.toml P130 8470", [](ParamFlags& f) {
-                                const auto access = open(f, FileUse::Read);
-                                if (f.words.empty())
-                                  throw Failure(kUsage, "which parameter? For example P130");
-                                return get_parameters(*access, f.words, f.json());
-                              });
+  cli::Verb& get = actions.add("get", "single values", "PLANT NAME", "plant file, then P130, 8470, H20, ...",
+                               "get plant.toml P130 8470", [](ParamFlags& f) {
+                                 const auto access = open(f, FileUse::Read);
+                                 if (f.words.empty())
+                                   throw Failure(kUsage, "which parameter? For example P130");
+                                 return get_parameters(*access, f.words, f.json());
+                               });
   actions.unit(get);
   actions.format(get);
 
-  CLI::App* set =
+  cli::Verb& set =
       actions.add("set", "write values, by default into the non-volatile memory", "PLANT NAME=VALUE",
                   "plant file, then P130=2.5s, P816=\"500 kBaud\", H20=5, ...",
                   "set plant.toml P130=2.5s P816=\"500 kBaud\"", [](ParamFlags& f) {
@@ -181,15 +177,15 @@ void add_param(CLI::App& app, int& exit_code) {
   actions.unit(set);
   actions.format(set);
 
-  CLI::App* save = actions.add("save", "keep all settings in a file, a line a parameter", "PLANT FILE",
-                               "plant file, then the file to write; - is standard output",
-                               "save plant.toml unit1.settings", [](ParamFlags& f) {
-                                 const auto access = open(f, FileUse::Read);
-                                 return save_parameters(*access, one_file(f));
-                               });
+  cli::Verb& save = actions.add("save", "keep all settings in a file, a line a parameter", "PLANT FILE",
+                                "plant file, then the file to write; - is standard output",
+                                "save plant.toml unit1.settings", [](ParamFlags& f) {
+                                  const auto access = open(f, FileUse::Read);
+                                  return save_parameters(*access, one_file(f));
+                                });
   actions.unit(save);
 
-  CLI::App* load =
+  cli::Verb& load =
       actions.add("load", "write the settings of a file that differ", "PLANT FILE",
                   "plant file, then a file of save", "load plant.toml unit1.settings", [](ParamFlags& f) {
                     const auto access = open(f, FileUse::Write);
@@ -201,7 +197,7 @@ void add_param(CLI::App& app, int& exit_code) {
   actions.unit(load);
   actions.format(load);
 
-  CLI::App* diff =
+  cli::Verb& diff =
       actions.add("diff", "what differs; exit code 1 if something does", "A B",
                   "each a file of save, or PLANT.toml[:STATION]; with --port B is the unit there",
                   "diff unit1.settings plant.toml:unit1", [](ParamFlags& f) {

@@ -216,40 +216,39 @@ std::string check_duration(const std::string& text) {
 
 }  // namespace
 
-void add_run(CLI::App& app, int& exit_code) {
+void add_run(cli::Verb& app) {
   auto flags = std::make_shared<RunFlags>();
-  CLI::App* verb = app.add_subcommand("run", "run a program or a plant in virtual time");
-  verb->add_option("FILE", flags->file, "source (.IPC), image (.ipx) or plant (.toml)")->required();
-  verb->add_option("--for", flags->duration, "virtual time to run, for example 500ms; default 60s")
-      ->check(CLI::Validator(check_duration, "TIME"));
-  verb->add_option("--until", flags->until, "'end': stop when every program has ended")
-      ->check(CLI::IsMember({"end"}));
-  verb->add_option("--speed", flags->speed, "commands per ms of every task, instead of P938 and P939")
-      ->check(CLI::Range(1U, 1'000'000U));
-  add_engine_option(*verb, flags->engine);
-  verb->add_flag("--no-skip", flags->no_skip,
-                 "execute every millisecond in its turn, also where nothing happens, with equal results");
-  verb->add_flag("--watch{*}", flags->watch, "show named variables at the end, all or --watch=NAME,...");
-  verb->add_option("--log", flags->log, "write the frames of all CAN buses in candump format");
-  verb->add_option("--serial-log", flags->serial_log, "write the telegrams of all RS-485 lines");
-  verb->add_option("--plot", flags->plot, "draw signals over time into an SVG file");
-  verb->add_option("--trace", flags->trace, "write signals over time: .csv, .vcd or .jsonl");
-  verb->add_option("--signals", flags->signals,
-                   "what to plot and trace, for example unit1.speed,unit1.P094,unit1.H500,sbus1.frames; "
-                   "default: speed, "
-                   "setpoint and status of every station")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  add_coverage_option(*verb, flags->coverage);
-  verb->add_option("--format", flags->format, "text or json")->check(CLI::IsMember({"text", "json"}));
-  verb->add_flag("--trace-hash", flags->trace_hash,
-                 "print one number over all states, frames and telegrams, to compare runs and builds");
-  verb->add_flag("--realtime", flags->realtime,
-                 "keep pace with the clock, and join buses that have a port to the real world");
-  verb->add_flag("--why", flags->why, "also tell what was ignored, and why");
-  add_compile_options(*verb, flags->compile);
-  verb->footer("Example:\n  ipos run examples/scom/scom.toml --for 1s --watch --log can.log");
-  verb->callback([flags, &exit_code] { exit_code = run(*flags); });
+  cli::Verb& verb = app.verb("run", "run a program or a plant in virtual time");
+  verb.option("FILE", flags->file, "source (.IPC), image (.ipx) or plant (.toml)").required();
+  verb.option("--for", flags->duration, "virtual time to run, for example 500ms; default 60s")
+      .check(check_duration, "TIME");
+  verb.option("--until", flags->until, "'end': stop when every program has ended").one_of({"end"});
+  verb.option("--speed", flags->speed, "commands per ms of every task, instead of P938 and P939")
+      .between(1U, 1'000'000U);
+  add_engine_option(verb, flags->engine);
+  verb.flag("--no-skip", flags->no_skip,
+            "execute every millisecond in its turn, also where nothing happens, with equal results");
+  verb.flag("--watch", flags->watch, "*", "show named variables at the end, all or --watch=NAME,...");
+  verb.option("--log", flags->log, "write the frames of all CAN buses in candump format");
+  verb.option("--serial-log", flags->serial_log, "write the telegrams of all RS-485 lines");
+  verb.option("--plot", flags->plot, "draw signals over time into an SVG file");
+  verb.option("--trace", flags->trace, "write signals over time: .csv, .vcd or .jsonl");
+  verb.option("--signals", flags->signals,
+              "what to plot and trace, for example unit1.speed,unit1.P094,unit1.H500,sbus1.frames; "
+              "default: speed, "
+              "setpoint and status of every station")
+      .separated_by(',')
+      .one_each();
+  add_coverage_option(verb, flags->coverage);
+  verb.option("--format", flags->format, "text or json").one_of({"text", "json"});
+  verb.flag("--trace-hash", flags->trace_hash,
+            "print one number over all states, frames and telegrams, to compare runs and builds");
+  verb.flag("--realtime", flags->realtime,
+            "keep pace with the clock, and join buses that have a port to the real world");
+  verb.flag("--why", flags->why, "also tell what was ignored, and why");
+  add_compile_options(verb, flags->compile);
+  verb.footer("Example:\n  ipos run examples/scom/scom.toml --for 1s --watch --log can.log");
+  verb.runs([flags] { return run(*flags); });
 }
 
 }  // namespace ipos::tools

@@ -73,17 +73,15 @@ int scan(ScanFlags flags) {
 
 }  // namespace
 
-void add_scan(CLI::App& app, int& exit_code) {
+void add_scan(cli::Verb& app) {
   auto flags = std::make_shared<ScanFlags>();
-  CLI::App* verb =
-      app.add_subcommand("scan", "addresses of a real bus that answer, with unit type and firmware");
-  verb->add_option("PORT", flags->link.port, "can0, slcan:/dev/ttyACM0, /dev/ttyUSB0, ...")->required();
-  verb->add_option("--from", flags->from, "first address, default 0")->check(CLI::Range(0, 99));
-  verb->add_option("--to", flags->to, "last address; default 63 on SBus, 99 on RS-485")
-      ->check(CLI::Range(0, 99));
-  add_link_options(*verb, flags->link, false);
-  verb->footer("Example:\n  ipos scan /dev/ttyUSB0 --to 10");
-  verb->callback([flags, &exit_code] { exit_code = scan(*flags); });
+  cli::Verb& verb = app.verb("scan", "addresses of a real bus that answer, with unit type and firmware");
+  verb.option("PORT", flags->link.port, "can0, slcan:/dev/ttyACM0, /dev/ttyUSB0, ...").required();
+  verb.option("--from", flags->from, "first address, default 0").between(0, 99);
+  verb.option("--to", flags->to, "last address; default 63 on SBus, 99 on RS-485").between(0, 99);
+  add_link_options(verb, flags->link, false);
+  verb.footer("Example:\n  ipos scan /dev/ttyUSB0 --to 10");
+  verb.runs([flags] { return scan(*flags); });
 }
 
 }  // namespace ipos::tools

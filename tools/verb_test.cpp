@@ -126,34 +126,32 @@ int run(TestFlags& flags) {
 
 }  // namespace
 
-void add_test(CLI::App& app, int& exit_code) {
+void add_test(cli::Verb& app) {
   auto flags = std::make_shared<TestFlags>();
   flags->suite.jobs = std::max(1U, std::thread::hardware_concurrency());
-  CLI::App* verb = app.add_subcommand("test", "run the tests of plants and programs");
-  verb->add_option("PATH", flags->paths,
-                   "*.test.toml, plant, program with // expect comments, or folder of them")
-      ->required();
-  verb->add_option("--filter", flags->filters,
-                   "only tests whose name matches, for example 'examples/*/scom*'")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  verb->add_flag("--list", flags->list, "tell the names and run nothing");
-  verb->add_option("--jobs,-j", flags->suite.jobs, "tests at a time; default: the number of cores")
-      ->check(CLI::Range(1U, 256U));
-  verb->add_option("--seed", flags->suite.run.seed, "moves the seeds of faults that strike by chance");
-  verb->add_option("--repeat", flags->suite.repeat, "run every test so often, each time with the next seed")
-      ->check(CLI::Range(1U, 1'000'000U));
-  verb->add_flag("--fail-fast", flags->suite.fail_fast, "begin no test any more when one has not passed");
-  verb->add_option("--speed", flags->suite.run.speed,
-                   "commands per ms of every task, instead of P938 and P939, where the test does not say")
-      ->check(CLI::Range(1U, 1'000'000U));
-  verb->add_option("--junit", flags->junit, "write a report as JUnit XML; - is standard output");
-  verb->add_option("--tap", flags->tap, "write a report as TAP 14");
-  verb->add_option("--json", flags->json, "write a report as JSON");
-  add_coverage_option(*verb, flags->coverage);
-  add_compile_options(*verb, flags->suite.compile);
-  verb->footer("Example:\n  ipos test examples --junit report.xml");
-  verb->callback([flags, &exit_code] { exit_code = run(*flags); });
+  cli::Verb& verb = app.verb("test", "run the tests of plants and programs");
+  verb.option("PATH", flags->paths, "*.test.toml, plant, program with // expect comments, or folder of them")
+      .required();
+  verb.option("--filter", flags->filters, "only tests whose name matches, for example 'examples/*/scom*'")
+      .separated_by(',')
+      .one_each();
+  verb.flag("--list", flags->list, "tell the names and run nothing");
+  verb.option("--jobs,-j", flags->suite.jobs, "tests at a time; default: the number of cores")
+      .between(1U, 256U);
+  verb.option("--seed", flags->suite.run.seed, "moves the seeds of faults that strike by chance");
+  verb.option("--repeat", flags->suite.repeat, "run every test so often, each time with the next seed")
+      .between(1U, 1'000'000U);
+  verb.flag("--fail-fast", flags->suite.fail_fast, "begin no test any more when one has not passed");
+  verb.option("--speed", flags->suite.run.speed,
+              "commands per ms of every task, instead of P938 and P939, where the test does not say")
+      .between(1U, 1'000'000U);
+  verb.option("--junit", flags->junit, "write a report as JUnit XML; - is standard output");
+  verb.option("--tap", flags->tap, "write a report as TAP 14");
+  verb.option("--json", flags->json, "write a report as JSON");
+  add_coverage_option(verb, flags->coverage);
+  add_compile_options(verb, flags->suite.compile);
+  verb.footer("Example:\n  ipos test examples --junit report.xml");
+  verb.runs([flags] { return run(*flags); });
 }
 
 }  // namespace ipos::tools

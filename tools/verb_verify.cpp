@@ -6,19 +6,16 @@
 
 namespace ipos::tools {
 
-void add_verify(CLI::App& app, int& exit_code) {
+void add_verify(cli::Verb& app) {
   auto file = std::make_shared<std::string>();
-  CLI::App* verb = app.add_subcommand("verify", "check an image as the interpreter does before it runs it");
-  verb->add_option("FILE", *file, "image, *.ipx")->required();
-  verb->footer("Example:\n  ipos verify SCOM1.ipx");
-  verb->callback([file, &exit_code] {
+  cli::Verb& verb = app.verb("verify", "check an image as the interpreter does before it runs it");
+  verb.option("FILE", *file, "image, *.ipx").required();
+  verb.footer("Example:\n  ipos verify SCOM1.ipx");
+  verb.runs([file] {
     const vm::Image image = load_image(*file);
-    if (!verify_image(*file, image)) {
-      exit_code = kFindings;
-      return;
-    }
+    if (!verify_image(*file, image)) return kFindings;
     fmt::print("{}: good, {} words\n", *file, image.code.size());
-    exit_code = kGood;
+    return kGood;
   });
 }
 

@@ -131,31 +131,26 @@ std::string check_rate(const std::string& text) {
 
 }  // namespace
 
-void add_watch(CLI::App& app, int& exit_code) {
+void add_watch(cli::Verb& app) {
   auto flags = std::make_shared<WatchFlags>();
-  CLI::App* verb = app.add_subcommand("watch", "values of a real or simulated drive, again and again");
-  verb->add_option("PORT", flags->link.port, "port of a real bus, or a plant file: that is run in real time")
-      ->required();
-  verb->add_option("ADDRESS", flags->unit_at, "address of the unit; of a plant the name of the station")
-      ->required();
-  verb->add_option("NAME", flags->names,
-                   "P000, 8318, H420, lTrDataLow@PROGRAM.IPC; with :hex behind it in hexadecimal")
-      ->required();
-  add_link_options(*verb, flags->link, false);
-  verb->add_option("--unit", flags->unit, "do not ask the unit what it is: md60a, compact, mc07, mdxb")
-      ->check(CLI::Validator(check_unit, "UNIT"));
-  verb->add_option("--every", flags->every, "time from row to row, default 500ms")
-      ->check(CLI::Validator(check_rate, "TIME"));
-  verb->add_option("--count", flags->count, "end after so many rows; default: go on until Ctrl-C")
-      ->check(CLI::PositiveNumber);
-  verb->add_flag("--once", flags->once, "read once, a line for each value");
-  verb->add_option("--format", flags->format, "text, or json: an object for each row")
-      ->check(CLI::IsMember({"text", "json"}));
-  verb->add_option("-I", flags->include_dirs, "folder of include files, for PROGRAM.IPC");
-  verb->footer("Example:\n  ipos watch /dev/ttyUSB0 1 P000 H420 lTrDataLow@SCOM1.IPC:hex --every 200ms");
-  verb->callback([flags, &exit_code] {
-    exit_code = is_plant(flags->link.port) ? watch_plant(*flags) : watch_port(*flags);
-  });
+  cli::Verb& verb = app.verb("watch", "values of a real or simulated drive, again and again");
+  verb.option("PORT", flags->link.port, "port of a real bus, or a plant file: that is run in real time")
+      .required();
+  verb.option("ADDRESS", flags->unit_at, "address of the unit; of a plant the name of the station")
+      .required();
+  verb.option("NAME", flags->names,
+              "P000, 8318, H420, lTrDataLow@PROGRAM.IPC; with :hex behind it in hexadecimal")
+      .required();
+  add_link_options(verb, flags->link, false);
+  verb.option("--unit", flags->unit, "do not ask the unit what it is: md60a, compact, mc07, mdxb")
+      .check(check_unit, "UNIT");
+  verb.option("--every", flags->every, "time from row to row, default 500ms").check(check_rate, "TIME");
+  verb.option("--count", flags->count, "end after so many rows; default: go on until Ctrl-C").at_least(1);
+  verb.flag("--once", flags->once, "read once, a line for each value");
+  verb.option("--format", flags->format, "text, or json: an object for each row").one_of({"text", "json"});
+  verb.option("-I", flags->include_dirs, "folder of include files, for PROGRAM.IPC");
+  verb.footer("Example:\n  ipos watch /dev/ttyUSB0 1 P000 H420 lTrDataLow@SCOM1.IPC:hex --every 200ms");
+  verb.runs([flags] { return is_plant(flags->link.port) ? watch_plant(*flags) : watch_port(*flags); });
 }
 
 }  // namespace ipos::tools
