@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "compiler/sema/block_check.hpp"
 #include "compiler/sema/expressions.hpp"
 #include "stdlib/language_tables.hpp"
 
@@ -12,18 +13,6 @@ namespace {
 
 using checked::ExprPtr;
 using vm::OperandKind;
-
-// Structure a command's operand begins; -1: whatever the keyword (1053 1610 p. 47 and p. 54-56, IPOSplus p.
-// 347).
-struct Expected {
-  std::string_view mnemonic;
-  int32_t keyword;
-  std::string_view structure;
-};
-constexpr Expected kExpected[] = {
-    {"MOVLNK", -1, "MOVLNK"}, {"SCOM", 1, "SCTRCYCL"},  {"SCOM", 2, "SCTRACYCL"},
-    {"SCOM", 3, "SCREC"},     {"VARINT", -1, "VARINT"},
-};
 
 std::vector<std::string_view> split(std::string_view text) {
   std::vector<std::string_view> parts;
@@ -68,6 +57,8 @@ class SystemCallChecker {
     for (size_t n = 0; n < kinds_.size(); ++n) good = argument(n) && good;
     if (!good) return nullptr;
     const vm::OpcodeInfo* row = command();
+    for (const Given& given : given_) good = block(row->opcode, given) && good;
+    if (!good) return nullptr;
     return expressions_.make_expr(span_,
                                   checked::SystemCall{row->opcode, context_.program.arena.list(arguments_)});
   }
@@ -109,6 +100,13 @@ class SystemCallChecker {
                                 {std::string(call_.function.text), missing, std::string(context_.unit.name)});
     return false;
   }
+
+  // A variable or structure among the arguments.
+  struct Given {
+    size_t argument;
+    Object object;
+    Span span;
+  };
 
   bool argument(size_t n) {
     const std::string_view kind = kinds_[n];
@@ -177,33 +175,27 @@ class SystemCallChecker {
                                   {fmt::format("{}", n + 1), std::string(call_.function.text)});
       return false;
     }
-    expressions_.record_take(*object);
-    if (!fits(n, *object, expr.span)) return false;
     arguments_.emplace_back(object->place.number);
+    given_.push_back({n, std::move(*object), expr.span});
     return true;
   }
 
-  // A declared variable of another type is probably a mistake; raw names like H10 have no type to be wrong.
-  bool fits(size_t n, const Object& object, Span span) {
-    const int32_t* keyword = n > 0 && !arguments_.empty() ? std::get_if<int32_t>(&arguments_[0]) : nullptr;
-    for (const Expected& row : kExpected) {
-      if (row.mnemonic != function_.mnemonic) continue;
-      if (row.keyword != -1 && (keyword == nullptr || *keyword != row.keyword)) continue;
-      const auto size = static_cast<int32_t>(context_.scope.find_type(row.structure)->size);
-      const int32_t last = object.place.number + size - 1;
-      if (last >= context_.unit.variables) {
-        context_.diagnostics.report(Diag::InvalidVariable, span,
-                                    {fmt::format("{}", last), std::string(context_.unit.name),
-                                     fmt::format("{}", context_.unit.variables - 1)});
-        return false;
-      }
-      const bool right = object.type.structure != nullptr && object.type.structure->name == row.structure;
-      if (object.variable != nullptr && object.variable->storage != Storage::Alias && !right)
-        context_.diagnostics.report(Diag::StructureType, span,
-                                    {fmt::format("{}", n + 1), std::string(call_.function.text),
-                                     std::string(row.structure), object.text(), type_text(object.type)});
-      return true;
-    }
+  // The variables that the command works on, when all arguments are known.
+  bool block(vm::Opcode opcode, const Given& given) {
+    const auto constant = [&](std::string_view kind, int32_t otherwise) {
+      const auto at = std::find(kinds_.begin(), kinds_.end(), kind);
+      return at == kinds_.end() ? otherwise
+                                : std::get<int32_t>(arguments_[static_cast<size_t>(at - kinds_.begin())]);
+    };
+    const auto rows = vm::blocks_of(opcode, given.argument, constant("keyword", vm::kAnyKeyword));
+    const BlockRequest request{rows, constant("count", 1), given.argument + 1, call_.function.text};
+    const auto found = check_block(context_, request, given.object, given.span);
+    if (!found) return false;
+    Object all = given.object;
+    all.extent = found->range;
+    if (found->use != vm::BlockUse::Write) expressions_.record_read(all);
+    if (found->use != vm::BlockUse::Read) expressions_.record_write(all, given.span);
+    if (found->use == vm::BlockUse::Lasting) expressions_.record_take(all);
     return true;
   }
 
@@ -231,6 +223,7 @@ class SystemCallChecker {
   const stdlib::SystemFunction& function_;
   std::vector<std::string_view> kinds_;
   std::vector<checked::Argument> arguments_;
+  std::vector<Given> given_;
 };
 
 ExprPtr check_system_call(Context& context, ExpressionChecker& expressions, const ast::Call& call,

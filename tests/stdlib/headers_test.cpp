@@ -13,6 +13,7 @@
 
 #include "stdlib/language_tables.hpp"
 #include "stdlib/system_variables.hpp"
+#include "vm/isa/blocks.hpp"
 #include "vm/isa/isa.hpp"
 
 namespace ipos::stdlib {
@@ -162,6 +163,22 @@ TEST(Documentation, NamesEverything) {
     EXPECT_NE(page.find("\n| " + std::string(structure.name) + " | "), std::string::npos) << structure.name;
   for (const EmbeddedFile& file : headers::embedded_files())
     EXPECT_NE(page.find("`" + std::string(file.name) + "`"), std::string::npos) << file.name;
+}
+
+// The rows of the two tables of system values name the type of their block.
+TEST(Documentation, NamesTheTypesOfSystemValues) {
+  std::ifstream in(IPOS_STDLIB_DOC);
+  const std::string page{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  for (const vm::BlockInfo& row : vm::block_table()) {
+    if (row.opcode != vm::Opcode::GetSys && row.opcode != vm::Opcode::SetSys) continue;
+    if (row.keyword == vm::kAnyKeyword) continue;
+    const auto* word = vm::find_keyword(row.opcode == vm::Opcode::GetSys ? "getsys" : "setsys", row.keyword);
+    const size_t name = page.find("\n| " + std::string(word->constant));
+    ASSERT_NE(name, std::string::npos) << word->constant;
+    const std::string type =
+        row.type == "long" ? "long[" + std::to_string(row.variables) + "]" : std::string(row.type);
+    EXPECT_LT(page.find(type, name), page.find('\n', name + 1)) << word->constant << ": " << type;
+  }
 }
 
 TEST(SystemVariables, AreFoundByNumberAndBothNames) {

@@ -4,6 +4,8 @@
 
 #include <array>
 
+#include "vm/isa/blocks.hpp"
+
 namespace ipos::vm {
 namespace {
 
@@ -11,35 +13,6 @@ constexpr RuleInfo kRules[] = {
 #define RULE(code, name, meaning) {Rule::name, code < 10 ? "V0" #code : "V" #code, meaning},
 #include "vm/verify/rules.def"
 };
-
-// Variables the structure of a command covers, from its operand on.
-uint32_t structure_size(const Instruction& instruction) {
-  switch (instruction.opcode) {
-    case Opcode::Movlnk: return 7;  // 1053 1610 p. 47
-    case Opcode::VarInt: return 7;  // IPOSplus p. 347, see stdlib/structures.def
-    case Opcode::Scom:              // 1053 1610 p. 54 to 56
-      switch (instruction.operands[0]) {
-        case 1: return 6;
-        case 2: return 4;
-        default: return 3;
-      }
-    case Opcode::GetSys:  // stdlib/structures.def, by keyword
-      switch (instruction.operands[1]) {
-        case 5: return 3;   // GSPODATA3
-        case 7: return 2;   // analog inputs 1 and 2
-        case 8: return 12;  // GSCAM_EXT; GSCAM has 14, which of them it is stands in its first variable
-        default: return 1;
-      }
-    case Opcode::SetSys:
-      switch (instruction.operands[0]) {
-        case 6: return 3;   // SSPIDATA3
-        case 9:             // SSPOSRAMP
-        case 10: return 2;  // SSPOSSPEED
-        default: return 1;
-      }
-    default: return 1;
-  }
-}
 
 bool ends_flow(Flow flow) { return flow == Flow::Jump || flow == Flow::Return || flow == Flow::End; }
 
@@ -73,17 +46,12 @@ class Checker {
 
     const Instruction& instruction = decoded.instruction;
     const Coding& row = coding(instruction.opcode);
-    bool first_variable = true;
     for (size_t n = 0; n < row.operand_count; ++n) {
       const int32_t value = instruction.operands[n];
       switch (row.kinds[n]) {
         case OperandKind::Variable: {
           const auto number = static_cast<uint32_t>(value);
-          const uint32_t size = instruction.opcode == Opcode::Copy
-                                    ? static_cast<uint32_t>(instruction.operands[2])
-                                : first_variable ? structure_size(instruction)
-                                                 : 1;
-          first_variable = false;
+          const uint32_t size = block_size(instruction, n);
           if (number >= limits_.variables)
             report(Rule::VariableRange, at);
           else if (size > limits_.variables - number)

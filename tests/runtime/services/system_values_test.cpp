@@ -5,6 +5,8 @@
 
 #include "tests/harness/proves.hpp"
 #include "tests/runtime/services/program_rig.hpp"
+#include "vm/isa/blocks.hpp"
+#include "vm/isa/isa.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -46,6 +48,22 @@ M01 : GETSYS H0 = ACT.SPEED
   rig.drive.raise_fault(26);
   rig.tick(8);
   EXPECT_EQ(rig.h(5), 26);
+}
+
+// Each value takes as many variables as the table of blocks says, which the compiler and the verifier go by.
+TEST(GetSys, WritesItsBlockAndNoMore) {
+  for (const vm::KeywordInfo& word : vm::keyword_table()) {
+    if (word.set != "getsys" || word.text == "CAM") continue;
+    const auto rows = vm::blocks_of(vm::Opcode::GetSys, 0, word.value);
+    ASSERT_EQ(rows.size(), 1U);
+    const uint32_t first = 1024U - rows[0].variables;
+    ProgramRig rig("GETSYS H" + std::to_string(first) + " = " + std::string(word.text) + "\nEND\n");
+    constexpr int32_t kUntouched = 0x5A5A5A5A;
+    for (size_t n = 1000; n < 1024; ++n) rig.h(n) = kUntouched;
+    rig.run();
+    for (size_t n = 1000; n < 1024; ++n)
+      EXPECT_EQ(rig.h(n) != kUntouched, n >= first) << word.text << " H" << n;
+  }
 }
 
 TEST(GetSys, ProcessOutputData) {

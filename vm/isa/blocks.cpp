@@ -1,0 +1,47 @@
+// Rows of the table of blocks by command, operand and keyword.
+#include "vm/isa/blocks.hpp"
+
+#include <algorithm>
+
+namespace ipos::vm {
+namespace {
+
+constexpr BlockInfo kBlocks[] = {
+#define BLOCK(opcode, operand, keyword, variables, use, type) \
+  {Opcode::opcode, operand, keyword, variables, BlockUse::use, type},
+#include "vm/isa/blocks.def"
+};
+
+}  // namespace
+
+std::span<const BlockInfo> block_table() { return kBlocks; }
+
+std::span<const BlockInfo> blocks_of(Opcode opcode, size_t operand, int32_t keyword) {
+  const auto rows = [&](int32_t wanted) {
+    const auto holds = [&](const BlockInfo& row) {
+      return row.opcode == opcode && row.operand == operand && row.keyword == wanted;
+    };
+    const auto* first = std::find_if(std::begin(kBlocks), std::end(kBlocks), holds);
+    return std::span(first, std::find_if_not(first, std::end(kBlocks), holds));
+  };
+  const auto own = rows(keyword);
+  return own.empty() ? rows(kAnyKeyword) : own;
+}
+
+uint32_t block_size(const Instruction& instruction, size_t operand) {
+  const Coding& row = coding(instruction.opcode);
+  int32_t keyword = kAnyKeyword;
+  uint32_t count = 1;
+  for (size_t n = 0; n < row.operand_count; ++n) {
+    if (row.kinds[n] == OperandKind::Keyword) keyword = instruction.operands[n];
+    if (row.kinds[n] == OperandKind::Count) count = static_cast<uint32_t>(instruction.operands[n]);
+  }
+  const auto blocks = blocks_of(instruction.opcode, operand, keyword);
+  if (blocks.empty()) return 1;
+  uint32_t least = UINT32_MAX;
+  for (const BlockInfo& block : blocks)
+    least = std::min(least, block.variables == 0 ? count : uint32_t{block.variables});
+  return least;
+}
+
+}  // namespace ipos::vm
