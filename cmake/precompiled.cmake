@@ -17,6 +17,13 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   set_target_properties(ipos_precompiled_pic PROPERTIES POSITION_INDEPENDENT_CODE ON)
 endif()
 
+# Out of a precompiled header g++ 12 reports what it keeps quiet about in the header itself: inlined std::string and
+# replaced operators new and delete, in optimised code only.
+set(ipos_false_reports "")
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  set(ipos_false_reports $<$<CONFIG:Release>:-Wno-array-bounds$<SEMICOLON>-Wno-stringop-overflow$<SEMICOLON>-Wno-stringop-overread$<SEMICOLON>-Wno-mismatched-new-delete>)
+endif()
+
 function(ipos_precompiled target)
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
     set(kind plain)
@@ -24,5 +31,6 @@ function(ipos_precompiled target)
       set(kind pic)
     endif()
     target_precompile_headers(${target} REUSE_FROM ipos_precompiled_${kind})
+    target_compile_options(${target} PRIVATE ${ipos_false_reports})
   endif()
 endfunction()
