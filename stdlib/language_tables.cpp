@@ -20,6 +20,11 @@ constexpr Spelling kSpellings[] = {
 #include "stdlib/system_functions.def"
 };
 
+constexpr MemberUse kMemberUses[] = {
+#define MEMBER(structure, member, holds) {structure, member, holds},
+#include "stdlib/members.def"
+};
+
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
   while (true) {
@@ -62,6 +67,18 @@ const SystemFunction* find_system_function(std::string_view name) {
 const Structure* find_structure(std::string_view name) {
   for (const Structure& structure : structures())
     if (structure.name == name) return &structure;
+  return nullptr;
+}
+
+std::span<const MemberUse> member_uses() { return kMemberUses; }
+
+std::vector<std::string_view> MemberUse::constants() const {
+  return holds_number() ? std::vector<std::string_view>{} : split(holds, ' ');
+}
+
+const MemberUse* find_member_use(std::string_view structure, std::string_view member) {
+  for (const MemberUse& use : kMemberUses)
+    if (use.structure == structure && use.member == member) return &use;
   return nullptr;
 }
 

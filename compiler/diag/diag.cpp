@@ -12,6 +12,12 @@ constexpr DiagInfo kTable[] = {
 #include "compiler/diag/diagnostics.def"
 };
 
+constexpr bool kOnAtFirst[] = {
+#define DIAGNOSTIC(code, name, severity, flag, format) true,
+#define OPT_IN(code, name, severity, flag, format) false,
+#include "compiler/diag/diagnostics.def"
+};
+
 std::string fill_in(std::string_view format, const std::vector<std::string>& args) {
   std::string text;
   size_t next = 0;
@@ -46,7 +52,8 @@ bool WarningOptions::apply(std::string_view option) {
   const bool no = take_prefix(option, "no-");
   const bool error = take_prefix(option, "error=");
   const State state = error ? (no ? State::NeverError : State::AsError) : (no ? State::Off : State::On);
-  states_.resize(std::size(kTable), State::On);
+  if (states_.empty())
+    for (const bool on : kOnAtFirst) states_.push_back(on ? State::On : State::Off);
   bool found = false;
   for (const DiagInfo& row : kTable) {
     if (row.severity != Severity::Warning || (option != "all" && option != row.flag)) continue;
@@ -60,7 +67,9 @@ bool WarningOptions::apply(std::string_view option) {
 
 Severity WarningOptions::severity(const DiagInfo& row) const {
   if (row.severity != Severity::Warning) return row.severity;
-  const State state = states_.empty() ? State::On : states_[static_cast<size_t>(row.diag)];
+  const State state = !states_.empty()                                   ? states_[static_cast<size_t>(row.diag)]
+                      : kOnAtFirst[static_cast<size_t>(row.diag)] ? State::On
+                                                                  : State::Off;
   switch (state) {
     case State::Off: return Severity::Note;
     case State::AsError: return Severity::Error;

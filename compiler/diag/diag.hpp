@@ -44,7 +44,7 @@ struct Diagnostic {
 };
 
 // Which warnings are on and what they count as: -W<flag>, -Wno-<flag>, -Werror, -Werror=<flag>,
-// -Wno-error=<flag>, -Wall, -Wno-all. All are on at first; later options win over earlier ones.
+// -Wno-error=<flag>, -Wall, -Wno-all. All but the OPT_IN rows are on at first; later options win over earlier ones.
 class WarningOptions {
  public:
   // False when no warning has that flag. `option` is the text behind "-W".

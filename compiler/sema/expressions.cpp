@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/sema/decided.hpp"
 #include "compiler/sema/fold.hpp"
 #include "stdlib/language_tables.hpp"
 
@@ -58,6 +59,7 @@ ExprPtr ExpressionChecker::effect(const ast::Expr& expr) {
   }
   if (const auto* node = std::get_if<ast::Conditional>(&expr.node)) {
     ExprPtr when = condition(*node->condition);
+    check_decided(*node->condition, when, ConditionOf::Choice, context_);
     ExprPtr then = effect(*node->then);
     ExprPtr otherwise = effect(*node->otherwise);
     if (!when || !then || !otherwise) return nullptr;
@@ -168,6 +170,7 @@ ExprPtr ExpressionChecker::value_of(const ast::Binary& node, const ast::Expr& ex
 
 ExprPtr ExpressionChecker::value_of(const ast::Conditional& node, const ast::Expr& expr) {
   ExprPtr when = condition(*node.condition);
+  check_decided(*node.condition, when, ConditionOf::Choice, context_);
   ExprPtr then = value(*node.then);
   ExprPtr otherwise = value(*node.otherwise);
   if (!when || !then || !otherwise) return nullptr;

@@ -3,6 +3,7 @@
 
 #include "compiler/sema/expressions.hpp"
 #include "compiler/sema/fold.hpp"
+#include "stdlib/spelling.hpp"
 #include "stdlib/system_variables.hpp"
 
 namespace ipos::compiler {
@@ -102,7 +103,7 @@ std::optional<Object> ExpressionChecker::object_of(const ast::Member& node, cons
     std::vector<std::string_view> names;
     for (const StructMember& row : type->members)
       names.insert(names.end(), row.names.begin(), row.names.end());
-    if (const std::string_view best = nearest(node.member.text, names); !best.empty())
+    if (const std::string_view best = stdlib::nearest(node.member.text, names); !best.empty())
       message.notes.push_back({type->find(best)->span, fmt::format("did you mean '{}'?", best)});
     return std::nullopt;
   }

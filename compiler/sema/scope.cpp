@@ -4,32 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "stdlib/language_tables.hpp"
+#include "stdlib/spelling.hpp"
 #include "stdlib/system_variables.hpp"
 #include "vm/isa/isa.hpp"
 
 namespace ipos::compiler {
 namespace {
-
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-
-// Edit distance where two neighbours that changed places count as one step; a different case counts nothing.
-size_t distance(std::string_view a, std::string_view b) {
-  std::vector<size_t> before, last(b.size() + 1), row(b.size() + 1);
-  for (size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  const auto same = [&](size_t i, size_t j) { return lower(a[i - 1]) == lower(b[j - 1]); };
-  for (size_t i = 1; i <= a.size(); ++i) {
-    before = std::exchange(last, row);
-    row[0] = i;
-    for (size_t j = 1; j <= b.size(); ++j) {
-      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (same(i, j) ? 0 : 1)});
-      if (i > 1 && j > 1 && same(i, j - 1) && same(i - 1, j)) row[j] = std::min(row[j], before[j - 2] + 1);
-    }
-  }
-  return row[b.size()];
-}
 
 Span span_of(const Entity& entity) {
   return std::visit([](const auto* row) { return row->span; }, entity);
@@ -138,7 +120,7 @@ void Scope::explain_unknown(Diagnostic& diagnostic, std::string_view name, bool 
       candidates.push_back(row.compiler_name);
     for (const vm::KeywordInfo& row : vm::keyword_table()) candidates.push_back(row.constant);
   }
-  const std::string_view best = nearest(name, candidates);
+  const std::string_view best = stdlib::nearest(name, candidates);
   if (best.empty()) return;
   const Entity* entity = find(best);
   diagnostic.notes.push_back(
@@ -153,21 +135,6 @@ bool raw_number(std::string_view name, uint32_t& number) {
     number = std::min(number * 10 + static_cast<uint32_t>(c - '0'), kHugeSize);
   }
   return true;
-}
-
-std::string_view nearest(std::string_view name, const std::vector<std::string_view>& candidates) {
-  std::string_view best;
-  size_t least = std::min<size_t>(name.size() / 3, 3) + 1;
-  if (name.size() > 64) return best;
-  for (const std::string_view candidate : candidates) {
-    if (candidate.size() > name.size() + 3 || candidate.size() + 3 < name.size()) continue;
-    const size_t steps = distance(name, candidate);
-    if (steps < least) {
-      least = steps;
-      best = candidate;
-    }
-  }
-  return best;
 }
 
 }  // namespace ipos::compiler

@@ -98,7 +98,4 @@ class Scope {
 // The number of H0, H007, ...; kHugeSize when it is larger than any variable number. False: no such name.
 bool raw_number(std::string_view name, uint32_t& number);
 
-// The candidate most like a misspelt name; empty when none is near.
-std::string_view nearest(std::string_view name, const std::vector<std::string_view>& candidates);
-
 }  // namespace ipos::compiler

@@ -4,9 +4,12 @@
 #include "compiler/sema/call_graph.hpp"
 #include "compiler/sema/context.hpp"
 #include "compiler/sema/declarations.hpp"
+#include "compiler/sema/habits.hpp"
 #include "compiler/sema/map.hpp"
 #include "compiler/sema/sbus_check.hpp"
 #include "compiler/sema/statements.hpp"
+#include "compiler/sema/variable_use.hpp"
+#include "compiler/sema/writers.hpp"
 
 namespace ipos::compiler {
 namespace {
@@ -29,6 +32,7 @@ void check_bodies(const ast::Program& program, Context& context) {
   for (size_t n = 0; n < bodies.size(); ++n) {
     context.function = n;
     context.order = orders[n];
+    check_habits(*bodies[n]->body, context.sources, context.diagnostics);
     context.program.functions[n].body = StatementChecker(context).function_body(*bodies[n]->body);
   }
 }
@@ -53,6 +57,8 @@ std::optional<checked::Program> check(const ast::Program& program, const stdlib:
   if (diagnostics.has_errors()) return std::nullopt;
   context.program.main = (*function)->index;
   describe_variables(context);
+  check_variable_use(program, context);
+  check_writers(context);
   check_calls(context.program, unit, diagnostics);
   check_sbus_objects(context);
   if (diagnostics.has_errors()) return std::nullopt;

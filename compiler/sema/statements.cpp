@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+
+#include "compiler/sema/decided.hpp"
 
 namespace ipos::compiler {
 namespace {
@@ -41,8 +44,11 @@ StatementChecker::Result StatementChecker::check(const ast::Block& node, Span sp
 StatementChecker::Result StatementChecker::block(const ast::Block& node, Span span, bool reached) {
   std::vector<StmtPtr> body;
   bool reported = false;
+  const ast::Stmt* before = nullptr;
   for (const ast::Stmt* stmt : node.body) {
     if (is_one_of<ast::Case, ast::Default>(*stmt)) {
+      if (reached && before != nullptr && !is_one_of<ast::Case, ast::Default>(*before) && !meant(*before, *stmt))
+        context_.diagnostics.report(Diag::FallThrough, stmt->span);
       reached = true;
       reported = false;
     } else if (!reached && !reported && !is_one_of<ast::Empty, ast::Break>(*stmt)) {
@@ -53,12 +59,26 @@ StatementChecker::Result StatementChecker::block(const ast::Block& node, Span sp
     Result result = statement(*stmt);
     reached = reached && result.falls_through;
     body.push_back(result.stmt);
+    before = stmt;
   }
   return {make_stmt(span, checked::Block{context_.program.arena.list(body)}), reached};
 }
 
+// A comment between the two says "falls through", "fallthrough" or the like.
+bool StatementChecker::meant(const ast::Stmt& before, const ast::Stmt& label) const {
+  const SourceFile* file = context_.sources.file_of(label.span.begin);
+  if (file == nullptr || label.span.begin.in_macro() || before.span.end.in_macro()) return false;
+  const uint32_t begin = before.span.end.value - file->base;
+  const uint32_t end = label.span.begin.value - file->base;
+  if (begin > end || end > file->text.size()) return false;
+  std::string between = file->text.substr(begin, end - begin);
+  std::transform(between.begin(), between.end(), between.begin(), [](unsigned char c) { return std::tolower(c); });
+  return between.find("fall") != std::string::npos;
+}
+
 StatementChecker::Result StatementChecker::check(const ast::If& node, Span span) {
   checked::ExprPtr condition = expressions_.condition(*node.condition);
+  check_decided(*node.condition, condition, ConditionOf::Choice, context_);
   if (is_one_of<ast::Empty>(*node.then) && node.otherwise == nullptr)
     context_.diagnostics.report(Diag::EmptyIf, node.then->span);
   Result then = statement(*node.then);
@@ -70,6 +90,7 @@ StatementChecker::Result StatementChecker::check(const ast::If& node, Span span)
 
 StatementChecker::Result StatementChecker::check(const ast::While& node, Span span) {
   checked::ExprPtr condition = expressions_.condition(*node.condition);
+  check_decided(*node.condition, condition, ConditionOf::Loop, context_);
   frames_.push_back({});
   Result body = statement(*node.body);
   const bool falls_through = frames_.back().left_by_break || !always(condition);
@@ -81,6 +102,7 @@ StatementChecker::Result StatementChecker::check(const ast::DoWhile& node, Span 
   frames_.push_back({});
   Result body = statement(*node.body);
   checked::ExprPtr condition = expressions_.condition(*node.condition);
+  check_decided(*node.condition, condition, ConditionOf::LoopEnd, context_);
   const bool falls_through = frames_.back().left_by_break || !always(condition);
   frames_.pop_back();
   return {make_stmt(span, checked::DoWhile{body.stmt, condition}), falls_through};
@@ -89,7 +111,10 @@ StatementChecker::Result StatementChecker::check(const ast::DoWhile& node, Span 
 StatementChecker::Result StatementChecker::check(const ast::For& node, Span span) {
   checked::For out;
   if (node.init != nullptr) out.init = expressions_.effect(*node.init);
-  if (node.condition != nullptr) out.condition = expressions_.condition(*node.condition);
+  if (node.condition != nullptr) {
+    out.condition = expressions_.condition(*node.condition);
+    check_decided(*node.condition, out.condition, ConditionOf::Loop, context_);
+  }
   if (node.step != nullptr) out.step = expressions_.effect(*node.step);
   frames_.push_back({});
   out.body = statement(*node.body).stmt;

@@ -50,6 +50,7 @@ class StatementChecker {
   Result check(const ast::Return& node, Span span);
 
   Result block(const ast::Block& node, Span span, bool reached);
+  bool meant(const ast::Stmt& before, const ast::Stmt& label) const;
   Frame* innermost_switch();
 
   Context& context_;

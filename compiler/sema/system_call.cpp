@@ -6,6 +6,7 @@
 
 #include "compiler/sema/block_check.hpp"
 #include "compiler/sema/expressions.hpp"
+#include "compiler/sema/variable_use.hpp"
 #include "stdlib/language_tables.hpp"
 
 namespace ipos::compiler {
@@ -24,10 +25,10 @@ std::vector<std::string_view> split(std::string_view text) {
   return parts;
 }
 
-std::string constant_list(std::string_view set) {
-  std::string out;
+std::vector<std::string_view> constants_of(std::string_view set) {
+  std::vector<std::string_view> out;
   for (const vm::KeywordInfo& row : vm::keyword_table())
-    if (row.set == set) out += (out.empty() ? "" : ", ") + std::string(row.constant);
+    if (row.set == set) out.push_back(row.constant);
   return out;
 }
 
@@ -120,7 +121,7 @@ class SystemCallChecker {
       arguments_.emplace_back(value);
       return true;
     }
-    if (kind == "keyword") return keyword(n, known, expr.span);
+    if (kind == "keyword") return keyword(n, known, expr);
     if (known == nullptr) {
       context_.diagnostics.report(Diag::NotConstant, expr.span,
                                   {fmt::format("argument {} of '{}'", n + 1, call_.function.text)});
@@ -132,15 +133,18 @@ class SystemCallChecker {
     return true;
   }
 
-  bool keyword(size_t n, const int32_t* value, Span span) {
+  bool keyword(size_t n, const int32_t* value, const ast::Expr& expr) {
     const std::string_view set = keyword_set(n);
-    if (value != nullptr && vm::find_keyword(set, *value) != nullptr) {
+    if (const vm::KeywordInfo* row = value != nullptr ? vm::find_keyword(set, *value) : nullptr) {
+      if (std::holds_alternative<ast::Number>(expr.node))
+        check_family(context_, expr.span, constants_of(set), *value, fmt::format("'{}'", call_.function.text),
+                     std::string(row->constant));
       arguments_.emplace_back(*value);
       return true;
     }
     context_.diagnostics.report(
-        Diag::ArgumentKeyword, span,
-        {fmt::format("{}", n + 1), std::string(call_.function.text), constant_list(set)});
+        Diag::ArgumentKeyword, expr.span,
+        {fmt::format("{}", n + 1), std::string(call_.function.text), fmt::format("{}", fmt::join(constants_of(set), ", "))});
     return false;
   }
 

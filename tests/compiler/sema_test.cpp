@@ -123,6 +123,35 @@ std::vector<Mistake> mistakes() {
       {"W0215", "@#pragma initials 0 130\nmain() { }", "H130"},
       {"W0216", "main() { @H0 == 1; }"},
       {"W0217", "main() { H0 = H1 << @33; }", "shift by 1"},
+      {"W0250", "main() { if (H0 @& 6 == H1) H2 = 1; }", "'&' binds less than '=='"},
+      {"W0250", "main() { H2 = H0 == H1 @| H3; }", "(a == b) | c"},
+      {"W0250", "main() { H2 = H0 @<< H1 + 1; }", "a << (b + c)"},
+      {"W0250", "main() { if (@!H0 == H1) H2 = 1; }", "(!a) == b"},
+      {"W0250", "main() { if (@!H0 & 8) H2 = 1; }", "(!a) & b"},
+      {"W0251", "main() { if (H0 < H1 @< H2) H2 = 1; }", "&&"},
+      {"W0251", "main() { H3 = H0 == H1 @== H2; }", "&&"},
+      {"W0252", "main() { H0 @=+ 5; }", "is '+=' meant?"},
+      {"W0252", "main() { H0 @=- H1; }", "is '-=' meant?"},
+      {"W0252", "main() { H0 @=! H1; }", "is '!=' meant?"},
+      {"W0252", "main() { H0 @=* 5; }", "is '*=' meant?"},
+      {"W0253", "main() { if (@0) H0 = 1; }", "never"},
+      {"W0253", "main() { if (@H1 == 1 || 2) H0 = 1; }", "always"},
+      {"W0253", "main() { while (@H1 & 0) H0 = 1; }", "never"},
+      {"W0253", "main() { if (@(H0 & 6) == 1) H1 = 1; }", "never"},
+      {"W0253", "main() { if (@(H0 & 6) < 7) H1 = 1; }", "always"},
+      {"W0253", "main() { do H0++; while (@(H0 > 1) != 2); }", "always"},
+      {"W0253", "main() { H0 = @1 ? H1 : H2; }", "always"},
+      {"W0254", "main() { while (H0)@; { H1 = 1; } }", "while"},
+      {"W0254", "main() { for (H0 = 0; H0 < 3; H0++)@; { H1 = 1; } }", "for"},
+      {"W0255", "#include <const.h>\nmain() { _AxisStop(@GO_WAIT); }", "AS_HCTRL"},
+      {"W0255", "#include <const.h>\n#define MODE AS_RSTOP\nmain() { _GoAbs(@MODE, 4096); }", "GO_NOWAIT"},
+      {"W0255", "#include <const.h>\nMOVLNK m; main() { m.BusType = @ML_FT_1; _MoviLink(m); }", "ML_BT_S0"},
+      {"W0256", "SCREC r; long d; main() { d = 1; r.DPointer = @d; _SBusCommDef(3, r); }", "numof( d )"},
+      {"W0257", "long @a; main() { H0 = a; }", "is read"},
+      {"W0257", "long @v[3]; main() { H0 = v[H1]; }", "is read"},
+      {"W0257", "SSPOSRAMP @r; main() { _SetSys(9, r); }", "given to '_SetSys'"},
+      {"W0258", "long n; main() { _SetTask2(1, t); @n = n * 2 + 1; } t() { n = 5; }", "'t'"},
+      {"W0259", "SCREC r; long d; main() { d = 1; r.DPointer = @423; _SBusCommDef(3, r); }", "numof( d )"},
       {"W0218", "#pragma var 300 310\n@#pragma var 311 320\nmain() { }"},
   };
 }
@@ -155,7 +184,7 @@ INSTANTIATE_TEST_SUITE_P(All, LocatedMistakes, testing::ValuesIn(mistakes()));
 
 // Those with a test of their own below.
 TEST(Mistakes, EveryRowOfTheTableIsTested) {
-  std::set<std::string_view> tested{"E0207", "E0230", "E0233", "E0236"};
+  std::set<std::string_view> tested{"E0207", "E0230", "E0233", "E0236", "W0260", "W0261"};
   for (const Mistake& mistake : mistakes()) tested.insert(mistake.code);
   for (const DiagInfo& row : diagnostic_table())
     EXPECT_TRUE(row.code.substr(1, 2) != "02" || tested.contains(row.code)) << row.code << " " << row.name;
@@ -182,7 +211,7 @@ TEST(Mistakes, VariablesOfTwoRangesMeet) {
 
 TEST(Mistakes, RecursionThatLosesATemporary) {
   EXPECT_EQ((std::vector<std::string>{"W0209", "E0233"}),
-            codes("long a, b; f() { a = a * b + (f(), b); } main() { f(); }"));
+            codes("long a, b; f() { a = a * b + (f(), b); } main() { b = 2; f(); }"));
 }
 
 TEST(Mistakes, UnitWithoutPrograms) {
@@ -227,6 +256,22 @@ TEST(Correct, NoMessageFor) {
       "SCREC r; main() { r.ObjectNo = 0x1000000 | 1025; _SBusCommDef(3, r); }",
       "main() { for (H0 = 0, H1 = 5; H0 < H1; H0++, H1--) ; }",
       "main() { H0 ? f() : g(); } f() { H1++; } g() { H2++; }",
+      // What the warnings about habits leave alone.
+      "main() { if (H0 == 1 & H1 == 2 | !H2) H3 = 1; }",
+      "#include <iob.h>\nmain() { if (DI01 & DI02 == 0 & !DI03) H3 = 1; }",
+      "main() { if ((H0 & 6) == 4) H3 = 1; if ((H0 & 6) > 3) H3 = 2; if ((H0 < H1) == (H1 < H2)) H3 = 3; }",
+      "main() { H0=-5; H0 =-5; H0 = +5; H0 =~H1; H0 = !H1; H0 =*H1; }",
+      "#define WITH 0\nmain() { if (WITH) H0 = 1; if (WITH && H1) H0 = 2; while (1) { H2++; } }",
+      "main() { do { H0++; } while (0); for (;;) { H1++; } }",
+      "main() { while (H0); H1 = 1; for (H0 = 0; H0 < 5; H0++) ; }",
+      "#include <const.h>\n#define MODE GO_WAIT\nmain() { _GoAbs(MODE, 1); _GoRel(GO_NOWAIT, H0); _AxisStop(3); }",
+      "#include <const.h>\nMOVLNK m; MLDATA d; main() { m.Format = ML_CFT_PAR1; m.DPointer = numof(d); _MoviLink(m); "
+      "H0 = d.ReadPar; }",
+      "SCREC r; long p, d; main() { p = numof(d); r.DPointer = p; d = 1; _SBusCommDef(3, r); }",
+      "SCREC r; long a, b; main() { r.DPointer = numof(a); _SBusCommDef(3, r); H0 = b; }",
+      "initial long set; main() { H1 = set; }",
+      "long n; main() { _SetTask2(1, t); n = n + 1; n += H0 * 2; } t() { n = 5; }",
+      "long n; main() { n = n * 2 + 1; n = n % 8 + 3; }",
   };
   for (const char* source : sources) {
     const Compilation c = compile_text(source, "mdxb");
@@ -241,6 +286,33 @@ TEST(Warnings, AreSwitchedByTheirFlags) {
   CompileOptions strict;
   EXPECT_TRUE(strict.warnings.apply("error=unused-variable"));
   EXPECT_FALSE(compile("t.IPC", "", "long a; main() { }", strict).image);
+}
+
+std::vector<std::string> codes_with(const char* flag, const std::string& source) {
+  CompileOptions options;
+  EXPECT_TRUE(options.warnings.apply(flag));
+  std::vector<std::string> out;
+  for (const Diagnostic& one : compile("t.IPC", "", source, options).diagnostics.all())
+    out.emplace_back(info(one.diag).code);
+  return out;
+}
+
+TEST(Warnings, OfFallingThroughAreAskedFor) {
+  const std::string source = "main() { switch (H0) { case 1: case 2: H1 = 1; /*COMMENT*/ case 3: H2 = 1; break; default: ; } }";
+  EXPECT_EQ(std::vector<std::string>{}, codes(source));
+  EXPECT_EQ(std::vector<std::string>{"W0260"}, codes_with("fall-through", source));
+  EXPECT_EQ(std::vector<std::string>{"W0260"}, codes_with("all", source));
+  std::string meant = source;
+  meant.replace(meant.find("COMMENT"), 7, "Falls through");
+  EXPECT_EQ(std::vector<std::string>{}, codes_with("fall-through", meant));
+}
+
+TEST(Warnings, OfSeveralWritersAreAskedFor) {
+  const std::string source = "long n; main() { _SetTask2(1, t); set(); } t() { n = 5; } set() { n = 1; }";
+  EXPECT_EQ(std::vector<std::string>{}, codes(source));
+  EXPECT_EQ(std::vector<std::string>{"W0261"}, codes_with("several-writers", source));
+  EXPECT_EQ(std::vector<std::string>{},
+            codes_with("several-writers", "long n; main() { _SetTask2(1, t); set(); } t() { H0 = n; } set() { n = 1; }"));
 }
 
 TEST(Allocation, FollowsTheWatchWindow) {

@@ -80,6 +80,8 @@ Compiled compile_block(const Block& block) {
   if (block.options.starts_with("--unit ")) {
     options.unit = stdlib::find_unit(std::string_view(block.options).substr(7));
     EXPECT_NE(options.unit, nullptr) << block.options;
+  } else if (block.options.starts_with("-W")) {
+    EXPECT_TRUE(options.warnings.apply(std::string_view(block.options).substr(2))) << block.options;
   } else if (block.options == "encode as UTF-16") {
     text = utf16(text);
   } else {

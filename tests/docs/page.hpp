@@ -22,7 +22,8 @@ struct Compiled {
   bool good = false;               // no errors
 };
 
-// Compiles a block of ```ipc or ```ipa as MAIN.IPC or MAIN.ipa. Options: `--unit NAME`, `encode as UTF-16`.
+// Compiles a block of ```ipc or ```ipa as MAIN.IPC or MAIN.ipa. Options: `--unit NAME`, `-WNAME`, `encode as
+// UTF-16`.
 // The files level1.h to level100.h are at hand: each includes the next.
 Compiled compile_block(const Block& block);
 
