@@ -292,8 +292,8 @@ std::vector<std::string> codes_with(const char* flag, const std::string& source)
   CompileOptions options;
   EXPECT_TRUE(options.warnings.apply(flag));
   std::vector<std::string> out;
-  for (const Diagnostic& one : compile("t.IPC", "", source, options).diagnostics.all())
-    out.emplace_back(info(one.diag).code);
+  const Compilation c = compile("t.IPC", "", source, options);
+  for (const Diagnostic& one : c.diagnostics.all()) out.emplace_back(info(one.diag).code);
   return out;
 }
 
