@@ -149,7 +149,7 @@ std::vector<Mistake> mistakes() {
       {"W0256", "SCREC r; long d; main() { d = 1; r.DPointer = @d; _SBusCommDef(3, r); }", "numof( d )"},
       {"W0257", "long @a; main() { H0 = a; }", "is read"},
       {"W0257", "long @v[3]; main() { H0 = v[H1]; }", "is read"},
-      {"W0257", "SSPOSRAMP @r; main() { _SetSys(9, r); }", "given to '_SetSys'"},
+      {"W0257", "SSPOSRAMP @r; main() { _SetSys(9, r); }", "but never written"},
       {"W0258", "long n; main() { _SetTask2(1, t); @n = n * 2 + 1; } t() { n = 5; }", "'t'"},
       {"W0259", "SCREC r; long d; main() { d = 1; r.DPointer = @423; _SBusCommDef(3, r); }", "numof( d )"},
       {"W0218", "#pragma var 300 310\n@#pragma var 311 320\nmain() { }"},

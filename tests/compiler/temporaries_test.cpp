@@ -127,7 +127,7 @@ TEST(Temporaries, TheAdviceOfTheOverflowWorks) {
   // A chain of subtractions nested to the right holds one temporary a level.
   std::string nested = "b";
   for (int level = 0; level < 30; ++level) nested = "b - (c * " + nested + ")";
-  const std::string text = "long a, b, c; main() { a = a - (" + nested + "); }";
+  const std::string text = "long a, b, c; main() { b = 2; c = 3; a = a - (" + nested + "); }";
   const Compilation broken = compile_text(text);
   ASSERT_FALSE(broken.image);
   ASSERT_EQ(Diag::TemporaryOverflow, broken.diagnostics.all().at(0).diag);
