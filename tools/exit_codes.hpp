@@ -1,6 +1,8 @@
 // Exit codes of `ipos`, after sysexits where it has one.
 #pragma once
 
+#include <string_view>
+
 namespace ipos::tools {
 
 inline constexpr int kGood = 0;
@@ -11,5 +13,21 @@ inline constexpr int kNoInput = 66;       // the input cannot be read
 inline constexpr int kInternal = 70;      // a defect of ipos
 inline constexpr int kIoError = 74;       // output cannot be written
 inline constexpr int kInterrupted = 130;  // Ctrl-C
+
+// What they mean, for the manual page.
+struct ExitCode {
+  int code;
+  std::string_view meaning;
+};
+inline constexpr ExitCode kExitCodes[] = {
+    {kGood, "Good."},
+    {kFindings, "Findings: a test failed, a drive has a fault, an image was refused."},
+    {kUsage, "Wrong command line."},
+    {kBadInput, "The input has errors."},
+    {kNoInput, "The input cannot be read."},
+    {kInternal, "A defect of ipos."},
+    {kIoError, "Output cannot be written."},
+    {kInterrupted, "Ended by Ctrl-C."},
+};
 
 }  // namespace ipos::tools

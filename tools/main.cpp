@@ -27,15 +27,17 @@ constexpr Row kVerbs[] = {
     {"watch", ipos::tools::add_watch},     {"scan", ipos::tools::add_scan},
     {"explain", ipos::tools::add_explain}, {"fmt", ipos::tools::add_fmt},
     {"lsp", ipos::tools::add_lsp},         {"debug", ipos::tools::add_debug},
-    {"dap", ipos::tools::add_dap},
+    {"dap", ipos::tools::add_dap},         {"completion", ipos::tools::add_completion},
+    {"man", ipos::tools::add_man},
 };
 
-// All verbs cost a third of the start of a short run: only the one asked for is made, all for help and
-// mistakes.
+// All verbs cost a third of the start of a short run: only the one asked for is made. Help, mistakes and the
+// two that write about all verbs get them all.
 void add_verbs(ipos::tools::cli::Verb& program, std::string_view asked) {
   const auto* const one = std::find_if(std::begin(kVerbs), std::end(kVerbs),
                                        [asked](const Row& row) { return row.name == asked; });
-  if (one != std::end(kVerbs)) return one->add(program);
+  const bool about_all = asked == "completion" || asked == "man";
+  if (one != std::end(kVerbs) && !about_all) return one->add(program);
   for (const Row& row : kVerbs) row.add(program);
 }
 

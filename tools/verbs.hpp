@@ -21,6 +21,8 @@ void add_fmt(cli::Verb& program);
 void add_lsp(cli::Verb& program);
 void add_debug(cli::Verb& program);
 void add_dap(cli::Verb& program);
+void add_completion(cli::Verb& program);
+void add_man(cli::Verb& program);
 
 // -I, -D, -W, --unit and --diagnostics, for every verb that compiles.
 void add_compile_options(cli::Verb& verb, CompileFlags& flags);

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <span>
 
+#include "stdlib/spelling.hpp"
 #include "tools/exit_codes.hpp"
 
 namespace ipos::tools::cli {
@@ -65,6 +67,48 @@ void add_verb(CLI::App& app, const Verb& verb, int& exit_code) {
   if (verb.action()) app.callback([&verb, &exit_code] { exit_code = verb.action()(); });
 }
 
+// What a word that fits nowhere was probably meant to be: a verb, an option of the verb.
+std::string meant(const std::string& word, const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* verb : app.get_subcommands({})) names.push_back(verb->get_name());
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+  }
+  const std::vector<std::string_view> candidates(names.begin(), names.end());
+  return std::string(stdlib::nearest(word.substr(0, word.find('=')), candidates));
+}
+
+// The verb that was asked for, the innermost one.
+const CLI::App& innermost(const CLI::App& app) {
+  const auto verbs = app.get_subcommands();
+  return verbs.empty() ? app : innermost(*verbs.front());
+}
+
+// Says what is wrong with the words of the command line; `words` are those behind the program's name.
+void tell_mistake(const CLI::App& app, const CLI::ParseError& error, std::span<char* const> words) {
+  const CLI::App& verb = innermost(app);
+  const bool lacks_verb = !verb.get_subcommands({}).empty();
+  const size_t behind = &verb == &app ? 0 : 1;  // verbs of verbs stand one deep
+  std::string odd;
+  if (lacks_verb)
+    odd = words.size() > behind && words[behind][0] != '-' ? words[behind] : "";
+  else if (const auto left = verb.remaining(); !left.empty())
+    odd = left.front();
+  const std::string whole = behind == 0 ? app.get_name() : app.get_name() + " " + verb.get_name();
+  if (odd.empty()) {
+    fmt::print(stderr, "ipos: {}\n",
+               lacks_verb ? "which verb? '" + whole + " --help' lists them" : error.what());
+    return;
+  }
+  const std::string name = meant(odd, verb);
+  fmt::print(stderr, "ipos: '{}' is no {} of '{}'{}\n", odd,
+             lacks_verb             ? "verb"
+             : odd.starts_with("-") ? "option"
+                                    : "word",
+             whole, name.empty() ? "" : "; did you mean '" + name + "'?");
+}
+
 }  // namespace
 
 int run(const Verb& program, const std::string& version, int argc, char** argv) {
@@ -72,12 +116,16 @@ int run(const Verb& program, const std::string& version, int argc, char** argv) 
   CLI::App app{program.text(), program.name()};
   app.set_version_flag("--version", version);
   add_verb(app, program, exit_code);
+  if (argc == 1 || (argc == 2 && std::string_view(argv[1]) == "help")) {
+    fmt::print(argc == 1 ? stderr : stdout, "{}", app.help());
+    return argc == 1 ? kUsage : kGood;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success))
       return app.exit(error);  // --help, --version
-    fmt::print(stderr, "ipos: {}\n", error.what());
+    tell_mistake(app, error, std::span<char* const>(argv, static_cast<size_t>(argc)).subspan(1));
     const auto verbs = app.get_subcommands();
     fmt::print(stderr, "Try 'ipos {}--help'.\n", verbs.empty() ? "" : verbs.front()->get_name() + " ");
     return kUsage;

@@ -1,0 +1,110 @@
+// The command line as such: misspelt verbs and options, help, completion of shells, the manual page.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "tests/tools/command.hpp"
+
+namespace ipos::tests {
+namespace {
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(CommandLine, MisspeltWordsAreNamedWithWhatWasProbablyMeant) {
+  const struct {
+    std::vector<std::string> words;
+    std::string message;
+  } cases[] = {
+      {{"tset"}, "'tset' is no verb of 'ipos'; did you mean 'test'?"},
+      {{"xyzzy"}, "'xyzzy' is no verb of 'ipos'\n"},
+      {{"bus", "paln"}, "'paln' is no verb of 'ipos bus'; did you mean 'plan'?"},
+      {{"bus"}, "which verb? 'ipos bus --help' lists them"},
+      {{"run", "--fro", "x.toml"}, "'--fro' is no option of 'ipos run'; did you mean '--for'?"},
+      {{"fmt", "--chek=1"}, "did you mean '--check'?"},
+      {{"verify", "a.ipx", "b.ipx"}, "'b.ipx' is no word of 'ipos verify'"},
+      {{"run", "x.toml", "--engine", "fsat"}, "--engine: fsat not in {reference,fast,native}"},
+      {{"run", "x.toml", "--speed", "0"}, "0 is not in 1 to 1000000"},
+      {{"run", "x.toml", "--speed", "-1"}, "-1 is not in 1 to 1000000"},
+      {{"bus", "monitor", "x", "--count", "0"}, "0 is not 1 or more"},
+      {{"run"}, "FILE is required"},
+  };
+  for (const auto& one : cases) {
+    const CommandResult result = run_ipos(one.words);
+    EXPECT_EQ(result.exit_code, 64) << one.words.front();
+    EXPECT_EQ(result.out, "") << one.words.front();
+    EXPECT_TRUE(contains(result.err, one.message)) << result.err;
+  }
+}
+
+TEST(CommandLine, HelpComesWithAndWithoutAsking) {
+  const CommandResult asked = run_ipos({"help"});
+  EXPECT_EQ(asked.exit_code, 0);
+  EXPECT_TRUE(contains(asked.out, "Subcommands:")) << asked.out;
+  const CommandResult bare = run_ipos({});
+  EXPECT_EQ(bare.exit_code, 64);
+  EXPECT_EQ(bare.err, asked.out);
+}
+
+// All names that `ipos VERB --help` prints at the beginning of a line.
+std::set<std::string> verbs_in_help() {
+  std::istringstream lines(run_ipos({"--help"}).out);
+  std::set<std::string> verbs;
+  bool inside = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (line == "Subcommands:")
+      inside = true;
+    else if (line.empty())
+      inside = false;
+    else if (inside && line[2] != ' ')
+      verbs.insert(line.substr(2, line.find(' ', 2) - 2));
+  }
+  return verbs;
+}
+
+TEST(CommandLine, TheManualPageAndTheCompletionsHaveEveryVerb) {
+  const std::set<std::string> verbs = verbs_in_help();
+  EXPECT_GE(verbs.size(), 17U);
+  const std::string page = run_ipos({"man"}).out;
+  const std::string bash = run_ipos({"completion", "bash"}).out;
+  const std::string zsh = run_ipos({"completion", "zsh"}).out;
+  const std::string fish = run_ipos({"completion", "fish"}).out;
+  for (const std::string& verb : verbs) {
+    EXPECT_TRUE(contains(page, "\n.SS ipos " + verb + "\n")) << verb;
+    EXPECT_TRUE(contains(bash, "    '" + verb + "') words=")) << verb;
+    EXPECT_TRUE(contains(zsh, "'" + verb + ":")) << verb;
+    EXPECT_TRUE(contains(fish, " -f -a " + verb + " -d ")) << verb;
+  }
+}
+
+// What bash offers behind the words of a line; the last one is being typed.
+std::string offered(const std::filesystem::path& script, const std::string& words) {
+  const std::string command = "bash -c 'source " + script.string() + "; COMP_WORDS=(" + words +
+                              "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _ipos; echo \"${COMPREPLY[*]}\"'";
+  FILE* pipe = popen(command.c_str(), "r");
+  std::string text;
+  for (int c = 0; pipe != nullptr && (c = fgetc(pipe)) != EOF;) text += static_cast<char>(c);
+  if (pipe != nullptr) pclose(pipe);
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  return text;
+}
+
+TEST(CommandLine, BashCompletesVerbsOptionsAndClosedLists) {
+  const auto script = std::filesystem::path(testing::TempDir()) / "ipos.bash";
+  std::ofstream(script) << run_ipos({"completion", "bash"}).out;
+  EXPECT_EQ(offered(script, "ipos bui"), "build");
+  EXPECT_EQ(offered(script, "ipos bus \"\""), "plan decode monitor load replay dbc --help");
+  EXPECT_EQ(offered(script, "ipos bus p"), "plan");
+  EXPECT_EQ(offered(script, "ipos run --engi"), "--engine");
+  EXPECT_EQ(offered(script, "ipos run --engine \"\""), "reference fast native");
+  EXPECT_EQ(offered(script, "ipos run --engine f"), "fast");
+  EXPECT_EQ(offered(script, "ipos run plant"), "");  // files, by bash itself
+}
+
+}  // namespace
+}  // namespace ipos::tests
