@@ -1,11 +1,16 @@
-# ipos_embed(TARGET NAMESPACE FILE...): compiles text files into the program. Each file becomes an element of
+# ipos_embed(TARGET NAMESPACE [BELOW FOLDER] FILE...): compiles text files into the program, under their names, or
+# with BELOW under their paths from that folder on. Each file becomes an element of
 # `std::span<const EmbeddedFile> NAMESPACE::embedded_files()`; declare that function in a header of yours.
 # Files are read as hex, so no byte of them means anything to CMake or to the compiler.
 function(ipos_embed target namespace)
+  cmake_parse_arguments(EMBED "" "BELOW" "" ${ARGN})
   set(entries "")
-  foreach(file ${ARGN})
+  foreach(file ${EMBED_UNPARSED_ARGUMENTS})
     get_filename_component(path ${file} ABSOLUTE)
     get_filename_component(name ${file} NAME)
+    if(EMBED_BELOW)
+      file(RELATIVE_PATH name ${EMBED_BELOW} ${path})
+    endif()
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${path})
     file(READ ${path} hex HEX)
     file(SIZE ${path} size)

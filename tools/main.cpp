@@ -28,7 +28,7 @@ constexpr Row kVerbs[] = {
     {"explain", ipos::tools::add_explain}, {"fmt", ipos::tools::add_fmt},
     {"lsp", ipos::tools::add_lsp},         {"debug", ipos::tools::add_debug},
     {"dap", ipos::tools::add_dap},         {"completion", ipos::tools::add_completion},
-    {"man", ipos::tools::add_man},
+    {"man", ipos::tools::add_man},         {"new", ipos::tools::add_new},
 };
 
 // All verbs cost a third of the start of a short run: only the one asked for is made. Help, mistakes and the

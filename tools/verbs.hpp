@@ -23,6 +23,7 @@ void add_debug(cli::Verb& program);
 void add_dap(cli::Verb& program);
 void add_completion(cli::Verb& program);
 void add_man(cli::Verb& program);
+void add_new(cli::Verb& program);
 
 // -I, -D, -W, --unit and --diagnostics, for every verb that compiles.
 void add_compile_options(cli::Verb& verb, CompileFlags& flags);

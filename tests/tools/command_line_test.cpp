@@ -106,5 +106,52 @@ TEST(CommandLine, BashCompletesVerbsOptionsAndClosedLists) {
   EXPECT_EQ(offered(script, "ipos run plant"), "");  // files, by bash itself
 }
 
+// A folder that is not there yet.
+std::filesystem::path fresh(const std::string& name) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / name;
+  std::filesystem::remove_all(folder);
+  return folder;
+}
+
+TEST(New, TheProjectItMakesPassesItsTest) {
+  const auto folder = fresh("ipos_new");
+  const CommandResult made = run_ipos({"new", folder.string()});
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  for (const char* file : {"line.toml", "line.test.toml", "LEADER.IPC", "FOLLOWER.IPC", "README.md",
+                           ".github/workflows/ipos.yml", ".gitlab-ci.yml"}) {
+    EXPECT_TRUE(std::filesystem::is_regular_file(folder / file)) << file;
+    EXPECT_TRUE(contains(made.out, file)) << file;
+  }
+  const CommandResult tested = run_ipos({"test", folder.string()});
+  EXPECT_EQ(tested.exit_code, 0) << tested.out;
+  EXPECT_TRUE(contains(tested.out, "1 test, 1 passed")) << tested.out;
+  EXPECT_EQ(run_ipos({"fmt", "--check", folder.string()}).exit_code, 0);
+  EXPECT_EQ(run_ipos({"bus", "plan", (folder / "line.toml").string()}).exit_code, 0);
+}
+
+TEST(New, WhatIsThereAlreadyIsNotTouched) {
+  const auto folder = fresh("ipos_new_again");
+  std::filesystem::create_directory(folder);
+  std::ofstream(folder / "line.toml") << "mine";
+  const CommandResult result = run_ipos({"new", folder.string()});
+  EXPECT_EQ(result.exit_code, 74);
+  EXPECT_TRUE(contains(result.err, "line.toml: is there already; nothing was written")) << result.err;
+  std::ifstream kept(folder / "line.toml");
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(kept), {}), "mine");
+  EXPECT_FALSE(std::filesystem::exists(folder / "LEADER.IPC"));
+  const CommandResult file = run_ipos({"new", (folder / "line.toml").string()});
+  EXPECT_EQ(file.exit_code, 74);
+  EXPECT_TRUE(contains(file.err, "is no folder")) << file.err;
+}
+
+TEST(New, CopiesAnExample) {
+  const auto folder = fresh("ipos_new_hoist");
+  EXPECT_EQ(run_ipos({"new", folder.string(), "--from", "hoist"}).exit_code, 0);
+  EXPECT_EQ(run_ipos({"test", folder.string()}).exit_code, 0);
+  const CommandResult unknown = run_ipos({"new", folder.string(), "--from", "hiost"});
+  EXPECT_EQ(unknown.exit_code, 64);
+  EXPECT_TRUE(contains(unknown.err, "there is no example 'hiost', did you mean 'hoist'?")) << unknown.err;
+}
+
 }  // namespace
 }  // namespace ipos::tests
