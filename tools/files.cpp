@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 
 #include "tools/failure.hpp"
@@ -46,6 +47,15 @@ std::string read_file(const std::string& path) {
   auto text = try_read_file(path);
   if (!text) throw Failure(kNoInput, fmt::format("{}: {}", path, std::strerror(errno)));
   return *std::move(text);
+}
+
+std::vector<std::string> list_files(const std::string& folder) {
+  std::vector<std::string> names;
+  std::error_code trouble;
+  std::filesystem::directory_iterator entry(folder.empty() ? "." : folder, trouble);
+  for (; !trouble && entry != std::filesystem::directory_iterator(); entry.increment(trouble))
+    names.push_back(entry->path().filename().string());
+  return names;
 }
 
 void write_file(const std::string& path, std::span<const uint8_t> bytes) {

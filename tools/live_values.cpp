@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "runtime/plant/variable_names.hpp"
 #include "tools/failure.hpp"
 #include "tools/param_columns.hpp"
 #include "tools/parameter_set.hpp"
@@ -19,16 +20,13 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kHex = ":hex";
 
-// The symbol itself, an element of an array, or all members of a structure; false when there is none.
-bool add_symbols(const vm::Image& image, const std::string& name, bool hex, std::vector<LiveItem>& items) {
-  const size_t before = items.size();
-  for (const vm::Symbol& symbol : image.symbols)
-    for (uint16_t n = 0; n < symbol.count; ++n) {
-      const std::string element = symbol.count == 1 ? symbol.name : fmt::format("{}[{}]", symbol.name, n);
-      if (symbol.name != name && element != name && !symbol.name.starts_with(name + ".")) continue;
-      items.push_back({element, {static_cast<uint16_t>(kFirstVariable + symbol.variable + n), nullptr}, hex});
-    }
-  return items.size() != before;
+// What the name stands for in the program or the unit; false when there is none.
+bool add_variables(std::span<const vm::Symbol> symbols, const stdlib::UnitType& unit, const std::string& name,
+                   bool hex, std::vector<LiveItem>& items) {
+  const auto found = runtime::named_variables(symbols, unit, name);
+  for (const runtime::NamedVariable& row : found)
+    items.push_back({row.name, {static_cast<uint16_t>(kFirstVariable + row.number), nullptr}, hex});
+  return !found.empty();
 }
 
 std::string shown(const LiveItem& item, int32_t value) {
@@ -51,11 +49,12 @@ std::vector<LiveItem> live_items(const stdlib::UnitType& unit, const std::vector
       flags.unit = unit.name;
       auto known = programs.find(file);
       if (known == programs.end()) known = programs.emplace(file, load_program(file, flags)).first;
-      if (!add_symbols(known->second, name.substr(0, at), hex, items))
+      if (!add_variables(known->second.symbols, unit, name.substr(0, at), hex, items))
         throw Failure(kBadInput, fmt::format("{} has no variable '{}'", file, name.substr(0, at)));
       continue;
     }
-    if (image != nullptr && add_symbols(*image, name, hex, items)) continue;
+    const auto symbols = image != nullptr ? std::span<const vm::Symbol>(image->symbols) : std::span<const vm::Symbol>();
+    if (add_variables(symbols, unit, name, hex, items)) continue;
     const Target target = find_target(unit, name);
     items.push_back({name_of(stdlib::parameter_table(unit), target), target, hex});
   }

@@ -37,6 +37,7 @@ compiler::CompileOptions options_of(const CompileFlags& flags) {
   options.include_dirs = flags.include_dirs;
   options.defines = flags.defines;
   options.read_file = try_read_file;
+  options.list_files = list_files;
   options.unit = unit_of(flags);
   for (const std::string& warning : flags.warnings)
     if (!options.warnings.apply(warning))

@@ -9,6 +9,7 @@
 #include "runtime/bus/log/candump.hpp"
 #include "runtime/bus/log/serial_log.hpp"
 #include "runtime/drive/indices.hpp"
+#include "runtime/plant/signal.hpp"
 #include "tools/failure.hpp"
 
 namespace ipos::tools {
@@ -79,6 +80,8 @@ std::string signals_of(const Station& station) {
   for (const NamedSignal& row : kNamedSignals)
     if (has(station, row)) names.emplace_back(row.name);
   if (find_parameter(station, "000") != nullptr) names.emplace_back("parameters as P000");
+  names.emplace_back("inputs as DI00");
+  names.emplace_back("outputs as DO01");
   if (station.image() != nullptr) {
     names.push_back(fmt::format("variables H0 to H{}", station.config().unit->variables - 1));
     for (const vm::Symbol& symbol : station.image()->symbols) names.push_back(symbol.name);
@@ -173,6 +176,16 @@ bool Recorder::add(Station& station, std::string_view name) {
   }
   if (const auto variable = station.find_variable(name)) {
     add(std::move(signal), [&station, number = *variable] { return station.variable(number); });
+    return true;
+  }
+  if (const int line = runtime::parse_input(name); line >= 0) {
+    add(std::move(signal), [&station, line = static_cast<size_t>(line)] {
+      return std::as_const(station).inputs().line(line).value();
+    });
+    return true;
+  }
+  if (const int bit = runtime::parse_output(name); bit >= 0) {
+    add(std::move(signal), [&station, bit] { return station.outputs() >> bit & 1; });
     return true;
   }
   return false;

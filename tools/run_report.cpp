@@ -40,10 +40,12 @@ std::string text_report(runtime::Plant& plant, const WatchChoice& watch) {
   std::string text;
   if (watch.on) {
     for (const auto& station : plant.stations()) {
-      if (station->image() == nullptr) continue;
+      const std::vector<WatchRow> rows = watch_rows(*station, watch.names);
+      // Names that were asked for may be those of other stations.
+      if (station->image() == nullptr || (rows.empty() && !watch.names.empty())) continue;
       text += fmt::format("{} ({}), {}\n", station->config().name, station->config().unit->title,
                           station->config().program);
-      text += watch_window(watch_rows(*station, watch.names)) + "\n";
+      text += watch_window(rows) + "\n";
     }
   }
   for (const auto& line : plant.lines()) {

@@ -5,18 +5,20 @@
 
 #include <algorithm>
 
+#include "runtime/plant/variable_names.hpp"
+
 namespace ipos::tools {
 namespace {
 
-// One row a variable: an array is shown as name[0], name[1], ...
-void add_symbol(const runtime::Station& station, const vm::Symbol& symbol, std::vector<WatchRow>& rows) {
+void add(const runtime::Station& station, const std::vector<runtime::NamedVariable>& variables,
+         std::vector<WatchRow>& rows) {
   const auto& hex = station.config().hex;
-  const bool in_hex = std::find(hex.begin(), hex.end(), symbol.name) != hex.end();
-  for (uint32_t n = 0; n < symbol.count; ++n) {
-    const uint32_t index = symbol.variable + n;
-    const std::string name = symbol.count == 1 ? symbol.name : fmt::format("{}[{}]", symbol.name, n);
-    rows.push_back({name, index, station.variable(index), in_hex});
-  }
+  const auto in_hex = [&hex](const std::string& name) {
+    return !name.empty() && std::find(hex.begin(), hex.end(), name) != hex.end();
+  };
+  for (const runtime::NamedVariable& row : variables)
+    rows.push_back(
+        {row.name, row.number, station.variable(row.number), in_hex(row.symbol) || in_hex(row.name)});
 }
 
 }  // namespace
@@ -25,18 +27,10 @@ std::vector<WatchRow> watch_rows(const runtime::Station& station, const std::vec
   std::vector<WatchRow> rows;
   if (station.image() == nullptr) return rows;
   const auto& symbols = station.image()->symbols;
-  if (names.empty()) {
-    for (const vm::Symbol& symbol : symbols) add_symbol(station, symbol, rows);
-    return rows;
-  }
-  for (const std::string& name : names) {
-    const size_t before = rows.size();
-    for (const vm::Symbol& symbol : symbols)
-      if (symbol.name == name || symbol.name.starts_with(name + ".")) add_symbol(station, symbol, rows);
-    if (rows.size() != before) continue;
-    if (const auto number = station.find_variable(name))
-      rows.push_back({name, *number, station.variable(*number), false});
-  }
+  if (names.empty())
+    for (const vm::Symbol& symbol : symbols) add(station, runtime::elements_of(symbol), rows);
+  for (const std::string& name : names)
+    add(station, runtime::named_variables(symbols, *station.config().unit, name), rows);
   return rows;
 }
 

@@ -15,8 +15,8 @@ struct WatchRow {
   bool hex;  // the plant file shows it in hexadecimal
 };
 
-// All named variables in rising order of number, or those asked for: "TrCycl" gives all members of a
-// structure. A name the station does not know is left out.
+// All named variables in rising order of number, or those asked for, as variable_names.hpp reads them: "TrCycl"
+// gives all members of a structure. A name the station does not know is left out.
 std::vector<WatchRow> watch_rows(const runtime::Station& station, const std::vector<std::string>& names);
 
 // "H420 TrCycl.ObjectNo   1024", hexadecimal "H426 lTrDataLow        11223344 h".

@@ -30,6 +30,7 @@ Compilation compile(const std::string& name, const std::string& path, std::strin
   preprocess.defines = options.defines;
   preprocess.headers = stdlib::headers::embedded_files();
   preprocess.read_file = options.read_file;
+  preprocess.list_files = options.list_files;
 
   const SourceFile& main = out.sources->add(name, path, std::move(text));
   const ast::Program tree = parse_program(*out.sources, main, preprocess, out.diagnostics);

@@ -19,6 +19,7 @@ struct CompileOptions {
   std::vector<std::string> defines;       // -D NAME or NAME=TEXT
   // Text of a file, nothing when it cannot be read. Empty: only the built-in headers exist.
   std::function<std::optional<std::string>(const std::string& path)> read_file;
+  std::function<std::vector<std::string>(const std::string& folder)> list_files;  // for hints; may be empty
   WarningOptions warnings;
   // Null: mdxb for a source that includes constb.h or iob.h, else md60a.
   const stdlib::UnitType* unit = nullptr;

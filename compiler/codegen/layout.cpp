@@ -54,10 +54,13 @@ class Layout {
     }
     for (uint32_t n = range().low; n < range().low + count; ++n) {
       if (!program_.named.test(n)) continue;
-      std::string owner = fmt::format("H{}", n);
-      for (const checked::MapEntry& row : program_.map)
-        if (n >= row.number && n < row.number + row.count) owner = row.name;
-      diagnostics_.report(Diag::TemporaryTaken, main, {fmt::format("{}", n), owner, advice()});
+      const auto raw = program_.raw_names.find(n);
+      std::string use = "here by number";
+      if (raw == program_.raw_names.end())
+        for (const checked::MapEntry& row : program_.map)
+          if (n >= row.number && n < row.number + row.count) use = fmt::format("by '{}'", row.name);
+      diagnostics_.report(Diag::TemporaryTaken, raw == program_.raw_names.end() ? main : raw->second,
+                          {fmt::format("{}", n), use, advice()});
       return;
     }
   }

@@ -18,12 +18,15 @@ constexpr bool kOnAtFirst[] = {
 #include "compiler/diag/diagnostics.def"
 };
 
+constexpr size_t kLongestArgument = 1000;  // ours: no name or list a person reads is longer
+
 std::string fill_in(std::string_view format, const std::vector<std::string>& args) {
   std::string text;
   size_t next = 0;
   for (size_t at = 0; at < format.size(); ++at) {
     if (format.substr(at, 2) == "{}" && next < args.size()) {
-      text += args[next++];
+      const std::string& arg = args[next++];
+      text += arg.size() <= kLongestArgument ? arg : arg.substr(0, kLongestArgument) + "...";
       ++at;
     } else {
       text += format[at];

@@ -3,23 +3,12 @@
 
 #include <fmt/format.h>
 
+#include "compiler/parse/foreign_words.hpp"
+#include "compiler/parse/indentation.hpp"
 #include "compiler/parse/token_feed.hpp"
 #include "stdlib/language_tables.hpp"
 
 namespace ipos::compiler {
-namespace {
-
-bool misses_closing_brace(const std::vector<Token>& tokens) {
-  int level = 0;
-  for (const Token& token : tokens) {
-    if (token.kind == TokenKind::LeftBrace) ++level;
-    if (token.kind == TokenKind::RightBrace) --level;
-  }
-  return level > 0;
-}
-
-}  // namespace
-
 ast::Program parse_program(SourceMap& map, const SourceFile& main, const PreprocessOptions& options,
                            Diagnostics& diagnostics) {
   const PreprocessedText text = preprocess(map, main, options, diagnostics);
@@ -30,8 +19,9 @@ ast::Program parse_tokens(const SourceMap& map, const PreprocessedText& text, Di
   ast::Program program;
   TypeNames types;
   for (const stdlib::Structure& structure : stdlib::structures()) types.emplace(structure.name);
-  Builder build(program, types, map, diagnostics, misses_closing_brace(text.tokens));
-  TokenFeed feed(text.tokens, types, diagnostics);
+  const std::vector<Token> tokens = without_foreign_words(text.tokens, diagnostics);
+  Builder build(program, types, map, diagnostics, misses_closing_brace(tokens));
+  TokenFeed feed(tokens, types, diagnostics, unclosed_brace(tokens, map));
   // The result says no more than the diagnostics do.
   static_cast<void>(Parser(feed, build).parse());
   return program;

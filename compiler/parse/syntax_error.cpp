@@ -82,7 +82,12 @@ void TokenFeed::explain(const Expected& expected) {
     place = {before(1).span.end, before(1).span.end};
   Diagnostic& error = diagnostics_.report(Diag::ExpectedBefore, place, {words, found_words()});
   if (words == "'}'" && !open_.empty())
-    error.notes.push_back({tokens_[open_.back().token].span, "to match this '{'"});
+    error.notes.push_back(open_brace("to match this '{'"));
+}
+
+Note TokenFeed::open_brace(const char* text) const {
+  if (unclosed_) return {tokens_[*unclosed_].span, "by the indentation this '{' is the one that is not closed"};
+  return {tokens_[open_.back().token].span, text};
 }
 
 void TokenFeed::explain_directive() {
@@ -115,7 +120,7 @@ bool TokenFeed::explain_inside(const Expected& expected) {
       before(2).kind == TokenKind::LeftParen && before(3).kind == TokenKind::Name) {
     if (!brace_reported_)
       diagnostics_.report(Diag::NestedFunction, before(3).span, {std::string(before(3).text)})
-          .notes.push_back({tokens_[open_.back().token].span, "this '{' is still open"});
+          .notes.push_back(open_brace("this '{' is still open"));
     brace_reported_ = true;
     return true;
   }

@@ -19,9 +19,10 @@ struct Symbol {
 
 class TokenFeed {
  public:
-  // `tokens` ends with End.
-  TokenFeed(std::span<const Token> tokens, const TypeNames& types, Diagnostics& diagnostics)
-      : tokens_(tokens), types_(types), diagnostics_(diagnostics) {}
+  // `tokens` ends with End. `unclosed`: the '{' whose '}' seems to be missing.
+  TokenFeed(std::span<const Token> tokens, const TypeNames& types, Diagnostics& diagnostics,
+            std::optional<size_t> unclosed)
+      : tokens_(tokens), types_(types), diagnostics_(diagnostics), unclosed_(unclosed) {}
 
   // The parser's next symbol; behind an error, Sync or SyncBlock from the place to go on.
   Symbol next();
@@ -62,6 +63,7 @@ class TokenFeed {
   void explain_directive();
   std::string expected_words(const Expected& expected) const;
   std::string found_words() const;
+  Note open_brace(const char* text) const;
   const Token& found() const { return tokens_[last_]; }
   const Token& before(size_t distance) const;
 
@@ -82,6 +84,7 @@ class TokenFeed {
   std::span<const Token> tokens_;
   const TypeNames& types_;
   Diagnostics& diagnostics_;
+  std::optional<size_t> unclosed_;
   std::vector<Open> open_;
   size_t next_ = 0;                  // token to deliver next
   size_t last_ = SIZE_MAX;           // token delivered last, not yet known to be accepted

@@ -3,6 +3,7 @@
 
 #include "compiler/preprocess/include.hpp"
 #include "compiler/preprocess/preprocessor.hpp"
+#include "stdlib/spelling.hpp"
 
 namespace ipos::compiler {
 namespace {
@@ -38,7 +39,13 @@ void Preprocessor::directive(const Token& hash) {
   const auto* row = std::find_if(std::begin(kRows), std::end(kRows),
                                  [&word](const Row& candidate) { return candidate.word == word.text; });
   if (!live() || row == std::end(kRows)) {
-    if (live()) diagnostics_.report(Diag::UnknownDirective, word.span, {std::string(word.text)});
+    if (live()) {
+      Diagnostic& message = diagnostics_.report(Diag::UnknownDirective, word.span, {std::string(word.text)});
+      std::vector<std::string_view> known = {"if", "ifdef", "ifndef", "elif", "else", "endif"};
+      for (const Row& candidate : kRows) known.push_back(candidate.word);
+      const std::string_view best = stdlib::nearest(word.text, known);
+      if (!best.empty()) message.notes.push_back({{}, "did you mean '#" + std::string(best) + "'?"});
+    }
     read_line();
     return;
   }
@@ -115,8 +122,10 @@ void Preprocessor::include(const Token& directive) {
   if (!found) {
     std::string places;
     for (const std::string& place : searched) places += (places.empty() ? "" : ", ") + place;
-    diagnostics_.report(Diag::IncludeNotFound, header.span, {name})
-        .notes.push_back({{}, "searched: " + places});
+    Diagnostic& message = diagnostics_.report(Diag::IncludeNotFound, header.span, {name});
+    const std::string similar = similar_include(name, *files_.back().file, main_, options_);
+    if (!similar.empty()) message.notes.push_back({{}, "did you mean '" + similar + "'?"});
+    message.notes.push_back({{}, "searched: " + places});
     result_.complete = false;
     return;
   }

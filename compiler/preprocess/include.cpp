@@ -2,7 +2,8 @@
 #include "compiler/preprocess/include.hpp"
 
 #include <algorithm>
-#include <cctype>
+
+#include "stdlib/spelling.hpp"
 
 namespace ipos::compiler {
 namespace {
@@ -19,18 +20,9 @@ bool is_absolute(const std::string& path) {
 // With its slash; empty for a file without a directory.
 std::string directory_of(const SourceFile& file) { return file.path.substr(0, file.path.rfind('/') + 1); }
 
-// The built-in headers come from a file system that does not tell cases apart (ours).
-bool same_ignoring_case(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
-}
-
-}  // namespace
-
-std::optional<FoundFile> find_include(const std::string& name, const SourceFile& includer,
-                                      const SourceFile& main, const PreprocessOptions& options,
-                                      std::vector<std::string>& searched) {
-  const std::string plain = with_slashes(name);
+// Where a file is looked for, each with its slash; "" is the current directory.
+std::vector<std::string> directories_for(const std::string& plain, const SourceFile& includer, const SourceFile& main,
+                                         const PreprocessOptions& options) {
   std::vector<std::string> directories;
   const auto add = [&directories](const std::string& directory) {
     if (std::find(directories.begin(), directories.end(), directory) == directories.end())
@@ -44,7 +36,16 @@ std::optional<FoundFile> find_include(const std::string& name, const SourceFile&
     for (const std::string& directory : options.include_dirs)
       add(directory.empty() || directory.ends_with('/') ? directory : directory + '/');
   }
-  for (const std::string& directory : directories) {
+  return directories;
+}
+
+}  // namespace
+
+std::optional<FoundFile> find_include(const std::string& name, const SourceFile& includer,
+                                      const SourceFile& main, const PreprocessOptions& options,
+                                      std::vector<std::string>& searched) {
+  const std::string plain = with_slashes(name);
+  for (const std::string& directory : directories_for(plain, includer, main, options)) {
     std::string path = directory + plain;
     if (options.read_file) {
       if (std::optional<std::string> text = options.read_file(path))
@@ -52,10 +53,25 @@ std::optional<FoundFile> find_include(const std::string& name, const SourceFile&
     }
     searched.push_back(directory.empty() ? "the current directory" : directory);
   }
+  // The built-in headers come from a file system that does not tell cases apart (ours).
   for (const stdlib::EmbeddedFile& header : options.headers)
-    if (same_ignoring_case(header.name, plain)) return FoundFile{name, "", std::string(header.text)};
+    if (stdlib::equal_but_for_case(header.name, plain)) return FoundFile{name, "", std::string(header.text)};
   searched.emplace_back("the built-in headers");
   return std::nullopt;
+}
+
+std::string similar_include(const std::string& name, const SourceFile& includer, const SourceFile& main,
+                            const PreprocessOptions& options) {
+  const std::string plain = with_slashes(name);
+  const std::string folder = plain.substr(0, plain.rfind('/') + 1);
+  const std::string file = plain.substr(folder.size());
+  if (options.list_files)
+    for (const std::string& directory : directories_for(plain, includer, main, options))
+      for (const std::string& found : options.list_files(directory + folder))
+        if (stdlib::equal_but_for_case(found, file)) return folder + found;
+  std::vector<std::string_view> headers;
+  for (const stdlib::EmbeddedFile& header : options.headers) headers.push_back(header.name);
+  return std::string(stdlib::nearest(plain, headers));
 }
 
 }  // namespace ipos::compiler

@@ -19,6 +19,8 @@ struct PreprocessOptions {
   std::span<const stdlib::EmbeddedFile> headers;  // built-in ones, searched last
   // Text of a file, nothing when it cannot be read. Empty function: only the built-in headers exist.
   std::function<std::optional<std::string>(const std::string& path)> read_file;
+  // Names of the files in a folder ("" is the current one), for hints only. May be empty.
+  std::function<std::vector<std::string>(const std::string& folder)> list_files;
   // Tokens read or made by macros; more is an error. Far above any program a drive could hold (ours).
   size_t max_tokens = 1'000'000;
 };

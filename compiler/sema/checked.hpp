@@ -5,6 +5,7 @@
 
 #include <bitset>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -106,6 +107,7 @@ struct Program {
   std::vector<vm::Symbol> symbols;
   std::vector<MapEntry> map;  // in rising order of number
   Ranges ranges;
+  std::map<uint32_t, Span> raw_names;  // first use of H5 and the like
   std::bitset<kMaxNumbers> named;  // numbers that variables, aliases and raw names stand for
 };
 

@@ -40,9 +40,13 @@ struct Context {
   std::vector<ConstantStore> stores;
   size_t function = SIZE_MAX;  // index of the function being checked
   size_t order = 0;            // its place among the declarations
+  bool overflown = false;      // a range has no room for all its variables, which was reported
 
+  // False: the range has no room for the variable, so its number is that of others.
+  bool has_room(const Variable& variable) const;
   // Marks H`number` as used by that name; false and a message when the unit has no such variable.
-  bool use_raw(uint32_t number, Span span);
+  // `name`: as written, of a number too large to be kept.
+  bool use_raw(uint32_t number, Span span, std::string_view name);
 };
 
 }  // namespace ipos::compiler

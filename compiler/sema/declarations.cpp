@@ -209,9 +209,10 @@ class Declarations {
           others.set(n);
     context_.diagnostics.report(
         Diag::RangeOverflow, fill.overflow,
-        {kind == RangeKind::Initials ? "initial" : "global", fmt::format("{}", fill.count),
+        {kind == RangeKind::Initials ? "initial" : "global", fmt::format("{}{}", fill.count == kHugeSize ? "at least " : "", fill.count),
          fmt::format("{}", range.low), fmt::format("{}", range.high), fmt::format("{}", range.size()),
          range_advice(kind, fill.count, context_.program.ranges, others, context_.unit)});
+    context_.overflown = true;
   }
 
   Context& context_;
@@ -223,11 +224,11 @@ class Declarations {
 
 }  // namespace
 
-bool Context::use_raw(uint32_t number, Span span) {
+bool Context::use_raw(uint32_t number, Span span, std::string_view name) {
   if (number >= unit.variables) {
     diagnostics.report(
         Diag::InvalidVariable, span,
-        {fmt::format("{}", number), std::string(unit.name), fmt::format("{}", unit.variables - 1)});
+        {std::string(name.substr(1)), std::string(unit.name), fmt::format("{}", unit.variables - 1)});
     return false;
   }
   raw_names.emplace(number, span);
@@ -237,11 +238,18 @@ bool Context::use_raw(uint32_t number, Span span) {
 
 void declare(const ast::Program& program, Context& context) { Declarations(context).run(program); }
 
+bool Context::has_room(const Variable& variable) const {
+  if (!overflown || variable.storage == Storage::Alias) return true;
+  const auto& range = program.ranges.of(variable.storage == Storage::Initial ? RangeKind::Initials : RangeKind::Globals);
+  return variable.number + variable.type.size() - 1 <= range.high;
+}
+
 void check_numbers(Context& context) {
   // Owner of each number; variables of one range never meet, those of two ranges may.
   std::map<uint32_t, const Variable*> owner;
   std::set<const Variable*> collided;
   for (const Variable& variable : context.scope.variables()) {
+    if (!context.has_room(variable)) continue;
     for (uint32_t n = variable.number; n < variable.number + variable.type.size() && n < kMaxNumbers; ++n) {
       context.program.named.set(n);
       if (variable.storage == Storage::Alias) continue;

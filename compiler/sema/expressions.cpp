@@ -103,7 +103,10 @@ ExprPtr ExpressionChecker::load(const ast::Expr& expr) {
   if (!from) return nullptr;
   if (!from->type.scalar()) {
     const char* advice = from->type.count != 0 ? "one of its elements has" : "one of its members has";
-    context_.diagnostics.report(Diag::NotAValue, expr.span, {from->text(), advice});
+    const bool named = std::holds_alternative<ast::Name>(expr.node);
+    context_.diagnostics.report(
+        Diag::NotAValue, expr.span,
+        {from->text(), named ? fmt::format("{}, and numof( {} ) is its number", advice, from->name) : advice});
     return nullptr;
   }
   record_read(*from);
@@ -111,6 +114,14 @@ ExprPtr ExpressionChecker::load(const ast::Expr& expr) {
 }
 
 ExprPtr ExpressionChecker::value_of(const ast::Numof& node, const ast::Expr& expr) {
+  if (const auto* name = std::get_if<ast::Name>(&node.object->node)) {
+    const Entity* entity = context_.scope.find(name->text);
+    if (entity != nullptr && std::holds_alternative<const FunctionName*>(*entity)) {
+      context_.diagnostics.report(Diag::FunctionAsValue, node.object->span,
+                                  {std::string(name->text), "numof( ... ) takes variables"});
+      return nullptr;
+    }
+  }
   auto of = object(*node.object);
   if (!of) return nullptr;
   record_take(*of);
@@ -204,7 +215,9 @@ ExprPtr ExpressionChecker::assign(const ast::Assign& node, std::optional<Object>
 ExprPtr ExpressionChecker::copy_structure(const ast::Assign& node, Object target, Span span) {
   const auto fixed = [&](const Object& object, Span at) {
     if (object.place.offset == nullptr) return true;
-    context_.diagnostics.report(Diag::NotAValue, at, {object.text(), "copy its members one by one"});
+    context_.diagnostics.report(Diag::NotAValue, at, {object.text(),
+                                 "an element found by a computed index is copied member by member; with a "
+                                 "constant index it is copied as a whole"});
     return false;
   };
   const bool whole = std::holds_alternative<ast::Name>(node.value->node) ||
@@ -285,7 +298,8 @@ void ExpressionChecker::unknown_name(std::string_view name, Span span, bool func
   if (!context_.reported_names.emplace(name).second) return;
   Diagnostic& message = context_.diagnostics.report(function ? Diag::UnknownFunction : Diag::UnknownName,
                                                     span, {std::string(name)});
-  context_.scope.explain_unknown(message, name, function);
+  context_.scope.explain_unknown(message, name, function,
+                                 context_.unit.generation == stdlib::Generation::B);
 }
 
 }  // namespace ipos::compiler

@@ -3,6 +3,7 @@
 
 #include "compiler/sema/expressions.hpp"
 #include "compiler/sema/fold.hpp"
+#include "stdlib/language_tables.hpp"
 #include "stdlib/spelling.hpp"
 #include "stdlib/system_variables.hpp"
 
@@ -10,6 +11,15 @@ namespace ipos::compiler {
 namespace {
 
 using checked::ExprPtr;
+
+// "PO1, PO2, PO3", of a long structure the first ones.
+std::string members_text(const StructType& type) {
+  constexpr size_t kMost = 20;
+  std::string text;
+  for (size_t n = 0; n < std::min(type.members.size(), kMost); ++n)
+    text += (n == 0 ? "" : ", ") + std::string(fmt::format("{}", fmt::join(type.members[n].names, "/")));
+  return text + (type.members.size() > kMost ? ", ..." : "");
+}
 
 // Takes `+ K` and `- K` out of an expression: it becomes part of the fixed number.
 ExprPtr split_constant(ExprPtr expr, int32_t& number) {
@@ -60,17 +70,24 @@ std::optional<Object> ExpressionChecker::target(const ast::Expr& expr) {
 std::optional<Object> ExpressionChecker::object_of(const ast::Name& node, const ast::Expr& expr) {
   uint32_t number = 0;
   if (raw_number(node.text, number)) {
-    if (!context_.use_raw(number, expr.span)) return std::nullopt;
+    if (!context_.use_raw(number, expr.span, node.text)) return std::nullopt;
     return Object{
         {}, {static_cast<int32_t>(number), nullptr}, node.text, NumberRange{number, number}, nullptr};
   }
   const Entity* entity = context_.scope.find(node.text);
   if (entity == nullptr) {
-    unknown_name(node.text, expr.span, false);
+    if (const auto* function = stdlib::find_system_function(node.text))
+      context_.diagnostics.report(
+          Diag::FunctionAsValue, expr.span,
+          {std::string(node.text),
+           fmt::format("'{}({})' calls it", node.text, function->arguments.empty() ? "" : " ... ")});
+    else
+      unknown_name(node.text, expr.span, false);
     return std::nullopt;
   }
   if (const auto* function = std::get_if<const FunctionName*>(entity)) {
-    context_.diagnostics.report(Diag::FunctionAsValue, expr.span, {(*function)->name, (*function)->name});
+    context_.diagnostics.report(Diag::FunctionAsValue, expr.span,
+                                {(*function)->name, fmt::format("'{}()' calls it", (*function)->name)});
     return std::nullopt;
   }
   const auto* found = std::get_if<const Variable*>(entity);
@@ -105,6 +122,7 @@ std::optional<Object> ExpressionChecker::object_of(const ast::Member& node, cons
       names.insert(names.end(), row.names.begin(), row.names.end());
     if (const std::string_view best = stdlib::nearest(node.member.text, names); !best.empty())
       message.notes.push_back({type->find(best)->span, fmt::format("did you mean '{}'?", best)});
+    message.notes.push_back({type->span, fmt::format("{} has {}", type->name, members_text(*type))});
     return std::nullopt;
   }
   base->place.number += static_cast<int32_t>(member->offset);
@@ -187,6 +205,7 @@ void ExpressionChecker::record_take(const Object& object) { record(object, &Acce
 void ExpressionChecker::record_write(const Object& object, Span span) {
   record(object, &Access::writers);
   if (object.place.offset != nullptr) return;
+  if (object.variable != nullptr && !context_.has_room(*object.variable)) return;  // no number of its own
   const auto* row = stdlib::find_system_variable(static_cast<uint16_t>(object.place.number));
   if (row != nullptr && row->access == stdlib::VariableAccess::R)
     context_.diagnostics.report(Diag::ReadOnlyVariable, span,

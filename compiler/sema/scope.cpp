@@ -5,10 +5,9 @@
 
 #include <algorithm>
 
+#include "stdlib/header_names.hpp"
 #include "stdlib/language_tables.hpp"
 #include "stdlib/spelling.hpp"
-#include "stdlib/system_variables.hpp"
-#include "vm/isa/isa.hpp"
 
 namespace ipos::compiler {
 namespace {
@@ -97,29 +96,37 @@ const StructType* Scope::find_type(std::string_view name) const {
   return type == nullptr ? nullptr : *type;
 }
 
-void Scope::explain_unknown(Diagnostic& diagnostic, std::string_view name, bool function) const {
-  const auto header = [&](std::string_view what) {
+void Scope::explain_unknown(Diagnostic& diagnostic, std::string_view name, bool function, bool b_headers) const {
+  const stdlib::HeaderName* known = stdlib::find_header_name(name, b_headers);
+  if (known != nullptr) {
+    uint32_t number = 0;
+    const std::string what =
+        raw_number(known->text, number) ? fmt::format("the system variable H{}", number)
+        : known->text.starts_with('_')  ? std::string("a statement of the standard headers")
+        : known->text.starts_with('(')  ? std::string("an input or output of the standard headers")
+                                        : std::string("a constant of the standard headers");
     diagnostic.notes.push_back(
-        {{}, fmt::format("'{}' is {}; '#include <const.h>' makes it known", name, what)});
-  };
-  for (const vm::KeywordInfo& row : vm::keyword_table())
-    if (row.constant == name) return header("a constant of the standard headers");
-  if (const auto* row = stdlib::find_system_variable(name))
-    return header(fmt::format("the system variable H{}", row->number));
+        {{}, fmt::format("'{}' is {}; '#include <{}>' makes it known", name, what, known->header)});
+    return;
+  }
 
   std::vector<std::string_view> candidates;
-  for (const auto& [known, entity] : names_)
+  for (const auto& [declared, entity] : names_)
     if (std::holds_alternative<const FunctionName*>(entity) == function &&
         !std::holds_alternative<const StructType*>(entity))
-      candidates.push_back(known);
+      candidates.push_back(declared);
   std::sort(candidates.begin(), candidates.end());
   if (function) {
     for (const stdlib::SystemFunction& row : stdlib::system_functions()) candidates.push_back(row.name);
+    candidates.push_back("numof");
   } else {
-    for (const stdlib::SystemVariable& row : stdlib::system_variables())
-      candidates.push_back(row.compiler_name);
-    for (const vm::KeywordInfo& row : vm::keyword_table()) candidates.push_back(row.constant);
+    for (const stdlib::HeaderName& row : stdlib::header_names()) candidates.push_back(row.name);
+    for (const std::string_view word : {"break", "continue", "return"}) candidates.push_back(word);
   }
+  // h5: a variable of the unit.
+  uint32_t number = 0;
+  const std::string capital = name.empty() ? "" : "H" + std::string(name.substr(1));
+  if (!function && name.starts_with('h') && raw_number(capital, number)) candidates.push_back(capital);
   const std::string_view best = stdlib::nearest(name, candidates);
   if (best.empty()) return;
   const Entity* entity = find(best);

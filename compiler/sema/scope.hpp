@@ -83,8 +83,9 @@ class Scope {
   const std::deque<Variable>& variables() const { return variables_; }
   const std::deque<FunctionName>& functions() const { return functions_; }
 
-  // Adds notes to a message about an unknown name: a similar name, or the header it comes with.
-  void explain_unknown(Diagnostic& diagnostic, std::string_view name, bool function) const;
+  // Adds notes to a message about an unknown name: a similar name, or the header it comes with
+  // (of MOVIDRIVE B: b_headers).
+  void explain_unknown(Diagnostic& diagnostic, std::string_view name, bool function, bool b_headers) const;
 
  private:
   bool free_name(const std::string& name, Span span, Diagnostics& diagnostics) const;

@@ -10,6 +10,7 @@
 #include "compiler/sema/statements.hpp"
 #include "compiler/sema/variable_use.hpp"
 #include "compiler/sema/writers.hpp"
+#include "stdlib/spelling.hpp"
 
 namespace ipos::compiler {
 namespace {
@@ -37,6 +38,16 @@ void check_bodies(const ast::Program& program, Context& context) {
   }
 }
 
+void report_no_main(Context& context) {
+  Diagnostic& message = context.diagnostics.report(Diag::NoMain, {});
+  std::vector<std::string_view> names;
+  for (const FunctionName& function : context.scope.functions()) names.push_back(function.name);
+  const std::string_view best = stdlib::nearest("main", names);
+  for (const FunctionName& function : context.scope.functions())
+    if (!best.empty() && function.name == best)
+      message.notes.push_back({function.span, "did you mean 'main' here?"});
+}
+
 }  // namespace
 
 std::optional<checked::Program> check(const ast::Program& program, const stdlib::UnitType& unit,
@@ -52,10 +63,11 @@ std::optional<checked::Program> check(const ast::Program& program, const stdlib:
 
   const Entity* main = context.scope.find("main");
   const auto* function = main != nullptr ? std::get_if<const FunctionName*>(main) : nullptr;
-  if (function == nullptr) diagnostics.report(Diag::NoMain, {});
+  if (function == nullptr) report_no_main(context);
   // What follows looks at the program as a whole and would complain of the gaps that errors leave.
   if (diagnostics.has_errors()) return std::nullopt;
   context.program.main = (*function)->index;
+  context.program.raw_names = context.raw_names;
   describe_variables(context);
   check_variable_use(program, context);
   check_writers(context);

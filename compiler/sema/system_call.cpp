@@ -52,6 +52,10 @@ class SystemCallChecker {
                                        fmt::format("{}", call_.arguments.size())});
       message.notes.push_back(
           {{}, fmt::format("the form is {}( {} )", function_.name, fmt::join(kinds_, ", "))});
+      for (size_t n = 0; n < kinds_.size(); ++n)
+        if (kinds_[n] == "keyword")
+          message.notes.push_back(
+              {{}, fmt::format("the keyword is one of {}", fmt::join(constants_of(keyword_set(n)), ", "))});
       return nullptr;
     }
     bool good = task_exists();

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "runtime/plant/serial_plan.hpp"
+#include "runtime/plant/variable_names.hpp"
 #include "runtime/services/drive_variables.hpp"
 #include "runtime/services/source_places.hpp"
 #include "stdlib/faults.hpp"
@@ -369,21 +369,8 @@ int32_t Station::read(uint16_t index) const {
 
 std::optional<uint32_t> Station::find_variable(std::string_view name) const {
   if (!image_) return std::nullopt;
-  const size_t bracket = std::min(name.find('['), name.size());
-  uint32_t element = 0;
-  if (bracket < name.size()) {
-    const char* last = name.data() + name.size() - 1;
-    const auto [end, status] = std::from_chars(name.data() + bracket + 1, last, element);
-    if (*last != ']' || end != last || status != std::errc()) return std::nullopt;
-  }
-  for (const vm::Symbol& symbol : image_->symbols)
-    if (symbol.name == name.substr(0, bracket) && element < symbol.count) return symbol.variable + element;
-  if (name.size() < 2 || name[0] != 'H') return std::nullopt;
-  uint32_t number = 0;
-  const auto [end, status] = std::from_chars(name.data() + 1, name.data() + name.size(), number);
-  if (status != std::errc() || end != name.data() + name.size() || number >= config_.unit->variables)
-    return std::nullopt;
-  return number;
+  const auto named = named_variables(image_->symbols, *config_.unit, name);
+  return named.empty() ? std::nullopt : std::optional(named.front().number);
 }
 
 std::string Station::source_place(uint32_t address) const {

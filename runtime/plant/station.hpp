@@ -166,7 +166,7 @@ class Station final : private EventTarget, private Sleeper {
   bool error() const;     // a fault that stops the drive until it is reset
   uint16_t status_word_1() const;
 
-  // Number of a variable by symbol, as element of a symbol ("aTable[3]") or as Hn; nothing when there is
+  // Number of the variable with this name (variable_names.hpp), of a whole the first; nothing when there is
   // none.
   std::optional<uint32_t> find_variable(std::string_view name) const;
   int32_t variable(uint32_t number) const {

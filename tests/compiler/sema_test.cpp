@@ -87,7 +87,7 @@ std::vector<Mistake> mistakes() {
       {"E0229", "long a[30], @b[4]; main() { a[0] = 1; b[0] = 1; }", "'#pragma globals 366 399'"},
       {"E0229", "initial long a[120], @b[9]; main() { a[0] = 1; b[0] = 1; }", "no 129 free variables"},
       {"E0231", "#pragma var 400 400\n@main() { H0 = H1 - (H2 - (H3 - H4 * H0)) * H5; }", "'#pragma var"},
-      {"E0232", "@main() { H400 = 1; H0 = H1 * H2 + H0; }", "H400"},
+      {"E0232", "main() { @H400 = 1; H0 = H1 * H2 + H0; }", "H400"},
       {"E0234", "@main() {" + repeated(" H0 = 1;", 1100) + "}", "2048"},
       {"E0235", "t() { H0++; } main() { @_SetTask(1, t); }", "task 3"},
       {"E0235", "VARINT v; t() { H0++; } main() { v.Control = 1; @_SetVarInterrupt(v, t); }",
@@ -238,6 +238,64 @@ TEST(Suggestions, ForMisspeltNames) {
   EXPECT_EQ("did you mean '_MoviLink'?", first_note("main() { _MovLink(H0); }"));
   EXPECT_EQ("did you mean 'helper'?", first_note("helper() { } main() { Helper(); }"));
   EXPECT_EQ("", first_note("long speed; main() { xyz = 1; }"));
+  EXPECT_EQ("did you mean '_GoAbs'?", first_note("main() { _GoAbsolute(1, 2); }"));
+  EXPECT_EQ("did you mean 'TargetPos'?", first_note("main() { H0 = TargetPosition; }"));
+  EXPECT_EQ("did you mean 'H5'?", first_note("main() { h5 = 1; }"));
+  EXPECT_EQ("did you mean 'numof'?", first_note("main() { H0 = nunof(1); }"));
+  EXPECT_EQ("did you mean 'break'?", first_note("main() { while (H0) Break; }"));
+  EXPECT_EQ("did you mean 'ML_FT_PAR3'?", first_note("main() { H0 = ML_FT_PR3; }"));
+  EXPECT_EQ("did you mean 'main' here?", first_note("Main() { H0 = 1; }"));
+  EXPECT_NE(std::string::npos, first_note("main() { H0 = DI03; }").find("#include <io.h>"));
+  EXPECT_EQ("MLDATA has WritePar, ReadPar, PO1, PO2, PO3, PI1, PI2, PI3", first_note("MLDATA d; main() { d.zzzzzz = 1; }"));
+  EXPECT_EQ("did you mean '#define'?", first_note("#defin A 1\nmain() { }"));
+  EXPECT_EQ("did you mean 'const.h'?", first_note("#include <const>\nmain() { }"));
+  const Compilation goabs = compile_text("main() { _GoAbs(1); }");
+  ASSERT_EQ(2U, goabs.diagnostics.all().at(0).notes.size());
+  EXPECT_EQ("the keyword is one of GO_NOWAIT, GO_WAIT", goabs.diagnostics.all()[0].notes[1].text);
+}
+
+TEST(Suggestions, TellAnIncludeWithOtherCapitals) {
+  CompileOptions options;
+  options.read_file = [](const std::string&) { return std::nullopt; };
+  options.list_files = [](const std::string& folder) {
+    return folder == "lib/" ? std::vector<std::string>{"Own.h"} : std::vector<std::string>{};
+  };
+  const Compilation c = compile("t.IPC", "t.IPC", "#include \"lib/own.h\"\nmain() { }", options);
+  ASSERT_EQ(1U, c.diagnostics.all().size());
+  EXPECT_EQ("did you mean 'lib/Own.h'?", c.diagnostics.all()[0].notes.at(0).text);
+}
+
+TEST(Suggestions, NameTheBraceByItsIndentation) {
+  const Compilation c = compile_text("main()\n{\n  while (H0) {\n    H1 = 1;\n  H2 = 2;\n}\nf()\n{\n  H3 = 1;\n}\n");
+  ASSERT_FALSE(c.diagnostics.all().empty());
+  ASSERT_FALSE(c.diagnostics.all()[0].notes.empty());
+  EXPECT_EQ(3U, c.sources->position(c.diagnostics.all()[0].notes[0].span.begin).line);
+}
+
+std::string first_text(const std::string& source) {
+  const Compilation c = compile_text(source);
+  return c.diagnostics.all().empty() ? "" : c.diagnostics.all()[0].text;
+}
+
+TEST(Messages, SayWhatWasMeant) {
+  EXPECT_EQ("'_SBusCommOn' is a function; '_SBusCommOn()' calls it", first_text("main() { _SBusCommOn; }"));
+  EXPECT_EQ("'main' is a function; numof( ... ) takes variables", first_text("main() { H0 = numof(main); }"));
+  EXPECT_NE(std::string::npos, first_text("main() { H5000000000 = 1; }").find("variable H5000000000 does not exist"));
+  EXPECT_NE(std::string::npos, first_text("SCREC m; MLDATA d; main() { m.DPointer = d; }").find("numof( d )"));
+  EXPECT_NE(std::string::npos,
+            first_text("SCREC p[2], q; main() { p[H0] = q; }").find("with a constant index it is copied as a whole"));
+  EXPECT_NE(std::string::npos, first_text("main() { H400 = 1; H0 = H1 * H2 + H0; }").find("is used here by number"));
+  EXPECT_LT(first_text("long x[" + std::string(100'000, 'n') + "];\nmain() { }").size(), 2000U);
+}
+
+TEST(Messages, OfRangesWithoutRoomHaveNoConsequences) {
+  const Compilation c =
+      compile_text("long a[40]; long b[40]; SCREC s; main() { a[0] = 1; b[0] = 2; s.Format = 1; }", "mdxb");
+  ASSERT_EQ(1U, c.diagnostics.all().size()) << render_text(c.diagnostics.all(), *c.sources, false);
+  EXPECT_EQ(Diag::RangeOverflow, c.diagnostics.all()[0].diag);
+  std::string many;
+  for (int n = 0; n < 70; ++n) many += "long v" + std::to_string(n) + "[1000];";
+  EXPECT_NE(std::string::npos, first_text(many + "main() { }").find("need at least 65535 numbers"));
   EXPECT_NE(std::string::npos, first_note("main() { H0 = GO_WAIT; }").find("#include <const.h>"));
   EXPECT_NE(std::string::npos, first_note("main() { H0 = TargetPos; }").find("H492"));
 }

@@ -16,7 +16,7 @@ int32_t number(const std::string& text) { return static_cast<int32_t>(std::stoll
 }  // namespace
 
 Expectations read_expectations(std::string_view source) {
-  static const std::regex kValue(R"(// expect (\w+(?:\.\w+)?(?:\[\d+\])?) == (-?\w+)(?: at (\S+))?\s*)");
+  static const std::regex kValue(R"(// expect (\w+(?:\.\w+|\[\d+\])*) == (-?\w+)(?: at (\S+))?\s*)");
   static const std::regex kDiagnostic(R"(// expect (?:error|warning) ([EW]\d{4})\s*)");
   static const std::regex kFault(R"(// expect fault (\d+)\s*)");
   static const std::regex kUnit(R"(^\s*// unit (\w+)\s*$)");

@@ -37,14 +37,6 @@ std::optional<std::string> read_text(const std::string& path) {
   return text.str();
 }
 
-// Number of "name", "name.member", "name[3]" or "H5".
-std::optional<uint32_t> find_variable(const runtime::Station& station, const std::string& name) {
-  const size_t bracket = name.find('[');
-  const auto number = station.find_variable(name.substr(0, bracket));
-  if (!number || bracket == std::string::npos) return number;
-  return *number + static_cast<uint32_t>(std::stoul(name.substr(bracket + 1)));
-}
-
 class Language : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Language, DoesWhatItsCommentsSay) {
@@ -96,7 +88,7 @@ TEST_P(Language, DoesWhatItsCommentsSay) {
 
   const runtime::Station& station = *plant.stations()[0];
   const auto check = [&](const ExpectedValue& value) {
-    const auto number = find_variable(station, value.variable);
+    const auto number = station.find_variable(value.variable);
     ASSERT_TRUE(number) << "line " << value.line << ": no variable " << value.variable;
     EXPECT_EQ(station.variable(*number), value.value) << "line " << value.line << ": " << value.variable;
   };

@@ -156,24 +156,48 @@ class Reader {
     return vm::wrap(static_cast<uint32_t>(value));
   }
 
+  // `name`, `name[1]`, `name[1].member[2]`, `H[5]`; each index is an expression.
   ValuePlace named(std::string_view name) {
-    const bool any_variable = name == "H" || name.ends_with(".H");
-    const std::string whole(any_variable ? fmt::format("{}0", name) : name);
-    auto found = find_value(plant_, station_, whole);
-    if (!found) fail(fmt::format("there is no '{}'", name));
-    if (!take('[')) {
-      if (any_variable) fail("H needs a number: H5 or H[5]");
-      return *found;
+    if (name == "H" || name.ends_with(".H")) return by_number(name);
+    std::string path(name);
+    auto found = find_value(plant_, station_, path);
+    while (take('[')) {
+      const int32_t index = index_behind();
+      const std::string element = fmt::format("{}[{}]", path, index);
+      auto exact = find_value(plant_, station_, element);
+      if (!exact && found && found->kind == ValueKind::Variable) exact = moved(*found, index, element);
+      found = exact;
+      path = element + std::string(word());
+      if (path != element) found = find_value(plant_, station_, path);
     }
+    if (!found) fail(fmt::format("there is no '{}'", path));
+    return *found;
+  }
+
+  ValuePlace by_number(std::string_view name) {
+    const auto first = find_value(plant_, station_, fmt::format("{}0", name));
+    if (!first) fail(fmt::format("there is no '{}'", name));
+    if (!take('[')) fail("H needs a number: H5 or H[5]");
+    const int32_t index = index_behind();
+    auto found = moved(*first, index, fmt::format("{}{}", name, index));
+    if (!found) fail(fmt::format("there is no {}[{}]", name, index));
+    return *found;
+  }
+
+  int32_t index_behind() {
     const int32_t index = binary(1);
     if (!take(']')) fail("']' is missing");
-    const uint32_t variables = plant_.stations()[found->station]->config().unit->variables;
-    if (found->kind != ValueKind::Variable || index < 0 || found->number + vm::bits(index) >= variables)
-      fail(fmt::format("there is no {}[{}]", name, index));
-    found->number += vm::bits(index);
-    found->elements = 1;
-    found->name = any_variable ? fmt::format("{}{}", name, index) : fmt::format("{}[{}]", name, index);
-    return *found;
+    return index;
+  }
+
+  // The variable `index` behind this one; programs reach it by a computed index, too.
+  std::optional<ValuePlace> moved(ValuePlace place, int32_t index, const std::string& name) const {
+    const uint32_t variables = plant_.stations()[place.station]->config().unit->variables;
+    if (index < 0 || place.number + vm::bits(index) >= variables) return std::nullopt;
+    place.number += vm::bits(index);
+    place.elements = 1;
+    place.name = name;
+    return place;
   }
 
   const runtime::Plant& plant_;

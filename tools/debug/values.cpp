@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "runtime/plant/signal.hpp"
+#include "runtime/plant/variable_names.hpp"
 #include "stdlib/parameters.hpp"
-#include "stdlib/system_variables.hpp"
 
 namespace ipos::tools::debug {
 namespace {
@@ -24,13 +24,9 @@ std::optional<ValuePlace> find_variable(const Station& station, uint32_t number,
       place.elements = symbol.count;
       return place;
     }
-  if (const auto found = station.find_variable(name))
-    place.number = *found;
-  else if (const auto* row = stdlib::find_system_variable(name);
-           row != nullptr && row->number < station.config().unit->variables)
-    place.number = row->number;
-  else
-    return std::nullopt;
+  const auto found = runtime::named_variables(station.image()->symbols, *station.config().unit, name);
+  if (found.size() != 1) return std::nullopt;  // a structure has no value of its own
+  place.number = found.front().number;
   return place;
 }
 

@@ -46,6 +46,7 @@ Program Programs::make(const std::string& path, const stdlib::UnitType* unit) co
   options.include_dirs = flags_.include_dirs;
   options.defines = flags_.defines;
   options.read_file = try_read_file;
+  options.list_files = list_files;
   options.unit = unit != nullptr || flags_.unit.empty() ? unit : stdlib::find_unit(flags_.unit);
   for (const std::string& warning : flags_.warnings) options.warnings.apply(warning);
   compiler::Compilation compiled = compiler::compile(path, path, *text, options);

@@ -14,6 +14,7 @@
 #include <regex>
 #include <sstream>
 
+#include "runtime/plant/signal.hpp"
 #include "stdlib/unit_types.hpp"
 #include "tools/testing/read_tests.hpp"
 
@@ -59,7 +60,7 @@ class CommentReader {
   // One comment from "// expect" on; nothing, or why it is none.
   std::optional<std::string> read(FilePlace place, const std::string& text) {
     static const std::regex kValue(
-        R"(// expect (\w+(?:\.\w+)?(?:\[\d+\])?) (==|!=|<=|>=|<|>) (-?\w+)(?: (at|within) (\S+))?\s*)");
+        R"(// expect (\w+(?:\.\w+|\[\d+\])*) (==|!=|<=|>=|<|>) (-?\w+)(?: (at|within) (\S+))?\s*)");
     static const std::regex kDiagnostic(R"(// expect (?:error|warning) ([EW]\d{4})\s*)");
     static const std::regex kFault(R"(// expect fault (\d{1,3})\s*)");
     std::smatch match;
@@ -78,7 +79,7 @@ class CommentReader {
     const auto value = parse_value(match[3]);
     if (!value) return fmt::format("'{}' is no number of 32 bits", match[3].str());
     Expect expect;
-    expect.subject.signal = {station_, runtime::SignalKind::Variable, match[1], 0};
+    expect.subject.signal = signal_named(match[1]);
     expect.condition = condition_of(match[2], *value);
     Item item;
     item.place = place;
@@ -108,6 +109,14 @@ class CommentReader {
   }
 
  private:
+  runtime::Signal signal_named(const std::string& name) const {
+    if (const int line = runtime::parse_input(name); line >= 0)
+      return {station_, runtime::SignalKind::Input, name, static_cast<uint8_t>(line)};
+    if (const int bit = runtime::parse_output(name); bit >= 0)
+      return {station_, runtime::SignalKind::Output, name, static_cast<uint8_t>(bit)};
+    return {station_, runtime::SignalKind::Variable, name, 0};
+  }
+
   void add_state(FilePlace place, const char* state, int64_t value) {
     Expect expect;
     expect.subject.kind = Subject::Kind::State;

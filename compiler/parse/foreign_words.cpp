@@ -1,0 +1,225 @@
+// What a word is meant to be is told by its neighbours, without a grammar: two operands never stand side by side, a
+// call is never followed by a statement.
+#include "compiler/parse/foreign_words.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <unordered_set>
+
+#include "stdlib/spelling.hpp"
+
+namespace ipos::compiler {
+namespace {
+
+using stdlib::equal_but_for_case;
+
+struct Keyword {
+  std::string_view spelling;
+  TokenKind kind;
+};
+constexpr Keyword kKeywords[] = {
+#define FOREIGN_TYPE(kind, spelling)
+#define FOREIGN_QUALIFIER(kind, spelling)
+#define KEYWORD(kind, spelling) {spelling, TokenKind::kind},
+#include "compiler/preprocess/tokens.def"
+};
+
+struct Infix {
+  std::string_view word;
+  TokenKind kind;
+  std::string_view advice;
+};
+constexpr Infix kInfix[] = {{"and", TokenKind::AndAnd, "write '&&', or '&' for bits"},
+                            {"or", TokenKind::OrOr, "write '||', or '|' for bits"},
+                            {"xor", TokenKind::Xor, "write '^'"},
+                            {"mod", TokenKind::Percent, "write '%'"},
+                            {"div", TokenKind::Slash, "write '/'"}};
+constexpr std::string_view kBlockEnds[] = {"end_if", "end_while", "end_for", "end_case", "endif"};
+
+constexpr size_t kLongestHead = 500;  // tokens in the brackets of a misspelt head
+
+bool is_keyword(TokenKind kind) {
+  return std::any_of(std::begin(kKeywords), std::end(kKeywords), [kind](const Keyword& k) { return k.kind == kind; });
+}
+
+bool ends_operand(TokenKind kind) {
+  return kind == TokenKind::Name || kind == TokenKind::Number || kind == TokenKind::RightParen ||
+         kind == TokenKind::RightBracket;
+}
+
+bool is_word_or_number(TokenKind kind) { return kind == TokenKind::Name || kind == TokenKind::Number; }
+
+bool ends_statement(TokenKind kind) {
+  return kind == TokenKind::Semicolon || kind == TokenKind::LeftBrace || kind == TokenKind::RightBrace ||
+         kind == TokenKind::Colon;
+}
+
+class Translator {
+ public:
+  Translator(std::span<const Token> tokens, Diagnostics& diagnostics) : tokens_(tokens), diagnostics_(diagnostics) {
+    for (size_t i = 1; i + 1 < tokens.size(); ++i)
+      if (kind(i) == TokenKind::Name && kind(i - 1) == TokenKind::RightBrace && kind(i + 1) == TokenKind::Semicolon)
+        types_.insert(tokens[i].text);
+  }
+
+  std::vector<Token> run() {
+    out_.reserve(tokens_.size());
+    while (at_ < tokens_.size()) {
+      const Token& token = tokens_[at_];
+      if (token.kind == TokenKind::Pragma || token.kind == TokenKind::Declare) directive_ = true;
+      if (token.kind == TokenKind::DirectiveEnd) directive_ = false;
+      if (token.kind == TokenKind::LeftBrace) ++depth_;
+      if (token.kind == TokenKind::RightBrace) --depth_;
+      const bool translated = !directive_ && (token.kind == TokenKind::Name ? word(token) : sign(token));
+      if (!translated) take(token.kind);
+    }
+    return std::move(out_);
+  }
+
+ private:
+  TokenKind kind(size_t i) const { return i < tokens_.size() ? tokens_[i].kind : TokenKind::End; }
+  TokenKind next(size_t distance = 1) const { return kind(at_ + distance); }
+  TokenKind before() const { return out_.empty() ? TokenKind::Semicolon : out_.back().kind; }
+
+  void take(TokenKind as, size_t count = 1) {
+    out_.push_back(tokens_[at_]);
+    out_.back().kind = as;
+    out_.back().span.end = tokens_[at_ + count - 1].span.end;
+    at_ += count;
+  }
+  bool foreign(TokenKind as, std::string_view text, std::string_view advice, size_t count = 1) {
+    diagnostics_.report(Diag::ForeignWord, {tokens_[at_].span.begin, tokens_[at_ + count - 1].span.end},
+                        {std::string(text), std::string(advice)});
+    take(as, count);
+    return true;
+  }
+
+  // `:=` and `<>`, written together.
+  bool sign(const Token& token) {
+    if (at_ + 1 >= tokens_.size() || tokens_[at_ + 1].spaced || tokens_[at_ + 1].line_start) return false;
+    if (token.kind == TokenKind::Colon && next() == TokenKind::Assign)
+      return foreign(TokenKind::Assign, ":=", "'=' assigns", 2);
+    if (token.kind == TokenKind::Less && next() == TokenKind::Greater)
+      return foreign(TokenKind::NotEqual, "<>", "'!=' compares", 2);
+    return false;
+  }
+
+  bool word(const Token& token) {
+    if (before() == TokenKind::Dot || types_.contains(token.text)) return false;
+    return plc_word(token) || keyword(token);
+  }
+
+  // A bracket with something in it: no call of a function of the program has that.
+  bool filled_bracket(size_t i) const { return kind(i) == TokenKind::LeftParen && kind(i + 1) != TokenKind::RightParen; }
+  // What a statement or an operand begins with, and nothing goes on with.
+  bool statement_at(size_t i) const {
+    const TokenKind found = kind(i);
+    return is_word_or_number(found) || found == TokenKind::LeftBrace ||
+           (is_keyword(found) && found != TokenKind::Else);
+  }
+
+  bool plc_word(const Token& token) {
+    const bool operand = is_word_or_number(next()) || filled_bracket(at_ + 1) || next() == TokenKind::Numof;
+    const bool negated = next() == TokenKind::Not || next() == TokenKind::Minus || next() == TokenKind::BitNot;
+    for (const Infix& infix : kInfix)
+      if (equal_but_for_case(token.text, infix.word) && ends_operand(before()) && (operand || negated))
+        return foreign(infix.kind, token.text, infix.advice);
+    if (equal_but_for_case(token.text, "not") && !ends_operand(before()) && operand)
+      return foreign(TokenKind::Not, token.text, "write '!', or '~' for bits");
+    if (equal_but_for_case(token.text, "then") && ends_operand(before()) && statement_at(at_ + 1)) {
+      foreign(token.kind, token.text, "leave it out");
+      out_.pop_back();
+      return true;
+    }
+    const bool block = before() == TokenKind::RightParen || before() == TokenKind::Else || before() == TokenKind::Do;
+    if (equal_but_for_case(token.text, "begin") && block && statement_at(at_ + 1)) {
+      ++begun_;
+      ++depth_;
+      return foreign(TokenKind::LeftBrace, token.text, "a block begins with '{'");
+    }
+    if (begun_ > 0 && equal_but_for_case(token.text, "end") && ends_statement(before())) {
+      --begun_;
+      --depth_;
+      foreign(TokenKind::RightBrace, token.text, "a block ends with '}'");
+      if (kind(at_) == TokenKind::Semicolon) ++at_;
+      return true;
+    }
+    const bool block_end = std::any_of(std::begin(kBlockEnds), std::end(kBlockEnds),
+                                       [&](std::string_view end) { return equal_but_for_case(token.text, end); });
+    if (!block_end || next() != TokenKind::Semicolon || !ends_statement(before())) return false;
+    foreign(token.kind, token.text, "a block ends with '}'", 2);
+    out_.pop_back();
+    return true;
+  }
+
+  bool keyword(const Token& token) {
+    for (const Keyword& row : kKeywords)
+      if (equal_but_for_case(token.text, row.spelling) && stands_for(row.kind)) return meant(row);
+    // Misspelt heads of statements have something in their brackets and a statement behind them.
+    if (depth_ <= 0 || !filled_bracket(at_ + 1) || !statement_at(behind_bracket(at_ + 1))) return false;
+    static constexpr std::array<std::string_view, 4> kHeads = {"if", "while", "for", "switch"};
+    const std::string_view best = stdlib::nearest(token.text, kHeads);
+    for (const Keyword& row : kKeywords)
+      if (!best.empty() && row.spelling == best) return meant(row);
+    return false;
+  }
+
+  bool meant(const Keyword& row) {
+    diagnostics_.report(Diag::KeywordSpelling, tokens_[at_].span,
+                        {std::string(tokens_[at_].text), std::string(row.spelling)});
+    take(row.kind);
+    return true;
+  }
+
+  // Whether the word can be nothing else than the keyword here.
+  bool stands_for(TokenKind keyword) const {
+    const bool inside = depth_ > 0;
+    const bool first = ends_statement(before()) || before() == TokenKind::RightParen || before() == TokenKind::Else;
+    switch (keyword) {
+      case TokenKind::If:
+      case TokenKind::While:
+      case TokenKind::For:
+      case TokenKind::Switch: return inside && filled_bracket(at_ + 1) && statement_at(behind_bracket(at_ + 1));
+      case TokenKind::Long: return next() == TokenKind::Name && !ends_operand(before());
+      case TokenKind::Initial:
+        return next() == TokenKind::Long || (next() == TokenKind::Name && kind(at_ + 2) == TokenKind::Name);
+      case TokenKind::Typedef: return next() == TokenKind::Struct;
+      case TokenKind::Struct: return before() == TokenKind::Typedef;
+      case TokenKind::Numof: return filled_bracket(at_ + 1);
+      case TokenKind::Else:
+      case TokenKind::Do: return inside && first && statement_at(at_ + 1);
+      case TokenKind::Case: return inside && first && is_word_or_number(next());
+      case TokenKind::Default: return inside && first && next() == TokenKind::Colon;
+      default: return false;
+    }
+  }
+
+  size_t behind_bracket(size_t open) const {
+    int level = 0;
+    const size_t last = std::min(open + kLongestHead, tokens_.size());
+    for (size_t i = open; i < last; ++i) {
+      if (tokens_[i].kind == TokenKind::LeftParen) ++level;
+      if (tokens_[i].kind == TokenKind::RightParen && --level == 0) return i + 1;
+      if (tokens_[i].kind == TokenKind::LeftBrace) break;
+    }
+    return tokens_.size();
+  }
+
+  std::span<const Token> tokens_;
+  Diagnostics& diagnostics_;
+  std::vector<Token> out_;
+  std::unordered_set<std::string_view> types_;  // names behind a '}': of structure types
+  size_t at_ = 0;
+  int depth_ = 0;
+  int begun_ = 0;  // BEGIN without END so far
+  bool directive_ = false;
+};
+
+}  // namespace
+
+std::vector<Token> without_foreign_words(std::span<const Token> tokens, Diagnostics& diagnostics) {
+  return Translator(tokens, diagnostics).run();
+}
+
+}  // namespace ipos::compiler
