@@ -1,5 +1,5 @@
-// The names that the header files of the language define, with their texts: read from the headers themselves, so
-// that a message can say which header a name comes with.
+// The names that the header files of the language define, with their texts: read from the headers themselves,
+// so that a message can say which header a name comes with.
 #pragma once
 
 #include <span>
@@ -16,7 +16,8 @@ struct HeaderName {
 // In the order of the headers and their lines; a name that two headers define stands twice.
 std::span<const HeaderName> header_names();
 
-// Of a header that is included: const.h and io.h, or for `b_headers` constb.h and iob.h, which both know more.
+// Of a header that is included: const.h and io.h, or for `b_headers` constb.h and iob.h, which both know
+// more.
 const HeaderName* find_header_name(std::string_view name, bool b_headers);
 
 }  // namespace ipos::stdlib

@@ -22,7 +22,8 @@ struct Structure {
   std::string_view source;
 };
 
-// What a member holds where it is no plain number: "number" of a variable, or the beginnings of its constants.
+// What a member holds where it is no plain number: "number" of a variable, or the beginnings of its
+// constants.
 struct MemberUse {
   std::string_view structure;
   std::string_view member;

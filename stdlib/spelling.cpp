@@ -8,7 +8,7 @@
 namespace ipos::stdlib {
 namespace {
 
-constexpr size_t kLongest = 64;    // names beyond are not compared
+constexpr size_t kLongest = 64;  // names beyond are not compared
 constexpr size_t kMostSteps = 3;
 constexpr size_t kShortPrefix = 4;  // letters that two names must share at least
 
@@ -37,7 +37,8 @@ std::string_view by_prefix(std::string_view name, std::span<const std::string_vi
     if (common < kShortPrefix || !equal_but_for_case(name.substr(0, common), candidate.substr(0, common)))
       continue;
     if (candidate.size() < name.size() && candidate.size() > shorter.size()) shorter = candidate;
-    if (candidate.size() > name.size() && (longer.empty() || candidate.size() < longer.size())) longer = candidate;
+    if (candidate.size() > name.size() && (longer.empty() || candidate.size() < longer.size()))
+      longer = candidate;
   }
   return shorter.empty() ? longer : shorter;
 }
@@ -45,7 +46,8 @@ std::string_view by_prefix(std::string_view name, std::span<const std::string_vi
 }  // namespace
 
 bool equal_but_for_case(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) { return lower(x) == lower(y); });
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](char x, char y) { return lower(x) == lower(y); });
 }
 
 std::string_view nearest(std::string_view name, std::span<const std::string_view> candidates) {

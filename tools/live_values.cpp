@@ -53,7 +53,8 @@ std::vector<LiveItem> live_items(const stdlib::UnitType& unit, const std::vector
         throw Failure(kBadInput, fmt::format("{} has no variable '{}'", file, name.substr(0, at)));
       continue;
     }
-    const auto symbols = image != nullptr ? std::span<const vm::Symbol>(image->symbols) : std::span<const vm::Symbol>();
+    const auto symbols =
+        image != nullptr ? std::span<const vm::Symbol>(image->symbols) : std::span<const vm::Symbol>();
     if (add_variables(symbols, unit, name, hex, items)) continue;
     const Target target = find_target(unit, name);
     items.push_back({name_of(stdlib::parameter_table(unit), target), target, hex});

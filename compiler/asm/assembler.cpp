@@ -41,6 +41,19 @@ bool same_word(std::string_view a, std::string_view b) {
          std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) { return lower(x) == lower(y); });
 }
 
+// The whole word of a template around a place, or the sign there.
+std::string_view word_at(std::string_view form, size_t at) {
+  const auto letter = [&](size_t n) {
+    return n < form.size() && lower(form[n]) >= 'a' && lower(form[n]) <= 'z';
+  };
+  if (!letter(at)) return form.substr(at, 1);
+  size_t begin = at;
+  size_t end = at;
+  while (begin > 0 && letter(begin - 1)) --begin;
+  while (letter(end)) ++end;
+  return form.substr(begin, end - begin);
+}
+
 const char* kind_text(OperandKind kind) {
   switch (kind) {
     case OperandKind::Variable: return "a variable";
@@ -190,7 +203,7 @@ class Assembler {
       match.at = line.at();
       if (form[at] != '{') {
         if (line.text(form.substr(at, 1))) continue;
-        match.expected = fmt::format("`{}`", form[at]);
+        match.expected = fmt::format("`{}`", word_at(form, at));
         return match;
       }
       at = form.find('}', at);
@@ -238,7 +251,9 @@ class Assembler {
       }
     }
     if (value < least || value > highest) {
-      match.range = fmt::format("{} to {}", least, highest);
+      match.range = info.kind == OperandKind::Constant
+                        ? "-2147483648 to 2147483647, in hexadecimal or binary up to 0xFFFFFFFF"
+                        : fmt::format("{} to {}", least, highest);
       return false;
     }
     match.command.operands[n] = static_cast<int32_t>(static_cast<uint32_t>(value));

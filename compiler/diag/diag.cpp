@@ -70,7 +70,7 @@ bool WarningOptions::apply(std::string_view option) {
 
 Severity WarningOptions::severity(const DiagInfo& row) const {
   if (row.severity != Severity::Warning) return row.severity;
-  const State state = !states_.empty()                                   ? states_[static_cast<size_t>(row.diag)]
+  const State state = !states_.empty()                            ? states_[static_cast<size_t>(row.diag)]
                       : kOnAtFirst[static_cast<size_t>(row.diag)] ? State::On
                                                                   : State::Off;
   switch (state) {

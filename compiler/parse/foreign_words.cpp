@@ -1,5 +1,5 @@
-// What a word is meant to be is told by its neighbours, without a grammar: two operands never stand side by side, a
-// call is never followed by a statement.
+// What a word is meant to be is told by its neighbours, without a grammar: two operands never stand side by
+// side, a call is never followed by a statement.
 #include "compiler/parse/foreign_words.hpp"
 
 #include <algorithm>
@@ -40,7 +40,8 @@ constexpr std::string_view kBlockEnds[] = {"end_if", "end_while", "end_for", "en
 constexpr size_t kLongestHead = 500;  // tokens in the brackets of a misspelt head
 
 bool is_keyword(TokenKind kind) {
-  return std::any_of(std::begin(kKeywords), std::end(kKeywords), [kind](const Keyword& k) { return k.kind == kind; });
+  return std::any_of(std::begin(kKeywords), std::end(kKeywords),
+                     [kind](const Keyword& k) { return k.kind == kind; });
 }
 
 bool ends_operand(TokenKind kind) {
@@ -57,9 +58,11 @@ bool ends_statement(TokenKind kind) {
 
 class Translator {
  public:
-  Translator(std::span<const Token> tokens, Diagnostics& diagnostics) : tokens_(tokens), diagnostics_(diagnostics) {
+  Translator(std::span<const Token> tokens, Diagnostics& diagnostics)
+      : tokens_(tokens), diagnostics_(diagnostics) {
     for (size_t i = 1; i + 1 < tokens.size(); ++i)
-      if (kind(i) == TokenKind::Name && kind(i - 1) == TokenKind::RightBrace && kind(i + 1) == TokenKind::Semicolon)
+      if (kind(i) == TokenKind::Name && kind(i - 1) == TokenKind::RightBrace &&
+          kind(i + 1) == TokenKind::Semicolon)
         types_.insert(tokens[i].text);
   }
 
@@ -111,7 +114,9 @@ class Translator {
   }
 
   // A bracket with something in it: no call of a function of the program has that.
-  bool filled_bracket(size_t i) const { return kind(i) == TokenKind::LeftParen && kind(i + 1) != TokenKind::RightParen; }
+  bool filled_bracket(size_t i) const {
+    return kind(i) == TokenKind::LeftParen && kind(i + 1) != TokenKind::RightParen;
+  }
   // What a statement or an operand begins with, and nothing goes on with.
   bool statement_at(size_t i) const {
     const TokenKind found = kind(i);
@@ -121,7 +126,8 @@ class Translator {
 
   bool plc_word(const Token& token) {
     const bool operand = is_word_or_number(next()) || filled_bracket(at_ + 1) || next() == TokenKind::Numof;
-    const bool negated = next() == TokenKind::Not || next() == TokenKind::Minus || next() == TokenKind::BitNot;
+    const bool negated =
+        next() == TokenKind::Not || next() == TokenKind::Minus || next() == TokenKind::BitNot;
     for (const Infix& infix : kInfix)
       if (equal_but_for_case(token.text, infix.word) && ends_operand(before()) && (operand || negated))
         return foreign(infix.kind, token.text, infix.advice);
@@ -132,7 +138,8 @@ class Translator {
       out_.pop_back();
       return true;
     }
-    const bool block = before() == TokenKind::RightParen || before() == TokenKind::Else || before() == TokenKind::Do;
+    const bool block =
+        before() == TokenKind::RightParen || before() == TokenKind::Else || before() == TokenKind::Do;
     if (equal_but_for_case(token.text, "begin") && block && statement_at(at_ + 1)) {
       ++begun_;
       ++depth_;
@@ -145,8 +152,9 @@ class Translator {
       if (kind(at_) == TokenKind::Semicolon) ++at_;
       return true;
     }
-    const bool block_end = std::any_of(std::begin(kBlockEnds), std::end(kBlockEnds),
-                                       [&](std::string_view end) { return equal_but_for_case(token.text, end); });
+    const bool block_end =
+        std::any_of(std::begin(kBlockEnds), std::end(kBlockEnds),
+                    [&](std::string_view end) { return equal_but_for_case(token.text, end); });
     if (!block_end || next() != TokenKind::Semicolon || !ends_statement(before())) return false;
     foreign(token.kind, token.text, "a block ends with '}'", 2);
     out_.pop_back();
@@ -175,12 +183,14 @@ class Translator {
   // Whether the word can be nothing else than the keyword here.
   bool stands_for(TokenKind keyword) const {
     const bool inside = depth_ > 0;
-    const bool first = ends_statement(before()) || before() == TokenKind::RightParen || before() == TokenKind::Else;
+    const bool first =
+        ends_statement(before()) || before() == TokenKind::RightParen || before() == TokenKind::Else;
     switch (keyword) {
       case TokenKind::If:
       case TokenKind::While:
       case TokenKind::For:
-      case TokenKind::Switch: return inside && filled_bracket(at_ + 1) && statement_at(behind_bracket(at_ + 1));
+      case TokenKind::Switch:
+        return inside && filled_bracket(at_ + 1) && statement_at(behind_bracket(at_ + 1));
       case TokenKind::Long: return next() == TokenKind::Name && !ends_operand(before());
       case TokenKind::Initial:
         return next() == TokenKind::Long || (next() == TokenKind::Name && kind(at_ + 2) == TokenKind::Name);

@@ -1,6 +1,6 @@
-// Words and operators that people bring along: keywords in capitals or misspelt, `:=`, `<>`, AND, OR, NOT, MOD, THEN,
-// BEGIN and END of PLC languages. Each is reported where it stands and replaced by what was meant, so that it causes no
-// second message.
+// Words and operators that people bring along: keywords in capitals or misspelt, `:=`, `<>`, AND, OR, NOT,
+// MOD, THEN, BEGIN and END of PLC languages. Each is reported where it stands and replaced by what was meant,
+// so that it causes no second message.
 #pragma once
 
 #include <span>

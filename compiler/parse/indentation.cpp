@@ -1,5 +1,5 @@
-// A block whose lines are followed by one that stands no deeper than the head of the block should have been closed
-// before that line.
+// A block whose lines are followed by one that stands no deeper than the head of the block should have been
+// closed before that line.
 #include "compiler/parse/indentation.hpp"
 
 #include <algorithm>
@@ -32,8 +32,8 @@ std::optional<size_t> unclosed_brace(std::span<const Token> tokens, const Source
     const Token& token = tokens[i];
     if (token.line_start) indent = map.position(token.span.begin).column;
     const bool closes = token.kind == TokenKind::RightBrace;
-    // Its own '}' stands as deep as the head; a '}' further left, or any other line as far left, belongs to a block
-    // around it. Labels may stand anywhere.
+    // Its own '}' stands as deep as the head; a '}' further left, or any other line as far left, belongs to a
+    // block around it. Labels may stand anywhere.
     const bool label = token.kind == TokenKind::Case || token.kind == TokenKind::Default;
     const bool opens = token.kind == TokenKind::LeftBrace;
     if (token.line_start && !open.empty() && !label && !opens && token.kind != TokenKind::End &&

@@ -1,4 +1,5 @@
-// Which '{' is not closed when a '}' is missing somewhere: the brackets only say that one is, the indentation says which.
+// Which '{' is not closed when a '}' is missing somewhere: the brackets only say that one is, the indentation
+// says which.
 #pragma once
 
 #include <optional>

@@ -21,8 +21,8 @@ bool is_absolute(const std::string& path) {
 std::string directory_of(const SourceFile& file) { return file.path.substr(0, file.path.rfind('/') + 1); }
 
 // Where a file is looked for, each with its slash; "" is the current directory.
-std::vector<std::string> directories_for(const std::string& plain, const SourceFile& includer, const SourceFile& main,
-                                         const PreprocessOptions& options) {
+std::vector<std::string> directories_for(const std::string& plain, const SourceFile& includer,
+                                         const SourceFile& main, const PreprocessOptions& options) {
   std::vector<std::string> directories;
   const auto add = [&directories](const std::string& directory) {
     if (std::find(directories.begin(), directories.end(), directory) == directories.end())

@@ -22,7 +22,8 @@ std::optional<int32_t> bits_of(const checked::Expr& expr) {
     return unary->op == checked::UnaryOp::Not ? std::optional(1) : std::nullopt;
   const auto* node = std::get_if<checked::Binary>(&expr.node);
   if (node == nullptr) return std::nullopt;
-  if (is_comparison(node->op) || node->op == BinaryOp::LogicalAnd || node->op == BinaryOp::LogicalOr) return 1;
+  if (is_comparison(node->op) || node->op == BinaryOp::LogicalAnd || node->op == BinaryOp::LogicalOr)
+    return 1;
   if (node->op != BinaryOp::And) return std::nullopt;
   if (const int32_t* mask = constant_value(node->right)) return *mask;
   if (const int32_t* mask = constant_value(node->left)) return *mask;

@@ -209,7 +209,8 @@ class Declarations {
           others.set(n);
     context_.diagnostics.report(
         Diag::RangeOverflow, fill.overflow,
-        {kind == RangeKind::Initials ? "initial" : "global", fmt::format("{}{}", fill.count == kHugeSize ? "at least " : "", fill.count),
+        {kind == RangeKind::Initials ? "initial" : "global",
+         fmt::format("{}{}", fill.count == kHugeSize ? "at least " : "", fill.count),
          fmt::format("{}", range.low), fmt::format("{}", range.high), fmt::format("{}", range.size()),
          range_advice(kind, fill.count, context_.program.ranges, others, context_.unit)});
     context_.overflown = true;
@@ -240,7 +241,8 @@ void declare(const ast::Program& program, Context& context) { Declarations(conte
 
 bool Context::has_room(const Variable& variable) const {
   if (!overflown || variable.storage == Storage::Alias) return true;
-  const auto& range = program.ranges.of(variable.storage == Storage::Initial ? RangeKind::Initials : RangeKind::Globals);
+  const auto& range =
+      program.ranges.of(variable.storage == Storage::Initial ? RangeKind::Initials : RangeKind::Globals);
   return variable.number + variable.type.size() - 1 <= range.high;
 }
 

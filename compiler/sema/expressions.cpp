@@ -106,7 +106,8 @@ ExprPtr ExpressionChecker::load(const ast::Expr& expr) {
     const bool named = std::holds_alternative<ast::Name>(expr.node);
     context_.diagnostics.report(
         Diag::NotAValue, expr.span,
-        {from->text(), named ? fmt::format("{}, and numof( {} ) is its number", advice, from->name) : advice});
+        {from->text(),
+         named ? fmt::format("{}, and numof( {} ) is its number", advice, from->name) : advice});
     return nullptr;
   }
   record_read(*from);
@@ -215,7 +216,8 @@ ExprPtr ExpressionChecker::assign(const ast::Assign& node, std::optional<Object>
 ExprPtr ExpressionChecker::copy_structure(const ast::Assign& node, Object target, Span span) {
   const auto fixed = [&](const Object& object, Span at) {
     if (object.place.offset == nullptr) return true;
-    context_.diagnostics.report(Diag::NotAValue, at, {object.text(),
+    context_.diagnostics.report(Diag::NotAValue, at,
+                                {object.text(),
                                  "an element found by a computed index is copied member by member; with a "
                                  "constant index it is copied as a whole"});
     return false;
@@ -298,8 +300,7 @@ void ExpressionChecker::unknown_name(std::string_view name, Span span, bool func
   if (!context_.reported_names.emplace(name).second) return;
   Diagnostic& message = context_.diagnostics.report(function ? Diag::UnknownFunction : Diag::UnknownName,
                                                     span, {std::string(name)});
-  context_.scope.explain_unknown(message, name, function,
-                                 context_.unit.generation == stdlib::Generation::B);
+  context_.scope.explain_unknown(message, name, function, context_.unit.generation == stdlib::Generation::B);
 }
 
 }  // namespace ipos::compiler

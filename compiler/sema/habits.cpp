@@ -54,7 +54,8 @@ bool bare_not(const ast::Expr& expr) {
 // Something that is 0 or 1 by its form.
 bool is_truth(const ast::Expr& expr) {
   if (const auto* node = std::get_if<ast::Unary>(&expr.node)) return node->op == ast::UnaryOp::Not;
-  if (const auto* number = std::get_if<ast::Number>(&expr.node)) return number->value == 0 || number->value == 1;
+  if (const auto* number = std::get_if<ast::Number>(&expr.node))
+    return number->value == 0 || number->value == 1;
   const ast::Binary* node = binary(expr);
   if (node == nullptr) return false;
   if (is_bitwise(node->op)) {
@@ -98,14 +99,16 @@ class Habits {
     }
     const bool negated = bare_not(*node.left) && !is_truth(*node.right);
     if (negated && (bits || is_comparison(node.op)))
-      diagnostics_.report(Diag::Precedence, node.left->span,
-                          {std::string(sign(node.op)), "!", fmt::format("!a {0} b is (!a) {0} b", sign(node.op))});
+      diagnostics_.report(
+          Diag::Precedence, node.left->span,
+          {std::string(sign(node.op)), "!", fmt::format("!a {0} b is (!a) {0} b", sign(node.op))});
   }
 
   void weaker(const ast::Binary& outer, const ast::Binary& inner) {
     const bool left = outer.left->span.begin == inner.left->span.begin;
-    const std::string form = left ? fmt::format("a {0} b {1} c is (a {0} b) {1} c", sign(inner.op), sign(outer.op))
-                                  : fmt::format("a {0} b {1} c is a {0} (b {1} c)", sign(outer.op), sign(inner.op));
+    const std::string form =
+        left ? fmt::format("a {0} b {1} c is (a {0} b) {1} c", sign(inner.op), sign(outer.op))
+             : fmt::format("a {0} b {1} c is a {0} (b {1} c)", sign(outer.op), sign(inner.op));
     diagnostics_.report(Diag::Precedence, outer.op_span,
                         {std::string(sign(outer.op)), std::string(sign(inner.op)), form});
   }
@@ -113,10 +116,13 @@ class Habits {
   // `a =+ 5`: the sign touches the '=' and not what follows it.
   void check(const ast::Assign& node) {
     const Location sign_at = node.op_span.end;
-    if (node.op || sign_at.in_macro() || node.value->parenthesized || node.value->span.begin != sign_at) return;
+    if (node.op || sign_at.in_macro() || node.value->parenthesized || node.value->span.begin != sign_at)
+      return;
     const auto* unary = std::get_if<ast::Unary>(&node.value->node);
     const auto* pointer = std::get_if<ast::Deref>(&node.value->node);
-    const ast::Expr* operand = unary != nullptr ? unary->operand : pointer != nullptr ? pointer->number : nullptr;
+    const ast::Expr* operand = unary != nullptr     ? unary->operand
+                               : pointer != nullptr ? pointer->number
+                                                    : nullptr;
     if (operand == nullptr || operand->span.begin.in_macro()) return;
     if (operand->span.begin.value == sign_at.value + 1) return;
     const SourceFile* file = sources_.file_of(sign_at);
@@ -129,7 +135,9 @@ class Habits {
   void check_loop(const ast::Stmt& stmt) {
     const auto* with_while = std::get_if<ast::While>(&stmt.node);
     const auto* with_for = std::get_if<ast::For>(&stmt.node);
-    const ast::Stmt* body = with_while != nullptr ? with_while->body : with_for != nullptr ? with_for->body : nullptr;
+    const ast::Stmt* body = with_while != nullptr ? with_while->body
+                            : with_for != nullptr ? with_for->body
+                                                  : nullptr;
     if (body == nullptr || !std::holds_alternative<ast::Empty>(body->node)) return;
     diagnostics_.report(Diag::EmptyLoop, body->span, {with_while != nullptr ? "while" : "for"});
   }

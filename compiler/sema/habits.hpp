@@ -1,5 +1,5 @@
-// Warnings about text that means something else than it seems to: operators that bind less than they look, chains
-// of comparisons, `=+`, and a `;` that is the whole body of a loop.
+// Warnings about text that means something else than it seems to: operators that bind less than they look,
+// chains of comparisons, `=+`, and a `;` that is the whole body of a loop.
 #pragma once
 
 #include "compiler/ast/ast.hpp"

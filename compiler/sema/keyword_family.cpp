@@ -1,4 +1,5 @@
-// A constant keeps its name in the macros of its place: GO_WAIT given to _AxisStop can be told from the 1 it is.
+// A constant keeps its name in the macros of its place: GO_WAIT given to _AxisStop can be told from the 1 it
+// is.
 #include <fmt/format.h>
 
 #include <algorithm>

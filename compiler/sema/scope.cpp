@@ -96,7 +96,8 @@ const StructType* Scope::find_type(std::string_view name) const {
   return type == nullptr ? nullptr : *type;
 }
 
-void Scope::explain_unknown(Diagnostic& diagnostic, std::string_view name, bool function, bool b_headers) const {
+void Scope::explain_unknown(Diagnostic& diagnostic, std::string_view name, bool function,
+                            bool b_headers) const {
   const stdlib::HeaderName* known = stdlib::find_header_name(name, b_headers);
   if (known != nullptr) {
     uint32_t number = 0;

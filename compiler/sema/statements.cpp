@@ -47,7 +47,8 @@ StatementChecker::Result StatementChecker::block(const ast::Block& node, Span sp
   const ast::Stmt* before = nullptr;
   for (const ast::Stmt* stmt : node.body) {
     if (is_one_of<ast::Case, ast::Default>(*stmt)) {
-      if (reached && before != nullptr && !is_one_of<ast::Case, ast::Default>(*before) && !meant(*before, *stmt))
+      if (reached && before != nullptr && !is_one_of<ast::Case, ast::Default>(*before) &&
+          !meant(*before, *stmt))
         context_.diagnostics.report(Diag::FallThrough, stmt->span);
       reached = true;
       reported = false;
@@ -72,7 +73,8 @@ bool StatementChecker::meant(const ast::Stmt& before, const ast::Stmt& label) co
   const uint32_t end = label.span.begin.value - file->base;
   if (begin > end || end > file->text.size()) return false;
   std::string between = file->text.substr(begin, end - begin);
-  std::transform(between.begin(), between.end(), between.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(between.begin(), between.end(), between.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   return between.find("fall") != std::string::npos;
 }
 

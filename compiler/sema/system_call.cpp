@@ -146,9 +146,9 @@ class SystemCallChecker {
       arguments_.emplace_back(*value);
       return true;
     }
-    context_.diagnostics.report(
-        Diag::ArgumentKeyword, expr.span,
-        {fmt::format("{}", n + 1), std::string(call_.function.text), fmt::format("{}", fmt::join(constants_of(set), ", "))});
+    context_.diagnostics.report(Diag::ArgumentKeyword, expr.span,
+                                {fmt::format("{}", n + 1), std::string(call_.function.text),
+                                 fmt::format("{}", fmt::join(constants_of(set), ", "))});
     return false;
   }
 

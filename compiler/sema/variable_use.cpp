@@ -1,5 +1,5 @@
-// One walk over the syntax tree collects what is stored where, whose number is taken and what is given to system
-// functions; the record of accesses says who reads and writes.
+// One walk over the syntax tree collects what is stored where, whose number is taken and what is given to
+// system functions; the record of accesses says who reads and writes.
 #include "compiler/sema/variable_use.hpp"
 
 #include <fmt/format.h>
@@ -32,7 +32,7 @@ struct ReadArgument {
   std::string_view mnemonic;
   size_t argument;
 };
-constexpr ReadArgument kReadArguments[] = {{"SETSYS", 1}, {"SCOM", 1}, {"MOVLNK", 0}, {"VARINT", 0},
+constexpr ReadArgument kReadArguments[] = {{"SETSYS", 1}, {"SCOM", 1},  {"MOVLNK", 0}, {"VARINT", 0},
                                            {"BMOV", 2},   {"BMOVN", 2}, {"COPY", 1}};
 
 // What is given by number may be the first of several variables: the eight of MLDATA.
@@ -130,7 +130,8 @@ class VariableUse {
   std::string name_of(const stdlib::MemberUse& use, int32_t value) const {
     for (const std::string_view beginning : use.constants())
       for (const stdlib::HeaderName& row : stdlib::header_names())
-        if (row.name.starts_with(beginning) && row.text == fmt::format("{}", value)) return std::string(row.name);
+        if (row.name.starts_with(beginning) && row.text == fmt::format("{}", value))
+          return std::string(row.name);
     return "nothing";
   }
 
@@ -158,9 +159,9 @@ class VariableUse {
     for (size_t n = 0; n < node.arguments.size(); ++n) {
       const auto given = part(*node.arguments[n]);
       if (!given) continue;
-      const bool reads = std::any_of(std::begin(kReadArguments), std::end(kReadArguments), [&](const auto& row) {
-        return row.mnemonic == function->mnemonic && row.argument == n;
-      });
+      const bool reads = std::any_of(
+          std::begin(kReadArguments), std::end(kReadArguments),
+          [&](const auto& row) { return row.mnemonic == function->mnemonic && row.argument == n; });
       if (reads)
         given_.emplace(given->variable, function->name);
       else
@@ -181,8 +182,9 @@ class VariableUse {
     }
     const auto given = given_.find(&variable);
     if (!read && given == given_.end()) return;
-    context_.diagnostics.report(Diag::NeverWritten, variable.span,
-                                {variable.name, read ? "read" : fmt::format("given to '{}'", given->second)});
+    context_.diagnostics.report(
+        Diag::NeverWritten, variable.span,
+        {variable.name, given == given_.end() ? "read" : fmt::format("given to '{}'", given->second)});
   }
 
   Context& context_;

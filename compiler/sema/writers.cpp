@@ -82,7 +82,8 @@ class Writers {
       bool found = false;
       checked::walk(part, [&](const checked::Expr& inner) {
         const auto* load = std::get_if<checked::Load>(&inner.node);
-        found = found || (load != nullptr && load->place.offset == nullptr && load->place.number == node.target.number);
+        found = found || (load != nullptr && load->place.offset == nullptr &&
+                          load->place.number == node.target.number);
       });
       return found;
     };

@@ -1,4 +1,5 @@
-// Symbols of an image are longs and arrays of longs with their whole path as name; wholes are found by its beginning.
+// Symbols of an image are longs and arrays of longs with their whole path as name; wholes are found by its
+// beginning.
 #include "runtime/plant/variable_names.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
-// The one reading of names of variables: what the tools print is what they take. A name is a symbol ("lCount"), a
-// member or an element ("TrCycl.ObjectNo", "y[0].b[1]"), a whole of several variables ("TrCycl", "y", "y[0].b"), a
-// number ("H420") or a system variable ("ActPos_Mot").
+// The one reading of names of variables: what the tools print is what they take. A name is a symbol
+// ("lCount"), a member or an element ("TrCycl.ObjectNo", "y[0].b[1]"), a whole of several variables
+// ("TrCycl", "y", "y[0].b"), a number ("H420") or a system variable ("ActPos_Mot").
 #pragma once
 
 #include <cstdint>

@@ -142,6 +142,13 @@ const Mistake kMistakes[] = {
 };
 INSTANTIATE_TEST_SUITE_P(All, AssemblerMistakes, testing::ValuesIn(kMistakes));
 
+TEST(Assembler, SaysWhatItExpects) {
+  const auto said = [](const char* text) { return assemble_text(text)->diagnostics.all().at(0).text; };
+  EXPECT_EQ("MOD: expected `MOD` here", said("MOD H0 % 2"));
+  EXPECT_EQ("the number here must be -2147483648 to 2147483647, in hexadecimal or binary up to 0xFFFFFFFF",
+            said("SET H1 = 4294967295"));
+}
+
 TEST(Assembler, FindsEveryMistakeInOneRun) {
   EXPECT_EQ(3U, assemble_text("FOO\nNOP\nBAR\nJMP M9\n")->diagnostics.all().size());
 }

@@ -149,7 +149,7 @@ std::vector<Mistake> mistakes() {
       {"W0256", "SCREC r; long d; main() { d = 1; r.DPointer = @d; _SBusCommDef(3, r); }", "numof( d )"},
       {"W0257", "long @a; main() { H0 = a; }", "is read"},
       {"W0257", "long @v[3]; main() { H0 = v[H1]; }", "is read"},
-      {"W0257", "SSPOSRAMP @r; main() { _SetSys(9, r); }", "but never written"},
+      {"W0257", "SSPOSRAMP @r; main() { _SetSys(9, r); }", "given to '_SetSys'"},
       {"W0258", "long n; main() { _SetTask2(1, t); @n = n * 2 + 1; } t() { n = 5; }", "'t'"},
       {"W0259", "SCREC r; long d; main() { d = 1; r.DPointer = @423; _SBusCommDef(3, r); }", "numof( d )"},
       {"W0218", "#pragma var 300 310\n@#pragma var 311 320\nmain() { }"},
@@ -246,7 +246,8 @@ TEST(Suggestions, ForMisspeltNames) {
   EXPECT_EQ("did you mean 'ML_FT_PAR3'?", first_note("main() { H0 = ML_FT_PR3; }"));
   EXPECT_EQ("did you mean 'main' here?", first_note("Main() { H0 = 1; }"));
   EXPECT_NE(std::string::npos, first_note("main() { H0 = DI03; }").find("#include <io.h>"));
-  EXPECT_EQ("MLDATA has WritePar, ReadPar, PO1, PO2, PO3, PI1, PI2, PI3", first_note("MLDATA d; main() { d.zzzzzz = 1; }"));
+  EXPECT_EQ("MLDATA has WritePar, ReadPar, PO1, PO2, PO3, PI1, PI2, PI3",
+            first_note("MLDATA d; main() { d.zzzzzz = 1; }"));
   EXPECT_EQ("did you mean '#define'?", first_note("#defin A 1\nmain() { }"));
   EXPECT_EQ("did you mean 'const.h'?", first_note("#include <const>\nmain() { }"));
   const Compilation goabs = compile_text("main() { _GoAbs(1); }");
@@ -266,7 +267,8 @@ TEST(Suggestions, TellAnIncludeWithOtherCapitals) {
 }
 
 TEST(Suggestions, NameTheBraceByItsIndentation) {
-  const Compilation c = compile_text("main()\n{\n  while (H0) {\n    H1 = 1;\n  H2 = 2;\n}\nf()\n{\n  H3 = 1;\n}\n");
+  const Compilation c =
+      compile_text("main()\n{\n  while (H0) {\n    H1 = 1;\n  H2 = 2;\n}\nf()\n{\n  H3 = 1;\n}\n");
   ASSERT_FALSE(c.diagnostics.all().empty());
   ASSERT_FALSE(c.diagnostics.all()[0].notes.empty());
   EXPECT_EQ(3U, c.sources->position(c.diagnostics.all()[0].notes[0].span.begin).line);
@@ -280,11 +282,14 @@ std::string first_text(const std::string& source) {
 TEST(Messages, SayWhatWasMeant) {
   EXPECT_EQ("'_SBusCommOn' is a function; '_SBusCommOn()' calls it", first_text("main() { _SBusCommOn; }"));
   EXPECT_EQ("'main' is a function; numof( ... ) takes variables", first_text("main() { H0 = numof(main); }"));
-  EXPECT_NE(std::string::npos, first_text("main() { H5000000000 = 1; }").find("variable H5000000000 does not exist"));
-  EXPECT_NE(std::string::npos, first_text("SCREC m; MLDATA d; main() { m.DPointer = d; }").find("numof( d )"));
   EXPECT_NE(std::string::npos,
-            first_text("SCREC p[2], q; main() { p[H0] = q; }").find("with a constant index it is copied as a whole"));
-  EXPECT_NE(std::string::npos, first_text("main() { H400 = 1; H0 = H1 * H2 + H0; }").find("is used here by number"));
+            first_text("main() { H5000000000 = 1; }").find("variable H5000000000 does not exist"));
+  EXPECT_NE(std::string::npos,
+            first_text("SCREC m; MLDATA d; main() { m.DPointer = d; }").find("numof( d )"));
+  EXPECT_NE(std::string::npos, first_text("SCREC p[2], q; main() { p[H0] = q; }")
+                                   .find("with a constant index it is copied as a whole"));
+  EXPECT_NE(std::string::npos,
+            first_text("main() { H400 = 1; H0 = H1 * H2 + H0; }").find("is used here by number"));
   EXPECT_LT(first_text("long x[" + std::string(100'000, 'n') + "];\nmain() { }").size(), 2000U);
 }
 
@@ -322,8 +327,10 @@ TEST(Correct, NoMessageFor) {
       "#define WITH 0\nmain() { if (WITH) H0 = 1; if (WITH && H1) H0 = 2; while (1) { H2++; } }",
       "main() { do { H0++; } while (0); for (;;) { H1++; } }",
       "main() { while (H0); H1 = 1; for (H0 = 0; H0 < 5; H0++) ; }",
-      "#include <const.h>\n#define MODE GO_WAIT\nmain() { _GoAbs(MODE, 1); _GoRel(GO_NOWAIT, H0); _AxisStop(3); }",
-      "#include <const.h>\nMOVLNK m; MLDATA d; main() { m.Format = ML_CFT_PAR1; m.DPointer = numof(d); _MoviLink(m); "
+      "#include <const.h>\n#define MODE GO_WAIT\nmain() { _GoAbs(MODE, 1); _GoRel(GO_NOWAIT, H0); "
+      "_AxisStop(3); }",
+      "#include <const.h>\nMOVLNK m; MLDATA d; main() { m.Format = ML_CFT_PAR1; m.DPointer = numof(d); "
+      "_MoviLink(m); "
       "H0 = d.ReadPar; }",
       "SCREC r; long p, d; main() { p = numof(d); r.DPointer = p; d = 1; _SBusCommDef(3, r); }",
       "SCREC r; long a, b; main() { r.DPointer = numof(a); _SBusCommDef(3, r); H0 = b; }",
@@ -356,7 +363,8 @@ std::vector<std::string> codes_with(const char* flag, const std::string& source)
 }
 
 TEST(Warnings, OfFallingThroughAreAskedFor) {
-  const std::string source = "main() { switch (H0) { case 1: case 2: H1 = 1; /*COMMENT*/ case 3: H2 = 1; break; default: ; } }";
+  const std::string source =
+      "main() { switch (H0) { case 1: case 2: H1 = 1; /*COMMENT*/ case 3: H2 = 1; break; default: ; } }";
   EXPECT_EQ(std::vector<std::string>{}, codes(source));
   EXPECT_EQ(std::vector<std::string>{"W0260"}, codes_with("fall-through", source));
   EXPECT_EQ(std::vector<std::string>{"W0260"}, codes_with("all", source));
@@ -370,7 +378,8 @@ TEST(Warnings, OfSeveralWritersAreAskedFor) {
   EXPECT_EQ(std::vector<std::string>{}, codes(source));
   EXPECT_EQ(std::vector<std::string>{"W0261"}, codes_with("several-writers", source));
   EXPECT_EQ(std::vector<std::string>{},
-            codes_with("several-writers", "long n; main() { _SetTask2(1, t); set(); } t() { H0 = n; } set() { n = 1; }"));
+            codes_with("several-writers",
+                       "long n; main() { _SetTask2(1, t); set(); } t() { H0 = n; } set() { n = 1; }"));
 }
 
 TEST(Allocation, FollowsTheWatchWindow) {

@@ -201,6 +201,23 @@ TEST_F(Debugging, ExpressionsFollowC) {
   EXPECT_EQ(value("unit2.H0 + H[1 + 1]"), 0);
 }
 
+TEST_F(Debugging, NamesOfPartsAreThoseOfTheWatch) {
+  Debugger other(
+      plant_of({"typedef struct { long a; long b[3]; } T;\nT y[2];\nlong v[2];\nmain()\n{\n  y[1].b[2] = 9;\n"
+                "  v[1] = 7;\n  H498 = 5;\n  y[0].a = 2;\n}\n"}),
+      quiet_, false, runtime::kSecond);
+  other.run(Order{});
+  const auto value_of = [&](const char* text) { return evaluate(other.plant(), 0, text); };
+  EXPECT_EQ(value_of("y[1].b[2]"), 9);
+  EXPECT_EQ(value_of("y[y[0].a - 1].b[1 + 1] + v[1]"), 16);
+  EXPECT_EQ(value_of("unit1.y[0].a"), 2);
+  EXPECT_EQ(value_of("RefOffset"), 5);
+  EXPECT_EQ(value_of("H[498]"), 5);
+  EXPECT_EQ(evaluate_place(other.plant(), 0, "y[1].b[2]").name, "y[1].b[2]");
+  for (const char* text : {"y", "y[0]", "y[2].a", "y[0].c", "y[0].b[3].a"})
+    EXPECT_THROW(value_of(text), ValueError) << text;
+}
+
 TEST_F(Debugging, NonsenseIsRefused) {
   for (const char* text : {"", "1 +", "nobody", "1 / 0", "(1", "H[9999]", "5x", "lCount lSum", "unit9.H0"})
     EXPECT_THROW(value(text), ValueError) << text;

@@ -11,6 +11,7 @@
 #include <sstream>
 #include <string>
 
+#include "stdlib/header_names.hpp"
 #include "stdlib/language_tables.hpp"
 #include "stdlib/system_variables.hpp"
 #include "vm/isa/blocks.hpp"
@@ -163,6 +164,23 @@ TEST(Documentation, NamesEverything) {
     EXPECT_NE(page.find("\n| " + std::string(structure.name) + " | "), std::string::npos) << structure.name;
   for (const EmbeddedFile& file : headers::embedded_files())
     EXPECT_NE(page.find("`" + std::string(file.name) + "`"), std::string::npos) << file.name;
+}
+
+// Every constant that is made for a member stands on the page with its value.
+TEST(Documentation, HasTheValuesOfMembers) {
+  std::ifstream in(IPOS_STDLIB_DOC);
+  const std::string page{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  size_t found = 0;
+  for (const MemberUse& use : member_uses())
+    for (const std::string_view beginning : use.constants())
+      for (const HeaderName& name : header_names()) {
+        if (!name.name.starts_with(beginning)) continue;
+        ++found;
+        const std::string row = "| " + std::string(use.structure) + "." + std::string(use.member) + " | " +
+                                std::string(name.name) + " | " + std::string(name.text) + " |";
+        EXPECT_NE(page.find(row), std::string::npos) << row;
+      }
+  EXPECT_GE(found, 25U);
 }
 
 // The rows of the two tables of system values name the type of their block.

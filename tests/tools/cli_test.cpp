@@ -36,7 +36,8 @@ TEST(Usage, WrongCommandLinesAre64) {
 TEST(Usage, HelpAndVersion) {
   EXPECT_EQ(run_ipos({"--help"}).exit_code, 0);
   EXPECT_TRUE(contains(run_ipos({"--version"}).out, "ipos "));
-  for (const std::string verb : {"build", "run", "test", "disasm", "verify", "asm", "explain", "fmt", "lsp"}) {
+  for (const std::string verb :
+       {"build", "run", "test", "disasm", "verify", "asm", "explain", "fmt", "lsp"}) {
     const CommandResult result = run_ipos({verb, "--help"});
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_TRUE(contains(result.out, "Example")) << verb;
@@ -183,6 +184,36 @@ TEST(Run, UntilEndStopsWithTheProgram) {
             (nlohmann::json{{"name", "a"}, {"index", 420}, {"value", 5}}));
   EXPECT_TRUE(
       contains(run_ipos({"run", "A.IPC", "--until", "end", "--watch"}, folder.path()).out, "H420 a  5\n"));
+}
+
+// Names that are printed are names that are taken.
+TEST(Run, WatchTakesTheNamesItPrints) {
+  const TemporaryFolder folder;
+  folder.write("A.IPC",
+               "typedef struct { long a; long b[2]; } T;\nT y[2];\nmain()\n{\n  y[0].b[1] = 9;\n}\n");
+  folder.write("B.IPC", "long other;\nmain()\n{\n  other = 1;\n}\n");
+  folder.write("two.toml",
+               "[[station]]\nname = \"a\"\nunit = \"mdxb\"\nprogram = \"A.IPC\"\n"
+               "[[station]]\nname = \"b\"\nunit = \"mdxb\"\nprogram = \"B.IPC\"\n"
+               "[[expect]]\nstation = \"a\"\nat = \"10ms\"\nvariable = \"y[0].b[1]\"\nequals = 9\n"
+               "[[expect]]\nstation = \"a\"\nat = \"10ms\"\nvariable = \"RefOffset\"\nequals = 0\n");
+  const auto watched = [&](const std::string& names) {
+    const CommandResult result =
+        run_ipos({"run", "two.toml", "--for", "20ms", "--watch=" + names}, folder.path());
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.out;
+  };
+  EXPECT_TRUE(contains(watched("y[0].b[1]"), "H422 y[0].b[1]  9\n"));
+  EXPECT_TRUE(contains(watched("y[0].b"), "H421 y[0].b[0]  0\nH422 y[0].b[1]  9\n"));
+  EXPECT_TRUE(contains(watched("y"), "H423 y[1].a     0\n"));
+  EXPECT_TRUE(contains(watched("RefOffset"), "H498 RefOffset  0\n"));
+  EXPECT_FALSE(contains(watched("y"), "B.IPC")) << "a station without the name has no section";
+  const CommandResult traced = run_ipos({"run", "two.toml", "--for", "5ms", "--trace", "t.csv", "--signals",
+                                         "a.y[0].b[1],a.RefOffset,a.DI03,a.DO01"},
+                                        folder.path());
+  EXPECT_EQ(traced.exit_code, 0) << traced.err;
+  EXPECT_TRUE(
+      read_text(folder.path() / "t.csv").starts_with("time_ms,a.y[0].b[1],a.RefOffset,a.DI03,a.DO01\n"));
 }
 
 TEST(Run, SpeedSetsTheCommandsOfAMillisecond) {
