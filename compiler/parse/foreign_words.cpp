@@ -181,11 +181,11 @@ class Translator {
   }
 
   // Whether the word can be nothing else than the keyword here.
-  bool stands_for(TokenKind keyword) const {
+  bool stands_for(TokenKind wanted) const {
     const bool inside = depth_ > 0;
     const bool first =
         ends_statement(before()) || before() == TokenKind::RightParen || before() == TokenKind::Else;
-    switch (keyword) {
+    switch (wanted) {
       case TokenKind::If:
       case TokenKind::While:
       case TokenKind::For:

@@ -27,7 +27,7 @@ const std::vector<Case>& cases() {
       {"keywords in capitals",
        "Long x;\nMain() { While (x) x = 1; If (x == 2) { x = 3; } Else x = 4; Switch (x) { Case 1: ; "
        "Default: ; } }",
-       {"E0180 1:1", "E0180 2:10", "E0180 2:28", "E0180 2:53", "E0180 2:66", "E0180 2:79", "E0180 2:90"}},
+       {"E0180 1:1", "E0180 2:10", "E0180 2:27", "E0180 2:50", "E0180 2:62", "E0180 2:75", "E0180 2:85"}},
       {"keyword misspelt",
        body("whlie (x > 2) x = 1; fro (x = 0; x < 2; x++) y = 2;"),
        {"E0180 1:10", "E0180 1:31"}},
@@ -37,7 +37,7 @@ const std::vector<Case>& cases() {
        {}},
       {"operators of PLC",
        body("x := 5; if (x <> 1 AND NOT y OR (x MOD 2 = 1)) y = x div 2;"),
-       {"E0181 1:12", "E0181 1:25", "E0181 1:30", "E0181 1:34", "E0181 1:40", "E0181 1:46"}},
+       {"E0181 1:12", "E0181 1:24", "E0181 1:29", "E0181 1:33", "E0181 1:39", "E0181 1:45", "E0181 1:63"}},
       {"blocks of PLC",
        body("if (x == 1) THEN BEGIN y = 1; END; while (y) x = 1; END_IF;"),
        {"E0181 1:22", "E0181 1:27", "E0181 1:40", "E0181 1:62"}},
