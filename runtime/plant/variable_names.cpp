@@ -55,12 +55,14 @@ std::vector<NamedVariable> named_variables(std::span<const vm::Symbol> symbols, 
     }
   }
   if (!found.empty()) return found;
+  const bool raw = name.starts_with('H');
   std::optional<uint32_t> number;
-  if (name.starts_with('H'))
+  if (raw)
     number = whole_number(name.substr(1));
   else if (const auto* row = stdlib::find_system_variable(name))
     number = row->number;
-  if (number && *number < unit.variables) found.push_back({std::string(name), "", *number});
+  if (number && *number < unit.variables)
+    found.push_back({raw ? fmt::format("H{}", *number) : std::string(name), "", *number});
   return found;
 }
 

@@ -299,7 +299,7 @@ TEST(Messages, OfRangesWithoutRoomHaveNoConsequences) {
   ASSERT_EQ(1U, c.diagnostics.all().size()) << render_text(c.diagnostics.all(), *c.sources, false);
   EXPECT_EQ(Diag::RangeOverflow, c.diagnostics.all()[0].diag);
   std::string many;
-  for (int n = 0; n < 70; ++n) many += "long v" + std::to_string(n) + "[1000];";
+  for (int n = 0; n < 140; ++n) many += "long v" + std::to_string(n) + "[500];";
   EXPECT_NE(std::string::npos, first_text(many + "main() { }").find("need at least 65535 numbers"));
   EXPECT_NE(std::string::npos, first_note("main() { H0 = GO_WAIT; }").find("#include <const.h>"));
   EXPECT_NE(std::string::npos, first_note("main() { H0 = TargetPos; }").find("H492"));
