@@ -121,7 +121,8 @@ std::string emit_stage(const std::string& path, const CompileFlags& flags, const
     compiler::Diagnostics diagnostics(options.warnings);
     const compiler::SourceFile& main = sources.add(path, path, read_file(path));
     const compiler::PreprocessOptions preprocessing{options.include_dirs, options.defines,
-                                                    stdlib::headers::embedded_files(), options.read_file};
+                                                    stdlib::headers::embedded_files(), options.read_file,
+                                                    options.list_files};
     const std::string text =
         stage == "tokens"
             ? compiler::print_tokens(sources, main,

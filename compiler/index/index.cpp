@@ -39,7 +39,7 @@ ProgramIndex index_program(const std::string& name, const std::string& path, std
                            const CompileOptions& options, const stdlib::UnitType& unit) {
   ProgramIndex index;
   PreprocessOptions preprocessing{options.include_dirs, options.defines, stdlib::headers::embedded_files(),
-                                  options.read_file};
+                                  options.read_file, options.list_files};
   // The mistakes are told by compile(); here they only leave gaps.
   Diagnostics unheard;
   index.main = &index.sources->add(name, path, std::move(text));

@@ -208,7 +208,7 @@ TEST(Run, WatchTakesTheNamesItPrints) {
   EXPECT_TRUE(contains(watched("y"), "H423 y[1].a     0\n"));
   EXPECT_TRUE(contains(watched("RefOffset"), "H498 RefOffset  0\n"));
   EXPECT_FALSE(contains(watched("y"), "B.IPC")) << "a station without the name has no section";
-  const CommandResult traced = run_ipos({"run", "two.toml", "--for", "5ms", "--trace", "t.csv", "--signals",
+  const CommandResult traced = run_ipos({"run", "two.toml", "--for", "20ms", "--trace", "t.csv", "--signals",
                                          "a.y[0].b[1],a.RefOffset,a.DI03,a.DO01"},
                                         folder.path());
   EXPECT_EQ(traced.exit_code, 0) << traced.err;
