@@ -45,7 +45,7 @@ Prospect::Prospect(const vm::Machine& machine, std::span<const VariableObjects* 
       apart = apart && !has_system_variables(data, format);
     });
   }
-  if (!mute || !apart || !may_stop) return;
+  if (!mute || !apart) return;
   for (size_t n = 0; n < outlook.written().size(); ++n)
     if (outlook.written()[n]) undone.push_back(static_cast<uint16_t>(n));
   apart = apart && undone.size() <= vm::Machine::kMostUndone;

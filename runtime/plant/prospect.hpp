@@ -24,7 +24,7 @@ struct Prospect {
   bool apart = false;
   bool minds_motion = true;  // a task uses variables that show the position
   bool tells_motion = true;  // a telegram has system variables
-  // Mute and apart: variables that are to be given back when running ahead fails; none if it cannot.
+  // Mute and apart: variables that are to be given back when running ahead fails.
   std::vector<uint16_t> undone;
 };
 

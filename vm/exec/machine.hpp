@@ -95,10 +95,10 @@ class Machine {
   // False, and nothing has changed: that is not possible, as something else than variables and jumps would
   // come in between, or without the fast engine. Only for tasks that use no variable another one writes, nor
   // one that anybody else changes in these ticks (vm/sched/outlook.hpp), and not when interrupts have been
-  // requested since the last tick. `undone` are the variables that they can write, if they can stop at all.
+  // requested since the last tick. `undone` are the variables that they can write.
   bool run_ahead(const std::array<uint32_t, kTasks>& budgets, uint32_t ticks,
                  std::span<const uint16_t> undone);
-  static constexpr size_t kMostUndone = 64;
+  static constexpr size_t kMostUndone = 256;
 
   // An event of task 1 has happened. Without an installed routine nothing follows.
   void raise_event(Event event);

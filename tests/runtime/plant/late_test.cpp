@@ -10,9 +10,9 @@
 
 #include "tests/harness/proves.hpp"
 #include "tests/runtime/plant/loop_body.hpp"
+#include "tests/runtime/plant/machine_code.hpp"
 #include "tests/runtime/plant/picture.hpp"
 #include "tests/runtime/plant/plant_rig.hpp"
-#include "vm/jit/jit.hpp"
 
 namespace ipos::tests {
 namespace {
@@ -23,16 +23,16 @@ using runtime::Time;
 
 constexpr const char* kHead = R"(
 #include <constb.h>
-#pragma globals 361 399
+#pragma globals 340 399
 SCTRCYCL Tr; long d1; long d2;
 SCREC Re; long r1; long r2;
-MOVLNK Ml; MLDATA Mld;
+MOVLNK Ml; MLDATA Mld; MLDATA Mlx; long t[9];
 long a; long b; long c; long n; long m; long e1; long e2;
 Step() { m = m * 3 + r2; }
 )";
 
 // What tasks do over and over; K and L are replaced by numbers.
-constexpr int kCalm = 6;          // the first ones leave the unit alone
+constexpr int kCalm = 10;         // the first ones leave the unit alone
 constexpr int kOfMovidriveB = 1;  // the last one
 constexpr const char* kBodies[] = {
     "n = n + 1;",
@@ -40,6 +40,10 @@ constexpr const char* kBodies[] = {
     "c = c + 1; if (c > L) c = 0;",
     "e1 = e1 + r1 * 3; e2 = (e2 ^ e1) / 7; if (e1 & L) e1 = e1 - e2;",
     "Step();",
+    "Mlx.WritePar = Mlx.WritePar + n; n = n + 1; Mlx.ReadPar = r1; Mld = Mlx;",
+    "_Copy(t[2], t[1], L); t[1] = t[1] + n; n = n + r1;",
+    "t[c] = t[c] + L; c = c + 1; if (c == 9) c = 0;",
+    "c = numof(t[0]) + L; n = n + *c; *c = n;",
     "if (H483 & L) c = c + 1; else c = c - 1;",
     "b = b + 60000 / (L * 150 - c); c = c + 1;",
     "b = b + 1000 / (r1 - K);",
@@ -52,11 +56,6 @@ constexpr const char* kBodies[] = {
     "_Wait(K); n = n + L;",
     "if (H522 & 1) { H522 = 0; n = n + r1; }",
 };
-
-std::shared_ptr<const vm::fast::Native> machine_code(const vm::VerifiedImage& program) {
-  const std::shared_ptr<const vm::jit::Code> code = vm::jit::compile(program);
-  return code ? std::shared_ptr<const vm::fast::Native>(code, &code->native()) : nullptr;
-}
 
 class LatePlant {
  public:

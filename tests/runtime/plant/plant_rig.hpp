@@ -12,10 +12,22 @@
 
 namespace ipos::tests {
 
-inline std::unique_ptr<runtime::Plant> make_plant(const std::string& text,
-                                                  const std::map<std::string, std::string>& sources = {},
-                                                  std::optional<vm::Rates> rates = std::nullopt,
-                                                  const runtime::Execution& execution = {}) {
+inline std::optional<vm::Image> made(const runtime::StationConfig& station, const std::string& source) {
+  compiler::CompileOptions options;
+  options.unit = station.unit;
+  const auto made = compiler::compile(station.program, "", source, options);
+  EXPECT_TRUE(made.image) << compiler::render_text(made.diagnostics.all(), *made.sources, false);
+  return made.image;
+}
+inline std::optional<vm::Image> made(const runtime::StationConfig& /*station*/, const vm::Image& image) {
+  return image;
+}
+
+// `Program` is a source or an image.
+template <class Program = std::string>
+std::unique_ptr<runtime::Plant> make_plant(
+    const std::string& text, const std::map<std::string, std::type_identity_t<Program>>& files = {},
+    std::optional<vm::Rates> rates = std::nullopt, const runtime::Execution& execution = {}) {
   runtime::PlantFileResult file = runtime::read_plant_file(text);
   for (const auto& error : file.errors) ADD_FAILURE() << error.place.line << ": " << error.text;
   if (!file.errors.empty()) return nullptr;
@@ -25,12 +37,8 @@ inline std::unique_ptr<runtime::Plant> make_plant(const std::string& text,
       programs.emplace_back();
       continue;
     }
-    compiler::CompileOptions options;
-    options.unit = station.unit;
-    const auto made = compiler::compile(station.program, "", sources.at(station.program), options);
-    EXPECT_TRUE(made.image) << compiler::render_text(made.diagnostics.all(), *made.sources, false);
-    if (!made.image) return nullptr;
-    programs.push_back(made.image);
+    programs.push_back(made(station, files.at(station.program)));
+    if (!programs.back()) return nullptr;
   }
   std::vector<runtime::PlantError> errors;
   auto plant =

@@ -22,11 +22,11 @@ using runtime::Time;
 
 constexpr const char* kHead = R"(
 #include <constb.h>
-#pragma globals 361 399
+#pragma globals 340 399
 SCTRCYCL Tr; long d1; long d2;
 SCTRACYCL Ta; long e1; long e2;
 SCREC Re; long r1; long r2;
-MOVLNK Ml; MLDATA Mld;
+MOVLNK Ml; MLDATA Mld; MLDATA Mlx; long t[9];
 long a; long b; long c; long n; long m;
 Clock() { m = m + 1; }
 Trouble() { b = b + 1; _Wait(5); H484 = 4096; _Wait(5); H484 = 0; }
@@ -44,6 +44,11 @@ constexpr const char* kBodies[] = {
     "n = n + 1; if (n > K) { _SetSys(SS_N11, H492); n = 0; }",
     "_GoRel(GO_NOWAIT, L); _Wait(L * 200); n = n + H473;",
     "if (H483 & L) n = n + 1;",
+    "Mlx.WritePar = Mlx.WritePar + n; n = n + 1; Mld = Mlx;",
+    "Mlx = Mld;",
+    "_Copy(t[2], t[1], L); t[1] = n; if (t[0]) n = n + r1;",
+    "t[c] = t[c] + L; c = c + 1; if (c == 9) { c = 0; _Wait(K); }",
+    "c = numof(t[0]) + L; if (r1 & L) n = n + *c; *c = n;",
     "a = H483; a = a & 3; if (a == 3) b = b + 1;",
     "H488 = K; while (H488 > 0); n = n + 1; _Wait(L * 50);",
     "if (r1 > c) { c = r1; n = n + 1; }",
