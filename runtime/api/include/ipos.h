@@ -5,17 +5,20 @@
  * not computing.
  *
  * Memory     The library allocates nothing. Programs and machines live in memory the caller hands over and
- * may take back at any time: nothing has to be closed. Sizes: IPOS_PROGRAM_BYTES, IPOS_VM_BYTES. Errors Every
- * function that can fail returns an ipos_status. Nothing throws, aborts or prints. After a status other than
- * IPOS_OK, IPOS_FAULTED and IPOS_ENDED nothing has changed, unless the function says otherwise. Threads There
- * is no global state. A program does not change after loading: any number of machines and threads may use it
- * at once. A machine is used by one thread at a time. Callbacks  are called inside the function that needs
- * them, on the caller's stack, with the machine as argument. They may use the functions of the machine marked
- * "in callbacks"; the others answer IPOS_BUSY there. A callback must return; it must not leave by longjmp or
- * an exception. Time       is a count of milliseconds ("ticks") that the caller advances. No clock is read,
- * but by ipos_run_due(). Bounds     A program cannot run longer than the ticks and commands asked for, reach
- * memory but its H variables, or nest deeper than its unit allows, whatever the image contains. Platform
- * Two's complement, little endian, 32 bits or more.
+ *            may take back at any time: nothing has to be closed. Sizes: IPOS_PROGRAM_BYTES, IPOS_VM_BYTES.
+ * Errors     Every function that can fail returns an ipos_status. Nothing throws, aborts or prints. After a
+ *            status other than IPOS_OK, IPOS_FAULTED and IPOS_ENDED nothing has changed, unless the function
+ *            says otherwise.
+ * Threads    There is no global state. A program does not change after loading: any number of machines and
+ *            threads may use it at once. A machine is used by one thread at a time.
+ * Callbacks  are called inside the function that needs them, on the caller's stack, with the machine as
+ *            argument. They may use the functions of the machine marked "in callbacks"; the others answer
+ *            IPOS_BUSY there. A callback must return; it must not leave by longjmp or an exception.
+ * Time       is a count of milliseconds ("ticks") that the caller advances. No clock is read, but by
+ *            ipos_run_due().
+ * Bounds     A program cannot run longer than the ticks and commands asked for, reach memory but its H
+ *            variables, or nest deeper than its unit allows, whatever the image contains.
+ * Platform   Two's complement, little endian, 32 bits or more.
  *
  * Numbers of variables are those of the manuals (H0 and up); times are in milliseconds unless a name ends in
  * _us. Pointers must not be null unless "may be null" is written.
@@ -34,8 +37,7 @@ extern "C" {
 #pragma GCC visibility push(default)
 #endif
 
-/* ---- Version and features -------------------------------------------------------------------------------
- */
+/* ---- Version and features ------------------------------------------------------------------------------- */
 
 /* Version of this header. Within a major version functions are only added, and structures do not change. */
 #define IPOS_VERSION_MAJOR 0
@@ -62,8 +64,7 @@ uint32_t ipos_features(void);
 uint32_t ipos_most_variables(void);
 uint32_t ipos_most_words(void);
 
-/* ---- Status ---------------------------------------------------------------------------------------------
- */
+/* ---- Status --------------------------------------------------------------------------------------------- */
 
 /* One row a status: X(name, number, text). */
 #define IPOS_STATUSES(X)                                                                           \
@@ -102,8 +103,7 @@ enum {
 /* The text of a status, in English; "" for a number that is none. Static. In callbacks. */
 const char* ipos_status_text(ipos_status status);
 
-/* ---- Programs -------------------------------------------------------------------------------------------
- */
+/* ---- Programs ------------------------------------------------------------------------------------------- */
 
 /* A verified program. Opaque; in memory of the caller, aligned to 8. */
 typedef struct ipos_program ipos_program;
@@ -172,8 +172,7 @@ ipos_status ipos_symbol_at(const ipos_program* program, uint32_t index, ipos_sym
  * ("H420"; then symbol->name is `name`). The time grows with the table. IPOS_NO_SYMBOL. In callbacks. */
 ipos_status ipos_find(const ipos_program* program, const char* name, ipos_symbol* symbol);
 
-/* ---- The host: what a machine calls ----------------------------------------------------------------------
- */
+/* ---- The host: what a machine calls --------------------------------------------------------------------- */
 
 /* A running program. Opaque; in memory of the caller, aligned to 8. */
 typedef struct ipos_vm ipos_vm;
@@ -290,8 +289,7 @@ typedef struct ipos_host {
   void (*trace)(void* user, ipos_vm* vm, const ipos_step* step);
 } ipos_host;
 
-/* ---- Machines -------------------------------------------------------------------------------------------
- */
+/* ---- Machines ------------------------------------------------------------------------------------------- */
 
 /* Makes a machine in `memory`: variables 0, tasks stopped, tick 0.
  *   memory, size  at least ipos_vm_size() bytes, aligned to 8
@@ -345,8 +343,7 @@ ipos_status ipos_run_due(ipos_vm* vm, uint32_t most, ipos_progress* progress);
 /* Ticks since ipos_init(). In callbacks. */
 uint64_t ipos_ticks(const ipos_vm* vm);
 
-/* ---- Variables (in callbacks) ----------------------------------------------------------------------------
- */
+/* ---- Variables (in callbacks) --------------------------------------------------------------------------- */
 
 /* IPOS_NO_VARIABLE. */
 ipos_status ipos_read(const ipos_vm* vm, uint32_t variable, int32_t* value);
@@ -360,8 +357,7 @@ ipos_status ipos_write_symbol(ipos_vm* vm, const char* name, int32_t value);
  */
 int32_t* ipos_variables(ipos_vm* vm);
 
-/* ---- Tasks, events, frames (in callbacks) ----------------------------------------------------------------
- */
+/* ---- Tasks, events, frames (in callbacks) --------------------------------------------------------------- */
 
 typedef int32_t ipos_task_state;
 enum {
@@ -409,8 +405,7 @@ ipos_status ipos_receive(ipos_vm* vm, const ipos_frame* frame);
 /* What became of a frame that was answered IPOS_SENDING_QUEUED. Tags of cyclic objects may be left out. */
 ipos_status ipos_sent(ipos_vm* vm, uint32_t tag, bool sent);
 
-/* ---- Non-volatile memory ---------------------------------------------------------------------------------
- */
+/* ---- Non-volatile memory -------------------------------------------------------------------------------- */
 
 /* Variables that are kept, H0 and up (IPOSplus p. 28), and the bytes of memory they take with head and
  * CRC-32. */
@@ -422,8 +417,7 @@ ipos_status ipos_sent(ipos_vm* vm, uint32_t tag, bool sent);
 ipos_status ipos_nv_store(ipos_vm* vm);
 ipos_status ipos_nv_load(ipos_vm* vm);
 
-/* ---- The whole state -------------------------------------------------------------------------------------
- */
+/* ---- The whole state ------------------------------------------------------------------------------------ */
 
 /* Bytes of a saved state; the same for all machines with the same program. 0 for null. */
 size_t ipos_state_size(const ipos_vm* vm);
