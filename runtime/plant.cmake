@@ -11,6 +11,6 @@ ipos_layer(runtime
           plant/read_control.cpp plant/read_fault.cpp plant/read_surroundings.cpp plant/read_expect.cpp
           plant/serial_plan.cpp plant/drive_server.cpp plant/sbus_port.cpp plant/serial_port.cpp plant/station.cpp plant/station_power.cpp plant/station_course.cpp
           plant/station_sleep.cpp plant/station_late.cpp plant/prospect.cpp
-          plant/signal_port.cpp plant/variable_names.cpp plant/surroundings.cpp plant/plant.cpp
+          plant/signal_port.cpp plant/station_state.cpp plant/variable_names.cpp plant/surroundings.cpp plant/plant.cpp
   USES vm image bus scom drive positioning motion storage stdlib
   LIBS fmt::fmt)

@@ -159,12 +159,25 @@ std::string allowed(const Parameter& parameter, int32_t value, ReturnCode code) 
   return text;
 }
 
+// A number without unit whose least step is a whole one, as an identifier that is coded in thousandths.
+bool is_whole(const Parameter& parameter, double factor) {
+  return parameter.display.empty() && !parameter.ranges.empty() &&
+         std::all_of(parameter.ranges.begin(), parameter.ranges.end(), [factor](const ValueRange& range) {
+           const auto whole = [factor](int64_t number) {
+             const double shown = static_cast<double>(number) * factor;
+             return std::abs(shown - std::round(shown)) < 1e-9;
+           };
+           return range.step > 0 && whole(range.step) && whole(range.minimum);
+         });
+}
+
 }  // namespace
 
 DisplayScale display_scale(const Parameter& parameter) {
   const Conversion transferred = find_conversion(parameter.conversion).value_or(Conversion{1, 0});
   const int shown = find_unit_conversion(parameter.quantity, parameter.display).value_or(0);
   const double factor = transferred.a / find_conversion(shown).value_or(Conversion{1, 0}).a;
+  if (is_whole(parameter, factor)) return {factor, 0};
   // A power of ten is shown exactly; other factors (minutes as hours) with three decimals, ours.
   for (int decimals = 0; decimals <= kMaxDecimals; ++decimals)
     if (std::abs(factor * std::pow(10, decimals) - 1) < 1e-9) return {factor, decimals};

@@ -4,7 +4,7 @@
 #include "runtime/bus/movilink/dbc.hpp"
 #include "tools/bus_verbs.hpp"
 #include "tools/exit_codes.hpp"
-#include "tools/files.hpp"
+#include "tools/outputs.hpp"
 
 namespace ipos::tools {
 
@@ -21,8 +21,7 @@ void add_bus_dbc(cli::Verb& bus) {
   add_compile_options(verb, flags->compile);
   verb.footer("Example:\n  ipos bus dbc examples/scom/scom.toml -o scom.dbc");
   verb.runs([flags] {
-    const std::string text = runtime::dbc_text(names_of(flags->file, flags->compile));
-    write_file(flags->out, {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+    replace_file(flags->out, runtime::dbc_text(names_of(flags->file, flags->compile)));
     return kGood;
   });
 }

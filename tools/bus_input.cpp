@@ -10,7 +10,7 @@
 namespace ipos::tools {
 
 size_t read_log(const std::string& path, const std::function<void(const runtime::LogEntry&, size_t)>& take) {
-  const std::string text = read_file(path);
+  const std::string text = read_file(path, kLogLimit);
   std::string_view rest = text;
   size_t bad = 0;
   for (size_t line = 1; !rest.empty(); ++line) {
@@ -33,7 +33,7 @@ size_t read_log(const std::string& path, const std::function<void(const runtime:
 namespace {
 
 std::unique_ptr<runtime::Plant> trial_run(const std::string& path, const CompileFlags& compile) {
-  auto plant = make_plant(read_plant_input(path, compile, "sbus"));
+  auto plant = make_plant(read_plant_input(path, compile, "sbus"), runtime::FileUse::Look);
   plant->run_until(runtime::PlanOptions{}.trial);
   return plant;
 }

@@ -156,7 +156,7 @@ RealTimeLoop::End BusLink::run(Time limit) {
   RealTimeLoop loop(clock_, simulation);
   loop.add(bridge());
   const RealTimeLoop::End end = loop.run(queue_.now() + limit);
-  tell();
+  if (!flags_.quiet || end == RealTimeLoop::End::PortGone) tell();
   if (end == RealTimeLoop::End::PortGone) throw Failure(kIoError, "");
   return end;
 }

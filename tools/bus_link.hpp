@@ -19,6 +19,7 @@ struct LinkFlags {
   std::string port;     // as in a plant file (docs/ports.md)
   uint32_t baud = 0;    // 0: factory setting, 500000 on SBus and 9600 on RS-485
   bool repeats = true;  // ask a second time after no answer
+  bool quiet = false;   // tell nothing about the port unless it goes away
 };
 
 // How much longer than a unit may take an answer is waited for: the host's share (ours).

@@ -150,7 +150,7 @@ int plan_bus(const PlanFlags& flags) {
   if (!flags.trial.empty()) options.trial = runtime::parse_duration(flags.trial);
   if (!flags.acyclic.empty()) options.acyclic = runtime::parse_duration(flags.acyclic);
   if (options.acyclic == 0) options.acyclic = 1;
-  const auto plant = make_plant(read_plant_input(flags.plant, flags.compile, "sbus"));
+  const auto plant = make_plant(read_plant_input(flags.plant, flags.compile, "sbus"), runtime::FileUse::Look);
   const BusPlan plan = make_plan(*plant, options);
   if (flags.format == "json") {
     fmt::print("{}", json_report(plan));

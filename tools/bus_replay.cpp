@@ -2,12 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <set>
 
 #include "runtime/bus/log/replay.hpp"
 #include "tools/bus_verbs.hpp"
 #include "tools/failure.hpp"
+#include "tools/outputs.hpp"
 #include "tools/plant_input.hpp"
 #include "tools/run_report.hpp"
 
@@ -49,24 +49,20 @@ std::vector<runtime::LogEntry> entries_of(const ReplayFlags& flags) {
 
 int replay(const ReplayFlags& flags) {
   std::vector<runtime::LogEntry> entries = entries_of(flags);
-  const auto plant = make_plant(read_plant_input(flags.plant, flags.compile));
+  const auto plant = make_plant(read_plant_input(flags.plant, flags.compile), runtime::FileUse::Look);
   runtime::CanLine& line = line_of(*plant, flags);
   const Time begin = flags.begin.empty() ? 0 : runtime::parse_duration(flags.begin);
   runtime::Replay player(plant->queue(), plant->next_source(), std::move(entries), begin);
   runtime::LinePort port(line, line.attach("replay", line.baud(), player));
   player.start(port, line.bit_time());
 
-  std::ofstream file;
+  LogOutput file(flags.record);
   std::optional<runtime::CandumpLog> log;
-  if (!flags.record.empty()) {
-    file.open(flags.record, std::ios::binary);
-    if (!file) throw Failure(kIoError, fmt::format("{}: cannot be written", flags.record));
-    plant->add_observer(log.emplace(file));
-  }
+  if (file.is_open()) plant->add_observer(log.emplace(file.stream()));
   const Time end = flags.duration.empty() ? player.end() + 100 * runtime::kMillisecond
                                           : runtime::parse_duration(flags.duration);
   plant->run_until(end);
-  if (log && !file.flush()) throw Failure(kIoError, fmt::format("{}: cannot be written", flags.record));
+  file.finish();
   fmt::print("{}", text_report(*plant, watch_choice(flags.watch)));
   print_journal(*plant, flags.why);
   fmt::print("{} of {} frames replayed on {}\n", player.sent(), player.frames(), line.name());

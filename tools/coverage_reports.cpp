@@ -8,7 +8,7 @@
 
 #include "tools/coverage/write.hpp"
 #include "tools/failure.hpp"
-#include "tools/files.hpp"
+#include "tools/outputs.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -17,7 +17,7 @@ using CoverageWriter = void (*)(std::ostream&, const coverage::Coverage&);
 
 CoverageWriter coverage_writer(const std::string& path) {
   const std::string ending = std::filesystem::path(path).extension().string();
-  if (path == "-" || ending == ".txt") return coverage::write_text;
+  if (is_standard_output(path) || ending == ".txt") return coverage::write_text;
   if (ending == ".info") return coverage::write_lcov;
   if (ending == ".xml") return coverage::write_cobertura;
   throw Failure(kUsage,
@@ -28,27 +28,22 @@ CoverageWriter coverage_writer(const std::string& path) {
 
 CoverageReports::CoverageReports(const std::vector<std::string>& paths, bool output_taken) {
   for (const std::string& path : paths) {
-    if (path == "-" && output_taken)
+    if (is_standard_output(path) && output_taken)
       throw Failure(kUsage, "--coverage -: standard output has another report; write it to a file");
-    reports_.push_back({path, coverage_writer(path), {}});
+    reports_.push_back({path, coverage_writer(path)});
   }
 }
 
-void CoverageReports::open() {
-  for (Report& report : reports_)
-    if (report.path != "-") report.file = open_output(report.path);
+void CoverageReports::check() const {
+  for (const Report& report : reports_) check_output(report.path);
 }
 
-void CoverageReports::write(const coverage::Coverage& coverage) {
-  for (Report& report : reports_) {
-    if (report.path == "-") {
-      std::ostringstream text;
-      report.write(text, coverage);
-      fmt::print("\n{}", text.str());
-    } else {
-      report.write(report.file, coverage);
-      close_output(report.file, report.path);
-    }
+void CoverageReports::write(const coverage::Coverage& coverage) const {
+  for (const Report& report : reports_) {
+    std::ostringstream text;
+    report.write(text, coverage);
+    if (is_standard_output(report.path)) fmt::print("\n");
+    replace_file(report.path, text.str());
   }
 }
 

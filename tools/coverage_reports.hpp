@@ -1,7 +1,7 @@
 // What --coverage of a verb writes: lcov, Cobertura or text, by the ending of each file's name.
 #pragma once
 
-#include <fstream>
+#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -17,14 +17,13 @@ class CoverageReports {
 
   bool wanted() const { return !reports_.empty(); }
   // Before a long run, so that it does not end without its result.
-  void open();
-  void write(const coverage::Coverage& coverage);
+  void check() const;
+  void write(const coverage::Coverage& coverage) const;
 
  private:
   struct Report {
     std::string path;
     void (*write)(std::ostream&, const coverage::Coverage&);
-    std::ofstream file;
   };
   std::vector<Report> reports_;
 };

@@ -1,52 +1,115 @@
-// Whole files by stdio.
+// A file is looked at before it is opened, as opening a device or a pipe may have effects or block; and once
+// more behind it, as another one may stand there by then.
 #include "tools/files.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <memory>
+#include <mutex>
+#include <set>
+#include <utility>
 
 #include "tools/failure.hpp"
 
 namespace ipos::tools {
 namespace {
 
-struct Closer {
-  void operator()(std::FILE* file) const {
-    if (file != stdin && file != stdout) std::fclose(file);
+using runtime::Descriptor;
+
+// Tests are read on several threads.
+std::mutex opened_mutex;
+std::set<std::pair<dev_t, ino_t>> opened;
+
+bool is_standard_input(const std::string& path) { return path == "-" || path == "/dev/stdin"; }
+
+std::string too_large(size_t limit) { return fmt::format("is larger than {} MB", limit >> 20U); }
+
+// Why it is no file to read, or nothing.
+std::optional<std::string> trouble(const struct stat& info, size_t limit) {
+  if (S_ISDIR(info.st_mode)) return "is a folder";
+  if (!S_ISREG(info.st_mode)) return "is no file but a device or a pipe";
+  if (static_cast<uint64_t>(info.st_size) > limit) return too_large(limit);
+  return std::nullopt;
+}
+
+tl::expected<Descriptor, std::string> open_regular(const std::string& path, size_t limit) {
+  struct stat info {};
+  if (stat(path.c_str(), &info) != 0) return tl::unexpected(std::string(std::strerror(errno)));
+  if (auto why = trouble(info, limit)) return tl::unexpected(std::move(*why));
+  Descriptor file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  if (!file.is_open() || fstat(file.get(), &info) != 0)
+    return tl::unexpected(std::string(std::strerror(errno)));
+  if (auto why = trouble(info, limit)) return tl::unexpected(std::move(*why));
+  const std::lock_guard lock(opened_mutex);
+  opened.emplace(info.st_dev, info.st_ino);
+  return file;
+}
+
+tl::expected<std::string, std::string> read_all(const Descriptor& file, size_t limit) {
+  std::string text;
+  char buffer[65536];
+  for (;;) {
+    const ssize_t count = read(file.get(), buffer, sizeof buffer);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return tl::unexpected(std::string(std::strerror(errno)));
+    if (count == 0) return text;
+    text.append(buffer, static_cast<size_t>(count));
+    if (text.size() > limit) return tl::unexpected(too_large(limit));
   }
-};
-using File = std::unique_ptr<std::FILE, Closer>;
+}
+
+}  // namespace
+
+Descriptor open_input(const std::string& path, size_t limit) {
+  if (is_standard_input(path)) return Descriptor(dup(STDIN_FILENO));
+  auto file = open_regular(path, limit);
+  if (!file) throw Failure(kNoInput, fmt::format("{}: {}", path, file.error()));
+  return std::move(*file);
+}
+
+std::string read_file(const std::string& path, size_t limit) {
+  auto text = read_all(open_input(path, limit), limit);
+  if (!text) throw Failure(kNoInput, fmt::format("{}: {}", path, text.error()));
+  return *std::move(text);
+}
+
+tl::expected<std::string, std::string> load_file(const std::string& path) {
+  const auto file = open_regular(path, kInputLimit);
+  if (!file) return tl::unexpected(file.error());
+  return read_all(*file, kInputLimit);
+}
+
+std::optional<std::string> try_read_file(const std::string& path) {
+  auto text = load_file(path);
+  return text ? std::optional(*std::move(text)) : std::nullopt;
+}
+
+std::optional<std::string> unreadable(const std::string& path) {
+  const auto file = open_regular(path, kInputLimit);
+  return file ? std::nullopt : std::optional(file.error());
+}
 
 bool is_folder(const std::string& path) {
   struct stat info {};
   return stat(path.c_str(), &info) == 0 && S_ISDIR(info.st_mode);
 }
 
-}  // namespace
-
-std::optional<std::string> try_read_file(const std::string& path) {
-  if (is_folder(path)) {
-    errno = EISDIR;
-    return std::nullopt;
+std::vector<std::string> files_below(const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> files;
+  std::error_code error;
+  for (fs::recursive_directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+    std::error_code ignored;
+    if (at->is_regular_file(ignored)) files.push_back(at->path().string());
   }
-  const File file(path == "-" ? stdin : std::fopen(path.c_str(), "rb"));
-  if (!file) return std::nullopt;
-  std::string text;
-  char buffer[65536];
-  while (const size_t count = std::fread(buffer, 1, sizeof buffer, file.get())) text.append(buffer, count);
-  if (std::ferror(file.get()) != 0) return std::nullopt;
-  return text;
-}
-
-std::string read_file(const std::string& path) {
-  auto text = try_read_file(path);
-  if (!text) throw Failure(kNoInput, fmt::format("{}: {}", path, std::strerror(errno)));
-  return *std::move(text);
+  if (error) throw Failure(kNoInput, fmt::format("{}: {}", folder, error.message()));
+  std::sort(files.begin(), files.end());
+  return files;
 }
 
 std::vector<std::string> list_files(const std::string& folder) {
@@ -58,26 +121,10 @@ std::vector<std::string> list_files(const std::string& folder) {
   return names;
 }
 
-void write_file(const std::string& path, std::span<const uint8_t> bytes) {
-  std::FILE* out = path == "-" ? stdout : std::fopen(path.c_str(), "wb");
-  bool good = out != nullptr && std::fwrite(bytes.data(), 1, bytes.size(), out) == bytes.size();
-  if (out == stdout)
-    good = std::fflush(out) == 0 && good;
-  else if (out != nullptr)
-    good = std::fclose(out) == 0 && good;
-  if (!good) throw Failure(kIoError, fmt::format("{}: {}", path, std::strerror(errno)));
-}
-
-std::ofstream open_output(const std::string& path) {
-  std::ofstream file;
-  if (path.empty()) return file;
-  file.open(path, std::ios::binary);
-  if (!file) throw Failure(kIoError, fmt::format("{}: cannot be written", path));
-  return file;
-}
-
-void close_output(std::ofstream& file, const std::string& path) {
-  if (!path.empty() && !file.flush()) throw Failure(kIoError, fmt::format("{}: cannot be written", path));
+bool is_input(const std::string& path) {
+  struct stat info {};
+  const std::lock_guard lock(opened_mutex);
+  return stat(path.c_str(), &info) == 0 && opened.contains({info.st_dev, info.st_ino});
 }
 
 }  // namespace ipos::tools

@@ -1,4 +1,4 @@
-// --port, --baud, --unit and --address.
+// --port, --baud, --quiet, --unit and --address.
 #include "tools/link_options.hpp"
 
 #include <charconv>
@@ -14,6 +14,7 @@ void add_link_options(cli::Verb& verb, LinkFlags& flags, bool port) {
                 "reach a unit over a real port: can0, slcan:/dev/ttyACM0, /dev/ttyUSB0 or /dev/ttyUSB0@16ms");
   verb.option("--baud", flags.baud, "rate of the bus; default 500000 on SBus, 9600 on RS-485")
       .one_of({"9600", "57600", "125000", "250000", "500000", "1000000"});
+  verb.flag("--quiet", flags.quiet, "do not tell what the port cannot do; only when it goes away");
 }
 
 std::string check_unit(const std::string& name) {

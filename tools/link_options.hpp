@@ -8,7 +8,7 @@
 
 namespace ipos::tools {
 
-// --baud, and --port unless the port is a word of its own.
+// --baud, --quiet, and --port unless the port is a word of its own.
 void add_link_options(cli::Verb& verb, LinkFlags& flags, bool port);
 
 // For options that name a unit type with parameters, and for addresses of single units.

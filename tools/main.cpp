@@ -1,14 +1,15 @@
 // ipos: one program, a verb for each arrow of the toolchain.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <exception>
 #include <iterator>
 #include <string_view>
 
 #include "tools/cli/parser.hpp"
-#include "tools/failure.hpp"
+#include "tools/end_of_process.hpp"
 #include "tools/verbs.hpp"
 
 namespace {
@@ -51,16 +52,15 @@ int run(int argc, char** argv) {
   return ipos::tools::cli::run(program, "ipos " IPOS_VERSION, argc, argv);
 }
 
+// Without one of the three streams the next file that is opened would get its number, and its text.
+void hold_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(stream, F_GETFD) < 0) static_cast<void>(open("/dev/null", O_RDONLY));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const ipos::tools::Failure& failure) {
-    if (failure.what()[0] != '\0') fmt::print(stderr, "ipos: {}\n", failure.what());
-    return failure.exit_code();
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "ipos: internal error: {}\n", error.what());
-    return ipos::tools::kInternal;
-  }
+  hold_streams();
+  return ipos::tools::end_of_process([&] { return run(argc, argv); });
 }

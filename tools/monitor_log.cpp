@@ -1,5 +1,4 @@
 // The monitor at a candump log, also one that another program is writing, or standard input.
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/stat.h>
@@ -13,6 +12,7 @@
 #include "runtime/port/descriptor.hpp"
 #include "runtime/port/system_clock.hpp"
 #include "tools/failure.hpp"
+#include "tools/files.hpp"
 #include "tools/interrupt.hpp"
 #include "tools/monitor_sources.hpp"
 
@@ -25,10 +25,7 @@ constexpr Time kLook = 50 * runtime::kMillisecond;  // how often a log that is f
 
 class LogFile {
  public:
-  explicit LogFile(const std::string& path)
-      : path_(path), descriptor_(path == "-" ? dup(STDIN_FILENO) : open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
-    if (!descriptor_.is_open()) throw Failure(kNoInput, fmt::format("{}: {}", path, std::strerror(errno)));
-  }
+  explicit LogFile(const std::string& path) : path_(path), descriptor_(open_input(path, kLogLimit)) {}
 
   // More text: false at the end of what is there now. Waits for a pipe at most kLook.
   bool read_more() {

@@ -111,13 +111,13 @@ int watch(Monitor& monitor, Port& port, runtime::RealClock& clock, Time duration
 
 MonitorSource monitor_source(const std::string& name) {
   namespace fs = std::filesystem;
-  if (name == "-") return MonitorSource::Log;
+  if (name == "-" || name == "/dev/stdin") return MonitorSource::Log;
   if (name.starts_with("slcan:")) return MonitorSource::Can;
   if (name.starts_with("pty:")) return MonitorSource::Serial;
   std::error_code ignored;
   const fs::file_status status = fs::status(name, ignored);
   if (fs::is_character_file(status)) return MonitorSource::Serial;
-  if (fs::exists(status)) return MonitorSource::Log;
+  if (fs::exists(status) || fs::is_symlink(fs::symlink_status(name, ignored))) return MonitorSource::Log;
   if (name.find_first_of("/.") != std::string::npos)
     throw Failure(kNoInput, fmt::format("{}: there is no such log and no such device", name));
   return MonitorSource::Can;

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/failure.hpp"
-#include "tools/files.hpp"
+#include "tools/outputs.hpp"
 #include "tools/param_actions.hpp"
 #include "tools/param_columns.hpp"
 
@@ -59,9 +59,9 @@ bool load_row(ParameterAccess& access, const SetRow& row, Service service, const
 int save_parameters(ParameterAccess& access, const std::string& file) {
   bool complete = true;
   const ParameterSet set = read_settings(access, complete);
-  const std::string text = to_text(set);
-  write_file(file, {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
-  if (file != "-") fmt::print(stderr, "{} parameters of {} in {}\n", set.rows.size(), access.name(), file);
+  replace_file(file, to_text(set));
+  if (!is_standard_output(file))
+    fmt::print(stderr, "{} parameters of {} in {}\n", set.rows.size(), access.name(), file);
   return complete ? kGood : kFindings;
 }
 

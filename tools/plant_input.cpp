@@ -45,10 +45,10 @@ vm::Image program_of(const PlantInput& input, runtime::StationConfig& station, C
   const std::string path = is_plant(input.path)
                                ? (fs::path(input.path).parent_path() / station.program).string()
                                : station.program;
-  if (is_plant(input.path) && !fs::exists(path))
-    throw Failure(kNoInput,
-                  fmt::format("{}:{}:{}: error: station '{}': there is no program {}", input.path,
-                              station.program_place.line, station.program_place.column, station.name, path));
+  if (const auto why = is_plant(input.path) ? unreadable(path) : std::nullopt)
+    throw Failure(kNoInput, fmt::format("{}:{}:{}: error: station '{}': program {}: {}", input.path,
+                                        station.program_place.line, station.program_place.column,
+                                        station.name, path, *why));
   vm::Image image = load_program(path, compile);
   const stdlib::UnitType* unit = stdlib::find_unit(image.unit);
   if (unit == nullptr || unit->tasks == 0)
@@ -76,8 +76,10 @@ PlantInput read_plant_input(const std::string& path, const CompileFlags& compile
   return input;
 }
 
-std::unique_ptr<runtime::Plant> make_plant(PlantInput input, std::optional<vm::Rates> rates,
+std::unique_ptr<runtime::Plant> make_plant(PlantInput input, runtime::FileUse memories,
+                                           std::optional<vm::Rates> rates,
                                            const runtime::Execution& execution) {
+  for (runtime::StationConfig& station : input.file.stations) station.nvram_use = memories;
   std::vector<runtime::PlantError> errors;
   auto plant = std::make_unique<runtime::Plant>(std::move(input.file), std::move(input.programs), rates,
                                                 errors, execution);

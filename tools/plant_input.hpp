@@ -27,8 +27,9 @@ bool is_plant(const std::string& path);
 PlantInput read_plant_input(const std::string& path, const CompileFlags& compile,
                             const std::string& sbus = {});
 
-// Builds it.
-std::unique_ptr<runtime::Plant> make_plant(PlantInput input, std::optional<vm::Rates> rates = {},
+// Builds it. Only a run keeps in the memories of its units what it changes; a verb that looks takes copies.
+std::unique_ptr<runtime::Plant> make_plant(PlantInput input, runtime::FileUse memories,
+                                           std::optional<vm::Rates> rates = {},
                                            const runtime::Execution& execution = execution_of());
 
 }  // namespace ipos::tools

@@ -101,6 +101,19 @@ vm::Image compile_file(const std::string& path, const CompileFlags& flags) {
   return *compile(path, flags).image;
 }
 
+std::vector<std::string> included_files(const std::string& path) {
+  compiler::SourceMap sources;
+  compiler::Diagnostics ignored;
+  const compiler::SourceFile& main = sources.add(path, path, read_file(path));
+  compiler::PreprocessOptions options;
+  options.headers = stdlib::headers::embedded_files();
+  options.read_file = try_read_file;
+  std::vector<std::string> files;
+  for (const auto& include : compiler::preprocess(sources, main, options, ignored).record.includes)
+    if (!include.file->path.empty()) files.push_back(include.file->path);
+  return files;
+}
+
 vm::Image load_image(const std::string& path) {
   const std::string bytes = read_file(path);
   vm::ImageResult result = vm::read_image({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});

@@ -25,6 +25,10 @@ bool is_source(std::string_view path);
 // Compiles; on errors they are printed and a Failure ends the verb.
 vm::Image compile_file(const std::string& path, const CompileFlags& flags);
 
+// The files that a source includes, those that its headers include, too; none of the built-in ones. Whatever
+// else is wrong with it is not told.
+std::vector<std::string> included_files(const std::string& path);
+
 // Reads an .ipx; refused images are a Failure with the place of the damage.
 vm::Image load_image(const std::string& path);
 

@@ -3,16 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "runtime/plant/drive_server.hpp"
 #include "tools/failure.hpp"
 #include "tools/plant_source.hpp"
 
 namespace ipos::tools {
 namespace {
-
-namespace fs = std::filesystem;
 
 class StationAccess final : public ParameterAccess {
  public:
@@ -26,7 +22,6 @@ class StationAccess final : public ParameterAccess {
 
   void open_memory(runtime::FileUse use) {
     if (config_.nvram.empty()) return;
-    if (use == runtime::FileUse::Read && !fs::exists(config_.nvram)) return;  // factory values
     auto medium = runtime::open_posix_medium(config_.nvram, use);
     if (!medium) throw Failure(kIoError, fmt::format("{}: {}", config_.nvram, medium.error()));
     if (const auto refused = drive_.memory().open(std::move(*medium), config_.nvram))

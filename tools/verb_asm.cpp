@@ -6,6 +6,7 @@
 #include "compiler/asm/assembler.hpp"
 #include "tools/failure.hpp"
 #include "tools/files.hpp"
+#include "tools/outputs.hpp"
 #include "tools/verbs.hpp"
 
 namespace ipos::tools {
@@ -27,8 +28,8 @@ void add_asm(cli::Verb& app) {
     print_diagnostics(sources, found, *diagnostics);
     if (!image) throw Failure(kBadInput, "");
     if (output->empty() && *file == "-") throw Failure(kUsage, "standard input needs -o FILE");
-    write_file(output->empty() ? std::filesystem::path(*file).replace_extension(".ipx").string() : *output,
-               vm::write_image(*image));
+    replace_file(output->empty() ? std::filesystem::path(*file).replace_extension(".ipx").string() : *output,
+                 vm::write_image(*image));
     return kGood;
   });
 }

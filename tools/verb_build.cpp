@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "tools/failure.hpp"
-#include "tools/files.hpp"
+#include "tools/outputs.hpp"
 #include "tools/program.hpp"
 #include "tools/verbs.hpp"
 
@@ -34,7 +34,7 @@ int build(const BuildFlags& flags) {
   const std::string output = flags.output.empty()
                                  ? std::filesystem::path(flags.file).replace_extension(".ipx").string()
                                  : flags.output;
-  write_file(output, vm::write_image(image));
+  replace_file(output, vm::write_image(image));
   return kGood;
 }
 

@@ -9,13 +9,13 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #ifdef IPOS_EDITLINE
 #include <editline/readline.h>
 #endif
 
 #include "tools/debug/console.hpp"
 #include "tools/debug/dap.hpp"
+#include "tools/end_of_process.hpp"
 #include "tools/failure.hpp"
 #include "tools/lsp/transport.hpp"
 #include "tools/plant_input.hpp"
@@ -23,8 +23,6 @@
 
 namespace ipos::tools {
 namespace {
-
-namespace fs = std::filesystem;
 
 volatile std::sig_atomic_t stop_asked = 0;
 void on_stop(int) { stop_asked = 1; }
@@ -44,28 +42,8 @@ std::optional<vm::Rates> rates_of(uint32_t speed) {
 
 // A debugged unit works on a copy of its memory, which is gone at the end: what is stepped over twice must
 // not be stored twice.
-std::string copy_of_memory(const std::string& path) {
-  if (path.empty() || !fs::exists(path)) return {};
-  std::string name = (fs::temp_directory_path() / "ipos-memory-XXXXXX").string();
-  const int file = mkstemp(name.data());
-  if (file < 0) throw Failure(kIoError, "no temporary file can be made");
-  close(file);
-  fs::copy_file(path, name, fs::copy_options::overwrite_existing);
-  return name;
-}
-
 debug::MakePlant plant_maker(PlantInput input, std::optional<vm::Rates> rates) {
-  return [input = std::move(input), rates] {
-    PlantInput fresh = input;
-    std::vector<std::string> copies;
-    for (runtime::StationConfig& station : fresh.file.stations) {
-      station.nvram = copy_of_memory(station.nvram);
-      if (!station.nvram.empty()) copies.push_back(station.nvram);
-    }
-    auto plant = make_plant(std::move(fresh), rates);
-    for (const std::string& copy : copies) fs::remove(copy);
-    return plant;
-  };
+  return [input = std::move(input), rates] { return make_plant(input, runtime::FileUse::Look, rates); };
 }
 
 // Lines of standard input. A script is read without a buffer of the library's: what was read ahead must go
@@ -223,14 +201,7 @@ int serve_port(const DebugFlags& flags) {
 
 // In a process of its own, which another one may take the place of.
 int replaceable(const std::function<int()>& body) {
-  const int code = debug::run_replaceable([&body] {
-    try {
-      return body();
-    } catch (const Failure& failure) {
-      if (failure.what()[0] != '\0') fmt::print(stderr, "ipos: {}\n", failure.what());
-      return failure.exit_code();
-    }
-  });
+  const int code = debug::run_replaceable([&body] { return end_of_process(body); });
   return code < 0 ? kInternal : code;
 }
 

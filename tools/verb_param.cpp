@@ -1,7 +1,7 @@
 // ipos param: the parameters of a unit, read, written, kept as a file and compared (docs/param.md).
 #include <fmt/format.h>
 
-#include <filesystem>
+#include <unistd.h>
 
 #include "stdlib/unit_types.hpp"
 #include "tools/failure.hpp"
@@ -76,13 +76,13 @@ ParameterSet side_of(const std::string& side, const std::string& station) {
   std::string file = side;
   std::string name = station;
   const size_t colon = side.rfind(".toml:");
-  if (!std::filesystem::exists(side) && colon != std::string::npos) {
+  if (access(side.c_str(), F_OK) != 0 && colon != std::string::npos) {
     file = side.substr(0, colon + 5);
     name = side.substr(colon + 6);
   }
   const std::string text = read_file(file);
   if (is_parameter_set(text)) return parse_settings(file, text);
-  const auto access = open_station(file, name, FileUse::Read);
+  const auto access = open_station(file, name, FileUse::Look);
   bool complete = true;
   return read_settings(*access, complete);
 }
@@ -90,7 +90,7 @@ ParameterSet side_of(const std::string& side, const std::string& station) {
 int diff_with_unit(ParamFlags& flags) {
   const std::string file = one_file(flags);
   const ParameterSet a = side_of(file, flags.station);
-  const auto access = open_at_port(flags, FileUse::Read);
+  const auto access = open_at_port(flags, FileUse::Look);
   bool complete = true;
   const ParameterSet b = read_settings(*access, complete);
   return diff_parameters(a, file, b, access->name(), flags.json());
@@ -144,7 +144,7 @@ void add_param(cli::Verb& app) {
 
   cli::Verb& list = actions.add("list", "values with names and units", "PLANT", "plant file",
                                 "list plant.toml --group P1", [](ParamFlags& f) {
-                                  const auto access = open(f, FileUse::Read);
+                                  const auto access = open(f, FileUse::Look);
                                   no_more_words(f);
                                   f.list.json = f.json();
                                   return list_parameters(*access, f.list);
@@ -157,7 +157,7 @@ void add_param(cli::Verb& app) {
 
   cli::Verb& get = actions.add("get", "single values", "PLANT NAME", "plant file, then P130, 8470, H20, ...",
                                "get plant.toml P130 8470", [](ParamFlags& f) {
-                                 const auto access = open(f, FileUse::Read);
+                                 const auto access = open(f, FileUse::Look);
                                  if (f.words.empty())
                                    throw Failure(kUsage, "which parameter? For example P130");
                                  return get_parameters(*access, f.words, f.json());
@@ -180,7 +180,7 @@ void add_param(cli::Verb& app) {
   cli::Verb& save = actions.add("save", "keep all settings in a file, a line a parameter", "PLANT FILE",
                                 "plant file, then the file to write; - is standard output",
                                 "save plant.toml unit1.settings", [](ParamFlags& f) {
-                                  const auto access = open(f, FileUse::Read);
+                                  const auto access = open(f, FileUse::Look);
                                   return save_parameters(*access, one_file(f));
                                 });
   actions.unit(save);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <fstream>
+#include <sstream>
 
 #include "runtime/bus/log/candump.hpp"
 #include "runtime/bus/log/serial_log.hpp"
@@ -14,8 +14,8 @@
 #include "tools/coverage/collector.hpp"
 #include "tools/coverage_reports.hpp"
 #include "tools/failure.hpp"
-#include "tools/files.hpp"
 #include "tools/interrupt.hpp"
+#include "tools/outputs.hpp"
 #include "tools/plant_input.hpp"
 #include "tools/plot_svg.hpp"
 #include "tools/real_time_run.hpp"
@@ -90,6 +90,37 @@ class Watcher {
   Clock::time_point last_shown_ = Clock::now();
 };
 
+// The logs of buses and lines, which others may read while they grow: what is in them is at most this late.
+class Logs {
+ public:
+  Logs(runtime::Plant& plant, const RunFlags& flags) : file_(flags.log), serial_file_(flags.serial_log) {
+    if (file_.is_open()) plant.add_observer(log_.emplace(file_.stream()));
+    if (serial_file_.is_open()) plant.add_observer(serial_log_.emplace(serial_file_.stream()));
+  }
+  // Asked once a virtual millisecond.
+  void look() {
+    const auto now = Clock::now();
+    if (now - flushed_ < kLatest) return;
+    flushed_ = now;
+    file_.flush();
+    serial_file_.flush();
+  }
+  void finish() {
+    if (serial_log_) serial_log_->finish();
+    file_.finish();
+    serial_file_.finish();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr auto kLatest = std::chrono::milliseconds(200);  // ours
+
+  LogOutput file_, serial_file_;
+  std::optional<runtime::CandumpLog> log_;
+  std::optional<runtime::SerialLog> serial_log_;
+  Clock::time_point flushed_ = Clock::now();
+};
+
 // "2000 (0x7d0)"; of a parameter with the text people read: "2.500 s".
 std::string expected_text(const runtime::Plant& plant, const runtime::Signal& signal, int32_t value) {
   for (const auto& station : plant.stations()) {
@@ -121,6 +152,15 @@ size_t print_expectations(const runtime::Plant& plant, const std::string& file) 
   return failed;
 }
 
+// Says which faults make the exit code 1; returns how many.
+size_t print_faults(const runtime::Plant& plant, bool can_expect) {
+  const auto stations = plant.unforeseen_faults();
+  for (const runtime::Station* station : stations)
+    fmt::print(stderr, "ipos: exit code 1: {} has fault F{:02}{}\n", station->config().name, station->fault(),
+               can_expect ? ", which no [[expect]] looks for" : "");
+  return stations.size();
+}
+
 using TraceWriter = void (*)(std::ostream&, const Recording&);
 
 // By the ending of the file's name.
@@ -140,28 +180,31 @@ int run(const RunFlags& flags) {
   if (flags.speed != 0) rates = vm::Rates{{flags.speed, flags.speed, flags.speed}};
   runtime::Execution execution = execution_of(flags.engine);
   execution.skip_idle = !flags.no_skip;
-  const std::unique_ptr<runtime::Plant> built = make_plant(std::move(input), rates, execution);
+  const std::unique_ptr<runtime::Plant> built =
+      make_plant(std::move(input), runtime::FileUse::Write, rates, execution);
   runtime::Plant& plant = *built;
 
   if (!flags.signals.empty() && flags.plot.empty() && flags.trace.empty())
     throw Failure(kUsage, "--signals needs --plot or --trace");
-  CoverageReports coverage(flags.coverage, flags.format == "json");
+  // What goes to standard output stands there alone; the report gives way.
+  const auto files = {flags.log, flags.serial_log, flags.plot, flags.trace};
+  const auto taking = std::count_if(files.begin(), files.end(), is_standard_output);
+  if (taking > 1) throw Failure(kUsage, "only one file can go to standard output");
+  const bool output_taken = taking != 0;
+  CoverageReports coverage(flags.coverage, flags.format == "json" || output_taken);
   const TraceWriter write_trace = trace_writer(flags.trace);
   std::optional<Recorder> recorder;
   if (!flags.plot.empty() || !flags.trace.empty()) recorder.emplace(plant, flags.signals);
-  // Opened before the run: a long one must not end without its result.
-  std::ofstream log_file = open_output(flags.log), serial_file = open_output(flags.serial_log),
-                plot_file = open_output(flags.plot), trace_file = open_output(flags.trace);
-  runtime::CandumpLog log(log_file);
-  runtime::SerialLog serial_log(serial_file);
-  if (log_file.is_open()) plant.add_observer(log);
-  if (serial_file.is_open()) plant.add_observer(serial_log);
+  // Before the run: a long one must not end without its result.
+  check_output(flags.plot);
+  check_output(flags.trace);
+  Logs logs(plant, flags);
   std::optional<coverage::Collector> collector;
   if (coverage.wanted()) {
     collector.emplace(plant);
     if (collector->empty())
       throw Failure(kBadInput, "--coverage: no station has a program that knows its source lines");
-    coverage.open();
+    coverage.check();
   }
 
   std::optional<TraceHash> trace_hash;
@@ -176,6 +219,7 @@ int run(const RunFlags& flags) {
     const auto keep_going = [&](Time now) {
       if (recorder) recorder->sample(now);
       if (trace_hash) trace_hash->sample(now);
+      logs.look();
       return watcher.keep_going(now);
     };
     if (real_time)
@@ -184,29 +228,31 @@ int run(const RunFlags& flags) {
       plant.run_until(limit, keep_going);
   }
   const bool stored = plant.store_memories();
-  serial_log.finish();
+  logs.finish();
   if (recorder) recorder->finish();
   if (!flags.plot.empty())
-    plot_file << plot_svg(recorder->recording(), std::filesystem::path(flags.file).filename().string());
-  if (!flags.trace.empty()) write_trace(trace_file, recorder->recording());
-  close_output(log_file, flags.log);
-  close_output(serial_file, flags.serial_log);
-  close_output(plot_file, flags.plot);
-  close_output(trace_file, flags.trace);
+    replace_file(flags.plot,
+                 plot_svg(recorder->recording(), std::filesystem::path(flags.file).filename().string()));
+  if (!flags.trace.empty()) {
+    std::ostringstream trace;
+    write_trace(trace, recorder->recording());
+    replace_file(flags.trace, std::move(trace).str());
+  }
 
   const WatchChoice watch = watch_choice(flags.watch);
   for (const std::string& name : watch.names)
     if (std::none_of(plant.stations().begin(), plant.stations().end(),
                      [&](const auto& station) { return !watch_rows(*station, {name}).empty(); }))
       fmt::print(stderr, "ipos: warning: no station has a variable '{}'\n", name);
-  fmt::print("{}", flags.format == "json" ? json_report(plant, watch) : text_report(plant, watch));
+  fmt::print(output_taken ? stderr : stdout, "{}",
+             flags.format == "json" ? json_report(plant, watch) : text_report(plant, watch));
   if (collector) coverage.write(collector->coverage());
   print_journal(plant, flags.why);
   if (trace_hash) fmt::print(stderr, "trace hash {}\n", trace_hash->text());
   const size_t unmet = print_expectations(plant, flags.file);
   if (interrupted()) return kInterrupted;
   if (!ports_there || !stored) return kIoError;
-  return unmet != 0 || plant.has_fault() ? kFindings : kGood;
+  return print_faults(plant, is_plant(flags.file)) + unmet != 0 ? kFindings : kGood;
 }
 
 std::string check_duration(const std::string& text) {
@@ -229,9 +275,11 @@ void add_run(cli::Verb& app) {
   verb.flag("--no-skip", flags->no_skip,
             "execute every millisecond in its turn, also where nothing happens, with equal results");
   verb.flag("--watch", flags->watch, "*", "show named variables at the end, all or --watch=NAME,...");
-  verb.option("--log", flags->log, "write the frames of all CAN buses in candump format");
-  verb.option("--serial-log", flags->serial_log, "write the telegrams of all RS-485 lines");
-  verb.option("--plot", flags->plot, "draw signals over time into an SVG file");
+  verb.option("--log", flags->log,
+              "write the frames of all CAN buses in candump format; - is standard output");
+  verb.option("--serial-log", flags->serial_log,
+              "write the telegrams of all RS-485 lines; - is standard output");
+  verb.option("--plot", flags->plot, "draw signals over time into an SVG file; - is standard output");
   verb.option("--trace", flags->trace, "write signals over time: .csv, .vcd or .jsonl");
   verb.option("--signals", flags->signals,
               "what to plot and trace, for example unit1.speed,unit1.P094,unit1.H500,sbus1.frames; "

@@ -10,8 +10,8 @@
 #include "tools/coverage/collector.hpp"
 #include "tools/coverage_reports.hpp"
 #include "tools/failure.hpp"
-#include "tools/files.hpp"
 #include "tools/interrupt.hpp"
+#include "tools/outputs.hpp"
 #include "tools/testing/read_tests.hpp"
 #include "tools/testing/reports.hpp"
 #include "tools/testing/suite.hpp"
@@ -64,7 +64,7 @@ std::vector<TestCase> find_tests(const TestFlags& flags) {
 }
 
 void write_report(const std::string& path, const std::string& text) {
-  if (!path.empty()) write_file(path, {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+  if (!path.empty()) replace_file(path, text);
 }
 
 // Refused before anything runs.
@@ -74,8 +74,7 @@ void check_flags(const TestFlags& flags) {
     throw Failure(kUsage, fmt::format("'{}' is no unit type", compile.unit));
   if (compile.diagnostics != "text")
     throw Failure(kUsage, "the messages of programs are part of the report; --json has them");
-  const auto to_stdout = [](const std::string& path) { return path == "-"; };
-  if (to_stdout(flags.junit) + to_stdout(flags.tap) + to_stdout(flags.json) > 1)
+  if (is_standard_output(flags.junit) + is_standard_output(flags.tap) + is_standard_output(flags.json) > 1)
     throw Failure(kUsage, "only one report can go to standard output");
 }
 
@@ -83,7 +82,8 @@ int run(TestFlags& flags) {
   check_flags(flags);
   const std::vector<TestCase> tests = find_tests(flags);
   // A report on standard output stands alone.
-  const bool alone = flags.junit == "-" || flags.tap == "-" || flags.json == "-";
+  const bool alone =
+      is_standard_output(flags.junit) || is_standard_output(flags.tap) || is_standard_output(flags.json);
   CoverageReports coverage_reports(flags.coverage, alone);
   if (tests.empty()) {
     fmt::print(stderr, "ipos: there is no test{} in {}\n", flags.filters.empty() ? "" : " of that name",
@@ -94,10 +94,11 @@ int run(TestFlags& flags) {
     for (const TestCase& test : tests) fmt::print("{}  {}:{}\n", test.name, test.file, test.place.line);
     return kGood;
   }
+  for (const std::string& report : {flags.junit, flags.tap, flags.json}) check_output(report);
   catch_interrupts();
   TotalCoverage coverage;
   if (coverage_reports.wanted()) {
-    coverage_reports.open();
+    coverage_reports.check();
     flags.suite.run.prepare = [&](runtime::Plant& plant) { return coverage.watch(plant); };
   }
   const bool progress = isatty(STDERR_FILENO) != 0;

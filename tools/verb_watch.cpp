@@ -104,7 +104,7 @@ runtime::Station& find_station(runtime::Plant& plant, const WatchFlags& flags) {
 
 int watch_plant(const WatchFlags& flags) {
   catch_interrupts();
-  const auto plant = make_plant(read_plant_input(flags.link.port, flags.compile()));
+  const auto plant = make_plant(read_plant_input(flags.link.port, flags.compile()), runtime::FileUse::Look);
   runtime::Station& station = find_station(*plant, flags);
   RunningStation access(station, flags.link.port);
   LiveTable table(live_items(access.unit(), flags.names, station.image(), flags.compile()), flags.form());

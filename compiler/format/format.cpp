@@ -1,7 +1,10 @@
 // From text to text: cut, lay out, print, and make certain that nothing but the layout changed.
 #include "compiler/format/format.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <iterator>
 
 #include "compiler/diag/places.hpp"
 #include "compiler/format/layout.hpp"
@@ -59,7 +62,36 @@ std::string with_line_ends(const std::string& text, std::string_view line_end) {
   return out;
 }
 
+// Words of C and C++ that the scanner cuts into several of ours: blanks between those would change them.
+constexpr std::string_view kForeignWords[] = {"::", "...", ".*", "->*", "<=>", "<:", ":>", "<%", "%>", "%:"};
+
+bool is_foreign(const Piece& piece, std::string_view text) {
+  if (piece.kind != Piece::Kind::Token) return false;
+  switch (piece.token) {
+    case TokenKind::String:
+    case TokenKind::Character:
+    case TokenKind::OpenQuote:
+    case TokenKind::Stray: return true;
+    case TokenKind::Number: return piece.text.find('.') != std::string_view::npos;
+    default: break;
+  }
+  const std::string_view rest = text.substr(static_cast<size_t>(piece.text.data() - text.data()));
+  return std::any_of(std::begin(kForeignWords), std::end(kForeignWords),
+                     [rest](std::string_view word) { return rest.starts_with(word); });
+}
+
 }  // namespace
+
+std::optional<FormatError> foreign_word(std::string_view text) {
+  SourceMap sources;
+  const SourceFile& file = sources.add("", "", std::string(text));
+  const auto pieces = cut(file);
+  if (!pieces) return pieces.error();
+  for (const Piece& piece : *pieces)
+    if (is_foreign(piece, file.text))
+      return FormatError{piece.line, fmt::format("'{}' is no word of an IPOS program", piece.text)};
+  return std::nullopt;
+}
 
 tl::expected<std::string, FormatError> format_source(std::string_view text) {
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))

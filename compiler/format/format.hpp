@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -18,5 +19,9 @@ struct FormatError {
 // The text in the layout of docs/editor.md. Works without includes and macros, so it takes parts of programs
 // and headers, too. An error when the text cannot be cut into words for certain.
 tl::expected<std::string, FormatError> format_source(std::string_view text);
+
+// The first word that shows a text to be in another language, such as C++, whose words another layout could tear
+// apart; nothing when there is none. For headers: their names do not tell.
+std::optional<FormatError> foreign_word(std::string_view text);
 
 }  // namespace ipos::compiler

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "runtime/plant/serial_plan.hpp"
+#include "runtime/plant/station_state.hpp"
 #include "runtime/storage/posix_medium.hpp"
 
 namespace ipos::runtime {
@@ -30,7 +31,7 @@ std::vector<PlantError> verify_program(const StationConfig& station, const vm::I
 // What the memory file holds is there before the parameters of the plant file are set.
 void open_memory(const StationConfig& config, Station& station, std::vector<PlantError>& errors) {
   if (config.nvram.empty()) return;
-  auto medium = open_posix_medium(config.nvram, FileUse::Write);
+  auto medium = open_posix_medium(config.nvram, config.nvram_use);
   if (!medium)
     errors.push_back({config.nvram_place, fmt::format("station '{}': {} cannot be used: {}", config.name,
                                                       config.nvram, medium.error())});
@@ -244,6 +245,20 @@ bool Plant::programs_over() const {
 bool Plant::has_fault() const {
   return std::any_of(stations_.begin(), stations_.end(),
                      [](const auto& station) { return station->error(); });
+}
+
+std::vector<const Station*> Plant::unforeseen_faults() const {
+  std::vector<const Station*> stations;
+  for (const auto& station : stations_) {
+    const bool foreseen = std::any_of(results_.begin(), results_.end(), [&](const ExpectationResult& result) {
+      const Signal& signal = result.expectation->signal;
+      return result.met && result.actual != 0 && signal.kind == SignalKind::State &&
+             tells_fault(signal.name) && signal.station == station->config().name &&
+             (signal.name != "fault" || result.actual == station->fault());
+    });
+    if (station->error() && !foreseen) stations.push_back(station.get());
+  }
+  return stations;
 }
 
 void Plant::on_line_event(const CanLine& line, const LineEvent& event) {

@@ -65,6 +65,8 @@ class Plant final : private LineObserver, private SbusCheckClient {
 
   bool programs_over() const;
   bool has_fault() const;
+  // Stations that a fault has stopped which no [[expect]] of the plant looked for and found.
+  std::vector<const Station*> unforeseen_faults() const;
   Time now() const { return queue_.now(); }
   Time next_time() const { return queue_.next_time(); }  // of the next event
 

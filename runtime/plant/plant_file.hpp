@@ -16,6 +16,7 @@
 #include "runtime/motion/machine_data.hpp"
 #include "runtime/plant/signal.hpp"
 #include "runtime/plant/toml_text.hpp"
+#include "runtime/storage/posix_medium.hpp"
 #include "stdlib/unit_types.hpp"
 
 namespace ipos::runtime {
@@ -79,6 +80,7 @@ struct StationConfig {
   std::string sbus;     // name of a bus, or empty
   std::string sbus2;    // SBus 2 of a MOVIDRIVE B
   std::string nvram;    // file of the non-volatile memory; empty: kept for the run only
+  FileUse nvram_use = FileUse::Write;
   SerialConfig serial;
   std::string device;              // type designation, where a rule needs it: "MCH42A"
   std::optional<bool> terminator;  // S12, for `ipos bus plan`

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "runtime/plant/station_state.hpp"
 #include "stdlib/parameters.hpp"
 
 namespace ipos::runtime {
@@ -145,9 +146,17 @@ bool PlantReader::signal(const toml::table& table, std::string_view what,
   } else if (found == "output") {
     out.kind = SignalKind::Output;
     bit = parse_output(out.name);
+  } else if (found == "state") {
+    out.kind = SignalKind::State;
+    bit = find_state(out.name);
   } else {
     out.kind = SignalKind::Input;
     bit = parse_analog_input(out.name);
+  }
+  if (bit < 0 && out.kind == SignalKind::State) {
+    error(place_of(*table.get(found)),
+          fmt::format("'{}' is no state; known are {}", out.name, state_names()));
+    return false;
   }
   if (bit < 0) {
     error(place_of(*table.get(found)), fmt::format("'{}' is no {}", out.name, found));

@@ -1,4 +1,4 @@
-// What of a station has a value that a plant file can name: variables, parameters, inputs and outputs.
+// What of a station has a value that a plant file can name: variables, parameters, inputs, outputs and states.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace ipos::runtime {
 
-enum class SignalKind : uint8_t { Variable, Parameter, Input, Output };
+enum class SignalKind : uint8_t { Variable, Parameter, Input, Output, State };
 
 // The lines that lead into a station: 0..15 are the binary inputs by their bit in InputLevel H483, then the
 // analog ones.
@@ -21,8 +21,8 @@ inline constexpr size_t kInputLines = kBinaryLines + 6;
 struct Signal {
   std::string station;
   SignalKind kind = SignalKind::Variable;
-  std::string name;  // as written: "lCount", "H10", "P301", "DI03", "AI1", "DO01"
-  uint8_t line = 0;  // Input: see above; Output: bit of OutputLevel H482
+  std::string name;  // as written: "lCount", "H10", "P301", "DI03", "AI1", "DO01", "fault"
+  uint8_t line = 0;  // Input: see above; Output: bit of OutputLevel H482; State: row of station_states()
 };
 
 // "DI03" or "DI12": bit of InputLevel H483, or -1. DI00..DI07 are bits 0..7, DI10..DI17 bits 8..15 (ours).

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "runtime/plant/station_state.hpp"
+
 namespace ipos::runtime {
 namespace {
 
@@ -40,6 +42,7 @@ int32_t SignalPort::read() const {
   switch (kind_) {
     case SignalKind::Input: return std::as_const(*station_).inputs().line(line_).value();
     case SignalKind::Output: return station_->outputs() >> line_ & 1;
+    case SignalKind::State: return station_states()[line_].read(*station_);
     case SignalKind::Variable:
     case SignalKind::Parameter: break;
   }

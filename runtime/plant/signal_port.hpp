@@ -42,7 +42,7 @@ class SignalPort {
 
   Station* station_;
   SignalKind kind_;
-  uint8_t line_;    // Input, Output
+  uint8_t line_;    // Input, Output, State
   uint16_t index_;  // Variable, Parameter: in the parameter channel
 };
 

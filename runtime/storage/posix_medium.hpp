@@ -1,4 +1,5 @@
-// A file as medium. It is locked while it is open, so that two runs do not share one unit's memory.
+// A file as medium. It is locked while it is open, so that two runs do not share one unit's memory; who only
+// looks gets a copy.
 #pragma once
 
 #include <memory>
@@ -11,7 +12,7 @@
 namespace ipos::runtime {
 
 enum class FileUse : uint8_t {
-  Read,   // the file must exist
+  Look,   // a copy of what the file holds now, beside a run that uses it; without a file nothing
   Write,  // made when it does not exist
 };
 

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "runtime/storage/little_endian.hpp"
 #include "vm/image/image.hpp"
 
@@ -12,11 +14,12 @@ namespace ipos::runtime {
 namespace {
 
 constexpr uint32_t kMagic = 0x564E5049;  // "IPNV"
+constexpr size_t kMagicSize = 4;
 constexpr size_t kChecksumSize = 4;
 constexpr size_t kPayloadLimit = kSlotStride - kSlotHeaderSize - kChecksumSize;
 
 struct SlotState {
-  enum Kind : uint8_t { Empty, Bad, Good } kind = Bad;
+  enum Kind : uint8_t { Empty, Foreign, Bad, Good } kind = Bad;
   std::string trouble;
   uint16_t version = 0;
   uint8_t unit = 0;
@@ -42,21 +45,37 @@ SlotState bad(std::string trouble) {
   return state;
 }
 
+// Nothing was stored here. The first store begins a file with the magic alone, so zeros in its place are of
+// something else, unless the file ends with them: then the power was cut.
+bool is_empty(std::span<const uint8_t> header, uint64_t offset) {
+  const auto all_zero = [](std::span<const uint8_t> bytes) {
+    return std::all_of(bytes.begin(), bytes.end(), [](uint8_t byte) { return byte == 0; });
+  };
+  if (all_zero(header)) return offset != 0 || header.size() < kSlotHeaderSize;
+  std::vector<uint8_t> magic;
+  put(magic, kMagic, static_cast<int>(kMagicSize));
+  const auto first = header.first(std::min(header.size(), kMagicSize));
+  return std::equal(first.begin(), first.end(), magic.begin()) && all_zero(header.subspan(first.size()));
+}
+
 // The error is that of the medium.
 tl::expected<SlotState, std::string> read_slot(NvMedium& medium, uint64_t offset) {
   std::vector<uint8_t> bytes(kSlotHeaderSize);
   const auto got = medium.read(offset, bytes);
   if (!got) return tl::unexpected(got.error());
-  bool all_zero = true;
-  for (size_t i = 0; i < *got; ++i) all_zero &= bytes[i] == 0;
+  const std::span<const uint8_t> found = std::span(bytes).first(*got);
   SlotState state;
-  if (all_zero) {
+  if (is_empty(found, offset)) {
     state.kind = SlotState::Empty;
     return state;
   }
-  if (*got < kSlotHeaderSize) return bad("cut off in its header");
   LittleEndianReader header{bytes};
-  if (header.take(4) != kMagic) return bad("no memory of a unit");
+  if (header.take(4) != kMagic) {
+    state.kind = SlotState::Foreign;
+    state.trouble = "no memory of a unit";
+    return state;
+  }
+  if (*got < kSlotHeaderSize) return bad("cut off in its header");
   state.version = static_cast<uint16_t>(header.take(2));
   state.unit = static_cast<uint8_t>(header.take(1));
   header.take(1);
@@ -91,7 +110,7 @@ NvLoad SlotStore::load() {
     auto state = read_slot(medium_, n * kSlotStride);
     if (!state) return {NvOutcome::Failed, {}, "cannot be read: " + state.error()};
     slots[n] = std::move(*state);
-    if (slots[n].kind == SlotState::Bad)
+    if (slots[n].kind == SlotState::Bad || slots[n].kind == SlotState::Foreign)
       troubles += fmt::format("{}slot {} at byte {}: {}", troubles.empty() ? "" : "; ", n, n * kSlotStride,
                               slots[n].trouble);
   }
@@ -99,9 +118,12 @@ NvLoad SlotStore::load() {
                       (slots[0].kind != SlotState::Good || newer(slots[1].sequence, slots[0].sequence));
   SlotState& best = slots[second ? 1 : 0];
   if (best.kind != SlotState::Good) {
+    if (slots[0].kind == SlotState::Foreign)
+      return {NvOutcome::Refused, {}, "this is no memory of a unit, and is left as it is"};
     next_slot_ = 0;
     sequence_ = 0;
-    if (troubles.empty()) return {NvOutcome::Fresh, {}, {}};
+    is_new_ = troubles.empty();
+    if (is_new_) return {NvOutcome::Fresh, {}, {}};
     return {NvOutcome::Damaged, {}, "no state in it is whole: " + troubles};
   }
   if (best.version != kNvVersion)
@@ -121,10 +143,16 @@ std::optional<std::string> SlotStore::save(const NvContent& content) {
   checked.insert(checked.end(), bytes.begin(), bytes.end());
   put(bytes, vm::crc32(checked), static_cast<int>(kChecksumSize));
 
+  const std::span<const uint8_t> header = std::span(checked).first(kSlotHeaderSize);
+  if (is_new_) {  // from now on the file can be told from one of somebody else
+    if (auto why = medium_.write(0, header.first(kMagicSize))) return why;
+    if (auto why = medium_.sync()) return why;
+    is_new_ = false;
+  }
   const uint64_t offset = next_slot_ * kSlotStride;
   if (auto why = medium_.write(offset + kSlotHeaderSize, bytes)) return why;
   if (auto why = medium_.sync()) return why;
-  if (auto why = medium_.write(offset, std::span(checked).first(kSlotHeaderSize))) return why;
+  if (auto why = medium_.write(offset, header)) return why;
   if (auto why = medium_.sync()) return why;
   ++sequence_;
   next_slot_ ^= 1U;

@@ -20,7 +20,7 @@ enum class NvOutcome : uint8_t {
   Fresh,    // nothing was ever written
   Loaded,   // `content` is the newest that is whole
   Damaged,  // something is there, and nothing of it is whole: factory values
-  Refused,  // the memory of another unit type, or of a newer version: must not be written
+  Refused,  // no memory, or that of another unit type or a newer version: must not be written
   Failed,   // the medium cannot be read
 };
 
@@ -47,6 +47,7 @@ class SlotStore {
   uint8_t unit_;
   unsigned next_slot_ = 0;
   uint32_t sequence_ = 0;  // of the newest whole slot
+  bool is_new_ = false;    // nothing was ever written
 };
 
 }  // namespace ipos::runtime

@@ -61,6 +61,83 @@ TEST(Input, UnwritableOutputIs74) {
   EXPECT_EQ(run_ipos({"run", file, "--for", "1ms", "--log", "/nowhere/a.log"}).exit_code, 74);
 }
 
+TEST(Input, ThatDoesNotExistIs66InEveryVerb) {
+  EXPECT_EQ(run_ipos({"test", "/nowhere"}).exit_code, 66);
+  EXPECT_EQ(run_ipos({"fmt", "/nowhere.IPC"}).exit_code, 66);
+  EXPECT_EQ(run_ipos({"bus", "decode", "/nowhere.log"}).exit_code, 66);
+}
+
+TEST(Output, AnInputIsNotOverwritten) {
+  const TemporaryFolder folder;
+  folder.write("A.IPC", kProgram);
+  EXPECT_EQ(run_ipos({"build", "A.IPC", "-o", "A.IPC"}, folder.path()).exit_code, 64);
+  EXPECT_EQ(run_ipos({"run", "A.IPC", "--for", "1ms", "--log", "A.IPC"}, folder.path()).exit_code, 64);
+  EXPECT_EQ(read_text(folder.path() / "A.IPC"), kProgram);
+}
+
+TEST(Run, ALogOnStandardOutputStandsThereAlone) {
+  const std::string plant = project("examples/scom/scom.toml").string();
+  const TemporaryFolder folder;
+  const CommandResult in_file = run_ipos({"run", plant, "--for", "1s", "--log", "can.log"}, folder.path());
+  ASSERT_EQ(in_file.exit_code, 0) << in_file.err;
+  const CommandResult out = run_ipos({"run", plant, "--for", "1s", "--log", "-"}, folder.path());
+  EXPECT_EQ(out.exit_code, 0) << out.err;
+  EXPECT_EQ(out.out, read_text(folder.path() / "can.log"));
+  EXPECT_TRUE(contains(out.err, in_file.out)) << "the report gives way";
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "-"));
+  EXPECT_EQ(run_ipos({"run", plant, "--for", "1ms", "--log", "-", "--plot", "-"}).exit_code, 64);
+}
+
+TEST(Run, SaysWhyItEndsWithOne) {
+  const TemporaryFolder folder;
+  folder.write("A.IPC", "long a;\nmain()\n{\n    a = 1 / a;\n}\n");
+  const std::string station = "[[station]]\nname = \"u\"\nunit = \"md60a\"\nprogram = \"A.IPC\"\n";
+  const auto run = [&](const std::string& expect) {
+    folder.write("p.toml", station + expect);
+    return run_ipos({"run", "p.toml", "--for", "20ms"}, folder.path());
+  };
+  const std::string why = "ipos: exit code 1: u has fault F10, which no [[expect]] looks for\n";
+  CommandResult result = run("");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(contains(result.err, why)) << result.err;
+  const std::string expect = "[[expect]]\nstation = \"u\"\nat = \"10ms\"\n";
+  for (const std::string state : {"fault", "program_fault"}) {
+    result = run(expect + "state = \"" + state + "\"\nequals = 10\n");
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_FALSE(contains(result.err, why)) << result.err;
+  }
+  // Another fault, none, or a state that tells no fault foresee nothing.
+  EXPECT_EQ(run(expect + "state = \"fault\"\nequals = 8\n").exit_code, 1);
+  EXPECT_EQ(run(expect + "state = \"powered\"\nequals = 1\n").exit_code, 1);
+  result = run(expect + "state = \"falut\"\nequals = 1\n");
+  EXPECT_EQ(result.exit_code, 65);
+  EXPECT_TRUE(contains(result.err, "p.toml:8:9: error: 'falut' is no state; known are fault, status"))
+      << result.err;
+}
+
+TEST(Run, NamesOfOneStationGiveNoSectionOfAnother) {
+  const TemporaryFolder folder;
+  folder.write("A.IPC", "long lOne;\nmain()\n{\n    lOne = 1;\n}\n");
+  folder.write("B.IPC", "long lTwo;\nmain()\n{\n    lTwo = 1;\n}\n");
+  folder.write("p.toml",
+               "[[station]]\nname = \"a\"\nunit = \"md60a\"\nprogram = \"A.IPC\"\n"
+               "[[station]]\nname = \"b\"\nunit = \"md60a\"\nprogram = \"B.IPC\"\n");
+  const CommandResult result = run_ipos({"run", "p.toml", "--for", "1ms", "--watch=lTwo"}, folder.path());
+  EXPECT_EQ(result.out.substr(0, 3), "b (") << result.out;
+}
+
+// The notation of the option parser is not that of people.
+TEST(Usage, HelpIsReadable) {
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"run"}, {"disasm"}, {"debug"}, {"bus", "monitor"}, {"watch"}}) {
+    std::vector<std::string> arguments = words;
+    arguments.emplace_back("--help");
+    const std::string help = run_ipos(arguments).out;
+    for (const char* part : {"{*}", "{false}", "TEXT:", "UINT:", "ENUM", "18446744073709551615", "{,"})
+      EXPECT_FALSE(contains(help, part)) << words[0] << " shows " << part << "\n" << help;
+  }
+}
+
 TEST(Build, SyntaxErrorIsLocated) {
   const TemporaryFolder folder;
   folder.write("A.IPC", "long a;\nmain()\n{\n  a = ;\n}\n");
@@ -283,8 +360,8 @@ TEST_F(Recordings, MistakesAreTold) {
   refuses({"two.toml", "--trace", "t.csv", "--signals", "u1.P99999"}, "parameters as P000", 64);
   refuses({"two.toml", "--trace", "t.csv", "--signals", "u1.H512"}, "variables H0 to H511", 64);
   refuses({"two.toml", "--trace", "t.csv", "--signals", "u2.H0"}, "it has speed, frequency, current, ", 64);
-  refuses({"two.toml", "--trace", "/nowhere/t.csv"}, "/nowhere/t.csv: cannot be written", 74);
-  refuses({"two.toml", "--plot", "/nowhere/p.svg"}, "/nowhere/p.svg: cannot be written", 74);
+  refuses({"two.toml", "--trace", "/nowhere/t.csv"}, "/nowhere/t.csv: No such file or directory", 74);
+  refuses({"two.toml", "--plot", "/nowhere/p.svg"}, "/nowhere/p.svg: No such file or directory", 74);
 }
 
 class PlantErrors : public Test {

@@ -343,17 +343,60 @@ TEST_F(Param, MemoryFilesThatCannotBeUsed) {
   plant(kStation + kMemory);
   const int held = open((folder_.path() / "unit1.nv").c_str(), O_RDWR);
   ASSERT_EQ(flock(held, LOCK_EX), 0);
-  EXPECT_EQ(param({"get", "plant.toml", "P130"}).exit_code, 74);
+  EXPECT_EQ(param({"get", "plant.toml", "P130"}).exit_code, 0) << "looking does not disturb a run";
+  EXPECT_EQ(param({"set", "plant.toml", "P130=2.6s"}).exit_code, 74);
   close(held);
 
-  folder_.write("unit1.nv", "this is no memory file, but somebody's notes");
-  result = run_ipos({"run", "plant.toml", "--for", "1ms"}, folder_.path());
-  EXPECT_EQ(result.exit_code, 1);  // F94
-  EXPECT_TRUE(contains(
-      result.err,
-      "unit1: warning: unit1.nv: no state in it is whole: slot 0 at byte 0: no memory of a unit: the "
-      "unit starts with factory values"))
-      << result.err;
+  // A file of somebody else, text or zeros, is never overwritten.
+  for (const std::string& notes : {std::string("this is no memory file, but somebody's notes"),
+                                   std::string("IP"), std::string(20, '\0'), std::string(300'000, '\0')}) {
+    folder_.write("unit1.nv", notes);
+    result = run_ipos({"run", "plant.toml", "--for", "1ms"}, folder_.path());
+    if (notes == "IP") {  // the power was cut while it was made
+      EXPECT_EQ(result.exit_code, 0) << result.err;
+      continue;
+    }
+    EXPECT_EQ(result.exit_code, 65) << notes.size();
+    EXPECT_EQ(result.err,
+              "plant.toml:4:9: error: station 'unit1': unit1.nv: this is no memory of a unit, and is left as "
+              "it is\n");
+    EXPECT_EQ(param({"set", "plant.toml", "P130=2.5s"}).exit_code, 65);
+    EXPECT_EQ(file("unit1.nv"), notes);
+  }
+}
+
+TEST_F(Param, VerbsThatLookLeaveTheMemoryAlone) {
+  folder_.write("A.IPC", "#include <const.h>\nmain()\n{\n    _Memorize(MEM_STALL);\n}\n");
+  folder_.write("can.log", "(1.000000) can0 400#5566778800000000\n");
+  plant("[[bus]]\nname = \"sbus\"\nkind = \"can\"\n" + kStation + "program = \"A.IPC\"\nsbus = \"sbus\"\n" +
+        kMemory);
+  const std::vector<std::vector<std::string>> looks = {
+      {"bus", "plan", "plant.toml"},
+      {"bus", "dbc", "plant.toml"},
+      {"bus", "decode", "can.log", "--names", "plant.toml"},
+      {"bus", "monitor", "can.log", "--plant", "plant.toml"},
+      {"bus", "replay", "can.log", "plant.toml"},
+      {"watch", "plant.toml", "unit1", "P000", "--count", "1"},
+      {"debug", "plant.toml", "--for", "1ms"},
+      {"param", "list", "plant.toml"},
+      {"param", "get", "plant.toml", "P130"},
+      {"param", "save", "plant.toml", "unit1.settings"},
+      {"param", "diff", "plant.toml", "plant.toml"}};
+  const auto look = [&](const std::string& when) {
+    for (const auto& arguments : looks) {
+      const CommandResult result = run_ipos(arguments, folder_.path());
+      EXPECT_EQ(result.exit_code, 0) << when << ": " << arguments[0] << " " << arguments[1] << result.err;
+    }
+  };
+  look("none");
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "unit1.nv"));
+  param({"set", "plant.toml", "P130=2.5s"});
+  const std::string before = file("unit1.nv");
+  const int held = open((folder_.path() / "unit1.nv").c_str(), O_RDWR);
+  ASSERT_EQ(flock(held, LOCK_EX), 0);
+  look("beside a run");
+  close(held);
+  EXPECT_EQ(file("unit1.nv"), before);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <memory>
 #include <span>
 
 #include "stdlib/spelling.hpp"
@@ -11,6 +12,19 @@
 
 namespace ipos::tools::cli {
 namespace {
+
+// CLI11 shows its own notation: "TEXT:{text,json}", "--watch{*}".
+class Help : public CLI::Formatter {
+  std::string make_option_name(const CLI::Option* option, bool is_word) const override {
+    const std::string names = CLI::Formatter::make_option_name(option, is_word);
+    return names.substr(0, names.find('{'));
+  }
+  std::string make_option_opts(const CLI::Option* option) const override {
+    const std::string value = CLI::Formatter::make_option_opts(option);
+    const size_t check = value.find(':');
+    return check == std::string::npos ? value : " " + value.substr(check + 1);
+  }
+};
 
 CLI::Option* add_flag(CLI::App& app, const Option::Row& row) {
   if (auto* const* text = std::get_if<std::string*>(&row.target))
@@ -114,6 +128,7 @@ void tell_mistake(const CLI::App& app, const CLI::ParseError& error, std::span<c
 int run(const Verb& program, const std::string& version, int argc, char** argv) {
   int exit_code = kGood;
   CLI::App app{program.text(), program.name()};
+  app.formatter(std::make_shared<Help>());
   app.set_version_flag("--version", version);
   add_verb(app, program, exit_code);
   if (argc == 1 || (argc == 2 && std::string_view(argv[1]) == "help")) {

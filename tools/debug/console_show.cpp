@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <sstream>
 
 #include "tools/debug/console.hpp"
+#include "tools/files.hpp"
 
 namespace ipos::tools::debug {
 namespace {
@@ -20,7 +20,7 @@ std::string number_text(int32_t value, bool hex) {
 std::string Console::source_line(const std::string& file, uint32_t line) {
   auto [entry, is_new] = sources_.try_emplace(file);
   if (is_new) {
-    std::ifstream in(file);
+    std::istringstream in(try_read_file(file).value_or(""));
     for (std::string text; std::getline(in, text);) {
       if (text.ends_with('\r')) text.pop_back();
       entry->second.push_back(std::move(text));

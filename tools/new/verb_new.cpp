@@ -8,7 +8,7 @@
 #include "stdlib/embedded.hpp"
 #include "stdlib/spelling.hpp"
 #include "tools/failure.hpp"
-#include "tools/files.hpp"
+#include "tools/outputs.hpp"
 #include "tools/verbs.hpp"
 
 namespace ipos::tools {
@@ -80,7 +80,7 @@ int make(const NewFlags& flags) {
     fs::create_directories((folder / path).parent_path(), error);
     if (error)
       throw Failure(kIoError, fmt::format("{}: {}", (folder / path).parent_path().string(), error.message()));
-    write_file((folder / path).string(), {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+    replace_file((folder / path).string(), text);
     fmt::print("{}\n", (folder / path).string());
   }
   fmt::print("\nNext:\n  cd {}\n  ipos test .\n", flags.folder);

@@ -46,8 +46,6 @@ runtime::Station& Probe::station(const std::string& name) {
 
 Reader Probe::reader_of(const Subject& subject, std::string& why) {
   const runtime::Station& station = this->station(subject.signal.station);
-  if (subject.kind == Subject::Kind::State)
-    return [&station, read = subject.state->read] { return int64_t{read(station)}; };
   if (subject.kind == Subject::Kind::ProcessData)
     return [&station, word = subject.word] {
       const runtime::Drive& drive = station.drive().state();

@@ -36,9 +36,9 @@ std::shared_ptr<const Program> Programs::load(const std::string& path, const std
 
 Program Programs::make(const std::string& path, const stdlib::UnitType* unit) const {
   Program program;
-  const auto text = try_read_file(path);
+  const auto text = load_file(path);
   if (!text) {
-    program.messages = fmt::format("{}: there is no such program\n", path);
+    program.messages = fmt::format("{}: {}\n", path, text.error());
     return program;
   }
   if (!is_source(path)) return read_image(path, *text);

@@ -29,26 +29,10 @@ std::optional<Subject> read_event(PlantReader& reader, const toml::table& table,
   return subject;
 }
 
-std::optional<Subject> read_state(PlantReader& reader, const toml::table& table) {
-  Subject subject;
-  subject.kind = Subject::Kind::State;
-  subject.signal.station = read_item_station(reader, table, kWhat);
-  subject.signal.name = reader.text(table, "state", kWhat, true);
-  for (const StationState& state : kStationStates)
-    if (state.name == subject.signal.name) subject.state = &state;
-  if (subject.state != nullptr) return subject;
-  std::vector<std::string_view> names;
-  for (const StationState& state : kStationStates) names.push_back(state.name);
-  reader.error(place_of(*table.get("state")),
-               fmt::format("'{}' is no state; known are {}", subject.signal.name, fmt::join(names, ", ")));
-  return std::nullopt;
-}
-
 std::optional<Subject> read_subject(PlantReader& reader, const toml::table& table) {
   for (const char* key : {"frame", "telegram"})
     if (table.contains(key)) return read_event(reader, table, key);
   if (table.contains("bus")) return read_event(reader, table, nullptr);
-  if (table.contains("state")) return read_state(reader, table);
   Subject subject;
   subject.signal.station = read_item_station(reader, table, kWhat);
   if (const toml::node* node = table.get("process_data")) {
@@ -59,7 +43,7 @@ std::optional<Subject> read_subject(PlantReader& reader, const toml::table& tabl
     subject.signal.name = node->as_string()->get();
     return subject;
   }
-  if (!reader.signal(table, kWhat, {"variable", "parameter", "input", "output"}, subject.signal))
+  if (!reader.signal(table, kWhat, {"variable", "parameter", "input", "output", "state"}, subject.signal))
     return std::nullopt;
   return subject;
 }

@@ -15,6 +15,7 @@
 #include <sstream>
 
 #include "runtime/plant/signal.hpp"
+#include "runtime/plant/station_state.hpp"
 #include "stdlib/unit_types.hpp"
 #include "tools/testing/read_tests.hpp"
 
@@ -45,12 +46,6 @@ Condition condition_of(const std::string& comparison, int64_t value) {
   if (comparison == ">") condition.ranges.emplace_back(value + 1, INT64_MAX);
   if (comparison == ">=") condition.ranges.emplace_back(value, INT64_MAX);
   return condition;
-}
-
-const StationState* state_named(std::string_view name) {
-  for (const StationState& state : kStationStates)
-    if (state.name == name) return &state;
-  return nullptr;
 }
 
 class CommentReader {
@@ -119,10 +114,8 @@ class CommentReader {
 
   void add_state(FilePlace place, const char* state, int64_t value) {
     Expect expect;
-    expect.subject.kind = Subject::Kind::State;
-    expect.subject.state = state_named(state);
-    expect.subject.signal.station = station_;
-    expect.subject.signal.name = state;
+    expect.subject.signal = {station_, runtime::SignalKind::State, state,
+                             static_cast<uint8_t>(runtime::find_state(state))};
     expect.condition.ranges.emplace_back(value, value);
     Item item;
     item.place = place;

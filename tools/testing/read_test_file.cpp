@@ -98,8 +98,8 @@ void read_named_plant(PlantReader& reader, const toml::table& root, TestCase& te
     if (const toml::node* node = root.get(key))
       reader.error(place_of(*node), fmt::format("the plant is in {}: [[{}]] belongs there", name, key));
   test.plant_path = (fs::path(test.file).parent_path() / name).string();
-  const auto text = try_read_file(test.plant_path);
-  if (!text) return reader.error(place, fmt::format("there is no plant {}", test.plant_path));
+  const auto text = load_file(test.plant_path);
+  if (!text) return reader.error(place, fmt::format("plant {}: {}", test.plant_path, text.error()));
   runtime::PlantFileResult plant = runtime::read_plant_file(*text);
   if (!plant.errors.empty()) {
     test.errors = std::move(plant.errors);

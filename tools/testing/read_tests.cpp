@@ -28,16 +28,14 @@ std::vector<TestCase> tests_of(const std::string& path, const std::string& text)
 }  // namespace
 
 std::vector<TestCase> read_tests(const std::string& path) {
-  if (!fs::is_directory(path)) {
-    if (!is_source(path) && !path.ends_with(".toml"))
+  if (!is_folder(path)) {
+    if (!is_source(path) && !path.ends_with(".toml") && fs::exists(fs::symlink_status(path)))
       throw Failure(kUsage, fmt::format("{}: a test is a folder, a .toml file or an .IPC source", path));
     return tests_of(path, read_file(path));
   }
   std::vector<std::string> files;
-  for (const auto& entry : fs::recursive_directory_iterator(path))
-    if (is_test_file(entry.path().string()) || is_source(entry.path().string()))
-      files.push_back(entry.path().lexically_normal().string());
-  std::sort(files.begin(), files.end());
+  for (const std::string& file : files_below(path))
+    if (is_test_file(file) || is_source(file)) files.push_back(fs::path(file).lexically_normal().string());
   std::vector<TestCase> tests;
   for (const std::string& file : files) {
     const std::string text = read_file(file);

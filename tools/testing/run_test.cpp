@@ -12,6 +12,7 @@
 #include <list>
 #include <set>
 
+#include "runtime/plant/station_state.hpp"
 #include "tools/interrupt.hpp"
 #include "tools/testing/actor.hpp"
 #include "tools/testing/check.hpp"
@@ -275,9 +276,10 @@ class Run {
   void find_faults() {
     std::set<std::string> named;
     for (const Item& item : test_.items) {
-      if (const Expect* expect = expect_of(item);
-          expect != nullptr && expect->subject.kind == Subject::Kind::State &&
-          expect->subject.signal.name.find("fault") != std::string::npos)
+      if (const Expect* expect = expect_of(item); expect != nullptr &&
+                                                  expect->subject.kind == Subject::Kind::Signal &&
+                                                  expect->subject.signal.kind == runtime::SignalKind::State &&
+                                                  runtime::tells_fault(expect->subject.signal.name))
         named.insert(expect->subject.signal.station);
       if (const auto* step = std::get_if<Step>(&item.what))
         if (const auto* fault = std::get_if<DriveFaultStep>(step)) named.insert(fault->station);

@@ -18,21 +18,12 @@ namespace ipos::tools::testing {
 using runtime::FilePlace;
 using runtime::Time;
 
-// A state of a station that is neither variable nor parameter.
-struct StationState {
-  std::string_view name;
-  std::string_view meaning;
-  int32_t (*read)(const runtime::Station& station);
-};
-extern const std::vector<StationState> kStationStates;
-
 // What an expectation looks at. Frames and telegrams are events, everything else has a value at every time.
 struct Subject {
-  enum class Kind : uint8_t { Signal, ProcessData, State, Frame, Telegram };
+  enum class Kind : uint8_t { Signal, ProcessData, Frame, Telegram };
   Kind kind = Kind::Signal;
   runtime::Signal signal;  // Signal; of the others station and name
   uint8_t word = 0;        // ProcessData: 0..2 PO1..PO3, 3..5 PI1..PI3
-  const StationState* state = nullptr;
   std::string bus;
   std::string pattern;  // glob over "400#5566778811223344", "02 01 85 .." or the meaning of a telegram
 

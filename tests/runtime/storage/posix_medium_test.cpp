@@ -2,7 +2,9 @@
 #include "runtime/storage/posix_medium.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 
@@ -36,7 +38,7 @@ TEST_F(PosixFile, KeepsWhatIsStored) {
     EXPECT_EQ(store.save(content), std::nullopt);
     EXPECT_EQ(store.save(content), std::nullopt);
   }
-  auto medium = open_posix_medium(path_, FileUse::Read);
+  auto medium = open_posix_medium(path_, FileUse::Look);
   ASSERT_TRUE(medium) << medium.error();
   EXPECT_EQ(SlotStore(**medium, 1).load().content, content);
 }
@@ -45,25 +47,44 @@ TEST_F(PosixFile, IsLockedWhileItIsOpen) {
   auto first = open_posix_medium(path_, FileUse::Write);
   ASSERT_TRUE(first);
   EXPECT_EQ(open_posix_medium(path_, FileUse::Write).error(), "another run is using it");
-  EXPECT_EQ(open_posix_medium(path_, FileUse::Read).error(), "another run is using it");
+  EXPECT_TRUE(open_posix_medium(path_, FileUse::Look)) << "beside a run";
   first->reset();
-  EXPECT_TRUE(open_posix_medium(path_, FileUse::Read));
+  EXPECT_TRUE(open_posix_medium(path_, FileUse::Write));
 }
 
 TEST_F(PosixFile, SaysWhyItCannotBeUsed) {
-  EXPECT_EQ(open_posix_medium(path_, FileUse::Read).error(), "No such file or directory");
   EXPECT_EQ(open_posix_medium((folder_ / "no" / "unit1.nv").string(), FileUse::Write).error(),
             "No such file or directory");
-  EXPECT_EQ(open_posix_medium(folder_.string(), FileUse::Write).error(), "Is a directory");
-  EXPECT_EQ(open_posix_medium(folder_.string(), FileUse::Read).error(), "not a file");
+  const std::string pipe = (folder_ / "pipe").string();
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  fs::create_symlink("loop", folder_ / "loop");
+  for (const FileUse use : {FileUse::Write, FileUse::Look}) {
+    EXPECT_EQ(open_posix_medium(folder_.string(), use).error(), "not a file");
+    EXPECT_EQ(open_posix_medium(pipe, use).error(), "not a file");
+    EXPECT_EQ(open_posix_medium("/dev/zero", use).error(), "not a file");
+    EXPECT_EQ(open_posix_medium((folder_ / "loop").string(), use).error(),
+              "Too many levels of symbolic links");
+  }
 }
 
-TEST_F(PosixFile, AReaderCannotWrite) {
-  { ASSERT_TRUE(open_posix_medium(path_, FileUse::Write)); }
-  auto medium = open_posix_medium(path_, FileUse::Read);
-  ASSERT_TRUE(medium);
+TEST_F(PosixFile, WhoLooksMakesNothingAndChangesNothing) {
   const uint8_t byte = 1;
-  EXPECT_EQ((*medium)->write(0, {&byte, 1}), "Bad file descriptor");
+  uint8_t found = 0;
+  {
+    auto medium = open_posix_medium(path_, FileUse::Look);
+    ASSERT_TRUE(medium) << medium.error();
+    EXPECT_EQ((*medium)->read(0, {&found, 1}), 0U);
+    EXPECT_EQ((*medium)->write(2, {&byte, 1}), std::nullopt);
+    EXPECT_EQ((*medium)->read(2, {&found, 1}), 1U) << "its copy can be written";
+  }
+  EXPECT_FALSE(fs::exists(path_));
+  { ASSERT_EQ((*open_posix_medium(path_, FileUse::Write))->write(0, {&byte, 1}), std::nullopt); }
+  auto medium = open_posix_medium(path_, FileUse::Look);
+  ASSERT_TRUE(medium);
+  EXPECT_EQ((*medium)->read(0, {&found, 1}), 1U);
+  const std::array<uint8_t, 4> other{2, 2, 2, 2};
+  EXPECT_EQ((*medium)->write(0, other), std::nullopt);
+  EXPECT_EQ(fs::file_size(path_), 1U);
 }
 
 }  // namespace

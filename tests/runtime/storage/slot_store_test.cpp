@@ -29,8 +29,23 @@ class Slots : public ::testing::Test {
 
 TEST_F(Slots, AnEmptyMediumIsFresh) {
   EXPECT_EQ(load().outcome, NvOutcome::Fresh);
-  state_->bytes.assign(100, 0);
-  EXPECT_EQ(load().outcome, NvOutcome::Fresh) << "never written";
+  const std::vector<tests::MediumBytes> files = {
+      {0}, {0, 0, 0, 0}, {'I', 'P'}, {'I', 'P', 'N', 'V'}, {'I', 'P', 'N', 'V', 0, 0, 0, 0, 0, 0}};
+  for (const tests::MediumBytes& begun : files) {
+    state_->bytes = begun;
+    EXPECT_EQ(load().outcome, NvOutcome::Fresh) << "the power was cut in the first write";
+  }
+}
+
+TEST_F(Slots, AFileOfSomebodyElseIsRefused) {
+  const std::vector<tests::MediumBytes> files = {
+      tests::MediumBytes(100, 0), tests::MediumBytes(3 * kSlotStride, 0), {'m', 'a', 'i', 'n'}, {'I', 'x'}};
+  for (const tests::MediumBytes& other : files) {
+    state_->bytes = other;
+    const NvLoad loaded = load();
+    EXPECT_EQ(loaded.outcome, NvOutcome::Refused);
+    EXPECT_EQ(loaded.text, "this is no memory of a unit, and is left as it is");
+  }
 }
 
 TEST_F(Slots, WhatIsStoredComesBack) {
@@ -58,12 +73,14 @@ TEST_F(Slots, WritesAreSynchronisedOneByOne) {
   SlotStore store(medium_, kUnit);
   store.load();
   store.save(numbered(1));
-  ASSERT_EQ(state_->writes.size(), 2U);
-  EXPECT_EQ(state_->writes[0].offset, kSlotHeaderSize) << "payload first";
-  EXPECT_EQ(state_->writes[1].offset, 0U);
-  EXPECT_EQ(state_->syncs, 2);
+  ASSERT_EQ(state_->writes.size(), 3U);
+  EXPECT_EQ(state_->writes[0].bytes.size(), 4U) << "a new file is told from others";
+  EXPECT_EQ(state_->writes[1].offset, kSlotHeaderSize) << "payload first";
+  EXPECT_EQ(state_->writes[2].offset, 0U);
+  EXPECT_EQ(state_->syncs, 3);
   store.save(numbered(2));
-  EXPECT_EQ(state_->writes[3].offset, kSlotStride) << "the other slot";
+  ASSERT_EQ(state_->writes.size(), 5U);
+  EXPECT_EQ(state_->writes[4].offset, kSlotStride) << "the other slot";
 }
 
 TEST_F(Slots, TheProgramIsKeptToo) {
@@ -111,13 +128,13 @@ TEST_F(Slots, TwoDamagedSlotsAreTold) {
   store.load();
   store.save(numbered(1));
   store.save(numbered(2));
-  state_->bytes[0] ^= 1;
+  state_->bytes[30] ^= 1;
   state_->bytes[kSlotStride + 8] ^= 1;
   NvLoad loaded = load();
   EXPECT_EQ(loaded.outcome, NvOutcome::Damaged);
   EXPECT_EQ(loaded.content, NvContent{});
   EXPECT_EQ(loaded.text,
-            "no state in it is whole: slot 0 at byte 0: no memory of a unit; slot 1 at byte 131072: wrong "
+            "no state in it is whole: slot 0 at byte 0: wrong checksum; slot 1 at byte 131072: wrong "
             "checksum");
   // The unit goes on with factory values, which are stored again.
   SlotStore again(medium_, kUnit);

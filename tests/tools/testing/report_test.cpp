@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "runtime/plant/station_state.hpp"
 #include "tests/tools/command.hpp"
 #include "tools/testing/test_case.hpp"
 
@@ -48,7 +49,7 @@ TEST(Report, InTheDocumentationIsReal) {
 
 TEST(Report, DocumentationHasEveryState) {
   const std::string page = read_text(project("docs/testing.md"));
-  for (const tools::testing::StationState& state : tools::testing::kStationStates) {
+  for (const runtime::StationState& state : runtime::station_states()) {
     const std::string row = "| `" + std::string(state.name) + "` | " + std::string(state.meaning) + " |\n";
     EXPECT_TRUE(contains(page, row)) << row;
   }

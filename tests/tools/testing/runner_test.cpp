@@ -81,6 +81,8 @@ TEST_F(Runner, ExitCodes) {
   EXPECT_EQ(run({"nowhere.test.toml"}).exit_code, 66);
   EXPECT_EQ(run({"good.test.toml", "--junit", "/nowhere/a.xml"}).exit_code, 74);
   EXPECT_EQ(run({}).exit_code, 64);
+  EXPECT_EQ(run({"notes.txt"}).exit_code, 66);
+  folder_.write("notes.txt", "no test");
   EXPECT_EQ(run({"notes.txt"}).exit_code, 64);
   EXPECT_EQ(run({"good.test.toml", "--jobs", "0"}).exit_code, 64);
   EXPECT_EQ(run({"good.test.toml", "--diagnostics", "json"}).exit_code, 64);
@@ -202,8 +204,8 @@ TEST_F(Runner, MistakesHaveTheirPlace) {
     const std::string out = mistake(kStation + row.items);
     EXPECT_TRUE(contains(out, row.message)) << row.items << out;
   }
-  EXPECT_TRUE(
-      contains(mistake("plant = \"none.toml\"\n"), "bad.test.toml:1:9: error: there is no plant none.toml"));
+  EXPECT_TRUE(contains(mistake("plant = \"none.toml\"\n"),
+                       "bad.test.toml:1:9: error: plant none.toml: No such file"));
   EXPECT_TRUE(contains(mistake("a = \n"), "bad.test.toml:1:"));
   EXPECT_TRUE(contains(mistake("[[bus]]\nname = \"b\"\nkind = \"can\"\nport = \"vcan0\"\n" + kStation +
                                "[[expect]]\nvariable = \"a\"\nequals = 5\n"),
