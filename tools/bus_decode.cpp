@@ -3,6 +3,7 @@
 
 #include <set>
 
+#include "compiler/diag/places.hpp"
 #include "tools/bus_verbs.hpp"
 #include "tools/exit_codes.hpp"
 
@@ -31,7 +32,7 @@ int decode(const DecodeFlags& flags) {
   std::set<std::pair<bool, uint32_t>> unknown;
   const size_t bad = read_log(flags.log, [&](const runtime::LogEntry& entry, size_t line) {
     const runtime::Description description = runtime::describe(names, entry.frame);
-    fmt::print("{} {} {}\n", time_text(entry), entry.bus, description.text);
+    fmt::print("{} {} {}\n", time_text(entry), compiler::printable(entry.bus), description.text);
     if (!description.known && unknown.emplace(entry.frame.extended, entry.frame.id).second)
       fmt::print(stderr, "{}:{}:{}: note: nothing is known about identifier {}{}\n", flags.log, line,
                  identifier_column(entry), entry.frame.id, entry.frame.extended ? " (29 bits)" : "");

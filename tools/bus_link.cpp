@@ -7,6 +7,7 @@
 #include "runtime/bus/movilink/sbus_master.hpp"
 #include "runtime/bus/movilink/serial_master.hpp"
 #include "runtime/port/can_bridge.hpp"
+#include "runtime/port/port_names.hpp"
 #include "runtime/port/serial_bridge.hpp"
 #include "tools/failure.hpp"
 #include "tools/interrupt.hpp"
@@ -133,16 +134,13 @@ class SerialLink final : public BusLink, private SerialNode {
   SerialBridge bridge_;
 };
 
-// A path is a serial line, anything else a CAN interface or adapter.
-bool is_serial_port(const std::string& name) { return name.starts_with('/') || name.starts_with("pty:"); }
-
 }  // namespace
 
 std::unique_ptr<BusLink> BusLink::open(const LinkFlags& flags) {
   catch_interrupts();
   constexpr uint32_t kCanBaud = 500'000, kSerialBaud = 9'600;
   std::unique_ptr<BusLink> link;
-  if (is_serial_port(flags.port))
+  if (kind_of_port(flags.port) == PortKind::Serial)
     link = std::make_unique<SerialLink>(flags, flags.baud == 0 ? kSerialBaud : flags.baud);
   else
     link = std::make_unique<SbusLink>(flags, flags.baud == 0 ? kCanBaud : flags.baud);

@@ -62,7 +62,8 @@ std::vector<LiveItem> live_items(const stdlib::UnitType& unit, const std::vector
   return items;
 }
 
-LiveTable::LiveTable(std::vector<LiveItem> items, LiveForm form) : items_(std::move(items)), form_(form) {}
+LiveTable::LiveTable(std::vector<LiveItem> items, LiveForm form)
+    : items_(std::move(items)), form_(form), has_reason_(items_.size()) {}
 
 void LiveTable::print(double seconds, ParameterAccess& access) {
   const stdlib::ParameterTable& table = stdlib::parameter_table(access.unit());
@@ -77,6 +78,9 @@ void LiveTable::print(double seconds, ParameterAccess& access) {
     json["values"].push_back(std::move(value));
     if (reply) continue;
     complete_ = false;
+    const size_t n = texts.size() - 1;
+    if (has_reason_[n]) continue;
+    has_reason_[n] = true;
     const std::string reason = why(table, Service::Read, item.target.index, 0, reply.error());
     if (std::find(told_.begin(), told_.end(), reason) != told_.end()) continue;
     told_.push_back(reason);

@@ -40,8 +40,9 @@ class LiveTable {
 
   std::vector<LiveItem> items_;
   LiveForm form_;
-  std::vector<size_t> widths_;  // empty before the first row
-  std::vector<std::string> told_;
+  std::vector<size_t> widths_;     // empty before the first row
+  std::vector<std::string> told_;  // reasons
+  std::vector<bool> has_reason_;   // of each item: reasons may tell figures, and none may fill the screen
   bool complete_ = true;
 };
 

@@ -5,6 +5,7 @@
 
 #include <cstdio>
 
+#include "compiler/diag/places.hpp"
 #include "runtime/bus/movilink/describe_serial.hpp"
 
 namespace ipos::tools {
@@ -13,6 +14,7 @@ namespace {
 using runtime::Time;
 
 constexpr size_t kNamedUnknown = 10;  // identifiers named at the end (ours)
+constexpr size_t kUnknown = 10'000;   // and counted (ours): noise may make them all up
 
 // "(0946684800.000102)", the form of candump logs.
 std::string stamp(Time time) {
@@ -27,7 +29,8 @@ void Monitor::take(const runtime::LogEntry& entry) {
   if (!filter_.passes(entry.frame) || full()) return;
   ++shown_;
   const runtime::Description description = runtime::describe(names_, entry.frame);
-  if (!description.known) unknown_.emplace(entry.frame.extended, entry.frame.id);
+  if (!description.known && unknown_.size() < kUnknown)
+    unknown_.emplace(entry.frame.extended, entry.frame.id);
   show(entry.time, entry.bus, description.text);
 }
 
@@ -42,7 +45,12 @@ void Monitor::take(Time time, const std::string& line, const runtime::Reception&
 
 void Monitor::lost(Time time, const std::string& line, uint64_t count, const char* what) {
   lost_ += count;
+  if (losing_ != nullptr) {
+    lost_more_ += count;
+    return;
+  }
   show(time, line, fmt::format("--- {} {} lost", count, what));
+  losing_ = what;
 }
 
 void Monitor::bus_error(Time time, const std::string& line, const std::string& text) {
@@ -60,12 +68,15 @@ void Monitor::note(const std::string& text) const { fmt::print(stderr, "ipos: wa
 void Monitor::show(Time time, const std::string& line, const std::string& text) {
   end_repetition();
   last_error_.clear();
-  fmt::print("{} {} {}\n", stamp(time), line, text);
+  fmt::print("{} {} {}\n", stamp(time), compiler::printable(line), text);
 }
 
 void Monitor::end_repetition() {
   if (repeated_ != 0) fmt::print("--- the same error {} more times\n", repeated_);
   repeated_ = 0;
+  if (lost_more_ != 0) fmt::print("--- {} more {} lost\n", lost_more_, losing_);
+  lost_more_ = 0;
+  losing_ = nullptr;
 }
 
 void Monitor::flush() { std::fflush(stdout); }
@@ -88,7 +99,8 @@ void Monitor::finish() {
     if (n++ == kNamedUnknown) break;
     list += fmt::format("{}{}{}", list.empty() ? "" : ", ", id, extended ? " (29 bits)" : "");
   }
-  fmt::print(stderr, "ipos: nothing is known about {} identifiers: {}{}\n", unknown_.size(), list,
+  fmt::print(stderr, "ipos: nothing is known about {}{} identifiers: {}{}\n",
+             unknown_.size() < kUnknown ? "" : "at least ", unknown_.size(), list,
              unknown_.size() > kNamedUnknown ? ", ..." : "");
 }
 

@@ -23,7 +23,8 @@ class Monitor {
   // Times as in candump logs (kCandumpEpoch).
   void take(const runtime::LogEntry& entry);
   void take(runtime::Time time, const std::string& line, const runtime::Reception& reception);
-  // Frames or bytes that were lost before they could be read.
+  // Frames or bytes that were lost before they could be read. Losses in a row are shown once, with their sum
+  // behind.
   void lost(runtime::Time time, const std::string& line, uint64_t count, const char* what);
   // An error of the bus. Equal ones in a row are shown once and counted.
   void bus_error(runtime::Time time, const std::string& line, const std::string& text);
@@ -49,7 +50,9 @@ class Monitor {
   uint64_t errors_ = 0;
   std::string last_error_;
   uint64_t repeated_ = 0;
-  std::set<std::pair<bool, uint32_t>> unknown_;  // extended, identifier
+  const char* losing_ = nullptr;                 // what is being lost: the last line shown says so
+  uint64_t lost_more_ = 0;                       // since then
+  std::set<std::pair<bool, uint32_t>> unknown_;  // extended, identifier; at most kUnknown of them
 };
 
 }  // namespace ipos::tools

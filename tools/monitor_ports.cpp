@@ -7,6 +7,7 @@
 
 #include "runtime/bus/rs485/timing.hpp"
 #include "runtime/port/can_port.hpp"
+#include "runtime/port/port_names.hpp"
 #include "runtime/port/serial_port.hpp"
 #include "runtime/port/system_clock.hpp"
 #include "tools/failure.hpp"
@@ -20,6 +21,9 @@ using runtime::Time;
 
 // A signal may come just before the wait, and a pseudo-terminal with nobody attached cannot be polled (ours).
 constexpr Time kLongestWait = 20 * runtime::kMillisecond;
+
+// So much is taken before Ctrl-C, --for and the screen have their turn (ours).
+constexpr int kFramesALook = 1024, kReadsALook = 16;
 
 // Host time as candump logs write it. The offset is taken once, so that times do not jump with the clock.
 class Stamps {
@@ -102,6 +106,7 @@ int watch(Monitor& monitor, Port& port, runtime::RealClock& clock, Time duration
     const std::array<runtime::PortNeeds, 1> needs{port.needs()};
     clock.wait(std::min(clock.now() + kLongestWait, end), needs);
   }
+  for (const std::string& text : port.repeats()) monitor.note(port.name() + ": " + text);
   monitor.finish();
   if (gone) throw Failure(kIoError, gone->text);
   return interrupted() ? kInterrupted : kGood;
@@ -112,15 +117,17 @@ int watch(Monitor& monitor, Port& port, runtime::RealClock& clock, Time duration
 MonitorSource monitor_source(const std::string& name) {
   namespace fs = std::filesystem;
   if (name == "-" || name == "/dev/stdin") return MonitorSource::Log;
-  if (name.starts_with("slcan:")) return MonitorSource::Can;
-  if (name.starts_with("pty:")) return MonitorSource::Serial;
   std::error_code ignored;
   const fs::file_status status = fs::status(name, ignored);
-  if (fs::is_character_file(status)) return MonitorSource::Serial;
-  if (fs::exists(status) || fs::is_symlink(fs::symlink_status(name, ignored))) return MonitorSource::Log;
-  if (name.find_first_of("/.") != std::string::npos)
-    throw Failure(kNoInput, fmt::format("{}: there is no such log and no such device", name));
-  return MonitorSource::Can;
+  const bool is_there = fs::exists(status) || fs::is_symlink(fs::symlink_status(name, ignored));
+  if (is_there && !fs::is_character_file(status)) return MonitorSource::Log;
+  if (name.starts_with("pty:")) return MonitorSource::Serial;
+  if (runtime::kind_of_port(name) == runtime::PortKind::Serial) {
+    if (fs::exists(runtime::device_path(name), ignored)) return MonitorSource::Serial;
+  } else if (name.find('.') == std::string::npos || name.starts_with("slcan:")) {
+    return MonitorSource::Can;
+  }
+  throw Failure(kNoInput, fmt::format("{}: there is no such log and no such device", name));
 }
 
 int monitor_can(Monitor& monitor, const std::string& name, uint32_t baud, Time duration) {
@@ -128,7 +135,7 @@ int monitor_can(Monitor& monitor, const std::string& name, uint32_t baud, Time d
   const runtime::CanPortResult port = runtime::open_can_port(name, baud, clock);
   if (!port) throw Failure(kIoError, port.error().text);
   return watch(monitor, **port, clock, duration, "frames", [&](const Stamps& stamps) {
-    while (!monitor.full() && !interrupted()) {
+    for (int n = 0; n < kFramesALook && !monitor.full(); ++n) {
       const auto got = (*port)->receive();
       if (!got) return std::optional(got.error());
       if (!*got) break;
@@ -149,7 +156,7 @@ int monitor_serial(Monitor& monitor, const std::string& name, uint32_t baud, Tim
   SerialListener listener(monitor, name, baud);
   return watch(monitor, **port, clock, duration, "bytes", [&](const Stamps& stamps) {
     std::array<runtime::ByteArrival, 512> bytes{};
-    for (;;) {
+    for (int n = 0; n < kReadsALook; ++n) {
       const auto count = (*port)->receive(bytes);
       if (!count) return std::optional(count.error());
       if (*count == 0) break;

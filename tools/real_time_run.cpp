@@ -144,6 +144,7 @@ void RealTimeRun::report(const runtime::Punctuality& punctuality) const {
     add(bridge.late, "late");
     if (bridge.late != 0) text += fmt::format(" (up to {:.2f} ms)", ms(bridge.worst_late));
     message(text);
+    for (const std::string& repeat : joined.bridge->repeats()) message(repeat);
   }
 }
 

@@ -24,8 +24,9 @@ class Bridge : public RealTimeMember {
   virtual const Port& port() const = 0;
   virtual std::string_view goods() const = 0;  // what it carries: "frames", "bytes"
   virtual const BridgeCounts& counts() const = 0;
-  virtual size_t waiting() const = 0;                 // from the port, not on the line yet
-  virtual std::vector<std::string> take_notes() = 0;  // of the bridge and its port
+  virtual size_t waiting() const = 0;                    // from the port, not on the line yet
+  virtual std::vector<std::string> take_notes() = 0;     // of the bridge and its port
+  virtual std::vector<std::string> repeats() const = 0;  // at the end, as those of ports
 };
 
 }  // namespace ipos::runtime

@@ -48,7 +48,7 @@ bool CanBridge::collect(Time epoch) {
     if (!*got) return true;
     const CanArrival& arrival = **got;
     if (arrival.error)
-      notes_.note(fmt::format("{}: {}", port_.name(), describe(*arrival.error)));
+      notes_.count(fmt::format("{}: {}", port_.name(), describe(*arrival.error)));
     else
       arrive(arrival.at - epoch, arrival.frame);
   }
@@ -117,6 +117,12 @@ void CanBridge::on_not_sent(Time now, const Frame& /*frame*/, uint64_t tag, NotS
 // --- to the port
 
 void CanBridge::on_frame(Time /*now*/, const Frame& frame) { port_.send(frame); }
+
+std::vector<std::string> CanBridge::repeats() const {
+  std::vector<std::string> all = notes_.repeats();
+  for (const std::string& text : port_.repeats()) all.push_back(fmt::format("{}: {}", port_.name(), text));
+  return all;
+}
 
 std::vector<std::string> CanBridge::take_notes() {
   std::vector<std::string> all = notes_.take();

@@ -31,6 +31,7 @@ class CanBridge final : public Bridge, private CanNode, private EventTarget {
   const BridgeCounts& counts() const override { return counts_; }
   size_t waiting() const override { return arrivals_.size(); }
   std::vector<std::string> take_notes() override;
+  std::vector<std::string> repeats() const override;
 
  private:
   struct Arrival {

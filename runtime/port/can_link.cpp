@@ -51,7 +51,9 @@ tl::expected<CanLink, PortError> query_can_link(const std::string& name) {
   const unsigned index = if_nametoindex(name.c_str());
   if (index == 0)
     return tl::unexpected(port_error(PortFault::NoSuchInterface, name,
-                                     "'ip link' lists them; 'ip link add vcan0 type vcan' makes one"));
+                                     fmt::format("'ip link' lists them; 'ip link add vcan0 type vcan' makes "
+                                                 "one; a serial device is written with its path, ./{}",
+                                                 name)));
   const Descriptor socket_fd(socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC, NETLINK_ROUTE));
   if (!socket_fd.is_open()) return tl::unexpected(system_error(errno, name));
   struct {

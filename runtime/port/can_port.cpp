@@ -5,6 +5,7 @@
 
 #include <charconv>
 
+#include "runtime/port/port_names.hpp"
 #include "runtime/port/slcan_adapter.hpp"
 #include "runtime/port/slcan_client.hpp"
 #include "runtime/port/socket_can.hpp"
@@ -28,10 +29,11 @@ CanPortResult open_slcan(std::string_view name, std::string_view device, uint32_
       return tl::unexpected(port_error(PortFault::BadName, name, "write slcan:/dev/ttyUSB0@115200"));
     device = device.substr(0, at);
   }
-  if (!device.starts_with('/'))
+  std::string path(device);
+  if (!is_path(path))
     return tl::unexpected(
-        port_error(PortFault::BadName, name, "write slcan:/dev/ttyACM0 or slcan:pty:/path"));
-  return SlcanClient::open(std::string(device), serial_baud, baud, clock);
+        port_error(PortFault::BadName, name, "write slcan:/dev/ttyACM0, slcan:./ttyACM0 or slcan:pty:/path"));
+  return SlcanClient::open(std::move(path), serial_baud, baud, clock);
 }
 
 }  // namespace
@@ -39,8 +41,7 @@ CanPortResult open_slcan(std::string_view name, std::string_view device, uint32_
 CanPortResult open_can_port(std::string_view name, uint32_t baud, RealClock& clock) {
   if (name.starts_with(kSlcan)) return open_slcan(name, name.substr(kSlcan.size()), baud, clock);
   if (name.empty() || name.size() >= IFNAMSIZ || name.find_first_of("/: ") != std::string_view::npos)
-    return tl::unexpected(port_error(PortFault::BadName, name,
-                                     "a CAN port is vcan0, can0, slcan:/dev/ttyACM0 or slcan:pty:/path"));
+    return tl::unexpected(port_error(PortFault::BadName, name, kPortNames));
   return SocketCan::open(std::string(name), baud, clock);
 }
 

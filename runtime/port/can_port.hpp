@@ -27,7 +27,9 @@ class CanPort : public Port {
   // lost, counted and told. Frames sent never come back through receive().
   virtual void send(const Frame& frame) = 0;
 
-  // The next arrival in order, or nothing when there is none now. An error is for good.
+  // The next arrival in order, or nothing: then there is none now, or the others are to have their turn. What
+  // is left in the system wakes the loop at once. So the work between two "nothing" is bounded, whatever the
+  // other end does. An error is for good.
   virtual tl::expected<std::optional<CanArrival>, PortError> receive() = 0;
 };
 

@@ -2,15 +2,14 @@
 // until the loop comes by. What is lost is counted and told.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <tl/expected.hpp>
 
 #include "runtime/port/port_error.hpp"
+#include "runtime/port/port_notes.hpp"
 #include "runtime/port/real_clock.hpp"
 
 namespace ipos::runtime {
@@ -22,21 +21,6 @@ struct PortCounts {
   uint64_t lost_out = 0;  // not sent: queue full, interface down, refused
   uint64_t lost_in = 0;   // overrun before we could read them, or broken beyond reading
   uint64_t waited = 0;    // attempts at which the system had no room; sent later
-};
-
-// What the user is told about a port, each text once.
-class PortNotes {
- public:
-  void note(std::string text) {
-    if (std::find(told_.begin(), told_.end(), text) != told_.end()) return;
-    told_.push_back(text);
-    fresh_.push_back(std::move(text));
-  }
-  std::vector<std::string> take() { return std::exchange(fresh_, {}); }
-
- private:
-  std::vector<std::string> told_;
-  std::vector<std::string> fresh_;
 };
 
 class Port {
@@ -54,6 +38,8 @@ class Port {
 
   virtual const PortCounts& counts() const = 0;
   virtual std::vector<std::string> take_notes() = 0;
+  // At the end: how often came what was told once.
+  virtual std::vector<std::string> repeats() const { return {}; }
 };
 
 }  // namespace ipos::runtime

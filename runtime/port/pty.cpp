@@ -1,13 +1,18 @@
-// posix_openpt, and a link to the other end.
+// posix_openpt, a link to the other end, and a lock for the link.
 #include "runtime/port/pty.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
 #include <termios.h>
 
 #include <array>
 #include <cerrno>
+#include <cstddef>
 #include <cstdlib>
+#include <functional>
 
 namespace ipos::runtime {
 namespace {
@@ -17,6 +22,28 @@ std::string link_target(const std::string& path) {
   std::array<char, 4096> target{};
   const ssize_t size = readlink(path.c_str(), target.data(), target.size());
   return size < 0 ? std::string() : std::string(target.data(), static_cast<size_t>(size));
+}
+
+// Two runs must not share a path: the second would take the link away from the first, which could not be
+// reached any more. The lock is a name in the abstract namespace of Unix sockets (unix(7)): folder and file
+// name, however the path is written. It needs no file, and the kernel drops it when its owner dies, however
+// that was. Nobody connects to it. Not open: errno tells why, EADDRINUSE is another owner.
+Descriptor lock_path(const std::string& path) {
+  const size_t slash = path.rfind('/');
+  const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+  struct stat status {};
+  if (stat(folder.c_str(), &status) != 0) return Descriptor();
+  const std::string name = path.substr(slash + 1);  // all of it without a slash
+  const std::string id =
+      fmt::format("ipos-pty:{:x}:{:x}:{:x}", status.st_dev, status.st_ino, std::hash<std::string>()(name));
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  id.copy(address.sun_path + 1, sizeof address.sun_path - 1);
+  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + id.size());
+  Descriptor lock(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  if (lock.is_open() && bind(lock.get(), reinterpret_cast<const sockaddr*>(&address), size) != 0)
+    return Descriptor();
+  return lock;
 }
 
 bool is_left_over(const std::string& path) {
@@ -34,6 +61,17 @@ constexpr speed_t kMarks[] = {B50, B75};
 
 tl::expected<Pty, PortError> Pty::create(const std::string& path, size_t limit) {
   if (path.empty()) return tl::unexpected(port_error(PortFault::BadName, "pty:", "write pty:/path"));
+  Descriptor lock = lock_path(path);
+  if (!lock.is_open()) {
+    switch (errno) {
+      case EADDRINUSE:
+        return tl::unexpected(
+            port_error(PortFault::InUse, path, "another run of ipos has made its link there"));
+      case ENOENT:
+      case ENOTDIR: return tl::unexpected(port_error(PortFault::BadName, path, "the folder does not exist"));
+      default: return tl::unexpected(system_error(errno, path));
+    }
+  }
   struct stat status {};
   if (lstat(path.c_str(), &status) == 0) {
     if (!is_left_over(path)) return tl::unexpected(port_error(PortFault::PathTaken, path));
@@ -56,12 +94,8 @@ tl::expected<Pty, PortError> Pty::create(const std::string& path, size_t limit) 
     cfsetspeed(&settings, kMarks[0]);
     tcsetattr(other.get(), TCSANOW, &settings);
   }
-  if (symlink(device.data(), path.c_str()) != 0) {
-    const int error = errno;
-    return tl::unexpected(error == ENOENT ? port_error(PortFault::BadName, path, "the folder does not exist")
-                                          : system_error(error, path));
-  }
-  return Pty(path, device.data(), std::move(master), limit);
+  if (symlink(device.data(), path.c_str()) != 0) return tl::unexpected(system_error(errno, path));
+  return Pty(path, device.data(), std::move(lock), std::move(master), limit);
 }
 
 Pty::~Pty() {

@@ -16,8 +16,9 @@ namespace ipos::runtime {
 
 class Pty {
  public:
-  // A link to another pseudo-terminal, or to nothing, is left over from an earlier run and replaced (ours);
-  // anything else at `path` is an error. At most `limit` bytes wait to be written.
+  // A link that a run holds is an error. Another one to a pseudo-terminal, or to nothing, is left over from
+  // an earlier run and replaced (ours); anything else at `path` is an error. At most `limit` bytes wait to be
+  // written.
   static tl::expected<Pty, PortError> create(const std::string& path, size_t limit);
   ~Pty();
   Pty(Pty&&) = default;
@@ -41,13 +42,18 @@ class Pty {
   const std::string& path() const { return path_; }
 
  private:
-  Pty(std::string path, std::string device, Descriptor master, size_t limit)
-      : path_(std::move(path)), device_(std::move(device)), master_(std::move(master)), out_(limit) {}
+  Pty(std::string path, std::string device, Descriptor lock, Descriptor master, size_t limit)
+      : path_(std::move(path)),
+        device_(std::move(device)),
+        lock_(std::move(lock)),
+        master_(std::move(master)),
+        out_(limit) {}
 
   void renew_speed();
 
   std::string path_;
   std::string device_;  // "/dev/pts/3"; empty once moved from
+  Descriptor lock_;     // of the path
   Descriptor master_;
   OutBytes out_;
   bool attached_ = false;

@@ -89,18 +89,31 @@ bool SerialBridge::flush() {
   return flushed ? true : gone(flushed.error());
 }
 
+// What has not come back in its time does not come back any more.
+void SerialBridge::forget_echo(Time now) {
+  while (!echo_.empty() && echo_.front().until < now) {
+    echo_.pop_front();
+    echoed_in_a_row_ = 0;
+  }
+}
+
 // An adapter that hears itself gives every byte back. A telegram from outside is not taken for an echo: an
 // answer begins with another character than its request.
 bool SerialBridge::is_echo(const ByteArrival& byte) {
-  while (!echo_.empty() && echo_.front().until < byte.at) echo_.pop_front();
+  forget_echo(byte.at);
   if (echo_.empty()) return false;
   if (echo_.front().value != byte.value || byte.bad) {
     echo_.clear();
+    echoed_in_a_row_ = 0;
     return false;
   }
+  const size_t ends = echo_.front().ends;
   echo_.pop_front();
   ++echoed_bytes_;
-  notes_.note(fmt::format("{}: the adapter hears itself: its echo is left out", port_.name()));
+  ++echoed_in_a_row_;
+  // Noise may hit on a single byte. A whole telegram is no chance.
+  if (ends != 0 && echoed_in_a_row_ >= ends)
+    notes_.note(fmt::format("{}: the adapter hears itself: its echo is left out", port_.name()));
   return true;
 }
 
@@ -160,8 +173,12 @@ void SerialBridge::pass_on(Time now, std::span<const Character> characters) {
   port_.send(bytes);
   if (!port_.paces()) return;
   const Time end = now + static_cast<Time>(bytes.size()) * character_ + port_.latency() + kEchoDelay;
-  for (const uint8_t byte : bytes) echo_.push_back({byte, end});
+  forget_echo(now);
+  for (const uint8_t byte : bytes) echo_.push_back({byte, end, 0});
+  if (!bytes.empty()) echo_.back().ends = bytes.size();
 }
+
+std::vector<std::string> SerialBridge::repeats() const { return port_.repeats(); }
 
 std::vector<std::string> SerialBridge::take_notes() {
   std::vector<std::string> all = notes_.take();

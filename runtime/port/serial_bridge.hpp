@@ -51,6 +51,7 @@ class SerialBridge final : public Bridge, private SerialNode, private EventTarge
   const BridgeCounts& counts() const override { return counts_; }
   size_t waiting() const override { return arrivals_.size(); }
   std::vector<std::string> take_notes() override;
+  std::vector<std::string> repeats() const override;
   uint64_t bad_bytes() const { return bad_bytes_; }        // from the port, with parity or framing error
   uint64_t echoed_bytes() const { return echoed_bytes_; }  // from the port, left out
 
@@ -58,6 +59,7 @@ class SerialBridge final : public Bridge, private SerialNode, private EventTarge
   struct Echo {
     uint8_t value;
     Time until;
+    size_t ends;  // length of the telegram that ends here; 0 within it
   };
 
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
@@ -66,6 +68,7 @@ class SerialBridge final : public Bridge, private SerialNode, private EventTarge
 
   void arrive(const ByteArrival& byte);
   bool is_echo(const ByteArrival& byte);
+  void forget_echo(Time now);
   void begin_first();
   void pass_on(Time now, std::span<const Character> characters);
   bool has_room() const;
@@ -84,6 +87,7 @@ class SerialBridge final : public Bridge, private SerialNode, private EventTarge
   BridgeCounts counts_;
   uint64_t bad_bytes_ = 0;
   uint64_t echoed_bytes_ = 0;
+  size_t echoed_in_a_row_ = 0;  // so many of the last bytes
   PortNotes notes_;
 };
 

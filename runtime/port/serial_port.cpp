@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "runtime/port/parity_marks.hpp"
+#include "runtime/port/port_names.hpp"
 #include "runtime/port/pty.hpp"
 #include "runtime/port/tty.hpp"
 
@@ -169,9 +170,8 @@ SerialPortResult open_serial_port(std::string_view name, const SerialSettings& s
     return std::make_unique<PseudoTerminal>(std::string(name), std::move(*pty), settings.even_parity, clock);
   }
   const auto device = parse_device(name);
-  if (!device || !name.starts_with('/'))
-    return tl::unexpected(port_error(PortFault::BadName, name,
-                                     "a serial port is /dev/ttyUSB0, /dev/ttyUSB0@16ms or pty:/path"));
+  if (!device || !is_path(device->path))
+    return tl::unexpected(port_error(PortFault::BadName, name, kPortNames));
   PortNotes notes;
   auto tty = Tty::open(device->path, {settings.baud, settings.even_parity, true}, notes);
   if (!tty) return tl::unexpected(tty.error());

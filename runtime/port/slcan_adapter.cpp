@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 namespace ipos::runtime {
 namespace {
 
@@ -43,12 +45,15 @@ tl::expected<void, PortError> SlcanAdapter::flush() {
 tl::expected<std::optional<CanArrival>, PortError> SlcanAdapter::receive() {
   for (;;) {
     if (input_at_ == input_end_) {
+      // One reading, then the others have their turn: a program may write faster than we read.
+      if (std::exchange(has_read_, false)) return std::nullopt;
       input_at_ = 0;
       input_end_ = pty_.read(input_);
       if (input_end_ == 0) {
         if (!pty_.is_attached()) detach();
         return std::nullopt;
       }
+      has_read_ = true;
     }
     const auto kind = lines_.push(input_[input_at_++]);
     if (!kind) continue;
@@ -74,7 +79,7 @@ std::optional<Frame> SlcanAdapter::execute(std::string_view command) {
     if (channel_ != Channel::Open || !parsed || parsed->stamp) {
       if (channel_ == Channel::Open) {
         ++counts_.lost_in;
-        notes_.note(fmt::format("refused: '{}' is no frame", command));
+        notes_.count("a line that is no frame is refused", command);
       }
       pty_.write({&kSlcanError, 1});
       return std::nullopt;

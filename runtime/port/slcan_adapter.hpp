@@ -22,6 +22,7 @@ class SlcanAdapter final : public CanPort {
   size_t waiting() const override { return slcan_lines(pty_.waiting()); }
   const PortCounts& counts() const override { return counts_; }
   std::vector<std::string> take_notes() override { return notes_.take(); }
+  std::vector<std::string> repeats() const override { return notes_.repeats(); }
 
   bool is_channel_open() const { return channel_ != Channel::Closed; }
 
@@ -48,6 +49,7 @@ class SlcanAdapter final : public CanPort {
   std::array<char, 1024> input_;  // read, not looked at yet
   size_t input_at_ = 0;
   size_t input_end_ = 0;
+  bool has_read_ = false;  // since receive() said last that there is nothing
   SlcanLines lines_;
   PortCounts counts_;
   PortNotes notes_;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cerrno>
+#include <utility>
 
 namespace ipos::runtime {
 namespace {
@@ -61,12 +62,15 @@ tl::expected<void, PortError> SlcanClient::flush() {
 tl::expected<std::optional<CanArrival>, PortError> SlcanClient::receive() {
   for (;;) {
     if (input_at_ == input_end_) {
+      // One reading, then the others have their turn: an adapter may send faster than we read.
+      if (std::exchange(has_read_, false)) return std::nullopt;
       const ssize_t size = ::read(tty_.descriptor(), input_.data(), input_.size());
       if (size < 0 && errno == EINTR) continue;
       if (size < 0 && errno == EAGAIN) return std::nullopt;
       if (size <= 0) return tl::unexpected(system_error(size == 0 ? EIO : errno, name_));
       input_at_ = 0;
       input_end_ = static_cast<size_t>(size);
+      has_read_ = true;
     }
     const auto kind = lines_.push(input_[input_at_++]);
     if (!kind) continue;
@@ -103,7 +107,7 @@ std::optional<CanArrival> SlcanClient::take_line(std::string_view line) {
   if (!parsed) {
     if (is_slcan_frame_letter(line[0])) {
       ++counts_.lost_in;
-      notes_.note(fmt::format("a broken line from the adapter: '{}'", line));
+      notes_.count("a broken line from the adapter", line);
     }
     return std::nullopt;  // answers to V, N, F: not asked for
   }

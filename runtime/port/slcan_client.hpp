@@ -25,6 +25,7 @@ class SlcanClient final : public CanPort {
   size_t waiting() const override { return slcan_lines(out_.waiting()); }
   const PortCounts& counts() const override { return counts_; }
   std::vector<std::string> take_notes() override { return notes_.take(); }
+  std::vector<std::string> repeats() const override { return notes_.repeats(); }
 
  private:
   SlcanClient(std::string path, Tty tty, RealClock& clock);
@@ -41,6 +42,7 @@ class SlcanClient final : public CanPort {
   std::array<char, 1024> input_;
   size_t input_at_ = 0;
   size_t input_end_ = 0;
+  bool has_read_ = false;    // since receive() said last that there is nothing
   uint32_t answers_ = 0;     // to the commands that open the channel
   Time stamp_base_ = 0;      // full minutes of the adapter's clock
   uint16_t last_stamp_ = 0;  // ms

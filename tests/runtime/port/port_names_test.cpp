@@ -1,7 +1,10 @@
 // Names of ports, and the errors a user can make with them. Real interfaces are in tests/realbus.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "runtime/port/can_port.hpp"
+#include "runtime/port/port_names.hpp"
 #include "runtime/port/serial_port.hpp"
 #include "runtime/port/system_clock.hpp"
 #include "tests/tools/command.hpp"
@@ -39,7 +42,7 @@ TEST(PortNames, Can) {
 TEST(PortNames, CanErrorsAreOneClearLine) {
   EXPECT_EQ(can_error("nocan7").text,
             "nocan7: there is no such network interface: 'ip link' lists them; 'ip link add vcan0 type vcan' "
-            "makes one");
+            "makes one; a serial device is written with its path, ./nocan7");
   EXPECT_EQ(can_error("slcan:/dev/null", 300'000).text,
             "/dev/null: the device does not take this baud rate: slcan has none for 300000 bit/s");
 }
@@ -51,6 +54,41 @@ TEST(PortNames, Serial) {
   EXPECT_EQ(serial_error("/dev/nothere").fault, PortFault::NoSuchDevice);
   EXPECT_EQ(serial_error("/dev/null").fault, PortFault::NotSerial);
   EXPECT_EQ(serial_error("/dev/null", 19200).fault, PortFault::NoBaudRate);
+}
+
+TEST(PortNames, SayBothKinds) {
+  for (const PortError& error : {can_error("a/b"), serial_error("ttyUSB0")}) {
+    EXPECT_NE(error.text.find("a CAN port is can0"), std::string::npos) << error.text;
+    EXPECT_NE(error.text.find("a serial port is /dev/ttyUSB0"), std::string::npos) << error.text;
+  }
+}
+
+TEST(PortNames, OfBothKinds) {
+  for (const char* name : {"/dev/ttyUSB0", "./tty1", "tty/1", "../line@16ms", "pty:line1", "pty:/tmp/line1"})
+    EXPECT_EQ(kind_of_port(name), PortKind::Serial) << name;
+  for (const char* name : {"can0", "vcan0", "ttyUSB0", "slcan:./tty1", "slcan:pty:line1", ""})
+    EXPECT_EQ(kind_of_port(name), PortKind::Can) << name;
+}
+
+// Of a device or a link in the current folder.
+TEST(PortNames, ByRelativePath) {
+  if (!has_pty()) GTEST_SKIP() << kNoPty;
+  const TemporaryFolder folder;
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  SystemClock clock;
+  for (const char* own : {"pty:line1", "pty:./line1"}) {
+    const SerialPortResult line = open_serial_port(own, {9600, true}, clock);
+    ASSERT_TRUE(line) << line.error().text;
+    EXPECT_TRUE(open_serial_port("./line1", {9600, true}, clock));
+    EXPECT_TRUE(open_serial_port("line1@16ms", {9600, true}, clock));
+    EXPECT_EQ(kind_of_port("line1"), PortKind::Serial);
+  }
+  const CanPortResult adapter = open_can_port("slcan:pty:can1", 500'000, clock);
+  ASSERT_TRUE(adapter) << adapter.error().text;
+  EXPECT_TRUE(open_can_port("slcan:can1", 500'000, clock));
+  EXPECT_TRUE(open_can_port("slcan:./can1@115200", 500'000, clock));
+  std::filesystem::current_path(before);
 }
 
 TEST(PortKey, NeedsRealTime) {

@@ -183,6 +183,22 @@ TEST(SerialBridge, AnEchoIsLeftOut) {
   EXPECT_EQ(rig.port.sent.size(), 2U);
 }
 
+// Noise that by chance is what an echo would begin with is no echo: no message, and the answer is heard.
+TEST(SerialBridge, NoiseIsNoEcho) {
+  for (const uint8_t noise : Bytes{0x1D, 0x55}) {
+    Rig rig;
+    rig.arrive(10 * kMillisecond, kRequest);
+    rig.run(50 * kMillisecond);
+    ASSERT_EQ(rig.port.sent.size(), 1U);
+    rig.arrive(rig.clock.now(), {noise, 0xAA, 0xAA});
+    rig.run(150 * kMillisecond);
+    EXPECT_FALSE(rig.noted("hears itself"));
+    rig.arrive(rig.clock.now(), kRequest);
+    rig.run(250 * kMillisecond);
+    EXPECT_EQ(rig.port.sent.size(), 2U);
+  }
+}
+
 // Two units answer 254 at once: what collides is not passed on as if it were good.
 TEST(SerialBridge, CollisionsOfAnswersGoOutAsVoidTelegrams) {
   Rig rig;

@@ -2,10 +2,12 @@
 // pseudo-terminals.
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <termios.h>
 #include <unistd.h>
 
 #include <array>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 
@@ -146,6 +148,59 @@ TEST(PseudoTerminal, LinkComesAndGoes) {
     EXPECT_TRUE(fs::read_symlink(path).string().starts_with("/dev/pts/"));
   }
   EXPECT_FALSE(fs::exists(fs::symlink_status(path)));
+}
+
+// However the path is written, and also for the other kind of port; what the first one has is not touched.
+TEST(PseudoTerminal, APathIsForOneRun) {
+  if (!has_pty()) GTEST_SKIP() << kNoPty;
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "line1";
+  fs::create_directory_symlink(folder.path(), folder.path() / "same");
+  SystemClock clock;
+  {
+    const auto pty = Pty::create(path.string(), 100);
+    ASSERT_TRUE(pty) << pty.error().text;
+    const fs::path target = fs::read_symlink(path);
+    const std::string relative = path.lexically_relative(fs::current_path()).string();
+    for (const std::string& again : {path.string(), (folder.path() / "." / "line1").string(),
+                                     (folder.path() / "same" / "line1").string(), relative}) {
+      const auto second = Pty::create(again, 100);
+      ASSERT_FALSE(second) << again;
+      EXPECT_EQ(second.error().fault, PortFault::InUse);
+      EXPECT_EQ(second.error().text,
+                again + ": is in use by another program: another run of ipos has made its link there");
+    }
+    EXPECT_EQ(fs::read_symlink(path), target);
+    EXPECT_TRUE(Pty::create((folder.path() / "line2").string(), 100)) << "another name in the same folder";
+  }
+  EXPECT_TRUE(Pty::create(path.string(), 100)) << "free again";
+}
+
+// A run that is killed removes nothing. The number of its pseudo-terminal may be somebody else's by now.
+TEST(PseudoTerminal, TheLinkOfAKilledRunIsReplaced) {
+  if (!has_pty()) GTEST_SKIP() << kNoPty;
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "line1";
+  std::array<int, 2> ends{};
+  ASSERT_EQ(pipe(ends.data()), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    const auto pty = Pty::create(path.string(), 100);
+    const char made = pty ? 'y' : 'n';
+    (void)!write(ends[1], &made, 1);
+    for (;;) pause();
+  }
+  char made = 0;
+  ASSERT_EQ(read(ends[0], &made, 1), 1);
+  EXPECT_EQ(made, 'y');
+  EXPECT_FALSE(Pty::create(path.string(), 100)) << "it lives";
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  EXPECT_TRUE(fs::is_symlink(path));
+  const auto pty = Pty::create(path.string(), 100);
+  EXPECT_TRUE(pty) << pty.error().text;
+  close(ends[0]);
+  close(ends[1]);
 }
 
 TEST(PseudoTerminal, ALinkLeftOverIsReplacedAndNothingElse) {

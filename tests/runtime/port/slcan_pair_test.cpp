@@ -5,6 +5,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <random>
 
 #include "runtime/port/descriptor.hpp"
@@ -224,6 +225,58 @@ TEST_F(SlcanAdapterCommands, AProgramThatDoesNotReadLosesWholeFramesAndThatIsTol
     ASSERT_EQ(all.substr(at, 8), slcan_text(frame(static_cast<uint32_t>(n % 2048), static_cast<uint8_t>(n))));
   EXPECT_EQ(talk("F\r"), "F08\r");  // data overrun, once
   EXPECT_EQ(talk("F\r"), "F00\r");
+}
+
+// A peer may write as fast as it can, nothing but garbage, every line another one: the port comes back after
+// one reading, tells it once, and counts.
+TEST_F(SlcanAdapterCommands, AFloodOfBrokenLinesKeepsNobodyBusy) {
+  EXPECT_EQ(talk("O\r"), "\r");
+  std::string flood;
+  size_t lines = 0;
+  for (; flood.size() < 3000; ++lines) flood += "t" + std::to_string(1000 + lines) + "\x1B!\r";
+  ASSERT_EQ(::write(program_.get(), flood.data(), flood.size()), static_cast<ssize_t>(flood.size()));
+  uint64_t before = 0;
+  for (int rounds = 0; before < lines && rounds < 1000; ++rounds) {
+    const auto got = adapter_->receive();
+    ASSERT_TRUE(got);
+    EXPECT_FALSE(*got);
+    const uint64_t now = adapter_->counts().lost_in;
+    EXPECT_LE(now - before, 1024U / 7 + 1) << "more than a reading at once";
+    EXPECT_GE(adapter_->needs().descriptor, 0) << "what is left must wake the loop";
+    if (now == before) ::poll(nullptr, 0, 1);
+    before = now;
+    heard();
+  }
+  EXPECT_EQ(before, lines);
+  EXPECT_EQ(adapter_->take_notes(),
+            std::vector<std::string>{"a line that is no frame is refused: 't1000\\x1B!'"});
+  EXPECT_EQ(
+      adapter_->repeats(),
+      std::vector<std::string>{"a line that is no frame is refused: " + std::to_string(lines) + " times"});
+}
+
+TEST_F(SlcanPair, AFloodFromAnAdapterKeepsNobodyBusy) {
+  const Descriptor master(posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK));
+  ASSERT_TRUE(master.is_open() && grantpt(master.get()) == 0 && unlockpt(master.get()) == 0);
+  const auto client = open(std::string("slcan:") + ptsname(master.get()));
+  ASSERT_TRUE(client);
+  client->take_notes();
+  std::string flood;
+  size_t lines = 0;
+  for (; flood.size() < 3000; ++lines) flood += "t" + std::to_string(1000 + lines) + "!\r";
+  ASSERT_EQ(::write(master.get(), flood.data(), flood.size()), static_cast<ssize_t>(flood.size()));
+  uint64_t before = 0;
+  for (int rounds = 0; before < lines && rounds < 1000; ++rounds) {
+    const auto got = client->receive();
+    ASSERT_TRUE(got);
+    EXPECT_FALSE(*got);
+    const uint64_t now = client->counts().lost_in;
+    EXPECT_LE(now - before, 1024U / 6 + 1);
+    if (now == before) ::poll(nullptr, 0, 1);
+    before = now;
+  }
+  EXPECT_EQ(before, lines);
+  EXPECT_EQ(client->take_notes(), std::vector<std::string>{"a broken line from the adapter: 't1000!'"});
 }
 
 TEST_F(SlcanAdapterCommands, AnyBytesNeverHurt) {
