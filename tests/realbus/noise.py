@@ -1,5 +1,5 @@
 """noise.py IPOS [SECONDS [FLOOD]]: noise at the pseudo-terminals of a plant that runs in real time, on an RS-485 line of
-57600 baud and on an slcan adapter of 115200, at the rates of such lines; with FLOOD as fast as they take it. Virtual time
+9600 baud and on an slcan adapter of 115200, at the rates of such lines; with FLOOD as fast as they take it. Virtual time
 has to stay with the clock, Ctrl-C has to be heard, memory and messages have to stay bounded. A host that is busy with
 other things makes a try fail, too, so there are three."""
 import os
@@ -17,7 +17,6 @@ PLANT = """
 [[bus]]
 name = "line1"
 kind = "rs485"
-baud = 57600
 port = "pty:{0}/line1"
 
 [[bus]]
@@ -27,12 +26,11 @@ port = "slcan:pty:{0}/can1"
 
 [[station]]
 name = "unit1"
-unit = "mdxb"
+unit = "md60a"
 sbus = "sbus"
-[station.rs485]
-x13 = "line1"
+rs485 = "line1"
 """
-CHARACTERS_A_SECOND = {"line1": 57600 / 11, "can1": 115200 / 10}
+CHARACTERS_A_SECOND = {"line1": 9600 / 11, "can1": 115200 / 10}
 KINDS = 40  # lines of messages there may be, whatever comes
 
 
@@ -75,6 +73,8 @@ def attempt(ipos, seconds, flood):
             run = subprocess.Popen([ipos, "run", f"{folder}/plant.toml", "--realtime", "--for", "24h"],
                                    stdout=subprocess.DEVNULL, stderr=messages)
         while not (os.path.lexists(f"{folder}/line1") and os.path.lexists(f"{folder}/can1")):
+            if run.poll() is not None:
+                sys.exit(open(f"{folder}/messages").read())
             time.sleep(0.01)
         peers = {name: os.open(f"{folder}/{name}", os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK) for name in CHARACTERS_A_SECOND}
         os.write(peers["can1"], b"C\rS6\rO\r")

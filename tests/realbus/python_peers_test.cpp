@@ -73,6 +73,14 @@ TEST(PythonPeers, SerialLineOfPythonSerial) {
   EXPECT_EQ((*port)->counts().lost_out, 0U);
 }
 
+// Some seconds of it; noise.py IPOS 600 is the long form.
+TEST(PythonPeers, NoiseAtThePorts) {
+  if (!has_pty()) GTEST_SKIP() << kNoPty;
+  const ScriptResult result = run_script({kPython, "-B", script("noise.py"), IPOS_PROGRAM, "4"});
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  expect_all_ok(result.output, 6);
+}
+
 TEST(PythonPeers, MovilinkMasterOfPythonSerial) {
   if (!has_pty()) GTEST_SKIP() << kNoPty;
   if (!python_has("serial")) GTEST_SKIP() << "there is no python3-serial";
