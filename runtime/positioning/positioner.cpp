@@ -6,10 +6,11 @@ namespace {
 
 struct EventRow {
   uint8_t fault;
+  PositioningCause cause;
   std::string_view text;
 };
 constexpr EventRow kEvents[] = {
-#define POSITIONING_EVENT(name, fault, text) {fault, text},
+#define POSITIONING_EVENT(name, fault, cause, text) {fault, PositioningCause::cause, text},
 #include "runtime/positioning/events.def"
 };
 
@@ -19,6 +20,7 @@ constexpr uint32_t kKeepModuloTarget = 1;  // H453 bit 0
 }  // namespace
 
 uint8_t fault_of(PositioningEvent event) { return kEvents[static_cast<size_t>(event)].fault; }
+PositioningCause cause_of(PositioningEvent event) { return kEvents[static_cast<size_t>(event)].cause; }
 std::string_view text_of(PositioningEvent event) { return kEvents[static_cast<size_t>(event)].text; }
 
 // --- what the program orders ---

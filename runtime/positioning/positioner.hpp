@@ -21,14 +21,20 @@
 namespace ipos::runtime {
 
 enum class PositioningEvent : uint8_t {
-#define POSITIONING_EVENT(name, fault, text) name,
+#define POSITIONING_EVENT(name, fault, cause, text) name,
 #include "runtime/positioning/events.def"
 };
 inline constexpr size_t kPositioningEvents = 0
-#define POSITIONING_EVENT(name, fault, text) +1
+#define POSITIONING_EVENT(name, fault, cause, text) +1
 #include "runtime/positioning/events.def"
     ;
+// What an event comes from: the last order of its kind. Motion: the target or the reference travel, whichever
+// moves the axis.
+enum class PositioningCause : uint8_t { None, Target, Reference, Setting, Motion };
+inline constexpr size_t kPositioningCauses = 5;
+
 uint8_t fault_of(PositioningEvent event);  // 0: none
+PositioningCause cause_of(PositioningEvent event);
 std::string_view text_of(PositioningEvent event);
 
 // Keywords of _AxisStop that hold the axis until it is enabled again.

@@ -5,7 +5,7 @@ namespace ipos::runtime {
 
 void Positioner::start_reference(bool conditional, bool zero_pulse) {
   if (conditional && referenced()) return;
-  if (!inputs_.possible) report(PositioningEvent::NoPositioning);
+  if (!inputs_.possible) report(PositioningEvent::NoReferencing);
   referenced_ = false;
   pending_ = Pending::None;
   reference_.start(settings_.reference_type, zero_pulse);

@@ -39,7 +39,7 @@ std::optional<vm::HostReply> PositioningCommands::execute(vm::Machine& machine, 
 
     case Opcode::Go0:
       service_.take_targets(h);
-      service_.ordered_at(address);
+      service_.ordered_at(PositioningCause::Reference, address);
       if (a == kGo0Reset)
         service_.change_positioner().end_reference();
       else
@@ -70,9 +70,7 @@ std::optional<vm::HostReply> PositioningCommands::execute(vm::Machine& machine, 
     case Opcode::GetSys:
       if (command.operands[1] != kGetCam) return std::nullopt;
       return run_cam(h, static_cast<uint32_t>(a));
-    case Opcode::SetSys:
-      service_.ordered_at(address);
-      return set_system_value(h, a, static_cast<size_t>(command.operands[1]));
+    case Opcode::SetSys: return set_system_value(h, a, static_cast<size_t>(command.operands[1]), address);
     default: return std::nullopt;
   }
 }
@@ -84,7 +82,7 @@ vm::HostReply PositioningCommands::travel(vm::Machine& machine, int context, con
   const int32_t operand = command.operands[1];
   const int32_t value = from_variable ? h[static_cast<size_t>(operand)] : operand;
   service_.take_targets(h);
-  service_.ordered_at(machine.context(context).pc);
+  service_.ordered_at(PositioningCause::Target, machine.context(context).pc);
   if (relative)
     service_.change_positioner().move_target(value);
   else
@@ -106,7 +104,8 @@ void PositioningCommands::resume(vm::Machine& machine) {
 }
 
 std::optional<vm::HostReply> PositioningCommands::set_system_value(std::span<const int32_t> h,
-                                                                   int32_t keyword, size_t variable) {
+                                                                   int32_t keyword, size_t variable,
+                                                                   uint32_t address) {
   constexpr int32_t kTenthRpm = 100;  // in 1/1000 rpm
   const auto speed = [&](size_t n) {
     const int64_t mrpm = int64_t{h[variable + n]} * kTenthRpm;
@@ -116,13 +115,13 @@ std::optional<vm::HostReply> PositioningCommands::set_system_value(std::span<con
   switch (keyword) {
     case kPosRamp:
       if (!has(2)) return fail("SETSYS POS.RAMP: the structure ends behind the variables of the unit");
-      service_.set_parameter("911", h[variable]);
-      service_.set_parameter("912", h[variable + 1]);
+      service_.set_parameter("911", h[variable], address);
+      service_.set_parameter("912", h[variable + 1], address);
       return vm::HostReply{};
     case kPosSpeed:
       if (!has(2)) return fail("SETSYS POS.SPEED: the structure ends behind the variables of the unit");
-      service_.set_parameter("913", speed(0));
-      service_.set_parameter("914", speed(1));
+      service_.set_parameter("913", speed(0), address);
+      service_.set_parameter("914", speed(1), address);
       return vm::HostReply{};
     default: return std::nullopt;
   }

@@ -34,7 +34,8 @@ class PositioningCommands {
   void resume(vm::Machine& machine);
   vm::HostReply wait(int context);
   vm::HostReply travel(vm::Machine& machine, int context, const vm::Instruction& command);
-  std::optional<vm::HostReply> set_system_value(std::span<const int32_t> h, int32_t keyword, size_t variable);
+  std::optional<vm::HostReply> set_system_value(std::span<const int32_t> h, int32_t keyword, size_t variable,
+                                                uint32_t address);
   vm::HostReply run_cam(std::span<int32_t> h, uint32_t structure);
 
   PositioningService& service_;

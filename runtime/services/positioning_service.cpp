@@ -105,6 +105,12 @@ void PositioningService::set_parameter(std::string_view number, int32_t value) {
     parameters_.set_working(row->index, value);
 }
 
+void PositioningService::set_parameter(std::string_view number, int32_t value, uint32_t address) {
+  set_parameter(number, value);
+  ordered_at(PositioningCause::Setting, address);
+  setting_version_ = parameters_.changes();
+}
+
 inline bool PositioningService::mirrors_written(std::span<const int32_t> h) const {
   return [&]<size_t... n>(std::index_sequence<n...>) {
     return ((h[kMirrorRows[n].variable] ^ mirrored_[n]) | ...) != 0;
@@ -137,11 +143,11 @@ void PositioningService::take_targets(std::span<const int32_t> h) {
 void PositioningService::take_written_targets(std::span<const int32_t> h) {
   travels_ = false;
   if (h[kTargetPos] != shown_target_) {
-    ordered_at_.reset();
+    not_ordered(PositioningCause::Target);
     positioner_.write_target(h[kTargetPos]);
   }
   if (h[kModTagPos] != shown_modulo_target_) {
-    ordered_at_.reset();
+    not_ordered(PositioningCause::Target);
     positioner_.write_modulo_target(h[kModTagPos]);
   }
   if (h[kModCount] != shown_turns_) positioner_.set_modulo_turns(h[kModCount]);
@@ -249,6 +255,8 @@ PositionControl PositioningService::order_anew(Time now, std::span<int32_t> h, u
     positioner_.take_over(settings_);
   }
   read_inputs(h, syncs);
+  if (inputs_.reference_start && !positioner_.inputs().reference_start)
+    not_ordered(PositioningCause::Reference);
   const PositioningOrder order = positioner_.tick(inputs_);
   if (positioner_.has_events() || reported_.any()) report_events(now);
   const bool undisturbed = reported_.none() && settings_.technology_function != kIsync;
@@ -257,6 +265,18 @@ PositionControl PositioningService::order_anew(Time now, std::span<int32_t> h, u
   if (const auto counter = positioner_.take_motor_counter()) drive_.set_position(*counter);
   return {order.controls, order.speed, command_of(order.halt), positioner_.in_position(),
           positioner_.referenced()};
+}
+
+std::string PositioningService::place_of(PositioningEvent event) const {
+  PositioningCause cause = cause_of(event);
+  if (cause == PositioningCause::Motion)
+    cause = positioner_.follow_state() != FollowState::Free ? PositioningCause::None
+            : positioner_.referencing()                     ? PositioningCause::Reference
+                                                            : PositioningCause::Target;
+  // Somebody else has changed a parameter since.
+  if (cause == PositioningCause::Setting && setting_version_ != parameters_.changes()) return {};
+  const std::optional<uint32_t> address = ordered_at_[static_cast<size_t>(cause)];
+  return address ? place_(*address) : std::string();
 }
 
 void PositioningService::report_events(Time now) {
@@ -268,7 +288,7 @@ void PositioningService::report_events(Time now) {
     const auto event = static_cast<PositioningEvent>(n);
     const uint8_t fault = fault_of(event);
     if (fault != 0) drive_.raise_fault(fault);
-    const std::string place = ordered_at_ ? place_(*ordered_at_) : std::string();
+    const std::string place = place_of(event);
     journal_.note(
         now, Weight::Warning, station_,
         fmt::format("{}{} (target {}, position {}{}{})", fault == 0 ? "" : fmt::format("F{:02}: ", fault),

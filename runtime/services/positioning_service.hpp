@@ -63,9 +63,12 @@ class PositioningService {
     idles_ = travels_ = false;
     return positioner_;
   }
-  void take_targets(std::span<const int32_t> h);                // written since the last look
-  void ordered_at(uint32_t address) { ordered_at_ = address; }  // the command, for what is reported of it
-  void show_targets(std::span<int32_t> h);                      // and the bits 19 and 20 of H473
+  void take_targets(std::span<const int32_t> h);  // written since the last look
+  // The command, for what is reported of it.
+  void ordered_at(PositioningCause kind, uint32_t address) {
+    ordered_at_[static_cast<size_t>(kind)] = address;
+  }
+  void show_targets(std::span<int32_t> h);  // and the bits 19 and 20 of H473
   CamSources& cam_sources() {
     cams_run_ = true;
     return cam_sources_;
@@ -74,8 +77,8 @@ class PositioningService {
     cams_run_ = true;
     return extended_cams_;
   }
-  // A parameter by its number, as the program's own working value.
-  void set_parameter(std::string_view number, int32_t value);
+  // A parameter by its number, as the program's own working value, ordered by the command at `address`.
+  void set_parameter(std::string_view number, int32_t value, uint32_t address);
 
  private:
   static constexpr int32_t kIsync = 2;  // setting of P077 (1053 1610 p. 69)
@@ -107,6 +110,9 @@ class PositioningService {
   void show_bits(std::span<int32_t> h);
   void show_positions(std::span<int32_t> h, const Encoders::Positions& positions, int32_t setpoint);
   void report_events(Time now);
+  std::string place_of(PositioningEvent event) const;
+  void set_parameter(std::string_view number, int32_t value);
+  void not_ordered(PositioningCause kind) { ordered_at_[static_cast<size_t>(kind)].reset(); }
 
   Drive& drive_;
   ParameterStore& parameters_;
@@ -142,7 +148,9 @@ class PositioningService {
   bool in_position_ = false;  // as last shown
   uint32_t syncs_ = 0;        // sync telegrams, as of the last millisecond
   std::bitset<kPositioningEvents> reported_;  // in the last millisecond
-  std::optional<uint32_t> ordered_at_;        // nothing: by writing a variable
+  // Of each kind the last one; nothing: not by a command, but by writing a variable or an input.
+  std::array<std::optional<uint32_t>, kPositioningCauses> ordered_at_;
+  uint32_t setting_version_ = 0;  // of the parameters, behind the last command that has set one
 };
 
 }  // namespace ipos::runtime

@@ -382,6 +382,30 @@ main() {
   EXPECT_TRUE(rig.said("ordered at P.IPC:6:"));
 }
 
+// Orders of other kinds that come in the same millisecond do not take the blame.
+TEST(PositioningProgram, AFaultNamesTheOrderThatCausedIt) {
+  const std::string program = R"(
+SSPOSRAMP r;
+main() {
+  r.Up = 100; r.Down = 100;
+  _Go0(GO0_C_NW_CAM);
+  _SetSys(SS_POSRAMP, r);
+  _GoAbs(GO_NOWAIT, 5000);
+}
+)";
+  ProgramRig no_mode(program, {{"P700", 0}});
+  no_mode.run(10);
+  EXPECT_TRUE(no_mode.said("F77: the axis cannot be positioned"));
+  EXPECT_TRUE(no_mode.said("ordered at P.IPC:7:")) << "the reference travel";
+  EXPECT_TRUE(no_mode.said("ordered at P.IPC:9:")) << "and the travel";
+  EXPECT_FALSE(no_mode.said("ordered at P.IPC:8:")) << "a ramp is no travel";
+  ProgramRig no_cam(program, {{"P903", 1}});
+  no_cam.run(500);
+  EXPECT_TRUE(no_cam.said("F39"));
+  EXPECT_TRUE(no_cam.said("ordered at P.IPC:7:"));
+  EXPECT_FALSE(no_cam.said("ordered at P.IPC:9:"));
+}
+
 TEST(PositioningProgram, WithoutEncoderThereAreNoTravels) {
   ProgramRig rig("main() { _GoAbs(GO_NOWAIT, 100); }", {}, "mc07");
   rig.run(5);
