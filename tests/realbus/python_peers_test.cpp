@@ -81,6 +81,13 @@ TEST(PythonPeers, NoiseAtThePorts) {
   expect_all_ok(result.output, 6);
 }
 
+TEST(PythonPeers, TheLogOfAKilledRun) {
+  const ScriptResult result = run_script(
+      {kPython, "-B", script("killed_log.py"), IPOS_PROGRAM, project("examples/scom/scom.toml").string()});
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  expect_all_ok(result.output, 1);
+}
+
 TEST(PythonPeers, MovilinkMasterOfPythonSerial) {
   if (!has_pty()) GTEST_SKIP() << kNoPty;
   if (!python_has("serial")) GTEST_SKIP() << "there is no python3-serial";
