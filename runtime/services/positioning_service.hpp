@@ -77,7 +77,8 @@ class PositioningService {
     cams_run_ = true;
     return extended_cams_;
   }
-  // A parameter by its number, as the program's own working value, ordered by the command at `address`.
+  // A parameter by its number, as the program's own working value; where a command ordered it, that stands at `address`.
+  void set_parameter(std::string_view number, int32_t value);
   void set_parameter(std::string_view number, int32_t value, uint32_t address);
 
  private:
@@ -111,7 +112,6 @@ class PositioningService {
   void show_positions(std::span<int32_t> h, const Encoders::Positions& positions, int32_t setpoint);
   void report_events(Time now);
   std::string place_of(PositioningEvent event) const;
-  void set_parameter(std::string_view number, int32_t value);
   void not_ordered(PositioningCause kind) { ordered_at_[static_cast<size_t>(kind)].reset(); }
 
   Drive& drive_;
