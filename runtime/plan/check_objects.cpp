@@ -18,6 +18,7 @@ class ObjectCheck {
       if (member.port == nullptr) continue;
       for (const ObjectDefinition& definition : member.port->objects().definitions())
         closed(member, definition);
+      used_once(member);
       started(member);
     }
     formats();
@@ -44,6 +45,19 @@ class ObjectCheck {
                        user_of(member, static_cast<uint32_t>(definition.object))));
     else if (!definition.accepted)
       find(FindingKind::ObjectRefused, fmt::format("{}: {}", name(member, definition), definition.why));
+  }
+
+  // Rule 2 of p. 51. Two that send are found with the senders of the whole line.
+  void used_once(const Member& member) {
+    const auto& definitions = member.port->objects().definitions();
+    for (const ObjectDefinition& sent : definitions)
+      for (const ObjectDefinition& received : definitions)
+        if (sent.accepted && received.accepted && sent.object == received.object &&
+            sent.kind != ObjectKind::Receive && received.kind == ObjectKind::Receive)
+          find(FindingKind::DoubleIdentifier,
+               fmt::format("identifier {} is sent ({}) and received ({}) by {}", sent.object,
+                           structure_name(*member.station, sent.variable),
+                           structure_name(*member.station, received.variable), member.name));
   }
 
   // "it is the PO of address 1, which unit2 receives"; the station's own use first.

@@ -69,6 +69,7 @@ class SbusPort final : private CanNode, private SlaveObserver, private ObjectRea
   bool receive(Time now, const Frame& frame);
   void read(size_t object, const Frame& frame) override { objects_.take(object, frame, variables_); }
   void tell_reasons(Time now);
+  void tell_shared(Time now, const Frame& frame);
   void on_sent(Time now, const Frame& frame, uint64_t tag) override;
   void on_not_sent(Time now, const Frame& frame, uint64_t tag, NotSent reason) override;
   void on_bus_off(Time now) override;

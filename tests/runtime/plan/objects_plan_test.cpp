@@ -59,6 +59,63 @@ TEST(Objects, OneSenderAndNoMovilinkIdentifiers) {
   EXPECT_TRUE(texts(plan, FindingKind::MovilinkIdentifier).empty());
 }
 
+// Rule 2 of p. 51; numbers that the compiler does not know.
+TEST(Objects, OneUnitSendsOrReceivesAnIdentifier) {
+  const auto both = [](const std::string& kind, const std::string& structure, const std::string& result) {
+    return "#include <const.h>\n" + structure +
+           " T; SCREC R; long k, lData, lGot;\nmain()\n{\n k = 1000; lData = 7; T.ObjectNo = k + 24; "
+           "T.Format = 4; "
+           "T.DPointer = numof(lData);\n" +
+           result + " _SBusCommDef(" + kind +
+           ", T);\n R.ObjectNo = k + 24; R.Format = 4; R.DPointer = numof(lGot);\n _SBusCommDef(SCD_REC, "
+           "R);\n"
+           " _SBusCommOn();\n while (1) {}\n}\n";
+  };
+  const std::map<std::string, std::string> cyclic = {
+      {"A.IPC", both("SCD_TRCYCL", "SCTRCYCL", " T.CycleTime = 10; T.Offset = 0;")},
+      {"B.IPC", receive_program(1024)}};
+  PlantRig rig(two(), cyclic);
+  rig.run_until(50 * kMillisecond);
+  EXPECT_EQ(rig.says("unit1: object 1024 would be sent and received by this unit"), 1U) << rig.journal();
+  EXPECT_EQ(rig.variable(1, "lData"), 7);
+  EXPECT_EQ(texts(plan_of(two(), cyclic), FindingKind::ObjectRefused).size(), 1U);
+  const std::map<std::string, std::string> acyclic = {{"A.IPC", both("SCD_TRACYCL", "SCTRACYCL", "")},
+                                                      {"B.IPC", receive_program(1024)}};
+  PlantRig once(two(), acyclic);
+  once.run_until(50 * kMillisecond);
+  EXPECT_EQ(once.says("unit1: object 1024 stands in two structures of this unit"), 1U) << once.journal();
+  EXPECT_EQ(texts(plan_of(two(), acyclic), FindingKind::DoubleIdentifier),
+            std::vector<std::string>{"identifier 1024 is sent (T) and received (R) by unit1"});
+}
+
+// A unit that calls address 1 with MOVLNK, and has an object on one of the telegrams of these calls.
+TEST(Objects, ObjectsOnTheUnitsOwnMovlnk) {
+  for (const auto& [id, text] :
+       {std::pair{12, "process input data (PI) of address 1: the telegram does not reach the receive object"},
+        {524, "parameter response of address 1: the telegram does not reach the receive object"},
+        {11, "process output data (PO) of address 1: the telegram does not reach the receive object"},
+        {523, "parameter request of address 1: the telegram does not reach the receive object"}}) {
+    const std::string program =
+        "#include <const.h>\nMOVLNK Ml; MLDATA Mld; SCREC R; long k, lGot;\nmain()\n{\n k = " +
+        std::to_string(id) +
+        "; R.ObjectNo = k; R.Format = 8; R.DPointer = 300;\n _SBusCommDef(SCD_REC, R); _SBusCommOn();\n "
+        "Ml.BusType = 5; Ml.Address = 1; Ml.Format = 4; Ml.Service = 1; Ml.Index = 8318; Ml.DPointer = "
+        "numof(Mld);\n while (1) { _MoviLink(Ml); _Wait(10); }\n}\n";
+    const std::map<std::string, std::string> sources = {{"A.IPC", program}};
+    const std::string plant = bus_text() + station_text("unit1", "P813 = 0\n", "md60a", "A.IPC") +
+                              station_text("unit2", "P813 = 1\n");
+    PlantRig rig(plant, sources);
+    rig.run_until(100 * kMillisecond);
+    EXPECT_EQ(rig.variable(0, "H300"), 0);
+    EXPECT_EQ(rig.variable(0, "Ml.Result"), 0);
+    EXPECT_EQ(rig.says("unit1: object " + std::to_string(id) +
+                       " has the identifier of a telegram of this unit's own MOVLNK, " + text),
+              1U)
+        << rig.journal();
+    EXPECT_EQ(texts(plan_of(plant, sources), FindingKind::MovilinkIdentifier).size(), 1U);
+  }
+}
+
 TEST(Objects, NumbersFrom0To2047) {
   PROVES("VAR-06");
   for (const int id : {2048, -1}) {
