@@ -209,6 +209,22 @@ TEST(Describe, ParameterTelegrams) {
   EXPECT_EQ(words({523, 8, {0x71, 0, 0x2A, 0xFD}, false, false}),
             "523 read 11005 H5, answer after sync -> unit1");
   EXPECT_EQ(words({523, 8, {0x37, 0, 0x20, 0x7E}, false, false}), "523 read scale 8318 Speed -> unit1");
+  // 1053 1610 p. 31: P131, quantity 4 = time, conversion -3; FFh: none is given.
+  EXPECT_EQ(words({524, 8, {0x37, 0, 0x21, 0x17, 0, 0, 0x04, 0xFD}, false, false}),
+            "524 read scale 8471 Ramp t11 DOWN CW = quantity 4 time, conversion -3 (ms) <- unit1");
+  EXPECT_EQ(words({524, 8, {0x37, 0, 0x20, 0x7E, 0, 0, 0x0B, 0x42}, false, false}),
+            "524 read scale 8318 Speed = quantity 11 rotational velocity, conversion 66 <- unit1");
+  EXPECT_EQ(words({524, 8, {0x37, 0, 0x20, 0x7E, 0, 0, 0xFF, 0x00}, false, false}),
+            "524 read scale 8318 Speed = no quantity, conversion 0 <- unit1");
+  EXPECT_EQ(words({524, 8, {0x37, 0, 0x20, 0x7E, 0, 0, 0x30, 0x00}, false, false}),
+            "524 read scale 8318 Speed = quantity 48 unknown, conversion 0 <- unit1");
+  // p. 32: next index, then the attributes.
+  EXPECT_EQ(
+      words({524, 8, {0x38, 0, 0x21, 0x17, 0x21, 0x18, 0, 0x21}, false, false}),
+      "524 read attribute 8471 Ramp t11 DOWN CW = next index 8472, attributes 0021h (writable, needs no "
+      "inhibit) <- unit1");
+  EXPECT_EQ(words({524, 8, {0x38, 0, 0x22, 0xBB, 0, 0, 0, 0}, false, false}),
+            "524 read attribute 8891 Encoder type (X14) = last index, attributes 0000h <- unit1");
   EXPECT_EQ(words({523, 8, {0x3F, 0, 0xFF, 0xFF}, false, false}),
             "523 service 15 65535 unknown index -> unit1");
   EXPECT_EQ(words({523, 3, {0x31}, false, false}), "523 3 bytes in place of 8: 31 00 00 -> unit1");
