@@ -83,6 +83,8 @@ std::string parameter_words(const UnitNames* unit, const ParameterTelegram& tele
     text += " refused: " + describe(telegram.return_code());
   else if (service && (request ? is_write(*service) : *service != Service::None))
     text += " = " + value_text(index, *service, telegram.data);
+  if (request && service && is_write(*service) && telegram.data_length() != 4)
+    text += fmt::format(", length {} in place of 4 bytes", telegram.data_length());
   return text;
 }
 

@@ -202,6 +202,8 @@ TEST(Describe, ParameterTelegrams) {
             "524 read 8318 Speed = 1000.000 rpm <- unit1");
   EXPECT_EQ(words({523, 8, {0x32, 0, 0x21, 0x16, 0, 0, 0x0B, 0xB8}, false, false}),
             "523 write 8470 Ramp t11 UP CW = 3.000 s -> unit1");
+  EXPECT_EQ(words({523, 8, {0x12, 0, 0x21, 0x16, 0, 0, 0x0B, 0xB8}, false, false}),
+            "523 write 8470 Ramp t11 UP CW = 3.000 s, length 2 in place of 4 bytes -> unit1");
   EXPECT_EQ(words({524, 8, {0xB2, 0, 0x20, 0x7E, 8, 0, 0, 0x12}, false, false}).substr(0, 47),
             "524 write 8318 Speed refused: class 8 code 0 ad");
   EXPECT_EQ(words({534, 8, {0x33, 0, 0x2C, 0xA2, 0xFF, 0xFF, 0xFF, 0xFF}, false, false}),
