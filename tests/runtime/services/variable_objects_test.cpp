@@ -351,7 +351,7 @@ TEST_F(Objects, ThirtyTwoReceiveObjects) {
 }
 
 TEST_F(Objects, AcyclicIsSentAtOnceAndReportsItsStatus) {
-  PROVES("SCOM-16", "SCOM-17");
+  PROVES("SCOM-17");
   const auto send = [&] {
     h_[10] = 1024;
     h_[11] = 8;
