@@ -114,7 +114,7 @@ TEST(Scom, SizeofLeadsToNumof) {
   folder.write("SCOM1.IPC", source);
   const CommandResult refused = run_ipos({"build", "SCOM1.IPC"}, folder.path());
   EXPECT_EQ(refused.exit_code, 65);
-  EXPECT_NE(refused.err.find("SCOM1.IPC:20:24: error"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("SCOM1.IPC:20:23: error"), std::string::npos) << refused.err;
   EXPECT_NE(refused.err.find("numof( ... ) gives the number of a variable"), std::string::npos)
       << refused.err;
   const ExampleRun run = run_example("scom/scom.toml");
