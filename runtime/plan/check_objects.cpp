@@ -113,13 +113,12 @@ class ObjectCheck {
 // Has the command that stands at this structure been carried out?
 bool was_reached(const Station& station, const vm::Instruction& command) {
   const auto operand = static_cast<uint32_t>(command.operands[command.opcode == vm::Opcode::Scom ? 1 : 0]);
+  if (command.opcode == vm::Opcode::Movlnk) return station.has_called(operand);
   for (const int number : {1, 2}) {
     const SbusPort* port = station.sbus(number);
     if (port == nullptr) continue;
-    if (command.opcode == vm::Opcode::Movlnk && port->has_called(operand)) return true;
     for (const ObjectDefinition& definition : port->objects().definitions())
-      if (command.opcode == vm::Opcode::Scom && definition.variable == operand &&
-          static_cast<int32_t>(definition.kind) == command.operands[0])
+      if (definition.variable == operand && static_cast<int32_t>(definition.kind) == command.operands[0])
         return true;
   }
   return false;

@@ -58,7 +58,6 @@ class SbusPort final : private CanNode, private SlaveObserver, private ObjectRea
   const VariableObjects& objects() const { return objects_; }
   // Whom the program has called by MOVLNK over this bus.
   const std::vector<MovilinkCommand::Partner>& partners() const { return movilink_.partners(bus_); }
-  bool has_called(uint32_t structure) const { return movilink_.has_called(structure); }
   const GroupMaster& group_master() const { return group_master_; }
 
  private:
