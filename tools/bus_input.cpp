@@ -9,7 +9,7 @@
 
 namespace ipos::tools {
 
-size_t read_log(const std::string& path, const std::function<void(const runtime::LogEntry&, size_t)>& take) {
+size_t read_lines(const std::string& path, const TakeLine& take) {
   const std::string text = read_file(path, kLogLimit);
   std::string_view rest = text;
   size_t bad = 0;
@@ -18,16 +18,21 @@ size_t read_log(const std::string& path, const std::function<void(const runtime:
     const std::string_view row = rest.substr(0, end);
     rest = end == std::string_view::npos ? std::string_view{} : rest.substr(end + 1);
     if (row.find_first_not_of(" \t\r") == std::string_view::npos) continue;
-    const auto entry = runtime::parse_candump_line(row, line);
-    if (entry) {
-      take(*entry, line);
-      continue;
-    }
+    const auto error = take(row, line);
+    if (!error) continue;
     ++bad;
-    fmt::print(stderr, "{}:{}:{}: error: {}\n", path, entry.error().line, entry.error().column,
-               entry.error().message);
+    fmt::print(stderr, "{}:{}:{}: error: {}\n", path, error->line, error->column, error->message);
   }
   return bad;
+}
+
+size_t read_log(const std::string& path, const std::function<void(const runtime::LogEntry&, size_t)>& take) {
+  return read_lines(path, [&](std::string_view row, size_t line) -> std::optional<runtime::LogError> {
+    const auto entry = runtime::parse_candump_line(row, line);
+    if (!entry) return entry.error();
+    take(*entry, line);
+    return std::nullopt;
+  });
 }
 
 namespace {

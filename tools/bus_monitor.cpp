@@ -24,13 +24,20 @@ struct MonitorFlags {
   CompileFlags compile;
 };
 
-runtime::StationFilter filter_of(const MonitorFlags& flags, const runtime::TelegramNames& names) {
-  runtime::StationFilter filter;
-  for (const std::string& station : flags.stations)
-    if (!filter.add(names, station))
+// A log may be of either kind of bus.
+Monitor make_monitor(const MonitorFlags& flags, MonitorSource source) {
+  Monitor::View sbus, serial;
+  if (source != MonitorSource::Serial) sbus.names = names_of(flags.names, flags.compile);
+  if (source != MonitorSource::Can) serial.names = serial_names_of(flags.names, flags.compile);
+  for (const std::string& station : flags.stations) {
+    sbus.filter.close();
+    serial.filter.close();
+    const bool on_sbus = sbus.filter.add(sbus.names, station);
+    if (!serial.filter.add(serial.names, station) && !on_sbus)
       throw Failure(kUsage, fmt::format("--station {}: {} has no such station, and it is no address", station,
                                         flags.names.empty() ? "nothing known" : flags.names));
-  return filter;
+  }
+  return {std::move(sbus), std::move(serial), flags.count};
 }
 
 int monitor(const MonitorFlags& flags) {
@@ -43,10 +50,7 @@ int monitor(const MonitorFlags& flags) {
     throw Failure(kUsage, "--baud is for ports: a log has none");
   const runtime::Time duration =
       flags.duration.empty() ? runtime::kNever : runtime::parse_duration(flags.duration);
-  const runtime::TelegramNames names = source == MonitorSource::Serial
-                                           ? serial_names_of(flags.names, flags.compile)
-                                           : names_of(flags.names, flags.compile);
-  Monitor view(names, filter_of(flags, names), flags.count);
+  Monitor view = make_monitor(flags, source);
   catch_interrupts();
   switch (source) {
     case MonitorSource::Can:
@@ -65,7 +69,7 @@ void add_bus_monitor(cli::Verb& bus) {
   auto flags = std::make_shared<MonitorFlags>();
   cli::Verb& verb = bus.verb("monitor", "telegrams of a port or a log in words and units, live");
   verb.option("PORT|LOG", flags->source,
-              "can0, slcan:/dev/ttyACM0, slcan:pty:/path, /dev/ttyUSB0, pty:/path, a candump log, or -")
+              "can0, slcan:/dev/ttyACM0, slcan:pty:/path, /dev/ttyUSB0, pty:/path, a log as in decode, or -")
       .required();
   add_names_option(verb, flags->names);
   verb.option("--station", flags->stations, "only telegrams of this station, by name or address")

@@ -1,7 +1,8 @@
-// ipos bus plan: what a plant puts on its SBus lines and what is wrong with it, as text or JSON.
+// ipos bus plan: what a plant puts on its lines and what is wrong with it, as text or JSON.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "runtime/plan/plan.hpp"
 #include "tools/bus_verbs.hpp"
@@ -68,6 +69,26 @@ std::string line_text(const LinePlan& line) {
   return text + "\n";
 }
 
+std::string serial_text(const runtime::SerialLinePlan& line, Time trial) {
+  std::string text =
+      fmt::format("{}: {}, {} baud, {} stations", line.name, line.kind, line.baud, line.stations.size());
+  text += line.length == 0 ? fmt::format(", cable up to {} m\n\n", line.length_limit)
+                           : fmt::format(", {} m of cable, up to {} m\n\n", line.length, line.length_limit);
+  for (const auto& station : line.stations)
+    text += fmt::format("  {:<12}  {:<3}  address {}, group {}\n", station.name, station.socket,
+                        station.address, station.group);
+  text += fmt::format("\ntelegrams in the trial run of {} ms\n", millis(trial));
+  if (!line.telegrams.empty())
+    text += fmt::format("{:>6}  {:>10}  {:>5}  {:>7}  {:<12}  {}\n", "count", "closest ms", "bytes",
+                        "wire ms", "sender", "telegram");
+  for (const auto& telegram : line.telegrams)
+    text += fmt::format("{:>6}  {:>10}  {:>5}  {:>7}  {:<12}  {} {}, {}\n", telegram.count,
+                        telegram.closest == runtime::kNever ? "-" : millis(telegram.closest), telegram.bytes,
+                        millis(telegram.wire), telegram.sender,
+                        telegram.response ? "response of" : "request to", telegram.address, telegram.format);
+  return text;
+}
+
 std::string assumptions(const BusPlan& plan) {
   return fmt::format(
       "assumed: worst-case stuffing, no errors on the line, each station offers its lowest identifier first; "
@@ -129,11 +150,38 @@ nlohmann::ordered_json line_json(const LinePlan& line) {
   return entry;
 }
 
+nlohmann::ordered_json serial_json(const runtime::SerialLinePlan& line) {
+  using nlohmann::ordered_json;
+  ordered_json entry = {{"name", line.name},
+                        {"kind", line.kind},
+                        {"baud", line.baud},
+                        {"length_m", line.length},
+                        {"length_limit_m", line.length_limit}};
+  entry["stations"] = ordered_json::array();
+  for (const auto& station : line.stations)
+    entry["stations"].push_back({{"name", station.name},
+                                 {"socket", station.socket},
+                                 {"address", station.address},
+                                 {"group", station.group}});
+  entry["telegrams"] = ordered_json::array();
+  for (const auto& telegram : line.telegrams) {
+    ordered_json row = {{"sender", telegram.sender},     {"address", telegram.address},
+                        {"response", telegram.response}, {"format", telegram.format},
+                        {"bytes", telegram.bytes},       {"wire_ns", telegram.wire},
+                        {"count", telegram.count}};
+    row["closest_ns"] = telegram.closest == runtime::kNever ? ordered_json() : ordered_json(telegram.closest);
+    entry["telegrams"].push_back(std::move(row));
+  }
+  return entry;
+}
+
 std::string json_report(const BusPlan& plan) {
   using nlohmann::ordered_json;
   ordered_json report = {{"trial_ns", plan.trial}, {"acyclic_ns", plan.acyclic}};
   report["lines"] = ordered_json::array();
   for (const LinePlan& line : plan.lines) report["lines"].push_back(line_json(line));
+  report["serial_lines"] = ordered_json::array();
+  for (const auto& line : plan.serial_lines) report["serial_lines"].push_back(serial_json(line));
   report["findings"] = ordered_json::array();
   for (const Finding& finding : plan.findings) {
     const runtime::FindingType& type = finding_type(finding.kind);
@@ -156,7 +204,10 @@ int plan_bus(const PlanFlags& flags) {
     fmt::print("{}", json_report(plan));
   } else {
     for (const LinePlan& line : plan.lines) fmt::print("{}", line_text(line));
-    fmt::print("{}", assumptions(plan));
+    const char* gap = "";
+    for (const auto& line : plan.serial_lines)
+      fmt::print("{}{}", std::exchange(gap, "\n"), serial_text(line, plan.trial));
+    if (!plan.lines.empty()) fmt::print("{}{}", gap, assumptions(plan));
     for (const Finding& finding : plan.findings) fmt::print(stderr, "{}", finding_text(finding));
   }
   return plan.has_errors() ? kFindings : kGood;

@@ -18,8 +18,12 @@ void add_bus_load(cli::Verb& bus);
 void add_bus_replay(cli::Verb& bus);
 void add_bus_dbc(cli::Verb& bus);
 
-// Calls `take` for each good line of a candump log, with its number; prints the others as "LOG:line:column:
-// error: ...". Returns how many were bad.
+// Calls `take` for each line of a log that is not empty, with its number; prints what it finds wrong as
+// "LOG:line:column: error: ...". Returns how many lines were bad.
+using TakeLine = std::function<std::optional<runtime::LogError>(std::string_view text, size_t line)>;
+size_t read_lines(const std::string& path, const TakeLine& take);
+
+// The same for the frames of a candump log.
 size_t read_log(const std::string& path,
                 const std::function<void(const runtime::LogEntry&, size_t line)>& take);
 

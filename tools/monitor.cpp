@@ -26,21 +26,33 @@ std::string stamp(Time time) {
 
 void Monitor::take(const runtime::LogEntry& entry) {
   ++seen_;
-  if (!filter_.passes(entry.frame) || full()) return;
+  if (!sbus_.filter.passes(entry.frame) || full()) return;
   ++shown_;
-  const runtime::Description description = runtime::describe(names_, entry.frame);
+  const runtime::Description description = runtime::describe(sbus_.names, entry.frame);
   if (!description.known && unknown_.size() < kUnknown)
     unknown_.emplace(entry.frame.extended, entry.frame.id);
   show(entry.time, entry.bus, description.text);
 }
 
 void Monitor::take(Time time, const std::string& line, const runtime::Reception& reception) {
+  if (const auto text = words(reception)) show(time, line, *text);
+}
+
+void Monitor::take(const runtime::SerialEntry& entry) {
+  const auto text = words(entry.reception);
+  if (!text) return;
+  if (entry.time) return show(*entry.time, entry.line, *text);
+  begin_line();
+  fmt::print("{}\n", *text);
+}
+
+std::optional<std::string> Monitor::words(const runtime::Reception& reception) {
   ++seen_;
   if (!reception.telegram) ++void_;
   // What was no telegram concerns everybody.
-  if ((reception.telegram && !filter_.passes(*reception.telegram)) || full()) return;
+  if ((reception.telegram && !serial_.filter.passes(*reception.telegram)) || full()) return std::nullopt;
   ++shown_;
-  show(time, line, runtime::describe(names_, reception));
+  return runtime::describe(serial_.names, reception);
 }
 
 void Monitor::lost(Time time, const std::string& line, uint64_t count, const char* what) {
@@ -66,9 +78,13 @@ void Monitor::bus_error(Time time, const std::string& line, const std::string& t
 void Monitor::note(const std::string& text) const { fmt::print(stderr, "ipos: warning: {}\n", text); }
 
 void Monitor::show(Time time, const std::string& line, const std::string& text) {
+  begin_line();
+  fmt::print("{} {} {}\n", stamp(time), compiler::printable(line), text);
+}
+
+void Monitor::begin_line() {
   end_repetition();
   last_error_.clear();
-  fmt::print("{} {} {}\n", stamp(time), compiler::printable(line), text);
 }
 
 void Monitor::end_repetition() {

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
 
 #include "runtime/bus/log/candump.hpp"
+#include "runtime/bus/log/serial_log.hpp"
 #include "runtime/bus/movilink/describe.hpp"
 #include "runtime/bus/movilink/serial_receiver.hpp"
 #include "runtime/bus/movilink/station_filter.hpp"
@@ -16,13 +18,20 @@ namespace ipos::tools {
 
 class Monitor {
  public:
+  // What explains and chooses the telegrams of one kind of bus.
+  struct View {
+    runtime::TelegramNames names;
+    runtime::StationFilter filter;
+  };
+
   // `count` telegrams are shown, 0: no limit.
-  Monitor(runtime::TelegramNames names, runtime::StationFilter filter, uint64_t count)
-      : names_(std::move(names)), filter_(std::move(filter)), limit_(count) {}
+  Monitor(View sbus, View serial, uint64_t count)
+      : sbus_(std::move(sbus)), serial_(std::move(serial)), limit_(count) {}
 
   // Times as in candump logs (kCandumpEpoch).
   void take(const runtime::LogEntry& entry);
   void take(runtime::Time time, const std::string& line, const runtime::Reception& reception);
+  void take(const runtime::SerialEntry& entry);
   // Frames or bytes that were lost before they could be read. Losses in a row are shown once, with their sum
   // behind.
   void lost(runtime::Time time, const std::string& line, uint64_t count, const char* what);
@@ -37,11 +46,14 @@ class Monitor {
   void finish();
 
  private:
+  // Its text, if it is to be shown.
+  std::optional<std::string> words(const runtime::Reception& reception);
   void show(runtime::Time time, const std::string& line, const std::string& text);
+  void begin_line();
   void end_repetition();
 
-  runtime::TelegramNames names_;
-  runtime::StationFilter filter_;
+  View sbus_;
+  View serial_;
   uint64_t limit_;
   uint64_t seen_ = 0;
   uint64_t shown_ = 0;

@@ -1,4 +1,5 @@
-// The monitor at a candump log, also one that another program is writing, or standard input.
+// The monitor at a log, candump or of RS-485 lines, also one that another program is writing, or at standard
+// input.
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/stat.h>
@@ -87,20 +88,28 @@ int monitor_log(Monitor& monitor, const std::string& path, bool follow, Time dur
     if (follow && duration != runtime::kNever && clock.now() - begin >= duration) in_time = false;
     return interrupted() || monitor.full() || !in_time;
   };
-  const auto take = [&](std::string_view row) {
-    if (row.find_first_not_of(" \t\r") == std::string_view::npos) return;
-    const auto entry = runtime::parse_candump_line(row, log.number());
+  const auto show = [&](const auto& entry, std::optional<Time> time) {
     if (!entry) {
       bad = true;
       fmt::print(stderr, "{}:{}:{}: error: {}\n", path, entry.error().line, entry.error().column,
                  entry.error().message);
       return;
     }
-    if (!first) first = entry->time;
-    if (!follow && duration != runtime::kNever && entry->time - *first >= duration)
+    if (!first) first = time;
+    if (!follow && duration != runtime::kNever && time && *time - *first >= duration)
       in_time = false;
     else
       monitor.take(*entry);
+  };
+  const auto take = [&](std::string_view row) {
+    if (row.find_first_not_of(" \t\r") == std::string_view::npos) return;
+    if (runtime::is_serial_line(row)) {
+      const auto entry = runtime::parse_serial_line(row, log.number());
+      show(entry, entry ? entry->time : std::nullopt);
+    } else {
+      const auto entry = runtime::parse_candump_line(row, log.number());
+      show(entry, entry ? std::optional(entry->time) : std::nullopt);
+    }
   };
   for (bool more = true; !over();) {
     more = log.read_more();

@@ -14,6 +14,30 @@ constexpr int32_t kTransmitCyclic = 1;  // keywords.def, set scom
 constexpr int32_t kReceive = 3;
 constexpr int32_t kSbus2 = 0x1000000;  // IPOSplus p. 320
 
+enum class Known : uint8_t { Always, Synchronous, Channel2 };
+
+struct Telegram {
+  int32_t function;
+  bool parameter;
+  Known known;
+};
+constexpr Telegram kTelegrams[] = {
+#define TELEGRAM(name, function, parameter, grouped, from_master, known, text) \
+  {function, parameter, Known::known},
+#include "stdlib/sbus_telegrams.def"
+};
+
+// The MOVILINK telegram, of a unit of this type with any address and setting, that has this identifier.
+const Telegram* movilink_telegram(int32_t identifier, stdlib::Generation generation) {
+  for (const Telegram& telegram : kTelegrams) {
+    if (telegram.known == Known::Synchronous && generation == stdlib::Generation::M07) continue;
+    if (telegram.known == Known::Channel2 && generation != stdlib::Generation::B) continue;
+    if (identifier < 1024 && telegram.function == identifier % 8 && telegram.parameter == (identifier >= 512))
+      return &telegram;
+  }
+  return nullptr;
+}
+
 struct Definition {
   int32_t kind;
   uint32_t structure;  // its first variable
@@ -65,14 +89,13 @@ class SbusChecker {
     int32_t value = store.value;
     if (context_.unit.generation == stdlib::Generation::B && value >= 0) value &= ~kSbus2;
     std::string reason;
-    const int32_t function = value & 7;
     if (value < 0 || value > 2047) {
       reason = "does not exist; identifiers are 0 to 2047";
     } else if (value == 0) {
       reason = "is the sync telegram of units with factory setting";
-    } else if (value < 1024 && function >= 3 && function <= 6) {
-      reason = fmt::format("belongs to the MOVILINK telegrams of address {}; those above 1023 are free",
-                           (value >> 3) & 63);
+    } else if (const Telegram* telegram = movilink_telegram(value, context_.unit.generation)) {
+      reason = fmt::format("belongs to the MOVILINK telegrams of address {}{}; those above 1023 are free",
+                           value / 8 % 64, telegram->known == Known::Channel2 ? ", second channel" : "");
     }
     if (!reason.empty()) warn(Diag::SbusIdentifier, store.span, {fmt::format("{}", store.value), reason});
   }

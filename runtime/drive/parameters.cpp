@@ -27,16 +27,9 @@ constexpr AreaRow kAreas[] = {
 };
 static_assert(std::size(kAreas) == 7, "ParameterStore::windows_ has one entry an area");
 
-// Bits of the answer to Read attribute, as the newer units document them (MOVITRAC B; 1053 1610 p. 32 has
-// none). Bits 7 and 8, the parameter set, are left at "general": no list says which set a parameter belongs
-// to.
 enum Attribute : int32_t {
-  kWritable = 1 << 0,
-  kStored = 1 << 1,
-  kFactoryRam = 1 << 2,
-  kFactoryEeprom = 1 << 3,
-  kRestored = 1 << 4,
-  kNoInhibitNeeded = 1 << 5,
+#define ATTRIBUTE(name, bit, text) k##name = 1 << (bit),
+#include "stdlib/access_attributes.def"
 };
 
 constexpr int32_t bits(int64_t number) { return static_cast<int32_t>(static_cast<uint32_t>(number)); }

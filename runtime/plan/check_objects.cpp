@@ -18,6 +18,7 @@ class ObjectCheck {
       if (member.port == nullptr) continue;
       for (const ObjectDefinition& definition : member.port->objects().definitions())
         closed(member, definition);
+      used_once(member);
       started(member);
     }
     formats();
@@ -44,6 +45,19 @@ class ObjectCheck {
                        user_of(member, static_cast<uint32_t>(definition.object))));
     else if (!definition.accepted)
       find(FindingKind::ObjectRefused, fmt::format("{}: {}", name(member, definition), definition.why));
+  }
+
+  // Rule 2 of p. 51. Two that send are found with the senders of the whole line.
+  void used_once(const Member& member) {
+    const auto& definitions = member.port->objects().definitions();
+    for (const ObjectDefinition& sent : definitions)
+      for (const ObjectDefinition& received : definitions)
+        if (sent.accepted && received.accepted && sent.object == received.object &&
+            sent.kind != ObjectKind::Receive && received.kind == ObjectKind::Receive)
+          find(FindingKind::DoubleIdentifier,
+               fmt::format("identifier {} is sent ({}) and received ({}) by {}", sent.object,
+                           structure_name(*member.station, sent.variable),
+                           structure_name(*member.station, received.variable), member.name));
   }
 
   // "it is the PO of address 1, which unit2 receives"; the station's own use first.
@@ -99,13 +113,12 @@ class ObjectCheck {
 // Has the command that stands at this structure been carried out?
 bool was_reached(const Station& station, const vm::Instruction& command) {
   const auto operand = static_cast<uint32_t>(command.operands[command.opcode == vm::Opcode::Scom ? 1 : 0]);
+  if (command.opcode == vm::Opcode::Movlnk) return station.has_called(operand);
   for (const int number : {1, 2}) {
     const SbusPort* port = station.sbus(number);
     if (port == nullptr) continue;
-    if (command.opcode == vm::Opcode::Movlnk && port->has_called(operand)) return true;
     for (const ObjectDefinition& definition : port->objects().definitions())
-      if (command.opcode == vm::Opcode::Scom && definition.variable == operand &&
-          static_cast<int32_t>(definition.kind) == command.operands[0])
+      if (definition.variable == operand && static_cast<int32_t>(definition.kind) == command.operands[0])
         return true;
   }
   return false;

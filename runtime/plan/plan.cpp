@@ -9,6 +9,7 @@
 #include "runtime/plan/checks.hpp"
 #include "runtime/plan/identifiers.hpp"
 #include "runtime/plan/roster.hpp"
+#include "runtime/plan/serial_lines.hpp"
 #include "runtime/plan/telegrams.hpp"
 
 namespace ipos::runtime {
@@ -67,6 +68,8 @@ void check_timing(const LinePlan& plan, std::vector<Finding>& findings) {
 BusPlan make_plan(Plant& plant, const PlanOptions& options) {
   Watcher watcher;
   plant.add_observer(watcher);
+  SerialWatcher serial_watcher;
+  plant.add_observer(serial_watcher);
   plant.run_until(options.trial);
 
   BusPlan plan;
@@ -90,6 +93,7 @@ BusPlan make_plan(Plant& plant, const PlanOptions& options) {
     check_timing(line, plan.findings);
     plan.lines.push_back(std::move(line));
   }
+  plan_serial_lines(plant, serial_watcher, plan);
   check_reached(plant, plan.findings);
   return plan;
 }

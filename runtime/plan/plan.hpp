@@ -1,6 +1,6 @@
-// What a plant puts on its SBus lines, and what is wrong with it before it is built: identifiers, closed
-// numbers, load, response times, cable. The plant runs for a short trial first, because programs fill their
-// structures at run time.
+// What a plant puts on its lines, and what is wrong with it before it is built: of SBus identifiers, closed
+// numbers, load, response times, cable; of RS-485 addresses and telegrams. The plant runs for a short trial
+// first, because programs fill their structures at run time.
 #pragma once
 
 #include <cstdint>
@@ -86,8 +86,38 @@ struct LinePlan {
   uint64_t load_bits = 0;                      // per second, worst case
 };
 
+struct PlannedSerialStation {
+  std::string name;
+  std::string socket;  // X13 or XT
+  int32_t address;     // P810
+  int32_t group;       // P811
+};
+
+// As the trial run showed it.
+struct PlannedSerialTelegram {
+  std::string sender;
+  uint8_t address;
+  bool response;
+  std::string format;  // "PARAM + 3PD cyclic"
+  uint8_t bytes;
+  Time wire;  // time it takes
+  uint64_t count;
+  Time closest;  // kNever: seen once
+};
+
+struct SerialLinePlan {
+  std::string name;
+  std::string kind;  // RS-485 or RS-232
+  uint32_t baud = 0;
+  uint32_t length = 0;  // m, 0: not given
+  uint32_t length_limit = 0;
+  std::vector<PlannedSerialStation> stations;    // in the order of the file
+  std::vector<PlannedSerialTelegram> telegrams;  // rising address, request before response
+};
+
 struct BusPlan {
   std::vector<LinePlan> lines;
+  std::vector<SerialLinePlan> serial_lines;
   std::vector<Finding> findings;
   Time trial = 0;
   Time acyclic = 0;

@@ -24,7 +24,11 @@ bool LineRoster::has_group(uint8_t group) const {
 std::vector<LineRoster> line_rosters(const Plant& plant) {
   std::vector<LineRoster> rosters;
   for (size_t n = 0; n < plant.lines().size(); ++n) {
-    LineRoster roster{plant.lines()[n].get(), &plant.file().buses[n], {}};
+    const auto& buses = plant.file().buses;
+    const auto found = std::find_if(buses.begin(), buses.end(), [&](const BusConfig& bus) {
+      return bus.name == plant.lines()[n]->name();
+    });
+    LineRoster roster{plant.lines()[n].get(), &*found, {}};
     for (const auto& station : plant.stations())
       for (const int number : {1, 2}) {
         const SbusPort* port = station->sbus(number);

@@ -97,7 +97,7 @@ void SbusPort::power_off() {
 void SbusPort::on_frame(Time now, const Frame& frame) {
   if (drive_.late() && keeps(frame)) return;
   drive_.catch_up();
-  if (master_.busy() && master_.on_frame(now, frame)) return;
+  if (master_.busy() && master_.on_frame(now, frame)) return tell_shared(now, frame);
   const bool received = !variables_.empty() && receive(now, frame);
   // A receive object with the sync identifier takes nothing away from the drive.
   if (!received || slave_.is_sync(frame)) slave_.on_frame(now, frame);
@@ -123,6 +123,20 @@ void SbusPort::stir() {
       [this](uint32_t id, uint32_t /*data*/, VariableFormat /*format*/) { line_.stir(node(), id); });
 }
 
+// An object with an identifier of the unit's own MOVLNK (1053 1610 p. 51, rule 2).
+void SbusPort::tell_shared(Time now, const Frame& frame) {
+  const ObjectDefinition* object = objects_.object(frame.id);
+  const auto identifier = classify_identifier(frame.id);
+  if (object == nullptr || !identifier) return;
+  const bool receives = object->kind == ObjectKind::Receive;
+  note(now, Weight::Warning,
+       fmt::format(
+           "object {} has the identifier of a telegram of this unit's own MOVLNK, {} of {} {}{}", frame.id,
+           telegram_type(identifier->telegram).text,
+           telegram_type(identifier->telegram).grouped ? "group" : "address", identifier->address,
+           receives ? ": the telegram does not reach the receive object" : ": the identifier is used twice"));
+}
+
 // A receive object takes the frame. One that brings the values that are there already wakes nobody.
 bool SbusPort::receive(Time now, const Frame& frame) {
   const auto receiver = objects_.receiver(frame);
@@ -142,8 +156,11 @@ bool SbusPort::receive(Time now, const Frame& frame) {
   return taken;
 }
 
-void SbusPort::on_sent(Time now, const Frame& /*frame*/, uint64_t tag) {
-  if (tag == kMasterTag) master_.on_sent(now, tag);
+void SbusPort::on_sent(Time now, const Frame& frame, uint64_t tag) {
+  if (tag == kMasterTag) {
+    master_.on_sent(now, tag);
+    tell_shared(now, frame);
+  }
   if (tag < kAcyclicObjectTags || variables_.empty()) return;
   drive_.wake();
   objects_.on_sent(tag, variables_);

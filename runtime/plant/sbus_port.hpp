@@ -58,7 +58,6 @@ class SbusPort final : private CanNode, private SlaveObserver, private ObjectRea
   const VariableObjects& objects() const { return objects_; }
   // Whom the program has called by MOVLNK over this bus.
   const std::vector<MovilinkCommand::Partner>& partners() const { return movilink_.partners(bus_); }
-  bool has_called(uint32_t structure) const { return movilink_.has_called(structure); }
   const GroupMaster& group_master() const { return group_master_; }
 
  private:
@@ -69,6 +68,7 @@ class SbusPort final : private CanNode, private SlaveObserver, private ObjectRea
   bool receive(Time now, const Frame& frame);
   void read(size_t object, const Frame& frame) override { objects_.take(object, frame, variables_); }
   void tell_reasons(Time now);
+  void tell_shared(Time now, const Frame& frame);
   void on_sent(Time now, const Frame& frame, uint64_t tag) override;
   void on_not_sent(Time now, const Frame& frame, uint64_t tag, NotSent reason) override;
   void on_bus_off(Time now) override;

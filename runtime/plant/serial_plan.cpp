@@ -15,6 +15,11 @@ using stdlib::Generation;
 constexpr uint32_t kStationLimit = 32;  // electrical loads on a line (1053 1610 p. 8)
 constexpr uint32_t kUss21aLoads = 2;    // at most 16 of them (p. 7, 15)
 
+// Cable of RS-485 (1053 1610 p. 14-15; MDX60B/61B p. 15 prints 40 pF/m without a comparison sign).
+constexpr uint32_t kLeastImpedance = 100;  // ohm at 1 MHz
+constexpr uint32_t kMostImpedance = 150;
+constexpr uint32_t kCapacitance = 40;  // pF/m at 1 kHz, at most
+
 struct LengthLimit {
   uint32_t mm;
   const char* of;
@@ -48,6 +53,11 @@ LineStations stations_of(const PlantFile& plant, const std::string& bus) {
       found.point_to_point = true;
   }
   return found;
+}
+
+LengthLimit length_limit(const BusConfig& bus, const LineStations& stations) {
+  if (stations.point_to_point) return bus.shielded ? kShieldedXtLength : kXtLength;
+  return bus.kind == BusKind::Rs232 ? kRs232Length : kRs485Length;
 }
 
 bool may_be_master(const StationConfig& station) {
@@ -109,14 +119,23 @@ class Checker {
     if (one_to_one && (stations.all.size() > 2 || slaves > 1))
       error(bus.place, fmt::format("'{}' connects one master and one slave, not {} stations", bus.name,
                                    stations.all.size()));
-    LengthLimit limit = bus.kind == BusKind::Rs232 ? kRs232Length : kRs485Length;
-    if (stations.point_to_point) limit = bus.shielded ? kShieldedXtLength : kXtLength;
+    const LengthLimit limit = length_limit(bus, stations);
     if (bus.length_mm > limit.mm)
       error(bus.place, fmt::format("'{}' is {} m long; a {} may have {} m", bus.name, metres(bus.length_mm),
                                    limit.of, metres(limit.mm)));
     if (bus.terminated)
       error(bus.place,
             fmt::format("'{}': the units have terminating resistors; connect no others", bus.name));
+    if (bus.kind == BusKind::Rs485) check_cable(bus);
+  }
+
+  void check_cable(const BusConfig& bus) {
+    if (bus.impedance != 0 && (bus.impedance < kLeastImpedance || bus.impedance > kMostImpedance))
+      error(bus.place, fmt::format("'{}': cable of {} ohm; a RS-485 line needs {} to {} ohm", bus.name,
+                                   bus.impedance, kLeastImpedance, kMostImpedance));
+    if (bus.capacitance > kCapacitance)
+      error(bus.place, fmt::format("'{}': cable of {} pF/m; a RS-485 line may have {} pF/m", bus.name,
+                                   bus.capacitance, kCapacitance));
   }
 
   const PlantFile& plant_;
@@ -146,7 +165,8 @@ class Finder {
       findings_.push_back(
           {name(n),
            "the keypad sends requests all the time, so P812 does not monitor the other RS-485 "
-           "interface"});
+           "interface",
+           false});
     const int32_t source = parameter_(n, "100");
     if ((source == kFollowsSbusMaster || source == kFollowsRs485Master) && parameter_(n, "750") != 0)
       findings_.push_back({name(n), "a slave of a master/slave connection (P100) must have P750 = 0"});
@@ -206,6 +226,10 @@ bool sends_setpoints(int32_t p750) {
     case 9: return true;
     default: return false;
   }
+}
+
+uint32_t serial_length_limit(const PlantFile& plant, const BusConfig& bus) {
+  return length_limit(bus, stations_of(plant, bus.name)).mm;
 }
 
 std::vector<PlantError> check_serial_plan(const PlantFile& plant) { return Checker(plant).run(); }

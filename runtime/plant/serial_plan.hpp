@@ -25,6 +25,9 @@ SerialInterfaces serial_interfaces(const stdlib::UnitType& unit);
 inline constexpr uint32_t kX13Baud = 9'600;
 uint32_t xt_baud(const StationConfig& station);
 
+// How long a line of the plant may be, in mm.
+uint32_t serial_length_limit(const PlantFile& plant, const BusConfig& bus);
+
 std::vector<PlantError> check_serial_plan(const PlantFile& plant);
 
 // Value of a parameter ("810") of station n at power-on.
@@ -33,6 +36,7 @@ using ParameterOf = std::function<int32_t(size_t station, std::string_view numbe
 struct PlanFinding {
   std::string station;  // empty: the plant
   std::string text;
+  bool against_rule = true;  // false: worth knowing
 };
 std::vector<PlanFinding> serial_findings(const PlantFile& plant, const ParameterOf& parameter);
 

@@ -160,6 +160,12 @@ class Station final : private EventTarget, private Sleeper {
     return sbus_[static_cast<size_t>(number - 1)].get();
   }
 
+  // The MOVLNK of this structure was carried out, over whichever bus.
+  bool has_called(uint32_t structure) const {
+    look();
+    return movilink_.has_called(structure);
+  }
+
   // The program has ended, was never there, or a fault has stopped it.
   bool program_over() const;
   uint8_t fault() const;  // error or warning, 0 is none

@@ -97,12 +97,11 @@ ObjectVerdict ObjectTable::define_cyclic(const ObjectRequest& request, int32_t& 
   result = kWrongCycleTime;
   if (!cycle_allowed(request.cycle, unit_->generation)) return ObjectVerdict::WrongCycleTime;
   if (!offset_allowed(request.offset, request.cycle, unit_->generation)) return ObjectVerdict::WrongOffset;
-  const auto known = std::span(state_.cyclic).first(state_.cyclic_count);
+  if (sends(request.object)) return ObjectVerdict::SentTwice;
+  if (receives(request.object)) return ObjectVerdict::SentAndReceived;
   int of_class = 0;
-  for (const Cyclic& object : known) {
-    if (object.id == request.object) return ObjectVerdict::SentTwice;
+  for (const Cyclic& object : std::span(state_.cyclic).first(state_.cyclic_count))
     of_class += is_fast_cycle(object.cycle) == is_fast_cycle(request.cycle);
-  }
   result = kTooManyObjects;
   if (of_class >= (is_fast_cycle(request.cycle) ? unit_->fast_objects : unit_->slow_objects))
     return ObjectVerdict::TooManyTransmit;
@@ -129,13 +128,23 @@ int32_t ObjectTable::free_capacity(const Cyclic& added) const {
 
 ObjectVerdict ObjectTable::define_receive(const ObjectRequest& request) {
   if (state_.closed) return ObjectVerdict::TooLate;
-  for (const Receive& object : std::span(state_.receive).first(state_.receive_count))
-    if (object.id == request.object) return ObjectVerdict::ReceivedTwice;
+  if (receives(request.object)) return ObjectVerdict::ReceivedTwice;
+  if (sends(request.object)) return ObjectVerdict::SentAndReceived;
   if (state_.receive_count >= unit_->receive_objects) return ObjectVerdict::TooManyReceive;
   state_.receive[state_.receive_count++] = {static_cast<uint16_t>(request.object),
                                             static_cast<uint16_t>(request.data),
                                             *variable_format(request.format)};
   return ObjectVerdict::Accepted;
+}
+
+bool ObjectTable::sends(int32_t object) const {
+  const auto known = std::span(state_.cyclic).first(state_.cyclic_count);
+  return std::any_of(known.begin(), known.end(), [&](const Cyclic& sent) { return sent.id == object; });
+}
+
+bool ObjectTable::receives(int32_t object) const {
+  const auto known = std::span(state_.receive).first(state_.receive_count);
+  return std::any_of(known.begin(), known.end(), [&](const Receive& taken) { return taken.id == object; });
 }
 
 Frame ObjectTable::acyclic_frame(const ObjectRequest& request, std::span<const int32_t> h) {

@@ -40,6 +40,7 @@ enum class ObjectVerdict : uint8_t {
   WrongCycleTime,
   WrongOffset,
   SentTwice,
+  SentAndReceived,  // by one unit (1053 1610 p. 51, rule 2)
   TooManyTransmit,
   Overload,  // beyond 70 % of the bus
   TooLate,   // a receive object after _SBusCommOn
@@ -161,6 +162,8 @@ class ObjectTable {
   ObjectVerdict judge(const ObjectRequest& request) const;
   ObjectVerdict define_cyclic(const ObjectRequest& request, int32_t& result);
   ObjectVerdict define_receive(const ObjectRequest& request);
+  bool sends(int32_t object) const;
+  bool receives(int32_t object) const;
   int32_t free_capacity(const Cyclic& added) const;
   bool is_sound(uint32_t id, VariableFormat format, uint32_t data) const;
 

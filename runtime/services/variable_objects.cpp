@@ -39,6 +39,14 @@ bool VariableObjects::define(ObjectKind kind, uint32_t variable, std::span<int32
     if (profile.synchronous && request.object == profile.sync_id)
       why = fmt::format("object number {} is also the sync telegram of this unit (P817 or P885)",
                         request.object);
+    // The table keeps no acyclic objects.
+    if (const ObjectDefinition* other = another_use(definition);
+        other != nullptr &&
+        (kind == ObjectKind::TransmitAcyclic || other->kind == ObjectKind::TransmitAcyclic))
+      why = fmt::format(
+          "object {} stands in two structures of this unit (H{} and H{}), which may use an "
+          "identifier once",
+          request.object, other->variable, variable);
   }
   definition.why = why;
   remember(definition);
@@ -70,6 +78,11 @@ std::string VariableObjects::reason(const ObjectRequest& request, ObjectVerdict 
                          id, request.offset, request.cycle);
     case ObjectVerdict::SentTwice:
       return fmt::format("object {} is already sent by this unit; the second definition is not used", id);
+    case ObjectVerdict::SentAndReceived:
+      return fmt::format(
+          "object {} would be sent and received by this unit, which may use an identifier once; the second "
+          "definition is not used",
+          id);
     case ObjectVerdict::TooManyTransmit: {
       const bool fast = is_fast_cycle(request.cycle);
       return fmt::format("object {}: the unit has only {} transmit objects of {}; the object is not sent", id,
@@ -89,6 +102,20 @@ std::string VariableObjects::reason(const ObjectRequest& request, ObjectVerdict 
                          unit_.receive_objects);
   }
   return {};
+}
+
+const ObjectDefinition* VariableObjects::another_use(const ObjectDefinition& definition) const {
+  for (const ObjectDefinition& known : definitions_)
+    if (known.accepted && known.object == definition.object &&
+        (known.variable != definition.variable || known.kind != definition.kind))
+      return &known;
+  return nullptr;
+}
+
+const ObjectDefinition* VariableObjects::object(uint32_t id) const {
+  for (const ObjectDefinition& known : definitions_)
+    if (known.accepted && known.object == static_cast<int32_t>(id)) return &known;
+  return nullptr;
 }
 
 void VariableObjects::remember(const ObjectDefinition& definition) {

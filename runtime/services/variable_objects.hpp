@@ -50,6 +50,7 @@ class VariableObjects {
   void stop();               // program stop: nothing is sent or received any more, all objects are gone
   bool started() const { return table_.started(); }
   const std::vector<ObjectDefinition>& definitions() const { return definitions_; }
+  const ObjectDefinition* object(uint32_t id) const;  // the one of this identifier that is set up
 
   // Queues the cyclic objects due in this millisecond with the present values of their variables. Returns the
   // next one in which it would; INT64_MAX for none.
@@ -98,6 +99,7 @@ class VariableObjects {
   void send_due(int64_t tick, std::span<const int32_t> h);
   void forget_due();
   void remember(const ObjectDefinition& definition);
+  const ObjectDefinition* another_use(const ObjectDefinition& definition) const;
   std::string reason(const ObjectRequest& request, ObjectVerdict verdict) const;
 
   int64_t due_;  // before this millisecond nothing is

@@ -182,6 +182,37 @@ TEST_P(LocatedMistakes, HaveOneMessageAtTheirPlace) {
 
 INSTANTIATE_TEST_SUITE_P(All, LocatedMistakes, testing::ValuesIn(mistakes()));
 
+// The identifiers of MOVILINK: 1053 1610 p. 38; MOVITRAC 07 chapter 4.1 without PO-sync; MDX60B/61B p. 40
+// with the second parameter channel. 0 is the sync telegram, from 1024 on they are free.
+TEST(Mistakes, IdentifiersOfMovilinkByUnitType) {
+  const std::vector<int> common = {3, 4, 6, 515, 516, 518};
+  for (const auto& [unit, more] : {std::pair<const char*, std::vector<int>>{"md60a", {5}},
+                                   {"compact", {5}},
+                                   {"mc07", {}},
+                                   {"mdxb", {5, 517, 519}}}) {
+    std::set<int> expected = {0};
+    for (int address = 0; address < 64; ++address) {
+      for (const int function : common) expected.insert(8 * address + function);
+      for (const int function : more) expected.insert(8 * address + function);
+    }
+    std::set<int> found;
+    for (int first = 0; first < 2048; first += 64) {
+      std::string source = "SCREC r; main() {\n";
+      for (int id = first; id < first + 64; ++id) source += "r.ObjectNo = " + std::to_string(id) + ";\n";
+      const Compilation c = compile_text(source + "_SBusCommDef(3, r); }", unit);
+      for (const Diagnostic& d : c.diagnostics.all()) {
+        ASSERT_EQ(info(d.diag).code, "W0211") << d.text;
+        const int id = first + static_cast<int>(c.sources->position(d.span.begin).line) - 2;
+        found.insert(id);
+        if (id > 0) {
+          EXPECT_NE(d.text.find("address " + std::to_string(id / 8 % 64)), std::string::npos) << d.text;
+        }
+      }
+    }
+    EXPECT_EQ(found, expected) << unit;
+  }
+}
+
 // Those with a test of their own below.
 TEST(Mistakes, EveryRowOfTheTableIsTested) {
   std::set<std::string_view> tested{"E0207", "E0230", "E0233", "E0236", "W0260", "W0261"};

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 #include <string>
 
+#include "stdlib/units.hpp"
 #include "tests/harness/proves.hpp"
 #include "tests/stdlib/parameter_list.hpp"
 
@@ -59,10 +61,51 @@ TEST(ParameterTable, HoldsTheLists) {
   }
 }
 
-TEST(ParameterTable, CountsOfTheManual) {
+std::vector<tests::Cells> printed(const char* file) {
+  return tests::read_list(std::string(IPOS_PRINTED_LISTS) + "/" + file);
+}
+
+// Each printed line against the table: unit indices, access, default, and the range where one is printed.
+TEST(ParameterTable, HoldsThePrintedList) {
   PROVES("PAR-38");
   const ParameterTable& md60a = table("md60a");
+  const auto lines = printed("md60a_printed.tsv");
+  EXPECT_EQ(lines.size(), 393U);
   EXPECT_EQ(md60a.rows().size(), 393U);
+  std::set<int> indices;
+  size_t ranges = 0;
+  for (const tests::Cells& line : lines) {
+    const int index = std::stoi(line.at("index"));
+    indices.insert(index);
+    const Parameter* p = md60a.find(static_cast<uint16_t>(index));
+    ASSERT_NE(p, nullptr) << index;
+    EXPECT_FALSE(p->name.empty()) << index;
+    const int size = line.at("size").empty() ? 0 : std::stoi(line.at("size"));
+    EXPECT_EQ(p->quantity == kNoQuantity ? 0 : p->quantity, size) << index;
+    EXPECT_EQ(p->conversion, std::stoi(line.at("conversion"))) << index;
+    if (line.at("default") != "-") {
+      EXPECT_EQ(p->default_value, std::stoll(line.at("default"))) << index;
+    }
+    if (index != 8334) {  // printed twice, once as writable: PAR-29
+      const auto letters = tests::split(line.at("access"), '/');
+      const auto has = [&](const char* letter) {
+        return std::find(letters.begin(), letters.end(), letter) != letters.end();
+      };
+      EXPECT_EQ(p->writable, has("RW")) << index;
+      EXPECT_EQ(p->needs_inhibit, has("R")) << index;
+      EXPECT_EQ(p->writable_locked, has("S")) << index;
+      EXPECT_EQ(p->nonvolatile, has("N")) << index;
+    }
+    if (line.at("minimum").empty()) continue;
+    ++ranges;
+    EXPECT_EQ(p->minimum(), std::stoll(line.at("minimum"))) << index;
+    EXPECT_EQ(p->maximum(), std::stoll(line.at("maximum"))) << index;
+    if (!p->texts.empty()) continue;  // codes, which step by 1
+    ASSERT_EQ(p->ranges.size(), 1U) << index;
+    EXPECT_EQ(p->ranges[0].step, std::stoll(line.at("step"))) << index;
+  }
+  EXPECT_EQ(indices.size(), 354U);
+  EXPECT_EQ(ranges, 111U);
   ASSERT_EQ(md60a.by_index().size(), 354U);
   EXPECT_EQ(md60a.by_index().front()->index, 8300);
   EXPECT_EQ(md60a.by_index().back()->index, 8891);
@@ -75,6 +118,71 @@ TEST(ParameterTable, CountsOfTheManual) {
   EXPECT_EQ(md60a.find(uint16_t{8576})->quantity, 22);
   EXPECT_EQ(md60a.find(uint16_t{8576})->conversion, -3);
   EXPECT_EQ(table("mc07").rows().size(), 126U);
+}
+
+// Decimal and hexadecimal index of every printed line. MOVITRAC 07 prints 8807 to 8809 beside the numbers of
+// an older series.
+TEST(ParameterTable, DecimalAndHexadecimalIndexAgree) {
+  PROVES("PAR-26", "M07-PAR-27");
+  std::set<std::pair<int, int>> differ;
+  size_t pairs = 0;
+  for (const tests::Cells& line : printed("md60a_printed.tsv")) {
+    if (line.at("hex") == "-") continue;  // the second index of P852
+    ++pairs;
+    const int index = std::stoi(line.at("index"));
+    const int hex = std::stoi(line.at("hex"), nullptr, 16);
+    if (index != hex) differ.emplace(index, hex);
+  }
+  EXPECT_EQ(pairs, 392U);
+  EXPECT_EQ(differ, (std::set<std::pair<int, int>>{{8891, 0x2288}}));
+  ASSERT_NE(table("md60a").find(uint16_t{8891}), nullptr);
+  EXPECT_EQ(table("md60a").find(uint16_t{8891})->default_value, 0);
+  EXPECT_EQ(table("md60a").find(uint16_t{0x2288}), nullptr);
+
+  std::set<std::pair<int, int>> of_m07;
+  std::set<int> indices;
+  pairs = 0;
+  for (const tests::Cells& line : printed("mc07_printed.tsv")) {
+    ++pairs;
+    const int index = std::stoi(line.at("index"));
+    const int hex = std::stoi(line.at("hex"), nullptr, 16);
+    indices.insert(index);
+    if (index != hex) of_m07.emplace(index, hex);
+  }
+  EXPECT_EQ(pairs, 121U + 3U);
+  EXPECT_EQ(of_m07, (std::set<std::pair<int, int>>{{8807, 0x2116}, {8808, 0x2117}, {8809, 0x2126}}));
+  for (const int index : indices)
+    EXPECT_NE(table("mc07").find(static_cast<uint16_t>(index)), nullptr) << index;
+  EXPECT_EQ(table("mc07").by_index().size(), indices.size());
+  for (const auto& [index, value] : {std::pair{0x2267, 2000}, {0x2268, 2000}, {0x2269, 20000}}) {
+    ASSERT_NE(table("mc07").find(static_cast<uint16_t>(index)), nullptr);
+    EXPECT_EQ(table("mc07").find(static_cast<uint16_t>(index))->default_value, value);
+  }
+  for (const auto& [index, hex] : of_m07)
+    EXPECT_EQ(table("mc07").find(static_cast<uint16_t>(hex)), nullptr) << hex;
+}
+
+// The letters of p. 67, and E, which is ours (not changeable while the output stage is on): every word of one
+// or two letters is tried.
+TEST(ParameterTable, AccessLetters) {
+  PROVES("PAR-10");
+  std::set<std::string> accepted;
+  const auto try_word = [&](const std::string& word) {
+    const std::string text =
+        "number\tname\tindex\trole\tdisplay\tquantity\tconversion\taccess\tdefault\trange\ttexts\toption\tnot"
+        "es\n"
+        "1\tn\t8300\t\t\t0\t0\t" +
+        word + "\t0\t\t\t\t\n";
+    const EmbeddedFile file{"test.tsv", text};
+    const EmbeddedFile* files[] = {&file};
+    if (ParameterTable(files, true).problems().empty()) accepted.insert(word);
+  };
+  for (char first = 'A'; first <= 'z'; ++first) {
+    if (first == '/') continue;
+    try_word({first});
+    for (char second = 'A'; second <= 'z'; ++second) try_word({first, second});
+  }
+  EXPECT_EQ(accepted, (std::set<std::string>{"RO", "RW", "R", "S", "N", "E"}));
 }
 
 TEST(ParameterTable, FindsByNumberAndIndex) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <string>
 
 #include "stdlib/parameters.hpp"
@@ -83,17 +84,125 @@ TEST(Units, QuantitiesAndUnits) {
   for (size_t i = 0; i < std::size(printed); ++i)
     EXPECT_EQ(quantity_name(static_cast<uint8_t>(i)), printed[i]);
   EXPECT_EQ(quantity_name(29), "");
-  EXPECT_EQ(unit_abbreviation(4, 0), "s");
-  EXPECT_EQ(unit_abbreviation(4, 70), "min");
-  EXPECT_EQ(unit_abbreviation(4, 74), "h");
-  EXPECT_EQ(unit_abbreviation(4, 77), "d");
-  EXPECT_EQ(unit_abbreviation(4, -3), "ms");
-  EXPECT_EQ(unit_abbreviation(11, 67), "rpm");
-  EXPECT_EQ(unit_abbreviation(17, 100), "°C");
-  EXPECT_EQ(unit_abbreviation(22, -3), "mA");
-  EXPECT_EQ(unit_abbreviation(28, 3), "kHz");
-  EXPECT_EQ(unit_abbreviation(12, 81), "g");  // gon
-  EXPECT_EQ(unit_abbreviation(12, 82), "");
+  EXPECT_EQ(quantity_name(kNoQuantity), "");
+  // Every line of the table, and nothing else. (12, 81) stands in the Danish edition only.
+  const struct {
+    int quantity, conversion;
+    const char* abbreviation;
+  } units[] = {{1, 0, "m"},
+               {1, -3, "mm"},
+               {1, 3, "km"},
+               {1, -6, "µm"},
+               {2, 0, "m²"},
+               {2, -6, "mm²"},
+               {2, 6, "km²"},
+               {3, 0, "m³"},
+               {3, -3, "l"},
+               {4, 0, "s"},
+               {4, 70, "min"},
+               {4, 74, "h"},
+               {4, 77, "d"},
+               {4, -3, "ms"},
+               {4, -6, "µs"},
+               {5, 0, "N"},
+               {5, 3, "kN"},
+               {5, 6, "MN"},
+               {6, 0, "Pa"},
+               {6, 3, "kPa"},
+               {6, 2, "mbar"},
+               {6, 5, "bar"},
+               {7, 0, "kg"},
+               {7, -3, "g"},
+               {7, -6, "mg"},
+               {7, 3, "t"},
+               {8, 0, "J"},
+               {8, 3, "kJ"},
+               {8, 6, "MJ"},
+               {8, 74, "Wh"},
+               {8, 75, "kWh"},
+               {8, 76, "MWh"},
+               {9, 0, "W"},
+               {9, 3, "kW"},
+               {9, 6, "MW"},
+               {9, -3, "mW"},
+               {10, 0, "VA"},
+               {10, 3, "kVA"},
+               {10, 6, "MVA"},
+               {10, -3, "mVA"},
+               {11, 0, "rps"},
+               {11, 67, "rpm"},
+               {11, 72, "rph"},
+               {12, 0, "rad"},
+               {12, 79, "″"},
+               {12, 78, "′"},
+               {12, 80, "°"},
+               {12, 81, "g"},
+               {13, 0, "m/s"},
+               {13, -3, "mm/s"},
+               {13, 66, "mm/min"},
+               {13, 67, "m/min"},
+               {13, 68, "km/min"},
+               {13, 71, "mm/h"},
+               {13, 72, "m/h"},
+               {13, 73, "km/h"},
+               {14, 0, "m³/s"},
+               {14, 67, "m³/min"},
+               {14, 72, "m³/h"},
+               {14, -3, "l/s"},
+               {14, 66, "l/min"},
+               {14, 71, "l/h"},
+               {15, 0, "kg/s"},
+               {15, -3, "g/s"},
+               {15, 3, "t/s"},
+               {15, 66, "g/min"},
+               {15, 67, "kg/min"},
+               {15, 68, "t/min"},
+               {15, 71, "g/h"},
+               {15, 72, "kg/h"},
+               {15, 73, "t/h"},
+               {16, 0, "Nm"},
+               {16, 3, "kNm"},
+               {16, 6, "MNm"},
+               {17, 0, "K"},
+               {17, 100, "°C"},
+               {17, 101, "°F"},
+               {18, 0, "K"},
+               {19, 0, "J/(K × kg)"},
+               {19, 3, "kJ/(K × kg)"},
+               {19, 6, "MJ/(K × kg)"},
+               {20, 0, "J/kg"},
+               {20, 3, "kJ/kg"},
+               {20, 6, "MJ/kg"},
+               {21, 0, "V"},
+               {21, 3, "kV"},
+               {21, -3, "mV"},
+               {21, -6, "µV"},
+               {22, 0, "A"},
+               {22, -3, "mA"},
+               {22, 3, "kA"},
+               {22, -6, "µA"},
+               {23, 0, "Ω"},
+               {23, -3, "mΩ"},
+               {23, 3, "kΩ"},
+               {23, 6, "MΩ"},
+               {24, 0, "%"},
+               {25, 0, "%"},
+               {26, -3, "g/kg"},
+               {27, 0, "%"},
+               {28, 0, "Hz"},
+               {28, 3, "kHz"},
+               {28, 6, "MHz"},
+               {28, 9, "GHz"}};
+  std::map<std::pair<int, int>, std::string> expected;
+  for (const auto& row : units) expected[{row.quantity, row.conversion}] = row.abbreviation;
+  EXPECT_EQ(expected.size(), 104U);
+  for (int quantity = 0; quantity < 256; ++quantity)
+    for (int conversion = -128; conversion < 128; ++conversion) {
+      const auto row = expected.find({quantity, conversion});
+      EXPECT_EQ(unit_abbreviation(static_cast<uint8_t>(quantity), conversion),
+                row == expected.end() ? "" : row->second)
+          << quantity << ", " << conversion;
+    }
   EXPECT_EQ(find_unit_conversion(11, "rpm"), 67);
   EXPECT_FALSE(find_unit_conversion(11, "m"));
 }

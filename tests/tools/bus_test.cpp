@@ -1,6 +1,7 @@
 // `ipos bus` as a user meets it: exit codes, located messages, and that its parts fit together.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/command.hpp"
@@ -98,6 +99,124 @@ TEST(Bus, BadLogLinesAreLocatedAndTheOthersDecoded) {
       << result.err;
   EXPECT_EQ(run_ipos({"bus", "load", "a.log", "--baud", "500000"}, folder.path()).exit_code, 65);
   EXPECT_EQ(run_ipos({"bus", "replay", "a.log", example("scom/scom.toml")}, folder.path()).exit_code, 65);
+}
+
+// The printed telegrams of 1053 1610 p. 25 and 35, as they stand there; blanks and small letters make no
+// difference.
+TEST(Bus, TelegramsOfRs485InHexadecimal) {
+  const TemporaryFolder folder;
+  folder.write("t.hex",
+               "02 01 05 00 06 3A 98 01 F4 57\n\n1d 01 05 00 07 3a 98 01 f4 49\n02018600000000000000000085\n"
+               "02 01 05 00 06 3A 98 01 F4 58\n02 01 86 37 00 21 17 00 00 00 00 84\n"
+               "1D 01 86 37 00 21 17 00 00 04 FD 62\n");
+  const CommandResult result = run_ipos({"bus", "decode", "t.hex"}, folder.path());
+  EXPECT_EQ(
+      result.out,
+      "3PD cyclic, PO 0006h, 3A98h, 01F4h -> address 1\n"
+      "3PD cyclic, PI 0007h, 3A98h, 01F4h <- address 1\n"
+      "void, character delay exceeded: 02 01 86 00 00 00 00 00 00 00 00 00 85\n"
+      "void, BCC incorrect: 02 01 05 00 06 3A 98 01 F4 58\n"
+      "PARAM acyclic, read scale 8471 Ramp t11 DOWN CW -> address 1\n"
+      "PARAM acyclic, read scale 8471 Ramp t11 DOWN CW = quantity 4 time, conversion -3 (ms) <- address 1\n")
+      << result.err;
+  EXPECT_EQ(result.exit_code, 0);
+  const CommandResult shown = run_ipos({"bus", "monitor", "t.hex", "--station", "1"}, folder.path());
+  EXPECT_EQ(shown.out, result.out);
+  EXPECT_TRUE(contains(shown.err, "6 telegrams, 6 shown, 2 void\n")) << shown.err;
+  const CommandResult other = run_ipos({"bus", "monitor", "t.hex", "--station", "2"}, folder.path());
+  EXPECT_TRUE(contains(other.err, "6 telegrams, 2 shown, 2 void\n")) << other.err;
+  // Located errors; the others are decoded.
+  folder.write("bad.hex",
+               "02 0G\n02 1\n0.5 1.0 line1 02\n0.000500 0.001000\n02 01 05 00 06 3A 98 01 F4 57 00 00 00 00 "
+               "00 00 00 00 "
+               "00\n02 01 05 00 06 3A 98 01 F4 57\n");
+  const CommandResult bad = run_ipos({"bus", "decode", "bad.hex"}, folder.path());
+  EXPECT_EQ(bad.exit_code, 65);
+  EXPECT_EQ(bad.err,
+            "bad.hex:1:5: error: second hexadecimal digit of a byte expected\n"
+            "bad.hex:2:5: error: second hexadecimal digit of a byte expected\n"
+            "bad.hex:3:3: error: six digits of microseconds expected\n"
+            "bad.hex:4:18: error: blank expected\n"
+            "bad.hex:5:55: error: more than 18 bytes, the longest telegram\n");
+  EXPECT_EQ(bad.out, "3PD cyclic, PO 0006h, 3A98h, 01F4h -> address 1\n");
+}
+
+TEST(Bus, TheSerialLogOfARunIsDecoded) {
+  const TemporaryFolder folder;
+  const std::string plant = example("movilink-rs485/rs485.toml");
+  ASSERT_EQ(run_ipos({"run", plant, "--for", "1s", "--serial-log", "s.log"}, folder.path()).exit_code, 0);
+  const std::string log = read_text(folder.path() / "s.log");
+  const CommandResult decoded = run_ipos({"bus", "decode", "s.log", "--names", plant}, folder.path());
+  EXPECT_EQ(decoded.exit_code, 0);
+  EXPECT_EQ(decoded.err, "");
+  EXPECT_EQ(std::count(log.begin(), log.end(), '\n'),
+            std::count(decoded.out.begin(), decoded.out.end(), '\n'));
+  EXPECT_TRUE(contains(decoded.out, " line1 PARAM + 3PD cyclic, read 8456 PO2 setpoint")) << decoded.out;
+  EXPECT_TRUE(contains(decoded.out, "PO CTRL. WORD 1 0006h (enable), SPEED 1000.0 rpm, 3A98h -> unit2\n"))
+      << decoded.out;
+  EXPECT_TRUE(
+      contains(decoded.out, " line1 PARAM acyclic, write volatile 8470 Ramp t11 UP CW = 2.500 s -> unit2\n"));
+  // The begin of the line in the log stands in front.
+  EXPECT_EQ(decoded.out.substr(0, decoded.out.find(' ')), log.substr(0, log.find(' ')));
+  const CommandResult shown = run_ipos(
+      {"bus", "monitor", "s.log", "--plant", plant, "--station", "unit2", "--count", "3"}, folder.path());
+  EXPECT_TRUE(contains(shown.out, " line1 PARAM + 3PD cyclic, read 8456 ")) << shown.out << shown.err;
+  // A void telegram keeps the reason that its bytes do not show.
+  folder.write("void.log", "2.000000 2.005729 line1 1D 01 05 00 00 | void: parity error\n");
+  EXPECT_EQ(run_ipos({"bus", "decode", "void.log"}, folder.path()).out,
+            "2.000000 line1 void, parity error: 1D 01 05 00 00\n");
+}
+
+TEST(Bus, PlanOfAPlantWithSerialLinesOnly) {
+  const std::string plant = example("movilink-rs485/rs485.toml");
+  const CommandResult text = run_ipos({"bus", "plan", plant, "--trial", "1s"});
+  EXPECT_EQ(text.exit_code, 0);
+  EXPECT_EQ(text.err, "") << "both commands were reached";
+  EXPECT_TRUE(
+      text.out.starts_with("line1: RS-485, 9600 baud, 2 stations, cable up to 200 m\n\n"
+                           "  unit1         X13  address 0, group 100\n"
+                           "  unit2         X13  address 1, group 100\n"))
+      << text.out;
+  const auto plan = nlohmann::json::parse(run_ipos({"bus", "plan", plant, "--format", "json"}).out);
+  ASSERT_EQ(plan["serial_lines"].size(), 1U);
+  const auto& telegrams = plan["serial_lines"][0]["telegrams"];
+  ASSERT_GE(telegrams.size(), 2U);
+  EXPECT_EQ(telegrams[0]["sender"], "unit1");
+  EXPECT_EQ(telegrams[0]["format"], "PARAM + 3PD cyclic");
+  EXPECT_EQ(telegrams[0]["bytes"], 18);  // 1053 1610 p. 24
+  EXPECT_NEAR(telegrams[0]["wire_ns"].get<double>(), 18 * 11 * 1e9 / 9600, 20);
+  EXPECT_EQ(telegrams[1]["sender"], "unit2");
+  // What is against a rule; the serial line stands before the SBus.
+  const TemporaryFolder folder;
+  const auto findings = [&](const std::string& toml) {
+    folder.write("p.toml", toml);
+    folder.write("Serial.IPC", read_text(project("examples/movilink-rs485/Serial.IPC")));
+    return run_ipos({"bus", "plan", "p.toml"}, folder.path());
+  };
+  const std::string line = "[[bus]]\nname = \"line1\"\nkind = \"rs485\"\n";
+  const auto unit = [](const std::string& name, const std::string& keys, const std::string& parameters) {
+    return "[[station]]\nname = \"" + name + "\"\nunit = \"mdxb\"\n" + keys + "[station.parameters]\n" +
+           parameters;
+  };
+  const std::string x13 = "rs485 = \"line1\"\n";
+  CommandResult result = findings(line + unit("a", x13, "") + unit("b", x13, ""));
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.err, "error: line1: a and b both have address P810 = 0; their answers collide [B25]\n");
+  result = findings(line + unit("a", "program = \"Serial.IPC\"\n" + x13, "") + unit("b", x13, "P810 = 2\n"));
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(contains(result.err, "line1: error: a calls address 1, which no station has [B11]\n"))
+      << result.err;
+  result = findings(line + unit("a", "rs485_xt = \"line1\"\n", ""));
+  EXPECT_TRUE(contains(result.err, "line1: error: a has 57600 baud at XT, the line has 9600 baud"))
+      << result.err;
+  result = findings(line + unit("a", x13 + "keypad = true\n", "P812 = 500\n"));
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_TRUE(contains(result.err, "hint: a: the keypad sends requests all the time")) << result.err;
+  EXPECT_TRUE(contains(result.err, "[B26]\n"));
+  result = findings(line + "[[bus]]\nname = \"sbus\"\nkind = \"can\"\n" +
+                    unit("a", x13 + "sbus = \"sbus\"\n", ""));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(contains(result.out, "sbus: 500000 baud, 1 stations, cable up to 80 m\n")) << result.out;
 }
 
 TEST(Bus, UnknownIdentifiersAreNamedOnceWithTheirPlace) {

@@ -53,7 +53,7 @@ TEST(Documentation, DumpsOfTheTourAreReal) {
 
 TEST(Documentation, DumpsOfTheBusToolsAreReal) {
   const std::vector<Dump> dumps = dumps_of(read_text(project("docs/bus-tools.md")));
-  EXPECT_EQ(dumps.size(), 4U);
+  EXPECT_EQ(dumps.size(), 5U);
   for (const Dump& dump : dumps) {
     const CommandResult result = run_ipos(dump.arguments, project(""));
     EXPECT_EQ(result.out + result.err, dump.output) << dump.arguments[1];

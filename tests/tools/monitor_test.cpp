@@ -10,6 +10,7 @@
 #include <regex>
 #include <sstream>
 
+#include "tests/harness/proves.hpp"
 #include "tests/tools/command.hpp"
 
 namespace ipos::tests {
@@ -72,7 +73,8 @@ TEST(Monitor, NamesAndStationsOfAPlant) {
   // inverter3 has address 11: its PO 91 and PI 92 and the sync telegram, nothing of 1 (33: 268, 269).
   const CommandResult third =
       run_ipos({"bus", "monitor", "a.log", "--plant", plant, "--station", "inverter3"}, folder.path());
-  EXPECT_TRUE(contains(third.out, " 91 PO CTRL. WORD 1 0006h (enable), SPEED 500.0 rpm, 0000h -> inverter3\n"));
+  EXPECT_TRUE(
+      contains(third.out, " 91 PO CTRL. WORD 1 0006h (enable), SPEED 500.0 rpm, 0000h -> inverter3\n"));
   EXPECT_TRUE(contains(third.out, " 0 sync telegram\n"));
   EXPECT_FALSE(contains(third.out, "inverter1"));
   // Variable telegrams belong to their sender and to those that receive them.
@@ -149,11 +151,58 @@ class MonitorAtPorts : public ::testing::Test {
     ASSERT_EQ(write(descriptor, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
   }
 
+  // What has come and was not read.
+  static std::string read_all(int descriptor) {
+    fcntl(descriptor, F_SETFL, O_NONBLOCK);
+    std::string text;
+    char chunk[256];
+    for (ssize_t size; (size = read(descriptor, chunk, sizeof chunk)) > 0;)
+      text.append(chunk, static_cast<size_t>(size));
+    return text;
+  }
+
   TemporaryFolder folder_;
 };
 
+// A frame that a program puts on the bus reaches the receive object of a plant, and the plant's frames reach
+// the program: the unit sends what it has received.
+TEST_F(MonitorAtPorts, VariableTelegramsGoThroughAPort) {
+  PROVES("VAR-01");
+  folder_.write(
+      "ECHO.IPC",
+      "#include <const.h>\nSCTRCYCL T; SCREC R; long lOutLow, lOutHigh, lLow, lHigh;\nmain()\n{\n"
+      " T.ObjectNo = 1024; T.CycleTime = 20; T.Offset = 0; T.Format = 8; T.DPointer = numof(lOutLow);\n"
+      " _SBusCommDef(SCD_TRCYCL, T);\n R.ObjectNo = 1025; R.Format = 8; R.DPointer = numof(lLow);\n"
+      " _SBusCommDef(SCD_REC, R);\n _SBusCommOn();\n"
+      " while (1) { lOutLow = lLow; lOutHigh = lHigh + 1; }\n}\n");
+  const std::string plant = folder_.write(
+      "echo.toml",
+      "[[bus]]\nname = \"sbus\"\nkind = \"can\"\nport = \"slcan:pty:" + path() +
+          "\"\n[[station]]\nname = \"unit1\"\nunit = \"md60a\"\nprogram = \"ECHO.IPC\"\nsbus = \"sbus\"\n");
+  RunningIpos run({"run", plant, "--realtime", "--for", "60s"});
+  ASSERT_TRUE(run.tells("joined"));
+  const int program = attach();
+  ASSERT_GE(program, 0);
+  write_all(program, "S6\rO\r");
+  // MOTOROLA: the second variable in front, high bytes first.
+  for (const auto& [sent, expected] : {std::pair{"t40185566778811223344\r", "t40085566778911223344\r"},
+                                       {"t40180000000A0000000B\r", "t40080000000B0000000B\r"}}) {
+    std::string heard;
+    for (int n = 0; n < 500 && heard.find(expected) == std::string::npos; ++n) {
+      write_all(program, sent);
+      usleep(20'000);
+      heard += read_all(program);
+    }
+    EXPECT_NE(heard.find(expected), std::string::npos) << heard;
+  }
+  close(program);
+  run.signal(SIGTERM);
+  EXPECT_EQ(run.wait().exit_code, 130);
+}
+
 // The monitor is the adapter; this test is the program that puts frames on the bus.
 TEST_F(MonitorAtPorts, FramesOfAnSlcanProgram) {
+  PROVES("M07-MON-10");  // it observes; the control mode: BusMonitor.ControlsOrObserves
   RunningIpos monitor({"bus", "monitor", "slcan:pty:" + path(), "--program",
                        project("examples/scom/SCOM1.IPC").string(), "--count", "4"});
   ASSERT_TRUE(monitor.tells("monitoring slcan:pty:"));
@@ -164,9 +213,13 @@ TEST_F(MonitorAtPorts, FramesOfAnSlcanProgram) {
   // A line that is no frame, and one that is longer than any.
   write_all(program, "t20B9\r" + std::string(100, '0') + "\r");
   ASSERT_TRUE(monitor.prints("lost"));
+  // It has answered the commands of the program and has put no frame on the bus.
+  const std::string heard = read_all(program);
   write_all(program, "t40085566778811223344\rT000000070\r");
   const CommandResult end = monitor.wait();
   close(program);
+  EXPECT_EQ(heard.find_first_of("tTrR"), std::string::npos) << heard;
+  EXPECT_NE(heard.find('\r'), std::string::npos);
   EXPECT_EQ(end.exit_code, 0);
   uint64_t lost = 0;
   std::vector<std::string> words;
@@ -220,8 +273,8 @@ TEST_F(MonitorAtPorts, ASimulatedPlantLive) {
   EXPECT_EQ(run.wait().exit_code, 130);
 }
 
-// RS-485, built by the frame of 1053 1610 p. 18-24 (block check: exclusive or of all bytes): a request with 3PD
-// answer), and one whose block check is wrong.
+// RS-485, built by the frame of 1053 1610 p. 18-24 (block check: exclusive or of all bytes): a request with
+// 3PD answer), and one whose block check is wrong.
 TEST_F(MonitorAtPorts, TelegramsOfASerialLine) {
   const std::string plant =
       folder_.write("plant.toml",
@@ -259,7 +312,8 @@ TEST_F(MonitorAtPorts, TelegramsOfASerialLine) {
   for (const std::string& line : without_times(end.out)) words.push_back(line.substr(line.find(' ') + 1));
   EXPECT_EQ(words, (std::vector<std::string>{
                        "3PD cyclic, PO CTRL. WORD 1 0006h (enable), SPEED 1000.0 rpm, 0BB8h -> unit1",
-                       "3PD cyclic, PI STATUS WORD1 0007h (ready, output stage on, PO data on; state 0 not ready), SPEED 1002.2 rpm, OUTP. CURRENT 0.0 % In <- unit1",
+                       "3PD cyclic, PI STATUS WORD1 0007h (ready, output stage on, PO data on; state 0 not "
+                       "ready), SPEED 1002.2 rpm, OUTP. CURRENT 0.0 % In <- unit1",
                        "PARAM acyclic, write 8470 Ramp t11 UP CW = 3.000 s -> group 105",
                        "void, BCC incorrect: 02 01 05 00 06 13 88 0B B8 00",
                        "void, character delay exceeded: 02 01 05"}));

@@ -439,15 +439,16 @@ void CanLine::settle_sender(Time now, const Segment& segment, const Transfer::Se
   else
     pending->on_wire = false;
   NodeId partner = kNoNode;
+  NodeId same = kNoNode;  // sent the same bits to the end
   for (const Transfer::Sender& other : transfer.senders)
-    if (other.node != sender.node) partner = other.node;
+    if (other.node != sender.node) (sent && !other.lost ? same : partner) = other.node;
   const ErrorState before = node.counters.state();
   NotSent reason = NotSent::Collision;
   if (sent) {
     node.counters.sent();
     node.unacknowledged = false;
-    if (partner != kNoNode && sender.node == transfer.winner().node)
-      report({LineEventKind::SameFrame, now, sender.node, partner, sender.frame.id});
+    if (same != kNoNode && sender.node == transfer.winner().node)
+      report({LineEventKind::SameFrame, now, sender.node, same, sender.frame.id});
   } else if (transfer.outcome == Outcome::NoAcknowledge && !sender.lost) {
     reason = NotSent::NoAcknowledge;
     node.counters.not_acknowledged();

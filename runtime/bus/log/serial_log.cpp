@@ -8,13 +8,10 @@
 #include "runtime/bus/rs485/line.hpp"
 
 namespace ipos::runtime {
-namespace {
 
-std::string seconds(Time time) {
+std::string serial_time_text(Time time) {
   return fmt::format("{}.{:06d}", time / kSecond, time % kSecond / kMicrosecond);
 }
-
-}  // namespace
 
 std::string reception_text(const Reception& reception) {
   return reception.telegram ? describe(*reception.telegram)
@@ -22,8 +19,9 @@ std::string reception_text(const Reception& reception) {
 }
 
 std::string serial_log_line(std::string_view line, const Reception& reception) {
-  return fmt::format("{} {} {} {:02X} | {}", seconds(reception.start), seconds(reception.end), line,
-                     fmt::join(reception.bytes.span(), " "), reception_text(reception));
+  return fmt::format("{} {} {} {:02X} | {}", serial_time_text(reception.start),
+                     serial_time_text(reception.end), line, fmt::join(reception.bytes.span(), " "),
+                     reception_text(reception));
 }
 
 void SerialLog::on_character(const Rs485Line& line, NodeId /*sender*/, const Character& character) {

@@ -35,9 +35,7 @@ const UnitNames* explaining_unit(const TelegramNames& names, uint8_t address) {
 std::string describe(const TelegramNames& names, const SerialTelegram& telegram) {
   const TelegramFormat format = telegram.format;
   const UnitNames* unit = explaining_unit(names, telegram.address);
-  std::string text = format.parameter ? "PARAM" : "";
-  if (format.words > 0) text += fmt::format("{}{}PD", format.parameter ? " + " : "", format.words);
-  text += format.acyclic ? " acyclic" : " cyclic";
+  std::string text = format_text(format);
   if (format.parameter) {
     text += ", " + parameter_words(unit, telegram.parameter, !telegram.response);
     if (telegram.parameter.synchronous()) text += ", handshake 1";

@@ -12,9 +12,11 @@ namespace ipos::runtime {
 inline constexpr uint8_t kSbusAddresses = 64;  // P813 and P814: 0..63 (1053 1610 p. 41)
 
 enum class Telegram : uint8_t {
-#define TELEGRAM(name, function, parameter, grouped, from_master, text) name,
-#include "runtime/bus/movilink/telegrams.def"
+#define TELEGRAM(name, function, parameter, grouped, from_master, known, text) name,
+#include "stdlib/sbus_telegrams.def"
 };
+
+enum class TelegramKnown : uint8_t { Always, Synchronous, Channel2 };
 
 struct TelegramType {
   Telegram telegram;
@@ -22,13 +24,14 @@ struct TelegramType {
   bool parameter;
   bool grouped;
   bool from_master;
+  TelegramKnown known;
   std::string_view text;
 };
 
 inline constexpr TelegramType kTelegrams[] = {
-#define TELEGRAM(name, function, parameter, grouped, from_master, text) \
-  {Telegram::name, function, parameter, grouped, from_master, text},
-#include "runtime/bus/movilink/telegrams.def"
+#define TELEGRAM(name, function, parameter, grouped, from_master, known, text) \
+  {Telegram::name, function, parameter, grouped, from_master, TelegramKnown::known, text},
+#include "stdlib/sbus_telegrams.def"
 };
 
 constexpr const TelegramType& telegram_type(Telegram telegram) {

@@ -33,8 +33,9 @@ struct ParameterTelegram {
   uint32_t data = 0;
 
   constexpr uint8_t service_code() const { return management & management::kServiceMask; }
-  constexpr bool four_bytes() const {
-    return (management & management::kLengthMask) == management::kFourBytes;
+  // Of the data of a write: 1 to 4 bytes. SEW units always use 4.
+  constexpr uint8_t data_length() const {
+    return static_cast<uint8_t>(((management & management::kLengthMask) >> 4) + 1);
   }
   constexpr bool synchronous() const { return (management & management::kHandshake) != 0; }
   constexpr bool failed() const { return (management & management::kFailed) != 0; }

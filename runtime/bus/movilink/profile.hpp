@@ -19,10 +19,9 @@ struct SlaveSettings {
 };
 
 constexpr bool has_telegram(const SlaveSettings& settings, Telegram telegram) {
-  switch (telegram) {
-    case Telegram::ProcessOutputSync: return settings.synchronous;
-    case Telegram::ParameterRequest2:
-    case Telegram::ParameterResponse2: return settings.second_channel;
+  switch (telegram_type(telegram).known) {
+    case TelegramKnown::Synchronous: return settings.synchronous;
+    case TelegramKnown::Channel2: return settings.second_channel;
     default: return true;
   }
 }

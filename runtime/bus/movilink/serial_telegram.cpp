@@ -53,13 +53,17 @@ tl::expected<SerialTelegram, SerialError> decode_serial(std::span<const uint8_t>
   return telegram;
 }
 
+std::string format_text(TelegramFormat format) {
+  std::string text = format.parameter ? "PARAM" : "";
+  if (format.words > 0) text += fmt::format("{}{}PD", format.parameter ? " + " : "", format.words);
+  return text + (format.acyclic ? " acyclic" : " cyclic");
+}
+
 std::string describe(const SerialTelegram& telegram) {
   const TelegramFormat format = telegram.format;
   std::string text =
       fmt::format("{} {}, ", telegram.response ? "response of" : "request to", telegram.address);
-  if (format.parameter) text += fmt::format("PARAM + {}PD", format.words);
-  if (!format.parameter) text += fmt::format("{}PD", format.words);
-  text += format.acyclic ? " acyclic" : " cyclic";
+  text += format_text(format);
   if (format.parameter) {
     const ParameterTelegram& channel = telegram.parameter;
     const auto service = service_from_code(channel.service_code());

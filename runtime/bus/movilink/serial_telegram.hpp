@@ -84,6 +84,9 @@ SerialBytes encode(const SerialTelegram& telegram);
 // A complete telegram and nothing else; the errors are Start, Type, Gap (wrong length) and BlockCheck.
 tl::expected<SerialTelegram, SerialError> decode_serial(std::span<const uint8_t> bytes);
 
+// "PARAM + 3PD cyclic"
+std::string format_text(TelegramFormat format);
+
 // "request to 1, 3PD cyclic, PO 0006 3A98 01F4"
 std::string describe(const SerialTelegram& telegram);
 

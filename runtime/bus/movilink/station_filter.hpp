@@ -17,6 +17,9 @@ class StationFilter {
   // Adds a station by its name, or by its address, which need not be known. False: there is no such name.
   bool add(const TelegramNames& names, std::string_view station);
 
+  // From now on only what is added passes, also if that is nothing.
+  void close() { all_ = false; }
+
   // Without any station everything passes.
   bool passes(const Frame& frame) const;
   bool passes(const SerialTelegram& telegram) const;

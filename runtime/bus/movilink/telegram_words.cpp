@@ -5,6 +5,7 @@
 
 #include "runtime/bus/movilink/unit_words.hpp"
 #include "stdlib/parameters.hpp"
+#include "stdlib/units.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -34,12 +35,36 @@ IndexText index_text(const UnitNames* unit, uint16_t index) {
   return row == nullptr ? IndexText{"unknown index", nullptr} : IndexText{std::string(row->name), row};
 }
 
-bool carries_value(Service service) {  // in the coding of the parameter itself
-  return service != Service::None && service != Service::ReadScale && service != Service::ReadAttribute;
+// Byte 6 and 7 (1053 1610 p. 31): "quantity 4 time, conversion -3 (ms)".
+std::string scale_text(uint32_t data) {
+  const auto quantity = static_cast<uint8_t>(data >> 8);
+  const auto conversion = static_cast<int8_t>(data & 0xFF);
+  if (quantity == stdlib::kNoQuantity) return fmt::format("no quantity, conversion {}", conversion);
+  const std::string_view name = stdlib::quantity_name(quantity);
+  const std::string_view unit = stdlib::unit_abbreviation(quantity, conversion);
+  return fmt::format("quantity {} {}, conversion {}{}", quantity, name.empty() ? "unknown" : name, conversion,
+                     unit.empty() ? "" : fmt::format(" ({})", unit));
+}
+
+// Bytes 4 and 5 the next index, 6 and 7 the attributes (p. 32).
+std::string attribute_text(uint32_t data) {
+  constexpr std::string_view kTexts[] = {
+#define ATTRIBUTE(name, bit, text) text,
+#include "stdlib/access_attributes.def"
+  };
+  const uint32_t next = data >> 16;
+  std::string text = next == 0 ? "last index" : fmt::format("next index {}", next);
+  text += fmt::format(", attributes {:04X}h", data & 0xFFFF);
+  std::string list;
+  for (size_t bit = 0; bit < std::size(kTexts); ++bit)
+    if ((data >> bit & 1) != 0) list += fmt::format("{}{}", list.empty() ? "" : ", ", kTexts[bit]);
+  return list.empty() ? text : fmt::format("{} ({})", text, list);
 }
 
 std::string value_text(const IndexText& index, Service service, uint32_t data) {
-  if (!carries_value(service)) return fmt::format("{:08X}h", data);
+  if (service == Service::None) return fmt::format("{:08X}h", data);
+  if (service == Service::ReadScale) return scale_text(data);
+  if (service == Service::ReadAttribute) return attribute_text(data);
   const auto value = static_cast<int32_t>(data);
   if (index.parameter == nullptr) return fmt::format("{}", value);
   return stdlib::parameter_text(*index.parameter, value);
@@ -58,6 +83,8 @@ std::string parameter_words(const UnitNames* unit, const ParameterTelegram& tele
     text += " refused: " + describe(telegram.return_code());
   else if (service && (request ? is_write(*service) : *service != Service::None))
     text += " = " + value_text(index, *service, telegram.data);
+  if (request && service && is_write(*service) && telegram.data_length() != 4)
+    text += fmt::format(", length {} in place of 4 bytes", telegram.data_length());
   return text;
 }
 

@@ -6,7 +6,7 @@ namespace ipos::runtime {
 ParameterTelegram execute(Time now, ParameterServer& parameters, const ParameterTelegram& request) {
   const auto service = service_from_code(request.service_code());
   if (service == Service::None) return parameter_response(request, static_cast<int32_t>(request.data));
-  if (!service || (is_write(*service) && !request.four_bytes()))
+  if (!service || (is_write(*service) && request.data_length() != 4))
     return parameter_refusal(request, return_codes::kWrongManagement);
   const auto value =
       parameters.serve(now, {*service, request.index, request.subindex, static_cast<int32_t>(request.data)});

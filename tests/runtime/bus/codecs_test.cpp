@@ -106,12 +106,29 @@ TEST(ParameterTelegramCodec, EveryByteOfEveryFieldSurvives) {
     }
 }
 
+// 1053 1688 p. 29: bits 4 and 5 are 00 for 1 byte, 01 for 2, 10 for 3, 11 for 4.
+TEST(ParameterTelegramCodec, LengthOfTheData) {
+  PROVES("MLK-03");
+  for (unsigned value = 0; value < 256; ++value) {
+    ParameterTelegram telegram;
+    telegram.management = static_cast<uint8_t>(value);
+    const std::string bits{(value & 0x20) != 0 ? '1' : '0', (value & 0x10) != 0 ? '1' : '0'};
+    const std::map<std::string, int> printed = {{"00", 1}, {"01", 2}, {"10", 3}, {"11", 4}};
+    EXPECT_EQ(telegram.data_length(), printed.at(bits)) << value;
+  }
+  for (int service = 0; service <= 8; ++service) {
+    const ParameterTelegram request = parameter_request(*service_from_code(service), 8470, 0, 3000);
+    EXPECT_EQ(encode(request)[0] & 0x30, 0x30) << service;
+    EXPECT_EQ(encode(parameter_response(request, 1))[0] & 0x30, 0x30) << service;
+    EXPECT_EQ(encode(parameter_refusal(request, return_codes::kReadOnly))[0] & 0x30, 0x30) << service;
+  }
+}
+
 TEST(ParameterTelegramCodec, ManagementByteBits) {
   for (unsigned value = 0; value < 256; ++value) {
     ParameterTelegram telegram;
     telegram.management = static_cast<uint8_t>(value);
     EXPECT_EQ(telegram.service_code(), value % 16);
-    EXPECT_EQ(telegram.four_bytes(), value / 16 % 4 == 3);
     EXPECT_EQ(telegram.synchronous(), value / 64 % 2 == 1);
     EXPECT_EQ(telegram.failed(), value >= 128);
     EXPECT_EQ(service_from_code(value % 16).has_value(), value % 16 <= 8);

@@ -246,6 +246,7 @@ TEST(CanLine, SameIdentifierAndOtherDataCollide) {
   EXPECT_EQ(t.b.failed.size(), 17U);
   EXPECT_EQ(t.line.counters(a).transmit, 127U);
   EXPECT_EQ(t.c.received.size(), 2U);
+  EXPECT_EQ(t.watcher.count(LineEventKind::SameFrame), 0U) << "the frames differ to the end";
 }
 
 TEST(CanLine, EqualFramesAtOneTimeGoThroughAndAreReported) {

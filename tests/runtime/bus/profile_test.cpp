@@ -202,6 +202,8 @@ TEST(Describe, ParameterTelegrams) {
             "524 read 8318 Speed = 1000.000 rpm <- unit1");
   EXPECT_EQ(words({523, 8, {0x32, 0, 0x21, 0x16, 0, 0, 0x0B, 0xB8}, false, false}),
             "523 write 8470 Ramp t11 UP CW = 3.000 s -> unit1");
+  EXPECT_EQ(words({523, 8, {0x12, 0, 0x21, 0x16, 0, 0, 0x0B, 0xB8}, false, false}),
+            "523 write 8470 Ramp t11 UP CW = 3.000 s, length 2 in place of 4 bytes -> unit1");
   EXPECT_EQ(words({524, 8, {0xB2, 0, 0x20, 0x7E, 8, 0, 0, 0x12}, false, false}).substr(0, 47),
             "524 write 8318 Speed refused: class 8 code 0 ad");
   EXPECT_EQ(words({534, 8, {0x33, 0, 0x2C, 0xA2, 0xFF, 0xFF, 0xFF, 0xFF}, false, false}),
@@ -209,6 +211,22 @@ TEST(Describe, ParameterTelegrams) {
   EXPECT_EQ(words({523, 8, {0x71, 0, 0x2A, 0xFD}, false, false}),
             "523 read 11005 H5, answer after sync -> unit1");
   EXPECT_EQ(words({523, 8, {0x37, 0, 0x20, 0x7E}, false, false}), "523 read scale 8318 Speed -> unit1");
+  // 1053 1610 p. 31: P131, quantity 4 = time, conversion -3; FFh: none is given.
+  EXPECT_EQ(words({524, 8, {0x37, 0, 0x21, 0x17, 0, 0, 0x04, 0xFD}, false, false}),
+            "524 read scale 8471 Ramp t11 DOWN CW = quantity 4 time, conversion -3 (ms) <- unit1");
+  EXPECT_EQ(words({524, 8, {0x37, 0, 0x20, 0x7E, 0, 0, 0x0B, 0x42}, false, false}),
+            "524 read scale 8318 Speed = quantity 11 rotational velocity, conversion 66 <- unit1");
+  EXPECT_EQ(words({524, 8, {0x37, 0, 0x20, 0x7E, 0, 0, 0xFF, 0x00}, false, false}),
+            "524 read scale 8318 Speed = no quantity, conversion 0 <- unit1");
+  EXPECT_EQ(words({524, 8, {0x37, 0, 0x20, 0x7E, 0, 0, 0x30, 0x00}, false, false}),
+            "524 read scale 8318 Speed = quantity 48 unknown, conversion 0 <- unit1");
+  // p. 32: next index, then the attributes.
+  EXPECT_EQ(
+      words({524, 8, {0x38, 0, 0x21, 0x17, 0x21, 0x18, 0, 0x21}, false, false}),
+      "524 read attribute 8471 Ramp t11 DOWN CW = next index 8472, attributes 0021h (writable, needs no "
+      "inhibit) <- unit1");
+  EXPECT_EQ(words({524, 8, {0x38, 0, 0x22, 0xBB, 0, 0, 0, 0}, false, false}),
+            "524 read attribute 8891 Encoder type (X14) = last index, attributes 0000h <- unit1");
   EXPECT_EQ(words({523, 8, {0x3F, 0, 0xFF, 0xFF}, false, false}),
             "523 service 15 65535 unknown index -> unit1");
   EXPECT_EQ(words({523, 3, {0x31}, false, false}), "523 3 bytes in place of 8: 31 00 00 -> unit1");

@@ -148,7 +148,7 @@ TEST(ProcessWords, DisplaysOfTheProcessData) {
 }
 
 TEST(ProcessWords, EnableP876) {
-  PROVES("M07-PD-18", "PD-05");
+  PROVES("M07-PD-18");
   for (const char* name : {"mc07", "md60a"}) {
     DriveRig rig(name);
     rig.bus_control();

@@ -275,8 +275,16 @@ TEST(Plan, CableData) {
     return codes(plan_of(bus_text(500'000, keys) + station_text("u", "", "mc07")));
   };
   EXPECT_TRUE(cable("impedance = 120\ncapacitance = 40\n").empty());
-  EXPECT_EQ(cable("impedance = 120\ncapacitance = 41\n"), std::vector<std::string>{"B08"});
-  EXPECT_EQ(cable("impedance = 60\n"), std::vector<std::string>{"B08"});
+  EXPECT_TRUE(cable("capacitance = 1\n").empty());
+  const std::vector<std::string> wrong{"B08"};
+  for (const int picofarad : {41, 100})
+    EXPECT_EQ(cable("capacitance = " + std::to_string(picofarad) + "\n"), wrong);
+  for (const int ohm : {1, 60, 100, 119, 121, 150, 1000})
+    EXPECT_EQ(cable("impedance = " + std::to_string(ohm) + "\ncapacitance = 40\n"), wrong) << ohm;
+  EXPECT_EQ(cable("impedance = 60\ncapacitance = 41\n"), (std::vector<std::string>{"B08", "B08"}));
+  const BusPlan plan = plan_of(bus_text(500'000, "capacitance = 41\n") + station_text("u", "", "mc07"));
+  EXPECT_TRUE(plan.has_errors());
+  EXPECT_EQ(text_of(plan, FindingKind::CableData), "cable of 41 pF/m, at most 40 pF/m");
 }
 
 TEST(Plan, Mch42aAtOneMegabaud) {

@@ -163,6 +163,59 @@ TEST(ProfileSamples, ParametersAreCodedAlikeOnBothBuses) {
   EXPECT_GT(refused, 100U);
 }
 
+// 1053 1610 p. 34, figure 22, at the master: two tasks that write to one slave by cyclic telegrams, all the
+// time. Only one job is under way, and the bit of the requests changes only when the last response had it
+// back.
+TEST(ProfileSamples, TheNextServiceWaitsForTheAcknowledgement) {
+  PROVES("MLK-10");  // the slave: SerialSlave.OldBitUntilTheServiceIsDone
+  const std::string program =
+      "#include <const.h>\nMOVLNK A; MLDATA Da; MOVLNK B; MLDATA Db; long n, m;\n"
+      "Second()\n{\n while (1) { _MoviLink(B); m++; }\n}\nmain()\n{\n"
+      " A.BusType = ML_BT_S1; A.Address = 1; A.Format = 6; A.Service = 3; A.DPointer = numof(Da); A.Index = "
+      "8470;\n"
+      " B.BusType = ML_BT_S1; B.Address = 1; B.Format = 6; B.Service = 3; B.DPointer = numof(Db); B.Index = "
+      "8471;\n"
+      " Da.WritePar = 2500; Db.WritePar = 2600;\n _SetTask2(T2_START, Second);\n"
+      " while (1) { _MoviLink(A); n++; }\n}\n";
+  PlantRig rig(
+      kSerialBus +
+          "[[station]]\nname = \"master\"\nunit = \"md60a\"\nrs485 = \"line1\"\nprogram = \"A.IPC\"\n"
+          "[[station]]\nname = \"slave\"\nunit = \"md60a\"\nrs485 = \"line1\"\n[station.parameters]\nP810 = "
+          "1\n",
+      {{"A.IPC", program}});
+  Recorder recorder;
+  rig.get().serial_lines()[0]->line.add_observer(recorder);
+  rig.run_until(5 * kSecond);
+  EXPECT_GT(rig.variable(0, "n"), 10);
+  EXPECT_GT(rig.variable(0, "m"), 10);
+  EXPECT_EQ(rig.station(1).drive().parameters().value(8470), 2500);
+  EXPECT_EQ(rig.station(1).drive().parameters().value(8471), 2600);
+  constexpr uint8_t kHandshakeBit = 0x40;
+  std::optional<uint8_t> sent, received;  // the bit
+  std::optional<uint16_t> under_way;      // index of the service
+  size_t toggles = 0;
+  for (const Heard& heard : recorder.heard) {
+    ASSERT_TRUE(heard.reception.telegram);
+    const auto bytes = heard.reception.bytes.span();
+    const uint8_t bit = bytes[3] & kHandshakeBit;
+    const auto index = static_cast<uint16_t>(bytes[5] << 8 | bytes[6]);
+    if (bytes[0] == kRequestStart) {
+      if (sent && bit != *sent) {
+        ++toggles;
+        EXPECT_EQ(received, sent) << "the bit of the last request has come back";
+        under_way = index;
+      }
+      if (under_way && sent && received != sent) {
+        EXPECT_EQ(index, *under_way) << "no other service before the acknowledgement";
+      }
+      sent = bit;
+    } else {
+      received = bit;
+    }
+  }
+  EXPECT_GT(toggles, 20U);
+}
+
 TEST(ProfileSamples, TerminalsKeepTheirFunction) {
   PROVES("SBUS-23");
   PlantRig rig(

@@ -91,7 +91,7 @@ TEST(Sbus2, OnlyMovidriveBHasIt) {
 }
 
 TEST(Sbus2, SecondParameterChannel) {
-  PROVES("MDB-TOC-03", "MDB-TOC-04");
+  PROVES("MDB-TOC-04");
   class Hand final : public CanNode {
    public:
     void on_frame(Time, const Frame& frame) override { frames.push_back(frame); }
@@ -126,11 +126,71 @@ TEST(Sbus2, SecondParameterChannel) {
     EXPECT_TRUE(ask(process_frame(22, {6, 7, 0})).empty());
     EXPECT_EQ(rig.station(0).drive().state().po()[1], 7);
   }
-  // Protocol, address, group, timeout, rate of both ports.
+}
+
+// Addresses, groups, rates and timeouts of both ports by the numbers the manual names; each port by its own.
+TEST(Sbus2, ParametersOfBothPorts) {
+  PROVES("MDB-TOC-03", "MDB-PAR-03");
   const auto& table = stdlib::parameter_table(*stdlib::find_unit("mdxb"));
-  for (const char* number :
-       {"880", "881", "882", "883", "884", "836", "890", "891", "892", "893", "894", "837"})
-    EXPECT_NE(table.find(number), nullptr) << number;
+  for (const auto& [number, word] : {std::pair{"88", "SBus 1"}, {"89", "SBus 2"}})
+    for (const auto& [digit, name] : {std::pair{"0", "Protocol"},
+                                      {"1", "Address"},
+                                      {"2", "Group address"},
+                                      {"3", "Timeout delay"},
+                                      {"4", "Baud rate"}}) {
+      const stdlib::Parameter* row = table.find(std::string(number) + digit);
+      ASSERT_NE(row, nullptr) << number << digit;
+      EXPECT_EQ(row->name, std::string(name) + " " + word);
+    }
+  EXPECT_EQ(table.find("836")->name, "Response SBus 1 TIMEOUT");
+  EXPECT_EQ(table.find("837")->name, "Response SBus 2 TIMEOUT");
+
+  class Hand final : public CanNode {
+   public:
+    explicit Hand(CanLine& line) : port(line, line.attach("hand", line.baud(), *this)) {}
+    void on_frame(Time, const Frame& frame) override { frames.push_back(frame); }
+    void on_sent(Time, const Frame&, uint64_t) override {}
+    void on_not_sent(Time, const Frame&, uint64_t, NotSent) override {}
+    LinePort port;
+    std::vector<Frame> frames;
+  };
+  constexpr uint32_t kRates[] = {125'000, 250'000, 500'000, 1'000'000};
+  const auto lines = [](uint32_t first, uint32_t second) {
+    return bus_text(first) + "[[bus]]\nname = \"sbus2\"\nkind = \"can\"\nbaud = " + std::to_string(second) +
+           "\n";
+  };
+  // A code is the rate of its port: the unit answers on a line of that rate and on no other.
+  for (int code = 0; code < 4; ++code)
+    for (int line = 0; line < 4; ++line) {
+      PlantRig rig(lines(kRates[line], kRates[3 - line]) +
+                   station_text("a",
+                                "P881 = 1\nP891 = 7\nP884 = " + std::to_string(code) +
+                                    "\nP894 = " + std::to_string(code) + "\n",
+                                "mdxb", "", "sbus2 = \"sbus2\"\n"));
+      Hand first(*rig.get().lines()[0]), second(*rig.get().lines()[1]);
+      rig.run_until(10 * kMillisecond);
+      first.port.send({8 * 1 + 515, 8, {0x31, 0, 0x21, 0x98}, false, false}, 0);
+      second.port.send({8 * 7 + 515, 8, {0x31, 0, 0x21, 0x98}, false, false}, 0);
+      rig.run_until(40 * kMillisecond);
+      EXPECT_EQ(first.frames.size(), code == line ? 1U : 0U) << code << " " << line;
+      EXPECT_EQ(second.frames.size(), code == 3 - line ? 1U : 0U) << code << " " << line;
+    }
+  // A port with CANopen is silent in MOVILINK and says so; the other one goes on.
+  for (const bool first_port : {true, false}) {
+    PlantRig rig(
+        lines(500'000, 500'000) +
+        station_text("a", std::string("P881 = 1\nP891 = 7\n") + (first_port ? "P880 = 1\n" : "P890 = 1\n"),
+                     "mdxb", "", "sbus2 = \"sbus2\"\n"));
+    EXPECT_EQ(
+        rig.says(std::string("a: SBus ") + (first_port ? "1" : "2") + " is silent: its protocol is CANopen"),
+        1U)
+        << rig.journal();
+    Hand open(*rig.get().lines()[first_port ? 1 : 0]);
+    rig.run_until(10 * kMillisecond);
+    open.port.send({8U * (first_port ? 7 : 1) + 515, 8, {0x31, 0, 0x21, 0x98}, false, false}, 0);
+    rig.run_until(40 * kMillisecond);
+    EXPECT_EQ(open.frames.size(), 1U);
+  }
 }
 
 TEST(Sbus2, CommStateStopsAndStartsTheObjects) {

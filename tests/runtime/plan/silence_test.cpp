@@ -36,11 +36,40 @@ TEST(Silence, EachSettingThatIsMissing) {
   // P813 missing, so 0.
   EXPECT_EQ(why(controlled("P100 = 10\nP101 = 3\n")),
             ": sbus: plc calls address 1, which no station has; there are 0 (unit1)\n");
+  // P871: no word is the speed.
+  PlantRig speedless(controlled(kFollows + "P871 = 0\n"));
+  speedless.run_until(100 * kMillisecond);
+  EXPECT_EQ(speedless.says("unit1: no PO word has the assignment SPEED or SPEED [%] (P870..P872)"), 1U);
   // P816: 250 kbaud on a line of 500.
   EXPECT_NE(why(controlled(kFollows + "P816 = 1\n"))
                 .find(": sbus: unit1 takes no part: its baud rate is not that of the "
                       "line (250 kbaud, line 500 kbaud)\n"),
             std::string::npos);
+}
+
+// P876 in a plant with a controller: the telegrams are answered and shown, the drive does not follow.
+TEST(Silence, PoDataAreNotEnabled) {
+  PROVES("PD-05");
+  const std::string inputs = "[station.inputs]\nDI00 = 1\nDI01 = 1\nDI03 = 1\n";
+  for (const char* unit : {"md60a", "mc07"})
+    for (const char* p876 : {"", "P876 = 1\n", "P876 = 0\n"}) {
+      const bool on = std::string(p876) != "P876 = 0\n";
+      PlantRig rig(
+          bus_text() + station_text("unit1", kFollows + "P301 = 0\n" + p876, unit) + inputs +
+          "[[control]]\nname = \"plc\"\nsbus = \"sbus\"\n[[control.target]]\naddress = 1\npo = [6, 5000, "
+          "15000]\nevery = \"10ms\"\n");
+      rig.run_until(3 * kSecond);
+      const Drive& drive = rig.station(0).drive().state();
+      EXPECT_EQ(rig.with(11).size(), 300U);
+      EXPECT_GE(rig.with(12).size(), 299U) << "PI to each PO";
+      EXPECT_EQ((rig.with(12).back().frame.data[1] & 4) != 0, on) << "status word bit 2";
+      auto& parameters = rig.station(0).drive().parameters();
+      EXPECT_EQ(parameters.value(8455), 6);
+      EXPECT_EQ(parameters.value(8456), 5000);
+      EXPECT_EQ(parameters.value(8457), 15000);
+      EXPECT_NEAR(drive.axis().speed, on ? 1'000'000 : 0, 3'000) << unit << " " << p876;
+      EXPECT_EQ(drive.axis().output_stage, on) << unit << " " << p876;
+    }
 }
 
 TEST(Silence, WrongBaudRate) {

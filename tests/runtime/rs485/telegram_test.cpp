@@ -197,7 +197,7 @@ TEST(Telegram, TextForPeople) {
   EXPECT_EQ(describe(request(1, 5, {6, 0x3A98, 0x1F4})), "request to 1, 3PD cyclic, PO 0006 3A98 01F4");
   const ParameterTelegram read = parameter_request(Service::Read, 8318, 0, 0);
   EXPECT_EQ(describe(response(1, 0x86, {}, parameter_refusal(read, return_codes::kInvalidIndex))),
-            "response of 1, PARAM + 0PD acyclic, read 8318: class 8 code 0 additional 10h: invalid parameter "
+            "response of 1, PARAM acyclic, read 8318: class 8 code 0 additional 10h: invalid parameter "
             "index");
   EXPECT_EQ(decode_serial(hex("02 01")).error(), SerialError::Gap);
   EXPECT_EQ(decode_serial(hex("03 01 05 00")).error(), SerialError::Start);

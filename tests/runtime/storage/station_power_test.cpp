@@ -261,8 +261,35 @@ TEST(ParameterChannel, ProgramWordsAndCurvePoints) {
   EXPECT_EQ(rig.value(Service::Read, 20512), 20512);
 }
 
+TEST(ParameterChannel, FactorySetting) {
+  PROVES("PAR-17");
+  Rig rig;
+  EXPECT_EQ(rig.value(Service::Write, 8470, 2500), 2500);
+  EXPECT_EQ(rig.value(Service::Write, 8594, 1), 1);
+  // While it is being installed.
+  EXPECT_EQ(rig.ask(Service::Write, 8470, 3000), (Data{0xB2, 0, 0x21, 0x16, 8, 0, 0, 0x14}));
+  EXPECT_EQ(rig.ask(Service::Write, 8594, 1), (Data{0xB2, 0, 0x21, 0x92, 8, 0, 0, 0x1E}));
+  EXPECT_EQ(rig.value(Service::Read, 8470), 2500);
+  rig.run(10 * kSecond);
+  // It has taken the address, too.
+  EXPECT_EQ(rig.parameter(8470), 2000);
+  EXPECT_EQ(rig.parameter(8600), 0);
+  const std::vector<Frame> answer = rig.send(515, {0x32, 0, 0x21, 0x16, 0, 0, 0x0B, 0xB8});
+  const std::vector<Frame> at_1 = rig.send(523, {0x31, 0, 0x21, 0x16, 0, 0, 0, 0});
+  EXPECT_EQ(answer.size() + at_1.size(), 1U) << "at its old or its new address";
+}
+
+TEST(ParameterChannel, ReadScaleOfContradictoryUnits) {
+  PROVES("PAR-38");
+  Rig rig;
+  for (const int index : {8524, 8529})  // P321, P331: boost [%] in volts
+    EXPECT_EQ(rig.value(Service::ReadScale, static_cast<uint16_t>(index)), 0x15FD) << index;
+  EXPECT_EQ(rig.value(Service::ReadScale, 8576), 0x16FD);  // P710: standstill current in amperes
+}
+
+// What the channel does with the code of an internal error. There is no option card whose link could fail, so
+// no row is proved.
 TEST(ParameterChannel, InternalCommunicationError) {
-  PROVES("PAR-20");
   Rig rig;
   rig.station->drive().parameters().inject(stdlib::return_codes::kCommunication);
   EXPECT_EQ(rig.ask(Service::Write, 8470, 2500), (Data{0xB2, 0, 0x21, 0x16, 6, 2, 0, 0}));
@@ -327,6 +354,14 @@ TEST(Movitrac07, ParameterTelegrams) {
   EXPECT_EQ(rig.ask(request(Service::Read, 8622)), (Data{0x31, 0, 0x21, 0xAE, 0, 0, 0, 1}));
   EXPECT_EQ(rig.ask(request(Service::Read, 9500)), (Data{0xB1, 0, 0x25, 0x1C, 8, 0, 0, 0x10}));
   EXPECT_EQ(rig.ask(request(Service::Write, 8318, 1)), (Data{0xB2, 0, 0x20, 0x7E, 8, 0, 0, 0x12}));
+}
+
+// 1B: the program memory is protected while the program runs.
+TEST(Movitrac07, ProgramWordsOfARunningProgramAreProtected) {
+  PROVES("M07-PAR-13");  // the other codes: Memory.AWriteThatCannotBeStoredIsRefused
+  Rig rig(kEndless, "mc07");
+  EXPECT_EQ(rig.ask(Service::Write, 16000, 5), (Data{0xB2, 0, 0x3E, 0x80, 8, 0, 0, 0x1B}));
+  EXPECT_EQ(rig.value(Service::Read, 16000), int64_t{kEndless[0]});
 }
 
 TEST(Movitrac07, VariablesAndProgram) {

@@ -124,14 +124,13 @@ TEST_F(Memory, AWriteThatCannotBeStoredIsRefused) {
   EXPECT_EQ(Unit(state_, "mc07").ask(kRead, 8602), 50) << "what was refused is not stored later";
   EXPECT_EQ(Unit(state_, "mc07").ask(kRead, 11000), 0);
 
-  // The other codes of the row.
-  for (const ReturnCode code : {codes::kSystemError, codes::kProtected}) {
-    unit.parameters.inject(code);
-    EXPECT_EQ(refused(unit.ask(kWrite, 8602, 60)), code);
-    unit.parameters.inject(std::nullopt);
-    EXPECT_EQ(unit.ask(kRead, 8602), 100) << "not carried out";
-  }
-  EXPECT_EQ(refused(unit.ask(kWrite, 8602, 5)), codes::kIncorrectValue);
+  // The other codes of the row, by their printed numbers. No drive has a reason for 18.
+  EXPECT_EQ(codes::kNotSaved.packed(), 0x0800001FU);
+  unit.parameters.inject(codes::kSystemError);
+  EXPECT_EQ(refused(unit.ask(kWrite, 8602, 60)).packed(), 0x08000018U);
+  unit.parameters.inject(std::nullopt);
+  EXPECT_EQ(unit.ask(kRead, 8602), 100) << "not carried out";
+  EXPECT_EQ(refused(unit.ask(kWrite, 8602, 5)).packed(), 0x0800001DU);
   struct Drive final : DriveLink {
     std::optional<int32_t> live_value(uint16_t) const override { return std::nullopt; }
     bool controller_inhibited() const override { return !running; }
@@ -140,8 +139,8 @@ TEST_F(Memory, AWriteThatCannotBeStoredIsRefused) {
     bool running = true;
   } drive;
   unit.parameters.connect(drive);
-  EXPECT_EQ(refused(unit.ask(kWrite, 8461, 2)), codes::kInhibitRequired);
-  EXPECT_EQ(refused(unit.ask(kWrite, 8523, 0)), codes::kOutputStageEnabled);
+  EXPECT_EQ(refused(unit.ask(kWrite, 8461, 2)).packed(), 0x0800001CU);
+  EXPECT_EQ(refused(unit.ask(kWrite, 8523, 0)).packed(), 0x08000020U);
 }
 
 TEST_F(Memory, CommitsThatFailAreRepeated) {
