@@ -8,8 +8,23 @@ install(TARGETS ipos_embedded ipos_shared ipos_compile EXPORT ipos
         INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/runtime/api/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(TARGETS ipos RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/docs/embedding.md
-        DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# The manual page and the completions, written by the program itself.
+set(shell ${PROJECT_BINARY_DIR}/shell)
+file(MAKE_DIRECTORY ${shell})
+add_custom_command(OUTPUT ${shell}/ipos.1 ${shell}/ipos ${shell}/_ipos ${shell}/ipos.fish
+  COMMAND ipos man >${shell}/ipos.1
+  COMMAND ipos completion bash >${shell}/ipos
+  COMMAND ipos completion zsh >${shell}/_ipos
+  COMMAND ipos completion fish >${shell}/ipos.fish
+  DEPENDS ipos COMMENT "Writing the manual page and the completions")
+add_custom_target(ipos_shell_files ALL DEPENDS ${shell}/ipos.1)
+install(FILES ${shell}/ipos.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES ${shell}/ipos DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+install(FILES ${shell}/_ipos DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
+install(FILES ${shell}/ipos.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/ipos)
 install(EXPORT ipos NAMESPACE ipos:: FILE iposTargets.cmake DESTINATION ${package_dir})
