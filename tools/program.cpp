@@ -32,25 +32,11 @@ const stdlib::UnitType* unit_of(const CompileFlags& flags) {
   return unit;
 }
 
-compiler::CompileOptions options_of(const CompileFlags& flags) {
-  compiler::CompileOptions options;
-  options.include_dirs = flags.include_dirs;
-  options.defines = flags.defines;
-  options.read_file = try_read_file;
-  options.list_files = list_files;
-  options.unit = unit_of(flags);
-  for (const std::string& warning : flags.warnings)
-    if (!options.warnings.apply(warning))
-      throw Failure(kUsage, fmt::format("there is no warning -W{}", warning));
-  return options;
-}
-
-// Compiles and prints the messages; errors end the verb.
+// Compiles and prints the messages.
 compiler::Compilation compile(const std::string& path, const CompileFlags& flags) {
   compiler::CompileOptions options = options_of(flags);
   compiler::Compilation result = compiler::compile(path, path, read_file(path), options);
   print_diagnostics(*result.sources, result.diagnostics, flags.diagnostics);
-  if (!result.image) throw Failure(kBadInput, "");
   return result;
 }
 
@@ -74,7 +60,28 @@ compiler::SourceLines source_lines(const vm::Image& image) {
   };
 }
 
+std::string commands_of(vm::Image code) {
+  code.symbols.clear();  // `ipos disasm` has the symbols and lines, too
+  code.files.clear();
+  code.lines.clear();
+  return compiler::disassemble(code);
+}
+
 }  // namespace
+
+compiler::CompileOptions options_of(const CompileFlags& flags) {
+  compiler::CompileOptions options;
+  options.include_dirs = flags.include_dirs;
+  options.defines = flags.defines;
+  options.read_file = try_read_file;
+  options.list_files = list_files;
+  options.unit = unit_of(flags);
+  options.atomic = flags.atomic;
+  for (const std::string& warning : flags.warnings)
+    if (!options.warnings.apply(warning))
+      throw Failure(kUsage, fmt::format("there is no warning -W{}", warning));
+  return options;
+}
 
 bool is_source(std::string_view path) {
   if (path.size() < 4) return false;
@@ -98,7 +105,9 @@ void print_diagnostics(const compiler::SourceMap& sources, const compiler::Diagn
 }
 
 vm::Image compile_file(const std::string& path, const CompileFlags& flags) {
-  return *compile(path, flags).image;
+  compiler::Compilation result = compile(path, flags);
+  if (!result.image) throw Failure(kBadInput, "");
+  return std::move(*result.image);
 }
 
 std::vector<std::string> included_files(const std::string& path) {
@@ -147,13 +156,15 @@ std::string emit_stage(const std::string& path, const CompileFlags& flags, const
     return text;
   }
   const compiler::Compilation result = compile(path, flags);
-  if (stage == "map") return compiler::map_text(result.map);
-  if (stage == "listing") return program_listing(*result.image, compiler::VariableNames::Numbers);
-  vm::Image code = *result.image;  // `ipos disasm` has the symbols and lines, too
-  code.symbols.clear();
-  code.files.clear();
-  code.lines.clear();
-  return compiler::disassemble(code);
+  // A listing shows where the words of a program go that is too long.
+  const std::optional<vm::Image>& image = result.image ? result.image : result.too_long;
+  if (!image) throw Failure(kBadInput, "");
+  const std::string text = stage == "map"       ? compiler::map_text(result.map)
+                           : stage == "listing" ? program_listing(*image, compiler::VariableNames::Numbers)
+                                                : commands_of(*image);
+  if (result.image) return text;
+  fmt::print("{}", text);
+  throw Failure(kBadInput, "");
 }
 
 std::string program_listing(const vm::Image& image, compiler::VariableNames names) {

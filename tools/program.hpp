@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "compiler/asm/disassembler.hpp"
+#include "compiler/codegen/compile.hpp"
 #include "compiler/diag/render.hpp"
 #include "vm/image/image.hpp"
 
@@ -16,8 +17,12 @@ struct CompileFlags {
   std::vector<std::string> defines;       // -D NAME=V
   std::vector<std::string> warnings;      // -W...
   std::string unit;                       // --unit; empty: from the source
+  bool atomic = false;                    // --atomic
   std::string diagnostics = "text";       // text, json or sarif
 };
+
+// What the compiler is told; an unknown warning or unit is a Failure.
+compiler::CompileOptions options_of(const CompileFlags& flags);
 
 // *.IPC in any case.
 bool is_source(std::string_view path);

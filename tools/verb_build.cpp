@@ -45,6 +45,7 @@ void add_compile_options(cli::Verb& verb, CompileFlags& flags) {
   verb.option("-D", flags.defines, "NAME=VALUE, as #define").one_each();
   verb.option("-W", flags.warnings, "warning by name: -Wunused-variable, -Wno-..., -Werror").one_each();
   verb.option("--unit", flags.unit, "unit type: md60a, compact, mc07 or mdxb");
+  verb.flag("--atomic", flags.atomic, "variables that others see never hold intermediate results");
   verb.option("--diagnostics", flags.diagnostics, "text, json or sarif").one_of({"text", "json", "sarif"});
 }
 

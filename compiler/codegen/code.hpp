@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compiler/sema/call_graph.hpp"
+#include "compiler/sema/onlookers.hpp"
 #include "compiler/source/source.hpp"
 #include "vm/isa/isa.hpp"
 
@@ -24,10 +25,18 @@ struct Command {
   uint32_t held = 0;                   // temporaries whose values are needed after a call
 };
 
+// An assignment whose intermediate results somebody sees.
+struct SeenSteps {
+  int32_t variable;
+  Span span;
+  Onlooker onlooker;
+};
+
 struct FunctionCode {
   std::vector<Command> commands;
   std::vector<size_t> labels;  // command each label stands at
   uint32_t temporaries = 0;
+  std::vector<SeenSteps> seen_steps;
 };
 
 }  // namespace ipos::compiler

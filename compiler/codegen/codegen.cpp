@@ -1,15 +1,35 @@
 // Generates the functions that are used, cleans them up and lays them out.
 #include "compiler/codegen/codegen.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "compiler/codegen/generator.hpp"
 #include "compiler/codegen/peephole.hpp"
 
 namespace ipos::compiler {
+namespace {
+
+std::string name_of(const checked::Program& program, int32_t variable) {
+  for (const vm::Symbol& symbol : program.symbols) {
+    const int32_t element = variable - symbol.variable;
+    if (element < 0 || element >= symbol.count) continue;
+    return symbol.count == 1 ? symbol.name : fmt::format("{}[{}]", symbol.name, element);
+  }
+  return fmt::format("H{}", variable);
+}
+
+void report_steps(const checked::Program& program, const SeenSteps& steps, Diagnostics& diagnostics) {
+  Diagnostic& message =
+      diagnostics.report(Diag::SeenSteps, steps.span, {name_of(program, steps.variable), steps.onlooker.who});
+  message.notes.push_back({steps.onlooker.span, steps.onlooker.note});
+}
+
+}  // namespace
 
 std::optional<GeneratedProgram> generate(const checked::Program& program, const stdlib::UnitType& unit,
-                                         const SourceMap& sources, Diagnostics& diagnostics) {
+                                         const SourceMap& sources, bool atomic, Diagnostics& diagnostics) {
   const CallGraph graph = call_graph(program);
   const std::vector<bool> used = reachable(graph, program.main);
   // END would end the task also where somebody waits for the return.
@@ -21,7 +41,8 @@ std::optional<GeneratedProgram> generate(const checked::Program& program, const 
   int32_t variable_interrupts = 0;
   for (size_t n = 0; n < functions.size(); ++n) {
     if (!used[n]) continue;
-    functions[n] = FunctionGenerator(n == program.main && !main_called).generate(program.functions[n]);
+    functions[n] = FunctionGenerator(program, n, n == program.main && !main_called, atomic).generate();
+    for (const SeenSteps& steps : functions[n].seen_steps) report_steps(program, steps, diagnostics);
     optimize(functions[n]);
     // Which interrupt a VARINT installs is known at run time only: each call in the source counts as one.
     for (Command& command : functions[n].commands)

@@ -7,9 +7,10 @@
 
 namespace ipos::compiler {
 
-// Nothing when the program does not fit: too many temporaries or too long. The same program always gives the
-// same bytes.
+// `atomic`: variables that others see get their values once, computed aside; else a warning says which do not.
+// Nothing when there are too many temporaries; a program that is too long comes with its error. The same
+// program always gives the same bytes.
 std::optional<GeneratedProgram> generate(const checked::Program& program, const stdlib::UnitType& unit,
-                                         const SourceMap& sources, Diagnostics& diagnostics);
+                                         const SourceMap& sources, bool atomic, Diagnostics& diagnostics);
 
 }  // namespace ipos::compiler

@@ -40,9 +40,9 @@ Compilation compile(const std::string& name, const std::string& path, std::strin
   if (out.diagnostics.has_errors()) return out;
   auto program = check(tree, *out.unit, *out.sources, out.diagnostics);
   if (!program) return out;
-  auto generated = generate(*program, *out.unit, *out.sources, out.diagnostics);
+  auto generated = generate(*program, *out.unit, *out.sources, options.atomic, out.diagnostics);
   if (!generated) return out;
-  out.image = std::move(generated->image);
+  (out.diagnostics.has_errors() ? out.too_long : out.image) = std::move(generated->image);
   out.map = std::move(program->map);
   for (checked::MapEntry& row : generated->temporaries)
     out.map.insert(std::upper_bound(out.map.begin(), out.map.end(), row,

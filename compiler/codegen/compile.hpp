@@ -21,6 +21,7 @@ struct CompileOptions {
   std::function<std::optional<std::string>(const std::string& path)> read_file;
   std::function<std::vector<std::string>(const std::string& folder)> list_files;  // for hints; may be empty
   WarningOptions warnings;
+  bool atomic = false;  // variables that others see get their values once
   // Null: mdxb for a source that includes constb.h or iob.h, else md60a.
   const stdlib::UnitType* unit = nullptr;
 };
@@ -30,7 +31,8 @@ struct Compilation {
   Diagnostics diagnostics;
   const stdlib::UnitType* unit = nullptr;  // the one compiled for
   std::optional<vm::Image> image;          // set when there are no errors
-  std::vector<checked::MapEntry> map;      // with the image; temporaries included
+  std::optional<vm::Image> too_long;       // instead of the image when that is the only error: for listings
+  std::vector<checked::MapEntry> map;      // with either; temporaries included
 };
 
 // `name` is how messages call the file, `path` where it was read from ("" for standard input).

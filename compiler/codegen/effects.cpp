@@ -51,6 +51,7 @@ void FunctionGenerator::conditional_effect(const checked::Conditional& node, Spa
 
 FunctionGenerator::Operand FunctionGenerator::assign(const checked::Assign& node, Span span) {
   if (node.target.offset != nullptr) return assign_indirect(node, span);
+  assignment_ = span;
   const int32_t target = node.target.number;
   if (!node.op) {
     if (is_simple(*node.value))

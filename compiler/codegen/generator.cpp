@@ -2,6 +2,7 @@
 #include "compiler/codegen/generator.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "compiler/sema/fold.hpp"
 
@@ -36,7 +37,9 @@ bool true_after(const checked::ExprPtr& init, const checked::ExprPtr& condition)
 
 }  // namespace
 
-FunctionCode FunctionGenerator::generate(const checked::Function& function) {
+FunctionCode FunctionGenerator::generate() {
+  const checked::Function& function = program_.functions[function_];
+  early_ = program_.onlookers->is_early(function_);
   statement(*function.body);
   // The end of the function belongs to its closing brace.
   const Span body = function.body->span;
@@ -47,7 +50,9 @@ FunctionCode FunctionGenerator::generate(const checked::Function& function) {
 }
 
 void FunctionGenerator::statement(const checked::Stmt& stmt) {
+  const bool outside = std::exchange(early_, early_ || program_.onlookers->is_early(stmt));
   std::visit([&](const auto& node) { emit_stmt(node, stmt.span); }, stmt.node);
+  early_ = outside;
 }
 
 void FunctionGenerator::emit_stmt(const checked::ExprStmt& node, Span) { effect(*node.expr); }

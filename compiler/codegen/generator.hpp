@@ -9,10 +9,12 @@ namespace ipos::compiler {
 
 class FunctionGenerator {
  public:
-  // `ends_task`: return is END instead of RET (main, unless something calls it).
-  explicit FunctionGenerator(bool ends_task) : ends_task_(ends_task) {}
+  // `ends_task`: return is END instead of RET (main, unless something calls it). `atomic`: what others see is
+  // computed aside.
+  FunctionGenerator(const checked::Program& program, size_t function, bool ends_task, bool atomic)
+      : program_(program), function_(function), ends_task_(ends_task), atomic_(atomic) {}
 
-  FunctionCode generate(const checked::Function& function);
+  FunctionCode generate();
 
  private:
   // A constant, a variable or a temporary that holds a value.
@@ -82,7 +84,15 @@ class FunctionGenerator {
   void compare(const checked::Binary& node, int label, bool when, Span span);
   void test(const checked::Expr& expr, int label, bool when);
 
+  // steps.cpp: where an expression of several commands is computed
+  bool shows_steps(int32_t target);
+
+  const checked::Program& program_;
+  size_t function_;
   bool ends_task_;
+  bool atomic_;
+  bool early_ = false;  // before main has started anything
+  Span assignment_;     // the innermost
   FunctionCode code_;
   uint32_t top_ = 0;  // temporaries in use
   std::vector<int> breaks_;
@@ -97,7 +107,7 @@ struct Uses {
 };
 Uses uses(const checked::Expr& expr, int32_t variable);
 
-// A variable whose every value the unit acts on at once: it must never show an intermediate result.
+// A variable whose every value the unit acts on at once: it never shows an intermediate result.
 bool acts_at_once(int32_t variable);
 
 // The constant or the directly named variable an expression is, if it is no more than that.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 
 #include "compiler/codegen/roots.hpp"
 
@@ -28,8 +29,8 @@ class Layout {
                           {program_.functions[command->reference->function].name});
     if (diagnostics_.has_errors()) return std::nullopt;
     check_temporaries();
-    give_addresses();
     if (diagnostics_.has_errors()) return std::nullopt;
+    give_addresses();
     out_.image.unit = unit_.code;
     out_.image.symbols = program_.symbols;
     for (size_t n = 0; n < instances_.all().size(); ++n) emit(n);
@@ -72,10 +73,42 @@ class Layout {
       for (const Command& command : functions_[instance.function].commands)
         address += static_cast<uint32_t>(vm::info(command.instruction.opcode).words);
     }
-    if (address > unit_.program_words)
-      diagnostics_.report(
-          Diag::ProgramTooLong, program_.functions[program_.main].span,
-          {fmt::format("{}", address), std::string(unit_.name), fmt::format("{}", unit_.program_words)});
+    if (address <= unit_.program_words) return;
+    Diagnostic& message = diagnostics_.report(
+        Diag::ProgramTooLong, program_.functions[program_.main].span,
+        {fmt::format("{}", address), std::string(unit_.name), fmt::format("{}", unit_.program_words)});
+    for (Note& note : copies(address)) message.notes.push_back(std::move(note));
+  }
+
+  // The functions that stand more than once and take most words.
+  std::vector<Note> copies(uint32_t end) const {
+    struct Copies {
+      uint32_t words = 0;
+      size_t count = 0;
+      std::string roots;
+    };
+    std::map<size_t, Copies> all;
+    for (size_t n = 0; n < starts_.size(); ++n) {
+      const Instance& instance = instances_.all()[n];
+      Copies& function = all[instance.function];
+      function.words += (n + 1 < starts_.size() ? starts_[n + 1] : end) - starts_[n];
+      ++function.count;
+      if (instance.root == Instances::kShared) continue;
+      const std::string& root = program_.functions[instances_.roots()[instance.root].function].name;
+      function.roots += (function.roots.empty() ? "" : ", ") + root;
+    }
+    std::erase_if(all, [](const auto& row) { return row.second.count < 2; });
+    std::vector<std::pair<size_t, Copies>> rows(all.begin(), all.end());
+    std::stable_sort(rows.begin(), rows.end(),
+                     [](const auto& a, const auto& b) { return a.second.words > b.second.words; });
+    constexpr size_t kShown = 5;
+    if (rows.size() > kShown) rows.resize(kShown);
+    std::vector<Note> notes;
+    for (const auto& [function, row] : rows)
+      notes.push_back({program_.functions[function].span,
+                       fmt::format("'{}' stands {} times ({}): {} words", program_.functions[function].name,
+                                   row.count, row.roots, row.words)});
+    return notes;
   }
 
   void emit(size_t number) {

@@ -23,6 +23,7 @@ struct GeneratedProgram {
   std::vector<checked::MapEntry> temporaries;  // rows for the allocation map
 };
 
+// A program that is too long is an error, but is given all the same, for listings.
 // `functions`: code by index of function; those nobody reaches are empty.
 std::optional<GeneratedProgram> lay_out(const checked::Program& program,
                                         const std::vector<FunctionCode>& functions,

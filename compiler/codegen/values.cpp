@@ -1,6 +1,5 @@
 // Expressions into variables. Commands have two addresses, so `a = b + c` is SET a = b, ADD a + c; the target
-// itself is the accumulator unless the rest of the expression uses it, or the unit acts on each of its
-// values.
+// itself is the accumulator unless the rest of the expression uses it, or somebody sees each of its values.
 #include <utility>
 
 #include "compiler/codegen/generator.hpp"
@@ -43,6 +42,11 @@ const ArithmeticRow* arithmetic_row(BinaryOp op) {
   for (const ArithmeticRow& row : kArithmetic)
     if (row.op == op) return &row;
   return nullptr;  // a comparison, && or ||
+}
+
+bool is_neutral(BinaryOp op, int32_t right) {
+  const ArithmeticRow& row = *arithmetic_row(op);
+  return row.has_neutral && right == row.neutral;
 }
 
 bool is_variable(const Expr& expr, int32_t variable) {
@@ -135,8 +139,7 @@ void FunctionGenerator::into(const Expr& expr, int32_t target) {
       return;
     }
     // The product with -1 is the only way to negate in place.
-    const int32_t result =
-        !acts_at_once(target) || is_variable(*node->operand, target) ? target : temporary();
+    const int32_t result = is_variable(*node->operand, target) || !shows_steps(target) ? target : temporary();
     into(*node->operand, result);
     operate(BinaryOp::Mul, result, {true, -1}, expr.span);
     return set(target, {false, result}, expr.span);
@@ -164,14 +167,16 @@ void FunctionGenerator::arithmetic(const checked::Binary& node, int32_t target, 
       (is_variable(*right, target) || (is_simple(*left) && !is_simple(*right))))
     std::swap(left, right);
 
+  if (const int32_t* known = as_constant(*right); known != nullptr && is_neutral(node.op, *known))
+    return into(*left, target);
   const Uses later = uses(*right, target);
   if (is_variable(*left, target) && !later.write) return operate(node.op, target, value(*right), span);
   // x - a into a is -a + x.
-  if (node.op == BinaryOp::Sub && is_simple(*left) && is_variable(*right, target) && !acts_at_once(target)) {
+  if (node.op == BinaryOp::Sub && is_simple(*left) && is_variable(*right, target) && !shows_steps(target)) {
     operate(BinaryOp::Mul, target, {true, -1}, span);
     return operate(BinaryOp::Add, target, value(*left), span);
   }
-  const bool in_target = !acts_at_once(target) && !later.read && !later.write;
+  const bool in_target = !later.read && !later.write && !shows_steps(target);
   const int32_t result = in_target ? target : temporary();
   into(*left, result);
   operate(node.op, result, value(*right), span);
@@ -230,7 +235,7 @@ int32_t FunctionGenerator::address(const checked::Place& place, Span span) {
 
 void FunctionGenerator::operate(BinaryOp op, int32_t target, Operand right, Span span) {
   const ArithmeticRow& row = *arithmetic_row(op);
-  if (right.constant && row.has_neutral && right.value == row.neutral) return;
+  if (right.constant && is_neutral(op, right.value)) return;
   emit(right.constant ? row.constant : row.variable, span, {target, right.value});
 }
 

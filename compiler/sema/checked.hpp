@@ -6,6 +6,7 @@
 #include <bitset>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,6 +18,10 @@
 #include "compiler/sema/ranges.hpp"
 #include "vm/image/image.hpp"
 #include "vm/isa/isa.hpp"
+
+namespace ipos::compiler {
+class Onlookers;
+}
 
 namespace ipos::compiler::checked {
 
@@ -108,7 +113,8 @@ struct Program {
   std::vector<MapEntry> map;  // in rising order of number
   Ranges ranges;
   std::map<uint32_t, Span> raw_names;  // first use of H5 and the like
-  std::bitset<kMaxNumbers> named;  // numbers that variables, aliases and raw names stand for
+  std::shared_ptr<const Onlookers> onlookers;  // who sees which variable
+  std::bitset<kMaxNumbers> named;              // numbers that variables, aliases and raw names stand for
 };
 
 }  // namespace ipos::compiler::checked

@@ -14,11 +14,18 @@
 
 namespace ipos::compiler {
 
-// Functions (by index, in the order they are checked) that read or write a variable, or take its number.
+// The first place of its kind in a function.
+struct AccessPlace {
+  size_t function;
+  Span span;
+  uint32_t into = UINT32_MAX;  // of a number that is taken: the variable it is assigned to, if that is all
+};
+
+// Functions (in the order they are checked) that read or write a variable, or take its number.
 struct Access {
-  std::vector<size_t> readers;
-  std::vector<size_t> writers;
-  std::vector<size_t> takers;
+  std::vector<AccessPlace> readers;
+  std::vector<AccessPlace> writers;
+  std::vector<AccessPlace> takers;
 };
 
 // A constant assigned to a variable with a fixed number: what the SBus checks look at.
@@ -38,6 +45,7 @@ struct Context {
   std::map<uint32_t, Span> raw_names;                 // first use of H5 and the like
   std::set<std::string, std::less<>> reported_names;  // unknown ones, each reported once
   std::vector<ConstantStore> stores;
+  std::vector<AccessPlace> indirect = {};  // uses of a variable that is known at run time only
   size_t function = SIZE_MAX;  // index of the function being checked
   size_t order = 0;            // its place among the declarations
   bool overflown = false;      // a range has no room for all its variables, which was reported

@@ -110,7 +110,7 @@ ExprPtr ExpressionChecker::load(const ast::Expr& expr) {
          named ? fmt::format("{}, and numof( {} ) is its number", advice, from->name) : advice});
     return nullptr;
   }
-  record_read(*from);
+  record_read(*from, expr.span);
   return make_expr(expr.span, checked::Load{from->place});
 }
 
@@ -125,7 +125,7 @@ ExprPtr ExpressionChecker::value_of(const ast::Numof& node, const ast::Expr& exp
   }
   auto of = object(*node.object);
   if (!of) return nullptr;
-  record_take(*of);
+  record_take(*of, expr.span);
   ExprPtr number = make_expr(expr.span, checked::Constant{of->place.number});
   if (of->place.offset == nullptr) return number;
   if (of->place.number == 0) return of->place.offset;
@@ -154,7 +154,7 @@ ExprPtr ExpressionChecker::value_of(const ast::Step& node, const ast::Expr& expr
     context_.diagnostics.report(Diag::NotAValue, expr.span, {what->text(), "++ and -- need one"});
     return nullptr;
   }
-  record_read(*what);
+  record_read(*what, node.operand->span);
   record_write(*what, node.operand->span);
   const bool up = node.op == ast::StepOp::PreIncrement || node.op == ast::StepOp::PostIncrement;
   const bool prefix = node.op == ast::StepOp::PreIncrement || node.op == ast::StepOp::PreDecrement;
@@ -195,7 +195,11 @@ ExprPtr ExpressionChecker::value_of(const ast::Assign& node, const ast::Expr& ex
 }
 
 ExprPtr ExpressionChecker::assign(const ast::Assign& node, std::optional<Object> left, Span span) {
+  if (left && !node.op && left->place.offset == nullptr &&
+      std::holds_alternative<ast::Numof>(node.value->node))
+    taken_into_ = static_cast<uint32_t>(left->place.number);
   ExprPtr right = value(*node.value);
+  taken_into_ = UINT32_MAX;
   if (!left || !right) return nullptr;
   if (!left->type.scalar()) {
     context_.diagnostics.report(Diag::NotAValue, node.target->span,
@@ -204,7 +208,7 @@ ExprPtr ExpressionChecker::assign(const ast::Assign& node, std::optional<Object>
   }
   if (node.op) {
     check_divisor(*node.op, *right);
-    record_read(*left);
+    record_read(*left, node.target->span);
   }
   record_write(*left, node.target->span);
   const int32_t* known = constant_value(right);
@@ -237,7 +241,7 @@ ExprPtr ExpressionChecker::copy_structure(const ast::Assign& node, Object target
     return nullptr;
   }
   if (!fixed(target, node.target->span) || !fixed(*source, node.value->span)) return nullptr;
-  record_read(*source);
+  record_read(*source, node.value->span);
   record_write(target, node.target->span);
   return make_expr(span, checked::CopyBlock{static_cast<uint16_t>(target.place.number),
                                             static_cast<uint16_t>(source->place.number),

@@ -72,13 +72,14 @@ class ExpressionChecker {
   void check_divisor(ast::BinaryOp op, checked::Expr& right);
 
   void unknown_name(std::string_view name, Span span, bool function);
-  void record_read(const Object& object);
+  void record_read(const Object& object, Span span);
   void record_write(const Object& object, Span span);
-  void record_take(const Object& object);
-  void record(const Object& object, std::vector<size_t> Access::*list);
+  void record_take(const Object& object, Span span);
+  void record(const Object& object, Span span, std::vector<AccessPlace> Access::*list);
 
   Context& context_;
-  bool in_constant_ = false;  // where division by zero is an error of its own
+  uint32_t taken_into_ = UINT32_MAX;  // variable that the numof() being checked is assigned to
+  bool in_constant_ = false;          // where division by zero is an error of its own
 };
 
 // The value of a constant expression.

@@ -24,7 +24,9 @@ void add_symbols(const std::string& name, const Type& type, uint32_t number, std
   }
 }
 
-std::vector<std::string> names(const Context& context, std::vector<size_t> functions) {
+std::vector<std::string> names(const Context& context, const std::vector<AccessPlace>& places) {
+  std::vector<size_t> functions;
+  for (const AccessPlace& place : places) functions.push_back(place.function);
   std::sort(functions.begin(), functions.end());
   functions.erase(std::unique(functions.begin(), functions.end()), functions.end());
   std::vector<std::string> out;

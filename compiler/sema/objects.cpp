@@ -191,19 +191,26 @@ std::optional<Object> ExpressionChecker::object_of(const ast::Deref& node, const
   return Object{{}, {shift, number}, {}, std::nullopt, nullptr};
 }
 
-void ExpressionChecker::record(const Object& object, std::vector<size_t> Access::*list) {
-  if (!object.extent) return;
-  for (uint32_t n = object.extent->low; n <= object.extent->high && n < kMaxNumbers; ++n) {
-    std::vector<size_t>& functions = context_.accesses[n].*list;
-    if (functions.empty() || functions.back() != context_.function) functions.push_back(context_.function);
-  }
+void ExpressionChecker::record(const Object& object, Span span, std::vector<AccessPlace> Access::*list) {
+  const AccessPlace place{context_.function, span, taken_into_};
+  const auto add = [&](std::vector<AccessPlace>& places) {
+    if (places.empty() || places.back().function != place.function || places.back().into != place.into)
+      places.push_back(place);
+  };
+  if (!object.extent) return add(context_.indirect);
+  for (uint32_t n = object.extent->low; n <= object.extent->high && n < kMaxNumbers; ++n)
+    add(context_.accesses[n].*list);
 }
 
-void ExpressionChecker::record_read(const Object& object) { record(object, &Access::readers); }
-void ExpressionChecker::record_take(const Object& object) { record(object, &Access::takers); }
+void ExpressionChecker::record_read(const Object& object, Span span) {
+  record(object, span, &Access::readers);
+}
+void ExpressionChecker::record_take(const Object& object, Span span) {
+  record(object, span, &Access::takers);
+}
 
 void ExpressionChecker::record_write(const Object& object, Span span) {
-  record(object, &Access::writers);
+  record(object, span, &Access::writers);
   if (object.place.offset != nullptr) return;
   if (object.variable != nullptr && !context_.has_room(*object.variable)) return;  // no number of its own
   const auto* row = stdlib::find_system_variable(static_cast<uint16_t>(object.place.number));

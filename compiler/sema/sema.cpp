@@ -6,6 +6,7 @@
 #include "compiler/sema/declarations.hpp"
 #include "compiler/sema/habits.hpp"
 #include "compiler/sema/map.hpp"
+#include "compiler/sema/onlookers.hpp"
 #include "compiler/sema/sbus_check.hpp"
 #include "compiler/sema/statements.hpp"
 #include "compiler/sema/variable_use.hpp"
@@ -74,6 +75,7 @@ std::optional<checked::Program> check(const ast::Program& program, const stdlib:
   check_calls(context.program, unit, diagnostics);
   check_sbus_objects(context);
   if (diagnostics.has_errors()) return std::nullopt;
+  context.program.onlookers = std::make_shared<const Onlookers>(context);
   return std::move(context.program);
 }
 

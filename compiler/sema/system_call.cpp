@@ -201,9 +201,9 @@ class SystemCallChecker {
     if (!found) return false;
     Object all = given.object;
     all.extent = found->range;
-    if (found->use != vm::BlockUse::Write) expressions_.record_read(all);
+    if (found->use != vm::BlockUse::Write) expressions_.record_read(all, given.span);
     if (found->use != vm::BlockUse::Read) expressions_.record_write(all, given.span);
-    if (found->use == vm::BlockUse::Lasting) expressions_.record_take(all);
+    if (found->use == vm::BlockUse::Lasting) expressions_.record_take(all, given.span);
     return true;
   }
 

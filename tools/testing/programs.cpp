@@ -42,13 +42,8 @@ Program Programs::make(const std::string& path, const stdlib::UnitType* unit) co
     return program;
   }
   if (!is_source(path)) return read_image(path, *text);
-  compiler::CompileOptions options;
-  options.include_dirs = flags_.include_dirs;
-  options.defines = flags_.defines;
-  options.read_file = try_read_file;
-  options.list_files = list_files;
-  options.unit = unit != nullptr || flags_.unit.empty() ? unit : stdlib::find_unit(flags_.unit);
-  for (const std::string& warning : flags_.warnings) options.warnings.apply(warning);
+  compiler::CompileOptions options = options_of(flags_);
+  if (unit != nullptr) options.unit = unit;
   compiler::Compilation compiled = compiler::compile(path, path, *text, options);
   const auto& all = compiled.diagnostics.all();
   program.messages = compiler::render_text(all, *compiled.sources, false);

@@ -1,0 +1,20 @@
+// The target of an assignment is the accumulator of its expression, unless somebody sees what it holds
+// meanwhile.
+#include "compiler/codegen/generator.hpp"
+
+namespace ipos::compiler {
+
+// Whether the expression has to be computed in a temporary. Where it is not although somebody looks on, that
+// is noted.
+bool FunctionGenerator::shows_steps(int32_t target) {
+  if (is_temporary(target)) return false;
+  if (acts_at_once(target)) return true;
+  auto onlooker = program_.onlookers->find(function_, static_cast<uint32_t>(target), early_);
+  if (!onlooker || atomic_) return onlooker.has_value();
+  std::vector<SeenSteps>& seen = code_.seen_steps;
+  if (seen.empty() || seen.back().span != assignment_ || seen.back().variable != target)
+    seen.push_back({target, assignment_, std::move(*onlooker)});
+  return false;
+}
+
+}  // namespace ipos::compiler

@@ -1,0 +1,114 @@
+// The members are found by their names in the standard structures, their values among the constants the
+// program assigns.
+#include "compiler/sema/watched.hpp"
+
+#include <algorithm>
+
+#include "compiler/sema/walk.hpp"
+#include "vm/isa/blocks.hpp"
+
+namespace ipos::compiler {
+namespace {
+
+// A member with a number. `variables` the unit goes on looking at from there, 0: it does so at the call only.
+struct NumberMember {
+  std::string_view structure;
+  std::string_view member;  // or how the names of several begin
+  uint32_t variables;
+  const char* who;
+};
+constexpr NumberMember kMembers[] = {
+    {"MOVLNK", "DPointer", 0, ""},
+    {"SCTRCYCL", "DPointer", 2, "the SBus sends it"},
+    {"SCTRACYCL", "DPointer", 0, ""},
+    {"SCREC", "DPointer", 2, "the SBus receives it"},
+    {"VARINT", "SrcVar", 1, "a variable interrupt watches it"},
+    {"GSCAM", "SourceVar", 0, ""},
+    {"GSCAM", "DestVar", 0, ""},
+    {"GSCAM_EXT", "CamDestination", 1, "the cam controller writes it"},
+    {"GSCAM_EXT", "CamData", 10, "the cam controller reads it"},
+};
+
+class Finder {
+ public:
+  explicit Finder(const Context& context) : context_(context) {}
+
+  Watched run(const std::vector<bool>& used) {
+    for (size_t n = 0; n < used.size(); ++n)
+      if (used[n])
+        checked::walk(*context_.program.functions[n].body, [&](const checked::Expr& expr) {
+          if (const auto* call = std::get_if<checked::SystemCall>(&expr.node)) look(*call, expr.span);
+          const auto* assign = std::get_if<checked::Assign>(&expr.node);
+          if (assign != nullptr && assign->target.offset == nullptr &&
+              constant_value(assign->value) == nullptr)
+            computed_.insert(static_cast<uint32_t>(assign->target.number));
+        });
+    for (const ConstantStore& store : context_.stores) constants_[store.number].push_back(&store);
+    for (const auto& [number, place] : found_) enter(number, place);
+    return std::move(out_);
+  }
+
+ private:
+  struct Member {
+    const NumberMember* row;
+    Span call;
+  };
+
+  void look(const checked::SystemCall& call, Span span) {
+    int32_t keyword = vm::kAnyKeyword;
+    const vm::OpcodeInfo& command = vm::info(call.opcode);
+    for (size_t n = 0; n < call.arguments.size(); ++n)
+      if (command.operands[n].kind == vm::OperandKind::Keyword)
+        keyword = std::get<int32_t>(call.arguments[n]);
+    for (size_t n = 0; n < call.arguments.size(); ++n) {
+      const int32_t* first = std::get_if<int32_t>(&call.arguments[n]);
+      if (first == nullptr || command.operands[n].kind != vm::OperandKind::Variable) continue;
+      const auto blocks = vm::blocks_of(call.opcode, n, keyword);
+      for (const vm::BlockInfo& block : blocks)
+        for (const NumberMember& row : kMembers)
+          if (row.structure == block.type && (blocks.size() == 1 || may_be(block, *first)))
+            add(row, static_cast<uint32_t>(*first), span);
+    }
+  }
+
+  // Where several types may stand, the declaration tells which it is.
+  bool may_be(const vm::BlockInfo& block, int32_t number) const {
+    for (const Variable& variable : context_.scope.variables())
+      if (variable.number == static_cast<uint32_t>(number) && variable.type.structure != nullptr)
+        return variable.type.structure->name == block.type;
+    return true;
+  }
+
+  void add(const NumberMember& row, uint32_t first, Span span) {
+    for (const StructMember& member : context_.scope.find_type(row.structure)->members) {
+      if (!member.names.front().starts_with(row.member)) continue;
+      out_.members.insert(first + member.offset);
+      if (row.variables != 0) found_.emplace(first + member.offset, Member{&row, span});
+    }
+  }
+
+  void enter(uint32_t number, const Member& place) {
+    const auto known = constants_.find(number);
+    if (known == constants_.end() || computed_.contains(number)) {
+      if (!place.row->member.starts_with("Cam")) out_.anywhere = Watch{place.row->who, place.call};
+      if (known == constants_.end()) return;
+    }
+    for (const ConstantStore* store : known->second)
+      for (uint32_t n = 0; n < place.row->variables; ++n)
+        out_.variables.emplace(static_cast<uint32_t>(store->value) + n, Watch{place.row->who, store->span});
+  }
+
+  const Context& context_;
+  std::map<uint32_t, Member> found_;
+  std::set<uint32_t> computed_;  // variables with a value that is none of the constants
+  std::unordered_map<uint32_t, std::vector<const ConstantStore*>> constants_;
+  Watched out_;
+};
+
+}  // namespace
+
+Watched find_watched(const Context& context, const std::vector<bool>& used) {
+  return Finder(context).run(used);
+}
+
+}  // namespace ipos::compiler

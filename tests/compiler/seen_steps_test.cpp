@@ -1,0 +1,163 @@
+// Intermediate results in variables that somebody else sees: who counts as somebody, which statements have
+// steps, and that --atomic leaves none.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "tests/compiler/backend_test.hpp"
+
+namespace ipos::compiler::test {
+namespace {
+
+Compilation compile_b(const std::string& text, bool atomic = false) {
+  CompileOptions options;
+  options.unit = stdlib::find_unit(std::string_view("mdxb"));
+  options.atomic = atomic;
+  return compile("test.IPC", "", "#include <constb.h>\n" + text, options);
+}
+
+// The warnings of a program, "x: 'Reader' uses it"; other messages as they are.
+std::string seen(const std::string& text) {
+  std::string out;
+  for (const Diagnostic& message : compile_b(text).diagnostics.all()) {
+    if (message.diag != Diag::SeenSteps) {
+      out += message.text + "\n";
+      continue;
+    }
+    const size_t who = message.text.find("moment, and ") + 12;
+    out += message.text.substr(1, message.text.find('\'', 1) - 1) + ": " +
+           message.text.substr(who, message.text.find(';') - who) + "\n";
+    EXPECT_EQ(message.notes.size(), 1U);
+    EXPECT_TRUE(message.notes[0].span.begin.valid());
+  }
+  return out;
+}
+
+constexpr const char* kSteps = "x = (a + 1) % 8;";
+
+// `main` with a task 2 that has some statements.
+std::string beside(const std::string& statement, const std::string& task) {
+  return "long x, a, b, v[3]; main() { _SetTask2(T2_START, T); b = x + a; while (1) { " + statement +
+         " } }\n" + "T() { while (1) { a++; b++; v[b]++; " + task + " } }";
+}
+
+TEST(SeenSteps, ByAnotherRoot) {
+  const std::string head = "long x, a; main() { ";
+  EXPECT_EQ(seen(beside(kSteps, "if (x) a = 1;")), "x: 'T' uses it\n");
+  EXPECT_EQ(seen(beside(kSteps, "x = 0;")), "x: 'T' uses it\n");
+  EXPECT_EQ(seen(beside(kSteps, "")), "");
+  EXPECT_EQ(seen(head + "_SetInterrupt(SI_TIMER0, T); while (1) " + kSteps + " } T() { a = x; }"),
+            "x: 'T' uses it\n");
+  EXPECT_EQ(seen(head + "_SetTask2(T2_START, T); while (1) f(); } f() { " + kSteps +
+                 " } T() { g(); } g() { a = x; }"),
+            "x: 'g' uses it\n");
+  EXPECT_EQ(
+      seen(head + "_SetTask2(T2_START, T); while (1) f(); } f() { " + kSteps + " } T() { f(); a = 1; }"),
+      "x: 'f' runs more than once at a time\n");
+  EXPECT_EQ(seen(head + "while (1) f(); } f() { " + kSteps + " }"), "") << "nobody else";
+  EXPECT_EQ(
+      seen(head + "_SetTask2(T2_START, S); _SetTask2(T2_START, T); } S() { " + kSteps + " } T() { a = x; }"),
+      "")
+      << "functions of one task replace one another";
+}
+
+TEST(SeenSteps, NotBeforeAnythingIsStarted) {
+  const std::string rest = "_SetTask2(T2_START, T); while (1) a++; } T() { while (1) { a = x; } }";
+  EXPECT_EQ(seen(std::string("long x, a; main() { ") + kSteps + rest), "");
+  EXPECT_EQ(seen(std::string("long x, a; main() { set(); ") + rest + " set() { " + kSteps + " }"), "");
+  EXPECT_EQ(seen(std::string("long x, a; main() { start(); ") + kSteps +
+                 "} start() { _SetTask2(T2_START, T); } T() { a = x; }"),
+            "x: 'T' uses it\n");
+}
+
+TEST(SeenSteps, ByWhatTheUnitLooksAt) {
+  const auto object = [](const std::string& pointer) {
+    return "SCTRCYCL o; long x, y, z, a; main() { o.ObjectNo = 1100; o.CycleTime = 10; o.Len = 8; a = 0; " +
+           pointer + " _SBusCommDef(SCD_TRCYCL, o); _SBusCommOn(); while (1) { " + kSteps +
+           " y = a * 2; z = a * 3; } }";
+  };
+  EXPECT_EQ(seen(object("o.DPointer = numof(x);")), "x: the SBus sends it\ny: the SBus sends it\n");
+  EXPECT_EQ(seen(object("o.DPointer = numof(y);")), "y: the SBus sends it\nz: the SBus sends it\n");
+  EXPECT_EQ(
+      seen("MOVLNK m; MLDATA d; long a; main() { m.DPointer = numof(d); while (1) { d.WritePar = a * 2 + 1;"
+           " _MoviLink(m); } }"),
+      "")
+      << "read while the task waits";
+  EXPECT_EQ(seen(std::string("VARINT i; long x, a; main() { i.SrcVar = numof(x); _SetVarInterrupt(i, f);"
+                             " while (1) ") +
+                 kSteps + " } f() { a = 0; }"),
+            "x: a variable interrupt watches it\n");
+}
+
+TEST(SeenSteps, ByPointersAndByNumber) {
+  const std::string pointer = "long x, p, a; main() { p = numof(x); _SetTask2(T2_START, T); while (1) ";
+  EXPECT_EQ(seen(pointer + kSteps + " } T() { a = *p; }"), "x: 'T' uses variables by their numbers\n");
+  EXPECT_EQ(seen(pointer + kSteps + " } T() { a = 1; }"), "");
+  EXPECT_EQ(seen("main() { H10 = H11 * 2 + 1; }"), "H10: a bus may read it as parameter 11010\n");
+}
+
+// Statements that need one command at their target, and those that take several.
+TEST(SeenSteps, OnlyWhereThereAreSteps) {
+  for (const char* one :
+       {"x = 5;", "x = a;", "x++;", "x += a * 2;", "x = x + 1;", "x = x - a * b;", "x = ~a;", "x = -x;",
+        "x = a < b;", "x = !a;", "x = a && b;", "x = v[a];", "x = a ? 1 : b;", "x = a * 1;", "x = a + 0;",
+        "x <<= a + b;", "v[a] = a * b + 1;", "x = a++;", "_BitSet(x, 3);"})
+    EXPECT_EQ(seen(beside(one, "b = x;")), "") << one;
+  for (const char* several :
+       {"x = a + b;", "x = -a;", "x = a - x;", "x = (x + 1) % 8;", "x = a * 100 / 4096 + 5000;",
+        "x = a ? b : a * b;", "x = a ? a + b : 0;", "x = v[a] + 1;", "a = x = a * b;", "b = (x = a * b) + 1;",
+        "if (x = a + b) x = 1;", "x = (a && b) + 1;"})
+    EXPECT_EQ(seen(beside(several, "v[0] = x;")).substr(0, 2), "x:") << several;
+}
+
+// Commands that write a variable, by mnemonic.
+std::vector<std::string> writes_of(const Compilation& c, const std::string& variable) {
+  std::vector<std::string> out;
+  for (std::string line : commands(c)) {
+    if (const size_t label = line.find(" : "); label != std::string::npos) line = line.substr(label + 3);
+    if (line.find(" " + variable + " ") == line.find(' ') && !line.starts_with("JMP")) out.push_back(line);
+  }
+  return out;
+}
+
+TEST(Atomic, WritesOnceWhatOthersSee) {
+  for (const char* statement : {"x = a + b;", "x = -a;", "x = a - x;", "x = (x + 1) % 8;",
+                                "x = a * 100 / 4096 + 5000;", "x = v[a] + 1;", "x = (a && b) + 1;"}) {
+    const std::string text = beside(statement, "v[0] = x;");
+    const Compilation c = compile_b(text, true);
+    EXPECT_TRUE(c.diagnostics.all().empty()) << statement;
+    const auto writes = writes_of(c, "H420");
+    ASSERT_EQ(writes.size(), 1U) << statement;
+    EXPECT_TRUE(writes[0].starts_with("SET H420 = H4")) << writes[0];
+    EXPECT_GT(writes_of(compile_b(text), "H420").size(), 1U) << statement;
+  }
+  const std::string alone = "long x, a; main() { x = (a + 1) % 8; }";
+  EXPECT_EQ(commands(compile_b(alone, true)), commands(compile_b(alone)))
+      << "costs nothing where nobody looks on";
+}
+
+TEST(TooLong, NamesTheCopiesAndIsThereForListings) {
+  std::string text =
+      "long a, b, c, x; main() { _SetTask2(T2_START, Task2); _SetInterrupt(SI_ERROR, OnErr); while (1) "
+      "Calc(); }"
+      " Task2() { while (1) Calc(); } OnErr() { Calc(); } Calc() {";
+  for (int n = 0; n < 60; ++n) text += " x = (a + 3) * (b - x) - (c + x) * (a - 3);";
+  CompileOptions options;
+  const Compilation c = compile("test.IPC", "", "#include <const.h>\n" + text + "}", options);
+  EXPECT_FALSE(c.image);
+  ASSERT_TRUE(c.too_long);
+  EXPECT_GT(c.too_long->code.size(), 2048U);
+  const Diagnostic* found = nullptr;
+  for (const Diagnostic& message : c.diagnostics.all())
+    if (message.diag == Diag::ProgramTooLong) found = &message;
+  ASSERT_NE(found, nullptr);
+  ASSERT_EQ(found->notes.size(), 1U);
+  EXPECT_TRUE(found->notes[0].text.starts_with("'Calc' stands 3 times (main, Task2, OnErr): "))
+      << found->notes[0].text;
+  EXPECT_NE(disassemble(*c.too_long).find("Calc@Task2"), std::string::npos);
+  EXPECT_FALSE(c.map.empty());
+}
+
+}  // namespace
+}  // namespace ipos::compiler::test
