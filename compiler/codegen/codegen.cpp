@@ -21,8 +21,9 @@ std::string name_of(const checked::Program& program, int32_t variable) {
 }
 
 void report_steps(const checked::Program& program, const SeenSteps& steps, Diagnostics& diagnostics) {
+  const Diag diag = steps.onlooker.by_number ? Diag::StepsByNumber : Diag::SeenSteps;
   Diagnostic& message =
-      diagnostics.report(Diag::SeenSteps, steps.span, {name_of(program, steps.variable), steps.onlooker.who});
+      diagnostics.report(diag, steps.span, {name_of(program, steps.variable), steps.onlooker.who});
   message.notes.push_back({steps.onlooker.span, steps.onlooker.note});
 }
 

@@ -167,7 +167,7 @@ std::optional<Onlooker> Onlookers::find(size_t function, uint32_t variable, bool
   }
   if (const auto raw = raw_names_.find(variable); raw != raw_names_.end())
     return Onlooker{fmt::format("a bus may read it as parameter {}", 11000 + variable), raw->second,
-                    "used by its number here"};
+                    "used by its number here", true};
   return std::nullopt;
 }
 

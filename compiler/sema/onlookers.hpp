@@ -17,9 +17,10 @@
 namespace ipos::compiler {
 
 struct Onlooker {
-  std::string who;   // "'Reader' uses it"
-  Span span;         // where that can be read
-  std::string note;  // what is to be read there
+  std::string who;         // "'Reader' uses it"
+  Span span;               // where that can be read
+  std::string note;        // what is to be read there
+  bool by_number = false;  // only that it is an Hn, which a bus may ask for
 };
 
 class Onlookers {

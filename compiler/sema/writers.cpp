@@ -55,7 +55,7 @@ class Writers {
     std::vector<size_t> all;
     const auto found = context_.accesses.find(number);
     if (found == context_.accesses.end()) return all;
-    for (const size_t writer : found->second.writers)
+    for (const auto& [writer, span, into] : found->second.writers)
       if (writer < roots_.size()) all.insert(all.end(), roots_[writer].begin(), roots_[writer].end());
     std::sort(all.begin(), all.end());
     all.erase(std::unique(all.begin(), all.end()), all.end());

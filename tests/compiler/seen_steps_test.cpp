@@ -34,6 +34,16 @@ std::string seen(const std::string& text) {
   return out;
 }
 
+// Commands that write a variable, by mnemonic.
+std::vector<std::string> writes_of(const Compilation& c, const std::string& variable) {
+  std::vector<std::string> out;
+  for (std::string line : commands(c)) {
+    if (const size_t label = line.find(" : "); label != std::string::npos) line = line.substr(label + 3);
+    if (line.find(" " + variable + " ") == line.find(' ') && !line.starts_with("JMP")) out.push_back(line);
+  }
+  return out;
+}
+
 constexpr const char* kSteps = "x = (a + 1) % 8;";
 
 // `main` with a task 2 that has some statements.
@@ -94,7 +104,13 @@ TEST(SeenSteps, ByPointersAndByNumber) {
   const std::string pointer = "long x, p, a; main() { p = numof(x); _SetTask2(T2_START, T); while (1) ";
   EXPECT_EQ(seen(pointer + kSteps + " } T() { a = *p; }"), "x: 'T' uses variables by their numbers\n");
   EXPECT_EQ(seen(pointer + kSteps + " } T() { a = 1; }"), "");
-  EXPECT_EQ(seen("main() { H10 = H11 * 2 + 1; }"), "H10: a bus may read it as parameter 11010\n");
+  EXPECT_EQ(seen("main() { H10 = H11 * 2 + 1; }"), "") << "off until it is asked for";
+  CompileOptions options;
+  EXPECT_TRUE(options.warnings.apply("steps-by-number"));
+  const Compilation c = compile("test.IPC", "", "main() { H10 = H11 * 2 + 1; }", options);
+  ASSERT_EQ(c.diagnostics.all().size(), 1U);
+  EXPECT_NE(c.diagnostics.all()[0].text.find("a bus may read it as parameter 11010"), std::string::npos);
+  EXPECT_EQ(writes_of(compile_b("main() { H10 = H11 * 2 + 1; }", true), "H10").size(), 1U);
 }
 
 // Statements that need one command at their target, and those that take several.
@@ -109,16 +125,6 @@ TEST(SeenSteps, OnlyWhereThereAreSteps) {
         "x = a ? b : a * b;", "x = a ? a + b : 0;", "x = v[a] + 1;", "a = x = a * b;", "b = (x = a * b) + 1;",
         "if (x = a + b) x = 1;", "x = (a && b) + 1;"})
     EXPECT_EQ(seen(beside(several, "v[0] = x;")).substr(0, 2), "x:") << several;
-}
-
-// Commands that write a variable, by mnemonic.
-std::vector<std::string> writes_of(const Compilation& c, const std::string& variable) {
-  std::vector<std::string> out;
-  for (std::string line : commands(c)) {
-    if (const size_t label = line.find(" : "); label != std::string::npos) line = line.substr(label + 3);
-    if (line.find(" " + variable + " ") == line.find(' ') && !line.starts_with("JMP")) out.push_back(line);
-  }
-  return out;
 }
 
 TEST(Atomic, WritesOnceWhatOthersSee) {
