@@ -88,6 +88,7 @@ std::optional<uint64_t> LineReader::decimal() {
 
 std::optional<int64_t> LineReader::constant() {
   const size_t begin = at_;
+  text("#");  // GOR NOWAIT #-8000 (IPOSplus p. 34)
   const bool negative = text("-");
   const std::string_view digits = word();
   const bool hex = !digits.empty() && whole("hex");

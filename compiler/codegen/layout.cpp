@@ -147,11 +147,10 @@ class Layout {
   }
 
   // The first instance has the name of the function, further ones name their root, too.
-  std::string instance_name(size_t number) const {
+  std::string instance_name(size_t number) {
     const Instance& instance = instances_.all()[number];
     const std::string& name = program_.functions[instance.function].name;
-    size_t earlier = 0;
-    for (size_t n = 0; n < number; ++n) earlier += instances_.all()[n].function == instance.function;
+    const size_t earlier = named_[instance.function]++;
     if (earlier == 0) return name;
     std::string copy = name + "@" + program_.functions[instances_.roots()[instance.root].function].name;
     // One function may be several roots, say of two interrupts.
@@ -201,7 +200,8 @@ class Layout {
   const SourceMap& sources_;
   Diagnostics& diagnostics_;
   Instances instances_;
-  std::vector<uint32_t> starts_;  // address of each instance
+  std::vector<uint32_t> starts_;    // address of each instance
+  std::map<size_t, size_t> named_;  // instances of a function that have a name
   std::vector<const SourceFile*> files_;
   GeneratedProgram out_;
 };

@@ -23,14 +23,22 @@ Instances::Instances(const std::vector<FunctionCode>& functions, size_t main) : 
 
 void Instances::find_copied() {
   copied_.resize(functions_.size());
-  for (size_t n = 0; n < functions_.size(); ++n) copied_[n] = functions_[n].temporaries != 0;
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (size_t n = 0; n < functions_.size(); ++n) {
-      if (copied_[n]) continue;
-      for (const Command& command : functions_[n].commands)
-        if (calls(command) && copied_[command.reference->function]) copied_[n] = changed = true;
-    }
+  std::vector<std::vector<size_t>> callers(functions_.size());
+  std::vector<size_t> open;
+  const auto copy = [&](size_t function) {
+    if (copied_[function]) return;
+    copied_[function] = true;
+    open.push_back(function);
+  };
+  for (size_t n = 0; n < functions_.size(); ++n) {
+    if (functions_[n].temporaries != 0) copy(n);
+    for (const Command& command : functions_[n].commands)
+      if (calls(command)) callers[command.reference->function].push_back(n);
+  }
+  while (!open.empty()) {
+    const size_t at = open.back();
+    open.pop_back();
+    for (const size_t caller : callers[at]) copy(caller);
   }
 }
 

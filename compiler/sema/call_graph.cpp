@@ -39,6 +39,30 @@ std::vector<Reference> cycle_through(const CallGraph& graph, size_t start) {
   return chain;
 }
 
+// Functions from which calls come to an end: those that call nothing, or nothing but such.
+std::vector<bool> outside_of_cycles(const CallGraph& graph) {
+  std::vector<std::vector<size_t>> callers(graph.size());
+  std::vector<size_t> open_calls(graph.size());
+  std::vector<size_t> open;
+  for (size_t n = 0; n < graph.size(); ++n) {
+    for (const Reference& reference : graph[n]) {
+      if (reference.kind != ReferenceKind::Call) continue;
+      callers[reference.function].push_back(n);
+      ++open_calls[n];
+    }
+    if (open_calls[n] == 0) open.push_back(n);
+  }
+  std::vector<bool> ends(graph.size());
+  while (!open.empty()) {
+    const size_t at = open.back();
+    open.pop_back();
+    ends[at] = true;
+    for (const size_t caller : callers[at])
+      if (--open_calls[caller] == 0) open.push_back(caller);
+  }
+  return ends;
+}
+
 }  // namespace
 
 std::optional<Reference> reference_of(const checked::Expr& expr) {
@@ -90,20 +114,27 @@ std::vector<bool> reachable(const CallGraph& graph, size_t main) {
   return reached;
 }
 
-void check_calls(const checked::Program& program, const stdlib::UnitType& unit, Diagnostics& diagnostics) {
+void check_calls(const checked::Program& program, const stdlib::UnitType& unit, const SourceMap& sources,
+                 Diagnostics& diagnostics) {
   const CallGraph graph = call_graph(program);
   const std::vector<bool> used = reachable(graph, program.main);
-  std::vector<bool> in_cycle(graph.size());
+  // A header is a library: nobody uses all of it.
+  const auto included = [&](const checked::Function& function) {
+    const SourceFile* file = sources.file_of(function.span.begin);
+    return file != nullptr && file->included_at.valid();
+  };
+  std::vector<bool> settled = outside_of_cycles(graph);
   for (size_t n = 0; n < graph.size(); ++n) {
     const checked::Function& function = program.functions[n];
-    if (!used[n]) diagnostics.report(Diag::UnusedFunction, function.span, {function.name});
-    if (in_cycle[n]) continue;
+    if (!used[n] && !included(function))
+      diagnostics.report(Diag::UnusedFunction, function.span, {function.name});
+    if (settled[n]) continue;
     const std::vector<Reference> chain = cycle_through(graph, n);
     if (chain.empty()) continue;
     std::string text = function.name;
     for (const Reference& step : chain) {
       text += " -> " + program.functions[step.function].name;
-      in_cycle[step.function] = true;
+      settled[step.function] = true;
     }
     Diagnostic& message = diagnostics.report(Diag::Recursion, chain.front().span,
                                              {function.name, text, fmt::format("{}", unit.call_depth)});

@@ -35,6 +35,7 @@ CallGraph call_graph(const checked::Program& program);
 std::vector<bool> reachable(const CallGraph& graph, size_t main);
 
 // Warnings: recursion with its chain, functions nobody uses.
-void check_calls(const checked::Program& program, const stdlib::UnitType& unit, Diagnostics& diagnostics);
+void check_calls(const checked::Program& program, const stdlib::UnitType& unit, const SourceMap& sources,
+                 Diagnostics& diagnostics);
 
 }  // namespace ipos::compiler

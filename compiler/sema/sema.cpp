@@ -72,7 +72,7 @@ std::optional<checked::Program> check(const ast::Program& program, const stdlib:
   describe_variables(context);
   check_variable_use(program, context);
   check_writers(context);
-  check_calls(context.program, unit, diagnostics);
+  check_calls(context.program, unit, sources, diagnostics);
   check_sbus_objects(context);
   if (diagnostics.has_errors()) return std::nullopt;
   context.program.onlookers = std::make_shared<const Onlookers>(context);

@@ -52,12 +52,17 @@ StatementChecker::Result StatementChecker::block(const ast::Block& node, Span sp
         context_.diagnostics.report(Diag::FallThrough, stmt->span);
       reached = true;
       reported = false;
-    } else if (!reached && !reported && !is_one_of<ast::Empty, ast::Break>(*stmt)) {
-      // A break behind a return is a habit of case branches, not a mistake.
+    }
+    const Frame* around = innermost_switch();
+    const size_t labels = around == nullptr ? 0 : around->target->labels;
+    Result result = statement(*stmt);
+    // A label inside, as in switch (x) { while (1) { case 1: ... } }, is a way in.
+    if (around != nullptr && innermost_switch()->target->labels != labels) reached = true;
+    // A break behind a return is a habit of case branches, not a mistake.
+    if (!reached && !reported && !is_one_of<ast::Empty, ast::Break>(*stmt)) {
       context_.diagnostics.report(Diag::UnreachableCode, stmt->span);
       reported = true;
     }
-    Result result = statement(*stmt);
     reached = reached && result.falls_through;
     body.push_back(result.stmt);
     before = stmt;

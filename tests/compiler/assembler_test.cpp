@@ -50,6 +50,9 @@ TEST(Assembler, FormsOfTheManual) {
   EXPECT_EQ(encoded({{Opcode::AddHK, {0, 1}}, {Opcode::JmpLeHK, {0, 15, 0}}}),
             code("M01 : ADD H0 + 1\n      JMP H0 <= 15 , M01"));
   EXPECT_EQ(encoded({{Opcode::Scom, {1, 420}}}), code("SCOM TRANSMIT CYCLIC, H420"));
+  // p. 34: '#' in front of a constant.
+  EXPECT_EQ(encoded({{Opcode::GoRelK, {0, -8000}}}), code("GOR NOWAIT #-8000"));
+  EXPECT_EQ(encoded({{Opcode::SetHK, {1, 50}}}), code("SET H01 = #50"));
 }
 
 TEST(Assembler, FreeWriting) {

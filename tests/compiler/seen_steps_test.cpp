@@ -2,10 +2,15 @@
 // steps, and that --atomic leaves none.
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <iterator>
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
 
 #include "tests/compiler/backend_test.hpp"
+#include "vm/exec/machine.hpp"
+#include "vm/sched/scheduler.hpp"
+#include "vm/verify/verify.hpp"
 
 namespace ipos::compiler::test {
 namespace {
@@ -141,6 +146,63 @@ TEST(Atomic, WritesOnceWhatOthersSee) {
   const std::string alone = "long x, a; main() { x = (a + 1) % 8; }";
   EXPECT_EQ(commands(compile_b(alone, true)), commands(compile_b(alone)))
       << "costs nothing where nobody looks on";
+}
+
+// 10 s of a program on a MOVIDRIVE B, without a host; `each_ms` sees the variables as a telegram would.
+std::map<std::string, int32_t> run(const std::string& text, bool atomic,
+                                   const std::function<void(std::span<int32_t>)>& each_ms = {}) {
+  const Compilation c = compile_b(text, atomic);
+  EXPECT_TRUE(c.image) << text;
+  const stdlib::UnitType& unit = *stdlib::find_unit(std::string_view("mdxb"));
+  const vm::Limits limits{unit.variables, unit.program_words, unit.tasks, unit.call_depth};
+  const vm::VerifiedImage image = vm::verify(c.image->code, limits, {}).image.value();
+  const vm::Host host{
+      nullptr, [](void*, vm::Machine&, int, const vm::Instruction&) noexcept { return vm::HostReply{}; }};
+  auto machine = std::make_unique<vm::Machine>(image, host);
+  machine->start();
+  for (int ms = 0; ms < 10'000; ++ms) {
+    vm::run_tick(*machine, vm::Rates{{1, 2, 20}});
+    if (each_ms) each_ms(machine->variables());
+  }
+  std::map<std::string, int32_t> out;
+  for (const vm::Symbol& symbol : c.image->symbols) out[symbol.name] = machine->variables()[symbol.variable];
+  return out;
+}
+
+TEST(Atomic, RingBufferOfTwoTasks) {
+  const std::string ring =
+      "long lWr, lRd, lBuf[8], lBad; main() { _SetTask2(T2_START, Reader);"
+      " while (1) { lBuf[lWr] = lRd; lWr = (lWr + 1) % 8; } } Reader() { while (1) { if (lWr > 7) lBad++; } "
+      "}";
+  EXPECT_GT(run(ring, false)["lBad"], 100);
+  EXPECT_EQ(run(ring, true)["lBad"], 0);
+}
+
+TEST(Atomic, ScaledPositionOfAMonitor) {
+  const std::string torn =
+      "long lPos, lRead, lBad; main() { _SetTask2(T2_START, Monitor); H10 = 40960;"
+      " while (1) { lPos = H10 * 100 / 4096 + 5000; _Wait(1); } }"
+      " Monitor() { while (1) { lRead = lPos; if (lRead != 6000 && lRead != 0) lBad++; } }";
+  EXPECT_GT(run(torn, false)["lBad"], 1000);
+  EXPECT_EQ(run(torn, true)["lBad"], 0);
+}
+
+// The setpoint of a cyclic object, read every 7 ms as its telegram does.
+TEST(Atomic, SetpointInATelegram) {
+  const std::string sent =
+      "SCTRCYCL tx; long lSetp, lDummy; main() { tx.DPointer = numof(lSetp); lSetp = 6000; H10 = 40960;"
+      " if (H10 == 0) { _SBusCommDef(SCD_TRCYCL, tx); _SBusCommOn(); }"
+      " while (1) { lSetp = H10 * 100 / 4096 + 5000; } }";
+  const auto wrong = [&](bool atomic) {
+    int ms = 0;
+    int bad = 0;
+    run(sent, atomic, [&](std::span<int32_t> h) {
+      if (++ms % 7 == 0) bad += h[426] != 6000;
+    });
+    return bad;
+  };
+  EXPECT_GT(wrong(false), 300);
+  EXPECT_EQ(wrong(true), 0);
 }
 
 TEST(TooLong, NamesTheCopiesAndIsThereForListings) {

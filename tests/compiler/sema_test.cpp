@@ -350,6 +350,7 @@ TEST(Correct, NoMessageFor) {
       "SCREC r; main() { r.ObjectNo = 0x1000000 | 1025; _SBusCommDef(3, r); }",
       "main() { for (H0 = 0, H1 = 5; H0 < H1; H0++, H1--) ; }",
       "main() { H0 ? f() : g(); } f() { H1++; } g() { H2++; }",
+      "main() { switch (H0) { while (H1) { case 1: H1--; } } }",
       // What the warnings about habits leave alone.
       "main() { if (H0 == 1 & H1 == 2 | !H2) H3 = 1; }",
       "#include <iob.h>\nmain() { if (DI01 & DI02 == 0 & !DI03) H3 = 1; }",
@@ -373,6 +374,15 @@ TEST(Correct, NoMessageFor) {
     const Compilation c = compile_text(source, "mdxb");
     EXPECT_EQ("", render_text(c.diagnostics.all(), *c.sources, false)) << source;
   }
+}
+
+TEST(Correct, AnIncludedFileMayHaveMoreThanIsUsed) {
+  CompileOptions options;
+  options.read_file = [](const std::string&) {
+    return std::optional<std::string>("used() { H0++; } spare() { H1++; }");
+  };
+  EXPECT_TRUE(
+      compile("t.IPC", "t.IPC", "#include \"lib.h\"\nmain() { used(); }", options).diagnostics.all().empty());
 }
 
 TEST(Warnings, AreSwitchedByTheirFlags) {
