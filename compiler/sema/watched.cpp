@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "compiler/sema/expressions.hpp"
 #include "compiler/sema/walk.hpp"
 #include "vm/isa/blocks.hpp"
 
