@@ -1,4 +1,6 @@
 // Expressions for what they do: assignments, ++ and --, calls.
+#include <utility>
+
 #include "compiler/codegen/generator.hpp"
 #include "compiler/sema/expressions.hpp"
 
@@ -51,13 +53,15 @@ void FunctionGenerator::conditional_effect(const checked::Conditional& node, Spa
 
 FunctionGenerator::Operand FunctionGenerator::assign(const checked::Assign& node, Span span) {
   if (node.target.offset != nullptr) return assign_indirect(node, span);
-  assignment_ = span;
   const int32_t target = node.target.number;
   if (!node.op) {
-    if (is_simple(*node.value))
+    if (is_simple(*node.value)) {
       set(target, value(*node.value), span);
-    else
+    } else {
+      const Assignment outside = std::exchange(assignment_, {span, uses(*node.value, target).read});
       into(*node.value, target);
+      assignment_ = outside;
+    }
     if (const int32_t* known = as_constant(*node.value)) return {true, *known};
     return {false, target};
   }

@@ -85,14 +85,18 @@ class FunctionGenerator {
   void test(const checked::Expr& expr, int label, bool when);
 
   // steps.cpp: where an expression of several commands is computed
+  struct Assignment {
+    Span span;
+    bool reads_target = false;
+  };
   bool shows_steps(int32_t target);
 
   const checked::Program& program_;
   size_t function_;
   bool ends_task_;
   bool atomic_;
-  bool early_ = false;  // before main has started anything
-  Span assignment_;     // the innermost
+  bool early_ = false;     // before main has started anything
+  Assignment assignment_;  // the innermost
   FunctionCode code_;
   uint32_t top_ = 0;  // temporaries in use
   std::vector<int> breaks_;

@@ -11,9 +11,11 @@ bool FunctionGenerator::shows_steps(int32_t target) {
   if (acts_at_once(target)) return true;
   auto onlooker = program_.onlookers->find(function_, static_cast<uint32_t>(target), early_);
   if (!onlooker || atomic_) return onlooker.has_value();
+  // What another root writes meanwhile is lost either way: W0258 says so.
+  if (onlooker->writes_only && assignment_.reads_target) return false;
   std::vector<SeenSteps>& seen = code_.seen_steps;
-  if (seen.empty() || seen.back().span != assignment_ || seen.back().variable != target)
-    seen.push_back({target, assignment_, std::move(*onlooker)});
+  if (seen.empty() || seen.back().span != assignment_.span || seen.back().variable != target)
+    seen.push_back({target, assignment_.span, std::move(*onlooker)});
   return false;
 }
 

@@ -147,7 +147,8 @@ std::optional<Onlooker> Onlookers::other_root(size_t function, uint32_t variable
       if (place.function == function)
         return Onlooker{fmt::format("'{}' runs more than once at a time", names_[function]), place.span,
                         "one of its uses"};
-      return Onlooker{fmt::format("'{}' uses it", names_[place.function]), place.span, "used here"};
+      return Onlooker{fmt::format("'{}' uses it", names_[place.function]), place.span, "used here", false,
+                      list == &Access::writers};
     }
   for (const AccessPlace& taken : found->second.takers) {
     if (handed_over_.contains(taken.into)) continue;

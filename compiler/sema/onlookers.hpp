@@ -17,10 +17,11 @@
 namespace ipos::compiler {
 
 struct Onlooker {
-  std::string who;         // "'Reader' uses it"
-  Span span;               // where that can be read
-  std::string note;        // what is to be read there
-  bool by_number = false;  // only that it is an Hn, which a bus may ask for
+  std::string who;           // "'Reader' uses it"
+  Span span;                 // where that can be read
+  std::string note;          // what is to be read there
+  bool by_number = false;    // only that it is an Hn, which a bus may ask for
+  bool writes_only = false;  // does not read it
 };
 
 class Onlookers {

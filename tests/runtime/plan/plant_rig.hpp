@@ -2,8 +2,8 @@
 // frames.
 #pragma once
 
-#include <algorithm>
 #include <gtest/gtest.h>
+#include <algorithm>
 
 #include <cstdlib>
 #include <iostream>
@@ -22,9 +22,9 @@ using namespace ipos::runtime;  // NOLINT: a test header, everything here is abo
 
 class PlantRig final : private CanObserver {
  public:
-  // Sources by the file name that the plant gives as program.
+  // Sources by the file name that the plant gives as program; `atomic` as in the compiler's options.
   explicit PlantRig(const std::string& toml, const std::map<std::string, std::string>& sources = {},
-                    std::optional<vm::Rates> rates = {}) {
+                    std::optional<vm::Rates> rates = {}, bool atomic = false) {
     PlantFileResult file = read_plant_file(toml);
     for (const PlantError& error : file.errors)
       errors.push_back(std::to_string(error.place.line) + ": " + error.text);
@@ -35,6 +35,7 @@ class PlantRig final : private CanObserver {
       if (station.program.empty()) continue;
       compiler::CompileOptions options;
       options.unit = station.unit;
+      options.atomic = atomic;
       const compiler::Compilation compiled =
           compiler::compile(station.program, station.program, sources.at(station.program), options);
       EXPECT_TRUE(compiled.image) << compiler::render_text(compiled.diagnostics.all(), *compiled.sources,

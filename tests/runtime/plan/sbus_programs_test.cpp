@@ -239,5 +239,28 @@ TEST(Scom, OneShotGoesOutAtOnceAndReportsItsFate) {
   EXPECT_EQ(disturbed.variable(0, "Ac.Result"), 2);
 }
 
+// A setpoint of several commands in a cyclic object: the telegram sends what the variable holds.
+TEST(Atomic, SetpointsInTelegrams) {
+  const std::string sender =
+      "#include <constb.h>\nSCTRCYCL tx; long lSetp, lDummy, lHalf;\nmain() { tx.ObjectNo = 1100; "
+      "tx.CycleTime = 7;"
+      " tx.Format = 4; tx.DPointer = numof(lSetp); lSetp = 6000; lHalf = 20480; _SBusCommDef(SCD_TRCYCL, tx);"
+      " _SBusCommOn(); while (1) { lSetp = lHalf * 2 * 100 / 4096 + 5000; } }";
+  const auto torn = [&](bool atomic) {
+    PlantRig rig(bus_text() + station_text("a", "P881 = 1\n", "mdxb", "A.IPC") +
+                     station_text("b", "P881 = 2\n", "mdxb"),
+                 {{"A.IPC", sender}}, {}, atomic);
+    rig.run_until(5 * kSecond);
+    const auto sent = rig.with(1100);
+    EXPECT_GT(sent.size(), 700U);
+    return std::count_if(sent.begin(), sent.end(), [](const FrameRecord& record) {
+      const auto& data = record.frame.data;
+      return ((data[0] << 24) | (data[1] << 16) | (data[2] << 8) | data[3]) != 6000;
+    });
+  };
+  EXPECT_GT(torn(false), 200);
+  EXPECT_EQ(torn(true), 0);
+}
+
 }  // namespace
 }  // namespace ipos::tests
