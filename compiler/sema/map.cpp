@@ -26,6 +26,7 @@ void add_symbols(const std::string& name, const Type& type, uint32_t number, std
 
 std::vector<std::string> names(const Context& context, const std::vector<AccessPlace>& places) {
   std::vector<size_t> functions;
+  functions.reserve(places.size());
   for (const AccessPlace& place : places) functions.push_back(place.function);
   std::sort(functions.begin(), functions.end());
   functions.erase(std::unique(functions.begin(), functions.end()), functions.end());

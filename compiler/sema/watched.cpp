@@ -35,16 +35,22 @@ class Finder {
   explicit Finder(const Context& context) : context_(context) {}
 
   Watched run(const std::vector<bool>& used) {
-    for (size_t n = 0; n < used.size(); ++n)
-      if (used[n])
-        checked::walk(*context_.program.functions[n].body, [&](const checked::Expr& expr) {
-          if (const auto* call = std::get_if<checked::SystemCall>(&expr.node)) look(*call, expr.span);
-          const auto* assign = std::get_if<checked::Assign>(&expr.node);
-          if (assign != nullptr && assign->target.offset == nullptr &&
-              constant_value(assign->value) == nullptr)
-            computed_.insert(static_cast<uint32_t>(assign->target.number));
-        });
-    for (const ConstantStore& store : context_.stores) constants_[store.number].push_back(&store);
+    const auto each = [&](auto visit) {
+      for (size_t n = 0; n < used.size(); ++n)
+        if (used[n]) checked::walk(*context_.program.functions[n].body, visit);
+    };
+    each([&](const checked::Expr& expr) {
+      if (const auto* call = std::get_if<checked::SystemCall>(&expr.node)) look(*call, expr.span);
+    });
+    if (found_.empty()) return std::move(out_);
+    each([&](const checked::Expr& expr) {
+      const auto* assign = std::get_if<checked::Assign>(&expr.node);
+      if (assign == nullptr || assign->target.offset != nullptr) return;
+      const auto number = static_cast<uint32_t>(assign->target.number);
+      if (found_.contains(number) && constant_value(assign->value) == nullptr) computed_.insert(number);
+    });
+    for (const ConstantStore& store : context_.stores)
+      if (found_.contains(store.number)) constants_[store.number].push_back(&store);
     for (const auto& [number, place] : found_) enter(number, place);
     return std::move(out_);
   }
@@ -101,7 +107,7 @@ class Finder {
 
   const Context& context_;
   std::map<uint32_t, Member> found_;
-  std::set<uint32_t> computed_;  // variables with a value that is none of the constants
+  std::set<uint32_t> computed_;  // those of them with a value that is none of the constants
   std::unordered_map<uint32_t, std::vector<const ConstantStore*>> constants_;
   Watched out_;
 };

@@ -51,8 +51,10 @@ class Writers {
     }
   }
 
-  std::vector<size_t> writing_roots(uint32_t number) const {
-    std::vector<size_t> all;
+  // Until the next call.
+  const std::vector<size_t>& writing_roots(uint32_t number) {
+    std::vector<size_t>& all = writing_;
+    all.clear();
     const auto found = context_.accesses.find(number);
     if (found == context_.accesses.end()) return all;
     for (const auto& [writer, span, into] : found->second.writers)
@@ -67,8 +69,8 @@ class Writers {
   void several(const Variable& variable) {
     std::vector<size_t> roots;
     for (uint32_t n = variable.number; n < variable.number + variable.type.size(); ++n)
-      if (auto more = writing_roots(n); more.size() > roots.size()) roots = std::move(more);
-    if (roots.size() < 2) return;
+      if (const auto& more = writing_roots(n); more.size() > std::max<size_t>(roots.size(), 1)) roots = more;
+    if (roots.empty()) return;
     std::string list;
     for (size_t n = 0; n < roots.size(); ++n)
       list += fmt::format("{}'{}'", n == 0 ? "" : n + 1 == roots.size() ? " and " : ", ", name(roots[n]));
@@ -108,6 +110,7 @@ class Writers {
 
   Context& context_;
   std::vector<std::vector<size_t>> roots_;  // of each function
+  std::vector<size_t> writing_;
 };
 
 }  // namespace
