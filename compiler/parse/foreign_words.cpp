@@ -190,6 +190,7 @@ class Translator {
       case TokenKind::While:
       case TokenKind::For:
       case TokenKind::Switch:
+        if (is_word_or_number(next())) return inside && ends_statement(before());  // IF a THEN
         return inside && filled_bracket(at_ + 1) && statement_at(behind_bracket(at_ + 1));
       case TokenKind::Long: return next() == TokenKind::Name && !ends_operand(before());
       case TokenKind::Initial:

@@ -11,6 +11,8 @@ namespace ipos::compiler {
 
 using checked::ExprPtr;
 
+constexpr uint32_t kMostExplained = 100;  // ours
+
 const int32_t* constant_value(const ExprPtr& expr) {
   if (expr == nullptr) return nullptr;
   const auto* constant = std::get_if<checked::Constant>(&expr->node);
@@ -304,6 +306,8 @@ void ExpressionChecker::unknown_name(std::string_view name, Span span, bool func
   if (!context_.reported_names.emplace(name).second) return;
   Diagnostic& message = context_.diagnostics.report(function ? Diag::UnknownFunction : Diag::UnknownName,
                                                     span, {std::string(name)});
+  // A search of all names for each of many unknown ones would take long, and nobody reads it.
+  if (context_.diagnostics.error_count() > kMostExplained) return;
   context_.scope.explain_unknown(message, name, function, context_.unit.generation == stdlib::Generation::B);
 }
 
