@@ -88,7 +88,7 @@ size_t TokenFeed::behind_head(size_t at, size_t head) const {
   }
 }
 
-size_t TokenFeed::behind_statement(size_t at) const {
+size_t TokenFeed::behind_statement(size_t at) {
   if (continues_here(at)) return at;
   int level = 0;
   for (size_t i = at;; ++i) {
@@ -110,7 +110,7 @@ size_t TokenFeed::behind_statement(size_t at) const {
 }
 
 // At the next declaration, or at the body of a function whose head is wrong.
-size_t TokenFeed::behind_declaration(size_t at, Place& place) const {
+size_t TokenFeed::behind_declaration(size_t at, Place& place) {
   if (at == last_ && brace_fits_ && before(1).kind == TokenKind::RightParen &&
       (begins_statement(at) || tokens_[at + 1].kind != TokenKind::LeftParen)) {
     place = Place::Body;
@@ -154,13 +154,20 @@ bool TokenFeed::is_function_head(size_t begin, size_t end) const {
 }
 
 // Behind the matching '}', or the '{' itself when there is none.
-size_t TokenFeed::behind_group(size_t brace) const {
-  int level = 0;
-  for (size_t i = brace; tokens_[i].kind != TokenKind::End; ++i) {
-    if (tokens_[i].kind == TokenKind::LeftBrace) ++level;
-    if (tokens_[i].kind == TokenKind::RightBrace && --level == 0) return i + 1;
+size_t TokenFeed::behind_group(size_t brace) {
+  if (behind_groups_.empty()) {
+    std::vector<size_t> open;
+    for (size_t i = 0; i < tokens_.size(); ++i) {
+      if (tokens_[i].kind == TokenKind::LeftBrace) {
+        open.push_back(i);
+      } else if (tokens_[i].kind == TokenKind::RightBrace && !open.empty()) {
+        behind_groups_.emplace(open.back(), i + 1);
+        open.pop_back();
+      }
+    }
+    for (const size_t i : open) behind_groups_.emplace(i, i);
   }
-  return brace;
+  return behind_groups_.at(brace);
 }
 
 // Only a ';' is missing before the token.
@@ -206,7 +213,8 @@ bool TokenFeed::begins_declaration(size_t at) const {
     case TokenKind::Name: break;
     default: return false;
   }
-  if (!token.line_start || tokens_[at + 1].kind == TokenKind::End) return false;
+  const bool starts = token.line_start || (at > 0 && tokens_[at - 1].kind == TokenKind::Semicolon);
+  if (!starts || tokens_[at + 1].kind == TokenKind::End) return false;
   const bool function = tokens_[at + 1].kind == TokenKind::LeftParen &&
                         tokens_[at + 2].kind == TokenKind::RightParen &&
                         tokens_[at + 3].kind == TokenKind::LeftBrace;

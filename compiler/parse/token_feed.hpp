@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <unordered_map>
 
 #include "compiler/diag/diag.hpp"
 #include "compiler/parse/grammar.hpp"
@@ -73,10 +74,10 @@ class TokenFeed {
   Symbol sync(size_t at, Place place = Place::Next);
   size_t behind_directive(size_t at) const;
   size_t behind_head(size_t at, size_t head) const;
-  size_t behind_statement(size_t at) const;
-  size_t behind_declaration(size_t at, Place& place) const;
+  size_t behind_statement(size_t at);
+  size_t behind_declaration(size_t at, Place& place);
   bool is_function_head(size_t begin, size_t end) const;
-  size_t behind_group(size_t brace) const;
+  size_t behind_group(size_t brace);
   bool begins_statement(size_t at) const;
   bool begins_declaration(size_t at) const;
   bool continues_here(size_t at) const;
@@ -86,6 +87,7 @@ class TokenFeed {
   Diagnostics& diagnostics_;
   std::optional<size_t> unclosed_;
   std::vector<Open> open_;
+  std::unordered_map<size_t, size_t> behind_groups_;  // of each '{', once it is asked for
   size_t next_ = 0;                  // token to deliver next
   size_t last_ = SIZE_MAX;           // token delivered last, not yet known to be accepted
   size_t declaration_ = 0;           // where the outermost declaration began
