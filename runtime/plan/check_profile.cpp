@@ -89,6 +89,8 @@ class ProfileCheck {
 
   void called(const std::string& caller, uint8_t address, bool group, bool process_data) {
     const Member* slave = roster_.slave_at(address);
+    const bool is_there = group ? roster_.has_group(address) : slave != nullptr;
+    if (!is_there && !roster_.config->port.empty()) return;  // it may be a unit behind the port
     if (group ? !roster_.has_group(address) : slave == nullptr)
       find(FindingKind::NobodyThere, fmt::format("{} calls {} {}, which no station has; there are {}", caller,
                                                  group ? "group" : "address", address, present(group)));

@@ -67,6 +67,7 @@ class LinePlanner {
       const uint8_t bytes = telegram_length(format);
       line_.telegrams.push_back({telegram.sender, address, response, format_text(format), bytes,
                                  bytes * character_time(bus_.baud), telegram.count, telegram.closest});
+      if (!bus_.port.empty()) continue;  // it may be a unit behind the port
       if (response || address_kind(address) != AddressKind::Single || has_address(address) || told == address)
         continue;
       told = address;

@@ -146,7 +146,7 @@ void Plant::make_lines() {
     }
     lines_.push_back(std::make_unique<CanLine>(queue_, next_source_++, bus.name, bus.baud));
     lines_.back()->add_observer(*this);
-    checks_.push_back(std::make_unique<SbusCheck>(static_cast<SbusCheckClient&>(*this)));
+    checks_.push_back(std::make_unique<SbusCheck>(static_cast<SbusCheckClient&>(*this), !bus.port.empty()));
     lines_.back()->add_observer(*checks_.back());
   }
 }

@@ -24,7 +24,8 @@ std::optional<uint32_t> answer_of(const SbusIdentifier& request) {
 
 }  // namespace
 
-SbusCheck::SbusCheck(SbusCheckClient& client) : client_(client) {
+SbusCheck::SbusCheck(SbusCheckClient& client, bool units_outside)
+    : client_(client), units_outside_(units_outside) {
   for (uint32_t id = 0; id < kStandardIdLimit; ++id)
     identifiers_[id].watched = classify_identifier(id).has_value();
 }
@@ -75,7 +76,7 @@ void SbusCheck::tell_second_sender(const CanLine& line, const FrameRecord& recor
 void SbusCheck::check_address(const CanLine& line, const FrameRecord& record,
                               const SbusIdentifier& identifier) {
   const TelegramType& type = telegram_type(identifier.telegram);
-  if (!type.from_master || slaves_.empty()) return;
+  if (!type.from_master || slaves_.empty() || units_outside_) return;
   const auto meant = [&](const Slave& slave) {
     return (type.grouped ? slave.settings.group : slave.settings.address) == identifier.address;
   };

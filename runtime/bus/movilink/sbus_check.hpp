@@ -24,7 +24,8 @@ class SbusCheckClient {
 // Observes one line; each finding is told once.
 class SbusCheck final : public CanObserver {
  public:
-  explicit SbusCheck(SbusCheckClient& client);
+  // `units_outside`: the line has a port, so an address that no station here has may be that of a unit there.
+  explicit SbusCheck(SbusCheckClient& client, bool units_outside = false);
 
   // All units of the line, before the first frame.
   void add_slave(Time now, const CanLine& line, NodeId node, const SlaveSettings& settings);
@@ -56,6 +57,7 @@ class SbusCheck final : public CanObserver {
   void tell(Time now, std::string text);
 
   SbusCheckClient& client_;
+  bool units_outside_;
   std::vector<Slave> slaves_;
   std::vector<uint32_t> sync_ids_;  // of the slaves, each once
   std::vector<Identifier> identifiers_ = std::vector<Identifier>(kStandardIdLimit);

@@ -39,15 +39,15 @@ class Findings final : public SbusCheckClient {
 };
 
 struct Rig {
+  explicit Rig(bool units_outside = false) : check(findings, units_outside) {
+    line.add_observer(log);
+    line.add_observer(check);
+  }
   EventQueue queue;
   CanLine line{queue, 9, "sbus", 500'000};
   Log log;
   Findings findings;
-  SbusCheck check{findings};
-  Rig() {
-    line.add_observer(log);
-    line.add_observer(check);
-  }
+  SbusCheck check;
 };
 
 struct Control {
@@ -172,6 +172,19 @@ TEST(SbusCheck, AddressesNobodyHasAndAddressesTwoHave) {
   EXPECT_EQ(rig.findings.count("master calls address 2, which no station has; there are 3 (unit)"), 1U);
   EXPECT_EQ(rig.findings.count("master calls group address 9, which no station has; there are 2 (unit)"), 1U);
   rig.check.add_slave(0, rig.line, master.port.node(), SlaveSettings{3, 1, 0});
+  EXPECT_EQ(rig.findings.count("unit and master both have SBus address 3"), 1U);
+}
+
+TEST(SbusCheck, UnitsBehindAPortAreNotCalledMissing) {
+  Rig rig(true);
+  Hand master(rig.line, "master");
+  Unit unit(rig.queue, 1, rig.line, "unit", SlaveSettings{3, 2, 0});
+  rig.check.add_slave(0, rig.line, unit.port.node(), SlaveSettings{3, 2, 0});
+  master.port.send({531, 8, {0x31, 0, 0x20, 0x7E}, false, false}, 0);
+  master.port.send(process_frame(8 * 9 + 6, {6, 0, 0}), 0);
+  rig.queue.run_until(kMillisecond);
+  EXPECT_EQ(rig.findings.count("which no station has"), 0U);
+  rig.check.add_slave(0, rig.line, master.port.node(), SlaveSettings{3, 1, 0});  // two here are still two
   EXPECT_EQ(rig.findings.count("unit and master both have SBus address 3"), 1U);
 }
 

@@ -360,6 +360,9 @@ TEST(Plan, OneFindingForEachCauseOfASilentBus) {
                            station_text("b", "P813 = 3\nP814 = 5\n", "mc07");
   EXPECT_EQ(one_code(plan_of(call, {{"CALL.IPC", caller({2})}})), "B11");
   EXPECT_EQ(one_code(plan_of(call, {{"CALL.IPC", caller({107})}})), "B11");
+  // Behind a port there may be more units than the plant knows.
+  const std::string with_port = bus_text(500'000, "port = \"can0\"\n") + call.substr(bus_text().size());
+  EXPECT_TRUE(codes(plan_of(with_port, {{"CALL.IPC", caller({2})}})).empty());
 }
 
 TEST(Plan, MasterSlave) {
