@@ -51,6 +51,18 @@ TEST(LspDiagnostics, OptionsOfTheClient) {
   EXPECT_EQ(client.diagnostics["file://" + kPath][0]["tags"], Json({1}));
 }
 
+TEST(LspDiagnostics, AtomicAsInTheBuild) {
+  const std::string source =
+      "#include <constb.h>\nlong x, y;\nmain() { _SetTask2(T2_START, T); while (1) x = (x + 1) % 8; }\n"
+      "T() { y = x; }\n";
+  Client plain;
+  plain.open(kPath, source);
+  EXPECT_EQ(plain.codes(kPath), std::vector<std::string>{"W0240"});
+  Client atomic({}, {{"atomic", true}});
+  atomic.open(kPath, source);
+  EXPECT_TRUE(atomic.codes(kPath).empty());
+}
+
 TEST(LspHover, VariablesMembersAndElements) {
   Client client;
   client.open(kPath,

@@ -64,6 +64,8 @@ void Workspace::set_options(const Json& options) {
     for (const std::string& warning : strings(options, "warnings"))
       if (!made.warnings.apply(warning))
         throw RequestError(ErrorCode::InvalidParams, "there is no warning -W" + warning);
+    const auto atomic = options.find("atomic");
+    made.atomic = atomic != options.end() && atomic->is_boolean() && atomic->get<bool>();
     const auto unit = options.find("unit");
     if (unit != options.end() && unit->is_string() && !unit->get<std::string>().empty()) {
       made.unit = stdlib::find_unit(std::string_view(unit->get_ref<const std::string&>()));

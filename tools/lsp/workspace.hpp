@@ -30,7 +30,7 @@ class Workspace {
   explicit Workspace(ReadFile read_file) : read_file_(std::move(read_file)) {}
 
   void set_folders(std::vector<std::string> folders);
-  // Options of the client: includeDirs, defines, unit, warnings. Throws RequestError for wrong ones.
+  // Options of the client: includeDirs, defines, unit, warnings, atomic. Throws RequestError for wrong ones.
   void set_options(const Json& options);
 
   void open(const std::string& path, std::string text);

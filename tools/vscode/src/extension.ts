@@ -14,6 +14,7 @@ function settings(): launch.Settings {
     defines: all.get("defines", []),
     unit: all.get("unit", ""),
     warnings: all.get("warnings", []),
+    atomic: all.get("atomic", false),
   };
 }
 

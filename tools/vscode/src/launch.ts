@@ -6,6 +6,7 @@ export interface Settings {
   defines: string[];
   unit: string;
   warnings: string[];
+  atomic: boolean;
 }
 
 export interface Command {
@@ -19,8 +20,8 @@ export function serverCommand(settings: Settings): Command {
 
 // What `ipos lsp` takes as initializationOptions and in didChangeConfiguration.
 export function serverOptions(settings: Settings): Omit<Settings, "path"> {
-  const { includeDirs, defines, unit, warnings } = settings;
-  return { includeDirs, defines, unit, warnings };
+  const { includeDirs, defines, unit, warnings, atomic } = settings;
+  return { includeDirs, defines, unit, warnings, atomic };
 }
 
 function compileArguments(settings: Settings): string[] {
@@ -29,6 +30,7 @@ function compileArguments(settings: Settings): string[] {
     ...settings.defines.map((define) => `-D${define}`),
     ...settings.warnings.map((warning) => `-W${warning}`),
     ...(settings.unit === "" ? [] : ["--unit", settings.unit]),
+    ...(settings.atomic ? ["--atomic"] : []),
   ];
 }
 

@@ -26,6 +26,7 @@ const settings: launch.Settings = {
   defines: ["A=1"],
   unit: "mdxb",
   warnings: ["error"],
+  atomic: true,
 };
 
 test("the server takes all settings but the path", () => {
@@ -35,12 +36,13 @@ test("the server takes all settings but the path", () => {
     defines: ["A=1"],
     unit: "mdxb",
     warnings: ["error"],
+    atomic: true,
   });
 });
 
 test("tasks name the verb, the file and the settings of the compiler", () => {
   assert.deepStrictEqual(launch.taskCommand({ task: "build" }, settings, "a.IPC").args, [
-    "build", "a.IPC", "-Iinc", "-DA=1", "-Werror", "--unit", "mdxb",
+    "build", "a.IPC", "-Iinc", "-DA=1", "-Werror", "--unit", "mdxb", "--atomic",
   ]);
   assert.deepStrictEqual(launch.taskCommand({ task: "fmt", file: "b.IPC", args: ["--check"] }, settings, "a.IPC").args, [
     "fmt", "b.IPC", "--check",
