@@ -223,7 +223,7 @@ TEST(ParameterText, ReadsAsPeopleDo) {
               {"P816", 2, "500 kBaud"},
               {"P870", 9, "CTRL. WORD 1"},
               {"P097", 0x0202, "0x0202"},
-              {"P817", 128000, "128.000"},
+              {"P817", 128000, "128"},
               {"P092", -1, "4294967.295"},  // unsigned
               {"P600", 26, "26"}};          // a code the list does not have
   for (const auto& row : rows) {
