@@ -8,8 +8,9 @@ namespace ipos::stdlib {
 namespace {
 
 constexpr SystemVariable kVariables[] = {
-#define SYSTEM_VARIABLE(number, compiler_name, assembler_name, access, units, source, meaning) \
-  {number, compiler_name, assembler_name, VariableAccess::access, VariableUnits::units, source, meaning},
+#define SYSTEM_VARIABLE(number, compiler_name, assembler_name, access, units, use, source, meaning) \
+  {number,           compiler_name, assembler_name, VariableAccess::access, VariableUnits::units,   \
+   VariableUse::use, source,        meaning},
 #include "stdlib/system_variables.def"
 };
 

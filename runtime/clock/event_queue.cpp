@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <utility>
 
 namespace ipos::runtime {
@@ -63,6 +64,7 @@ void EventQueue::remove(size_t position) {
 
 EventId EventQueue::schedule(Time at, uint32_t source, EventTarget& target, uint32_t kind,
                              uint64_t argument) {
+  assert(at >= present_);
   at = std::max(at, now_);
   if (!rows_[0].takes(at, source, now_)) return schedule_behind(at, source, target, kind, argument);
   return rows_[0].join({{at, next_sequence_++, source}, kind, &target, argument});

@@ -61,17 +61,19 @@ class EventQueue {
   void run_until(Time end);
 
   // What is executed late finds the time that it belongs to, and what has happened by then. Nothing may be
-  // scheduled in it.
+  // scheduled in it before the time it comes back to.
   class Past {
    public:
     Past(EventQueue& queue, Time at, uint32_t source)
-        : queue_(queue), now_(queue.now_), reached_(queue.reached_) {
+        : queue_(queue), now_(queue.now_), reached_(queue.reached_), present_(queue.present_) {
+      queue.present_ = std::max(present_, now_);
       queue.now_ = at;
       queue.reached_ = source;
     }
     ~Past() {
       queue_.now_ = now_;
       queue_.reached_ = reached_;
+      queue_.present_ = present_;
     }
     Past(const Past&) = delete;
     Past& operator=(const Past&) = delete;
@@ -80,6 +82,7 @@ class EventQueue {
     EventQueue& queue_;
     Time now_;
     uint32_t reached_;
+    Time present_;
   };
 
   // From within an event: an event of `source` at `at` would be the next of all, and this run goes so far.
@@ -123,8 +126,8 @@ class EventQueue {
     return a.sequence < b.sequence;
   }
 
-  // Events that were scheduled in their order. None of them is farther away than `reach` when it comes: or
-  // nothing could join behind it.
+  // Events that were scheduled in their order. Only events at most `reach` ahead are accepted; a later one
+  // would block the row.
   struct Row {
     EventId ids;  // from this one on: kInRow and the number of the row
     Time reach;
@@ -196,7 +199,8 @@ class EventQueue {
 
   Time now_ = 0;
   uint32_t reached_ = 0;  // the highest source that had an event at now()
-  Time run_end_ = -1;     // of run_until()
+  Time present_ = 0;  // within a Past: the time it comes back to, and nothing is scheduled before that
+  Time run_end_ = -1;  // of run_until()
   uint64_t next_sequence_ = 0;
   // What is scheduled in its order anyway, as the ticks of all stations are, stands in a row; the heap has
   // the rest. One row is for ticks of a millisecond, one for the telegrams of stations that sleep.

@@ -49,12 +49,12 @@ Drive::Drive(ParameterStore& parameters, const MachineData& machine)
       reader_(parameters),
       settings_(reader_.read(parameters)),
       settings_version_(parameters.changes()),
-      axis_(machine_of(machine, is_m07_)) {
+      state_(Axis(machine_of(machine, is_m07_))) {
   parameters.connect(*this);
 }
 
 void Drive::read_settings() const {
-  course_left_ = 0;
+  steady_left_ = 0;
   travels_ = false;
   settings_version_ = parameters_.changes();
   settings_ = reader_.read(parameters_);
@@ -77,8 +77,8 @@ void Drive::take_po(PoSource source, std::span<const uint16_t> words, bool cycli
   if (touched_watch(source).on_process_data(cyclic)) now_.change().faults.clear_cause(fault_of(source));
   if (settings().control_bus != source) return;
   const uint16_t word = order_of(source).control_word.value_or(0);
-  const bool reset_edge = (word & ~last_control_word_ & control_bits::kReset) != 0;
-  last_control_word_ = word;
+  const bool reset_edge = (word & ~state_.last_control_word & control_bits::kReset) != 0;
+  state_.last_control_word = word;
   if (reset_edge) reset_fault();
 }
 
@@ -88,7 +88,7 @@ void Drive::take_request(PoSource source) {
 
 // A telegram changes what is decided unless it only begins the time of silence anew.
 LinkWatch& Drive::touched_watch(PoSource source) {
-  LinkWatch& watch = watches_[static_cast<size_t>(source)];
+  LinkWatch& watch = state_.watches[static_cast<size_t>(source)];
   if (!watch.alert()) {
     now_.change();
     links_run_ = true;
@@ -101,16 +101,16 @@ LinkWatch& Drive::touched_watch(PoSource source) {
 // Brings in what others keep for the drive, and decides anew when anything is other than it was.
 void Drive::look_around() const {
   std::array<bool, kPoSources> heard{};
-  for (size_t n = 0; n < kPoSources; ++n) heard[n] = watches_[n].seen();
+  for (size_t n = 0; n < kPoSources; ++n) heard[n] = state_.watches[n].seen();
   now_.set(&Situation::heard, heard);
   now_.set(&Situation::settings, parameters_.changes());
   now_.set(&Situation::starting_up, starting_up());
   now_.set(&Situation::factory_setting, parameters_.factory_setting_running());
-  now_.set(&Situation::output_stage, axis_.state().output_stage);
-  now_.set(&Situation::reversing, is_reversing(axis_.setpoint()));
+  now_.set(&Situation::output_stage, state_.axis.state().output_stage);
+  now_.set(&Situation::reversing, is_reversing(state_.axis.setpoint()));
   look_again_ = false;
   if (!now_.changed()) return;
-  course_left_ = 0;
+  steady_left_ = 0;
   travels_ = false;
   now_.looked();
   if (!decisions_known_ || !(*now_ == decided_for_)) decide_anew();
@@ -123,12 +123,12 @@ bool Drive::po_data_enabled() const {
 
 Verdict Drive::verdict_with_setpoint(const Decisions& d) const {
   Verdict verdict = d.controls;
-  if (stopped_by_setpoint_) verdict.restrict_to(Command::Stop, Block::StopFunction);
+  if (state_.stopped_by_setpoint) verdict.restrict_to(Command::Stop, Block::StopFunction);
   // Positioning looks after the limit switches itself: a reference travel has to reach them.
   if (verdict.command != Command::Enable || now_->positioning) return verdict;
-  if (d.terminals.off(InputFunction::LimitCw) && setpoint_.speed > 0)
+  if (d.terminals.off(InputFunction::LimitCw) && state_.setpoint.speed > 0)
     verdict.restrict_to(Command::EmergencyStop, Block::LimitCw);
-  if (d.terminals.off(InputFunction::LimitCcw) && setpoint_.speed < 0)
+  if (d.terminals.off(InputFunction::LimitCcw) && state_.setpoint.speed < 0)
     verdict.restrict_to(Command::EmergencyStop, Block::LimitCcw);
   return verdict;
 }
@@ -141,12 +141,13 @@ bool Drive::controller_inhibited() const {
 }
 
 void Drive::set_position(int32_t counter) {
-  counter_shift_ += static_cast<uint32_t>(counter) - static_cast<uint32_t>(axis_.state().position);
-  axis_.set_position(counter);
+  state_.counter_shift +=
+      static_cast<uint32_t>(counter) - static_cast<uint32_t>(state_.axis.state().position);
+  state_.axis.set_position(counter);
 }
 
 int32_t Drive::shaft_position() const {
-  return static_cast<int32_t>(static_cast<uint32_t>(axis_.position()) - counter_shift_);
+  return static_cast<int32_t>(static_cast<uint32_t>(state_.axis.position()) - state_.counter_shift);
 }
 
 // --- faults ---
@@ -175,21 +176,21 @@ void Drive::raise_fault(uint8_t number) {
 // Warnings pass by themselves and do not fill the error memory (ours).
 void Drive::raise_fault(uint8_t number, FaultResponse response) {
   if (now_.change().faults.raise(number, response) && is_error(response))
-    remember_fault(parameters_, number, axis_.state().utilization);
+    remember_fault(parameters_, number, state_.axis.state().utilization);
 }
 
 void Drive::reset_fault() {
-  auto_resets_ = 0;
+  state_.auto_resets = 0;
   clear_faults();
 }
 
 // After a reset the drive is safe until its bus speaks again (1053 1610 p. 27).
 void Drive::clear_faults() {
   if (now_->faults.error())
-    for (LinkWatch& link : watches_) link.forget();
+    for (LinkWatch& link : state_.watches) link.forget();
   now_.change().faults.reset();
-  ++resets_;
-  auto_reset_ms_ = 0;
+  ++state_.resets;
+  state_.auto_reset_ms = 0;
 }
 
 void Drive::on_parameter_written(uint16_t index, int32_t value) {
@@ -198,36 +199,32 @@ void Drive::on_parameter_written(uint16_t index, int32_t value) {
 
 // --- the millisecond ---
 
-// One by one: a copy of the whole would bring along the bytes between them, and DriveCourse compares those.
 inline void Drive::take(const PositionControl& position) {
-  accelerates_ = position.speed != position_.speed;
-  position_.controls = position.controls;
-  position_.speed = position.speed;
-  position_.halt = position.halt;
-  position_.in_position = position.in_position;
-  position_.referenced = position.referenced;
+  accelerates_ = position.speed != state_.position.speed;
+  state_.position = position;
 }
 
 inline bool Drive::machine_overstrained() const {
-  const PowerSection& power = axis_.power();
+  const PowerSection& power = state_.axis.power();
   return power.dc_link() > kOvervoltage || power.heat_sink() > kOvertemperature ||
          power.motor_utilization() >= kFullUtilization;
 }
 
 // Something of the axis is, or was, beyond where watch_machine() lets it be.
 inline bool Drive::machine_suffers() const {
-  return axis_.current_limited() || limited_ms_ != 0 || machine_overstrained();
+  return state_.axis.current_limited() || state_.limited_ms != 0 || machine_overstrained();
 }
 
 // The next tick has nothing to look around for, and no fault of the machine to raise.
 inline bool Drive::may_travel() const {
-  const bool limited_long = axis_.current_limited() && limited_ms_ >= set().speed_monitoring_delay;
+  const bool limited_long =
+      state_.axis.current_limited() && state_.limited_ms >= set().speed_monitoring_delay;
   return !look_again_ && !limited_long && !machine_overstrained();
 }
 
 void Drive::tick_anew(const PositionControl& position) {
-  calm_ = !now_.changed() && settings_version_ == parameters_.changes();
-  course_left_ = 0;
+  untouched_ = !now_.changed() && settings_version_ == parameters_.changes();
+  steady_left_ = 0;
   take(position);
   now_.set(&Situation::positioning, position.controls);
   now_.set(&Situation::halt, position.halt);
@@ -249,14 +246,14 @@ void Drive::tick_anew(const PositionControl& position) {
   }
   const Decisions& d = decided();
   if (position.controls) {
-    stopped_by_setpoint_ = false;
-    setpoint_.speed = setpoint_.requested = position.speed;
-    setpoint_.note = SetpointNote::None;
+    state_.stopped_by_setpoint = false;
+    state_.setpoint.speed = state_.setpoint.requested = position.speed;
+    state_.setpoint.note = SetpointNote::None;
   } else {
-    setpoint_ = next_setpoint(d);
+    state_.setpoint = next_setpoint(d);
   }
   const AxisOrder& order = next_order(verdict_of(d).command);
-  const AxisState& axis = axis_.tick(order);
+  const AxisState& axis = state_.axis.tick(order);
   show_outputs(d, order, axis);
   if (axis.output_stage != now_->output_stage || is_reversing(axis.setpoint) != now_->reversing)
     look_again_ = true;
@@ -267,28 +264,49 @@ void Drive::tick_anew(const PositionControl& position) {
 
 // What tick() does when it decides nothing: time, the speed, the shaft, and the outputs that follow it.
 void Drive::travel(const PositionControl& position) {
-  calm_ = true;
-  course_left_ = 0;
+  untouched_ = true;
+  steady_left_ = 0;
   take(position);
   count_running();
-  if (axis_.current_limited() || limited_ms_ != 0) count_limited();
-  setpoint_.speed = setpoint_.requested = order_.target = position.speed;
-  axis_.follow(order_);
-  const bool overloaded = axis_.power().motor_utilization() >= kFullUtilization;
-  const OutputMotion motion{axis_.standing(), position.in_position, position.referenced, axis_.speed(),
-                            axis_.output_current()};
-  if (overloaded || !outputs_.go_on(motion)) show_outputs(decisions_, order_, axis_.state());
-  look_again_ = is_reversing(axis_.setpoint()) != now_->reversing;
+  if (state_.axis.current_limited() || state_.limited_ms != 0) count_limited();
+  state_.setpoint.speed = state_.setpoint.requested = order_.target = position.speed;
+  state_.axis.follow(order_);
+  const bool overloaded = state_.axis.power().motor_utilization() >= kFullUtilization;
+  const OutputMotion motion{state_.axis.standing(), position.in_position, position.referenced,
+                            state_.axis.speed(), state_.axis.output_current()};
+  if (overloaded || !state_.outputs.go_on(motion)) show_outputs(decisions_, order_, state_.axis.state());
+  look_again_ = is_reversing(state_.axis.setpoint()) != now_->reversing;
   travels_ = may_travel();
 }
 
-void Drive::go_on(uint32_t ticks) {
-  course_left_ -= ticks;
-  mains_ms_ += ticks;
-  if (now_->output_stage) enabled_ms_ += ticks;
-  axis_.go_on(ticks);
-  if (!links_run_) return;
-  for (size_t n = 0; n < watches_.size(); ++n) watches_[n].go_on(decisions_.links[n], ticks);
+void Drive::advance(Ticks ticks) {
+  steady_left_ -= ticks;
+  state_.advance(ticks);
+}
+
+void Drive::State::advance(Ticks ticks) {
+  mains_ms += ticks;
+  if (axis.phase() != AxisPhase::Off) enabled_ms += ticks;
+  axis.advance(ticks);
+  for (LinkWatch& link : watches) link.advance(ticks);
+}
+
+// Up to a digit of P015, P016, P017, and a telegram that is missed. A limit that is, or will be, exceeded
+// shows when it is.
+Ticks Drive::State::bound() const {
+  if (axis.heat_sink_ahead() > kOvertemperature || axis.motor_utilization_ahead() >= kFullUtilization)
+    return 0;
+  Ticks ticks = std::min(kMinuteMs - 1 - std::max(mains_ms, enabled_ms), axis.bound());
+  const int64_t energy = kEnergyDigit - 1 - (axis.state().energy - counted_energy);
+  ticks = static_cast<Ticks>(std::min<int64_t>(ticks, std::max<int64_t>(energy, 0) / axis.energy_ahead()));
+  for (const LinkWatch& link : watches) ticks = std::min(ticks, link.bound());
+  return ticks;
+}
+
+Ticks Drive::steady_since(const Moment& before) const {
+  const bool settled = settled_ && !look_again_ && !now_.changed();
+  if (!untouched_ || !settled || settings_version_ != parameters_.changes()) return 0;
+  return before.situation == *now_ ? steady_ticks(before.state, state_) : 0;
 }
 
 void Drive::count_minute(uint32_t& ms, uint16_t minutes) {
@@ -297,23 +315,23 @@ void Drive::count_minute(uint32_t& ms, uint16_t minutes) {
 }
 
 inline void Drive::count_running() {
-  if (++mains_ms_ >= kMinuteMs) count_minute(mains_ms_, index::kMainsOnTime);
-  if (axis_.phase() != AxisPhase::Off && ++enabled_ms_ >= kMinuteMs)
-    count_minute(enabled_ms_, index::kEnabledTime);
-  if (axis_.power().energy() - counted_energy_ >= kEnergyDigit) {
-    counted_energy_ += kEnergyDigit;
+  if (++state_.mains_ms >= kMinuteMs) count_minute(state_.mains_ms, index::kMainsOnTime);
+  if (state_.axis.phase() != AxisPhase::Off && ++state_.enabled_ms >= kMinuteMs)
+    count_minute(state_.enabled_ms, index::kEnabledTime);
+  if (state_.axis.power().energy() - state_.counted_energy >= kEnergyDigit) {
+    state_.counted_energy += kEnergyDigit;
     parameters_.set_display(index::kEnergy, parameters_.value(index::kEnergy) + 1);
   }
 }
 
 void Drive::count_time() {
   if (starting_up()) {
-    ++up_ms_;
+    ++state_.up_ms;
     look_again_ = true;
   }
   count_running();
-  if (parameters_.factory_setting_running() && ++factory_setting_ms_ >= kFactorySettingMs) {
-    factory_setting_ms_ = 0;
+  if (parameters_.factory_setting_running() && ++state_.factory_setting_ms >= kFactorySettingMs) {
+    state_.factory_setting_ms = 0;
     parameters_.finish_factory_setting();
   }
 }
@@ -324,21 +342,21 @@ void Drive::latch_three_wire() {
   const Terminals t = terminals();
   const bool cw = t.on(InputFunction::Cw);
   const bool ccw = t.on(InputFunction::Ccw);
-  if (cw && !cw_input_) now_.change().three_wire_cw = true, now_.change().three_wire_ccw = false;
-  if (ccw && !ccw_input_) now_.change().three_wire_ccw = true, now_.change().three_wire_cw = false;
+  if (cw && !state_.cw_input) now_.change().three_wire_cw = true, now_.change().three_wire_ccw = false;
+  if (ccw && !state_.ccw_input) now_.change().three_wire_ccw = true, now_.change().three_wire_cw = false;
   if (t.off(InputFunction::Enable)) now_.change().three_wire_cw = now_.change().three_wire_ccw = false;
-  cw_input_ = cw;
-  ccw_input_ = ccw;
+  state_.cw_input = cw;
+  state_.ccw_input = ccw;
 }
 
 void Drive::watch_resets() {
   const bool reset = decided().reset;
-  if (reset && !reset_input_) reset_fault();
-  reset_input_ = reset;
+  if (reset && !state_.reset_input) reset_fault();
+  state_.reset_input = reset;
   if (!now_->faults.error()) return;
-  if (settings().auto_reset != 1 || auto_resets_ >= kAutoResets) return;
-  if (++auto_reset_ms_ < settings().auto_reset_time) return;
-  ++auto_resets_;
+  if (settings().auto_reset != 1 || state_.auto_resets >= kAutoResets) return;
+  if (++state_.auto_reset_ms < settings().auto_reset_time) return;
+  ++state_.auto_resets;
   clear_faults();
 }
 
@@ -349,9 +367,9 @@ bool Drive::watch_links() {
   links_run_ = false;
   for (const PoSource source : kAllSources) {
     const auto n = static_cast<size_t>(source);
-    const bool out = watches_[n].tick(rules[n]);
-    links_run_ |= watches_[n].runs(rules[n]);
-    look_again_ |= watches_[n].seen() != now_->heard[n];
+    const bool out = state_.watches[n].tick(rules[n]);
+    links_run_ |= state_.watches[n].runs();
+    look_again_ |= state_.watches[n].seen() != now_->heard[n];
     if (!out) continue;
     raise_fault(fault_of(source));
     missed = true;
@@ -371,22 +389,22 @@ void Drive::watch_machine() {
   follow(d.temperature_sensor, faults::kTemperatureSensor);
   if (d.both_limit_switches) raise_fault(faults::kLimitSwitches);
 
-  const AxisState& axis = axis_.state();
+  const AxisState& axis = state_.axis.state();
   if (axis.dc_link > kOvervoltage) raise_fault(faults::kDcLink);
   if (axis.heat_sink > kOvertemperature) raise_fault(faults::kHeatSink);
   follow(set().motor_protection == 1 && axis.motor_utilization >= kFullUtilization, faults::kMotorOverload);
   count_limited();
-  if (limited_ms_ > set().speed_monitoring_delay) raise_fault(faults::kSpeedMonitoring);
+  if (state_.limited_ms > set().speed_monitoring_delay) raise_fault(faults::kSpeedMonitoring);
 }
 
 // P500: 1 motor mode, 2 regenerative, 3 both (1053 1610 p. 77).
 void Drive::count_limited() {
-  const AxisState& axis = axis_.state();
+  const AxisState& axis = state_.axis.state();
   const int32_t mode = set().speed_monitoring;
   const bool regenerative = (axis.torque < 0) != (axis.speed < 0);
   const bool counts =
       axis.current_limited && (mode == 3 || (mode == 1 && !regenerative) || (mode == 2 && regenerative));
-  limited_ms_ = counts ? limited_ms_ + 1 : 0;
+  state_.limited_ms = counts ? state_.limited_ms + 1 : 0;
 }
 
 // The set changes only while the output stage is off (ours).
@@ -412,44 +430,44 @@ void Drive::show_outputs(const Decisions& d, const AxisOrder& order, const AxisS
   in.setpoint = order.command == AxisCommand::Run ? order.target : 0;
   in.current = axis.output_current;
   in.current_limit = order.current_limit;
-  in.in_position = position_.in_position;
-  in.referenced = position_.referenced;
-  in.ipos_outputs = ipos_outputs_;
-  if (shown_for_ == settings_version_ && outputs_.go_on(in)) return;
+  in.in_position = state_.position.in_position;
+  in.referenced = state_.position.referenced;
+  in.ipos_outputs = state_.ipos_outputs;
+  if (shown_for_ == settings_version_ && state_.outputs.go_on(in)) return;
   shown_for_ = settings_version_;
-  outputs_.tick(settings_, in);
+  state_.outputs.tick(settings_, in);
 }
 
 void Drive::power_cycle() {
-  up_ms_ = 0;
+  state_.up_ms = 0;
   Situation first;
   first.inputs = now_->inputs;
   first.analog = now_->analog;
   now_.change() = first;
   forget_decisions();
-  for (LinkWatch& link : watches_) link.forget();
-  last_control_word_ = 0;
-  ipos_pi_ = {};
-  ipos_outputs_ = 0;
+  for (LinkWatch& link : state_.watches) link.forget();
+  state_.last_control_word = 0;
+  state_.ipos_pi = {};
+  state_.ipos_outputs = 0;
 
   responses_ = {};
-  reset_input_ = false;
-  auto_reset_ms_ = auto_resets_ = limited_ms_ = 0;
+  state_.reset_input = false;
+  state_.auto_reset_ms = state_.auto_resets = state_.limited_ms = 0;
 
-  cw_input_ = ccw_input_ = stopped_by_setpoint_ = false;
-  if (settings().keep_motor_pot != 1) motor_pot_ = {};
-  pi_controller_ = {};
-  pi_actual_ = 0;
-  ai1_filter_ = {};
-  setpoint_ = {};
+  state_.cw_input = state_.ccw_input = state_.stopped_by_setpoint = false;
+  if (settings().keep_motor_pot != 1) state_.motor_pot = {};
+  state_.pi_controller = {};
+  state_.pi_actual = 0;
+  state_.ai1_filter = {};
+  state_.setpoint = {};
 
-  position_ = {};
-  counter_shift_ = 0U - static_cast<uint32_t>(shaft_position());  // the shaft stays where it is
-  axis_.reset();
-  outputs_ = {};
+  state_.position = {};
+  state_.counter_shift = 0U - static_cast<uint32_t>(shaft_position());  // the shaft stays where it is
+  state_.axis.reset();
+  state_.outputs = {};
   shown_for_.reset();
-  factory_setting_ms_ = mains_ms_ = enabled_ms_ = 0;
-  counted_energy_ = 0;
+  state_.factory_setting_ms = state_.mains_ms = state_.enabled_ms = 0;
+  state_.counted_energy = 0;
 }
 
 }  // namespace ipos::runtime

@@ -19,6 +19,7 @@
 #include "runtime/drive/setpoint.hpp"
 #include "runtime/drive/setpoint_memory.hpp"
 #include "runtime/motion/axis.hpp"
+#include "runtime/pace/part.hpp"
 
 namespace ipos::runtime {
 
@@ -56,31 +57,36 @@ class Drive final : private DriveLink {
   // From the program: H484, PI words with assignment IPOS PI-DATA, outputs with function IPOS OUTPUT (bits as
   // outputs()).
   void set_ipos_control_word(uint32_t word) { now_.set(&Situation::ipos_word, word); }
-  void set_ipos_pi(const Words& words) { ipos_pi_ = words; }
+  void set_ipos_pi(const Words& words) { state_.ipos_pi = words; }
   void set_ipos_outputs(uint16_t levels) {
-    if (levels != ipos_outputs_) course_left_ = 0, travels_ = false;
-    ipos_outputs_ = levels;
+    if (levels != state_.ipos_outputs) steady_left_ = 0, travels_ = false;
+    state_.ipos_outputs = levels;
   }
 
   // One millisecond has passed.
   void tick(const PositionControl& position = {}) {
-    travelled_ = travels() && position.controls && position.halt == position_.halt;
+    travelled_ = travels() && position.controls && position.halt == state_.position.halt;
     if (travelled_)
       travel(position);
     else
       tick_anew(position);
   }
 
-  // --- ticks that only go on (course.hpp) ---
-  // The next ticks are of that kind while nobody touches the drive.
-  void hold_course(uint32_t ticks) { course_left_ = ticks; }
-  // How many of them are left: the next ones are go_on() instead of tick(), if position_control() is ordered
-  // again.
-  uint32_t course_left() const {
-    return now_.changed() || settings_version_ != parameters_.changes() ? 0 : course_left_;
+  // --- ticks in which nothing is decided ---
+  struct Moment;
+  // Before a tick.
+  Moment moment() const;
+  // Behind it: how many of the next ticks are advance(), while nobody touches the drive; 0 when that one did
+  // more.
+  Ticks steady_since(const Moment& before) const;
+  void hold_steady(uint32_t ticks) { steady_left_ = ticks; }
+  // How many of them are left: the next ones are advance() instead of tick(), if position_control() is
+  // ordered again.
+  uint32_t steady_left() const {
+    return now_.changed() || settings_version_ != parameters_.changes() ? 0 : steady_left_;
   }
-  void go_on(uint32_t ticks = 1);
-  const PositionControl& position_control() const { return position_; }  // of the last tick
+  void advance(Ticks ticks);
+  const PositionControl& position_control() const { return state_.position; }  // of the last tick
 
   // --- ticks that only travel ---
   // The last tick has found nothing to decide, and positioning moves the axis: while nobody touches the drive
@@ -97,7 +103,7 @@ class Drive final : private DriveLink {
   // Enabled, magnetized, brake open: a speed of PositionControl acts.
   bool follows() const { return follows(decided()); }
   bool follows(const Decisions& d) const {
-    return axis_.phase() == AxisPhase::Moving && verdict_of(d).command == Command::Enable;
+    return state_.axis.phase() == AxisPhase::Moving && verdict_of(d).command == Command::Enable;
   }
   // For who asks for more than one thing.
   const Decisions& decisions() const { return decided(); }
@@ -113,8 +119,8 @@ class Drive final : private DriveLink {
   // control word bit 6, P840, the program, or auto reset P841.
   void raise_fault(uint8_t number);
   void raise_fault(uint8_t number, FaultResponse response);
-  void reset_fault();                          // by hand: auto reset counts anew
-  uint32_t resets() const { return resets_; }  // how often a reset was ordered, by whomever
+  void reset_fault();                                // by hand: auto reset counts anew
+  uint32_t resets() const { return state_.resets; }  // how often a reset was ordered, by whomever
   // _FaultReaction on a fault without a parameter for its response; false: that of this one is fixed.
   bool set_fault_response(uint8_t number, FaultResponse response);
   uint8_t fault() const { return now_->faults.shown(); }  // error or warning, 0 is none
@@ -132,13 +138,13 @@ class Drive final : private DriveLink {
   uint16_t status_word_1() const;
   uint16_t status_word_2() const;                            // high byte: virtual output terminals DO10..DO17
   uint16_t status_word_3() const { return status_block(); }  // high byte in no manual read; 0 is ours
-  const Setpoint& setpoint() const { return setpoint_; }     // of the last tick
-  const AxisState& axis() const { return axis_.state(); }
+  const Setpoint& setpoint() const { return state_.setpoint; }  // of the last tick
+  const AxisState& axis() const { return state_.axis.state(); }
   // Of axis(), for who looks every millisecond.
-  int32_t position() const { return axis_.position(); }
-  int32_t speed() const { return axis_.speed(); }
-  bool standing() const { return axis_.standing(); }
-  uint16_t outputs() const { return outputs_.levels(); }
+  int32_t position() const { return state_.axis.position(); }
+  int32_t speed() const { return state_.axis.speed(); }
+  bool standing() const { return state_.axis.standing(); }
+  uint16_t outputs() const { return state_.outputs.levels(); }
 
   // What the master of a master/slave group sends (P750); its slaves scale it (P751): control word 1, speed,
   // 0.
@@ -157,7 +163,6 @@ class Drive final : private DriveLink {
   }
 
  private:
-  friend class DriveCourse;
   static constexpr uint32_t kMinuteMs = 60'000;
   // P017 counts in 1E5 Ws (quantity 8, conversion index 5).
   static constexpr int64_t kEnergyDigit = 100'000;
@@ -167,7 +172,7 @@ class Drive final : private DriveLink {
 
   std::optional<int32_t> live_value(uint16_t index) const override;
   bool controller_inhibited() const override;
-  bool output_stage_on() const override { return axis_.state().output_stage; }
+  bool output_stage_on() const override { return state_.axis.state().output_stage; }
   void on_parameter_written(uint16_t index, int32_t value) override;
 
   const Settings& settings() const {
@@ -207,7 +212,7 @@ class Drive final : private DriveLink {
   }
   bool waits_for(PoSource bus) const;
   bool is_waiting() const;
-  bool starting_up() const { return up_ms_ < parameters_.options().start_up_ms; }
+  bool starting_up() const { return state_.up_ms < parameters_.options().start_up_ms; }
   bool heard(PoSource source) const { return now_->heard[static_cast<size_t>(source)]; }
   FaultResponse response_of(uint8_t number) const;
   UnitCondition enabled_condition() const;
@@ -234,7 +239,8 @@ class Drive final : private DriveLink {
   void select_parameter_set();
   Setpoint next_setpoint(const Decisions& d);
   Verdict verdict_of(const Decisions& d) const {
-    const bool more = stopped_by_setpoint_ || (d.controls.command == Command::Enable && !now_->positioning);
+    const bool more =
+        state_.stopped_by_setpoint || (d.controls.command == Command::Enable && !now_->positioning);
     return more ? verdict_with_setpoint(d) : d.controls;
   }
   Verdict verdict_with_setpoint(const Decisions& d) const;
@@ -262,7 +268,7 @@ class Drive final : private DriveLink {
   mutable WatchedSituation now_;
   mutable Situation decided_for_;
   mutable Decisions decisions_;
-  mutable bool look_again_ = true;  // what others keep may be other than in now_
+  mutable bool look_again_ = true;  // copies in now_ may be out of date
   mutable bool decisions_known_ = false;
   mutable bool settled_ = false;  // latches, faults and parameter set follow from these decisions already
   // The rest of what follows from them, as far as it has been asked for.
@@ -277,42 +283,59 @@ class Drive final : private DriveLink {
   mutable std::optional<SetpointMemory> selected_for_;
   Setpoint selected_;
 
-  std::array<LinkWatch, kPoSources> watches_{};
-  uint16_t last_control_word_ = 0;  // for the edge of its reset bit
-  Words ipos_pi_{};
-  uint16_t ipos_outputs_ = 0;
-  PositionControl position_;
-  uint32_t counter_shift_ = 0;  // by all of set_position
+  // What else a tick changes, or others tell the drive. All else follows from it, the situation and the
+  // settings.
+  struct State {
+    explicit State(const Axis& at_rest) : axis(at_rest) {}
+    void advance(Ticks ticks);
+    Ticks bound() const;
+    bool operator==(const State&) const = default;
 
+    std::array<LinkWatch, kPoSources> watches{};
+    uint16_t last_control_word = 0;  // for the edge of its reset bit
+    Words ipos_pi{};
+    uint16_t ipos_outputs = 0;
+    PositionControl position;
+    uint32_t counter_shift = 0;  // by all of set_position
+
+    uint32_t resets = 0;
+    bool reset_input = false;  // level at the last tick
+    int32_t auto_reset_ms = 0;
+    int auto_resets = 0;
+    int32_t limited_ms = 0;  // at the current limit
+
+    bool cw_input = false, ccw_input = false;
+    bool stopped_by_setpoint = false;
+    MotorPotentiometer motor_pot;
+    PiController pi_controller;
+    int32_t pi_actual = 0;
+    SetpointFilter ai1_filter;
+    Setpoint setpoint;
+
+    Axis axis;
+    Outputs outputs;
+    uint32_t factory_setting_ms = 0;
+    uint32_t up_ms = 0;  // since power-on, up to the end of the start-up
+    uint32_t mains_ms = 0;
+    uint32_t enabled_ms = 0;
+    int64_t counted_energy = 0;
+  };
+  State state_;
   std::array<std::optional<FaultResponse>, 256> responses_{};  // chosen by the program, by fault number
-  uint32_t resets_ = 0;
-  bool reset_input_ = false;  // level at the last tick
-  int32_t auto_reset_ms_ = 0;
-  int auto_resets_ = 0;
-  int32_t limited_ms_ = 0;  // at the current limit
-
-  bool cw_input_ = false, ccw_input_ = false;
-  bool stopped_by_setpoint_ = false;
-  MotorPotentiometer motor_pot_;
-  PiController pi_controller_;
-  int32_t pi_actual_ = 0;
-  SetpointFilter ai1_filter_;
-  Setpoint setpoint_;
-
-  Axis axis_;
-  Outputs outputs_;
-  std::optional<uint32_t> shown_for_;  // the settings of their last tick
-  uint32_t factory_setting_ms_ = 0;
-  uint32_t up_ms_ = 0;  // since power-on, up to the end of the start-up
-  uint32_t mains_ms_ = 0;
-  uint32_t enabled_ms_ = 0;
-  int64_t counted_energy_ = 0;
-  mutable uint32_t course_left_ = 0;
-  mutable bool travels_ = false;  // the next tick can be one that only travels,
-  bool travelled_ = false;        // the last one was
-  bool accelerates_ = false;      // and found another speed ordered
-  bool calm_ = false;             // nobody had touched the drive before the last tick
+  std::optional<uint32_t> shown_for_;                          // the settings of the last tick of the outputs
+  mutable uint32_t steady_left_ = 0;
+  mutable bool travels_ = false;  // the next tick can be travel()
+  bool travelled_ = false;        // the last tick was travel()
+  bool accelerates_ = false;      // the last tick found another speed ordered than the one before
+  bool untouched_ = false;        // nobody had touched the drive before the last tick
   bool links_run_ = true;         // or may do so: a telegram has come since the last look
 };
+
+struct Drive::Moment {
+  State state;
+  Situation situation;
+};
+
+inline Drive::Moment Drive::moment() const { return {state_, *now_}; }
 
 }  // namespace ipos::runtime

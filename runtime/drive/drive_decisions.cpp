@@ -227,7 +227,7 @@ void Drive::decide_setpoint(Decisions& d) const {
   pot.maximum = active.maximum_speed;
   pot.up_ms = s.motor_pot_up;
   pot.down_ms = s.motor_pot_down;
-  pot.span = axis_.machine().ramp_reference;
+  pot.span = state_.axis.machine().ramp_reference;
 
   if (s.pi_controller == 0) return;
   const auto percent = [](int32_t whole) { return whole * 1000; };

@@ -46,9 +46,8 @@ UnitCondition Drive::condition() const {
     case Command::Stop: break;
   }
   if (now.reason == Block::LimitCw || now.reason == Block::LimitCcw) return UnitCondition::LimitSwitch;
-  if (decided().waiting && !is_m07_ && decided().enabled_locally)
-    return UnitCondition::Waiting;
-  const AxisState& axis = axis_.state();
+  if (decided().waiting && !is_m07_ && decided().enabled_locally) return UnitCondition::Waiting;
+  const AxisState& axis = state_.axis.state();
   if (axis.standing && axis.output_stage && set().standstill_current > 0)
     return UnitCondition::StandstillCurrent;
   return UnitCondition::NoEnable;
@@ -87,7 +86,7 @@ uint16_t Drive::status_word_1() const {
 }
 
 uint16_t Drive::status_word_2() const {
-  return static_cast<uint16_t>((outputs_.levels() & 0xFF00U) | status_block());
+  return static_cast<uint16_t>((state_.outputs.levels() & 0xFF00U) | status_block());
 }
 
 Drive::Words Drive::pi() const {
@@ -97,7 +96,7 @@ Drive::Words Drive::pi() const {
 }
 
 uint16_t Drive::pi_word(size_t n) const {
-  const AxisState& axis = axis_.state();
+  const AxisState& axis = state_.axis.state();
   const int32_t speed = set().change_direction == 1 ? -axis.speed : axis.speed;
   switch (static_cast<PiAssignment>(settings().pi[n])) {
     case PiAssignment::None: return 0;
@@ -110,9 +109,9 @@ uint16_t Drive::pi_word(size_t n) const {
     case PiAssignment::StatusWord1: return status_word_1();
     case PiAssignment::StatusWord2: return status_word_2();
     case PiAssignment::StatusWord3: return status_word_3();
-    case PiAssignment::IposData: return ipos_pi_[n];
+    case PiAssignment::IposData: return state_.ipos_pi[n];
     case PiAssignment::PiActual:  // 10 is RESERVED on MOVIDRIVE
-      return is_m07_ ? relative_of_speed(pi_actual_, 100'000) : 0;
+      return is_m07_ ? relative_of_speed(state_.pi_actual, 100'000) : 0;
   }
   return 0;
 }
@@ -122,7 +121,7 @@ Drive::Words Drive::master_words() const {
                            : verdict().command == Command::Inhibit   ? control_bits::kInhibit
                            : verdict().command == Command::RapidStop ? control_bits::kStop
                                                                      : control_bits::kRapidStop;
-  return {control, word_of_speed(axis_.state().setpoint), 0};
+  return {control, word_of_speed(state_.axis.state().setpoint), 0};
 }
 
 std::optional<int32_t> Drive::live_value(uint16_t index) const {
@@ -137,7 +136,7 @@ std::optional<int32_t> Drive::live_value(uint16_t index) const {
     if (index >= index::kPi1Description && index < index::kPi1Description + kProcessWords)
       return settings().pi[index - index::kPi1Description];
   }
-  const AxisState& axis = axis_.state();
+  const AxisState& axis = state_.axis.state();
   const bool reversed = set().change_direction == 1;
   switch (index) {
     case index::kSpeed: return reversed ? -axis.speed : axis.speed;
@@ -158,8 +157,8 @@ std::optional<int32_t> Drive::live_value(uint16_t index) const {
     case index::kStatus: return status_word_1();
     case index::kInputs: return now_->inputs & (is_m07_ ? 0x3E : 0x3F);  // M07 has no DI00
     case index::kOptionInputs: return now_->inputs >> 8;
-    case index::kOutputs: return outputs_.levels() & (is_m07_ ? 0x06 : 0x07);  // nor DB00
-    case index::kOptionOutputs: return outputs_.levels() >> 8;
+    case index::kOutputs: return state_.outputs.levels() & (is_m07_ ? 0x06 : 0x07);  // nor DB00
+    case index::kOptionOutputs: return state_.outputs.levels() >> 8;
     default: return std::nullopt;
   }
 }

@@ -9,17 +9,17 @@ namespace ipos::runtime {
 // Filter, motor potentiometer and PI controller go on every millisecond; the choice is made again when one of
 // them gives something else.
 Setpoint Drive::next_setpoint(const Decisions& d) {
-  if (d.setpoint_held) return setpoint_;
+  if (d.setpoint_held) return state_.setpoint;
   const ParameterSet& active = set();
   SetpointMemory memory;
-  memory.ai1_speed = ai1_filter_.tick(d.ai1_speed, settings_.setpoint_filter);
-  if (d.motor_pot_falls_back) motor_pot_.set(active.minimum_speed);
-  motor_pot_.tick(d.motor_pot);
-  memory.motor_pot = motor_pot_.value();
+  memory.ai1_speed = state_.ai1_filter.tick(d.ai1_speed, settings_.setpoint_filter);
+  if (d.motor_pot_falls_back) state_.motor_pot.set(active.minimum_speed);
+  state_.motor_pot.tick(d.motor_pot);
+  memory.motor_pot = state_.motor_pot.value();
   if (d.pi) {
-    pi_actual_ = d.pi->actual;
-    if (d.pi_resets) pi_controller_.reset();
-    memory.pi_output = pi_controller_.tick(*d.pi);
+    state_.pi_actual = d.pi->actual;
+    if (d.pi_resets) state_.pi_controller.reset();
+    memory.pi_output = state_.pi_controller.tick(*d.pi);
   }
   if (selected_for_ != memory) {
     selected_for_ = memory;
@@ -31,10 +31,10 @@ Setpoint Drive::next_setpoint(const Decisions& d) {
   }
   if (active.stop_function == 1) {
     const int64_t magnitude = std::abs(int64_t{selected_.requested});
-    if (magnitude < active.stop_setpoint) stopped_by_setpoint_ = true;
-    if (magnitude > int64_t{active.stop_setpoint} + active.start_offset) stopped_by_setpoint_ = false;
+    if (magnitude < active.stop_setpoint) state_.stopped_by_setpoint = true;
+    if (magnitude > int64_t{active.stop_setpoint} + active.start_offset) state_.stopped_by_setpoint = false;
   } else {
-    stopped_by_setpoint_ = false;
+    state_.stopped_by_setpoint = false;
   }
   return selected_;
 }
@@ -46,7 +46,7 @@ const AxisOrder& Drive::next_order(Command command) {
   }
   // P350 does not turn positions round (ours).
   const bool reversed = order_.command != AxisCommand::Follow && set().change_direction == 1;
-  order_.target = reversed ? -setpoint_.speed : setpoint_.speed;
+  order_.target = reversed ? -state_.setpoint.speed : state_.setpoint.speed;
   return order_;
 }
 

@@ -16,13 +16,13 @@ bool LinkWatch::on_request() {
   return was_silent;
 }
 
-bool LinkWatch::run(const Rules& rules) {
+bool LinkWatch::run() {
   running_ = true;
   ++silent_ms_;
   // A telegram may have come right before the first tick, so that tick counts for nothing: never early, at
   // most a millisecond late.
-  if (silent_ms_ <= rules.delay_ms) return false;
-  if (!rules.supervised) {
+  if (silent_ms_ <= rules_.delay_ms) return false;
+  if (!rules_.supervised) {
     forget();
     return false;
   }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "runtime/pace/part.hpp"
+
 namespace ipos::runtime {
 
 class LinkWatch {
@@ -13,6 +15,7 @@ class LinkWatch {
     int32_t delay_ms = 0;        // 0: off
     bool supervised = false;     // silence is a fault; else it only brings back the waiting
     bool without_first = false;  // silence from the beginning is a fault, too (MOVITRAC 07)
+    bool operator==(const Rules&) const = default;
   };
 
   // Process data for this unit have arrived; `restarts` is false for acyclic RS-485 requests, which are not
@@ -24,25 +27,26 @@ class LinkWatch {
 
   // One millisecond. True once when the time has run out.
   bool tick(const Rules& rules) {
-    if (runs(rules)) return run(rules);
+    rules_ = rules;
+    if (runs()) return run();
     if (rules.delay_ms == 0) silent_ms_ = 0;
     return false;
   }
 
-  // A tick does something; else so it stays until telegrams come or the rules change.
-  bool runs(const Rules& rules) const {
-    return rules.delay_ms != 0 && !reported_ && (running_ || (rules.without_first && rules.supervised));
+  // With the rules of the last tick: a tick does something; else so it stays until telegrams come or the
+  // rules change.
+  bool runs() const {
+    return rules_.delay_ms != 0 && !reported_ && (running_ || (rules_.without_first && rules_.supervised));
   }
-  bool counts(const Rules& rules) const { return rules.delay_ms != 0 && running_ && !reported_; }
-  // Ticks from now on that only count the silence, and what they do. Telegrams that come while it is alert
-  // only begin the count anew.
-  uint64_t ticks_left(const Rules& rules) const {
-    return counts(rules) ? static_cast<uint64_t>(std::max<int64_t>(rules.delay_ms - silent_ms_, 0))
-                         : UINT64_MAX;
+  // Ticks that only count the silence (pace/part.hpp). Telegrams that come while it is alert only begin the
+  // count anew.
+  void advance(Ticks ticks) {
+    if (counts()) silent_ms_ += ticks;
   }
-  void go_on(const Rules& rules, uint64_t ticks) {
-    if (counts(rules)) silent_ms_ += static_cast<int64_t>(ticks);
+  Ticks bound() const {
+    return counts() ? static_cast<Ticks>(std::max<int64_t>(rules_.delay_ms - silent_ms_, 0)) : kNoBound;
   }
+  bool operator==(const LinkWatch&) const = default;
   bool alert() const { return seen_ && running_ && !reported_; }
 
   void forget() { *this = {}; }  // power-on, reset of a fault
@@ -50,8 +54,10 @@ class LinkWatch {
   bool silent() const { return reported_; }
 
  private:
-  bool run(const Rules& rules);
+  bool counts() const { return rules_.delay_ms != 0 && running_ && !reported_; }
+  bool run();
 
+  Rules rules_;
   bool seen_ = false;     // process data have arrived
   bool running_ = false;  // the time runs
   bool reported_ = false;

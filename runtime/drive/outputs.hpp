@@ -62,6 +62,7 @@ class ReferenceSignal {
   void go_on(int32_t ticks) {
     if (!settled()) lasted_ms_ += ticks;
   }
+  bool operator==(const ReferenceSignal&) const = default;
 
  private:
   bool raw_ = false;
@@ -128,6 +129,7 @@ class Outputs {
   [[gnu::always_inline]] bool go_on(const OutputMotion& in) {
     return in.flags() == (basis_.flags & kMotionFlags) && go_on(in.speed, 0, in.current);
   }
+  bool operator==(const Outputs&) const = default;
 
  private:
   [[gnu::always_inline]] bool go_on(int32_t speed, int32_t setpoint, int32_t current) {
@@ -163,6 +165,7 @@ class Outputs {
     int64_t low = 0;
     int64_t high = -1;
     bool have(int64_t value) const { return low <= value && value <= high; }
+    bool operator==(const Range&) const = default;
   };
   static Range both(const Range& a, const Range& b) {
     return {std::max(a.low, b.low), std::min(a.high, b.high)};
@@ -172,7 +175,7 @@ class Outputs {
   static Range around(const ReferenceSignal& signal, int64_t from, int64_t to, int64_t value);
 
   ReferenceSignal speed_, window_, compare_, current_, limit_;
-  // As of the last tick(): where go_on() holds, how long, and how often it was.
+  // Range of values and number of ms for which go_on() is valid since the last tick(), and ms used.
   Range speeds_, deviations_, currents_;
   int32_t current_limit_ = 0;
   bool settled_ = true;

@@ -70,6 +70,7 @@ struct Setpoint {
   int32_t speed = 0;      // what the ramp is told
   int32_t requested = 0;  // before the limits
   SetpointNote note = SetpointNote::None;
+  bool operator==(const Setpoint&) const = default;
 };
 
 // `set` is the active one of settings.sets, `other` the other.

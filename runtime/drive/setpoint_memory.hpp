@@ -21,6 +21,7 @@ class MotorPotentiometer {
   void tick(const Order& order);
   void set(int32_t value) { value_ = value; }
   int32_t value() const { return value_; }
+  bool operator==(const MotorPotentiometer&) const = default;
 
  private:
   int32_t step(int32_t span, int32_t time_ms);
@@ -41,6 +42,7 @@ class PiController {
   };
   int32_t tick(const Order& order);
   void reset() { integral_ = 0; }
+  bool operator==(const PiController&) const = default;
 
  private:
   int64_t integral_ = 0;  // 1/1000 % x ms
@@ -50,6 +52,7 @@ class PiController {
 class SetpointFilter {
  public:
   int32_t tick(int32_t input, int32_t time_us);
+  bool operator==(const SetpointFilter&) const = default;
 
  private:
   int64_t state_ = 0;  // x 65536

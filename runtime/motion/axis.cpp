@@ -18,10 +18,7 @@ FineSpeed target_of(const AxisOrder& order) {
 
 }  // namespace
 
-Axis::Axis(const MachineData& machine)
-    : machine_(within_limits(machine)), ramp_(machine_.ramp_reference), shaft_(machine_), power_(machine_) {
-  show_power();
-}
+Axis::Axis(const MachineData& machine) : AxisParts(machine) { show_power(); }
 
 void Axis::set_position(int32_t position) {
   position_ = static_cast<uint32_t>(position);
@@ -144,7 +141,7 @@ void Axis::follow(const AxisOrder& order) {
   state_.setpoint = whole_speed(ramp_.output());
 }
 
-void Axis::go_on(uint32_t ticks) {
+void Axis::advance(Ticks ticks) {
   behind_ += ticks;
   power_shown_ = false;
   if (speed_ == 0) return;
@@ -157,6 +154,6 @@ void Axis::go_on(uint32_t ticks) {
   state_.position = static_cast<int32_t>(position_);
 }
 
-void Axis::draw_and_warm() const { power_.go_on(std::exchange(behind_, 0)); }
+void Axis::draw_and_warm() const { power_.advance(std::exchange(behind_, 0)); }
 
 }  // namespace ipos::runtime

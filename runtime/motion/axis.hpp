@@ -11,6 +11,7 @@
 #include "runtime/motion/power_section.hpp"
 #include "runtime/motion/ramp.hpp"
 #include "runtime/motion/shaft.hpp"
+#include "runtime/pace/part.hpp"
 
 namespace ipos::runtime {
 
@@ -60,7 +61,29 @@ struct AxisState {
   bool operator==(const AxisState&) const = default;
 };
 
-class Axis {
+// What an Axis is made of.
+struct AxisParts {
+  explicit AxisParts(const MachineData& machine)
+      : machine_(within_limits(machine)),
+        ramp_(machine_.ramp_reference),
+        shaft_(machine_),
+        power_(machine_) {}
+  bool operator==(const AxisParts&) const = default;
+
+  MachineData machine_;
+  BrakeSequence sequence_;
+  Ramp ramp_;
+  Shaft shaft_;
+  mutable PowerSection power_;
+  FineSpeed speed_ = 0;
+  uint32_t position_ = 0;
+  int64_t position_rest_ = 0;  // part of an increment
+  mutable AxisState state_;
+  mutable uint32_t behind_ = 0;      // ticks of advance() that the power section has not seen yet
+  mutable bool power_shown_ = true;  // the state is as the power section
+};
+
+class Axis : private AxisParts {
  public:
   explicit Axis(const MachineData& machine);
 
@@ -68,9 +91,15 @@ class Axis {
   const AxisState& tick(const AxisOrder& order);
   // The same for an axis in AxisPhase::Moving with AxisCommand::Follow: only the shaft moves.
   void follow(const AxisOrder& order);
-  // What so many ticks under the last order do when nothing changes but what moves, warms and counts: none is
-  // on its way but to a speed that is reached, and the DC link stays as it is. At most a minute.
-  void go_on(uint32_t ticks);
+  // What so many ticks under the last order do, at most bound() of them. Only while no ramp runs and the DC
+  // link stays as it is: then only position, temperatures and energy change.
+  void advance(Ticks ticks);
+  Ticks bound() const { return power_.bound(); }
+  friend bool operator==(const Axis& a, const Axis& b) {
+    a.state();
+    b.state();
+    return static_cast<const AxisParts&>(a) == static_cast<const AxisParts&>(b);
+  }
   const AxisState& state() const {
     catch_up();
     if (!power_shown_) show_power();
@@ -114,18 +143,6 @@ class Axis {
 
   static bool has_torque(AxisPhase phase);
   bool brake_open() const;
-
-  MachineData machine_;
-  BrakeSequence sequence_;
-  Ramp ramp_;
-  Shaft shaft_;
-  mutable PowerSection power_;
-  FineSpeed speed_ = 0;
-  uint32_t position_ = 0;
-  int64_t position_rest_ = 0;  // part of an increment
-  mutable AxisState state_;
-  mutable uint32_t behind_ = 0;      // ticks of go_on() that the power section has not seen yet
-  mutable bool power_shown_ = true;  // the state is as the power section
 };
 
 static_assert(std::is_trivially_copyable_v<Axis>, "a copy is a snapshot");

@@ -32,6 +32,7 @@ class BrakeSequence {
   }
   // `standing`: ramp output and shaft are at 0. `hold_current`: standstill current is wanted.
   void stop(const BrakeTimes& times, bool standing, bool hold_current);
+  bool operator==(const BrakeSequence&) const = default;
 
  private:
   void begin_motion(const BrakeTimes& times);

@@ -40,6 +40,7 @@ struct MachineData {
   int32_t ambient = 25;                  // °C
   int32_t heat_sink_rise = 40;           // K at IN
   int32_t heat_sink_time_ms = 300'000;
+  bool operator==(const MachineData&) const = default;
 };
 
 inline constexpr int32_t kTopTorque = 4'000'000;   // 40 x rated

@@ -75,7 +75,7 @@ int32_t PowerSection::frequency() const {
   return static_cast<int32_t>((speed_.mrpm + slip) * machine_.pole_pairs / 60);
 }
 
-void PowerSection::go_on(uint32_t steps) {
+void PowerSection::advance(Ticks steps) {
   draw(steps);
   Lag::Way unit = unit_.begin(unit_target_), motor = motor_.begin(motor_target_),
            heat_sink = heat_sink_.begin(heat_sink_target_);

@@ -7,6 +7,7 @@
 
 #include "runtime/motion/fine_speed.hpp"
 #include "runtime/motion/machine_data.hpp"
+#include "runtime/pace/part.hpp"
 
 namespace ipos::runtime {
 
@@ -46,8 +47,9 @@ class PowerSection {
     heat_sink_.follow(heat_sink_target_);
   }
   // What so many steps with the last load do while the DC link stays as it is: energy and the slow
-  // quantities. At most a minute.
-  void go_on(uint32_t steps);
+  // quantities. At most bound() of them.
+  void advance(Ticks steps);
+  Ticks bound() const { return kMostAtOnce; }
 
   int32_t output_current() const { return output_current_; }             // 1/1000 % IN
   int32_t active_current() const { return active_current_; }             // signed as the torque
@@ -66,6 +68,7 @@ class PowerSection {
     return static_cast<int32_t>(std::max<int64_t>(motor_.whole(), motor_target_));
   }
   int64_t energy_ahead() const { return drawn() / kPerWs + 1; }
+  bool operator==(const PowerSection&) const = default;
 
  private:
   // Follows a target with a time constant, in steps of 2^-24.
@@ -99,6 +102,7 @@ class PowerSection {
       value_ = way.falls ? way.end + static_cast<int64_t>(way.distance)
                          : way.end - static_cast<int64_t>(way.distance);
     }
+    bool operator==(const Lag&) const = default;
 
    private:
     // Of distances below 2^48 (targets below 2^24) the product has the whole part of distance / time exactly:
@@ -157,6 +161,7 @@ class PowerSection {
   int64_t drawn() const { return std::clamp<int64_t>(power(), 0, kMostPower) * machine_.rated_power; }
   int32_t temperature(int64_t rise) const { return static_cast<int32_t>(machine_.ambient + rise / 1'000); }
 
+  static constexpr Ticks kMostAtOnce = 60'000;
   static constexpr int64_t kMostPower = 100'000'000;  // 1/1000 % of the rated power
   static constexpr int64_t kStandby = 1'000;          // always taken from the DC link
   // Rated power lifts the square of the DC link voltage by 10000 V² a millisecond: about 200 µF a kilowatt.

@@ -41,6 +41,7 @@ class Ramp {
     else
       go_on(target, times);
   }
+  bool operator==(const Ramp&) const = default;
 
  private:
   // Slope of an S pattern: level times reference / (ms x levels) per millisecond.

@@ -36,6 +36,7 @@ class Shaft {
     if (-torque_limit <= needed && needed <= torque_limit) return {setpoint, needed, false};
     return limited(speed, setpoint, needed, torque_limit, resistance);
   }
+  bool operator==(const Shaft&) const = default;
 
  private:
   Motion limited(FineSpeed speed, FineSpeed setpoint, int64_t needed, int64_t torque_limit,

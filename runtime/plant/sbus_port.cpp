@@ -117,10 +117,10 @@ void SbusPort::tell_reasons(Time now) {
   for (std::string& obstacle : drive_.take_obstacles()) note(now, Weight::Why, std::move(obstacle));
 }
 
-void SbusPort::stir() {
+void SbusPort::want_again() {
   if (!std::exchange(rests_, false)) return;
   objects_.each_received(
-      [this](uint32_t id, uint32_t /*data*/, VariableFormat /*format*/) { line_.stir(node(), id); });
+      [this](uint32_t id, uint32_t /*data*/, VariableFormat /*format*/) { line_.want_again(node(), id); });
 }
 
 // An object with an identifier of the unit's own MOVLNK (1053 1610 p. 51, rule 2).

@@ -49,7 +49,7 @@ class SbusPort final : private CanNode, private SlaveObserver, private ObjectRea
   }
   bool has_waiting_frames() const { return line_.has_waiting(node()); }
   bool sends_more_than_variables() const { return leads_; }
-  void stir();  // the variables may change from now on
+  void want_again();  // the variables may change from now on
 
   NodeId node() const { return sender_.node(); }
   CanLine& line() const { return line_; }

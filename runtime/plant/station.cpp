@@ -136,17 +136,17 @@ void Station::tick(Time now) {
 
 // The tick, but for its telegrams. False: the runner stops in the middle.
 bool Station::execute(Time now) {
-  end_cruise();
-  on_course_ = on_course_ && stays_on_course();
+  end_ahead();
+  steady_ = steady_ && stays_steady();
   unwritten_ = quiet_ && !touched_ && execution_.skip_idle && runner_ == nullptr;
   touched_ = false;
   if (!execution_.skip_idle) drive_.state().leave_travel();
-  if (on_course_ && machine_ && (!positioning_ || positioning_->idles())) {
-    glide(now);
+  if (steady_ && machine_ && (!positioning_ || positioning_->idles())) {
+    steady_tick(now);
     return true;
   }
   move_drive(now);
-  if (!on_course_) {
+  if (!steady_) {
     if (!drive_.state().travelled()) report_drive(now);
     if (x13_) x13_->configure(now);
     if (xt_) xt_->configure(now);
@@ -163,16 +163,16 @@ bool Station::execute(Time now) {
 
 void Station::move_drive(Time now) {
   Drive& drive = drive_.state();
-  if (!on_course_ && !inputs_.known()) {
+  if (!steady_ && !inputs_.known()) {
     drive.set_inputs(inputs_.levels());
     drive.set_analog(inputs_.analog());
   }
   const PositionControl position =
       positioning_ && machine_ ? positioning_->order(now, machine_->variables(), drive_.syncs(), unwritten_)
                                : PositionControl{};
-  on_course_ = on_course_ && position == drive.position_control();
-  if (on_course_)
-    drive.go_on();
+  steady_ = steady_ && position == drive.position_control();
+  if (steady_)
+    drive.advance(1);
   else
     drive.tick(position);
 }
@@ -198,7 +198,7 @@ void Station::resume_tick() {
 
 // Returns when the next one is due.
 Time Station::send_telegrams(Time now) {
-  if (prospect_.tells_motion) end_cruise();
+  if (reach_.sends_position) end_ahead();
   Time next = kNever;
   for (const auto& port : sbus_)
     if (port) next = std::min(next, port->tick(now));
@@ -208,23 +208,21 @@ Time Station::send_telegrams(Time now) {
 void Station::settle(Time now) {
   drive_.memory().tick(now);
   if (drive_.memory().has_messages()) note_memory(now);
-  if (!on_course_ && execution_.skip_idle && runner_ == nullptr) try_course();
+  if (!steady_ && execution_.skip_idle && runner_ == nullptr) try_steady();
 }
 
 void Station::begin_program(Time now) {
-  const std::span<int32_t> h = machine_->variables();
-  if (!on_course_) {
-    if (!drive_.state().travelled()) {
-      raise_drive_events();
-      restart_after_reset(now);
-    }
-    mirrored_->show(h);
+  if (!steady_ && !drive_.state().travelled()) {
+    raise_drive_events();
+    restart_after_reset(now);
   }
+  const std::span<int32_t> h = machine_->variables();
+  if (!steady_) mirrored_->show(h);
   show_drive(drive_.state(), h);
   if (positioning_) show_positioning(now);
   count_timers(h);
-  if (!on_course_ && pid_) pid_->tick(h);
-  if (on_course_ ? !quiet_ : course_noted_) noted_.note(h);
+  if (!steady_ && pid_) pid_->tick(h);
+  if (steady_ ? !quiet_ : before_tick_.has_value()) noted_.note(h);
 }
 
 void Station::count_timers(std::span<int32_t> h) {
@@ -237,7 +235,7 @@ void Station::count_timers(std::span<int32_t> h) {
 void Station::show_positioning(Time now) {
   if (positioning_->writes_variables()) {
     touch();
-    on_course_ = false;
+    steady_ = false;
   }
   positioning_->show(now, machine_->variables(), unwritten_);
   if (positioning_->positioner().touch_probes().probe(0).fresh) machine_->raise_event(vm::Event::TouchProbe);
@@ -246,8 +244,8 @@ void Station::show_positioning(Time now) {
 
 void Station::end_program(Time now) {
   const std::span<int32_t> h = machine_->variables();
-  on_course_ = on_course_ && !has_news();
-  if (on_course_) return;
+  steady_ = steady_ && !must_look();
+  if (steady_) return;
   if (!unwritten_ || touched_) {
     mirrored_->take(h);
     take_program_orders(h, drive_.state());
@@ -274,14 +272,19 @@ void Station::raise_drive_events() {
 }
 
 // A program that a fault has stopped begins anew when the fault is reset, by whatever (ours); its variables
-// keep their values.
+// keep their values. Where the program memory has been changed meanwhile, what it holds now begins.
 void Station::restart_after_reset(Time now) {
   const uint32_t resets = drive_.state().resets();
   if (resets != resets_seen_ && machine_->fault().number != 0) {
-    journal_.note(now, Weight::Why, config_.name, "the program starts anew after the reset of its fault");
-    machine_->start();
-    forget_prospect();
-    fault_reported_ = false;
+    std::optional<std::string> refused;
+    if (drive_.memory().program().code() == code_)
+      start_machine();
+    else
+      refused = load_program();
+    if (refused)
+      journal_.note(now, Weight::Warning, config_.name, "program not started: " + *refused);
+    else
+      journal_.note(now, Weight::Why, config_.name, "the program starts anew after the reset of its fault");
   }
   resets_seen_ = resets;
 }
@@ -337,7 +340,7 @@ void Station::report_drive(Time now) {
 }
 
 bool Station::program_over() const {
-  if (cruises() && !prospect_.may_stop) return false;  // the same without looking
+  if (runs_ahead() && !reach_.may_stop) return false;  // the same without looking
   look();
   if (!machine_) return true;
   for (int task = 1; task <= vm::kTasks; ++task)

@@ -11,11 +11,11 @@
 
 #include "runtime/bus/can/line.hpp"
 #include "runtime/bus/movilink/keypad.hpp"
-#include "runtime/drive/course.hpp"
+#include "runtime/clock/backoff.hpp"
 #include "runtime/plant/drive_server.hpp"
 #include "runtime/plant/execution.hpp"
 #include "runtime/plant/plant_file.hpp"
-#include "runtime/plant/prospect.hpp"
+#include "runtime/plant/program_reach.hpp"
 #include "runtime/plant/sbus_port.hpp"
 #include "runtime/plant/serial_port.hpp"
 #include "runtime/plant/station_inputs.hpp"
@@ -89,27 +89,27 @@ class Station final : private EventTarget, private Sleeper {
 
   // From the next tick on; it must outlive the station.
   void use_runner(CommandRunner& runner) {
-    leave_course();
+    leave_steady();
     runner_ = &runner;
   }
   // From now on no tick is left out or shortened.
   void stay_awake() {
-    leave_course();
+    leave_steady();
     execution_.skip_idle = false;
   }
-  // A tick was left out and not made up for yet, or those behind it will be.
+  // Ticks are being skipped; whoever reads the station first executes them.
   bool asleep() const {
     look();
     return asleep_;
   }
-  // The next tick goes on where nothing is to be decided, unless somebody touches the station.
-  bool on_course() const {
+  // In the next tick drive and positioning decide nothing, unless somebody writes to the station before it.
+  bool steady() const {
     look();
-    return on_course_;
+    return steady_;
   }
   using Sleeper::late;
   // Late, and its drive and positioning follow its tasks only when they are asked for.
-  bool cruises() const { return cruise_left_ != 0; }
+  bool runs_ahead() const { return ahead_left_ != 0; }
   // The station stands in the middle of its tick.
   bool in_tick() const { return in_tick_; }
   void resume_tick();
@@ -145,7 +145,7 @@ class Station final : private EventTarget, private Sleeper {
     return inputs_;
   }
   const StationInputs& inputs() const { return inputs_; }
-  // Left-out and late ticks are made up for by whoever looks first: nobody can tell.
+  // The first reader executes the pending ticks, so a read never sees old values.
   void look() const { const_cast<Station*>(this)->make_up(); }
   // As the parameter channel reads an index; 0 where it refuses.
   int32_t read(uint16_t index) const;
@@ -201,39 +201,42 @@ class Station final : private EventTarget, private Sleeper {
   void leave_out_to(Time last);
   void execute_to(Time last);
   void execute_all_to(Time last);
-  bool stride(Time last);
-  bool begin_cruise();
-  void end_cruise() {
-    if (cruise_left_ != 0 || owed_ != 0) finish_cruise();
+  bool run_ahead(Time last);
+  bool begin_ahead();
+  void end_ahead() {
+    if (ahead_left_ != 0 || behind_ != 0) finish_ahead();
   }
-  void finish_cruise();
+  void finish_ahead();
   void move_drive(Time now);
-  bool stays_on_course() {
-    return drive_.state().course_left() != 0 && inputs_.known() && (!touched_ || unwritten());
+  bool stays_steady() {
+    return drive_.state().steady_left() != 0 && inputs_.known() && (!touched_ || unwritten());
   }
-  void glide(Time now);
+  void steady_tick(Time now);
   void go_on(std::span<int32_t> h);
-  // Behind the tasks: somebody has to look what has happened.
+  // After the tasks: something has happened that a part of the unit must see.
   bool has_fresh_fault() const { return machine_->fault().number != 0 && !fault_reported_; }
-  bool has_news() {
+  bool must_look() {
     return drive_.has_reasons() || has_fresh_fault() || ((!quiet_ || touched_) && !unwritten());
   }
   bool unwritten() { return !machine_ || noted_.same(machine_->variables()); }
-  void leave_course();
-  void try_course();
+  void leave_steady();
+  void try_steady();
   void schedule_tick(Time now, Time telegram);
   void sleep_through(Time now);
   void try_sleep();
   void begin_trial();
   void try_program();
   uint64_t end_trial();
-  void hesitate(uint32_t longest);
+  void end_trial_without(Ticks longest);
   void try_late(Time now, Time telegram);
   bool can_be_late() const;
-  void look_ahead();
-  void forget_prospect();
+  void find_reach();
+  void forget_reach();
   void connect_sbus(int number);
   void restart_program_memory();
+  std::optional<std::string> load_program();
+  void start_machine();
+  void stop_tasks();
   void choose_engine(const vm::VerifiedImage& program);
   void note_memory(Time now);
   void connect_serial();
@@ -257,8 +260,8 @@ class Station final : private EventTarget, private Sleeper {
   EventQueue& queue_;
   uint32_t source_;
   bool asleep_ = false;
-  bool steady_ = true;  // the program then changes no variable, not even for a moment
-  bool on_course_ = false;
+  bool variables_rest_ = true;  // the program then changes no variable, not even for a moment
+  bool steady_ = false;
   bool trial_ = false;  // this tick is compared with what was before it, for sleep
   Time back_at_ = 0;    // asleep or late: the tick that is executed in its turn again
   EventId tick_ = kNoEvent;
@@ -266,30 +269,27 @@ class Station final : private EventTarget, private Sleeper {
   Time next_tick_ = 0;  // the first that was neither executed nor made up for
 
   // Late ticks (station_late.cpp).
-  uint32_t cruise_left_ = 0;  // ticks of which only the tasks need be executed
-  uint32_t owed_ = 0;         // those in which drive and positioning are behind them
-  vm::Rates cruise_rates_;
-  Time cruise_at_ = 0;  // not before this tick again
-  uint32_t cruise_pause_ = 1;
+  uint32_t ahead_left_ = 0;  // ticks of which only the tasks need be executed
+  uint32_t behind_ = 0;      // those in which drive and positioning are behind them
+  vm::Rates ahead_rates_;
+  Backoff ahead_backoff_;
   // Telegrams that wait until the tasks have come so far.
-  struct Letter {
+  struct Telegram {
     Time after;  // this tick
     ObjectReader* reader;
     size_t object;
     Frame frame;
   };
-  std::array<Letter, 4> letters_;
-  uint8_t letters_ahead_ = 0;
-  uint8_t letters_read_ = 0;
-  Prospect prospect_;
+  std::array<Telegram, 4> inbox_;
+  uint8_t posted_ = 0;
+  uint8_t read_ = 0;
+  ProgramReach reach_;
   bool may_order_ = true;  // the program can write the control word of the drive
-  Time prospect_at_ = 0;   // the program is not looked at again before this tick
-  uint32_t prospect_pause_ = 1;
+  Backoff reach_backoff_;
 
   bool quiet_ = false;           // the program's own commands write none of the noted variables
   bool unwritten_ = false;       // before this tick nobody had written them since the last one
   bool touched_ = false;         // somebody else may have written them since the last tick
-  bool course_noted_ = false;    // this tick is compared with what was before it, for a course
   bool fault_reported_ = false;  // of the program
   bool in_tick_ = false;
   CommandRunner* runner_ = nullptr;
@@ -326,18 +326,16 @@ class Station final : private EventTarget, private Sleeper {
   bool powered_ = false;
   bool was_off_ = false;
 
-  // Ticks that only go on (station_course.cpp).
+  // Steady ticks (station_steady.cpp).
   NotedVariables noted_;
-  DriveCourse course_;
-  uint32_t course_in_ = 0;  // ticks until the next comparison
-  uint32_t course_pause_ = 1;
+  std::optional<Drive::Moment> before_tick_;  // before this tick, which is compared with it
+  Backoff steady_backoff_;
 
   // Sleep (station_sleep.cpp).
-  Time trial_at_ = 0;  // not tried again before this tick
-  uint32_t pause_ = 1;
+  Backoff sleep_backoff_;
   uint64_t idle_ticks_ = 0;  // of the program, from the tick of the trial on
   struct {
-    Bytes<PositioningService> positioning;
+    std::optional<PositioningService::Left> positioning;
     std::array<int32_t, vm::kMaxVariables> h;
   } rest_;  // before the trial
 

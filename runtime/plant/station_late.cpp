@@ -3,9 +3,9 @@
 // comes from outside, or when somebody looks; each finds the time it belongs to. So what it works with is in
 // the cache once for many ticks.
 //
-// A late station cruises when its ticks only go on (station_course.cpp) and its tasks mind neither each other
-// nor what the unit does meanwhile: then each task runs for many ticks at a time, and drive and positioning
-// follow when they are asked for.
+// A late station runs ahead when its ticks are steady (station_steady.cpp) and its tasks look at neither each
+// other nor what the unit does meanwhile: then each task runs for many ticks at a time, and drive and
+// positioning follow when they are asked for.
 #include <algorithm>
 
 #include "runtime/plant/station.hpp"
@@ -16,28 +16,26 @@ namespace {
 // How late it may be, so that who watches the run sees it move on.
 constexpr Time kLatest = 32 * kMillisecond;
 
-// The program is looked at again after 16, 32, 64.. ticks.
-constexpr uint32_t kFirstPause = 8, kLongestPause = 4096;
+// The program is looked at again after 2, 4, 8.. ticks.
+constexpr Ticks kLongestPause = 4096;
 
 // A program that stops on its way is let run ahead again after 2, 4, 8.. ticks.
-constexpr uint32_t kLongestCruisePause = 64;
+constexpr uint32_t kLongestAheadPause = 64;
 
 }  // namespace
 
-void Station::forget_prospect() {
-  prospect_ = {};
-  prospect_at_ = 0;
-  prospect_pause_ = kFirstPause;
+void Station::forget_reach() {
+  reach_ = {};
+  reach_backoff_ = {};
 }
 
-void Station::look_ahead() {
+void Station::find_reach() {
   std::array<const VariableObjects*, 2> objects{};
   size_t count = 0;
   for (const auto& port : sbus_)
     if (port) objects[count++] = &port->objects();
-  prospect_ = Prospect(*machine_, std::span(objects).first(count));
-  prospect_pause_ = std::min(2 * prospect_pause_, kLongestPause);
-  prospect_at_ = next_tick_ + prospect_pause_ * kMillisecond;
+  reach_ = ProgramReach(*machine_, std::span(objects).first(count));
+  reach_backoff_.fail(next_tick_, kLongestPause);
 }
 
 // Nothing the station does reaches anybody before its next telegram. A fault of the program would: it takes
@@ -46,16 +44,16 @@ void Station::look_ahead() {
 bool Station::can_be_late() const {
   if (x13_ || xt_) return false;
   if (!machine_) return true;
-  if (!prospect_.mute || machine_->fault().number != 0) return false;
-  if (!prospect_.may_fault && !timers_.watchdog_runs()) return true;
+  if (!reach_.mute || machine_->fault().number != 0) return false;
+  if (!reach_.may_fault && !timers_.watchdog_runs()) return true;
   return !may_order_ && std::none_of(sbus_.begin(), sbus_.end(),
                                      [](const auto& port) { return port && port->has_waiting_frames(); });
 }
 
 void Station::try_late(Time now, Time telegram) {
-  if (cruise_left_ == 0 || prospect_.may_fault) {
-    const bool known = prospect_.mute && prospect_.apart;
-    if (machine_ && !known && next_tick_ >= prospect_at_ && machine_->fault().number == 0) look_ahead();
+  if (ahead_left_ == 0 || reach_.may_fault) {
+    const bool known = reach_.mute && reach_.apart;
+    if (machine_ && !known && reach_backoff_.due(next_tick_) && machine_->fault().number == 0) find_reach();
     if (!can_be_late()) return;
   }
   back_at_ = now + kLatest;
@@ -64,18 +62,18 @@ void Station::try_late(Time now, Time telegram) {
 
 // All late ticks up to that at `last`, and the telegrams that came in between.
 void Station::execute_to(Time last) {
-  for (; letters_read_ != letters_ahead_ && letters_[letters_read_].after <= last; ++letters_read_) {
-    const Letter& letter = letters_[letters_read_];
-    execute_all_to(letter.after);
-    letter.reader->read(letter.object, letter.frame);
+  for (; read_ != posted_ && inbox_[read_].after <= last; ++read_) {
+    const Telegram& telegram = inbox_[read_];
+    execute_all_to(telegram.after);
+    telegram.reader->read(telegram.object, telegram.frame);
   }
-  if (letters_read_ == letters_ahead_) letters_read_ = letters_ahead_ = 0;
+  if (read_ == posted_) read_ = posted_ = 0;
   execute_all_to(last);
 }
 
 void Station::execute_all_to(Time last) {
   while (next_tick_ <= last) {
-    if (stride(last)) continue;
+    if (run_ahead(last)) continue;
     const Time now = next_tick_;
     next_tick_ += kMillisecond;
     const EventQueue::Past past(queue_, now, source_);
@@ -85,51 +83,50 @@ void Station::execute_all_to(Time last) {
 
 // A program that cannot fault keeps its receive objects.
 bool Station::keep(ObjectReader& reader, size_t object, const Frame& frame) {
-  if (!cruises() || prospect_.may_fault || letters_ahead_ == letters_.size()) return false;
-  letters_[letters_ahead_++] = {last_tick(), &reader, object, frame};
+  if (!runs_ahead() || reach_.may_fault || posted_ == inbox_.size()) return false;
+  inbox_[posted_++] = {last_tick(), &reader, object, frame};
   return true;
 }
 
-bool Station::stride(Time last) {
-  if (cruise_left_ == 0 && (!on_course_ || next_tick_ < cruise_at_ || !begin_cruise())) return false;
-  const auto ticks = std::min(static_cast<uint32_t>((last - next_tick_) / kMillisecond + 1), cruise_left_);
-  if (!machine_->run_ahead(cruise_rates_.commands, ticks, prospect_.undone)) {
-    end_cruise();
-    cruise_pause_ = std::min(2 * cruise_pause_, kLongestCruisePause);
-    cruise_at_ = next_tick_ + cruise_pause_ * kMillisecond;
+bool Station::run_ahead(Time last) {
+  if (ahead_left_ == 0 && (!steady_ || !ahead_backoff_.due(next_tick_) || !begin_ahead())) return false;
+  const auto ticks = std::min(static_cast<uint32_t>((last - next_tick_) / kMillisecond + 1), ahead_left_);
+  if (!machine_->run_ahead(ahead_rates_.commands, ticks, reach_.rollback)) {
+    end_ahead();
+    ahead_backoff_.fail(next_tick_, kLongestAheadPause);
     return false;
   }
-  cruise_pause_ = 1;
-  cruise_left_ -= ticks;
-  owed_ += ticks;
+  ahead_backoff_.succeed();
+  ahead_left_ -= ticks;
+  behind_ += ticks;
   next_tick_ += ticks * kMillisecond;
   return true;
 }
 
 // Nothing that is asked here changes before somebody touches the station.
-bool Station::begin_cruise() {
-  if (!prospect_.apart || !quiet_ || touched_ || owed_ != 0 || !machine_) return false;
-  if (!stays_on_course() || (positioning_ && !positioning_->idles()) || has_news()) return false;
+bool Station::begin_ahead() {
+  if (!reach_.apart || !quiet_ || touched_ || behind_ != 0 || !machine_) return false;
+  if (!stays_steady() || (positioning_ && !positioning_->idles()) || must_look()) return false;
   const bool moves = !drive_.state().standing();
-  if ((prospect_.minds_motion && moves) || !timers_.rest(machine_->variables())) return false;
-  cruise_rates_ = rates();
-  cruise_left_ = drive_.state().course_left();
+  if ((reach_.reads_position && moves) || !timers_.rest(machine_->variables())) return false;
+  ahead_rates_ = rates();
+  ahead_left_ = drive_.state().steady_left();
   return true;
 }
 
 // The last tick by itself: some values are those of the tick before.
-void Station::finish_cruise() {
-  cruise_left_ = 0;
-  if (owed_ == 0) return;
-  drive_.state().go_on(owed_ - 1);
+void Station::finish_ahead() {
+  ahead_left_ = 0;
+  if (behind_ == 0) return;
+  drive_.state().advance(behind_ - 1);
   go_on(machine_->variables());
   drive_.memory().set_time(next_tick_ - kMillisecond);
-  owed_ = 0;
+  behind_ = 0;
 }
 
 void Station::run_late() { execute_to(last_tick()); }
 
-// What no part of the unit looks at does not end a cruise.
+// A variable that no part of the unit looks at does not end running ahead.
 void Station::expect_variables(uint32_t first) {
   if (!late_ || is_system_variable(first) || is_system_variable(first + 1)) wake();
 }

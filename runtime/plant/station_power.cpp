@@ -4,10 +4,14 @@
 #include <array>
 
 #include "runtime/plant/station.hpp"
+#include "stdlib/system_variables.hpp"
 #include "vm/verify/writes.hpp"
 
 namespace ipos::runtime {
 namespace {
+
+static_assert(vm::kFirstSystemVariable == stdlib::kFirstSystemVariable);
+static_assert(vm::kLastSystemVariable == stdlib::kLastSystemVariable);
 
 constexpr size_t kControlWord = stdlib::system_variable("ControlWord");
 
@@ -16,7 +20,7 @@ constexpr size_t kControlWord = stdlib::system_variable("ControlWord");
 // The bus ports are off the line until the next power-on makes them anew.
 void Station::power_off() {
   if (!powered_) return;
-  leave_course();
+  leave_steady();
   store_memory();
   powered_ = false;
   was_off_ = true;
@@ -54,6 +58,11 @@ void Station::restart_program_memory() {
 std::optional<std::string> Station::start_program() {
   if (!powered_) return "the station is off";
   wake();
+  return load_program();
+}
+
+// Also in the middle of a tick, before the tasks.
+std::optional<std::string> Station::load_program() {
   const vm::Limits limits = limits_of(*config_.unit);
   std::vector<uint32_t> code = drive_.memory().program().code();
   std::array<vm::Violation, 1> violations{};
@@ -62,7 +71,7 @@ std::optional<std::string> Station::start_program() {
     const vm::RuleInfo& rule = vm::info(violations[0].rule);
     return fmt::format("word {}: {} [{}]", violations[0].address, rule.meaning, rule.code);
   }
-  stop_program();
+  stop_tasks();
   drive_.disconnect_program();
   code_ = std::move(code);
   timers_ = {};
@@ -73,20 +82,24 @@ std::optional<std::string> Station::start_program() {
                     of_image ? &*image_ : nullptr);
   const vm::VerifiedImage program = *vm::verify(code_, limits, {}).image;
   machine_.emplace(program, commands_->host());
-  on_course_ = false;
-  quiet_ = !vm::may_write(program, NotedVariables::kFirst, NotedVariables::kLast);
+  steady_ = false;
+  quiet_ = !vm::may_write(program, stdlib::kFirstSystemVariable, stdlib::kLastSystemVariable);
   may_order_ = vm::may_write(program, kControlWord, kControlWord);
-  forget_prospect();
   choose_engine(program);
   if (positioning_commands_) positioning_commands_->cancel_all();
   drive_.connect_program(*machine_);
   for (const auto& port : sbus_)
     if (port) port->connect_program(*machine_);
-  machine_->start();
-  fault_reported_ = false;
+  start_machine();
   resets_seen_ = drive_.state().resets();
   error_seen_ = 0;
   return std::nullopt;
+}
+
+void Station::start_machine() {
+  machine_->start();
+  forget_reach();
+  fault_reported_ = false;
 }
 
 void Station::choose_engine(const vm::VerifiedImage& program) {
@@ -99,6 +112,10 @@ void Station::choose_engine(const vm::VerifiedImage& program) {
 
 void Station::stop_program() {
   wake();
+  stop_tasks();
+}
+
+void Station::stop_tasks() {
   if (machine_) machine_->stop_all();
   movilink_.stop();
   for (const auto& port : sbus_)

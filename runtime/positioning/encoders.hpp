@@ -41,6 +41,7 @@ class Encoders {
   struct Positions {
     std::array<int32_t, 3> by_source{};
     int32_t of(PositionSource source) const { return by_source[static_cast<size_t>(source)]; }
+    bool operator==(const Positions&) const = default;
   };
   const Positions& positions() const { return positions_; }
   // From now on the present position of this source has another number.
@@ -48,6 +49,7 @@ class Encoders {
 
   // Position of the source at a zero pulse that the last millisecond passed in this direction.
   std::optional<int32_t> zero_pulse(PositionSource source, int way) const;
+  bool operator==(const Encoders&) const = default;
 
  private:
   void find_positions() {

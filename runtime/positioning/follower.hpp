@@ -35,6 +35,7 @@ class Follower {
   bool silent() const { return syncs_ == 0; }
   // What the master moved on in this millisecond, in increments of the slave; at most 2^32.
   Fine step() const { return step_; }
+  bool operator==(const Follower&) const = default;
 
  private:
   static constexpr int kEnough = 3;  // telegrams: two make a speed, the third one ends their cycle

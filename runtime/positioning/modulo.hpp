@@ -48,6 +48,7 @@ class Modulo {
   // Increments from a point, `offset` from the present position, to the target: the way P960 demands, in the
   // normal form with the full turns of the target added when it goes one way only.
   int64_t way_to(int32_t target, bool high_resolution, int64_t offset) const;
+  bool operator==(const Modulo&) const = default;
 
  private:
   void pass_turns(int64_t units);

@@ -87,7 +87,7 @@ PositioningOrder Positioner::idle(int32_t speed) {
 }
 
 // The profile holds the position again before anybody travels from it.
-void Positioner::glide(int32_t before, int32_t motor_counter) {
+void Positioner::advance_idle(int32_t before, int32_t motor_counter) {
   if (encoders_.counter() != before) move(before);
   drop_target();
   move(motor_counter);

@@ -54,6 +54,7 @@ struct PositioningInputs {
   int32_t override_permille = 1000;  // 1000 with P930 = OFF
   uint32_t modulo_control = 0;       // H453
   MasterInputs master;
+  bool operator==(const PositioningInputs&) const = default;
 };
 
 // For the drive.
@@ -84,9 +85,9 @@ class Positioner {
   // settings and inputs that are the same but for the speed.
   bool goes_on() const;
   PositioningOrder go_on();
-  // idle() and observe() where nobody looks at the order, once or several times: the last one finds the
-  // counter at `before`.
-  void glide(int32_t before, int32_t motor_counter);
+  // idle() and observe() for several ms at once, where nobody looks at the order; `before` is the counter one
+  // ms before the end.
+  void advance_idle(int32_t before, int32_t motor_counter);
   // After it has moved: the counter of the motor encoder.
   void observe(int32_t motor_counter) {
     move(motor_counter);
@@ -130,6 +131,7 @@ class Positioner {
   PositionSource source() const { return settings_.position_source(); }
   bool referencing() const { return reference_.active(); }
   FollowState follow_state() const { return follow_state_; }  // H562
+  bool operator==(const Positioner&) const = default;
 
  private:
   int32_t actual() const { return encoders_.position(source()); }

@@ -54,12 +54,14 @@ class Profile {
 
   // The counting has moved: every position is another number by so much.
   void shift(int64_t increments);
+  bool operator==(const Profile&) const = default;
 
  private:
   struct Phase {
     Rate from, to;
     Span duration;
     RampShape shape;
+    bool operator==(const Phase&) const = default;
   };
   static constexpr size_t kMostPhases = 4;  // turn back, up, cruise, down
 

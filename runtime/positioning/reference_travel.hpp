@@ -52,6 +52,7 @@ class ReferenceTravel {
   Outcome tick(const ReferenceInputs& inputs);
   Order order() const { return order_; }
   int32_t found() const { return found_; }
+  bool operator==(const ReferenceTravel&) const = default;
 
  private:
   enum class Step : uint8_t { Search, Leave, ZeroPulse };

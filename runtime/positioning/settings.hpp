@@ -25,6 +25,7 @@ struct PositioningSettings {
   TravelRules travel_rules(int32_t override_permille) const;
   // A reference travel with P901 or P902.
   TravelRules reference_rules(bool fast) const;
+  bool operator==(const PositioningSettings&) const = default;
 };
 
 }  // namespace ipos::runtime

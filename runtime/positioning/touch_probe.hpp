@@ -19,6 +19,7 @@ class TouchProbes {
     bool touched = false;  // since it was enabled
     bool fresh = false;    // in the last millisecond
     int32_t motor = 0, external = 0, absolute = 0;
+    bool operator==(const Probe&) const = default;
   };
 
   // _TouchProbe: enabling forgets an older edge; with neither edge the probe is disabled.
@@ -31,6 +32,7 @@ class TouchProbes {
   }
 
   const Probe& probe(size_t n) const { return probes_[n]; }
+  bool operator==(const TouchProbes&) const = default;
 
  private:
   void take_levels(uint16_t levels, const Encoders& encoders);

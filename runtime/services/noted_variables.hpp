@@ -1,11 +1,12 @@
-// The system variables that drive, positioning, PID controller and mirrored parameters follow or show, as
-// they were before the tasks ran: while they are the same nobody has to look what the program has written.
-// The others (timers, scope, analog outputs, H522 to H530) may change.
+// The system variables that a part of the unit follows or shows (column `use` of
+// stdlib/system_variables.def), as they were before the tasks ran: while they are the same nobody has to look
+// what the program has written. The others (timers, scope, analog outputs, H522 to H530) may change.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <span>
 #include <utility>
 
@@ -15,10 +16,6 @@ namespace ipos::runtime {
 
 class NotedVariables {
  public:
-  // All of them lie between these.
-  static constexpr size_t kFirst = stdlib::system_variable("ModuloCtrl");
-  static constexpr size_t kLast = stdlib::system_variable("SyncGearSlave");  // MOVIDRIVE B
-
   void note(std::span<const int32_t> h) {
     each_range(h, [](int32_t* noted, const int32_t* now, auto count) {
       std::memcpy(noted, now, count() * sizeof(int32_t));
@@ -47,19 +44,42 @@ class NotedVariables {
     return value;
   }
 
-  template <size_t first, size_t last, class Do>
-  [[gnu::always_inline]] void range(std::span<const int32_t> h, Do& act) {
-    act(noted_.data() + (first - kFirst), h.data() + first,
-        std::integral_constant<size_t, last - first + 1>());
-  }
+  // Variables that stand in a row, with numbers in between that are no system variables.
+  struct Range {
+    size_t first, last;
+  };
+  static constexpr size_t kRanges = 5;
+  static constexpr size_t kWidestGap = 12;
+  static constexpr auto kNoted = [] {
+    std::array<Range, kRanges> ranges{};
+    size_t count = 0;
+    bool joins = false;
+    for (const stdlib::UsedVariable& variable : stdlib::kUsedVariables) {
+      const bool noted =
+          variable.use != stdlib::VariableUse::Nothing && variable.use != stdlib::VariableUse::Counts;
+      if (noted && joins && variable.number - ranges[count - 1].last <= kWidestGap)
+        ranges[count - 1].last = variable.number;
+      else if (noted)
+        ranges[count++] = {variable.number, variable.number};  // more than kRanges do not compile
+      joins = noted;
+    }
+    return ranges;
+  }();
+  static constexpr size_t kFirst = kNoted.front().first, kLast = kNoted.back().last;
+  static_assert(kLast == stdlib::kLastSystemVariable);
+
+  // The last ranges are of units that have so many variables.
   template <class Do>
   [[gnu::always_inline]] void each_range(std::span<const int32_t> h, Do act) {
-    using stdlib::system_variable;
-    range<kFirst, system_variable("ModCount")>(h, act);
-    range<system_variable("StatusWord"), system_variable("StatusWord")>(h, act);
-    range<system_variable("OptOutpIPOS"), system_variable("ControlWord")>(h, act);
-    range<system_variable("SetpointPos"), system_variable("ActPos_Mot")>(h, act);
-    if (h.size() > kLast) range<system_variable("PID_Mode"), kLast>(h, act);
+    [&]<size_t... n>(std::index_sequence<n...>) { (range<n>(h, act), ...); }
+    (std::make_index_sequence<kRanges>());
+  }
+  template <size_t n, class Do>
+  [[gnu::always_inline]] void range(std::span<const int32_t> h, Do& act) {
+    constexpr Range kRange = kNoted[n];
+    if (n + 1 == kRanges && h.size() <= kRange.last) return;
+    act(noted_.data() + (kRange.first - kFirst), h.data() + kRange.first,
+        std::integral_constant<size_t, kRange.last - kRange.first + 1>());
   }
 
   std::array<int32_t, kLast - kFirst + 1> noted_{};

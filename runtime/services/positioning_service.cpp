@@ -311,7 +311,7 @@ void PositioningService::go_on(std::span<int32_t> h, uint32_t syncs, int32_t bef
   syncs_ = syncs;
   const int32_t counter = drive_.position();
   if (positioner_.encoders().stands_at(counter)) return;
-  positioner_.glide(before, counter);
+  positioner_.advance_idle(before, counter);
   const Encoders::Positions positions = positioner_.encoders().positions();
   show_target_positions(h);
   show_positions(h, positions, positions.of(positioner_.source()));

@@ -40,23 +40,25 @@ class PositioningService {
   }
 
   // Looks at no variable but system variables: no cam controller runs, no master is followed.
-  bool minds_system_variables_only() const { return settings_.technology_function != kIsync && !cams_run_; }
+  bool reads_system_variables_only() const { return settings_.technology_function != kIsync && !cams_run_; }
 
   // In every millisecond, of the program's choice: an extended cam controller runs.
   bool writes_variables() const { return cams_run_ && extended_cams_.runs(); }
 
+  // What a millisecond leaves behind, but for what it shows.
+  struct Left {
+    Positioner positioner;
+    std::bitset<kPositioningEvents> reported;
+    bool operator==(const Left&) const = default;
+  };
+  Left left() const { return {positioner_, reported_}; }
+
   // The last millisecond has found nothing to do, and no command came since. While inputs, parameters and
   // system variables stay as they are, too, go_on() is order() and show() around a tick of the drive, or
   // around several; before the last of them its counter was `before`.
-  bool idles() const { return idles_ && minds_system_variables_only(); }
+  bool idles() const { return idles_ && reads_system_variables_only(); }
+  // It changes the variables with use Moves then.
   void go_on(std::span<int32_t> h, uint32_t syncs, int32_t before);
-  // The variables that it changes then.
-  static constexpr size_t kMoving[] = {
-      stdlib::system_variable("ModTagPos"),  stdlib::system_variable("ModActPos"),
-      stdlib::system_variable("ModCount"),   stdlib::system_variable("SetpointPos"),
-      stdlib::system_variable("TargetPos"),  stdlib::system_variable("ActPos_Abs"),
-      stdlib::system_variable("ActPos_Ext"), stdlib::system_variable("ActPos_Mot")};
-
   // For commands, between two ticks.
   const Positioner& positioner() const { return positioner_; }
   Positioner& change_positioner() {

@@ -20,10 +20,10 @@ class ObjectReader {
 
 class Sleeper {
  public:
-  // System variables may be written by somebody else than the program's own commands.
+  // Call before a bus or a system command writes system variables.
   virtual void touch() = 0;
   // Makes up for what was left out as far as variables show it. It may sleep on; true: then they stay as they
-  // are, until it stirs its buses.
+  // are, until its buses want repeated frames again.
   virtual bool make_up_variables() = 0;
   // It executes its ticks when it has something to tell, or somebody looks.
   bool late() const { return late_; }

@@ -74,7 +74,7 @@ class VariableObjects {
          std::span(table_.state().cyclic).first(table_.state().cyclic_count))
       visit(uint32_t{object.data}, object.format);
   }
-  // The frame has the length that the object takes; then take() does.
+  // True if the frame's length matches, so take() will succeed.
   bool fits(size_t receiver, const Frame& frame) const {
     return frame_variables(frame, table_.state().receive[receiver].format).has_value();
   }

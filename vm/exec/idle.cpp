@@ -7,15 +7,12 @@
 
 #include "vm/exec/arithmetic.hpp"
 #include "vm/exec/machine.hpp"
+#include "vm/isa/effects.hpp"
 
 namespace ipos::vm {
 namespace {
 
 using Variables = std::bitset<kMaxVariables>;
-
-// The unit looks at its system variables in every tick (IPOSplus p. 29).
-constexpr uint32_t kFirstSystemVariable = 453;
-constexpr uint32_t kLastSystemVariable = 560;
 
 }  // namespace
 
@@ -31,50 +28,58 @@ struct Machine::Spin {
   uint32_t count = 0;
 };
 
-// Executes one command of a context and notes what it did; false: not, as it could fault or needs the host.
+// As can_fault(), with the variables as they are.
+bool Machine::would_fault(const TaskContext& t, const Instruction& command) const {
+  const auto is_zero = [&](size_t operand) {
+    const int32_t b = command.operands[operand];
+    return (has_constant(command) ? b : h_[static_cast<size_t>(b)]) == 0;
+  };
+  switch (coding(command.opcode).faults) {
+    case Faults::Never: return false;
+    case Faults::Zero: return is_zero(1);
+    case Faults::Index: return index_of(command) >= program_.limits().variables;
+    case Faults::Depth: return t.depth == program_.limits().call_depth || t.depth == kMaxCallDepth;
+    case Faults::Host: break;
+  }
+  return true;
+}
+
+// The variable that a command with an index means.
+uint32_t Machine::index_of(const Instruction& command) const {
+  const size_t operand = coding(command.opcode).writes == Writes::Indexed ? 0 : 1;
+  return bits(h_[static_cast<size_t>(command.operands[operand])]);
+}
+
+// Executes one command of a context and notes what it did; false: not, as it would fault or needs the host.
 bool Machine::try_command(int number, Spin& spin) {
   TaskContext& t = context_at(number);
   const Instruction command = decode(program_.code(), t.pc).instruction;
   const Coding& row = coding(command.opcode);
-  const uint32_t variables = program_.limits().variables;
-  const auto value = [&](size_t operand) { return h_[static_cast<size_t>(command.operands[operand])]; };
-  for (size_t n = 0; n < row.operand_count; ++n)
-    if (row.kinds[n] == OperandKind::Variable) spin.used[static_cast<size_t>(command.operands[n])] = true;
-  uint32_t target = 0;
-  switch (row.flow) {
-    case Flow::Jump:
-    case Flow::Branch: break;
-    case Flow::Call:
-      if (t.depth == program_.limits().call_depth || t.depth == kMaxCallDepth) return false;
-      break;
-    case Flow::Return:
-      if (t.depth == 0) return false;
-      break;
-    case Flow::Next:
-      if (command.opcode == Opcode::Copy) return false;
-      if ((command.opcode == Opcode::DivHH || command.opcode == Opcode::ModHH) && value(1) == 0) return false;
-      if ((command.opcode == Opcode::DivHK || command.opcode == Opcode::ModHK) && command.operands[1] == 0)
-        return false;
-      target = command.opcode == Opcode::SetiStore ? bits(value(0)) : bits(command.operands[0]);
-      if (command.opcode == Opcode::SetiLoad) {
-        if (bits(value(1)) >= variables) return false;
-        spin.used[bits(value(1))] = true;
-      }
-      if (target >= variables) return false;
-      spin.used[target] = true;
-      break;
-    default: return false;
-  }
-  const int32_t before = h_[target];
+  const bool leaves = row.flow == Flow::End || row.flow == Flow::System || row.flow == Flow::SystemCall ||
+                      (row.flow == Flow::Return && t.depth == 0);
+  if (leaves || would_fault(t, command)) return false;
+  const auto use = [&](VariableRange range) {
+    for (uint32_t n = range.first; n < range.end(); ++n) spin.used[n] = true;
+  };
+  each_named(command, use);
+  VariableRange target = named_target(command);
+  if (row.writes == Writes::Indexed) target = {index_of(command), 1};
+  if (row.reads == Reads::Indexed) use({index_of(command), 1});
+  use(target);
+  if (target.count > Spin::kMostChanged) return false;
+  std::array<int32_t, Spin::kMostChanged> before;
+  std::copy_n(h_.begin() + target.first, target.count, before.begin());
   if (execute(number, t) != Stop::Budget) return false;
-  if (h_[target] != before && !spin.changed[target]) {
+  for (uint32_t n = 0; n < target.count; ++n) {
+    const uint32_t variable = target.first + n;
+    if (h_[variable] == before[n] || spin.changed[variable]) continue;
     if (spin.count == Spin::kMostChanged) {
-      h_[target] = before;
+      std::copy_n(before.begin(), target.count, h_.begin() + target.first);
       return false;
     }
-    spin.changed[target] = true;
-    spin.numbers[spin.count] = static_cast<uint16_t>(target);
-    spin.originals[spin.count++] = before;
+    spin.changed[variable] = true;
+    spin.numbers[spin.count] = static_cast<uint16_t>(variable);
+    spin.originals[spin.count++] = before[n];
   }
   return true;
 }
@@ -124,7 +129,8 @@ uint64_t Machine::idle_ticks(const std::array<uint32_t, kTasks>& budgets, uint32
   if (ticks == 0) return 0;
   // Variables that somebody looks at, but for the loops that are still to come.
   Variables changed, used;
-  for (uint32_t n = kFirstSystemVariable; n <= kLastSystemVariable; ++n) used[n] = true;
+  const uint32_t end = std::min<uint32_t>(kLastSystemVariable + 1, program_.limits().variables);
+  for (uint32_t n = kFirstSystemVariable; n < end; ++n) used[n] = true;
   for (const VariableInterrupt& interrupt : interrupts_.variables)
     if (interrupt.installed) used[interrupt.source] = true;
   for (int task = 1; task <= kTasks; ++task) {

@@ -3,6 +3,7 @@
 #include "vm/exec/machine.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <type_traits>
 
 #include "vm/exec/arithmetic.hpp"
@@ -107,13 +108,16 @@ uint32_t Machine::run_tasks(const std::array<uint32_t, kTasks>& budgets) {
 }
 
 bool Machine::run_ahead(const std::array<uint32_t, kTasks>& budgets, uint32_t ticks,
-                        std::span<const uint16_t> undone) {
-  if (fast_ == nullptr || events_ || watches_ || undone.size() > kMostUndone) return false;
+                        std::span<const uint16_t> rollback) {
+  if (fast_ == nullptr || events_ || watches_ || rollback.size() > kMostRollback) return false;
   if (waits_)
     for (const TaskContext& t : contexts_)
       if (t.state == TaskState::Waiting && t.wait_ms != 0 && t.wait_ms <= ticks) return false;
-  std::array<int32_t, kMostUndone> values;  // before
-  for (size_t n = 0; n < undone.size(); ++n) values[n] = h_[undone[n]];
+#ifndef NDEBUG
+  const std::array<int32_t, kMaxVariables> before = h_;
+#endif
+  std::array<int32_t, kMostRollback> values;  // before
+  for (size_t n = 0; n < rollback.size(); ++n) values[n] = h_[rollback[n]];
   std::array<Stand, kTasks> stands;
   for (size_t n = 0; n < kTasks; ++n) {
     TaskContext& t = contexts_[active_[n]];
@@ -123,7 +127,9 @@ bool Machine::run_ahead(const std::array<uint32_t, kTasks>& budgets, uint32_t ti
     for (size_t other = 0; other <= n; ++other)
       if (TaskContext& back = contexts_[active_[other]]; back.state == TaskState::Ready)
         stands[other].give_back(back);
-    for (size_t variable = 0; variable < undone.size(); ++variable) h_[undone[variable]] = values[variable];
+    for (size_t variable = 0; variable < rollback.size(); ++variable)
+      h_[rollback[variable]] = values[variable];
+    assert(h_ == before);
     return false;
   }
   if (waits_)

@@ -18,6 +18,10 @@
 
 namespace ipos::vm {
 
+// The unit looks at them in every tick (IPOSplus p. 29); what each is stands in stdlib/system_variables.def.
+inline constexpr uint32_t kFirstSystemVariable = 453;
+inline constexpr uint32_t kLastSystemVariable = 564;
+
 inline constexpr uint64_t kIdleForever = UINT64_MAX;
 
 // Faults a program can cause by itself.
@@ -95,10 +99,10 @@ class Machine {
   // False, and nothing has changed: that is not possible, as something else than variables and jumps would
   // come in between, or without the fast engine. Only for tasks that use no variable another one writes, nor
   // one that anybody else changes in these ticks (vm/sched/outlook.hpp), and not when interrupts have been
-  // requested since the last tick. `undone` are the variables that they can write.
+  // requested since the last tick. `rollback` are the variables that they can write.
   bool run_ahead(const std::array<uint32_t, kTasks>& budgets, uint32_t ticks,
-                 std::span<const uint16_t> undone);
-  static constexpr size_t kMostUndone = 256;
+                 std::span<const uint16_t> rollback);
+  static constexpr size_t kMostRollback = 256;
 
   // An event of task 1 has happened. Without an installed routine nothing follows.
   void raise_event(Event event);
@@ -143,6 +147,8 @@ class Machine {
   void see_interrupts();
   struct Spin;
   Spin find_spin(int number, uint32_t longest);
+  bool would_fault(const TaskContext& t, const Instruction& command) const;
+  uint32_t index_of(const Instruction& command) const;
   bool try_command(int number, Spin& spin);
   bool interrupts_rest() const;
   bool begin_routine(int number, int task, uint8_t rank, uint32_t address);

@@ -18,9 +18,12 @@ constexpr uint32_t keyword_mask(std::string_view set) {
   return mask;
 }
 
-constexpr Coding make_coding(std::string_view text, Flow flow) {
+constexpr Coding make_coding(std::string_view text, Flow flow, Reads reads, Writes writes, Faults faults) {
   Coding row;
   row.flow = flow;
+  row.reads = reads;
+  row.writes = writes;
+  row.faults = faults;
   row.words = words_of(text);
   for_each_operand(text, [&](OperandKind kind, std::string_view keyword_set) {
     row.kinds[row.operand_count++] = kind;
@@ -30,14 +33,15 @@ constexpr Coding make_coding(std::string_view text, Flow flow) {
 }
 
 constexpr Coding kCodings[] = {
-#define OPCODE(code, name, text, flow, meaning) make_coding(text, Flow::flow),
+#define OPCODE(code, name, text, flow, reads, writes, faults, meaning) \
+  make_coding(text, Flow::flow, Reads::reads, Writes::writes, Faults::faults),
 #include "vm/isa/opcodes.def"
 };
 
 // Row number by opcode byte, -1 where there is no command.
 constexpr auto kIndex = [] {
   constexpr Opcode opcodes[] = {
-#define OPCODE(code, name, text, flow, meaning) Opcode::name,
+#define OPCODE(code, name, text, flow, reads, writes, faults, meaning) Opcode::name,
 #include "vm/isa/opcodes.def"
   };
   static_assert(std::size(opcodes) <= INT8_MAX);

@@ -14,11 +14,16 @@
 namespace ipos::vm {
 
 enum class Opcode : uint8_t {
-#define OPCODE(code, name, text, flow, meaning) name = code,
+#define OPCODE(code, name, text, flow, reads, writes, faults, meaning) name = code,
 #include "vm/isa/opcodes.def"
 };
 
 enum class Flow : uint8_t { Next, Jump, Branch, Call, Return, End, System, SystemCall };
+
+// See opcodes.def; vm/isa/effects.hpp applies them to a command.
+enum class Reads : uint8_t { Named, Block, Indexed };
+enum class Writes : uint8_t { None, First, Block, Indexed };
+enum class Faults : uint8_t { Never, Zero, Index, Depth, Host };
 
 enum class OperandKind : uint8_t { None, Variable, Bit, Count, Keyword, Constant, Label };
 
@@ -28,6 +33,9 @@ struct Coding {
   std::array<OperandKind, kMaxOperands> kinds{};
   uint32_t keywords = 0;  // bit n: n is a word of the command's keyword set
   Flow flow = Flow::Next;
+  Reads reads = Reads::Named;
+  Writes writes = Writes::None;
+  Faults faults = Faults::Never;
   uint8_t operand_count = 0;
   uint8_t words = 1;  // length of the command in code words, 1..4
 

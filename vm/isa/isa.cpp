@@ -16,7 +16,8 @@ constexpr OpcodeInfo make_info(Opcode opcode, std::string_view name, std::string
 }
 
 constexpr OpcodeInfo kOpcodes[] = {
-#define OPCODE(code, name, text, flow, meaning) make_info(Opcode::name, #name, text, Flow::flow, meaning),
+#define OPCODE(code, name, text, flow, reads, writes, faults, meaning) \
+  make_info(Opcode::name, #name, text, Flow::flow, meaning),
 #include "vm/isa/opcodes.def"
 };
 

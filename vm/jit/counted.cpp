@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "vm/isa/effects.hpp"
+
 namespace ipos::vm::jit {
 namespace {
 
@@ -11,7 +13,8 @@ constexpr int32_t kFar = 1 << 20;
 
 // The variable a command of a line sets, -1: none by its name.
 int32_t set_by(const Instruction& command) {
-  return command.opcode == Opcode::Nop || command.opcode == Opcode::SetiStore ? -1 : command.operands[0];
+  const VariableRange target = named_target(command);
+  return target.count == 0 ? -1 : static_cast<int32_t>(target.first);
 }
 
 // What is added to the counter to get this index at a command of the loop; nothing when it is not that. Notes

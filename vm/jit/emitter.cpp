@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "vm/exec/arithmetic.hpp"
+#include "vm/isa/effects.hpp"
 
 namespace ipos::vm::jit {
 namespace {
@@ -13,14 +14,8 @@ using asmjit::Label;
 constexpr uint32_t kLoopAlignment = 32;
 constexpr uint32_t kShortestSwitch = 4;
 
-bool has_exit(Opcode opcode) {
-  return opcode == Opcode::SetiLoad || opcode == Opcode::SetiStore || opcode == Opcode::DivHH ||
-         opcode == Opcode::ModHH;
-}
-
-// Of commands without exits.
 bool sets(const Instruction& command, int32_t variable) {
-  return command.opcode != Opcode::Nop && command.operands[0] == variable;
+  return named_target(command).has(static_cast<uint32_t>(variable));
 }
 
 }  // namespace
@@ -188,7 +183,7 @@ uint32_t Emitter::end_of_short_line(uint32_t first) const {
     const Command& command = program_.commands[n];
     if (!command.native || command.checks || (n != first && command.joins)) break;
     if (command.flow == Flow::Return || (command.flow == Flow::Branch && command.target <= n)) return n;
-    if (command.flow != Flow::Next || has_exit(command.instruction.opcode)) break;
+    if (command.flow != Flow::Next || can_fault(command.instruction)) break;
   }
   return kNowhere;
 }

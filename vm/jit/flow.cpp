@@ -3,16 +3,17 @@
 
 #include <algorithm>
 
+#include "vm/isa/effects.hpp"
+
 namespace ipos::vm::jit {
 namespace {
 
 constexpr int kMostDepth = 7;
 
-// Commands that are left to the engines: those of the host, COPY as it is rare, and what always faults.
+// Commands that are left to the engines: those of the host, blocks as they are rare, and what always faults.
 bool is_native(const Instruction& command, Flow flow) {
   if (flow == Flow::System || flow == Flow::SystemCall || flow == Flow::End) return false;
-  if (command.opcode == Opcode::DivHK || command.opcode == Opcode::ModHK) return command.operands[1] != 0;
-  return command.opcode != Opcode::Copy;
+  return coding(command.opcode).writes != Writes::Block && !always_faults(command);
 }
 
 bool goes_on(Flow flow) { return flow == Flow::Next || flow == Flow::Branch; }

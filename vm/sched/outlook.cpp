@@ -1,30 +1,9 @@
 // Follows every way through the code, for each task from where its contexts stand.
 #include "vm/sched/outlook.hpp"
 
-#include <algorithm>
-#include <iterator>
+#include "vm/isa/effects.hpp"
 
 namespace ipos::vm {
-namespace {
-
-constexpr Opcode kFaulting[] = {Opcode::DivHH,     Opcode::ModHH,    Opcode::DivHK, Opcode::ModHK,
-                                Opcode::SetiStore, Opcode::SetiLoad, Opcode::Call,  Opcode::VarInt};
-// Of the system commands those the machine carries out by itself.
-constexpr Opcode kOwn[] = {Opcode::WaitH, Opcode::WaitK, Opcode::Task, Opcode::Task2, Opcode::SetInt};
-
-template <size_t count>
-bool is_one_of(const Opcode (&rows)[count], Opcode opcode) {
-  return std::find(std::begin(rows), std::end(rows), opcode) != std::end(rows);
-}
-
-bool can_fault(const Instruction& command) {
-  if (command.opcode == Opcode::DivHK || command.opcode == Opcode::ModHK) return command.operands[1] == 0;
-  const Flow flow = coding(command.opcode).flow;
-  if (flow == Flow::System || flow == Flow::SystemCall) return !is_one_of(kOwn, command.opcode);
-  return is_one_of(kFaulting, command.opcode);
-}
-
-}  // namespace
 
 class Outlook::Walk {
  public:
@@ -90,19 +69,13 @@ class Outlook::Walk {
   }
 
   static void note_variables(Task& t, const Instruction& command, const Coding& row) {
-    for (size_t n = 0; n < row.operand_count; ++n)
-      if (row.kinds[n] == OperandKind::Variable) t.used[static_cast<size_t>(command.operands[n])] = true;
-    if (command.opcode == Opcode::SetiLoad || command.opcode == Opcode::SetiStore) t.used.set();
-    if (command.opcode == Opcode::SetiStore) t.written.set();
-    if (row.flow != Flow::Next || command.opcode == Opcode::Nop || command.opcode == Opcode::SetiStore)
-      return;
-    t.written[static_cast<size_t>(command.operands[0])] = true;
-    if (command.opcode != Opcode::Copy) return;
-    for (size_t n = 0; n < static_cast<size_t>(command.operands[2]); ++n) {
-      t.written[static_cast<size_t>(command.operands[0]) + n] = true;
-      t.used[static_cast<size_t>(command.operands[0]) + n] = true;
-      t.used[static_cast<size_t>(command.operands[1]) + n] = true;
-    }
+    const auto note = [](Variables& variables, VariableRange range) {
+      for (uint32_t n = range.first; n < range.end(); ++n) variables[n] = true;
+    };
+    each_named(command, [&](VariableRange range) { note(t.used, range); });
+    note(t.written, named_target(command));
+    if (row.writes == Writes::Indexed) t.written.set();
+    if (row.writes == Writes::Indexed || row.reads == Reads::Indexed) t.used.set();
   }
 
   const VerifiedImage& program_;

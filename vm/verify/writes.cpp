@@ -1,7 +1,7 @@
-// One look at each command; of those that only go on to the next the first operand takes the result.
+// One look at each command.
 #include "vm/verify/writes.hpp"
 
-#include <algorithm>
+#include "vm/isa/effects.hpp"
 
 namespace ipos::vm {
 
@@ -10,13 +10,9 @@ bool may_write(const VerifiedImage& program, uint32_t first, uint32_t last) {
     const Decoded decoded = decode(program.code(), address);
     const Instruction& command = decoded.instruction;
     address += decoded.words;
-    const bool names = coding(command.opcode).flow == Flow::Next && command.opcode != Opcode::Nop;
-    // The store goes anywhere; a variable interrupt notes the value it has seen.
-    if (command.opcode == Opcode::SetiStore || command.opcode == Opcode::VarInt) return true;
-    if (!names) continue;
-    const auto to = static_cast<uint32_t>(command.operands[0]);
-    const uint32_t count = command.opcode == Opcode::Copy ? static_cast<uint32_t>(command.operands[2]) : 1;
-    if (to <= last && to + count > first) return true;
+    if (coding(command.opcode).writes == Writes::Indexed) return true;
+    const VariableRange to = named_target(command);
+    if (to.first <= last && to.end() > first) return true;
   }
   return false;
 }

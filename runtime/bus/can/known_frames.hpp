@@ -32,7 +32,7 @@ class KnownFrames {
         known.data == std::bit_cast<uint64_t>(frame.data))
       known.resting |= uint64_t{1} << node;
   }
-  void stir(NodeId node, uint32_t id) {
+  void want_again(NodeId node, uint32_t id) {
     if (node < kMostNodes) known_[id % known_.size()].resting &= ~(uint64_t{1} << node);
   }
   // This frame is told to everybody, though it may not be the last one known.

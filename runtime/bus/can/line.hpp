@@ -50,10 +50,10 @@ class CanLine final : private EventTarget {
     if (id < kStandardIdLimit) filter_.open(node, id);
   }
 
-  // The node, which is told of this frame, need not be told of it again before it stirs or another frame with
-  // the identifier has come. It may be told all the same.
+  // The node may be skipped for this frame until it asks again or another frame with the identifier has come.
+  // Optional: telling it anyway is harmless.
   void rest(NodeId node, const Frame& frame) { known_.rest(node, frame); }
-  void stir(NodeId node, uint32_t id) { known_.stir(node, id); }
+  void want_again(NodeId node, uint32_t id) { known_.want_again(node, id); }
 
   // `overtakes`: those of the node with this tag that still wait are withdrawn.
   SendStatus send(NodeId node, const Frame& frame, uint64_t tag, bool overtakes = false);

@@ -169,7 +169,7 @@ class Keeper final : public CanNode {
   void on_not_sent(Time, const Frame&, uint64_t, NotSent) override {}
   void forget(uint32_t id) {
     last.erase(id);
-    line->stir(node, id);
+    line->want_again(node, id);
   }
 
   CanLine* line = nullptr;

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <random>
 
-#include "runtime/drive/course.hpp"
-
 #include "tests/runtime/drive/drive_rig.hpp"
 
 namespace ipos::tests {
@@ -24,20 +22,19 @@ struct Twin {
     return rig.drive;
   }
   void tick(const PositionControl& position) {
-    if (!forgets && rig.drive.course_left() != 0 && position == rig.drive.position_control()) {
-      rig.drive.go_on();
+    if (!forgets && rig.drive.steady_left() != 0 && position == rig.drive.position_control()) {
+      rig.drive.advance(1);
       ++gone_on;
       return;
     }
-    course.note(drive());
+    const Drive::Moment before = drive().moment();
     rig.drive.tick(position);
     travelled += rig.drive.travelled() ? 1 : 0;
-    if (!forgets) rig.drive.hold_course(course.ticks(rig.drive));
+    if (!forgets) rig.drive.hold_steady(rig.drive.steady_since(before));
   }
 
   DriveRig rig;
   bool forgets;
-  runtime::DriveCourse course;
   uint32_t gone_on = 0;
   uint32_t travelled = 0;
 };

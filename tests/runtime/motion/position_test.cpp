@@ -62,7 +62,7 @@ TEST(Position, ManyMillisecondsAtOnce) {
     Axis many = each;
     for (const uint32_t ticks : {1U, 2U, 7U, 31U, 4096U, 4097U, 60'000U}) {
       for (uint32_t n = 0; n < ticks; ++n) each.tick(order);
-      many.go_on(ticks);
+      many.advance(ticks);
       ASSERT_EQ(many.position(), each.position()) << speed << ", " << ticks << " ms";
     }
     each.tick(order);

@@ -147,7 +147,7 @@ class LatePlant {
 };
 
 TEST(Late, RandomPlantsAreTheSameAsInTurn) {
-  uint64_t late = 0, cruising = 0, looked = 0;
+  uint64_t late = 0, ahead = 0, looked = 0;
   for (uint64_t seed = 1; seed <= 120; ++seed) {
     LatePlant random(seed);
     auto all = random.make_in_turn(), some = random.make();
@@ -160,7 +160,7 @@ TEST(Late, RandomPlantsAreTheSameAsInTurn) {
       skipping.plant->run_until(now);
       for (const auto& station : skipping.plant->stations()) {
         late += station->late() ? 1 : 0;
-        cruising += station->cruises() ? 1 : 0;
+        ahead += station->runs_ahead() ? 1 : 0;
         ++looked;
       }
       if (random.pick(0, 2) == 0) continue;  // nobody looks
@@ -169,8 +169,8 @@ TEST(Late, RandomPlantsAreTheSameAsInTurn) {
     }
   }
   EXPECT_GT(late * 5, looked) << "of " << looked << " looks at a station " << late << " found it late";
-  EXPECT_GT(cruising * 20, looked) << "of " << looked << " looks at a station " << cruising
-                                   << " found it cruising";
+  EXPECT_GT(ahead * 20, looked) << "of " << looked << " looks at a station " << ahead
+                                << " found it running ahead";
 }
 
 // Both are late when their programs fault; what is told of them stands in the order in which it happened.
@@ -249,7 +249,7 @@ TEST(Late, ARequestThatNobodyTakesIsDropped) {
   ASSERT_TRUE(plant);
   plant->run_until(ms(1500));
   Station& station = *plant->stations()[0];
-  ASSERT_TRUE(station.cruises());
+  ASSERT_TRUE(station.runs_ahead());
   ASSERT_TRUE(station.drive().parameters().execute(runtime::ParameterService::WriteVolatile, 11'530, 3));
   EXPECT_EQ(station.variable(530), 3);
   plant->run_until(ms(1520));

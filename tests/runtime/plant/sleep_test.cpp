@@ -172,7 +172,7 @@ class RandomPlant {
 };
 
 TEST(Sleep, RandomPlantsAreTheSameAsWithoutIt) {
-  uint64_t asleep = 0, on_course = 0, late = 0, looked = 0;
+  uint64_t asleep = 0, steady = 0, late = 0, looked = 0;
   for (uint64_t seed = 1; seed <= 150; ++seed) {
     RandomPlant random(seed);
     auto all = random.make(false), some = random.make(true);
@@ -186,7 +186,7 @@ TEST(Sleep, RandomPlantsAreTheSameAsWithoutIt) {
       for (const auto& station : skipping.plant->stations()) {
         late += station->late() ? 1 : 0;
         asleep += station->asleep() ? 1 : 0;
-        on_course += station->on_course() && !station->asleep() ? 1 : 0;
+        steady += station->steady() && !station->asleep() ? 1 : 0;
         ++looked;
       }
       if (random.pick(0, 3) == 0) {
@@ -204,8 +204,7 @@ TEST(Sleep, RandomPlantsAreTheSameAsWithoutIt) {
     }
   }
   EXPECT_GT(asleep * 4, looked) << "of " << looked << " looks at a station " << asleep << " found it asleep";
-  EXPECT_GT(on_course * 8, looked) << "of " << looked << " looks at a station " << on_course
-                                   << " found it on its course";
+  EXPECT_GT(steady * 8, looked) << "of " << looked << " looks at a station " << steady << " found it steady";
   EXPECT_GT(late * 8, looked) << "of " << looked << " looks at a station " << late << " found it late";
 }
 
@@ -313,21 +312,21 @@ TEST_P(WrittenByOthers, ActsInTheSameMillisecond) {
   ASSERT_TRUE(expected && plant);
   const runtime::Station& station = *plant->stations()[0];
   constexpr uint16_t kDo01 = 2;
-  bool was_on_course = false, on_course = false;
+  bool was_steady = false, steady = false;
   int64_t acted = 0;
   for (int64_t n = 1; n <= 2500; ++n) {
-    on_course = station.on_course();
+    steady = station.steady();
     expected->run_until(ms(n));
     plant->run_until(ms(n));
     ASSERT_EQ(picture(*plant), picture(*expected)) << "after " << n << " ms";
-    EXPECT_TRUE(n != 1490 || on_course);
+    EXPECT_TRUE(n != 1490 || steady);
     if (acted == 0 && n > 1000 && (station.outputs() & kDo01) != 0) {
       acted = n;
-      was_on_course = on_course;
+      was_steady = steady;
     }
   }
   EXPECT_GE(acted, 1500) << "DO01 follows H481";
-  EXPECT_FALSE(was_on_course) << "the tick of the output itself is one in full";
+  EXPECT_FALSE(was_steady) << "the tick of the output itself is one in full";
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -336,7 +336,7 @@ main() {
   EXPECT_GT(seen, 50);
 }
 
-// An axis that turns at a constant speed is on a course; what a cam then writes goes to the outputs all the
+// An axis that turns at a constant speed is steady; what a cam then writes goes to the outputs all the
 // same, a millisecond later.
 TEST(PositioningProgram, CamsSwitchOutputsAtConstantSpeed) {
   ProgramRig rig(R"(

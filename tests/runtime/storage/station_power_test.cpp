@@ -441,6 +441,31 @@ TEST(ProgramMemory, IsClosedWhileTheProgramRuns) {
   EXPECT_EQ(rig.value(Service::Read, 16000), int64_t{kEndless[0]}) << "was written volatile";
 }
 
+// A fault stops the program, so its memory is open; the reset of the fault starts what is there by then.
+TEST(ProgramMemory, WhatAResetStartsIsWhatItHolds) {
+  const auto kFaulty = code_of({I(Opcode::DivHH, 200, 201), I(Opcode::End)});
+  Rig rig(kFaulty);
+  EXPECT_EQ(rig.station->fault(), 10);
+  rig.value(Service::WriteVolatile, 11300, 99);
+  download(rig, kSeven, Service::WriteVolatile);
+  EXPECT_EQ(rig.value(Service::Write, 8617, 1), 1);  // P840
+  rig.run(5 * kMillisecond);
+  EXPECT_EQ(rig.station->fault(), 0);
+  EXPECT_EQ(rig.station->variable(200), 7);
+  EXPECT_EQ(rig.station->variable(300), 99) << "variables keep their values";
+  EXPECT_TRUE(rig.told("the program starts anew after the reset of its fault"));
+}
+
+TEST(ProgramMemory, AResetStartsNothingThatBreaksARule) {
+  Rig rig(code_of({I(Opcode::DivHH, 200, 201), I(Opcode::End)}));
+  EXPECT_EQ(rig.station->fault(), 10);
+  EXPECT_EQ(rig.value(Service::WriteVolatile, 16001, 0xEE), 0xEE);
+  EXPECT_EQ(rig.value(Service::Write, 8617, 1), 1);  // P840
+  rig.run(5 * kMillisecond);
+  EXPECT_TRUE(rig.told("program not started: word 1: the code word is no command [V03]"));
+  EXPECT_TRUE(rig.station->program_over());
+}
+
 TEST(ProgramMemory, IsVerifiedBeforeItStarts) {
   Rig rig(kEndless);
   rig.station->stop_program();

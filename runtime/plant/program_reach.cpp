@@ -1,10 +1,9 @@
 // The outlook of the machine, and what it means for positions and telegrams.
-#include "runtime/plant/prospect.hpp"
+#include "runtime/plant/program_reach.hpp"
 
 #include <algorithm>
 
-#include "runtime/services/noted_variables.hpp"
-#include "runtime/services/positioning_service.hpp"
+#include "stdlib/system_variables.hpp"
 #include "vm/sched/outlook.hpp"
 
 namespace ipos::runtime {
@@ -23,23 +22,24 @@ bool has_system_variables(uint32_t first, VariableFormat format) {
 }  // namespace
 
 bool is_system_variable(size_t variable) {
-  return variable >= NotedVariables::kFirst && variable <= NotedVariables::kLast;
+  return variable >= stdlib::kFirstSystemVariable && variable <= stdlib::kLastSystemVariable;
 }
 
-Prospect::Prospect(const vm::Machine& machine, std::span<const VariableObjects* const> objects) {
+ProgramReach::ProgramReach(const vm::Machine& machine, std::span<const VariableObjects* const> objects) {
   const vm::Outlook outlook(machine);
   const auto reached = [&](Opcode call) { return outlook.reaches(call); };
-  const auto used = [&](size_t variable) { return outlook.used()[variable]; };
+  const auto used = [&](const stdlib::UsedVariable& variable) {
+    return variable.use == stdlib::VariableUse::Moves && outlook.used()[variable.number];
+  };
   mute = std::none_of(std::begin(kBusCalls), std::end(kBusCalls), reached);
   may_fault = outlook.may_fault();
   may_stop = outlook.may_stop();
-  minds_motion =
-      std::any_of(std::begin(PositioningService::kMoving), std::end(PositioningService::kMoving), used);
-  tells_motion = false;
+  reads_position = std::any_of(std::begin(stdlib::kUsedVariables), std::end(stdlib::kUsedVariables), used);
+  sends_position = false;
   apart = outlook.apart();
   for (const VariableObjects* of_bus : objects) {
     of_bus->each_sent([&](uint32_t data, VariableFormat format) {
-      tells_motion = tells_motion || has_system_variables(data, format);
+      sends_position = sends_position || has_system_variables(data, format);
     });
     of_bus->each_received([&](uint32_t /*id*/, uint32_t data, VariableFormat format) {
       apart = apart && !has_system_variables(data, format);
@@ -47,8 +47,8 @@ Prospect::Prospect(const vm::Machine& machine, std::span<const VariableObjects* 
   }
   if (!mute || !apart) return;
   for (size_t n = 0; n < outlook.written().size(); ++n)
-    if (outlook.written()[n]) undone.push_back(static_cast<uint16_t>(n));
-  apart = apart && undone.size() <= vm::Machine::kMostUndone;
+    if (outlook.written()[n]) rollback.push_back(static_cast<uint16_t>(n));
+  apart = apart && rollback.size() <= vm::Machine::kMostRollback;
 }
 
 }  // namespace ipos::runtime
