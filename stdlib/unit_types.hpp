@@ -31,4 +31,7 @@ std::span<const UnitType> unit_types();
 const UnitType* find_unit(std::string_view name);
 const UnitType* find_unit(uint8_t code);
 
+// A list of names with spaces has this unit; an empty list has all.
+bool among_units(std::string_view names, const UnitType& unit);
+
 }  // namespace ipos::stdlib

@@ -12,6 +12,7 @@
 #include "stdlib/faults.hpp"
 #include "stdlib/parameters.hpp"
 #include "stdlib/return_codes.hpp"
+#include "stdlib/unsimulated.hpp"
 #include "tools/failure.hpp"
 #include "tools/pages.hpp"
 #include "tools/verbs.hpp"
@@ -134,6 +135,9 @@ std::string explain_parameter(std::string_view name) {
                             stdlib::parameter_text(*row, static_cast<int32_t>(range.step)));
       for (const stdlib::ValueText& value : row->texts)
         text += fmt::format("\n  {} = {}", value.value, value.text);
+      for (const stdlib::Unsimulated& one : stdlib::unsimulated(unit, row->index))
+        text += fmt::format("\n  not simulated{}: {}",
+                            one.values.empty() ? "" : fmt::format(" ({})", one.row->values), one.row->text);
     }
     const auto same = std::find_if(rows.begin(), rows.end(),
                                    [&](const Row& one) { return one.label == label && one.text == text; });

@@ -50,10 +50,14 @@ void hear_bus(const ControlInputs& in, Verdict& verdict) {
     return;
   }
   using namespace control_bits;
-  if ((word & kInhibit) != 0) verdict.restrict_to(Command::Inhibit, Block::BusInhibit);
-  if ((word & kRapidStop) == 0) verdict.restrict_to(Command::RapidStop, Block::BusRapidStop);
-  if ((word & kStop) == 0) verdict.restrict_to(Command::Stop, Block::BusStop);
-  if (!in.m07 && (word & kHold) != 0) verdict.restrict_to(Command::HoldControl, Block::BusHold);
+  const auto of = [&](Block bus, Block master) { return in.follows_master ? master : bus; };
+  if ((word & kInhibit) != 0)
+    verdict.restrict_to(Command::Inhibit, of(Block::BusInhibit, Block::MasterInhibit));
+  if ((word & kRapidStop) == 0)
+    verdict.restrict_to(Command::RapidStop, of(Block::BusRapidStop, Block::MasterRapidStop));
+  if ((word & kStop) == 0) verdict.restrict_to(Command::Stop, of(Block::BusStop, Block::MasterStop));
+  if (!in.m07 && (word & kHold) != 0)
+    verdict.restrict_to(Command::HoldControl, of(Block::BusHold, Block::MasterHold));
 }
 
 void hear_faults(const ControlInputs& in, Verdict& verdict) {

@@ -47,6 +47,7 @@ struct ControlInputs {
   bool waiting = false;                  // display t
   std::optional<uint16_t> bus_word;      // of the bus of P101; nothing: terminals
   Block bus_word_missing = Block::None;  // why bus_word is a made-up 0
+  bool follows_master = false;           // bus_word is of a master (P100), whatever P101 is
 };
 
 Verdict decide(const ControlInputs& inputs);

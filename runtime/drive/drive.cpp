@@ -371,6 +371,7 @@ bool Drive::watch_links() {
     links_run_ |= state_.watches[n].runs();
     look_again_ |= state_.watches[n].seen() != now_->heard[n];
     if (!out) continue;
+    if (source == PoSource::Rs485) ++state_.rs485_timeouts;
     raise_fault(fault_of(source));
     missed = true;
   }

@@ -121,6 +121,7 @@ class Drive final : private DriveLink {
   void raise_fault(uint8_t number, FaultResponse response);
   void reset_fault();                                // by hand: auto reset counts anew
   uint32_t resets() const { return state_.resets; }  // how often a reset was ordered, by whomever
+  uint32_t rs485_timeouts() const { return state_.rs485_timeouts; }  // F43 by P812, so far
   // _FaultReaction on a fault without a parameter for its response; false: that of this one is fixed.
   bool set_fault_response(uint8_t number, FaultResponse response);
   uint8_t fault() const { return now_->faults.shown(); }  // error or warning, 0 is none
@@ -146,9 +147,10 @@ class Drive final : private DriveLink {
   bool standing() const { return state_.axis.standing(); }
   uint16_t outputs() const { return state_.outputs.levels(); }
 
-  // What the master of a master/slave group sends (P750); its slaves scale it (P751): control word 1, speed,
-  // 0.
-  Words master_words() const;
+  // What the master of a master/slave group sends (P750); its slaves scale it (P751): control word 1, speed
+  // and the third IPOS PI-DATA word of the program. Without `speed`, when P750 wants a torque or a load
+  // share: stop and 0 (ours; a speed must not be taken for one of them).
+  Words master_words(bool speed) const;
 
   // Power off and on: everything as at first, but for the motor potentiometer with P152. The parameters are
   // the caller's.
@@ -299,6 +301,7 @@ class Drive final : private DriveLink {
     uint32_t counter_shift = 0;  // by all of set_position
 
     uint32_t resets = 0;
+    uint32_t rs485_timeouts = 0;
     bool reset_input = false;  // level at the last tick
     int32_t auto_reset_ms = 0;
     int auto_resets = 0;

@@ -126,6 +126,7 @@ ControlInputs Drive::control_inputs(const Terminals& t) const {
   in.factory_setting = now_->factory_setting;
   in.starting_up = now_->starting_up;
   in.waiting = is_waiting();
+  in.follows_master = is_master_slave(s);
   if (const auto bus = s.control_bus) {
     in.bus_word = 0;
     if (s.po_enable != 1)
@@ -204,6 +205,7 @@ void Drive::decide_setpoint(Decisions& d) const {
   SetpointInputs& in = d.setpoint;
   in.m07 = is_m07_;
   in.fixed_plus_potentiometer = parameters_.options().firmware_from(13, 12);
+  in.torque_control = !is_m07_ && is_torque_control(active.operating_mode);
   in.slave_free_run = t.on(InputFunction::SlaveFreeRun);
   const bool low = function_on(t, InputFunction::FixedLow);
   const bool high = function_on(t, InputFunction::FixedHigh);

@@ -27,8 +27,8 @@ std::string_view condition_text(UnitCondition condition) {
 UnitCondition Drive::enabled_condition() const {
   if (is_m07_) return UnitCondition::Enable;
   const int32_t mode = set().operating_mode;
-  constexpr int32_t kVfcSpeedControl = 5, kCfcTorque = 12, kServoTorque = 17;
-  if (mode == kCfcTorque || mode == kServoTorque) return UnitCondition::TorqueControl;
+  constexpr int32_t kVfcSpeedControl = 5;
+  if (is_torque_control(mode)) return UnitCondition::TorqueControl;
   return mode >= kVfcSpeedControl && !now_->second_set ? UnitCondition::SpeedControl : UnitCondition::Enable;
 }
 
@@ -116,12 +116,15 @@ uint16_t Drive::pi_word(size_t n) const {
   return 0;
 }
 
-Drive::Words Drive::master_words() const {
-  const uint16_t control = verdict().command == Command::Enable      ? control_bits::kEnable
-                           : verdict().command == Command::Inhibit   ? control_bits::kInhibit
-                           : verdict().command == Command::RapidStop ? control_bits::kStop
-                                                                     : control_bits::kRapidStop;
-  return {control, word_of_speed(state_.axis.state().setpoint), 0};
+// That the program of the master fills PO3 by _SetSys(SS_PIDATA, ...) is ours: MDX60B/61B p. 29 only leaves
+// the word to IPOS.
+Drive::Words Drive::master_words(bool speed) const {
+  const Command command = verdict().command;
+  const uint16_t control = command == Command::Enable && speed ? control_bits::kEnable
+                           : command == Command::Inhibit       ? control_bits::kInhibit
+                           : command == Command::RapidStop     ? control_bits::kStop
+                                                               : control_bits::kRapidStop;
+  return {control, speed ? word_of_speed(state_.axis.state().setpoint) : uint16_t{0}, state_.ipos_pi[2]};
 }
 
 std::optional<int32_t> Drive::live_value(uint16_t index) const {

@@ -7,6 +7,7 @@
 
 #include "runtime/drive/error_memory.hpp"
 #include "runtime/drive/indices.hpp"
+#include "stdlib/unsimulated.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -31,6 +32,11 @@ enum Attribute : int32_t {
 #define ATTRIBUTE(name, bit, text) k##name = 1 << (bit),
 #include "stdlib/access_attributes.def"
 };
+
+// P870..P875.
+constexpr bool describes_process_data(uint16_t index) {
+  return index >= index::kPo1Description && index < index::kPi1Description + 3;
+}
 
 constexpr int32_t bits(int64_t number) { return static_cast<int32_t>(static_cast<uint32_t>(number)); }
 
@@ -106,8 +112,12 @@ ParameterReply ParameterStore::serve(Slot& slot, ParameterService service, int32
     case ParameterService::WriteVolatile: break;
   }
   if (const auto code = refusal(slot, value)) return tl::unexpected(*code);
+  const bool describes = describes_process_data(parameter.index);
+  const int32_t before = describes ? read(slot) : 0;
   const bool stored = store(slot, value, service == ParameterService::Write);
   take_effect(parameter.index, value);
+  if (describes && read(slot) != before) block_process_data(parameter);
+  tell(parameter.index);
   if (!stored) return tl::unexpected(codes::kNotSaved);  // the working value is the new one
   return value;
 }
@@ -224,6 +234,29 @@ void ParameterStore::take_effect(uint16_t index, int32_t value) {
   if (drive_) drive_->on_parameter_written(index, value);
   // Orders, not settings: they read as 0 again once carried out.
   if (index == index::kResetStatistics || index == index::kManualReset) find(index)->working = 0;
+}
+
+// A unit of the newer unit profile takes no process data any more when their description is changed, until
+// P876 is written ON again (documentation of MOVITRAC B; that MDX60B/61B does the same, and only its working
+// value, is ours). The manuals of the older units say nothing of it.
+void ParameterStore::block_process_data(const Parameter& changed) {
+  if (unit_.generation != stdlib::Generation::B || stored(index::kPoEnable) == 0) return;
+  set_working(index::kPoEnable, 0);
+  if (!told_.emplace(changed.index, nullptr).second) return;
+  news_.push_back("P" + std::string(changed.number) + " " + std::string(changed.name) +
+                  " was changed: PO data have no effect until P876 PO data enable is written ON again");
+}
+
+void ParameterStore::tell(uint16_t index) {
+  for (const stdlib::Unsimulated& one : stdlib::unsimulated(unit_, index)) {
+    const int32_t value = this->value(index);
+    if (one.applies(value) && told_.emplace(index, one.row).second) news_.push_back(one.text(value));
+  }
+}
+
+std::vector<std::string> ParameterStore::tell_settings() {
+  for (const stdlib::Unsimulated& one : stdlib::unsimulated(unit_)) tell(one.parameter->index);
+  return take_news();
 }
 
 ParameterReply ParameterStore::preset(uint16_t index, int32_t value) {

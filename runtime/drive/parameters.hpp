@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -159,6 +160,12 @@ class ParameterStore {
   const stdlib::UnitType& unit() const { return unit_; }
   const DriveOptions& options() const { return options_; }
 
+  // What a user has to know of the settings: those that are accepted and not simulated, one text for each
+  // reason and parameter. All that now apply; afterwards those that writes have added.
+  std::vector<std::string> tell_settings();
+  bool has_news() const { return !news_.empty(); }
+  std::vector<std::string> take_news() { return std::exchange(news_, {}); }
+
  private:
   struct Slot {
     const stdlib::Parameter* parameter;
@@ -182,6 +189,8 @@ class ParameterStore {
   std::optional<stdlib::ReturnCode> value_refusal(const stdlib::Parameter& parameter, int32_t value) const;
   bool has_card(stdlib::OptionCard card) const;
   bool store(Slot& slot, int32_t value, bool nonvolatile);
+  void tell(uint16_t index);
+  void block_process_data(const stdlib::Parameter& changed);
   void tell_memory();
   void take_effect(uint16_t index, int32_t value);
   int32_t attribute(const Slot& slot) const;
@@ -195,6 +204,8 @@ class ParameterStore {
   DriveLink* drive_ = nullptr;
   NonvolatileMemory* memory_ = nullptr;
   std::optional<stdlib::ReturnCode> injected_;
+  std::vector<std::string> news_;
+  std::set<std::pair<uint16_t, const void*>> told_;  // indices with their rows of unsimulated.def
   bool factory_setting_ = false;
   uint32_t changes_ = 0;
 };

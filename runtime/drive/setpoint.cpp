@@ -130,6 +130,8 @@ int32_t leave_skip_window(const ParameterSet& set, int32_t speed, int32_t maximu
 
 Setpoint select_setpoint(const Settings& settings, const ParameterSet& set, const ParameterSet& other,
                          const SetpointInputs& in) {
+  // Ours: what is no speed does not turn the shaft, not even with P301.
+  if (in.torque_control) return {0, 0, SetpointNote::TorqueControl};
   const SetpointSource source = source_of(settings, in.slave_free_run);
   const int32_t fixed = fixed_setpoint(in.other_set ? other : set, in.fixed);
   const int32_t pot = in.m07 ? potentiometer_speed(settings, set, in.analog.potentiometer) : 0;

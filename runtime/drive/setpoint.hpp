@@ -50,6 +50,7 @@ std::string_view setpoint_note_text(SetpointNote note);
 struct SetpointInputs {
   bool m07 = false;
   bool fixed_plus_potentiometer = true;  // firmware from .13, LOGODrive .12 (MOVITRAC 07 table 3)
+  bool torque_control = false;             // P700: there is no speed setpoint
   bool slave_free_run = false;           // input function: the local source instead of the master's
   int fixed = 0;                         // 0 none, 1..3: n11..n13 or n21..n23
   bool other_set = false;                // fixed setpoint switchover

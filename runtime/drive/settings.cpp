@@ -72,6 +72,8 @@ Settings SettingsReader::read(const ParameterStore& parameters) const {
   settings.control_bus = control_bus(settings);
   if (is_master_slave(settings)) {
     settings.po = kSlavePo;
+    if (is_torque_control(settings.sets[0].operating_mode))
+      settings.po[1] = static_cast<uint8_t>(PoAssignment::Current);
     settings.pi = kSlavePi;
   }
   for (uint32_t n = 1; n <= 5; ++n) settings.inputs[n] = function(index::kInputFunction + n);

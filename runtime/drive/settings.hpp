@@ -18,11 +18,13 @@ inline constexpr int32_t kAbsent = INT32_MIN;
 
 // Parameters that exist twice, for motors 1 and 2 (parameter switchover).
 struct ParameterSet {
+  bool operator==(const ParameterSet&) const = default;
 #define SET_SETTING(member, first, second, absent) int32_t member = absent;
 #include "runtime/drive/settings.def"
 };
 
 struct Settings {
+  bool operator==(const Settings&) const = default;
 #define SETTING(member, number, absent) int32_t member = absent;
 #include "runtime/drive/settings.def"
   std::array<ParameterSet, 2> sets;
@@ -37,6 +39,11 @@ struct Settings {
   // Functions of the outputs: bit 1 DO01, bit 2 DO02, bit 8 DO10 .. bit 15 DO17. DB00 is the brake.
   std::array<uint8_t, 16> outputs{};
 };
+
+// P700: the modes with M-CONTROL.
+constexpr bool is_torque_control(int32_t operating_mode) {
+  return operating_mode == 12 || operating_mode == 17;
+}
 
 class SettingsReader {
  public:

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "runtime/plan/checks.hpp"
+#include "stdlib/unsimulated.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -27,7 +28,10 @@ class ProfileCheck {
     partners();
     masters();
     for (const Member& member : roster_.members)
-      if (member.station != nullptr) master_slave(member);
+      if (member.station != nullptr) {
+        master_slave(member);
+        unsimulated(member);
+      }
   }
 
  private:
@@ -141,6 +145,24 @@ class ProfileCheck {
     setting("100", drive.value("100") == kSetpointSbus, "SBus");
     setting("101", drive.value("101") == kControlSbus, "SBus");
     setting("876", drive.value("876") != 0, "ON");
+    const auto word = [&](bool good, std::string_view missing, std::string_view so) {
+      if (!good)
+        find(FindingKind::ProcessData,
+             fmt::format("no PO word of {} is {} (P870..P872): {}", member.name, missing, so));
+    };
+    word(drive.value("101") != kControlSbus || drive.has_control_word(), "a control word",
+         "it is enabled as if the bus had sent it");
+    word(drive.value("100") != kSetpointSbus || drive.has_speed_word(), "a speed",
+         "its setpoint counts as 0");
+  }
+
+  void unsimulated(const Member& member) {
+    const DriveServer& drive = member.station->drive();
+    for (const stdlib::Unsimulated& one : stdlib::unsimulated(drive.unit())) {
+      if (one.row->scope != stdlib::UnsimulatedScope::Bus) continue;
+      if (const int32_t value = drive.parameters().value(one.parameter->index); one.applies(value))
+        find(FindingKind::NotSimulated, fmt::format("{}: {}", member.name, one.text(value)));
+    }
   }
 
   bool is_group_master(const Member& member) const {

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "runtime/bus/movilink/sbus_group_master.hpp"
+#include "runtime/drive/indices.hpp"
 
 namespace ipos::runtime {
 
@@ -84,6 +85,9 @@ tl::expected<int32_t, ReturnCode> DriveServer::serve(Time now, const ParameterRe
     reason_ = parameters_.explain(service, request.index, request.value, reply.error());
     if (reply.error() == codes::kProtected) reason_ += " (a program is running)";
   }
+  if (request.subindex != 0 && !has_subindices())
+    tell_once(Obstacle::Reserved, 0,
+              "byte 1 of the parameter channel is reserved on this unit and should be 0: it is ignored");
   return reply;
 }
 
@@ -104,20 +108,34 @@ void DriveServer::look_for_obstacles(const DataBus& bus, bool slave) {
   if (slave) return;
   if (value("101") != bus.control)
     obstruct(bus, Obstacle::ControlSource, "the control word has no effect", "101", bus.control);
+  else if (!has_control_word())
+    tell_once(Obstacle::NoControlWord, bus.told_shift,
+              "no PO word is a control word (P870..P872): the drive is enabled as if the bus had sent it");
   if (value("100") != bus.setpoint)
     obstruct(bus, Obstacle::SetpointSource, "the setpoints have no effect", "100", bus.setpoint);
 }
 
 void DriveServer::obstruct(const DataBus& bus, Obstacle obstacle, std::string_view what,
                            std::string_view number, int32_t wanted) {
-  const uint32_t bit = 1U << (static_cast<uint32_t>(obstacle) + bus.told_shift);
-  if ((told_obstacles_ & bit) != 0) return;
-  told_obstacles_ |= bit;
   const stdlib::Parameter* row = parameters_.table().find(number);
-  if (row == nullptr) return;
-  obstacles_.push_back(fmt::format("{}: P{} {} is {}, not {}", what, number, row->name,
-                                   stdlib::parameter_text(*row, value(number)),
-                                   stdlib::parameter_text(*row, wanted)));
+  if (row == nullptr || was_told(obstacle, bus.told_shift)) return;
+  tell_once(obstacle, bus.told_shift,
+            fmt::format("{}: P{} {} is {}, not {}", what, number, row->name,
+                        stdlib::parameter_text(*row, value(number)), stdlib::parameter_text(*row, wanted)));
+}
+
+void DriveServer::tell_once(Obstacle obstacle, uint32_t shift, std::string_view text) {
+  if (was_told(obstacle, shift)) return;
+  told_obstacles_ |= told_bit(obstacle, shift);
+  obstacles_.emplace_back(text);
+}
+
+bool DriveServer::has_po_word(std::initializer_list<PoAssignment> wanted) const {
+  for (uint32_t n = 0; n < kProcessWords; ++n) {
+    const int32_t word = parameters_.value(static_cast<uint16_t>(index::kPo1Description + n));
+    if (std::find(wanted.begin(), wanted.end(), static_cast<PoAssignment>(word)) != wanted.end()) return true;
+  }
+  return false;
 }
 
 // Some time after the telegram that is answered.
@@ -154,7 +172,7 @@ void DriveServer::Rs485Data::cyclic_request(Time /*now*/) {
 
 ProcessWords DriveServer::setpoint_to_send(Time /*now*/) {
   make_up();
-  return state_.master_words();
+  return state_.master_words(sends_speed(parameters_.value(serial_.slave_setpoint)));
 }
 
 void DriveServer::setpoint_received(Time /*now*/, const ProcessWords& words) {

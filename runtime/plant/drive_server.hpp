@@ -2,6 +2,7 @@
 // telegrams and MOVLNK address 253 from the drive's parameters and unit state, and holds its memory.
 #pragma once
 
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -85,16 +86,26 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
   std::string take_reason() { return std::exchange(reason_, {}); }
 
   // One of the two has something.
-  bool has_reasons() const { return !reason_.empty() || !obstacles_.empty(); }
+  bool has_reasons() const { return !reason_.empty() || !obstacles_.empty() || parameters_.has_news(); }
 
-  // What keeps process data that came over a bus from acting, each told once.
-  std::vector<std::string> take_obstacles() { return std::exchange(obstacles_, {}); }
+  // What keeps process data that came over a bus, or a setting, from acting, each told once.
+  std::vector<std::string> take_obstacles() {
+    for (std::string& news : parameters_.take_news()) obstacles_.push_back(std::move(news));
+    return std::exchange(obstacles_, {});
+  }
 
   tl::expected<int32_t, ReturnCode> serve(Time now, const ParameterRequest& request) override;
+  bool has_subindices() const override { return unit().generation == stdlib::Generation::B; }
   void take_output(Time now, OutputChannel channel, std::span<const uint16_t> words) override;
   ProcessWords input(Time now) override;
   void synchronize(Time now) override;
   uint32_t syncs() const { return syncs_; }  // sync telegrams so far
+
+  // Some of P870..P872 says so.
+  bool has_control_word() const {
+    return has_po_word({PoAssignment::ControlWord1, PoAssignment::ControlWord2});
+  }
+  bool has_speed_word() const { return has_po_word({PoAssignment::Speed, PoAssignment::RelativeSpeed}); }
 
   ProcessDataServer& rs485_data() { return rs485_data_; }
   SerialParameters serial_parameters() const;
@@ -118,15 +129,23 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
     DriveServer& drive_;
   };
 
-  enum class Obstacle : uint8_t { PoDisabled, ControlSource, SetpointSource };
+  enum class Obstacle : uint8_t { PoDisabled, ControlSource, SetpointSource, NoControlWord, Reserved };
   struct DataBus;  // a bus as P100 and P101 name it
   void look_for_obstacles(const DataBus& bus, bool slave);
   void obstruct(const DataBus& bus, Obstacle obstacle, std::string_view what, std::string_view number,
                 int32_t wanted);
+  void tell_once(Obstacle obstacle, uint32_t shift, std::string_view text);
+  static uint32_t told_bit(Obstacle obstacle, uint32_t shift) {
+    return 1U << (static_cast<uint32_t>(obstacle) + shift);
+  }
+  bool was_told(Obstacle obstacle, uint32_t shift) const {
+    return (told_obstacles_ & told_bit(obstacle, shift)) != 0;
+  }
 
   void make_up() {
     if (sleeper_ != nullptr) sleeper_->make_up();
   }
+  bool has_po_word(std::initializer_list<PoAssignment> wanted) const;
   void find_rates() const;
   uint16_t index_of(std::string_view number) const;  // 0 for a parameter the unit does not have
 

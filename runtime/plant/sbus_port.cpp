@@ -177,7 +177,7 @@ void SbusPort::on_not_sent(Time /*now*/, const Frame& /*frame*/, uint64_t tag, N
 void SbusPort::on_bus_off(Time /*now*/) { sender_.recover(); }
 
 void SbusPort::on_ignored(Time now, const Frame& frame, Ignored reason, ReturnCode code) {
-  std::string text = fmt::format("SBus telegram {} had no effect: {}", frame.id, ignored_text(reason));
+  std::string text = fmt::format("SBus telegram {} {}", frame.id, ignored_text(reason));
   if (code != ReturnCode{}) text += fmt::format(" ({})", describe(code));
   note(now, Weight::Why, std::move(text));
 }

@@ -46,6 +46,9 @@ void SerialPort::power_on(Time now) {
 
 void SerialPort::configure(Time now) {
   const SerialParameters p = drive_.serial_parameters();
+  if (const uint32_t timeouts = drive_.state().rs485_timeouts();
+      std::exchange(timeouts_, timeouts) != timeouts)
+    parts_->slave.count_timeout();
   const bool sends = master_slave_ && sends_setpoints(p.slave_setpoint);
   parts_->slave.configure(
       {p.address, p.group, sends, master_slave_ && p.setpoint_source == kFollowsRs485Master});
@@ -53,6 +56,18 @@ void SerialPort::configure(Time now) {
     parts_->setpoints.stop();
   else
     parts_->setpoints.start(now, p.group);
+}
+
+void SerialPort::report(Time now) {
+  if (!parts_) return;
+  std::string errors;
+  for (size_t n = 0; n < kSerialErrors; ++n) {
+    const auto error = static_cast<SerialError>(n);
+    const uint32_t count = parts_->slave.statistics().of(error) + parts_->requester.statistics().of(error);
+    if (count != 0)
+      errors += fmt::format("{}{} {}", errors.empty() ? "" : ", ", serial_error_text(error), count);
+  }
+  if (!errors.empty()) explain(now, "errors so far: " + errors);
 }
 
 void SerialPort::on_character(Time now, const Character& character) {
@@ -77,7 +92,7 @@ void SerialPort::on_rejected(Time now, const Reception& reception, SerialError e
 }
 
 void SerialPort::on_ignored(Time now, const SerialTelegram& request, Ignored reason, ReturnCode code) {
-  std::string text = fmt::format("request to {} had no effect: {}", request.address, ignored_text(reason));
+  std::string text = fmt::format("request to {} {}", request.address, ignored_text(reason));
   if (code != ReturnCode{}) text += fmt::format(" ({})", describe(code));
   explain(now, std::move(text));
 }

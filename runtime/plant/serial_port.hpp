@@ -26,8 +26,11 @@ class SerialPort final : private SerialNode, private SerialSlaveObserver {
   void power_off();
   void power_on(Time now);
 
-  // Takes over P810, P811, P750 and P100; once a millisecond.
+  // Takes over P810, P811, P750 and P100, and counts missed requests; once a millisecond.
   void configure(Time now);
+
+  // At the end: how often each error came, to the journal.
+  void report(Time now);
 
   MovilinkMaster& master() { return parts_->master; }
   const SerialSlave& slave() const { return parts_->slave; }
@@ -58,6 +61,7 @@ class SerialPort final : private SerialNode, private SerialSlaveObserver {
   Journal& journal_;
   SerialLinePort port_;
   std::optional<Parts> parts_;  // while the power is on
+  uint32_t timeouts_ = 0;       // of the drive, counted so far
 };
 
 }  // namespace ipos::runtime

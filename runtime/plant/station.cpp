@@ -33,7 +33,7 @@ Station::Station(EventQueue& queue, uint32_t source, const StationConfig& config
       config_(config),
       lines_(lines),
       journal_(journal),
-      movilink_(drive_, drive_, journal, config.name),
+      movilink_(*config.unit, drive_, drive_, journal, config.name),
       image_(std::move(program)) {
   drive_.use(*this);
   movilink_.use(*this);
@@ -64,6 +64,8 @@ void Station::power_on() {
   }
   for (const int number : {1, 2}) connect_sbus(number);
   connect_serial();
+  for (std::string& setting : drive_.parameters().tell_settings())
+    journal_.note(queue_.now(), Weight::Why, config_.name, std::move(setting));
   restart_program_memory();
   tick_ = queue_.schedule(queue_.now(), source_, *this, kTick);
 }

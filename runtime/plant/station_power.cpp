@@ -126,6 +126,8 @@ bool Station::store_memory() {
   make_up();
   const bool stored = drive_.memory().commit();
   drive_.memory().report_wear();
+  for (const auto* port : {&x13_, &xt_})
+    if (*port) (*port)->report(queue_.now());
   note_memory(queue_.now());
   return stored;
 }

@@ -19,10 +19,15 @@ constexpr int32_t kOwnUnit = 253;
 
 struct BusRow {
   int32_t code;
+  std::string_view units;
   const char* text;
 };
 constexpr BusRow kBuses[] = {
-#define MOVILINK_BUS(name, code, text) {code, text},
+#define MOVILINK_BUS(name, code, units, text) {code, units, text},
+#include "runtime/services/movilink_buses.def"
+};
+constexpr BusRow kAbsentBuses[] = {
+#define ABSENT_BUS(code, units, text) {code, units, text},
 #include "runtime/services/movilink_buses.def"
 };
 
@@ -37,9 +42,9 @@ MovilinkResult refused(ReturnCode code) {
 
 }  // namespace
 
-MovilinkCommand::MovilinkCommand(ParameterServer& own, ProcessDataServer& own_data, Journal& journal,
-                                 std::string_view station)
-    : own_(own), own_data_(own_data), journal_(journal), station_(station) {
+MovilinkCommand::MovilinkCommand(const stdlib::UnitType& unit, ParameterServer& own,
+                                 ProcessDataServer& own_data, Journal& journal, std::string_view station)
+    : unit_(unit), own_(own), own_data_(own_data), journal_(journal), station_(station) {
   for (Route& route : routes_) route.command = this;
 }
 
@@ -66,20 +71,23 @@ vm::HostReply MovilinkCommand::start(Time now, vm::Machine& machine, int context
   job.bus.write_value = h[job.data + kWritePar];
   for (uint32_t n = 0; n < format->words; ++n) job.bus.output[n] = h[job.data + kPO1 + n];
 
-  if (job.bus.address == kOwnUnit) {
-    store(job, serve_own(now, job.bus, *format));
-    return {};
-  }
   const auto refuse = [&](ReturnCode code, std::string reason) {
     why = std::move(reason);
     store(job, refused(code));
     return vm::HostReply{};
   };
-  const auto row = std::find_if(std::begin(kBuses), std::end(kBuses),
-                                [&](const BusRow& bus) { return bus.code == element(kBusType); });
-  if (row == std::end(kBuses))
-    return refuse(return_codes::kWrongManagement,
-                  fmt::format("MOVLNK: bus type {} is none of 1, 2, 5 and 8", element(kBusType)));
+  if (format->parameter && job.bus.index > 0xFFFF && !own_.has_subindices())
+    return refuse(
+        return_codes::kWrongManagement,
+        fmt::format("MOVLNK: {} has no subindices, so Index {} cannot be sent", unit_.title, job.bus.index));
+  if (job.bus.address == kOwnUnit) {
+    store(job, serve_own(now, job.bus, *format));
+    return {};
+  }
+  const auto row = std::find_if(std::begin(kBuses), std::end(kBuses), [&](const BusRow& bus) {
+    return bus.code == element(kBusType) && stdlib::among_units(bus.units, unit_);
+  });
+  if (row == std::end(kBuses)) return refuse(return_codes::kWrongManagement, unknown_bus(element(kBusType)));
   Route& route = routes_[static_cast<size_t>(row - std::begin(kBuses))];
   if (route.master == nullptr)
     return refuse(return_codes::kCommunication,
@@ -93,6 +101,17 @@ vm::HostReply MovilinkCommand::start(Time now, vm::Machine& machine, int context
                                      job.bus.address, job.bus.format, job.bus.service, row->text));
   }
   return {vm::Answer::Wait};
+}
+
+std::string MovilinkCommand::unknown_bus(int32_t code) const {
+  for (const BusRow& bus : kAbsentBuses)
+    if (bus.code == code && stdlib::among_units(bus.units, unit_))
+      return fmt::format("MOVLNK: bus type {} is {}, which is not simulated", code, bus.text);
+  std::vector<int32_t> codes;
+  for (const BusRow& bus : kBuses)
+    if (stdlib::among_units(bus.units, unit_)) codes.push_back(bus.code);
+  return fmt::format("MOVLNK: bus type {} is none of {}, which {} has", code, fmt::join(codes, ", "),
+                     unit_.title);
 }
 
 bool MovilinkCommand::has_called(uint32_t variable) const {

@@ -13,13 +13,14 @@
 #include "runtime/bus/movilink/unit_servers.hpp"
 #include "runtime/services/journal.hpp"
 #include "runtime/services/sleeper.hpp"
+#include "stdlib/unit_types.hpp"
 #include "vm/exec/machine.hpp"
 
 namespace ipos::runtime {
 
 // BusType of MOVLNK (1053 1610 p. 47).
 enum class MovilinkBus : uint8_t {
-#define MOVILINK_BUS(name, code, text) name,
+#define MOVILINK_BUS(name, code, units, text) name,
 #include "runtime/services/movilink_buses.def"
 };
 inline constexpr size_t kMovilinkBuses = static_cast<size_t>(MovilinkBus::Sbus2) + 1;
@@ -28,8 +29,8 @@ class MovilinkCommand final {
  public:
   // `own` and `own_data` serve address 253, the unit itself. Exchanges without an answer are told to the
   // journal.
-  MovilinkCommand(ParameterServer& own, ProcessDataServer& own_data, Journal& journal,
-                  std::string_view station);
+  MovilinkCommand(const stdlib::UnitType& unit, ParameterServer& own, ProcessDataServer& own_data,
+                  Journal& journal, std::string_view station);
 
   // Whoever carries the exchanges of a bus reports to client(bus). A bus without master is not connected.
   MovilinkClient& client(MovilinkBus bus) { return routes_[static_cast<size_t>(bus)]; }
@@ -82,10 +83,12 @@ class MovilinkCommand final {
     std::vector<Partner> partners;
   };
 
+  std::string unknown_bus(int32_t code) const;
   MovilinkResult serve_own(Time now, const MovilinkJob& job, TelegramFormat format);
   static void store(const Job& job, const MovilinkResult& result);
   static void finish(const Job& job, const MovilinkResult& result);
 
+  const stdlib::UnitType& unit_;
   ParameterServer& own_;
   ProcessDataServer& own_data_;
   Journal& journal_;

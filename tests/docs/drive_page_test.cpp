@@ -1,4 +1,5 @@
-// docs/drive.md: its table of faults is the one of stdlib/faults.def, row by row.
+// Tables of the pages that are rows of the project: faults in docs/drive.md, settings without effect in
+// docs/limits.md.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 
 #include "stdlib/faults.hpp"
 #include "stdlib/parameters.hpp"
+#include "stdlib/unsimulated.hpp"
 #include "tests/tools/command.hpp"
 
 namespace ipos::tests {
@@ -28,6 +30,35 @@ TEST(DrivePage, FaultTable) {
   std::istringstream page(read_text(project("docs/drive.md")));
   for (std::string line; std::getline(page, line);)
     if (line.starts_with("| F")) found.push_back(line);
+  EXPECT_EQ(found, want);
+}
+
+// "P100, P200..P207"
+std::string with_letters(std::string_view numbers) {
+  std::string text;
+  for (size_t n = 0; n < numbers.size(); ++n) {
+    const bool begins = n == 0 || ((numbers[n - 1] == ',' || numbers[n - 1] == '.') && numbers[n] != '.');
+    if (n > 0 && numbers[n - 1] == ',') text += ' ';
+    if (begins) text += 'P';
+    text += numbers[n];
+  }
+  return text;
+}
+
+TEST(LimitsPage, SettingsWithoutEffect) {
+  const auto values = [](std::string_view codes) {
+    std::string text(codes.empty() ? "any" : codes);
+    for (size_t at = 0; (at = text.find(',', at)) < text.size(); at += 2) text.replace(at, 1, ", ");
+    return text;
+  };
+  std::vector<std::string> want;
+  for (const stdlib::UnsimulatedRow& row : stdlib::unsimulated_rows())
+    want.push_back(fmt::format("| {} | {} | {} | {} |", with_letters(row.parameters), values(row.values),
+                               row.units.empty() ? "all" : row.units, row.text));
+  std::vector<std::string> found;
+  std::istringstream page(read_text(project("docs/limits.md")));
+  for (std::string line; std::getline(page, line);)
+    if (line.size() > 3 && line.starts_with("| P") && line[3] >= '0' && line[3] <= '9') found.push_back(line);
   EXPECT_EQ(found, want);
 }
 

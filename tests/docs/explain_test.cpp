@@ -52,6 +52,14 @@ TEST(Explain, FaultsOfPrograms) {
   EXPECT_NE(explained("f32").find("deeper"), std::string::npos);
 }
 
+TEST(Explain, WhatIsNotSimulatedOfAParameter) {
+  const std::string mode = explained("P700");
+  EXPECT_NE(mode.find("\n  not simulated (12,17): torque control is not simulated"), std::string::npos) << mode;
+  EXPECT_NE(mode.find("\n  not simulated (21): the drive turns with ideal speed control"), std::string::npos);
+  EXPECT_NE(explained("P138").find("\n  not simulated: the ramps are not limited\n"), std::string::npos);
+  EXPECT_EQ(explained("P130").find("not simulated"), std::string::npos);
+}
+
 TEST(Explain, FaultsOfTheDrive) {
   // 1053 1610 p. 41, 64, 81: F47, P815, P836 = EMERG.STOP/ERROR.
   const std::string text = explained("F47");

@@ -1,4 +1,4 @@
-// Why a telegram to a unit had no effect, as data.
+// Why a telegram to a unit had no effect or no answer, as data.
 #pragma once
 
 #include <cstdint>
@@ -7,13 +7,14 @@
 namespace ipos::runtime {
 
 enum class Ignored : uint8_t {
-#define IGNORED(name, text) name,
+#define IGNORED(name, outcome, text) name,
 #include "runtime/bus/movilink/ignored.def"
 };
 
+// "had no effect: remote frame".
 constexpr std::string_view ignored_text(Ignored reason) {
   constexpr std::string_view kTexts[] = {
-#define IGNORED(name, text) text,
+#define IGNORED(name, outcome, text) outcome ": " text,
 #include "runtime/bus/movilink/ignored.def"
   };
   return kTexts[static_cast<size_t>(reason)];

@@ -28,7 +28,7 @@ inline constexpr uint8_t kFailed = 0x80;
 
 struct ParameterTelegram {
   uint8_t management = 0;
-  uint8_t subindex = 0;  // reserved on MD_60A, always sent as 0 there
+  uint8_t subindex = 0;  // reserved on units without subindices, always sent as 0 there
   uint16_t index = 0;
   uint32_t data = 0;
 

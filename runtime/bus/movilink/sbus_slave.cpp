@@ -106,14 +106,22 @@ void SbusSlave::take_telegram(Time now, const Frame& frame, Telegram telegram) {
   }
 }
 
+// A unit without sync telegram wants bit 6 to be 0 and has a return code for an incorrect management byte
+// (MOVITRAC 07 chapter 4.2); it answers at once.
+ParameterTelegram SbusSlave::carry_out(Time now, const ParameterTelegram& request) {
+  if (request.synchronous() && !settings_.synchronous)
+    return parameter_refusal(request, return_codes::kWrongManagement);
+  return execute(now, parameters_, request);
+}
+
 void SbusSlave::take_request(Time now, const Frame& frame, uint8_t channel) {
   const ParameterTelegram request = decode_parameter(frame.data);
-  const ParameterTelegram response = execute(now, parameters_, request);
-  if (!request.synchronous()) {
+  const ParameterTelegram response = carry_out(now, request);
+  if (!request.synchronous() || !settings_.synchronous) {
     queue_.schedule(now + timing_.parameter_delay, source_, *this, kSendResponse + channel, pack(response));
     return;
   }
-  if (sync_responses_[channel]) ignore(now, frame, Ignored::SyncReplaced);
+  if (sync_responses_[channel]) ignore(now, frame, Ignored::AnswerReplaced);
   sync_responses_[channel] = response;
 }
 
@@ -121,7 +129,7 @@ void SbusSlave::take_group_request(Time now, const Frame& frame) {
   const ParameterTelegram request = decode_parameter(frame.data);
   const auto service = service_from_code(request.service_code());
   if (!service || !is_write(*service)) return ignore(now, frame, Ignored::GroupService);
-  const ParameterTelegram response = execute(now, parameters_, request);
+  const ParameterTelegram response = carry_out(now, request);
   if (response.failed()) ignore(now, frame, Ignored::GroupRefused, response.return_code());
 }
 

@@ -52,6 +52,7 @@ class SbusSlave final : private EventTarget {
   void listen();
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
   void take_telegram(Time now, const Frame& frame, Telegram telegram);
+  ParameterTelegram carry_out(Time now, const ParameterTelegram& request);
   void take_request(Time now, const Frame& frame, uint8_t channel);
   void take_group_request(Time now, const Frame& frame);
   void take_sync(Time now);

@@ -61,7 +61,10 @@ void SerialSlave::take_request(Time now, const Reception& reception) {
   if (settings_.follows_master && address_kind(request.address) == AddressKind::Group &&
       request.format == kSetpointFormat)
     return take_setpoint(now, request.words);
-  if (!request.format.acyclic) process_data_.cyclic_request(now);
+  if (!request.format.acyclic) {
+    heard_cyclic_ = true;
+    process_data_.cyclic_request(now);
+  }
   if (request.format.parameter) take_parameter(now, request, answered);
   if (!words.empty())
     process_data_.take_output(now, answered ? OutputChannel::Single : OutputChannel::Group, words);

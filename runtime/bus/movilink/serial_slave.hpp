@@ -50,6 +50,10 @@ class SerialSlave final : private EventTarget {
   const SerialStatistics& statistics() const { return statistics_; }
 
   void on_character(Time now, const Character& character);
+  // The unit has missed cyclic requests (P812): an error of the interfaces they came through (ours).
+  void count_timeout() {
+    if (heard_cyclic_) statistics_.count(SerialError::Timeout);
+  }
   void on_sent(Time now);  // this station has sent something: not heard, but the line was busy
 
  private:
@@ -77,6 +81,7 @@ class SerialSlave final : private EventTarget {
   Time own_end_ = 0;        // of what this station sent last: its echo is no news
   SerialTelegram request_;  // that waits for its answer
   ParameterTelegram acyclic_answer_;
+  bool heard_cyclic_ = false;
   EventId answer_ = kNoEvent;
   EventId link_timeout_ = kNoEvent;
 };

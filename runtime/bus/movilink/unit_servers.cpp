@@ -3,13 +3,15 @@
 
 namespace ipos::runtime {
 
-ParameterTelegram execute(Time now, ParameterServer& parameters, const ParameterTelegram& request) {
+ParameterTelegram execute(Time now, ParameterServer& parameters, const ParameterTelegram& received) {
+  ParameterTelegram request = received;
+  if (!parameters.has_subindices()) request.subindex = 0;
   const auto service = service_from_code(request.service_code());
   if (service == Service::None) return parameter_response(request, static_cast<int32_t>(request.data));
   if (!service || (is_write(*service) && request.data_length() != 4))
     return parameter_refusal(request, return_codes::kWrongManagement);
   const auto value =
-      parameters.serve(now, {*service, request.index, request.subindex, static_cast<int32_t>(request.data)});
+      parameters.serve(now, {*service, request.index, received.subindex, static_cast<int32_t>(request.data)});
   return value ? parameter_response(request, *value) : parameter_refusal(request, value.error());
 }
 

@@ -16,7 +16,7 @@ namespace ipos::runtime {
 struct ParameterRequest {
   Service service;  // never None
   uint16_t index;
-  uint8_t subindex;  // as received; MD_60A ignores it
+  uint8_t subindex;  // as received; a unit that has none ignores it
   int32_t value;     // of a write
 };
 
@@ -24,6 +24,10 @@ struct ParameterRequest {
 class ParameterServer {
  public:
   virtual tl::expected<int32_t, ReturnCode> serve(Time now, const ParameterRequest& request) = 0;
+
+  // Byte 1 of the channel is a subindex. Else it is reserved: it goes out as 0, whatever came (1053 1610
+  // p. 30).
+  virtual bool has_subindices() const { return true; }
 
  protected:
   ~ParameterServer() = default;

@@ -186,6 +186,19 @@ TEST(SbusSlave, SynchronousRequestsWaitForTheSyncTelegram) {
   EXPECT_TRUE(rig.ask(sync).empty());  // once
 }
 
+// The first request was carried out; only its answer is lost.
+TEST(SbusSlave, AnswerThatIsReplacedBeforeTheSyncTelegram) {
+  Rig rig;
+  rig.ask(parameter(523, {0x72, 0, 0x21, 0x16, 0, 0, 0x09, 0xC4}));
+  EXPECT_TRUE(rig.ask(parameter(523, {0x71, 0, 0x20, 0x7E, 0, 0, 0, 0})).empty());
+  EXPECT_EQ(rig.unit.parameters[8470], 2500);
+  EXPECT_EQ(rig.unit.ignored, std::vector<Ignored>{Ignored::AnswerReplaced});
+  EXPECT_NE(ignored_text(Ignored::AnswerReplaced).find("was carried out but is not answered"),
+            std::string_view::npos);
+  EXPECT_EQ(rig.ask({0, 0, {}, false, false}),
+            std::vector<Frame>{parameter(524, {0x71, 0, 0x20, 0x7E, 0x00, 0x0F, 0x42, 0x40})});
+}
+
 TEST(SbusSlave, SynchronousOutputTakesEffectAtTheSyncTelegram) {
   PROVES("SYNC-08", "SYNC-10");
   Rig rig;

@@ -137,5 +137,25 @@ TEST(MdxbSerial, ProcessDataOfAFollowerAreFixed) {
   EXPECT_EQ(rig.rpm(), 1000) << "PO2 is the speed, whatever P871 says";
 }
 
+// Read so, too, and writes have no effect. In torque control PO2 is the current.
+TEST(MdxbSerial, ProcessDataOfAFollowerReadAsTheyAre) {
+  PROVES("MDB-MS-03");
+  const char* const numbers[] = {"P870", "P871", "P872", "P873", "P874", "P875"};
+  for (const int32_t source : {8, 9})
+    for (const int32_t mode : {0, 12, 17}) {
+      MdxbRig rig;
+      rig.set("P100", source);
+      rig.set("P700", mode);
+      const std::vector<int32_t> fixed = {9, mode == 0 ? 1 : 2, 12, 6, 1, 9};
+      for (const int32_t written : {0, 1, 5}) {
+        for (const char* number : numbers) rig.write(number, written);
+        std::vector<int32_t> read;
+        for (const char* number : numbers) read.push_back(rig.value(number));
+        EXPECT_EQ(read, fixed) << source << " " << mode;
+        EXPECT_EQ(rig.value("P876"), 1);
+      }
+    }
+}
+
 }  // namespace
 }  // namespace ipos::tests

@@ -291,8 +291,8 @@ std::string master_and_slave(int p750, int p751) {
          "every = \"10ms\"\n";
 }
 
+// Where it is sent, and the speed; TORQUE and LOAD SHARE are not simulated: no speed goes out for them.
 TEST(ProfileSamples, P750SelectsWhatIsSentAndWhere) {
-  PROVES("MS-05");
   for (int p750 = 0; p750 <= 9; ++p750) {
     PlantRig rig(master_and_slave(p750, 1000));
     Recorder serial;
@@ -305,9 +305,58 @@ TEST(ProfileSamples, P750SelectsWhatIsSentAndWhere) {
     EXPECT_EQ(rig.with(8 * 5 + 6).empty(), !over_sbus) << p750;
     EXPECT_EQ(serial.heard.size() > 10, over_serial) << p750;
     for (const Heard& heard : serial.heard) EXPECT_EQ(heard.text().substr(0, 8), "02 69 05") << "group 105";
-    EXPECT_EQ(rig.station(1).drive().state().axis().speed > 900'000, over_sbus) << p750;
-    EXPECT_NEAR(rig.station(1).drive().state().axis().speed, over_sbus ? 1'000'000 : 0, 5'000) << p750;
+    const Drive& slave = rig.station(1).drive().state();
+    EXPECT_NEAR(slave.axis().speed, over_sbus && p750 <= 3 ? 1'000'000 : 0, 5'000) << p750;
+    if (p750 <= 3) continue;
+    EXPECT_EQ(slave.axis().position, 0) << p750;
+    EXPECT_EQ(rig.says(p750 <= 6 ? "torque is not simulated: the slaves get a stop and setpoint 0"
+                                 : "load sharing is not simulated: the slaves get a stop and setpoint 0"),
+              1U);
+    EXPECT_EQ(rig.says("slave: not enabled: stop: control word bit 2 of the master is 0"),
+              over_sbus ? 1U : 0U);
+    for (const FrameRecord& record : rig.with(8 * 5 + 6)) {
+      const ProcessWords words = *process_words(record.frame);
+      EXPECT_NE(words[0] & 7, 6) << "never the enable";
+      EXPECT_EQ(words[1], 0);
+    }
+    for (const Heard& heard : serial.heard) EXPECT_EQ(heard.text().substr(15, 5), "00 00") << heard.text();
   }
+}
+
+// A slave in M-control takes nothing for a speed, whatever its master sends.
+TEST(ProfileSamples, TorqueControlOfASlaveDoesNotTurn) {
+  std::string plant = master_and_slave(2, 1000);
+  plant.insert(plant.find("P100 = 8\n"), "P700 = 12\n");
+  PlantRig rig(plant);
+  rig.run_until(2 * kSecond);
+  EXPECT_NEAR(rig.station(0).drive().state().axis().speed, 1'000'000, 3'000);
+  EXPECT_EQ(rig.station(1).drive().state().axis().position, 0);
+  EXPECT_EQ(rig.says("slave: P700 Operating mode 1 is CFC & M-CONTROL: torque control is not simulated"), 1U);
+  EXPECT_EQ(rig.says("slave: P700 is a torque control (M-CONTROL), which is not simulated"), 1U);
+}
+
+// PO3 is the program's on both sides: the master's fills it, the slave's reads it (MDX60B/61B p. 29).
+TEST(ProfileSamples, Po3OfTheMasterComesFromItsProgram) {
+  PROVES("MS-07", "MDB-MS-04");
+  const std::string fill =
+      "#include <const.h>\nSSPIDATA3 Pi; \nmain()\n{\n Pi.PI1 = 1; Pi.PI2 = 2; Pi.PI3 = 0x1234;\n "
+      "_SetSys(SS_PIDATA, Pi);\n while (1) {}\n}\n";
+  const std::string read =
+      "#include <const.h>\nGSPODATA3 Po; long l3;\nmain()\n{\n while (1)\n {\n  _GetSys(Po, GS_PODATA);\n  "
+      "l3 = Po.PO3;\n }\n}\n";
+  PlantRig rig(bus_text() + kSerialBus +
+                   station_text("master", "P813 = 1\nP814 = 5\nP811 = 105\nP750 = 3\n", "md60a", "A.IPC",
+                                "rs485 = \"line1\"\n") +
+                   station_text("slave", "P813 = 2\nP814 = 5\nP100 = 8\n", "md60a", "B.IPC"),
+               {{"A.IPC", fill}, {"B.IPC", read}});
+  Recorder serial;
+  rig.get().serial_lines()[0]->line.add_observer(serial);
+  rig.run_until(100 * kMillisecond);
+  // Control word 1, speed, IPOS PO-data.
+  EXPECT_EQ(*process_words(rig.with(8 * 5 + 6).back().frame), (ProcessWords{1, 0, 0x1234}));
+  EXPECT_EQ(rig.variable(1, "l3"), 0x1234);
+  ASSERT_FALSE(serial.heard.empty());
+  EXPECT_EQ(serial.heard.back().text().substr(0, 26), "02 69 05 00 01 00 00 12 34");
 }
 
 TEST(ProfileSamples, P751ScalesTheSlave) {

@@ -1,6 +1,8 @@
 // A station that is silent or does not follow says why, in one line for each cause.
 #include <gtest/gtest.h>
 
+#include "runtime/plan/plan.hpp"
+#include "runtime/plant/serial_plan.hpp"
 #include "tests/harness/proves.hpp"
 #include "tests/runtime/plan/plant_rig.hpp"
 
@@ -33,6 +35,20 @@ TEST(Silence, EachSettingThatIsMissing) {
             "unit1: the control word has no effect: P101 Control signal source is TERMINALS, not SBus\n");
   EXPECT_EQ(why(controlled(kFollows + "P876 = 0\n")),
             "unit1: PO data have no effect: P876 PO data enable is OFF, not ON\n");
+  // P870..P872 without a control word, and without a speed.
+  EXPECT_EQ(
+      why(controlled(kFollows + "P870 = 0\n")),
+      "unit1: no PO word is a control word (P870..P872): the drive is enabled as if the bus had sent it\n");
+  for (const auto& [parameters, finding] :
+       {std::pair<std::string, std::string>{"P870 = 0\n", "no PO word of unit1 is a control word"},
+        {"P871 = 0\n", "no PO word of unit1 is a speed"},
+        {"", ""}}) {
+    PlantRig rig(controlled(kFollows + parameters));
+    std::string found;
+    for (const Finding& one : make_plan(rig.get(), {}).findings) found += one.text + "\n";
+    EXPECT_EQ(found.empty(), finding.empty()) << found;
+    EXPECT_EQ(found.substr(0, finding.size()), finding);
+  }
   // P813 missing, so 0.
   EXPECT_EQ(why(controlled("P100 = 10\nP101 = 3\n")),
             ": sbus: plc calls address 1, which no station has; there are 0 (unit1)\n");
@@ -132,6 +148,83 @@ TEST(Silence, WrongAddress) {
   EXPECT_EQ(rig.variable(0, "Ml.Result"), 0x06020000);
   EXPECT_EQ(rig.says("sbus: master calls address 2, which no station has; there are 0 (master), 3 (slave)"),
             1U);
+}
+
+// Settings that are not simulated: the journal of the unit, and the plan where they are a matter of the bus.
+TEST(Silence, SettingsThatAreNotSimulated) {
+  const std::string settings = kFollows + "P138 = 1\nP871 = 7\nP872 = 1\nP750 = 5\n";
+  EXPECT_EQ(
+      why(controlled(settings)),
+      "unit1: P871 Setpoint description PO2 is SLIP: the shaft has no slip: P094..P096 show the word only\n"
+      "unit1: P750 Slave setpoint is TORQUE (SBus): torque is not simulated: the slaves get a stop and "
+      "setpoint 0\n"
+      "unit1: P138 Ramp limit is YES: the ramps are not limited\n");
+  PlantRig rig(controlled(settings));
+  std::string found;
+  for (const Finding& one : make_plan(rig.get(), {}).findings)
+    if (one.kind == FindingKind::NotSimulated) found += one.line + ": " + one.text + "\n";
+  EXPECT_EQ(
+      found,
+      "sbus: unit1: P871 Setpoint description PO2 is SLIP: the shaft has no slip: P094..P096 show the word "
+      "only\n"
+      "sbus: unit1: P750 Slave setpoint is TORQUE (SBus): torque is not simulated: the slaves get a stop "
+      "and setpoint 0\n");
+  // A write over the bus tells it, too, once.
+  PlantRig written(bus_text() + station_text("unit1", kFollows));
+  written.run_until(10 * kMillisecond);
+  for (int n = 0; n < 2; ++n) {
+    ASSERT_TRUE(written.station(0).drive().serve(written.get().now(), {Service::Write, 8794, 0, 1}));
+    written.station(0).drive().wake();
+    for (const std::string& text : written.station(0).drive().take_obstacles())
+      EXPECT_EQ(text, "P138 Ramp limit is YES: the ramps are not limited") << n;
+  }
+}
+
+// MOVLNK over a bus the unit cannot have, has without a connection, or has and we do not simulate.
+TEST(Silence, BusTypesOfMovlnk) {
+  for (const stdlib::UnitType& unit : stdlib::unit_types()) {
+    if (unit.tasks == 0) continue;
+    const SerialInterfaces serial = serial_interfaces(unit);
+    const bool newer = unit.generation == stdlib::Generation::B;
+    const bool older_small = unit.generation == stdlib::Generation::M07;
+    for (int type = 0; type <= 9; ++type) {
+      PlantRig rig(bus_text() + station_text("u", "", std::string(unit.name), "A.IPC"),
+                   {{"A.IPC", "#include <const.h>\nMOVLNK Ml; MLDATA Mld;\nmain() { Ml.BusType = " +
+                                  std::to_string(type) +
+                                  "; Ml.Address = 1; Ml.Format = 6; Ml.Service = 1; Ml.Index = 8318; "
+                                  "Ml.DPointer = numof(Mld); _MoviLink(Ml); while (1) {} }\n"}});
+      rig.run_until(200 * kMillisecond);
+      std::string reason = "bus type " + std::to_string(type) + " is none of ";
+      if ((type == 1 && serial.xt) || (type == 2 && serial.x13) || (type == 8 && newer))
+        reason = "the station is not connected to ";
+      if (type == 5) reason = "MOVLNK to address 1: no answer";
+      if (type == 3 && newer) reason = "bus type 3 is the fieldbus, which is not simulated";
+      if (type == 6 && older_small) reason = "bus type 6 is CANopen, which is not simulated";
+      EXPECT_EQ(rig.says(reason), 1U) << unit.name << " " << type << "\n" << rig.journal();
+      EXPECT_EQ(rig.variable(0, "Ml.Result"), reason.starts_with("bus type") ? 0x05050000 : 0x06020000)
+          << unit.name << " " << type;
+    }
+  }
+}
+
+// A subindex needs a unit that has some.
+TEST(Silence, SubindexOfMovlnk) {
+  for (const char* unit : {"md60a", "compact", "mc07", "mdxb"})
+    for (const int address : {1, 253}) {
+      PlantRig rig(bus_text() + station_text("u", "", unit, "A.IPC") + station_text("v", "P813 = 1\n"),
+                   {{"A.IPC",
+                     "#include <const.h>\nMOVLNK Ml; MLDATA Mld;\nmain() { Ml.BusType = 5; "
+                     "Ml.Address = " +
+                         std::to_string(address) +
+                         "; Ml.Format = 6; Ml.Service = 1; Ml.Index = 65536 + 8318; Ml.DPointer = "
+                         "numof(Mld); _MoviLink(Ml); while (1) {} }\n"}});
+      rig.run_until(100 * kMillisecond);
+      const bool subindices = std::string_view(unit) == "mdxb";
+      EXPECT_EQ(rig.variable(0, "Ml.Result"), subindices ? 0 : 0x05050000) << unit;
+      EXPECT_EQ(rig.says("has no subindices, so Index 73854 cannot be sent"), subindices ? 0U : 1U) << unit;
+      EXPECT_EQ(rig.with(523).size(), subindices && address == 1 ? 1U : 0U) << unit;
+      EXPECT_EQ(rig.says("v: byte 1 of the parameter channel is reserved"), rig.with(523).size());
+    }
 }
 
 TEST(Silence, CanopenProtocol) {

@@ -90,6 +90,24 @@ TEST(SerialMonitoring, TimeoutIsFault43InTheStatusWord) {
   EXPECT_NE(std::stoi(heard[0].substr(12, 2), nullptr, 16) & 0x20, 0) << "bit 5: fault";
 }
 
+// The timeout of P812 is an error of the interface that the cyclic requests came through, and the end of the
+// run tells how often each error came.
+TEST(SerialMonitoring, TimeoutIsCounted) {
+  PlantRun run(unit("mdxb", "P812 = 500\nP833 = 7\n"));
+  run.ask(0, "02 01 05 00 06 20 00 0B B8");
+  run.run(2 * kSecond);
+  run.ask(0, "02 01 05 00 06 20 00 0B B8");
+  run.run(2 * kSecond);
+  EXPECT_TRUE(run.station(0).store_memory());
+  EXPECT_TRUE(run.told("errors so far: RS-485 timeout 2"));
+  // Acyclic requests are not monitored.
+  PlantRun quiet(unit("mdxb", "P812 = 500\n"));
+  quiet.ask(0, "02 01 85 00 06 20 00 0B B8");
+  quiet.run(2 * kSecond);
+  EXPECT_TRUE(quiet.station(0).store_memory());
+  EXPECT_FALSE(quiet.told("errors so far"));
+}
+
 TEST(SerialMonitoring, MonitoringBeginsWithTheFirstCyclicRequest) {
   PROVES("MDB-PAR-11");
   const PlantRun fresh(unit("mdxb", ""));

@@ -34,7 +34,7 @@ class ProgramRig {
   explicit ProgramRig(const std::string& text, const char* unit_name = "mdxb")
       : unit(*stdlib::find_unit(std::string_view(unit_name))),
         server(unit),
-        movilink(server, server, journal, "unit1"),
+        movilink(unit, server, server, journal, "unit1"),
         mirrored(parameters),
         pid(parameters),
         image(assembled(text)),

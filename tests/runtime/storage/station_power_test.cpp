@@ -351,6 +351,16 @@ TEST(Movitrac07, ParameterTelegrams) {
   const Data maximum_speed{0x31, 0, 0x21, 0x45, 0x00, 0x16, 0xE3, 0x60};
   for (int n = 0; n < 2; ++n)
     EXPECT_EQ(rig.ask(request(Service::Read, 8517)), maximum_speed) << "no toggling";
+  // Bit 6 must be 0: class 5, code 5, at once; nothing is carried out (chapter 4.2, special cases).
+  for (const uint8_t service : std::array<uint8_t, 3>{0x72, 0x73, 0x71}) {
+    const Data answer = rig.ask({service, 0, 0x21, 0x45, 0x00, 0x15, 0x5C, 0xC0});
+    EXPECT_EQ(answer, (Data{static_cast<uint8_t>(service | 0x80), 0, 0x21, 0x45, 5, 5, 0, 0}));
+    EXPECT_EQ(rig.ask(request(Service::Read, 8517)), maximum_speed);
+  }
+  // The same to the group P814 = 0 leaves a reason.
+  EXPECT_TRUE(rig.send(518, {0x72, 0, 0x21, 0x45, 0x00, 0x15, 0x5C, 0xC0}).empty());
+  EXPECT_EQ(rig.ask(request(Service::Read, 8517)), maximum_speed);
+  EXPECT_TRUE(rig.told("SBus telegram 518 had no effect: group write refused"));
   EXPECT_EQ(rig.ask(request(Service::Read, 8622)), (Data{0x31, 0, 0x21, 0xAE, 0, 0, 0, 1}));
   EXPECT_EQ(rig.ask(request(Service::Read, 9500)), (Data{0xB1, 0, 0x25, 0x1C, 8, 0, 0, 0x10}));
   EXPECT_EQ(rig.ask(request(Service::Write, 8318, 1)), (Data{0xB2, 0, 0x20, 0x7E, 8, 0, 0, 0x12}));
@@ -362,6 +372,24 @@ TEST(Movitrac07, ProgramWordsOfARunningProgramAreProtected) {
   Rig rig(kEndless, "mc07");
   EXPECT_EQ(rig.ask(Service::Write, 16000, 5), (Data{0xB2, 0, 0x3E, 0x80, 8, 0, 0, 0x1B}));
   EXPECT_EQ(rig.value(Service::Read, 16000), int64_t{kEndless[0]});
+}
+
+// Byte 1 is reserved where there are no subindices: ignored, told once, and 0 in the answer (1053 1610 p.
+// 30).
+TEST(ParameterChannel, ReservedByte) {
+  for (const char* unit : {"md60a", "compact", "mc07", "mdxb"}) {
+    Rig rig({}, unit);
+    const bool subindices = std::string_view(unit) == "mdxb";
+    const uint8_t back = subindices ? 5 : 0;
+    for (int n = 0; n < 2; ++n) {
+      EXPECT_EQ(rig.ask({0x31, 5, 0x21, 0xAE, 0, 0, 0, 0}), (Data{0x31, back, 0x21, 0xAE, 0, 0, 0, 1}))
+          << unit;
+      EXPECT_EQ(rig.ask({0x30, 5, 0x21, 0xAE, 0, 0, 0, 9}), (Data{0x30, back, 0x21, 0xAE, 0, 0, 0, 9}))
+          << unit;
+      EXPECT_EQ(rig.ask({0x31, 5, 0x25, 0x1D, 0, 0, 0, 0})[1], back) << unit << ", refused";
+    }
+    EXPECT_EQ(rig.told("byte 1 of the parameter channel is reserved"), !subindices) << unit;
+  }
 }
 
 TEST(Movitrac07, VariablesAndProgram) {

@@ -1,0 +1,94 @@
+// The rows of unsimulated.def, spread over the parameters of each unit.
+#include "stdlib/unsimulated.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <string>
+
+namespace ipos::stdlib {
+namespace {
+
+constexpr UnsimulatedRow kRows[] = {
+#define UNSIMULATED(parameters, values, units, scope, text) \
+  {parameters, values, units, UnsimulatedScope::scope, text},
+#include "stdlib/unsimulated.def"
+};
+
+int64_t number_of(std::string_view text) {
+  int64_t number = 0;
+  std::from_chars(text.data(), text.data() + text.size(), number);
+  return number;
+}
+
+// "200..207,210"
+std::vector<ValueRange> ranges_of(std::string_view text) {
+  std::vector<ValueRange> ranges;
+  while (!text.empty()) {
+    const size_t comma = std::min(text.find(','), text.size());
+    const std::string_view part = text.substr(0, comma);
+    const size_t dots = part.find("..");
+    const int64_t first = number_of(part.substr(0, dots));
+    ranges.push_back({first, dots == std::string_view::npos ? first : number_of(part.substr(dots + 2)), 1});
+    text.remove_prefix(std::min(comma + 1, text.size()));
+  }
+  return ranges;
+}
+
+bool holds(std::span<const ValueRange> ranges, int64_t number) {
+  return std::any_of(ranges.begin(), ranges.end(), [&](const ValueRange& range) {
+    return number >= range.minimum && number <= range.maximum;
+  });
+}
+
+std::vector<Unsimulated> make_list(const UnitType& unit) {
+  std::vector<Unsimulated> list;
+  const ParameterTable& table = parameter_table(unit);
+  for (const UnsimulatedRow& row : kRows) {
+    if (!among_units(row.units, unit)) continue;
+    const std::vector<ValueRange> numbers = ranges_of(row.parameters);
+    for (const Parameter& parameter : table.rows())
+      if (!parameter.view && parameter.writable && parameter.index != 0 && !parameter.number.empty() &&
+          holds(numbers, number_of(parameter.number)))
+        list.push_back({table.find(parameter.index), &row, ranges_of(row.values)});
+  }
+  std::stable_sort(list.begin(), list.end(), [](const Unsimulated& a, const Unsimulated& b) {
+    return a.parameter->index < b.parameter->index;
+  });
+  return list;
+}
+
+}  // namespace
+
+std::span<const UnsimulatedRow> unsimulated_rows() { return kRows; }
+
+bool Unsimulated::applies(int32_t value) const {
+  const int64_t number = parameter->number_of(value);
+  return values.empty() ? number != parameter->default_value : holds(values, number);
+}
+
+std::string Unsimulated::text(int32_t value) const {
+  return "P" + std::string(parameter->number) + " " + std::string(parameter->name) + " is " +
+         parameter_text(*parameter, value) + ": " + std::string(row->text);
+}
+
+std::span<const Unsimulated> unsimulated(const UnitType& unit) {
+  static const std::map<uint8_t, std::vector<Unsimulated>> lists = [] {
+    std::map<uint8_t, std::vector<Unsimulated>> made;
+    for (const UnitType& type : unit_types()) made[type.code] = make_list(type);
+    return made;
+  }();
+  return lists.at(unit.code);
+}
+
+std::span<const Unsimulated> unsimulated(const UnitType& unit, uint16_t index) {
+  const std::span<const Unsimulated> all = unsimulated(unit);
+  const auto first =
+      std::lower_bound(all.begin(), all.end(), index,
+                       [](const Unsimulated& one, uint16_t wanted) { return one.parameter->index < wanted; });
+  const auto last =
+      std::find_if(first, all.end(), [&](const Unsimulated& one) { return one.parameter->index != index; });
+  return {first, last};
+}
+
+}  // namespace ipos::stdlib
