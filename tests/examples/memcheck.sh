@@ -4,7 +4,7 @@
 #   tests/examples/memcheck.sh build/dev/tools/ipos
 set -euo pipefail
 [ $# -eq 1 ] || { sed -n '4s/^# *//p' "$0"; exit 64; }
-command -v valgrind >/dev/null || exit 77
+command -v valgrind >/dev/null || { echo "skipped: valgrind is not installed"; exit 77; }
 ipos=$1
 examples=$(cd "$(dirname "$0")/../../examples" && pwd)
 for plant in scom/scom.toml two-tasks/two-tasks.toml table-positioning/table-positioning.toml movilink/movilink.toml; do
