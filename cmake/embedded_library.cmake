@@ -2,7 +2,7 @@
 # the variable telegrams and the C API in one. Its sources are those of the layers, compiled once more without
 # exceptions and run-time types, for the host as for a microcontroller.
 set(embedded_sources
-    vm/isa/coding.cpp vm/image/view.cpp vm/verify/verify.cpp vm/exec/machine.cpp vm/exec/interrupts.cpp
+    vm/isa/coding.cpp vm/isa/blocks.cpp vm/image/view.cpp vm/verify/verify.cpp vm/exec/machine.cpp vm/exec/interrupts.cpp
     vm/exec/saved_state.cpp
     stdlib/unit_types.cpp runtime/bus/movilink/variable_telegram.cpp runtime/scom/object_table.cpp
     runtime/api/status.cpp runtime/api/program.cpp runtime/api/instance.cpp runtime/api/host_bridge.cpp
