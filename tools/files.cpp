@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <compare>
 #include <cstring>
 #include <filesystem>
 #include <mutex>
@@ -21,9 +22,27 @@ namespace {
 
 using runtime::Descriptor;
 
+// Which file it is. A number of the file system is given again to the next file when this one is removed; the time at
+// which the file was made, where the file system keeps it, tells the two apart.
+struct FileIdentity {
+  uint32_t device_major, device_minor;
+  uint64_t number;
+  int64_t made_s;
+  uint32_t made_ns;
+  auto operator<=>(const FileIdentity&) const = default;
+};
+
+std::optional<FileIdentity> identity(int folder, const char* path, int flags) {
+  struct statx info {};
+  if (statx(folder, path, flags, STATX_INO | STATX_BTIME, &info) != 0) return std::nullopt;
+  const bool keeps_time = (info.stx_mask & STATX_BTIME) != 0;
+  return FileIdentity{info.stx_dev_major, info.stx_dev_minor, info.stx_ino,
+                      keeps_time ? info.stx_btime.tv_sec : 0, keeps_time ? info.stx_btime.tv_nsec : 0};
+}
+
 // Tests are read on several threads.
 std::mutex opened_mutex;
-std::set<std::pair<dev_t, ino_t>> opened;
+std::set<FileIdentity> opened;
 
 bool is_standard_input(const std::string& path) { return path == "-" || path == "/dev/stdin"; }
 
@@ -46,7 +65,7 @@ tl::expected<Descriptor, std::string> open_regular(const std::string& path, size
     return tl::unexpected(std::string(std::strerror(errno)));
   if (auto why = trouble(info, limit)) return tl::unexpected(std::move(*why));
   const std::lock_guard lock(opened_mutex);
-  opened.emplace(info.st_dev, info.st_ino);
+  if (const auto file_identity = identity(file.get(), "", AT_EMPTY_PATH)) opened.insert(*file_identity);
   return file;
 }
 
@@ -122,9 +141,9 @@ std::vector<std::string> list_files(const std::string& folder) {
 }
 
 bool is_input(const std::string& path) {
-  struct stat info {};
+  const auto file_identity = identity(AT_FDCWD, path.c_str(), 0);
   const std::lock_guard lock(opened_mutex);
-  return stat(path.c_str(), &info) == 0 && opened.contains({info.st_dev, info.st_ino});
+  return file_identity && opened.contains(*file_identity);
 }
 
 }  // namespace ipos::tools
