@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/ast/print.hpp"
 #include "compiler/ast/walk.hpp"
 #include "compiler/sema/fold.hpp"
 
@@ -10,30 +11,6 @@ namespace ipos::compiler {
 namespace {
 
 using ast::BinaryOp;
-
-std::string_view sign(BinaryOp op) {
-  switch (op) {
-    case BinaryOp::Mul: return "*";
-    case BinaryOp::Div: return "/";
-    case BinaryOp::Mod: return "%";
-    case BinaryOp::Add: return "+";
-    case BinaryOp::Sub: return "-";
-    case BinaryOp::Shl: return "<<";
-    case BinaryOp::Shr: return ">>";
-    case BinaryOp::Lt: return "<";
-    case BinaryOp::Le: return "<=";
-    case BinaryOp::Gt: return ">";
-    case BinaryOp::Ge: return ">=";
-    case BinaryOp::Eq: return "==";
-    case BinaryOp::Ne: return "!=";
-    case BinaryOp::And: return "&";
-    case BinaryOp::Xor: return "^";
-    case BinaryOp::Or: return "|";
-    case BinaryOp::LogicalAnd: return "&&";
-    case BinaryOp::LogicalOr: return "||";
-  }
-  return "";
-}
 
 bool is_bitwise(BinaryOp op) { return op == BinaryOp::And || op == BinaryOp::Xor || op == BinaryOp::Or; }
 
@@ -95,22 +72,23 @@ class Habits {
     if (is_comparison(node.op) && bare_comparison(*node.left)) {
       const ast::Binary& inner = *bare_binary(*node.left);
       diagnostics_.report(Diag::ChainedComparison, node.op_span,
-                          {std::string(sign(node.op)), std::string(sign(inner.op))});
+                          {std::string(ast::spelling(node.op)), std::string(ast::spelling(inner.op))});
     }
     const bool negated = bare_not(*node.left) && !is_truth(*node.right);
     if (negated && (bits || is_comparison(node.op)))
-      diagnostics_.report(
-          Diag::Precedence, node.left->span,
-          {std::string(sign(node.op)), "!", fmt::format("!a {0} b is (!a) {0} b", sign(node.op))});
+      diagnostics_.report(Diag::Precedence, node.left->span,
+                          {std::string(ast::spelling(node.op)), "!",
+                           fmt::format("!a {0} b is (!a) {0} b", ast::spelling(node.op))});
   }
 
   void weaker(const ast::Binary& outer, const ast::Binary& inner) {
     const bool left = outer.left->span.begin == inner.left->span.begin;
-    const std::string form =
-        left ? fmt::format("a {0} b {1} c is (a {0} b) {1} c", sign(inner.op), sign(outer.op))
-             : fmt::format("a {0} b {1} c is a {0} (b {1} c)", sign(outer.op), sign(inner.op));
+    const std::string form = left ? fmt::format("a {0} b {1} c is (a {0} b) {1} c", ast::spelling(inner.op),
+                                                ast::spelling(outer.op))
+                                  : fmt::format("a {0} b {1} c is a {0} (b {1} c)", ast::spelling(outer.op),
+                                                ast::spelling(inner.op));
     diagnostics_.report(Diag::Precedence, outer.op_span,
-                        {std::string(sign(outer.op)), std::string(sign(inner.op)), form});
+                        {std::string(ast::spelling(outer.op)), std::string(ast::spelling(inner.op)), form});
   }
 
   // `a =+ 5`: the sign touches the '=' and not what follows it.

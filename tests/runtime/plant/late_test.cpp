@@ -148,7 +148,7 @@ class LatePlant {
 
 TEST(Late, RandomPlantsAreTheSameAsInTurn) {
   uint64_t late = 0, ahead = 0, looked = 0;
-  for (uint64_t seed = 1; seed <= 120; ++seed) {
+  for (uint64_t seed = 1; seed <= plant_count(120); ++seed) {
     LatePlant random(seed);
     auto all = random.make_in_turn(), some = random.make();
     ASSERT_TRUE(all && some) << random.text();

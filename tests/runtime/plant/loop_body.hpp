@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cctype>
+#include <cstdlib>
 #include <string>
 #include <utility>
 
@@ -15,6 +16,12 @@ inline std::string numbered(std::string text, int k, int l) {
     for (size_t at = 0; (at = text.find(letter, at)) != std::string::npos; ++at)
       if ((at == 0 || !in_name(at - 1)) && !in_name(at + 1)) text.replace(at, 1, std::to_string(value));
   return text;
+}
+
+// How many random plants a test tries: its own number, or that of the variable IPOS_PLANTS for a longer run.
+inline uint64_t plant_count(uint64_t usual) {
+  const char* const wanted = std::getenv("IPOS_PLANTS");
+  return wanted == nullptr ? usual : std::strtoull(wanted, nullptr, 10);
 }
 
 }  // namespace ipos::tests

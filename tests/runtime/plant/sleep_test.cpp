@@ -173,7 +173,7 @@ class RandomPlant {
 
 TEST(Sleep, RandomPlantsAreTheSameAsWithoutIt) {
   uint64_t asleep = 0, steady = 0, late = 0, looked = 0;
-  for (uint64_t seed = 1; seed <= 150; ++seed) {
+  for (uint64_t seed = 1; seed <= plant_count(150); ++seed) {
     RandomPlant random(seed);
     auto all = random.make(false), some = random.make(true);
     ASSERT_TRUE(all && some) << random.text();
