@@ -17,4 +17,6 @@ ipos_layer(bus FOLDERS runtime/bus
                    bus/movilink/serial_telegram.cpp bus/movilink/serial_receiver.cpp bus/movilink/handshake.cpp
                    bus/movilink/serial_slave.cpp bus/movilink/serial_requester.cpp bus/movilink/serial_master.cpp
                    bus/movilink/master_slave.cpp bus/movilink/line_check.cpp
+                   bus/profibus/fdl_frame.cpp bus/profibus/fdl_receiver.cpp bus/profibus/dp_service.cpp
+                   bus/profibus/cfg_data.cpp bus/profibus/frame_text.cpp
            USES clock stdlib LIBS fmt::fmt)

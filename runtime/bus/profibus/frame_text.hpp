@@ -1,0 +1,24 @@
+// A frame in words, for bus logs and people: who asks whom for what, with the data of the DP services taken
+// apart.
+#pragma once
+
+#include <string>
+
+#include "runtime/bus/profibus/dp_service.hpp"
+#include "runtime/bus/profibus/fdl_frame.hpp"
+
+namespace ipos::profibus {
+
+// "1 -> 8 Set_Prm, SRD high, FCB 1: lock, sync, watchdog 0.2 s, min Tsdr 11, ident 3100h, groups 00h"
+std::string describe(const FdlFrame& frame);
+
+// "0.2 s"
+std::string describe_watchdog(const PrmData& prm);
+
+// "Station_Not_Ready, Prm_Req; master none, ident 3100h"
+std::string describe(const Diagnosis& diagnosis);
+
+// "68 05 05 68 ..", the octets of a frame or of its data.
+std::string hex_text(std::span<const uint8_t> octets);
+
+}  // namespace ipos::profibus
