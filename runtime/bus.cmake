@@ -6,6 +6,8 @@ ipos_layer(bus FOLDERS runtime/bus
                    bus/can/frame_bits.cpp bus/can/bit_error.cpp bus/can/line_fault.cpp bus/can/transfer.cpp
                    bus/can/line.cpp bus/can/line_wiring.cpp bus/can/line_report.cpp bus/can/contenders.cpp
                    bus/log/candump.cpp
+                   bus/canopen/abort.cpp bus/canopen/object_dictionary.cpp bus/canopen/object_access.cpp
+                   bus/canopen/eds.cpp bus/canopen/sdo_server.cpp
                    bus/movilink/parameter_telegram.cpp bus/movilink/return_code.cpp
                    bus/movilink/variable_telegram.cpp bus/movilink/profile.cpp bus/movilink/unit_servers.cpp
                    bus/movilink/sbus_slave.cpp bus/movilink/sbus_master.cpp bus/movilink/sbus_group_master.cpp

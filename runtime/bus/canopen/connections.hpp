@@ -1,0 +1,64 @@
+// The identifiers of a CANopen line by the pre-defined connection set (CiA 301; pages 52-56 of the MDX60B/61B
+// manual 11264926 use the same ones).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace ipos::runtime::canopen {
+
+inline constexpr uint8_t kMaxNode = 127;
+constexpr bool is_node(uint32_t node) { return node >= 1 && node <= kMaxNode; }
+
+enum class Connection : uint8_t {
+#define CONNECTION(name, base, addressed, from_node, text) name,
+#include "runtime/bus/canopen/connections.def"
+};
+
+struct ConnectionRow {
+  Connection connection;
+  uint16_t base;
+  bool addressed;
+  bool from_node;
+  std::string_view text;
+};
+
+inline constexpr ConnectionRow kConnections[] = {
+#define CONNECTION(name, base, addressed, from_node, text) \
+  {Connection::name, base, addressed, from_node, text},
+#include "runtime/bus/canopen/connections.def"
+};
+
+constexpr const ConnectionRow& row_of(Connection connection) {
+  return kConnections[static_cast<size_t>(connection)];
+}
+
+// `node` counts for addressed messages only.
+constexpr uint32_t identifier(Connection connection, uint8_t node = 0) {
+  const ConnectionRow& row = row_of(connection);
+  return row.base + (row.addressed ? uint32_t{node} : 0U);
+}
+
+struct Addressed {
+  Connection connection;
+  uint8_t node;  // 0: to all
+  friend bool operator==(const Addressed&, const Addressed&) = default;
+};
+
+// Nothing for an identifier outside of the set.
+constexpr std::optional<Addressed> connection_of(uint32_t id) {
+  for (const ConnectionRow& row : kConnections)
+    if (row.addressed ? id > row.base && id - row.base <= kMaxNode : id == row.base)
+      return Addressed{row.connection, static_cast<uint8_t>(id - row.base)};
+  return std::nullopt;
+}
+
+// Identifiers that CiA 301 keeps from being chosen for PDO, SYNC and EMCY.
+constexpr bool is_restricted(uint32_t id) {
+  return id <= 0x07F || (id >= 0x101 && id <= 0x180) || (id >= 0x581 && id <= 0x5FF) ||
+         (id >= 0x601 && id <= 0x67F) || (id >= 0x6E0 && id <= 0x6FF) || id >= 0x701;
+}
+
+}  // namespace ipos::runtime::canopen
