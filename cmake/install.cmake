@@ -33,20 +33,31 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/iposConfigVersion.cmake C
 install(FILES ${PROJECT_BINARY_DIR}/iposConfig.cmake ${PROJECT_BINARY_DIR}/iposConfigVersion.cmake
         DESTINATION ${package_dir})
 
-# Found from where the file lies, so that an installed tree can be moved.
+# libipos_compile.so finds libipos.so beside itself.
+set_target_properties(ipos_compile PROPERTIES INSTALL_RPATH "$ORIGIN")
+
+# Found from where the file lies, so that an installed tree can be moved. Where the loader does not look by itself,
+# programs get the run path; that depends on the prefix, which is known when it is installed.
+file(RELATIVE_PATH up /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 foreach(part ipos ipos_compile)
-  set(libs "-l${part}")
   set(requires "")
   if(part STREQUAL ipos_compile)
     set(requires "Requires: ipos\n")
   endif()
-  file(WRITE ${PROJECT_BINARY_DIR}/${part}.pc "prefix=\${pcfiledir}/../..
+  file(WRITE ${PROJECT_BINARY_DIR}/${part}.pc.in "prefix=\${pcfiledir}/${up}
+libdir=\${pcfiledir}/..
 Name: ${part}
 Description: ${PROJECT_DESCRIPTION}
 Version: ${PROJECT_VERSION}
 ${requires}Cflags: -I\${prefix}/${CMAKE_INSTALL_INCLUDEDIR} -DIPOS_VARIABLES=${IPOS_VARIABLES}
-Libs: -L\${pcfiledir}/.. ${libs}
+Libs: -L\${libdir} -l${part}@run_path@
 ")
+  install(CODE "
+    set(run_path \"\")
+    if(NOT CMAKE_INSTALL_PREFIX MATCHES \"^/usr(/local)?/?$\")
+      set(run_path \" -Wl,-rpath,\\\${libdir}\")
+    endif()
+    configure_file(${PROJECT_BINARY_DIR}/${part}.pc.in ${PROJECT_BINARY_DIR}/${part}.pc @ONLY)")
   install(FILES ${PROJECT_BINARY_DIR}/${part}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 endforeach()
 

@@ -16,7 +16,7 @@
 namespace ipos::tools {
 
 struct LinkFlags {
-  std::string port;     // as in a plant file (docs/ports.md)
+  std::string port;     // as in a plant file (docs/guide/ports.md)
   uint32_t baud = 0;    // 0: factory setting, 500000 on SBus and 9600 on RS-485
   bool repeats = true;  // ask a second time after no answer
   bool quiet = false;   // tell nothing about the port unless it goes away

@@ -11,7 +11,7 @@ namespace ipos::tools {
 
 enum class MonitorSource : uint8_t { Log, Can, Serial };
 
-// By the name: a file or "-" is a log, see docs/ports.md for the others. Throws for a path where nothing is.
+// By the name: a file or "-" is a log, see docs/guide/ports.md for the others. Throws for a path where nothing is.
 MonitorSource monitor_source(const std::string& name);
 
 // Exit codes. `duration` is time on the clock; in a log that is not followed, time in the log behind its

@@ -1,4 +1,4 @@
-// The pages of docs/diagnostics, built into the program: one file E0123.md a message.
+// The pages of docs/reference/diagnostics, built into the program: one file E0123.md a message.
 #pragma once
 
 #include <span>

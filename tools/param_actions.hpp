@@ -22,7 +22,7 @@ int get_parameters(ParameterAccess& access, const std::vector<std::string>& name
 int set_parameters(ParameterAccess& access, const std::vector<std::string>& assignments, bool is_volatile,
                    bool json);
 int save_parameters(ParameterAccess& access, const std::string& file);
-// The order is that of docs/param.md; refused rows are printed with their places in `file`.
+// The order is that of docs/guide/param.md; refused rows are printed with their places in `file`.
 int load_parameters(ParameterAccess& access, const std::string& file, const ParameterSet& set,
                     bool is_volatile, bool json);
 // Exit code 1 when there are differences. The names stand for the two sides.

@@ -1,4 +1,4 @@
-// The settings of a unit as a file that diffs well: TOML, a line a parameter (docs/param.md). Nothing in it
+// The settings of a unit as a file that diffs well: TOML, a line a parameter (docs/guide/param.md). Nothing in it
 // depends on how the unit was reached.
 #pragma once
 

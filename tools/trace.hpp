@@ -1,4 +1,4 @@
-// A recording as text for other tools. docs/recording.md describes the forms.
+// A recording as text for other tools. docs/guide/recording.md describes the forms.
 #pragma once
 
 #include <ostream>

@@ -1,5 +1,5 @@
 // ipos explain: what a code means: of a message, a verifier rule, a return code, a fault or a parameter of
-// the drive. Messages have a page in docs/diagnostics, the others a row in their tables.
+// the drive. Messages have a page in docs/reference/diagnostics, the others a row in their tables.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// ipos param: the parameters of a unit, read, written, kept as a file and compared (docs/param.md).
+// ipos param: the parameters of a unit, read, written, kept as a file and compared (docs/guide/param.md).
 #include <fmt/format.h>
 
 #include <unistd.h>

@@ -404,7 +404,7 @@ class Assembler {
     }
   }
 
-  // What the image's reader will demand of its tables (docs/isa.md).
+  // What the image's reader will demand of its tables (docs/reference/isa.md).
   void check_tables() {
     for (size_t n = 0; n < image_.functions.size(); ++n)
       if (image_.functions[n].address >= image_.code.size())

@@ -1,6 +1,6 @@
 // Text of an image: assembler source that gives the same image again, and a listing for people. Text forms
 // come from vm/isa/opcodes.def; directives (.unit .file .symbol .function .line WORD) are ours, see
-// docs/assembler.md.
+// docs/reference/assembler.md.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // Clean-up of a function's commands: jumps and what nobody reaches. The table of rules stands in peephole.cpp
-// and in docs/language.md.
+// and in docs/guide/language.md.
 #pragma once
 
 #include "compiler/codegen/code.hpp"

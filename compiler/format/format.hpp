@@ -16,7 +16,7 @@ struct FormatError {
   std::string text;
 };
 
-// The text in the layout of docs/editor.md. Works without includes and macros, so it takes parts of programs
+// The text in the layout of docs/guide/editor.md. Works without includes and macros, so it takes parts of programs
 // and headers, too. An error when the text cannot be cut into words for certain.
 tl::expected<std::string, FormatError> format_source(std::string_view text);
 

@@ -1,5 +1,5 @@
 // Ranges of variable numbers that the compiler hands out, and advice where there is room for more. Defaults
-// as in docs/language.md: globals from H420 (1053 1610 p. 49, watch window), H453 begins the system variables
+// as in docs/guide/language.md: globals from H420 (1053 1610 p. 49, watch window), H453 begins the system variables
 // (IPOSplus p. 29).
 #pragma once
 

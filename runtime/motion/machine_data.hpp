@@ -1,7 +1,7 @@
 // What turns: motor, load, brake and the power section that feeds them. Torques in 1/1000 % of the motor's
 // rated torque, currents in 1/1000 % of the rated unit current IN. The defaults are a self-ventilated 4-pole
 // motor of 1.5 kW with brake on a matching 400 V inverter with braking resistor; the figures are ours,
-// docs/motion.md.
+// docs/inside/motion.md.
 #pragma once
 
 #include <cstdint>

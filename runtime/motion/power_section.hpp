@@ -1,5 +1,5 @@
 // The electrical side: currents, output frequency, DC link, energy and the slow quantities heat sink
-// temperature and utilizations. All models are ours and simple on purpose, docs/motion.md.
+// temperature and utilizations. All models are ours and simple on purpose, docs/inside/motion.md.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // How the programs of a plant are executed. Whatever is chosen, the results are the same
-// (docs/performance.md).
+// (docs/inside/performance.md).
 #pragma once
 
 #include <memory>

@@ -1,6 +1,6 @@
 // The plant file (TOML): buses, stations, their parameters and inputs, and what is expected of them. Reading
 // it checks names, types, units and cross references; every error has line and column, and all are reported
-// at once. The keys are listed in docs/plant-file.md.
+// at once. The keys are listed in docs/guide/plant-file.md.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // The non-volatile memory of one unit: gathers what survives power-off, stores it on a medium and takes it
 // back. A write of the parameter channel is on the medium before it is answered; what the drive changes by
-// itself is stored at the end of the millisecond (docs/nv-memory.md).
+// itself is stored at the end of the millisecond (docs/inside/nv-memory.md).
 #pragma once
 
 #include <memory>

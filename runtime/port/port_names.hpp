@@ -1,4 +1,4 @@
-// What kind of port a name means, for those who take both kinds. docs/ports.md lists the names.
+// What kind of port a name means, for those who take both kinds. docs/guide/ports.md lists the names.
 #pragma once
 
 #include <cstdint>

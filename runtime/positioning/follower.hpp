@@ -1,6 +1,6 @@
 // ISYNC, internal synchronous operation: where the master is, from its positions that come with the sync
 // telegrams of the SBus (MDX60B/61B chapter 5.5.4; the manuals name the function only, all rules are ours and
-// in docs/positioning.md). Between two telegrams the master is taken to go on as in the last cycle.
+// in docs/inside/positioning.md). Between two telegrams the master is taken to go on as in the last cycle.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // Positioning of one axis: what the program orders becomes a speed the drive follows, once a millisecond, and
-// positions and bits the program sees. docs/positioning.md has the rules; no manual at hand describes them
+// positions and bits the program sees. docs/inside/positioning.md has the rules; no manual at hand describes them
 // beyond what is cited. A Positioner is a plain value, a copy of it is a snapshot.
 #pragma once
 

@@ -29,7 +29,7 @@ inline int64_t distance_share(RampShape shape, int64_t time) {
 }
 
 // How much harder than on average a ramp of this shape may brake, in halves: a curved ramp that is taken up
-// again in its steepest part still ends where it would have ended (docs/positioning.md).
+// again in its steepest part still ends where it would have ended (docs/inside/positioning.md).
 constexpr int64_t hardness_halves(RampShape shape) {
   return shape == RampShape::Squared ? 4 : shape == RampShape::Sine ? 3 : 2;
 }

@@ -1,5 +1,5 @@
 // Reference travels, types P903 = 0..7 (1053 1610 p. 83 has the range; what each type does is common
-// knowledge and ours, docs/positioning.md):
+// knowledge and ours, docs/inside/positioning.md):
 //
 //   0 zero pulse CCW of the start     4 CCW limit switch
 //   1 CCW end of the reference cam    5 where the axis is

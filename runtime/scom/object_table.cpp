@@ -114,7 +114,7 @@ ObjectVerdict ObjectTable::define_cyclic(const ObjectRequest& request, int32_t& 
   return ObjectVerdict::Accepted;
 }
 
-// The whole percent of the 70 % budget still free (docs/stdlib.md).
+// The whole percent of the 70 % budget still free (docs/reference/stdlib.md).
 int32_t ObjectTable::free_capacity(const Cyclic& added) const {
   constexpr uint64_t kMicro = 1'000'000;  // loads are summed in millionths of a bit per second
   const auto load = [](const Cyclic& object) {

@@ -1,6 +1,6 @@
 // What the non-volatile memory of a unit holds, and its coding as the payload of a slot. Everything is named
 // by its index of the parameter channel: parameters, IPOS variables (11000 + n), curve points (20000 + n).
-// Layout: docs/nv-memory.md.
+// Layout: docs/inside/nv-memory.md.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // Two slots on a medium, written in turn: after a power cut at any byte of any write, load() finds the old
-// content or the new one, whole. docs/nv-memory.md has the layout and the order of the writes.
+// content or the new one, whole. docs/inside/nv-memory.md has the layout and the order of the writes.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // ipos_bench_instances: many machines of one program in one process. Prints the memory of each, the time to
-// make, save and run them, and the time of a tick of 64. The figures are those of docs/embedding.md.
+// make, save and run them, and the time of a tick of 64. The figures are those of docs/guide/embedding.md.
 #include <ipos.h>
 #include <chrono>
 #include <cstdio>

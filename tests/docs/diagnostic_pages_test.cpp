@@ -1,4 +1,4 @@
-// Every message has a page in docs/diagnostics whose wrong program gives it and whose mended one gives
+// Every message has a page in docs/reference/diagnostics whose wrong program gives it and whose mended one gives
 // nothing.
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ class DiagnosticPage : public testing::TestWithParam<compiler::DiagInfo> {};
 
 TEST_P(DiagnosticPage, ShowsTheMistakeAndItsRepair) {
   const std::string code(GetParam().code);
-  const std::string page = read_text(project("docs/diagnostics/" + code + ".md"));
+  const std::string page = read_text(project("docs/reference/diagnostics/" + code + ".md"));
   ASSERT_TRUE(page.starts_with("# " + code + ": ")) << "no page " << code << ".md, or another title";
 
   const std::vector<Block> blocks = blocks_of(page);
@@ -42,7 +42,7 @@ TEST(DiagnosticPages, NoneIsLeftOver) {
   for (const compiler::DiagInfo& row : compiler::diagnostic_table())
     known.insert(std::string(row.code) + ".md");
   known.insert("comparison.md");
-  for (const auto& file : std::filesystem::directory_iterator(project("docs/diagnostics")))
+  for (const auto& file : std::filesystem::directory_iterator(project("docs/reference/diagnostics")))
     EXPECT_TRUE(known.contains(file.path().filename().string())) << file.path();
 }
 

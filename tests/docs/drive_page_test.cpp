@@ -1,5 +1,5 @@
-// Tables of the pages that are rows of the project: faults in docs/drive.md, settings without effect in
-// docs/limits.md.
+// Tables of the pages that are rows of the project: faults in docs/inside/drive.md, settings without effect in
+// docs/reference/limits.md.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ TEST(DrivePage, FaultTable) {
                                stdlib::parameter_text(*p830, static_cast<int32_t>(row.response)),
                                response_parameter(row), row.meaning));
   std::vector<std::string> found;
-  std::istringstream page(read_text(project("docs/drive.md")));
+  std::istringstream page(read_text(project("docs/inside/drive.md")));
   for (std::string line; std::getline(page, line);)
     if (line.starts_with("| F")) found.push_back(line);
   EXPECT_EQ(found, want);
@@ -56,7 +56,7 @@ TEST(LimitsPage, SettingsWithoutEffect) {
     want.push_back(fmt::format("| {} | {} | {} | {} |", with_letters(row.parameters), values(row.values),
                                row.units.empty() ? "all" : row.units, row.text));
   std::vector<std::string> found;
-  std::istringstream page(read_text(project("docs/limits.md")));
+  std::istringstream page(read_text(project("docs/reference/limits.md")));
   for (std::string line; std::getline(page, line);)
     if (line.size() > 3 && line.starts_with("| P") && line[3] >= '0' && line[3] <= '9') found.push_back(line);
   EXPECT_EQ(found, want);

@@ -14,7 +14,7 @@ namespace ipos::tests {
 namespace {
 
 TEST(LanguagePages, ProgramsAreRight) {
-  for (const char* file : {"docs/language.md", "docs/assembler.md"}) {
+  for (const char* file : {"docs/guide/language.md", "docs/reference/assembler.md"}) {
     int programs = 0;
     for (const Block& block : blocks_of(read_text(project(file)))) {
       if (block.language != "ipc" && block.language != "ipa") continue;
@@ -26,7 +26,7 @@ TEST(LanguagePages, ProgramsAreRight) {
 }
 
 TEST(LanguagePages, EveryWarningIsListed) {
-  const std::string page = read_text(project("docs/language.md"));
+  const std::string page = read_text(project("docs/guide/language.md"));
   for (const compiler::DiagInfo& row : compiler::diagnostic_table()) {
     if (row.severity != compiler::Severity::Warning) continue;
     const std::string line = "| " + std::string(row.code) + " | `" + std::string(row.flag) + "` |";
@@ -47,7 +47,7 @@ size_t commands_of(const std::string& statement) {
 }
 
 TEST(LanguagePages, CostsAreReal) {
-  const std::string page = read_text(project("docs/language.md"));
+  const std::string page = read_text(project("docs/guide/language.md"));
   const size_t begin = page.find("| statement | commands |");
   ASSERT_NE(begin, std::string::npos);
   std::istringstream lines(page.substr(begin));
@@ -64,7 +64,7 @@ TEST(LanguagePages, CostsAreReal) {
 
 // In the comparison an ipos block follows each program: it is what the compiler says.
 TEST(ComparisonPage, MessagesAreReal) {
-  const std::vector<Block> blocks = blocks_of(read_text(project("docs/diagnostics/comparison.md")));
+  const std::vector<Block> blocks = blocks_of(read_text(project("docs/reference/diagnostics/comparison.md")));
   int compared = 0;
   for (size_t n = 0; n + 1 < blocks.size(); ++n) {
     if (blocks[n].language != "ipc") continue;

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The pictures of terminals on the pages are what the commands print.
+# The pictures on the pages are what the commands print or plot.
 #   tests/docs/pictures.sh IPOS           compares
 #   tests/docs/pictures.sh IPOS --renew   draws them anew
 set -euo pipefail
@@ -7,10 +7,9 @@ ipos=$(realpath "$1")
 cd "$(dirname "$0")/../.."
 status=0
 
-picture() {
-  local file=docs/images/$1 command=$2 drawn
-  # The commands may fail, as tests of broken programs do.
-  drawn=$( { "$ipos" $command 2>&1 || true; } | docs/images/terminal.py "ipos $command")
+# compare FILE COMMAND DRAWN
+compare() {
+  local file=docs/images/$1 command=$2 drawn=$3
   if [ "${renew:-}" ]; then
     printf '%s\n' "$drawn" >"$file"
   elif [ "$drawn" != "$(cat "$file")" ]; then
@@ -19,6 +18,17 @@ picture() {
   fi
 }
 
+# terminal FILE COMMAND: the terminal after it. It may fail, as tests of broken programs do.
+terminal() {
+  compare "$1" "$2" "$({ "$ipos" $2 2>&1 || true; } | docs/images/terminal.py "ipos $2")"
+}
+
+# plot FILE COMMAND: what it writes to standard output.
+plot() {
+  compare "$1" "$2" "$("$ipos" $2 2>/dev/null)"
+}
+
 [ "${2:-}" = --renew ] && renew=1
-picture test-report.svg "test tests/tools/testing/broken/feeder.test.toml"
+terminal test-report.svg "test tests/tools/testing/broken/feeder.test.toml"
+plot isync.svg "run examples/isync/isync.toml --for 4s --plot - --signals master.speed,slave.speed,master.position,slave.position"
 exit $status

@@ -37,7 +37,7 @@ TEST(LspDiagnostics, AllOfTheProgramAndItsHeaders) {
   EXPECT_EQ(client.codes("/p/h.h").size(), 1U);
   client.open("/p/h.h", "long shared;\n");
   EXPECT_TRUE(client.codes("/p/h.h").empty());
-  // E0201 unknown name, W0201 unused variable: docs/diagnostics.
+  // E0201 unknown name, W0201 unused variable: docs/reference/diagnostics.
   EXPECT_TRUE(has(client.codes(kPath), "E0201"));
   client.notify("textDocument/didClose", Client::document("/p/h.h"));
   EXPECT_EQ(client.codes("/p/h.h").size(), 1U) << "the disk counts again";

@@ -17,6 +17,6 @@ cmake --build "$work/project/build" >/dev/null
 expect "$("$work/project/build/hello" | wc -l)" 3
 LD_LIBRARY_PATH=$lib "$work/root/usr/bin/ipos" --version
 for file in share/man/man1/ipos.1 share/bash-completion/completions/ipos share/zsh/vendor-completions/_ipos \
-  share/fish/vendor_completions.d/ipos.fish share/doc/ipos/docs/embedding.md share/doc/ipos/examples/scom/scom.toml; do
+  share/fish/vendor_completions.d/ipos.fish share/doc/ipos/docs/guide/embedding.md share/doc/ipos/examples/scom/scom.toml; do
   [ -s "$work/root/usr/$file" ] || [ -s "$work/root/usr/$file.gz" ] || fail "the package has no $file"
 done

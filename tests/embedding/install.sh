@@ -16,7 +16,8 @@ cmake --build "$work/project/build" >/dev/null
 expect "$("$work/project/build/hello" | wc -l)" 3
 
 need pkg-config
-export PKG_CONFIG_PATH=$lib/pkgconfig LD_LIBRARY_PATH=$lib
+unset LD_LIBRARY_PATH
+export PKG_CONFIG_PATH=$lib/pkgconfig
 cd "$work/project"
 "$CC" -std=c99 hello.c -o hello_pc $(pkg-config --cflags --libs ipos_compile)
 expect "$(./hello_pc | wc -l)" 3

@@ -1,5 +1,5 @@
 // examples/ramp: the times of a run-up, a reversal, a stop and a rapid stop against their closed form,
-// millisecond by millisecond, and the plot of docs/drive.md.
+// millisecond by millisecond, and the plot of docs/inside/drive.md.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -108,8 +108,8 @@ TEST(RampPlot, OfTheDriveChapterIsMadeByIpos) {
                 "--signals", "movidrive.speed,movidrive.status,movitrac.speed,movitrac.status"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(read_text(made) == read_text(project("docs/images/ramp.svg")))
-      << "docs/images/ramp.svg is not what the command in docs/drive.md draws";
-  EXPECT_NE(read_text(project("docs/drive.md")).find("](images/ramp.svg)"), std::string::npos);
+      << "docs/images/ramp.svg is not what the command in docs/inside/drive.md draws";
+  EXPECT_NE(read_text(project("docs/inside/drive.md")).find("](../images/ramp.svg)"), std::string::npos);
 }
 
 }  // namespace

@@ -154,7 +154,7 @@ TEST(Headers, InputsAndOutputsAreBits) {
   }
 }
 
-// docs/stdlib.md names every function, structure and header.
+// docs/reference/stdlib.md names every function, structure and header.
 TEST(Documentation, NamesEverything) {
   std::ifstream in(IPOS_STDLIB_DOC);
   const std::string page{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};

@@ -1,5 +1,5 @@
 // Dumps in the documentation are real: every block that begins with "$ ipos ..." is what the program prints,
-// and the tables of docs/isa.md are those of the code.
+// and the tables of docs/reference/isa.md are those of the code.
 #include <gtest/gtest.h>
 
 #include <regex>
@@ -43,7 +43,7 @@ TEST(Documentation, DumpsOfTheTourAreReal) {
   const TemporaryFolder folder;  // the tour writes images
   for (const char* file : {"TOUR.IPC", "tour.toml"})
     folder.write(file, read_text(project("examples/tour") / file));
-  const std::vector<Dump> dumps = dumps_of(read_text(project("docs/tour.md")));
+  const std::vector<Dump> dumps = dumps_of(read_text(project("docs/guide/tour.md")));
   EXPECT_GE(dumps.size(), 7U);
   for (const Dump& dump : dumps) {
     const CommandResult result = run_ipos(dump.arguments, folder.path());
@@ -52,7 +52,7 @@ TEST(Documentation, DumpsOfTheTourAreReal) {
 }
 
 TEST(Documentation, DumpsOfTheBusToolsAreReal) {
-  const std::vector<Dump> dumps = dumps_of(read_text(project("docs/bus-tools.md")));
+  const std::vector<Dump> dumps = dumps_of(read_text(project("docs/guide/bus-tools.md")));
   EXPECT_EQ(dumps.size(), 5U);
   for (const Dump& dump : dumps) {
     const CommandResult result = run_ipos(dump.arguments, project(""));
@@ -61,7 +61,7 @@ TEST(Documentation, DumpsOfTheBusToolsAreReal) {
 }
 
 TEST(Documentation, BusToolsPageHasEveryFinding) {
-  const std::string page = read_text(project("docs/bus-tools.md"));
+  const std::string page = read_text(project("docs/guide/bus-tools.md"));
   for (const runtime::FindingType& type : runtime::finding_types()) {
     const std::string weight = type.weight == runtime::FindingWeight::Error ? "error" : "hint";
     const std::string row =
@@ -72,7 +72,7 @@ TEST(Documentation, BusToolsPageHasEveryFinding) {
 
 TEST(Documentation, DumpsOfTheParamPageAreReal) {
   const TemporaryFolder folder;
-  const std::string page = read_text(project("docs/param.md"));
+  const std::string page = read_text(project("docs/guide/param.md"));
   const size_t plant = page.find("```toml\n") + 8;
   folder.write("plant.toml", page.substr(plant, page.find("```", plant) - plant));
   const std::vector<Dump> dumps = dumps_of(page);
@@ -97,7 +97,7 @@ TEST(Documentation, DemoOutputInTheReadmeIsReal) {
 std::string escaped(std::string text) { return std::regex_replace(text, std::regex("\\|"), "\\|"); }
 
 TEST(Documentation, InstructionSetPageHasEveryRow) {
-  const std::string page = read_text(project("docs/isa.md"));
+  const std::string page = read_text(project("docs/reference/isa.md"));
   for (const vm::OpcodeInfo& row : vm::opcode_table()) {
     char code[8];
     std::snprintf(code, sizeof code, "0x%02X", static_cast<unsigned>(row.opcode));

@@ -1,6 +1,6 @@
 // Every verb where its surroundings are bad: standard output on a full disk, each input replaced by something
 // that is no file, a folder that cannot be written to. No verb hangs, none changes a file of the user, and the
-// exit codes are those of the table in docs/command-line.md. The verbs come from --help: a new one needs a sample here.
+// exit codes are those of the table in docs/reference/command-line.md. The verbs come from --help: a new one needs a sample here.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sched.h>

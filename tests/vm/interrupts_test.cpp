@@ -1,5 +1,5 @@
 // Interrupts of task 1: priority, latency, return to what was interrupted. Expected values are the manual's
-// (IPOSplus p. 45, 342) or follow from the rules docs/cycle.md writes down.
+// (IPOSplus p. 45, 342) or follow from the rules docs/inside/cycle.md writes down.
 #include "vm/exec/interrupts.hpp"
 
 #include <gtest/gtest.h>

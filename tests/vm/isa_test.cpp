@@ -13,7 +13,7 @@ namespace {
 using tests::code_of;
 using tests::I;
 
-// Coding as docs/isa.md prints it, worked out by hand.
+// Coding as docs/reference/isa.md prints it, worked out by hand.
 TEST(Isa, CodesOperandsInTheirPlaces) {
   EXPECT_EQ(code_of({I(Opcode::Ret)}), (std::vector<uint32_t>{0x00000003}));
   EXPECT_EQ(code_of({I(Opcode::AddHH, 420, 7)}), (std::vector<uint32_t>{(7U << 20) | (420U << 8) | 0x30}));

@@ -1,5 +1,5 @@
 // Variable interrupts of tasks 2 and 3 (IPOSplus p. 38, 45, 347): the copied structure, comparisons, requests
-// in H530, priority. Comparison modes and priorities are ours, docs/stdlib.md has them.
+// in H530, priority. Comparison modes and priorities are ours, docs/reference/stdlib.md has them.
 #include <gtest/gtest.h>
 
 #include "stdlib/headers.hpp"

@@ -1,5 +1,5 @@
 // A test as its file says it: a plant, and steps and expectations in the order in which they are carried out.
-// Plain data; read_tests() makes it, run_test() carries it out. docs/testing.md has the keys.
+// Plain data; read_tests() makes it, run_test() carries it out. docs/guide/testing.md has the keys.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // The arithmetic of the IPOS commands: 32-bit two's complement with wrap-around (IPOSplus p. 28), computed on
 // unsigned numbers so that nothing is undefined. Division toward zero, shift counts modulo 32: ours, see
-// docs/language.md.
+// docs/guide/language.md.
 #pragma once
 
 #include <cstdint>

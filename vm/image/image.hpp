@@ -1,5 +1,5 @@
 // The program image (.ipx): unit type, code words, and optionally symbols and a line table, in a container
-// with magic, version and CRC-32. Layout in docs/isa.md. All numbers little endian.
+// with magic, version and CRC-32. Layout in docs/reference/isa.md. All numbers little endian.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// An image (.ipx, layout in docs/isa.md) as it lies in memory: nothing is copied and nothing allocated, so it
+// An image (.ipx, layout in docs/reference/isa.md) as it lies in memory: nothing is copied and nothing allocated, so it
 // can stay in the flash of a microcontroller. vm/image/image.hpp makes values of it where there is a heap.
 #pragma once
 

@@ -182,7 +182,7 @@ typedef struct ipos_vm ipos_vm;
 /* The exact number on this one. */
 size_t ipos_vm_size(void);
 
-/* The commands that reach the `command` callback: X(name, code). Operands are those of docs/isa.md, in order.
+/* The commands that reach the `command` callback: X(name, code). Operands are those of docs/reference/isa.md, in order.
  */
 #define IPOS_HOST_COMMANDS(X)                                                     \
   X(Movlnk, 0x60)    /* first variable of the structure */                        \

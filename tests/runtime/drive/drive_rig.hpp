@@ -154,7 +154,7 @@ class DriveRig {
 };
 
 // Time of a linear ramp: its parameter is the time for a change by 50 Hz on MOVITRAC 07 (chapter 6.1), which
-// are 1500 rpm of the four-pole motor, and by 3000 rpm on MOVIDRIVE (docs/motion.md).
+// are 1500 rpm of the four-pole motor, and by 3000 rpm on MOVIDRIVE (docs/inside/motion.md).
 constexpr int m07_ramp_ms(int rpm, int parameter_ms) { return rpm * parameter_ms / 1500; }
 constexpr int mdx_ramp_ms(int rpm, int parameter_ms) { return rpm * parameter_ms / 3000; }
 

@@ -145,7 +145,7 @@ TEST(FaultResponse, EveryResponseOfEveryFault) {
     }
 }
 
-// F31, F42, F46 have no cause in this drive yet (docs/limits.md); a fault of the program or of another part
+// F31, F42, F46 have no cause in this drive yet (docs/reference/limits.md); a fault of the program or of another part
 // is raised from outside. F84 is driven by the load in MotorOverload.
 TEST(FaultResponse, RaisedFromOutside) {
   for (const auto& [unit_name, number, parameter] :

@@ -1,4 +1,4 @@
-// Currents, frequency, DC link, energy and temperatures against the formulas of docs/motion.md, in floating
+// Currents, frequency, DC link, energy and temperatures against the formulas of docs/inside/motion.md, in floating
 // point.
 #include <gtest/gtest.h>
 

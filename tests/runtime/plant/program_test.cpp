@@ -227,7 +227,7 @@ TEST(ControlWord, OfTheProgramRestrictsTheDrive) {
   }
 }
 
-// A timer interrupt every 10 ms: 99 times in the ticks up to 999 ms, see docs/cycle.md.
+// A timer interrupt every 10 ms: 99 times in the ticks up to 999 ms, see docs/inside/cycle.md.
 TEST(Timer0, InterruptsEveryReloadMilliseconds) {
   const auto plant = make_station(R"(#include <constb.h>
 long n, a;

@@ -58,7 +58,7 @@ TEST(ProfileProperties, StaysWithinTheLimitsOfItsTargets) {
       profile.travel(target, settings.travel_rules(1000), Goal::New);
       for (int ms = *rc::gen::inRange(0, 900); ms > 0; --ms) {
         profile.tick();
-        // Curved ramps taken up again in their middle may need more way than they had (docs/positioning.md).
+        // Curved ramps taken up again in their middle may need more way than they had (docs/inside/positioning.md).
         if (shape != RampShape::Linear) continue;
         RC_ASSERT(profile.position() >= fine(kLow) - kIncrement / 100);
         RC_ASSERT(profile.position() <= fine(kHigh) + kIncrement / 100);

@@ -1,4 +1,4 @@
-// GETSYS and SETSYS value by value, in the units docs/stdlib.md gives.
+// GETSYS and SETSYS value by value, in the units docs/reference/stdlib.md gives.
 #include "runtime/services/system_values.hpp"
 
 #include <gtest/gtest.h>

@@ -92,7 +92,7 @@ TEST_F(Slots, TheProgramIsKeptToo) {
   EXPECT_EQ(load().content, content);
 }
 
-// Bytes made by Python's struct and zlib from the table of docs/nv-memory.md.
+// Bytes made by Python's struct and zlib from the table of docs/inside/nv-memory.md.
 TEST_F(Slots, LayoutIsThatOfThePage) {
   const std::vector<uint8_t> bytes = {
       0x49, 0x50, 0x4E, 0x56, 0x01, 0x00, 0x01, 0x00, 0x01, 0x00, 0x00, 0x00, 0x2B, 0x00, 0x00, 0x00,

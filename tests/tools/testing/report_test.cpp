@@ -38,7 +38,7 @@ TEST(Report, OfABrokenProgramShowsWhatToMend) {
 }
 
 TEST(Report, InTheDocumentationIsReal) {
-  const std::string page = read_text(project("docs/testing.md"));
+  const std::string page = read_text(project("docs/guide/testing.md"));
   const std::string command = "$ ipos test " + kFeeder + "\n";
   const size_t at = page.find(command);
   ASSERT_NE(at, std::string::npos);
@@ -48,7 +48,7 @@ TEST(Report, InTheDocumentationIsReal) {
 }
 
 TEST(Report, DocumentationHasEveryState) {
-  const std::string page = read_text(project("docs/testing.md"));
+  const std::string page = read_text(project("docs/guide/testing.md"));
   for (const runtime::StationState& state : runtime::station_states()) {
     const std::string row = "| `" + std::string(state.name) + "` | " + std::string(state.meaning) + " |\n";
     EXPECT_TRUE(contains(page, row)) << row;
