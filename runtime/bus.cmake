@@ -20,5 +20,7 @@ ipos_layer(bus FOLDERS runtime/bus
                    bus/movilink/serial_slave.cpp bus/movilink/serial_requester.cpp bus/movilink/serial_master.cpp
                    bus/movilink/master_slave.cpp bus/movilink/line_check.cpp
                    bus/profibus/fdl_frame.cpp bus/profibus/fdl_receiver.cpp bus/profibus/dp_service.cpp
-                   bus/profibus/cfg_data.cpp bus/profibus/frame_text.cpp
+                   bus/profibus/cfg_data.cpp bus/profibus/frame_text.cpp bus/profibus/dp_slave.cpp bus/profibus/card.cpp
+                   bus/profibus/line_fault.cpp bus/profibus/line.cpp bus/profibus/slave_station.cpp
+                   bus/profibus/slave_handler.cpp bus/profibus/master.cpp
            USES clock stdlib LIBS fmt::fmt)

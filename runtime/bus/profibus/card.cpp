@@ -1,0 +1,63 @@
+// Tables and rules of the option card.
+#include "runtime/bus/profibus/card.hpp"
+
+namespace ipos::profibus {
+namespace {
+
+constexpr OptionType kOptions[] = {
+#define PROFIBUS_OPTION(name, word, ident, fms, model, gsd_file) \
+  {OptionKind::name, word, ident, fms, model, gsd_file},
+#include "runtime/bus/profibus/options.def"
+};
+
+bool in_use(const CardState& state) {
+  switch (state.used_as) {
+    case UsedAs::Dp: return state.exchanging;
+    case UsedAs::Fms: return state.fms_connected;
+    case UsedAs::Both: break;
+  }
+  return state.exchanging && state.fms_connected;
+}
+
+// On for the first half of each period.
+bool flashes(Time now, Time period) { return now % period < period / 2; }
+
+}  // namespace
+
+std::span<const OptionType> option_types() { return kOptions; }
+const OptionType& option_type(OptionKind kind) { return kOptions[static_cast<size_t>(kind)]; }
+
+const OptionType* find_option_type(std::string_view word) {
+  for (const OptionType& option : kOptions)
+    if (option.word == word) return &option;
+  return nullptr;
+}
+
+SlaveSettings LatchedSwitches::slave_settings(const OptionType& option, uint32_t baud) const {
+  SlaveSettings settings{address(), option.ident};
+  const BaudRate* rate = find_baud_rate(baud);
+  if (option.fms && fms() && rate != nullptr) settings.min_tsdr = rate->fms_min_tsdr;
+  return settings;
+}
+
+LedPattern leds(const CardState& state) {
+  if (state.hardware == HardwareFault::GreenDark) return {Light::Off, Light::On};
+  if (state.hardware == HardwareFault::BothFlash) return {Light::OneHertz, Light::OneHertz};
+  if (state.initialising) return {Light::ThreeHertz, Light::Off};
+  if (!state.address_valid) return {Light::On, Light::HalfHertz};
+  return {state.accessing ? Light::Flicker : Light::On, in_use(state) ? Light::Off : Light::On};
+}
+
+bool is_lit(Light light, Time now) {
+  switch (light) {
+    case Light::Off: return false;
+    case Light::On: return true;
+    case Light::HalfHertz: return flashes(now, 2 * runtime::kSecond);
+    case Light::OneHertz: return flashes(now, runtime::kSecond);
+    case Light::ThreeHertz: return flashes(now, runtime::kSecond / 3);
+    case Light::Flicker: break;
+  }
+  return flashes(now, runtime::kSecond / 10);
+}
+
+}  // namespace ipos::profibus

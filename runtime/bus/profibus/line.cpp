@@ -1,0 +1,141 @@
+// The line as a machine of one event: a frame ends.
+#include "runtime/bus/profibus/line.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+namespace ipos::profibus {
+
+Line::Line(runtime::EventQueue& queue, uint32_t source, std::string name, uint32_t baud)
+    : queue_(queue), source_(source), name_(std::move(name)), baud_(baud), meter_(baud) {
+  assert(find_baud_rate(baud) != nullptr);
+}
+
+NodeId Line::attach(std::string name, Node& node) {
+  nodes_.push_back({std::move(name), &node, baud_});
+  return static_cast<NodeId>(nodes_.size() - 1);
+}
+
+bool Line::send(NodeId node, Bits begin, Octets octets) {
+  Station& station = nodes_[node];
+  if (!station.connected || station.sending || station.baud != baud_ || octets.empty()) return false;
+  begin = std::max(begin, now());
+  const Bits end = begin + kCharacterBits * octets.size();
+  Transmission transmission{node, begin, end, kSynBits, {std::move(octets), {}}};
+  if (const auto fault = faults_.strike(at(begin), node, transmission.frame))
+    report({LineEventKind::Struck, queue_.now(), node, fault});
+  for (Transmission& other : under_way_) {
+    if (!other.overlaps(transmission) || !other.audible() || !transmission.audible()) continue;
+    other.collided = transmission.collided = true;
+    report({LineEventKind::Collision, queue_.now(), node});
+  }
+  station.sending = true;
+  queue_.schedule(at(transmission.end), source_, *this, 0, node);
+  under_way_.push_back(std::move(transmission));
+  return true;
+}
+
+bool Line::is_busy() const {
+  const Bits bit = now();
+  return std::any_of(under_way_.begin(), under_way_.end(),
+                     [bit](const Transmission& t) { return t.audible() && t.begin < bit; });
+}
+
+void Line::set_connected(NodeId node, bool connected) {
+  if (nodes_[node].connected == connected) return;
+  nodes_[node].connected = connected;
+  if (connected) return;
+  report({LineEventKind::NotConnected, queue_.now(), node});
+  for (Transmission& transmission : under_way_)  // what it was saying breaks off
+    if (transmission.sender == node) transmission.frame.octets.clear();
+}
+
+// Frames that collided end in garbage; before the first frame of all the line was idle for long.
+Reception Line::reception_of(const Transmission& transmission) const {
+  const WireFrame& frame = transmission.frame;
+  Reception reception{tl::unexpected(FrameError::Parity), frame.octets, at(transmission.begin),
+                      at(transmission.end)};
+  if (transmission.collided) return reception;
+  if (frame.damage) {
+    reception.frame = tl::unexpected(*frame.damage);
+    return reception;
+  }
+  reception.frame = decode(frame.octets);
+  if (!reception.frame && reception.frame.error() == FrameError::Size)
+    reception.frame = tl::unexpected(FrameError::Gap);  // cut short
+  if (reception.frame && reception.frame->needs_idle() && transmission.idle < kSynBits)
+    reception.frame = tl::unexpected(FrameError::Idle);
+  return reception;
+}
+
+// Frames overlap only in collisions; then the time counts once.
+void Line::count(const Transmission& transmission) {
+  const Bits begin = std::max(transmission.begin, counted_until_);
+  if (transmission.end <= begin) return;
+  meter_.add(begin, transmission.end - begin);
+  counted_until_ = transmission.end;
+}
+
+// A station does not hear what goes on while it sends itself.
+bool Line::talks_over(NodeId node, const Transmission& transmission) const {
+  return std::any_of(under_way_.begin(), under_way_.end(), [&](const Transmission& other) {
+    return other.sender == node && other.overlaps(transmission);
+  });
+}
+
+void Line::on_event(Time now, uint32_t, uint64_t argument) {
+  const auto ended = std::find_if(under_way_.begin(), under_way_.end(),
+                                  [argument](const Transmission& t) { return t.sender == argument; });
+  Transmission transmission = std::move(*ended);
+  under_way_.erase(ended);
+  count(transmission);
+  Station& sender = nodes_[transmission.sender];
+  sender.sending = false;
+  if (heard_) transmission.idle = transmission.begin - std::min(transmission.begin, quiet_since_);
+  if (transmission.audible()) {
+    heard_ = true;
+    quiet_since_ = std::max(quiet_since_, transmission.end);
+  }
+  sender.node->on_sent(now);
+  if (!transmission.audible()) return;
+  const Reception reception = reception_of(transmission);
+  frames_ += reception.frame.has_value();
+  for (NodeId node = 0; node < nodes_.size(); ++node) {
+    const Station& station = nodes_[node];
+    if (node == transmission.sender || !station.connected || talks_over(node, transmission)) continue;
+    if (station.baud == baud_) {
+      station.node->on_reception(now, reception);
+    } else {
+      Reception garbage = reception;
+      garbage.frame = tl::unexpected(FrameError::Framing);
+      station.node->on_reception(now, garbage);
+    }
+  }
+  for (LineObserver* observer : observers_) observer->on_frame(*this, transmission.sender, reception);
+}
+
+void Line::report(const LineEvent& event) {
+  for (LineObserver* observer : observers_) observer->on_line_event(*this, event);
+}
+
+runtime::LineLoad Line::load(Time now) const {
+  runtime::LineLoad load = meter_.load(bit_from(now + 1, baud_) - 1);
+  load.frames = frames_;
+  return load;
+}
+
+std::string describe(const Line& line, const LineEvent& event) {
+  static constexpr std::string_view kTexts[] = {
+#define DP_LINE_EVENT(name, text) text,
+#include "runtime/bus/profibus/line_events.def"
+  };
+  std::string text = fmt::format("{}: {} {}", line.name(), line.node_name(event.node),
+                                 kTexts[static_cast<size_t>(event.kind)]);
+  if (event.fault) text += fmt::format(": the line {}", line_fault_text(*event.fault));
+  return text;
+}
+
+}  // namespace ipos::profibus

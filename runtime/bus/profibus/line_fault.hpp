@@ -1,0 +1,59 @@
+// Planted faults of a PROFIBUS line: which frames they strike, by number or by chance with a seed, and what is
+// left of a struck frame.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "runtime/bus/node_id.hpp"
+#include "runtime/bus/profibus/fdl_frame.hpp"
+#include "runtime/clock/event_queue.hpp"
+#include "runtime/clock/random.hpp"
+
+namespace ipos::profibus {
+
+using runtime::NodeId;
+using runtime::Time;
+
+enum class LineFaultKind : uint8_t {
+#define DP_LINE_FAULT(name, word, text) name,
+#include "runtime/bus/profibus/line_faults.def"
+};
+std::string_view line_fault_text(LineFaultKind kind);
+std::optional<LineFaultKind> find_line_fault(std::string_view word);
+
+struct LineFault {
+  LineFaultKind kind = LineFaultKind::Noise;
+  Time from = 0;
+  Time until = runtime::kNever;
+  NodeId sender = runtime::kNoNode;  // only what this station sends; kNoNode: all
+  uint64_t frame = 0;                // only the n-th of these frames, from 1; 0: by chance
+  uint32_t per_mille = 1000;
+  uint64_t seed = 1;
+};
+
+// A frame as it goes over the line. Without octets nobody hears anything.
+struct WireFrame {
+  Octets octets;
+  std::optional<FrameError> damage;  // of a character: parity or frame
+};
+
+class LineFaults {
+ public:
+  void add(const LineFault& fault) { faults_.push_back({fault, runtime::Random(fault.seed)}); }
+
+  // Of several that strike the same frame the first one planted counts.
+  std::optional<LineFaultKind> strike(Time now, NodeId sender, WireFrame& frame);
+
+ private:
+  struct Planted {
+    LineFault fault;
+    runtime::Random random;
+    uint64_t seen = 0;
+  };
+  std::vector<Planted> faults_;
+};
+
+}  // namespace ipos::profibus
