@@ -26,6 +26,13 @@ Master::Master(runtime::EventQueue& queue, uint32_t source, Line& line, std::str
       settings_(settings),
       client_(client) {
   if (settings_.slot == 0) settings_.slot = find_baud_rate(line.baud())->slot;
+  set_next(settings_.address);
+}
+
+// The GAP begins anew with each new successor.
+void Master::set_next(uint8_t address) {
+  next_ = address;
+  gap_ = settings_.address;
 }
 
 size_t Master::add_slave(SlavePlan plan) {
@@ -76,7 +83,8 @@ void Master::silence_over() {
     return;
   }
   list_.reset();
-  next_ = settings_.address;
+  set_next(settings_.address);
+  attempts_ = 0;
   send(State::Claiming, line_.now(), make_token(settings_.address, settings_.address));
 }
 
@@ -87,7 +95,7 @@ void Master::slot_over() {
     case State::PassingToken:
       if (++attempts_ < kTokenAttempts) return send(State::PassingToken, line_.now(), sent_);
       list_.reset(next_);
-      next_ = next_in_list();
+      set_next(next_in_list());
       return pass_token(line_.now());
     case State::Off:
     case State::Listening:
@@ -153,12 +161,12 @@ bool Master::send_control(Bits from) {
 // The GAP: all addresses from its own to that of the next master.
 bool Master::send_gap_poll(Bits from) {
   if (gap_polled_ || settings_.gap_factor == 0 || rotations_ < settings_.gap_factor) return false;
-  const uint8_t before = rotations_ == 0 ? settings_.address : gap_;
-  gap_ = before >= settings_.highest ? 0 : static_cast<uint8_t>(before + 1);
-  if (gap_ == next_ || gap_ == settings_.address) {  // the GAP is through: again from its begin
-    gap_ = settings_.address >= settings_.highest ? 0 : static_cast<uint8_t>(settings_.address + 1);
-    if (gap_ == next_) return false;  // there is none
-  }
+  const auto above = [this](uint8_t address) {
+    return address >= settings_.highest ? uint8_t{0} : static_cast<uint8_t>(address + 1);
+  };
+  gap_ = above(gap_);
+  if (gap_ == next_ || gap_ == settings_.address) gap_ = above(settings_.address);  // once round
+  if (gap_ == next_ || gap_ == settings_.address) return false;                     // there is none
   gap_polled_ = true;
   rotations_ = 0;
   send(State::AwaitStatus, from, make_frame(gap_, settings_.address, request_code(FdlRequest::FdlStatus)));
@@ -221,6 +229,9 @@ void Master::hear_garbage() {
     repeat_or_give_up();
   } else if (state_ == State::AwaitStatus) {
     work(line_.now());
+  } else if (state_ == State::PassingToken) {  // somebody talks
+    state_ = State::Idle;
+    await_silence();
   }
 }
 
@@ -234,7 +245,7 @@ void Master::hear_answer(const FdlFrame& answer) {
     slaves_[turn_++].answered(answer);
   } else if (answer.has_control() && answer.station() >= StationKind::MasterReady) {
     list_.set(answer.source);
-    next_ = answer.source;
+    set_next(answer.source);
   }
   work(from);
 }
@@ -288,7 +299,7 @@ void Master::hear_token(const FdlFrame& token) {
   }
   if (skipped && in_ring_) return listen();
   if (token.destination != own || !ready_) return;
-  next_ = next_in_list();
+  if (next_ != next_in_list()) set_next(next_in_list());
   take_token(line_.now() + settings_.idle_2);
 }
 

@@ -95,6 +95,7 @@ class Master final : public Node, private runtime::EventTarget {
   void hear_answer(const FdlFrame& answer);
   void hear_garbage();
   uint8_t next_in_list() const;
+  void set_next(uint8_t address);
 
   runtime::EventQueue& queue_;
   uint32_t source_;
