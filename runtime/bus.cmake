@@ -7,7 +7,8 @@ ipos_layer(bus FOLDERS runtime/bus
                    bus/can/line.cpp bus/can/line_wiring.cpp bus/can/line_report.cpp bus/can/contenders.cpp
                    bus/log/candump.cpp
                    bus/canopen/abort.cpp bus/canopen/object_dictionary.cpp bus/canopen/object_access.cpp
-                   bus/canopen/eds.cpp bus/canopen/sdo_server.cpp
+                   bus/canopen/eds.cpp bus/canopen/sdo_server.cpp bus/canopen/pdo.cpp bus/canopen/emergency.cpp
+                   bus/canopen/error_control.cpp bus/canopen/node.cpp bus/canopen/sdo_client.cpp bus/canopen/master.cpp
                    bus/movilink/parameter_telegram.cpp bus/movilink/return_code.cpp
                    bus/movilink/variable_telegram.cpp bus/movilink/profile.cpp bus/movilink/unit_servers.cpp
                    bus/movilink/sbus_slave.cpp bus/movilink/sbus_master.cpp bus/movilink/sbus_group_master.cpp

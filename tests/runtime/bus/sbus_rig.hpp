@@ -1,4 +1,4 @@
-// A small SBus for tests: a unit with a few parameters as slave, and a hand-driven master station.
+// A small SBus for tests: a unit with a few parameters as slave.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -9,6 +9,7 @@
 
 #include "runtime/bus/can/line.hpp"
 #include "runtime/bus/movilink/sbus_slave.hpp"
+#include "tests/runtime/bus/hand.hpp"
 
 namespace ipos::tests {
 
@@ -61,22 +62,6 @@ class Unit final : public CanNode, public ParameterServer, public ProcessDataSer
   ReturnCode last_code;
   LinePort port;
   SbusSlave slave;
-};
-
-class Hand final : public CanNode {
- public:
-  Hand(CanLine& line, std::string name) : port(line, line.attach(std::move(name), line.baud(), *this)) {}
-  void on_frame(Time now, const Frame& frame) override {
-    frames.push_back(frame);
-    times.push_back(now);
-  }
-  void on_sent(Time now, const Frame&, uint64_t) override { last_sent = now; }
-  void on_not_sent(Time, const Frame&, uint64_t, NotSent) override {}
-
-  std::vector<Frame> frames;
-  std::vector<Time> times;
-  Time last_sent = 0;
-  LinePort port;
 };
 
 }  // namespace ipos::tests
