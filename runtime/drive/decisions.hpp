@@ -45,26 +45,27 @@ struct Situation {
 };
 static_assert(std::has_unique_object_representations_v<Situation>);
 
-// The situation of a drive, and whether somebody may have changed it since it was last looked at: whoever can
-// write it says so by that.
+// The situation of a drive, and how often somebody may have changed it: whoever can write it says so by that.
 class WatchedSituation {
  public:
   const Situation& operator*() const { return now_; }
   const Situation* operator->() const { return &now_; }
   Situation& change() {
-    changed_ = true;
+    ++changes_;
     return now_;
   }
   template <typename Value>
   void set(Value Situation::*member, const Value& value) {
     if (!(now_.*member == value)) change().*member = value;
   }
-  bool changed() const { return changed_; }
-  void looked() { changed_ = false; }
+  uint32_t changes() const { return changes_; }
+  bool changed() const { return changes_ != looked_at_; }  // since looked()
+  void looked() { looked_at_ = changes_; }
 
  private:
   Situation now_;
-  bool changed_ = true;
+  uint32_t changes_ = 1;
+  uint32_t looked_at_ = 0;
 };
 
 struct Decisions {

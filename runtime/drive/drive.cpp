@@ -50,12 +50,11 @@ Drive::Drive(ParameterStore& parameters, const MachineData& machine)
       settings_(reader_.read(parameters)),
       settings_version_(parameters.changes()),
       state_(Axis(machine_of(machine, is_m07_))) {
+  now_.set(&Situation::starting_up, starting_up());
   parameters.connect(*this);
 }
 
 void Drive::read_settings() const {
-  steady_left_ = 0;
-  travels_ = false;
   settings_version_ = parameters_.changes();
   settings_ = reader_.read(parameters_);
 }
@@ -75,6 +74,7 @@ void Drive::take_po(PoSource source, std::span<const uint16_t> words, bool cycli
   }
   if (const Words po = with_words(now_->po[s]); po != now_->po[s]) now_.change().po[s] = po;
   if (touched_watch(source).on_process_data(cyclic)) now_.change().faults.clear_cause(fault_of(source));
+  note_heard();
   if (settings().control_bus != source) return;
   const uint16_t word = order_of(source).control_word.value_or(0);
   const bool reset_edge = (word & ~state_.last_control_word & control_bits::kReset) != 0;
@@ -89,29 +89,22 @@ void Drive::take_request(PoSource source) {
 // A telegram changes what is decided unless it only begins the time of silence anew.
 LinkWatch& Drive::touched_watch(PoSource source) {
   LinkWatch& watch = state_.watches[static_cast<size_t>(source)];
-  if (!watch.alert()) {
-    now_.change();
-    links_run_ = true;
-  }
+  if (!watch.alert()) now_.change();
   return watch;
+}
+
+void Drive::note_heard() {
+  std::array<bool, kPoSources> heard{};
+  for (size_t n = 0; n < kPoSources; ++n) heard[n] = state_.watches[n].seen();
+  now_.set(&Situation::heard, heard);
 }
 
 // --- who controls ---
 
-// Brings in what others keep for the drive, and decides anew when anything is other than it was.
+// Decides anew when anything is other than it was.
 void Drive::look_around() const {
-  std::array<bool, kPoSources> heard{};
-  for (size_t n = 0; n < kPoSources; ++n) heard[n] = state_.watches[n].seen();
-  now_.set(&Situation::heard, heard);
   now_.set(&Situation::settings, parameters_.changes());
-  now_.set(&Situation::starting_up, starting_up());
   now_.set(&Situation::factory_setting, parameters_.factory_setting_running());
-  now_.set(&Situation::output_stage, state_.axis.state().output_stage);
-  now_.set(&Situation::reversing, is_reversing(state_.axis.setpoint()));
-  look_again_ = false;
-  if (!now_.changed()) return;
-  steady_left_ = 0;
-  travels_ = false;
   now_.looked();
   if (!decisions_known_ || !(*now_ == decided_for_)) decide_anew();
 }
@@ -186,8 +179,10 @@ void Drive::reset_fault() {
 
 // After a reset the drive is safe until its bus speaks again (1053 1610 p. 27).
 void Drive::clear_faults() {
-  if (now_->faults.error())
+  if (now_->faults.error()) {
     for (LinkWatch& link : state_.watches) link.forget();
+    note_heard();
+  }
   now_.change().faults.reset();
   ++state_.resets;
   state_.auto_reset_ms = 0;
@@ -199,84 +194,65 @@ void Drive::on_parameter_written(uint16_t index, int32_t value) {
 
 // --- the millisecond ---
 
-inline void Drive::take(const PositionControl& position) {
-  accelerates_ = position.speed != state_.position.speed;
-  state_.position = position;
-}
-
-inline bool Drive::machine_overstrained() const {
-  const PowerSection& power = state_.axis.power();
-  return power.dc_link() > kOvervoltage || power.heat_sink() > kOvertemperature ||
-         power.motor_utilization() >= kFullUtilization;
-}
-
-// Something of the axis is, or was, beyond where watch_machine() lets it be.
-inline bool Drive::machine_suffers() const {
-  return state_.axis.current_limited() || state_.limited_ms != 0 || machine_overstrained();
-}
-
-// The next tick has nothing to look around for, and no fault of the machine to raise.
-inline bool Drive::may_travel() const {
-  const bool limited_long =
-      state_.axis.current_limited() && state_.limited_ms >= set().speed_monitoring_delay;
-  return !look_again_ && !limited_long && !machine_overstrained();
-}
-
-void Drive::tick_anew(const PositionControl& position) {
-  untouched_ = !now_.changed() && settings_version_ == parameters_.changes();
+void Drive::tick(const PositionControl& position) {
   steady_left_ = 0;
   take(position);
+  count();
+  decided();
+  // What follows from decisions is done once; faults and what the machine suffers need watching on.
+  const bool anew = !applied_ || now_->faults.shown() != 0;
+  if (anew) apply();
+  if (anew || links_run() || machine_suffers()) watch(anew);
+  move();
+  show();
+}
+
+inline void Drive::take(const PositionControl& position) {
+  state_.position = position;
   now_.set(&Situation::positioning, position.controls);
   now_.set(&Situation::halt, position.halt);
-  count_time();
+}
+
+// Latches and edges; what that leads to is decided at once.
+void Drive::apply() {
+  applied_ = true;
+  latch_three_wire();
+  watch_resets();
   decided();
-  // Latches, edges, faults and parameter set have been brought up to these decisions; without a new one only
-  // time and the machine can add something.
-  const bool unsettled = !settled_ || now_->faults.shown() != 0;
-  const bool restless = unsettled || machine_suffers();
-  settled_ = true;  // unless what follows leads to other decisions
-  if (restless) {
-    latch_three_wire();
-    watch_resets();
-    decided();
-  }
-  if ((links_run_ || restless) && (watch_links() || restless)) {
-    watch_machine();
-    select_parameter_set();
-  }
+}
+
+// The machine is looked at when decisions, faults or its own state can lead to something.
+void Drive::watch(bool anew) {
+  const bool missed = watch_links();
+  if (!missed && !anew && !machine_suffers()) return;
+  watch_machine();
+  select_parameter_set();
+}
+
+inline void Drive::move() {
   const Decisions& d = decided();
-  if (position.controls) {
+  if (state_.position.controls) {
     state_.stopped_by_setpoint = false;
-    state_.setpoint.speed = state_.setpoint.requested = position.speed;
+    state_.setpoint.speed = state_.setpoint.requested = state_.position.speed;
     state_.setpoint.note = SetpointNote::None;
   } else {
     state_.setpoint = next_setpoint(d);
   }
-  const AxisOrder& order = next_order(verdict_of(d).command);
-  const AxisState& axis = state_.axis.tick(order);
-  show_outputs(d, order, axis);
-  if (axis.output_stage != now_->output_stage || is_reversing(axis.setpoint) != now_->reversing)
-    look_again_ = true;
-  travels_ = position.controls && order.command == AxisCommand::Follow && axis.phase == AxisPhase::Moving &&
-             !unsettled && settled_ && !links_run_ && !now_.changed() && !starting_up() &&
-             !parameters_.factory_setting_running() && may_travel();
+  state_.axis.step(next_order(verdict_of(d).command));
+  now_.set(&Situation::output_stage, state_.axis.output_stage());
+  now_.set(&Situation::reversing, is_reversing(state_.axis.setpoint()));
 }
 
-// What tick() does when it decides nothing: time, the speed, the shaft, and the outputs that follow it.
-void Drive::travel(const PositionControl& position) {
-  untouched_ = true;
-  steady_left_ = 0;
-  take(position);
-  count_running();
-  if (state_.axis.current_limited() || state_.limited_ms != 0) count_limited();
-  state_.setpoint.speed = state_.setpoint.requested = order_.target = position.speed;
-  state_.axis.follow(order_);
-  const bool overloaded = state_.axis.power().motor_utilization() >= kFullUtilization;
-  const OutputMotion motion{state_.axis.standing(), position.in_position, position.referenced,
-                            state_.axis.speed(), state_.axis.output_current()};
-  if (overloaded || !state_.outputs.go_on(motion)) show_outputs(decisions_, order_, state_.axis.state());
-  look_again_ = is_reversing(state_.axis.setpoint()) != now_->reversing;
-  travels_ = may_travel();
+inline bool Drive::links_run() const {
+  return std::any_of(state_.watches.begin(), state_.watches.end(),
+                     [](const LinkWatch& link) { return link.runs(); });
+}
+
+// Something of the axis is, or was, beyond where watch_machine() lets it be.
+inline bool Drive::machine_suffers() const {
+  const PowerSection& power = state_.axis.power();
+  return state_.axis.current_limited() || state_.limited_ms != 0 || power.dc_link() > kOvervoltage ||
+         power.heat_sink() > kOvertemperature || power.motor_utilization() >= kFullUtilization;
 }
 
 void Drive::advance(Ticks ticks) {
@@ -303,9 +279,11 @@ Ticks Drive::State::bound() const {
   return ticks;
 }
 
+// A position that is ordered anew every millisecond is no steady one: that is seen first.
 Ticks Drive::steady_since(const Moment& before) const {
-  const bool settled = settled_ && !look_again_ && !now_.changed();
-  if (!untouched_ || !settled || settings_version_ != parameters_.changes()) return 0;
+  if (!(before.state.position == state_.position) || !applied_ || now_.changed() ||
+      now_->settings != parameters_.changes())
+    return 0;
   return before.situation == *now_ ? steady_ticks(before.state, state_) : 0;
 }
 
@@ -314,7 +292,11 @@ void Drive::count_minute(uint32_t& ms, uint16_t minutes) {
   parameters_.set_display(minutes, parameters_.value(minutes) + 1);
 }
 
-inline void Drive::count_running() {
+inline void Drive::count() {
+  if (now_->starting_up) {
+    ++state_.up_ms;
+    now_.set(&Situation::starting_up, starting_up());
+  }
   if (++state_.mains_ms >= kMinuteMs) count_minute(state_.mains_ms, index::kMainsOnTime);
   if (state_.axis.phase() != AxisPhase::Off && ++state_.enabled_ms >= kMinuteMs)
     count_minute(state_.enabled_ms, index::kEnabledTime);
@@ -322,14 +304,6 @@ inline void Drive::count_running() {
     state_.counted_energy += kEnergyDigit;
     parameters_.set_display(index::kEnergy, parameters_.value(index::kEnergy) + 1);
   }
-}
-
-void Drive::count_time() {
-  if (starting_up()) {
-    ++state_.up_ms;
-    look_again_ = true;
-  }
-  count_running();
   if (parameters_.factory_setting_running() && ++state_.factory_setting_ms >= kFactorySettingMs) {
     state_.factory_setting_ms = 0;
     parameters_.finish_factory_setting();
@@ -364,17 +338,14 @@ void Drive::watch_resets() {
 bool Drive::watch_links() {
   const auto& rules = decisions_.links;
   bool missed = false;
-  links_run_ = false;
   for (const PoSource source : kAllSources) {
     const auto n = static_cast<size_t>(source);
-    const bool out = state_.watches[n].tick(rules[n]);
-    links_run_ |= state_.watches[n].runs();
-    look_again_ |= state_.watches[n].seen() != now_->heard[n];
-    if (!out) continue;
+    if (!state_.watches[n].tick(rules[n])) continue;
     if (source == PoSource::Rs485) ++state_.rs485_timeouts;
     raise_fault(fault_of(source));
     missed = true;
   }
+  note_heard();
   return missed;
 }
 
@@ -383,7 +354,7 @@ void Drive::watch_machine() {
   const auto follow = [&](bool cause, uint8_t number) {
     if (cause)
       raise_fault(number);
-    else
+    else if (now_->faults.pending(number))
       now_.change().faults.clear_cause(number);
   };
   follow(d.external_fault, faults::kExternal);
@@ -414,23 +385,24 @@ void Drive::select_parameter_set() {
   now_.set(&Situation::second_set, decided().parameter_switch);
 }
 
-void Drive::show_outputs(const Decisions& d, const AxisOrder& order, const AxisState& axis) {
-  const bool overloaded = axis.motor_utilization >= kFullUtilization;
+void Drive::show() {
+  const Axis& axis = state_.axis;
+  const bool overloaded = axis.power().motor_utilization() >= kFullUtilization;
   OutputInputs in;
   in.fault = now_->faults.error();
-  in.ipos_fault = d.ipos_fault;
-  in.ready = d.ready;
-  in.output_stage = axis.output_stage;
-  in.brake_released = axis.brake_released;
-  in.standstill = axis.standing;
+  in.ipos_fault = decisions_.ipos_fault;
+  in.ready = decisions_.ready;
+  in.output_stage = axis.output_stage();
+  in.brake_released = axis.brake_released();
+  in.standstill = axis.standing();
   in.second_set = now_->second_set;
   in.motor_1_overloaded = !now_->second_set && overloaded;
   in.motor_2_overloaded = now_->second_set && overloaded;
-  in.speed = axis.speed;
+  in.speed = axis.speed();
   // Compared with the setpoint before the ramp, so that P420 tells when it is reached (ours).
-  in.setpoint = order.command == AxisCommand::Run ? order.target : 0;
-  in.current = axis.output_current;
-  in.current_limit = order.current_limit;
+  in.setpoint = order_.command == AxisCommand::Run ? order_.target : 0;
+  in.current = axis.output_current();
+  in.current_limit = order_.current_limit;
   in.in_position = state_.position.in_position;
   in.referenced = state_.position.referenced;
   in.ipos_outputs = state_.ipos_outputs;
@@ -444,6 +416,7 @@ void Drive::power_cycle() {
   Situation first;
   first.inputs = now_->inputs;
   first.analog = now_->analog;
+  first.starting_up = starting_up();
   now_.change() = first;
   forget_decisions();
   for (LinkWatch& link : state_.watches) link.forget();

@@ -59,44 +59,31 @@ class Drive final : private DriveLink {
   void set_ipos_control_word(uint32_t word) { now_.set(&Situation::ipos_word, word); }
   void set_ipos_pi(const Words& words) { state_.ipos_pi = words; }
   void set_ipos_outputs(uint16_t levels) {
-    if (levels != state_.ipos_outputs) steady_left_ = 0, travels_ = false;
+    if (levels != state_.ipos_outputs) steady_left_ = 0;
     state_.ipos_outputs = levels;
   }
 
   // One millisecond has passed.
-  void tick(const PositionControl& position = {}) {
-    travelled_ = travels() && position.controls && position.halt == state_.position.halt;
-    if (travelled_)
-      travel(position);
-    else
-      tick_anew(position);
-  }
+  void tick(const PositionControl& position = {});
 
   // --- ticks in which nothing is decided ---
   struct Moment;
   // Before a tick.
   Moment moment() const;
-  // Behind it: how many of the next ticks are advance(), while nobody touches the drive; 0 when that one did
+  // After it: how many of the next ticks are advance(), while nobody touches the drive; 0 when that one did
   // more.
   Ticks steady_since(const Moment& before) const;
-  void hold_steady(uint32_t ticks) { steady_left_ = ticks; }
+  void hold_steady(Ticks ticks) {
+    steady_left_ = ticks;
+    steady_for_ = now_.changes();
+  }
   // How many of them are left: the next ones are advance() instead of tick(), if position_control() is
   // ordered again.
-  uint32_t steady_left() const {
-    return now_.changed() || settings_version_ != parameters_.changes() ? 0 : steady_left_;
+  Ticks steady_left() const {
+    return steady_for_ == now_.changes() && now_->settings == parameters_.changes() ? steady_left_ : 0;
   }
   void advance(Ticks ticks);
   const PositionControl& position_control() const { return state_.position; }  // of the last tick
-
-  // --- ticks that only travel ---
-  // The last tick has found nothing to decide, and positioning moves the axis: while nobody touches the drive
-  // and positioning only orders other speeds, the next tick() moves the shaft and decides nothing.
-  bool travels() const { return travels_ && !now_.changed() && settings_version_ == parameters_.changes(); }
-  void leave_travel() { travels_ = false; }
-  // That is all the last tick was: what is decided, ordered and reported is as before.
-  bool travelled() const { return travelled_; }
-  // Positioning has ordered another speed than the time before.
-  bool accelerates() const { return accelerates_; }
 
   // --- for the positioning of IPOS ---
   bool can_position() const { return decided().can_position; }  // P700 is a mode with IPOS (1053 1610 p. 80)
@@ -107,6 +94,11 @@ class Drive final : private DriveLink {
   }
   // For who asks for more than one thing.
   const Decisions& decisions() const { return decided(); }
+  // Grows whenever something that decisions depend on may have changed.
+  uint32_t changes() const {
+    decided();
+    return now_.changes();
+  }
   const Terminals& terminals() const { return decided().terminals; }
   // POSITION LO and HI of the bus of P100 or P101.
   std::optional<int32_t> bus_position() const { return decided().bus_position; }
@@ -174,7 +166,7 @@ class Drive final : private DriveLink {
 
   std::optional<int32_t> live_value(uint16_t index) const override;
   bool controller_inhibited() const override;
-  bool output_stage_on() const override { return state_.axis.state().output_stage; }
+  bool output_stage_on() const override { return state_.axis.output_stage(); }
   void on_parameter_written(uint16_t index, int32_t value) override;
 
   const Settings& settings() const {
@@ -187,7 +179,7 @@ class Drive final : private DriveLink {
 
   // What is decided for the present situation.
   const Decisions& decided() const {
-    if (now_.changed() || look_again_ || now_->settings != parameters_.changes() ||
+    if (now_.changed() || now_->settings != parameters_.changes() ||
         now_->factory_setting != parameters_.factory_setting_running())
       look_around();
     return decisions_;
@@ -222,18 +214,22 @@ class Drive final : private DriveLink {
   uint16_t pi_word(size_t n) const;
 
   LinkWatch& touched_watch(PoSource source);
-  void travel(const PositionControl& position);
-  void tick_anew(const PositionControl& position);
+  void note_heard();
+
+  // The steps of a tick.
   void take(const PositionControl& position);
-  bool may_travel() const;
-  void count_time();
-  void count_running();
+  void count();
+  void apply();
+  void watch(bool anew);
+  void move();
+  void show();
+
   void count_minute(uint32_t& ms, uint16_t minutes);
   void latch_three_wire();
   bool watch_links();
   void watch_resets();
+  bool links_run() const;
   bool machine_suffers() const;
-  bool machine_overstrained() const;
   void count_limited();
   void watch_machine();
   void clear_faults();
@@ -248,7 +244,6 @@ class Drive final : private DriveLink {
   Verdict verdict_with_setpoint(const Decisions& d) const;
   const AxisOrder& next_order(Command command);
   AxisOrder axis_order(Command command) const;
-  void show_outputs(const Decisions& d, const AxisOrder& order, const AxisState& axis);
 
   ParameterStore& parameters_;
   bool is_m07_;
@@ -265,14 +260,12 @@ class Drive final : private DriveLink {
   };
   mutable std::array<KnownOrder, kPoSources> known_orders_{};
 
-  // Inputs, process data, faults and modes are kept where they are compared. What others keep for the drive
-  // is copied there by look_around().
+  // Inputs, process data, faults and modes are kept where they are compared.
   mutable WatchedSituation now_;
   mutable Situation decided_for_;
   mutable Decisions decisions_;
-  mutable bool look_again_ = true;  // copies in now_ may be out of date
   mutable bool decisions_known_ = false;
-  mutable bool settled_ = false;  // latches, faults and parameter set follow from these decisions already
+  mutable bool applied_ = false;  // latches, faults and parameter set follow from these decisions already
   // The rest of what follows from them, as far as it has been asked for.
   mutable std::optional<Command> order_for_;
   AxisOrder order_;
@@ -326,12 +319,8 @@ class Drive final : private DriveLink {
   State state_;
   std::array<std::optional<FaultResponse>, 256> responses_{};  // chosen by the program, by fault number
   std::optional<uint32_t> shown_for_;                          // the settings of the last tick of the outputs
-  mutable uint32_t steady_left_ = 0;
-  mutable bool travels_ = false;  // the next tick can be travel()
-  bool travelled_ = false;        // the last tick was travel()
-  bool accelerates_ = false;      // the last tick found another speed ordered than the one before
-  bool untouched_ = false;        // nobody had touched the drive before the last tick
-  bool links_run_ = true;         // or may do so: a telegram has come since the last look
+  Ticks steady_left_ = 0;
+  uint32_t steady_for_ = 0;  // changes of the situation by then
 };
 
 struct Drive::Moment {
@@ -339,6 +328,9 @@ struct Drive::Moment {
   Situation situation;
 };
 
-inline Drive::Moment Drive::moment() const { return {state_, *now_}; }
+inline Drive::Moment Drive::moment() const {
+  decided();
+  return {state_, *now_};
+}
 
 }  // namespace ipos::runtime

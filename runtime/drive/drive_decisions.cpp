@@ -18,7 +18,7 @@ bool is_ipos_fault(uint8_t number) {
 void Drive::decide_anew() const {
   decided_for_ = *now_;
   decisions_known_ = true;
-  settled_ = false;
+  applied_ = false;
   order_for_.reset();
   selected_for_.reset();
 

@@ -111,8 +111,9 @@ void Axis::show_power() const {
   state_.motor_utilization = power_.motor_utilization();
 }
 
-const AxisState& Axis::tick(const AxisOrder& order) {
+void Axis::step(const AxisOrder& order) {
   catch_up();
+  if (order.command == AxisCommand::Follow && state_.phase == AxisPhase::Moving) return follow(order);
   advance_sequence(order);
   advance_setpoint(order);
   const AxisPhase phase = sequence_.phase();
@@ -129,11 +130,10 @@ const AxisState& Axis::tick(const AxisOrder& order) {
   // Most of the time the shaft is where the ramp is.
   const bool same = ramp_.output() == speed_;
   state_.setpoint = !has_torque(phase) ? 0 : same ? state_.speed : whole_speed(ramp_.output());
-  return state();
 }
 
-void Axis::follow(const AxisOrder& order) {
-  catch_up();
+// An axis that moves already goes as it is told: only the shaft has something to do.
+inline void Axis::follow(const AxisOrder& order) {
   ramp_.set(fine_speed(order.target));
   const int64_t torque_limit = power_.torque_limit(order.current_limit);
   move(order, Supply::Driving, shaft_.driven(speed_, ramp_.output(), torque_limit, resistance(order, false)));

@@ -87,10 +87,12 @@ class Axis : private AxisParts {
  public:
   explicit Axis(const MachineData& machine);
 
-  // One millisecond under this order.
-  const AxisState& tick(const AxisOrder& order);
-  // The same for an axis in AxisPhase::Moving with AxisCommand::Follow: only the shaft moves.
-  void follow(const AxisOrder& order);
+  // One millisecond under this order; tick() shows it, too.
+  void step(const AxisOrder& order);
+  const AxisState& tick(const AxisOrder& order) {
+    step(order);
+    return state();
+  }
   // What so many ticks under the last order do, at most bound() of them. Only while no ramp runs and the DC
   // link stays as it is: then only position, temperatures and energy change.
   void advance(Ticks ticks);
@@ -114,6 +116,8 @@ class Axis : private AxisParts {
   int32_t position() const { return state_.position; }
   int32_t speed() const { return state_.speed; }
   bool standing() const { return state_.standing; }
+  bool output_stage() const { return state_.output_stage; }
+  bool brake_released() const { return state_.brake_released; }
   bool current_limited() const { return state_.current_limited; }
   int32_t setpoint() const { return state_.setpoint; }
   int32_t output_current() const { return state_.output_current; }
@@ -129,6 +133,7 @@ class Axis : private AxisParts {
   void reset() { *this = Axis(machine_); }
 
  private:
+  void follow(const AxisOrder& order);
   void advance_sequence(const AxisOrder& order);
   void advance_setpoint(const AxisOrder& order);
   Motion advance_shaft(const AxisOrder& order);

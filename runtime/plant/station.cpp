@@ -142,14 +142,13 @@ bool Station::execute(Time now) {
   steady_ = steady_ && stays_steady();
   unwritten_ = quiet_ && !touched_ && execution_.skip_idle && runner_ == nullptr;
   touched_ = false;
-  if (!execution_.skip_idle) drive_.state().leave_travel();
   if (steady_ && machine_ && (!positioning_ || positioning_->idles())) {
     steady_tick(now);
     return true;
   }
   move_drive(now);
   if (!steady_) {
-    if (!drive_.state().travelled()) report_drive(now);
+    report_drive(now);
     if (x13_) x13_->configure(now);
     if (xt_) xt_->configure(now);
   }
@@ -169,9 +168,9 @@ void Station::move_drive(Time now) {
     drive.set_inputs(inputs_.levels());
     drive.set_analog(inputs_.analog());
   }
-  const PositionControl position =
-      positioning_ && machine_ ? positioning_->order(now, machine_->variables(), drive_.syncs(), unwritten_)
-                               : PositionControl{};
+  const PositionControl position = positioning_ && machine_
+                                       ? positioning_->order(now, machine_->variables(), drive_.syncs())
+                                       : PositionControl{};
   steady_ = steady_ && position == drive.position_control();
   if (steady_)
     drive.advance(1);
@@ -214,7 +213,7 @@ void Station::settle(Time now) {
 }
 
 void Station::begin_program(Time now) {
-  if (!steady_ && !drive_.state().travelled()) {
+  if (!steady_) {
     raise_drive_events();
     restart_after_reset(now);
   }
@@ -239,7 +238,7 @@ void Station::show_positioning(Time now) {
     touch();
     steady_ = false;
   }
-  positioning_->show(now, machine_->variables(), unwritten_);
+  positioning_->show(now, machine_->variables());
   if (positioning_->positioner().touch_probes().probe(0).fresh) machine_->raise_event(vm::Event::TouchProbe);
   positioning_commands_->tick(*machine_);
 }

@@ -32,7 +32,7 @@ void Station::go_on(std::span<int32_t> h) {
   const int32_t before = drive.position();
   drive.advance(1);
   if (positioning_)
-    positioning_->go_on(h, drive_.syncs(), before);
+    positioning_->advance(h, drive_.syncs(), before);
   else
     show_drive(drive, h);
 }
@@ -52,7 +52,7 @@ void Station::leave_steady() {
 
 // Behind a tick that was executed in full.
 void Station::try_steady() {
-  if (drive_.state().accelerates() || (positioning_ && positioning_->writes_variables())) {
+  if (positioning_ && positioning_->writes_variables()) {
     before_tick_.reset();
     return;
   }

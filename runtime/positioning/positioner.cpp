@@ -87,7 +87,7 @@ PositioningOrder Positioner::idle(int32_t speed) {
 }
 
 // The profile holds the position again before anybody travels from it.
-void Positioner::advance_idle(int32_t before, int32_t motor_counter) {
+void Positioner::advance(int32_t before, int32_t motor_counter) {
   if (encoders_.counter() != before) move(before);
   drop_target();
   move(motor_counter);
@@ -248,14 +248,14 @@ inline int32_t Positioner::speed_order() const {
 }
 
 // The millisecond of an axis that follows.
-[[gnu::always_inline]] inline PositioningOrder Positioner::advance() {
+[[gnu::always_inline]] inline PositioningOrder Positioner::lead() {
   profile_.tick();
   keep_in_range();
   if (settings_.lag_window > 0 && magnitude(lag_) > settings_.lag_window) report(PositioningEvent::LagError);
   return {true, speed_order(), halt_};
 }
 
-PositioningOrder Positioner::go_on() { return advance(); }
+PositioningOrder Positioner::go_on() { return lead(); }
 
 PositioningOrder Positioner::tick(const PositioningInputs& inputs) {
   if (!modulo_.possible()) configure_modulo();
@@ -275,10 +275,10 @@ PositioningOrder Positioner::tick(const PositioningInputs& inputs) {
     run_reference();
   else if (!follow_master())
     run_travel();
-  return advance();
+  return lead();
 }
 
-// Nothing that tick() asks before it advances has another answer.
+// Nothing that tick() asks before it leads the axis has another answer.
 bool Positioner::goes_on() const {
   const bool alone = !reference_.active() && !inputs_.master.follow && follower_.silent() &&
                      follow_state_ == FollowState::Free;

@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "runtime/pace/part.hpp"
 #include "runtime/positioning/encoders.hpp"
 #include "runtime/positioning/follower.hpp"
 #include "runtime/positioning/modulo.hpp"
@@ -85,9 +86,10 @@ class Positioner {
   // settings and inputs that are the same but for the speed.
   bool goes_on() const;
   PositioningOrder go_on();
-  // idle() and observe() for several ms at once, where nobody looks at the order; `before` is the counter one
-  // ms before the end.
-  void advance_idle(int32_t before, int32_t motor_counter);
+  // idle() and observe() for several ms at once, where nobody looks at the order, and for how many of them
+  // that holds; `before` is the counter one ms before the end.
+  void advance(int32_t before, int32_t motor_counter);
+  Ticks bound() const { return idles() ? kNoBound : 0; }
   // After it has moved: the counter of the motor encoder.
   void observe(int32_t motor_counter) {
     move(motor_counter);
@@ -164,7 +166,7 @@ class Positioner {
     modulo_.move(wrapped(int64_t{actual()} - before));
   }
   void keep_in_range();
-  PositioningOrder advance();
+  PositioningOrder lead();
   int32_t speed_order() const;
 
   void run_reference();

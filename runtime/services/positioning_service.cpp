@@ -103,6 +103,7 @@ void PositioningService::read_changed_settings() {
 void PositioningService::set_parameter(std::string_view number, int32_t value) {
   if (const stdlib::Parameter* row = parameters_.table().find(number))
     parameters_.set_working(row->index, value);
+  ++changes_;
 }
 
 void PositioningService::set_parameter(std::string_view number, int32_t value, uint32_t address) {
@@ -141,7 +142,7 @@ void PositioningService::take_targets(std::span<const int32_t> h) {
 }
 
 void PositioningService::take_written_targets(std::span<const int32_t> h) {
-  travels_ = false;
+  ++changes_;
   if (h[kTargetPos] != shown_target_) {
     not_ordered(PositioningCause::Target);
     positioner_.write_target(h[kTargetPos]);
@@ -213,40 +214,30 @@ MasterInputs PositioningService::master(std::span<const int32_t> h, bool sync) c
   return master;
 }
 
-// Nothing that positioning follows has changed since a millisecond in which there was nothing to do; so there
-// is nothing to do in this one.
-bool PositioningService::stays_idle(std::span<const int32_t> h) const {
-  const PositioningInputs& last = positioner_.inputs();
-  return settings_version_ == parameters_.changes() && drive_.inputs() == last.levels &&
-         !drive_.can_position() &&
-         drive_.terminals().on(InputFunction::ReferenceStart) == last.reference_start &&
-         !targets_written(h) && static_cast<uint32_t>(h[kModuloCtrl]) == last.modulo_control &&
-         !mirrors_written(h);
-}
-
-bool PositioningService::written(std::span<const int32_t> h) const {
+inline bool PositioningService::written(std::span<const int32_t> h) const {
   return targets_written(h) || static_cast<uint32_t>(h[kModuloCtrl]) != inputs_.modulo_control ||
          mirrors_written(h);
 }
 
-PositionControl PositioningService::travel(Time now, uint32_t syncs) {
-  travelled_ = true;
-  syncs_ = syncs;
-  const PositioningOrder order = positioner_.go_on();
-  if (positioner_.has_events()) {
-    report_events(now);
-    travels_ = false;
-  }
+inline PositionControl PositioningService::control_of(const PositioningOrder& order) const {
   return {order.controls, order.speed, command_of(order.halt), in_position_, positioner_.referenced()};
 }
 
-PositionControl PositioningService::order_anew(Time now, std::span<int32_t> h, uint32_t syncs) {
-  travelled_ = false;
-  if (idles_ && stays_idle(h)) {
-    syncs_ = syncs;
-    const PositioningOrder order = positioner_.idle(drive_.speed());
-    return {order.controls, order.speed, command_of(order.halt), false, positioner_.referenced()};
+// Where nothing that an order follows is other than in the one before, a travel goes on with its plan, and
+// who idles goes on to do so.
+PositionControl PositioningService::order(Time now, std::span<int32_t> h, uint32_t syncs) {
+  const bool same = followed_ == Followed{drive_.changes(), parameters_.changes(), changes_} &&
+                    reported_.none() && !written(h);
+  if (!same || settings_.technology_function == kIsync) return order_anew(now, h, syncs);
+  if (positioner_.goes_on()) {
+    const PositioningOrder order = positioner_.go_on();
+    if (positioner_.has_events()) report_events(now);
+    return control_of(order);
   }
+  return positioner_.idles() ? control_of(positioner_.idle(drive_.speed())) : order_anew(now, h, syncs);
+}
+
+PositionControl PositioningService::order_anew(Time now, std::span<int32_t> h, uint32_t syncs) {
   read_settings();
   if (!mirrors_agree_ || mirrors_written(h)) take_mirrors(h);
   take_targets(h);
@@ -254,17 +245,15 @@ PositionControl PositioningService::order_anew(Time now, std::span<int32_t> h, u
     positioner_version_ = settings_version_;
     positioner_.take_over(settings_);
   }
+  followed_ = {drive_.changes(), settings_version_, changes_};
   read_inputs(h, syncs);
   if (inputs_.reference_start && !positioner_.inputs().reference_start)
     not_ordered(PositioningCause::Reference);
   const PositioningOrder order = positioner_.tick(inputs_);
   if (positioner_.has_events() || reported_.any()) report_events(now);
-  const bool undisturbed = reported_.none() && settings_.technology_function != kIsync;
-  idles_ = undisturbed && positioner_.idles();
-  travels_ = undisturbed && positioner_.goes_on();
+  in_position_ = positioner_.in_position();
   if (const auto counter = positioner_.take_motor_counter()) drive_.set_position(*counter);
-  return {order.controls, order.speed, command_of(order.halt), positioner_.in_position(),
-          positioner_.referenced()};
+  return control_of(order);
 }
 
 std::string PositioningService::place_of(PositioningEvent event) const {
@@ -307,26 +296,17 @@ inline void PositioningService::show_positions(std::span<int32_t> h, const Encod
   h[kActPosAbs] = positions.of(PositionSource::Absolute);
 }
 
-void PositioningService::go_on(std::span<int32_t> h, uint32_t syncs, int32_t before) {
+void PositioningService::advance(std::span<int32_t> h, uint32_t syncs, int32_t before) {
   syncs_ = syncs;
   const int32_t counter = drive_.position();
   if (positioner_.encoders().stands_at(counter)) return;
-  positioner_.advance_idle(before, counter);
+  positioner_.advance(before, counter);
   const Encoders::Positions positions = positioner_.encoders().positions();
   show_target_positions(h);
   show_positions(h, positions, positions.of(positioner_.source()));
 }
 
-// What a travel moves.
-void PositioningService::show_travel(std::span<int32_t> h) {
-  positioner_.observe(drive_.position());
-  h[kModCount] = shown_turns_ = positioner_.modulo().turns();
-  if (positioner_.in_position() != in_position_) show_bits(h);
-  show_positions(h, positioner_.encoders().positions(), positioner_.setpoint());
-  h[kLagDistance] = positioner_.lag();
-}
-
-void PositioningService::show_all(Time now, std::span<int32_t> h) {
+void PositioningService::show(Time now, std::span<int32_t> h) {
   positioner_.observe(drive_.position());
   show_target_positions(h);
   show_bits(h);
@@ -335,6 +315,11 @@ void PositioningService::show_all(Time now, std::span<int32_t> h) {
   h[kLagDistance] = positioner_.lag();
   if (h.size() > kGearSlave) h[kSyncState] = static_cast<int32_t>(positioner_.follow_state());
   h[kSetpointPosBus] = bus_position_ = drive_.bus_position().value_or(bus_position_);
+  show_probes(h);
+  if (cams_run_) run_cams(now, h);
+}
+
+inline void PositioningService::show_probes(std::span<int32_t> h) const {
   const TouchProbes::Probe& first = positioner_.touch_probes().probe(0);
   const TouchProbes::Probe& second = positioner_.touch_probes().probe(1);
   h[kTpPos1Mot] = first.motor;
@@ -343,7 +328,9 @@ void PositioningService::show_all(Time now, std::span<int32_t> h) {
   h[kTpPos2Mot] = second.motor;
   h[kTpPos2Ext] = second.external;
   h[kTpPos2Abs] = second.absolute;
-  if (!cams_run_) return;
+}
+
+void PositioningService::run_cams(Time now, std::span<int32_t> h) {
   cam_sources_.tick(h);
   const auto ms = static_cast<uint64_t>(now / kMillisecond);
   if (extended_cams_.runs() && !extended_cams_.tick(h, cam_sources_, {positioner_.referenced(), ms}))

@@ -28,16 +28,9 @@ class PositioningService {
                      SourcePlace place);
 
   // Before the drive's tick: what the program wrote, what is to be done. `syncs`: sync telegrams so far.
-  // `unwritten`: no system variable was written since show().
-  PositionControl order(Time now, std::span<int32_t> h, uint32_t syncs, bool unwritten = false) {
-    if (travels_ && goes_on(h, unwritten)) return travel(now, syncs);
-    return order_anew(now, h, syncs);
-  }
+  PositionControl order(Time now, std::span<int32_t> h, uint32_t syncs);
   // After it: the system variables of positioning, and the extended cams.
-  void show(Time now, std::span<int32_t> h, bool unwritten = false) {
-    if (unwritten && travelled_ && !cams_run_) return show_travel(h);
-    show_all(now, h);
-  }
+  void show(Time now, std::span<int32_t> h);
 
   // Looks at no variable but system variables: no cam controller runs, no master is followed.
   bool reads_system_variables_only() const { return settings_.technology_function != kIsync && !cams_run_; }
@@ -53,16 +46,21 @@ class PositioningService {
   };
   Left left() const { return {positioner_, reported_}; }
 
-  // The last millisecond has found nothing to do, and no command came since. While inputs, parameters and
-  // system variables stay as they are, too, go_on() is order() and show() around a tick of the drive, or
-  // around several; before the last of them its counter was `before`.
-  bool idles() const { return idles_ && reads_system_variables_only(); }
+  // Grows with everything that commands change: targets, travels, cams, parameters.
+  uint32_t changes() const { return changes_; }
+  // There is nothing to do. While inputs, parameters, system variables and changes() stay as they are since
+  // the last order(), advance() is order() and show() around a tick of the drive, or around several; before
+  // the last of them its counter was `before`.
+  bool idles() const {
+    return positioner_.idles() && reported_.none() && followed_.commands == changes_ &&
+           reads_system_variables_only();
+  }
   // It changes the variables with use Moves then.
-  void go_on(std::span<int32_t> h, uint32_t syncs, int32_t before);
+  void advance(std::span<int32_t> h, uint32_t syncs, int32_t before);
   // For commands, between two ticks.
   const Positioner& positioner() const { return positioner_; }
   Positioner& change_positioner() {
-    idles_ = travels_ = false;
+    ++changes_;
     return positioner_;
   }
   void take_targets(std::span<const int32_t> h);  // written since the last look
@@ -72,10 +70,12 @@ class PositioningService {
   }
   void show_targets(std::span<int32_t> h);  // and the bits 19 and 20 of H473
   CamSources& cam_sources() {
+    ++changes_;
     cams_run_ = true;
     return cam_sources_;
   }
   ExtendedCams& extended_cams() {
+    ++changes_;
     cams_run_ = true;
     return extended_cams_;
   }
@@ -91,17 +91,11 @@ class PositioningService {
     if (settings_version_ != parameters_.changes()) read_changed_settings();
   }
   void read_changed_settings();
-  bool stays_idle(std::span<const int32_t> h) const;
-  // Nothing that positioning follows has changed since a millisecond in which there was only a travel to go
-  // on with.
-  bool goes_on(std::span<const int32_t> h, bool unwritten) const {
-    return drive_.travels() && settings_version_ == parameters_.changes() && (unwritten || !written(h));
-  }
   bool written(std::span<const int32_t> h) const;
-  PositionControl travel(Time now, uint32_t syncs);
-  void show_travel(std::span<int32_t> h);
-  void show_all(Time now, std::span<int32_t> h);
+  PositionControl control_of(const PositioningOrder& order) const;
   PositionControl order_anew(Time now, std::span<int32_t> h, uint32_t syncs);
+  void show_probes(std::span<int32_t> h) const;
+  void run_cams(Time now, std::span<int32_t> h);
   bool mirrors_written(std::span<const int32_t> h) const;
   bool targets_written(std::span<const int32_t> h) const;
   void take_mirrors(std::span<int32_t> h);
@@ -144,11 +138,17 @@ class PositioningService {
   int32_t shown_modulo_target_ = 0;
   int32_t shown_turns_ = 0;
   int32_t bus_position_ = 0;
-  bool idles_ = false;        // there was nothing to do in the last millisecond, and no command came since
-  bool travels_ = false;      // it has only gone on in the last millisecond, and no command came since
-  bool travelled_ = false;    // nothing else was done in the last millisecond
-  bool in_position_ = false;  // as last shown
-  uint32_t syncs_ = 0;        // sync telegrams, as of the last millisecond
+  bool in_position_ = false;
+  uint32_t changes_ = 0;
+  // How often what an order follows, besides variables, had changed by the last one that was made anew.
+  struct Followed {
+    uint32_t drive = 0;
+    uint32_t settings = 0;
+    uint32_t commands = 0;
+    bool operator==(const Followed&) const = default;
+  };
+  Followed followed_;
+  uint32_t syncs_ = 0;                        // sync telegrams, as of the last millisecond
   std::bitset<kPositioningEvents> reported_;  // in the last millisecond
   // Of each kind the last one; nothing: not by a command, but by writing a variable or an input.
   std::array<std::optional<uint32_t>, kPositioningCauses> ordered_at_;
