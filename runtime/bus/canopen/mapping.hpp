@@ -24,6 +24,13 @@ constexpr uint32_t mapping_entry(const Mapped& mapped) {
   return uint32_t{mapped.address.index} << 16 | uint32_t{mapped.address.sub} << 8 | mapped.bits;
 }
 
+// A process word; others are dummies, that stand for bits of somebody else.
+constexpr bool is_word(const Mapped& mapped) {
+  const Address& at = mapped.address;
+  return (at.index == objects::kOutput || at.index == objects::kInput) && at.sub >= 1 &&
+         at.sub <= objects::kProcessWords && mapped.bits == 16;
+}
+
 using Mapping = std::vector<Mapped>;
 Mapping mapping_of(const ObjectDictionary& dictionary, uint16_t mapping_index);
 unsigned bits_of(const Mapping& mapping);

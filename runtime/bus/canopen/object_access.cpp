@@ -2,6 +2,8 @@
 // EMCY, guarding and heartbeat).
 #include "runtime/bus/canopen/object_access.hpp"
 
+#include <algorithm>
+
 #include "runtime/bus/canopen/connections.hpp"
 #include "runtime/bus/canopen/mapping.hpp"
 #include "stdlib/parameters.hpp"
@@ -52,8 +54,8 @@ std::optional<Abort> unless(bool good, Abort abort) { return good ? std::nullopt
 
 Mapping mapping_of(const ObjectDictionary& dictionary, uint16_t mapping_index) {
   Mapping mapping;
-  for (uint8_t n = 1; n <= dictionary.value(mapping_index); ++n)
-    mapping.push_back(mapped_of(dictionary.value(mapping_index, n)));
+  const uint32_t count = std::min<uint32_t>(dictionary.value(mapping_index), objects::kMappedObjects);
+  for (uint8_t n = 1; n <= count; ++n) mapping.push_back(mapped_of(dictionary.value(mapping_index, n)));
   return mapping;
 }
 

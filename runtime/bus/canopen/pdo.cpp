@@ -12,9 +12,6 @@ constexpr uint16_t entry_index(uint16_t first, uint8_t number) {
   return static_cast<uint16_t>(first + number);
 }
 
-// Dummies stand for bits of others.
-bool is_word(const Mapped& mapped) { return mapped.address.index >= objects::kOutput; }
-
 std::optional<uint32_t> id_of(const ObjectDictionary& dictionary, uint16_t index) {
   const uint32_t cob_id = dictionary.value(index, objects::kCobId);
   if ((cob_id & objects::kOff) != 0) return std::nullopt;

@@ -1,0 +1,56 @@
+// The frames of a CANopen line in words: "585h SDO 1800h:2 TPDO1 transmission type = 1 <- node 5". It listens to the
+// line from its beginning: a mapping that a master writes is known from then on, and a segment belongs to its object.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/bus/can/frame.hpp"
+#include "runtime/bus/canopen/connections.hpp"
+#include "runtime/bus/canopen/mapping.hpp"
+#include "runtime/bus/canopen/object_dictionary.hpp"
+#include "runtime/bus/canopen/sdo.hpp"
+#include "runtime/bus/movilink/describe.hpp"
+#include "stdlib/unit_types.hpp"
+
+namespace ipos::runtime::canopen {
+
+struct NodeName {
+  uint8_t node = 0;
+  std::string name;
+  const stdlib::UnitType* unit = nullptr;  // whose parameters it has; MOVIDRIVE MDX60B/61B when not known
+  WordAssignment output{};                 // P870..P872
+  WordAssignment input{};                  // P873..P875
+};
+
+class LineWords {
+ public:
+  explicit LineWords(std::vector<NodeName> names = {});
+
+  // Of the next frame on the line.
+  Description describe(const Frame& frame);
+
+ private:
+  // What is known of a node: its name, its objects as they were written, and the SDO transfer under way.
+  struct Listened {
+    NodeName name;
+    ObjectDictionary dictionary;
+    std::optional<Address> transfer;
+    std::optional<uint32_t> written;  // by the request before, not confirmed yet
+  };
+  Listened& node(uint8_t number);
+
+  std::optional<std::string> pdo_text(const Frame& frame);
+  std::string addressed_text(const Frame& frame, const Addressed& addressed);
+  std::string nmt_text(const Frame& frame);
+  std::string sdo_request_text(Listened& node, const SdoBytes& bytes);
+  std::string sdo_response_text(Listened& node, const SdoBytes& bytes);
+
+  std::map<uint8_t, Listened> nodes_;
+};
+
+}  // namespace ipos::runtime::canopen
