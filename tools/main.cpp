@@ -8,9 +8,9 @@
 #include <iterator>
 #include <string_view>
 
+#include "tools/cli/end_of_process.hpp"
 #include "tools/cli/parser.hpp"
-#include "tools/end_of_process.hpp"
-#include "tools/verbs.hpp"
+#include "tools/cli/verbs.hpp"
 
 namespace {
 

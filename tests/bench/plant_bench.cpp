@@ -15,7 +15,7 @@
 #include "compiler/codegen/compile.hpp"
 #include "compiler/diag/render.hpp"
 #include "runtime/plant/plant.hpp"
-#include "tools/engine.hpp"
+#include "tools/input/engine.hpp"
 
 namespace {
 size_t allocations = 0;

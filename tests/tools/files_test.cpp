@@ -8,9 +8,9 @@
 #include <functional>
 
 #include "tests/tools/command.hpp"
-#include "tools/failure.hpp"
-#include "tools/files.hpp"
-#include "tools/outputs.hpp"
+#include "tools/cli/failure.hpp"
+#include "tools/cli/files.hpp"
+#include "tools/cli/outputs.hpp"
 
 namespace ipos::tests {
 namespace {

@@ -1,5 +1,5 @@
 // The plot as a document: it is XML, every panel and name is there, lines lie where the values are.
-#include "tools/plot_svg.hpp"
+#include "tools/recording/plot_svg.hpp"
 
 #include <gtest/gtest.h>
 #include <tinyxml2.h>

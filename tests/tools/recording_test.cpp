@@ -1,11 +1,11 @@
 // Signals found by name and sampled on a plant without programs; the units are moved by hand.
-#include "tools/recording.hpp"
+#include "tools/recording/recording.hpp"
 
 #include <gtest/gtest.h>
 
 #include <memory>
 
-#include "tools/failure.hpp"
+#include "tools/cli/failure.hpp"
 
 namespace ipos::tools {
 namespace {

@@ -1,5 +1,5 @@
 // The forms of hand-made recordings, and of a run.
-#include "tools/trace.hpp"
+#include "tools/recording/trace.hpp"
 
 #include <gtest/gtest.h>
 

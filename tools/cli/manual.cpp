@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "tools/exit_codes.hpp"
+#include "tools/cli/exit_codes.hpp"
 
 namespace ipos::tools::cli {
 namespace {

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "stdlib/spelling.hpp"
-#include "tools/exit_codes.hpp"
+#include "tools/cli/exit_codes.hpp"
 
 namespace ipos::tools::cli {
 namespace {

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "tools/cli/xml_text.hpp"
 #include "tools/coverage/write.hpp"
-#include "tools/xml_text.hpp"
 
 namespace ipos::tools::coverage {
 namespace {

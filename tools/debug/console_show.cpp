@@ -5,8 +5,8 @@
 #include <charconv>
 #include <sstream>
 
+#include "tools/cli/files.hpp"
 #include "tools/debug/console.hpp"
-#include "tools/files.hpp"
 
 namespace ipos::tools::debug {
 namespace {

@@ -7,9 +7,9 @@
 
 #include "stdlib/embedded.hpp"
 #include "stdlib/spelling.hpp"
-#include "tools/failure.hpp"
-#include "tools/outputs.hpp"
-#include "tools/verbs.hpp"
+#include "tools/cli/failure.hpp"
+#include "tools/cli/outputs.hpp"
+#include "tools/cli/verbs.hpp"
 
 namespace ipos::tools {
 

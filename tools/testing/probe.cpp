@@ -9,7 +9,7 @@
 
 #include "runtime/bus/log/candump.hpp"
 #include "runtime/plant/signal_port.hpp"
-#include "tools/files.hpp"
+#include "tools/cli/files.hpp"
 
 namespace ipos::tools::testing {
 namespace {

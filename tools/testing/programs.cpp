@@ -7,7 +7,8 @@
 
 #include "compiler/codegen/compile.hpp"
 #include "compiler/diag/render.hpp"
-#include "tools/files.hpp"
+#include "tools/cli/files.hpp"
+#include "tools/input/program.hpp"
 
 namespace ipos::tools::testing {
 namespace {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "tools/program.hpp"
+#include "tools/input/program.hpp"
 #include "tools/testing/test_case.hpp"
 
 namespace ipos::tools::testing {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include "tools/files.hpp"
+#include "tools/cli/files.hpp"
 #include "tools/testing/item_reader.hpp"
 #include "tools/testing/read_tests.hpp"
 

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "tools/failure.hpp"
-#include "tools/files.hpp"
-#include "tools/program.hpp"
+#include "tools/cli/failure.hpp"
+#include "tools/cli/files.hpp"
+#include "tools/input/program.hpp"
 
 namespace ipos::tools::testing {
 namespace {

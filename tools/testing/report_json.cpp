@@ -1,9 +1,9 @@
 // One JSON object: totals and an entry for each test.
 #include <nlohmann/json.hpp>
 
+#include "tools/cli/xml_text.hpp"
 #include "tools/testing/report_words.hpp"
 #include "tools/testing/reports.hpp"
-#include "tools/xml_text.hpp"
 
 namespace ipos::tools::testing {
 namespace {

@@ -2,9 +2,9 @@
 // test that was not met is a failure, a malformed one an error.
 #include <fmt/format.h>
 
+#include "tools/cli/xml_text.hpp"
 #include "tools/testing/report_words.hpp"
 #include "tools/testing/reports.hpp"
-#include "tools/xml_text.hpp"
 
 namespace ipos::tools::testing {
 namespace {

@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "tools/cli/xml_text.hpp"
 #include "tools/testing/report_words.hpp"
 #include "tools/testing/reports.hpp"
-#include "tools/xml_text.hpp"
 
 namespace ipos::tools::testing {
 namespace {

@@ -13,7 +13,7 @@
 #include <set>
 
 #include "runtime/plant/station_state.hpp"
-#include "tools/interrupt.hpp"
+#include "tools/cli/interrupt.hpp"
 #include "tools/testing/actor.hpp"
 #include "tools/testing/check.hpp"
 #include "tools/testing/plant_builder.hpp"

@@ -10,7 +10,7 @@
 #include <optional>
 #include <thread>
 
-#include "tools/interrupt.hpp"
+#include "tools/cli/interrupt.hpp"
 
 namespace ipos::tools::testing {
 namespace {

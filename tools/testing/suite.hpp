@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "tools/input/program.hpp"
 #include "tools/testing/run_test.hpp"
 
 namespace ipos::tools::testing {

@@ -1,0 +1,105 @@
+// ipos bus load: load of a log in windows of one second and by identifier.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "runtime/bus/log/bus_load.hpp"
+#include "tools/bus/bus_verbs.hpp"
+#include "tools/cli/exit_codes.hpp"
+
+namespace ipos::tools {
+namespace {
+
+using runtime::BusLoad;
+using runtime::LoadCount;
+using runtime::Time;
+
+struct LoadFlags {
+  std::string log;
+  uint32_t baud = 0;
+  std::string format = "text";
+};
+
+std::string percent(uint64_t bits, uint32_t baud, Time span) {
+  const uint64_t hundredths = LoadCount::percent_hundredths(bits, baud, span);
+  return fmt::format("{}.{:02}", hundredths / 100, hundredths % 100);
+}
+
+std::string row(const std::string& what, const LoadCount& count, uint32_t baud, Time span) {
+  return fmt::format("{:<12} {:>8} {:>10} {:>10} {:>8} {:>8}\n", what, count.frames, count.exact_bits,
+                     count.worst_bits, percent(count.exact_bits, baud, span),
+                     percent(count.worst_bits, baud, span));
+}
+
+std::string seconds(Time time) {
+  const Time stamp = time + runtime::kCandumpEpoch;
+  return fmt::format("{}.{:03}", stamp / runtime::kSecond, stamp % runtime::kSecond / runtime::kMillisecond);
+}
+
+std::string name_of(const runtime::LoggedIdentifier& id) {
+  return id.extended ? fmt::format("{}x", id.id) : fmt::format("{}", id.id);
+}
+
+std::string text_report(const BusLoad& load, uint32_t baud) {
+  std::string text = fmt::format("{:<12} {:>8} {:>10} {:>10} {:>8} {:>8}\n", "window from", "frames",
+                                 "bits exact", "bits worst", "% exact", "% worst");
+  for (const runtime::LoadWindow& window : load.windows())
+    text += row(seconds(window.start), window.count, baud, runtime::kSecond);
+  text += row("all", load.total(), baud, load.span());
+  text += "\nidentifier\n";
+  for (const auto& [id, count] : load.identifiers()) text += row(name_of(id), count, baud, load.span());
+  return text;
+}
+
+nlohmann::ordered_json json_row(const LoadCount& count, uint32_t baud, Time span) {
+  const auto share = [&](uint64_t bits) {
+    return static_cast<double>(LoadCount::percent_hundredths(bits, baud, span)) / 100;
+  };
+  return {{"frames", count.frames},
+          {"data_bits", count.data_bits},
+          {"exact_bits", count.exact_bits},
+          {"worst_bits", count.worst_bits},
+          {"exact_percent", share(count.exact_bits)},
+          {"worst_percent", share(count.worst_bits)}};
+}
+
+std::string json_report(const BusLoad& load, uint32_t baud) {
+  nlohmann::ordered_json report = {{"baud", baud}};
+  report["windows"] = nlohmann::ordered_json::array();
+  for (const runtime::LoadWindow& window : load.windows()) {
+    nlohmann::ordered_json entry = json_row(window.count, baud, runtime::kSecond);
+    entry["from_us"] = window.start / runtime::kMicrosecond;
+    report["windows"].push_back(std::move(entry));
+  }
+  report["all"] = json_row(load.total(), baud, load.span());
+  report["identifiers"] = nlohmann::ordered_json::array();
+  for (const auto& [id, count] : load.identifiers()) {
+    nlohmann::ordered_json entry = json_row(count, baud, load.span());
+    entry["id"] = id.id;
+    entry["extended"] = id.extended;
+    report["identifiers"].push_back(std::move(entry));
+  }
+  return report.dump() + "\n";
+}
+
+int measure(const LoadFlags& flags) {
+  BusLoad load;
+  const size_t bad =
+      read_log(flags.log, [&](const runtime::LogEntry& entry, size_t) { load.add(entry.time, entry.frame); });
+  fmt::print("{}", flags.format == "json" ? json_report(load, flags.baud) : text_report(load, flags.baud));
+  return bad == 0 ? kGood : kBadInput;
+}
+
+}  // namespace
+
+void add_bus_load(cli::Verb& bus) {
+  auto flags = std::make_shared<LoadFlags>();
+  cli::Verb& verb = bus.verb("load", "load of a candump log, exact with stuff bits and at worst");
+  verb.option("LOG", flags->log, "candump log of one line; - is standard input").required();
+  verb.option("--baud", flags->baud, "of the line, for example 500000").required().between(1000U, 1'000'000U);
+  verb.option("--format", flags->format, "text or json").one_of({"text", "json"});
+  verb.footer("Example:\n  ipos bus load can.log --baud 500000");
+  verb.runs([flags] { return measure(*flags); });
+}
+
+}  // namespace ipos::tools

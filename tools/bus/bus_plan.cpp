@@ -1,0 +1,234 @@
+// ipos bus plan: what a plant puts on its lines and what is wrong with it, as text or JSON.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "runtime/plan/plan.hpp"
+#include "tools/bus/bus_verbs.hpp"
+#include "tools/cli/exit_codes.hpp"
+#include "tools/input/plant_input.hpp"
+#include "tools/input/program.hpp"
+
+namespace ipos::tools {
+namespace {
+
+using runtime::BusPlan;
+using runtime::Finding;
+using runtime::LinePlan;
+using runtime::PlannedTelegram;
+using runtime::Rhythm;
+using runtime::Time;
+
+struct PlanFlags {
+  std::string plant;
+  std::string trial;
+  std::string acyclic;
+  std::string format = "text";
+  CompileFlags compile;
+};
+
+constexpr const char* kRhythms[] = {"cyclic", "answer", "acyclic"};
+
+std::string millis(Time time) {
+  return fmt::format("{}.{:03}", time / runtime::kMillisecond,
+                     time % runtime::kMillisecond / runtime::kMicrosecond);
+}
+
+std::string per_mille(uint64_t part, uint64_t whole) {
+  const uint64_t value = part * 1000 / whole;
+  return fmt::format("{}.{} %", value / 10, value % 10);
+}
+
+std::string numbers(const std::vector<uint32_t>& ids) { return fmt::format("{}", fmt::join(ids, " ")); }
+
+std::string line_text(const LinePlan& line) {
+  std::string text = fmt::format("{}: {} baud, {} stations", line.name, line.baud, line.stations);
+  text += line.length == 0 ? fmt::format(", cable up to {} m\n", line.length_limit)
+                           : fmt::format(", {} m of cable, up to {} m\n", line.length, line.length_limit);
+  text += fmt::format("\n{} identifiers\n", line.identifiers.size());
+  for (const auto& identifier : line.identifiers)
+    for (const auto& use : identifier.uses)
+      text += fmt::format("{:>6}  {:<8}  {:<12}  {}\n", identifier.id, use.transmits ? "transmit" : "receive",
+                          use.station, use.what);
+  if (!line.closed.empty()) text += "\nclosed to variable objects\n";
+  for (const auto& closed : line.closed) {
+    text += fmt::format("  {}, transmit: {}\n", closed.station, numbers(closed.transmit));
+    text += fmt::format("  {}, receive:  {}\n", closed.station, numbers(closed.receive));
+  }
+  text +=
+      fmt::format("\ntelegrams, worst-case load {} of at most 70 %\n", per_mille(line.load_bits, line.baud));
+  if (!line.telegrams.empty())
+    text += fmt::format("{:>6}  {:<7}  {:>11}  {:>5}  {:>13}  {:<12}  {}\n", "id", "rhythm", "period ms",
+                        "bytes", "response ms", "sender", "telegram");
+  for (const PlannedTelegram& telegram : line.telegrams)
+    text +=
+        fmt::format("{:>6}  {:<7}  {:>11}  {:>5}  {:>13}  {:<12}  {}\n", telegram.id,
+                    kRhythms[static_cast<size_t>(telegram.rhythm)], millis(telegram.period), telegram.bytes,
+                    telegram.response.bounded ? millis(telegram.response.worst) : "unbounded",
+                    telegram.sender, telegram.what);
+  return text + "\n";
+}
+
+std::string serial_text(const runtime::SerialLinePlan& line, Time trial) {
+  std::string text =
+      fmt::format("{}: {}, {} baud, {} stations", line.name, line.kind, line.baud, line.stations.size());
+  text += line.length == 0 ? fmt::format(", cable up to {} m\n\n", line.length_limit)
+                           : fmt::format(", {} m of cable, up to {} m\n\n", line.length, line.length_limit);
+  for (const auto& station : line.stations)
+    text += fmt::format("  {:<12}  {:<3}  address {}, group {}\n", station.name, station.socket,
+                        station.address, station.group);
+  text += fmt::format("\ntelegrams in the trial run of {} ms\n", millis(trial));
+  if (!line.telegrams.empty())
+    text += fmt::format("{:>6}  {:>10}  {:>5}  {:>7}  {:<12}  {}\n", "count", "closest ms", "bytes",
+                        "wire ms", "sender", "telegram");
+  for (const auto& telegram : line.telegrams)
+    text += fmt::format("{:>6}  {:>10}  {:>5}  {:>7}  {:<12}  {} {}, {}\n", telegram.count,
+                        telegram.closest == runtime::kNever ? "-" : millis(telegram.closest), telegram.bytes,
+                        millis(telegram.wire), telegram.sender,
+                        telegram.response ? "response of" : "request to", telegram.address, telegram.format);
+  return text;
+}
+
+std::string assumptions(const BusPlan& plan) {
+  return fmt::format(
+      "assumed: worst-case stuffing, no errors on the line, each station offers its lowest identifier first; "
+      "PI\n"
+      "queued within 1 ms of its PO, parameter responses within 2 ms (ours); acyclic telegrams no closer "
+      "than in the\n"
+      "trial run of {} ms, those seen once or never {} ms apart. Response: from the event to the end of the "
+      "frame,\n"
+      "of answers from that of the request.\n",
+      millis(plan.trial), millis(plan.acyclic));
+}
+
+std::string finding_text(const Finding& finding) {
+  const runtime::FindingType& type = finding_type(finding.kind);
+  return fmt::format("{}{}: {} [{}]\n", finding.line.empty() ? "" : finding.line + ": ",
+                     type.weight == runtime::FindingWeight::Error ? "error" : "hint", finding.text,
+                     type.code);
+}
+
+nlohmann::ordered_json telegram_json(const PlannedTelegram& telegram) {
+  nlohmann::ordered_json entry = {{"id", telegram.id},
+                                  {"sender", telegram.sender},
+                                  {"telegram", telegram.what},
+                                  {"bytes", telegram.bytes},
+                                  {"rhythm", kRhythms[static_cast<size_t>(telegram.rhythm)]},
+                                  {"period_ns", telegram.period}};
+  if (telegram.response.bounded)
+    entry["response_ns"] = telegram.response.worst;
+  else
+    entry["response_ns"] = nullptr;
+  entry["blocking_ns"] = telegram.response.blocking;
+  entry["busy_period_ns"] = telegram.response.busy_period;
+  entry["instances"] = telegram.response.instances;
+  return entry;
+}
+
+nlohmann::ordered_json line_json(const LinePlan& line) {
+  using nlohmann::ordered_json;
+  ordered_json entry = {{"name", line.name},
+                        {"baud", line.baud},
+                        {"stations", line.stations},
+                        {"length_m", line.length},
+                        {"length_limit_m", line.length_limit},
+                        {"load_bits_per_s", line.load_bits}};
+  entry["identifiers"] = ordered_json::array();
+  for (const auto& identifier : line.identifiers) {
+    ordered_json uses = ordered_json::array();
+    for (const auto& use : identifier.uses)
+      uses.push_back({{"station", use.station}, {"transmits", use.transmits}, {"what", use.what}});
+    entry["identifiers"].push_back({{"id", identifier.id}, {"uses", std::move(uses)}});
+  }
+  entry["closed"] = ordered_json::array();
+  for (const auto& closed : line.closed)
+    entry["closed"].push_back(
+        {{"station", closed.station}, {"transmit", closed.transmit}, {"receive", closed.receive}});
+  entry["telegrams"] = ordered_json::array();
+  for (const PlannedTelegram& telegram : line.telegrams)
+    entry["telegrams"].push_back(telegram_json(telegram));
+  return entry;
+}
+
+nlohmann::ordered_json serial_json(const runtime::SerialLinePlan& line) {
+  using nlohmann::ordered_json;
+  ordered_json entry = {{"name", line.name},
+                        {"kind", line.kind},
+                        {"baud", line.baud},
+                        {"length_m", line.length},
+                        {"length_limit_m", line.length_limit}};
+  entry["stations"] = ordered_json::array();
+  for (const auto& station : line.stations)
+    entry["stations"].push_back({{"name", station.name},
+                                 {"socket", station.socket},
+                                 {"address", station.address},
+                                 {"group", station.group}});
+  entry["telegrams"] = ordered_json::array();
+  for (const auto& telegram : line.telegrams) {
+    ordered_json row = {{"sender", telegram.sender},     {"address", telegram.address},
+                        {"response", telegram.response}, {"format", telegram.format},
+                        {"bytes", telegram.bytes},       {"wire_ns", telegram.wire},
+                        {"count", telegram.count}};
+    row["closest_ns"] = telegram.closest == runtime::kNever ? ordered_json() : ordered_json(telegram.closest);
+    entry["telegrams"].push_back(std::move(row));
+  }
+  return entry;
+}
+
+std::string json_report(const BusPlan& plan) {
+  using nlohmann::ordered_json;
+  ordered_json report = {{"trial_ns", plan.trial}, {"acyclic_ns", plan.acyclic}};
+  report["lines"] = ordered_json::array();
+  for (const LinePlan& line : plan.lines) report["lines"].push_back(line_json(line));
+  report["serial_lines"] = ordered_json::array();
+  for (const auto& line : plan.serial_lines) report["serial_lines"].push_back(serial_json(line));
+  report["findings"] = ordered_json::array();
+  for (const Finding& finding : plan.findings) {
+    const runtime::FindingType& type = finding_type(finding.kind);
+    report["findings"].push_back({{"code", type.code},
+                                  {"weight", type.weight == runtime::FindingWeight::Error ? "error" : "hint"},
+                                  {"line", finding.line},
+                                  {"text", finding.text}});
+  }
+  return report.dump() + "\n";
+}
+
+int plan_bus(const PlanFlags& flags) {
+  runtime::PlanOptions options;
+  if (!flags.trial.empty()) options.trial = runtime::parse_duration(flags.trial);
+  if (!flags.acyclic.empty()) options.acyclic = runtime::parse_duration(flags.acyclic);
+  if (options.acyclic == 0) options.acyclic = 1;
+  const auto plant = make_plant(read_plant_input(flags.plant, flags.compile, "sbus"), runtime::FileUse::Look);
+  const BusPlan plan = make_plan(*plant, options);
+  if (flags.format == "json") {
+    fmt::print("{}", json_report(plan));
+  } else {
+    for (const LinePlan& line : plan.lines) fmt::print("{}", line_text(line));
+    const char* gap = "";
+    for (const auto& line : plan.serial_lines)
+      fmt::print("{}{}", std::exchange(gap, "\n"), serial_text(line, plan.trial));
+    if (!plan.lines.empty()) fmt::print("{}{}", gap, assumptions(plan));
+    for (const Finding& finding : plan.findings) fmt::print(stderr, "{}", finding_text(finding));
+  }
+  return plan.has_errors() ? kFindings : kGood;
+}
+
+}  // namespace
+
+void add_bus_plan(cli::Verb& bus) {
+  auto flags = std::make_shared<PlanFlags>();
+  cli::Verb& verb =
+      bus.verb("plan", "identifiers, load and response times of a plant, and what is wrong with it");
+  verb.option("PLANT", flags->plant, "plant (.toml), or one program").required();
+  verb.option("--trial", flags->trial, "virtual time the programs run first; default 100ms")
+      .check(check_time, "TIME");
+  verb.option("--acyclic", flags->acyclic, "assumed distance of telegrams the trial shows once; default 10ms")
+      .check(check_time, "TIME");
+  verb.option("--format", flags->format, "text or json").one_of({"text", "json"});
+  add_compile_options(verb, flags->compile);
+  verb.footer("Example:\n  ipos bus plan examples/scom/scom.toml");
+  verb.runs([flags] { return plan_bus(*flags); });
+}
+
+}  // namespace ipos::tools

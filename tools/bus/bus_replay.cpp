@@ -1,0 +1,102 @@
+// ipos bus replay: the frames of a log on a simulated line, then what `ipos run` would print.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "runtime/bus/log/replay.hpp"
+#include "tools/bus/bus_verbs.hpp"
+#include "tools/cli/failure.hpp"
+#include "tools/cli/outputs.hpp"
+#include "tools/input/plant_input.hpp"
+#include "tools/input/program.hpp"
+#include "tools/run/run_report.hpp"
+
+namespace ipos::tools {
+namespace {
+
+using runtime::Time;
+
+struct ReplayFlags {
+  std::string log;
+  std::string plant;
+  std::string bus;
+  std::vector<std::string> ids;
+  std::string begin;
+  std::string duration;
+  std::string record;
+  std::string watch;
+  bool why = false;
+  CompileFlags compile;
+};
+
+runtime::CanLine& line_of(const runtime::Plant& plant, const ReplayFlags& flags) {
+  for (const auto& line : plant.lines())
+    if (flags.bus.empty() || line->name() == flags.bus) return *line;
+  throw Failure(kUsage, flags.bus.empty() ? fmt::format("{}: the plant has no CAN bus", flags.plant)
+                                          : fmt::format("{}: there is no bus '{}'", flags.plant, flags.bus));
+}
+
+std::vector<runtime::LogEntry> entries_of(const ReplayFlags& flags) {
+  std::set<uint32_t> wanted;
+  for (const std::string& id : flags.ids) wanted.insert(static_cast<uint32_t>(std::stoul(id, nullptr, 16)));
+  std::vector<runtime::LogEntry> entries;
+  const size_t bad = read_log(flags.log, [&](const runtime::LogEntry& entry, size_t) {
+    if (wanted.empty() || wanted.contains(entry.frame.id)) entries.push_back(entry);
+  });
+  if (bad != 0) throw Failure(kBadInput, "");
+  return entries;
+}
+
+int replay(const ReplayFlags& flags) {
+  std::vector<runtime::LogEntry> entries = entries_of(flags);
+  const auto plant = make_plant(read_plant_input(flags.plant, flags.compile), runtime::FileUse::Look);
+  runtime::CanLine& line = line_of(*plant, flags);
+  const Time begin = flags.begin.empty() ? 0 : runtime::parse_duration(flags.begin);
+  runtime::Replay player(plant->queue(), plant->next_source(), std::move(entries), begin);
+  runtime::LinePort port(line, line.attach("replay", line.baud(), player));
+  player.start(port, line.bit_time());
+
+  LogOutput file(flags.record);
+  std::optional<runtime::CandumpLog> log;
+  if (file.is_open()) plant->add_observer(log.emplace(file.stream()));
+  const Time end = flags.duration.empty() ? player.end() + 100 * runtime::kMillisecond
+                                          : runtime::parse_duration(flags.duration);
+  plant->run_until(end);
+  file.finish();
+  fmt::print("{}", text_report(*plant, watch_choice(flags.watch)));
+  print_journal(*plant, flags.why);
+  fmt::print("{} of {} frames replayed on {}\n", player.sent(), player.frames(), line.name());
+  return player.sent() == player.frames() ? kGood : kFindings;
+}
+
+std::string check_identifier(const std::string& text) {
+  const bool good = !text.empty() && text.size() <= 8 &&
+                    text.find_first_not_of("0123456789abcdefABCDEF") == std::string::npos;
+  return good ? "" : "'" + text + "' is no identifier; write it in hexadecimal as in the log";
+}
+
+}  // namespace
+
+void add_bus_replay(cli::Verb& bus) {
+  auto flags = std::make_shared<ReplayFlags>();
+  cli::Verb& verb = bus.verb("replay", "put the frames of a candump log on a simulated line at their times");
+  verb.option("LOG", flags->log, "candump log; - is standard input").required();
+  verb.option("PLANT", flags->plant, "plant (.toml)").required();
+  verb.option("--bus", flags->bus, "line of the plant; default: the first one");
+  verb.option("--id", flags->ids, "only frames with these identifiers, in hexadecimal")
+      .separated_by(',')
+      .check(check_identifier, "ID");
+  verb.option("--at", flags->begin, "virtual time of the first frame, for example 50ms; default 0ms")
+      .check(check_time, "TIME");
+  verb.option("--for", flags->duration, "virtual time to run; default: 100ms longer than the log")
+      .check(check_time, "TIME");
+  verb.option("--log", flags->record, "write the frames of all buses in candump format");
+  verb.flag("--watch", flags->watch, "*", "show named variables at the end, all or --watch=NAME,...");
+  verb.flag("--why", flags->why, "also tell what was ignored, and why");
+  add_compile_options(verb, flags->compile);
+  verb.footer("Example:\n  ipos bus replay can.log plant.toml --id 400,401 --watch");
+  verb.runs([flags] { return replay(*flags); });
+}
+
+}  // namespace ipos::tools

@@ -1,0 +1,41 @@
+// The subcommands of `ipos bus`, one file each.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "runtime/bus/log/candump.hpp"
+#include "runtime/bus/movilink/describe.hpp"
+#include "tools/cli/verb.hpp"
+#include "tools/cli/verbs.hpp"
+#include "tools/input/program.hpp"
+
+namespace ipos::tools {
+
+void add_bus_plan(cli::Verb& bus);
+void add_bus_decode(cli::Verb& bus);
+void add_bus_monitor(cli::Verb& bus);
+void add_bus_load(cli::Verb& bus);
+void add_bus_replay(cli::Verb& bus);
+void add_bus_dbc(cli::Verb& bus);
+
+// Calls `take` for each line of a log that is not empty, with its number; prints what it finds wrong as
+// "LOG:line:column: error: ...". Returns how many lines were bad.
+using TakeLine = std::function<std::optional<runtime::LogError>(std::string_view text, size_t line)>;
+size_t read_lines(const std::string& path, const TakeLine& take);
+
+// The same for the frames of a candump log.
+size_t read_log(const std::string& path,
+                const std::function<void(const runtime::LogEntry&, size_t line)>& take);
+
+// The dictionary of a plant or program: it runs for a moment, so that its programs define their objects.
+runtime::TelegramNames names_of(const std::string& path, const CompileFlags& compile);
+runtime::TelegramNames serial_names_of(const std::string& path, const CompileFlags& compile);
+
+// --names FILE, also as --plant and --program.
+void add_names_option(cli::Verb& verb, std::string& path);
+
+// For options that take a duration.
+std::string check_time(const std::string& text);
+
+}  // namespace ipos::tools

@@ -1,0 +1,149 @@
+// A file is looked at before it is opened, as opening a device or a pipe may have effects or block; and once
+// more behind it, as another one may stand there by then.
+#include "tools/cli/files.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <compare>
+#include <cstring>
+#include <filesystem>
+#include <mutex>
+#include <set>
+#include <utility>
+
+#include "tools/cli/failure.hpp"
+
+namespace ipos::tools {
+namespace {
+
+using runtime::Descriptor;
+
+// Which file it is. A number of the file system is given again to the next file when this one is removed; the time at
+// which the file was made, where the file system keeps it, tells the two apart.
+struct FileIdentity {
+  uint32_t device_major, device_minor;
+  uint64_t number;
+  int64_t made_s;
+  uint32_t made_ns;
+  auto operator<=>(const FileIdentity&) const = default;
+};
+
+std::optional<FileIdentity> identity(int folder, const char* path, int flags) {
+  struct statx info {};
+  if (statx(folder, path, flags, STATX_INO | STATX_BTIME, &info) != 0) return std::nullopt;
+  const bool keeps_time = (info.stx_mask & STATX_BTIME) != 0;
+  return FileIdentity{info.stx_dev_major, info.stx_dev_minor, info.stx_ino,
+                      keeps_time ? info.stx_btime.tv_sec : 0, keeps_time ? info.stx_btime.tv_nsec : 0};
+}
+
+// Tests are read on several threads.
+std::mutex opened_mutex;
+std::set<FileIdentity> opened;
+
+bool is_standard_input(const std::string& path) { return path == "-" || path == "/dev/stdin"; }
+
+std::string too_large(size_t limit) { return fmt::format("is larger than {} MB", limit >> 20U); }
+
+// Why it is no file to read, or nothing.
+std::optional<std::string> trouble(const struct stat& info, size_t limit) {
+  if (S_ISDIR(info.st_mode)) return "is a folder";
+  if (!S_ISREG(info.st_mode)) return "is no file but a device or a pipe";
+  if (static_cast<uint64_t>(info.st_size) > limit) return too_large(limit);
+  return std::nullopt;
+}
+
+tl::expected<Descriptor, std::string> open_regular(const std::string& path, size_t limit) {
+  struct stat info {};
+  if (stat(path.c_str(), &info) != 0) return tl::unexpected(std::string(std::strerror(errno)));
+  if (auto why = trouble(info, limit)) return tl::unexpected(std::move(*why));
+  Descriptor file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  if (!file.is_open() || fstat(file.get(), &info) != 0)
+    return tl::unexpected(std::string(std::strerror(errno)));
+  if (auto why = trouble(info, limit)) return tl::unexpected(std::move(*why));
+  const std::lock_guard lock(opened_mutex);
+  if (const auto file_identity = identity(file.get(), "", AT_EMPTY_PATH)) opened.insert(*file_identity);
+  return file;
+}
+
+tl::expected<std::string, std::string> read_all(const Descriptor& file, size_t limit) {
+  std::string text;
+  char buffer[65536];
+  for (;;) {
+    const ssize_t count = read(file.get(), buffer, sizeof buffer);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return tl::unexpected(std::string(std::strerror(errno)));
+    if (count == 0) return text;
+    text.append(buffer, static_cast<size_t>(count));
+    if (text.size() > limit) return tl::unexpected(too_large(limit));
+  }
+}
+
+}  // namespace
+
+Descriptor open_input(const std::string& path, size_t limit) {
+  if (is_standard_input(path)) return Descriptor(dup(STDIN_FILENO));
+  auto file = open_regular(path, limit);
+  if (!file) throw Failure(kNoInput, fmt::format("{}: {}", path, file.error()));
+  return std::move(*file);
+}
+
+std::string read_file(const std::string& path, size_t limit) {
+  auto text = read_all(open_input(path, limit), limit);
+  if (!text) throw Failure(kNoInput, fmt::format("{}: {}", path, text.error()));
+  return *std::move(text);
+}
+
+tl::expected<std::string, std::string> load_file(const std::string& path) {
+  const auto file = open_regular(path, kInputLimit);
+  if (!file) return tl::unexpected(file.error());
+  return read_all(*file, kInputLimit);
+}
+
+std::optional<std::string> try_read_file(const std::string& path) {
+  auto text = load_file(path);
+  return text ? std::optional(*std::move(text)) : std::nullopt;
+}
+
+std::optional<std::string> unreadable(const std::string& path) {
+  const auto file = open_regular(path, kInputLimit);
+  return file ? std::nullopt : std::optional(file.error());
+}
+
+bool is_folder(const std::string& path) {
+  struct stat info {};
+  return stat(path.c_str(), &info) == 0 && S_ISDIR(info.st_mode);
+}
+
+std::vector<std::string> files_below(const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> files;
+  std::error_code error;
+  for (fs::recursive_directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+    std::error_code ignored;
+    if (at->is_regular_file(ignored)) files.push_back(at->path().string());
+  }
+  if (error) throw Failure(kNoInput, fmt::format("{}: {}", folder, error.message()));
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::vector<std::string> list_files(const std::string& folder) {
+  std::vector<std::string> names;
+  std::error_code trouble;
+  std::filesystem::directory_iterator entry(folder.empty() ? "." : folder, trouble);
+  for (; !trouble && entry != std::filesystem::directory_iterator(); entry.increment(trouble))
+    names.push_back(entry->path().filename().string());
+  return names;
+}
+
+bool is_input(const std::string& path) {
+  const auto file_identity = identity(AT_FDCWD, path.c_str(), 0);
+  const std::lock_guard lock(opened_mutex);
+  return file_identity && opened.contains(*file_identity);
+}
+
+}  // namespace ipos::tools

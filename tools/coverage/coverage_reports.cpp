@@ -1,0 +1,57 @@
+// Forms by file name.
+#include "tools/coverage/coverage_reports.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <sstream>
+
+#include "tools/cli/failure.hpp"
+#include "tools/cli/outputs.hpp"
+#include "tools/coverage/write.hpp"
+
+namespace ipos::tools {
+namespace {
+
+using CoverageWriter = void (*)(std::ostream&, const coverage::Coverage&);
+
+CoverageWriter coverage_writer(const std::string& path) {
+  const std::string ending = std::filesystem::path(path).extension().string();
+  if (is_standard_output(path) || ending == ".txt") return coverage::write_text;
+  if (ending == ".info") return coverage::write_lcov;
+  if (ending == ".xml") return coverage::write_cobertura;
+  throw Failure(kUsage,
+                fmt::format("--coverage {}: the name must end in .info, .xml or .txt, or be -", path));
+}
+
+}  // namespace
+
+CoverageReports::CoverageReports(const std::vector<std::string>& paths, bool output_taken) {
+  for (const std::string& path : paths) {
+    if (is_standard_output(path) && output_taken)
+      throw Failure(kUsage, "--coverage -: standard output has another report; write it to a file");
+    reports_.push_back({path, coverage_writer(path)});
+  }
+}
+
+void CoverageReports::check() const {
+  for (const Report& report : reports_) check_output(report.path);
+}
+
+void CoverageReports::write(const coverage::Coverage& coverage) const {
+  for (const Report& report : reports_) {
+    std::ostringstream text;
+    report.write(text, coverage);
+    if (is_standard_output(report.path)) fmt::print("\n");
+    replace_file(report.path, text.str());
+  }
+}
+
+void add_coverage_option(cli::Verb& verb, std::vector<std::string>& paths) {
+  verb.option("--coverage", paths,
+              "write which source lines and branches were executed: .info (lcov), .xml (Cobertura), .txt, "
+              "or - for text to the terminal; may be given several times")
+      .one_each();
+}
+
+}  // namespace ipos::tools

@@ -1,0 +1,151 @@
+// The plant as the real-time loop sees it, and the messages of a real-time run.
+#include "tools/run/real_time_run.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "runtime/port/can_bridge.hpp"
+#include "runtime/port/serial_bridge.hpp"
+#include "tools/cli/failure.hpp"
+
+namespace ipos::tools {
+namespace {
+
+using runtime::Time;
+
+double ms(Time time) { return static_cast<double>(time) / 1e6; }
+
+void message(const std::string& text) {
+  static const bool has_progress_line = isatty(STDERR_FILENO) != 0;
+  fmt::print(stderr, "{}ipos: {}\n", has_progress_line ? "\r\033[K" : "", text);
+}
+
+class PlantSimulation final : public runtime::Simulation {
+ public:
+  PlantSimulation(runtime::Plant& plant, const std::function<bool(Time)>& keep_going,
+                  std::function<void()> after_each)
+      : plant_(plant), keep_going_(keep_going), after_each_(std::move(after_each)) {}
+  Time now() const override { return plant_.now(); }
+  Time next_time() const override { return plant_.next_time(); }
+  bool run_until(Time end) override {
+    const bool goes_on = plant_.run_until(end, keep_going_);
+    after_each_();
+    return goes_on;
+  }
+
+ private:
+  runtime::Plant& plant_;
+  const std::function<bool(Time)>& keep_going_;
+  std::function<void()> after_each_;
+};
+
+}  // namespace
+
+void refuse_ports(const runtime::PlantFile& plant, const std::string& file) {
+  bool refused = false;
+  for (const runtime::BusConfig& bus : plant.buses) {
+    if (bus.port.empty()) continue;
+    refused = true;
+    fmt::print(
+        stderr,
+        "{}:{}:{}: error: bus '{}' is joined to port '{}': run it with --realtime, as the world outside "
+        "does not wait for virtual time\n",
+        file, bus.port_place.line, bus.port_place.column, bus.name, bus.port);
+  }
+  if (refused) throw Failure(kUsage, "");
+}
+
+RealTimeRun::RealTimeRun(runtime::Plant& plant, const std::string& file) : plant_(plant) {
+  // Time is there anyway, and the loop waits from tick to tick.
+  for (const auto& station : plant.stations()) station->stay_awake();
+  bool failed = false;
+  for (const runtime::BusConfig& bus : plant.file().buses) {
+    if (bus.port.empty()) continue;
+    auto joined = join(bus);
+    if (!joined) {
+      failed = true;
+      fmt::print(stderr, "{}:{}:{}: error: {}\n", file, bus.port_place.line, bus.port_place.column,
+                 joined.error().text);
+      continue;
+    }
+    joined_.push_back(std::move(*joined));
+    message(fmt::format("bus '{}' is joined to {}", bus.name, bus.port));
+  }
+  if (failed) throw Failure(kIoError, "");
+}
+
+tl::expected<RealTimeRun::Joined, runtime::PortError> RealTimeRun::join(const runtime::BusConfig& bus) {
+  Joined joined;
+  if (runtime::is_serial(bus.kind)) {
+    const auto& lines = plant_.serial_lines();
+    const auto line = std::find_if(lines.begin(), lines.end(),
+                                   [&](const auto& candidate) { return candidate->line.name() == bus.name; });
+    runtime::SerialPortResult port = runtime::open_serial_port(bus.port, {bus.baud, true}, clock_);
+    if (!port) return tl::unexpected(port.error());
+    joined.bridge =
+        std::make_unique<runtime::SerialBridge>(plant_.queue(), plant_.next_source(), (*line)->line, **port);
+    joined.port = std::move(*port);
+  } else {
+    const auto line = std::find_if(plant_.lines().begin(), plant_.lines().end(),
+                                   [&](const auto& candidate) { return candidate->name() == bus.name; });
+    runtime::CanPortResult port = runtime::open_can_port(bus.port, bus.baud, clock_);
+    if (!port) return tl::unexpected(port.error());
+    joined.bridge =
+        std::make_unique<runtime::CanBridge>(plant_.queue(), plant_.next_source(), **line, **port);
+    joined.port = std::move(*port);
+  }
+  return joined;
+}
+
+bool RealTimeRun::run(Time limit, const std::function<bool(Time)>& keep_going) {
+  const runtime::RealTimeLoop* running = nullptr;
+  PlantSimulation simulation(plant_, keep_going, [&] { tell_news(*running); });
+  runtime::RealTimeLoop loop(clock_, simulation);
+  running = &loop;
+  for (const Joined& joined : joined_) loop.add(*joined.bridge);
+  const runtime::RealTimeLoop::End end = loop.run(limit);
+  tell_news(loop);
+  report(loop.punctuality());
+  return end != runtime::RealTimeLoop::End::PortGone;
+}
+
+void RealTimeRun::tell_news(const runtime::RealTimeLoop& loop) {
+  for (const Joined& joined : joined_)
+    for (const std::string& text : joined.bridge->take_notes()) message("warning: " + text);
+  const runtime::Punctuality& punctuality = loop.punctuality();
+  if (told_late_ || punctuality.first_late < 0) return;
+  told_late_ = true;
+  message(fmt::format("warning: real time: the tick of {:.3f} ms came {:.1f} ms late; later ones are counted",
+                      ms(punctuality.first_late), ms(punctuality.worst)));
+}
+
+void RealTimeRun::report(const runtime::Punctuality& punctuality) const {
+  message(fmt::format(
+      "real time: {:.3f} s; {} ticks more than {} ms late, the worst {:.2f} ms; {:.2f} ms behind at the "
+      "end",
+      ms(plant_.now()) / 1e3, punctuality.late_ticks, runtime::kLateTick / runtime::kMillisecond,
+      ms(punctuality.worst), ms(punctuality.lag)));
+  for (const Joined& joined : joined_) {
+    const runtime::PortCounts& counts = joined.port->counts();
+    const runtime::BridgeCounts& bridge = joined.bridge->counts();
+    std::string text = fmt::format("{}: {} {} sent, {} received", joined.port->name(), counts.sent,
+                                   joined.bridge->goods(), counts.received);
+    const auto add = [&text](uint64_t count, std::string_view what) {
+      if (count != 0) text += fmt::format(", {} {}", count, what);
+    };
+    add(counts.lost_out, "lost on the way out");
+    add(counts.lost_in, "lost on the way in");
+    add(counts.waited, "times no room to send");
+    add(joined.port->waiting(), "not sent any more");
+    add(bridge.undelivered, "not taken by any station");
+    add(joined.bridge->waiting(), "not on the line yet");
+    add(bridge.late, "late");
+    if (bridge.late != 0) text += fmt::format(" (up to {:.2f} ms)", ms(bridge.worst_late));
+    message(text);
+    for (const std::string& repeat : joined.bridge->repeats()) message(repeat);
+  }
+}
+
+}  // namespace ipos::tools

@@ -1,0 +1,98 @@
+// Reports of a run.
+#include "tools/run/run_report.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tools/run/watch.hpp"
+
+namespace ipos::tools {
+
+double load_percent(const runtime::LineLoad& load) {
+  return load.elapsed_bits == 0
+             ? 0.0
+             : 100.0 * static_cast<double>(load.busy_bits) / static_cast<double>(load.elapsed_bits);
+}
+
+WatchChoice watch_choice(const std::string& flag) {
+  WatchChoice watch;
+  watch.on = !flag.empty();
+  if (!watch.on || flag == "*") return watch;
+  std::istringstream names(flag);
+  for (std::string name; std::getline(names, name, ',');) watch.names.push_back(name);
+  return watch;
+}
+
+void print_journal(const runtime::Plant& plant, bool why) {
+  for (const runtime::JournalEntry& entry : plant.journal().entries()) {
+    if (entry.weight == runtime::Weight::Why && !why) continue;
+    const char* weight = entry.weight == runtime::Weight::Fault     ? "fault"
+                         : entry.weight == runtime::Weight::Warning ? "warning"
+                                                                    : "note";
+    fmt::print(stderr, "{}{}{}: {} (at {:.3f} ms)\n", entry.station, entry.station.empty() ? "" : ": ",
+               weight, entry.text, static_cast<double>(entry.time) / 1e6);
+  }
+}
+
+std::string text_report(runtime::Plant& plant, const WatchChoice& watch) {
+  std::string text;
+  if (watch.on) {
+    for (const auto& station : plant.stations()) {
+      const std::vector<WatchRow> rows = watch_rows(*station, watch.names);
+      // Names that were asked for may be those of other stations.
+      if (station->image() == nullptr || (rows.empty() && !watch.names.empty())) continue;
+      text += fmt::format("{} ({}), {}\n", station->config().name, station->config().unit->title,
+                          station->config().program);
+      text += watch_window(rows) + "\n";
+    }
+  }
+  for (const auto& line : plant.lines()) {
+    const runtime::LineLoad load = line->load(plant.now());
+    text +=
+        fmt::format("{}: {} frames in {:.3f} s, bus load {:.2f} % of {} baud\n", line->name(), load.frames,
+                    static_cast<double>(plant.now()) / 1e9, load_percent(load), line->baud());
+  }
+  for (const auto& serial : plant.serial_lines()) {
+    const runtime::LineLoad load = serial->line.load(plant.now());
+    text += fmt::format("{}: {} telegrams in {:.3f} s, bus load {:.2f} % of {} baud\n", serial->line.name(),
+                        serial->check.telegrams(), static_cast<double>(plant.now()) / 1e9, load_percent(load),
+                        serial->line.baud());
+  }
+  return text;
+}
+
+std::string json_report(runtime::Plant& plant, const WatchChoice& watch) {
+  using nlohmann::ordered_json;
+  ordered_json report;
+  report["time_us"] = plant.now() / runtime::kMicrosecond;
+  report["stations"] = ordered_json::array();
+  for (const auto& station : plant.stations()) {
+    ordered_json entry;
+    entry["name"] = station->config().name;
+    entry["unit"] = station->config().unit->name;
+    entry["fault"] = station->fault();
+    entry["status_word_1"] = station->status_word_1();
+    entry["variables"] = ordered_json::array();
+    for (const WatchRow& row : watch_rows(*station, watch.names))
+      entry["variables"].push_back({{"name", row.name}, {"index", row.index}, {"value", row.value}});
+    report["stations"].push_back(std::move(entry));
+  }
+  report["buses"] = ordered_json::array();
+  for (const auto& line : plant.lines()) {
+    const runtime::LineLoad load = line->load(plant.now());
+    report["buses"].push_back({{"name", line->name()},
+                               {"kind", "can"},
+                               {"frames", load.frames},
+                               {"load_percent", load_percent(load)}});
+  }
+  for (const auto& serial : plant.serial_lines())
+    report["buses"].push_back({{"name", serial->line.name()},
+                               {"kind", "rs485"},
+                               {"frames", serial->check.telegrams()},
+                               {"load_percent", load_percent(serial->line.load(plant.now()))}});
+  return report.dump() + "\n";
+}
+
+}  // namespace ipos::tools

@@ -1,0 +1,303 @@
+// ipos run: a program or a plant in virtual time, then the watch windows, the bus load and what went wrong.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <sstream>
+
+#include "runtime/bus/log/candump.hpp"
+#include "runtime/bus/log/serial_log.hpp"
+#include "runtime/plant/plant.hpp"
+#include "stdlib/parameters.hpp"
+#include "tools/cli/failure.hpp"
+#include "tools/cli/interrupt.hpp"
+#include "tools/cli/outputs.hpp"
+#include "tools/cli/verbs.hpp"
+#include "tools/coverage/collector.hpp"
+#include "tools/coverage/coverage_reports.hpp"
+#include "tools/input/plant_input.hpp"
+#include "tools/input/program.hpp"
+#include "tools/recording/plot_svg.hpp"
+#include "tools/recording/recording.hpp"
+#include "tools/recording/trace.hpp"
+#include "tools/recording/trace_hash.hpp"
+#include "tools/run/real_time_run.hpp"
+#include "tools/run/run_report.hpp"
+#include "tools/run/watch.hpp"
+
+namespace ipos::tools {
+namespace {
+
+using runtime::Time;
+
+struct RunFlags {
+  std::string file;
+  std::string duration;
+  std::string until;
+  uint32_t speed = 0;
+  std::string engine;
+  bool no_skip = false;
+  std::string watch;
+  std::string log;
+  std::string plot;
+  std::string trace;
+  std::vector<std::string> signals;
+  std::string serial_log;
+  std::vector<std::string> coverage;
+  std::string format = "text";
+  bool realtime = false;
+  bool why = false;
+  bool trace_hash = false;
+  CompileFlags compile;
+};
+
+// Asked once a virtual millisecond: shows progress and says when to stop.
+class Watcher {
+ public:
+  Watcher(const RunFlags& flags, const runtime::Plant& plant, Time limit)
+      : flags_(flags), plant_(plant), limit_(limit), show_(isatty(STDERR_FILENO) != 0) {}
+  ~Watcher() {
+    if (shown_) fmt::print(stderr, "\r\033[K");
+  }
+  Watcher(const Watcher&) = delete;
+  Watcher& operator=(const Watcher&) = delete;
+
+  bool keep_going(Time now) {
+    if (interrupted()) return false;
+    if (flags_.until == "end" && plant_.programs_over()) return false;
+    if (show_ && now % (100 * runtime::kMillisecond) == 0) progress(now);
+    return true;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void progress(Time now) {
+    const auto wall = Clock::now();
+    if (wall - last_shown_ < std::chrono::milliseconds(500)) return;
+    last_shown_ = wall;
+    shown_ = true;
+    fmt::print(stderr, "\r{:.1f} s of {:.1f} s", static_cast<double>(now) / 1e9,
+               static_cast<double>(limit_) / 1e9);
+  }
+
+  const RunFlags& flags_;
+  const runtime::Plant& plant_;
+  Time limit_;
+  bool show_;
+  bool shown_ = false;
+  Clock::time_point last_shown_ = Clock::now();
+};
+
+// The logs of buses and lines, which others may read while they grow: what is in them is at most this late.
+class Logs {
+ public:
+  Logs(runtime::Plant& plant, const RunFlags& flags) : file_(flags.log), serial_file_(flags.serial_log) {
+    if (file_.is_open()) plant.add_observer(log_.emplace(file_.stream()));
+    if (serial_file_.is_open()) plant.add_observer(serial_log_.emplace(serial_file_.stream()));
+  }
+  // Asked once a virtual millisecond.
+  void look() {
+    const auto now = Clock::now();
+    if (now - flushed_ < kLatest) return;
+    flushed_ = now;
+    file_.flush();
+    serial_file_.flush();
+  }
+  void finish() {
+    if (serial_log_) serial_log_->finish();
+    file_.finish();
+    serial_file_.finish();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr auto kLatest = std::chrono::milliseconds(200);  // ours
+
+  LogOutput file_, serial_file_;
+  std::optional<runtime::CandumpLog> log_;
+  std::optional<runtime::SerialLog> serial_log_;
+  Clock::time_point flushed_ = Clock::now();
+};
+
+// "2000 (0x7d0)"; of a parameter with the text people read: "2.500 s".
+std::string expected_text(const runtime::Plant& plant, const runtime::Signal& signal, int32_t value) {
+  for (const auto& station : plant.stations()) {
+    if (signal.kind != runtime::SignalKind::Parameter || station->config().name != signal.station) continue;
+    const auto* row = stdlib::parameter_table(*station->config().unit).find(signal.name);
+    if (row != nullptr) return stdlib::parameter_text(*row, value);
+  }
+  return fmt::format("{} ({:#x})", value, static_cast<uint32_t>(value));
+}
+
+// Prints expectations that were not met or not reached; returns how many.
+size_t print_expectations(const runtime::Plant& plant, const std::string& file) {
+  size_t failed = 0;
+  const auto print = [&](const runtime::Expectation& expectation, const std::string& what) {
+    ++failed;
+    fmt::print(stderr, "{}:{}:{}: expectation not met: {} of {} at {:.3f} ms: {}\n", file,
+               expectation.place.line, expectation.place.column, expectation.signal.name,
+               expectation.signal.station, static_cast<double>(expectation.at) / 1e6, what);
+  };
+  for (const runtime::ExpectationResult& result : plant.results())
+    if (!result.met)
+      print(*result.expectation,
+            fmt::format("is {}, expected {}", expected_text(plant, result.expectation->signal, result.actual),
+                        expected_text(plant, result.expectation->signal, result.expectation->equals)));
+  for (const runtime::Expectation& expectation : plant.file().expectations)
+    if (expectation.at > plant.now()) print(expectation, "the run ended before");
+  const size_t total = plant.file().expectations.size();
+  if (total != 0) fmt::print(stderr, "{} of {} expectations met\n", total - failed, total);
+  return failed;
+}
+
+// Says which faults make the exit code 1; returns how many.
+size_t print_faults(const runtime::Plant& plant, bool can_expect) {
+  const auto stations = plant.unforeseen_faults();
+  for (const runtime::Station* station : stations)
+    fmt::print(stderr, "ipos: exit code 1: {} has fault F{:02}{}\n", station->config().name, station->fault(),
+               can_expect ? ", which no [[expect]] looks for" : "");
+  return stations.size();
+}
+
+using TraceWriter = void (*)(std::ostream&, const Recording&);
+
+// By the ending of the file's name.
+TraceWriter trace_writer(const std::string& path) {
+  const std::string ending = std::filesystem::path(path).extension().string();
+  if (path.empty() || ending == ".csv") return write_csv;
+  if (ending == ".vcd") return write_vcd;
+  if (ending == ".jsonl") return write_jsonl;
+  throw Failure(kUsage, fmt::format("--trace {}: the name must end in .csv, .vcd or .jsonl", path));
+}
+
+int run(const RunFlags& flags) {
+  const Time limit = flags.duration.empty() ? 60 * runtime::kSecond : runtime::parse_duration(flags.duration);
+  PlantInput input = read_plant_input(flags.file, flags.compile);
+  if (!flags.realtime) refuse_ports(input.file, flags.file);
+  std::optional<vm::Rates> rates;
+  if (flags.speed != 0) rates = vm::Rates{{flags.speed, flags.speed, flags.speed}};
+  runtime::Execution execution = execution_of(flags.engine);
+  execution.skip_idle = !flags.no_skip;
+  const std::unique_ptr<runtime::Plant> built =
+      make_plant(std::move(input), runtime::FileUse::Write, rates, execution);
+  runtime::Plant& plant = *built;
+
+  if (!flags.signals.empty() && flags.plot.empty() && flags.trace.empty())
+    throw Failure(kUsage, "--signals needs --plot or --trace");
+  // What goes to standard output stands there alone; the report gives way.
+  const auto files = {flags.log, flags.serial_log, flags.plot, flags.trace};
+  const auto taking = std::count_if(files.begin(), files.end(), is_standard_output);
+  if (taking > 1) throw Failure(kUsage, "only one file can go to standard output");
+  const bool output_taken = taking != 0;
+  CoverageReports coverage(flags.coverage, flags.format == "json" || output_taken);
+  const TraceWriter write_trace = trace_writer(flags.trace);
+  std::optional<Recorder> recorder;
+  if (!flags.plot.empty() || !flags.trace.empty()) recorder.emplace(plant, flags.signals);
+  // Before the run: a long one must not end without its result.
+  check_output(flags.plot);
+  check_output(flags.trace);
+  Logs logs(plant, flags);
+  std::optional<coverage::Collector> collector;
+  if (coverage.wanted()) {
+    collector.emplace(plant);
+    if (collector->empty())
+      throw Failure(kBadInput, "--coverage: no station has a program that knows its source lines");
+    coverage.check();
+  }
+
+  std::optional<TraceHash> trace_hash;
+  if (flags.trace_hash) trace_hash.emplace(plant);
+
+  catch_interrupts();
+  std::optional<RealTimeRun> real_time;
+  if (flags.realtime) real_time.emplace(plant, flags.file);
+  bool ports_there = true;
+  {
+    Watcher watcher(flags, plant, limit);
+    const auto keep_going = [&](Time now) {
+      if (recorder) recorder->sample(now);
+      if (trace_hash) trace_hash->sample(now);
+      logs.look();
+      return watcher.keep_going(now);
+    };
+    if (real_time)
+      ports_there = real_time->run(limit, keep_going);
+    else
+      plant.run_until(limit, keep_going);
+  }
+  const bool stored = plant.store_memories();
+  logs.finish();
+  if (recorder) recorder->finish();
+  if (!flags.plot.empty())
+    replace_file(flags.plot,
+                 plot_svg(recorder->recording(), std::filesystem::path(flags.file).filename().string()));
+  if (!flags.trace.empty()) {
+    std::ostringstream trace;
+    write_trace(trace, recorder->recording());
+    replace_file(flags.trace, std::move(trace).str());
+  }
+
+  const WatchChoice watch = watch_choice(flags.watch);
+  for (const std::string& name : watch.names)
+    if (std::none_of(plant.stations().begin(), plant.stations().end(),
+                     [&](const auto& station) { return !watch_rows(*station, {name}).empty(); }))
+      fmt::print(stderr, "ipos: warning: no station has a variable '{}'\n", name);
+  fmt::print(output_taken ? stderr : stdout, "{}",
+             flags.format == "json" ? json_report(plant, watch) : text_report(plant, watch));
+  if (collector) coverage.write(collector->coverage());
+  print_journal(plant, flags.why);
+  if (trace_hash) fmt::print(stderr, "trace hash {}\n", trace_hash->text());
+  const size_t unmet = print_expectations(plant, flags.file);
+  if (interrupted()) return kInterrupted;
+  if (!ports_there || !stored) return kIoError;
+  return print_faults(plant, is_plant(flags.file)) + unmet != 0 ? kFindings : kGood;
+}
+
+std::string check_duration(const std::string& text) {
+  return runtime::parse_duration(text) < 0 ? "'" + text + "' is no time; write for example 500ms or 1.5s"
+                                           : "";
+}
+
+}  // namespace
+
+void add_run(cli::Verb& app) {
+  auto flags = std::make_shared<RunFlags>();
+  cli::Verb& verb = app.verb("run", "run a program or a plant in virtual time");
+  verb.option("FILE", flags->file, "source (.IPC), image (.ipx) or plant (.toml)").required();
+  verb.option("--for", flags->duration, "virtual time to run, for example 500ms; default 60s")
+      .check(check_duration, "TIME");
+  verb.option("--until", flags->until, "'end': stop when every program has ended").one_of({"end"});
+  verb.option("--speed", flags->speed, "commands per ms of every task, instead of P938 and P939")
+      .between(1U, 1'000'000U);
+  add_engine_option(verb, flags->engine);
+  verb.flag("--no-skip", flags->no_skip,
+            "execute every millisecond in its turn, also where nothing happens, with equal results");
+  verb.flag("--watch", flags->watch, "*", "show named variables at the end, all or --watch=NAME,...");
+  verb.option("--log", flags->log,
+              "write the frames of all CAN buses in candump format; - is standard output");
+  verb.option("--serial-log", flags->serial_log,
+              "write the telegrams of all RS-485 lines; - is standard output");
+  verb.option("--plot", flags->plot, "draw signals over time into an SVG file; - is standard output");
+  verb.option("--trace", flags->trace, "write signals over time: .csv, .vcd or .jsonl");
+  verb.option("--signals", flags->signals,
+              "what to plot and trace, for example unit1.speed,unit1.P094,unit1.H500,sbus1.frames; "
+              "default: speed, "
+              "setpoint and status of every station")
+      .separated_by(',')
+      .one_each();
+  add_coverage_option(verb, flags->coverage);
+  verb.option("--format", flags->format, "text or json").one_of({"text", "json"});
+  verb.flag("--trace-hash", flags->trace_hash,
+            "print one number over all states, frames and telegrams, to compare runs and builds");
+  verb.flag("--realtime", flags->realtime,
+            "keep pace with the clock, and join buses that have a port to the real world");
+  verb.flag("--why", flags->why, "also tell what was ignored, and why");
+  add_compile_options(verb, flags->compile);
+  verb.footer("Example:\n  ipos run examples/scom/scom.toml --for 1s --watch --log can.log");
+  verb.runs([flags] { return run(*flags); });
+}
+
+}  // namespace ipos::tools

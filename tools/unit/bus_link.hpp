@@ -1,0 +1,71 @@
+// A PC on a bus: asks units over a real port, SBus or RS-485, for services of the parameter channel. It is a
+// master on a simulated line that is joined to the port, so that pauses, repeats and checks are those of the
+// simulated masters.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "runtime/bus/movilink/exchange.hpp"
+#include "runtime/port/bridge.hpp"
+#include "runtime/port/system_clock.hpp"
+#include "tools/unit/parameter_access.hpp"
+
+namespace ipos::tools {
+
+struct LinkFlags {
+  std::string port;     // as in a plant file (docs/guide/ports.md)
+  uint32_t baud = 0;    // 0: factory setting, 500000 on SBus and 9600 on RS-485
+  bool repeats = true;  // ask a second time after no answer
+  bool quiet = false;   // tell nothing about the port unless it goes away
+};
+
+// How much longer than a unit may take an answer is waited for: the host's share (ours).
+inline constexpr runtime::Time kHostDelay = 30 * runtime::kMillisecond;
+
+class BusLink : private runtime::MovilinkClient {
+ public:
+  // Opens the port; a Failure says why it cannot be used.
+  static std::unique_ptr<BusLink> open(const LinkFlags& flags);
+  virtual ~BusLink() = default;
+  BusLink(const BusLink&) = delete;
+  BusLink& operator=(const BusLink&) = delete;
+
+  // Waits for the answer. A port that goes away, and Ctrl-C, are Failures.
+  AccessReply execute(uint8_t address, stdlib::Service service, uint16_t index, int32_t value);
+
+  // Serves the port for so long; false: Ctrl-C.
+  bool serve(runtime::Time duration);
+
+  runtime::Time now() const { return queue_.now(); }
+  const std::string& port_name() const { return flags_.port; }
+  virtual uint8_t last_address() const = 0;  // of single units
+
+ protected:
+  explicit BusLink(LinkFlags flags) : flags_(std::move(flags)) {}
+
+  runtime::EventQueue& queue() { return queue_; }
+  runtime::RealClock& clock() { return clock_; }
+  runtime::MovilinkClient& client() { return *this; }
+  const LinkFlags& flags() const { return flags_; }
+
+ private:
+  void on_exchange_done(runtime::Time now, const runtime::MovilinkResult& result) override;
+  runtime::RealTimeLoop::End run(runtime::Time limit);
+  void tell();
+
+  virtual runtime::MovilinkMaster& master() = 0;
+  virtual runtime::Bridge& bridge() = 0;
+  virtual uint64_t heard() const = 0;  // frames or bytes that others sent
+  // Why there was no answer, as far as the line tells. `heard`: what came over the port meanwhile.
+  virtual std::string hint(uint8_t address, uint64_t heard) const = 0;
+
+  LinkFlags flags_;
+  runtime::SystemClock clock_;
+  runtime::EventQueue queue_;
+  std::optional<runtime::MovilinkResult> result_;
+};
+
+}  // namespace ipos::tools

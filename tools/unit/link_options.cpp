@@ -1,0 +1,36 @@
+// --port, --baud, --quiet, --unit and --address.
+#include "tools/unit/link_options.hpp"
+
+#include <charconv>
+
+#include "runtime/bus/movilink/serial_telegram.hpp"
+#include "stdlib/parameters.hpp"
+
+namespace ipos::tools {
+
+void add_link_options(cli::Verb& verb, LinkFlags& flags, bool port) {
+  if (port)
+    verb.option("--port", flags.port,
+                "reach a unit over a real port: can0, slcan:/dev/ttyACM0, /dev/ttyUSB0 or /dev/ttyUSB0@16ms");
+  verb.option("--baud", flags.baud, "rate of the bus; default 500000 on SBus, 9600 on RS-485")
+      .one_of({"9600", "57600", "125000", "250000", "500000", "1000000"});
+  verb.flag("--quiet", flags.quiet, "do not tell what the port cannot do; only when it goes away");
+}
+
+std::string check_unit(const std::string& name) {
+  if (const stdlib::UnitType* unit = stdlib::find_unit(name))
+    return stdlib::parameter_table(*unit).rows().empty() ? "unit " + name + " has no list of parameters" : "";
+  return "'" + name + "' is no unit type; known are md60a, compact, mc07, mdxb";
+}
+
+std::string check_address(const std::string& text) {
+  int address = -1;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), address);
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  if (whole &&
+      ((address >= 0 && address < runtime::kNoGroupAddress) || address == runtime::kUniversalAddress))
+    return "";
+  return "'" + text + "' is no address of a unit: 0..63 on SBus, 0..99 or 254 on RS-485";
+}
+
+}  // namespace ipos::tools

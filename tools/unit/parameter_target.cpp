@@ -1,0 +1,49 @@
+// Names to indices, and values to text.
+#include "tools/unit/parameter_target.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <optional>
+
+#include "tools/cli/failure.hpp"
+
+namespace ipos::tools {
+namespace {
+
+std::optional<uint16_t> whole(std::string_view text) {
+  uint16_t value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+Target find_target(const stdlib::UnitType& unit, const std::string& name) {
+  if (const stdlib::Parameter* parameter = stdlib::parameter_table(unit).find(name)) {
+    if (parameter->index == 0)
+      throw Failure(kBadInput, fmt::format("P{} {} is a keypad setting without index", parameter->number,
+                                           parameter->name));
+    return {parameter->index, parameter};
+  }
+  if (name.starts_with('H'))
+    if (const auto variable = whole(std::string_view(name).substr(1)); variable && *variable < unit.variables)
+      return {static_cast<uint16_t>(kFirstVariable + *variable), nullptr};
+  if (const auto index = whole(name); index && *index > 999) return {*index, nullptr};
+  throw Failure(kBadInput,
+                fmt::format("unit {} has no parameter '{}'; write P130, an index such as 8470, or H20",
+                            unit.name, name));
+}
+
+std::string text_of(const Target& target, int32_t value) {
+  return target.parameter ? stdlib::parameter_text(*target.parameter, value) : std::to_string(value);
+}
+
+std::string name_of(const stdlib::ParameterTable& table, const Target& target) {
+  if (target.parameter == nullptr || target.parameter->number.empty())
+    return stdlib::index_name(table, target.index);
+  return fmt::format("P{} {}", target.parameter->number, target.parameter->name);
+}
+
+}  // namespace ipos::tools

@@ -1,0 +1,87 @@
+// ipos scan: which addresses of a bus answer, and what is there.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "stdlib/faults.hpp"
+#include "stdlib/parameters.hpp"
+#include "tools/cli/failure.hpp"
+#include "tools/cli/verbs.hpp"
+#include "tools/unit/link_access.hpp"
+#include "tools/unit/link_options.hpp"
+#include "tools/unit/param_columns.hpp"
+
+namespace ipos::tools {
+namespace {
+
+using stdlib::Service;
+
+constexpr uint16_t kFirmware = 8300;  // P076
+constexpr uint16_t kStatus = 8310;    // P010..P013, status word 1 in the low word
+
+struct ScanFlags {
+  LinkFlags link;
+  int from = 0;
+  int to = -1;  // the last one of the bus
+};
+
+std::string firmware_of(const stdlib::UnitType* unit, const AccessReply& reply) {
+  if (!reply) return "-";
+  const stdlib::Parameter* row = unit ? stdlib::parameter_table(*unit).find(kFirmware) : nullptr;
+  return row ? stdlib::parameter_text(*row, *reply) : std::to_string(*reply);
+}
+
+// Status word 1 (1053 1610 p. 41): with bit 5 the high byte is the number of a fault.
+std::string fault_of(const AccessReply& reply) {
+  constexpr uint32_t kFaultBit = 1U << 5;
+  if (!reply) return "-";
+  const auto word = static_cast<uint32_t>(*reply);
+  if ((word & kFaultBit) == 0) return "no fault";
+  const auto number = static_cast<uint8_t>(word >> 8);
+  const stdlib::FaultRow* row = stdlib::find_fault(number);
+  return fmt::format("F{:02} {}", number, row ? row->name : "unknown fault");
+}
+
+int scan(ScanFlags flags) {
+  flags.link.repeats = false;
+  const auto link = BusLink::open(flags.link);
+  const int last = flags.to < 0 ? link->last_address() : std::min<int>(flags.to, link->last_address());
+  const bool progress = isatty(STDERR_FILENO) != 0;
+  std::vector<std::vector<std::string>> lines{{"address", "unit", "firmware", "fault"}};
+  std::string trouble;
+  for (int n = flags.from; n <= last; ++n) {
+    if (progress) fmt::print(stderr, "\r\033[Kaddress {} of {}", n, last);
+    const auto address = static_cast<uint8_t>(n);
+    const AccessReply firmware = link->execute(address, Service::Read, kFirmware, 0);
+    if (!firmware && !firmware.error().code) {
+      trouble = firmware.error().trouble;
+      continue;
+    }
+    const stdlib::UnitType* unit = identify(*link, address);
+    const AccessReply status = link->execute(address, Service::Read, kStatus, 0);
+    lines.push_back({std::to_string(n), std::string(unit ? unit->title : "unknown unit"),
+                     firmware_of(unit, firmware), fault_of(status)});
+  }
+  if (progress) fmt::print(stderr, "\r\033[K");
+  if (lines.size() > 1) {
+    fmt::print("{}", columns(lines));
+    return kGood;
+  }
+  fmt::print(stderr, "ipos: {}: nobody answers at {}..{}; at the last one: {}\n", flags.link.port, flags.from,
+             last, trouble);
+  return kFindings;
+}
+
+}  // namespace
+
+void add_scan(cli::Verb& app) {
+  auto flags = std::make_shared<ScanFlags>();
+  cli::Verb& verb = app.verb("scan", "addresses of a real bus that answer, with unit type and firmware");
+  verb.option("PORT", flags->link.port, "can0, slcan:/dev/ttyACM0, /dev/ttyUSB0, ...").required();
+  verb.option("--from", flags->from, "first address, default 0").between(0, 99);
+  verb.option("--to", flags->to, "last address; default 63 on SBus, 99 on RS-485").between(0, 99);
+  add_link_options(verb, flags->link, false);
+  verb.footer("Example:\n  ipos scan /dev/ttyUSB0 --to 10");
+  verb.runs([flags] { return scan(*flags); });
+}
+
+}  // namespace ipos::tools
