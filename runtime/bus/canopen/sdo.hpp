@@ -2,8 +2,11 @@
 // sub-index, four bytes of data, low byte first.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "runtime/bus/canopen/abort.hpp"
 #include "runtime/bus/canopen/object_dictionary.hpp"
@@ -70,6 +73,16 @@ constexpr SdoBytes initiate(uint8_t byte0, Address address, uint32_t data = 0) {
 // The same byte both ways.
 constexpr SdoBytes abort(Address address, Abort code) {
   return initiate(command(Ask::Abort), address, static_cast<uint32_t>(code));
+}
+
+// The next segment of what is left to be sent: seven bytes, or the last ones.
+template <typename Command>
+constexpr SdoBytes segment(Command code, uint8_t toggle, std::span<const uint8_t> left) {
+  const size_t length = std::min(kSegment, left.size());
+  const unsigned last = length == left.size() ? kLast : 0U;
+  SdoBytes bytes = {command(code, toggle | static_cast<unsigned>(kSegment - length) << 1 | last)};
+  std::copy_n(left.begin(), length, bytes.begin() + 1);
+  return bytes;
 }
 
 }  // namespace sdo

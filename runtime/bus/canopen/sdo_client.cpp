@@ -110,13 +110,9 @@ std::optional<SdoBytes> SdoClient::take_segment(const SdoBytes& answer) {
 }
 
 SdoBytes SdoClient::next_segment() {
-  const size_t length = std::min(sdo::kSegment, data_.size() - sent_);
-  const bool last = sent_ + length == data_.size();
-  SdoBytes request = {
-      sdo::command(sdo::Ask::DownloadSegment,
-                   toggle_ | static_cast<unsigned>(sdo::kSegment - length) << 1 | (last ? 1U : 0U))};
-  std::copy_n(data_.begin() + static_cast<ptrdiff_t>(sent_), length, request.begin() + 1);
-  sent_ += length;
+  const SdoBytes request =
+      sdo::segment(sdo::Ask::DownloadSegment, toggle_, std::span<const uint8_t>(data_).subspan(sent_));
+  sent_ = std::min(sent_ + sdo::kSegment, data_.size());
   return request;
 }
 

@@ -103,15 +103,11 @@ SdoBytes SdoServer::upload_segment(const SdoBytes& request) {
     return abort(Abort::UnknownCommand);
   }
   if (!has_toggled(request)) return abort(Abort::Toggle);
-  const size_t length = std::min(sdo::kSegment, data_.size() - sent_);
-  const bool last = sent_ + length == data_.size();
-  SdoBytes answer = {
-      sdo::command(sdo::Answer::UploadSegment,
-                   toggle_ | static_cast<unsigned>(sdo::kSegment - length) << 1 | (last ? 1U : 0U))};
-  std::copy_n(data_.begin() + static_cast<ptrdiff_t>(sent_), length, answer.begin() + 1);
-  sent_ += length;
+  const SdoBytes answer =
+      sdo::segment(sdo::Answer::UploadSegment, toggle_, std::span<const uint8_t>(data_).subspan(sent_));
+  sent_ = std::min(sent_ + sdo::kSegment, data_.size());
   toggle_ ^= sdo::kToggle;
-  if (last) transfer_ = Transfer::None;
+  if ((answer[0] & sdo::kLast) != 0) transfer_ = Transfer::None;
   return answer;
 }
 
