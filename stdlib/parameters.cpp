@@ -68,6 +68,8 @@ bool read_access(std::string_view text, Parameter& p) {
       p.nonvolatile = true;
     else if (word == "E")
       p.needs_output_stage_off = true;
+    else if (word == "B")
+      p.bcd = true;
     else if (word != "RO")
       return false;
   }
@@ -290,6 +292,10 @@ const ParameterTable& parameter_table(const UnitType& unit) {
   if (unit.name == "mc07") {
     static const ParameterTable mc07(lists({"mc07.tsv"}), true);
     return mc07;
+  }
+  if (unit.name == "mc31") {
+    static const ParameterTable mc31(lists({"mc31.tsv"}), true);
+    return mc31;
   }
   static const ParameterTable none(Lists{}, true);
   return none;

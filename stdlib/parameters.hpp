@@ -50,6 +50,7 @@ struct Parameter {
   bool writable_locked = false;         // S: written also under parameter lock
   bool nonvolatile = false;             // N: from EEPROM at restart
   bool needs_output_stage_off = false;  // E, ours
+  bool bcd = false;                     // B, ours: travels as 4-byte BCD (0922 6818, 3.7.5)
   OptionCard option = OptionCard::None;
 
   int64_t default_value = 0;
@@ -94,7 +95,7 @@ class ParameterTable {
   std::vector<std::string> problems_;
 };
 
-// The list of a unit, read on first use; empty for units without one (mc31).
+// The list of a unit, read on first use; empty for units without one.
 const ParameterTable& parameter_table(const UnitType& unit);
 
 // Number shown = transferred number x factor, with so many decimals. The offsets of temperatures cancel: they

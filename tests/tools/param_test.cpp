@@ -299,7 +299,6 @@ TEST_F(Param, UsageAndInput) {
   EXPECT_EQ(param({"get", "plant.toml"}).exit_code, 64);
   EXPECT_EQ(param({"set", "plant.toml", "P130"}).exit_code, 64);
   EXPECT_EQ(param({"list", "plant.toml", "--unit", "md60a"}).exit_code, 64);
-  EXPECT_EQ(param({"list", "--unit", "mc31"}).exit_code, 64);
   EXPECT_EQ(param({"list", "plant.toml", "P130"}).exit_code, 64);
   EXPECT_EQ(param({"save", "plant.toml"}).exit_code, 64);
   EXPECT_EQ(param({"diff", "plant.toml"}).exit_code, 64);

@@ -7,7 +7,7 @@ bool CyclicChannel::take(Time now, const ParameterTelegram& request) {
   settle(now);
   if (ready_ || request.synchronous() == acknowledged_) return false;
   request_ = request;
-  response_ = execute(now, parameters_, request);
+  response_ = execute_(now, request);
   ready_ = now + processing_;
   return true;
 }

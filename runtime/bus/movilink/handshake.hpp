@@ -3,7 +3,9 @@
 // bit only has the channel returned. Bit 0 after power-on (ours: the figure begins with it).
 #pragma once
 
+#include <functional>
 #include <optional>
+#include <utility>
 
 #include "runtime/bus/movilink/unit_servers.hpp"
 
@@ -11,9 +13,18 @@ namespace ipos::runtime {
 
 class CyclicChannel {
  public:
+  // Carries a request out and makes its answer: PROFIBUS has rules of its own for that.
+  using Execution = std::function<ParameterTelegram(Time now, const ParameterTelegram& request)>;
+
   // `processing` is how long a service takes.
+  CyclicChannel(Execution execution, Time processing)
+      : execute_(std::move(execution)), processing_(processing) {}
   CyclicChannel(ParameterServer& parameters, Time processing)
-      : parameters_(parameters), processing_(processing) {}
+      : CyclicChannel(
+            [&parameters](Time now, const ParameterTelegram& request) {
+              return execute(now, parameters, request);
+            },
+            processing) {}
 
   // Takes in the channel of a request; true when it began a service. While one runs, nothing else is begun.
   bool take(Time now, const ParameterTelegram& request);
@@ -27,7 +38,7 @@ class CyclicChannel {
  private:
   void settle(Time now);
 
-  ParameterServer& parameters_;
+  Execution execute_;
   Time processing_;
   bool acknowledged_ = false;  // handshake bit of the last service done
   std::optional<Time> ready_;  // end of the service that runs

@@ -1,0 +1,62 @@
+// What a MOVITRAC 31 does with the data of DP (MOVITRAC 31 PROFIBUS, 3.1, 3.3, 3.6, 3.7): the parameter channel
+// in the first eight octets where it is configured, then one to three process data words, and the watchdog
+// time in P571.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "runtime/bus/movilink/handshake.hpp"
+#include "runtime/bus/movilink/unit_servers.hpp"
+#include "runtime/bus/profibus/dp_slave.hpp"
+#include "runtime/bus/profibus/fieldbus_parameters.hpp"
+
+namespace ipos::profibus {
+
+// One service of the parameter channel: 001 reads, 010 writes four octets; everything else is refused.
+runtime::ParameterTelegram execute(Time now, FieldbusParameters& parameters,
+                                   const runtime::ParameterTelegram& request);
+
+// P571 for a watchdog time, in hundredths of a second: 650.00 s without watchdog, and at most 649.99 s with
+// one, though a master can choose up to 650.25 s (the limit is ours).
+int32_t fieldbus_timeout(std::optional<Time> watchdog);
+
+// The drive beside its parameters.
+class FieldbusDrive : public runtime::ProcessDataServer {
+ public:
+  virtual void set_fieldbus_timeout(Time now, int32_t hundredths) = 0;  // P571
+  virtual void fieldbus_timeout_expired(Time now) = 0;                  // the reaction is P572
+
+ protected:
+  ~FieldbusDrive() = default;
+};
+
+class DpUnit final : public SlaveUnit {
+ public:
+  static constexpr Time kProcessing = 10 * runtime::kMillisecond;  // of a parameter service, ours
+
+  DpUnit(FieldbusParameters& parameters, FieldbusDrive& drive, Time processing = kProcessing);
+
+  void configured(Time now, const Configuration& configuration) override;
+  void take_outputs(Time now, std::span<const uint8_t> outputs) override;
+  void read_inputs(Time now, std::span<uint8_t> inputs) override;
+  void watchdog_set(Time now, std::optional<Time> period) override;
+  void watchdog_expired(Time now) override;
+  void exchange_ended(Time now) override;
+
+  // When a parameter service ran last, for the green LED.
+  std::optional<Time> accessed() const { return accessed_; }
+
+ private:
+  void send_words(Time now, std::span<const uint8_t> octets);
+
+  FieldbusDrive& drive_;
+  runtime::CyclicChannel channel_;
+  const Configuration* configuration_ = nullptr;
+  runtime::ParameterTelegram received_;
+  std::optional<Time> accessed_;
+};
+
+}  // namespace ipos::profibus
