@@ -41,14 +41,22 @@ std::string entry_name(Address address) {
 }
 
 void ObjectDictionary::restore() {
-  entries_.clear();
+  static const std::vector<Entry> kDefaults = defaults();
+  entries_ = kDefaults;
+  for (Entry& entry : entries_)
+    if (entry.row->own) entry.value += node_;
+}
+
+std::vector<ObjectDictionary::Entry> ObjectDictionary::defaults() {
+  std::vector<Entry> entries;
   for (const EntryRow& row : kEntries)
     for (uint8_t n = 0; n < row.subs; ++n) {
       const auto sub = static_cast<uint8_t>(row.sub + n);
-      entries_.push_back({{row.index, sub}, &row, row.default_of(sub) + (row.own ? node_ : 0U)});
+      entries.push_back({{row.index, sub}, &row, row.default_of(sub)});
     }
-  std::sort(entries_.begin(), entries_.end(),
+  std::sort(entries.begin(), entries.end(),
             [](const Entry& a, const Entry& b) { return a.address < b.address; });
+  return entries;
 }
 
 const ObjectDictionary::Entry* ObjectDictionary::find(Address address) const {

@@ -127,6 +127,8 @@ class ObjectDictionary {
   void set(Address address, uint32_t value);
 
  private:
+  static std::vector<Entry> defaults();  // of node 0, in rising order
+
   uint8_t node_;
   std::vector<Entry> entries_;
 };

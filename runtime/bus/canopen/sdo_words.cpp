@@ -105,8 +105,10 @@ std::string LineWords::sdo_response_text(Listened& node, const SdoBytes& bytes) 
                          value_text(node.name, address, data.value, data.bytes));
     }
     case sdo::Answer::Download:
-      if (node.written && node.transfer == address && node.dictionary.find(address) != nullptr)
+      if (node.written && node.transfer == address && node.dictionary.find(address) != nullptr) {
         node.dictionary.set(address, *node.written);
+        find_messages();
+      }
       node.written.reset();
       return fmt::format("SDO written {}", object_text(node.name, address));
     case sdo::Answer::UploadSegment:

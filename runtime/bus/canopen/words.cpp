@@ -69,6 +69,7 @@ std::string life_text(const Frame& frame) {
 }  // namespace
 
 LineWords::LineWords(std::vector<NodeName> names) {
+  find_messages();
   for (NodeName& name : names) {
     const uint8_t number = name.node;
     node(number).name = std::move(name);
@@ -80,16 +81,32 @@ LineWords::Listened& LineWords::node(uint8_t number) {
   const auto found = nodes_.find(number);
   if (found != nodes_.end()) return found->second;
   NodeName name{number, fmt::format("node {}", number), stdlib::find_unit("mdxb"), {}, {}};
-  return nodes_.emplace(number, Listened{std::move(name), ObjectDictionary(number), {}, {}}).first->second;
+  Listened& added =
+      nodes_.emplace(number, Listened{std::move(name), ObjectDictionary(number), {}, {}}).first->second;
+  find_messages();
+  return added;
+}
+
+// Which messages have which identifiers. The first PDO of one counts.
+void LineWords::find_messages() {
+  pdos_.clear();
+  syncs_ = {identifier(Connection::Sync)};
+  for (const auto& [number, listened] : nodes_) {
+    syncs_.insert(listened.dictionary.value(objects::kSyncId) & objects::kIdMask);
+    for (const bool transmit : {true, false})
+      for (uint8_t n = 0; n < objects::kPdos; ++n) {
+        const uint16_t first = transmit ? objects::kTransmitPdo : objects::kReceivePdo;
+        const uint32_t cob_id = listened.dictionary.value(static_cast<uint16_t>(first + n), objects::kCobId);
+        if ((cob_id & objects::kOff) == 0) pdos_.emplace(cob_id & objects::kIdMask, Pdo{number, transmit, n});
+      }
+  }
 }
 
 Description LineWords::describe(const Frame& frame) {
   const std::string id = fmt::format("{:0{}X}h ", frame.id, frame.extended ? 8 : 3);
   if (frame.extended) return {false, id + bytes_text(frame)};
   if (const auto text = pdo_text(frame)) return {true, id + *text};
-  for (const auto& [number, listened] : nodes_)
-    if ((listened.dictionary.value(objects::kSyncId) & objects::kIdMask) == frame.id)
-      return {true, id + "SYNC"};
+  if (syncs_.contains(frame.id)) return {true, id + "SYNC"};
   const auto addressed = connection_of(frame.id);
   if (!addressed) return {false, id + bytes_text(frame)};
   return {true, id + addressed_text(frame, *addressed)};
@@ -99,27 +116,20 @@ Description LineWords::describe(const Frame& frame) {
 std::optional<std::string> LineWords::pdo_text(const Frame& frame) {
   if (const auto addressed = connection_of(frame.id); addressed && addressed->node != 0)
     node(addressed->node);
-  for (const auto& [number, listened] : nodes_)
-    for (const bool transmit : {true, false})
-      for (uint8_t n = 0; n < objects::kPdos; ++n) {
-        const auto pdo = static_cast<uint16_t>((transmit ? objects::kTransmitPdo : objects::kReceivePdo) + n);
-        const auto map =
-            static_cast<uint16_t>((transmit ? objects::kTransmitMapping : objects::kReceiveMapping) + n);
-        const uint32_t cob_id = listened.dictionary.value(pdo, objects::kCobId);
-        if ((cob_id & objects::kOff) != 0 || (cob_id & objects::kIdMask) != frame.id) continue;
-        const NodeName& name = listened.name;
-        if (frame.remote)
-          return fmt::format("{}PDO{} asked for -> {}", transmit ? "T" : "R", n + 1, name.name);
-        return fmt::format("{}PDO{} {} {} {}", transmit ? "T" : "R", n + 1,
-                           mapped_text(name, mapping_of(listened.dictionary, map), frame),
-                           transmit ? "<-" : "->", name.name);
-      }
-  return std::nullopt;
+  const auto found = pdos_.find(frame.id);
+  if (found == pdos_.end()) return std::nullopt;
+  const Pdo& pdo = found->second;
+  const Listened& listened = node(pdo.node);
+  const char* way = pdo.transmit ? "T" : "R";
+  if (frame.remote) return fmt::format("{}PDO{} asked for -> {}", way, pdo.number + 1, listened.name.name);
+  const uint16_t first = pdo.transmit ? objects::kTransmitMapping : objects::kReceiveMapping;
+  const Mapping mapping = mapping_of(listened.dictionary, static_cast<uint16_t>(first + pdo.number));
+  return fmt::format("{}PDO{} {} {} {}", way, pdo.number + 1, mapped_text(listened.name, mapping, frame),
+                     pdo.transmit ? "<-" : "->", listened.name.name);
 }
 
 std::string LineWords::addressed_text(const Frame& frame, const Addressed& addressed) {
   if (addressed.connection == Connection::Nmt) return nmt_text(frame);
-  if (addressed.connection == Connection::Sync) return "SYNC";
   const ConnectionRow& row = row_of(addressed.connection);
   Listened& talker = node(addressed.node);
   std::string text;
@@ -127,7 +137,10 @@ std::string LineWords::addressed_text(const Frame& frame, const Addressed& addre
     case Connection::Emergency: text = emergency_text(frame); break;
     case Connection::ErrorControl:
       text = life_text(frame);
-      if (!frame.remote && frame.data[0] == static_cast<uint8_t>(State::BootUp)) talker.dictionary.restore();
+      if (!frame.remote && frame.data[0] == static_cast<uint8_t>(State::BootUp)) {
+        talker.dictionary.restore();
+        find_messages();
+      }
       break;
     case Connection::SdoRequest:
     case Connection::SdoResponse:

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,6 +43,11 @@ class LineWords {
     std::optional<Address> transfer;
     std::optional<uint32_t> written;  // by the request before, not confirmed yet
   };
+  struct Pdo {
+    uint8_t node;
+    bool transmit;
+    uint8_t number;  // from 0
+  };
   Listened& node(uint8_t number);
 
   std::optional<std::string> pdo_text(const Frame& frame);
@@ -50,7 +56,11 @@ class LineWords {
   std::string sdo_request_text(Listened& node, const SdoBytes& bytes);
   std::string sdo_response_text(Listened& node, const SdoBytes& bytes);
 
+  void find_messages();  // objects have changed
+
   std::map<uint8_t, Listened> nodes_;
+  std::map<uint32_t, Pdo> pdos_;  // those that are on, by identifier
+  std::set<uint32_t> syncs_;      // identifiers of SYNC
 };
 
 }  // namespace ipos::runtime::canopen
