@@ -1,5 +1,5 @@
 // Guarding and heartbeat. Supervision begins with the first request or heartbeat behind the setting, and what
-// was missed ends with the next one.
+// was missed ends with the next one, or when supervision is switched off (the latter ours).
 #include "runtime/bus/canopen/error_control.hpp"
 
 #include <utility>
@@ -48,6 +48,7 @@ void ErrorControl::configure(Time now) {
   }
   const Time life_time = milliseconds(objects::kGuardTime) * dictionary_.value(objects::kLifeFactor);
   if (std::exchange(life_time_, life_time) != life_time) guard_.stop();
+  if (life_time == 0) miss(now, kGuard, false);
   const uint32_t consumer = dictionary_.value(objects::kConsumerHeartbeat, 1);
   const Time partner_time = Time{consumer & 0xFFFF} * kMillisecond;
   const auto partner = static_cast<uint8_t>(consumer >> 16);
@@ -57,6 +58,7 @@ void ErrorControl::configure(Time now) {
   if (partner_ == before && partner_time == partner_time_) return;
   partner_time_ = partner_time;
   consume_.stop();
+  if (!partner_) miss(now, kConsume, false);
 }
 
 bool ErrorControl::on_remote(Time now) {

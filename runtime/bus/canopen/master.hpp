@@ -26,7 +26,7 @@ struct SdoWrite {
 
 // One PDO of a node as the master wants it. An empty mapping switches it off.
 struct PdoPlan {
-  uint8_t number = 0;  // from 0
+  uint8_t number = 0;  // 0..3
   bool transmit = false;
   uint8_t type = 1;
   uint16_t inhibit = 0;  // of a transmit PDO, 100 us

@@ -255,6 +255,11 @@ TEST(CanopenHeartbeat, Consumed) {
   EXPECT_EQ(rig.station.unit.lost.size(), 1U);
   EXPECT_EQ(rig.ask({0x77F, 1, {0x05}}), (Frames{{0x085, 8, {}}}));
   EXPECT_EQ(rig.station.unit.back.size(), 1U);
+  // One that is no longer awaited is not missed either (ours).
+  rig.run(100 * kMillisecond);
+  EXPECT_EQ(rig.station.unit.lost.size(), 2U);
+  rig.write(0x1016, 1, 0, 4);
+  EXPECT_EQ(rig.station.unit.back.size(), 2U);
   rig.ask({0x77E, 1, {0x05}});  // another node is none of its business
   EXPECT_EQ(rig.station.foreign, 0);
 }
