@@ -84,17 +84,33 @@ const ParameterStore::Slot* ParameterStore::find(uint16_t index) const {
   return at != slots_.end() && at->parameter->index == index ? &*at : nullptr;
 }
 
+ParameterReply ParameterStore::read(uint16_t index) const {
+  if (injected_) return tl::unexpected(*injected_);
+  if (const Slot* slot = find(index)) return read(*slot);
+  const std::optional<Place> place = known_place(index);
+  if (!place) return tl::unexpected(codes::kInvalidIndex);
+  IndexWindow* window = windows_[static_cast<size_t>(place->area)];
+  if (window == nullptr) return tl::unexpected(codes::kNotImplemented);
+  return window->read(place->offset);
+}
+
 ParameterReply ParameterStore::execute(uint8_t service, uint16_t index, int32_t value) {
   if (!knows_service(service)) return tl::unexpected(codes::kWrongManagement);
   if (service == static_cast<uint8_t>(ParameterService::None)) return 0;
   if (injected_) return tl::unexpected(*injected_);
   const auto known = static_cast<ParameterService>(service);
   if (Slot* slot = find(index)) return serve(*slot, known, value);
-  const std::optional<Place> place = locate(index);
-  // MOVITRAC 07 prints no areas, so what it does not list is no index at all (M07-PAR-27).
-  if (!place || (place->area == IndexArea::Drive && unit_.generation == stdlib::Generation::M07))
-    return tl::unexpected(codes::kInvalidIndex);
+  const std::optional<Place> place = known_place(index);
+  if (!place) return tl::unexpected(codes::kInvalidIndex);
   return serve_window(*place, known, index, value);
+}
+
+// MOVITRAC 07 prints no areas, so what it does not list is no index at all (M07-PAR-27).
+std::optional<ParameterStore::Place> ParameterStore::known_place(uint16_t index) const {
+  const std::optional<Place> place = locate(index);
+  if (place && place->area == IndexArea::Drive && unit_.generation == stdlib::Generation::M07)
+    return std::nullopt;
+  return place;
 }
 
 ParameterReply ParameterStore::serve(Slot& slot, ParameterService service, int32_t value) {

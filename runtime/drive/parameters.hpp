@@ -109,6 +109,9 @@ class ParameterStore {
     return execute(static_cast<uint8_t>(service), index, value);
   }
 
+  // The service READ: it changes nothing.
+  ParameterReply read(uint16_t index) const;
+
   // The working value for the drive itself; 0 for an index the unit does not have.
   int32_t value(uint16_t index) const;
 
@@ -180,6 +183,7 @@ class ParameterStore {
 
   bool knows_service(uint8_t service) const;
   std::optional<Place> locate(uint16_t index) const;
+  std::optional<Place> known_place(uint16_t index) const;  // of an index that the unit answers to
   Slot* find(uint16_t index);
   const Slot* find(uint16_t index) const;
   int32_t read(const Slot& slot) const;

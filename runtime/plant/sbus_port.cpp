@@ -58,25 +58,28 @@ NodeId SbusPort::connect(CanLine& line, std::optional<NodeId> node, std::string_
 }
 
 SbusPort::SbusPort(EventQueue& queue, uint32_t source, CanLine& line, std::optional<NodeId> node, int sbus,
-                   std::string_view station, const SbusSettings& settings, DriveServer& drive,
-                   MovilinkCommand& movilink, Journal& journal)
-    : sender_(line, connect(line, node, station, settings.baud, *this)),
-      objects_(drive.unit(), settings.baud, sender_, kObjectTags, sbus),
+                   std::string_view station, const SbusSettings& settings, Door& door, Journal& journal)
+    : door_(door),
+      sender_(line, connect(line, node, station, settings.baud, *this)),
+      objects_(door.touch().server().unit(), settings.baud, sender_, kObjectTags, sbus),
       line_(line),
       station_(station),
       settings_(settings),
-      drive_(drive),
       journal_(journal),
-      slave_(queue, source, sender_, kSlaveTag, settings.slave, {}, drive, drive, this),
-      movilink_(movilink),
+      server_(door),
+      slave_(queue, source, sender_, kSlaveTag, settings.slave, {}, server_, server_, this),
+      movilink_(door.touch().movilink()),
       bus_(kBuses[sbus - 1]),
-      master_(queue, source, sender_, kMasterTag, kSbusReplyTimeout, movilink.client(bus_)),
-      group_master_(sender_, kGroupTag, drive) {
-  movilink.connect(bus_, master_);
+      exchanges_(door, door.touch().movilink().client(bus_)),
+      master_(queue, source, sender_, kMasterTag, kSbusReplyTimeout, exchanges_),
+      group_master_(sender_, kGroupTag, server_) {
+  Unit& unit = door.touch();
+  unit.movilink().connect(bus_, master_);
+  unit.connect(sbus, objects_);
   objects_.set_profile(settings.slave);
   // Master/slave operation is a matter of SBus 1 (MDX60B/61B chapter 5.5.1).
-  if (std::string why =
-          group_master_.configure(sbus == 1 ? drive.value("750") : 0, settings.slave.group, settings.baud);
+  if (std::string why = group_master_.configure(sbus == 1 ? unit.server().value("750") : 0,
+                                                settings.slave.group, settings.baud);
       !why.empty())
     note(queue.now(), Weight::Warning, std::move(why));
   leads_ = group_master_.active();
@@ -86,35 +89,42 @@ void SbusPort::note(Time now, Weight weight, std::string text) {
   journal_.note(now, weight, station_, std::move(text));
 }
 
-void SbusPort::stop_program() { objects_.stop(); }
-
 void SbusPort::power_off() {
   objects_.stop();
-  variables_ = {};
+  powered_ = false;
   line_.set_connected(node(), false);
 }
 
 void SbusPort::on_frame(Time now, const Frame& frame) {
-  if (drive_.late() && keeps(frame)) return;
-  drive_.catch_up();
+  if (waits(frame)) return;
   if (master_.busy() && master_.on_frame(now, frame)) return tell_shared(now, frame);
-  const bool received = !variables_.empty() && receive(now, frame);
+  const bool received = receive(now, frame);
   // A receive object with the sync identifier takes nothing away from the drive.
   if (!received || slave_.is_sync(frame)) slave_.on_frame(now, frame);
-  if (drive_.has_reasons()) tell_reasons(now);
+  tell_reasons(now);
 }
 
 // It is for variables alone and can wait until the program has come so far.
-bool SbusPort::keeps(const Frame& frame) {
-  if (variables_.empty() || master_.busy() || slave_.is_sync(frame)) return false;
+bool SbusPort::waits(const Frame& frame) {
+  if (!door_.is_behind() || master_.busy() || slave_.is_sync(frame)) return false;
   const auto receiver = objects_.receiver(frame);
-  return receiver && objects_.fits(*receiver, frame) && drive_.keep(*this, *receiver, frame);
+  return receiver && objects_.fits(*receiver, frame) &&
+         door_.post(*this, *receiver, std::span(frame.data).first(frame.length));
+}
+
+void SbusPort::read(size_t object, std::span<const uint8_t> bytes) {
+  Frame frame;
+  frame.length = static_cast<uint8_t>(bytes.size());
+  std::copy(bytes.begin(), bytes.end(), frame.data.begin());
+  objects_.take(object, frame, door_.variables_in_turn());
 }
 
 void SbusPort::tell_reasons(Time now) {
-  if (std::string refused = drive_.take_reason(); !refused.empty())
+  if (!door_.has_reasons()) return;
+  DriveServer& drive = door_.touch().server();
+  if (std::string refused = drive.take_reason(); !refused.empty())
     note(now, Weight::Why, "refused " + std::move(refused));
-  for (std::string& obstacle : drive_.take_obstacles()) note(now, Weight::Why, std::move(obstacle));
+  for (std::string& obstacle : drive.take_obstacles()) note(now, Weight::Why, std::move(obstacle));
 }
 
 void SbusPort::want_again() {
@@ -137,21 +147,21 @@ void SbusPort::tell_shared(Time now, const Frame& frame) {
            receives ? ": the telegram does not reach the receive object" : ": the identifier is used twice"));
 }
 
-// A receive object takes the frame. One that brings the values that are there already wakes nobody.
+// A receive object takes the frame. One that brings the values that are there already changes nothing.
 bool SbusPort::receive(Time now, const Frame& frame) {
   const auto receiver = objects_.receiver(frame);
   if (!receiver) return false;
-  const bool steady = drive_.make_up_variables();
-  if (objects_.has_taken(*receiver, frame, variables_)) {
-    if (steady && !master_.busy() && !slave_.is_sync(frame)) {
+  const std::span<const int32_t> variables = door_.variables();
+  if (variables.empty()) return false;
+  if (objects_.has_taken(*receiver, frame, variables)) {
+    if (door_.variables_rest() && !master_.busy() && !slave_.is_sync(frame)) {
       line_.rest(node(), frame);
       rests_ = true;
     }
     return true;
   }
-  drive_.expect_variables(objects_.data_of(*receiver));
   std::string why;
-  const bool taken = objects_.on_frame(frame, variables_, why);
+  const bool taken = objects_.on_frame(frame, door_.variables_to_write(objects_.data_of(*receiver)), why);
   if (!why.empty()) note(now, Weight::Warning, std::move(why));
   return taken;
 }
@@ -161,16 +171,15 @@ void SbusPort::on_sent(Time now, const Frame& frame, uint64_t tag) {
     master_.on_sent(now, tag);
     tell_shared(now, frame);
   }
-  if (tag < kAcyclicObjectTags || variables_.empty()) return;
-  drive_.wake();
-  objects_.on_sent(tag, variables_);
+  if (tag < kAcyclicObjectTags) return;
+  if (const auto variables = door_.touch().variables(); !variables.empty()) objects_.on_sent(tag, variables);
 }
 
 void SbusPort::on_not_sent(Time /*now*/, const Frame& /*frame*/, uint64_t tag, NotSent reason) {
   // A disturbed frame is sent again by the controller; nobody else learns of it.
-  if (tag < kAcyclicObjectTags || variables_.empty() || reason == NotSent::Corrupted) return;
-  drive_.wake();
-  objects_.on_not_sent(tag, variables_);
+  if (tag < kAcyclicObjectTags || reason == NotSent::Corrupted || !powered_) return;
+  if (const auto variables = door_.touch().variables(); !variables.empty())
+    objects_.on_not_sent(tag, variables);
 }
 
 // No manual says what a drive does; it asks its controller to come back at once (ours).

@@ -11,11 +11,11 @@
 #include "runtime/bus/movilink/sbus_group_master.hpp"
 #include "runtime/bus/movilink/sbus_master.hpp"
 #include "runtime/bus/movilink/sbus_slave.hpp"
-#include "runtime/plant/drive_server.hpp"
+#include "runtime/plant/unit_server.hpp"
 #include "runtime/services/journal.hpp"
 #include "runtime/services/movilink_command.hpp"
 #include "runtime/services/variable_objects.hpp"
-#include "vm/exec/machine.hpp"
+#include "runtime/unit/door.hpp"
 
 namespace ipos::runtime {
 
@@ -28,27 +28,23 @@ struct SbusSettings {
 };
 SbusSettings sbus_settings(const DriveServer& drive, int sbus);
 
-class SbusPort final : private CanNode, private SlaveObserver, private ObjectReader {
+class SbusPort final : private CanNode, private SlaveObserver, private TelegramReader {
  public:
   // Attaches to the line, or takes the place `node` of a port that went with a power-off. `sbus` is 1 or 2.
   // All references must outlive the port.
   SbusPort(EventQueue& queue, uint32_t source, CanLine& line, std::optional<NodeId> node, int sbus,
-           std::string_view station, const SbusSettings& settings, DriveServer& drive,
-           MovilinkCommand& movilink, Journal& journal);
+           std::string_view station, const SbusSettings& settings, Door& door, Journal& journal);
 
-  void connect_program(vm::Machine& machine) { variables_ = machine.variables(); }
-  void stop_program();  // a program stop ends cyclic sending and receiving (1053 1610 p. 54)
-  void power_off();     // the line is told first, as frames that were waiting come back
-  // Once a millisecond, after the tasks. Returns the first tick behind this one that does something; kNever
-  // for none.
-  Time tick(Time now) {
+  void power_off();  // the line is told first, as frames that were waiting come back
+  // Once a millisecond, after the tasks, with the variables as they are now. Returns the first tick behind this
+  // one that does something; kNever for none.
+  Time tick(Time now, std::span<const int32_t> variables) {
     if (leads_) group_master_.tick(now);
-    const int64_t due = objects_.tick(now / kMillisecond, variables_);
+    const int64_t due = objects_.tick(now / kMillisecond, variables);
     if (leads_) return now + kMillisecond;
     return due == INT64_MAX ? kNever : due * kMillisecond;
   }
   bool has_waiting_frames() const { return line_.has_waiting(node()); }
-  bool sends_more_than_variables() const { return leads_; }
   void want_again();  // the variables may change from now on
 
   NodeId node() const { return sender_.node(); }
@@ -64,9 +60,9 @@ class SbusPort final : private CanNode, private SlaveObserver, private ObjectRea
   static NodeId connect(CanLine& line, std::optional<NodeId> node, std::string_view station, uint32_t baud,
                         CanNode& port);
   void on_frame(Time now, const Frame& frame) override;
-  bool keeps(const Frame& frame);
+  bool waits(const Frame& frame);
   bool receive(Time now, const Frame& frame);
-  void read(size_t object, const Frame& frame) override { objects_.take(object, frame, variables_); }
+  void read(size_t object, std::span<const uint8_t> bytes) override;
   void tell_reasons(Time now);
   void tell_shared(Time now, const Frame& frame);
   void on_sent(Time now, const Frame& frame, uint64_t tag) override;
@@ -76,20 +72,22 @@ class SbusPort final : private CanNode, private SlaveObserver, private ObjectRea
   void note(Time now, Weight weight, std::string text);
 
   // What every tick looks at stands together.
-  bool leads_ = false;            // a group of slaves
-  bool rests_ = false;            // the line need not tell it of some frames
-  std::span<int32_t> variables_;  // of the program; none without one
+  bool leads_ = false;  // a group of slaves
+  bool rests_ = false;  // the line need not tell it of some frames
+  bool powered_ = true;
+  Door& door_;
   LinePort sender_;
   VariableObjects objects_;
 
   CanLine& line_;
   std::string_view station_;
   SbusSettings settings_;
-  DriveServer& drive_;
   Journal& journal_;
+  UnitServer server_;
   SbusSlave slave_;
   const MovilinkCommand& movilink_;
   MovilinkBus bus_;
+  ExchangeDoor exchanges_;
   SbusMaster master_;
   GroupMaster group_master_;
 };

@@ -10,7 +10,7 @@
 namespace ipos::runtime {
 
 SerialPort::SerialPort(EventQueue& queue, uint32_t source, Rs485Line& line, uint32_t baud,
-                       const std::string& station, std::string socket, bool master_slave, DriveServer& drive,
+                       const std::string& station, std::string socket, bool master_slave, Door& door,
                        MovilinkClient& client, Journal& journal)
     : queue_(queue),
       source_(source),
@@ -18,20 +18,21 @@ SerialPort::SerialPort(EventQueue& queue, uint32_t source, Rs485Line& line, uint
       station_(station),
       socket_(std::move(socket)),
       master_slave_(master_slave),
-      drive_(drive),
-      client_(client),
+      door_(door),
+      server_(door),
+      exchanges_(door, client),
       journal_(journal),
       port_(line, line.attach(station, baud, *this)) {
   parts_.emplace(*this);
-  configure(queue.now());
+  tick(queue.now());
 }
 
 SerialPort::Parts::Parts(SerialPort& port)
-    : slave(port.queue_, port.source_, port.port_, {}, {}, port.drive_, port.drive_.rs485_data(), port.drive_,
-            &port),
+    : slave(port.queue_, port.source_, port.port_, {}, {}, port.server_, port.server_.rs485_data(),
+            port.server_, &port),
       requester(port.queue_, port.source_, port.port_),
-      master(port.queue_, requester, port.client_),
-      setpoints(port.queue_, port.source_, requester, port.drive_) {}
+      master(port.queue_, requester, port.exchanges_),
+      setpoints(port.queue_, port.source_, requester, port.server_) {}
 
 void SerialPort::power_off() {
   line_.set_connected(port_.node(), false);
@@ -41,13 +42,13 @@ void SerialPort::power_off() {
 void SerialPort::power_on(Time now) {
   line_.set_connected(port_.node(), true);
   parts_.emplace(*this);
-  configure(now);
+  tick(now);
 }
 
-void SerialPort::configure(Time now) {
-  const SerialParameters p = drive_.serial_parameters();
-  if (const uint32_t timeouts = drive_.state().rs485_timeouts();
-      std::exchange(timeouts_, timeouts) != timeouts)
+void SerialPort::tick(Time now) {
+  const Unit& unit = door_.look();
+  const SerialParameters p = unit.server().serial_parameters();
+  if (const uint32_t timeouts = unit.drive().rs485_timeouts(); std::exchange(timeouts_, timeouts) != timeouts)
     parts_->slave.count_timeout();
   const bool sends = master_slave_ && sends_setpoints(p.slave_setpoint);
   parts_->slave.configure(
@@ -73,9 +74,11 @@ void SerialPort::report(Time now) {
 void SerialPort::on_character(Time now, const Character& character) {
   parts_->slave.on_character(now, character);
   parts_->requester.on_character(now, character);
-  if (std::string refused = drive_.take_reason(); !refused.empty())
+  if (!door_.has_reasons()) return;
+  DriveServer& drive = door_.touch().server();
+  if (std::string refused = drive.take_reason(); !refused.empty())
     explain(now, "refused " + std::move(refused));
-  for (std::string& obstacle : drive_.take_obstacles()) explain(now, std::move(obstacle));
+  for (std::string& obstacle : drive.take_obstacles()) explain(now, std::move(obstacle));
 }
 
 void SerialPort::on_sent(Time now) {

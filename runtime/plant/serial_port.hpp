@@ -8,7 +8,7 @@
 #include "runtime/bus/movilink/serial_master.hpp"
 #include "runtime/bus/movilink/serial_slave.hpp"
 #include "runtime/bus/rs485/line.hpp"
-#include "runtime/plant/drive_server.hpp"
+#include "runtime/plant/unit_server.hpp"
 #include "runtime/services/journal.hpp"
 
 namespace ipos::runtime {
@@ -18,16 +18,15 @@ class SerialPort final : private SerialNode, private SerialSlaveObserver {
   // `socket` is XT or X13, for messages. Master/slave operation is on X13 only (MDX60B/61B p. 11). `client`
   // hears the ends of the exchanges that MOVLNK begins at master().
   SerialPort(EventQueue& queue, uint32_t source, Rs485Line& line, uint32_t baud, const std::string& station,
-             std::string socket, bool master_slave, DriveServer& drive, MovilinkClient& client,
-             Journal& journal);
+             std::string socket, bool master_slave, Door& door, MovilinkClient& client, Journal& journal);
 
   // Power of the unit: off it neither hears nor answers, and nothing it had under way is sent any more. On
   // again, master() is another one.
   void power_off();
   void power_on(Time now);
 
-  // Takes over P810, P811, P750 and P100, and counts missed requests; once a millisecond.
-  void configure(Time now);
+  // Takes over P810, P811, P750 and P100, and counts missed requests; once a millisecond, behind the tasks.
+  void tick(Time now);
 
   // At the end: how often each error came, to the journal.
   void report(Time now);
@@ -56,8 +55,9 @@ class SerialPort final : private SerialNode, private SerialSlaveObserver {
   const std::string& station_;
   std::string socket_;
   bool master_slave_;
-  DriveServer& drive_;
-  MovilinkClient& client_;
+  Door& door_;
+  UnitServer server_;
+  ExchangeDoor exchanges_;
   Journal& journal_;
   SerialLinePort port_;
   std::optional<Parts> parts_;  // while the power is on

@@ -78,16 +78,4 @@ std::optional<AnalogSetting> parse_analog(std::string_view name, std::string_vie
   return std::nullopt;
 }
 
-int32_t& analog_value(AnalogInputs& inputs, size_t line) {
-  switch (static_cast<AnalogLine>(line - kBinaryLines)) {
-    case AnalogLine::Ai1Voltage: return inputs.ai1.millivolt;
-    case AnalogLine::Ai1Current: return inputs.ai1.microampere;
-    case AnalogLine::Ai2Voltage: return inputs.ai2.millivolt;
-    case AnalogLine::Ai2Current: return inputs.ai2.microampere;
-    case AnalogLine::Frequency: return inputs.frequency;
-    case AnalogLine::Potentiometer: break;
-  }
-  return inputs.potentiometer;
-}
-
 }  // namespace ipos::runtime

@@ -6,17 +6,11 @@
 #include <string>
 #include <string_view>
 
-#include "runtime/drive/setpoint.hpp"
+#include "runtime/unit/unit_inputs.hpp"
 
 namespace ipos::runtime {
 
 enum class SignalKind : uint8_t { Variable, Parameter, Input, Output, State };
-
-// The lines that lead into a station: 0..15 are the binary inputs by their bit in InputLevel H483, then the
-// analog ones.
-enum class AnalogLine : uint8_t { Ai1Voltage, Ai1Current, Ai2Voltage, Ai2Current, Frequency, Potentiometer };
-inline constexpr size_t kBinaryLines = 16;
-inline constexpr size_t kInputLines = kBinaryLines + 6;
 
 struct Signal {
   std::string station;
@@ -43,8 +37,5 @@ struct AnalogSetting {
   int32_t value = 0;  // mV, uA, Hz, 1/1000
 };
 std::optional<AnalogSetting> parse_analog(std::string_view name, std::string_view text);
-
-// Where the value of an analog line (kBinaryLines and above) stands.
-int32_t& analog_value(AnalogInputs& inputs, size_t line);
 
 }  // namespace ipos::runtime

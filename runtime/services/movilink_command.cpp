@@ -142,7 +142,6 @@ void MovilinkCommand::give_up(const vm::Machine& machine, int context) {
 }
 
 void MovilinkCommand::Route::on_exchange_done(Time now, const MovilinkResult& result) {
-  if (command->sleeper_ != nullptr) command->sleeper_->wake();
   const Job job = jobs.front();
   jobs.erase(jobs.begin());
   if (!result.reason.empty())

@@ -12,7 +12,6 @@
 #include "runtime/bus/movilink/exchange.hpp"
 #include "runtime/bus/movilink/unit_servers.hpp"
 #include "runtime/services/journal.hpp"
-#include "runtime/services/sleeper.hpp"
 #include "stdlib/unit_types.hpp"
 #include "vm/exec/machine.hpp"
 
@@ -37,9 +36,6 @@ class MovilinkCommand final {
   void connect(MovilinkBus bus, MovilinkMaster& master) {
     routes_[static_cast<size_t>(bus)].master = &master;
   }
-
-  // Is told before an exchange ends. It must outlive this.
-  void use(Sleeper& sleeper) { sleeper_ = &sleeper; }
 
   // Begins the exchange of the structure at `variable` for a context. Done: the result is stored already;
   // Wait: the context is resumed when it is. `why` says why an exchange could not be begun.
@@ -93,7 +89,6 @@ class MovilinkCommand final {
   ProcessDataServer& own_data_;
   Journal& journal_;
   std::string station_;
-  Sleeper* sleeper_ = nullptr;
   std::array<Route, kMovilinkBuses> routes_;
   std::vector<uint32_t> structures_;  // of commands carried out
 };

@@ -33,9 +33,9 @@ vm::HostReply forward(CommandCall& call) {
 
 }  // namespace
 
-SystemCommands::SystemCommands(const StationServices& services, Sleeper& sleeper, Journal& journal,
-                               std::string_view station, const vm::Image* image)
-    : services_(services), sleeper_(sleeper), journal_(journal), station_(station), image_(image) {}
+SystemCommands::SystemCommands(const StationServices& services, Journal& journal, std::string_view station,
+                               const vm::Image* image)
+    : services_(services), journal_(journal), station_(station), image_(image) {}
 
 vm::Host SystemCommands::host() {
   return {this,
@@ -48,7 +48,6 @@ vm::Host SystemCommands::host() {
 }
 
 vm::HostReply SystemCommands::execute(vm::Machine& machine, int context, const vm::Instruction& command) {
-  sleeper_.touch();
   CommandCall call{services_, machine, context, command, {}, 0, {}};
   const vm::HostReply reply = forward(call);
   const Time now = services_.clock.now();

@@ -7,17 +7,16 @@
 
 #include "runtime/services/command_call.hpp"
 #include "runtime/services/journal.hpp"
-#include "runtime/services/sleeper.hpp"
 #include "vm/image/image.hpp"
 
 namespace ipos::runtime {
 
 class SystemCommands {
  public:
-  // The sleeper is told before a command does anything. The image tells where in the source a command stands;
-  // null when the program is of another one. It and the journal must outlive this.
-  SystemCommands(const StationServices& services, Sleeper& sleeper, Journal& journal,
-                 std::string_view station, const vm::Image* image);
+  // The image tells where in the source a command stands; null when the program is of another one. It and the
+  // journal must outlive this.
+  SystemCommands(const StationServices& services, Journal& journal, std::string_view station,
+                 const vm::Image* image);
 
   vm::Host host();
 
@@ -26,7 +25,6 @@ class SystemCommands {
   void cancel(vm::Machine& machine, int context);
 
   StationServices services_;
-  Sleeper& sleeper_;
   Journal& journal_;
   std::string station_;
   const vm::Image* image_;

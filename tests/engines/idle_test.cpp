@@ -37,7 +37,7 @@ TEST_F(Idle, AWaitIsIdleUntilItsLastTick) {
   vm::run_tick(m, rates_);
   EXPECT_EQ(m.idle_ticks(rates_.commands), 99U);
   uint64_t executed = 0;
-  EXPECT_EQ(vm::skip_idle(m, rates_, 1000, executed), 99U);
+  EXPECT_EQ(skip_idle(m, rates_, 1000, executed), 99U);
   EXPECT_EQ(executed, 0U);
   EXPECT_EQ(m.idle_ticks(rates_.commands), 0U);
   vm::run_tick(m, rates_);
@@ -53,7 +53,7 @@ TEST_F(Idle, ALoopThatLooksIsIdleForEver) {
   EXPECT_EQ(m.idle_ticks(rates_.commands), vm::kIdleForever);
   uint64_t executed = 0;
   const uint64_t before = m.task(1).commands;
-  EXPECT_EQ(vm::skip_idle(m, rates_, 1'000'000'000'000, executed), 1'000'000'000'000U);
+  EXPECT_EQ(skip_idle(m, rates_, 1'000'000'000'000, executed), 1'000'000'000'000U);
   EXPECT_EQ(executed, 3'000'000'000'000U);
   EXPECT_EQ(m.task(1).commands, before + 3'000'000'000'000U);
   m.variables()[5] = 8;
@@ -66,7 +66,7 @@ TEST_F(Idle, ALoopOfManyTurnsIsIdleWhereverItStands) {
   vm::Machine runs = skips;
   for (uint64_t ticks = 1; ticks < 200; ++ticks) {
     uint64_t executed = 0;
-    EXPECT_EQ(vm::skip_idle(skips, rates_, ticks, executed), ticks);
+    EXPECT_EQ(skip_idle(skips, rates_, ticks, executed), ticks);
     for (uint64_t n = 0; n < ticks; ++n) vm::run_tick(runs, rates_);
     ASSERT_EQ(skips.variables()[1], runs.variables()[1]) << "after " << ticks;
     ASSERT_EQ(skips.task(1).pc, runs.task(1).pc);
@@ -82,7 +82,7 @@ TEST_F(Idle, ALoopIsIdleInItsFunctionsToo) {
   vm::Machine runs = skips;
   for (uint64_t ticks = 1; ticks < 200; ++ticks) {
     uint64_t executed = 0;
-    EXPECT_EQ(vm::skip_idle(skips, rates_, ticks, executed), ticks);
+    EXPECT_EQ(skip_idle(skips, rates_, ticks, executed), ticks);
     for (uint64_t n = 0; n < ticks; ++n) vm::run_tick(runs, rates_);
     ASSERT_EQ(skips.task(1).pc, runs.task(1).pc) << "after " << ticks;
     ASSERT_EQ(skips.task(1).depth, runs.task(1).depth);

@@ -212,7 +212,7 @@ std::string run_idle_pair(const vm::VerifiedImage& program, uint64_t seed, uint3
     forget(a);
     for (uint64_t n = 0; n < ticks; ++n) executed_a += vm::run_tick(a, rates);
     for (uint64_t n = 0; n < ticks;) {
-      const uint64_t idle = vm::skip_idle(b, rates, ticks - n, executed_b);
+      const uint64_t idle = skip_idle(b, rates, ticks - n, executed_b);
       skipped += idle;
       n += idle;
       if (idle == 0) executed_b += vm::run_tick(b, rates), ++n;

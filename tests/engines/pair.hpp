@@ -3,10 +3,12 @@
 // states must be equal.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "vm/sched/scheduler.hpp"
 #include "vm/verify/verify.hpp"
 
 namespace ipos::tests {
@@ -41,5 +43,13 @@ std::vector<uint32_t> table_loops(uint64_t seed, const vm::Limits& limits);
 
 // A loop around a switch whose cases set the next case, at random.
 std::vector<uint32_t> state_machine(uint64_t seed);
+
+// The same as `ticks` of run_tick, as far as they are idle ones (Machine::idle_ticks): no more than `most`,
+// and 0 when the next one is not. Adds the commands to `executed`.
+inline uint64_t skip_idle(vm::Machine& machine, const vm::Rates& rates, uint64_t most, uint64_t& executed) {
+  const uint64_t ticks = std::min(most, machine.idle_ticks(rates.commands));
+  if (ticks != 0) executed += machine.skip_ticks(rates.commands, ticks);
+  return ticks;
+}
 
 }  // namespace ipos::tests

@@ -5,7 +5,7 @@
 #include "runtime/bus/movilink/sbus_master.hpp"
 #include "runtime/bus/movilink/sbus_slave.hpp"
 #include "runtime/bus/movilink/variable_telegram.hpp"
-#include "runtime/plant/drive_server.hpp"
+#include "runtime/unit/drive_server.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 using namespace ipos::runtime;  // NOLINT

@@ -9,7 +9,7 @@
 #include "runtime/bus/movilink/line_check.hpp"
 #include "runtime/bus/movilink/serial_master.hpp"
 #include "runtime/bus/movilink/serial_slave.hpp"
-#include "runtime/plant/drive_server.hpp"
+#include "runtime/unit/drive_server.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 using namespace ipos::runtime;  // NOLINT

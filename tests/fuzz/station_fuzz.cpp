@@ -169,7 +169,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const stdlib::UnitType& unit = *stdlib::find_unit(kUnits[input.u8() % std::size(kUnits)]);
   Input same = input;
   Execution plain;
-  plain.fast = plain.skip_idle = false;
+  plain.fast = false;
+  plain.pace = Pace::InTurn;
   Run reference(unit, input, plain);
   if (!reference.able()) return 0;
   Run quick(unit, same, {});

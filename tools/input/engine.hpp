@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "runtime/plant/execution.hpp"
+#include "runtime/unit/execution.hpp"
 #include "tools/cli/verb.hpp"
 
 namespace ipos::tools {

@@ -59,7 +59,7 @@ void refuse_ports(const runtime::PlantFile& plant, const std::string& file) {
 
 RealTimeRun::RealTimeRun(runtime::Plant& plant, const std::string& file) : plant_(plant) {
   // Time is there anyway, and the loop waits from tick to tick.
-  for (const auto& station : plant.stations()) station->stay_awake();
+  for (const auto& station : plant.stations()) station->use_pace(runtime::Pace::InTurn);
   bool failed = false;
   for (const runtime::BusConfig& bus : plant.file().buses) {
     if (bus.port.empty()) continue;

@@ -180,7 +180,7 @@ int run(const RunFlags& flags) {
   std::optional<vm::Rates> rates;
   if (flags.speed != 0) rates = vm::Rates{{flags.speed, flags.speed, flags.speed}};
   runtime::Execution execution = execution_of(flags.engine);
-  execution.skip_idle = !flags.no_skip;
+  if (flags.no_skip) execution.pace = runtime::Pace::InTurn;
   const std::unique_ptr<runtime::Plant> built =
       make_plant(std::move(input), runtime::FileUse::Write, rates, execution);
   runtime::Plant& plant = *built;

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/plant/drive_server.hpp"
+#include "runtime/unit/drive_server.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/input/plant_source.hpp"
 

@@ -46,6 +46,7 @@ class Outlook::Walk {
     outlook.faults_ |= can_fault(command);
     outlook.stops_ |=
         can_fault(command) || (row.flow != Flow::Next && row.flow != Flow::Jump && row.flow != Flow::Branch);
+    outlook.calls_ |= row.flow == Flow::System || row.flow == Flow::SystemCall;
     note_variables(tasks_[static_cast<size_t>(task - 1)], command, row);
     for (size_t n = 0; n < row.operand_count; ++n)
       if (row.kinds[n] == OperandKind::Label)

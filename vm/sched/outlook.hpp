@@ -25,6 +25,9 @@ class Outlook {
   // False: the tasks go round for ever, and all they do is to change variables.
   bool may_stop() const { return stops_; }
 
+  // False: no command asks the host for anything.
+  bool calls() const { return calls_; }
+
   // Of all tasks, without what the host does for system commands. One of the two has all variables where a
   // command computes which one it means.
   const Variables& used() const { return used_; }  // read or written
@@ -41,6 +44,7 @@ class Outlook {
   Variables used_, written_;
   bool faults_ = false;
   bool stops_ = false;
+  bool calls_ = false;
   bool apart_ = true;
 };
 

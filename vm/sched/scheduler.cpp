@@ -1,4 +1,4 @@
-// Single steps and idle skipping.
+// Single steps.
 #include "vm/sched/scheduler.hpp"
 
 #include <algorithm>
@@ -28,12 +28,6 @@ uint32_t TickSteps::step(Machine& machine, uint32_t most) {
   used_ += executed;
   settle(machine);
   return executed;
-}
-
-uint64_t skip_idle(Machine& machine, const Rates& rates, uint64_t most, uint64_t& executed) {
-  const uint64_t ticks = std::min(most, machine.idle_ticks(rates.commands));
-  if (ticks != 0) executed += machine.skip_ticks(rates.commands, ticks);
-  return ticks;
 }
 
 }  // namespace ipos::vm

@@ -39,8 +39,4 @@ class TickSteps {
   uint32_t used_ = 0;  // of the budget of the task
 };
 
-// The same as `ticks` of run_tick, as far as they are idle ones (Machine::idle_ticks): no more than `most`,
-// and 0 when the next one is not. Adds the commands to `executed`.
-uint64_t skip_idle(Machine& machine, const Rates& rates, uint64_t most, uint64_t& executed);
-
 }  // namespace ipos::vm

@@ -174,7 +174,6 @@ TEST(Silence, SettingsThatAreNotSimulated) {
   written.run_until(10 * kMillisecond);
   for (int n = 0; n < 2; ++n) {
     ASSERT_TRUE(written.station(0).drive().serve(written.get().now(), {Service::Write, 8794, 0, 1}));
-    written.station(0).drive().wake();
     for (const std::string& text : written.station(0).drive().take_obstacles())
       EXPECT_EQ(text, "P138 Ramp limit is YES: the ramps are not limited") << n;
   }

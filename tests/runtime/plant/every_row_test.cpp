@@ -146,10 +146,10 @@ class RowPlant {
 
 TEST(EveryRow, IsTheSameInAllModes) {
   std::vector<runtime::Execution> modes;
-  for (const bool skip : {false, true}) {
-    modes.push_back({.fast = false, .compiler = nullptr, .skip_idle = skip});
-    modes.push_back({.fast = true, .compiler = nullptr, .skip_idle = skip});
-    if (vm::jit::available()) modes.push_back({.fast = true, .compiler = machine_code, .skip_idle = skip});
+  for (const runtime::Pace pace : {runtime::Pace::InTurn, runtime::Pace::Lazy}) {
+    modes.push_back({.fast = false, .compiler = nullptr, .pace = pace});
+    modes.push_back({.fast = true, .compiler = nullptr, .pace = pace});
+    if (vm::jit::available()) modes.push_back({.fast = true, .compiler = machine_code, .pace = pace});
   }
   size_t ahead = 0, faults = 0;
   for (uint64_t seed = 1; seed <= 3; ++seed) {
@@ -161,7 +161,7 @@ TEST(EveryRow, IsTheSameInAllModes) {
       now += ms(static_cast<int64_t>(300 + random() % 300));
       for (size_t n = 0; n < plants.size(); ++n) {
         plants[n].plant->run_until(now);
-        for (const auto& station : plants[n].plant->stations()) ahead += station->runs_ahead() ? 1 : 0;
+        for (const auto& station : plants[n].plant->stations()) ahead += runs_ahead(*station) ? 1 : 0;
         ASSERT_NO_FATAL_FAILURE(
             expect_same(plants[n], plants[0], fmt::format("seed {}, mode {} at {}", seed, n, now)));
       }

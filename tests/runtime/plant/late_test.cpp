@@ -159,8 +159,8 @@ TEST(Late, RandomPlantsAreTheSameAsInTurn) {
       expected.plant->run_until(now);
       skipping.plant->run_until(now);
       for (const auto& station : skipping.plant->stations()) {
-        late += station->late() ? 1 : 0;
-        ahead += station->runs_ahead() ? 1 : 0;
+        late += station->behind() ? 1 : 0;
+        ahead += runs_ahead(*station) ? 1 : 0;
         ++looked;
       }
       if (random.pick(0, 2) == 0) continue;  // nobody looks
@@ -184,7 +184,7 @@ TEST(Late, FaultsAreToldInTheirOrder) {
   const auto plant = make_plant(units, {{"A.IPC", program(404)}, {"B.IPC", program(403)}});
   ASSERT_TRUE(plant);
   plant->run_until(ms(1500));
-  for (const auto& station : plant->stations()) EXPECT_TRUE(station->late());
+  for (const auto& station : plant->stations()) EXPECT_TRUE(station->behind());
   plant->run_until(ms(5000));
   std::vector<runtime::JournalEntry> entries;
   std::ranges::copy_if(plant->journal().entries(), std::back_inserter(entries),
@@ -206,7 +206,7 @@ TEST(Late, WhoLooksSeesThePresent) {
   const runtime::Station& station = *plant->stations()[0];
   const auto late_at = [&](int64_t at) {
     plant->run_until(ms(at));
-    return station.late();
+    return station.behind();
   };
   ASSERT_TRUE(late_at(2003));
   const uint64_t commands = station.machine()->task(1).commands;
@@ -237,7 +237,7 @@ TEST(Late, OperatingHoursAndEnergyAreExact) {
   for (const int64_t at : {59'998, 60'000, 60'002, 119'999, 120'000, 130'000}) {
     expected->run_until(ms(at));
     plant->run_until(ms(at));
-    EXPECT_TRUE(station.late());
+    EXPECT_TRUE(station.behind());
     ASSERT_EQ(picture(*plant), picture(*expected)) << at << " ms";
     EXPECT_EQ(station.read(hours), (at + 1) / 60'000);
   }
@@ -249,7 +249,7 @@ TEST(Late, ARequestThatNobodyTakesIsDropped) {
   ASSERT_TRUE(plant);
   plant->run_until(ms(1500));
   Station& station = *plant->stations()[0];
-  ASSERT_TRUE(station.runs_ahead());
+  ASSERT_TRUE(runs_ahead(station));
   ASSERT_TRUE(station.drive().parameters().execute(runtime::ParameterService::WriteVolatile, 11'530, 3));
   EXPECT_EQ(station.variable(530), 3);
   plant->run_until(ms(1520));
@@ -340,7 +340,7 @@ TEST(Late, AFaultEndsReceiving) {
                plant = make_plant(kSenderAndReceiver, sources);
     expected->run_until(ms(2500));
     plant->run_until(ms(1000));
-    EXPECT_TRUE(plant->stations()[1]->late());
+    EXPECT_TRUE(plant->stations()[1]->behind());
     plant->run_until(ms(2500));
     EXPECT_EQ(plant->stations()[1]->fault(), 10);
     ASSERT_EQ(picture(*plant), picture(*expected)) << turns;
@@ -353,7 +353,7 @@ TEST(Late, ATelegramOfAnotherLengthIsToldOf) {
   const auto plant = make_plant(kSenderAndReceiver, sources);
   ASSERT_TRUE(plant);
   plant->run_until(ms(1500));
-  EXPECT_TRUE(plant->stations()[1]->late());
+  EXPECT_TRUE(plant->stations()[1]->behind());
   EXPECT_TRUE(told(*plant, "object 1100 came with 4 bytes, its receive object has 8"));
   EXPECT_EQ(value(*plant, "r", "hears"), 0);
 }
@@ -377,7 +377,7 @@ TEST(Late, ProcessDataOverRs485AreOfNow) {
   for (int64_t n = 1; n <= 20; ++n) {
     expected.plant->run_until(ms(n * 150));
     plant.plant->run_until(ms(n * 150));
-    EXPECT_FALSE(plant.plant->stations()[0]->late()) << "who is on a serial line";
+    EXPECT_FALSE(plant.plant->stations()[0]->behind()) << "who is on a serial line";
     ASSERT_NO_FATAL_FAILURE(expect_same(plant, expected));
   }
 }

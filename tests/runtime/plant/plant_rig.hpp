@@ -72,10 +72,23 @@ inline bool told(const runtime::Plant& plant, const std::string& text) {
   return false;
 }
 
+// Ticks are left out: the program waits, has ended, or goes round in a loop that leads nowhere.
+inline bool is_asleep(const runtime::Station& station) {
+  return station.behind() && station.way() == runtime::ManyTicks::Way::Idle;
+}
+// The tasks run for many ticks, and drive and positioning follow.
+inline bool runs_ahead(const runtime::Station& station) {
+  return station.behind() && station.way() == runtime::ManyTicks::Way::Ahead;
+}
+// Drive and positioning decide nothing.
+inline bool is_steady(const runtime::Station& station) {
+  return station.way() != runtime::ManyTicks::Way::InFull;
+}
+
 // Every millisecond of every station in its turn.
 inline runtime::Execution in_turn() {
   runtime::Execution execution;
-  execution.skip_idle = false;
+  execution.pace = runtime::Pace::InTurn;
   return execution;
 }
 

@@ -95,7 +95,7 @@ class RandomPlant {
 
   std::unique_ptr<Plant> make(bool skip) const {
     runtime::Execution execution;
-    execution.skip_idle = skip;
+    execution.pace = skip ? runtime::Pace::Lazy : runtime::Pace::InTurn;
     return make_plant(text_, sources_, std::nullopt, execution);
   }
   const std::string& text() const { return text_; }
@@ -184,9 +184,9 @@ TEST(Sleep, RandomPlantsAreTheSameAsWithoutIt) {
       expected.plant->run_until(now);
       skipping.plant->run_until(now);
       for (const auto& station : skipping.plant->stations()) {
-        late += station->late() ? 1 : 0;
-        asleep += station->asleep() ? 1 : 0;
-        steady += station->steady() && !station->asleep() ? 1 : 0;
+        late += station->behind() ? 1 : 0;
+        asleep += is_asleep(*station) ? 1 : 0;
+        steady += is_steady(*station) && !is_asleep(*station) ? 1 : 0;
         ++looked;
       }
       if (random.pick(0, 3) == 0) {
@@ -213,7 +213,7 @@ TEST(Sleep, AWaitingProgramSleepsUntilItsWaitIsOver) {
   const auto plant = make_station("long n; main() { while (1) { _Wait(5000); n = n + 1; } }");
   ASSERT_TRUE(plant);
   plant->run_until(ms(3000));
-  EXPECT_TRUE(plant->stations()[0]->asleep());
+  EXPECT_TRUE(is_asleep(*plant->stations()[0]));
   EXPECT_EQ(plant->next_time(), ms(5000));
   EXPECT_EQ(value(*plant, "n"), 0);
   plant->run_until(ms(5000));
@@ -238,7 +238,7 @@ TEST(Sleep, AnInputIsSeenInTheNextTick) {
                                   "[station.parameters]\nP938 = 9\n");
   ASSERT_TRUE(plant);
   plant->run_until(ms(3000) + 500'000);
-  ASSERT_TRUE(plant->stations()[0]->asleep());
+  ASSERT_TRUE(is_asleep(*plant->stations()[0]));
   plant->stations()[0]->inputs().line(2).set = 1;
   EXPECT_EQ(plant->next_time(), ms(3001));
   plant->run_until(ms(3001));
@@ -265,7 +265,7 @@ TEST(Sleep, ATelegramThatBringsNothingNewIsTakenWhenItDoesAgain) {
   runtime::Station& hears = *plant->stations()[1];
   const uint32_t r1 = *hears.find_variable("r1");
   plant->run_until(ms(3002));
-  ASSERT_TRUE(hears.asleep());
+  ASSERT_TRUE(is_asleep(hears));
   EXPECT_EQ(hears.variable(r1), 7);
   const auto written = hears.drive().parameters().execute(runtime::ParameterService::WriteVolatile,
                                                           static_cast<uint16_t>(11000 + r1), 5);
@@ -274,7 +274,7 @@ TEST(Sleep, ATelegramThatBringsNothingNewIsTakenWhenItDoesAgain) {
   plant->run_until(ms(3013));
   EXPECT_EQ(hears.variable(r1), 7);
   plant->run_until(ms(5999));
-  EXPECT_TRUE(hears.asleep());
+  EXPECT_TRUE(is_asleep(hears));
   plant->run_until(ms(6020));
   EXPECT_EQ(hears.variable(r1), 8);
 }
@@ -283,10 +283,10 @@ TEST(Sleep, WhoStaysAwakeLeavesOutNothing) {
   const auto plant = make_station("main() { while (1); }");
   ASSERT_TRUE(plant);
   plant->run_until(ms(3000));
-  ASSERT_TRUE(plant->stations()[0]->asleep());
-  plant->stations()[0]->stay_awake();
+  ASSERT_TRUE(is_asleep(*plant->stations()[0]));
+  plant->stations()[0]->use_pace(runtime::Pace::InTurn);
   plant->run_until(ms(3100));
-  EXPECT_FALSE(plant->stations()[0]->asleep());
+  EXPECT_FALSE(is_asleep(*plant->stations()[0]));
   EXPECT_EQ(plant->next_time(), ms(3101));
 }
 
@@ -315,7 +315,7 @@ TEST_P(WrittenByOthers, ActsInTheSameMillisecond) {
   bool was_steady = false, steady = false;
   int64_t acted = 0;
   for (int64_t n = 1; n <= 2500; ++n) {
-    steady = station.steady();
+    steady = is_steady(station);
     expected->run_until(ms(n));
     plant->run_until(ms(n));
     ASSERT_EQ(picture(*plant), picture(*expected)) << "after " << n << " ms";

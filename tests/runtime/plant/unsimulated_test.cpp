@@ -5,7 +5,7 @@
 #include <set>
 
 #include "runtime/drive/settings.hpp"
-#include "runtime/plant/drive_server.hpp"
+#include "runtime/unit/drive_server.hpp"
 #include "runtime/plant/sbus_port.hpp"
 #include "runtime/positioning/settings.hpp"
 #include "stdlib/faults.hpp"

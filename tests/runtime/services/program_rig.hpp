@@ -7,7 +7,7 @@
 #include <string>
 
 #include "compiler/asm/assembler.hpp"
-#include "runtime/plant/drive_server.hpp"
+#include "runtime/unit/drive_server.hpp"
 #include "runtime/services/drive_variables.hpp"
 #include "runtime/services/mirrored_values.hpp"
 #include "runtime/services/pid_block.hpp"
@@ -16,18 +16,6 @@
 #include "vm/sched/scheduler.hpp"
 
 namespace ipos::tests {
-
-// Counts how often it was told that system variables may be written.
-struct TouchCount final : runtime::Sleeper {
-  void touch() override { ++touches; }
-  bool make_up_variables() override { return false; }
-  bool keep(runtime::ObjectReader&, size_t, const runtime::Frame&) override { return false; }
-  void expect_variables(uint32_t) override {}
-  void run_late() override {}
-  void wake() override {}
-  void make_up() override {}
-  int touches = 0;
-};
 
 class ProgramRig {
  public:
@@ -38,7 +26,7 @@ class ProgramRig {
         mirrored(parameters),
         pid(parameters),
         image(assembled(text)),
-        commands(services(server.memory()), touched, journal, "unit1", &image),
+        commands(services(server.memory()), journal, "unit1", &image),
         machine(verified(), commands.host()) {
     server.connect_program(machine);
     machine.start();
@@ -91,7 +79,6 @@ class ProgramRig {
   runtime::Timers timers;
   runtime::MirroredValues mirrored;
   runtime::PidBlock pid;
-  TouchCount touched;
   vm::Image image;
   runtime::SystemCommands commands;
   vm::Machine machine;

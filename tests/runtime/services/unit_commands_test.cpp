@@ -43,15 +43,6 @@ TEST(FaultReaction, FixedAndUnknownOnesAreF10) {
   }
 }
 
-// Who keeps what system variables were relies on it.
-TEST(SystemCommands, EachIsToldBeforeItWrites) {
-  ProgramRig rig("SET H0 = 1\nRESET H481\nWDOFF\nEND\n");
-  rig.run(1);
-  EXPECT_EQ(rig.touched.touches, 0);
-  rig.run();
-  EXPECT_EQ(rig.touched.touches, 2);
-}
-
 TEST(Reset, TakesTheNumberAndResets) {
   ProgramRig rig("RESET H0\nRESET H1\nEND\n");
   rig.h(1) = 5;
@@ -86,7 +77,7 @@ TEST(Memorize, FailureIsF25) {
     bool memorize(Memorize) override { return false; }
   } broken;
   ProgramRig rig("MEM STORE ALL\nSET H0 = 1\nEND\n");
-  SystemCommands commands(rig.services(broken), rig.touched, rig.journal, "unit1", &rig.image);
+  SystemCommands commands(rig.services(broken), rig.journal, "unit1", &rig.image);
   vm::Machine machine(rig.machine.program(), commands.host());
   machine.start();
   machine.run(1, 10);

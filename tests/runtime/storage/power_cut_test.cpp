@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <random>
 
-#include "runtime/plant/unit_memory.hpp"
+#include "runtime/unit/unit_memory.hpp"
 #include "tests/runtime/storage/fake_medium.hpp"
 
 namespace ipos::runtime {

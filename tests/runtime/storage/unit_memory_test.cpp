@@ -1,5 +1,5 @@
 // What a unit keeps, when it is stored, and what it answers when it cannot be.
-#include "runtime/plant/unit_memory.hpp"
+#include "runtime/unit/unit_memory.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "runtime/pace/pacer.hpp"
 #include "vm/fast/native.hpp"
 #include "vm/verify/verify.hpp"
 
@@ -16,9 +17,7 @@ struct Execution {
 
   bool fast = true;             // the fast engine; else the reference interpreter alone
   Compiler compiler = nullptr;  // for the fast engine; null: no machine code
-  // Milliseconds of a station in which nothing happens are left out, and those of one that can tell nobody
-  // anything are executed later.
-  bool skip_idle = true;
+  Pace pace = Pace::Lazy;
 };
 
 }  // namespace ipos::runtime

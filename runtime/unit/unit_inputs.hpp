@@ -1,14 +1,32 @@
-// The lines that lead into a station, binary and analog: what was set, what a wire or switch says, and what
-// is forced against both.
+// The lines that lead into a unit, binary and analog: what was set, what a wire or switch says, and what is
+// forced against both.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <optional>
 
-#include "runtime/plant/signal.hpp"
+#include "runtime/drive/setpoint.hpp"
 
 namespace ipos::runtime {
+
+// The lines 0..15 are the binary inputs by their bit in InputLevel H483, then the analog ones.
+enum class AnalogLine : uint8_t { Ai1Voltage, Ai1Current, Ai2Voltage, Ai2Current, Frequency, Potentiometer };
+inline constexpr size_t kBinaryLines = 16;
+inline constexpr size_t kInputLines = kBinaryLines + 6;
+
+// Where the value of an analog line (kBinaryLines and above) stands.
+constexpr int32_t& analog_value(AnalogInputs& inputs, size_t line) {
+  switch (static_cast<AnalogLine>(line - kBinaryLines)) {
+    case AnalogLine::Ai1Voltage: return inputs.ai1.millivolt;
+    case AnalogLine::Ai1Current: return inputs.ai1.microampere;
+    case AnalogLine::Ai2Voltage: return inputs.ai2.millivolt;
+    case AnalogLine::Ai2Current: return inputs.ai2.microampere;
+    case AnalogLine::Frequency: return inputs.frequency;
+    case AnalogLine::Potentiometer: break;
+  }
+  return inputs.potentiometer;
+}
 
 struct InputLine {
   int32_t set = 0;
@@ -18,7 +36,7 @@ struct InputLine {
   int32_t value() const { return forced.value_or(driven.value_or(set)); }
 };
 
-class StationInputs {
+class UnitInputs {
  public:
   // To be written at once, not kept: what the lines say together is found anew after this.
   InputLine& line(size_t n) {

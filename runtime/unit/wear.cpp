@@ -1,5 +1,5 @@
 // Rates in whole milliseconds; a span below one counts as one.
-#include "runtime/plant/wear.hpp"
+#include "runtime/unit/wear.hpp"
 
 #include <fmt/format.h>
 

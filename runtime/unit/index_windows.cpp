@@ -1,5 +1,5 @@
 // Working and kept words of the index areas.
-#include "runtime/plant/index_windows.hpp"
+#include "runtime/unit/index_windows.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,5 +1,5 @@
 // Bridges between the bus's, the drive's and the VM's view of one unit.
-#include "runtime/plant/drive_server.hpp"
+#include "runtime/unit/drive_server.hpp"
 
 #include <fmt/format.h>
 
@@ -77,7 +77,6 @@ void DriveServer::disconnect_program() {
 }
 
 tl::expected<int32_t, ReturnCode> DriveServer::serve(Time now, const ParameterRequest& request) {
-  wake();
   memory_.set_time(now);
   const auto service = static_cast<uint8_t>(request.service);
   const ParameterReply reply = parameters_.execute(service, request.index, request.value);
@@ -92,7 +91,6 @@ tl::expected<int32_t, ReturnCode> DriveServer::serve(Time now, const ParameterRe
 }
 
 void DriveServer::take_output(Time /*now*/, OutputChannel channel, std::span<const uint16_t> words) {
-  wake();
   const bool slave = channel == OutputChannel::Group && value("100") == kMasterSbus;
   look_for_obstacles(DataBus::sbus, slave);
   if (!slave) return state_.take_po(PoSource::Sbus, words);
@@ -139,15 +137,9 @@ bool DriveServer::has_po_word(std::initializer_list<PoAssignment> wanted) const 
 }
 
 // Some time after the telegram that is answered.
-ProcessWords DriveServer::input(Time /*now*/) {
-  make_up();
-  return state_.pi();
-}
+ProcessWords DriveServer::input(Time /*now*/) { return state_.pi(); }
 
-void DriveServer::synchronize(Time /*now*/) {
-  wake();
-  ++syncs_;
-}
+void DriveServer::synchronize(Time /*now*/) { ++syncs_; }
 
 SerialParameters DriveServer::serial_parameters() const {
   return {static_cast<uint8_t>(parameters_.value(serial_.address)),
@@ -157,7 +149,6 @@ SerialParameters DriveServer::serial_parameters() const {
 
 void DriveServer::Rs485Data::take_output(Time /*now*/, OutputChannel /*channel*/,
                                          std::span<const uint16_t> words) {
-  drive_.wake();
   drive_.look_for_obstacles(DataBus::rs485, false);
   // The monitoring is restarted by cyclic_request().
   drive_.state_.take_po(PoSource::Rs485, words, false);
@@ -165,24 +156,18 @@ void DriveServer::Rs485Data::take_output(Time /*now*/, OutputChannel /*channel*/
 
 ProcessWords DriveServer::Rs485Data::input(Time now) { return drive_.input(now); }
 
-void DriveServer::Rs485Data::cyclic_request(Time /*now*/) {
-  drive_.wake();
-  drive_.state_.take_request(PoSource::Rs485);
-}
+void DriveServer::Rs485Data::cyclic_request(Time /*now*/) { drive_.state_.take_request(PoSource::Rs485); }
 
 ProcessWords DriveServer::setpoint_to_send(Time /*now*/) {
-  make_up();
   return state_.master_words(sends_speed(parameters_.value(serial_.slave_setpoint)));
 }
 
 void DriveServer::setpoint_received(Time /*now*/, const ProcessWords& words) {
-  wake();
   state_.take_po(PoSource::Rs485, scaled_for_slave(words, value("751")));
 }
 
 void DriveServer::link_lost(Time /*now*/) {
   constexpr uint8_t kRs485Timeout = 43;
-  wake();
   state_.raise_fault(kRs485Timeout, FaultResponse::EmergencyError);  // whatever P833 says (MDX60B/61B p. 30)
 }
 

@@ -1,4 +1,4 @@
-// What the program of a station can still do, starting from where its tasks stand now (vm/sched/outlook.hpp).
+// What the program of a unit can still do, starting from where its tasks stand now (vm/sched/outlook.hpp).
 // It stays true until the program is started anew.
 #pragma once
 
@@ -18,6 +18,7 @@ struct ProgramReach {
   ProgramReach(const vm::Machine& machine, std::span<const VariableObjects* const> objects);
 
   bool mute = false;      // it does not call the bus
+  bool quiet = false;     // its commands write no system variable, and it asks the host for nothing
   bool may_fault = true;  // it can cause a fault
   bool may_stop = true;   // it can do more than change variables in an endless loop
   // Its tasks use no variable that another one of them writes, and no telegram brings a system variable.

@@ -1,5 +1,5 @@
 // What a unit keeps, to and from the medium.
-#include "runtime/plant/unit_memory.hpp"
+#include "runtime/unit/unit_memory.hpp"
 
 #include <fmt/format.h>
 

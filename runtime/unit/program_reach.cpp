@@ -1,5 +1,5 @@
 // The outlook of the machine, and what it means for positions and telegrams.
-#include "runtime/plant/program_reach.hpp"
+#include "runtime/unit/program_reach.hpp"
 
 #include <algorithm>
 
@@ -32,6 +32,9 @@ ProgramReach::ProgramReach(const vm::Machine& machine, std::span<const VariableO
     return variable.use == stdlib::VariableUse::Moves && outlook.used()[variable.number];
   };
   mute = std::none_of(std::begin(kBusCalls), std::end(kBusCalls), reached);
+  quiet = !outlook.calls();
+  for (size_t n = stdlib::kFirstSystemVariable; n <= stdlib::kLastSystemVariable; ++n)
+    quiet = quiet && !outlook.written()[n];
   may_fault = outlook.may_fault();
   may_stop = outlook.may_stop();
   reads_position = std::any_of(std::begin(stdlib::kUsedVariables), std::end(stdlib::kUsedVariables), used);

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "runtime/plant/index_windows.hpp"
-#include "runtime/plant/wear.hpp"
+#include "runtime/unit/index_windows.hpp"
+#include "runtime/unit/wear.hpp"
 #include "runtime/services/journal.hpp"
 #include "runtime/services/retained_memory.hpp"
 #include "runtime/storage/slot_store.hpp"

@@ -1,5 +1,5 @@
-// The drive of a station as the rest of the station sees it: it serves the bus's parameter and process data
-// telegrams and MOVLNK address 253 from the drive's parameters and unit state, and holds its memory.
+// The drive of a unit as telegrams see it: it serves parameters and process data from the drive's parameters
+// and state, for MOVLNK address 253 and, through UnitServer (runtime/plant), for the buses. It holds the memory.
 #pragma once
 
 #include <initializer_list>
@@ -14,8 +14,7 @@
 #include "runtime/bus/movilink/unit_servers.hpp"
 #include "runtime/drive/drive.hpp"
 #include "runtime/drive/parameters.hpp"
-#include "runtime/plant/unit_memory.hpp"
-#include "runtime/services/sleeper.hpp"
+#include "runtime/unit/unit_memory.hpp"
 #include "vm/exec/machine.hpp"
 #include "vm/sched/scheduler.hpp"
 
@@ -36,23 +35,6 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
                        DriveOptions options = {});
   DriveServer(const DriveServer&) = delete;
   DriveServer& operator=(const DriveServer&) = delete;
-
-  // Is told before a bus or a program touches the drive. It must outlive this.
-  void use(Sleeper& sleeper) { sleeper_ = &sleeper; }
-  bool make_up_variables() { return sleeper_ != nullptr && sleeper_->make_up_variables(); }
-  bool late() const { return sleeper_ != nullptr && sleeper_->late(); }
-  bool keep(ObjectReader& reader, size_t object, const Frame& frame) {
-    return sleeper_ != nullptr && sleeper_->keep(reader, object, frame);
-  }
-  void expect_variables(uint32_t first) {
-    if (sleeper_ != nullptr) sleeper_->expect_variables(first);
-  }
-  void wake() {
-    if (sleeper_ != nullptr) sleeper_->wake();
-  }
-  void catch_up() {
-    if (sleeper_ != nullptr) sleeper_->catch_up();
-  }
 
   // Sets a parameter before power-on, named "P813" or by index; nothing when accepted, else why not.
   std::optional<std::string> set_parameter(std::string_view parameter, int32_t value);
@@ -142,14 +124,10 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
     return (told_obstacles_ & told_bit(obstacle, shift)) != 0;
   }
 
-  void make_up() {
-    if (sleeper_ != nullptr) sleeper_->make_up();
-  }
   bool has_po_word(std::initializer_list<PoAssignment> wanted) const;
   void find_rates() const;
   uint16_t index_of(std::string_view number) const;  // 0 for a parameter the unit does not have
 
-  Sleeper* sleeper_ = nullptr;
   ParameterStore parameters_;
   UnitMemory memory_;
   Drive state_;

@@ -1,0 +1,104 @@
+// The order of ticks and telegrams, and when the next event comes.
+#include "runtime/pace/pacer.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+namespace ipos::runtime {
+
+void Pacer::start() {
+  done_to_ = queue_.now();
+  behind_ = false;
+  event_ = queue_.schedule(done_to_, source_, *this, 0);
+}
+
+void Pacer::stop() {
+  catch_up();
+  behind_ = false;
+  queue_.cancel(event_);
+}
+
+void Pacer::use(Pace pace) {
+  touch();
+  pace_ = pace;
+}
+
+void Pacer::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
+  if (run_to(now)) plan(now);
+}
+
+// All ticks up to that at `last`, and the telegrams that came in between. Each finds the time that it belongs
+// to. False: a tick stopped in the middle.
+bool Pacer::run_to(Time last) {
+  const bool nested = std::exchange(runs_, true);
+  for (;;) {
+    const Time until = std::min(last, inbox_.next());
+    while (done_to_ <= until) {
+      const Time first = done_to_;
+      const EventQueue::Past past(queue_, first, source_);
+      if (pace_ == Pace::Lazy)
+        if (const Ticks horizon = timed_.horizon(first); horizon != 0) {
+          const auto left = static_cast<uint64_t>((until - first) / kMillisecond + 1);
+          const auto most = static_cast<Ticks>(std::min<uint64_t>(horizon, left));
+          const Ticks executed = timed_.advance(first, most);
+          assert(executed <= most);
+          done_to_ += static_cast<Time>(executed) * kMillisecond;
+          if (executed != 0) continue;
+        }
+      done_to_ += kMillisecond;
+      if (!timed_.tick(first)) {
+        assert(pace_ == Pace::InTurn && !nested);
+        runs_ = false;
+        return false;
+      }
+    }
+    if (inbox_.next() > last) break;
+    inbox_.read_next();
+  }
+  runs_ = nested;
+  return true;
+}
+
+void Pacer::resume() { plan(queue_.now()); }
+
+// Behind the tick at `now`: what is due is sent, and the next event is the next tick, the end of the silence
+// or the next telegram.
+void Pacer::plan(Time now) {
+  const Time telegram = timed_.send(now);
+  Time next = done_to_;
+  if (pace_ == Pace::Lazy && telegram > next)
+    next = std::min(telegram, next + static_cast<Time>(timed_.silence(next)) * kMillisecond);
+  behind_ = next > done_to_;
+  if (!behind_) timed_.settle();
+  event_ = queue_.schedule(next, source_, *this, 0);
+}
+
+// The tick of this moment counts when its turn is over.
+Time Pacer::last_tick() const {
+  const Time now = queue_.now();
+  const Time last = now / kMillisecond * kMillisecond;
+  return last == now && !queue_.has_passed(source_) ? last - kMillisecond : last;
+}
+
+void Pacer::make_up() {
+  run_to(last_tick());
+  timed_.settle();
+}
+
+void Pacer::touch() {
+  catch_up();
+  timed_.touched();
+  if (!behind_ || runs_) return;
+  behind_ = false;
+  queue_.cancel(event_);
+  event_ = queue_.schedule(done_to_, source_, *this, 0);
+}
+
+bool Pacer::post(TelegramReader& reader, size_t number, std::span<const uint8_t> bytes) {
+  if (!behind_ || inbox_.full() || !timed_.lets_wait()) return false;
+  inbox_.post(last_tick(), reader, number, bytes);
+  return true;
+}
+
+}  // namespace ipos::runtime

@@ -1,0 +1,50 @@
+// What lives in milliseconds, as a Pacer drives it. It reads no clock and schedules nothing.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "runtime/clock/event_queue.hpp"
+#include "runtime/pace/part.hpp"
+
+namespace ipos::runtime {
+
+class Timed {
+ public:
+  // One millisecond, all of it but what is sent: the reference (docs/cycle.md). False: it stops in the middle;
+  // Pacer::resume() says when it has come to its end.
+  virtual bool tick(Time now) = 0;
+
+  // Sends what is due behind the tick at `now`. Returns the next tick that sends something; kNever for none.
+  virtual Time send(Time now) = 0;
+
+  // --- asked of a lazy one only ---
+  // How many of the ticks from `first` on advance() can do. 0: the next one is tick().
+  virtual Ticks horizon(Time first) = 0;
+  // Does `most` ticks at once, or as many of them as it can, and returns how many. 0: nothing has changed, and
+  // the next one is tick().
+  virtual Ticks advance(Time first, Ticks most) = 0;
+  // For how many of the ticks from `first` on nobody can notice when they are executed, but for what is sent.
+  virtual Ticks silence(Time first) = 0;
+  // advance() may leave what only a reader needs; this does it.
+  virtual void settle() = 0;
+  // Somebody is about to write. Everything is settled.
+  virtual void touched() = 0;
+  // A telegram that only writes variables can wait until the ticks have come as far as it.
+  virtual bool lets_wait() const = 0;
+
+ protected:
+  ~Timed() = default;
+};
+
+// Who reads a telegram that has waited: its number and its bytes, as they were posted.
+class TelegramReader {
+ public:
+  virtual void read(size_t number, std::span<const uint8_t> bytes) = 0;
+
+ protected:
+  ~TelegramReader() = default;
+};
+
+}  // namespace ipos::runtime

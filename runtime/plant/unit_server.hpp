@@ -1,0 +1,74 @@
+// What the buses of a station ask of its unit: parameters, process data, setpoints of master/slave operation,
+// the end of an exchange of MOVLNK. Each comes in through the door.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runtime/bus/movilink/exchange.hpp"
+#include "runtime/bus/movilink/master_slave.hpp"
+#include "runtime/bus/movilink/unit_servers.hpp"
+#include "runtime/unit/door.hpp"
+
+namespace ipos::runtime {
+
+// As ProcessDataServer it serves the SBus, rs485_data() serves both RS-485 interfaces.
+class UnitServer final : public ParameterServer, public ProcessDataServer, public MasterSlaveDrive {
+ public:
+  explicit UnitServer(Door& door) : door_(door), rs485_data_(door) {}
+  UnitServer(const UnitServer&) = delete;
+  UnitServer& operator=(const UnitServer&) = delete;
+
+  tl::expected<int32_t, ReturnCode> serve(Time now, const ParameterRequest& request) override {
+    return door_.touch().server().serve(now, request);
+  }
+  bool has_subindices() const override { return door_.look().server().has_subindices(); }
+  void take_output(Time now, OutputChannel channel, std::span<const uint16_t> words) override {
+    door_.touch().server().take_output(now, channel, words);
+  }
+  ProcessWords input(Time /*now*/) override { return door_.look().drive().pi(); }
+  void synchronize(Time now) override { door_.touch().server().synchronize(now); }
+  ProcessDataServer& rs485_data() { return rs485_data_; }
+
+  ProcessWords setpoint_to_send(Time now) override { return door_.touch().server().setpoint_to_send(now); }
+  void setpoint_received(Time now, const ProcessWords& words) override {
+    door_.touch().server().setpoint_received(now, words);
+  }
+  void link_lost(Time now) override { door_.touch().server().link_lost(now); }
+
+ private:
+  // Process data of both RS-485 interfaces: one source, one monitoring.
+  class Rs485Data final : public ProcessDataServer {
+   public:
+    explicit Rs485Data(Door& door) : door_(door) {}
+    void take_output(Time now, OutputChannel channel, std::span<const uint16_t> words) override {
+      door_.touch().server().rs485_data().take_output(now, channel, words);
+    }
+    ProcessWords input(Time /*now*/) override { return door_.look().drive().pi(); }
+    void synchronize(Time) override {}  // there is no sync telegram on RS-485
+    void cyclic_request(Time now) override { door_.touch().server().rs485_data().cyclic_request(now); }
+
+   private:
+    Door& door_;
+  };
+
+  Door& door_;
+  Rs485Data rs485_data_;
+};
+
+// An exchange that MOVLNK has begun comes to its end: its result is written to variables.
+class ExchangeDoor final : public MovilinkClient {
+ public:
+  ExchangeDoor(Door& door, MovilinkClient& client) : door_(door), client_(client) {}
+  void on_exchange_done(Time now, const MovilinkResult& result) override {
+    door_.touch();
+    client_.on_exchange_done(now, result);
+  }
+
+ private:
+  Door& door_;
+  MovilinkClient& client_;
+};
+
+}  // namespace ipos::runtime

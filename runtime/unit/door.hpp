@@ -1,0 +1,60 @@
+// The only way into a unit from outside: buses, surroundings, tools. Who goes in finds it at the present.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "runtime/pace/pacer.hpp"
+#include "runtime/unit/many_ticks.hpp"
+#include "runtime/unit/unit.hpp"
+
+namespace ipos::runtime {
+
+class Door final {
+ public:
+  Door(Unit& unit, ManyTicks& ticks, Pacer& pacer) : unit_(unit), ticks_(ticks), pacer_(pacer) {}
+
+  // To read: everything is as it is now.
+  const Unit& look() const {
+    pacer_.catch_up();
+    return unit_;
+  }
+  // To write: the same, and the next tick finds what was written.
+  Unit& touch() const {
+    pacer_.touch();
+    return unit_;
+  }
+
+  // Ticks are still to be executed.
+  bool is_behind() const { return pacer_.behind(); }
+  // There is something to tell about what telegrams wanted.
+  bool has_reasons() const { return unit_.server().has_reasons(); }
+
+  // --- for telegrams of variables, which come often ---
+  // A telegram that only writes variables waits for its reader; false: it must be read at once.
+  bool post(TelegramReader& reader, size_t number, std::span<const uint8_t> bytes) const {
+    return pacer_.post(reader, number, bytes);
+  }
+  // The variables as the program has left them by now; none without a program.
+  std::span<const int32_t> variables() const {
+    pacer_.execute_pending();
+    if (!ticks_.shows_variables()) ticks_.settle();
+    return unit_.variables();
+  }
+  // They stay as they are until somebody writes, or the port wants repeated frames again.
+  bool variables_rest() const { return pacer_.behind() && ticks_.variables_rest(); }
+  // Behind variables(): to write this one and the next.
+  std::span<int32_t> variables_to_write(uint32_t first) const {
+    if (!pacer_.behind() || ticks_.minds(first)) return touch().variables();
+    return unit_.variables();
+  }
+  // To read what has waited, in its turn.
+  std::span<int32_t> variables_in_turn() const { return unit_.variables(); }
+
+ private:
+  Unit& unit_;
+  ManyTicks& ticks_;
+  Pacer& pacer_;
+};
+
+}  // namespace ipos::runtime

@@ -1,0 +1,248 @@
+// A tick is a function of what the unit is. So when one has left a part as counting alone would have
+// (runtime/pace/part.hpp), and nobody has written what it follows since, the next ones do the same.
+#include "runtime/unit/many_ticks.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "stdlib/system_variables.hpp"
+#include "vm/verify/writes.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+constexpr size_t kControlWord = stdlib::system_variable("ControlWord");
+
+// What did not help is tried again after 2, 4, 8.. ticks, at most these: to compare a tick; to run ahead of a
+// command that stops; to look for an idle loop, where the unit moves and where its program works; to look
+// what the program can still do.
+constexpr uint32_t kSteadyPause = 16, kAheadPause = 64, kIdlePause = 32, kProgramPause = 1024,
+                   kReachPause = 4096;
+
+// How late ticks may be, so that who watches the run sees it move on.
+constexpr Ticks kLatest = 31;
+
+// A loop with more commands is not looked for.
+constexpr uint32_t kLongestLoop = 256;
+
+}  // namespace
+
+// What was found out about another program is forgotten.
+void ManyTicks::know_program() {
+  if (program_ == unit_.programs()) return;
+  program_ = unit_.programs();
+  reach_ = {};
+  reach_backoff_ = {};
+  may_order_ =
+      unit_.machine() != nullptr && vm::may_write(unit_.machine()->program(), kControlWord, kControlWord);
+}
+
+void ManyTicks::tick(Time now) {
+  assert(pending_ == 0);
+  way_ = Way::InFull;
+  left_ = 0;
+  touched_ = false;
+  if (!steady_backoff_.due(now)) {
+    unit_.tick(now);
+    return;
+  }
+  Before before{unit_.drive().moment(), std::nullopt, positioning_commands()};
+  if (unit_.positioning() != nullptr) before.positioning = unit_.positioning()->left();
+  unit_.begin(now);
+  if (unit_.machine() != nullptr) noted_.note(unit_.variables());
+  unit_.run_tasks();
+  unit_.finish(now);
+  know_program();
+  if (is_steady(before)) {
+    way_ = Way::Steady;
+    commands_ = positioning_commands();
+    steady_backoff_.succeed();
+  } else {
+    steady_backoff_.fail(now + kMillisecond, kSteadyPause);
+  }
+}
+
+// The tick has changed nothing but what advance() changes.
+bool ManyTicks::is_steady(const Before& before) {
+  Drive& drive = unit_.drive();
+  const Ticks ticks = drive.steady_since(before.drive);
+  if (ticks == 0 || before.commands != positioning_commands()) return false;
+  if (const PositioningService* positioning = unit_.positioning();
+      positioning != nullptr && unit_.machine() != nullptr) {
+    if (!positioning->reads_system_variables_only()) return false;
+    // In motion only what positioning cannot act on goes on by itself.
+    const bool rests = drive.standing() ? before.positioning == positioning->left() : positioning->idles();
+    if (!rests) return false;
+  }
+  if (unit_.machine() != nullptr) {
+    const std::span<const int32_t> h = unit_.variables();
+    if (!noted_.same(h) || !PidBlock::is_off(h)) return false;
+  }
+  drive.hold_steady(ticks);
+  return true;
+}
+
+// Nobody has written anything since that a part of the unit follows.
+bool ManyTicks::is_still_steady() {
+  if (program_ != unit_.programs() || unit_.drive().steady_left() == 0 || !unit_.inputs().known())
+    return false;
+  if (!touched_) return true;
+  touched_ = false;
+  return commands_ == positioning_commands() &&
+         (unit_.machine() == nullptr || noted_.same(unit_.variables()));
+}
+
+// Behind the tasks of a steady tick: something has happened that a part of the unit must see.
+bool ManyTicks::must_look() {
+  return unit_.server().has_reasons() || unit_.has_fresh_fault() ||
+         (!reach_.quiet && (commands_ != positioning_commands() || !noted_.same(unit_.variables())));
+}
+
+Ticks ManyTicks::horizon(Time first) {
+  if (left_ != 0) return left_;
+  if (way_ == Way::InFull) return 0;
+  settle();
+  const bool touched = touched_;
+  if (!is_still_steady())
+    way_ = Way::InFull;
+  else
+    choose(first, touched);
+  return left_;
+}
+
+// What was written just now the machine sees in a tick of its own: a request of an interrupt (H530).
+void ManyTicks::choose(Time first, bool touched) {
+  const Ticks steady = unit_.drive().steady_left();
+  if (unit_.drive().standing() && idle_backoff_.due(first) && try_idle(first, steady)) return;
+  if (!touched && ahead_backoff_.due(first) && can_run_ahead()) {
+    way_ = Way::Ahead;
+    rates_ = unit_.rates();
+    left_ = steady;
+    return;
+  }
+  way_ = Way::Steady;
+  left_ = 1;
+}
+
+bool ManyTicks::try_idle(Time first, Ticks steady) {
+  const vm::Machine* machine = unit_.machine();
+  uint64_t ticks = steady;
+  variables_rest_ = true;
+  if (machine != nullptr) {
+    if (!unit_.timers().rest(unit_.variables())) {
+      idle_backoff_.fail(first, kIdlePause);
+      return false;
+    }
+    ticks =
+        std::min(ticks, unit_.machine()->idle_ticks(unit_.rates().commands, kLongestLoop, &variables_rest_));
+  }
+  if (ticks == 0) {
+    idle_backoff_.fail(first, kProgramPause);
+    return false;
+  }
+  idle_backoff_.succeed();
+  way_ = Way::Idle;
+  left_ = static_cast<Ticks>(ticks);
+  return true;
+}
+
+// Nothing that is asked here changes before somebody touches the unit.
+bool ManyTicks::can_run_ahead() {
+  if (unit_.machine() == nullptr) return true;
+  if (!reach_.apart || !reach_.quiet) return false;
+  if (reach_.reads_position && !unit_.drive().standing()) return false;
+  return unit_.timers().rest(unit_.variables());
+}
+
+Ticks ManyTicks::advance(Time first, Ticks most) {
+  assert(most <= left_);
+  if (way_ == Way::Steady) return steady_tick(first);
+  if (way_ == Way::Ahead && unit_.machine() != nullptr) {
+    if (!unit_.machine()->run_ahead(rates_.commands, most, reach_.rollback)) {
+      settle();
+      ahead_backoff_.fail(first, kAheadPause);
+      way_ = Way::Steady;
+      return steady_tick(first);
+    }
+    ahead_backoff_.succeed();
+  }
+  left_ -= most;
+  pending_ += most;
+  last_ = first + static_cast<Time>(most - 1) * kMillisecond;
+  return most;
+}
+
+// Drive and positioning go on, and the rest is as in every tick.
+Ticks ManyTicks::steady_tick(Time now) {
+  left_ = 0;
+  unit_.advance(1);
+  if (unit_.machine() == nullptr) {
+    unit_.store(now);
+    return 1;
+  }
+  unit_.count_timers();
+  if (!reach_.quiet) noted_.note(unit_.variables());
+  unit_.run_tasks();
+  if (must_look()) {
+    unit_.take_variables(now);
+    way_ = Way::InFull;
+  }
+  unit_.store(now);
+  return 1;
+}
+
+void ManyTicks::settle_pending() {
+  const Ticks ticks = std::exchange(pending_, 0);
+  if (way_ == Way::Idle && unit_.machine() != nullptr)
+    unit_.machine()->skip_ticks(unit_.rates().commands, ticks);
+  unit_.advance(ticks);
+  unit_.server().memory().set_time(last_);
+}
+
+// What is written is compared with what was there before. A program that can write it with commands of its
+// own is not asked: there the variables are noted each time before it runs.
+void ManyTicks::touched() {
+  assert(pending_ == 0);
+  left_ = 0;
+  idle_backoff_.try_now();
+  if (std::exchange(touched_, true) || way_ == Way::InFull) return;
+  if (reach_.quiet) noted_.note(unit_.variables());
+  way_ = Way::Steady;
+}
+
+bool ManyTicks::minds(uint32_t first) const {
+  return way_ == Way::Idle || is_system_variable(first) || is_system_variable(first + 1);
+}
+
+void ManyTicks::find_reach(Time first) {
+  std::array<const VariableObjects*, 2> objects{};
+  size_t count = 0;
+  for (const VariableObjects* of_bus : unit_.objects())
+    if (of_bus != nullptr) objects[count++] = of_bus;
+  reach_ = ProgramReach(*unit_.machine(), std::span(objects).first(count));
+  reach_backoff_.fail(first, kReachPause);
+}
+
+// Nothing the unit does reaches anybody before its next telegram. A fault of the program would: it takes back
+// telegrams that wait, and when it is reset the program, started anew, calls the bus. It is not reset in time
+// where the program does not order it.
+bool ManyTicks::can_be_late(bool waits) const {
+  const vm::Machine* machine = unit_.machine();
+  if (machine == nullptr) return true;
+  if (!reach_.mute || machine->fault().number != 0) return false;
+  if (!reach_.may_fault && !unit_.timers().watchdog_runs()) return true;
+  return !may_order_ && !waits;
+}
+
+Ticks ManyTicks::silence(Time first, bool waits) {
+  if (way_ == Way::Idle && left_ != 0) return left_;
+  if (lets_wait()) return kLatest;
+  know_program();
+  const vm::Machine* machine = unit_.machine();
+  const bool known = reach_.mute && reach_.apart;
+  if (machine != nullptr && !known && reach_backoff_.due(first) && machine->fault().number == 0)
+    find_reach(first);
+  return can_be_late(waits) ? kLatest : 0;
+}
+
+}  // namespace ipos::runtime

@@ -1,0 +1,95 @@
+// Many milliseconds of a unit at once: finds out how many of the next ticks decide nothing, and does them in
+// one step. What it does is compared with the plain ticks of Unit on every kind of command and part
+// (tests/runtime/plant: late, sleep, every row).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "runtime/pace/backoff.hpp"
+#include "runtime/unit/noted_variables.hpp"
+#include "runtime/unit/program_reach.hpp"
+#include "runtime/unit/unit.hpp"
+
+namespace ipos::runtime {
+
+class ManyTicks final {
+ public:
+  // How the next ticks are done.
+  enum class Way : uint8_t {
+    InFull,  // each of them in full
+    Steady,  // drive and positioning decide nothing; timers and tasks tick by tick
+    Ahead,   // the tasks, too, run for many ticks, and drive and positioning follow when they are asked for
+    Idle,    // and the tasks wait, have ended, or go round in a loop that leads nowhere
+  };
+
+  explicit ManyTicks(Unit& unit) : unit_(unit) {}
+
+  // As Timed (runtime/pace/timed.hpp) has them.
+  void tick(Time now);
+  Ticks horizon(Time first);
+  Ticks advance(Time first, Ticks most);
+  void settle() {
+    if (pending_ != 0) settle_pending();
+  }
+  void touched();
+  // `waits`: frames of the unit that a fault of its program would take back.
+  Ticks silence(Time first, bool waits);
+  bool lets_wait() const { return way_ == Way::Ahead && left_ != 0 && !reach_.may_fault; }
+
+  Way way() const { return way_; }
+
+  // --- what others may do while it is not settled ---
+  // The variables are those of the present.
+  bool shows_variables() const { return way_ != Way::Idle || variables_rest_; }
+  // They stay as they are until somebody writes.
+  bool variables_rest() const { return way_ == Way::Idle && left_ != 0 && variables_rest_; }
+  // Writing this variable and the next one changes what the next ticks do beyond what the tasks read.
+  bool minds(uint32_t first) const;
+  // Telegrams have variables that are not there before settle().
+  bool sends_pending() const { return pending_ != 0 && (reach_.sends_position || !shows_variables()); }
+  // No task ends or begins in these ticks.
+  bool keeps_tasks() const {
+    return left_ != 0 && (way_ == Way::Idle || (way_ == Way::Ahead && !reach_.may_stop));
+  }
+
+ private:
+  // What is compared with what a tick leaves.
+  struct Before {
+    Drive::Moment drive;
+    std::optional<PositioningService::Left> positioning;
+    uint32_t commands;  // to positioning, so far
+  };
+
+  void know_program();
+  bool is_steady(const Before& before);
+  bool is_still_steady();
+  bool must_look();
+  void choose(Time first, bool touched);
+  bool try_idle(Time first, Ticks steady);
+  bool can_run_ahead();
+  Ticks steady_tick(Time now);
+  void settle_pending();
+  void find_reach(Time first);
+  bool can_be_late(bool waits) const;
+  uint32_t positioning_commands() const {
+    return unit_.positioning() == nullptr ? 0 : unit_.positioning()->changes();
+  }
+
+  Unit& unit_;
+  Way way_ = Way::InFull;
+  Ticks left_ = 0;              // ticks that are done in this way
+  Ticks pending_ = 0;           // ticks that drive and positioning, and idle tasks, are behind
+  Time last_ = 0;               // the last one of them
+  bool touched_ = false;        // somebody has written since the last tick
+  bool variables_rest_ = true;  // idle: the loops change no variable, not even for a moment
+  bool may_order_ = true;       // the program can write the control word of the drive
+  uint32_t commands_ = 0;       // to positioning, when the ticks became steady
+  uint32_t program_ = 0;        // that all this is known of
+  vm::Rates rates_;             // of Ahead
+  ProgramReach reach_;
+  Backoff steady_backoff_, idle_backoff_, ahead_backoff_, reach_backoff_;
+  NotedVariables noted_;
+};
+
+}  // namespace ipos::runtime

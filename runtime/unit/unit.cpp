@@ -1,0 +1,144 @@
+// The millisecond of a unit, step by step.
+#include "runtime/unit/unit.hpp"
+
+#include "runtime/services/drive_variables.hpp"
+#include "runtime/services/source_places.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+constexpr uint8_t kFaultWatchdog = 41;
+
+}  // namespace
+
+vm::Limits limits_of(const stdlib::UnitType& unit) {
+  return {unit.variables, unit.program_words, unit.tasks, unit.call_depth};
+}
+
+Unit::Unit(const EventQueue& clock, UnitConfig config, std::optional<vm::Image> program, Journal& journal,
+           std::optional<vm::Rates> rates, const Execution& execution)
+    : rates_(rates),
+      drive_(config.type, config.machine, config.options),
+      clock_(clock),
+      config_(std::move(config)),
+      journal_(journal),
+      execution_(execution),
+      movilink_(config_.type, drive_, drive_, journal, config_.name),
+      image_(std::move(program)) {}
+
+void Unit::begin(Time now) {
+  take_inputs();
+  drive().tick(order_position(now));
+  report_drive(now);
+  if (!machine_) return;
+  raise_events();
+  restart_after_reset(now);
+  show_variables(now);
+  count_timers();
+  if (pid_) pid_->tick(machine_->variables());
+}
+
+bool Unit::run_tasks() {
+  if (!machine_) return true;
+  if (runner_ == nullptr) {
+    vm::run_tick(*machine_, rates());
+    return true;
+  }
+  if (!in_tasks_) steps_.begin(*machine_, rates());
+  in_tasks_ = !runner_->run(*machine_, steps_);
+  return !in_tasks_;
+}
+
+void Unit::finish(Time now) {
+  if (machine_) take_variables(now);
+  store(now);
+}
+
+void Unit::take_inputs() {
+  if (inputs_.known()) return;
+  drive().set_inputs(inputs_.levels());
+  drive().set_analog(inputs_.analog());
+}
+
+PositionControl Unit::order_position(Time now) {
+  if (!positioning_ || !machine_) return {};
+  return positioning_->order(now, machine_->variables(), drive_.syncs());
+}
+
+// An error that is new, or back after a reset, is the event of the ERROR interrupt; warnings are not (ours).
+void Unit::raise_events() {
+  const uint8_t error = drive().error() ? drive().fault() : 0;
+  if (error != 0 && (error != error_seen_ || drive().resets() != resets_seen_))
+    machine_->raise_event(vm::Event::Error);
+  error_seen_ = error;
+}
+
+// A program that a fault has stopped begins anew when the fault is reset, by whatever (ours); its variables
+// keep their values. Where the program memory has been changed meanwhile, what it holds now begins.
+void Unit::restart_after_reset(Time now) {
+  const uint32_t resets = drive().resets();
+  if (resets != resets_seen_ && machine_->fault().number != 0) {
+    std::optional<std::string> refused;
+    if (drive_.memory().program().code() == code_)
+      start_machine();
+    else
+      refused = load_program();
+    if (refused)
+      note(now, Weight::Warning, "program not started: " + *refused);
+    else
+      note(now, Weight::Why, "the program starts anew after the reset of its fault");
+  }
+  resets_seen_ = resets;
+}
+
+void Unit::show_variables(Time now) {
+  const std::span<int32_t> h = machine_->variables();
+  mirrored_->show(h);
+  show_drive(drive(), h);
+  if (positioning_) show_positioning(now);
+}
+
+void Unit::show_positioning(Time now) {
+  positioning_->show(now, machine_->variables());
+  if (positioning_->positioner().touch_probes().probe(0).fresh) machine_->raise_event(vm::Event::TouchProbe);
+  positioning_commands_->tick(*machine_);
+}
+
+void Unit::count_timers() {
+  if (machine_->fault().number != 0) return;
+  const Timers::Expired expired = timers_.tick(machine_->variables());
+  if (expired.timer_0) machine_->raise_event(vm::Event::Timer0);
+  if (expired.watchdog) machine_->raise_fault(kFaultWatchdog, "the watchdog has run out, H490 is 0");
+}
+
+void Unit::take_variables(Time now) {
+  const std::span<int32_t> h = machine_->variables();
+  mirrored_->take(h);
+  take_program_orders(h, drive());
+  if (drive_.has_reasons()) report_reasons(now);
+  if (has_fresh_fault()) report_fault(now);
+}
+
+void Unit::store(Time now) {
+  drive_.memory().tick(now);
+  if (drive_.memory().has_messages()) report_memory(now);
+}
+
+// The last one by itself: what is shown of a motion belongs to the tick before it, too.
+void Unit::advance(Ticks ticks) {
+  if (ticks > 1) drive().advance(ticks - 1);
+  const int32_t before = drive().position();
+  drive().advance(1);
+  if (!machine_) return;
+  const std::span<int32_t> h = machine_->variables();
+  if (positioning_)
+    positioning_->advance(h, drive_.syncs(), before);
+  else
+    show_drive(drive(), h);
+}
+
+std::string Unit::source_place(uint32_t address) const {
+  return image_ && code_ == image_->code ? runtime::source_place(*image_, address) : std::string();
+}
+
+}  // namespace ipos::runtime

@@ -1,0 +1,113 @@
+// Power, program start and memory of a unit.
+#include <fmt/format.h>
+
+#include "runtime/unit/unit.hpp"
+#include "stdlib/system_variables.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+static_assert(vm::kFirstSystemVariable == stdlib::kFirstSystemVariable);
+static_assert(vm::kLastSystemVariable == stdlib::kLastSystemVariable);
+
+}  // namespace
+
+void Unit::power_on() {
+  fault_reported_ = false;
+  told_fault_ = 0;
+  if (was_off_) {
+    drive_.disconnect_program();
+    machine_.reset();
+    drive_.power_cycle();
+  }
+  if (const uint8_t fault = drive_.memory().fault(); fault != 0) drive().raise_fault(fault);
+  if (config_.type.generation == stdlib::Generation::M07) return;
+  positioning_.emplace(drive(), drive_.parameters(), journal_, config_.name,
+                       [this](uint32_t address) { return source_place(address); });
+  positioning_commands_.emplace(*positioning_);
+}
+
+void Unit::restart_program_memory(Time now) {
+  for (std::string& setting : drive_.parameters().tell_settings()) note(now, Weight::Why, std::move(setting));
+  const std::span<const uint32_t> program =
+      image_ ? std::span<const uint32_t>(image_->code) : std::span<const uint32_t>();
+  if (!drive_.memory().program().restart(program))
+    note(now, Weight::Warning, "the memory holds a change of another program; it is dropped");
+  if (drive_.memory().program().code().empty()) return;
+  if (const auto refused = load_program()) note(now, Weight::Warning, "program not started: " + *refused);
+}
+
+void Unit::power_off() {
+  was_off_ = true;
+  if (machine_) machine_->stop_all();
+  movilink_.stop();
+}
+
+StationServices Unit::services() {
+  return {clock_,
+          drive(),
+          drive_.parameters(),
+          timers_,
+          drive_.memory(),
+          movilink_,
+          objects_,
+          positioning_commands_ ? &*positioning_commands_ : nullptr};
+}
+
+std::optional<std::string> Unit::load_program() {
+  const vm::Limits limits = limits_of(config_.type);
+  std::vector<uint32_t> code = drive_.memory().program().code();
+  std::array<vm::Violation, 1> violations{};
+  const vm::Verification checked = vm::verify(code, limits, violations);
+  if (!checked.image) {
+    const vm::RuleInfo& rule = vm::info(violations[0].rule);
+    return fmt::format("word {}: {} [{}]", violations[0].address, rule.meaning, rule.code);
+  }
+  stop_tasks();
+  drive_.disconnect_program();
+  code_ = std::move(code);
+  timers_ = {};
+  mirrored_.emplace(drive_.parameters());
+  if (config_.type.generation == stdlib::Generation::B) pid_.emplace(drive_.parameters());
+  const bool of_image = image_ && code_ == image_->code;
+  commands_.emplace(services(), journal_, config_.name, of_image ? &*image_ : nullptr);
+  const vm::VerifiedImage program = *vm::verify(code_, limits, {}).image;
+  machine_.emplace(program, commands_->host());
+  choose_engine(program);
+  if (positioning_commands_) positioning_commands_->cancel_all();
+  drive_.connect_program(*machine_);
+  start_machine();
+  resets_seen_ = drive().resets();
+  error_seen_ = 0;
+  return std::nullopt;
+}
+
+void Unit::start_machine() {
+  machine_->start();
+  ++programs_;
+  fault_reported_ = false;
+}
+
+void Unit::choose_engine(const vm::VerifiedImage& program) {
+  if (!execution_.fast) return;
+  slots_.assign(vm::fast::Predecoded::slots_needed(code_.size()), {});
+  predecoded_.emplace(program, slots_);
+  native_ = execution_.compiler == nullptr ? nullptr : execution_.compiler(program);
+  machine_->use(&*predecoded_, native_.get());
+}
+
+void Unit::stop_tasks() {
+  if (machine_) machine_->stop_all();
+  movilink_.stop();
+  for (VariableObjects* objects : objects_)
+    if (objects != nullptr) objects->stop();
+}
+
+bool Unit::store_memory(Time now) {
+  const bool stored = drive_.memory().commit();
+  drive_.memory().report_wear();
+  report_memory(now);
+  return stored;
+}
+
+}  // namespace ipos::runtime
