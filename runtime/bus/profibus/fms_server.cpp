@@ -26,6 +26,7 @@ bool belongs_to_every_connection(FmsService service) {
 }  // namespace
 
 FmsResponse FmsServer::initiate(Time now, uint8_t cref, uint8_t master, const FmsMasterEntry& entry) {
+  if (!option_.fms) return rejected("this interface has no FMS");
   const FmsConnection* connection = find_fms_connection(cref);
   if (connection == nullptr) return rejected("there is no such connection");
   if (open_.erase(cref) != 0) return aborted("the connection was open");

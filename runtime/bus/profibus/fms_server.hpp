@@ -7,6 +7,7 @@
 #include <optional>
 #include <string_view>
 
+#include "runtime/bus/profibus/card.hpp"
 #include "runtime/bus/profibus/fms_connection.hpp"
 #include "runtime/bus/profibus/fms_objects.hpp"
 
@@ -40,7 +41,7 @@ class FmsServer {
   // Ours: what one service of the inverter takes; the card's own objects answer at once.
   static constexpr Time kProcessing = 10 * runtime::kMillisecond;
 
-  explicit FmsServer(FmsObjects& objects) : objects_(objects) {}
+  FmsServer(FmsObjects& objects, const OptionType& option) : objects_(objects), option_(option) {}
 
   // A master opens connection `cref`. On an open connection it ends it: both have to begin anew.
   FmsResponse initiate(Time now, uint8_t cref, uint8_t master, const FmsMasterEntry& entry);
@@ -73,6 +74,7 @@ class FmsServer {
   Pending carry_out(Time now, const FmsRequest& request);
 
   FmsObjects& objects_;
+  const OptionType& option_;
   std::map<uint8_t, Open> open_;
 };
 

@@ -22,10 +22,12 @@ struct BaudRate {
   uint16_t max_tsdr;
   uint16_t slot;
   uint8_t fms_min_tsdr;
+  uint16_t metres;  // longest segment of cable type A
 };
 inline constexpr BaudRate kBaudRates[] = {
 // from the highest down
-#define DP_BAUD(baud, keyword, max_tsdr, slot, fms_min_tsdr) {baud, keyword, max_tsdr, slot, fms_min_tsdr},
+#define DP_BAUD(baud, keyword, max_tsdr, slot, fms_min_tsdr, metres) \
+  {baud, keyword, max_tsdr, slot, fms_min_tsdr, metres},
 #include "runtime/bus/profibus/baud_rates.def"
 };
 

@@ -1,7 +1,9 @@
 // The line frame by frame: bit times, idle, collisions, faults, load, and the slave that finds its rate.
 #include "runtime/bus/profibus/line.hpp"
 
+#include <algorithm>
 #include <set>
+#include <utility>
 
 #include "tests/runtime/profibus/line_rig.hpp"
 

@@ -5,6 +5,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <cstdio>
+#include <tuple>
 
 #include "tests/runtime/profibus/mc31_rig.hpp"
 
