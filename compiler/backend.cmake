@@ -11,3 +11,5 @@ ipos_layer(compiler PIC
   SOURCES ${compiler_sources}
   USES frontend asm isa image stdlib
   LIBS fmt::fmt)
+ipos_not_hot(ipos_asm)
+ipos_not_hot(ipos_compiler)

@@ -5,3 +5,4 @@ ipos_layer(plan
           plan/check_cable.cpp plan/check_profile.cpp plan/check_objects.cpp plan/serial_lines.cpp plan/plan.cpp
   USES runtime
   LIBS fmt::fmt)
+ipos_not_hot(ipos_plan)

@@ -6,4 +6,5 @@ if(CMAKE_SYSTEM_NAME STREQUAL Linux)
                      port/slcan_adapter.cpp port/tty.cpp port/pty.cpp port/serial_port.cpp port/can_bridge.cpp port/serial_bridge.cpp
                      port/real_time.cpp
              USES clock bus LIBS fmt::fmt)
+  ipos_not_hot(ipos_port)
 endif()

@@ -34,7 +34,6 @@ struct Match {
   std::optional<Target> target;
 };
 
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 bool same_word(std::string_view a, std::string_view b) {
   return a.size() == b.size() &&

@@ -9,6 +9,9 @@
 
 namespace ipos::compiler {
 
+// Letters of ASCII; assembler text is read without regard to case.
+constexpr char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
 class LineReader {
  public:
   // `line` starts at byte `offset` of the file.

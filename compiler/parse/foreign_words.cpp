@@ -44,7 +44,7 @@ bool is_keyword(TokenKind kind) {
                      [kind](const Keyword& k) { return k.kind == kind; });
 }
 
-bool ends_operand(TokenKind kind) {
+bool is_operand_end(TokenKind kind) {
   return kind == TokenKind::Name || kind == TokenKind::Number || kind == TokenKind::RightParen ||
          kind == TokenKind::RightBracket;
 }
@@ -129,11 +129,11 @@ class Translator {
     const bool negated =
         next() == TokenKind::Not || next() == TokenKind::Minus || next() == TokenKind::BitNot;
     for (const Infix& infix : kInfix)
-      if (equal_but_for_case(token.text, infix.word) && ends_operand(before()) && (operand || negated))
+      if (equal_but_for_case(token.text, infix.word) && is_operand_end(before()) && (operand || negated))
         return foreign(infix.kind, token.text, infix.advice);
-    if (equal_but_for_case(token.text, "not") && !ends_operand(before()) && operand)
+    if (equal_but_for_case(token.text, "not") && !is_operand_end(before()) && operand)
       return foreign(TokenKind::Not, token.text, "write '!', or '~' for bits");
-    if (equal_but_for_case(token.text, "then") && ends_operand(before()) && statement_at(at_ + 1)) {
+    if (equal_but_for_case(token.text, "then") && is_operand_end(before()) && statement_at(at_ + 1)) {
       foreign(token.kind, token.text, "leave it out");
       out_.pop_back();
       return true;
@@ -192,7 +192,7 @@ class Translator {
       case TokenKind::Switch:
         if (is_word_or_number(next())) return inside && ends_statement(before());  // IF a THEN
         return inside && filled_bracket(at_ + 1) && statement_at(behind_bracket(at_ + 1));
-      case TokenKind::Long: return next() == TokenKind::Name && !ends_operand(before());
+      case TokenKind::Long: return next() == TokenKind::Name && !is_operand_end(before());
       case TokenKind::Initial:
         return next() == TokenKind::Long || (next() == TokenKind::Name && kind(at_ + 2) == TokenKind::Name);
       case TokenKind::Typedef: return next() == TokenKind::Struct;

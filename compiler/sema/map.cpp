@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "compiler/sema/variable_use.hpp"
 #include "stdlib/system_variables.hpp"
 
 namespace ipos::compiler {
@@ -54,10 +55,6 @@ checked::MapEntry make_entry(const Context& context, std::string name, std::stri
           names(context, all.writers),
           names(context, all.takers)};
 }
-
-// A number that was taken (numof, DPointer) leads to a block of variables, not only to the one it names: the
-// second variable of a telegram, the eight of MLDATA. Variables so close behind it count as used.
-constexpr uint32_t kReachOfNumber = 8;
 
 bool reached_by_number(const Context& context, uint32_t number) {
   for (uint32_t back = 1; back < kReachOfNumber && back <= number; ++back) {

@@ -35,9 +35,6 @@ struct ReadArgument {
 constexpr ReadArgument kReadArguments[] = {{"SETSYS", 1}, {"SCOM", 1},  {"MOVLNK", 0}, {"VARINT", 0},
                                            {"BMOV", 2},   {"BMOVN", 2}, {"COPY", 1}};
 
-// What is given by number may be the first of several variables: the eight of MLDATA.
-constexpr uint32_t kReachOfNumber = 8;
-
 class VariableUse {
  public:
   explicit VariableUse(Context& context) : context_(context) {}

@@ -2,10 +2,19 @@
 // family, a number written as a constant, and variables that nobody writes.
 #pragma once
 
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include "compiler/ast/ast.hpp"
 #include "compiler/sema/context.hpp"
 
 namespace ipos::compiler {
+
+// A number that was taken (numof, DPointer) leads to a block of variables, not only to the one it names: the
+// second variable of a telegram, the eight of MLDATA. Variables so close behind it count as used.
+inline constexpr uint32_t kReachOfNumber = 8;
 
 // After all bodies were checked: looks at the accesses of the whole program.
 void check_variable_use(const ast::Program& program, Context& context);

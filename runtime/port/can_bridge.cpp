@@ -10,8 +10,8 @@ namespace {
 enum Event : uint32_t { kArrival, kRestart };
 
 constexpr uint64_t kTag = 1;
-constexpr size_t kWaitingLimit =
-    4096;  // frames from the port; the rest waits in the system, which counts losses (ours)
+// From the port; the rest waits in the system, which counts losses (ours).
+constexpr size_t kMostFrames = 4096;
 
 // Recovery from bus-off: 128 times 11 recessive bits (ISO 11898-1).
 constexpr Time kRecoveryBits = 128 * 11;
@@ -27,7 +27,7 @@ CanBridge::CanBridge(EventQueue& queue, uint32_t source, CanLine& line, CanPort&
 
 // --- from the port
 
-bool CanBridge::has_room() const { return arrivals_.size() < kWaitingLimit; }
+bool CanBridge::has_room() const { return arrivals_.size() < kMostFrames; }
 
 PortNeeds CanBridge::needs() const {
   PortNeeds needs = port_.needs();
@@ -53,7 +53,7 @@ bool CanBridge::collect(Time epoch) {
       arrive(arrival.at - epoch, arrival.frame);
   }
   notes_.note(fmt::format("{}: {} frames wait for the simulated line: the real bus is faster than it",
-                          port_.name(), kWaitingLimit));
+                          port_.name(), kMostFrames));
   return true;
 }
 

@@ -14,12 +14,11 @@ namespace ipos::runtime {
 namespace {
 
 constexpr std::string_view kSlcan = "slcan:";
-constexpr std::string_view kPty = "pty:";
 constexpr uint32_t kSlcanSerialBaud = 115'200;  // of a device without @; USB adapters do not mind (ours)
 
 CanPortResult open_slcan(std::string_view name, std::string_view device, uint32_t baud, RealClock& clock) {
-  if (device.starts_with(kPty))
-    return SlcanAdapter::open(std::string(device.substr(kPty.size())), baud, clock);
+  if (device.starts_with(kPtyPort))
+    return SlcanAdapter::open(std::string(device.substr(kPtyPort.size())), baud, clock);
   uint32_t serial_baud = kSlcanSerialBaud;
   const size_t at = device.rfind('@');
   if (at != std::string_view::npos) {

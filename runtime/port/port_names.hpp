@@ -12,6 +12,9 @@ inline constexpr std::string_view kPortNames =
     "a CAN port is can0, vcan0, slcan:/dev/ttyACM0 or slcan:pty:/path; a serial port is /dev/ttyUSB0, "
     "/dev/ttyUSB0@16ms, ./tty1 or pty:/path";
 
+// Before the path of a pseudo-terminal.
+inline constexpr std::string_view kPtyPort = "pty:";
+
 enum class PortKind : uint8_t { Can, Serial };
 
 // Serial: a pseudo-terminal, a path, or the name of a device in the current folder. CAN: anything else.

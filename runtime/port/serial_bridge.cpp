@@ -11,7 +11,7 @@
 namespace ipos::runtime {
 namespace {
 
-constexpr size_t kWaitingLimit = 4096;  // bytes from the port; the rest waits in the system (ours)
+constexpr size_t kMostBytes = 4096;  // bytes from the port; the rest waits in the system (ours)
 
 // How long after its time on the wire a byte may come back as an echo (ours: two 16 ms timers of USB
 // adapters).
@@ -54,7 +54,7 @@ SerialBridge::SerialBridge(EventQueue& queue, uint32_t source, Rs485Line& line, 
       character_(character_time(line.baud())),
       pace_(std::max(port.latency(), slack), character_) {}
 
-bool SerialBridge::has_room() const { return arrivals_.size() < kWaitingLimit; }
+bool SerialBridge::has_room() const { return arrivals_.size() < kMostBytes; }
 
 PortNeeds SerialBridge::needs() const {
   PortNeeds needs = port_.needs();
@@ -80,7 +80,7 @@ bool SerialBridge::collect(Time epoch) {
     }
   }
   notes_.note(fmt::format("{}: {} bytes wait for the simulated line: they come faster than its {} baud",
-                          port_.name(), kWaitingLimit, line_.baud()));
+                          port_.name(), kMostBytes, line_.baud()));
   return true;
 }
 

@@ -13,7 +13,6 @@
 namespace ipos::runtime {
 namespace {
 
-constexpr std::string_view kPty = "pty:";
 constexpr size_t kReadSize = 512;
 
 std::string_view as_text(std::span<const uint8_t> bytes) {
@@ -164,8 +163,8 @@ std::optional<DeviceName> parse_device(std::string_view name) {
 SerialPortResult open_serial_port(std::string_view name, const SerialSettings& settings, RealClock& clock) {
   if (settings.baud != 9600 && settings.baud != 57600)
     return tl::unexpected(port_error(PortFault::NoBaudRate, name, "MOVILINK has 9600 and 57600 bit/s"));
-  if (name.starts_with(kPty)) {
-    auto pty = Pty::create(std::string(name.substr(kPty.size())), kSerialPortQueue);
+  if (name.starts_with(kPtyPort)) {
+    auto pty = Pty::create(std::string(name.substr(kPtyPort.size())), kSerialPortQueue);
     if (!pty) return tl::unexpected(pty.error());
     return std::make_unique<PseudoTerminal>(std::string(name), std::move(*pty), settings.even_parity, clock);
   }

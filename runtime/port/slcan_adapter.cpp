@@ -10,7 +10,6 @@
 namespace ipos::runtime {
 namespace {
 
-constexpr size_t kLongestLine = 31;
 constexpr std::string_view kVersion = "V0101\r";  // hardware and software 1 (ours)
 constexpr std::string_view kSerial = "NIPOS\r";   // ours
 constexpr uint8_t kDataOverrun = 0x08;            // status flag bit 3
@@ -20,7 +19,7 @@ bool is_hex(char c) { return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'F') ||
 }  // namespace
 
 CanPortResult SlcanAdapter::open(const std::string& path, uint32_t baud, RealClock& clock) {
-  auto pty = Pty::create(path, kCanPortQueue * kLongestLine);
+  auto pty = Pty::create(path, kCanPortQueue * kLongestSlcanLine);
   if (!pty) return tl::unexpected(pty.error());
   return std::unique_ptr<CanPort>(new SlcanAdapter(std::move(*pty), baud, clock));
 }

@@ -9,7 +9,6 @@
 namespace ipos::runtime {
 namespace {
 
-constexpr size_t kLongestLine = 31;
 
 // What opens the channel, in order; the answers come in the same order.
 constexpr std::string_view kOpening[] = {"close", "bit rate (S)", "time stamps (Z)", "open (O)"};
@@ -21,7 +20,7 @@ SlcanClient::SlcanClient(std::string path, Tty tty, RealClock& clock)
     : name_("slcan:" + std::move(path)),
       tty_(std::move(tty)),
       clock_(clock),
-      out_(kCanPortQueue * kLongestLine) {}
+      out_(kCanPortQueue * kLongestSlcanLine) {}
 
 CanPortResult SlcanClient::open(std::string path, uint32_t serial_baud, uint32_t baud, RealClock& clock) {
   const auto rate = slcan_rate_digit(baud);

@@ -19,6 +19,7 @@ namespace ipos::runtime {
 inline constexpr char kSlcanOk = '\r';
 inline constexpr char kSlcanError = '\a';
 inline constexpr uint32_t kSlcanStampPeriod = 60'000;  // ms
+inline constexpr size_t kLongestSlcanLine = 31;
 
 // Rates of S0..S8.
 inline constexpr std::array<uint32_t, 9> kSlcanRates = {10'000,  20'000,  50'000,  100'000,  125'000,
@@ -57,7 +58,7 @@ class SlcanLines {
   void clear();
 
  private:
-  static constexpr size_t kLimit = 40;  // the longest line has 31 characters
+  static constexpr size_t kLimit = kLongestSlcanLine + 9;
 
   std::string pending_;
   std::string complete_;

@@ -1,7 +1,6 @@
 // Completion and signature help. The text around the cursor is broken while somebody types, so both read
 // words backwards from the cursor and ask the index only for what the words mean.
 #include <algorithm>
-#include <cctype>
 
 #include "stdlib/headers.hpp"
 #include "stdlib/language_tables.hpp"
@@ -24,7 +23,6 @@ enum Kind : int {
   kStruct = 22
 };
 
-bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
 std::string_view take_word_back(std::string_view& text) {

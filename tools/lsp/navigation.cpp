@@ -1,6 +1,5 @@
 // Where a name is: definition, references, highlights, and the cursor all requests begin with.
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 
 #include "stdlib/headers.hpp"
@@ -18,7 +17,6 @@ std::string clean(const std::string& path) {
   return path.starts_with('/') ? std::filesystem::path(path).lexically_normal().string() : path;
 }
 
-bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
 // The symbol of another program that stands at the same place of the same file, or that the language brings
 // under the same name.

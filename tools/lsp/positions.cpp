@@ -6,7 +6,7 @@
 namespace ipos::tools::lsp {
 namespace {
 
-constexpr std::string_view kFile = "file://";
+constexpr std::string_view kFileScheme = "file://";
 
 int hex_digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
@@ -38,8 +38,8 @@ size_t units(size_t character, Encoding encoding) {
 }  // namespace
 
 std::string path_of(std::string_view uri) {
-  if (!uri.starts_with(kFile)) return std::string(uri);
-  uri.remove_prefix(kFile.size());
+  if (!uri.starts_with(kFileScheme)) return std::string(uri);
+  uri.remove_prefix(kFileScheme.size());
   uri.remove_prefix(std::min(uri.find('/'), uri.size()));  // a host
   std::string path;
   for (size_t n = 0; n < uri.size(); ++n) {
@@ -58,7 +58,7 @@ std::string uri_of(std::string_view path) {
   if (!path.starts_with('/') && !drive)
     return path.find(':') != std::string_view::npos ? std::string(path)
                                                     : std::string(kHeaderScheme) + std::string(path);
-  std::string uri(kFile);
+  std::string uri(kFileScheme);
   if (drive) uri += '/';
   for (const char c : path) {
     const bool plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||

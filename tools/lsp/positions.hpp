@@ -19,6 +19,11 @@ inline constexpr std::string_view kHeaderScheme = "ipos:/";
 std::string path_of(std::string_view uri);
 std::string uri_of(std::string_view path);
 
+// Of a name of the language.
+constexpr bool is_word(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
+
 // Every offset and every position is fine: what lies outside is taken to the nearest place inside.
 uint32_t offset_of(std::string_view text, const Json& position, Encoding encoding);
 Json position_of(std::string_view text, uint32_t offset, Encoding encoding);

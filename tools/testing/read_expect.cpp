@@ -8,10 +8,10 @@ namespace {
 
 using runtime::SignalKind;
 
-constexpr std::string_view kWhat = "an [[expect]]";
+constexpr std::string_view kExpect = "an [[expect]]";
 
 std::optional<Subject> read_event(PlantReader& reader, const toml::table& table, const char* key) {
-  const runtime::BusConfig* bus = read_item_bus(reader, table, kWhat);
+  const runtime::BusConfig* bus = read_item_bus(reader, table, kExpect);
   if (bus == nullptr) return std::nullopt;
   Subject subject;
   const bool serial = runtime::is_serial(bus->kind);
@@ -19,7 +19,7 @@ std::optional<Subject> read_event(PlantReader& reader, const toml::table& table,
   subject.bus = bus->name;
   subject.pattern = "*";
   if (key == nullptr) return subject;
-  subject.pattern = reader.text(table, key, kWhat, true);
+  subject.pattern = reader.text(table, key, kExpect, true);
   if (serial != (std::string_view(key) == "telegram")) {
     reader.error(place_of(*table.get(key)),
                  fmt::format("bus '{}' carries {}", bus->name,
@@ -34,7 +34,7 @@ std::optional<Subject> read_subject(PlantReader& reader, const toml::table& tabl
     if (table.contains(key)) return read_event(reader, table, key);
   if (table.contains("bus")) return read_event(reader, table, nullptr);
   Subject subject;
-  subject.signal.station = read_item_station(reader, table, kWhat);
+  subject.signal.station = read_item_station(reader, table, kExpect);
   if (const toml::node* node = table.get("process_data")) {
     const auto word = read_word(reader, *node, true);
     if (!word) return std::nullopt;
@@ -43,7 +43,7 @@ std::optional<Subject> read_subject(PlantReader& reader, const toml::table& tabl
     subject.signal.name = node->as_string()->get();
     return subject;
   }
-  if (!reader.signal(table, kWhat, {"variable", "parameter", "input", "output", "state"}, subject.signal))
+  if (!reader.signal(table, kExpect, {"variable", "parameter", "input", "output", "state"}, subject.signal))
     return std::nullopt;
   return subject;
 }
@@ -133,7 +133,7 @@ bool read_kind(PlantReader& reader, const toml::table& table, Expect& expect) {
     if (found != nullptr && found->kind == row.kind && row.key == "at_most" && found->key == "at_least")
       continue;
     if (found != nullptr) {
-      reader.error(place_of(*node), fmt::format("{} has either {} or {}", kWhat, found->key, row.key));
+      reader.error(place_of(*node), fmt::format("{} has either {} or {}", kExpect, found->key, row.key));
       return false;
     }
     found = &row;
@@ -154,7 +154,7 @@ bool read_kind(PlantReader& reader, const toml::table& table, Expect& expect) {
 
 void read_times(PlantReader& reader, const toml::table& table, Expect& expect) {
   const auto time = [&](const char* key, std::optional<Time>& to) {
-    if (table.contains(key)) to = reader.duration(table, key, kWhat, true);
+    if (table.contains(key)) to = reader.duration(table, key, kExpect, true);
   };
   time("within", expect.within);
   time("during", expect.during);
@@ -169,8 +169,8 @@ void read_times(PlantReader& reader, const toml::table& table, Expect& expect) {
     reader.error(place_of(*table.get("during")),
                  "during belongs to always, never, times, at_least, at_most, every or sequence");
   if (expect.kind == Expect::Kind::Every) {
-    expect.period = reader.duration(table, "every", kWhat, true);
-    if (table.contains("tolerance")) expect.tolerance = reader.duration(table, "tolerance", kWhat, true);
+    expect.period = reader.duration(table, "every", kExpect, true);
+    if (table.contains("tolerance")) expect.tolerance = reader.duration(table, "tolerance", kExpect, true);
     if (expect.period < runtime::kShortest)
       reader.error(place_of(*table.get("every")), "every is less than a millisecond");
   }

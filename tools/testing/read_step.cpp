@@ -9,7 +9,7 @@
 namespace ipos::tools::testing {
 namespace {
 
-constexpr std::string_view kWhat = "a [[step]]";
+constexpr std::string_view kStep = "a [[step]]";
 
 // What a step does, by the key that says so, and the keys it takes beside those of every step.
 struct Action {
@@ -21,15 +21,15 @@ struct Action {
 std::optional<Step> read_signal(PlantReader& reader, const toml::table& table) {
   runtime::Stimulus stimulus;
   stimulus.place = place_of(table);
-  stimulus.signal.station = read_item_station(reader, table, kWhat);
-  if (!runtime::read_stimulus(reader, table, kWhat, stimulus)) return std::nullopt;
+  stimulus.signal.station = read_item_station(reader, table, kStep);
+  if (!runtime::read_stimulus(reader, table, kStep, stimulus)) return std::nullopt;
   return stimulus;
 }
 
 std::optional<Step> read_process_data(PlantReader& reader, const toml::table& table) {
   using Act = ProcessDataStep::Action;
   ProcessDataStep step;
-  step.station = read_item_station(reader, table, kWhat);
+  step.station = read_item_station(reader, table, kStep);
   const auto word = read_word(reader, *table.get("process_data"), false);
   if (!word) return std::nullopt;
   step.word = *word;
@@ -77,8 +77,8 @@ std::optional<std::vector<uint8_t>> read_bytes(std::string_view text) {
 }
 
 std::optional<Step> read_send(PlantReader& reader, const toml::table& table) {
-  const runtime::BusConfig* bus = read_item_bus(reader, table, kWhat);
-  const std::string text = reader.text(table, "send", kWhat, true);
+  const runtime::BusConfig* bus = read_item_bus(reader, table, kStep);
+  const std::string text = reader.text(table, "send", kStep, true);
   if (bus == nullptr || text.empty()) return std::nullopt;
   SendStep step;
   step.bus = bus->name;
@@ -128,14 +128,14 @@ std::optional<Step> read_line_fault(PlantReader& reader, const toml::table& tabl
 }
 
 std::optional<Step> read_drive_fault(PlantReader& reader, const toml::table& table) {
-  return DriveFaultStep{read_item_station(reader, table, kWhat),
+  return DriveFaultStep{read_item_station(reader, table, kStep),
                         static_cast<uint8_t>(reader.count(table, "drive_fault", UINT8_MAX, 0))};
 }
 
 // The value of a key that takes one of a few words: its place among them, or nothing with an error.
 std::optional<size_t> read_choice(PlantReader& reader, const toml::table& table, std::string_view key,
                                   const std::vector<std::string_view>& words) {
-  const std::string text = reader.text(table, key, kWhat, true);
+  const std::string text = reader.text(table, key, kStep, true);
   const auto found = std::find(words.begin(), words.end(), text);
   if (found != words.end()) return static_cast<size_t>(found - words.begin());
   reader.error(place_of(*table.get(key)), fmt::format("{} is one of {}", key, fmt::join(words, ", ")));
@@ -143,14 +143,14 @@ std::optional<size_t> read_choice(PlantReader& reader, const toml::table& table,
 }
 
 std::optional<Step> read_program(PlantReader& reader, const toml::table& table) {
-  const std::string station = read_item_station(reader, table, kWhat);
+  const std::string station = read_item_station(reader, table, kStep);
   const auto choice = read_choice(reader, table, "program", {"start", "stop", "restart"});
   if (!choice) return std::nullopt;
   return ProgramStep{station, static_cast<ProgramStep::Action>(*choice)};
 }
 
 std::optional<Step> read_power(PlantReader& reader, const toml::table& table) {
-  const std::string station = read_item_station(reader, table, kWhat);
+  const std::string station = read_item_station(reader, table, kStep);
   const auto choice = read_choice(reader, table, "power", {"off", "on"});
   if (!choice) return std::nullopt;
   return PowerStep{station, *choice == 1};
@@ -184,13 +184,13 @@ std::optional<Step> read_step(PlantReader& reader, const toml::table& table) {
     if (!table.contains(action.key)) continue;
     if (found != nullptr) {
       reader.error(place_of(*table.get(action.key)),
-                   fmt::format("{} does one thing: {} or {}", kWhat, found->key, action.key));
+                   fmt::format("{} does one thing: {} or {}", kStep, found->key, action.key));
       return std::nullopt;
     }
     found = &action;
   }
   if (found == nullptr) {
-    reader.error(place_of(table), fmt::format("{} needs one of {}", kWhat, fmt::join(names, ", ")));
+    reader.error(place_of(table), fmt::format("{} needs one of {}", kStep, fmt::join(names, ", ")));
     return std::nullopt;
   }
   std::vector<std::string_view> keys = {IPOS_ITEM_KEYS, found->key};

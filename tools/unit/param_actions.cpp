@@ -24,13 +24,6 @@ std::string number_of(const Parameter& parameter) {
   return parameter.number.empty() ? "" : "P" + std::string(parameter.number);
 }
 
-std::optional<int32_t> whole(std::string_view text) {
-  int32_t value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
 std::string access_text(const Parameter& p) {
   std::string text;
   for (const auto& [has, word] :
@@ -153,7 +146,7 @@ int set_parameters(ParameterAccess& access, const std::vector<std::string>& assi
     tl::expected<int32_t, std::string> value = 0;
     if (target.parameter)
       value = stdlib::parse_parameter_text(*target.parameter, words);
-    else if (const auto number = whole(words))
+    else if (const auto number = whole_number<int32_t>(words))
       value = *number;
     else
       value = tl::unexpected(std::string("expected a whole number"));

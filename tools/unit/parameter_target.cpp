@@ -3,22 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-#include <optional>
-
 #include "tools/cli/failure.hpp"
 
 namespace ipos::tools {
-namespace {
-
-std::optional<uint16_t> whole(std::string_view text) {
-  uint16_t value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
-}  // namespace
 
 Target find_target(const stdlib::UnitType& unit, const std::string& name) {
   if (const stdlib::Parameter* parameter = stdlib::parameter_table(unit).find(name)) {
@@ -28,9 +15,10 @@ Target find_target(const stdlib::UnitType& unit, const std::string& name) {
     return {parameter->index, parameter};
   }
   if (name.starts_with('H'))
-    if (const auto variable = whole(std::string_view(name).substr(1)); variable && *variable < unit.variables)
+    if (const auto variable = whole_number<uint16_t>(std::string_view(name).substr(1));
+        variable && *variable < unit.variables)
       return {static_cast<uint16_t>(kFirstVariable + *variable), nullptr};
-  if (const auto index = whole(name); index && *index > 999) return {*index, nullptr};
+  if (const auto index = whole_number<uint16_t>(name); index && *index > 999) return {*index, nullptr};
   throw Failure(kBadInput,
                 fmt::format("unit {} has no parameter '{}'; write P130, an index such as 8470, or H20",
                             unit.name, name));
