@@ -13,6 +13,7 @@
 #include "runtime/drive/control.hpp"
 #include "runtime/drive/fault_state.hpp"
 #include "runtime/drive/link_watch.hpp"
+#include "runtime/drive/outputs.hpp"
 #include "runtime/drive/process_data.hpp"
 #include "runtime/drive/setpoint.hpp"
 #include "runtime/drive/setpoint_memory.hpp"
@@ -75,7 +76,8 @@ struct Decisions {
   bool waiting = false;          // display t
   bool can_position = false;
   bool ready = false;
-  bool ipos_fault = false;  // an error of the program is pending
+  uint32_t output_flags = 0;   // of the outputs, those that follow from the situation
+  uint32_t overload_flag = 0;  // that of the motor in charge
   uint16_t reserved_control_bits = 0;
   std::optional<int32_t> bus_position;
 

@@ -49,7 +49,8 @@ Drive::Drive(ParameterStore& parameters, const MachineData& machine)
       reader_(parameters),
       settings_(reader_.read(parameters)),
       settings_version_(parameters.changes()),
-      state_(Axis(machine_of(machine, is_m07_))) {
+      state_(Axis(machine_of(machine, is_m07_))),
+      shown_for_(settings_version_ - 1) {
   now_.set(&Situation::starting_up, starting_up());
   parameters.connect(*this);
 }
@@ -194,23 +195,24 @@ void Drive::on_parameter_written(uint16_t index, int32_t value) {
 
 // --- the millisecond ---
 
-void Drive::tick(const PositionControl& position) {
-  steady_left_ = 0;
-  take(position);
-  count();
-  decided();
-  // What follows from decisions is done once; faults and what the machine suffers need watching on.
-  const bool anew = !applied_ || now_->faults.shown() != 0;
-  if (anew) apply();
-  if (anew || links_run() || machine_suffers()) watch(anew);
-  move();
-  show();
-}
-
 inline void Drive::take(const PositionControl& position) {
   state_.position = position;
   now_.set(&Situation::positioning, position.controls);
   now_.set(&Situation::halt, position.halt);
+}
+
+// What follows from decisions is done once; faults, links and what the machine suffers need watching on.
+void Drive::decide_and_watch() {
+  decided();
+  const bool anew = !applied_ || now_->faults.shown() != 0;
+  if (anew) apply();
+  if (watch_links() || anew || machine_suffers()) {
+    watch_machine();
+    select_parameter_set();
+  }
+  decided();
+  const bool quiet = applied_ && now_->faults.shown() == 0 && !links_run();
+  quiet_for_ = quiet ? now_.changes() : now_.changes() - 1;
 }
 
 // Latches and edges; what that leads to is decided at once.
@@ -221,38 +223,46 @@ void Drive::apply() {
   decided();
 }
 
-// The machine is looked at when decisions, faults or its own state can lead to something.
-void Drive::watch(bool anew) {
-  const bool missed = watch_links();
-  if (!missed && !anew && !machine_suffers()) return;
-  watch_machine();
-  select_parameter_set();
+// The order of the axis, all but a speed that positioning gives it.
+void Drive::choose_order() {
+  if (state_.position.controls) {
+    state_.stopped_by_setpoint = false;
+    state_.setpoint.note = SetpointNote::None;
+  } else {
+    const SetpointNote note = state_.setpoint.note;
+    state_.setpoint = next_setpoint(decisions_);
+    if (state_.setpoint.note != note) now_.change();
+  }
+  const Verdict verdict = verdict_of(decisions_);
+  if (verdict.reason != blocked_by_) now_.change();
+  blocked_by_ = verdict.reason;
+  if (order_for_ != verdict.command) {
+    order_for_ = verdict.command;
+    order_ = axis_order(verdict.command);
+  }
+  order_.target = set().change_direction == 1 ? -state_.setpoint.speed : state_.setpoint.speed;
 }
 
 inline void Drive::move() {
-  const Decisions& d = decided();
-  if (state_.position.controls) {
-    state_.stopped_by_setpoint = false;
-    state_.setpoint.speed = state_.setpoint.requested = state_.position.speed;
-    state_.setpoint.note = SetpointNote::None;
-  } else {
-    state_.setpoint = next_setpoint(d);
-  }
-  state_.axis.step(next_order(verdict_of(d).command));
+  // P350 does not turn positions round (ours).
+  if (state_.position.controls)
+    order_.target = state_.setpoint.speed = state_.setpoint.requested = state_.position.speed;
+  state_.axis.step(order_);
   now_.set(&Situation::output_stage, state_.axis.output_stage());
   now_.set(&Situation::reversing, is_reversing(state_.axis.setpoint()));
 }
 
-inline bool Drive::links_run() const {
+bool Drive::links_run() const {
   return std::any_of(state_.watches.begin(), state_.watches.end(),
                      [](const LinkWatch& link) { return link.runs(); });
 }
 
-// Something of the axis is, or was, beyond where watch_machine() lets it be.
+// Something of the axis is beyond where watch_machine() lets it be.
 inline bool Drive::machine_suffers() const {
   const PowerSection& power = state_.axis.power();
-  return state_.axis.current_limited() || state_.limited_ms != 0 || power.dc_link() > kOvervoltage ||
-         power.heat_sink() > kOvertemperature || power.motor_utilization() >= kFullUtilization;
+  return power.dc_link() > kOvervoltage || power.heat_sink() > kOvertemperature ||
+         power.motor_utilization() >= kFullUtilization ||
+         (state_.limited_ms != 0 && state_.limited_ms > set().speed_monitoring_delay);
 }
 
 void Drive::advance(Ticks ticks) {
@@ -265,14 +275,15 @@ void Drive::State::advance(Ticks ticks) {
   if (axis.phase() != AxisPhase::Off) enabled_ms += ticks;
   axis.advance(ticks);
   for (LinkWatch& link : watches) link.advance(ticks);
+  outputs.advance(ticks);
 }
 
-// Up to a digit of P015, P016, P017, and a telegram that is missed. A limit that is, or will be, exceeded
+// Up to a digit of P015, P016, P017, a telegram that is missed, and the end of a delay of the outputs. A limit that is, or will be, exceeded
 // shows when it is.
 Ticks Drive::State::bound() const {
   if (axis.heat_sink_ahead() > kOvertemperature || axis.motor_utilization_ahead() >= kFullUtilization)
     return 0;
-  Ticks ticks = std::min(kMinuteMs - 1 - std::max(mains_ms, enabled_ms), axis.bound());
+  Ticks ticks = std::min({kMinuteMs - 1 - std::max(mains_ms, enabled_ms), axis.bound(), outputs.bound()});
   const int64_t energy = kEnergyDigit - 1 - (axis.state().energy - counted_energy);
   ticks = static_cast<Ticks>(std::min<int64_t>(ticks, std::max<int64_t>(energy, 0) / axis.energy_ahead()));
   for (const LinkWatch& link : watches) ticks = std::min(ticks, link.bound());
@@ -304,6 +315,7 @@ inline void Drive::count() {
     state_.counted_energy += kEnergyDigit;
     parameters_.set_display(index::kEnergy, parameters_.value(index::kEnergy) + 1);
   }
+  if (state_.axis.current_limited() || state_.limited_ms != 0) count_limited();
   if (parameters_.factory_setting_running() && ++state_.factory_setting_ms >= kFactorySettingMs) {
     state_.factory_setting_ms = 0;
     parameters_.finish_factory_setting();
@@ -365,7 +377,6 @@ void Drive::watch_machine() {
   if (axis.dc_link > kOvervoltage) raise_fault(faults::kDcLink);
   if (axis.heat_sink > kOvertemperature) raise_fault(faults::kHeatSink);
   follow(set().motor_protection == 1 && axis.motor_utilization >= kFullUtilization, faults::kMotorOverload);
-  count_limited();
   if (state_.limited_ms > set().speed_monitoring_delay) raise_fault(faults::kSpeedMonitoring);
 }
 
@@ -385,30 +396,44 @@ void Drive::select_parameter_set() {
   now_.set(&Situation::second_set, decided().parameter_switch);
 }
 
-void Drive::show() {
+[[gnu::always_inline]] inline OutputInputs Drive::shown() const {
   const Axis& axis = state_.axis;
-  const bool overloaded = axis.power().motor_utilization() >= kFullUtilization;
+  const auto flag = [](bool on, uint32_t bit) { return on ? bit : 0; };
   OutputInputs in;
-  in.fault = now_->faults.error();
-  in.ipos_fault = decisions_.ipos_fault;
-  in.ready = decisions_.ready;
-  in.output_stage = axis.output_stage();
-  in.brake_released = axis.brake_released();
-  in.standstill = axis.standing();
-  in.second_set = now_->second_set;
-  in.motor_1_overloaded = !now_->second_set && overloaded;
-  in.motor_2_overloaded = now_->second_set && overloaded;
+  in.flags = decisions_.output_flags | flag(axis.output_stage(), output_flags::kOutputStage) |
+             flag(axis.brake_released(), output_flags::kBrakeReleased) |
+             flag(axis.standing(), output_flags::kStandstill) |
+             flag(axis.power().motor_utilization() >= kFullUtilization, decisions_.overload_flag) |
+             flag(state_.position.in_position, output_flags::kInPosition) |
+             flag(state_.position.referenced, output_flags::kReferenced);
   in.speed = axis.speed();
   // Compared with the setpoint before the ramp, so that P420 tells when it is reached (ours).
   in.setpoint = order_.command == AxisCommand::Run ? order_.target : 0;
   in.current = axis.output_current();
   in.current_limit = order_.current_limit;
-  in.in_position = state_.position.in_position;
-  in.referenced = state_.position.referenced;
   in.ipos_outputs = state_.ipos_outputs;
-  if (shown_for_ == settings_version_ && state_.outputs.go_on(in)) return;
+  return in;
+}
+
+inline void Drive::show() {
+  if (shown_for_ != settings_version_ || !state_.outputs.go_on(shown())) show_anew();
+}
+
+void Drive::show_anew() {
   shown_for_ = settings_version_;
-  state_.outputs.tick(settings_, in);
+  state_.outputs.tick(settings_, shown());
+}
+
+void Drive::tick(const PositionControl& position) {
+  steady_left_ = 0;
+  take(position);
+  count();
+  const bool same =
+      quiet_for_ == now_.changes() && now_->settings == parameters_.changes() && !machine_suffers();
+  if (!same) decide_and_watch();
+  if (!same || !position.controls) choose_order();
+  move();
+  show();
 }
 
 void Drive::power_cycle() {
@@ -439,7 +464,7 @@ void Drive::power_cycle() {
   state_.counter_shift = 0U - static_cast<uint32_t>(shaft_position());  // the shaft stays where it is
   state_.axis.reset();
   state_.outputs = {};
-  shown_for_.reset();
+  shown_for_ = settings_version_ - 1;
   state_.factory_setting_ms = state_.mains_ms = state_.enabled_ms = 0;
   state_.counted_energy = 0;
 }

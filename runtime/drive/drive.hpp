@@ -94,7 +94,8 @@ class Drive final : private DriveLink {
   }
   // For who asks for more than one thing.
   const Decisions& decisions() const { return decided(); }
-  // Grows whenever something that decisions depend on may have changed.
+  // Grows whenever something that the drive decides or tells (faults, verdict, setpoint note) may have
+  // changed.
   uint32_t changes() const {
     decided();
     return now_.changes();
@@ -153,7 +154,7 @@ class Drive final : private DriveLink {
   void forget_decisions() {
     now_.change();
     decisions_known_ = false;
-    shown_for_.reset();
+    shown_for_ = settings_version_ - 1;
   }
 
  private:
@@ -219,10 +220,13 @@ class Drive final : private DriveLink {
   // The steps of a tick.
   void take(const PositionControl& position);
   void count();
+  void decide_and_watch();
   void apply();
-  void watch(bool anew);
+  void choose_order();
   void move();
   void show();
+  OutputInputs shown() const;
+  void show_anew();
 
   void count_minute(uint32_t& ms, uint16_t minutes);
   void latch_three_wire();
@@ -242,7 +246,6 @@ class Drive final : private DriveLink {
     return more ? verdict_with_setpoint(d) : d.controls;
   }
   Verdict verdict_with_setpoint(const Decisions& d) const;
-  const AxisOrder& next_order(Command command);
   AxisOrder axis_order(Command command) const;
 
   ParameterStore& parameters_;
@@ -269,6 +272,7 @@ class Drive final : private DriveLink {
   // The rest of what follows from them, as far as it has been asked for.
   mutable std::optional<Command> order_for_;
   AxisOrder order_;
+  Block blocked_by_ = Block::None;  // that was the reason of the last verdict
   struct SetpointMemory {
     int32_t ai1_speed = 0;
     int32_t motor_pot = 0;
@@ -318,7 +322,8 @@ class Drive final : private DriveLink {
   };
   State state_;
   std::array<std::optional<FaultResponse>, 256> responses_{};  // chosen by the program, by fault number
-  std::optional<uint32_t> shown_for_;                          // the settings of the last tick of the outputs
+  uint32_t shown_for_;                                         // the settings of the last tick of the outputs
+  uint32_t quiet_for_ = 0;  // changes of the situation by the last tick, if nothing was left to watch
   Ticks steady_left_ = 0;
   uint32_t steady_for_ = 0;  // changes of the situation by then
 };

@@ -32,7 +32,11 @@ void Drive::decide_anew() const {
   d.waiting = in.waiting;
   d.can_position = mode_can_position();
   d.ready = !now_->faults.error() && !now_->factory_setting && !now_->starting_up;
-  d.ipos_fault = is_ipos_fault(now_->faults.error_number());
+  const auto flag = [](bool on, uint32_t bit) { return on ? bit : 0; };
+  d.output_flags = flag(now_->faults.error(), output_flags::kFault) |
+                   flag(is_ipos_fault(now_->faults.error_number()), output_flags::kIposFault) |
+                   flag(d.ready, output_flags::kReady) | flag(now_->second_set, output_flags::kSecondSet);
+  d.overload_flag = now_->second_set ? output_flags::kMotor2Overloaded : output_flags::kMotor1Overloaded;
   d.reserved_control_bits = read_reserved_bits();
   d.bus_position = read_bus_position();
 

@@ -39,17 +39,6 @@ Setpoint Drive::next_setpoint(const Decisions& d) {
   return selected_;
 }
 
-const AxisOrder& Drive::next_order(Command command) {
-  if (order_for_ != command) {
-    order_ = axis_order(command);
-    order_for_ = command;
-  }
-  // P350 does not turn positions round (ours).
-  const bool reversed = order_.command != AxisCommand::Follow && set().change_direction == 1;
-  order_.target = reversed ? -state_.setpoint.speed : state_.setpoint.speed;
-  return order_;
-}
-
 // All but the target.
 AxisOrder Drive::axis_order(Command command) const {
   const Settings& s = settings();

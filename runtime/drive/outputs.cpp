@@ -4,7 +4,7 @@
 namespace ipos::runtime {
 
 uint16_t Outputs::tick(const Settings& s, const OutputInputs& in) {
-  for (ReferenceSignal* signal : {&speed_, &window_, &compare_, &current_, &limit_}) signal->go_on(ticks_);
+  for (ReferenceSignal* signal : {&speed_, &window_, &compare_, &current_, &limit_}) signal->advance(ticks_);
   const int64_t speed = magnitude(in.speed);
   const int64_t current = magnitude(in.current);
   const int64_t deviation = magnitude(int64_t{in.speed} - in.setpoint);
@@ -26,10 +26,10 @@ uint16_t Outputs::tick(const Settings& s, const OutputInputs& in) {
 
   // With no input 1, no signal shown and no function chosen every level is 0, so the first basis is good,
   // too.
-  const Basis basis{in.flags(), in.ipos_outputs, signals_, s.outputs};
+  const Basis basis{in.flags, in.ipos_outputs, signals_, s.outputs};
   if (basis == basis_) return levels_;
   basis_ = basis;
-  uint16_t levels = in.brake_released ? 1 : 0;  // DB00
+  uint16_t levels = in.is(output_flags::kBrakeReleased) ? 1 : 0;  // DB00
   for (unsigned bit = 1; bit < s.outputs.size(); ++bit)
     if (level(static_cast<OutputFunction>(s.outputs[bit]), in, bit))
       levels |= static_cast<uint16_t>(1U << bit);
@@ -49,11 +49,9 @@ void Outputs::find_ranges(const Settings& s, const OutputInputs& in) {
                            int64_t{s.current_reference} - s.current_hysteresis),
                    staying(limit_, limit, limit - s.limit_hysteresis - 1));
   current_limit_ = in.current_limit;
-  settled_ =
-      speed_.settled() && window_.settled() && compare_.settled() && current_.settled() && limit_.settled();
-  ticks_left_ = std::min({speed_.ticks_left(s.speed_delay), window_.ticks_left(s.window_delay),
-                          compare_.ticks_left(s.compare_delay), current_.ticks_left(s.current_delay),
-                          limit_.ticks_left(s.limit_delay)});
+  ticks_left_ =
+      std::min({speed_.bound(s.speed_delay), window_.bound(s.window_delay), compare_.bound(s.compare_delay),
+                current_.bound(s.current_delay), limit_.bound(s.limit_delay)});
   ticks_ = 0;
 }
 
@@ -69,31 +67,32 @@ Outputs::Range Outputs::around(const ReferenceSignal& signal, int64_t from, int6
 // P403, P413, P422, P432, P442 say for which case the signal is 1.
 bool Outputs::level(OutputFunction function, const OutputInputs& in, unsigned bit) const {
   using F = OutputFunction;
+  using namespace output_flags;
   switch (function) {
     case F::None: return false;
-    case F::NoFault: return !in.fault;
-    case F::Ready: return in.ready;
+    case F::NoFault: return !in.is(kFault);
+    case F::Ready: return in.is(kReady);
     case F::OutputStageOn:
-    case F::RotatingField: return in.output_stage;
-    case F::BrakeReleased: return in.brake_released;
-    case F::BrakeApplied: return !in.brake_released;
-    case F::Standstill: return in.standstill;
-    case F::ParameterSet: return in.second_set;
+    case F::RotatingField: return in.is(kOutputStage);
+    case F::BrakeReleased: return in.is(kBrakeReleased);
+    case F::BrakeApplied: return !in.is(kBrakeReleased);
+    case F::Standstill: return in.is(kStandstill);
+    case F::ParameterSet: return in.is(kSecondSet);
     case F::SpeedReference: return signals_.speed;
     case F::SpeedWindow: return signals_.window;
     case F::SetpointReached: return signals_.compare;
     case F::CurrentReference: return signals_.current;
     case F::CurrentLimit: return signals_.limit;
-    case F::NoMotorUtilization1: return !in.motor_1_overloaded;
-    case F::NoMotorUtilization2: return !in.motor_2_overloaded;
+    case F::NoMotorUtilization1: return !in.is(kMotor1Overloaded);
+    case F::NoMotorUtilization2: return !in.is(kMotor2Overloaded);
     case F::NoDrsPrewarning:
     case F::NoDrsLagError: return true;
     case F::DrsInPosition:
     case F::PiReference: return false;
-    case F::IposInPosition: return in.in_position;
-    case F::IposReferenced: return in.referenced;
+    case F::IposInPosition: return in.is(kInPosition);
+    case F::IposReferenced: return in.is(kReferenced);
     case F::IposOutput: return (in.ipos_outputs >> bit & 1) != 0;
-    case F::NoIposFault: return !in.ipos_fault;
+    case F::NoIposFault: return !in.is(kIposFault);
   }
   return false;
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "runtime/drive/settings.hpp"
+#include "runtime/pace/part.hpp"
 
 namespace ipos::runtime {
 
@@ -57,10 +58,12 @@ class ReferenceSignal {
   bool value() const { return shown_; }
   bool raw() const { return raw_; }
   bool settled() const { return raw_ == shown_; }  // no delay runs
-  // Ticks that only count while the result stays as it is, and what they do.
-  int32_t ticks_left(int32_t delay_ms) const { return settled() ? INT32_MAX : delay_ms - 1 - lasted_ms_; }
-  void go_on(int32_t ticks) {
-    if (!settled()) lasted_ms_ += ticks;
+  // Ticks with the same comparison that only count, as the last one did (pace/part.hpp).
+  void advance(Ticks ticks) {
+    if (!settled()) lasted_ms_ += static_cast<int32_t>(ticks);
+  }
+  Ticks bound(int32_t delay_ms) const {
+    return settled() ? kNoBound : static_cast<Ticks>(delay_ms - 1 - lasted_ms_);
   }
   bool operator==(const ReferenceSignal&) const = default;
 
@@ -70,51 +73,31 @@ class ReferenceSignal {
   int32_t lasted_ms_ = 0;  // while it does not show
 };
 
-// What the outputs show of the drive.
+// What is on or off of a drive, for the outputs.
+namespace output_flags {
+inline constexpr uint32_t kFault = 1 << 0;
+inline constexpr uint32_t kIposFault = 1 << 1;
+inline constexpr uint32_t kReady = 1 << 2;
+inline constexpr uint32_t kSecondSet = 1 << 3;
+inline constexpr uint32_t kOutputStage = 1 << 4;
+inline constexpr uint32_t kBrakeReleased = 1 << 5;
+inline constexpr uint32_t kStandstill = 1 << 6;
+inline constexpr uint32_t kMotor1Overloaded = 1 << 7;
+inline constexpr uint32_t kMotor2Overloaded = 1 << 8;
+inline constexpr uint32_t kInPosition = 1 << 9;
+inline constexpr uint32_t kReferenced = 1 << 10;
+}  // namespace output_flags
+
 struct OutputInputs {
-  bool fault = false;
-  bool ipos_fault = false;
-  bool ready = false;
-  bool output_stage = false;
-  bool brake_released = false;
-  bool standstill = false;
-  bool second_set = false;
-  bool motor_1_overloaded = false;
-  bool motor_2_overloaded = false;
-  bool in_position = false;
-  bool referenced = false;
+  uint32_t flags = 0;
   int32_t speed = 0;  // 1/1000 rpm
   int32_t setpoint = 0;
   int32_t current = 0;  // 1/1000 % of IN
   int32_t current_limit = 0;
   uint16_t ipos_outputs = 0;  // by bit as below
 
-  constexpr uint32_t flags() const {
-    const auto bit = [](bool flag, unsigned n) { return (flag ? 1U : 0U) << n; };
-    return bit(fault, 0) | bit(ipos_fault, 1) | bit(ready, 2) | bit(output_stage, 3) |
-           bit(brake_released, 4) | bit(standstill, 5) | bit(second_set, 6) | bit(motor_1_overloaded, 7) |
-           bit(motor_2_overloaded, 8) | bit(in_position, 9) | bit(referenced, 10);
-  }
+  bool is(uint32_t flag) const { return (flags & flag) != 0; }
 };
-
-// Of a drive that positioning moves, where the rest stays as it is; there a setpoint is not compared.
-struct OutputMotion {
-  bool standstill;
-  bool in_position;
-  bool referenced;
-  int32_t speed;
-  int32_t current;
-
-  // Those of OutputInputs, where all others are 0.
-  constexpr uint32_t flags() const {
-    OutputInputs in;
-    in.standstill = standstill;
-    in.in_position = in_position;
-    in.referenced = referenced;
-    return in.flags();
-  }
-};
-inline constexpr uint32_t kMotionFlags = OutputMotion{true, true, true, 0, 0}.flags();
 
 class Outputs {
  public:
@@ -123,27 +106,25 @@ class Outputs {
   uint16_t levels() const { return levels_; }
   // A tick with the settings of the last one. False: nothing was done, for it takes tick().
   [[gnu::always_inline]] bool go_on(const OutputInputs& in) {
-    return in.flags() == basis_.flags && in.ipos_outputs == basis_.ipos_outputs &&
-           in.current_limit == current_limit_ && go_on(in.speed, in.setpoint, in.current);
+    const bool same = in.flags == basis_.flags && in.ipos_outputs == basis_.ipos_outputs &&
+                      in.current_limit == current_limit_ && speeds_.have(magnitude(in.speed)) &&
+                      deviations_.have(magnitude(int64_t{in.speed} - in.setpoint)) &&
+                      currents_.have(magnitude(in.current));
+    if (!same) return false;
+    if (ticks_left_ == 0) return false;
+    advance(1);
+    return true;
   }
-  [[gnu::always_inline]] bool go_on(const OutputMotion& in) {
-    return in.flags() == (basis_.flags & kMotionFlags) && go_on(in.speed, 0, in.current);
+  // Ticks that go on with the same values (pace/part.hpp): delays run.
+  void advance(Ticks ticks) {
+    if (ticks_left_ == kNoBound) return;
+    ticks_left_ -= ticks;
+    ticks_ += ticks;
   }
+  Ticks bound() const { return ticks_left_; }
   bool operator==(const Outputs&) const = default;
 
  private:
-  [[gnu::always_inline]] bool go_on(int32_t speed, int32_t setpoint, int32_t current) {
-    const bool same = speeds_.have(magnitude(speed)) &&
-                      deviations_.have(magnitude(int64_t{speed} - setpoint)) &&
-                      currents_.have(magnitude(current));
-    if (!same) return false;
-    if (settled_) return true;
-    if (ticks_left_ == 0) return false;
-    --ticks_left_;
-    ++ticks_;
-    return true;
-  }
-
   static int64_t magnitude(int64_t value) { return value < 0 ? -value : value; }
   void find_ranges(const Settings& settings, const OutputInputs& inputs);
   bool level(OutputFunction function, const OutputInputs& inputs, unsigned bit) const;
@@ -178,9 +159,8 @@ class Outputs {
   // Range of values and number of ms for which go_on() is valid since the last tick(), and ms used.
   Range speeds_, deviations_, currents_;
   int32_t current_limit_ = 0;
-  bool settled_ = true;
-  int32_t ticks_left_ = 0;
-  int32_t ticks_ = 0;
+  Ticks ticks_left_ = kNoBound;
+  Ticks ticks_ = 0;
   Signals signals_{};
   Basis basis_;
   uint16_t levels_ = 0;

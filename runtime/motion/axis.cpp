@@ -111,9 +111,8 @@ void Axis::show_power() const {
   state_.motor_utilization = power_.motor_utilization();
 }
 
-void Axis::step(const AxisOrder& order) {
-  catch_up();
-  if (order.command == AxisCommand::Follow && state_.phase == AxisPhase::Moving) return follow(order);
+// Sequence, setpoint and shaft, each of which may have something to do.
+void Axis::go_through(const AxisOrder& order) {
   advance_sequence(order);
   advance_setpoint(order);
   const AxisPhase phase = sequence_.phase();
@@ -133,7 +132,7 @@ void Axis::step(const AxisOrder& order) {
 }
 
 // An axis that moves already goes as it is told: only the shaft has something to do.
-inline void Axis::follow(const AxisOrder& order) {
+void Axis::follow(const AxisOrder& order) {
   ramp_.set(fine_speed(order.target));
   const int64_t torque_limit = power_.torque_limit(order.current_limit);
   move(order, Supply::Driving, shaft_.driven(speed_, ramp_.output(), torque_limit, resistance(order, false)));

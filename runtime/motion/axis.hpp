@@ -88,7 +88,13 @@ class Axis : private AxisParts {
   explicit Axis(const MachineData& machine);
 
   // One millisecond under this order; tick() shows it, too.
-  void step(const AxisOrder& order);
+  void step(const AxisOrder& order) {
+    catch_up();
+    if (order.command == AxisCommand::Follow && state_.phase == AxisPhase::Moving)
+      follow(order);
+    else
+      go_through(order);
+  }
   const AxisState& tick(const AxisOrder& order) {
     step(order);
     return state();
@@ -134,6 +140,7 @@ class Axis : private AxisParts {
 
  private:
   void follow(const AxisOrder& order);
+  void go_through(const AxisOrder& order);
   void advance_sequence(const AxisOrder& order);
   void advance_setpoint(const AxisOrder& order);
   Motion advance_shaft(const AxisOrder& order);

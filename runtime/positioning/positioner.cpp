@@ -80,16 +80,14 @@ void Positioner::power_on(const PositioningSettings& settings, int32_t shaft) {
   modulo_.set(actual());
 }
 
-PositioningOrder Positioner::idle(int32_t speed) {
+void Positioner::idle() {
   profile_.hold(fine(actual()), 0);
   drop_target();
-  return {false, speed, halt_};
 }
 
-// The profile holds the position again before anybody travels from it.
 void Positioner::advance(int32_t before, int32_t motor_counter) {
   if (encoders_.counter() != before) move(before);
-  drop_target();
+  idle();
   move(motor_counter);
 }
 
@@ -247,15 +245,15 @@ inline int32_t Positioner::speed_order() const {
   return static_cast<int32_t>(std::clamp(feed + lag * settings_.gain / 2, -top, top));
 }
 
-// The millisecond of an axis that follows.
-[[gnu::always_inline]] inline PositioningOrder Positioner::lead() {
+// The millisecond of an axis that follows, and the speed for it.
+[[gnu::always_inline]] inline int32_t Positioner::lead() {
   profile_.tick();
   keep_in_range();
   if (settings_.lag_window > 0 && magnitude(lag_) > settings_.lag_window) report(PositioningEvent::LagError);
-  return {true, speed_order(), halt_};
+  return speed_order();
 }
 
-PositioningOrder Positioner::go_on() { return lead(); }
+int32_t Positioner::go_on() { return lead(); }
 
 PositioningOrder Positioner::tick(const PositioningInputs& inputs) {
   if (!modulo_.possible()) configure_modulo();
@@ -275,7 +273,7 @@ PositioningOrder Positioner::tick(const PositioningInputs& inputs) {
     run_reference();
   else if (!follow_master())
     run_travel();
-  return lead();
+  return {true, lead(), halt_};
 }
 
 // Nothing that tick() asks before it leads the axis has another answer.

@@ -76,16 +76,16 @@ class Positioner {
   // Before the axis moves: sensors belong to where it is now.
   PositioningOrder tick(const PositioningInputs& inputs);
   // Nothing can act: the mode is one without positioning, nothing is under way and nothing has just happened.
-  // Then idle() is tick() with settings and inputs that are the same but for the speed.
+  // Then idle() is tick() with settings and inputs that are the same but for the speed, which it orders.
   bool idles() const {
     return !inputs_.possible && !reference_.active() && follower_.silent() && !touch_probes_.probe(0).fresh &&
            !touch_probes_.probe(1).fresh && events_.none();
   }
-  PositioningOrder idle(int32_t speed);
+  void idle();
   // The last tick() has gone on with its plan, or rested at the end of it. Then go_on() is tick() with
-  // settings and inputs that are the same but for the speed.
+  // settings and inputs that are the same but for the speed; the speed it orders.
   bool goes_on() const;
-  PositioningOrder go_on();
+  int32_t go_on();
   // idle() and observe() for several ms at once, where nobody looks at the order, and for how many of them
   // that holds; `before` is the counter one ms before the end.
   void advance(int32_t before, int32_t motor_counter);
@@ -166,7 +166,7 @@ class Positioner {
     modulo_.move(wrapped(int64_t{actual()} - before));
   }
   void keep_in_range();
-  PositioningOrder lead();
+  int32_t lead();
   int32_t speed_order() const;
 
   void run_reference();

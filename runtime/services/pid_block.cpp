@@ -43,10 +43,11 @@ PidBlock::PidBlock(const ParameterStore& parameters) : parameters_(parameters) {
 }
 
 void PidBlock::control(std::span<int32_t> h) {
+  auto& [integral, last_error, started] = memory_;
   const int32_t mode = h[system_variable("PID_Mode")];
   if (mode != kControl) {
-    integral_ = 0;
-    started_ = false;
+    integral = 0;
+    started = false;
   }
   const int64_t integral_ms = parameters_.value(integral_ms_);
   const int64_t gain = std::clamp(h[system_variable("PID_K_p")], 0, 32'000);  // 1/1000
@@ -58,20 +59,20 @@ void PidBlock::control(std::span<int32_t> h) {
   if (mode == kControl) {
     const int64_t p = limited(gain * error / 1000, -kShareLimit, kShareLimit, kLimitedP, status);
     if (integral_ms > 0)
-      integral_ = limited(
-          integral_ + std::clamp(gain * error, -kWeightLimit, kWeightLimit) * kUnit / (1000 * integral_ms),
+      integral = limited(
+          integral + std::clamp(gain * error, -kWeightLimit, kWeightLimit) * kUnit / (1000 * integral_ms),
           -kShareLimit * kUnit, kShareLimit * kUnit, kLimitedI, status);
     else
-      integral_ = 0, status |= kNoI;
+      integral = 0, status |= kNoI;
     const int64_t d =
-        limited(gain * (started_ ? error - last_error_ : 0) / 1000 * parameters_.value(derivative_ms_),
+        limited(gain * (started ? error - last_error : 0) / 1000 * parameters_.value(derivative_ms_),
                 -kShareLimit, kShareLimit, kLimitedD, status);
-    last_error_ = error;
-    started_ = true;
+    last_error = error;
+    started = true;
     h[system_variable("PID_Outp_P")] = static_cast<int32_t>(p);
-    h[system_variable("PID_Outp_I")] = static_cast<int32_t>(integral_);
+    h[system_variable("PID_Outp_I")] = static_cast<int32_t>(integral);
     h[system_variable("PID_Outp_D")] = static_cast<int32_t>(d);
-    sum = limited(p + (integral_ >> 16) + d, -kShareLimit, kShareLimit, kLimitedPid, status);
+    sum = limited(p + (integral >> 16) + d, -kShareLimit, kShareLimit, kLimitedPid, status);
   }
   const int64_t output = limited(sum + h[system_variable("PID_Feedf")], h[system_variable("PID_SetpMin")],
                                  h[system_variable("PID_SetpMax")], kLimitedOutput, status);

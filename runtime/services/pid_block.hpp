@@ -7,6 +7,7 @@
 #include <span>
 
 #include "runtime/drive/parameters.hpp"
+#include "runtime/pace/part.hpp"
 #include "stdlib/system_variables.hpp"
 
 namespace ipos::runtime {
@@ -18,14 +19,19 @@ class PidBlock {
 
   void tick(std::span<int32_t> h) {
     if (!is_off(h)) return control(h);
-    integral_ = 0;
-    started_ = false;
+    memory_.integral = 0;
+    memory_.started = false;
   }
   // With this mode H540 a tick does nothing.
   static bool is_off(std::span<const int32_t> h) {
     const int32_t mode = h[stdlib::system_variable("PID_Mode")];
     return mode != kControl && mode != kStepResponse;
   }
+  // What a tick leaves for the next one does not change by time alone, so with the same variables they go on
+  // alike (pace/part.hpp).
+  void advance(Ticks) {}
+  Ticks bound() const { return kNoBound; }
+  friend bool operator==(const PidBlock& a, const PidBlock& b) { return a.memory_ == b.memory_; }
 
  private:
   enum Mode : int32_t { kOff = 0, kControl = 1, kStepResponse = 2 };
@@ -36,9 +42,13 @@ class PidBlock {
   uint16_t integral_ms_;    // indices: P264; 0: no I share
   uint16_t derivative_ms_;  // P265; 0: no D share
   uint16_t actual_;         // P276: number of the variable with the actual value
-  int64_t integral_ = 0;    // 1/65536
-  int64_t last_error_ = 0;
-  bool started_ = false;  // last_error_ is there
+  struct Memory {
+    int64_t integral = 0;  // 1/65536
+    int64_t last_error = 0;
+    bool started = false;  // last_error is there
+    bool operator==(const Memory&) const = default;
+  };
+  Memory memory_;
 };
 
 }  // namespace ipos::runtime

@@ -23,12 +23,7 @@ enum SystemVariable : size_t {
   kSlsLeft = 497,
   kRefOffset = 498,
   kSetpointPosBus = 499,
-  kTpPos2Abs = 502,
-  kTpPos1Abs = 503,
-  kTpPos2Ext = 504,
-  kTpPos2Mot = 505,
-  kTpPos1Ext = 506,
-  kTpPos1Mot = 507,
+  kTpPos2Abs = 502,  // up to H507 in a row
   kActPosAbs = 509,
   kActPosExt = 510,
   kActPosMot = 511,
@@ -165,9 +160,9 @@ inline void PositioningService::show_target_positions(std::span<int32_t> h) {
 
 inline void PositioningService::show_bits(std::span<int32_t> h) {
   constexpr uint32_t kBits = 1U << kInPosition | 1U << kReferenced;
-  in_position_ = positioner_.in_position();
+  ordered_.in_position = positioner_.in_position();
   const uint32_t bits =
-      (in_position_ ? 1U << kInPosition : 0) | (positioner_.referenced() ? 1U << kReferenced : 0);
+      (ordered_.in_position ? 1U << kInPosition : 0) | (positioner_.referenced() ? 1U << kReferenced : 0);
   h[kStatusWord] = static_cast<int32_t>((static_cast<uint32_t>(h[kStatusWord]) & ~kBits) | bits);
 }
 
@@ -219,25 +214,32 @@ inline bool PositioningService::written(std::span<const int32_t> h) const {
          mirrors_written(h);
 }
 
-inline PositionControl PositioningService::control_of(const PositioningOrder& order) const {
-  return {order.controls, order.speed, command_of(order.halt), in_position_, positioner_.referenced()};
-}
-
 // Where nothing that an order follows is other than in the one before, a travel goes on with its plan, and
 // who idles goes on to do so.
-PositionControl PositioningService::order(Time now, std::span<int32_t> h, uint32_t syncs) {
-  const bool same = followed_ == Followed{drive_.changes(), parameters_.changes(), changes_} &&
-                    reported_.none() && !written(h);
-  if (!same || settings_.technology_function == kIsync) return order_anew(now, h, syncs);
-  if (positioner_.goes_on()) {
-    const PositioningOrder order = positioner_.go_on();
-    if (positioner_.has_events()) report_events(now);
-    return control_of(order);
+const PositionControl& PositioningService::order(Time now, std::span<int32_t> h, uint32_t syncs) {
+  if (!followed_ || !(*followed_ == Followed{drive_.changes(), changes_}) || written(h))
+    return order_anew(now, h, syncs);
+  syncs_ = syncs;
+  if (positioner_.idles()) {
+    positioner_.idle();
+    ordered_.speed = drive_.speed();
+    return ordered_;
   }
-  return positioner_.idles() ? control_of(positioner_.idle(drive_.speed())) : order_anew(now, h, syncs);
+  ordered_.speed = positioner_.go_on();
+  if (positioner_.has_events()) {
+    report_events(now);
+    followed_.reset();
+  }
+  return ordered_;
 }
 
-PositionControl PositioningService::order_anew(Time now, std::span<int32_t> h, uint32_t syncs) {
+inline void PositioningService::note_probes() {
+  const TouchProbes::Probe& first = positioner_.touch_probes().probe(0);
+  const TouchProbes::Probe& second = positioner_.touch_probes().probe(1);
+  probed_ = {second.absolute, first.absolute, second.external, second.motor, first.external, first.motor};
+}
+
+const PositionControl& PositioningService::order_anew(Time now, std::span<int32_t> h, uint32_t syncs) {
   read_settings();
   if (!mirrors_agree_ || mirrors_written(h)) take_mirrors(h);
   take_targets(h);
@@ -245,15 +247,20 @@ PositionControl PositioningService::order_anew(Time now, std::span<int32_t> h, u
     positioner_version_ = settings_version_;
     positioner_.take_over(settings_);
   }
-  followed_ = {drive_.changes(), settings_version_, changes_};
+  const Followed followed{drive_.changes(), changes_};
   read_inputs(h, syncs);
   if (inputs_.reference_start && !positioner_.inputs().reference_start)
     not_ordered(PositioningCause::Reference);
   const PositioningOrder order = positioner_.tick(inputs_);
   if (positioner_.has_events() || reported_.any()) report_events(now);
-  in_position_ = positioner_.in_position();
+  const bool settled = reported_.none() && settings_.technology_function != kIsync &&
+                       (positioner_.idles() || positioner_.goes_on());
+  followed_ = settled ? std::optional(followed) : std::nullopt;
   if (const auto counter = positioner_.take_motor_counter()) drive_.set_position(*counter);
-  return control_of(order);
+  note_probes();
+  ordered_ = {order.controls, order.speed, command_of(order.halt), positioner_.in_position(),
+              positioner_.referenced()};
+  return ordered_;
 }
 
 std::string PositioningService::place_of(PositioningEvent event) const {
@@ -315,19 +322,8 @@ void PositioningService::show(Time now, std::span<int32_t> h) {
   h[kLagDistance] = positioner_.lag();
   if (h.size() > kGearSlave) h[kSyncState] = static_cast<int32_t>(positioner_.follow_state());
   h[kSetpointPosBus] = bus_position_ = drive_.bus_position().value_or(bus_position_);
-  show_probes(h);
+  std::copy(probed_.begin(), probed_.end(), h.begin() + kTpPos2Abs);
   if (cams_run_) run_cams(now, h);
-}
-
-inline void PositioningService::show_probes(std::span<int32_t> h) const {
-  const TouchProbes::Probe& first = positioner_.touch_probes().probe(0);
-  const TouchProbes::Probe& second = positioner_.touch_probes().probe(1);
-  h[kTpPos1Mot] = first.motor;
-  h[kTpPos1Ext] = first.external;
-  h[kTpPos1Abs] = first.absolute;
-  h[kTpPos2Mot] = second.motor;
-  h[kTpPos2Ext] = second.external;
-  h[kTpPos2Abs] = second.absolute;
 }
 
 void PositioningService::run_cams(Time now, std::span<int32_t> h) {

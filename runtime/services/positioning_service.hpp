@@ -28,7 +28,7 @@ class PositioningService {
                      SourcePlace place);
 
   // Before the drive's tick: what the program wrote, what is to be done. `syncs`: sync telegrams so far.
-  PositionControl order(Time now, std::span<int32_t> h, uint32_t syncs);
+  const PositionControl& order(Time now, std::span<int32_t> h, uint32_t syncs);
   // After it: the system variables of positioning, and the extended cams.
   void show(Time now, std::span<int32_t> h);
 
@@ -52,7 +52,7 @@ class PositioningService {
   // the last order(), advance() is order() and show() around a tick of the drive, or around several; before
   // the last of them its counter was `before`.
   bool idles() const {
-    return positioner_.idles() && reported_.none() && followed_.commands == changes_ &&
+    return positioner_.idles() && reported_.none() && followed_ && followed_->commands == changes_ &&
            reads_system_variables_only();
   }
   // It changes the variables with use Moves then.
@@ -92,9 +92,8 @@ class PositioningService {
   }
   void read_changed_settings();
   bool written(std::span<const int32_t> h) const;
-  PositionControl control_of(const PositioningOrder& order) const;
-  PositionControl order_anew(Time now, std::span<int32_t> h, uint32_t syncs);
-  void show_probes(std::span<int32_t> h) const;
+  const PositionControl& order_anew(Time now, std::span<int32_t> h, uint32_t syncs);
+  void note_probes();
   void run_cams(Time now, std::span<int32_t> h);
   bool mirrors_written(std::span<const int32_t> h) const;
   bool targets_written(std::span<const int32_t> h) const;
@@ -138,16 +137,17 @@ class PositioningService {
   int32_t shown_modulo_target_ = 0;
   int32_t shown_turns_ = 0;
   int32_t bus_position_ = 0;
-  bool in_position_ = false;
+  PositionControl ordered_;
+  std::array<int32_t, 6> probed_{};  // H502 to H507
   uint32_t changes_ = 0;
-  // How often what an order follows, besides variables, had changed by the last one that was made anew.
+  // How often what an order follows, besides variables, had changed by the last one that was made anew; there
+  // only where the next ones need not be while it is the same. Settings are what the drive decides by, too.
   struct Followed {
     uint32_t drive = 0;
-    uint32_t settings = 0;
     uint32_t commands = 0;
     bool operator==(const Followed&) const = default;
   };
-  Followed followed_;
+  std::optional<Followed> followed_;
   uint32_t syncs_ = 0;                        // sync telegrams, as of the last millisecond
   std::bitset<kPositioningEvents> reported_;  // in the last millisecond
   // Of each kind the last one; nothing: not by a command, but by writing a variable or an input.

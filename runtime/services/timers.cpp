@@ -1,43 +1,33 @@
 // Counting down, once a millisecond.
 #include "runtime/services/timers.hpp"
 
-#include "stdlib/system_variables.hpp"
+#include <algorithm>
 
 namespace ipos::runtime {
 namespace {
 
-using stdlib::system_variable;
+void advance_timer(int32_t& timer, Ticks ticks) {
+  if (timer > 0) timer = static_cast<int32_t>(std::max<int64_t>(int64_t{timer} - ticks, 0));
+}
 
-// True when it reaches 0.
-bool count(int32_t& timer) { return timer > 0 && --timer == 0; }
+// Up to the millisecond before the one in which it reaches 0.
+Ticks before_end(int32_t timer) { return static_cast<Ticks>(std::max(timer, 1) - 1); }
 
 }  // namespace
 
-Timers::Expired Timers::tick(std::span<int32_t> h) {
-  count(h[system_variable("Timer_1")]);
-  count(h[system_variable("Timer_2")]);
-  Expired expired;
-  int32_t& timer_0 = h[system_variable("Timer_0")];
-  expired.timer_0 = count(timer_0);
-  const int32_t reload = h[system_variable("T0_Reload")];
-  if (timer_0 == 0 && reload > 0) timer_0 = reload;
-  int32_t& watchdog = h[system_variable("WdogTimer")];
-  if (watchdog_) {
-    count(watchdog);
-    expired.watchdog = watchdog <= 0;
-  }
-  return expired;
+void Timers::Counts::advance(Ticks ticks) {
+  for (int32_t* timer : {&timer_0, &timer_1, &timer_2}) advance_timer(*timer, ticks);
+  if (watched) advance_timer(watchdog, ticks);
+}
+
+Ticks Timers::Counts::bound() const {
+  const bool stands = timer_0 < 0 || (timer_0 == 0 && reload <= 0);
+  return std::min(stands ? kNoBound : before_end(timer_0), watched ? before_end(watchdog) : kNoBound);
 }
 
 bool Timers::rest(std::span<const int32_t> h) const {
-  const int32_t timer_0 = h[system_variable("Timer_0")];
-  return !watchdog_ && h[system_variable("Timer_1")] <= 0 && h[system_variable("Timer_2")] <= 0 &&
-         (timer_0 < 0 || (timer_0 == 0 && h[system_variable("T0_Reload")] <= 0));
-}
-
-void Timers::start_watchdog(std::span<int32_t> h, int32_t ms) {
-  h[system_variable("WdogTimer")] = ms;
-  watchdog_ = true;
+  const Counts now = counts(h);
+  return steady_ticks(now, now) == kNoBound;
 }
 
 }  // namespace ipos::runtime

@@ -29,10 +29,15 @@ Unit::Unit(const EventQueue& clock, UnitConfig config, std::optional<vm::Image> 
 void Unit::begin(Time now) {
   take_inputs();
   drive().tick(order_position(now));
-  report_drive(now);
+  const uint32_t changes = drive().changes();
+  const bool drive_changed = changes != drive_changes_;
+  drive_changes_ = changes;
+  if (drive_changed) report_drive(now);
   if (!machine_) return;
-  raise_events();
-  restart_after_reset(now);
+  if (drive_changed) {
+    raise_events();
+    restart_after_reset(now);
+  }
   show_variables(now);
   count_timers();
   if (pid_) pid_->tick(machine_->variables());
@@ -60,8 +65,9 @@ void Unit::take_inputs() {
   drive().set_analog(inputs_.analog());
 }
 
-PositionControl Unit::order_position(Time now) {
-  if (!positioning_ || !machine_) return {};
+const PositionControl& Unit::order_position(Time now) {
+  static constexpr PositionControl kNone;
+  if (!positioning_ || !machine_) return kNone;
   return positioning_->order(now, machine_->variables(), drive_.syncs());
 }
 

@@ -117,7 +117,7 @@ class Unit final {
 
  private:
   void take_inputs();
-  PositionControl order_position(Time now);
+  const PositionControl& order_position(Time now);
   void raise_events();
   void restart_after_reset(Time now);
   void show_variables(Time now);
@@ -166,8 +166,9 @@ class Unit final {
   vm::TickSteps steps_;  // with a runner
 
   bool was_off_ = false;
-  uint32_t resets_seen_ = 0;  // of the drive's faults
-  uint8_t error_seen_ = 0;    // error of the drive in the last millisecond
+  uint32_t drive_changes_ = 0;  // as last told
+  uint32_t resets_seen_ = 0;    // of the drive's faults
+  uint8_t error_seen_ = 0;      // error of the drive in the last millisecond
   // What was last told of the drive.
   uint8_t told_fault_ = 0;
   uint16_t told_reserved_ = 0;  // bits of the control word

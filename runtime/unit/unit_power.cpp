@@ -79,6 +79,7 @@ std::optional<std::string> Unit::load_program() {
   start_machine();
   resets_seen_ = drive().resets();
   error_seen_ = 0;
+  drive_changes_ = drive().changes() - 1;
   return std::nullopt;
 }
 

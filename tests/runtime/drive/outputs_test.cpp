@@ -12,6 +12,7 @@ namespace {
 
 using runtime::OutputFunction;
 using runtime::OutputInputs;
+namespace output_flags = runtime::output_flags;
 using runtime::Outputs;
 
 // One output with the function, fed with values of the test.
@@ -76,7 +77,7 @@ TEST(ReferenceSignals, GoOnAsTicksDo) {
       in.current = std::clamp(in.current + pick(-step, step), -80, 80);
       if (pick(0, 99) == 0) in.setpoint = pick(-60, 60);
       if (pick(0, 99) == 0) in.current_limit = pick(0, 60);
-      if (pick(0, 99) == 0) in.fault = !in.fault;
+      if (pick(0, 99) == 0) in.flags ^= output_flags::kFault;
       if (pick(0, 99) == 0) in.ipos_outputs = static_cast<uint16_t>(pick(0, 0xFFFF));
       ticked.in = in;
       if (ms != 0 && kept.outputs.go_on(in))
@@ -202,23 +203,25 @@ TEST(OutputFunctions, EachFollowsItsState) {
   using F = OutputFunction;
   const Row rows[] = {
       {F::None, [](OutputInputs&) {}, false, false},
-      {F::NoFault, [](OutputInputs& in) { in.fault = true; }, true, false},
-      {F::Ready, [](OutputInputs& in) { in.ready = true; }, false, true},
-      {F::OutputStageOn, [](OutputInputs& in) { in.output_stage = true; }, false, true},
-      {F::RotatingField, [](OutputInputs& in) { in.output_stage = true; }, false, true},
-      {F::BrakeReleased, [](OutputInputs& in) { in.brake_released = true; }, false, true},
-      {F::BrakeApplied, [](OutputInputs& in) { in.brake_released = true; }, true, false},
-      {F::Standstill, [](OutputInputs& in) { in.standstill = true; }, false, true},
-      {F::ParameterSet, [](OutputInputs& in) { in.second_set = true; }, false, true},
-      {F::NoMotorUtilization1, [](OutputInputs& in) { in.motor_1_overloaded = true; }, true, false},
-      {F::NoMotorUtilization2, [](OutputInputs& in) { in.motor_2_overloaded = true; }, true, false},
+      {F::NoFault, [](OutputInputs& in) { in.flags = output_flags::kFault; }, true, false},
+      {F::Ready, [](OutputInputs& in) { in.flags = output_flags::kReady; }, false, true},
+      {F::OutputStageOn, [](OutputInputs& in) { in.flags = output_flags::kOutputStage; }, false, true},
+      {F::RotatingField, [](OutputInputs& in) { in.flags = output_flags::kOutputStage; }, false, true},
+      {F::BrakeReleased, [](OutputInputs& in) { in.flags = output_flags::kBrakeReleased; }, false, true},
+      {F::BrakeApplied, [](OutputInputs& in) { in.flags = output_flags::kBrakeReleased; }, true, false},
+      {F::Standstill, [](OutputInputs& in) { in.flags = output_flags::kStandstill; }, false, true},
+      {F::ParameterSet, [](OutputInputs& in) { in.flags = output_flags::kSecondSet; }, false, true},
+      {F::NoMotorUtilization1, [](OutputInputs& in) { in.flags = output_flags::kMotor1Overloaded; }, true,
+       false},
+      {F::NoMotorUtilization2, [](OutputInputs& in) { in.flags = output_flags::kMotor2Overloaded; }, true,
+       false},
       {F::NoDrsPrewarning, [](OutputInputs&) {}, true, true},
       {F::NoDrsLagError, [](OutputInputs&) {}, true, true},
       {F::DrsInPosition, [](OutputInputs&) {}, false, false},
-      {F::IposInPosition, [](OutputInputs& in) { in.in_position = true; }, false, true},
-      {F::IposReferenced, [](OutputInputs& in) { in.referenced = true; }, false, true},
+      {F::IposInPosition, [](OutputInputs& in) { in.flags = output_flags::kInPosition; }, false, true},
+      {F::IposReferenced, [](OutputInputs& in) { in.flags = output_flags::kReferenced; }, false, true},
       {F::IposOutput, [](OutputInputs& in) { in.ipos_outputs = 2; }, false, true},
-      {F::NoIposFault, [](OutputInputs& in) { in.ipos_fault = true; }, true, false},
+      {F::NoIposFault, [](OutputInputs& in) { in.flags = output_flags::kIposFault; }, true, false},
   };
   for (const Row& row : rows) {
     Bench bench(row.function);

@@ -1,4 +1,4 @@
-// Every part against the law: what advance(n) does at once is what n of its ticks do.
+// The law for what moves and shows: axis, power section, link watch, reference signals, outputs.
 #include "tests/runtime/pace/law.hpp"
 
 #include "runtime/drive/link_watch.hpp"
@@ -16,14 +16,12 @@ using runtime::PowerSection;
 using runtime::ReferenceSignal;
 using runtime::Ticks;
 
-constexpr uint32_t kSteps = 250'000;  // with each of four seeds
-
 TEST(Law, Axis) {
   for (uint64_t seed = 1; seed <= 4; ++seed) {
     std::mt19937_64 machines(seed);
     AxisOrder order;
     ASSERT_NO_FATAL_FAILURE(expect_law(
-        Axis(draw_machine(machines, Taste::Plausible)), seed, kSteps,
+        Axis(draw_machine(machines, Taste::Plausible)), seed, law_steps(),
         [&](Axis& axis, std::mt19937_64& random) {
           order = draw_order(random, Taste::Plausible);
           if (random() % 8 == 0) axis.set_position(static_cast<int32_t>(random()));
@@ -37,7 +35,7 @@ TEST(Law, PowerSection) {
     std::mt19937_64 machines(seed);
     PowerSection::Load load{};
     ASSERT_NO_FATAL_FAILURE(expect_law(
-        PowerSection(runtime::within_limits(draw_machine(machines, Taste::Plausible))), seed, kSteps,
+        PowerSection(runtime::within_limits(draw_machine(machines, Taste::Plausible))), seed, law_steps(),
         [&](PowerSection&, std::mt19937_64& random) {
           load.supply = static_cast<runtime::Supply>(random() % 4);
           load.speed = static_cast<int32_t>(random() % 6'000'000) - 3'000'000;
@@ -53,7 +51,7 @@ TEST(Law, LinkWatch) {
   for (uint64_t seed = 1; seed <= 4; ++seed) {
     LinkWatch::Rules rules;
     ASSERT_NO_FATAL_FAILURE(expect_law(
-        LinkWatch(), seed, kSteps,
+        LinkWatch(), seed, law_steps(),
         [&](LinkWatch& link, std::mt19937_64& random) {
           switch (random() % 8) {
             case 0: rules.delay_ms = static_cast<int32_t>(random() % 5 * 150); break;
@@ -73,8 +71,8 @@ struct Delayed {
   ReferenceSignal signal;
   int32_t delay_ms = 0;
 
-  void advance(Ticks ticks) { signal.go_on(static_cast<int32_t>(ticks)); }
-  Ticks bound() const { return static_cast<Ticks>(signal.ticks_left(delay_ms)); }
+  void advance(Ticks ticks) { signal.advance(ticks); }
+  Ticks bound() const { return signal.bound(delay_ms); }
   bool operator==(const Delayed&) const = default;
 };
 
@@ -82,13 +80,50 @@ TEST(Law, ReferenceSignal) {
   for (uint64_t seed = 1; seed <= 4; ++seed) {
     bool above = false, below = false;
     ASSERT_NO_FATAL_FAILURE(expect_law(
-        Delayed(), seed, kSteps,
+        Delayed(), seed, law_steps(),
         [&](Delayed& part, std::mt19937_64& random) {
           above = random() % 3 == 0;
           below = !above && random() % 2 == 0;
           if (random() % 4 == 0) part = {{}, static_cast<int32_t>(random() % 500)};
         },
         [&](Delayed& part) { part.signal.tick(above, below, part.delay_ms); }));
+  }
+}
+
+TEST(Law, Outputs) {
+  for (uint64_t seed = 1; seed <= 4; ++seed) {
+    runtime::Settings settings;
+    for (uint8_t function = 9; function <= 13; ++function)  // all reference signals
+      settings.outputs[function - 1] = function;
+    runtime::OutputInputs in;
+    bool known = false;  // settings of the last tick
+    ASSERT_NO_FATAL_FAILURE(expect_law(
+        runtime::Outputs(), seed, law_steps(),
+        [&](runtime::Outputs&, std::mt19937_64& random) {
+          const auto below = [&](uint64_t end) { return static_cast<int32_t>(random() % end); };
+          in.speed = below(161) - 80;
+          in.current = below(161) - 80;
+          in.setpoint = below(121) - 60;
+          in.current_limit = below(60);
+          in.flags = static_cast<uint32_t>(random() % 2048);
+          in.ipos_outputs = static_cast<uint16_t>(random());
+          known = random() % 4 != 0;
+          if (known) return;
+          settings.speed_delay = below(500);
+          settings.window_delay = below(500);
+          settings.compare_delay = below(500);
+          settings.current_delay = below(500);
+          settings.limit_delay = below(500);
+          settings.speed_reference = below(60);
+          settings.window_center = below(60);
+          settings.window_width = below(40);
+          settings.compare_hysteresis = below(30);
+          settings.current_reference = below(60);
+        },
+        [&](runtime::Outputs& outputs) {
+          if (!known || !outputs.go_on(in)) outputs.tick(settings, in);
+          known = true;
+        }));
   }
 }
 
