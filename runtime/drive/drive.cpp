@@ -278,8 +278,8 @@ void Drive::State::advance(Ticks ticks) {
   outputs.advance(ticks);
 }
 
-// Up to a digit of P015, P016, P017, a telegram that is missed, and the end of a delay of the outputs. A limit that is, or will be, exceeded
-// shows when it is.
+// Up to a digit of P015, P016, P017, a telegram that is missed, and the end of a delay of the outputs. A limit
+// that is, or will be, exceeded shows when it is.
 Ticks Drive::State::bound() const {
   if (axis.heat_sink_ahead() > kOvertemperature || axis.motor_utilization_ahead() >= kFullUtilization)
     return 0;

@@ -298,7 +298,7 @@ TEST_P(KeptDecisions, EqualDecisionsMadeAnew) {
 }
 
 // What gets too hot at a constant speed is told in the millisecond in which it does.
-TEST(Course, HeatIsToldInItsMillisecond) {
+TEST(Steady, HeatIsToldInItsMillisecond) {
   struct Case {
     int32_t heat_sink_rise, load;
     uint8_t fault;

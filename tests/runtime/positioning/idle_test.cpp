@@ -1,5 +1,5 @@
-// Positioning that leaves out milliseconds in which it has nothing to do against one that never does: the
-// same random variables, parameters, inputs, telegrams and commands, compared in every millisecond.
+// Positioning that only goes on where it has nothing to decide, at rest or on a travel, against one that
+// decides in every millisecond: the same random variables, parameters, inputs and commands, compared in each.
 #include <random>
 
 #include "tests/runtime/positioning/rig.hpp"
@@ -7,11 +7,13 @@
 namespace ipos::tests {
 namespace {
 
+constexpr int32_t kSpeedControl = 11, kPositioning = 13;  // settings of P700
+
 class Pair {
  public:
-  explicit Pair(uint32_t seed) : random_(seed) {
-    // Speed control as from the factory: a mode without positioning.
-    for (Rig* rig : {&idles_, &never_}) rig->set("700", 11);
+  // P700 is mostly `mode`.
+  Pair(uint32_t seed, int32_t mode) : random_(seed), mode_(mode) {
+    for (Rig* rig : {&idles_, &never_}) rig->set("700", mode_);
   }
 
   void step() {
@@ -68,7 +70,7 @@ class Pair {
             [&](Rig& rig) { rig.parameters.preset(rig.parameters.table().find(choice.number)->index, x); });
       }
       case 2: {
-        const int32_t mode = below(3) == 0 ? 13 : 11;
+        const int32_t mode = below(3) == 0 ? kSpeedControl + kPositioning - mode_ : mode_;
         return both([&](Rig& rig) { rig.set("700", mode); });
       }
       case 3:
@@ -111,14 +113,22 @@ class Pair {
   }
 
   std::mt19937 random_;
+  int32_t mode_;
   Rig idles_, never_;
 };
 
-TEST(Idle, LeavesOutNothingThatShows) {
+struct Mode {
+  int32_t setting;
+  double least_possible, most_possible;  // share of the ms in which the mode is one with positioning
+};
+
+class GoesOn : public ::testing::TestWithParam<Mode> {};
+
+TEST_P(GoesOn, LeavesOutNothingThatShows) {
   int possible = 0, turned = 0, ticks = 0;
   for (uint32_t seed = 0; seed < 60; ++seed) {
     SCOPED_TRACE(seed);
-    Pair pair(seed);
+    Pair pair(seed, GetParam().setting);
     for (int n = 0; n < 150; ++n) {
       pair.step();
       if (HasFatalFailure()) return;
@@ -128,10 +138,13 @@ TEST(Idle, LeavesOutNothingThatShows) {
     turned += pair.turned_;
   }
   // All of it has been there.
-  EXPECT_GT(possible, ticks / 20);
-  EXPECT_LT(possible, ticks * 19 / 20);
+  EXPECT_GT(possible, ticks * GetParam().least_possible);
+  EXPECT_LT(possible, ticks * GetParam().most_possible);
   EXPECT_GT(turned, ticks / 20);
 }
+
+INSTANTIATE_TEST_SUITE_P(Modes, GoesOn,
+                         ::testing::Values(Mode{kSpeedControl, 0.05, 0.5}, Mode{kPositioning, 0.5, 0.95}));
 
 }  // namespace
 }  // namespace ipos::tests
