@@ -21,6 +21,12 @@ constexpr Connection kReceive[] = {Connection::ReceivePdo1, Connection::ReceiveP
 constexpr Connection kTransmit[] = {Connection::TransmitPdo1, Connection::TransmitPdo2,
                                     Connection::TransmitPdo3, Connection::TransmitPdo4};
 
+// Tags of frames: of those with one tag only the latest still waits, so that a line that is dead for a while does not
+// fill the queue. The rest, behind kOfNodes, belongs to the nodes.
+enum Tag : uint64_t { kCommands, kSyncs, kHeartbeats, kOfNodes };
+enum NodeTag : uint64_t { kOutput1, kOutput4 = kOutput1 + 3, kGuardings, kRequests, kNodeTags };
+constexpr uint64_t tag_of(size_t node, uint64_t tag) { return kOfNodes + node * kNodeTags + tag; }
+
 constexpr uint16_t index_of(uint16_t first, uint8_t number) { return static_cast<uint16_t>(first + number); }
 
 }  // namespace
@@ -93,23 +99,23 @@ void Master::start(Time now, FrameSender& sender) {
   if (settings_.heartbeat > 0) on_timer(now, kHeartbeat);
 }
 
-void Master::command(NmtCommand command, uint8_t node) { sender_->send(nmt_frame(command, node), 0); }
+void Master::command(NmtCommand command, uint8_t node) { sender_->send(nmt_frame(command, node), kCommands); }
 
 void Master::on_timer(Time now, uint32_t kind) {
   const size_t node = kind / kKinds;
   switch (static_cast<TimerKind>(kind % kKinds)) {
     case kSync: return cycle(now);
     case kHeartbeat:
-      sender_->send({identifier(Connection::ErrorControl, settings_.node),
-                     1,
-                     {static_cast<uint8_t>(State::Operational)}},
-                    0);
+      sender_->send_latest({identifier(Connection::ErrorControl, settings_.node),
+                            1,
+                            {static_cast<uint8_t>(State::Operational)}},
+                           kHeartbeats);
       heartbeat_timer_->start(now + Time{settings_.heartbeat} * kMillisecond);
       return;
     case kSdo:
-      sender_->send(
+      sender_->send_latest(
           {identifier(Connection::SdoRequest, settings_.nodes[node].node), 8, links_[node].client.expire()},
-          0);
+          tag_of(node, kRequests));
       links_[node].report.phase = Phase::Lost;
       ++links_[node].report.losses;
       return;
@@ -117,7 +123,7 @@ void Master::on_timer(Time now, uint32_t kind) {
       const NodePlan& plan = settings_.nodes[node];
       Frame request{identifier(Connection::ErrorControl, plan.node), 1};
       request.remote = true;
-      sender_->send(request, 0);
+      sender_->send_latest(request, tag_of(node, kGuardings));
       links_[node].guard_timer->start(now + Time{plan.guard_time} * kMillisecond);
       return;
     }
@@ -131,7 +137,7 @@ void Master::on_timer(Time now, uint32_t kind) {
 
 void Master::cycle(Time now) {
   ++syncs_;
-  sender_->send({identifier(Connection::Sync), 0}, 0);
+  sender_->send_latest({identifier(Connection::Sync), 0}, kSyncs);
   for (size_t n = 0; n < links_.size(); ++n)
     if (links_[n].report.phase == Phase::Running) send_outputs(n);
   sync_timer_->start(now + settings_.sync_cycle);
@@ -141,9 +147,9 @@ void Master::send_outputs(size_t node) {
   const NodePlan& plan = settings_.nodes[node];
   for (uint8_t n = 0; n < objects::kPdos; ++n)
     if (const Mapping& mapping = links_[node].receive[n]; !mapping.empty())
-      sender_->send({identifier(kReceive[n], plan.node), static_cast<uint8_t>(bits_of(mapping) / 8),
-                     pack(mapping, plan.output)},
-                    0);
+      sender_->send_latest({identifier(kReceive[n], plan.node), static_cast<uint8_t>(bits_of(mapping) / 8),
+                            pack(mapping, plan.output)},
+                           tag_of(node, kOutput1 + n));
 }
 
 void Master::on_frame(Time now, const Frame& frame) {
@@ -225,7 +231,8 @@ void Master::write_next(Time now, size_t node) {
 }
 
 void Master::send_sdo(Time now, size_t node, const SdoBytes& bytes) {
-  sender_->send({identifier(Connection::SdoRequest, settings_.nodes[node].node), 8, bytes}, 0);
+  sender_->send_latest({identifier(Connection::SdoRequest, settings_.nodes[node].node), 8, bytes},
+                       tag_of(node, kRequests));
   links_[node].sdo_timer->start(now + settings_.sdo_timeout);
 }
 
