@@ -19,11 +19,11 @@ constexpr uint64_t kAcyclicObjectTags = kObjectTags + ObjectTable::kAcyclicTags;
 constexpr MovilinkBus kBuses[] = {MovilinkBus::Sbus, MovilinkBus::Sbus2};
 
 struct SbusParameters {
-  std::string_view protocol, address, group, baud, sync_id, second_channel;
+  std::string_view protocol, address, group, baud, sync_id, second_channel, canopen_address;
 };
-constexpr SbusParameters kOlder = {"", "813", "814", "816", "817", ""};
-constexpr SbusParameters kSbus1 = {"880", "881", "882", "884", "885", "889"};
-constexpr SbusParameters kSbus2 = {"890", "891", "892", "894", "895", "899"};
+constexpr SbusParameters kOlder = {"", "813", "814", "816", "817", "", ""};
+constexpr SbusParameters kSbus1 = {"880", "881", "882", "884", "885", "889", "886"};
+constexpr SbusParameters kSbus2 = {"890", "891", "892", "894", "895", "899", "896"};
 
 }  // namespace
 
@@ -40,11 +40,12 @@ SbusSettings sbus_settings(const DriveServer& drive, int sbus) {
   settings.slave.group_output = sbus != 1 || !sends_over_sbus(drive.value("750"));
   settings.baud = kBaudRates[std::min(static_cast<size_t>(value(p.baud)), kBaudRates.size() - 1)];
   settings.movilink = value(p.protocol) == 0;
+  settings.canopen_address = static_cast<uint8_t>(value(p.canopen_address));
   return settings;
 }
 
-NodeId SbusPort::connect(CanLine& line, std::optional<NodeId> node, std::string_view station, uint32_t baud,
-                         CanNode& port) {
+NodeId join(CanLine& line, std::optional<NodeId> node, std::string_view station, uint32_t baud,
+            CanNode& port) {
   if (!node) {
     node = line.attach(std::string(station), baud, port);
   } else {
@@ -60,7 +61,7 @@ NodeId SbusPort::connect(CanLine& line, std::optional<NodeId> node, std::string_
 SbusPort::SbusPort(EventQueue& queue, uint32_t source, CanLine& line, std::optional<NodeId> node, int sbus,
                    std::string_view station, const SbusSettings& settings, Door& door, Journal& journal)
     : door_(door),
-      sender_(line, connect(line, node, station, settings.baud, *this)),
+      sender_(line, join(line, node, station, settings.baud, *this)),
       objects_(door.touch().server().unit(), settings.baud, sender_, kObjectTags, sbus),
       line_(line),
       station_(station),

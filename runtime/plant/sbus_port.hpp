@@ -24,9 +24,14 @@ namespace ipos::runtime {
 struct SbusSettings {
   SlaveSettings slave;
   uint32_t baud = 500'000;
-  bool movilink = true;  // P880 and P890 can select CANopen
+  bool movilink = true;         // P880 and P890 can select CANopen
+  uint8_t canopen_address = 0;  // P886, P896
 };
 SbusSettings sbus_settings(const DriveServer& drive, int sbus);
+
+// A port attaches to its line, or takes the place `node` of one that went with a power-off.
+NodeId join(CanLine& line, std::optional<NodeId> node, std::string_view station, uint32_t baud,
+            CanNode& port);
 
 class SbusPort final : private CanNode, private SlaveObserver, private TelegramReader {
  public:
@@ -57,8 +62,6 @@ class SbusPort final : private CanNode, private SlaveObserver, private TelegramR
   const GroupMaster& group_master() const { return group_master_; }
 
  private:
-  static NodeId connect(CanLine& line, std::optional<NodeId> node, std::string_view station, uint32_t baud,
-                        CanNode& port);
   void on_frame(Time now, const Frame& frame) override;
   bool waits(const Frame& frame);
   bool receive(Time now, const Frame& frame);

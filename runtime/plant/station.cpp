@@ -1,8 +1,6 @@
 // The ports of a station and its power.
 #include "runtime/plant/station.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "runtime/plant/serial_plan.hpp"
@@ -56,6 +54,8 @@ void Station::power_off() {
   unit_.power_off();
   for (const auto& port : sbus_)
     if (port) port->power_off();
+  for (const auto& port : canopen_)
+    if (port) port->power_off();
   if (x13_) x13_->power_off();
   if (xt_) xt_->power_off();
   if (keypad_) keypad_->set_powered(false);
@@ -65,14 +65,19 @@ void Station::connect_sbus(int number) {
   CanLine* line = lines_.sbus[static_cast<size_t>(number - 1)];
   if (line == nullptr) return;
   const SbusSettings settings = sbus_settings(unit_.server(), number);
-  if (!settings.movilink)
-    return journal_.note(
-        queue_.now(), Weight::Warning, config_.name,
-        fmt::format("SBus {} is silent: its protocol is CANopen (P{}), which is not simulated", number,
-                    number == 1 ? 880 : 890));
   // After a power-off the new port takes the place of the old one on the line.
   auto& port = sbus_[static_cast<size_t>(number - 1)];
-  const std::optional<NodeId> node = port ? std::optional(port->node()) : std::nullopt;
+  auto& canopen = canopen_[static_cast<size_t>(number - 1)];
+  const std::optional<NodeId> node = port      ? std::optional(port->node())
+                                     : canopen ? std::optional(canopen->node())
+                                               : std::nullopt;
+  if (!settings.movilink) {
+    port.reset();
+    canopen = std::make_unique<CanopenPort>(queue_, source_, *line, node, number, config_.name, settings,
+                                            door_, journal_);
+    return;
+  }
+  canopen.reset();
   port = std::make_unique<SbusPort>(queue_, source_, *line, node, number, config_.name, settings, door_,
                                     journal_);
 }
@@ -144,14 +149,17 @@ Time Station::send(Time now) {
   Time next = kNever;
   for (const auto& port : sbus_)
     if (port) next = std::min(next, port->tick(now, unit_.variables()));
+  for (const auto& port : canopen_)
+    if (port) next = std::min(next, port->tick(now));
   return next;
 }
 
 // Who is on a serial line is asked at any time.
 Ticks Station::silence(Time first) {
   if (ticks_.way() != ManyTicks::Way::Idle && (x13_ || xt_)) return 0;
-  const bool waits = std::any_of(sbus_.begin(), sbus_.end(),
-                                 [](const auto& port) { return port && port->has_waiting_frames(); });
+  const auto waiting = [](const auto& port) { return port && port->has_waiting_frames(); };
+  const bool waits = std::any_of(sbus_.begin(), sbus_.end(), waiting) ||
+                     std::any_of(canopen_.begin(), canopen_.end(), waiting);
   return ticks_.silence(first, waits);
 }
 

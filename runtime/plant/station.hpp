@@ -11,6 +11,7 @@
 #include "runtime/bus/can/line.hpp"
 #include "runtime/bus/movilink/keypad.hpp"
 #include "runtime/pace/pacer.hpp"
+#include "runtime/plant/canopen_port.hpp"
 #include "runtime/plant/plant_file.hpp"
 #include "runtime/plant/sbus_port.hpp"
 #include "runtime/plant/serial_port.hpp"
@@ -104,6 +105,12 @@ class Station final : private Timed, private TaskRunner {
     return sbus_[static_cast<size_t>(number - 1)].get();
   }
 
+  // The same with the protocol CANopen.
+  const CanopenPort* canopen(int number) const {
+    look();
+    return canopen_[static_cast<size_t>(number - 1)].get();
+  }
+
   // The MOVLNK of this structure was carried out, over whichever bus.
   bool has_called(uint32_t structure) const { return door_.look().movilink().has_called(structure); }
 
@@ -143,6 +150,7 @@ class Station final : private Timed, private TaskRunner {
   Pacer pacer_;
   Door door_{unit_, ticks_, pacer_};
   std::array<std::unique_ptr<SbusPort>, 2> sbus_;
+  std::array<std::unique_ptr<CanopenPort>, 2> canopen_;  // in place of the former, by P880 and P890
 
   // RS-485; empty without a line.
   std::unique_ptr<SerialPort> x13_;

@@ -227,8 +227,10 @@ TEST(Silence, SubindexOfMovlnk) {
 }
 
 TEST(Silence, CanopenProtocol) {
-  PlantRig rig(bus_text() + station_text("u", "P880 = 1\n", "mdxb"));
-  EXPECT_EQ(rig.says("u: SBus 1 is silent: its protocol is CANopen (P880), which is not simulated"), 1U);
+  PlantRig rig(bus_text() + station_text("u", "P880 = 1\nP886 = 9\n", "mdxb"));
+  rig.run_until(10 * kMillisecond);
+  ASSERT_NE(rig.station(0).canopen(1), nullptr);  // not silent, but a node
+  EXPECT_EQ(rig.station(0).canopen(1)->canopen()->dictionary().node(), 9);
 }
 
 }  // namespace

@@ -5,9 +5,9 @@
 #include <set>
 
 #include "runtime/drive/settings.hpp"
-#include "runtime/unit/drive_server.hpp"
 #include "runtime/plant/sbus_port.hpp"
 #include "runtime/positioning/settings.hpp"
+#include "runtime/unit/drive_server.hpp"
 #include "stdlib/faults.hpp"
 #include "stdlib/unsimulated.hpp"
 
@@ -47,7 +47,7 @@ Reading read(const DriveServer& unit) {
     const SbusSettings s = sbus_settings(unit, sbus);
     for (const int64_t value : {int64_t{s.slave.address}, int64_t{s.slave.group}, int64_t{s.slave.sync_id},
                                 int64_t{s.slave.second_channel}, int64_t{s.slave.group_output},
-                                int64_t{s.baud}, int64_t{s.movilink}})
+                                int64_t{s.baud}, int64_t{s.movilink}, int64_t{s.canopen_address}})
       reading.buses.push_back(value);
   }
   const SerialParameters serial = unit.serial_parameters();

@@ -1,0 +1,109 @@
+// What the messages of a CANopen line do in the unit, and what the user is told.
+#include "runtime/plant/canopen_port.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+namespace ipos::runtime {
+namespace {
+
+constexpr uint16_t kFaultBit = 1U << 5;                   // of status word 1
+constexpr uint8_t kSbusTimeout = 47, kSbus2Timeout = 46;  // with the responses of P836 and P837
+
+}  // namespace
+
+CanopenPort::CanopenPort(EventQueue& queue, uint32_t source, CanLine& line, std::optional<NodeId> node,
+                         int sbus, std::string_view station, const SbusSettings& settings, Door& door,
+                         Journal& journal)
+    : door_(door),
+      sender_(line, join(line, node, station, settings.baud, *this)),
+      line_(line),
+      sbus_(sbus),
+      station_(station),
+      journal_(journal),
+      server_(door) {
+  const canopen::Place place{queue, source, sender_, 1};
+  canopen::Unit& unit = *this;
+  canopen::NodeObserver* observer = this;
+  node_.emplace(place, settings.canopen_address, door.look().server().unit(), canopen::NodeTiming{}, server_,
+                unit, observer);
+  node_->start(queue.now());
+}
+
+void CanopenPort::power_off() {
+  node_.reset();  // and what it waits for
+  line_.set_connected(node(), false);
+}
+
+void CanopenPort::note(Time now, Weight weight, std::string text) {
+  journal_.note(now, weight, station_, std::move(text));
+}
+
+// PO4 to PO10 are words for programs, which do not get them yet.
+void CanopenPort::take_output(Time now, const canopen::Words& words, uint16_t written) {
+  size_t count = 0;
+  for (size_t n = 0; n < output_.size(); ++n)
+    if ((written >> n & 1) != 0) {
+      output_[n] = words[n];
+      count = n + 1;
+    }
+  if (count == 0) return;
+  exchanges_ = true;
+  server_.take_output(now, OutputChannel::Single, std::span(output_).first(count));
+  tell_reasons(now);
+}
+
+canopen::Words CanopenPort::input(Time now) {
+  canopen::Words words{};
+  const ProcessWords input = server_.input(now);
+  std::copy(input.begin(), input.end(), words.begin());
+  return words;
+}
+
+// There is no 24 V backup in the model: without mains the station is off.
+canopen::UnitStatus CanopenPort::status(Time /*now*/) {
+  const uint16_t status = door_.look().drive().status_word_1();
+  return {status, (status & kFaultBit) != 0, false};
+}
+
+// Behind operational the drive stops rapidly until process data come again (ours): control word and setpoints 0.
+void CanopenPort::state_changed(Time now, canopen::State state) {
+  if (canopen::has_pdo(state) || !std::exchange(exchanges_, false)) return;
+  output_ = {};
+  server_.take_output(now, OutputChannel::Single, output_);
+  note(now, Weight::Why,
+       fmt::format("CANopen: the node is {} and exchanges no process data: they count as 0",
+                   canopen::state_text(static_cast<uint8_t>(state))));
+}
+
+void CanopenPort::reset_node(Time now) {
+  note(now, Weight::Why, "CANopen: reset node resets the communication; the drive goes on");
+}
+
+void CanopenPort::partner_lost(Time now) {
+  note(now, Weight::Warning,
+       fmt::format("CANopen: guarding or heartbeat of the master stayed away on SBus {}", sbus_));
+  door_.touch().drive().raise_fault(sbus_ == 1 ? kSbusTimeout : kSbus2Timeout);
+}
+
+void CanopenPort::partner_back(Time now) {
+  note(now, Weight::Why,
+       fmt::format("CANopen: guarding or heartbeat of the master is back on SBus {}", sbus_));
+}
+
+void CanopenPort::on_ignored(Time now, const Frame& frame, canopen::IgnoredMessage reason) {
+  note(now, Weight::Why, fmt::format("CANopen message {:03X}h {}", frame.id, canopen::ignored_text(reason)));
+}
+
+void CanopenPort::tell_reasons(Time now) {
+  if (!door_.has_reasons()) return;
+  DriveServer& drive = door_.touch().server();
+  if (std::string refused = drive.take_reason(); !refused.empty())
+    note(now, Weight::Why, "refused " + std::move(refused));
+  for (std::string& obstacle : drive.take_obstacles()) note(now, Weight::Why, std::move(obstacle));
+}
+
+}  // namespace ipos::runtime

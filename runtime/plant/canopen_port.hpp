@@ -1,0 +1,68 @@
+// One SBus connection of a MOVIDRIVE B whose protocol is CANopen (P880, P890 = 1): a node with the address P886 or
+// P896, whose process data and parameters are those of the unit.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "runtime/bus/can/line.hpp"
+#include "runtime/bus/canopen/node.hpp"
+#include "runtime/plant/sbus_port.hpp"
+#include "runtime/plant/unit_server.hpp"
+#include "runtime/services/journal.hpp"
+#include "runtime/unit/door.hpp"
+
+namespace ipos::runtime {
+
+class CanopenPort final : private CanNode, private canopen::Unit, private canopen::NodeObserver {
+ public:
+  // As SbusPort: it attaches to the line, or takes the place `node` of a port that went with a power-off.
+  CanopenPort(EventQueue& queue, uint32_t source, CanLine& line, std::optional<NodeId> node, int sbus,
+              std::string_view station, const SbusSettings& settings, Door& door, Journal& journal);
+
+  void power_off();
+  // Once a millisecond, after the tasks: what goes out on change may go out now.
+  Time tick(Time now) {
+    node_->unit_changed(now);
+    return now + kMillisecond;
+  }
+  bool has_waiting_frames() const { return line_.has_waiting(node()); }
+
+  NodeId node() const { return sender_.node(); }
+  CanLine& line() const { return line_; }
+  const canopen::Node* canopen() const { return node_ ? &*node_ : nullptr; }  // null: power is off
+
+ private:
+  void on_frame(Time now, const Frame& frame) override {
+    if (node_) node_->on_frame(now, frame);
+  }
+  void on_sent(Time, const Frame&, uint64_t) override {}
+  void on_not_sent(Time, const Frame&, uint64_t, NotSent) override {}
+  void on_bus_off(Time) override { sender_.recover(); }
+
+  void take_output(Time now, const canopen::Words& words, uint16_t written) override;
+  canopen::Words input(Time now) override;
+  canopen::UnitStatus status(Time now) override;
+  void synchronize(Time now) override { server_.synchronize(now); }
+  void state_changed(Time now, canopen::State state) override;
+  void reset_node(Time now) override;
+  void partner_lost(Time now) override;
+  void partner_back(Time now) override;
+  void on_ignored(Time now, const Frame& frame, canopen::IgnoredMessage reason) override;
+  void note(Time now, Weight weight, std::string text);
+  void tell_reasons(Time now);
+
+  Door& door_;
+  LinePort sender_;
+  CanLine& line_;
+  int sbus_;
+  std::string_view station_;
+  Journal& journal_;
+  UnitServer server_;
+  ProcessWords output_{};   // as the master last sent them
+  bool exchanges_ = false;  // outputs have come since the node is operational
+  std::optional<canopen::Node> node_;
+};
+
+}  // namespace ipos::runtime
