@@ -26,6 +26,16 @@ install(FILES ${shell}/ipos DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion
 install(FILES ${shell}/_ipos DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
 install(FILES ${shell}/ipos.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 
+# The VS Code extension, where somebody has built it: that takes npm and its registry.
+set(extension ${PROJECT_SOURCE_DIR}/tools/vscode)
+file(GLOB_RECURSE extension_sources CONFIGURE_DEPENDS ${extension}/src/* ${extension}/*.json)
+list(FILTER extension_sources EXCLUDE REGEX "/(node_modules|out)/")
+add_custom_command(OUTPUT ${PROJECT_BINARY_DIR}/vscode/ipos.vsix
+  COMMAND ${extension}/pack.sh ${PROJECT_BINARY_DIR}/vscode/ipos.vsix
+  DEPENDS ${extension_sources} ${extension}/pack.sh COMMENT "Packing the VS Code extension")
+add_custom_target(ipos_vsix DEPENDS ${PROJECT_BINARY_DIR}/vscode/ipos.vsix)
+install(FILES ${PROJECT_BINARY_DIR}/vscode/ipos.vsix DESTINATION ${CMAKE_INSTALL_DATADIR}/ipos OPTIONAL)
+
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/ipos)
 install(EXPORT ipos NAMESPACE ipos:: FILE iposTargets.cmake DESTINATION ${package_dir})
 file(WRITE ${PROJECT_BINARY_DIR}/iposConfig.cmake "include(\${CMAKE_CURRENT_LIST_DIR}/iposTargets.cmake)\n")
