@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <iterator>
+#include <string>
 #include <string_view>
 
+#include "tools/cli/commit.hpp"
 #include "tools/cli/end_of_process.hpp"
 #include "tools/cli/parser.hpp"
 #include "tools/cli/verbs.hpp"
@@ -49,7 +51,9 @@ int run(int argc, char** argv) {
       "Example:\n  ipos run examples/scom/scom.toml --for 1s --watch\nEvery verb has --help with an "
       "example.");
   add_verbs(program, argc > 1 ? argv[1] : "");
-  return ipos::tools::cli::run(program, "ipos " IPOS_VERSION, argc, argv);
+  std::string version = "ipos " IPOS_VERSION;
+  if (*ipos::tools::kCommit != 0) version += std::string(" (commit ") + ipos::tools::kCommit + ")";
+  return ipos::tools::cli::run(program, version, argc, argv);
 }
 
 // Without one of the three streams the next file that is opened would get its number, and its text.

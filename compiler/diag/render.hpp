@@ -4,6 +4,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "compiler/diag/diag.hpp"
 
@@ -11,6 +12,11 @@ namespace ipos::compiler {
 
 // `file:line:col: error: text [E0123]`, the source line, a caret with its range, then the notes.
 std::string render_text(std::span<const Diagnostic> diagnostics, const SourceMap& map, bool color);
+
+// An error of another kind of file in the same form: `place` is "plant.toml:3:1:", `begin` counts bytes of `line` from 0.
+// Without a line it is not quoted.
+std::string render_mistake(std::string_view place, std::string_view text, uint32_t number,
+                           std::string_view line, size_t begin, bool color);
 
 // One JSON object a line.
 std::string render_json(std::span<const Diagnostic> diagnostics, const SourceMap& map);

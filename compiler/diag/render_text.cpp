@@ -17,6 +17,27 @@ struct Colors {
 constexpr Colors kPlain{};
 constexpr Colors kAnsi{"\x1b[1m", "\x1b[1;31m", "\x1b[1;35m", "\x1b[1;36m", "\x1b[1;32m", "\x1b[0m"};
 
+// The line and below it a caret under the first character and ~ under the others; `begin` and `end` count its bytes.
+std::string quote(uint32_t number, std::string_view line, size_t begin, size_t end, const Colors& colors) {
+  if (begin > kWidth / 2 && line.size() > kWidth) {
+    const size_t cut = begin - kWidth / 2;
+    line.remove_prefix(cut);
+    begin -= cut;
+    end -= cut;
+  }
+  line = line.substr(0, kWidth);
+  end = std::min(end, line.size());
+
+  std::string below;
+  for (char c : printable(line.substr(0, begin)))
+    if ((static_cast<unsigned char>(c) & 0xC0U) != 0x80U) below += c == '\t' ? '\t' : ' ';
+  below += colors.caret;
+  below += '^';
+  if (end > begin) below.append(characters(line.substr(begin, end - begin)) - 1, '~');
+  below += colors.off;
+  return fmt::format("{:5} | {}\n      | {}\n", number, printable(line), below);
+}
+
 class TextRenderer {
  public:
   TextRenderer(const SourceMap& map, bool color) : map_(map), colors_(color ? kAnsi : kPlain) {}
@@ -40,32 +61,16 @@ class TextRenderer {
                                    : severity == Severity::Warning ? colors_.warning
                                                                    : colors_.note;
     out_ += fmt::format("{}{}:{} {}{}\n", color, severity_word(severity), colors_.off, printable(text), code);
-    if (range.begin.file != nullptr) quote(range);
+    if (range.begin.file != nullptr) quote_range(range);
   }
 
-  // The line and below it a caret under the first character and ~ under the others.
-  void quote(const Range& range) {
-    std::string_view line = SourceMap::line_text(*range.begin.file, range.begin.line);
-    size_t begin = std::min<size_t>(range.begin.column - 1, line.size());
-    size_t end = range.end.line == range.begin.line ? std::min<size_t>(range.end.column - 1, line.size())
-                                                    : line.size();
-    if (begin > kWidth / 2 && line.size() > kWidth) {
-      const size_t cut = begin - kWidth / 2;
-      line.remove_prefix(cut);
-      begin -= cut;
-      end -= cut;
-    }
-    line = line.substr(0, kWidth);
-    end = std::min(end, line.size());
-
-    std::string below;
-    for (char c : printable(line.substr(0, begin)))
-      if ((static_cast<unsigned char>(c) & 0xC0U) != 0x80U) below += c == '\t' ? '\t' : ' ';
-    below += colors_.caret;
-    below += '^';
-    if (end > begin) below.append(characters(line.substr(begin, end - begin)) - 1, '~');
-    below += colors_.off;
-    out_ += fmt::format("{:5} | {}\n      | {}\n", range.begin.line, printable(line), below);
+  void quote_range(const Range& range) {
+    const std::string_view line = SourceMap::line_text(*range.begin.file, range.begin.line);
+    const size_t end = range.end.line == range.begin.line
+                           ? std::min<size_t>(range.end.column - 1, line.size())
+                           : line.size();
+    out_ +=
+        quote(range.begin.line, line, std::min<size_t>(range.begin.column - 1, line.size()), end, colors_);
   }
 
   const SourceMap& map_;
@@ -79,6 +84,14 @@ std::string render_text(std::span<const Diagnostic> diagnostics, const SourceMap
   TextRenderer renderer(map, color);
   for (const Diagnostic& diagnostic : diagnostics) renderer.diagnostic(diagnostic);
   return renderer.take();
+}
+
+std::string render_mistake(std::string_view place, std::string_view text, uint32_t number,
+                           std::string_view line, size_t begin, bool color) {
+  const Colors& colors = color ? kAnsi : kPlain;
+  const std::string head = fmt::format("{}{}{} {}error:{} {}\n", colors.place, printable(place), colors.off,
+                                       colors.error, colors.off, printable(text));
+  return line.empty() ? head : head + quote(number, line, begin, begin + 1, colors);
 }
 
 }  // namespace ipos::compiler

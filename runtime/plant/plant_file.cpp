@@ -40,7 +40,12 @@ std::optional<toml::table> parse_toml(PlantReader& reader, std::string_view text
   }
   toml::parse_result parsed = toml::parse(text);
   if (!parsed) {
-    reader.error(place_of(parsed.error().source()), fmt::format("{}", parsed.error().description()));
+    const std::string_view what = parsed.error().description();
+    // The commonest one, in words: name = sbus.
+    const bool no_value = what.find("could not determine value type") != std::string_view::npos;
+    reader.error(
+        place_of(parsed.error().source()),
+        no_value ? "a value is a number, true, false, a list, or a text in quotes" : std::string(what));
     return std::nullopt;
   }
   return std::move(parsed).table();

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "compiler/diag/diag.hpp"
+#include "runtime/plan/plan.hpp"
 #include "stdlib/faults.hpp"
+#include "stdlib/language_tables.hpp"
 #include "tests/tools/command.hpp"
 #include "vm/verify/verify.hpp"
 
@@ -54,7 +56,8 @@ TEST(Explain, FaultsOfPrograms) {
 
 TEST(Explain, WhatIsNotSimulatedOfAParameter) {
   const std::string mode = explained("P700");
-  EXPECT_NE(mode.find("\n  not simulated (12,17): torque control is not simulated"), std::string::npos) << mode;
+  EXPECT_NE(mode.find("\n  not simulated (12,17): torque control is not simulated"), std::string::npos)
+      << mode;
   EXPECT_NE(mode.find("\n  not simulated (21): the drive turns with ideal speed control"), std::string::npos);
   EXPECT_NE(explained("P138").find("\n  not simulated: the ramps are not limited\n"), std::string::npos);
   EXPECT_EQ(explained("P130").find("not simulated"), std::string::npos);
@@ -93,6 +96,53 @@ TEST(Explain, Parameters) {
   const std::string address = explained("8600");
   EXPECT_NE(address.find("P813 of MOVIDRIVE MD_60A"), std::string::npos) << address;
   EXPECT_NE(address.find("P881 of MOVIDRIVE MDX60B/61B"), std::string::npos) << address;
+}
+
+TEST(Explain, FindingsOfTheBusPlan) {
+  for (const runtime::FindingType& row : runtime::finding_types())
+    EXPECT_NE(explained(std::string(row.code)).find(std::string(row.meaning)), std::string::npos) << row.code;
+}
+
+TEST(Explain, SystemVariablesByEveryName) {
+  // IPOSplus p. 29: H454 ModTagPos, MOD.TAGPOS in assembler text.
+  const std::string text = explained("H454");
+  EXPECT_TRUE(text.starts_with("H454 ModTagPos: ")) << text;
+  for (const char* same : {"h454", "ModTagPos", "modtagpos", "MOD.TAGPOS"}) EXPECT_EQ(explained(same), text);
+  EXPECT_NE(explained("H474").find("not simulated"), std::string::npos);
+}
+
+TEST(Explain, SystemFunctionsWithTheirArguments) {
+  // 1053 1610 p. 47 prints it as _Movilink, p. 49 has what Result is.
+  const std::string text = explained("_MoviLink");
+  for (const char* part :
+       {"_MoviLink(s)", "arguments: MOVLNK", "blocks: until the answer", "1053 1610 p. 47"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << text;
+  EXPECT_EQ(explained("_Movilink"), text);
+  for (const stdlib::SystemFunction& row : stdlib::system_functions())
+    EXPECT_NE(explained(std::string(row.name)).find("written: "), std::string::npos) << row.name;
+}
+
+TEST(Explain, StructuresConstantsAndCommands) {
+  // 1053 1610 p. 47: the members in their order, and the values of BusType.
+  const std::string data = explained("MLDATA");
+  EXPECT_LT(data.find("WritePar"), data.find("ReadPar"));
+  EXPECT_LT(data.find("PO3"), data.find("PI1"));
+  const std::string link = explained("MOVLNK");  // structure and command
+  for (const char* part :
+       {"structure of 7 variables", "ML_BT_S0 = 1", "ML_BT_SBUS = 5", "command of the drive"})
+    EXPECT_NE(link.find(part), std::string::npos) << part << link;
+  EXPECT_NE(explained("ML_BT_SBUS").find("\n  5\n"), std::string::npos);
+}
+
+TEST(Explain, OtherWordsAreSearchedFor) {
+  const CommandResult ramps = run_ipos({"explain", "ramp", "UP", "ccw"});
+  EXPECT_EQ(ramps.exit_code, 0);
+  // 1053 1610: P132 and P142 are the ramps up CCW of both sets.
+  EXPECT_NE(ramps.out.find("P132"), std::string::npos) << ramps.out;
+  EXPECT_NE(ramps.out.find("P142"), std::string::npos) << ramps.out;
+  EXPECT_EQ(ramps.out.find("P131"), std::string::npos) << ramps.out;
+  EXPECT_NE(explained("overcurrent").find("F01"), std::string::npos);
+  EXPECT_NE(explained("ML_FT").find("ML_FT_PAR1"), std::string::npos);
 }
 
 TEST(Explain, UnknownCodesAreErrors) {

@@ -51,6 +51,8 @@ RunningIpos::RunningIpos(const std::vector<std::string>& arguments, const fs::pa
   const int err_file = open(err.c_str(), O_WRONLY | O_CREAT, 0600);
   const int null_file = open("/dev/null", O_RDONLY);
   if (!directory.empty() && chdir(directory.c_str()) != 0) _exit(126);
+  setenv("XDG_CACHE_HOME", folder_->path().c_str(),
+         0);  // nothing in that of the user, unless a test says where
   dup2(null_file, 0);
   dup2(out_file, 1);
   dup2(err_file, 2);

@@ -140,6 +140,14 @@ std::vector<std::string> list_files(const std::string& folder) {
   return names;
 }
 
+std::string beside(const std::string& file, const std::string& name) {
+  namespace fs = std::filesystem;
+  const fs::path path = fs::path(file).parent_path() / name;
+  const fs::path normal = path.lexically_normal();
+  std::error_code error;  // behind a link to a folder `..` leads elsewhere
+  return (fs::equivalent(path, normal, error) ? normal : path).string();
+}
+
 bool is_input(const std::string& path) {
   const auto file_identity = identity(AT_FDCWD, path.c_str(), 0);
   const std::lock_guard lock(opened_mutex);

@@ -37,6 +37,10 @@ std::vector<std::string> files_below(const std::string& folder);
 // Names of the files in a folder, "" being the current one; none when it cannot be read.
 std::vector<std::string> list_files(const std::string& folder);
 
+// The path of a file that another one names, relative to itself: without `..` where a folder before it says the same, so
+// that reports can be matched with files.
+std::string beside(const std::string& file, const std::string& name);
+
 // Whether one of the functions above has opened this very file.
 bool is_input(const std::string& path);
 

@@ -1,6 +1,7 @@
 // Adding up and counting.
 #include "tools/coverage/coverage.hpp"
 
+#include <filesystem>
 #include <utility>
 
 namespace ipos::tools::coverage {
@@ -52,6 +53,18 @@ void Coverage::merge(const Coverage& other) {
       mine.count += entry.count;
     }
   }
+}
+
+Coverage Coverage::named_from(const std::string& folder) const {
+  namespace fs = std::filesystem;
+  Coverage named;
+  for (const auto& [name, file] : files) {
+    const fs::path whole = fs::weakly_canonical(fs::path(folder) / name);
+    const fs::path relative = whole.lexically_relative(folder);
+    const bool inside = !relative.empty() && *relative.begin() != "..";
+    named.merge({{{(inside ? relative : whole).string(), file}}});
+  }
+  return named;
 }
 
 Figures figures(const SourceFile& file) {

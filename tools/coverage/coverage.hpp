@@ -67,6 +67,10 @@ struct Coverage {
   std::map<std::string, SourceFile> files;  // by the path the compiler was given
 
   void merge(const Coverage& other);
+
+  // With the names as programs that read reports look for files: relative to `folder`,
+  // which is a whole path without links; absolute where they lie elsewhere.
+  Coverage named_from(const std::string& folder) const;
 };
 
 Figures figures(const SourceFile& file);

@@ -39,9 +39,11 @@ void CoverageReports::check() const {
 }
 
 void CoverageReports::write(const coverage::Coverage& coverage) const {
+  if (!wanted()) return;
+  const coverage::Coverage named = coverage.named_from(std::filesystem::current_path().string());
   for (const Report& report : reports_) {
     std::ostringstream text;
-    report.write(text, coverage);
+    report.write(text, named);
     if (is_standard_output(report.path)) fmt::print("\n");
     replace_file(report.path, text.str());
   }

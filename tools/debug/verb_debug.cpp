@@ -28,6 +28,14 @@ namespace {
 volatile std::sig_atomic_t stop_asked = 0;
 void on_stop(int) { stop_asked = 1; }
 
+// With SA_RESTART calls of the system go on behind Ctrl-C, without they end.
+void catch_stop(int flags) {
+  struct sigaction action {};
+  action.sa_handler = on_stop;
+  action.sa_flags = flags;
+  sigaction(SIGINT, &action, nullptr);
+}
+
 struct DebugFlags {
   std::string file;
   std::string duration = "60s";
@@ -47,7 +55,7 @@ debug::MakePlant plant_maker(PlantInput input, std::optional<vm::Rates> rates) {
   return [input = std::move(input), rates] { return make_plant(input, runtime::FileUse::Look, rates); };
 }
 
-// Lines of standard input. A script is read without a buffer of the library's: what was read ahead must go
+// Lines of standard input. Ctrl-C on a terminal gives a new prompt; what stood on the line is gone. A script is read without a buffer of the library's: what was read ahead must go
 // with the session to the process that goes on.
 class LineInput {
  public:
@@ -57,7 +65,12 @@ class LineInput {
   std::optional<std::string> next() {
 #ifdef IPOS_EDITLINE
     if (terminal_) {
-      char* line = readline("(ipos) ");
+      char* line = nullptr;
+      do {
+        stop_asked = 0;
+        line = readline("(ipos) ");
+        if (line == nullptr && stop_asked != 0) fmt::print("\n");
+      } while (line == nullptr && stop_asked != 0);
       if (line == nullptr) return std::nullopt;
       std::string text(line);
       std::free(line);
@@ -65,10 +78,7 @@ class LineInput {
       return text;
     }
 #endif
-    if (terminal_) {
-      fmt::print("(ipos) ");
-      std::fflush(stdout);
-    }
+    if (terminal_) prompt();
     for (;;) {
       if (const size_t end = rest_.find('\n'); end != std::string::npos) {
         std::string line = rest_.substr(0, end);
@@ -76,8 +86,17 @@ class LineInput {
         return line;
       }
       char buffer[4096];
+      if (terminal_) catch_stop(0);
       const ssize_t count = read(STDIN_FILENO, buffer, sizeof buffer);
-      if (count < 0 && errno == EINTR) continue;
+      const bool interrupted = count < 0 && errno == EINTR;
+      if (terminal_) catch_stop(SA_RESTART);
+      if (interrupted) {
+        if (terminal_) {
+          fmt::print("\n");
+          prompt();
+        }
+        continue;
+      }
       if (count <= 0) return rest_.empty() ? std::nullopt : std::optional(std::exchange(rest_, {}));
       rest_.append(buffer, static_cast<size_t>(count));
     }
@@ -86,6 +105,11 @@ class LineInput {
   void load(const debug::Json& state) { rest_ = state.get<std::string>(); }
 
  private:
+  static void prompt() {
+    fmt::print("(ipos) ");
+    std::fflush(stdout);
+  }
+
   bool terminal_;
   std::string rest_;
 };
@@ -115,7 +139,7 @@ int debug_console(const DebugFlags& flags) {
   debug::Debugger debugger(plant_maker(std::move(input), rates_of(flags.speed)), console, flags.snapshots,
                            runtime::parse_duration(flags.duration));
   console.attach(debugger);
-  std::signal(SIGINT, on_stop);
+  catch_stop(SA_RESTART);
 #ifdef IPOS_EDITLINE
   completing = &console;
   rl_attempted_completion_function = offers;

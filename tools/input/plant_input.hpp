@@ -19,10 +19,8 @@ struct PlantInput {
   std::vector<std::optional<vm::Image>> programs;
 };
 
-// *.toml
-bool is_plant(const std::string& path);
-
-// Reads the plant, compiles or loads its programs. A single program becomes a station named after the file;
+// Reads the plant, compiles or loads its programs. All mistakes that can be found without a run are told before the
+// Failure: of the file, of its programs, and what the units refuse. A single program becomes a station named after the file;
 // with `sbus` it is alone on a line of that name.
 PlantInput read_plant_input(const std::string& path, const CompileFlags& compile,
                             const std::string& sbus = {});

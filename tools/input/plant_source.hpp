@@ -11,8 +11,10 @@ namespace ipos::tools {
 // *.toml
 bool is_plant(std::string_view path);
 
-// Errors are printed with their places, then a Failure ends the verb. Memory files are relative to the plant
-// file, and so they come back.
+// Memory files are relative to the plant file, and so they come back.
+runtime::PlantFileResult try_read_plant(const std::string& path);
+
+// Errors are printed with their places, then a Failure ends the verb.
 runtime::PlantFile read_plant(const std::string& path);
 
 }  // namespace ipos::tools

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cstdlib>
 #include <map>
 
 #include "compiler/ast/print.hpp"
@@ -19,6 +18,7 @@
 #include "stdlib/unit_types.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/files.hpp"
+#include "tools/cli/terminal.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -108,8 +108,7 @@ void print_diagnostics(const compiler::SourceMap& sources, const compiler::Diagn
   } else if (form == "sarif") {
     fmt::print(stderr, "{}", compiler::render_sarif(all, sources));
   } else {
-    const bool color = isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
-    fmt::print(stderr, "{}", compiler::render_text(all, sources, color));
+    fmt::print(stderr, "{}", compiler::render_text(all, sources, has_colours(STDERR_FILENO)));
   }
 }
 

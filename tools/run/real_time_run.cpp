@@ -9,6 +9,7 @@
 #include "runtime/port/can_bridge.hpp"
 #include "runtime/port/serial_bridge.hpp"
 #include "tools/cli/failure.hpp"
+#include "tools/cli/terminal.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -18,7 +19,7 @@ using runtime::Time;
 double ms(Time time) { return static_cast<double>(time) / 1e6; }
 
 void message(const std::string& text) {
-  static const bool has_progress_line = isatty(STDERR_FILENO) != 0;
+  static const bool has_progress_line = is_terminal(STDERR_FILENO);
   fmt::print(stderr, "{}ipos: {}\n", has_progress_line ? "\r\033[K" : "", text);
 }
 

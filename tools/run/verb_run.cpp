@@ -14,10 +14,12 @@
 #include "tools/cli/failure.hpp"
 #include "tools/cli/interrupt.hpp"
 #include "tools/cli/outputs.hpp"
+#include "tools/cli/terminal.hpp"
 #include "tools/cli/verbs.hpp"
 #include "tools/coverage/collector.hpp"
 #include "tools/coverage/coverage_reports.hpp"
 #include "tools/input/plant_input.hpp"
+#include "tools/input/plant_source.hpp"
 #include "tools/input/program.hpp"
 #include "tools/recording/plot_svg.hpp"
 #include "tools/recording/recording.hpp"
@@ -57,7 +59,7 @@ struct RunFlags {
 class Watcher {
  public:
   Watcher(const RunFlags& flags, const runtime::Plant& plant, Time limit)
-      : flags_(flags), plant_(plant), limit_(limit), show_(isatty(STDERR_FILENO) != 0) {}
+      : flags_(flags), plant_(plant), limit_(limit), show_(is_terminal(STDERR_FILENO)) {}
   ~Watcher() {
     if (shown_) fmt::print(stderr, "\r\033[K");
   }

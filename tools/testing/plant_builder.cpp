@@ -4,16 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <set>
+
+#include "tools/cli/files.hpp"
+#include "tools/input/mistakes.hpp"
 
 namespace ipos::tools::testing {
 namespace {
-
-void print(std::string& messages, const std::string& file, const std::vector<runtime::PlantError>& errors) {
-  for (const runtime::PlantError& error : errors)
-    messages += fmt::format("{}:{}:{}: error: {}\n", file, error.place.line, error.place.column, error.text);
-}
 
 // Messages that are expected and do not come, and the reverse.
 void compare_diagnostics(const TestCase& test, const Program& program, BuiltPlant& built) {
@@ -41,8 +38,7 @@ void compare_diagnostics(const TestCase& test, const Program& program, BuiltPlan
 // The program of a station; nothing when it cannot be used, then `messages` say why.
 std::optional<vm::Image> load(const TestCase& test, runtime::StationConfig& station, Programs& programs,
                               BuiltPlant& built) {
-  namespace fs = std::filesystem;
-  const std::string path = (fs::path(test.plant_path).parent_path() / station.program).string();
+  const std::string path = beside(test.plant_path, station.program);
   const auto program = programs.load(path, station.unit);
   if (!test.diagnostics.empty()) compare_diagnostics(test, *program, built);
   if (!program->image) {
@@ -56,7 +52,7 @@ std::optional<vm::Image> load(const TestCase& test, runtime::StationConfig& stat
     why = fmt::format("the image is for unit {}, station '{}' is {}", program->unit->name, station.name,
                       station.unit->name);
   if (!why.empty()) {
-    print(built.messages, test.plant_path, {{station.program_place, path + ": " + why}});
+    built.messages += mistakes_text(test.plant_path, {{station.program_place, path + ": " + why}}, false);
     return std::nullopt;
   }
   station.unit = program->unit;
@@ -83,7 +79,7 @@ BuiltPlant build_plant(const TestCase& test, Programs& programs, const RunOption
   if (speed != 0) rates = vm::Rates{{speed, speed, speed}};
   std::vector<runtime::PlantError> errors;
   auto plant = std::make_unique<runtime::Plant>(std::move(file), std::move(images), rates, errors);
-  print(built.messages, test.plant_path, errors);
+  built.messages += mistakes_text(test.plant_path, errors, false);
   if (errors.empty()) built.plant = std::move(plant);
   return built;
 }

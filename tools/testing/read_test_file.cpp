@@ -94,10 +94,11 @@ void read_named_plant(PlantReader& reader, const toml::table& root, TestCase& te
   const std::string name = reader.text(root, "plant", "a test", true);
   if (name.empty()) return;
   const FilePlace place = place_of(*root.get("plant"));
+  test.plant_expects = reader.flag(root, "plant_expects").value_or(false);
   for (const char* key : {"bus", "station", "control", "fault", "stimulus", "wire", "switch"})
     if (const toml::node* node = root.get(key))
       reader.error(place_of(*node), fmt::format("the plant is in {}: [[{}]] belongs there", name, key));
-  test.plant_path = (fs::path(test.file).parent_path() / name).string();
+  test.plant_path = beside(test.file, name);
   const auto text = load_file(test.plant_path);
   if (!text) return reader.error(place, fmt::format("plant {}: {}", test.plant_path, text.error()));
   runtime::PlantFileResult plant = runtime::read_plant_file(*text);
@@ -109,7 +110,7 @@ void read_named_plant(PlantReader& reader, const toml::table& root, TestCase& te
   for (const runtime::StationConfig& station : plant.plant.stations)
     reader.station_names.insert(station.name);
   reader.result.plant = std::move(plant.plant);
-  if (!reader.flag(root, "plant_expects").value_or(false)) reader.result.plant.expectations.clear();
+  if (!test.plant_expects) reader.result.plant.expectations.clear();
 }
 
 // Of the plant that the test names.

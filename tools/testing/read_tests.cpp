@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "tools/cli/failure.hpp"
 #include "tools/cli/files.hpp"
@@ -17,6 +18,22 @@ namespace {
 namespace fs = std::filesystem;
 
 bool is_test_file(const std::string& path) { return path.ends_with(".test.toml"); }
+
+// Looked for in the text, so that a plant with mistakes is a test, too, and other people's TOML is none.
+bool is_plant_with_expectations(const std::string& path, const std::string& text) {
+  const auto has_line = [&text](const std::string& line) {
+    return text.starts_with(line) || text.find("\n" + line) != std::string::npos;
+  };
+  return path.ends_with(".toml") && !is_test_file(path) && has_line("[[station]]") && has_line("[[expect]]");
+}
+
+// A plant whose own expectations a test looks at needs no run of its own.
+void leave_out_plants(std::vector<TestCase>& tests) {
+  std::set<std::string> looked_at;
+  for (const TestCase& test : tests)
+    if (test.plant_expects) looked_at.insert(fs::path(test.plant_path).lexically_normal().string());
+  std::erase_if(tests, [&](const TestCase& test) { return looked_at.contains(test.file); });
+}
 
 std::vector<TestCase> tests_of(const std::string& path, const std::string& text) {
   if (!is_source(path)) return read_test_file(path, text);
@@ -35,18 +52,27 @@ std::vector<TestCase> read_tests(const std::string& path) {
   }
   std::vector<std::string> files;
   for (const std::string& file : files_below(path))
-    if (is_test_file(file) || is_source(file)) files.push_back(fs::path(file).lexically_normal().string());
+    if (file.ends_with(".toml") || is_source(file))
+      files.push_back(fs::path(file).lexically_normal().string());
   std::vector<TestCase> tests;
   for (const std::string& file : files) {
     const std::string text = read_file(file);
-    if (is_source(file) && !expects_something(text)) continue;
+    if (!is_test_file(file) && !is_plant_with_expectations(file, text) &&
+        !(is_source(file) && expects_something(text)))
+      continue;
     for (TestCase& test : tests_of(file, text)) tests.push_back(std::move(test));
   }
+  leave_out_plants(tests);
   return tests;
 }
 
 bool matches(const std::string& pattern, const std::string& text) {
   return fnmatch(pattern.c_str(), text.c_str(), 0) == 0;
+}
+
+bool is_chosen(const std::string& filter, const std::string& name) {
+  return filter.find_first_of("*?[") == std::string::npos ? name.find(filter) != std::string::npos
+                                                          : matches(filter, name);
 }
 
 }  // namespace ipos::tools::testing

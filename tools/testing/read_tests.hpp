@@ -8,9 +8,9 @@
 
 namespace ipos::tools::testing {
 
-// The tests of a file or folder, in the order of their names. A folder is searched for *.test.toml and for
-// programs that expect something. A malformed file is one test with errors. A path that is not there is a
-// Failure.
+// The tests of a file or folder, in the order of their names. A folder is searched for *.test.toml, for programs
+// that expect something, and for plants with [[expect]] that no test of the folder looks at itself. A malformed file
+// is one test with errors. A path that is not there is a Failure.
 std::vector<TestCase> read_tests(const std::string& path);
 
 // The forms of one file; `text` is what stands in it.
@@ -22,5 +22,7 @@ bool expects_something(const std::string& text);
 
 // Shell pattern with * ? [..]; * stands for slashes, too.
 bool matches(const std::string& pattern, const std::string& text);
+// Whether a filter means the test: such a pattern, or without one of its characters a part of the name.
+bool is_chosen(const std::string& filter, const std::string& name);
 
 }  // namespace ipos::tools::testing

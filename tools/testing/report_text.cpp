@@ -1,4 +1,4 @@
-// Results for people. No wall-clock time: the same tests give the same text.
+// Results for people. No wall-clock time but in durations(): the same tests give the same text.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +14,11 @@ void add_list(std::string& text, std::string_view title, const std::vector<std::
   if (lines.empty()) return;
   text += fmt::format("    {}:\n", title);
   for (const std::string& line : lines) text += fmt::format("      {}\n", line);
+}
+
+// Bold green for what is good, bold red for what is not.
+std::string painted(std::string text, bool good, bool colours) {
+  return colours ? fmt::format("\033[1;{}m{}\033[0m", good ? 32 : 31, text) : text;
 }
 
 }  // namespace
@@ -48,8 +53,8 @@ size_t count(const std::vector<TestResult>& results, Outcome outcome) {
       results.begin(), results.end(), [&](const TestResult& result) { return result.outcome == outcome; }));
 }
 
-std::string text_of(const TestResult& result) {
-  std::string text = fmt::format("{:<8}{}", word_of(result.outcome), result.name);
+std::string text_of(const TestResult& result, bool colours) {
+  std::string text = result.name;
   if (result.outcome == Outcome::Passed || result.outcome == Outcome::Failed)
     text += fmt::format("  {} {} in {:.3f} s", result.checks, result.checks == 1 ? "check" : "checks",
                         static_cast<double>(result.time) / 1e9);
@@ -57,10 +62,12 @@ std::string text_of(const TestResult& result) {
   text += '\n';
   if (result.outcome == Outcome::Malformed) text += result.messages;
   for (const Finding& finding : result.findings) text += text_of_finding(finding);
-  return utf8(text);
+  const std::string word = fmt::format("{:<8}", word_of(result.outcome));
+  return painted(word, result.outcome == Outcome::Passed, colours && result.outcome != Outcome::NotRun) +
+         utf8(text);
 }
 
-std::string summary(const std::vector<TestResult>& results) {
+std::string summary(const std::vector<TestResult>& results, bool colours) {
   std::string text = fmt::format("{} {}, {} passed", results.size(), results.size() == 1 ? "test" : "tests",
                                  count(results, Outcome::Passed));
   for (const auto& [outcome, word] : {std::pair{Outcome::Failed, "failed"},
@@ -68,7 +75,19 @@ std::string summary(const std::vector<TestResult>& results) {
                                       {Outcome::NotRun, "not run"}})
     if (const size_t number = count(results, outcome); number != 0)
       text += fmt::format(", {} {}", number, word);
-  return text + '\n';
+  return painted(text, count(results, Outcome::Passed) == results.size(), colours) + '\n';
+}
+
+std::string durations(const std::vector<TestResult>& results, size_t most) {
+  std::vector<const TestResult*> slowest;
+  for (const TestResult& result : results) slowest.push_back(&result);
+  std::stable_sort(slowest.begin(), slowest.end(),
+                   [](const TestResult* a, const TestResult* b) { return a->seconds > b->seconds; });
+  slowest.resize(std::min(most, slowest.size()));
+  std::string text = "longest on the clock:\n";
+  for (const TestResult* result : slowest)
+    text += fmt::format("{:9.3f} s  {}\n", result->seconds, utf8(result->name));
+  return text;
 }
 
 }  // namespace ipos::tools::testing

@@ -9,10 +9,15 @@
 
 namespace ipos::tools::testing {
 
-// One test: a line, and what is wrong with all that helps to mend it.
-std::string text_of(const TestResult& result);
+// One test: a line, and what is wrong with all that helps to mend it. With `colours` for a terminal.
+std::string text_of(const TestResult& result, bool colours = false);
 // "18 tests, 17 passed, 1 failed".
-std::string summary(const std::vector<TestResult>& results);
+std::string summary(const std::vector<TestResult>& results, bool colours = false);
+// The tests that took longest on the clock, `most` of them: a line each.
+std::string durations(const std::vector<TestResult>& results, size_t most);
+// A line for each thing that is wrong, for GitHub's view of a change. `root` is the folder of the repository; empty: the
+// current one.
+std::string github_annotations(const TestResult& result, const std::string& root);
 
 std::string junit_report(const std::vector<TestResult>& results);
 std::string tap_report(const std::vector<TestResult>& results);

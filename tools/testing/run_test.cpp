@@ -14,6 +14,7 @@
 
 #include "runtime/plant/station_state.hpp"
 #include "tools/cli/interrupt.hpp"
+#include "tools/input/mistakes.hpp"
 #include "tools/testing/actor.hpp"
 #include "tools/testing/check.hpp"
 #include "tools/testing/plant_builder.hpp"
@@ -314,15 +315,8 @@ class Run {
   bool stopped_ = false;
 };
 
-std::string error_lines(const std::string& file, const std::vector<runtime::PlantError>& errors) {
-  std::string text;
-  for (const runtime::PlantError& error : errors)
-    text += fmt::format("{}:{}:{}: error: {}\n", file, error.place.line, error.place.column, error.text);
-  return text;
-}
-
 void carry_out(const TestCase& test, Programs& programs, const RunOptions& options, TestResult& result) {
-  result.messages = error_lines(test.errors_in.empty() ? test.file : test.errors_in, test.errors);
+  result.messages = mistakes_text(test.errors_in.empty() ? test.file : test.errors_in, test.errors, false);
   if (!test.errors.empty()) {
     result.outcome = Outcome::Malformed;
     return;
@@ -336,7 +330,7 @@ void carry_out(const TestCase& test, Programs& programs, const RunOptions& optio
     Run run(test, *built.plant, options, result);
     const auto errors = run.resolve();
     if (errors.empty()) run.go();
-    built.messages += error_lines(test.file, errors);
+    built.messages += mistakes_text(test.file, errors, false);
     result.time = built.plant->now();
   }
   result.messages = std::move(built.messages);

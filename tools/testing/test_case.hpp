@@ -122,7 +122,8 @@ struct TestCase {
   std::vector<runtime::PlantError> errors;                // malformed: why
   std::string errors_in;                                  // the file they are in, if it is another one
 
-  std::string plant_path;  // programs are relative to it
+  std::string plant_path;      // programs are relative to it
+  bool plant_expects = false;  // the [[expect]] of the plant it names are looked at
   runtime::PlantFile plant;
   std::vector<Item> items;
   uint32_t speed = 0;                           // commands per ms of every task; 0: P938 and P939

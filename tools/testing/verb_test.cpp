@@ -3,18 +3,26 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
 #include <mutex>
+#include <string_view>
 #include <thread>
 
 #include "stdlib/unit_types.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/interrupt.hpp"
 #include "tools/cli/outputs.hpp"
+#include "tools/cli/terminal.hpp"
 #include "tools/cli/verbs.hpp"
 #include "tools/coverage/collector.hpp"
 #include "tools/coverage/coverage_reports.hpp"
-#include "tools/input/program.hpp"
+#include "tools/testing/changes.hpp"
+#include "tools/testing/last_failed.hpp"
 #include "tools/testing/read_tests.hpp"
+#include "tools/testing/report_words.hpp"
 #include "tools/testing/reports.hpp"
 #include "tools/testing/suite.hpp"
 
@@ -27,6 +35,10 @@ struct TestFlags {
   std::vector<std::string> paths;
   std::vector<std::string> filters;
   bool list = false;
+  bool last_failed = false;
+  bool watch = false;
+  uint32_t durations = 0;
+  std::string format;
   SuiteOptions suite;
   std::string junit;
   std::string tap;
@@ -52,15 +64,22 @@ class TotalCoverage {
   coverage::Coverage total_;
 };
 
-std::vector<TestCase> find_tests(const TestFlags& flags) {
+// Of all tests those that --filter and --last-failed leave.
+std::vector<TestCase> find_tests(const TestFlags& flags, const LastFailed& last_failed) {
   std::vector<TestCase> tests;
   for (const std::string& path : flags.paths)
     for (TestCase& test : read_tests(path)) tests.push_back(std::move(test));
   if (!flags.filters.empty())
     std::erase_if(tests, [&](const TestCase& test) {
       return std::none_of(flags.filters.begin(), flags.filters.end(),
-                          [&](const std::string& filter) { return matches(filter, test.name); });
+                          [&](const std::string& filter) { return is_chosen(filter, test.name); });
     });
+  if (!flags.last_failed) return tests;
+  const auto failed = [&](const TestCase& test) { return last_failed.names().contains(test.name); };
+  if (std::none_of(tests.begin(), tests.end(), failed))
+    fmt::print(stderr, "ipos: none of these tests failed last time: all are run\n");
+  else
+    std::erase_if(tests, std::not_fn(failed));
   return tests;
 }
 
@@ -79,13 +98,59 @@ void check_flags(const TestFlags& flags) {
     throw Failure(kUsage, "only one report can go to standard output");
 }
 
-int run(TestFlags& flags) {
-  check_flags(flags);
-  const std::vector<TestCase> tests = find_tests(flags);
-  // A report on standard output stands alone.
-  const bool alone =
-      is_standard_output(flags.junit) || is_standard_output(flags.tap) || is_standard_output(flags.json);
-  CoverageReports coverage_reports(flags.coverage, alone);
+// In steps of GitHub's, its variable says so.
+bool for_github(const TestFlags& flags) {
+  const char* in_action = std::getenv("GITHUB_ACTIONS");
+  return flags.format.empty() ? in_action != nullptr && in_action == std::string_view("true")
+                              : flags.format == "github";
+}
+
+std::string root_of_github() {
+  const char* root = std::getenv("GITHUB_WORKSPACE");
+  return root == nullptr ? std::string() : std::string(root);
+}
+
+// A report on standard output stands alone.
+bool is_output_taken(const TestFlags& flags) {
+  return is_standard_output(flags.junit) || is_standard_output(flags.tap) || is_standard_output(flags.json);
+}
+
+std::vector<TestResult> run_tests(const std::vector<TestCase>& tests, const TestFlags& flags,
+                                  const SuiteOptions& options) {
+  const bool alone = is_output_taken(flags);
+  const bool github = for_github(flags);
+  const bool progress = is_terminal(STDERR_FILENO);
+  const bool colours = has_colours(STDOUT_FILENO);
+  size_t bad = 0;
+  const auto show = [&](size_t done) {
+    if (progress && done < tests.size() * options.repeat)
+      fmt::print(stderr, "{} of {}, {} not passed", done, tests.size() * options.repeat, bad);
+  };
+  show(0);
+  const std::vector<TestResult> results =
+      run_suite(tests, options, [&](const TestResult& result, size_t done, size_t) {
+        if (progress) fmt::print(stderr, "\r\033[K");
+        if (!alone) fmt::print("{}", text_of(result, colours));
+        if (!alone && github) fmt::print("{}", github_annotations(result, root_of_github()));
+        std::fflush(stdout);
+        bad += result.outcome == Outcome::Passed ? 0U : 1U;
+        show(done);
+      });
+  if (!alone && flags.durations != 0) fmt::print("{}", durations(results, flags.durations));
+  if (!alone) fmt::print("{}", summary(results, colours));
+  return results;
+}
+
+int code_of(const std::vector<TestResult>& results) {
+  if (interrupted()) return kInterrupted;
+  if (count(results, Outcome::Malformed) != 0) return kBadInput;
+  return count(results, Outcome::Failed) != 0 ? kFindings : kGood;
+}
+
+int run_once(const TestFlags& flags, std::vector<TestCase>& tests) {
+  LastFailed last_failed(std::filesystem::current_path().string());
+  tests = find_tests(flags, last_failed);
+  const CoverageReports coverage_reports(flags.coverage, is_output_taken(flags));
   if (tests.empty()) {
     fmt::print(stderr, "ipos: there is no test{} in {}\n", flags.filters.empty() ? "" : " of that name",
                fmt::join(flags.paths, " "));
@@ -96,34 +161,44 @@ int run(TestFlags& flags) {
     return kGood;
   }
   for (const std::string& report : {flags.junit, flags.tap, flags.json}) check_output(report);
-  catch_interrupts();
   TotalCoverage coverage;
+  SuiteOptions options = flags.suite;
   if (coverage_reports.wanted()) {
     coverage_reports.check();
-    flags.suite.run.prepare = [&](runtime::Plant& plant) { return coverage.watch(plant); };
+    options.run.prepare = [&](runtime::Plant& plant) { return coverage.watch(plant); };
   }
-  const bool progress = isatty(STDERR_FILENO) != 0;
-  size_t bad = 0;
-  const std::vector<TestResult> results =
-      run_suite(tests, flags.suite, [&](const TestResult& result, size_t done, size_t total) {
-        if (progress) fmt::print(stderr, "\r\033[K");
-        if (!alone) fmt::print("{}", text_of(result));
-        std::fflush(stdout);
-        bad += result.outcome == Outcome::Passed ? 0U : 1U;
-        if (progress && done < total) fmt::print(stderr, "{} of {}, {} not passed", done, total, bad);
-      });
-  if (!alone) fmt::print("{}", summary(results));
+  const std::vector<TestResult> results = run_tests(tests, flags, options);
+  last_failed.update(tests, results);
   write_report(flags.junit, junit_report(results));
   write_report(flags.tap, tap_report(results));
   write_report(flags.json, json_report(results));
   coverage_reports.write(coverage.total());
-  if (interrupted()) return kInterrupted;
-  const auto any = [&](Outcome outcome) {
-    return std::any_of(results.begin(), results.end(),
-                       [&](const TestResult& r) { return r.outcome == outcome; });
-  };
-  if (any(Outcome::Malformed)) return kBadInput;
-  return any(Outcome::Failed) ? kFindings : kGood;
+  return code_of(results);
+}
+
+// Again whenever a file has changed, until Ctrl-C. A file that is being written may not be readable yet.
+int watch(const TestFlags& flags) {
+  std::vector<TestCase> tests;
+  Changes changes(flags.paths);
+  for (;;) {
+    try {
+      run_once(flags, tests);
+    } catch (const Failure& failure) {
+      fmt::print(stderr, "ipos: {}\n", failure.what());
+    }
+    std::fflush(stdout);
+    changes.add(tests);
+    fmt::print(stderr, "ipos: waiting for a change; Ctrl-C ends\n");
+    if (!changes.wait()) return kInterrupted;
+    fmt::print("\n");
+  }
+}
+
+int run(const TestFlags& flags) {
+  check_flags(flags);
+  catch_interrupts();
+  std::vector<TestCase> tests;
+  return flags.watch && !flags.list ? watch(flags) : run_once(flags, tests);
 }
 
 }  // namespace
@@ -132,11 +207,16 @@ void add_test(cli::Verb& app) {
   auto flags = std::make_shared<TestFlags>();
   flags->suite.jobs = std::max(1U, std::thread::hardware_concurrency());
   cli::Verb& verb = app.verb("test", "run the tests of plants and programs");
-  verb.option("PATH", flags->paths, "*.test.toml, plant, program with // expect comments, or folder of them")
+  verb.option("PATH", flags->paths,
+              "*.test.toml, plant with [[expect]], program with // expect comments, or folder of them")
       .required();
-  verb.option("--filter", flags->filters, "only tests whose name matches, for example 'examples/*/scom*'")
+  verb.option("--filter", flags->filters,
+              "only tests whose name has this in it, or matches a pattern such as 'examples/*/scom*'")
       .separated_by(',')
       .one_each();
+  verb.flag("--last-failed", flags->last_failed,
+            "only those that did not pass when they were run last in this folder");
+  verb.flag("--watch", flags->watch, "run them again whenever a file of theirs changes, until Ctrl-C");
   verb.flag("--list", flags->list, "tell the names and run nothing");
   verb.option("--jobs,-j", flags->suite.jobs, "tests at a time; default: the number of cores")
       .between(1U, 256U);
@@ -147,6 +227,13 @@ void add_test(cli::Verb& app) {
   verb.option("--speed", flags->suite.run.speed,
               "commands per ms of every task, instead of P938 and P939, where the test does not say")
       .between(1U, 1'000'000U);
+  verb.option("--durations", flags->durations,
+              "at the end, so many of the tests that took longest on the clock");
+  verb.option("--format", flags->format,
+              "github also writes a line for each failure that GitHub shows beside the source; default: "
+              "github where "
+              "GITHUB_ACTIONS is true, else text")
+      .one_of({"text", "github"});
   verb.option("--junit", flags->junit, "write a report as JUnit XML; - is standard output");
   verb.option("--tap", flags->tap, "write a report as TAP 14");
   verb.option("--json", flags->json, "write a report as JSON");

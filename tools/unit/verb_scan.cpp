@@ -5,6 +5,7 @@
 #include "stdlib/faults.hpp"
 #include "stdlib/parameters.hpp"
 #include "tools/cli/failure.hpp"
+#include "tools/cli/terminal.hpp"
 #include "tools/cli/verbs.hpp"
 #include "tools/unit/link_access.hpp"
 #include "tools/unit/link_options.hpp"
@@ -45,7 +46,7 @@ int scan(ScanFlags flags) {
   flags.link.repeats = false;
   const auto link = BusLink::open(flags.link);
   const int last = flags.to < 0 ? link->last_address() : std::min<int>(flags.to, link->last_address());
-  const bool progress = isatty(STDERR_FILENO) != 0;
+  const bool progress = is_terminal(STDERR_FILENO);
   std::vector<std::vector<std::string>> lines{{"address", "unit", "firmware", "fault"}};
   std::string trouble;
   for (int n = flags.from; n <= last; ++n) {

@@ -7,6 +7,7 @@
 #include "tools/cli/interrupt.hpp"
 #include "tools/cli/verbs.hpp"
 #include "tools/input/plant_input.hpp"
+#include "tools/input/plant_source.hpp"
 #include "tools/input/program.hpp"
 #include "tools/run/real_time_run.hpp"
 #include "tools/unit/link_access.hpp"

@@ -1,55 +1,19 @@
-// ipos explain: what a code means: of a message, a verifier rule, a return code, a fault or a parameter of
-// the drive. Messages have a page in docs/reference/diagnostics, the others a row in their tables.
+// What a drive shows: faults, parameters of the units, return codes of the parameter channel.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
-#include <sstream>
-#include <vector>
+#include <optional>
+#include <set>
 
-#include "compiler/diag/diag.hpp"
 #include "stdlib/faults.hpp"
 #include "stdlib/parameters.hpp"
 #include "stdlib/return_codes.hpp"
 #include "stdlib/unsimulated.hpp"
-#include "tools/cli/failure.hpp"
-#include "tools/cli/pages.hpp"
-#include "tools/cli/verbs.hpp"
-#include "vm/verify/verify.hpp"
+#include "tools/explain/entries.hpp"
 
-namespace ipos::tools {
+namespace ipos::tools::explain {
 namespace {
-
-// A page for the terminal: no marks of Markdown, programs indented.
-std::string plain_text(std::string_view page) {
-  std::string out;
-  bool program = false;
-  std::istringstream lines{std::string(page)};
-  for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with("```")) {
-      program = !program;
-    } else if (program) {
-      out += "    " + line + "\n";
-    } else if (!line.starts_with("<!--")) {
-      if (line.starts_with("# ")) line.erase(0, 2);
-      std::erase(line, '`');
-      out += line + "\n";
-    }
-  }
-  return out;
-}
-
-std::string message_page(const compiler::DiagInfo& row) {
-  for (const stdlib::EmbeddedFile& page : pages::embedded_files()) {
-    if (page.name.substr(0, page.name.find('.')) != row.code) continue;
-    std::string text = plain_text(page.text);
-    if (row.severity == compiler::Severity::Warning)
-      text += fmt::format("\nSwitched off by -Wno-{0}, made an error by -Werror={0}.\n", row.flag);
-    return text;
-  }
-  throw Failure(kInternal, fmt::format("{} has no page", row.code));
-}
 
 template <typename Number>
 bool parse(std::string_view text, int base, Number& value) {
@@ -59,9 +23,9 @@ bool parse(std::string_view text, int base, Number& value) {
 }
 
 // `8/0/10` as the manuals print it, hexadecimal, or the number in Result: 0x08000010 or 134217744.
-std::optional<stdlib::ReturnCode> return_code(std::string_view text) {
+std::optional<stdlib::ReturnCode> parse_return_code(std::string_view text) {
   uint32_t packed = 0;
-  if (text.starts_with("0X")) {
+  if (text.starts_with("0x") || text.starts_with("0X")) {
     if (!parse(text.substr(2), 16, packed)) return std::nullopt;
     return stdlib::ReturnCode::unpack(packed);
   }
@@ -77,11 +41,9 @@ std::optional<stdlib::ReturnCode> return_code(std::string_view text) {
   return code;
 }
 
-std::string explain_return_code(stdlib::ReturnCode code) {
+std::string return_code_text(stdlib::ReturnCode code) {
   const std::string_view class_meaning = stdlib::return_class_meaning(code.error_class);
-  if (class_meaning.empty())
-    throw Failure(kBadInput,
-                  fmt::format("no return code has the error class {}; classes are 1 to 8", code.error_class));
+  if (class_meaning.empty()) return {};
   const std::string_view meaning = stdlib::return_code_meaning(code);
   return fmt::format(
       "{:X}/{:X}/{:X}: return code of the parameter channel, 0x{:08X} in Result\n  class {}: {}\n  {}\n",
@@ -95,7 +57,7 @@ std::string response_text(stdlib::FaultResponse response) {
   return stdlib::parameter_text(*p830, static_cast<int32_t>(response));
 }
 
-std::string explain_fault(const stdlib::FaultRow& row) {
+std::string fault_text(const stdlib::FaultRow& row) {
   std::string text = fmt::format("F{:02}: fault of the drive, {}\n  {}\n", row.number, row.name, row.meaning);
   if (row.parameter.empty()) return text + fmt::format("  response: {}\n", response_text(row.response));
   return text +
@@ -103,15 +65,8 @@ std::string explain_fault(const stdlib::FaultRow& row) {
                      row.parameter, response_text(row.response));
 }
 
-std::string list_faults() {
-  std::string text;
-  for (const stdlib::FaultRow& row : stdlib::fault_table())
-    text += fmt::format("F{:02}  {}: {}\n", row.number, row.name, row.meaning);
-  return text;
-}
-
 // `name` is a number as P130 or an index. Units with the same row stand together.
-std::string explain_parameter(std::string_view name) {
+std::string parameter_text(std::string_view name) {
   struct Row {
     std::string label, units, text;
   };
@@ -151,43 +106,46 @@ std::string explain_parameter(std::string_view name) {
   return out;
 }
 
-std::string explain(std::string code) {
-  const std::string typed = code;
-  std::transform(code.begin(), code.end(), code.begin(), [](unsigned char c) { return std::toupper(c); });
-  for (const compiler::DiagInfo& row : compiler::diagnostic_table())
-    if (row.code == code) return message_page(row);
-  for (const vm::RuleInfo& row : vm::rule_table())
-    if (row.code == code) return fmt::format("{}: rule of the verifier\n  {}\n", row.code, row.meaning);
-  if (code == "F") return list_faults();
-  if (uint8_t number = 0; code.starts_with('F') && parse(std::string_view(code).substr(1), 10, number))
-    if (const stdlib::FaultRow* row = stdlib::find_fault(number)) return explain_fault(*row);
-  constexpr uint16_t kFirstIndex = 1000;  // below are numbers, which need their P
-  uint16_t index = 0;
-  if (code.starts_with('P') || (parse(std::string_view(code), 10, index) && index >= kFirstIndex))
-    if (std::string text = explain_parameter(code); !text.empty()) return text;
-  if (const auto number = return_code(code)) return explain_return_code(*number);
-  throw Failure(
-      kBadInput,
-      fmt::format(
-          "there is no code '{}'; codes look like E0101, W0201 (messages), V03 (verifier), "
-          "F10 (faults; F lists them), P130 or 8470 (parameters), 8/0/10 or 0x08000010 (return codes)",
-          typed));
-}
-
 }  // namespace
 
-void add_explain(cli::Verb& app) {
-  auto code = std::make_shared<std::string>();
-  cli::Verb& verb =
-      app.verb("explain", "what a code means: message, verifier rule, return code, fault, parameter");
-  verb.option("CODE", *code,
-              "for example E0203, V03, 8/0/10, 0x08000010, F10, P130, 8470; F lists all faults")
-      .required();
-  verb.footer("Example:\n  ipos explain E0203");
-  verb.runs([code] {
-    fmt::print("{}", explain(*code));
-    return kGood;
-  });
+std::string list_faults() {
+  std::string text;
+  for (const stdlib::FaultRow& row : stdlib::fault_table())
+    text += fmt::format("F{:02}  {}: {}\n", row.number, row.name, row.meaning);
+  return text;
 }
 
-}  // namespace ipos::tools
+std::string parameter_of_index(std::string_view number) {
+  constexpr uint16_t kFirstIndex = 1000;  // below are numbers, which need their P
+  uint16_t index = 0;
+  return parse(number, 10, index) && index >= kFirstIndex ? parameter_text(number) : std::string();
+}
+
+std::string return_code(std::string_view number) {
+  const std::optional<stdlib::ReturnCode> code = parse_return_code(number);
+  return code ? return_code_text(*code) : std::string();
+}
+
+void add_drive(Entries& entries) {
+  for (const stdlib::FaultRow& row : stdlib::fault_table())
+    entries.push_back({{fmt::format("F{:02}", row.number), fmt::format("F{}", row.number),
+                        fmt::format("F{:03}", row.number)},
+                       fmt::format("{}: {}", row.name, row.meaning),
+                       [&row] { return fault_text(row); }});
+  std::set<std::string> known;
+  for (const stdlib::UnitType& unit : stdlib::unit_types())
+    for (const stdlib::Parameter& row : stdlib::parameter_table(unit).rows()) {
+      const std::string name =
+          row.number.empty() ? fmt::format("{}", row.index) : fmt::format("P{}", row.number);
+      if (known.insert(name).second)
+        entries.push_back({{name}, std::string(row.name), [name] { return parameter_text(name); }});
+    }
+  for (const stdlib::ReturnCodeRow& row : stdlib::return_code_table()) {
+    const stdlib::ReturnCode code = row.code;
+    entries.push_back({{fmt::format("{:X}/{:X}/{:X}", code.error_class, code.code, code.additional)},
+                       std::string(row.meaning),
+                       [code] { return return_code_text(code); }});
+  }
+}
+
+}  // namespace ipos::tools::explain

@@ -1,0 +1,63 @@
+// What is different on a terminal: colours, and Ctrl-C at the debugger's prompt.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "tests/realbus/script.hpp"
+#include "tests/tools/command.hpp"
+
+namespace ipos::tests {
+namespace {
+
+// `environment` as words in front of a command of the shell; keys as terminal.py takes them.
+ScriptResult on_terminal(const TemporaryFolder& folder, const std::string& environment,
+                         const std::string& keys, const std::string& arguments) {
+  return run_script(
+      {"/bin/sh", "-c",
+       fmt::format("cd '{}' && exec env {} XDG_CACHE_HOME=. '{}' '{}' '{}' '{}' {}", folder.path().string(),
+                   environment, kPython, project("tests/tools/terminal.py").string(), keys, IPOS_PROGRAM,
+                   arguments)});
+}
+
+class Terminal : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!has_pty()) GTEST_SKIP() << kNoPty;
+    folder_.write("A.IPC", "long a;\nmain()\n{\n  a = 5;  // expect a == 5\n}\n");
+    folder_.write("BAD.IPC", "main() { a = 1; }\n");
+    folder_.write("bad.toml", "x = 1\n");
+  }
+  TemporaryFolder folder_;
+};
+
+// One rule for all verbs: a terminal has colours, unless NO_COLOR says no (no-color.org) or it is a dumb one.
+TEST_F(Terminal, ColoursAreAlikeEverywhere) {
+  for (const char* arguments : {"test A.IPC", "build BAD.IPC", "run bad.toml --for 1s"}) {
+    SCOPED_TRACE(arguments);
+    const auto has_colours = [&](const std::string& environment) {
+      return on_terminal(folder_, environment, "", arguments).output.find("\x1b[1;3") != std::string::npos;
+    };
+    EXPECT_TRUE(has_colours("-u NO_COLOR TERM=xterm"));
+    EXPECT_TRUE(has_colours("NO_COLOR= TERM=xterm"));
+    EXPECT_FALSE(has_colours("NO_COLOR=1 TERM=xterm"));
+    EXPECT_FALSE(has_colours("-u NO_COLOR TERM=dumb"));
+  }
+}
+
+TEST_F(Terminal, ADumbOneGetsNoEscapes) {
+  const ScriptResult result = on_terminal(folder_, "TERM=dumb", "", "test A.IPC");
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_EQ(result.output.find('\x1b'), std::string::npos) << result.output;
+}
+
+TEST_F(Terminal, CtrlCAtThePromptGivesAPrompt) {
+  const ScriptResult result =
+      on_terminal(folder_, "TERM=dumb", "|b A.IPC:4\\n|\\x03|\\x03|info b\\n|quit\\n", "debug A.IPC");
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  // The breakpoint of the first line is still there.
+  const size_t asked = result.output.find("info b");
+  ASSERT_NE(asked, std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("A.IPC:4", asked), std::string::npos) << result.output;
+}
+
+}  // namespace
+}  // namespace ipos::tests

@@ -1,0 +1,46 @@
+// The compiler's renderer quotes the lines; the parser of TOML counts columns in characters, it counts bytes.
+#include "tools/input/mistakes.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <sstream>
+
+#include "compiler/diag/render.hpp"
+#include "tools/cli/files.hpp"
+#include "tools/cli/terminal.hpp"
+
+namespace ipos::tools {
+namespace {
+
+size_t bytes_before(std::string_view line, uint32_t column) {
+  size_t at = 0;
+  for (uint32_t n = 1; n < column && at < line.size(); ++n) do
+      ++at;
+    while (at < line.size() && (static_cast<unsigned char>(line[at]) & 0xC0U) == 0x80U);
+  return at;
+}
+
+}  // namespace
+
+std::string mistakes_text(const std::string& path, const std::vector<runtime::PlantError>& errors,
+                          bool colours) {
+  std::vector<std::string> lines;
+  std::istringstream text(errors.empty() ? "" : try_read_file(path).value_or(""));
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  std::string out;
+  for (const auto& [place, what] : errors) {
+    const std::string place_text = fmt::format("{}:{}:{}:", path, place.line, place.column);
+    std::string_view line;
+    if (place.line != 0 && place.line <= lines.size()) line = lines[place.line - 1];
+    out += compiler::render_mistake(place_text, what, place.line, line, bytes_before(line, place.column),
+                                    colours);
+  }
+  return out;
+}
+
+void print_mistakes(const std::string& path, const std::vector<runtime::PlantError>& errors) {
+  fmt::print(stderr, "{}", mistakes_text(path, errors, has_colours(STDERR_FILENO)));
+}
+
+}  // namespace ipos::tools
