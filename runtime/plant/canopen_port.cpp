@@ -38,6 +38,12 @@ void CanopenPort::power_off() {
   line_.set_connected(node(), false);
 }
 
+void CanopenPort::on_frame(Time now, const Frame& frame) {
+  if (!node_) return;
+  node_->on_frame(now, frame);
+  for (std::string& reason : server_.take_reasons()) note(now, Weight::Why, std::move(reason));
+}
+
 void CanopenPort::note(Time now, Weight weight, std::string text) {
   journal_.note(now, weight, station_, std::move(text));
 }
@@ -53,7 +59,6 @@ void CanopenPort::take_output(Time now, const canopen::Words& words, uint16_t wr
   if (count == 0) return;
   exchanges_ = true;
   server_.take_output(now, OutputChannel::Single, std::span(output_).first(count));
-  tell_reasons(now);
 }
 
 canopen::Words CanopenPort::input(Time now) {
@@ -96,14 +101,6 @@ void CanopenPort::partner_back(Time now) {
 
 void CanopenPort::on_ignored(Time now, const Frame& frame, canopen::IgnoredMessage reason) {
   note(now, Weight::Why, fmt::format("CANopen message {:03X}h {}", frame.id, canopen::ignored_text(reason)));
-}
-
-void CanopenPort::tell_reasons(Time now) {
-  if (!door_.has_reasons()) return;
-  DriveServer& drive = door_.touch().server();
-  if (std::string refused = drive.take_reason(); !refused.empty())
-    note(now, Weight::Why, "refused " + std::move(refused));
-  for (std::string& obstacle : drive.take_obstacles()) note(now, Weight::Why, std::move(obstacle));
 }
 
 }  // namespace ipos::runtime

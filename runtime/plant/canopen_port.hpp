@@ -34,9 +34,7 @@ class CanopenPort final : private CanNode, private canopen::Unit, private canope
   const canopen::Node* canopen() const { return node_ ? &*node_ : nullptr; }  // null: power is off
 
  private:
-  void on_frame(Time now, const Frame& frame) override {
-    if (node_) node_->on_frame(now, frame);
-  }
+  void on_frame(Time now, const Frame& frame) override;
   void on_sent(Time, const Frame&, uint64_t) override {}
   void on_not_sent(Time, const Frame&, uint64_t, NotSent) override {}
   void on_bus_off(Time) override { sender_.recover(); }
@@ -51,7 +49,6 @@ class CanopenPort final : private CanNode, private canopen::Unit, private canope
   void partner_back(Time now) override;
   void on_ignored(Time now, const Frame& frame, canopen::IgnoredMessage reason) override;
   void note(Time now, Weight weight, std::string text);
-  void tell_reasons(Time now);
 
   Door& door_;
   LinePort sender_;

@@ -121,11 +121,7 @@ void SbusPort::read(size_t object, std::span<const uint8_t> bytes) {
 }
 
 void SbusPort::tell_reasons(Time now) {
-  if (!door_.has_reasons()) return;
-  DriveServer& drive = door_.touch().server();
-  if (std::string refused = drive.take_reason(); !refused.empty())
-    note(now, Weight::Why, "refused " + std::move(refused));
-  for (std::string& obstacle : drive.take_obstacles()) note(now, Weight::Why, std::move(obstacle));
+  for (std::string& reason : server_.take_reasons()) note(now, Weight::Why, std::move(reason));
 }
 
 void SbusPort::want_again() {

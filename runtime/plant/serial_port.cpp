@@ -74,11 +74,7 @@ void SerialPort::report(Time now) {
 void SerialPort::on_character(Time now, const Character& character) {
   parts_->slave.on_character(now, character);
   parts_->requester.on_character(now, character);
-  if (!door_.has_reasons()) return;
-  DriveServer& drive = door_.touch().server();
-  if (std::string refused = drive.take_reason(); !refused.empty())
-    explain(now, "refused " + std::move(refused));
-  for (std::string& obstacle : drive.take_obstacles()) explain(now, std::move(obstacle));
+  for (std::string& reason : server_.take_reasons()) explain(now, std::move(reason));
 }
 
 void SerialPort::on_sent(Time now) {

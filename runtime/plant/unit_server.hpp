@@ -30,6 +30,15 @@ class UnitServer final : public ParameterServer, public ProcessDataServer, publi
   ProcessWords input(Time /*now*/) override { return door_.look().drive().pi(); }
   void synchronize(Time now) override { door_.touch().server().synchronize(now); }
   ProcessDataServer& rs485_data() { return rs485_data_; }
+  // What telegrams wanted and did not get, in words; each is told once.
+  std::vector<std::string> take_reasons() {
+    if (!door_.has_reasons()) return {};
+    DriveServer& drive = door_.touch().server();
+    std::string refused = drive.take_reason();
+    std::vector<std::string> reasons = drive.take_obstacles();
+    if (!refused.empty()) reasons.insert(reasons.begin(), "refused " + refused);
+    return reasons;
+  }
 
   ProcessWords setpoint_to_send(Time now) override { return door_.touch().server().setpoint_to_send(now); }
   void setpoint_received(Time now, const ProcessWords& words) override {

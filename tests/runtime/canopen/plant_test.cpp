@@ -116,6 +116,18 @@ TEST(CanopenPlant, WhoIsNotGuardedStops) {
   EXPECT_EQ(rig.plant->stations()[0]->fault(), 47);
 }
 
+// The master hears an abort, the user a reason.
+TEST(CanopenPlant, RefusedParametersAreExplained) {
+  MasterSettings settings;
+  settings.nodes = {plan(5)};
+  settings.nodes[0].writes = {{{8470, 0}, 3'000'000, 4}};
+  PlantOfNodes rig(station("a", 5), settings);
+  rig.run(kSecond);
+  EXPECT_EQ(rig.master->report(0).phase, Master::Phase::Refused);
+  EXPECT_EQ(rig.master->report(0).abort, 0x0609'0031U);
+  EXPECT_TRUE(rig.says("refused P130 Ramp t11 UP CW := 3000.000 s: parameter value too large"));
+}
+
 TEST(CanopenPlant, PowerOffAndOn) {
   MasterSettings settings;
   settings.sync_cycle = 5 * kMillisecond;
