@@ -5,9 +5,9 @@ ipos_layer(asm PIC
   USES frontend isa image stdlib
   LIBS fmt::fmt)
 
-file(GLOB compiler_sources CONFIGURE_DEPENDS sema/*.cpp codegen/*.cpp index/*.cpp)
+file(GLOB compiler_sources CONFIGURE_DEPENDS sema/*.cpp codegen/*.cpp symbols/*.cpp)
 ipos_layer(compiler PIC
-  FOLDERS compiler/sema compiler/codegen compiler/index
+  FOLDERS compiler/sema compiler/codegen compiler/symbols
   SOURCES ${compiler_sources}
   USES frontend asm isa image stdlib
   LIBS fmt::fmt)

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/diag/diag.hpp"
-#include "runtime/plan/plan.hpp"
+#include "runtime/bus_plan/plan.hpp"
 #include "stdlib/faults.hpp"
 #include "stdlib/language_tables.hpp"
 #include "tests/tools/command.hpp"

@@ -5,7 +5,7 @@
 #include <regex>
 #include <sstream>
 
-#include "runtime/plan/plan.hpp"
+#include "runtime/bus_plan/plan.hpp"
 #include "tests/tools/command.hpp"
 #include "vm/isa/isa.hpp"
 #include "vm/verify/verify.hpp"

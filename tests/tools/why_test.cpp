@@ -39,7 +39,7 @@ TEST(Why, NamesTheFaultFirst) {
       << silence;
 }
 
-// By a program in its own unit; over buses: tests/runtime/plan/plan_test.cpp and rs485/slave_test.cpp.
+// By a program in its own unit; over buses: tests/runtime/bus_plan/plan_test.cpp and rs485/slave_test.cpp.
 TEST(Why, NamesARefusedWriteOfTheProgram) {
   const TemporaryFolder folder;
   const std::string program = folder.write("A.IPC", R"(#include <const.h>

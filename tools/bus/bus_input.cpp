@@ -1,8 +1,8 @@
 // What the subcommands of `ipos bus` read: logs and dictionaries.
 #include <fmt/format.h>
 
-#include "runtime/plan/names.hpp"
-#include "runtime/plan/plan.hpp"
+#include "runtime/bus_plan/names.hpp"
+#include "runtime/bus_plan/plan.hpp"
 #include "tools/bus/bus_verbs.hpp"
 #include "tools/cli/files.hpp"
 #include "tools/input/plant_input.hpp"

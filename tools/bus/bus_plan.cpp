@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "runtime/plan/plan.hpp"
+#include "runtime/bus_plan/plan.hpp"
 #include "tools/bus/bus_verbs.hpp"
 #include "tools/cli/exit_codes.hpp"
 #include "tools/input/plant_input.hpp"

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "compiler/diag/diag.hpp"
-#include "runtime/plan/plan.hpp"
+#include "runtime/bus_plan/plan.hpp"
 #include "tools/explain/entries.hpp"
 #include "tools/explain/pages.hpp"
 #include "vm/verify/verify.hpp"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "compiler/codegen/compile.hpp"
-#include "compiler/index/index.hpp"
+#include "compiler/symbols/index.hpp"
 #include "tools/lsp/positions.hpp"
 
 namespace ipos::tools::lsp {

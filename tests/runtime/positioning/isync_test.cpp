@@ -2,7 +2,7 @@
 // drives with programs on an SBus.
 #include "runtime/positioning/follower.hpp"
 #include "tests/harness/proves.hpp"
-#include "tests/runtime/plan/plant_rig.hpp"
+#include "tests/runtime/bus_plan/plant_rig.hpp"
 
 namespace ipos::tests {
 namespace {

@@ -1,0 +1,76 @@
+// Fills the dictionary from stations, parameters, symbols and object definitions.
+#include "runtime/bus_plan/names.hpp"
+
+#include <fmt/format.h>
+
+namespace ipos::runtime {
+namespace {
+
+WordAssignment assignment(const DriveServer& drive, int first) {
+  WordAssignment words{};
+  for (size_t n = 0; n < words.size(); ++n)
+    words[n] = static_cast<uint8_t>(drive.value(fmt::format("{}", first + static_cast<int>(n))));
+  return words;
+}
+
+UnitNames unit_names(const Station& station, const SlaveSettings& settings) {
+  UnitNames unit;
+  unit.name = station.config().name;
+  unit.unit = station.config().unit;
+  unit.settings = settings;
+  unit.output = assignment(station.drive(), 870);
+  unit.input = assignment(station.drive(), 873);
+  if (station.image() != nullptr)
+    for (const vm::Symbol& symbol : station.image()->symbols)
+      for (uint32_t n = 0; n < symbol.count; ++n)
+        unit.variables.push_back({static_cast<uint16_t>(symbol.variable + n),
+                                  variable_name(station.image(), symbol.variable + n)});
+  return unit;
+}
+
+}  // namespace
+
+std::string variable_name(const vm::Image* image, uint32_t variable) {
+  if (image != nullptr)
+    for (const vm::Symbol& symbol : image->symbols)
+      if (variable >= symbol.variable && variable < symbol.variable + uint32_t{symbol.count})
+        return symbol.count == 1 ? symbol.name
+                                 : fmt::format("{}[{}]", symbol.name, variable - symbol.variable);
+  return fmt::format("H{}", variable);
+}
+
+TelegramNames telegram_names(const Plant& plant, const CanLine* line) {
+  TelegramNames names;
+  for (const auto& station : plant.stations())
+    for (const int number : {1, 2}) {
+      const SbusPort* port = std::as_const(*station).sbus(number);
+      if (port == nullptr || (line != nullptr && &port->line() != line)) continue;
+      names.units.push_back(unit_names(*station, port->settings().slave));
+      for (const ObjectDefinition& definition : port->objects().definitions()) {
+        if (!definition.accepted) continue;
+        ObjectNames object;
+        object.id = static_cast<uint32_t>(definition.object);
+        object.station = station->config().name;
+        object.sent = definition.kind != ObjectKind::Receive;
+        object.format = *definition.format;
+        object.cycle = definition.kind == ObjectKind::TransmitCyclic ? definition.cycle : 0;
+        for (uint32_t n = 0; n < 2; ++n)
+          object.variables[n] = variable_name(station->image(), definition.data + n);
+        names.objects.push_back(std::move(object));
+      }
+    }
+  return names;
+}
+
+TelegramNames serial_names(const Plant& plant) {
+  TelegramNames names;
+  for (const auto& station : plant.stations()) {
+    SlaveSettings settings;
+    settings.address = static_cast<uint8_t>(station->drive().value("810"));
+    settings.group = static_cast<uint8_t>(station->drive().value("811"));
+    names.units.push_back(unit_names(*station, settings));
+  }
+  return names;
+}
+
+}  // namespace ipos::runtime
