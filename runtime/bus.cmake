@@ -25,6 +25,6 @@ ipos_layer(bus FOLDERS runtime/bus
                    bus/profibus/cfg_data.cpp bus/profibus/frame_text.cpp bus/profibus/dp_slave.cpp bus/profibus/card.cpp
                    bus/profibus/line_fault.cpp bus/profibus/line.cpp bus/profibus/slave_station.cpp
                    bus/profibus/slave_handler.cpp bus/profibus/master.cpp bus/profibus/fieldbus_parameters.cpp
-                   bus/profibus/dp_unit.cpp bus/profibus/gsd.cpp bus/profibus/line_plan.cpp bus/profibus/fms_connection.cpp
+                   bus/profibus/dp_unit.cpp bus/profibus/gsd.cpp bus/profibus/line_plan.cpp bus/profibus/interface_card.cpp bus/profibus/fms_connection.cpp
                    bus/profibus/fms_objects.cpp bus/profibus/fms_server.cpp
            USES clock stdlib LIBS fmt::fmt)

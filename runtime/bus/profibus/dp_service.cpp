@@ -1,6 +1,8 @@
 // Octets of Set_Prm and Slave_Diag.
 #include "runtime/bus/profibus/dp_service.hpp"
 
+#include <algorithm>
+
 namespace ipos::profibus {
 namespace {
 
@@ -44,14 +46,15 @@ Octets encode(const PrmData& prm) {
   if (prm.sync) station |= kSync;
   if (prm.freeze) station |= kFreeze;
   if (prm.watchdog) station |= kWatchdog;
-  Octets octets{static_cast<uint8_t>(station),
-                prm.watchdog_factor_1,
-                prm.watchdog_factor_2,
-                prm.min_tsdr,
-                high(prm.ident),
-                low(prm.ident),
-                prm.groups};
-  octets.insert(octets.end(), prm.user.begin(), prm.user.end());
+  Octets octets(kPrmSize + prm.user.size());
+  octets[0] = static_cast<uint8_t>(station);
+  octets[1] = prm.watchdog_factor_1;
+  octets[2] = prm.watchdog_factor_2;
+  octets[3] = prm.min_tsdr;
+  octets[4] = high(prm.ident);
+  octets[5] = low(prm.ident);
+  octets[6] = prm.groups;
+  std::copy(prm.user.begin(), prm.user.end(), octets.begin() + kPrmSize);
   return octets;
 }
 

@@ -28,6 +28,7 @@ class FieldbusDrive : public runtime::ProcessDataServer {
  public:
   virtual void set_fieldbus_timeout(Time now, int32_t hundredths) = 0;  // P571
   virtual void fieldbus_timeout_expired(Time now) = 0;                  // the reaction is P572
+  virtual void set_fieldbus_address(Time now, uint8_t address) = 0;     // P073
 
  protected:
   ~FieldbusDrive() = default;

@@ -46,6 +46,7 @@ class FmsServer {
   // A master opens connection `cref`. On an open connection it ends it: both have to begin anew.
   FmsResponse initiate(Time now, uint8_t cref, uint8_t master, const FmsMasterEntry& entry);
   void abort(uint8_t cref) { open_.erase(cref); }
+  void power_on() { open_.clear(); }
 
   // What comes at once; nothing: response() has it later.
   std::optional<FmsResponse> request(Time now, uint8_t cref, const FmsRequest& request);

@@ -51,6 +51,7 @@ struct Mc31 final : runtime::ParameterServer, FieldbusDrive {
   void synchronize(Time) override {}
   void set_fieldbus_timeout(Time, int32_t hundredths) override { values[index_of("571")] = hundredths; }
   void fieldbus_timeout_expired(Time now) override { expired_at = now; }
+  void set_fieldbus_address(Time, uint8_t address) override { values[index_of("073")] = address; }
 
   std::map<uint16_t, int32_t> values;
   std::vector<runtime::ParameterRequest> served;
