@@ -1,12 +1,10 @@
 // Telegrams that wait until the ticks of their reader have come as far as they.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 
 #include "runtime/pace/timed.hpp"
 
@@ -15,16 +13,13 @@ namespace ipos::runtime {
 class Inbox {
  public:
   static constexpr size_t kMost = 4;
-  static constexpr size_t kMostBytes = 8;
 
   bool full() const { return posted_ == kMost; }
 
   // A telegram that came behind the tick at `after`, in the order of time.
-  void post(Time after, TelegramReader& reader, size_t number, std::span<const uint8_t> bytes) {
-    assert(!full() && bytes.size() <= kMostBytes);
-    Telegram& telegram = telegrams_[posted_++];
-    telegram = {after, &reader, number, {}, bytes.size()};
-    std::copy(bytes.begin(), bytes.end(), telegram.bytes.begin());
+  void post(Time after, TelegramReader& reader, size_t number, const TelegramData& data) {
+    assert(!full());
+    telegrams_[posted_++] = {after, &reader, number, data};
   }
 
   // The tick behind which the next one came; kNever for none.
@@ -32,7 +27,7 @@ class Inbox {
 
   void read_next() {
     const Telegram& telegram = telegrams_[read_++];
-    telegram.reader->read(telegram.number, {telegram.bytes.data(), telegram.length});
+    telegram.reader->read(telegram.number, telegram.data);
     if (read_ == posted_) read_ = posted_ = 0;
   }
 
@@ -41,8 +36,7 @@ class Inbox {
     Time after;
     TelegramReader* reader;
     size_t number;
-    std::array<uint8_t, kMostBytes> bytes;
-    size_t length;
+    TelegramData data;
   };
   std::array<Telegram, kMost> telegrams_{};
   uint8_t posted_ = 0;

@@ -9,13 +9,13 @@ namespace ipos::runtime {
 
 void Pacer::start() {
   done_to_ = queue_.now();
-  behind_ = false;
+  behind_ = sends_without_ = false;
   event_ = queue_.schedule(done_to_, source_, *this, 0);
 }
 
 void Pacer::stop() {
   catch_up();
-  behind_ = false;
+  behind_ = sends_without_ = false;
   queue_.cancel(event_);
 }
 
@@ -25,18 +25,23 @@ void Pacer::use(Pace pace) {
 }
 
 void Pacer::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
-  if (run_to(now)) plan(now);
+  if (sends_without_ && now < silent_to_)
+    event_ = queue_.schedule(std::min(timed_.send(now), silent_to_), source_, *this, 0);
+  else if (run_to(now))
+    plan(now);
 }
 
 // All ticks up to that at `last`, and the telegrams that came in between. Each finds the time that it belongs
 // to. False: a tick stopped in the middle.
 bool Pacer::run_to(Time last) {
+  if (done_to_ > last && inbox_.next() > last) return true;
   const bool nested = std::exchange(runs_, true);
+  EventQueue::Past past(queue_, done_to_, source_);
   for (;;) {
     const Time until = std::min(last, inbox_.next());
     while (done_to_ <= until) {
       const Time first = done_to_;
-      const EventQueue::Past past(queue_, first, source_);
+      past.go_to(first);
       if (pace_ == Pace::Lazy)
         if (const Ticks horizon = timed_.horizon(first); horizon != 0) {
           const auto left = static_cast<uint64_t>((until - first) / kMillisecond + 1);
@@ -66,10 +71,12 @@ void Pacer::resume() { plan(queue_.now()); }
 // or the next telegram.
 void Pacer::plan(Time now) {
   const Time telegram = timed_.send(now);
-  Time next = done_to_;
-  if (pace_ == Pace::Lazy && telegram > next)
-    next = std::min(telegram, next + static_cast<Time>(timed_.silence(next)) * kMillisecond);
+  silent_to_ = done_to_;
+  if (pace_ == Pace::Lazy && telegram > done_to_)
+    silent_to_ += static_cast<Time>(timed_.silence(done_to_)) * kMillisecond;
+  const Time next = std::min(telegram, silent_to_);
   behind_ = next > done_to_;
+  sends_without_ = behind_ && timed_.sends_without();
   if (!behind_) timed_.settle();
   event_ = queue_.schedule(next, source_, *this, 0);
 }
@@ -90,14 +97,14 @@ void Pacer::touch() {
   catch_up();
   timed_.touched();
   if (!behind_ || runs_) return;
-  behind_ = false;
+  behind_ = sends_without_ = false;
   queue_.cancel(event_);
   event_ = queue_.schedule(done_to_, source_, *this, 0);
 }
 
-bool Pacer::post(TelegramReader& reader, size_t number, std::span<const uint8_t> bytes) {
+bool Pacer::post(TelegramReader& reader, size_t number, const TelegramData& data) {
   if (!behind_ || inbox_.full() || !timed_.lets_wait()) return false;
-  inbox_.post(last_tick(), reader, number, bytes);
+  inbox_.post(last_tick(), reader, number, data);
   return true;
 }
 

@@ -7,7 +7,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 
 #include "runtime/clock/event_queue.hpp"
 #include "runtime/pace/inbox.hpp"
@@ -46,7 +45,7 @@ class Pacer final : private EventTarget {
   }
 
   // A telegram waits for its reader. False: it must be read at once.
-  bool post(TelegramReader& reader, size_t number, std::span<const uint8_t> bytes);
+  bool post(TelegramReader& reader, size_t number, const TelegramData& data);
 
   // The tick that stopped in the middle has come to its end.
   void resume();
@@ -63,9 +62,11 @@ class Pacer final : private EventTarget {
   Timed& timed_;
   Pace pace_;
   bool behind_ = false;
-  bool runs_ = false;  // run_to() is under way
+  bool sends_without_ = false;  // behind, and what it sends is the same without its ticks
+  bool runs_ = false;           // run_to() is under way
   EventId event_ = kNoEvent;
-  Time done_to_ = 0;  // the first tick that was not executed
+  Time done_to_ = 0;    // the first tick that was not executed
+  Time silent_to_ = 0;  // the tick that comes in its turn again
   Inbox inbox_;
 };
 

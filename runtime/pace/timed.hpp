@@ -1,9 +1,9 @@
 // What lives in milliseconds, as a Pacer drives it. It reads no clock and schedules nothing.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 
 #include "runtime/clock/event_queue.hpp"
 #include "runtime/pace/part.hpp"
@@ -33,15 +33,23 @@ class Timed {
   virtual void touched() = 0;
   // A telegram that only writes variables can wait until the ticks have come as far as it.
   virtual bool lets_wait() const = 0;
+  // What is sent in the silence is the same without its ticks.
+  virtual bool sends_without() const = 0;
 
  protected:
   ~Timed() = default;
 };
 
-// Who reads a telegram that has waited: its number and its bytes, as they were posted.
+// The data of a telegram.
+struct TelegramData {
+  std::array<uint8_t, 8> bytes{};
+  uint8_t length = 0;
+};
+
+// Who reads a telegram that has waited: its number and its data, as they were posted.
 class TelegramReader {
  public:
-  virtual void read(size_t number, std::span<const uint8_t> bytes) = 0;
+  virtual void read(size_t number, const TelegramData& data) = 0;
 
  protected:
   ~TelegramReader() = default;

@@ -83,7 +83,6 @@ SbusPort::SbusPort(EventQueue& queue, uint32_t source, CanLine& line, std::optio
                                                 settings.slave.group, settings.baud);
       !why.empty())
     note(queue.now(), Weight::Warning, std::move(why));
-  leads_ = group_master_.active();
 }
 
 void SbusPort::note(Time now, Weight weight, std::string text) {
@@ -110,14 +109,11 @@ bool SbusPort::waits(const Frame& frame) {
   if (!door_.is_behind() || master_.busy() || slave_.is_sync(frame)) return false;
   const auto receiver = objects_.receiver(frame);
   return receiver && objects_.fits(*receiver, frame) &&
-         door_.post(*this, *receiver, std::span(frame.data).first(frame.length));
+         door_.post(*this, *receiver, {frame.data, frame.length});
 }
 
-void SbusPort::read(size_t object, std::span<const uint8_t> bytes) {
-  Frame frame;
-  frame.length = static_cast<uint8_t>(bytes.size());
-  std::copy(bytes.begin(), bytes.end(), frame.data.begin());
-  objects_.take(object, frame, door_.variables_in_turn());
+void SbusPort::read(size_t object, const TelegramData& data) {
+  objects_.take(object, Frame(0, data.length, data.bytes), door_.variables_in_turn());
 }
 
 void SbusPort::tell_reasons(Time now) {

@@ -41,12 +41,13 @@ class SbusPort final : private CanNode, private SlaveObserver, private TelegramR
            std::string_view station, const SbusSettings& settings, Door& door, Journal& journal);
 
   void power_off();  // the line is told first, as frames that were waiting come back
-  // Once a millisecond, after the tasks, with the variables as they are now. Returns the first tick behind this
-  // one that does something; kNever for none.
+  bool leads() const { return group_master_.active(); }
+  // Once a millisecond, after the tasks: the group telegram of one that leads, then the cyclic objects, with the
+  // variables as they are now. tick() returns the first tick behind this one that sends something; kNever for
+  // none.
+  void send_setpoint(Time now) { group_master_.tick(now); }
   Time tick(Time now, std::span<const int32_t> variables) {
-    if (leads_) group_master_.tick(now);
     const int64_t due = objects_.tick(now / kMillisecond, variables);
-    if (leads_) return now + kMillisecond;
     return due == INT64_MAX ? kNever : due * kMillisecond;
   }
   bool has_waiting_frames() const { return line_.has_waiting(node()); }
@@ -65,7 +66,7 @@ class SbusPort final : private CanNode, private SlaveObserver, private TelegramR
   void on_frame(Time now, const Frame& frame) override;
   bool waits(const Frame& frame);
   bool receive(Time now, const Frame& frame);
-  void read(size_t object, std::span<const uint8_t> bytes) override;
+  void read(size_t object, const TelegramData& data) override;
   void tell_reasons(Time now);
   void tell_shared(Time now, const Frame& frame);
   void on_sent(Time now, const Frame& frame, uint64_t tag) override;
@@ -75,7 +76,6 @@ class SbusPort final : private CanNode, private SlaveObserver, private TelegramR
   void note(Time now, Weight weight, std::string text);
 
   // What every tick looks at stands together.
-  bool leads_ = false;  // a group of slaves
   bool rests_ = false;  // the line need not tell it of some frames
   bool powered_ = true;
   Door& door_;

@@ -37,6 +37,7 @@ void Station::power_on() {
   if (powered_) return;
   powered_ = true;
   unit_.power_on();
+  leads_ = false;
   for (const int number : {1, 2}) connect_sbus(number);
   connect_serial();
   unit_.restart_program_memory(queue_.now());
@@ -80,6 +81,7 @@ void Station::connect_sbus(int number) {
   canopen.reset();
   port = std::make_unique<SbusPort>(queue_, source_, *line, node, number, config_.name, settings, door_,
                                     journal_);
+  leads_ = leads_ || port->leads();
 }
 
 void Station::connect_serial() {
@@ -146,9 +148,13 @@ Time Station::send(Time now) {
   if (ticks_.sends_pending()) ticks_.settle();
   if (x13_) x13_->tick(now);
   if (xt_) xt_->tick(now);
-  Time next = kNever;
+  if (leads_)
+    for (const auto& port : sbus_)
+      if (port) port->send_setpoint(now);
+  Time next = leads_ ? now + kMillisecond : kNever;
+  const std::span<const int32_t> variables = unit_.variables();
   for (const auto& port : sbus_)
-    if (port) next = std::min(next, port->tick(now, unit_.variables()));
+    if (port) next = std::min(next, port->tick(now, variables));
   for (const auto& port : canopen_)
     if (port) next = std::min(next, port->tick(now));
   return next;
@@ -157,6 +163,7 @@ Time Station::send(Time now) {
 // Who is on a serial line is asked at any time.
 Ticks Station::silence(Time first) {
   if (ticks_.way() != ManyTicks::Way::Idle && (x13_ || xt_)) return 0;
+  if (const Ticks known = ticks_.known_silence(); known != 0) return known;
   const auto waiting = [](const auto& port) { return port && port->has_waiting_frames(); };
   const bool waits = std::any_of(sbus_.begin(), sbus_.end(), waiting) ||
                      std::any_of(canopen_.begin(), canopen_.end(), waiting);

@@ -137,6 +137,7 @@ class Station final : private Timed, private TaskRunner {
   void settle() override { ticks_.settle(); }
   void touched() override;
   bool lets_wait() const override { return ticks_.lets_wait(); }
+  bool sends_without() const override { return ticks_.variables_rest() && !leads_; }
   bool run(vm::Machine& machine, vm::TickSteps& steps) override;
 
   void connect_sbus(int number);
@@ -160,6 +161,7 @@ class Station final : private Timed, private TaskRunner {
   const StationConfig& config_;
   StationLines lines_;
   Journal& journal_;
+  bool leads_ = false;  // a group of slaves: what it sends is the drive's
   CommandRunner* runner_ = nullptr;
   bool in_tick_ = false;
   bool powered_ = false;

@@ -32,8 +32,8 @@ class Door final {
 
   // --- for telegrams of variables, which come often ---
   // A telegram that only writes variables waits for its reader; false: it must be read at once.
-  bool post(TelegramReader& reader, size_t number, std::span<const uint8_t> bytes) const {
-    return pacer_.post(reader, number, bytes);
+  bool post(TelegramReader& reader, size_t number, const TelegramData& data) const {
+    return pacer_.post(reader, number, data);
   }
   // The variables as the program has left them by now; none without a program.
   std::span<const int32_t> variables() const {

@@ -19,9 +19,6 @@ constexpr size_t kControlWord = stdlib::system_variable("ControlWord");
 constexpr uint32_t kSteadyPause = 16, kAheadPause = 64, kIdlePause = 32, kProgramPause = 1024,
                    kReachPause = 4096;
 
-// How late ticks may be, so that who watches the run sees it move on.
-constexpr Ticks kLatest = 31;
-
 // A loop with more commands is not looked for.
 constexpr uint32_t kLongestLoop = 256;
 
@@ -235,11 +232,9 @@ bool ManyTicks::can_be_late(bool waits) const {
 }
 
 Ticks ManyTicks::silence(Time first, bool waits) {
-  if (way_ == Way::Idle && left_ != 0) return left_;
-  if (lets_wait()) return kLatest;
   know_program();
   const vm::Machine* machine = unit_.machine();
-  const bool known = reach_.mute && reach_.apart;
+  const bool known = reach_.mute && reach_.apart && reach_.quiet;
   if (machine != nullptr && !known && reach_backoff_.due(first) && machine->fault().number == 0)
     find_reach(first);
   return can_be_late(waits) ? kLatest : 0;

@@ -23,6 +23,9 @@ class ManyTicks final {
     Idle,    // and the tasks wait, have ended, or go round in a loop that leads nowhere
   };
 
+  // How late ticks may be, so that who watches the run sees it move on.
+  static constexpr Ticks kLatest = 31;
+
   explicit ManyTicks(Unit& unit) : unit_(unit) {}
 
   // As Timed (runtime/pace/timed.hpp) has them.
@@ -33,8 +36,12 @@ class ManyTicks final {
     if (pending_ != 0) settle_pending();
   }
   void touched();
-  // `waits`: frames of the unit that a fault of its program would take back.
+  // `waits`: frames of the unit that a fault of its program would take back. Not asked for where it is known.
   Ticks silence(Time first, bool waits);
+  Ticks known_silence() const {
+    if (left_ == 0) return 0;
+    return way_ == Way::Idle ? left_ : lets_wait() ? kLatest : 0;
+  }
   bool lets_wait() const { return way_ == Way::Ahead && left_ != 0 && !reach_.may_fault; }
 
   Way way() const { return way_; }

@@ -48,9 +48,10 @@ struct Toy final : runtime::Timed, runtime::TelegramReader {
   void settle() override { sum += step * static_cast<int64_t>(std::exchange(unsettled, 0)); }
   void touched() override { EXPECT_EQ(unsettled, 0U) << "who writes finds everything settled"; }
   bool lets_wait() const override { return true; }
-  void read(size_t number, std::span<const uint8_t> bytes) override {
+  bool sends_without() const override { return false; }
+  void read(size_t number, const runtime::TelegramData& data) override {
     settle();
-    sum += static_cast<int64_t>(number) * bytes[0];
+    sum += static_cast<int64_t>(number) * data.bytes[0];
   }
 
   int64_t step = 1, sum = 0;
@@ -70,10 +71,10 @@ struct Rig {
     toy.sum += value;
   }
   void post(uint8_t value) {
-    const std::array<uint8_t, 1> bytes{value};
-    if (pacer.post(toy, 3, bytes)) return;
+    const runtime::TelegramData data{{value}, 1};
+    if (pacer.post(toy, 3, data)) return;
     pacer.touch();
-    toy.read(3, bytes);
+    toy.read(3, data);
   }
 
   runtime::EventQueue queue;
@@ -161,6 +162,7 @@ TEST(Pacer, ATickThatStopsIsResumed) {
     void settle() override {}
     void touched() override {}
     bool lets_wait() const override { return false; }
+    bool sends_without() const override { return false; }
     int ticks = 0, sends = 0;
   } stopping;
   runtime::EventQueue queue;
