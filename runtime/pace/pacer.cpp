@@ -9,13 +9,13 @@ namespace ipos::runtime {
 
 void Pacer::start() {
   done_to_ = queue_.now();
-  behind_ = sends_without_ = false;
+  behind_ = rests_ = false;
   event_ = queue_.schedule(done_to_, source_, *this, 0);
 }
 
 void Pacer::stop() {
   catch_up();
-  behind_ = sends_without_ = false;
+  behind_ = rests_ = false;
   queue_.cancel(event_);
 }
 
@@ -25,7 +25,7 @@ void Pacer::use(Pace pace) {
 }
 
 void Pacer::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
-  if (sends_without_ && now < silent_to_)
+  if (rests_ && now < silent_to_)
     event_ = queue_.schedule(std::min(timed_.send(now), silent_to_), source_, *this, 0);
   else if (run_to(now))
     plan(now);
@@ -76,7 +76,7 @@ void Pacer::plan(Time now) {
     silent_to_ += static_cast<Time>(timed_.silence(done_to_)) * kMillisecond;
   const Time next = std::min(telegram, silent_to_);
   behind_ = next > done_to_;
-  sends_without_ = behind_ && timed_.sends_without();
+  rests_ = behind_ && timed_.rests();
   if (!behind_) timed_.settle();
   event_ = queue_.schedule(next, source_, *this, 0);
 }
@@ -97,7 +97,7 @@ void Pacer::touch() {
   catch_up();
   timed_.touched();
   if (!behind_ || runs_) return;
-  behind_ = sends_without_ = false;
+  behind_ = rests_ = false;
   queue_.cancel(event_);
   event_ = queue_.schedule(done_to_, source_, *this, 0);
 }

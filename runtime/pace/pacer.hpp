@@ -30,8 +30,11 @@ class Pacer final : private EventTarget {
   void start();  // the first tick is now
   void stop();   // no tick comes any more
   void use(Pace pace);
+  Pace pace() const { return pace_; }
 
   bool behind() const { return behind_; }
+  // Behind, and nothing that others can see changes before the end of the silence, unless somebody touches it.
+  bool rests() const { return rests_; }
 
   // Before somebody reads: all ticks up to now are executed.
   void catch_up() {
@@ -62,8 +65,8 @@ class Pacer final : private EventTarget {
   Timed& timed_;
   Pace pace_;
   bool behind_ = false;
-  bool sends_without_ = false;  // behind, and what it sends is the same without its ticks
-  bool runs_ = false;           // run_to() is under way
+  bool rests_ = false;
+  bool runs_ = false;  // run_to() is under way
   EventId event_ = kNoEvent;
   Time done_to_ = 0;    // the first tick that was not executed
   Time silent_to_ = 0;  // the tick that comes in its turn again

@@ -33,8 +33,8 @@ class Timed {
   virtual void touched() = 0;
   // A telegram that only writes variables can wait until the ticks have come as far as it.
   virtual bool lets_wait() const = 0;
-  // What is sent in the silence is the same without its ticks.
-  virtual bool sends_without() const = 0;
+  // In all of this silence nothing changes that others can see, and what is sent is the same without its ticks.
+  virtual bool rests() const = 0;
 
  protected:
   ~Timed() = default;

@@ -120,8 +120,7 @@ void SbusPort::tell_reasons(Time now) {
   for (std::string& reason : server_.take_reasons()) note(now, Weight::Why, std::move(reason));
 }
 
-void SbusPort::want_again() {
-  if (!std::exchange(rests_, false)) return;
+void SbusPort::want_each_again() {
   objects_.each_received(
       [this](uint32_t id, uint32_t /*data*/, VariableFormat /*format*/) { line_.want_again(node(), id); });
 }

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "runtime/bus/can/line.hpp"
 #include "runtime/bus/movilink/sbus_group_master.hpp"
@@ -51,7 +52,10 @@ class SbusPort final : private CanNode, private SlaveObserver, private TelegramR
     return due == INT64_MAX ? kNever : due * kMillisecond;
   }
   bool has_waiting_frames() const { return line_.has_waiting(node()); }
-  void want_again();  // the variables may change from now on
+  // The variables may change from now on: the line tells of repeated frames again.
+  void want_again() {
+    if (std::exchange(rests_, false)) want_each_again();
+  }
 
   NodeId node() const { return sender_.node(); }
   CanLine& line() const { return line_; }
@@ -64,6 +68,7 @@ class SbusPort final : private CanNode, private SlaveObserver, private TelegramR
 
  private:
   void on_frame(Time now, const Frame& frame) override;
+  void want_each_again();
   bool waits(const Frame& frame);
   bool receive(Time now, const Frame& frame);
   void read(size_t object, const TelegramData& data) override;

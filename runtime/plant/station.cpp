@@ -128,12 +128,12 @@ void Station::use_runner(CommandRunner& runner) {
 bool Station::run(vm::Machine& machine, vm::TickSteps& steps) { return runner_->run(*this, machine, steps); }
 
 bool Station::tick(Time now) {
-  if (runner_ == nullptr) {
-    ticks_.tick(now);
-    return true;
+  if (pacer_.pace() == Pace::InTurn) {
+    in_tick_ = !unit_.tick(now);
+    return !in_tick_;
   }
-  in_tick_ = !unit_.tick(now);
-  return !in_tick_;
+  ticks_.tick(now);
+  return true;
 }
 
 void Station::resume_tick() {
@@ -160,6 +160,13 @@ Time Station::send(Time now) {
   return next;
 }
 
+// The ticks of an idle unit are over: from now on its variables may change.
+Ticks Station::horizon(Time first) {
+  const Ticks ticks = ticks_.horizon(first);
+  if (!ticks_.variables_rest()) want_frames_again();
+  return ticks;
+}
+
 // Who is on a serial line is asked at any time.
 Ticks Station::silence(Time first) {
   if (ticks_.way() != ManyTicks::Way::Idle && (x13_ || xt_)) return 0;
@@ -172,6 +179,10 @@ Ticks Station::silence(Time first) {
 
 void Station::touched() {
   ticks_.touched();
+  want_frames_again();
+}
+
+void Station::want_frames_again() {
   for (const auto& port : sbus_)
     if (port) port->want_again();
 }

@@ -131,15 +131,16 @@ class Station final : private Timed, private TaskRunner {
  private:
   bool tick(Time now) override;
   Time send(Time now) override;
-  Ticks horizon(Time first) override { return ticks_.horizon(first); }
+  Ticks horizon(Time first) override;
   Ticks advance(Time first, Ticks most) override { return ticks_.advance(first, most); }
   Ticks silence(Time first) override;
   void settle() override { ticks_.settle(); }
   void touched() override;
   bool lets_wait() const override { return ticks_.lets_wait(); }
-  bool sends_without() const override { return ticks_.variables_rest() && !leads_; }
+  bool rests() const override { return ticks_.variables_rest() && !leads_; }
   bool run(vm::Machine& machine, vm::TickSteps& steps) override;
 
+  void want_frames_again();  // the variables may change from now on
   void connect_sbus(int number);
   void connect_serial();
   void reconnect_serial();

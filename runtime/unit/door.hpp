@@ -42,7 +42,7 @@ class Door final {
     return unit_.variables();
   }
   // They stay as they are until somebody writes, or the port wants repeated frames again.
-  bool variables_rest() const { return pacer_.behind() && ticks_.variables_rest(); }
+  bool variables_rest() const { return pacer_.rests(); }
   // Behind variables(): to write this one and the next.
   std::span<int32_t> variables_to_write(uint32_t first) const {
     if (!pacer_.behind() || ticks_.minds(first)) return touch().variables();

@@ -48,7 +48,7 @@ struct Toy final : runtime::Timed, runtime::TelegramReader {
   void settle() override { sum += step * static_cast<int64_t>(std::exchange(unsettled, 0)); }
   void touched() override { EXPECT_EQ(unsettled, 0U) << "who writes finds everything settled"; }
   bool lets_wait() const override { return true; }
-  bool sends_without() const override { return false; }
+  bool rests() const override { return false; }
   void read(size_t number, const runtime::TelegramData& data) override {
     settle();
     sum += static_cast<int64_t>(number) * data.bytes[0];
@@ -162,7 +162,7 @@ TEST(Pacer, ATickThatStopsIsResumed) {
     void settle() override {}
     void touched() override {}
     bool lets_wait() const override { return false; }
-    bool sends_without() const override { return false; }
+    bool rests() const override { return false; }
     int ticks = 0, sends = 0;
   } stopping;
   runtime::EventQueue queue;
