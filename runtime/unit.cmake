@@ -1,11 +1,11 @@
 # One unit and its plain millisecond: program, variables, drive, positioning, memory; and many of them at once.
 ipos_layer(unit
-  FOLDERS runtime/services runtime/unit
-  SOURCES services/variable_objects.cpp services/movilink_command.cpp services/drive_variables.cpp
-          services/timers.cpp services/mirrored_values.cpp services/pid_block.cpp services/source_places.cpp
-          services/communication_commands.cpp services/call_commands.cpp services/unit_commands.cpp
-          services/system_values.cpp services/system_commands.cpp services/positioning_service.cpp
-          services/positioning_commands.cpp
+  FOLDERS runtime/commands runtime/unit
+  SOURCES commands/movilink_command.cpp unit/drive_variables.cpp
+          unit/timers.cpp unit/mirrored_values.cpp unit/pid_block.cpp commands/source_places.cpp
+          commands/communication_commands.cpp commands/call_commands.cpp commands/unit_commands.cpp
+          commands/system_values.cpp commands/system_commands.cpp unit/positioning_service.cpp
+          commands/positioning_commands.cpp
           unit/index_windows.cpp unit/wear.cpp unit/unit_memory.cpp unit/drive_server.cpp
           unit/unit.cpp unit/unit_reports.cpp unit/unit_power.cpp unit/program_reach.cpp unit/many_ticks.cpp
   USES vm image bus scom drive positioning motion storage stdlib pace

@@ -44,7 +44,7 @@ vm::HostReply define_object(ipos_vm& self, ObjectKind kind, uint32_t variable) {
   return {};
 }
 
-// SCOMST: the variable takes the state, 1 on, 0 off (ours, as in runtime/services).
+// SCOMST: the variable takes the state, 1 on, 0 off (ours, as in runtime/commands).
 vm::HostReply switch_objects(ipos_vm& self, bool on, uint32_t variable) {
   if (on)
     self.objects.start(static_cast<int64_t>(self.ticks));

@@ -10,7 +10,7 @@
 #include "runtime/bus/canopen/node.hpp"
 #include "runtime/plant/sbus_port.hpp"
 #include "runtime/plant/unit_server.hpp"
-#include "runtime/services/journal.hpp"
+#include "runtime/unit/journal.hpp"
 #include "runtime/unit/door.hpp"
 
 namespace ipos::runtime {

@@ -16,7 +16,7 @@
 #include "runtime/plant/signal_port.hpp"
 #include "runtime/plant/station.hpp"
 #include "runtime/plant/surroundings.hpp"
-#include "runtime/services/journal.hpp"
+#include "runtime/unit/journal.hpp"
 
 namespace ipos::runtime {
 

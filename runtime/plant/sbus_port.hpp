@@ -13,9 +13,9 @@
 #include "runtime/bus/movilink/sbus_master.hpp"
 #include "runtime/bus/movilink/sbus_slave.hpp"
 #include "runtime/plant/unit_server.hpp"
-#include "runtime/services/journal.hpp"
-#include "runtime/services/movilink_command.hpp"
-#include "runtime/services/variable_objects.hpp"
+#include "runtime/unit/journal.hpp"
+#include "runtime/commands/movilink_command.hpp"
+#include "runtime/scom/variable_objects.hpp"
 #include "runtime/unit/door.hpp"
 
 namespace ipos::runtime {

@@ -9,7 +9,7 @@
 #include "runtime/bus/movilink/serial_slave.hpp"
 #include "runtime/bus/rs485/line.hpp"
 #include "runtime/plant/unit_server.hpp"
-#include "runtime/services/journal.hpp"
+#include "runtime/unit/journal.hpp"
 
 namespace ipos::runtime {
 

@@ -12,7 +12,7 @@
 #include "runtime/clock/event_queue.hpp"
 #include "runtime/plant/plant_file.hpp"
 #include "runtime/plant/signal_port.hpp"
-#include "runtime/services/journal.hpp"
+#include "runtime/unit/journal.hpp"
 
 namespace ipos::runtime {
 

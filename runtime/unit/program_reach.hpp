@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "runtime/services/variable_objects.hpp"
+#include "runtime/scom/variable_objects.hpp"
 #include "vm/exec/machine.hpp"
 
 namespace ipos::runtime {

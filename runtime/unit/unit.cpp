@@ -1,8 +1,8 @@
 // The millisecond of a unit, step by step.
 #include "runtime/unit/unit.hpp"
 
-#include "runtime/services/drive_variables.hpp"
-#include "runtime/services/source_places.hpp"
+#include "runtime/unit/drive_variables.hpp"
+#include "runtime/commands/source_places.hpp"
 
 namespace ipos::runtime {
 namespace {

@@ -11,13 +11,13 @@
 #include <string_view>
 #include <vector>
 
-#include "runtime/services/journal.hpp"
-#include "runtime/services/mirrored_values.hpp"
-#include "runtime/services/movilink_command.hpp"
-#include "runtime/services/pid_block.hpp"
-#include "runtime/services/positioning_commands.hpp"
-#include "runtime/services/system_commands.hpp"
-#include "runtime/services/timers.hpp"
+#include "runtime/unit/journal.hpp"
+#include "runtime/unit/mirrored_values.hpp"
+#include "runtime/commands/movilink_command.hpp"
+#include "runtime/unit/pid_block.hpp"
+#include "runtime/commands/positioning_commands.hpp"
+#include "runtime/commands/system_commands.hpp"
+#include "runtime/unit/timers.hpp"
 #include "runtime/unit/drive_server.hpp"
 #include "runtime/unit/execution.hpp"
 #include "runtime/unit/unit_inputs.hpp"

@@ -10,8 +10,8 @@
 
 #include "runtime/unit/index_windows.hpp"
 #include "runtime/unit/wear.hpp"
-#include "runtime/services/journal.hpp"
-#include "runtime/services/retained_memory.hpp"
+#include "runtime/unit/journal.hpp"
+#include "runtime/unit/retained_memory.hpp"
 #include "runtime/storage/slot_store.hpp"
 
 namespace ipos::runtime {

@@ -1,5 +1,5 @@
 // GETSYS and SETSYS value by value, in the units docs/reference/stdlib.md gives.
-#include "runtime/services/system_values.hpp"
+#include "runtime/commands/system_values.hpp"
 
 #include <gtest/gtest.h>
 

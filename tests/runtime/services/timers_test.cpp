@@ -1,5 +1,5 @@
 // Timers and watchdog to the millisecond.
-#include "runtime/services/timers.hpp"
+#include "runtime/unit/timers.hpp"
 
 #include <gtest/gtest.h>
 

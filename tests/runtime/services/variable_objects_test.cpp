@@ -1,6 +1,6 @@
 // _SBusCommDef and _SBusCommOn without a bus: results, limits and times of the objects. Expected values are
 // those of 1053 1610 p. 51 to 61 and of IPOSplus p. 232 and 320.
-#include "runtime/services/variable_objects.hpp"
+#include "runtime/scom/variable_objects.hpp"
 
 #include <gtest/gtest.h>
 

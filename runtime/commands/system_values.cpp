@@ -1,5 +1,5 @@
 // GETSYS and SETSYS. The manuals read print the names of some; their units are ours, docs/stdlib.md has them.
-#include "runtime/services/system_values.hpp"
+#include "runtime/commands/system_values.hpp"
 
 #include <fmt/format.h>
 

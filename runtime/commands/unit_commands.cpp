@@ -1,7 +1,7 @@
 // Commands to the unit as a whole: responses to faults, reset, memory, watchdog.
 #include <fmt/format.h>
 
-#include "runtime/services/command_call.hpp"
+#include "runtime/commands/command_call.hpp"
 #include "stdlib/faults.hpp"
 
 namespace ipos::runtime {

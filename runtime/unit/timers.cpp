@@ -1,5 +1,5 @@
 // Counting down, once a millisecond.
-#include "runtime/services/timers.hpp"
+#include "runtime/unit/timers.hpp"
 
 #include <algorithm>
 

@@ -1,9 +1,9 @@
 // Dispatch of system commands: which family has which command.
-#include "runtime/services/system_commands.hpp"
+#include "runtime/commands/system_commands.hpp"
 
 #include <fmt/format.h>
 
-#include "runtime/services/source_places.hpp"
+#include "runtime/commands/source_places.hpp"
 
 namespace ipos::runtime {
 namespace {

@@ -1,5 +1,5 @@
 // MOVLNK from structure to result.
-#include "runtime/services/movilink_command.hpp"
+#include "runtime/commands/movilink_command.hpp"
 
 #include <fmt/format.h>
 
@@ -24,11 +24,11 @@ struct BusRow {
 };
 constexpr BusRow kBuses[] = {
 #define MOVILINK_BUS(name, code, units, text) {code, units, text},
-#include "runtime/services/movilink_buses.def"
+#include "runtime/commands/movilink_buses.def"
 };
 constexpr BusRow kAbsentBuses[] = {
 #define ABSENT_BUS(code, units, text) {code, units, text},
-#include "runtime/services/movilink_buses.def"
+#include "runtime/commands/movilink_buses.def"
 };
 
 // Variables of MLDATA that a format touches.

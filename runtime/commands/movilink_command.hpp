@@ -11,7 +11,7 @@
 
 #include "runtime/bus/movilink/exchange.hpp"
 #include "runtime/bus/movilink/unit_servers.hpp"
-#include "runtime/services/journal.hpp"
+#include "runtime/unit/journal.hpp"
 #include "stdlib/unit_types.hpp"
 #include "vm/exec/machine.hpp"
 
@@ -20,7 +20,7 @@ namespace ipos::runtime {
 // BusType of MOVLNK (1053 1610 p. 47).
 enum class MovilinkBus : uint8_t {
 #define MOVILINK_BUS(name, code, units, text) name,
-#include "runtime/services/movilink_buses.def"
+#include "runtime/commands/movilink_buses.def"
 };
 inline constexpr size_t kMovilinkBuses = static_cast<size_t>(MovilinkBus::Sbus2) + 1;
 

@@ -1,7 +1,7 @@
 // SCOM, SCOMON and SCOMST (1053 1610 p. 53 to 56), MOVLNK (p. 47).
 #include <algorithm>
 
-#include "runtime/services/command_call.hpp"
+#include "runtime/commands/command_call.hpp"
 
 namespace ipos::runtime {
 namespace {

@@ -5,7 +5,7 @@
 #include <array>
 #include <optional>
 
-#include "runtime/services/positioning_service.hpp"
+#include "runtime/unit/positioning_service.hpp"
 #include "vm/exec/machine.hpp"
 
 namespace ipos::runtime {

@@ -1,6 +1,6 @@
 // Variable telegrams on the simulated bus: the table (runtime/scom) decides, here its frames are queued and
 // its verdicts become reasons a user can read.
-#include "runtime/services/variable_objects.hpp"
+#include "runtime/scom/variable_objects.hpp"
 
 #include <fmt/format.h>
 

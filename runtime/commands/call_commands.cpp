@@ -1,5 +1,5 @@
 // INPCALL and SYSCALL: calls on a condition. The forms and the events are ours, see docs/stdlib.md.
-#include "runtime/services/command_call.hpp"
+#include "runtime/commands/command_call.hpp"
 #include "stdlib/system_variables.hpp"
 
 namespace ipos::runtime {

@@ -1,5 +1,5 @@
 // Copies between H variables and drive, once a millisecond in each direction.
-#include "runtime/services/drive_variables.hpp"
+#include "runtime/unit/drive_variables.hpp"
 
 #include "stdlib/system_variables.hpp"
 

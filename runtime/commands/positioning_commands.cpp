@@ -1,5 +1,5 @@
 // The commands one by one. Keyword values are those of vm/isa/keywords.def.
-#include "runtime/services/positioning_commands.hpp"
+#include "runtime/commands/positioning_commands.hpp"
 
 #include <utility>
 

@@ -9,11 +9,11 @@
 
 #include "runtime/clock/event_queue.hpp"
 #include "runtime/drive/drive.hpp"
-#include "runtime/services/movilink_command.hpp"
-#include "runtime/services/positioning_commands.hpp"
-#include "runtime/services/retained_memory.hpp"
-#include "runtime/services/timers.hpp"
-#include "runtime/services/variable_objects.hpp"
+#include "runtime/commands/movilink_command.hpp"
+#include "runtime/commands/positioning_commands.hpp"
+#include "runtime/unit/retained_memory.hpp"
+#include "runtime/unit/timers.hpp"
+#include "runtime/scom/variable_objects.hpp"
 #include "vm/exec/machine.hpp"
 
 namespace ipos::runtime {

@@ -1,7 +1,7 @@
 // What GETSYS and SETSYS share with other commands that change the ramp of a travel.
 #pragma once
 
-#include "runtime/services/command_call.hpp"
+#include "runtime/commands/command_call.hpp"
 
 namespace ipos::runtime {
 

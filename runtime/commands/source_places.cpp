@@ -1,5 +1,5 @@
 // The line table: each entry holds up to the next one.
-#include "runtime/services/source_places.hpp"
+#include "runtime/commands/source_places.hpp"
 
 #include <fmt/format.h>
 

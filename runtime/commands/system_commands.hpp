@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "runtime/services/command_call.hpp"
-#include "runtime/services/journal.hpp"
+#include "runtime/commands/command_call.hpp"
+#include "runtime/unit/journal.hpp"
 #include "vm/image/image.hpp"
 
 namespace ipos::runtime {
