@@ -1,4 +1,4 @@
-// INPCALL and SYSCALL: calls on a condition. The forms and the events are ours, see docs/stdlib.md.
+// INPCALL and SYSCALL: calls on a condition. The forms and the events are ours, see docs/reference/stdlib.md.
 #include "runtime/commands/command_call.hpp"
 #include "stdlib/system_variables.hpp"
 

@@ -27,7 +27,7 @@ vm::HostReply forward(CommandCall& call) {
     case Opcode::WdOff: return unit_command(call);
     case Opcode::GetSys: return get_system_value(call);
     case Opcode::SetSys: return set_system_value(call);
-    default: return illegal("this command is not simulated yet, see docs/limits.md");
+    default: return illegal("this command is not simulated yet, see docs/reference/limits.md");
   }
 }
 

@@ -1,5 +1,5 @@
 // The VM's host: carries the system commands of a program to the service that knows them. A command nothing
-// here knows ends in F10 with a reason, never in silence (docs/limits.md lists them).
+// here knows ends in F10 with a reason, never in silence (docs/reference/limits.md lists them).
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// GETSYS and SETSYS. The manuals read print the names of some; their units are ours, docs/stdlib.md has them.
+// GETSYS and SETSYS. The manuals read print the names of some; their units are ours, docs/reference/stdlib.md has them.
 #include "runtime/commands/system_values.hpp"
 
 #include <fmt/format.h>
@@ -128,7 +128,7 @@ vm::HostReply get_system_value(CommandCall& call) {
       call.variable(0, 0) = drive.analog().ai1.millivolt;
       call.variable(0, 1) = drive.analog().ai2.millivolt;
       return {};
-    default: return illegal("GETSYS: this value is not simulated yet, see docs/limits.md");
+    default: return illegal("GETSYS: this value is not simulated yet, see docs/reference/limits.md");
   }
 }
 
@@ -147,7 +147,7 @@ vm::HostReply set_system_value(CommandCall& call) {
     case kReset:
       if (call.variable(1) != 0 && drive.fault() != 0) drive.reset_fault();
       return {};
-    default: return illegal("SETSYS: this value is not simulated yet, see docs/limits.md");
+    default: return illegal("SETSYS: this value is not simulated yet, see docs/reference/limits.md");
   }
 }
 

@@ -1,6 +1,6 @@
 // A drive: it turns terminals, process data, the program's words and the parameters into motion, and shows
 // what it does in status words, process data, outputs and display values (unit profile: 1053 1610 p. 41,
-// MOVITRAC 07 chapter 6, MDX60B/61B p. 84-93). One call of tick() a millisecond; docs/drive.md has the order.
+// MOVITRAC 07 chapter 6, MDX60B/61B p. 84-93). One call of tick() a millisecond; docs/inside/drive.md has the order.
 #pragma once
 
 #include <array>

@@ -12,7 +12,7 @@ namespace ipos::runtime {
 
 class Timed {
  public:
-  // One millisecond, all of it but what is sent: the reference (docs/cycle.md). False: it stops in the middle;
+  // One millisecond, all of it but what is sent: the reference (docs/inside/cycle.md). False: it stops in the middle;
   // Pacer::resume() says when it has come to its end.
   virtual bool tick(Time now) = 0;
 

@@ -1,5 +1,5 @@
 // One station: a unit on its lines. The ports carry frames and characters to the unit and from it, a pacer
-// executes its milliseconds, and tools read and change it here. docs/cycle.md has the order of what happens.
+// executes its milliseconds, and tools read and change it here. docs/inside/cycle.md has the order of what happens.
 #pragma once
 
 #include <array>

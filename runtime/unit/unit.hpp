@@ -1,5 +1,5 @@
 // One unit: the program on its machine, the drive with its parameters, positioning and timers, and what a
-// millisecond does to them (docs/cycle.md). It knows plain milliseconds; who executes them, and when, is a
+// millisecond does to them (docs/inside/cycle.md). It knows plain milliseconds; who executes them, and when, is a
 // matter of runtime/pace and of ManyTicks.
 #pragma once
 
@@ -55,7 +55,7 @@ class Unit final {
   Unit(const EventQueue& clock, UnitConfig config, std::optional<vm::Image> program, Journal& journal,
        std::optional<vm::Rates> rates, const Execution& execution);
 
-  // --- the millisecond, in the order of docs/cycle.md ---
+  // --- the millisecond, in the order of docs/inside/cycle.md ---
   // All of it but what is sent. False: the runner stops between two commands; run_tasks() goes on there, and
   // finish() is the rest.
   bool tick(Time now) {

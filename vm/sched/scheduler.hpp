@@ -1,5 +1,5 @@
 // Shares a millisecond among the tasks: task 1 first, then 2, then 3, each with its number of commands
-// (IPOSplus p. 44). The order of the tasks inside the millisecond is ours, see docs/cycle.md.
+// (IPOSplus p. 44). The order of the tasks inside the millisecond is ours, see docs/inside/cycle.md.
 #pragma once
 
 #include <array>

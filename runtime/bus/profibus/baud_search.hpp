@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
-#include <optional>
 
 #include "runtime/bus/profibus/timing.hpp"
 
@@ -23,20 +22,20 @@ class BaudSearch {
 
   // True when the slave takes part: it had locked before this frame.
   bool heard_frame() {
-    faulty_since_.reset();
+    faulty_since_ = runtime::kNever;
     const bool before = locked_;
     locked_ = true;
     return before;
   }
   // True when another rate is to be tried.
   bool heard_error(Time now) {
-    if (!faulty_since_) faulty_since_ = now;
-    if (now - *faulty_since_ < kPatience) return false;
+    if (faulty_since_ == runtime::kNever) faulty_since_ = now;
+    if (now - faulty_since_ < kPatience) return false;
     if (locked_)
       begin();
     else
       rate_ = (rate_ + 1) % std::size(kBaudRates);
-    faulty_since_.reset();
+    faulty_since_ = runtime::kNever;
     return true;
   }
   void begin() { *this = {}; }
@@ -44,7 +43,7 @@ class BaudSearch {
  private:
   size_t rate_ = 0;
   bool locked_ = false;
-  std::optional<Time> faulty_since_;
+  Time faulty_since_ = runtime::kNever;  // kNever: the last frame was good
 };
 
 }  // namespace ipos::profibus
