@@ -195,7 +195,9 @@ bool Station::store_memory() {
 }
 
 bool Station::program_over() const {
-  const vm::Machine* machine = ticks_.keeps_tasks() ? unit_.machine() : this->machine();
+  // No task ends or begins while it rests, or where its program goes round for ever.
+  const bool same = pacer_.rests() || ticks_.is_endless();
+  const vm::Machine* machine = same ? unit_.machine() : this->machine();
   if (machine == nullptr) return true;
   for (int task = 1; task <= vm::kTasks; ++task)
     if (machine->task(task).state != vm::TaskState::Stopped) return false;

@@ -55,10 +55,8 @@ class ManyTicks final {
   bool minds(uint32_t first) const;
   // Telegrams have variables that are not there before settle().
   bool sends_pending() const { return pending_ != 0 && (reach_.sends_position || !shows_variables()); }
-  // No task ends or begins in these ticks.
-  bool keeps_tasks() const {
-    return left_ != 0 && (way_ == Way::Idle || (way_ == Way::Ahead && !reach_.may_stop));
-  }
+  // The tasks go round for ever, whatever comes.
+  bool is_endless() const { return way_ == Way::Ahead && left_ != 0 && !reach_.may_stop; }
 
  private:
   // What is compared with what a tick leaves.

@@ -220,6 +220,22 @@ TEST(Sleep, AWaitingProgramSleepsUntilItsWaitIsOver) {
   EXPECT_EQ(value(*plant, "n"), 1);
 }
 
+// Who asks each millisecond whether the program is over hears it in the millisecond in which it ends.
+TEST(Sleep, TheEndOfAProgramIsSeenInItsMillisecond) {
+  for (const char* body : {"_Wait(20);", "_Wait(700); n = 1; _Wait(33);", "for (n = 0; n < 3000; n++) ;",
+                           "_Wait(1500); for (n = 0; n < 500; n++) ; _Wait(9);"}) {
+    const std::string source = std::string("long n; main() { ") + body + " }";
+    const std::string unit = "[[station]]\nname = \"u\"\nunit = \"mdxb\"\nprogram = \"P.IPC\"\n";
+    const auto expected = make_plant(unit, {{"P.IPC", source}}, std::nullopt, in_turn());
+    const auto plant = make_plant(unit, {{"P.IPC", source}});
+    ASSERT_TRUE(expected && plant);
+    for (const auto& run : {expected.get(), plant.get()})
+      run->run_until(20 * runtime::kSecond, [run](runtime::Time) { return !run->programs_over(); });
+    EXPECT_LT(expected->now(), 20 * runtime::kSecond) << body;
+    EXPECT_EQ(plant->now(), expected->now()) << body;
+  }
+}
+
 TEST(Sleep, OperatingHoursAreExact) {
   const auto plant = make_station("main() { while (1); }");
   ASSERT_TRUE(plant);
