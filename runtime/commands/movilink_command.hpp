@@ -36,6 +36,7 @@ class MovilinkCommand final {
   void connect(MovilinkBus bus, MovilinkMaster& master) {
     routes_[static_cast<size_t>(bus)].master = &master;
   }
+  void disconnect(MovilinkBus bus) { routes_[static_cast<size_t>(bus)].master = nullptr; }
 
   // Begins the exchange of the structure at `variable` for a context. Done: the result is stored already;
   // Wait: the context is resumed when it is. `why` says why an exchange could not be begun.

@@ -73,6 +73,8 @@ void Station::connect_sbus(int number) {
                                      : canopen ? std::optional(canopen->node())
                                                : std::nullopt;
   if (!settings.movilink) {
+    unit_.disconnect(number);
+    unit_.movilink().disconnect(number == 1 ? MovilinkBus::Sbus : MovilinkBus::Sbus2);
     port.reset();
     canopen = std::make_unique<CanopenPort>(queue_, source_, *line, node, number, config_.name, settings,
                                             door_, journal_);
@@ -162,8 +164,9 @@ Time Station::send(Time now) {
 
 // The ticks of an idle unit are over: from now on its variables may change.
 Ticks Station::horizon(Time first) {
+  const bool idle = ticks_.way() == ManyTicks::Way::Idle;
   const Ticks ticks = ticks_.horizon(first);
-  if (!ticks_.variables_rest()) want_frames_again();
+  if (idle && !ticks_.variables_rest()) want_frames_again();
   return ticks;
 }
 

@@ -81,6 +81,7 @@ class Unit final {
   void power_off();
   // The objects of SBus 1 or 2, which stay where they are.
   void connect(int sbus, VariableObjects& objects) { objects_[static_cast<size_t>(sbus - 1)] = &objects; }
+  void disconnect(int sbus) { objects_[static_cast<size_t>(sbus - 1)] = nullptr; }
   // The program memory is verified and started from its beginning; variables keep their values. Nothing when
   // it was started, else the rule that it breaks.
   std::optional<std::string> load_program();

@@ -385,5 +385,43 @@ main() {
   EXPECT_EQ(value(*plant, "ends"), 1);
 }
 
+// After the next power-on the SBus is one of CANopen: nobody of the program finds the port that is gone.
+TEST(Power, AnSbusThatBecomesCanopenIsGoneForTheProgram) {
+  const auto plant = make_plant(
+      "[[bus]]\nname = \"sbus\"\nkind = \"can\"\nbaud = 500000\n"
+      "[[station]]\nname = \"u\"\nunit = \"mdxb\"\nsbus = \"sbus\"\nprogram = \"P.IPC\"\n",
+      {{"P.IPC", R"(
+#include <constb.h>
+MOVLNK m; MLDATA d; SCTRCYCL t; long result;
+main() {
+  m.BusType = ML_BT_SBUS; m.Address = 5; m.Format = ML_FT_PAR3; m.Service = ML_S_RD; m.Index = 8318;
+  m.DPointer = numof(d);
+  if (H100 == 0) {
+    t.ObjectNo = 1100; t.CycleTime = 10; t.Format = 4; t.DPointer = numof(d);
+    _SBusCommDef(SCD_TRCYCL, t); _SBusCommOn();
+  }
+  _MoviLink(m); result = m.Result; while (1) ;
+}
+)"}},
+      vm::Rates{{20, 20, 20}});
+  ASSERT_TRUE(plant);
+  Station& station = *plant->stations()[0];
+  plant->run_until(ms(200));
+  EXPECT_EQ(station.sbus(1)->objects().definitions().size(), 1U);
+  ParameterStore& parameters = station.drive().parameters();
+  ASSERT_TRUE(parameters.execute(ParameterService::Write, parameters.table().find("880")->index, 1));
+  ASSERT_TRUE(parameters.execute(ParameterService::Write, 11'100, 1));
+  station.power_off();
+  plant->run_until(ms(300));
+  station.power_on();
+  plant->run_until(ms(500));
+  EXPECT_EQ(station.sbus(1), nullptr);
+  EXPECT_TRUE(told(*plant, "the station is not connected to"));
+  EXPECT_NE(value(*plant, "result"), 0);
+  station.stop_program();
+  plant->run_until(ms(600));
+  EXPECT_TRUE(station.program_over());
+}
+
 }  // namespace
 }  // namespace ipos::runtime
