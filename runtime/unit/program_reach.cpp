@@ -48,7 +48,7 @@ ProgramReach::ProgramReach(const vm::Machine& machine, std::span<const VariableO
       apart = apart && !has_system_variables(data, format);
     });
   }
-  if (!mute || !apart) return;
+  if (!mute || !apart || !quiet) return;
   for (size_t n = 0; n < outlook.written().size(); ++n)
     if (outlook.written()[n]) rollback.push_back(static_cast<uint16_t>(n));
   apart = apart && rollback.size() <= vm::Machine::kMostRollback;

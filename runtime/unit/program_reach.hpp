@@ -25,7 +25,7 @@ struct ProgramReach {
   bool apart = false;
   bool reads_position = true;  // a task uses variables that change with the position
   bool sends_position = true;  // a telegram has system variables
-  // Mute and apart: variables that are to be given back when running ahead fails.
+  // Mute, quiet and apart: variables that are to be given back when running ahead fails.
   std::vector<uint16_t> rollback;
 };
 
