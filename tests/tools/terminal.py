@@ -22,7 +22,7 @@ def main(keys, command):
     while True:
         ready, _, _ = select.select([terminal], [], [], 1)
         quiet = 0 if ready else quiet + 1
-        if not ready and quiet < 20:
+        if not ready and quiet < 6:
             if last == b"\x03":
                 os.write(terminal, last)
             continue
