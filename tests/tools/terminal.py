@@ -2,8 +2,6 @@
 """Runs a program on a terminal of its own and prints what it wrote there.
 
 usage: terminal.py KEYS PROGRAM ARGUMENT...     KEYS is typed bit by bit: each | waits for a prompt `(ipos) ` first
-
-A Ctrl-C that comes between the prompt and the reading of the keys is lost; it is typed again, as a person would.
 """
 import os
 import pty
@@ -18,13 +16,11 @@ def main(keys, command):
     if child == 0:
         os.execvp(command[0], command)
     parts = [part.encode().decode("unicode_escape").encode() for part in keys.split("|")[1:]]
-    output, seen, quiet, last = b"", 0, 0, b""
+    output, seen, quiet = b"", 0, 0
     while True:
         ready, _, _ = select.select([terminal], [], [], 1)
         quiet = 0 if ready else quiet + 1
         if not ready and quiet < 6:
-            if last == b"\x03":
-                os.write(terminal, last)
             continue
         if not ready:
             output += b"\nterminal.py: nothing comes any more\n"
@@ -39,8 +35,7 @@ def main(keys, command):
         output += block
         while parts and output.find(PROMPT, seen) >= 0:
             seen = output.find(PROMPT, seen) + len(PROMPT)
-            last = parts.pop(0)
-            os.write(terminal, last)
+            os.write(terminal, parts.pop(0))
     sys.stdout.buffer.write(output.replace(b"\r\n", b"\n"))
     return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
 

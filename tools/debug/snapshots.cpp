@@ -142,7 +142,10 @@ int run_replaceable(const std::function<int()>& body) {
   std::array<int, 2> ends{};
   if (pipe(ends.data()) != 0) return body();
   std::fflush(nullptr);
+  // Ctrl-C is the worker's. It is ignored here before there is a worker whose prompt can be answered with one.
+  const auto on_interrupt = std::signal(SIGINT, SIG_IGN);
   const pid_t worker = fork();
+  if (worker <= 0) std::signal(SIGINT, on_interrupt);
   if (worker < 0) {
     close(ends[0]);
     close(ends[1]);
@@ -150,7 +153,6 @@ int run_replaceable(const std::function<int()>& body) {
   }
   if (worker != 0) {
     close(ends[1]);
-    std::signal(SIGINT, SIG_IGN);
     int32_t code = -1;
     if (!read_all(ends[0], reinterpret_cast<char*>(&code), sizeof code)) code = -1;
     close(ends[0]);

@@ -28,11 +28,11 @@ namespace {
 volatile std::sig_atomic_t stop_asked = 0;
 void on_stop(int) { stop_asked = 1; }
 
-// With SA_RESTART calls of the system go on behind Ctrl-C, without they end.
-void catch_stop(int flags) {
+// Calls of the system that a command makes go on behind Ctrl-C.
+void catch_stop() {
   struct sigaction action {};
   action.sa_handler = on_stop;
-  action.sa_flags = flags;
+  action.sa_flags = SA_RESTART;
   sigaction(SIGINT, &action, nullptr);
 }
 
@@ -55,58 +55,99 @@ debug::MakePlant plant_maker(PlantInput input, std::optional<vm::Rates> rates) {
   return [input = std::move(input), rates] { return make_plant(input, runtime::FileUse::Look, rates); };
 }
 
-// Lines of standard input. Ctrl-C on a terminal gives a new prompt; what stood on the line is gone. A script is read without a buffer of the library's: what was read ahead must go
-// with the session to the process that goes on.
+// Lines of standard input. Ctrl-C on a terminal gives a new prompt; what stood on the line is gone. A script is
+// read without a buffer of the library's: what was read ahead must go with the session to the process that goes
+// on. Ctrl-C comes through only while keys are waited for: one that comes between the prompt and the first key,
+// or between two keys, waits in the kernel and is not lost.
 class LineInput {
  public:
   LineInput() : terminal_(isatty(STDIN_FILENO) != 0) {}
   bool is_terminal() const { return terminal_; }
 
   std::optional<std::string> next() {
+    if (!terminal_) return next_of(nullptr);
+    sigset_t open;
+    sigset_t interrupt;
+    sigemptyset(&interrupt);
+    sigaddset(&interrupt, SIGINT);
+    sigprocmask(SIG_BLOCK, &interrupt, &open);
+    stop_asked = 0;
 #ifdef IPOS_EDITLINE
-    if (terminal_) {
-      char* line = nullptr;
-      do {
-        stop_asked = 0;
-        line = readline("(ipos) ");
-        if (line == nullptr && stop_asked != 0) fmt::print("\n");
-      } while (line == nullptr && stop_asked != 0);
-      if (line == nullptr) return std::nullopt;
-      std::string text(line);
-      std::free(line);
-      if (!text.empty()) add_history(text.c_str());
-      return text;
-    }
+    std::optional<std::string> line = next_edited(open);
+#else
+    prompt();
+    std::optional<std::string> line = next_of(&open);
 #endif
-    if (terminal_) prompt();
+    sigprocmask(SIG_SETMASK, &open, nullptr);
+    return line;
+  }
+  debug::Json save() const { return rest_; }
+  void load(const debug::Json& state) { rest_ = state.get<std::string>(); }
+
+ private:
+  // False: Ctrl-C. `open` is the mask of signals under which Ctrl-C comes through.
+  static bool wait_for_keys(const sigset_t& open) {
+    for (;;) {
+      pollfd input{STDIN_FILENO, POLLIN, 0};
+      if (ppoll(&input, 1, nullptr, &open) >= 0) return true;
+      if (std::exchange(stop_asked, 0) != 0) return false;
+    }
+  }
+
+  // `open` is null for a script, which no Ctrl-C starts anew.
+  std::optional<std::string> next_of(const sigset_t* open) {
     for (;;) {
       if (const size_t end = rest_.find('\n'); end != std::string::npos) {
         std::string line = rest_.substr(0, end);
         rest_.erase(0, end + 1);
         return line;
       }
-      char buffer[4096];
-      if (terminal_) catch_stop(0);
-      const ssize_t count = read(STDIN_FILENO, buffer, sizeof buffer);
-      const bool interrupted = count < 0 && errno == EINTR;
-      if (terminal_) catch_stop(SA_RESTART);
-      if (interrupted) {
-        if (terminal_) {
-          fmt::print("\n");
-          prompt();
-        }
+      if (open != nullptr && !wait_for_keys(*open)) {
+        rest_.clear();
+        fmt::print("\n");
+        prompt();
         continue;
       }
+      char buffer[4096];
+      const ssize_t count = read(STDIN_FILENO, buffer, sizeof buffer);
+      if (count < 0 && errno == EINTR) continue;
       if (count <= 0) return rest_.empty() ? std::nullopt : std::optional(std::exchange(rest_, {}));
       rest_.append(buffer, static_cast<size_t>(count));
     }
   }
-  debug::Json save() const { return rest_; }
-  void load(const debug::Json& state) { rest_ = state.get<std::string>(); }
 
- private:
+#ifdef IPOS_EDITLINE
+  std::optional<std::string> next_edited(const sigset_t& open) {
+    bool done = false;
+    edited_ = [this, &done](char* text) {
+      done = true;
+      line_ = text == nullptr ? std::nullopt : std::optional<std::string>(text);
+      std::free(text);
+    };
+    const auto take = [](char* text) { edited_(text); };
+    rl_callback_handler_install(kPrompt, take);
+    while (!done) {
+      if (wait_for_keys(open)) {
+        rl_callback_read_char();
+        continue;
+      }
+      rl_callback_handler_remove();
+      fmt::print("\n");
+      std::fflush(stdout);
+      rl_callback_handler_install(kPrompt, take);
+    }
+    rl_callback_handler_remove();
+    if (line_ && !line_->empty()) add_history(line_->c_str());
+    return std::exchange(line_, std::nullopt);
+  }
+
+  static inline std::function<void(char*)> edited_;  // the library's callback has no argument of ours
+  std::optional<std::string> line_;
+#endif
+
+  static constexpr const char* kPrompt = "(ipos) ";
   static void prompt() {
-    fmt::print("(ipos) ");
+    fmt::print("{}", kPrompt);
     std::fflush(stdout);
   }
 
@@ -139,7 +180,7 @@ int debug_console(const DebugFlags& flags) {
   debug::Debugger debugger(plant_maker(std::move(input), rates_of(flags.speed)), console, flags.snapshots,
                            runtime::parse_duration(flags.duration));
   console.attach(debugger);
-  catch_stop(SA_RESTART);
+  catch_stop();
 #ifdef IPOS_EDITLINE
   completing = &console;
   rl_attempted_completion_function = offers;
