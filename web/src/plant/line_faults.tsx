@@ -1,0 +1,114 @@
+// Faults of the lines: planted at a click, ended at another.
+import { useState } from "preact/hooks";
+
+import type { Line, PlantedFault } from "../server/protocol";
+import { command } from "../shell/notice";
+import { lineState } from "./state";
+
+function faultText(fault: PlantedFault): string {
+  const where = fault.station ? ` at ${fault.station}` : "";
+  const which = fault.id === undefined || fault.id === null ? "" : `, only ${fault.id}`;
+  const often = fault.rate === undefined || fault.rate === null || fault.rate >= 1 ? "" : `, ${fault.rate * 100} %`;
+  return `${fault.kind}${where}${which}${often}`;
+}
+
+function Planted({ line }: { line: Line }) {
+  const faults = lineState(line.name).value?.faults ?? [];
+  return (
+    <>
+      {faults.map((fault) => (
+        <button
+          key={`${fault.kind} ${fault.station ?? ""} ${fault.id ?? ""}`}
+          class="danger"
+          title="Ends this fault"
+          onClick={() =>
+            void command({
+              do: "fault",
+              bus: line.name,
+              kind: fault.kind,
+              on: false,
+              ...(fault.station ? { station: fault.station } : {}),
+              ...(typeof fault.id === "number" ? { id: fault.id } : {}),
+            })
+          }
+        >
+          {line.name}: {faultText(fault)} ✕
+        </button>
+      ))}
+    </>
+  );
+}
+
+export function LineFaults({ buses }: { buses: Line[] }) {
+  const [name, setName] = useState(buses.find((bus) => bus.faults.length)?.name ?? "");
+  const line = buses.find((bus) => bus.name === name);
+  const [kind, setKind] = useState("");
+  const [station, setStation] = useState("");
+  const [id, setId] = useState("");
+  const [percent, setPercent] = useState("100");
+  const chosen = kind || line?.faults[0] || "";
+  const plantIt = () =>
+    void command({
+      do: "fault",
+      bus: name,
+      kind: chosen,
+      on: true,
+      ...(station ? { station } : {}),
+      ...(id ? { id: Number(id) } : {}),
+      ...(percent !== "100" ? { rate: Number(percent) / 100 } : {}),
+    });
+  return (
+    <section class="panel faults" aria-label="Line faults">
+      <h3>Line faults</h3>
+      <div class="row">
+        <label class="field">
+          Line
+          <select value={name} onChange={(event) => setName(event.currentTarget.value)}>
+            {buses.map((bus) => (
+              <option key={bus.name}>{bus.name}</option>
+            ))}
+          </select>
+        </label>
+        <label class="field">
+          Kind
+          <select value={chosen} onChange={(event) => setKind(event.currentTarget.value)}>
+            {line?.faults.map((one) => (
+              <option key={one}>{one}</option>
+            ))}
+          </select>
+        </label>
+        <label class="field">
+          At
+          <select value={station} onChange={(event) => setStation(event.currentTarget.value)}>
+            <option value="">all</option>
+            {line?.stations.map((one) => (
+              <option key={one}>{one}</option>
+            ))}
+          </select>
+        </label>
+        <label class="field">
+          Identifier
+          <input type="text" size={5} value={id} placeholder="any" onInput={(event) => setId(event.currentTarget.value)} />
+        </label>
+        <label class="field">
+          How often
+          <select value={percent} onChange={(event) => setPercent(event.currentTarget.value)}>
+            {["100", "50", "10", "1"].map((one) => (
+              <option key={one} value={one}>
+                {one} %
+              </option>
+            ))}
+          </select>
+        </label>
+        <button class="danger" onClick={plantIt}>
+          Plant
+        </button>
+      </div>
+      <div class="row">
+        {buses.map((bus) => (
+          <Planted key={bus.name} line={bus} />
+        ))}
+      </div>
+    </section>
+  );
+}

@@ -1,0 +1,91 @@
+// A station: display, shaft and speed, status and fault in words, why it is not enabled, its terminals, its switches.
+import type { Plant, Station, StationState } from "../server/protocol";
+import { command } from "../shell/notice";
+import { SevenSegment } from "./seven_segment";
+import { Shaft } from "./shaft";
+import { stationState } from "./state";
+import { Terminals } from "./terminals";
+
+function Face({ name, state }: { name: string; state: StationState }) {
+  return (
+    <div class="face">
+      <SevenSegment text={state.powered ? (state.display ?? "") : ""} label={`${name} display`} />
+      <div>
+        <div class="speed mono">
+          {(state.speed ?? 0).toFixed(0)} <small>rpm</small>
+        </div>
+        <div class="quiet mono">
+          {state.position !== undefined && `${state.position} inc`}
+          {state.torque !== undefined && ` · ${state.torque.toFixed(0)} % torque`}
+        </div>
+      </div>
+      {state.shaft !== undefined && <Shaft turns={state.shaft} label={`${name} shaft at ${(state.shaft * 360).toFixed(0)} degrees`} />}
+    </div>
+  );
+}
+
+function Words({ state }: { state: StationState }) {
+  const fault = Boolean(state.fault);
+  return (
+    <div class={`words${fault ? " fault" : state.enabled ? " enabled" : ""}`}>
+      <p>
+        <strong>{state.powered ? (state.state ?? "") : "switched off"}</strong>
+        {state.status !== undefined && (
+          <span class="quiet mono"> · status {state.status.toString(16).toUpperCase().padStart(4, "0")}h</span>
+        )}
+        {state.dc_link !== undefined && state.powered && <span class="quiet mono"> · {state.dc_link.toFixed(0)} V</span>}
+      </p>
+      {fault && (
+        <p>
+          {state.error === false ? "Warning" : "Fault"} {state.fault}: {state.fault_text}
+        </p>
+      )}
+      {state.why && <p class="quiet">Not enabled: {state.why}</p>}
+    </div>
+  );
+}
+
+function ProcessData({ state }: { state: StationState }) {
+  if (!state.pd_out?.length && !state.pd_in?.length) return null;
+  return (
+    <div class="row quiet mono">
+      <span title="process output data, from the master">PO {state.pd_out?.join(" ")}</span>
+      <span title="process input data, to the master">PI {state.pd_in?.join(" ")}</span>
+    </div>
+  );
+}
+
+export function StationCard({ station, plant }: { station: Station; plant: Plant }) {
+  const state = stationState(station.name).value;
+  const lamp = !state?.powered ? "" : state.fault ? (state.error === false ? "warning" : "fault") : state.enabled ? "on" : "";
+  return (
+    <section class="panel station" id={`station-${station.name}`} aria-label={station.name}>
+      <header>
+        <span class={`lamp ${lamp}`} />
+        <h2>{station.name}</h2>
+        <span class="quiet">{station.title || station.unit}</span>
+        <span class="spread quiet">{station.program}</span>
+      </header>
+      {state && station.drive && <Face name={station.name} state={state} />}
+      {state && <Words state={state} />}
+      <Terminals station={station} state={state} around={plant} />
+      {state && <ProcessData state={state} />}
+      <footer>
+        <button
+          aria-label={`Fault reset ${station.name}`}
+          onClick={() => void command({ do: "reset", station: station.name })}
+        >
+          Fault reset
+        </button>
+        <button
+          class="spread"
+          aria-label={`Power ${station.name}`}
+          aria-pressed={state?.powered ?? false}
+          onClick={() => void command({ do: "power", station: station.name, on: !state?.powered })}
+        >
+          Power {state?.powered ? "on" : "off"}
+        </button>
+      </footer>
+    </section>
+  );
+}

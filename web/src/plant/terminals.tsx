@@ -1,0 +1,129 @@
+// The terminals of a station: inputs to switch, to pulse and to force, outputs as lamps, analog signals as sliders.
+import { useState } from "preact/hooks";
+
+import type { Analog, Cam, Station, StationState, Terminal, Wire } from "../server/protocol";
+import { command } from "../shell/notice";
+import { bitSet } from "./state";
+
+interface Around {
+  wires: Wire[];
+  switches: Cam[];
+}
+
+// What drives an input beside a person.
+function driver(name: string, { wires, switches }: Around): string {
+  const wire = wires.find((one) => one.to === name);
+  if (wire) return `${wire.invert ? "not " : ""}${wire.from}`;
+  const cam = switches.find((one) => one.input === name);
+  return cam ? `cam ${cam.from ?? "−∞"} … ${cam.to ?? "∞"}` : "";
+}
+
+function Input({ station, input, state, around }: { station: string; input: Terminal; state: StationState | null; around: Around }) {
+  const on = bitSet(state?.in, input.bit);
+  const forced = bitSet(state?.forced, input.bit);
+  const full = `${station} ${input.name}`;
+  const order = (action: string, level?: boolean) =>
+    void command({ do: "input", station, name: input.name, action, ...(level === undefined ? {} : { on: level }) });
+  const source = driver(`${station}.${input.name}`, around);
+  return (
+    <div class="input-row">
+      <button
+        role="switch"
+        aria-label={full}
+        aria-checked={on}
+        class={forced ? "forced" : ""}
+        title={forced ? "forced" : input.function}
+        onClick={() => order(forced ? "force" : "set", !on)}
+      />
+      <span class="mono">{input.name}</span>
+      <span class="function" title={input.function}>
+        {input.function}
+        {source && ` ← ${source}`}
+      </span>
+      <span class="group">
+        <button class="small" aria-label={`Pulse ${full}`} title={`${on ? "off" : "on"} for 100 ms`} onClick={() => order("pulse", !on)}>
+          ⎍
+        </button>
+        <button
+          class="small"
+          aria-label={`Force ${full}`}
+          aria-pressed={forced}
+          title={forced ? "give it back to wire, cam or switch" : "hold it against wire and cam"}
+          onClick={() => (forced ? order("release") : order("force", on))}
+        >
+          F
+        </button>
+      </span>
+    </div>
+  );
+}
+
+function Output({ station, output, state }: { station: string; output: Terminal; state: StationState | null }) {
+  const on = bitSet(state?.out, output.bit);
+  return (
+    <div class="output-row">
+      <span class={`lamp${on ? " on" : ""}`} />
+      <span class="mono">{output.name}</span>
+      <span class="function" title={output.function}>
+        {output.function}
+      </span>
+      <span role="status" aria-label={`${station} ${output.name}`} class={`mono ${on ? "good" : "quiet"}`}>
+        {on ? "on" : "off"}
+      </span>
+    </div>
+  );
+}
+
+function AnalogInput({ station, analog, text }: { station: string; analog: Analog; text: string }) {
+  const unit = analog.units.find((one) => text.endsWith(one)) ?? analog.units[0] ?? "";
+  const [held, hold] = useState<number | null>(null);
+  const value = held ?? (Number.parseFloat(text) || 0);
+  const send = (to: number) => void command({ do: "analog", station, name: analog.name, value: `${to} ${unit}` });
+  return (
+    <label class="analog-row">
+      <span class="mono">{analog.name}</span>
+      <input
+        type="range"
+        aria-label={`${station} ${analog.name}`}
+        min={analog.least}
+        max={analog.most}
+        step={(analog.most - analog.least) / 200}
+        value={value}
+        onInput={(event) => {
+          hold(event.currentTarget.valueAsNumber);
+          send(event.currentTarget.valueAsNumber);
+        }}
+        onChange={() => hold(null)}
+      />
+      <output class="mono">{text || `0 ${unit}`}</output>
+    </label>
+  );
+}
+
+export function Terminals({ station, state, around }: { station: Station; state: StationState | null; around: Around }) {
+  return (
+    <>
+      {station.inputs.length > 0 && (
+        <div class="inputs">
+          {station.inputs.map((input) => (
+            <Input key={input.name} station={station.name} input={input} state={state} around={around} />
+          ))}
+        </div>
+      )}
+      {station.outputs.length > 0 && (
+        <div class="outputs">
+          {station.outputs.map((output) => (
+            <Output key={output.name} station={station.name} output={output} state={state} />
+          ))}
+        </div>
+      )}
+      {station.analog.length > 0 && (
+        <div class="inputs">
+          {station.analog.map((analog) => (
+            <AnalogInput key={analog.name} station={station.name} analog={analog} text={state?.analog?.[analog.name] ?? ""} />
+          ))}
+        </div>
+      )}
+    </>
+  );
+}

@@ -1,0 +1,75 @@
+// The program of one station: its files, where its tasks stand, what was executed, breakpoints.
+import { signal } from "@preact/signals";
+
+import { requestParts, subscribe } from "../server/connection";
+import { generation, plant, time } from "../server/live";
+import type { Breakpoint, SourceFile, TaskState } from "../server/protocol";
+import { complain } from "../shell/notice";
+
+export const station = signal("");
+export const files = signal<SourceFile[]>([]);
+export const openFile = signal("");
+export const tasks = signal<TaskState[]>([]);
+export const covered = signal<ReadonlyMap<string, ReadonlySet<number>>>(new Map());
+export const breakpoints = signal<Breakpoint[]>([]);
+export const chosenTask = signal(1);
+
+async function read(name: string): Promise<void> {
+  const parts = await requestParts({ do: "program", station: name });
+  if (name !== station.peek()) return;
+  files.value = parts.flatMap((part) => (part.files ?? []) as SourceFile[]);
+  if (!files.value.some((file) => file.name === openFile.peek())) openFile.value = files.value[0]?.name ?? "";
+}
+
+function addCovered(event: Record<string, number[]>): void {
+  const next = new Map(covered.peek());
+  for (const [file, lines] of Object.entries(event)) next.set(file, new Set([...(next.get(file) ?? []), ...lines]));
+  covered.value = next;
+}
+
+function follow(name: string): () => void {
+  files.value = [];
+  tasks.value = [];
+  covered.value = new Map();
+  if (!name) return () => undefined;
+  void read(name).catch(complain);
+  return subscribe("program", { station: name, rate: 10 }, (event) => {
+    if (event.station !== name) return;
+    if (event.tasks) tasks.value = event.tasks as TaskState[];
+    if (event.covered) addCovered(event.covered as Record<string, number[]>);
+    if (event.breakpoints) breakpoints.value = event.breakpoints as Breakpoint[];
+  });
+}
+
+// As long as the tab is open.
+export function followProgram(): () => void {
+  let stop: (() => void) | undefined;
+  const again = () => {
+    stop?.();
+    stop = follow(station.peek());
+  };
+  const stopPlant = plant.subscribe((description) => {
+    const with_program = description?.stations.filter((one) => one.program) ?? [];
+    if (!with_program.some((one) => one.name === station.peek())) station.value = with_program[0]?.name ?? "";
+  });
+  let seen = generation.peek();
+  const stopGeneration = generation.subscribe((now) => {
+    if (now !== seen) again();
+    seen = now;
+  });
+  const stopStation = station.subscribe(again);
+  // A stop at a place opens it.
+  const stopTime = time.subscribe(({ running, stopped }) => {
+    if (running || !stopped?.file || !stopped.station) return;
+    if (station.peek() !== stopped.station && stopped.reason === "breakpoint") station.value = stopped.station;
+    if (station.peek() === stopped.station) openFile.value = stopped.file;
+    if (stopped.task) chosenTask.value = stopped.task;
+  });
+  return () => {
+    stopPlant();
+    stopGeneration();
+    stopStation();
+    stopTime();
+    stop?.();
+  };
+}

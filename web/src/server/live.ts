@@ -1,0 +1,41 @@
+// What the whole page knows of the server: who it is, how its time passes, what the plant has.
+import { signal } from "@preact/signals";
+
+import { listen, request } from "./connection";
+import type { Hello, Plant, Time } from "./protocol";
+
+export const hello = signal<Hello | null>(null);
+export const time = signal<Time>({
+  us: 0,
+  running: false,
+  speed: 1,
+  rate: 0,
+  generation: 0,
+  over: false,
+  stopped: null,
+});
+// Of `time` the one part that many follow, so that they need not look 20 times a second.
+export const generation = signal(0);
+export const plant = signal<Plant | null>(null);
+
+export function secondsText(us: number): string {
+  return `${(us / 1e6).toFixed(3)} s`;
+}
+
+export function stationNames(): string[] {
+  return plant.value?.stations.map((station) => station.name) ?? [];
+}
+
+export function listenToServer(): void {
+  listen("hello", (event) => {
+    hello.value = event as unknown as Hello;
+    document.title = `${hello.value.title} · ipos`;
+    request({ do: "plant" })
+      .then((reply) => (plant.value = reply.plant as Plant))
+      .catch(() => (plant.value = { stations: [], buses: [], controls: [], wires: [], switches: [] }));
+  });
+  listen("time", (event) => {
+    time.value = event as unknown as Time;
+    generation.value = time.value.generation;
+  });
+}

@@ -1,0 +1,264 @@
+// What the server sends, as docs/reference/serve.md describes it.
+
+export interface Hello {
+  protocol: number;
+  version: string;
+  mode: "plant" | "device";
+  title: string;
+  writable: boolean;
+}
+
+export interface Stopped {
+  reason: string;
+  text: string;
+  station?: string;
+  task?: number;
+  file?: string;
+  line?: number;
+}
+
+export interface Time {
+  us: number;
+  running: boolean;
+  speed: number;
+  rate: number;
+  generation: number;
+  over: boolean;
+  stopped: Stopped | null;
+}
+
+export interface Terminal {
+  name: string;
+  bit: number;
+  function: string;
+}
+
+export interface Analog {
+  name: string;
+  units: string[];
+  least: number;
+  most: number;
+}
+
+export interface Station {
+  name: string;
+  unit: string;
+  title: string;
+  program: string;
+  drive: boolean;
+  inputs: Terminal[];
+  outputs: Terminal[];
+  analog: Analog[];
+  lines: string[];
+}
+
+export interface Line {
+  name: string;
+  kind: string;
+  baud: number;
+  stations: string[];
+  faults: string[];
+}
+
+export interface Wire {
+  from: string;
+  to: string;
+  invert: boolean;
+}
+
+export interface Cam {
+  input: string;
+  from: number | null;
+  to: number | null;
+  active_high: boolean;
+}
+
+export interface Plant {
+  stations: Station[];
+  buses: Line[];
+  controls: { name: string; bus: string }[];
+  wires: Wire[];
+  switches: Cam[];
+}
+
+export interface StationState {
+  in: number;
+  forced: number;
+  out: number;
+  analog?: Record<string, string>;
+  powered: boolean;
+  state?: string;
+  enabled?: boolean;
+  why?: string;
+  display?: string;
+  status?: number;
+  fault?: number;
+  fault_text?: string;
+  error?: boolean;
+  speed?: number;
+  setpoint?: number;
+  position?: number;
+  shaft?: number;
+  current?: number;
+  torque?: number;
+  dc_link?: number;
+  pd_out?: string[];
+  pd_in?: string[];
+}
+
+export interface PlantedFault {
+  kind: string;
+  station?: string | null;
+  rate?: number;
+  id?: number;
+}
+
+export interface LineState {
+  load: number;
+  frames: number;
+  lost: number;
+  faults: PlantedFault[];
+}
+
+export interface WatchName {
+  name: string;
+  group: string;
+  unit: string;
+  text: string;
+  writable: boolean;
+}
+
+export interface WatchValue {
+  value: number;
+  text: string;
+  hex: string;
+  forced: boolean;
+}
+
+export interface Trigger {
+  kind: "none" | "level" | "edge" | "fault" | "telegram" | "line";
+  signal?: string;
+  value?: number;
+  below?: boolean;
+  slope?: "rising" | "falling" | "either";
+  station?: string;
+  bus?: string;
+  id?: number;
+  file?: string;
+  line?: number;
+  stop?: boolean;
+}
+
+export interface Channel {
+  name: string;
+  unit: string;
+  decimals: number;
+}
+
+export interface ScopeState {
+  recording: number;
+  channels: Channel[];
+  trigger: Trigger;
+  pre: number;
+  length_ms: number;
+  state: "free" | "armed" | "triggered" | "done";
+  single: boolean;
+  trigger_us: number | null;
+  trigger_text: string;
+  first_us: number;
+  last_us: number;
+}
+
+export interface ParameterGroup {
+  number: string;
+  name: string;
+}
+
+export interface ParameterValue {
+  value: number | null;
+  text: string;
+  changed: boolean;
+}
+
+export interface Parameter extends ParameterValue {
+  number: string;
+  index: number;
+  name: string;
+  group: string;
+  unit: string;
+  access: string;
+  default: string | null;
+  least: string | null;
+  most: string | null;
+  choices: string[];
+}
+
+export interface ParameterDifference {
+  number: string;
+  index: number;
+  name: string;
+  text: string;
+  with: string;
+}
+
+export interface BusRow {
+  bus: string;
+  id: number;
+  extended: boolean;
+  remote: boolean;
+  count: number;
+  rate: number;
+  data: string;
+  changed: number[];
+  text: string;
+}
+
+export interface BusState {
+  load: number;
+  frames: number;
+  errors: number;
+  state: string;
+}
+
+export interface TraceFrame {
+  n: number;
+  us: number;
+  bus: string;
+  id: number;
+  extended: boolean;
+  remote: boolean;
+  error: boolean;
+  data: string;
+  text: string;
+}
+
+export interface SourceFile {
+  name: string;
+  text: string;
+  lines: number[];
+}
+
+export interface TaskState {
+  task: number;
+  state: string;
+  file?: string;
+  line?: number;
+  function?: string;
+}
+
+export interface Breakpoint {
+  number: number;
+  station: string;
+  file: string;
+  line: number;
+  condition?: string;
+  hits: number;
+}
+
+export interface JournalEntry {
+  n: number;
+  us: number;
+  station: string;
+  weight: "why" | "warning" | "fault";
+  text: string;
+}

@@ -1,0 +1,45 @@
+// What went wrong, in the one alert of the page; a lost server stands before everything else.
+import { signal } from "@preact/signals";
+
+import { link, request, type Message } from "../server/connection";
+
+const complaint = signal<string | null>(null);
+
+export function complain(reason: unknown): void {
+  complaint.value = reason instanceof Error ? reason.message : String(reason);
+}
+
+export function forgive(): void {
+  complaint.value = null;
+}
+
+// A command a person gave: what the server has against it is shown.
+export async function command(message: Message): Promise<Message | undefined> {
+  try {
+    const reply = await request(message);
+    forgive();
+    return reply;
+  } catch (reason) {
+    complain(reason);
+    return undefined;
+  }
+}
+
+export function Notice() {
+  if (link.value === "lost")
+    return (
+      <div class="notice">
+        <span class="lamp fault" />
+        <div role="alert">The connection to the server is lost. The page tries again by itself.</div>
+      </div>
+    );
+  if (complaint.value === null) return null;
+  return (
+    <div class="notice">
+      <div role="alert">{complaint.value}</div>
+      <button class="small" onClick={forgive}>
+        Close message
+      </button>
+    </div>
+  );
+}

@@ -1,0 +1,121 @@
+// The head of the page: whose plant it is, its time, and the buttons that let time pass.
+import { request } from "../server/connection";
+import { hello, secondsText, time } from "../server/live";
+import { helpOpen } from "./help";
+import { offerKeys } from "./keys";
+import { command, complain } from "./notice";
+import { WriteArm } from "./write_arm";
+
+const speeds = [0.01, 0.1, 0.5, 1, 2, 10, 100, 0];
+
+const run = () => void command({ do: "run" });
+const pause = () => void command({ do: "pause" });
+const step = () => void command({ do: "step", ms: 1 });
+const telegram = () => void command({ do: "step", telegram: true });
+const back = (ms: number) => void command({ do: "back", ms });
+const restart = () => void command({ do: "restart" });
+
+function changeSpeed(by: number): void {
+  const position = speeds.indexOf(time.peek().speed);
+  const to = speeds[Math.max(0, Math.min(speeds.length - 1, (position < 0 ? 3 : position) + by))];
+  if (to !== undefined) void command({ do: "speed", speed: to });
+}
+
+export function offerTimeKeys(): void {
+  offerKeys("Time", [
+    { key: "r", text: "Run", act: run },
+    { key: "p", text: "Pause", act: pause },
+    { key: " ", text: "Run or pause", act: () => (time.peek().running ? pause() : run()) },
+    { key: "s", text: "Step a millisecond", act: step },
+    { key: "t", text: "On to the next telegram", act: telegram },
+    { key: ",", text: "Back a millisecond", act: () => back(1) },
+    { key: "<", text: "Back a second", act: () => back(1000) },
+    { key: "-", text: "Slower", act: () => changeSpeed(-1) },
+    { key: "+", text: "Faster", act: () => changeSpeed(1) },
+    { key: "0", text: "Begin anew at 0 s", act: restart },
+  ]);
+}
+
+function speedText(speed: number): string {
+  return speed === 0 ? "as fast as it goes" : `× ${speed}`;
+}
+
+function Clock() {
+  const now = time.value;
+  const stopped = now.stopped;
+  const where = stopped?.file ? ` ${stopped.file}:${stopped.line}` : "";
+  return (
+    <div class="clock">
+      <span class={`lamp${now.running ? " on" : ""}`} />
+      <span class="pace">
+        {now.running ? `× ${now.rate.toFixed(2)}` : stopped ? `${stopped.reason}${where}` : now.over ? "ended" : "stands"}
+      </span>
+      <span role="timer" aria-label="Time">
+        {secondsText(now.us)}
+      </span>
+    </div>
+  );
+}
+
+function TimeControls() {
+  const { speed } = time.value;
+  const listed = speeds.includes(speed) ? speeds : [speed, ...speeds];
+  return (
+    <div class="row controls">
+      <span class="group">
+        <button class={time.value.running ? "" : "primary"} onClick={run}>
+          Run
+        </button>
+        <button class={time.value.running ? "primary" : ""} onClick={pause}>
+          Pause
+        </button>
+        <button title="A millisecond" onClick={step}>
+          Step
+        </button>
+        <button title="On to the end of the next telegram" onClick={telegram}>
+          Telegram
+        </button>
+      </span>
+      <span class="group">
+        <button aria-label="Back 1 second" title="Back 1 second" onClick={() => back(1000)}>
+          −1 s
+        </button>
+        <button aria-label="Back 1 millisecond" title="Back 1 millisecond" onClick={() => back(1)}>
+          −1 ms
+        </button>
+        <button aria-label="Begin anew" title="Back to 0 s, everything as at power-on" onClick={restart}>
+          0 s
+        </button>
+      </span>
+      <select
+        aria-label="Speed"
+        value={String(speed)}
+        onChange={(event) => {
+          request({ do: "speed", speed: Number(event.currentTarget.value) }).catch(complain);
+        }}
+      >
+        {listed.map((value) => (
+          <option key={value} value={String(value)}>
+            {speedText(value)}
+          </option>
+        ))}
+      </select>
+      <WriteArm />
+      <button aria-label="Keys" title="Keys (?)" onClick={() => (helpOpen.value = true)}>
+        ?
+      </button>
+    </div>
+  );
+}
+
+export function TimeBar() {
+  return (
+    <div class="time-bar">
+      <h1>
+        <span>ipos</span> {hello.value?.title ?? ""}
+      </h1>
+      <TimeControls />
+      <Clock />
+    </div>
+  );
+}

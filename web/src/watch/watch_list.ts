@@ -1,0 +1,109 @@
+// Which names the watch shows: those found, and before them those a person has pinned; and their values.
+import { computed, signal, type Signal } from "@preact/signals";
+
+import { request, subscribe } from "../server/connection";
+import { hello } from "../server/live";
+import type { WatchName, WatchValue } from "../server/protocol";
+import { complain } from "../shell/notice";
+
+const most_names = 1000;
+
+export const searchText = signal("");
+export const chosenStation = signal("");
+export const chosenGroup = signal<string | null>(null);
+export const groups = signal<string[]>([]);
+export const found = signal<WatchName[]>([]);
+export const total = signal(0);
+export const pinned = signal<WatchName[]>([]);
+export const shown = computed(() => {
+  const names = new Set(pinned.value.map((one) => one.name));
+  return [...pinned.value, ...found.value.filter((one) => !names.has(one.name))].slice(0, most_names);
+});
+
+const values = new Map<string, Signal<WatchValue | null>>();
+
+export function valueOf(name: string): Signal<WatchValue | null> {
+  let value = values.get(name);
+  if (!value) values.set(name, (value = signal<WatchValue | null>(null)));
+  return value;
+}
+
+const storeKey = () => `ipos.watch ${hello.peek()?.title ?? ""}`;
+
+export function pin(one: WatchName): void {
+  const without = pinned.peek().filter((other) => other.name !== one.name);
+  pinned.value = without.length === pinned.peek().length ? [...without, one] : without;
+  localStorage.setItem(storeKey(), JSON.stringify(pinned.value));
+}
+
+function readPinned(): void {
+  try {
+    pinned.value = JSON.parse(localStorage.getItem(storeKey()) ?? "[]") as WatchName[];
+  } catch {
+    pinned.value = [];
+  }
+}
+
+async function search(): Promise<void> {
+  const text = searchText.value;
+  const station = chosenStation.value;
+  // Without a search the variables of the programs stand there, as in a watch window that was just opened.
+  const group = chosenGroup.value ?? (text ? "" : "variables");
+  const reply = await request({
+    do: "search",
+    text,
+    limit: most_names,
+    ...(station ? { station } : {}),
+    ...(group ? { group } : {}),
+  });
+  if (text !== searchText.peek() || station !== chosenStation.peek()) return;
+  found.value = reply.names as WatchName[];
+  total.value = (reply.total as number | undefined) ?? found.value.length;
+  if (Array.isArray(reply.groups)) groups.value = reply.groups as string[];
+}
+
+let asked = "";
+
+async function watchShown(names: string[]): Promise<void> {
+  const list = names.join("\n");
+  if (list === asked) return;
+  asked = list;
+  await request({ do: "watch", names });
+}
+
+// As long as the tab is open: searches when what is looked for changes, watches what is shown.
+export function followWatch(): () => void {
+  readPinned();
+  let wait: ReturnType<typeof setTimeout> | undefined;
+  const stopSearch = hello.subscribe((known) => {
+    // A server that came back knows no list.
+    asked = "";
+    if (known) void search().catch(complain);
+  });
+  const stops = [searchText, chosenStation, chosenGroup].map((what) => {
+    let first = true;
+    return what.subscribe(() => {
+      if (first) {
+        first = false;
+        return;
+      }
+      clearTimeout(wait);
+      wait = setTimeout(() => void search().catch(complain), 120);
+    });
+  });
+  const stopShown = shown.subscribe((list) => {
+    if (list.length > 0) void watchShown(list.map((one) => one.name)).catch(complain);
+  });
+  const stopTopic = subscribe("watch", { rate: 10 }, (event) => {
+    for (const [name, value] of Object.entries(event.values as Record<string, WatchValue | null>))
+      valueOf(name).value = value;
+  });
+  return () => {
+    clearTimeout(wait);
+    stopSearch();
+    for (const stop of stops) stop();
+    stopShown();
+    stopTopic();
+    asked = "";
+  };
+}
