@@ -1,7 +1,7 @@
 # One unit and its plain millisecond: program, variables, drive, positioning, memory; and many of them at once.
 ipos_layer(unit
   FOLDERS runtime/commands runtime/unit
-  SOURCES commands/movilink_command.cpp unit/drive_variables.cpp
+  SOURCES commands/movilink_command.cpp
           unit/timers.cpp unit/mirrored_values.cpp unit/pid_block.cpp commands/source_places.cpp
           commands/communication_commands.cpp commands/call_commands.cpp commands/unit_commands.cpp
           commands/system_values.cpp commands/system_commands.cpp unit/positioning_service.cpp

@@ -19,16 +19,18 @@ class Inbox {
   // A telegram that came behind the tick at `after`, in the order of time.
   void post(Time after, TelegramReader& reader, size_t number, const TelegramData& data) {
     assert(!full());
+    if (read_ == posted_) next_ = after;
     telegrams_[posted_++] = {after, &reader, number, data};
   }
 
   // The tick behind which the next one came; kNever for none.
-  Time next() const { return read_ == posted_ ? kNever : telegrams_[read_].after; }
+  Time next() const { return next_; }
 
   void read_next() {
     const Telegram& telegram = telegrams_[read_++];
     telegram.reader->read(telegram.number, telegram.data);
     if (read_ == posted_) read_ = posted_ = 0;
+    next_ = posted_ == 0 ? kNever : telegrams_[read_].after;
   }
 
  private:
@@ -38,6 +40,7 @@ class Inbox {
     size_t number;
     TelegramData data;
   };
+  Time next_ = kNever;
   std::array<Telegram, kMost> telegrams_{};
   uint8_t posted_ = 0;
   uint8_t read_ = 0;

@@ -10,24 +10,27 @@
 #include "runtime/bus/canopen/node.hpp"
 #include "runtime/plant/sbus_port.hpp"
 #include "runtime/plant/unit_server.hpp"
-#include "runtime/unit/journal.hpp"
 #include "runtime/unit/door.hpp"
+#include "runtime/unit/journal.hpp"
 
 namespace ipos::runtime {
 
-class CanopenPort final : private CanNode, private canopen::Unit, private canopen::NodeObserver {
+class CanopenPort final : public StationPort,
+                          private CanNode,
+                          private canopen::Unit,
+                          private canopen::NodeObserver {
  public:
   // As SbusPort: it attaches to the line, or takes the place `node` of a port that went with a power-off.
   CanopenPort(EventQueue& queue, uint32_t source, CanLine& line, std::optional<NodeId> node, int sbus,
               std::string_view station, const SbusSettings& settings, Door& door, Journal& journal);
 
-  void power_off();
-  // Once a millisecond, after the tasks: what goes out on change may go out now.
-  Time tick(Time now) {
+  void power_off() override;
+  // What goes out on change may go out now.
+  Time tick(Time now) override {
     node_->unit_changed(now);
     return now + kMillisecond;
   }
-  bool has_waiting_frames() const { return line_.has_waiting(node()); }
+  bool has_waiting_frames() const override { return line_.has_waiting(node()); }
 
   NodeId node() const { return sender_.node(); }
   CanLine& line() const { return line_; }

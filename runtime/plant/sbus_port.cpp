@@ -89,6 +89,12 @@ void SbusPort::note(Time now, Weight weight, std::string text) {
   journal_.note(now, weight, station_, std::move(text));
 }
 
+Time SbusPort::lead(Time now) {
+  group_master_.tick(now);
+  objects_.tick(now / kMillisecond, door_.variables_in_turn());
+  return now + kMillisecond;
+}
+
 void SbusPort::power_off() {
   objects_.stop();
   powered_ = false;

@@ -12,11 +12,12 @@
 #include "runtime/bus/movilink/sbus_group_master.hpp"
 #include "runtime/bus/movilink/sbus_master.hpp"
 #include "runtime/bus/movilink/sbus_slave.hpp"
-#include "runtime/plant/unit_server.hpp"
-#include "runtime/unit/journal.hpp"
 #include "runtime/commands/movilink_command.hpp"
+#include "runtime/plant/station_port.hpp"
+#include "runtime/plant/unit_server.hpp"
 #include "runtime/scom/variable_objects.hpp"
 #include "runtime/unit/door.hpp"
+#include "runtime/unit/journal.hpp"
 
 namespace ipos::runtime {
 
@@ -34,26 +35,24 @@ SbusSettings sbus_settings(const DriveServer& drive, int sbus);
 NodeId join(CanLine& line, std::optional<NodeId> node, std::string_view station, uint32_t baud,
             CanNode& port);
 
-class SbusPort final : private CanNode, private SlaveObserver, private TelegramReader {
+class SbusPort final : public StationPort, private CanNode, private SlaveObserver, private TelegramReader {
  public:
   // Attaches to the line, or takes the place `node` of a port that went with a power-off. `sbus` is 1 or 2.
   // All references must outlive the port.
   SbusPort(EventQueue& queue, uint32_t source, CanLine& line, std::optional<NodeId> node, int sbus,
            std::string_view station, const SbusSettings& settings, Door& door, Journal& journal);
 
-  void power_off();  // the line is told first, as frames that were waiting come back
+  void power_off() override;
   bool leads() const { return group_master_.active(); }
-  // Once a millisecond, after the tasks: the group telegram of one that leads, then the cyclic objects, with the
-  // variables as they are now. tick() returns the first tick behind this one that sends something; kNever for
-  // none.
-  void send_setpoint(Time now) { group_master_.tick(now); }
-  Time tick(Time now, std::span<const int32_t> variables) {
-    const int64_t due = objects_.tick(now / kMillisecond, variables);
+  // The group telegram of one that leads, then the cyclic objects.
+  Time tick(Time now) override {
+    if (leads()) [[unlikely]]
+      return lead(now);
+    const int64_t due = objects_.tick(now / kMillisecond, door_.variables_in_turn());
     return due == INT64_MAX ? kNever : due * kMillisecond;
   }
-  bool has_waiting_frames() const { return line_.has_waiting(node()); }
-  // The variables may change from now on: the line tells of repeated frames again.
-  void want_again() {
+  bool has_waiting_frames() const override { return line_.has_waiting(node()); }
+  void want_again() override {
     if (std::exchange(rests_, false)) want_each_again();
   }
 
@@ -67,6 +66,7 @@ class SbusPort final : private CanNode, private SlaveObserver, private TelegramR
   const GroupMaster& group_master() const { return group_master_; }
 
  private:
+  Time lead(Time now);
   void on_frame(Time now, const Frame& frame) override;
   void want_each_again();
   bool waits(const Frame& frame);

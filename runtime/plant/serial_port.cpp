@@ -24,7 +24,7 @@ SerialPort::SerialPort(EventQueue& queue, uint32_t source, Rs485Line& line, uint
       journal_(journal),
       port_(line, line.attach(station, baud, *this)) {
   parts_.emplace(*this);
-  tick(queue.now());
+  take_settings(queue.now());
 }
 
 SerialPort::Parts::Parts(SerialPort& port)
@@ -42,10 +42,15 @@ void SerialPort::power_off() {
 void SerialPort::power_on(Time now) {
   line_.set_connected(port_.node(), true);
   parts_.emplace(*this);
-  tick(now);
+  take_settings(now);
 }
 
-void SerialPort::tick(Time now) {
+Time SerialPort::tick(Time now) {
+  take_settings(now);
+  return kNever;
+}
+
+void SerialPort::take_settings(Time now) {
   const Unit& unit = door_.look();
   const SerialParameters p = unit.server().serial_parameters();
   if (const uint32_t timeouts = unit.drive().rs485_timeouts(); std::exchange(timeouts_, timeouts) != timeouts)

@@ -8,12 +8,13 @@
 #include "runtime/bus/movilink/serial_master.hpp"
 #include "runtime/bus/movilink/serial_slave.hpp"
 #include "runtime/bus/rs485/line.hpp"
+#include "runtime/plant/station_port.hpp"
 #include "runtime/plant/unit_server.hpp"
 #include "runtime/unit/journal.hpp"
 
 namespace ipos::runtime {
 
-class SerialPort final : private SerialNode, private SerialSlaveObserver {
+class SerialPort final : public StationPort, private SerialNode, private SerialSlaveObserver {
  public:
   // `socket` is XT or X13, for messages. Master/slave operation is on X13 only (MDX60B/61B p. 11). `client`
   // hears the ends of the exchanges that MOVLNK begins at master().
@@ -22,11 +23,11 @@ class SerialPort final : private SerialNode, private SerialSlaveObserver {
 
   // Power of the unit: off it neither hears nor answers, and nothing it had under way is sent any more. On
   // again, master() is another one.
-  void power_off();
+  void power_off() override;
   void power_on(Time now);
 
-  // Takes over P810, P811, P750 and P100, and counts missed requests; once a millisecond, behind the tasks.
-  void tick(Time now);
+  // Takes over P810, P811, P750 and P100, and counts missed requests.
+  Time tick(Time now) override;
 
   // At the end: how often each error came, to the journal.
   void report(Time now);
@@ -35,6 +36,7 @@ class SerialPort final : private SerialNode, private SerialSlaveObserver {
   const SerialSlave& slave() const { return parts_->slave; }
 
  private:
+  void take_settings(Time now);
   void on_character(Time now, const Character& character) override;
   void on_sent(Time now) override;
   void on_rejected(Time now, const Reception& reception, SerialError error) override;

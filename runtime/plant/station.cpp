@@ -2,6 +2,7 @@
 #include "runtime/plant/station.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "runtime/plant/serial_plan.hpp"
 #include "runtime/plant/variable_names.hpp"
@@ -40,6 +41,7 @@ void Station::power_on() {
   leads_ = false;
   for (const int number : {1, 2}) connect_sbus(number);
   connect_serial();
+  list_ports();
   unit_.restart_program_memory(queue_.now());
   pacer_.start();
 }
@@ -53,13 +55,19 @@ void Station::power_off() {
   was_off_ = true;
   pacer_.stop();
   unit_.power_off();
-  for (const auto& port : sbus_)
-    if (port) port->power_off();
-  for (const auto& port : canopen_)
-    if (port) port->power_off();
-  if (x13_) x13_->power_off();
-  if (xt_) xt_->power_off();
+  for (StationPort* port : std::exchange(ports_, {})) port->power_off();
   if (keypad_) keypad_->set_powered(false);
+}
+
+void Station::list_ports() {
+  ports_.clear();
+  const auto add = [this](const auto& port) {
+    if (port) ports_.push_back(port.get());
+  };
+  add(x13_);
+  add(xt_);
+  for (const auto& port : sbus_) add(port);
+  for (const auto& port : canopen_) add(port);
 }
 
 void Station::connect_sbus(int number) {
@@ -129,13 +137,11 @@ void Station::use_runner(CommandRunner& runner) {
 
 bool Station::run(vm::Machine& machine, vm::TickSteps& steps) { return runner_->run(*this, machine, steps); }
 
-bool Station::tick(Time now) {
-  if (pacer_.pace() == Pace::InTurn) {
-    in_tick_ = !unit_.tick(now);
-    return !in_tick_;
-  }
-  ticks_.tick(now);
-  return true;
+bool Station::tick(Time now) { return pacer_.pace() == Pace::InTurn ? tick_in_turn(now) : ticks_.tick(now); }
+
+bool Station::tick_in_turn(Time now) {
+  in_tick_ = !unit_.tick(now);
+  return !in_tick_;
 }
 
 void Station::resume_tick() {
@@ -148,35 +154,32 @@ void Station::resume_tick() {
 
 Time Station::send(Time now) {
   if (ticks_.sends_pending()) ticks_.settle();
-  if (x13_) x13_->tick(now);
-  if (xt_) xt_->tick(now);
-  if (leads_)
-    for (const auto& port : sbus_)
-      if (port) port->send_setpoint(now);
-  Time next = leads_ ? now + kMillisecond : kNever;
-  const std::span<const int32_t> variables = unit_.variables();
-  for (const auto& port : sbus_)
-    if (port) next = std::min(next, port->tick(now, variables));
-  for (const auto& port : canopen_)
-    if (port) next = std::min(next, port->tick(now));
+  Time next = kNever;
+  for (StationPort* port : ports_) next = std::min(next, port->tick(now));
   return next;
 }
 
-// The ticks of an idle unit are over: from now on its variables may change.
 Ticks Station::horizon(Time first) {
-  const bool idle = ticks_.way() == ManyTicks::Way::Idle;
+  return ticks_.way() == ManyTicks::Way::Idle ? horizon_of_idle(first) : ticks_.horizon(first);
+}
+
+// The ticks of an idle unit are over: from now on its variables may change.
+Ticks Station::horizon_of_idle(Time first) {
   const Ticks ticks = ticks_.horizon(first);
-  if (idle && !ticks_.variables_rest()) want_frames_again();
+  if (!ticks_.variables_rest()) want_frames_again();
   return ticks;
 }
 
 // Who is on a serial line is asked at any time.
 Ticks Station::silence(Time first) {
   if (ticks_.way() != ManyTicks::Way::Idle && (x13_ || xt_)) return 0;
-  if (const Ticks known = ticks_.known_silence(); known != 0) return known;
-  const auto waiting = [](const auto& port) { return port && port->has_waiting_frames(); };
-  const bool waits = std::any_of(sbus_.begin(), sbus_.end(), waiting) ||
-                     std::any_of(canopen_.begin(), canopen_.end(), waiting);
+  const Ticks known = ticks_.known_silence();
+  return known != 0 ? known : find_silence(first);
+}
+
+Ticks Station::find_silence(Time first) {
+  bool waits = false;
+  for (const StationPort* port : ports_) waits = waits || port->has_waiting_frames();
   return ticks_.silence(first, waits);
 }
 
@@ -186,8 +189,7 @@ void Station::touched() {
 }
 
 void Station::want_frames_again() {
-  for (const auto& port : sbus_)
-    if (port) port->want_again();
+  for (StationPort* port : ports_) port->want_again();
 }
 
 bool Station::store_memory() {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "runtime/bus/can/line.hpp"
 #include "runtime/bus/movilink/keypad.hpp"
@@ -130,10 +131,13 @@ class Station final : private Timed, private TaskRunner {
 
  private:
   bool tick(Time now) override;
+  bool tick_in_turn(Time now);
   Time send(Time now) override;
   Ticks horizon(Time first) override;
+  Ticks horizon_of_idle(Time first);
   Ticks advance(Time first, Ticks most) override { return ticks_.advance(first, most); }
   Ticks silence(Time first) override;
+  Ticks find_silence(Time first);
   void settle() override { ticks_.settle(); }
   void touched() override;
   bool lets_wait() const override { return ticks_.lets_wait(); }
@@ -141,6 +145,7 @@ class Station final : private Timed, private TaskRunner {
   bool run(vm::Machine& machine, vm::TickSteps& steps) override;
 
   void want_frames_again();  // the variables may change from now on
+  void list_ports();
   void connect_sbus(int number);
   void connect_serial();
   void reconnect_serial();
@@ -151,6 +156,7 @@ class Station final : private Timed, private TaskRunner {
   ManyTicks ticks_{unit_};
   Pacer pacer_;
   Door door_{unit_, ticks_, pacer_};
+  std::vector<StationPort*> ports_;  // all of the following that there are, in the order in which they send
   std::array<std::unique_ptr<SbusPort>, 2> sbus_;
   std::array<std::unique_ptr<CanopenPort>, 2> canopen_;  // in place of the former, by P880 and P890
 

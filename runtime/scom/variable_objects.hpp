@@ -76,7 +76,7 @@ class VariableObjects {
   }
   // True if the frame's length matches, so take() will succeed.
   bool fits(size_t receiver, const Frame& frame) const {
-    return frame_variables(frame, table_.state().receive[receiver].format).has_value();
+    return runtime::fits(frame, table_.state().receive[receiver].format);
   }
   void take(size_t receiver, const Frame& frame, std::span<int32_t> h) const {
     table_.take(receiver, frame, h);

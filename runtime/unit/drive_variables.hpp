@@ -6,13 +6,24 @@
 #include <span>
 
 #include "runtime/drive/drive.hpp"
+#include "stdlib/system_variables.hpp"
 
 namespace ipos::runtime {
 
-// OutputLevel, InputLevel, ActPos_Mot.
-void show_drive(const Drive& drive, std::span<int32_t> h);
+inline void show_drive(const Drive& drive, std::span<int32_t> h) {
+  using stdlib::system_variable;
+  h[system_variable("OutputLevel")] = drive.outputs();
+  h[system_variable("InputLevel")] = drive.inputs();
+  h[system_variable("ActPos_Mot")] = drive.position();
+}
 
-// ControlWord, StdOutpIPOS, OptOutpIPOS.
-void take_program_orders(std::span<const int32_t> h, Drive& drive);
+// Bits 0..7 of OptOutpIPOS are DO10..DO17; both words together are in the order of OutputLevel.
+inline void take_program_orders(std::span<const int32_t> h, Drive& drive) {
+  using stdlib::system_variable;
+  drive.set_ipos_control_word(static_cast<uint32_t>(h[system_variable("ControlWord")]));
+  const auto standard = static_cast<uint32_t>(h[system_variable("StdOutpIPOS")]) & 0xFFU;
+  const auto option = static_cast<uint32_t>(h[system_variable("OptOutpIPOS")]) & 0xFFU;
+  drive.set_ipos_outputs(static_cast<uint16_t>(standard | option << 8));
+}
 
 }  // namespace ipos::runtime

@@ -16,7 +16,7 @@ constexpr size_t kControlWord = stdlib::system_variable("ControlWord");
 // What did not help is tried again after 2, 4, 8.. ticks, at most these: to compare a tick; to run ahead of a
 // command that stops; to look for an idle loop, where the unit moves and where its program works; to look
 // what the program can still do.
-constexpr uint32_t kSteadyPause = 16, kAheadPause = 64, kIdlePause = 32, kProgramPause = 1024,
+constexpr uint32_t kSteadyPause = 32, kAheadPause = 64, kIdlePause = 32, kProgramPause = 1024,
                    kReachPause = 4096;
 
 // A loop with more commands is not looked for.
@@ -34,17 +34,27 @@ void ManyTicks::know_program() {
       unit_.machine() != nullptr && vm::may_write(unit_.machine()->program(), kControlWord, kControlWord);
 }
 
-void ManyTicks::tick(Time now) {
+bool ManyTicks::tick(Time now) {
   assert(pending_ == 0);
   way_ = Way::InFull;
   left_ = 0;
   touched_ = false;
-  if (!steady_backoff_.due(now)) {
+  if (steady_backoff_.due(now))
+    compare_tick(now);
+  else
     unit_.tick(now);
-    return;
-  }
-  Before before{unit_.drive().moment(), std::nullopt, positioning_commands()};
-  if (unit_.positioning() != nullptr) before.positioning = unit_.positioning()->left();
+  return true;
+}
+
+ManyTicks::Before::Before(const Unit& unit) : drive(unit.drive().moment()) {
+  if (unit.positioning() == nullptr) return;
+  positioning.emplace(*unit.positioning());
+  commands = unit.positioning()->changes();
+}
+
+// Executes a tick and looks what it has changed.
+void ManyTicks::compare_tick(Time now) {
+  const Before before(unit_);
   unit_.begin(now);
   if (unit_.machine() != nullptr) noted_.note(unit_.variables());
   unit_.run_tasks();
@@ -68,7 +78,8 @@ bool ManyTicks::is_steady(const Before& before) {
       positioning != nullptr && unit_.machine() != nullptr) {
     if (!positioning->reads_system_variables_only()) return false;
     // In motion only what positioning cannot act on goes on by itself.
-    const bool rests = drive.standing() ? before.positioning == positioning->left() : positioning->idles();
+    const bool rests = drive.standing() ? before.positioning && positioning->has_left(*before.positioning)
+                                        : positioning->idles();
     if (!rests) return false;
   }
   if (unit_.machine() != nullptr) {
@@ -95,9 +106,7 @@ bool ManyTicks::must_look() {
          (!reach_.quiet && (commands_ != positioning_commands() || !noted_.same(unit_.variables())));
 }
 
-Ticks ManyTicks::horizon(Time first) {
-  if (left_ != 0) return left_;
-  if (way_ == Way::InFull) return 0;
+Ticks ManyTicks::find_horizon(Time first) {
   settle();
   const bool touched = touched_;
   if (!is_still_steady())

@@ -29,8 +29,11 @@ class ManyTicks final {
   explicit ManyTicks(Unit& unit) : unit_(unit) {}
 
   // As Timed (runtime/pace/timed.hpp) has them.
-  void tick(Time now);
-  Ticks horizon(Time first);
+  bool tick(Time now);
+  Ticks horizon(Time first) {
+    if (left_ != 0) return left_;
+    return way_ == Way::InFull ? 0 : find_horizon(first);
+  }
   Ticks advance(Time first, Ticks most);
   void settle() {
     if (pending_ != 0) settle_pending();
@@ -61,15 +64,18 @@ class ManyTicks final {
  private:
   // What is compared with what a tick leaves.
   struct Before {
+    explicit Before(const Unit& unit);
     Drive::Moment drive;
     std::optional<PositioningService::Left> positioning;
-    uint32_t commands;  // to positioning, so far
+    uint32_t commands = 0;  // to positioning, so far
   };
 
+  void compare_tick(Time now);
   void know_program();
   bool is_steady(const Before& before);
   bool is_still_steady();
   bool must_look();
+  Ticks find_horizon(Time first);
   void choose(Time first, bool touched);
   bool try_idle(Time first, Ticks steady);
   bool can_run_ahead();

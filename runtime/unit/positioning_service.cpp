@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 
 namespace ipos::runtime {
 namespace {
@@ -322,7 +323,7 @@ void PositioningService::show(Time now, std::span<int32_t> h) {
   h[kLagDistance] = positioner_.lag();
   if (h.size() > kGearSlave) h[kSyncState] = static_cast<int32_t>(positioner_.follow_state());
   h[kSetpointPosBus] = bus_position_ = drive_.bus_position().value_or(bus_position_);
-  std::copy(probed_.begin(), probed_.end(), h.begin() + kTpPos2Abs);
+  std::memcpy(&h[kTpPos2Abs], probed_.data(), sizeof probed_);
   if (cams_run_) run_cams(now, h);
 }
 

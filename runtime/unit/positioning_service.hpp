@@ -40,11 +40,14 @@ class PositioningService {
 
   // What a millisecond leaves behind, but for what it shows.
   struct Left {
+    explicit Left(const PositioningService& service)
+        : positioner(service.positioner_), reported(service.reported_) {}
     Positioner positioner;
     std::bitset<kPositioningEvents> reported;
-    bool operator==(const Left&) const = default;
   };
-  Left left() const { return {positioner_, reported_}; }
+  bool has_left(const Left& before) const {
+    return before.positioner == positioner_ && before.reported == reported_;
+  }
 
   // Grows with everything that commands change: targets, travels, cams, parameters.
   uint32_t changes() const { return changes_; }

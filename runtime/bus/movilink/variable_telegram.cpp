@@ -5,7 +5,7 @@
 
 namespace ipos::runtime {
 std::optional<VariablePair> frame_variables(const Frame& frame, VariableFormat format) {
-  if (!is_plain(frame) || frame.length != format.length) return std::nullopt;
+  if (!fits(frame, format)) return std::nullopt;
   if (format.length == 0) return VariablePair{};
   uint64_t value = 0;
   std::memcpy(&value, frame.data.data(), sizeof value);

@@ -66,6 +66,9 @@ inline Frame variable_frame(uint32_t id, const VariableFormat& format, const Var
 // Bytes a short telegram does not carry are 0; only format.variables() of the pair count. Nothing when the
 // frame's length differs from the object's or the frame is extended or remote: then the object is to be left
 // alone.
+inline bool fits(const Frame& frame, VariableFormat format) {
+  return is_plain(frame) && frame.length == format.length;
+}
 std::optional<VariablePair> frame_variables(const Frame& frame, VariableFormat format);
 
 }  // namespace ipos::runtime
