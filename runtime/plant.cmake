@@ -6,6 +6,7 @@ ipos_layer(runtime
           plant/signal.cpp plant/plant_file.cpp plant/plant_reader.cpp plant/read_bus.cpp plant/read_station.cpp
           plant/read_control.cpp plant/read_fault.cpp plant/read_surroundings.cpp plant/read_expect.cpp
           plant/serial_plan.cpp plant/sbus_port.cpp plant/canopen_port.cpp plant/serial_port.cpp plant/station.cpp
-          plant/signal_port.cpp plant/station_state.cpp plant/variable_names.cpp plant/surroundings.cpp plant/plant.cpp
+          plant/signal_port.cpp plant/station_state.cpp plant/variable_names.cpp plant/station_signals.cpp
+          plant/plant_signals.cpp plant/surroundings.cpp plant/plant.cpp
   USES unit vm image bus scom drive positioning motion storage stdlib
   LIBS fmt::fmt)

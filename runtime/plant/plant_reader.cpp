@@ -140,6 +140,8 @@ bool PlantReader::signal(const toml::table& table, std::string_view what,
     out.kind = SignalKind::Variable;
   } else if (found == "parameter") {
     out.kind = SignalKind::Parameter;
+  } else if (found == "signal") {
+    out.kind = SignalKind::Any;
   } else if (found == "input") {
     out.kind = SignalKind::Input;
     bit = parse_input(out.name);

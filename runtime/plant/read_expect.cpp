@@ -6,12 +6,14 @@ namespace {
 
 void read_expectation(PlantReader& reader, const toml::table& table) {
   constexpr std::string_view kWhat = "an [[expect]]";
-  reader.known_keys(table, "[[expect]]",
-                    {"station", "at", "variable", "parameter", "input", "output", "state", "equals"});
+  reader.known_keys(
+      table, "[[expect]]",
+      {"station", "at", "variable", "parameter", "input", "output", "state", "signal", "equals"});
   Expectation expected;
   expected.place = place_of(table);
   expected.signal.station = reader.station(table, kWhat);
-  reader.signal(table, kWhat, {"variable", "parameter", "input", "output", "state"}, expected.signal);
+  reader.signal(table, kWhat, {"variable", "parameter", "input", "output", "state", "signal"},
+                expected.signal);
   expected.at = reader.duration(table, "at", kWhat, true);
   const toml::node* equals = table.get("equals");
   if (equals != nullptr && expected.signal.kind == SignalKind::Parameter)

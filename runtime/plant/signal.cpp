@@ -8,27 +8,15 @@
 namespace ipos::runtime {
 namespace {
 
-struct AnalogKind {
-  std::string_view name;
-  std::string_view unit;
-  double factor;
-  double minimum;
-  double maximum;
-  AnalogLine line;
-};
-// In the order of their lines.
+// "frequency" alone is the output frequency of the drive.
 constexpr AnalogKind kAnalogKinds[] = {
-    {"AI1", "V", 1e3, -10, 10, AnalogLine::Ai1Voltage},
-    {"AI1", "mA", 1e3, 0, 20, AnalogLine::Ai1Current},
-    {"AI2", "V", 1e3, -10, 10, AnalogLine::Ai2Voltage},
-    {"AI2", "mA", 1e3, 0, 20, AnalogLine::Ai2Current},
-    {"frequency", "kHz", 1e3, 0, 65, AnalogLine::Frequency},
-    {"potentiometer", "%", 10, 0, 100, AnalogLine::Potentiometer},
+    {"AI1", "AI1", "V", 1e3, -10, 10, AnalogLine::Ai1Voltage},
+    {"AI1", "AI1_current", "mA", 1e3, 0, 20, AnalogLine::Ai1Current},
+    {"AI2", "AI2", "V", 1e3, -10, 10, AnalogLine::Ai2Voltage},
+    {"AI2", "AI2_current", "mA", 1e3, 0, 20, AnalogLine::Ai2Current},
+    {"frequency", "frequency_input", "kHz", 1e3, 0, 65, AnalogLine::Frequency},
+    {"potentiometer", "potentiometer", "%", 10, 0, 100, AnalogLine::Potentiometer},
 };
-
-constexpr uint8_t line_of(const AnalogKind& kind) {
-  return static_cast<uint8_t>(kBinaryLines + static_cast<size_t>(kind.line));
-}
 
 std::optional<int32_t> parse_amount(std::string_view text, const AnalogKind& kind) {
   if (!text.ends_with(kind.unit)) return std::nullopt;
@@ -49,6 +37,8 @@ int terminal_bit(std::string_view digits) {
 }
 
 }  // namespace
+
+std::span<const AnalogKind> analog_kinds() { return kAnalogKinds; }
 
 int parse_input(std::string_view name) { return name.starts_with("DI") ? terminal_bit(name.substr(2)) : -1; }
 

@@ -1,8 +1,10 @@
-// What of a station has a value that a plant file can name: variables, parameters, inputs, outputs and states.
+// What of a station has a value that a plant file can name: variables, parameters, inputs, outputs, states, and
+// any other signal (station_signals.hpp).
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -10,7 +12,7 @@
 
 namespace ipos::runtime {
 
-enum class SignalKind : uint8_t { Variable, Parameter, Input, Output, State };
+enum class SignalKind : uint8_t { Variable, Parameter, Input, Output, State, Any };
 
 struct Signal {
   std::string station;
@@ -30,6 +32,22 @@ int parse_analog_input(std::string_view name);
 
 // AI1 and AI2 have a line for a voltage and one for a current; every other terminal has one.
 bool same_terminal(size_t line, size_t other);
+
+// The lines of analog terminals, in their order.
+struct AnalogKind {
+  std::string_view name;    // of the terminal
+  std::string_view signal;  // of the line: of an input for voltage and current each has its own
+  std::string_view unit;
+  double factor;  // value = amount in the unit x factor
+  double minimum;
+  double maximum;
+  AnalogLine line;
+};
+std::span<const AnalogKind> analog_kinds();
+
+constexpr uint8_t line_of(const AnalogKind& kind) {
+  return static_cast<uint8_t>(kBinaryLines + static_cast<size_t>(kind.line));
+}
 
 // What hangs on an analog terminal: "AI1", "5 V".
 struct AnalogSetting {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "runtime/plant/station_state.hpp"
@@ -29,6 +30,13 @@ std::optional<SignalPort> SignalPort::find(const std::vector<std::unique_ptr<Sta
   } else if (signal.kind == SignalKind::Parameter) {
     const stdlib::Parameter* row = (*station)->drive().parameters().table().find(signal.name);
     if (row != nullptr) index = row->index;
+  } else if (signal.kind == SignalKind::Any) {
+    auto found = find_station_signals(**station, signal.name);
+    if (found.size() == 1)
+      return SignalPort(**station, std::make_shared<const PlantSignal>(std::move(found.front())));
+    why = fmt::format("station '{}' has no signal '{}'; it has {}", signal.station, signal.name,
+                      station_signal_names(**station));
+    return std::nullopt;
   } else {
     return SignalPort(**station, signal, 0);
   }
@@ -43,6 +51,8 @@ int32_t SignalPort::read() const {
     case SignalKind::Input: return std::as_const(*station_).inputs().line(line_).value();
     case SignalKind::Output: return station_->outputs() >> line_ & 1;
     case SignalKind::State: return station_states()[line_].read(*station_);
+    case SignalKind::Any:
+      return static_cast<int32_t>(std::lround(static_cast<double>(any_->read()) * any_->factor));
     case SignalKind::Variable:
     case SignalKind::Parameter: break;
   }

@@ -5,9 +5,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "runtime/plant/station.hpp"
+#include "runtime/plant/signal.hpp"
+#include "runtime/plant/station_signals.hpp"
 
 namespace ipos::runtime {
 
@@ -18,7 +20,7 @@ class SignalPort {
   static std::optional<SignalPort> find(const std::vector<std::unique_ptr<Station>>& stations,
                                         const Signal& signal, std::string& why);
 
-  int32_t read() const;
+  int32_t read() const;  // of any other signal the number shown, rounded
   // A variable or parameter, volatile; why not, or nothing.
   std::optional<std::string> write(int32_t value) const;
 
@@ -39,11 +41,14 @@ class SignalPort {
  private:
   SignalPort(Station& station, const Signal& signal, uint16_t index)
       : station_(&station), kind_(signal.kind), line_(signal.line), index_(index) {}
+  SignalPort(Station& station, std::shared_ptr<const PlantSignal> any)
+      : station_(&station), kind_(SignalKind::Any), any_(std::move(any)) {}
 
   Station* station_;
   SignalKind kind_;
-  uint8_t line_;    // Input, Output, State
-  uint16_t index_;  // Variable, Parameter: in the parameter channel
+  uint8_t line_ = 0;    // Input, Output, State
+  uint16_t index_ = 0;  // Variable, Parameter: in the parameter channel
+  std::shared_ptr<const PlantSignal> any_;
 };
 
 }  // namespace ipos::runtime

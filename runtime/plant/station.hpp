@@ -128,6 +128,7 @@ class Station final : private Timed, private TaskRunner {
 
   // "SCOM1.IPC:12:5" of a word address, or empty.
   std::string source_place(uint32_t address) const { return unit_.source_place(address); }
+  uint32_t source_line(uint32_t address) const { return unit_.source_line(address); }  // 12, or 0
 
  private:
   bool tick(Time now) override;

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 
 namespace ipos::runtime {
 namespace {
@@ -12,13 +11,7 @@ namespace {
 // The line of the command that ended the program, 0 when no fault has.
 int32_t fault_line(const Station& station) {
   if (station.machine() == nullptr || station.machine()->fault().number == 0) return 0;
-  const std::string place = station.source_place(station.machine()->fault().address);
-  const size_t column = place.rfind(':');
-  const size_t line = column == std::string::npos ? column : place.rfind(':', column - 1);
-  if (line == std::string::npos) return 0;
-  int32_t number = 0;
-  std::from_chars(place.data() + line + 1, place.data() + column, number);
-  return number;
+  return static_cast<int32_t>(station.source_line(station.machine()->fault().address));
 }
 
 constexpr StationState kStates[] = {
@@ -26,18 +19,20 @@ constexpr StationState kStates[] = {
      [](const Station& station) { return int32_t{station.fault()}; }},
     {"status", "status word 1", [](const Station& station) { return int32_t{station.status_word_1()}; }},
     {"enabled", "1 while it is enabled",
-     [](const Station& station) { return station.drive().state().verdict().reason == Block::None ? 1 : 0; }},
+     [](const Station& station) { return station.drive().state().verdict().reason == Block::None ? 1 : 0; },
+     true},
     {"ready", "1 while it is ready",
-     [](const Station& station) { return station.drive().state().ready() ? 1 : 0; }},
+     [](const Station& station) { return station.drive().state().ready() ? 1 : 0; }, true},
     {"speed", "of the shaft, 1/1000 rpm",
      [](const Station& station) { return station.drive().state().axis().speed; }},
     {"setpoint", "speed the ramp orders, 1/1000 rpm",
      [](const Station& station) { return station.drive().state().axis().setpoint; }},
     {"position", "increments of the shaft",
      [](const Station& station) { return station.drive().state().shaft_position(); }},
-    {"powered", "1 while the power is on", [](const Station& station) { return station.powered() ? 1 : 0; }},
+    {"powered", "1 while the power is on", [](const Station& station) { return station.powered() ? 1 : 0; },
+     true},
     {"running", "1 while a task of the program runs or waits",
-     [](const Station& station) { return station.program_over() ? 0 : 1; }},
+     [](const Station& station) { return station.program_over() ? 0 : 1; }, true},
     {"program_fault", "number of the fault that ended the program; 0 is none",
      [](const Station& station) {
        return station.machine() == nullptr ? 0 : int32_t{station.machine()->fault().number};

@@ -15,6 +15,7 @@ struct StationState {
   std::string_view name;
   std::string_view meaning;
   int32_t (*read)(const Station& station);
+  bool on_off = false;  // only 0 and 1
 };
 
 std::span<const StationState> station_states();

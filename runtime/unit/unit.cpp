@@ -147,4 +147,8 @@ std::string Unit::source_place(uint32_t address) const {
   return image_ && code_ == image_->code ? runtime::source_place(*image_, address) : std::string();
 }
 
+uint32_t Unit::source_line(uint32_t address) const {
+  return image_ && code_ == image_->code ? runtime::source_line(*image_, address) : 0;
+}
+
 }  // namespace ipos::runtime

@@ -115,6 +115,7 @@ class Unit final {
   bool has_fresh_fault() const { return machine_ && machine_->fault().number != 0 && !fault_reported_; }
   // "SCOM1.IPC:12:5" of a word address, or empty.
   std::string source_place(uint32_t address) const;
+  uint32_t source_line(uint32_t address) const;  // 12, or 0
 
  private:
   void take_inputs();

@@ -51,7 +51,11 @@ std::optional<ValuePlace> find_in(const Station& station, uint32_t number, std::
   }
   place.kind = ValueKind::Fault;
   if (name == "fault") return place;
-  return std::nullopt;
+  auto found = runtime::find_station_signals(station, name);
+  if (found.size() != 1) return std::nullopt;
+  place.kind = ValueKind::Signal;
+  place.signal = std::make_shared<const runtime::PlantSignal>(std::move(found.front()));
+  return place;
 }
 
 }  // namespace
@@ -80,6 +84,7 @@ int32_t read_value(const runtime::Plant& plant, const ValuePlace& place) {
     case ValueKind::Input: return station.inputs().line(place.number).value();
     case ValueKind::Output: return station.drive().state().outputs() >> place.number & 1;
     case ValueKind::Time: return static_cast<int32_t>(plant.now() / runtime::kMillisecond);
+    case ValueKind::Signal: return static_cast<int32_t>(place.signal->read());
     case ValueKind::Fault: break;
   }
   return station.fault();
@@ -94,6 +99,7 @@ void write_value(runtime::Plant& plant, const ValuePlace& place, int32_t value) 
     case ValueKind::Parameter: break;
     case ValueKind::Output:
     case ValueKind::Time:
+    case ValueKind::Signal:
     case ValueKind::Fault: throw ValueError(fmt::format("{} cannot be set", place.name));
   }
   runtime::ParameterStore& parameters = station.drive().parameters();
@@ -105,6 +111,8 @@ void write_value(runtime::Plant& plant, const ValuePlace& place, int32_t value) 
 }
 
 std::string value_text(const runtime::Plant& plant, const ValuePlace& place, int32_t value) {
+  if (place.kind == ValueKind::Signal && !place.signal->unit.empty())
+    return fmt::format("{} ({} {})", value, place.signal->text(value), place.signal->unit);
   if (place.kind != ValueKind::Parameter) return fmt::format("{}", value);
   const Station& station = *plant.stations()[place.station];
   const auto& table = stdlib::parameter_table(*station.config().unit);

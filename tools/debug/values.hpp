@@ -1,14 +1,17 @@
 // What of a plant has a value that a person can name: variables by symbol, number or system name, parameters,
-// inputs, outputs, and a few of the debugger's own. Names of one station; "unit2.H5" is that of another.
+// inputs, outputs, every other signal (station_signals.hpp), and a few of the debugger's own. Names of one
+// station; "unit2.H5" is that of another.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
 #include "runtime/plant/plant.hpp"
+#include "runtime/plant/station_signals.hpp"
 
 namespace ipos::tools::debug {
 
@@ -18,7 +21,7 @@ class ValueError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-enum class ValueKind : uint8_t { Variable, Parameter, Input, Output, Time, Fault };
+enum class ValueKind : uint8_t { Variable, Parameter, Input, Output, Time, Fault, Signal };
 
 struct ValuePlace {
   uint32_t station = 0;
@@ -26,6 +29,7 @@ struct ValuePlace {
   uint32_t number = 0;    // of the variable; index of the parameter; line or bit
   uint32_t elements = 1;  // of an array
   std::string name;       // as shown
+  std::shared_ptr<const runtime::PlantSignal> signal{};
 };
 
 // Nothing when the plant has no such name.

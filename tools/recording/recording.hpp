@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -12,21 +11,11 @@
 #include <vector>
 
 #include "runtime/bus/movilink/serial_receiver.hpp"
-#include "runtime/plant/plant.hpp"
+#include "runtime/plant/plant_signals.hpp"
 
 namespace ipos::tools {
 
-struct Signal {
-  std::string name;   // "unit1.speed"
-  std::string unit;   // of the number shown; empty: a plain number
-  double factor = 1;  // number shown = sample x factor
-  int decimals = 0;
-  bool is_status = false;  // a plot shows its changes as events
-  std::string station{};   // the name begins with it and a dot
-  size_t bits = 0;         // width of a bit field; 0: a number
-
-  std::string text(int64_t sample) const;  // "1500.000"
-};
+using Signal = runtime::PlantSignal;
 
 struct RecordedEvent {
   runtime::Time time;
@@ -60,10 +49,9 @@ struct Recording {
 
 class Recorder final : private runtime::CanObserver, private runtime::SerialObserver {
  public:
-  // Signals as "unit1.speed", "unit1.P094" or its index, "unit1.H500" or "unit1.symbol"; with one station its
-  // name may be left out. "sbus1.frames": the frames of that bus. None: speed, setpoint and status of every
-  // station that has them. A name that leads nowhere is a Failure that lists what exists. Before the plant
-  // runs; each must outlive the other's part in the run.
+  // Signals and patterns as find_signals() takes them, and "sbus1.frames": the frames of that bus. None:
+  // speed, setpoint and status of every station that has them. A name that leads nowhere is a Failure that
+  // lists what exists. Before the plant runs; each must outlive the other's part in the run.
   Recorder(runtime::Plant& plant, const std::vector<std::string>& names);
 
   // For Plant::run_until: takes a sample at whole milliseconds, after all that happened at that time.
@@ -75,15 +63,13 @@ class Recorder final : private runtime::CanObserver, private runtime::SerialObse
   const Recording& recording() const { return recording_; }
 
  private:
-  using Reader = std::function<int64_t()>;
   struct Watched {
-    runtime::Station* station;
+    const runtime::Station* station;
     std::string state;  // last one told
   };
 
   void add(const std::string& name);
-  bool add(runtime::Station& station, std::string_view name);
-  void add(Signal signal, Reader reader);
+  void add(Signal signal);
   bool add_frames(std::string_view name);
   void add_frame(RecordedFrame frame);
   void add_telegram(const std::string& bus, const std::optional<runtime::Reception>& reception);
@@ -97,7 +83,6 @@ class Recorder final : private runtime::CanObserver, private runtime::SerialObse
 
   runtime::Plant& plant_;
   Recording recording_;
-  std::vector<Reader> readers_;
   std::vector<Watched> watched_;
   std::map<std::string, runtime::SerialReceiver> receivers_;  // by line
 };

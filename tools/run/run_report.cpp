@@ -42,9 +42,10 @@ std::string text_report(runtime::Plant& plant, const WatchChoice& watch) {
     for (const auto& station : plant.stations()) {
       const std::vector<WatchRow> rows = watch_rows(*station, watch.names);
       // Names that were asked for may be those of other stations.
-      if (station->image() == nullptr || (rows.empty() && !watch.names.empty())) continue;
-      text += fmt::format("{} ({}), {}\n", station->config().name, station->config().unit->title,
-                          station->config().program);
+      if (rows.empty() && (station->image() == nullptr || !watch.names.empty())) continue;
+      const std::string& program = station->config().program;
+      text += fmt::format("{} ({}){}{}\n", station->config().name, station->config().unit->title,
+                          program.empty() ? "" : ", ", program);
       text += watch_window(rows) + "\n";
     }
   }
@@ -76,7 +77,10 @@ std::string json_report(runtime::Plant& plant, const WatchChoice& watch) {
     entry["status_word_1"] = station->status_word_1();
     entry["variables"] = ordered_json::array();
     for (const WatchRow& row : watch_rows(*station, watch.names))
-      entry["variables"].push_back({{"name", row.name}, {"index", row.index}, {"value", row.value}});
+      if (row.index)
+        entry["variables"].push_back({{"name", row.name}, {"index", *row.index}, {"value", row.value}});
+      else
+        entry["signals"].push_back({{"name", row.name}, {"value", row.value}, {"text", row.text}});
     report["stations"].push_back(std::move(entry));
   }
   report["buses"] = ordered_json::array();

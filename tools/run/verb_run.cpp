@@ -27,6 +27,7 @@
 #include "tools/recording/trace_hash.hpp"
 #include "tools/run/real_time_run.hpp"
 #include "tools/run/run_report.hpp"
+#include "tools/run/signal_list.hpp"
 #include "tools/run/watch.hpp"
 
 namespace ipos::tools {
@@ -187,6 +188,10 @@ int run(const RunFlags& flags) {
       make_plant(std::move(input), runtime::FileUse::Write, rates, execution);
   runtime::Plant& plant = *built;
 
+  if (flags.signals == std::vector<std::string>{"list"}) {
+    fmt::print("{}", signal_list(plant, flags.format == "json"));
+    return kGood;
+  }
   if (!flags.signals.empty() && flags.plot.empty() && flags.trace.empty())
     throw Failure(kUsage, "--signals needs --plot or --trace");
   // What goes to standard output stands there alone; the report gives way.
@@ -246,7 +251,7 @@ int run(const RunFlags& flags) {
   for (const std::string& name : watch.names)
     if (std::none_of(plant.stations().begin(), plant.stations().end(),
                      [&](const auto& station) { return !watch_rows(*station, {name}).empty(); }))
-      fmt::print(stderr, "ipos: warning: no station has a variable '{}'\n", name);
+      fmt::print(stderr, "ipos: warning: no station has a variable or signal '{}'\n", name);
   fmt::print(output_taken ? stderr : stdout, "{}",
              flags.format == "json" ? json_report(plant, watch) : text_report(plant, watch));
   if (collector) coverage.write(collector->coverage());
@@ -277,7 +282,7 @@ void add_run(cli::Verb& app) {
   add_engine_option(verb, flags->engine);
   verb.flag("--no-skip", flags->no_skip,
             "execute every millisecond in its turn, also where nothing happens, with equal results");
-  verb.flag("--watch", flags->watch, "*", "show named variables at the end, all or --watch=NAME,...");
+  verb.flag("--watch", flags->watch, "*", "show named variables at the end, all or --watch=NAME,..., also other signals");
   verb.option("--log", flags->log,
               "write the frames of all CAN buses in candump format; - is standard output");
   verb.option("--serial-log", flags->serial_log,
@@ -285,9 +290,8 @@ void add_run(cli::Verb& app) {
   verb.option("--plot", flags->plot, "draw signals over time into an SVG file; - is standard output");
   verb.option("--trace", flags->trace, "write signals over time: .csv, .vcd or .jsonl");
   verb.option("--signals", flags->signals,
-              "what to plot and trace, for example unit1.speed,unit1.P094,unit1.H500,sbus1.frames; "
-              "default: speed, "
-              "setpoint and status of every station")
+              "what to plot and trace, for example unit1.speed,unit1.D*,unit1.H500,sbus1.frames; default: "
+              "speed, setpoint and status of every station; 'list' prints what there is")
       .separated_by(',')
       .one_each();
   add_coverage_option(verb, flags->coverage);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "runtime/plant/station_signals.hpp"
 #include "runtime/plant/variable_names.hpp"
 
 namespace ipos::tools {
@@ -18,19 +19,37 @@ void add(const runtime::Station& station, const std::vector<runtime::NamedVariab
   };
   for (const runtime::NamedVariable& row : variables)
     rows.push_back(
-        {row.name, row.number, station.variable(row.number), in_hex(row.symbol) || in_hex(row.name)});
+        {row.name, row.number, station.variable(row.number), in_hex(row.symbol) || in_hex(row.name), ""});
+}
+
+void add_signals(const runtime::Station& station, const std::string& name, std::vector<WatchRow>& rows) {
+  const auto found = runtime::is_pattern(name) ? runtime::match_station_signals(station, name)
+                                               : runtime::find_station_signals(station, name);
+  for (const runtime::PlantSignal& signal : found) {
+    const std::string own = signal.name.substr(signal.station.size() + 1);
+    if (signal.group == runtime::SignalGroup::Variable && signal.bits == 0) {
+      add(station, runtime::named_variables(station.image()->symbols, *station.config().unit, own), rows);
+      continue;
+    }
+    const int64_t value = signal.read();
+    rows.push_back({own, std::nullopt, value, false,
+                    signal.text(value) + (signal.unit.empty() ? "" : " " + signal.unit)});
+  }
 }
 
 }  // namespace
 
 std::vector<WatchRow> watch_rows(const runtime::Station& station, const std::vector<std::string>& names) {
   std::vector<WatchRow> rows;
-  if (station.image() == nullptr) return rows;
-  const auto& symbols = station.image()->symbols;
-  if (names.empty())
-    for (const vm::Symbol& symbol : symbols) add(station, runtime::elements_of(symbol), rows);
-  for (const std::string& name : names)
-    add(station, runtime::named_variables(symbols, *station.config().unit, name), rows);
+  if (names.empty() && station.image() != nullptr)
+    for (const vm::Symbol& symbol : station.image()->symbols)
+      add(station, runtime::elements_of(symbol), rows);
+  for (const std::string& name : names) {
+    const size_t before = rows.size();
+    if (station.image() != nullptr)
+      add(station, runtime::named_variables(station.image()->symbols, *station.config().unit, name), rows);
+    if (rows.size() == before) add_signals(station, name, rows);
+  }
   return rows;
 }
 
@@ -39,9 +58,11 @@ std::string watch_window(const std::vector<WatchRow>& rows) {
   for (const WatchRow& row : rows) width = std::max(width, row.name.size());
   std::string text;
   for (const WatchRow& row : rows) {
-    const std::string value =
-        row.hex ? fmt::format("{:08X} h", static_cast<uint32_t>(row.value)) : fmt::format("{}", row.value);
-    text += fmt::format("{:<4} {:<{}}  {}\n", fmt::format("H{}", row.index), row.name, width, value);
+    const std::string value = !row.index ? row.text
+                              : row.hex  ? fmt::format("{:08X} h", static_cast<uint32_t>(row.value))
+                                         : fmt::format("{}", row.value);
+    const std::string number = row.index ? fmt::format("H{}", *row.index) : "";
+    text += fmt::format("{:<4} {:<{}}  {}\n", number, row.name, width, value);
   }
   return text;
 }

@@ -1,6 +1,7 @@
-// The watch window: named variables of a station as the manuals' screens show them.
+// The watch window: variables of a station as the manuals' screens show them, and its other signals below.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,14 +10,16 @@
 namespace ipos::tools {
 
 struct WatchRow {
-  std::string name;  // symbol, or "H5" for a variable without one
-  uint32_t index;
-  int32_t value;
-  bool hex;  // the plant file shows it in hexadecimal
+  std::string name;               // symbol, or "H5" for a variable without one
+  std::optional<uint32_t> index;  // of a variable
+  int64_t value;
+  bool hex;          // the plant file shows it in hexadecimal
+  std::string text;  // of another signal: "1500.000 rpm"
 };
 
 // All named variables in rising order of number, or those asked for, as variable_names.hpp reads them: "TrCycl"
-// gives all members of a structure. A name the station does not know is left out.
+// gives all members of a structure; or signals and patterns of them (station_signals.hpp). A name the station
+// does not know is left out.
 std::vector<WatchRow> watch_rows(const runtime::Station& station, const std::vector<std::string>& names);
 
 // "H420 TrCycl.ObjectNo   1024", hexadecimal "H426 lTrDataLow        11223344 h".

@@ -43,7 +43,8 @@ std::optional<Subject> read_subject(PlantReader& reader, const toml::table& tabl
     subject.signal.name = node->as_string()->get();
     return subject;
   }
-  if (!reader.signal(table, kExpect, {"variable", "parameter", "input", "output", "state"}, subject.signal))
+  if (!reader.signal(table, kExpect, {"variable", "parameter", "input", "output", "state", "signal"},
+                     subject.signal))
     return std::nullopt;
   return subject;
 }
@@ -197,10 +198,10 @@ void read_sequence(PlantReader& reader, const toml::table& table, Expect& expect
 std::optional<Expect> read_expect(PlantReader& reader, const toml::table& table) {
   reader.known_keys(
       table, "[[expect]]",
-      {IPOS_ITEM_KEYS, "station",  "variable",  "parameter", "input",    "output", "process_data",
-       "state",        "bus",      "frame",     "telegram",  "equals",   "not",    "min",
-       "max",          "one_of",   "tolerance", "within",    "during",   "always", "never",
-       "times",        "at_least", "at_most",   "every",     "sequence", "repeat"});
+      {IPOS_ITEM_KEYS, "station", "variable", "parameter", "input",    "output",   "process_data",
+       "state",        "signal",  "bus",      "frame",     "telegram", "equals",   "not",
+       "min",          "max",     "one_of",   "tolerance", "within",   "during",   "always",
+       "never",        "times",   "at_least", "at_most",   "every",    "sequence", "repeat"});
   const auto subject = read_subject(reader, table);
   if (!subject) return std::nullopt;
   Expect expect;

@@ -1,0 +1,103 @@
+// Splits names into station or bus and the rest.
+#include "runtime/plant/plant_signals.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace ipos::runtime {
+namespace {
+
+// Of a line of any kind.
+template <typename Line>
+void add_line(const Plant& plant, const Line& line, std::vector<PlantSignal>& out) {
+  const auto add = [&](std::string_view name, std::string_view unit, std::string_view meaning,
+                       std::function<int64_t()> read) {
+    PlantSignal& signal = out.emplace_back();
+    signal.station = line.name();
+    signal.name = fmt::format("{}.{}", line.name(), name);
+    signal.unit = unit;
+    signal.group = SignalGroup::Bus;
+    signal.meaning = meaning;
+    signal.read = std::move(read);
+  };
+  add("load", "%", "bus load of the last full second",
+      [&plant, &line]() -> int64_t { return line.load(plant.now()).window_percent; });
+  add("count", "", "frames, or characters of a serial line, so far",
+      [&plant, &line] { return static_cast<int64_t>(line.load(plant.now()).frames); });
+}
+
+std::vector<PlantSignal> bus_signals(const Plant& plant) {
+  std::vector<PlantSignal> signals;
+  for (const auto& line : plant.lines()) add_line(plant, *line, signals);
+  for (const auto& line : plant.serial_lines()) add_line(plant, line->line, signals);
+  return signals;
+}
+
+// Of a pattern: the station's part, as far as it can be told.
+std::vector<PlantSignal> match(const Plant& plant, std::string_view pattern) {
+  std::vector<PlantSignal> found;
+  const auto take = [&found](std::vector<PlantSignal> more) {
+    for (PlantSignal& signal : more) found.push_back(std::move(signal));
+  };
+  for (const auto& station : plant.stations()) {
+    const std::string& name = station->config().name;
+    // Names of stations may contain dots themselves: every dot may be the one behind the name.
+    bool named = false;
+    for (size_t dot = pattern.find('.'); dot != std::string_view::npos && !named;
+         dot = pattern.find('.', dot + 1)) {
+      named = matches(pattern.substr(0, dot), name);
+      if (named) take(match_station_signals(*station, pattern.substr(dot + 1)));
+    }
+    if (!named && plant.stations().size() == 1) take(match_station_signals(*station, pattern));
+  }
+  for (PlantSignal& signal : bus_signals(plant))
+    if (matches(pattern, signal.name)) found.push_back(std::move(signal));
+  return found;
+}
+
+}  // namespace
+
+std::vector<PlantSignal> plant_signals(const Plant& plant) {
+  std::vector<PlantSignal> all;
+  for (const auto& station : plant.stations())
+    for (PlantSignal& signal : station_signals(*station)) all.push_back(std::move(signal));
+  for (PlantSignal& signal : bus_signals(plant)) all.push_back(std::move(signal));
+  return all;
+}
+
+tl::expected<std::vector<PlantSignal>, std::string> find_signals(const Plant& plant, std::string_view name) {
+  if (is_pattern(name)) {
+    if (auto found = match(plant, name); !found.empty()) return found;
+    return tl::unexpected(fmt::format("no signal is called like '{}'", name));
+  }
+  const auto& stations = plant.stations();
+  const Station* owner = nullptr;
+  std::string_view rest = name;
+  for (const auto& station : stations) {
+    // The longest name that fits.
+    const std::string prefix = station->config().name + ".";
+    if (!name.starts_with(prefix) || (owner != nullptr && prefix.size() <= name.size() - rest.size()))
+      continue;
+    owner = station.get();
+    rest = name.substr(prefix.size());
+  }
+  if (owner == nullptr && stations.size() == 1) owner = stations.front().get();
+  if (owner != nullptr)
+    if (auto found = find_station_signals(*owner, rest); !found.empty()) return found;
+  std::vector<std::string> buses;
+  for (PlantSignal& signal : bus_signals(plant)) {
+    if (signal.name == name) return std::vector{std::move(signal)};
+    buses.push_back(signal.name);
+  }
+  const std::string others = buses.empty() ? "" : fmt::format("; the buses have {}", fmt::join(buses, ", "));
+  if (owner != nullptr)
+    return tl::unexpected(fmt::format("station '{}' has no signal '{}'; it has {}{}", owner->config().name,
+                                      rest, station_signal_names(*owner), others));
+  std::vector<std::string> known;
+  for (const auto& station : stations) known.push_back(station->config().name + ".");
+  return tl::unexpected(
+      fmt::format("'{}' is no signal; signals begin with {}{}", name, fmt::join(known, ", "), others));
+}
+
+}  // namespace ipos::runtime

@@ -1,0 +1,388 @@
+// What a station has, group by group. Where one name means two things the earlier group counts: values of the
+// drive, then variables, then the rest.
+#include "runtime/plant/station_signals.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <unordered_set>
+#include <utility>
+
+#include "runtime/bus/movilink/process_words.hpp"
+#include "runtime/plant/signal.hpp"
+#include "runtime/plant/station_state.hpp"
+#include "runtime/plant/variable_names.hpp"
+#include "stdlib/parameters.hpp"
+#include "stdlib/system_variables.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+constexpr size_t kWordBits = 16, kLongBits = 32;
+
+// The signals with a name of their own: a display value, which the drive keeps up to date in its parameter; a
+// variable; or what only the simulation knows.
+struct DriveValue {
+  std::string_view name;
+  std::string_view meaning;
+  std::string_view parameter;  // number
+  int variable = -1;           // of units that position
+  int64_t (*read)(const Station&) = nullptr;
+  std::string_view unit{};
+  double factor = 1;
+  int decimals = 0;
+  size_t bits = 0;
+};
+
+template <int32_t AxisState::*member>
+int64_t axis(const Station& station) {
+  return station.drive().state().axis().*member;
+}
+
+constexpr DriveValue kDriveValues[] = {
+    {"speed", "P000", "000"},
+    {"frequency", "P002", "002"},
+    {"position", "P003", "003"},
+    {"current", "P004", "004"},
+    {"active_current", "P005", "005"},
+    {"motor_utilization", "P006", "006"},
+    {"dc_link", "P008", "008"},
+    {"temperature", "P014", "014"},
+    {"setpoint", "speed the ramp orders", "", -1, axis<&AxisState::setpoint>, "rpm", 0.001, 3},
+    {"shaft_speed", "of the motor as simulated", "", -1, axis<&AxisState::speed>, "rpm", 0.001, 3},
+    {"torque", "of the motor as simulated", "", -1, axis<&AxisState::torque>, "%Mn", 0.001, 3},
+    {"position_setpoint", "H491", "", 491, nullptr, "inc"},
+    {"position_target", "H492", "", 492, nullptr, "inc"},
+    {"lag", "H495", "", 495, nullptr, "inc"},
+    {"status", "status word 1", "", -1,
+     [](const Station& station) -> int64_t { return station.status_word_1(); }, "", 1, 0, kWordBits},
+    {"fault", "fault number; 0 is none", "", -1,
+     [](const Station& station) -> int64_t { return station.fault(); }},
+};
+
+const stdlib::Parameter* find_parameter(const Station& station, std::string_view number) {
+  const stdlib::Parameter* row = stdlib::parameter_table(*station.config().unit).find(number);
+  return row != nullptr && row->index != 0 ? row : nullptr;
+}
+
+bool has(const Station& station, const DriveValue& row) {
+  if (row.read != nullptr) return true;
+  if (row.variable >= 0)
+    return station.image() != nullptr && station.config().unit->generation != stdlib::Generation::M07;
+  return find_parameter(station, row.parameter) != nullptr;
+}
+
+// Collects them under the name of the station; the first of a name counts.
+class Collector {
+ public:
+  explicit Collector(const Station& station) : station_(station) {}
+
+  PlantSignal& add(SignalGroup group, std::string_view name, std::string_view meaning,
+                   std::function<int64_t()> read) {
+    if (!names_.emplace(name).second) return shadowed_;
+    PlantSignal& signal = found.emplace_back();
+    signal.station = station_.config().name;
+    signal.name = fmt::format("{}.{}", signal.station, name);
+    signal.group = group;
+    signal.meaning = meaning;
+    signal.read = std::move(read);
+    return signal;
+  }
+
+  void add_parameter(const stdlib::Parameter& row, SignalGroup group, std::string_view name) {
+    PlantSignal& signal = add(
+        group, name, fmt::format("P{} {}", row.number, row.name),
+        [&station = station_, &row] { return row.number_of(station.drive().parameters().value(row.index)); });
+    const stdlib::DisplayScale scale = stdlib::display_scale(row);
+    if (row.display == "hex")
+      signal.bits = kLongBits;
+    else
+      signal.unit = row.display;
+    signal.factor = scale.factor;
+    signal.decimals = scale.decimals;
+  }
+
+  PlantSignal& add_variable(SignalGroup group, std::string_view name, uint32_t number,
+                            std::string_view meaning) {
+    return add(group, name, meaning, [&station = station_, number] { return station.variable(number); });
+  }
+
+  std::vector<PlantSignal> found;
+
+ private:
+  const Station& station_;
+  std::unordered_set<std::string> names_;
+  PlantSignal shadowed_;
+};
+
+void add_drive(const Station& station, Collector& out) {
+  for (const DriveValue& row : kDriveValues) {
+    if (!has(station, row)) continue;
+    if (row.read == nullptr && row.variable < 0) {
+      out.add_parameter(*find_parameter(station, row.parameter), SignalGroup::Drive, row.name);
+      continue;
+    }
+    PlantSignal& signal = row.read != nullptr
+                              ? out.add(SignalGroup::Drive, row.name, row.meaning,
+                                        [&station, read = row.read] { return read(station); })
+                              : out.add_variable(SignalGroup::Drive, row.name,
+                                                 static_cast<uint32_t>(row.variable), row.meaning);
+    signal.unit = row.unit;
+    signal.factor = row.factor;
+    signal.decimals = row.decimals;
+    signal.bits = row.bits;
+    signal.is_status = row.name == "status";
+  }
+}
+
+void add_symbols(const Station& station, Collector& out) {
+  if (station.image() == nullptr) return;
+  for (const vm::Symbol& symbol : station.image()->symbols)
+    for (const NamedVariable& element : elements_of(symbol))
+      out.add_variable(SignalGroup::Variable, element.name, element.number,
+                       fmt::format("H{}", element.number));
+}
+
+// A state that is called like a value of the drive counts in another unit: it is left to expectations.
+void add_states(const Station& station, Collector& out) {
+  for (const StationState& state : station_states()) {
+    const auto same = [&](const DriveValue& row) { return row.name == state.name; };
+    if (std::any_of(std::begin(kDriveValues), std::end(kDriveValues), same)) continue;
+    out.add(SignalGroup::State, state.name, state.meaning,
+            [&station, read = state.read]() -> int64_t { return read(station); })
+        .bits = state.on_off ? 1 : 0;
+  }
+}
+
+void add_terminals(const Station& station, Collector& out) {
+  for (size_t line = 0; line < kBinaryLines; ++line)
+    out.add(SignalGroup::Input, fmt::format("DI{}{}", line / 8, line % 8), "binary input",
+            [&station, line]() -> int64_t { return station.inputs().line(line).value(); })
+        .bits = 1;
+  const auto add_output = [&](const std::string& name) {
+    out.add(SignalGroup::Output, name, "binary output",
+            [&station, bit = parse_output(name)]() -> int64_t { return station.outputs() >> bit & 1; })
+        .bits = 1;
+  };
+  add_output("DB00");
+  for (int n = 1; n <= 5; ++n) add_output(fmt::format("DO0{}", n));
+  for (int n = 0; n < 8; ++n) add_output(fmt::format("DO1{}", n));
+  for (const AnalogKind& kind : analog_kinds()) {
+    PlantSignal& signal = out.add(
+        SignalGroup::Analog, kind.signal, "analog input",
+        [&station, line = line_of(kind)]() -> int64_t { return station.inputs().line(line).value(); });
+    signal.unit = kind.unit;
+    signal.factor = 1 / kind.factor;
+    signal.decimals = kind.factor == 10 ? 1 : 3;
+  }
+}
+
+int64_t process_word(const Station& station, bool input, size_t word) {
+  const Drive& drive = station.drive().state();
+  return input ? drive.pi()[word] : drive.po()[word];
+}
+
+// The word as it goes over the bus, and the number that it is by its assignment at present.
+void add_process_data(const Station& station, Collector& out) {
+  for (const bool input : {false, true})
+    for (size_t word = 0; word < kProcessWords; ++word) {
+      const std::string name = fmt::format("{}{}", input ? "PI" : "PO", word + 1);
+      const auto* row = find_parameter(station, fmt::format("87{}", (input ? 3 : 0) + word));
+      const auto code =
+          row == nullptr ? uint8_t{0} : static_cast<uint8_t>(station.drive().parameters().value(row->index));
+      const std::string_view assigned = process_word_name(*station.config().unit, input, code);
+      out.add(SignalGroup::ProcessData, name, assigned,
+              [&station, input, word] { return process_word(station, input, word); })
+          .bits = kWordBits;
+      const ProcessWordScale scale = process_word_scale(input, code);
+      if (scale.denominator == 0 || scale.unit.empty()) continue;
+      PlantSignal& signal = out.add(SignalGroup::ProcessData, name + "_value", assigned,
+                                    [&station, input, word, is_signed = scale.is_signed]() -> int64_t {
+                                      const auto bits =
+                                          static_cast<uint16_t>(process_word(station, input, word));
+                                      return is_signed ? int64_t{static_cast<int16_t>(bits)} : bits;
+                                    });
+      signal.unit = scale.unit;
+      signal.factor = static_cast<double>(scale.numerator) / scale.denominator;
+      signal.decimals = scale.denominator == 1 ? 0 : scale.denominator <= 10 ? 1 : 2;
+    }
+}
+
+void add_tasks(const Station& station, Collector& out) {
+  if (station.image() == nullptr) return;
+  for (int task = 1; task <= station.config().unit->tasks; ++task) {
+    out.add(
+        SignalGroup::Task, fmt::format("task{}.state", task), "0 stopped, 1 ready, 2 waiting",
+        [&station, task]() -> int64_t { return static_cast<int64_t>(station.machine()->task(task).state); });
+    out.add(SignalGroup::Task, fmt::format("task{}.line", task), "source line it stands at; 0 stopped",
+            [&station, task]() -> int64_t {
+              const vm::TaskContext& context = station.machine()->task(task);
+              return context.state == vm::TaskState::Stopped ? 0 : station.source_line(context.pc);
+            });
+  }
+}
+
+void add_system_variables(const Station& station, Collector& out) {
+  if (station.image() == nullptr) return;
+  const stdlib::UnitType& unit = *station.config().unit;
+  for (const stdlib::SystemVariable& row : stdlib::system_variables()) {
+    const bool known = row.units == stdlib::VariableUnits::A || unit.generation == stdlib::Generation::B;
+    if (known && row.number < unit.variables && !row.compiler_name.empty())
+      out.add_variable(SignalGroup::SystemVariable, row.compiler_name, row.number, row.meaning);
+  }
+}
+
+void add_all(const Station& station, Collector& out) {
+  add_drive(station, out);
+  add_symbols(station, out);
+  add_states(station, out);
+  add_terminals(station, out);
+  add_process_data(station, out);
+  add_tasks(station, out);
+  add_system_variables(station, out);
+}
+
+PlantSignal bit_of(const PlantSignal& whole, size_t bit) {
+  PlantSignal signal = whole;
+  signal.name += fmt::format(".{}", bit);
+  signal.meaning = fmt::format("bit {} of {}", bit, whole.name);
+  signal.bits = 1;
+  signal.is_status = false;
+  signal.read = [read = whole.read, bit]() -> int64_t { return read() >> bit & 1; };
+  return signal;
+}
+
+// Bits there are of bit fields and of variables.
+size_t width(const PlantSignal& signal) {
+  const bool variable = signal.group == SignalGroup::Variable || signal.group == SignalGroup::SystemVariable;
+  return variable ? kLongBits : signal.bits > 1 ? signal.bits : 0;
+}
+
+// Whether a pattern can mean what begins with the letter and a number.
+bool can_mean(std::string_view pattern, char letter) {
+  if (pattern.empty() || pattern[0] != letter) return false;
+  return pattern.size() > 1 && (is_pattern(pattern.substr(1, 1)) || (pattern[1] >= '0' && pattern[1] <= '9'));
+}
+
+}  // namespace
+
+std::string_view group_text(SignalGroup group) {
+  switch (group) {
+    case SignalGroup::Drive: return "drive";
+    case SignalGroup::State: return "states";
+    case SignalGroup::Input: return "inputs";
+    case SignalGroup::Output: return "outputs";
+    case SignalGroup::Analog: return "analog inputs";
+    case SignalGroup::ProcessData: return "process data";
+    case SignalGroup::Task: return "tasks";
+    case SignalGroup::Variable: return "variables";
+    case SignalGroup::SystemVariable: return "system variables";
+    case SignalGroup::Parameter: return "parameters";
+    case SignalGroup::Bus: break;
+  }
+  return "bus";
+}
+
+std::string PlantSignal::text(int64_t sample) const {
+  return fmt::format("{:.{}f}", static_cast<double>(sample) * factor, decimals);
+}
+
+std::vector<PlantSignal> station_signals(const Station& station) {
+  Collector all(station);
+  add_all(station, all);
+  return std::move(all.found);
+}
+
+std::vector<PlantSignal> find_station_signals(const Station& station, std::string_view name) {
+  const std::string full = fmt::format("{}.{}", station.config().name, name);
+  for (PlantSignal& signal : station_signals(station))
+    if (signal.name == full) return {std::move(signal)};
+  Collector more(station);
+  const bool may_be_parameter =
+      name.starts_with('P') || name.find_first_not_of("0123456789") == std::string_view::npos;
+  if (const auto* row = may_be_parameter ? find_parameter(station, name) : nullptr) {
+    more.add_parameter(*row, SignalGroup::Parameter, name);
+    return std::move(more.found);
+  }
+  if (station.image() != nullptr)
+    for (const NamedVariable& variable :
+         named_variables(station.image()->symbols, *station.config().unit, name))
+      more.add_variable(SignalGroup::Variable, variable.name, variable.number,
+                        fmt::format("H{}", variable.number));
+  if (!more.found.empty()) return std::move(more.found);
+  const size_t dot = name.rfind('.');
+  if (dot == std::string_view::npos) return {};
+  size_t bit = 0;
+  const auto [end, status] = std::from_chars(name.data() + dot + 1, name.data() + name.size(), bit);
+  if (status != std::errc() || end != name.data() + name.size()) return {};
+  const auto whole = find_station_signals(station, name.substr(0, dot));
+  if (whole.size() != 1 || bit >= width(whole[0])) return {};
+  return {bit_of(whole[0], bit)};
+}
+
+std::vector<PlantSignal> match_station_signals(const Station& station, std::string_view pattern) {
+  Collector all(station);
+  add_all(station, all);
+  if (can_mean(pattern, 'P'))
+    for (const stdlib::Parameter& row : stdlib::parameter_table(*station.config().unit).rows())
+      if (row.index != 0 && !row.number.empty())
+        all.add_parameter(row, SignalGroup::Parameter, fmt::format("P{}", row.number));
+  if (can_mean(pattern, 'H') && station.image() != nullptr)
+    for (uint32_t n = 0; n < station.config().unit->variables; ++n)
+      all.add_variable(SignalGroup::Variable, fmt::format("H{}", n), n, "");
+  const size_t own = station.config().name.size() + 1;
+  const size_t dot = pattern.rfind('.');
+  std::vector<PlantSignal> found;
+  for (PlantSignal& signal : all.found) {
+    const std::string_view name = std::string_view(signal.name).substr(own);
+    if (dot != std::string_view::npos && matches(pattern.substr(0, dot), name))
+      for (size_t bit = 0; bit < width(signal); ++bit)
+        if (matches(pattern.substr(dot + 1), fmt::format("{}", bit))) found.push_back(bit_of(signal, bit));
+    if (matches(pattern, name)) found.push_back(std::move(signal));
+  }
+  return found;
+}
+
+std::string station_signal_names(const Station& station) {
+  std::vector<std::string> names;
+  for (const DriveValue& row : kDriveValues)
+    if (has(station, row)) names.emplace_back(row.name);
+  if (find_parameter(station, "000") != nullptr) names.emplace_back("parameters as P000");
+  names.emplace_back("inputs as DI00 and AI1");
+  names.emplace_back("outputs as DO01");
+  names.emplace_back("process data as PO1 and PI1");
+  names.emplace_back("bits as PO1.6");
+  names.push_back("states as " + state_names());
+  if (station.image() != nullptr) {
+    names.emplace_back("tasks as task1.line");
+    names.push_back(fmt::format("variables H0 to H{}", station.config().unit->variables - 1));
+    for (const vm::Symbol& symbol : station.image()->symbols) names.push_back(symbol.name);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+bool is_pattern(std::string_view name) { return name.find_first_of("*?") != std::string_view::npos; }
+
+// Where a letter does not fit, the last '*' takes one more.
+bool matches(std::string_view pattern, std::string_view text) {
+  size_t at = 0, star = std::string_view::npos, taken = 0;
+  for (size_t n = 0; n < text.size();) {
+    if (at < pattern.size() && pattern[at] == '*') {
+      star = at++;
+      taken = n;
+    } else if (at < pattern.size() && (pattern[at] == '?' || pattern[at] == text[n])) {
+      ++at;
+      ++n;
+    } else if (star != std::string_view::npos) {
+      at = star + 1;
+      n = ++taken;
+    } else {
+      return false;
+    }
+  }
+  while (at < pattern.size() && pattern[at] == '*') ++at;
+  return at == pattern.size();
+}
+
+}  // namespace ipos::runtime

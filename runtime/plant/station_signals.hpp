@@ -1,0 +1,63 @@
+// Everything of a station that has a value and a name: the one naming of traces, plots, watches, scopes and
+// expectations. A signal is found once and read as often as wanted. docs/guide/recording.md has the names.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/plant/station.hpp"
+
+namespace ipos::runtime {
+
+enum class SignalGroup : uint8_t {
+  Drive,           // speed, torque, status ...
+  State,           // the states of plant files and tests
+  Input,           // DI00
+  Output,          // DO01
+  Analog,          // AI1
+  ProcessData,     // PO1
+  Task,            // task1.line
+  Variable,        // symbols and numbers
+  SystemVariable,  // ActPos_Mot
+  Parameter,       // P130
+  Bus,             // sbus.load
+};
+std::string_view group_text(SignalGroup group);  // "inputs"
+
+struct PlantSignal {
+  std::string name;   // "unit1.speed"
+  std::string unit;   // of the number shown; empty: a plain number
+  double factor = 1;  // number shown = sample x factor
+  int decimals = 0;
+  bool is_status = false;  // a plot shows its changes as events
+  std::string station{};   // or bus; the name begins with it and a dot
+  size_t bits = 0;         // width of a bit field, 1: on or off; 0: a number
+  SignalGroup group = SignalGroup::Variable;
+  std::string meaning{};
+  std::function<int64_t()> read{};  // the sample of now; whose it is must still be there
+
+  std::string text(int64_t sample) const;  // "1500.000"
+};
+
+// All of a station but its parameters and the bits and numbers of what it has; a name stands for one thing.
+std::vector<PlantSignal> station_signals(const Station& station);
+
+// What a name without the station's means: a signal of these, a parameter ("P130", "8807"), a variable
+// ("H500", "TrCycl" for all its members), a bit ("PO1.6"). Empty when the station has no such thing.
+std::vector<PlantSignal> find_station_signals(const Station& station, std::string_view name);
+
+// With a pattern: parameters and numbered variables only where it begins like one, bits where it has a dot.
+std::vector<PlantSignal> match_station_signals(const Station& station, std::string_view pattern);
+
+// "speed, ..., inputs as DI00, ...": for messages.
+std::string station_signal_names(const Station& station);
+
+// '*' stands for any letters, '?' for one; every other letter for itself.
+bool is_pattern(std::string_view name);
+bool matches(std::string_view pattern, std::string_view text);
+
+}  // namespace ipos::runtime
