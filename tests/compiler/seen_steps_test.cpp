@@ -154,6 +154,41 @@ TEST(Atomic, WritesOnceWhatOthersSee) {
       << "costs nothing where nobody looks on";
 }
 
+// System variables act at once (outputs, setpoints): whatever the expression, they get its value and nothing on the
+// way, in one command. The first and the last of them (IPOSplus p. 29, 39) and one whose neighbours are ones, too.
+TEST(SystemVariables, GetTheirValueAndNothingOnTheWay) {
+  const std::string kHeads[] = {"a + b",
+                                "a - %",
+                                "-%",
+                                "-a",
+                                "b - % * a",
+                                "(% + 1) %% 8",
+                                "a * 2 + b - %",
+                                "a - (b - %)",
+                                "a ? a + b : -%",
+                                "(a && b) + 1",
+                                "a %% 8 + %",
+                                "~(% + a)",
+                                "v[a] - %",
+                                "(a, b - %)"};
+  for (const int variable : {453, 484, 560})
+    for (std::string expression : kHeads) {
+      const std::string name = "H" + std::to_string(variable);
+      for (size_t at = 0; (at = expression.find('%', at)) != std::string::npos;) {
+        if (expression.compare(at, 2, "%%") == 0)
+          expression.erase(at++, 1);  // the operator
+        else
+          expression.replace(at, 1, name);
+      }
+      const Compilation c =
+          compile_b("long a, b, v[4]; main() { a = 1; b = 2; v[a] = 3; " + name + " = " + expression + "; }");
+      ASSERT_TRUE(c.image) << expression;
+      const auto writes = writes_of(c, name);
+      EXPECT_EQ(writes.size(), expression.find('?') != std::string::npos ? 2U : 1U)
+          << name << " = " << expression;
+    }
+}
+
 // 10 s of a program on a MOVIDRIVE B, without a host; `each_ms` sees the variables as a telegram would.
 std::map<std::string, int32_t> run(const std::string& text, bool atomic,
                                    const std::function<void(std::span<int32_t>)>& each_ms = {}) {

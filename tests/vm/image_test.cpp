@@ -128,6 +128,19 @@ TEST(Image, ReasonsOfRefusal) {
   EXPECT_EQ(error_of(write_image(image)), ImageError::BadSymbols);
 }
 
+// Whatever stands behind the last section belongs to none: refused, whatever its checksum says.
+TEST(Image, BytesBehindTheLastSectionAreRefused) {
+  for (size_t more = 1; more <= 64; ++more) {
+    std::vector<uint8_t> bytes = write_image(sample());
+    const size_t end = bytes.size() - 4;
+    bytes.insert(bytes.end() - 4, more, uint8_t{0});
+    seal(bytes);
+    const ImageResult result = read_image(bytes);
+    EXPECT_EQ(result.error, ImageError::BadSectionTable) << more;
+    EXPECT_EQ(result.offset, end) << more;
+  }
+}
+
 TEST(Image, EveryErrorHasAText) {
   for (int n = 0; n <= static_cast<int>(ImageError::BadLines); ++n)
     EXPECT_STRNE(to_text(static_cast<ImageError>(n)), "");

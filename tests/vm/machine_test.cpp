@@ -4,7 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "tests/vm/code.hpp"
+#include "vm/fast/predecode.hpp"
 #include "vm/sched/scheduler.hpp"
 
 namespace ipos::vm {
@@ -288,6 +292,52 @@ TEST(Tasks, ShareTheMillisecond) {
   run->start();
   EXPECT_EQ(run->task(2).state, TaskState::Stopped);
   EXPECT_EQ(run.h(1), 15) << "variables keep their values over a restart";
+}
+
+// What the unit reports from outside is the first running task's; without one it is task 1's.
+TEST(Faults, RaisedFromOutsideAreOfTheFirstTaskThatRuns) {
+  for (unsigned running = 0; running < 1U << kTasks; ++running) {
+    Program run({I(Opcode::Jmp, 0)});
+    run->stop_all();
+    int first = 1;
+    for (int task = kTasks; task >= 1; --task)
+      if ((running >> (task - 1) & 1) != 0) {
+        run->start_task(task, 0);
+        first = task;
+      }
+    run->raise_fault(17, "watchdog");
+    EXPECT_EQ(run->fault().number, 17);
+    EXPECT_EQ(run->fault().task, first) << running;
+    for (int task = 1; task <= kTasks; ++task) EXPECT_EQ(run->task(task).state, TaskState::Stopped);
+  }
+}
+
+// A run ahead that meets a wait is given up, from whatever command it began: nothing has changed, not even where
+// the functions return to. F is called from three places, one of them a function itself.
+TEST(Ahead, GivenUpItLeavesNothingBehind) {
+  constexpr int32_t kG = 10, kF = 13;
+  Program run({I(Opcode::Call, kF), I(Opcode::Call, kF), I(Opcode::Call, kG), I(Opcode::WaitK, 5),
+               I(Opcode::Jmp, 0), I(Opcode::Call, kF), I(Opcode::Ret), I(Opcode::AddHK, 0, 1),
+               I(Opcode::AddHK, 0, 1), I(Opcode::Ret)});
+  std::vector<fast::Slot> slots(fast::Predecoded::slots_needed(run->program().code().size()));
+  const fast::Predecoded predecoded(run->program(), slots);
+  int deepest = 0;
+  const std::array<uint16_t, 1> written{0};
+  while (run->task(1).state == TaskState::Ready && run->task(1).commands < 100) {
+    Machine machine = *run.operator->();
+    machine.use(&predecoded);
+    EXPECT_FALSE(machine.run_ahead({50, 0, 0}, 2, written));
+    const TaskContext &is = machine.task(1), &was = run->task(1);
+    EXPECT_EQ(machine.variables()[0], run.h(0));
+    EXPECT_EQ(is.pc, was.pc);
+    EXPECT_EQ(is.depth, was.depth);
+    EXPECT_EQ(is.commands, was.commands);
+    for (size_t n = 0; n < was.depth; ++n) EXPECT_EQ(is.calls[n], was.calls[n]) << "after " << was.commands;
+    deepest = std::max<int>(deepest, was.depth);
+    run.run(1);
+  }
+  EXPECT_EQ(run->task(1).state, TaskState::Waiting);
+  EXPECT_EQ(deepest, 2);
 }
 
 }  // namespace

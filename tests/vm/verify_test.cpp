@@ -98,5 +98,58 @@ TEST(Verifier, AcceptsEverySingleCommandWithSoundOperands) {
   }
 }
 
+// Lengths of the structures as the manuals print them (1053 1610 p. 47 to 56, IPOSplus p. 86, 347); every
+// other variable operand is one variable, whatever its keyword.
+uint32_t printed_length(Opcode opcode, int32_t keyword) {
+  switch (opcode) {
+    case Opcode::Movlnk:
+    case Opcode::VarInt: return 7;
+    case Opcode::Scom: return keyword == 1 ? 6 : keyword == 2 ? 4 : 3;
+    case Opcode::GetSys: return keyword == 5 ? 3 : keyword == 7 ? 2 : keyword == 8 ? 14 : 1;
+    case Opcode::SetSys: return keyword == 6 ? 3 : keyword == 9 || keyword == 10 ? 2 : 1;
+    default: return 1;
+  }
+}
+
+constexpr int32_t kCount = 5;  // of a block copy
+
+// Each variable operand of each command with each keyword, so that its last variable is the unit's last, and one
+// further; both amounts of variables that units have.
+TEST(Verifier, EveryStructureMayEndAtTheLastVariableAndNotBehindIt) {
+  int structures = 0;
+  for (const OpcodeInfo& row : opcode_table()) {
+    Instruction command{row.opcode, {}};
+    const OperandInfo* keywords = nullptr;
+    size_t keyword_at = 0;
+    bool copies = false;
+    for (size_t n = 0; n < static_cast<size_t>(row.operand_count); ++n) {
+      if (row.operands[n].kind == OperandKind::Count) command.operands[n] = kCount, copies = true;
+      if (row.operands[n].kind == OperandKind::Keyword) keywords = &row.operands[n], keyword_at = n;
+    }
+    for (size_t n = 0; n < static_cast<size_t>(row.operand_count); ++n)
+      for (const KeywordInfo& word : keyword_table()) {
+        if (row.operands[n].kind != OperandKind::Variable) break;
+        if (keywords != nullptr && word.set != keywords->keyword_set) continue;
+        if (keywords != nullptr) command.operands[keyword_at] = word.value;
+        const uint32_t length = copies ? kCount : printed_length(row.opcode, word.value);
+        structures += length > 1;
+        for (const Limits& limits : {Limits{512, 2048, 3, 32}, kLimitsB}) {
+          Instruction at = command;
+          at.operands[n] = static_cast<int32_t>(limits.variables - length);
+          EXPECT_EQ(first_violation(code_of({at, I(Opcode::End)}), limits).count, 0U)
+              << row.text << ", operand " << n << ", keyword " << word.value;
+          ++at.operands[n];
+          const Seen seen = first_violation(code_of({at, I(Opcode::End)}), limits);
+          EXPECT_EQ(seen.count, 1U) << row.text << ", operand " << n << ", keyword " << word.value;
+          EXPECT_EQ(seen.rule, length > 1 ? Rule::StructureRange : Rule::VariableRange) << row.text;
+          EXPECT_EQ(seen.address, 0U);
+        }
+        if (keywords == nullptr) break;
+      }
+  }
+  EXPECT_EQ(structures, 2 + 3 + 3 + 3 + 2)
+      << "MOVLNK and VARINT, three of SCOM, GETSYS and SETSYS, both of COPY";
+}
+
 }  // namespace
 }  // namespace ipos::vm

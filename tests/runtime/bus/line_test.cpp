@@ -221,6 +221,76 @@ TEST(CanLine, ALoneStationRepeatsBecomesPassiveAndNeverBusOff) {
   EXPECT_LE(t.a.failed.size(), before + 1);
 }
 
+// A loss of acknowledge is reported once, and again when there has been a success in between, however long the
+// error counter remembers the first one and even when it has been cleared.
+TEST(CanLine, EveryLossOfAcknowledgeIsReported) {
+  for (const bool cleared : {false, true}) {
+    Bench t;
+    const NodeId a = t.line.attach("a", 500'000, t.a);
+    const NodeId b = t.line.attach("b", 500'000, t.b);
+    for (size_t loss = 1; loss <= 4; ++loss) {
+      t.line.set_connected(b, false);
+      t.line.send(a, data_frame(100), 1);
+      t.queue.run_until(t.queue.now() + 5 * kMillisecond);
+      EXPECT_EQ(t.watcher.count(LineEventKind::NoAcknowledge), loss) << cleared;
+      t.line.withdraw(a, 1);
+      t.queue.run_until(t.queue.now() + kMillisecond);
+      if (cleared) t.line.restart(a);
+      t.line.set_connected(b, true);
+      t.line.send(a, data_frame(100), 1);
+      t.queue.run_until(t.queue.now() + 5 * kMillisecond);
+      EXPECT_EQ(t.a.sent.size(), loss);
+    }
+  }
+}
+
+// Sends at a time, in front of what the line does then.
+class Sender final : public EventTarget {
+ public:
+  Sender(Bench& bench, Time at, NodeId node, const Frame& frame)
+      : line_(bench.line), node_(node), frame_(frame) {
+    bench.queue.schedule(at, 1, *this, 0);
+  }
+  void on_event(Time, uint32_t, uint64_t) override { line_.send(node_, frame_, 9); }
+
+ private:
+  CanLine& line_;
+  NodeId node_;
+  Frame frame_;
+};
+
+// What is queued within the bit in which a frame begins comes too late for it, also where its identifier is lower:
+// what was ready decides. 5 waits behind 200 or 300, all sent by the first or by the last station.
+TEST(CanLine, WhatComesInTheBitOfTheStartWaits) {
+  for (const NodeId late : {NodeId{0}, NodeId{1}})
+    for (const uint32_t ready : {100U, 200U, 300U}) {
+      SCOPED_TRACE(testing::Message() << "station " << late << ", " << ready);
+      Bench t;
+      t.line.attach("a", 500'000, t.a);
+      t.line.attach("b", 500'000, t.b);
+      t.line.attach("c", 500'000, t.c);
+      const NodeId other = 1 - late;
+      t.line.send(late, data_frame(ready), 1);
+      t.line.send(other, data_frame(200), 2);
+      Sender sender(t, 2000, late, data_frame(5));  // the start bit of both
+      t.queue.run_until(5 * kMillisecond);
+      std::vector<uint32_t> order;
+      for (const FrameRecord& record : t.watcher.frames) order.push_back(record.frame.id);
+      const std::vector<uint32_t> want = ready == 100   ? std::vector<uint32_t>{100, 5, 200}
+                                         : ready == 200 ? std::vector<uint32_t>{200, 5}
+                                                        : std::vector<uint32_t>{200, 5, 300};
+      EXPECT_EQ(order, want);
+      EXPECT_EQ(t.watcher.frames[0].start, 2000);
+      EXPECT_EQ(t.watcher.count(LineEventKind::Collision), 0U);
+      EXPECT_EQ(t.watcher.count(LineEventKind::SameFrame), ready == 200 ? 1U : 0U);
+      EXPECT_EQ(t.watcher.frames[0].sender, ready == 100   ? late
+                                            : ready == 200 ? 0
+                                                           : other)
+          << "of equal frames that of the station attached first";
+      EXPECT_EQ(t.a.failed.size() + t.b.failed.size(), 0U);
+    }
+}
+
 TEST(CanLine, SameIdentifierAndOtherDataCollide) {
   PROVES("DIAG-04");
   Bench t;

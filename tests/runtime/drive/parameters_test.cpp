@@ -183,6 +183,49 @@ TEST_F(Md60a, FactorySetting) {
   EXPECT_EQ(store.value(8600), 0) << "the EEPROM has the factory setting too";
 }
 
+// P802 writes what differs, once; what has its factory value already is not worn.
+TEST_F(Md60a, FactorySettingWearsOnlyWhatItChanges) {
+  ask(kWrite, 8470, 2500);
+  ask(kWrite, 8600, 5);
+  ask(kWrite, 8601, 7);
+  ask(kWrite, 8601, 0);  // back again
+  const auto before = store.eeprom_writes();
+  ask(kWrite, 8594, 1);
+  store.finish_factory_setting();
+  for (const stdlib::Parameter* p : store.table().by_index()) {
+    const auto found = before.find(p->index);
+    const uint32_t was = found == before.end() ? 0 : found->second;
+    if (p->index == 8594) continue;  // the order itself
+    EXPECT_EQ(store.eeprom_writes(p->index), was + (p->index == 8470 || p->index == 8600 ? 1 : 0))
+        << p->index;
+  }
+}
+
+// Displays that are kept (counters, error memory) have what the drive once counted: no range of a setting holds
+// for them. A setting out of its range is dropped.
+TEST_F(Md60a, WhatWasKeptComesBack) {
+  size_t displays = 0, settings = 0;
+  for (const stdlib::Parameter* p : store.table().by_index()) {
+    if (!p->nonvolatile) continue;
+    for (const int32_t value : {INT32_MIN, -1, 0, INT32_MAX}) {
+      const std::pair<uint16_t, int32_t> kept[] = {{p->index, value}};
+      const std::vector<uint16_t> dropped = store.restore(kept);
+      const bool fits = p->number_of(value) >= p->minimum() && p->number_of(value) <= p->maximum();
+      if (!p->writable) {
+        EXPECT_TRUE(dropped.empty()) << p->index;
+        EXPECT_EQ(store.value(p->index), value) << p->index;
+        displays += !fits;
+      } else if (!fits) {
+        EXPECT_EQ(dropped, std::vector<uint16_t>{p->index});
+        EXPECT_EQ(store.value(p->index), static_cast<int32_t>(p->default_value)) << p->index;
+        ++settings;
+      }
+    }
+  }
+  EXPECT_GT(displays, 0U);
+  EXPECT_GT(settings, 100U);
+}
+
 TEST_F(Md60a, ResetStatistics) {
   store.set_display(8330, 5);
   store.set_display(8328, 6);

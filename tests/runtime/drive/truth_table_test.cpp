@@ -6,6 +6,7 @@ namespace ipos::tests {
 namespace {
 
 using runtime::Command;
+using runtime::InputFunction;
 
 enum class Told { Inhibit, Emergency, Rapid, Stop, Hold, Enable };
 
@@ -128,6 +129,33 @@ TEST(TruthTable, Movidrive) {
     }
   std::printf("%d combinations\n", combinations);
   EXPECT_EQ(combinations, 20 * 4096);
+}
+
+// A travel has its direction itself, so it needs no input with one; but an input that has one, CW or CCW, and is 0,
+// stops it (ours). Functions of three inputs: none, CW or CCW; all levels.
+TEST(TruthTable, PositioningAndTheDirectionInputs) {
+  for (unsigned functions = 0; functions < 27; ++functions)
+    for (unsigned levels = 0; levels < 8; ++levels) {
+      std::array<uint8_t, 16> table{};
+      bool any = false, set = false;
+      unsigned rest = functions;
+      for (size_t n = 0; n < 3; ++n, rest /= 3) {
+        constexpr InputFunction kFunctions[] = {InputFunction::None, InputFunction::Cw, InputFunction::Ccw};
+        table[n + 1] = static_cast<uint8_t>(kFunctions[rest % 3]);
+        any |= rest % 3 != 0;
+        set |= rest % 3 != 0 && bit(levels, static_cast<unsigned>(n));
+      }
+      runtime::ControlInputs in;
+      in.terminals = runtime::Terminals(static_cast<uint16_t>(levels << 1), table);
+      in.positioning = true;
+      in.cw = in.terminals.on(InputFunction::Cw);
+      in.ccw = in.terminals.on(InputFunction::Ccw);
+      const runtime::Verdict verdict = runtime::decide_locally(in);
+      EXPECT_EQ(verdict.command, set || !any ? Command::Enable : Command::Stop) << functions << " " << levels;
+      in.positioning = false;
+      EXPECT_EQ(runtime::decide_locally(in).command, in.cw != in.ccw ? Command::Enable : Command::Stop)
+          << functions << " " << levels;
+    }
 }
 
 // Three-wire control (P101 = 4, ours): a pulse starts, ENABLE/STOP = 0 ends, the other direction takes over.

@@ -110,6 +110,23 @@ TEST(LinearRamp, TargetAndTimeChangeOnTheWay) {
   }
 }
 
+// From a change of the time on the ramp is what it would be had it begun there: what the old slope has not divided
+// yet is not the new one's.
+TEST(LinearRamp, AnotherTimeBeginsWithoutARest) {
+  for (const uint32_t first : {7U, 333U, 997U, 1'777U, 1'999'999U})
+    for (const uint32_t second : {3U, 11U, 701U, 2'009U, 1'999'993U})
+      for (const int before : {1, 2, 5, 40}) {
+        Ramp ramp(kMovidrive), fresh(kMovidrive);
+        for (int n = 0; n < before; ++n) ramp.step(fine_speed(5'500'000), all(first));
+        fresh.set(ramp.output());
+        for (int n = 1; n <= 3'000; ++n) {
+          ramp.step(fine_speed(5'500'000), all(second));
+          fresh.step(fine_speed(5'500'000), all(second));
+          ASSERT_EQ(ramp.output(), fresh.output()) << first << " then " << second << ", after " << n << " ms";
+        }
+      }
+}
+
 TEST(LinearRamp, NoDriftOn2000Seconds) {
   Ramp ramp(kMovidrive);
   const RampTimes times = all(1'999'999);

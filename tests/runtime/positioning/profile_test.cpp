@@ -228,6 +228,106 @@ TEST(Profile, StopEndsAtTheNextIncrementInReach) {
   EXPECT_NEAR(run.ticks, 500, 1);
 }
 
+// Both ways, from every millisecond of a start: the stop ends at the first whole increment that the brake, v² / 2a
+// long, does not have to pass, and the shaft stays on this side of it.
+TEST(Profile, StopEndsAtTheNextIncrementEitherWay) {
+  for (const int way : {1, -1})
+    for (const int32_t down_ms : {90, 700, 1000})
+      for (int at = 1; at < 400; at += 3) {
+        SCOPED_TRACE(testing::Message()
+                     << "way " << way << ", ramp " << down_ms << ", after " << at << " ms");
+        Profile profile;
+        const TravelRules r = rules(1500, 613, down_ms);
+        profile.hold(fine(1234), 0);
+        profile.run(way, r);
+        for (int n = 0; n < at; ++n) profile.tick();
+        const double speed = std::min(1500.0 * 4096 / 60000, at * ClosedForm(1, 1500, 613, down_ms).up);
+        const double brake = speed * speed / 2 / ClosedForm(1, 1500, 613, down_ms).down;
+        const double here = static_cast<double>(profile.position()) / kIncrement;
+        const int64_t end = profile.stop_position(r);
+        const double beyond = way * (static_cast<double>(end) - (here + way * brake));
+        ASSERT_GE(beyond, -0.001);
+        ASSERT_LT(beyond, 1.001);
+        profile.stop(r);
+        const Journey run = run_out(profile);
+        ASSERT_EQ(profile.position(), fine(end));
+        ASSERT_EQ(way > 0 ? run.highest : run.lowest, fine(end));
+      }
+}
+
+// Counting that moves (reference travel, modulo) changes the number of every place and nothing else: at any time of
+// a travel, also of one that turns back, of a run without end and of a stop.
+TEST(Profile, ShiftedOnTheWayItIsTheSameTravel) {
+  const std::function<void(Profile&, const TravelRules&)> kOrders[] = {
+      [](Profile& p, const TravelRules& r) { p.travel(12'000, r, Goal::New); },
+      [](Profile& p, const TravelRules& r) { p.travel(-300, r, Goal::New); },
+      [](Profile& p, const TravelRules& r) { p.run(-1, r); },
+      [](Profile& p, const TravelRules& r) { p.stop(r); },
+  };
+  for (const auto shape : {RampShape::Linear, RampShape::Sine, RampShape::Squared})
+    for (const auto& order : kOrders)
+      for (int at = 0; at < 700; at += 29)
+        for (const int64_t change : {1, -4096, 1'000'000}) {
+          const TravelRules r = rules(1500, 300, 200, shape);
+          Profile plain;
+          plain.run(1, r);
+          for (int n = 0; n < 170; ++n) plain.tick();
+          order(plain, r);
+          for (int n = 0; n < at; ++n) plain.tick();
+          Profile shifted = plain;
+          shifted.shift(change);
+          for (int n = 0; n < 600; ++n) {
+            ASSERT_EQ(shifted.position(), plain.position() + fine(change)) << at << " + " << n << " ms";
+            ASSERT_EQ(shifted.speed(), plain.speed());
+            ASSERT_EQ(shifted.at_rest(), plain.at_rest());
+            plain.tick();
+            shifted.tick();
+          }
+        }
+}
+
+// A lower top speed is reached on the ramp down, a higher one on the ramp up, both ways, in travels and in runs.
+TEST(Profile, EveryChangeOfSpeedHasItsOwnRamp) {
+  for (const int way : {1, -1})
+    for (const bool endless : {false, true}) {
+      const auto order = [&](Profile& p, int32_t rpm) {
+        const TravelRules r = rules(rpm, 2000, 500);
+        if (endless)
+          p.run(way, r);
+        else
+          p.travel(way * 1'000'000, r, Goal::Kept);
+      };
+      const auto rpm_after = [&](Profile& p, int ms) {
+        for (int n = 0; n < ms; ++n) p.tick();
+        return way * static_cast<double>(speed_of_rate(p.speed(), {})) / 1000;
+      };
+      Profile p;
+      order(p, 1500);
+      EXPECT_NEAR(rpm_after(p, 500), 750, 0.01);  // 3000 rpm in 2000 ms
+      EXPECT_NEAR(rpm_after(p, 500), 1500, 0.01);
+      order(p, 600);
+      EXPECT_NEAR(rpm_after(p, 100), 900, 0.01);  // 3000 rpm in 500 ms
+      EXPECT_NEAR(rpm_after(p, 50), 600, 0.01);
+      EXPECT_NEAR(rpm_after(p, 50), 600, 0.01);
+      order(p, 1200);
+      EXPECT_NEAR(rpm_after(p, 200), 900, 0.01);
+      EXPECT_NEAR(rpm_after(p, 200), 1200, 0.01);
+    }
+}
+
+// Less than half an increment from the target: with a travel speed the travel is over at once, without one the axis
+// may not move, not even so little.
+TEST(Profile, NextToTheTarget) {
+  for (const Fine off : {kIncrement / 4, -kIncrement / 4})
+    for (const int32_t rpm : {0, 1500}) {
+      Profile profile;
+      profile.hold(fine(10) + off, 0);
+      profile.travel(10, rules(rpm, 1000, 1000), Goal::New);
+      run_out(profile);
+      EXPECT_EQ(profile.position(), rpm == 0 ? fine(10) + off : fine(10)) << rpm;
+    }
+}
+
 TEST(RampShapes, AreSymmetric) {
   for (const auto shape : {RampShape::Linear, RampShape::Sine, RampShape::Squared}) {
     EXPECT_EQ(speed_share(shape, 0), 0);

@@ -143,6 +143,14 @@ TEST_F(ObjectsSlowBus, OverloadIsRefused) {
   EXPECT_EQ(outbox_.sent.size(), 2U);
 }
 
+// 70 % of 125 kBit/s are 87 500 bit/s. A frame has 55 + 10 n bits: 55 000 of one without data each ms and 32 500 of
+// one with a byte every 2 ms are the budget to the bit.
+TEST_F(ObjectsSlowBus, TheWholeBudgetMayBeUsed) {
+  EXPECT_EQ(cyclic(1024, 1, 0, 0), 37);
+  EXPECT_EQ(cyclic(1025, 2, 0, 1), 0) << "nothing is left, but it fits";
+  EXPECT_EQ(cyclic(1026, 65'530, 0, 0), kBusOverload);
+}
+
 TEST_F(ObjectsM07, HasOnlySlowObjects) {
   EXPECT_EQ(cyclic(1024, 9), kWrongCycleTime);
   for (int32_t n = 0; n < 10; ++n) EXPECT_GE(cyclic(1024 + n, 10), 0);

@@ -205,6 +205,28 @@ TEST_F(Slots, FailuresLeaveTheOldState) {
   EXPECT_EQ(load().text, "cannot be read: read error");
 }
 
+// A payload as long as a slot has room for comes back; the header may not promise a byte more, which would be the
+// next slot's.
+TEST_F(Slots, TheLongestPayload) {
+  constexpr size_t kRoom = kSlotStride - 16 - 4;  // header and checksum
+  NvContent content;
+  content.program = NvProgram{7, std::vector<uint32_t>(1)};
+  const size_t bare = encode(content).size();
+  content.program->words.resize(1 + (kRoom - bare) / 4, 0x12345678);
+  ASSERT_LE(encode(content).size(), kRoom);
+  ASSERT_GT(encode(content).size() + 4, kRoom);
+  SlotStore store(medium_, kUnit);
+  store.load();
+  ASSERT_EQ(store.save(content), std::nullopt);
+  EXPECT_EQ(load().content, content);
+  const auto says = [&](size_t length) {
+    for (size_t n = 0; n < 4; ++n) state_->bytes[12 + n] = static_cast<uint8_t>(length >> (8 * n));
+    return load().text;
+  };
+  EXPECT_NE(says(kRoom + 1).find("wrong length in its header"), std::string::npos) << says(kRoom + 1);
+  EXPECT_EQ(says(kRoom).find("wrong length in its header"), std::string::npos);
+}
+
 TEST_F(Slots, TooMuchIsRefused) {
   NvContent content;
   content.program = NvProgram{0, std::vector<uint32_t>(kSlotStride / 4)};
