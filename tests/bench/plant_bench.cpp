@@ -192,8 +192,13 @@ double cpu_seconds() {
   return static_cast<double>(used.tv_sec) + static_cast<double>(used.tv_nsec) * 1e-9;
 }
 
+// In place of an engine: every tick in its turn, as with ipos run --no-skip.
+constexpr std::string_view kInTurn = "in-turn";
+
 void measure(const Kind& kind, int drives, bool bus, int seconds, const std::string& engine = {}) {
-  const auto plant = make(kind, drives, bus, tools::execution_of(engine));
+  runtime::Execution execution = tools::execution_of(engine == kInTurn ? "" : engine);
+  if (engine == kInTurn) execution.pace = runtime::Pace::InTurn;
+  const auto plant = make(kind, drives, bus, execution);
   Frames frames;
   plant->add_observer(frames);
   plant->run_until(runtime::kSecond);  // everything runs, no vector grows any more
@@ -216,7 +221,7 @@ void measure(const Kind& kind, int drives, bool bus, int seconds, const std::str
 }  // namespace
 }  // namespace ipos
 
-// ipos_bench_plant [SECONDS [DRIVES busy|travel|idle [ENGINE]]]
+// ipos_bench_plant [SECONDS [DRIVES busy|travel|idle [ENGINE|in-turn]]]
 int main(int argc, char** argv) {
   using ipos::kKinds;
   const int seconds = argc > 1 ? std::atoi(argv[1]) : 10;
