@@ -1,15 +1,22 @@
-# ipos_batches(TARGET): in the optimised build of g++ several sources of a library are compiled in one go. Most of the time
-# of a small source goes into the headers, which a batch reads once. Names of anonymous namespaces differ in a folder.
+# ipos_batches(TARGET [SIZE n] [HOT source...]): in the optimised build of g++ several sources of a library are compiled in
+# one go, n at most. Most of the time of a small source goes into the headers, which a batch reads once. Names of anonymous
+# namespaces differ in a library. HOT sources are what every millisecond and every frame goes through: each is compiled by
+# itself, so that its neighbours do not change what is inlined into it.
 #
 # The daily build (preset dev) compiles each source alone, so that a change of one costs one; clang does so, too.
 function(ipos_batches target)
+  cmake_parse_arguments(BATCH "" "SIZE" "HOT" ${ARGN})
+  if(NOT BATCH_SIZE)
+    set(BATCH_SIZE 10)
+  endif()
   if(CMAKE_BUILD_TYPE STREQUAL Release AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 10)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${BATCH_SIZE})
+    set_source_files_properties(${BATCH_HOT} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   endif()
 endfunction()
 
-# ipos_not_hot(TARGET): batches, and the optimiser does less. Not for what executes programs, drives and buses.
+# ipos_not_hot(TARGET [SIZE n]): batches, and the optimiser does less. Not for what executes programs, drives and buses.
 function(ipos_not_hot target)
-  ipos_batches(${target})
+  ipos_batches(${target} ${ARGN})
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()

@@ -10,3 +10,4 @@ ipos_layer(runtime
           plant/plant_signals.cpp plant/surroundings.cpp plant/plant.cpp
   USES unit vm image bus scom drive positioning motion storage stdlib
   LIBS fmt::fmt)
+ipos_batches(ipos_runtime SIZE 20 HOT plant/sbus_port.cpp plant/station.cpp plant/surroundings.cpp plant/plant.cpp)

@@ -10,3 +10,6 @@ ipos_layer(unit
           unit/unit.cpp unit/unit_reports.cpp unit/unit_power.cpp unit/program_reach.cpp unit/many_ticks.cpp
   USES vm image bus scom drive positioning motion storage stdlib pace
   LIBS fmt::fmt)
+ipos_batches(ipos_unit SIZE 20
+             HOT unit/unit.cpp unit/timers.cpp unit/mirrored_values.cpp unit/positioning_service.cpp unit/program_reach.cpp
+                 unit/many_ticks.cpp)

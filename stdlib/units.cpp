@@ -21,7 +21,7 @@ struct UnitRow {
   int conversion;
   std::string_view abbreviation;
 };
-constexpr UnitRow kUnits[] = {
+constexpr UnitRow kUnitRows[] = {
 #define UNIT_OF(quantity, conversion, name, abbreviation) {quantity, conversion, abbreviation},
 #include "stdlib/units.def"
 };
@@ -51,13 +51,13 @@ std::string_view quantity_name(uint8_t quantity) {
 }
 
 std::string_view unit_abbreviation(uint8_t quantity, int conversion) {
-  for (const UnitRow& row : kUnits)
+  for (const UnitRow& row : kUnitRows)
     if (row.quantity == quantity && row.conversion == conversion) return row.abbreviation;
   return {};
 }
 
 std::optional<int> find_unit_conversion(uint8_t quantity, std::string_view abbreviation) {
-  for (const UnitRow& row : kUnits)
+  for (const UnitRow& row : kUnitRows)
     if (row.quantity == quantity && row.abbreviation == abbreviation) return row.conversion;
   return std::nullopt;
 }

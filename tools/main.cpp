@@ -5,43 +5,26 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <iterator>
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "tools/cli/commit.hpp"
 #include "tools/cli/end_of_process.hpp"
 #include "tools/cli/parser.hpp"
-#include "tools/cli/verbs.hpp"
+#include "tools/program_verbs.hpp"
 
 namespace {
-
-struct Row {
-  std::string_view name;
-  void (*add)(ipos::tools::cli::Verb& program);
-};
-
-// In the order of --help.
-constexpr Row kVerbs[] = {
-    {"build", ipos::tools::add_build},     {"asm", ipos::tools::add_asm},
-    {"disasm", ipos::tools::add_disasm},   {"verify", ipos::tools::add_verify},
-    {"run", ipos::tools::add_run},         {"test", ipos::tools::add_test},
-    {"bus", ipos::tools::add_bus},         {"param", ipos::tools::add_param},
-    {"watch", ipos::tools::add_watch},     {"scan", ipos::tools::add_scan},
-    {"explain", ipos::tools::add_explain}, {"fmt", ipos::tools::add_fmt},
-    {"lsp", ipos::tools::add_lsp},         {"debug", ipos::tools::add_debug},
-    {"dap", ipos::tools::add_dap},         {"completion", ipos::tools::add_completion},
-    {"man", ipos::tools::add_man},         {"new", ipos::tools::add_new},
-};
 
 // All verbs cost a third of the start of a short run: only the one asked for is made. Help, mistakes and the
 // two that write about all verbs get them all.
 void add_verbs(ipos::tools::cli::Verb& program, std::string_view asked) {
-  const auto* const one = std::find_if(std::begin(kVerbs), std::end(kVerbs),
-                                       [asked](const Row& row) { return row.name == asked; });
+  const std::span<const ipos::tools::VerbRow> verbs = ipos::tools::program_verbs();
+  const auto one =
+      std::find_if(verbs.begin(), verbs.end(), [asked](const auto& row) { return row.name == asked; });
   const bool about_all = asked == "completion" || asked == "man";
-  if (one != std::end(kVerbs) && !about_all) return one->add(program);
-  for (const Row& row : kVerbs) row.add(program);
+  if (one != verbs.end() && !about_all) return one->add(program);
+  for (const auto& row : verbs) row.add(program);
 }
 
 int run(int argc, char** argv) {

@@ -4,7 +4,6 @@
 namespace ipos::runtime::canopen {
 namespace {
 
-constexpr Time kInhibitUnit = 100 * kMicrosecond;
 constexpr size_t kMostWaiting = 16;  // the oldest ones go (ours)
 constexpr uint8_t kMostErrors = 5;   // entries of 1003h
 

@@ -7,7 +7,7 @@
 namespace ipos::runtime::canopen {
 namespace {
 
-enum TimerKind : uint32_t { kProduce, kGuard, kConsume };
+enum ErrorControlTimer : uint32_t { kProduce, kGuard, kConsume };
 
 constexpr uint8_t kToggleBit = 0x80;
 

@@ -10,9 +10,9 @@ namespace ipos::runtime::canopen {
 namespace {
 
 // Kind of a timer: what it is for, and the number of the node behind it.
-enum TimerKind : uint32_t { kSync, kHeartbeat, kSdo, kGuard, kLife };
+enum MasterTimer : uint32_t { kSyncTimer, kHeartbeatTimer, kSdoTimer, kGuardTimer, kLifeTimer };
 constexpr uint32_t kKinds = 5;
-constexpr uint32_t kind_of(TimerKind kind, size_t node) {
+constexpr uint32_t kind_of(MasterTimer kind, size_t node) {
   return static_cast<uint32_t>(node) * kKinds + kind;
 }
 
@@ -88,38 +88,38 @@ void Master::start(Time now, FrameSender& sender) {
   const Place place{queue_, source_, sender, 0};
   Timer::Owner& owner = *this;
   for (size_t n = 0; n < links_.size(); ++n) {
-    links_[n].sdo_timer.emplace(place, owner, kind_of(kSdo, n));
-    links_[n].guard_timer.emplace(place, owner, kind_of(kGuard, n));
-    links_[n].life_timer.emplace(place, owner, kind_of(kLife, n));
+    links_[n].sdo_timer.emplace(place, owner, kind_of(kSdoTimer, n));
+    links_[n].guard_timer.emplace(place, owner, kind_of(kGuardTimer, n));
+    links_[n].life_timer.emplace(place, owner, kind_of(kLifeTimer, n));
   }
-  sync_timer_.emplace(place, owner, kSync);
-  heartbeat_timer_.emplace(place, owner, kHeartbeat);
+  sync_timer_.emplace(place, owner, kSyncTimer);
+  heartbeat_timer_.emplace(place, owner, kHeartbeatTimer);
   command(NmtCommand::ResetCommunication, 0);
   if (settings_.sync_cycle > 0) sync_timer_->start(now + settings_.sync_cycle);
-  if (settings_.heartbeat > 0) on_timer(now, kHeartbeat);
+  if (settings_.heartbeat > 0) on_timer(now, kHeartbeatTimer);
 }
 
 void Master::command(NmtCommand command, uint8_t node) { sender_->send(nmt_frame(command, node), kCommands); }
 
 void Master::on_timer(Time now, uint32_t kind) {
   const size_t node = kind / kKinds;
-  switch (static_cast<TimerKind>(kind % kKinds)) {
-    case kSync: return cycle(now);
-    case kHeartbeat:
+  switch (static_cast<MasterTimer>(kind % kKinds)) {
+    case kSyncTimer: return cycle(now);
+    case kHeartbeatTimer:
       sender_->send_latest({identifier(Connection::ErrorControl, settings_.node),
                             1,
                             {static_cast<uint8_t>(State::Operational)}},
                            kHeartbeats);
       heartbeat_timer_->start(now + Time{settings_.heartbeat} * kMillisecond);
       return;
-    case kSdo:
+    case kSdoTimer:
       sender_->send_latest(
           {identifier(Connection::SdoRequest, settings_.nodes[node].node), 8, links_[node].client.expire()},
           tag_of(node, kRequests));
       links_[node].report.phase = Phase::Lost;
       ++links_[node].report.losses;
       return;
-    case kGuard: {
+    case kGuardTimer: {
       const NodePlan& plan = settings_.nodes[node];
       Frame request{identifier(Connection::ErrorControl, plan.node), 1};
       request.remote = true;
@@ -127,7 +127,7 @@ void Master::on_timer(Time now, uint32_t kind) {
       links_[node].guard_timer->start(now + Time{plan.guard_time} * kMillisecond);
       return;
     }
-    case kLife:
+    case kLifeTimer:
       links_[node].report.phase = Phase::Lost;
       ++links_[node].report.losses;
       links_[node].toggle.reset();
@@ -226,7 +226,7 @@ void Master::write_next(Time now, size_t node) {
   }
   link.report.phase = Phase::Running;
   command(NmtCommand::Start, settings_.nodes[node].node);
-  if (settings_.nodes[node].guard_time != 0) on_timer(now, kind_of(kGuard, node));
+  if (settings_.nodes[node].guard_time != 0) on_timer(now, kind_of(kGuardTimer, node));
   watch(now, node);
 }
 

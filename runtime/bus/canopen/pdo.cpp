@@ -4,9 +4,7 @@
 namespace ipos::runtime::canopen {
 namespace {
 
-enum TimerKind : uint32_t { kInhibit, kEventTime };
-
-constexpr Time kInhibitUnit = 100 * kMicrosecond;
+enum PdoTimer : uint32_t { kInhibit, kEventTime };
 
 constexpr uint16_t entry_index(uint16_t first, uint8_t number) {
   return static_cast<uint16_t>(first + number);

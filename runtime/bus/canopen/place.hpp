@@ -9,6 +9,8 @@
 
 namespace ipos::runtime::canopen {
 
+constexpr Time kInhibitUnit = 100 * kMicrosecond;  // of inhibit times, in 1015h and in PDO parameters (CiA 301)
+
 struct Place {
   EventQueue& queue;
   uint32_t source;

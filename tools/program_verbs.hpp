@@ -1,0 +1,20 @@
+// Which verbs a program has. `ipos` has all of them (all_verbs.cpp). `ipos-demo`, which `./dev demo` builds, has
+// what it takes to build and run (demo_verbs.cpp), so that a first look needs a third less to be compiled.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "tools/cli/verb.hpp"
+
+namespace ipos::tools {
+
+struct VerbRow {
+  std::string_view name;
+  void (*add)(cli::Verb& program);
+};
+
+// In the order of --help.
+std::span<const VerbRow> program_verbs();
+
+}  // namespace ipos::tools
