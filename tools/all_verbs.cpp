@@ -6,11 +6,25 @@ namespace ipos::tools {
 namespace {
 
 constexpr VerbRow kVerbs[] = {
-    {"build", add_build}, {"asm", add_asm},     {"disasm", add_disasm},   {"verify", add_verify},
-    {"run", add_run},     {"test", add_test},   {"bus", add_bus},         {"param", add_param},
-    {"watch", add_watch}, {"scan", add_scan},   {"explain", add_explain}, {"fmt", add_fmt},
-    {"lsp", add_lsp},     {"debug", add_debug}, {"dap", add_dap},         {"completion", add_completion},
-    {"man", add_man},     {"new", add_new},
+    {"build", add_build},
+    {"asm", add_asm},
+    {"disasm", add_disasm},
+    {"verify", add_verify},
+    {"run", add_run},
+    {"test", add_test},
+    {"bus", add_bus},
+    {"canopen", add_canopen},
+    {"param", add_param},
+    {"watch", add_watch},
+    {"scan", add_scan},
+    {"explain", add_explain},
+    {"fmt", add_fmt},
+    {"lsp", add_lsp},
+    {"debug", add_debug},
+    {"dap", add_dap},
+    {"completion", add_completion},
+    {"man", add_man},
+    {"new", add_new},
 };
 
 }  // namespace

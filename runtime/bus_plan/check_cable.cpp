@@ -46,10 +46,10 @@ class CableCheck {
       find(FindingKind::TooManyStations,
            fmt::format("{} stations, at most {} may share the line", roster_.members.size(), kMostStations));
     for (const Member& member : roster_.members)
-      if (member.port != nullptr && member.port->settings().baud != roster_.config->baud)
+      if (member.station != nullptr && settings_of(member).baud != roster_.config->baud)
         find(FindingKind::BaudRate,
              fmt::format("{} is set to {} kbaud ({}), the line has {} kbaud: it neither hears nor answers",
-                         member.name, member.port->settings().baud / 1000,
+                         member.name, settings_of(member).baud / 1000,
                          member.station->config().unit->generation != stdlib::Generation::B ? "P816"
                          : member.sbus == 1                                                 ? "P884"
                                                                                             : "P894",
@@ -60,7 +60,8 @@ class CableCheck {
     const uint32_t limit = cable_limit(roster_.config->baud);
     const uint32_t length = (roster_.config->length_mm + 999) / 1000;
     if (length > limit)
-      find(FindingKind::LineTooLong, fmt::format("{} m of cable, at {} kbaud at most {} m", length, roster_.config->baud / 1000, limit));
+      find(FindingKind::LineTooLong, fmt::format("{} m of cable, at {} kbaud at most {} m", length,
+                                                 roster_.config->baud / 1000, limit));
   }
 
   void cable() {

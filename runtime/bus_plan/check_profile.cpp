@@ -42,12 +42,20 @@ class ProfileCheck {
       for (size_t a = 0; a < b; ++a) {
         const Member& first = roster_.members[a];
         const Member& second = roster_.members[b];
+        if (first.canopen != nullptr && second.canopen != nullptr) nodes(first, second);
         if (first.port == nullptr || second.port == nullptr) continue;
         const uint8_t address = first.port->settings().slave.address;
         if (address == second.port->settings().slave.address)
           find(FindingKind::DoubleAddress,
                fmt::format("{} and {} both have SBus address {}", first.name, second.name, address));
       }
+  }
+
+  void nodes(const Member& first, const Member& second) {
+    const uint8_t node = first.canopen->settings().canopen_address;
+    if (node == second.canopen->settings().canopen_address)
+      find(FindingKind::DoubleAddress,
+           fmt::format("{} and {} both have CANopen address {}", first.name, second.name, node));
   }
 
   void senders(const PlannedIdentifier& identifier) {
@@ -171,7 +179,7 @@ class ProfileCheck {
   }
 
   void master_slave(const Member& member) {
-    if (member.sbus != 1) return;
+    if (member.sbus != 1 || member.port == nullptr) return;
     const uint8_t group = member.port->settings().slave.group;
     if (is_group_master(member)) {
       if (!member.port->group_master().active())
@@ -179,7 +187,7 @@ class ProfileCheck {
              fmt::format("{} is a master (P750), but master/slave operation needs 500 or 1000 kbaud, not {}",
                          member.name, roster_.config->baud / 1000));
       const auto follows_it = [&](const Member& other) {
-        return &other != &member && other.station != nullptr && other.port->settings().slave.group == group &&
+        return &other != &member && other.port != nullptr && other.port->settings().slave.group == group &&
                other.station->drive().value("100") == kMasterSbus;
       };
       if (std::none_of(roster_.members.begin(), roster_.members.end(), follows_it))
@@ -189,8 +197,7 @@ class ProfileCheck {
     }
     if (member.station->drive().value("100") != kMasterSbus) return;
     const auto leads = [&](const Member& other) {
-      return &other != &member && other.station != nullptr && is_group_master(other) &&
-             other.port->settings().slave.group == group;
+      return &other != &member && is_group_master(other) && other.port->settings().slave.group == group;
     };
     if (std::none_of(roster_.members.begin(), roster_.members.end(), leads))
       find(FindingKind::MasterSlave,

@@ -7,6 +7,8 @@
 #include <map>
 #include <set>
 
+#include "runtime/bus_plan/canopen_messages.hpp"
+
 namespace ipos::runtime {
 namespace {
 
@@ -55,6 +57,13 @@ class Collector {
   std::map<uint32_t, std::vector<PlannedUse>> entries_;
 };
 
+// What a node sends and takes by its dictionary, as far as the trial has come.
+void add_canopen(const Member& member, Collector& collector) {
+  if (member.canopen == nullptr || member.canopen->canopen() == nullptr) return;
+  for (const CanopenMessage& message : canopen_messages(*member.canopen->canopen()))
+    collector.add(message.id, {member.name, message.what, message.transmits, true});
+}
+
 void add_sync(const Member& member, Collector& collector) {
   if (member.port != nullptr && member.port->settings().slave.synchronous)
     collector.add(member.port->settings().slave.sync_id, {member.name, "sync telegram", false, true});
@@ -79,6 +88,7 @@ std::vector<PlannedIdentifier> planned_identifiers(const LineRoster& roster) {
   for (const Member& member : roster.members) {
     for (const IdentifierUse& use : movilink_uses(member))
       collector.add(use.id, {member.name, telegram_name(use.telegram, use.address), use.transmits, true});
+    add_canopen(member, collector);
     add_sync(member, collector);
     add_objects(member, collector);
   }

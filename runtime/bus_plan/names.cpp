@@ -62,6 +62,31 @@ TelegramNames telegram_names(const Plant& plant, const CanLine* line) {
   return names;
 }
 
+namespace {
+
+std::vector<canopen::NodeName> node_names(const Plant& plant, const CanLine* line) {
+  std::vector<canopen::NodeName> names;
+  for (const auto& station : plant.stations())
+    for (const int number : {1, 2}) {
+      const CanopenPort* port = std::as_const(*station).canopen(number);
+      if (port == nullptr || (line != nullptr && &port->line() != line)) continue;
+      const StationConfig& config = station->config();
+      names.push_back({port->settings().canopen_address, config.name, config.unit,
+                       assignment(station->drive(), 870), assignment(station->drive(), 873)});
+    }
+  return names;
+}
+
+}  // namespace
+
+CanNames can_names(const Plant& plant) {
+  CanNames names;
+  names.all = {telegram_names(plant), node_names(plant, nullptr)};
+  for (const auto& line : plant.lines())
+    names.lines[line->name()] = {telegram_names(plant, line.get()), node_names(plant, line.get())};
+  return names;
+}
+
 TelegramNames serial_names(const Plant& plant) {
   TelegramNames names;
   for (const auto& station : plant.stations()) {

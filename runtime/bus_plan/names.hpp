@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "runtime/bus/can_words.hpp"
 #include "runtime/bus/movilink/describe.hpp"
 #include "runtime/plant/plant.hpp"
 
@@ -13,6 +14,9 @@ std::string variable_name(const vm::Image* image, uint32_t variable);
 
 // Units and the objects they have defined so far; of one line, or of all when it is null.
 TelegramNames telegram_names(const Plant& plant, const CanLine* line = nullptr);
+
+// For all CAN lines of the plant.
+CanNames can_names(const Plant& plant);
 
 // The same for RS-485: P810 as address, P811 as group, no objects.
 TelegramNames serial_names(const Plant& plant);

@@ -32,14 +32,17 @@ std::vector<LineRoster> line_rosters(const Plant& plant) {
     for (const auto& station : plant.stations())
       for (const int number : {1, 2}) {
         const SbusPort* port = station->sbus(number);
-        if (port == nullptr || &port->line() != roster.line) continue;
+        const CanopenPort* canopen = station->canopen(number);
+        if ((port == nullptr || &port->line() != roster.line) &&
+            (canopen == nullptr || &canopen->line() != roster.line))
+          continue;
         const StationConfig& config = station->config();
-        roster.members.push_back({config.name, station.get(), port, number, nullptr, config.terminator,
-                                  config.branch, config.place.line});
+        roster.members.push_back({config.name, station.get(), port, canopen, number, nullptr,
+                                  config.terminator, config.branch, config.place.line});
       }
     for (const PlantControl& control : plant.controls())
       if (control.line == roster.line)
-        roster.members.push_back({control.config->name, nullptr, nullptr, 1, &control,
+        roster.members.push_back({control.config->name, nullptr, nullptr, nullptr, 1, &control,
                                   control.config->terminator, false, control.config->place.line});
     std::stable_sort(roster.members.begin(), roster.members.end(),
                      [](const Member& a, const Member& b) { return a.place < b.place; });

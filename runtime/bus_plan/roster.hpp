@@ -13,7 +13,8 @@ namespace ipos::runtime {
 struct Member {
   std::string name;
   const Station* station = nullptr;  // null: a master control
-  const SbusPort* port = nullptr;
+  const SbusPort* port = nullptr;    // null: a node of CANopen, or a control
+  const CanopenPort* canopen = nullptr;
   int sbus = 1;  // 1 or 2
   const PlantControl* control = nullptr;
   std::optional<bool> terminator;
@@ -29,6 +30,11 @@ struct LineRoster {
   const Member* slave_at(uint8_t address) const;
   bool has_group(uint8_t group) const;
 };
+
+// Of a station on a line.
+inline const SbusSettings& settings_of(const Member& member) {
+  return member.port != nullptr ? member.port->settings() : member.canopen->settings();
+}
 
 std::vector<LineRoster> line_rosters(const Plant& plant);
 

@@ -7,6 +7,7 @@
 
 #include "runtime/bus/can/frame_bits.hpp"
 #include "runtime/bus/movilink/master_slave.hpp"
+#include "runtime/bus_plan/canopen_messages.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -22,6 +23,7 @@ class Traffic {
       : roster_(roster), seen_(seen), options_(options) {
     for (const Member& member : roster.members) {
       if (member.control != nullptr) add_control(member);
+      if (member.canopen != nullptr && member.canopen->canopen() != nullptr) add_node(member);
       if (member.port == nullptr) continue;
       add_partners(member);
       add_group_master(member);
@@ -74,6 +76,23 @@ class Traffic {
       if (!target.group)
         add_answer(request, Telegram::ProcessInput, target.address, kProcessBytes, kInputWait,
                    Rhythm::Answer);
+    }
+  }
+
+  // Answers and emergencies are planned as far as the trial showed them. Where no control sends SYNC, its distance
+  // is the assumed one.
+  void add_node(const Member& member) {
+    const canopen::Node& node = *member.canopen->canopen();
+    const uint32_t sync = node.dictionary().value(canopen::objects::kSyncId) & canopen::objects::kIdMask;
+    for (const CanopenMessage& message : canopen_messages(node)) {
+      if (!message.transmits || (message.asked && !seen_.contains(message.id))) continue;
+      const bool cyclic = message.syncs != 0 || message.period != 0;
+      const Time period = message.syncs != 0    ? message.syncs * acyclic_period(sync)
+                          : message.period != 0 ? message.period
+                                                : acyclic_period(message.id);
+      PlannedTelegram& telegram = add(message.id, member.name, message.what, message.bytes,
+                                      cyclic ? Rhythm::Cyclic : Rhythm::Acyclic, period);
+      if (message.syncs != 0) telegram.request = sync;
     }
   }
 

@@ -23,6 +23,7 @@ CanopenPort::CanopenPort(EventQueue& queue, uint32_t source, CanLine& line, std:
       line_(line),
       sbus_(sbus),
       station_(station),
+      settings_(settings),
       journal_(journal),
       server_(door) {
   const canopen::Place place{queue, source, sender_, 1};

@@ -34,6 +34,7 @@ class CanopenPort final : public StationPort,
 
   NodeId node() const { return sender_.node(); }
   CanLine& line() const { return line_; }
+  const SbusSettings& settings() const { return settings_; }
   const canopen::Node* canopen() const { return node_ ? &*node_ : nullptr; }  // null: power is off
 
  private:
@@ -58,6 +59,7 @@ class CanopenPort final : public StationPort,
   CanLine& line_;
   int sbus_;
   std::string_view station_;
+  SbusSettings settings_;
   Journal& journal_;
   UnitServer server_;
   ProcessWords output_{};   // as the master last sent them

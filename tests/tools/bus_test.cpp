@@ -87,6 +87,53 @@ TEST(Bus, RunDecodeLoadAndReplayFitTogether) {
   EXPECT_TRUE(contains(replay.out, "50 of 50 frames replayed on sbus\n")) << replay.out;
 }
 
+// The example of page 55 of 11264926, in words of a plant and without one.
+TEST(Bus, ALogOfCanopen) {
+  const TemporaryFolder folder;
+  folder.write("a.log",
+               "(1000000000.000000) can0 605#4000180200000000\n"
+               "(1000000000.001000) can0 585#4F00180201000000\n"
+               "(1000000000.002000) can0 606#4000180200000000\n");
+  folder.write("plant.toml",
+               "[[bus]]\nname = \"line\"\nkind = \"can\"\n[[station]]\nname = \"saw\"\nunit = "
+               "\"mdxb\"\nsbus = \"line\"\n[station.parameters]\nP880 = 1\nP886 = 5\n");
+  const auto expected = [](const std::string& node) {
+    return "(1000000000.000000) can0 605h SDO read 1800h:2 TPDO1 transmission type -> " + node +
+           "\n(1000000000.001000) can0 585h SDO 1800h:2 TPDO1 transmission type = 1 <- " + node +
+           "\n(1000000000.002000) can0 606h SDO read 1800h:2 TPDO1 transmission type -> node 6\n";
+  };
+  EXPECT_EQ(run_ipos({"bus", "decode", "a.log", "--canopen"}, folder.path()).out, expected("node 5"));
+  EXPECT_EQ(run_ipos({"bus", "decode", "a.log", "--plant", "plant.toml"}, folder.path()).out,
+            expected("saw"));
+  for (const char* station : {"5", "saw"})
+    EXPECT_EQ(
+        run_ipos({"bus", "monitor", "a.log", "--plant", "plant.toml", "--station", station}, folder.path())
+            .out,
+        expected("saw").substr(0, expected("saw").find("(1000000000.002000)")));
+  const CommandResult six =
+      run_ipos({"bus", "monitor", "a.log", "--canopen", "--station", "6"}, folder.path());
+  EXPECT_EQ(six.out, "(1000000000.002000) can0 606h SDO read 1800h:2 TPDO1 transmission type -> node 6\n");
+  const CommandResult nobody =
+      run_ipos({"bus", "monitor", "a.log", "--canopen", "--station", "saw"}, folder.path());
+  EXPECT_EQ(nobody.exit_code, 64);
+}
+
+TEST(Bus, TheDataSheetOfAUnit) {
+  const TemporaryFolder folder;
+  folder.write("plant.toml",
+               "[[station]]\nname = \"a\"\nunit = \"mdxb\"\n[[station]]\nname = \"b\"\nunit = \"md60a\"\n");
+  const CommandResult eds = run_ipos({"canopen", "eds", "--unit", "mdxb"}, folder.path());
+  EXPECT_EQ(eds.exit_code, 0) << eds.err;
+  EXPECT_TRUE(contains(eds.out, "[1018sub1]\nParameterName=Vendor-ID\n")) << eds.out;
+  EXPECT_EQ(run_ipos({"canopen", "eds", "plant.toml", "a"}, folder.path()).out, eds.out);
+  EXPECT_TRUE(contains(run_ipos({"canopen", "eds", "plant.toml", "b"}, folder.path()).err,
+                       "unit md60a has no CANopen"));
+  EXPECT_TRUE(contains(run_ipos({"canopen", "eds", "plant.toml", "c"}, folder.path()).err,
+                       "has no station 'c', only a, b"));
+  EXPECT_TRUE(contains(run_ipos({"canopen", "eds", "plant.toml"}, folder.path()).err, "which station"));
+  EXPECT_EQ(run_ipos({"canopen", "eds"}, folder.path()).exit_code, 64);
+}
+
 TEST(Bus, BadLogLinesAreLocatedAndTheOthersDecoded) {
   const TemporaryFolder folder;
   folder.write("a.log",

@@ -33,7 +33,7 @@ class RunningPlant {
       execl(IPOS_PROGRAM, "ipos", "run", "plant.toml", "--realtime", "--for", "100s", nullptr);
       _exit(127);
     }
-    constexpr int kBuses = 2;
+    constexpr int kBuses = 3;
     for (int n = 0; n < 500; ++n) {
       const std::string text = read_text(err_);
       const std::regex joined("is joined to");
@@ -66,7 +66,11 @@ class Link : public ::testing::Test {
                       "\"\n[[bus]]\nname = \"sbus\"\nkind = \"can\"\nport = \"slcan:pty:" + at("can1") +
                       "\"\n[[station]]\nname = \"unit1\"\nunit = \"mdxb\"\nfirmware = 12\n"
                       "program = \"SCOM1.IPC\"\nsbus = \"sbus\"\nrs485_xt = \"line1\"\n"
-                      "[station.parameters]\nP810 = 3\nP881 = 5\nP130 = \"2.5 s\"\nP131 = \"750 ms\"\n");
+                      "[station.parameters]\nP810 = 3\nP881 = 5\nP130 = \"2.5 s\"\nP131 = \"750 ms\"\n"
+                      "[[bus]]\nname = \"can\"\nkind = \"can\"\nport = \"slcan:pty:" +
+                      at("can2") +
+                      "\"\n[[station]]\nname = \"node\"\nunit = \"mdxb\"\nfirmware = 12\nsbus = \"can\"\n"
+                      "[station.parameters]\nP880 = 1\nP886 = 100\nP130 = \"2.5 s\"\n");
     plant_.emplace(folder_.path());
   }
   std::string at(const std::string& name) const { return (folder_.path() / name).string(); }
@@ -106,6 +110,31 @@ TEST_F(Link, ParametersAreTheSameOverEveryWay) {
   EXPECT_EQ(only_read.out, "P131 Ramp t11 DOWN CW = 1.000 s (was 0.750 s)\n");
   EXPECT_TRUE(contains(only_read.err, "refused: P000 Speed := 1.000 rpm: read access only")) << only_read.err;
   EXPECT_EQ(param("get", serial(), {"P130"}).out, "P130 Ramp t11 UP CW = 3.000 s\n");
+}
+
+// The same parameters by SDO, at an address that only CANopen has.
+TEST_F(Link, ANodeOfCanopen) {
+  const std::vector<std::string> node{"--port", "slcan:" + at("can2"), "--canopen", "--address", "100"};
+  EXPECT_EQ(
+      param("get", node, {"P130", "P886", "P076"}).out,
+      "P130 Ramp t11 UP CW = 2.500 s\nP886 CANopen address SBus 1 = 100\nP076 Firmware basic unit = 822 609 "
+      "7.12\n");
+  EXPECT_EQ(param("set", node, {"P130=3s", "--yes"}).out, "P130 Ramp t11 UP CW = 3.000 s (was 2.500 s)\n");
+  const CommandResult refused = param("set", node, {"P000=1", "--yes"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_TRUE(contains(refused.err, "refused: P000 Speed := 1.000 rpm: read access only")) << refused.err;
+  const CommandResult lost = param("set", node, {"P130=3s", "--volatile"});
+  EXPECT_EQ(lost.exit_code, 64);
+  EXPECT_TRUE(contains(lost.err, "a write over SDO is always stored")) << lost.err;
+  const CommandResult scan =
+      ipos({"scan", "slcan:" + at("can2"), "--canopen", "--from", "98", "--to", "101", "--quiet"});
+  EXPECT_EQ(scan.exit_code, 0) << scan.err;
+  EXPECT_EQ(scan.out.substr(scan.out.find('\n') + 1),
+            "100      MOVIDRIVE MDX60B/61B  822 609 7.12  no fault\n");
+  const CommandResult nobody = ipos({"scan", "slcan:" + at("can2"), "--canopen", "--to", "2", "--quiet"});
+  EXPECT_EQ(nobody.exit_code, 1);
+  EXPECT_TRUE(contains(nobody.err, "nobody answers at 1..2")) << nobody.err;
+  EXPECT_EQ(ipos({"scan", at("line1"), "--canopen"}).exit_code, 64);
 }
 
 TEST_F(Link, SavedFilesAreIdentical) {

@@ -16,8 +16,7 @@ namespace {
 
 struct DecodeFlags {
   std::string log;
-  std::string names;
-  CompileFlags compile;
+  NamesFlags names;
 };
 
 // "(0946684800.000102)" as in the log, so that a line can be found again.
@@ -51,21 +50,22 @@ class Decoder {
 
  private:
   void show(const runtime::LogEntry& entry, size_t line) {
-    if (!names_) names_ = names_of(flags_.names, flags_.compile);
-    const runtime::Description description = runtime::describe(*names_, entry.frame);
+    if (!words_) words_.emplace(can_names_of(flags_.names));
+    const runtime::Description description = words_->describe(entry.bus, entry.frame);
     fmt::print("{} {} {}\n", time_text(entry), compiler::printable(entry.bus), description.text);
     if (!description.known && unknown_.emplace(entry.frame.extended, entry.frame.id).second)
       fmt::print(stderr, "{}:{}:{}: note: nothing is known about identifier {}{}\n", flags_.log, line,
                  identifier_column(entry), entry.frame.id, entry.frame.extended ? " (29 bits)" : "");
   }
   void show(const runtime::SerialEntry& entry) {
-    if (!serial_names_) serial_names_ = serial_names_of(flags_.names, flags_.compile);
-    if (entry.time) fmt::print("{} {} ", runtime::serial_time_text(*entry.time), compiler::printable(entry.line));
+    if (!serial_names_) serial_names_ = serial_names_of(flags_.names.plant, flags_.names.compile);
+    if (entry.time)
+      fmt::print("{} {} ", runtime::serial_time_text(*entry.time), compiler::printable(entry.line));
     fmt::print("{}\n", runtime::describe(*serial_names_, entry.reception));
   }
 
   const DecodeFlags& flags_;
-  std::optional<runtime::TelegramNames> names_;
+  std::optional<runtime::CanWords> words_;
   std::optional<runtime::TelegramNames> serial_names_;
   std::set<std::pair<bool, uint32_t>> unknown_;
 };
@@ -85,8 +85,7 @@ void add_bus_decode(cli::Verb& bus) {
   verb.option("LOG", flags->log,
               "candump log, log of --serial-log, or RS-485 telegrams in hexadecimal; - is standard input")
       .required();
-  add_names_option(verb, flags->names);
-  add_compile_options(verb, flags->compile);
+  add_names_options(verb, flags->names);
   verb.footer("Example:\n  ipos bus decode can.log --names examples/scom/scom.toml");
   verb.runs([flags] { return decode(*flags); });
 }

@@ -46,6 +46,13 @@ std::unique_ptr<runtime::Plant> trial_run(const std::string& path, const Compile
 
 }  // namespace
 
+runtime::CanNames can_names_of(const NamesFlags& flags) {
+  runtime::CanNames names;
+  if (!flags.plant.empty()) names = runtime::can_names(*trial_run(flags.plant, flags.compile));
+  names.canopen = flags.canopen;
+  return names;
+}
+
 runtime::TelegramNames names_of(const std::string& path, const CompileFlags& compile) {
   return path.empty() ? runtime::TelegramNames{} : runtime::telegram_names(*trial_run(path, compile));
 }
@@ -54,9 +61,11 @@ runtime::TelegramNames serial_names_of(const std::string& path, const CompileFla
   return path.empty() ? runtime::TelegramNames{} : runtime::serial_names(*trial_run(path, compile));
 }
 
-void add_names_option(cli::Verb& verb, std::string& path) {
-  verb.option("--names,--plant,--program", path,
+void add_names_options(cli::Verb& verb, NamesFlags& flags) {
+  verb.option("--names,--plant,--program", flags.plant,
               "plant or program whose stations, parameters and variables are named");
+  verb.flag("--canopen", flags.canopen, "the frames are those of CANopen nodes, also where no plant says so");
+  add_compile_options(verb, flags.compile);
 }
 
 std::string check_time(const std::string& text) {

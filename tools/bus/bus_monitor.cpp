@@ -1,6 +1,9 @@
 // ipos bus monitor: the telegrams of a port or a log in words, as they come.
 #include <fmt/format.h>
 
+#include <set>
+
+#include "runtime/bus/canopen/connections.hpp"
 #include "runtime/bus/rs485/timing.hpp"
 #include "runtime/plant/plant_file.hpp"
 #include "tools/bus/bus_verbs.hpp"
@@ -16,29 +19,44 @@ constexpr uint32_t kCanBaud = 500'000;  // factory setting of P816 (1053 1610 p.
 
 struct MonitorFlags {
   std::string source;
-  std::string names;
+  NamesFlags names;
   std::vector<std::string> stations;
   uint64_t count = 0;
   std::string duration;
   uint32_t baud = 0;
   bool follow = false;
-  CompileFlags compile;
 };
+
+// By its name or number. With --canopen a number is that of a node. False: there is no such station.
+bool add_station(Monitor::CanView& can, const std::string& station) {
+  const runtime::CanNames& names = can.words.names();
+  const auto number = runtime::station_number(station);
+  bool found = names.canopen ? number && runtime::canopen::is_node(*number)
+                             : can.filter.add(names.all.movilink, station);
+  std::set<uint8_t> nodes;
+  if (names.canopen && found) nodes.insert(*number);
+  for (const runtime::canopen::NodeName& node : names.all.nodes)
+    if (node.name == station || number == node.node) nodes.insert(node.node);
+  for (const uint8_t node : nodes)
+    for (const uint32_t id : runtime::canopen::identifiers_of(node)) can.filter.add(id);
+  return found || !nodes.empty();
+}
 
 // A log may be of either kind of bus.
 Monitor make_monitor(const MonitorFlags& flags, MonitorSource source) {
-  Monitor::View sbus, serial;
-  if (source != MonitorSource::Serial) sbus.names = names_of(flags.names, flags.compile);
-  if (source != MonitorSource::Can) serial.names = serial_names_of(flags.names, flags.compile);
+  Monitor::CanView can;
+  Monitor::SerialView serial;
+  if (source != MonitorSource::Serial) can.words = runtime::CanWords(can_names_of(flags.names));
+  if (source != MonitorSource::Can) serial.names = serial_names_of(flags.names.plant, flags.names.compile);
   for (const std::string& station : flags.stations) {
-    sbus.filter.close();
+    can.filter.close();
     serial.filter.close();
-    const bool on_sbus = sbus.filter.add(sbus.names, station);
-    if (!serial.filter.add(serial.names, station) && !on_sbus)
+    const bool on_can = add_station(can, station);
+    if (!serial.filter.add(serial.names, station) && !on_can)
       throw Failure(kUsage, fmt::format("--station {}: {} has no such station, and it is no address", station,
-                                        flags.names.empty() ? "nothing known" : flags.names));
+                                        flags.names.plant.empty() ? "nothing known" : flags.names.plant));
   }
-  return {std::move(sbus), std::move(serial), flags.count};
+  return {std::move(can), std::move(serial), flags.count};
 }
 
 int monitor(const MonitorFlags& flags) {
@@ -72,7 +90,7 @@ void add_bus_monitor(cli::Verb& bus) {
   verb.option("PORT|LOG", flags->source,
               "can0, slcan:/dev/ttyACM0, slcan:pty:/path, /dev/ttyUSB0, pty:/path, a log as in decode, or -")
       .required();
-  add_names_option(verb, flags->names);
+  add_names_options(verb, flags->names);
   verb.option("--station", flags->stations, "only telegrams of this station, by name or address")
       .separated_by(',')
       .one_each();
@@ -80,7 +98,6 @@ void add_bus_monitor(cli::Verb& bus) {
   verb.option("--for", flags->duration, "end after this time, for example 10s").check(check_time, "TIME");
   verb.option("--baud", flags->baud, "of the port; default 500000, of a serial line 9600");
   verb.flag("--follow,-f", flags->follow, "wait for more at the end of a log");
-  add_compile_options(verb, flags->compile);
   verb.footer("Example:\n  ipos bus monitor can0 --plant examples/scom/scom.toml --station unit1");
   verb.runs([flags] { return monitor(*flags); });
 }

@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 
+#include "runtime/bus/can_words.hpp"
 #include "runtime/bus/log/candump.hpp"
 #include "runtime/bus/movilink/describe.hpp"
 #include "tools/cli/verb.hpp"
@@ -28,12 +29,20 @@ size_t read_lines(const std::string& path, const TakeLine& take);
 size_t read_log(const std::string& path,
                 const std::function<void(const runtime::LogEntry&, size_t line)>& take);
 
-// The dictionary of a plant or program: it runs for a moment, so that its programs define their objects.
+// The dictionary of a plant or program for its CAN lines. Without one `canopen` says that nodes are there.
+struct NamesFlags {
+  std::string plant;
+  bool canopen = false;
+  CompileFlags compile;
+};
+runtime::CanNames can_names_of(const NamesFlags& flags);
+
+// Of MOVILINK alone: it runs for a moment, so that its programs define their objects.
 runtime::TelegramNames names_of(const std::string& path, const CompileFlags& compile);
 runtime::TelegramNames serial_names_of(const std::string& path, const CompileFlags& compile);
 
-// --names FILE, also as --plant and --program.
-void add_names_option(cli::Verb& verb, std::string& path);
+// --names FILE, also as --plant and --program; --canopen; and what its programs are compiled with.
+void add_names_options(cli::Verb& verb, NamesFlags& flags);
 
 // For options that take a duration.
 std::string check_time(const std::string& text);

@@ -26,9 +26,10 @@ std::string stamp(Time time) {
 
 void Monitor::take(const runtime::LogEntry& entry) {
   ++seen_;
-  if (!sbus_.filter.passes(entry.frame) || full()) return;
+  // A node is known by what was said before, so its words go on behind what is not shown.
+  const runtime::Description description = can_.words.describe(entry.bus, entry.frame);
+  if (!can_.filter.passes(entry.frame) || full()) return;
   ++shown_;
-  const runtime::Description description = runtime::describe(sbus_.names, entry.frame);
   if (!description.known && unknown_.size() < kUnknown)
     unknown_.emplace(entry.frame.extended, entry.frame.id);
   show(entry.time, entry.bus, description.text);

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "runtime/bus/can_words.hpp"
 #include "runtime/bus/log/candump.hpp"
 #include "runtime/bus/log/serial_log.hpp"
 #include "runtime/bus/movilink/describe.hpp"
@@ -19,14 +20,18 @@ namespace ipos::tools {
 class Monitor {
  public:
   // What explains and chooses the telegrams of one kind of bus.
-  struct View {
+  struct CanView {
+    runtime::CanWords words;
+    runtime::StationFilter filter;
+  };
+  struct SerialView {
     runtime::TelegramNames names;
     runtime::StationFilter filter;
   };
 
   // `count` telegrams are shown, 0: no limit.
-  Monitor(View sbus, View serial, uint64_t count)
-      : sbus_(std::move(sbus)), serial_(std::move(serial)), limit_(count) {}
+  Monitor(CanView can, SerialView serial, uint64_t count)
+      : can_(std::move(can)), serial_(std::move(serial)), limit_(count) {}
 
   // Times as in candump logs (kCandumpEpoch).
   void take(const runtime::LogEntry& entry);
@@ -52,8 +57,8 @@ class Monitor {
   void begin_line();
   void end_repetition();
 
-  View sbus_;
-  View serial_;
+  CanView can_;
+  SerialView serial_;
   uint64_t limit_;
   uint64_t seen_ = 0;
   uint64_t shown_ = 0;

@@ -1,8 +1,10 @@
-// The two lines a PC can be on, and the loop that waits for an answer.
+// The lines a PC can be on, and the loop that waits for an answer.
 #include "tools/unit/bus_link.hpp"
 
 #include <fmt/format.h>
 
+#include "runtime/bus/canopen/connections.hpp"
+#include "runtime/bus/canopen/sdo_master.hpp"
 #include "runtime/bus/movilink/identifiers.hpp"
 #include "runtime/bus/movilink/sbus_master.hpp"
 #include "runtime/bus/movilink/serial_master.hpp"
@@ -40,41 +42,77 @@ class LineSimulation final : public Simulation {
   const std::optional<MovilinkResult>& result_;
 };
 
-class SbusLink final : public BusLink, private CanNode {
+// A PC on a CAN line, whatever is spoken there.
+class CanLink : public BusLink, private CanNode {
  public:
-  SbusLink(const LinkFlags& link, uint32_t baud)
-      : BusLink(link),
-        line_(queue(), 0, "SBus", baud),
-        sender_(line_, line_.attach("ipos", baud, *this)),
-        master_(queue(), 1, sender_, 1, kSbusReplyTimeout + kHostDelay, client()) {
+  CanLink(const LinkFlags& link, uint32_t baud)
+      : BusLink(link), line_(queue(), 0, "CAN", baud), sender_(line_, line_.attach("ipos", baud, *this)) {
     auto port = open_can_port(link.port, baud, clock());
     if (!port) throw Failure(kIoError, port.error().text);
     port_ = std::move(*port);
     bridge_.emplace(queue(), 2, line_, *port_);
   }
+
+ protected:
+  FrameSender& sender() { return sender_; }
+  std::string nobody_hint(std::string_view rate_parameters) const {
+    return fmt::format("nothing is heard at all: unit on, {} bit/s ({}), wiring, terminators?", line_.baud(),
+                       rate_parameters);
+  }
+  uint32_t baud() const { return line_.baud(); }
+
+ private:
+  void on_not_sent(Time, const Frame&, uint64_t, NotSent) override {}
+  Bridge& bridge() override { return *bridge_; }
+  uint64_t heard() const override { return port_->counts().received; }
+
+  CanLine line_;
+  LinePort sender_;
+  std::unique_ptr<CanPort> port_;
+  std::optional<CanBridge> bridge_;
+};
+
+class SbusLink final : public CanLink {
+ public:
+  SbusLink(const LinkFlags& link, uint32_t baud)
+      : CanLink(link, baud), master_(queue(), 1, sender(), 1, kSbusReplyTimeout + kHostDelay, client()) {}
   uint8_t last_address() const override { return kSbusAddresses - 1; }
 
  private:
   void on_frame(Time now, const Frame& frame) override { master_.on_frame(now, frame); }
   void on_sent(Time now, const Frame&, uint64_t tag) override { master_.on_sent(now, tag); }
-  void on_not_sent(Time, const Frame&, uint64_t, NotSent) override {}
-
   MovilinkMaster& master() override { return master_; }
-  Bridge& bridge() override { return *bridge_; }
-  uint64_t heard() const override { return port_->counts().received; }
   std::string hint(uint8_t address, uint64_t heard) const override {
     if (heard > 0)
       return fmt::format("others are heard, so the rate of {} bit/s is right: is P813 (P881) = {} anywhere?",
-                         line_.baud(), address);
-    return fmt::format("nothing is heard at all: unit on, {} bit/s (P816, P884), wiring, terminators?",
-                       line_.baud());
+                         baud(), address);
+    return nobody_hint("P816, P884");
   }
 
-  CanLine line_;
-  LinePort sender_;
   SbusMaster master_;
-  std::unique_ptr<CanPort> port_;
-  std::optional<CanBridge> bridge_;
+};
+
+class CanopenLink final : public CanLink {
+ public:
+  CanopenLink(const LinkFlags& link, uint32_t baud)
+      : CanLink(link, baud), master_({queue(), 1, sender(), 1}, kSbusReplyTimeout + kHostDelay, client()) {}
+  uint8_t first_address() const override { return 1; }
+  uint8_t last_address() const override { return canopen::kMaxNode; }
+
+ private:
+  void on_frame(Time now, const Frame& frame) override { master_.on_frame(now, frame); }
+  void on_sent(Time, const Frame&, uint64_t) override {}
+  MovilinkMaster& master() override { return master_; }
+  std::string hint(uint8_t address, uint64_t heard) const override {
+    if (heard > 0)
+      return fmt::format(
+          "others are heard, so the rate of {} bit/s is right: is P880 = CANopen and P886 = {} anywhere, and "
+          "the node not stopped?",
+          baud(), address);
+    return nobody_hint("P884");
+  }
+
+  canopen::SdoMaster master_;
 };
 
 RequesterTiming timing_of(const LinkFlags& link, uint32_t baud, Time latency) {
@@ -103,6 +141,9 @@ class SerialLink final : public BusLink, private SerialNode {
         master_(queue(), requester_, client()),
         bridge_(queue(), 2, line_, *port_, kGapSlack) {}
   uint8_t last_address() const override { return kNoGroupAddress - 1; }
+  bool has_address(int address) const override {
+    return address == kUniversalAddress || BusLink::has_address(address);
+  }
 
  private:
   void on_character(Time now, const Character& character) override {
@@ -140,8 +181,12 @@ std::unique_ptr<BusLink> BusLink::open(const LinkFlags& flags) {
   catch_interrupts();
   constexpr uint32_t kCanBaud = 500'000, kSerialBaud = 9'600;
   std::unique_ptr<BusLink> link;
+  if (kind_of_port(flags.port) == PortKind::Serial && flags.canopen)
+    throw Failure(kUsage, fmt::format("--canopen: {} is a serial port", flags.port));
   if (kind_of_port(flags.port) == PortKind::Serial)
     link = std::make_unique<SerialLink>(flags, flags.baud == 0 ? kSerialBaud : flags.baud);
+  else if (flags.canopen)
+    link = std::make_unique<CanopenLink>(flags, flags.baud == 0 ? kCanBaud : flags.baud);
   else
     link = std::make_unique<SbusLink>(flags, flags.baud == 0 ? kCanBaud : flags.baud);
   return link;

@@ -1,4 +1,4 @@
-// A PC on a bus: asks units over a real port, SBus or RS-485, for services of the parameter channel. It is a
+// A PC on a bus: asks units over a real port, SBus, CANopen or RS-485, for services of the parameter channel. It is a
 // master on a simulated line that is joined to the port, so that pauses, repeats and checks are those of the
 // simulated masters.
 #pragma once
@@ -16,10 +16,11 @@
 namespace ipos::tools {
 
 struct LinkFlags {
-  std::string port;     // as in a plant file (docs/guide/ports.md)
-  uint32_t baud = 0;    // 0: factory setting, 500000 on SBus and 9600 on RS-485
-  bool repeats = true;  // ask a second time after no answer
-  bool quiet = false;   // tell nothing about the port unless it goes away
+  std::string port;      // as in a plant file (docs/guide/ports.md)
+  uint32_t baud = 0;     // 0: factory setting, 500000 on SBus and 9600 on RS-485
+  bool canopen = false;  // SDO in place of MOVILINK
+  bool repeats = true;   // ask a second time after no answer
+  bool quiet = false;    // tell nothing about the port unless it goes away
 };
 
 // How much longer than a unit may take an answer is waited for: the host's share (ours).
@@ -41,7 +42,12 @@ class BusLink : private runtime::MovilinkClient {
 
   runtime::Time now() const { return queue_.now(); }
   const std::string& port_name() const { return flags_.port; }
-  virtual uint8_t last_address() const = 0;  // of single units
+  // Addresses of single units.
+  virtual bool has_address(int address) const {
+    return address >= first_address() && address <= last_address();
+  }
+  virtual uint8_t first_address() const { return 0; }
+  virtual uint8_t last_address() const = 0;
 
  protected:
   explicit BusLink(LinkFlags flags) : flags_(std::move(flags)) {}

@@ -1,8 +1,9 @@
-// --port, --baud, --quiet, --unit and --address.
+// --port, --baud, --canopen, --quiet, --unit and --address.
 #include "tools/unit/link_options.hpp"
 
 #include <charconv>
 
+#include "runtime/bus/canopen/connections.hpp"
 #include "runtime/bus/movilink/serial_telegram.hpp"
 #include "stdlib/parameters.hpp"
 
@@ -12,8 +13,9 @@ void add_link_options(cli::Verb& verb, LinkFlags& flags, bool port) {
   if (port)
     verb.option("--port", flags.port,
                 "reach a unit over a real port: can0, slcan:/dev/ttyACM0, /dev/ttyUSB0 or /dev/ttyUSB0@16ms");
-  verb.option("--baud", flags.baud, "rate of the bus; default 500000 on SBus, 9600 on RS-485")
+  verb.option("--baud", flags.baud, "rate of the bus; default 500000 on CAN, 9600 on RS-485")
       .one_of({"9600", "57600", "125000", "250000", "500000", "1000000"});
+  verb.flag("--canopen", flags.canopen, "the units are CANopen nodes (P880 = 1): SDO in place of MOVILINK");
   verb.flag("--quiet", flags.quiet, "do not tell what the port cannot do; only when it goes away");
 }
 
@@ -28,9 +30,9 @@ std::string check_address(const std::string& text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), address);
   const bool whole = error == std::errc() && end == text.data() + text.size();
   if (whole &&
-      ((address >= 0 && address < runtime::kNoGroupAddress) || address == runtime::kUniversalAddress))
+      ((address >= 0 && address <= runtime::canopen::kMaxNode) || address == runtime::kUniversalAddress))
     return "";
-  return "'" + text + "' is no address of a unit: 0..63 on SBus, 0..99 or 254 on RS-485";
+  return "'" + text + "' is no address of a unit: 0..63 on SBus, 0..99 or 254 on RS-485, 1..127 on CANopen";
 }
 
 }  // namespace ipos::tools

@@ -43,7 +43,13 @@ std::unique_ptr<ParameterAccess> open_at_port(const ParamFlags& flags, FileUse u
         kUsage,
         "this writes into the EEPROM of the unit, which every write wears: add --yes if it is meant, "
         "or --volatile; never do it cyclically without --volatile");
-  return open_unit(BusLink::open(flags.link), static_cast<uint8_t>(flags.address), flags.unit);
+  if (flags.is_volatile && flags.link.canopen)
+    throw Failure(kUsage, "--volatile does not go with --canopen: a write over SDO is always stored");
+  auto link = BusLink::open(flags.link);
+  if (!link->has_address(flags.address))
+    throw Failure(kUsage, fmt::format("{} is no address of a unit at {}: {}..{}", flags.address,
+                                      flags.link.port, link->first_address(), link->last_address()));
+  return open_unit(std::move(link), static_cast<uint8_t>(flags.address), flags.unit);
 }
 
 // The unit that is meant, by a port or as the first word names it; that word is taken away.
@@ -108,7 +114,7 @@ class Actions {
     app.option("--station", flags_->station, "which station, where the plant has several");
     add_link_options(app, flags_->link, true);
     app.option("--address", flags_->address, "with --port: address of the unit")
-        .check(check_address, "0..99");
+        .check(check_address, "0..127");
     app.footer(std::string("Example:\n  ipos param ") + example);
     app.runs([flags = flags_, action] { return action(*flags); });
     return app;

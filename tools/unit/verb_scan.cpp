@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+
 #include "stdlib/faults.hpp"
 #include "stdlib/parameters.hpp"
 #include "tools/cli/failure.hpp"
@@ -45,11 +47,12 @@ std::string fault_of(const AccessReply& reply) {
 int scan(ScanFlags flags) {
   flags.link.repeats = false;
   const auto link = BusLink::open(flags.link);
+  const int first = std::max<int>(flags.from, link->first_address());
   const int last = flags.to < 0 ? link->last_address() : std::min<int>(flags.to, link->last_address());
   const bool progress = is_terminal(STDERR_FILENO);
   std::vector<std::vector<std::string>> lines{{"address", "unit", "firmware", "fault"}};
   std::string trouble;
-  for (int n = flags.from; n <= last; ++n) {
+  for (int n = first; n <= last; ++n) {
     if (progress) fmt::print(stderr, "\r\033[Kaddress {} of {}", n, last);
     const auto address = static_cast<uint8_t>(n);
     const AccessReply firmware = link->execute(address, Service::Read, kFirmware, 0);
@@ -67,7 +70,7 @@ int scan(ScanFlags flags) {
     fmt::print("{}", columns(lines));
     return kGood;
   }
-  fmt::print(stderr, "ipos: {}: nobody answers at {}..{}; at the last one: {}\n", flags.link.port, flags.from,
+  fmt::print(stderr, "ipos: {}: nobody answers at {}..{}; at the last one: {}\n", flags.link.port, first,
              last, trouble);
   return kFindings;
 }
@@ -78,8 +81,9 @@ void add_scan(cli::Verb& app) {
   auto flags = std::make_shared<ScanFlags>();
   cli::Verb& verb = app.verb("scan", "addresses of a real bus that answer, with unit type and firmware");
   verb.option("PORT", flags->link.port, "can0, slcan:/dev/ttyACM0, /dev/ttyUSB0, ...").required();
-  verb.option("--from", flags->from, "first address, default 0").between(0, 99);
-  verb.option("--to", flags->to, "last address; default 63 on SBus, 99 on RS-485").between(0, 99);
+  verb.option("--from", flags->from, "first address, default 0, on CANopen 1").between(0, 127);
+  verb.option("--to", flags->to, "last address; default 63 on SBus, 99 on RS-485, 127 on CANopen")
+      .between(0, 127);
   add_link_options(verb, flags->link, false);
   verb.footer("Example:\n  ipos scan /dev/ttyUSB0 --to 10");
   verb.runs([flags] { return scan(*flags); });

@@ -18,4 +18,11 @@ Abort abort_of(stdlib::ReturnCode code) {
   return Abort::General;
 }
 
+stdlib::ReturnCode return_code_of(uint32_t abort) {
+#define REFUSED(return_code, refusal) \
+  if (abort == static_cast<uint32_t>(Abort::refusal)) return stdlib::return_codes::k##return_code;
+#include "runtime/bus/canopen/abort_codes.def"
+  return {8, 0, 0xFFFF};
+}
+
 }  // namespace ipos::runtime::canopen

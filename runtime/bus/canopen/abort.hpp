@@ -19,4 +19,7 @@ std::string_view abort_text(uint32_t code);
 // What a refusal of the parameter channel becomes.
 Abort abort_of(stdlib::ReturnCode code);
 
+// The first refusal that becomes this code; class 8 without a number for any other.
+stdlib::ReturnCode return_code_of(uint32_t abort);
+
 }  // namespace ipos::runtime::canopen

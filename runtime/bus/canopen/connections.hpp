@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 namespace ipos::runtime::canopen {
 
@@ -53,6 +54,13 @@ constexpr std::optional<Addressed> connection_of(uint32_t id) {
     if (row.addressed ? id > row.base && id - row.base <= kMaxNode : id == row.base)
       return Addressed{row.connection, static_cast<uint8_t>(id - row.base)};
   return std::nullopt;
+}
+
+// All identifiers of a node, and those to all nodes.
+inline std::vector<uint32_t> identifiers_of(uint8_t node) {
+  std::vector<uint32_t> ids;
+  for (const ConnectionRow& row : kConnections) ids.push_back(identifier(row.connection, node));
+  return ids;
 }
 
 // Identifiers that CiA 301 keeps from being chosen for PDO, SYNC and EMCY.

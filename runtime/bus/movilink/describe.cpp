@@ -96,6 +96,13 @@ const ObjectNames* TelegramNames::object(uint32_t id) const {
   return best;
 }
 
+bool concerns(const TelegramNames& names, const Frame& frame) {
+  if (!is_plain(frame)) return false;
+  if (names.object(frame.id) != nullptr) return true;
+  const auto identifier = classify_identifier(frame.id);
+  return identifier && explaining_unit(names, *identifier) != nullptr;
+}
+
 Description describe(const TelegramNames& names, const Frame& frame) {
   if (!is_plain(frame))
     return {false, fmt::format("{}{} {}", frame.id, frame.extended ? " (29 bits)" : "", bytes_text(frame))};

@@ -59,4 +59,7 @@ struct Description {
 // hexadecimal.
 Description describe(const TelegramNames& names, const Frame& frame);
 
+// Somebody in the dictionary sends or takes it: an object, or a telegram of MOVILINK.
+bool concerns(const TelegramNames& names, const Frame& frame);
+
 }  // namespace ipos::runtime

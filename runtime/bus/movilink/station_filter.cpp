@@ -14,6 +14,13 @@ bool contains(const std::vector<Value>& values, Value value) {
 
 }  // namespace
 
+std::optional<uint8_t> station_number(std::string_view text) {
+  uint8_t address = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), address);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return address;
+}
+
 bool StationFilter::add(const TelegramNames& names, std::string_view station) {
   bool known = false;
   for (const UnitNames& unit : names.units)
@@ -22,13 +29,17 @@ bool StationFilter::add(const TelegramNames& names, std::string_view station) {
       known = true;
     }
   if (known) return true;
-  uint8_t address = 0;
-  const auto [end, error] = std::from_chars(station.data(), station.data() + station.size(), address);
-  if (error != std::errc() || end != station.data() + station.size()) return false;
-  if (const UnitNames* unit = names.unit_at(address)) add(names, *unit);
-  addresses_.push_back(address);
+  const auto address = station_number(station);
+  if (!address) return false;
+  if (const UnitNames* unit = names.unit_at(*address)) add(names, *unit);
+  addresses_.push_back(*address);
   all_ = false;
   return true;
+}
+
+void StationFilter::add(uint32_t identifier) {
+  all_ = false;
+  identifiers_.push_back(identifier);
 }
 
 void StationFilter::add(const TelegramNames& names, const UnitNames& unit) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -12,10 +13,16 @@
 
 namespace ipos::runtime {
 
+// The address that a text is; nothing for a name.
+std::optional<uint8_t> station_number(std::string_view text);
+
 class StationFilter {
  public:
   // Adds a station by its name, or by its address, which need not be known. False: there is no such name.
   bool add(const TelegramNames& names, std::string_view station);
+
+  // Frames with this identifier, of a station that is no unit of MOVILINK.
+  void add(uint32_t identifier);
 
   // From now on only what is added passes, also if that is nothing.
   void close() { all_ = false; }

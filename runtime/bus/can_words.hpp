@@ -1,0 +1,49 @@
+// What runs over CAN lines in words, whatever is spoken there: MOVILINK and variable telegrams, CANopen, or both on
+// one line. Each line is listened to by itself, since a CANopen node is known by what was written to it.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "runtime/bus/can/frame.hpp"
+#include "runtime/bus/canopen/words.hpp"
+#include "runtime/bus/movilink/describe.hpp"
+
+namespace ipos::runtime {
+
+struct CanLineNames {
+  TelegramNames movilink;
+  std::vector<canopen::NodeName> nodes;
+};
+
+struct CanNames {
+  CanLineNames all;                           // of lines that are not known by name
+  std::map<std::string, CanLineNames> lines;  // by name
+  bool canopen = false;                       // nodes may be there that are not known
+};
+
+class CanWords {
+ public:
+  explicit CanWords(CanNames names = {}) : names_(std::make_shared<CanNames>(std::move(names))) {}
+
+  // Of the next frame on the line. Where MOVILINK and CANopen share one, what concerns a known unit is MOVILINK.
+  Description describe(std::string_view line, const Frame& frame);
+  const CanNames& names() const { return *names_; }
+
+ private:
+  struct Listened {
+    const CanLineNames* names;
+    std::optional<canopen::LineWords> canopen;  // nothing: no node is there
+  };
+  Listened& listened(std::string_view line);
+
+  std::shared_ptr<const CanNames> names_;
+  std::map<std::string, Listened, std::less<>> lines_;
+};
+
+}  // namespace ipos::runtime
