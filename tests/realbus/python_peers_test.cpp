@@ -2,12 +2,14 @@
 // a serial line and as a MOVILINK master. No kernel CAN is needed.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <future>
 #include <regex>
 
 #include "runtime/port/serial_port.hpp"
 #include "runtime/port/system_clock.hpp"
+#include "tests/harness/proves.hpp"
 #include "tests/realbus/script.hpp"
 #include "tests/tools/command.hpp"
 
@@ -100,6 +102,44 @@ TEST(PythonPeers, MovilinkMasterOfPythonSerial) {
       run_script({kPython, "-B", script("movilink_peer.py"), IPOS_PROGRAM, plant, path});
   EXPECT_EQ(result.exit_code, 0) << result.output;
   expect_all_ok(result.output, 35);
+}
+
+// Three hundred SYNC cycles of it; the script takes any number (10000 take about a minute).
+TEST(PythonPeers, CanopenMasterOfPythonCan) {
+  if (!has_pty()) GTEST_SKIP() << kNoPty;
+  if (!python_has("can, serial")) GTEST_SKIP() << "there is no python3-can";
+  PROVES("MDB-TOC-06", "MDB-TOC-07", "MDB-TOC-08", "MDB-TOC-09", "MDB-TOC-10", "MDB-TOC-11", "MDB-TOC-12",
+         "MDB-TOC-13", "MDB-TOC-14", "MDB-TOC-15", "MDB-TOC-16", "MDB-TOC-19");
+  const TemporaryFolder folder;
+  const std::string path = (folder.path() / "adapter").string();
+  const std::string log = (folder.path() / "can.log").string();
+  const std::string plant =
+      folder.write("canopen.toml",
+                   std::regex_replace(read_text(project("tests/realbus/canopen.toml")),
+                                      std::regex("kind = \"can\""), "$&\nport = \"slcan:pty:" + path + "\""));
+  ASSERT_EQ(run_ipos({"canopen", "eds", plant, "a", "-o", "a.eds"}, folder.path()).exit_code, 0);
+  const ScriptResult result = run_script({kPython, "-B", script("canopen_master.py"), IPOS_PROGRAM, plant,
+                                          path, (folder.path() / "a.eds").string(), log, "300"});
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  expect_all_ok(result.output, 19);
+  // Every frame of the log has a meaning here, and for the dissector of others.
+  const CommandResult decoded = run_ipos({"bus", "decode", log, "--plant", plant}, folder.path());
+  EXPECT_EQ(decoded.exit_code, 0);
+  EXPECT_EQ(decoded.err, "");
+  if (run_script({"/usr/bin/tshark", "--version"}).exit_code != 0)
+    GTEST_SKIP() << "tshark is not installed; install it to compare with Wireshark's dissector";
+  const ScriptResult theirs =
+      run_script({"/usr/bin/tshark", "-r", log, "-d", "can.subdissector,canopen", "-Y",
+                  "canopen && !_ws.malformed", "-T", "fields", "-e", "frame.number"});
+  // The frame numbers alone: to root it says something in front.
+  const auto lines = [](const std::string& text) {
+    const std::regex line("(^|\\n)[0-9(]");
+    return std::distance(std::sregex_iterator(text.begin(), text.end(), line), {});
+  };
+  const auto remote = std::regex("guarding request");
+  const auto requests =
+      std::distance(std::sregex_iterator(decoded.out.begin(), decoded.out.end(), remote), {});
+  EXPECT_EQ(lines(theirs.output) + requests, lines(decoded.out)) << theirs.output.substr(0, 200);
 }
 
 }  // namespace
