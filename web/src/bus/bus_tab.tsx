@@ -36,7 +36,7 @@ function Bytes({ data, changed }: { data: string; changed: number[] }) {
     <>
       {bytes.map((byte, position) => (
         <span key={position} class={`byte${changed.includes(position) ? " new" : ""}`}>
-          {byte.toUpperCase()}{" "}
+          {byte.toUpperCase()}
         </span>
       ))}
     </>
@@ -85,7 +85,7 @@ export function Bus() {
           Clear counts
         </button>
       </div>
-      <div class="scroll" style="max-height:46vh">
+      <div class="scroll" tabIndex={0} style="max-height:46vh">
         <table class="values" aria-label="Bus">
           <thead>
             <tr>

@@ -45,7 +45,7 @@ export function Trace({ line }: { line: string }) {
         </button>
         <span class="quiet">newest first, the last {shown_frames}</span>
       </div>
-      <div class="scroll" style="max-height:36vh">
+      <div class="scroll" tabIndex={0} style="max-height:36vh">
         <table class="values" aria-label="Telegrams">
           <thead>
             <tr>

@@ -164,7 +164,7 @@ export function Parameters() {
       </div>
       <div class="split">
         <GroupTree group={group} onChoose={() => (searchText.value = "")} />
-        <div class="scroll">
+        <div class="scroll" tabIndex={0}>
           <table class="values" aria-label="Parameters">
             <thead>
               <tr>

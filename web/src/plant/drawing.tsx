@@ -3,7 +3,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 
 import type { Line, Plant } from "../server/protocol";
 import { command } from "../shell/notice";
-import { box_height, box_width, layOut, line_pitch, tapX, type Box, type DrawnWire, type Row } from "./drawing_layout";
+import { box_height, box_width, layOut, tapX, type Box, type DrawnWire, type Row } from "./drawing_layout";
 import { bitSet, lineState, stationState } from "./state";
 
 // What Enter and Space do on an element that is no button by itself.
@@ -13,6 +13,10 @@ function pressed(act: () => void) {
     event.preventDefault();
     act();
   };
+}
+
+function cableY(row: Row, position: number): number {
+  return row.top + box_height + 25 + position * row.line_pitch;
 }
 
 function StationBox({ box, y }: { box: Box; y: number }) {
@@ -38,7 +42,7 @@ function StationBox({ box, y }: { box: Box; y: number }) {
       </g>
     );
   return (
-    <g role="button" tabIndex={0} aria-label={`Show ${box.name}`} onClick={show} onKeyDown={pressed(show)}>
+    <g role="button" tabindex={0} onClick={show} onKeyDown={pressed(show)}>
       <rect class={`box ${face}`} x={box.x} y={y} width={box_width} height={box_height} rx="6" />
       {text}
     </g>
@@ -60,7 +64,7 @@ function Tap({ box, line, from, to }: { box: Box; line: Line; from: number; to: 
   return (
     <g
       role="button"
-      tabIndex={0}
+      tabindex={0}
       aria-pressed={cut}
       aria-label={`Cut ${box.name} from ${line.name}`}
       onClick={act}
@@ -81,19 +85,24 @@ function Cable({ line, row, y }: { line: Line; row: Row; y: number }) {
   const ends = members.map((box) => tapX(box, line.name));
   const load = Math.min(100, state?.load ?? 0);
   const rate = line.kind === "can" && line.baud >= 1000 ? `${line.baud / 1000} kBaud` : `${line.baud} Baud`;
+  // Beside the cable, or under it where there is no room beside.
+  const under = row.label_width === 0;
+  const textY = under ? y + 17 : y - 2;
+  const meterX = under ? 130 : 8;
+  const meterY = under ? y + 22 : y + 17;
   return (
     <g>
-      <path class="cable" d={`M136 ${y}H${Math.max(...ends)}`} />
-      <text x="8" y={y - 2}>
+      <path class="cable" d={`M${under ? Math.min(...ends) : row.label_width - 12} ${y}H${Math.max(...ends)}`} />
+      <text x="8" y={textY}>
         {line.name}
       </text>
-      <text x="8" y={y + 12} class="small">
+      <text x="8" y={textY + 14} class="small">
         {line.kind.toUpperCase()} {rate}
       </text>
       <g role="img" aria-label={`Load of ${line.name}: ${(state?.load ?? 0).toFixed(1)} %`}>
-        <rect class="load-ground" x="8" y={y + 17} width="84" height="7" rx="2" />
-        <rect class={`load${load > 90 ? " full" : load > 60 ? " much" : ""}`} x="8" y={y + 17} width={load * 0.84} height="7" rx="2" />
-        <text x="97" y={y + 24} class="small">
+        <rect class="load-ground" x={meterX} y={meterY} width="84" height="7" rx="2" />
+        <rect class={`load${load > 90 ? " full" : load > 60 ? " much" : ""}`} x={meterX} y={meterY} width={load * 0.84} height="7" rx="2" />
+        <text x={meterX + 89} y={meterY + 7} class="small">
           {(state?.load ?? 0).toFixed(1)} %
         </text>
       </g>
@@ -139,7 +148,7 @@ export function Drawing({ plant }: { plant: Plant }) {
         {rows.map((row) => (
           <g key={row.top}>
             {row.lines.map((line, position) => (
-              <Cable key={line.name} line={line} row={row} y={row.top + box_height + (position + 0.6) * line_pitch} />
+              <Cable key={line.name} line={line} row={row} y={cableY(row, position)} />
             ))}
             {row.lines.flatMap((line, position) =>
               row.boxes
@@ -150,7 +159,7 @@ export function Drawing({ plant }: { plant: Plant }) {
                     box={box}
                     line={line}
                     from={row.top + box_height}
-                    to={row.top + box_height + (position + 0.6) * line_pitch}
+                    to={cableY(row, position)}
                   />
                 )),
             )}

@@ -1,11 +1,10 @@
 // Where the boxes of stations and controls, the cables of the lines and the wires stand in the drawing.
 import type { Line, Plant, Wire } from "../server/protocol";
 
-export const box_width = 112;
+export const box_width = 108;
 export const box_height = 46;
-export const line_pitch = 42;
 const gap = 22;
-const label_width = 148;
+const narrow_width = 560;
 const wire_pitch = 15;
 
 export interface Box {
@@ -29,6 +28,8 @@ export interface Row {
   top: number;
   height: number;
   width: number;
+  line_pitch: number;
+  label_width: number; // 0: the labels stand under the cables
 }
 
 function stationOf(terminal: string): string {
@@ -61,18 +62,31 @@ function wiresOf(plant: Plant, boxes: Box[]): DrawnWire[] {
 
 export function layOut(plant: Plant, width: number): Row[] {
   const all = boxesOf(plant);
-  const fit = Math.max(1, Math.floor((width - label_width) / (box_width + gap)));
+  const narrow = width < narrow_width;
+  const label_width = narrow ? 0 : 148;
+  const line_pitch = narrow ? 52 : 42;
+  const pitch = box_width + (narrow ? 5 : gap);
+  const fit = Math.max(1, Math.floor((width - label_width) / pitch));
   const rows: Row[] = [];
   let top = 0;
   for (let first = 0; first < all.length; first += fit) {
     const boxes = all
       .slice(first, first + fit)
-      .map((box, position) => ({ ...box, x: label_width + position * (box_width + gap) }));
+      .map((box, position) => ({ ...box, x: label_width + position * pitch + 2 }));
     const lines = plant.buses.filter((bus) => boxes.some((box) => box.lines.includes(bus.name)));
     const wires = wiresOf(plant, boxes);
     const above = wires.length * wire_pitch + (wires.length ? 14 : 6);
     const height = above + box_height + lines.length * line_pitch + 14;
-    rows.push({ boxes, lines, wires, top: top + above, height, width: label_width + boxes.length * (box_width + gap) });
+    rows.push({
+      boxes,
+      lines,
+      wires,
+      top: top + above,
+      height,
+      width: Math.max(270, label_width + boxes.length * pitch),
+      line_pitch,
+      label_width,
+    });
     top += height;
   }
   return rows;

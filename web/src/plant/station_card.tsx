@@ -78,12 +78,12 @@ export function StationCard({ station, plant }: { station: Station; plant: Plant
           Fault reset
         </button>
         <button
-          class="spread"
+          class="spread power"
           aria-label={`Power ${station.name}`}
           aria-pressed={state?.powered ?? false}
           onClick={() => void command({ do: "power", station: station.name, on: !state?.powered })}
         >
-          Power {state?.powered ? "on" : "off"}
+          <span class={`lamp${state?.powered ? " on" : ""}`} /> Power
         </button>
       </footer>
     </section>

@@ -18,6 +18,14 @@ function driver(name: string, { wires, switches }: Around): string {
   return cam ? `cam ${cam.from ?? "−∞"} … ${cam.to ?? "∞"}` : "";
 }
 
+function PulseSign() {
+  return (
+    <svg viewBox="0 0 14 12" width="14" height="12" aria-hidden="true">
+      <path d="M1 10H4V2H9V10H13" fill="none" stroke="currentColor" stroke-width="1.6" />
+    </svg>
+  );
+}
+
 function Input({ station, input, state, around }: { station: string; input: Terminal; state: StationState | null; around: Around }) {
   const on = bitSet(state?.in, input.bit);
   const forced = bitSet(state?.forced, input.bit);
@@ -42,7 +50,7 @@ function Input({ station, input, state, around }: { station: string; input: Term
       </span>
       <span class="group">
         <button class="small" aria-label={`Pulse ${full}`} title={`${on ? "off" : "on"} for 100 ms`} onClick={() => order("pulse", !on)}>
-          ⎍
+          <PulseSign />
         </button>
         <button
           class="small"

@@ -38,7 +38,7 @@ export function Readings() {
   const values = atCursor.value;
   const between = A !== null && B !== null ? (B - A) / 1e6 : null;
   return (
-    <div style="overflow-x:auto">
+    <div style="overflow-x:auto" tabIndex={0}>
       <table class="readings mono" aria-label="Readings">
         <thead>
           <tr>

@@ -77,13 +77,13 @@ function TimeControls() {
         </button>
       </span>
       <span class="group">
-        <button aria-label="Back 1 second" title="Back 1 second" onClick={() => back(1000)}>
+        <button aria-label="−1 s, back a second" title="Back 1 second" onClick={() => back(1000)}>
           −1 s
         </button>
-        <button aria-label="Back 1 millisecond" title="Back 1 millisecond" onClick={() => back(1)}>
+        <button aria-label="−1 ms, back a millisecond" title="Back 1 millisecond" onClick={() => back(1)}>
           −1 ms
         </button>
-        <button aria-label="Begin anew" title="Back to 0 s, everything as at power-on" onClick={restart}>
+        <button aria-label="0 s, begin anew" title="Back to 0 s, everything as at power-on" onClick={restart}>
           0 s
         </button>
       </span>
@@ -101,7 +101,7 @@ function TimeControls() {
         ))}
       </select>
       <WriteArm />
-      <button aria-label="Keys" title="Keys (?)" onClick={() => (helpOpen.value = true)}>
+      <button class="keys" aria-label="Keys" title="Keys (?)" onClick={() => (helpOpen.value = true)}>
         ?
       </button>
     </div>

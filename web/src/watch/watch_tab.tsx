@@ -61,7 +61,7 @@ function Row({ one, isPinned }: { one: WatchName; isPinned: boolean }) {
       <td class="quiet text">{one.text}</td>
       <td class="shrink">
         <button class="small" aria-label={`Pin ${one.name}`} aria-pressed={isPinned} title="Stays at the top" onClick={() => pin(one)}>
-          ⌖
+          {isPinned ? "★" : "☆"}
         </button>
       </td>
     </tr>
@@ -105,7 +105,7 @@ export function Watch() {
           {found.value.length < total.value ? `${found.value.length} of ${total.value} found` : `${total.value} found`}
         </span>
       </div>
-      <div class="scroll">
+      <div class="scroll" tabIndex={0}>
         <table class="values" aria-label="Watch">
           <thead>
             <tr>
