@@ -1,6 +1,6 @@
 // The journal of the plant: what drives ignored, warned of and stopped for. A time leads to the scope.
 import { signal } from "@preact/signals";
-import { useEffect } from "preact/hooks";
+import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 
 import { showMoment } from "../scope/window";
 import { subscribe } from "../server/connection";
@@ -55,6 +55,12 @@ function Entry({ entry }: { entry: JournalEntry }) {
 
 export function Journal() {
   useEffect(follow, [generation.value]);
+  const log = useRef<HTMLDivElement>(null);
+  const atEnd = useRef(true);
+  // The newest entry stays in sight, unless somebody has scrolled up to read.
+  useLayoutEffect(() => {
+    if (log.current && atEnd.current) log.current.scrollTop = log.current.scrollHeight;
+  }, [entries.value.length]);
   const text = searchText.value.toLowerCase();
   const chosen = entries.value.filter(
     (entry) =>
@@ -88,7 +94,16 @@ export function Journal() {
           {Math.min(chosen.length, shown_entries)} of {entries.value.length}
         </span>
       </div>
-      <div class="panel" role="log" aria-label="Journal" tabIndex={0}>
+      <div
+        ref={log}
+        class="panel"
+        role="log"
+        aria-label="Journal"
+        tabIndex={0}
+        onScroll={({ currentTarget }) =>
+          (atEnd.current = currentTarget.scrollTop + currentTarget.clientHeight > currentTarget.scrollHeight - 30)
+        }
+      >
         {chosen.slice(-shown_entries).map((entry) => (
           <Entry key={entry.n} entry={entry} />
         ))}

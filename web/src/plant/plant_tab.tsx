@@ -9,8 +9,8 @@ import { followPlant } from "./state";
 import { StationCard } from "./station_card";
 
 export function PlantTab() {
-  useEffect(followPlant, []);
   const description = plant.value;
+  useEffect(followPlant, [description]);
   if (!description) return <p class="empty">The server has not said yet what the plant has.</p>;
   return (
     <>

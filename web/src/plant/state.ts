@@ -2,6 +2,7 @@
 import { signal, type Signal } from "@preact/signals";
 
 import { subscribe } from "../server/connection";
+import { plant } from "../server/live";
 import type { LineState, StationState } from "../server/protocol";
 
 const stations = new Map<string, Signal<StationState | null>>();
@@ -16,8 +17,10 @@ function of<T>(map: Map<string, Signal<T | null>>, name: string): Signal<T | nul
 export const stationState = (name: string) => of(stations, name);
 export const lineState = (name: string) => of(lines, name);
 
+// Twenty times a second; a large plant less often, so that the browser has time for other things.
 export function followPlant(): () => void {
-  return subscribe("plant", { rate: 20 }, (event) => {
+  const count = plant.value?.stations.length ?? 1;
+  return subscribe("plant", { rate: Math.max(4, Math.min(20, Math.round(320 / count))) }, (event) => {
     for (const [name, state] of Object.entries((event.stations ?? {}) as Record<string, StationState>))
       stationState(name).value = state;
     for (const [name, state] of Object.entries((event.buses ?? {}) as Record<string, LineState>))

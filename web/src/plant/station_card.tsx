@@ -1,4 +1,6 @@
 // A station: display, shaft and speed, status and fault in words, why it is not enabled, its terminals, its switches.
+import { useMemo } from "preact/hooks";
+
 import type { Plant, Station, StationState } from "../server/protocol";
 import { command } from "../shell/notice";
 import { SevenSegment } from "./seven_segment";
@@ -57,6 +59,11 @@ function ProcessData({ state }: { state: StationState }) {
 
 export function StationCard({ station, plant }: { station: Station; plant: Plant }) {
   const state = stationState(station.name).value;
+  // Most changes are those of a motion: terminals are drawn again only when one of them has changed.
+  const terminals = useMemo(
+    () => <Terminals station={station} state={state} around={plant} />,
+    [station, plant, state?.in, state?.forced, state?.out, JSON.stringify(state?.analog)],
+  );
   const lamp = !state?.powered ? "" : state.fault ? (state.error === false ? "warning" : "fault") : state.enabled ? "on" : "";
   return (
     <section class="panel station" id={`station-${station.name}`} aria-label={station.name}>
@@ -68,7 +75,7 @@ export function StationCard({ station, plant }: { station: Station; plant: Plant
       </header>
       {state && station.drive && <Face name={station.name} state={state} />}
       {state && <Words state={state} />}
-      <Terminals station={station} state={state} around={plant} />
+      {terminals}
       {state && <ProcessData state={state} />}
       <footer>
         <button

@@ -2,11 +2,13 @@
 
 export interface Points {
   recording: number;
+  from_us: number; // the window that was asked for
+  to_us: number;
   times: Float64Array; // s
   channels: (number | null)[][];
 }
 
-export function readPoints(frame: DataView): Points {
+export function readPoints(frame: DataView, from_us: number, to_us: number): Points {
   const channel_count = frame.getUint8(1);
   const per_point = frame.getUint8(2) || 1;
   const point_count = frame.getUint32(12, true);
@@ -25,5 +27,5 @@ export function readPoints(frame: DataView): Points {
       }
     }
   }
-  return { recording: frame.getUint32(8, true), times, channels };
+  return { recording: frame.getUint32(8, true), from_us, to_us, times, channels };
 }

@@ -23,6 +23,11 @@ function scaleOf(channel: Channel): string {
   return `y ${channel.unit}`;
 }
 
+function drawnWindow(): [number, number] {
+  const { from_us, to_us } = points.peek() ?? shownWindow.peek();
+  return [from_us / 1e6, to_us / 1e6];
+}
+
 function drawMark(plot: uPlot, us: number | null, text: string, stroke: string): void {
   if (us === null) return;
   const x = Math.round(plot.valToPos(us / 1e6, "x", true));
@@ -79,7 +84,7 @@ function optionsOf(channels: Channel[], width: number, height: number): uPlot.Op
     legend: { show: false },
     cursor: { drag: { x: true, y: false, setScale: false }, points: { size: 6 } },
     scales: {
-      x: { time: false, range: () => [shownWindow.peek().from_us / 1e6, shownWindow.peek().to_us / 1e6] },
+      x: { time: false, range: drawnWindow },
       ...Object.fromEntries(
         channels.map((channel) => [
           scaleOf(channel),
@@ -196,7 +201,6 @@ export function Picture() {
         const data = points.value;
         void cursors.value;
         void scope.value?.trigger_us;
-        void shownWindow.value;
         if (!data || data.channels.length !== channels.length || data.recording !== recording) return;
         plot.setData([data.times, ...data.channels]);
         readPointer(plot);

@@ -24,14 +24,14 @@ async function look(): Promise<void> {
     to_us: Math.max(0, Math.ceil(to_us)),
     points: Math.max(50, Math.min(4096, pictureWidth.peek())),
   });
-  points.value = readPoints(frame);
+  points.value = readPoints(frame, from_us, to_us);
 }
 
 async function readCursor(name: CursorName): Promise<void> {
   const at = cursors.peek()[name];
   let values: (number | null)[] | null = null;
   if (at !== null) {
-    const frame = readPoints(await requestFrame({ do: "scope.view", from_us: at, to_us: at, points: 1 }));
+    const frame = readPoints(await requestFrame({ do: "scope.view", from_us: at, to_us: at, points: 1 }), at, at);
     if (frame.times.length > 0) values = frame.channels.map((channel) => channel[0] ?? null);
   }
   atCursor.value = { ...atCursor.peek(), [name]: values };

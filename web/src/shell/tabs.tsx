@@ -65,7 +65,6 @@ export function TabPanels({ tabs }: { tabs: Tab[] }) {
             role="tabpanel"
             id={`panel-${idOf(tab.name)}`}
             aria-labelledby={`tab-${idOf(tab.name)}`}
-            tabIndex={0}
             hidden={!selected}
           >
             {selected && <Body />}

@@ -1,0 +1,273 @@
+// The page before the real server: a click turns an axis, a fault triggers the scope, its CSV is that of ipos run.
+//   IPOS_PROGRAM=.../ipos node --test test/plant.test.mjs
+import assert from "node:assert";
+import { execFileSync } from "node:child_process";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+
+import { launch, missing, openPage, tab_names } from "./browser.mjs";
+import { folderOf, program, serve } from "./serve.mjs";
+
+const skip = missing ?? (program ? false : "IPOS_PROGRAM does not name the ipos to test");
+
+// n11 = 150 rpm; DI05 is /EXT. FAULT: without voltage it is F26 (MDX60B/61B, list of errors). The ramp is 0, so the axis
+// turns with 150 rpm once the motor is magnetized.
+const plant_text = `
+[[bus]]
+name = "sbus"
+kind = "can"
+baud = 500000
+[[station]]
+name = "belt"
+unit = "mdxb"
+program = "BELT.IPC"
+sbus = "sbus"
+[station.parameters]
+P130 = 0
+P160 = 150000
+P604 = 11
+P881 = 1
+[station.inputs]
+DI05 = 1
+[[station]]
+name = "gate"
+unit = "mdxb"
+sbus = "sbus"
+[station.parameters]
+P881 = 2
+[[control]]
+name = "plc"
+sbus = "sbus"
+cycle = "5ms"
+[[control.target]]
+address = 2
+po = [6, 5000, 0]
+every = "5ms"
+`;
+const program_text = `#include <constb.h>
+#include <iob.h>
+long lCount, lFree;
+main()
+{
+  while (1)
+  {
+    lCount++;
+    if (lCount == 100000)
+      lFree = 1;
+  }
+}
+`;
+
+let browser;
+let place;
+
+before(async () => {
+  if (skip) return;
+  browser = await launch();
+  place = folderOf({ "belt.toml": plant_text, "BELT.IPC": program_text });
+});
+after(async () => {
+  await browser?.close();
+  place?.remove();
+});
+
+async function meet(use) {
+  const server = await serve("belt.toml", [], place.folder);
+  const opened = await openPage(browser, server.address);
+  try {
+    await opened.page.getByRole("switch", { name: "belt DI00" }).waitFor();
+    await use(opened.page, server, opened);
+    assert.deepStrictEqual(opened.errors.filter((text) => !text.includes("WebSocket")), []);
+  } finally {
+    await opened.close();
+    assert.ok([0, "SIGKILL"].includes(await server.stop()));
+  }
+}
+
+async function until(what, text) {
+  for (let n = 0; n < 200; ++n) {
+    if (await what()) return;
+    await new Promise((done) => setTimeout(done, 50));
+  }
+  assert.fail(text);
+}
+
+const button = (page, name) => page.getByRole("button", { name, exact: true });
+const tab = (page, name) => page.getByRole("tab", { name }).click();
+const timeOf = async (page) => Math.round(Number.parseFloat(await page.getByRole("timer", { name: "Time" }).textContent()) * 1000);
+const card = (page, name) => page.getByRole("region", { name, exact: true });
+
+async function enable(page) {
+  for (const name of ["DI00", "DI01", "DI03", "DI04"]) await page.getByRole("switch", { name: `belt ${name}` }).click();
+}
+
+// Stands at that time, without a race with the clock: as fast as it goes until the trigger of a step.
+async function stepTo(page, ms) {
+  await page.evaluate(() => document.activeElement?.blur());
+  while ((await timeOf(page)) < ms) {
+    const before = await timeOf(page);
+    await page.keyboard.press("s");
+    await until(async () => (await timeOf(page)) > before, "time stands still");
+  }
+}
+
+test("a click turns an axis", { skip }, () =>
+  meet(async (page) => {
+    assert.strictEqual(await timeOf(page), 0);
+    await button(page, "Run").click();
+    await enable(page);
+    await until(async () => /150\s*rpm/.test(await card(page, "belt").textContent()), "the axis does not turn");
+    const shaft = card(page, "belt").getByRole("img", { name: "belt shaft" });
+    const before = await shaft.getAttribute("aria-label");
+    await until(async () => (await shaft.getAttribute("aria-label")) !== before, "the shaft stands");
+    assert.strictEqual(await page.getByRole("status", { name: "belt DB00" }).textContent(), "on");
+    await page.getByRole("switch", { name: "belt DI00" }).click();
+    await until(async () => (await card(page, "belt").textContent()).includes("Not enabled"), "no reason is shown");
+  }),
+);
+
+test("a fault triggers the scope, is named, and can be reset", { skip }, () =>
+  meet(async (page) => {
+    await tab(page, "Scope");
+    await page.getByRole("combobox", { name: "On" }).selectOption("fault");
+    await button(page, "Single").click();
+    await until(async () => (await button(page, "Single").getAttribute("aria-pressed")) === "true", "not armed");
+    await button(page, "Run").click();
+    await tab(page, "Plant");
+    await enable(page);
+    await page.getByRole("switch", { name: "belt DI05" }).click();
+    await until(async () => /26/.test(await card(page, "belt").locator(".words.fault").textContent()), "no F26");
+    await tab(page, "Scope");
+    await until(async () => /triggered|complete/.test(await page.getByRole("figure", { name: "Scope" }).textContent()), "no trigger");
+    await tab(page, "Journal");
+    await page.getByRole("log").getByText("F26").first().waitFor();
+    await tab(page, "Plant");
+    await page.getByRole("switch", { name: "belt DI05" }).click();
+    await page.getByRole("button", { name: "Fault reset belt" }).click();
+    await until(async () => (await card(page, "belt").locator(".words.fault").count()) === 0, "the fault stays");
+  }),
+);
+
+test("the CSV is that of ipos run --trace, to the digit", { skip }, () =>
+  meet(async (page) => {
+    await tab(page, "Scope");
+    await button(page, "Run").click();
+    await until(async () => (await timeOf(page)) > 300, "it does not run");
+    await button(page, "Pause").click();
+    await until(async () => (await page.locator(".clock .lamp.on").count()) === 0, "it does not stand");
+    const download = page.waitForEvent("download");
+    await button(page, "CSV").click();
+    const mine = readFileSync(await (await download).path(), "utf8");
+    const ms = await timeOf(page);
+    const signals = mine.split("\n")[0].split(",").slice(1).map((name) => name.replace(/ ?\[.*\]/, ""));
+    const file = join(place.folder, "run.csv");
+    execFileSync(program, ["run", "belt.toml", "--for", `${ms}ms`, "--trace", file, "--signals", signals.join(",")], { cwd: place.folder, stdio: "ignore" });
+    assert.strictEqual(mine, readFileSync(file, "utf8"));
+  }),
+);
+
+test("watch: every variable of the program, set by hand", { skip }, () =>
+  meet(async (page) => {
+    await tab(page, "Watch");
+    const table = page.getByRole("table", { name: "Watch" });
+    const row = table.getByRole("row", { name: "belt.lFree" });
+    await row.getByRole("textbox").fill("0x20");
+    await row.getByRole("textbox").press("Enter");
+    await until(async () => (await row.getByRole("cell").first().textContent()) === "32", "not set");
+    await page.getByRole("searchbox").fill("P160");
+    await table.getByRole("row", { name: "belt.P160" }).waitFor();
+    await until(async () => /150/.test(await table.getByRole("row", { name: "belt.P160" }).getByRole("cell").first().textContent()), "no value of P160");
+  }),
+);
+
+test("parameters: set with Enter, a refusal is an alert", { skip }, () =>
+  meet(async (page) => {
+    await tab(page, "Parameters");
+    await page.getByRole("combobox", { name: "Station" }).selectOption("gate");
+    const row = page.getByRole("table", { name: "Parameters" }).getByRole("row", { name: /^P130 / });
+    await row.getByRole("textbox").fill("2.5 s");
+    await row.getByRole("textbox").press("Enter");
+    await until(async () => (await row.textContent()).includes("2.500"), "not set");
+    await row.getByRole("textbox").fill("99999 s");
+    await row.getByRole("textbox").press("Enter");
+    await page.getByRole("alert").waitFor();
+    await page.getByRole("searchbox").fill("ramp t11");
+    assert.ok((await page.getByRole("table", { name: "Parameters" }).getByRole("row").count()) >= 5);
+    await page.getByRole("combobox", { name: "Compare with" }).selectOption("belt");
+    await page.getByRole("searchbox").fill("");
+    await page.getByRole("table", { name: "Parameters" }).getByRole("row", { name: /^P881 / }).waitFor();
+  }),
+);
+
+// Process output data to address 2: 8 x 2 + 3 = 19 (SBus, identifiers of process data).
+test("bus: a row an identifier; a cut is seen in the telegrams", { skip }, () =>
+  meet(async (page) => {
+    await button(page, "Run").click();
+    await tab(page, "Bus");
+    const row = page.getByRole("table", { name: "Bus" }).getByRole("row", { name: "19 (013h)" });
+    await row.waitFor();
+    assert.match(await row.textContent(), /00\s*06/);
+    await tab(page, "Plant");
+    const tap = page.getByRole("button", { name: "Cut gate from sbus" });
+    await tap.press("Enter");
+    await until(async () => (await tap.getAttribute("aria-pressed")) === "true", "not cut");
+  }),
+);
+
+test("program: breakpoint, steps, coverage", { skip }, () =>
+  meet(async (page) => {
+    await tab(page, "Program");
+    await page.getByRole("button", { name: "Breakpoint in line 8" }).click();
+    await until(async () => (await page.getByRole("button", { name: "Breakpoint in line 8" }).getAttribute("aria-pressed")) === "true", "not set");
+    await button(page, "Run").click();
+    const here = page.locator(".line.here");
+    await until(async () => (await here.count()) === 1 && /lCount\+\+/.test(await here.textContent()), "it does not stop in line 8");
+    await button(page, "Over").click();
+    await until(async () => (await here.count()) === 1 && /lCount == 100000/.test(await here.textContent()), "no step to line 9");
+    assert.ok((await page.locator(".line.covered").count()) >= 1);
+    assert.ok((await page.locator(".line.missed").count()) >= 1);
+  }),
+);
+
+test("step and back", { skip }, () =>
+  meet(async (page) => {
+    await stepTo(page, 5);
+    assert.strictEqual(await timeOf(page), 5);
+    await page.getByRole("button", { name: "−1 ms" }).click();
+    await until(async () => (await timeOf(page)) === 4, "no way back");
+    await page.getByRole("button", { name: "0 s, begin anew" }).click();
+    await until(async () => (await timeOf(page)) === 0, "not at 0 s");
+  }),
+);
+
+test("two browsers see the same plant", { skip }, () =>
+  meet(async (page, server) => {
+    const second = await openPage(browser, server.address);
+    await page.getByRole("switch", { name: "belt DI03" }).click();
+    await until(async () => (await second.page.getByRole("switch", { name: "belt DI03" }).getAttribute("aria-checked")) === "true", "the other one sees nothing");
+    await second.close();
+  }),
+);
+
+test("a killed server is an alert; a wrong token gets nothing", { skip }, () =>
+  meet(async (page, server) => {
+    const answer = await fetch(server.address.replace(/token=.*/, "token=wrong"));
+    assert.strictEqual(answer.status, 401);
+    server.kill();
+    await page.getByRole("alert").waitFor();
+  }),
+);
+
+test("one request for all tabs", { skip }, () =>
+  meet(async (page) => {
+    const requests = [];
+    page.on("request", (request) => requests.push(request.url()));
+    await page.reload();
+    for (const name of tab_names) {
+      await tab(page, name);
+      await page.waitForTimeout(200);
+    }
+    assert.strictEqual(requests.length, 1);
+  }),
+);

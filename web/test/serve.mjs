@@ -1,0 +1,33 @@
+// A running `ipos serve` with a plant in a folder of its own, for tests of the page and for its pictures.
+import { spawn } from "node:child_process";
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { createInterface } from "node:readline";
+
+export const program = process.env.IPOS_PROGRAM;
+
+export async function serve(plant, options = [], folder = ".") {
+  const child = spawn(program, ["serve", plant, "--port", "0", ...options], { cwd: folder, stdio: ["ignore", "pipe", "inherit"] });
+  const ended = new Promise((done) => child.on("exit", (code, signal) => done(code ?? signal)));
+  const address = await new Promise((done, failed) => {
+    createInterface(child.stdout).once("line", done);
+    void ended.then((code) => failed(new Error(`ipos serve ended with ${code}`)));
+  });
+  return {
+    address,
+    ended,
+    kill: () => child.kill("SIGKILL"),
+    async stop() {
+      child.kill("SIGINT");
+      return ended;
+    },
+  };
+}
+
+// Writes the files into a new folder; `remove` takes it away again.
+export function folderOf(files) {
+  const folder = mkdtempSync(join(tmpdir(), "ipos-web-"));
+  for (const [name, text] of Object.entries(files)) writeFileSync(join(folder, name), text);
+  return { folder, remove: () => rmSync(folder, { recursive: true }) };
+}
