@@ -152,6 +152,7 @@ test("the scope draws, keeps still where it is zoomed, and gives files", { skip 
     assert.ok(Math.abs(Number(await at.textContent()) - expected) < 0.06, `${await at.textContent()} for ${expected}`);
     const views = () => mock.received.filter((one) => one.do === "scope.view" && one.points > 1);
     assert.ok(views().length > 0);
+    await page.keyboard.press("p");
     const download = page.waitForEvent("download");
     await figure.getByRole("button", { name: "CSV" }).click();
     assert.strictEqual((await download).suggestedFilename(), "scope.csv");

@@ -3,7 +3,7 @@ import { signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 
 import { subscribe } from "../server/connection";
-import { generation, plant } from "../server/live";
+import { generation, hello, plant } from "../server/live";
 import type { BusRow, BusState } from "../server/protocol";
 import { command } from "../shell/notice";
 import { Send } from "./send";
@@ -61,7 +61,8 @@ function LineLoads() {
 }
 
 export function Bus() {
-  useEffect(follow, [generation.value]);
+  // A server that came back, or time that did, begins anew.
+  useEffect(follow, [generation.value, hello.value]);
   const kinds = new Map(plant.value?.buses.map((bus) => [bus.name, bus.kind]));
   const shown = [...rows.value.entries()].filter(([, row]) => !line.value || row.bus === line.value).sort(([a], [b]) => (a < b ? -1 : 1));
   return (

@@ -4,7 +4,7 @@ import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 
 import { showMoment } from "../scope/window";
 import { subscribe } from "../server/connection";
-import { generation, secondsText, stationNames } from "../server/live";
+import { generation, hello, secondsText, stationNames } from "../server/live";
 import type { JournalEntry } from "../server/protocol";
 import { open } from "../shell/tabs";
 
@@ -54,7 +54,8 @@ function Entry({ entry }: { entry: JournalEntry }) {
 }
 
 export function Journal() {
-  useEffect(follow, [generation.value]);
+  // A server that came back, or time that did, begins anew.
+  useEffect(follow, [generation.value, hello.value]);
   const log = useRef<HTMLDivElement>(null);
   const atEnd = useRef(true);
   // The newest entry stays in sight, unless somebody has scrolled up to read.

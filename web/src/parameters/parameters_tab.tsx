@@ -12,6 +12,8 @@ import { compare, comparedWith, differences, followParameters, load, parameters,
 const searchText = signal("");
 const group = signal("");
 const onlyChanged = signal(false);
+// Of the parameter whose field has the focus: what can be set. It stands above the table, so that no row moves.
+const hint = signal("");
 
 const shown = computed(() => {
   const words = searchText.value.toLowerCase().split(/\s+/).filter(Boolean);
@@ -26,16 +28,15 @@ const shown = computed(() => {
   });
 });
 
-function hint(parameter: Parameter): string {
+function hintOf(parameter: Parameter): string {
   const parts: string[] = [];
   if (parameter.choices.length > 0) parts.push(parameter.choices.join(" | "));
   else if (parameter.least !== null && parameter.most !== null) parts.push(`${parameter.least} … ${parameter.most}`);
   if (parameter.default !== null) parts.push(`factory setting ${parameter.default}`);
-  return parts.join(" · ");
+  return `${parameter.number || parameter.index} ${parameter.name}: ${parts.join(" · ")}`;
 }
 
 function Row({ parameter }: { parameter: Parameter }) {
-  const [open, setOpen] = useState(false);
   const field = useRef<HTMLInputElement>(null);
   const value = valueOf(parameter).value;
   const other = differences.value.get(parameter.index);
@@ -57,8 +58,6 @@ function Row({ parameter }: { parameter: Parameter }) {
       </th>
       <td>
         {parameter.name}
-        {value.changed && <span class="quiet"> · changed</span>}
-        {open && <div class="quiet">{hint(parameter)}</div>}
       </td>
       <td class="number">{bare}</td>
       <td class="quiet shrink">{parameter.unit}</td>
@@ -69,9 +68,9 @@ function Row({ parameter }: { parameter: Parameter }) {
             ref={field}
             type="text"
             aria-label={`Set ${parameter.number || parameter.index}`}
-            title={hint(parameter)}
-            onFocus={() => setOpen(true)}
-            onBlur={() => setOpen(false)}
+            title={hintOf(parameter)}
+            onFocus={() => (hint.value = hintOf(parameter))}
+            onBlur={() => (hint.value = "")}
             onKeyDown={(event) => {
               if (event.key === "Enter") void set();
             }}
@@ -79,6 +78,7 @@ function Row({ parameter }: { parameter: Parameter }) {
         ) : (
           <span class="quiet">read only</span>
         )}
+        {value.changed && <span class="changed-mark">changed</span>}
       </td>
     </tr>
   );
@@ -162,6 +162,7 @@ export function Parameters() {
         )}
         <Files />
       </div>
+      <p class="quiet hint">{hint.value || "Changed from the factory setting: number in colour. A field takes a number with unit, or the name of a setting."}</p>
       <div class="split">
         <GroupTree group={group} onChoose={() => (searchText.value = "")} />
         <div class="scroll" tabIndex={0}>

@@ -157,16 +157,16 @@ function attach(plot: uPlot): void {
 }
 
 // The picture as it stands, with the names of its channels, for a file.
-export function pictureFile(): Promise<Blob | null> {
+export function pictureFile(): Blob | null {
   const state = scope.peek();
-  if (!shown || !state) return Promise.resolve(null);
+  if (!shown || !state) return null;
   const source = shown.ctx.canvas;
   const heading = 26 * devicePixelRatio;
   const canvas = document.createElement("canvas");
   canvas.width = source.width;
   canvas.height = source.height + heading;
   const ctx = canvas.getContext("2d");
-  if (!ctx) return Promise.resolve(null);
+  if (!ctx) return null;
   ctx.fillStyle = themed("--panel");
   ctx.fillRect(0, 0, canvas.width, canvas.height);
   ctx.font = `${12 * devicePixelRatio}px system-ui, sans-serif`;
@@ -178,7 +178,9 @@ export function pictureFile(): Promise<Blob | null> {
     x += ctx.measureText(text).width + 18 * devicePixelRatio;
   });
   ctx.drawImage(source, 0, heading);
-  return new Promise((done) => canvas.toBlob(done, "image/png"));
+  // toBlob waits until the browser is idle, which it is not while the scope runs.
+  const bytes = atob(canvas.toDataURL("image/png").replace(/^.*,/, ""));
+  return new Blob([Uint8Array.from(bytes, (byte) => byte.charCodeAt(0))], { type: "image/png" });
 }
 
 export function Picture() {

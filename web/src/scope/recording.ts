@@ -43,9 +43,11 @@ export function followScope(): () => void {
   const stopTopic = subscribe("scope", { rate: 10, step_ms: 1000 }, (event) => {
     scope.value = event as unknown as ScopeState;
   });
-  let asking = false;
+  let open = true;
   let seen = "";
-  const timer = setInterval(() => {
+  let timer: ReturnType<typeof setTimeout> | undefined;
+  const refresh = async () => {
+    const began = performance.now();
     const { from_us, to_us } = shownWindow.peek();
     const state = scope.peek();
     const key = [
@@ -57,13 +59,19 @@ export function followScope(): () => void {
       state?.state,
       pictureWidth.peek(),
     ].join(" ");
-    if (asking || key === seen || !state) return;
-    asking = true;
-    look()
-      .then(() => (seen = key))
-      .catch(() => undefined)
-      .finally(() => (asking = false));
-  }, refresh_ms);
+    if (key !== seen && state) {
+      try {
+        await look();
+        seen = key;
+      } catch {
+        // The connection says so itself; the next round asks again.
+      }
+      await new Promise(requestAnimationFrame);
+    }
+    // A browser that takes long to draw is asked to draw less often.
+    if (open) timer = setTimeout(() => void refresh(), Math.max(refresh_ms, 2 * (performance.now() - began)));
+  };
+  void refresh();
   const stopCursors = (["A", "B"] as const).map((name) =>
     effect(() => {
       void cursors.value[name];
@@ -72,8 +80,9 @@ export function followScope(): () => void {
     }),
   );
   return () => {
+    open = false;
     stopTopic();
-    clearInterval(timer);
+    clearTimeout(timer);
     for (const stop of stopCursors) stop();
   };
 }

@@ -31,8 +31,8 @@ async function saveVisible(): Promise<void> {
   if (text !== undefined) download("scope-part.csv", text);
 }
 
-async function savePicture(): Promise<void> {
-  const file = await pictureFile();
+function savePicture(): void {
+  const file = pictureFile();
   if (file) download("scope.png", file);
   else complain("There is no picture yet.");
 }
@@ -57,7 +57,7 @@ function offerScopeKeys(): () => void {
     { key: "]", text: "Later", act: () => moveBy(0.5) },
     { key: "v", text: "CSV of everything", act: () => void saveCsv() },
     { key: "V", text: "CSV of the visible part", act: () => void saveVisible() },
-    { key: "i", text: "PNG of the picture", act: () => void savePicture() },
+    { key: "i", text: "PNG of the picture", act: savePicture },
   ]);
   return () => withdrawKeys("Scope");
 }
@@ -102,7 +102,7 @@ function Buttons() {
       <button title="Only what the picture shows (V)" onClick={() => void saveVisible()}>
         Part
       </button>
-      <button onClick={() => void savePicture()}>PNG</button>
+      <button onClick={savePicture}>PNG</button>
     </div>
   );
 }

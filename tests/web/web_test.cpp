@@ -1,0 +1,53 @@
+// The page of ipos serve: its types hold, the bundle that is checked in is that of its sources, and it does in
+// Debian's Chromium what its contract says. Skipped with the reason where npm, its registry or Chromium are missing.
+#include <gtest/gtest.h>
+
+#include "tests/editor/npm_package.hpp"
+#include "tests/tools/command.hpp"
+
+namespace ipos::tests {
+namespace {
+
+class Page : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!package().missing.empty()) GTEST_SKIP() << package().missing;
+    ASSERT_EQ(package().broken, "");
+  }
+  static const Package& package() {
+    static const Package made = install_package("web", IPOS_PACKAGES_DIR);
+    return made;
+  }
+};
+
+TEST_F(Page, HasTypesThatHold) {
+  const ScriptResult result = shell(package().folder, "npm run check");
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+}
+
+TEST_F(Page, IsTheBundleOfItsSources) {
+  const ScriptResult result = shell(package().folder, "node build.mjs built.html");
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_TRUE(read_text(package().folder / "built.html") == read_text(project("web/dist/index.html")))
+      << "web/dist/index.html is not made of web/src: run `npm ci && npm run build` in web";
+}
+
+class Browser : public Page {
+ protected:
+  void SetUp() override {
+    Page::SetUp();
+    if (IsSkipped() || HasFatalFailure()) return;
+    if (!std::filesystem::exists("/usr/bin/chromium")) GTEST_SKIP() << "/usr/bin/chromium is not installed";
+  }
+  static ScriptResult run(const std::string& file) {
+    return shell(package().folder,
+                 "IPOS_PROGRAM='" IPOS_PROGRAM "' node --test --test-reporter=tap test/" + file);
+  }
+};
+
+TEST_F(Browser, FindsWhatTheContractNames) { expect_node_passed(run("page.test.mjs"), 16); }
+
+TEST_F(Browser, TurnsAnAxisByAClick) { expect_node_passed(run("plant.test.mjs"), 11); }
+
+}  // namespace
+}  // namespace ipos::tests
