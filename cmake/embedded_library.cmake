@@ -5,8 +5,8 @@ set(embedded_sources
     vm/isa/coding.cpp vm/isa/blocks.cpp vm/image/view.cpp vm/verify/verify.cpp vm/exec/machine.cpp vm/exec/interrupts.cpp
     vm/exec/saved_state.cpp
     stdlib/unit_types.cpp runtime/bus/movilink/variable_telegram.cpp runtime/scom/object_table.cpp
-    runtime/api/status.cpp runtime/api/program.cpp runtime/api/instance.cpp runtime/api/host_bridge.cpp
-    runtime/api/saved.cpp)
+    embed/status.cpp embed/program.cpp embed/instance.cpp embed/host_bridge.cpp
+    embed/saved.cpp)
 set(fast_sources vm/fast/predecode.cpp vm/fast/engine.cpp)
 list(TRANSFORM embedded_sources PREPEND ${PROJECT_SOURCE_DIR}/)
 list(TRANSFORM fast_sources PREPEND ${PROJECT_SOURCE_DIR}/)
@@ -21,7 +21,7 @@ function(ipos_embedded_library name kind)
     target_compile_options(${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fno-gcse>)
   endif()
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}
-                             PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/runtime/api/include>
+                             PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/embed/include>
                                     $<INSTALL_INTERFACE:include>)
   target_compile_definitions(${name} PRIVATE IPOS_PROGRAM_WORDS=${BUILD_WORDS} IPOS_FAST=$<BOOL:${BUILD_FAST}>
                              PUBLIC IPOS_VARIABLES=${BUILD_VARIABLES})

@@ -1,6 +1,6 @@
 // The variable telegrams of one SBus of a unit as data: what _SBusCommDef sets up and what is due when (1053
 // 1610 p. 51 to 61). No heap, no text, no bus: the simulated station (variable_objects) and the library for
-// firmware (runtime/api) both use it.
+// firmware (embed) both use it.
 #pragma once
 
 #include <algorithm>

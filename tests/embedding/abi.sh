@@ -9,7 +9,7 @@ abi=$source/tests/embedding/abi
 for library in ipos ipos_compile; do
   nm -D --defined-only "$build/lib/lib$library.so" | awk -v lib=$library '$2 ~ /[TDBRVW]/ {print lib, $3}'
 done | LC_ALL=C sort > "$work/symbols.txt"
-"$CC" -I "$source/runtime/api/include" "$abi/layout.c" -o "$work/layout"
+"$CC" -I "$source/embed/include" "$abi/layout.c" -o "$work/layout"
 "$work/layout" > "$work/layout.txt"
 if [ "${3:-}" = --update ]; then
   cp "$work"/{symbols,layout}.txt "$abi"

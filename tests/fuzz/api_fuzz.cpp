@@ -1,4 +1,4 @@
-// The C API (runtime/api/include/ipos.h) under sequences of calls: an image of any kind; up to three machines
+// The C API (embed/include/ipos.h) under sequences of calls: an image of any kind; up to three machines
 // of it whose callbacks fail, call back and use the other machines; wrong arguments; memory that is too small
 // or crooked; non-volatile memory and saved states that were changed. Every object lies in heap memory of
 // exactly its size, so the sanitizers see each step beyond it. Time and commands are bounded, so that an

@@ -2,7 +2,7 @@
 // Those of the compiler are in compile_test.cpp.
 #include <set>
 
-#include "tests/runtime/api/rig.hpp"
+#include "tests/embed/rig.hpp"
 
 namespace ipos::tests {
 namespace {

@@ -1,6 +1,6 @@
 // Saved states: a machine goes on from one as if nothing had happened, and no byte of one can do harm.
 #include "tests/generated/pcg.hpp"
-#include "tests/runtime/api/rig.hpp"
+#include "tests/embed/rig.hpp"
 
 namespace ipos::tests {
 namespace {

@@ -7,7 +7,7 @@
 // Layouts are ours, numbers little endian.
 #include <array>
 
-#include "runtime/api/objects.hpp"
+#include "embed/objects.hpp"
 #include "vm/exec/saved_bytes.hpp"
 #include "vm/exec/saved_state.hpp"
 

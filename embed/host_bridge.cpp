@@ -1,6 +1,6 @@
 // From the machine to the callbacks: variable telegrams and non-volatile memory are done here when the host
 // gives the means, everything else is asked of its `command`.
-#include "runtime/api/objects.hpp"
+#include "embed/objects.hpp"
 #include "vm/image/view.hpp"
 
 namespace ipos::api {

@@ -1,5 +1,5 @@
 // Texts of statuses, version and features.
-#include "runtime/api/include/ipos.h"
+#include "embed/include/ipos.h"
 #include "vm/host/build.hpp"
 
 const char* ipos_status_text(ipos_status status) {

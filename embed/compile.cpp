@@ -1,6 +1,6 @@
 // The compiler behind its C interface. The only place outside tools/ that catches: containers of the compiler
 // throw when there is no memory, and that must not reach a caller in C.
-#include "runtime/api/include/ipos_compile.h"
+#include "embed/include/ipos_compile.h"
 
 #include <algorithm>
 #include <cstring>

@@ -3,7 +3,7 @@
 #include <iterator>
 #include <set>
 
-#include "tests/runtime/api/rig.hpp"
+#include "tests/embed/rig.hpp"
 #include "vm/isa/isa.hpp"
 
 namespace ipos::tests {

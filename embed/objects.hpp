@@ -5,7 +5,7 @@
 #include <optional>
 #include <type_traits>
 
-#include "runtime/api/include/ipos.h"
+#include "embed/include/ipos.h"
 #include "runtime/scom/object_table.hpp"
 #include "stdlib/unit_types.hpp"
 #include "vm/exec/machine.hpp"

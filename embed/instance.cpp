@@ -1,7 +1,7 @@
 // Making machines and running them; their variables and tasks.
 #include <new>
 
-#include "runtime/api/objects.hpp"
+#include "embed/objects.hpp"
 
 namespace ipos::api {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstring>
 #include <new>
 
-#include "runtime/api/objects.hpp"
+#include "embed/objects.hpp"
 
 static_assert(std::endian::native == std::endian::little, "images are used in place");
 
