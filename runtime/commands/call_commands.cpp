@@ -45,8 +45,12 @@ vm::HostReply system_call(const CommandCall& call) {
 
 }  // namespace
 
-vm::HostReply call_command(CommandCall& call) {
-  return call.command.opcode == vm::Opcode::InputCall ? input_call(call) : system_call(call);
+FamilyReply call_command(CommandCall& call) {
+  switch (call.command.opcode) {
+    case vm::Opcode::InputCall: return input_call(call);
+    case vm::Opcode::SystemCall: return system_call(call);
+    default: return std::nullopt;
+  }
 }
 
 }  // namespace ipos::runtime

@@ -4,16 +4,17 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 
 #include "runtime/clock/event_queue.hpp"
-#include "runtime/drive/drive.hpp"
 #include "runtime/commands/movilink_command.hpp"
 #include "runtime/commands/positioning_commands.hpp"
+#include "runtime/drive/drive.hpp"
+#include "runtime/scom/variable_objects.hpp"
 #include "runtime/unit/retained_memory.hpp"
 #include "runtime/unit/timers.hpp"
-#include "runtime/scom/variable_objects.hpp"
 #include "vm/exec/machine.hpp"
 
 namespace ipos::runtime {
@@ -51,10 +52,11 @@ struct CommandCall {
 
 constexpr vm::HostReply illegal(const char* reason) { return {vm::Answer::Fault, vm::kFaultIllop, reason}; }
 
-vm::HostReply communication_command(CommandCall& call);  // SCOM, SCOMON, SCOMST, MOVLNK
-vm::HostReply call_command(CommandCall& call);           // INPCALL, SYSCALL
-vm::HostReply unit_command(CommandCall& call);           // SETFR, RESET, MEM, WDON, WDOFF
-vm::HostReply get_system_value(CommandCall& call);       // GETSYS
-vm::HostReply set_system_value(CommandCall& call);       // SETSYS
+// The families. Nothing: the command belongs to another one.
+using FamilyReply = std::optional<vm::HostReply>;
+FamilyReply communication_command(CommandCall& call);  // SCOM, SCOMON, SCOMST, MOVLNK
+FamilyReply call_command(CommandCall& call);           // INPCALL, SYSCALL
+FamilyReply unit_command(CommandCall& call);           // SETFR, RESET, MEM, WDON, WDOFF
+FamilyReply system_value_command(CommandCall& call);   // GETSYS, SETSYS
 
 }  // namespace ipos::runtime

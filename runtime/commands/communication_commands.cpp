@@ -41,15 +41,16 @@ vm::HostReply switch_objects(CommandCall& call) {
 
 }  // namespace
 
-vm::HostReply communication_command(CommandCall& call) {
+FamilyReply communication_command(CommandCall& call) {
   const StationServices& s = call.services;
   switch (call.command.opcode) {
     case vm::Opcode::Scom: return define_object(call);
     case vm::Opcode::ScomOn: return start_objects(s);
     case vm::Opcode::ScomState: return switch_objects(call);
-    default:
+    case vm::Opcode::Movlnk:
       return s.movilink.start(s.clock.now(), call.machine, call.context,
                               static_cast<uint32_t>(call.operand(0)), call.why);
+    default: return std::nullopt;
   }
 }
 

@@ -1,4 +1,4 @@
-// Dispatch of system commands: which family has which command.
+// A system command goes to the families of commands, one after the other, until one takes it.
 #include "runtime/commands/system_commands.hpp"
 
 #include <fmt/format.h>
@@ -9,26 +9,12 @@ namespace ipos::runtime {
 namespace {
 
 vm::HostReply forward(CommandCall& call) {
-  using vm::Opcode;
   if (PositioningCommands* positioning = call.services.positioning)
     if (const auto reply = positioning->execute(call.machine, call.context, call.command)) return *reply;
-  switch (call.command.opcode) {
-    case Opcode::Scom:
-    case Opcode::ScomOn:
-    case Opcode::ScomState:
-    case Opcode::Movlnk: return communication_command(call);
-    case Opcode::InputCall:
-    case Opcode::SystemCall: return call_command(call);
-    case Opcode::SetFault:
-    case Opcode::Reset:
-    case Opcode::Memorize:
-    case Opcode::WdOnH:
-    case Opcode::WdOnK:
-    case Opcode::WdOff: return unit_command(call);
-    case Opcode::GetSys: return get_system_value(call);
-    case Opcode::SetSys: return set_system_value(call);
-    default: return illegal("this command is not simulated yet, see docs/reference/limits.md");
-  }
+  for (FamilyReply (*family)(CommandCall&) :
+       {communication_command, call_command, unit_command, system_value_command})
+    if (const FamilyReply reply = family(call)) return *reply;
+  return illegal("this command is not simulated yet, see docs/reference/limits.md");
 }
 
 }  // namespace

@@ -110,7 +110,9 @@ bool ramp_is_locked(CommandCall& call) {
   return true;
 }
 
-vm::HostReply get_system_value(CommandCall& call) {
+namespace {
+
+vm::HostReply get_system_value(const CommandCall& call) {
   const Drive& drive = call.services.drive;
   const AxisState& axis = drive.axis();
   int32_t& target = call.variable(0);
@@ -148,6 +150,16 @@ vm::HostReply set_system_value(CommandCall& call) {
       if (call.variable(1) != 0 && drive.fault() != 0) drive.reset_fault();
       return {};
     default: return illegal("SETSYS: this value is not simulated yet, see docs/reference/limits.md");
+  }
+}
+
+}  // namespace
+
+FamilyReply system_value_command(CommandCall& call) {
+  switch (call.command.opcode) {
+    case vm::Opcode::GetSys: return get_system_value(call);
+    case vm::Opcode::SetSys: return set_system_value(call);
+    default: return std::nullopt;
   }
 }
 

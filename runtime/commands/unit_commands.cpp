@@ -44,20 +44,25 @@ vm::HostReply start_watchdog(const CommandCall& call, int32_t ms) {
   return {};
 }
 
+// RESET
+vm::HostReply reset_fault(const CommandCall& call) {
+  Drive& drive = call.services.drive;
+  call.variable(0) = drive.fault();
+  if (drive.fault() != 0) drive.reset_fault();
+  return {};
+}
+
 }  // namespace
 
-vm::HostReply unit_command(CommandCall& call) {
-  Drive& drive = call.services.drive;
+FamilyReply unit_command(CommandCall& call) {
   switch (call.command.opcode) {
     case vm::Opcode::SetFault: return set_fault_response(call);
     case vm::Opcode::Memorize: return memorize(call);
     case vm::Opcode::WdOnH: return start_watchdog(call, call.variable(0));
     case vm::Opcode::WdOnK: return start_watchdog(call, call.operand(0));
-    case vm::Opcode::WdOff: call.services.timers.stop_watchdog(); return {};
-    default:  // RESET
-      call.variable(0) = drive.fault();
-      if (drive.fault() != 0) drive.reset_fault();
-      return {};
+    case vm::Opcode::WdOff: call.services.timers.stop_watchdog(); return vm::HostReply{};
+    case vm::Opcode::Reset: return reset_fault(call);
+    default: return std::nullopt;
   }
 }
 
