@@ -203,7 +203,7 @@ void Emitter::repeat(uint32_t jump, uint32_t last) {
   if (const auto decided = decide(known, end.target)) {
     const int32_t straight = program_.correction(end, program_.commands[last + 1]);
     Label out = label_of(last + 1);
-    if (straight != 0) out = detours_.emplace_back(a_.newLabel(), out, straight).label;
+    if (straight != 0) out = detours_.emplace_back(Detour{a_.newLabel(), out, straight}).label;
     Instruction leaves = end.instruction;
     leaves.opcode = inverse(leaves.opcode);
     jump_if(leaves, out);

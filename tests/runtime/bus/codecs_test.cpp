@@ -116,7 +116,7 @@ TEST(ParameterTelegramCodec, LengthOfTheData) {
     const std::map<std::string, int> printed = {{"00", 1}, {"01", 2}, {"10", 3}, {"11", 4}};
     EXPECT_EQ(telegram.data_length(), printed.at(bits)) << value;
   }
-  for (int service = 0; service <= 8; ++service) {
+  for (uint32_t service = 0; service <= 8; ++service) {
     const ParameterTelegram request = parameter_request(*service_from_code(service), 8470, 0, 3000);
     EXPECT_EQ(encode(request)[0] & 0x30, 0x30) << service;
     EXPECT_EQ(encode(parameter_response(request, 1))[0] & 0x30, 0x30) << service;

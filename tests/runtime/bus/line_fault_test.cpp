@@ -409,7 +409,7 @@ TEST(LineFault, AFaultPlantedLaterStrikes) {
 // it is bus-off. The others have no error counter then.
 TEST(LineFault, RecoveryAmongSoundStationsTakesARunAFrame) {
   Bench t;
-  for (const NodeId other : {0, 2, 3}) t.line.set_connected(other, false);
+  for (const NodeId other : {0U, 2U, 3U}) t.line.set_connected(other, false);
   t.send(1, 1, 0x80);
   t.run(10 * kMillisecond);
   t.line.withdraw(1, 1);

@@ -1,0 +1,176 @@
+# The tests of a source's layer: which programs they are (the table of tests/README.md), how the source is compiled
+# and the programs are linked (as ninja does it), and how they are run. A mutant is compiled beside the build and
+# linked in front of the libraries, so neither the sources nor the build are touched.
+import json
+import os
+import re
+import resource
+import shlex
+import shutil
+import subprocess
+import time
+import xml.etree.ElementTree as xml
+from pathlib import Path
+
+MEMORY = 6 << 30  # a mutant that runs away stops here
+COMPILE_SECONDS = 600
+
+
+def programs_of(source, readme):
+    """The ctest names of the rows whose folder is the nearest one above the source."""
+    found = {}
+    for row in re.findall(r"^\| ([^|]*`[^|]*) \| [^|]* \| ([^|]*) \|$", readme, re.M):
+        folders = re.findall(r"`([^`]+)`", row[0])
+        for folder in folders:
+            for base in ["", *[str(p) + "/" for p in Path(folders[0]).parents]]:
+                path = (base + folder).removeprefix("./")
+                if source.startswith(path.rstrip("*")) and (path.endswith("*") or source.startswith(path + "/")):
+                    found.setdefault(len(path), []).extend(re.findall(r"`(ipos_\w+)`", row[1]))
+    return list(dict.fromkeys(found[max(found)])) if found else []
+
+
+class Program:
+    """One GoogleTest program, and what a run of it says."""
+
+    def __init__(self, build, work, cache, source, test):
+        self.name = test["name"]
+        self.build = build
+        self.work = work
+        self.source = source
+        self.cache = cache
+        self.arguments = [a for a in test["command"][1:] if not a.startswith("--gtest_output")]
+        properties = {p["name"]: p["value"] for p in test.get("properties", [])}
+        self.folder = properties.get("WORKING_DIRECTORY", str(build))
+        self.binary = Path(test["command"][0])
+        relative = os.path.relpath(self.binary, build)
+        commands = subprocess.run(["ninja", "-C", str(build), "-t", "commands", relative], check=True,
+                                  capture_output=True, text=True).stdout.strip().splitlines()
+        self.link = re.sub(r"^: && | && :$", "", commands[-1])
+        self.only = None  # a filter of GoogleTest, instead of all tests
+        self.seconds = {}
+        self.killers = []
+
+    def measure(self):
+        report = self.cache / f"{self.name}.xml"
+        if not report.exists() or report.stat().st_mtime < self.binary.stat().st_mtime:
+            if not self.run(self.binary, [f"--gtest_output=xml:{report}"], 1800):
+                report.unlink(missing_ok=True)
+                raise SystemExit(f"mutate: {self.name} fails without a mutant")
+        for case in xml.parse(report).iter("testcase"):
+            if case.get("status") == "run":
+                self.seconds[f"{case.get('classname')}.{case.get('name')}"] = float(case.get("time"))
+
+    def passes(self):
+        """The tests, most promising first: what has noticed a mutant before, then what is quick, then the rest."""
+        total = sum(self.seconds.values())
+        quick, spent = [], 0.0
+        for name in sorted(self.seconds, key=self.seconds.get):
+            spent += self.seconds[name]
+            if spent > max(1.0, total / 10):
+                break
+            quick.append(name)
+        before = [name for name in self.killers if self.seconds[name] < max(1.0, total / 20)][-20:]
+        rest = [name for name in self.seconds if name not in set(quick)]
+        return [names for names in (before, quick, rest) if names]
+
+    def run(self, binary, arguments, seconds):
+        def limit():
+            resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        environment = dict(os.environ, TMPDIR=str(self.work / "tmp"))
+        with subprocess.Popen([str(binary), *self.arguments, *arguments], cwd=self.folder, env=environment,
+                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              start_new_session=True, preexec_fn=limit) as process:
+            try:
+                self.output = process.communicate(timeout=seconds)[0].decode(errors="replace")
+            except subprocess.TimeoutExpired:
+                os.killpg(process.pid, 9)
+                process.communicate()
+                self.output = "[  FAILED  ] (no end)"
+                return False
+        return process.returncode in (0, 77)
+
+    def notices(self, mutant):
+        """The name of a test that fails with the mutant linked in, or None."""
+        binary = self.work / self.name
+        own = re.compile(r"\S*/" + re.escape(self.source) + r"\.o\b")  # where a program compiles the layer itself
+        link = re.sub(r" -o \S+ ", lambda m: f" {shlex.quote(str(mutant))} -o {shlex.quote(str(binary))} ",
+                      own.sub("", self.link), count=1)
+        done = subprocess.run(link, shell=True, cwd=self.build, capture_output=True, text=True)
+        if done.returncode != 0:
+            return "(does not link)"
+        (self.work / "tmp").mkdir(exist_ok=True)
+        for names in [[self.only]] if self.only else self.passes():
+            limit = 300 if self.only else 15 + 8 * sum(self.seconds[name] for name in names)
+            if self.run(binary, ["--gtest_fail_fast", "--gtest_brief=1", "--gtest_filter=" + ":".join(names)], limit):
+                continue
+            failed = re.search(r"\[  FAILED  \] (\w\S*?),?\s", self.output + " ")
+            name = failed[1] if failed else "(no end)" if "(no end)" in self.output else "(crash)"
+            if name in self.seconds:
+                self.killers = [k for k in self.killers if k != name] + [name]
+            return name
+        shutil.rmtree(self.work / "tmp", ignore_errors=True)
+        return None
+
+
+class Layer:
+    def __init__(self, root, build, source, work, names=None, header=None):
+        self.header = header
+        cache = build / "mutation"  # how long each test takes
+        cache.mkdir(exist_ok=True)
+        self.root, self.build, self.source, self.work = root, build, source, work
+        names = names or programs_of(source, (root / "tests/README.md").read_text())
+        listed = json.loads(subprocess.run(["ctest", "--show-only=json-v1"], cwd=build, check=True,
+                                           capture_output=True, text=True).stdout)
+        tests = {t["name"]: t for t in listed["tests"] if t.get("command")}
+        self.programs = [Program(build, work, cache, source, tests[n]) for n in names
+                         if n in tests and Path(tests[n]["command"][0]).name == n]
+        if not self.programs:
+            raise SystemExit(f"mutate: no test program of {source}; has {build} been built?")
+        self.command = self.compile_command()
+
+    def prepare(self, only=None):
+        for program in self.programs:
+            program.only = only
+            if only:
+                continue
+            began = time.monotonic()
+            program.measure()
+            print(f"{program.name}: {len(program.seconds)} tests, {sum(program.seconds.values()):.1f} s "
+                  f"({time.monotonic() - began:.0f} s to measure)", flush=True)
+
+    def compile_command(self):
+        """Of the library that the first program links, or of the program itself."""
+        program = self.programs[0]
+        for row in json.loads((self.build / "compile_commands.json").read_text()):
+            library = re.search(r" -o \S*CMakeFiles/(\w+)\.dir/", row["command"])
+            if Path(row["file"]) == self.root / self.source and (
+                    library[1] == program.name or f"lib{library[1]}.a" in program.link):
+                return row["command"]
+        raise SystemExit(f"mutate: {self.source} is in no library of {program.name}")
+
+    def compile(self, text, name, *options):
+        """The object, or None. `text` is the source's, or that of the header which only this source then sees; at -O0
+        its inline functions are everybody's, as the linker takes the first of equal ones."""
+        folder = self.work / name
+        source = folder / Path(self.source).name
+        planted = folder / self.header if self.header else source
+        planted.parent.mkdir(parents=True, exist_ok=True)
+        if self.header:
+            source.write_text((self.root / self.source).read_text())
+        planted.write_text(text)
+        words = shlex.split(self.command)
+        words = words[: words.index("-MD")] if "-MD" in words else words[: words.index("-o")]
+        words += ["-w", "-iquote", str(folder), "-iquote", str((self.root / self.source).parent), *options]
+        done = subprocess.run([*words, "-o", str(folder / "it.o"), "-c", source.name], cwd=folder,
+                              capture_output=True, text=True, timeout=COMPILE_SECONDS)
+        return folder / "it.o" if done.returncode == 0 else None
+
+    def same_code(self, original, mutated):
+        """The compiler makes the same of both: no test can tell them apart."""
+        options = ("-O2", "-g0", "-DNDEBUG")
+        first = self.work / "original" / "it.o"
+        if not first.exists():
+            self.compile(original, "original", *options)
+        second = self.compile(mutated, "same", *options)
+        return second is not None and first.exists() and first.read_bytes() == second.read_bytes()
