@@ -2,7 +2,8 @@
 #
 #   ipos_layer(vm FOLDERS vm/verify vm/exec SOURCES verify/verify.cpp USES image LIBS fmt::fmt)
 #
-# PIC: its code goes into a shared library, too.
+# Their code goes into shared libraries, too (libipos_compile, libipos_plant); there as in a program nobody replaces a
+# function of it, so the optimiser may count on what it sees.
 # Every layer gets a private tree of links, <build>/layers/<name>/<folder> -> <source>/<folder>, as its only
 # include root. A file that includes a folder of a layer not named in USES does not compile;
 # tests/architecture tries that.
@@ -27,8 +28,13 @@ if(IPOS_COVERAGE)
   target_link_options(ipos_options INTERFACE --coverage)
 endif()
 
+function(ipos_for_shared_libraries target)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-fvisibility=hidden>)
+endfunction()
+
 function(ipos_layer name)
-  cmake_parse_arguments(LAYER "PIC" "" "FOLDERS;SOURCES;USES;LIBS" ${ARGN})
+  cmake_parse_arguments(LAYER "" "" "FOLDERS;SOURCES;USES;LIBS" ${ARGN})
   set(view ${PROJECT_BINARY_DIR}/layers/${name})
   foreach(folder ${LAYER_FOLDERS})
     get_filename_component(parent ${view}/${folder} DIRECTORY)
@@ -42,12 +48,8 @@ function(ipos_layer name)
     target_link_libraries(ipos_${name} PUBLIC ipos::${used})
   endforeach()
   target_link_libraries(ipos_${name} PRIVATE ipos_options ${LAYER_LIBS})
-  set(pic "")
-  if(LAYER_PIC)
-    set(pic PIC)
-    set_target_properties(ipos_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-  endif()
+  ipos_for_shared_libraries(ipos_${name})
   if("fmt::fmt" IN_LIST LAYER_LIBS)
-    ipos_precompiled(ipos_${name} ${pic})
+    ipos_precompiled(ipos_${name})
   endif()
 endfunction()

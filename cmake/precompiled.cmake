@@ -1,20 +1,17 @@
 # Headers of others, precompiled: a third of the time of most objects went into reading them again.
 #
-#   ipos_precompiled(TARGET)          for a library that links fmt::fmt
-#   ipos_precompiled(TARGET PIC)      for one whose code goes into a shared library as well
+#   ipos_precompiled(TARGET)          for a layer that links fmt::fmt
 #
 # Only g++ has them: with clang a missing #include is found.
 set(ipos_precompiled_headers <fmt/format.h> <algorithm> <array> <charconv> <cstdint> <filesystem> <functional> <map>
     <memory> <optional> <set> <span> <string> <string_view> <utility> <vector>)
 
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-  foreach(kind plain pic)
-    file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/precompiled_${kind}.cpp CONTENT "// A precompiled header needs an object.\n")
-    add_library(ipos_precompiled_${kind} STATIC ${PROJECT_BINARY_DIR}/precompiled_${kind}.cpp)
-    target_link_libraries(ipos_precompiled_${kind} PRIVATE ipos_options fmt::fmt)
-    target_precompile_headers(ipos_precompiled_${kind} PRIVATE ${ipos_precompiled_headers})
-  endforeach()
-  set_target_properties(ipos_precompiled_pic PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/precompiled_pic.cpp CONTENT "// A precompiled header needs an object.\n")
+  add_library(ipos_precompiled_pic STATIC ${PROJECT_BINARY_DIR}/precompiled_pic.cpp)
+  target_link_libraries(ipos_precompiled_pic PRIVATE ipos_options fmt::fmt)
+  target_precompile_headers(ipos_precompiled_pic PRIVATE ${ipos_precompiled_headers})
+  ipos_for_shared_libraries(ipos_precompiled_pic)
 endif()
 
 # Out of a precompiled header g++ 12 reports what it keeps quiet about in the header itself: inlined std::string and
@@ -26,11 +23,7 @@ endif()
 
 function(ipos_precompiled target)
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-    set(kind plain)
-    if("PIC" IN_LIST ARGN)
-      set(kind pic)
-    endif()
-    target_precompile_headers(${target} REUSE_FROM ipos_precompiled_${kind})
+    target_precompile_headers(${target} REUSE_FROM ipos_precompiled_pic)
     target_compile_options(${target} PRIVATE ${ipos_false_reports})
   endif()
 endfunction()

@@ -1,12 +1,12 @@
 # The back end: assembler and disassembler, and the compiler proper from syntax tree to image.
-ipos_layer(asm PIC
+ipos_layer(asm
   FOLDERS compiler/asm
   SOURCES asm/assembler.cpp asm/disassembler.cpp asm/reader.cpp asm/text_forms.cpp
   USES frontend isa image stdlib
   LIBS fmt::fmt)
 
 file(GLOB compiler_sources CONFIGURE_DEPENDS sema/*.cpp codegen/*.cpp symbols/*.cpp)
-ipos_layer(compiler PIC
+ipos_layer(compiler
   FOLDERS compiler/sema compiler/codegen compiler/symbols
   SOURCES ${compiler_sources}
   USES frontend asm isa image stdlib
