@@ -7,7 +7,7 @@ ipos_layer(runtime
           plant/read_control.cpp plant/read_fault.cpp plant/read_surroundings.cpp plant/read_expect.cpp
           plant/serial_plan.cpp plant/sbus_port.cpp plant/canopen_port.cpp plant/serial_port.cpp plant/station.cpp
           plant/signal_port.cpp plant/station_state.cpp plant/variable_names.cpp plant/station_signals.cpp
-          plant/plant_signals.cpp plant/surroundings.cpp plant/plant.cpp
+          plant/plant_signals.cpp plant/surroundings.cpp plant/plant.cpp plant/hands.cpp plant/trace_hash.cpp
   USES unit vm image bus scom drive positioning motion storage stdlib
   LIBS fmt::fmt)
 ipos_batches(ipos_runtime SIZE 20 HOT plant/sbus_port.cpp plant/station.cpp plant/surroundings.cpp plant/plant.cpp)

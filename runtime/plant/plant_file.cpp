@@ -73,6 +73,24 @@ PlantFileResult read_plant_file(std::string_view text) {
   return std::move(reader.result);
 }
 
+PlantFileResult read_fault_tables(std::string_view text, const PlantFile& plant) {
+  PlantReader reader;
+  reader.result.plant.buses = plant.buses;
+  reader.result.plant.stations = plant.stations;
+  for (const BusConfig& bus : plant.buses) reader.bus_names.insert(bus.name);
+  for (const StationConfig& station : plant.stations) reader.station_names.insert(station.name);
+  for (const ControlConfig& control : plant.controls) reader.station_names.insert(control.name);
+  if (const auto root = parse_toml(reader, text)) {
+    reader.known_keys(*root, "the text", {"fault"});
+    read_faults(reader, *root);
+    check_plant(reader);
+  }
+  PlantFileResult faults;
+  faults.plant.faults = std::move(reader.result.plant.faults);
+  faults.errors = std::move(reader.result.errors);
+  return faults;
+}
+
 int64_t parse_duration(std::string_view text) {
   struct Unit {
     std::string_view name;

@@ -178,6 +178,9 @@ struct PlantFileResult {
 
 PlantFileResult read_plant_file(std::string_view text);
 
+// The [[fault]] tables of a text, for a plant that is there; the result has only them.
+PlantFileResult read_fault_tables(std::string_view text, const PlantFile& plant);
+
 // "500ms", "1.5s", "20us", "2min": nanoseconds, or -1 when it is no duration.
 int64_t parse_duration(std::string_view text);
 

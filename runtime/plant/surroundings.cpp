@@ -96,20 +96,28 @@ void Surroundings::perform(Time now, size_t script) {
     due_.emplace(now + stimulus.every, Due{script, 0, {}});
 }
 
-void Surroundings::hold(Time now, size_t script) {
-  const SignalPort& port = scripts_[script].port;
-  const Stimulus& stimulus = scripts_[script].stimulus;
-  const bool pulse = stimulus.action == Stimulus::Action::Pulse;
+void Surroundings::force(const SignalPort& port, int32_t value) {
+  hold(port, value);
+  schedule_next(queue_.now());
+}
+
+Surroundings::Hold& Surroundings::hold(const SignalPort& port, int32_t value) {
   auto held =
       std::find_if(holds_.begin(), holds_.end(), [&](const Hold& other) { return other.port == port; });
   if (held == holds_.end()) held = holds_.insert(held, {port, 0, 0, std::nullopt});
-  held->value = stimulus.value;
+  held->value = value;
   held->number = ++holds_made_;
-  if (port.is_input())
-    port.line().forced = stimulus.value;
-  else if (pulse && !held->before)
-    held->before = port.read();
-  if (stimulus.length != 0) due_.emplace(now + stimulus.length, Due{script, held->number, {}});
+  if (port.is_input()) port.line().forced = value;
+  return *held;
+}
+
+void Surroundings::hold(Time now, size_t script) {
+  const SignalPort& port = scripts_[script].port;
+  const Stimulus& stimulus = scripts_[script].stimulus;
+  Hold& held = hold(port, stimulus.value);
+  if (stimulus.action == Stimulus::Action::Pulse && !port.is_input() && !held.before)
+    held.before = port.read();
+  if (stimulus.length != 0) due_.emplace(now + stimulus.length, Due{script, held.number, {}});
 }
 
 // `number` 0 releases whatever holds the terminal; the end of a pulse only its own hold.

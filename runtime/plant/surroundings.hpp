@@ -35,6 +35,10 @@ class Surroundings final : private EventTarget {
   void add(const SignalPort& port, const Stimulus& stimulus);
   void act(Time at, std::function<void()> action);
 
+  // At once: held from now on, as a stimulus with force holds it; and whatever holds its terminal no more.
+  void force(const SignalPort& port, int32_t value);
+  void release(const SignalPort& port) { release(port, 0); }
+
  private:
   struct Lead {  // a wire
     SignalPort from;
@@ -68,6 +72,7 @@ class Surroundings final : private EventTarget {
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
   void perform(Time now, size_t script);
   void hold(Time now, size_t script);
+  Hold& hold(const SignalPort& port, int32_t value);
   void release(const SignalPort& port, uint64_t number);
   void write(Time now, const SignalPort& port, int32_t value);
   void schedule_next(Time now);

@@ -10,6 +10,7 @@
 #include "runtime/bus/log/candump.hpp"
 #include "runtime/bus/log/serial_log.hpp"
 #include "runtime/plant/plant.hpp"
+#include "runtime/plant/trace_hash.hpp"
 #include "stdlib/parameters.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/interrupt.hpp"
@@ -24,7 +25,6 @@
 #include "tools/recording/plot_svg.hpp"
 #include "tools/recording/recording.hpp"
 #include "tools/recording/trace.hpp"
-#include "tools/recording/trace_hash.hpp"
 #include "tools/run/real_time_run.hpp"
 #include "tools/run/run_report.hpp"
 #include "tools/run/signal_list.hpp"
@@ -215,7 +215,7 @@ int run(const RunFlags& flags) {
     coverage.check();
   }
 
-  std::optional<TraceHash> trace_hash;
+  std::optional<runtime::TraceHash> trace_hash;
   if (flags.trace_hash) trace_hash.emplace(plant);
 
   catch_interrupts();

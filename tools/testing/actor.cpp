@@ -47,7 +47,7 @@ class Actor::Sender final : public runtime::CanNode, public runtime::SerialNode 
 };
 
 Actor::Actor(runtime::Plant& plant, const std::vector<Item>& items, uint64_t seed, Problem on_problem)
-    : plant_(plant), seed_(seed), on_problem_(std::move(on_problem)) {
+    : plant_(plant), hands_(plant), seed_(seed), on_problem_(std::move(on_problem)) {
   for (const Item& item : items)
     if (const auto* step = std::get_if<Step>(&item.what))
       if (const auto* send = std::get_if<SendStep>(step)) attach(send->bus);
@@ -90,77 +90,33 @@ void Actor::plan(const Item& item, const Step& step, Time at) {
     if (const auto* fault = std::get_if<runtime::FaultConfig>(&step)) problem = plant_fault(*fault, at);
     if (const auto* fault = std::get_if<DriveFaultStep>(&step))
       station(fault->station).drive().state().raise_fault(fault->number);
-    if (const auto* program = std::get_if<ProgramStep>(&step)) problem = control(*program);
+    if (const auto* program = std::get_if<ProgramStep>(&step)) problem = runtime::Hands::order(station(program->station), program->action);
     if (const auto* power = std::get_if<PowerStep>(&step))
       power->on ? station(power->station).power_on() : station(power->station).power_off();
     if (problem) on_problem_(item, *problem);
   });
 }
 
-std::optional<std::string> Actor::set(const runtime::Stimulus& stimulus) {
+runtime::Refusal Actor::set(const runtime::Stimulus& stimulus) {
   std::string why;
   const auto port = runtime::SignalPort::find(plant_.stations(), stimulus.signal, why);
-  if (!port->is_input()) return port->write(stimulus.value);
-  if (port->line().driven)
-    return fmt::format("{} of {} hangs on a wire or switch: force it, do not set it", stimulus.signal.name,
-                       stimulus.signal.station);
-  port->line().set = stimulus.value;
-  return std::nullopt;
+  return runtime::Hands::set(*port, stimulus.signal.name, stimulus.value);
 }
 
-// Words come as over the bus that P101 names, or P100, or else the SBus.
-void Actor::write_words(const std::string& name, const runtime::DriveWords& words) {
-  runtime::DriveServer& drive = station(name).drive();
-  const int32_t control = drive.value("101");
-  const int32_t setpoint = drive.value("100");
-  if (control == 1 || (control == 0 && setpoint == 2))
-    drive.state().take_po(runtime::PoSource::Rs485, words);
-  else if (control == 2 || (control == 0 && setpoint == 3))
-    drive.state().take_po(runtime::PoSource::Fieldbus, words);
-  else
-    drive.take_output(plant_.now(), runtime::OutputChannel::Single, words);
-}
-
-// A forced word is written again every millisecond, like a telegram of a master that never rests.
 void Actor::set_word(const ProcessDataStep& step) {
-  auto& forced = forced_[step.station][step.word];
-  const bool holds = forced.has_value();
-  forced.reset();
-  if (step.action == ProcessDataStep::Action::Release) return;
-  if (step.action == ProcessDataStep::Action::Force) forced = step.value;
-  runtime::DriveWords words = station(step.station).drive().state().po();
-  words[step.word] = step.value;
-  write_words(step.station, words);
-  if (forced && !holds) plan_forced(step.station, step.word);
-}
-
-void Actor::plan_forced(const std::string& name, uint8_t word) {
-  plant_.surroundings().act(plant_.now() + kMillisecond, [this, name, word] {
-    const std::optional<uint16_t> value = forced_[name][word];
-    if (!value) return;
-    runtime::DriveWords words = station(name).drive().state().po();
-    words[word] = *value;
-    write_words(name, words);
-    plan_forced(name, word);
-  });
-}
-
-std::optional<std::string> Actor::control(const ProgramStep& step) {
   runtime::Station& station = this->station(step.station);
-  if (step.action == ProgramStep::Action::Stop) {
-    station.stop_program();
-    return std::nullopt;
+  switch (step.action) {
+    case ProcessDataStep::Action::Set:
+      hands_.release_word(station, step.word);
+      return hands_.set_word(station, step.word, step.value);
+    case ProcessDataStep::Action::Force: return hands_.force_word(station, step.word, step.value);
+    case ProcessDataStep::Action::Release: return hands_.release_word(station, step.word);
   }
-  if (step.action == ProgramStep::Action::Start && !station.program_over()) return "the program runs already";
-  return station.start_program();
 }
 
-std::optional<std::string> Actor::plant_fault(runtime::FaultConfig fault, Time at) {
-  fault.fault.from += at;
-  if (fault.fault.until != runtime::kNever) fault.fault.until += at;
+runtime::Refusal Actor::plant_fault(runtime::FaultConfig fault, Time at) {
   fault.fault.seed += seed_;
-  if (plant_.plant_fault(fault)) return std::nullopt;
-  return fmt::format("station '{}' is not on bus '{}'", fault.station, fault.bus);
+  return hands_.plant_fault(std::move(fault), at);
 }
 
 }  // namespace ipos::tools::testing

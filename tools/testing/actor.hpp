@@ -2,7 +2,6 @@
 // before the stations. Sends from a station of its own on each bus the test sends on.
 #pragma once
 
-#include <array>
 #include <functional>
 #include <map>
 #include <memory>
@@ -10,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/plant/hands.hpp"
 #include "tools/testing/test_case.hpp"
 
 namespace ipos::tools::testing {
@@ -32,18 +32,15 @@ class Actor {
 
   void attach(const std::string& bus);
   runtime::Station& station(const std::string& name);
-  std::optional<std::string> set(const runtime::Stimulus& stimulus);
-  void write_words(const std::string& name, const runtime::DriveWords& words);
+  runtime::Refusal set(const runtime::Stimulus& stimulus);
   void set_word(const ProcessDataStep& step);
-  void plan_forced(const std::string& name, uint8_t word);
-  std::optional<std::string> control(const ProgramStep& step);
-  std::optional<std::string> plant_fault(runtime::FaultConfig fault, Time at);
+  runtime::Refusal plant_fault(runtime::FaultConfig fault, Time at);
 
   runtime::Plant& plant_;
+  runtime::Hands hands_;
   uint64_t seed_;
   Problem on_problem_;
-  std::map<std::string, std::unique_ptr<Sender>> senders_;                // by bus
-  std::map<std::string, std::array<std::optional<uint16_t>, 3>> forced_;  // PO words by station
+  std::map<std::string, std::unique_ptr<Sender>> senders_;  // by bus
 };
 
 }  // namespace ipos::tools::testing

@@ -146,7 +146,7 @@ std::optional<Step> read_program(PlantReader& reader, const toml::table& table) 
   const std::string station = read_item_station(reader, table, kStep);
   const auto choice = read_choice(reader, table, "program", {"start", "stop", "restart"});
   if (!choice) return std::nullopt;
-  return ProgramStep{station, static_cast<ProgramStep::Action>(*choice)};
+  return ProgramStep{station, static_cast<runtime::ProgramOrder>(*choice)};
 }
 
 std::optional<Step> read_power(PlantReader& reader, const toml::table& table) {

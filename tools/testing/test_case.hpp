@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "runtime/plant/hands.hpp"
 #include "runtime/plant/plant.hpp"
 
 namespace ipos::tools::testing {
@@ -86,9 +87,8 @@ struct DriveFaultStep {
   uint8_t number = 0;
 };
 struct ProgramStep {
-  enum class Action : uint8_t { Start, Stop, Restart };
   std::string station;
-  Action action = Action::Start;
+  runtime::ProgramOrder action = runtime::ProgramOrder::Start;
 };
 struct PowerStep {
   std::string station;

@@ -35,6 +35,7 @@ NodeId CanLine::attach(std::string name, uint32_t baud, CanNode& node) {
   added.name = std::move(name);
   added.baud = baud;
   added.node = &node;
+  if (!nodes_.empty()) added.segment = nodes_.back().segment;
   wire(added);
   nodes_.push_back(std::move(added));
   nodes_.back().queue.reserve(kSendQueueLimit);

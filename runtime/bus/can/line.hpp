@@ -37,8 +37,9 @@ class CanLine final : private EventTarget {
   // `source` orders the line's events among those of equal time. `baud` must be one of kBaudRates.
   CanLine(EventQueue& queue, uint32_t source, std::string name, uint32_t baud);
 
-  // All nodes are attached before the first event runs, in the order in which they sit on the cable. A node
-  // of another rate takes no part, and the observers hear why.
+  // Nodes are attached before the first event runs, in the order in which they sit on the cable; one that comes
+  // later, between two events, is plugged in at its end. A node of another rate takes no part, and the observers
+  // hear why.
   NodeId attach(std::string name, uint32_t baud, CanNode& node);
   void add_observer(CanObserver& observer);
   void add_observer(LineObserver& observer);

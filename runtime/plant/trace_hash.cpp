@@ -1,26 +1,36 @@
 // What a station and a bus show from outside, in a fixed order.
-#include "tools/recording/trace_hash.hpp"
+#include "runtime/plant/trace_hash.hpp"
 
 #include <fmt/format.h>
 
-namespace ipos::tools {
+namespace ipos::runtime {
 
-TraceHash::TraceHash(runtime::Plant& plant) : plant_(plant) {
-  plant.add_observer(static_cast<runtime::CanObserver&>(*this));
-  plant.add_observer(static_cast<runtime::SerialObserver&>(*this));
+TraceHash::TraceHash(Plant& plant) : plant_(&plant) {
+  plant.add_observer(static_cast<CanObserver&>(*this));
+  plant.add_observer(static_cast<SerialObserver&>(*this));
 }
 
-void TraceHash::sample(runtime::Time now) {
-  if (now % runtime::kMillisecond != 0) return;
+void TraceHash::sample(Time now) {
+  if (now % kMillisecond != 0) return;
+  add_state(now, *plant_);
+}
+
+void TraceHash::add_state(Time now, const Plant& plant) {
   add_all(now);
-  for (const auto& station : plant_.stations()) add_station(*station);
+  for (const auto& station : plant.stations()) add_station(*station);
+}
+
+uint64_t state_digest(const Plant& plant) {
+  TraceHash hash;
+  hash.add_state(plant.now(), plant);
+  return hash.value();
 }
 
 std::string TraceHash::text() const { return fmt::format("{:016x}", hash_); }
 
-void TraceHash::add_station(runtime::Station& station) {
-  const runtime::Drive& drive = station.drive().state();
-  const runtime::AxisState& axis = drive.axis();
+void TraceHash::add_station(const Station& station) {
+  const Drive& drive = station.drive().state();
+  const AxisState& axis = drive.axis();
   add_all(station.powered(), drive.fault(), drive.condition(), drive.display(), drive.status_word_1(),
           drive.status_word_2(), drive.inputs(), drive.outputs(), axis.phase, axis.output_stage,
           axis.brake_released, axis.standing, axis.ramping, axis.current_limited, axis.setpoint, axis.speed,
@@ -37,26 +47,25 @@ void TraceHash::add_station(runtime::Station& station) {
   add_all(machine->fault().number, machine->fault().address);
 }
 
-void TraceHash::on_frame(const runtime::CanLine& line, const runtime::FrameRecord& record) {
+void TraceHash::on_frame(const CanLine& line, const FrameRecord& record) {
   add_text(line.name());
-  const runtime::Frame& frame = record.frame;
+  const Frame& frame = record.frame;
   add_all(record.sender, record.start, record.end, record.bits, frame.id, frame.length);
   for (size_t n = 0; n < frame.length; ++n) add(frame.data[n]);
 }
 
-void TraceHash::on_line_event(const runtime::CanLine& line, const runtime::LineEvent& event) {
+void TraceHash::on_line_event(const CanLine& line, const LineEvent& event) {
   add_text(line.name());
   add_all(event.kind, event.time, event.node, event.other, event.id, event.fault);
 }
 
-void TraceHash::on_character(const runtime::Rs485Line& line, runtime::NodeId sender,
-                             const runtime::Character& character) {
+void TraceHash::on_character(const Rs485Line& line, NodeId sender, const Character& character) {
   add_text(line.name());
   add_all(sender, character.start, character.end, character.data, character.parity_error,
           character.framing_error);
 }
 
-void TraceHash::on_serial_event(const runtime::Rs485Line& line, const runtime::SerialEvent& event) {
+void TraceHash::on_serial_event(const Rs485Line& line, const SerialEvent& event) {
   add_text(line.name());
   add_all(event.kind, event.time, event.node, event.other);
 }
@@ -66,4 +75,4 @@ void TraceHash::add_text(const std::string& text) {
   for (const char c : text) add(static_cast<unsigned char>(c));
 }
 
-}  // namespace ipos::tools
+}  // namespace ipos::runtime

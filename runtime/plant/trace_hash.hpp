@@ -8,36 +8,43 @@
 
 #include "runtime/plant/plant.hpp"
 
-namespace ipos::tools {
+namespace ipos::runtime {
 
 // FNV-1a, 64 bits, over numbers of 64 bits instead of bytes.
-class TraceHash final : public runtime::CanObserver, public runtime::SerialObserver {
+class TraceHash final : public CanObserver, public SerialObserver {
  public:
   // Watches the buses of the plant, which must outlive it.
-  explicit TraceHash(runtime::Plant& plant);
+  explicit TraceHash(Plant& plant);
 
   // For Plant::run_until: takes the state at whole milliseconds, after all that happened at that time.
-  void sample(runtime::Time now);
+  void sample(Time now);
 
+  uint64_t value() const { return hash_; }
   std::string text() const;  // 16 hexadecimal digits
 
  private:
-  void on_frame(const runtime::CanLine& line, const runtime::FrameRecord& record) override;
-  void on_line_event(const runtime::CanLine& line, const runtime::LineEvent& event) override;
-  void on_character(const runtime::Rs485Line& line, runtime::NodeId sender,
-                    const runtime::Character& character) override;
-  void on_serial_event(const runtime::Rs485Line& line, const runtime::SerialEvent& event) override;
+  friend uint64_t state_digest(const Plant& plant);
+
+  TraceHash() = default;  // that watches nothing
+  void on_frame(const CanLine& line, const FrameRecord& record) override;
+  void on_line_event(const CanLine& line, const LineEvent& event) override;
+  void on_character(const Rs485Line& line, NodeId sender, const Character& character) override;
+  void on_serial_event(const Rs485Line& line, const SerialEvent& event) override;
 
   void add(uint64_t value) { hash_ = (hash_ ^ value) * 0x100000001B3; }
   void add_text(const std::string& text);
-  void add_station(runtime::Station& station);
+  void add_state(Time now, const Plant& plant);
+  void add_station(const Station& station);
   template <typename... Values>
   void add_all(Values... values) {
     (add(static_cast<uint64_t>(values)), ...);
   }
 
-  runtime::Plant& plant_;
+  const Plant* plant_ = nullptr;
   uint64_t hash_ = 0xCBF29CE484222325;
 };
 
-}  // namespace ipos::tools
+// One number over the present state alone.
+uint64_t state_digest(const Plant& plant);
+
+}  // namespace ipos::runtime

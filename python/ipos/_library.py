@@ -1,0 +1,290 @@
+"""The C library behind the package: where it is found, its functions with their types, and its statuses as exceptions."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from ctypes import (
+    CFUNCTYPE,
+    POINTER,
+    Structure,
+    byref,
+    c_bool,
+    c_char_p,
+    c_double,
+    c_int32,
+    c_int64,
+    c_size_t,
+    c_uint8,
+    c_uint32,
+    c_uint64,
+    c_void_p,
+)
+from pathlib import Path
+from typing import Iterator
+
+_NAME = "libipos_plant.so"
+
+
+def _places() -> Iterator[str]:
+    """The copy in the package, one named by IPOS_PLANT_LIBRARY, the builds of a source folder, the system's."""
+    named = os.environ.get("IPOS_PLANT_LIBRARY")
+    if named:
+        yield named
+        return
+    here = Path(__file__).resolve().parent
+    yield str(here / _NAME)
+    for build in ("release", "dev"):
+        yield str(here.parent.parent / "build" / build / "lib" / _NAME)
+    yield _NAME + ".0"
+
+
+def _load() -> ctypes.CDLL:
+    tried = []
+    for place in _places():
+        if os.sep in place and not os.path.exists(place):
+            tried.append(place)
+            continue
+        try:
+            return ctypes.CDLL(place)
+        except OSError as error:
+            tried.append(f"{place}: {error}")
+    raise ImportError("no " + _NAME + "; tried\n  " + "\n  ".join(tried))
+
+
+class Source(Structure):
+    _fields_ = [
+        ("path", c_char_p),
+        ("text", c_char_p),
+        ("folder", c_char_p),
+        ("include_dirs", POINTER(c_char_p)),
+        ("include_dir_count", c_size_t),
+        ("defines", POINTER(c_char_p)),
+        ("define_count", c_size_t),
+        ("flags", c_uint32),
+        ("commands_a_ms", c_uint32),
+        ("seed", c_uint64),
+    ]
+
+
+class MistakeRow(Structure):
+    _fields_ = [("file", c_char_p), ("text", c_char_p), ("line", c_uint32), ("column", c_uint32)]
+
+
+class StationInfo(Structure):
+    _fields_ = [("name", c_char_p), ("unit", c_char_p), ("title", c_char_p), ("program", c_char_p)]
+
+
+class SignalInfo(Structure):
+    _fields_ = [
+        ("name", c_char_p),
+        ("unit", c_char_p),
+        ("factor", c_double),
+        ("decimals", c_int32),
+        ("kind", c_int32),
+        ("station", c_uint32),
+        ("number", c_uint32),
+        ("flags", c_uint32),
+    ]
+
+
+class BusInfo(Structure):
+    _fields_ = [("name", c_char_p), ("kind", c_int32), ("baud", c_uint32)]
+
+
+class Load(Structure):
+    _fields_ = [("frames", c_uint64), ("lost", c_uint64), ("percent", c_double)]
+
+
+class FrameRow(Structure):
+    _fields_ = [
+        ("time", c_int64),
+        ("id", c_uint32),
+        ("flags", c_uint32),
+        ("sender", c_uint32),
+        ("tag", c_uint32),
+        ("length", c_uint8),
+        ("data", c_uint8 * 8),
+    ]
+
+
+class TelegramRow(Structure):
+    _fields_ = [
+        ("start", c_int64),
+        ("end", c_int64),
+        ("bytes", POINTER(c_uint8)),
+        ("length", c_size_t),
+        ("valid", c_bool),
+        ("text", c_char_p),
+    ]
+
+
+class Entry(Structure):
+    _fields_ = [("time", c_int64), ("weight", c_int32), ("station", c_char_p), ("text", c_char_p)]
+
+
+CONDITION = CFUNCTYPE(c_bool, c_void_p, c_void_p)
+
+# ipos_plant_... and the types of its arguments; all of these return a status.
+_FUNCTIONS = {
+    "open": [POINTER(Source), POINTER(c_void_p)],
+    "close": [c_void_p],
+    "adopt": [c_void_p],
+    "mistake_at": [c_void_p, c_size_t, POINTER(MistakeRow)],
+    "duration": [c_char_p, POINTER(c_int64)],
+    "time": [c_void_p, POINTER(c_int64)],
+    "run": [c_void_p, c_int64],
+    "run_to_frame": [c_void_p, c_uint32, c_int64],
+    "run_until": [c_void_p, c_int64, CONDITION, c_void_p],
+    "station_at": [c_void_p, c_uint32, POINTER(StationInfo)],
+    "station": [c_void_p, c_char_p, POINTER(c_uint32)],
+    "power": [c_void_p, c_uint32, c_bool],
+    "program": [c_void_p, c_uint32, c_int32],
+    "drive_fault": [c_void_p, c_uint32, c_uint8],
+    "reset_fault": [c_void_p, c_uint32],
+    "why": [c_void_p, c_uint32, POINTER(c_char_p)],
+    "find": [c_void_p, c_uint32, c_int32, c_char_p, POINTER(c_uint32)],
+    "signal_info_of": [c_void_p, c_uint32, POINTER(SignalInfo)],
+    "name_at": [c_void_p, c_uint32, c_int32, c_char_p, c_uint32, POINTER(c_char_p)],
+    "read": [c_void_p, c_uint32, POINTER(c_int64)],
+    "read_many": [c_void_p, POINTER(c_uint32), c_size_t, POINTER(c_int64)],
+    "read_text": [c_void_p, c_uint32, POINTER(c_char_p)],
+    "write": [c_void_p, c_uint32, c_int64],
+    "write_text": [c_void_p, c_uint32, c_char_p],
+    "force": [c_void_p, c_uint32, c_int64],
+    "force_text": [c_void_p, c_uint32, c_char_p],
+    "release": [c_void_p, c_uint32],
+    "bus_at": [c_void_p, c_uint32, POINTER(BusInfo)],
+    "bus": [c_void_p, c_char_p, POINTER(c_uint32)],
+    "bus_load": [c_void_p, c_uint32, POINTER(Load)],
+    "join": [c_void_p, c_uint32],
+    "send": [c_void_p, c_uint32, POINTER(FrameRow), POINTER(c_uint32)],
+    "receive": [c_void_p, c_uint32, POINTER(FrameRow), c_size_t, POINTER(c_size_t)],
+    "node_name": [c_void_p, c_uint32, c_uint32, POINTER(c_char_p)],
+    "serial_send": [c_void_p, c_uint32, c_char_p, c_size_t],
+    "serial_receive": [c_void_p, c_uint32, POINTER(TelegramRow)],
+    "line_fault": [c_void_p, c_char_p],
+    "journal_at": [c_void_p, c_size_t, POINTER(Entry)],
+    "save": [c_void_p, c_void_p, POINTER(c_size_t)],
+    "restore": [c_void_p, c_char_p, c_size_t],
+    "trace_hash": [c_void_p, POINTER(c_uint64)],
+}
+
+_library = _load()
+for _function, _types in _FUNCTIONS.items():
+    getattr(_library, "ipos_plant_" + _function).argtypes = _types
+    getattr(_library, "ipos_plant_" + _function).restype = c_int32
+_library.ipos_plant_message.argtypes = [c_void_p]
+_library.ipos_plant_message.restype = c_char_p
+_library.ipos_plant_mistakes.argtypes = [c_void_p]
+_library.ipos_plant_mistakes.restype = c_size_t
+_library.ipos_plant_status_text.argtypes = [c_int32]
+_library.ipos_plant_status_text.restype = c_char_p
+_library.ipos_plant_version.argtypes = []
+_library.ipos_plant_version.restype = c_uint32
+
+OK, NOT_REACHED, INVALID_ARGUMENT, BAD_PLANT, NOT_OPEN, OTHER_THREAD, BUSY, NO_STATION, NO_SIGNAL, NO_BUS = range(10)
+READ_ONLY, BAD_VALUE, REFUSED, BAD_STATE, OTHER_PLANT, NOT_RECORDED, TOO_SMALL = range(10, 17)
+OUT_OF_MEMORY, BROKEN, NOTHING = range(17, 20)
+
+ANY, VARIABLE, PARAMETER, INPUT, OUTPUT, ANALOG, STATE, WORD = range(8)
+
+EXTENDED, REMOTE, ERROR, OWN = 1, 2, 4, 8
+WRITE_MEMORY, NO_RECORD = 1, 2
+# Of error frames, linux/can/error.h: classes in the identifier, and the passive bits in data[1].
+CONTROLLER = {"controller": 0x004, "bus off": 0x040, "restarted": 0x100}
+PASSIVE = 0x30
+WRITABLE = 1
+
+
+class Mistake:
+    """One mistake of a plant file or a program: file, line, column, text. Lines and columns count from 1."""
+
+    __slots__ = ("file", "line", "column", "text")
+
+    def __init__(self, file: str, line: int, column: int, text: str) -> None:
+        self.file, self.line, self.column, self.text = file, line, column, text
+
+    def __str__(self) -> str:
+        place = f"{self.file}:{self.line}:{self.column}" if self.line else self.file
+        return f"{place}: {self.text}"
+
+    def __repr__(self) -> str:
+        return f"<Mistake {self}>"
+
+
+class PlantError(Exception):
+    """Something a plant refuses. `.errors` are the mistakes of a plant that could not be opened, else empty."""
+
+    def __init__(self, text: str, errors: tuple[Mistake, ...] | list[Mistake] = ()) -> None:
+        super().__init__(text)
+        self.errors = list(errors)
+
+
+class RefusedError(PlantError):
+    """The unit or the line has refused a value or an order; the text says why, with the return code."""
+
+
+class ThreadError(PlantError, RuntimeError):
+    """The plant belongs to another thread, or a call of it is under way."""
+
+
+class ClosedError(PlantError, ValueError):
+    """The plant is closed."""
+
+
+def text(value: bytes | None) -> str:
+    return "" if value is None else value.decode("utf-8", "replace")
+
+
+def status_text(status: int) -> str:
+    return text(_library.ipos_plant_status_text(status))
+
+
+def version() -> str:
+    """Version of the library."""
+    number = _library.ipos_plant_version()
+    return f"{number // 10000}.{number // 100 % 100}.{number % 100}"
+
+
+class _KeyError(KeyError):
+    """A KeyError whose text is shown as it is."""
+
+    def __str__(self) -> str:
+        return str(self.args[0]) if self.args else ""
+
+
+def error_of(status: int, message: str) -> Exception:
+    said = message or status_text(status)
+    if status in (NO_STATION, NO_SIGNAL, NO_BUS):
+        return _KeyError(said)
+    if status == READ_ONLY:
+        return TypeError(said)
+    if status in (BAD_VALUE, INVALID_ARGUMENT):
+        return ValueError(said)
+    if status == REFUSED:
+        return RefusedError(said)
+    if status in (OTHER_THREAD, BUSY):
+        return ThreadError(status_text(status))
+    if status == OUT_OF_MEMORY:
+        return MemoryError(status_text(status))
+    return PlantError(status_text(status) if status in (BROKEN, NOT_RECORDED) else said)
+
+
+def function(name: str):
+    """The function ipos_plant_`name` as it is."""
+    return getattr(_library, "ipos_plant_" + name)
+
+
+def duration_ns(value: object) -> int:
+    """A duration: a text with unit ("500ms"), or a number of seconds."""
+    if isinstance(value, str):
+        ns = c_int64()
+        if function("duration")(value.encode(), byref(ns)) != OK:
+            raise ValueError(f"'{value}' is no time; write for example 500ms or 1.5s")
+        return ns.value
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise TypeError(f"a time is a text such as '500ms' or a number of seconds, not {type(value).__name__}")
+    if not 0 <= value <= 9e9:
+        raise ValueError(f"{value} seconds are no duration")
+    return round(value * 1e9)

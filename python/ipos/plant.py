@@ -1,0 +1,364 @@
+"""A plant: stations and buses on one virtual clock."""
+
+from __future__ import annotations
+
+import os
+from ctypes import byref, c_char_p, c_int64, c_size_t, c_uint64, c_void_p, create_string_buffer
+from typing import Callable, Iterator, Mapping, NamedTuple, Sequence
+
+from . import _library as lib
+from .bus import Bus
+from .recording import Reader, Recording
+from .station import Station
+
+_CHUNK = 1_000_000_000  # ns of virtual time in one call of the library, so that Ctrl-C is heard
+_MILLISECOND = 1_000_000
+
+_WEIGHTS = ("why", "warning", "fault")
+
+
+class JournalEntry(NamedTuple):
+    """What a user has to be told about a run. `weight` is "why", "warning" or "fault"; station "" is the plant."""
+
+    time: float
+    weight: str
+    station: str
+    text: str
+
+    def __str__(self) -> str:
+        who = f"{self.station}: " if self.station else ""
+        return f"{self.time * 1e3:.3f} ms {who}{self.weight}: {self.text}"
+
+
+class _Named(Mapping):
+    """Buses by name."""
+
+    def __init__(self, plant: "Plant", buses: Mapping[str, Bus]) -> None:
+        self._plant, self._buses = plant, buses
+
+    def __getitem__(self, name: str) -> Bus:
+        if name not in self._buses:
+            known = ", ".join(self._buses) or "none"
+            raise lib._KeyError(f"there is no bus '{name}'; the plant has {known}")
+        return self._buses[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._buses)
+
+    def __len__(self) -> int:
+        return len(self._buses)
+
+    def __repr__(self) -> str:
+        return f"<buses {', '.join(self._buses) or 'none'}>"
+
+
+class Plant:
+    """Opens a plant file (or a program, which makes a plant of one station), or the text of one.
+
+    folder       where programs are, with `text`; else that of the file
+    include_dirs, defines   for the compiler; defines as a mapping or as "NAME=TEXT"
+    speed        commands per ms of every task in place of P938 and P939
+    seed         added to the seeds of the plant's faults
+    write_memory nvram files are written, as `ipos run` does; such a plant keeps no record
+    record       False: what is done to the plant is not recorded; no snapshots and no trace hash then
+    """
+
+    def __init__(
+        self,
+        path: str | os.PathLike[str] | None = None,
+        *,
+        text: str | None = None,
+        folder: str | os.PathLike[str] | None = None,
+        include_dirs: Sequence[str | os.PathLike[str]] = (),
+        defines: Mapping[str, object] | Sequence[str] = (),
+        speed: int = 0,
+        seed: int = 0,
+        write_memory: bool = False,
+        record: bool = True,
+    ) -> None:
+        self._handle: c_void_p | None = None
+        if path is None and text is None:
+            raise TypeError("a plant is opened from a path or from text=...")
+        if isinstance(defines, Mapping):
+            defines = [f"{name}={value}" for name, value in defines.items()]
+        self._path = os.fspath(path) if path is not None else None
+        self.recorded = record and not write_memory
+        source = lib.Source()
+        source.path = _encoded(self._path)
+        source.text = _encoded(text)
+        source.folder = _encoded(None if folder is None else os.fspath(folder))
+        source.include_dirs, source.include_dir_count = _array([os.fspath(each) for each in include_dirs])
+        source.defines, source.define_count = _array(list(defines))
+        source.flags = (lib.WRITE_MEMORY if write_memory else 0) | (0 if record else lib.NO_RECORD)
+        source.commands_a_ms = _in_range("speed", speed, 1_000_000)
+        source.seed = _in_range("seed", seed, 2**64 - 1)
+        handle = c_void_p()
+        status = lib.function("open")(byref(source), byref(handle))
+        if status == lib.OK:
+            self._handle = handle
+            self._find_members()
+        else:
+            self._fail_to_open(status, handle)
+
+    def _fail_to_open(self, status: int, handle: c_void_p) -> None:
+        if not handle:
+            raise lib.error_of(status, "")
+        errors = []
+        row = lib.MistakeRow()
+        for number in range(lib.function("mistakes")(handle)):
+            lib.function("mistake_at")(handle, number, byref(row))
+            errors.append(lib.Mistake(lib.text(row.file), row.line, row.column, lib.text(row.text)))
+        lib.function("close")(handle)
+        raise lib.PlantError("\n".join(map(str, errors)) or lib.status_text(status), errors)
+
+    def _find_members(self) -> None:
+        self._stations: dict[str, Station] = {}
+        info = lib.StationInfo()
+        while lib.function("station_at")(self._handle, len(self._stations), byref(info)) == lib.OK:
+            name = lib.text(info.name)
+            self._stations[name] = Station(self, len(self._stations), info)
+        buses: dict[str, Bus] = {}
+        row = lib.BusInfo()
+        while lib.function("bus_at")(self._handle, len(buses), byref(row)) == lib.OK:
+            buses[lib.text(row.name)] = Bus(self, len(buses), row)
+        self._buses = _Named(self, buses)
+
+    # --- the library
+
+    @property
+    def _as_parameter_(self) -> c_void_p:
+        if self._handle is None:
+            raise lib.ClosedError("the plant is closed")
+        return self._handle
+
+    def _call(self, name: str, *arguments: object) -> None:
+        status = lib.function(name)(self._as_parameter_, *arguments)
+        if status != lib.OK:
+            raise self._error(status)
+
+    def _error(self, status: int) -> Exception:
+        return lib.error_of(status, lib.text(lib.function("message")(self._as_parameter_)))
+
+    def close(self) -> None:
+        """Ends the plant; what it was asked to keep is stored. Closing twice is allowed."""
+        handle = getattr(self, "_handle", None)
+        if handle is None:
+            return
+        status = lib.function("close")(handle)
+        if status == lib.BUSY:
+            raise lib.ThreadError("the plant cannot be closed while a call of it is under way")
+        self._handle = None
+        if status != lib.OK:
+            raise lib.PlantError("a memory file could not be written")
+
+    def adopt(self) -> None:
+        """From now on the plant belongs to the calling thread."""
+        self._call("adopt")
+
+    def __enter__(self) -> "Plant":
+        self._as_parameter_
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __del__(self) -> None:
+        try:
+            self.close()
+        except Exception:  # at the end of the interpreter anything may be gone
+            pass
+
+    def __reduce__(self):
+        raise TypeError("a plant cannot be pickled; its snapshot() can")
+
+    def __repr__(self) -> str:
+        what = self._path or "of a text"
+        if self._handle is None:
+            return f"<Plant {what}, closed>"
+        return f"<Plant {what} at {self.time:.3f} s: {', '.join(self._stations)}>"
+
+    # --- time
+
+    @property
+    def time_us(self) -> int:
+        """Virtual time since power-on in microseconds."""
+        return self._now() // 1000
+
+    @property
+    def time(self) -> float:
+        """Virtual time since power-on in seconds."""
+        return self._now() / 1e9
+
+    def _now(self) -> int:
+        now = c_int64()
+        self._call("time", byref(now))
+        return now.value
+
+    def run(
+        self,
+        duration: str | float | None = None,
+        *,
+        until: Callable[[], object] | None = None,
+        limit: str | float = "60s",
+    ) -> bool:
+        """Lets virtual time pass: "1s", "20ms", or a number of seconds.
+
+        With `until` as long as it is false, at most until `limit` has passed: it is asked now and at every millisecond.
+        True, or with `until` whether it came true.
+        """
+        if until is None:
+            if duration is None:
+                raise TypeError("run() needs a duration or until=...")
+            self._run_to(self._now() + lib.duration_ns(duration))
+            return True
+        if duration is not None:
+            raise TypeError("run() takes a duration, or until=... with limit=...")
+        if not callable(until):
+            raise TypeError(f"until is a function that is asked every millisecond, not {type(until).__name__}")
+        now = self._now()
+        end = now + lib.duration_ns(limit)
+        while not until():
+            if now >= end:
+                return False
+            now = min((now // _MILLISECOND + 1) * _MILLISECOND, end)
+            self._call("run", now)
+        return True
+
+    def _run_to(self, end: int) -> None:
+        if end >= 2**63 - 1:
+            raise ValueError("that is beyond the end of virtual time")
+        now = self._now()
+        while now < end:
+            now = min(now + _CHUNK, end)
+            self._call("run", now)
+
+    def _run_to_frame(self, bus: int, end: int) -> None:
+        self._call("run_to_frame", bus, end)
+
+    # --- what is in it
+
+    def __getitem__(self, name: str) -> Station:
+        self._as_parameter_
+        if name not in self._stations:
+            raise lib._KeyError(f"there is no station '{name}'; the plant has {', '.join(self._stations)}")
+        return self._stations[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._stations)
+
+    def __len__(self) -> int:
+        return len(self._stations)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._stations
+
+    @property
+    def stations(self) -> Mapping[str, Station]:
+        """The stations by name, in the order of the file."""
+        return dict(self._stations)
+
+    @property
+    def buses(self) -> Mapping[str, Bus]:
+        """The buses by name."""
+        self._as_parameter_
+        return self._buses
+
+    @property
+    def journal(self) -> list[JournalEntry]:
+        """What there is to tell so far."""
+        entries = []
+        row = lib.Entry()
+        while lib.function("journal_at")(self._as_parameter_, len(entries), byref(row)) == lib.OK:
+            entries.append(
+                JournalEntry(row.time / 1e9, _WEIGHTS[row.weight], lib.text(row.station), lib.text(row.text))
+            )
+        if not entries:
+            self._now()  # says why it cannot be read
+        return entries
+
+    def reader(self, *names: str) -> Reader:
+        """Reads many signals in one call: plant.reader("saw.lCount", "saw.speed")() is a tuple of their values."""
+        return Reader(self, names)
+
+    def record(self, names: Sequence[str], duration: str | float, every: str | float = "1ms") -> Recording:
+        """Runs so long and reads the signals meanwhile; see Recording."""
+        return Recording(self, names, lib.duration_ns(duration), lib.duration_ns(every))
+
+    def _signal_of(self, name: str) -> tuple[Station, str]:
+        """ "saw.lCount": the station with the longest fitting name, and the rest."""
+        if not isinstance(name, str):
+            raise TypeError(f"a signal is named by a text such as 'saw.lCount', not {type(name).__name__}")
+        fits = [each for each in self._stations if name.startswith(each + ".")]
+        if not fits:
+            raise lib._KeyError(
+                f"'{name}' is no signal; signals begin with {', '.join(each + '.' for each in self._stations)}"
+            )
+        station = max(fits, key=len)
+        return self._stations[station], name[len(station) + 1 :]
+
+    # --- faults of lines
+
+    def plant_fault(self, bus: str, kind: str, **keys: object) -> None:
+        """Plants a fault of a line, with the keys of [[fault]] in a plant file; its times count from now.
+
+        plant.plant_fault("sbus", "drop", id=0x40B, rate=100)
+        """
+        rows = [f"{key.rstrip('_')} = {_toml(value)}" for key, value in {"bus": bus, "kind": kind, **keys}.items()]
+        self._call("line_fault", _encoded("[[fault]]\n" + "\n".join(rows) + "\n"))
+
+    # --- state
+
+    @property
+    def trace_hash(self) -> str:
+        """One number over everything that happened so far, as `ipos run --trace-hash` prints it."""
+        value = c_uint64()
+        self._call("trace_hash", byref(value))
+        return f"{value.value:016x}"
+
+    def snapshot(self) -> bytes:
+        """The whole state; restore() takes it in any plant of the same contents, also in another process."""
+        size = c_size_t(0)
+        status = lib.function("save")(self._as_parameter_, None, byref(size))
+        if status != lib.TOO_SMALL:
+            raise self._error(status)
+        room = create_string_buffer(size.value)
+        self._call("save", room, byref(size))
+        return room.raw[: size.value]
+
+    def restore(self, snapshot: bytes) -> None:
+        """Back to a snapshot, or forth. Takes the time the run took from its beginning."""
+        if not isinstance(snapshot, (bytes, bytearray, memoryview)):
+            raise TypeError(f"a snapshot is bytes, not {type(snapshot).__name__}")
+        self._call("restore", bytes(snapshot), len(snapshot))
+
+
+def _encoded(text: str | None) -> bytes | None:
+    if text is None:
+        return None
+    if not isinstance(text, str):
+        raise TypeError(f"this is a text, not {type(text).__name__}")
+    if "\0" in text:
+        raise ValueError("a text with a zero character names nothing")
+    return os.fsencode(text)
+
+
+def _array(texts: Sequence[str]) -> tuple[object, int]:
+    return (c_char_p * len(texts))(*[_encoded(text) for text in texts]), len(texts)
+
+
+def _in_range(what: str, value: int, most: int) -> int:
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise TypeError(f"{what} is a whole number, not {type(value).__name__}")
+    if not 0 <= value <= most:
+        raise ValueError(f"{what} is 0 to {most}")
+    return value
+
+
+def _toml(value: object) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int):
+        return str(value)
+    if isinstance(value, str):
+        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    raise TypeError(f"a fault has texts and whole numbers, not {type(value).__name__}")

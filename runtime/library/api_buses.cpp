@@ -1,0 +1,231 @@
+// The C functions for lines.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "runtime/bus/log/serial_log.hpp"
+#include "runtime/library/handle.hpp"
+
+using namespace ipos::library;
+
+namespace {
+
+ipos_plant_status no_bus(ipos_plant* plant, std::string_view what) {
+  return plant->fail(IPOS_PLANT_NO_BUS, std::string(what));
+}
+
+std::string bus_names(Session& session) {
+  std::vector<std::string_view> names;
+  for (const auto& tap : session.world().can()) names.push_back(tap->line().name());
+  for (const auto& tap : session.world().serial()) names.push_back(tap->line().name());
+  return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
+}
+
+// Runs `action(tap)` for the line of this number and kind.
+template <typename Action>
+ipos_plant_status with_can(ipos_plant* plant, uint32_t bus, Allowed allowed, Action action) {
+  return enter(plant, allowed, [&](Session& session) -> ipos_plant_status {
+    auto& taps = session.world().can();
+    if (bus >= taps.size()) return no_bus(plant, fmt::format("no CAN line has number {}", bus));
+    return action(session, *taps[bus]);
+  });
+}
+template <typename Action>
+ipos_plant_status with_serial(ipos_plant* plant, uint32_t bus, Action action) {
+  return enter(plant, Allowed::NotInCallbacks, [&](Session& session) -> ipos_plant_status {
+    auto& taps = session.world().serial();
+    const size_t first = session.world().can().size();
+    if (bus < first || bus - first >= taps.size())
+      return no_bus(plant, fmt::format("no serial line has number {}", bus));
+    return action(session, *taps[bus - first]);
+  });
+}
+
+ipos_plant_status perform(ipos_plant* plant, Session& session, Act act, uint32_t bus, int64_t value,
+                          std::vector<uint8_t> bytes) {
+  Deed deed;
+  deed.act = act;
+  deed.number = bus;
+  deed.value = value;
+  deed.bytes = std::move(bytes);
+  if (auto refused = session.perform(std::move(deed)))
+    return plant->fail(IPOS_PLANT_REFUSED, std::move(*refused));
+  return IPOS_PLANT_OK;
+}
+
+template <typename Tap>
+ipos_plant_load load_of(const Tap& tap, ipos::runtime::Time now) {
+  const ipos::runtime::LineLoad load = tap.line().load(now);
+  const double percent = load.elapsed_bits == 0 ? 0.0
+                                                : 100.0 * static_cast<double>(load.busy_bits) /
+                                                      static_cast<double>(load.elapsed_bits);
+  return {load.frames, tap.heard().lost(), percent};
+}
+
+ipos_plant_frame frame_of(const Heard& heard) {
+  ipos_plant_frame frame{};
+  frame.time = heard.time;
+  frame.id = heard.frame.id;
+  frame.flags = (heard.frame.extended ? uint32_t{IPOS_PLANT_EXTENDED} : 0U) |
+                (heard.frame.remote ? uint32_t{IPOS_PLANT_REMOTE} : 0U) |
+                (heard.error ? uint32_t{IPOS_PLANT_ERROR} : 0U) | (heard.own ? uint32_t{IPOS_PLANT_OWN} : 0U);
+  frame.sender = heard.sender == ipos::runtime::kNoNode ? UINT32_MAX : static_cast<uint32_t>(heard.sender);
+  frame.tag = heard.tag;
+  frame.length = heard.frame.length;
+  std::copy(heard.frame.data.begin(), heard.frame.data.end(), frame.data);
+  return frame;
+}
+
+}  // namespace
+
+ipos_plant_status ipos_plant_bus_at(ipos_plant* plant, uint32_t bus, ipos_plant_bus_info* info) {
+  return enter(plant, Allowed::Anywhere, [=](Session& session) {
+    if (info == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
+    auto& can = session.world().can();
+    auto& serial = session.world().serial();
+    if (bus < can.size())
+      *info = {plant->keep(can[bus]->line().name()), IPOS_PLANT_CAN, can[bus]->line().baud()};
+    else if (bus - can.size() < serial.size())
+      *info = {plant->keep(serial[bus - can.size()]->line().name()), IPOS_PLANT_SERIAL,
+               serial[bus - can.size()]->line().baud()};
+    else
+      return no_bus(plant, fmt::format("there is no bus number {}", bus));
+    return ipos_plant_status{IPOS_PLANT_OK};
+  });
+}
+
+ipos_plant_status ipos_plant_bus(ipos_plant* plant, const char* name, uint32_t* bus) {
+  return enter(plant, Allowed::Anywhere, [=](Session& session) {
+    if (name == nullptr || bus == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
+    uint32_t number = 0;
+    for (const auto& tap : session.world().can()) {
+      if (tap->line().name() == name) return *bus = number, ipos_plant_status{IPOS_PLANT_OK};
+      ++number;
+    }
+    for (const auto& tap : session.world().serial()) {
+      if (tap->line().name() == name) return *bus = number, ipos_plant_status{IPOS_PLANT_OK};
+      ++number;
+    }
+    return no_bus(plant, fmt::format("there is no bus '{}'; the plant has {}", name, bus_names(session)));
+  });
+}
+
+ipos_plant_status ipos_plant_bus_load(ipos_plant* plant, uint32_t bus, ipos_plant_load* load) {
+  return enter(plant, Allowed::Anywhere, [=](Session& session) {
+    if (load == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
+    auto& can = session.world().can();
+    auto& serial = session.world().serial();
+    const ipos::runtime::Time now = session.plant().now();
+    if (bus < can.size())
+      *load = load_of(*can[bus], now);
+    else if (bus - can.size() < serial.size())
+      *load = load_of(*serial[bus - can.size()], now);
+    else
+      return no_bus(plant, fmt::format("there is no bus number {}", bus));
+    return ipos_plant_status{IPOS_PLANT_OK};
+  });
+}
+
+ipos_plant_status ipos_plant_run_to_frame(ipos_plant* plant, uint32_t bus, int64_t until) {
+  return with_can(plant, bus, Allowed::NotInCallbacks, [=](Session& session, CanTap& tap) {
+    ipos::runtime::Plant& running = session.plant();
+    if (until < running.now() || until == ipos::runtime::kNever)
+      return plant->fail(IPOS_PLANT_INVALID_ARGUMENT,
+                         fmt::format("it is {} ns: time does not run back", running.now()));
+    while (tap.heard().empty() && running.now() < until)
+      running.run_until(std::min(until, std::max(running.next_time(), running.now() + 1)));
+    return ipos_plant_status{IPOS_PLANT_OK};
+  });
+}
+
+ipos_plant_status ipos_plant_join(ipos_plant* plant, uint32_t bus) {
+  return with_can(plant, bus, Allowed::NotInCallbacks,
+                  [=](Session& session, CanTap&) { return perform(plant, session, Act::Join, bus, 0, {}); });
+}
+
+ipos_plant_status ipos_plant_send(ipos_plant* plant, uint32_t bus, const ipos_plant_frame* frame,
+                                  uint32_t* tag) {
+  return with_can(plant, bus, Allowed::NotInCallbacks, [=](Session& session, CanTap&) {
+    if (frame == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
+    ipos::runtime::Frame sent;
+    sent.id = frame->id;
+    sent.length = frame->length;
+    sent.extended = (frame->flags & IPOS_PLANT_EXTENDED) != 0;
+    sent.remote = (frame->flags & IPOS_PLANT_REMOTE) != 0;
+    std::copy(std::begin(frame->data), std::end(frame->data), sent.data.begin());
+    if (!is_valid(sent) || (frame->flags & ~uint32_t{IPOS_PLANT_EXTENDED | IPOS_PLANT_REMOTE}) != 0)
+      return plant->fail(IPOS_PLANT_BAD_VALUE,
+                         "a frame has 8 bytes at most and an identifier of 11 or, extended, 29 bits");
+    const uint32_t number = session.next_tag();
+    if (tag != nullptr) *tag = number;
+    return perform(plant, session, Act::Send, bus, number, frame_bytes(canonical(sent)));
+  });
+}
+
+ipos_plant_status ipos_plant_receive(ipos_plant* plant, uint32_t bus, ipos_plant_frame* frames,
+                                     size_t capacity, size_t* count) {
+  return with_can(plant, bus, Allowed::NotInCallbacks, [=](Session&, CanTap& tap) {
+    if (count == nullptr || (frames == nullptr && capacity != 0)) return IPOS_PLANT_INVALID_ARGUMENT;
+    *count = 0;
+    while (*count < capacity) {
+      const auto heard = tap.heard().take();
+      if (!heard) break;
+      frames[(*count)++] = frame_of(*heard);
+    }
+    return IPOS_PLANT_OK;
+  });
+}
+
+ipos_plant_status ipos_plant_node_name(ipos_plant* plant, uint32_t bus, uint32_t node, const char** name) {
+  return with_can(plant, bus, Allowed::Anywhere, [=](Session&, CanTap& tap) {
+    if (name == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
+    if (node >= tap.line().node_count())
+      return plant->fail(IPOS_PLANT_NO_STATION, fmt::format("no station on the line has number {}", node));
+    *name = plant->keep(tap.line().node_name(static_cast<NodeId>(node)));
+    return ipos_plant_status{IPOS_PLANT_OK};
+  });
+}
+
+ipos_plant_status ipos_plant_serial_send(ipos_plant* plant, uint32_t bus, const uint8_t* bytes,
+                                         size_t length) {
+  return with_serial(plant, bus, [=](Session& session, SerialTap&) {
+    if (bytes == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
+    if (length == 0 || length > SerialTap::kLongest)
+      return plant->fail(IPOS_PLANT_BAD_VALUE,
+                         fmt::format("1 to {} bytes can be sent at a time", SerialTap::kLongest));
+    return perform(plant, session, Act::SerialSend, bus, 0, {bytes, bytes + length});
+  });
+}
+
+ipos_plant_status ipos_plant_serial_receive(ipos_plant* plant, uint32_t bus, ipos_plant_telegram* telegram) {
+  return with_serial(plant, bus, [=](Session&, SerialTap& tap) {
+    if (telegram == nullptr) return IPOS_PLANT_INVALID_ARGUMENT;
+    const auto reception = tap.heard().take();
+    if (!reception) return IPOS_PLANT_NOTHING;
+    const auto heard = reception->bytes.span();
+    plant->bytes.assign(heard.begin(), heard.end());
+    *telegram = {reception->start,
+                 reception->end,
+                 plant->bytes.data(),
+                 plant->bytes.size(),
+                 reception->telegram.has_value(),
+                 plant->hand_out(reception_text(*reception))};
+    return IPOS_PLANT_OK;
+  });
+}
+
+ipos_plant_status ipos_plant_line_fault(ipos_plant* plant, const char* text) {
+  return enter(plant, Allowed::NotInCallbacks, [=](Session& session) {
+    if (text == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
+    const auto read = ipos::runtime::read_fault_tables(text, session.plant().file());
+    if (!read.errors.empty() || read.plant.faults.empty())
+      return plant->fail(IPOS_PLANT_BAD_VALUE,
+                         read.errors.empty()
+                             ? "the text has no [[fault]]"
+                             : fmt::format("line {}, column {}: {}", read.errors.front().place.line,
+                                           read.errors.front().place.column, read.errors.front().text));
+    return perform(plant, session, Act::LineFault, 0, 0, {text, text + std::strlen(text)});
+  });
+}

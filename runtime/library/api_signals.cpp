@@ -1,0 +1,150 @@
+// The C functions for signals.
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "runtime/library/handle.hpp"
+
+using namespace ipos::library;
+
+namespace {
+
+ipos_plant_status no_signal(ipos_plant* plant, uint32_t signal) {
+  return plant->fail(IPOS_PLANT_NO_SIGNAL, fmt::format("no signal has number {}", signal));
+}
+
+ipos_plant_status act(ipos_plant* plant, Session& session, const Session::Signal& signal, Act what,
+                      const Place& place, int64_t value) {
+  if (!is_writable(place))
+    return plant->fail(IPOS_PLANT_READ_ONLY, fmt::format("{} can only be read", signal.name));
+  if (auto wrong = check_value(session.plant(), place, value))
+    return plant->fail(IPOS_PLANT_BAD_VALUE, fmt::format("{}: {}", signal.name, *wrong));
+  Deed deed;
+  deed.act = what;
+  deed.place = place;
+  deed.value = value;
+  if (auto refused = session.perform(std::move(deed)))
+    return plant->fail(IPOS_PLANT_REFUSED, std::move(*refused));
+  return IPOS_PLANT_OK;
+}
+
+ipos_plant_status act(ipos_plant* plant, uint32_t number, Act what, int64_t value) {
+  return enter(plant, Allowed::NotInCallbacks, [=](Session& session) {
+    Session::Signal* signal = session.signal(number);
+    if (signal == nullptr) return no_signal(plant, number);
+    return act(plant, session, *signal, what, signal->place, value);
+  });
+}
+
+ipos_plant_status act(ipos_plant* plant, uint32_t number, Act what, const char* text) {
+  return enter(plant, Allowed::NotInCallbacks, [=](Session& session) {
+    if (text == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
+    Session::Signal* signal = session.signal(number);
+    if (signal == nullptr) return no_signal(plant, number);
+    auto value = parse_place_text(session.plant(), signal->place, text);
+    if (!value) return plant->fail(IPOS_PLANT_BAD_VALUE, std::move(value).error());
+    return act(plant, session, *signal, what, value->place, value->value);
+  });
+}
+
+bool is_kind(ipos_plant_kind kind) { return kind >= IPOS_PLANT_ANY && kind <= IPOS_PLANT_WORD; }
+
+ipos_plant_status no_station(ipos_plant* plant, uint32_t station) {
+  return plant->fail(IPOS_PLANT_NO_STATION, fmt::format("there is no station number {}", station));
+}
+
+}  // namespace
+
+ipos_plant_status ipos_plant_find(ipos_plant* plant, uint32_t station, ipos_plant_kind kind, const char* name,
+                                  uint32_t* signal) {
+  return enter(plant, Allowed::Anywhere, [=](Session& session) {
+    if (name == nullptr || signal == nullptr || !is_kind(kind))
+      return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
+    if (station >= session.plant().stations().size()) return no_station(plant, station);
+    auto place = find_place(session.plant(), station, static_cast<Kind>(kind), name);
+    if (!place) return plant->fail(IPOS_PLANT_NO_SIGNAL, std::move(place).error());
+    *signal = session.add_signal(*place, name);
+    return ipos_plant_status{IPOS_PLANT_OK};
+  });
+}
+
+ipos_plant_status ipos_plant_signal_info_of(ipos_plant* plant, uint32_t number,
+                                            ipos_plant_signal_info* info) {
+  return enter(plant, Allowed::Anywhere, [=](Session& session) {
+    if (info == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
+    const Session::Signal* signal = session.signal(number);
+    if (signal == nullptr) return no_signal(plant, number);
+    const PlaceInfo place = place_info(session.plant(), signal->place, signal->name);
+    *info = {plant->keep(place.name),
+             plant->keep(place.unit),
+             place.factor,
+             place.decimals,
+             static_cast<ipos_plant_kind>(signal->place.kind),
+             signal->place.station,
+             signal->place.number,
+             place.writable ? uint32_t{IPOS_PLANT_WRITABLE} : 0U};
+    return ipos_plant_status{IPOS_PLANT_OK};
+  });
+}
+
+ipos_plant_status ipos_plant_name_at(ipos_plant* plant, uint32_t station, ipos_plant_kind kind,
+                                     const char* part, uint32_t number, const char** name) {
+  return enter(plant, Allowed::Anywhere, [=](Session& session) {
+    if (name == nullptr || !is_kind(kind) || kind == IPOS_PLANT_ANY)
+      return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
+    if (station >= session.plant().stations().size()) return no_station(plant, station);
+    const std::string asked = fmt::format("{} {} {}", station, kind, part == nullptr ? "" : part);
+    if (plant->listed_for != asked) {
+      plant->listed_for.clear();
+      plant->listed = place_names(*session.plant().stations()[station], static_cast<Kind>(kind),
+                                  part == nullptr ? "" : part);
+      plant->listed_for = asked;
+    }
+    if (number >= plant->listed.size()) return ipos_plant_status{IPOS_PLANT_NOTHING};
+    *name = plant->listed[number].c_str();
+    return ipos_plant_status{IPOS_PLANT_OK};
+  });
+}
+
+ipos_plant_status ipos_plant_read(ipos_plant* plant, uint32_t signal, int64_t* value) {
+  return ipos_plant_read_many(plant, &signal, 1, value);
+}
+
+ipos_plant_status ipos_plant_read_many(ipos_plant* plant, const uint32_t* signals, size_t count,
+                                       int64_t* values) {
+  return enter(plant, Allowed::Anywhere, [=](Session& session) {
+    if (count != 0 && (signals == nullptr || values == nullptr))
+      return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
+    for (size_t n = 0; n < count; ++n)
+      if (session.signal(signals[n]) == nullptr) return no_signal(plant, signals[n]);
+    for (size_t n = 0; n < count; ++n)
+      values[n] = read_place(session.plant(), session.signal(signals[n])->place);
+    return ipos_plant_status{IPOS_PLANT_OK};
+  });
+}
+
+ipos_plant_status ipos_plant_read_text(ipos_plant* plant, uint32_t number, const char** text) {
+  return enter(plant, Allowed::Anywhere, [=](Session& session) {
+    if (text == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
+    const Session::Signal* signal = session.signal(number);
+    if (signal == nullptr) return no_signal(plant, number);
+    *text = plant->hand_out(place_text(session.plant(), signal->place));
+    return ipos_plant_status{IPOS_PLANT_OK};
+  });
+}
+
+ipos_plant_status ipos_plant_write(ipos_plant* plant, uint32_t signal, int64_t value) {
+  return act(plant, signal, Act::Write, value);
+}
+ipos_plant_status ipos_plant_write_text(ipos_plant* plant, uint32_t signal, const char* text) {
+  return act(plant, signal, Act::Write, text);
+}
+ipos_plant_status ipos_plant_force(ipos_plant* plant, uint32_t signal, int64_t value) {
+  return act(plant, signal, Act::Force, value);
+}
+ipos_plant_status ipos_plant_force_text(ipos_plant* plant, uint32_t signal, const char* text) {
+  return act(plant, signal, Act::Force, text);
+}
+ipos_plant_status ipos_plant_release(ipos_plant* plant, uint32_t signal) {
+  return act(plant, signal, Act::Release, int64_t{0});
+}

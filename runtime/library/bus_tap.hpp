@@ -1,0 +1,109 @@
+// The library's ear and mouth on the lines of a plant: what a line carries is kept until somebody takes it, and a station
+// of its own sends. On a CAN line it listens only until it joins, so that who only looks changes nothing.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runtime/bus/movilink/serial_receiver.hpp"
+#include "runtime/plant/hands.hpp"
+
+namespace ipos::library {
+
+using runtime::NodeId;
+using runtime::Refusal;
+using runtime::Time;
+
+inline constexpr size_t kKept = 100'000;  // frames or telegrams of a line; older ones are thrown away
+
+// The last ones of something that is taken from the front.
+template <typename Item>
+class Kept {
+ public:
+  void put(Item item) {
+    if (items_.size() == kKept) {
+      items_.pop_front();
+      ++lost_;
+    }
+    items_.push_back(std::move(item));
+  }
+  std::optional<Item> take() {
+    if (items_.empty()) return std::nullopt;
+    Item item = std::move(items_.front());
+    items_.pop_front();
+    return item;
+  }
+  bool empty() const { return items_.empty(); }
+  uint64_t lost() const { return lost_; }
+
+ private:
+  std::deque<Item> items_;
+  uint64_t lost_ = 0;
+};
+
+struct Heard {
+  Time time = 0;
+  runtime::Frame frame;
+  NodeId sender = runtime::kNoNode;
+  uint32_t tag = 0;
+  bool own = false;
+  bool error = false;  // frame.id has the classes of SocketCAN
+};
+
+class CanTap final : private runtime::CanObserver, private runtime::CanNode {
+ public:
+  explicit CanTap(runtime::CanLine& line);
+  CanTap(const CanTap&) = delete;
+  CanTap& operator=(const CanTap&) = delete;
+
+  void join();
+  Refusal send(const runtime::Frame& frame, uint32_t tag);
+  Kept<Heard>& heard() { return heard_; }
+  const Kept<Heard>& heard() const { return heard_; }
+  const runtime::CanLine& line() const { return line_; }
+
+ private:
+  void on_frame(const runtime::CanLine&, const runtime::FrameRecord& record) override;
+  void on_line_event(const runtime::CanLine&, const runtime::LineEvent& event) override;
+  void on_frame(Time, const runtime::Frame&) override {}
+  void on_sent(Time, const runtime::Frame&, uint64_t) override {}
+  void on_not_sent(Time, const runtime::Frame&, uint64_t, runtime::NotSent) override {}
+  void on_bus_off(Time) override { line_.recover(*node_); }
+
+  runtime::CanLine& line_;
+  std::optional<NodeId> node_;
+  std::deque<std::pair<runtime::Frame, uint32_t>> waiting_;  // with their tags
+  Kept<Heard> heard_;
+};
+
+class SerialTap final : private runtime::SerialObserver, private runtime::SerialNode {
+ public:
+  static constexpr size_t kLongest = 1000;  // bytes in one sending (ours)
+
+  explicit SerialTap(runtime::Rs485Line& line);
+  SerialTap(const SerialTap&) = delete;
+  SerialTap& operator=(const SerialTap&) = delete;
+
+  Refusal send(std::span<const uint8_t> bytes);
+  Kept<runtime::Reception>& heard() { return heard_; }
+  const Kept<runtime::Reception>& heard() const { return heard_; }
+  const runtime::Rs485Line& line() const { return line_; }
+
+ private:
+  void on_character(const runtime::Rs485Line&, NodeId, const runtime::Character& character) override;
+  void on_serial_event(const runtime::Rs485Line&, const runtime::SerialEvent&) override {}
+  void on_character(Time, const runtime::Character&) override {}
+  void on_sent(Time) override {}
+
+  runtime::Rs485Line& line_;
+  std::optional<NodeId> node_;
+  runtime::SerialReceiver receiver_;
+  Kept<runtime::Reception> heard_;
+};
+
+}  // namespace ipos::library

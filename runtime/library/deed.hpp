@@ -1,0 +1,54 @@
+// What was done to a plant from outside, and when, as plain data: enough to do it again, and as bytes to keep it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+#include "runtime/library/place.hpp"
+
+namespace ipos::library {
+
+enum class Act : uint8_t {
+  Write,       // place, value
+  Force,       // place, value
+  Release,     // place
+  PowerOff,    // place.station
+  PowerOn,     // place.station
+  Program,     // place.station, value: ProgramOrder
+  DriveFault,  // place.station, value
+  ResetFault,  // place.station
+  Join,        // number: bus
+  Send,        // number: bus; value: tag; frame
+  SerialSend,  // number: bus; bytes
+  LineFault,   // bytes: the text of the tables
+};
+inline constexpr Act kLastAct = Act::LineFault;
+
+struct Deed {
+  runtime::Time at = 0;
+  Act act = Act::Write;
+  Place place{};
+  uint32_t number = 0;
+  int64_t value = 0;
+  std::vector<uint8_t> bytes{};  // of Send: flags, length and data behind the identifier
+};
+
+// A saved state: what leads from time 0 to it.
+struct SavedState {
+  uint64_t identity = 0;  // of the contents
+  runtime::Time time = 0;
+  uint64_t digest = 0;  // of the state the deeds lead to
+  std::vector<Deed> deeds;
+};
+
+// Bytes that are the same on every platform, with a checksum.
+std::vector<uint8_t> to_bytes(uint64_t identity, runtime::Time time, uint64_t digest,
+                              std::span<const Deed> deeds);
+// The error says what is wrong with them. Whether the plant has the places is not looked at.
+tl::expected<SavedState, std::string> from_bytes(std::span<const uint8_t> bytes);
+
+}  // namespace ipos::library

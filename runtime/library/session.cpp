@@ -1,0 +1,103 @@
+// Time, record and restoring.
+#include "runtime/library/session.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace ipos::library {
+
+tl::expected<std::unique_ptr<Session>, Mistakes> Session::open(Contents contents, bool recorded) {
+  auto plant = contents.build();
+  if (!plant) return tl::unexpected(std::move(plant).error());
+  return std::unique_ptr<Session>(new Session(std::move(contents), *std::move(plant), recorded));
+}
+
+Session::Session(Contents contents, std::unique_ptr<runtime::Plant> plant, bool recorded)
+    : contents_(std::move(contents)),
+      world_(std::make_unique<World>(std::move(plant))),
+      recorded_(recorded) {}
+
+bool Session::run_until(Time limit, const std::function<bool()>& condition) {
+  if (condition()) return true;
+  bool met = false;
+  plant().run_until(limit, [&](Time) {
+    met = condition();
+    return !met;
+  });
+  return met;
+}
+
+// What was refused may have left something behind, a reason or a count: it is part of the record like the rest.
+Refusal Session::perform(Deed deed) {
+  deed.at = plant().now();
+  Refusal refused = world_->perform(deed);
+  if (recorded_) record_.push_back(std::move(deed));
+  return refused;
+}
+
+uint32_t Session::add_signal(const Place& place, std::string_view name) {
+  const auto known = std::find_if(signals_.begin(), signals_.end(), [&](const Signal& signal) {
+    return signal.place == place && signal.name == name;
+  });
+  const auto number = static_cast<uint32_t>(known - signals_.begin());
+  if (known == signals_.end()) signals_.push_back({place, std::string(name)});
+  return number;
+}
+
+std::vector<uint8_t> Session::save() const {
+  return to_bytes(contents_.identity(), plant().now(), runtime::state_digest(plant()), record_);
+}
+
+Session::Restored Session::restore(std::span<const uint8_t> bytes, std::string& why) {
+  auto saved = from_bytes(bytes);
+  if (!saved) {
+    why = saved.error();
+    return Restored::Damaged;
+  }
+  if (saved->identity != contents_.identity()) {
+    why = "the state was saved in a plant of another file, other programs or other options";
+    return Restored::OtherPlant;
+  }
+  auto plant = contents_.build();
+  if (!plant) {
+    why = plant.error().front().text;
+    return Restored::Damaged;
+  }
+  auto world = std::make_unique<World>(*std::move(plant));
+  uint32_t tags = 0;
+  for (const Deed& deed : saved->deeds) {
+    world->plant().run_until(deed.at);
+    world->perform(deed);
+    if (deed.act == Act::Send) tags = std::max(tags, static_cast<uint32_t>(deed.value));
+  }
+  world->plant().run_until(saved->time);
+  if (runtime::state_digest(world->plant()) != saved->digest) {
+    why = "the run that was saved comes to another state here: a memory file or the library has changed";
+    return Restored::Damaged;
+  }
+  world_ = std::move(world);
+  record_ = std::move(saved->deeds);
+  tags_ = tags;
+  shadow_.reset();
+  return Restored::Done;
+}
+
+uint64_t Session::trace_hash() {
+  if (!shadow_) shadow_ = std::make_unique<Shadow>(*contents_.build());
+  const auto run = [this](Time until) {
+    if (shadow_->world.plant().now() == until) return;
+    shadow_->world.plant().run_until(until, [this](Time now) {
+      shadow_->hash.sample(now);
+      return true;
+    });
+  };
+  for (; shadow_->done < record_.size(); ++shadow_->done) {
+    const Deed& deed = record_[shadow_->done];
+    run(deed.at);
+    shadow_->world.perform(deed);
+  }
+  run(plant().now());
+  return shadow_->hash.value();
+}
+
+}  // namespace ipos::library

@@ -1,0 +1,68 @@
+// An open plant: its world, the record of what was done to it, and its signals by number. A state is saved as the record
+// and restored by doing it again; so is the trace hash found by who has not watched from the beginning.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/library/contents.hpp"
+#include "runtime/library/world.hpp"
+#include "runtime/plant/trace_hash.hpp"
+
+namespace ipos::library {
+
+class Session {
+ public:
+  // `recorded`: the state can be saved and hashed, and the record grows with every deed.
+  static tl::expected<std::unique_ptr<Session>, Mistakes> open(Contents contents, bool recorded);
+
+  World& world() { return *world_; }
+  runtime::Plant& plant() { return world_->plant(); }
+  const runtime::Plant& plant() const { return world_->plant(); }
+  bool recorded() const { return recorded_; }
+
+  void run(Time until) { plant().run_until(until); }
+  // Asked now and at every full millisecond; false: the limit came first.
+  bool run_until(Time limit, const std::function<bool()>& condition);
+
+  // Does it now and puts it into the record.
+  Refusal perform(Deed deed);
+  uint32_t next_tag() { return ++tags_; }
+
+  struct Signal {
+    Place place;
+    std::string name;
+  };
+  uint32_t add_signal(const Place& place, std::string_view name);
+  Signal* signal(uint32_t number) { return number < signals_.size() ? &signals_[number] : nullptr; }
+
+  std::vector<uint8_t> save() const;
+  enum class Restored : uint8_t { Done, Damaged, OtherPlant };
+  Restored restore(std::span<const uint8_t> bytes, std::string& why);
+
+  uint64_t trace_hash();
+
+ private:
+  // The run once more, watched from its beginning, as far as somebody has asked.
+  struct Shadow {
+    explicit Shadow(std::unique_ptr<runtime::Plant> plant) : world(std::move(plant)), hash(world.plant()) {}
+    World world;
+    runtime::TraceHash hash;
+    size_t done = 0;  // deeds
+  };
+
+  Session(Contents contents, std::unique_ptr<runtime::Plant> plant, bool recorded);
+
+  Contents contents_;
+  std::unique_ptr<World> world_;
+  bool recorded_;
+  std::vector<Deed> record_;
+  std::vector<Signal> signals_;
+  uint32_t tags_ = 0;
+  std::unique_ptr<Shadow> shadow_;
+};
+
+}  // namespace ipos::library

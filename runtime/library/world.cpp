@@ -1,0 +1,109 @@
+// Deeds, one by one.
+#include "runtime/library/world.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+namespace ipos::library {
+namespace {
+
+const std::string_view kStrange = "this plant has nothing of the kind";
+
+constexpr size_t kFrameHead = 6;  // identifier, extended and remote, length
+
+}  // namespace
+
+std::vector<uint8_t> frame_bytes(const runtime::Frame& frame) {
+  std::vector<uint8_t> bytes;
+  for (int n = 0; n < 4; ++n) bytes.push_back(static_cast<uint8_t>(frame.id >> (8 * n)));
+  bytes.push_back(static_cast<uint8_t>((frame.extended ? 1 : 0) | (frame.remote ? 2 : 0)));
+  bytes.push_back(frame.length);
+  bytes.insert(bytes.end(), frame.data.begin(), frame.data.end());
+  return bytes;
+}
+
+std::optional<runtime::Frame> frame_of(std::span<const uint8_t> bytes) {
+  runtime::Frame frame;
+  if (bytes.size() != kFrameHead + frame.data.size()) return std::nullopt;
+  for (size_t n = 0; n < 4; ++n) frame.id |= uint32_t{bytes[n]} << (8 * n);
+  frame.extended = (bytes[4] & 1U) != 0;
+  frame.remote = (bytes[4] & 2U) != 0;
+  frame.length = bytes[5];
+  std::copy(bytes.begin() + kFrameHead, bytes.end(), frame.data.begin());
+  return runtime::is_valid(frame) ? std::optional(runtime::canonical(frame)) : std::nullopt;
+}
+
+World::World(std::unique_ptr<runtime::Plant> plant) : plant_(std::move(plant)), hands_(*plant_) {
+  for (const auto& line : plant_->lines()) can_.push_back(std::make_unique<CanTap>(*line));
+  for (const auto& line : plant_->serial_lines()) serial_.push_back(std::make_unique<SerialTap>(line->line));
+}
+
+Refusal World::touch(const Deed& deed, Touch touch) {
+  if (!exists(*plant_, deed.place) || !is_writable(deed.place)) return std::string(kStrange);
+  if (auto refused = check_value(*plant_, deed.place, deed.value)) return refused;
+  return do_to_place(*plant_, hands_, deed.place, touch, deed.value);
+}
+
+Refusal World::send(const Deed& deed) {
+  if (deed.act == Act::SerialSend) {
+    const size_t number = deed.number - can_.size();
+    if (deed.number < can_.size() || number >= serial_.size() || deed.bytes.empty() ||
+        deed.bytes.size() > SerialTap::kLongest)
+      return std::string(kStrange);
+    return serial_[number]->send(deed.bytes);
+  }
+  if (deed.number >= can_.size()) return std::string(kStrange);
+  if (deed.act == Act::Join) {
+    can_[deed.number]->join();
+    return std::nullopt;
+  }
+  const auto frame = frame_of(deed.bytes);
+  if (!frame) return std::string(kStrange);
+  return can_[deed.number]->send(*frame, static_cast<uint32_t>(deed.value));
+}
+
+Refusal World::plant_faults(const Deed& deed) {
+  const std::string text(deed.bytes.begin(), deed.bytes.end());
+  runtime::PlantFileResult read = runtime::read_fault_tables(text, plant_->file());
+  if (!read.errors.empty())
+    return fmt::format("line {}, column {}: {}", read.errors.front().place.line,
+                       read.errors.front().place.column, read.errors.front().text);
+  for (runtime::FaultConfig& fault : read.plant.faults)
+    if (auto refused = hands_.plant_fault(fault, plant_->now())) return refused;
+  return std::nullopt;
+}
+
+Refusal World::perform(const Deed& deed) {
+  switch (deed.act) {
+    case Act::Write: return touch(deed, Touch::Write);
+    case Act::Force: return touch(deed, Touch::Force);
+    case Act::Release: return touch(deed, Touch::Release);
+    case Act::Join:
+    case Act::Send:
+    case Act::SerialSend: return send(deed);
+    case Act::LineFault: return plant_faults(deed);
+    default: break;
+  }
+  if (deed.place.station >= plant_->stations().size()) return std::string(kStrange);
+  Station& station = *plant_->stations()[deed.place.station];
+  switch (deed.act) {
+    case Act::PowerOff: station.power_off(); break;
+    case Act::PowerOn: station.power_on(); break;
+    case Act::DriveFault:
+      if (deed.value < 1 || deed.value > UINT8_MAX) return "a drive fault is 1..255";
+      station.drive().state().raise_fault(static_cast<uint8_t>(deed.value));
+      break;
+    case Act::ResetFault: station.drive().state().reset_fault(); break;
+    case Act::Program:
+      if (deed.value < 0 || deed.value > static_cast<int64_t>(runtime::ProgramOrder::Restart))
+        return std::string(kStrange);
+      return runtime::Hands::order(station, static_cast<runtime::ProgramOrder>(deed.value));
+    default: break;
+  }
+  return std::nullopt;
+}
+
+}  // namespace ipos::library

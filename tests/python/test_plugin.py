@@ -1,0 +1,112 @@
+"""The pytest plugin, tried in runs of pytest of their own."""
+
+import shutil
+
+import pytest
+
+from conftest import HERE, PACKAGE
+
+ARGUMENTS = ("-p", "ipos.pytest_plugin", "-p", "no:cacheprovider")
+
+
+@pytest.fixture
+def folder(pytester, monkeypatch):
+    monkeypatch.setenv("PYTHONPATH", str(PACKAGE))
+    for name in ("line.toml", "SAW.IPC"):
+        shutil.copy(HERE / name, pytester.path)
+    return pytester
+
+
+def test_fixture_and_marker(folder):
+    folder.makepyfile(
+        """
+        import pytest
+
+        @pytest.mark.plant("line.toml")
+        def test_saw(plant):
+            assert plant.run("1s") and plant["saw"]["lCount"] > 50
+
+        def test_the_only_plant_of_the_folder(plant):
+            assert plant.time == 0 and list(plant) == ["saw", "belt"]
+
+        @pytest.mark.plant("line.toml", seeds=[1, 2, 3], speed=20)
+        def test_seeds(plant):
+            plant.run("10ms")
+
+        @pytest.mark.plant(text='[[station]]\\nname = "a"\\nunit = "mdxb"\\n')
+        def test_text(plant):
+            assert "a" in plant
+        """
+    )
+    folder.runpytest_subprocess(*ARGUMENTS, "-v").assert_outcomes(passed=6)
+
+
+def test_a_failure_shows_journal_and_frames(folder):
+    folder.makepyfile(
+        """
+        import pytest
+
+        @pytest.mark.plant("line.toml")
+        def test_saw(plant):
+            plant.run("1s")
+            plant["saw"].raise_fault(26)
+            plant.run("100ms")
+            assert plant["saw"].fault == 0
+        """
+    )
+    result = folder.runpytest_subprocess(*ARGUMENTS, "--ipos-artifacts=kept")
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["*journal of the plant*", "*saw: fault: *", "*last frames of sbus*", "*400#*from saw*"])
+    kept = list((folder.path / "kept").iterdir())
+    assert len(kept) == 1
+    assert "fault" in (kept[0] / "journal.txt").read_text()
+    assert "400#" in (kept[0] / "sbus.txt").read_text()
+    import ipos
+
+    with ipos.Plant(folder.path / "line.toml") as plant:
+        plant.restore((kept[0] / "state.ipos").read_bytes())
+        assert plant["saw"].fault == 26 and plant.time == pytest.approx(1.1)
+
+
+def test_toml_files_are_tests_with_the_text_of_ipos_test(folder):
+    (folder.path / "saw.test.toml").write_text(
+        'plant = "line.toml"\n[[expect]]\nstation = "saw"\nvariable = "lCount"\nwithin = "1s"\nequals = 5\n'
+    )
+    (folder.path / "wrong.test.toml").write_text(
+        'plant = "line.toml"\n[[expect]]\nstation = "saw"\nvariable = "lCount"\nwithin = "100ms"\nequals = 1000\n'
+    )
+    result = folder.runpytest_subprocess(*ARGUMENTS)
+    result.assert_outcomes(passed=1, failed=1)
+    result.stdout.fnmatch_lines(["*lCount did not become 1000 from 0*to 100*"])
+
+
+def test_several_workers(folder):
+    pytest.importorskip("xdist")
+    folder.makepyfile(
+        """
+        import pytest
+
+        @pytest.mark.plant("line.toml", seeds=range(8))
+        def test_seeds(plant):
+            plant.run("100ms")
+        """
+    )
+    (folder.path / "saw.test.toml").write_text(
+        'plant = "line.toml"\n[[expect]]\nstation = "saw"\nvariable = "lCount"\nwithin = "1s"\nequals = 5\n'
+    )
+    folder.runpytest_subprocess(*ARGUMENTS, "-p", "xdist", "-n", "2").assert_outcomes(passed=9)
+
+
+def test_a_plant_with_mistakes_says_where(folder):
+    folder.makepyfile(
+        """
+        import pytest
+
+        @pytest.mark.plant(text='[[station]]\\nname = "a"\\nunit = "mdxx"\\n')
+        def test_text(plant):
+            pass
+        """
+    )
+    result = folder.runpytest_subprocess(*ARGUMENTS)
+    result.assert_outcomes(errors=1)
+    result.stdout.fnmatch_lines(["*3:8: 'mdxx' is no unit type*"])
