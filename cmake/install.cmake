@@ -37,6 +37,17 @@ add_custom_command(OUTPUT ${PROJECT_BINARY_DIR}/vscode/ipos.vsix
 add_custom_target(ipos_vsix DEPENDS ${PROJECT_BINARY_DIR}/vscode/ipos.vsix)
 install(FILES ${PROJECT_BINARY_DIR}/vscode/ipos.vsix DESTINATION ${CMAKE_INSTALL_DATADIR}/ipos OPTIONAL)
 
+# The Python package, where Debian's Python looks; it finds libipos_plant by the loader. Entry points are those of
+# python/pyproject.toml.
+set(python_dir lib/python3/dist-packages)
+set(dist_info ${PROJECT_BINARY_DIR}/ipos-${PROJECT_VERSION}.dist-info)
+file(CONFIGURE OUTPUT ${dist_info}/METADATA CONTENT "Metadata-Version: 2.1\nName: ipos\nVersion: ${PROJECT_VERSION}\n")
+file(CONFIGURE OUTPUT ${dist_info}/entry_points.txt CONTENT
+"[pytest11]\nipos = ipos.pytest_plugin\n\n[can.interface]\nipos = ipos.can:IposBus\n")
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/ipos DESTINATION ${python_dir}
+        FILES_MATCHING PATTERN *.py PATTERN py.typed PATTERN __pycache__ EXCLUDE)
+install(DIRECTORY ${dist_info} DESTINATION ${python_dir})
+
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/ipos)
 install(EXPORT ipos NAMESPACE ipos:: FILE iposTargets.cmake DESTINATION ${package_dir})
 file(WRITE ${PROJECT_BINARY_DIR}/iposConfig.cmake "include(\${CMAKE_CURRENT_LIST_DIR}/iposTargets.cmake)\n")
@@ -50,8 +61,12 @@ set_target_properties(ipos_compile PROPERTIES INSTALL_RPATH "$ORIGIN")
 # Found from where the file lies, so that an installed tree can be moved. Where the loader does not look by itself,
 # programs get the run path; that depends on the prefix, which is known when it is installed.
 file(RELATIVE_PATH up /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
-foreach(part ipos ipos_compile)
+foreach(part ipos ipos_compile ipos_plant)
   set(requires "")
+  set(defines " -DIPOS_VARIABLES=${IPOS_VARIABLES}")
+  if(part STREQUAL ipos_plant)
+    set(defines "")
+  endif()
   if(part STREQUAL ipos_compile)
     set(requires "Requires: ipos\n")
   endif()
@@ -60,7 +75,7 @@ libdir=\${pcfiledir}/..
 Name: ${part}
 Description: ${PROJECT_DESCRIPTION}
 Version: ${PROJECT_VERSION}
-${requires}Cflags: -I\${prefix}/${CMAKE_INSTALL_INCLUDEDIR} -DIPOS_VARIABLES=${IPOS_VARIABLES}
+${requires}Cflags: -I\${prefix}/${CMAKE_INSTALL_INCLUDEDIR}${defines}
 Libs: -L\${libdir} -l${part}@run_path@
 ")
   install(CODE "

@@ -250,6 +250,8 @@ def version() -> str:
 class _KeyError(KeyError):
     """A KeyError whose text is shown as it is."""
 
+    __module__, __qualname__ = "builtins", "KeyError"
+
     def __str__(self) -> str:
         return str(self.args[0]) if self.args else ""
 

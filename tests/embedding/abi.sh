@@ -1,16 +1,17 @@
 #!/usr/bin/env bash
-# The shared libraries show exactly the functions of abi/symbols.txt, and the structures of ipos.h have the layout of
-# abi/layout.txt (64 bits). A change of either is a change for everybody who is linked: a new major version, unless
+# The shared libraries show exactly the functions of abi/symbols.txt, and the structures of ipos.h and ipos_plant.h have
+# the layout of abi/layout.txt (64 bits). A change of either is a change for everybody who is linked: a new major version, unless
 # it only adds. `abi.sh SOURCE BUILD --update` writes both anew.
 set -euo pipefail
 . "$(dirname "$0")/folder.sh"
 need nm
 abi=$source/tests/embedding/abi
-for library in ipos ipos_compile; do
+for library in ipos ipos_compile ipos_plant; do
   nm -D --defined-only "$build/lib/lib$library.so" | awk -v lib=$library '$2 ~ /[TDBRVW]/ {print lib, $3}'
 done | LC_ALL=C sort > "$work/symbols.txt"
 "$CC" -I "$source/embed/include" "$abi/layout.c" -o "$work/layout"
-"$work/layout" > "$work/layout.txt"
+"$CC" -std=c99 -Wall -Wextra -pedantic -Werror -I "$source/runtime/library/include" "$abi/plant_layout.c" -o "$work/plant_layout"
+{ "$work/layout"; "$work/plant_layout"; } > "$work/layout.txt"
 if [ "${3:-}" = --update ]; then
   cp "$work"/{symbols,layout}.txt "$abi"
   exit

@@ -22,7 +22,8 @@ expect "$("$work/project/build/hello" | wc -l)" 3
 "$work/root/usr/bin/ipos" --version
 [ -z "$vsix" ] || cmp "$vsix" "$work/root/usr/share/ipos/ipos.vsix"
 for file in share/man/man1/ipos.1 share/bash-completion/completions/ipos share/zsh/vendor-completions/_ipos \
-  share/fish/vendor_completions.d/ipos.fish share/doc/ipos/docs/guide/embedding.md share/doc/ipos/examples/scom/scom.toml; do
+  share/fish/vendor_completions.d/ipos.fish share/doc/ipos/docs/guide/embedding.md share/doc/ipos/examples/scom/scom.toml \
+  include/ipos_plant.h lib/python3/dist-packages/ipos/plant.py lib/python3/dist-packages/ipos/py.typed; do
   [ -s "$work/root/usr/$file" ] || [ -s "$work/root/usr/$file.gz" ] || fail "the package has no $file"
 done
 
@@ -49,6 +50,7 @@ unshare -m bash -c '
   [ -z "$vsix" ] || [ -s /usr/share/ipos/ipos.vsix ]
   "$CC" -std=c99 "$source/examples/embedding/c/hello.c" -o hello $(pkg-config --cflags --libs ipos_compile)
   ./hello
+  /usr/bin/python3 -c "import ipos; plant = ipos.Plant(\"scom.toml\"); plant.run(\"1s\"); print(hex(plant[\"unit2\"][\"lReDataLow\"]))"
   dpkg -r ipos >/dev/null
   [ ! -e /usr/bin/ipos ] && [ ! -e /usr/share/doc/ipos ] && [ ! -e /usr/share/ipos ] && [ ! -e /usr/include/ipos.h ]
 ' >"$work/installed" 2>&1 || fail "$(cat "$work/installed")"
@@ -57,4 +59,5 @@ expect "$(cat "$work/installed")" "ok      line/line  3 checks in 8.000 s
 unit1 (MOVIDRIVE MD_60A), SCOM1.IPC
 .TH Iafter 100 ms: speed = 140
 after 200 ms: speed = 180
-after 300 ms: speed = 225"
+after 300 ms: speed = 225
+0x11223344"

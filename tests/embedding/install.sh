@@ -25,3 +25,17 @@ expect "$(./hello_pc | wc -l)" 3
 "$CC" -std=c99 version.c -o version_pc $(pkg-config --cflags ipos) "$lib/libipos.a"
 ./version_pc
 "$CXX" -std=c++20 -fsyntax-only -x c++ $(pkg-config --cflags ipos) "$work/prefix/include/ipos.hpp"
+# The plant as a library needs its own shared library alone.
+cat >plant.c <<'C'
+#include <ipos_plant.h>
+#include <stdio.h>
+int main(void) {
+  ipos_plant_source source = {0};
+  ipos_plant* plant;
+  source.text = "[[station]]\nname = \"a\"\nunit = \"mdxb\"\n";
+  if (ipos_plant_open(&source, &plant) != IPOS_PLANT_OK || ipos_plant_run(plant, 1000000) != IPOS_PLANT_OK) return 1;
+  puts(ipos_plant_status_text(ipos_plant_close(plant)));
+}
+C
+"$CC" -std=c99 -pedantic -Wall -Wextra -Werror plant.c -o plant $(pkg-config --cflags --libs ipos_plant)
+expect "$(./plant)" done

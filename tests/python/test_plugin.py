@@ -77,7 +77,7 @@ def test_toml_files_are_tests_with_the_text_of_ipos_test(folder):
     )
     result = folder.runpytest_subprocess(*ARGUMENTS)
     result.assert_outcomes(passed=1, failed=1)
-    result.stdout.fnmatch_lines(["*lCount did not become 1000 from 0*to 100*"])
+    result.stdout.fnmatch_lines(["*lCount of saw did not become 1000 from 0 ms to 100 ms*"])
 
 
 def test_several_workers(folder):
