@@ -3,8 +3,10 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "compiler/sema/fold.hpp"
 #include "tests/compiler/backend_test.hpp"
 #include "vm/exec/machine.hpp"
 #include "vm/verify/verify.hpp"
@@ -46,8 +48,12 @@ class Executed {
 };
 
 TEST(Folding, EveryBinaryOperatorIsWhatTheMachineComputes) {
-  for (const char* op :
-       {"*", "/", "%", "+", "-", "<<", ">>", "<", "<=", ">", ">=", "==", "!=", "&", "^", "|", "&&", "||"}) {
+  using enum ast::BinaryOp;
+  const std::pair<const char*, ast::BinaryOp> operators[] = {
+      {"*", Mul},  {"/", Div}, {"%", Mod}, {"+", Add}, {"-", Sub},         {"<<", Shl},
+      {">>", Shr}, {"<", Lt},  {"<=", Le}, {">", Gt},  {">=", Ge},         {"==", Eq},
+      {"!=", Ne},  {"&", And}, {"^", Xor}, {"|", Or},  {"&&", LogicalAnd}, {"||", LogicalOr}};
+  for (const auto& [op, folds] : operators) {
     Executed computed("main() { H2 = H0 " + std::string(op) + " H1; }");
     ASSERT_TRUE(computed.is_compiled()) << op;
     std::string text = "main() {\n";
@@ -58,6 +64,7 @@ TEST(Folding, EveryBinaryOperatorIsWhatTheMachineComputes) {
         text +=
             "H" + std::to_string(want.size() + 10) + " = " + constant(left) + op + constant(right) + ";\n";
         want.push_back(computed.result(left, right));
+        EXPECT_EQ(fold(folds, left, right), want.back()) << left << op << right;
       }
     const Compilation folded = compile_text(text + "}\n", "mdxb");
     ASSERT_TRUE(folded.image) << op << "\n" << commands(folded)[0];
