@@ -25,6 +25,7 @@ constexpr VerbRow kVerbs[] = {
     {"completion", add_completion},
     {"man", add_man},
     {"new", add_new},
+    {"serve", add_serve},
 };
 
 }  // namespace

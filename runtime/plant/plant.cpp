@@ -132,6 +132,13 @@ bool Plant::plant_fault(const FaultConfig& config) {
   return true;
 }
 
+bool Plant::repair_fault(const FaultConfig& config) {
+  CanLine* line = find_line(config.bus);
+  LineFault fault = config.fault;
+  fault.node = config.station.empty() ? kNoNode : find_node(*line, config.station);
+  return line->repair(fault);
+}
+
 NodeId Plant::find_node(const CanLine& line, std::string_view station) const {
   for (NodeId node = 0; node < line.node_count(); ++node)
     if (line.node_name(node) == station) return node;

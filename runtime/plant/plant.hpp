@@ -79,6 +79,8 @@ class Plant final : private LineObserver, private SbusCheckClient {
   Surroundings& surroundings() { return *surroundings_; }
   // Plants a fault of a line, whose times are those of the plant. False: its station is not on the bus.
   bool plant_fault(const FaultConfig& config);
+  // Ends what was planted with the same bus, station, kind and identifier; false: there is no such fault.
+  bool repair_fault(const FaultConfig& config);
 
   const PlantFile& file() const { return file_; }
   std::vector<std::unique_ptr<Station>>& stations() { return stations_; }

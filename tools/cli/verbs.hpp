@@ -23,6 +23,7 @@ void add_debug(cli::Verb& program);
 void add_dap(cli::Verb& program);
 void add_completion(cli::Verb& program);
 void add_man(cli::Verb& program);
+void add_serve(cli::Verb& program);
 void add_new(cli::Verb& program);
 
 }  // namespace ipos::tools

@@ -37,6 +37,7 @@ void Debugger::build() {
   open_ = nullptr;
   next_change_ = 0;
   told_all_ended_ = false;
+  front_end_.built(*plant_);
 }
 
 void Debugger::prime() {
@@ -66,6 +67,25 @@ Stop Debugger::run(const Order& order) {
     rewind(goal_.end, true);
   }
   return go();
+}
+
+Stop Debugger::go_back(Time time) {
+  goal_ = {};
+  goal_.kind = Goal::Kind::Replay;
+  goal_.end = start_ = position_;
+  goal_.order.motion = Motion::ToTime;
+  goal_.order.time = time;
+  goal_.stop = {Reason::Step, {}, {}, {}};
+  if (const Position* snapshot = snapshots_.before(time)) snapshots_.go_on_from(*snapshot, save());
+  build();
+  prime();
+  return go();
+}
+
+void Debugger::restart() {
+  snapshots_.clear();
+  changes_.clear();
+  build();
 }
 
 // Until the order is carried out; perhaps in another process, which knows nothing of what stood above it
@@ -100,12 +120,13 @@ bool Debugger::advance() {
 }
 
 bool Debugger::between() {
+  front_end_.passed(plant_->now());
   const bool over = arrived(Phase::Between);
   const bool searching = goal_.kind == Goal::Kind::Search;
   if (over && !searching) return true;
   const bool far = position_.commands - last_snapshot_.commands >= kSnapshotCommands ||
                    position_.time - last_snapshot_.time >= kSnapshotTime;
-  if (far && !over && snapshot()) return arrived(Phase::Between);
+  if (far && !over && front_end_.wants_snapshot() && snapshot()) return arrived(Phase::Between);
   if (searching)
     if (auto stop = data_changed(true)) candidate(last_, std::move(*stop));
   if (goal_.kind != Goal::Kind::Forward) return over;
@@ -132,9 +153,15 @@ bool Debugger::arrived(Phase phase) {
   position_.time = plant_->now();
   position_.phase = phase;
   for (; next_change_ < changes_.size() && changes_[next_change_].at <= position_; ++next_change_)
-    if (const Change& change = changes_[next_change_]; change.at == position_)
-      write_value(*plant_, change.place, change.value);
-  if (goal_.kind == Goal::Kind::Replay && position_ >= goal_.end) return take(goal_.stop);
+    if (const Change& change = changes_[next_change_]; change.at == position_) {
+      if (change.action.is_null())
+        write_value(*plant_, change.place, change.value);
+      else
+        front_end_.perform(change.action);
+    }
+  const bool back_there =
+      goal_.order.motion == Motion::ToTime && phase == Phase::Between && position_.time >= goal_.order.time;
+  if (goal_.kind == Goal::Kind::Replay && (back_there || position_ >= goal_.end)) return take(goal_.stop);
   return goal_.kind == Goal::Kind::Search && position_ >= goal_.end;
 }
 
@@ -148,6 +175,7 @@ bool Debugger::run(Station& station, vm::Machine& machine, vm::TickSteps& steps)
     }
     open_ = &station;
     if (before_command({number, task}, machine)) return false;
+    front_end_.executes(number, machine.context(machine.active_context(task)).pc);
     last_ = position_;
     const bool faulted = machine.fault().number != 0;
     position_.commands += steps.step(machine);
@@ -255,7 +283,13 @@ void Debugger::load(const std::string& bytes) {
 
 void Debugger::write(const ValuePlace& place, int32_t value) {
   write_value(*plant_, place, value);
-  changes_.push_back({position_, place, value});
+  changes_.push_back({position_, place, value, nullptr});
+  next_change_ = changes_.size();
+}
+
+void Debugger::perform(const Json& action) {
+  front_end_.perform(action);
+  changes_.push_back({position_, {}, 0, action});
   next_change_ = changes_.size();
 }
 

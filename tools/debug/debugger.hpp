@@ -25,6 +25,15 @@ class FrontEnd {
   virtual void load(const Json& state) = 0;
   virtual bool keep_going() = 0;                     // asked once a virtual millisecond; false: stop
   virtual void output(const std::string& text) = 0;  // of a logpoint
+
+  // For who does more than to stop and go on. The plant was made anew; and a millisecond of it has passed, whatever it
+  // is run for.
+  virtual void built(runtime::Plant& /*plant*/) {}
+  virtual void passed(runtime::Time /*now*/) {}
+  virtual void executes(uint32_t /*station*/, uint32_t /*address*/) {}  // the command there is next
+  // What Debugger::perform() was given, now and whenever its moment comes again.
+  virtual void perform(const Json& /*action*/) {}
+  virtual bool wants_snapshot() { return true; }  // one is due
 };
 
 struct Frame {
@@ -42,6 +51,10 @@ class Debugger final : private runtime::CommandRunner {
   // Carries out an order. Fill the frame of a step with order_for().
   Stop run(const Order& order);
   Order order_for(Motion motion, TaskRef task, bool backward = false) const;
+  // To the millisecond in which that time begins; the plant stands there.
+  Stop go_back(runtime::Time time);
+  // The plant as at power-on. What the user has done is forgotten, breakpoints stay.
+  void restart();
 
   const Position& position() const { return position_; }
   runtime::Plant& plant() { return *plant_; }
@@ -63,6 +76,8 @@ class Debugger final : private runtime::CommandRunner {
   // Written now, and again whenever this moment comes again; what was written later is gone. Throws
   // ValueError.
   void write(const ValuePlace& place, int32_t value);
+  // The same for what only the front end knows how to do. What it throws is thrown on, and nothing was done.
+  void perform(const Json& action);
 
   // "{speed} rpm" with the values of what is in braces.
   std::string with_values(uint32_t station, const std::string& text) const;

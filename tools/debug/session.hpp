@@ -48,6 +48,7 @@ struct Change {
   Position at;
   ValuePlace place;
   int32_t value = 0;
+  Json action = nullptr;  // of the front end, in place of the former
 };
 
 enum class Motion : uint8_t { Continue, Into, Over, Out, Instruction, InstructionOver, ToAddress, ToTime };
@@ -100,7 +101,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TaskRef, station, task)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Breakpoint, id, station, address, condition, hit_condition, log, temporary,
                                    enabled, hits)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Watchpoint, id, station, place, condition, enabled, hits)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Change, at, place, value)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Change, at, place, value, action)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Order, motion, backward, task, address, time, context, depth)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Stop, reason, task, ids, text)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Goal, kind, order, end, found, candidate, stop)

@@ -59,7 +59,9 @@ std::string receive(int file) {
 
 }  // namespace
 
-Snapshots::~Snapshots() {
+Snapshots::~Snapshots() { clear(); }
+
+void Snapshots::clear() {
   while (!held_.empty()) drop(held_.size() - 1);
 }
 
@@ -112,6 +114,13 @@ const Position* Snapshots::before(const Position& position, bool strictly) const
   return found;
 }
 
+const Position* Snapshots::before(runtime::Time time) const {
+  const Position* found = nullptr;
+  for (const Held& held : held_)
+    if (held.position.time <= time) found = &held.position;
+  return found;
+}
+
 void Snapshots::go_on_from(const Position& snapshot, const std::string& bytes) {
   std::fflush(nullptr);
   for (size_t n = held_.size(); n-- > 0;) {
@@ -138,33 +147,42 @@ Snapshots::Memory Snapshots::memory() const {
   return sum;
 }
 
-int run_replaceable(const std::function<int()>& body) {
+ReplaceableProcess::ReplaceableProcess(const std::function<int()>& body) {
   std::array<int, 2> ends{};
-  if (pipe(ends.data()) != 0) return body();
+  if (pipe(ends.data()) != 0) return;
   std::fflush(nullptr);
   // Ctrl-C is the worker's. It is ignored here before there is a worker whose prompt can be answered with one.
   const auto on_interrupt = std::signal(SIGINT, SIG_IGN);
   const pid_t worker = fork();
   if (worker <= 0) std::signal(SIGINT, on_interrupt);
-  if (worker < 0) {
+  if (worker == 0) {
     close(ends[0]);
-    close(ends[1]);
-    return body();
+    std::signal(SIGCHLD, SIG_IGN);  // snapshots end without being waited for
+    std::signal(SIGPIPE, SIG_IGN);
+    const int32_t code = body();
+    std::fflush(nullptr);
+    write_all(ends[1], reinterpret_cast<const char*>(&code), sizeof code);
+    _exit(0);
   }
-  if (worker != 0) {
-    close(ends[1]);
-    int32_t code = -1;
-    if (!read_all(ends[0], reinterpret_cast<char*>(&code), sizeof code)) code = -1;
+  close(ends[1]);
+  if (worker > 0)
+    pipe_ = ends[0];
+  else
     close(ends[0]);
-    return code;
-  }
-  close(ends[0]);
-  std::signal(SIGCHLD, SIG_IGN);  // snapshots end without being waited for
-  std::signal(SIGPIPE, SIG_IGN);
-  const int32_t code = body();
-  std::fflush(nullptr);
-  write_all(ends[1], reinterpret_cast<const char*>(&code), sizeof code);
-  _exit(0);
+}
+
+ReplaceableProcess::~ReplaceableProcess() {
+  if (pipe_ >= 0) close(pipe_);
+}
+
+int ReplaceableProcess::wait() {
+  int32_t code = -1;
+  return read_all(pipe_, reinterpret_cast<char*>(&code), sizeof code) ? code : -1;
+}
+
+int run_replaceable(const std::function<int()>& body) {
+  ReplaceableProcess process(body);
+  return process.started() ? process.wait() : body();
 }
 
 }  // namespace ipos::tools::debug

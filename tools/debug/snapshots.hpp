@@ -26,10 +26,13 @@ class Snapshots {
 
   // The last one at or before a position, or strictly before it.
   const Position* before(const Position& position, bool strictly) const;
+  // The last one at or before a time.
+  const Position* before(runtime::Time time) const;
   // Goes on from that one; returns only if it is gone.
   void go_on_from(const Position& snapshot, const std::string& bytes);
 
   size_t count() const { return held_.size(); }
+  void clear();
   // Memory of all snapshots: their share of all pages, and what each has for itself, in KiB.
   struct Memory {
     size_t shared_out = 0;
@@ -49,8 +52,23 @@ class Snapshots {
   std::vector<Held> held_;  // in rising order
 };
 
-// Runs `body` in a process whose snapshots may take its place, and returns what the last of them returns; -1
-// when it ended without that.
+// Runs `body` in a process whose snapshots may take its place. wait() returns what the last of them returns; -1 when
+// it ended without that.
+class ReplaceableProcess {
+ public:
+  explicit ReplaceableProcess(const std::function<int()>& body);
+  ReplaceableProcess(const ReplaceableProcess&) = delete;
+  ReplaceableProcess& operator=(const ReplaceableProcess&) = delete;
+  ~ReplaceableProcess();
+
+  bool started() const { return pipe_ >= 0; }  // else there is no room for another process
+  int wait();
+
+ private:
+  int pipe_ = -1;  // what it returns comes here
+};
+
+// The same while the caller waits; in the caller's own process where there is no room for another.
 int run_replaceable(const std::function<int()>& body);
 
 }  // namespace ipos::tools::debug

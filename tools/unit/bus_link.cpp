@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "runtime/bus/canopen/connections.hpp"
 #include "runtime/bus/canopen/sdo_master.hpp"
 #include "runtime/bus/movilink/identifiers.hpp"
@@ -211,6 +213,21 @@ void BusLink::tell() {
 bool BusLink::serve(Time duration) {
   result_.reset();
   return run(duration) == RealTimeLoop::End::Reached;
+}
+
+bool BusLink::send_process_data(uint8_t address, const std::array<uint16_t, 3>& words) {
+  MovilinkJob job;
+  job.address = address;
+  job.format = format_code({false, 3, false});
+  std::copy(words.begin(), words.end(), job.output.begin());
+  result_.reset();
+  if (master().start(queue_.now(), job)) return false;
+  run(kForEver);
+  if (!result_) {
+    master().abort();
+    throw Failure(kInterrupted, "");
+  }
+  return result_->reason.empty();
 }
 
 AccessReply BusLink::execute(uint8_t address, stdlib::Service service, uint16_t index, int32_t value) {

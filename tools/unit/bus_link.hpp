@@ -3,6 +3,7 @@
 // simulated masters.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -36,6 +37,9 @@ class BusLink : private runtime::MovilinkClient {
 
   // Waits for the answer. A port that goes away, and Ctrl-C, are Failures.
   AccessReply execute(uint8_t address, stdlib::Service service, uint16_t index, int32_t value);
+
+  // Three words of process output data as a cyclic telegram. False: no answer.
+  bool send_process_data(uint8_t address, const std::array<uint16_t, 3>& words);
 
   // Serves the port for so long; false: Ctrl-C.
   bool serve(runtime::Time duration);

@@ -24,14 +24,6 @@ std::string number_of(const Parameter& parameter) {
   return parameter.number.empty() ? "" : "P" + std::string(parameter.number);
 }
 
-std::string access_text(const Parameter& p) {
-  std::string text;
-  for (const auto& [has, word] :
-       {std::pair{p.nonvolatile, "N/"}, {p.writable_locked, "S/"}, {p.needs_inhibit, "R/"}})
-    if (has) text += word;
-  return text + (p.writable ? "RW" : "RO");
-}
-
 Json json_of(const ParameterTable& table, const Target& target, int32_t value) {
   Json row;
   row["number"] = target.parameter ? number_of(*target.parameter) : "";

@@ -17,43 +17,6 @@ using stdlib::Parameter;
 using stdlib::Service;
 using Json = nlohmann::ordered_json;
 
-constexpr uint16_t kLock = 8595;  // P803
-
-// Ordinary settings first, then those that may cut the connection (P810..P819, P88x, P89x), the lock last.
-int load_rank(const Parameter& p) {
-  if (p.index == kLock) return 2;
-  return p.number.starts_with("81") || p.number.starts_with("88") || p.number.starts_with("89") ? 1 : 0;
-}
-
-struct LoadCount {
-  size_t written = 0;
-  size_t unchanged = 0;
-  size_t refused = 0;
-  size_t overridden = 0;  // written, but the next start undoes it
-};
-
-// Writes what differs. Returns false when the unit refused it.
-bool load_row(ParameterAccess& access, const SetRow& row, Service service, const std::string& file,
-              LoadCount& count) {
-  const uint16_t index = row.parameter->index;
-  const AccessReply present = access.execute(Service::Read, index);
-  if (present && *present == row.value) return ++count.unchanged, true;
-  const AccessReply reply = present ? access.execute(service, index, row.value) : present;
-  if (reply) {
-    ++count.written;
-    const std::string again = access.overridden_by(index);
-    if (service == Service::Write && !again.empty()) {
-      ++count.overridden;
-      fmt::print(stderr, "{}\n", again);
-    }
-    return true;
-  }
-  ++count.refused;
-  print_refusal(access, present ? service : Service::Read, index, row.value, reply.error(),
-                row.place.line == 0 ? "" : fmt::format("{}:{}:{}: ", file, row.place.line, row.place.column));
-  return false;
-}
-
 }  // namespace
 
 int save_parameters(ParameterAccess& access, const std::string& file) {
@@ -70,32 +33,39 @@ int load_parameters(ParameterAccess& access, const std::string& file, const Para
   if (set.unit != &access.unit())
     throw Failure(kBadInput, fmt::format("{} is of unit {}, {} is {}", file, set.unit->name, access.name(),
                                          access.unit().name));
-  std::vector<SetRow> rows = set.rows;
-  std::stable_sort(rows.begin(), rows.end(), [](const SetRow& a, const SetRow& b) {
-    return std::pair(load_rank(*a.parameter), a.parameter->index) <
-           std::pair(load_rank(*b.parameter), b.parameter->index);
-  });
   const Service service = is_volatile ? Service::WriteVolatile : Service::Write;
-  LoadCount count;
-  // A lock that is on comes off first, and is on again at the end unless the file says otherwise.
-  const Parameter* lock = stdlib::parameter_table(access.unit()).find(kLock);
-  const AccessReply locked = lock ? access.execute(Service::Read, kLock) : AccessReply(0);
-  LoadCount of_lock;
-  if (locked && *locked == 1 && load_row(access, {lock, 0, {}}, service, file, of_lock))
-    if (rows.empty() || rows.back().parameter != lock) rows.push_back({lock, 1, {}});
-  for (const SetRow& row : rows) load_row(access, row, service, file, count);
+  size_t rows = 0, written = 0, unchanged = 0, refused = 0, overridden = 0;
+  for (const WrittenRow& row : write_settings(access, set, service)) {
+    const SetRow& of = row.row;
+    const size_t one = row.unlocks ? 0 : 1;
+    rows += one;
+    if (row.outcome == WrittenRow::Outcome::Refused) {
+      refused += one;
+      print_refusal(
+          access, row.service, of.parameter->index, of.value, row.error,
+          of.place.line == 0 ? "" : fmt::format("{}:{}:{}: ", file, of.place.line, of.place.column));
+    } else if (row.outcome == WrittenRow::Outcome::Unchanged) {
+      unchanged += one;
+    } else {
+      written += one;
+      const std::string again = service == Service::Write ? access.overridden_by(of.parameter->index) : "";
+      if (again.empty()) continue;
+      overridden += one;
+      fmt::print(stderr, "{}\n", again);
+    }
+  }
 
-  int exit_code = count.refused == 0 && count.overridden == 0 ? kGood : kFindings;
+  int exit_code = refused == 0 && overridden == 0 ? kGood : kFindings;
   if (as_json) {
     const Json json{{"source", access.name()},
                     {"unit", access.unit().name},
-                    {"written", count.written},
-                    {"unchanged", count.unchanged},
-                    {"refused", count.refused}};
+                    {"written", written},
+                    {"unchanged", unchanged},
+                    {"refused", refused}};
     fmt::print("{}\n", json.dump(2));
   } else {
-    fmt::print("{}: {} parameters: {} written, {} unchanged, {} refused\n", access.name(), rows.size(),
-               count.written, count.unchanged, count.refused);
+    fmt::print("{}: {} parameters: {} written, {} unchanged, {} refused\n", access.name(), rows, written,
+               unchanged, refused);
   }
   if (const std::string forgets = access.forgets(); !forgets.empty()) {
     fmt::print(stderr, "nothing is kept: {}\n", forgets);

@@ -20,6 +20,14 @@ using stdlib::Service;
 constexpr std::string_view kKey = "ipos-parameters";
 constexpr int64_t kVersion = 1;
 
+constexpr uint16_t kLock = 8595;  // P803
+
+// Ordinary settings first, then those that may cut the connection (P810..P819, P88x, P89x), the lock last.
+int load_rank(const Parameter& p) {
+  if (p.index == kLock) return 2;
+  return p.number.starts_with("81") || p.number.starts_with("88") || p.number.starts_with("89") ? 1 : 0;
+}
+
 std::string in_quotes(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -35,10 +43,10 @@ class Reader {
  public:
   explicit Reader(const std::string& path) : path_(path) {}
 
-  ParameterSet read(std::string_view text) {
+  tl::expected<ParameterSet, std::vector<std::string>> read(std::string_view text) {
     if (const auto place = runtime::stray_character(text)) {
       error(*place, "this character may only stand in a text or a comment");
-      throw Failure(kBadInput, "");
+      return tl::unexpected(std::move(errors_));
     }
     const toml::parse_result parsed = toml::parse(text);
     if (!parsed)
@@ -46,14 +54,13 @@ class Reader {
             std::string(parsed.error().description()));
     else
       file(parsed.table());
-    if (failed_) throw Failure(kBadInput, "");
+    if (!errors_.empty()) return tl::unexpected(std::move(errors_));
     return std::move(set_);
   }
 
  private:
   void error(FilePlace place, const std::string& text) {
-    fmt::print(stderr, "{}:{}:{}: error: {}\n", path_, place.line, place.column, text);
-    failed_ = true;
+    errors_.push_back(fmt::format("{}:{}:{}: error: {}", path_, place.line, place.column, text));
   }
 
   void file(const toml::table& root) {
@@ -162,7 +169,7 @@ class Reader {
   }
 
   const std::string& path_;
-  bool failed_ = false;
+  std::vector<std::string> errors_;
   ParameterSet set_;
   const stdlib::ParameterTable* table_ = nullptr;
   std::map<uint16_t, FilePlace> seen_;
@@ -201,6 +208,37 @@ ParameterSet read_settings(ParameterAccess& access, bool& complete) {
   return set;
 }
 
+std::vector<WrittenRow> write_settings(ParameterAccess& access, const ParameterSet& set, Service service) {
+  std::vector<SetRow> rows = set.rows;
+  std::stable_sort(rows.begin(), rows.end(), [](const SetRow& a, const SetRow& b) {
+    return std::pair(load_rank(*a.parameter), a.parameter->index) <
+           std::pair(load_rank(*b.parameter), b.parameter->index);
+  });
+  std::vector<WrittenRow> done;
+  const auto write = [&](const SetRow& row, bool unlocks) {
+    const uint16_t index = row.parameter->index;
+    const AccessReply present = access.execute(Service::Read, index);
+    if (present && *present == row.value) {
+      done.push_back({row, WrittenRow::Outcome::Unchanged, unlocks, service, {}});
+      return true;
+    }
+    const AccessReply reply = present ? access.execute(service, index, row.value) : present;
+    if (reply)
+      done.push_back({row, WrittenRow::Outcome::Written, unlocks, service, {}});
+    else
+      done.push_back(
+          {row, WrittenRow::Outcome::Refused, unlocks, present ? service : Service::Read, reply.error()});
+    return reply.has_value();
+  };
+  const Parameter* lock = stdlib::parameter_table(access.unit()).find(kLock);
+  const AccessReply locked = lock != nullptr ? access.execute(Service::Read, kLock) : AccessReply(0);
+  if (locked && *locked == 1 && write({lock, 0, {}}, true))
+    if (rows.empty() || rows.back().parameter != lock) rows.push_back({lock, 1, {}});
+  for (const SetRow& row : rows)
+    if (!write(row, false) && !done.back().error.code) break;
+  return done;
+}
+
 std::string to_text(const ParameterSet& set) {
   std::string text = fmt::format(
       "# The settings of a unit. value is for people, raw is what the unit has; change both, or one and "
@@ -208,10 +246,11 @@ std::string to_text(const ParameterSet& set) {
       "other.\n{} = {}\nunit = {}\nparameters = [\n",
       kKey, kVersion, in_quotes(set.unit->name));
   for (const SetRow& row : set.rows)
-    text += fmt::format(
-        "  {{ number = {}, index = {}, name = {}, value = {}, raw = {} }},\n",
-        in_quotes("P" + std::string(row.parameter->number)), row.parameter->index, in_quotes(row.parameter->name),
-        in_quotes(stdlib::parameter_text(*row.parameter, row.value)), row.parameter->number_of(row.value));
+    text += fmt::format("  {{ number = {}, index = {}, name = {}, value = {}, raw = {} }},\n",
+                        in_quotes("P" + std::string(row.parameter->number)), row.parameter->index,
+                        in_quotes(row.parameter->name),
+                        in_quotes(stdlib::parameter_text(*row.parameter, row.value)),
+                        row.parameter->number_of(row.value));
   return text + "]\n";
 }
 
@@ -226,6 +265,14 @@ bool is_parameter_set(std::string_view text) {
 }
 
 ParameterSet parse_settings(const std::string& path, std::string_view text) {
+  auto set = read_parameter_set(path, text);
+  if (set) return std::move(*set);
+  for (const std::string& error : set.error()) fmt::print(stderr, "{}\n", error);
+  throw Failure(kBadInput, "");
+}
+
+tl::expected<ParameterSet, std::vector<std::string>> read_parameter_set(const std::string& path,
+                                                                        std::string_view text) {
   return Reader(path).read(text);
 }
 

@@ -36,11 +36,28 @@ void print_refusal(const ParameterAccess& access, stdlib::Service service, uint1
 // `complete` becomes false; a unit that does not answer is a Failure.
 ParameterSet read_settings(ParameterAccess& access, bool& complete);
 
+// What came of writing a row of a set.
+struct WrittenRow {
+  enum class Outcome : uint8_t { Unchanged, Written, Refused };
+  SetRow row;
+  Outcome outcome = Outcome::Unchanged;
+  bool unlocks = false;     // takes the lock off: not of the set
+  stdlib::Service service;  // that was refused
+  AccessError error;
+};
+// Writes what differs, in the order of docs/guide/param.md: a lock comes off first and is on again at the end. Ends
+// with a unit that does not answer; that row is the last one.
+std::vector<WrittenRow> write_settings(ParameterAccess& access, const ParameterSet& set,
+                                       stdlib::Service service);
+
 std::string to_text(const ParameterSet& set);
 
 // The file says itself what it is.
 bool is_parameter_set(std::string_view text);
-// Errors are printed with their places, then a Failure ends the verb.
+// The errors with their places: "mine.settings:1:2: error: ...".
+tl::expected<ParameterSet, std::vector<std::string>> read_parameter_set(const std::string& path,
+                                                                        std::string_view text);
+// Errors are printed, then a Failure ends the verb.
 ParameterSet parse_settings(const std::string& path, std::string_view text);
 
 }  // namespace ipos::tools

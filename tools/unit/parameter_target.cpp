@@ -24,6 +24,14 @@ Target find_target(const stdlib::UnitType& unit, const std::string& name) {
                             unit.name, name));
 }
 
+std::string access_text(const stdlib::Parameter& p) {
+  std::string text;
+  for (const auto& [has, word] :
+       {std::pair{p.nonvolatile, "N/"}, {p.writable_locked, "S/"}, {p.needs_inhibit, "R/"}})
+    if (has) text += word;
+  return text + (p.writable ? "RW" : "RO");
+}
+
 std::string text_of(const Target& target, int32_t value) {
   return target.parameter ? stdlib::parameter_text(*target.parameter, value) : std::to_string(value);
 }

@@ -31,6 +31,9 @@ std::optional<Number> whole_number(std::string_view text) {
   return value;
 }
 
+// Access as in the manuals: "N/R/RW", "RO".
+std::string access_text(const stdlib::Parameter& parameter);
+
 std::string text_of(const Target& target, int32_t value);
 // "P130 Ramp t11 UP CW"; a view has its own name.
 std::string name_of(const stdlib::ParameterTable& table, const Target& target);

@@ -72,6 +72,8 @@ class CanLine final : private EventTarget {
   // Plants a fault; its node must be attached. A cut waits for the end of the frames under way, its repair
   // also (ours).
   void plant(const LineFault& fault);
+  // Ends those of this kind, node and identifier that have begun and would last for ever; false: there are none.
+  bool repair(const LineFault& like);
 
   const std::string& name() const { return name_; }
   uint32_t baud() const { return baud_; }

@@ -61,6 +61,8 @@ class LineFaults {
  public:
   size_t add(const LineFault& fault);
   const LineFault& operator[](size_t n) const { return faults_[n].fault; }
+  size_t size() const { return faults_.size(); }
+  void end(size_t n, Time now) { faults_[n].fault.until = now; }
 
   // Of several that strike the same frame the first one planted counts. Repetitions are frames of their own.
   FrameFault strike(Time now, uint32_t id);

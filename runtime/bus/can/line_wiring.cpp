@@ -37,6 +37,22 @@ void CanLine::plant(const LineFault& fault) {
   if (fault.until != kNever) queue_.schedule(fault.until, source_, *this, line_event::kFaultEnds, number);
 }
 
+bool CanLine::repair(const LineFault& like) {
+  bool found = false;
+  const Time now = queue_.now();
+  for (size_t n = 0; n < faults_.size(); ++n) {
+    const LineFault& fault = faults_[n];
+    if (fault.kind != like.kind || fault.node != like.node || fault.behind != like.behind || fault.id != like.id ||
+        fault.from > now || fault.until != kNever)
+      continue;
+    found = true;
+    faults_.end(n, now);
+    if (fault_type(fault.kind).scope == FaultScope::Wiring)
+      queue_.schedule(now, source_, *this, line_event::kFaultEnds, n);
+  }
+  return found;
+}
+
 void CanLine::switch_fault(Time now, size_t number, bool on) {
   const LineFault fault = faults_[number];
   report({on ? LineEventKind::FaultStrikes : LineEventKind::FaultEnds, now,

@@ -1,0 +1,112 @@
+// Any lines as messages of a page to the host of a plant (docs/reference/serve.md): each is answered, by one
+// reply or its parts, and the plant goes on.
+#include <deque>
+#include <memory>
+#include <string>
+
+#include "tests/fuzz/fuzz.hpp"
+#include "tools/serve/plant_host.hpp"
+
+using namespace ipos;         // NOLINT
+using namespace ipos::tests;  // NOLINT
+
+namespace {
+
+using tools::serve::Json;
+using tools::serve::LetterKind;
+
+constexpr const char* kPlant = R"(
+[[bus]]
+name = "sbus"
+kind = "can"
+[[bus]]
+name = "line"
+kind = "rs485"
+[[station]]
+name = "saw"
+unit = "md60a"
+sbus = "sbus"
+rs485 = "line"
+[[station]]
+name = "lift"
+unit = "mc07"
+sbus = "sbus"
+[station.parameters]
+P813 = 2
+[[wire]]
+from = "saw.DO01"
+to = "lift.DI03"
+)";
+constexpr int64_t kMostStep = 20;  // ms: more tell nothing new
+constexpr size_t kMostMessages = 64;
+
+// A page that pauses what it has started.
+class PausingPost final : public tools::serve::Post {
+ public:
+  bool send(LetterKind kind, uint16_t, std::string_view body) override {
+    if (kind == LetterKind::Reply) {
+      const Json reply = Json::parse(body, nullptr, false);
+      require(reply.is_object() && reply.contains("re"), "a reply is an object and says to what");
+      require(reply.contains("ok") != reply.contains("error"), "it is good or it is not");
+    }
+    answered = answered || kind == LetterKind::Reply || kind == LetterKind::Binary;
+    return true;
+  }
+  std::optional<tools::serve::Letter> wait(int) override {
+    if (waiting.empty() && !runs) return std::nullopt;
+    runs = !waiting.empty();
+    if (waiting.empty()) return tools::serve::Letter{LetterKind::Message, 1, R"({"do": "pause"})"};
+    tools::serve::Letter letter = std::move(waiting.front());
+    waiting.pop_front();
+    return letter;
+  }
+  bool open() const override { return true; }
+
+  std::deque<tools::serve::Letter> waiting;
+  bool answered = false;
+  bool runs = false;
+};
+
+tools::debug::MakePlant make() {
+  return [] {
+    std::vector<runtime::PlantError> errors;
+    runtime::PlantFile file = runtime::read_plant_file(kPlant).plant;
+    std::vector<std::optional<vm::Image>> programs(file.stations.size());
+    return std::make_unique<runtime::Plant>(std::move(file), std::move(programs), std::nullopt, errors);
+  };
+}
+
+// Long ways of the plant are cut short.
+std::string shortened(std::string_view line) {
+  Json message = Json::parse(line, nullptr, false);
+  if (!message.is_object()) return std::string(line);
+  if (message.contains("ms") && message["ms"].is_number_integer() && message.value("do", Json()) == "step")
+    message["ms"] = message["ms"].is_number_unsigned()
+                        ? static_cast<int64_t>(message["ms"].get<uint64_t>() % kMostStep)
+                        : -1;
+  if (message.value("do", Json()) == "step") message.erase("telegram");
+  return message.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  std::string_view text = text_of(data, size);
+  PausingPost post;
+  tools::serve::PlantHost host(make(), "plant", "0", post, false);
+  post.waiting.push_back({LetterKind::Opened, 1, {}});
+  size_t asked = 0;
+  while (!text.empty() && asked < kMostMessages) {
+    const size_t end = text.find('\n');
+    post.waiting.push_back({LetterKind::Message, 1, shortened(text.substr(0, end))});
+    text = end == std::string_view::npos ? std::string_view{} : text.substr(end + 1);
+    ++asked;
+    post.runs = true;
+    post.answered = false;
+    while (host.turn(0)) {
+    }
+    require(post.answered, "a message is answered");
+  }
+  require(host.plant().now() >= 0, "the plant is there");
+  return 0;
+}

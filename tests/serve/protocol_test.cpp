@@ -1,0 +1,421 @@
+// The commands and topics of docs/reference/serve.md, without a network.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <sstream>
+
+#include "compiler/codegen/compile.hpp"
+#include "tests/serve/page.hpp"
+#include "tools/recording/trace.hpp"
+
+namespace ipos::tests {
+namespace {
+
+// Line numbers count from 1; line 1 is the header. DI02 and DI03 of a MOVIDRIVE as delivered: CW and enable.
+constexpr const char* kProgram = R"(#include <const.h>
+long lCount;
+long lTable[3];
+main()
+{
+  while (1)
+  {
+    lCount++;
+    lTable[1] = lCount * 2;
+    _Wait(5);
+  }
+}
+)";
+constexpr const char* kPlant = R"(
+[[bus]]
+name = "sbus"
+kind = "can"
+[[station]]
+name = "saw"
+unit = "md60a"
+program = "SAW.IPC"
+sbus = "sbus"
+[station.inputs]
+DI00 = 1
+[[station]]
+name = "lift"
+unit = "mdxb"
+sbus = "sbus"
+[station.parameters]
+P881 = 2
+[[wire]]
+from = "saw.DO01"
+to = "lift.DI05"
+)";
+
+tools::debug::MakePlant the_plant() {
+  compiler::CompileOptions options;
+  options.unit = stdlib::find_unit("md60a");
+  const auto image = compiler::compile("SAW.IPC", "", kProgram, options).image;
+  return [image] {
+    std::vector<runtime::PlantError> errors;
+    auto plant = std::make_unique<runtime::Plant>(runtime::read_plant_file(kPlant).plant,
+                                                  std::vector<std::optional<vm::Image>>{image, std::nullopt},
+                                                  std::nullopt, errors);
+    EXPECT_TRUE(errors.empty());
+    return plant;
+  };
+}
+
+class Serving : public ::testing::Test {
+ protected:
+  Json good(Json message) {
+    Json reply = page.ask(std::move(message));
+    EXPECT_TRUE(reply.value("ok", false)) << reply;
+    return reply;
+  }
+  std::string error(Json message) { return page.ask(std::move(message)).value("error", "no error"); }
+  Json step(int ms) { return good({{"do", "step"}, {"ms", ms}}); }
+  // The whole state of a topic.
+  Json topic(Json message) {
+    message["do"] = "subscribe";
+    good(message);
+    const std::string name = message["topic"];
+    return page.event(name);
+  }
+  int64_t value(const std::string& name) {
+    good({{"do", "watch"}, {"names", {name}}});
+    return topic({{"topic", "watch"}})["values"].front()["value"].get<int64_t>();
+  }
+
+  Page page{the_plant()};
+};
+
+TEST_F(Serving, SaysHelloAndStandsAtZero) {
+  page.post.sent.clear();
+  page.come(2);
+  const Json hello = page.event("hello");
+  EXPECT_EQ(hello["protocol"], 1);
+  EXPECT_EQ(hello["mode"], "plant");
+  const Json time = page.event("time");
+  EXPECT_EQ(time["us"], 0);
+  EXPECT_EQ(time["running"], false);
+}
+
+TEST_F(Serving, MessagesThatMakeNoSenseAreAnsweredInWords) {
+  EXPECT_EQ(page.say("{").value("error", ""), "a message is one JSON object");
+  EXPECT_TRUE(page.say("[]")["re"].is_null());
+  EXPECT_EQ(error({{"do", 5}}), "'do' must be a text");
+  EXPECT_EQ(error(Json::object()), "'do' is missing");
+  EXPECT_EQ(error({{"do", "dance"}}), "there is no command 'dance' here");
+  EXPECT_EQ(error({{"do", "step"}, {"ms", 0.5}}), "'ms' must be a whole number");
+  EXPECT_EQ(error({{"do", "step"}, {"ms", 18446744073709551615U}}), "'ms' must be 1 to 3600000");
+  EXPECT_EQ(error({{"do", "speed"}, {"speed", -1}}), "'speed' must be 0 to 1000");
+  EXPECT_EQ(error({{"do", "subscribe"}, {"topic", "weather"}}), "there is no topic 'weather' here");
+  EXPECT_EQ(error({{"do", "parameters"}, {"station", "mill"}}), "there is no station 'mill', only saw, lift");
+}
+
+TEST_F(Serving, StepsAMillisecondAtATime) {
+  EXPECT_EQ(step(1)["us"], 1000);
+  EXPECT_EQ(step(9)["us"], 10'000);
+  EXPECT_EQ(page.event("time")["us"], 10'000);
+}
+
+TEST_F(Serving, GoesBackInTimeWithAllThatWasDone) {
+  step(3);
+  good({{"do", "set"}, {"name", "saw.lCount"}, {"value", "1000"}});
+  step(20);
+  const int64_t then = value("saw.lCount");
+  EXPECT_GT(then, 1000);
+  step(50);
+  const Json reply = good({{"do", "back"}, {"us", 23'000}});
+  EXPECT_EQ(reply["us"], 23'000);
+  EXPECT_EQ(page.event("time")["generation"], 2);
+  EXPECT_EQ(value("saw.lCount"), then);
+  good({{"do", "back"}, {"us", 2'000}});
+  EXPECT_LT(value("saw.lCount"), 10);
+  step(21);
+  EXPECT_LT(value("saw.lCount"), 100) << "what was set later is gone";
+  EXPECT_EQ(error({{"do", "back"}, {"us", 1'000'000}}), "that time is still to come");
+}
+
+TEST_F(Serving, RestartsAndDoesTheSameAgain) {
+  step(100);
+  const int64_t then = value("saw.lCount");
+  good({{"do", "set"}, {"name", "saw.lCount"}, {"value", "-5"}});
+  EXPECT_EQ(good({{"do", "restart"}})["us"], 0);
+  step(100);
+  EXPECT_EQ(value("saw.lCount"), then);
+}
+
+TEST_F(Serving, AnInputTurnsTheAxis) {
+  Json saw = topic({{"topic", "plant"}})["stations"]["saw"];
+  EXPECT_EQ(saw["in"], 1);
+  EXPECT_EQ(saw["enabled"], false);
+  EXPECT_FALSE(saw["why"].get<std::string>().empty());
+  good({{"do", "analog"}, {"station", "saw"}, {"name", "AI1"}, {"value", "10 V"}});
+  for (const char* name : {"DI01", "DI03"})
+    good({{"do", "input"}, {"station", "saw"}, {"name", name}, {"action", "set"}, {"on", true}});
+  step(3000);
+  saw = topic({{"topic", "plant"}})["stations"]["saw"];
+  EXPECT_EQ(saw["enabled"], true) << saw;
+  EXPECT_EQ(saw["why"], "");
+  EXPECT_GT(saw["speed"].get<double>(), 100);
+  EXPECT_EQ(saw["analog"]["AI1"], "10.000 V");
+}
+
+TEST_F(Serving, WiresHoldTheirInputsAgainstAHandButNotAgainstForce) {
+  step(2);
+  EXPECT_EQ(error({{"do", "input"}, {"station", "lift"}, {"name", "DI05"}, {"action", "set"}, {"on", true}}),
+            "DI05 of lift is held by a wire or a switch of the plant; force it");
+  const int before = topic({{"topic", "plant"}})["stations"]["lift"]["in"].get<int>();
+  const bool level = (before & 1 << 5) == 0;
+  good({{"do", "input"}, {"station", "lift"}, {"name", "DI05"}, {"action", "force"}, {"on", level}});
+  step(5);
+  const Json lift = topic({{"topic", "plant"}})["stations"]["lift"];
+  EXPECT_EQ(lift["in"].get<int>(), before ^ 1 << 5);
+  EXPECT_EQ(lift["forced"], 1 << 5);
+  good({{"do", "input"}, {"station", "lift"}, {"name", "DI05"}, {"action", "release"}});
+  step(5);
+  EXPECT_EQ(topic({{"topic", "plant"}})["stations"]["lift"]["in"].get<int>(), before);
+}
+
+TEST_F(Serving, APulseEndsByItself) {
+  good(
+      {{"do", "input"}, {"station", "saw"}, {"name", "DI02"}, {"action", "pulse"}, {"on", true}, {"ms", 10}});
+  step(5);
+  EXPECT_EQ(topic({{"topic", "plant"}})["stations"]["saw"]["in"], 5);
+  step(10);
+  EXPECT_EQ(topic({{"topic", "plant"}})["stations"]["saw"]["in"], 1);
+}
+
+TEST_F(Serving, PowerGoesOffAndOn) {
+  good({{"do", "power"}, {"station", "saw"}, {"on", false}});
+  step(5);
+  EXPECT_EQ(topic({{"topic", "plant"}})["stations"]["saw"]["powered"], false);
+  EXPECT_EQ(error({{"do", "power"}, {"station", "saw"}, {"on", false}}), "it is off");
+  good({{"do", "power"}, {"station", "lift"}, {"on", false}});
+  EXPECT_EQ(step(100)["us"], 105'000) << "time passes with all units off";
+  good({{"do", "power"}, {"station", "saw"}, {"on", true}});
+  step(20);
+  EXPECT_EQ(topic({{"topic", "plant"}})["stations"]["saw"]["powered"], true);
+  EXPECT_LT(value("saw.lCount"), 6);
+}
+
+TEST_F(Serving, CableCutsAndFaultsComeAndGo) {
+  const Json description = good({{"do", "plant"}})["plant"];
+  EXPECT_EQ(description["buses"][0]["stations"], Json({"saw", "lift"}));
+  EXPECT_NE(description["buses"][0]["faults"].dump().find("\"cut\""), std::string::npos);
+  EXPECT_EQ(description["wires"][0], (Json{{"from", "saw.DO01"}, {"to", "lift.DI05"}, {"invert", false}}));
+  const Json cut{{"do", "fault"}, {"bus", "sbus"}, {"kind", "cut"}, {"station", "lift"}, {"on", true}};
+  good(cut);
+  EXPECT_EQ(error(cut), "this fault is there already");
+  step(2);
+  EXPECT_EQ(topic({{"topic", "plant"}})["buses"]["sbus"]["faults"].size(), 1U);
+  Json repair = cut;
+  repair["on"] = false;
+  good(repair);
+  step(2);
+  EXPECT_EQ(topic({{"topic", "plant"}})["buses"]["sbus"]["faults"].size(), 0U);
+  EXPECT_EQ(error(repair), "there is no such fault");
+  EXPECT_EQ(error({{"do", "fault"}, {"bus", "sbus"}, {"kind", "cut"}, {"on", true}}),
+            "'cut' needs a station");
+  EXPECT_NE(topic({{"topic", "journal"}}).dump().find("is cut"), std::string::npos);
+}
+
+TEST_F(Serving, WatchesSetsAndForcesVariables) {
+  const Json found = good({{"do", "search"}, {"text", "ltab"}});
+  EXPECT_EQ(found["total"], 3);
+  EXPECT_EQ(found["groups"][0], "variables");
+  EXPECT_EQ(good({{"do", "watch"}, {"names", {"saw.lTable", "saw.P130", "saw.DI00"}}})["names"].size(), 5U);
+  step(20);
+  const Json values = topic({{"topic", "watch"}})["values"];
+  EXPECT_EQ(values["saw.P130"]["text"], "2.000");
+  EXPECT_EQ(values["saw.DI00"]["value"], 1);
+  good({{"do", "set"}, {"name", "saw.H300"}, {"value", "0x10"}});
+  EXPECT_EQ(value("saw.H300"), 16);
+  EXPECT_EQ(error({{"do", "set"}, {"name", "saw.H300"}, {"value", "4294967296"}}),
+            "'4294967296' is no number of 32 bits; write it decimal or as 0x1F");
+  good({{"do", "force"}, {"name", "saw.lCount"}, {"value", "7"}});
+  step(50);
+  EXPECT_LE(value("saw.lCount"), 8);
+  EXPECT_EQ(good({{"do", "forced"}})["names"], Json({"saw.lCount"}));
+  good({{"do", "release"}, {"name", "saw.lCount"}});
+  step(50);
+  EXPECT_GT(value("saw.lCount"), 9);
+  EXPECT_EQ(error({{"do", "set"}, {"name", "saw.speed"}, {"value", "1"}}), "saw.speed cannot be set");
+}
+
+TEST_F(Serving, ParametersAreRefusedInTheDrivesWords) {
+  const Json list = good({{"do", "parameters"}, {"station", "saw"}});
+  const auto row = [&](const char* number) {
+    for (const Json& parameter : list["parameters"])
+      if (parameter["number"] == number) return parameter;
+    return Json();
+  };
+  // 1053 1610 p. 71: P130 index 8470, 0 to 2000 s, factory setting 2 s.
+  EXPECT_EQ(row("P130")["index"], 8470);
+  EXPECT_EQ(row("P130")["default"], "2.000 s");
+  EXPECT_EQ(row("P130")["least"], "0.000 s");
+  EXPECT_EQ(row("P130")["most"], "2000.000 s");
+  EXPECT_EQ(row("P130")["changed"], false);
+  EXPECT_EQ(row("P130")["group"], "P13");
+  EXPECT_EQ(row("P000")["access"], "RO");
+  EXPECT_EQ(
+      good({{"do", "parameters.set"}, {"station", "saw"}, {"number", "P130"}, {"value", "2500 ms"}})["text"],
+      "2.500 s");
+  const Json news = topic({{"topic", "parameters"}, {"station", "saw"}});
+  EXPECT_EQ(news["values"]["8470"], (Json{{"value", 2500}, {"text", "2.500 s"}, {"changed", true}}));
+  const Json refused =
+      page.ask({{"do", "parameters.set"}, {"station", "saw"}, {"number", "P130"}, {"value", "3000 s"}});
+  EXPECT_EQ(refused["refused"], true) << refused;
+  EXPECT_EQ(refused["error"],
+            "P130 Ramp t11 UP CW := 3000.000 s: parameter value too large (0.000 s..2000.000 s)");
+  const Json compared = good({{"do", "parameters.compare"}, {"station", "saw"}, {"with", "lift"}});
+  EXPECT_NE(compared["rows"].dump().find("\"P130\""), std::string::npos);
+}
+
+TEST_F(Serving, SavesAndLoadsFilesOfParam) {
+  good({{"do", "parameters.set"}, {"station", "saw"}, {"number", "P130"}, {"value", "7 s"}});
+  const std::string text = good({{"do", "parameters.save"}, {"station", "saw"}})["text"];
+  EXPECT_NE(text.find("value = \"7.000 s\""), std::string::npos);
+  good({{"do", "parameters.set"}, {"station", "saw"}, {"number", "P130"}, {"value", "1 s"}});
+  EXPECT_EQ(good({{"do", "parameters.load"}, {"station", "saw"}, {"text", text}})["set"], 1);
+  EXPECT_NE(topic({{"topic", "parameters"}, {"station", "saw"}})["values"]["8470"].dump().find("7.000 s"),
+            std::string::npos);
+  EXPECT_EQ(error({{"do", "parameters.load"}, {"station", "saw"}, {"text", "x = 1"}}).substr(0, 9),
+            "the file:");
+  EXPECT_EQ(error({{"do", "parameters.load"}, {"station", "lift"}, {"text", text}}),
+            "the file is of unit md60a, lift is mdxb");
+}
+
+// The same digits as `ipos run --trace`: its recorder takes the samples of a plant that runs without a page.
+TEST_F(Serving, TheCsvOfTheScopeIsThatOfARun) {
+  const std::vector<std::string> names{"saw.speed", "saw.lCount", "saw.status", "lift.P008", "saw.DI00"};
+  good({{"do", "scope"}, {"channels", names}});
+  step(250);
+  const std::unique_ptr<runtime::Plant> plant = the_plant()();
+  tools::Recorder recorder(*plant, names);
+  plant->run_until(250 * runtime::kMillisecond, [&](runtime::Time now) {
+    recorder.sample(now);
+    return true;
+  });
+  std::ostringstream wanted;
+  write_csv(wanted, recorder.recording());
+  EXPECT_EQ(good({{"do", "scope.csv"}})["csv"], wanted.str());
+}
+
+TEST_F(Serving, LongCsvComesInParts) {
+  good({{"do", "scope"}, {"channels", {"saw.lCount"}}});
+  step(12'000);
+  good({{"do", "scope.csv"}});
+  ASSERT_EQ(page.parts.size(), 3U);
+  std::string whole;
+  for (const Json& part : page.parts) whole += part["csv"].get<std::string>();
+  EXPECT_EQ(std::count(whole.begin(), whole.end(), '\n'), 12'001);
+  EXPECT_EQ(whole.substr(0, 19), "time_ms,saw.lCount\n");
+  EXPECT_EQ(page.parts[0]["more"], true);
+  EXPECT_FALSE(page.parts[2].contains("more"));
+}
+
+TEST_F(Serving, TheScopeTriggersOnAnEdgeWithPreTriggerAndStops) {
+  good({{"do", "scope"},
+        {"channels", {"saw.lCount"}},
+        {"pre", 50},
+        {"length_ms", 100},
+        {"trigger", {{"kind", "edge"}, {"signal", "saw.H300"}, {"value", 3}, {"slope", "rising"}}}});
+  EXPECT_EQ(good({{"do", "scope.arm"}, {"single", true}})["state"], "armed");
+  step(80);
+  good({{"do", "set"}, {"name", "saw.H300"}, {"value", "4"}});
+  step(10);
+  Json scope = topic({{"topic", "scope"}});
+  EXPECT_EQ(scope["state"], "triggered");
+  EXPECT_EQ(scope["trigger_us"], 81'000);
+  step(500);
+  scope = topic({{"topic", "scope"}});
+  EXPECT_EQ(scope["state"], "done");
+  EXPECT_EQ(scope["last_us"], 131'000);
+  EXPECT_EQ(good({{"do", "scope.free"}})["state"], "free");
+}
+
+TEST_F(Serving, TheScopeTriggersOnALineOfTheProgramAndHaltsThePlant) {
+  good({{"do", "scope"},
+        {"trigger",
+         {{"kind", "line"}, {"station", "saw"}, {"file", "SAW.IPC"}, {"line", 10}, {"stop", true}}}});
+  good({{"do", "scope.arm"}});
+  step(1000);
+  EXPECT_LT(page.event("time")["us"].get<int64_t>(), 100'000);
+  EXPECT_EQ(page.event("time")["stopped"]["reason"], "trigger");
+}
+
+TEST_F(Serving, AViewHasTheExtremesOfItsPoints) {
+  good({{"do", "scope"}, {"channels", {"saw.lCount"}}});
+  step(1000);
+  page.ask({{"do", "scope.view"}, {"from_us", 0}, {"to_us", 1'000'000}, {"points", 10}});
+  const std::string bytes = page.binary();
+  ASSERT_EQ(bytes.size(), 32U + 10 * 2 * 4);
+  EXPECT_EQ(bytes[0], 1);
+  EXPECT_EQ(bytes[2], 2);
+  uint32_t step_us = 0;
+  std::memcpy(&step_us, bytes.data() + 16, 4);
+  EXPECT_EQ(step_us, 100'000U);
+  std::vector<float> values(20);
+  std::memcpy(values.data(), bytes.data() + 32, 80);
+  for (size_t n = 0; n + 2 < values.size(); n += 2)
+    EXPECT_LE(values[n + 1], values[n + 2]) << "it only rises";
+  EXPECT_LT(values[0], values[1]);
+}
+
+TEST_F(Serving, TelegramsAreCountedTracedAndSent) {
+  good({{"do", "bus.send"}, {"bus", "sbus"}, {"identifier", 523}, {"data", "0102 0304"}});
+  step(5);
+  const Json rows = topic({{"topic", "bus"}})["rows"];
+  ASSERT_EQ(rows.size(), 1U);
+  EXPECT_EQ(rows[0]["id"], 523);
+  EXPECT_EQ(rows[0]["data"], "01020304");
+  good({{"do", "bus.send"}, {"bus", "sbus"}, {"identifier", 523}, {"data", "01FF0304"}});
+  step(5);
+  EXPECT_EQ(topic({{"topic", "bus"}})["rows"][0]["changed"], Json({1}));
+  const Json trace = good({{"do", "bus.trace"}, {"filter", "01FF"}})["frames"];
+  ASSERT_EQ(trace.size(), 1U);
+  EXPECT_EQ(trace[0]["n"], 2);
+  EXPECT_EQ(error({{"do", "bus.send"}, {"bus", "sbus"}, {"identifier", 5000}, {"data", ""}}),
+            "'identifier' must be 0 to 2047");
+  EXPECT_EQ(error({{"do", "bus.send"}, {"bus", "sbus"}, {"id", 5}, {"data", "0"}}),
+            "the last byte has one digit only");
+}
+
+TEST_F(Serving, BreakpointsStopTheRunAndStepsGoOn) {
+  const Json point = good({{"do", "break.set"},
+                           {"station", "saw"},
+                           {"file", "SAW.IPC"},
+                           {"line", 9},
+                           {"condition", "lCount == 4"}});
+  EXPECT_EQ(point["breakpoint"]["line"], 9);
+  good({{"do", "run"}, {"speed", 0}});
+  const Json time = page.event("time");
+  EXPECT_EQ(time["running"], false);
+  EXPECT_EQ(time["stopped"]["reason"], "breakpoint");
+  EXPECT_EQ(time["stopped"]["line"], 9);
+  EXPECT_EQ(value("saw.lCount"), 4);
+  good({{"do", "program.step"}, {"station", "saw"}, {"kind", "over"}});
+  EXPECT_EQ(page.event("time")["stopped"]["line"], 10);
+  good({{"do", "program.step"}, {"station", "saw"}, {"kind", "over"}, {"back", true}});
+  EXPECT_EQ(page.event("time")["stopped"]["line"], 9);
+  const Json program = topic({{"topic", "program"}, {"station", "saw"}});
+  EXPECT_EQ(program["tasks"][0]["line"], 9);
+  EXPECT_EQ(program["breakpoints"].size(), 1U);
+  for (const int line : {8, 9, 10})
+    EXPECT_NE(std::find(program["covered"]["SAW.IPC"].begin(), program["covered"]["SAW.IPC"].end(), line),
+              program["covered"]["SAW.IPC"].end())
+        << line;
+  good({{"do", "break.clear"}, {"number", point["breakpoint"]["number"]}});
+  EXPECT_EQ(good({{"do", "breaks"}})["breakpoints"].size(), 0U);
+  EXPECT_EQ(error({{"do", "program"}, {"station", "lift"}}), "lift has no program");
+}
+
+TEST_F(Serving, TwoClientsSeeTheSame) {
+  page.come(2);
+  page.ask({{"do", "subscribe"}, {"topic", "plant"}}, 2);
+  page.ask({{"do", "input"}, {"station", "saw"}, {"name", "DI02"}, {"on", true}}, 1);
+  page.ask({{"do", "subscribe"}, {"topic", "plant"}}, 2);
+  EXPECT_EQ(page.event("plant")["stations"]["saw"]["in"], 5);
+}
+
+}  // namespace
+}  // namespace ipos::tests

@@ -1,0 +1,324 @@
+"""`ipos serve` with real sockets: who is let in, what is too much, and that it ends well.
+
+A WebSocket client of a hundred lines, so that nothing is needed but Python.
+"""
+import base64
+import json
+import os
+import pathlib
+import random
+import re
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+IPOS = sys.argv.pop(1)
+PLANT = """
+[[bus]]
+name = "sbus"
+kind = "can"
+[[station]]
+name = "saw"
+unit = "md60a"
+program = "SAW.IPC"
+sbus = "sbus"
+"""
+PROGRAM = "long lCount;\nmain()\n{\n  while (1) { lCount++; _Wait(1); }\n}\n"
+
+
+class Client:
+    """One WebSocket."""
+
+    def __init__(self, port, path, headers=(), host=None, origin=None):
+        self.socket = socket.create_connection(("127.0.0.1", port), timeout=20)
+        key = base64.b64encode(os.urandom(16)).decode()
+        lines = [f"GET {path} HTTP/1.1", f"Host: {host or f'127.0.0.1:{port}'}", "Upgrade: websocket",
+                 "Connection: Upgrade", f"Sec-WebSocket-Key: {key}", "Sec-WebSocket-Version: 13", *headers]
+        if origin:
+            lines.append(f"Origin: {origin}")
+        self.socket.sendall(("\r\n".join(lines) + "\r\n\r\n").encode())
+        self.rest = b""
+        while b"\r\n\r\n" not in self.rest:
+            more = self.socket.recv(65536)
+            if not more:
+                break
+            self.rest += more
+        head, _, self.rest = self.rest.partition(b"\r\n\r\n")
+        self.status = int(head.split()[1])
+        self.id = 0
+        self.events = []
+
+    def take(self, count):
+        while len(self.rest) < count:
+            more = self.socket.recv(65536)
+            if not more:
+                raise EOFError
+            self.rest += more
+        taken, self.rest = self.rest[:count], self.rest[count:]
+        return taken
+
+    def receive(self):
+        """The next message: (opcode, bytes)."""
+        first, second = self.take(2)
+        length = second & 127
+        if length == 126:
+            length = struct.unpack(">H", self.take(2))[0]
+        elif length == 127:
+            length = struct.unpack(">Q", self.take(8))[0]
+        return first & 15, self.take(length)
+
+    def send(self, data, opcode=1):
+        mask = os.urandom(4)
+        length = len(data)
+        head = bytes([128 | opcode])
+        if length < 126:
+            head += bytes([128 | length])
+        elif length < 65536:
+            head += bytes([128 | 126]) + struct.pack(">H", length)
+        else:
+            head += bytes([128 | 127]) + struct.pack(">Q", length)
+        masked = bytes(b ^ mask[n & 3] for n, b in enumerate(data))
+        self.socket.sendall(head + mask + masked)
+
+    def ask(self, **message):
+        """The reply; events that come before it are kept."""
+        self.id += 1
+        message["id"] = self.id
+        self.send(json.dumps(message).encode())
+        while True:
+            opcode, data = self.receive()
+            if opcode == 8:
+                raise EOFError
+            if opcode != 1:
+                continue
+            answer = json.loads(data)
+            if answer.get("re") == self.id:
+                return answer
+            self.events.append(answer)
+
+    def wait_for(self, event, wanted=lambda _: True):
+        while True:
+            opcode, data = self.receive()
+            answer = json.loads(data) if opcode == 1 else {}
+            if answer.get("event") == event and wanted(answer):
+                return answer
+
+    def close(self):
+        self.socket.close()
+
+
+class Serving(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        folder = pathlib.Path(self.folder.name)
+        (folder / "plant.toml").write_text(PLANT)
+        (folder / "SAW.IPC").write_text(PROGRAM)
+        self.ipos = subprocess.Popen([IPOS, "serve", str(folder / "plant.toml")], stdout=subprocess.PIPE,
+                                     stderr=subprocess.PIPE, text=True)
+        self.address = self.ipos.stdout.readline().strip()
+        match = re.fullmatch(r"http://127\.0\.0\.1:(\d+)/\?token=([0-9a-f]{32})", self.address)
+        self.assertTrue(match, self.address)
+        self.port, self.token = int(match[1]), match[2]
+
+    def tearDown(self):
+        if self.ipos.poll() is None:
+            self.ipos.kill()
+        self.ipos.wait()
+        self.ipos.stdout.close()
+        self.ipos.stderr.close()
+        self.folder.cleanup()
+
+    def connect(self, **more):
+        client = Client(self.port, f"/ws?token={self.token}", **more)
+        self.addCleanup(client.close)
+        return client
+
+    def http(self, request):
+        with socket.create_connection(("127.0.0.1", self.port), timeout=20) as connection:
+            try:
+                connection.sendall(request)
+            except ConnectionError:
+                pass
+            answer = b""
+            try:
+                while more := connection.recv(65536):
+                    answer += more
+            except ConnectionError:
+                pass
+        return answer
+
+    def status(self, target, host=None, method="GET", more=""):
+        host = host or f"127.0.0.1:{self.port}"
+        answer = self.http(f"{method} {target} HTTP/1.1\r\nHost: {host}\r\n{more}\r\n".encode())
+        return int(answer.split()[1])
+
+    def test_the_page_needs_the_token_and_our_host(self):
+        page = self.http(f"GET /?token={self.token} HTTP/1.1\r\nHost: localhost:{self.port}\r\n\r\n".encode())
+        self.assertTrue(page.startswith(b"HTTP/1.1 200"))
+        self.assertIn(b"default-src 'none'", page)
+        self.assertIn(b"<!doctype html>", page.lower())
+        self.assertEqual(self.status("/"), 401)
+        self.assertEqual(self.status("/?token=0"), 401)
+        self.assertEqual(self.status(f"/?token={self.token}0"), 401)
+        self.assertEqual(self.status(f"/?token={self.token}", host="evil.example"), 403)
+        self.assertEqual(self.status(f"/?token={self.token}", host=f"evil.example:{self.port}"), 403)
+        self.assertEqual(self.status(f"/?token={self.token}", more="Origin: http://evil.example\r\n"), 403)
+        self.assertEqual(self.status("/favicon.ico"), 404)
+        self.assertEqual(self.status(f"/?token={self.token}", method="POST"), 405)
+        self.assertEqual(self.status(f"/ws?token={self.token}"), 426)
+
+    def test_the_socket_needs_them_too(self):
+        ours = f"http://127.0.0.1:{self.port}"
+        self.assertEqual(self.connect(origin=ours).status, 101)
+        self.assertEqual(self.connect(origin="http://evil.example").status, 403)
+        self.assertEqual(self.connect(host="evil.example").status, 403)
+        for path in ("/ws", "/ws?token=", "/ws?token=" + "0" * 32):
+            client = Client(self.port, path)
+            client.close()
+            self.assertEqual(client.status, 401)
+
+    def test_too_much_is_refused(self):
+        self.assertEqual(self.status(f"/?token={self.token}", more="X: " + "x" * 9000 + "\r\n"), 431)
+        client = self.connect()
+        client.send(b'"' + b"x" * 70_000 + b'"')
+        with self.assertRaises((EOFError, ConnectionError)):
+            while client.receive()[0] != 8:
+                pass
+            raise EOFError
+        self.assertTrue(self.connect().ask(do="plant")["ok"])
+
+    def test_eight_clients_and_no_more(self):
+        clients = [self.connect() for _ in range(8)]
+        self.assertEqual([client.status for client in clients], [101] * 8)
+        self.assertEqual(self.connect().status, 503)
+        clients[0].close()
+        for _ in range(100):
+            if self.connect().status == 101:
+                return
+            time.sleep(0.05)
+        self.fail("a place that is free is not given")
+
+    def test_ten_thousand_garbage_messages(self):
+        client = self.connect()
+        drop = random.Random(1)
+        words = ["do", "id", "step", "ms", "topic", "subscribe", "watch", "names", "plant", "scope", "channels", "input"]
+        client.socket.settimeout(60)
+        replies = 0
+        for n in range(10_000):
+            if n % 3 == 0:
+                data = bytes(drop.randrange(32, 127) for _ in range(drop.randrange(40)))
+            elif n % 3 == 1:
+                data = json.dumps({drop.choice(words): drop.choice([n, "x", None, [], {}, 1e300, True]) for _ in range(3)}).encode()
+            else:
+                data = b"[" * drop.randrange(200)
+            client.send(data)
+            while n - replies > 20:
+                replies += "re" in json.loads(client.receive()[1])
+        self.assertTrue(client.ask(do="plant")["ok"])
+        other = self.connect()
+        self.assertTrue(other.ask(do="step")["ok"])
+
+    def test_a_click_and_time(self):
+        one, two = self.connect(), self.connect()
+        self.assertTrue(one.ask(do="input", station="saw", name="DI02", action="set", on=True)["ok"])
+        two.ask(do="subscribe", topic="plant")
+        self.assertEqual(two.wait_for("plant")["stations"]["saw"]["in"], 4)
+        self.assertEqual(one.ask(do="step", ms=1000)["us"], 1_000_000)
+        self.assertEqual(one.ask(do="back", ms=400)["us"], 600_000)
+        self.assertEqual(two.ask(do="step")["us"], 601_000)
+        self.assertEqual(one.ask(do="restart")["us"], 0)
+
+    def test_back_in_time_by_snapshots_gives_the_same_run(self):
+        client = self.connect()
+        client.ask(do="scope", channels=["saw.lCount"])
+        for _ in range(6):
+            client.ask(do="step", ms=700)
+            time.sleep(0.3)  # snapshots are a quarter of a second of the clock apart
+        client.ask(do="set", name="saw.H300", value="5")
+        self.assertEqual(client.ask(do="back", us=3_000_000)["us"], 3_000_000)
+        client.ask(do="watch", names=["saw.H300", "saw.lCount"])
+        client.ask(do="subscribe", topic="watch")
+        values = client.wait_for("watch")["values"]
+        self.assertEqual(values["saw.H300"]["value"], 0)
+        first = values["saw.lCount"]["value"]
+        rows = client.ask(do="scope.csv")["csv"].splitlines()
+        self.assertEqual(rows[-1], f"3000,{first}")
+        self.assertEqual(len(rows), 3001)
+        client.ask(do="step", ms=1200)
+        self.assertEqual(client.ask(do="back", us=3_000_000)["us"], 3_000_000)
+        client.ask(do="subscribe", topic="watch")
+        self.assertEqual(client.wait_for("watch")["values"]["saw.lCount"]["value"], first)
+
+    def test_it_runs_in_step_with_the_clock(self):
+        client = self.connect()
+        client.ask(do="run", speed=1)
+        begin = time.monotonic()
+        event = client.wait_for("time", lambda event: event["us"] >= 1_000_000)
+        self.assertGreater(time.monotonic() - begin, 0.9)
+        self.assertTrue(event["running"])
+        self.assertTrue(client.ask(do="pause")["ok"])
+        fast = client.ask(do="run", speed=0)
+        self.assertTrue(fast["ok"])
+        client.wait_for("time", lambda event: event["us"] >= 5_000_000)
+
+    def test_a_client_that_does_not_read_holds_nobody_up(self):
+        lazy, client = self.connect(), self.connect()
+        for topic in ("plant", "scope", "bus", "journal"):
+            lazy.ask(do="subscribe", topic=topic, rate=60)
+        client.ask(do="run", speed=0)
+        client.wait_for("time", lambda event: event["us"] >= 2_000_000)
+        begin = time.monotonic()
+        client.wait_for("time", lambda event: event["us"] >= 4_000_000)
+        self.assertLess(time.monotonic() - begin, 20)
+
+    def test_a_killed_client_is_forgotten(self):
+        client = self.connect()
+        client.ask(do="run")
+        client.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+        client.close()
+        self.assertTrue(self.connect().ask(do="plant")["ok"])
+
+    def test_ctrl_c_ends_it(self):
+        client = self.connect()
+        client.ask(do="run")
+        self.ipos.send_signal(signal.SIGINT)
+        self.assertEqual(self.ipos.wait(timeout=20), 0)
+        with self.assertRaises((EOFError, ConnectionError)):
+            while client.receive()[0] != 8:
+                pass
+            raise EOFError
+        self.assertEqual(self.ipos.stderr.read(), "")
+
+
+class NotServing(unittest.TestCase):
+    def run_ipos(self, *arguments):
+        return subprocess.run([IPOS, "serve", *arguments], capture_output=True, text=True, timeout=60, check=False)
+
+    def test_a_port_that_is_taken_is_told(self):
+        with tempfile.TemporaryDirectory() as folder, socket.socket() as taken:
+            plant = pathlib.Path(folder) / "plant.toml"
+            plant.write_text('[[station]]\nname = "saw"\nunit = "md60a"\n')
+            taken.bind(("127.0.0.1", 0))
+            taken.listen()
+            result = self.run_ipos(str(plant), "--port", str(taken.getsockname()[1]))
+            self.assertEqual(result.returncode, 74)
+            self.assertIn("cannot be listened at", result.stderr)
+            result = self.run_ipos(str(plant), "--bind", "here")
+            self.assertEqual(result.returncode, 64)
+
+    def test_a_plant_with_mistakes_is_told(self):
+        with tempfile.TemporaryDirectory() as folder:
+            plant = pathlib.Path(folder) / "plant.toml"
+            plant.write_text('[[station]]\nname = "saw"\nunit = "mill"\n')
+            result = self.run_ipos(str(plant))
+            self.assertEqual(result.returncode, 65)
+            self.assertEqual(result.stdout, "")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=1)

@@ -1,0 +1,67 @@
+// Letters on a socket, whole ones only.
+#include "tools/serve/channel.hpp"
+
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace ipos::tools::serve {
+
+std::array<char, kLetterHead> head_bytes(const Letter& letter) {
+  std::array<char, kLetterHead> bytes{};
+  const auto length = static_cast<uint32_t>(letter.body.size());
+  std::memcpy(bytes.data(), &length, sizeof length);
+  std::memcpy(bytes.data() + 4, &letter.client, sizeof letter.client);
+  bytes[6] = static_cast<char>(letter.kind);
+  return bytes;
+}
+
+LetterHead head_of(const std::array<char, kLetterHead>& bytes) {
+  LetterHead head;
+  std::memcpy(&head.length, bytes.data(), sizeof head.length);
+  std::memcpy(&head.client, bytes.data() + 4, sizeof head.client);
+  head.kind = static_cast<LetterKind>(bytes[6]);
+  return head;
+}
+
+bool Channel::write_all(const char* bytes, size_t size) {
+  while (size != 0) {
+    const ssize_t count = ::send(socket_, bytes, size, MSG_NOSIGNAL);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return open_ = false;
+    bytes += count;
+    size -= static_cast<size_t>(count);
+  }
+  return true;
+}
+
+bool Channel::read_all(char* bytes, size_t size) {
+  while (size != 0) {
+    const ssize_t count = ::recv(socket_, bytes, size, 0);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return open_ = false;
+    bytes += count;
+    size -= static_cast<size_t>(count);
+  }
+  return true;
+}
+
+bool Channel::send(LetterKind kind, uint16_t client, std::string_view body) {
+  const auto head = head_bytes({kind, client, std::string(body)});
+  return write_all(head.data(), head.size()) && write_all(body.data(), body.size());
+}
+
+std::optional<Letter> Channel::wait(int milliseconds) {
+  pollfd waiting{socket_, POLLIN, 0};
+  if (!open_ || poll(&waiting, 1, milliseconds) <= 0) return std::nullopt;
+  std::array<char, kLetterHead> bytes{};
+  if (!read_all(bytes.data(), bytes.size())) return std::nullopt;
+  const LetterHead head = head_of(bytes);
+  Letter letter{head.kind, head.client, std::string(head.length, '\0')};
+  if (!read_all(letter.body.data(), letter.body.size())) return std::nullopt;
+  return letter;
+}
+
+}  // namespace ipos::tools::serve

@@ -1,0 +1,178 @@
+// Messages to commands, commands to replies, topics to those who want them.
+#include "tools/serve/desk.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+namespace ipos::tools::serve {
+namespace {
+
+// A client that has so many bytes of events to come gets no new ones: later ones have the newer state.
+constexpr size_t kMostUnsent = 256 * 1024;
+
+std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+WallClock::duration period_of(double rate) {
+  return std::chrono::duration_cast<WallClock::duration>(std::chrono::duration<double>(1 / rate));
+}
+
+}  // namespace
+
+bool Subscription::is_news(const std::string& about, const Json& value) {
+  std::string text = text_of(value);
+  std::string& known = sent[about];
+  if (known == text) return false;
+  known = std::move(text);
+  return true;
+}
+
+void Desk::take(const Letter& letter) {
+  if (letter.kind == LetterKind::Opened) {
+    Client& client = clients_[letter.client];
+    client.number = letter.client;
+    Json event = hello();
+    event["event"] = "hello";
+    return send(client, event);
+  }
+  const auto found = clients_.find(letter.client);
+  if (found == clients_.end()) return;
+  Client& client = found->second;
+  if (letter.kind == LetterKind::Message) {
+    carry_out(client, letter.body);
+    post_.send(LetterKind::Taken, letter.client, {});
+  } else if (letter.kind == LetterKind::Drained) {
+    size_t bytes = 0;
+    std::from_chars(letter.body.data(), letter.body.data() + letter.body.size(), bytes);
+    client.unsent -= std::min(bytes, client.unsent);
+  } else if (letter.kind == LetterKind::Closed) {
+    on_closed(client);
+    clients_.erase(found);
+  }
+}
+
+void Desk::carry_out(Client& client, std::string_view text) {
+  const Json message = Json::parse(text, nullptr, false);
+  Json id = nullptr;
+  if (!message.is_object()) return fail(client.number, id, "a message is one JSON object");
+  if (message.contains("id") && message["id"].is_number_integer()) id = message["id"];
+  try {
+    const Call call{*this, client, id, Arguments(message)};
+    const std::string name = call.arguments.text("do");
+    if (name == "subscribe") return reply(client.number, id, subscribe(call));
+    if (name == "unsubscribe") {
+      client.subscriptions.erase(call.arguments.text("topic"));
+      return reply(client.number, id, Json::object());
+    }
+    const auto command = commands_.find(name);
+    if (command == commands_.end()) throw Mistake(fmt::format("there is no command '{}' here", name));
+    Json fields = command->second(call);
+    if (!fields.is_null()) reply(client.number, id, std::move(fields));
+  } catch (const Refusal& refusal) {
+    fail(client.number, id, refusal.what(), true);
+  } catch (const std::runtime_error& mistake) {  // Mistake, and the Failures of the other tools
+    fail(client.number, id, mistake.what());
+  }
+}
+
+Json Desk::subscribe(const Call& call) {
+  const std::string topic = call.arguments.text("topic");
+  if (topics_.count(topic) == 0) throw Mistake(fmt::format("there is no topic '{}' here", topic));
+  Subscription subscription;
+  subscription.topic = topic;
+  subscription.rate = call.arguments.number("rate", 0.1, 60, 20);
+  subscription.options = call.arguments.json();
+  call.client.subscriptions[topic] = std::move(subscription);
+  return Json::object();
+}
+
+void Desk::reply(uint16_t client, const Json& id, Json fields, bool more) {
+  fields["re"] = id;
+  fields["ok"] = true;
+  if (more) fields["more"] = true;
+  post_.send(LetterKind::Reply, client, text_of(fields));
+}
+
+void Desk::fail(uint16_t client, const Json& id, const std::string& text, bool refused) {
+  Json answer{{"re", id}, {"error", text.empty() ? "it failed; see the messages of ipos serve" : text}};
+  if (refused) answer["refused"] = true;
+  post_.send(LetterKind::Reply, client, text_of(answer));
+}
+
+void Desk::send(Client& client, const Json& event) {
+  const std::string text = text_of(event);
+  client.unsent += text.size();
+  post_.send(LetterKind::Event, client.number, text);
+}
+
+// A view that was asked for comes whatever waits; it is no reply for the server either, but counted.
+void Desk::send_binary(Client& client, const std::string& bytes, bool is_reply) {
+  if (!is_reply && client.unsent > kMostUnsent) return;
+  client.unsent += bytes.size();
+  post_.send(LetterKind::Binary, client.number, bytes);
+}
+
+void Desk::send_all(const Json& event) {
+  for (auto& [number, client] : clients_)
+    if (client.unsent <= kMostUnsent) send(client, event);
+}
+
+void Desk::publish(WallClock::time_point now) {
+  for (auto& [number, client] : clients_)
+    for (auto& [topic, subscription] : client.subscriptions) {
+      if (subscription.due > now || client.unsent > kMostUnsent) continue;
+      topics_.at(topic)(client, subscription);
+      subscription.fresh = false;
+      subscription.due = now + period_of(subscription.rate);
+    }
+}
+
+WallClock::time_point Desk::next_due() const {
+  auto due = WallClock::time_point::max();
+  for (const auto& [number, client] : clients_)
+    for (const auto& [topic, subscription] : client.subscriptions) due = std::min(due, subscription.due);
+  return due;
+}
+
+void Desk::refresh() {
+  for (auto& [number, client] : clients_)
+    for (auto& [topic, subscription] : client.subscriptions) {
+      subscription.fresh = true;
+      subscription.sent.clear();
+      subscription.mark = 0;
+      subscription.due = {};
+    }
+}
+
+Json Desk::save() const {
+  Json clients = Json::array();
+  for (const auto& [number, client] : clients_) {
+    Json subscriptions = Json::array();
+    for (const auto& [topic, subscription] : client.subscriptions)
+      subscriptions.push_back(subscription.options);
+    clients.push_back({{"number", number},
+                       {"watched", client.watched},
+                       {"armed", client.armed},
+                       {"unsent", client.unsent},
+                       {"subscriptions", std::move(subscriptions)}});
+  }
+  return clients;
+}
+
+void Desk::load(const Json& state) {
+  clients_.clear();
+  for (const Json& saved : state) {
+    Client& client = clients_[saved["number"].get<uint16_t>()];
+    client.number = saved["number"];
+    client.watched = saved["watched"].get<std::vector<std::string>>();
+    client.armed = saved["armed"];
+    client.unsent = saved["unsent"];
+    for (const Json& options : saved["subscriptions"]) {
+      static const Json kNone = nullptr;
+      subscribe({*this, client, kNone, Arguments(options)});
+    }
+  }
+}
+
+}  // namespace ipos::tools::serve

@@ -1,0 +1,349 @@
+// The loop of the plant, and the commands of the tab Time.
+#include "tools/serve/plant_host.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "tools/serve/tabs.hpp"
+
+namespace ipos::tools::serve {
+namespace {
+
+using runtime::kMillisecond;
+using runtime::Time;
+using namespace std::chrono_literals;
+
+constexpr auto kTellTime = 50ms;  // while it runs
+constexpr auto kMeasured = 1s;    // of `rate`
+constexpr auto kBetweenSnapshots = 250ms;
+constexpr auto kLookAtMail = 2ms;  // while it runs faster than the clock
+constexpr auto kForgiven = 200ms;  // what is later than that is not made up for
+constexpr int kLettersAtOnce = 8;  // a client that floods does not hold the plant up
+constexpr Time kTelegramLimit = 10 * runtime::kSecond;
+constexpr int64_t kFarthest = 1'000'000'000'000'000;  // us
+
+const char* reason_text(debug::Reason reason) {
+  switch (reason) {
+    case debug::Reason::Breakpoint: return "breakpoint";
+    case debug::Reason::Fault: return "fault";
+    case debug::Reason::TaskEnded: return "ended";
+    default: return "step";
+  }
+}
+
+}  // namespace
+
+PlantHost::PlantHost(debug::MakePlant make, std::string title, std::string version, Post& post,
+                     bool snapshots)
+    : post_(post), desk_(post), title_(std::move(title)), version_(std::move(version)) {
+  tabs_ = make_tabs(*this);
+  debugger_.emplace(std::move(make), *this, snapshots, runtime::kNever);
+  desk_.hello = [this] {
+    return Json{
+        {"protocol", 1}, {"version", version_}, {"mode", "plant"}, {"title", title_}, {"writable", true}};
+  };
+  add_time_commands();
+}
+
+PlantHost::~PlantHost() = default;
+
+void PlantHost::run() {
+  while (post_.open()) turn(100);
+}
+
+bool PlantHost::turn(int milliseconds) {
+  if (next_.kind != MotionKind::None || running_) {
+    carry_out();
+    return true;
+  }
+  publish();
+  const auto left =
+      std::chrono::duration_cast<std::chrono::milliseconds>(desk_.next_due() - WallClock::now());
+  const auto letter = post_.wait(static_cast<int>(std::clamp<int64_t>(left.count() + 1, 0, milliseconds)));
+  if (letter) {
+    if (letter->kind == LetterKind::Opened) {
+      desk_.take(*letter);
+      desk_.send(desk_.clients().at(letter->client), time_event());
+    } else {
+      desk_.take(*letter);
+    }
+  }
+  return letter.has_value();
+}
+
+// --- how time passes ---
+
+void PlantHost::add_time_commands() {
+  desk_.add_command("run", [this](const Desk::Call& call) {
+    set_speed(call.arguments.number("speed", 0, 1000, speed_));
+    stopped_ = nullptr;
+    running_ = true;
+    tell_time();
+    return Json::object();
+  });
+  desk_.add_command("pause", [this](const Desk::Call&) {
+    running_ = false;
+    halted_ = true;
+    tell_time();
+    return Json::object();
+  });
+  desk_.add_command("speed", [this](const Desk::Call& call) {
+    set_speed(call.arguments.number("speed", 0, 1000));
+    tell_time();
+    return Json::object();
+  });
+  desk_.add_command("step", [this](const Desk::Call& call) {
+    Motion motion;
+    motion.kind = MotionKind::Order;
+    motion.order.motion = debug::Motion::ToTime;
+    const Time border = plant_->now() / kMillisecond * kMillisecond;
+    if (call.arguments.flag("telegram", false)) {
+      motion.order.time = border + kTelegramLimit;
+      motion.telegram = true;
+    } else {
+      motion.order.time = border + call.arguments.whole("ms", 1, 3'600'000, 1) * kMillisecond;
+    }
+    return begin(call, std::move(motion));
+  });
+  desk_.add_command("back", [this](const Desk::Call& call) {
+    Motion motion;
+    motion.kind = MotionKind::Back;
+    const int64_t to = call.arguments.has("us")
+                           ? call.arguments.whole("us", 0, kFarthest)
+                           : us() - call.arguments.whole("ms", 1, kFarthest / 1000) * 1000;
+    if (to > us()) throw Mistake("that time is still to come");
+    motion.time = std::max<int64_t>(to, 0) * runtime::kMicrosecond;
+    return begin(call, std::move(motion));
+  });
+  desk_.add_command("restart", [this](const Desk::Call& call) {
+    Motion motion;
+    motion.kind = MotionKind::Restart;
+    return begin(call, std::move(motion));
+  });
+}
+
+// One motion at a time; who orders another one meanwhile waits for the next one's end.
+Json PlantHost::begin(const Desk::Call& call, Motion motion) {
+  if (next_.kind != MotionKind::None || now_.kind > MotionKind::Run)
+    throw Mistake("the plant is still on its way; wait for the reply to the step before");
+  motion.client = call.client.number;
+  motion.id = call.id;
+  next_ = std::move(motion);
+  running_ = false;
+  stopped_ = nullptr;
+  return nullptr;
+}
+
+void PlantHost::order(const Desk::Call& call, const debug::Order& order) {
+  Motion motion;
+  motion.kind = MotionKind::Order;
+  motion.order = order;
+  begin(call, std::move(motion));
+}
+
+void PlantHost::stop(const std::string& reason, const std::string& text) {
+  running_ = false;
+  halted_ = true;
+  stopped_ = {{"reason", reason}, {"text", text}};
+}
+
+// Behind the debugger's motions this may be another process: only members are used.
+void PlantHost::carry_out() {
+  now_ = std::exchange(next_, {});
+  halted_ = telegram_seen_ = false;
+  switch (now_.kind) {
+    case MotionKind::None:
+      now_.kind = MotionKind::Run;
+      set_speed(speed_);
+      now_.order = {};
+      return finish(debugger_->run(now_.order));
+    case MotionKind::Back: return finish(debugger_->go_back(now_.time));
+    case MotionKind::Restart:
+      for (const auto& tab : tabs_) tab->restarted();
+      debugger_->restart();
+      return finish({debug::Reason::Step, {}, {}, {}});
+    default: return finish(debugger_->run(now_.order));
+  }
+}
+
+void PlantHost::finish(const debug::Stop& stop) {
+  const Motion done = std::exchange(now_, {});
+  const bool stands_there = stop.reason == debug::Reason::Breakpoint ||
+                            (done.kind == MotionKind::Order && stop.reason != debug::Reason::Pause &&
+                             done.order.motion != debug::Motion::ToTime);
+  // A program that ends or has a fault is no reason for the others to stand.
+  if (done.kind == MotionKind::Order && done.order.motion == debug::Motion::ToTime && !stands_there &&
+      !halted_ && stop.reason != debug::Reason::Pause && stop.reason != debug::Reason::Step) {
+    next_ = done;
+    return;
+  }
+  if (stands_there) {
+    running_ = false;
+    stopped_ = {{"reason", reason_text(stop.reason)}, {"text", stop.text}};
+    if (stop.task.task != 0) {
+      const auto frames = debugger_->frames(stop.task);
+      stopped_["station"] = plant_->stations()[stop.task.station]->config().name;
+      stopped_["task"] = stop.task.task;
+      if (!frames.empty()) {
+        stopped_["file"] = frames.front().place.file;
+        stopped_["line"] = frames.front().place.line;
+      }
+    }
+  }
+  if (done.kind == MotionKind::Back || done.kind == MotionKind::Restart ||
+      (done.kind == MotionKind::Order && done.order.backward))
+    new_generation();
+  if (done.kind != MotionKind::Run) desk_.reply(done.client, done.id, {{"us", us()}});
+  if (!running_ || done.kind != MotionKind::Run) tell_time();
+}
+
+void PlantHost::new_generation() {
+  ++generation_;
+  desk_.refresh();
+}
+
+void PlantHost::set_speed(double speed) {
+  speed_ = speed;
+  paced_from_ = measured_from_ = WallClock::now();
+  paced_at_ = measured_at_ = plant_->now();
+}
+
+Json PlantHost::time_event() const {
+  return {{"event", "time"},
+          {"us", us()},
+          {"running", running_},
+          {"speed", speed_},
+          {"rate", running_ ? rate_ : 0.0},
+          {"generation", generation_},
+          {"over", plant_->programs_over()},
+          {"stopped", stopped_}};
+}
+
+void PlantHost::tell_time() {
+  desk_.send_all(time_event());
+  time_due_ = WallClock::now() + kTellTime;
+}
+
+// --- between two milliseconds ---
+
+bool PlantHost::keep_going() {
+  const auto now = WallClock::now();
+  if (now - measured_from_ >= kMeasured) {
+    rate_ = static_cast<double>(plant_->now() - measured_at_) /
+            static_cast<double>(std::chrono::nanoseconds(now - measured_from_).count());
+    measured_from_ = now;
+    measured_at_ = plant_->now();
+  }
+  if (now - last_mail_ >= kLookAtMail) look_at_mail(0);
+  publish();
+  keep_pace();
+  if (now_.telegram && telegram_seen_) halted_ = true;
+  if (!post_.open() || halted_ || next_.kind != MotionKind::None) return false;
+  return now_.kind != MotionKind::Run || running_;
+}
+
+void PlantHost::look_at_mail(int milliseconds) {
+  last_mail_ = WallClock::now();
+  for (int n = 0; n < kLettersAtOnce; ++n) {
+    const auto letter = post_.wait(n == 0 ? milliseconds : 0);
+    if (!letter) return;
+    desk_.take(*letter);
+    if (letter->kind == LetterKind::Opened) desk_.send(desk_.clients().at(letter->client), time_event());
+  }
+}
+
+// Waits until the clock has come as far as the plant, and takes commands meanwhile.
+void PlantHost::keep_pace() {
+  while (now_.kind == MotionKind::Run && running_ && speed_ != 0 && post_.open() &&
+         next_.kind == MotionKind::None && !halted_) {
+    const auto ahead = std::chrono::nanoseconds(
+        static_cast<int64_t>(static_cast<double>(plant_->now() - paced_at_) / speed_));
+    const auto now = WallClock::now();
+    const auto due = paced_from_ + ahead;
+    if (due <= now) {
+      if (now - due > kForgiven) paced_from_ += now - due;
+      return;
+    }
+    const auto until = std::min(due, desk_.next_due());
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - now + 999us).count();
+    look_at_mail(static_cast<int>(std::clamp<int64_t>(left, 0, 100)));
+    publish();
+  }
+}
+
+void PlantHost::publish() {
+  const auto now = WallClock::now();
+  if (running_ && now >= time_due_) tell_time();
+  desk_.publish(now);
+}
+
+// --- the debugger's front end ---
+
+Json PlantHost::save() {
+  Json tabs = Json::array();
+  for (const auto& tab : tabs_) tabs.push_back(tab->save());
+  return {{"desk", desk_.save()}, {"tabs", std::move(tabs)},   {"running", running_},
+          {"speed", speed_},      {"generation", generation_}, {"now", now_},
+          {"next", next_}};
+}
+
+void PlantHost::load(const Json& state) {
+  running_ = state["running"];
+  speed_ = state["speed"];
+  generation_ = state["generation"];
+  now_ = state["now"];
+  next_ = state["next"];
+  stopped_ = nullptr;
+  desk_.load(state["desk"]);
+  for (size_t n = 0; n < tabs_.size(); ++n) tabs_[n]->load(state["tabs"][n]);
+  last_snapshot_ = WallClock::now();
+}
+
+void PlantHost::output(const std::string& text) { desk_.send_all({{"event", "output"}, {"text", text}}); }
+
+void PlantHost::built(runtime::Plant& plant) {
+  plant_ = &plant;
+  source_ = plant.next_source();
+  plant.queue().schedule(kMillisecond, source_, *this, 0);
+  for (const auto& tab : tabs_) tab->built(plant);
+}
+
+void PlantHost::on_event(Time now, uint32_t, uint64_t) {
+  plant_->queue().schedule(now + kMillisecond, source_, *this, 0);
+}
+
+void PlantHost::passed(Time now) {
+  for (const auto& tab : tabs_) tab->passed(now);
+}
+
+void PlantHost::executes(uint32_t station, uint32_t address) {
+  for (const auto& tab : tabs_) tab->executes(station, address);
+}
+
+void PlantHost::act(const std::string& name, Json details) {
+  details["act"] = name;
+  debugger_->perform(details);
+}
+
+void PlantHost::perform(const Json& action) { actions_.at(action["act"].get<std::string>())(action); }
+
+bool PlantHost::wants_snapshot() {
+  const auto now = WallClock::now();
+  if (now - last_snapshot_ < kBetweenSnapshots) return false;
+  last_snapshot_ = now;
+  return true;
+}
+
+uint32_t PlantHost::station_number(const std::string& name) const {
+  std::string known;
+  for (uint32_t n = 0; n < plant_->stations().size(); ++n) {
+    const std::string& station = plant_->stations()[n]->config().name;
+    if (station == name) return n;
+    known += (known.empty() ? "" : ", ") + station;
+  }
+  throw Mistake(fmt::format("there is no station '{}', only {}", name, known));
+}
+
+}  // namespace ipos::tools::serve

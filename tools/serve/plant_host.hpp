@@ -1,0 +1,124 @@
+// The process of `ipos serve` that has the plant: runs it at the pace that is asked for, takes commands between two
+// milliseconds and sends what is news. It is a front end of the debugger, so going back in time, breakpoints and steps
+// are the debugger's. What is kept here is of the moment; a copy that goes on from a snapshot is given the rest by
+// save() and load().
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/debug/debugger.hpp"
+#include "tools/serve/desk.hpp"
+
+namespace ipos::tools::serve {
+
+// One tab of the page: its commands, its topic and what it gathers while the plant runs.
+class Tab {
+ public:
+  virtual ~Tab() = default;
+  virtual void built(runtime::Plant& /*plant*/) {}
+  virtual void restarted() {}  // by the user; it will be built next
+  virtual void passed(runtime::Time /*now*/) {}
+  virtual void executes(uint32_t /*station*/, uint32_t /*address*/) {}
+  virtual Json save() const { return nullptr; }
+  virtual void load(const Json& /*state*/) {}
+};
+
+class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
+ public:
+  PlantHost(debug::MakePlant make, std::string title, std::string version, Post& post, bool snapshots);
+  ~PlantHost() override;
+
+  // Until nobody listens any more.
+  void run();
+  // What is waiting, and one motion of the plant if one is ordered; for tests. False: there was nothing to do.
+  bool turn(int milliseconds);
+
+  // --- for the tabs ---
+  Desk& desk() { return desk_; }
+  runtime::Plant& plant() { return *plant_; }
+  debug::Debugger& debugger() { return *debugger_; }
+  uint32_t station_number(const std::string& name) const;  // a Mistake that names those there are
+  runtime::Station& station(const std::string& name) { return *plant_->stations()[station_number(name)]; }
+  int64_t us() const { return plant_->now() / runtime::kMicrosecond; }
+  // What is done to the plant goes this way: it is done again when its moment comes again.
+  using Action = std::function<void(const Json&)>;
+  void add_action(const std::string& name, Action action) { actions_[name] = std::move(action); }
+  void act(const std::string& name, Json details);
+  // The plant stands before the next millisecond.
+  void stop(const std::string& reason, const std::string& text);
+  void telegram_seen() { telegram_seen_ = true; }
+  // A step of the program; the reply comes when it stands.
+  void order(const Desk::Call& call, const debug::Order& order);
+
+ private:
+  enum class MotionKind : uint8_t { None, Run, Order, Back, Restart };
+  struct Motion {
+    MotionKind kind = MotionKind::None;
+    debug::Order order;
+    runtime::Time time = 0;
+    bool telegram = false;  // it ends with one
+    uint16_t client = 0;
+    Json id = nullptr;
+    NLOHMANN_DEFINE_TYPE_INTRUSIVE(Motion, kind, order, time, telegram, client, id)
+  };
+
+  void add_time_commands();
+  Json begin(const Desk::Call& call, Motion motion);
+  void carry_out();
+  void finish(const debug::Stop& stop);
+  void new_generation();
+  void set_speed(double speed);
+  void tell_time();
+  void look_at_mail(int milliseconds);
+  void keep_pace();
+  void publish();
+  Json time_event() const;
+
+  // of debug::FrontEnd
+  Json save() override;
+  void load(const Json& state) override;
+  bool keep_going() override;
+  void output(const std::string& text) override;
+  void built(runtime::Plant& plant) override;
+  void passed(runtime::Time now) override;
+  void executes(uint32_t station, uint32_t address) override;
+  void perform(const Json& action) override;
+  bool wants_snapshot() override;
+  void on_event(runtime::Time now, uint32_t kind, uint64_t argument) override;
+
+  Post& post_;
+  Desk desk_;
+  std::string title_;
+  std::string version_;
+  std::map<std::string, Action> actions_;
+  std::vector<std::unique_ptr<Tab>> tabs_;
+  runtime::Plant* plant_ = nullptr;
+  uint32_t source_ = 0;  // of the event that comes every millisecond, even with all units off
+  std::optional<debug::Debugger> debugger_;
+
+  bool running_ = false;
+  double speed_ = 1;            // 0: as fast as it goes
+  bool halted_ = false;         // somebody wants it to stand before the next millisecond
+  bool telegram_seen_ = false;  // since the motion began
+  Json stopped_ = nullptr;
+  uint32_t generation_ = 1;
+  Motion now_;   // under way
+  Motion next_;  // ordered
+  // Where the pace counts from.
+  WallClock::time_point paced_from_{};
+  runtime::Time paced_at_ = 0;
+  // What was reached.
+  WallClock::time_point measured_from_{};
+  runtime::Time measured_at_ = 0;
+  double rate_ = 0;
+  WallClock::time_point time_due_{};
+  WallClock::time_point last_snapshot_{};
+  WallClock::time_point last_mail_{};
+};
+
+}  // namespace ipos::tools::serve

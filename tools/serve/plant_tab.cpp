@@ -1,0 +1,400 @@
+// The tab Plant: what the plant is, how it stands, and what a hand can do to it: inputs, analog terminals, fault reset,
+// power and faults of the lines.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runtime/drive/indices.hpp"
+#include "runtime/plant/signal.hpp"
+#include "stdlib/faults.hpp"
+#include "stdlib/parameters.hpp"
+#include "tools/serve/tabs.hpp"
+
+namespace ipos::tools::serve {
+namespace {
+
+using runtime::FaultConfig;
+using runtime::kNever;
+using runtime::Station;
+
+constexpr int32_t kTurn = 4096;  // increments of the shaft (IPOSplus p. 22)
+
+// A terminal, its bit in the levels and the parameter that gives it its function.
+struct Terminal {
+  const char* name;
+  int bit;
+  const char* parameter;
+};
+constexpr Terminal kInputs[] = {
+    {"DI00", 0, ""},     {"DI01", 1, "600"},  {"DI02", 2, "601"},  {"DI03", 3, "602"},  {"DI04", 4, "603"},
+    {"DI05", 5, "604"},  {"DI10", 8, "610"},  {"DI11", 9, "611"},  {"DI12", 10, "612"}, {"DI13", 11, "613"},
+    {"DI14", 12, "614"}, {"DI15", 13, "615"}, {"DI16", 14, "616"}, {"DI17", 15, "617"}};
+constexpr Terminal kOutputs[] = {{"DB00", 0, ""},     {"DO01", 1, "620"},  {"DO02", 2, "621"},
+                                 {"DO10", 8, "630"},  {"DO11", 9, "631"},  {"DO12", 10, "632"},
+                                 {"DO13", 11, "633"}, {"DO14", 12, "634"}, {"DO15", 13, "635"},
+                                 {"DO16", 14, "636"}, {"DO17", 15, "637"}};
+
+// Terminals of the unit; those of the frequency and the potentiometer are MOVITRAC 07's, AI2 is MOVIDRIVE's.
+bool has_analog(const Station& station, std::string_view terminal) {
+  const bool m07 = station.config().unit->generation == stdlib::Generation::M07;
+  return terminal == "AI1" || (terminal == "AI2") != m07;
+}
+
+// Of units without the parameter there is no such terminal, but for the two that have a fixed function.
+Json terminals(const Station& station, std::span<const Terminal> all, const char* fixed) {
+  const stdlib::ParameterTable& table = stdlib::parameter_table(*station.config().unit);
+  Json list = Json::array();
+  for (const Terminal& terminal : all) {
+    const bool is_fixed = *terminal.parameter == 0;
+    const stdlib::Parameter* parameter =
+        is_fixed ? nullptr : table.find(std::string_view(terminal.parameter));
+    if (!is_fixed && parameter == nullptr) continue;
+    const std::string function =
+        is_fixed ? fixed
+                 : stdlib::parameter_text(*parameter, station.drive().parameters().value(parameter->index));
+    list.push_back({{"name", terminal.name}, {"bit", terminal.bit}, {"function", function}});
+  }
+  return list;
+}
+
+std::vector<std::string> lines_of(const runtime::StationConfig& config) {
+  std::vector<std::string> lines;
+  for (const std::string& bus : {config.sbus, config.sbus2, config.serial.x13.bus, config.serial.xt.bus})
+    if (!bus.empty()) lines.push_back(bus);
+  return lines;
+}
+
+Json process_words(const runtime::DriveWords& words) {
+  Json list = Json::array();
+  for (const uint16_t word : words) list.push_back(fmt::format("{:04X}", word));
+  return list;
+}
+
+// An input for a voltage and a current shows the one that is there.
+Json analog_texts(const Station& station) {
+  Json texts = Json::object();
+  for (const runtime::AnalogKind& kind : runtime::analog_kinds()) {
+    const std::string name(kind.name);
+    const int32_t value = station.inputs().line(runtime::line_of(kind)).value();
+    if (has_analog(station, name) && (value != 0 || !texts.contains(name)))
+      texts[name] = fmt::format("{:.3f} {}", value / kind.factor, kind.unit);
+  }
+  return texts;
+}
+
+class PlantTab final : public Tab {
+ public:
+  explicit PlantTab(PlantHost& host) : host_(host) {
+    Desk& desk = host.desk();
+    desk.add_command("plant", [this](const Desk::Call&) { return Json{{"plant", describe()}}; });
+    desk.add_topic("plant",
+                   [this](Client& client, Subscription& subscription) { publish(client, subscription); });
+    add("input", {"station", "name", "action", "on", "ms"},
+        [this](const Json& action) { input(Arguments(action)); });
+    add("analog", {"station", "name", "action", "value"},
+        [this](const Json& action) { analog(Arguments(action)); });
+    add("reset", {"station"}, [this](const Json& action) {
+      host_.station(Arguments(action).text("station")).drive().state().reset_fault();
+    });
+    add("power", {"station", "on"}, [this](const Json& action) { power(Arguments(action)); });
+    add("fault", {"bus", "kind", "station", "on", "rate", "identifier"},
+        [this](const Json& action) { fault(Arguments(action)); });
+  }
+
+  void built(runtime::Plant& plant) override { planted_ = plant.file().faults; }
+
+ private:
+  // A command that is an action on the plant, with the members that count.
+  void add(const char* name, std::vector<const char*> members, PlantHost::Action action) {
+    host_.add_action(name, std::move(action));
+    host_.desk().add_command(name, [this, name, members = std::move(members)](const Desk::Call& call) {
+      Json details = Json::object();
+      for (const char* member : members)
+        if (call.arguments.has(member)) details[member] = call.arguments.json()[member];
+      host_.act(name, std::move(details));
+      return Json::object();
+    });
+  }
+
+  // --- what a hand does ---
+
+  // The terminal's line, and what holds or releases it from the next millisecond on.
+  void stimulate(Station& station, runtime::Signal signal, runtime::Stimulus::Action action, int32_t value,
+                 int64_t ms) {
+    std::string why;
+    const auto port = runtime::SignalPort::find(host_.plant().stations(), signal, why);
+    if (!port) throw Mistake(why);
+    runtime::Stimulus stimulus;
+    stimulus.signal = signal;
+    stimulus.action = action;
+    stimulus.value = value;
+    stimulus.at = host_.plant().now();
+    stimulus.length = ms * runtime::kMillisecond;
+    host_.plant().surroundings().add(*port, stimulus);
+    // Seen at once, also while the plant stands.
+    if (action == runtime::Stimulus::Action::Release)
+      station.inputs().line(signal.line).forced.reset();
+    else
+      station.inputs().line(signal.line).forced = value;
+  }
+
+  void input(const Arguments& a) {
+    Station& station = host_.station(a.text("station"));
+    const std::string name = a.text("name");
+    const int bit = runtime::parse_input(name);
+    if (bit < 0) throw Mistake(fmt::format("'{}' is no input; they are DI00 to DI07 and DI10 to DI17", name));
+    runtime::Signal signal{station.config().name, runtime::SignalKind::Input, name,
+                           static_cast<uint8_t>(bit)};
+    const std::string action = a.text("action", "set");
+    runtime::InputLine& line = station.inputs().line(signal.line);
+    if (action == "release") return stimulate(station, signal, runtime::Stimulus::Action::Release, 0, 0);
+    const int32_t level = a.flag("on") ? 1 : 0;
+    if (action == "force") return stimulate(station, signal, runtime::Stimulus::Action::Force, level, 0);
+    if (action == "pulse")
+      return stimulate(station, signal, runtime::Stimulus::Action::Pulse, level,
+                       a.whole("ms", 1, 3'600'000, 100));
+    if (action != "set") throw Mistake("'action' must be set, pulse, force or release");
+    if (line.forced)
+      throw Mistake(fmt::format("{} of {} is forced; release it first", name, station.config().name));
+    if (line.driven)
+      throw Mistake(fmt::format("{} of {} is held by a wire or a switch of the plant; force it", name,
+                                station.config().name));
+    line.set = level;
+  }
+
+  void analog(const Arguments& a) {
+    Station& station = host_.station(a.text("station"));
+    const std::string name = a.text("name");
+    const std::string action = a.text("action", "set");
+    const int first = runtime::parse_analog_input(name);
+    if (first < 0)
+      throw Mistake(
+          fmt::format("'{}' is no analog terminal; they are AI1, AI2, frequency, potentiometer", name));
+    runtime::Signal signal{station.config().name, runtime::SignalKind::Input, name,
+                           static_cast<uint8_t>(first)};
+    if (action == "release") return stimulate(station, signal, runtime::Stimulus::Action::Release, 0, 0);
+    const std::string value = a.text("value");
+    const auto setting = runtime::parse_analog(name, value);
+    if (!setting)
+      throw Mistake(
+          fmt::format("'{}' is no value for {}; write for example 5 V, 12 mA, 5 kHz, 50 %", value, name));
+    signal.line = setting->line;
+    if (action == "force")
+      return stimulate(station, signal, runtime::Stimulus::Action::Force, setting->value, 0);
+    if (action != "set") throw Mistake("'action' must be set, force or release");
+    for (size_t line = runtime::kBinaryLines; line < runtime::kInputLines; ++line)
+      if (runtime::same_terminal(line, setting->line)) station.inputs().line(line).set = 0;
+    station.inputs().line(setting->line).set = setting->value;
+  }
+
+  void power(const Arguments& a) {
+    const uint32_t number = host_.station_number(a.text("station"));
+    const bool on = a.flag("on");
+    runtime::Plant& plant = host_.plant();
+    if (plant.stations()[number]->powered() == on) throw Mistake(on ? "it is on" : "it is off");
+    plant.surroundings().act(plant.now(), [&plant, number, on] {
+      Station& station = *plant.stations()[number];
+      if (station.powered() == on) return;
+      if (on)
+        station.power_on();
+      else
+        station.power_off();
+    });
+  }
+
+  void fault(const Arguments& a) {
+    FaultConfig config;
+    config.bus = a.text("bus");
+    const auto& lines = host_.plant().lines();
+    if (std::none_of(lines.begin(), lines.end(),
+                     [&](const auto& line) { return line->name() == config.bus; }))
+      throw Mistake(fmt::format("there is no CAN line '{}'", config.bus));
+    const std::string kind = a.text("kind");
+    const auto* const type = std::find_if(std::begin(runtime::kFaultTypes), std::end(runtime::kFaultTypes),
+                                          [&](const runtime::FaultType& row) { return row.word == kind; });
+    if (type == std::end(runtime::kFaultTypes)) throw Mistake(fmt::format("there is no fault '{}'", kind));
+    config.fault.kind = type->kind;
+    config.station = a.text("station", "");
+    const bool of_a_station = type->kind == runtime::FaultKind::Cut || type->kind == runtime::FaultKind::Swap;
+    if (of_a_station && config.station.empty()) throw Mistake(fmt::format("'{}' needs a station", kind));
+    config.fault.per_mille = static_cast<uint32_t>(a.number("rate", 0, 1, 1) * 1000);
+    if (a.has("identifier"))
+      config.fault.id = static_cast<uint32_t>(a.whole("identifier", 0, runtime::kExtendedIdLimit - 1));
+    config.fault.from = host_.plant().now();
+    if (type->kind == runtime::FaultKind::Delay) config.fault.lag = runtime::kMillisecond;
+    const auto same = [&](const FaultConfig& other) {
+      return other.bus == config.bus && other.station == config.station &&
+             other.fault.kind == config.fault.kind && other.fault.id == config.fault.id && is_active(other);
+    };
+    const auto known = std::find_if(planted_.begin(), planted_.end(), same);
+    if (a.flag("on")) {
+      if (known != planted_.end()) throw Mistake("this fault is there already");
+      if (!host_.plant().plant_fault(config))
+        throw Mistake(fmt::format("there is no '{}' on {}", config.station, config.bus));
+      planted_.push_back(config);
+      return;
+    }
+    if (known == planted_.end()) throw Mistake("there is no such fault");
+    if (!host_.plant().repair_fault(config)) throw Mistake("its end is set in the plant file");
+    planted_.erase(known);
+  }
+
+  bool is_active(const FaultConfig& config) const {
+    const runtime::Time now = host_.plant().now();
+    return config.fault.from <= now && now < config.fault.until;
+  }
+
+  // --- what it is ---
+
+  Json describe() const {
+    const runtime::Plant& plant = host_.plant();
+    Json stations = Json::array();
+    for (const auto& station : plant.stations()) stations.push_back(describe(*station));
+    Json buses = Json::array();
+    for (const auto& line : plant.lines()) {
+      Json faults = Json::array();
+      for (const runtime::FaultType& type : runtime::kFaultTypes) faults.push_back(type.word);
+      Json on_it = Json::array();
+      for (runtime::NodeId node = 0; node < line->node_count(); ++node)
+        if (line->node_name(node) != kPageNode) on_it.push_back(line->node_name(node));
+      buses.push_back({{"name", line->name()},
+                       {"kind", "can"},
+                       {"baud", line->baud()},
+                       {"stations", std::move(on_it)},
+                       {"faults", std::move(faults)}});
+    }
+    for (const auto& line : plant.serial_lines()) {
+      Json on_it = Json::array();
+      for (runtime::NodeId node = 0; node < line->line.node_count(); ++node)
+        if (line->line.node_name(node) != kPageNode) on_it.push_back(line->line.node_name(node));
+      buses.push_back({{"name", line->line.name()},
+                       {"kind", "rs485"},
+                       {"baud", line->line.baud()},
+                       {"stations", std::move(on_it)},
+                       {"faults", Json::array()}});
+    }
+    Json controls = Json::array();
+    for (const runtime::PlantControl& control : plant.controls())
+      controls.push_back({{"name", control.config->name}, {"bus", control.config->sbus}});
+    Json wires = Json::array();
+    const auto name = [](const runtime::Signal& signal) { return signal.station + "." + signal.name; };
+    for (const runtime::Wire& wire : plant.file().wires)
+      wires.push_back({{"from", name(wire.from)}, {"to", name(wire.to)}, {"invert", wire.invert}});
+    Json switches = Json::array();
+    for (const runtime::PositionSwitch& row : plant.file().switches) {
+      Json json{{"input", name(row.input)}, {"active_high", row.active_high}};
+      json["from"] = row.from == INT32_MIN ? Json(nullptr) : Json(row.from);
+      json["to"] = row.to == INT32_MAX ? Json(nullptr) : Json(row.to);
+      switches.push_back(std::move(json));
+    }
+    return {{"stations", std::move(stations)},
+            {"buses", std::move(buses)},
+            {"controls", std::move(controls)},
+            {"wires", std::move(wires)},
+            {"switches", std::move(switches)}};
+  }
+
+  static Json describe(const Station& station) {
+    const runtime::StationConfig& config = station.config();
+    Json analog = Json::array();
+    for (const runtime::AnalogKind& kind : runtime::analog_kinds()) {
+      if (!has_analog(station, kind.name)) continue;
+      if (analog.empty() || analog.back()["name"] != kind.name)
+        analog.push_back(
+            {{"name", kind.name}, {"units", Json::array()}, {"least", kind.minimum}, {"most", kind.maximum}});
+      analog.back()["units"].push_back(kind.unit);
+    }
+    return {{"name", config.name},
+            {"unit", config.unit->name},
+            {"title", config.unit->title},
+            {"program", config.program},
+            {"drive", true},
+            {"inputs", terminals(station, kInputs, "/CONTROL.INHIBIT")},
+            {"outputs", terminals(station, kOutputs, "/BRAKE")},
+            {"analog", std::move(analog)},
+            {"lines", lines_of(config)}};
+  }
+
+  // --- how it stands ---
+
+  static Json state(const Station& station) {
+    Json json{{"powered", station.powered()}};
+    uint32_t in = 0, forced = 0;
+    for (size_t n = 0; n < runtime::kBinaryLines; ++n) {
+      const runtime::InputLine& line = station.inputs().line(n);
+      in |= (line.value() != 0 ? 1U : 0U) << n;
+      forced |= (line.forced ? 1U : 0U) << n;
+    }
+    json["in"] = in;
+    json["forced"] = forced;
+    json["out"] = station.outputs();
+    json["analog"] = analog_texts(station);
+    const runtime::Drive& drive = station.drive().state();
+    const runtime::AxisState& axis = drive.axis();
+    const bool powered = station.powered();
+    const runtime::Block reason = drive.verdict().reason;
+    json["state"] = powered ? std::string(runtime::condition_text(drive.condition())) : "off";
+    json["enabled"] = powered && reason == runtime::Block::None;
+    json["why"] = !powered                         ? "the power is off"
+                  : reason == runtime::Block::None ? ""
+                                                   : std::string(runtime::block_text(reason));
+    json["display"] = powered ? std::string(1, drive.display()) : "";
+    json["status"] = station.status_word_1();
+    json["fault"] = station.fault();
+    const stdlib::FaultRow* row = station.fault() == 0 ? nullptr : stdlib::find_fault(station.fault());
+    json["fault_text"] = row == nullptr ? "" : std::string(row->name);
+    json["error"] = station.error();
+    json["speed"] = axis.speed / 1000.0;
+    json["setpoint"] = axis.setpoint / 1000.0;
+    json["position"] = axis.position;
+    json["shaft"] = static_cast<double>(static_cast<uint32_t>(station.shaft_position()) % kTurn) / kTurn;
+    json["current"] = axis.output_current / 1000.0;
+    json["torque"] = axis.torque / 1000.0;
+    json["dc_link"] = axis.dc_link / 1000.0;
+    json["pd_out"] = process_words(drive.po());
+    json["pd_in"] = process_words(drive.pi());
+    return json;
+  }
+
+  Json line_state(const std::string& name, const runtime::LineLoad& load) const {
+    Json faults = Json::array();
+    for (const FaultConfig& config : planted_) {
+      if (config.bus != name || !is_active(config)) continue;
+      Json fault{{"kind", runtime::fault_type(config.fault.kind).word}, {"station", config.station}};
+      if (config.fault.id) fault["id"] = *config.fault.id;
+      faults.push_back(std::move(fault));
+    }
+    return {{"load", load.window_percent}, {"frames", load.frames}, {"faults", std::move(faults)}};
+  }
+
+  void publish(Client& client, Subscription& subscription) {
+    const runtime::Plant& plant = host_.plant();
+    Json stations = Json::object();
+    for (const auto& station : plant.stations()) {
+      Json now = state(*station);
+      if (subscription.is_news("s" + station->config().name, now))
+        stations[station->config().name] = std::move(now);
+    }
+    Json buses = Json::object();
+    const auto add = [&](const std::string& name, const runtime::LineLoad& load) {
+      Json now = line_state(name, load);
+      if (subscription.is_news("b" + name, now)) buses[name] = std::move(now);
+    };
+    for (const auto& line : plant.lines()) add(line->name(), line->load(plant.now()));
+    for (const auto& line : plant.serial_lines()) add(line->line.name(), line->line.load(plant.now()));
+    if (stations.empty() && buses.empty()) return;
+    host_.desk().send(client, {{"event", "plant"},
+                               {"us", host_.us()},
+                               {"stations", std::move(stations)},
+                               {"buses", std::move(buses)}});
+  }
+
+  PlantHost& host_;
+  std::vector<FaultConfig> planted_;
+};
+
+}  // namespace
+
+std::unique_ptr<Tab> make_plant_tab(PlantHost& host) { return std::make_unique<PlantTab>(host); }
+
+}  // namespace ipos::tools::serve

@@ -1,0 +1,152 @@
+// ipos serve: a page to watch and touch a plant. Two processes: this one is the server, the other one has the plant,
+// so that no browser can keep the plant waiting, and a copy of the plant can take its place when time goes back.
+#include <fmt/format.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <filesystem>
+#include <optional>
+
+#include "tools/cli/end_of_process.hpp"
+#include "tools/cli/failure.hpp"
+#include "tools/cli/verbs.hpp"
+#include "tools/debug/snapshots.hpp"
+#include "tools/input/plant_input.hpp"
+#include "tools/input/plant_source.hpp"
+#include "tools/serve/channel.hpp"
+#include "tools/serve/drive_host.hpp"
+#include "tools/serve/page.hpp"
+#include "tools/serve/plant_host.hpp"
+#include "tools/serve/server.hpp"
+#include "tools/unit/link_options.hpp"
+
+namespace ipos::tools {
+namespace {
+
+struct ServeFlags {
+  std::string file;
+  std::string bind = "127.0.0.1";
+  uint16_t port = 0;
+  bool open = false;
+  LinkFlags device;  // with a port: a real drive
+  std::string address = "1";
+  bool write = false;
+  bool snapshots = true;
+  CompileFlags compile;
+};
+
+// The host's end is closed in the server and the other way round, so that each sees when the other is gone.
+struct Pair {
+  int server = -1;
+  int host = -1;
+};
+Pair make_pair_of_sockets() {
+  std::array<int, 2> ends{};
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
+    throw Failure(kIoError, "the system gives no sockets");
+  return {ends[0], ends[1]};
+}
+
+// A browser that outlives this process.
+void open_browser(const std::string& address) {
+  const pid_t opener = fork();
+  if (opener != 0) return;
+  if (freopen("/dev/null", "w", stdout) == nullptr || freopen("/dev/null", "w", stderr) == nullptr) _exit(1);
+  execlp("xdg-open", "xdg-open", address.c_str(), static_cast<char*>(nullptr));
+  _exit(1);
+}
+
+int run_host(const ServeFlags& flags, PlantInput input, const Pair& sockets) {
+  close(sockets.server);
+  std::signal(SIGINT, SIG_IGN);  // Ctrl-C goes to both; the server tells
+  std::signal(SIGTERM, SIG_DFL);
+  serve::Channel channel(sockets.host);
+  const std::string title = std::filesystem::path(flags.file).filename().string();
+  serve::PlantHost host([input = std::move(input)] { return make_plant(input, runtime::FileUse::Look); },
+                        title, IPOS_VERSION, channel, flags.snapshots);
+  channel.send(serve::LetterKind::Ready, 0, {});
+  host.run();
+  return kGood;
+}
+
+int run_drive_host(const ServeFlags& flags, const Pair& sockets) {
+  close(sockets.server);
+  std::unique_ptr<BusLink> link = BusLink::open(flags.device);
+  std::signal(SIGINT, SIG_IGN);
+  std::signal(SIGTERM, SIG_DFL);
+  serve::Channel channel(sockets.host);
+  serve::DriveHost host(
+      std::move(link),
+      {static_cast<uint8_t>(std::stoi(flags.address)), flags.compile.unit, flags.write, IPOS_VERSION},
+      channel);
+  channel.send(serve::LetterKind::Ready, 0, {});
+  host.run();
+  return kGood;
+}
+
+void refuse_ports(const PlantInput& input) {
+  for (const runtime::BusConfig& bus : input.file.buses)
+    if (!bus.port.empty())
+      throw Failure(
+          kUsage,
+          fmt::format("{}:{}:{}: error: bus '{}' is joined to port '{}': the page has no plants with a "
+                      "world outside; run it with ipos run --realtime",
+                      input.path, bus.port_place.line, bus.port_place.column, bus.name, bus.port));
+}
+
+int serve_page(const ServeFlags& flags) {
+  const bool device = !flags.device.port.empty();
+  if (device == !flags.file.empty())
+    throw Failure(kUsage, "serve needs a FILE, or --device with the port of a real drive");
+  PlantInput input;
+  if (!device) {
+    input = read_plant_input(flags.file, flags.compile);
+    refuse_ports(input);
+  }
+  const Pair sockets = make_pair_of_sockets();
+  debug::ReplaceableProcess host([&] {
+    return end_of_process(
+        [&] { return device ? run_drive_host(flags, sockets) : run_host(flags, std::move(input), sockets); });
+  });
+  if (!host.started()) throw Failure(kIoError, "there is no room for another process");
+  close(sockets.host);
+  bool was_there = false;
+  {
+    serve::Server server({flags.bind, flags.port, serve::make_token(), serve::embedded_files().front().text},
+                         sockets.server);
+    server.run([&] {
+      was_there = true;
+      fmt::print("{}\n", server.address());
+      std::fflush(stdout);
+      if (flags.open) open_browser(server.address());
+    });
+  }
+  const int code = host.wait();
+  if (code < 0) throw Failure(kInternal, "the process with the plant has ended");
+  return was_there ? code : (code == kGood ? kInterrupted : code);
+}
+
+}  // namespace
+
+void add_serve(cli::Verb& app) {
+  auto flags = std::make_shared<ServeFlags>();
+  cli::Verb& verb = app.verb("serve", "a page in the browser to watch, touch and understand a plant");
+  verb.option("FILE", flags->file, "source (.IPC), image (.ipx) or plant (.toml)");
+  verb.option("--port", flags->port, "port to listen at; default 0: any free one");
+  verb.option("--bind", flags->bind, "address to listen at; default 127.0.0.1, which others cannot reach");
+  verb.flag("--open", flags->open, "open the page in a browser");
+  verb.option("--device", flags->device.port,
+              "in place of FILE: a real drive at can0, slcan:/dev/ttyACM0 or /dev/ttyUSB0");
+  verb.option("--address", flags->address, "address of that drive, default 1")
+      .check(check_address, "ADDRESS");
+  verb.flag("--write", flags->write, "let the page write to that drive; it asks once more");
+  add_link_options(verb, flags->device, false);
+  verb.off("--no-snapshots", flags->snapshots, "go back in time by running again from the beginning");
+  add_compile_options(verb, flags->compile);
+  verb.footer("Example:\n  ipos serve examples/sbus-line/line.toml --open");
+  verb.runs([flags] { return serve_page(*flags); });
+}
+
+}  // namespace ipos::tools
