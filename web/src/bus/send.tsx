@@ -18,7 +18,7 @@ export function Send({ line, kind }: { line: string; kind: string }) {
       do: "bus.send",
       bus: line,
       data: data.replace(/\s+/g, ""),
-      ...(can ? { id: identifier(id), extended: identifier(id) > 0x7ff } : {}),
+      ...(can ? { identifier: identifier(id), extended: identifier(id) > 0x7ff } : {}),
     });
   return (
     <form

@@ -28,7 +28,7 @@ function Planted({ line }: { line: Line }) {
               kind: fault.kind,
               on: false,
               ...(fault.station ? { station: fault.station } : {}),
-              ...(typeof fault.id === "number" ? { id: fault.id } : {}),
+              ...(typeof fault.id === "number" ? { identifier: fault.id } : {}),
             })
           }
         >
@@ -54,7 +54,7 @@ export function LineFaults({ buses }: { buses: Line[] }) {
       kind: chosen,
       on: true,
       ...(station ? { station } : {}),
-      ...(id ? { id: Number(id) } : {}),
+      ...(id ? { identifier: Number(id) } : {}),
       ...(percent !== "100" ? { rate: Number(percent) / 100 } : {}),
     });
   return (
