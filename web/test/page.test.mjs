@@ -119,7 +119,7 @@ test("a parameter is set with Enter; a refusal is an alert in the drive's words"
     await rate.getByRole("textbox").fill("9");
     await rate.getByRole("textbox").press("Enter");
     await page.getByRole("alert").waitFor();
-    assert.strictEqual(await page.getByRole("alert").textContent(), "read access only");
+    assert.strictEqual(await page.getByRole("alert").textContent(), "Refused: read access only");
     await page.getByRole("searchbox").fill("baud");
     assert.strictEqual(await table.getByRole("row").count(), 2);
   }),

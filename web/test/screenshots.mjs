@@ -14,7 +14,7 @@ async function phones() {
   const pictures = [];
   for (const name of tab_names) {
     await page.getByRole("tab", { name }).click();
-    await page.waitForTimeout(400);
+    await page.waitForTimeout(1200);
     pictures.push((await page.screenshot()).toString("base64"));
   }
   const strip = await browser.newPage({ viewport: { width: 7 * 212 + 12, height: 456 } });
@@ -26,7 +26,8 @@ async function phones() {
   await strip.screenshot({ path: image("phone") });
 }
 
-const server = await serve(`${project}examples/isync/isync.toml`);
+// The folder is left out of what the pages show.
+const server = await serve("isync.toml", [], `${project}examples/isync`);
 const browser = await launch();
 try {
   const { page } = await openPage(browser, server.address, { viewport: desktop, colorScheme: "dark" });
@@ -36,7 +37,7 @@ try {
   await page.waitForTimeout(2600);
   for (const name of tab_names) {
     await tab(name);
-    await page.waitForTimeout(400);
+    await page.waitForTimeout(name === "Watch" ? 1500 : 600);
     if (name === "Scope") {
       await page.keyboard.press("p");
       const box = await page.locator(".u-over").boundingBox();
@@ -44,7 +45,7 @@ try {
       await page.keyboard.down("Shift");
       await page.mouse.click(box.x + box.width * 0.6, box.y + box.height / 2);
       await page.keyboard.up("Shift");
-      await page.waitForTimeout(400);
+      await page.waitForTimeout(1500);
     }
     await page.screenshot({ path: image(name) });
     if (name === "Scope") await page.keyboard.press("r");

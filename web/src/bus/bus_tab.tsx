@@ -52,7 +52,7 @@ function LineLoads() {
           <meter min={0} max={100} high={60} value={state.load} aria-label={`Load of ${name}`} />
           <span class="mono">{state.load.toFixed(1)} %</span>
           <span class="quiet mono">{state.frames} telegrams</span>
-          <span class={`mono ${state.errors > 0 ? "bad" : "quiet"}`}>{state.errors} errors</span>
+          <span class={`mono ${state.errors > 0 ? "bad" : "quiet"}`}>{state.errors} {state.errors === 1 ? "error" : "errors"}</span>
           {state.state && <span class="quiet">{state.state}</span>}
         </span>
       ))}

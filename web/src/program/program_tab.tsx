@@ -28,6 +28,10 @@ function offerProgramKeys(): () => void {
   return () => withdrawKeys("Program");
 }
 
+function baseName(path: string): string {
+  return path.slice(path.lastIndexOf("/") + 1);
+}
+
 function Motions() {
   return (
     <>
@@ -75,7 +79,7 @@ function Tasks() {
             <span class="quiet">
               {task.state}
               {task.function && `, ${task.function}`}
-              {task.file && ` ${task.file}:${task.line}`}
+              {task.file && ` ${baseName(task.file)}:${task.line}`}
             </span>
           </span>
         </label>
@@ -100,7 +104,9 @@ export function Program() {
         </select>
         <select aria-label="File" value={openFile.value} onChange={(event) => (openFile.value = event.currentTarget.value)}>
           {files.value.map((one) => (
-            <option key={one.name}>{one.name}</option>
+            <option key={one.name} value={one.name}>
+              {baseName(one.name)}
+            </option>
           ))}
         </select>
         <Motions />

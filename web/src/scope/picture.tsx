@@ -209,6 +209,8 @@ export function Picture() {
       });
     };
     const observer = new ResizeObserver(() => {
+      // A tab that is left has no width.
+      if (element.clientWidth === 0) return;
       pictureWidth.value = Math.floor(element.clientWidth);
       build();
     });

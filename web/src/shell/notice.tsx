@@ -1,12 +1,13 @@
 // What went wrong, in the one alert of the page; a lost server stands before everything else.
 import { signal } from "@preact/signals";
 
-import { link, request, type Message } from "../server/connection";
+import { link, Refusal, request, type Message } from "../server/connection";
 
 const complaint = signal<string | null>(null);
 
 export function complain(reason: unknown): void {
-  complaint.value = reason instanceof Error ? reason.message : String(reason);
+  const text = reason instanceof Error ? reason.message : String(reason);
+  complaint.value = reason instanceof Refusal && reason.refused ? `Refused: ${text}` : text;
 }
 
 export function forgive(): void {

@@ -43,7 +43,7 @@ function speedText(speed: number): string {
 function Clock() {
   const now = time.value;
   const stopped = now.stopped;
-  const where = stopped?.file ? ` ${stopped.file}:${stopped.line}` : "";
+  const where = stopped?.file ? ` ${stopped.file.slice(stopped.file.lastIndexOf("/") + 1)}:${stopped.line}` : "";
   return (
     <div class="clock">
       <span class={`lamp${now.running ? " on" : ""}`} />
