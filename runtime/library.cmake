@@ -8,17 +8,27 @@ ipos_layer(library
   LIBS fmt::fmt)
 ipos_not_hot(ipos_library)
 
-set(api_sources api_plant.cpp api_signals.cpp api_buses.cpp)
-list(TRANSFORM api_sources PREPEND ${CMAKE_CURRENT_LIST_DIR}/library/)
-add_library(ipos_plant SHARED ${api_sources})
-target_link_libraries(ipos_plant PRIVATE $<BUILD_INTERFACE:ipos_options> $<BUILD_INTERFACE:ipos::library>
-                                         $<BUILD_INTERFACE:fmt::fmt>)
+set(functions api_plant.cpp api_signals.cpp api_buses.cpp api_parameters.cpp)
+list(TRANSFORM functions PREPEND ${CMAKE_CURRENT_LIST_DIR}/library/)
+add_library(ipos_plant_functions OBJECT ${functions})
+target_link_libraries(ipos_plant_functions PRIVATE ipos_options fmt::fmt PUBLIC ipos::library)
+target_include_directories(ipos_plant_functions PUBLIC ${CMAKE_CURRENT_LIST_DIR}/library/include)
+ipos_for_shared_libraries(ipos_plant_functions)
+
+set(exports ${CMAKE_CURRENT_LIST_DIR}/library/exports.map)
+add_library(ipos_plant SHARED $<TARGET_OBJECTS:ipos_plant_functions>)
+target_link_libraries(ipos_plant PRIVATE $<BUILD_INTERFACE:ipos_options> $<BUILD_INTERFACE:ipos::library>)
 target_include_directories(ipos_plant PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_LIST_DIR}/library/include>
                                              $<INSTALL_INTERFACE:include>)
-target_compile_options(ipos_plant PRIVATE -fvisibility=hidden)
-set(exports ${CMAKE_CURRENT_LIST_DIR}/library/exports.map)
 target_link_options(ipos_plant PRIVATE LINKER:--version-script=${exports} LINKER:--as-needed)
-set_property(TARGET ipos_plant PROPERTY LINK_DEPENDS ${exports})
-set_target_properties(ipos_plant PROPERTIES EXPORT_NAME plant VERSION ${PROJECT_VERSION}
-                      SOVERSION ${PROJECT_VERSION_MAJOR} LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
+# A wheel has it alone, without what a Debian system has beside it: {fmt} comes out of its headers.
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND NOT IPOS_SANITIZE AND NOT IPOS_COVERAGE)
+  target_link_options(ipos_plant PRIVATE -static-libstdc++ -static-libgcc)
+  if(EXISTS /usr/include/fmt/format-inl.h)
+    target_sources(ipos_plant PRIVATE ${PROJECT_SOURCE_DIR}/tools/static/fmt.cpp)
+  endif()
+endif()
+set_target_properties(ipos_plant PROPERTIES EXPORT_NAME plant VERSION ${PROJECT_VERSION} LINKER_LANGUAGE CXX
+                      SOVERSION ${PROJECT_VERSION_MAJOR} LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib
+                      LINK_DEPENDS ${exports})
 add_library(ipos::plant ALIAS ipos_plant)

@@ -16,6 +16,7 @@ from ctypes import (
     c_int64,
     c_size_t,
     c_uint8,
+    c_uint16,
     c_uint32,
     c_uint64,
     c_void_p,
@@ -164,6 +165,9 @@ _FUNCTIONS = {
     "serial_send": [c_void_p, c_uint32, c_char_p, c_size_t],
     "serial_receive": [c_void_p, c_uint32, POINTER(TelegramRow)],
     "line_fault": [c_void_p, c_char_p],
+    "parameter_index": [c_char_p, c_char_p, POINTER(c_uint16)],
+    "parameter_text": [c_char_p, c_uint16, c_int32, c_char_p, c_size_t],
+    "parameter_value": [c_char_p, c_uint16, c_char_p, POINTER(c_int32), c_char_p, c_size_t],
     "journal_at": [c_void_p, c_size_t, POINTER(Entry)],
     "save": [c_void_p, c_void_p, POINTER(c_size_t)],
     "restore": [c_void_p, c_char_p, c_size_t],
@@ -180,6 +184,8 @@ _library.ipos_plant_mistakes.argtypes = [c_void_p]
 _library.ipos_plant_mistakes.restype = c_size_t
 _library.ipos_plant_status_text.argtypes = [c_int32]
 _library.ipos_plant_status_text.restype = c_char_p
+_library.ipos_plant_return_code.argtypes = [c_uint32]
+_library.ipos_plant_return_code.restype = c_char_p
 _library.ipos_plant_version.argtypes = []
 _library.ipos_plant_version.restype = c_uint32
 

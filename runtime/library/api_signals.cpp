@@ -30,7 +30,7 @@ ipos_plant_status act(ipos_plant* plant, Session& session, const Session::Signal
 
 ipos_plant_status act(ipos_plant* plant, uint32_t number, Act what, int64_t value) {
   return enter(plant, Allowed::NotInCallbacks, [=](Session& session) {
-    Session::Signal* signal = session.signal(number);
+    const Session::Signal* signal = session.signal(number);
     if (signal == nullptr) return no_signal(plant, number);
     return act(plant, session, *signal, what, signal->place, value);
   });
@@ -39,15 +39,17 @@ ipos_plant_status act(ipos_plant* plant, uint32_t number, Act what, int64_t valu
 ipos_plant_status act(ipos_plant* plant, uint32_t number, Act what, const char* text) {
   return enter(plant, Allowed::NotInCallbacks, [=](Session& session) {
     if (text == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
-    Session::Signal* signal = session.signal(number);
+    const Session::Signal* signal = session.signal(number);
     if (signal == nullptr) return no_signal(plant, number);
+    if (!is_writable(signal->place))
+      return plant->fail(IPOS_PLANT_READ_ONLY, fmt::format("{} can only be read", signal->name));
     auto value = parse_place_text(session.plant(), signal->place, text);
     if (!value) return plant->fail(IPOS_PLANT_BAD_VALUE, std::move(value).error());
     return act(plant, session, *signal, what, value->place, value->value);
   });
 }
 
-bool is_kind(ipos_plant_kind kind) { return kind >= IPOS_PLANT_ANY && kind <= IPOS_PLANT_WORD; }
+bool is_kind(ipos_plant_kind kind) { return kind >= IPOS_PLANT_ANY && kind <= IPOS_PLANT_SIGNAL; }
 
 ipos_plant_status no_station(ipos_plant* plant, uint32_t station) {
   return plant->fail(IPOS_PLANT_NO_STATION, fmt::format("there is no station number {}", station));
@@ -74,7 +76,7 @@ ipos_plant_status ipos_plant_signal_info_of(ipos_plant* plant, uint32_t number,
     if (info == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
     const Session::Signal* signal = session.signal(number);
     if (signal == nullptr) return no_signal(plant, number);
-    const PlaceInfo place = place_info(session.plant(), signal->place, signal->name);
+    const PlaceInfo place = session.info(*signal);
     *info = {plant->keep(place.name),
              plant->keep(place.unit),
              place.factor,
@@ -117,8 +119,7 @@ ipos_plant_status ipos_plant_read_many(ipos_plant* plant, const uint32_t* signal
       return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
     for (size_t n = 0; n < count; ++n)
       if (session.signal(signals[n]) == nullptr) return no_signal(plant, signals[n]);
-    for (size_t n = 0; n < count; ++n)
-      values[n] = read_place(session.plant(), session.signal(signals[n])->place);
+    for (size_t n = 0; n < count; ++n) values[n] = session.read(*session.signal(signals[n]));
     return ipos_plant_status{IPOS_PLANT_OK};
   });
 }
@@ -128,7 +129,7 @@ ipos_plant_status ipos_plant_read_text(ipos_plant* plant, uint32_t number, const
     if (text == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
     const Session::Signal* signal = session.signal(number);
     if (signal == nullptr) return no_signal(plant, number);
-    *text = plant->hand_out(place_text(session.plant(), signal->place));
+    *text = plant->hand_out(session.text(*signal));
     return ipos_plant_status{IPOS_PLANT_OK};
   });
 }

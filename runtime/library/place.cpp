@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "runtime/plant/signal.hpp"
+#include "runtime/plant/station_signals.hpp"
 #include "runtime/plant/station_state.hpp"
 #include "runtime/plant/variable_names.hpp"
 #include "stdlib/parameters.hpp"
@@ -20,11 +21,10 @@ namespace {
 using runtime::Plant;
 
 constexpr std::string_view kWordNames[] = {"PO1", "PO2", "PO3", "PI1", "PI2", "PI3"};
-constexpr std::string_view kAnalogNames[] = {"AI1", "AI2", "frequency", "potentiometer"};
 
 constexpr std::string_view kind_word(Kind kind) {
-  constexpr std::string_view kWords[] = {"signal", "variable",     "parameter", "input",
-                                         "output", "analog input", "state",     "process word"};
+  constexpr std::string_view kWords[] = {"signal",       "variable", "parameter",    "input", "output",
+                                         "analog input", "state",    "process word", "signal"};
   return kWords[static_cast<size_t>(kind)];
 }
 
@@ -62,6 +62,9 @@ std::optional<uint32_t> find_number(const Station& station, Kind kind, std::stri
       if (found == std::end(kWordNames)) return std::nullopt;
       return static_cast<uint32_t>(found - std::begin(kWordNames));
     }
+    case Kind::Signal:
+      if (runtime::find_station_signals(station, name).size() == 1) return 0;
+      break;
     case Kind::Any: break;
   }
   return std::nullopt;
@@ -82,13 +85,7 @@ size_t live_line(const Station& station, size_t first) {
              : first;
 }
 
-struct AnalogUnit {
-  std::string_view unit;
-  double factor;
-  int decimals;
-};
-constexpr AnalogUnit kAnalogUnits[] = {{"V", 1e-3, 3},  {"mA", 1e-3, 3},  {"V", 1e-3, 3},
-                                       {"mA", 1e-3, 3}, {"kHz", 1e-3, 3}, {"%", 0.1, 1}};
+int decimals_of(const runtime::AnalogKind& kind) { return kind.factor < 100 ? 1 : 3; }
 
 // The signal port of what has one.
 runtime::SignalPort port_of(Plant& plant, const Place& place) {
@@ -110,10 +107,7 @@ runtime::SignalPort port_of(Plant& plant, const Place& place) {
 
 std::string input_name(uint32_t line) {
   if (line < runtime::kBinaryLines) return fmt::format("DI{:02}", line < 8 ? line : line + 2);
-  for (const std::string_view name : kAnalogNames)
-    if (runtime::same_terminal(line, static_cast<size_t>(runtime::parse_analog_input(name))))
-      return std::string(name);
-  return "";
+  return std::string(runtime::analog_kinds()[line - runtime::kBinaryLines].name);
 }
 
 }  // namespace
@@ -145,7 +139,14 @@ std::vector<std::string> place_names(const Station& station, Kind kind, std::str
       for (size_t begin = 0; begin < all.size(); begin += 5) names.push_back(all.substr(begin, 4));
       break;
     }
-    case Kind::Analog: list(kAnalogNames); break;
+    case Kind::Analog:
+      for (const runtime::AnalogKind& each : runtime::analog_kinds())
+        if (names.empty() || names.back() != each.name) names.emplace_back(each.name);
+      break;
+    case Kind::Signal:
+      for (const runtime::PlantSignal& signal : runtime::station_signals(station))
+        names.push_back(signal.name.substr(signal.station.size() + 1));
+      break;
     case Kind::Word: list(kWordNames); break;
     case Kind::State:
       for (const runtime::StationState& state : runtime::station_states()) names.emplace_back(state.name);
@@ -158,7 +159,7 @@ std::vector<std::string> place_names(const Station& station, Kind kind, std::str
 tl::expected<Place, std::string> find_place(Plant& plant, uint32_t number, Kind kind, std::string_view name) {
   const Station& station = *plant.stations()[number];
   for (uint8_t n = kind == Kind::Any ? 1 : static_cast<uint8_t>(kind);
-       n <= static_cast<uint8_t>(kind == Kind::Any ? Kind::Word : kind); ++n)
+       n <= static_cast<uint8_t>(kind == Kind::Any ? Kind::Signal : kind); ++n)
     if (const auto found = find_number(station, static_cast<Kind>(n), name))
       return Place{number, static_cast<Kind>(n), *found};
   constexpr size_t kShown = 24;
@@ -186,6 +187,7 @@ bool exists(const Plant& plant, const Place& place) {
     case Kind::Analog: return place.number >= runtime::kBinaryLines && place.number < runtime::kInputLines;
     case Kind::State: return place.number < runtime::station_states().size();
     case Kind::Word: return place.number < std::size(kWordNames);
+    case Kind::Signal:
     case Kind::Any: break;
   }
   return false;
@@ -209,10 +211,11 @@ PlaceInfo place_info(const Plant& plant, const Place& place, std::string_view na
     info.decimals = scale.decimals;
     info.writable = row.writable;
   } else if (place.kind == Kind::Analog) {
-    const AnalogUnit& unit = kAnalogUnits[live_line(station, place.number) - runtime::kBinaryLines];
-    info.unit = unit.unit;
-    info.factor = unit.factor;
-    info.decimals = unit.decimals;
+    const runtime::AnalogKind& kind =
+        runtime::analog_kinds()[live_line(station, place.number) - runtime::kBinaryLines];
+    info.unit = kind.unit;
+    info.factor = 1 / kind.factor;
+    info.decimals = decimals_of(kind);
   } else if (place.kind == Kind::State) {
     const std::string_view state = runtime::station_states()[place.number].name;
     if (state == "speed" || state == "setpoint") {
@@ -243,6 +246,7 @@ int64_t read_place(const Plant& plant, const Place& place) {
       return place.number < runtime::Hands::kWords ? drive.po()[place.number]
                                                    : drive.pi()[place.number - runtime::Hands::kWords];
     }
+    case Kind::Signal:
     case Kind::Any: break;
   }
   return 0;

@@ -1,5 +1,5 @@
-// A signal of a station, found by kind and name: how it is read, written, forced, and shown to people. Read-only signals
-// are those of the stations' table of signals; what can be written is listed here.
+// What of a station can be named, found by kind and name: how it is read, written, forced, and shown to people. Signals that
+// can only be read (kind Signal) are those of station_signals.hpp; their reader stays with the session.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace ipos::library {
 using runtime::Station;
 
 // As ipos_plant_kind.
-enum class Kind : uint8_t { Any, Variable, Parameter, Input, Output, Analog, State, Word };
+enum class Kind : uint8_t { Any, Variable, Parameter, Input, Output, Analog, State, Word, Signal };
 
 // Which signal: plain numbers, so that a record of what was done can hold it.
 struct Place {

@@ -40,8 +40,30 @@ uint32_t Session::add_signal(const Place& place, std::string_view name) {
     return signal.place == place && signal.name == name;
   });
   const auto number = static_cast<uint32_t>(known - signals_.begin());
-  if (known == signals_.end()) signals_.push_back({place, std::string(name)});
+  if (known == signals_.end()) find_again(signals_.emplace_back(Signal{place, std::string(name), {}}));
   return number;
+}
+
+// Its reader looks into the world of now.
+void Session::find_again(Signal& signal) const {
+  if (signal.place.kind == Kind::Signal)
+    signal.shown =
+        runtime::find_station_signals(*plant().stations()[signal.place.station], signal.name).front();
+}
+
+PlaceInfo Session::info(const Signal& signal) const {
+  if (signal.place.kind != Kind::Signal) return place_info(plant(), signal.place, signal.name);
+  return {signal.name, signal.shown.unit, signal.shown.factor, signal.shown.decimals, false};
+}
+
+int64_t Session::read(const Signal& signal) const {
+  return signal.place.kind == Kind::Signal ? signal.shown.read() : read_place(plant(), signal.place);
+}
+
+std::string Session::text(const Signal& signal) const {
+  if (signal.place.kind != Kind::Signal) return place_text(plant(), signal.place);
+  const std::string number = signal.shown.text(signal.shown.read());
+  return signal.shown.unit.empty() ? number : number + " " + signal.shown.unit;
 }
 
 std::vector<uint8_t> Session::save() const {
@@ -78,6 +100,7 @@ Session::Restored Session::restore(std::span<const uint8_t> bytes, std::string& 
   world_ = std::move(world);
   record_ = std::move(saved->deeds);
   tags_ = tags;
+  for (Signal& signal : signals_) find_again(signal);
   shadow_.reset();
   return Restored::Done;
 }

@@ -10,6 +10,7 @@
 
 #include "runtime/library/contents.hpp"
 #include "runtime/library/world.hpp"
+#include "runtime/plant/station_signals.hpp"
 #include "runtime/plant/trace_hash.hpp"
 
 namespace ipos::library {
@@ -35,9 +36,15 @@ class Session {
   struct Signal {
     Place place;
     std::string name;
+    runtime::PlantSignal shown;  // of kind Signal
   };
   uint32_t add_signal(const Place& place, std::string_view name);
-  Signal* signal(uint32_t number) { return number < signals_.size() ? &signals_[number] : nullptr; }
+  const Signal* signal(uint32_t number) const {
+    return number < signals_.size() ? &signals_[number] : nullptr;
+  }
+  PlaceInfo info(const Signal& signal) const;
+  int64_t read(const Signal& signal) const;
+  std::string text(const Signal& signal) const;
 
   std::vector<uint8_t> save() const;
   enum class Restored : uint8_t { Done, Damaged, OtherPlant };
@@ -55,6 +62,8 @@ class Session {
   };
 
   Session(Contents contents, std::unique_ptr<runtime::Plant> plant, bool recorded);
+
+  void find_again(Signal& signal) const;
 
   Contents contents_;
   std::unique_ptr<World> world_;

@@ -361,6 +361,12 @@ def test_many_signals_in_one_call(line):
     reader = line.reader("saw.lCount", "saw.H430", "saw.speed", "belt.DI01", "saw.P130")
     assert reader() == (saw["lCount"], saw["H430"], saw.speed, 1, 2.0)
     assert reader.units == ("", "", "rpm", "", "s")
+    # Any signal of the recording page, also after the plant was made anew.
+    reader = line.reader("saw.torque", "saw.DI03", "saw.PO1.6", "saw.task1.line")
+    before = reader()
+    assert reader.units[0] == "%Mn" and 10 <= before[3] <= 35
+    line.restore(line.snapshot())
+    assert reader() == before
     with pytest.raises(KeyError, match="begin with saw., belt."):
         line.reader("mill.lCount")
     with pytest.raises(TypeError):

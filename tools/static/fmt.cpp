@@ -1,4 +1,4 @@
-// The code of {fmt} for the static binary: Debian has its library as a shared object only, and its sources as a header.
+// The code of {fmt} for the static binary and for libipos_plant: Debian has its library as a shared object only, and its sources as a header.
 #include <fmt/format-inl.h>
 
 FMT_BEGIN_NAMESPACE

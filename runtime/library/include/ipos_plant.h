@@ -192,7 +192,8 @@ enum {
   IPOS_PLANT_OUTPUT = 4,    /* "DB00", "DO01".."DO05", "DO10".."DO17" */
   IPOS_PLANT_ANALOG = 5,    /* "AI1", "AI2", "frequency", "potentiometer" */
   IPOS_PLANT_STATE = 6,     /* "speed", "position", "fault", ...: docs/reference */
-  IPOS_PLANT_WORD = 7       /* "PO1".."PO3", "PI1".."PI3" */
+  IPOS_PLANT_WORD = 7,      /* "PO1".."PO3", "PI1".."PI3" */
+  IPOS_PLANT_SIGNAL = 8     /* any other name of docs/guide/recording.md, to be read: "torque", "PO1.6", "task1.line" */
 };
 
 enum { IPOS_PLANT_WRITABLE = 1 /* it can be written and forced */ };
@@ -314,6 +315,20 @@ ipos_plant_status ipos_plant_serial_receive(ipos_plant* plant, uint32_t bus, ipo
 /* Plants faults of lines while the plant runs: the text of [[fault]] tables as in a plant file. Their times count from
  * now. IPOS_PLANT_BAD_VALUE (the message has line and column), IPOS_PLANT_REFUSED. */
 ipos_plant_status ipos_plant_line_fault(ipos_plant* plant, const char* text);
+
+/* ---- Parameters of real units, for what speaks MOVILINK itself ------------------------------------------- */
+
+/* The index of a parameter of a unit type ("mdxb") by number or index: "P130". IPOS_PLANT_NO_STATION: no such type,
+ * IPOS_PLANT_NO_SIGNAL. */
+ipos_plant_status ipos_plant_parameter_index(const char* unit, const char* name, uint16_t* index);
+/* A value as people read it, and back. `text` takes at most `size` bytes with the 0; of ipos_plant_parameter_value() it
+ * says what would be accepted. IPOS_PLANT_BAD_VALUE, IPOS_PLANT_TOO_SMALL. */
+ipos_plant_status ipos_plant_parameter_text(const char* unit, uint16_t index, int32_t value, char* text, size_t size);
+ipos_plant_status ipos_plant_parameter_value(const char* unit, uint16_t index, const char* written, int32_t* value,
+                                             char* text, size_t size);
+/* What a return code (class, code, additional code: the four data bytes of a refusal) means; "" for one that no manual
+ * lists. Stays. */
+const char* ipos_plant_return_code(uint32_t code);
 
 /* ---- Journal, state, hash ------------------------------------------------------------------------------- */
 

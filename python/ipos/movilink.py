@@ -1,0 +1,217 @@
+"""MOVILINK to drives: the parameter channel over SBus (any python-can bus: SocketCAN, slcan, or a plant) and RS-485.
+
+    with can.Bus(interface="socketcan", channel="can0") as bus:
+        drive = ipos.movilink.Drive(ipos.movilink.Sbus(bus), address=1)
+        print(drive["P130"], drive.status_word)
+        drive["P130"] = "2.5 s"
+
+The same lines run on a simulated line with can.Bus(interface="ipos", channel="line.toml#sbus"). What a drive refuses is a
+RefusedError with its return code. Telegrams: SEW 1053 1610 p. 18-25 and 29-46.
+"""
+
+from __future__ import annotations
+
+import time
+from ctypes import byref, c_int32, c_uint16, create_string_buffer
+from typing import Any, Callable, Iterator, Optional, Protocol
+
+from . import _library as lib
+from .station import ParameterValue, _name
+
+READ, WRITE, WRITE_VOLATILE, READ_MINIMUM, READ_MAXIMUM, READ_DEFAULT = 1, 2, 3, 4, 5, 6
+
+_FOUR_BYTES, _FAILED, _SERVICE = 0x30, 0x80, 0x0F
+_FIRST_VARIABLE = 11000
+_STATUS = 8310  # status word 1 in the low word
+_FIRMWARE = 8300
+# An index that only this unit type has among those below it.
+_SIGNS = ((8807, "mc07"), (8937, "mdxb"), (8509, "md60a"), (8470, "compact"))
+
+
+class NoAnswerError(lib.PlantError, TimeoutError):
+    """No drive has answered."""
+
+
+class DriveRefusedError(lib.RefusedError):
+    """The drive has refused a service. `.code` are the four bytes of its return code."""
+
+    def __init__(self, text: str, code: int) -> None:
+        super().__init__(text)
+        self.code = code
+
+
+class Line(Protocol):
+    """What carries the eight bytes of the parameter channel to a unit and its answer back; None: no answer."""
+
+    addresses: range
+
+    def exchange(self, address: int, request: bytes) -> Optional[bytes]: ...
+
+
+class Sbus:
+    """SBus, over a bus of python-can. `timeout` in seconds; a plant counts it in virtual time."""
+
+    addresses = range(64)
+
+    def __init__(self, bus: Any, timeout: float = 0.08) -> None:
+        self.bus, self.timeout = bus, timeout
+
+    def exchange(self, address: int, request: bytes) -> Optional[bytes]:
+        import can
+
+        asked = 512 + 8 * address + 3
+        self.bus.send(can.Message(arbitration_id=asked, data=request, is_extended_id=False))
+        begin = last = None
+        left = self.timeout
+        clock = time.monotonic()
+        while left > 0:
+            message = self.bus.recv(left)
+            if message is None:
+                return None
+            if message.arbitration_id == asked + 1 and not message.is_extended_id and not message.is_error_frame:
+                if len(message.data) == 8 and bytes(message.data[2:4]) == request[2:4]:
+                    return bytes(message.data)
+            # Time is that of the frames where they come one after the other at once, else that of the clock.
+            begin = message.timestamp if begin is None else begin
+            last = message.timestamp
+            left = self.timeout - max(last - begin, time.monotonic() - clock)
+        return None
+
+
+class Serial:
+    """RS-485 or RS-232 at 9600 baud, 8E1, over an open port with read(count) and write(bytes), as pyserial has it."""
+
+    addresses = range(100)
+    _TYP = 0x86  # parameter channel, acyclic
+    _PAUSE = 0.004  # s before a telegram: a start pause is 3.44 ms
+
+    def __init__(self, port: Any, timeout: float = 0.1, sleep: Callable[[float], None] = time.sleep) -> None:
+        self.port, self.timeout, self._sleep = port, timeout, sleep
+        if hasattr(port, "timeout"):
+            port.timeout = timeout
+
+    def exchange(self, address: int, request: bytes) -> Optional[bytes]:
+        if hasattr(self.port, "reset_input_buffer"):
+            self.port.reset_input_buffer()
+        self._sleep(self._PAUSE)
+        self.port.write(_checked(bytes([0x02, address, self._TYP]) + request))
+        length = 3 + 8 + 1
+        answer = self.port.read(length)
+        if len(answer) == length and answer[0] == 0x02:  # an adapter that hears itself
+            answer = self.port.read(length)
+        if len(answer) != length or answer[:3] != bytes([0x1D, address, self._TYP]) or _checked(answer[:-1]) != answer:
+            return None
+        return answer[3:-1] if answer[5:7] == request[2:4] else None
+
+
+def _checked(telegram: bytes) -> bytes:
+    """With its block check character: all bytes by exclusive or."""
+    check = 0
+    for byte in telegram:
+        check ^= byte
+    return telegram + bytes([check])
+
+
+class Drive:
+    """The unit at an address of a line. `unit` is its type ("mdxb"); without, it is asked."""
+
+    def __init__(self, line: Line, address: int, unit: Optional[str] = None, tries: int = 3) -> None:
+        if address not in line.addresses:
+            raise ValueError(f"an address is {line.addresses.start} to {line.addresses.stop - 1}, not {address}")
+        self.line, self.address, self.tries = line, address, tries
+        self.unit = unit or self._identify()
+        self.index_of("8300")  # a type that has no list is refused here
+
+    def __repr__(self) -> str:
+        return f"<Drive {self.unit} at {self.address}>"
+
+    def execute(self, service: int, index: int, value: int = 0) -> int:
+        """A service of the parameter channel. A read that was not answered is repeated, a write is not."""
+        request = bytes([_FOUR_BYTES | service, 0]) + index.to_bytes(2, "big") + (value & 0xFFFFFFFF).to_bytes(4, "big")
+        for _ in range(1 if service in (WRITE, WRITE_VOLATILE) else self.tries):
+            answer = self.line.exchange(self.address, request)
+            if answer is None:
+                continue
+            data = int.from_bytes(answer[4:], "big")
+            if not answer[0] & _FAILED:
+                return data - (1 << 32) if data >> 31 else data
+            words = lib.text(lib.function("return_code")(data)) or f"return code {data:08X}"
+            raise DriveRefusedError(f"index {index}: {words}", data)
+        raise NoAnswerError(f"unit {self.address} does not answer")
+
+    def _identify(self) -> str:
+        for index, unit in _SIGNS:
+            try:
+                self.execute(READ, index)
+                return unit
+            except DriveRefusedError:
+                continue
+        raise lib.PlantError(f"unit {self.address} answers, but has none of the parameters that tell its type; give unit=")
+
+    def index_of(self, name: str | int) -> int:
+        """ "P130", an index, or a variable "H20"."""
+        if isinstance(name, int) and not isinstance(name, bool):
+            return name
+        if isinstance(name, str) and name[:1] == "H" and name[1:].isdigit() and int(name[1:]) < 1024:
+            return _FIRST_VARIABLE + int(name[1:])
+        index = c_uint16()
+        status = lib.function("parameter_index")(self.unit.encode(), _name(name), byref(index))
+        if status == lib.NO_STATION:
+            raise ValueError(f"'{self.unit}' is no unit type; known are md60a, compact, mc07, mdxb, mc31")
+        if status != lib.OK:
+            raise lib._KeyError(f"unit {self.unit} has no parameter '{name}'")
+        return index.value
+
+    def __getitem__(self, name: str | int) -> ParameterValue:
+        index = self.index_of(name)
+        value = ParameterValue(self.execute(READ, index))
+        room = create_string_buffer(200)
+        known = lib.function("parameter_text")(self.unit.encode(), index, value, room, len(room)) == lib.OK
+        value.name, value.text = str(name), lib.text(room.value) if known else str(int(value))
+        return value
+
+    def __setitem__(self, name: str | int, value: str | int) -> None:
+        self.write(name, value)
+
+    def write(self, name: str | int, value: str | int, volatile: bool = True) -> None:
+        """Writes a parameter or variable; with volatile=False the unit stores it, which wears its memory."""
+        index = self.index_of(name)
+        if isinstance(value, str):
+            number, room = c_int32(), create_string_buffer(500)
+            status = lib.function("parameter_value")(
+                self.unit.encode(), index, _name(value), byref(number), room, len(room)
+            )
+            if status != lib.OK:
+                raise ValueError(f"{name}: {lib.text(room.value) or lib.status_text(status)}")
+            value = number.value
+        if isinstance(value, bool) or not isinstance(value, int):
+            raise TypeError(f"a parameter takes a text with unit or a whole number, not {type(value).__name__}")
+        if not -(2**31) <= value < 2**32:
+            raise ValueError(f"{value} is out of range")
+        self.execute(WRITE_VOLATILE if volatile else WRITE, index, value)
+
+    @property
+    def status_word(self) -> int:
+        return self.execute(READ, _STATUS) & 0xFFFF
+
+    @property
+    def fault(self) -> int:
+        """Number of the pending fault; 0 is none (status word 1 with bit 5, 1053 1610 p. 41)."""
+        word = self.status_word
+        return word >> 8 if word & 0x20 else 0
+
+    def watch(self, *names: str | int, every: float = 0.1, sleep: Callable[[float], Any] = time.sleep) -> Iterator[tuple]:
+        """Values of parameters and variables again and again, for ever. On a plant `sleep` lets virtual time pass."""
+        while True:
+            yield tuple(self[name] for name in names)
+            sleep(every)
+
+
+def scan(line: Line, addresses: Optional[range] = None) -> list[Drive]:
+    """The drives that answer, in the order of their addresses."""
+    found = []
+    for address in addresses or line.addresses:
+        request = bytes([_FOUR_BYTES | READ, 0]) + _FIRMWARE.to_bytes(2, "big") + bytes(4)
+        if line.exchange(address, request) is not None:
+            found.append(Drive(line, address))
+    return found

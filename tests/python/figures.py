@@ -1,0 +1,94 @@
+"""What calls from Python cost: `python3 figures.py` prints the figures of docs/inside/performance.md. Not a test."""
+
+import resource
+import sys
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
+
+import ipos  # noqa: E402
+
+LINE = str(Path(__file__).resolve().parent / "line.toml")
+NAMES = [f"saw.{name}" for name in ("lCount", "lFalls", "lLevel", "H429", "H430", "H431", "speed", "position", "DI03", "DO01")]
+
+
+def clock(action, count):
+    begin = time.perf_counter()
+    for _ in range(count):
+        action()
+    return count / (time.perf_counter() - begin)
+
+
+def steps():
+    with ipos.Plant(LINE, record=False) as plant:
+        saw, read = plant["saw"], plant.reader(*NAMES)
+
+        def one_by_one():
+            plant._run_to(plant._now() + 1_000_000)
+            for name in ("lCount", "lFalls", "lLevel", "H429", "H430", "H431"):
+                saw[name]
+            saw.speed, saw.position, saw.inputs["DI03"], saw.outputs["DO01"]
+
+        def bulk():
+            plant._run_to(plant._now() + 1_000_000)
+            read()
+
+        print(f"one value read:                    {clock(lambda: saw['lCount'], 100_000):10.0f} a second")
+        print(f"ten values read in one call:       {clock(read, 100_000):10.0f} a second")
+        print(f"steps of 1 ms alone:               {clock(lambda: plant.run(0.001), 5000):10.0f} a second")
+        print(f"... with ten values one by one:    {clock(one_by_one, 5000):10.0f} a second")
+        print(f"... with ten values in one call:   {clock(bulk, 5000):10.0f} a second")
+        begin = time.perf_counter()
+        plant.run("60s")
+        read()
+        print(f"60 s in one call:                  {60 / (time.perf_counter() - begin):10.0f} simulated seconds a second")
+
+
+def drives(count, seconds):
+    rows = ['[[bus]]\nname = "sbus"\nkind = "can"\n']
+    for number in range(count):
+        rows.append(
+            f'[[station]]\nname = "d{number}"\nunit = "mdxb"\nprogram = "SAW.IPC"\n'
+            f"[station.parameters]\nP938 = 9\n[station.inputs]\nDI00 = 1\nDI01 = 1\nDI03 = 1\n"
+        )
+    with ipos.Plant(text="".join(rows), folder=Path(LINE).parent, record=False) as plant:
+        read = plant.reader(*[f"d{number}.lCount" for number in range(count)])
+        plant.run(seconds)
+        begin = time.perf_counter()
+        plant.run(seconds)
+        read()  # units execute what is asked for
+        alone = time.perf_counter() - begin
+        begin = time.perf_counter()
+        for _ in range(round(seconds * 1000)):
+            plant.run(0.001)
+        read()
+        stepped = time.perf_counter() - begin
+        begin = time.perf_counter()
+        for _ in range(round(seconds * 1000)):
+            plant.run(0.001)
+            read()
+        with_values = time.perf_counter() - begin
+    print(
+        f"{count} drives, simulated seconds a second: {seconds / alone:.2f} in one call, {seconds / stepped:.2f} stepped each ms, "
+        f"{seconds / with_values:.2f} with a value of each read"
+    )
+
+
+def growth(count):
+    with ipos.Plant(LINE, record=False) as plant:
+        read = plant.reader(*NAMES)
+        sizes = []
+        for n in range(count):
+            plant._run_to(plant._now() + 1_000_000)
+            read()
+            if n % (count // 10) == count // 10 - 1:
+                plant.buses["sbus"].frames()
+                sizes.append(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+    print(f"{count} steps: {sizes[0]} KB after a tenth, {sizes[-1]} KB at the end")
+
+
+if __name__ == "__main__":
+    steps()
+    drives(64, 1.0)
+    growth(int(sys.argv[1]) if len(sys.argv) > 1 else 100_000)

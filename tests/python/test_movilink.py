@@ -1,0 +1,105 @@
+"""MOVILINK in Python, with simulated drives that answer on a CAN line and on a serial one."""
+
+import pytest
+
+can = pytest.importorskip("can")
+
+import ipos
+from conftest import LINE
+from ipos import movilink
+
+SERIAL = """
+[[bus]]
+name = "line"
+kind = "rs485"
+baud = 9600
+[[station]]
+name = "a"
+unit = "mdxb"
+rs485 = "line"
+[station.parameters]
+P810 = 7
+"""
+
+
+@pytest.fixture
+def sbus():
+    with can.Bus(interface="ipos", channel=LINE + "#sbus") as bus:
+        yield movilink.Sbus(bus)
+
+
+class PortOfPlant:
+    """What pyserial is to a real line: bytes out and in, on a line of a plant."""
+
+    def __init__(self, plant):
+        self.plant, self.bus, self.heard = plant, plant.buses["line"], b""
+
+    def write(self, data):
+        self.bus.send(bytes(data))
+
+    def read(self, count):
+        for _ in range(100):
+            if len(self.heard) >= count:
+                break
+            self.plant.run("1ms")
+            for telegram in self.bus.frames():
+                self.heard += telegram.data
+        data, self.heard = self.heard[:count], self.heard[count:]
+        return data
+
+    def reset_input_buffer(self):
+        self.heard = b""
+
+    def sleep(self, seconds):
+        self.plant.run(seconds)
+
+
+def test_parameters_over_sbus(sbus):
+    drive = movilink.Drive(sbus, 1)
+    assert drive.unit == "mdxb"
+    assert drive["P130"] == 2000 and drive["P130"].text == "2.000 s"
+    drive["P130"] = "2.5 s"
+    assert drive["P130"] == 2500
+    drive["P130"] = 3000
+    assert sbus.bus.plant["saw"].parameters["P130"].text == "3.000 s"
+    drive["H427"] = -5
+    assert drive["H427"] == -5 and sbus.bus.plant["saw"]["lUnused"] == -5
+    assert drive.status_word & 1 and drive.fault == 0
+    assert next(drive.watch("P130", "H427")) == (3000, -5)
+
+
+def test_refusals_are_exceptions_with_the_code(sbus):
+    drive = movilink.Drive(sbus, 1)
+    with pytest.raises(movilink.DriveRefusedError, match="too large") as caught:
+        drive["P130"] = 99_000_000
+    assert caught.value.code == 0x08000015
+    with pytest.raises(ipos.RefusedError, match="invalid parameter index"):
+        drive.execute(movilink.READ, 1)
+    with pytest.raises(movilink.NoAnswerError):
+        movilink.Drive(sbus, 33)
+    with pytest.raises(ValueError):
+        movilink.Drive(sbus, 64)
+    with pytest.raises(KeyError):
+        drive["P9999"]
+    with pytest.raises(ValueError, match="s"):
+        drive["P130"] = "fast"
+    with pytest.raises(TypeError):
+        drive["P130"] = 2.5
+
+
+def test_scan_finds_both(sbus):
+    drives = movilink.scan(sbus, range(8))
+    assert [(drive.address, drive.unit) for drive in drives] == [(1, "mdxb"), (2, "mdxb")]
+
+
+def test_parameters_over_rs485():
+    with ipos.Plant(text=SERIAL) as plant:
+        port = PortOfPlant(plant)
+        drive = movilink.Drive(movilink.Serial(port, sleep=port.sleep), 7)
+        assert drive.unit == "mdxb" and drive["P130"].text == "2.000 s"
+        drive["P130"] = "1.5 s"
+        assert plant["a"].parameters["P130"] == 1500
+        with pytest.raises(movilink.DriveRefusedError, match="too large"):
+            drive["P130"] = 99_000_000
+        with pytest.raises(movilink.NoAnswerError):
+            movilink.Drive(movilink.Serial(port, sleep=port.sleep), 8)

@@ -1,0 +1,169 @@
+// Each status comes where the header says, with its words.
+#include <gtest/gtest.h>
+#include <ipos_plant.h>
+
+#include <array>
+#include <cstring>
+#include <set>
+#include <string>
+
+namespace {
+
+constexpr const char* kPlant = R"([[bus]]
+name = "sbus"
+kind = "can"
+[[bus]]
+name = "rs"
+kind = "rs485"
+baud = 9600
+[[station]]
+name = "a"
+unit = "mdxb"
+sbus = "sbus"
+rs485 = "rs"
+)";
+
+class LibraryStatus : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    source_.text = kPlant;
+    ASSERT_EQ(ipos_plant_open(&source_, &plant_), IPOS_PLANT_OK);
+  }
+  void TearDown() override { EXPECT_EQ(ipos_plant_close(plant_), IPOS_PLANT_OK); }
+  uint32_t find(ipos_plant_kind kind, const char* name) {
+    uint32_t signal = UINT32_MAX;
+    EXPECT_EQ(ipos_plant_find(plant_, 0, kind, name, &signal), IPOS_PLANT_OK) << ipos_plant_message(plant_);
+    return signal;
+  }
+  std::string message() const { return ipos_plant_message(plant_); }
+
+  ipos_plant_source source_{};
+  ipos_plant* plant_ = nullptr;
+};
+
+TEST(LibraryTable, EveryStatusHasItsTextAndNoOtherHasOne) {
+  std::set<std::string> texts;
+#define ROW(name, number, text)                     \
+  EXPECT_EQ(name, number);                          \
+  EXPECT_STREQ(ipos_plant_status_text(name), text); \
+  texts.insert(text);
+  IPOS_PLANT_STATUSES(ROW)
+#undef ROW
+  EXPECT_EQ(texts.size(), 20U);
+  EXPECT_STREQ(ipos_plant_status_text(-1), "");
+  EXPECT_STREQ(ipos_plant_status_text(20), "");
+  EXPECT_EQ(ipos_plant_version(), uint32_t{IPOS_PLANT_VERSION});
+}
+
+TEST(LibraryOpening, MistakesHavePlaces) {
+  ipos_plant_source source{};
+  source.text = "[[station]]\nname = \"a\"\nunit = \"mdxx\"\n";
+  ipos_plant* plant = nullptr;
+  ASSERT_EQ(ipos_plant_open(&source, &plant), IPOS_PLANT_BAD_PLANT);
+  ASSERT_EQ(ipos_plant_mistakes(plant), 1U);
+  ipos_plant_mistake mistake{};
+  ASSERT_EQ(ipos_plant_mistake_at(plant, 0, &mistake), IPOS_PLANT_OK);
+  EXPECT_EQ(mistake.line, 3U);
+  EXPECT_EQ(mistake.column, 8U);
+  EXPECT_EQ(ipos_plant_mistake_at(plant, 1, &mistake), IPOS_PLANT_NOTHING);
+  EXPECT_EQ(ipos_plant_run(plant, 1), IPOS_PLANT_NOT_OPEN);
+  EXPECT_EQ(ipos_plant_close(plant), IPOS_PLANT_OK);
+  EXPECT_EQ(ipos_plant_open(nullptr, &plant), IPOS_PLANT_INVALID_ARGUMENT);
+  source.text = nullptr;
+  EXPECT_EQ(ipos_plant_open(&source, &plant), IPOS_PLANT_INVALID_ARGUMENT);
+  EXPECT_EQ(plant, nullptr);
+  EXPECT_EQ(ipos_plant_close(nullptr), IPOS_PLANT_OK);
+}
+
+TEST_F(LibraryStatus, OfStationsAndSignals) {
+  uint32_t number = 0;
+  EXPECT_EQ(ipos_plant_station(plant_, "b", &number), IPOS_PLANT_NO_STATION);
+  EXPECT_EQ(message(), "there is no station 'b'; the plant has a");
+  EXPECT_EQ(ipos_plant_find(plant_, 0, IPOS_PLANT_INPUT, "DI08", &number), IPOS_PLANT_NO_SIGNAL);
+  EXPECT_EQ(ipos_plant_find(plant_, 9, IPOS_PLANT_INPUT, "DI00", &number), IPOS_PLANT_NO_STATION);
+  EXPECT_EQ(ipos_plant_find(plant_, 0, 99, "DI00", &number), IPOS_PLANT_INVALID_ARGUMENT);
+  int64_t value = 0;
+  EXPECT_EQ(ipos_plant_read(plant_, 77, &value), IPOS_PLANT_NO_SIGNAL);
+  const uint32_t output = find(IPOS_PLANT_OUTPUT, "DO01");
+  EXPECT_EQ(ipos_plant_write(plant_, output, 1), IPOS_PLANT_READ_ONLY);
+  const uint32_t input = find(IPOS_PLANT_INPUT, "DI03");
+  EXPECT_EQ(ipos_plant_write(plant_, input, 2), IPOS_PLANT_BAD_VALUE);
+  EXPECT_EQ(ipos_plant_write_text(plant_, input, "1"), IPOS_PLANT_OK);
+  EXPECT_EQ(ipos_plant_read(plant_, input, &value), IPOS_PLANT_OK);
+  EXPECT_EQ(value, 1);
+  const uint32_t ramp = find(IPOS_PLANT_PARAMETER, "P130");
+  EXPECT_EQ(ipos_plant_write(plant_, ramp, -1), IPOS_PLANT_REFUSED);
+  EXPECT_NE(message().find("P130"), std::string::npos);
+  ipos_plant_signal_info info{};
+  ASSERT_EQ(ipos_plant_signal_info_of(plant_, ramp, &info), IPOS_PLANT_OK);
+  EXPECT_STREQ(info.unit, "s");
+  EXPECT_DOUBLE_EQ(info.factor, 0.001);
+  EXPECT_EQ(info.number, 8470U);
+  EXPECT_EQ(info.flags, uint32_t{IPOS_PLANT_WRITABLE});
+}
+
+TEST_F(LibraryStatus, OfTime) {
+  EXPECT_EQ(ipos_plant_run(plant_, 5'000'000), IPOS_PLANT_OK);
+  EXPECT_EQ(ipos_plant_run(plant_, 4'999'999), IPOS_PLANT_INVALID_ARGUMENT);
+  const auto never = [](void*, ipos_plant*) { return false; };
+  EXPECT_EQ(ipos_plant_run_until(plant_, 7'000'000, never, nullptr), IPOS_PLANT_NOT_REACHED);
+  const auto inside = [](void* user, ipos_plant* plant) {
+    *static_cast<ipos_plant_status*>(user) = ipos_plant_run(plant, 99'000'000);
+    return true;
+  };
+  ipos_plant_status status = IPOS_PLANT_OK;
+  EXPECT_EQ(ipos_plant_run_until(plant_, 9'000'000, inside, &status), IPOS_PLANT_OK);
+  EXPECT_EQ(status, IPOS_PLANT_BUSY);
+  int64_t now = 0;
+  EXPECT_EQ(ipos_plant_time(plant_, &now), IPOS_PLANT_OK);
+  EXPECT_EQ(now, 7'000'000);
+  EXPECT_EQ(ipos_plant_duration("1.5ms", &now), IPOS_PLANT_OK);
+  EXPECT_EQ(now, 1'500'000);
+  EXPECT_EQ(ipos_plant_duration("soon", &now), IPOS_PLANT_BAD_VALUE);
+}
+
+TEST_F(LibraryStatus, OfBuses) {
+  uint32_t bus = 9;
+  EXPECT_EQ(ipos_plant_bus(plant_, "can0", &bus), IPOS_PLANT_NO_BUS);
+  EXPECT_EQ(message(), "there is no bus 'can0'; the plant has sbus, rs");
+  ipos_plant_frame frame{};
+  frame.id = 0x800;
+  EXPECT_EQ(ipos_plant_send(plant_, 0, &frame, nullptr), IPOS_PLANT_BAD_VALUE);
+  frame.id = 0x7FF;
+  for (int n = 0; n < 64; ++n) EXPECT_EQ(ipos_plant_send(plant_, 0, &frame, nullptr), IPOS_PLANT_OK);
+  EXPECT_EQ(ipos_plant_send(plant_, 0, &frame, nullptr), IPOS_PLANT_REFUSED);
+  EXPECT_EQ(ipos_plant_send(plant_, 1, &frame, nullptr), IPOS_PLANT_NO_BUS);
+  const std::array<uint8_t, 4> bytes = {2, 1, 5, 6};
+  EXPECT_EQ(ipos_plant_serial_send(plant_, 1, bytes.data(), 0), IPOS_PLANT_BAD_VALUE);
+  EXPECT_EQ(ipos_plant_serial_send(plant_, 1, bytes.data(), bytes.size()), IPOS_PLANT_OK);
+  EXPECT_EQ(ipos_plant_serial_send(plant_, 1, bytes.data(), bytes.size()), IPOS_PLANT_REFUSED);
+  EXPECT_EQ(ipos_plant_serial_send(plant_, 0, bytes.data(), bytes.size()), IPOS_PLANT_NO_BUS);
+  ipos_plant_telegram telegram{};
+  EXPECT_EQ(ipos_plant_serial_receive(plant_, 1, &telegram), IPOS_PLANT_NOTHING);
+  EXPECT_EQ(ipos_plant_line_fault(plant_, "[[fault]]\nbus = \"sbus\"\n"), IPOS_PLANT_BAD_VALUE);
+  EXPECT_EQ(ipos_plant_line_fault(plant_, ""), IPOS_PLANT_BAD_VALUE);
+}
+
+TEST_F(LibraryStatus, OfStates) {
+  size_t size = 0;
+  EXPECT_EQ(ipos_plant_save(plant_, nullptr, &size), IPOS_PLANT_TOO_SMALL);
+  std::string state(size, '\0');
+  EXPECT_EQ(ipos_plant_save(plant_, state.data(), &size), IPOS_PLANT_OK);
+  EXPECT_EQ(ipos_plant_restore(plant_, state.data(), size), IPOS_PLANT_OK);
+  EXPECT_EQ(ipos_plant_restore(plant_, state.data(), size - 1), IPOS_PLANT_BAD_STATE);
+  ipos_plant_source other = source_;
+  other.seed = 1;
+  ipos_plant* plant = nullptr;
+  ASSERT_EQ(ipos_plant_open(&other, &plant), IPOS_PLANT_OK);
+  EXPECT_EQ(ipos_plant_restore(plant, state.data(), size), IPOS_PLANT_OTHER_PLANT);
+  EXPECT_EQ(ipos_plant_close(plant), IPOS_PLANT_OK);
+  other.flags = IPOS_PLANT_NO_RECORD;
+  ASSERT_EQ(ipos_plant_open(&other, &plant), IPOS_PLANT_OK);
+  uint64_t hash = 0;
+  size = 0;
+  EXPECT_EQ(ipos_plant_save(plant, nullptr, &size), IPOS_PLANT_NOT_RECORDED);
+  EXPECT_EQ(ipos_plant_trace_hash(plant, &hash), IPOS_PLANT_NOT_RECORDED);
+  EXPECT_EQ(ipos_plant_close(plant), IPOS_PLANT_OK);
+}
+
+}  // namespace
