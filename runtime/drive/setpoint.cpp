@@ -123,7 +123,7 @@ int32_t leave_skip_window(const ParameterSet& set, int32_t speed, int32_t maximu
   const int64_t low = set.skip_center - set.skip_width / 2;
   const int64_t high = set.skip_center + set.skip_width / 2;
   if (magnitude <= low || magnitude >= high) return speed;
-  const bool upwards = (magnitude >= set.skip_center && high <= maximum) || low < set.minimum_speed;
+  const bool upwards = high <= maximum && (magnitude >= set.skip_center || low < set.minimum_speed);
   const auto edge = static_cast<int32_t>(std::max<int64_t>(upwards ? high : low, 0));
   return speed < 0 ? -edge : edge;
 }

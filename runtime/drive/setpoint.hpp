@@ -91,7 +91,7 @@ int32_t potentiometer_speed(const Settings& settings, const ParameterSet& set, i
 int32_t limit_setpoint(const ParameterSet& set, int32_t speed, int32_t maximum);
 
 // Out of the skip window P740, P741 (ours): below its middle to the lower edge, from there to the upper one,
-// unless that is beyond a limit.
+// unless that is beyond a limit; with both edges beyond one, to the lower, as the maximum holds always.
 int32_t leave_skip_window(const ParameterSet& set, int32_t speed, int32_t maximum);
 
 // True while the sign of the setpoint is the direction of rotation.

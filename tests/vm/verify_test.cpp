@@ -86,6 +86,33 @@ TEST(Verifier, ReportsAllAndCountsThoseThatDoNotFit) {
   EXPECT_EQ(verify(code, kLimits, out).violations, 5U);  // two variables, a bit, a label, and the end
 }
 
+// To every word of a program that is longer than the words the verifier remembers its starts in: commands of two words
+// can be jumped to at the even ones.
+TEST(Verifier, LabelsHitStartsWhereverTheyAre) {
+  for (const uint32_t commands : {40U, 1000U}) {
+    std::vector<uint32_t> code;
+    for (uint32_t n = 0; n < commands; ++n)
+      for (const uint32_t word : code_of({I(Opcode::SetHK, 0, 1)})) code.push_back(word);
+    for (int32_t target = 0; target <= static_cast<int32_t>(2 * commands) + 2; ++target) {
+      std::vector<uint32_t> jumps = code;
+      for (const uint32_t word : code_of({I(Opcode::Jmp, target)})) jumps.push_back(word);
+      const bool start = target % 2 == 0 && target <= static_cast<int32_t>(2 * commands);
+      ASSERT_EQ(first_violation(jumps).count, start ? 0U : 1U) << target;
+    }
+  }
+}
+
+// Behind a word that is no command the next one is looked at.
+TEST(Verifier, EveryUnknownWordIsReported) {
+  std::array<Violation, 8> out{};
+  const std::vector<uint32_t> code{0, 0xFF, 0, static_cast<uint32_t>(Opcode::End)};
+  EXPECT_EQ(verify(code, kLimits, out).violations, 3U);
+  for (uint32_t n = 0; n < 3; ++n) {
+    EXPECT_EQ(out[n].rule, Rule::UnknownOpcode);
+    EXPECT_EQ(out[n].address, n);
+  }
+}
+
 TEST(Verifier, AcceptsEverySingleCommandWithSoundOperands) {
   for (const OpcodeInfo& row : opcode_table()) {
     Instruction command{row.opcode, {}};
