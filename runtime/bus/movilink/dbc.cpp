@@ -1,43 +1,21 @@
-// Writes DBC. Bit numbers: 8 * byte + bit, bit 7 the highest. A big-endian signal is named by its highest
-// bit, a little-endian one by its lowest.
+// Writes DBC: which messages there are, and their text.
 #include "runtime/bus/movilink/dbc.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <set>
+
+#include "runtime/bus/movilink/dbc_signals.hpp"
 
 namespace ipos::runtime {
 namespace {
 
-constexpr size_t kLongestName = 32;
 constexpr const char* kNobody = "Vector__XXX";
 
-std::string identifier(std::string_view text) {
-  std::string name;
-  for (const char c : text) {
-    const bool good = std::isalnum(static_cast<unsigned char>(c)) != 0;
-    if (good)
-      name += c;
-    else if (!name.empty() && name.back() != '_')
-      name += '_';
-  }
-  while (!name.empty() && name.back() == '_') name.pop_back();
-  if (name.empty() || std::isdigit(static_cast<unsigned char>(name[0])) != 0) name.insert(0, "_");
-  return name.size() > kLongestName ? name.substr(0, kLongestName) : name;
-}
-
-struct Signal {
-  std::string name;
-  uint32_t start;
-  uint32_t bits;
-  bool intel;
-  bool is_signed;
-  double factor = 1;
-  std::string unit;
-};
+using dbc::identifier;
+using dbc::Signal;
 
 struct Message {
   uint32_t id;
@@ -49,39 +27,6 @@ struct Message {
   int32_t cycle = 0;
   std::string comment;
 };
-
-// DPointer carries the low-order bytes, DPointer + 1 those beyond the fourth. What is shorter than a variable
-// is filled with zeros on reception, so it has no sign.
-std::vector<Signal> object_signals(const ObjectNames& object) {
-  const uint32_t length = object.format.length;
-  const bool intel = object.format.layout == VariableLayout::Intel;
-  const uint32_t low_bytes = std::min(length, 4U);
-  const uint32_t high_bytes = length - low_bytes;
-  std::vector<Signal> signals;
-  if (low_bytes > 0)
-    signals.push_back({identifier(object.variables[0]), intel ? 0 : 8 * high_bytes + 7, 8 * low_bytes, intel,
-                       low_bytes == 4, 1, ""});
-  if (high_bytes > 0)
-    signals.push_back(
-        {identifier(object.variables[1]), intel ? 32U : 7U, 8 * high_bytes, intel, high_bytes == 4, 1, ""});
-  if (signals.size() == 2 && signals[0].name == signals[1].name) signals[1].name = "DPointer_1";
-  return signals;
-}
-
-std::vector<Signal> process_signals(const UnitNames& unit, bool input) {
-  std::vector<Signal> signals;
-  for (uint32_t n = 0; n < 3; ++n) {
-    const uint8_t code = (input ? unit.input : unit.output)[n];
-    const ProcessWordScale scale = process_word_scale(input, code);
-    const std::string_view name = unit.unit == nullptr ? "" : process_word_name(*unit.unit, input, code);
-    const double factor = scale.denominator == 0
-                              ? 1
-                              : static_cast<double>(scale.numerator) / static_cast<double>(scale.denominator);
-    signals.push_back({identifier(fmt::format("{}{}_{}", input ? "PI" : "PO", n + 1, name)), 16 * n + 7, 16,
-                       false, scale.is_signed && scale.denominator != 0, factor, std::string(scale.unit)});
-  }
-  return signals;
-}
 
 class Writer {
  public:
@@ -105,6 +50,8 @@ class Writer {
     for (const Message& message : messages_)
       if (message.cycle > 0)
         out += fmt::format("BA_ \"GenMsgCycleTime\" BO_ {} {};\n", message.id, message.cycle);
+    for (const Message& message : messages_)
+      for (const Signal& signal : message.signals) out += values_text(message, signal);
     return out;
   }
 
@@ -116,29 +63,36 @@ class Writer {
   }
 
   void add_unit(const UnitNames& unit) {
-    for (const Telegram telegram : {Telegram::ProcessOutput, Telegram::ProcessInput,
-                                    Telegram::ProcessOutputSync, Telegram::GroupProcessOutput}) {
-      if (!has_telegram(unit.settings, telegram)) continue;
-      const TelegramType& type = telegram_type(telegram);
+    for (const TelegramType& type : kTelegrams) {
+      if (!has_telegram(unit.settings, type.telegram)) continue;
       const bool input = !type.from_master;
       const uint8_t address = type.grouped ? unit.settings.group : unit.settings.address;
-      const uint32_t id = sbus_identifier(telegram, address);
+      const uint32_t id = sbus_identifier(type.telegram, address);
       if (Message* known = find(id)) {  // a group with several members, named by the first one
         known->receivers.insert(identifier(unit.name));
         continue;
       }
-      const char* kind = input                                 ? "PI"
-                         : type.grouped                        ? "GPO"
-                         : telegram == Telegram::ProcessOutput ? "PO"
-                                                               : "PO_sync";
       const std::string whose = type.grouped ? fmt::format("group_{}", address) : unit.name;
-      Message message{id, identifier(fmt::format("{}_{}", kind, whose)),
-                      6,  input ? identifier(unit.name) : kNobody,
-                      {}, process_signals(unit, input),
-                      0,  std::string(type.text)};
+      Message message{id,
+                      identifier(fmt::format("{}_{}", kind_of(type), whose)),
+                      type.parameter ? 8U : 6U,
+                      input ? identifier(unit.name) : kNobody,
+                      {},
+                      type.parameter ? dbc::parameter_signals(unit) : dbc::process_signals(unit, input),
+                      0,
+                      std::string(type.text)};
       if (!input) message.receivers.insert(identifier(unit.name));
       messages_.push_back(std::move(message));
     }
+  }
+
+  static std::string kind_of(const TelegramType& type) {
+    const std::string group = type.grouped ? "G" : "";
+    if (type.parameter)
+      return group + (type.from_master ? "request" : "response") +
+             (type.known == TelegramKnown::Channel2 ? "_2" : "");
+    if (!type.from_master) return "PI";
+    return group + (type.telegram == Telegram::ProcessOutputSync ? "PO_sync" : "PO");
   }
 
   // Sender and receivers of one identifier are one message; the sender's names win.
@@ -150,7 +104,7 @@ class Writer {
                            object.format.length,
                            kNobody,
                            {},
-                           object_signals(object),
+                           dbc::object_signals(object),
                            0,
                            "variable telegram"});
       message = &messages_.back();
@@ -161,9 +115,16 @@ class Writer {
     }
     if (message->sender != kNobody) return;
     message->sender = identifier(object.station);
-    message->signals = object_signals(object);
+    message->signals = dbc::object_signals(object);
     message->bytes = object.format.length;
     message->cycle = object.cycle;
+  }
+
+  static std::string values_text(const Message& message, const Signal& signal) {
+    if (signal.values.empty()) return {};
+    std::string text = fmt::format("VAL_ {} {}", message.id, signal.name);
+    for (const auto& [value, name] : signal.values) text += fmt::format(" {} \"{}\"", value, name);
+    return text + " ;\n";
   }
 
   static std::string message_text(const Message& message) {
@@ -172,12 +133,16 @@ class Writer {
     const std::string receivers =
         message.receivers.empty() ? kNobody : fmt::format("{}", fmt::join(message.receivers, ","));
     for (const Signal& signal : message.signals) {
+      const std::string multiplex = signal.multiplexor   ? " M"
+                                    : signal.multiplexed ? fmt::format(" m{}", *signal.multiplexed)
+                                                         : "";
       const double span = std::exp2(static_cast<double>(signal.bits));
       const double low = signal.is_signed ? -span / 2 : 0;
       const double high = signal.is_signed ? span / 2 - 1 : span - 1;
-      text += fmt::format(" SG_ {} : {}|{}@{}{} ({:.12g},0) [{:.12g}|{:.12g}] \"{}\" {}\n", signal.name, signal.start,
-                          signal.bits, signal.intel ? 1 : 0, signal.is_signed ? '-' : '+', signal.factor,
-                          low * signal.factor, high * signal.factor, signal.unit, receivers);
+      text += fmt::format(" SG_ {}{} : {}|{}@{}{} ({:.12g},0) [{:.12g}|{:.12g}] \"{}\" {}\n", signal.name,
+                          multiplex, signal.start, signal.bits, signal.intel ? 1 : 0,
+                          signal.is_signed ? '-' : '+', signal.factor, low * signal.factor,
+                          high * signal.factor, signal.unit, receivers);
     }
     return text + "\n";
   }

@@ -1,5 +1,6 @@
 // A DBC file of what runs over an SBus: variable telegrams with the names of their variables, and the process
-// data of each unit by P870..P875. The parameter channel has no fixed content and is not in it.
+// data of each unit by P870..P875 with the bits of control and status words, and the parameter channel with the
+// index as multiplexor.
 #pragma once
 
 #include <string>

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "stdlib/faults.hpp"
 
 namespace ipos::runtime {
@@ -100,17 +102,55 @@ std::string status_word_text(const stdlib::UnitType& unit, int number, uint16_t 
   return text;
 }
 
-std::string unit_word_text(const stdlib::UnitType& unit, bool input, uint8_t code, uint16_t word) {
-  struct Word {
-    bool input;
-    uint8_t code;
-    int number;
-  };
-  constexpr Word kWords[] = {{false, 9, 1}, {false, 10, 2}, {true, 6, 1}, {true, 7, 2}, {true, 11, 3}};
+namespace {
+
+struct Word {
+  bool input;
+  uint8_t code;
+  int number;
+};
+constexpr Word kWords[] = {{false, 9, 1}, {false, 10, 2}, {true, 6, 1}, {true, 7, 2}, {true, 11, 3}};
+
+const Word* find_word(bool input, uint8_t code) {
   for (const Word& row : kWords)
-    if (row.input == input && row.code == code)
-      return input ? status_word_text(unit, row.number, word) : control_word_text(unit, row.number, word);
-  return {};
+    if (row.input == input && row.code == code) return &row;
+  return nullptr;
+}
+
+}  // namespace
+
+std::string unit_word_text(const stdlib::UnitType& unit, bool input, uint8_t code, uint16_t word) {
+  const Word* row = find_word(input, code);
+  if (row == nullptr) return {};
+  return input ? status_word_text(unit, row->number, word) : control_word_text(unit, row->number, word);
+}
+
+std::vector<WordBit> unit_word_bits(const stdlib::UnitType& unit, bool input, uint8_t code) {
+  const Word* word = find_word(input, code);
+  if (word == nullptr) return {};
+  std::vector<WordBit> bits;
+  if (input) {
+    bits = {{1, "ready", "not ready", "ready"}, {5, "fault or warning"}};
+    for (const StatusBit& row : kStatusBits)
+      if ((row.units & units_of(unit)) != 0) bits.push_back({row.bit, row.text});
+  } else {
+    bits = {{0, "controller inhibit"},
+            {1, "no rapid stop", "rapid stop", "enable"},
+            {2, "no stop", "stop", "enable"}};
+    for (const ControlBit& row : kControlBits)
+      if ((row.units & units_of(unit)) != 0 && (row.word == 0 || row.word == word->number))
+        bits.push_back({row.bit, row.text});
+  }
+  std::sort(bits.begin(), bits.end(), [](const WordBit& a, const WordBit& b) { return a.bit < b.bit; });
+  return bits;
+}
+
+std::vector<std::pair<int, std::string>> unit_state_texts(uint8_t code) {
+  std::vector<std::pair<int, std::string>> texts;
+  const Word* word = find_word(true, code);
+  if (word != nullptr && word->number == 1)
+    for (const Condition& row : kConditions) texts.emplace_back(row.code, row.text);
+  return texts;
 }
 
 }  // namespace ipos::runtime

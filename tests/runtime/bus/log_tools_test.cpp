@@ -12,6 +12,7 @@
 #include "runtime/bus/log/bus_load.hpp"
 #include "runtime/bus/log/replay.hpp"
 #include "runtime/bus/movilink/dbc.hpp"
+#include "runtime/bus/movilink/parameter_telegram.hpp"
 #include "runtime/bus/movilink/process_data.hpp"
 #include "tests/runtime/bus/wire_model.hpp"
 
@@ -128,7 +129,7 @@ struct Message {
 std::map<unsigned, Message> parse_dbc(const std::string& text) {
   static const std::regex message(R"(BO_ (\d+) (\w+): (\d+) (\w+))");
   static const std::regex signal(
-      R"re( SG_ (\w+) : (\d+)\|(\d+)@([01])([+-]) \(([^,]+),0\) \[[^|]+\|[^\]]+\] "[^"]*" (.+))re");
+      R"re( SG_ (\w+)(?: M| m\d+)? : (\d+)\|(\d+)@([01])([+-]) \(([^,]+),0\) \[[^|]+\|[^\]]+\] "[^"]*" (.+))re");
   std::map<unsigned, Message> messages;
   Message* current = nullptr;
   std::istringstream in(text);
@@ -221,14 +222,54 @@ TEST(Dbc, ProcessDataWithScaleAndNodes) {
   const Frame frame = process_frame(12, {0x0202, static_cast<uint16_t>(-5000), 100});
   const Message& input = messages.at(12);
   EXPECT_EQ(input.sender, "unit1");
-  ASSERT_EQ(input.signals.size(), 3U);
-  EXPECT_EQ(input.signals[1].name, "PI2_SPEED");
-  EXPECT_EQ(decode(input.signals[0], frame), 0x0202);
-  EXPECT_DOUBLE_EQ(static_cast<double>(decode(input.signals[1], frame)) * input.signals[1].factor, -1000);
-  EXPECT_DOUBLE_EQ(static_cast<double>(decode(input.signals[2], frame)) * input.signals[2].factor, 10);
+  const auto shown = [&](const std::string& name) {
+    for (const Signal& signal : input.signals)
+      if (signal.name == name) return static_cast<double>(decode(signal, frame)) * signal.factor;
+    ADD_FAILURE() << name;
+    return 0.0;
+  };
+  EXPECT_DOUBLE_EQ(shown("PI2_SPEED"), -1000);
+  EXPECT_DOUBLE_EQ(shown("PI3_OUTP_CURRENT"), 10);
+  // 0202h: bit 1, ready, and the state 2, no enable.
+  EXPECT_EQ(shown("PI1_ready"), 1);
+  EXPECT_EQ(shown("PI1_output_stage_on"), 0);
+  EXPECT_EQ(shown("PI1_state"), 2);
   EXPECT_EQ(messages.at(22).signals[0].receivers, "unit1,unit2");  // one message of the group
   EXPECT_TRUE(messages.contains(13));
-  EXPECT_EQ(messages.at(11).signals[2].name, "PO3_RAMP");
+  EXPECT_EQ(messages.at(11).signals.back().name, "PO3_RAMP");
+}
+
+TEST(Dbc, ControlWordBitsAndTheParameterChannel) {
+  TelegramNames names;
+  UnitNames unit;
+  unit.name = "unit1";
+  unit.unit = stdlib::find_unit("md60a");
+  unit.settings = {1, 2, 0};
+  unit.output = {9, 1, 8};
+  names.units.push_back(unit);
+  const std::string text = dbc_text(names);
+  const auto messages = parse_dbc(text);
+  // 0806h in bytes 0 and 1: enable (bits 1 and 2), bit 11 a fixed setpoint.
+  const Frame po = process_frame(11, {0x0806, 0, 0});
+  std::string on;
+  for (const Signal& signal : messages.at(11).signals)
+    if (signal.bits == 1 && decode(signal, po) != 0) on += signal.name + " ";
+  EXPECT_EQ(on, "PO1_no_rapid_stop PO1_no_stop PO1_fixed_setpoint_bit_0 ");
+  // A request to address 1: 523; write index 8470, P130, 2500.
+  ASSERT_TRUE(messages.contains(523));
+  const Frame request{523, 8, encode(parameter_request(Service::Write, 8470, 0, 2500))};
+  const auto value = [&](const std::string& begin) {
+    for (const Signal& signal : messages.at(523).signals)
+      if (signal.name.starts_with(begin)) return static_cast<double>(decode(signal, request)) * signal.factor;
+    ADD_FAILURE() << begin;
+    return 0.0;
+  };
+  EXPECT_EQ(value("Service"), 2);
+  EXPECT_EQ(value("Index"), 8470);
+  EXPECT_DOUBLE_EQ(value("P130_"), 2.5);
+  EXPECT_NE(text.find("VAL_ 523 Service 0 \"no service\" 1 \"read\""), std::string::npos);
+  EXPECT_NE(text.find(" SG_ Index M : 23|16@0+"), std::string::npos);
+
 }
 
 }  // namespace
