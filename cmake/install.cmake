@@ -27,6 +27,14 @@ install(FILES ${shell}/ipos DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion
 install(FILES ${shell}/_ipos DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
 install(FILES ${shell}/ipos.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 
+# The Wireshark dissector, also written by the program, where Wireshark looks: below /usr, and below ~/.local.
+set(dissector ${PROJECT_BINARY_DIR}/wireshark/movilink.lua)
+file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/wireshark)
+add_custom_command(OUTPUT ${dissector} COMMAND ipos bus dissector -o ${dissector} DEPENDS ipos
+                   COMMENT "Writing the dissector for Wireshark")
+add_custom_target(ipos_dissector ALL DEPENDS ${dissector})
+install(FILES ${dissector} DESTINATION ${CMAKE_INSTALL_LIBDIR}/wireshark/plugins)
+
 # The VS Code extension, where somebody has built it: that takes npm and its registry.
 set(extension ${PROJECT_SOURCE_DIR}/tools/vscode)
 file(GLOB_RECURSE extension_sources CONFIGURE_DEPENDS ${extension}/src/* ${extension}/*.json)

@@ -21,7 +21,7 @@ TEST(Bus, UsageAndHelp) {
   EXPECT_EQ(run_ipos({"bus", "load", "x.log"}).exit_code, 64);  // needs --baud
   EXPECT_EQ(run_ipos({"bus", "plan", "x.toml", "--trial", "soon"}).exit_code, 64);
   EXPECT_EQ(run_ipos({"bus", "replay", "a", "b", "--id", "xyz"}).exit_code, 64);
-  for (const std::string verb : {"plan", "decode", "monitor", "load", "replay", "dbc"}) {
+  for (const std::string verb : {"plan", "decode", "monitor", "load", "replay", "dbc", "dissector"}) {
     const CommandResult help = run_ipos({"bus", verb, "--help"});
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_TRUE(contains(help.out, "Example")) << verb;

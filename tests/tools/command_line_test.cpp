@@ -98,7 +98,7 @@ TEST(CommandLine, BashCompletesVerbsOptionsAndClosedLists) {
   const auto script = std::filesystem::path(testing::TempDir()) / "ipos.bash";
   std::ofstream(script) << run_ipos({"completion", "bash"}).out;
   EXPECT_EQ(offered(script, "ipos bui"), "build");
-  EXPECT_EQ(offered(script, "ipos bus \"\""), "plan decode monitor load replay dbc --help");
+  EXPECT_EQ(offered(script, "ipos bus \"\""), "plan decode monitor load replay dbc dissector --help");
   EXPECT_EQ(offered(script, "ipos bus p"), "plan");
   EXPECT_EQ(offered(script, "ipos run --engi"), "--engine");
   EXPECT_EQ(offered(script, "ipos run --engine \"\""), "reference fast native");

@@ -375,6 +375,7 @@ TEST_F(Param, VerbsThatLookLeaveTheMemoryAlone) {
   const std::vector<std::vector<std::string>> looks = {
       {"bus", "plan", "plant.toml"},
       {"bus", "dbc", "plant.toml"},
+      {"bus", "dissector", "plant.toml"},
       {"bus", "decode", "can.log", "--names", "plant.toml"},
       {"bus", "monitor", "can.log", "--plant", "plant.toml"},
       {"bus", "replay", "can.log", "plant.toml"},

@@ -6,7 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <sstream>
+
+#include "tools/recording/plot_html.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -180,6 +183,50 @@ TEST(PlotSvg, ConstantAndExtremeValues) {
       for (const PlotPoint& point : line)
         ASSERT_TRUE(std::isfinite(point.x) && std::isfinite(point.y)) << value;
   }
+}
+
+// A number that is only 0 and 1 is one, too; one that never is 1 may be a fault that did not come.
+TEST(PlotSvg, BinarySignalsHaveStrips) {
+  Recording recording = ramp(10);
+  recording.signals = {{"u.DI00", ""}, {"u.lState", ""}, {"u.fault", ""}, {"u.lCount", ""}};
+  recording.signals[0].bits = 1;
+  recording.samples = {{0, 0, 1, 1, 1, 0, 0, 0, 0, 0},
+                       {0, 1, 0, 1, 0, 1, 0, 1, 0, 1},
+                       std::vector<int64_t>(10, 0),
+                       {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}};
+  const Picture picture(recording);
+  EXPECT_EQ(picture.lines.size(), 2U) << "fault and count";
+  ASSERT_EQ(picture.strips.size(), 2U);
+  // Low, up, down, and to the end: the level changes twice.
+  EXPECT_EQ(std::count(picture.strips[0].begin(), picture.strips[0].end(), 'V'), 2);
+  EXPECT_EQ(std::count(picture.strips[1].begin(), picture.strips[1].end(), 'V'), 9);
+  for (const char* name : {"u.DI00", "u.lState", "u.fault", "u.lCount"})
+    EXPECT_TRUE(picture.shows(name)) << name;
+  EXPECT_LE(picture.lowest, picture.height);
+}
+
+TEST(PlotHtml, OneFileWithTheRecordingInIt) {
+  Recording recording = ramp(4);
+  recording.signals.push_back({"u.DI00", "", 1, 0, false, "u", 1});
+  recording.samples.push_back({0, 1, 1, 0});
+  recording.events.push_back({2 * kMillisecond, "u: F28 </script>", true});
+  recording.tracks.push_back({"sbus"});
+  recording.frames.push_back({kMillisecond + 500'000, 0, 5, false, false, {}, ""});
+  const std::string page = plot_html(recording, "a & b");
+  for (const char* part : {"http:", "https:", " src=", "@import", "@DATA@"})
+    EXPECT_EQ(page.find(part), std::string::npos) << part;
+  const std::string begin = "<script id=\"data\" type=\"application/json\">";
+  const size_t at = page.find(begin) + begin.size();
+  const auto data = nlohmann::json::parse(page.substr(at, page.find("</script>", at) - at));
+  EXPECT_EQ(data["title"], "a & b");
+  EXPECT_EQ(data["samples"], 4);
+  EXPECT_EQ(data["signals"].size(), 5U);
+  // A ramp to 1500 rpm in four steps, and a level that changes twice.
+  EXPECT_EQ(data["signals"][0]["changes"], nlohmann::json({0, 375.0, 1, 750.0, 2, 1125.0, 3, 1500.0}));
+  EXPECT_EQ(data["signals"][4]["changes"], nlohmann::json({0, 0, 1, 1, 3, 0}));
+  EXPECT_TRUE(data["signals"][4]["binary"]);
+  EXPECT_EQ(data["events"][0]["text"], "u: F28 </script>");
+  EXPECT_EQ(data["tracks"][0]["times"], nlohmann::json({1.5}));
 }
 
 TEST(AxisTicks, RoundSteps) {

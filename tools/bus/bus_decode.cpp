@@ -1,4 +1,4 @@
-// ipos bus decode: a candump log, a log of RS-485 lines or bare RS-485 telegrams in words and units.
+// ipos bus decode: a log of any form, or bare RS-485 telegrams, in words and units.
 #include <fmt/format.h>
 
 #include <optional>
@@ -7,7 +7,9 @@
 #include "compiler/diag/places.hpp"
 #include "runtime/bus/log/serial_log.hpp"
 #include "runtime/bus/movilink/describe_serial.hpp"
+#include "runtime/bus/profibus/frame_text.hpp"
 #include "tools/bus/bus_verbs.hpp"
+#include "tools/bus/telegram_json.hpp"
 #include "tools/cli/exit_codes.hpp"
 #include "tools/input/program.hpp"
 
@@ -17,6 +19,7 @@ namespace {
 struct DecodeFlags {
   std::string log;
   NamesFlags names;
+  std::string format = "text";
 };
 
 // "(0946684800.000102)" as in the log, so that a line can be found again.
@@ -30,41 +33,47 @@ size_t identifier_column(const runtime::LogEntry& entry) {
   return time_text(entry).size() + entry.bus.size() + 3;
 }
 
-// Both kinds of lines, each with the dictionary of its bus: that of a plant is made when it is first needed.
+// Telegrams of every kind of bus, each with the dictionary of its bus: that of a plant is made when it is
+// first needed.
 class Decoder {
  public:
-  explicit Decoder(const DecodeFlags& flags) : flags_(flags) {}
+  explicit Decoder(const DecodeFlags& flags) : flags_(flags), json_(flags.format == "json") {}
 
-  std::optional<runtime::LogError> take(std::string_view row, size_t line) {
-    if (runtime::is_serial_line(row)) {
-      const auto entry = runtime::parse_serial_line(row, line);
-      if (!entry) return entry.error();
-      show(*entry);
-      return std::nullopt;
-    }
-    const auto entry = runtime::parse_candump_line(row, line);
-    if (!entry) return entry.error();
-    show(*entry, line);
-    return std::nullopt;
+  void take(const runtime::LogEntry& entry, LogPlace place) {
+    if (!words_) words_.emplace(can_names_of(flags_.names));
+    const runtime::Description description = words_->describe(entry.bus, entry.frame);
+    if (json_) return print(telegram_json(entry), description.text);
+    fmt::print("{} {} {}\n", time_text(entry), compiler::printable(entry.bus), description.text);
+    if (description.known || !unknown_.emplace(entry.frame.extended, entry.frame.id).second) return;
+    if (place.line != 0) place.column = identifier_column(entry);
+    fmt::print(stderr, "{}: note: nothing is known about identifier {}{}\n", place_text(flags_.log, place),
+               entry.frame.id, entry.frame.extended ? " (29 bits)" : "");
+  }
+  void take(const runtime::SerialEntry& entry) {
+    if (!serial_names_) serial_names_ = serial_names_of(flags_.names.plant, flags_.names.compile);
+    const std::string text = runtime::describe(*serial_names_, entry.reception);
+    if (json_) return print(telegram_json(entry), text);
+    if (entry.time)
+      fmt::print("{} {} ", runtime::serial_time_text(*entry.time), compiler::printable(entry.line));
+    fmt::print("{}\n", text);
+  }
+  void take(const DpEntry& entry) {
+    const auto frame = profibus::decode(entry.octets);
+    const std::string text = frame ? profibus::describe(*frame)
+                                   : fmt::format("void, {}: {}", frame_error_text(frame.error()),
+                                                 profibus::hex_text(entry.octets));
+    if (json_) return print(telegram_json(entry), text);
+    fmt::print("{} {} {}\n", runtime::serial_time_text(entry.time), compiler::printable(entry.line), text);
   }
 
  private:
-  void show(const runtime::LogEntry& entry, size_t line) {
-    if (!words_) words_.emplace(can_names_of(flags_.names));
-    const runtime::Description description = words_->describe(entry.bus, entry.frame);
-    fmt::print("{} {} {}\n", time_text(entry), compiler::printable(entry.bus), description.text);
-    if (!description.known && unknown_.emplace(entry.frame.extended, entry.frame.id).second)
-      fmt::print(stderr, "{}:{}:{}: note: nothing is known about identifier {}{}\n", flags_.log, line,
-                 identifier_column(entry), entry.frame.id, entry.frame.extended ? " (29 bits)" : "");
-  }
-  void show(const runtime::SerialEntry& entry) {
-    if (!serial_names_) serial_names_ = serial_names_of(flags_.names.plant, flags_.names.compile);
-    if (entry.time)
-      fmt::print("{} {} ", runtime::serial_time_text(*entry.time), compiler::printable(entry.line));
-    fmt::print("{}\n", runtime::describe(*serial_names_, entry.reception));
+  static void print(nlohmann::ordered_json fields, const std::string& text) {
+    fields["text"] = text;
+    fmt::print("{}\n", fields.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   }
 
   const DecodeFlags& flags_;
+  bool json_;
   std::optional<runtime::CanWords> words_;
   std::optional<runtime::TelegramNames> serial_names_;
   std::set<std::pair<bool, uint32_t>> unknown_;
@@ -72,8 +81,11 @@ class Decoder {
 
 int decode(const DecodeFlags& flags) {
   Decoder decoder(flags);
-  const size_t bad =
-      read_lines(flags.log, [&](std::string_view row, size_t line) { return decoder.take(row, line); });
+  const size_t bad = read_log_file(
+      flags.log, {[&](const runtime::LogEntry& entry, LogPlace place) { decoder.take(entry, place); },
+                  [&](const runtime::SerialEntry& entry, LogPlace) { decoder.take(entry); },
+                  [&](const DpEntry& entry, LogPlace) { decoder.take(entry); },
+                  {}});
   return bad == 0 ? kGood : kBadInput;
 }
 
@@ -81,10 +93,14 @@ int decode(const DecodeFlags& flags) {
 
 void add_bus_decode(cli::Verb& bus) {
   auto flags = std::make_shared<DecodeFlags>();
-  cli::Verb& verb = bus.verb("decode", "telegrams of a candump log or of RS-485 in words and units");
+  cli::Verb& verb = bus.verb("decode", "telegrams of a log in words and units");
   verb.option("LOG", flags->log,
-              "candump log, log of --serial-log, or RS-485 telegrams in hexadecimal; - is standard input")
+              "log: candump, pcapng, ASC, TRC, BLF, of --serial-log, or RS-485 telegrams in hexadecimal; - "
+              "is standard "
+              "input")
       .required();
+  verb.option("--format", flags->format, "text, or json: an object a telegram, a line each")
+      .one_of({"text", "json"});
   add_names_options(verb, flags->names);
   verb.footer("Example:\n  ipos bus decode can.log --names examples/scom/scom.toml");
   verb.runs([flags] { return decode(*flags); });

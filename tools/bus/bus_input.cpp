@@ -10,30 +10,25 @@
 
 namespace ipos::tools {
 
-size_t read_lines(const std::string& path, const TakeLine& take) {
-  const std::string text = read_file(path, kLogLimit);
-  std::string_view rest = text;
+size_t read_log_file(const std::string& path, LogReader reader) {
   size_t bad = 0;
-  for (size_t line = 1; !rest.empty(); ++line) {
-    const size_t end = rest.find('\n');
-    const std::string_view row = rest.substr(0, end);
-    rest = end == std::string_view::npos ? std::string_view{} : rest.substr(end + 1);
-    if (row.find_first_not_of(" \t\r") == std::string_view::npos) continue;
-    const auto error = take(row, line);
-    if (!error) continue;
+  reader.wrong = [&](LogPlace place, const std::string& message) {
     ++bad;
-    fmt::print(stderr, "{}:{}:{}: error: {}\n", path, error->line, error->column, error->message);
-  }
+    fmt::print(stderr, "{}: error: {}\n", place_text(path, place), message);
+  };
+  read_log(read_file(path, kLogLimit), reader);
   return bad;
 }
 
-size_t read_log(const std::string& path, const std::function<void(const runtime::LogEntry&, size_t)>& take) {
-  return read_lines(path, [&](std::string_view row, size_t line) -> std::optional<runtime::LogError> {
-    const auto entry = runtime::parse_candump_line(row, line);
-    if (!entry) return entry.error();
-    take(*entry, line);
-    return std::nullopt;
-  });
+size_t read_frames(const std::string& path, const std::function<void(const runtime::LogEntry&)>& take) {
+  size_t others = 0;
+  const auto other = [&](const auto&, LogPlace place) {
+    ++others;
+    fmt::print(stderr, "{}: error: no CAN frame\n", place_text(path, place));
+  };
+  return read_log_file(path,
+                       {[&](const runtime::LogEntry& entry, LogPlace) { take(entry); }, other, other, {}}) +
+         others;
 }
 
 namespace {

@@ -85,7 +85,7 @@ std::string json_report(const BusLoad& load, uint32_t baud) {
 int measure(const LoadFlags& flags) {
   BusLoad load;
   const size_t bad =
-      read_log(flags.log, [&](const runtime::LogEntry& entry, size_t) { load.add(entry.time, entry.frame); });
+      read_frames(flags.log, [&](const runtime::LogEntry& entry) { load.add(entry.time, entry.frame); });
   fmt::print("{}", flags.format == "json" ? json_report(load, flags.baud) : text_report(load, flags.baud));
   return bad == 0 ? kGood : kBadInput;
 }
@@ -94,8 +94,9 @@ int measure(const LoadFlags& flags) {
 
 void add_bus_load(cli::Verb& bus) {
   auto flags = std::make_shared<LoadFlags>();
-  cli::Verb& verb = bus.verb("load", "load of a candump log, exact with stuff bits and at worst");
-  verb.option("LOG", flags->log, "candump log of one line; - is standard input").required();
+  cli::Verb& verb = bus.verb("load", "load of a CAN log, exact with stuff bits and at worst");
+  verb.option("LOG", flags->log, "log of one line, candump, pcapng, ASC, TRC or BLF; - is standard input")
+      .required();
   verb.option("--baud", flags->baud, "of the line, for example 500000").required().between(1000U, 1'000'000U);
   verb.option("--format", flags->format, "text or json").one_of({"text", "json"});
   verb.footer("Example:\n  ipos bus load can.log --baud 500000");

@@ -1,5 +1,6 @@
 // ipos bus monitor: the telegrams of a port or a log in words, as they come.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <set>
 
@@ -10,6 +11,7 @@
 #include "tools/bus/monitor_sources.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/interrupt.hpp"
+#include "tools/cli/terminal.hpp"
 #include "tools/input/program.hpp"
 
 namespace ipos::tools {
@@ -25,6 +27,8 @@ struct MonitorFlags {
   std::string duration;
   uint32_t baud = 0;
   bool follow = false;
+  bool table = false;
+  bool scroll = false;
 };
 
 // By its name or number. With --canopen a number is that of a node. False: there is no such station.
@@ -56,7 +60,10 @@ Monitor make_monitor(const MonitorFlags& flags, MonitorSource source) {
       throw Failure(kUsage, fmt::format("--station {}: {} has no such station, and it is no address", station,
                                         flags.names.plant.empty() ? "nothing known" : flags.names.plant));
   }
-  return {std::move(can), std::move(serial), flags.count};
+  const bool live = source != MonitorSource::Log || flags.follow;
+  const bool table = flags.table || (live && !flags.scroll && flags.count == 0 && is_terminal(STDOUT_FILENO));
+  return {std::move(can), std::move(serial), flags.count,
+          table ? std::make_unique<MonitorScreen>(live && is_terminal(STDOUT_FILENO)) : nullptr};
 }
 
 int monitor(const MonitorFlags& flags) {
@@ -69,6 +76,7 @@ int monitor(const MonitorFlags& flags) {
     throw Failure(kUsage, "--baud is for ports: a log has none");
   const runtime::Time duration =
       flags.duration.empty() ? runtime::kNever : runtime::parse_duration(flags.duration);
+  if (flags.table && flags.scroll) throw Failure(kUsage, "either --table or --scroll");
   Monitor view = make_monitor(flags, source);
   catch_interrupts();
   switch (source) {
@@ -98,6 +106,9 @@ void add_bus_monitor(cli::Verb& bus) {
   verb.option("--for", flags->duration, "end after this time, for example 10s").check(check_time, "TIME");
   verb.option("--baud", flags->baud, "of the port; default 500000, of a serial line 9600");
   verb.flag("--follow,-f", flags->follow, "wait for more at the end of a log");
+  verb.flag("--table", flags->table,
+            "a row an identifier, with counts and changed bytes; default for a port on a terminal");
+  verb.flag("--scroll", flags->scroll, "a line a telegram; default otherwise");
   verb.footer("Example:\n  ipos bus monitor can0 --plant examples/scom/scom.toml --station unit1");
   verb.runs([flags] { return monitor(*flags); });
 }

@@ -10,6 +10,7 @@
 #include "tools/cli/outputs.hpp"
 #include "tools/input/plant_input.hpp"
 #include "tools/input/program.hpp"
+#include "tools/logs/log_writer.hpp"
 #include "tools/run/run_report.hpp"
 
 namespace ipos::tools {
@@ -41,7 +42,7 @@ std::vector<runtime::LogEntry> entries_of(const ReplayFlags& flags) {
   std::set<uint32_t> wanted;
   for (const std::string& id : flags.ids) wanted.insert(static_cast<uint32_t>(std::stoul(id, nullptr, 16)));
   std::vector<runtime::LogEntry> entries;
-  const size_t bad = read_log(flags.log, [&](const runtime::LogEntry& entry, size_t) {
+  const size_t bad = read_frames(flags.log, [&](const runtime::LogEntry& entry) {
     if (wanted.empty() || wanted.contains(entry.frame.id)) entries.push_back(entry);
   });
   if (bad != 0) throw Failure(kBadInput, "");
@@ -58,11 +59,17 @@ int replay(const ReplayFlags& flags) {
   player.start(port, line.bit_time());
 
   LogOutput file(flags.record);
-  std::optional<runtime::CandumpLog> log;
-  if (file.is_open()) plant->add_observer(log.emplace(file.stream()));
+  std::unique_ptr<LogWriter> writer;
+  std::optional<PlantLog> log;
+  if (file.is_open()) {
+    writer = make_log_writer(flags.record, file.stream());
+    log.emplace(*plant, *writer);
+  }
   const Time end = flags.duration.empty() ? player.end() + 100 * runtime::kMillisecond
                                           : runtime::parse_duration(flags.duration);
   plant->run_until(end);
+  if (log) log->finish();
+  writer.reset();
   file.finish();
   fmt::print("{}", text_report(*plant, watch_choice(flags.watch)));
   print_journal(*plant, flags.why);
@@ -80,8 +87,8 @@ std::string check_identifier(const std::string& text) {
 
 void add_bus_replay(cli::Verb& bus) {
   auto flags = std::make_shared<ReplayFlags>();
-  cli::Verb& verb = bus.verb("replay", "put the frames of a candump log on a simulated line at their times");
-  verb.option("LOG", flags->log, "candump log; - is standard input").required();
+  cli::Verb& verb = bus.verb("replay", "put the frames of a CAN log on a simulated line at their times");
+  verb.option("LOG", flags->log, "log, candump, pcapng, ASC, TRC or BLF; - is standard input").required();
   verb.option("PLANT", flags->plant, "plant (.toml)").required();
   verb.option("--bus", flags->bus, "line of the plant; default: the first one");
   verb.option("--id", flags->ids, "only frames with these identifiers, in hexadecimal")
@@ -91,7 +98,8 @@ void add_bus_replay(cli::Verb& bus) {
       .check(check_time, "TIME");
   verb.option("--for", flags->duration, "virtual time to run; default: 100ms longer than the log")
       .check(check_time, "TIME");
-  verb.option("--log", flags->record, "write the frames of all buses in candump format");
+  verb.option("--log", flags->record,
+              "write the frames of all buses, in the form of its ending: .pcapng, .asc, .trc, else candump");
   verb.flag("--watch", flags->watch, "*", "show named variables at the end, all or --watch=NAME,...");
   verb.flag("--why", flags->why, "also tell what was ignored, and why");
   add_compile_options(verb, flags->compile);

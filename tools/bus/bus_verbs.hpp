@@ -10,6 +10,7 @@
 #include "tools/cli/verb.hpp"
 #include "tools/cli/verbs.hpp"
 #include "tools/input/program.hpp"
+#include "tools/logs/log_forms.hpp"
 
 namespace ipos::tools {
 
@@ -19,15 +20,14 @@ void add_bus_monitor(cli::Verb& bus);
 void add_bus_load(cli::Verb& bus);
 void add_bus_replay(cli::Verb& bus);
 void add_bus_dbc(cli::Verb& bus);
+void add_bus_dissector(cli::Verb& bus);
 
-// Calls `take` for each line of a log that is not empty, with its number; prints what it finds wrong as
-// "LOG:line:column: error: ...". Returns how many lines were bad.
-using TakeLine = std::function<std::optional<runtime::LogError>(std::string_view text, size_t line)>;
-size_t read_lines(const std::string& path, const TakeLine& take);
+// Reads a log of any form (tools/logs) from a file or standard input; prints what it finds wrong as
+// "LOG:line:column: error: ...". Returns how many places were bad. `wrong` of the reader is left to it.
+size_t read_log_file(const std::string& path, LogReader reader);
 
-// The same for the frames of a candump log.
-size_t read_log(const std::string& path,
-                const std::function<void(const runtime::LogEntry&, size_t line)>& take);
+// The same for the frames of a CAN log.
+size_t read_frames(const std::string& path, const std::function<void(const runtime::LogEntry&)>& take);
 
 // The dictionary of a plant or program for its CAN lines. Without one `canopen` says that nodes are there.
 struct NamesFlags {

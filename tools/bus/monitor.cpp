@@ -7,6 +7,7 @@
 
 #include "compiler/diag/places.hpp"
 #include "runtime/bus/movilink/describe_serial.hpp"
+#include "runtime/bus/profibus/frame_text.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -32,19 +33,53 @@ void Monitor::take(const runtime::LogEntry& entry) {
   ++shown_;
   if (!description.known && unknown_.size() < kUnknown)
     unknown_.emplace(entry.frame.extended, entry.frame.id);
-  show(entry.time, entry.bus, description.text);
+  if (!screen_) return show(entry.time, entry.bus, description.text);
+  const runtime::Frame& frame = entry.frame;
+  screen_->table().put(entry.time, entry.bus, frame.id,
+                       frame.extended ? fmt::format("{:08X}", frame.id) : fmt::format("{:03X}", frame.id),
+                       std::span(frame.data).first(frame.remote ? 0 : frame.length), description.text);
 }
 
 void Monitor::take(Time time, const std::string& line, const runtime::Reception& reception) {
-  if (const auto text = words(reception)) show(time, line, *text);
+  if (const auto text = words(reception)) show(time, line, reception, *text);
 }
 
 void Monitor::take(const runtime::SerialEntry& entry) {
   const auto text = words(entry.reception);
   if (!text) return;
-  if (entry.time) return show(*entry.time, entry.line, *text);
+  if (entry.time || screen_) return show(entry.time.value_or(0), entry.line, entry.reception, *text);
   begin_line();
   fmt::print("{}\n", *text);
+}
+
+void Monitor::take(const DpEntry& entry) {
+  ++seen_;
+  if (full()) return;
+  ++shown_;
+  const auto frame = profibus::decode(entry.octets);
+  if (!frame) ++void_;
+  const std::string text =
+      frame ? profibus::describe(*frame)
+            : fmt::format("void, {}: {}", frame_error_text(frame.error()), profibus::hex_text(entry.octets));
+  if (!screen_) return show(entry.time, entry.line, text);
+  // A row for each pair of stations.
+  const uint32_t pair = frame ? uint32_t{frame->source} << 8 | frame->destination : UINT32_MAX;
+  screen_->table().put(entry.time, entry.line, pair,
+                       frame ? fmt::format("{} -> {}", frame->source, frame->destination) : "void",
+                       entry.octets, text);
+}
+
+void Monitor::show(Time time, const std::string& line, const runtime::Reception& reception,
+                   const std::string& text) {
+  if (!screen_) return show(time, line, text);
+  // A row for the requests to each address, and one for its answers.
+  std::string id = "void";
+  uint32_t number = UINT32_MAX;
+  if (const auto& telegram = reception.telegram) {
+    id = fmt::format("{} {}", telegram->response ? "<-" : "->", telegram->address);
+    number = 2U * telegram->address + (telegram->response ? 1 : 0);
+  }
+  screen_->table().put(time, line, number, id, reception.bytes.span(), text);
 }
 
 std::optional<std::string> Monitor::words(const runtime::Reception& reception) {
@@ -58,6 +93,7 @@ std::optional<std::string> Monitor::words(const runtime::Reception& reception) {
 
 void Monitor::lost(Time time, const std::string& line, uint64_t count, const char* what) {
   lost_ += count;
+  if (screen_) return screen_->table().tell(fmt::format("{}: {} {} lost", line, lost_, what));
   if (losing_ != nullptr) {
     lost_more_ += count;
     return;
@@ -68,6 +104,7 @@ void Monitor::lost(Time time, const std::string& line, uint64_t count, const cha
 
 void Monitor::bus_error(Time time, const std::string& line, const std::string& text) {
   ++errors_;
+  if (screen_) return screen_->table().tell(fmt::format("{}: bus error {}: {}", line, errors_, text));
   if (text == last_error_) {
     ++repeated_;
     return;
@@ -76,7 +113,10 @@ void Monitor::bus_error(Time time, const std::string& line, const std::string& t
   last_error_ = text;
 }
 
-void Monitor::note(const std::string& text) const { fmt::print(stderr, "ipos: warning: {}\n", text); }
+void Monitor::note(const std::string& text) const {
+  if (screen_) return screen_->table().tell(text);
+  fmt::print(stderr, "ipos: warning: {}\n", text);
+}
 
 void Monitor::show(Time time, const std::string& line, const std::string& text) {
   begin_line();
@@ -96,11 +136,15 @@ void Monitor::end_repetition() {
   losing_ = nullptr;
 }
 
-void Monitor::flush() { std::fflush(stdout); }
+void Monitor::flush() {
+  if (screen_) screen_->look();
+  std::fflush(stdout);
+}
 
 void Monitor::finish() {
   end_repetition();
-  flush();
+  if (screen_) screen_->finish();
+  std::fflush(stdout);
   std::string text = fmt::format("ipos: {} telegrams, {} shown", seen_, shown_);
   const auto add = [&text](uint64_t count, const char* what) {
     if (count != 0) text += fmt::format(", {} {}", count, what);

@@ -1,8 +1,9 @@
-// What `ipos bus monitor` shows: telegrams in words, one a line, with what the line lost and the errors of
+// What `ipos bus monitor` shows: telegrams in words, one a line or in a table, with what the line lost and the errors of
 // the bus between them where they came. The sources (monitor_sources.hpp) bring the telegrams.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -14,6 +15,8 @@
 #include "runtime/bus/movilink/describe.hpp"
 #include "runtime/bus/movilink/serial_receiver.hpp"
 #include "runtime/bus/movilink/station_filter.hpp"
+#include "tools/bus/monitor_screen.hpp"
+#include "tools/logs/log_forms.hpp"
 
 namespace ipos::tools {
 
@@ -30,13 +33,15 @@ class Monitor {
   };
 
   // `count` telegrams are shown, 0: no limit.
-  Monitor(CanView can, SerialView serial, uint64_t count)
-      : can_(std::move(can)), serial_(std::move(serial)), limit_(count) {}
+  // `screen` for a table in place of a line a telegram.
+  Monitor(CanView can, SerialView serial, uint64_t count, std::unique_ptr<MonitorScreen> screen)
+      : can_(std::move(can)), serial_(std::move(serial)), limit_(count), screen_(std::move(screen)) {}
 
   // Times as in candump logs (kCandumpEpoch).
   void take(const runtime::LogEntry& entry);
   void take(runtime::Time time, const std::string& line, const runtime::Reception& reception);
   void take(const runtime::SerialEntry& entry);
+  void take(const DpEntry& entry);
   // Frames or bytes that were lost before they could be read. Losses in a row are shown once, with their sum
   // behind.
   void lost(runtime::Time time, const std::string& line, uint64_t count, const char* what);
@@ -44,7 +49,8 @@ class Monitor {
   void bus_error(runtime::Time time, const std::string& line, const std::string& text);
   void note(const std::string& text) const;
 
-  bool full() const { return limit_ != 0 && shown_ >= limit_; }
+  // No more is wanted: so many telegrams were shown, or the user wants to end.
+  bool full() const { return (limit_ != 0 && shown_ >= limit_) || (screen_ && screen_->ended()); }
   void flush();
 
   // Totals, to standard error.
@@ -54,12 +60,15 @@ class Monitor {
   // Its text, if it is to be shown.
   std::optional<std::string> words(const runtime::Reception& reception);
   void show(runtime::Time time, const std::string& line, const std::string& text);
+  void show(runtime::Time time, const std::string& line, const runtime::Reception& reception,
+            const std::string& text);
   void begin_line();
   void end_repetition();
 
   CanView can_;
   SerialView serial_;
   uint64_t limit_;
+  std::unique_ptr<MonitorScreen> screen_;
   uint64_t seen_ = 0;
   uint64_t shown_ = 0;
   uint64_t void_ = 0;

@@ -1,5 +1,4 @@
-// The monitor at a log, candump or of RS-485 lines, also one that another program is writing, or at standard
-// input.
+// The monitor at a log of any form, or at standard input; a log of lines also while another program writes it.
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/stat.h>
@@ -16,12 +15,14 @@
 #include "tools/cli/failure.hpp"
 #include "tools/cli/files.hpp"
 #include "tools/cli/interrupt.hpp"
+#include "tools/logs/log_forms.hpp"
 
 namespace ipos::tools {
 namespace {
 
 using runtime::Time;
 
+constexpr size_t kToKnowTheForm = 8;                // bytes
 constexpr Time kLook = 50 * runtime::kMillisecond;  // how often a log that is followed is looked at (ours)
 
 class LogFile {
@@ -65,6 +66,8 @@ class LogFile {
     return true;
   }
 
+  size_t size() const { return text_.size(); }
+  std::string_view text() const { return text_; }
   size_t number() const { return number_; }  // of the last line, from 1
 
  private:
@@ -75,58 +78,83 @@ class LogFile {
   size_t number_ = 0;
 };
 
+// Whether more may be shown, and what came of it.
+class Showing {
+ public:
+  Showing(Monitor& monitor, const std::string& path, Time duration)
+      : monitor_(monitor), path_(path), duration_(duration) {}
+
+  // Of a log that is not followed, `duration` is time in the log.
+  template <typename Entry>
+  void take(const Entry& entry, std::optional<Time> time, bool in_log) {
+    if (!first_) first_ = time;
+    if (in_log && duration_ != runtime::kNever && time && *time - *first_ >= duration_)
+      over_ = true;
+    else if (!over())
+      monitor_.take(entry);
+  }
+  void wrong(LogPlace place, const std::string& message) {
+    if (over()) return;
+    bad_ = true;
+    fmt::print(stderr, "{}: error: {}\n", place_text(path_, place), message);
+  }
+  void end() { over_ = true; }
+  bool over() const { return over_ || interrupted() || monitor_.full(); }
+  int finish() {
+    monitor_.finish();
+    if (interrupted()) return kInterrupted;
+    return bad_ ? kBadInput : kGood;
+  }
+  // Passes on what a reader finds.
+  LogReader reader(bool in_log) {
+    return {[this, in_log](const runtime::LogEntry& entry, LogPlace) { take(entry, entry.time, in_log); },
+            [this, in_log](const runtime::SerialEntry& entry, LogPlace) { take(entry, entry.time, in_log); },
+            [this, in_log](const DpEntry& entry, LogPlace) { take(entry, entry.time, in_log); },
+            [this](LogPlace place, const std::string& message) { wrong(place, message); }};
+  }
+
+ private:
+  Monitor& monitor_;
+  const std::string& path_;
+  Time duration_;
+  std::optional<Time> first_;
+  bool bad_ = false;
+  bool over_ = false;
+};
+
 }  // namespace
 
 int monitor_log(Monitor& monitor, const std::string& path, bool follow, Time duration) {
   runtime::SystemClock clock;
   LogFile log(path);
+  Showing showing(monitor, path, duration);
+  const LogReader reader = showing.reader(!follow);
   const Time begin = clock.now();
-  std::optional<Time> first;
-  bool bad = false;
-  bool in_time = true;
-  const auto over = [&] {
-    if (follow && duration != runtime::kNever && clock.now() - begin >= duration) in_time = false;
-    return interrupted() || monitor.full() || !in_time;
-  };
-  const auto show = [&](const auto& entry, std::optional<Time> time) {
-    if (!entry) {
-      bad = true;
-      fmt::print(stderr, "{}:{}:{}: error: {}\n", path, entry.error().line, entry.error().column,
-                 entry.error().message);
-      return;
-    }
-    if (!first) first = time;
-    if (!follow && duration != runtime::kNever && time && *time - *first >= duration)
-      in_time = false;
-    else
-      monitor.take(*entry);
-  };
-  const auto take = [&](std::string_view row) {
-    if (row.find_first_not_of(" \t\r") == std::string_view::npos) return;
-    if (runtime::is_serial_line(row)) {
-      const auto entry = runtime::parse_serial_line(row, log.number());
-      show(entry, entry ? entry->time : std::nullopt);
-    } else {
-      const auto entry = runtime::parse_candump_line(row, log.number());
-      show(entry, entry ? std::optional(entry->time) : std::nullopt);
-    }
-  };
-  for (bool more = true; !over();) {
+  bool looked = false;
+  for (bool more = true; !showing.over();) {
     more = log.read_more();
-    while (!over()) {
+    if (!looked && (!more || log.size() >= kToKnowTheForm)) {
+      looked = true;
+      if (log_form(log.text()) != LogForm::Lines) {
+        if (follow) throw Failure(kUsage, "--follow is for candump and serial logs");
+        while (log.read_more() && !interrupted()) continue;
+        read_log(log.text(), reader);
+        return showing.finish();
+      }
+    }
+    while (looked && !showing.over()) {
       const auto row = log.line(!more && !follow);
       if (!row) break;
-      take(*row);
+      read_log_line(*row, log.number(), reader);
     }
     monitor.flush();
-    if (more || over()) continue;
+    if (follow && duration != runtime::kNever && clock.now() - begin >= duration) showing.end();
+    if (more || showing.over()) continue;
     if (!follow) break;
     if (log.begun_anew()) monitor.note(path + " has been begun anew");
     clock.wait(clock.now() + kLook, {});
   }
-  monitor.finish();
-  if (interrupted()) return kInterrupted;
-  return bad ? kBadInput : kGood;
+  return showing.finish();
 }
 
 }  // namespace ipos::tools

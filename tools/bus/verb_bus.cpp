@@ -12,6 +12,7 @@ void add_bus(cli::Verb& app) {
   add_bus_load(verb);
   add_bus_replay(verb);
   add_bus_dbc(verb);
+  add_bus_dissector(verb);
   verb.footer("Example:\n  ipos bus plan examples/scom/scom.toml");
 }
 

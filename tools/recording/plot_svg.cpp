@@ -74,17 +74,23 @@ class Plot {
     top_ = kTitleHeight + kRowHeight * static_cast<double>(rows_.size()) + 18;
     bottom_ = top_ + static_cast<double>(panels_.size()) * (kPanelHeight + kPanelGap) - kPanelGap;
     if (panels_.empty()) bottom_ = top_ + kPanelHeight;
+    if (panels_.empty() && !strips_.empty()) bottom_ = top_;
     const double strips = bottom_ + kRowHeight;
-    if (!recording_.tracks.empty())
-      bottom_ = strips + kStripHeight * static_cast<double>(recording_.tracks.size());
+    const size_t count = strips_.size() + recording_.tracks.size();
+    if (count != 0) bottom_ = strips + kStripHeight * static_cast<double>(count);
     std::string body = labels;
     double y = top_;
     for (const Panel& panel : panels_) {
       body += draw_panel(panel, y);
       y += kPanelHeight + kPanelGap;
     }
+    y = strips;
+    for (const size_t n : strips_) {
+      body += draw_levels(n, y);
+      y += kStripHeight;
+    }
     for (size_t n = 0; n < recording_.tracks.size(); ++n)
-      body += draw_strip(n, strips + kStripHeight * static_cast<double>(n));
+      body += draw_strip(n, y + kStripHeight * static_cast<double>(n));
     body += event_lines() + time_axis();
     const double height = bottom_ + kAxisHeight;
     return fmt::format(
@@ -106,6 +112,10 @@ class Plot {
     for (size_t n = 0; n < recording_.signals.size(); ++n) {
       const Signal& signal = recording_.signals[n];
       if (signal.is_status) continue;
+      if (is_binary(recording_, n)) {
+        strips_.push_back(n);
+        continue;
+      }
       auto panel = std::find_if(panels_.begin(), panels_.end(),
                                 [&](const Panel& candidate) { return candidate.unit == signal.unit; });
       if (panel == panels_.end()) panel = panels_.insert(panels_.end(), {signal.unit, {}});
@@ -204,6 +214,25 @@ class Plot {
     return out + name_tags(std::move(tags), y);
   }
 
+  // Of a binary signal: a line that is high while it is 1.
+  std::string draw_levels(size_t n, double y) const {
+    constexpr double kHigh = 2, kLow = 14;
+    const std::vector<int64_t>& samples = recording_.samples[n];
+    std::string path;
+    for (size_t row = 0; row < samples.size(); ++row) {
+      const bool on = samples[row] != 0;
+      if (row != 0 && on == (samples[row - 1] != 0)) continue;
+      const double level = y + (on ? kHigh : kLow);
+      path += row == 0 ? fmt::format("M{:.1f} {:.1f}", xs_[row], level)
+                       : fmt::format("H{:.1f}V{:.1f}", xs_[row], level);
+    }
+    if (!samples.empty()) path += fmt::format("H{:.1f}", xs_.back());
+    return fmt::format(
+        "<path d=\"{}\" stroke=\"{}\" stroke-width=\"1.5\" fill=\"none\"/>\n<text x=\"{:.0f}\" y=\"{:.1f}\" "
+        "fill=\"#222\">{}</text>\n",
+        path, kColours[n % std::size(kColours)], kRight + 7, y + 12, xml_text(recording_.signals[n].name));
+  }
+
   static std::string strip_name(const FrameTrack& track) { return track.bus + ".frames"; }
 
   // A stroke for each frame; those that would fall together are one.
@@ -269,7 +298,8 @@ class Plot {
   Scale time_{0, 1, kLeft, kRight};
   std::vector<double> xs_;
   std::vector<Panel> panels_;
-  std::vector<double> rows_;  // of event labels: where the last one of the row ends
+  std::vector<size_t> strips_;  // binary signals
+  std::vector<double> rows_;    // of event labels: where the last one of the row ends
   double top_ = 0, bottom_ = 0;
   double width_ = kLeastWidth;  // of the picture, so that the longest name has room
 };

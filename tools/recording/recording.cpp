@@ -34,6 +34,16 @@ std::string frames_text(const runtime::Plant& plant) {
 
 }  // namespace
 
+bool is_binary(const Recording& recording, size_t number) {
+  const Signal& signal = recording.signals[number];
+  if (signal.bits != 0) return signal.bits == 1;
+  const auto& samples = recording.samples[number];
+  const auto beyond = [](int64_t sample) { return sample != 0 && sample != 1; };
+  return signal.unit.empty() && signal.factor == 1 &&
+         std::find(samples.begin(), samples.end(), 1) != samples.end() &&
+         std::none_of(samples.begin(), samples.end(), beyond);
+}
+
 Recorder::Recorder(runtime::Plant& plant, const std::vector<std::string>& names) : plant_(plant) {
   for (const std::string& name : names) add(name);
   if (!names.empty()) return;

@@ -47,6 +47,9 @@ struct Recording {
   std::vector<RecordedFrame> frames;  // of the tracks, in order of time
 };
 
+// On or off: a plot shows it as a strip. Also a plain number that was only 0 and 1.
+bool is_binary(const Recording& recording, size_t signal);
+
 class Recorder final : private runtime::CanObserver, private runtime::SerialObserver {
  public:
   // Signals and patterns as find_signals() takes them, and "sbus1.frames": the frames of that bus. None:

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <sstream>
 
-#include "runtime/bus/log/candump.hpp"
 #include "runtime/bus/log/serial_log.hpp"
 #include "runtime/plant/plant.hpp"
 #include "runtime/plant/trace_hash.hpp"
@@ -22,6 +21,8 @@
 #include "tools/input/plant_input.hpp"
 #include "tools/input/plant_source.hpp"
 #include "tools/input/program.hpp"
+#include "tools/logs/log_writer.hpp"
+#include "tools/recording/plot_html.hpp"
 #include "tools/recording/plot_svg.hpp"
 #include "tools/recording/recording.hpp"
 #include "tools/recording/trace.hpp"
@@ -98,7 +99,10 @@ class Watcher {
 class Logs {
  public:
   Logs(runtime::Plant& plant, const RunFlags& flags) : file_(flags.log), serial_file_(flags.serial_log) {
-    if (file_.is_open()) plant.add_observer(log_.emplace(file_.stream()));
+    if (file_.is_open()) {
+      writer_ = make_log_writer(flags.log, file_.stream());
+      log_.emplace(plant, *writer_);
+    }
     if (serial_file_.is_open()) plant.add_observer(serial_log_.emplace(serial_file_.stream()));
   }
   // Asked once a virtual millisecond.
@@ -110,7 +114,9 @@ class Logs {
     serial_file_.flush();
   }
   void finish() {
+    if (log_) log_->finish();
     if (serial_log_) serial_log_->finish();
+    writer_.reset();
     file_.finish();
     serial_file_.finish();
   }
@@ -120,7 +126,8 @@ class Logs {
   static constexpr auto kLatest = std::chrono::milliseconds(200);  // ours
 
   LogOutput file_, serial_file_;
-  std::optional<runtime::CandumpLog> log_;
+  std::unique_ptr<LogWriter> writer_;
+  std::optional<PlantLog> log_;
   std::optional<runtime::SerialLog> serial_log_;
   Clock::time_point flushed_ = Clock::now();
 };
@@ -174,6 +181,13 @@ TraceWriter trace_writer(const std::string& path) {
   if (ending == ".vcd") return write_vcd;
   if (ending == ".jsonl") return write_jsonl;
   throw Failure(kUsage, fmt::format("--trace {}: the name must end in .csv, .vcd or .jsonl", path));
+}
+
+using Plotter = std::string (*)(const Recording&, const std::string& title);
+
+// By the ending of the file's name.
+Plotter plot_of(const std::string& path) {
+  return path.ends_with(".html") || path.ends_with(".htm") ? plot_html : plot_svg;
 }
 
 int run(const RunFlags& flags) {
@@ -239,8 +253,8 @@ int run(const RunFlags& flags) {
   logs.finish();
   if (recorder) recorder->finish();
   if (!flags.plot.empty())
-    replace_file(flags.plot,
-                 plot_svg(recorder->recording(), std::filesystem::path(flags.file).filename().string()));
+    replace_file(flags.plot, plot_of(flags.plot)(recorder->recording(),
+                                                 std::filesystem::path(flags.file).filename().string()));
   if (!flags.trace.empty()) {
     std::ostringstream trace;
     write_trace(trace, recorder->recording());
@@ -282,12 +296,16 @@ void add_run(cli::Verb& app) {
   add_engine_option(verb, flags->engine);
   verb.flag("--no-skip", flags->no_skip,
             "execute every millisecond in its turn, also where nothing happens, with equal results");
-  verb.flag("--watch", flags->watch, "*", "show named variables at the end, all or --watch=NAME,..., also other signals");
-  verb.option("--log", flags->log,
-              "write the frames of all CAN buses in candump format; - is standard output");
+  verb.flag("--watch", flags->watch, "*",
+            "show named variables at the end, all or --watch=NAME,..., also other signals");
+  verb.option(
+      "--log", flags->log,
+      "write the frames of all buses, in the form of its ending: .pcapng (RS-485, too), .asc, .trc, else "
+      "candump; - is standard output");
   verb.option("--serial-log", flags->serial_log,
               "write the telegrams of all RS-485 lines; - is standard output");
-  verb.option("--plot", flags->plot, "draw signals over time into an SVG file; - is standard output");
+  verb.option("--plot", flags->plot,
+              "draw signals over time: .html with zoom and cursors, else SVG; - is standard output");
   verb.option("--trace", flags->trace, "write signals over time: .csv, .vcd or .jsonl");
   verb.option("--signals", flags->signals,
               "what to plot and trace, for example unit1.speed,unit1.D*,unit1.H500,sbus1.frames; default: "

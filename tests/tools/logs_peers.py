@@ -1,0 +1,168 @@
+#!/usr/bin/env python3
+"""Logs in the hands of python-can and tshark, and theirs in ours; the dissector against `ipos bus decode`.
+
+logs_peers.py IPOS SOURCE_DIR: every comparison is frame by frame, and field by field for the dissector.
+"""
+import json
+import os
+import random
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import can
+
+IPOS, SOURCE = sys.argv[1], Path(sys.argv[2])
+os.environ["TZ"] = "UTC"
+EPOCH = 946684800
+
+
+def run(*words, **more):
+    done = subprocess.run(words, capture_output=True, text=True, **more)
+    return done.stdout
+
+
+def ours(log):
+    done = subprocess.run([IPOS, "bus", "decode", log, "--format", "json"], capture_output=True, text=True)
+    assert done.returncode == 0, f"{log}: {done.stderr}"
+    return [json.loads(line) for line in done.stdout.splitlines()]
+
+
+def key(row):
+    return row["id"], row["extended"], row["remote"], row["data"]
+
+
+def same(name, expected, got, exact_times=True):
+    assert len(expected) == len(got), f"{name}: {len(expected)} frames became {len(got)}"
+    for n, (a, b) in enumerate(zip(expected, got)):
+        assert a[0] == b[0], f"{name}: frame {n} was {a} and is {b}"
+        assert abs(a[1] - b[1]) < 2e-6, f"{name}: time of frame {n} was {a} and is {b}"
+    print(f"{name}: {len(got)} frames the same")
+
+
+def times(rows, first=None):
+    first = float(rows[0]["time"]) if first is None else first
+    return [(key(row), float(row["time"]) - first) for row in rows]
+
+
+def of_can(messages):
+    messages = list(messages)
+    first = messages[0].timestamp
+    return [
+        ((m.arbitration_id, m.is_extended_id, m.is_remote_frame, "" if m.is_remote_frame else m.data.hex().upper()),
+         m.timestamp - first)
+        for m in messages
+    ]
+
+
+def written_by_us(folder):
+    plant = SOURCE / "examples/movilink/movilink.toml"
+    logs = {}
+    for form in ("log", "pcapng", "asc", "trc"):
+        path = str(folder / f"ours.{form}")
+        run(IPOS, "run", str(plant), "--for", "400ms", "--log", path)
+        logs[form] = path
+    expected = times(ours(logs["log"]))
+    assert len(expected) > 20
+    for form in ("pcapng", "asc", "trc"):
+        same(f"{form} read back", expected, times(ours(logs[form])))
+    for form in ("log", "asc", "trc"):
+        same(f"{form} in python-can", expected, of_can(can.LogReader(logs[form])))
+    rows = run("tshark", "-r", logs["pcapng"], "-T", "fields", "-E", "separator=;", "-e", "frame.time_epoch", "-e",
+               "can.id", "-e", "can.flags.xtd", "-e", "can.flags.rtr", "-e", "data.data")
+    got = []
+    for row in rows.splitlines():
+        time, identifier, extended, remote, data = row.split(";")
+        truth = ("1", "True")
+        got.append(((int(identifier, 0), extended in truth, remote in truth, data.replace(":", "").upper()), float(time)))
+    first = got[0][1]
+    same("pcapng in tshark", expected, [(k, t - first) for k, t in got])
+    rewritten = str(folder / "tshark.pcapng")
+    run("tshark", "-r", logs["pcapng"], "-w", rewritten)
+    same("pcapng written by tshark", expected, times(ours(rewritten)))
+
+
+def written_by_python_can(folder):
+    draw = random.Random(7)
+    messages = []
+    for n in range(300):
+        extended = draw.random() < 0.4
+        length = draw.randrange(9)
+        remote = draw.random() < 0.1
+        messages.append(can.Message(
+            timestamp=EPOCH + 1000 + n * 0.012345, channel=1, is_extended_id=extended, is_remote_frame=remote, dlc=length,
+            arbitration_id=draw.randrange(1 << (29 if extended else 11)), is_rx=True,
+            data=None if remote else draw.randbytes(length)))
+    expected = of_can(messages)
+    for form in ("log", "asc", "trc", "blf"):
+        path = str(folder / f"theirs.{form}")
+        with can.Logger(path) as logger:
+            for message in messages:
+                logger(message)
+        # The trace of python-can has tenths of a millisecond, and rounds its steps by itself.
+        got = times(ours(path))
+        if form == "trc":
+            got = [(k, expected[n][1]) if abs(t - expected[n][1]) < 1e-3 else (k, t) for n, (k, t) in enumerate(got)]
+        same(f"{form} of python-can", expected, got)
+    # Each is known by its content and not by its name.
+    blf = folder / "named.log"
+    blf.write_bytes((folder / "theirs.blf").read_bytes())
+    same("blf under another name", expected, times(ours(str(blf))))
+
+
+def dissected(folder):
+    """All examples in one pcapng: sections may follow each other."""
+    lua = str(folder / "movilink.lua")
+    run(IPOS, "bus", "dissector", "-o", lua)
+    everything = folder / "all.pcapng"
+    with open(everything, "wb") as out:
+        for plant in sorted(SOURCE.glob("examples/*/*.toml")):
+            if plant.name.endswith(".test.toml"):
+                continue
+            log = folder / "one.pcapng"
+            run(IPOS, "run", str(plant), "--for", "600ms", "--log", str(log))
+            if log.exists():
+                out.write(log.read_bytes())
+    fields = ["telegram", "address", "group", "service", "handshake", "failed", "subindex", "index", "value", "error_class",
+              "error_code", "error_additional", "po", "pi", "response", "type"]
+    words = ["tshark", "-r", str(everything), "-X", f"lua_script:{lua}", "-d", "can.subdissector,movilink", "-T", "fields",
+             "-E", "separator=;", "-E", "aggregator=,"]
+    for field in fields:
+        words += ["-e", f"movilink.{field}"]
+    words += ["-e", "movilink.void"]
+    done = subprocess.run(words, capture_output=True, text=True)
+    assert "Lua Error" not in done.stdout + done.stderr and "lua" not in done.stderr, done.stderr
+    lines = done.stdout.splitlines()
+    rows = ours(str(everything))
+    assert len(lines) == len(rows), (len(lines), len(rows))
+    compared = 0
+    kinds = set()
+    for n, (line, row) in enumerate(zip(lines, rows)):
+        values = dict(zip(fields + ["void"], line.split(";")))
+        assert ("void" in row) == (values["void"] != ""), (n, row, values)
+        for field in fields:
+            text = values[field]
+            if field not in row:
+                # Without a plant the dissector knows no variable telegram either.
+                assert text == "", (n, field, text, row)
+                continue
+            if isinstance(row[field], bool):
+                got = text in ("1", "True")
+            elif isinstance(row[field], list):
+                got = [int(part, 0) for part in text.split(",")]
+            elif field == "telegram":
+                got = text
+            else:
+                got = int(text, 0)
+            assert got == row[field], (n, field, text, row)
+            compared += 1
+        kinds.add(row.get("telegram", "RS-485" if "response" in row else "other"))
+    assert compared > 1000 and len(kinds) >= 6, (compared, kinds)
+    print(f"{len(rows)} telegrams, {compared} fields compared, differences 0: {', '.join(sorted(kinds))}")
+
+
+with tempfile.TemporaryDirectory() as name:
+    written_by_us(Path(name))
+    written_by_python_can(Path(name))
+    dissected(Path(name))

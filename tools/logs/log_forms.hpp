@@ -1,0 +1,68 @@
+// Logs of buses in the forms of other tools: which there are, how one is known by its content, how each is
+// read. docs/guide/bus-tools.md has what of each form is kept.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/bus/log/candump.hpp"
+#include "runtime/bus/log/serial_log.hpp"
+
+namespace ipos::tools {
+
+enum class LogForm : uint8_t {
+  Lines,   // candump, the serial log, bare telegrams: each line tells by itself
+  Pcapng,  // Wireshark
+  Asc,     // Vector, text
+  Trc,     // PEAK
+  Blf,     // Vector, binary
+};
+
+// By the first bytes of a log.
+LogForm log_form(std::string_view begin);
+
+// A frame of a PROFIBUS line as it was heard.
+struct DpEntry {
+  runtime::Time time;
+  std::string line;
+  std::vector<uint8_t> octets;
+};
+
+// A mistake in a binary log has a byte instead of a line.
+struct LogPlace {
+  size_t line = 0;    // from 1; 0: binary
+  size_t column = 0;  // from 1; of a binary log the byte, from 0
+};
+
+// "can.log:3:31", "can.blf: byte 144".
+std::string place_text(const std::string& path, LogPlace place);
+
+// Who reads a log.
+struct LogReader {
+  std::function<void(const runtime::LogEntry&, LogPlace)> can;
+  std::function<void(const runtime::SerialEntry&, LogPlace)> serial;
+  std::function<void(const DpEntry&, LogPlace)> dp;
+  std::function<void(LogPlace, const std::string& message)> wrong;
+};
+
+// All of a log in order. Text goes on behind a bad line; a binary log ends where it is damaged.
+void read_log(std::string_view bytes, const LogReader& reader);
+
+// A line of LogForm::Lines.
+void read_log_line(std::string_view row, size_t line, const LogReader& reader);
+
+// The forms, each in a file of its own. Times are those of the log, since runtime::kCandumpEpoch.
+void read_asc(std::string_view text, const LogReader& reader);
+void read_trc(std::string_view text, const LogReader& reader);
+void read_pcapng(std::string_view bytes, const LogReader& reader);
+void read_blf(std::string_view bytes, const LogReader& reader);
+
+// Calls `take` for each line that is not empty, with its number.
+void for_each_line(std::string_view text, const std::function<void(std::string_view, size_t)>& take);
+
+}  // namespace ipos::tools

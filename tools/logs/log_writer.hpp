@@ -1,0 +1,51 @@
+// Writes logs in the forms of log_forms.hpp but BLF, bit by bit, so that what is written can be read at once.
+// Virtual time 0 is 1 January 2000, as in candump logs.
+#pragma once
+
+#include <memory>
+#include <ostream>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "runtime/plant/plant.hpp"
+
+namespace ipos::tools {
+
+class LogWriter {
+ public:
+  virtual ~LogWriter() = default;
+
+  virtual void can(runtime::Time time, const std::string& bus, const runtime::Frame& frame) = 0;
+  // Forms of CAN alone leave these out.
+  virtual void serial(const std::string& /*line*/, const runtime::Reception& /*reception*/) {}
+  virtual void dp(runtime::Time /*time*/, const std::string& /*line*/, std::span<const uint8_t> /*octets*/) {}
+  virtual bool has_serial() const { return false; }
+};
+
+// By the ending of the file's name: .pcapng, .asc, .trc, else candump. The stream must outlive it.
+std::unique_ptr<LogWriter> make_log_writer(std::string_view path, std::ostream& out);
+
+// The buses of a plant into a log.
+class PlantLog final : private runtime::CanObserver, private runtime::SerialObserver {
+ public:
+  // Both must outlive it.
+  PlantLog(runtime::Plant& plant, LogWriter& writer);
+  PlantLog(const PlantLog&) = delete;
+  PlantLog& operator=(const PlantLog&) = delete;
+
+  // At the end of a run: telegrams that were not completed.
+  void finish();
+
+ private:
+  void on_frame(const runtime::CanLine& line, const runtime::FrameRecord& record) override;
+  void on_line_event(const runtime::CanLine&, const runtime::LineEvent&) override {}
+  void on_character(const runtime::Rs485Line& line, runtime::NodeId sender,
+                    const runtime::Character& character) override;
+  void on_serial_event(const runtime::Rs485Line&, const runtime::SerialEvent&) override {}
+
+  LogWriter& writer_;
+  std::map<std::string, runtime::SerialReceiver> receivers_;  // by line
+};
+
+}  // namespace ipos::tools

@@ -1,0 +1,27 @@
+// Writes pcapng: an interface when a bus is first heard, then a packet a frame or telegram.
+#pragma once
+
+#include "tools/logs/log_writer.hpp"
+#include "tools/logs/pcapng.hpp"
+
+namespace ipos::tools {
+
+class PcapngWriter final : public LogWriter {
+ public:
+  explicit PcapngWriter(std::ostream& out);
+  void can(runtime::Time time, const std::string& bus, const runtime::Frame& frame) override;
+  void serial(const std::string& line, const runtime::Reception& reception) override;
+  void dp(runtime::Time time, const std::string& line, std::span<const uint8_t> octets) override;
+  bool has_serial() const override { return true; }
+
+ private:
+  void packet(runtime::Time time, const std::string& bus, pcapng::LinkType link,
+              std::span<const uint8_t> bytes, const std::string& comment = {});
+  uint32_t interface_of(const std::string& bus, pcapng::LinkType link);
+  void block(uint32_t type, const std::string& body);
+
+  std::ostream& out_;
+  std::vector<std::string> interfaces_;
+};
+
+}  // namespace ipos::tools

@@ -1,0 +1,72 @@
+// The page is plot.html; its data are JSON in place of @DATA@.
+#include "tools/recording/plot_html.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "stdlib/embedded.hpp"
+
+namespace ipos::tools {
+namespace plot_page {
+std::span<const stdlib::EmbeddedFile> embedded_files();
+}
+
+namespace {
+
+using nlohmann::json;
+
+double milliseconds(runtime::Time time) { return static_cast<double>(time) / 1e6; }
+
+// Number of the sample, value; only where it changes.
+json changes_of(const Signal& signal, const std::vector<int64_t>& samples) {
+  json changes = json::array();
+  for (size_t n = 0; n < samples.size(); ++n) {
+    if (n != 0 && samples[n] == samples[n - 1]) continue;
+    changes.push_back(n);
+    if (signal.factor == 1)
+      changes.push_back(samples[n]);
+    else
+      changes.push_back(static_cast<double>(samples[n]) * signal.factor);
+  }
+  return changes;
+}
+
+}  // namespace
+
+std::string plot_html(const Recording& recording, const std::string& title) {
+  json data;
+  data["title"] = title;
+  data["end"] = recording.times.empty() ? 0 : milliseconds(recording.times.back());
+  data["samples"] = recording.times.size();
+  data["signals"] = json::array();
+  for (size_t n = 0; n < recording.signals.size(); ++n) {
+    const Signal& signal = recording.signals[n];
+    data["signals"].push_back({{"name", signal.name},
+                               {"unit", signal.unit},
+                               {"decimals", signal.decimals},
+                               {"status", signal.is_status},
+                               {"binary", is_binary(recording, n)},
+                               {"changes", changes_of(signal, recording.samples[n])}});
+  }
+  data["events"] = json::array();
+  for (const RecordedEvent& event : recording.events)
+    data["events"].push_back(
+        {{"time", milliseconds(event.time)}, {"text", event.text}, {"fault", event.is_fault}});
+  data["tracks"] = json::array();
+  for (size_t n = 0; n < recording.tracks.size(); ++n) {
+    json times = json::array();
+    for (const RecordedFrame& frame : recording.frames)
+      if (frame.track == n) times.push_back(milliseconds(frame.time));
+    data["tracks"].push_back({{"name", recording.tracks[n].bus + ".frames"}, {"times", std::move(times)}});
+  }
+  std::string text = data.dump(-1, ' ', false, json::error_handler_t::replace);
+  // Nothing in the data ends the script that holds them.
+  for (size_t at = text.find("</"); at != std::string::npos; at = text.find("</", at))
+    text.replace(at, 2, "<\\/");
+  constexpr std::string_view kPlace = "@DATA@";
+  std::string page(plot_page::embedded_files().front().text);
+  return page.replace(page.find(kPlace), kPlace.size(), text);
+}
+
+}  // namespace ipos::tools
