@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "runtime/bus/log/candump.hpp"
+#include "runtime/bus_plan/names.hpp"
 #include "runtime/plant/signal_port.hpp"
 #include "tools/cli/files.hpp"
 
@@ -81,7 +82,7 @@ void Probe::note(Shown shown) {
 
 void Probe::on_frame(const runtime::CanLine& line, const runtime::FrameRecord& record) {
   const std::string text = runtime::candump_line(record.end, line.name(), record.frame);
-  note({record.end, line.name(), text.substr(text.rfind(' ') + 1), ""});
+  note({record.end, line.name(), text.substr(text.rfind(' ') + 1), "", record.frame});
 }
 
 void Probe::on_character(const runtime::Rs485Line& line, runtime::NodeId /*sender*/,
@@ -90,7 +91,8 @@ void Probe::on_character(const runtime::Rs485Line& line, runtime::NodeId /*sende
   if (!reception) return;
   note({reception->end, line.name(), fmt::format("{:02X}", fmt::join(reception->bytes.span(), " ")),
         reception->telegram ? runtime::describe(*reception->telegram)
-                            : "void: " + std::string(serial_error_text(reception->telegram.error()))});
+                            : "void: " + std::string(serial_error_text(reception->telegram.error())),
+        std::nullopt});
 }
 
 std::vector<std::string> Probe::tasks_of(const std::string& name) const {
@@ -128,9 +130,14 @@ void Probe::describe(const Subject& subject, Finding& finding) const {
     finding.values.push_back(std::move(text));
   }
   finding.tasks = tasks_of(station);
-  for (const Shown& shown : shown_)
+  // The programs have defined their objects by now.
+  const runtime::TelegramNames names =
+      plant_.lines().empty() ? runtime::TelegramNames{} : runtime::telegram_names(plant_);
+  for (const Shown& shown : shown_) {
+    const std::string meaning = shown.frame ? runtime::describe(names, *shown.frame).text : shown.meaning;
     finding.frames.push_back(fmt::format("{:>12}  {} {}{}", time_text(shown.time), shown.bus, shown.text,
-                                         shown.meaning.empty() ? "" : " | " + shown.meaning));
+                                         meaning.empty() ? "" : " | " + meaning));
+  }
   for (const runtime::JournalEntry& entry : plant_.journal().entries()) {
     if (!station.empty() && !entry.station.empty() && entry.station != station) continue;
     finding.reasons.push_back(fmt::format("{:>12}  {}{}{}", time_text(entry.time), entry.station,

@@ -5,6 +5,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,7 @@ class Probe final : private runtime::CanObserver, private runtime::SerialObserve
   struct Shown {
     Time time;
     std::string bus, text, meaning;
+    std::optional<runtime::Frame> frame;  // of CAN: its meaning is found when it is asked for
   };
 
   void on_frame(const runtime::CanLine& line, const runtime::FrameRecord& record) override;

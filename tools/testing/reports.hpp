@@ -1,4 +1,4 @@
-// The forms in which results are told: for people, for Jenkins and its relatives (JUnit XML), TAP 14, JSON.
+// The forms in which results are told: for people, for Jenkins and its relatives (JUnit XML), TAP 14, JSON, HTML.
 // Every text is valid UTF-8.
 #pragma once
 
@@ -22,5 +22,7 @@ std::string github_annotations(const TestResult& result, const std::string& root
 std::string junit_report(const std::vector<TestResult>& results);
 std::string tap_report(const std::vector<TestResult>& results);
 std::string json_report(const std::vector<TestResult>& results);
+// `artifacts`: the folder of --artifacts as a link from the report, or empty.
+std::string html_report(const std::vector<TestResult>& results, const std::string& artifacts);
 
 }  // namespace ipos::tools::testing

@@ -30,6 +30,7 @@ class Run {
   Run(const TestCase& test, runtime::Plant& plant, const RunOptions& options, TestResult& result)
       : test_(test),
         plant_(plant),
+        options_(options),
         result_(result),
         probe_(plant, [this](const std::string& bus, Time now, const std::string& text,
                              const std::string& meaning) { tell_event(bus, now, text, meaning); }),
@@ -199,6 +200,7 @@ class Run {
   bool tick(Time now) {
     if ((now + 1) % kMillisecond == 0) return !stopped_;  // right before a step
     probe_.sample(now);
+    if (options_.sample) options_.sample(now);
     for (Open& open : open_) {
       if (open.read != nullptr) open.check.sample(now, (*open.read)());
       if (now >= open.check.end()) open.check.finish(now);
@@ -303,6 +305,7 @@ class Run {
 
   const TestCase& test_;
   runtime::Plant& plant_;
+  const RunOptions& options_;
   TestResult& result_;
   Probe probe_;
   Actor actor_;
@@ -332,6 +335,7 @@ void carry_out(const TestCase& test, Programs& programs, const RunOptions& optio
     if (errors.empty()) run.go();
     built.messages += mistakes_text(test.file, errors, false);
     result.time = built.plant->now();
+    if (options.finish) options.finish();
   }
   result.messages = std::move(built.messages);
   if (!result.messages.empty())

@@ -18,6 +18,10 @@ struct RunOptions {
   // of its stations. What it returns lives until the test is over, but not longer than the plant. Called
   // from the thread of the test.
   std::function<std::shared_ptr<void>(runtime::Plant&)> prepare;
+  // Called in every millisecond when all of it has happened, and when the test is over, before what prepare()
+  // has returned is gone. May be empty.
+  std::function<void(Time)> sample;
+  std::function<void()> finish;
 };
 
 TestResult run_test(const TestCase& test, Programs& programs, const RunOptions& options);

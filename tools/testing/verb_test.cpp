@@ -19,6 +19,7 @@
 #include "tools/cli/verbs.hpp"
 #include "tools/coverage/collector.hpp"
 #include "tools/coverage/coverage_reports.hpp"
+#include "tools/testing/artifacts.hpp"
 #include "tools/testing/changes.hpp"
 #include "tools/testing/last_failed.hpp"
 #include "tools/testing/read_tests.hpp"
@@ -43,6 +44,8 @@ struct TestFlags {
   std::string junit;
   std::string tap;
   std::string json;
+  std::string html;
+  std::string artifacts;
   std::vector<std::string> coverage;
 };
 
@@ -141,6 +144,16 @@ std::vector<TestResult> run_tests(const std::vector<TestCase>& tests, const Test
   return results;
 }
 
+// How a page names a folder: from its own folder on, where both are below the same.
+std::string link_from(const std::string& page, const std::string& folder) {
+  if (page.empty() || folder.empty()) return {};
+  const auto base = std::filesystem::absolute(page).parent_path();
+  return std::filesystem::absolute(folder)
+      .lexically_normal()
+      .lexically_relative(base.lexically_normal())
+      .generic_string();
+}
+
 int code_of(const std::vector<TestResult>& results) {
   if (interrupted()) return kInterrupted;
   if (count(results, Outcome::Malformed) != 0) return kBadInput;
@@ -160,7 +173,7 @@ int run_once(const TestFlags& flags, std::vector<TestCase>& tests) {
     for (const TestCase& test : tests) fmt::print("{}  {}:{}\n", test.name, test.file, test.place.line);
     return kGood;
   }
-  for (const std::string& report : {flags.junit, flags.tap, flags.json}) check_output(report);
+  for (const std::string& report : {flags.junit, flags.tap, flags.json, flags.html}) check_output(report);
   TotalCoverage coverage;
   SuiteOptions options = flags.suite;
   if (coverage_reports.wanted()) {
@@ -172,6 +185,8 @@ int run_once(const TestFlags& flags, std::vector<TestCase>& tests) {
   write_report(flags.junit, junit_report(results));
   write_report(flags.tap, tap_report(results));
   write_report(flags.json, json_report(results));
+  if (!flags.artifacts.empty()) write_artifacts(flags.artifacts, tests, results, flags.suite);
+  write_report(flags.html, html_report(results, link_from(flags.html, flags.artifacts)));
   coverage_reports.write(coverage.total());
   return code_of(results);
 }
@@ -237,6 +252,9 @@ void add_test(cli::Verb& app) {
   verb.option("--junit", flags->junit, "write a report as JUnit XML; - is standard output");
   verb.option("--tap", flags->tap, "write a report as TAP 14");
   verb.option("--json", flags->json, "write a report as JSON");
+  verb.option("--html", flags->html, "write a report as HTML");
+  verb.option("--artifacts", flags->artifacts,
+              "folder for plot, trace, log of the buses and journal of every test that fails");
   add_coverage_option(verb, flags->coverage);
   add_compile_options(verb, flags->suite.compile);
   verb.footer("Example:\n  ipos test examples --junit report.xml");

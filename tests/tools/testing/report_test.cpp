@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <tinyxml2.h>
 
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -53,6 +54,45 @@ TEST(Report, DocumentationHasEveryState) {
     const std::string row = "| `" + std::string(state.name) + "` | " + std::string(state.meaning) + " |\n";
     EXPECT_TRUE(contains(page, row)) << row;
   }
+}
+
+// Frames in the words of `ipos bus decode`, and beside each failed test what it left.
+TEST(Report, ArtifactsOfWhatFailed) {
+  const TemporaryFolder folder;
+  folder.write("A.IPC",
+               "#include <const.h>\nSCTRCYCL Tr;\nlong lValue, lOther;\nmain()\n{\n  Tr.ObjectNo = 1024;\n"
+               "  Tr.CycleTime = 10;\n  Tr.Format = 4;\n  Tr.DPointer = numof(lValue);\n"
+               "  _SBusCommDef(SCD_TRCYCL, Tr);\n  _SBusCommOn();\n  while (1) lValue = 7;\n}\n");
+  const std::string plant =
+      "[[bus]]\nname = \"sbus\"\nkind = \"can\"\n[[station]]\nname = \"u\"\nunit = \"md60a\"\nprogram = "
+      "\"A.IPC\"\n"
+      "sbus = \"sbus\"\n[[station]]\nname = \"v\"\nunit = \"md60a\"\nsbus = "
+      "\"sbus\"\n[station.parameters]\nP813 = 2\n";
+  const std::string expect =
+      "[[expect]]\nafter = \"50ms\"\nstation = \"u\"\nvariable = \"lValue\"\nequals = ";
+  folder.write("good.test.toml", plant + expect + "7\n");
+  folder.write("bad.test.toml", plant + expect + "8\n");
+  const CommandResult result =
+      run_ipos({"test", ".", "--artifacts", "left", "--html", "report.html"}, folder.path());
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  EXPECT_TRUE(contains(result.out, "400#00000007 | 1024 lValue = 7 (00000007h) <- u")) << result.out;
+  std::set<std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path() / "left"))
+    if (entry.is_regular_file())
+      files.insert(entry.path().lexically_relative(folder.path() / "left").string());
+  EXPECT_EQ(files, (std::set<std::string>{"bad/bus.pcapng", "bad/journal.txt", "bad/plot.html",
+                                          "bad/report.txt", "bad/trace.csv", "bad/trace.vcd"}));
+  const std::string trace = read_text(folder.path() / "left/bad/trace.csv");
+  EXPECT_TRUE(
+      trace.starts_with("time_ms,u.speed [rpm],u.setpoint [rpm],u.status,v.speed [rpm],"
+                        "v.setpoint [rpm],v.status,u.lValue,sbus.frames\n"))
+      << trace.substr(0, 200);
+  EXPECT_TRUE(contains(trace, "\n50,"));
+  const CommandResult decoded = run_ipos({"bus", "decode", "left/bad/bus.pcapng"}, folder.path());
+  EXPECT_EQ(decoded.exit_code, 0) << decoded.err;
+  EXPECT_TRUE(contains(decoded.out, "sbus 1024 00 00 00 07")) << decoded.out;
+  const std::string page = read_text(folder.path() / "report.html");
+  EXPECT_TRUE(contains(page, "href=\"left/bad/plot.html\"") && !contains(page, "left/good"));
 }
 
 TEST(Report, SaysWhenAValueComesTooLate) {

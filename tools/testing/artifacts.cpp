@@ -1,0 +1,143 @@
+// Recorded are speed, setpoint and status of every station, what the test looks at and sets, and the buses.
+#include "tools/testing/artifacts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <sstream>
+
+#include "tools/cli/outputs.hpp"
+#include "tools/logs/log_writer.hpp"
+#include "tools/recording/plot_html.hpp"
+#include "tools/recording/recording.hpp"
+#include "tools/recording/trace.hpp"
+#include "tools/testing/reports.hpp"
+
+namespace ipos::tools::testing {
+namespace {
+
+struct TraceForm {
+  const char* name;
+  void (*write)(std::ostream&, const Recording&);
+};
+constexpr TraceForm kTraces[] = {{"trace.csv", write_csv}, {"trace.vcd", write_vcd}};
+
+// What the items of a test name, as far as it is a signal.
+std::vector<std::string> names_in(const TestCase& test) {
+  std::vector<std::string> names;
+  const auto add = [&](const runtime::Signal& signal) {
+    if (!signal.station.empty() && !signal.name.empty()) names.push_back(signal.station + "." + signal.name);
+  };
+  for (const Item& item : test.items) {
+    if (const auto* expect = std::get_if<Expect>(&item.what)) {
+      if (!expect->subject.is_event()) add(expect->subject.signal);
+    } else if (const auto* stimulus = std::get_if<runtime::Stimulus>(&std::get<Step>(item.what))) {
+      add(stimulus->signal);
+    }
+  }
+  return names;
+}
+
+std::vector<std::string> signals_of(const TestCase& test, const runtime::Plant& plant) {
+  std::vector<std::string> wanted;
+  for (const auto& station : plant.stations())
+    for (const char* name : {"speed", "setpoint", "status"})
+      wanted.push_back(fmt::format("{}.{}", station->config().name, name));
+  for (const std::string& name : names_in(test)) wanted.push_back(name);
+  std::vector<std::string> names;
+  for (const std::string& name : wanted)
+    if (std::find(names.begin(), names.end(), name) == names.end() && runtime::find_signals(plant, name))
+      names.push_back(name);
+  for (const auto& line : plant.lines()) names.push_back(line->name() + ".frames");
+  for (const auto& line : plant.serial_lines()) names.push_back(line->line.name() + ".frames");
+  return names;
+}
+
+// Records one run of a test; writes when it is over, while the plant is still there.
+class Witness {
+ public:
+  Witness(runtime::Plant& plant, const TestCase& test, std::string folder)
+      : plant_(plant),
+        test_(test),
+        folder_(std::move(folder)),
+        recorder_(plant, signals_of(test, plant)),
+        writer_(make_log_writer(".pcapng", log_)),
+        bus_(plant, *writer_) {}
+
+  void sample(Time now) {
+    if (now <= sampled_) return;
+    sampled_ = now;
+    recorder_.sample(now);
+  }
+
+  void write() {
+    recorder_.finish();
+    bus_.finish();
+    const auto file = [&](const char* name) { return folder_ + "/" + name; };
+    replace_file(file("plot.html"), plot_html(recorder_.recording(), test_.name));
+    for (const auto& [name, form] : kTraces) {
+      std::ostringstream trace;
+      form(trace, recorder_.recording());
+      replace_file(file(name), std::move(trace).str());
+    }
+    replace_file(file("bus.pcapng"), std::move(log_).str());
+    std::string journal;
+    for (const runtime::JournalEntry& entry : plant_.journal().entries())
+      journal += fmt::format("{:>14}  {}{}{}\n", time_text(entry.time), entry.station,
+                             entry.station.empty() ? "" : ": ", entry.text);
+    replace_file(file("journal.txt"), journal);
+  }
+
+ private:
+  runtime::Plant& plant_;
+  const TestCase& test_;
+  std::string folder_;
+  std::ostringstream log_;
+  Recorder recorder_;
+  std::unique_ptr<LogWriter> writer_;
+  PlantLog bus_;
+  Time sampled_ = 0;
+};
+
+}  // namespace
+
+std::string artifact_folder(const std::string& test) {
+  std::string name = test;
+  for (char& c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '.' && c != '-') c = '_';
+  if (name.empty() || name[0] == '.') name.insert(0, "_");
+  return name;
+}
+
+void write_artifacts(const std::string& folder, const std::vector<TestCase>& tests,
+                     const std::vector<TestResult>& results, const SuiteOptions& options) {
+  Programs programs(options.compile);
+  for (size_t n = 0; n < results.size(); ++n) {
+    const TestResult& result = results[n];
+    if (result.outcome != Outcome::Failed && result.outcome != Outcome::Malformed) continue;
+    const std::string own = folder + "/" + artifact_folder(result.name);
+    std::filesystem::create_directories(own);
+    replace_file(own + "/report.txt", text_of(result));
+    if (result.outcome == Outcome::Malformed) continue;
+    const TestCase& test = tests[n % tests.size()];
+    RunOptions again = options.run;
+    again.seed += n / tests.size();
+    std::weak_ptr<Witness> present;
+    again.prepare = [&](runtime::Plant& plant) -> std::shared_ptr<void> {
+      const auto witness = std::make_shared<Witness>(plant, test, own);
+      present = witness;
+      return witness;
+    };
+    again.sample = [&](Time now) {
+      if (const auto witness = present.lock()) witness->sample(now);
+    };
+    again.finish = [&] {
+      if (const auto witness = present.lock()) witness->write();
+    };
+    run_test(test, programs, again);
+  }
+}
+
+}  // namespace ipos::tools::testing

@@ -1,0 +1,20 @@
+// `ipos test --artifacts DIR`: what helps to see why a test failed, in a folder of its own for each. The test is
+// run once more, which gives the same run, and this time everything is recorded; tests that pass cost nothing.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/testing/suite.hpp"
+
+namespace ipos::tools::testing {
+
+// The name of a test as the name of a folder.
+std::string artifact_folder(const std::string& test);
+
+// Of each result that did not pass: plot.html, trace.csv, trace.vcd, bus.pcapng, journal.txt, report.txt. `results`
+// are those of run_suite() with these tests.
+void write_artifacts(const std::string& folder, const std::vector<TestCase>& tests,
+                     const std::vector<TestResult>& results, const SuiteOptions& options);
+
+}  // namespace ipos::tools::testing

@@ -1,0 +1,63 @@
+// One HTML file for a browser: the tests in a table, what is wrong with those that did not pass, and the way
+// to their artifacts.
+#include <fmt/format.h>
+
+#include "tools/cli/xml_text.hpp"
+#include "tools/testing/artifacts.hpp"
+#include "tools/testing/report_words.hpp"
+#include "tools/testing/reports.hpp"
+
+namespace ipos::tools::testing {
+namespace {
+
+constexpr std::string_view kHead =
+    "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>ipos test</title>\n<style>\n"
+    "body { font: 14px sans-serif; margin: 1em; color: #222; }\n"
+    "table { border-collapse: collapse; }\n"
+    "td, th { padding: 2px 10px; text-align: left; vertical-align: top; border-bottom: 1px solid #ddd; }\n"
+    "td.number { text-align: right; font-variant-numeric: tabular-nums; }\n"
+    ".ok { color: #006b3c; } .FAILED, .ERROR { color: #C00000; font-weight: bold; }\n"
+    "pre { background: #f6f6f6; padding: 6px; overflow-x: auto; }\n"
+    "</style></head><body>\n";
+
+std::string links(const std::string& artifacts, const TestResult& result) {
+  if (artifacts.empty() || (result.outcome != Outcome::Failed && result.outcome != Outcome::Malformed))
+    return "";
+  const std::string folder = artifacts + "/" + artifact_folder(result.name);
+  std::string text = "<p>";
+  for (const char* file : {"plot.html", "trace.csv", "trace.vcd", "bus.pcapng", "journal.txt", "report.txt"})
+    if (result.outcome == Outcome::Failed || std::string_view(file) == "report.txt")
+      text += fmt::format("<a href=\"{}/{}\">{}</a> ", xml_attribute(folder), file, file);
+  return text + "</p>";
+}
+
+std::string row(const TestResult& result, const std::string& artifacts) {
+  std::string details;
+  if (!result.messages.empty()) details += fmt::format("<pre>{}</pre>", xml_text(result.messages));
+  for (const Finding& finding : result.findings)
+    details += fmt::format("<pre>{}</pre>", xml_text(text_of_finding(finding)));
+  details += links(artifacts, result);
+  return fmt::format(
+      "<tr><td class=\"{0}\">{0}</td><td>{1}{2}</td><td class=\"number\">{3}</td><td "
+      "class=\"number\">{4:.3f}</td>"
+      "<td class=\"number\">{5:.3f}</td></tr>\n",
+      word_of(result.outcome), xml_text(result.name), details, result.checks,
+      static_cast<double>(result.time) / 1e9, result.seconds);
+}
+
+}  // namespace
+
+std::string html_report(const std::vector<TestResult>& results, const std::string& artifacts) {
+  std::string text = std::string(kHead) + fmt::format("<h1>{}</h1>\n", xml_text(summary(results)));
+  text +=
+      "<table><thead><tr><th>outcome</th><th>test</th><th>checks</th><th>virtual "
+      "s</th><th>s</th></tr></thead><tbody>\n";
+  // What is wrong comes first.
+  for (const bool bad : {true, false})
+    for (const TestResult& result : results)
+      if ((result.outcome == Outcome::Failed || result.outcome == Outcome::Malformed) == bad)
+        text += row(result, artifacts);
+  return text + "</tbody></table>\n</body></html>\n";
+}
+
+}  // namespace ipos::tools::testing
