@@ -20,11 +20,15 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-std::vector<std::string> completions(Client& client, int line, int character) {
+std::vector<std::string> completions_in(Client& client, const std::string& path, int line, int character) {
   std::vector<std::string> labels;
-  for (const Json& one : client.request("textDocument/completion", Client::at(kPath, line, character)))
+  for (const Json& one : client.request("textDocument/completion", Client::at(path, line, character)))
     labels.push_back(one["label"]);
   return labels;
+}
+
+std::vector<std::string> completions(Client& client, int line, int character) {
+  return completions_in(client, kPath, line, character);
 }
 
 bool has(const std::vector<std::string>& all, const std::string& one) {
@@ -218,6 +222,73 @@ TEST(LspTransport, CutsTheStreamIntoMessages) {
   reader.feed("Content-Length: 99999999999999\r\n\r\n");
   EXPECT_FALSE(reader.next());
   EXPECT_TRUE(reader.broken());
+}
+
+// --- plants and tests
+
+const std::string kPlant = "/p/line.toml";
+const std::string kStation =
+    "[[bus]]\nname = \"sbus\"\nkind = \"can\"\n\n[[station]]\nname = \"u\"\nunit = \"mdxb\"\nsbus = "
+    "\"sbus\"\n";
+
+std::vector<std::string> messages(Client& client, const std::string& path) {
+  std::vector<std::string> all;
+  for (const Json& one : client.diagnostics["file://" + path])
+    all.push_back(std::to_string(one["range"]["start"]["line"].get<int>()) + ":" +
+                  one["message"].get<std::string>());
+  return all;
+}
+
+TEST(LspPlants, DiagnosticsAreThoseOfTheRun) {
+  Client client;
+  client.open(kPlant, kStation + "colour = 1\n[station.parameters]\nP9999 = 1\n");
+  ASSERT_EQ(messages(client, kPlant).size(), 1U);
+  EXPECT_TRUE(
+      messages(client, kPlant)[0].starts_with("8:unknown key 'colour' in [[station]]; known are name, unit"));
+  client.open("/p/b.toml", kStation + "[station.parameters]\nP9999 = 1\nP302 = 99999999\n");
+  const auto refused = messages(client, "/p/b.toml");
+  ASSERT_EQ(refused.size(), 2U);
+  EXPECT_TRUE(contains(refused[0], "9:station 'u'") && contains(refused[0], "P9999")) << refused[0];
+  EXPECT_TRUE(contains(refused[1], "10:station 'u'") && contains(refused[1], "too large")) << refused[1];
+  client.open("/p/other.toml", "[tool]\nname = 1\n");
+  EXPECT_TRUE(messages(client, "/p/other.toml").empty()) << "no plant";
+}
+
+TEST(LspPlants, CompletionOffersWhatTheReadersKnow) {
+  Client client;
+  client.open(kPlant,
+              kStation + "\n\n[station.parameters]\nP130 = \n\nP100 = \"\"\n[[fault]]\nkind = \n[[\n");
+  const auto keys = completions_in(client, kPlant, 8, 0);
+  EXPECT_TRUE(has(keys, "firmware") && has(keys, "nvram") && !has(keys, "baud"));
+  EXPECT_TRUE(has(completions_in(client, kPlant, 6, 9), "\"md60a\""));
+  EXPECT_TRUE(has(completions_in(client, kPlant, 7, 8), "\"sbus\""));
+  const auto parameters = completions_in(client, kPlant, 12, 0);
+  EXPECT_TRUE(has(parameters, "P130") && !has(parameters, "P000")) << "what can be written";
+  EXPECT_TRUE(has(completions_in(client, kPlant, 13, 9), "\"SBus 1\"") ||
+              has(completions_in(client, kPlant, 13, 9), "\"SBus\""));
+  EXPECT_TRUE(has(completions_in(client, kPlant, 15, 7), "\"corrupt\""));
+  EXPECT_TRUE(has(completions_in(client, kPlant, 16, 2), "station"));
+}
+
+TEST(LspPlants, HoverKnowsTheParametersOfTheUnit) {
+  Client client;
+  client.open(kPlant, kStation + "[station.parameters]\nP130 = \"2.5 s\"\n");
+  const Json hover = client.request("textDocument/hover", Client::at(kPlant, 9, 1));
+  ASSERT_FALSE(hover.is_null());
+  const std::string text = hover["contents"]["value"];
+  EXPECT_TRUE(contains(text, "**P130 ") && contains(text, "index 8470")) << text;
+  EXPECT_TRUE(client.request("textDocument/hover", Client::at(kPlant, 6, 1)).is_null());
+  EXPECT_TRUE(client.request("textDocument/references", Client::at(kPlant, 6, 1)).is_null());
+}
+
+TEST(LspPlants, TheProgramOfAStationIsItsDefinition) {
+  Client client;
+  client.open(kPlant, kStation + "program = \"A.IPC\"\n");
+  const Json place = client.request("textDocument/definition", Client::at(kPlant, 8, 13));
+  EXPECT_EQ(place["uri"], "file:///p/A.IPC");
+  const Json symbols = client.request("textDocument/documentSymbol", Client::document(kPlant));
+  ASSERT_EQ(symbols.size(), 2U);
+  EXPECT_EQ(symbols[1]["name"], "station \"u\"");
 }
 
 }  // namespace

@@ -95,33 +95,36 @@ std::string structure(const Program& program, const IndexedSymbol& symbol) {
 std::string parameter(const Program& program, uint32_t index) {
   const stdlib::ParameterTable& table = stdlib::parameter_table(*program.compiled.unit);
   const stdlib::Parameter* row = table.find(static_cast<uint16_t>(index));
-  if (row == nullptr) {
+  if (row == nullptr)
     return fmt::format("Index {}: {}\n", index, stdlib::index_name(table, static_cast<uint16_t>(index)));
-  }
-  std::string out = fmt::format("**{}{} {}**, index {}\n\n", row->number.empty() ? "" : "P", row->number,
-                                row->name, row->index);
-  const std::string_view quantity = stdlib::quantity_name(row->quantity);
-  if (!quantity.empty())
-    out += fmt::format("- {}, transferred in units of quantity {} with conversion {}{}\n", quantity,
-                       row->quantity, row->conversion,
-                       row->display.empty() ? "" : fmt::format(", shown in {}", row->display));
-  else if (!row->display.empty())
-    out += fmt::format("- shown in {}\n", row->display);
-  if (!row->writable) {
-    out += "- read only\n";
-  } else {
-    out += fmt::format("- factory setting {}{}\n",
-                       stdlib::parameter_text(*row, static_cast<int32_t>(row->default_value)),
-                       row->needs_inhibit ? ", written under controller inhibit only" : "");
-    for (const stdlib::ValueRange& range : row->ranges)
-      out += fmt::format("- {} to {} in steps of {}\n", range.minimum, range.maximum, range.step);
-  }
-  for (const stdlib::ValueText& value : row->texts)
-    out += fmt::format("- {} = {}\n", value.value, value.text);
-  return out;
+  return describe_parameter(*row);
 }
 
 }  // namespace
+
+std::string describe_parameter(const stdlib::Parameter& parameter) {
+  std::string out = fmt::format("**{}{} {}**, index {}\n\n", parameter.number.empty() ? "" : "P",
+                                parameter.number, parameter.name, parameter.index);
+  const std::string_view quantity = stdlib::quantity_name(parameter.quantity);
+  if (!quantity.empty())
+    out += fmt::format("- {}, transferred in units of quantity {} with conversion {}{}\n", quantity,
+                       parameter.quantity, parameter.conversion,
+                       parameter.display.empty() ? "" : fmt::format(", shown in {}", parameter.display));
+  else if (!parameter.display.empty())
+    out += fmt::format("- shown in {}\n", parameter.display);
+  if (!parameter.writable) {
+    out += "- read only\n";
+  } else {
+    out += fmt::format("- factory setting {}{}\n",
+                       stdlib::parameter_text(parameter, static_cast<int32_t>(parameter.default_value)),
+                       parameter.needs_inhibit ? ", written under controller inhibit only" : "");
+    for (const stdlib::ValueRange& range : parameter.ranges)
+      out += fmt::format("- {} to {} in steps of {}\n", range.minimum, range.maximum, range.step);
+  }
+  for (const stdlib::ValueText& value : parameter.texts)
+    out += fmt::format("- {} = {}\n", value.value, value.text);
+  return out;
+}
 
 std::string comment_of(const IndexedSymbol& symbol) {
   if (!symbol.definition) return {};

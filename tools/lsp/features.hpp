@@ -2,6 +2,7 @@
 // them and gives its result; null where there is nothing to say.
 #pragma once
 
+#include "stdlib/parameters.hpp"
 #include "tools/lsp/workspace.hpp"
 
 namespace ipos::tools::lsp {
@@ -41,6 +42,7 @@ std::map<std::string, Json> diagnostics_of(const Workspace& workspace, const Pro
 std::string describe(const Program& program, const compiler::IndexedSymbol& symbol,
                      std::optional<uint32_t> number);
 std::string describe_system_function(std::string_view name);
+std::string describe_parameter(const stdlib::Parameter& parameter);
 // The comment behind a declaration, else those above it.
 std::string comment_of(const compiler::IndexedSymbol& symbol);
 

@@ -2,8 +2,10 @@
 #include "tools/lsp/server.hpp"
 
 #include <algorithm>
+#include <span>
 
 #include "tools/lsp/features.hpp"
+#include "tools/lsp/plant_document.hpp"
 
 namespace ipos::tools::lsp {
 namespace {
@@ -28,11 +30,19 @@ constexpr Method kMethods[] = {
     {"ipos/header", header_text},
 };
 
+// The same for plants and tests.
+constexpr Method kPlantMethods[] = {
+    {"textDocument/hover", plant_hover},
+    {"textDocument/completion", plant_completion},
+    {"textDocument/definition", plant_definition},
+    {"textDocument/documentSymbol", plant_symbols},
+};
+
 Json capabilities(Encoding encoding) {
   return {{"positionEncoding", encoding == Encoding::Utf8 ? "utf-8" : "utf-16"},
           {"textDocumentSync", {{"openClose", true}, {"change", 2}, {"save", true}}},
           {"hoverProvider", true},
-          {"completionProvider", {{"triggerCharacters", {".", "#", "<", "\""}}}},
+          {"completionProvider", {{"triggerCharacters", {".", "#", "<", "\"", "["}}}},
           {"signatureHelpProvider", {{"triggerCharacters", {"(", ","}}}},
           {"definitionProvider", true},
           {"referencesProvider", true},
@@ -127,11 +137,16 @@ void Server::request(const Json& id, const std::string& method, const Json& para
     respond(id, nullptr);
     return;
   }
-  for (const Method& row : kMethods) {
+  const bool plant =
+      method.starts_with("textDocument/") && is_plant_document(workspace_, document_path(params));
+  for (const Method& row :
+       plant ? std::span<const Method>(kPlantMethods) : std::span<const Method>(kMethods)) {
     if (row.name != method) continue;
     respond(id, row.answer(workspace_, params));
     return;
   }
+  // What programs have and plants have not.
+  if (plant) return respond(id, nullptr);
   throw RequestError(ErrorCode::MethodNotFound, "unknown method " + method);
 }
 
@@ -187,7 +202,12 @@ void Server::document(const std::string& method, const Json& params) {
 void Server::publish() {
   std::map<std::string, Json> all;
   std::set<const Program*> programs;
-  for (const std::string& path : workspace_.open_documents()) programs.insert(&workspace_.program(path));
+  for (const std::string& path : workspace_.open_documents()) {
+    if (is_plant_document(workspace_, path))
+      all.emplace(path, plant_diagnostics(workspace_, path));
+    else if (!path.ends_with(".toml"))
+      programs.insert(&workspace_.program(path));
+  }
   for (const Program* program : programs) {
     for (auto& [path, messages] : diagnostics_of(workspace_, *program)) {
       Json& target = all.try_emplace(path, Json::array()).first->second;

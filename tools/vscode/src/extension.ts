@@ -28,9 +28,11 @@ async function startServer(): Promise<void> {
       documentSelector: [
         { language: "ipos", scheme: "file" },
         { language: "ipos", scheme: "untitled" },
+        // Plants and tests; the server leaves other files of this kind alone.
+        { pattern: "**/*.toml", scheme: "file" },
       ],
       initializationOptions: launch.serverOptions(settings()),
-      synchronize: { fileEvents: vscode.workspace.createFileSystemWatcher("**/*.{IPC,ipc,h,H}") },
+      synchronize: { fileEvents: vscode.workspace.createFileSystemWatcher("**/*.{IPC,ipc,h,H,toml}") },
     },
   );
   try {
