@@ -17,10 +17,10 @@ async function phones() {
     await page.waitForTimeout(1200);
     pictures.push((await page.screenshot()).toString("base64"));
   }
-  const strip = await browser.newPage({ viewport: { width: 7 * 212 + 12, height: 456 } });
+  const strip = await browser.newPage({ viewport: { width: 7 * 186 + 12, height: 340 } });
   await strip.setContent(
     `<body style="margin:12px 0 0 12px;display:flex;gap:12px;background:#888">${pictures
-      .map((picture) => `<img width="200" src="data:image/png;base64,${picture}">`)
+      .map((picture) => `<img width="174" src="data:image/png;base64,${picture}">`)
       .join("")}`,
   );
   await strip.screenshot({ path: image("phone") });
@@ -37,7 +37,13 @@ try {
   await page.waitForTimeout(2600);
   for (const name of tab_names) {
     await tab(name);
-    await page.waitForTimeout(name === "Watch" ? 1500 : 600);
+    await page.waitForTimeout(600);
+    if (name === "Plant") {
+      await page.keyboard.press("0");
+      await page.keyboard.press("r");
+      await page.waitForTimeout(1000);
+    }
+    if (name === "Watch") await page.getByRole("row").nth(1).waitFor();
     if (name === "Scope") {
       await page.keyboard.press("p");
       const box = await page.locator(".u-over").boundingBox();

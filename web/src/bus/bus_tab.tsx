@@ -114,7 +114,7 @@ export function Bus() {
                 <td class="mono shrink">
                   {row.remote ? "remote" : <Bytes data={row.data} changed={row.changed} />}
                 </td>
-                <td>{row.text}</td>
+                <td class="meaning">{row.text}</td>
               </tr>
             ))}
           </tbody>

@@ -65,7 +65,7 @@ export function Trace({ line }: { line: string }) {
                 <td class="quiet shrink">{frame.bus}</td>
                 <td class="mono shrink">{identifierText(frame.id, frame.extended)}</td>
                 <td class="mono shrink">{frame.remote ? "remote" : (frame.data.match(/../g) ?? []).join(" ")}</td>
-                <td class={frame.error ? "bad" : ""}>{frame.text}</td>
+                <td class={frame.error ? "meaning bad" : "meaning"}>{frame.text}</td>
               </tr>
             ))}
           </tbody>

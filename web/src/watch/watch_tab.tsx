@@ -127,7 +127,11 @@ export function Watch() {
             ))}
           </tbody>
         </table>
-        {shown.value.length === 0 && <p class="empty">No name is found. Without a search the variables of the programs stand here.</p>}
+        {shown.value.length === 0 && (
+          <p class="empty">
+            {groups.value.length === 0 ? "The server is asked." : "No name is found. Without a search the variables of the programs stand here."}
+          </p>
+        )}
       </div>
     </>
   );
