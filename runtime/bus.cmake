@@ -17,7 +17,7 @@ ipos_layer(bus FOLDERS runtime/bus
                    bus/movilink/unit_words.cpp bus/movilink/telegram_words.cpp bus/movilink/describe.cpp
                    bus/movilink/describe_serial.cpp bus/movilink/station_filter.cpp bus/movilink/dbc.cpp bus/movilink/dbc_signals.cpp
                    bus/log/bus_load.cpp bus/log/replay.cpp
-                   bus/rs485/levels.cpp bus/rs485/line.cpp bus/log/serial_log.cpp bus/log/read_serial_log.cpp
+                   bus/rs485/levels.cpp bus/rs485/line.cpp bus/log/serial_log.cpp bus/log/profibus_log.cpp bus/log/read_serial_log.cpp
                    bus/movilink/serial_telegram.cpp bus/movilink/serial_receiver.cpp bus/movilink/handshake.cpp
                    bus/movilink/serial_slave.cpp bus/movilink/serial_requester.cpp bus/movilink/serial_master.cpp
                    bus/movilink/master_slave.cpp bus/movilink/line_check.cpp

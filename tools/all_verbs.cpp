@@ -14,6 +14,7 @@ constexpr VerbRow kVerbs[] = {
     {"test", add_test},
     {"bus", add_bus},
     {"canopen", add_canopen},
+    {"profibus", add_profibus},
     {"param", add_param},
     {"watch", add_watch},
     {"scan", add_scan},

@@ -9,6 +9,7 @@
 #include "runtime/bus_plan/checks.hpp"
 #include "runtime/bus_plan/identifiers.hpp"
 #include "runtime/bus_plan/roster.hpp"
+#include "runtime/bus_plan/profibus_lines.hpp"
 #include "runtime/bus_plan/serial_lines.hpp"
 #include "runtime/bus_plan/telegrams.hpp"
 
@@ -94,6 +95,7 @@ BusPlan make_plan(Plant& plant, const PlanOptions& options) {
     plan.lines.push_back(std::move(line));
   }
   plan_serial_lines(plant, serial_watcher, plan);
+  plan_profibus_lines(plant, plan);
   check_reached(plant, plan.findings);
   return plan;
 }

@@ -115,9 +115,29 @@ struct SerialLinePlan {
   std::vector<PlannedSerialTelegram> telegrams;  // rising address, request before response
 };
 
+struct PlannedProfibusStation {
+  std::string name;
+  uint8_t address;
+  uint16_t ident;  // as the master's configuration has it
+  uint8_t octets;  // in each direction; 0: no master configures it
+  Time watchdog;   // kNever: off
+};
+
+struct ProfibusLinePlan {
+  std::string name;
+  uint32_t baud = 0;
+  uint32_t length = 0;  // m, 0: not given
+  uint32_t length_limit = 0;
+  uint8_t master = 0;
+  std::vector<PlannedProfibusStation> stations;  // in the order of the file
+  uint64_t cycle_bits = 0;                       // docs/reference/protocols/profibus.md
+  Time cycle = 0;
+};
+
 struct BusPlan {
   std::vector<LinePlan> lines;
   std::vector<SerialLinePlan> serial_lines;
+  std::vector<ProfibusLinePlan> profibus_lines;
   std::vector<Finding> findings;
   Time trial = 0;
   Time acyclic = 0;

@@ -28,7 +28,7 @@ std::vector<LineRoster> line_rosters(const Plant& plant) {
     const auto found = std::find_if(buses.begin(), buses.end(), [&](const BusConfig& bus) {
       return bus.name == plant.lines()[n]->name();
     });
-    LineRoster roster{plant.lines()[n].get(), &*found, {}};
+    LineRoster roster{plant.lines()[n], &*found, {}};
     for (const auto& station : plant.stations())
       for (const int number : {1, 2}) {
         const SbusPort* port = station->sbus(number);

@@ -31,9 +31,9 @@ constexpr uint8_t fault_of(PoSource source) {
 }
 
 // A ramp time is the time for this change of speed: 3000 rpm on MOVIDRIVE (ours), 50 Hz on MOVITRAC 07 (its
-// manual, chapter 6.1).
-MachineData machine_of(MachineData machine, bool is_m07) {
-  if (is_m07) machine.ramp_reference = machine.rated_speed;
+// manual, chapter 6.1) and MOVITRAC 31 (ours).
+MachineData machine_of(MachineData machine, bool is_movitrac) {
+  if (is_movitrac) machine.ramp_reference = machine.rated_speed;
   return machine;
 }
 
@@ -46,10 +46,11 @@ constexpr PoSource kAllSources[] = {PoSource::Rs485, PoSource::Fieldbus, PoSourc
 Drive::Drive(ParameterStore& parameters, const MachineData& machine)
     : parameters_(parameters),
       is_m07_(parameters.unit().generation == stdlib::Generation::M07),
+      is_m31_(parameters.unit().generation == stdlib::Generation::None),
       reader_(parameters),
       settings_(reader_.read(parameters)),
       settings_version_(parameters.changes()),
-      state_(Axis(machine_of(machine, is_m07_))),
+      state_(Axis(machine_of(machine, is_m07_ || is_m31_))),
       shown_for_(settings_version_ - 1) {
   now_.set(&Situation::starting_up, starting_up());
   parameters.connect(*this);
@@ -85,6 +86,13 @@ void Drive::take_po(PoSource source, std::span<const uint16_t> words, bool cycli
 
 void Drive::take_request(PoSource source) {
   if (touched_watch(source).on_request()) now_.change().faults.clear_cause(fault_of(source));
+}
+
+// As with the other monitoring, only of a bus that controls the drive.
+void Drive::lose(PoSource source) {
+  if (settings().control_bus != source && settings().setpoint_bus != source) return;
+  touched_watch(source).report();
+  raise_fault(fault_of(source));
 }
 
 // A telegram changes what is decided unless it only begins the time of silence anew.
@@ -127,11 +135,11 @@ Verdict Drive::verdict_with_setpoint(const Decisions& d) const {
   return verdict;
 }
 
-// MOVITRAC 07 need not have an inhibit terminal, so there a standing drive is enough for R parameters (ours).
+// MOVITRAC need not have an inhibit terminal, so there a standing drive is enough for R parameters (ours).
 bool Drive::controller_inhibited() const {
   ControlInputs in = control_inputs(terminals());
   in.fault_stop = FaultStop::None;
-  return decide(in).command == Command::Inhibit || (is_m07_ && !output_stage_on());
+  return decide(in).command == Command::Inhibit || ((is_m07_ || is_m31_) && !output_stage_on());
 }
 
 void Drive::set_position(int32_t counter) {
@@ -149,6 +157,8 @@ int32_t Drive::shaft_position() const {
 FaultResponse Drive::response_of(uint8_t number) const {
   const stdlib::FaultRow* row = stdlib::find_fault(number);
   if (row == nullptr) return FaultResponse::ImmediateError;
+  if (is_m31_ && number == faults::kFieldbus)
+    return static_cast<FaultResponse>(parameters_.value(index::kM31TimeoutResponse));
   if (row->parameter.empty() || row->parameter == stdlib::kByCommand)
     return responses_[number].value_or(row->response);
   const stdlib::Parameter* parameter = parameters_.table().find(row->parameter);

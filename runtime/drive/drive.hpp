@@ -52,6 +52,8 @@ class Drive final : private DriveLink {
   void take_po(PoSource source, std::span<const uint16_t> words, bool cyclic = true);
   // A valid cyclic request without process data restarts the monitoring, too (1053 1610 p. 27).
   void take_request(PoSource source);
+  // The bus has a watchdog of its own, and it has run out.
+  void lose(PoSource source);
   const Words& po() const { return now_->shown_po; }
 
   // From the program: H484, PI words with assignment IPOS PI-DATA, outputs with function IPOS OUTPUT (bits as
@@ -250,6 +252,7 @@ class Drive final : private DriveLink {
 
   ParameterStore& parameters_;
   bool is_m07_;
+  bool is_m31_;  // both are MOVITRAC: no inhibit terminal, ENABLE/STOP, ramps for 50 Hz
   SettingsReader reader_;
   mutable Settings settings_;
   mutable uint32_t settings_version_;

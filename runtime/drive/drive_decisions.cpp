@@ -97,9 +97,9 @@ Terminals Drive::read_terminals() const {
 
 // Silence of a bus that nobody has heard yet: the drive waits (1053 1610 p. 27, 64). On MOVITRAC 07 the same
 // silence on the SBus is a fault (its manual, chapter 7.1). Over RS-485 the drive waits even with the
-// monitoring off (TIME-04), over the others it does not (DIAG-12).
+// monitoring off (TIME-04), over the others it does not (DIAG-12). MOVITRAC 31 waits for its PROFIBUS (ours).
 bool Drive::waits_for(PoSource bus) const {
-  if (bus == PoSource::Rs485) return true;
+  if (bus == PoSource::Rs485 || is_m31_) return true;
   if (bus == PoSource::Sbus && is_m07_) return false;
   return monitored(bus == PoSource::Sbus ? settings().sbus_timeout : settings().fieldbus_timeout) != 0;
 }
@@ -116,7 +116,7 @@ ControlInputs Drive::control_inputs(const Terminals& t) const {
   const Settings& s = settings();
   ControlInputs in;
   in.terminals = t;
-  in.m07 = is_m07_;
+  in.m07 = is_m07_ || is_m31_;
   constexpr int32_t kThreeWire = 4;
   const bool three_wire = is_m07_ && s.control_source == kThreeWire;
   in.cw = three_wire ? now_->three_wire_cw : t.on(InputFunction::Cw) || ipos_bit(InputFunction::Cw);

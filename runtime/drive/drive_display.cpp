@@ -128,6 +128,8 @@ Drive::Words Drive::master_words(bool speed) const {
 }
 
 std::optional<int32_t> Drive::live_value(uint16_t index) const {
+  if (is_m31_)
+    return index == index::kM31Position ? std::optional(state_.axis.state().position) : std::nullopt;
   if (index >= index::kPoShown && index < index::kPoShown + kProcessWords)
     return now_->shown_po[index - index::kPoShown];
   if (index >= index::kPiShown && index < index::kPiShown + kProcessWords)

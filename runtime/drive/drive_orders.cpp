@@ -57,7 +57,7 @@ AxisOrder Drive::axis_order(Command command) const {
     const uint32_t t = ms(p.ramp_second);
     order.ramp = {t, t, t, t, static_cast<uint8_t>(p.s_pattern)};
   }
-  if (process_ramp) {
+  if (process_ramp && !(is_m31_ && *process_ramp == 0)) {  // MOVITRAC 31 PROFIBUS 3.6: 0 is without effect
     const uint32_t t = ms(*process_ramp);
     order.ramp = {t, t, t, t, 0};
   }

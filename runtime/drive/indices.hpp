@@ -45,4 +45,14 @@ inline constexpr uint16_t kResetStatistics = 8596;  // P804
 inline constexpr uint16_t kManualReset = 8617;      // P840
 inline constexpr uint16_t kPoEnable = 8622;         // P876
 
+// MOVITRAC 31 (stdlib/parameters/mc31.tsv).
+inline constexpr uint16_t kM31RampUp = 25;            // P120
+inline constexpr uint16_t kM31Timeout = 116;          // P571
+inline constexpr uint16_t kM31TimeoutResponse = 117;  // P572
+inline constexpr uint16_t kM31Terminal42 = 120;       // P600, P601 behind it
+inline constexpr uint16_t kM31SaveEeprom = 164;       // P802
+inline constexpr uint16_t kM31ControlMode = 175;      // P841
+inline constexpr uint16_t kM31Address = 18;           // P073
+inline constexpr uint16_t kM31Position = 200;
+
 }  // namespace ipos::runtime::index

@@ -25,6 +25,9 @@ class LinkWatch {
   // A cyclic request without process data: it restarts the monitoring, but does not end the waiting (ours).
   bool on_request();
 
+  // The bus has found the silence by itself: it ends with the next process data.
+  void report() { reported_ = true; }
+
   // One millisecond. True once when the time has run out.
   bool tick(const Rules& rules) {
     rules_ = rules;

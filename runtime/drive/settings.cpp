@@ -31,10 +31,46 @@ void fill_set(ParameterSet& set) {
   fill(set.emergency_ramp, set.stop_ramp);
 }
 
+// MOVITRAC 31: either the terminals control it or the fieldbus does, control word and setpoints together (MOVITRAC 31
+// PROFIBUS, 2.9). The three words are those of its chapter 3.1.4. T11 up is also the ramp down, and there is no
+// minimum speed (ours).
+Settings read_m31(const ParameterStore& parameters) {
+  constexpr int32_t kFieldbusSetpoint = 3, kFieldbusControl = 2, kMsADigit = 10;
+  constexpr std::array<InputFunction, 4> kFunctions = {InputFunction::None, InputFunction::Enable,
+                                                       InputFunction::Ccw, InputFunction::Reset};
+  Settings settings;
+  if (parameters.stored(index::kM31ControlMode) == 1) {
+    settings.setpoint_source = kFieldbusSetpoint;
+    settings.control_source = kFieldbusControl;
+  }
+  settings.setpoint_bus = setpoint_bus(settings);
+  settings.control_bus = control_bus(settings);
+  fill(settings.motor_pot_down, settings.motor_pot_up);
+  const int32_t ramp = kMsADigit * parameters.stored(index::kM31RampUp);
+  for (ParameterSet& set : settings.sets) {
+    set.ramp_up_cw = set.ramp_down_cw = set.ramp_up_ccw = set.ramp_down_ccw = ramp;
+    set.minimum_speed = 0;
+    fill_set(set);
+    fill(set.brake_application, settings.braking_time);
+  }
+  settings.po = {static_cast<uint8_t>(PoAssignment::ControlWord1), static_cast<uint8_t>(PoAssignment::Speed),
+                 static_cast<uint8_t>(PoAssignment::Ramp)};
+  settings.pi = {static_cast<uint8_t>(PiAssignment::StatusWord1), static_cast<uint8_t>(PiAssignment::Speed),
+                 static_cast<uint8_t>(PiAssignment::OutputCurrent)};
+  settings.inputs[0] = static_cast<uint8_t>(InputFunction::Cw);  // terminal 41
+  for (size_t n = 0; n < 2; ++n) {
+    const int32_t chosen = parameters.stored(static_cast<uint16_t>(index::kM31Terminal42 + n));
+    settings.inputs[1 + n] = static_cast<uint8_t>(kFunctions[static_cast<size_t>(chosen)]);
+  }
+  return settings;
+}
+
 }  // namespace
 
 SettingsReader::SettingsReader(const ParameterStore& parameters)
-    : is_m07_(parameters.unit().generation == stdlib::Generation::M07) {
+    : is_m07_(parameters.unit().generation == stdlib::Generation::M07),
+      is_m31_(parameters.unit().generation == stdlib::Generation::None) {
+  if (is_m31_) return;  // its numbers mean other things
   const auto index_of = [&](std::string_view number) -> uint16_t {
     const stdlib::Parameter* row = parameters.table().find(number);
     return row == nullptr ? 0 : row->index;
@@ -48,6 +84,7 @@ SettingsReader::SettingsReader(const ParameterStore& parameters)
 }
 
 Settings SettingsReader::read(const ParameterStore& parameters) const {
+  if (is_m31_) return read_m31(parameters);
   Settings settings;
   for (const Cell& cell : cells_) settings.*cell.member = parameters.stored(cell.index);
   for (const SetCell& cell : set_cells_)

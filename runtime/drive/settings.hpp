@@ -60,6 +60,7 @@ class SettingsReader {
     std::array<uint16_t, 2> index;
   };
   bool is_m07_;
+  bool is_m31_;
   std::vector<Cell> cells_;
   std::vector<SetCell> set_cells_;
 };

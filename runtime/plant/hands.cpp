@@ -70,8 +70,7 @@ Refusal Hands::order(Station& station, ProgramOrder order) {
 }
 
 Refusal Hands::plant_fault(FaultConfig fault, Time at) {
-  fault.fault.from += at;
-  if (fault.fault.until != kNever) fault.fault.until += at;
+  fault.begin_at(at, 0);
   if (plant_.plant_fault(fault)) return std::nullopt;
   return fmt::format("station '{}' is not on bus '{}'", fault.station, fault.bus);
 }

@@ -47,13 +47,11 @@ Plant::Plant(PlantFile file, std::vector<std::optional<vm::Image>> programs, std
   journal_.ask_first([this] { look(); });
   // Sources order the events of one moment: first the lines, then the surroundings, then stations and
   // controls, each in the order of the file.
-  make_lines();
+  for (const BusConfig& bus : file_.buses) add_bus(bus);
   surroundings_ = std::make_unique<Surroundings>(queue_, next_source_++, journal_);
   for (size_t n = 0; n < file_.stations.size(); ++n)
     add_station(n, std::move(programs[n]), rates, errors, execution);
-  for (const ControlConfig& config : file_.controls)
-    controls_.push_back({&config, find_line(config.sbus),
-                         std::make_unique<SbusControl>(queue_, next_source_++, config.settings), nullptr});
+  for (const ControlConfig& config : file_.controls) add_control(config);
   surroundings_->connect(file_, stations_, errors);
   resolve_expectations(errors);
   if (!errors.empty()) return;
@@ -80,16 +78,33 @@ void Plant::add_station(size_t number, std::optional<vm::Image> program, std::op
       errors.push_back({setting.place, fmt::format("station '{}': {}", config.name, *refused)});
 }
 
-CanLine* Plant::find_line(std::string_view name) const {
-  const auto line = std::find_if(lines_.begin(), lines_.end(),
-                                 [&](const auto& candidate) { return candidate->name() == name; });
-  return line == lines_.end() ? nullptr : line->get();
+void Plant::add_control(const ControlConfig& config) {
+  PlantControl control{&config, nullptr, nullptr, nullptr, nullptr};
+  if (!config.profibus) {
+    control.line = find_can(config.sbus);
+    control.control = std::make_unique<SbusControl>(queue_, next_source_++, config.settings);
+  } else if (auto* bus = dynamic_cast<ProfibusBus*>(find_bus(config.profibus->bus))) {
+    control.profibus = std::make_unique<ProfibusControl>(queue_, next_source_++, *bus, config);
+  }
+  controls_.push_back(std::move(control));
+}
+
+Bus* Plant::find_bus(std::string_view name) const {
+  const auto bus = std::find_if(buses_.begin(), buses_.end(),
+                                [&](const auto& candidate) { return candidate->name() == name; });
+  return bus == buses_.end() ? nullptr : bus->get();
+}
+
+CanLine* Plant::find_can(std::string_view name) const {
+  auto* bus = dynamic_cast<CanBus*>(find_bus(name));
+  return bus == nullptr ? nullptr : &bus->line();
 }
 
 // Stations and controls sit on the cable in the order in which they stand in the file.
 void Plant::power_on() {
   size_t control = 0;
   const auto begin_control = [&](PlantControl& started) {
+    if (started.profibus) started.profibus->start();
     if (started.line == nullptr) return;
     const NodeId node = started.line->attach(started.config->name, started.line->baud(), *started.control);
     started.port = std::make_unique<LinePort>(*started.line, node);
@@ -109,9 +124,8 @@ void Plant::start_checks() {
     for (const int number : {1, 2}) {
       const SbusPort* port = station->sbus(number);
       if (port == nullptr) continue;
-      for (size_t n = 0; n < lines_.size(); ++n)
-        if (lines_[n].get() == &port->line())
-          checks_[n]->add_slave(queue_.now(), *lines_[n], port->node(), port->settings().slave);
+      auto* bus = dynamic_cast<CanBus*>(find_bus(port->line().name()));
+      bus->check().add_slave(queue_.now(), port->line(), port->node(), port->settings().slave);
     }
 }
 
@@ -123,61 +137,38 @@ void Plant::plant_faults() {
           fmt::format("the fault planted on bus '{}' has no effect: the station is not on it", config.bus));
 }
 
-bool Plant::plant_fault(const FaultConfig& config) {
-  CanLine* line = find_line(config.bus);
-  LineFault fault = config.fault;
-  fault.node = config.station.empty() ? kNoNode : find_node(*line, config.station);
-  if (!config.station.empty() && fault.node == kNoNode) return false;
-  line->plant(fault);
-  return true;
-}
+bool Plant::plant_fault(const FaultConfig& config) { return find_bus(config.bus)->plant(config); }
 
-bool Plant::repair_fault(const FaultConfig& config) {
-  CanLine* line = find_line(config.bus);
-  LineFault fault = config.fault;
-  fault.node = config.station.empty() ? kNoNode : find_node(*line, config.station);
-  return line->repair(fault);
-}
+bool Plant::repair_fault(const FaultConfig& config) { return find_bus(config.bus)->repair(config); }
 
-NodeId Plant::find_node(const CanLine& line, std::string_view station) const {
-  for (NodeId node = 0; node < line.node_count(); ++node)
-    if (line.node_name(node) == station) return node;
-  return kNoNode;
-}
-
-void Plant::make_lines() {
-  for (const BusConfig& bus : file_.buses) {
-    if (is_serial(bus.kind)) {
-      add_serial_line(bus.name, bus.baud, next_source_++);
-      continue;
-    }
-    lines_.push_back(std::make_unique<CanLine>(queue_, next_source_++, bus.name, bus.baud));
-    lines_.back()->add_observer(*this);
-    checks_.push_back(std::make_unique<SbusCheck>(static_cast<SbusCheckClient&>(*this), !bus.port.empty()));
-    lines_.back()->add_observer(*checks_.back());
-  }
-}
-
-void Plant::add_serial_line(const std::string& name, uint32_t baud, uint32_t source) {
-  serial_lines_.push_back(std::make_unique<SerialLine>(
-      queue_, source, name, baud,
-      [this](Time now, std::string text) { journal_.note(now, Weight::Warning, "", std::move(text)); }));
+Bus& Plant::add_bus(const BusConfig& config) {
+  buses_.push_back(
+      info(config.kind).make({queue_, next_source_++, config, [this](Time now, std::string text) {
+                                journal_.note(now, Weight::Warning, "", std::move(text));
+                              }}));
+  Bus& bus = *buses_.back();
+  if (auto* can = dynamic_cast<CanBus*>(&bus)) lines_.push_back(&can->line());
+  if (auto* serial = dynamic_cast<SerialBus*>(&bus)) serial_lines_.push_back(serial);
+  return bus;
 }
 
 // A keypad hangs on a line of its own, which comes right before its station.
 StationLines Plant::lines_of(const StationConfig& station) {
-  const auto serial = [this](const std::string& name) -> Rs485Line* {
-    for (const auto& line : serial_lines_)
-      if (!name.empty() && line->line.name() == name) return &line->line;
-    return nullptr;
+  const auto serial = [](Bus* bus) {
+    auto* found = dynamic_cast<SerialBus*>(bus);
+    return found == nullptr ? nullptr : &found->line();
   };
   StationLines found;
-  found.sbus = {find_line(station.sbus), find_line(station.sbus2)};
-  found.x13 = serial(station.serial.x13.bus);
-  found.xt = serial(station.serial.xt.bus);
+  found.sbus = {find_can(station.sbus), find_can(station.sbus2)};
+  found.x13 = serial(find_bus(station.serial.x13.bus));
+  found.xt = serial(find_bus(station.serial.xt.bus));
+  found.profibus = dynamic_cast<ProfibusBus*>(find_bus(station.profibus.bus.bus));
   if (station.serial.keypad) {
-    add_serial_line(station.name + ".keypad", xt_baud(station), next_source_++);
-    found.xt = &serial_lines_.back()->line;
+    BusConfig& line = keypads_.emplace_back();
+    line.name = station.name + ".keypad";
+    line.kind = BusKind::Rs485;
+    line.baud = xt_baud(station);
+    found.xt = serial(&add_bus(line));
   }
   return found;
 }
@@ -202,11 +193,11 @@ void Plant::resolve_expectations(std::vector<PlantError>& errors) {
 }
 
 void Plant::add_observer(CanObserver& observer) {
-  for (const auto& line : lines_) line->add_observer(observer);
+  for (CanLine* line : lines_) line->add_observer(observer);
 }
 
 void Plant::add_observer(SerialObserver& observer) {
-  for (const auto& line : serial_lines_) line->line.add_observer(observer);
+  for (SerialBus* bus : serial_lines_) bus->line().add_observer(observer);
 }
 
 bool Plant::run_until(Time end, const std::function<bool(Time)>& keep_going) {
@@ -266,14 +257,6 @@ std::vector<const Station*> Plant::unforeseen_faults() const {
     if (station->error() && !foreseen) stations.push_back(station.get());
   }
   return stations;
-}
-
-void Plant::on_line_event(const CanLine& line, const LineEvent& event) {
-  journal_.note(event.time, Weight::Warning, "", describe(line, event));
-}
-
-void Plant::on_sbus_finding(Time now, std::string text) {
-  journal_.note(now, Weight::Warning, "", std::move(text));
 }
 
 }  // namespace ipos::runtime

@@ -2,17 +2,18 @@
 // same run on any build.
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "runtime/bus/can/line.hpp"
-#include "runtime/bus/movilink/line_check.hpp"
-#include "runtime/bus/movilink/sbus_check.hpp"
-#include "runtime/bus/rs485/line.hpp"
+#include "runtime/plant/bus.hpp"
+#include "runtime/plant/can_bus.hpp"
 #include "runtime/plant/plant_file.hpp"
+#include "runtime/plant/profibus_control.hpp"
+#include "runtime/plant/serial_bus.hpp"
 #include "runtime/plant/signal_port.hpp"
 #include "runtime/plant/station.hpp"
 #include "runtime/plant/surroundings.hpp"
@@ -26,26 +27,16 @@ struct ExpectationResult {
   int32_t actual;
 };
 
-// An RS-485 line and what is watched on it.
-struct SerialLine {
-  SerialLine(EventQueue& queue, uint32_t source, const std::string& name, uint32_t baud,
-             LineCheck::Report report)
-      : line(queue, source, name, baud), check(std::move(report)) {
-    line.add_observer(check);
-  }
-  Rs485Line line;
-  LineCheck check;
-};
-
 // A master control and its place on a line.
 struct PlantControl {
   const ControlConfig* config;
-  CanLine* line;
+  CanLine* line;  // null: it is a master on a PROFIBUS
   std::unique_ptr<SbusControl> control;
   std::unique_ptr<LinePort> port;
+  std::unique_ptr<ProfibusControl> profibus;
 };
 
-class Plant final : private LineObserver, private SbusCheckClient {
+class Plant final {
  public:
   // One program for each station of the file, empty where it has none. `rates` overrides P938 and P939.
   // Errors (unknown parameters, refused values, programs the unit refuses, unknown variables) come back in
@@ -53,6 +44,7 @@ class Plant final : private LineObserver, private SbusCheckClient {
   Plant(PlantFile file, std::vector<std::optional<vm::Image>> programs, std::optional<vm::Rates> rates,
         std::vector<PlantError>& errors, const Execution& execution = {});
 
+  // Of all lines of a kind, for logs of that kind.
   void add_observer(CanObserver& observer);
   void add_observer(SerialObserver& observer);
 
@@ -86,8 +78,11 @@ class Plant final : private LineObserver, private SbusCheckClient {
   std::vector<std::unique_ptr<Station>>& stations() { return stations_; }
   const std::vector<std::unique_ptr<Station>>& stations() const { return stations_; }
   const std::vector<PlantControl>& controls() const { return controls_; }
-  const std::vector<std::unique_ptr<CanLine>>& lines() const { return lines_; }
-  const std::vector<std::unique_ptr<SerialLine>>& serial_lines() const { return serial_lines_; }
+  // Of the file in its order, then those to keypads.
+  const std::vector<std::unique_ptr<Bus>>& buses() const { return buses_; }
+  Bus* find_bus(std::string_view name) const;
+  const std::vector<CanLine*>& lines() const { return lines_; }
+  const std::vector<SerialBus*>& serial_lines() const { return serial_lines_; }
   const Journal& journal() const {
     look();
     return journal_;
@@ -96,19 +91,16 @@ class Plant final : private LineObserver, private SbusCheckClient {
 
  private:
   void look() const;  // what stations are late with they make up for
-  void on_line_event(const CanLine& line, const LineEvent& event) override;
-  void on_sbus_finding(Time now, std::string text) override;
-  void make_lines();
+  Bus& add_bus(const BusConfig& config);
   StationLines lines_of(const StationConfig& station);
-  void add_serial_line(const std::string& name, uint32_t baud, uint32_t source);
   void tell_findings();
-  CanLine* find_line(std::string_view name) const;
+  CanLine* find_can(std::string_view name) const;  // nullptr: there is none
   void add_station(size_t number, std::optional<vm::Image> program, std::optional<vm::Rates> rates,
                    std::vector<PlantError>& errors, const Execution& execution);
+  void add_control(const ControlConfig& config);
   void power_on();
   void start_checks();
   void plant_faults();
-  NodeId find_node(const CanLine& line, std::string_view station) const;
   void check_expectations(Time until);
   void resolve_expectations(std::vector<PlantError>& errors);
 
@@ -116,9 +108,10 @@ class Plant final : private LineObserver, private SbusCheckClient {
   EventQueue queue_;
   uint32_t next_source_ = 0;
   Journal journal_;
-  std::vector<std::unique_ptr<CanLine>> lines_;
-  std::vector<std::unique_ptr<SerialLine>> serial_lines_;  // of the file, then those to keypads
-  std::vector<std::unique_ptr<SbusCheck>> checks_;         // one a line
+  std::deque<BusConfig> keypads_;  // lines that are not in the file
+  std::vector<std::unique_ptr<Bus>> buses_;
+  std::vector<CanLine*> lines_;           // of these
+  std::vector<SerialBus*> serial_lines_;  // of these
   std::unique_ptr<Surroundings> surroundings_;
   std::vector<std::unique_ptr<Station>> stations_;
   std::vector<PlantControl> controls_;

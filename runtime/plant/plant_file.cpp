@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "runtime/plant/bus.hpp"
 #include "runtime/plant/plant_reader.hpp"
 #include "runtime/plant/serial_plan.hpp"
 
@@ -16,9 +17,9 @@ void check_plant(PlantReader& reader) {
                                   [&name = use.bus](const BusConfig& b) { return b.name == name; });
     if (bus == buses.end())
       reader.error(use.place, fmt::format("there is no bus '{}'", use.bus));
-    else if (is_serial(bus->kind) != is_serial(kind))
+    else if (info(bus->kind).make != info(kind).make)
       reader.error(use.place,
-                   fmt::format("bus '{}' is {} serial line", use.bus, is_serial(bus->kind) ? "a" : "no"));
+                   fmt::format("bus '{}' is {}, not {}", use.bus, info(bus->kind).line, info(kind).line));
   }
   for (PlantError& problem : check_serial_plan(reader.result.plant))
     reader.result.errors.push_back(std::move(problem));

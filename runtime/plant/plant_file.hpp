@@ -14,6 +14,7 @@
 #include "runtime/drive/parameters.hpp"
 #include "runtime/drive/setpoint.hpp"
 #include "runtime/motion/machine_data.hpp"
+#include "runtime/plant/profibus_config.hpp"
 #include "runtime/plant/signal.hpp"
 #include "runtime/plant/toml_text.hpp"
 #include "runtime/storage/posix_medium.hpp"
@@ -21,7 +22,10 @@
 
 namespace ipos::runtime {
 
-enum class BusKind : uint8_t { Can, Rs485, Rs232, Profibus };
+enum class BusKind : uint8_t {
+#define BUS_KIND(kind, ...) kind,
+#include "runtime/plant/bus_kinds.def"
+};
 
 constexpr bool is_serial(BusKind kind) { return kind == BusKind::Rs485 || kind == BusKind::Rs232; }
 
@@ -54,12 +58,6 @@ struct InputSetting {
   FilePlace place;
 };
 
-// A bus by its name, and where the station names it.
-struct BusUse {
-  std::string bus;  // empty: not connected
-  FilePlace place;
-};
-
 // The RS-485 side of a station. Which of it a unit type has is checked by serial_plan.hpp.
 struct SerialConfig {
   BusUse x13;           // terminals X13: RS-485 no. 2, bus type 2 of MOVLNK
@@ -82,6 +80,7 @@ struct StationConfig {
   std::string nvram;    // file of the non-volatile memory; empty: kept for the run only
   FileUse nvram_use = FileUse::Write;
   SerialConfig serial;
+  ProfibusUse profibus;
   std::string device;              // type designation, where a rule needs it: "MCH42A"
   std::optional<bool> terminator;  // S12, for `ipos bus plan`
   bool branch = false;             // the cable goes on over SC21/SC22
@@ -95,21 +94,34 @@ struct StationConfig {
   FilePlace nvram_place;
 };
 
-// A master control on an SBus: process data to units, and the sync telegram.
+// A master control on an SBus: process data to units, and the sync telegram. Or a master on a PROFIBUS.
 struct ControlConfig {
   std::string name;
   std::string sbus;
+  std::optional<ProfibusMasterConfig> profibus{};
   ControlSettings settings;
   std::optional<bool> terminator;
   FilePlace place;
 };
 
-// A planted fault; `fault.node` is found when the plant is built.
+// A planted fault of a line; its node is found when it is planted.
 struct FaultConfig {
   std::string bus;
   std::string station;  // empty: all
-  LineFault fault;
+  LineFault fault;      // of an SBus
+  std::optional<profibus::LineFault> profibus{};
   FilePlace place;
+
+  // Its times count from `start` on.
+  void begin_at(Time start, uint64_t more_seed) {
+    const auto move = [&](auto& moved) {
+      moved.from += start;
+      if (moved.until != kNever) moved.until += start;
+      moved.seed += more_seed;
+    };
+    move(fault);
+    if (profibus) move(*profibus);
+  }
 };
 
 // Something outside of the stations that happens at its time: a hand on a switch, a write of an operator.

@@ -110,6 +110,9 @@ void check_plant(PlantReader& reader);
 // The sections, each with its own file.
 void read_buses(PlantReader& reader, const toml::table& root);
 void read_stations(PlantReader& reader, const toml::table& root);
+void read_profibus_card(PlantReader& reader, const toml::table& table, StationConfig& config);
+void read_profibus_fault(PlantReader& reader, const toml::table& table);
+void read_profibus_master(PlantReader& reader, const toml::table& table, ControlConfig& control);
 void read_controls(PlantReader& reader, const toml::table& root);
 void read_faults(PlantReader& reader, const toml::table& root);
 void read_surroundings(PlantReader& reader, const toml::table& root);  // stimulus, wire, switch

@@ -8,9 +8,7 @@
 namespace ipos::runtime {
 namespace {
 
-// Of a line of any kind.
-template <typename Line>
-void add_line(const Plant& plant, const Line& line, std::vector<PlantSignal>& out) {
+void add_line(const Plant& plant, const Bus& line, std::vector<PlantSignal>& out) {
   const auto add = [&](std::string_view name, std::string_view unit, std::string_view meaning,
                        std::function<int64_t()> read) {
     PlantSignal& signal = out.emplace_back();
@@ -23,14 +21,13 @@ void add_line(const Plant& plant, const Line& line, std::vector<PlantSignal>& ou
   };
   add("load", "%", "bus load of the last full second",
       [&plant, &line]() -> int64_t { return line.load(plant.now()).window_percent; });
-  add("count", "", "frames, or characters of a serial line, so far",
+  add("count", "", "frames, or telegrams of a serial line, so far",
       [&plant, &line] { return static_cast<int64_t>(line.load(plant.now()).frames); });
 }
 
 std::vector<PlantSignal> bus_signals(const Plant& plant) {
   std::vector<PlantSignal> signals;
-  for (const auto& line : plant.lines()) add_line(plant, *line, signals);
-  for (const auto& line : plant.serial_lines()) add_line(plant, line->line, signals);
+  for (const auto& bus : plant.buses()) add_line(plant, *bus, signals);
   return signals;
 }
 

@@ -1,52 +1,38 @@
 // [[bus]] of the plant file.
 #include <algorithm>
 
+#include "runtime/plant/bus.hpp"
 #include "runtime/plant/plant_reader.hpp"
 
 namespace ipos::runtime {
 namespace {
 
-struct KindName {
-  std::string_view name;
-  BusKind kind;
-  uint32_t baud;  // factory setting
-};
-constexpr KindName kKinds[] = {{"can", BusKind::Can, 500'000},
-                               {"rs485", BusKind::Rs485, 9'600},
-                               {"rs232", BusKind::Rs232, 9'600},
-                               {"profibus", BusKind::Profibus, 0}};
-
 void read_kind(PlantReader& reader, const toml::table& table, BusConfig& config) {
-  const std::string kind = reader.text(table, "kind", "a [[bus]]", true);
-  const auto row =
-      std::find_if(std::begin(kKinds), std::end(kKinds), [&](const KindName& k) { return k.name == kind; });
-  if (row != std::end(kKinds)) {
+  const std::string word = reader.text(table, "kind", "a [[bus]]", true);
+  const auto row = std::find_if(bus_kinds().begin(), bus_kinds().end(),
+                                [&](const BusKindInfo& kind) { return kind.word == word; });
+  if (row != bus_kinds().end()) {
     config.kind = row->kind;
     config.baud = row->baud;
-  } else if (!kind.empty()) {
+  } else if (!word.empty()) {
+    std::vector<std::string_view> words;
+    for (const BusKindInfo& kind : bus_kinds()) words.push_back(kind.word);
     reader.error(place_of(*table.get("kind")),
-                 fmt::format("'{}' is no kind of bus; known are can, rs485, rs232, profibus", kind));
+                 fmt::format("'{}' is no kind of bus; known are {}", word, fmt::join(words, ", ")));
   }
-  if (config.kind == BusKind::Profibus)
-    reader.error(place_of(*table.get("kind")), fmt::format("buses of kind '{}' are not simulated yet", kind));
 }
 
-// 1053 1610 p. 8: the rates of the SBus and of RS-232; 57.6 kbaud MDX60B/61B p. 14.
 void read_baud(PlantReader& reader, const toml::table& table, BusConfig& config) {
   const toml::node* node = table.get("baud");
   int32_t value = 0;
   if (node == nullptr || !reader.number(*node, "baud", value)) return;
   config.baud = static_cast<uint32_t>(value);
-  const auto is_one_of = [value](std::initializer_list<int32_t> rates) {
-    return std::find(rates.begin(), rates.end(), value) != rates.end();
-  };
-  if (config.kind == BusKind::Can && !is_one_of({125'000, 250'000, 500'000, 1'000'000}))
-    reader.error(place_of(*node),
-                 fmt::format("the SBus has 125000, 250000, 500000 or 1000000 baud, not {}", value));
-  if (config.kind == BusKind::Rs485 && !is_one_of({9'600, 57'600}))
-    reader.error(place_of(*node), fmt::format("RS-485 has 9600 or 57600 baud, not {}", value));
-  if (config.kind == BusKind::Rs232 && !is_one_of({9'600}))
-    reader.error(place_of(*node), fmt::format("RS-232 has 9600 baud, not {}", value));
+  const BusKindInfo& kind = info(config.kind);
+  if (std::find(kind.rates.begin(), kind.rates.end(), config.baud) != kind.rates.end()) return;
+  const auto some = kind.rates.first(kind.rates.size() - 1);
+  const std::string last = fmt::format("{}{}", some.empty() ? "" : " or ", kind.rates.back());
+  reader.error(place_of(*node),
+               fmt::format("{} has {}{} baud, not {}", kind.name, fmt::join(some, ", "), last, value));
 }
 
 // The cable, for the planner.

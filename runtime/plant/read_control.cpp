@@ -1,4 +1,4 @@
-// [[control]] of the plant file: a master control on an SBus.
+// [[control]] of the plant file: a master control on an SBus; one on a PROFIBUS has a reader of its own.
 #include <algorithm>
 
 #include "runtime/plant/plant_reader.hpp"
@@ -34,12 +34,8 @@ void read_control_target(PlantReader& reader, const toml::table& table, ControlS
   settings.targets.push_back(target);
 }
 
-void read_control(PlantReader& reader, const toml::table& table) {
+void read_sbus_control(PlantReader& reader, const toml::table& table, ControlConfig& config) {
   reader.known_keys(table, "[[control]]", {"name", "sbus", "sync", "cycle", "terminator", "target"});
-  ControlConfig config;
-  config.place = place_of(table.source());
-  config.name = reader.text(table, "name", "a [[control]]", true);
-  reader.new_station(config.name, config.place);
   config.sbus = reader.bus_name(table, "sbus", "a [[control]]", true);
   config.terminator = reader.flag(table, "terminator");
   if (table.contains("sync"))
@@ -55,6 +51,17 @@ void read_control(PlantReader& reader, const toml::table& table) {
       std::any_of(config.settings.targets.begin(), config.settings.targets.end(), is_synchronous))
     reader.error(config.place,
                  "a target without every = ... is synchronous and needs sync = ... in its [[control]]");
+}
+
+void read_control(PlantReader& reader, const toml::table& table) {
+  ControlConfig config;
+  config.place = place_of(table.source());
+  config.name = reader.text(table, "name", "a [[control]]", true);
+  reader.new_station(config.name, config.place);
+  if (table.contains("profibus"))
+    read_profibus_master(reader, table, config);
+  else
+    read_sbus_control(reader, table, config);
   reader.result.plant.controls.push_back(std::move(config));
 }
 

@@ -51,6 +51,12 @@ void read_fault_choice(PlantReader& reader, const toml::table& table, LineFault&
 }  // namespace
 
 void read_fault(PlantReader& reader, const toml::table& table) {
+  const auto& buses = reader.result.plant.buses;
+  const std::string bus = table["bus"].value_or(std::string());
+  if (std::any_of(buses.begin(), buses.end(), [&](const BusConfig& candidate) {
+        return candidate.name == bus && candidate.kind == BusKind::Profibus;
+      }))
+    return read_profibus_fault(reader, table);
   reader.known_keys(
       table, "[[fault]]",
       {"bus", "kind", "station", "behind", "id", "frame", "rate", "seed", "from", "until", "delay"});

@@ -153,9 +153,10 @@ void read_hex(PlantReader& reader, const toml::table& table, StationConfig& conf
 void read_station(PlantReader& reader, const toml::table& table) {
   reader.known_keys(
       table, "[[station]]",
-      {"name",   "unit",       "firmware", "logodrive", "start_up", "program", "sbus",   "sbus2",
-       "device", "terminator", "branch",   "rs485",     "rs485_xt", "keypad",  "uss21a", "s13",
-       "nvram",  "parameters", "inputs",   "analog",    "load",     "hex"});
+      {"name",   "unit",       "firmware",         "logodrive", "start_up",   "program", "sbus",   "sbus2",
+       "device", "terminator", "branch",           "rs485",     "rs485_xt",   "keypad",  "uss21a", "s13",
+       "option", "profibus",   "profibus_address", "nvram",     "parameters", "inputs",  "analog", "load",
+       "hex"});
   StationConfig config;
   config.place = place_of(table.source());
   config.name = reader.text(table, "name", "a [[station]]", true);
@@ -188,6 +189,7 @@ void read_station(PlantReader& reader, const toml::table& table) {
   config.terminator = reader.flag(table, "terminator");
   config.branch = reader.flag(table, "branch").value_or(false);
   config.serial = read_serial(reader, table);
+  read_profibus_card(reader, table, config);
   read_memory(reader, table, config);
   read_parameters(reader, table, config);
   read_inputs(reader, table, config);

@@ -41,6 +41,7 @@ void Station::power_on() {
   leads_ = false;
   for (const int number : {1, 2}) connect_sbus(number);
   connect_serial();
+  connect_profibus();
   list_ports();
   unit_.restart_program_memory(queue_.now());
   pacer_.start();
@@ -68,6 +69,7 @@ void Station::list_ports() {
   add(xt_);
   for (const auto& port : sbus_) add(port);
   for (const auto& port : canopen_) add(port);
+  add(profibus_);
 }
 
 void Station::connect_sbus(int number) {
@@ -109,6 +111,14 @@ void Station::connect_serial() {
     keypad_ = std::make_unique<Keypad>(queue_, source_, *lines_.xt);
   else
     movilink.connect(MovilinkBus::SerialXt, xt_->master());
+}
+
+void Station::connect_profibus() {
+  if (lines_.profibus == nullptr) return;
+  if (profibus_)
+    profibus_->power_on();
+  else
+    profibus_ = std::make_unique<ProfibusPort>(queue_, *lines_.profibus, config_, door_, journal_);
 }
 
 void Station::reconnect_serial() {

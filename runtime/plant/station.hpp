@@ -14,6 +14,7 @@
 #include "runtime/pace/pacer.hpp"
 #include "runtime/plant/canopen_port.hpp"
 #include "runtime/plant/plant_file.hpp"
+#include "runtime/plant/profibus_port.hpp"
 #include "runtime/plant/sbus_port.hpp"
 #include "runtime/plant/serial_port.hpp"
 #include "runtime/unit/door.hpp"
@@ -27,6 +28,7 @@ struct StationLines {
   std::array<CanLine*, 2> sbus{};  // SBus 1 and 2
   Rs485Line* x13 = nullptr;
   Rs485Line* xt = nullptr;  // with a keypad the line to it
+  ProfibusBus* profibus = nullptr;
 };
 
 class Station;
@@ -112,6 +114,9 @@ class Station final : private Timed, private TaskRunner {
     return canopen_[static_cast<size_t>(number - 1)].get();
   }
 
+  // Null when the station has no card on a PROFIBUS.
+  ProfibusPort* profibus() { return profibus_.get(); }
+
   // The MOVLNK of this structure was carried out, over whichever bus.
   bool has_called(uint32_t structure) const { return door_.look().movilink().has_called(structure); }
 
@@ -149,6 +154,7 @@ class Station final : private Timed, private TaskRunner {
   void list_ports();
   void connect_sbus(int number);
   void connect_serial();
+  void connect_profibus();
   void reconnect_serial();
 
   EventQueue& queue_;
@@ -165,6 +171,7 @@ class Station final : private Timed, private TaskRunner {
   std::unique_ptr<SerialPort> x13_;
   std::unique_ptr<SerialPort> xt_;
   std::unique_ptr<Keypad> keypad_;
+  std::unique_ptr<ProfibusPort> profibus_;
 
   const StationConfig& config_;
   StationLines lines_;

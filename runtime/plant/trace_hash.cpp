@@ -6,8 +6,7 @@
 namespace ipos::runtime {
 
 TraceHash::TraceHash(Plant& plant) : plant_(&plant) {
-  plant.add_observer(static_cast<CanObserver&>(*this));
-  plant.add_observer(static_cast<SerialObserver&>(*this));
+  for (const auto& bus : plant.buses()) bus->add_tracer(*this);
 }
 
 void TraceHash::sample(Time now) {
@@ -47,27 +46,9 @@ void TraceHash::add_station(const Station& station) {
   add_all(machine->fault().number, machine->fault().address);
 }
 
-void TraceHash::on_frame(const CanLine& line, const FrameRecord& record) {
-  add_text(line.name());
-  const Frame& frame = record.frame;
-  add_all(record.sender, record.start, record.end, record.bits, frame.id, frame.length);
-  for (size_t n = 0; n < frame.length; ++n) add(frame.data[n]);
-}
-
-void TraceHash::on_line_event(const CanLine& line, const LineEvent& event) {
-  add_text(line.name());
-  add_all(event.kind, event.time, event.node, event.other, event.id, event.fault);
-}
-
-void TraceHash::on_character(const Rs485Line& line, NodeId sender, const Character& character) {
-  add_text(line.name());
-  add_all(sender, character.start, character.end, character.data, character.parity_error,
-          character.framing_error);
-}
-
-void TraceHash::on_serial_event(const Rs485Line& line, const SerialEvent& event) {
-  add_text(line.name());
-  add_all(event.kind, event.time, event.node, event.other);
+void TraceHash::on_trace(const Bus& bus, std::span<const uint64_t> facts) {
+  add_text(bus.name());
+  for (const uint64_t fact : facts) add(fact);
 }
 
 void TraceHash::add_text(const std::string& text) {

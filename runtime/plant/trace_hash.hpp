@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include "runtime/plant/plant.hpp"
@@ -11,7 +12,7 @@
 namespace ipos::runtime {
 
 // FNV-1a, 64 bits, over numbers of 64 bits instead of bytes.
-class TraceHash final : public CanObserver, public SerialObserver {
+class TraceHash final : private BusTracer {
  public:
   // Watches the buses of the plant, which must outlive it.
   explicit TraceHash(Plant& plant);
@@ -26,10 +27,7 @@ class TraceHash final : public CanObserver, public SerialObserver {
   friend uint64_t state_digest(const Plant& plant);
 
   TraceHash() = default;  // that watches nothing
-  void on_frame(const CanLine& line, const FrameRecord& record) override;
-  void on_line_event(const CanLine& line, const LineEvent& event) override;
-  void on_character(const Rs485Line& line, NodeId sender, const Character& character) override;
-  void on_serial_event(const Rs485Line& line, const SerialEvent& event) override;
+  void on_trace(const Bus& bus, std::span<const uint64_t> facts) override;
 
   void add(uint64_t value) { hash_ = (hash_ ^ value) * 0x100000001B3; }
   void add_text(const std::string& text);

@@ -2,6 +2,7 @@
 // that tell what they lost.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +28,12 @@ class Bridge : public RealTimeMember {
   virtual size_t waiting() const = 0;                    // from the port, not on the line yet
   virtual std::vector<std::string> take_notes() = 0;     // of the bridge and its port
   virtual std::vector<std::string> repeats() const = 0;  // at the end, as those of ports
+};
+
+// An open port, and the bridge from it to a line.
+struct JoinedPort {
+  std::unique_ptr<Port> port;
+  std::unique_ptr<Bridge> bridge;
 };
 
 }  // namespace ipos::runtime

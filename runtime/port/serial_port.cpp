@@ -161,7 +161,7 @@ std::optional<DeviceName> parse_device(std::string_view name) {
 }  // namespace
 
 SerialPortResult open_serial_port(std::string_view name, const SerialSettings& settings, RealClock& clock) {
-  if (settings.baud != 9600 && settings.baud != 57600)
+  if (settings.movilink && settings.baud != 9600 && settings.baud != 57600)
     return tl::unexpected(port_error(PortFault::NoBaudRate, name, "MOVILINK has 9600 and 57600 bit/s"));
   if (name.starts_with(kPtyPort)) {
     auto pty = Pty::create(std::string(name.substr(kPtyPort.size())), kSerialPortQueue);

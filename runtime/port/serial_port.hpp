@@ -10,10 +10,12 @@
 
 namespace ipos::runtime {
 
-// MOVILINK on RS-485: 9600 or 57600 baud, 8 data bits, even parity, 1 stop bit (1053 1610 p. 18).
+// MOVILINK on RS-485: 9600 or 57600 baud, 8 data bits, even parity, 1 stop bit (1053 1610 p. 18). Other protocols take
+// any rate that the device has.
 struct SerialSettings {
   uint32_t baud = 9600;
   bool even_parity = true;
+  bool movilink = true;
 };
 
 struct ByteArrival {

@@ -22,10 +22,12 @@ constexpr int32_t kMasterSbus = 8;
 struct DriveServer::DataBus {
   int32_t setpoint, control;
   uint32_t told_shift;
-  static const DataBus sbus, rs485;
+  static const DataBus sbus, rs485, fieldbus;
 };
 constexpr DriveServer::DataBus DriveServer::DataBus::sbus{10, 3, 0};
 constexpr DriveServer::DataBus DriveServer::DataBus::rs485{2, 1, 8};
+
+constexpr DriveServer::DataBus DriveServer::DataBus::fieldbus{3, 2, 16};
 
 DriveServer::DriveServer(const stdlib::UnitType& unit, const MachineData& machine, DriveOptions options)
     : parameters_(unit, options),
@@ -99,9 +101,18 @@ void DriveServer::take_output(Time /*now*/, OutputChannel channel, std::span<con
   state_.take_po(PoSource::Sbus, scaled_for_slave(scaled, value("751")));
 }
 
-// P876, P101 and P100 (1053 1610 p. 41).
+void DriveServer::take_fieldbus(std::span<const uint16_t> words) {
+  look_for_obstacles(DataBus::fieldbus, false);
+  state_.take_po(PoSource::Fieldbus, words);
+}
+
+// P876, P101 and P100 (1053 1610 p. 41); P841 of MOVITRAC 31 stands for them.
 void DriveServer::look_for_obstacles(const DataBus& bus, bool slave) {
   constexpr int32_t kOn = 1;
+  if (unit().generation == stdlib::Generation::None) {
+    if (value("841") != kOn) obstruct(bus, Obstacle::ControlSource, "PO data have no effect", "841", kOn);
+    return;
+  }
   if (value("876") == 0) obstruct(bus, Obstacle::PoDisabled, "PO data have no effect", "876", kOn);
   if (slave) return;
   if (value("101") != bus.control)

@@ -92,6 +92,10 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
   ProcessDataServer& rs485_data() { return rs485_data_; }
   SerialParameters serial_parameters() const;
 
+  // Process data over a fieldbus card, and the end of them that the card's watchdog finds.
+  void take_fieldbus(std::span<const uint16_t> words);
+  void fieldbus_lost() { state_.lose(PoSource::Fieldbus); }
+
   // Master/slave operation over RS-485 and SBus: what the master sends, and a slave takes.
   ProcessWords setpoint_to_send(Time now) override;
   void setpoint_received(Time now, const ProcessWords& words) override;

@@ -63,7 +63,9 @@ class Decoder {
                                    : fmt::format("void, {}: {}", frame_error_text(frame.error()),
                                                  profibus::hex_text(entry.octets));
     if (json_) return print(telegram_json(entry), text);
-    fmt::print("{} {} {}\n", runtime::serial_time_text(entry.time), compiler::printable(entry.line), text);
+    if (!entry.line.empty())
+      fmt::print("{} {} ", runtime::serial_time_text(entry.time), compiler::printable(entry.line));
+    fmt::print("{}\n", text);
   }
 
  private:

@@ -90,6 +90,22 @@ std::string serial_text(const runtime::SerialLinePlan& line, Time trial) {
   return text;
 }
 
+std::string profibus_text(const runtime::ProfibusLinePlan& line) {
+  std::string text = fmt::format("{}: PROFIBUS, {} baud, {} stations, master {}", line.name, line.baud,
+                                 line.stations.size(), line.master);
+  text += line.length == 0 ? fmt::format(", cable up to {} m\n\n", line.length_limit)
+                           : fmt::format(", {} m of cable, up to {} m\n\n", line.length, line.length_limit);
+  for (const auto& station : line.stations)
+    text += fmt::format(
+        "  {:<12}  address {:>3}, ident {:04X}h, {}{}\n", station.name, station.address, station.ident,
+        station.octets == 0 ? std::string("no master configures it")
+                            : fmt::format("{} octets each way", station.octets),
+        station.watchdog == runtime::kNever ? std::string()
+                                            : fmt::format(", watchdog {} ms", millis(station.watchdog)));
+  return text + fmt::format("\ncycle of one master with a GAP poll: {} bits, {} ms\n", line.cycle_bits,
+                            millis(line.cycle));
+}
+
 std::string assumptions(const BusPlan& plan) {
   return fmt::format(
       "assumed: worst-case stuffing, no errors on the line, each station offers its lowest identifier first; "
@@ -176,6 +192,28 @@ nlohmann::ordered_json serial_json(const runtime::SerialLinePlan& line) {
   return entry;
 }
 
+nlohmann::ordered_json profibus_json(const runtime::ProfibusLinePlan& line) {
+  using nlohmann::ordered_json;
+  ordered_json entry = {{"name", line.name},
+                        {"baud", line.baud},
+                        {"master", line.master},
+                        {"length_m", line.length},
+                        {"length_limit_m", line.length_limit},
+                        {"cycle_bits", line.cycle_bits},
+                        {"cycle_ns", line.cycle}};
+  entry["stations"] = ordered_json::array();
+  for (const auto& station : line.stations) {
+    ordered_json row = {{"name", station.name},
+                        {"address", station.address},
+                        {"ident", station.ident},
+                        {"octets", station.octets}};
+    row["watchdog_ns"] =
+        station.watchdog == runtime::kNever ? ordered_json() : ordered_json(station.watchdog);
+    entry["stations"].push_back(std::move(row));
+  }
+  return entry;
+}
+
 std::string json_report(const BusPlan& plan) {
   using nlohmann::ordered_json;
   ordered_json report = {{"trial_ns", plan.trial}, {"acyclic_ns", plan.acyclic}};
@@ -183,6 +221,8 @@ std::string json_report(const BusPlan& plan) {
   for (const LinePlan& line : plan.lines) report["lines"].push_back(line_json(line));
   report["serial_lines"] = ordered_json::array();
   for (const auto& line : plan.serial_lines) report["serial_lines"].push_back(serial_json(line));
+  report["profibus_lines"] = ordered_json::array();
+  for (const auto& line : plan.profibus_lines) report["profibus_lines"].push_back(profibus_json(line));
   report["findings"] = ordered_json::array();
   for (const Finding& finding : plan.findings) {
     const runtime::FindingType& type = finding_type(finding.kind);
@@ -208,6 +248,8 @@ int plan_bus(const PlanFlags& flags) {
     const char* gap = "";
     for (const auto& line : plan.serial_lines)
       fmt::print("{}{}", std::exchange(gap, "\n"), serial_text(line, plan.trial));
+    for (const auto& line : plan.profibus_lines)
+      fmt::print("{}{}", std::exchange(gap, "\n"), profibus_text(line));
     if (!plan.lines.empty()) fmt::print("{}{}", gap, assumptions(plan));
     for (const Finding& finding : plan.findings) fmt::print(stderr, "{}", finding_text(finding));
   }

@@ -13,6 +13,7 @@ void add_run(cli::Verb& program);
 void add_test(cli::Verb& program);
 void add_bus(cli::Verb& program);
 void add_canopen(cli::Verb& program);
+void add_profibus(cli::Verb& program);
 void add_param(cli::Verb& program);
 void add_watch(cli::Verb& program);
 void add_scan(cli::Verb& program);

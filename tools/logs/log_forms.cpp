@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <utility>
+
+#include "runtime/bus/log/profibus_log.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -43,7 +46,9 @@ void read_log_line(std::string_view row, size_t line, const LogReader& reader) {
     else
       reader.wrong({line, entry.error().column}, entry.error().message);
   };
-  if (runtime::is_serial_line(row))
+  if (auto frame = runtime::parse_profibus_line(row))
+    reader.dp({frame->time, std::move(frame->line), std::move(frame->octets)}, {line, 1});
+  else if (runtime::is_serial_line(row))
     take(runtime::parse_serial_line(row, line), reader.serial);
   else
     take(runtime::parse_candump_line(row, line), reader.can);

@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "runtime/bus/log/candump.hpp"
-#include "runtime/bus/log/serial_log.hpp"
+#include "runtime/plant/bus.hpp"
 #include "tools/cli/failure.hpp"
 
 namespace ipos::tools {
@@ -26,9 +25,7 @@ std::string state_text(const Station& station) {
 
 std::string frames_text(const runtime::Plant& plant) {
   std::string text;
-  const auto add = [&](const std::string& bus) { text += fmt::format(", {}{}", bus, kFrames); };
-  for (const auto& line : plant.lines()) add(line->name());
-  for (const auto& line : plant.serial_lines()) add(line->line.name());
+  for (const auto& bus : plant.buses()) text += fmt::format(", {}{}", bus->name(), kFrames);
   return text;
 }
 
@@ -69,23 +66,11 @@ void Recorder::add(Signal signal) {
 
 bool Recorder::add_frames(std::string_view name) {
   if (!name.ends_with(kFrames)) return false;
-  const std::string bus(name.substr(0, name.size() - kFrames.size()));
-  const auto& can = plant_.lines();
-  const auto& serial = plant_.serial_lines();
-  const bool is_can =
-      std::any_of(can.begin(), can.end(), [&](const auto& line) { return line->name() == bus; });
-  if (!is_can &&
-      std::none_of(serial.begin(), serial.end(), [&](const auto& line) { return line->line.name() == bus; }))
-    return false;
-  if (track_of(bus)) return true;
-  const auto observed = [&](const FrameTrack& track) { return track.is_can == is_can; };
-  if (std::none_of(recording_.tracks.begin(), recording_.tracks.end(), observed)) {
-    if (is_can)
-      plant_.add_observer(static_cast<runtime::CanObserver&>(*this));
-    else
-      plant_.add_observer(static_cast<runtime::SerialObserver&>(*this));
-  }
-  recording_.tracks.push_back({bus, is_can});
+  runtime::Bus* bus = plant_.find_bus(name.substr(0, name.size() - kFrames.size()));
+  if (bus == nullptr) return false;
+  if (track_of(bus->name())) return true;
+  bus->add_observer(*this);
+  recording_.tracks.push_back({bus->name(), bus->kind() == runtime::BusKind::Can});
   return true;
 }
 
@@ -96,39 +81,18 @@ std::optional<size_t> Recorder::track_of(const std::string& bus) const {
 }
 
 // A telegram is known to be void some time after its last character.
-void Recorder::add_frame(RecordedFrame frame) {
+void Recorder::on_message(const runtime::Bus& bus, const runtime::BusMessage& message) {
   auto& frames = recording_.frames;
   const auto behind =
-      std::upper_bound(frames.begin(), frames.end(), frame.time,
+      std::upper_bound(frames.begin(), frames.end(), message.end,
                        [](runtime::Time time, const RecordedFrame& other) { return time < other.time; });
-  frames.insert(behind, std::move(frame));
-}
-
-void Recorder::on_frame(const runtime::CanLine& line, const runtime::FrameRecord& record) {
-  const std::optional<size_t> track = track_of(line.name());
-  if (!track) return;
-  const runtime::Frame& frame = record.frame;
-  const std::string text = runtime::candump_line(record.end, line.name(), frame);
-  const auto length = static_cast<std::ptrdiff_t>(frame.remote ? 0 : frame.length);
-  add_frame({record.end, *track, frame.id, frame.extended, frame.remote,
-             std::vector<uint8_t>(frame.data.begin(), frame.data.begin() + length),
-             text.substr(text.rfind(' ') + 1)});
-}
-
-void Recorder::on_character(const runtime::Rs485Line& line, runtime::NodeId /*sender*/,
-                            const runtime::Character& character) {
-  if (track_of(line.name())) add_telegram(line.name(), receivers_[line.name()].take(character));
-}
-
-void Recorder::add_telegram(const std::string& bus, const std::optional<runtime::Reception>& reception) {
-  if (!reception) return;
-  const auto bytes = reception->bytes.span();
-  add_frame({reception->end, *track_of(bus), 0, false, false,
-             std::vector<uint8_t>(bytes.begin(), bytes.end()), runtime::reception_text(*reception)});
+  const runtime::Frame frame = message.frame.value_or(runtime::Frame{});
+  frames.insert(behind, {message.end, *track_of(bus.name()), frame.id, frame.extended, frame.remote,
+                         message.bytes, message.meaning.empty() ? message.text : message.meaning});
 }
 
 void Recorder::finish() {
-  for (auto& [bus, receiver] : receivers_) add_telegram(bus, receiver.give_up());
+  for (const FrameTrack& track : recording_.tracks) plant_.find_bus(track.bus)->finish();
 }
 
 void Recorder::sample(runtime::Time now) {

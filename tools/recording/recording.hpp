@@ -4,13 +4,11 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "runtime/bus/movilink/serial_receiver.hpp"
 #include "runtime/plant/plant_signals.hpp"
 
 namespace ipos::tools {
@@ -25,7 +23,7 @@ struct RecordedEvent {
 
 struct FrameTrack {
   std::string bus;
-  bool is_can = true;  // else RS-485
+  bool is_can = true;
 };
 
 struct RecordedFrame {
@@ -34,8 +32,7 @@ struct RecordedFrame {
   uint32_t id = 0;     // CAN
   bool extended = false, remote = false;
   std::vector<uint8_t> bytes;
-  std::string
-      text;  // CAN: as candump writes it, "40A#8006"; RS-485: what the telegram says, or why it is void
+  std::string text;  // CAN: as candump writes it, "40A#8006"; else what it says, or why it is void
 };
 
 struct Recording {
@@ -50,7 +47,7 @@ struct Recording {
 // On or off: a plot shows it as a strip. Also a plain number that was only 0 and 1.
 bool is_binary(const Recording& recording, size_t signal);
 
-class Recorder final : private runtime::CanObserver, private runtime::SerialObserver {
+class Recorder final : private runtime::BusObserver {
  public:
   // Signals and patterns as find_signals() takes them, and "sbus1.frames": the frames of that bus. None:
   // speed, setpoint and status of every station that has them. A name that leads nowhere is a Failure that
@@ -74,20 +71,13 @@ class Recorder final : private runtime::CanObserver, private runtime::SerialObse
   void add(const std::string& name);
   void add(Signal signal);
   bool add_frames(std::string_view name);
-  void add_frame(RecordedFrame frame);
-  void add_telegram(const std::string& bus, const std::optional<runtime::Reception>& reception);
   std::optional<size_t> track_of(const std::string& bus) const;
   void note_changes(runtime::Time now);
-  void on_frame(const runtime::CanLine& line, const runtime::FrameRecord& record) override;
-  void on_line_event(const runtime::CanLine&, const runtime::LineEvent&) override {}
-  void on_character(const runtime::Rs485Line& line, runtime::NodeId sender,
-                    const runtime::Character& character) override;
-  void on_serial_event(const runtime::Rs485Line&, const runtime::SerialEvent&) override {}
+  void on_message(const runtime::Bus& bus, const runtime::BusMessage& message) override;
 
   runtime::Plant& plant_;
   Recording recording_;
   std::vector<Watched> watched_;
-  std::map<std::string, runtime::SerialReceiver> receivers_;  // by line
 };
 
 }  // namespace ipos::tools

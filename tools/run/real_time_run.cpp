@@ -4,10 +4,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
-
-#include "runtime/port/can_bridge.hpp"
-#include "runtime/port/serial_bridge.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/terminal.hpp"
 
@@ -64,7 +60,7 @@ RealTimeRun::RealTimeRun(runtime::Plant& plant, const std::string& file) : plant
   bool failed = false;
   for (const runtime::BusConfig& bus : plant.file().buses) {
     if (bus.port.empty()) continue;
-    auto joined = join(bus);
+    auto joined = plant_.find_bus(bus.name)->join(bus.port, plant_.next_source(), clock_);
     if (!joined) {
       failed = true;
       fmt::print(stderr, "{}:{}:{}: error: {}\n", file, bus.port_place.line, bus.port_place.column,
@@ -77,35 +73,12 @@ RealTimeRun::RealTimeRun(runtime::Plant& plant, const std::string& file) : plant
   if (failed) throw Failure(kIoError, "");
 }
 
-tl::expected<RealTimeRun::Joined, runtime::PortError> RealTimeRun::join(const runtime::BusConfig& bus) {
-  Joined joined;
-  if (runtime::is_serial(bus.kind)) {
-    const auto& lines = plant_.serial_lines();
-    const auto line = std::find_if(lines.begin(), lines.end(),
-                                   [&](const auto& candidate) { return candidate->line.name() == bus.name; });
-    runtime::SerialPortResult port = runtime::open_serial_port(bus.port, {bus.baud, true}, clock_);
-    if (!port) return tl::unexpected(port.error());
-    joined.bridge =
-        std::make_unique<runtime::SerialBridge>(plant_.queue(), plant_.next_source(), (*line)->line, **port);
-    joined.port = std::move(*port);
-  } else {
-    const auto line = std::find_if(plant_.lines().begin(), plant_.lines().end(),
-                                   [&](const auto& candidate) { return candidate->name() == bus.name; });
-    runtime::CanPortResult port = runtime::open_can_port(bus.port, bus.baud, clock_);
-    if (!port) return tl::unexpected(port.error());
-    joined.bridge =
-        std::make_unique<runtime::CanBridge>(plant_.queue(), plant_.next_source(), **line, **port);
-    joined.port = std::move(*port);
-  }
-  return joined;
-}
-
 bool RealTimeRun::run(Time limit, const std::function<bool(Time)>& keep_going) {
   const runtime::RealTimeLoop* running = nullptr;
   PlantSimulation simulation(plant_, keep_going, [&] { tell_news(*running); });
   runtime::RealTimeLoop loop(clock_, simulation);
   running = &loop;
-  for (const Joined& joined : joined_) loop.add(*joined.bridge);
+  for (const runtime::JoinedPort& joined : joined_) loop.add(*joined.bridge);
   const runtime::RealTimeLoop::End end = loop.run(limit);
   tell_news(loop);
   report(loop.punctuality());
@@ -113,7 +86,7 @@ bool RealTimeRun::run(Time limit, const std::function<bool(Time)>& keep_going) {
 }
 
 void RealTimeRun::tell_news(const runtime::RealTimeLoop& loop) {
-  for (const Joined& joined : joined_)
+  for (const runtime::JoinedPort& joined : joined_)
     for (const std::string& text : joined.bridge->take_notes()) message("warning: " + text);
   const runtime::Punctuality& punctuality = loop.punctuality();
   if (told_late_ || punctuality.first_late < 0) return;
@@ -128,7 +101,7 @@ void RealTimeRun::report(const runtime::Punctuality& punctuality) const {
       "end",
       ms(plant_.now()) / 1e3, punctuality.late_ticks, runtime::kLateTick / runtime::kMillisecond,
       ms(punctuality.worst), ms(punctuality.lag)));
-  for (const Joined& joined : joined_) {
+  for (const runtime::JoinedPort& joined : joined_) {
     const runtime::PortCounts& counts = joined.port->counts();
     const runtime::BridgeCounts& bridge = joined.bridge->counts();
     std::string text = fmt::format("{}: {} {} sent, {} received", joined.port->name(), counts.sent,

@@ -26,18 +26,12 @@ class RealTimeRun {
   bool run(runtime::Time limit, const std::function<bool(runtime::Time)>& keep_going);
 
  private:
-  struct Joined {
-    std::unique_ptr<runtime::Port> port;
-    std::unique_ptr<runtime::Bridge> bridge;
-  };
-
-  tl::expected<Joined, runtime::PortError> join(const runtime::BusConfig& bus);
   void tell_news(const runtime::RealTimeLoop& loop);
   void report(const runtime::Punctuality& punctuality) const;
 
   runtime::Plant& plant_;
   runtime::SystemClock clock_;
-  std::vector<Joined> joined_;
+  std::vector<runtime::JoinedPort> joined_;
   bool told_late_ = false;
 };
 

@@ -49,17 +49,11 @@ std::string text_report(runtime::Plant& plant, const WatchChoice& watch) {
       text += watch_window(rows) + "\n";
     }
   }
-  for (const auto& line : plant.lines()) {
-    const runtime::LineLoad load = line->load(plant.now());
-    text +=
-        fmt::format("{}: {} frames in {:.3f} s, bus load {:.2f} % of {} baud\n", line->name(), load.frames,
-                    static_cast<double>(plant.now()) / 1e9, load_percent(load), line->baud());
-  }
-  for (const auto& serial : plant.serial_lines()) {
-    const runtime::LineLoad load = serial->line.load(plant.now());
-    text += fmt::format("{}: {} telegrams in {:.3f} s, bus load {:.2f} % of {} baud\n", serial->line.name(),
-                        serial->check.telegrams(), static_cast<double>(plant.now()) / 1e9, load_percent(load),
-                        serial->line.baud());
+  for (const auto& bus : plant.buses()) {
+    const runtime::LineLoad load = bus->load(plant.now());
+    text += fmt::format("{}: {} {}s in {:.3f} s, bus load {:.2f} % of {} baud\n", bus->name(), load.frames,
+                        runtime::info(bus->kind()).message, static_cast<double>(plant.now()) / 1e9,
+                        load_percent(load), bus->baud());
   }
   return text;
 }
@@ -84,18 +78,13 @@ std::string json_report(runtime::Plant& plant, const WatchChoice& watch) {
     report["stations"].push_back(std::move(entry));
   }
   report["buses"] = ordered_json::array();
-  for (const auto& line : plant.lines()) {
-    const runtime::LineLoad load = line->load(plant.now());
-    report["buses"].push_back({{"name", line->name()},
-                               {"kind", "can"},
+  for (const auto& bus : plant.buses()) {
+    const runtime::LineLoad load = bus->load(plant.now());
+    report["buses"].push_back({{"name", bus->name()},
+                               {"kind", runtime::info(bus->kind()).word},
                                {"frames", load.frames},
                                {"load_percent", load_percent(load)}});
   }
-  for (const auto& serial : plant.serial_lines())
-    report["buses"].push_back({{"name", serial->line.name()},
-                               {"kind", "rs485"},
-                               {"frames", serial->check.telegrams()},
-                               {"load_percent", load_percent(serial->line.load(plant.now()))}});
   return report.dump() + "\n";
 }
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "runtime/bus/log/profibus_log.hpp"
 #include "runtime/bus/log/serial_log.hpp"
 #include "runtime/plant/plant.hpp"
 #include "runtime/plant/trace_hash.hpp"
@@ -103,7 +104,12 @@ class Logs {
       writer_ = make_log_writer(flags.log, file_.stream());
       log_.emplace(plant, *writer_);
     }
-    if (serial_file_.is_open()) plant.add_observer(serial_log_.emplace(serial_file_.stream()));
+    if (!serial_file_.is_open()) return;
+    plant.add_observer(serial_log_.emplace(serial_file_.stream()));
+    profibus_log_.emplace(serial_file_.stream());
+    for (const auto& bus : plant.buses())
+      if (auto* profibus = dynamic_cast<runtime::ProfibusBus*>(bus.get()))
+        profibus->line().add_observer(*profibus_log_);
   }
   // Asked once a virtual millisecond.
   void look() {
@@ -129,6 +135,7 @@ class Logs {
   std::unique_ptr<LogWriter> writer_;
   std::optional<PlantLog> log_;
   std::optional<runtime::SerialLog> serial_log_;
+  std::optional<runtime::ProfibusLog> profibus_log_;
   Clock::time_point flushed_ = Clock::now();
 };
 

@@ -94,14 +94,14 @@ class BusTab final : public Tab,
     receivers_.clear();
     names_known_ = {};
     for (const auto& line : plant.lines()) {
-      buses_.push_back({line->name(), line.get(), nullptr, 0, 0, {}});
+      buses_.push_back({line->name(), line, nullptr, 0, 0, {}});
       buses_.back().node = line->attach(kPageNode, line->baud(), *this);
       line->set_connected(buses_.back().node, false);
     }
     for (const auto& line : plant.serial_lines()) {
-      buses_.push_back({line->line.name(), nullptr, &line->line, 0, 0, {}});
-      buses_.back().node = line->line.attach(kPageNode, line->line.baud(), *this);
-      line->line.set_connected(buses_.back().node, false);
+      buses_.push_back({line->name(), nullptr, &line->line(), 0, 0, {}});
+      buses_.back().node = line->line().attach(kPageNode, line->baud(), *this);
+      line->line().set_connected(buses_.back().node, false);
     }
     plant.add_observer(static_cast<runtime::CanObserver&>(*this));
     plant.add_observer(static_cast<runtime::SerialObserver&>(*this));

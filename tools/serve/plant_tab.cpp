@@ -265,11 +265,11 @@ class PlantTab final : public Tab {
     }
     for (const auto& line : plant.serial_lines()) {
       Json on_it = Json::array();
-      for (runtime::NodeId node = 0; node < line->line.node_count(); ++node)
-        if (line->line.node_name(node) != kPageNode) on_it.push_back(line->line.node_name(node));
-      buses.push_back({{"name", line->line.name()},
-                       {"kind", "rs485"},
-                       {"baud", line->line.baud()},
+      for (runtime::NodeId node = 0; node < line->line().node_count(); ++node)
+        if (line->line().node_name(node) != kPageNode) on_it.push_back(line->line().node_name(node));
+      buses.push_back({{"name", line->name()},
+                       {"kind", runtime::info(line->kind()).word},
+                       {"baud", line->baud()},
                        {"stations", std::move(on_it)},
                        {"faults", Json::array()}});
     }
@@ -381,7 +381,7 @@ class PlantTab final : public Tab {
       if (subscription.is_news("b" + name, now)) buses[name] = std::move(now);
     };
     for (const auto& line : plant.lines()) add(line->name(), line->load(plant.now()));
-    for (const auto& line : plant.serial_lines()) add(line->line.name(), line->line.load(plant.now()));
+    for (const auto& line : plant.serial_lines()) add(line->name(), line->load(plant.now()));
     if (stations.empty() && buses.empty()) return;
     host_.desk().send(client, {{"event", "plant"},
                                {"us", host_.us()},

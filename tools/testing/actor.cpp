@@ -11,58 +11,11 @@ namespace ipos::tools::testing {
 
 using runtime::kMillisecond;
 
-// A station without any manners: sends what it is told and acknowledges what it hears.
-class Actor::Sender final : public runtime::CanNode, public runtime::SerialNode {
- public:
-  void attach(runtime::CanLine& line) {
-    can_ = &line;
-    node_ = line.attach("test", line.baud(), *this);
-  }
-  void attach(runtime::Rs485Line& line) {
-    serial_ = &line;
-    node_ = line.attach("test", line.baud(), *this);
-  }
-
-  std::optional<std::string> send(const SendStep& step) {
-    if (const auto* bytes = std::get_if<std::vector<uint8_t>>(&step.content))
-      return serial_->send(node_, *bytes)
-                 ? std::nullopt
-                 : std::optional<std::string>("the telegram before is still being sent");
-    const runtime::SendStatus status = can_->send(node_, std::get<runtime::Frame>(step.content), 0);
-    if (status == runtime::SendStatus::Queued) return std::nullopt;
-    return status == runtime::SendStatus::QueueFull ? "too many frames wait to be sent" : "the bus is off";
-  }
-
-  void on_frame(Time, const runtime::Frame&) override {}
-  void on_sent(Time, const runtime::Frame&, uint64_t) override {}
-  void on_not_sent(Time, const runtime::Frame&, uint64_t, runtime::NotSent) override {}
-  void on_bus_off(Time) override { can_->recover(node_); }
-  void on_character(Time, const runtime::Character&) override {}
-  void on_sent(Time) override {}
-
- private:
-  runtime::CanLine* can_ = nullptr;
-  runtime::Rs485Line* serial_ = nullptr;
-  runtime::NodeId node_ = runtime::kNoNode;
-};
-
 Actor::Actor(runtime::Plant& plant, const std::vector<Item>& items, uint64_t seed, Problem on_problem)
     : plant_(plant), hands_(plant), seed_(seed), on_problem_(std::move(on_problem)) {
   for (const Item& item : items)
     if (const auto* step = std::get_if<Step>(&item.what))
-      if (const auto* send = std::get_if<SendStep>(step)) attach(send->bus);
-}
-
-Actor::~Actor() = default;
-
-void Actor::attach(const std::string& bus) {
-  auto& sender = senders_[bus];
-  if (sender) return;
-  sender = std::make_unique<Sender>();
-  for (const auto& line : plant_.lines())
-    if (line->name() == bus) sender->attach(*line);
-  for (const auto& line : plant_.serial_lines())
-    if (line->line.name() == bus) sender->attach(line->line);
+      if (const auto* send = std::get_if<SendStep>(step)) plant.find_bus(send->bus)->attach_hand();
 }
 
 runtime::Station& Actor::station(const std::string& name) {
@@ -86,7 +39,8 @@ void Actor::plan(const Item& item, const Step& step, Time at) {
     std::optional<std::string> problem;
     if (const auto* stimulus = std::get_if<runtime::Stimulus>(&step)) problem = set(*stimulus);
     if (const auto* words = std::get_if<ProcessDataStep>(&step)) set_word(*words);
-    if (const auto* send = std::get_if<SendStep>(&step)) problem = senders_[send->bus]->send(*send);
+    if (const auto* send = std::get_if<SendStep>(&step))
+      problem = plant_.find_bus(send->bus)->send(send->text);
     if (const auto* fault = std::get_if<runtime::FaultConfig>(&step)) problem = plant_fault(*fault, at);
     if (const auto* fault = std::get_if<DriveFaultStep>(&step))
       station(fault->station).drive().state().raise_fault(fault->number);
@@ -115,7 +69,7 @@ void Actor::set_word(const ProcessDataStep& step) {
 }
 
 runtime::Refusal Actor::plant_fault(runtime::FaultConfig fault, Time at) {
-  fault.fault.seed += seed_;
+  fault.begin_at(0, seed_);
   return hands_.plant_fault(std::move(fault), at);
 }
 

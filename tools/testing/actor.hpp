@@ -3,8 +3,6 @@
 #pragma once
 
 #include <functional>
-#include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,7 +18,6 @@ class Actor {
   // before the first event of the plant; `seed` moves the seeds of faults.
   using Problem = std::function<void(const Item&, std::string)>;
   Actor(runtime::Plant& plant, const std::vector<Item>& items, uint64_t seed, Problem on_problem);
-  ~Actor();
   Actor(const Actor&) = delete;
   Actor& operator=(const Actor&) = delete;
 
@@ -28,9 +25,6 @@ class Actor {
   void plan(const Item& item, const Step& step, Time at);
 
  private:
-  class Sender;
-
-  void attach(const std::string& bus);
   runtime::Station& station(const std::string& name);
   runtime::Refusal set(const runtime::Stimulus& stimulus);
   void set_word(const ProcessDataStep& step);
@@ -40,7 +34,6 @@ class Actor {
   runtime::Hands hands_;
   uint64_t seed_;
   Problem on_problem_;
-  std::map<std::string, std::unique_ptr<Sender>> senders_;  // by bus
 };
 
 }  // namespace ipos::tools::testing

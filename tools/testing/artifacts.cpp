@@ -50,8 +50,7 @@ std::vector<std::string> signals_of(const TestCase& test, const runtime::Plant& 
   for (const std::string& name : wanted)
     if (std::find(names.begin(), names.end(), name) == names.end() && runtime::find_signals(plant, name))
       names.push_back(name);
-  for (const auto& line : plant.lines()) names.push_back(line->name() + ".frames");
-  for (const auto& line : plant.serial_lines()) names.push_back(line->line.name() + ".frames");
+  for (const auto& bus : plant.buses()) names.push_back(bus->name() + ".frames");
   return names;
 }
 

@@ -7,7 +7,6 @@
 #include <charconv>
 #include <sstream>
 
-#include "runtime/bus/log/candump.hpp"
 #include "runtime/bus_plan/names.hpp"
 #include "runtime/plant/signal_port.hpp"
 #include "tools/cli/files.hpp"
@@ -36,8 +35,7 @@ std::string with_source(const std::string& place) {
 }  // namespace
 
 Probe::Probe(runtime::Plant& plant, Listener on_event) : plant_(plant), on_event_(std::move(on_event)) {
-  plant.add_observer(static_cast<runtime::CanObserver&>(*this));
-  plant.add_observer(static_cast<runtime::SerialObserver&>(*this));
+  for (const auto& bus : plant.buses()) bus->add_observer(*this);
 }
 
 runtime::Station& Probe::station(const std::string& name) {
@@ -80,19 +78,8 @@ void Probe::note(Shown shown) {
   if (shown_.size() > kFrames) shown_.pop_front();
 }
 
-void Probe::on_frame(const runtime::CanLine& line, const runtime::FrameRecord& record) {
-  const std::string text = runtime::candump_line(record.end, line.name(), record.frame);
-  note({record.end, line.name(), text.substr(text.rfind(' ') + 1), "", record.frame});
-}
-
-void Probe::on_character(const runtime::Rs485Line& line, runtime::NodeId /*sender*/,
-                         const runtime::Character& character) {
-  const auto reception = receivers_[line.name()].take(character);
-  if (!reception) return;
-  note({reception->end, line.name(), fmt::format("{:02X}", fmt::join(reception->bytes.span(), " ")),
-        reception->telegram ? runtime::describe(*reception->telegram)
-                            : "void: " + std::string(serial_error_text(reception->telegram.error())),
-        std::nullopt});
+void Probe::on_message(const runtime::Bus& bus, const runtime::BusMessage& message) {
+  note({message.end, bus.name(), message.text, message.meaning, message.frame});
 }
 
 std::vector<std::string> Probe::tasks_of(const std::string& name) const {

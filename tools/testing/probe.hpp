@@ -4,12 +4,10 @@
 
 #include <deque>
 #include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "runtime/bus/movilink/serial_receiver.hpp"
 #include "tools/testing/result.hpp"
 #include "tools/testing/test_case.hpp"
 
@@ -17,7 +15,7 @@ namespace ipos::tools::testing {
 
 using Reader = std::function<int64_t()>;
 
-class Probe final : private runtime::CanObserver, private runtime::SerialObserver {
+class Probe final : private runtime::BusObserver {
  public:
   // `on_event` hears every frame and telegram: bus, time, bytes, meaning. The plant must outlive the probe.
   using Listener = std::function<void(const std::string&, Time, const std::string&, const std::string&)>;
@@ -51,11 +49,7 @@ class Probe final : private runtime::CanObserver, private runtime::SerialObserve
     std::optional<runtime::Frame> frame;  // of CAN: its meaning is found when it is asked for
   };
 
-  void on_frame(const runtime::CanLine& line, const runtime::FrameRecord& record) override;
-  void on_line_event(const runtime::CanLine&, const runtime::LineEvent&) override {}
-  void on_character(const runtime::Rs485Line& line, runtime::NodeId,
-                    const runtime::Character& character) override;
-  void on_serial_event(const runtime::Rs485Line&, const runtime::SerialEvent&) override {}
+  void on_message(const runtime::Bus& bus, const runtime::BusMessage& message) override;
   void note(Shown shown);
   Reader reader_of(const Subject& subject, std::string& why);
   std::vector<std::string> tasks_of(const std::string& station) const;
@@ -64,7 +58,6 @@ class Probe final : private runtime::CanObserver, private runtime::SerialObserve
   Listener on_event_;
   std::deque<Followed> followed_;
   std::deque<Shown> shown_;  // the last ones
-  std::map<std::string, runtime::SerialReceiver> receivers_;
 };
 
 }  // namespace ipos::tools::testing

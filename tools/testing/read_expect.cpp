@@ -14,16 +14,15 @@ std::optional<Subject> read_event(PlantReader& reader, const toml::table& table,
   const runtime::BusConfig* bus = read_item_bus(reader, table, kExpect);
   if (bus == nullptr) return std::nullopt;
   Subject subject;
-  const bool serial = runtime::is_serial(bus->kind);
-  subject.kind = serial ? Subject::Kind::Telegram : Subject::Kind::Frame;
+  subject.kind = Subject::Kind::Message;
+  subject.message = runtime::info(bus->kind).message;
   subject.bus = bus->name;
   subject.pattern = "*";
   if (key == nullptr) return subject;
   subject.pattern = reader.text(table, key, kExpect, true);
-  if (serial != (std::string_view(key) == "telegram")) {
+  if (key != subject.message) {
     reader.error(place_of(*table.get(key)),
-                 fmt::format("bus '{}' carries {}", bus->name,
-                             serial ? "telegrams, no frames" : "frames, no telegrams"));
+                 fmt::format("bus '{}' carries {}s, no {}s", bus->name, subject.message, key));
     return std::nullopt;
   }
   return subject;
@@ -234,7 +233,8 @@ std::optional<Expect> read_await(PlantReader& reader, const toml::table& table) 
   expect.kind = Expect::Kind::Within;
   expect.within = reader.duration(table, "within", "an await", true);
   if (bus == nullptr) return std::nullopt;
-  expect.subject.kind = runtime::is_serial(bus->kind) ? Subject::Kind::Telegram : Subject::Kind::Frame;
+  expect.subject.kind = Subject::Kind::Message;
+  expect.subject.message = runtime::info(bus->kind).message;
   expect.subject.bus = bus->name;
   return expect;
 }

@@ -1,9 +1,6 @@
 // [[step]] of a test file: one thing that is done to the plant.
 #include <algorithm>
-#include <charconv>
 
-#include "runtime/bus/log/candump.hpp"
-#include "runtime/bus/movilink/serial_telegram.hpp"
 #include "tools/testing/item_reader.hpp"
 
 namespace ipos::tools::testing {
@@ -53,55 +50,15 @@ std::optional<Step> read_process_data(PlantReader& reader, const toml::table& ta
   return step;
 }
 
-// "02 01 85 00 06 bcc": bytes of a telegram, the block check at its end worked out on demand.
-std::optional<std::vector<uint8_t>> read_bytes(std::string_view text) {
-  std::vector<uint8_t> bytes;
-  while (!text.empty()) {
-    if (text.front() == ' ') {
-      text.remove_prefix(1);
-      continue;
-    }
-    const std::string_view word = text.substr(0, text.find(' '));
-    text.remove_prefix(word.size());
-    if (word == "bcc" && text.empty()) {
-      bytes.push_back(runtime::block_check(bytes));
-      break;
-    }
-    uint8_t byte = 0;
-    const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), byte, 16);
-    if (status != std::errc() || end != word.data() + word.size() || word.size() != 2) return std::nullopt;
-    bytes.push_back(byte);
-  }
-  if (bytes.empty()) return std::nullopt;
-  return bytes;
-}
-
 std::optional<Step> read_send(PlantReader& reader, const toml::table& table) {
   const runtime::BusConfig* bus = read_item_bus(reader, table, kStep);
   const std::string text = reader.text(table, "send", kStep, true);
   if (bus == nullptr || text.empty()) return std::nullopt;
-  SendStep step;
-  step.bus = bus->name;
-  if (runtime::is_serial(bus->kind)) {
-    auto bytes = read_bytes(text);
-    if (bytes) {
-      step.content = std::move(*bytes);
-      return step;
-    }
-    reader.error(
-        place_of(*table.get("send")),
-        fmt::format("'{}' are no bytes; write for example \"02 01 85 00 06 13 88 00 00 bcc\"", text));
+  if (const auto why = runtime::info(bus->kind).refuse(text)) {
+    reader.error(place_of(*table.get("send")), *why);
     return std::nullopt;
   }
-  const auto entry = runtime::parse_candump_line("(0946684800.000000) bus " + text);
-  if (!entry) {
-    reader.error(place_of(*table.get("send")),
-                 fmt::format("'{}' is no frame: {}; write for example \"20B#3100207E00000000\"", text,
-                             entry.error().message));
-    return std::nullopt;
-  }
-  step.content = entry->frame;
-  return step;
+  return SendStep{bus->name, text};
 }
 
 std::optional<Step> read_awaited(PlantReader& reader, const toml::table& table) {

@@ -18,13 +18,9 @@ std::string range_text(std::pair<int64_t, int64_t> range) {
 }  // namespace
 
 std::string Subject::text() const {
-  switch (kind) {
-    case Kind::Frame: return fmt::format("frame {} on {}", pattern, bus);
-    case Kind::Telegram: return fmt::format("telegram '{}' on {}", pattern, bus);
-    case Kind::ProcessData:
-    case Kind::Signal: break;
-  }
-  return fmt::format("{} of {}", signal.name, signal.station);
+  if (kind != Kind::Message) return fmt::format("{} of {}", signal.name, signal.station);
+  const char* quote = message == "frame" && pattern.find(' ') == std::string::npos ? "" : "'";
+  return fmt::format("{} {}{}{} on {}", message, quote, pattern, quote, bus);
 }
 
 bool Subject::operator==(const Subject& other) const {

@@ -21,14 +21,15 @@ using runtime::Time;
 
 // What an expectation looks at. Frames and telegrams are events, everything else has a value at every time.
 struct Subject {
-  enum class Kind : uint8_t { Signal, ProcessData, Frame, Telegram };
+  enum class Kind : uint8_t { Signal, ProcessData, Message };
   Kind kind = Kind::Signal;
   runtime::Signal signal;  // Signal; of the others station and name
   uint8_t word = 0;        // ProcessData: 0..2 PO1..PO3, 3..5 PI1..PI3
   std::string bus;
-  std::string pattern;  // glob over "400#5566778811223344", "02 01 85 .." or the meaning of a telegram
+  std::string message;  // "frame", "telegram"
+  std::string pattern;  // glob over "400#5566778811223344", "02 01 85 .." or the meaning
 
-  bool is_event() const { return kind == Kind::Frame || kind == Kind::Telegram; }
+  bool is_event() const { return kind == Kind::Message; }
   std::string text() const;  // "lPieces of belt", "frame 400#* on sbus"
   bool operator==(const Subject& other) const;
 };
@@ -77,7 +78,7 @@ struct ProcessDataStep {
 };
 struct SendStep {
   std::string bus;
-  std::variant<runtime::Frame, std::vector<uint8_t>> content;
+  std::string text;  // which its line takes
 };
 struct AwaitStep {
   Expect frame;

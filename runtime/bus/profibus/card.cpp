@@ -5,8 +5,8 @@ namespace ipos::profibus {
 namespace {
 
 constexpr OptionType kOptions[] = {
-#define PROFIBUS_OPTION(name, word, ident, fms, model, gsd_file) \
-  {OptionKind::name, word, ident, fms, model, gsd_file},
+#define PROFIBUS_OPTION(name, word, unit, ident, fms, model, gsd_file) \
+  {OptionKind::name, word, unit, ident, fms, model, gsd_file},
 #include "runtime/bus/profibus/options.def"
 };
 

@@ -13,13 +13,14 @@
 namespace ipos::profibus {
 
 enum class OptionKind : uint8_t {
-#define PROFIBUS_OPTION(name, word, ident, fms, model, gsd_file) name,
+#define PROFIBUS_OPTION(name, word, unit, ident, fms, model, gsd_file) name,
 #include "runtime/bus/profibus/options.def"
 };
 
 struct OptionType {
   OptionKind kind;
   std::string_view word;  // in the plant file
+  std::string_view unit;  // the type it fits
   uint16_t ident;
   bool fms;
   std::string_view model;

@@ -83,6 +83,7 @@ class Line final : private runtime::EventTarget {
 
   const std::string& name() const { return name_; }
   uint32_t baud() const { return baud_; }
+  size_t node_count() const { return nodes_.size(); }
   const std::string& node_name(NodeId node) const { return nodes_[node].name; }
   runtime::LineLoad load(Time now) const;  // frames: heard without error
 

@@ -24,8 +24,14 @@ void SlaveStation::search_rate() {
   line_.listen_at(node_, rate_.baud());
 }
 
+void SlaveStation::power_off() {
+  queue_.cancel(std::exchange(watchdog_, runtime::kNoEvent));
+  line_.set_connected(node_, false);
+}
+
 void SlaveStation::power_on(bool supply_was_kept) {
   switches_.power_on(supply_was_kept);
+  line_.set_connected(node_, true);
   powered_at_ = queue_.now();
   slave_.power_on(powered_at_, switches_.slave_settings(option_, line_.baud()));
   queue_.cancel(std::exchange(watchdog_, runtime::kNoEvent));

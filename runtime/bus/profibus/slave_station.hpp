@@ -30,6 +30,7 @@ class SlaveStation final : public Node, private runtime::EventTarget {
   NodeId node() const { return node_; }
   const BaudSearch& rate() const { return rate_; }
 
+  void power_off();
   // Mains off and on; with the 24 V kept the card goes on with its old switches.
   void power_on(bool supply_was_kept);
   // Bit times from the end of a request to the answer, where min Tsdr is not longer.

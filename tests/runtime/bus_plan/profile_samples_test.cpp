@@ -94,7 +94,7 @@ TEST(ProfileSamples, TheAcyclicFormIsNotMonitored) {
   PlantRig rig(kSerialBus +
                "[[station]]\nname = \"unit\"\nunit = \"md60a\"\nrs485 = \"line1\"\n[station.parameters]\n"
                "P810 = 1\nP812 = 500\n");
-  HandNode hand(rig.get().serial_lines()[0]->line, "hand");
+  HandNode hand(rig.get().serial_lines()[0]->line(), "hand");
   rig.run_until(10 * kMillisecond);
   hand.send(acyclic);
   rig.run_until(5 * kSecond);
@@ -117,7 +117,7 @@ TEST(ProfileSamples, ParametersAreCodedAlikeOnBothBuses) {
                             station_text("unit", "P810 = 1\nP813 = 1\n", "md60a", "", "rs485 = \"line1\"\n");
   PlantRig over_can(plant), over_serial(plant);
   CanHand can(*over_can.get().lines()[0], "hand");
-  HandNode serial(over_serial.get().serial_lines()[0]->line, "hand");
+  HandNode serial(over_serial.get().serial_lines()[0]->line(), "hand");
   over_can.run_until(10 * kMillisecond);
   over_serial.run_until(10 * kMillisecond);
   size_t refused = 0;
@@ -184,7 +184,7 @@ TEST(ProfileSamples, TheNextServiceWaitsForTheAcknowledgement) {
           "1\n",
       {{"A.IPC", program}});
   Recorder recorder;
-  rig.get().serial_lines()[0]->line.add_observer(recorder);
+  rig.get().serial_lines()[0]->line().add_observer(recorder);
   rig.run_until(5 * kSecond);
   EXPECT_GT(rig.variable(0, "n"), 10);
   EXPECT_GT(rig.variable(0, "m"), 10);
@@ -296,7 +296,7 @@ TEST(ProfileSamples, P750SelectsWhatIsSentAndWhere) {
   for (int p750 = 0; p750 <= 9; ++p750) {
     PlantRig rig(master_and_slave(p750, 1000));
     Recorder serial;
-    rig.get().serial_lines()[0]->line.add_observer(serial);
+    rig.get().serial_lines()[0]->line().add_observer(serial);
     rig.run_until(2 * kSecond);
     // 1, 4, 7 RS-485; 2, 5, 8 SBus; 3, 6, 9 both.
     const bool over_serial = p750 != 0 && p750 % 3 != 2;
@@ -350,7 +350,7 @@ TEST(ProfileSamples, Po3OfTheMasterComesFromItsProgram) {
                    station_text("slave", "P813 = 2\nP814 = 5\nP100 = 8\n", "md60a", "B.IPC"),
                {{"A.IPC", fill}, {"B.IPC", read}});
   Recorder serial;
-  rig.get().serial_lines()[0]->line.add_observer(serial);
+  rig.get().serial_lines()[0]->line().add_observer(serial);
   rig.run_until(100 * kMillisecond);
   // Control word 1, speed, IPOS PO-data.
   EXPECT_EQ(*process_words(rig.with(8 * 5 + 6).back().frame), (ProcessWords{1, 0, 0x1234}));

@@ -75,6 +75,7 @@ class LatePlant {
       text_ += fmt::format(
           "[[stimulus]]\nstation = \"u{}\"\nat = \"{}us\"\n{}", pick(0, stations_ - 1), pick(0, 5'000'000),
           pick(0, 1) == 0 ? "input = \"DI03\"\nset = 0\n" : "parameter = \"P160\"\nset = 300000\n");
+    if (pick(0, 2) == 0) profibus();
   }
 
   std::unique_ptr<Plant> make_in_turn() const { return make_plant(text_, sources_, std::nullopt, in_turn()); }
@@ -95,6 +96,39 @@ class LatePlant {
     const char* const text = kBodies[static_cast<size_t>(pick(0, calm - 1))];
     const int k = pick(1, 200), l = pick(1, 9);
     return numbered(text, k, l);
+  }
+
+  // MOVITRAC 31 on a line of their own, with a master that changes setpoints, syncs, and may stop.
+  void profibus() {
+    static constexpr int kRates[] = {93'750, 187'500, 500'000, 1'500'000};
+    text_ += fmt::format("[[bus]]\nname = \"dp\"\nkind = \"profibus\"\nbaud = {}\n", kRates[pick(0, 3)]);
+    const int units = pick(1, 2);
+    for (int n = 0; n < units; ++n)
+      text_ += fmt::format(
+          "[[station]]\nname = \"m{0}\"\nunit = \"mc31\"\noption = \"{1}\"\nprofibus = \"dp\"\n"
+          "profibus_address = {2}\n[station.parameters]\nP841 = {3}\nP572 = {4}\nP600 = 0\nP601 = 0\n"
+          "[station.inputs]\nDI00 = 1\n",
+          n, pick(0, 1) == 0 ? "ffp31" : "size0", 8 + n, pick(0, 3) != 0 ? 1 : 0, pick(0, 7));
+    text_ += fmt::format("[[control]]\nname = \"plc\"\nprofibus = \"dp\"\naddress = {}\ngap = {}\n",
+                         pick(0, 7), pick(0, 10));
+    for (int n = 0; n < units; ++n) {
+      static constexpr const char* kCfg[] = {"F1", "F2", "F3 F1", "F3 F2"};
+      text_ += fmt::format("[[control.slave]]\naddress = {}\ncfg = \"{}\"\npo = [6, {}]\n", 8 + n,
+                           kCfg[pick(0, 3)], pick(-7500, 7500));
+      if (pick(0, 2) != 0) text_ += fmt::format("watchdog = \"{}ms\"\n", 10 * pick(2, 200));
+      for (int change = pick(0, 4); change > 0; --change)
+        text_ += fmt::format("[[control.slave.change]]\nat = \"{}us\"\npo = [{}, {}]\n", pick(0, 5'000'000),
+                             pick(0, 4) == 0 ? pick(0, 127) : 6, pick(-7500, 7500));
+    }
+    static constexpr const char* kCommands[] = {"sync",  "unsync", "freeze", "unfreeze",
+                                                "clear", "stop",   "start"};
+    for (int command = pick(0, 6); command > 0; --command)
+      text_ += fmt::format("[[control.command]]\nat = \"{}us\"\ncommand = \"{}\"\n", pick(0, 5'000'000),
+                           kCommands[pick(0, 6)]);
+    static constexpr const char* kFaults[] = {"lost", "cut", "parity", "noise", "collision"};
+    if (pick(0, 2) == 0)
+      text_ += fmt::format("[[fault]]\nbus = \"dp\"\nkind = \"{}\"\nrate = {}\nseed = {}\n",
+                           kFaults[pick(0, 4)], pick(1, 300), pick(1, 99));
   }
 
   void station(int n) {

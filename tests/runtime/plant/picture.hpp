@@ -39,11 +39,18 @@ inline std::string picture(const runtime::Plant& plant) {
 }
 
 // And what has passed on its buses.
-struct Watched {
+struct Watched final : private runtime::BusObserver {
   explicit Watched(std::unique_ptr<runtime::Plant> made)
       : plant(std::move(made)), log(frames), serial(telegrams) {
     plant->add_observer(log);
     plant->add_observer(serial);
+    for (const auto& bus : plant->buses())
+      if (bus->kind() == runtime::BusKind::Profibus) bus->add_observer(*this);
+  }
+  Watched(const Watched&) = delete;
+  Watched& operator=(const Watched&) = delete;
+  void on_message(const runtime::Bus& bus, const runtime::BusMessage& message) override {
+    telegrams << message.end << ' ' << bus.name() << ' ' << message.text << '\n';
   }
   std::unique_ptr<runtime::Plant> plant;
   std::ostringstream frames, telegrams;

@@ -23,6 +23,7 @@ using stdlib::Unsimulated;
 const std::set<std::string_view> kReadElsewhere = {
     "260", "263", "264", "265", "266", "271", "276", "284", "285",  // PID block
     "751",                                                          // setpoint of a slave
+    "572",                                                          // response of MOVITRAC 31 to a timeout
     "802", "803", "804", "840",                                     // what ParameterStore carries out
 };
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/port/serial_bridge.hpp"
+#include "tests/runtime/port/bytes_in_memory.hpp"
 #include "tests/runtime/port/port_rig.hpp"
 #include "tests/runtime/rs485/serial_rig.hpp"
 
@@ -10,47 +11,6 @@ namespace ipos::tests {
 namespace {
 
 constexpr Time kCharacter = wire_time(1, 9600);
-
-// A port in memory: the test puts in what arrives, in order of time.
-class BytesInMemory final : public BytePort {
- public:
-  explicit BytesInMemory(RealClock& clock) : clock_(clock) {}
-  const std::string& name() const override { return name_; }
-  PortNeeds needs() const override { return {}; }
-  tl::expected<void, PortError> flush() override { return {}; }
-  size_t waiting() const override { return 0; }
-  const PortCounts& counts() const override { return counts_; }
-  std::vector<std::string> take_notes() override { return {}; }
-  bool has_parity() const override { return true; }
-  bool paces() const override { return paced; }
-  Time latency() const override { return late; }
-  void send(std::span<const uint8_t> bytes) override {
-    if (!bytes.empty()) sent.push_back({clock_.now(), Bytes(bytes.begin(), bytes.end())});
-  }
-  tl::expected<size_t, PortError> receive(std::span<ByteArrival> into) override {
-    size_t count = 0;
-    for (; count < into.size() && !incoming.empty() && incoming.front().at <= clock_.now(); ++count) {
-      into[count] = incoming.front();
-      incoming.pop_front();
-    }
-    counts_.received += count;
-    return count;
-  }
-
-  struct Sent {
-    Time at;
-    Bytes bytes;
-  };
-  std::deque<ByteArrival> incoming;
-  std::vector<Sent> sent;
-  bool paced = true;
-  Time late = 0;
-
- private:
-  RealClock& clock_;
-  std::string name_ = "serial";
-  PortCounts counts_;
-};
 
 struct Rig {
   explicit Rig(bool paced = true, Time latency = 0) {

@@ -107,7 +107,7 @@ TEST(SerialPlan, MovidriveB) {
 
 TEST(SerialPlan, KeysLeadToSerialLines) {
   const std::string can = "[[bus]]\nname = \"c\"\nkind = \"can\"\n";
-  refuses(can + station("a", "md60a", "rs485 = \"c\"\n"), "7:9 bus 'c' is no serial line");
+  refuses(can + station("a", "md60a", "rs485 = \"c\"\n"), "7:9 bus 'c' is an SBus, not a serial line");
   refuses(bus("l") + station("a", "md60a", "sbus = \"l\"\n"), "bus 'l' is a serial line");
   refuses(station("a", "md60a", "rs485 = \"l\"\n"), "there is no bus 'l'");
   refuses(bus("l", "baud = 19200\n") + station("a", "md60a", "rs485 = \"l\"\n"),
@@ -331,7 +331,7 @@ TEST(SerialPlant, SlaveFollowsItsGroupOnly) {
                  station("m", "mdxb", "rs485 = \"l\"\n", "P810 = 1\nP811 = 101\nP750 = 1\n"));
     EXPECT_EQ(run.told("different group addresses P811"), !follows);
     run.run(kSecond);
-    run.plant->serial_lines()[0]->line.set_connected(1, false);
+    run.plant->serial_lines()[0]->line().set_connected(1, false);
     run.run(kSecond);
     EXPECT_EQ(run.station(0).fault(), follows ? 43 : 0) << "only who follows misses the master";
   }
@@ -369,7 +369,7 @@ TEST(SerialPlant, ConnectionCheckAfter500Milliseconds) {
 
 TEST(SerialPlant, RequestsOfTwoMasters) {
   PlantRun run(bus("l") + station("a", "md60a", "rs485 = \"l\"\n", "P810 = 1\n"));
-  HandNode second(run.plant->serial_lines()[0]->line, "second");
+  HandNode second(run.plant->serial_lines()[0]->line(), "second");
   run.ask(0, "02 01 81 00 00");
   second.send(telegram("02 01 81 00 00"));
   run.run(100 * kMillisecond);

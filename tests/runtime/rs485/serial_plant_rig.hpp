@@ -31,8 +31,8 @@ struct PlantRun {
     EXPECT_TRUE(errors.empty()) << errors[0].text;
     for (const auto& serial : plant->serial_lines()) {
       recorders.push_back(std::make_unique<Recorder>());
-      serial->line.add_observer(*recorders.back());
-      hands.push_back(std::make_unique<HandNode>(serial->line, "hand"));
+      serial->line().add_observer(*recorders.back());
+      hands.push_back(std::make_unique<HandNode>(serial->line(), "hand"));
     }
   }
   void run(Time time) { plant->run_until(plant->now() + time); }

@@ -1,0 +1,75 @@
+// One line a frame, and back.
+#include "runtime/bus/log/profibus_log.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <ostream>
+
+#include "runtime/bus/log/serial_log.hpp"
+#include "runtime/bus/profibus/frame_text.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+constexpr std::string_view kVoidFrame = "void frame: ";
+
+std::string_view next_word(std::string_view& text) {
+  constexpr std::string_view kBlank = " \t\r";
+  text.remove_prefix(std::min(text.find_first_not_of(kBlank), text.size()));
+  const std::string_view word = text.substr(0, text.find_first_of(kBlank));
+  text.remove_prefix(word.size());
+  return word;
+}
+
+// "0.003455"
+std::optional<Time> log_time(std::string_view word) {
+  const size_t point = word.find('.');
+  int64_t seconds = 0, micros = 0;
+  const auto number = [](std::string_view digits, int64_t& out) {
+    const auto [end, status] = std::from_chars(digits.data(), digits.data() + digits.size(), out);
+    return status == std::errc() && end == digits.data() + digits.size() && out >= 0 && out < 9'000'000'000;
+  };
+  if (point == std::string_view::npos || word.size() != point + 7 ||
+      !number(word.substr(0, point), seconds) || !number(word.substr(point + 1), micros))
+    return std::nullopt;
+  return seconds * kSecond + micros * kMicrosecond;
+}
+
+}  // namespace
+
+std::string reception_text(const profibus::Reception& reception) {
+  if (reception.frame) return profibus::describe(*reception.frame);
+  return std::string(kVoidFrame) + std::string(profibus::frame_error_text(reception.frame.error()));
+}
+
+void ProfibusLog::on_frame(const profibus::Line& line, profibus::NodeId,
+                           const profibus::Reception& reception) {
+  out_ << serial_time_text(reception.start) << ' ' << serial_time_text(reception.end) << ' ' << line.name()
+       << ' ' << profibus::hex_text(reception.octets) << " | " << reception_text(reception) << '\n';
+}
+
+std::optional<ProfibusEntry> parse_profibus_line(std::string_view text) {
+  ProfibusEntry entry;
+  const bool is_void = text.find(kVoidFrame) != std::string_view::npos;
+  const bool logged = text.substr(0, text.find('|')).find('.') != std::string_view::npos;
+  if (logged) {
+    const auto begin = log_time(next_word(text));
+    if (!begin || !log_time(next_word(text))) return std::nullopt;
+    entry.time = *begin;
+    entry.line = next_word(text);
+  }
+  for (std::string_view word = next_word(text); !word.empty() && word != "|"; word = next_word(text)) {
+    uint8_t octet = 0;
+    const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), octet, 16);
+    if (status != std::errc() || end != word.data() + word.size() || word.size() != 2) return std::nullopt;
+    entry.octets.push_back(octet);
+  }
+  // MOVILINK begins with 02 or 1D; in its log a void telegram may begin with anything.
+  const bool begins_a_frame = !entry.octets.empty() && profibus::frame_size(entry.octets).has_value();
+  if (!begins_a_frame || (logged && !is_void && !profibus::decode(entry.octets))) return std::nullopt;
+  return entry;
+}
+
+}  // namespace ipos::runtime

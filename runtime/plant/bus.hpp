@@ -1,0 +1,142 @@
+// A line of a plant, whatever its kind: what the plant, its reports, recordings and tests ask of it. A new kind of bus
+// is a class of this, and a row of bus_kinds.def. Its stations take the line itself from the class.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+#include "runtime/bus/can/frame.hpp"
+#include "runtime/bus/line_load.hpp"
+#include "runtime/bus/node_id.hpp"
+#include "runtime/clock/event_queue.hpp"
+#include "runtime/plant/plant_file.hpp"
+#include "runtime/port/bridge.hpp"
+
+namespace ipos::runtime {
+
+class Bus;
+
+// A frame or a telegram that has ended on the line, or what came of one.
+struct BusMessage {
+  Time end = 0;
+  std::string text;     // as tests write it: "40A#8006", "02 01 85 .."
+  std::string meaning;  // in words; empty where the text needs none
+  std::vector<uint8_t> bytes{};
+  std::optional<Frame> frame{};  // CAN
+};
+
+class BusObserver {
+ public:
+  virtual void on_message(const Bus& bus, const BusMessage& message) = 0;
+
+ protected:
+  ~BusObserver() = default;
+};
+
+// Hears everything there is to know of what happens on the line, as numbers: two runs are equal where these are.
+class BusTracer {
+ public:
+  virtual void on_trace(const Bus& bus, std::span<const uint64_t> facts) = 0;
+
+ protected:
+  ~BusTracer() = default;
+};
+
+// What a line is made of.
+struct BusPlace {
+  EventQueue& queue;
+  uint32_t source;  // orders its events among those of equal time
+  const BusConfig& config;
+  std::function<void(Time now, std::string text)> warn;  // of what is wrong on it
+};
+
+// A kind of bus, as bus_kinds.def has it.
+struct BusKindInfo {
+  BusKind kind;
+  std::string_view word;
+  std::string_view name;
+  uint32_t baud;
+  std::span<const uint32_t> rates;
+  std::string_view line;     // what one is called: "a serial line"
+  std::string_view message;  // what it carries: "frame", "telegram"
+  std::unique_ptr<Bus> (*make)(BusPlace place);
+  // Nothing when the text is a message that send() takes, else why not.
+  std::optional<std::string> (*refuse)(const std::string& text);
+};
+const BusKindInfo& info(BusKind kind);
+std::span<const BusKindInfo> bus_kinds();
+
+class Bus {
+ public:
+  explicit Bus(const BusConfig& config) : kind_(config.kind), name_(config.name), baud_(config.baud) {}
+  Bus(const Bus&) = delete;
+  Bus& operator=(const Bus&) = delete;
+  virtual ~Bus() = default;
+
+  BusKind kind() const { return kind_; }
+  const std::string& name() const { return name_; }
+  uint32_t baud() const { return baud_; }
+  virtual LineLoad load(Time now) const = 0;  // frames: frames or telegrams
+
+  // Before the first event runs.
+  void add_observer(BusObserver& observer) {
+    observers_.push_back(&observer);
+    look();
+  }
+  void add_tracer(BusTracer& tracer) {
+    tracers_.push_back(&tracer);
+    look();
+  }
+  virtual void finish() {}  // at the end of a run: the message that was not completed
+
+  // A participant without any manners joins the line, before the first event, to send what a test says. Nothing, or
+  // why it cannot be sent.
+  virtual void attach_hand() = 0;
+  virtual std::optional<std::string> send(const std::string& text) = 0;
+
+  // False: its station is not on the bus.
+  virtual bool plant(const FaultConfig& /*fault*/) { return false; }
+  // Ends it. False: there is none like it, or it cannot be ended.
+  virtual bool repair(const FaultConfig& /*fault*/) { return false; }
+
+  // Opens a real port and joins the line to it; `source` orders what comes from outside.
+  virtual tl::expected<JoinedPort, PortError> join(const std::string& port, uint32_t source,
+                                                   RealClock& clock) = 0;
+
+ protected:
+  // From now on told() and traced() are wanted.
+  virtual void watch() = 0;
+  bool is_observed() const { return !observers_.empty(); }
+  void tell(const BusMessage& message) {
+    for (BusObserver* observer : observers_) observer->on_message(*this, message);
+  }
+  void trace(std::span<const uint64_t> facts) {
+    for (BusTracer* tracer : tracers_) tracer->on_trace(*this, facts);
+  }
+  template <typename... Facts>
+  void trace_all(Facts... facts) {
+    const uint64_t numbers[] = {static_cast<uint64_t>(facts)...};
+    trace(numbers);
+  }
+
+ private:
+  void look() {
+    if (observers_.size() + tracers_.size() == 1) watch();
+  }
+
+  BusKind kind_;
+  std::string name_;
+  uint32_t baud_;
+  std::vector<BusObserver*> observers_;
+  std::vector<BusTracer*> tracers_;
+};
+
+}  // namespace ipos::runtime

@@ -1,0 +1,46 @@
+// A PROFIBUS line of a plant.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "runtime/bus/profibus/line.hpp"
+#include "runtime/plant/bus.hpp"
+
+namespace ipos::runtime {
+
+class ProfibusBus final : public Bus, private profibus::LineObserver {
+ public:
+  static constexpr std::string_view kLine = "a PROFIBUS line", kMessage = "frame";
+  static std::optional<std::string> refuse(const std::string& text);
+
+  explicit ProfibusBus(BusPlace place);
+  ~ProfibusBus() override;
+
+  profibus::Line& line() { return line_; }
+  uint32_t source() const { return place_.source; }  // of its events
+
+  LineLoad load(Time now) const override { return line_.load(now); }
+  void attach_hand() override;
+  std::optional<std::string> send(const std::string& text) override;
+  bool plant(const FaultConfig& config) override;
+  tl::expected<JoinedPort, PortError> join(const std::string& port, uint32_t source,
+                                           RealClock& clock) override;
+
+ private:
+  class Hand;
+
+  void watch() override {}  // it observes for the journal anyway
+  void on_frame(const profibus::Line& line, NodeId sender, const profibus::Reception& reception) override;
+  void on_line_event(const profibus::Line& line, const profibus::LineEvent& event) override;
+
+  BusPlace place_;
+  profibus::Line line_;
+  std::unique_ptr<Hand> hand_;
+  std::set<std::pair<profibus::LineEventKind, NodeId>> told_;  // each is told once
+};
+
+}  // namespace ipos::runtime

@@ -1,0 +1,47 @@
+// An RS-485 line of a plant, or RS-232: with it the checks of who talks when.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "runtime/bus/movilink/line_check.hpp"
+#include "runtime/bus/movilink/serial_receiver.hpp"
+#include "runtime/bus/rs485/line.hpp"
+#include "runtime/plant/bus.hpp"
+
+namespace ipos::runtime {
+
+class SerialBus final : public Bus, private SerialObserver {
+ public:
+  static constexpr std::string_view kLine = "a serial line", kMessage = "telegram";
+  static std::optional<std::string> refuse(const std::string& text);
+
+  explicit SerialBus(BusPlace place);
+  ~SerialBus() override;
+
+  Rs485Line& line() { return line_; }
+
+  LineLoad load(Time now) const override;
+  void finish() override;
+  void attach_hand() override;
+  std::optional<std::string> send(const std::string& text) override;
+  tl::expected<JoinedPort, PortError> join(const std::string& port, uint32_t source,
+                                           RealClock& clock) override;
+
+ private:
+  class Hand;
+
+  void watch() override { line_.add_observer(*this); }
+  void on_character(const Rs485Line& line, NodeId sender, const Character& character) override;
+  void on_serial_event(const Rs485Line& line, const SerialEvent& event) override;
+  void tell_reception(const std::optional<Reception>& reception);
+
+  EventQueue& queue_;
+  Rs485Line line_;
+  LineCheck check_;
+  SerialReceiver receiver_;  // for the observers
+  std::unique_ptr<Hand> hand_;
+};
+
+}  // namespace ipos::runtime
