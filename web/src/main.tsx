@@ -18,10 +18,10 @@ import { offerTimeKeys, TimeBar } from "./shell/time_bar";
 import { Watch } from "./watch/watch_tab";
 
 const tabs: Tab[] = [
-  { name: "Plant", body: PlantTab },
-  { name: "Watch", body: Watch },
+  { name: "Plant", body: PlantTab, ofDrives: true },
+  { name: "Watch", body: Watch, ofDrives: true },
   { name: "Scope", body: Scope },
-  { name: "Parameters", body: Parameters },
+  { name: "Parameters", body: Parameters, ofDrives: true },
   { name: "Bus", body: Bus },
   { name: "Program", body: Program },
   { name: "Journal", body: Journal },

@@ -240,6 +240,11 @@ test("a real drive is written only after a confirmation", { skip }, () =>
       await until(async () => mock.received.filter((one) => one.do === "jog").length >= 3, "it does not repeat");
       await page.mouse.up();
       await until(async () => mock.received.at(-1).direction === "stop", "it does not stop");
+      assert.ok(await page.getByRole("button", { name: "Run" }).isDisabled());
+      await page.getByRole("tab", { name: "Watch" }).click();
+      await page.getByRole("row", { name: "P008" }).waitFor();
+      await page.getByRole("tab", { name: "Program" }).click();
+      await page.getByText("Only simulated plants have this").waitFor();
     },
     { server: { mode: "device" } },
   ),

@@ -1,6 +1,7 @@
 // A station: display, shaft and speed, status and fault in words, why it is not enabled, its terminals, its switches.
 import { useMemo } from "preact/hooks";
 
+import { hello } from "../server/live";
 import type { Plant, Station, StationState } from "../server/protocol";
 import { command } from "../shell/notice";
 import { SevenSegment } from "./seven_segment";
@@ -57,6 +58,24 @@ function ProcessData({ state }: { state: StationState }) {
   );
 }
 
+function Supply({ name, powered }: { name: string; powered: boolean }) {
+  return (
+    <footer>
+      <button aria-label={`Fault reset ${name}`} onClick={() => void command({ do: "reset", station: name })}>
+        Fault reset
+      </button>
+      <button
+        class="spread power"
+        aria-label={`Power ${name}`}
+        aria-pressed={powered}
+        onClick={() => void command({ do: "power", station: name, on: !powered })}
+      >
+        <span class={`lamp${powered ? " on" : ""}`} /> Power
+      </button>
+    </footer>
+  );
+}
+
 export function StationCard({ station, plant }: { station: Station; plant: Plant }) {
   const state = stationState(station.name).value;
   // Most changes are those of a motion: terminals are drawn again only when one of them has changed.
@@ -77,22 +96,7 @@ export function StationCard({ station, plant }: { station: Station; plant: Plant
       {state && <Words state={state} />}
       {terminals}
       {state && <ProcessData state={state} />}
-      <footer>
-        <button
-          aria-label={`Fault reset ${station.name}`}
-          onClick={() => void command({ do: "reset", station: station.name })}
-        >
-          Fault reset
-        </button>
-        <button
-          class="spread power"
-          aria-label={`Power ${station.name}`}
-          aria-pressed={state?.powered ?? false}
-          onClick={() => void command({ do: "power", station: station.name, on: !state?.powered })}
-        >
-          <span class={`lamp${state?.powered ? " on" : ""}`} /> Power
-        </button>
-      </footer>
+      {hello.value?.mode === "plant" && <Supply name={station.name} powered={state?.powered ?? false} />}
     </section>
   );
 }

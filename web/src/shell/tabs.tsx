@@ -2,8 +2,11 @@
 import { signal } from "@preact/signals";
 import type { FunctionComponent } from "preact";
 
+import { hello } from "../server/live";
+
 export interface Tab {
   name: string;
+  ofDrives?: boolean; // real drives have it, too
   body: FunctionComponent;
 }
 
@@ -53,6 +56,10 @@ export function TabList({ tabs }: { tabs: Tab[] }) {
   );
 }
 
+function OnlyPlants() {
+  return <p class="empty">Only simulated plants have this. Of a real drive there are Plant, Watch and Parameters.</p>;
+}
+
 export function TabPanels({ tabs }: { tabs: Tab[] }) {
   return (
     <>
@@ -67,7 +74,7 @@ export function TabPanels({ tabs }: { tabs: Tab[] }) {
             aria-labelledby={`tab-${idOf(tab.name)}`}
             hidden={!selected}
           >
-            {selected && <Body />}
+            {selected && (hello.value?.mode !== "device" || tab.ofDrives ? <Body /> : <OnlyPlants />)}
           </div>
         );
       })}

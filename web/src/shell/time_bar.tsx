@@ -59,36 +59,39 @@ function Clock() {
 
 function TimeControls() {
   const { speed } = time.value;
+  // The time of a real drive is nobody's to stop.
+  const drive = hello.value?.mode === "device";
   const listed = speeds.includes(speed) ? speeds : [speed, ...speeds];
   return (
     <div class="row controls">
       <span class="group">
-        <button class={time.value.running ? "" : "primary"} onClick={run}>
+        <button disabled={drive} class={time.value.running || drive ? "" : "primary"} onClick={run}>
           Run
         </button>
-        <button class={time.value.running ? "primary" : ""} onClick={pause}>
+        <button disabled={drive} class={time.value.running && !drive ? "primary" : ""} onClick={pause}>
           Pause
         </button>
-        <button title="A millisecond" onClick={step}>
+        <button disabled={drive} title="A millisecond" onClick={step}>
           Step
         </button>
-        <button title="On to the end of the next telegram" onClick={telegram}>
+        <button disabled={drive} title="On to the end of the next telegram" onClick={telegram}>
           Telegram
         </button>
       </span>
       <span class="group">
-        <button aria-label="−1 s, back a second" title="Back 1 second" onClick={() => back(1000)}>
+        <button disabled={drive} aria-label="−1 s, back a second" title="Back 1 second" onClick={() => back(1000)}>
           −1 s
         </button>
-        <button aria-label="−1 ms, back a millisecond" title="Back 1 millisecond" onClick={() => back(1)}>
+        <button disabled={drive} aria-label="−1 ms, back a millisecond" title="Back 1 millisecond" onClick={() => back(1)}>
           −1 ms
         </button>
-        <button aria-label="0 s, begin anew" title="Back to 0 s, everything as at power-on" onClick={restart}>
+        <button disabled={drive} aria-label="0 s, begin anew" title="Back to 0 s, everything as at power-on" onClick={restart}>
           0 s
         </button>
       </span>
       <select
         aria-label="Speed"
+        disabled={drive}
         value={String(speed)}
         onChange={(event) => {
           request({ do: "speed", speed: Number(event.currentTarget.value) }).catch(complain);

@@ -44,7 +44,22 @@ function readPinned(): void {
   }
 }
 
+// Of a real drive nothing is searched: names are given, those below to begin with (speed, current, DC link).
+const first_of_a_drive = "P000 P004 P008";
+
+async function nameValues(): Promise<void> {
+  const names = (searchText.value || first_of_a_drive).split(/[\s,]+/).filter(Boolean);
+  try {
+    found.value = (await request({ do: "watch", names })).names as WatchName[];
+  } catch {
+    found.value = []; // a name that is not complete yet
+  }
+  total.value = found.value.length;
+  groups.value = [];
+}
+
 async function search(): Promise<void> {
+  if (hello.peek()?.mode === "device") return nameValues();
   const text = searchText.value;
   const station = chosenStation.value;
   // Without a search the variables of the programs stand there, as in a watch window that was just opened.

@@ -2,7 +2,7 @@
 import { signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 
-import { stationNames } from "../server/live";
+import { hello, stationNames } from "../server/live";
 import type { WatchName } from "../server/protocol";
 import { command } from "../shell/notice";
 import {
@@ -77,7 +77,7 @@ export function Watch() {
         <input
           type="search"
           aria-label="Search names"
-          placeholder="Variables, parameters, process words…"
+          placeholder={hello.value?.mode === "device" ? "Names: P000, P004, H20" : "Variables, parameters, process words…"}
           value={searchText.value}
           onInput={(event) => (searchText.value = event.currentTarget.value)}
         />
@@ -129,7 +129,7 @@ export function Watch() {
         </table>
         {shown.value.length === 0 && (
           <p class="empty">
-            {groups.value.length === 0 ? "The server is asked." : "No name is found. Without a search the variables of the programs stand here."}
+            {groups.value.length === 0 && hello.value?.mode === "plant" ? "The server is asked." : "No name is found. Without a search the variables of the programs stand here."}
           </p>
         )}
       </div>
