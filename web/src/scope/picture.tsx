@@ -5,7 +5,7 @@ import uPlot from "uplot";
 
 import type { Channel } from "../server/protocol";
 import { points, pictureWidth } from "./recording";
-import { activeCursor, cursors, follow, putCursor, scope, shownWindow, zoomBy, zoomTo } from "./window";
+import { activeCursor, cursors, follow, putCursor, scope, shownWindow, triggerTime, zoomBy, zoomTo } from "./window";
 
 // Where the pointer is, in us, and the values there.
 export const pointer = signal<{ us: number; values: (number | null)[] } | null>(null);
@@ -49,7 +49,7 @@ function drawMark(plot: uPlot, us: number | null, text: string, stroke: string):
 }
 
 function drawMarks(plot: uPlot): void {
-  drawMark(plot, scope.peek()?.trigger_us ?? null, "T", themed("--bad"));
+  drawMark(plot, triggerTime.peek(), "T", themed("--bad"));
   drawMark(plot, cursors.peek().A, "A", themed("--text"));
   drawMark(plot, cursors.peek().B, "B", themed("--text"));
 }
@@ -202,7 +202,7 @@ export function Picture() {
       stopData = effect(() => {
         const data = points.value;
         void cursors.value;
-        void scope.value?.trigger_us;
+        void triggerTime.value;
         if (!data || data.channels.length !== channels.length || data.recording !== recording) return;
         plot.setData([data.times, ...data.channels]);
         readPointer(plot);

@@ -7,7 +7,7 @@ import { generation, time } from "../server/live";
 import type { ScopeState } from "../server/protocol";
 import { complain } from "../shell/notice";
 import { readPoints, type Points } from "./frame";
-import { cursors, scope, shownWindow, type CursorName } from "./window";
+import { cursors, recording, scope, shownWindow, type CursorName } from "./window";
 
 const refresh_ms = 80;
 
@@ -75,7 +75,7 @@ export function followScope(): () => void {
   const stopCursors = (["A", "B"] as const).map((name) =>
     effect(() => {
       void cursors.value[name];
-      void scope.value?.recording;
+      void recording.value;
       void readCursor(name).catch(() => undefined);
     }),
   );

@@ -10,6 +10,9 @@ export interface Window {
 }
 
 export const scope = signal<ScopeState | null>(null);
+// Of it the parts that others follow, so that an event without news asks for nothing.
+export const recording = computed(() => scope.value?.recording);
+export const triggerTime = computed(() => scope.value?.trigger_us ?? null);
 // What a person has zoomed to; null: the newest part, or that around the trigger.
 export const zoomed = signal<Window | null>(null);
 export type CursorName = "A" | "B";
