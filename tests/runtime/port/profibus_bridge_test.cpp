@@ -42,7 +42,8 @@ struct Mirror final : profibus::SlaveUnit {
 struct DpRig {
   DpRig() {
     bridge.emplace(queue, 9, line, port);
-    ask("10 7D 01 49 C7 16");  // to nobody; the slave takes its rate from it
+    // To nobody: the slave finds the rate, the second from above, from what it hears for more than 100 ms.
+    for (int n = 0; n < 10; ++n) ask("10 7D 01 49 C7 16");
   }
   // What comes back within 20 ms; the octets of a frame arrive together, as a host reads them.
   Octets ask(const Octets& frame) {
