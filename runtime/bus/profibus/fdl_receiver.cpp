@@ -39,7 +39,7 @@ std::vector<Reception> FdlReceiver::take(const runtime::Character& character) {
     auto frame = decode(octets_);
     if (!frame)
       fail(frame.error(), receptions);
-    else if (frame->needs_idle() && idle_before_ < limits_.idle)
+    else if (limits_.idle != 0 && frame->needs_idle() && idle_before_ < limits_.idle)
       fail(FrameError::Idle, receptions);
     else
       finish(std::move(frame), receptions);
