@@ -295,6 +295,87 @@ class Serving(unittest.TestCase):
         self.assertEqual(self.ipos.stderr.read(), "")
 
 
+@unittest.skipUnless(os.path.exists("/dev/pts/ptmx"), "there is no /dev/pts: no pseudo-terminals here")
+class RealDrive(unittest.TestCase):
+    """A simulated drive at a pseudo-terminal, which is a real one for `ipos serve --device`."""
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        line = pathlib.Path(self.folder.name) / "line1"
+        plant = pathlib.Path(self.folder.name) / "plant.toml"
+        plant.write_text(f'''
+[[bus]]
+name = "line1"
+kind = "rs485"
+port = "pty:{line}"
+[[station]]
+name = "saw"
+unit = "md60a"
+rs485 = "line1"
+[station.inputs]
+DI00 = 1
+DI01 = 1
+DI03 = 1
+[station.parameters]
+P810 = 1
+P870 = "CTRL. WORD 1"
+P871 = "SPEED"
+P100 = "RS-485"
+P101 = "RS-485"
+''')
+        self.drive = subprocess.Popen([IPOS, "run", str(plant), "--realtime", "--for", "60s"], stdout=subprocess.DEVNULL,
+                                      stderr=subprocess.DEVNULL)
+        self.addCleanup(self.drive.wait)
+        self.addCleanup(self.drive.kill)
+        for _ in range(200):
+            if line.exists():
+                break
+            time.sleep(0.05)
+        self.line = str(line)
+
+    def serve(self, *more):
+        ipos = subprocess.Popen([IPOS, "serve", "--device", self.line, "--address", "1", "--quiet", *more],
+                                stdout=subprocess.PIPE, text=True)
+        self.addCleanup(ipos.stdout.close)
+        self.addCleanup(ipos.wait)
+        self.addCleanup(ipos.terminate)
+        match = re.search(r":(\d+)/\?token=(\w+)", ipos.stdout.readline())
+        self.assertTrue(match)
+        client = Client(int(match[1]), f"/ws?token={match[2]}")
+        self.addCleanup(client.close)
+        return client
+
+    def test_it_only_reads_unless_told(self):
+        client = self.serve()
+        self.assertIn("--write", client.ask(do="arm", yes=True)["error"])
+        self.assertIn("--write", client.ask(do="parameters.set", number="P130", value="3 s")["error"])
+        self.assertIn("--write", client.ask(do="jog", direction="cw", rpm=100)["error"])
+        client.ask(do="watch", names=["P130"])
+        client.ask(do="subscribe", topic="watch")
+        self.assertEqual(client.wait_for("watch")["values"]["unit1.P130"]["text"], "2.000 s")
+
+    def test_it_writes_when_confirmed_and_stops_when_the_hand_is_off(self):
+        client = self.serve("--write")
+        self.assertIn("confirm", client.ask(do="parameters.set", number="P130", value="1 s")["error"])
+        client.ask(do="arm", yes=True)
+        self.assertEqual(client.ask(do="parameters.set", number="P130", value="1 s").get("text"), "1.000 s")
+        self.assertTrue(client.ask(do="parameters.set", number="P130", value="3000 s")["refused"])
+        client.ask(do="watch", names=["P000"])
+        client.ask(do="subscribe", topic="watch")
+        speed = 0
+        for _ in range(100):
+            self.assertTrue(client.ask(do="jog", direction="cw", rpm=300)["ok"])
+            for event in client.events:
+                speed = event.get("values", {}).get("unit1.P000", {}).get("value", speed)
+            client.events.clear()
+            if speed > 200_000:
+                break
+            time.sleep(0.05)
+        self.assertGreater(speed, 200_000)
+        client.wait_for("watch", lambda event: event["values"].get("unit1.P000", {}).get("value") == 0)
+
+
 class NotServing(unittest.TestCase):
     def run_ipos(self, *arguments):
         return subprocess.run([IPOS, "serve", *arguments], capture_output=True, text=True, timeout=60, check=False)

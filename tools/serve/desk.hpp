@@ -71,8 +71,8 @@ class Desk {
   void send_binary(Client& client, const std::string& bytes, bool is_reply = false);
   void send_all(const Json& event);
 
-  // Sends the topics that are due.
-  void publish(WallClock::time_point now);
+  // Sends the topics that are due. While the plant is busy they take a tenth of the time at most: they come later then.
+  void publish(WallClock::time_point now, bool busy);
   WallClock::time_point next_due() const;
   // Everything is news again.
   void refresh();
@@ -88,6 +88,7 @@ class Desk {
   Json subscribe(const Call& call);
 
   Post& post_;
+  WallClock::time_point rest_until_{};  // for a busy plant
   std::map<uint16_t, Client> clients_;
   std::map<std::string, Handler> commands_;
   std::map<std::string, Publisher> topics_;

@@ -80,7 +80,7 @@ void DriveHost::run() {
       jog_->next = now + kJogPeriod;
       send_words(jog_->words);
     }
-    desk_.publish(now);
+    desk_.publish(now, false);
     const auto letter = post_.wait(kTurnTime);
     if (!letter) continue;
     desk_.take(*letter);

@@ -58,7 +58,7 @@ bool PlantHost::turn(int milliseconds) {
     carry_out();
     return true;
   }
-  publish();
+  publish(false);
   const auto left =
       std::chrono::duration_cast<std::chrono::milliseconds>(desk_.next_due() - WallClock::now());
   const auto letter = post_.wait(static_cast<int>(std::clamp<int64_t>(left.count() + 1, 0, milliseconds)));
@@ -237,7 +237,7 @@ bool PlantHost::keep_going() {
     measured_at_ = plant_->now();
   }
   if (now - last_mail_ >= kLookAtMail) look_at_mail(0);
-  publish();
+  publish(true);
   keep_pace();
   if (now_.telegram && telegram_seen_) halted_ = true;
   if (!post_.open() || halted_ || next_.kind != MotionKind::None) return false;
@@ -269,14 +269,14 @@ void PlantHost::keep_pace() {
     const auto until = std::min(due, desk_.next_due());
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - now + 999us).count();
     look_at_mail(static_cast<int>(std::clamp<int64_t>(left, 0, 100)));
-    publish();
+    publish(false);
   }
 }
 
-void PlantHost::publish() {
+void PlantHost::publish(bool busy) {
   const auto now = WallClock::now();
   if (running_ && now >= time_due_) tell_time();
-  desk_.publish(now);
+  desk_.publish(now, busy);
 }
 
 // --- the debugger's front end ---

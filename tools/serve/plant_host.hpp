@@ -76,7 +76,7 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
   void tell_time();
   void look_at_mail(int milliseconds);
   void keep_pace();
-  void publish();
+  void publish(bool busy);
   Json time_event() const;
 
   // of debug::FrontEnd
