@@ -284,6 +284,10 @@ class Plant:
         """Runs so long and reads the signals meanwhile; see Recording."""
         return Recording(self, names, lib.duration_ns(duration), lib.duration_ns(every))
 
+    def replay(self, names: Sequence[str], every: str | float = "1ms") -> Recording:
+        """The signals from power-on until now, though nobody has recorded them: the run is done once more for it."""
+        return Recording.of_replay(self, names, lib.duration_ns(every))
+
     def _signal_of(self, name: str) -> tuple[Station, str]:
         """ "saw.lCount": the station with the longest fitting name, and the rest."""
         if not isinstance(name, str):

@@ -23,6 +23,7 @@ from .plant import Plant
 
 _ENDING = ".test.toml"
 _FRAMES = 8  # of each bus in a report
+_COLUMNS = 50  # variables of a station in an artifact
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -137,7 +138,22 @@ def _describe(item: pytest.Item, report: pytest.TestReport, opened: Plant) -> No
             (place / f"{name}.txt").write_text("\n".join(lines) + "\n", encoding="utf-8")
         if opened.recorded:
             (place / "state.ipos").write_bytes(opened.snapshot())
+            _record(opened, place)
         report.sections.append(("artifacts", str(place)))
+
+
+def _record(opened: Plant, place: Path) -> None:
+    """The course of the whole run: motion of every station and the variables of its program."""
+    names = []
+    for station in opened.stations.values():
+        names += [f"{station.name}.{name}" for name in ("speed", "setpoint", "fault", *station.variables[:_COLUMNS])]
+    recording = opened.replay(names)
+    recording.write_csv(place / "signals.csv")
+    try:
+        axes = recording.plot()
+    except ImportError:
+        return
+    axes[0].figure.savefig(place / "plot.svg")
 
 
 # --- *.test.toml

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from ctypes import c_int64, c_uint32
 from typing import TYPE_CHECKING, Sequence
 
@@ -48,23 +49,60 @@ class Recording:
     """Signals over time: `times` in seconds, recording["saw.speed"] a list of numbers. plot() needs matplotlib."""
 
     def __init__(self, plant: "Plant", names: Sequence[str], duration: int, every: int) -> None:
+        read = self._begin(plant, names, every)
+        now = plant._now()
+        end = now + duration
+        while True:
+            self._take(now, read())
+            if now + every > end:
+                break
+            now += every
+            plant._run_to(now)
+        plant._run_to(end)
+
+    @classmethod
+    def of_replay(cls, plant: "Plant", names: Sequence[str], every: int) -> "Recording":
+        """The run of a plant from its beginning; times are full milliseconds."""
+        recording = cls.__new__(cls)
+        read = recording._begin(plant, names, every)
+        failures: list[BaseException] = []
+
+        @lib.CONDITION
+        def look(_user: object, _plant: object) -> bool:
+            try:
+                now = plant._now()
+                if not failures and now % every == 0:
+                    recording._take(now, read())
+            except BaseException as failure:  # must not leave through C
+                failures.append(failure)
+            return False
+
+        plant._call("replay", look, None)
+        if failures:
+            raise failures[0]
+        return recording
+
+    def _begin(self, plant: "Plant", names: Sequence[str], every: int) -> Reader:
         if every <= 0:
             raise ValueError("signals are read every so often: every is more than 0")
         read = Reader(plant, names)
         self.names, self.units = read.names, read.units
         self.times: list[float] = []
         self._columns: list[list[float]] = [[] for _ in self.names]
-        now = plant._now()
-        end = now + duration
-        while True:
-            self.times.append(now / 1e9)
-            for column, value in zip(self._columns, read()):
-                column.append(value)
-            if now + every > end:
-                break
-            now += every
-            plant._run_to(now)
-        plant._run_to(end)
+        return read
+
+    def _take(self, now: int, values: Sequence[float]) -> None:
+        self.times.append(now / 1e9)
+        for column, value in zip(self._columns, values):
+            column.append(value)
+
+    def write_csv(self, path: "str | os.PathLike[str]") -> None:
+        """One row a sample: time in seconds, then the signals."""
+        with open(path, "w", encoding="utf-8") as out:
+            heads = [f"{name} [{unit}]" if unit else name for name, unit in zip(self.names, self.units)]
+            out.write(",".join(["time [s]", *heads]) + "\n")
+            for row in zip(self.times, *self._columns):
+                out.write(",".join(f"{value:.9g}" for value in row) + "\n")
 
     def __getitem__(self, name: str) -> list[float]:
         if name not in self.names:

@@ -287,6 +287,21 @@ ipos_plant_status ipos_plant_restore(ipos_plant* plant, const void* bytes, size_
   });
 }
 
+ipos_plant_status ipos_plant_replay(ipos_plant* plant, ipos_plant_condition look, void* user) {
+  return enter(plant, Allowed::NotInCallbacks, [=](Session& session) {
+    if (look == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
+    if (!session.recorded()) return ipos_plant_status{IPOS_PLANT_NOT_RECORDED};
+    std::string why;
+    const auto done = session.restore(session.save(), why, [=] {
+      plant->in_callback = true;
+      look(user, plant);
+      plant->in_callback = false;
+    });
+    if (done == Session::Restored::Done) return ipos_plant_status{IPOS_PLANT_OK};
+    return plant->fail(IPOS_PLANT_BAD_STATE, std::move(why));
+  });
+}
+
 ipos_plant_status ipos_plant_trace_hash(ipos_plant* plant, uint64_t* hash) {
   return enter(plant, Allowed::NotInCallbacks, [=](Session& session) {
     if (hash == nullptr) return IPOS_PLANT_INVALID_ARGUMENT;

@@ -109,7 +109,7 @@ tl::expected<SavedState, std::string> from_bytes(std::span<const uint8_t> bytes)
       return tl::unexpected(std::string("the saved state is damaged: what was done makes no sense"));
     last = deed.at;
   }
-  if (in.failed() || !in.at_end() || saved.time < 0)
+  if (in.failed() || !in.at_end() || saved.time < 0 || saved.time == runtime::kNever)
     return tl::unexpected(std::string("the saved state is damaged: its length is wrong"));
   return saved;
 }

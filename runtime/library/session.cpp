@@ -70,7 +70,14 @@ std::vector<uint8_t> Session::save() const {
   return to_bytes(contents_.identity(), plant().now(), runtime::state_digest(plant()), record_);
 }
 
-Session::Restored Session::restore(std::span<const uint8_t> bytes, std::string& why) {
+// Signals read in the world that is entered; `world` takes the one that is left.
+void Session::enter(std::unique_ptr<World>& world) {
+  std::swap(world_, world);
+  for (Signal& signal : signals_) find_again(signal);
+}
+
+Session::Restored Session::restore(std::span<const uint8_t> bytes, std::string& why,
+                                   const std::function<void()>& look) {
   auto saved = from_bytes(bytes);
   if (!saved) {
     why = saved.error();
@@ -86,21 +93,28 @@ Session::Restored Session::restore(std::span<const uint8_t> bytes, std::string& 
     return Restored::Damaged;
   }
   auto world = std::make_unique<World>(*std::move(plant));
+  enter(world);
+  std::function<bool(Time)> watch;
+  if (look)
+    watch = [&look](Time now) {
+      if (now % runtime::kMillisecond == 0) look();
+      return true;
+    };
+  if (look) look();
   uint32_t tags = 0;
   for (const Deed& deed : saved->deeds) {
-    world->plant().run_until(deed.at);
-    world->perform(deed);
+    this->plant().run_until(deed.at, watch);
+    world_->perform(deed);
     if (deed.act == Act::Send) tags = std::max(tags, static_cast<uint32_t>(deed.value));
   }
-  world->plant().run_until(saved->time);
-  if (runtime::state_digest(world->plant()) != saved->digest) {
+  this->plant().run_until(saved->time, watch);
+  if (runtime::state_digest(this->plant()) != saved->digest) {
+    enter(world);
     why = "the run that was saved comes to another state here: a memory file or the library has changed";
     return Restored::Damaged;
   }
-  world_ = std::move(world);
   record_ = std::move(saved->deeds);
   tags_ = tags;
-  for (Signal& signal : signals_) find_again(signal);
   shadow_.reset();
   return Restored::Done;
 }

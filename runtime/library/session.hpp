@@ -48,7 +48,8 @@ class Session {
 
   std::vector<uint8_t> save() const;
   enum class Restored : uint8_t { Done, Damaged, OtherPlant };
-  Restored restore(std::span<const uint8_t> bytes, std::string& why);
+  // `look` is asked at every full millisecond on the way; then the session is already the one restored.
+  Restored restore(std::span<const uint8_t> bytes, std::string& why, const std::function<void()>& look = {});
 
   uint64_t trace_hash();
 
@@ -64,6 +65,7 @@ class Session {
   Session(Contents contents, std::unique_ptr<runtime::Plant> plant, bool recorded);
 
   void find_again(Signal& signal) const;
+  void enter(std::unique_ptr<World>& world);
 
   Contents contents_;
   std::unique_ptr<World> world_;

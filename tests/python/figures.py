@@ -1,4 +1,4 @@
-"""What calls from Python cost: `python3 figures.py` prints the figures of docs/inside/performance.md. Not a test."""
+"""What calls from Python cost: `python3 figures.py [STEPS]` prints it. Not a test."""
 
 import resource
 import sys

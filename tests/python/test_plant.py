@@ -386,6 +386,23 @@ def test_a_recording(line):
         line.record(["saw.speed"], "1s", every=0)
 
 
+def test_a_replay_shows_what_nobody_has_recorded(line, tmp_path):
+    saw = line["saw"]
+    line.run("50ms")
+    saw.analog["AI1"] = "10 V"
+    line.run("200ms")
+    here = (line.time_us, saw["lCount"], line.trace_hash)
+    recording = line.replay(["saw.lCount", "saw.AI1"], every="10ms")
+    assert recording.times == pytest.approx([n / 100 for n in range(26)])
+    assert recording["saw.lCount"][-1] == saw["lCount"] and recording["saw.lCount"][0] == 0
+    assert recording["saw.AI1"] == [0.0] * 6 + [10.0] * 20
+    assert (line.time_us, saw["lCount"], line.trace_hash) == here
+    recording.write_csv(tmp_path / "r.csv")
+    assert (tmp_path / "r.csv").read_text().splitlines()[0] == "time [s],saw.lCount,saw.AI1 [V]"
+    with pytest.raises(KeyError):
+        line.replay(["saw.lNone"])
+
+
 def test_fault_of_a_line_planted_at_run_time(line):
     line.run("1s")
     bus = line.buses["sbus"]

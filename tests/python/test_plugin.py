@@ -61,6 +61,8 @@ def test_a_failure_shows_journal_and_frames(folder):
     assert len(kept) == 1
     assert "fault" in (kept[0] / "journal.txt").read_text()
     assert "400#" in (kept[0] / "sbus.txt").read_text()
+    rows = (kept[0] / "signals.csv").read_text().splitlines()
+    assert rows[0].startswith("time [s],saw.speed [rpm]") and len(rows) == 1102
     import ipos
 
     with ipos.Plant(folder.path / "line.toml") as plant:

@@ -356,6 +356,11 @@ ipos_plant_status ipos_plant_save(ipos_plant* plant, void* bytes, size_t* size);
  * IPOS_PLANT_NOT_RECORDED. */
 ipos_plant_status ipos_plant_restore(ipos_plant* plant, const void* bytes, size_t size);
 
+/* Does everything again that was done to the plant since time 0, and calls `look` at every full millisecond meanwhile: so
+ * what nobody has watched can be watched afterwards. What `look` returns is ignored. The plant is then as it was before.
+ * IPOS_PLANT_NOT_RECORDED, IPOS_PLANT_BAD_STATE (a memory file has changed; nothing has happened). */
+ipos_plant_status ipos_plant_replay(ipos_plant* plant, ipos_plant_condition look, void* user);
+
 /* One number over everything that has happened since time 0, as `ipos run --trace-hash` prints it in hexadecimal. The
  * run is repeated for it in the background, each part of it once. IPOS_PLANT_NOT_RECORDED. */
 ipos_plant_status ipos_plant_trace_hash(ipos_plant* plant, uint64_t* hash);
