@@ -53,6 +53,8 @@ TEST_F(Rules, EachIsEnforced) {
   breaks(Rule::TooLong, longest, 2048);
   longest.pop_back();
   EXPECT_EQ(first_violation(longest).count, 0U);
+  longest.resize(kLimitsB.program_words, static_cast<uint32_t>(Opcode::Ret));
+  EXPECT_EQ(first_violation(longest, kLimitsB).count, 0U) << "the longest program there is";
   breaks(Rule::UnknownOpcode, {1, 0, 2}, 1);
   breaks(Rule::TruncatedCommand, {1, static_cast<uint32_t>(Opcode::SetHK)}, 1);
   breaks(Rule::ReservedBits, {0x10002}, 0);
