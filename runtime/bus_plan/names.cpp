@@ -83,7 +83,7 @@ CanNames can_names(const Plant& plant) {
   CanNames names;
   names.all = {telegram_names(plant), node_names(plant, nullptr)};
   for (const auto& line : plant.lines())
-    names.lines[line->name()] = {telegram_names(plant, line.get()), node_names(plant, line.get())};
+    names.lines[line->name()] = {telegram_names(plant, line), node_names(plant, line)};
   return names;
 }
 

@@ -93,16 +93,16 @@ PlantFileResult read_fault_tables(std::string_view text, const PlantFile& plant)
 }
 
 int64_t parse_duration(std::string_view text) {
-  struct Unit {
+  struct TimeUnit {
     std::string_view name;
     int64_t ns;
   };
-  static constexpr Unit kUnits[] = {{"us", 1'000},
-                                    {"ms", 1'000'000},
-                                    {"min", 60'000'000'000},
-                                    {"s", 1'000'000'000},
-                                    {"h", 3'600'000'000'000}};
-  for (const Unit& unit : kUnits) {
+  static constexpr TimeUnit kUnits[] = {{"us", 1'000},
+                                        {"ms", 1'000'000},
+                                        {"min", 60'000'000'000},
+                                        {"s", 1'000'000'000},
+                                        {"h", 3'600'000'000'000}};
+  for (const TimeUnit& unit : kUnits) {
     if (!text.ends_with(unit.name)) continue;
     const std::string_view number = text.substr(0, text.size() - unit.name.size());
     double value = 0;

@@ -10,7 +10,7 @@
 namespace ipos::runtime {
 namespace {
 
-constexpr size_t kMostFrames = 64;  // from the port; the rest waits in the system (ours)
+constexpr size_t kMostDpFrames = 64;  // from the port; the rest waits in the system (ours)
 
 }  // namespace
 
@@ -22,7 +22,7 @@ ProfibusBridge::ProfibusBridge(EventQueue& queue, uint32_t source, profibus::Lin
       node_(line.attach(port.name(), *this)),
       character_(static_cast<Time>(profibus::kCharacterBits) * kSecond / line.baud()) {}
 
-bool ProfibusBridge::has_room() const { return arrivals_.size() < kMostFrames; }
+bool ProfibusBridge::has_room() const { return arrivals_.size() < kMostDpFrames; }
 
 PortNeeds ProfibusBridge::needs() const {
   PortNeeds needs = port_.needs();

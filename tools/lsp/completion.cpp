@@ -12,17 +12,6 @@ namespace {
 using compiler::IndexedSymbol;
 using compiler::SymbolKind;
 
-// CompletionItemKind of the protocol.
-enum Kind : int {
-  kFunction = 3,
-  kField = 5,
-  kVariable = 6,
-  kKeyword = 14,
-  kFile = 17,
-  kConstant = 21,
-  kStruct = 22
-};
-
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
 std::string_view take_word_back(std::string_view& text) {
@@ -72,7 +61,7 @@ std::string structure_before(const Program& program, std::string_view text) {
   return structure;
 }
 
-Json item(const std::string& label, Kind kind, const std::string& detail, const std::string& text = {}) {
+Json item(const std::string& label, ItemKind kind, const std::string& detail, const std::string& text = {}) {
   Json one{{"label", label}, {"kind", static_cast<int>(kind)}};
   if (!detail.empty()) one["detail"] = detail;
   if (!text.empty()) one["documentation"] = {{"kind", "markdown"}, {"value", text}};

@@ -190,8 +190,6 @@ void offer(Json& items, const std::string& label, int kind, const std::string& d
   items.push_back(std::move(item));
 }
 
-constexpr int kField = 5, kValue = 12, kKeyword = 14, kFile = 17;  // CompletionItemKind
-
 // Names of buses and stations of the file, for keys that name one.
 void offer_names(Json& items, const Spot& spot) {
   const bool bus = spot.key.starts_with("sbus") || spot.key.starts_with("rs485") || spot.key == "bus" ||

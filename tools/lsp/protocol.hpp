@@ -9,6 +9,18 @@ namespace ipos::tools::lsp {
 
 using Json = nlohmann::json;
 
+// CompletionItemKind of LSP 3.17.
+enum ItemKind : int {
+  kFunction = 3,
+  kField = 5,
+  kVariable = 6,
+  kValue = 12,
+  kKeyword = 14,
+  kFile = 17,
+  kConstant = 21,
+  kStruct = 22
+};
+
 // JSON-RPC 2.0 and LSP 3.17.
 enum class ErrorCode : int {
   ParseError = -32700,
