@@ -89,12 +89,12 @@ class TrcReader {
         if (field != "Rx" && field != "Tx") return fields.wrong("Rx or Tx expected");
       } else if (column == 'I') {
         const auto id = whole<uint32_t>(field, 16);
-        frame.extended = field.size() == 8;
+        frame.extended = field.size() > 4;  // some tools leave zeros out
         frame.id = id.value_or(UINT32_MAX);
         // Version 1 writes what went wrong in place of the identifier.
         if (field == "FFFFFFFF") return {};
-        if (!id || (field.size() != 4 && field.size() != 8) || !is_valid(frame))
-          return fields.wrong("identifier of 4 or 8 hexadecimal digits expected");
+        if (!id || !is_valid(frame))
+          return fields.wrong("identifier of up to 8 hexadecimal digits expected");
         has_id = true;
       } else if (column == 'l' || column == 'L') {
         const auto length = whole<uint8_t>(field);
