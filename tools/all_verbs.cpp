@@ -18,6 +18,8 @@ constexpr VerbRow kVerbs[] = {
     {"param", add_param},
     {"watch", add_watch},
     {"scan", add_scan},
+    {"scope", add_scope},
+    {"diag", add_diag},
     {"explain", add_explain},
     {"fmt", add_fmt},
     {"lsp", add_lsp},

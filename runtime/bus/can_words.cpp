@@ -1,12 +1,37 @@
 // Which dictionary explains a frame.
 #include "runtime/bus/can_words.hpp"
 
+#include <fmt/format.h>
+
+#include "runtime/bus/canopen/connections.hpp"
+#include "runtime/bus/movilink/identifiers.hpp"
+
 namespace ipos::runtime {
 namespace {
 
 constexpr size_t kLines = 100;  // a log of more names is noise: those behind are heard as one (ours)
 
 }  // namespace
+
+std::string identifier_text(const CanLineNames& names, bool canopen, uint32_t id) {
+  const Frame frame(id, 0);
+  if (concerns(names.movilink, frame)) {
+    if (const ObjectNames* object = names.movilink.object(id))
+      return fmt::format("object of {}", object->station);
+    const SbusIdentifier identifier = *classify_identifier(id);
+    const TelegramType& type = telegram_type(identifier.telegram);
+    const UnitNames* unit = type.grouped ? nullptr : names.movilink.unit_at(identifier.address);
+    return unit != nullptr ? fmt::format("{} of {}", type.text, unit->name)
+                           : fmt::format("{} of group {}", type.text, identifier.address);
+  }
+  const auto addressed = canopen::connection_of(id);
+  if (!addressed || (!canopen && names.nodes.empty())) return {};
+  const std::string_view text = row_of(addressed->connection).text;
+  if (addressed->node == 0) return std::string(text);
+  for (const canopen::NodeName& node : names.nodes)
+    if (node.node == addressed->node) return fmt::format("{} of {}", text, node.name);
+  return fmt::format("{} of node {}", text, addressed->node);
+}
 
 CanWords::Listened& CanWords::listened(std::string_view line) {
   if (const auto found = lines_.find(line); found != lines_.end()) return found->second;

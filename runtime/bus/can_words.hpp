@@ -27,6 +27,9 @@ struct CanNames {
   bool canopen = false;                       // nodes may be there that are not known
 };
 
+// What an identifier of a line is for: "TPDO1 of saw", "PO of feed", "object of saw"; empty when nobody knows.
+std::string identifier_text(const CanLineNames& names, bool canopen, uint32_t id);
+
 class CanWords {
  public:
   explicit CanWords(CanNames names = {}) : names_(std::make_shared<CanNames>(std::move(names))) {}

@@ -15,9 +15,8 @@ class ObjectCheck {
 
   void run() {
     for (const Member& member : roster_.members) {
-      if (member.port == nullptr) continue;
-      for (const ObjectDefinition& definition : member.port->objects().definitions())
-        closed(member, definition);
+      if (member.station == nullptr) continue;
+      for (const ObjectDefinition& definition : objects_of(member).definitions()) closed(member, definition);
       used_once(member);
       started(member);
     }
@@ -49,7 +48,7 @@ class ObjectCheck {
 
   // Rule 2 of p. 51. Two that send are found with the senders of the whole line.
   void used_once(const Member& member) {
-    const auto& definitions = member.port->objects().definitions();
+    const auto& definitions = objects_of(member).definitions();
     for (const ObjectDefinition& sent : definitions)
       for (const ObjectDefinition& received : definitions)
         if (sent.accepted && received.accepted && sent.object == received.object &&
@@ -73,11 +72,11 @@ class ObjectCheck {
   }
 
   void started(const Member& member) {
-    const auto& definitions = member.port->objects().definitions();
+    const auto& definitions = objects_of(member).definitions();
     const bool needs_start = std::any_of(
         definitions.begin(), definitions.end(),
         [](const ObjectDefinition& d) { return d.accepted && d.kind != ObjectKind::TransmitAcyclic; });
-    if (needs_start && !member.port->objects().started())
+    if (needs_start && !objects_of(member).started())
       find(
           FindingKind::NotStarted,
           fmt::format("{} defines cyclic or receive objects, but _SBusCommOn was not reached: they stay dead",
@@ -87,9 +86,9 @@ class ObjectCheck {
   void formats() {
     for (const Member& sender : roster_.members)
       for (const Member& receiver : roster_.members) {
-        if (sender.port == nullptr || receiver.port == nullptr) continue;
-        for (const ObjectDefinition& sent : sender.port->objects().definitions())
-          for (const ObjectDefinition& received : receiver.port->objects().definitions())
+        if (sender.station == nullptr || receiver.station == nullptr) continue;
+        for (const ObjectDefinition& sent : objects_of(sender).definitions())
+          for (const ObjectDefinition& received : objects_of(receiver).definitions())
             if (sent.accepted && received.accepted && sent.object == received.object &&
                 sent.kind != ObjectKind::Receive && received.kind == ObjectKind::Receive &&
                 sent.format != received.format)
@@ -116,8 +115,10 @@ bool was_reached(const Station& station, const vm::Instruction& command) {
   if (command.opcode == vm::Opcode::Movlnk) return station.has_called(operand);
   for (const int number : {1, 2}) {
     const SbusPort* port = station.sbus(number);
-    if (port == nullptr) continue;
-    for (const ObjectDefinition& definition : port->objects().definitions())
+    const CanopenPort* canopen = station.canopen(number);
+    if (port == nullptr && canopen == nullptr) continue;
+    const VariableObjects& objects = port != nullptr ? port->objects() : canopen->objects();
+    for (const ObjectDefinition& definition : objects.definitions())
       if (definition.variable == operand && static_cast<int32_t>(definition.kind) == command.operands[0])
         return true;
   }

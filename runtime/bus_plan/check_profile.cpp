@@ -110,6 +110,15 @@ class ProfileCheck {
       follows(*slave);
   }
 
+  void called_node(const std::string& caller, uint8_t node) {
+    const bool there =
+        std::any_of(roster_.members.begin(), roster_.members.end(), [node](const Member& member) {
+          return member.canopen != nullptr && member.canopen->settings().canopen_address == node;
+        });
+    if (!there && roster_.config->port.empty())
+      find(FindingKind::NobodyThere, fmt::format("{} calls node {}, which no station is", caller, node));
+  }
+
   void partners() {
     for (const Member& member : roster_.members) {
       if (member.port != nullptr)
@@ -118,6 +127,9 @@ class ProfileCheck {
           called(member.name, static_cast<uint8_t>(partner.address - (group ? kGroupAddressBase : 0)), group,
                  partner.process_data);
         }
+      if (member.control != nullptr && member.control->config->canopen)
+        for (const canopen::NodePlan& plan : member.control->config->canopen->nodes)
+          called_node(member.name, plan.node);
       if (member.control != nullptr)
         for (const ControlTarget& target : member.control->config->settings.targets)
           called(member.name, target.address, target.group, true);
@@ -137,6 +149,11 @@ class ProfileCheck {
       find(FindingKind::SeveralMasters,
            fmt::format("{} {} MOVLNK, but {} are masters on this line", fmt::join(calling, ", "),
                        calling.size() == 1 ? "uses" : "use", fmt::join(all, ", ")));
+  }
+
+  static bool has_current_word(const DriveServer& drive) {
+    constexpr auto kCurrent = static_cast<int32_t>(PoAssignment::Current);
+    return drive.value("870") == kCurrent || drive.value("871") == kCurrent || drive.value("872") == kCurrent;
   }
 
   // Each setting that keeps process data from acting (p. 41), once a station.
@@ -160,8 +177,11 @@ class ProfileCheck {
     };
     word(drive.value("101") != kControlSbus || drive.has_control_word(), "a control word",
          "it is enabled as if the bus had sent it");
-    word(drive.value("100") != kSetpointSbus || drive.has_speed_word(), "a speed",
-         "its setpoint counts as 0");
+    const bool bus_setpoint = drive.value("100") == kSetpointSbus;
+    if (is_torque_control(drive.value("700")))
+      word(!bus_setpoint || has_current_word(drive), "a current", "its torque counts as 0");
+    else
+      word(!bus_setpoint || drive.has_speed_word(), "a speed", "its setpoint counts as 0");
   }
 
   void unsimulated(const Member& member) {
@@ -199,10 +219,23 @@ class ProfileCheck {
     const auto leads = [&](const Member& other) {
       return &other != &member && is_group_master(other) && other.port->settings().slave.group == group;
     };
-    if (std::none_of(roster_.members.begin(), roster_.members.end(), leads))
+    const auto master = std::find_if(roster_.members.begin(), roster_.members.end(), leads);
+    if (master != roster_.members.end())
+      same_kind(*master, member);
+    else
       find(FindingKind::MasterSlave,
            fmt::format("{} follows a master (P100 = MASTER-SBus), but no master (P750) has its group {}",
                        member.name, group));
+  }
+
+  // Nothing in the telegram says whether its setpoint is a speed or a current.
+  void same_kind(const Member& master, const Member& slave) {
+    const bool speed = slave_setpoint(master.station->drive().value("750")) == SlaveSetpoint::Speed;
+    const bool torque_control = is_torque_control(slave.station->drive().value("700"));
+    if (speed == torque_control)
+      find(FindingKind::MasterSlave,
+           fmt::format("{} sends a {} (P750), which {} takes for a {} (P700)", master.name,
+                       speed ? "speed" : "torque", slave.name, speed ? "torque" : "speed"));
   }
 
   const LineRoster& roster_;

@@ -28,7 +28,7 @@ std::vector<IdentifierUse> movilink_uses(const Member& member) {
         if (use.telegram == Telegram::GroupProcessOutput && use.address == settings.group)
           use.transmits = true;
   }
-  if (member.control != nullptr)
+  if (member.control != nullptr && !member.control->config->canopen)
     for (const ControlTarget& target : member.control->config->settings.targets)
       for (const IdentifierUse& use : master_identifiers(target.address + (target.group ? 100 : 0), {})) {
         const bool sent = target.group        ? use.telegram == Telegram::GroupProcessOutput
@@ -67,13 +67,16 @@ void add_canopen(const Member& member, Collector& collector) {
 void add_sync(const Member& member, Collector& collector) {
   if (member.port != nullptr && member.port->settings().slave.synchronous)
     collector.add(member.port->settings().slave.sync_id, {member.name, "sync telegram", false, true});
+  if (member.control != nullptr && member.control->config->canopen &&
+      member.control->config->canopen->sync_cycle > 0)
+    collector.add(canopen::identifier(canopen::Connection::Sync), {member.name, "SYNC", true, true});
   if (member.control != nullptr && member.control->config->settings.sync_id)
     collector.add(*member.control->config->settings.sync_id, {member.name, "sync telegram", true, true});
 }
 
 void add_objects(const Member& member, Collector& collector) {
-  if (member.port == nullptr) return;
-  for (const ObjectDefinition& definition : member.port->objects().definitions())
+  if (member.station == nullptr) return;
+  for (const ObjectDefinition& definition : objects_of(member).definitions())
     if (definition.accepted)
       collector.add(
           static_cast<uint32_t>(definition.object),
@@ -98,7 +101,7 @@ std::vector<PlannedIdentifier> planned_identifiers(const LineRoster& roster) {
 std::vector<ClosedIdentifiers> closed_identifiers(const LineRoster& roster) {
   std::vector<ClosedIdentifiers> closed;
   for (const Member& member : roster.members) {
-    if (member.station == nullptr || member.station->config().unit->tasks == 0) continue;
+    if (member.port == nullptr || member.station->config().unit->tasks == 0) continue;
     std::set<uint32_t> own;
     for (const IdentifierUse& use : movilink_uses(member)) own.insert(use.id);
     std::set<uint32_t> transmit = own;

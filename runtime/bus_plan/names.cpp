@@ -39,25 +39,37 @@ std::string variable_name(const vm::Image* image, uint32_t variable) {
   return fmt::format("H{}", variable);
 }
 
+namespace {
+
+void add_objects(const Station& station, const VariableObjects& objects, TelegramNames& names) {
+  for (const ObjectDefinition& definition : objects.definitions()) {
+    if (!definition.accepted) continue;
+    ObjectNames object;
+    object.id = static_cast<uint32_t>(definition.object);
+    object.station = station.config().name;
+    object.sent = definition.kind != ObjectKind::Receive;
+    object.format = *definition.format;
+    object.cycle = definition.kind == ObjectKind::TransmitCyclic ? definition.cycle : 0;
+    for (uint32_t n = 0; n < 2; ++n)
+      object.variables[n] = variable_name(station.image(), definition.data + n);
+    names.objects.push_back(std::move(object));
+  }
+}
+
+}  // namespace
+
 TelegramNames telegram_names(const Plant& plant, const CanLine* line) {
   TelegramNames names;
+  const auto is_on = [line](const CanLine& other) { return line == nullptr || line == &other; };
   for (const auto& station : plant.stations())
     for (const int number : {1, 2}) {
       const SbusPort* port = std::as_const(*station).sbus(number);
-      if (port == nullptr || (line != nullptr && &port->line() != line)) continue;
-      names.units.push_back(unit_names(*station, port->settings().slave));
-      for (const ObjectDefinition& definition : port->objects().definitions()) {
-        if (!definition.accepted) continue;
-        ObjectNames object;
-        object.id = static_cast<uint32_t>(definition.object);
-        object.station = station->config().name;
-        object.sent = definition.kind != ObjectKind::Receive;
-        object.format = *definition.format;
-        object.cycle = definition.kind == ObjectKind::TransmitCyclic ? definition.cycle : 0;
-        for (uint32_t n = 0; n < 2; ++n)
-          object.variables[n] = variable_name(station->image(), definition.data + n);
-        names.objects.push_back(std::move(object));
+      const CanopenPort* canopen = std::as_const(*station).canopen(number);
+      if (port != nullptr && is_on(port->line())) {
+        names.units.push_back(unit_names(*station, port->settings().slave));
+        add_objects(*station, port->objects(), names);
       }
+      if (canopen != nullptr && is_on(canopen->line())) add_objects(*station, canopen->objects(), names);
     }
   return names;
 }

@@ -31,6 +31,11 @@ struct LineRoster {
   bool has_group(uint8_t group) const;
 };
 
+// Its variable objects, over whichever profile.
+inline const VariableObjects& objects_of(const Member& member) {
+  return member.port != nullptr ? member.port->objects() : member.canopen->objects();
+}
+
 // Of a station on a line.
 inline const SbusSettings& settings_of(const Member& member) {
   return member.port != nullptr ? member.port->settings() : member.canopen->settings();

@@ -24,10 +24,11 @@ class Traffic {
     for (const Member& member : roster.members) {
       if (member.control != nullptr) add_control(member);
       if (member.canopen != nullptr && member.canopen->canopen() != nullptr) add_node(member);
-      if (member.port == nullptr) continue;
-      add_partners(member);
-      add_group_master(member);
-      add_objects(member);
+      if (member.port != nullptr) {
+        add_partners(member);
+        add_group_master(member);
+      }
+      if (member.station != nullptr) add_objects(member);
     }
     std::stable_sort(telegrams_.begin(), telegrams_.end(),
                      [](const auto& a, const auto& b) { return a.id < b.id; });
@@ -59,7 +60,39 @@ class Traffic {
     telegram.request = asked;
   }
 
+  // SYNC, and to each node the PDOs that it takes, once a cycle; guarding and heartbeats.
+  void add_master(const Member& member, const canopen::MasterSettings& settings) {
+    if (settings.sync_cycle > 0)
+      add(canopen::identifier(canopen::Connection::Sync), member.name, "SYNC", 0, Rhythm::Cyclic,
+          settings.sync_cycle);
+    if (settings.heartbeat > 0)
+      add(canopen::identifier(canopen::Connection::ErrorControl, settings.node), member.name, "heartbeat", 1,
+          Rhythm::Cyclic, settings.heartbeat * kMillisecond);
+    for (const Member& other : roster_.members)
+      if (other.canopen != nullptr && other.canopen->canopen() != nullptr && settings.sync_cycle > 0)
+        for (const CanopenMessage& message : canopen_messages(*other.canopen->canopen()))
+          if (message.what.starts_with("RPDO") && plans(settings, other.canopen->settings().canopen_address))
+            add(message.id, member.name, fmt::format("{} of {}", message.what, other.name), message.bytes,
+                Rhythm::Cyclic, settings.sync_cycle);
+  }
+
+  static bool plans(const canopen::MasterSettings& settings, uint8_t node) {
+    return std::any_of(settings.nodes.begin(), settings.nodes.end(),
+                       [node](const canopen::NodePlan& plan) { return plan.node == node; });
+  }
+
+  // As far as somebody sends it in this plant.
+  Time sync_period(uint32_t sync) const {
+    for (const Member& member : roster_.members)
+      if (member.control != nullptr && member.control->config->canopen &&
+          sync == canopen::identifier(canopen::Connection::Sync) &&
+          member.control->config->canopen->sync_cycle > 0)
+        return member.control->config->canopen->sync_cycle;
+    return acyclic_period(sync);
+  }
+
   void add_control(const Member& member) {
+    if (member.control->config->canopen) return add_master(member, *member.control->config->canopen);
     const ControlSettings& settings = member.control->config->settings;
     if (settings.sync_id)
       add(*settings.sync_id, member.name, "sync telegram", 0, Rhythm::Cyclic, settings.cycle);
@@ -87,7 +120,7 @@ class Traffic {
     for (const CanopenMessage& message : canopen_messages(node)) {
       if (!message.transmits || (message.asked && !seen_.contains(message.id))) continue;
       const bool cyclic = message.syncs != 0 || message.period != 0;
-      const Time period = message.syncs != 0    ? message.syncs * acyclic_period(sync)
+      const Time period = message.syncs != 0    ? message.syncs * sync_period(sync)
                           : message.period != 0 ? message.period
                                                 : acyclic_period(message.id);
       PlannedTelegram& telegram = add(message.id, member.name, message.what, message.bytes,
@@ -125,7 +158,7 @@ class Traffic {
   }
 
   void add_objects(const Member& member) {
-    for (const ObjectDefinition& definition : member.port->objects().definitions()) {
+    for (const ObjectDefinition& definition : objects_of(member).definitions()) {
       if (!definition.accepted || definition.kind == ObjectKind::Receive) continue;
       const auto id = static_cast<uint32_t>(definition.object);
       const bool cyclic = definition.kind == ObjectKind::TransmitCyclic;

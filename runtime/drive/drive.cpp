@@ -201,6 +201,8 @@ void Drive::clear_faults() {
 
 void Drive::on_parameter_written(uint16_t index, int32_t value) {
   if (index == index::kManualReset && value == 1) reset_fault();
+  if (index == index::kScopeControl && parameters_.table().find(index::kScopeControl) != nullptr)
+    order_scope(value == 1);
 }
 
 // --- the millisecond ---
@@ -211,8 +213,32 @@ inline void Drive::take(const PositionControl& position) {
   now_.set(&Situation::halt, position.halt);
 }
 
+// --- the scope ---
+
+void Drive::order_scope(bool start) {
+  if (!start) return scope_.stop();
+  const auto setting = [&](uint16_t index) { return static_cast<uint32_t>(parameters_.stored(index)); };
+  Scope::Order order;
+  order.every = setting(index::kScopeTime);
+  order.edge = static_cast<Scope::Edge>(setting(index::kScopeTrigger));
+  order.level = parameters_.stored(index::kScopeLevel);
+  order.samples = setting(index::kScopeSamples);
+  order.before = setting(index::kScopeBefore);
+  scope_.start(order);
+}
+
+// What the last tick has left. A channel whose index shows nothing of the drive records 0.
+void Drive::record() {
+  if (!scope_.tick()) return;
+  Scope::Sample sample{};
+  for (uint16_t n = 0; n < Scope::kChannels; ++n)
+    sample[n] = live_value(static_cast<uint16_t>(parameters_.stored(index::kScopeChannel + n))).value_or(0);
+  scope_.take(sample);
+}
+
 // What follows from decisions is done once; faults, links and what the machine suffers need watching on.
 void Drive::decide_and_watch() {
+  if (scope_.runs()) record();
   decided();
   const bool anew = !applied_ || now_->faults.shown() != 0;
   if (anew) apply();
@@ -221,7 +247,7 @@ void Drive::decide_and_watch() {
     select_parameter_set();
   }
   decided();
-  const bool quiet = applied_ && now_->faults.shown() == 0 && !links_run();
+  const bool quiet = applied_ && now_->faults.shown() == 0 && !links_run() && !scope_.runs();
   quiet_for_ = quiet ? now_.changes() : now_.changes() - 1;
 }
 
@@ -251,6 +277,8 @@ void Drive::choose_order() {
     order_ = axis_order(verdict.command);
   }
   order_.target = set().change_direction == 1 ? -state_.setpoint.speed : state_.setpoint.speed;
+  if (order_.command == AxisCommand::Torque)
+    order_.current = set().change_direction == 1 ? -state_.setpoint.current : state_.setpoint.current;
 }
 
 inline void Drive::move() {
@@ -302,7 +330,7 @@ Ticks Drive::State::bound() const {
 
 // A position that is ordered anew every millisecond is no steady one: that is seen first.
 Ticks Drive::steady_since(const Moment& before) const {
-  if (!(before.state.position == state_.position) || !applied_ || now_.changed() ||
+  if (!(before.state.position == state_.position) || !applied_ || scope_.runs() || now_.changed() ||
       now_->settings != parameters_.changes())
     return 0;
   return before.situation == *now_ ? steady_ticks(before.state, state_) : 0;
@@ -477,6 +505,7 @@ void Drive::power_cycle() {
   shown_for_ = settings_version_ - 1;
   state_.factory_setting_ms = state_.mains_ms = state_.enabled_ms = 0;
   state_.counted_energy = 0;
+  scope_ = {};
 }
 
 }  // namespace ipos::runtime

@@ -16,6 +16,7 @@
 #include "runtime/drive/parameters.hpp"
 #include "runtime/drive/position_control.hpp"
 #include "runtime/drive/process_data.hpp"
+#include "runtime/drive/scope.hpp"
 #include "runtime/drive/setpoint.hpp"
 #include "runtime/drive/setpoint_memory.hpp"
 #include "runtime/motion/axis.hpp"
@@ -142,10 +143,11 @@ class Drive final : private DriveLink {
   bool standing() const { return state_.axis.standing(); }
   uint16_t outputs() const { return state_.outputs.levels(); }
 
-  // What the master of a master/slave group sends (P750); its slaves scale it (P751): control word 1, speed
-  // and the third IPOS PI-DATA word of the program. Without `speed`, when P750 wants a torque or a load
-  // share: stop and 0 (ours; a speed must not be taken for one of them).
-  Words master_words(bool speed) const;
+  // What the master of a master/slave group sends; its slaves scale it (P751): control word 1, the setpoint that
+  // P750 chooses and the third IPOS PI-DATA word of the program.
+  Words master_words(SlaveSetpoint what) const;
+
+  const Scope& scope() const { return scope_; }
 
   // Power off and on: everything as at first, but for the motor potentiometer with P152. The parameters are
   // the caller's.
@@ -192,8 +194,9 @@ class Drive final : private DriveLink {
 
   // drive_decisions.cpp: how it is decided, from situation and settings; `t` are the terminals in them.
   Terminals read_terminals() const;
+  bool runs_free(const Terminals& t) const;
   ControlInputs control_inputs(const Terminals& t) const;
-  std::array<LinkWatch::Rules, kPoSources> link_rules(bool enabled_locally) const;
+  std::array<LinkWatch::Rules, kPoSources> link_rules(bool enabled_locally, bool free_run) const;
   void decide_setpoint(Decisions& d) const;
   bool mode_can_position() const;
   std::optional<int32_t> read_bus_position() const;
@@ -229,6 +232,10 @@ class Drive final : private DriveLink {
   void show();
   OutputInputs shown() const;
   void show_anew();
+
+  void order_scope(bool start);
+  void record();
+  std::optional<int32_t> scope_value(uint16_t index) const;
 
   void count_minute(uint32_t& ms, uint16_t minutes);
   void latch_three_wire();
@@ -324,6 +331,7 @@ class Drive final : private DriveLink {
     int64_t counted_energy = 0;
   };
   State state_;
+  Scope scope_;                                                // while it runs every tick is executed
   std::array<std::optional<FaultResponse>, 256> responses_{};  // chosen by the program, by fault number
   uint32_t shown_for_;                                         // the settings of the last tick of the outputs
   uint32_t quiet_for_ = 0;  // changes of the situation by the last tick, if nothing was left to watch

@@ -26,6 +26,7 @@ void Drive::decide_anew() const {
   Decisions& d = decisions_;
   d = {};
   const Terminals t = d.terminals = read_terminals();
+  const bool free_run = runs_free(t);
   const ControlInputs in = control_inputs(t);
   d.controls = decide(in);
   d.enabled_locally = decide_locally(in).command == Command::Enable;
@@ -40,7 +41,7 @@ void Drive::decide_anew() const {
   d.reserved_control_bits = read_reserved_bits();
   d.bus_position = read_bus_position();
 
-  d.links = link_rules(!now_->starting_up && d.enabled_locally);
+  d.links = link_rules(!now_->starting_up && d.enabled_locally, free_run);
   d.reset = function_on(t, F::Reset);
   d.external_fault = t.off(F::ExternalFault) || (now_->ipos_word & kIposFault) != 0;
   d.temperature_sensor = t.off(F::TemperatureSensor);
@@ -112,6 +113,12 @@ bool Drive::is_waiting() const {
   return false;
 }
 
+// The input function SLAVE FREE RUNN. takes a follower from its master: setpoint and enable are local, and nobody
+// waits for telegrams or misses them (that it takes the control word, too, is ours).
+bool Drive::runs_free(const Terminals& t) const {
+  return is_master_slave(settings()) && t.on(InputFunction::SlaveFreeRun);
+}
+
 ControlInputs Drive::control_inputs(const Terminals& t) const {
   const Settings& s = settings();
   ControlInputs in;
@@ -129,9 +136,10 @@ ControlInputs Drive::control_inputs(const Terminals& t) const {
   in.fault_is_warning = now_->faults.warning();
   in.factory_setting = now_->factory_setting;
   in.starting_up = now_->starting_up;
-  in.waiting = is_waiting();
+  const bool free_run = runs_free(t);
+  in.waiting = !free_run && is_waiting();
   in.follows_master = is_master_slave(s);
-  if (const auto bus = s.control_bus) {
+  if (const auto bus = s.control_bus; bus && !free_run) {
     in.bus_word = 0;
     if (s.po_enable != 1)
       in.bus_word_missing = Block::PoDisabled;
@@ -171,14 +179,14 @@ int32_t Drive::monitored(int32_t delay_ms) const {
 }
 
 // Nothing is supervised that is not taken over (P876).
-std::array<LinkWatch::Rules, kPoSources> Drive::link_rules(bool enabled_locally) const {
+std::array<LinkWatch::Rules, kPoSources> Drive::link_rules(bool enabled_locally, bool free_run) const {
   std::array<LinkWatch::Rules, kPoSources> rules;
   const Settings& s = settings();
   const auto setpoint = s.setpoint_bus;
   const auto control = s.control_bus;
   const bool over_rs485 = is_master_slave(s) && setpoint == PoSource::Rs485;
   for (const PoSource source : {PoSource::Rs485, PoSource::Fieldbus, PoSource::Sbus}) {
-    const bool used = s.po_enable == 1 && (setpoint == source || control == source);
+    const bool used = !free_run && s.po_enable == 1 && (setpoint == source || control == source);
     LinkWatch::Rules& rule = rules[static_cast<size_t>(source)];
     switch (source) {
       case PoSource::Rs485:
@@ -219,6 +227,7 @@ void Drive::decide_setpoint(Decisions& d) const {
   in.analog = now_->analog;
   in.po_enabled = s.po_enable == 1;
   in.bus_speed = bus.speed;
+  in.bus_current = bus.current;
   in.sent_speed = decode_order(now_->shown_po, s.po, active.maximum_speed).speed.value_or(0);
   const auto setpoint_from = s.setpoint_bus;
   in.bus_accepted = setpoint_from && heard(*setpoint_from);

@@ -118,18 +118,40 @@ uint16_t Drive::pi_word(size_t n) const {
 
 // That the program of the master fills PO3 by _SetSys(SS_PIDATA, ...) is ours: MDX60B/61B p. 29 only leaves
 // the word to IPOS.
-Drive::Words Drive::master_words(bool speed) const {
+// Of torque and load share no manual read says more than the names (ours): TORQUE is the current that a master in
+// M-CONTROL is told, of any other master the active current that it needs; LOAD SHARE is always the latter, so that
+// with P751 a slave bears its part of what the master bears.
+Drive::Words Drive::master_words(SlaveSetpoint what) const {
   const Command command = verdict().command;
-  const uint16_t control = command == Command::Enable && speed ? control_bits::kEnable
-                           : command == Command::Inhibit       ? control_bits::kInhibit
-                           : command == Command::RapidStop     ? control_bits::kStop
-                                                               : control_bits::kRapidStop;
-  return {control, speed ? word_of_speed(state_.axis.state().setpoint) : uint16_t{0}, state_.ipos_pi[2]};
+  const uint16_t control = command == Command::Enable      ? control_bits::kEnable
+                           : command == Command::Inhibit   ? control_bits::kInhibit
+                           : command == Command::RapidStop ? control_bits::kStop
+                                                           : control_bits::kRapidStop;
+  const AxisState& axis = state_.axis.state();
+  const bool told = what == SlaveSetpoint::Torque && order_.command == AxisCommand::Torque;
+  const uint16_t setpoint = what == SlaveSetpoint::Speed ? word_of_speed(axis.setpoint)
+                                                         : word_of_current(told ? order_.current : axis.active_current);
+  return {control, setpoint, state_.ipos_pi[2]};
+}
+
+std::optional<int32_t> Drive::scope_value(uint16_t index) const {
+  switch (index) {
+    case index::kScopeControl: return scope_.runs() ? 1 : 0;
+    case index::kScopeState: return static_cast<int32_t>(scope_.state());
+    case index::kScopeRecorded: return static_cast<int32_t>(scope_.recorded());
+    case index::kScopeValue: {
+      const auto position = static_cast<uint32_t>(parameters_.stored(index::kScopePosition));
+      const uint32_t sample = position % Scope::kMostSamples;
+      return sample < scope_.recorded() ? scope_.value(position / Scope::kMostSamples, sample) : 0;
+    }
+    default: return std::nullopt;
+  }
 }
 
 std::optional<int32_t> Drive::live_value(uint16_t index) const {
   if (is_m31_)
     return index == index::kM31Position ? std::optional(state_.axis.state().position) : std::nullopt;
+  if (index >= index::kScopeControl && index <= index::kScopeValue) return scope_value(index);
   if (index >= index::kPoShown && index < index::kPoShown + kProcessWords)
     return now_->shown_po[index - index::kPoShown];
   if (index >= index::kPiShown && index < index::kPiShown + kProcessWords)

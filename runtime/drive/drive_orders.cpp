@@ -29,7 +29,8 @@ Setpoint Drive::next_setpoint(const Decisions& d) {
     if (d.pi) in.pi_output = memory.pi_output;
     selected_ = select_setpoint(settings_, active, other_set(), in);
   }
-  if (active.stop_function == 1) {
+  // The stop function is of speeds (ours).
+  if (active.stop_function == 1 && !d.setpoint.torque_control) {
     const int64_t magnitude = std::abs(int64_t{selected_.requested});
     if (magnitude < active.stop_setpoint) state_.stopped_by_setpoint = true;
     if (magnitude > int64_t{active.stop_setpoint} + active.start_offset) state_.stopped_by_setpoint = false;
@@ -80,7 +81,11 @@ AxisOrder Drive::axis_order(Command command) const {
       break;
     case Command::Stop: order.command = AxisCommand::Stop; break;
     case Command::HoldControl: order.command = AxisCommand::HoldZero; break;
-    case Command::Enable: order.command = now_->positioning ? AxisCommand::Follow : AxisCommand::Run; break;
+    case Command::Enable:
+      order.command = now_->positioning              ? AxisCommand::Follow
+                      : decisions_.setpoint.torque_control ? AxisCommand::Torque
+                                                     : AxisCommand::Run;
+      break;
   }
   // The motor potentiometer is a ramp itself; a process ramp has no influence (MOVITRAC 07 chapter 6.3).
   if (static_cast<SetpointSource>(s.setpoint_source) == SetpointSource::MotorPot) {
@@ -93,6 +98,7 @@ AxisOrder Drive::axis_order(Command command) const {
   order.brake_release_ms = static_cast<uint16_t>(p.brake_release);
   order.brake_apply_ms = static_cast<uint16_t>(p.brake_application);
   order.premagnetize_ms = static_cast<uint16_t>(p.premagnetizing);
+  order.speed_limit = std::clamp(decisions_.setpoint.maximum_speed.value_or(p.maximum_speed), 0, p.maximum_speed);
   order.current_limit = p.current_limit;
   const std::optional<int32_t> limit = bus.maximum_current ? bus.maximum_current : control.maximum_current;
   if (limit) order.current_limit = std::clamp(*limit, 0, order.current_limit);

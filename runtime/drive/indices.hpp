@@ -44,6 +44,17 @@ inline constexpr uint16_t kParameterLock = 8595;    // P803
 inline constexpr uint16_t kResetStatistics = 8596;  // P804
 inline constexpr uint16_t kManualReset = 8617;      // P840
 inline constexpr uint16_t kPoEnable = 8622;         // P876
+inline constexpr uint16_t kScopeControl = 8950;     // these are ours
+inline constexpr uint16_t kScopeState = 8951;
+inline constexpr uint16_t kScopeChannel = 8952;  // + n = channel n + 1, n = 0..3
+inline constexpr uint16_t kScopeTime = 8956;
+inline constexpr uint16_t kScopeTrigger = 8957;
+inline constexpr uint16_t kScopeLevel = 8958;
+inline constexpr uint16_t kScopeBefore = 8959;
+inline constexpr uint16_t kScopeSamples = 8960;
+inline constexpr uint16_t kScopeRecorded = 8961;
+inline constexpr uint16_t kScopePosition = 8962;
+inline constexpr uint16_t kScopeValue = 8963;
 
 // MOVITRAC 31 (stdlib/parameters/mc31.tsv).
 inline constexpr uint16_t kM31RampUp = 25;            // P120

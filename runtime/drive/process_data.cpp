@@ -79,8 +79,8 @@ BusOrder decode_order(const DriveWords& words, const std::array<uint8_t, kProces
         break;
       case PoAssignment::PositionLow: set_first(position_low, word); break;
       case PoAssignment::PositionHigh: set_first(position_high, word); break;
-      // The current setpoint needs a torque control; the program reads its own words.
-      case PoAssignment::Current:
+      case PoAssignment::Current: set_first(order.current, signed_word(word) * kCurrentDigit); break;
+      // The program reads its own words.
       case PoAssignment::IposData:
       case PoAssignment::None: break;
     }

@@ -79,6 +79,7 @@ struct BusOrder {
   std::optional<uint16_t> control_word;
   bool is_control_word_1 = false;
   std::optional<int32_t> speed;            // 1/1000 rpm
+  std::optional<int32_t> current;          // 1/1000 % of IN, the setpoint of a torque control
   std::optional<int32_t> ramp;             // ms
   std::optional<int32_t> maximum_speed;    // 1/1000 rpm
   std::optional<int32_t> maximum_current;  // 1/1000 %

@@ -59,6 +59,31 @@ bool adds_potentiometer(const Settings& settings, const SetpointInputs& in, Setp
   return source != SetpointSource::MotorPot;
 }
 
+// What is wrong with the word of a bus that is the source; None where it counts.
+SetpointNote bus_note(const SetpointInputs& in, bool word, SetpointNote missing) {
+  if (!in.po_enabled) return SetpointNote::PoDisabled;
+  if (!word) return missing;
+  return in.bus_accepted ? SetpointNote::None : SetpointNote::NoBusData;
+}
+
+// M-CONTROL. A source that is no bus gives a speed, whose share of the maximum speed is the share of the current
+// limit (ours: no manual read has a scale for it). P301 and the skip window are of speeds.
+Setpoint select_current(const Settings& settings, const ParameterSet& set, const ParameterSet& other,
+                        SetpointInputs in) {
+  Setpoint setpoint;
+  int32_t current = 0;
+  if (is_bus(source_of(settings, in.slave_free_run))) {
+    setpoint.note = bus_note(in, in.bus_current.has_value(), SetpointNote::NoCurrentWord);
+    if (setpoint.note == SetpointNote::None) current = *in.bus_current;
+  } else {
+    in.torque_control = false;
+    const Setpoint speed = select_setpoint(settings, set, other, in);
+    current = scale(speed.requested, set.current_limit, set.maximum_speed);
+  }
+  setpoint.current = std::clamp(current, -set.current_limit, set.current_limit);
+  return setpoint;
+}
+
 }  // namespace
 
 std::string_view setpoint_note_text(SetpointNote note) { return kTexts[static_cast<size_t>(note)]; }
@@ -130,8 +155,7 @@ int32_t leave_skip_window(const ParameterSet& set, int32_t speed, int32_t maximu
 
 Setpoint select_setpoint(const Settings& settings, const ParameterSet& set, const ParameterSet& other,
                          const SetpointInputs& in) {
-  // Ours: what is no speed does not turn the shaft, not even with P301.
-  if (in.torque_control) return {0, 0, SetpointNote::TorqueControl};
+  if (in.torque_control) return select_current(settings, set, other, in);
   const SetpointSource source = source_of(settings, in.slave_free_run);
   const int32_t fixed = fixed_setpoint(in.other_set ? other : set, in.fixed);
   const int32_t pot = in.m07 ? potentiometer_speed(settings, set, in.analog.potentiometer) : 0;
@@ -142,14 +166,8 @@ Setpoint select_setpoint(const Settings& settings, const ParameterSet& set, cons
   if (in.pi_output) {
     setpoint.speed = scale(*in.pi_output, set.maximum_speed, kPercent);
   } else if (is_bus(source)) {
-    if (!in.po_enabled)
-      setpoint.note = SetpointNote::PoDisabled;
-    else if (!in.bus_speed)
-      setpoint.note = SetpointNote::NoBusWord;
-    else if (!in.bus_accepted)
-      setpoint.note = SetpointNote::NoBusData;
-    else
-      setpoint.speed = *in.bus_speed;
+    setpoint.note = bus_note(in, in.bus_speed.has_value(), SetpointNote::NoBusWord);
+    if (setpoint.note == SetpointNote::None) setpoint.speed = *in.bus_speed;
     if (in.fixed != 0 && setpoint.note == SetpointNote::None) setpoint.note = SetpointNote::FixedIgnored;
   } else if (source == SetpointSource::FixedPlusAi1) {
     setpoint.speed = add(fixed, in.ai1_speed);

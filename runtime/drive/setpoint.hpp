@@ -50,7 +50,7 @@ std::string_view setpoint_note_text(SetpointNote note);
 struct SetpointInputs {
   bool m07 = false;
   bool fixed_plus_potentiometer = true;  // firmware from .13, LOGODrive .12 (MOVITRAC 07 table 3)
-  bool torque_control = false;             // P700: there is no speed setpoint
+  bool torque_control = false;           // P700: the setpoint is a current
   bool slave_free_run = false;           // input function: the local source instead of the master's
   int fixed = 0;                         // 0 none, 1..3: n11..n13 or n21..n23
   bool other_set = false;                // fixed setpoint switchover
@@ -60,6 +60,7 @@ struct SetpointInputs {
   int32_t motor_pot = 0;
   bool motor_pot_ccw = false;
   std::optional<int32_t> bus_speed;      // of the bus of P100; nothing: no PO word has SPEED
+  std::optional<int32_t> bus_current;    // of the bus of P100; nothing: no PO word has CURRENT
   int32_t sent_speed = 0;                // in the last telegram of any bus
   bool bus_accepted = false;             // P876, and the bus of P100 has sent
   bool po_enabled = true;                // P876
@@ -71,6 +72,7 @@ struct Setpoint {
   int32_t speed = 0;      // what the ramp is told
   int32_t requested = 0;  // before the limits
   SetpointNote note = SetpointNote::None;
+  int32_t current = 0;  // of a torque control, in place of a speed: 1/1000 % of IN
   bool operator==(const Setpoint&) const = default;
 };
 

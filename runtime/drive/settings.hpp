@@ -45,6 +45,12 @@ constexpr bool is_torque_control(int32_t operating_mode) {
   return operating_mode == 12 || operating_mode == 17;
 }
 
+// What a master sends to its slaves as setpoint (P750).
+enum class SlaveSetpoint : uint8_t { Speed, Torque, LoadShare };
+constexpr SlaveSetpoint slave_setpoint(int32_t p750) {
+  return p750 <= 3 ? SlaveSetpoint::Speed : p750 <= 6 ? SlaveSetpoint::Torque : SlaveSetpoint::LoadShare;
+}
+
 class SettingsReader {
  public:
   explicit SettingsReader(const ParameterStore& parameters);

@@ -46,7 +46,8 @@ inline void Axis::advance_sequence(const AxisOrder& order) {
     }
     case AxisCommand::HoldZero:
     case AxisCommand::Run:
-    case AxisCommand::Follow: return sequence_.enable(times);
+    case AxisCommand::Follow:
+    case AxisCommand::Torque: return sequence_.enable(times);
   }
 }
 
@@ -54,7 +55,8 @@ inline void Axis::advance_setpoint(const AxisOrder& order) {
   // A motor that still turns when its torque comes back is caught at its speed (ours).
   if (!has_torque(state_.phase)) ramp_.set(speed_);
   if (sequence_.phase() != AxisPhase::Moving) return;
-  if (order.command == AxisCommand::Follow) return ramp_.set(target_of(order));
+  if (order.command >= AxisCommand::Follow)
+    return ramp_.set(order.command == AxisCommand::Follow ? target_of(order) : speed_);
   // At the current limit the ramp waits for the shaft, or a stop would begin with more speed (ours).
   if (state_.current_limited) ramp_.wait_at(speed_);
   if (order.command == AxisCommand::Run) return ramp_.step(target_of(order), order.ramp);
@@ -132,12 +134,23 @@ void Axis::go_through(const AxisOrder& order) {
 }
 
 // An axis that moves already goes as it is told: only the shaft has something to do.
-void Axis::follow(const AxisOrder& order) {
+void Axis::go_directly(const AxisOrder& order) {
+  if (order.command == AxisCommand::Torque) return turn(order);
   ramp_.set(fine_speed(order.target));
   const int64_t torque_limit = power_.torque_limit(order.current_limit);
   move(order, Supply::Driving, shaft_.driven(speed_, ramp_.output(), torque_limit, resistance(order, false)));
   state_.ramping = false;
   state_.setpoint = whole_speed(ramp_.output());
+}
+
+// A stop begins from the speed that there is.
+void Axis::turn(const AxisOrder& order) {
+  move(order, Supply::Driving,
+       shaft_.turned(speed_, power_.torque_of(order.current), fine_speed(order.speed_limit),
+                     power_.torque_limit(order.current_limit), resistance(order, false)));
+  ramp_.set(speed_);
+  state_.ramping = false;
+  state_.setpoint = state_.speed;
 }
 
 void Axis::advance(Ticks ticks) {

@@ -21,11 +21,14 @@ enum class AxisCommand : uint8_t {
   HoldZero,  // down on the stop ramp, then held at 0 by the motor with the brake released
   Run,       // ramp towards the target
   Follow,    // the target is the setpoint as it is, without ramp: for positioning
+  Torque,    // the motor gives a torque, and the speed is what comes of it
 };
 
 struct AxisOrder {
   AxisCommand command = AxisCommand::Inhibit;
-  int32_t target = 0;  // 1/1000 rpm, positive is clockwise; beyond 100000 rpm counts as that
+  int32_t target = 0;       // 1/1000 rpm, positive is clockwise; beyond 100000 rpm counts as that
+  int32_t current = 0;      // of Torque: active current, 1/1000 % of IN, positive drives clockwise
+  int32_t speed_limit = 0;  // of Torque, of the amount, 1/1000 rpm
   RampTimes ramp;
   uint32_t stop_ramp_ms = 0;        // of Stop and HoldZero, always linear
   int32_t current_limit = 150'000;  // P303
@@ -90,8 +93,8 @@ class Axis : private AxisParts {
   // One millisecond under this order; tick() shows it, too.
   void step(const AxisOrder& order) {
     catch_up();
-    if (order.command == AxisCommand::Follow && state_.phase == AxisPhase::Moving)
-      follow(order);
+    if (order.command >= AxisCommand::Follow && state_.phase == AxisPhase::Moving)
+      go_directly(order);
     else
       go_through(order);
   }
@@ -139,7 +142,8 @@ class Axis : private AxisParts {
   void reset() { *this = Axis(machine_); }
 
  private:
-  void follow(const AxisOrder& order);
+  void go_directly(const AxisOrder& order);
+  void turn(const AxisOrder& order);
   void go_through(const AxisOrder& order);
   void advance_sequence(const AxisOrder& order);
   void advance_setpoint(const AxisOrder& order);

@@ -24,6 +24,12 @@ class PowerSection {
     return torque_limit_;
   }
 
+  // Torque of an active current, both in 1/1000 %.
+  int64_t torque_of(int32_t active_current) const {
+    return int64_t{std::clamp(active_current, -kTopCurrent, kTopCurrent)} * 100'000 /
+           machine_.rated_active_current;
+  }
+
   struct Load {
     Supply supply;
     int32_t speed;  // 1/1000 rpm

@@ -1,6 +1,7 @@
 // Torque to speed and back.
 #include "runtime/motion/shaft.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace ipos::runtime {
@@ -19,6 +20,15 @@ FineSpeed Shaft::free(FineSpeed speed, int64_t torque, const Resistance& resista
   const FineSpeed next = speed + (force - direction * resistance.friction) * gain_;
   if (holds && sign_of(next) != sign_of(speed)) return 0;
   return std::clamp(next, -kTopFine, kTopFine);
+}
+
+Motion Shaft::turned(FineSpeed speed, int64_t torque, FineSpeed speed_limit, int64_t torque_limit,
+                     const Resistance& resistance) const {
+  const int64_t given = std::clamp(torque, -torque_limit, torque_limit);
+  const FineSpeed next = free(speed, given, resistance);
+  const FineSpeed most = std::max<FineSpeed>(speed_limit, 0);
+  if (-most <= next && next <= most) return {next, given, false};
+  return driven(speed, next > 0 ? most : -most, torque_limit, resistance);
 }
 
 Motion Shaft::limited(FineSpeed speed, FineSpeed setpoint, int64_t needed, int64_t torque_limit,

@@ -36,6 +36,10 @@ class Shaft {
     if (-torque_limit <= needed && needed <= torque_limit) return {setpoint, needed, false};
     return limited(speed, setpoint, needed, torque_limit, resistance);
   }
+
+  // The motor gives this torque, as far as its limit allows. Beyond the speed limit it gives what holds that.
+  Motion turned(FineSpeed speed, int64_t torque, FineSpeed speed_limit, int64_t torque_limit,
+                const Resistance& resistance) const;
   bool operator==(const Shaft&) const = default;
 
  private:

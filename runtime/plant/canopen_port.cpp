@@ -10,6 +10,20 @@
 namespace ipos::runtime {
 namespace {
 
+constexpr uint64_t kNodeObjectTags = 0x100;  // of frames, and above; the node has those from 1 on
+constexpr uint64_t kNodeAcyclicTags = kNodeObjectTags + ObjectTable::kAcyclicTags;
+static_assert(1 + canopen::kTags <= kNodeObjectTags);
+
+// Variable telegrams do not depend on the profile (chapter 5.5.3 of 11264926); over CANopen no identifier is closed to
+// them (ours).
+constexpr uint8_t kNobody = 0xFF;
+const SlaveSettings kNoMovilink = [] {
+  SlaveSettings settings;
+  settings.address = settings.group = kNobody;
+  settings.synchronous = settings.second_channel = false;
+  return settings;
+}();
+
 constexpr uint16_t kFaultBit = 1U << 5;                   // of status word 1
 constexpr uint8_t kSbusTimeout = 47, kSbus2Timeout = 46;  // with the responses of P836 and P837
 
@@ -20,12 +34,15 @@ CanopenPort::CanopenPort(EventQueue& queue, uint32_t source, CanLine& line, std:
                          Journal& journal)
     : door_(door),
       sender_(line, join(line, node, station, settings.baud, *this)),
+      objects_(door.touch().server().unit(), settings.baud, sender_, kNodeObjectTags, sbus),
       line_(line),
       sbus_(sbus),
       station_(station),
       settings_(settings),
       journal_(journal),
       server_(door) {
+  door.touch().connect(sbus, objects_);
+  objects_.set_profile(kNoMovilink);
   const canopen::Place place{queue, source, sender_, 1};
   canopen::Unit& unit = *this;
   canopen::NodeObserver* observer = this;
@@ -35,14 +52,37 @@ CanopenPort::CanopenPort(EventQueue& queue, uint32_t source, CanLine& line, std:
 }
 
 void CanopenPort::power_off() {
+  objects_.stop();
   node_.reset();  // and what it waits for
   line_.set_connected(node(), false);
 }
 
 void CanopenPort::on_frame(Time now, const Frame& frame) {
   if (!node_) return;
+  receive(now, frame);
   node_->on_frame(now, frame);
   for (std::string& reason : server_.take_reasons()) note(now, Weight::Why, std::move(reason));
+}
+
+// A receive object takes the frame; the node may, too (ours).
+void CanopenPort::receive(Time now, const Frame& frame) {
+  const auto receiver = objects_.receiver(frame);
+  if (!receiver || door_.variables().empty()) return;
+  std::string why;
+  objects_.on_frame(frame, door_.variables_to_write(objects_.data_of(*receiver)), why);
+  if (!why.empty()) note(now, Weight::Warning, std::move(why));
+}
+
+void CanopenPort::on_sent(Time /*now*/, const Frame& /*frame*/, uint64_t tag) {
+  if (tag < kNodeAcyclicTags) return;
+  if (const auto variables = door_.touch().variables(); !variables.empty()) objects_.on_sent(tag, variables);
+}
+
+// As over MOVILINK: a disturbed frame is sent again by the controller.
+void CanopenPort::on_not_sent(Time /*now*/, const Frame& /*frame*/, uint64_t tag, NotSent reason) {
+  if (tag < kNodeAcyclicTags || reason == NotSent::Corrupted || !node_) return;
+  if (const auto variables = door_.touch().variables(); !variables.empty())
+    objects_.on_not_sent(tag, variables);
 }
 
 void CanopenPort::note(Time now, Weight weight, std::string text) {

@@ -10,6 +10,7 @@
 #include "runtime/bus/canopen/node.hpp"
 #include "runtime/plant/sbus_port.hpp"
 #include "runtime/plant/unit_server.hpp"
+#include "runtime/scom/variable_objects.hpp"
 #include "runtime/unit/door.hpp"
 #include "runtime/unit/journal.hpp"
 
@@ -28,6 +29,7 @@ class CanopenPort final : public StationPort,
   // What goes out on change may go out now.
   Time tick(Time now) override {
     node_->unit_changed(now);
+    objects_.tick(now / kMillisecond, door_.variables_in_turn());
     return now + kMillisecond;
   }
   bool has_waiting_frames() const override { return line_.has_waiting(node()); }
@@ -35,12 +37,14 @@ class CanopenPort final : public StationPort,
   NodeId node() const { return sender_.node(); }
   CanLine& line() const { return line_; }
   const SbusSettings& settings() const { return settings_; }
+  const VariableObjects& objects() const { return objects_; }
   const canopen::Node* canopen() const { return node_ ? &*node_ : nullptr; }  // null: power is off
 
  private:
   void on_frame(Time now, const Frame& frame) override;
-  void on_sent(Time, const Frame&, uint64_t) override {}
-  void on_not_sent(Time, const Frame&, uint64_t, NotSent) override {}
+  void receive(Time now, const Frame& frame);
+  void on_sent(Time now, const Frame& frame, uint64_t tag) override;
+  void on_not_sent(Time now, const Frame& frame, uint64_t tag, NotSent reason) override;
   void on_bus_off(Time) override { sender_.recover(); }
 
   void take_output(Time now, const canopen::Words& words, uint16_t written) override;
@@ -56,6 +60,7 @@ class CanopenPort final : public StationPort,
 
   Door& door_;
   LinePort sender_;
+  VariableObjects objects_;
   CanLine& line_;
   int sbus_;
   std::string_view station_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "runtime/plant/serial_plan.hpp"
 #include "runtime/plant/station_state.hpp"
@@ -59,6 +60,7 @@ Plant::Plant(PlantFile file, std::vector<std::optional<vm::Image>> programs, std
   tell_findings();
   power_on();
   start_checks();
+  check_nodes();
   plant_faults();
 }
 
@@ -79,8 +81,12 @@ void Plant::add_station(size_t number, std::optional<vm::Image> program, std::op
 }
 
 void Plant::add_control(const ControlConfig& config) {
-  PlantControl control{&config, nullptr, nullptr, nullptr, nullptr};
-  if (!config.profibus) {
+  PlantControl control{&config, nullptr, {}, {}, {}, {}};
+  if (config.canopen) {
+    control.line = find_can(config.sbus);
+    control.canopen =
+        std::make_unique<CanopenControl>(queue_, next_source_++, config.name, *config.canopen, journal_);
+  } else if (!config.profibus) {
     control.line = find_can(config.sbus);
     control.control = std::make_unique<SbusControl>(queue_, next_source_++, config.settings);
   } else if (auto* bus = dynamic_cast<ProfibusBus*>(find_bus(config.profibus->bus))) {
@@ -106,9 +112,14 @@ void Plant::power_on() {
   const auto begin_control = [&](PlantControl& started) {
     if (started.profibus) started.profibus->start();
     if (started.line == nullptr) return;
-    const NodeId node = started.line->attach(started.config->name, started.line->baud(), *started.control);
+    const bool canopen = started.canopen != nullptr;
+    CanNode& master = canopen ? static_cast<CanNode&>(started.canopen->master()) : *started.control;
+    const NodeId node = started.line->attach(started.config->name, started.line->baud(), master);
     started.port = std::make_unique<LinePort>(*started.line, node);
-    started.control->start(*started.port);
+    if (canopen)
+      started.canopen->master().start(queue_.now(), *started.port);
+    else
+      started.control->start(*started.port);
   };
   for (const auto& station : stations_) {
     const FilePlace place = station->config().place;
@@ -126,6 +137,30 @@ void Plant::start_checks() {
       if (port == nullptr) continue;
       auto* bus = dynamic_cast<CanBus*>(find_bus(port->line().name()));
       bus->check().add_slave(queue_.now(), port->line(), port->node(), port->settings().slave);
+    }
+}
+
+// Two nodes with one number send the same identifiers, and both answer (CiA 301: a number is given once).
+void Plant::check_nodes() {
+  struct Numbered {
+    const CanLine* line;
+    uint8_t node;
+    const std::string* station;
+  };
+  std::vector<Numbered> nodes;
+  for (const auto& station : stations_)
+    for (const int sbus : {1, 2}) {
+      const CanopenPort* port = std::as_const(*station).canopen(sbus);
+      if (port == nullptr) continue;
+      const Numbered added{&port->line(), port->settings().canopen_address, &station->config().name};
+      for (const Numbered& other : nodes)
+        if (other.line == added.line && other.node == added.node)
+          journal_.note(
+              queue_.now(), Weight::Warning, "",
+              fmt::format("{}: {} and {} both have CANopen address {}: they send the same identifiers, and "
+                          "their answers collide",
+                          added.line->name(), *other.station, *added.station, added.node));
+      nodes.push_back(added);
     }
 }
 

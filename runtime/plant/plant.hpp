@@ -11,6 +11,7 @@
 
 #include "runtime/plant/bus.hpp"
 #include "runtime/plant/can_bus.hpp"
+#include "runtime/plant/canopen_control.hpp"
 #include "runtime/plant/plant_file.hpp"
 #include "runtime/plant/profibus_control.hpp"
 #include "runtime/plant/serial_bus.hpp"
@@ -32,6 +33,7 @@ struct PlantControl {
   const ControlConfig* config;
   CanLine* line;  // null: it is a master on a PROFIBUS
   std::unique_ptr<SbusControl> control;
+  std::unique_ptr<CanopenControl> canopen;  // in place of the former
   std::unique_ptr<LinePort> port;
   std::unique_ptr<ProfibusControl> profibus;
 };
@@ -100,6 +102,7 @@ class Plant final {
   void add_control(const ControlConfig& config);
   void power_on();
   void start_checks();
+  void check_nodes();
   void plant_faults();
   void check_expectations(Time until);
   void resolve_expectations(std::vector<PlantError>& errors);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "runtime/bus/can/line_fault.hpp"
+#include "runtime/bus/canopen/master.hpp"
 #include "runtime/bus/movilink/sbus_control.hpp"
 #include "runtime/drive/parameters.hpp"
 #include "runtime/drive/setpoint.hpp"
@@ -94,12 +95,14 @@ struct StationConfig {
   FilePlace nvram_place;
 };
 
-// A master control on an SBus: process data to units, and the sync telegram. Or a master on a PROFIBUS.
+// A master control on an SBus: process data to units, and the sync telegram. Or a master of CANopen, or one on a
+// PROFIBUS.
 struct ControlConfig {
   std::string name;
   std::string sbus;
   std::optional<ProfibusMasterConfig> profibus{};
   ControlSettings settings;
+  std::optional<canopen::MasterSettings> canopen;  // in place of the former
   std::optional<bool> terminator;
   FilePlace place;
 };

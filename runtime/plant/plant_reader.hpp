@@ -114,6 +114,8 @@ void read_profibus_card(PlantReader& reader, const toml::table& table, StationCo
 void read_profibus_fault(PlantReader& reader, const toml::table& table);
 void read_profibus_master(PlantReader& reader, const toml::table& table, ControlConfig& control);
 void read_controls(PlantReader& reader, const toml::table& root);
+// Of a [[control]] with kind = "canopen", all but what every control has.
+canopen::MasterSettings read_canopen_master(PlantReader& reader, const toml::table& table);
 void read_faults(PlantReader& reader, const toml::table& root);
 void read_surroundings(PlantReader& reader, const toml::table& root);  // stimulus, wire, switch
 void read_expectations(PlantReader& reader, const toml::table& root);

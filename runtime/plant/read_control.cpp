@@ -35,7 +35,7 @@ void read_control_target(PlantReader& reader, const toml::table& table, ControlS
 }
 
 void read_sbus_control(PlantReader& reader, const toml::table& table, ControlConfig& config) {
-  reader.known_keys(table, "[[control]]", {"name", "sbus", "sync", "cycle", "terminator", "target"});
+  reader.known_keys(table, "[[control]]", {"name", "kind", "sbus", "sync", "cycle", "terminator", "target"});
   config.sbus = reader.bus_name(table, "sbus", "a [[control]]", true);
   config.terminator = reader.flag(table, "terminator");
   if (table.contains("sync"))
@@ -58,10 +58,19 @@ void read_control(PlantReader& reader, const toml::table& table) {
   config.place = place_of(table.source());
   config.name = reader.text(table, "name", "a [[control]]", true);
   reader.new_station(config.name, config.place);
-  if (table.contains("profibus"))
+  const std::string kind = reader.text(table, "kind", "", false);
+  if (!kind.empty() && kind != "canopen" && kind != "sbus")
+    reader.error(place_of(*table.get("kind")),
+                 fmt::format("'{}' is no kind of control; known are sbus, canopen", kind));
+  if (table.contains("profibus")) {
     read_profibus_master(reader, table, config);
-  else
+  } else if (kind == "canopen") {
+    config.sbus = reader.bus_name(table, "sbus", "a [[control]]", true);
+    config.terminator = reader.flag(table, "terminator");
+    config.canopen = read_canopen_master(reader, table);
+  } else {
     read_sbus_control(reader, table, config);
+  }
   reader.result.plant.controls.push_back(std::move(config));
 }
 

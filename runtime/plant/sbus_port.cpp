@@ -67,7 +67,7 @@ SbusPort::SbusPort(EventQueue& queue, uint32_t source, CanLine& line, std::optio
       station_(station),
       settings_(settings),
       journal_(journal),
-      server_(door),
+      server_(door, sbus == 1),
       slave_(queue, source, sender_, kSlaveTag, settings.slave, {}, server_, server_, this),
       movilink_(door.touch().movilink()),
       bus_(kBuses[sbus - 1]),

@@ -83,7 +83,6 @@ void Station::connect_sbus(int number) {
                                      : canopen ? std::optional(canopen->node())
                                                : std::nullopt;
   if (!settings.movilink) {
-    unit_.disconnect(number);
     unit_.movilink().disconnect(number == 1 ? MovilinkBus::Sbus : MovilinkBus::Sbus2);
     port.reset();
     canopen = std::make_unique<CanopenPort>(queue_, source_, *line, node, number, config_.name, settings,

@@ -16,7 +16,8 @@ namespace ipos::runtime {
 // As ProcessDataServer it serves the SBus, rs485_data() serves both RS-485 interfaces.
 class UnitServer final : public ParameterServer, public ProcessDataServer, public MasterSlaveDrive {
  public:
-  explicit UnitServer(Door& door) : door_(door), rs485_data_(door) {}
+  // `leads`: masters of master/slave operation are heard there, which is so on SBus 1 (MDX60B/61B chapter 5.5.1).
+  explicit UnitServer(Door& door, bool leads = true) : door_(door), leads_(leads), rs485_data_(door) {}
   UnitServer(const UnitServer&) = delete;
   UnitServer& operator=(const UnitServer&) = delete;
 
@@ -25,7 +26,9 @@ class UnitServer final : public ParameterServer, public ProcessDataServer, publi
   }
   bool has_subindices() const override { return door_.look().server().has_subindices(); }
   void take_output(Time now, OutputChannel channel, std::span<const uint16_t> words) override {
-    door_.touch().server().take_output(now, channel, words);
+    DriveServer& server = door_.touch().server();
+    if (channel == OutputChannel::Group && !leads_ && server.follows_sbus_master()) return;
+    server.take_output(now, channel, words);
   }
   ProcessWords input(Time /*now*/) override { return door_.look().drive().pi(); }
   void synchronize(Time now) override { door_.touch().server().synchronize(now); }
@@ -63,6 +66,7 @@ class UnitServer final : public ParameterServer, public ProcessDataServer, publi
   };
 
   Door& door_;
+  bool leads_;
   Rs485Data rs485_data_;
 };
 

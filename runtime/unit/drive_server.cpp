@@ -93,13 +93,15 @@ tl::expected<int32_t, ReturnCode> DriveServer::serve(Time now, const ParameterRe
 }
 
 void DriveServer::take_output(Time /*now*/, OutputChannel channel, std::span<const uint16_t> words) {
-  const bool slave = channel == OutputChannel::Group && value("100") == kMasterSbus;
+  const bool slave = channel == OutputChannel::Group && follows_sbus_master();
   look_for_obstacles(DataBus::sbus, slave);
   if (!slave) return state_.take_po(PoSource::Sbus, words);
   ProcessWords scaled{};
   std::copy_n(words.begin(), std::min(words.size(), scaled.size()), scaled.begin());
   state_.take_po(PoSource::Sbus, scaled_for_slave(scaled, value("751")));
 }
+
+bool DriveServer::follows_sbus_master() const { return value("100") == kMasterSbus; }
 
 void DriveServer::take_fieldbus(std::span<const uint16_t> words) {
   look_for_obstacles(DataBus::fieldbus, false);
@@ -170,7 +172,7 @@ ProcessWords DriveServer::Rs485Data::input(Time now) { return drive_.input(now);
 void DriveServer::Rs485Data::cyclic_request(Time /*now*/) { drive_.state_.take_request(PoSource::Rs485); }
 
 ProcessWords DriveServer::setpoint_to_send(Time /*now*/) {
-  return state_.master_words(sends_speed(parameters_.value(serial_.slave_setpoint)));
+  return state_.master_words(slave_setpoint(parameters_.value(serial_.slave_setpoint)));
 }
 
 void DriveServer::setpoint_received(Time /*now*/, const ProcessWords& words) {

@@ -79,6 +79,7 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
   tl::expected<int32_t, ReturnCode> serve(Time now, const ParameterRequest& request) override;
   bool has_subindices() const override { return unit().generation == stdlib::Generation::B; }
   void take_output(Time now, OutputChannel channel, std::span<const uint16_t> words) override;
+  bool follows_sbus_master() const;  // P100 = MASTER-SBus
   ProcessWords input(Time now) override;
   void synchronize(Time now) override;
   uint32_t syncs() const { return syncs_; }  // sync telegrams so far

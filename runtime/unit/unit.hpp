@@ -11,15 +11,15 @@
 #include <string_view>
 #include <vector>
 
-#include "runtime/unit/journal.hpp"
-#include "runtime/unit/mirrored_values.hpp"
 #include "runtime/commands/movilink_command.hpp"
-#include "runtime/unit/pid_block.hpp"
 #include "runtime/commands/positioning_commands.hpp"
 #include "runtime/commands/system_commands.hpp"
-#include "runtime/unit/timers.hpp"
 #include "runtime/unit/drive_server.hpp"
 #include "runtime/unit/execution.hpp"
+#include "runtime/unit/journal.hpp"
+#include "runtime/unit/mirrored_values.hpp"
+#include "runtime/unit/pid_block.hpp"
+#include "runtime/unit/timers.hpp"
 #include "runtime/unit/unit_inputs.hpp"
 #include "vm/exec/machine.hpp"
 #include "vm/fast/predecode.hpp"
@@ -81,7 +81,6 @@ class Unit final {
   void power_off();
   // The objects of SBus 1 or 2, which stay where they are.
   void connect(int sbus, VariableObjects& objects) { objects_[static_cast<size_t>(sbus - 1)] = &objects; }
-  void disconnect(int sbus) { objects_[static_cast<size_t>(sbus - 1)] = nullptr; }
   // The program memory is verified and started from its beginning; variables keep their values. Nothing when
   // it was started, else the rule that it breaks.
   std::optional<std::string> load_program();

@@ -100,16 +100,22 @@ TEST_F(RampExample, Movitrac07RefersTo1500Rpm) {
                        {1500, 0, 1500, 500}});      // rapid stop: 0.5 s
 }
 
-TEST(RampPlot, OfTheDriveChapterIsMadeByIpos) {
+TEST(DrivePlots, AreMadeByIpos) {
   const TemporaryFolder folder;
-  const std::string made = (folder.path() / "ramp.svg").string();
-  const CommandResult run =
-      run_ipos({"run", project("examples/ramp/ramp.toml").string(), "--for", "16s", "--plot", made,
-                "--signals", "movidrive.speed,movidrive.status,movitrac.speed,movitrac.status"});
-  EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_TRUE(read_text(made) == read_text(project("docs/images/ramp.svg")))
-      << "docs/images/ramp.svg is not what the command in docs/inside/drive.md draws";
-  EXPECT_NE(read_text(project("docs/inside/drive.md")).find("](../images/ramp.svg)"), std::string::npos);
+  const auto is_drawn = [&](const std::string& name, const std::string& time, const std::string& signals) {
+    const std::string made = (folder.path() / (name + ".svg")).string();
+    const CommandResult run = run_ipos({"run", project("examples/" + name + "/" + name + ".toml").string(),
+                                        "--for", time, "--plot", made, "--signals", signals});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_TRUE(read_text(made) == read_text(project("docs/images/" + name + ".svg")))
+        << name << ".svg is not what the command in docs/inside/drive.md draws";
+    const std::string page = read_text(project("docs/inside/drive.md"));
+    EXPECT_NE(page.find("](../images/" + name + ".svg)"), std::string::npos);
+    EXPECT_NE(page.find("--for " + time + " --plot " + name + ".svg --signals " + signals),
+              std::string::npos);
+  };
+  is_drawn("ramp", "16s", "movidrive.speed,movidrive.status,movitrac.speed,movitrac.status");
+  is_drawn("winder", "9s", "line.speed,takeup.speed,takeup.torque");
 }
 
 }  // namespace

@@ -118,6 +118,24 @@ TEST(Bus, ALogOfCanopen) {
   EXPECT_EQ(nobody.exit_code, 64);
 }
 
+TEST(Bus, LoadNamesItsIdentifiers) {
+  const TemporaryFolder folder;
+  folder.write("a.log",
+               "(1000000000.000000) can0 605#4000180200000000\n(1000000000.001000) can0 185#000000000000\n"
+               "(1000000001.002000) can0 080#\n");
+  const CommandResult nodes =
+      run_ipos({"bus", "load", "a.log", "--baud", "500000", "--canopen"}, folder.path());
+  for (const char* text : {"  SDO of node 5\n", "  TPDO1 of node 5\n", "  SYNC\n"})
+    EXPECT_TRUE(contains(nodes.out, text)) << nodes.out;
+  EXPECT_FALSE(contains(run_ipos({"bus", "load", "a.log", "--baud", "500000"}, folder.path()).out, "SYNC"));
+  const std::string plant = example("sbus-line/line.toml");
+  ASSERT_EQ(run_ipos({"run", plant, "--for", "1s", "--log", "b.log"}, folder.path()).exit_code, 0);
+  const CommandResult units =
+      run_ipos({"bus", "load", "b.log", "--baud", "500000", "--plant", plant}, folder.path());
+  for (const char* text : {" of inverter1\n", " of inverter3\n", "  object of inverter1\n"})
+    EXPECT_TRUE(contains(units.out, text)) << units.out;
+}
+
 TEST(Bus, TheDataSheetOfAUnit) {
   const TemporaryFolder folder;
   folder.write("plant.toml",

@@ -63,9 +63,4 @@ void add_names_options(cli::Verb& verb, NamesFlags& flags) {
   add_compile_options(verb, flags.compile);
 }
 
-std::string check_time(const std::string& text) {
-  return runtime::parse_duration(text) < 0 ? "'" + text + "' is no time; write for example 500ms or 1.5s"
-                                           : "";
-}
-
 }  // namespace ipos::tools

@@ -1,6 +1,7 @@
 // ipos bus load: load of a log in windows of one second and by identifier.
 #include <fmt/format.h>
 
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "runtime/bus/log/bus_load.hpp"
@@ -18,7 +19,17 @@ struct LoadFlags {
   std::string log;
   uint32_t baud = 0;
   std::string format = "text";
+  NamesFlags names;
 };
+
+// What an identifier is for, where a plant or --canopen tells.
+using Meaning = std::function<std::string(const runtime::LoggedIdentifier&)>;
+
+Meaning meaning_of(const NamesFlags& flags) {
+  return [names = can_names_of(flags)](const runtime::LoggedIdentifier& id) {
+    return id.extended ? std::string() : runtime::identifier_text(names.all, names.canopen, id.id);
+  };
+}
 
 std::string percent(uint64_t bits, uint32_t baud, Time span) {
   const uint64_t hundredths = LoadCount::percent_hundredths(bits, baud, span);
@@ -40,14 +51,21 @@ std::string name_of(const runtime::LoggedIdentifier& id) {
   return id.extended ? fmt::format("{}x", id.id) : fmt::format("{}", id.id);
 }
 
-std::string text_report(const BusLoad& load, uint32_t baud) {
+// With its meaning behind a row.
+std::string with_meaning(std::string row, const std::string& meaning) {
+  if (!meaning.empty()) row.insert(row.size() - 1, "  " + meaning);
+  return row;
+}
+
+std::string text_report(const BusLoad& load, uint32_t baud, const Meaning& meaning) {
   std::string text = fmt::format("{:<12} {:>8} {:>10} {:>10} {:>8} {:>8}\n", "window from", "frames",
                                  "bits exact", "bits worst", "% exact", "% worst");
   for (const runtime::LoadWindow& window : load.windows())
     text += row(seconds(window.start), window.count, baud, runtime::kSecond);
   text += row("all", load.total(), baud, load.span());
   text += "\nidentifier\n";
-  for (const auto& [id, count] : load.identifiers()) text += row(name_of(id), count, baud, load.span());
+  for (const auto& [id, count] : load.identifiers())
+    text += with_meaning(row(name_of(id), count, baud, load.span()), meaning(id));
   return text;
 }
 
@@ -63,7 +81,7 @@ nlohmann::ordered_json json_row(const LoadCount& count, uint32_t baud, Time span
           {"worst_percent", share(count.worst_bits)}};
 }
 
-std::string json_report(const BusLoad& load, uint32_t baud) {
+std::string json_report(const BusLoad& load, uint32_t baud, const Meaning& meaning) {
   nlohmann::ordered_json report = {{"baud", baud}};
   report["windows"] = nlohmann::ordered_json::array();
   for (const runtime::LoadWindow& window : load.windows()) {
@@ -77,6 +95,7 @@ std::string json_report(const BusLoad& load, uint32_t baud) {
     nlohmann::ordered_json entry = json_row(count, baud, load.span());
     entry["id"] = id.id;
     entry["extended"] = id.extended;
+    if (const std::string text = meaning(id); !text.empty()) entry["meaning"] = text;
     report["identifiers"].push_back(std::move(entry));
   }
   return report.dump() + "\n";
@@ -86,7 +105,9 @@ int measure(const LoadFlags& flags) {
   BusLoad load;
   const size_t bad =
       read_frames(flags.log, [&](const runtime::LogEntry& entry) { load.add(entry.time, entry.frame); });
-  fmt::print("{}", flags.format == "json" ? json_report(load, flags.baud) : text_report(load, flags.baud));
+  const Meaning meaning = meaning_of(flags.names);
+  fmt::print("{}", flags.format == "json" ? json_report(load, flags.baud, meaning)
+                                          : text_report(load, flags.baud, meaning));
   return bad == 0 ? kGood : kBadInput;
 }
 
@@ -99,6 +120,7 @@ void add_bus_load(cli::Verb& bus) {
       .required();
   verb.option("--baud", flags->baud, "of the line, for example 500000").required().between(1000U, 1'000'000U);
   verb.option("--format", flags->format, "text or json").one_of({"text", "json"});
+  add_names_options(verb, flags->names);
   verb.footer("Example:\n  ipos bus load can.log --baud 500000");
   verb.runs([flags] { return measure(*flags); });
 }

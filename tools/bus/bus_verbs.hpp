@@ -9,6 +9,7 @@
 #include "runtime/bus/movilink/describe.hpp"
 #include "tools/cli/verb.hpp"
 #include "tools/cli/verbs.hpp"
+#include "tools/input/plant_source.hpp"
 #include "tools/input/program.hpp"
 #include "tools/logs/log_forms.hpp"
 
@@ -43,8 +44,5 @@ runtime::TelegramNames serial_names_of(const std::string& path, const CompileFla
 
 // --names FILE, also as --plant and --program; --canopen; and what its programs are compiled with.
 void add_names_options(cli::Verb& verb, NamesFlags& flags);
-
-// For options that take a duration.
-std::string check_time(const std::string& text);
 
 }  // namespace ipos::tools

@@ -16,6 +16,8 @@ void add_canopen(cli::Verb& program);
 void add_profibus(cli::Verb& program);
 void add_param(cli::Verb& program);
 void add_watch(cli::Verb& program);
+void add_scope(cli::Verb& program);
+void add_diag(cli::Verb& program);
 void add_scan(cli::Verb& program);
 void add_explain(cli::Verb& program);
 void add_fmt(cli::Verb& program);

@@ -25,4 +25,9 @@ runtime::PlantFile read_plant(const std::string& path) {
   return std::move(result.plant);
 }
 
+std::string check_time(const std::string& text) {
+  return runtime::parse_duration(text) < 0 ? "'" + text + "' is no time; write for example 500ms or 1.5s"
+                                           : "";
+}
+
 }  // namespace ipos::tools

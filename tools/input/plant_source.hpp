@@ -14,6 +14,9 @@ bool is_plant(std::string_view path);
 // Memory files are relative to the plant file, and so they come back.
 runtime::PlantFileResult try_read_plant(const std::string& path);
 
+// For options that take a duration.
+std::string check_time(const std::string& text);
+
 // Errors are printed with their places, then a Failure ends the verb.
 runtime::PlantFile read_plant(const std::string& path);
 

@@ -13,6 +13,7 @@
 #include "tools/unit/link_access.hpp"
 #include "tools/unit/link_options.hpp"
 #include "tools/unit/live_values.hpp"
+#include "tools/unit/running_station.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -75,39 +76,10 @@ int watch_port(const WatchFlags& flags) {
   return end_of(table, false);
 }
 
-// The parameter channel of a station while its plant runs.
-class RunningStation final : public ParameterAccess {
- public:
-  RunningStation(runtime::Station& station, std::string plant)
-      : station_(station), plant_(std::move(plant)) {}
-
-  AccessReply execute(stdlib::Service service, uint16_t index, int32_t value) override {
-    const runtime::ParameterReply reply = station_.drive().parameters().execute(service, index, value);
-    if (reply) return *reply;
-    return tl::unexpected(AccessError{reply.error(), {}});
-  }
-  std::string name() const override { return fmt::format("{} of {}", station_.config().name, plant_); }
-  const stdlib::UnitType& unit() const override { return station_.drive().unit(); }
-
- private:
-  runtime::Station& station_;
-  std::string plant_;
-};
-
-runtime::Station& find_station(runtime::Plant& plant, const WatchFlags& flags) {
-  std::string names;
-  for (const auto& station : plant.stations()) {
-    if (station->config().name == flags.unit_at) return *station;
-    names += (names.empty() ? "" : ", ") + station->config().name;
-  }
-  throw Failure(kUsage,
-                fmt::format("{} has no station '{}', only {}", flags.link.port, flags.unit_at, names));
-}
-
 int watch_plant(const WatchFlags& flags) {
   catch_interrupts();
   const auto plant = make_plant(read_plant_input(flags.link.port, flags.compile()), runtime::FileUse::Look);
-  runtime::Station& station = find_station(*plant, flags);
+  runtime::Station& station = find_station(*plant, flags.link.port, flags.unit_at);
   RunningStation access(station, flags.link.port);
   LiveTable table(live_items(access.unit(), flags.names, station.image(), flags.compile()), flags.form());
   const Time every = runtime::parse_duration(flags.every);

@@ -1,10 +1,14 @@
 // The model master: one list of writes a node, then start, then cycles.
 #include "runtime/bus/canopen/master.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "runtime/bus/canopen/abort.hpp"
 #include "runtime/bus/canopen/connections.hpp"
 #include "runtime/bus/canopen/pdo.hpp"
+#include "runtime/bus/canopen/words.hpp"
 
 namespace ipos::runtime::canopen {
 namespace {
@@ -51,8 +55,8 @@ std::vector<SdoWrite> remapping(const PdoPlan& plan, uint8_t node) {
   return writes;
 }
 
-Master::Master(EventQueue& queue, uint32_t source, MasterSettings settings)
-    : queue_(queue), source_(source), settings_(std::move(settings)) {
+Master::Master(EventQueue& queue, uint32_t source, MasterSettings settings, MasterObserver* observer)
+    : queue_(queue), source_(source), settings_(std::move(settings)), observer_(observer) {
   for (const NodePlan& plan : settings_.nodes) {
     Link& link = links_.emplace_back();
     const ObjectDictionary defaults(plan.node);
@@ -116,9 +120,7 @@ void Master::on_timer(Time now, uint32_t kind) {
       sender_->send_latest(
           {identifier(Connection::SdoRequest, settings_.nodes[node].node), 8, links_[node].client.expire()},
           tag_of(node, kRequests));
-      links_[node].report.phase = Phase::Lost;
-      ++links_[node].report.losses;
-      return;
+      return lose(now, node, "does not answer over SDO: it is not started before its next boot-up");
     case kGuardTimer: {
       const NodePlan& plan = settings_.nodes[node];
       Frame request{identifier(Connection::ErrorControl, plan.node), 1};
@@ -128,11 +130,20 @@ void Master::on_timer(Time now, uint32_t kind) {
       return;
     }
     case kLifeTimer:
-      links_[node].report.phase = Phase::Lost;
-      ++links_[node].report.losses;
       links_[node].toggle.reset();
-      return;
+      return lose(now, node, "is missed: no sign of life within its time");
   }
+}
+
+void Master::lose(Time now, size_t node, std::string_view why) {
+  links_[node].report.phase = Phase::Lost;
+  ++links_[node].report.losses;
+  tell(now, node, true, why);
+}
+
+void Master::tell(Time now, size_t node, bool wrong, std::string_view text) {
+  if (observer_ != nullptr)
+    observer_->on_node(now, wrong, fmt::format("CANopen: node {} {}", settings_.nodes[node].node, text));
 }
 
 void Master::cycle(Time now) {
@@ -170,7 +181,7 @@ void Master::take(Time now, size_t node, Connection connection, const Frame& fra
                                        static_cast<uint16_t>(data[0] | data[1] << 8),
                                        data[2],
                                        {data[3], data[4], data[5], data[6], data[7]}});
-    return;
+    return tell(now, node, data[0] != 0 || data[1] != 0, "sends " + emergency_text(frame));
   }
   for (uint8_t n = 0; n < objects::kPdos; ++n)
     if (connection == kTransmit[n] && frame.length * 8U >= bits_of(link.transmit[n]) &&
@@ -193,8 +204,10 @@ void Master::take_life(Time now, size_t node, uint8_t byte) {
   }
   watch(now, node);
   // It is there again, and has not been off.
-  if (link.report.phase == Phase::Lost && state == static_cast<uint8_t>(State::Operational))
+  if (link.report.phase == Phase::Lost && state == static_cast<uint8_t>(State::Operational)) {
     link.report.phase = Phase::Running;
+    tell(now, node, false, "is there again");
+  }
 }
 
 // From now on it must be heard again within its time.
@@ -208,6 +221,7 @@ void Master::watch(Time now, size_t node) {
 void Master::boot(Time now, size_t node) {
   Link& link = links_[node];
   ++link.report.boot_ups;
+  tell(now, node, false, "boots up");
   link.report.phase = Phase::Configuring;
   link.next = 0;
   link.toggle.reset();
@@ -225,6 +239,7 @@ void Master::write_next(Time now, size_t node) {
     return send_sdo(now, node, link.client.write(write.address, std::span(data).first(write.bytes)));
   }
   link.report.phase = Phase::Running;
+  tell(now, node, false, "is configured and started");
   command(NmtCommand::Start, settings_.nodes[node].node);
   if (settings_.nodes[node].guard_time != 0) on_timer(now, kind_of(kGuardTimer, node));
   watch(now, node);
@@ -247,7 +262,10 @@ void Master::take_answer(Time now, size_t node, const Frame& frame) {
     link.report.phase = Phase::Refused;
     link.report.refused = link.client.address();
     link.report.abort = link.client.result().error();
-    return;
+    const Address at = link.report.refused;
+    return tell(now, node, true,
+                fmt::format("refuses to write {:04X}h:{} {}: {} ({:08X}h); it is not started", at.index,
+                            at.sub, entry_name(at), abort_text(link.report.abort), link.report.abort));
   }
   ++link.next;
   write_next(now, node);

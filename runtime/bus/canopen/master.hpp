@@ -7,6 +7,8 @@
 #include <deque>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "runtime/bus/canopen/mapping.hpp"
@@ -55,6 +57,15 @@ struct MasterSettings {
   std::vector<NodePlan> nodes;
 };
 
+// What happens to the nodes, in words.
+class MasterObserver {
+ public:
+  virtual void on_node(Time now, bool wrong, std::string text) = 0;
+
+ protected:
+  ~MasterObserver() = default;
+};
+
 class Master final : public CanNode, private Timer::Owner {
  public:
   enum class Phase : uint8_t {
@@ -82,7 +93,7 @@ class Master final : public CanNode, private Timer::Owner {
     std::vector<Event> emergencies;
   };
 
-  Master(EventQueue& queue, uint32_t source, MasterSettings settings);
+  Master(EventQueue& queue, uint32_t source, MasterSettings settings, MasterObserver* observer = nullptr);
   ~Master() = default;
   Master(const Master&) = delete;
   Master& operator=(const Master&) = delete;
@@ -121,10 +132,13 @@ class Master final : public CanNode, private Timer::Owner {
   void watch(Time now, size_t node);
   void send_sdo(Time now, size_t node, const SdoBytes& bytes);
   void send_outputs(size_t node);
+  void lose(Time now, size_t node, std::string_view why);
+  void tell(Time now, size_t node, bool wrong, std::string_view text);
 
   EventQueue& queue_;
   uint32_t source_;
   MasterSettings settings_;
+  MasterObserver* observer_;
   FrameSender* sender_ = nullptr;
   std::deque<Link> links_;  // timers do not move
   std::optional<Timer> sync_timer_, heartbeat_timer_;

@@ -43,6 +43,17 @@ std::string mapped_text(const NodeName& name, const Mapping& mapping, const Fram
   return text.empty() ? bytes_text(frame) : text;
 }
 
+std::string life_text(const Frame& frame) {
+  if (frame.remote) return "guarding request";
+  if (frame.length != 1) return fmt::format("{} bytes in place of 1: {}", frame.length, bytes_text(frame));
+  const auto state = static_cast<uint8_t>(frame.data[0] & 0x7F);
+  const std::string_view text = state_text(state);
+  const std::string name = text.empty() ? fmt::format("state {:02X}h", state) : std::string(text);
+  return (frame.data[0] & 0x80) != 0 ? name + ", toggle 1" : name;
+}
+
+}  // namespace
+
 std::string emergency_text(const Frame& frame) {
   if (frame.length != 8)
     return fmt::format("EMCY with {} bytes in place of 8: {}", frame.length, bytes_text(frame));
@@ -56,17 +67,6 @@ std::string emergency_text(const Frame& frame) {
     text += fmt::format(", status word 1 {:04X}h", status);
   return text;
 }
-
-std::string life_text(const Frame& frame) {
-  if (frame.remote) return "guarding request";
-  if (frame.length != 1) return fmt::format("{} bytes in place of 1: {}", frame.length, bytes_text(frame));
-  const auto state = static_cast<uint8_t>(frame.data[0] & 0x7F);
-  const std::string_view text = state_text(state);
-  const std::string name = text.empty() ? fmt::format("state {:02X}h", state) : std::string(text);
-  return (frame.data[0] & 0x80) != 0 ? name + ", toggle 1" : name;
-}
-
-}  // namespace
 
 LineWords::LineWords(std::vector<NodeName> names) {
   find_messages();

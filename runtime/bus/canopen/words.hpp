@@ -28,6 +28,9 @@ struct NodeName {
   WordAssignment input{};                  // P873..P875
 };
 
+// "EMCY FF00h fault, error register 81h, status word 1 2B22h"
+std::string emergency_text(const Frame& frame);
+
 class LineWords {
  public:
   explicit LineWords(std::vector<NodeName> names = {});

@@ -16,9 +16,6 @@ namespace ipos::runtime {
 // P750: 0 off, then speed, torque and load sharing, each over RS-485, SBus and both.
 constexpr bool sends_over_sbus(int32_t p750) { return p750 >= 1 && p750 <= 9 && p750 % 3 != 1; }
 
-// A speed, and not a torque or a load share, which are not simulated.
-constexpr bool sends_speed(int32_t p750) { return p750 >= 1 && p750 <= 3; }
-
 // Permitted are 500 and 1000 kbaud.
 constexpr bool is_master_slave_rate(uint32_t baud) { return baud == 500'000 || baud == 1'000'000; }
 

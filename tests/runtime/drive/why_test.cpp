@@ -146,27 +146,6 @@ TEST(Why, EveryBlockOccurs) {
   for (const Block block : kBlocks) EXPECT_EQ(seen[block], 1) << runtime::block_text(block);
 }
 
-// A torque control gets no speed: the shaft stands whatever the source is, and P301 does not turn it either.
-TEST(Why, TorqueControlDoesNotTurn) {
-  for (const int mode : {12, 17})
-    for (const int source : {0, 8, 9, 10}) {
-      DriveRig rig("md60a");
-      rig.bus_control();
-      rig.set("P301", 60'000);
-      rig.set("P100", source);
-      rig.set("P101", 0);
-      rig.set("P700", mode);
-      rig.ai1(5'000);
-      rig.po({0x0006, 5000, 0}, source == 9 ? PoSource::Rs485 : PoSource::Sbus);
-      rig.run_ms(2000);
-      EXPECT_EQ(rig.drive.axis().position, 0) << mode << " " << source;
-      EXPECT_EQ(rig.state(), 6) << "torque control, as the unit shows it";
-      EXPECT_EQ(rig.drive.setpoint().note, SetpointNote::TorqueControl);
-      // In M-control PO2 of a follower is the current (MDX60B/61B p. 29).
-      EXPECT_EQ(rig.value("P871"), source == 8 || source == 9 ? 2 : 1);
-    }
-}
-
 TEST(Why, EveryNoteOccurs) {
   const std::pair<SetpointNote, Spoil> cases[] = {
       {SetpointNote::None, [](DriveRig&) {}},
@@ -175,11 +154,7 @@ TEST(Why, EveryNoteOccurs) {
       {SetpointNote::NoBusData, [](DriveRig& rig) { rig.set("P100", 2); }},
       {SetpointNote::BusWordIgnored, [](DriveRig& rig) { rig.set("P100", 1); }},
       {SetpointNote::FixedIgnored, [](DriveRig& rig) { rig.input("DI04", true); }},
-      {SetpointNote::TorqueControl,
-       [](DriveRig& rig) {
-         rig.set("P700", 12);
-         rig.set("P301", 60'000);
-       }},
+      {SetpointNote::NoCurrentWord, [](DriveRig& rig) { rig.set("P700", 12); }},
       {SetpointNote::Maximum,
        [](DriveRig& rig) {
          rig.po({0x0006, 10'000, 0});

@@ -30,7 +30,7 @@ uint32_t any_time(std::mt19937_64& random) {
 
 AxisOrder draw_order(std::mt19937_64& random, Taste taste) {
   AxisOrder order;
-  order.command = static_cast<AxisCommand>(random() % 5);
+  order.command = static_cast<AxisCommand>(random() % 6);
   order.ramp.s_pattern = static_cast<uint8_t>(random() % 5);
   order.brake_function = random() % 4 != 0;
   order.premagnetize_ms = static_cast<uint16_t>(random() % 50);
@@ -43,6 +43,8 @@ AxisOrder draw_order(std::mt19937_64& random, Taste taste) {
     order.ramp.up_ccw_ms = any_time(random);
     order.ramp.down_ccw_ms = any_time(random);
     order.stop_ramp_ms = any_time(random);
+    order.current = any(random);
+    order.speed_limit = any(random);
     order.current_limit = any(random);
     order.load_torque = any(random);
     order.standstill_current = any(random);
@@ -54,6 +56,8 @@ AxisOrder draw_order(std::mt19937_64& random, Taste taste) {
   order.ramp.up_ccw_ms = static_cast<uint32_t>(1 + random() % 4'000);
   order.ramp.down_ccw_ms = static_cast<uint32_t>(1 + random() % 4'000);
   order.stop_ramp_ms = static_cast<uint32_t>(random() % 2'000);
+  order.current = below(random, 300'001) - 150'000;
+  order.speed_limit = below(random, 3'000'001);
   order.current_limit = below(random, 150'001);
   order.load_torque = below(random, 40'001) - 20'000;
   order.standstill_current = below(random, 2) * 20'000;

@@ -1,6 +1,7 @@
 // The law for the drive: all that a tick of it changes.
 #include <algorithm>
 #include <random>
+#include <utility>
 
 #include "tests/runtime/drive/drive_rig.hpp"
 #include "tests/runtime/pace/law.hpp"
@@ -47,6 +48,10 @@ class Twins {
       case 9: both([](Drive& drive) { drive.reset_fault(); }); break;
     }
   }
+  void set(const char* number, int32_t value) {
+    one_.set(number, value);
+    other_.set(number, value);
+  }
   void run(uint32_t ticks) {
     for (; ticks != 0; --ticks) other_.drive.tick(position_);
   }
@@ -92,9 +97,14 @@ class Twins {
 };
 
 TEST(Law, DriveState) {
-  for (const char* name : {"mdxb", "md60a", "mc07", "mdxb"}) {
+  constexpr int kTorqueControl = 12;
+  const std::pair<const char*, int> kinds[] = {
+      {"mdxb", 0}, {"md60a", 0}, {"mc07", 0}, {"mdxb", 0}, {"mdxb", kTorqueControl}};
+  for (const auto& [name, mode] : kinds) {
     static uint64_t seed = 0;
     Twins twins(name, ++seed);
+    if (mode != 0) twins.set("P700", mode);
+    if (mode != 0) twins.set("P871", 2);  // CURRENT
     uint32_t advanced = 0;
     for (uint32_t step = 0; step < law_steps();) {
       twins.change();

@@ -1,0 +1,164 @@
+// Rows of the pages, from parameters, ports and lines.
+#include "tools/unit/diag_pages.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "runtime/bus/canopen/connections.hpp"
+#include "runtime/bus/movilink/identifiers.hpp"
+#include "runtime/drive/control.hpp"
+#include "stdlib/parameters.hpp"
+
+namespace ipos::tools {
+namespace {
+
+using runtime::CanLine;
+using runtime::Frame;
+
+std::string line(std::string_view name, std::string_view value) {
+  return fmt::format("  {:<32} {}\n", name, value);
+}
+
+std::string word(uint16_t value) { return fmt::format("{:04X} hex", value); }
+
+constexpr std::string_view state_text(runtime::ErrorState state) {
+  switch (state) {
+    case runtime::ErrorState::Active: return "error active";
+    case runtime::ErrorState::Passive: return "error passive";
+    case runtime::ErrorState::BusOff: break;
+  }
+  return "bus off";
+}
+
+}  // namespace
+
+DiagPages::DiagPages(runtime::Plant& plant, const runtime::Station& station, runtime::CanNames names)
+    : plant_(plant), station_(station), words_(std::move(names)) {
+  CanObserver& observer = *this;
+  plant.add_observer(observer);
+}
+
+// A telegram of the unit's own address, or of its node.
+bool DiagPages::concerns(const CanLine& line, const Frame& frame) const {
+  for (const int number : {1, 2}) {
+    if (const auto* port = station_.sbus(number); port != nullptr && &port->line() == &line)
+      if (const auto identifier = runtime::classify_identifier(frame.id))
+        return !telegram_type(identifier->telegram).grouped &&
+               identifier->address == port->settings().slave.address;
+    if (const auto* port = station_.canopen(number); port != nullptr && &port->line() == &line)
+      if (const auto addressed = runtime::canopen::connection_of(frame.id))
+        return addressed->node == port->settings().canopen_address;
+  }
+  return false;
+}
+
+void DiagPages::on_frame(const CanLine& line, const runtime::FrameRecord& record) {
+  const std::string text = words_.describe(line.name(), record.frame).text;
+  Heard& heard = heard_[&line];
+  const bool own =
+      record.sender != runtime::kNoNode && line.node_name(record.sender) == station_.config().name;
+  ++(own ? heard.sent : heard.received);
+  const bool parameter = runtime::is_plain(record.frame) && record.frame.length == 8 &&
+                         concerns(line, record.frame) && text.find(" PI") == std::string::npos;
+  if (!parameter) return;
+  const auto identifier = runtime::classify_identifier(record.frame.id);
+  const auto addressed = runtime::canopen::connection_of(record.frame.id);
+  const bool sdo = addressed && (addressed->connection == runtime::canopen::Connection::SdoRequest ||
+                                 addressed->connection == runtime::canopen::Connection::SdoResponse);
+  if (!sdo && !(identifier && telegram_type(identifier->telegram).parameter)) return;
+  ++heard.parameters;
+  heard.last_parameter = text;
+}
+
+std::string DiagPages::row(std::string_view number) const {
+  const stdlib::Parameter* parameter = stdlib::parameter_table(*station_.config().unit).find(number);
+  if (parameter == nullptr) return {};
+  return line(fmt::format("P{} {}", number, parameter->name),
+              stdlib::parameter_text(*parameter, station_.read(parameter->index)));
+}
+
+std::string DiagPages::parameters() const {
+  std::string text = row("803") + row("802");
+  for (const auto& [can, heard] : heard_) {
+    if (heard.parameters == 0) continue;
+    text += line(fmt::format("telegrams on {}", can->name()), fmt::format("{}", heard.parameters));
+    text += line("last", heard.last_parameter);
+  }
+  for (const auto& entry : plant_.journal().entries())
+    if (entry.station == station_.config().name && entry.text.starts_with("refused "))
+      text += line(fmt::format("refused at {} ms", entry.time / runtime::kMillisecond), entry.text.substr(8));
+  return text;
+}
+
+std::string DiagPages::process_data() const {
+  const runtime::Drive& drive = station_.drive().state();
+  std::string text = row("100") + row("101") + row("876");
+  for (const char* number : {"870", "871", "872"}) text += row(number);
+  for (size_t n = 0; n < drive.po().size(); ++n)
+    text += line(fmt::format("PO{}", n + 1), word(drive.po()[n]));
+  for (const char* number : {"873", "874", "875"}) text += row(number);
+  const auto pi = drive.pi();
+  for (size_t n = 0; n < pi.size(); ++n) text += line(fmt::format("PI{}", n + 1), word(pi[n]));
+  text += line("PO data enabled", drive.po_data_enabled() ? "yes" : "no");
+  text += line("status word 1", word(drive.status_word_1()));
+  text += line("state", condition_text(drive.condition()));
+  const runtime::Verdict verdict = drive.verdict();
+  if (verdict.reason != runtime::Block::None) text += line("not enabled", block_text(verdict.reason));
+  if (const auto note = drive.setpoint().note; note != runtime::SetpointNote::None)
+    text += line("setpoint", setpoint_note_text(note));
+  return text;
+}
+
+std::string DiagPages::rs485() const {
+  const runtime::SerialConfig& serial = station_.config().serial;
+  std::string text;
+  for (const char* number : {"810", "811", "812", "833", "750", "751"}) text += row(number);
+  text += line("X13", serial.x13.bus.empty() ? "not connected" : serial.x13.bus);
+  text += line("XT", serial.keypad ? "keypad" : serial.xt.bus.empty() ? "not connected" : serial.xt.bus);
+  text += line("timeouts (F43)", fmt::format("{}", station_.drive().state().rs485_timeouts()));
+  return text;
+}
+
+std::string DiagPages::can() const {
+  std::string text;
+  for (const int number : {1, 2}) {
+    const runtime::SbusPort* port = station_.sbus(number);
+    const runtime::CanopenPort* canopen = station_.canopen(number);
+    if (port == nullptr && canopen == nullptr) continue;
+    const CanLine& can = port != nullptr ? port->line() : canopen->line();
+    const runtime::NodeId node = port != nullptr ? port->node() : canopen->node();
+    text += fmt::format("SBus {} on {}\n", number, can.name());
+    const bool b = station_.config().unit->generation == stdlib::Generation::B;
+    const std::string group = !b ? "81" : number == 1 ? "88" : "89";
+    for (const char* digit : {"0", "1", "2", "3", "4", "5", "6"}) text += row(group + digit);
+    text += row(number == 1 ? "836" : "837");
+    text += line("rate of the line", fmt::format("{} kbaud", can.baud() / 1000));
+    const runtime::ErrorCounters& errors = can.counters(node);
+    text += line("controller", state_text(errors.state()));
+    text += line("error counters", fmt::format("transmit {}, receive {}", errors.transmit, errors.receive));
+    if (canopen != nullptr && canopen->canopen() != nullptr)
+      text += line("node", runtime::canopen::state_text(static_cast<uint8_t>(canopen->canopen()->state())));
+    if (const auto found = heard_.find(&can); found != heard_.end())
+      text +=
+          line("frames", fmt::format("sent {}, from others {}", found->second.sent, found->second.received));
+  }
+  return text.empty() ? line("SBus", "not connected") : text;
+}
+
+// No card is fitted in the units that are simulated with CAN and RS-485 alone.
+std::string DiagPages::fieldbus() const {
+  std::string text;
+  for (const char* number : {"819", "831"}) text += row(number);
+  return text + line("fieldbus card", "none");
+}
+
+std::string DiagPages::page(const std::string& page) {
+  std::string text = fmt::format("{}: {}\n", station_.config().name, page);
+  if (page == "parameters") return text + parameters();
+  if (page == "pd") return text + process_data();
+  if (page == "rs485") return text + rs485();
+  return text + (page == "can" ? can() : fieldbus());
+}
+
+}  // namespace ipos::tools

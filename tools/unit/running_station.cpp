@@ -1,0 +1,29 @@
+// Stations by name.
+#include "tools/unit/running_station.hpp"
+
+#include <fmt/format.h>
+
+#include "tools/cli/exit_codes.hpp"
+#include "tools/cli/failure.hpp"
+
+namespace ipos::tools {
+
+runtime::Station& find_station(runtime::Plant& plant, const std::string& path, const std::string& name) {
+  std::string names;
+  for (const auto& station : plant.stations()) {
+    if (name.empty() ? plant.stations().size() == 1 : station->config().name == name) return *station;
+    names += (names.empty() ? "" : ", ") + station->config().name;
+  }
+  throw Failure(kUsage, name.empty() ? fmt::format("which station of {}: {}?", path, names)
+                                     : fmt::format("{} has no station '{}', only {}", path, name, names));
+}
+
+AccessReply RunningStation::execute(stdlib::Service service, uint16_t index, int32_t value) {
+  const runtime::ParameterReply reply = station_.drive().parameters().execute(service, index, value);
+  if (reply) return *reply;
+  return tl::unexpected(AccessError{reply.error(), {}});
+}
+
+std::string RunningStation::name() const { return fmt::format("{} of {}", station_.config().name, plant_); }
+
+}  // namespace ipos::tools
