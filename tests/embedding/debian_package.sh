@@ -23,9 +23,10 @@ expect "$("$work/project/build/hello" | wc -l)" 3
 [ -z "$vsix" ] || cmp "$vsix" "$work/root/usr/share/ipos/ipos.vsix"
 for file in share/man/man1/ipos.1 share/bash-completion/completions/ipos share/zsh/vendor-completions/_ipos \
   share/fish/vendor_completions.d/ipos.fish share/doc/ipos/docs/guide/embedding.md share/doc/ipos/examples/scom/scom.toml \
-  include/ipos_plant.h lib/python3/dist-packages/ipos/plant.py lib/python3/dist-packages/ipos/py.typed; do
+  include/ipos_plant.h lib/python3/dist-packages/ipos/plant.py; do
   [ -s "$work/root/usr/$file" ] || [ -s "$work/root/usr/$file.gz" ] || fail "the package has no $file"
 done
+[ -e "$work/root/usr/lib/python3/dist-packages/ipos/py.typed" ] || fail "the Python package of the package is not marked as typed"
 
 [ "$(id -u)" = 0 ] || { echo "not installed: that takes root"; exit 0; }
 # The folders of the overlays must not lie on an overlay themselves.

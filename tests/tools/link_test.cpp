@@ -140,7 +140,7 @@ TEST_F(Link, ANodeOfCanopen) {
 TEST_F(Link, SavedFilesAreIdentical) {
   ASSERT_EQ(param("save", sbus(), {"sbus.settings"}).exit_code, 0);
   ASSERT_EQ(param("save", serial(), {"serial.settings"}).exit_code, 0);
-  ASSERT_EQ(ipos({"param", "save", "plant.toml", "simulation.settings"}).exit_code, 0);
+  ASSERT_EQ(ipos({"param", "save", "plant.toml", "simulation.settings", "--station", "unit1"}).exit_code, 0);
   const std::string simulation = file("simulation.settings");
   EXPECT_GT(simulation.size(), 10'000U);
   EXPECT_TRUE(file("sbus.settings") == simulation);

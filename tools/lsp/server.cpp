@@ -137,17 +137,18 @@ void Server::request(const Json& id, const std::string& method, const Json& para
     respond(id, nullptr);
     return;
   }
+  const auto find = [&method](std::span<const Method> rows) {
+    const auto row =
+        std::find_if(rows.begin(), rows.end(), [&](const Method& one) { return one.name == method; });
+    return row == rows.end() ? nullptr : &*row;
+  };
+  const Method* of_programs = find(kMethods);
+  if (of_programs == nullptr) throw RequestError(ErrorCode::MethodNotFound, "unknown method " + method);
   const bool plant =
       method.starts_with("textDocument/") && is_plant_document(workspace_, document_path(params));
-  for (const Method& row :
-       plant ? std::span<const Method>(kPlantMethods) : std::span<const Method>(kMethods)) {
-    if (row.name != method) continue;
-    respond(id, row.answer(workspace_, params));
-    return;
-  }
-  // What programs have and plants have not.
-  if (plant) return respond(id, nullptr);
-  throw RequestError(ErrorCode::MethodNotFound, "unknown method " + method);
+  const Method* row = plant ? find(kPlantMethods) : of_programs;
+  // Null: what programs have and plants have not.
+  respond(id, row == nullptr ? Json(nullptr) : row->answer(workspace_, params));
 }
 
 Json Server::initialize(const Json& params) {

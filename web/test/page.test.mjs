@@ -151,7 +151,7 @@ test("the scope draws, keeps still where it is zoomed, and gives files", { skip 
     const expected = Math.sin((Number.parseFloat(time) * 1e6) / 3e5) * 1500;
     assert.ok(Math.abs(Number(await at.textContent()) - expected) < 0.06, `${await at.textContent()} for ${expected}`);
     const views = () => mock.received.filter((one) => one.do === "scope.view" && one.points > 1);
-    assert.ok(views().length > 0);
+    await until(async () => views().length > 0, "no view with points was asked for");
     await page.keyboard.press("p");
     const download = page.waitForEvent("download");
     await figure.getByRole("button", { name: "CSV" }).click();

@@ -152,12 +152,10 @@ TEST(Silence, WrongAddress) {
 
 // Settings that are not simulated: the journal of the unit, and the plan where they are a matter of the bus.
 TEST(Silence, SettingsThatAreNotSimulated) {
-  const std::string settings = kFollows + "P138 = 1\nP871 = 7\nP872 = 1\nP750 = 5\n";
+  const std::string settings = kFollows + "P138 = 1\nP871 = 7\nP872 = 1\n";
   EXPECT_EQ(
       why(controlled(settings)),
       "unit1: P871 Setpoint description PO2 is SLIP: the shaft has no slip: P094..P096 show the word only\n"
-      "unit1: P750 Slave setpoint is TORQUE (SBus): torque is not simulated: the slaves get a stop and "
-      "setpoint 0\n"
       "unit1: P138 Ramp limit is YES: the ramps are not limited\n");
   PlantRig rig(controlled(settings));
   std::string found;
@@ -166,9 +164,7 @@ TEST(Silence, SettingsThatAreNotSimulated) {
   EXPECT_EQ(
       found,
       "sbus: unit1: P871 Setpoint description PO2 is SLIP: the shaft has no slip: P094..P096 show the word "
-      "only\n"
-      "sbus: unit1: P750 Slave setpoint is TORQUE (SBus): torque is not simulated: the slaves get a stop "
-      "and setpoint 0\n");
+      "only\n");
   // A write over the bus tells it, too, once.
   PlantRig written(bus_text() + station_text("unit1", kFollows));
   written.run_until(10 * kMillisecond);
