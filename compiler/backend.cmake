@@ -5,9 +5,9 @@ ipos_layer(asm
   USES frontend isa image stdlib
   LIBS fmt::fmt)
 
-file(GLOB compiler_sources CONFIGURE_DEPENDS sema/*.cpp codegen/*.cpp symbols/*.cpp)
+file(GLOB compiler_sources CONFIGURE_DEPENDS compile.cpp sema/*.cpp codegen/*.cpp symbols/*.cpp)
 ipos_layer(compiler
-  FOLDERS compiler/sema compiler/codegen compiler/symbols
+  FOLDERS compiler/sema compiler/codegen compiler/symbols compiler/compile.hpp
   SOURCES ${compiler_sources}
   USES frontend asm isa image stdlib
   LIBS fmt::fmt)

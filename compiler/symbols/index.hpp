@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "compiler/codegen/compile.hpp"
+#include "compiler/compile.hpp"
 #include "compiler/preprocess/preprocess.hpp"
 
 namespace ipos::compiler {

@@ -7,7 +7,7 @@
 
 #include "runtime/bus/movilink/format.hpp"
 #include "runtime/bus/rs485/line.hpp"
-#include "runtime/plant/serial_plan.hpp"
+#include "runtime/plant_file/serial_plan.hpp"
 
 namespace ipos::runtime {
 namespace {

@@ -12,8 +12,8 @@
 #include "runtime/commands/movilink_command.hpp"
 #include "runtime/commands/positioning_commands.hpp"
 #include "runtime/drive/drive.hpp"
+#include "runtime/nv_memory/kept/retained_memory.hpp"
 #include "runtime/scom/variable_objects.hpp"
-#include "runtime/unit/retained_memory.hpp"
 #include "runtime/unit/timers.hpp"
 #include "vm/exec/machine.hpp"
 

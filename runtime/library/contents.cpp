@@ -10,7 +10,7 @@
 #include <iterator>
 #include <utility>
 
-#include "compiler/codegen/compile.hpp"
+#include "compiler/compile.hpp"
 #include "stdlib/unit_types.hpp"
 
 namespace ipos::library {

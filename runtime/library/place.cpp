@@ -9,10 +9,10 @@
 #include <cmath>
 #include <utility>
 
-#include "runtime/plant/signal.hpp"
 #include "runtime/plant/station_signals.hpp"
 #include "runtime/plant/station_state.hpp"
 #include "runtime/plant/variable_names.hpp"
+#include "runtime/plant_file/signal.hpp"
 #include "stdlib/parameters.hpp"
 
 namespace ipos::library {

@@ -1,4 +1,4 @@
-// The kinds of bus as a table.
+// The class that each kind of bus has.
 #include "runtime/plant/bus.hpp"
 
 #include "runtime/plant/can_bus.hpp"
@@ -6,30 +6,23 @@
 #include "runtime/plant/serial_bus.hpp"
 
 namespace ipos::runtime {
-namespace {
 
-template <typename Line>
-std::unique_ptr<Bus> make_line(BusPlace place) {
-  return std::make_unique<Line>(std::move(place));
+std::unique_ptr<Bus> make_bus(BusPlace place) {
+  switch (place.config.kind) {
+#define BUS_KIND(kind, word, name, line, message, Class, ...) \
+  case BusKind::kind: return std::make_unique<Class>(std::move(place));
+#include "runtime/plant_file/bus_kinds.def"
+  }
+  return nullptr;
 }
 
-constexpr auto rate_list(auto... rate) {
-  return std::array<uint32_t, sizeof...(rate)>{static_cast<uint32_t>(rate)...};
+std::optional<std::string> refuse_message(BusKind bus, const std::string& text) {
+  switch (bus) {
+#define BUS_KIND(kind, word, name, line, message, Class, ...) \
+  case BusKind::kind: return Class::refuse(text);
+#include "runtime/plant_file/bus_kinds.def"
+  }
+  return std::nullopt;
 }
-
-#define BUS_KIND(kind, word, name, line, baud, ...) constexpr auto k##kind##Rates = rate_list(__VA_ARGS__);
-#include "runtime/plant/bus_kinds.def"
-
-constexpr BusKindInfo kBusKinds[] = {
-#define BUS_KIND(kind, word, name, line, baud, ...)                                       \
-  {BusKind::kind,   word,        name, baud, k##kind##Rates, line::kLine, line::kMessage, \
-   make_line<line>, line::refuse},
-#include "runtime/plant/bus_kinds.def"
-};
-
-}  // namespace
-
-const BusKindInfo& info(BusKind kind) { return kBusKinds[static_cast<size_t>(kind)]; }
-std::span<const BusKindInfo> bus_kinds() { return kBusKinds; }
 
 }  // namespace ipos::runtime

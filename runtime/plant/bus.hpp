@@ -11,14 +11,11 @@
 #include <string_view>
 #include <vector>
 
-#include <tl/expected.hpp>
-
 #include "runtime/bus/can/frame.hpp"
 #include "runtime/bus/line_load.hpp"
 #include "runtime/bus/node_id.hpp"
 #include "runtime/clock/event_queue.hpp"
-#include "runtime/plant/plant_file.hpp"
-#include "runtime/port/bridge.hpp"
+#include "runtime/plant_file/plant_file.hpp"
 
 namespace ipos::runtime {
 
@@ -58,21 +55,10 @@ struct BusPlace {
   std::function<void(Time now, std::string text)> warn;  // of what is wrong on it
 };
 
-// A kind of bus, as bus_kinds.def has it.
-struct BusKindInfo {
-  BusKind kind;
-  std::string_view word;
-  std::string_view name;
-  uint32_t baud;
-  std::span<const uint32_t> rates;
-  std::string_view line;     // what one is called: "a serial line"
-  std::string_view message;  // what it carries: "frame", "telegram"
-  std::unique_ptr<Bus> (*make)(BusPlace place);
-  // Nothing when the text is a message that send() takes, else why not.
-  std::optional<std::string> (*refuse)(const std::string& text);
-};
-const BusKindInfo& info(BusKind kind);
-std::span<const BusKindInfo> bus_kinds();
+std::unique_ptr<Bus> make_bus(BusPlace place);
+
+// Nothing when the text is a message that send() of a bus of the kind takes, else why not.
+std::optional<std::string> refuse_message(BusKind kind, const std::string& text);
 
 class Bus {
  public:
@@ -106,10 +92,6 @@ class Bus {
   virtual bool plant(const FaultConfig& /*fault*/) { return false; }
   // Ends it. False: there is none like it, or it cannot be ended.
   virtual bool repair(const FaultConfig& /*fault*/) { return false; }
-
-  // Opens a real port and joins the line to it; `source` orders what comes from outside.
-  virtual tl::expected<JoinedPort, PortError> join(const std::string& port, uint32_t source,
-                                                   RealClock& clock) = 0;
 
  protected:
   // From now on told() and traced() are wanted.

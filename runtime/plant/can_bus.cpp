@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "runtime/bus/log/candump.hpp"
-#include "runtime/port/can_bridge.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -95,13 +94,6 @@ bool CanBus::repair(const FaultConfig& config) {
   LineFault fault = config.fault;
   fault.node = find_node(config.station);
   return line_.repair(fault);
-}
-
-tl::expected<JoinedPort, PortError> CanBus::join(const std::string& name, uint32_t source, RealClock& clock) {
-  CanPortResult port = open_can_port(name, baud(), clock);
-  if (!port) return tl::unexpected(port.error());
-  auto bridge = std::make_unique<CanBridge>(place_.queue, source, line_, **port);
-  return JoinedPort{std::move(*port), std::move(bridge)};
 }
 
 void CanBus::on_frame(const CanLine&, const FrameRecord& record) {

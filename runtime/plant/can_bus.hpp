@@ -13,7 +13,6 @@ namespace ipos::runtime {
 
 class CanBus final : public Bus, private CanObserver, private SbusCheckClient {
  public:
-  static constexpr std::string_view kLine = "an SBus", kMessage = "frame";
   static std::optional<std::string> refuse(const std::string& text);
 
   explicit CanBus(BusPlace place);
@@ -27,8 +26,6 @@ class CanBus final : public Bus, private CanObserver, private SbusCheckClient {
   std::optional<std::string> send(const std::string& text) override;
   bool plant(const FaultConfig& config) override;
   bool repair(const FaultConfig& config) override;
-  tl::expected<JoinedPort, PortError> join(const std::string& port, uint32_t source,
-                                           RealClock& clock) override;
 
  private:
   class Hand;

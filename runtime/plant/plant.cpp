@@ -7,9 +7,9 @@
 #include <array>
 #include <utility>
 
-#include "runtime/plant/serial_plan.hpp"
+#include "runtime/nv_memory/medium/posix_medium.hpp"
 #include "runtime/plant/station_state.hpp"
-#include "runtime/storage/posix_medium.hpp"
+#include "runtime/plant_file/serial_plan.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -178,7 +178,7 @@ bool Plant::repair_fault(const FaultConfig& config) { return find_bus(config.bus
 
 Bus& Plant::add_bus(const BusConfig& config) {
   buses_.push_back(
-      info(config.kind).make({queue_, next_source_++, config, [this](Time now, std::string text) {
+      make_bus({queue_, next_source_++, config, [this](Time now, std::string text) {
                                 journal_.note(now, Weight::Warning, "", std::move(text));
                               }}));
   Bus& bus = *buses_.back();

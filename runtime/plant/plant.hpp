@@ -12,12 +12,12 @@
 #include "runtime/plant/bus.hpp"
 #include "runtime/plant/can_bus.hpp"
 #include "runtime/plant/canopen_control.hpp"
-#include "runtime/plant/plant_file.hpp"
 #include "runtime/plant/profibus_control.hpp"
 #include "runtime/plant/serial_bus.hpp"
 #include "runtime/plant/signal_port.hpp"
 #include "runtime/plant/station.hpp"
 #include "runtime/plant/surroundings.hpp"
+#include "runtime/plant_file/plant_file.hpp"
 #include "runtime/unit/journal.hpp"
 
 namespace ipos::runtime {

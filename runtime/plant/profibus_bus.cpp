@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "runtime/bus/profibus/frame_text.hpp"
-#include "runtime/plant/bytes_text.hpp"
-#include "runtime/port/profibus_bridge.hpp"
+#include "runtime/plant_file/bytes_text.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -65,14 +64,6 @@ bool ProfibusBus::plant(const FaultConfig& config) {
   if (!config.station.empty() && fault.sender == kNoNode) return false;
   line_.add_fault(fault);
   return true;
-}
-
-tl::expected<JoinedPort, PortError> ProfibusBus::join(const std::string& name, uint32_t source,
-                                                      RealClock& clock) {
-  SerialPortResult port = open_serial_port(name, {baud(), true, false}, clock);
-  if (!port) return tl::unexpected(port.error());
-  auto bridge = std::make_unique<ProfibusBridge>(place_.queue, source, line_, **port);
-  return JoinedPort{std::move(*port), std::move(bridge)};
 }
 
 void ProfibusBus::on_frame(const profibus::Line&, NodeId sender, const profibus::Reception& reception) {

@@ -14,7 +14,6 @@ namespace ipos::runtime {
 
 class ProfibusBus final : public Bus, private profibus::LineObserver {
  public:
-  static constexpr std::string_view kLine = "a PROFIBUS line", kMessage = "frame";
   static std::optional<std::string> refuse(const std::string& text);
 
   explicit ProfibusBus(BusPlace place);
@@ -27,8 +26,6 @@ class ProfibusBus final : public Bus, private profibus::LineObserver {
   void attach_hand() override;
   std::optional<std::string> send(const std::string& text) override;
   bool plant(const FaultConfig& config) override;
-  tl::expected<JoinedPort, PortError> join(const std::string& port, uint32_t source,
-                                           RealClock& clock) override;
 
  private:
   class Hand;

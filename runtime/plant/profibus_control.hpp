@@ -4,8 +4,8 @@
 
 #include "runtime/bus/profibus/master.hpp"
 #include "runtime/clock/event_queue.hpp"
-#include "runtime/plant/plant_file.hpp"
 #include "runtime/plant/profibus_bus.hpp"
+#include "runtime/plant_file/plant_file.hpp"
 
 namespace ipos::runtime {
 

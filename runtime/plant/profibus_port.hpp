@@ -8,10 +8,10 @@
 #include <string_view>
 
 #include "runtime/bus/profibus/interface_card.hpp"
-#include "runtime/plant/plant_file.hpp"
 #include "runtime/plant/profibus_bus.hpp"
 #include "runtime/plant/station_port.hpp"
 #include "runtime/plant/unit_server.hpp"
+#include "runtime/plant_file/plant_file.hpp"
 #include "runtime/unit/door.hpp"
 #include "runtime/unit/journal.hpp"
 

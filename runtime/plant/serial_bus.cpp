@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "runtime/bus/log/serial_log.hpp"
-#include "runtime/plant/bytes_text.hpp"
-#include "runtime/port/serial_bridge.hpp"
+#include "runtime/plant_file/bytes_text.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -59,14 +58,6 @@ void SerialBus::attach_hand() {
 std::optional<std::string> SerialBus::send(const std::string& text) {
   if (hand_->send(*parse_bytes(text, kBlockCheck))) return std::nullopt;
   return "the telegram before is still being sent";
-}
-
-tl::expected<JoinedPort, PortError> SerialBus::join(const std::string& name, uint32_t source,
-                                                    RealClock& clock) {
-  SerialPortResult port = open_serial_port(name, {baud(), true}, clock);
-  if (!port) return tl::unexpected(port.error());
-  auto bridge = std::make_unique<SerialBridge>(queue_, source, line_, **port);
-  return JoinedPort{std::move(*port), std::move(bridge)};
 }
 
 void SerialBus::on_character(const Rs485Line&, NodeId sender, const Character& character) {

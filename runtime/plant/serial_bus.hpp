@@ -14,7 +14,6 @@ namespace ipos::runtime {
 
 class SerialBus final : public Bus, private SerialObserver {
  public:
-  static constexpr std::string_view kLine = "a serial line", kMessage = "telegram";
   static std::optional<std::string> refuse(const std::string& text);
 
   explicit SerialBus(BusPlace place);
@@ -26,8 +25,6 @@ class SerialBus final : public Bus, private SerialObserver {
   void finish() override;
   void attach_hand() override;
   std::optional<std::string> send(const std::string& text) override;
-  tl::expected<JoinedPort, PortError> join(const std::string& port, uint32_t source,
-                                           RealClock& clock) override;
 
  private:
   class Hand;

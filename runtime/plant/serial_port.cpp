@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "runtime/plant/serial_plan.hpp"
+#include "runtime/plant_file/serial_plan.hpp"
 
 namespace ipos::runtime {
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/plant/signal.hpp"
 #include "runtime/plant/station_signals.hpp"
+#include "runtime/plant_file/signal.hpp"
 
 namespace ipos::runtime {
 

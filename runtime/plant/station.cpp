@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "runtime/plant/serial_plan.hpp"
 #include "runtime/plant/variable_names.hpp"
+#include "runtime/plant_file/serial_plan.hpp"
 
 namespace ipos::runtime {
 

@@ -13,10 +13,10 @@
 #include "runtime/bus/movilink/keypad.hpp"
 #include "runtime/pace/pacer.hpp"
 #include "runtime/plant/canopen_port.hpp"
-#include "runtime/plant/plant_file.hpp"
 #include "runtime/plant/profibus_port.hpp"
 #include "runtime/plant/sbus_port.hpp"
 #include "runtime/plant/serial_port.hpp"
+#include "runtime/plant_file/plant_file.hpp"
 #include "runtime/unit/door.hpp"
 #include "runtime/unit/many_ticks.hpp"
 #include "runtime/unit/unit.hpp"
@@ -129,7 +129,10 @@ class Station final : private Timed, private TaskRunner {
   // Number of the variable with this name (variable_names.hpp), of a whole the first; nothing when there is
   // none.
   std::optional<uint32_t> find_variable(std::string_view name) const;
-  int32_t variable(uint32_t number) const { return machine()->variables()[number]; }
+  // 0 where there is no program: the one in its memory was refused at power-on.
+  int32_t variable(uint32_t number) const {
+    return machine() == nullptr ? 0 : machine()->variables()[number];
+  }
 
   // "SCOM1.IPC:12:5" of a word address, or empty.
   std::string source_place(uint32_t address) const { return unit_.source_place(address); }

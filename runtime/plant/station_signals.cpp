@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "runtime/bus/movilink/process_words.hpp"
-#include "runtime/plant/signal.hpp"
 #include "runtime/plant/station_state.hpp"
 #include "runtime/plant/variable_names.hpp"
+#include "runtime/plant_file/signal.hpp"
 #include "stdlib/parameters.hpp"
 #include "stdlib/system_variables.hpp"
 
@@ -214,9 +214,13 @@ void add_tasks(const Station& station, Collector& out) {
   for (int task = 1; task <= station.config().unit->tasks; ++task) {
     out.add(
         SignalGroup::Task, fmt::format("task{}.state", task), "0 stopped, 1 ready, 2 waiting",
-        [&station, task]() -> int64_t { return static_cast<int64_t>(station.machine()->task(task).state); });
+        [&station, task]() -> int64_t {
+          if (station.machine() == nullptr) return 0;
+          return static_cast<int64_t>(station.machine()->task(task).state);
+        });
     out.add(SignalGroup::Task, fmt::format("task{}.line", task), "source line it stands at; 0 stopped",
             [&station, task]() -> int64_t {
+              if (station.machine() == nullptr) return 0;
               const vm::TaskContext& context = station.machine()->task(task);
               return context.state == vm::TaskState::Stopped ? 0 : station.source_line(context.pc);
             });

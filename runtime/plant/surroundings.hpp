@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "runtime/clock/event_queue.hpp"
-#include "runtime/plant/plant_file.hpp"
 #include "runtime/plant/signal_port.hpp"
+#include "runtime/plant_file/plant_file.hpp"
 #include "runtime/unit/journal.hpp"
 
 namespace ipos::runtime {

@@ -14,7 +14,7 @@
 #include "runtime/bus/movilink/unit_servers.hpp"
 #include "runtime/drive/drive.hpp"
 #include "runtime/drive/parameters.hpp"
-#include "runtime/unit/unit_memory.hpp"
+#include "runtime/nv_memory/kept/unit_memory.hpp"
 #include "vm/exec/machine.hpp"
 #include "vm/sched/scheduler.hpp"
 

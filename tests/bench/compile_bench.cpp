@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "compiler/codegen/compile.hpp"
+#include "compiler/compile.hpp"
 #include "compiler/diag/render.hpp"
 #include "tests/bench/dense_program.hpp"
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "compiler/codegen/compile.hpp"
+#include "compiler/compile.hpp"
 #include "vm/exec/machine.hpp"
 #include "vm/fast/predecode.hpp"
 

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "compiler/codegen/compile.hpp"
+#include "compiler/compile.hpp"
 #include "vm/image/image.hpp"
 
 namespace {

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "compiler/codegen/compile.hpp"
+#include "compiler/compile.hpp"
 #include "compiler/diag/render.hpp"
 #include "runtime/plant/plant.hpp"
 #include "tools/input/engine.hpp"

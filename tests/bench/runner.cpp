@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "compiler/codegen/compile.hpp"
+#include "compiler/compile.hpp"
 #include "compiler/diag/render.hpp"
 #include "vm/exec/machine.hpp"
 #include "vm/fast/predecode.hpp"

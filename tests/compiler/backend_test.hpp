@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "compiler/asm/disassembler.hpp"
-#include "compiler/codegen/compile.hpp"
+#include "compiler/compile.hpp"
 #include "compiler/diag/render.hpp"
 
 namespace ipos::compiler::test {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "compiler/codegen/compile.hpp"
+#include "compiler/compile.hpp"
 #include "runtime/plant/plant.hpp"
 #include "tools/debug/debugger.hpp"
 

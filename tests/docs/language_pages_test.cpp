@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "compiler/asm/disassembler.hpp"
-#include "compiler/codegen/compile.hpp"
+#include "compiler/compile.hpp"
 #include "compiler/diag/diag.hpp"
 #include "tests/docs/page.hpp"
 #include "tests/tools/command.hpp"

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "compiler/asm/assembler.hpp"
-#include "compiler/codegen/compile.hpp"
+#include "compiler/compile.hpp"
 #include "compiler/diag/render.hpp"
 
 namespace ipos::tests {

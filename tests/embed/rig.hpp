@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "compiler/codegen/compile.hpp"
+#include "compiler/compile.hpp"
 #include "vm/image/image.hpp"
 
 namespace ipos::tests {

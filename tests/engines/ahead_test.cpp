@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "compiler/codegen/compile.hpp"
+#include "compiler/compile.hpp"
 #include "vm/exec/machine.hpp"
 #include "vm/fast/predecode.hpp"
 #include "vm/jit/jit.hpp"

@@ -2,7 +2,7 @@
 // without skipping is the expected value.
 #include <gtest/gtest.h>
 
-#include "compiler/codegen/compile.hpp"
+#include "compiler/compile.hpp"
 #include "tests/engines/pair.hpp"
 #include "vm/exec/machine.hpp"
 #include "vm/sched/scheduler.hpp"

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "compiler/codegen/compile.hpp"
+#include "compiler/compile.hpp"
 #include "tests/engines/pair.hpp"
 #include "tests/generated/program_generator.hpp"
 #include "tests/generated/source_text.hpp"

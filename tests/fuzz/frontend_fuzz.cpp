@@ -1,6 +1,6 @@
 // Any text to the compiler: an image or an error, never both and never none; an image that the verifier
 // accepts; and messages that can be shown.
-#include "compiler/codegen/compile.hpp"
+#include "compiler/compile.hpp"
 #include "compiler/diag/render.hpp"
 #include "tests/fuzz/programs.hpp"
 

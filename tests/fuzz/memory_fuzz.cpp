@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "runtime/storage/slot_store.hpp"
+#include "runtime/nv_memory/medium/slot_store.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 using namespace ipos::runtime;  // NOLINT

@@ -1,6 +1,6 @@
 // Any text to the plant file reader: errors with their place, or a plant whose references lead somewhere and
 // that runs, or says why not.
-#include "runtime/plant/plant_file.hpp"
+#include "runtime/plant_file/plant_file.hpp"
 
 #include <algorithm>
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "compiler/asm/disassembler.hpp"
-#include "compiler/codegen/compile.hpp"
+#include "compiler/compile.hpp"
 #include "vm/image/image.hpp"
 
 namespace fs = std::filesystem;

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <string>
 
-#include "compiler/codegen/compile.hpp"
+#include "compiler/compile.hpp"
 #include "tests/fuzz/programs.hpp"
 #include "tests/generated/pcg.hpp"
 

@@ -4,7 +4,7 @@
 
 #include "compiler/asm/assembler.hpp"
 #include "compiler/asm/disassembler.hpp"
-#include "compiler/codegen/compile.hpp"
+#include "compiler/compile.hpp"
 #include "vm/exec/machine.hpp"
 #include "vm/image/image.hpp"
 #include "vm/verify/verify.hpp"

@@ -4,7 +4,7 @@
 #include <regex>
 #include <sstream>
 
-#include "runtime/plant/plant_file.hpp"
+#include "runtime/plant_file/plant_file.hpp"
 
 namespace ipos::tests {
 namespace {

@@ -61,7 +61,7 @@ class Layers(unittest.TestCase):
             "runtime/bus/can/line.cpp": "ipos_bus_tests",
             "runtime/bus/movilink/serial_master.cpp": "ipos_rs485_tests",
             "runtime/bus/movilink/profile.cpp": "ipos_bus_tests",
-            "runtime/scom/object_table.cpp": "ipos_services_tests",
+            "runtime/scom/object_table.cpp": "ipos_scom_tests",
             "compiler/codegen/values.cpp": "ipos_compiler_tests",
             "runtime/plant/station.cpp": "ipos_plant_tests",
         }.items():

@@ -7,8 +7,8 @@
 #include <future>
 #include <regex>
 
-#include "runtime/port/serial_port.hpp"
-#include "runtime/port/system_clock.hpp"
+#include "runtime/os_port/serial_port.hpp"
+#include "runtime/os_port/system_clock.hpp"
 #include "tests/harness/proves.hpp"
 #include "tests/realbus/script.hpp"
 #include "tests/tools/command.hpp"

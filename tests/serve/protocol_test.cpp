@@ -5,7 +5,7 @@
 #include <cstring>
 #include <sstream>
 
-#include "compiler/codegen/compile.hpp"
+#include "compiler/compile.hpp"
 #include "tests/serve/page.hpp"
 #include "tools/recording/trace.hpp"
 

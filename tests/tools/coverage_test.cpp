@@ -6,7 +6,7 @@
 #include <memory>
 #include <sstream>
 
-#include "compiler/codegen/compile.hpp"
+#include "compiler/compile.hpp"
 #include "tests/tools/command.hpp"
 #include "tools/coverage/collector.hpp"
 #include "tools/coverage/write.hpp"

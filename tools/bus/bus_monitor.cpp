@@ -6,7 +6,7 @@
 
 #include "runtime/bus/canopen/connections.hpp"
 #include "runtime/bus/rs485/timing.hpp"
-#include "runtime/plant/plant_file.hpp"
+#include "runtime/plant_file/plant_file.hpp"
 #include "tools/bus/bus_verbs.hpp"
 #include "tools/bus/monitor_sources.hpp"
 #include "tools/cli/failure.hpp"

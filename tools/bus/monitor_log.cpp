@@ -9,8 +9,8 @@
 #include <cstring>
 #include <optional>
 
-#include "runtime/port/descriptor.hpp"
-#include "runtime/port/system_clock.hpp"
+#include "runtime/os_port/descriptor.hpp"
+#include "runtime/os_port/system_clock.hpp"
 #include "tools/bus/monitor_sources.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/files.hpp"

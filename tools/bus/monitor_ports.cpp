@@ -6,10 +6,10 @@
 #include <optional>
 
 #include "runtime/bus/rs485/timing.hpp"
-#include "runtime/port/can_port.hpp"
-#include "runtime/port/port_names.hpp"
-#include "runtime/port/serial_port.hpp"
-#include "runtime/port/system_clock.hpp"
+#include "runtime/os_port/can_port.hpp"
+#include "runtime/os_port/port_names.hpp"
+#include "runtime/os_port/serial_port.hpp"
+#include "runtime/os_port/system_clock.hpp"
 #include "tools/bus/monitor_sources.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/interrupt.hpp"

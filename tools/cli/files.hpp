@@ -8,7 +8,7 @@
 
 #include <tl/expected.hpp>
 
-#include "runtime/port/descriptor.hpp"
+#include "runtime/os_port/descriptor.hpp"
 
 namespace ipos::tools {
 

@@ -12,7 +12,7 @@
 #include <filesystem>
 #include <iostream>
 
-#include "runtime/port/descriptor.hpp"
+#include "runtime/os_port/descriptor.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/files.hpp"
 

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "runtime/plant/signal.hpp"
 #include "runtime/plant/variable_names.hpp"
+#include "runtime/plant_file/signal.hpp"
 #include "stdlib/parameters.hpp"
 
 namespace ipos::tools::debug {

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "runtime/plant/plant_file.hpp"
+#include "runtime/plant_file/plant_file.hpp"
 
 namespace ipos::tools {
 

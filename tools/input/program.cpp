@@ -10,7 +10,7 @@
 #include <map>
 
 #include "compiler/ast/print.hpp"
-#include "compiler/codegen/compile.hpp"
+#include "compiler/compile.hpp"
 #include "compiler/parse/parse.hpp"
 #include "compiler/sema/map.hpp"
 #include "runtime/plant/station.hpp"

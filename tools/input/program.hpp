@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "compiler/asm/disassembler.hpp"
-#include "compiler/codegen/compile.hpp"
+#include "compiler/compile.hpp"
 #include "compiler/diag/render.hpp"
 #include "tools/cli/verb.hpp"
 #include "vm/image/image.hpp"

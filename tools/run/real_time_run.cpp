@@ -60,7 +60,7 @@ RealTimeRun::RealTimeRun(runtime::Plant& plant, const std::string& file) : plant
   bool failed = false;
   for (const runtime::BusConfig& bus : plant.file().buses) {
     if (bus.port.empty()) continue;
-    auto joined = plant_.find_bus(bus.name)->join(bus.port, plant_.next_source(), clock_);
+    auto joined = join_port(plant_, *plant_.find_bus(bus.name), bus.port, clock_);
     if (!joined) {
       failed = true;
       fmt::print(stderr, "{}:{}:{}: error: {}\n", file, bus.port_place.line, bus.port_place.column,

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "runtime/os_port/system_clock.hpp"
 #include "runtime/plant/plant.hpp"
-#include "runtime/port/bridge.hpp"
-#include "runtime/port/system_clock.hpp"
+#include "runtime/plant_port/join.hpp"
 
 namespace ipos::tools {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "runtime/bus/movilink/format.hpp"
-#include "runtime/port/port_names.hpp"
+#include "runtime/os_port/port_names.hpp"
 #include "stdlib/parameters.hpp"
 #include "tools/serve/parameter_rows.hpp"
 #include "tools/unit/link_access.hpp"

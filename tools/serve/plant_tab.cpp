@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "runtime/drive/indices.hpp"
-#include "runtime/plant/signal.hpp"
+#include "runtime/plant_file/signal.hpp"
 #include "stdlib/faults.hpp"
 #include "stdlib/parameters.hpp"
 #include "tools/serve/tabs.hpp"

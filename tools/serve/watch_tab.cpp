@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "runtime/plant/plant_signals.hpp"
-#include "runtime/plant/signal.hpp"
+#include "runtime/plant_file/signal.hpp"
 #include "stdlib/parameters.hpp"
 #include "tools/serve/tabs.hpp"
 

@@ -1,7 +1,7 @@
 // What the readers of a test file's tables share. Only they include this; it needs toml++.
 #pragma once
 
-#include "runtime/plant/plant_reader.hpp"
+#include "runtime/plant_file/plant_reader.hpp"
 #include "tools/testing/test_case.hpp"
 
 namespace ipos::tools::testing {

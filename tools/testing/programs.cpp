@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "compiler/codegen/compile.hpp"
+#include "compiler/compile.hpp"
 #include "compiler/diag/render.hpp"
 #include "tools/cli/files.hpp"
 #include "tools/input/program.hpp"

@@ -14,8 +14,8 @@
 #include <regex>
 #include <sstream>
 
-#include "runtime/plant/signal.hpp"
-#include "runtime/plant/station_state.hpp"
+#include "runtime/plant_file/signal.hpp"
+#include "runtime/plant_file/state_names.hpp"
 #include "stdlib/unit_types.hpp"
 #include "tools/testing/read_tests.hpp"
 

@@ -54,7 +54,7 @@ std::optional<Step> read_send(PlantReader& reader, const toml::table& table) {
   const runtime::BusConfig* bus = read_item_bus(reader, table, kStep);
   const std::string text = reader.text(table, "send", kStep, true);
   if (bus == nullptr || text.empty()) return std::nullopt;
-  if (const auto why = runtime::info(bus->kind).refuse(text)) {
+  if (const auto why = runtime::refuse_message(bus->kind, text)) {
     reader.error(place_of(*table.get("send")), *why);
     return std::nullopt;
   }

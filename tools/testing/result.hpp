@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "runtime/clock/event_queue.hpp"
-#include "runtime/plant/toml_text.hpp"
+#include "runtime/plant_file/toml_text.hpp"
 
 namespace ipos::tools::testing {
 

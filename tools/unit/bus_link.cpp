@@ -10,9 +10,9 @@
 #include "runtime/bus/movilink/identifiers.hpp"
 #include "runtime/bus/movilink/sbus_master.hpp"
 #include "runtime/bus/movilink/serial_master.hpp"
-#include "runtime/port/can_bridge.hpp"
-#include "runtime/port/port_names.hpp"
-#include "runtime/port/serial_bridge.hpp"
+#include "runtime/os_port/can_bridge.hpp"
+#include "runtime/os_port/port_names.hpp"
+#include "runtime/os_port/serial_bridge.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/interrupt.hpp"
 

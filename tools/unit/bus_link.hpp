@@ -10,8 +10,8 @@
 #include <string>
 
 #include "runtime/bus/movilink/exchange.hpp"
-#include "runtime/port/bridge.hpp"
-#include "runtime/port/system_clock.hpp"
+#include "runtime/os_port/bridge.hpp"
+#include "runtime/os_port/system_clock.hpp"
 #include "tools/unit/parameter_access.hpp"
 
 namespace ipos::tools {

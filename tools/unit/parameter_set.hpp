@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "runtime/plant/toml_text.hpp"
+#include "runtime/plant_file/toml_text.hpp"
 #include "stdlib/parameters.hpp"
 #include "tools/unit/parameter_access.hpp"
 

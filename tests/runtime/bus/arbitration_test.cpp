@@ -1,5 +1,5 @@
 // The length of collisions against a model that knows only single bits: what each node sends, the wired AND
-// of all, and what each node then sees. Arbitration itself: tests/runtime/campaign.
+// of all, and what each node then sees. Arbitration itself: tests/runtime/bus/campaign.
 #include <gtest/gtest.h>
 
 #include <algorithm>

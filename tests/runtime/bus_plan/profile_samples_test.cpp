@@ -3,8 +3,8 @@
 #include "runtime/bus_plan/plan.hpp"
 #include "stdlib/parameters.hpp"
 #include "tests/harness/proves.hpp"
+#include "tests/runtime/bus/rs485/serial_rig.hpp"
 #include "tests/runtime/bus_plan/plant_rig.hpp"
-#include "tests/runtime/rs485/serial_rig.hpp"
 
 namespace ipos::tests {
 namespace {

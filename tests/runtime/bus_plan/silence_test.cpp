@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/bus_plan/plan.hpp"
-#include "runtime/plant/serial_plan.hpp"
+#include "runtime/plant_file/serial_plan.hpp"
 #include "tests/harness/proves.hpp"
 #include "tests/runtime/bus_plan/plant_rig.hpp"
 

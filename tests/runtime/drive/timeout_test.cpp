@@ -413,7 +413,7 @@ TEST(FieldbusTimeout, P819) {
 }
 
 // Master/slave over RS-485: P812 has no function, the link reports its loss after 500 ms itself
-// (tests/runtime/rs485), and the drive stops on the emergency ramp (MDX60B/61B p. 30).
+// (tests/runtime/bus/rs485), and the drive stops on the emergency ramp (MDX60B/61B p. 30).
 TEST(Rs485Timeout, GroupOfAMaster) {
   DriveRig rig("md60a");
   rig.enable_terminals();

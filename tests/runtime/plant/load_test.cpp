@@ -1,7 +1,7 @@
 // [station.load] of the plant file in the units of the motion layer.
 #include <gtest/gtest.h>
 
-#include "runtime/plant/plant_file.hpp"
+#include "runtime/plant_file/plant_file.hpp"
 
 namespace ipos::runtime {
 namespace {

@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "compiler/codegen/compile.hpp"
+#include "compiler/compile.hpp"
 #include "compiler/diag/render.hpp"
 #include "runtime/plant/plant.hpp"
 

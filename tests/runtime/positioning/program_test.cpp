@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "compiler/codegen/compile.hpp"
+#include "compiler/compile.hpp"
 #include "compiler/diag/render.hpp"
 #include "runtime/plant/plant.hpp"
 

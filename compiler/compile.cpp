@@ -1,0 +1,56 @@
+// Front end, semantic check and code generation, one after the other; a stage runs when the one before it was
+// good.
+#include "compiler/compile.hpp"
+
+#include <algorithm>
+
+#include "compiler/codegen/codegen.hpp"
+#include "compiler/parse/parse.hpp"
+#include "compiler/sema/sema.hpp"
+#include "stdlib/headers.hpp"
+
+namespace ipos::compiler {
+namespace {
+
+// The headers of MOVIDRIVE B (IPOSplus p. 29).
+bool includes_b_headers(const SourceMap& sources) {
+  return std::any_of(sources.files().begin(), sources.files().end(), [](const auto& file) {
+    return file->path.empty() && (file->name == "constb.h" || file->name == "iob.h");
+  });
+}
+
+}  // namespace
+
+Compilation compile(const std::string& name, const std::string& path, std::string text,
+                    const CompileOptions& options) {
+  Compilation out;
+  out.diagnostics = Diagnostics(options.warnings);
+  PreprocessOptions preprocess;
+  preprocess.include_dirs = options.include_dirs;
+  preprocess.defines = options.defines;
+  preprocess.headers = stdlib::headers::embedded_files();
+  preprocess.read_file = options.read_file;
+  preprocess.list_files = options.list_files;
+
+  const SourceFile& main = out.sources->add(name, path, std::move(text));
+  const ast::Program tree = parse_program(*out.sources, main, preprocess, out.diagnostics);
+  out.unit = options.unit;
+  if (out.unit == nullptr)
+    out.unit = stdlib::find_unit(std::string_view(includes_b_headers(*out.sources) ? "mdxb" : "md60a"));
+  if (out.diagnostics.has_errors()) return out;
+  auto program = check(tree, *out.unit, *out.sources, out.diagnostics);
+  if (!program) return out;
+  auto generated = generate(*program, *out.unit, *out.sources, options.atomic, out.diagnostics);
+  if (!generated) return out;
+  (out.diagnostics.has_errors() ? out.too_long : out.image) = std::move(generated->image);
+  out.map = std::move(program->map);
+  for (checked::MapEntry& row : generated->temporaries)
+    out.map.insert(std::upper_bound(out.map.begin(), out.map.end(), row,
+                                    [](const checked::MapEntry& a, const checked::MapEntry& b) {
+                                      return a.number < b.number;
+                                    }),
+                   std::move(row));
+  return out;
+}
+
+}  // namespace ipos::compiler

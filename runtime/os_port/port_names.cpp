@@ -1,0 +1,21 @@
+// By the form of the name, and by what there is in the current folder.
+#include "runtime/os_port/port_names.hpp"
+
+#include <sys/stat.h>
+
+namespace ipos::runtime {
+
+std::string device_path(std::string_view name) { return std::string(name.substr(0, name.rfind('@'))); }
+
+bool is_path(const std::string& name) {
+  struct stat status {};
+  return name.find('/') != std::string::npos || (!name.empty() && stat(name.c_str(), &status) == 0);
+}
+
+PortKind kind_of_port(std::string_view name) {
+  if (name.starts_with("slcan:")) return PortKind::Can;
+  if (name.starts_with("pty:")) return PortKind::Serial;
+  return is_path(device_path(name)) ? PortKind::Serial : PortKind::Can;
+}
+
+}  // namespace ipos::runtime

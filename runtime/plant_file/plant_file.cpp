@@ -1,0 +1,117 @@
+// Reads the plant file with toml++: the sections one after the other, then what they say of each other.
+#include "runtime/plant_file/plant_file.hpp"
+
+#include <algorithm>
+#include <charconv>
+
+#include "runtime/plant_file/plant_reader.hpp"
+#include "runtime/plant_file/serial_plan.hpp"
+
+namespace ipos::runtime {
+
+void check_plant(PlantReader& reader) {
+  for (const auto& [use, kind] : reader.bus_uses) {
+    const auto& buses = reader.result.plant.buses;
+    const auto bus = std::find_if(buses.begin(), buses.end(),
+                                  [&name = use.bus](const BusConfig& b) { return b.name == name; });
+    if (bus == buses.end())
+      reader.error(use.place, fmt::format("there is no bus '{}'", use.bus));
+    else if (info(bus->kind).line != info(kind).line)
+      reader.error(use.place,
+                   fmt::format("bus '{}' is {}, not {}", use.bus, info(bus->kind).line, info(kind).line));
+  }
+  for (PlantError& problem : check_serial_plan(reader.result.plant))
+    reader.result.errors.push_back(std::move(problem));
+  for (const auto& [name, place] : reader.station_uses)
+    if (!reader.station_names.contains(name))
+      reader.error(place, fmt::format("there is no station '{}'", name));
+  if (reader.result.plant.stations.empty() && reader.result.errors.empty())
+    reader.error({1, 1}, "the plant has no [[station]]");
+  std::stable_sort(reader.result.errors.begin(), reader.result.errors.end(),
+                   [](const auto& a, const auto& b) {
+                     return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
+                   });
+}
+
+std::optional<toml::table> parse_toml(PlantReader& reader, std::string_view text) {
+  if (const auto place = stray_character(text)) {
+    reader.error(*place, "this character may only stand in a text or a comment");
+    return std::nullopt;
+  }
+  toml::parse_result parsed = toml::parse(text);
+  if (!parsed) {
+    const std::string_view what = parsed.error().description();
+    // The commonest one, in words: name = sbus.
+    const bool no_value = what.find("could not determine value type") != std::string_view::npos;
+    reader.error(
+        place_of(parsed.error().source()),
+        no_value ? "a value is a number, true, false, a list, or a text in quotes" : std::string(what));
+    return std::nullopt;
+  }
+  return std::move(parsed).table();
+}
+
+void read_plant_sections(PlantReader& reader, const toml::table& root,
+                         const std::vector<std::string_view>& also) {
+  std::vector<std::string_view> known = {"bus", "station", "control", "fault", "stimulus", "wire", "switch"};
+  known.insert(known.end(), also.begin(), also.end());
+  reader.known_keys(root, "the plant", known);
+  read_buses(reader, root);
+  read_stations(reader, root);
+  read_controls(reader, root);
+  read_faults(reader, root);
+  read_surroundings(reader, root);
+}
+
+PlantFileResult read_plant_file(std::string_view text) {
+  PlantReader reader;
+  const auto root = parse_toml(reader, text);
+  if (!root) return std::move(reader.result);
+  read_plant_sections(reader, *root, {"expect"});
+  read_expectations(reader, *root);
+  check_plant(reader);
+  return std::move(reader.result);
+}
+
+PlantFileResult read_fault_tables(std::string_view text, const PlantFile& plant) {
+  PlantReader reader;
+  reader.result.plant.buses = plant.buses;
+  reader.result.plant.stations = plant.stations;
+  for (const BusConfig& bus : plant.buses) reader.bus_names.insert(bus.name);
+  for (const StationConfig& station : plant.stations) reader.station_names.insert(station.name);
+  for (const ControlConfig& control : plant.controls) reader.station_names.insert(control.name);
+  if (const auto root = parse_toml(reader, text)) {
+    reader.known_keys(*root, "the text", {"fault"});
+    read_faults(reader, *root);
+    check_plant(reader);
+  }
+  PlantFileResult faults;
+  faults.plant.faults = std::move(reader.result.plant.faults);
+  faults.errors = std::move(reader.result.errors);
+  return faults;
+}
+
+int64_t parse_duration(std::string_view text) {
+  struct TimeUnit {
+    std::string_view name;
+    int64_t ns;
+  };
+  static constexpr TimeUnit kUnits[] = {{"us", 1'000},
+                                        {"ms", 1'000'000},
+                                        {"min", 60'000'000'000},
+                                        {"s", 1'000'000'000},
+                                        {"h", 3'600'000'000'000}};
+  for (const TimeUnit& unit : kUnits) {
+    if (!text.ends_with(unit.name)) continue;
+    const std::string_view number = text.substr(0, text.size() - unit.name.size());
+    double value = 0;
+    const auto [end, status] = std::from_chars(number.data(), number.data() + number.size(), value);
+    if (status != std::errc() || end != number.data() + number.size() || !(value >= 0) || value > 1e9)
+      return -1;
+    const double ns = value * static_cast<double>(unit.ns);
+    return ns > 9e18 ? -1 : static_cast<int64_t>(ns + 0.5);
+  }
+  return -1;
+}
+
+}  // namespace ipos::runtime

@@ -1,0 +1,196 @@
+// The plant file (TOML): buses, stations, their parameters and inputs, and what is expected of them. Reading
+// it checks names, types, units and cross references; every error has line and column, and all are reported
+// at once. The keys are listed in docs/guide/plant-file.md.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/bus/can/line_fault.hpp"
+#include "runtime/bus/canopen/master.hpp"
+#include "runtime/bus/movilink/sbus_control.hpp"
+#include "runtime/drive/parameters.hpp"
+#include "runtime/drive/setpoint.hpp"
+#include "runtime/motion/machine_data.hpp"
+#include "runtime/nv_memory/medium/posix_medium.hpp"
+#include "runtime/plant_file/bus_kind.hpp"
+#include "runtime/plant_file/profibus_config.hpp"
+#include "runtime/plant_file/signal.hpp"
+#include "runtime/plant_file/toml_text.hpp"
+#include "stdlib/unit_types.hpp"
+
+namespace ipos::runtime {
+
+struct BusConfig {
+  std::string name;
+  BusKind kind = BusKind::Can;
+  uint32_t baud = 500'000;  // bit/s
+  std::string port;         // of the real bus it is joined to, or empty
+  FilePlace port_place;
+  FilePlace place;
+  // The cable, for planning only; 0: not given.
+  uint32_t length_mm = 0;
+  uint32_t impedance = 0;    // ohm
+  uint32_t capacitance = 0;  // pF/m
+  bool shielded = false;
+  bool terminated = false;  // external terminating resistors
+};
+
+// A value for a parameter named "P813" or by its index.
+struct ParameterSetting {
+  std::string parameter;
+  int32_t value = 0;
+  FilePlace place;
+};
+
+// A binary input, DI00..DI17, held from the start.
+struct InputSetting {
+  uint8_t input = 0;  // bit of InputLevel H483
+  bool level = false;
+  FilePlace place;
+};
+
+// The RS-485 side of a station. Which of it a unit type has is checked by serial_plan.hpp.
+struct SerialConfig {
+  BusUse x13;           // terminals X13: RS-485 no. 2, bus type 2 of MOVLNK
+  BusUse xt;            // socket XT or TERMINAL: RS-485 no. 1, bus type 1
+  bool keypad = false;  // plugged in there
+  bool uss21a = false;  // serial option there, MOVIDRIVE A
+  bool s13 = false;     // DIP switch of MOVIDRIVE B: ON is 9.6 kbaud at XT, OFF 57.6 (factory setting)
+  FilePlace keypad_place;
+  FilePlace uss21a_place;
+  FilePlace s13_place;
+};
+
+struct StationConfig {
+  std::string name;
+  const stdlib::UnitType* unit = nullptr;
+  DriveOptions options;
+  std::string program;  // as written, relative to the plant file; empty: no program
+  std::string sbus;     // name of a bus, or empty
+  std::string sbus2;    // SBus 2 of a MOVIDRIVE B
+  std::string nvram;    // file of the non-volatile memory; empty: kept for the run only
+  FileUse nvram_use = FileUse::Write;
+  SerialConfig serial;
+  ProfibusUse profibus;
+  std::string device;              // type designation, where a rule needs it: "MCH42A"
+  std::optional<bool> terminator;  // S12, for `ipos bus plan`
+  bool branch = false;             // the cable goes on over SC21/SC22
+  std::vector<ParameterSetting> parameters;
+  std::vector<InputSetting> inputs;
+  AnalogInputs analog;
+  MachineData machine;           // [station.load] on the default machine
+  std::vector<std::string> hex;  // variables the watch shows in hexadecimal
+  FilePlace place;
+  FilePlace program_place;
+  FilePlace nvram_place;
+};
+
+// A master control on an SBus: process data to units, and the sync telegram. Or a master of CANopen, or one on a
+// PROFIBUS.
+struct ControlConfig {
+  std::string name;
+  std::string sbus;
+  std::optional<ProfibusMasterConfig> profibus{};
+  ControlSettings settings;
+  std::optional<canopen::MasterSettings> canopen;  // in place of the former
+  std::optional<bool> terminator;
+  FilePlace place;
+};
+
+// A planted fault of a line; its node is found when it is planted.
+struct FaultConfig {
+  std::string bus;
+  std::string station;  // empty: all
+  LineFault fault;      // of an SBus
+  std::optional<profibus::LineFault> profibus{};
+  FilePlace place;
+
+  // Its times count from `start` on.
+  void begin_at(Time start, uint64_t more_seed) {
+    const auto move = [&](auto& moved) {
+      moved.from += start;
+      if (moved.until != kNever) moved.until += start;
+      moved.seed += more_seed;
+    };
+    move(fault);
+    if (profibus) move(*profibus);
+  }
+};
+
+// Something outside of the stations that happens at its time: a hand on a switch, a write of an operator.
+struct Stimulus {
+  enum class Action : uint8_t {
+    Set,      // once
+    Force,    // held against program, wires and switches
+    Release,  // ends Force
+    Pulse,    // Force for a while, then what was before
+  };
+  Signal signal;
+  Action action = Action::Set;
+  int32_t value = 0;
+  int64_t at = 0;      // ns
+  int64_t length = 0;  // ns, of Pulse; of Force 0: until Release
+  int64_t every = 0;   // ns; 0: only once
+  int64_t times = 0;   // with `every`; 0: without end
+  FilePlace place;
+};
+
+// A binary output of a station on a binary input, of another one or the same.
+struct Wire {
+  Signal from;
+  Signal to;
+  bool invert = false;
+  FilePlace place;
+};
+
+// A limit switch or cam: an input that tells whether the axis is between two positions, both included.
+struct PositionSwitch {
+  Signal input;
+  int32_t from = INT32_MIN;  // increments
+  int32_t to = INT32_MAX;
+  bool active_high = true;  // level within
+  FilePlace place;
+};
+
+// At a point of virtual time a signal of a station has a value.
+struct Expectation {
+  Signal signal;
+  int64_t at = 0;  // ns
+  int32_t equals = 0;
+  FilePlace place;
+};
+
+struct PlantFile {
+  std::vector<BusConfig> buses;
+  std::vector<StationConfig> stations;
+  std::vector<ControlConfig> controls;
+  std::vector<FaultConfig> faults;
+  std::vector<Stimulus> stimuli;
+  std::vector<Wire> wires;
+  std::vector<PositionSwitch> switches;
+  std::vector<Expectation> expectations;
+};
+
+struct PlantError {
+  FilePlace place;
+  std::string text;
+};
+
+struct PlantFileResult {
+  PlantFile plant;
+  std::vector<PlantError> errors;  // empty: the plant can be used
+};
+
+PlantFileResult read_plant_file(std::string_view text);
+
+// The [[fault]] tables of a text, for a plant that is there; the result has only them.
+PlantFileResult read_fault_tables(std::string_view text, const PlantFile& plant);
+
+// "500ms", "1.5s", "20us", "2min": nanoseconds, or -1 when it is no duration.
+int64_t parse_duration(std::string_view text);
+
+}  // namespace ipos::runtime

@@ -1,0 +1,193 @@
+// Forms of values in the plant file.
+#include "runtime/plant_file/plant_reader.hpp"
+
+#include <algorithm>
+
+#include "runtime/plant_file/state_names.hpp"
+#include "stdlib/parameters.hpp"
+
+namespace ipos::runtime {
+
+void PlantReader::known_keys(const toml::table& table, std::string_view what,
+                             const std::vector<std::string_view>& keys) {
+  for (const auto& [key, value] : table) {
+    if (std::find(keys.begin(), keys.end(), key.str()) != keys.end()) continue;
+    error(place_of(key.source()),
+          fmt::format("unknown key '{}' in {}; known are {}", key.str(), what, fmt::join(keys, ", ")));
+  }
+}
+
+const toml::table* PlantReader::subtable(const toml::table& table, std::string_view key) {
+  const toml::node* node = table.get(key);
+  if (node == nullptr) return nullptr;
+  if (!node->is_table()) error(place_of(*node), fmt::format("write [station.{}]", key));
+  return node->as_table();
+}
+
+std::string PlantReader::text(const toml::table& table, std::string_view key, std::string_view what,
+                              bool required) {
+  const toml::node* node = table.get(key);
+  if (node == nullptr) {
+    if (required) error(place_of(table), fmt::format("{} needs {} = \"...\"", what, key));
+    return {};
+  }
+  if (const auto* value = node->as_string()) return value->get();
+  error(place_of(*node), fmt::format("{} must be a text in quotes", key));
+  return {};
+}
+
+bool PlantReader::number(const toml::node& node, std::string_view what, int32_t& out) {
+  const auto* value = node.as_integer();
+  if (value == nullptr) {
+    error(place_of(node), fmt::format("{} must be a whole number", what));
+    return false;
+  }
+  if (value->get() < INT32_MIN || value->get() > UINT32_MAX) {
+    error(place_of(node), fmt::format("{} = {} does not fit into 32 bits", what, value->get()));
+    return false;
+  }
+  out = static_cast<int32_t>(static_cast<uint32_t>(value->get()));
+  return true;
+}
+
+std::optional<bool> PlantReader::flag(const toml::table& table, std::string_view key) {
+  const toml::node* node = table.get(key);
+  if (node == nullptr) return std::nullopt;
+  if (const auto* value = node->as_boolean()) return value->get();
+  error(place_of(*node), fmt::format("{} is true or false", key));
+  return std::nullopt;
+}
+
+uint32_t PlantReader::count(const toml::table& table, std::string_view key, uint32_t limit,
+                            uint32_t otherwise) {
+  const toml::node* node = table.get(key);
+  int32_t value = 0;
+  if (node == nullptr || !number(*node, key, value)) return otherwise;
+  if (value >= 0 && static_cast<uint32_t>(value) <= limit) return static_cast<uint32_t>(value);
+  error(place_of(*node), fmt::format("{} is 0 to {}", key, limit));
+  return otherwise;
+}
+
+int64_t PlantReader::duration(const toml::table& table, std::string_view key, std::string_view what,
+                              bool required) {
+  if (table.get(key) == nullptr) return text(table, key, what, required), 0;
+  return std::max<int64_t>(duration(table, key, 0), 0);
+}
+
+int64_t PlantReader::duration(const toml::table& table, std::string_view key, int64_t otherwise) {
+  const toml::node* node = table.get(key);
+  if (node == nullptr) return otherwise;
+  const std::string written = text(table, key, "", false);
+  const int64_t time = parse_duration(written);
+  if (time < 0 && !written.empty())
+    error(place_of(*node), fmt::format("'{}' is no time; write for example 500ms or 1.5s", written));
+  return time;
+}
+
+std::string PlantReader::station(const toml::table& table, std::string_view what) {
+  std::string name = text(table, "station", what, true);
+  if (const toml::node* node = table.get("station")) station_uses.emplace_back(name, place_of(*node));
+  return name;
+}
+
+std::string PlantReader::station_name(const toml::table& table, std::string_view key) {
+  std::string name = text(table, key, "", false);
+  if (const toml::node* node = table.get(key)) station_uses.emplace_back(name, place_of(*node));
+  return name;
+}
+
+BusUse PlantReader::bus_use(const toml::table& table, std::string_view key, BusKind kind) {
+  const toml::node* node = table.get(key);
+  if (node == nullptr) return {};
+  BusUse use{text(table, key, "", false), place_of(*node)};
+  if (node->is_string()) bus_uses.emplace_back(use, kind);
+  return use;
+}
+
+std::string PlantReader::bus_name(const toml::table& table, std::string_view key, std::string_view what,
+                                  bool required) {
+  std::string name = text(table, key, what, required);
+  if (const toml::node* node = table.get(key))
+    bus_uses.emplace_back(BusUse{name, place_of(*node)}, BusKind::Can);
+  return name;
+}
+
+void PlantReader::unique(std::set<std::string>& names, const std::string& name, std::string_view what,
+                         FilePlace place) {
+  if (!name.empty() && !names.insert(name).second)
+    error(place, fmt::format("there are two of {} '{}'", what, name));
+}
+
+bool PlantReader::signal(const toml::table& table, std::string_view what,
+                         std::initializer_list<std::string_view> kinds, Signal& out) {
+  std::string_view found;
+  for (const std::string_view kind : kinds) {
+    if (table.get(kind) == nullptr) continue;
+    if (!found.empty()) {
+      error(place_of(*table.get(kind)), fmt::format("{} has either {} or {}", what, found, kind));
+      return false;
+    }
+    found = kind;
+  }
+  if (found.empty()) {
+    error(place_of(table), fmt::format("{} needs one of {} = \"...\"", what, fmt::join(kinds, ", ")));
+    return false;
+  }
+  out.name = text(table, found, what, true);
+  if (out.name.empty()) return false;
+  int bit = 0;
+  if (found == "variable") {
+    out.kind = SignalKind::Variable;
+  } else if (found == "parameter") {
+    out.kind = SignalKind::Parameter;
+  } else if (found == "signal") {
+    out.kind = SignalKind::Any;
+  } else if (found == "input") {
+    out.kind = SignalKind::Input;
+    bit = parse_input(out.name);
+  } else if (found == "output") {
+    out.kind = SignalKind::Output;
+    bit = parse_output(out.name);
+  } else if (found == "state") {
+    out.kind = SignalKind::State;
+    bit = find_state(out.name);
+  } else {
+    out.kind = SignalKind::Input;
+    bit = parse_analog_input(out.name);
+  }
+  if (bit < 0 && out.kind == SignalKind::State) {
+    error(place_of(*table.get(found)),
+          fmt::format("'{}' is no state; known are {}", out.name, state_names()));
+    return false;
+  }
+  if (bit < 0) {
+    error(place_of(*table.get(found)), fmt::format("'{}' is no {}", out.name, found));
+    return false;
+  }
+  out.line = static_cast<uint8_t>(bit);
+  return true;
+}
+
+bool PlantReader::parameter_value(const toml::node& node, const stdlib::UnitType* unit,
+                                  std::string_view parameter, int32_t& out) {
+  const auto* words = node.as_string();
+  if (words == nullptr) return number(node, parameter, out);
+  if (unit == nullptr) return false;  // reported already
+  const stdlib::Parameter* row = stdlib::parameter_table(*unit).find(parameter);
+  if (row == nullptr) return true;  // the station refuses it by its name
+  const auto value = stdlib::parse_parameter_text(*row, words->get());
+  if (value)
+    out = *value;
+  else
+    error(place_of(node),
+          fmt::format("{} {} = \"{}\": {}", parameter, row->name, words->get(), value.error()));
+  return value.has_value();
+}
+
+const stdlib::UnitType* PlantReader::unit_of(std::string_view station) const {
+  for (const StationConfig& config : result.plant.stations)
+    if (config.name == station) return config.unit;
+  return nullptr;
+}
+
+}  // namespace ipos::runtime

@@ -1,0 +1,54 @@
+// What the plant file says about PROFIBUS: the card of a station, and a model master with its slaves and what it does
+// when.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "runtime/bus/profibus/master.hpp"
+#include "runtime/plant_file/toml_text.hpp"
+
+namespace ipos::profibus {
+struct OptionType;
+}
+
+namespace ipos::runtime {
+
+// A bus by its name, and where the station names it.
+struct BusUse {
+  std::string bus;  // empty: not connected
+  FilePlace place;
+};
+
+struct ProfibusUse {
+  const profibus::OptionType* option = nullptr;
+  FilePlace option_place;
+  BusUse bus;
+  uint8_t address = profibus::kNoAddressYet;  // of the switches on the card
+};
+
+// New outputs, as octets from the first or, with the words alone, behind the parameter channel.
+struct ProfibusOutput {
+  Time at = 0;
+  size_t slave = 0;  // in the order of the file
+  size_t first = 0;  // octet
+  profibus::Octets octets;
+};
+
+struct ProfibusOrder {
+  enum class Kind : uint8_t { Control, Start, Stop };
+  Time at = 0;
+  Kind kind = Kind::Control;
+  profibus::GlobalCommand command;
+};
+
+struct ProfibusMasterConfig {
+  std::string bus;
+  profibus::MasterSettings settings;
+  std::vector<profibus::SlavePlan> slaves;
+  std::vector<ProfibusOutput> outputs;
+  std::vector<ProfibusOrder> orders;
+};
+
+}  // namespace ipos::runtime

@@ -1,0 +1,94 @@
+// [[fault]] of the plant file: what is done to a line.
+#include <algorithm>
+
+#include "runtime/plant_file/plant_reader.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+// Where and to whom a fault happens.
+void read_fault_place(PlantReader& reader, const toml::table& table, FaultConfig& config) {
+  const FaultKind kind = config.fault.kind;
+  const bool behind = table.contains("behind");
+  if (behind && kind != FaultKind::Cut)
+    reader.error(place_of(table.get("behind")->source()), "behind belongs to kind = \"cut\"");
+  if (behind && table.contains("station"))
+    reader.error(place_of(table.get("behind")->source()),
+                 "a cut is behind a station, or of the connection of one station: not both");
+  config.fault.behind = behind;
+  config.station = reader.station_name(table, behind ? "behind" : "station");
+  const bool needs_station = kind == FaultKind::Cut || kind == FaultKind::Swap;
+  const bool takes_none = kind == FaultKind::Short || kind == FaultKind::Stuck ||
+                          kind == FaultKind::Terminator || kind == FaultKind::Duplicate;
+  if (needs_station && config.station.empty())
+    reader.error(config.place, fmt::format("a fault '{}' needs station = \"...\"{}", fault_type(kind).word,
+                                           kind == FaultKind::Cut ? " or behind = \"...\"" : ""));
+  if (takes_none && !config.station.empty())
+    reader.error(config.place, fmt::format("a fault '{}' concerns the whole line", fault_type(kind).word));
+}
+
+// Which frames it strikes.
+void read_fault_choice(PlantReader& reader, const toml::table& table, LineFault& fault) {
+  const FaultType& type = fault_type(fault.kind);
+  if (type.scope == FaultScope::Wiring) {
+    for (const char* key : {"id", "frame", "rate", "seed"})
+      if (const toml::node* node = table.get(key))
+        reader.error(place_of(node->source()),
+                     fmt::format("{} does not belong to a fault '{}'", key, type.word));
+    return;
+  }
+  if (table.contains("id")) fault.id = reader.count(table, "id", 0x1FFF'FFFF, 0);
+  fault.frame = reader.count(table, "frame", INT32_MAX, 0);
+  fault.per_mille = reader.count(table, "rate", 1000, 1000);
+  fault.seed = reader.count(table, "seed", INT32_MAX, 1);
+  if (table.contains("frame") && fault.frame == 0)
+    reader.error(place_of(table.get("frame")->source()), "frames are counted from 1");
+  if (table.contains("frame") && table.contains("rate"))
+    reader.error(place_of(table.get("rate")->source()),
+                 "a fault strikes the n-th frame, or a rate of them: not both");
+}
+
+}  // namespace
+
+void read_fault(PlantReader& reader, const toml::table& table) {
+  const auto& buses = reader.result.plant.buses;
+  const std::string bus = table["bus"].value_or(std::string());
+  if (std::any_of(buses.begin(), buses.end(), [&](const BusConfig& candidate) {
+        return candidate.name == bus && candidate.kind == BusKind::Profibus;
+      }))
+    return read_profibus_fault(reader, table);
+  reader.known_keys(
+      table, "[[fault]]",
+      {"bus", "kind", "station", "behind", "id", "frame", "rate", "seed", "from", "until", "delay"});
+  FaultConfig config;
+  config.place = place_of(table.source());
+  config.bus = reader.bus_name(table, "bus", "a [[fault]]", true);
+  const std::string word = reader.text(table, "kind", "a [[fault]]", true);
+  const auto type = std::find_if(std::begin(kFaultTypes), std::end(kFaultTypes),
+                                 [&](const FaultType& candidate) { return candidate.word == word; });
+  if (type == std::end(kFaultTypes)) {
+    std::vector<std::string_view> words;
+    for (const FaultType& known : kFaultTypes) words.push_back(known.word);
+    if (!word.empty())
+      reader.error(place_of(table.get("kind")->source()),
+                   fmt::format("'{}' is no fault; known are {}", word, fmt::join(words, ", ")));
+    return;
+  }
+  config.fault.kind = type->kind;
+  read_fault_place(reader, table, config);
+  read_fault_choice(reader, table, config.fault);
+  config.fault.from = reader.duration(table, "from", 0);
+  config.fault.until = reader.duration(table, "until", kNever);
+  config.fault.lag = reader.duration(table, "delay", 0);
+  if (table.contains("delay") != (type->kind == FaultKind::Delay))
+    reader.error(config.place, "delay = ... belongs to kind = \"delay\", and there it must be");
+  if (config.fault.from >= 0 && config.fault.until >= 0 && config.fault.until <= config.fault.from)
+    reader.error(config.place, "until must be after from");
+  reader.result.plant.faults.push_back(std::move(config));
+}
+
+void read_faults(PlantReader& reader, const toml::table& root) {
+  reader.for_each_table(root, "fault", [&](const toml::table& table) { read_fault(reader, table); });
+}
+
+}  // namespace ipos::runtime

@@ -1,0 +1,191 @@
+// What drives the inputs of stations: [[stimulus]], [[wire]] and [[switch]] of the plant file.
+#include <algorithm>
+
+#include "runtime/plant_file/plant_reader.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+struct ActionKey {
+  std::string_view key;
+  Stimulus::Action action;
+};
+constexpr ActionKey kActions[] = {{"set", Stimulus::Action::Set},
+                                  {"force", Stimulus::Action::Force},
+                                  {"pulse", Stimulus::Action::Pulse},
+                                  {"release", Stimulus::Action::Release}};
+
+// The value of set, force or pulse in the form the signal has. False with an error.
+bool read_value(PlantReader& reader, const toml::node& node, std::string_view key, Stimulus& stimulus) {
+  Signal& signal = stimulus.signal;
+  if (signal.kind == SignalKind::Parameter)
+    return reader.parameter_value(node, reader.unit_of(signal.station), signal.name, stimulus.value);
+  if (signal.kind != SignalKind::Input) return reader.number(node, key, stimulus.value);
+  if (signal.line >= kBinaryLines) {
+    const auto setting = parse_analog(signal.name, node.value_or(std::string()));
+    if (!setting) {
+      reader.error(place_of(node), fmt::format("{} needs {}", signal.name, kAnalogForms));
+      return false;
+    }
+    signal.line = setting->line;
+    stimulus.value = setting->value;
+    return true;
+  }
+  if (node.is_boolean()) {
+    stimulus.value = node.as_boolean()->get() ? 1 : 0;
+    return true;
+  }
+  if (!reader.number(node, key, stimulus.value)) return false;
+  if (stimulus.value == 0 || stimulus.value == 1) return true;
+  reader.error(place_of(node), fmt::format("{} is 0 or 1", signal.name));
+  return false;
+}
+
+void read_action(PlantReader& reader, const toml::table& table, std::string_view what, Stimulus& stimulus) {
+  const ActionKey* found = nullptr;
+  for (const ActionKey& row : kActions) {
+    if (table.get(row.key) == nullptr) continue;
+    if (found != nullptr)
+      return reader.error(place_of(*table.get(row.key)),
+                          fmt::format("{} has either {} or {}", what, found->key, row.key));
+    found = &row;
+  }
+  if (found == nullptr)
+    return reader.error(stimulus.place, fmt::format("{} needs set, force, pulse or release", what));
+  stimulus.action = found->action;
+  const toml::node& node = *table.get(found->key);
+  if (found->action == Stimulus::Action::Release) {
+    if (!reader.flag(table, "release").value_or(false)) reader.error(place_of(node), "write release = true");
+  } else {
+    read_value(reader, node, found->key, stimulus);
+  }
+}
+
+void read_times(PlantReader& reader, const toml::table& table, std::string_view what, Stimulus& stimulus) {
+  const bool pulse = stimulus.action == Stimulus::Action::Pulse;
+  stimulus.length = reader.duration(table, "for", pulse ? "a pulse" : what, pulse);
+  stimulus.every = reader.duration(table, "every", what, false);
+  if (const toml::node* node = table.get("for")) {
+    if (!pulse && stimulus.action != Stimulus::Action::Force)
+      reader.error(place_of(*node), "only force and pulse have a length (for)");
+    else if (stimulus.length < kShortest)
+      reader.error(place_of(*node), "the length (for) is less than a millisecond");
+  }
+  if (const toml::node* node = table.get("every"); node != nullptr && stimulus.every < kShortest)
+    reader.error(place_of(*node), "every is less than a millisecond");
+  if (const toml::node* node = table.get("times")) {
+    int32_t times = 0;
+    if (stimulus.every == 0) reader.error(place_of(*node), "times needs every = \"...\"");
+    if (reader.number(*node, "times", times) && times < 1)
+      reader.error(place_of(*node), "times is 1 or more");
+    stimulus.times = times;
+  }
+}
+
+void read_stimuli(PlantReader& reader, const toml::table& table) {
+  constexpr std::string_view kWhat = "a [[stimulus]]";
+  reader.known_keys(table, "[[stimulus]]",
+                    {"station", "at", "variable", "parameter", "input", "analog", "set", "force", "pulse",
+                     "release", "for", "every", "times"});
+  Stimulus stimulus;
+  stimulus.place = place_of(table);
+  stimulus.signal.station = reader.station(table, kWhat);
+  stimulus.at = reader.duration(table, "at", kWhat, true);
+  if (read_stimulus(reader, table, kWhat, stimulus))
+    reader.result.plant.stimuli.push_back(std::move(stimulus));
+}
+
+// "unit1.DO01": station and terminal.
+Signal terminal(PlantReader& reader, const toml::table& table, std::string_view key, SignalKind kind) {
+  Signal signal;
+  signal.kind = kind;
+  const std::string written = reader.text(table, key, "a [[wire]]", true);
+  if (written.empty()) return signal;
+  const FilePlace place = place_of(*table.get(key));
+  const size_t dot = written.rfind('.');
+  signal.station = written.substr(0, dot == std::string::npos ? 0 : dot);
+  signal.name = dot == std::string::npos ? written : written.substr(dot + 1);
+  const int bit = kind == SignalKind::Input ? parse_input(signal.name) : parse_output(signal.name);
+  if (signal.station.empty() || bit < 0)
+    reader.error(place, fmt::format("'{}' is no {}; write for example \"unit1.{}\"", written,
+                                    kind == SignalKind::Input ? "input of a station" : "output of a station",
+                                    kind == SignalKind::Input ? "DI03" : "DO01"));
+  else
+    reader.station_uses.emplace_back(signal.station, place);
+  signal.line = static_cast<uint8_t>(std::max(bit, 0));
+  return signal;
+}
+
+void read_wire(PlantReader& reader, const toml::table& table) {
+  reader.known_keys(table, "[[wire]]", {"from", "to", "invert"});
+  Wire wire;
+  wire.place = place_of(table);
+  wire.from = terminal(reader, table, "from", SignalKind::Output);
+  wire.to = terminal(reader, table, "to", SignalKind::Input);
+  wire.invert = reader.flag(table, "invert").value_or(false);
+  reader.result.plant.wires.push_back(std::move(wire));
+}
+
+void read_switch(PlantReader& reader, const toml::table& table) {
+  constexpr std::string_view kWhat = "a [[switch]]";
+  reader.known_keys(table, "[[switch]]", {"station", "input", "from", "to", "active"});
+  PositionSwitch added;
+  added.place = place_of(table);
+  added.input.station = reader.station(table, kWhat);
+  if (!reader.signal(table, kWhat, {"input"}, added.input)) return;
+  const toml::node* from = table.get("from");
+  const toml::node* to = table.get("to");
+  if (from == nullptr && to == nullptr)
+    reader.error(added.place, "a [[switch]] needs from, to or both, in increments");
+  if (from != nullptr) reader.number(*from, "from", added.from);
+  if (to != nullptr) reader.number(*to, "to", added.to);
+  if (added.from > added.to) reader.error(place_of(*to), "to is below from");
+  const std::string active = reader.text(table, "active", kWhat, false);
+  if (!active.empty() && active != "high" && active != "low")
+    reader.error(place_of(*table.get("active")), "active is \"high\" or \"low\"");
+  added.active_high = active != "low";
+  reader.result.plant.switches.push_back(std::move(added));
+}
+
+// An input has one driver, and what is driven can be forced, but not set.
+void check_drivers(PlantReader& reader) {
+  const PlantFile& plant = reader.result.plant;
+  std::vector<const Signal*> driven;
+  const auto is_driven = [&](const Signal& signal) {
+    return std::any_of(driven.begin(), driven.end(), [&](const Signal* other) {
+      return signal.kind == SignalKind::Input && other->station == signal.station &&
+             other->line == signal.line;
+    });
+  };
+  const auto drive = [&](const Signal& signal, FilePlace place) {
+    if (signal.station.empty()) return;
+    if (is_driven(signal))
+      reader.error(place, fmt::format("{} of {} has a wire or switch already", signal.name, signal.station));
+    driven.push_back(&signal);
+  };
+  for (const Wire& wire : plant.wires) drive(wire.to, wire.place);
+  for (const PositionSwitch& added : plant.switches) drive(added.input, added.place);
+  for (const Stimulus& stimulus : plant.stimuli)
+    if (stimulus.action == Stimulus::Action::Set && is_driven(stimulus.signal))
+      reader.error(stimulus.place, fmt::format("{} of {} hangs on a wire or switch: force it, do not set it",
+                                               stimulus.signal.name, stimulus.signal.station));
+}
+
+}  // namespace
+
+bool read_stimulus(PlantReader& reader, const toml::table& table, std::string_view what, Stimulus& stimulus) {
+  if (!reader.signal(table, what, {"variable", "parameter", "input", "analog"}, stimulus.signal))
+    return false;
+  read_action(reader, table, what, stimulus);
+  read_times(reader, table, what, stimulus);
+  return true;
+}
+
+void read_surroundings(PlantReader& reader, const toml::table& root) {
+  reader.for_each_table(root, "stimulus", [&](const toml::table& table) { read_stimuli(reader, table); });
+  reader.for_each_table(root, "wire", [&](const toml::table& table) { read_wire(reader, table); });
+  reader.for_each_table(root, "switch", [&](const toml::table& table) { read_switch(reader, table); });
+  check_drivers(reader);
+}
+
+}  // namespace ipos::runtime

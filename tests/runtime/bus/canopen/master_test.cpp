@@ -1,0 +1,182 @@
+// The model master with three nodes on one line: bring-up, remapping, ten thousand SYNC cycles, what is refused and
+// who stays away.
+#include "runtime/bus/canopen/master.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "tests/harness/proves.hpp"
+#include "tests/runtime/bus/canopen/node_rig.hpp"
+
+namespace ipos::tests {
+namespace {
+
+using Phase = Master::Phase;
+
+struct MasterRig {
+  explicit MasterRig(MasterSettings settings, std::vector<uint8_t> numbers = {1, 2, 3})
+      : master(queue, 8, std::move(settings)), port(line, line.attach("master", line.baud(), master)) {
+    for (const uint8_t number : numbers)
+      stations.push_back(std::make_unique<Station>(queue, number, line, number));
+  }
+  void power_on() {
+    for (const auto& station : stations) station->node.start(queue.now());
+    master.start(queue.now(), port);
+  }
+  void run(Time span) { queue.run_until(queue.now() + span); }
+
+  EventQueue queue;
+  CanLine line{queue, 9, "sbus", 1'000'000};
+  Master master;
+  LinePort port;
+  std::vector<std::unique_ptr<Station>> stations;
+};
+
+NodePlan plan(uint8_t node) {
+  NodePlan plan;
+  plan.node = node;
+  return plan;
+}
+
+TEST(CanopenMaster, OrderOfARemapping) {
+  const PdoPlan pdo{1, true, 254, 100, 50, {{{0x2001, 4}, 16}, {{0x2001, 5}, 16}}};
+  EXPECT_EQ(remapping(pdo, 5), (std::vector<SdoWrite>{{{0x1801, 1}, 0x8000'0285, 4},
+                                                      {{0x1801, 2}, 254, 1},
+                                                      {{0x1801, 3}, 100, 2},
+                                                      {{0x1801, 5}, 50, 2},
+                                                      {{0x1A01, 0}, 0, 1},
+                                                      {{0x1A01, 1}, 0x2001'0410, 4},
+                                                      {{0x1A01, 2}, 0x2001'0510, 4},
+                                                      {{0x1A01, 0}, 2, 1},
+                                                      {{0x1801, 1}, 0x0000'0285, 4}}));
+}
+
+// Setpoints of cycle n act in all nodes at the SYNC of cycle n + 1, at one moment; each answers each SYNC.
+TEST(CanopenMaster, TenThousandSyncCyclesWithThreeNodes) {
+  PROVES("MDB-TOC-09", "MDB-TOC-10", "MDB-TOC-11");
+  MasterSettings settings;
+  settings.sync_cycle = 5 * kMillisecond;
+  for (const uint8_t node : {uint8_t{1}, uint8_t{2}, uint8_t{3}}) settings.nodes.push_back(plan(node));
+  // The second one also sends four words at every third SYNC, the third one takes PO4 by a PDO of its own.
+  settings.nodes[1].pdos.push_back(
+      {1, true, 3, 0, 0, {{{0x2001, 7}, 16}, {{0x2001, 8}, 16}, {{0x2001, 9}, 16}, {{0x2001, 10}, 16}}});
+  settings.nodes[2].pdos.push_back({1, false, 1, 0, 0, {{{0x2000, 4}, 16}}});
+  MasterRig rig(settings);
+  rig.power_on();
+  rig.run(500 * kMillisecond);
+  for (size_t n = 0; n < 3; ++n) {
+    ASSERT_EQ(rig.master.report(n).phase, Phase::Running) << n;
+    EXPECT_EQ(rig.stations[n]->node.state(), State::Operational);
+  }
+  rig.run(7 * kMillisecond - rig.queue.now() % (5 * kMillisecond));  // in the middle of a cycle
+  for (const auto& station : rig.stations) station->unit.taken.clear();
+  const std::array<uint64_t, 3> before = {rig.master.report(0).pdos, rig.master.report(1).pdos,
+                                          rig.master.report(2).pdos};
+  const uint64_t syncs = rig.master.syncs();
+  constexpr uint64_t kCycles = 10'000;
+  for (uint64_t cycle = 0; cycle < kCycles; ++cycle) {
+    for (size_t n = 0; n < 3; ++n) {
+      const auto word = static_cast<uint16_t>(cycle * 3 + n);
+      rig.master.set_output(n, {6, word, 0, static_cast<uint16_t>(~word)});
+      rig.stations[n]->unit.inputs = {7, word};
+    }
+    rig.run(5 * kMillisecond);
+    for (size_t n = 0; n < 3; ++n) {
+      ASSERT_EQ(rig.master.report(n).input[1], static_cast<uint16_t>(cycle * 3 + n)) << cycle;
+      if (cycle > 0) {
+        ASSERT_EQ(rig.stations[n]->unit.outputs[1], static_cast<uint16_t>(cycle * 3 + n - 3)) << cycle;
+      }
+      if (cycle > 0 && n == 2) {
+        ASSERT_EQ(rig.stations[n]->unit.outputs[3], static_cast<uint16_t>(~(cycle * 3 + n - 3)));
+      }
+    }
+  }
+  EXPECT_EQ(rig.master.syncs() - syncs, kCycles);
+  EXPECT_EQ(rig.master.report(0).pdos - before[0], kCycles);
+  const uint64_t second = rig.master.report(1).pdos - before[1];
+  EXPECT_TRUE(second == kCycles + kCycles / 3 || second == kCycles + kCycles / 3 + 1) << second;
+  EXPECT_EQ(rig.master.report(2).pdos - before[2], kCycles);
+  // At the same SYNC, to the nanosecond.
+  EXPECT_EQ(rig.stations[0]->unit.taken, rig.stations[1]->unit.taken);
+  EXPECT_EQ(rig.stations[0]->unit.taken.size(), kCycles);
+  EXPECT_EQ(rig.stations[2]->unit.taken.size(), 2 * kCycles);
+  EXPECT_EQ(rig.stations[2]->unit.taken.front(), rig.stations[0]->unit.taken.front());
+  for (const auto& station : rig.stations) {
+    EXPECT_TRUE(station->ignored.empty());
+    EXPECT_EQ(station->foreign, 0);
+  }
+}
+
+TEST(CanopenMaster, ParametersAndWhatIsRefused) {
+  MasterSettings settings;
+  settings.nodes = {plan(1), plan(2), plan(3)};
+  settings.nodes[0].writes = {{{8318, 0}, 1234, 4}};
+  settings.nodes[1].writes = {{{9999, 0}, 1, 4}};
+  MasterRig rig(settings, {1, 2});
+  rig.power_on();
+  rig.run(kSecond);
+  EXPECT_EQ(rig.stations[0]->unit.parameters[8318], 1234);
+  EXPECT_EQ(rig.master.report(0).phase, Phase::Running);
+  EXPECT_EQ(rig.master.report(1).phase, Phase::Refused);
+  EXPECT_EQ(rig.master.report(1).refused, (Address{9999, 0}));
+  EXPECT_EQ(rig.master.report(1).abort, 0x0602'0000U);
+  EXPECT_EQ(rig.stations[1]->node.state(), State::PreOperational);
+  EXPECT_EQ(rig.master.report(2).phase, Phase::Silent);
+}
+
+TEST(CanopenMaster, GuardsAndListens) {
+  MasterSettings settings;
+  settings.heartbeat = 50;
+  settings.nodes = {plan(1), plan(2)};
+  settings.nodes[0].guard_time = 20;
+  settings.nodes[0].life_factor = 3;
+  settings.nodes[1].heartbeat = 30;
+  MasterRig rig(settings, {1, 2});
+  rig.power_on();
+  rig.run(2 * kSecond);
+  for (size_t n = 0; n < 2; ++n) {
+    EXPECT_EQ(rig.master.report(n).phase, Phase::Running) << n;
+    EXPECT_EQ(rig.master.report(n).losses, 0U);
+    EXPECT_EQ(rig.master.report(n).state, 5);
+    EXPECT_TRUE(rig.stations[n]->unit.lost.empty());
+  }
+  // Both nodes are cut off.
+  for (size_t n = 0; n < 2; ++n) rig.line.set_connected(rig.stations[n]->port.node(), false);
+  rig.run(kSecond);
+  for (size_t n = 0; n < 2; ++n) {
+    EXPECT_EQ(rig.master.report(n).phase, Phase::Lost) << n;
+    EXPECT_EQ(rig.master.report(n).losses, 1U) << n;
+    EXPECT_EQ(rig.stations[n]->unit.lost.size(), 1U) << n;
+  }
+  for (size_t n = 0; n < 2; ++n) rig.line.set_connected(rig.stations[n]->port.node(), true);
+  rig.run(kSecond);
+  for (size_t n = 0; n < 2; ++n) {
+    EXPECT_EQ(rig.master.report(n).phase, Phase::Running) << n;
+    EXPECT_EQ(rig.stations[n]->unit.back.size(), 1U) << n;
+  }
+}
+
+TEST(CanopenMaster, BringsUpAgainAndHearsEmergencies) {
+  MasterSettings settings;
+  settings.nodes = {plan(1)};
+  settings.nodes[0].writes = {{{0x1400, 2}, 255, 1}};
+  MasterRig rig(settings, {1});
+  rig.power_on();
+  rig.run(100 * kMillisecond);
+  const uint32_t boots = rig.master.report(0).boot_ups;
+  rig.stations[0]->node.start(rig.queue.now());  // power off and on
+  rig.run(100 * kMillisecond);
+  EXPECT_EQ(rig.master.report(0).boot_ups, boots + 1);
+  EXPECT_EQ(rig.master.report(0).phase, Phase::Running);
+  EXPECT_EQ(rig.stations[0]->node.dictionary().value(0x1400, 2), 255U);
+  rig.stations[0]->unit.state = {0x2B22, true, false};
+  rig.stations[0]->node.unit_changed(rig.queue.now());
+  rig.run(10 * kMillisecond);
+  ASSERT_EQ(rig.master.report(0).emergencies.size(), 1U);
+  EXPECT_EQ(rig.master.report(0).emergencies[0].code, 0xFF00);
+  EXPECT_EQ(rig.master.report(0).emergencies[0].more, (std::array<uint8_t, 5>{0, 0x22, 0x2B, 0, 0}));
+}
+
+}  // namespace
+}  // namespace ipos::tests

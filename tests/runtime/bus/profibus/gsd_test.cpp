@@ -1,0 +1,92 @@
+// The GSD files, read by a small reader of the test that knows the keywords the standard makes mandatory.
+#include "runtime/bus/profibus/gsd.hpp"
+
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "runtime/bus/profibus/cfg_data.hpp"
+#include "tests/runtime/bus/profibus/octets.hpp"
+
+namespace ipos::tests {
+namespace {
+
+struct Gsd {
+  std::map<std::string, std::string> keys;
+  std::vector<std::pair<std::string, std::string>> modules;  // name, identifiers
+  std::vector<std::string> problems;
+};
+
+Gsd read(const std::string& text) {
+  Gsd gsd;
+  std::istringstream lines(text);
+  std::string line;
+  std::getline(lines, line);
+  if (line != "#Profibus_DP") gsd.problems.push_back("first line");
+  const std::regex module("Module=\"([^\"]*)\" ((0x[0-9A-F]{2},?)+)");
+  const std::regex key("([A-Za-z0-9_.]+)=(\"[^\"]{0,32}\"|[0-9]+|0x[0-9A-F]{4})");
+  std::smatch match;
+  bool open = false;
+  while (std::getline(lines, line)) {
+    if (line.size() > 80) gsd.problems.push_back("long: " + line);
+    for (const char c : line)
+      if (c < 0x20 || c > 0x7E || c == '@') gsd.problems.push_back("character: " + line);
+    if (line.empty() || line[0] == ';') continue;
+    if (line == "EndModule") {
+      if (!open) gsd.problems.push_back(line);
+      open = false;
+    } else if (std::regex_match(line, match, module)) {
+      if (open) gsd.problems.push_back(line);
+      open = true;
+      gsd.modules.emplace_back(match[1], match[2]);
+    } else if (!open && std::regex_match(line, match, key)) {
+      if (!gsd.keys.emplace(match[1], match[2]).second) gsd.problems.push_back("twice: " + line);
+    } else {
+      gsd.problems.push_back(line);
+    }
+  }
+  return gsd;
+}
+
+TEST(GsdFile, BothUnits) {
+  PROVES("DP-ID-03");
+  for (const OptionType& option : option_types()) {
+    Gsd gsd = read(gsd_text(option));
+    EXPECT_TRUE(gsd.problems.empty()) << gsd.problems.front();
+    for (const char* mandatory : {"GSD_Revision",       "Vendor_Name",         "Model_Name",
+                                  "Revision",           "Ident_Number",        "Protocol_Ident",
+                                  "Station_Type",       "Hardware_Release",    "Software_Release",
+                                  "Freeze_Mode_supp",   "Sync_Mode_supp",      "Auto_Baud_supp",
+                                  "Set_Slave_Add_supp", "Min_Slave_Intervall", "Modular_Station",
+                                  "Max_Module",         "Max_Input_Len",       "Max_Output_Len",
+                                  "Max_Data_Len",       "Max_Diag_Data_Len",   "FMS_supp"})
+      EXPECT_EQ(gsd.keys.count(mandatory), 1U) << mandatory;
+    EXPECT_EQ(gsd.keys["Max_Input_Len"], "14");
+    EXPECT_EQ(gsd.keys["Max_Data_Len"], "28");
+    EXPECT_EQ(gsd.keys["Max_Module"], "2");
+    EXPECT_EQ(gsd.keys["Max_Diag_Data_Len"], "8");
+    const std::pair<const char*, const char*> kTsdr[] = {{"9.6", "60"},   {"19.2", "60"}, {"93.75", "60"},
+                                                         {"187.5", "60"}, {"500", "100"}, {"1.5M", "150"}};
+    for (const auto& [rate, tsdr] : kTsdr) {
+      EXPECT_EQ(gsd.keys[std::string(rate) + "_supp"], "1");
+      EXPECT_EQ(gsd.keys[std::string("MaxTsdr_") + rate], tsdr);
+    }
+    EXPECT_EQ(gsd.keys.count("3M_supp"), 0U);
+    std::set<std::string> modules;
+    for (const auto& [name, identifiers] : gsd.modules) modules.insert(identifiers);
+    EXPECT_EQ(modules,
+              (std::set<std::string>{"0xF0", "0xF1", "0xF2", "0xF3,0xF0", "0xF3,0xF1", "0xF3,0xF2"}));
+  }
+  Gsd combi = read(gsd_text(option_type(OptionKind::Ffp31))),
+      small = read(gsd_text(option_type(OptionKind::Size0)));
+  EXPECT_EQ(combi.keys["Ident_Number"], "0x3100");
+  EXPECT_EQ(small.keys["Ident_Number"], "0x3111");
+  EXPECT_EQ(combi.keys["FMS_supp"], "1");
+  EXPECT_EQ(small.keys["FMS_supp"], "0");
+  EXPECT_EQ(option_type(OptionKind::Ffp31).gsd_file, "SEW_3100.GSD");
+  EXPECT_EQ(option_type(OptionKind::Size0).gsd_file, "SEW_3111.GSD");
+}
+
+}  // namespace
+}  // namespace ipos::tests

@@ -1,0 +1,308 @@
+// The program example of the manual's chapter 6, run by a small STEP 5 interpreter against the slave: as it was
+// meant, and with each misprint as it stands.
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "tests/runtime/bus/profibus/mc31_rig.hpp"
+#include "tests/runtime/bus/profibus/step5.hpp"
+
+namespace ipos::tests {
+namespace {
+
+// What the misprints change.
+struct Print {
+  std::string set_read = "S M 1.0";          // printed: U M 1.0
+  std::string set_write = "S M 1.2";         // printed: U E 1.2
+  std::string data_low = "T PW 190";         // printed: T PW 188
+  std::string load_high = "L PW 188";        // not printed
+  std::string always = "O M 0.0\nON M 0.0";  // before S =BUSY; not printed
+};
+
+std::string main_block(const Print& print) {
+  return "U E 4.0\nUN M 1.0\n" + print.set_read + R"(
+U M 1.0
+SPB FB 101 READ=M_1.0 BUSY=M_1.1
+U M 1.1
+BEB
+U E 4.1
+UN M 1.2
+)" + print.set_write +
+         R"(
+U M 1.2
+SPB FB 102 WRITE=M_1.2 BUSY=M_1.3
+BE
+)";
+}
+
+std::string function_block(const Print& print, const std::string& name, const std::string& management,
+                           const std::string& data) {
+  return "UN =" + name + "\nBEB\nL PW 184\nT MW 184\nU =BUSY\nSPB =CHEK\nL KH " + management +
+         "\nT MW 194\nL KF +1025\nT PW 186\n" + data + R"(
+UN M 184.6
+S M 194.6
+U M 184.6
+R M 194.6
+SEND: L MW 194
+T PW 184
+)" + print.always +
+         R"(
+S =BUSY
+CHEK: U M 184.6
+UN M 194.6
+O(
+UN M 184.6
+U M 194.6
+)
+BEB
+L PW 186
+T MW 186
+)" + print.load_high +
+         R"(
+T MW 188
+L PW 190
+T MW 190
+RB =BUSY
+RB =)" + name +
+         "\nBE\n";
+}
+
+// The PLC, its I/O from 184 on, and the unit with channel and one word.
+struct Plc {
+  explicit Plc(const Print& print = {}) {
+    program.load("OB 1", main_block(print));
+    program.load("FB 101", function_block(print, "READ", "3100", ""));
+    program.load("FB 102",
+                 function_block(print, "WRITE", "3200", "L KH 0000\nT PW 188\nL KH 0950\n" + print.data_low));
+    unit.drive.values[25] = 950;
+  }
+
+  // A cycle of the PLC and one of the bus.
+  void cycle() {
+    program.run("OB 1");
+    Octets octets;
+    for (int n = 184; n < 194; ++n) octets.push_back(program.areas["PQ"][n]);
+    unit.now += kMillisecond;
+    const Octets inputs = hex(unit.ask(std::nullopt, text_of(octets)));
+    for (int n = 184; n < 194; ++n) program.areas["PI"][n] = inputs.at(static_cast<size_t>(n - 184));
+    const std::string out = text_of(std::span(octets).first(8));
+    if (sent.empty() || sent.back() != out) sent.push_back(out);
+    answered = text_of(std::span(inputs).first(8));
+    reading += program.bit("M", 1, 1);
+  }
+  // Presses a button until its request is noticed, then lets the service end.
+  void press(int button, int request) {
+    program.set_bit("I", 4, button, true);
+    for (int n = 0; n < 60; ++n) {
+      cycle();
+      if (program.bit("M", 1, request)) program.set_bit("I", 4, button, false);
+    }
+  }
+  void read() { press(0, 0); }
+  void write() { press(1, 2); }
+
+  // How often the handshake bit went out changed.
+  int toggles() const {
+    int count = 0;
+    int before = 0;
+    for (const std::string& octets : sent) {
+      const int bit = std::stoi(octets.substr(0, 2), nullptr, 16) >> 6 & 1;
+      count += bit != before;
+      before = bit;
+    }
+    return count;
+  }
+
+  Mc31Bench unit{"F3 F0", prm(kNoWatchdog)};
+  Step5 program;
+  std::vector<std::string> sent;
+  std::string answered;
+  int reading = 0;
+};
+
+TEST(ProgramExample, ChannelAt184AndWordAt192) {
+  PROVES("DP-EX-01");
+  Plc plc;
+  plc.program.set_word("PQ", 192, 0x0006);
+  plc.unit.drive.status = {0x0407, 0, 0};
+  plc.cycle();
+  EXPECT_EQ(plc.unit.drive.output, (std::vector<uint16_t>{6}));
+  EXPECT_EQ(plc.program.word("PI", 192), 0x0407);
+  plc.read();
+  EXPECT_EQ(plc.program.word("PI", 186), 0x0401);
+}
+
+TEST(ProgramExample, ReadAndWriteOnce) {
+  PROVES("DP-EX-02", "DP-EX-08", "DP-EX-09");
+  Plc plc;
+  plc.unit.drive.values[25] = 100;
+  plc.program.set_bit("I", 4, 0, true);
+  plc.program.set_bit("I", 4, 1, true);
+  bool both = false;
+  int written_while_reading = 0;
+  for (int n = 0; n < 100; ++n) {
+    plc.cycle();
+    const bool reads = plc.program.bit("M", 1, 1);
+    both = both || (reads && plc.program.bit("M", 1, 3));
+    written_while_reading += reads && plc.unit.drive.writes() > 0;
+    if (plc.program.bit("M", 1, 0)) plc.program.set_bit("I", 4, 0, false);
+    if (plc.program.bit("M", 1, 2)) plc.program.set_bit("I", 4, 1, false);
+  }
+  EXPECT_FALSE(both);
+  EXPECT_EQ(written_while_reading, 0);
+  ASSERT_EQ(plc.unit.drive.served.size(), 2U);  // one service a request, the read first
+  EXPECT_EQ(plc.unit.drive.served[0].service, runtime::Service::Read);
+  EXPECT_EQ(plc.unit.drive.served[1].service, runtime::Service::Write);
+  EXPECT_EQ(plc.unit.drive.values[25], 950);
+  for (int number = 0; number < 4; ++number) EXPECT_FALSE(plc.program.bit("M", 1, number)) << number;
+}
+
+TEST(ProgramExample, TheOctetsOfReads) {
+  PROVES("DP-EX-03", "DP-EX-04", "DP-EX-06");
+  Plc plc;
+  plc.read();
+  EXPECT_EQ(plc.sent.back().substr(0, 11), "71 00 04 01");
+  EXPECT_EQ(plc.answered, "71 00 04 01 00 00 09 50");
+  EXPECT_EQ(plc.program.word("M", 186), 0x0401);
+  EXPECT_EQ(plc.program.word("M", 188), 0x0000);
+  EXPECT_EQ(plc.program.word("M", 190), 0x0950);
+  EXPECT_EQ(plc.program.word("M", 194), 0x7100);
+  plc.read();
+  EXPECT_EQ(plc.sent.back().substr(0, 11), "31 00 04 01");
+  EXPECT_EQ(plc.answered, "31 00 04 01 00 00 09 50");
+  plc.read();
+  EXPECT_EQ(plc.sent.back().substr(0, 2), "71");
+  EXPECT_EQ(plc.unit.drive.served.size(), 3U);
+}
+
+TEST(ProgramExample, TheOctetsOfWrites) {
+  PROVES("DP-EX-05");
+  Plc plc;
+  plc.unit.drive.values[25] = 1;
+  plc.write();
+  EXPECT_EQ(plc.sent.back(), "72 00 04 01 00 00 09 50");
+  EXPECT_EQ(plc.unit.drive.values[25], 950);
+  plc.write();
+  EXPECT_EQ(plc.sent.back(), "32 00 04 01 00 00 09 50");
+  EXPECT_EQ(plc.unit.drive.writes(), 2);
+}
+
+TEST(ProgramExample, AnErrorInTheMarkers) {
+  PROVES("DP-EX-07");
+  Plc plc;
+  plc.unit.drive.locked = true;
+  plc.write();
+  EXPECT_TRUE(plc.program.bit("M", 184, 7));
+  EXPECT_EQ(plc.program.word("M", 188), 0x0800);
+  EXPECT_EQ(plc.program.word("M", 190), 0x0013);
+}
+
+TEST(ProgramExample, MisprintOfTheStart) {
+  PROVES("DP-EX-10");
+  Print literal;
+  literal.set_read = "U M 1.0";
+  literal.set_write = "U E 1.2";
+  Plc plc(literal);
+  plc.program.set_bit("I", 4, 0, true);
+  plc.program.set_bit("I", 4, 1, true);
+  for (int n = 0; n < 100; ++n) plc.cycle();
+  EXPECT_TRUE(plc.unit.drive.served.empty());
+  Plc corrected;
+  corrected.read();
+  corrected.write();
+  EXPECT_EQ(corrected.unit.drive.served.size(), 2U);
+}
+
+TEST(ProgramExample, MisprintOfTheDataLow) {
+  PROVES("DP-EX-11");
+  Print literal;
+  literal.data_low = "T PW 188";
+  Plc plc(literal);
+  plc.program.set_word("PQ", 190, 0x1234);  // left over from before
+  plc.write();
+  EXPECT_EQ(plc.sent.back(), "72 00 04 01 09 50 12 34");
+  Plc corrected;
+  corrected.write();
+  EXPECT_EQ(corrected.sent.back(), "72 00 04 01 00 00 09 50");
+}
+
+TEST(ProgramExample, MisprintOfTheDataHigh) {
+  PROVES("DP-EX-12");
+  Print literal;
+  literal.load_high = "";
+  Plc plc(literal);
+  plc.read();
+  EXPECT_EQ(plc.program.word("M", 188), 0x0401);
+  Plc corrected;
+  corrected.read();
+  EXPECT_EQ(corrected.program.word("M", 188), 0x0000);
+}
+
+TEST(ProgramExample, SlipOfBusy) {
+  PROVES("DP-EX-13");
+  Print literal;
+  literal.always = "";
+  Plc twice(literal), once;
+  twice.read();  // received handshake 0
+  once.read();
+  EXPECT_EQ(twice.toggles(), 2);
+  EXPECT_EQ(once.toggles(), 1);
+  // Received handshake 1: bring both there by one corrected read, then read by each print.
+  for (const Print& print : {literal, Print{}}) {
+    Plc plc;
+    plc.read();
+    plc.program.load("FB 101", function_block(print, "READ", "3100", ""));
+    const int before = plc.toggles();
+    plc.read();
+    EXPECT_EQ(plc.toggles() - before, 1);
+  }
+}
+
+TEST(ProgramExample, TruthTableOfChek) {
+  PROVES("DP-EX-14");
+  for (const bool received : {false, true})
+    for (const bool sent : {false, true}) {
+      Step5 program;
+      program.load("FB 1",
+                   "U M 184.6\nUN M 194.6\nO(\nUN M 184.6\nU M 194.6\n)\nBEB\nL KH 0001\nT MW 0\nBE\n");
+      program.set_bit("M", 184, 6, received);
+      program.set_bit("M", 194, 6, sent);
+      program.run("FB 1");
+      EXPECT_EQ(program.word("M", 0) == 1, received == sent);
+    }
+}
+
+TEST(ProgramExample, EnglishAndGermanOperands) {
+  PROVES("DP-EX-15");
+  Step5 program;
+  program.load("OB 1", R"(L IW 50
+L IW 52
+L IW 54
+L KH 0006
+T OW 50
+L KF +1500
+T OW 52
+L KH 0000
+T OW 54
+BE
+)");
+  program.load("OB 2", "L EW 50\nT AW 60\nU E 4.0\nUN M 1.0\nS A 4.0\nBE\n");
+  program.load("OB 3", "L IW 50\nT QW 60\nA I 4.0\nAN M 1.0\nS Q 4.0\nBE\n");
+  program.run("OB 1");
+  EXPECT_EQ(program.word("PQ", 50), 6);
+  EXPECT_EQ(program.word("PQ", 52), 0x05DC);
+  EXPECT_EQ(program.word("PQ", 54), 0);
+  for (const char* block : {"OB 2", "OB 3"}) {
+    program.set_word("PI", 50, 0x1234);
+    program.set_word("PQ", 60, 0);
+    program.set_bit("I", 4, 0, true);
+    program.set_bit("Q", 4, 0, false);
+    program.run(block);
+    EXPECT_EQ(program.word("PQ", 60), 0x1234) << block;
+    EXPECT_TRUE(program.bit("Q", 4, 0)) << block;
+  }
+  EXPECT_THROW(program.load("OB 4", "XYZ M 1.0"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace ipos::tests

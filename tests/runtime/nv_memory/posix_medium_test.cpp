@@ -1,0 +1,91 @@
+// The file: what is written is there when it is opened again; what cannot be used says why.
+#include "runtime/nv_memory/medium/posix_medium.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+
+#include "runtime/nv_memory/medium/slot_store.hpp"
+
+namespace ipos::runtime {
+namespace {
+
+namespace fs = std::filesystem;
+
+class PosixFile : public ::testing::Test {
+ protected:
+  PosixFile() {
+    std::string name = (fs::temp_directory_path() / "ipos-nv-XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+    path_ = (folder_ / "unit1.nv").string();
+  }
+  ~PosixFile() override { fs::remove_all(folder_); }
+  fs::path folder_;
+  std::string path_;
+};
+
+TEST_F(PosixFile, KeepsWhatIsStored) {
+  NvContent content;
+  content.values.emplace_back(8470, 2500);
+  {
+    auto medium = open_posix_medium(path_, FileUse::Write);
+    ASSERT_TRUE(medium) << medium.error();
+    SlotStore store(**medium, 1);
+    EXPECT_EQ(store.load().outcome, NvOutcome::Fresh);
+    EXPECT_EQ(store.save(content), std::nullopt);
+    EXPECT_EQ(store.save(content), std::nullopt);
+  }
+  auto medium = open_posix_medium(path_, FileUse::Look);
+  ASSERT_TRUE(medium) << medium.error();
+  EXPECT_EQ(SlotStore(**medium, 1).load().content, content);
+}
+
+TEST_F(PosixFile, IsLockedWhileItIsOpen) {
+  auto first = open_posix_medium(path_, FileUse::Write);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(open_posix_medium(path_, FileUse::Write).error(), "another run is using it");
+  EXPECT_TRUE(open_posix_medium(path_, FileUse::Look)) << "beside a run";
+  first->reset();
+  EXPECT_TRUE(open_posix_medium(path_, FileUse::Write));
+}
+
+TEST_F(PosixFile, SaysWhyItCannotBeUsed) {
+  EXPECT_EQ(open_posix_medium((folder_ / "no" / "unit1.nv").string(), FileUse::Write).error(),
+            "No such file or directory");
+  const std::string pipe = (folder_ / "pipe").string();
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  fs::create_symlink("loop", folder_ / "loop");
+  for (const FileUse use : {FileUse::Write, FileUse::Look}) {
+    EXPECT_EQ(open_posix_medium(folder_.string(), use).error(), "not a file");
+    EXPECT_EQ(open_posix_medium(pipe, use).error(), "not a file");
+    EXPECT_EQ(open_posix_medium("/dev/zero", use).error(), "not a file");
+    EXPECT_EQ(open_posix_medium((folder_ / "loop").string(), use).error(),
+              "Too many levels of symbolic links");
+  }
+}
+
+TEST_F(PosixFile, WhoLooksMakesNothingAndChangesNothing) {
+  const uint8_t byte = 1;
+  uint8_t found = 0;
+  {
+    auto medium = open_posix_medium(path_, FileUse::Look);
+    ASSERT_TRUE(medium) << medium.error();
+    EXPECT_EQ((*medium)->read(0, {&found, 1}), 0U);
+    EXPECT_EQ((*medium)->write(2, {&byte, 1}), std::nullopt);
+    EXPECT_EQ((*medium)->read(2, {&found, 1}), 1U) << "its copy can be written";
+  }
+  EXPECT_FALSE(fs::exists(path_));
+  { ASSERT_EQ((*open_posix_medium(path_, FileUse::Write))->write(0, {&byte, 1}), std::nullopt); }
+  auto medium = open_posix_medium(path_, FileUse::Look);
+  ASSERT_TRUE(medium);
+  EXPECT_EQ((*medium)->read(0, {&found, 1}), 1U);
+  const std::array<uint8_t, 4> other{2, 2, 2, 2};
+  EXPECT_EQ((*medium)->write(0, other), std::nullopt);
+  EXPECT_EQ(fs::file_size(path_), 1U);
+}
+
+}  // namespace
+}  // namespace ipos::runtime

@@ -1,0 +1,175 @@
+// The bridge between a simulated RS-485 line and a serial port: pauses and gaps by times of arrival, parity
+// errors, telegrams in one piece, echo and late adapters.
+#include <gtest/gtest.h>
+
+#include "runtime/os_port/serial_bridge.hpp"
+#include "tests/runtime/bus/rs485/serial_rig.hpp"
+#include "tests/runtime/os_port/bytes_in_memory.hpp"
+#include "tests/runtime/os_port/port_rig.hpp"
+
+namespace ipos::tests {
+namespace {
+
+constexpr Time kCharacter = wire_time(1, 9600);
+
+struct Rig {
+  explicit Rig(bool paced = true, Time latency = 0) {
+    port.paced = paced;
+    port.late = latency;
+    bridge.emplace(queue, 9, line, port);
+    line.add_observer(recorder);
+  }
+  // The bytes of a telegram, each complete a character time after the one before; the first one at `at`.
+  void arrive(Time at, const Bytes& bytes) {
+    for (const uint8_t byte : bytes) {
+      port.incoming.push_back({at, byte, false});
+      at += kCharacter;
+    }
+  }
+  void run(Time until) {
+    while (clock.now() < until) {
+      clock.advance(std::min(kMillisecond / 4, until - clock.now()));
+      ASSERT_TRUE(bridge->collect(0));
+      queue.run_until(clock.now());
+    }
+  }
+  bool noted(const std::string& words) {
+    for (const std::string& text : bridge->take_notes())
+      if (text.find(words) != std::string::npos) return true;
+    return false;
+  }
+
+  ManualClock clock{0};
+  EventQueue queue;
+  Rs485Line line{queue, 0, "line1", 9'600};
+  SlaveNode slave{queue, 1, line, "unit1", {1, 101}};
+  BytesInMemory port{clock};
+  std::optional<SerialBridge> bridge;
+  Recorder recorder;
+};
+
+const Bytes kRequest = telegram("02 01 86 31 00 20 7E 00 00 00 00");  // read 8318
+
+TEST(SerialBridge, ARequestFromThePortIsAnsweredInOnePiece) {
+  Rig rig;
+  rig.arrive(10 * kMillisecond, kRequest);
+  rig.run(100 * kMillisecond);
+  ASSERT_EQ(rig.port.sent.size(), 1U) << "no gap can come into it";
+  EXPECT_EQ(text_of(rig.port.sent[0].bytes), "1D 01 86 31 00 20 7E 00 0F 42 40 F8");
+  // At the port: pause of 3.44 ms kept, and well within the 50 ms of a master (1053 1610 p. 19, 27).
+  const Time request_end = 10 * kMillisecond + 11 * kCharacter;
+  EXPECT_GE(rig.port.sent[0].at - request_end, 3'440 * kMicrosecond);
+  EXPECT_LE(rig.port.sent[0].at - request_end, 10 * kMillisecond);
+  EXPECT_EQ(rig.recorder.heard.size(), 2U) << "and it does not come back";
+}
+
+TEST(SerialBridge, APseudoTerminalGetsEachCharacterAtItsTime) {
+  Rig rig(false);
+  rig.arrive(10 * kMillisecond, kRequest);
+  rig.run(100 * kMillisecond);
+  ASSERT_EQ(rig.port.sent.size(), 12U);
+  for (size_t n = 1; n < 12; ++n) {
+    EXPECT_EQ(rig.port.sent[n].bytes.size(), 1U);
+    EXPECT_NEAR(static_cast<double>(rig.port.sent[n].at - rig.port.sent[n - 1].at), 1.1458e6, 0.3e6);
+  }
+}
+
+TEST(SerialBridge, BytesThatComeAtOnceTakeTheirTimeOnTheLine) {
+  Rig rig;
+  for (const uint8_t byte : kRequest) rig.port.incoming.push_back({10 * kMillisecond, byte, false});
+  rig.run(100 * kMillisecond);
+  ASSERT_EQ(rig.recorder.heard.size(), 2U);
+  const Reception& request = rig.recorder.heard[0].reception;
+  EXPECT_NEAR(static_cast<double>(request.end - request.start), 12 * 11e9 / 9600, 2e5);
+}
+
+// 1053 1610 p. 19: the pause before SD1; MDX60B/61B p. 18: the gap within a telegram.
+TEST(SerialBridge, PausesAndGapsAreThoseOfTheArrival) {
+  const auto answers_with = [](Time pause, size_t gap_at, Time gap) {
+    Rig rig;
+    // A request to another unit, then ours after `pause`.
+    const Bytes other = telegram("02 07 81 00 00");
+    rig.arrive(10 * kMillisecond, other);
+    Time at = 10 * kMillisecond + static_cast<Time>(other.size()) * kCharacter + pause;
+    for (size_t n = 0; n < kRequest.size(); ++n, at += kCharacter) {
+      if (n == gap_at) at += gap;
+      rig.port.incoming.push_back({at, kRequest[n], false});
+    }
+    rig.run(200 * kMillisecond);
+    return !rig.port.sent.empty();
+  };
+  EXPECT_TRUE(answers_with(3'500 * kMicrosecond, 0, 0));
+  EXPECT_FALSE(answers_with(3'300 * kMicrosecond, 0, 0));
+  EXPECT_TRUE(answers_with(10 * kMillisecond, 5, 3'400 * kMicrosecond));
+  EXPECT_FALSE(answers_with(10 * kMillisecond, 5, 3'500 * kMicrosecond));
+}
+
+// An adapter with a 16 ms timer: the telegram comes in two groups, the second one late.
+TEST(SerialBridge, ALateAdapterDoesNotTearTelegrams) {
+  for (const Time latency : {Time{0}, 16 * kMillisecond}) {
+    Rig rig(true, latency);
+    Time at = 20 * kMillisecond;
+    for (size_t n = 0; n < kRequest.size(); ++n, at += kCharacter) {
+      if (n == 8) at += 12 * kMillisecond;
+      rig.port.incoming.push_back({at, kRequest[n], false});
+    }
+    rig.run(200 * kMillisecond);
+    EXPECT_EQ(!rig.port.sent.empty(), latency > 0);
+  }
+}
+
+TEST(SerialBridge, BadBytesAreParityErrorsOnTheLine) {
+  Rig rig;
+  rig.arrive(10 * kMillisecond, kRequest);
+  rig.port.incoming[4].bad = true;
+  rig.run(100 * kMillisecond);
+  EXPECT_TRUE(rig.port.sent.empty());
+  EXPECT_EQ(rig.slave.unit.rejected, std::vector<SerialError>{SerialError::Parity});
+  EXPECT_EQ(rig.bridge->bad_bytes(), 1U);
+}
+
+TEST(SerialBridge, AnEchoIsLeftOut) {
+  Rig rig;
+  rig.arrive(10 * kMillisecond, kRequest);
+  rig.run(50 * kMillisecond);
+  ASSERT_EQ(rig.port.sent.size(), 1U);
+  rig.arrive(rig.clock.now(), rig.port.sent[0].bytes);
+  rig.run(80 * kMillisecond);
+  EXPECT_EQ(rig.bridge->echoed_bytes(), 12U);
+  EXPECT_EQ(rig.recorder.heard.size(), 2U);
+  EXPECT_TRUE(rig.noted("hears itself"));
+  rig.arrive(90 * kMillisecond, kRequest);  // and it goes on
+  rig.run(150 * kMillisecond);
+  EXPECT_EQ(rig.port.sent.size(), 2U);
+}
+
+// Noise that by chance is what an echo would begin with is no echo: no message, and the answer is heard.
+TEST(SerialBridge, NoiseIsNoEcho) {
+  for (const uint8_t noise : Bytes{0x1D, 0x55}) {
+    Rig rig;
+    rig.arrive(10 * kMillisecond, kRequest);
+    rig.run(50 * kMillisecond);
+    ASSERT_EQ(rig.port.sent.size(), 1U);
+    rig.arrive(rig.clock.now(), {noise, 0xAA, 0xAA});
+    rig.run(150 * kMillisecond);
+    EXPECT_FALSE(rig.noted("hears itself"));
+    rig.arrive(rig.clock.now(), kRequest);
+    rig.run(250 * kMillisecond);
+    EXPECT_EQ(rig.port.sent.size(), 2U);
+  }
+}
+
+// Two units answer 254 at once: what collides is not passed on as if it were good.
+TEST(SerialBridge, CollisionsOfAnswersGoOutAsVoidTelegrams) {
+  Rig rig;
+  SlaveNode second(rig.queue, 2, rig.line, "unit2", {2, 101});
+  second.unit.parameters[8318] = 5;
+  rig.arrive(10 * kMillisecond, telegram("02 FE 86 31 00 20 7E 00 00 00 00"));
+  rig.run(200 * kMillisecond);
+  Bytes all;
+  for (const auto& part : rig.port.sent) all.insert(all.end(), part.bytes.begin(), part.bytes.end());
+  EXPECT_FALSE(decode_serial(all).has_value()) << text_of(all);
+}
+
+}  // namespace
+}  // namespace ipos::tests
