@@ -355,6 +355,39 @@ P101 = "RS-485"
         client.ask(do="subscribe", topic="watch")
         self.assertEqual(client.wait_for("watch")["values"]["unit1.P130"]["text"], "2.000 s")
 
+    def test_the_scope_records_a_run_up(self):
+        client = self.serve("--write")
+        client.ask(do="arm", yes=True)
+        self.assertEqual([one["name"] for one in client.ask(do="scope")["channels"]],
+                         ["unit1.P000", "unit1.P004", "unit1.P008"])
+        self.assertIn("P999", client.ask(do="scope", channels=["P999"])["error"])
+        self.assertIn("level or edge", client.ask(do="scope", trigger={"kind": "fault"})["error"])
+        set_up = client.ask(do="scope", channels=["P000"], pre=50, length_ms=1000,
+                            trigger={"kind": "level", "signal": "P000", "value": 100})
+        self.assertEqual((set_up["channels"][0]["name"], set_up["channels"][0]["unit"]), ("unit1.P000", "rpm"))
+        client.ask(do="scope.arm", single=True)
+        client.ask(do="subscribe", topic="scope")
+        state = {}
+        for _ in range(200):
+            self.assertTrue(client.ask(do="jog", direction="cw", rpm=300)["ok"])
+            for event in client.events:
+                state = event if event.get("event") == "scope" else state
+            client.events.clear()
+            if state.get("state") == "done":
+                break
+            time.sleep(0.05)
+        self.assertEqual(state.get("state"), "done", state)
+        self.assertIn("unit1.P000 is", state["trigger_text"])
+        rows = [row.split(",") for row in client.ask(do="scope.csv")["csv"].splitlines()]
+        self.assertEqual(rows[0], ["time_ms", "unit1.P000 [rpm]"])
+        milliseconds = [float(row[0]) for row in rows[1:]]
+        self.assertEqual(milliseconds, [milliseconds[0] + n for n in range(len(milliseconds))])
+        at_trigger = [float(row[1]) for row in rows[1:] if abs(float(row[0]) * 1000 - state["trigger_us"]) < 1]
+        self.assertEqual(len(at_trigger), 1)
+        self.assertGreaterEqual(at_trigger[0], 100)
+        before = [float(row[1]) for row in rows[1:] if float(row[0]) * 1000 < state["trigger_us"] - 1]
+        self.assertLess(before[-1], 100)
+
     def test_it_writes_when_confirmed_and_stops_when_the_hand_is_off(self):
         client = self.serve("--write")
         self.assertIn("confirm", client.ask(do="parameters.set", number="P130", value="1 s")["error"])

@@ -23,6 +23,7 @@ constexpr size_t kReadsAtOnce = 8;  // of a topic, then others have their turn
 constexpr size_t kMostWatchedValues = 100;
 constexpr auto kJogHolds = 300ms;     // without a `jog` it stops
 constexpr auto kJogPeriod = 50ms;     // of the process data; drives monitor them from 10 ms on (P812, P815)
+constexpr auto kTimePeriod = 50ms;
 constexpr int kTurnTime = 20;         // ms that the loop waits for letters
 constexpr double kDigitsOfRpm = 5;    // a speed word counts 0.2 rpm (1053 1610 p. 42)
 constexpr uint16_t kEnable = 0x0006;  // control word 1: no inhibit, no rapid stop, no stop
@@ -53,7 +54,8 @@ DriveHost::DriveHost(std::unique_ptr<BusLink> link, Options options, Post& post)
       desk_(post),
       options_(std::move(options)),
       link_(*link),
-      access_(open_unit(std::move(link), options_.address, options_.unit)) {
+      access_(open_unit(std::move(link), options_.address, options_.unit)),
+      scope_(desk_, *access_, name(), [this] { return us() / 1000 * runtime::kMillisecond; }) {
   desk_.hello = [this] {
     return Json{{"protocol", 1},
                 {"version", options_.version},
@@ -80,20 +82,23 @@ void DriveHost::run() {
       jog_->next = now + kJogPeriod;
       send_words(jog_->words);
     }
+    if (now >= next_time_) {
+      next_time_ = now + kTimePeriod;
+      desk_.send_all(time());
+    }
     desk_.publish(now, false);
-    const auto letter = post_.wait(kTurnTime);
+    const bool samples = scope_.wanted();
+    if (samples) scope_.sample();
+    const auto letter = post_.wait(samples ? 0 : kTurnTime);
     if (!letter) continue;
     desk_.take(*letter);
-    if (letter->kind == LetterKind::Opened)
-      desk_.send(desk_.clients().at(letter->client), {{"event", "time"},
-                                                      {"us", us()},
-                                                      {"running", true},
-                                                      {"speed", 1},
-                                                      {"rate", 1},
-                                                      {"generation", 1},
-                                                      {"over", false},
-                                                      {"stopped", nullptr}});
+    if (letter->kind == LetterKind::Opened) desk_.send(desk_.clients().at(letter->client), time());
   }
+}
+
+Json DriveHost::time() const {
+  return {{"event", "time"}, {"us", us()},         {"running", true}, {"speed", 1},
+          {"rate", 1},       {"generation", 1}, {"over", false},   {"stopped", nullptr}};
 }
 
 int64_t DriveHost::us() const {

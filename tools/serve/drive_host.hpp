@@ -1,4 +1,4 @@
-// The process of `ipos serve --device` that has the line to a real drive: watch, parameters and manual operation over
+// The process of `ipos serve --device` that has the line to a real drive: watch, scope, parameters and manual operation over
 // the parameter channel and process data. It only reads unless the command line allows more and the client has
 // confirmed it.
 #pragma once
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tools/serve/desk.hpp"
+#include "tools/serve/drive_scope.hpp"
 #include "tools/unit/bus_link.hpp"
 #include "tools/unit/live_values.hpp"
 #include "tools/unit/parameter_access.hpp"
@@ -50,6 +51,7 @@ class DriveHost {
   void send_words(const std::array<uint16_t, 3>& words);
   int64_t us() const;
   std::string name() const;
+  Json time() const;
 
   Post& post_;
   Desk desk_;
@@ -59,6 +61,8 @@ class DriveHost {
   WallClock::time_point begin_ = WallClock::now();
   std::map<uint16_t, std::vector<LiveItem>> watched_;  // by client
   std::optional<Jog> jog_;
+  DriveScope scope_;
+  WallClock::time_point next_time_{};  // event
 };
 
 }  // namespace ipos::tools::serve

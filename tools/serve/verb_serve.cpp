@@ -61,7 +61,7 @@ void open_browser(const std::string& address) {
 int run_host(const ServeFlags& flags, PlantInput input, const Pair& sockets) {
   close(sockets.server);
   std::signal(SIGINT, SIG_IGN);  // Ctrl-C goes to both; the server tells
-  std::signal(SIGTERM, SIG_DFL);
+  std::signal(SIGTERM, SIG_IGN);
   serve::Channel channel(sockets.host);
   const std::string title = std::filesystem::path(flags.file).filename().string();
   serve::PlantHost host([input = std::move(input)] { return make_plant(input, runtime::FileUse::Look); },
@@ -75,7 +75,7 @@ int run_drive_host(const ServeFlags& flags, const Pair& sockets) {
   close(sockets.server);
   std::unique_ptr<BusLink> link = BusLink::open(flags.device);
   std::signal(SIGINT, SIG_IGN);
-  std::signal(SIGTERM, SIG_DFL);
+  std::signal(SIGTERM, SIG_IGN);
   serve::Channel channel(sockets.host);
   serve::DriveHost host(
       std::move(link),

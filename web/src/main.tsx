@@ -20,7 +20,7 @@ import { Watch } from "./watch/watch_tab";
 const tabs: Tab[] = [
   { name: "Plant", body: PlantTab, ofDrives: true },
   { name: "Watch", body: Watch, ofDrives: true },
-  { name: "Scope", body: Scope },
+  { name: "Scope", body: Scope, ofDrives: true },
   { name: "Parameters", body: Parameters, ofDrives: true },
   { name: "Bus", body: Bus },
   { name: "Program", body: Program },

@@ -243,6 +243,10 @@ test("a real drive is written only after a confirmation", { skip }, () =>
       assert.ok(await page.getByRole("button", { name: "Run" }).isDisabled());
       await page.getByRole("tab", { name: "Watch" }).click();
       await page.getByRole("row", { name: "P008" }).waitFor();
+      await page.getByRole("tab", { name: "Scope" }).click();
+      const kinds = page.getByRole("group", { name: "Trigger" }).locator("select").first();
+      await kinds.waitFor();
+      assert.deepEqual(await kinds.locator("option").allTextContents(), ["none", "level", "edge"]);
       await page.getByRole("tab", { name: "Program" }).click();
       await page.getByText("Only simulated plants have this").waitFor();
     },

@@ -2,6 +2,7 @@
 import { useState } from "preact/hooks";
 
 import { request } from "../server/connection";
+import { hello } from "../server/live";
 import type { Channel, WatchName } from "../server/protocol";
 import { command } from "../shell/notice";
 import { scope } from "./window";
@@ -43,7 +44,7 @@ export function ChannelsForm() {
             type="text"
             list="signals"
             aria-label={`Channel ${position + 1}`}
-            placeholder="STATION.NAME"
+            placeholder={hello.value?.mode === "device" ? "P000, 8318, H20" : "STATION.NAME"}
             defaultValue={channels[position]?.name ?? ""}
             onInput={(event) => void propose(event.currentTarget.value).then(setProposals)}
             onChange={(event) => send(position, event.currentTarget.value.trim())}

@@ -1,15 +1,15 @@
 // What the scope waits for, how much of the recording lies before it, and how long it is.
 import type { ComponentChildren } from "preact";
 
-import { plant, stationNames } from "../server/live";
+import { hello, plant, stationNames } from "../server/live";
 import type { Trigger } from "../server/protocol";
 import { command } from "../shell/notice";
 import { scope } from "./window";
 
-const kinds: { kind: Trigger["kind"]; text: string }[] = [
-  { kind: "none", text: "none" },
-  { kind: "level", text: "level" },
-  { kind: "edge", text: "edge" },
+const kinds: { kind: Trigger["kind"]; text: string; ofDrives?: boolean }[] = [
+  { kind: "none", text: "none", ofDrives: true },
+  { kind: "level", text: "level", ofDrives: true },
+  { kind: "edge", text: "edge", ofDrives: true },
   { kind: "fault", text: "fault of a drive" },
   { kind: "telegram", text: "telegram" },
   { kind: "line", text: "program line" },
@@ -141,12 +141,13 @@ export function TriggerForm() {
   const state = scope.value;
   if (!state) return null;
   const { trigger } = state;
+  const drive = hello.value?.mode === "device"; // its time does not stand still
   return (
     <fieldset>
       <legend>Trigger</legend>
       <Field text="On">
         <select value={trigger.kind} onChange={(event) => set(begin(event.currentTarget.value as Trigger["kind"]))}>
-          {kinds.map((one) => (
+          {kinds.filter((one) => !drive || one.ofDrives).map((one) => (
             <option key={one.kind} value={one.kind}>
               {one.text}
             </option>
@@ -157,7 +158,7 @@ export function TriggerForm() {
       {trigger.kind === "fault" && <StationField trigger={trigger} any />}
       {trigger.kind === "telegram" && <TelegramFields trigger={trigger} />}
       {trigger.kind === "line" && <LineFields trigger={trigger} />}
-      {trigger.kind !== "none" && (
+      {trigger.kind !== "none" && !drive && (
         <Field text="Then">
           <select value={trigger.stop ? "stop" : "on"} onChange={(event) => set({ ...trigger, stop: event.currentTarget.value === "stop" })}>
             <option value="on">time goes on</option>

@@ -57,7 +57,7 @@ export function TabList({ tabs }: { tabs: Tab[] }) {
 }
 
 function OnlyPlants() {
-  return <p class="empty">Only simulated plants have this. Of a real drive there are Plant, Watch and Parameters.</p>;
+  return <p class="empty">Only simulated plants have this. Of a real drive there are Plant, Watch, Scope and Parameters.</p>;
 }
 
 export function TabPanels({ tabs }: { tabs: Tab[] }) {

@@ -1,0 +1,106 @@
+// The scope of the page, one for all clients: channels, trigger, memory, views and CSV. It knows neither plant nor drive:
+// a source has the channels and the events that it can trigger on. It samples as `ipos run --trace` does, and its CSV is
+// written by the same code, so both have the same digits.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runtime/plant/plant_signals.hpp"
+#include "tools/serve/desk.hpp"
+#include "tools/serve/scope_memory.hpp"
+
+namespace ipos::tools::serve {
+
+class ScopeSource {
+ public:
+  // What a name stands for. A Mistake says what there is.
+  virtual std::vector<runtime::PlantSignal> find_channels(const std::string& name) = 0;
+  virtual runtime::Time now() const = 0;
+  // Watches for an event of this kind from now on, and calls Scope::happened(). Ends what it watched for before; the kinds
+  // none, level and edge are the scope's. A Mistake says why it cannot.
+  virtual void watch_for(const std::string& kind, const Arguments& settings) = 0;
+  virtual void stop(const std::string& why) = 0;  // the trigger is to stop the plant
+
+ protected:
+  ~ScopeSource() = default;
+};
+
+class Scope final {
+ public:
+  // Adds its commands and its topic.
+  Scope(Desk& desk, ScopeSource& source);
+
+  // The channels of the start; nothing where a client has chosen others.
+  void propose(std::vector<std::string> names);
+  // The signals are others: a new recording.
+  void built();
+  // A millisecond is over.
+  void passed(runtime::Time now);
+  // What the source watches for.
+  void happened(runtime::Time at, std::string why) { seen_ = {at, std::move(why)}; }
+
+  // What it reads each millisecond: its channels, and the signal of its trigger.
+  std::vector<const runtime::PlantSignal*> asked() const;
+  // A recording is to be triggered or ended.
+  bool waits() const { return state_ == State::Armed || state_ == State::Triggered; }
+
+  // What a copy of the host that goes on must know.
+  Json save() const;
+  void load(const Json& state);
+
+ private:
+  enum class State : uint8_t { Free, Armed, Triggered, Done };
+
+  // What starts a recording, beside the events of the source.
+  struct Trigger {
+    Json settings{{"kind", "none"}};
+    std::string kind = "none";
+    std::optional<runtime::PlantSignal> signal{};  // of level and edge
+    double value = 0;
+    bool below = false;
+    bool rising = false, falling = false;
+    bool stops = false;
+  };
+
+  Json set(const Arguments& settings);
+  Trigger trigger_of(const Json& json);
+  std::vector<runtime::PlantSignal> find(const std::vector<std::string>& names);
+  void begin_again();
+  void arm(bool single);
+  void fire(runtime::Time at, const std::string& why);
+  void look(runtime::Time now);
+  std::optional<std::string> value_triggers();
+
+  int64_t us_of(uint64_t number) const;
+  uint64_t number_at(int64_t us) const;
+  Json describe() const;
+  std::string points(uint64_t begin, uint64_t end, uint64_t step, uint32_t id) const;
+  Json view(const Desk::Call& call);
+  Json csv(const Desk::Call& call);
+  void publish(Client& client, Subscription& subscription);
+
+  Desk& desk_;
+  ScopeSource& source_;
+  std::vector<std::string> names_;
+  std::vector<runtime::PlantSignal> channels_;
+  ScopeMemory memory_;
+  std::vector<int64_t> samples_;
+  runtime::Time begin_ = runtime::kMillisecond;  // of sample 0
+  runtime::Time last_ = 0;                       // the last millisecond looked at
+  uint32_t recording_ = 0;
+  Trigger trigger_;
+  int64_t pre_ = 20;
+  int64_t length_ms_ = 5'000;
+  State state_ = State::Free;
+  bool single_ = false;
+  std::optional<runtime::Time> triggered_at_;
+  std::string trigger_text_;
+  std::optional<std::pair<runtime::Time, std::string>> seen_;  // what the source watches for
+  std::optional<double> previous_;                             // of the trigger's signal
+};
+
+}  // namespace ipos::tools::serve
