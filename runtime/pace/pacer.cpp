@@ -8,7 +8,7 @@
 namespace ipos::runtime {
 
 void Pacer::start() {
-  done_to_ = queue_.now();
+  first_ = done_to_ = queue_.now();
   behind_ = rests_ = false;
   event_ = queue_.schedule(done_to_, source_, *this, 0);
 }
@@ -81,10 +81,11 @@ void Pacer::plan(Time now) {
   event_ = queue_.schedule(next, source_, *this, 0);
 }
 
-// The tick of this moment counts when its turn is over.
+// The tick of this moment counts when its turn is over. Ticks come a millisecond after the other from the first one on,
+// which may lie between two whole milliseconds: a unit is switched on at any time.
 Time Pacer::last_tick() const {
   const Time now = queue_.now();
-  const Time last = now / kMillisecond * kMillisecond;
+  const Time last = now - (now - first_) % kMillisecond;
   return last == now && !queue_.has_passed(source_) ? last - kMillisecond : last;
 }
 

@@ -68,6 +68,7 @@ class Pacer final : private EventTarget {
   bool rests_ = false;
   bool runs_ = false;  // run_to() is under way
   EventId event_ = kNoEvent;
+  Time first_ = 0;      // the first tick since start()
   Time done_to_ = 0;    // the first tick that was not executed
   Time silent_to_ = 0;  // the tick that comes in its turn again
   Inbox inbox_;

@@ -48,8 +48,10 @@ class SbusPort final : public StationPort, private CanNode, private SlaveObserve
   Time tick(Time now) override {
     if (leads()) [[unlikely]]
       return lead(now);
-    const int64_t due = objects_.tick(now / kMillisecond, door_.variables_in_turn());
-    return due == INT64_MAX ? kNever : due * kMillisecond;
+    const int64_t ms = now / kMillisecond;
+    const int64_t due = objects_.tick(ms, door_.variables_in_turn());
+    // A unit that was switched on between two whole milliseconds keeps its ticks there.
+    return due == INT64_MAX ? kNever : now + (due - ms) * kMillisecond;
   }
   bool has_waiting_frames() const override { return line_.has_waiting(node()); }
   void want_again() override {

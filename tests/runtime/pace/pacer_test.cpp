@@ -2,6 +2,7 @@
 // and leaves what a run in turn finds and leaves.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <random>
 #include <utility>
@@ -34,7 +35,7 @@ struct Toy final : runtime::Timed, runtime::TelegramReader {
     const int64_t n = now / kMillisecond;
     settle();
     if (n % 7 == 0) sent.push_back(sum);
-    return (n / 7 + 1) * 7 * kMillisecond;
+    return now + ((n / 7 + 1) * 7 - n) * kMillisecond;
   }
   Ticks horizon(Time first) override { return static_cast<Ticks>((10 - first / kMillisecond % 10) % 10); }
   Ticks advance(Time /*first*/, Ticks most) override {
@@ -61,7 +62,10 @@ struct Toy final : runtime::Timed, runtime::TelegramReader {
 };
 
 struct Rig {
-  explicit Rig(Pace pace) : pacer(queue, kSource, toy, pace) { pacer.start(); }
+  explicit Rig(Pace pace, Time start = 0) : pacer(queue, kSource, toy, pace) {
+    queue.run_until(start);
+    pacer.start();
+  }
   int64_t look() {
     pacer.catch_up();
     return toy.sum;
@@ -86,12 +90,14 @@ TEST(Pacer, WhoeverComesFindsWhatARunInTurnHas) {
   uint64_t behind = 0;
   for (uint64_t seed = 1; seed <= 200; ++seed) {
     std::mt19937_64 random(seed);
-    Rig expected(Pace::InTurn), lazy(Pace::Lazy);
+    // Every other one begins between two whole milliseconds.
+    const Time start = seed % 2 == 0 ? static_cast<Time>(random() % kMillisecond) : 0;
+    Rig expected(Pace::InTurn, start), lazy(Pace::Lazy, start);
     lazy.toy.quiet = static_cast<Ticks>(random() % 40);
-    Time now = 0;
+    Time now = start;
     for (int n = 0; n < 500; ++n) {
       now += static_cast<Time>(random() % (12 * kMillisecond));
-      if (random() % 4 == 0) now = now / kMillisecond * kMillisecond;
+      if (random() % 4 == 0) now = std::max(start, now / kMillisecond * kMillisecond);
       expected.queue.run_until(now);
       lazy.queue.run_until(now);
       behind += lazy.pacer.behind() ? 1 : 0;

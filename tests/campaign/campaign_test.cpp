@@ -1,0 +1,168 @@
+// The whole system from one seed: a random plant with its programs in trouble runs on every engine, in turn and not, and is
+// the same each time. A run that fails is made smaller before it is told.
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "tests/campaign/trouble.hpp"
+#include "tests/runtime/plant/loop_body.hpp"
+#include "tests/runtime/plant/machine_code.hpp"
+#include "tests/runtime/plant/picture.hpp"
+#include "tests/runtime/plant/plant_rig.hpp"
+
+namespace ipos::tests {
+namespace {
+
+using runtime::Plant;
+using runtime::Time;
+
+// A plant that grows without end would have more than this after some seconds.
+constexpr size_t kMostEntries = 20'000;
+
+struct Way {
+  const char* name;
+  bool lazy, fast, machine;
+};
+// The first one is the expected value.
+constexpr Way kWays[] = {{"reference engine, in turn", false, false, false},
+                         {"reference engine, lazy", true, false, false},
+                         {"threaded code, lazy", true, true, false},
+                         {"threaded code, in turn", false, true, false},
+                         {"machine code, lazy", true, true, true}};
+
+runtime::Execution execution_of(const Way& way) {
+  runtime::Execution execution;
+  execution.pace = way.lazy ? runtime::Pace::Lazy : runtime::Pace::InTurn;
+  execution.fast = way.fast;
+  if (way.machine) execution.compiler = machine_code;
+  return execution;
+}
+
+void do_deed(Plant& plant, const Deed& deed) {
+  runtime::Station& station = *plant.stations()[deed.target % plant.stations().size()];
+  switch (deed.kind) {
+    case Deed::Kind::PowerOff:
+      if (station.powered()) station.power_off();
+      break;
+    case Deed::Kind::PowerOn:
+      if (!station.powered()) station.power_on();
+      break;
+    case Deed::Kind::Send: plant.buses()[deed.target]->send(deed.message); break;
+    case Deed::Kind::Force: station.inputs().line(deed.index).forced = static_cast<int8_t>(deed.value); break;
+    case Deed::Kind::Write:
+      if (station.powered())
+        (void)station.drive().parameters().execute(runtime::ParameterService::WriteVolatile, deed.index, deed.value);
+      break;
+    case Deed::Kind::Look: break;
+  }
+}
+
+// What each look sees, and at the end all that was on the buses.
+struct Course {
+  std::vector<std::string> looks;
+  std::string frames, telegrams;
+  size_t entries = 0;
+};
+
+std::optional<Course> run(const Trouble& trouble, const Way& way) {
+  auto made = make_plant(trouble.text(), trouble.programs, std::nullopt, execution_of(way));
+  if (!made) return std::nullopt;
+  Watched watched(std::move(made));
+  Plant& plant = *watched.plant;
+  for (const auto& bus : plant.buses())
+    if (bus->kind() != runtime::BusKind::Profibus) bus->attach_hand();
+  Course course;
+  for (const Deed& deed : trouble.deeds) {
+    plant.run_until(deed.at);
+    do_deed(plant, deed);
+    if (deed.kind == Deed::Kind::Look) course.looks.push_back(picture(plant));
+  }
+  plant.run_until(trouble.end);
+  course.looks.push_back(picture(plant));
+  course.frames = watched.frames.str();
+  course.telegrams = watched.telegrams.str();
+  course.entries = plant.journal().entries().size();
+  return course;
+}
+
+// The words of a picture that differ, with what is expected before them.
+std::string difference(const std::string& expected, const std::string& actual) {
+  std::istringstream wanted(expected), had(actual);
+  std::string out;
+  std::string wanted_line, had_line;
+  for (int line = 1; std::getline(wanted, wanted_line); ++line) {
+    if (!std::getline(had, had_line)) return out + fmt::format("line {} '{}' is missing", line, wanted_line);
+    if (wanted_line == had_line) continue;
+    std::istringstream left(wanted_line), right(had_line);
+    std::string a, b;
+    out += fmt::format("line {}", line);
+    for (int word = 1; left >> a && right >> b; ++word)
+      if (a != b) out += fmt::format(" word {}: {} not {},", word, a, b);
+    out += '\n';
+  }
+  if (std::getline(had, had_line)) out += fmt::format("'{}' is too much\n", had_line);
+  return out;
+}
+
+// Nothing, or what is wrong with it.
+std::optional<std::string> complaint(const Trouble& trouble) {
+  const auto expected = run(trouble, kWays[0]);
+  if (!expected) return "the plant is refused";
+  if (expected->entries > kMostEntries) return fmt::format("{} entries in the journal", expected->entries);
+  for (const Way& way : std::span(kWays).subspan(1)) {
+    const auto course = run(trouble, way);
+    if (!course) return fmt::format("{}: the plant is refused", way.name);
+    for (size_t look = 0; look < expected->looks.size(); ++look)
+      if (course->looks[look] != expected->looks[look])
+        return fmt::format("{}: look {}: {}", way.name, look, difference(expected->looks[look], course->looks[look]));
+    if (course->frames != expected->frames) return fmt::format("{}: frames differ", way.name);
+    if (course->telegrams != expected->telegrams) return fmt::format("{}: telegrams differ", way.name);
+  }
+  return std::nullopt;
+}
+
+template <typename Part>
+void leave_out(std::vector<Part> Trouble::*parts, Trouble& trouble) {
+  for (size_t length = (trouble.*parts).size(); length > 0; length /= 2)
+    for (size_t at = 0; at < (trouble.*parts).size();) {
+      Trouble less = trouble;
+      const auto begin = (less.*parts).begin() + static_cast<std::ptrdiff_t>(at);
+      (less.*parts).erase(begin, begin + static_cast<std::ptrdiff_t>(std::min(length, (less.*parts).size() - at)));
+      if (complaint(less))
+        trouble = std::move(less);
+      else
+        at += length;
+    }
+}
+
+// Without the deeds and faults that it does not need, and no longer than it must be.
+Trouble smaller(Trouble trouble) {
+  leave_out(&Trouble::deeds, trouble);
+  leave_out(&Trouble::faults, trouble);
+  for (Time shorter = trouble.end / 2; shorter > runtime::kMillisecond; shorter /= 2) {
+    Trouble less = trouble;
+    less.end -= shorter;
+    if ((less.deeds.empty() || less.deeds.back().at <= less.end) && complaint(less)) trouble = std::move(less);
+  }
+  return trouble;
+}
+
+TEST(Campaign, PlantsInTroubleAreTheSameInAllWays) {
+  for (uint64_t seed = 1; seed <= plant_count(60); ++seed) {
+    const Trouble trouble = draw_trouble(seed);
+    if (!complaint(trouble)) continue;
+    const Trouble least = smaller(trouble);
+    ADD_FAILURE() << *complaint(least) << '\n' << describe(least);
+  }
+}
+
+// The same seed is the same trouble, and what is left out of it is gone.
+TEST(Campaign, TroubleIsDrawnFromItsSeed) {
+  EXPECT_EQ(describe(draw_trouble(7)), describe(draw_trouble(7)));
+  EXPECT_NE(describe(draw_trouble(7)), describe(draw_trouble(8)));
+}
+
+}  // namespace
+}  // namespace ipos::tests

@@ -1,0 +1,164 @@
+// The plants are those of tests/runtime/plant; here comes what they have to bear.
+#include "tests/campaign/trouble.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <random>
+
+#include "tests/runtime/plant/busy_plant.hpp"
+#include "tests/runtime/plant/waiting_plant.hpp"
+
+namespace ipos::tests {
+namespace {
+
+using runtime::kMillisecond;
+using runtime::Time;
+
+constexpr int kLongest = 2'500;  // ms of a run
+
+class Dice {
+ public:
+  explicit Dice(uint64_t seed) : random_(seed * 2 + 1) {}
+  int pick(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random_); }
+  bool one_in(int n) { return pick(1, n) == 1; }
+
+ private:
+  std::mt19937_64 random_;
+};
+
+size_t count(const std::string& text, std::string_view word) {
+  size_t found = 0;
+  for (size_t at = 0; (at = text.find(word, at)) != std::string::npos; at += word.size()) ++found;
+  return found;
+}
+
+std::string fault(Dice& dice) {
+  const int from = dice.pick(0, kLongest - 200);
+  const std::string until = fmt::format("from = \"{}us\"\nuntil = \"{}us\"\n", from * 1000 + dice.pick(0, 999),
+                                        (from + dice.pick(1, 800)) * 1000);
+  static constexpr const char* kOfFrames[] = {"drop", "corrupt", "duplicate", "terminator"};
+  static constexpr const char* kOfWires[] = {"short", "stuck"};
+  switch (dice.pick(0, 3)) {
+    case 0:
+      return fmt::format("[[fault]]\nbus = \"can\"\nkind = \"{}\"\nrate = {}\nseed = {}\n{}", kOfFrames[dice.pick(0, 3)],
+                         dice.pick(1, 400), dice.pick(1, 999), until);
+    case 1:
+      return fmt::format("[[fault]]\nbus = \"can\"\nkind = \"delay\"\ndelay = \"{}us\"\nrate = {}\nseed = {}\n{}",
+                         dice.pick(1, 20'000), dice.pick(1, 400), dice.pick(1, 999), until);
+    case 2:
+      return fmt::format("[[fault]]\nbus = \"can\"\nkind = \"{}\"\nstation = \"u0\"\n{}",
+                         dice.one_in(2) ? "cut" : "swap", until);
+    default: return fmt::format("[[fault]]\nbus = \"can\"\nkind = \"{}\"\n{}", kOfWires[dice.pick(0, 1)], until);
+  }
+}
+
+// A frame that nobody should send: identifiers of units and objects, wrong lengths, remote frames, noise.
+std::string hostile_frame(Dice& dice) {
+  const int id = dice.one_in(2)   ? dice.pick(0, 0x7FF)
+                 : dice.one_in(2) ? 8 * dice.pick(0, 9) + dice.pick(0, 7)
+                                  : 1100 + dice.pick(0, 6);
+  if (dice.one_in(12)) return fmt::format("{:03X}#R", id);
+  std::string text = fmt::format("{:03X}#", id);
+  for (int n = dice.pick(0, 8); n > 0; --n) text += fmt::format("{:02X}", dice.pick(0, 255));
+  return text;
+}
+
+// A request, whole or broken, with a right or a wrong check.
+std::string hostile_bytes(Dice& dice) {
+  std::string text = dice.one_in(4) ? "" : fmt::format("02 {:02X} 85", dice.pick(0, 9));
+  for (int n = dice.pick(1, 9); n > 0; --n) text += fmt::format(" {:02X}", dice.pick(0, 255));
+  if (!dice.one_in(4)) text += " bcc";
+  return text.starts_with(' ') ? text.substr(1) : text;
+}
+
+Deed deed(Dice& dice, size_t stations) {
+  Deed deed;
+  deed.at = Time{dice.pick(0, kLongest * 1000)} * runtime::kMicrosecond;
+  deed.target = static_cast<size_t>(dice.pick(0, static_cast<int>(stations) - 1));
+  switch (dice.pick(0, 7)) {
+    case 0: deed.kind = Deed::Kind::PowerOff; break;
+    case 1: deed.kind = Deed::Kind::PowerOn; break;
+    case 2:
+    case 3:
+      deed.kind = Deed::Kind::Send;
+      deed.target = dice.one_in(3) ? 1 : 0;
+      deed.message = deed.target == 0 ? hostile_frame(dice) : hostile_bytes(dice);
+      break;
+    case 4:
+      deed.kind = Deed::Kind::Force;
+      deed.index = static_cast<uint16_t>(dice.pick(0, 5));
+      deed.value = dice.pick(0, 1);
+      break;
+    case 5:
+      deed.kind = Deed::Kind::Write;
+      deed.index = static_cast<uint16_t>(dice.one_in(3) ? 8'300 + dice.pick(0, 700) : 11'000 + dice.pick(0, 560));
+      deed.value = dice.one_in(2) ? dice.pick(-3, 200) : dice.pick(INT32_MIN, INT32_MAX);
+      break;
+    default: break;  // who looks, or lets time stand still a while
+  }
+  return deed;
+}
+
+const char* word(Deed::Kind kind) {
+  switch (kind) {
+    case Deed::Kind::PowerOff: return "power off";
+    case Deed::Kind::PowerOn: return "power on";
+    case Deed::Kind::Send: return "send";
+    case Deed::Kind::Force: return "force";
+    case Deed::Kind::Write: return "write";
+    case Deed::Kind::Look: return "look";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string Trouble::text() const {
+  std::string text = plant;
+  for (const std::string& one : faults) text += one;
+  return text;
+}
+
+Trouble draw_trouble(uint64_t seed) {
+  Dice dice(seed);
+  Trouble trouble;
+  trouble.seed = seed;
+  if (dice.one_in(2)) {
+    const BusyPlant plant(seed);
+    trouble.plant = plant.text();
+    trouble.programs = plant.sources();
+  } else {
+    const WaitingPlant plant(seed);
+    trouble.plant = plant.text();
+    trouble.programs = plant.sources();
+  }
+  const size_t stations = count(trouble.plant, "[[station]]");
+  for (int n = dice.pick(0, 4); n > 0; --n) trouble.faults.push_back(fault(dice));
+  for (int n = dice.pick(4, 40); n > 0; --n) trouble.deeds.push_back(deed(dice, stations));
+  // A storm: many messages in a row.
+  if (dice.one_in(4)) {
+    Deed storm;
+    storm.kind = Deed::Kind::Send;
+    const Time at = Time{dice.pick(0, kLongest - 100)} * kMillisecond;
+    for (int n = dice.pick(20, 200); n > 0; --n) {
+      storm.at = at + Time{n * dice.pick(50, 400)} * runtime::kMicrosecond;
+      storm.message = hostile_frame(dice);
+      trouble.deeds.push_back(storm);
+    }
+  }
+  trouble.end = Time{kLongest} * kMillisecond;
+  std::ranges::stable_sort(trouble.deeds, {}, &Deed::at);
+  return trouble;
+}
+
+std::string describe(const Trouble& trouble) {
+  std::string out = fmt::format("seed {}\n{}", trouble.seed, trouble.text());
+  for (const auto& [name, source] : trouble.programs) out += fmt::format("--- {}\n{}", name, source);
+  for (const Deed& one : trouble.deeds)
+    out += fmt::format("{} ns: {} {} index {} value {} '{}'\n", one.at, word(one.kind), one.target, one.index, one.value,
+                       one.message);
+  return out + fmt::format("until {} ns\n", trouble.end);
+}
+
+}  // namespace ipos::tests
