@@ -1,4 +1,4 @@
-"""A bus of a plant: frames of a CAN line, telegrams of a serial one."""
+"""A bus of a plant: frames of a CAN line, telegrams of an RS-485 or PROFIBUS line."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Frame:
 
 
 class Telegram:
-    """A telegram of a serial line: bytes, what they say, and whether they are valid."""
+    """A telegram of an RS-485 line or a frame of a PROFIBUS line: bytes, what they say, and whether they are valid."""
 
     __slots__ = ("start", "time", "data", "valid", "text")
 
@@ -60,7 +60,7 @@ class Bus:
     def __init__(self, plant: "Plant", number: int, info: lib.BusInfo) -> None:
         self._plant, self._number = plant, number
         self.name = lib.text(info.name)
-        self.kind = "can" if info.kind == 0 else "serial"
+        self.kind = ("can", "serial", "profibus")[info.kind]
         self.baud: int = info.baud
         self._senders: dict[int, str] = {}
         self.last: "deque[Frame | Telegram]" = deque(maxlen=_LAST)  # of those that were given
@@ -71,10 +71,10 @@ class Bus:
         return f"<Bus {self.name}: {self.kind}, {self.baud} baud, load {self.load:.2f} %>"
 
     def send(self, id: int | bytes, data: bytes = b"", *, extended: bool = False, remote: bool = False, length: int | None = None) -> int:
-        """Queues a frame: bus.send(0x20B, bytes([1, 2])). On a serial line: bus.send(bytes). Returns the tag of a frame."""
-        if self.kind == "serial":
+        """Queues a frame: bus.send(0x20B, bytes([1, 2])). On the other lines: bus.send(bytes). Returns the tag of a frame."""
+        if self.kind != "can":
             if not isinstance(id, (bytes, bytearray)) or data:
-                raise TypeError("on a serial line bytes are sent: bus.send(bytes)")
+                raise TypeError(f"on a {self.kind} line bytes are sent: bus.send(bytes)")
             self._plant._call("serial_send", self._number, bytes(id), len(id))
             return 0
         if isinstance(id, bool) or not isinstance(id, int):
@@ -98,11 +98,11 @@ class Bus:
         self._plant._call("join", self._number)
 
     def frames(self, *, errors: bool = False) -> list[Frame] | list[Telegram]:
-        """What the bus has carried since the last call, own frames included; telegrams of a serial line.
+        """What the bus has carried since the last call, own frames included; telegrams of the other lines.
 
         errors=True: error frames of the line, too, with the classes of SocketCAN in their id.
         """
-        if self.kind == "serial":
+        if self.kind != "can":
             return self.telegrams()
         found: list[Frame] = []
         rows = (lib.FrameRow * _AT_A_TIME)()
@@ -117,7 +117,7 @@ class Bus:
                 return found
 
     def telegrams(self) -> list[Telegram]:
-        """The telegrams of a serial line since the last call."""
+        """The telegrams of an RS-485 line, or the frames of a PROFIBUS line, since the last call."""
         found: list[Telegram] = []
         row = lib.TelegramRow()
         while True:
@@ -136,7 +136,7 @@ class Bus:
 
     @property
     def count(self) -> int:
-        """Frames the line has carried; of a serial line characters."""
+        """Frames the line has carried; of an RS-485 line characters."""
         return self._load().frames
 
     @property

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
+#include <span>
 #include <utility>
 
+#include "runtime/bus/log/profibus_log.hpp"
 #include "runtime/bus/log/serial_log.hpp"
 #include "runtime/library/handle.hpp"
 
@@ -18,8 +21,8 @@ ipos_plant_status no_bus(ipos_plant* plant, std::string_view what) {
 
 std::string bus_names(Session& session) {
   std::vector<std::string_view> names;
-  for (const auto& tap : session.world().can()) names.push_back(tap->line().name());
-  for (const auto& tap : session.world().serial()) names.push_back(tap->line().name());
+  for (size_t bus = 0; bus < session.world().line_count(); ++bus)
+    session.world().with_line(bus, [&](auto& tap) { names.push_back(tap.line().name()); });
   return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
@@ -32,16 +35,21 @@ ipos_plant_status with_can(ipos_plant* plant, uint32_t bus, Allowed allowed, Act
     return action(session, *taps[bus]);
   });
 }
+// For the line of this number, of one of the kinds that carry octets.
 template <typename Action>
-ipos_plant_status with_serial(ipos_plant* plant, uint32_t bus, Action action) {
+ipos_plant_status with_octets(ipos_plant* plant, uint32_t bus, Action action) {
   return enter(plant, Allowed::NotInCallbacks, [&](Session& session) -> ipos_plant_status {
-    auto& taps = session.world().serial();
-    const size_t first = session.world().can().size();
-    if (bus < first || bus - first >= taps.size())
-      return no_bus(plant, fmt::format("no serial line has number {}", bus));
-    return action(session, *taps[bus - first]);
+    std::optional<ipos_plant_status> status;
+    session.world().with_line(bus, [&](auto& tap) {
+      if constexpr (requires { tap.kLongest; }) status = action(session, tap);
+    });
+    return status ? *status : no_bus(plant, fmt::format("no serial line has number {}", bus));
   });
 }
+
+ipos_plant_bus_kind kind_of(const CanTap&) { return IPOS_PLANT_CAN; }
+ipos_plant_bus_kind kind_of(const SerialTap&) { return IPOS_PLANT_SERIAL; }
+ipos_plant_bus_kind kind_of(const ProfibusTap&) { return IPOS_PLANT_PROFIBUS; }
 
 ipos_plant_status perform(ipos_plant* plant, Session& session, Act act, uint32_t bus, int64_t value,
                           std::vector<uint8_t> bytes) {
@@ -78,35 +86,31 @@ ipos_plant_frame frame_of(const Heard& heard) {
   return frame;
 }
 
+std::span<const uint8_t> octets_of(const ipos::runtime::Reception& heard) { return heard.bytes.span(); }
+std::span<const uint8_t> octets_of(const ipos::profibus::Reception& heard) { return heard.octets; }
+bool is_whole(const ipos::runtime::Reception& heard) { return heard.telegram.has_value(); }
+bool is_whole(const ipos::profibus::Reception& heard) { return heard.frame.has_value(); }
+
 }  // namespace
 
 ipos_plant_status ipos_plant_bus_at(ipos_plant* plant, uint32_t bus, ipos_plant_bus_info* info) {
   return enter(plant, Allowed::Anywhere, [=](Session& session) {
     if (info == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
-    auto& can = session.world().can();
-    auto& serial = session.world().serial();
-    if (bus < can.size())
-      *info = {plant->keep(can[bus]->line().name()), IPOS_PLANT_CAN, can[bus]->line().baud()};
-    else if (bus - can.size() < serial.size())
-      *info = {plant->keep(serial[bus - can.size()]->line().name()), IPOS_PLANT_SERIAL,
-               serial[bus - can.size()]->line().baud()};
-    else
-      return no_bus(plant, fmt::format("there is no bus number {}", bus));
-    return ipos_plant_status{IPOS_PLANT_OK};
+    const bool found = session.world().with_line(bus, [&](auto& tap) {
+      *info = {plant->keep(tap.line().name()), kind_of(tap), tap.line().baud()};
+    });
+    return found ? ipos_plant_status{IPOS_PLANT_OK}
+                 : no_bus(plant, fmt::format("there is no bus number {}", bus));
   });
 }
 
 ipos_plant_status ipos_plant_bus(ipos_plant* plant, const char* name, uint32_t* bus) {
   return enter(plant, Allowed::Anywhere, [=](Session& session) {
     if (name == nullptr || bus == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
-    uint32_t number = 0;
-    for (const auto& tap : session.world().can()) {
-      if (tap->line().name() == name) return *bus = number, ipos_plant_status{IPOS_PLANT_OK};
-      ++number;
-    }
-    for (const auto& tap : session.world().serial()) {
-      if (tap->line().name() == name) return *bus = number, ipos_plant_status{IPOS_PLANT_OK};
-      ++number;
+    for (uint32_t number = 0; number < session.world().line_count(); ++number) {
+      bool is_it = false;
+      session.world().with_line(number, [&](auto& tap) { is_it = tap.line().name() == name; });
+      if (is_it) return *bus = number, ipos_plant_status{IPOS_PLANT_OK};
     }
     return no_bus(plant, fmt::format("there is no bus '{}'; the plant has {}", name, bus_names(session)));
   });
@@ -115,16 +119,10 @@ ipos_plant_status ipos_plant_bus(ipos_plant* plant, const char* name, uint32_t* 
 ipos_plant_status ipos_plant_bus_load(ipos_plant* plant, uint32_t bus, ipos_plant_load* load) {
   return enter(plant, Allowed::Anywhere, [=](Session& session) {
     if (load == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
-    auto& can = session.world().can();
-    auto& serial = session.world().serial();
     const ipos::runtime::Time now = session.plant().now();
-    if (bus < can.size())
-      *load = load_of(*can[bus], now);
-    else if (bus - can.size() < serial.size())
-      *load = load_of(*serial[bus - can.size()], now);
-    else
-      return no_bus(plant, fmt::format("there is no bus number {}", bus));
-    return ipos_plant_status{IPOS_PLANT_OK};
+    const bool found = session.world().with_line(bus, [&](auto& tap) { *load = load_of(tap, now); });
+    return found ? ipos_plant_status{IPOS_PLANT_OK}
+                 : no_bus(plant, fmt::format("there is no bus number {}", bus));
   });
 }
 
@@ -190,28 +188,27 @@ ipos_plant_status ipos_plant_node_name(ipos_plant* plant, uint32_t bus, uint32_t
 
 ipos_plant_status ipos_plant_serial_send(ipos_plant* plant, uint32_t bus, const uint8_t* bytes,
                                          size_t length) {
-  return with_serial(plant, bus, [=](Session& session, SerialTap&) {
+  return with_octets(plant, bus, [=](Session& session, auto& tap) {
     if (bytes == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
-    if (length == 0 || length > SerialTap::kLongest)
-      return plant->fail(IPOS_PLANT_BAD_VALUE,
-                         fmt::format("1 to {} bytes can be sent at a time", SerialTap::kLongest));
+    if (length == 0 || length > tap.kLongest)
+      return plant->fail(IPOS_PLANT_BAD_VALUE, fmt::format("1 to {} bytes can be sent at a time", tap.kLongest));
     return perform(plant, session, Act::SerialSend, bus, 0, {bytes, bytes + length});
   });
 }
 
 ipos_plant_status ipos_plant_serial_receive(ipos_plant* plant, uint32_t bus, ipos_plant_telegram* telegram) {
-  return with_serial(plant, bus, [=](Session&, SerialTap& tap) {
+  return with_octets(plant, bus, [=](Session&, auto& tap) -> ipos_plant_status {
     if (telegram == nullptr) return IPOS_PLANT_INVALID_ARGUMENT;
     const auto reception = tap.heard().take();
     if (!reception) return IPOS_PLANT_NOTHING;
-    const auto heard = reception->bytes.span();
+    const auto heard = octets_of(*reception);
     plant->bytes.assign(heard.begin(), heard.end());
     *telegram = {reception->start,
                  reception->end,
                  plant->bytes.data(),
                  plant->bytes.size(),
-                 reception->telegram.has_value(),
-                 plant->hand_out(reception_text(*reception))};
+                 is_whole(*reception),
+                 plant->hand_out(ipos::runtime::reception_text(*reception))};
     return IPOS_PLANT_OK;
   });
 }

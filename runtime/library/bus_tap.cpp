@@ -80,4 +80,20 @@ void SerialTap::on_character(const runtime::Rs485Line&, NodeId, const runtime::C
   if (auto reception = receiver_.take(character)) heard_.put(*std::move(reception));
 }
 
+ProfibusTap::ProfibusTap(profibus::Line& line) : line_(line) {
+  line.add_observer(static_cast<profibus::LineObserver&>(*this));
+}
+
+Refusal ProfibusTap::send(std::span<const uint8_t> octets) {
+  if (!node_) node_ = line_.attach("library", *this);
+  const profibus::Bits begin = line_.quiet_since() + profibus::kSynBits;
+  return line_.send(*node_, begin, {octets.begin(), octets.end()})
+             ? std::nullopt
+             : Refusal("the frame before is still being sent");
+}
+
+void ProfibusTap::on_frame(const profibus::Line&, NodeId, const profibus::Reception& reception) {
+  heard_.put(reception);
+}
+
 }  // namespace ipos::library

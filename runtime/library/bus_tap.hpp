@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "runtime/bus/movilink/serial_receiver.hpp"
+#include "runtime/bus/profibus/line.hpp"
 #include "runtime/plant/hands.hpp"
 
 namespace ipos::library {
@@ -104,6 +105,32 @@ class SerialTap final : private runtime::SerialObserver, private runtime::Serial
   std::optional<NodeId> node_;
   runtime::SerialReceiver receiver_;
   Kept<runtime::Reception> heard_;
+};
+
+class ProfibusTap final : private profibus::LineObserver, private profibus::Node {
+ public:
+  static constexpr size_t kLongest = 300;  // octets in one sending (ours); a frame has 255 at most
+
+  explicit ProfibusTap(profibus::Line& line);
+  ProfibusTap(const ProfibusTap&) = delete;
+  ProfibusTap& operator=(const ProfibusTap&) = delete;
+
+  // Behind the idle time that a request wants; into a frame that is under way.
+  Refusal send(std::span<const uint8_t> octets);
+  Kept<profibus::Reception>& heard() { return heard_; }
+  const Kept<profibus::Reception>& heard() const { return heard_; }
+  const profibus::Line& line() const { return line_; }
+
+ private:
+  void on_frame(const profibus::Line&, NodeId sender,
+                const profibus::Reception& reception) override;
+  void on_line_event(const profibus::Line&, const profibus::LineEvent&) override {}
+  void on_reception(Time, const profibus::Reception&) override {}
+  void on_sent(Time) override {}
+
+  profibus::Line& line_;
+  std::optional<NodeId> node_;
+  Kept<profibus::Reception> heard_;
 };
 
 }  // namespace ipos::library

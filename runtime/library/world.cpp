@@ -39,6 +39,9 @@ std::optional<runtime::Frame> frame_of(std::span<const uint8_t> bytes) {
 World::World(std::unique_ptr<runtime::Plant> plant) : plant_(std::move(plant)), hands_(*plant_) {
   for (const auto& line : plant_->lines()) can_.push_back(std::make_unique<CanTap>(*line));
   for (const auto& line : plant_->serial_lines()) serial_.push_back(std::make_unique<SerialTap>(line->line()));
+  for (const auto& bus : plant_->buses())
+    if (auto* line = dynamic_cast<runtime::ProfibusBus*>(bus.get()))
+      profibus_.push_back(std::make_unique<ProfibusTap>(line->line()));
 }
 
 Refusal World::touch(const Deed& deed, Touch touch) {
@@ -49,11 +52,12 @@ Refusal World::touch(const Deed& deed, Touch touch) {
 
 Refusal World::send(const Deed& deed) {
   if (deed.act == Act::SerialSend) {
-    const size_t number = deed.number - can_.size();
-    if (deed.number < can_.size() || number >= serial_.size() || deed.bytes.empty() ||
-        deed.bytes.size() > SerialTap::kLongest)
-      return std::string(kStrange);
-    return serial_[number]->send(deed.bytes);
+    Refusal refused = std::string(kStrange);
+    with_line(deed.number, [&](auto& tap) {
+      if constexpr (requires { tap.send(std::span(deed.bytes)); })
+        if (!deed.bytes.empty() && deed.bytes.size() <= tap.kLongest) refused = tap.send(deed.bytes);
+    });
+    return refused;
   }
   if (deed.number >= can_.size()) return std::string(kStrange);
   if (deed.act == Act::Join) {

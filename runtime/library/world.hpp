@@ -21,6 +21,19 @@ class World {
   const runtime::Plant& plant() const { return *plant_; }
   std::vector<std::unique_ptr<CanTap>>& can() { return can_; }
   std::vector<std::unique_ptr<SerialTap>>& serial() { return serial_; }
+  std::vector<std::unique_ptr<ProfibusTap>>& profibus() { return profibus_; }
+
+  // Runs `action(tap)` for the line of this number: CAN lines first, then serial ones, then PROFIBUS. False: there is none.
+  template <typename Action>
+  bool with_line(size_t number, Action action) {
+    const auto among = [&](auto& taps) {
+      if (number < taps.size()) return action(*taps[number]), true;
+      number -= taps.size();
+      return false;
+    };
+    return among(can_) || among(serial_) || among(profibus_);
+  }
+  size_t line_count() const { return can_.size() + serial_.size() + profibus_.size(); }
 
  private:
   Refusal touch(const Deed& deed, Touch touch);
@@ -31,6 +44,7 @@ class World {
   runtime::Hands hands_;
   std::vector<std::unique_ptr<CanTap>> can_;
   std::vector<std::unique_ptr<SerialTap>> serial_;
+  std::vector<std::unique_ptr<ProfibusTap>> profibus_;
 };
 
 // A frame in a deed, and back; nothing when the bytes are none.

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <utility>
 
 namespace ipos::runtime {
@@ -15,46 +13,18 @@ constexpr size_t kMostDpFrames = 64;  // from the port; the rest waits in the sy
 }  // namespace
 
 ProfibusBridge::ProfibusBridge(EventQueue& queue, uint32_t source, profibus::Line& line, BytePort& port)
-    : queue_(queue),
+    : ByteBridge(port),
+      queue_(queue),
       source_(source),
       line_(line),
-      port_(port),
       node_(line.attach(port.name(), *this)),
       character_(static_cast<Time>(profibus::kCharacterBits) * kSecond / line.baud()) {}
 
+std::string ProfibusBridge::crowded() const {
+  return fmt::format("frames wait for the simulated line: they come faster than its {} baud", line_.baud());
+}
+
 bool ProfibusBridge::has_room() const { return arrivals_.size() < kMostDpFrames; }
-
-PortNeeds ProfibusBridge::needs() const {
-  PortNeeds needs = port_.needs();
-  if (!has_room()) needs.descriptor = -1;  // what cannot be taken must not wake the loop
-  return needs;
-}
-
-bool ProfibusBridge::gone(const PortError& error) {
-  notes_.note(error.text);
-  return false;
-}
-
-bool ProfibusBridge::collect(Time epoch) {
-  std::array<ByteArrival, 256> bytes;
-  while (has_room()) {
-    const auto count = port_.receive(bytes);
-    if (!count) return gone(count.error());
-    if (*count == 0) return true;
-    for (ByteArrival& byte : std::span(bytes).first(*count)) {
-      byte.at -= epoch;
-      arrive(byte);
-    }
-  }
-  notes_.note(fmt::format("{}: frames wait for the simulated line: they come faster than its {} baud",
-                          port_.name(), line_.baud()));
-  return true;
-}
-
-bool ProfibusBridge::flush() {
-  const auto flushed = port_.flush();
-  return flushed ? true : gone(flushed.error());
-}
 
 void ProfibusBridge::arrive(const ByteArrival& byte) {
   Character character;
@@ -64,7 +34,7 @@ void ProfibusBridge::arrive(const ByteArrival& byte) {
   character.parity_error = byte.bad;
   for (profibus::Reception& reception : receiver_.take(character)) {
     if (!reception.frame) {
-      notes_.count(fmt::format("{}: what came is no frame: {}", port_.name(),
+      notes().count(fmt::format("{}: what came is no frame: {}", port().name(),
                                profibus::frame_error_text(reception.frame.error())));
       continue;
     }
@@ -82,7 +52,7 @@ void ProfibusBridge::on_event(Time now, uint32_t, uint64_t) {
     return;
   }
   if (line_.send(node_, line_.quiet_since() + profibus::kSynBits, arrivals_.front())) return;
-  ++counts_.undelivered;
+  ++counts().undelivered;
   on_sent(now);
 }
 
@@ -96,22 +66,10 @@ void ProfibusBridge::on_reception(Time, const profibus::Reception& reception) {
   using profibus::FrameError;
   if (!reception.frame &&
       (reception.frame.error() == FrameError::Parity || reception.frame.error() == FrameError::Framing)) {
-    notes_.note(fmt::format("{}: disturbed frames of the simulated line are not passed on", port_.name()));
+    notes().note(fmt::format("{}: disturbed frames of the simulated line are not passed on", port().name()));
     return;
   }
-  port_.send(reception.octets);
-}
-
-std::vector<std::string> ProfibusBridge::repeats() const {
-  std::vector<std::string> all = notes_.repeats();
-  for (std::string& text : port_.repeats()) all.push_back(std::move(text));
-  return all;
-}
-
-std::vector<std::string> ProfibusBridge::take_notes() {
-  std::vector<std::string> all = notes_.take();
-  for (std::string& text : port_.take_notes()) all.push_back(fmt::format("{}: {}", port_.name(), text));
-  return all;
+  port().send(reception.octets);
 }
 
 }  // namespace ipos::runtime

@@ -9,15 +9,13 @@
 
 #include <deque>
 #include <string>
-#include <vector>
 
 #include "runtime/bus/profibus/line.hpp"
-#include "runtime/os_port/bridge.hpp"
-#include "runtime/os_port/serial_port.hpp"
+#include "runtime/os_port/byte_bridge.hpp"
 
 namespace ipos::runtime {
 
-class ProfibusBridge final : public Bridge, private profibus::Node, private EventTarget {
+class ProfibusBridge final : public ByteBridge, private profibus::Node, private EventTarget {
  public:
   // Attaches itself to the line, under the port's name. `source` orders its events. Line and port must outlive it.
   ProfibusBridge(EventQueue& queue, uint32_t source, profibus::Line& line, BytePort& port);
@@ -25,37 +23,26 @@ class ProfibusBridge final : public Bridge, private profibus::Node, private Even
   ProfibusBridge(const ProfibusBridge&) = delete;
   ProfibusBridge& operator=(const ProfibusBridge&) = delete;
 
-  PortNeeds needs() const override;
-  bool collect(Time epoch) override;
-  bool flush() override;
-
-  const BytePort& port() const override { return port_; }
   std::string_view goods() const override { return "octets"; }
-  const BridgeCounts& counts() const override { return counts_; }
   size_t waiting() const override { return arrivals_.size(); }
-  std::vector<std::string> take_notes() override;
-  std::vector<std::string> repeats() const override;
 
  private:
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
   void on_reception(Time now, const profibus::Reception& reception) override;
   void on_sent(Time now) override;
 
-  void arrive(const ByteArrival& byte);
+  bool has_room() const override;
+  void arrive(const ByteArrival& byte) override;
+  std::string crowded() const override;
   void begin_first();
-  bool has_room() const;
-  bool gone(const PortError& error);
 
   EventQueue& queue_;
   uint32_t source_;
   profibus::Line& line_;
-  BytePort& port_;
   NodeId node_;
   Time character_;
   profibus::FdlReceiver receiver_{profibus::kPortLimits};
   std::deque<profibus::Octets> arrivals_;  // the first one is on the line or waits for it
-  BridgeCounts counts_;
-  PortNotes notes_;
 };
 
 }  // namespace ipos::runtime

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 namespace ipos::runtime {
 namespace {
@@ -46,48 +45,20 @@ Time ArrivalPace::begin(const ByteArrival& byte) {
 // --- from the port
 
 SerialBridge::SerialBridge(EventQueue& queue, uint32_t source, Rs485Line& line, BytePort& port, Time slack)
-    : queue_(queue),
+    : ByteBridge(port),
+      queue_(queue),
       source_(source),
       line_(line),
-      port_(port),
       node_(line.attach(port.name(), line.baud(), *this)),
       character_(character_time(line.baud())),
       pace_(std::max(port.latency(), slack), character_) {}
 
+std::string SerialBridge::crowded() const {
+  return fmt::format("{} bytes wait for the simulated line: they come faster than its {} baud", kMostBytes,
+                     line_.baud());
+}
+
 bool SerialBridge::has_room() const { return arrivals_.size() < kMostBytes; }
-
-PortNeeds SerialBridge::needs() const {
-  PortNeeds needs = port_.needs();
-  // What we cannot take must not wake us up.
-  if (!has_room()) needs.descriptor = -1;
-  return needs;
-}
-
-bool SerialBridge::gone(const PortError& error) {
-  notes_.note(error.text);
-  return false;
-}
-
-bool SerialBridge::collect(Time epoch) {
-  std::array<ByteArrival, 256> bytes;
-  while (has_room()) {
-    const auto count = port_.receive(bytes);
-    if (!count) return gone(count.error());
-    if (*count == 0) return true;
-    for (ByteArrival& byte : std::span(bytes).first(*count)) {
-      byte.at -= epoch;
-      if (!is_echo(byte)) arrive(byte);
-    }
-  }
-  notes_.note(fmt::format("{}: {} bytes wait for the simulated line: they come faster than its {} baud",
-                          port_.name(), kMostBytes, line_.baud()));
-  return true;
-}
-
-bool SerialBridge::flush() {
-  const auto flushed = port_.flush();
-  return flushed ? true : gone(flushed.error());
-}
 
 // What has not come back in its time does not come back any more.
 void SerialBridge::forget_echo(Time now) {
@@ -113,15 +84,16 @@ bool SerialBridge::is_echo(const ByteArrival& byte) {
   ++echoed_in_a_row_;
   // Noise may hit on a single byte. A whole telegram is no chance.
   if (ends != 0 && echoed_in_a_row_ >= ends)
-    notes_.note(fmt::format("{}: the adapter hears itself: its echo is left out", port_.name()));
+    notes().note(fmt::format("{}: the adapter hears itself: its echo is left out", port().name()));
   return true;
 }
 
 void SerialBridge::arrive(const ByteArrival& byte) {
+  if (is_echo(byte)) return;
   if (byte.bad) ++bad_bytes_;
   if (byte.at < queue_.now()) {
-    ++counts_.late;
-    counts_.worst_late = std::max(counts_.worst_late, queue_.now() - byte.at);
+    ++counts().late;
+    counts().worst_late = std::max(counts().worst_late, queue_.now() - byte.at);
   }
   arrivals_.push_back({pace_.begin(byte), byte.value, byte.bad});
   if (arrivals_.size() == 1) begin_first();
@@ -131,7 +103,7 @@ void SerialBridge::begin_first() { queue_.schedule(arrivals_.front().at, source_
 
 void SerialBridge::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
   if (line_.send_bits(node_, bits_of(arrivals_.front()))) return;  // goes on in on_sent()
-  ++counts_.undelivered;
+  ++counts().undelivered;
   on_sent(now);
 }
 
@@ -146,12 +118,12 @@ void SerialBridge::on_character(Time now, const Character& character) {
   while (!passed_on_.empty() && passed_on_.front().end < character.end) passed_on_.pop_front();
   if (!passed_on_.empty() && passed_on_.front().end == character.end) {
     if (!(passed_on_.front() == character))
-      notes_.note(fmt::format("{}: telegrams that collide on the simulated line have gone out in part",
-                              port_.name()));
+      notes().note(fmt::format("{}: telegrams that collide on the simulated line have gone out in part",
+                              port().name()));
     passed_on_.pop_front();
     return;
   }
-  if (!port_.paces()) return pass_on(now, std::span(&character, 1));
+  if (!port().paces()) return pass_on(now, std::span(&character, 1));
   std::vector<Character> characters{character};
   for (const Character& next : line_.upcoming(node_)) {
     passed_on_.push_back(next);
@@ -165,25 +137,17 @@ void SerialBridge::pass_on(Time now, std::span<const Character> characters) {
   std::vector<uint8_t> bytes;
   for (const Character& character : characters) {
     if (character.parity_error || character.framing_error)
-      notes_.note(
-          fmt::format("{}: disturbed characters of the simulated line are not passed on", port_.name()));
+      notes().note(
+          fmt::format("{}: disturbed characters of the simulated line are not passed on", port().name()));
     else
       bytes.push_back(character.data);
   }
-  port_.send(bytes);
-  if (!port_.paces()) return;
-  const Time end = now + static_cast<Time>(bytes.size()) * character_ + port_.latency() + kEchoDelay;
+  port().send(bytes);
+  if (!port().paces()) return;
+  const Time end = now + static_cast<Time>(bytes.size()) * character_ + port().latency() + kEchoDelay;
   forget_echo(now);
   for (const uint8_t byte : bytes) echo_.push_back({byte, end, 0});
   if (!bytes.empty()) echo_.back().ends = bytes.size();
-}
-
-std::vector<std::string> SerialBridge::repeats() const { return port_.repeats(); }
-
-std::vector<std::string> SerialBridge::take_notes() {
-  std::vector<std::string> all = notes_.take();
-  for (std::string& text : port_.take_notes()) all.push_back(fmt::format("{}: {}", port_.name(), text));
-  return all;
 }
 
 }  // namespace ipos::runtime

@@ -5,12 +5,10 @@
 
 #include <deque>
 #include <string>
-#include <vector>
 
 #include "runtime/bus/movilink/serial_telegram.hpp"
 #include "runtime/bus/rs485/line.hpp"
-#include "runtime/os_port/bridge.hpp"
-#include "runtime/os_port/serial_port.hpp"
+#include "runtime/os_port/byte_bridge.hpp"
 
 namespace ipos::runtime {
 
@@ -33,7 +31,7 @@ class ArrivalPace {
   Time last_at_ = 0;
 };
 
-class SerialBridge final : public Bridge, private SerialNode, private EventTarget {
+class SerialBridge final : public ByteBridge, private SerialNode, private EventTarget {
  public:
   // Attaches itself to the line, under the port's name. `source` orders its events. Line and port must
   // outlive it. Bytes are put up with that are as late as the port's latency or `slack`, the larger of them.
@@ -42,16 +40,8 @@ class SerialBridge final : public Bridge, private SerialNode, private EventTarge
   SerialBridge(const SerialBridge&) = delete;
   SerialBridge& operator=(const SerialBridge&) = delete;
 
-  PortNeeds needs() const override;
-  bool collect(Time epoch) override;
-  bool flush() override;
-
-  const BytePort& port() const override { return port_; }
   std::string_view goods() const override { return "bytes"; }
-  const BridgeCounts& counts() const override { return counts_; }
   size_t waiting() const override { return arrivals_.size(); }
-  std::vector<std::string> take_notes() override;
-  std::vector<std::string> repeats() const override;
   uint64_t bad_bytes() const { return bad_bytes_; }        // from the port, with parity or framing error
   uint64_t echoed_bytes() const { return echoed_bytes_; }  // from the port, left out
 
@@ -66,29 +56,26 @@ class SerialBridge final : public Bridge, private SerialNode, private EventTarge
   void on_character(Time now, const Character& character) override;
   void on_sent(Time now) override;
 
-  void arrive(const ByteArrival& byte);
+  bool has_room() const override;
+  void arrive(const ByteArrival& byte) override;
+  std::string crowded() const override;
   bool is_echo(const ByteArrival& byte);
   void forget_echo(Time now);
   void begin_first();
   void pass_on(Time now, std::span<const Character> characters);
-  bool has_room() const;
-  bool gone(const PortError& error);
 
   EventQueue& queue_;
   uint32_t source_;
   Rs485Line& line_;
-  BytePort& port_;
   NodeId node_;
   Time character_;
   ArrivalPace pace_;
   std::deque<ByteArrival> arrivals_;  // `at` is virtual; the first one is on the line or waits for its time
   std::deque<Character> passed_on_;   // before they have ended on the line
   std::deque<Echo> echo_;             // what an adapter that hears itself will give back
-  BridgeCounts counts_;
   uint64_t bad_bytes_ = 0;
   uint64_t echoed_bytes_ = 0;
   size_t echoed_in_a_row_ = 0;  // so many of the last bytes
-  PortNotes notes_;
 };
 
 }  // namespace ipos::runtime

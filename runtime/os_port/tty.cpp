@@ -11,6 +11,8 @@
 
 #include <cerrno>
 
+#include "runtime/os_port/tty_rate.hpp"
+
 namespace ipos::runtime {
 namespace {
 
@@ -23,11 +25,15 @@ constexpr BaudRate kBaudCodes[] = {
     {230400, B230400},   {460800, B460800},   {500000, B500000},  {921600, B921600}, {1000000, B1000000},
     {1500000, B1500000}, {2000000, B2000000}, {3000000, B3000000}};
 
+// Nothing for a rate without a name: set_any_rate().
 const BaudRate* find_baud(uint32_t baud) {
   for (const BaudRate& row : kBaudCodes)
     if (row.baud == baud) return &row;
   return nullptr;
 }
+
+// Of the protocols here, and of USB adapters (ours).
+constexpr uint32_t kSlowest = 9'600, kFastest = 4'000'000;
 
 // Half duplex by the driver: it switches the transmitter on for our bytes and off behind the last one.
 bool switch_rs485(int descriptor) {
@@ -57,7 +63,7 @@ bool is_pseudo_terminal(int descriptor) {
 tl::expected<Tty, PortError> Tty::open(const std::string& path, const TtySettings& settings,
                                        PortNotes& notes) {
   const BaudRate* rate = find_baud(settings.baud);
-  if (rate == nullptr)
+  if (settings.baud < kSlowest || settings.baud > kFastest)
     return tl::unexpected(port_error(PortFault::NoBaudRate, path, fmt::format("{} bit/s", settings.baud)));
   Descriptor descriptor(::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   if (!descriptor.is_open()) {
@@ -84,14 +90,23 @@ tl::expected<Tty, PortError> Tty::open(const std::string& path, const TtySetting
     if (!pseudo) wanted.c_cflag |= PARENB;
     wanted.c_iflag |= INPCK | PARMRK;
   }
-  cfsetispeed(&wanted, rate->code);
-  cfsetospeed(&wanted, rate->code);
+  const speed_t named = rate != nullptr ? rate->code : B9600;
+  cfsetispeed(&wanted, named);
+  cfsetospeed(&wanted, named);
   // TCSANOW succeeds when any one of the settings could be made, so they are read back.
   termios got{};
   if (tcsetattr(fd, TCSANOW, &wanted) != 0 || tcgetattr(fd, &got) != 0)
     return tl::unexpected(system_error(errno, path));
-  if (!pseudo && cfgetospeed(&got) != rate->code)
+  if (!pseudo && cfgetospeed(&got) != named)
     return tl::unexpected(port_error(PortFault::NoBaudRate, path, fmt::format("{} bit/s", settings.baud)));
+  if (rate == nullptr && !pseudo) {
+    const auto has = set_any_rate(fd, settings.baud);
+    if (!has || !is_close_rate(settings.baud, *has))
+      return tl::unexpected(port_error(
+          PortFault::NoBaudRate, path,
+          has ? fmt::format("{} bit/s: it makes {} of it; an adapter with another clock is needed", settings.baud, *has)
+              : fmt::format("{} bit/s: the driver has only the rates of termios", settings.baud)));
+  }
   tty.parity_ = (got.c_cflag & PARENB) != 0;
   tty.marks_ = (got.c_iflag & PARMRK) != 0;
   if (settings.even_parity && !tty.parity_)

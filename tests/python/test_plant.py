@@ -442,3 +442,38 @@ def test_memory_files_are_written_only_when_asked(tmp_path):
         with pytest.raises(ipos.PlantError):
             plant.snapshot()
     assert (tmp_path / "a.nv").exists()
+
+
+PROFIBUS = """
+[[bus]]
+name = "dp"
+kind = "profibus"
+baud = 1500000
+[[station]]
+name = "inv"
+unit = "mc31"
+option = "ffp31"
+profibus = "dp"
+profibus_address = 8
+"""
+
+
+def test_a_profibus_line():
+    """EN 50170: 10 DA SA FC FCS 16 asks for the FDL status; the slave answers with FC 00. The first frame gives it its rate."""
+    with ipos.Plant(text=PROFIBUS) as plant:
+        bus = plant.buses["dp"]
+        assert (bus.kind, bus.baud) == ("profibus", 1500000)
+        status = bytes([0x10, 8, 2, 0x49, 0x53, 0x16])
+        for _ in range(2):
+            bus.send(status)
+            plant.run("1ms")
+        frames = bus.frames()
+        assert [frame.data for frame in frames] == [status, status, bytes([0x10, 2, 8, 0, 10, 0x16])]
+        assert all(frame.valid for frame in frames) and frames[-1].text.startswith("8 -> 2")
+        assert bus.count == 3 and round(bus.load, 1) == round(100 * 3 * 66 / 3000, 1)
+        bus.send(bytes([0x10, 8, 2, 0x49, 0x54, 0x16]))
+        plant.run("1ms")
+        (wrong,) = bus.frames()
+        assert not wrong.valid and "frame check" in wrong.text
+        with pytest.raises(TypeError):
+            bus.send(8, b"1")

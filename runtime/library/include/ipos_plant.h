@@ -243,7 +243,7 @@ ipos_plant_status ipos_plant_release(ipos_plant* plant, uint32_t signal);
 /* ---- Buses ---------------------------------------------------------------------------------------------- */
 
 typedef int32_t ipos_plant_bus_kind;
-enum { IPOS_PLANT_CAN = 0, IPOS_PLANT_SERIAL = 1 };
+enum { IPOS_PLANT_CAN = 0, IPOS_PLANT_SERIAL = 1, IPOS_PLANT_PROFIBUS = 2 };
 
 typedef struct ipos_plant_bus_info {
   const char* name; /* stays as long as the plant is open */
@@ -251,7 +251,7 @@ typedef struct ipos_plant_bus_info {
   uint32_t baud;
 } ipos_plant_bus_info;
 
-/* CAN lines first, then serial ones. IPOS_PLANT_NO_BUS. In callbacks. */
+/* CAN lines first, then RS-485 lines, then PROFIBUS lines. IPOS_PLANT_NO_BUS. In callbacks. */
 ipos_plant_status ipos_plant_bus_at(ipos_plant* plant, uint32_t bus, ipos_plant_bus_info* info);
 ipos_plant_status ipos_plant_bus(ipos_plant* plant, const char* name, uint32_t* bus);
 
@@ -305,11 +305,11 @@ typedef struct ipos_plant_telegram {
   const char* text; /* what it says */
 } ipos_plant_telegram;
 
-/* Sends bytes on a serial line, at most 1000, with a station of the library's own. IPOS_PLANT_REFUSED while the one
- * before is still being sent. */
+/* Sends bytes on an RS-485 line, at most 1000, or octets on a PROFIBUS line, at most 300, with a station of the library's
+ * own. IPOS_PLANT_REFUSED while the one before is still being sent. */
 ipos_plant_status ipos_plant_serial_send(ipos_plant* plant, uint32_t bus, const uint8_t* bytes, size_t length);
 
-/* The next MOVILINK telegram of a serial line; each is given once. IPOS_PLANT_NOTHING. */
+/* The next MOVILINK telegram of an RS-485 line, or frame of a PROFIBUS line; each is given once. IPOS_PLANT_NOTHING. */
 ipos_plant_status ipos_plant_serial_receive(ipos_plant* plant, uint32_t bus, ipos_plant_telegram* telegram);
 
 /* Plants faults of lines while the plant runs: the text of [[fault]] tables as in a plant file. Their times count from

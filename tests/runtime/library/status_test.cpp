@@ -6,6 +6,7 @@
 #include <cstring>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -163,6 +164,58 @@ TEST_F(LibraryStatus, OfStates) {
   size = 0;
   EXPECT_EQ(ipos_plant_save(plant, nullptr, &size), IPOS_PLANT_NOT_RECORDED);
   EXPECT_EQ(ipos_plant_trace_hash(plant, &hash), IPOS_PLANT_NOT_RECORDED);
+  EXPECT_EQ(ipos_plant_close(plant), IPOS_PLANT_OK);
+}
+
+// A station asks for the FDL status of the slave 8, which answers with 00, a slave (EN 50170 volume 2): 10 DA SA FC FCS 16.
+TEST(LibraryProfibus, CarriesFramesBothWays) {
+  ipos_plant_source source{};
+  source.text = R"([[bus]]
+name = "dp"
+kind = "profibus"
+baud = 1500000
+[[station]]
+name = "inv"
+unit = "mc31"
+option = "ffp31"
+profibus = "dp"
+profibus_address = 8
+)";
+  ipos_plant* plant = nullptr;
+  ASSERT_EQ(ipos_plant_open(&source, &plant), IPOS_PLANT_OK);
+  uint32_t bus = 7;
+  ASSERT_EQ(ipos_plant_bus(plant, "dp", &bus), IPOS_PLANT_OK);
+  EXPECT_EQ(bus, 0U);
+  ipos_plant_bus_info info{};
+  ASSERT_EQ(ipos_plant_bus_at(plant, bus, &info), IPOS_PLANT_OK);
+  EXPECT_EQ(info.kind, IPOS_PLANT_PROFIBUS);
+  EXPECT_EQ(info.baud, 1'500'000U);
+  ASSERT_EQ(ipos_plant_run(plant, 1'000'000), IPOS_PLANT_OK);
+  const std::array<uint8_t, 6> status{0x10, 0x08, 0x02, 0x49, 0x53, 0x16};
+  EXPECT_EQ(ipos_plant_serial_send(plant, bus, status.data(), status.size()), IPOS_PLANT_OK);
+  EXPECT_EQ(ipos_plant_serial_send(plant, bus, status.data(), status.size()), IPOS_PLANT_REFUSED);
+  EXPECT_EQ(ipos_plant_serial_send(plant, bus, status.data(), 301), IPOS_PLANT_BAD_VALUE);
+  EXPECT_EQ(ipos_plant_join(plant, bus), IPOS_PLANT_NO_BUS);
+  // The first frame gives the slave its rate; the second one is answered.
+  ASSERT_EQ(ipos_plant_run(plant, 2'000'000), IPOS_PLANT_OK);
+  EXPECT_EQ(ipos_plant_serial_send(plant, bus, status.data(), status.size()), IPOS_PLANT_OK);
+  ASSERT_EQ(ipos_plant_run(plant, 3'000'000), IPOS_PLANT_OK);
+  std::vector<std::vector<uint8_t>> heard;
+  ipos_plant_telegram telegram{};
+  std::string text;
+  while (ipos_plant_serial_receive(plant, bus, &telegram) == IPOS_PLANT_OK) {
+    heard.emplace_back(telegram.bytes, telegram.bytes + telegram.length);
+    EXPECT_TRUE(telegram.valid);
+    text = telegram.text;
+  }
+  const std::vector<uint8_t> asked(status.begin(), status.end());
+  EXPECT_EQ(heard, (std::vector<std::vector<uint8_t>>{asked, asked, {0x10, 0x02, 0x08, 0x00, 0x0A, 0x16}}));
+  EXPECT_EQ(text.substr(0, 6), "8 -> 2") << text;
+  ipos_plant_load load{};
+  ASSERT_EQ(ipos_plant_bus_load(plant, bus, &load), IPOS_PLANT_OK);
+  EXPECT_EQ(load.frames, 3U);
+  // 3 x 66 bits of 4500, in percent.
+  EXPECT_NEAR(load.percent, 100.0 * 198 / 4500, 0.1);
   EXPECT_EQ(ipos_plant_close(plant), IPOS_PLANT_OK);
 }
 

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -16,6 +17,7 @@
 #include "runtime/os_port/pty.hpp"
 #include "runtime/os_port/serial_port.hpp"
 #include "runtime/os_port/system_clock.hpp"
+#include "runtime/os_port/tty_rate.hpp"
 #include "tests/tools/command.hpp"
 
 namespace ipos::tests {
@@ -86,6 +88,40 @@ TEST(SerialDevice, PassesAllBytesWithTheirTimes) {
   std::array<uint8_t, 512> out{};
   EXPECT_EQ(read(master.get(), out.data(), out.size()), 256);
   EXPECT_TRUE(std::equal(every.begin(), every.end(), out.begin()));
+}
+
+// 93.75 and 187.5 kbaud of PROFIBUS, and the names that termios(3) has. The driver of pseudo-terminals keeps any rate.
+TEST(SerialDevice, TakesAnyRate) {
+  if (!has_pty()) GTEST_SKIP() << kNoPty;
+  const Descriptor master(posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK));
+  ASSERT_TRUE(master.is_open() && grantpt(master.get()) == 0 && unlockpt(master.get()) == 0);
+  for (const uint32_t baud : {9600U, 93'750U, 187'500U, 500'000U}) {
+    SystemClock clock;
+    const SerialPortResult port = open_serial_port(ptsname(master.get()), {baud, true, false}, clock);
+    EXPECT_TRUE(port) << port.error().text;
+    const auto has = set_any_rate(master.get(), baud);
+    ASSERT_TRUE(has) << has.error();
+    EXPECT_EQ(*has, baud);
+  }
+  SystemClock clock;
+  const SerialPortResult port = open_serial_port(ptsname(master.get()), {5'000'000, true, false}, clock);
+  ASSERT_FALSE(port);
+  EXPECT_NE(port.error().text.find("the device does not take this baud rate"), std::string::npos) << port.error().text;
+}
+
+// A driver may round: 48 MHz / 16 / 32 is exact for 93750, 1.8432 MHz / 16 makes 115200 of it.
+TEST(SerialDevice, ARateMayBeOffByAHundredth) {
+  EXPECT_TRUE(is_close_rate(187'500, 187'500));
+  EXPECT_TRUE(is_close_rate(187'500, 188'000));
+  EXPECT_TRUE(is_close_rate(93'750, 93'000));
+  EXPECT_FALSE(is_close_rate(93'750, 115'200));
+  EXPECT_FALSE(is_close_rate(187'500, 9'600));
+}
+
+TEST(SerialDevice, AFileIsNoDeviceForARate) {
+  const auto has = set_any_rate(STDIN_FILENO + 1000, 93'750);
+  ASSERT_FALSE(has);
+  EXPECT_EQ(has.error(), EBADF);
 }
 
 TEST(SerialDevice, IsForOneProgramAndIsGivenBackAsItWas) {
