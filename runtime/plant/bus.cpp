@@ -1,16 +1,19 @@
 // The class that each kind of bus has.
 #include "runtime/plant/bus.hpp"
 
-#include "runtime/plant/can_bus.hpp"
-#include "runtime/plant/profibus_bus.hpp"
-#include "runtime/plant/serial_bus.hpp"
+#include <utility>
 
 namespace ipos::runtime {
+
+#define BUS_KIND(kind, word, name, line, message, Class, ...) \
+  std::unique_ptr<Bus> make_##Class(BusPlace place);          \
+  std::optional<std::string> refuse_##Class(const std::string& text);
+#include "runtime/plant_file/bus_kinds.def"
 
 std::unique_ptr<Bus> make_bus(BusPlace place) {
   switch (place.config.kind) {
 #define BUS_KIND(kind, word, name, line, message, Class, ...) \
-  case BusKind::kind: return std::make_unique<Class>(std::move(place));
+  case BusKind::kind: return make_##Class(std::move(place));
 #include "runtime/plant_file/bus_kinds.def"
   }
   return nullptr;
@@ -19,7 +22,7 @@ std::unique_ptr<Bus> make_bus(BusPlace place) {
 std::optional<std::string> refuse_message(BusKind bus, const std::string& text) {
   switch (bus) {
 #define BUS_KIND(kind, word, name, line, message, Class, ...) \
-  case BusKind::kind: return Class::refuse(text);
+  case BusKind::kind: return refuse_##Class(text);
 #include "runtime/plant_file/bus_kinds.def"
   }
   return std::nullopt;

@@ -1,5 +1,6 @@
 // A line of a plant, whatever its kind: what the plant, its reports, recordings and tests ask of it. A new kind of bus
-// is a class of this, and a row of bus_kinds.def. Its stations take the line itself from the class.
+// is a class of this in a source NAME_bus.cpp, and a row of bus_kinds.def. Its stations take the line itself from the
+// class.
 #pragma once
 
 #include <cstdint>
@@ -120,5 +121,10 @@ class Bus {
   std::vector<BusObserver*> observers_;
   std::vector<BusTracer*> tracers_;
 };
+
+// In the source of each class: bus.cpp makes a line by its row alone and knows no class.
+#define BUS_CLASS(Class)                                                                                  \
+  std::unique_ptr<Bus> make_##Class(BusPlace place) { return std::make_unique<Class>(std::move(place)); } \
+  std::optional<std::string> refuse_##Class(const std::string& text) { return Class::refuse(text); }
 
 }  // namespace ipos::runtime

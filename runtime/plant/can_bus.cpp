@@ -120,4 +120,6 @@ void CanBus::on_line_event(const CanLine&, const LineEvent& event) {
   trace_all(event.kind, event.time, event.node, event.other, event.id, event.fault);
 }
 
+BUS_CLASS(CanBus)
+
 }  // namespace ipos::runtime

@@ -84,4 +84,6 @@ void ProfibusBus::on_line_event(const profibus::Line& line, const profibus::Line
   trace_all(event.kind, event.time, event.node);
 }
 
+BUS_CLASS(ProfibusBus)
+
 }  // namespace ipos::runtime

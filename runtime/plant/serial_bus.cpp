@@ -81,4 +81,6 @@ void SerialBus::tell_reception(const std::optional<Reception>& reception) {
         {bytes.begin(), bytes.end()}});
 }
 
+BUS_CLASS(SerialBus)
+
 }  // namespace ipos::runtime

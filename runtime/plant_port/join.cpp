@@ -1,5 +1,7 @@
-// A kind of bus has a port and a bridge of its own: an overload of `carry` each.
+// A kind of bus that real ports can carry has an overload of `carry`.
 #include "runtime/plant_port/join.hpp"
+
+#include <fmt/format.h>
 
 #include <utility>
 
@@ -44,12 +46,11 @@ Joined carry(ProfibusBus& bus, const std::string& port, const Place& place, Real
 
 Joined join_port(Plant& plant, Bus& bus, const std::string& port, RealClock& clock) {
   const Place place{plant.queue(), plant.next_source()};
-  switch (bus.kind()) {
-#define BUS_KIND(kind, word, name, line, message, Class, ...) \
-  case BusKind::kind: return carry(static_cast<Class&>(bus), port, place, clock);
-#include "runtime/plant_file/bus_kinds.def"
-  }
-  return tl::unexpected(PortError{});
+  if (auto* can = dynamic_cast<CanBus*>(&bus)) return carry(*can, port, place, clock);
+  if (auto* serial = dynamic_cast<SerialBus*>(&bus)) return carry(*serial, port, place, clock);
+  if (auto* profibus = dynamic_cast<ProfibusBus*>(&bus)) return carry(*profibus, port, place, clock);
+  return tl::unexpected(
+      port_error(PortFault::BadName, port, fmt::format("no real port carries {}", info(bus.kind()).name)));
 }
 
 }  // namespace ipos::runtime
