@@ -13,7 +13,7 @@ ipos_layer(bus FOLDERS runtime/bus
                    bus/movilink/parameter_telegram.cpp bus/movilink/return_code.cpp
                    bus/movilink/variable_telegram.cpp bus/movilink/profile.cpp bus/movilink/unit_servers.cpp
                    bus/movilink/sbus_slave.cpp bus/movilink/sbus_master.cpp bus/movilink/sbus_group_master.cpp
-                   bus/movilink/sbus_control.cpp bus/movilink/sbus_check.cpp bus/movilink/process_words.cpp
+                   bus/movilink/sbus_control.cpp bus/movilink/gateway_channel.cpp bus/movilink/sbus_check.cpp bus/movilink/process_words.cpp
                    bus/movilink/unit_words.cpp bus/movilink/telegram_words.cpp bus/movilink/describe.cpp
                    bus/movilink/describe_serial.cpp bus/movilink/station_filter.cpp bus/movilink/dbc.cpp bus/movilink/dbc_signals.cpp
                    bus/log/bus_load.cpp bus/log/replay.cpp

@@ -28,8 +28,16 @@ class ProfibusPlanner {
       on_paper_.master = masters[0]->settings.address;
       on_paper_.gap_poll = masters[0]->settings.gap_factor != 0;
     }
+    std::vector<Slave> slaves;
     for (const StationConfig& station : file_.stations)
-      if (station.profibus.bus.bus == bus_.name) add(station, masters);
+      slaves.push_back({station.name, &station.profibus, station.terminator, station.place.line});
+    for (const ControlConfig& control : file_.controls)
+      if (control.gateway)  // whose terminator is that of its SBus
+        slaves.push_back({control.name, &control.gateway->profibus, std::nullopt, control.place.line});
+    std::stable_sort(slaves.begin(), slaves.end(),
+                     [](const Slave& a, const Slave& b) { return a.place < b.place; });
+    for (const Slave& slave : slaves)
+      if (slave.use->bus.bus == bus_.name) add(slave, masters);
     for (const ProfibusMasterConfig* master : masters)
       for (const profibus::SlavePlan& slave : master->slaves)
         if (bus_.port.empty() && !has(slave.address))
@@ -57,15 +65,30 @@ class ProfibusPlanner {
         [address](const profibus::PlannedStation& station) { return station.address == address; });
   }
 
-  void add(const StationConfig& station, const std::vector<const ProfibusMasterConfig*>& masters) {
+  struct Slave {
+    std::string name;
+    const ProfibusUse* use;
+    std::optional<bool> terminator;
+    uint32_t place;
+  };
+
+  static profibus::Interface interface_of(profibus::OptionKind kind) {
+    switch (kind) {
+      case profibus::OptionKind::Ffp31: return profibus::Interface::Ffp31C;
+      case profibus::OptionKind::Size0: return profibus::Interface::Size0;
+      default: return profibus::Interface::Card;
+    }
+  }
+
+  void add(const Slave& station, const std::vector<const ProfibusMasterConfig*>& masters) {
+    const profibus::OptionType& option = *station.use->option;
     profibus::PlannedStation planned;
     planned.name = station.name;
-    planned.address = station.profibus.address;
-    planned.interface = station.profibus.option->kind == profibus::OptionKind::Size0
-                            ? profibus::Interface::Size0
-                            : profibus::Interface::Ffp31C;
+    planned.address = station.use->address;
+    planned.interface = interface_of(option.kind);
     if (planned.interface == profibus::Interface::Size0) planned.size = 0;
-    planned.ident = station.profibus.option->ident;
+    if (planned.interface == profibus::Interface::Card) planned.card = &option;
+    planned.ident = option.ident;
     planned.octets = 0;
     for (profibus::PlannedStation& before : on_paper_.stations)
       before.terminated = before.terminated && given_;

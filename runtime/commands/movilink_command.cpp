@@ -106,7 +106,7 @@ vm::HostReply MovilinkCommand::start(Time now, vm::Machine& machine, int context
 std::string MovilinkCommand::unknown_bus(int32_t code) const {
   for (const BusRow& bus : kAbsentBuses)
     if (bus.code == code && stdlib::among_units(bus.units, unit_))
-      return fmt::format("MOVLNK: bus type {} is {}, which is not simulated", code, bus.text);
+      return fmt::format("MOVLNK: bus type {} is {}", code, bus.text);
   std::vector<int32_t> codes;
   for (const BusRow& bus : kBuses)
     if (stdlib::among_units(bus.units, unit_)) codes.push_back(bus.code);

@@ -82,7 +82,7 @@ struct Decisions {
   std::optional<int32_t> bus_position;
 
   // Monitoring.
-  std::array<LinkWatch::Rules, kPoSources> links{};
+  std::array<LinkWatch::Rules, kPoLinks> links{};
   bool reset = false;  // an input or H484 orders it
   bool external_fault = false;
   bool temperature_sensor = false;

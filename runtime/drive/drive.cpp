@@ -18,13 +18,15 @@ constexpr int32_t kOvervoltage = 900'000;  // mV, where the unit protects itself
 
 namespace faults {
 constexpr uint8_t kDcLink = 7, kSpeedMonitoring = 8, kHeatSink = 11, kExternal = 26, kLimitSwitches = 27,
-                  kFieldbus = 28, kTemperatureSensor = 31, kRs485 = 43, kSbus = 47, kMotorOverload = 84;
+                  kFieldbus = 28, kTemperatureSensor = 31, kRs485 = 43, kSbus2 = 46, kSbus = 47,
+                  kMotorOverload = 84;
 }  // namespace faults
 
 constexpr uint8_t fault_of(PoSource source) {
   switch (source) {
     case PoSource::Rs485: return faults::kRs485;
     case PoSource::Fieldbus: return faults::kFieldbus;
+    case PoSource::Sbus2: return faults::kSbus2;
     case PoSource::Sbus: break;
   }
   return faults::kSbus;
@@ -39,7 +41,10 @@ MachineData machine_of(MachineData machine, bool is_movitrac) {
 
 bool is_reversing(int32_t setpoint) { return setpoint < 0; }
 
-constexpr PoSource kAllSources[] = {PoSource::Rs485, PoSource::Fieldbus, PoSource::Sbus};
+constexpr PoSource kAllSources[] = {PoSource::Rs485, PoSource::Fieldbus, PoSource::Sbus, PoSource::Sbus2};
+
+// Whose words they are.
+constexpr PoSource words_of(PoSource source) { return source == PoSource::Sbus2 ? PoSource::Sbus : source; }
 
 }  // namespace
 
@@ -63,7 +68,8 @@ void Drive::read_settings() const {
 
 // --- process data ---
 
-void Drive::take_po(PoSource source, std::span<const uint16_t> words, bool cyclic) {
+void Drive::take_po(PoSource link, std::span<const uint16_t> words, bool cyclic) {
+  const PoSource source = words_of(link);
   const auto with_words = [&](Words known) {
     std::copy_n(words.begin(), std::min(words.size(), kProcessWords), known.begin());
     return known;
@@ -71,11 +77,11 @@ void Drive::take_po(PoSource source, std::span<const uint16_t> words, bool cycli
   now_.set(&Situation::shown_po, with_words(now_->shown_po));
   const auto s = static_cast<size_t>(source);
   if (settings().po_enable != 1) {
-    if (cyclic) take_request(source);  // the bus speaks, though nothing is taken over
+    if (cyclic) take_request(link);  // the bus speaks, though nothing is taken over
     return;
   }
   if (const Words po = with_words(now_->po[s]); po != now_->po[s]) now_.change().po[s] = po;
-  if (touched_watch(source).on_process_data(cyclic)) now_.change().faults.clear_cause(fault_of(source));
+  if (touched_watch(link).on_process_data(cyclic)) now_.change().faults.clear_cause(fault_of(link));
   note_heard();
   if (settings().control_bus != source) return;
   const uint16_t word = order_of(source).control_word.value_or(0);
@@ -105,6 +111,7 @@ LinkWatch& Drive::touched_watch(PoSource source) {
 void Drive::note_heard() {
   std::array<bool, kPoSources> heard{};
   for (size_t n = 0; n < kPoSources; ++n) heard[n] = state_.watches[n].seen();
+  heard[static_cast<size_t>(PoSource::Sbus)] |= state_.watches[static_cast<size_t>(PoSource::Sbus2)].seen();
   now_.set(&Situation::heard, heard);
 }
 

@@ -50,7 +50,7 @@ class Drive final : private DriveLink {
   // PO words of a telegram; words it does not carry keep their value. They show in P094..P096 in any case and
   // act only if P876 is ON and the source is the one of P100 or P101. `cyclic` is false for acyclic RS-485
   // requests, which do not restart the monitoring.
-  void take_po(PoSource source, std::span<const uint16_t> words, bool cyclic = true);
+  void take_po(PoSource link, std::span<const uint16_t> words, bool cyclic = true);
   // A valid cyclic request without process data restarts the monitoring, too (1053 1610 p. 27).
   void take_request(PoSource source);
   // The bus has a watchdog of its own, and it has run out.
@@ -196,7 +196,7 @@ class Drive final : private DriveLink {
   Terminals read_terminals() const;
   bool runs_free(const Terminals& t) const;
   ControlInputs control_inputs(const Terminals& t) const;
-  std::array<LinkWatch::Rules, kPoSources> link_rules(bool enabled_locally, bool free_run) const;
+  std::array<LinkWatch::Rules, kPoLinks> link_rules(bool enabled_locally, bool free_run) const;
   void decide_setpoint(Decisions& d) const;
   bool mode_can_position() const;
   std::optional<int32_t> read_bus_position() const;
@@ -300,7 +300,7 @@ class Drive final : private DriveLink {
     Ticks bound() const;
     bool operator==(const State&) const = default;
 
-    std::array<LinkWatch, kPoSources> watches{};
+    std::array<LinkWatch, kPoLinks> watches{};
     uint16_t last_control_word = 0;  // for the edge of its reset bit
     Words ipos_pi{};
     uint16_t ipos_outputs = 0;

@@ -102,7 +102,8 @@ Terminals Drive::read_terminals() const {
 bool Drive::waits_for(PoSource bus) const {
   if (bus == PoSource::Rs485 || is_m31_) return true;
   if (bus == PoSource::Sbus && is_m07_) return false;
-  return monitored(bus == PoSource::Sbus ? settings().sbus_timeout : settings().fieldbus_timeout) != 0;
+  if (bus == PoSource::Fieldbus) return monitored(settings().fieldbus_timeout) != 0;
+  return monitored(settings().sbus_timeout) != 0 || monitored(settings().sbus2_timeout) != 0;
 }
 
 bool Drive::is_waiting() const {
@@ -179,14 +180,15 @@ int32_t Drive::monitored(int32_t delay_ms) const {
 }
 
 // Nothing is supervised that is not taken over (P876).
-std::array<LinkWatch::Rules, kPoSources> Drive::link_rules(bool enabled_locally, bool free_run) const {
-  std::array<LinkWatch::Rules, kPoSources> rules;
+std::array<LinkWatch::Rules, kPoLinks> Drive::link_rules(bool enabled_locally, bool free_run) const {
+  std::array<LinkWatch::Rules, kPoLinks> rules;
   const Settings& s = settings();
   const auto setpoint = s.setpoint_bus;
   const auto control = s.control_bus;
   const bool over_rs485 = is_master_slave(s) && setpoint == PoSource::Rs485;
-  for (const PoSource source : {PoSource::Rs485, PoSource::Fieldbus, PoSource::Sbus}) {
-    const bool used = !free_run && s.po_enable == 1 && (setpoint == source || control == source);
+  for (const PoSource source : {PoSource::Rs485, PoSource::Fieldbus, PoSource::Sbus, PoSource::Sbus2}) {
+    const PoSource words = source == PoSource::Sbus2 ? PoSource::Sbus : source;
+    const bool used = !free_run && s.po_enable == 1 && (setpoint == words || control == words);
     LinkWatch::Rules& rule = rules[static_cast<size_t>(source)];
     switch (source) {
       case PoSource::Rs485:
@@ -195,6 +197,7 @@ std::array<LinkWatch::Rules, kPoSources> Drive::link_rules(bool enabled_locally,
         break;
       case PoSource::Fieldbus: rule = {monitored(s.fieldbus_timeout), used && enabled_locally, false}; break;
       case PoSource::Sbus: rule = {monitored(s.sbus_timeout), used && enabled_locally, is_m07_}; break;
+      case PoSource::Sbus2: rule = {monitored(s.sbus2_timeout), used && enabled_locally, false}; break;
     }
   }
   return rules;

@@ -56,6 +56,12 @@ inline constexpr uint16_t kScopeRecorded = 8961;
 inline constexpr uint16_t kScopePosition = 8962;
 inline constexpr uint16_t kScopeValue = 8963;
 
+inline constexpr uint16_t kOption1 = 8362;          // P072
+inline constexpr uint16_t kFieldbusType = 8452;     // P091
+inline constexpr uint16_t kFieldbusBaud = 8453;     // P092
+inline constexpr uint16_t kFieldbusAddress = 8454;  // P093
+inline constexpr uint16_t kFieldbusTimeout = 8606;  // P819
+
 // MOVITRAC 31 (stdlib/parameters/mc31.tsv).
 inline constexpr uint16_t kM31RampUp = 25;            // P120
 inline constexpr uint16_t kM31Timeout = 116;          // P571

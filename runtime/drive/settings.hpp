@@ -11,8 +11,10 @@
 
 namespace ipos::runtime {
 
-enum class PoSource : uint8_t { Rs485, Fieldbus, Sbus };
-inline constexpr size_t kPoSources = 3;
+// Sbus2: its words count as those of the SBus (P100 and P101 name no other), its silence is its own.
+enum class PoSource : uint8_t { Rs485, Fieldbus, Sbus, Sbus2 };
+inline constexpr size_t kPoSources = 3;  // with words of their own
+inline constexpr size_t kPoLinks = 4;    // that are monitored
 
 inline constexpr int32_t kAbsent = INT32_MIN;
 

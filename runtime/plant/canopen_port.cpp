@@ -40,7 +40,7 @@ CanopenPort::CanopenPort(EventQueue& queue, uint32_t source, CanLine& line, std:
       station_(station),
       settings_(settings),
       journal_(journal),
-      server_(door) {
+      server_(door, sbus == 1) {
   door.touch().connect(sbus, objects_);
   objects_.set_profile(kNoMovilink);
   const canopen::Place place{queue, source, sender_, 1};

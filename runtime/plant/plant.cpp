@@ -52,7 +52,7 @@ Plant::Plant(PlantFile file, std::vector<std::optional<vm::Image>> programs, std
   surroundings_ = std::make_unique<Surroundings>(queue_, next_source_++, journal_);
   for (size_t n = 0; n < file_.stations.size(); ++n)
     add_station(n, std::move(programs[n]), rates, errors, execution);
-  for (const ControlConfig& config : file_.controls) add_control(config);
+  for (ControlConfig& config : file_.controls) add_control(config, errors);
   surroundings_->connect(file_, stations_, errors);
   resolve_expectations(errors);
   if (!errors.empty()) return;
@@ -80,9 +80,37 @@ void Plant::add_station(size_t number, std::optional<vm::Image> program, std::op
       errors.push_back({setting.place, fmt::format("station '{}': {}", config.name, *refused)});
 }
 
-void Plant::add_control(const ControlConfig& config) {
+// Those of the file, or all that speak MOVILINK on the SBus: its telegrams go to each of them.
+void Plant::find_drives(ControlConfig& gateway, std::vector<PlantError>& errors) const {
+  std::vector<uint8_t> addresses = gateway.gateway->drives;
+  if (addresses.empty())
+    for (const auto& station : stations_)
+      for (const int number : {1, 2}) {
+        const StationConfig& config = station->config();
+        if ((number == 1 ? config.sbus : config.sbus2) != gateway.sbus) continue;
+        const SbusSettings settings = sbus_settings(station->drive(), number);
+        if (settings.movilink) addresses.push_back(settings.slave.address);
+      }
+  std::sort(addresses.begin(), addresses.end());
+  addresses.erase(std::unique(addresses.begin(), addresses.end()), addresses.end());
+  if (addresses.empty() || addresses.size() > kMostGatewayDrives)
+    errors.push_back(
+        {gateway.place, fmt::format("gateway '{}' has {} drives on '{}', and it takes 1 to {}: name "
+                                    "them with drives = [...]",
+                                    gateway.name, addresses.size(), gateway.sbus, kMostGatewayDrives)});
+  for (const uint8_t address : addresses)
+    gateway.settings.targets.push_back({address, false, {}, kGatewayCycle});
+}
+
+void Plant::add_control(ControlConfig& config, std::vector<PlantError>& errors) {
   PlantControl control{&config, nullptr, {}, {}, {}, {}};
-  if (config.canopen) {
+  if (config.gateway) {
+    find_drives(config, errors);
+    control.line = find_can(config.sbus);
+    auto* dp = dynamic_cast<ProfibusBus*>(find_bus(config.gateway->profibus.bus.bus));
+    if (dp != nullptr && control.line != nullptr && config.settings.targets.size() <= kMostGatewayDrives)
+      control.gateway = std::make_unique<Gateway>(queue_, next_source_++, *dp, config, journal_);
+  } else if (config.canopen) {
     control.line = find_can(config.sbus);
     control.canopen =
         std::make_unique<CanopenControl>(queue_, next_source_++, config.name, *config.canopen, journal_);
@@ -111,6 +139,7 @@ void Plant::power_on() {
   size_t control = 0;
   const auto begin_control = [&](PlantControl& started) {
     if (started.profibus) started.profibus->start();
+    if (started.gateway) return started.gateway->start(*started.line);
     if (started.line == nullptr) return;
     const bool canopen = started.canopen != nullptr;
     CanNode& master = canopen ? static_cast<CanNode&>(started.canopen->master()) : *started.control;
@@ -177,10 +206,9 @@ bool Plant::plant_fault(const FaultConfig& config) { return find_bus(config.bus)
 bool Plant::repair_fault(const FaultConfig& config) { return find_bus(config.bus)->repair(config); }
 
 Bus& Plant::add_bus(const BusConfig& config) {
-  buses_.push_back(
-      make_bus({queue_, next_source_++, config, [this](Time now, std::string text) {
-                                journal_.note(now, Weight::Warning, "", std::move(text));
-                              }}));
+  buses_.push_back(make_bus({queue_, next_source_++, config, [this](Time now, std::string text) {
+                               journal_.note(now, Weight::Warning, "", std::move(text));
+                             }}));
   Bus& bus = *buses_.back();
   if (auto* can = dynamic_cast<CanBus*>(&bus)) lines_.push_back(&can->line());
   if (auto* serial = dynamic_cast<SerialBus*>(&bus)) serial_lines_.push_back(serial);

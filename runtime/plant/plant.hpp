@@ -12,6 +12,7 @@
 #include "runtime/plant/bus.hpp"
 #include "runtime/plant/can_bus.hpp"
 #include "runtime/plant/canopen_control.hpp"
+#include "runtime/plant/gateway.hpp"
 #include "runtime/plant/profibus_control.hpp"
 #include "runtime/plant/serial_bus.hpp"
 #include "runtime/plant/signal_port.hpp"
@@ -36,6 +37,7 @@ struct PlantControl {
   std::unique_ptr<CanopenControl> canopen;  // in place of the former
   std::unique_ptr<LinePort> port;
   std::unique_ptr<ProfibusControl> profibus;
+  std::unique_ptr<Gateway> gateway{};
 };
 
 class Plant final {
@@ -99,7 +101,8 @@ class Plant final {
   CanLine* find_can(std::string_view name) const;  // nullptr: there is none
   void add_station(size_t number, std::optional<vm::Image> program, std::optional<vm::Rates> rates,
                    std::vector<PlantError>& errors, const Execution& execution);
-  void add_control(const ControlConfig& config);
+  void add_control(ControlConfig& config, std::vector<PlantError>& errors);
+  void find_drives(ControlConfig& gateway, std::vector<PlantError>& errors) const;
   void power_on();
   void start_checks();
   void check_nodes();

@@ -14,6 +14,8 @@ ProfibusPort::ProfibusPort(EventQueue& queue, ProfibusBus& bus, const StationCon
                            Journal& journal)
     : queue_(queue),
       station_(station.name),
+      line_(bus.line()),
+      movidrive_(station.unit->generation != stdlib::Generation::None),
       door_(door),
       journal_(journal),
       server_(door),
@@ -38,10 +40,10 @@ Time ProfibusPort::tick(Time now) {
   return next_fault_;
 }
 
-// Save EEPROM P802 = OFF: nothing is stored (MOVITRAC 31 PROFIBUS, 6).
+// Save EEPROM P802 = OFF of a MOVITRAC 31: nothing is stored (MOVITRAC 31 PROFIBUS, 6).
 tl::expected<int32_t, ReturnCode> ProfibusPort::serve(Time now, const ParameterRequest& request) {
   ParameterRequest wanted = request;
-  const bool stores = door_.look().server().parameters().value(index::kM31SaveEeprom) != 0;
+  const bool stores = movidrive_ || door_.look().server().parameters().value(index::kM31SaveEeprom) != 0;
   if (wanted.service == Service::Write && !stores) wanted.service = Service::WriteVolatile;
   auto reply = server_.serve(now, wanted);
   tell_reasons(now);
@@ -53,14 +55,31 @@ void ProfibusPort::take_output(Time now, OutputChannel, std::span<const uint16_t
   tell_reasons(now);
 }
 
-void ProfibusPort::set_fieldbus_timeout(Time, int32_t hundredths) {
-  door_.touch().server().parameters().set_working(index::kM31Timeout, hundredths);
+// The drive of a MOVIDRIVE monitors its process data itself (P819), in Sync mode, too, when no words come.
+void ProfibusPort::cyclic_request(Time) {
+  if (movidrive_) door_.touch().server().fieldbus_request();
 }
 
-void ProfibusPort::fieldbus_timeout_expired(Time) { door_.touch().server().fieldbus_lost(); }
+// The watchdog time of the master replaces what the parameter had.
+void ProfibusPort::set_fieldbus_timeout(Time, int32_t hundredths) {
+  ParameterStore& parameters = door_.touch().server().parameters();
+  if (!movidrive_) return parameters.set_working(index::kM31Timeout, hundredths);
+  constexpr int32_t kMsAHundredth = 10;
+  parameters.set_working(index::kFieldbusTimeout, kMsAHundredth * hundredths);
+  parameters.set_display(index::kFieldbusBaud, static_cast<int32_t>(line_.baud()));
+}
+
+void ProfibusPort::fieldbus_timeout_expired(Time) {
+  if (!movidrive_) door_.touch().server().fieldbus_lost();
+}
 
 void ProfibusPort::set_fieldbus_address(Time, uint8_t address) {
-  door_.touch().server().parameters().set_display(index::kM31Address, address);
+  constexpr int32_t kFieldbusCard = 2, kProfibusDp = 5;  // codes of P072 and P091
+  ParameterStore& parameters = door_.touch().server().parameters();
+  if (!movidrive_) return parameters.set_display(index::kM31Address, address);
+  parameters.set_display(index::kOption1, kFieldbusCard);
+  parameters.set_display(index::kFieldbusType, kProfibusDp);
+  parameters.set_display(index::kFieldbusAddress, address);
 }
 
 void ProfibusPort::on_note(Time now, profibus::SlaveNote what, uint8_t master) {

@@ -1,5 +1,5 @@
-// The PROFIBUS card of a station: the slave on the line over the unit's drive and parameters. A card for another unit
-// is a row of runtime/bus/profibus/options.def and, where its words or indices are other, a choice in here.
+// The PROFIBUS card of a station: the slave on the line over the unit's drive and parameters. MOVITRAC 31
+// and MOVIDRIVE differ in the parameters that the card sets, and in who monitors the process data.
 #pragma once
 
 #include <optional>
@@ -38,6 +38,8 @@ class ProfibusPort final : public StationPort,
   tl::expected<int32_t, ReturnCode> serve(Time now, const ParameterRequest& request) override;
   void take_output(Time now, OutputChannel channel, std::span<const uint16_t> words) override;
   ProcessWords input(Time now) override { return server_.input(now); }
+  bool has_subindices() const override { return server_.has_subindices(); }
+  void cyclic_request(Time now) override;
   void synchronize(Time) override {}  // Sync is done before the words come here
   void set_fieldbus_timeout(Time now, int32_t hundredths) override;
   void fieldbus_timeout_expired(Time now) override;
@@ -54,6 +56,8 @@ class ProfibusPort final : public StationPort,
 
   EventQueue& queue_;
   std::string_view station_;
+  const profibus::Line& line_;
+  bool movidrive_;
   Door& door_;
   Journal& journal_;
   UnitServer server_;

@@ -113,11 +113,25 @@ void Station::connect_serial() {
 }
 
 void Station::connect_profibus() {
-  if (lines_.profibus == nullptr) return;
+  if (lines_.profibus == nullptr) return miss_profibus();
   if (profibus_)
     profibus_->power_on();
   else
     profibus_ = std::make_unique<ProfibusPort>(queue_, *lines_.profibus, config_, door_, journal_);
+}
+
+// A MOVIDRIVE whose P100 or P101 names a fieldbus that is not there.
+void Station::miss_profibus() {
+  constexpr int32_t kSetpointFieldbus = 3, kControlFieldbus = 2;
+  const DriveServer& server = unit_.server();
+  const stdlib::Generation generation = server.unit().generation;
+  if (generation != stdlib::Generation::A && generation != stdlib::Generation::B) return;
+  for (const auto& [number, code] : {std::pair("100", kSetpointFieldbus), std::pair("101", kControlFieldbus)})
+    if (server.value(number) == code)
+      journal_.note(
+          queue_.now(), Weight::Warning, config_.name,
+          std::string("P") + number +
+              " is FIELDBUS, but the station is on no PROFIBUS (option and profibus of its [[station]])");
 }
 
 void Station::reconnect_serial() {

@@ -158,6 +158,7 @@ class Station final : private Timed, private TaskRunner {
   void connect_sbus(int number);
   void connect_serial();
   void connect_profibus();
+  void miss_profibus();
   void reconnect_serial();
 
   EventQueue& queue_;

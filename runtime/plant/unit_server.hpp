@@ -16,7 +16,7 @@ namespace ipos::runtime {
 // As ProcessDataServer it serves the SBus, rs485_data() serves both RS-485 interfaces.
 class UnitServer final : public ParameterServer, public ProcessDataServer, public MasterSlaveDrive {
  public:
-  // `leads`: masters of master/slave operation are heard there, which is so on SBus 1 (MDX60B/61B chapter 5.5.1).
+  // `leads`: it is SBus 1, where masters of master/slave operation are heard (MDX60B/61B chapter 5.5.1).
   explicit UnitServer(Door& door, bool leads = true) : door_(door), leads_(leads), rs485_data_(door) {}
   UnitServer(const UnitServer&) = delete;
   UnitServer& operator=(const UnitServer&) = delete;
@@ -28,6 +28,7 @@ class UnitServer final : public ParameterServer, public ProcessDataServer, publi
   void take_output(Time now, OutputChannel channel, std::span<const uint16_t> words) override {
     DriveServer& server = door_.touch().server();
     if (channel == OutputChannel::Group && !leads_ && server.follows_sbus_master()) return;
+    if (!leads_) return server.take_sbus2(words);
     server.take_output(now, channel, words);
   }
   ProcessWords input(Time /*now*/) override { return door_.look().drive().pi(); }

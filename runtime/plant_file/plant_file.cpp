@@ -26,7 +26,9 @@ void check_plant(PlantReader& reader) {
     if (!reader.station_names.contains(name))
       reader.error(place, fmt::format("there is no station '{}'", name));
   if (reader.result.plant.stations.empty() && reader.result.errors.empty())
-    reader.error({1, 1}, "the plant has no [[station]]");
+    reader.error({1, 1}, reader.gateway_names.empty()
+                             ? "the plant has no [[station]]"
+                             : "the plant has no [[station]] with a drive: a gateway alone does not run");
   std::stable_sort(reader.result.errors.begin(), reader.result.errors.end(),
                    [](const auto& a, const auto& b) {
                      return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);

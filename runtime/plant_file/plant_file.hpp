@@ -89,14 +89,25 @@ struct StationConfig {
   FilePlace nvram_place;
 };
 
+inline constexpr size_t kMostGatewayDrives = 8;
+inline constexpr int32_t kSbusAddressCount = 64;
+inline constexpr int64_t kGatewayCycle = 10'000'000;  // ns between two telegrams to a drive (ours)
+
+// The DP side of a gateway, and its drives by their SBus addresses in rising order; empty: those of the plant.
+struct GatewayConfig {
+  ProfibusUse profibus;
+  std::vector<uint8_t> drives;
+};
+
 // A master control on an SBus: process data to units, and the sync telegram. Or a master of CANopen, or one on a
-// PROFIBUS.
+// PROFIBUS, or a gateway, whose targets are its drives.
 struct ControlConfig {
   std::string name;
   std::string sbus;
   std::optional<ProfibusMasterConfig> profibus{};
   ControlSettings settings;
   std::optional<canopen::MasterSettings> canopen;  // in place of the former
+  std::optional<GatewayConfig> gateway{};
   std::optional<bool> terminator;
   FilePlace place;
 };

@@ -86,8 +86,15 @@ int64_t PlantReader::duration(const toml::table& table, std::string_view key, in
 
 std::string PlantReader::station(const toml::table& table, std::string_view what) {
   std::string name = text(table, "station", what, true);
-  if (const toml::node* node = table.get("station")) station_uses.emplace_back(name, place_of(*node));
+  if (const toml::node* node = table.get("station")) use_station(name, place_of(*node));
   return name;
+}
+
+void PlantReader::use_station(const std::string& name, FilePlace place) {
+  station_uses.emplace_back(name, place);
+  if (gateway_names.contains(name))
+    error(place,
+          fmt::format("'{}' is a gateway: it has no program, drive, inputs or parameters of its own", name));
 }
 
 std::string PlantReader::station_name(const toml::table& table, std::string_view key) {

@@ -36,6 +36,7 @@ class PlantReader {
   // Names given and names used; what is used and not given is an error at the end.
   std::set<std::string> bus_names;
   std::set<std::string> station_names;
+  std::set<std::string> gateway_names;  // of the stations, those without anything to look at
   std::set<std::string> port_names;
   std::set<std::string> nvram_files;
   std::vector<std::pair<BusUse, BusKind>> bus_uses;  // with the kind it must be of
@@ -94,6 +95,9 @@ class PlantReader {
 
   void unique(std::set<std::string>& names, const std::string& name, std::string_view what, FilePlace place);
 
+  // A gateway where something of a station is wanted is an error.
+  void use_station(const std::string& name, FilePlace place);
+
   // The one key of `kinds` that names a signal of the table's station; false with an error otherwise.
   bool signal(const toml::table& table, std::string_view what, std::initializer_list<std::string_view> kinds,
               Signal& out);
@@ -110,6 +114,7 @@ void check_plant(PlantReader& reader);
 // The sections, each with its own file.
 void read_buses(PlantReader& reader, const toml::table& root);
 void read_stations(PlantReader& reader, const toml::table& root);
+void read_gateway(PlantReader& reader, const toml::table& table);
 void read_profibus_card(PlantReader& reader, const toml::table& table, StationConfig& config);
 void read_profibus_fault(PlantReader& reader, const toml::table& table);
 void read_profibus_master(PlantReader& reader, const toml::table& table, ControlConfig& control);

@@ -78,6 +78,11 @@ void read_control(PlantReader& reader, const toml::table& table) {
 
 void read_controls(PlantReader& reader, const toml::table& root) {
   reader.for_each_table(root, "control", [&](const toml::table& table) { read_control(reader, table); });
+  // In the order of the file, with the gateways that stand among the stations.
+  auto& controls = reader.result.plant.controls;
+  std::stable_sort(controls.begin(), controls.end(), [](const ControlConfig& a, const ControlConfig& b) {
+    return a.place.line < b.place.line;
+  });
 }
 
 }  // namespace ipos::runtime

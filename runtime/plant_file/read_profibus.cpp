@@ -16,16 +16,25 @@ void read_option(PlantReader& reader, const toml::table& table, StationConfig& c
   if (word.empty()) return;
   ProfibusUse& use = config.profibus;
   use.option_place = place_of(*table.get("option"));
-  use.option = profibus::find_option_type(word);
-  if (use.option == nullptr) {
-    std::vector<std::string_view> words;
-    for (const profibus::OptionType& option : profibus::option_types()) words.push_back(option.word);
-    reader.error(use.option_place,
-                 fmt::format("'{}' is no option; known are {}", word, fmt::join(words, ", ")));
-  } else if (config.unit != nullptr && config.unit->name != use.option->unit) {
-    reader.error(use.option_place, fmt::format("option '{}' is for unit {}, not for {}", word,
-                                               use.option->unit, config.unit->name));
+  std::vector<std::string_view> words, units;
+  for (const profibus::OptionType& option : profibus::option_types()) {
+    if (option.kind == profibus::OptionKind::Gateway) continue;
+    if (std::find(words.begin(), words.end(), option.word) == words.end()) words.push_back(option.word);
+    if (option.word == word) units.push_back(option.unit);
   }
+  if (units.empty())
+    return reader.error(use.option_place,
+                        fmt::format("'{}' is no option; known are {}", word, fmt::join(words, ", ")));
+  if (config.unit == nullptr) return;
+  use.option = profibus::find_option_type(word, config.unit->name);
+  if (use.option == nullptr)
+    reader.error(use.option_place, fmt::format("option '{}' is for unit {}, not for {}", word,
+                                               fmt::join(units, " and "), config.unit->name));
+  // The slot takes DFC11B, which makes SBus 2, or a fieldbus card (MDX60B/61B chapter 3.3).
+  if (use.option != nullptr && !config.sbus2.empty())
+    reader.error(use.option_place,
+                 fmt::format("option '{}' and SBus 2 (option DFC11B) need the same slot of {}: there is one",
+                             word, config.name));
 }
 
 std::optional<profibus::Octets> read_octets(PlantReader& reader, const toml::table& table,
@@ -83,7 +92,8 @@ class MasterReader {
     plan.prm.lock = true;
     plan.prm.sync = reader_.flag(table, "sync").value_or(true);
     plan.prm.freeze = reader_.flag(table, "freeze").value_or(true);
-    plan.prm.ident = static_cast<uint16_t>(reader_.count(table, "ident", UINT16_MAX, ident_at(plan.address)));
+    plan.prm.ident =
+        static_cast<uint16_t>(reader_.count(table, "ident", UINT16_MAX, option_at(plan.address).ident));
     plan.prm.groups = number(table, "groups", 255, 0);
     plan.prm.min_tsdr = number(table, "min_tsdr", 255, profibus::kLeastMinTsdr);
     if (const Time watchdog = reader_.duration(table, "watchdog", 0); watchdog > 0) {
@@ -152,18 +162,23 @@ class MasterReader {
   }
 
   // Of the station that has the address; the master's configuration says the same where nothing else is written.
-  uint16_t ident_at(uint8_t address) const {
+  const profibus::OptionType& option_at(uint8_t address) const {
+    const auto is_it = [&](const ProfibusUse& use) {
+      return use.bus.bus == config_.bus && use.address == address && use.option != nullptr;
+    };
     for (const StationConfig& station : reader_.result.plant.stations)
-      if (station.profibus.bus.bus == config_.bus && station.profibus.address == address &&
-          station.profibus.option != nullptr)
-        return station.profibus.option->ident;
-    return profibus::option_type(profibus::OptionKind::Ffp31).ident;
+      if (is_it(station.profibus)) return *station.profibus.option;
+    for (const ControlConfig& control : reader_.result.plant.controls)
+      if (control.gateway && is_it(control.gateway->profibus)) return *control.gateway->profibus.option;
+    return profibus::option_type(profibus::OptionKind::Ffp31);
   }
 
   void read_output(const toml::table& table, Time at) {
     const size_t slave = config_.slaves.size() - 1;
     const size_t size = config_.slaves.back().outputs;
-    const profibus::Configuration* known = profibus::find_configuration(config_.slaves.back().cfg);
+    const profibus::SlavePlan& plan = config_.slaves.back();
+    const profibus::Configuration* known =
+        profibus::find_configuration(plan.cfg, option_at(plan.address).accepts);
     const bool channel = known != nullptr && known->parameter_channel;
     if (const auto octets = read_octets(reader_, table, "channel")) {
       if (!channel || octets->size() != kChannelOctets)

@@ -7,6 +7,8 @@
 namespace ipos::runtime {
 namespace {
 
+constexpr std::string_view kGatewayUnit = "gateway";  // no unit with a drive: a kind of station of its own
+
 // A switch of the unit; absent is false. `place` is set where it stands.
 bool fitted(PlantReader& reader, const toml::table& table, std::string_view key, FilePlace& place) {
   if (const toml::node* node = table.get(key)) place = place_of(*node);
@@ -151,6 +153,7 @@ void read_hex(PlantReader& reader, const toml::table& table, StationConfig& conf
 }
 
 void read_station(PlantReader& reader, const toml::table& table) {
+  if (table["unit"].value_or(std::string()) == kGatewayUnit) return read_gateway(reader, table);
   reader.known_keys(
       table, "[[station]]",
       {"name",   "unit",       "firmware",         "logodrive", "start_up",   "program", "sbus",   "sbus2",
@@ -166,6 +169,7 @@ void read_station(PlantReader& reader, const toml::table& table) {
   if (config.unit == nullptr && !unit.empty()) {
     std::vector<std::string_view> names;
     for (const stdlib::UnitType& type : stdlib::unit_types()) names.push_back(type.name);
+    names.push_back(kGatewayUnit);
     reader.error(place_of(table.get("unit")->source()),
                  fmt::format("'{}' is no unit type; known are {}", unit, fmt::join(names, ", ")));
   }

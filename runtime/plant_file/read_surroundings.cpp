@@ -111,7 +111,7 @@ Signal terminal(PlantReader& reader, const toml::table& table, std::string_view 
                                     kind == SignalKind::Input ? "input of a station" : "output of a station",
                                     kind == SignalKind::Input ? "DI03" : "DO01"));
   else
-    reader.station_uses.emplace_back(signal.station, place);
+    reader.use_station(signal.station, place);
   signal.line = static_cast<uint8_t>(std::max(bit, 0));
   return signal;
 }

@@ -14,7 +14,7 @@ namespace codes = stdlib::return_codes;
 
 namespace {
 
-constexpr int32_t kMasterSbus = 8;
+constexpr int32_t kMasterSbus = 8, kMasterRs485 = 9;
 
 }  // namespace
 
@@ -101,9 +101,21 @@ void DriveServer::take_output(Time /*now*/, OutputChannel channel, std::span<con
   state_.take_po(PoSource::Sbus, scaled_for_slave(scaled, value("751")));
 }
 
+void DriveServer::take_sbus2(std::span<const uint16_t> words) {
+  look_for_obstacles(DataBus::sbus, false);
+  state_.take_po(PoSource::Sbus2, words);
+}
+
 bool DriveServer::follows_sbus_master() const { return value("100") == kMasterSbus; }
 
+bool DriveServer::is_slave() const { return follows_sbus_master() || value("100") == kMasterRs485; }
+
+// A slave of master/slave operation has only parameters over its fieldbus card (MDX60B/61B p. 29).
 void DriveServer::take_fieldbus(std::span<const uint16_t> words) {
+  if (unit().generation != stdlib::Generation::None && is_slave())
+    return tell_once(
+        Obstacle::Slave, DataBus::fieldbus.told_shift,
+        "PO data over the fieldbus have no effect: the unit is a slave of master/slave operation (P100)");
   look_for_obstacles(DataBus::fieldbus, false);
   state_.take_po(PoSource::Fieldbus, words);
 }

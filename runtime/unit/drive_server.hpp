@@ -79,7 +79,10 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
   tl::expected<int32_t, ReturnCode> serve(Time now, const ParameterRequest& request) override;
   bool has_subindices() const override { return unit().generation == stdlib::Generation::B; }
   void take_output(Time now, OutputChannel channel, std::span<const uint16_t> words) override;
+  // Over SBus 2, which is monitored by P893.
+  void take_sbus2(std::span<const uint16_t> words);
   bool follows_sbus_master() const;  // P100 = MASTER-SBus
+  bool is_slave() const;             // of master/slave operation, over SBus or RS-485
   ProcessWords input(Time now) override;
   void synchronize(Time now) override;
   uint32_t syncs() const { return syncs_; }  // sync telegrams so far
@@ -95,6 +98,8 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
 
   // Process data over a fieldbus card, and the end of them that the card's watchdog finds.
   void take_fieldbus(std::span<const uint16_t> words);
+  // The master exchanges data, with or without new words.
+  void fieldbus_request() { state_.take_request(PoSource::Fieldbus); }
   void fieldbus_lost() { state_.lose(PoSource::Fieldbus); }
 
   // Master/slave operation over RS-485 and SBus: what the master sends, and a slave takes.
@@ -116,7 +121,7 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
     DriveServer& drive_;
   };
 
-  enum class Obstacle : uint8_t { PoDisabled, ControlSource, SetpointSource, NoControlWord, Reserved };
+  enum class Obstacle : uint8_t { PoDisabled, ControlSource, SetpointSource, NoControlWord, Reserved, Slave };
   struct DataBus;  // a bus as P100 and P101 name it
   void look_for_obstacles(const DataBus& bus, bool slave);
   void obstruct(const DataBus& bus, Obstacle obstacle, std::string_view what, std::string_view number,

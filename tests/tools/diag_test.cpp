@@ -64,6 +64,42 @@ TEST_F(Diag, FivePages) {
   EXPECT_EQ(ipos({"diag", "plant.toml", "saw", "--page", "dp"}).exit_code, 64);
 }
 
+// A card of PROFIBUS and a gateway, with what the master sees of them.
+TEST_F(Diag, FieldbusAndGateway) {
+  folder_.write(
+      "dp.toml",
+      "[[bus]]\nname = \"dp\"\nkind = \"profibus\"\n[[bus]]\nname = \"sbus\"\nkind = \"can\"\n"
+      "[[station]]\nname = \"saw\"\nunit = \"mdxb\"\noption = \"dfp\"\nprofibus = \"dp\"\n"
+      "profibus_address = 9\n[station.parameters]\nP100 = 3\nP101 = 2\n"
+      "[[station]]\nname = \"fan\"\nunit = \"mc07\"\nsbus = \"sbus\"\n[station.parameters]\nP813 = 5\n"
+      "[[station]]\nname = \"gw\"\nunit = \"gateway\"\nprofibus = \"dp\"\nprofibus_address = 10\n"
+      "sbus = \"sbus\"\ndrives = [5, 6]\n"
+      "[[control]]\nname = \"plc\"\nprofibus = \"dp\"\n[[control.slave]]\naddress = 9\ncfg = \"F3 F2\"\n"
+      "watchdog = \"200ms\"\npo = [6, 5000]\n[[control.slave]]\naddress = 10\ncfg = \"F3 F2 F2\"\n"
+      "channel = \"71 05 21 98 00 00 00 00\"\n");
+  const CommandResult card = ipos({"diag", "dp.toml", "saw", "--at", "2s", "--page", "fieldbus"});
+  EXPECT_EQ(card.exit_code, 0) << card.err;
+  for (const char* part :
+       {"P819 ", "0.200 s", "MOVIDRIVE B DFP21B/DP on dp", "  address                          9\n",
+        "  ident number                     6003 hex\n", "exchanges data", "Param + 3 PD",
+        "  master                           1\n", "  BUS FAULT                        off\n",
+        "00 0C 00 01 60 03"})
+    EXPECT_TRUE(contains(card.out, part)) << part << "\n" << card.out;
+  // 02 and the second of its drives.
+  const CommandResult gateway = ipos({"diag", "dp.toml", "gw", "--at", "2s"});
+  EXPECT_EQ(gateway.exit_code, 0) << gateway.err;
+  for (const char* part : {"gw: gateway from dp to sbus\n", "08 0C 00 01 60 02 02 02", "SBus address 5\n",
+                           "answers\n", "SBus address 6\n", "does not answer\n", "lost 1 times",
+                           "last parameter service           drive 5, index 8600: 5\n"})
+    EXPECT_TRUE(contains(gateway.out, part)) << part << "\n" << gateway.out;
+  const CommandResult refused = ipos({"param", "get", "dp.toml", "P813", "--station", "gw"});
+  EXPECT_EQ(refused.exit_code, 64);
+  EXPECT_TRUE(contains(refused.err, "is a gateway: it has no program, drive or parameters")) << refused.err;
+  const CommandResult plan = ipos({"bus", "plan", "dp.toml"});
+  EXPECT_TRUE(contains(plan.out, "gw")) << plan.out;
+  EXPECT_TRUE(contains(plan.out, "PO of address 5")) << plan.out;
+}
+
 // The run-up: 1.5 rpm a millisecond from 0 to 1000 rpm.
 TEST_F(Diag, ScopeAsCsv) {
   PROVES("MDB-TOC-28");

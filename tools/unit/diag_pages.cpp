@@ -7,6 +7,7 @@
 
 #include "runtime/bus/canopen/connections.hpp"
 #include "runtime/bus/movilink/identifiers.hpp"
+#include "runtime/bus/profibus/frame_text.hpp"
 #include "runtime/drive/control.hpp"
 #include "stdlib/parameters.hpp"
 
@@ -22,6 +23,38 @@ std::string line(std::string_view name, std::string_view value) {
 
 std::string word(uint16_t value) { return fmt::format("{:04X} hex", value); }
 
+constexpr std::string_view light_text(profibus::Light light) {
+  switch (light) {
+    case profibus::Light::Off: return "off";
+    case profibus::Light::On: return "on";
+    case profibus::Light::Flicker: return "flickers";
+    default: return "flashes";
+  }
+}
+
+constexpr std::string_view slave_text(profibus::SlaveState state) {
+  switch (state) {
+    case profibus::SlaveState::WaitPrm: return "waits for parameters (Wait_Prm)";
+    case profibus::SlaveState::WaitCfg: return "waits for its configuration (Wait_Cfg)";
+    case profibus::SlaveState::DataExchange: break;
+  }
+  return "exchanges data";
+}
+
+std::string dp_lines(profibus::SlaveStation& station, runtime::Time now) {
+  profibus::DpSlave& slave = station.slave();
+  const profibus::Diagnosis diagnosis = slave.diagnosis(now);
+  std::string text = line("address", fmt::format("{}", slave.address()));
+  text += line("ident number", word(diagnosis.ident));
+  text += line("state", slave_text(slave.state()));
+  text +=
+      line("master", diagnosis.master == profibus::kNoMaster ? "none" : fmt::format("{}", diagnosis.master));
+  if (const profibus::Configuration* configuration = slave.configuration())
+    text += line("configuration", configuration->name);
+  const auto octets = profibus::encode(diagnosis);
+  return text + line("Slave_Diag", profibus::hex_text(octets));
+}
+
 constexpr std::string_view state_text(runtime::ErrorState state) {
   switch (state) {
     case runtime::ErrorState::Active: return "error active";
@@ -33,7 +66,7 @@ constexpr std::string_view state_text(runtime::ErrorState state) {
 
 }  // namespace
 
-DiagPages::DiagPages(runtime::Plant& plant, const runtime::Station& station, runtime::CanNames names)
+DiagPages::DiagPages(runtime::Plant& plant, runtime::Station& station, runtime::CanNames names)
     : plant_(plant), station_(station), words_(std::move(names)) {
   CanObserver& observer = *this;
   plant.add_observer(observer);
@@ -146,11 +179,42 @@ std::string DiagPages::can() const {
   return text.empty() ? line("SBus", "not connected") : text;
 }
 
-// No card is fitted in the units that are simulated with CAN and RS-485 alone.
+// The numbers are those of MOVIDRIVE and of MOVITRAC 31; a unit has the one or the other.
 std::string DiagPages::fieldbus() const {
   std::string text;
-  for (const char* number : {"819", "831"}) text += row(number);
-  return text + line("fieldbus card", "none");
+  for (const char* number : {"073", "091", "092", "093", "571", "572", "819", "831"}) text += row(number);
+  const runtime::ProfibusUse& use = station_.config().profibus;
+  runtime::ProfibusPort* port = station_.profibus();
+  if (port == nullptr || use.option == nullptr) return text + line("fieldbus card", "none");
+  text += line("fieldbus card", fmt::format("{} on {}", use.option->model, use.bus.bus));
+  text += dp_lines(port->card().station(), plant_.now());
+  const profibus::LedPattern lights = port->card().leds(plant_.now());
+  text += line("RUN", light_text(lights.green));
+  return text + line("BUS FAULT", light_text(lights.red));
+}
+
+std::string DiagPages::gateway(runtime::Gateway& gateway, runtime::Time now) {
+  const runtime::ControlConfig& config = gateway.config();
+  std::string text =
+      fmt::format("{}: gateway from {} to {}\n", config.name, config.gateway->profibus.bus.bus, config.sbus);
+  text += dp_lines(gateway.dp(), now);
+  for (const runtime::Gateway::Drive& drive : gateway.drives()) {
+    text += fmt::format("SBus address {}\n", drive.address);
+    text += line("drive", drive.lost ? "does not answer" : "answers");
+    text += line("telegrams", fmt::format("sent {}, answered {}, lost {} times", drive.answers.asked,
+                                          drive.answers.answered, drive.losses));
+    text += line("PO",
+                 fmt::format("{:04X} {:04X} {:04X} hex", drive.output[0], drive.output[1], drive.output[2]));
+    const auto& input = drive.answers.input;
+    text += line("PI", fmt::format("{:04X} {:04X} {:04X} hex", input[0], input[1], input[2]));
+  }
+  const runtime::ParameterTelegram& last = gateway.channel().last();
+  if (last.management != 0)
+    text += line("last parameter service",
+                 fmt::format("drive {}, index {}: {}", last.subindex, last.index,
+                             last.failed() ? runtime::describe(last.return_code())
+                                           : fmt::format("{}", static_cast<int32_t>(last.data))));
+  return text;
 }
 
 std::string DiagPages::page(const std::string& page) {

@@ -18,10 +18,13 @@ class DiagPages final : private runtime::CanObserver {
   static constexpr const char* kNames[] = {"parameters", "pd", "rs485", "can", "fieldbus"};
 
   // The plant is fresh; names are those of its station after a moment (can_names).
-  DiagPages(runtime::Plant& plant, const runtime::Station& station, runtime::CanNames names);
+  DiagPages(runtime::Plant& plant, runtime::Station& station, runtime::CanNames names);
 
   // As it is now. `page` is one of kNames.
   std::string page(const std::string& page);
+
+  // The only page of a gateway.
+  static std::string gateway(runtime::Gateway& gateway, runtime::Time now);
 
  private:
   struct Heard {
@@ -42,7 +45,7 @@ class DiagPages final : private runtime::CanObserver {
   bool concerns(const runtime::CanLine& line, const runtime::Frame& frame) const;
 
   runtime::Plant& plant_;
-  const runtime::Station& station_;
+  runtime::Station& station_;
   runtime::CanWords words_;
   std::map<const runtime::CanLine*, Heard> heard_;
 };

@@ -8,7 +8,17 @@
 
 namespace ipos::tools {
 
+void refuse_gateway(const runtime::PlantFile& file, const std::string& path, const std::string& name) {
+  for (const runtime::ControlConfig& control : file.controls)
+    if (control.gateway && control.name == name)
+      throw Failure(kUsage,
+                    fmt::format("'{}' of {} is a gateway: it has no program, drive or parameters of its "
+                                "own; `ipos diag` shows what it does",
+                                name, path));
+}
+
 runtime::Station& find_station(runtime::Plant& plant, const std::string& path, const std::string& name) {
+  refuse_gateway(plant.file(), path, name);
   std::string names;
   for (const auto& station : plant.stations()) {
     if (name.empty() ? plant.stations().size() == 1 : station->config().name == name) return *station;

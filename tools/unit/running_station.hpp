@@ -11,6 +11,9 @@ namespace ipos::tools {
 // A Failure names the stations there are. An empty name is the only one.
 runtime::Station& find_station(runtime::Plant& plant, const std::string& path, const std::string& name);
 
+// A Failure that says what a gateway has not, where the name is that of one.
+void refuse_gateway(const runtime::PlantFile& file, const std::string& path, const std::string& name);
+
 class RunningStation final : public ParameterAccess {
  public:
   RunningStation(runtime::Station& station, std::string plant)

@@ -6,6 +6,7 @@
 #include "runtime/unit/drive_server.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/input/plant_source.hpp"
+#include "tools/unit/running_station.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -85,6 +86,7 @@ class StationAccess final : public ParameterAccess {
 
 const runtime::StationConfig& choose(const runtime::PlantFile& file, const std::string& plant,
                                      const std::string& station) {
+  refuse_gateway(file, plant, station);
   std::string names;
   for (const runtime::StationConfig& config : file.stations) {
     if (config.name == station) return config;

@@ -26,7 +26,13 @@ struct DiagFlags {
 
 int diagnose(const DiagFlags& flags) {
   const auto plant = make_plant(read_plant_input(flags.plant, flags.compile), runtime::FileUse::Look);
-  const runtime::Station& station = find_station(*plant, flags.plant, flags.station);
+  for (const runtime::PlantControl& control : plant->controls())
+    if (control.gateway && control.config->name == flags.station) {
+      plant->run_until(runtime::parse_duration(flags.at));
+      fmt::print("{}", DiagPages::gateway(*control.gateway, plant->now()));
+      return kGood;
+    }
+  runtime::Station& station = find_station(*plant, flags.plant, flags.station);
   DiagPages pages(*plant, station, runtime::can_names(*plant));
   plant->run_until(runtime::parse_duration(flags.at));
   const char* gap = "";
@@ -42,8 +48,9 @@ int diagnose(const DiagFlags& flags) {
 
 void add_diag(cli::Verb& app) {
   auto flags = std::make_shared<DiagFlags>();
-  cli::Verb& verb =
-      app.verb("diag", "diagnostic pages of a drive: parameters, process data, RS-485, CAN, fieldbus");
+  cli::Verb& verb = app.verb(
+      "diag",
+      "diagnostic pages of a drive: parameters, process data, RS-485, CAN, fieldbus; of a gateway its own");
   verb.option("PLANT", flags->plant, "plant (.toml), which runs for it").required();
   verb.option("STATION", flags->station, "which one, where the plant has several");
   verb.option("--at", flags->at, "at this time of the run, default 1s").check(check_time, "TIME");

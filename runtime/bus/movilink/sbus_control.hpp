@@ -51,6 +51,8 @@ class SbusControl final : public CanNode, private EventTarget {
     ProcessWords input{};
   };
   const ControlSettings& settings() const { return settings_; }
+  // The words of a target from its next telegram on.
+  void set_output(size_t target, const ProcessWords& words) { settings_.targets[target].output = words; }
   const Answers& answers(size_t target) const { return answers_[target]; }
 
   void on_frame(Time now, const Frame& frame) override;

@@ -5,8 +5,8 @@ namespace ipos::profibus {
 namespace {
 
 constexpr OptionType kOptions[] = {
-#define PROFIBUS_OPTION(name, word, unit, ident, fms, model, gsd_file) \
-  {OptionKind::name, word, unit, ident, fms, model, gsd_file},
+#define PROFIBUS_OPTION(name, word, unit, ident, fms, set, most_words, model, gsd_file) \
+  {OptionKind::name, word, unit, ident, fms, {ConfigurationSet::set, 1, most_words}, model, gsd_file},
 #include "runtime/bus/profibus/options.def"
 };
 
@@ -27,14 +27,15 @@ bool flashes(Time now, Time period) { return now % period < period / 2; }
 std::span<const OptionType> option_types() { return kOptions; }
 const OptionType& option_type(OptionKind kind) { return kOptions[static_cast<size_t>(kind)]; }
 
-const OptionType* find_option_type(std::string_view word) {
+const OptionType* find_option_type(std::string_view word, std::string_view unit) {
   for (const OptionType& option : kOptions)
-    if (option.word == word) return &option;
+    if (option.word == word && (unit.empty() || option.unit == unit)) return &option;
   return nullptr;
 }
 
 SlaveSettings LatchedSwitches::slave_settings(const OptionType& option, uint32_t baud) const {
   SlaveSettings settings{address(), option.ident};
+  settings.accepts = option.accepts;
   const BaudRate* rate = find_baud_rate(baud);
   if (option.fms && fms() && rate != nullptr) settings.min_tsdr = rate->fms_min_tsdr;
   return settings;

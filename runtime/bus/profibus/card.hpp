@@ -1,4 +1,4 @@
-// The option card of MOVITRAC 31 beside its bus: which interface it is, the switches that count from the last
+// The interface card beside its bus: which one it is, the switches that count from the last
 // power-on, and the two LEDs (MOVITRAC 31 PROFIBUS, 2.5 to 2.8).
 #pragma once
 
@@ -13,7 +13,7 @@
 namespace ipos::profibus {
 
 enum class OptionKind : uint8_t {
-#define PROFIBUS_OPTION(name, word, unit, ident, fms, model, gsd_file) name,
+#define PROFIBUS_OPTION(name, ...) name,
 #include "runtime/bus/profibus/options.def"
 };
 
@@ -23,13 +23,15 @@ struct OptionType {
   std::string_view unit;  // the type it fits
   uint16_t ident;
   bool fms;
+  AcceptedWords accepts;
   std::string_view model;
   std::string_view gsd_file;
 };
 
 std::span<const OptionType> option_types();
 const OptionType& option_type(OptionKind kind);
-const OptionType* find_option_type(std::string_view word);
+// The one for a unit, or the first where no unit is given. Else nullptr.
+const OptionType* find_option_type(std::string_view word, std::string_view unit = {});
 
 // --- switches
 

@@ -10,8 +10,8 @@ namespace ipos::profibus {
 namespace {
 
 constexpr Configuration kConfigurations[] = {
-#define CONFIGURATION(octets, words, parameter_channel, identifiers, name) \
-  {octets, words, parameter_channel, identifiers, name},
+#define CONFIGURATION(set, octets, words, parameter_channel, identifiers, name) \
+  {ConfigurationSet::set, octets, words, parameter_channel, identifiers, name},
 #include "runtime/bus/profibus/configurations.def"
 };
 
@@ -62,6 +62,9 @@ std::optional<CfgModule> decode_special(std::span<const uint8_t> cfg, size_t& at
   return module;
 }
 
+// Four words, consistent as a whole, in both directions.
+CfgModule channel_module() { return decode_simple(0xF3); }
+
 std::string amount(uint8_t count, bool words) {
   return fmt::format("{} {}{}", count, words ? "word" : "octet", count == 1 ? "" : "s");
 }
@@ -100,9 +103,14 @@ std::string describe(const CfgModule& module) {
   return text;
 }
 
-std::span<const Configuration> configurations() { return kConfigurations; }
+// The rows of a set stand together.
+std::span<const Configuration> configurations(ConfigurationSet set) {
+  const auto of_set = [set](const Configuration& c) { return c.set == set; };
+  const auto* first = std::find_if(std::begin(kConfigurations), std::end(kConfigurations), of_set);
+  return {first, std::find_if_not(first, std::end(kConfigurations), of_set)};
+}
 
-const Configuration* find_configuration(std::span<const uint8_t> cfg) {
+const Configuration* find_configuration(std::span<const uint8_t> cfg, const AcceptedWords& accepted) {
   const auto modules = decode_cfg(cfg);
   if (!modules) return nullptr;
   size_t inputs = 0, outputs = 0;
@@ -110,9 +118,14 @@ const Configuration* find_configuration(std::span<const uint8_t> cfg) {
     inputs += module.input_octets();
     outputs += module.output_octets();
   }
-  const auto found = std::find_if(std::begin(kConfigurations), std::end(kConfigurations),
-                                  [&](const Configuration& c) { return c.octets == inputs; });
-  return inputs == outputs && found != std::end(kConfigurations) ? found : nullptr;
+  const bool by_length = accepted.set == ConfigurationSet::Mc31;
+  const bool channel = modules->size() > 1 && modules->front() == channel_module();
+  const auto rows = configurations(accepted.set);
+  const auto found = std::find_if(rows.begin(), rows.end(), [&](const Configuration& c) {
+    return c.octets == inputs && c.words >= accepted.least && c.words <= accepted.most &&
+           (by_length || c.parameter_channel == channel);
+  });
+  return inputs == outputs && found != rows.end() ? &*found : nullptr;
 }
 
 }  // namespace ipos::profibus

@@ -1,5 +1,5 @@
 // Cfg_Data, what Chk_Cfg carries and Get_Cfg returns: identifier octets that say which inputs and outputs
-// master and slave exchange, and the configurations a MOVITRAC 31 accepts (MOVITRAC 31 PROFIBUS, 3.1.1).
+// master and slave exchange, and the configurations that a card accepts (MOVITRAC 31 PROFIBUS, 3.1.1).
 #pragma once
 
 #include <cstdint>
@@ -33,7 +33,11 @@ std::optional<std::vector<CfgModule>> decode_cfg(std::span<const uint8_t> cfg);
 // "inputs and outputs of 3 words, consistent as a whole"
 std::string describe(const CfgModule& module);
 
+// Of which interface a configuration is.
+enum class ConfigurationSet : uint8_t { Mc31, Movidrive, Gateway };
+
 struct Configuration {
+  ConfigurationSet set;
   uint8_t octets;  // in each direction
   uint8_t words;   // of process data
   bool parameter_channel;
@@ -43,9 +47,17 @@ struct Configuration {
   Octets cfg_data() const { return {identifiers.begin(), identifiers.end()}; }
 };
 
-std::span<const Configuration> configurations();
+std::span<const Configuration> configurations(ConfigurationSet set = ConfigurationSet::Mc31);
 
-// The one that Cfg_Data asks for: inputs and outputs of equal length, which alone decides. Else nullptr.
-const Configuration* find_configuration(std::span<const uint8_t> cfg);
+// What a card accepts of a set.
+struct AcceptedWords {
+  ConfigurationSet set = ConfigurationSet::Mc31;
+  uint8_t least = 1;
+  uint8_t most = 3;
+};
+
+// The one that Cfg_Data asks for: inputs and outputs of equal length, which alone decides for MOVITRAC 31. Else
+// nullptr.
+const Configuration* find_configuration(std::span<const uint8_t> cfg, const AcceptedWords& accepted = {});
 
 }  // namespace ipos::profibus

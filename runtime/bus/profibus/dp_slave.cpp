@@ -44,7 +44,9 @@ void DpSlave::power_on(Time now, SlaveSettings settings) {
   min_tsdr_ = settings.min_tsdr;
   prm_ = {};
   configuration_ = nullptr;
-  cfg_data_ = configurations().front().cfg_data();
+  cfg_data_ = {};
+  for (const Configuration& row : configurations(settings.accepts.set))
+    if (cfg_data_.empty() && row.words >= settings.accepts.least) cfg_data_ = row.cfg_data();
   prm_fault_ = cfg_fault_ = not_supported_ = static_diagnosis_ = false;
   fault_told_.reset();
   image_.begin(0);
@@ -172,7 +174,7 @@ FdlFrame DpSlave::configure(Time now, const FdlFrame& request) {
     return make_acknowledgement();
   }
   if (!is_master(request)) return refuse(now, request, SlaveNote::OtherMaster);
-  const Configuration* wanted = find_configuration(request.data);
+  const Configuration* wanted = find_configuration(request.data, settings_.accepts);
   if (wanted == nullptr) {
     cfg_fault_ = true;
     wait_for_prm(now, SlaveNote::CfgRefused, request.source);
@@ -197,6 +199,7 @@ FdlFrame DpSlave::exchange(Time now, const FdlFrame& request) {
     wait_for_prm(now, SlaveNote::DataLength, request.source);
     return status_answer(request, FdlAnswer::NoService);
   }
+  unit_.exchanged(now);
   if (image_.take(request.data)) unit_.take_outputs(now, image_.outputs());
   const bool diagnosis_waits = static_diagnosis_ || fault_.shown(now) != fault_told_;
   return data_answer(request, inputs(now), diagnosis_waits ? FdlAnswer::DataHigh : FdlAnswer::DataLow);

@@ -1,4 +1,4 @@
-// A DP slave as MOVITRAC 31 has it: the whole of DP-V0 behind the frames of layer 2, as a pure machine: frames
+// A DP slave as MOVITRAC 31, the cards of MOVIDRIVE and the gateway have it: the whole of DP-V0 behind the frames of layer 2, as a pure machine: frames
 // and times in, answers out. The line, the automatic rate and the delay of the answer are the station's.
 //
 // States and what is not printed (which requests of other masters get RS, what leads back to Wait_Prm) are
@@ -33,6 +33,8 @@ class SlaveUnit {
   // Data exchange begins, with all outputs 0.
   virtual void configured(Time now, const Configuration& configuration) = 0;
   virtual void take_outputs(Time now, std::span<const uint8_t> outputs) = 0;
+  // The master exchanged data, whatever became of the outputs: in Sync mode they wait.
+  virtual void exchanged(Time /*now*/) {}
   // Fills as many octets as are configured.
   virtual void read_inputs(Time now, std::span<uint8_t> inputs) = 0;
   // The watchdog time of Set_Prm; nothing: no watchdog.
@@ -58,6 +60,7 @@ struct SlaveSettings {
   uint8_t address = kNoAddressYet;  // beyond kLastStation the slave is silent
   uint16_t ident = 0;
   uint8_t min_tsdr = kLeastMinTsdr;  // bit times, until a master sets another one
+  AcceptedWords accepts{};
 };
 
 class DpSlave {

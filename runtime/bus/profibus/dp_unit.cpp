@@ -46,6 +46,9 @@ DpUnit::DpUnit(FieldbusParameters& parameters, FieldbusDrive& drive, Time proces
                              const ParameterTelegram& request) { return execute(now, parameters, request); },
                processing) {}
 
+DpUnit::DpUnit(runtime::ParameterServer& parameters, FieldbusDrive& drive, Time processing)
+    : drive_(drive), channel_(parameters, processing) {}
+
 void DpUnit::configured(Time, const Configuration& configuration) { configuration_ = &configuration; }
 
 void DpUnit::take_outputs(Time now, std::span<const uint8_t> outputs) {
@@ -60,7 +63,7 @@ void DpUnit::take_outputs(Time now, std::span<const uint8_t> outputs) {
 }
 
 void DpUnit::send_words(Time now, std::span<const uint8_t> octets) {
-  std::array<uint16_t, 3> words{};
+  std::array<uint16_t, kMostWords> words{};
   for (size_t n = 0; n < octets.size() / 2; ++n)
     words[n] = static_cast<uint16_t>(octets[2 * n] << 8 | octets[2 * n + 1]);
   drive_.take_output(now, runtime::OutputChannel::Single, std::span(words).first(octets.size() / 2));
@@ -74,8 +77,9 @@ void DpUnit::read_inputs(Time now, std::span<uint8_t> inputs) {
   }
   const runtime::ProcessWords words = drive_.input(now);
   for (size_t n = 0; n < inputs.size() / 2; ++n) {
-    inputs[2 * n] = static_cast<uint8_t>(words[n] >> 8);
-    inputs[2 * n + 1] = static_cast<uint8_t>(words[n]);
+    const uint16_t word = n < words.size() ? words[n] : 0;  // a drive has three
+    inputs[2 * n] = static_cast<uint8_t>(word >> 8);
+    inputs[2 * n + 1] = static_cast<uint8_t>(word);
   }
 }
 
@@ -87,7 +91,7 @@ void DpUnit::watchdog_expired(Time now) { drive_.fieldbus_timeout_expired(now); 
 
 // A slave that leaves data exchange sets its outputs to 0: the drive stops.
 void DpUnit::exchange_ended(Time now) {
-  const std::array<uint8_t, 6> zero{};
+  const std::array<uint8_t, 2 * kMostWords> zero{};
   send_words(now, std::span(zero).first(2 * size_t{configuration_->words}));
 }
 

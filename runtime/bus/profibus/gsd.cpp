@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
 
 #include "runtime/bus/profibus/cfg_data.hpp"
 
@@ -40,9 +41,12 @@ std::string gsd_text(const OptionType& option) {
     text += fmt::format("{}_supp=1\n", rate->keyword);
   for (auto rate = std::rbegin(kBaudRates); rate != std::rend(kBaudRates); ++rate)
     text += fmt::format("MaxTsdr_{}={}\n", rate->keyword, rate->max_tsdr);
+  std::vector<Configuration> rows;
+  for (const Configuration& row : configurations(option.accepts.set))
+    if (row.words <= option.accepts.most) rows.push_back(row);
   size_t modules = 0;
   uint8_t octets = 0;
-  for (const Configuration& configuration : configurations()) {
+  for (const Configuration& configuration : rows) {
     modules = std::max(modules, configuration.identifiers.size());
     octets = std::max(octets, configuration.octets);
   }
@@ -62,7 +66,7 @@ std::string gsd_text(const OptionType& option) {
       "Max_Data_Len={}\n"
       "Max_Diag_Data_Len={}\n",
       kMinSlaveInterval, modules, octets, octets, 2 * octets, kStandardDiagSize + 2);
-  for (const Configuration& configuration : configurations()) text += module_text(configuration);
+  for (const Configuration& configuration : rows) text += module_text(configuration);
   return text;
 }
 

@@ -1,7 +1,8 @@
-// The PROFIBUS interface of a MOVITRAC 31 put together: slave on its line, parameter channel, FMS, switches and
-// LEDs, over the inverter's parameters and its drive. What a plant builds for a station.
+// The PROFIBUS interface of a drive put together: slave on its line, parameter channel, FMS, switches and LEDs, over
+// the inverter's parameters and its drive. What a plant builds for a station.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "runtime/bus/profibus/dp_unit.hpp"
@@ -23,7 +24,7 @@ class InterfaceCard {
   void power_on(Time now, bool supply_was_kept);
 
   SlaveStation& station() { return station_; }
-  FmsServer& fms() { return fms_; }
+  FmsServer& fms() { return *fms_; }  // of MOVITRAC 31 alone
   FieldbusParameters& parameters() { return parameters_; }
   LedPattern leds(Time now) const;
 
@@ -32,8 +33,8 @@ class InterfaceCard {
   FieldbusParameters parameters_;
   DpUnit unit_;
   SlaveStation station_;
-  FmsObjects objects_;
-  FmsServer fms_;
+  std::optional<FmsObjects> objects_;
+  std::optional<FmsServer> fms_;
 };
 
 }  // namespace ipos::profibus

@@ -71,6 +71,7 @@ std::string misfit(const PlannedStation& s) {
     case Interface::Ffp31C:
       if (s.series != InverterSeries::C) return "FFP 31C is for MOVITRAC 31C";
       return s.size >= 1 && s.size <= 4 ? "" : "FFP 31C is for sizes 1 to 4";
+    case Interface::Card: return "";
     case Interface::Size0: break;
   }
   return s.series == InverterSeries::C && s.size == 0
@@ -83,11 +84,14 @@ void check_station(const PlannedStation& s, std::vector<std::string>& found) {
   if (s.address > kLastStation)
     found.push_back(fmt::format("{}: address {} is not in 0..{}", s.name, s.address, kLastStation));
   const auto kind = s.interface == Interface::Size0 ? OptionKind::Size0 : OptionKind::Ffp31;
-  if (s.ident != option_type(kind).ident)
+  const OptionType& type = s.card != nullptr ? *s.card : option_type(kind);
+  if (s.ident != type.ident)
     found.push_back(fmt::format("{}: the master expects ident {:04X}h, the unit has {:04X}h", s.name, s.ident,
-                                option_type(kind).ident));
-  const auto all = configurations();
-  if (std::none_of(all.begin(), all.end(), [&s](const Configuration& c) { return c.octets == s.octets; }))
+                                type.ident));
+  const auto all = configurations(type.accepts.set);
+  if (std::none_of(all.begin(), all.end(), [&](const Configuration& c) {
+        return c.octets == s.octets && c.words >= type.accepts.least && c.words <= type.accepts.most;
+      }))
     found.push_back(fmt::format("{}: {} octets are no configuration of this unit", s.name, s.octets));
 }
 

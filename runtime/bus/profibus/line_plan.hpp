@@ -23,8 +23,8 @@ struct Cable {
 
 enum class InverterSeries : uint8_t { B, C };
 
-// Option pcb FFP 31A or FFP 31C, or the interface that size 0 has built in.
-enum class Interface : uint8_t { Ffp31A, Ffp31C, Size0 };
+// Option pcb FFP 31A or FFP 31C, or the interface that size 0 has built in. Card: of another unit, `card` says which.
+enum class Interface : uint8_t { Ffp31A, Ffp31C, Size0, Card };
 
 struct PlannedStation {
   std::string name;
@@ -37,6 +37,7 @@ struct PlannedStation {
   uint16_t ident = 0x3100;      // as the master's configuration has it
   uint8_t octets = 6;           // in each direction
   std::optional<Time> watchdog;
+  const OptionType* card = nullptr;
 };
 
 struct LinePlan {

@@ -139,8 +139,9 @@ class Pair {
       case 4:
       case 5:
       case 6: {
-        static constexpr PoSource kSources[] = {PoSource::Rs485, PoSource::Fieldbus, PoSource::Sbus};
-        const PoSource source = kSources[below(3)];
+        static constexpr PoSource kSources[] = {PoSource::Rs485, PoSource::Fieldbus, PoSource::Sbus,
+                                                PoSource::Sbus2};
+        const PoSource source = kSources[below(4)];
         Words& words = words_;  // at times the same again
         if (below(2) == 0)
           for (uint16_t& word : words) word = static_cast<uint16_t>(random_());
@@ -202,7 +203,7 @@ class Pair {
     static constexpr const char* kFavourites[] = {
         "100", "101", "110", "115", "120", "130", "131", "136", "301", "302", "303", "340", "350", "500",
         "501", "600", "601", "602", "603", "604", "620", "621", "700", "720", "730", "812", "815", "819",
-        "841", "870", "871", "872", "876", "250", "121", "122", "830", "836", "837", "802"};
+        "841", "870", "871", "872", "876", "250", "121", "122", "830", "836", "837", "893", "802"};
     const auto& table = kept_.rig.parameters.table();
     const stdlib::Parameter* parameter = table.find(indices_[below(static_cast<uint32_t>(indices_.size()))]);
     if (below(4) != 0)

@@ -68,13 +68,14 @@ inline constexpr const char* kWaitingBodies[] = {
 
 class WaitingPlant {
  public:
-  explicit WaitingPlant(uint64_t seed) : random_(seed) {
+  explicit WaitingPlant(uint64_t seed) : random_(seed), card_(seed % 4 == 1), gateway_(seed % 4 == 2) {
     stations_ = pick(1, 4);
     serial_ = pick(0, 1) != 0;
     text_ =
         "[[bus]]\nname = \"can\"\nkind = \"can\"\nbaud = 500000\n[[bus]]\nname = \"line\"\nkind = "
         "\"rs485\"\n";
     for (int n = 0; n < stations_; ++n) station(n);
+    if (card_ || gateway_) profibus();
     for (int n = pick(0, 2); n > 0; --n)
       text_ += fmt::format("[[wire]]\nfrom = \"u{}.DO0{}\"\nto = \"u{}.DI0{}\"\n", pick(0, stations_ - 1),
                            pick(1, 2), pick(0, stations_ - 1), wires_++ + 4);
@@ -106,10 +107,15 @@ class WaitingPlant {
     text_ += fmt::format("[[station]]\nname = \"u{0}\"\nunit = \"{1}\"\n{2}sbus = \"can\"\n{3}", n, unit,
                          has_program ? fmt::format("program = \"P{}.IPC\"\n", n) : "",
                          serial_ && (!m07 || pick(0, 1) == 0) ? "rs485 = \"line\"\n" : "");
+    if (card_ && n == 0 && !m07) text_ += "option = \"dfp\"\nprofibus = \"dp\"\nprofibus_address = 9\n";
     text_ += fmt::format("[station.parameters]\nP{0} = {1}\nP810 = {1}\nP130 = 200\nP136 = 100\n",
                          b ? 881 : 813, n + 1);
     if (!m07 && pick(0, 2) == 0) text_ += "P841 = 1\n";
-    if (pick(0, 2) == 0) text_ += "P100 = 10\nP101 = 3\n";
+    const bool card = card_ && n == 0 && !m07;
+    if (card)
+      text_ += "P100 = 3\nP101 = 2\n";
+    else if (pick(0, 2) == 0)
+      text_ += "P100 = 10\nP101 = 3\n";
     if (b && pick(0, 1) == 0) text_ += "P700 = 13\nP903 = 5\n";
     if (b && pick(0, 1) == 0) text_ += fmt::format("P938 = {}\n", pick(0, 9));
     text_ += fmt::format("[station.inputs]\nDI0{} = 1\nDI0{} = 1\n", pick(m07 ? 1 : 0, m07 ? 2 : 1), 3);
@@ -139,6 +145,24 @@ class WaitingPlant {
     sources_[fmt::format("P{}.IPC", n)] = source;
   }
 
+  // A master that begins, changes its words, falls silent and comes back; the card of u0, or a gateway to them all.
+  void profibus() {
+    text_ += "[[bus]]\nname = \"dp\"\nkind = \"profibus\"\nbaud = 500000\n";
+    std::string cfg = "F3 F2", words = "6, 2000, 0";
+    if (gateway_) {
+      text_ +=
+          "[[station]]\nname = \"gw\"\nunit = \"gateway\"\nprofibus = \"dp\"\nprofibus_address = 9\n"
+          "sbus = \"can\"\n";
+      for (int n = 1; n < stations_; ++n) cfg += " F2", words += ", 6, 1000, 0";
+    }
+    text_ += fmt::format(
+        "[[control]]\nname = \"plc\"\nprofibus = \"dp\"\n[[control.slave]]\naddress = 9\ncfg = \"{}\"\n"
+        "watchdog = \"{}ms\"\npo = [{}]\n[[control.slave.change]]\nat = \"{}ms\"\n"
+        "channel = \"72 0{} 20 70 00 00 00 09\"\n[[control.command]]\nat = \"{}ms\"\ncommand = \"stop\"\n"
+        "[[control.command]]\nat = \"2500ms\"\ncommand = \"start\"\n",
+        cfg, pick(2, 30) * 10, words, pick(100, 900), gateway_ ? 1 : 0, pick(1000, 2400));
+  }
+
   void stimulus() {
     static constexpr const char* kWhat[] = {
         "input = \"DI01\"\npulse = 1\nfor = \"900ms\"\n",
@@ -153,6 +177,7 @@ class WaitingPlant {
   }
 
   std::mt19937_64 random_;
+  bool card_, gateway_;  // on a PROFIBUS
   int stations_ = 0;
   bool serial_ = false;  // nobody is late who has a serial line
   int wires_ = 0;

@@ -96,10 +96,13 @@ TEST(Switches, ChooseTheDefaultOfMinTsdr) {
 }
 
 TEST(Options, ByWord) {
-  EXPECT_EQ(option_types().size(), 2U);
+  EXPECT_EQ(option_types().size(), 5U);
   EXPECT_EQ(find_option_type("ffp31")->kind, OptionKind::Ffp31);
   EXPECT_EQ(find_option_type("size0")->ident, 0x3111);
-  EXPECT_EQ(find_option_type("dfp"), nullptr);
+  EXPECT_EQ(find_option_type("dfp", "mdxb")->accepts.most, 10);
+  EXPECT_EQ(find_option_type("dfp", "md60a")->ident, 0x6000) << "printed for DFP11A";
+  EXPECT_EQ(find_option_type("dfp", "mc07"), nullptr);
+  EXPECT_EQ(find_option_type("ffp32"), nullptr);
 }
 
 }  // namespace

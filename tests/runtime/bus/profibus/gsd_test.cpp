@@ -5,6 +5,7 @@
 #include <regex>
 #include <set>
 #include <sstream>
+#include <tuple>
 
 #include "runtime/bus/profibus/cfg_data.hpp"
 #include "tests/runtime/bus/profibus/octets.hpp"
@@ -62,10 +63,6 @@ TEST(GsdFile, BothUnits) {
                                   "Max_Module",         "Max_Input_Len",       "Max_Output_Len",
                                   "Max_Data_Len",       "Max_Diag_Data_Len",   "FMS_supp"})
       EXPECT_EQ(gsd.keys.count(mandatory), 1U) << mandatory;
-    EXPECT_EQ(gsd.keys["Max_Input_Len"], "14");
-    EXPECT_EQ(gsd.keys["Max_Data_Len"], "28");
-    EXPECT_EQ(gsd.keys["Max_Module"], "2");
-    EXPECT_EQ(gsd.keys["Max_Diag_Data_Len"], "8");
     const std::pair<const char*, const char*> kTsdr[] = {{"9.6", "60"},   {"19.2", "60"}, {"93.75", "60"},
                                                          {"187.5", "60"}, {"500", "100"}, {"1.5M", "150"}};
     for (const auto& [rate, tsdr] : kTsdr) {
@@ -73,6 +70,13 @@ TEST(GsdFile, BothUnits) {
       EXPECT_EQ(gsd.keys[std::string("MaxTsdr_") + rate], tsdr);
     }
     EXPECT_EQ(gsd.keys.count("3M_supp"), 0U);
+  }
+  for (const OptionKind kind : {OptionKind::Ffp31, OptionKind::Size0}) {
+    Gsd gsd = read(gsd_text(option_type(kind)));
+    EXPECT_EQ(gsd.keys["Max_Input_Len"], "14");
+    EXPECT_EQ(gsd.keys["Max_Data_Len"], "28");
+    EXPECT_EQ(gsd.keys["Max_Module"], "2");
+    EXPECT_EQ(gsd.keys["Max_Diag_Data_Len"], "8");
     std::set<std::string> modules;
     for (const auto& [name, identifiers] : gsd.modules) modules.insert(identifiers);
     EXPECT_EQ(modules,
@@ -86,6 +90,34 @@ TEST(GsdFile, BothUnits) {
   EXPECT_EQ(small.keys["FMS_supp"], "0");
   EXPECT_EQ(option_type(OptionKind::Ffp31).gsd_file, "SEW_3100.GSD");
   EXPECT_EQ(option_type(OptionKind::Size0).gsd_file, "SEW_3111.GSD");
+}
+
+// One to ten words with and without the channel; a MOVIDRIVE A has three. A gateway has three words a drive.
+TEST(GsdFile, CardsOfMovidriveAndGateway) {
+  const auto identifiers = [](int word) {
+    std::ostringstream text;
+    text << "0xF" << std::hex << std::uppercase << word - 1;
+    return text.str();
+  };
+  for (const auto& [kind, words, ident, most] : {std::tuple(OptionKind::Dfp11, 3, "0x6000", "14"),
+                                                 std::tuple(OptionKind::Dfp21, 10, "0x6003", "28")}) {
+    Gsd gsd = read(gsd_text(option_type(kind)));
+    std::set<std::string> expected, modules;
+    for (int word = 1; word <= words; ++word) {
+      expected.insert(identifiers(word));
+      expected.insert("0xF3," + identifiers(word));
+    }
+    for (const auto& [name, octets] : gsd.modules) modules.insert(octets);
+    EXPECT_EQ(modules, expected);
+    EXPECT_EQ(gsd.keys["Ident_Number"], ident);
+    EXPECT_EQ(gsd.keys["Max_Input_Len"], most);
+    EXPECT_EQ(gsd.keys["FMS_supp"], "0");
+  }
+  Gsd gateway = read(gsd_text(option_type(OptionKind::Gateway)));
+  EXPECT_EQ(gateway.modules.size(), 16U);
+  EXPECT_EQ(gateway.modules.back().second, "0xF3,0xF2,0xF2,0xF2,0xF2,0xF2,0xF2,0xF2,0xF2");
+  EXPECT_EQ(gateway.keys["Max_Output_Len"], "56") << "8 + 8 x 6";
+  EXPECT_EQ(gateway.keys["Max_Module"], "9");
 }
 
 }  // namespace

@@ -93,6 +93,27 @@ TEST(LinePlan, WhichOptionFitsWhere) {
   EXPECT_EQ(findings(plan), "inv0: the built-in interface is that of MOVITRAC 31C size 0");
 }
 
+// A card of MOVIDRIVE and a gateway have idents and lengths of their own.
+TEST(LinePlan, CardsOfOtherUnits) {
+  LinePlan plan = good();
+  PlannedStation& station = plan.stations[0];
+  station.interface = Interface::Card;
+  station.card = &option_type(OptionKind::Dfp11);
+  EXPECT_EQ(findings(plan), "inv0: the master expects ident 3100h, the unit has 6000h");
+  station.ident = 0x6000;
+  EXPECT_EQ(findings(plan), "");
+  station.octets = 20;
+  EXPECT_EQ(findings(plan), "inv0: 20 octets are no configuration of this unit") << "ten words";
+  station.card = &option_type(OptionKind::Dfp21);
+  station.ident = 0x6003;
+  EXPECT_EQ(findings(plan), "");
+  station.card = &option_type(OptionKind::Gateway);
+  station.ident = 0x6002;
+  EXPECT_EQ(findings(plan), "") << "channel and two drives: 8 + 12";
+  station.octets = 21;
+  EXPECT_EQ(findings(plan), "inv0: 21 octets are no configuration of this unit");
+}
+
 TEST(LinePlan, AddressesIdentsAndWatchdog) {
   LinePlan plan = good(3);
   plan.stations[1].address = 10;

@@ -151,5 +151,34 @@ TEST(CfgData, UnequalLengthsAndTheChannelAlone) {
   EXPECT_EQ(find_configuration(hex("F3")), nullptr);     // the channel without process data
 }
 
+// Ours: a first F3 before others is the parameter channel, as lengths alone are ambiguous.
+TEST(CfgData, CardsOfMovidriveAndGateways) {
+  const AcceptedWords ten{ConfigurationSet::Movidrive, 1, 10};
+  for (int words = 1; words <= 10; ++words) {
+    const auto identifier = static_cast<uint8_t>(0xF0 + words - 1);
+    const Configuration* plain = find_configuration(Octets{identifier}, ten);
+    const Configuration* channel = find_configuration(Octets{0xF3, identifier}, ten);
+    ASSERT_TRUE(plain != nullptr && channel != nullptr) << words;
+    EXPECT_EQ(plain->words, words);
+    EXPECT_FALSE(plain->parameter_channel);
+    EXPECT_EQ(channel->words, words);
+    EXPECT_TRUE(channel->parameter_channel);
+  }
+  EXPECT_EQ(find_configuration(hex("FA"), ten), nullptr) << "eleven words";
+  EXPECT_EQ(find_configuration(hex("F0 F3"), ten)->words, 5) << "no channel: it does not come first";
+  EXPECT_EQ(find_configuration(hex("F3"), {ConfigurationSet::Movidrive, 1, 3}), nullptr)
+      << "four words of three";
+  for (uint8_t drives = 1; drives <= 8; ++drives) {
+    const AcceptedWords exact{ConfigurationSet::Gateway, static_cast<uint8_t>(3 * drives),
+                              static_cast<uint8_t>(3 * drives)};
+    Octets cfg(drives, 0xF2);
+    EXPECT_EQ(find_configuration(cfg, exact)->octets, 6 * drives);
+    cfg.insert(cfg.begin(), 0xF3);
+    EXPECT_EQ(find_configuration(cfg, exact)->octets, 8 + 6 * drives);
+    cfg.push_back(0xF2);
+    EXPECT_EQ(find_configuration(cfg, exact), nullptr) << "one drive too many";
+  }
+}
+
 }  // namespace
 }  // namespace ipos::tests
