@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # What takes too long for every test run: all sources read by clang, all suites with AddressSanitizer and UBSan, what
-# has threads with ThreadSanitizer, the examples under valgrind. Prints the time of each part; goes on after a failure.
+# has threads with ThreadSanitizer, the examples under valgrind, and the tutorial in an empty Debian. Prints the time of
+# each part; goes on after a failure.
 #   tests/check/check.sh              all parts
-#   tests/check/check.sh PART...      of: asan clang tsan valgrind
+#   tests/check/check.sh PART...      of: asan clang tsan valgrind tutorial
 set -uo pipefail
 cd "$(dirname "$0")/../.."
 jobs=$(nproc)
-[ $# -gt 0 ] || set -- asan clang tsan valgrind
+[ $# -gt 0 ] || set -- asan clang tsan valgrind tutorial
 
 # Programs with threads: `ipos test -j` and the reader behind the ports and the page.
 threaded=(ipos_testing_tests ipos_port_tests ipos_serve_tests ipos_plant_library_tests)
@@ -46,10 +47,17 @@ valgrind() {
   tests/examples/memcheck.sh "$ipos"
 }
 
+tutorial() {
+  configure release && cmake --build --preset release --target ipos_static || return 1
+  local status=0
+  tests/docs/empty_debian.sh build/release/static/ipos docs/guide/tutorial.md || status=$?
+  [ $status -eq 0 ] || [ $status -eq 77 ]
+}
+
 failed=()
 times=()
 for part in "$@"; do
-  case $part in asan | clang | tsan | valgrind) ;; *) sed -n '4,5s/^# *//p' "$0"; exit 64 ;; esac
+  case $part in asan | clang | tsan | valgrind | tutorial) ;; *) sed -n '5,6s/^# *//p' "$0"; exit 64 ;; esac
   echo "== $part"
   began=$SECONDS
   "$part" || failed+=("$part")

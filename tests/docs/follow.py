@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Follows a page of the guide word for word and compares what the commands print.
 
-usage: follow.py PAGE IPOS      (IPOS: the program; it is found as `ipos` by the commands of the page)
+usage: follow.py PAGE IPOS [--root DIR]     (IPOS: the program; it is found as `ipos` by the commands of the page)
+
+With --root the commands run in that root file system, by chroot, with IPOS as its /usr/local/bin/ipos.
 
 Of the page it reads blocks with ```sh, in which "$ " begins a command, in one shell after the other; a block below
 "<!-- write FILE -->" is the content of FILE, one below "<!-- change FILE -->" a diff without line numbers for it.
@@ -9,6 +11,7 @@ Prints each difference and how many commands were run; exit 1 on a difference.
 """
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -48,15 +51,19 @@ def changed(old, diff):
     return old
 
 
-def main(page_name, program):
+def main(page_name, program, root=""):
     with open(page_name, encoding="utf-8") as file:
         page = file.read()
     count = differences = 0
-    with tempfile.TemporaryDirectory() as top:
-        bin_folder = os.path.join(top, "bin")
-        os.mkdir(bin_folder)
-        os.symlink(os.path.abspath(program), os.path.join(bin_folder, "ipos"))
-        environment = dict(os.environ, PATH=bin_folder + ":" + os.environ["PATH"])
+    with tempfile.TemporaryDirectory(dir=root + "/tmp" if root else None) as top:
+        bin_folder = root + "/usr/local/bin" if root else os.path.join(top, "bin")
+        if root:
+            shutil.copy(program, os.path.join(bin_folder, "ipos"))
+            environment = {"PATH": "/usr/local/bin:/usr/bin:/bin:/usr/sbin:/sbin", "HOME": "/root"}
+        else:
+            os.mkdir(bin_folder)
+            os.symlink(os.path.abspath(program), os.path.join(bin_folder, "ipos"))
+            environment = dict(os.environ, PATH=bin_folder + ":" + os.environ["PATH"])
         here = os.path.join(top, "work")
         os.mkdir(here)
         for note, language, text in blocks(page):
@@ -73,7 +80,10 @@ def main(page_name, program):
                     if command.startswith("cd "):
                         here = os.path.join(here, command[3:])
                         continue
-                    run = subprocess.run(["bash", "-c", command], cwd=here, env=environment, text=True,
+                    words = ["bash", "-c", command]
+                    if root:
+                        words = ["chroot", root, "bash", "-c", 'cd "$1" && eval "$2"', "bash", here[len(root):], command]
+                    run = subprocess.run(words, cwd=None if root else here, env=environment, text=True,
                                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
                     count += 1
                     if run.stdout != expected:
@@ -84,4 +94,6 @@ def main(page_name, program):
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1], sys.argv[2]))
+    if len(sys.argv) not in (3, 5) or sys.argv[3:4] not in ([], ["--root"]):
+        sys.exit(__doc__)
+    sys.exit(main(sys.argv[1], sys.argv[2], *sys.argv[4:]))
