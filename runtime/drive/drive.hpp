@@ -140,7 +140,13 @@ class Drive final : private DriveLink {
   // Of axis(), for who looks every millisecond.
   int32_t position() const { return state_.axis.position(); }
   int32_t speed() const { return state_.axis.speed(); }
+  int32_t axis_setpoint() const { return state_.axis.setpoint(); }
+  AxisPhase axis_phase() const { return state_.axis.phase(); }
+  bool output_stage() const { return state_.axis.output_stage(); }
+  bool brake_released() const { return state_.axis.brake_released(); }
+  bool current_limited() const { return state_.axis.current_limited(); }
   bool standing() const { return state_.axis.standing(); }
+  int32_t shown_speed() const { return set().change_direction == 1 ? -speed() : speed(); }  // P000
   uint16_t outputs() const { return state_.outputs.levels(); }
 
   // What the master of a master/slave group sends; its slaves scale it (P751): control word 1, the setpoint that

@@ -47,8 +47,7 @@ UnitCondition Drive::condition() const {
   }
   if (now.reason == Block::LimitCw || now.reason == Block::LimitCcw) return UnitCondition::LimitSwitch;
   if (decided().waiting && !is_m07_ && decided().enabled_locally) return UnitCondition::Waiting;
-  const AxisState& axis = state_.axis.state();
-  if (axis.standing && axis.output_stage && set().standstill_current > 0)
+  if (standing() && output_stage() && set().standstill_current > 0)
     return UnitCondition::StandstillCurrent;
   return UnitCondition::NoEnable;
 }
@@ -163,10 +162,11 @@ std::optional<int32_t> Drive::live_value(uint16_t index) const {
     if (index >= index::kPi1Description && index < index::kPi1Description + kProcessWords)
       return settings().pi[index - index::kPi1Description];
   }
+  // Those of every trace come first: what warms and counts is not computed for them.
+  if (index == index::kSpeed) return shown_speed();
+  if (index == index::kStatus) return status_word_1();
   const AxisState& axis = state_.axis.state();
-  const bool reversed = set().change_direction == 1;
   switch (index) {
-    case index::kSpeed: return reversed ? -axis.speed : axis.speed;
     case index::kFrequency: return axis.frequency;
     case index::kActualPosition: return axis.position;
     case index::kOutputCurrent: return axis.output_current;
@@ -181,7 +181,6 @@ std::optional<int32_t> Drive::live_value(uint16_t index) const {
     case index::kHeatSink: return axis.heat_sink;
     case index::kAnalogInput1: return now_->analog.ai1.millivolt;
     case index::kAnalogInput2: return now_->analog.ai2.millivolt;
-    case index::kStatus: return status_word_1();
     case index::kInputs: return now_->inputs & (is_m07_ ? 0x3E : 0x3F);  // M07 has no DI00
     case index::kOptionInputs: return now_->inputs >> 8;
     case index::kOutputs: return state_.outputs.levels() & (is_m07_ ? 0x06 : 0x07);  // nor DB00

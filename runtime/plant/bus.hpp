@@ -82,6 +82,8 @@ class Bus {
     tracers_.push_back(&tracer);
     look();
   }
+  // What ended before this was told; a message that is not complete yet may turn out to be void.
+  virtual Time told_until(Time now) const { return now; }
   virtual void finish() {}  // at the end of a run: the message that was not completed
 
   // A participant without any manners joins the line, before the first event, to send what a test says. Nothing, or

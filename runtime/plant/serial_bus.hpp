@@ -22,6 +22,9 @@ class SerialBus final : public Bus, private SerialObserver {
   Rs485Line& line() { return line_; }
 
   LineLoad load(Time now) const override;
+  Time told_until(Time now) const override {
+    return is_observed() && receiver_.receiving() ? receiver_.start() : now;
+  }
   void finish() override;
   void attach_hand() override;
   std::optional<std::string> send(const std::string& text) override;

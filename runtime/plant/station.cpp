@@ -160,7 +160,17 @@ void Station::use_runner(CommandRunner& runner) {
 
 bool Station::run(vm::Machine& machine, vm::TickSteps& steps) { return runner_->run(*this, machine, steps); }
 
-bool Station::tick(Time now) { return pacer_.pace() == Pace::InTurn ? tick_in_turn(now) : ticks_.tick(now); }
+bool Station::tick(Time now) {
+  const bool over = pacer_.pace() == Pace::InTurn ? tick_in_turn(now) : ticks_.tick(now);
+  if (over) tell_watchers(now);
+  return over;
+}
+
+Ticks Station::advance(Time first, Ticks most) {
+  const Ticks executed = ticks_.advance(first, most);
+  if (ticks_.settled()) tell_watchers(first);  // one tick, with the program in full
+  return executed;
+}
 
 bool Station::tick_in_turn(Time now) {
   in_tick_ = !unit_.tick(now);
@@ -172,6 +182,7 @@ void Station::resume_tick() {
   in_tick_ = !unit_.run_tasks();
   if (in_tick_) return;
   unit_.finish(queue_.now());
+  tell_watchers(queue_.now());
   pacer_.resume();
 }
 

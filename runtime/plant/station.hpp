@@ -44,6 +44,16 @@ class CommandRunner {
   ~CommandRunner() = default;
 };
 
+// Follows what a drive decides. It is told of each tick that has executed more than counting, late ones with their own
+// time; in all others the drive only counts on (docs/inside/cycle.md), so what it decided before holds.
+class DriveWatcher {
+ public:
+  virtual void on_decided(const Drive& drive, Time tick) = 0;
+
+ protected:
+  ~DriveWatcher() = default;
+};
+
 class Station final : private Timed, private TaskRunner {
  public:
   // `program` is empty for a station without IPOS program. The config and the journal must outlive the
@@ -79,6 +89,8 @@ class Station final : private Timed, private TaskRunner {
   void resume_tick();
 
   void use_pace(Pace pace) { pacer_.use(pace); }
+  // It must outlive the run. What is written between two ticks it finds in the station itself, which then is not behind.
+  void add_watcher(DriveWatcher& watcher) { watchers_.push_back(&watcher); }
   // Ticks are still to be executed; whoever reads the station does it first.
   bool behind() const { return pacer_.behind(); }
   // How its next ticks are done.
@@ -141,10 +153,13 @@ class Station final : private Timed, private TaskRunner {
  private:
   bool tick(Time now) override;
   bool tick_in_turn(Time now);
+  void tell_watchers(Time tick) const {
+    for (DriveWatcher* watcher : watchers_) watcher->on_decided(unit_.drive(), tick);
+  }
   Time send(Time now) override;
   Ticks horizon(Time first) override;
   Ticks horizon_of_idle(Time first);
-  Ticks advance(Time first, Ticks most) override { return ticks_.advance(first, most); }
+  Ticks advance(Time first, Ticks most) override;
   Ticks silence(Time first) override;
   Ticks find_silence(Time first);
   void settle() override { ticks_.settle(); }
@@ -181,6 +196,7 @@ class Station final : private Timed, private TaskRunner {
   StationLines lines_;
   Journal& journal_;
   bool leads_ = false;  // a group of slaves: what it sends is the drive's
+  std::vector<DriveWatcher*> watchers_;
   CommandRunner* runner_ = nullptr;
   bool in_tick_ = false;
   bool powered_ = false;

@@ -5,11 +5,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <cmath>
+#include <iterator>
 #include <unordered_set>
 #include <utility>
 
 #include "runtime/bus/movilink/process_words.hpp"
+#include "runtime/drive/indices.hpp"
 #include "runtime/plant/station_state.hpp"
 #include "runtime/plant/variable_names.hpp"
 #include "runtime/plant_file/signal.hpp"
@@ -33,15 +37,31 @@ struct DriveValue {
   double factor = 1;
   int decimals = 0;
   size_t bits = 0;
+  int64_t (*decided)(const Drive&) = nullptr;  // PlantSignal::decided
 };
 
-template <int32_t AxisState::*member>
-int64_t axis(const Station& station) {
-  return station.drive().state().axis().*member;
+template <int32_t (Drive::*value)() const>
+int64_t of_drive(const Drive& drive) {
+  return (drive.*value)();
 }
 
+template <int64_t (*value)(const Drive&)>
+int64_t of_station(const Station& station) {
+  return value(station.drive().state());
+}
+
+template <int32_t (Drive::*value)() const>
+constexpr DriveValue decided_value(DriveValue row) {
+  row.read = of_station<of_drive<value>>;
+  row.decided = of_drive<value>;
+  return row;
+}
+
+int64_t status_of(const Drive& drive) { return drive.status_word_1(); }
+int64_t fault_of(const Drive& drive) { return drive.fault(); }
+
 constexpr DriveValue kDriveValues[] = {
-    {"speed", "P000", "000"},
+    {.name = "speed", .meaning = "P000", .parameter = "000", .decided = of_drive<&Drive::shown_speed>},
     {"frequency", "P002", "002"},
     {"position", "P003", "003"},
     {"current", "P004", "004"},
@@ -49,16 +69,18 @@ constexpr DriveValue kDriveValues[] = {
     {"motor_utilization", "P006", "006"},
     {"dc_link", "P008", "008"},
     {"temperature", "P014", "014"},
-    {"setpoint", "speed the ramp orders", "", -1, axis<&AxisState::setpoint>, "rpm", 0.001, 3},
-    {"shaft_speed", "of the motor as simulated", "", -1, axis<&AxisState::speed>, "rpm", 0.001, 3},
-    {"torque", "of the motor as simulated", "", -1, axis<&AxisState::torque>, "%Mn", 0.001, 3},
+    decided_value<&Drive::axis_setpoint>(
+        {"setpoint", "speed the ramp orders", "", -1, nullptr, "rpm", 0.001, 3}),
+    decided_value<&Drive::speed>(
+        {"shaft_speed", "of the motor as simulated", "", -1, nullptr, "rpm", 0.001, 3}),
+    {"torque", "of the motor as simulated", "", -1,
+     [](const Station& station) -> int64_t { return station.drive().state().axis().torque; }, "%Mn", 0.001,
+     3},
     {"position_setpoint", "H491", "", 491, nullptr, "inc"},
     {"position_target", "H492", "", 492, nullptr, "inc"},
     {"lag", "H495", "", 495, nullptr, "inc"},
-    {"status", "status word 1", "", -1,
-     [](const Station& station) -> int64_t { return station.status_word_1(); }, "", 1, 0, kWordBits},
-    {"fault", "fault number; 0 is none", "", -1,
-     [](const Station& station) -> int64_t { return station.fault(); }},
+    {"status", "status word 1", "", -1, of_station<status_of>, "", 1, 0, kWordBits, status_of},
+    {"fault", "fault number; 0 is none", "", -1, of_station<fault_of>, "", 1, 0, 0, fault_of},
 };
 
 const stdlib::Parameter* find_parameter(const Station& station, std::string_view number) {
@@ -90,7 +112,7 @@ class Collector {
     return signal;
   }
 
-  void add_parameter(const stdlib::Parameter& row, SignalGroup group, std::string_view name) {
+  PlantSignal& add_parameter(const stdlib::Parameter& row, SignalGroup group, std::string_view name) {
     PlantSignal& signal = add(
         group, name, fmt::format("P{} {}", row.number, row.name),
         [&station = station_, &row] { return row.number_of(station.drive().parameters().value(row.index)); });
@@ -101,6 +123,7 @@ class Collector {
       signal.unit = row.display;
     signal.factor = scale.factor;
     signal.decimals = scale.decimals;
+    return signal;
   }
 
   PlantSignal& add_variable(SignalGroup group, std::string_view name, uint32_t number,
@@ -120,7 +143,9 @@ void add_drive(const Station& station, Collector& out) {
   for (const DriveValue& row : kDriveValues) {
     if (!has(station, row)) continue;
     if (row.read == nullptr && row.variable < 0) {
-      out.add_parameter(*find_parameter(station, row.parameter), SignalGroup::Drive, row.name);
+      const stdlib::Parameter& parameter = *find_parameter(station, row.parameter);
+      PlantSignal& signal = out.add_parameter(parameter, SignalGroup::Drive, row.name);
+      if (parameter.index == index::kSpeed) signal.decided = row.decided;
       continue;
     }
     PlantSignal& signal = row.read != nullptr
@@ -132,6 +157,7 @@ void add_drive(const Station& station, Collector& out) {
     signal.factor = row.factor;
     signal.decimals = row.decimals;
     signal.bits = row.bits;
+    signal.decided = row.decided;
     signal.is_status = row.name == "status";
   }
 }
@@ -212,12 +238,11 @@ void add_process_data(const Station& station, Collector& out) {
 void add_tasks(const Station& station, Collector& out) {
   if (station.image() == nullptr) return;
   for (int task = 1; task <= station.config().unit->tasks; ++task) {
-    out.add(
-        SignalGroup::Task, fmt::format("task{}.state", task), "0 stopped, 1 ready, 2 waiting",
-        [&station, task]() -> int64_t {
-          if (station.machine() == nullptr) return 0;
-          return static_cast<int64_t>(station.machine()->task(task).state);
-        });
+    out.add(SignalGroup::Task, fmt::format("task{}.state", task), "0 stopped, 1 ready, 2 waiting",
+            [&station, task]() -> int64_t {
+              if (station.machine() == nullptr) return 0;
+              return static_cast<int64_t>(station.machine()->task(task).state);
+            });
     out.add(SignalGroup::Task, fmt::format("task{}.line", task), "source line it stands at; 0 stopped",
             [&station, task]() -> int64_t {
               if (station.machine() == nullptr) return 0;
@@ -253,6 +278,7 @@ PlantSignal bit_of(const PlantSignal& whole, size_t bit) {
   signal.meaning = fmt::format("bit {} of {}", bit, whole.name);
   signal.bits = 1;
   signal.is_status = false;
+  signal.decided = nullptr;
   signal.read = [read = whole.read, bit]() -> int64_t { return read() >> bit & 1; };
   return signal;
 }
@@ -289,7 +315,33 @@ std::string_view group_text(SignalGroup group) {
 }
 
 std::string PlantSignal::text(int64_t sample) const {
-  return fmt::format("{:.{}f}", static_cast<double>(sample) * factor, decimals);
+  std::string text;
+  append_text(text, sample);
+  return text;
+}
+
+// A power of ten only sets the point: the digits are those of the sample, without the way over a double.
+void PlantSignal::append_text(std::string& out, int64_t sample) const {
+  constexpr double kPowers[] = {1, 10, 100, 1000, 10'000, 100'000, 1'000'000};
+  constexpr int64_t kExact = int64_t{1} << 40;
+  const auto places = static_cast<size_t>(decimals);
+  const bool digits = places < std::size(kPowers) && std::abs(factor * kPowers[places] - 1) < 1e-15 &&
+                      sample > -kExact && sample < kExact;
+  if (!digits) {
+    fmt::format_to(std::back_inserter(out), "{:.{}f}", static_cast<double>(sample) * factor, decimals);
+    return;
+  }
+  std::array<char, 24> text;
+  char* begin = text.data() + text.size();
+  uint64_t rest = static_cast<uint64_t>(sample < 0 ? -sample : sample);
+  for (size_t n = 0; n < places; ++n, rest /= 10) *--begin = static_cast<char>('0' + rest % 10);
+  if (places != 0) *--begin = '.';
+  do {
+    *--begin = static_cast<char>('0' + rest % 10);
+    rest /= 10;
+  } while (rest != 0);
+  if (sample < 0) *--begin = '-';
+  out.append(begin, text.data() + text.size());
 }
 
 std::vector<PlantSignal> station_signals(const Station& station) {

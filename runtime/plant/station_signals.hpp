@@ -39,8 +39,11 @@ struct PlantSignal {
   SignalGroup group = SignalGroup::Variable;
   std::string meaning{};
   std::function<int64_t()> read{};  // the sample of now; whose it is must still be there
+  // Of what changes only where the drive decides (DriveWatcher): the same, of a drive that is up to date.
+  int64_t (*decided)(const Drive&) = nullptr;
 
   std::string text(int64_t sample) const;  // "1500.000"
+  void append_text(std::string& out, int64_t sample) const;
 };
 
 // All of a station but its parameters and the bits and numbers of what it has; a name stands for one thing.

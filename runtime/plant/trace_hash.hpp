@@ -1,45 +1,76 @@
-// `ipos run --trace-hash`: one number over everything a run did, to compare runs, builds and engines. Two
-// runs with the same number had, in every millisecond, the same variables, tasks, drives and outputs, and the
-// same frames and characters at the same times.
+// `ipos run --trace-hash`: one number over what a run did, to compare runs, builds and engines. Two runs with the
+// same number had the same frames and characters at the same times; their drives had, in every millisecond, the same
+// status, fault, speed, setpoint, inputs and outputs; and every tenth of a second, and at the end, everything was the
+// same: variables, tasks, positions, temperatures.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "runtime/plant/plant.hpp"
 
 namespace ipos::runtime {
 
 // FNV-1a, 64 bits, over numbers of 64 bits instead of bytes.
-class TraceHash final : private BusTracer {
+class NumberHash {
  public:
-  // Watches the buses of the plant, which must outlive it.
-  explicit TraceHash(Plant& plant);
-
-  // For Plant::run_until: takes the state at whole milliseconds, after all that happened at that time.
-  void sample(Time now);
-
-  uint64_t value() const { return hash_; }
-  std::string text() const;  // 16 hexadecimal digits
-
- private:
-  friend uint64_t state_digest(const Plant& plant);
-
-  TraceHash() = default;  // that watches nothing
-  void on_trace(const Bus& bus, std::span<const uint64_t> facts) override;
-
-  void add(uint64_t value) { hash_ = (hash_ ^ value) * 0x100000001B3; }
-  void add_text(const std::string& text);
-  void add_state(Time now, const Plant& plant);
-  void add_station(const Station& station);
+  void add(uint64_t value) { hash_ = (hash_ ^ value) * kPrime; }
   template <typename... Values>
   void add_all(Values... values) {
     (add(static_cast<uint64_t>(values)), ...);
   }
+  void add_text(const std::string& text);
+  void add_many(std::span<const int32_t> values);
+  uint64_t value() const { return hash_; }
 
-  const Plant* plant_ = nullptr;
+ private:
+  static constexpr uint64_t kPrime = 0x100000001B3;
   uint64_t hash_ = 0xCBF29CE484222325;
+};
+
+class TraceHash final : private BusTracer {
+ public:
+  // Everything is looked at so often: tasks that run ahead would have to stop for each look (ours).
+  static constexpr Time kStep = 100 * kMillisecond;
+
+  // Watches buses and drives of the plant, which must outlive it. `step`: whole milliseconds.
+  explicit TraceHash(Plant& plant, Time step = kStep);
+
+  // For Plant::run_until: takes the state at whole milliseconds, after all that happened at that time.
+  void sample(Time now);
+
+  uint64_t value() const;
+  std::string text() const;  // 16 hexadecimal digits
+
+ private:
+  // What a drive decides, each change with its time.
+  class Course final : public DriveWatcher {
+   public:
+    explicit Course(const Station& station) : station_(station) {}
+    void sample(Time now);
+    uint64_t value() const { return hash_.value(); }
+
+   private:
+    using Values = std::array<uint64_t, 3>;
+    void on_decided(const Drive& drive, Time tick) override { note(drive, tick, true); }
+    void note(const Drive& drive, Time now, bool powered);
+
+    const Station& station_;
+    Values last_{};
+    NumberHash hash_;
+  };
+
+  void on_trace(const Bus& bus, std::span<const uint64_t> facts) override;
+
+  const Plant& plant_;
+  Time step_;
+  std::vector<std::unique_ptr<Course>> courses_;
+  std::vector<std::pair<const Bus*, uint64_t>> names_;  // of the buses, each as one number
+  NumberHash hash_;
 };
 
 // One number over the present state alone.

@@ -38,6 +38,7 @@ class ManyTicks final {
   void settle() {
     if (pending_ != 0) settle_pending();
   }
+  bool settled() const { return pending_ == 0; }
   void touched();
   // `waits`: frames of the unit that a fault of its program would take back. Not asked for where it is known.
   Ticks silence(Time first, bool waits);

@@ -9,7 +9,7 @@ status=0 plants=0
 while read -r plant; do
   hashes=()
   for ipos in "$@"; do
-    hashes+=("$("$ipos" run "$plant" --for "${seconds}s" --trace-hash 2>&1 >/dev/null | sed -n 's/^trace hash //p' || true)")
+    hashes+=("$("$ipos" run "$plant" --for "${seconds}s" --trace-hash=1ms 2>&1 >/dev/null | sed -n 's/^trace hash //p' || true)")
   done
   verdict=equal
   for hash in "${hashes[@]}"; do

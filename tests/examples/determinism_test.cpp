@@ -20,7 +20,7 @@ std::string trace_hash(const CommandResult& run) {
 }
 
 CommandResult run(const fs::path& plant, std::vector<std::string> more, const fs::path& folder = {}) {
-  std::vector<std::string> arguments{"run", plant.string(), "--for", "5s", "--trace-hash"};
+  std::vector<std::string> arguments{"run", plant.string(), "--for", "5s", "--trace-hash=1ms"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return run_ipos(arguments, folder);
 }

@@ -15,13 +15,24 @@ struct Output {
   bool operator==(const Output&) const = default;
 };
 
-Output run(const fs::path& plant, const std::vector<std::string>& how) {
+// With the hash of every millisecond each tick is executed in its turn, with the usual one most are late.
+Output run(const fs::path& plant, const std::vector<std::string>& how,
+           const std::string& hash = "--trace-hash") {
   const TemporaryFolder folder;
   const auto file = [&](const char* name) { return (folder.path() / name).string(); };
-  std::vector<std::string> arguments{
-      "run",     plant.string(),  "--for",         "2s",           "--watch",
-      "--why",   "--log",         file("can.log"), "--serial-log", file("serial.log"),
-      "--trace", file("run.csv"), "--trace-hash"};
+  std::vector<std::string> arguments{"run",
+                                     plant.string(),
+                                     "--for",
+                                     "2s",
+                                     "--watch",
+                                     "--why",
+                                     "--log",
+                                     file("can.log"),
+                                     "--serial-log",
+                                     file("serial.log"),
+                                     "--trace",
+                                     file("run.csv"),
+                                     hash};
   arguments.insert(arguments.end(), how.begin(), how.end());
   const CommandResult result = run_ipos(arguments);
   return {{std::to_string(result.exit_code), result.out, result.err, read_text(file("can.log")),
@@ -34,6 +45,8 @@ TEST(Engines, EveryExampleRunsTheSameWithEach) {
     const Output expected = run(plant, {"--engine", "reference", "--no-skip"});
     EXPECT_TRUE(run(plant, {"--engine", "fast"}) == expected) << plant;
     EXPECT_TRUE(run(plant, {}) == expected) << plant;
+    const Output each = run(plant, {"--engine", "reference", "--no-skip"}, "--trace-hash=1ms");
+    EXPECT_TRUE(run(plant, {}, "--trace-hash=1ms") == each) << plant;
   }
 }
 

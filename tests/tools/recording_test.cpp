@@ -110,6 +110,7 @@ TEST_F(RecorderTest, MotionValuesAndFault) {
   EXPECT_EQ(recording.signals[4].bits, 32);
   station(0).drive().state().raise_fault(28);
   run(recorder, 1);
+  recorder.finish();
   EXPECT_EQ(recording.samples[0], (std::vector<int64_t>{0}));
   EXPECT_EQ(recording.samples[2], (std::vector<int64_t>{28}));
   EXPECT_THROW(Recorder(*plant_, {"u.lag"}), Failure) << "a variable, and there is no program";

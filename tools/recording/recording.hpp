@@ -1,9 +1,11 @@
 // What `ipos run --plot` and `--trace` record: chosen signals of the stations once a virtual millisecond, the
-// frames of chosen buses, and what happened to the units meanwhile. Plain data; the writers of its forms
-// (trace, plot_svg) only read it.
+// frames of chosen buses, and what happened to the units meanwhile. It comes in parts, rows that follow each other: a
+// trace is written part by part, and a plot keeps them all (Recording).
 #pragma once
 
 #include <cstdint>
+#include <deque>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -28,11 +30,30 @@ struct FrameTrack {
 
 struct RecordedFrame {
   runtime::Time time;  // of delivery
-  size_t track;        // number of its bus in Recording::tracks
+  size_t track;        // number of its bus among the tracks
   uint32_t id = 0;     // CAN
   bool extended = false, remote = false;
   std::vector<uint8_t> bytes;
   std::string text;  // CAN: as candump writes it, "40A#8006"; else what it says, or why it is void
+};
+
+struct Change {
+  size_t row, signal;
+  int64_t sample;
+};
+
+// Rows, and what happened since those of the part before. The last part may have no rows.
+struct RecordedPart {
+  std::vector<runtime::Time> times;   // of the rows
+  std::vector<Change> changes;        // by row, then signal; the first row of all has every signal
+  std::vector<RecordedEvent> events;  // in order of time
+  std::vector<RecordedFrame> frames;  // in order of time
+};
+
+class PartReader {
+ public:
+  virtual ~PartReader() = default;
+  virtual void take(const RecordedPart& part) = 0;
 };
 
 struct Recording {
@@ -44,6 +65,9 @@ struct Recording {
   std::vector<RecordedFrame> frames;  // of the tracks, in order of time
 };
 
+// The whole as one part.
+RecordedPart part_of(const Recording& recording);
+
 // On or off: a plot shows it as a strip. Also a plain number that was only 0 and 1.
 bool is_binary(const Recording& recording, size_t signal);
 
@@ -53,31 +77,71 @@ class Recorder final : private runtime::BusObserver {
   // speed, setpoint and status of every station that has them. A name that leads nowhere is a Failure that
   // lists what exists. Before the plant runs; each must outlive the other's part in the run.
   Recorder(runtime::Plant& plant, const std::vector<std::string>& names);
+  ~Recorder();
+
+  const std::vector<Signal>& signals() const { return recording_.signals; }
+  const std::vector<FrameTrack>& tracks() const { return recording_.tracks; }
+
+  // Before the run: who takes the parts as they come. Without `keep` recording() has none of them.
+  void give_to(PartReader& reader, bool keep);
 
   // For Plant::run_until: takes a sample at whole milliseconds, after all that happened at that time.
   void sample(runtime::Time now);
 
-  // At the end of a run: telegrams that were not completed.
+  // At the end of a run: telegrams that were not completed, and the last part.
   void finish();
 
-  const Recording& recording() const { return recording_; }
+  // All there is by now.
+  const Recording& recording();
 
  private:
-  struct Watched {
-    const runtime::Station* station;
-    std::string state;  // last one told
+  // The samples of a signal, or the condition of a station, as its changes since the last part.
+  struct Point {
+    runtime::Time time;
+    int64_t sample;
   };
+  struct Course {
+    std::vector<Point> points;
+    int64_t known = 0;  // in the last row of the part before
+    int64_t last = 0;   // in the last one of `points`
+
+    void note(runtime::Time time, int64_t sample) {
+      if (sample == last) return;
+      last = sample;
+      points.push_back({time, sample});
+    }
+  };
+  // What only a decision of the drive changes is not asked for every millisecond.
+  class Decided;
 
   void add(const std::string& name);
   void add(Signal signal);
   bool add_frames(std::string_view name);
   std::optional<size_t> track_of(const std::string& bus) const;
-  void note_changes(runtime::Time now);
+  Decided& decided_of(runtime::Station& station);
+  void gather(bool all);
+  template <typename Take>
+  void take_points(Course& course, const std::vector<runtime::Time>& rows, Take take);
+  void take_changes(RecordedPart& part);
+  void take_events(RecordedPart& part);
+  void take_frames(RecordedPart& part, bool all);
+  void keep(const RecordedPart& part);
   void on_message(const runtime::Bus& bus, const runtime::BusMessage& message) override;
 
   runtime::Plant& plant_;
-  Recording recording_;
-  std::vector<Watched> watched_;
+  Recording recording_;  // what is kept of it
+  PartReader* reader_ = nullptr;
+  bool keeps_ = true;
+  bool begun_ = false;                // there was a part with rows
+  std::vector<runtime::Time> times_;  // of the next part
+  std::deque<Course> courses_;        // as the signals
+  std::vector<size_t> asked_;         // signals that are read every millisecond
+  std::vector<std::unique_ptr<Decided>> decided_;
+  std::vector<Decided*> watched_;      // whose conditions make events
+  std::vector<RecordedFrame> frames_;  // of the next part, in order of time
+  // Kept from part to part, so that their memory is.
+  RecordedPart part_;
+  std::vector<Change> by_signal_;
 };
 
 }  // namespace ipos::tools

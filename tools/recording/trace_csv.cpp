@@ -1,7 +1,10 @@
 // CSV after RFC 4180, but with plain line ends.
-#include "tools/recording/trace.hpp"
-
 #include <fmt/format.h>
+
+#include <iterator>
+#include <utility>
+
+#include "tools/recording/trace.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -13,31 +16,84 @@ std::string field(const std::string& text) {
   return quoted + "\"";
 }
 
-// candump's "40A#8006", or the bytes of a telegram.
-std::string bytes_text(const Recording& recording, const RecordedFrame& frame) {
-  return recording.tracks[frame.track].is_can ? frame.text
-                                              : fmt::format("{:02X}", fmt::join(frame.bytes, " "));
-}
+// A value keeps its text until it changes, and so does a whole row without its time.
+class CsvTrace final : public TraceWriter {
+ public:
+  CsvTrace(std::ostream& out, const std::vector<Signal>& signals, const std::vector<FrameTrack>& tracks)
+      : out_(out), signals_(signals), tracks_(tracks), cells_(signals.size()), frames_(tracks.size()) {
+    text_ = "time_ms";
+    for (const Signal& signal : signals)
+      text_ +=
+          "," + field(signal.unit.empty() ? signal.name : fmt::format("{} [{}]", signal.name, signal.unit));
+    for (const FrameTrack& track : tracks) text_ += "," + field(track.bus + ".frames");
+    text_ += '\n';
+    give();
+    make_row();
+  }
+
+  void take(const RecordedPart& part) override {
+    auto change = part.changes.begin();
+    auto frame = part.frames.begin();
+    for (size_t row = 0; row < part.times.size(); ++row) {
+      const auto first = change;
+      for (; change != part.changes.end() && change->row == row; ++change) {
+        cells_[change->signal].clear();
+        signals_[change->signal].append_text(cells_[change->signal], change->sample);
+      }
+      const bool had_frames = std::exchange(has_frames_, false);
+      for (; frame != part.frames.end() && frame->time <= part.times[row]; ++frame) add(*frame);
+      if (change != first || has_frames_ || had_frames) make_row();
+      fmt::format_to(std::back_inserter(text_), "{}", part.times[row] / runtime::kMillisecond);
+      text_ += row_;
+    }
+    give();
+  }
+
+ private:
+  // candump's "40A#8006", or the bytes of a telegram.
+  void add(const RecordedFrame& frame) {
+    std::string& cell = frames_[frame.track];
+    if (!cell.empty()) cell += "; ";
+    cell += tracks_[frame.track].is_can ? frame.text : fmt::format("{:02X}", fmt::join(frame.bytes, " "));
+    has_frames_ = true;
+  }
+
+  void make_row() {
+    row_.clear();
+    for (const std::string& cell : cells_) row_.append(1, ',').append(cell);
+    for (std::string& frames : frames_) {
+      row_.append(1, ',').append(frames);
+      frames.clear();
+    }
+    row_ += '\n';
+  }
+
+  void give() {
+    out_.write(text_.data(), static_cast<std::streamsize>(text_.size()));
+    text_.clear();
+  }
+
+  std::ostream& out_;
+  const std::vector<Signal>& signals_;
+  const std::vector<FrameTrack>& tracks_;
+  std::vector<std::string> cells_;   // as the signals
+  std::vector<std::string> frames_;  // of this row, as the tracks
+  bool has_frames_ = false;          // there are some in this row
+  std::string row_;                  // behind the time
+  std::string text_;                 // of this part
+};
 
 }  // namespace
 
-void write_csv(std::ostream& out, const Recording& recording) {
-  out << "time_ms";
-  for (const Signal& signal : recording.signals)
-    out << ',' << field(signal.unit.empty() ? signal.name : fmt::format("{} [{}]", signal.name, signal.unit));
-  for (const FrameTrack& track : recording.tracks) out << ',' << field(track.bus + ".frames");
-  out << '\n';
-  auto frame = recording.frames.begin();
-  for (size_t row = 0; row < recording.times.size(); ++row) {
-    out << recording.times[row] / runtime::kMillisecond;
-    for (size_t n = 0; n < recording.signals.size(); ++n)
-      out << ',' << recording.signals[n].text(recording.samples[n][row]);
-    std::vector<std::string> frames(recording.tracks.size());
-    for (; frame != recording.frames.end() && frame->time <= recording.times[row]; ++frame)
-      frames[frame->track] += (frames[frame->track].empty() ? "" : "; ") + bytes_text(recording, *frame);
-    for (const std::string& text : frames) out << ',' << text;
-    out << '\n';
-  }
+std::unique_ptr<TraceWriter> csv_trace(std::ostream& out, const std::vector<Signal>& signals,
+                                       const std::vector<FrameTrack>& tracks) {
+  return std::make_unique<CsvTrace>(out, signals, tracks);
+}
+
+void write_trace(TraceForm form, std::ostream& out, const Recording& recording) {
+  const auto writer = form(out, recording.signals, recording.tracks);
+  writer->take(part_of(recording));
+  writer->finish();
 }
 
 }  // namespace ipos::tools

@@ -1,6 +1,7 @@
 // Of equal times frames come first, then events, then samples: a sample is what all before has led to.
 #include <fmt/format.h>
 
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "tools/recording/trace.hpp"
@@ -23,7 +24,8 @@ std::string time_text(runtime::Time time) {
 }
 
 std::string frame_text(const FrameTrack& track, const RecordedFrame& frame) {
-  std::string line = fmt::format("{{\"time_ms\":{},\"frame\":{}", time_text(frame.time), in_quotes(track.bus));
+  std::string line =
+      fmt::format("{{\"time_ms\":{},\"frame\":{}", time_text(frame.time), in_quotes(track.bus));
   if (track.is_can)
     line += fmt::format(",\"id\":{},\"extended\":{},\"remote\":{}", frame.id, frame.extended, frame.remote);
   line += fmt::format(",\"data\":\"{:02X}\"", fmt::join(frame.bytes, ""));
@@ -31,30 +33,61 @@ std::string frame_text(const FrameTrack& track, const RecordedFrame& frame) {
   return line + "}\n";
 }
 
+class JsonlTrace final : public TraceWriter {
+ public:
+  JsonlTrace(std::ostream& out, const std::vector<Signal>& signals, const std::vector<FrameTrack>& tracks)
+      : out_(out), signals_(signals), tracks_(tracks) {
+    for (const Signal& signal : signals) {
+      const std::string name = in_quotes(signal.name);
+      text_ += fmt::format("{{\"signal\":{},\"unit\":{}}}\n", name, in_quotes(signal.unit));
+      middles_.push_back(fmt::format(",\"signal\":{},\"value\":", name));
+    }
+    give();
+  }
+
+  void take(const RecordedPart& part) override {
+    auto change = part.changes.begin();
+    auto frame = part.frames.begin();
+    auto event = part.events.begin();
+    const auto write_until = [&](runtime::Time time) {
+      for (; frame != part.frames.end() && frame->time <= time; ++frame)
+        text_ += frame_text(tracks_[frame->track], *frame);
+      for (; event != part.events.end() && event->time <= time; ++event)
+        text_ += fmt::format("{{\"time_ms\":{},\"event\":{},\"fault\":{}}}\n", time_text(event->time),
+                             in_quotes(event->text), event->is_fault);
+    };
+    for (size_t row = 0; row < part.times.size(); ++row) {
+      write_until(part.times[row]);
+      if (change == part.changes.end() || change->row != row) continue;
+      const std::string begin = "{\"time_ms\":" + time_text(part.times[row]);
+      for (; change != part.changes.end() && change->row == row; ++change) {
+        text_.append(begin).append(middles_[change->signal]);
+        signals_[change->signal].append_text(text_, change->sample);
+        text_ += "}\n";
+      }
+    }
+    write_until(runtime::kNever);
+    give();
+  }
+
+ private:
+  void give() {
+    out_.write(text_.data(), static_cast<std::streamsize>(text_.size()));
+    text_.clear();
+  }
+
+  std::ostream& out_;
+  const std::vector<Signal>& signals_;
+  const std::vector<FrameTrack>& tracks_;
+  std::vector<std::string> middles_;  // of the lines, as the signals
+  std::string text_;                  // of this part
+};
+
 }  // namespace
 
-void write_jsonl(std::ostream& out, const Recording& recording) {
-  for (const Signal& signal : recording.signals)
-    out << fmt::format("{{\"signal\":{},\"unit\":{}}}\n", in_quotes(signal.name), in_quotes(signal.unit));
-  auto frame = recording.frames.begin();
-  auto event = recording.events.begin();
-  const auto write_until = [&](runtime::Time time) {
-    for (; frame != recording.frames.end() && frame->time <= time; ++frame)
-      out << frame_text(recording.tracks[frame->track], *frame);
-    for (; event != recording.events.end() && event->time <= time; ++event)
-      out << fmt::format("{{\"time_ms\":{},\"event\":{},\"fault\":{}}}\n", time_text(event->time),
-                         in_quotes(event->text), event->is_fault);
-  };
-  for (size_t row = 0; row < recording.times.size(); ++row) {
-    write_until(recording.times[row]);
-    for (size_t n = 0; n < recording.signals.size(); ++n) {
-      const std::vector<int64_t>& samples = recording.samples[n];
-      if (row != 0 && samples[row] == samples[row - 1]) continue;
-      out << fmt::format("{{\"time_ms\":{},\"signal\":{},\"value\":{}}}\n", time_text(recording.times[row]),
-                         in_quotes(recording.signals[n].name), recording.signals[n].text(samples[row]));
-    }
-  }
-  write_until(runtime::kNever);
+std::unique_ptr<TraceWriter> jsonl_trace(std::ostream& out, const std::vector<Signal>& signals,
+                                         const std::vector<FrameTrack>& tracks) {
+  return std::make_unique<JsonlTrace>(out, signals, tracks);
 }
 
 }  // namespace ipos::tools

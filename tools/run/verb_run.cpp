@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <sstream>
 
 #include "runtime/bus/log/profibus_log.hpp"
 #include "runtime/bus/log/serial_log.hpp"
@@ -54,7 +53,7 @@ struct RunFlags {
   std::string format = "text";
   bool realtime = false;
   bool why = false;
-  bool trace_hash = false;
+  std::string trace_hash;
   CompileFlags compile;
 };
 
@@ -96,7 +95,7 @@ class Watcher {
   Clock::time_point last_shown_ = Clock::now();
 };
 
-// The logs of buses and lines, which others may read while they grow: what is in them is at most this late.
+// The logs of buses and lines, which others may read while they grow.
 class Logs {
  public:
   Logs(runtime::Plant& plant, const RunFlags& flags) : file_(flags.log), serial_file_(flags.serial_log) {
@@ -111,11 +110,7 @@ class Logs {
       if (auto* profibus = dynamic_cast<runtime::ProfibusBus*>(bus.get()))
         profibus->line().add_observer(*profibus_log_);
   }
-  // Asked once a virtual millisecond.
-  void look() {
-    const auto now = Clock::now();
-    if (now - flushed_ < kLatest) return;
-    flushed_ = now;
+  void flush() {
     file_.flush();
     serial_file_.flush();
   }
@@ -128,15 +123,49 @@ class Logs {
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
-  static constexpr auto kLatest = std::chrono::milliseconds(200);  // ours
-
   LogOutput file_, serial_file_;
   std::unique_ptr<LogWriter> writer_;
   std::optional<PlantLog> log_;
   std::optional<runtime::SerialLog> serial_log_;
   std::optional<runtime::ProfibusLog> profibus_log_;
-  Clock::time_point flushed_ = Clock::now();
+};
+
+// The trace of the run, part by part; nothing for an empty path.
+class TraceFile {
+ public:
+  TraceFile(const std::string& path, TraceForm form, std::optional<Recorder>& recorder, bool plots)
+      : file_(path) {
+    if (!file_.is_open()) return;
+    writer_ = form(file_.stream(), recorder->signals(), recorder->tracks());
+    recorder->give_to(*writer_, plots);
+  }
+  void flush() { file_.flush(); }
+  // Behind Recorder::finish().
+  void finish() {
+    if (writer_) writer_->finish();
+    file_.finish();
+  }
+
+ private:
+  LogOutput file_;
+  std::unique_ptr<TraceWriter> writer_;
+};
+
+// When logs and traces are brought to their files.
+class FlushTimer {
+ public:
+  // Asked once a virtual millisecond.
+  bool due() {
+    const auto now = Clock::now();
+    if (now - last_ < kLatest) return false;
+    last_ = now;
+    return true;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr auto kLatest = std::chrono::milliseconds(200);  // ours
+  Clock::time_point last_ = Clock::now();
 };
 
 // "2000 (0x7d0)"; of a parameter with the text people read: "2.500 s".
@@ -179,14 +208,20 @@ size_t print_faults(const runtime::Plant& plant, bool can_expect) {
   return stations.size();
 }
 
-using TraceWriter = void (*)(std::ostream&, const Recording&);
+// How often everything is looked at: of a whole number of milliseconds.
+Time hash_step(const std::string& text) {
+  const Time step = runtime::parse_duration(text);
+  if (step < runtime::kMillisecond || step % runtime::kMillisecond != 0)
+    throw Failure(kUsage, fmt::format("--trace-hash={}: must be whole milliseconds, for example 1ms", text));
+  return step;
+}
 
 // By the ending of the file's name.
-TraceWriter trace_writer(const std::string& path) {
+TraceForm trace_form(const std::string& path) {
   const std::string ending = std::filesystem::path(path).extension().string();
-  if (path.empty() || ending == ".csv") return write_csv;
-  if (ending == ".vcd") return write_vcd;
-  if (ending == ".jsonl") return write_jsonl;
+  if (path.empty() || ending == ".csv") return csv_trace;
+  if (ending == ".vcd") return vcd_trace;
+  if (ending == ".jsonl") return jsonl_trace;
   throw Failure(kUsage, fmt::format("--trace {}: the name must end in .csv, .vcd or .jsonl", path));
 }
 
@@ -221,12 +256,12 @@ int run(const RunFlags& flags) {
   if (taking > 1) throw Failure(kUsage, "only one file can go to standard output");
   const bool output_taken = taking != 0;
   CoverageReports coverage(flags.coverage, flags.format == "json" || output_taken);
-  const TraceWriter write_trace = trace_writer(flags.trace);
+  const TraceForm form = trace_form(flags.trace);
   std::optional<Recorder> recorder;
   if (!flags.plot.empty() || !flags.trace.empty()) recorder.emplace(plant, flags.signals);
   // Before the run: a long one must not end without its result.
   check_output(flags.plot);
-  check_output(flags.trace);
+  TraceFile trace(flags.trace, form, recorder, !flags.plot.empty());
   Logs logs(plant, flags);
   std::optional<coverage::Collector> collector;
   if (coverage.wanted()) {
@@ -237,7 +272,7 @@ int run(const RunFlags& flags) {
   }
 
   std::optional<runtime::TraceHash> trace_hash;
-  if (flags.trace_hash) trace_hash.emplace(plant);
+  if (!flags.trace_hash.empty()) trace_hash.emplace(plant, hash_step(flags.trace_hash));
 
   catch_interrupts();
   std::optional<RealTimeRun> real_time;
@@ -245,10 +280,14 @@ int run(const RunFlags& flags) {
   bool ports_there = true;
   {
     Watcher watcher(flags, plant, limit);
+    FlushTimer flush;
     const auto keep_going = [&](Time now) {
       if (recorder) recorder->sample(now);
       if (trace_hash) trace_hash->sample(now);
-      logs.look();
+      if (flush.due()) {
+        logs.flush();
+        trace.flush();
+      }
       return watcher.keep_going(now);
     };
     if (real_time)
@@ -262,11 +301,7 @@ int run(const RunFlags& flags) {
   if (!flags.plot.empty())
     replace_file(flags.plot, plot_of(flags.plot)(recorder->recording(),
                                                  std::filesystem::path(flags.file).filename().string()));
-  if (!flags.trace.empty()) {
-    std::ostringstream trace;
-    write_trace(trace, recorder->recording());
-    replace_file(flags.trace, std::move(trace).str());
-  }
+  trace.finish();
 
   const WatchChoice watch = watch_choice(flags.watch);
   for (const std::string& name : watch.names)
@@ -322,7 +357,9 @@ void add_run(cli::Verb& app) {
   add_coverage_option(verb, flags->coverage);
   verb.option("--format", flags->format, "text or json").one_of({"text", "json"});
   verb.flag("--trace-hash", flags->trace_hash,
-            "print one number over all states, frames and telegrams, to compare runs and builds");
+            fmt::format("{}ms", runtime::TraceHash::kStep / runtime::kMillisecond),
+            "print one number over all frames, telegrams and drives, to compare runs and builds; looks at "
+            "everything each 100 ms, or =1ms, ...");
   verb.flag("--realtime", flags->realtime,
             "keep pace with the clock, and join buses that have a port to the real world");
   verb.flag("--why", flags->why, "also tell what was ignored, and why");

@@ -18,11 +18,11 @@
 namespace ipos::tools::testing {
 namespace {
 
-struct TraceForm {
+struct TraceFile {
   const char* name;
-  void (*write)(std::ostream&, const Recording&);
+  TraceForm form;
 };
-constexpr TraceForm kTraces[] = {{"trace.csv", write_csv}, {"trace.vcd", write_vcd}};
+constexpr TraceFile kTraces[] = {{"trace.csv", csv_trace}, {"trace.vcd", vcd_trace}};
 
 // What the items of a test name, as far as it is a signal.
 std::vector<std::string> names_in(const TestCase& test) {
@@ -78,7 +78,7 @@ class Witness {
     replace_file(file("plot.html"), plot_html(recorder_.recording(), test_.name));
     for (const auto& [name, form] : kTraces) {
       std::ostringstream trace;
-      form(trace, recorder_.recording());
+      write_trace(form, trace, recorder_.recording());
       replace_file(file(name), std::move(trace).str());
     }
     replace_file(file("bus.pcapng"), std::move(log_).str());

@@ -1,0 +1,1 @@
+au BufRead,BufNewFile *.IPC,*.ipc setfiletype ipos
