@@ -1,7 +1,5 @@
 // ipos: one program, a verb for each arrow of the toolchain.
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -11,7 +9,9 @@
 
 #include "tools/cli/commit.hpp"
 #include "tools/cli/end_of_process.hpp"
+#include "tools/cli/failure.hpp"
 #include "tools/cli/parser.hpp"
+#include "tools/cli/streams.hpp"
 #include "tools/program_verbs.hpp"
 
 namespace {
@@ -23,8 +23,12 @@ void add_verbs(ipos::tools::cli::Verb& program, std::string_view asked) {
   const auto one =
       std::find_if(verbs.begin(), verbs.end(), [asked](const auto& row) { return row.name == asked; });
   const bool about_all = asked == "completion" || asked == "man";
+  if (one != verbs.end() && one->add == nullptr)
+    throw ipos::tools::Failure(ipos::tools::kUsage,
+                               fmt::format("'{}' is not in this build; the builds for Linux have it", asked));
   if (one != verbs.end() && !about_all) return one->add(program);
-  for (const auto& row : verbs) row.add(program);
+  for (const auto& row : verbs)
+    if (row.add != nullptr) row.add(program);
 }
 
 int run(int argc, char** argv) {
@@ -39,15 +43,9 @@ int run(int argc, char** argv) {
   return ipos::tools::cli::run(program, version, argc, argv);
 }
 
-// Without one of the three streams the next file that is opened would get its number, and its text.
-void hold_streams() {
-  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
-    if (fcntl(stream, F_GETFD) < 0) static_cast<void>(open("/dev/null", O_RDONLY));
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-  hold_streams();
+  ipos::tools::prepare_streams();
   return ipos::tools::end_of_process([&] { return run(argc, argv); });
 }

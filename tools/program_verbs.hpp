@@ -11,7 +11,7 @@ namespace ipos::tools {
 
 struct VerbRow {
   std::string_view name;
-  void (*add)(cli::Verb& program);
+  void (*add)(cli::Verb& program);  // null: the build does not have it, and says so
 };
 
 // In the order of --help.

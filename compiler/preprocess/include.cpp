@@ -2,6 +2,7 @@
 #include "compiler/preprocess/include.hpp"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "stdlib/spelling.hpp"
 
@@ -17,8 +18,13 @@ bool is_absolute(const std::string& path) {
   return path.starts_with('/') || (path.size() > 2 && path[1] == ':' && path[2] == '/');
 }
 
+// Of the paths that this system has.
+constexpr const char* kSeparators = std::filesystem::path::preferred_separator == '/' ? "/" : "/\\";
+
 // With its slash; empty for a file without a directory.
-std::string directory_of(const SourceFile& file) { return file.path.substr(0, file.path.rfind('/') + 1); }
+std::string directory_of(const SourceFile& file) {
+  return file.path.substr(0, file.path.find_last_of(kSeparators) + 1);
+}
 
 // Where a file is looked for, each with its slash; "" is the current directory.
 std::vector<std::string> directories_for(const std::string& plain, const SourceFile& includer,

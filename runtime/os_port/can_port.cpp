@@ -1,8 +1,6 @@
 // From names to ports.
 #include "runtime/os_port/can_port.hpp"
 
-#include <net/if.h>
-
 #include <charconv>
 
 #include "runtime/os_port/port_names.hpp"
@@ -14,6 +12,7 @@ namespace ipos::runtime {
 namespace {
 
 constexpr std::string_view kSlcan = "slcan:";
+constexpr size_t kLongestInterface = 15;        // of Linux, IFNAMSIZ without the 0
 constexpr uint32_t kSlcanSerialBaud = 115'200;  // of a device without @; USB adapters do not mind (ours)
 
 CanPortResult open_slcan(std::string_view name, std::string_view device, uint32_t baud, RealClock& clock) {
@@ -39,7 +38,7 @@ CanPortResult open_slcan(std::string_view name, std::string_view device, uint32_
 
 CanPortResult open_can_port(std::string_view name, uint32_t baud, RealClock& clock) {
   if (name.starts_with(kSlcan)) return open_slcan(name, name.substr(kSlcan.size()), baud, clock);
-  if (name.empty() || name.size() >= IFNAMSIZ || name.find_first_of("/: ") != std::string_view::npos)
+  if (name.empty() || name.size() > kLongestInterface || name.find_first_of("/: ") != std::string_view::npos)
     return tl::unexpected(port_error(PortFault::BadName, name, kPortNames));
   return SocketCan::open(std::string(name), baud, clock);
 }

@@ -2,13 +2,10 @@
 // no room is lost as a whole.
 #pragma once
 
-#include <cerrno>
-#include <cstdint>
-#include <span>
 #include <string>
 #include <string_view>
 
-#include <unistd.h>
+#include <tl/expected.hpp>
 
 namespace ipos::runtime {
 
@@ -25,13 +22,15 @@ class OutBytes {
     return true;
   }
 
-  // Writes what the device takes; 0, or the errno value of a failure other than "no room now".
-  int write_to(int descriptor) {
+  // Writes what the device takes: write(bytes) gives the number that it has taken, 0 for none now, or an errno value.
+  // 0, or the errno value of a failure.
+  template <typename Write>
+  int write_by(Write write) {
     while (!empty()) {
-      const ssize_t done = ::write(descriptor, bytes_.data() + sent_, bytes_.size() - sent_);
-      if (done < 0 && errno == EINTR) continue;
-      if (done < 0) return errno == EAGAIN ? 0 : errno;
-      sent_ += static_cast<size_t>(done);
+      const tl::expected<size_t, int> done = write(waiting());
+      if (!done) return done.error();
+      if (*done == 0) return 0;
+      sent_ += *done;
     }
     clear();
     return 0;

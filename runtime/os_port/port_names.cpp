@@ -5,6 +5,10 @@
 
 namespace ipos::runtime {
 
+const std::string_view kPortNames =
+    "a CAN port is can0, vcan0, slcan:/dev/ttyACM0 or slcan:pty:/path; a serial port is /dev/ttyUSB0, "
+    "/dev/ttyUSB0@16ms, ./tty1 or pty:/path";
+
 std::string device_path(std::string_view name) { return std::string(name.substr(0, name.rfind('@'))); }
 
 bool is_path(const std::string& name) {

@@ -14,6 +14,8 @@
 #include <cstdlib>
 #include <functional>
 
+#include "runtime/os_port/posix_bytes.hpp"
+
 namespace ipos::runtime {
 namespace {
 
@@ -137,7 +139,8 @@ bool Pty::write(std::string_view bytes) {
 }
 
 void Pty::flush() {
-  if (out_.write_to(master_.get()) != 0) out_.clear();
+  if (out_.write_by([this](std::string_view bytes) { return write_some(master_.get(), bytes); }) != 0)
+    out_.clear();
 }
 
 }  // namespace ipos::runtime

@@ -1,13 +1,13 @@
-// The two kinds of serial port.
+// The serial device, and from names to both kinds of serial port.
 #include "runtime/os_port/serial_port.hpp"
 
 #include <array>
-#include <cerrno>
 #include <charconv>
 
+#include "runtime/os_port/out_bytes.hpp"
 #include "runtime/os_port/parity_marks.hpp"
 #include "runtime/os_port/port_names.hpp"
-#include "runtime/os_port/pty.hpp"
+#include "runtime/os_port/pty_port.hpp"
 #include "runtime/os_port/tty.hpp"
 
 namespace ipos::runtime {
@@ -52,23 +52,19 @@ class Device final : public BytePort {
   }
 
   tl::expected<void, PortError> flush() override {
-    if (const int error = out_.write_to(tty_.descriptor()); error != 0)
-      return tl::unexpected(system_error(error, name_));
+    const int error = out_.write_by([this](std::string_view bytes) { return tty_.write(bytes); });
+    if (error != 0) return tl::unexpected(system_error(error, name_));
     if (!out_.empty()) ++counts_.waited;
     return {};
   }
 
   tl::expected<size_t, PortError> receive(std::span<ByteArrival> into) override {
-    std::array<uint8_t, kReadSize> raw{};
-    ssize_t size = -1;
-    do {
-      size = ::read(tty_.descriptor(), raw.data(), std::min(raw.size(), into.size()));
-    } while (size < 0 && errno == EINTR);
-    if (size < 0 && errno == EAGAIN) return size_t{0};
-    if (size <= 0) return tl::unexpected(system_error(size == 0 ? EIO : errno, name_));
+    std::array<char, kReadSize> raw{};
+    const auto size = tty_.read(std::span(raw).first(std::min(raw.size(), into.size())));
+    if (!size) return tl::unexpected(system_error(size.error(), name_));
     size_t count = 0;
-    for (ssize_t n = 0; n < size; ++n) {
-      const uint8_t byte = raw[static_cast<size_t>(n)];
+    for (size_t n = 0; n < *size; ++n) {
+      const auto byte = static_cast<uint8_t>(raw[n]);
       const auto taken = tty_.marks_errors() ? marks_.push(byte) : MarkedByte{byte, false};
       if (taken) into[count++] = {0, taken->value, taken->bad};
     }
@@ -90,53 +86,6 @@ class Device final : public BytePort {
   OutBytes out_;
   ParityMarks marks_;
   Time last_ = 0;
-  PortCounts counts_;
-  PortNotes notes_;
-};
-
-class PseudoTerminal final : public BytePort {
- public:
-  PseudoTerminal(std::string name, Pty pty, bool even_parity, RealClock& clock)
-      : name_(std::move(name)), pty_(std::move(pty)), clock_(clock) {
-    if (even_parity) notes_.note("a pseudo-terminal has no parity: only the block check is left");
-  }
-
-  const std::string& name() const override { return name_; }
-  PortNeeds needs() const override { return pty_.needs(); }
-  bool has_parity() const override { return false; }
-  bool paces() const override { return false; }
-  Time latency() const override { return 0; }
-  size_t waiting() const override { return pty_.waiting().size(); }
-  const PortCounts& counts() const override { return counts_; }
-  std::vector<std::string> take_notes() override { return notes_.take(); }
-
-  void send(std::span<const uint8_t> bytes) override {
-    if (pty_.write(as_text(bytes))) {
-      counts_.sent += bytes.size();
-      return;
-    }
-    counts_.lost_out += bytes.size();
-    notes_.note("bytes are lost: the program at the other end does not read them");
-  }
-
-  tl::expected<void, PortError> flush() override {
-    pty_.flush();
-    return {};
-  }
-
-  tl::expected<size_t, PortError> receive(std::span<ByteArrival> into) override {
-    std::array<char, kReadSize> raw{};
-    const size_t size = pty_.read(std::span(raw).first(std::min(raw.size(), into.size())));
-    const Time now = clock_.now();
-    for (size_t n = 0; n < size; ++n) into[n] = {now, static_cast<uint8_t>(raw[n]), false};
-    counts_.received += size;
-    return size;
-  }
-
- private:
-  std::string name_;
-  Pty pty_;
-  RealClock& clock_;
   PortCounts counts_;
   PortNotes notes_;
 };
@@ -163,11 +112,7 @@ std::optional<DeviceName> parse_device(std::string_view name) {
 SerialPortResult open_serial_port(std::string_view name, const SerialSettings& settings, RealClock& clock) {
   if (settings.movilink && settings.baud != 9600 && settings.baud != 57600)
     return tl::unexpected(port_error(PortFault::NoBaudRate, name, "MOVILINK has 9600 and 57600 bit/s"));
-  if (name.starts_with(kPtyPort)) {
-    auto pty = Pty::create(std::string(name.substr(kPtyPort.size())), kSerialPortQueue);
-    if (!pty) return tl::unexpected(pty.error());
-    return std::make_unique<PseudoTerminal>(std::string(name), std::move(*pty), settings.even_parity, clock);
-  }
+  if (name.starts_with(kPtyPort)) return open_pty_port(name, settings, clock);
   const auto device = parse_device(name);
   if (!device || !is_path(device->path))
     return tl::unexpected(port_error(PortFault::BadName, name, kPortNames));

@@ -3,12 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <utility>
 
 namespace ipos::runtime {
 namespace {
-
 
 // What opens the channel, in order; the answers come in the same order.
 constexpr std::string_view kOpening[] = {"close", "bit rate (S)", "time stamps (Z)", "open (O)"};
@@ -38,7 +36,7 @@ CanPortResult SlcanClient::open(std::string path, uint32_t serial_baud, uint32_t
 
 SlcanClient::~SlcanClient() {
   out_.push("C\r");
-  out_.write_to(tty_.descriptor());
+  out_.write_by([this](std::string_view bytes) { return tty_.write(bytes); });
 }
 
 void SlcanClient::send(const Frame& frame) {
@@ -52,7 +50,8 @@ void SlcanClient::send(const Frame& frame) {
 }
 
 tl::expected<void, PortError> SlcanClient::flush() {
-  if (const int error = out_.write_to(tty_.descriptor()); error != 0)
+  if (const int error = out_.write_by([this](std::string_view bytes) { return tty_.write(bytes); });
+      error != 0)
     return tl::unexpected(system_error(error, name_));
   if (!out_.empty()) ++counts_.waited;
   return {};
@@ -63,12 +62,11 @@ tl::expected<std::optional<CanArrival>, PortError> SlcanClient::receive() {
     if (input_at_ == input_end_) {
       // One reading, then the others have their turn: an adapter may send faster than we read.
       if (std::exchange(has_read_, false)) return std::nullopt;
-      const ssize_t size = ::read(tty_.descriptor(), input_.data(), input_.size());
-      if (size < 0 && errno == EINTR) continue;
-      if (size < 0 && errno == EAGAIN) return std::nullopt;
-      if (size <= 0) return tl::unexpected(system_error(size == 0 ? EIO : errno, name_));
+      const auto size = tty_.read(input_);
+      if (!size) return tl::unexpected(system_error(size.error(), name_));
+      if (*size == 0) return std::nullopt;
       input_at_ = 0;
-      input_end_ = static_cast<size_t>(size);
+      input_end_ = *size;
       has_read_ = true;
     }
     const auto kind = lines_.push(input_[input_at_++]);

@@ -8,9 +8,12 @@
 #include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
+#include <termios.h>
 
 #include <cerrno>
 
+#include "runtime/os_port/descriptor.hpp"
+#include "runtime/os_port/posix_bytes.hpp"
 #include "runtime/os_port/tty_rate.hpp"
 
 namespace ipos::runtime {
@@ -60,6 +63,20 @@ bool is_pseudo_terminal(int descriptor) {
 
 }  // namespace
 
+struct Tty::System {
+  Descriptor descriptor;
+  termios former;
+};
+
+Tty::Tty(std::unique_ptr<System> system) : system_(std::move(system)) {}
+Tty::Tty(Tty&&) noexcept = default;
+
+int Tty::descriptor() const { return system_->descriptor.get(); }
+
+tl::expected<size_t, int> Tty::read(std::span<char> into) { return read_some(descriptor(), into); }
+
+tl::expected<size_t, int> Tty::write(std::string_view bytes) { return write_some(descriptor(), bytes); }
+
 tl::expected<Tty, PortError> Tty::open(const std::string& path, const TtySettings& settings,
                                        PortNotes& notes) {
   const BaudRate* rate = find_baud(settings.baud);
@@ -78,7 +95,7 @@ tl::expected<Tty, PortError> Tty::open(const std::string& path, const TtySetting
   if (flock(descriptor.get(), LOCK_EX | LOCK_NB) != 0)
     return tl::unexpected(port_error(PortFault::InUse, path));
   if (ioctl(descriptor.get(), TIOCEXCL) != 0) return tl::unexpected(system_error(errno, path));
-  Tty tty(std::move(descriptor), former);
+  Tty tty(std::unique_ptr<System>(new System{std::move(descriptor), former}));
   const int fd = tty.descriptor();
   termios wanted = former;
   cfmakeraw(&wanted);
@@ -120,9 +137,9 @@ tl::expected<Tty, PortError> Tty::open(const std::string& path, const TtySetting
 }
 
 Tty::~Tty() {
-  if (!descriptor_.is_open()) return;
-  tcsetattr(descriptor_.get(), TCSANOW, &former_);
-  ioctl(descriptor_.get(), TIOCNXCL);
+  if (!system_) return;
+  tcsetattr(descriptor(), TCSANOW, &system_->former);
+  ioctl(descriptor(), TIOCNXCL);
 }
 
 }  // namespace ipos::runtime

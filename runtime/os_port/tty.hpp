@@ -2,14 +2,13 @@
 // end.
 #pragma once
 
-#include <termios.h>
-
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include <tl/expected.hpp>
 
-#include "runtime/os_port/descriptor.hpp"
 #include "runtime/os_port/port.hpp"
 
 namespace ipos::runtime {
@@ -26,18 +25,22 @@ class Tty {
   static tl::expected<Tty, PortError> open(const std::string& path, const TtySettings& settings,
                                            PortNotes& notes);
   ~Tty();
-  Tty(Tty&&) = default;
+  Tty(Tty&&) noexcept;
   Tty& operator=(Tty&&) = delete;
 
-  int descriptor() const { return descriptor_.get(); }
+  // Neither blocks: the number of bytes, 0 for none now, or an errno value.
+  tl::expected<size_t, int> read(std::span<char> into);
+  tl::expected<size_t, int> write(std::string_view bytes);
+
+  int descriptor() const;  // to be polled; -1 where the clock looks at all ports
   bool has_parity() const { return parity_; }
   bool marks_errors() const { return marks_; }
 
  private:
-  Tty(Descriptor descriptor, const termios& former) : descriptor_(std::move(descriptor)), former_(former) {}
+  struct System;  // what the operating system has of it
+  explicit Tty(std::unique_ptr<System> system);
 
-  Descriptor descriptor_;
-  termios former_;
+  std::unique_ptr<System> system_;
   bool parity_ = false;
   bool marks_ = false;
 };

@@ -7,7 +7,7 @@
 #include <array>
 #include <utility>
 
-#include "runtime/nv_memory/medium/posix_medium.hpp"
+#include "runtime/nv_memory/medium/file_medium.hpp"
 #include "runtime/plant/station_state.hpp"
 #include "runtime/plant_file/serial_plan.hpp"
 
@@ -32,7 +32,7 @@ std::vector<PlantError> verify_program(const StationConfig& station, const vm::I
 // What the memory file holds is there before the parameters of the plant file are set.
 void open_memory(const StationConfig& config, Station& station, std::vector<PlantError>& errors) {
   if (config.nvram.empty()) return;
-  auto medium = open_posix_medium(config.nvram, config.nvram_use);
+  auto medium = open_file_medium(config.nvram, config.nvram_use);
   if (!medium)
     errors.push_back({config.nvram_place, fmt::format("station '{}': {} cannot be used: {}", config.name,
                                                       config.nvram, medium.error())});

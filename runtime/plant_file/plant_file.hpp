@@ -15,7 +15,7 @@
 #include "runtime/drive/parameters.hpp"
 #include "runtime/drive/setpoint.hpp"
 #include "runtime/motion/machine_data.hpp"
-#include "runtime/nv_memory/medium/posix_medium.hpp"
+#include "runtime/nv_memory/medium/file_medium.hpp"
 #include "runtime/plant_file/bus_kind.hpp"
 #include "runtime/plant_file/profibus_config.hpp"
 #include "runtime/plant_file/signal.hpp"

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "tests/editor/npm_package.hpp"
+#include "tests/tools/command.hpp"
 
 namespace ipos::tests {
 namespace {
@@ -54,7 +55,7 @@ TEST_F(Extension, GrammarGivesTheScopesItsTestsExpect) {
   EXPECT_EQ(result.exit_code, 0) << result.output;
 }
 
-TEST_F(Extension, IsPackedByOneCommand) {
+TEST_F(Extension, IsPackedByOneCommandAndStartsOutOfItsPackage) {
   fs::remove(package().folder / "ipos.vsix");
   const ScriptResult result = shell(package().folder, "npm run package");
   EXPECT_EQ(result.exit_code, 0) << result.output;
@@ -63,6 +64,9 @@ TEST_F(Extension, IsPackedByOneCommand) {
   for (const char* file : {"extension.js", "launch.js"})
     EXPECT_TRUE(fs::exists(package().folder / "out/src" / file)) << file;
   EXPECT_EQ(result.output.find("launch.test.js"), std::string::npos) << "tests are in the package";
+  const std::string vsix = "IPOS_VSIX='" + (package().folder / "ipos.vsix").string() + "' ";
+  expect_node_passed(
+      shell(project("tests/editor"), kProgram + vsix + "node --test --test-reporter=tap extension.test.mjs"), 2);
 }
 
 }  // namespace

@@ -2,13 +2,12 @@
 // more behind it, as another one may stand there by then.
 #include "tools/cli/files.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <compare>
 #include <cstring>
 #include <filesystem>
 #include <mutex>
@@ -16,29 +15,12 @@
 #include <utility>
 
 #include "tools/cli/failure.hpp"
+#include "tools/cli/os_file.hpp"
 
 namespace ipos::tools {
 namespace {
 
 using runtime::Descriptor;
-
-// Which file it is. A number of the file system is given again to the next file when this one is removed; the time at
-// which the file was made, where the file system keeps it, tells the two apart.
-struct FileIdentity {
-  uint32_t device_major, device_minor;
-  uint64_t number;
-  int64_t made_s;
-  uint32_t made_ns;
-  auto operator<=>(const FileIdentity&) const = default;
-};
-
-std::optional<FileIdentity> identity(int folder, const char* path, int flags) {
-  struct statx info {};
-  if (statx(folder, path, flags, STATX_INO | STATX_BTIME, &info) != 0) return std::nullopt;
-  const bool keeps_time = (info.stx_mask & STATX_BTIME) != 0;
-  return FileIdentity{info.stx_dev_major, info.stx_dev_minor, info.stx_ino,
-                      keeps_time ? info.stx_btime.tv_sec : 0, keeps_time ? info.stx_btime.tv_nsec : 0};
-}
 
 // Tests are read on several threads.
 std::mutex opened_mutex;
@@ -60,12 +42,12 @@ tl::expected<Descriptor, std::string> open_regular(const std::string& path, size
   struct stat info {};
   if (stat(path.c_str(), &info) != 0) return tl::unexpected(std::string(std::strerror(errno)));
   if (auto why = trouble(info, limit)) return tl::unexpected(std::move(*why));
-  Descriptor file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  Descriptor file = open_to_read(path);
   if (!file.is_open() || fstat(file.get(), &info) != 0)
     return tl::unexpected(std::string(std::strerror(errno)));
   if (auto why = trouble(info, limit)) return tl::unexpected(std::move(*why));
   const std::lock_guard lock(opened_mutex);
-  if (const auto file_identity = identity(file.get(), "", AT_EMPTY_PATH)) opened.insert(*file_identity);
+  if (const auto file_identity = identity_of(file)) opened.insert(*file_identity);
   return file;
 }
 
@@ -114,8 +96,8 @@ std::optional<std::string> unreadable(const std::string& path) {
 }
 
 bool is_folder(const std::string& path) {
-  struct stat info {};
-  return stat(path.c_str(), &info) == 0 && S_ISDIR(info.st_mode);
+  std::error_code none;
+  return std::filesystem::is_directory(path, none);
 }
 
 std::vector<std::string> files_below(const std::string& folder) {
@@ -124,7 +106,7 @@ std::vector<std::string> files_below(const std::string& folder) {
   std::error_code error;
   for (fs::recursive_directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
     std::error_code ignored;
-    if (at->is_regular_file(ignored)) files.push_back(at->path().string());
+    if (at->is_regular_file(ignored)) files.push_back(at->path().generic_string());
   }
   if (error) throw Failure(kNoInput, fmt::format("{}: {}", folder, error.message()));
   std::sort(files.begin(), files.end());
@@ -145,11 +127,11 @@ std::string beside(const std::string& file, const std::string& name) {
   const fs::path path = fs::path(file).parent_path() / name;
   const fs::path normal = path.lexically_normal();
   std::error_code error;  // behind a link to a folder `..` leads elsewhere
-  return (fs::equivalent(path, normal, error) ? normal : path).string();
+  return (fs::equivalent(path, normal, error) ? normal : path).generic_string();
 }
 
 bool is_input(const std::string& path) {
-  const auto file_identity = identity(AT_FDCWD, path.c_str(), 0);
+  const auto file_identity = identity_of(path);
   const std::lock_guard lock(opened_mutex);
   return file_identity && opened.contains(*file_identity);
 }

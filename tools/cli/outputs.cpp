@@ -1,20 +1,21 @@
-// Replacing by rename(2), which is one step for everybody who looks.
+// Where an output goes: standard output, a device, or a new file that takes the place of the old one.
 #include "tools/cli/outputs.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <iostream>
+#include <utility>
 
-#include "runtime/os_port/descriptor.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/files.hpp"
+#include "tools/cli/os_file.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -58,18 +59,17 @@ std::string folder_of(const std::string& path) {
 
 void write_all(const Descriptor& file, std::string_view bytes, const std::string& path) {
   while (!bytes.empty()) {
-    const ssize_t count = write(file.get(), bytes.data(), bytes.size());
+    const auto piece = static_cast<unsigned>(std::min(bytes.size(), size_t{1} << 30U));
+    const ssize_t count = write(file.get(), bytes.data(), piece);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) fail(path, errno);
     bytes.remove_prefix(static_cast<size_t>(count));
   }
 }
 
-// A pipe that nobody reads is an error here, and blocks nobody.
 Descriptor open_special(const std::string& path) {
-  Descriptor file(open(path.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  Descriptor file = open_to_write(path);
   if (!file.is_open()) fail(path, errno);
-  fcntl(file.get(), F_SETFL, fcntl(file.get(), F_GETFL) & ~O_NONBLOCK);
   return file;
 }
 
@@ -81,11 +81,12 @@ class Beside {
     const std::string name = path.filename().string().substr(0, kNameLimit);
     for (int number = 0; !file_.is_open(); ++number) {
       path_ = (path.parent_path() / fmt::format(".{}.{}.{}.tmp", name, getpid(), number)).string();
-      file_ = Descriptor(open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+      file_ = open_new(path_);
       if (!file_.is_open() && errno != EEXIST) fail(target, errno);
     }
   }
   ~Beside() {
+    file_ = Descriptor();
     if (!path_.empty()) unlink(path_.c_str());
   }
   Beside(const Beside&) = delete;
@@ -94,16 +95,8 @@ class Beside {
   const Descriptor& file() const { return file_; }
 
   void replace(const std::string& target) {
-    struct stat old {};
-    if (stat(target.c_str(), &old) == 0) {
-      // The owner is kept where that is allowed, the mode always; in this order, as a new owner clears bits.
-      if (fchown(file_.get(), old.st_uid, old.st_gid) != 0) errno = 0;
-      if (fchmod(file_.get(), old.st_mode & 07777U) != 0) fail(target, errno);
-    }
-    if (fsync(file_.get()) != 0 || rename(path_.c_str(), target.c_str()) != 0) fail(target, errno);
+    if (!put_in_place(std::move(file_), path_, target)) fail(target, errno);
     path_.clear();
-    const Descriptor folder(open(folder_of(target).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    if (folder.is_open()) fsync(folder.get());
   }
 
  private:
@@ -114,8 +107,8 @@ class Beside {
 // Why `target` could not be replaced; 0 when it can.
 int obstacle(const std::string& target) {
   struct stat info {};
-  if (stat(target.c_str(), &info) == 0 && access(target.c_str(), W_OK) != 0) return errno;
-  return access(folder_of(target).c_str(), W_OK | X_OK) == 0 ? 0 : errno;
+  if (stat(target.c_str(), &info) == 0 && !may_write(target)) return errno;
+  return may_make_files_in(folder_of(target)) ? 0 : errno;
 }
 
 }  // namespace

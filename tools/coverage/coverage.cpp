@@ -62,7 +62,7 @@ Coverage Coverage::named_from(const std::string& folder) const {
     const fs::path whole = fs::weakly_canonical(fs::path(folder) / name);
     const fs::path relative = whole.lexically_relative(folder);
     const bool inside = !relative.empty() && *relative.begin() != "..";
-    named.merge({{{(inside ? relative : whole).string(), file}}});
+    named.merge({{{(inside ? relative : whole).generic_string(), file}}});
   }
   return named;
 }

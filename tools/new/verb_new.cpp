@@ -81,7 +81,7 @@ int make(const NewFlags& flags) {
     if (error)
       throw Failure(kIoError, fmt::format("{}: {}", (folder / path).parent_path().string(), error.message()));
     replace_file((folder / path).string(), text);
-    fmt::print("{}\n", (folder / path).string());
+    fmt::print("{}\n", (folder / path).generic_string());
   }
   fmt::print("\nNext:\n  cd {}\n  ipos test .\n", flags.folder);
   return kGood;

@@ -20,6 +20,8 @@ namespace fs = std::filesystem;
 fs::path cache_folder() {
   const char* cache = std::getenv("XDG_CACHE_HOME");
   if (cache != nullptr && fs::path(cache).is_absolute()) return fs::path(cache) / "ipos";
+  const char* local = std::getenv("LOCALAPPDATA");  // Windows
+  if (local != nullptr && *local != 0) return fs::path(local) / "ipos";
   const char* home = std::getenv("HOME");
   return home == nullptr || *home == 0 ? fs::path() : fs::path(home) / ".cache" / "ipos";
 }
@@ -27,7 +29,8 @@ fs::path cache_folder() {
 // Long paths keep their end; the first line of the file tells two of them apart.
 fs::path list_of(std::string folder) {
   constexpr size_t kLongest = 200;
-  std::replace(folder.begin(), folder.end(), '/', '%');
+  const auto divides = [](char c) { return c == '/' || c == '\\' || c == ':'; };
+  std::replace_if(folder.begin(), folder.end(), divides, '%');
   if (folder.size() > kLongest) folder.erase(0, folder.size() - kLongest);
   return cache_folder() / ("last-failed" + folder);
 }

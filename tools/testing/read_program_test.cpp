@@ -138,7 +138,7 @@ TestCase read_program_test(const std::string& path, const std::string& text) {
   static const std::regex kSpeed(R"(^\s*// speed (\d{1,7})\s*$)");
   const std::filesystem::path file(path);
   TestCase test;
-  test.name = file.lexically_normal().string();
+  test.name = file.lexically_normal().generic_string();
   test.file = path;
   test.place = {1, 1};
   test.plant_path = path;

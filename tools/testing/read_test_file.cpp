@@ -227,7 +227,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 
 std::string test_name(const std::string& path) {
-  std::string name = fs::path(path).lexically_normal().string();
+  std::string name = fs::path(path).lexically_normal().generic_string();
   for (const std::string_view ending : {".test.toml", ".toml"})
     if (name.ends_with(ending)) return name.substr(0, name.size() - ending.size());
   return name;

@@ -31,7 +31,7 @@ bool is_plant_with_expectations(const std::string& path, const std::string& text
 void leave_out_plants(std::vector<TestCase>& tests) {
   std::set<std::string> looked_at;
   for (const TestCase& test : tests)
-    if (test.plant_expects) looked_at.insert(fs::path(test.plant_path).lexically_normal().string());
+    if (test.plant_expects) looked_at.insert(fs::path(test.plant_path).lexically_normal().generic_string());
   std::erase_if(tests, [&](const TestCase& test) { return looked_at.contains(test.file); });
 }
 
@@ -53,7 +53,7 @@ std::vector<TestCase> read_tests(const std::string& path) {
   std::vector<std::string> files;
   for (const std::string& file : files_below(path))
     if (file.ends_with(".toml") || is_source(file))
-      files.push_back(fs::path(file).lexically_normal().string());
+      files.push_back(fs::path(file).lexically_normal().generic_string());
   std::vector<TestCase> tests;
   for (const std::string& file : files) {
     const std::string text = read_file(file);

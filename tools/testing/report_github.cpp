@@ -22,7 +22,7 @@ std::string annotation(const std::string& root, const std::string& file, runtime
                        const std::string& title, const std::string& text) {
   namespace fs = std::filesystem;
   const std::string path =
-      root.empty() ? file : fs::absolute(file).lexically_normal().lexically_relative(root).string();
+      root.empty() ? file : fs::absolute(file).lexically_normal().lexically_relative(root).generic_string();
   return fmt::format("::error file={},line={},col={},title={}::{}\n", escaped(path, true), place.line,
                      place.column, escaped(title, true), escaped(text, false));
 }

@@ -23,7 +23,7 @@ class StationAccess final : public ParameterAccess {
 
   void open_memory(runtime::FileUse use) {
     if (config_.nvram.empty()) return;
-    auto medium = runtime::open_posix_medium(config_.nvram, use);
+    auto medium = runtime::open_file_medium(config_.nvram, use);
     if (!medium) throw Failure(kIoError, fmt::format("{}: {}", config_.nvram, medium.error()));
     if (const auto refused = drive_.memory().open(std::move(*medium), config_.nvram))
       throw Failure(kBadInput,

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "runtime/nv_memory/medium/posix_medium.hpp"
+#include "runtime/nv_memory/medium/file_medium.hpp"
 #include "tools/unit/parameter_access.hpp"
 
 namespace ipos::tools {

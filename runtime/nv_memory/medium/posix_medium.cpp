@@ -1,18 +1,16 @@
 // pread, pwrite, fsync; a file that is new is synchronised with its folder, too.
-#include "runtime/nv_memory/medium/posix_medium.hpp"
+#include "runtime/nv_memory/medium/file_medium.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <system_error>
 #include <utility>
-#include <vector>
 
-#include "runtime/nv_memory/medium/slot_store.hpp"
+#include "runtime/nv_memory/medium/file_copy.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -69,53 +67,16 @@ bool sync_folder(const std::string& path) {
   return done;
 }
 
-// What is written to it nobody sees.
-class CopyMedium final : public NvMedium {
- public:
-  explicit CopyMedium(std::vector<uint8_t> bytes) : bytes_(std::move(bytes)) {}
-
-  tl::expected<size_t, std::string> read(uint64_t offset, std::span<uint8_t> out) override {
-    const size_t first = std::min<size_t>(offset, bytes_.size());
-    const size_t count = std::min(out.size(), bytes_.size() - first);
-    std::copy_n(bytes_.begin() + static_cast<ptrdiff_t>(first), count, out.begin());
-    return count;
-  }
-  std::optional<std::string> write(uint64_t offset, std::span<const uint8_t> bytes) override {
-    if (bytes_.size() < offset + bytes.size()) bytes_.resize(offset + bytes.size());
-    std::copy(bytes.begin(), bytes.end(), bytes_.begin() + static_cast<ptrdiff_t>(offset));
-    return std::nullopt;
-  }
-  std::optional<std::string> sync() override { return std::nullopt; }
-
- private:
-  std::vector<uint8_t> bytes_;
-};
-
 using Opened = tl::expected<std::unique_ptr<NvMedium>, std::string>;
-
-// Another run may be writing: two equal readings are of one state. It stores once a millisecond at most.
-Opened copy_of(PosixMedium& file) {
-  constexpr int kTries = 100;
-  std::vector<uint8_t> last;
-  for (int tries = 0; tries < kTries; ++tries) {
-    std::vector<uint8_t> bytes(2 * kSlotStride);
-    const auto count = file.read(0, bytes);
-    if (!count) return tl::unexpected(count.error());
-    bytes.resize(*count);
-    if (tries != 0 && bytes == last) return std::make_unique<CopyMedium>(std::move(bytes));
-    last = std::move(bytes);
-  }
-  return tl::unexpected(std::string("another run is writing it all the time"));
-}
 
 }  // namespace
 
-Opened open_posix_medium(const std::string& path, FileUse use) {
+Opened open_file_medium(const std::string& path, FileUse use) {
   const bool writes = use == FileUse::Write;
   // Before it is opened: that may have effects on a device, and blocks at a pipe.
   struct stat status {};
   const bool exists = stat(path.c_str(), &status) == 0;
-  if (!exists && errno == ENOENT && !writes) return std::make_unique<CopyMedium>(std::vector<uint8_t>());
+  if (!exists && errno == ENOENT && !writes) return copy_of_nothing();
   if (!exists && errno != ENOENT) return tl::unexpected(reason(errno));
   if (exists && !S_ISREG(status.st_mode)) return tl::unexpected(std::string("not a file"));
   const int file =

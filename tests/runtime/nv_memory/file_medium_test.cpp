@@ -1,5 +1,5 @@
 // The file: what is written is there when it is opened again; what cannot be used says why.
-#include "runtime/nv_memory/medium/posix_medium.hpp"
+#include "runtime/nv_memory/medium/file_medium.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -31,38 +31,38 @@ TEST_F(PosixFile, KeepsWhatIsStored) {
   NvContent content;
   content.values.emplace_back(8470, 2500);
   {
-    auto medium = open_posix_medium(path_, FileUse::Write);
+    auto medium = open_file_medium(path_, FileUse::Write);
     ASSERT_TRUE(medium) << medium.error();
     SlotStore store(**medium, 1);
     EXPECT_EQ(store.load().outcome, NvOutcome::Fresh);
     EXPECT_EQ(store.save(content), std::nullopt);
     EXPECT_EQ(store.save(content), std::nullopt);
   }
-  auto medium = open_posix_medium(path_, FileUse::Look);
+  auto medium = open_file_medium(path_, FileUse::Look);
   ASSERT_TRUE(medium) << medium.error();
   EXPECT_EQ(SlotStore(**medium, 1).load().content, content);
 }
 
 TEST_F(PosixFile, IsLockedWhileItIsOpen) {
-  auto first = open_posix_medium(path_, FileUse::Write);
+  auto first = open_file_medium(path_, FileUse::Write);
   ASSERT_TRUE(first);
-  EXPECT_EQ(open_posix_medium(path_, FileUse::Write).error(), "another run is using it");
-  EXPECT_TRUE(open_posix_medium(path_, FileUse::Look)) << "beside a run";
+  EXPECT_EQ(open_file_medium(path_, FileUse::Write).error(), "another run is using it");
+  EXPECT_TRUE(open_file_medium(path_, FileUse::Look)) << "beside a run";
   first->reset();
-  EXPECT_TRUE(open_posix_medium(path_, FileUse::Write));
+  EXPECT_TRUE(open_file_medium(path_, FileUse::Write));
 }
 
 TEST_F(PosixFile, SaysWhyItCannotBeUsed) {
-  EXPECT_EQ(open_posix_medium((folder_ / "no" / "unit1.nv").string(), FileUse::Write).error(),
+  EXPECT_EQ(open_file_medium((folder_ / "no" / "unit1.nv").string(), FileUse::Write).error(),
             "No such file or directory");
   const std::string pipe = (folder_ / "pipe").string();
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   fs::create_symlink("loop", folder_ / "loop");
   for (const FileUse use : {FileUse::Write, FileUse::Look}) {
-    EXPECT_EQ(open_posix_medium(folder_.string(), use).error(), "not a file");
-    EXPECT_EQ(open_posix_medium(pipe, use).error(), "not a file");
-    EXPECT_EQ(open_posix_medium("/dev/zero", use).error(), "not a file");
-    EXPECT_EQ(open_posix_medium((folder_ / "loop").string(), use).error(),
+    EXPECT_EQ(open_file_medium(folder_.string(), use).error(), "not a file");
+    EXPECT_EQ(open_file_medium(pipe, use).error(), "not a file");
+    EXPECT_EQ(open_file_medium("/dev/zero", use).error(), "not a file");
+    EXPECT_EQ(open_file_medium((folder_ / "loop").string(), use).error(),
               "Too many levels of symbolic links");
   }
 }
@@ -71,15 +71,15 @@ TEST_F(PosixFile, WhoLooksMakesNothingAndChangesNothing) {
   const uint8_t byte = 1;
   uint8_t found = 0;
   {
-    auto medium = open_posix_medium(path_, FileUse::Look);
+    auto medium = open_file_medium(path_, FileUse::Look);
     ASSERT_TRUE(medium) << medium.error();
     EXPECT_EQ((*medium)->read(0, {&found, 1}), 0U);
     EXPECT_EQ((*medium)->write(2, {&byte, 1}), std::nullopt);
     EXPECT_EQ((*medium)->read(2, {&found, 1}), 1U) << "its copy can be written";
   }
   EXPECT_FALSE(fs::exists(path_));
-  { ASSERT_EQ((*open_posix_medium(path_, FileUse::Write))->write(0, {&byte, 1}), std::nullopt); }
-  auto medium = open_posix_medium(path_, FileUse::Look);
+  { ASSERT_EQ((*open_file_medium(path_, FileUse::Write))->write(0, {&byte, 1}), std::nullopt); }
+  auto medium = open_file_medium(path_, FileUse::Look);
   ASSERT_TRUE(medium);
   EXPECT_EQ((*medium)->read(0, {&found, 1}), 1U);
   const std::array<uint8_t, 4> other{2, 2, 2, 2};

@@ -17,6 +17,6 @@ enum class FileUse : uint8_t {
 };
 
 // The file, or why it cannot be used.
-tl::expected<std::unique_ptr<NvMedium>, std::string> open_posix_medium(const std::string& path, FileUse use);
+tl::expected<std::unique_ptr<NvMedium>, std::string> open_file_medium(const std::string& path, FileUse use);
 
 }  // namespace ipos::runtime

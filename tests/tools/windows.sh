@@ -1,0 +1,90 @@
+#!/usr/bin/env bash
+# The program for Windows under wine does what the one for Linux does: the same outputs of the same examples, images equal
+# to the byte, and a drive at a serial port. `./dev windows` builds it; ctest only tries what is built.
+# usage: windows.sh IPOS.EXE IPOS      (IPOS: the program for Linux)
+set -euo pipefail
+skip() { echo "skipped: $*"; exit 77; }
+[ -f "$1" ] || skip "there is no $1: ./dev windows builds it"
+command -v wine >/dev/null || skip "wine is not installed"
+exe=$(realpath "$1") linux=$(realpath "$2")
+cd "$(dirname "$0")/../.."
+work=$(mktemp -d)
+export WINEDEBUG=-all WINEDLLOVERRIDES='mscoree,mshtml=' WINEPREFIX=$(dirname "$exe")/wine
+mkdir -p "$WINEPREFIX"
+trap 'wineserver -k || true; rm -rf "$work"' EXIT
+wine cmd /c exit >/dev/null 2>&1 || skip "wine does not start"
+
+count=0
+fail() { echo "failed: $*" >&2; exit 1; }
+windows() { wine "$exe" "$@"; }
+# Both give the same exit code, and the same on standard output.
+same() {
+  local code=0 windows_code=0
+  "$linux" "$@" >"$work/linux" 2>"$work/linux.err" || code=$?
+  windows "$@" >"$work/windows" 2>"$work/windows.err" || windows_code=$?
+  [ $code = $windows_code ] || fail "$*: exit code $windows_code in place of $code: $(cat "$work/windows.err")"
+  cmp -s "$work/linux" "$work/windows" || { diff "$work/linux" "$work/windows" | head -20; fail "$*"; }
+  count=$((count + 1))
+}
+
+# The demo, text for text, and where two runs are equal to the last event.
+same run examples/scom/scom.toml --for 1s --watch
+same run examples/scom/scom.toml --for 1s --format json
+for plant in examples/scom/scom.toml examples/hoist/hoist.toml examples/movilink-rs485/rs485.toml \
+  examples/profibus/profibus.toml examples/canopen/canopen.toml examples/isync/isync.toml; do
+  same run "$plant" --for 2s --trace-hash
+done
+same run examples/scom/scom.toml --for 1s --log - --trace "$work/trace.csv"
+
+# Programs: the images of both are equal to the byte.
+for program in examples/scom/*.IPC; do
+  "$linux" build "$program" -o "$work/linux.ipx"
+  windows build "$program" -o "$work/windows.ipx" 2>"$work/err" || fail "build $program: $(cat "$work/err")"
+  cmp "$work/linux.ipx" "$work/windows.ipx" || fail "build $program"
+  same disasm "$work/linux.ipx"
+  windows run "$work/windows.ipx" --for 100ms >"$work/out" || fail "run of an image"
+done
+printf 'main()\n{\n    lTeeth = 1;\n}\n' >"$work/SAW.IPC"
+(cd "$work" && same build SAW.IPC)
+
+# Tests, with the time they took left out.
+windows test examples/scom examples/hoist examples/tour >"$work/out" || fail "test: $(cat "$work/out")"
+grep -qE '^[0-9]+ tests?, [0-9]+ passed$' "$work/out" || fail "test: $(cat "$work/out")"
+windows new "$work/line" >/dev/null && windows test "$work/line" >/dev/null || fail "new and test"
+same explain E0201
+
+# The memory of a unit in a file, and its parameters.
+printf '[[station]]\nname = "saw"\nunit = "mdxb"\nnvram = "saw.nv"\n' >"$work/saw.toml"
+windows param set "$work/saw.toml" P130=2.5s >/dev/null 2>"$work/err" || fail "param set: $(cat "$work/err")"
+(cd "$work" && same param get saw.toml P130)
+grep -q '2.500' "$work/windows" || fail "param get: $(cat "$work/windows")"
+
+# Every verb is there, or says that it is not.
+for verb in $("$linux" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]\+\) .*/\1/p'); do
+  windows "$verb" --help >"$work/out" 2>&1 && continue
+  grep -q "'$verb' is not in this build" "$work/out" || fail "$verb: $(cat "$work/out")"
+done
+windows bus plan x.toml --budget >"$work/out" 2>&1 && fail "bus plan"
+grep -q "'bus' is not in this build" "$work/out" || fail "bus plan: $(cat "$work/out")"
+
+# A drive at a serial port: one of the simulation at a pseudo-terminal, which wine calls COM7.
+printf '[[bus]]\nname = "line"\nkind = "rs485"\nport = "pty:%s"\n[[station]]\nname = "saw"\nunit = "md60a"\nrs485 = "line"\n[station.parameters]\nP810 = 1\n' \
+  "$work/tty" >"$work/port.toml"
+"$linux" run "$work/port.toml" --realtime --for 60s >"$work/port.out" 2>&1 &
+drive=$!
+for _ in $(seq 100); do [ -e "$work/tty" ] && break; sleep 0.1; done
+[ -e "$work/tty" ] || fail "the drive does not come: $(cat "$work/port.out")"
+wine reg add 'HKLM\Software\Wine\Ports' /v COM7 /d "$work/tty" /f >/dev/null
+wineserver -k || true
+windows param get --port COM7 --address 1 P130 >"$work/out" 2>"$work/err" || fail "serial: $(cat "$work/out" "$work/err")"
+grep -q 'P130' "$work/out" || fail "serial: $(cat "$work/out")"
+windows param set --port COM7 --address 1 P130=3s --volatile >"$work/out" 2>"$work/err" || fail "serial: $(cat "$work/err")"
+windows param get --port COM7 --address 1 P130 2>/dev/null | grep -q '3.000' || fail "serial: P130 was not set"
+kill $drive
+wait $drive 2>/dev/null || true
+windows param get --port COM33 --address 1 P130 >"$work/out" 2>&1 && fail "a port that is not there"
+grep -q 'COM33: there is no such device' "$work/out" || fail "COM33: $(cat "$work/out")"
+windows param get --port can0 --address 1 P130 >"$work/out" 2>&1 && fail "SocketCAN"
+grep -q 'can0: this build for Windows has no such port' "$work/out" || fail "can0: $(cat "$work/out")"
+
+echo "$(stat -c %s "$exe") bytes; $count outputs as on Linux; parameters over COM7"

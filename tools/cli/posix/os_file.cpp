@@ -1,0 +1,74 @@
+// Replacing by rename(2), which is one step for everybody who looks.
+#include "tools/cli/os_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <utility>
+
+namespace ipos::tools {
+namespace {
+
+using runtime::Descriptor;
+
+std::optional<FileIdentity> look_at(int folder, const char* path, int flags) {
+  struct statx info {};
+  if (statx(folder, path, flags, STATX_INO | STATX_BTIME, &info) != 0) return std::nullopt;
+  const bool keeps_time = (info.stx_mask & STATX_BTIME) != 0;
+  return FileIdentity{makedev(info.stx_dev_major, info.stx_dev_minor), info.stx_ino,
+                      keeps_time ? info.stx_btime.tv_sec : 0, keeps_time ? info.stx_btime.tv_nsec : 0};
+}
+
+void sync_folder_of(const std::string& path) {
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  const Descriptor opened(open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (opened.is_open()) fsync(opened.get());
+}
+
+}  // namespace
+
+std::optional<FileIdentity> identity_of(const Descriptor& file) {
+  return look_at(file.get(), "", AT_EMPTY_PATH);
+}
+
+std::optional<FileIdentity> identity_of(const std::string& path) {
+  return look_at(AT_FDCWD, path.c_str(), 0);
+}
+
+Descriptor open_to_read(const std::string& path) {
+  return Descriptor(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+}
+
+// A pipe that nobody reads is an error here, and blocks nobody.
+Descriptor open_to_write(const std::string& path) {
+  Descriptor file(open(path.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  if (file.is_open()) fcntl(file.get(), F_SETFL, fcntl(file.get(), F_GETFL) & ~O_NONBLOCK);
+  return file;
+}
+
+Descriptor open_new(const std::string& path) {
+  return Descriptor(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+}
+
+bool put_in_place(Descriptor file, const std::string& from, const std::string& to) {
+  struct stat old {};
+  if (stat(to.c_str(), &old) == 0) {
+    // The owner is kept where that is allowed, the mode always; in this order, as a new owner clears bits.
+    if (fchown(file.get(), old.st_uid, old.st_gid) != 0) errno = 0;
+    if (fchmod(file.get(), old.st_mode & 07777U) != 0) return false;
+  }
+  if (fsync(file.get()) != 0 || rename(from.c_str(), to.c_str()) != 0) return false;
+  sync_folder_of(to);
+  return true;
+}
+
+bool may_write(const std::string& path) { return access(path.c_str(), W_OK) == 0; }
+
+bool may_make_files_in(const std::string& folder) { return access(folder.c_str(), W_OK | X_OK) == 0; }
+
+}  // namespace ipos::tools
