@@ -58,9 +58,12 @@ std::string diagnosis_of(const Diagnosis& told) {
   return text.empty() ? "-" : text;
 }
 
-std::string configuration_of(const DpReply& reply) {
+constexpr std::string_view kUnitWithBcd = "mc31";  // whose configurations, indices and values are known here
+
+std::string configuration_of(const DpReply& reply, const OptionType* type) {
   if (!reply.answered || reply.refused) return "-";
-  const Configuration* known = find_configuration(reply.data);
+  const bool has_names = type != nullptr && type->unit == kUnitWithBcd;
+  const Configuration* known = has_names ? find_configuration(reply.data) : nullptr;
   return profibus::hex_text(reply.data) + (known ? fmt::format(" ({})", known->name) : "");
 }
 
@@ -160,6 +163,9 @@ class DpAccess final : public ParameterAccess {
     if (type == nullptr)
       throw Failure(kFindings,
                     place(fmt::format("ident number {:04X}h: no unit that is known here", before.ident)));
+    if (type->unit != kUnitWithBcd)
+      throw Failure(kFindings,
+                    place(fmt::format("{}: over PROFIBUS this verb reaches MOVITRAC 31 only", type->model)));
     unit_ = stdlib::find_unit(type->unit);
     if (before.master != kNoMaster && before.master != kPcAddress)
       throw Failure(kFindings,
@@ -235,7 +241,7 @@ std::optional<std::vector<std::string>> dp_scan_row(DpStation& line, uint8_t add
   const OptionType* type = type_of(told->ident);
   if (type != nullptr) row[1] = std::string(type->model);
   row[2] = fmt::format("{:04X}h", told->ident);
-  row[3] = configuration_of(line.service(address, DpService::GetCfg));
+  row[3] = configuration_of(line.service(address, DpService::GetCfg), type);
   row[4] = state_of(*told);
   row[5] = diagnosis_of(*told);
   if (told->has(diag::kNotReady) || told->has(diag::kPrmReq)) return row;
