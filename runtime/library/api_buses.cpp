@@ -191,7 +191,8 @@ ipos_plant_status ipos_plant_serial_send(ipos_plant* plant, uint32_t bus, const 
   return with_octets(plant, bus, [=](Session& session, auto& tap) {
     if (bytes == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
     if (length == 0 || length > tap.kLongest)
-      return plant->fail(IPOS_PLANT_BAD_VALUE, fmt::format("1 to {} bytes can be sent at a time", tap.kLongest));
+      return plant->fail(IPOS_PLANT_BAD_VALUE,
+                         fmt::format("1 to {} bytes can be sent at a time", tap.kLongest));
     return perform(plant, session, Act::SerialSend, bus, 0, {bytes, bytes + length});
   });
 }
@@ -203,12 +204,9 @@ ipos_plant_status ipos_plant_serial_receive(ipos_plant* plant, uint32_t bus, ipo
     if (!reception) return IPOS_PLANT_NOTHING;
     const auto heard = octets_of(*reception);
     plant->bytes.assign(heard.begin(), heard.end());
-    *telegram = {reception->start,
-                 reception->end,
-                 plant->bytes.data(),
-                 plant->bytes.size(),
-                 is_whole(*reception),
-                 plant->hand_out(ipos::runtime::reception_text(*reception))};
+    *telegram = {reception->start,     reception->end,
+                 plant->bytes.data(),  plant->bytes.size(),
+                 is_whole(*reception), plant->hand_out(ipos::runtime::reception_text(*reception))};
     return IPOS_PLANT_OK;
   });
 }

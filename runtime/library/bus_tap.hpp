@@ -122,8 +122,7 @@ class ProfibusTap final : private profibus::LineObserver, private profibus::Node
   const profibus::Line& line() const { return line_; }
 
  private:
-  void on_frame(const profibus::Line&, NodeId sender,
-                const profibus::Reception& reception) override;
+  void on_frame(const profibus::Line&, NodeId sender, const profibus::Reception& reception) override;
   void on_line_event(const profibus::Line&, const profibus::LineEvent&) override {}
   void on_reception(Time, const profibus::Reception&) override {}
   void on_sent(Time) override {}

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace ipos::runtime {
@@ -35,23 +36,28 @@ void ProfibusBridge::arrive(const ByteArrival& byte) {
   for (profibus::Reception& reception : receiver_.take(character)) {
     if (!reception.frame) {
       notes().count(fmt::format("{}: what came is no frame: {}", port().name(),
-                               profibus::frame_error_text(reception.frame.error())));
+                                profibus::frame_error_text(reception.frame.error())));
       continue;
     }
-    arrivals_.push_back(std::move(reception.octets));
+    arrivals_.push_back({reception.end, std::move(reception.octets)});
     if (arrivals_.size() == 1) begin_first();
   }
 }
 
-void ProfibusBridge::begin_first() { queue_.schedule(queue_.now(), source_, *this, 0); }
+// Not before it has come: a host that was late would put it into the past, and a slave's watchdog would count from there.
+void ProfibusBridge::begin_first() {
+  queue_.schedule(std::max(queue_.now(), arrivals_.front().at), source_, *this, 0);
+}
 
-// Behind what goes on on the line, with the idle time that a request wants.
+// Behind what goes on on the line, with the idle time that a request wants; an answer to the frame before begins within
+// it.
 void ProfibusBridge::on_event(Time now, uint32_t, uint64_t) {
-  if (line_.is_busy()) {
-    queue_.schedule(line_.at(line_.now() + profibus::kSynBits), source_, *this, 0);
+  const Time idle = line_.at(line_.quiet_since() + profibus::kSynBits);
+  if (line_.is_busy() || now < idle) {
+    queue_.schedule(std::max(idle, line_.at(line_.now() + profibus::kSynBits)), source_, *this, 0);
     return;
   }
-  if (line_.send(node_, line_.quiet_since() + profibus::kSynBits, arrivals_.front())) return;
+  if (line_.send(node_, line_.now(), arrivals_.front().octets)) return;
   ++counts().undelivered;
   on_sent(now);
 }

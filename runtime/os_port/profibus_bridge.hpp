@@ -42,7 +42,11 @@ class ProfibusBridge final : public ByteBridge, private profibus::Node, private 
   NodeId node_;
   Time character_;
   profibus::FdlReceiver receiver_{profibus::kPortLimits};
-  std::deque<profibus::Octets> arrivals_;  // the first one is on the line or waits for it
+  struct Arrival {
+    Time at;  // of the last octet, virtual
+    profibus::Octets octets;
+  };
+  std::deque<Arrival> arrivals_;  // the first one is on the line or waits for it
 };
 
 }  // namespace ipos::runtime

@@ -119,10 +119,11 @@ tl::expected<Tty, PortError> Tty::open(const std::string& path, const TtySetting
   if (rate == nullptr && !pseudo) {
     const auto has = set_any_rate(fd, settings.baud);
     if (!has || !is_close_rate(settings.baud, *has))
-      return tl::unexpected(port_error(
-          PortFault::NoBaudRate, path,
-          has ? fmt::format("{} bit/s: it makes {} of it; an adapter with another clock is needed", settings.baud, *has)
-              : fmt::format("{} bit/s: the driver has only the rates of termios", settings.baud)));
+      return tl::unexpected(
+          port_error(PortFault::NoBaudRate, path,
+                     has ? fmt::format("{} bit/s: it makes {} of it; an adapter with another clock is needed",
+                                       settings.baud, *has)
+                         : fmt::format("{} bit/s: the driver has only the rates of termios", settings.baud)));
   }
   tty.parity_ = (got.c_cflag & PARENB) != 0;
   tty.marks_ = (got.c_iflag & PARMRK) != 0;

@@ -142,5 +142,19 @@ TEST(PythonPeers, CanopenMasterOfPythonCan) {
   EXPECT_EQ(lines(theirs.output) + requests, lines(decoded.out)) << theirs.output.substr(0, 200);
 }
 
+// Two slaves on one line in real time, noise, and a careless master. The long form is "1000000 100000 1000".
+TEST(PythonPeers, ProfibusMasterOfClassOne) {
+  if (!has_pty()) GTEST_SKIP() << kNoPty;
+  const TemporaryFolder folder;
+  const std::string path = (folder.path() / "dp").string();
+  const std::string plant = folder.write(
+      "dp.toml", std::regex_replace(read_text(project("tests/realbus/profibus_plant.toml")),
+                                    std::regex("kind = \"profibus\""), "$&\nport = \"pty:" + path + "\""));
+  const ScriptResult result = run_script(
+      {kPython, "-B", script("profibus_master.py"), IPOS_PROGRAM, plant, path, "600", "800", "72"});
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  expect_all_ok(result.output, 14);
+}
+
 }  // namespace
 }  // namespace ipos::tests

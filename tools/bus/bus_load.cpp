@@ -6,6 +6,7 @@
 
 #include "runtime/bus/log/bus_load.hpp"
 #include "tools/bus/bus_verbs.hpp"
+#include "tools/bus/profibus_load.hpp"
 #include "tools/cli/exit_codes.hpp"
 
 namespace ipos::tools {
@@ -101,24 +102,45 @@ std::string json_report(const BusLoad& load, uint32_t baud, const Meaning& meani
   return report.dump() + "\n";
 }
 
+// The first entry says which kind of line the log is of; others are errors.
 int measure(const LoadFlags& flags) {
   BusLoad load;
-  const size_t bad =
-      read_frames(flags.log, [&](const runtime::LogEntry& entry) { load.add(entry.time, entry.frame); });
-  const Meaning meaning = meaning_of(flags.names);
-  fmt::print("{}", flags.format == "json" ? json_report(load, flags.baud, meaning)
-                                          : text_report(load, flags.baud, meaning));
-  return bad == 0 ? kGood : kBadInput;
+  ProfibusLoad profibus(flags.baud);
+  size_t others = 0;
+  const auto other = [&](LogPlace place, const char* expected) {
+    ++others;
+    fmt::print(stderr, "{}: error: no {} frame\n", place_text(flags.log, place), expected);
+  };
+  const size_t bad = read_log_file(flags.log, {[&](const runtime::LogEntry& entry, LogPlace place) {
+                                                 if (!profibus.empty()) return other(place, "PROFIBUS");
+                                                 load.add(entry.time, entry.frame);
+                                               },
+                                               [&](const runtime::SerialEntry&, LogPlace place) {
+                                                 other(place, profibus.empty() ? "CAN" : "PROFIBUS");
+                                               },
+                                               [&](const DpEntry& entry, LogPlace place) {
+                                                 if (!load.windows().empty()) return other(place, "CAN");
+                                                 profibus.add(entry.time, entry.octets);
+                                               },
+                                               {}});
+  if (!profibus.empty())
+    fmt::print("{}", flags.format == "json" ? profibus.json() : profibus.text());
+  else
+    fmt::print("{}", flags.format == "json" ? json_report(load, flags.baud, meaning_of(flags.names))
+                                            : text_report(load, flags.baud, meaning_of(flags.names)));
+  return bad + others == 0 ? kGood : kBadInput;
 }
 
 }  // namespace
 
 void add_bus_load(cli::Verb& bus) {
   auto flags = std::make_shared<LoadFlags>();
-  cli::Verb& verb = bus.verb("load", "load of a CAN log, exact with stuff bits and at worst");
-  verb.option("LOG", flags->log, "log of one line, candump, pcapng, ASC, TRC or BLF; - is standard input")
+  cli::Verb& verb = bus.verb(
+      "load", "load of a log: of CAN exact with stuff bits and at worst, of PROFIBUS by kind of frame");
+  verb.option("LOG", flags->log,
+              "log of one line, candump, pcapng, ASC, TRC, BLF or --serial-log; - is standard input")
       .required();
-  verb.option("--baud", flags->baud, "of the line, for example 500000").required().between(1000U, 1'000'000U);
+  verb.option("--baud", flags->baud, "of the line, for example 500000").required().between(1000U, 1'500'000U);
   verb.option("--format", flags->format, "text or json").one_of({"text", "json"});
   add_names_options(verb, flags->names);
   verb.footer("Example:\n  ipos bus load can.log --baud 500000");

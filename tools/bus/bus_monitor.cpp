@@ -5,6 +5,7 @@
 #include <set>
 
 #include "runtime/bus/canopen/connections.hpp"
+#include "runtime/bus/profibus/timing.hpp"
 #include "runtime/bus/rs485/timing.hpp"
 #include "runtime/plant_file/plant_file.hpp"
 #include "tools/bus/bus_verbs.hpp"
@@ -17,7 +18,8 @@
 namespace ipos::tools {
 namespace {
 
-constexpr uint32_t kCanBaud = 500'000;  // factory setting of P816 (1053 1610 p. 41)
+constexpr uint32_t kProfibusBaud = 500'000;  // as without `baud` in a plant file
+constexpr uint32_t kCanBaud = 500'000;       // factory setting of P816 (1053 1610 p. 41)
 
 struct MonitorFlags {
   std::string source;
@@ -26,6 +28,7 @@ struct MonitorFlags {
   uint64_t count = 0;
   std::string duration;
   uint32_t baud = 0;
+  bool profibus = false;
   bool follow = false;
   bool table = false;
   bool scroll = false;
@@ -74,6 +77,12 @@ int monitor(const MonitorFlags& flags) {
     throw Failure(kUsage, "--follow is for files: standard input is read as it comes");
   if (flags.baud != 0 && source == MonitorSource::Log)
     throw Failure(kUsage, "--baud is for ports: a log has none");
+  if (flags.profibus && source != MonitorSource::Serial)
+    throw Failure(kUsage, "--profibus is for serial ports: a log tells by itself");
+  if (flags.profibus && flags.baud != 0 && profibus::find_baud_rate(flags.baud) == nullptr)
+    throw Failure(
+        kUsage,
+        fmt::format("--baud {}: PROFIBUS has 9600, 19200, 93750, 187500, 500000 and 1500000", flags.baud));
   const runtime::Time duration =
       flags.duration.empty() ? runtime::kNever : runtime::parse_duration(flags.duration);
   if (flags.table && flags.scroll) throw Failure(kUsage, "either --table or --scroll");
@@ -83,6 +92,8 @@ int monitor(const MonitorFlags& flags) {
     case MonitorSource::Can:
       return monitor_can(view, flags.source, flags.baud == 0 ? kCanBaud : flags.baud, duration);
     case MonitorSource::Serial:
+      if (flags.profibus)
+        return monitor_profibus(view, flags.source, flags.baud == 0 ? kProfibusBaud : flags.baud, duration);
       return monitor_serial(view, flags.source, flags.baud == 0 ? runtime::kSerialBaudRates[0] : flags.baud,
                             duration);
     case MonitorSource::Log: break;
@@ -104,7 +115,8 @@ void add_bus_monitor(cli::Verb& bus) {
       .one_each();
   verb.option("--count", flags->count, "end after so many telegrams shown").at_least(1);
   verb.option("--for", flags->duration, "end after this time, for example 10s").check(check_time, "TIME");
-  verb.option("--baud", flags->baud, "of the port; default 500000, of a serial line 9600");
+  verb.option("--baud", flags->baud, "of the port; default 500000, of an RS-485 line 9600");
+  verb.flag("--profibus", flags->profibus, "the serial port is at a PROFIBUS line");
   verb.flag("--follow,-f", flags->follow, "wait for more at the end of a log");
   verb.flag("--table", flags->table,
             "a row an identifier, with counts and changed bytes; default for a port on a terminal");

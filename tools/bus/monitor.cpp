@@ -53,20 +53,24 @@ void Monitor::take(const runtime::SerialEntry& entry) {
 }
 
 void Monitor::take(const DpEntry& entry) {
+  take(entry.time, entry.line, {profibus::decode(entry.octets), entry.octets, entry.time, entry.time});
+}
+
+void Monitor::take(Time time, const std::string& line, const profibus::Reception& reception) {
   ++seen_;
   if (full()) return;
   ++shown_;
-  const auto frame = profibus::decode(entry.octets);
+  const auto& frame = reception.frame;
   if (!frame) ++void_;
-  const std::string text =
-      frame ? profibus::describe(*frame)
-            : fmt::format("void, {}: {}", frame_error_text(frame.error()), profibus::hex_text(entry.octets));
-  if (!screen_) return show(entry.time, entry.line, text);
+  const std::string text = frame ? profibus::describe(*frame)
+                                 : fmt::format("void, {}: {}", frame_error_text(frame.error()),
+                                               profibus::hex_text(reception.octets));
+  if (!screen_) return show(time, line, text);
   // A row for each pair of stations.
   const uint32_t pair = frame ? uint32_t{frame->source} << 8 | frame->destination : UINT32_MAX;
-  screen_->table().put(entry.time, entry.line, pair,
+  screen_->table().put(time, line, pair,
                        frame ? fmt::format("{} -> {}", frame->source, frame->destination) : "void",
-                       entry.octets, text);
+                       reception.octets, text);
 }
 
 void Monitor::show(Time time, const std::string& line, const runtime::Reception& reception,

@@ -15,6 +15,7 @@
 #include "runtime/bus/movilink/describe.hpp"
 #include "runtime/bus/movilink/serial_receiver.hpp"
 #include "runtime/bus/movilink/station_filter.hpp"
+#include "runtime/bus/profibus/fdl_receiver.hpp"
 #include "tools/bus/monitor_screen.hpp"
 #include "tools/logs/log_forms.hpp"
 
@@ -42,6 +43,7 @@ class Monitor {
   void take(runtime::Time time, const std::string& line, const runtime::Reception& reception);
   void take(const runtime::SerialEntry& entry);
   void take(const DpEntry& entry);
+  void take(runtime::Time time, const std::string& line, const profibus::Reception& reception);
   // Frames or bytes that were lost before they could be read. Losses in a row are shown once, with their sum
   // behind.
   void lost(runtime::Time time, const std::string& line, uint64_t count, const char* what);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "runtime/bus/profibus/timing.hpp"
 #include "runtime/bus/rs485/timing.hpp"
 #include "runtime/os_port/can_port.hpp"
 #include "runtime/os_port/port_names.hpp"
@@ -163,6 +164,27 @@ int monitor_serial(Monitor& monitor, const std::string& name, uint32_t baud, Tim
       for (const runtime::ByteArrival& byte : std::span(bytes).first(*count)) listener.take(byte, stamps);
     }
     listener.look(clock.now(), stamps);
+    return std::optional<runtime::PortError>();
+  });
+}
+
+int monitor_profibus(Monitor& monitor, const std::string& name, uint32_t baud, Time duration) {
+  runtime::SystemClock clock;
+  const runtime::SerialPortResult port = runtime::open_serial_port(name, {baud, true, false}, clock);
+  if (!port) throw Failure(kIoError, port.error().text);
+  profibus::FdlReceiver receiver(profibus::kPortLimits);
+  const Time width = static_cast<Time>(profibus::kCharacterBits) * runtime::kSecond / baud;
+  return watch(monitor, **port, clock, duration, "octets", [&](const Stamps& stamps) {
+    std::array<runtime::ByteArrival, 512> bytes{};
+    for (int n = 0; n < kReadsALook; ++n) {
+      const auto count = (*port)->receive(bytes);
+      if (!count) return std::optional(count.error());
+      if (*count == 0) break;
+      for (const runtime::ByteArrival& byte : std::span(bytes).first(*count))
+        for (const profibus::Reception& heard :
+             receiver.take({byte.at - width, byte.at, byte.value, byte.bad, false}))
+          monitor.take(stamps.of(heard.start), name, heard);
+    }
     return std::optional<runtime::PortError>();
   });
 }

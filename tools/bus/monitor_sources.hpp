@@ -18,6 +18,7 @@ MonitorSource monitor_source(const std::string& name);
 // first frame. Nothing is ever sent to a port.
 int monitor_can(Monitor& monitor, const std::string& port, uint32_t baud, runtime::Time duration);
 int monitor_serial(Monitor& monitor, const std::string& port, uint32_t baud, runtime::Time duration);
+int monitor_profibus(Monitor& monitor, const std::string& port, uint32_t baud, runtime::Time duration);
 int monitor_log(Monitor& monitor, const std::string& path, bool follow, runtime::Time duration);
 
 }  // namespace ipos::tools

@@ -17,11 +17,13 @@
 namespace ipos::tools {
 
 struct LinkFlags {
-  std::string port;      // as in a plant file (docs/guide/ports.md)
-  uint32_t baud = 0;     // 0: factory setting, 500000 on SBus and 9600 on RS-485
-  bool canopen = false;  // SDO in place of MOVILINK
-  bool repeats = true;   // ask a second time after no answer
-  bool quiet = false;    // tell nothing about the port unless it goes away
+  std::string port;           // as in a plant file (docs/guide/ports.md)
+  uint32_t baud = 0;          // 0: factory setting, 500000 on SBus, 9600 on RS-485; DP 500000
+  bool canopen = false;       // SDO in place of MOVILINK
+  bool profibus = false;      // DP in place of MOVILINK on a serial port: dp_station.hpp
+  std::string cfg = "F3 F0";  // over DP: identifiers of the configuration with the parameter channel
+  bool repeats = true;        // ask a second time after no answer
+  bool quiet = false;         // tell nothing about the port unless it goes away
 };
 
 // How much longer than a unit may take an answer is waited for: the host's share (ours).

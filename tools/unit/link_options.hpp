@@ -11,6 +11,11 @@ namespace ipos::tools {
 // --baud, --quiet, and --port unless the port is a word of its own.
 void add_link_options(cli::Verb& verb, LinkFlags& flags, bool port);
 
+// --profibus, for verbs that speak DP, too.
+void add_profibus_option(cli::Verb& verb, LinkFlags& flags);
+// Both kinds of masters at once, or a port that no PROFIBUS line can have: a Failure.
+void check_profibus(const LinkFlags& flags);
+
 // For options that name a unit type with parameters, and for addresses of single units.
 std::string check_unit(const std::string& name);
 std::string check_address(const std::string& text);

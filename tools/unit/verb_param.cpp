@@ -8,6 +8,7 @@
 #include "tools/cli/files.hpp"
 #include "tools/cli/verbs.hpp"
 #include "tools/input/plant_source.hpp"
+#include "tools/unit/dp_units.hpp"
 #include "tools/unit/link_access.hpp"
 #include "tools/unit/link_options.hpp"
 #include "tools/unit/param_actions.hpp"
@@ -45,6 +46,16 @@ std::unique_ptr<ParameterAccess> open_at_port(const ParamFlags& flags, FileUse u
         "or --volatile; never do it cyclically without --volatile");
   if (flags.is_volatile && flags.link.canopen)
     throw Failure(kUsage, "--volatile does not go with --canopen: a write over SDO is always stored");
+  if (flags.is_volatile && flags.link.profibus)
+    throw Failure(kUsage,
+                  "--volatile does not go with --profibus: P802 of the unit says whether a write is stored");
+  check_profibus(flags.link);
+  if (flags.link.profibus) {
+    if (flags.address == kPcAddress || flags.address > profibus::kLastStation)
+      throw Failure(kUsage, fmt::format("{} is no address of a slave: 1..125 ({} is this PC's)",
+                                        flags.address, kPcAddress));
+    return open_dp_unit(flags.link, static_cast<uint8_t>(flags.address));
+  }
   auto link = BusLink::open(flags.link);
   if (!link->has_address(flags.address))
     throw Failure(kUsage, fmt::format("{} is no address of a unit at {}: {}..{}", flags.address,
@@ -113,6 +124,9 @@ class Actions {
     app.option(words, flags_->words, about);
     app.option("--station", flags_->station, "which station, where the plant has several");
     add_link_options(app, flags_->link, true);
+    add_profibus_option(app, flags_->link);
+    app.option("--cfg", flags_->link.cfg,
+               "with --profibus: the configuration, \"F3 F0\" to \"F3 F2\"; default \"F3 F0\"");
     app.option("--address", flags_->address, "with --port: address of the unit")
         .check(check_address, "0..127");
     app.footer(std::string("Example:\n  ipos param ") + example);

@@ -9,6 +9,7 @@
 #include "tools/cli/failure.hpp"
 #include "tools/cli/terminal.hpp"
 #include "tools/cli/verbs.hpp"
+#include "tools/unit/dp_units.hpp"
 #include "tools/unit/link_access.hpp"
 #include "tools/unit/link_options.hpp"
 #include "tools/unit/param_columns.hpp"
@@ -44,7 +45,31 @@ std::string fault_of(const AccessReply& reply) {
   return fmt::format("F{:02} {}", number, row ? row->name : "unknown fault");
 }
 
+// What a master of class 2 may ask each of them, whoever has locked it.
+int scan_profibus(const ScanFlags& flags) {
+  DpStation line(flags.link);
+  const int last = std::min<int>(flags.to < 0 ? profibus::kLastStation : flags.to, profibus::kLastStation);
+  const bool progress = is_terminal(STDERR_FILENO);
+  std::vector<std::vector<std::string>> lines{dp_scan_heads()};
+  for (int n = flags.from; n <= last; ++n) {
+    if (n == kPcAddress) continue;
+    if (progress) fmt::print(stderr, "\r\033[Kaddress {} of {}", n, last);
+    if (auto row = dp_scan_row(line, static_cast<uint8_t>(n))) lines.push_back(std::move(*row));
+  }
+  if (progress) fmt::print(stderr, "\r\033[K");
+  if (lines.size() > 1) {
+    fmt::print("{}", columns(lines));
+    return kGood;
+  }
+  fmt::print(stderr,
+             "ipos: {}: nobody answers at {}..{}: unit on, address (P073), {} baud, A and B not exchanged?\n",
+             flags.link.port, flags.from, last, line.baud());
+  return kFindings;
+}
+
 int scan(ScanFlags flags) {
+  check_profibus(flags.link);
+  if (flags.link.profibus) return scan_profibus(flags);
   flags.link.repeats = false;
   const auto link = BusLink::open(flags.link);
   const int first = std::max<int>(flags.from, link->first_address());
@@ -82,9 +107,11 @@ void add_scan(cli::Verb& app) {
   cli::Verb& verb = app.verb("scan", "addresses of a real bus that answer, with unit type and firmware");
   verb.option("PORT", flags->link.port, "can0, slcan:/dev/ttyACM0, /dev/ttyUSB0, ...").required();
   verb.option("--from", flags->from, "first address, default 0, on CANopen 1").between(0, 127);
-  verb.option("--to", flags->to, "last address; default 63 on SBus, 99 on RS-485, 127 on CANopen")
+  verb.option("--to", flags->to,
+              "last address; default 63 on SBus, 99 on RS-485, 127 on CANopen, 125 on PROFIBUS")
       .between(0, 127);
   add_link_options(verb, flags->link, false);
+  add_profibus_option(verb, flags->link);
   verb.footer("Example:\n  ipos scan /dev/ttyUSB0 --to 10");
   verb.runs([flags] { return scan(*flags); });
 }

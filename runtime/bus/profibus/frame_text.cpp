@@ -149,4 +149,10 @@ std::string describe(const FdlFrame& frame) {
          (service ? data_text(*service, frame.data, !frame.is_request()) : hex_text(frame.data));
 }
 
+std::string frame_kind(const FdlFrame& frame) {
+  const std::string text = describe(frame);
+  const std::string_view head = std::string_view(text).substr(0, text.find_first_of(",:("));
+  return std::string(head.substr(0, head.find_last_not_of(' ') + 1));
+}
+
 }  // namespace ipos::profibus

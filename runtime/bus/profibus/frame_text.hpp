@@ -12,6 +12,10 @@ namespace ipos::profibus {
 // "1 -> 8 Set_Prm, SRD high, FCB 1: lock, sync, watchdog 0.2 s, min Tsdr 11, ident 3100h, groups 00h"
 std::string describe(const FdlFrame& frame);
 
+// What the frames of one kind have in common, without counts and data: "1 -> 8 Set_Prm", "8 -> 1 Slave_Diag answer",
+// "1 -> 1 token".
+std::string frame_kind(const FdlFrame& frame);
+
 // "0.2 s"
 std::string describe_watchdog(const PrmData& prm);
 

@@ -94,6 +94,32 @@ TEST(ProfibusBridge, DamagedFramesAreDropped) {
   EXPECT_TRUE(rig.unit.taken.empty());
 }
 
+// A host that comes late with a frame must not put it into the past: the watchdog of 200 ms counts from when it came.
+TEST(ProfibusBridge, TheWatchdogCountsFromWhenAFrameHasCome) {
+  DpRig rig;
+  rig.ask("68 05 05 68 88 81 6D 3C 3E F0 16");
+  rig.ask("68 0C 0C 68 88 81 5D 3D 3E B8 14 01 0B 31 00 00 EA 16");
+  rig.ask("68 06 06 68 88 81 7D 3E 3E F2 F4 16");
+  rig.clock.advance(150 * kMillisecond);  // not executed meanwhile
+  EXPECT_FALSE(rig.ask("68 05 05 68 88 81 5D 3C 3E E0 16").empty());
+  rig.clock.advance(150 * kMillisecond);
+  rig.queue.run_until(rig.clock.now());
+  EXPECT_EQ(rig.slave.slave().state(), profibus::SlaveState::DataExchange);
+  rig.clock.advance(50 * kMillisecond);
+  rig.queue.run_until(rig.clock.now());
+  EXPECT_EQ(rig.slave.slave().state(), profibus::SlaveState::WaitPrm);
+}
+
+// A repetition that has overtaken its answer: each request waits for the answer to the one before.
+TEST(ProfibusBridge, RequestsInOneGoAreAnsweredOneAfterTheOther) {
+  DpRig rig;
+  const Octets request = octets("68 05 05 68 88 81 6D 3C 3E F0 16");
+  Octets twice = request;
+  twice.insert(twice.end(), request.begin(), request.end());
+  EXPECT_FALSE(rig.ask(twice).empty());
+  EXPECT_EQ(rig.port.sent.size(), 2U);
+}
+
 TEST(ProfibusBridge, AParityErrorVoidsTheFrame) {
   DpRig rig;
   const Octets request = octets("68 05 05 68 88 81 6D 3C 3E F0 16");
