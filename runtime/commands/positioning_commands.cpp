@@ -106,9 +106,9 @@ void PositioningCommands::resume(vm::Machine& machine) {
 std::optional<vm::HostReply> PositioningCommands::set_system_value(std::span<const int32_t> h,
                                                                    int32_t keyword, size_t variable,
                                                                    uint32_t address) {
-  constexpr int32_t kTenthRpm = 100;  // in 1/1000 rpm
+  constexpr int32_t kDigit = 100;  // in 1/1000 rpm
   const auto speed = [&](size_t n) {
-    const int64_t mrpm = int64_t{h[variable + n]} * kTenthRpm;
+    const int64_t mrpm = int64_t{h[variable + n]} * kDigit;
     return static_cast<int32_t>(std::clamp<int64_t>(mrpm, 0, INT32_MAX));
   };
   const auto has = [&](size_t count) { return variable + count <= h.size(); };

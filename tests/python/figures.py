@@ -1,7 +1,11 @@
-"""What calls from Python cost: `python3 figures.py [STEPS]` prints it. Not a test."""
+"""What calls from Python cost, beside `ipos run` of the same plant: `python3 figures.py [STEPS]` prints it. The library is
+that of IPOS_PLANT_LIBRARY or of build/release, the program that of IPOS or of build/release. Not a test."""
 
+import os
 import resource
+import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -11,6 +15,20 @@ import ipos  # noqa: E402
 
 LINE = str(Path(__file__).resolve().parent / "line.toml")
 NAMES = [f"saw.{name}" for name in ("lCount", "lFalls", "lLevel", "H429", "H430", "H431", "speed", "position", "DI03", "DO01")]
+
+
+PROGRAM = os.environ.get("IPOS", str(Path(__file__).resolve().parents[2] / "build/release/tools/ipos"))
+
+
+def of_ipos_run(path, seconds, *options):
+    """Simulated seconds a second of `ipos run`, without the time it takes to begin."""
+
+    def wall(duration):
+        begin = time.perf_counter()
+        subprocess.run([PROGRAM, "run", path, "--for", duration, *options], check=True, stdout=subprocess.DEVNULL)
+        return time.perf_counter() - begin
+
+    return seconds / max(wall(f"{seconds}s") - min(wall("1ms") for _ in range(3)), 1e-9)
 
 
 def clock(action, count):
@@ -43,6 +61,8 @@ def steps():
         plant.run("60s")
         read()
         print(f"60 s in one call:                  {60 / (time.perf_counter() - begin):10.0f} simulated seconds a second")
+    print(f"ipos run, machine code:            {of_ipos_run(LINE, 600):10.0f} simulated seconds a second")
+    print(f"ipos run, the library's engine:    {of_ipos_run(LINE, 600, '--engine', 'fast'):10.0f} simulated seconds a second")
 
 
 def drives(count, seconds):
@@ -69,9 +89,14 @@ def drives(count, seconds):
             plant.run(0.001)
             read()
         with_values = time.perf_counter() - begin
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "drives.toml"
+        path.write_text("".join(rows))
+        (path.parent / "SAW.IPC").write_text((Path(LINE).parent / "SAW.IPC").read_text())
+        tool = of_ipos_run(str(path), 10 * seconds, "--engine", "fast")
     print(
         f"{count} drives, simulated seconds a second: {seconds / alone:.2f} in one call, {seconds / stepped:.2f} stepped each ms, "
-        f"{seconds / with_values:.2f} with a value of each read"
+        f"{seconds / with_values:.2f} with a value of each read; {tool:.2f} by ipos run"
     )
 
 

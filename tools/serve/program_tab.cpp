@@ -180,8 +180,9 @@ class ProgramTab final : public Tab {
     }
     Json points = breakpoints(number);
     const Covered& covered = covered_[number];
-    const bool news = subscription.is_news("tasks", tasks) | subscription.is_news("points", points);
-    if (!news && subscription.mark == covered.order.size()) return;
+    const bool other_tasks = subscription.is_news("tasks", tasks);
+    const bool other_points = subscription.is_news("points", points);
+    if (!other_tasks && !other_points && subscription.mark == covered.order.size()) return;
     std::map<std::string, std::set<uint32_t>> lines;
     for (; subscription.mark < covered.order.size(); ++subscription.mark) {
       const debug::SourcePlace place = debugger.code(number)->place(covered.order[subscription.mark]);

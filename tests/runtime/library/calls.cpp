@@ -1,7 +1,6 @@
 // Each byte chooses a function, the next ones its arguments.
 #include "tests/runtime/library/calls.hpp"
 
-#include <ipos_plant.h>
 
 #include <algorithm>
 #include <array>
@@ -9,17 +8,23 @@
 #include <new>
 #include <vector>
 
+#include "tests/runtime/library/functions.hpp"
+
 namespace {
 
 thread_local int64_t allocations_left = -1;
 thread_local int64_t live = 0;
 
-void* allocate(size_t size) {
-  if (allocations_left == 0) throw std::bad_alloc();
+void* allocate_or_null(size_t size) noexcept {
+  if (allocations_left == 0) return nullptr;
   if (allocations_left > 0) --allocations_left;
   void* const memory = std::malloc(size == 0 ? 1 : size);
+  if (memory != nullptr) ++live;
+  return memory;
+}
+void* allocate(size_t size) {
+  void* const memory = allocate_or_null(size);
   if (memory == nullptr) throw std::bad_alloc();
-  ++live;
   return memory;
 }
 void release(void* memory) {
@@ -31,6 +36,8 @@ void release(void* memory) {
 
 void* operator new(size_t size) { return allocate(size); }
 void* operator new[](size_t size) { return allocate(size); }
+void* operator new(size_t size, const std::nothrow_t&) noexcept { return allocate_or_null(size); }
+void* operator new[](size_t size, const std::nothrow_t&) noexcept { return allocate_or_null(size); }
 void operator delete(void* memory) noexcept { release(memory); }
 void operator delete[](void* memory) noexcept { release(memory); }
 void operator delete(void* memory, size_t) noexcept { release(memory); }

@@ -1,12 +1,12 @@
 // Calls in random order, with memory that fails; and that nothing grows.
 #include <gtest/gtest.h>
-#include <ipos_plant.h>
 
 #include <cstdlib>
 #include <random>
 #include <vector>
 
 #include "tests/runtime/library/calls.hpp"
+#include "tests/runtime/library/functions.hpp"
 
 namespace ipos::tests {
 namespace {
@@ -55,6 +55,26 @@ TEST(LibraryCalls, StepsAndReadsTakeNoMemory) {
   steps(count_of("IPOS_STEPS", 20'000));
   EXPECT_EQ(live_allocations(), before);
   EXPECT_EQ(ipos_plant_close(plant), IPOS_PLANT_OK);
+}
+
+TEST(LibraryCalls, APlantWithoutMemoryIsBrokenAndTheOthersGoOn) {
+  ipos_plant_source source = {};
+  source.text = kPlant;
+  ipos_plant *plant = nullptr, *other = nullptr;
+  fail_allocations_after(0);
+  EXPECT_EQ(ipos_plant_open(&source, &plant), IPOS_PLANT_OUT_OF_MEMORY);
+  fail_allocations_after(-1);
+  EXPECT_EQ(plant, nullptr);
+  ASSERT_EQ(ipos_plant_open(&source, &plant), IPOS_PLANT_OK);
+  ASSERT_EQ(ipos_plant_open(&source, &other), IPOS_PLANT_OK);
+  uint64_t hash = 0;
+  fail_allocations_after(0);
+  EXPECT_EQ(ipos_plant_trace_hash(plant, &hash), IPOS_PLANT_OUT_OF_MEMORY);
+  fail_allocations_after(-1);
+  EXPECT_EQ(ipos_plant_run(plant, 1'000'000), IPOS_PLANT_BROKEN);
+  EXPECT_EQ(ipos_plant_run(other, 1'000'000), IPOS_PLANT_OK);
+  EXPECT_EQ(ipos_plant_close(plant), IPOS_PLANT_OK);
+  EXPECT_EQ(ipos_plant_close(other), IPOS_PLANT_OK);
 }
 
 }  // namespace

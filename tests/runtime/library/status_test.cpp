@@ -1,12 +1,13 @@
 // Each status comes where the header says, with its words.
 #include <gtest/gtest.h>
-#include <ipos_plant.h>
 
 #include <array>
 #include <cstring>
 #include <set>
 #include <string>
 #include <vector>
+
+#include "tests/runtime/library/functions.hpp"
 
 namespace {
 
@@ -143,6 +144,58 @@ TEST_F(LibraryStatus, OfBuses) {
   EXPECT_EQ(ipos_plant_serial_receive(plant_, 1, &telegram), IPOS_PLANT_NOTHING);
   EXPECT_EQ(ipos_plant_line_fault(plant_, "[[fault]]\nbus = \"sbus\"\n"), IPOS_PLANT_BAD_VALUE);
   EXPECT_EQ(ipos_plant_line_fault(plant_, ""), IPOS_PLANT_BAD_VALUE);
+}
+
+TEST_F(LibraryStatus, OfNodesOfALine) {
+  ipos_plant_bus_info info{};
+  ASSERT_EQ(ipos_plant_bus_at(plant_, 1, &info), IPOS_PLANT_OK);
+  EXPECT_STREQ(info.name, "rs");
+  EXPECT_EQ(info.kind, IPOS_PLANT_SERIAL);
+  EXPECT_EQ(info.baud, 9600U);
+  EXPECT_EQ(ipos_plant_bus_at(plant_, 2, &info), IPOS_PLANT_NO_BUS);
+  EXPECT_EQ(ipos_plant_join(plant_, 0), IPOS_PLANT_OK);
+  EXPECT_EQ(ipos_plant_join(plant_, 0), IPOS_PLANT_OK);  // once is enough
+  EXPECT_EQ(ipos_plant_join(plant_, 1), IPOS_PLANT_NO_BUS);
+  ipos_plant_frame sent{};
+  sent.id = 0x123;
+  ASSERT_EQ(ipos_plant_send(plant_, 0, &sent, nullptr), IPOS_PLANT_OK);
+  ASSERT_EQ(ipos_plant_run(plant_, 5'000'000), IPOS_PLANT_OK);
+  std::array<ipos_plant_frame, 8> frames{};
+  size_t count = 0;
+  ASSERT_EQ(ipos_plant_receive(plant_, 0, frames.data(), frames.size(), &count), IPOS_PLANT_OK);
+  ASSERT_EQ(count, 1U);
+  EXPECT_EQ(frames[0].flags, uint32_t{IPOS_PLANT_OWN});
+  const char* name = nullptr;
+  ASSERT_EQ(ipos_plant_node_name(plant_, 0, 0, &name), IPOS_PLANT_OK);
+  EXPECT_STREQ(name, "a");
+  EXPECT_EQ(ipos_plant_node_name(plant_, 0, frames[0].sender, &name), IPOS_PLANT_OK);
+  EXPECT_STRNE(name, "a");
+  EXPECT_EQ(ipos_plant_node_name(plant_, 0, 99, &name), IPOS_PLANT_NO_STATION);
+}
+
+TEST(LibraryParameters, OfRealUnitsHaveTextsBothWays) {
+  uint16_t index = 0;
+  ASSERT_EQ(ipos_plant_parameter_index("mdxb", "P130", &index), IPOS_PLANT_OK);
+  EXPECT_EQ(index, 8470);
+  EXPECT_EQ(ipos_plant_parameter_index("mdxb", "P9999", &index), IPOS_PLANT_NO_SIGNAL);
+  EXPECT_EQ(ipos_plant_parameter_index("mdxx", "P130", &index), IPOS_PLANT_NO_STATION);
+  EXPECT_EQ(ipos_plant_parameter_index(nullptr, "P130", &index), IPOS_PLANT_INVALID_ARGUMENT);
+  char text[200];
+  ASSERT_EQ(ipos_plant_parameter_text("mdxb", 8470, 2500, text, sizeof text), IPOS_PLANT_OK);
+  EXPECT_STREQ(text, "2.500 s");
+  EXPECT_EQ(ipos_plant_parameter_text("mdxb", 8470, 2500, text, 4), IPOS_PLANT_TOO_SMALL);
+  EXPECT_STREQ(text, "2.5");
+  EXPECT_EQ(ipos_plant_parameter_text("mdxb", 8470, 2500, text, 0), IPOS_PLANT_TOO_SMALL);
+  EXPECT_EQ(ipos_plant_parameter_text("mdxb", 1, 0, text, sizeof text), IPOS_PLANT_NO_SIGNAL);
+  int32_t value = 0;
+  ASSERT_EQ(ipos_plant_parameter_value("mdxb", 8470, "2.5 s", &value, text, sizeof text), IPOS_PLANT_OK);
+  EXPECT_EQ(value, 2500);
+  EXPECT_EQ(ipos_plant_parameter_value("mdxb", 8470, "2.5 rpm", &value, text, sizeof text),
+            IPOS_PLANT_BAD_VALUE);
+  EXPECT_STRNE(text, "");
+  // Of the manual's list: error class 8, code 0, additional code 15h.
+  EXPECT_STREQ(ipos_plant_return_code(0x08000015), "parameter value too large");
+  EXPECT_STREQ(ipos_plant_return_code(0x99999999), "");
 }
 
 TEST_F(LibraryStatus, OfStates) {

@@ -1,10 +1,11 @@
 // Fifty plants in fifty threads do what one plant alone does; one plant belongs to one thread.
 #include <gtest/gtest.h>
-#include <ipos_plant.h>
 
 #include <array>
 #include <thread>
 #include <vector>
+
+#include "tests/runtime/library/functions.hpp"
 
 namespace {
 

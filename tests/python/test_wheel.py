@@ -1,0 +1,49 @@
+"""The package installs from its folder with pip, without an index, into an empty environment, and works there."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+HERE = Path(__file__).resolve().parent
+PACKAGE = HERE.parents[1] / "python"
+
+SCRIPT = """
+import importlib.metadata, sys
+import ipos
+assert ipos.__file__.startswith(sys.prefix), ipos.__file__
+names = {(each.group, each.name) for each in importlib.metadata.distribution("ipos").entry_points}
+assert names == {("pytest11", "ipos"), ("can.interface", "ipos")}, names
+with ipos.Plant(sys.argv[1]) as plant:
+    plant.run("1s")
+    print(plant["saw"]["lCount"], plant.trace_hash, (__import__("pathlib").Path(ipos.__file__).parent / "libipos_plant.so").exists())
+"""
+
+
+def run(*command, **keys):
+    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=300, **keys)
+    assert done.returncode == 0, f"{command}\n{done.stdout}\n{done.stderr}"
+    return done.stdout
+
+
+@pytest.mark.skipif("IPOS_PLANT_LIBRARY" not in os.environ, reason="IPOS_PLANT_LIBRARY names the library to put in")
+def test_pip_installs_it_without_an_index(tmp_path, line):
+    pytest.importorskip("setuptools")
+    pytest.importorskip("wheel")
+    # pip would write beside the sources.
+    source = tmp_path / "python"
+    shutil.copytree(PACKAGE, source, ignore=shutil.ignore_patterns("__pycache__", "build", "*.egg-info", "*.so"))
+    # setuptools is the one of the system: without an index none can be fetched.
+    run(sys.executable, "-m", "venv", "--without-pip", "--system-site-packages", tmp_path / "venv")
+    python = tmp_path / "venv" / "bin" / "python"
+    building = {**os.environ, "IPOS_SOURCE": str(PACKAGE.parent), "PIP_DISABLE_PIP_VERSION_CHECK": "1", "PIP_CONFIG_FILE": os.devnull}
+    run(sys.executable, "-m", "pip", "--python", python, "install", "-q", "--no-index", "--no-build-isolation", "--no-deps",
+        source, env=building, cwd=tmp_path)  # fmt: skip
+    alone = {name: value for name, value in os.environ.items() if name not in ("IPOS_PLANT_LIBRARY", "PYTHONPATH")}
+    count, trace_hash, has_library = run(python, "-c", SCRIPT, HERE / "line.toml", env=alone, cwd=tmp_path).split()
+    line.run("1s")
+    assert (int(count), trace_hash) == (line["saw"]["lCount"], line.trace_hash)
+    assert has_library == "True"
