@@ -98,7 +98,7 @@ class Recording:
 
     def write_csv(self, path: "str | os.PathLike[str]") -> None:
         """One row a sample: time in seconds, then the signals."""
-        with open(path, "w", encoding="utf-8") as out:
+        with open(os.fspath(path), "w", encoding="utf-8") as out:  # a number would be a file descriptor
             heads = [f"{name} [{unit}]" if unit else name for name, unit in zip(self.names, self.units)]
             out.write(",".join(["time [s]", *heads]) + "\n")
             for row in zip(self.times, *self._columns):

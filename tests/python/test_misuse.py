@@ -62,16 +62,13 @@ def objects(plant, serial):
 
 
 def asks(one):
-    """Names of what can be called or read of an object; what begins with one underscore takes pointers of the library."""
-    for name in dir(type(one)):
-        if name.startswith("_") and not name.startswith("__"):
-            continue
-        if name in ("__class__", "__init_subclass__", "__subclasshook__", "__new__", "__getattribute__", "__setattr__", "__delattr__",
-                    "__sizeof__", "__dir__", "__del__", "__getstate__"):
-            continue
-        if name.startswith("__") and hasattr(object, name) and name not in ("__init__", "__repr__", "__eq__"):
-            continue
-        yield name
+    """Names of what the package defines of an object; what begins with one underscore takes pointers of the library."""
+    own = [each for each in type(one).__mro__ if each.__module__.startswith("ipos")]
+    for name in dict.fromkeys(name for each in own for name in vars(each)):
+        if callable(getattr(type(one), name)) or isinstance(getattr(type(one), name), property):
+            if name not in ("__class__", "__del__") and (name.startswith("__") or not name.startswith("_")):
+                yield name
+
 
 def use(one, name, *arguments, **keys):
     attribute = getattr(one, name)
@@ -80,6 +77,8 @@ def use(one, name, *arguments, **keys):
 def signatures(one, name, rng):
     """Wrong arguments: every one alone, and random ones of two to four."""
     yield ()
+    if isinstance(getattr(type(one), name or "__call__", None), property):
+        return
     for wrong in WRONG:
         yield (wrong,)
     for _ in range(15):
@@ -124,7 +123,7 @@ def test_every_function_with_wrong_arguments(tmp_path):
         plant.run("10ms")
         print(count)
     """, tmp_path)
-    assert int(out.split()[-1]) > 10_000
+    assert int(out.split()[-1]) > 2_000
 
 
 def test_every_attribute_set_to_wrong_values(tmp_path):
