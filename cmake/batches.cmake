@@ -1,9 +1,10 @@
 # ipos_batches(TARGET [SIZE n] [HOT source...]): in the optimised build of g++ and in builds with sanitizers several sources
-# of a library are compiled in one go, n at most. Most of the time of a small source goes into the headers, which a batch reads once. Names of anonymous
-# namespaces differ in a library. HOT sources are what every millisecond and every frame goes through: each is compiled by
+# of a library are compiled in one go, n at most. Most of the time of a small source goes into the headers, which a batch
+# reads once. Names of anonymous namespaces differ in a library. HOT sources are what every millisecond and every frame goes through: each is compiled by
 # itself, so that its neighbours do not change what is inlined into it.
 #
-# The daily build (preset dev) compiles each source alone, so that a change of one costs one; the preset `clang` does so, too.
+# The daily build (preset dev) compiles each source alone, so that a change of one costs one; the preset `clang` does so,
+# too. A batch of clang says nothing about names that hide those of another source.
 function(ipos_batches target)
   cmake_parse_arguments(BATCH "" "SIZE" "HOT" ${ARGN})
   if(NOT BATCH_SIZE)
@@ -12,6 +13,7 @@ function(ipos_batches target)
   if(IPOS_SANITIZE OR (CMAKE_BUILD_TYPE STREQUAL Release AND CMAKE_CXX_COMPILER_ID STREQUAL GNU))
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${BATCH_SIZE})
     set_source_files_properties(${BATCH_HOT} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:Clang>:-Wno-shadow>)
   endif()
 endfunction()
 
