@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "tests/harness/proves.hpp"
 #include "tests/tools/command.hpp"
 
 namespace ipos::tests {
@@ -137,6 +138,15 @@ TEST(Pages, CiFilesAreThoseOfANewProject) {
     const std::string text = read_text(root() / "tools/new/template" / file);
     EXPECT_NE(page.find("```yaml\n" + text + "```\n"), std::string::npos) << file;
   }
+}
+
+// What the manual names of a fieldbus card and the simulated one does not do.
+TEST(Limits, NameTheOtherFunctionsOfAFieldbus) {
+  PROVES("MDB-TOC-24");
+  const std::string limits = prose_of(root() / "docs/reference/limits.md");
+  for (const char* function : {"IPOS access", "engineering access over the fieldbus", "web diagnostics",
+                               "motion control over the fieldbus"})
+    EXPECT_NE(limits.find(function), std::string::npos) << function;
 }
 
 }  // namespace

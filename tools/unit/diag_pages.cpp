@@ -182,7 +182,7 @@ std::string DiagPages::can() const {
 // The numbers are those of MOVIDRIVE and of MOVITRAC 31; a unit has the one or the other.
 std::string DiagPages::fieldbus() const {
   std::string text;
-  for (const char* number : {"073", "091", "092", "093", "571", "572", "819", "831"}) text += row(number);
+  for (const char* number : {"091", "092", "093", "571", "572", "819", "831"}) text += row(number);
   const runtime::ProfibusUse& use = station_.config().profibus;
   runtime::ProfibusPort* port = station_.profibus();
   if (port == nullptr || use.option == nullptr) return text + line("fieldbus card", "none");
