@@ -43,6 +43,9 @@ void ask_everything(Client& client, int line, int character) {
   EXPECT_FALSE(client.ask("textDocument/rename", params).is_null());
   EXPECT_FALSE(client.ask("textDocument/documentSymbol", Client::document(kPath)).is_null());
   EXPECT_FALSE(client.ask("textDocument/formatting", Client::document(kPath)).is_null());
+  params["range"] = {{"start", params["position"]}, {"end", params["position"]}};
+  for (const char* method : {"foldingRange", "inlayHint", "semanticTokens/full", "codeLens", "codeAction"})
+    EXPECT_FALSE(client.ask(std::string("textDocument/") + method, params).is_null()) << method;
 }
 
 TEST(LspRobust, EveryRequestOnBrokenTextsIsAnswered) {

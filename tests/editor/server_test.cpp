@@ -278,7 +278,7 @@ TEST(LspPlants, HoverKnowsTheParametersOfTheUnit) {
   const std::string text = hover["contents"]["value"];
   EXPECT_TRUE(contains(text, "**P130 ") && contains(text, "index 8470")) << text;
   EXPECT_TRUE(client.request("textDocument/hover", Client::at(kPlant, 6, 1)).is_null());
-  EXPECT_TRUE(client.request("textDocument/references", Client::at(kPlant, 6, 1)).is_null());
+  EXPECT_TRUE(client.request("textDocument/documentHighlight", Client::at(kPlant, 6, 1)).is_null());
 }
 
 TEST(LspPlants, TheProgramOfAStationIsItsDefinition) {

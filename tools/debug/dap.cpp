@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "runtime/plant/station_signals.hpp"
+
 namespace ipos::tools::debug {
 namespace {
 
@@ -27,7 +29,8 @@ const std::vector<DapServer::Request>& DapServer::requests() {
       {"setInstructionBreakpoints", &S::set_instruction_breakpoints},
       {"dataBreakpointInfo", &S::data_breakpoint_info},
       {"setDataBreakpoints", &S::set_data_breakpoints},
-      {"setExceptionBreakpoints", &S::nothing},
+      {"setExceptionBreakpoints", &S::set_exception_breakpoints},
+      {"setFunctionBreakpoints", &S::set_function_breakpoints},
       {"threads", &S::threads},
       {"stackTrace", &S::stack_trace},
       {"scopes", &S::scopes},
@@ -35,6 +38,8 @@ const std::vector<DapServer::Request>& DapServer::requests() {
       {"setVariable", &S::set_variable},
       {"setExpression", &S::set_expression},
       {"evaluate", &S::evaluate_text},
+      {"completions", &S::completions},
+      {"restart", &S::restart},
       {"disassemble", &S::disassemble},
       {"continue", &S::resume},
       {"next", &S::next},
@@ -97,6 +102,8 @@ void DapServer::go() {
   const Order order = *order_;
   order_.reset();
   pause_ = false;
+  forward_ = !order.backward;
+  frame_seen_.clear();
   report(debugger_->run(order));
 }
 
@@ -115,11 +122,24 @@ void DapServer::report(const Stop& stop) {
   tell_journal();
   static constexpr const char* kReasons[] = {"entry",     "breakpoint", "data breakpoint", "step",  "pause",
                                              "exception", "step",       "pause",           "pause", "step"};
-  Json body{{"reason", kReasons[static_cast<size_t>(stop.reason)]},
+  std::string reason = kReasons[static_cast<size_t>(stop.reason)], text = stop.text;
+  std::vector<int> ids = stop.ids;
+  const auto is_fault = [this](int id) {
+    return std::find(fault_points_.begin(), fault_points_.end(), id) != fault_points_.end();
+  };
+  if (std::any_of(ids.begin(), ids.end(), is_fault)) reason = "exception";
+  if (stop.reason == Reason::Pause && !frame_seen_.empty()) {
+    reason = "function breakpoint";
+    text = frame_seen_;
+    ids.push_back(frame_id_);
+  }
+  // Virtual time, which no editor has a place for.
+  const std::string time = fmt::format("{:.3f} ms", static_cast<double>(debugger_->plant().now()) / 1e6);
+  Json body{{"reason", reason},
             {"allThreadsStopped", true},
-            {"text", stop.text},
-            {"description", stop.text.empty() ? kReasons[static_cast<size_t>(stop.reason)] : stop.text},
-            {"hitBreakpointIds", stop.ids}};
+            {"text", text},
+            {"description", fmt::format("{} at {}", text.empty() ? reason : text, time)},
+            {"hitBreakpointIds", ids}};
   TaskRef task = stop.task;
   const std::vector<TaskRef> tasks = debugger_->tasks();
   if (task.task == 0 && !tasks.empty()) task = tasks.front();
@@ -134,14 +154,29 @@ bool DapServer::keep_going() {
   while (!queue_.empty() && std::find(std::begin(kAlways), std::end(kAlways),
                                       queue_.front().value("command", "")) != std::end(kAlways))
     handle_next();
-  return !pause_;
+  return !pause_ && frame_seen_.empty();
+}
+
+void DapServer::built(runtime::Plant& plant) {
+  for (const auto& bus : plant.buses()) bus->add_observer(*this);
+}
+
+// What comes while time goes back has been seen before.
+void DapServer::on_message(const runtime::Bus& bus, const runtime::BusMessage& message) {
+  if (!forward_ || !frame_seen_.empty()) return;
+  for (const auto& [id, pattern] : frame_points_)
+    if (runtime::matches(pattern, message.text) ||
+        runtime::matches(pattern, bus.name() + " " + message.text)) {
+      frame_id_ = id;
+      frame_seen_ = fmt::format("{} on {}", message.text, bus.name());
+    }
 }
 
 Json DapServer::save() {
   Json sources = Json::array();
   for (const auto& [id, source] : sources_) sources.push_back({id, source.first, source.second});
-  return {{"seq", seq_},        {"told", told_},         {"queue", queue_},
-          {"sources", sources}, {"input", save_input()}, {"pause", pause_}};
+  return {{"seq", seq_},        {"told", told_},         {"queue", queue_}, {"faults", fault_points_},
+          {"sources", sources}, {"input", save_input()}, {"pause", pause_}, {"frames", frame_points_}};
 }
 
 void DapServer::load(const Json& state) {
@@ -149,6 +184,8 @@ void DapServer::load(const Json& state) {
   told_ = state["told"];
   queue_ = state["queue"].get<std::deque<Json>>();
   pause_ = state["pause"];
+  fault_points_ = state["faults"].get<std::vector<int>>();
+  frame_points_ = state["frames"].get<std::vector<std::pair<int, std::string>>>();
   order_.reset();
   sources_.clear();
   for (const Json& source : state["sources"])
@@ -177,9 +214,10 @@ Json DapServer::initialize(const Json&) {
         "supportsHitConditionalBreakpoints", "supportsLogPoints", "supportsEvaluateForHovers",
         "supportsStepBack", "supportsSetVariable", "supportsSetExpression", "supportsDataBreakpoints",
         "supportsDisassembleRequest", "supportsInstructionBreakpoints", "supportsSteppingGranularity",
-        "supportsTerminateRequest"})
+        "supportsTerminateRequest", "supportsRestartRequest", "supportsCompletionsRequest"})
     can[word] = true;
-  can["supportsFunctionBreakpoints"] = false;
+  can["exceptionBreakpointFilters"] =
+      Json::array({{{"filter", "fault"}, {"label", "Faults of drives"}, {"default", true}}});
   return can;
 }
 
@@ -290,7 +328,9 @@ Json DapServer::data_breakpoint_info(const Json& arguments) {
 }
 
 Json DapServer::set_data_breakpoints(const Json& arguments) {
-  debugger().watchpoints().clear();
+  std::erase_if(debugger().watchpoints(), [this](const Watchpoint& point) {
+    return std::find(fault_points_.begin(), fault_points_.end(), point.id) == fault_points_.end();
+  });
   Json answer = Json::array();
   for (const Json& asked : arguments.at("breakpoints")) {
     ValuePlace place = Json::parse(asked.at("dataId").get<std::string>());
@@ -304,7 +344,44 @@ Json DapServer::set_data_breakpoints(const Json& arguments) {
   return {{"breakpoints", answer}};
 }
 
-Json DapServer::nothing(const Json&) { return Json::object(); }
+// A program that faults stops anyway.
+Json DapServer::set_exception_breakpoints(const Json& arguments) {
+  auto& all = debugger().watchpoints();
+  std::erase_if(all, [this](const Watchpoint& point) {
+    return std::find(fault_points_.begin(), fault_points_.end(), point.id) != fault_points_.end();
+  });
+  fault_points_.clear();
+  const Json filters = arguments.value("filters", Json::array());
+  if (std::find(filters.begin(), filters.end(), "fault") == filters.end()) return Json::object();
+  const auto& stations = debugger_->plant().stations();
+  for (uint32_t n = 0; n < stations.size(); ++n) {
+    const std::string name = stations[n]->config().name + ".fault";
+    all.push_back({debugger_->next_id(), n, {n, ValueKind::Fault, 0, 1, name}, name, true, 0});
+    fault_points_.push_back(all.back().id);
+  }
+  return Json::object();
+}
+
+// Functions are lines already; here a name is a frame: "40A#80*", "sbus1 40A#*", or the bytes of a telegram.
+Json DapServer::set_function_breakpoints(const Json& arguments) {
+  frame_points_.clear();
+  Json answer = Json::array();
+  for (const Json& asked : arguments.value("breakpoints", Json::array())) {
+    frame_points_.emplace_back(debugger().next_id(), asked.at("name").get<std::string>());
+    answer.push_back({{"id", frame_points_.back().first}, {"verified", true}});
+  }
+  return {{"breakpoints", answer}};
+}
+
+Json DapServer::restart(const Json&) {
+  debugger().restart();
+  told_ = 0;
+  if (stop_on_entry_)
+    report({Reason::Entry, {}, {}, {}});
+  else
+    order_ = Order{};
+  return Json::object();
+}
 
 void DapServer::order(Motion line, Motion instruction, bool backward, const Json& arguments) {
   const bool by_instruction = arguments.value("granularity", "") == "instruction";

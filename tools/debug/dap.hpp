@@ -19,7 +19,7 @@ struct DapLaunch {
   std::string unit;
 };
 
-class DapServer final : public FrontEnd {
+class DapServer final : public FrontEnd, private runtime::BusObserver {
  public:
   using Make = std::function<MakePlant(const DapLaunch&)>;  // may throw
   using Send = std::function<void(const Json&)>;
@@ -42,6 +42,7 @@ class DapServer final : public FrontEnd {
   void load(const Json& state) override;
   bool keep_going() override;
   void output(const std::string& text) override;
+  void built(runtime::Plant& plant) override;
 
  private:
   using Handler = Json (DapServer::*)(const Json& arguments);
@@ -55,7 +56,10 @@ class DapServer final : public FrontEnd {
   Json set_instruction_breakpoints(const Json& arguments);
   Json data_breakpoint_info(const Json& arguments);
   Json set_data_breakpoints(const Json& arguments);
-  Json nothing(const Json& arguments);
+  Json set_exception_breakpoints(const Json& arguments);
+  Json set_function_breakpoints(const Json& arguments);
+  Json completions(const Json& arguments);
+  Json restart(const Json& arguments);
   Json threads(const Json& arguments);
   Json stack_trace(const Json& arguments);
   Json scopes(const Json& arguments);
@@ -85,6 +89,8 @@ class DapServer final : public FrontEnd {
                      std::string name = {});
   Json value_json(const ValuePlace& place) const;
   Json scope_values(uint32_t station, int scope) const;
+  Json named_values(uint32_t station, const std::string& prefix);
+  void on_message(const runtime::Bus& bus, const runtime::BusMessage& message) override;
 
   Make make_;
   Send send_;
@@ -98,6 +104,12 @@ class DapServer final : public FrontEnd {
   size_t told_ = 0;                                          // entries of the journal
   std::optional<Order> order_;                               // given, not yet carried out
   std::map<int, std::pair<std::string, uint32_t>> sources_;  // of source breakpoints: file, line asked for
+  std::vector<int> fault_points_;                            // watchpoints on the faults of drives
+  // Frames to stop at, as their text or behind the name of their bus; while time goes on.
+  std::vector<std::pair<int, std::string>> frame_points_;
+  bool forward_ = false;
+  int frame_id_ = 0;        // of the frame that has come
+  std::string frame_seen_;  // in words; empty: none has
 
   // What the editor may ask for by number until the next stop.
   struct Reference {

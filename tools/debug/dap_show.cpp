@@ -107,6 +107,34 @@ Json DapServer::scope_values(uint32_t station, int scope) const {
   return all;
 }
 
+// Behind the prefix, "" or "left.": what has more parts is a structure, and stands there once.
+Json DapServer::named_values(uint32_t station, const std::string& prefix) {
+  Json all = Json::array();
+  std::vector<std::string> structures;
+  for (const vm::Symbol& symbol : debugger_->plant().stations()[station]->image()->symbols) {
+    if (!symbol.name.starts_with(prefix)) continue;
+    const std::string rest = symbol.name.substr(prefix.size());
+    if (const size_t dot = rest.find('.'); dot != std::string::npos) {
+      const std::string name = rest.substr(0, dot);
+      if (std::find(structures.begin(), structures.end(), name) != structures.end()) continue;
+      structures.push_back(name);
+      all.push_back({{"name", name},
+                     {"value", "{...}"},
+                     {"variablesReference", reference(station, Named, 0, 0, prefix + name + ".")}});
+      continue;
+    }
+    Json one = value_json({station, ValueKind::Variable, symbol.variable, 1, symbol.name});
+    one["name"] = rest;
+    if (symbol.count > 1) {
+      one["value"] = fmt::format("{} elements", symbol.count);
+      one["variablesReference"] = reference(station, Elements, symbol.variable, symbol.count, symbol.name);
+      one["indexedVariables"] = symbol.count;
+    }
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
 Json DapServer::variables(const Json& arguments) {
   const auto number = arguments.at("variablesReference").get<size_t>();
   if (number == 0 || number > references_.size()) throw ValueError("there is no such reference");
@@ -114,16 +142,7 @@ Json DapServer::variables(const Json& arguments) {
   const runtime::Station& station = *debugger().plant().stations()[asked.station];
   Json all = Json::array();
   if (asked.scope == Named && station.image() != nullptr) {
-    for (const vm::Symbol& symbol : station.image()->symbols) {
-      Json one = value_json({asked.station, ValueKind::Variable, symbol.variable, 1, symbol.name});
-      if (symbol.count > 1) {
-        one["value"] = fmt::format("{} elements", symbol.count);
-        one["variablesReference"] =
-            reference(asked.station, Elements, symbol.variable, symbol.count, symbol.name);
-        one["indexedVariables"] = symbol.count;
-      }
-      all.push_back(std::move(one));
-    }
+    all = named_values(asked.station, asked.name);
   } else if (asked.scope == Numbers || asked.scope == Elements) {
     const uint32_t most = asked.scope == Numbers ? station.config().unit->variables : asked.count;
     const uint32_t from = std::min(arguments.value("start", 0U), most);
@@ -146,8 +165,9 @@ Json DapServer::set_variable(const Json& arguments) {
   if (number == 0 || number > references_.size()) throw ValueError("there is no such reference");
   const Reference& within = references_[number - 1];
   const std::string name = arguments.at("name");
-  const ValuePlace place = evaluate_place(debugger().plant(), within.station,
-                                          within.scope == Elements ? within.name + name : name);
+  const bool inside = within.scope == Elements || within.scope == Named;
+  const ValuePlace place =
+      evaluate_place(debugger().plant(), within.station, inside ? within.name + name : name);
   debugger_->write(place,
                    evaluate(debugger_->plant(), within.station, arguments.at("value").get<std::string>()));
   return {{"value", value_text(debugger_->plant(), place, read_value(debugger_->plant(), place))}};
@@ -183,6 +203,27 @@ Json DapServer::evaluate_text(const Json& arguments) {
             {"variablesReference", 0}};
   return {{"result", fmt::format("{}", evaluate(debugger_->plant(), station, name))},
           {"variablesReference", 0}};
+}
+
+// What the word in front of the cursor begins: variables and signals of the station.
+Json DapServer::completions(const Json& arguments) {
+  uint32_t station = 0;
+  if (arguments.contains("frameId"))
+    station = task_of({{"id", arguments["frameId"].get<int>() / kFrames}}, "id").station;
+  const std::string text = arguments.at("text");
+  const size_t column = std::min(std::max(arguments.at("column").get<size_t>(), size_t{1}) - 1, text.size());
+  size_t begin = column;
+  while (begin > 0 && std::string_view(" +-*/%&|^!<>=(,").find(text[begin - 1]) == std::string_view::npos)
+    --begin;
+  const std::string word = text.substr(begin, column - begin);
+  const runtime::Station& unit = *debugger().plant().stations()[station];
+  Json all = Json::array();
+  for (const runtime::PlantSignal& signal : runtime::station_signals(unit)) {
+    const std::string name = signal.name.substr(unit.config().name.size() + 1);
+    if (name.starts_with(word))
+      all.push_back({{"label", name}, {"start", begin}, {"length", word.size()}, {"type", "variable"}});
+  }
+  return {{"targets", std::move(all)}};
 }
 
 Json DapServer::disassemble(const Json& arguments) {

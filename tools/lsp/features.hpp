@@ -27,6 +27,7 @@ Json completion(Workspace& workspace, const Json& params);
 Json signature_help(Workspace& workspace, const Json& params);
 Json definition(Workspace& workspace, const Json& params);
 Json references(Workspace& workspace, const Json& params);
+Json program_references(Workspace& workspace, const Json& params);  // in sources and headers alone
 Json highlights(Workspace& workspace, const Json& params);
 Json prepare_rename(Workspace& workspace, const Json& params);
 Json rename(Workspace& workspace, const Json& params);

@@ -4,6 +4,7 @@
 
 #include "stdlib/headers.hpp"
 #include "tools/lsp/features.hpp"
+#include "tools/lsp/plant_names.hpp"
 
 namespace ipos::tools::lsp {
 namespace {
@@ -16,7 +17,6 @@ using compiler::SymbolKind;
 std::string clean(const std::string& path) {
   return path.starts_with('/') ? std::filesystem::path(path).lexically_normal().string() : path;
 }
-
 
 // The symbol of another program that stands at the same place of the same file, or that the language brings
 // under the same name.
@@ -84,7 +84,7 @@ Json definition(Workspace& workspace, const Json& params) {
   return all;
 }
 
-Json references(Workspace& workspace, const Json& params) {
+Json program_references(Workspace& workspace, const Json& params) {
   const Cursor cursor = cursor_of(workspace, params);
   Json all = Json::array();
   if (cursor.symbol == nullptr) return all;
@@ -105,6 +105,20 @@ Json references(Workspace& workspace, const Json& params) {
       if (std::find(all.begin(), all.end(), where) == all.end()) all.push_back(std::move(where));
     }
   }
+  return all;
+}
+
+// And the plants and tests that name it.
+Json references(Workspace& workspace, const Json& params) {
+  Json all = program_references(workspace, params);
+  const Cursor cursor = cursor_of(workspace, params);
+  if (cursor.symbol == nullptr || !cursor.symbol->definition) return all;
+  const std::string path = clean(compiler::identity(*cursor.symbol->definition->file));
+  for (const Program* program : workspace.programs_with(path))
+    for (const NameUse& use : uses_of(workspace, *program, *cursor.symbol)) {
+      Json where = location_of(workspace, use);
+      if (std::find(all.begin(), all.end(), where) == all.end()) all.push_back(std::move(where));
+    }
   return all;
 }
 

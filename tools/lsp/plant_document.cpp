@@ -11,6 +11,8 @@
 #include "stdlib/parameters.hpp"
 #include "tools/cli/files.hpp"
 #include "tools/lsp/features.hpp"
+#include "tools/lsp/plant_names.hpp"
+#include "tools/lsp/toml_lines.hpp"
 #include "tools/testing/read_tests.hpp"
 
 namespace ipos::tools::lsp {
@@ -20,24 +22,6 @@ using runtime::PlantError;
 
 constexpr std::string_view kBlanks = " \t\r";
 constexpr std::string_view kProbe = "ipos_probe";  // a key and a value that no reader knows
-
-std::string_view trimmed(std::string_view text) {
-  const size_t begin = text.find_first_not_of(kBlanks);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
-}
-
-bool is_test(std::string_view path) { return path.ends_with(".test.toml"); }
-
-std::vector<std::string_view> lines_of(std::string_view text) {
-  std::vector<std::string_view> lines;
-  while (true) {
-    const size_t end = text.find('\n');
-    lines.push_back(text.substr(0, end));
-    if (end == std::string_view::npos) return lines;
-    text.remove_prefix(end + 1);
-  }
-}
 
 // What the units say about their parameters: a plant without programs, and without what needs their variables.
 std::vector<PlantError> refused_parameters(runtime::PlantFile plant) {
@@ -79,21 +63,6 @@ struct Spot {
   std::string_view row() const { return lines[line]; }
 };
 
-std::string_view key_of(std::string_view row) {
-  const size_t equals = row.find('=');
-  return equals == std::string_view::npos ? std::string_view{} : trimmed(row.substr(0, equals));
-}
-
-std::string_view table_of(std::string_view row) {
-  row = trimmed(row.substr(0, row.find('#')));
-  if (!row.starts_with('[')) return {};
-  const size_t begin = row.find_first_not_of('[');
-  const size_t end = row.find(']');
-  return begin == std::string_view::npos || end == std::string_view::npos || end < begin
-             ? std::string_view{}
-             : trimmed(row.substr(begin, end - begin));
-}
-
 std::optional<Spot> spot_of(const Workspace& workspace, const Json& params) {
   auto text = workspace.text(document_path(params));
   const auto position = params.find("position");
@@ -116,16 +85,10 @@ std::optional<Spot> spot_of(const Workspace& workspace, const Json& params) {
 // Of the station whose table the cursor is in, or that the table names.
 const stdlib::UnitType* unit_at(const Spot& spot) {
   std::string wanted, name;
-  const auto value = [](std::string_view row) {
-    std::string_view text = trimmed(row.substr(row.find('=') + 1));
-    if (!text.starts_with('"')) return std::string_view{};
-    text.remove_prefix(1);
-    return text.substr(0, text.find('"'));
-  };
   size_t first = spot.line;
   while (first > 0 && table_of(spot.lines[first]).empty()) --first;
   for (size_t n = first; n < spot.lines.size() && (n == first || table_of(spot.lines[n]).empty()); ++n)
-    if (key_of(spot.lines[n]) == "station") wanted = value(spot.lines[n]);
+    if (key_of(spot.lines[n]) == "station") wanted = value_of(spot.lines[n]);
   const stdlib::UnitType* unit = nullptr;
   bool in_station = false;
   for (size_t n = 0; n < spot.lines.size(); ++n) {
@@ -136,9 +99,9 @@ const stdlib::UnitType* unit_at(const Spot& spot) {
       if (in_station) name.clear();
     }
     const std::string_view key = key_of(spot.lines[n]);
-    if (in_station && key == "name") name = value(spot.lines[n]);
+    if (in_station && key == "name") name = value_of(spot.lines[n]);
     if (in_station && key == "unit" && (wanted.empty() || name == wanted || name.empty()))
-      unit = stdlib::find_unit(value(spot.lines[n]));
+      unit = stdlib::find_unit(value_of(spot.lines[n]));
     if (!wanted.empty() && unit != nullptr && name == wanted) break;
   }
   return unit;
@@ -322,6 +285,7 @@ Json plant_completion(Workspace& workspace, const Json& params) {
 }
 
 Json plant_definition(Workspace& workspace, const Json& params) {
+  if (Json declared = plant_variable(workspace, params); !declared.is_null()) return declared;
   const auto spot = spot_of(workspace, params);
   if (!spot || (spot->key != "program" && spot->key != "plant" && spot->key != "source")) return nullptr;
   const size_t quote = spot->row().find('"');

@@ -12,7 +12,7 @@ bool is_plant_document(const Workspace& workspace, const std::string& path);
 Json plant_diagnostics(const Workspace& workspace, const std::string& path);
 Json plant_hover(Workspace& workspace, const Json& params);
 Json plant_completion(Workspace& workspace, const Json& params);
-// From a program or plant that is named to the file.
+// From a program or plant that is named to the file, from a variable to its declaration.
 Json plant_definition(Workspace& workspace, const Json& params);
 // The tables of the file.
 Json plant_symbols(Workspace& workspace, const Json& params);

@@ -7,6 +7,7 @@
 #include "compiler/preprocess/token.hpp"
 #include "stdlib/language_tables.hpp"
 #include "tools/lsp/features.hpp"
+#include "tools/lsp/plant_names.hpp"
 
 namespace ipos::tools::lsp {
 namespace {
@@ -85,7 +86,7 @@ Json rename(Workspace& workspace, const Json& params) {
   request["context"] = {{"includeDeclaration", true}};
   Json changes = Json::object();
   std::map<std::string, std::vector<Json>> places;  // by path
-  for (const Json& where : references(workspace, request)) {
+  for (const Json& where : program_references(workspace, request)) {
     const std::string& uri = where["uri"].get_ref<const std::string&>();
     changes[uri].push_back({{"range", where["range"]}, {"newText", name}});
     places[path_of(uri)].push_back(where["range"]);
@@ -106,6 +107,12 @@ Json rename(Workspace& workspace, const Json& params) {
     for (const Program* program : workspace.programs_with(path)) programs.insert(program);
   }
   for (const Program* program : programs) check_same(*program, workspace.compile(program->path, texts), name);
+  for (const Program* program : programs)
+    for (const NameUse& use : uses_of(workspace, *program, *cursor.symbol)) {
+      const Json where = location_of(workspace, use);
+      changes[where["uri"].get_ref<const std::string&>()].push_back(
+          {{"range", where["range"]}, {"newText", name}});
+    }
   return {{"changes", std::move(changes)}};
 }
 

@@ -5,7 +5,9 @@
 #include <span>
 
 #include "tools/lsp/features.hpp"
+#include "tools/lsp/marks.hpp"
 #include "tools/lsp/plant_document.hpp"
+#include "tools/lsp/plant_names.hpp"
 
 namespace ipos::tools::lsp {
 namespace {
@@ -26,6 +28,11 @@ constexpr Method kMethods[] = {
     {"textDocument/rename", rename},
     {"textDocument/documentSymbol", document_symbols},
     {"textDocument/formatting", formatting},
+    {"textDocument/foldingRange", folding_ranges},
+    {"textDocument/inlayHint", inlay_hints},
+    {"textDocument/semanticTokens/full", semantic_tokens},
+    {"textDocument/codeLens", code_lenses},
+    {"textDocument/codeAction", code_actions},
     {"workspace/symbol", workspace_symbols},
     {"ipos/header", header_text},
 };
@@ -36,6 +43,13 @@ constexpr Method kPlantMethods[] = {
     {"textDocument/completion", plant_completion},
     {"textDocument/definition", plant_definition},
     {"textDocument/documentSymbol", plant_symbols},
+    {"textDocument/references", plant_references},
+    {"textDocument/prepareRename", plant_prepare_rename},
+    {"textDocument/rename", plant_rename},
+    {"textDocument/foldingRange", plant_folding_ranges},
+    {"textDocument/semanticTokens/full", plant_semantic_tokens},
+    {"textDocument/codeLens", plant_code_lenses},
+    {"textDocument/codeAction", plant_code_actions},
 };
 
 Json capabilities(Encoding encoding) {
@@ -50,6 +64,12 @@ Json capabilities(Encoding encoding) {
           {"documentSymbolProvider", true},
           {"workspaceSymbolProvider", true},
           {"documentFormattingProvider", true},
+          {"foldingRangeProvider", true},
+          {"inlayHintProvider", true},
+          {"semanticTokensProvider",
+           {{"legend", {{"tokenTypes", kTokenTypes}, {"tokenModifiers", kTokenModifiers}}}, {"full", true}}},
+          {"codeLensProvider", Json::object()},
+          {"codeActionProvider", {{"codeActionKinds", {"quickfix"}}}},
           {"renameProvider", {{"prepareProvider", true}}}};
 }
 

@@ -5,6 +5,8 @@
 #include <cctype>
 #include <filesystem>
 
+#include "tools/lsp/plant_document.hpp"
+
 namespace ipos::tools::lsp {
 namespace {
 
@@ -23,19 +25,22 @@ std::vector<std::string> strings(const Json& options, const char* name) {
   return out;
 }
 
-void find_programs(const std::string& folder, std::vector<std::string>& out) {
+void find_files(const std::string& folder, std::vector<std::string>& programs,
+                std::vector<std::string>& tomls) {
   std::error_code error;
   size_t entries = 0;
   auto at = fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied, error);
   for (; !error && at != fs::recursive_directory_iterator() && ++entries < kMaxEntries &&
-         out.size() < kMaxPrograms;
+         programs.size() < kMaxPrograms;
        at.increment(error)) {
     const std::string name = at->path().filename().string();
     std::error_code ignored;
     if (at->is_directory(ignored) && (name.starts_with('.') || name == "node_modules" || name == "build"))
       at.disable_recursion_pending();
     else if (is_program(name) && at->is_regular_file(ignored))
-      out.push_back(at->path().string());
+      programs.push_back(at->path().string());
+    else if (name.ends_with(".toml") && at->is_regular_file(ignored))
+      tomls.push_back(at->path().string());
   }
 }
 
@@ -158,12 +163,26 @@ const Program& Workspace::cached(const std::string& path) {
   return *program;
 }
 
+void Workspace::look_into_folders() {
+  if (sources_) return;
+  sources_.emplace();
+  toml_files_.clear();
+  for (const std::string& folder : folders_) find_files(folder, *sources_, toml_files_);
+  std::sort(sources_->begin(), sources_->end());
+}
+
+std::vector<std::string> Workspace::plants() {
+  look_into_folders();
+  std::set<std::string> all(toml_files_.begin(), toml_files_.end());
+  for (const auto& [path, text] : documents_)
+    if (path.ends_with(".toml")) all.insert(path);
+  std::vector<std::string> found(all.begin(), all.end());
+  std::erase_if(found, [this](const std::string& path) { return !is_plant_document(*this, path); });
+  return found;
+}
+
 std::vector<std::string> Workspace::sources() {
-  if (!sources_) {
-    sources_.emplace();
-    for (const std::string& folder : folders_) find_programs(folder, *sources_);
-    std::sort(sources_->begin(), sources_->end());
-  }
+  look_into_folders();
   std::set<std::string> all(sources_->begin(), sources_->end());
   for (const auto& [path, text] : documents_)
     if (is_program(path)) all.insert(path);

@@ -50,6 +50,8 @@ class Workspace {
   // All programs of the folders and the editor.
   std::vector<const Program*> programs();
   std::vector<const Program*> programs_with(const std::string& path);
+  // Paths of the plants and tests of the folders and the editor.
+  std::vector<std::string> plants();
   // With other texts in place of some files, not kept.
   Program compile(const std::string& path, const std::map<std::string, std::string>& texts = {}) const;
 
@@ -58,6 +60,7 @@ class Workspace {
  private:
   const Program& cached(const std::string& path);
   void forget(const std::string& path);
+  void look_into_folders();
   std::vector<std::string> sources();
 
   ReadFile read_file_;
@@ -66,6 +69,7 @@ class Workspace {
   std::map<std::string, std::string> documents_;
   std::map<std::string, std::unique_ptr<Program>> programs_;
   std::optional<std::vector<std::string>> sources_;  // of the folders; nothing: look again
+  std::vector<std::string> toml_files_;              // of the folders
 };
 
 bool is_program(std::string_view path);

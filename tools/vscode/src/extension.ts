@@ -3,6 +3,7 @@ import * as vscode from "vscode";
 import { LanguageClient, TransportKind } from "vscode-languageclient/node";
 
 import * as launch from "./launch";
+import { testExplorer } from "./tests";
 
 let client: LanguageClient | undefined;
 
@@ -103,6 +104,38 @@ const tasks: vscode.TaskProvider = {
   resolveTask: (task) => makeTask(task.definition as launch.TaskDefinition & vscode.TaskDefinition),
 };
 
+// The lenses of the server.
+function runInTerminal(name: string, command: launch.Command): void {
+  const terminal = vscode.window.createTerminal({ name, shellPath: command.command, shellArgs: command.args });
+  terminal.show();
+}
+
+const lenses: Record<string, (uri: string, more?: unknown) => unknown> = {
+  "ipos.run": (uri) => {
+    const file = vscode.Uri.parse(uri).fsPath;
+    runInTerminal("ipos run", launch.runCommand(file, settings()));
+  },
+  "ipos.debug": (uri) => {
+    const file = vscode.Uri.parse(uri).fsPath;
+    const configuration = { type: "ipos", request: "launch", name: "Debug", ...launch.debugConfiguration(file) };
+    return vscode.debug.startDebugging(vscode.workspace.getWorkspaceFolder(vscode.Uri.parse(uri)), configuration);
+  },
+  "ipos.test": (uri, name) => {
+    const { command, args } = launch.testCommand(
+      vscode.Uri.parse(uri).fsPath,
+      settings(),
+      typeof name === "string" ? name : undefined,
+    );
+    const report = args.indexOf("--json");
+    runInTerminal("ipos test", { command, args: args.filter((_, n) => n !== report && n !== report + 1) });
+  },
+  "ipos.open": async (uri, position) => {
+    const { line, character } = position as { line: number; character: number };
+    const at = new vscode.Position(line, character);
+    await vscode.window.showTextDocument(vscode.Uri.parse(uri), { selection: new vscode.Range(at, at) });
+  },
+};
+
 export async function activate(context: vscode.ExtensionContext): Promise<void> {
   context.subscriptions.push(
     vscode.workspace.registerTextDocumentContentProvider("ipos", headers),
@@ -110,6 +143,8 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     vscode.debug.registerDebugConfigurationProvider("ipos", configurations),
     vscode.tasks.registerTaskProvider("ipos", tasks),
     vscode.commands.registerCommand("ipos.restart", restartServer),
+    ...Object.entries(lenses).map(([name, act]) => vscode.commands.registerCommand(name, act)),
+    testExplorer(settings),
     vscode.workspace.onDidChangeConfiguration(async (change) => {
       if (change.affectsConfiguration("ipos.path")) await restartServer();
       else if (change.affectsConfiguration("ipos"))

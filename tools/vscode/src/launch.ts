@@ -62,3 +62,73 @@ export function launchMistake(configuration: LaunchConfiguration): string {
   const given = [configuration.program, configuration.plant].filter((path) => path !== undefined && path !== "");
   return given.length === 1 ? "" : "ipos: a launch configuration names either a program or a plant";
 }
+
+// What the lens "Run" starts in a terminal.
+export function runCommand(file: string, settings: Settings): Command {
+  const own = file.endsWith(".toml") ? [] : compileArguments(settings);
+  return { command: settings.path, args: ["run", file, "--watch", ...own] };
+}
+
+// What the lens "Debug" launches.
+export function debugConfiguration(file: string): LaunchConfiguration {
+  return file.endsWith(".toml") ? { plant: file } : { program: file };
+}
+
+// The tests of a file, or those whose names have the filter in them; the report comes on standard output.
+export function testCommand(file: string, settings: Settings, filter?: string): Command {
+  const chosen = filter === undefined || filter === "" ? [] : ["--filter", filter];
+  return { command: settings.path, args: ["test", file, "--json", "-", ...chosen, ...compileArguments(settings)] };
+}
+
+// The names and places of the tests there are, a line each: "examples/hoist/hoist  examples/hoist/hoist.test.toml:1".
+export function listCommand(folder: string, settings: Settings): Command {
+  return { command: settings.path, args: ["test", folder, "--list", ...compileArguments(settings)] };
+}
+
+export interface ListedTest {
+  name: string;
+  file: string;
+  line: number;
+}
+
+export function listedTests(output: string): ListedTest[] {
+  const tests: ListedTest[] = [];
+  for (const row of output.split("\n")) {
+    const [, name, file, line] = /^(.+?) {2,}(.+):(\d+)$/.exec(row) ?? [];
+    if (name !== undefined && file !== undefined) tests.push({ name, file, line: Number(line) });
+  }
+  return tests;
+}
+
+export interface Finding {
+  file: string;
+  line: number;
+  column: number;
+  message: string;
+  values: string[];
+}
+
+export interface TestResult {
+  name: string;
+  file: string;
+  line: number;
+  outcome: string;
+  seconds: number;
+  messages: string;
+  findings: Finding[];
+}
+
+// The results in the report of testCommand(); none where it is no report.
+export function testResults(output: string): TestResult[] {
+  try {
+    const report = JSON.parse(output) as { results?: TestResult[] };
+    return report.results ?? [];
+  } catch {
+    return [];
+  }
+}
+
+// What the Test Explorer shows of a finding: the message, and below it what was seen.
+export function findingText(finding: Finding): string {
+  return [finding.message, ...finding.values].join("\n");
+}

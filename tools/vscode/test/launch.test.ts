@@ -116,3 +116,44 @@ test("snippets compile", (context) => {
   }
   return undefined;
 });
+
+test("the lenses start what they say", () => {
+  assert.deepStrictEqual(launch.runCommand("/p/line.toml", settings).args, ["run", "/p/line.toml", "--watch"]);
+  assert.deepStrictEqual(launch.runCommand("/p/A.IPC", settings).args.slice(0, 4), ["run", "/p/A.IPC", "--watch", "-Iinc"]);
+  assert.deepStrictEqual(launch.debugConfiguration("/p/line.toml"), { plant: "/p/line.toml" });
+  assert.deepStrictEqual(launch.debugConfiguration("/p/A.IPC"), { program: "/p/A.IPC" });
+});
+
+test("the Test Explorer reads what ipos test lists and reports", () => {
+  const ipos = process.env.IPOS_PROGRAM;
+  assert.ok(ipos, "IPOS_PROGRAM names the ipos to test");
+  const folder = mkdtempSync(join(tmpdir(), "ipos-tests-"));
+  try {
+    const station = '[[station]]\nname = "a"\nunit = "md60a"\n[[expect]]\nstate = "powered"\nequals = ';
+    writeFileSync(join(folder, "good.test.toml"), station + "1\n");
+    writeFileSync(join(folder, "bad.test.toml"), station + "7\n");
+    const own = { path: ipos, includeDirs: [], defines: [], unit: "", warnings: [], atomic: false };
+    const shell = ({ command, args }: launch.Command): string =>
+      spawnSync(command, args, { cwd: folder, encoding: "utf8" }).stdout;
+    const listed = launch.listedTests(shell(launch.listCommand(".", own)));
+    assert.deepStrictEqual(
+      listed.map((one) => [join(folder, one.file), one.line]).sort(),
+      [
+        [join(folder, "bad.test.toml"), 1],
+        [join(folder, "good.test.toml"), 1],
+      ],
+    );
+    const [good] = launch.testResults(shell(launch.testCommand("good.test.toml", own)));
+    assert.strictEqual(good?.outcome, "passed");
+    assert.ok(listed.some((one) => one.name === good?.name), "the names are those of the list");
+    const [bad] = launch.testResults(shell(launch.testCommand("bad.test.toml", own)));
+    assert.strictEqual(bad?.outcome, "failed");
+    const [finding] = bad.findings;
+    assert.ok(finding);
+    assert.match(launch.findingText(finding), /expected 7/);
+    assert.strictEqual(finding.line, 4);
+    assert.deepStrictEqual(launch.testResults("no report"), []);
+  } finally {
+    rmSync(folder, { recursive: true });
+  }
+});
