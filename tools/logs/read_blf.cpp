@@ -35,9 +35,10 @@ std::optional<Time> system_time(const Bytes& head) {
 // Empty: not what it claims to be.
 std::optional<std::string> unpacked(std::string_view packed, size_t size) {
   std::string out(size, '\0');
-  uLongf length = size;
+  auto length = static_cast<uLongf>(size);  // files have fields of 32 bits for sizes
   const int status = uncompress(reinterpret_cast<Bytef*>(out.data()), &length,
-                                reinterpret_cast<const Bytef*>(packed.data()), packed.size());
+                                reinterpret_cast<const Bytef*>(packed.data()),
+                                static_cast<uLong>(packed.size()));
   if (status != Z_OK || length != size) return std::nullopt;
   return out;
 }
