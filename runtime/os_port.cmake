@@ -5,6 +5,8 @@ set(ports os_port/port_error.cpp os_port/port_notes.cpp os_port/can_port.cpp os_
 if(CMAKE_SYSTEM_NAME STREQUAL Linux)
   list(APPEND ports os_port/system_clock.cpp os_port/port_names.cpp os_port/can_link.cpp os_port/socket_can.cpp os_port/slcan_adapter.cpp
                     os_port/tty.cpp os_port/tty_rate.cpp os_port/pty.cpp os_port/pty_port.cpp)
+  # The kernel's header of rates and <termios.h> exclude each other.
+  set_source_files_properties(os_port/tty_rate.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 elseif(WIN32)
   list(APPEND ports os_port/windows/clock.cpp os_port/windows/port_names.cpp os_port/windows/tty.cpp os_port/windows/absent_ports.cpp)
   set(system_libraries winmm)

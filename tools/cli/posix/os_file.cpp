@@ -26,8 +26,8 @@ std::optional<FileIdentity> look_at(int folder, const char* path, int flags) {
 
 void sync_folder_of(const std::string& path) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
-  const Descriptor opened(open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (opened.is_open()) fsync(opened.get());
+  const Descriptor there(open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (there.is_open()) fsync(there.get());
 }
 
 }  // namespace
