@@ -7,15 +7,14 @@
 #include <cstdint>
 #include <string>
 
-#include "stdlib/system_variables.hpp"
 #include "stdlib/unit_types.hpp"
 
 namespace ipos::compiler {
 
 inline constexpr uint32_t kMaxNumbers = 1024;
-inline constexpr uint32_t kFirstSystemVariable = stdlib::kFirstSystemVariable;
-inline constexpr uint32_t kLastSystemVariable = stdlib::kLastSystemVariable;
-inline constexpr uint32_t kLastNonVolatile = 127;  // IPOSplus p. 320
+inline constexpr uint32_t kFirstSystemVariable = 453;
+inline constexpr uint32_t kLastSystemVariable = 560;  // IPOSplus p. 39
+inline constexpr uint32_t kLastNonVolatile = 127;     // IPOSplus p. 320
 
 struct NumberRange {
   uint32_t low = 0;

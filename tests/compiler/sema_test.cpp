@@ -82,7 +82,7 @@ std::vector<Mistake> mistakes() {
       {"E0226", "long v[@0]; main() { }"},
       {"E0227", "long v[3]; main() { v[@3] = 1; v[0] = 1; }", "0 to 2"},
       {"E0228", "@#pragma globals 452 420\nmain() { }"},
-      {"E0228", "@#pragma globals 430 460\nmain() { }", "H453 to H564"},
+      {"E0228", "@#pragma globals 430 460\nmain() { }", "H453 to H560"},
       {"E0228", "@#pragma initials 0 H512\nmain() { }"},
       {"E0229", "long a[30], @b[4]; main() { a[0] = 1; b[0] = 1; }", "'#pragma globals 366 399'"},
       {"E0229", "initial long a[120], @b[9]; main() { a[0] = 1; b[0] = 1; }", "no 129 free variables"},
