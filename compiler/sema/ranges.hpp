@@ -13,7 +13,8 @@ namespace ipos::compiler {
 
 inline constexpr uint32_t kMaxNumbers = 1024;
 inline constexpr uint32_t kFirstSystemVariable = 453;
-inline constexpr uint32_t kLastSystemVariable = 560;  // IPOSplus p. 39
+// IPOSplus p. 39. A program may use H561 and up; the simulated ISYNC of a MOVIDRIVE B has H561 to H564, numbers of ours.
+inline constexpr uint32_t kLastSystemVariable = 560;
 inline constexpr uint32_t kLastNonVolatile = 127;     // IPOSplus p. 320
 
 struct NumberRange {

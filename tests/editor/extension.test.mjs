@@ -111,6 +111,12 @@ test("it starts, and the message of a program comes to the editor", { timeout: 6
     debug: Object.assign(anything(), {
       registerDebugAdapterDescriptorFactory: (type) => { registered.debuggers.push(type); return disposable; },
     }),
+    tests: Object.assign(anything(), {
+      createTestController: () => ({
+        items: { add() {}, delete() {}, replace() {}, get() {}, forEach() {}, size: 0, [Symbol.iterator]: () => [][Symbol.iterator]() },
+        createRunProfile: () => disposable, createTestItem: (id, label, uri) => ({ id, label, uri }), dispose() {},
+      }),
+    }),
     tasks: Object.assign(anything(), {
       registerTaskProvider: (type) => { registered.tasks.push(type); return disposable; },
     }),

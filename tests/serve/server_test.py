@@ -70,7 +70,10 @@ class Client:
             length = struct.unpack(">H", self.take(2))[0]
         elif length == 127:
             length = struct.unpack(">Q", self.take(8))[0]
-        return first & 15, self.take(length)
+        data = self.take(length)
+        if first & 15 == 9:  # a ping wants its pong, else the server thinks that nobody is there
+            self.send(data, opcode=10)
+        return first & 15, data
 
     def send(self, data, opcode=1):
         mask = os.urandom(4)

@@ -172,7 +172,15 @@ TEST_F(ProfibusTools, AMasterThatSpeaksIsNotDisturbedAndIsMonitored) {
   const CommandResult found = scan();
   EXPECT_EQ(found.exit_code, 74);
   EXPECT_TRUE(contains(found.err, "master 1 speaks on the line")) << found.err;
-  const CommandResult heard = ipos({"bus", "monitor", port(), "--profibus", "--count", "40", "--for", "20s"});
+  const auto monitor = [this] {
+    return ipos({"bus", "monitor", port(), "--profibus", "--count", "40", "--for", "20s"});
+  };
+  // The slave looks for the rate first.
+  CommandResult heard = monitor();
+  for (int tries = 0; tries < 20 && !contains(heard.out, "Data_Exchange answer"); ++tries) {
+    usleep(200'000);
+    heard = monitor();
+  }
   EXPECT_EQ(heard.exit_code, 0) << heard.err;
   EXPECT_TRUE(contains(heard.out, "1 -> 8 Data_Exchange")) << heard.out;
   EXPECT_TRUE(contains(heard.out, "8 -> 1 Data_Exchange answer")) << heard.out;
