@@ -28,7 +28,8 @@ BusTraffic::BusTraffic(Desk& desk, BusSource& source) : desk_(desk), source_(sou
   });
   desk.add_command("bus.decode", [this](const Desk::Call& call) { return decode(call.arguments); });
   desk.add_command("bus.trace", [this](const Desk::Call& call) { return trace(call.arguments); });
-  desk.add_topic("bus", [this](Client& client, Subscription& subscription) { publish_rows(client, subscription); });
+  desk.add_topic("bus",
+                 [this](Client& client, Subscription& subscription) { publish_rows(client, subscription); });
   desk.add_topic("trace",
                  [this](Client& client, Subscription& subscription) { publish_trace(client, subscription); });
 }
@@ -47,7 +48,9 @@ void BusTraffic::second_passed() {
   }
 }
 
-void BusTraffic::send(const Arguments& arguments) { ears_[number_of(arguments.text("bus"))]->send(arguments); }
+void BusTraffic::send(const Arguments& arguments) {
+  ears_[number_of(arguments.text("bus"))]->send(arguments);
+}
 
 uint8_t BusTraffic::number_of(const std::string& name) const {
   const auto found =
@@ -68,7 +71,8 @@ void BusTraffic::take(Telegram telegram) {
   std::vector<uint8_t> compared = ears_[telegram.bus]->compared(telegram);
   row.changed.clear();
   for (size_t n = 0; n < compared.size(); ++n)
-    if (row.count != 0 && (n >= row.compared.size() || compared[n] != row.compared[n])) row.changed.push_back(n);
+    if (row.count != 0 && (n >= row.compared.size() || compared[n] != row.compared[n]))
+      row.changed.push_back(n);
   row.compared = std::move(compared);
   row.last = std::move(telegram);
   ++row.count;
@@ -83,7 +87,8 @@ Json BusTraffic::decode(const Arguments& a) {
     const Arguments of_row(row);
     Telegram telegram;
     telegram.bus = number_of(of_row.text("bus"));
-    telegram.id = static_cast<uint32_t>(of_row.whole("id", 0, UINT32_MAX, 0)) & (runtime::kExtendedIdLimit - 1);
+    telegram.id =
+        static_cast<uint32_t>(of_row.whole("id", 0, UINT32_MAX, 0)) & (runtime::kExtendedIdLimit - 1);
     telegram.extended = of_row.flag("extended", telegram.id >= runtime::kStandardIdLimit);
     telegram.data = ears_[telegram.bus]->read(of_row.text("data"));
     texts.push_back(ears_[telegram.bus]->text_of(telegram));
@@ -115,9 +120,10 @@ Json BusTraffic::trace(const Arguments& a) {
     if (first + n >= before) continue;
     const Telegram& telegram = trace_[n];
     BusEar& ear = *ears_[telegram.bus];
-    const std::string words =
-        fmt::format("{} {} {} {}", ear.name(), ear.identity_text(telegram), hex(telegram.bytes()), ear.text_of(telegram));
-    if (filter.empty() || words.find(filter) != std::string::npos) rows.push_back(json_of(first + n, telegram));
+    const std::string words = fmt::format("{} {} {} {}", ear.name(), ear.identity_text(telegram),
+                                          hex(telegram.bytes()), ear.text_of(telegram));
+    if (filter.empty() || words.find(filter) != std::string::npos)
+      rows.push_back(json_of(first + n, telegram));
   }
   std::reverse(rows.begin(), rows.end());
   return {{"frames", std::move(rows)}};
@@ -179,7 +185,8 @@ void BusTraffic::publish_trace(Client& client, Subscription& subscription) {
     put(static_cast<uint32_t>(n + 1));
     put(telegram.id);
     put(telegram.bus);
-    put(static_cast<uint8_t>((telegram.extended ? 1 : 0) | (telegram.remote ? 2 : 0) | (telegram.error ? 4 : 0)));
+    put(static_cast<uint8_t>((telegram.extended ? 1 : 0) | (telegram.remote ? 2 : 0) |
+                             (telegram.error ? 4 : 0)));
     put(static_cast<uint16_t>(telegram.bytes().size()));
     bytes.append(reinterpret_cast<const char*>(telegram.bytes().data()), telegram.bytes().size());
   }

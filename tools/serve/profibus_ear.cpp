@@ -35,9 +35,9 @@ bool is_short(const FdlFrame& frame) {
 uint32_t identity_of(const FdlFrame& frame) {
   const uint32_t kind = frame.is_acknowledgement() ? 0 : frame.is_token() ? 1 : frame.is_request() ? 2 : 3;
   uint32_t id = kind << 1 | (is_short(frame) ? 1 : 0);
-  for (const uint32_t part : {uint32_t{frame.source}, uint32_t{frame.destination},
-                              uint32_t{frame.ssap.value_or(kNoAccessPoint)},
-                              uint32_t{frame.dsap.value_or(kNoAccessPoint)}})
+  for (const uint32_t part :
+       {uint32_t{frame.source}, uint32_t{frame.destination}, uint32_t{frame.ssap.value_or(kNoAccessPoint)},
+        uint32_t{frame.dsap.value_or(kNoAccessPoint)}})
     id = id << 7 | (part & 0x7F);
   return id;
 }
@@ -87,7 +87,8 @@ class ProfibusEar final : public BusEar, private profibus::LineObserver, private
     if (text.find("fcs") == std::string::npos) return bytes_of(text, kMostOctets);
     const auto octets = runtime::parse_octets(text);
     if (!octets) throw Mistake(runtime::ProfibusBus::refuse(text).value_or("these are no octets"));
-    if (octets->size() > kMostOctets) throw Mistake(fmt::format("a frame has at most {} octets", kMostOctets));
+    if (octets->size() > kMostOctets)
+      throw Mistake(fmt::format("a frame has at most {} octets", kMostOctets));
     return *octets;
   }
 
