@@ -3,25 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 #include <vector>
 
 #include "runtime/bus/profibus/frame_text.hpp"
-#include "runtime/plant_file/bytes_text.hpp"
+#include "runtime/plant/profibus_octets.hpp"
 
 namespace ipos::runtime {
-namespace {
-
-// The word fcs before the end delimiter stands for the frame check sequence, which begins at DA.
-uint8_t check_from_address(std::span<const uint8_t> octets) {
-  using profibus::Delimiter;
-  const size_t head = !octets.empty() && octets[0] == static_cast<uint8_t>(Delimiter::SD2) ? 4 : 1;
-  return profibus::frame_check(octets.subspan(std::min(head, octets.size())));
-}
-constexpr CheckWord kFrameCheck{"fcs", check_from_address, 1};
-
-}  // namespace
 
 class ProfibusBus::Hand final : public profibus::Node {
  public:
@@ -44,7 +32,7 @@ ProfibusBus::ProfibusBus(BusPlace place)
 ProfibusBus::~ProfibusBus() = default;
 
 std::optional<std::string> ProfibusBus::refuse(const std::string& text) {
-  if (parse_bytes(text, kFrameCheck)) return std::nullopt;
+  if (parse_octets(text)) return std::nullopt;
   return fmt::format("'{}' are no octets; write for example \"10 08 02 49 fcs 16\"", text);
 }
 
@@ -53,7 +41,7 @@ void ProfibusBus::attach_hand() {
 }
 
 std::optional<std::string> ProfibusBus::send(const std::string& text) {
-  if (hand_->send(*parse_bytes(text, kFrameCheck))) return std::nullopt;
+  if (hand_->send(*parse_octets(text))) return std::nullopt;
   return "the frame before is still being sent";
 }
 

@@ -48,6 +48,42 @@ from = "saw.DO01"
 to = "lift.DI05"
 )";
 
+// A master and a slave with two process data words; speeds count 0.2 rpm.
+constexpr const char* kDpPlant = R"(
+[[bus]]
+name = "dp"
+kind = "profibus"
+baud = 500000
+[[station]]
+name = "pump"
+unit = "mc31"
+option = "size0"
+profibus = "dp"
+profibus_address = 9
+)";
+constexpr const char* kDpMaster = R"(
+[[control]]
+name = "plc"
+profibus = "dp"
+address = 1
+[[control.slave]]
+address = 9
+cfg = "F1"
+watchdog = "200ms"
+po = [6, 2500]
+)";
+
+tools::debug::MakePlant dp_plant(const std::string& text) {
+  return [text] {
+    std::vector<runtime::PlantError> errors;
+    auto plant = std::make_unique<runtime::Plant>(runtime::read_plant_file(text).plant,
+                                                  std::vector<std::optional<vm::Image>>{std::nullopt},
+                                                  std::nullopt, errors);
+    EXPECT_TRUE(errors.empty());
+    return plant;
+  };
+}
+
 tools::debug::MakePlant the_plant() {
   compiler::CompileOptions options;
   options.unit = stdlib::find_unit("md60a");
@@ -83,7 +119,26 @@ class Serving : public ::testing::Test {
     return topic({{"topic", "watch"}})["values"].front()["value"].get<int64_t>();
   }
 
-  Page page{the_plant()};
+  explicit Serving(tools::debug::MakePlant make = the_plant()) : page(std::move(make)) {}
+
+  Page page;
+};
+
+// The rows of a PROFIBUS line by source, destination and destination access point.
+class ServingDp : public Serving {
+ protected:
+  explicit ServingDp(const std::string& text = std::string(kDpPlant) + kDpMaster) : Serving(dp_plant(text)) {}
+
+  Json row(int source, int destination, const Json& dsap) {
+    const Json event = topic({{"topic", "bus"}});
+    for (const Json& one : event["rows"])
+      if (one["source"] == source && one["destination"] == destination && one["dsap"] == dsap) return one;
+    return {};
+  }
+};
+class QuietDp : public ServingDp {
+ protected:
+  QuietDp() : ServingDp(kDpPlant) {}
 };
 
 TEST_F(Serving, SaysHelloAndStandsAtZero) {
@@ -378,6 +433,81 @@ TEST_F(Serving, TelegramsAreCountedTracedAndSent) {
             "'identifier' must be 0 to 2047");
   EXPECT_EQ(error({{"do", "bus.send"}, {"bus", "sbus"}, {"id", 5}, {"data", "0"}}),
             "the last byte has one digit only");
+}
+
+// EN 50170 volume 2, DP: Set_Prm goes to access point 61, Slave_Diag to 60, Chk_Cfg to 62, from 62 of the master;
+// Data_Exchange has none. A token is DC DA SA; SD2 has LE = 3 + data twice.
+TEST_F(ServingDp, RowsByAddressesAndAccessPoints) {
+  const Json plant = good({{"do", "plant"}})["plant"];
+  EXPECT_EQ(plant["buses"][0]["kind"], "profibus");
+  EXPECT_EQ(plant["buses"][0]["stations"].size(), 2U) << plant["buses"];
+  EXPECT_EQ(plant["stations"][0]["lines"], Json({"dp"}));
+  EXPECT_EQ(plant["controls"], Json::array({{{"name", "plc"}, {"bus", "dp"}}}));
+  step(1500);
+  const Json set_prm = row(1, 9, 61);
+  EXPECT_EQ(set_prm["ssap"], 62) << set_prm;
+  EXPECT_NE(set_prm["text"].get<std::string>().find("1 -> 9 Set_Prm"), std::string::npos);
+  EXPECT_NE(row(1, 9, 62)["text"].get<std::string>().find("Chk_Cfg"), std::string::npos);
+  EXPECT_NE(row(1, 9, 60)["text"].get<std::string>().find("Slave_Diag"), std::string::npos);
+  const Json outputs = row(1, 9, nullptr);
+  const std::string octets = outputs["data"];
+  EXPECT_EQ(octets.substr(0, 12), "680707680901");
+  EXPECT_EQ(octets.substr(14, 8), "000609C4");
+  EXPECT_EQ(outputs["changed"], Json::array()) << "only the frame count turns";
+  EXPECT_GT(outputs["count"], 20);
+  EXPECT_GT(outputs["rate"], 20);
+  EXPECT_NE(outputs["text"].get<std::string>().find("Data_Exchange"), std::string::npos);
+  EXPECT_EQ(row(1, 1, nullptr)["data"], "DC0101");
+  const Json line = topic({{"topic", "bus"}})["buses"]["dp"];
+  EXPECT_GT(line["load"], 0);
+  EXPECT_EQ(line["errors"], 0) << line;
+  EXPECT_GT(topic({{"topic", "plant"}})["buses"]["dp"]["frames"], 40);
+  const Json trace = good({{"do", "bus.trace"}, {"filter", "Chk_Cfg"}})["frames"];
+  ASSERT_GE(trace.size(), 1U);
+  EXPECT_EQ(trace[0]["dsap"], 62);
+  EXPECT_EQ(good({{"do", "bus.decode"}, {"frames", {{{"bus", "dp"}, {"data", "DC 03 05"}}}}})["texts"],
+            Json({"5 -> 3 token"}));
+}
+
+// FC 46h: a request, SDN high; 66h has the frame count bit. 09h + 20h + 49h = 72h.
+TEST_F(QuietDp, FramesOfAHandAreAnsweredAndChangesAreThoseOfTheirData) {
+  const auto send = [&](const char* data) {
+    good({{"do", "bus.send"}, {"bus", "dp"}, {"data", data}});
+    step(5);
+  };
+  send("68 05 05 68 7F 20 46 01 02 fcs 16");
+  send("68 05 05 68 7F 20 66 01 03 fcs 16");
+  const Json row_of_it = row(32, 127, nullptr);
+  EXPECT_EQ(row_of_it["count"], 2) << row_of_it;
+  EXPECT_EQ(row_of_it["changed"], Json({8})) << "neither the frame count nor the frame check";
+  // It looks for the rate of the line first.
+  for (int n = 0; n < 200 && row(9, 32, nullptr).is_null(); ++n) send("100920497216");
+  EXPECT_NE(row(9, 32, nullptr)["text"].get<std::string>().find("slave"), std::string::npos);
+  EXPECT_EQ(topic({{"topic", "bus"}})["buses"]["dp"]["errors"], 0);
+  send("10 09 20 49 00 16");
+  EXPECT_EQ(topic({{"topic", "bus"}})["buses"]["dp"]["errors"], 1);
+  const Json trace = good({{"do", "bus.trace"}, {"filter", "void"}})["frames"];
+  ASSERT_EQ(trace.size(), 1U);
+  EXPECT_EQ(trace[0]["text"], "void: frame check sequence incorrect");
+  EXPECT_EQ(trace[0]["source"], nullptr);
+  EXPECT_EQ(error({{"do", "bus.send"}, {"bus", "dp"}, {"data", "10 xx fcs 16"}}),
+            "'10 xx fcs 16' are no octets; write for example \"10 08 02 49 fcs 16\"");
+}
+
+// The same frame goes out again when time has gone back and comes to it once more.
+TEST_F(QuietDp, WhatAHandSentIsSentAgainWhenItsTimeComesAgain) {
+  step(10);
+  good({{"do", "bus.send"}, {"bus", "dp"}, {"data", "10 09 20 49 fcs 16"}});
+  step(10);
+  good({{"do", "back"}, {"us", 5'000}});
+  EXPECT_EQ(row(32, 9, nullptr), Json());
+  step(15);
+  EXPECT_EQ(row(32, 9, nullptr), Json()) << "what was done later is gone";
+  good({{"do", "restart"}});
+  good({{"do", "bus.send"}, {"bus", "dp"}, {"data", "10 09 20 49 fcs 16"}});
+  step(20);
+  good({{"do", "back"}, {"us", 10'000}});
+  EXPECT_EQ(row(32, 9, nullptr)["count"], 1);
 }
 
 TEST_F(Serving, BreakpointsStopTheRunAndStepsGoOn) {

@@ -391,6 +391,51 @@ P101 = "RS-485"
         before = [float(row[1]) for row in rows[1:] if float(row[0]) * 1000 < state["trigger_us"] - 1]
         self.assertLess(before[-1], 100)
 
+    # Reading P130, index 8470 = 2116h: MOVILINK on RS-485, 02 ADR TYP PDU BCC with TYP 86h (parameter channel, acyclic)
+    # and the service 31h; its answer begins with 1D (1053 1610 p. 18-25). BCC is the exclusive or of all bytes before.
+    def test_the_tab_bus_shows_questions_and_answers_and_sends_when_confirmed(self):
+        client = self.serve("--write")
+        plant = client.ask(do="plant")["plant"]
+        self.assertEqual([(bus["name"], bus["kind"], bus["baud"], bus["stations"]) for bus in plant["buses"]],
+                         [("RS-485", "rs485", 9600, ["unit1"])])
+        self.assertEqual(plant["stations"][0]["lines"], ["RS-485"])
+        client.ask(do="watch", names=["P130"])
+        client.ask(do="subscribe", topic="watch")
+        client.wait_for("watch")
+        client.ask(do="subscribe", topic="bus")
+        event = client.wait_for("bus", lambda event: any(row["count"] > 4 for row in event["rows"]))
+        row = event["rows"][0]
+        self.assertEqual((row["bus"], row["id"], len(row["data"])), ("RS-485", 1, 24))
+        client.ask(do="unsubscribe", topic="watch")
+        frames = client.ask(do="bus.trace")["frames"]
+        self.assertTrue(all(frame["data"].startswith(("0201", "1D01")) and not frame["error"] for frame in frames))
+        question = [frame for frame in frames if frame["data"].startswith("020186" + "31002116")]
+        self.assertIn("read", question[-1]["text"])
+        self.assertIn("8470", question[-1]["text"])
+        answers = [frame["data"] for frame in frames if frame["data"].startswith("1D018631002116")]
+        self.assertEqual(int(answers[-1][14:22], 16), 2000)
+        times = [frame["us"] for frame in frames]
+        self.assertEqual(times, sorted(times))
+
+        octets = bytes.fromhex("020186310021160000" + "0000")
+        check = 0
+        for octet in octets:
+            check ^= octet
+        data = octets.hex() + f"{check:02x}"
+        self.assertIn("confirm", client.ask(do="bus.send", bus="RS-485", data=data)["error"])
+        client.ask(do="arm", yes=True)
+        before = client.ask(do="bus.trace")["frames"][-1]["n"]
+        self.assertTrue(client.ask(do="bus.send", bus="RS-485", data=data).get("ok"))
+        time.sleep(0.3)
+        new = [frame["data"] for frame in client.ask(do="bus.trace")["frames"] if frame["n"] > before]
+        self.assertEqual(new[0], data.upper())
+        self.assertEqual(new[1][:22], "1D018631002116000007D0"[:22])
+        self.assertIn("no bus", client.ask(do="bus.send", bus="dp", data="00")["error"])
+
+    def test_a_telegram_needs_write(self):
+        client = self.serve()
+        self.assertIn("--write", client.ask(do="bus.send", bus="RS-485", data="0201")["error"])
+
     def test_it_writes_when_confirmed_and_stops_when_the_hand_is_off(self):
         client = self.serve("--write")
         self.assertIn("confirm", client.ask(do="parameters.set", number="P130", value="1 s")["error"])

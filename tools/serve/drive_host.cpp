@@ -21,10 +21,10 @@ using namespace std::chrono_literals;
 
 constexpr size_t kReadsAtOnce = 8;  // of a topic, then others have their turn
 constexpr size_t kMostWatchedValues = 100;
-constexpr auto kJogHolds = 300ms;     // without a `jog` it stops
-constexpr auto kJogPeriod = 50ms;     // of the process data; drives monitor them from 10 ms on (P812, P815)
+constexpr auto kJogHolds = 300ms;  // without a `jog` it stops
+constexpr auto kJogPeriod = 50ms;  // of the process data; drives monitor them from 10 ms on (P812, P815)
 constexpr auto kTimePeriod = 50ms;
-constexpr int kTurnTime = 20;         // ms that the loop waits for letters
+constexpr int kLettersAtOnce = 8;     // a client that floods does not hold a jog up
 constexpr double kDigitsOfRpm = 5;    // a speed word counts 0.2 rpm (1053 1610 p. 42)
 constexpr uint16_t kEnable = 0x0006;  // control word 1: no inhibit, no rapid stop, no stop
 constexpr uint16_t kStop = 0x0002;    // the stop with the ramp of the setpoint
@@ -55,7 +55,10 @@ DriveHost::DriveHost(std::unique_ptr<BusLink> link, Options options, Post& post)
       options_(std::move(options)),
       link_(*link),
       access_(open_unit(std::move(link), options_.address, options_.unit)),
-      scope_(desk_, *access_, name(), [this] { return us() / 1000 * runtime::kMillisecond; }) {
+      scope_(desk_, *access_, name(), [this] { return us() / 1000 * runtime::kMillisecond; }),
+      bus_(
+          desk_, link_, {*access_, name(), options_.address}, [this] { return us() * runtime::kMicrosecond; },
+          [this](const Desk::Call& call) { must_write(call); }) {
   desk_.hello = [this] {
     return Json{{"protocol", 1},
                 {"version", options_.version},
@@ -89,15 +92,18 @@ void DriveHost::run() {
     desk_.publish(now, false);
     const bool samples = scope_.wanted();
     if (samples) scope_.sample();
-    const auto letter = post_.wait(samples ? 0 : kTurnTime);
-    if (!letter) continue;
-    desk_.take(*letter);
-    if (letter->kind == LetterKind::Opened) desk_.send(desk_.clients().at(letter->client), time());
+    bus_.turn(!samples);
+    for (int n = 0; n < kLettersAtOnce; ++n) {
+      const auto letter = post_.wait(0);
+      if (!letter) break;
+      desk_.take(*letter);
+      if (letter->kind == LetterKind::Opened) desk_.send(desk_.clients().at(letter->client), time());
+    }
   }
 }
 
 Json DriveHost::time() const {
-  return {{"event", "time"}, {"us", us()},         {"running", true}, {"speed", 1},
+  return {{"event", "time"}, {"us", us()},      {"running", true}, {"speed", 1},
           {"rate", 1},       {"generation", 1}, {"over", false},   {"stopped", nullptr}};
 }
 
@@ -147,7 +153,8 @@ void DriveHost::add_commands() {
     return load_settings(*access_, call.arguments.text("text"));
   });
   desk_.add_command("jog", [this](const Desk::Call& call) { return jog(call); });
-  desk_.add_topic("plant", [](Client&, Subscription&) {});
+  desk_.add_topic("plant",
+                  [this](Client& client, Subscription& subscription) { bus_.publish(client, subscription); });
   desk_.add_topic(
       "watch", [this](Client& client, Subscription& subscription) { publish_watch(client, subscription); });
   desk_.add_topic("parameters", [this](Client& client, Subscription& subscription) {
@@ -165,9 +172,9 @@ Json DriveHost::describe() const {
                      {"inputs", Json::array()},
                      {"outputs", Json::array()},
                      {"analog", Json::array()},
-                     {"lines", Json::array()}};
+                     {"lines", Json::array({bus_.line()})}};
   return {{"stations", Json::array({station})},
-          {"buses", Json::array()},
+          {"buses", Json::array({bus_.describe()})},
           {"controls", Json::array()},
           {"wires", Json::array()},
           {"switches", Json::array()}};

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tools/serve/desk.hpp"
+#include "tools/serve/drive_bus.hpp"
 #include "tools/serve/drive_scope.hpp"
 #include "tools/unit/bus_link.hpp"
 #include "tools/unit/live_values.hpp"
@@ -62,6 +63,7 @@ class DriveHost {
   std::map<uint16_t, std::vector<LiveItem>> watched_;  // by client
   std::optional<Jog> jog_;
   DriveScope scope_;
+  DriveBus bus_;
   WallClock::time_point next_time_{};  // event
 };
 

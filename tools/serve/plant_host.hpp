@@ -40,7 +40,7 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
 
   // --- for the tabs ---
   Desk& desk() { return desk_; }
-  runtime::Plant& plant() { return *plant_; }
+  runtime::Plant& plant() const { return *plant_; }
   debug::Debugger& debugger() { return *debugger_; }
   uint32_t station_number(const std::string& name) const;  // a Mistake that names those there are
   runtime::Station& station(const std::string& name) { return *plant_->stations()[station_number(name)]; }

@@ -8,6 +8,7 @@
 #include "runtime/plant_file/signal.hpp"
 #include "stdlib/faults.hpp"
 #include "stdlib/parameters.hpp"
+#include "tools/serve/bus_ear.hpp"
 #include "tools/serve/tabs.hpp"
 
 namespace ipos::tools::serve {
@@ -59,8 +60,19 @@ Json terminals(const Station& station, std::span<const Terminal> all, const char
 
 std::vector<std::string> lines_of(const runtime::StationConfig& config) {
   std::vector<std::string> lines;
-  for (const std::string& bus : {config.sbus, config.sbus2, config.serial.x13.bus, config.serial.xt.bus})
+  for (const std::string& bus : {config.sbus, config.sbus2, config.serial.x13.bus, config.serial.xt.bus,
+                                 config.profibus.bus.bus})
     if (!bus.empty()) lines.push_back(bus);
+  return lines;
+}
+
+// A gateway is on two.
+std::vector<std::string> lines_of(const runtime::ControlConfig& config) {
+  std::vector<std::string> lines;
+  if (!config.sbus.empty()) lines.push_back(config.sbus);
+  if (config.profibus) lines.push_back(config.profibus->bus);
+  if (config.gateway && !config.gateway->profibus.bus.bus.empty())
+    lines.push_back(config.gateway->profibus.bus.bus);
   return lines;
 }
 
@@ -251,31 +263,25 @@ class PlantTab final : public Tab {
     Json stations = Json::array();
     for (const auto& station : plant.stations()) stations.push_back(describe(*station));
     Json buses = Json::array();
-    for (const auto& line : plant.lines()) {
-      Json faults = Json::array();
-      for (const runtime::FaultType& type : runtime::kFaultTypes) faults.push_back(type.word);
+    const auto add = [&](const auto& line, runtime::BusKind kind, Json faults) {
       Json on_it = Json::array();
-      for (runtime::NodeId node = 0; node < line->node_count(); ++node)
-        if (line->node_name(node) != kPageNode) on_it.push_back(line->node_name(node));
-      buses.push_back({{"name", line->name()},
-                       {"kind", "can"},
-                       {"baud", line->baud()},
+      for (runtime::NodeId node = 0; node < line.node_count(); ++node)
+        if (line.node_name(node) != kPageNode) on_it.push_back(line.node_name(node));
+      buses.push_back({{"name", line.name()},
+                       {"kind", runtime::info(kind).word},
+                       {"baud", line.baud()},
                        {"stations", std::move(on_it)},
                        {"faults", std::move(faults)}});
-    }
-    for (const auto& line : plant.serial_lines()) {
-      Json on_it = Json::array();
-      for (runtime::NodeId node = 0; node < line->line().node_count(); ++node)
-        if (line->line().node_name(node) != kPageNode) on_it.push_back(line->line().node_name(node));
-      buses.push_back({{"name", line->name()},
-                       {"kind", runtime::info(line->kind()).word},
-                       {"baud", line->baud()},
-                       {"stations", std::move(on_it)},
-                       {"faults", Json::array()}});
-    }
+    };
+    Json can_faults = Json::array();
+    for (const runtime::FaultType& type : runtime::kFaultTypes) can_faults.push_back(type.word);
+    for (const auto& line : plant.lines()) add(*line, runtime::BusKind::Can, can_faults);
+    for (const auto& bus : plant.serial_lines()) add(bus->line(), bus->kind(), Json::array());
+    for (const auto& bus : profibus_lines(plant)) add(bus->line(), bus->kind(), Json::array());
     Json controls = Json::array();
     for (const runtime::PlantControl& control : plant.controls())
-      controls.push_back({{"name", control.config->name}, {"bus", control.config->sbus}});
+      for (const std::string& bus : lines_of(*control.config))
+        controls.push_back({{"name", control.config->name}, {"bus", bus}});
     Json wires = Json::array();
     const auto name = [](const runtime::Signal& signal) { return signal.station + "." + signal.name; };
     for (const runtime::Wire& wire : plant.file().wires)
@@ -382,6 +388,7 @@ class PlantTab final : public Tab {
     };
     for (const auto& line : plant.lines()) add(line->name(), line->load(plant.now()));
     for (const auto& line : plant.serial_lines()) add(line->name(), line->load(plant.now()));
+    for (const auto& line : profibus_lines(plant)) add(line->name(), line->load(plant.now()));
     if (stations.empty() && buses.empty()) return;
     host_.desk().send(client, {{"event", "plant"},
                                {"us", host_.us()},

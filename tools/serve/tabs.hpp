@@ -4,12 +4,10 @@
 #include <memory>
 #include <vector>
 
+#include "runtime/plant/profibus_bus.hpp"
 #include "tools/serve/plant_host.hpp"
 
 namespace ipos::tools::serve {
-
-// The name under which the page hangs on the lines.
-inline constexpr const char* kPageNode = "the page";
 
 std::unique_ptr<Tab> make_plant_tab(PlantHost& host);
 std::unique_ptr<Tab> make_watch_tab(PlantHost& host);
@@ -18,6 +16,9 @@ std::unique_ptr<Tab> make_parameter_tab(PlantHost& host);
 std::unique_ptr<Tab> make_bus_tab(PlantHost& host);
 std::unique_ptr<Tab> make_program_tab(PlantHost& host);
 std::unique_ptr<Tab> make_journal_tab(PlantHost& host);
+
+// They come behind CAN and RS-485 lines wherever lines have numbers.
+std::vector<runtime::ProfibusBus*> profibus_lines(const runtime::Plant& plant);
 
 std::vector<std::unique_ptr<Tab>> make_tabs(PlantHost& host);
 

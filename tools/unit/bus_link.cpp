@@ -54,6 +54,7 @@ class CanLink : public BusLink, private CanNode {
     port_ = std::move(*port);
     bridge_.emplace(queue(), 2, line_, *port_);
   }
+  CanLine* can_line() override { return &line_; }
 
  protected:
   FrameSender& sender() { return sender_; }
@@ -142,6 +143,7 @@ class SerialLink final : public BusLink, private SerialNode {
         requester_(queue(), 1, sender_, timing_of(link, baud, std::max(port_->latency(), kGapSlack))),
         master_(queue(), requester_, client()),
         bridge_(queue(), 2, line_, *port_, kGapSlack) {}
+  Rs485Line* serial_line() override { return &line_; }
   uint8_t last_address() const override { return kNoGroupAddress - 1; }
   bool has_address(int address) const override {
     return address == kUniversalAddress || BusLink::has_address(address);

@@ -9,7 +9,9 @@
 #include <optional>
 #include <string>
 
+#include "runtime/bus/can/line.hpp"
 #include "runtime/bus/movilink/exchange.hpp"
+#include "runtime/bus/rs485/line.hpp"
 #include "runtime/os_port/bridge.hpp"
 #include "runtime/os_port/system_clock.hpp"
 #include "tools/unit/parameter_access.hpp"
@@ -47,6 +49,9 @@ class BusLink : private runtime::MovilinkClient {
   bool serve(runtime::Time duration);
 
   runtime::Time now() const { return queue_.now(); }
+  // The simulated line, which has what this link sends and what comes over the port; the other one is null.
+  virtual runtime::CanLine* can_line() { return nullptr; }
+  virtual runtime::Rs485Line* serial_line() { return nullptr; }
   const std::string& port_name() const { return flags_.port; }
   // Addresses of single units.
   virtual bool has_address(int address) const {

@@ -18,13 +18,21 @@ import { offerTimeKeys, TimeBar } from "./shell/time_bar";
 import { Watch } from "./watch/watch_tab";
 
 const tabs: Tab[] = [
-  { name: "Plant", body: PlantTab, ofDrives: true },
-  { name: "Watch", body: Watch, ofDrives: true },
-  { name: "Scope", body: Scope, ofDrives: true },
-  { name: "Parameters", body: Parameters, ofDrives: true },
+  { name: "Plant", body: PlantTab },
+  { name: "Watch", body: Watch },
+  { name: "Scope", body: Scope },
+  { name: "Parameters", body: Parameters },
   { name: "Bus", body: Bus },
-  { name: "Program", body: Program },
-  { name: "Journal", body: Journal },
+  {
+    name: "Program",
+    body: Program,
+    notOfDrives: "A real drive does not give its source away, so to follow a program line by line, run it in a simulated drive: ipos serve FILE.",
+  },
+  {
+    name: "Journal",
+    body: Journal,
+    notOfDrives: "Only simulated drives keep a journal; what a real one remembers of its faults stands among its parameters.",
+  },
 ];
 
 function focusSearch(): void {

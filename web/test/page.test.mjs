@@ -248,7 +248,9 @@ test("a real drive is written only after a confirmation", { skip }, () =>
       await kinds.waitFor();
       assert.deepEqual(await kinds.locator("option").allTextContents(), ["none", "level", "edge"]);
       await page.getByRole("tab", { name: "Program" }).click();
-      await page.getByText("Only simulated plants have this").waitFor();
+      await page.getByText("A real drive does not give its source away").waitFor();
+      await page.getByRole("tab", { name: "Journal" }).click();
+      await page.getByText("Only simulated drives keep a journal").waitFor();
     },
     { server: { mode: "device" } },
   ),

@@ -45,6 +45,28 @@ address = 2
 po = [6, 5000, 0]
 every = "5ms"
 `;
+// A master with one slave: a token, requests of DP and their answers.
+const dp_text = `
+[[bus]]
+name = "dp"
+kind = "profibus"
+baud = 500000
+[[station]]
+name = "pump"
+unit = "mc31"
+option = "size0"
+profibus = "dp"
+profibus_address = 9
+[[control]]
+name = "plc"
+profibus = "dp"
+address = 1
+[[control.slave]]
+address = 9
+cfg = "F1"
+watchdog = "200ms"
+po = [6, 2500]
+`;
 const program_text = `#include <constb.h>
 #include <iob.h>
 long lCount, lFree;
@@ -65,18 +87,18 @@ let place;
 before(async () => {
   if (skip) return;
   browser = await launch();
-  place = folderOf({ "belt.toml": plant_text, "BELT.IPC": program_text });
+  place = folderOf({ "belt.toml": plant_text, "dp.toml": dp_text, "BELT.IPC": program_text });
 });
 after(async () => {
   await browser?.close();
   place?.remove();
 });
 
-async function meet(use) {
-  const server = await serve("belt.toml", [], place.folder);
+async function meet(use, file = "belt.toml", first = "belt DI00") {
+  const server = await serve(file, [], place.folder);
   const opened = await openPage(browser, server.address);
   try {
-    await opened.page.getByRole("switch", { name: "belt DI00" }).waitFor();
+    await opened.page.getByRole("switch", { name: first }).waitFor();
     await use(opened.page, server, opened);
     assert.deepStrictEqual(opened.errors.filter((text) => !text.includes("WebSocket")), []);
   } finally {
@@ -213,6 +235,33 @@ test("bus: a row an identifier; a cut is seen in the telegrams", { skip }, () =>
     await tap.press("Enter");
     await until(async () => (await tap.getAttribute("aria-pressed")) === "true", "not cut");
   }),
+);
+
+// Set_Prm goes from access point 62 to 61 (EN 50170 volume 2, DP); 2500 digits are 09C4h. The master is at work, so a
+// foreign frame meets one of its own.
+test("bus: PROFIBUS frames by addresses and access points; one of a hand collides", { skip }, () =>
+  meet(
+    async (page) => {
+      await button(page, "Run").click();
+      await tab(page, "Bus");
+      const table = page.getByRole("table", { name: "Bus" });
+      await table.getByRole("row", { name: "1 → 9, SAP 62 → 61" }).getByText("Set_Prm").waitFor();
+      await until(async () => /00\s*06\s*09\s*C4/.test(await table.getByRole("row", { name: /Data_Exchange, SRD/ }).textContent()), "no outputs");
+      await table.getByRole("row", { name: "1 → 1" }).getByText("token").waitFor();
+      await page.getByText("no master of this line").waitFor();
+      await page.getByRole("searchbox", { name: "Filter of the trace" }).fill("Chk_Cfg");
+      await page.getByRole("table", { name: "Telegrams" }).getByRole("row", { name: "1 → 9, SAP 62 → 62" }).first().waitFor();
+      await button(page, "Pause").click();
+      await page.getByRole("textbox", { name: "Data" }).fill("10 09 20 49 fcs 16");
+      await button(page, "Send").click();
+      await stepTo(page, (await timeOf(page)) + 5);
+      await page.getByRole("searchbox", { name: "Filter of the trace" }).fill("void");
+      await page.getByRole("table", { name: "Telegrams" }).getByText("void: ").first().waitFor();
+      await page.getByText(/[1-9]\d* errors/).waitFor();
+    },
+    "dp.toml",
+    "pump DI00",
+  ),
 );
 
 test("program: breakpoint, steps, coverage", { skip }, () =>

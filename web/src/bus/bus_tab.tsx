@@ -6,8 +6,9 @@ import { subscribe } from "../server/connection";
 import { generation, hello, plant } from "../server/live";
 import type { BusRow, BusState } from "../server/protocol";
 import { command } from "../shell/notice";
-import { Send } from "./send";
-import { Trace } from "./trace";
+import { identityText } from "./identity";
+import { Send, SendHint } from "./send";
+import { long_data, Trace } from "./trace";
 
 const rows = signal<Map<string, BusRow>>(new Map());
 const states = signal<Record<string, BusState>>({});
@@ -24,10 +25,6 @@ function follow(): () => void {
     }
     states.value = { ...states.peek(), ...((event.buses ?? {}) as Record<string, BusState>) };
   });
-}
-
-export function identifierText(id: number, extended: boolean): string {
-  return `${id} (${id.toString(16).toUpperCase().padStart(extended ? 8 : 3, "0")}h)`;
 }
 
 function Bytes({ data, changed }: { data: string; changed: number[] }) {
@@ -64,6 +61,7 @@ export function Bus() {
   // A server that came back, or time that did, begins anew.
   useEffect(follow, [generation.value, hello.value]);
   const kinds = new Map(plant.value?.buses.map((bus) => [bus.name, bus.kind]));
+  const target = line.value || [...kinds.keys()][0] || "";
   const shown = [...rows.value.entries()].filter(([, row]) => !line.value || row.bus === line.value).sort(([a], [b]) => (a < b ? -1 : 1));
   return (
     <>
@@ -75,7 +73,7 @@ export function Bus() {
             <option key={name}>{name}</option>
           ))}
         </select>
-        <Send line={line.value || [...kinds.keys()][0] || ""} kind={kinds.get(line.value || [...kinds.keys()][0] || "") ?? ""} />
+        <Send line={target} kind={kinds.get(target) ?? ""} />
         <button
           class="spread"
           onClick={() => {
@@ -86,6 +84,7 @@ export function Bus() {
           Clear counts
         </button>
       </div>
+      <SendHint kind={kinds.get(target) ?? ""} />
       <div class="scroll" tabIndex={0} style="max-height:46vh">
         <table class="values" aria-label="Bus">
           <thead>
@@ -106,12 +105,12 @@ export function Bus() {
             {shown.map(([key, row]) => (
               <tr key={key}>
                 <td class="quiet shrink">{row.bus}</td>
-                <th scope="row" class="mono shrink">
-                  {kinds.get(row.bus) === "can" || !kinds.size ? identifierText(row.id, row.extended) : row.id}
+                <th scope="row" class="mono identity">
+                  {identityText(row, kinds.get(row.bus))}
                 </th>
                 <td class="number">{row.count}</td>
                 <td class="number">{row.rate.toFixed(1)}</td>
-                <td class="mono shrink">
+                <td class={row.data.length > long_data ? "mono octets" : "mono shrink"}>
                   {row.remote ? "remote" : <Bytes data={row.data} changed={row.changed} />}
                 </td>
                 <td class="meaning">{row.text}</td>
@@ -121,7 +120,7 @@ export function Bus() {
         </table>
         {shown.length === 0 && <p class="empty">No telegram yet.</p>}
       </div>
-      <Trace line={line.value} />
+      <Trace line={line.value} kinds={kinds} />
     </>
   );
 }

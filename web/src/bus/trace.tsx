@@ -5,12 +5,15 @@ import { request } from "../server/connection";
 import { secondsText, time } from "../server/live";
 import type { TraceFrame } from "../server/protocol";
 import { complain } from "../shell/notice";
-import { identifierText } from "./bus_tab";
+import { identityText } from "./identity";
 
 const refresh_ms = 500;
 const shown_frames = 200;
 
-export function Trace({ line }: { line: string }) {
+// Digits of data that still stand in one line.
+export const long_data = 40;
+
+export function Trace({ line, kinds }: { line: string; kinds: Map<string, string> }) {
   const [filter, setFilter] = useState("");
   const [held, setHeld] = useState(false);
   const [frames, setFrames] = useState<TraceFrame[]>([]);
@@ -63,8 +66,8 @@ export function Trace({ line }: { line: string }) {
               <tr key={frame.n}>
                 <td class="number shrink">{secondsText(frame.us).replace(" s", "")}</td>
                 <td class="quiet shrink">{frame.bus}</td>
-                <td class="mono shrink">{identifierText(frame.id, frame.extended)}</td>
-                <td class="mono shrink">{frame.remote ? "remote" : (frame.data.match(/../g) ?? []).join(" ")}</td>
+                <td class="mono shrink">{identityText(frame, kinds.get(frame.bus))}</td>
+                <td class={frame.data.length > long_data ? "mono octets" : "mono shrink"}>{frame.remote ? "remote" : (frame.data.match(/../g) ?? []).join(" ")}</td>
                 <td class={frame.error ? "meaning bad" : "meaning"}>{frame.text}</td>
               </tr>
             ))}

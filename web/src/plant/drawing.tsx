@@ -84,7 +84,7 @@ function Cable({ line, row, y }: { line: Line; row: Row; y: number }) {
   const members = row.boxes.filter((box) => box.lines.includes(line.name));
   const ends = members.map((box) => tapX(box, line.name));
   const load = Math.min(100, state?.load ?? 0);
-  const rate = line.kind === "can" && line.baud >= 1000 ? `${line.baud / 1000} kBaud` : `${line.baud} Baud`;
+  const rate = ["can", "profibus"].includes(line.kind) && line.baud >= 1000 ? `${line.baud / 1000} kBaud` : `${line.baud} Baud`;
   // Beside the cable, or under it where there is no room beside.
   const under = row.label_width === 0;
   const textY = under ? y + 17 : y - 2;

@@ -201,7 +201,15 @@ export interface ParameterDifference {
   with: string;
 }
 
-export interface BusRow {
+// Of PROFIBUS only; null where the frame has none.
+export interface FrameAddresses {
+  source?: number | null;
+  destination?: number | null;
+  ssap?: number | null;
+  dsap?: number | null;
+}
+
+export interface BusRow extends FrameAddresses {
   bus: string;
   id: number;
   extended: boolean;
@@ -220,7 +228,7 @@ export interface BusState {
   state: string;
 }
 
-export interface TraceFrame {
+export interface TraceFrame extends FrameAddresses {
   n: number;
   us: number;
   bus: string;

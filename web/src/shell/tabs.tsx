@@ -6,7 +6,7 @@ import { hello } from "../server/live";
 
 export interface Tab {
   name: string;
-  ofDrives?: boolean; // real drives have it, too
+  notOfDrives?: string; // why real drives do not have it
   body: FunctionComponent;
 }
 
@@ -56,10 +56,6 @@ export function TabList({ tabs }: { tabs: Tab[] }) {
   );
 }
 
-function OnlyPlants() {
-  return <p class="empty">Only simulated plants have this. Of a real drive there are Plant, Watch, Scope and Parameters.</p>;
-}
-
 export function TabPanels({ tabs }: { tabs: Tab[] }) {
   return (
     <>
@@ -74,7 +70,7 @@ export function TabPanels({ tabs }: { tabs: Tab[] }) {
             aria-labelledby={`tab-${idOf(tab.name)}`}
             hidden={!selected}
           >
-            {selected && (hello.value?.mode !== "device" || tab.ofDrives ? <Body /> : <OnlyPlants />)}
+            {selected && (hello.value?.mode === "device" && tab.notOfDrives ? <p class="empty">{tab.notOfDrives}</p> : <Body />)}
           </div>
         );
       })}

@@ -1,0 +1,80 @@
+// An ear on one line of any kind, for the tab Bus: what the line carries as telegrams, their words, its load and errors,
+// and the hand that sends what a user has written. The hand is on the line only after it has sent: a line with a
+// station more would be another one.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runtime/bus/can/line.hpp"
+#include "runtime/bus/movilink/describe.hpp"
+#include "runtime/bus/profibus/line.hpp"
+#include "runtime/bus/rs485/line.hpp"
+#include "tools/serve/arguments.hpp"
+
+namespace ipos::tools::serve {
+
+// The name under which the page hangs on the lines.
+inline constexpr const char* kPageNode = "the page";
+
+struct Telegram {
+  runtime::Time time = 0;
+  uint32_t id = 0;  // CAN: the identifier; RS-485: the address; PROFIBUS: a number for frames of one kind
+  uint8_t bus = 0;  // number in the reply to `plant`
+  bool extended = false, remote = false, error = false;
+  uint8_t reason = 0;  // of the error, where the bytes do not tell it (profibus::FrameError)
+  std::vector<uint8_t> data;
+
+  std::span<const uint8_t> bytes() const { return remote ? std::span<const uint8_t>() : data; }
+};
+
+class BusEar {
+ public:
+  using Hear = std::function<void(Telegram)>;
+  using Names = std::function<runtime::TelegramNames()>;
+
+  virtual ~BusEar() = default;
+  virtual const std::string& name() const = 0;
+  virtual runtime::LineLoad load(runtime::Time now) const = 0;
+  virtual std::string text_of(const Telegram& telegram) = 0;
+  // What a filter finds it by, beside data and words.
+  virtual std::string identity_text(const Telegram& telegram) const = 0;
+  // Members of its row that only this kind of line has.
+  virtual Json identity(const Telegram&) const { return Json::object(); }
+  // The bytes in which a change is news.
+  virtual std::vector<uint8_t> compared(const Telegram& telegram) const { return telegram.data; }
+  // What a client has written as `data`.
+  virtual std::vector<uint8_t> read(const std::string& text) const = 0;
+  // The command `bus.send`; a Mistake says why not.
+  virtual void send(const Arguments& arguments) = 0;
+
+  uint64_t errors = 0;
+  std::string state;  // the last event of the line, in words
+};
+
+// "0006 0BB8" in bytes, at most so many; a Mistake says what is wrong.
+std::vector<uint8_t> bytes_of(const std::string& text, size_t most);
+
+// The dictionary of a line, looked up again when it may have changed.
+class KeptNames {
+ public:
+  explicit KeptNames(BusEar::Names look_up) : look_up_(std::move(look_up)) {}
+  const runtime::TelegramNames& now();
+
+ private:
+  BusEar::Names look_up_;
+  runtime::TelegramNames names_;
+  std::chrono::steady_clock::time_point known_{};
+};
+
+// The line must outlive the ear.
+std::unique_ptr<BusEar> listen(runtime::CanLine& line, BusEar::Hear hear, BusEar::Names names);
+std::unique_ptr<BusEar> listen(runtime::Rs485Line& line, BusEar::Hear hear, BusEar::Names names);
+std::unique_ptr<BusEar> listen(profibus::Line& line, BusEar::Hear hear);
+
+}  // namespace ipos::tools::serve

@@ -1,0 +1,77 @@
+// What the tab Bus tells of its lines: a row an identifier, the trace of the last telegrams, load and errors. It knows
+// neither plant nor drive: a source has their time and says how telegrams of a client go out.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "tools/serve/bus_ear.hpp"
+#include "tools/serve/desk.hpp"
+
+namespace ipos::tools::serve {
+
+class BusSource {
+ public:
+  virtual runtime::Time line_now() const = 0;
+  // What the page shows for a time of the lines.
+  virtual runtime::Time shown(runtime::Time of_line) const { return of_line; }
+  virtual void heard() {}
+  // The command `bus.send`; it ends in BusTraffic::send().
+  virtual void send(const Desk::Call& call) = 0;
+
+ protected:
+  ~BusSource() = default;
+};
+
+class BusTraffic final {
+ public:
+  // Adds its commands and its topics.
+  BusTraffic(Desk& desk, BusSource& source);
+
+  // The lines are others: nothing is known any more.
+  void clear();
+  template <typename Line, typename... Names>
+  void follow(Line& line, Names... names) {
+    const auto number = static_cast<uint8_t>(ears_.size());
+    const auto hear = [this, number](Telegram telegram) {
+      telegram.bus = number;
+      take(std::move(telegram));
+    };
+    ears_.push_back(listen(line, hear, std::move(names)...));
+  }
+  // `rate` counts from second to second.
+  void second_passed();
+  void send(const Arguments& arguments);
+
+ private:
+  struct Row {
+    Telegram last;
+    std::vector<uint8_t> compared;
+    std::vector<size_t> changed;
+    uint64_t count = 0, count_before = 0, rate = 0;
+  };
+  using Key = std::tuple<uint8_t, bool, bool, uint32_t>;
+
+  void take(Telegram telegram);
+  uint8_t number_of(const std::string& name) const;  // a Mistake: there is none
+  int64_t us(runtime::Time of_line) const { return source_.shown(of_line) / runtime::kMicrosecond; }
+  Json json_of(uint64_t n, const Telegram& telegram);
+  Json decode(const Arguments& arguments);
+  Json trace(const Arguments& arguments);
+  void publish_rows(Client& client, Subscription& subscription);
+  void publish_trace(Client& client, Subscription& subscription);
+
+  Desk& desk_;
+  BusSource& source_;
+  std::vector<std::unique_ptr<BusEar>> ears_;
+  std::map<Key, Row> rows_;
+  std::deque<Telegram> trace_;  // their times are those shown
+  uint64_t seen_ = 0;
+};
+
+}  // namespace ipos::tools::serve

@@ -1,0 +1,97 @@
+// The names of the drive for the words of its telegrams, and a telegram of a client between two questions.
+#include "tools/serve/drive_bus.hpp"
+
+#include "stdlib/parameters.hpp"
+
+namespace ipos::tools::serve {
+namespace {
+
+constexpr runtime::Time kListens = 5 * runtime::kMillisecond;  // at once; then letters have their turn
+// An answer to a client's telegram on a half duplex line: the longest telegram at 9.6 kbaud twice, and the drive's time.
+constexpr runtime::Time kAnswer = 150 * runtime::kMillisecond;
+
+// P870 to P872, P873 to P875: what the process data words mean.
+runtime::WordAssignment words_from(ParameterAccess& access, int first) {
+  runtime::WordAssignment words{};
+  for (size_t n = 0; n < words.size(); ++n) {
+    const std::string number = std::to_string(first + static_cast<int>(n));
+    const stdlib::Parameter* row = stdlib::parameter_table(access.unit()).find(std::string_view(number));
+    if (row == nullptr) continue;
+    if (const AccessReply reply = access.execute(stdlib::Service::Read, row->index, 0))
+      words[n] = static_cast<uint8_t>(*reply);
+  }
+  return words;
+}
+
+runtime::TelegramNames names_of(const DriveBus::Drive& drive) {
+  runtime::UnitNames unit;
+  unit.name = drive.name;
+  unit.unit = &drive.access.unit();
+  unit.settings.address = drive.address;
+  unit.output = words_from(drive.access, 870);
+  unit.input = words_from(drive.access, 873);
+  runtime::TelegramNames names;
+  names.units.push_back(std::move(unit));
+  return names;
+}
+
+}  // namespace
+
+DriveBus::DriveBus(Desk& desk, BusLink& link, const Drive& drive, std::function<runtime::Time()> now,
+                   std::function<void(const Desk::Call&)> must_write)
+    : desk_(desk),
+      link_(link),
+      station_(drive.name),
+      now_(std::move(now)),
+      must_write_(std::move(must_write)),
+      traffic_(desk, *this) {
+  const auto names = [known = names_of(drive)] { return known; };
+  if (link.can_line() != nullptr)
+    traffic_.follow(*link.can_line(), names);
+  else
+    traffic_.follow(*link.serial_line(), names);
+}
+
+const std::string& DriveBus::line() const {
+  return link_.can_line() != nullptr ? link_.can_line()->name() : link_.serial_line()->name();
+}
+
+runtime::LineLoad DriveBus::load() const {
+  return link_.can_line() != nullptr ? link_.can_line()->load(link_.now())
+                                     : link_.serial_line()->load(link_.now());
+}
+
+Json DriveBus::describe() const {
+  const bool can = link_.can_line() != nullptr;
+  return {{"name", line()},
+          {"kind", can ? "can" : "rs485"},
+          {"baud", can ? link_.can_line()->baud() : link_.serial_line()->baud()},
+          {"stations", Json::array({station_})},
+          {"faults", Json::array()}};
+}
+
+void DriveBus::publish(Client& client, Subscription& subscription) const {
+  const runtime::LineLoad now = load();
+  Json state{{"load", now.window_percent}, {"frames", now.frames}, {"faults", Json::array()}};
+  if (!subscription.is_news("b", state)) return;
+  desk_.send(client, {{"event", "plant"},
+                      {"us", now_() / runtime::kMicrosecond},
+                      {"stations", Json::object()},
+                      {"buses", {{line(), std::move(state)}}}});
+}
+
+void DriveBus::turn(bool waits) {
+  if (waits) link_.serve(kListens);
+  if (now_() < next_second_) return;
+  next_second_ = now_() + runtime::kSecond;
+  traffic_.second_passed();
+}
+
+void DriveBus::send(const Desk::Call& call) {
+  must_write_(call);
+  traffic_.send(call.arguments);
+  // The next question would talk into the answer.
+  link_.serve(link_.can_line() != nullptr ? kListens : kAnswer);
+}
+
+}  // namespace ipos::tools::serve

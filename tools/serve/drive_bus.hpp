@@ -1,0 +1,46 @@
+// The tab Bus of a real drive: what our own questions put on the bus, and what others say there. It listens to the line
+// between the port and the master that asks (tools/unit/bus_link.hpp).
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "tools/serve/bus_traffic.hpp"
+#include "tools/unit/bus_link.hpp"
+#include "tools/unit/parameter_access.hpp"
+
+namespace ipos::tools::serve {
+
+class DriveBus final : private BusSource {
+ public:
+  struct Drive {
+    ParameterAccess& access;
+    std::string name;
+    uint8_t address;
+  };
+  // `now`: since the start of the server. `must_write`: a Mistake says why this client may not.
+  DriveBus(Desk& desk, BusLink& link, const Drive& drive, std::function<runtime::Time()> now,
+           std::function<void(const Desk::Call&)> must_write);
+
+  Json describe() const;  // the line, as in the reply to `plant`
+  const std::string& line() const;
+  void publish(Client& client, Subscription& subscription) const;  // of the topic `plant`
+  // Once a turn of the loop; `waits`: hears what comes while nothing is asked.
+  void turn(bool waits);
+
+ private:
+  runtime::Time line_now() const override { return link_.now(); }
+  runtime::Time shown(runtime::Time of_line) const override { return now_() - (link_.now() - of_line); }
+  void send(const Desk::Call& call) override;
+  runtime::LineLoad load() const;
+
+  Desk& desk_;
+  BusLink& link_;
+  std::string station_;
+  std::function<runtime::Time()> now_;
+  std::function<void(const Desk::Call&)> must_write_;
+  BusTraffic traffic_;
+  runtime::Time next_second_ = runtime::kSecond;
+};
+
+}  // namespace ipos::tools::serve

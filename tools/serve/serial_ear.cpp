@@ -1,0 +1,76 @@
+// RS-485 lines: a row an address.
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "runtime/bus/movilink/describe_serial.hpp"
+#include "runtime/bus/movilink/serial_receiver.hpp"
+#include "tools/serve/bus_ear.hpp"
+
+namespace ipos::tools::serve {
+namespace {
+
+using runtime::Time;
+
+constexpr size_t kMostBytes = std::tuple_size_v<decltype(runtime::SerialBytes::data)>;
+
+class SerialEar final : public BusEar, private runtime::SerialObserver, private runtime::SerialNode {
+ public:
+  SerialEar(runtime::Rs485Line& line, Hear hear, Names names)
+      : line_(line), hear_(std::move(hear)), names_(std::move(names)) {
+    line.add_observer(static_cast<runtime::SerialObserver&>(*this));
+  }
+
+  const std::string& name() const override { return line_.name(); }
+  runtime::LineLoad load(Time now) const override { return line_.load(now); }
+  std::string text_of(const Telegram& telegram) override {
+    const auto read = runtime::decode_serial(telegram.bytes());
+    return read ? runtime::describe(names_.now(), *read)
+                : fmt::format("void: {:02X}", fmt::join(telegram.data, ""));
+  }
+  std::string identity_text(const Telegram& telegram) const override {
+    return fmt::format("{} {:X}", telegram.id, telegram.id);
+  }
+
+  std::vector<uint8_t> read(const std::string& text) const override { return bytes_of(text, kMostBytes); }
+
+  void send(const Arguments& a) override {
+    const std::vector<uint8_t> bytes = read(a.text("data", ""));
+    if (bytes.empty()) throw Mistake("a telegram needs bytes");
+    if (!node_) node_ = line_.attach(kPageNode, line_.baud(), *this);
+    if (!line_.send(*node_, bytes)) throw Mistake("the last one is still on its way");
+  }
+
+ private:
+  void on_character(const runtime::Rs485Line&, runtime::NodeId,
+                    const runtime::Character& character) override {
+    const auto reception = receiver_.take(character);
+    if (!reception) return;
+    const auto& [bytes, size] = std::pair(reception->bytes.data, reception->bytes.size);
+    Telegram telegram;
+    telegram.time = reception->end;
+    telegram.error = !reception->telegram;
+    telegram.data.assign(bytes.begin(), bytes.begin() + size);
+    telegram.id = size > 1 ? bytes[1] : 0;
+    if (telegram.error) ++errors;
+    hear_(std::move(telegram));
+  }
+  void on_serial_event(const runtime::Rs485Line&, const runtime::SerialEvent&) override { ++errors; }
+  // The page's node only sends.
+  void on_character(Time, const runtime::Character&) override {}
+  void on_sent(Time) override {}
+
+  runtime::Rs485Line& line_;
+  Hear hear_;
+  KeptNames names_;
+  runtime::SerialReceiver receiver_;
+  std::optional<runtime::NodeId> node_;
+};
+
+}  // namespace
+
+std::unique_ptr<BusEar> listen(runtime::Rs485Line& line, BusEar::Hear hear, BusEar::Names names) {
+  return std::make_unique<SerialEar>(line, std::move(hear), std::move(names));
+}
+
+}  // namespace ipos::tools::serve
