@@ -233,6 +233,14 @@ void add_process_data(const Station& station, Collector& out) {
       signal.factor = static_cast<double>(scale.numerator) / scale.denominator;
       signal.decimals = scale.denominator == 1 ? 0 : scale.denominator <= 10 ? 1 : 2;
     }
+  if (!station.has_further_words()) return;
+  for (const bool input : {false, true})
+    for (size_t word = 0; word < kFurtherWords; ++word)
+      out.add(SignalGroup::ProcessData, fmt::format("{}{}", input ? "PI" : "PO", kProcessWords + word + 1),
+              "word of the program", [&station, input, word]() -> int64_t {
+                const Drive& drive = station.drive().state();
+                return (input ? drive.further_pi() : drive.further_po())[word];
+              }).bits = kWordBits;
 }
 
 void add_tasks(const Station& station, Collector& out) {
