@@ -1,5 +1,6 @@
 # Writes OUT, a source with the commit of the Git clone SOURCE, with + behind it where files were changed; without Git or
 # a clone it is empty. Run at each build: cmake -DSOURCE=... -DOUT=... -P commit.cmake
+cmake_minimum_required(VERSION 3.25)  # its rules for file(CONFIGURE)
 execute_process(COMMAND git -C ${SOURCE} describe --always --dirty=+ --abbrev=10 "--exclude=*"
                 OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
 if(failed OR NOT EXISTS ${SOURCE}/.git)

@@ -1,6 +1,7 @@
 # ipos_embedded_library(NAME STATIC|SHARED VARIABLES n WORDS n FAST 0|1): the library for others, the VM without heap,
 # the variable telegrams and the C API in one. Its sources are those of the layers, compiled once more without
 # exceptions and run-time types, for the host as for a microcontroller.
+include(cmake/host_commands.cmake)
 set(embedded_sources
     vm/isa/coding.cpp vm/isa/blocks.cpp vm/image/view.cpp vm/verify/verify.cpp vm/exec/machine.cpp vm/exec/interrupts.cpp
     vm/exec/saved_state.cpp
@@ -22,6 +23,7 @@ function(ipos_embedded_library name kind)
   endif()
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}
                              PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/embed/include>
+                                    $<BUILD_INTERFACE:${ipos_written_headers}>
                                     $<INSTALL_INTERFACE:include>)
   target_compile_definitions(${name} PRIVATE IPOS_PROGRAM_WORDS=${BUILD_WORDS} IPOS_FAST=$<BOOL:${BUILD_FAST}>
                              PUBLIC IPOS_VARIABLES=${BUILD_VARIABLES})

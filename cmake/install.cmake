@@ -6,7 +6,7 @@ include(CMakePackageConfigHelpers)
 install(TARGETS ipos_embedded ipos_shared ipos_compile ipos_plant EXPORT ipos
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
         INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/embed/include/ ${PROJECT_SOURCE_DIR}/runtime/library/include/
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/embed/include/ ${ipos_written_headers}/ ${PROJECT_SOURCE_DIR}/runtime/library/include/
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(TARGETS ipos RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -13,10 +13,6 @@ using vm::Opcode;
 
 constexpr uint8_t kFaultEeprom = 25;  // F25 EEPROM
 
-#define IPOS_OPCODE_ROW(name, code) static_assert(static_cast<int>(Opcode::name) == (code));
-IPOS_HOST_COMMANDS(IPOS_OPCODE_ROW)
-#undef IPOS_OPCODE_ROW
-
 vm::HostReply fail(uint8_t fault, const char* reason) { return {vm::Answer::Fault, fault, reason}; }
 
 ipos_frame to_c(const runtime::Frame& frame) {

@@ -30,6 +30,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "ipos_commands.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -182,33 +184,11 @@ typedef struct ipos_vm ipos_vm;
 /* The exact number on this one. */
 size_t ipos_vm_size(void);
 
-/* The commands that reach the `command` callback: X(name, code). Operands are those of docs/reference/isa.md, in order.
+/* The commands that reach the `command` callback: IPOS_HOST_COMMANDS(X) in ipos_commands.h, which the build writes out
+ * of the instruction set. Operands are those of docs/reference/isa.md, in order: variables by number. Some come only
+ * without the callback by which the library does them itself: Scom, ScomOn, ScomState without `send`, Memorize without
+ * `nv_write`. InputCall and SystemCall: IPOS_ANSWER_TAKEN calls the label.
  */
-#define IPOS_HOST_COMMANDS(X)                                                     \
-  X(Movlnk, 0x60)    /* first variable of the structure */                        \
-  X(Scom, 0x61)      /* kind, first variable; only without a `send` callback */   \
-  X(ScomOn, 0x62)    /* only without a `send` callback */                         \
-  X(ScomState, 0x63) /* on or off, variable; only without a `send` callback */    \
-  X(MovCom, 0x64)    /* first variable of the structure */                        \
-  X(MovOn, 0x65)                                                                  \
-  X(InputCall, 0x6E)  /* level, mask, label; IPOS_ANSWER_TAKEN calls the label */ \
-  X(SystemCall, 0x6F) /* event, label; IPOS_ANSWER_TAKEN calls the label */       \
-  X(GoAbsH, 0x70)     /* wait, variable */                                        \
-  X(GoAbsK, 0x71)     /* wait, increments */                                      \
-  X(GoRelH, 0x72)     /* wait, variable */                                        \
-  X(GoRelK, 0x73)     /* wait, increments */                                      \
-  X(Go0, 0x74)        /* kind of reference travel */                              \
-  X(AxisStop, 0x75)   /* kind of stop */                                          \
-  X(TouchProbe, 0x76) /* which, and how */                                        \
-  X(WdOnH, 0x78)      /* variable with the ms */                                  \
-  X(WdOnK, 0x79)      /* ms */                                                    \
-  X(WdOff, 0x7A)                                                                  \
-  X(GetSys, 0x7B)   /* variable, which value */                                   \
-  X(SetSys, 0x7C)   /* which value, variable */                                   \
-  X(SetFault, 0x7D) /* fault number, response */                                  \
-  X(Memorize, 0x7E) /* what; only without an `nv_write` callback */               \
-  X(Reset, 0x7F)    /* variable */
-
 enum {
 #define IPOS_OPCODE_ROW(name, code) IPOS_COMMAND_##name = code,
   IPOS_HOST_COMMANDS(IPOS_OPCODE_ROW)

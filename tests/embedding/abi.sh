@@ -9,7 +9,7 @@ abi=$source/tests/embedding/abi
 for library in ipos ipos_compile ipos_plant; do
   nm -D --defined-only "$build/lib/lib$library.so" | awk -v lib=$library '$2 ~ /[TDBRVW]/ {print lib, $3}'
 done | LC_ALL=C sort > "$work/symbols.txt"
-"$CC" -I "$source/embed/include" "$abi/layout.c" -o "$work/layout"
+"$CC" -I "$source/embed/include" -I "$build/include" "$abi/layout.c" -o "$work/layout"
 "$CC" -std=c99 -Wall -Wextra -pedantic -Werror -I "$source/runtime/library/include" "$abi/plant_layout.c" -o "$work/plant_layout"
 { "$work/layout"; "$work/plant_layout"; } > "$work/layout.txt"
 if [ "${3:-}" = --update ]; then

@@ -20,7 +20,7 @@ for core in m3:mps2-an385 m4f:mps2-an386; do
 done
 
 generated=$work/m3/examples/embedding/cortex-m
-"$CC" -std=c11 -I "$source/embed/include" "$firmware"/{scom,can_mock,board_host}.c "$generated/image.c" \
+"$CC" -std=c11 -I "$source/embed/include" -I "$build/include" "$firmware"/{scom,can_mock,board_host}.c "$generated/image.c" \
   "$build/lib/libipos.a" -o "$work/host"
 "$work/host" | tee "$work/host.txt"
 for core in m3 m4f; do diff "$work/host.txt" "$work/$core.txt"; done

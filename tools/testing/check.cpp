@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "tools/testing/read_tests.hpp"
+#include "tools/testing/pattern.hpp"
 
 namespace ipos::tools::testing {
 

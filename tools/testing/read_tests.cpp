@@ -2,7 +2,6 @@
 #include "tools/testing/read_tests.hpp"
 
 #include <fmt/format.h>
-#include <fnmatch.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -64,15 +63,6 @@ std::vector<TestCase> read_tests(const std::string& path) {
   }
   leave_out_plants(tests);
   return tests;
-}
-
-bool matches(const std::string& pattern, const std::string& text) {
-  return fnmatch(pattern.c_str(), text.c_str(), 0) == 0;
-}
-
-bool is_chosen(const std::string& filter, const std::string& name) {
-  return filter.find_first_of("*?[") == std::string::npos ? name.find(filter) != std::string::npos
-                                                          : matches(filter, name);
 }
 
 }  // namespace ipos::tools::testing

@@ -20,9 +20,4 @@ TestCase read_program_test(const std::string& path, const std::string& text);
 // Whether a program's text has comments that expect something.
 bool expects_something(const std::string& text);
 
-// Shell pattern with * ? [..]; * stands for slashes, too.
-bool matches(const std::string& pattern, const std::string& text);
-// Whether a filter means the test: such a pattern, or without one of its characters a part of the name.
-bool is_chosen(const std::string& filter, const std::string& name);
-
 }  // namespace ipos::tools::testing

@@ -22,6 +22,7 @@
 #include "tools/testing/artifacts.hpp"
 #include "tools/testing/changes.hpp"
 #include "tools/testing/last_failed.hpp"
+#include "tools/testing/pattern.hpp"
 #include "tools/testing/read_tests.hpp"
 #include "tools/testing/report_words.hpp"
 #include "tools/testing/reports.hpp"
