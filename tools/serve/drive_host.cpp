@@ -24,7 +24,7 @@ constexpr size_t kMostWatchedValues = 100;
 constexpr auto kJogHolds = 300ms;  // without a `jog` it stops
 constexpr auto kJogPeriod = 50ms;  // of the process data; drives monitor them from 10 ms on (P812, P815)
 constexpr auto kTimePeriod = 50ms;
-constexpr int kLettersAtOnce = 8;     // a client that floods does not hold a jog up
+constexpr int kLettersAtATime = 8;     // a client that floods does not hold a jog up
 constexpr double kDigitsOfRpm = 5;    // a speed word counts 0.2 rpm (1053 1610 p. 42)
 constexpr uint16_t kEnable = 0x0006;  // control word 1: no inhibit, no rapid stop, no stop
 constexpr uint16_t kStop = 0x0002;    // the stop with the ramp of the setpoint
@@ -93,7 +93,7 @@ void DriveHost::run() {
     const bool samples = scope_.wanted();
     if (samples) scope_.sample();
     bus_.turn(!samples);
-    for (int n = 0; n < kLettersAtOnce; ++n) {
+    for (int n = 0; n < kLettersAtATime; ++n) {
       const auto letter = post_.wait(0);
       if (!letter) break;
       desk_.take(*letter);
