@@ -10,7 +10,7 @@ jobs=$(nproc)
 [ $# -gt 0 ] || set -- asan clang tsan valgrind tutorial
 
 # Programs with threads: `ipos test -j` and the reader behind the ports and the page.
-threaded=(ipos_testing_tests ipos_port_tests ipos_serve_tests ipos_plant_library_tests)
+threaded=(ipos_testing_tests ipos_port_tests ipos_serve_tests ipos_library_tests)
 # Not for sanitizers: they count instructions and allocations, run another processor's code, boot a kernel, or build
 # the project anew.
 unfit='ipos_bench|aarch64|ipos_realbus|ipos_memcheck|ipos_debian|ipos_install|ipos_subdirectory|ipos_hello|cortex|ipos_pictures|conformance'
@@ -28,15 +28,9 @@ clang() { # a build that has the generated sources and knows the commands
 }
 
 tsan() {
-  configure tsan || return 1
-  local known program there=()
-  known=$(cmake --build --preset tsan --target help)
-  for program in "${threaded[@]}"; do
-    grep -q "^$program: phony" <<<"$known" && there+=("$program")
-  done
-  cmake --build --preset tsan -j "$jobs" --target "${there[@]}" || return 1
+  configure tsan && cmake --build --preset tsan -j "$jobs" --target "${threaded[@]}" || return 1
   TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1 \
-    ctest --preset tsan -R "^($(IFS='|'; echo "${there[*]}"))\$" --timeout 900
+    ctest --preset tsan -R "^($(IFS='|'; echo "${threaded[*]}"))\$" --timeout 900
 }
 
 valgrind() {
