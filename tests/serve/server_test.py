@@ -530,6 +530,16 @@ class NotServing(unittest.TestCase):
             result = self.run_ipos(str(plant), "--bind", "here")
             self.assertEqual(result.returncode, 64)
 
+    def test_a_port_of_the_plant_that_is_not_there_is_told(self):
+        with tempfile.TemporaryDirectory() as folder:
+            plant = pathlib.Path(folder) / "plant.toml"
+            plant.write_text('[[bus]]\nname = "line1"\nkind = "rs485"\nport = "/dev/ttyNONE"\n'
+                             '[[station]]\nname = "saw"\nunit = "md60a"\nrs485 = "line1"\n')
+            result = self.run_ipos(str(plant))
+            self.assertEqual(result.returncode, 74)
+            self.assertEqual(result.stdout, "")
+            self.assertIn("plant.toml:4:8: error: /dev/ttyNONE", result.stderr)
+
     def test_a_plant_with_mistakes_is_told(self):
         with tempfile.TemporaryDirectory() as folder:
             plant = pathlib.Path(folder) / "plant.toml"

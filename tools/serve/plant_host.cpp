@@ -334,7 +334,7 @@ void PlantHost::built(runtime::Plant& plant) {
   plant_ = &plant;
   source_ = plant.next_source();
   plant.queue().schedule(kMillisecond, source_, *this, 0);
-  ports_.join(plant);
+  ports_.join(plant, title_);
   for (const auto& tab : tabs_) tab->built(plant);
 }
 

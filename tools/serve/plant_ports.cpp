@@ -14,13 +14,13 @@ bool PlantPorts::has_ports(const runtime::PlantFile& plant) {
                      [](const auto& bus) { return !bus.port.empty(); });
 }
 
-void PlantPorts::join(runtime::Plant& plant) {
+void PlantPorts::join(runtime::Plant& plant, const std::string& file) {
   for (const runtime::BusConfig& bus : plant.file().buses) {
     if (bus.port.empty()) continue;
     auto joined = runtime::join_port(plant, *plant.find_bus(bus.name), bus.port, clock_);
     if (!joined)
-      throw Failure(kIoError, fmt::format("{}:{}: error: {}", bus.port_place.line, bus.port_place.column,
-                                          joined.error().text));
+      throw Failure(kIoError, fmt::format("{}:{}:{}: error: {}", file, bus.port_place.line,
+                                          bus.port_place.column, joined.error().text));
     joined_.push_back(std::move(*joined));
   }
 }

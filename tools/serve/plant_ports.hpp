@@ -17,8 +17,8 @@ class PlantPorts {
  public:
   static bool has_ports(const runtime::PlantFile& plant);
 
-  // Opens them before the first event; a Failure names those that cannot be had.
-  void join(runtime::Plant& plant);
+  // Opens them before the first event; a Failure names one that cannot be had. `file`: of the plant.
+  void join(runtime::Plant& plant, const std::string& file);
   bool joined() const { return !joined_.empty(); }
 
   // Sends on what the lines have carried. What went wrong since the last time, in words; `gone` when a port has.
