@@ -15,10 +15,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
 endif()
 
 # Out of a precompiled header g++ 12 reports what it keeps quiet about in the header itself: inlined std::string and
-# replaced operators new and delete, in optimised code only.
+# replaced operators new and delete, in optimised code, and more with ThreadSanitizer.
 set(ipos_false_reports "")
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  set(ipos_false_reports $<$<CONFIG:Release>:-Wno-array-bounds$<SEMICOLON>-Wno-stringop-overflow$<SEMICOLON>-Wno-stringop-overread$<SEMICOLON>-Wno-mismatched-new-delete>)
+  set(ipos_false_reports $<$<CONFIG:Release,RelWithDebInfo>:-Wno-array-bounds$<SEMICOLON>-Wno-stringop-overflow$<SEMICOLON>-Wno-stringop-overread$<SEMICOLON>-Wno-mismatched-new-delete>)
 endif()
 
 function(ipos_precompiled target)

@@ -25,6 +25,7 @@ enum Readable : int32_t {
   kPoData,
   kDcLink,
   kAnalogInputs,
+  kPoData10 = 9,
 };
 
 // Values of the keyword set `setsys`.
@@ -44,6 +45,7 @@ enum Writable : int32_t {
   kBrakeFunction,
   kRampType,
   kReset,
+  kPiData10,
 };
 
 // Values that are parameters: the variable times `factor`, rounded toward 0 to `step`, goes into the
@@ -70,6 +72,14 @@ constexpr ParameterValue kParameterValues[] = {
 };
 
 int32_t signed_word(uint16_t word) { return static_cast<int16_t>(word); }
+
+// Variables as words, from the `first` of the block on.
+template <typename Words>
+Words words_at(CommandCall& call, size_t first) {
+  Words words{};
+  for (size_t n = 0; n < words.size(); ++n) words[n] = static_cast<uint16_t>(call.variable(1, first + n));
+  return words;
+}
 
 bool is_out_of_range(stdlib::ReturnCode code) {
   namespace codes = stdlib::return_codes;
@@ -122,6 +132,10 @@ vm::HostReply get_system_value(const CommandCall& call) {
     case kSpeedSetpoint: target = drive.setpoint().speed / kTenthRpm; return {};
     case kFault: target = drive.fault(); return {};
     case kUnitState: target = static_cast<int32_t>(drive.condition()); return {};
+    case kPoData10:
+      for (size_t n = 0; n < kFurtherWords; ++n)
+        call.variable(0, kProcessWords + n) = signed_word(drive.further_po()[n]);
+      [[fallthrough]];
     case kPoData:
       for (size_t n = 0; n < kProcessWords; ++n) call.variable(0, n) = signed_word(drive.po()[n]);
       return {};
@@ -140,12 +154,8 @@ vm::HostReply set_system_value(CommandCall& call) {
     if (row.keyword == keyword) return set_parameter_value(call, row);
   Drive& drive = call.services.drive;
   switch (keyword) {
-    case kPiData: {
-      DriveWords words{};
-      for (size_t n = 0; n < kProcessWords; ++n) words[n] = static_cast<uint16_t>(call.variable(1, n));
-      drive.set_ipos_pi(words);
-      return {};
-    }
+    case kPiData10: drive.set_further_pi(words_at<FurtherWords>(call, kProcessWords)); [[fallthrough]];
+    case kPiData: drive.set_ipos_pi(words_at<DriveWords>(call, 0)); return {};
     case kReset:
       if (call.variable(1) != 0 && drive.fault() != 0) drive.reset_fault();
       return {};

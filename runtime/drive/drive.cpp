@@ -75,6 +75,8 @@ void Drive::take_po(PoSource link, std::span<const uint16_t> words, bool cyclic)
     return known;
   };
   now_.set(&Situation::shown_po, with_words(now_->shown_po));
+  for (size_t n = kProcessWords; n < std::min(words.size(), kProcessWords + kFurtherWords); ++n)
+    further_po_[n - kProcessWords] = words[n];
   const auto s = static_cast<size_t>(source);
   if (settings().po_enable != 1) {
     if (cyclic) take_request(link);  // the bus speaks, though nothing is taken over
@@ -492,6 +494,7 @@ void Drive::power_cycle() {
   for (LinkWatch& link : state_.watches) link.forget();
   state_.last_control_word = 0;
   state_.ipos_pi = {};
+  further_po_ = further_pi_ = {};
   state_.ipos_outputs = 0;
 
   responses_ = {};

@@ -56,11 +56,14 @@ class Drive final : private DriveLink {
   // The bus has a watchdog of its own, and it has run out.
   void lose(PoSource source);
   const Words& po() const { return now_->shown_po; }
+  // PO4 to PO10 of the last telegram that had them.
+  const FurtherWords& further_po() const { return further_po_; }
 
   // From the program: H484, PI words with assignment IPOS PI-DATA, outputs with function IPOS OUTPUT (bits as
   // outputs()).
   void set_ipos_control_word(uint32_t word) { now_.set(&Situation::ipos_word, word); }
   void set_ipos_pi(const Words& words) { state_.ipos_pi = words; }
+  void set_further_pi(const FurtherWords& words) { further_pi_ = words; }
   void set_ipos_outputs(uint16_t levels) {
     if (levels != state_.ipos_outputs) steady_left_ = 0;
     state_.ipos_outputs = levels;
@@ -125,6 +128,7 @@ class Drive final : private DriveLink {
 
   // --- what it shows ---
   Words pi() const;
+  const FurtherWords& further_pi() const { return further_pi_; }
   Verdict verdict() const { return verdict_of(decided()); }  // what it is told, and why not more
   UnitCondition condition() const;
   char display() const;  // the seven-segment display: a digit, 't' waiting, 'F' fault
@@ -337,6 +341,7 @@ class Drive final : private DriveLink {
     int64_t counted_energy = 0;
   };
   State state_;
+  FurtherWords further_po_{}, further_pi_{};                   // nothing that the drive does depends on them
   Scope scope_;                                                // while it runs every tick is executed
   std::array<std::optional<FaultResponse>, 256> responses_{};  // chosen by the program, by fault number
   uint32_t shown_for_;                                         // the settings of the last tick of the outputs

@@ -13,6 +13,10 @@ namespace ipos::runtime {
 
 inline constexpr size_t kProcessWords = 3;
 using DriveWords = std::array<uint16_t, kProcessWords>;
+// PO4 to PO10 and PI4 to PI10, which a fieldbus card and CANopen carry. No parameter describes them: they are for the
+// program alone (ours; the manuals print the number of words, and no use of them).
+inline constexpr size_t kFurtherWords = 7;
+using FurtherWords = std::array<uint16_t, kFurtherWords>;
 
 // Settings of P870..P872 and P873..P875 (1053 1610 p. 82; 13 of PO and 10 of PI: MOVITRAC 07 chapter 10.3).
 enum class PoAssignment : uint8_t {

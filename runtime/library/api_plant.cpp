@@ -64,7 +64,7 @@ ipos_plant_status open(const ipos_plant_source& source, ipos_plant& plant) {
 // Does something to a station.
 ipos_plant_status order(ipos_plant* plant, uint32_t station, Act act, int64_t value) {
   return enter(plant, Allowed::NotInCallbacks, [=](Session& session) {
-    if (station >= session.plant().stations().size())
+    if (station >= station_count(session.plant()))
       return plant->fail(IPOS_PLANT_NO_STATION, fmt::format("there is no station number {}", station));
     Deed deed;
     deed.act = act;
@@ -74,12 +74,6 @@ ipos_plant_status order(ipos_plant* plant, uint32_t station, Act act, int64_t va
       return plant->fail(IPOS_PLANT_REFUSED, std::move(*refused));
     return ipos_plant_status{IPOS_PLANT_OK};
   });
-}
-
-std::string station_names(const ipos::runtime::Plant& plant) {
-  std::vector<std::string_view> names;
-  for (const auto& station : plant.stations()) names.push_back(station->config().name);
-  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 ipos_plant_status out_of_time(ipos_plant* plant, Time now) {
@@ -195,6 +189,11 @@ ipos_plant_status ipos_plant_run_until(ipos_plant* plant, int64_t limit, ipos_pl
 ipos_plant_status ipos_plant_station_at(ipos_plant* plant, uint32_t station, ipos_plant_station_info* info) {
   return enter(plant, Allowed::Anywhere, [=](Session& session) {
     if (info == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
+    if (const ipos::runtime::Gateway* gateway = gateway_of(session.plant(), station)) {
+      *info = {plant->keep(gateway->config().name), plant->keep("gateway"), plant->keep("gateway from PROFIBUS to SBus"),
+               plant->keep("")};
+      return ipos_plant_status{IPOS_PLANT_OK};
+    }
     const auto& stations = session.plant().stations();
     if (station >= stations.size())
       return plant->fail(IPOS_PLANT_NO_STATION, fmt::format("there is no station number {}", station));
@@ -211,6 +210,8 @@ ipos_plant_status ipos_plant_station(ipos_plant* plant, const char* name, uint32
     const auto& stations = session.plant().stations();
     const auto found = std::find_if(stations.begin(), stations.end(),
                                     [=](const auto& each) { return each->config().name == name; });
+    for (auto number = static_cast<uint32_t>(stations.size()); number < station_count(session.plant()); ++number)
+      if (gateway_of(session.plant(), number)->config().name == name) return *station = number, ipos_plant_status{IPOS_PLANT_OK};
     if (found == stations.end())
       return plant->fail(IPOS_PLANT_NO_STATION, fmt::format("there is no station '{}'; the plant has {}",
                                                             name, station_names(session.plant())));
@@ -240,6 +241,12 @@ ipos_plant_status ipos_plant_reset_fault(ipos_plant* plant, uint32_t station) {
 ipos_plant_status ipos_plant_why(ipos_plant* plant, uint32_t station, const char** text) {
   return enter(plant, Allowed::Anywhere, [=](Session& session) {
     if (text == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
+    if (const ipos::runtime::Gateway* gateway = gateway_of(session.plant(), station)) {
+      *text = plant->hand_out(!gateway->powered()    ? "the power is off"
+                              : gateway->exchanges() ? "enabled"
+                                                     : "no DP master exchanges data with it");
+      return ipos_plant_status{IPOS_PLANT_OK};
+    }
     const auto& stations = std::as_const(session.plant()).stations();
     if (station >= stations.size())
       return plant->fail(IPOS_PLANT_NO_STATION, fmt::format("there is no station number {}", station));

@@ -62,7 +62,7 @@ ipos_plant_status ipos_plant_find(ipos_plant* plant, uint32_t station, ipos_plan
   return enter(plant, Allowed::Anywhere, [=](Session& session) {
     if (name == nullptr || signal == nullptr || !is_kind(kind))
       return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
-    if (station >= session.plant().stations().size()) return no_station(plant, station);
+    if (station >= station_count(session.plant())) return no_station(plant, station);
     auto place = find_place(session.plant(), station, static_cast<Kind>(kind), name);
     if (!place) return plant->fail(IPOS_PLANT_NO_SIGNAL, std::move(place).error());
     *signal = session.add_signal(*place, name);
@@ -94,12 +94,11 @@ ipos_plant_status ipos_plant_name_at(ipos_plant* plant, uint32_t station, ipos_p
   return enter(plant, Allowed::Anywhere, [=](Session& session) {
     if (name == nullptr || !is_kind(kind) || kind == IPOS_PLANT_ANY)
       return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
-    if (station >= session.plant().stations().size()) return no_station(plant, station);
+    if (station >= station_count(session.plant())) return no_station(plant, station);
     const std::string asked = fmt::format("{} {} {}", station, kind, part == nullptr ? "" : part);
     if (plant->listed_for != asked) {
       plant->listed_for.clear();
-      plant->listed = place_names(*session.plant().stations()[station], static_cast<Kind>(kind),
-                                  part == nullptr ? "" : part);
+      plant->listed = place_names(session.plant(), station, static_cast<Kind>(kind), part == nullptr ? "" : part);
       plant->listed_for = asked;
     }
     if (number >= plant->listed.size()) return ipos_plant_status{IPOS_PLANT_NOTHING};

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <utility>
 
+#include "runtime/plant/gateway_signals.hpp"
 #include "runtime/plant/station_signals.hpp"
 #include "runtime/plant/station_state.hpp"
 #include "runtime/plant/variable_names.hpp"
@@ -112,7 +113,51 @@ std::string input_name(uint32_t line) {
 
 }  // namespace
 
-std::vector<std::string> place_names(const Station& station, Kind kind, std::string_view part) {
+size_t station_count(const Plant& plant) {
+  size_t count = plant.stations().size();
+  while (gateway_of(plant, static_cast<uint32_t>(count)) != nullptr) ++count;
+  return count;
+}
+
+runtime::Gateway* gateway_of(const Plant& plant, uint32_t station) {
+  if (station < plant.stations().size()) return nullptr;
+  size_t behind = station - plant.stations().size();
+  for (const runtime::PlantControl& control : plant.controls())
+    if (control.gateway && behind-- == 0) return control.gateway.get();
+  return nullptr;
+}
+
+std::string station_names(const Plant& plant) {
+  std::vector<std::string_view> names;
+  for (const auto& station : plant.stations()) names.push_back(station->config().name);
+  for (const runtime::PlantControl& control : plant.controls())
+    if (control.gateway) names.push_back(control.config->name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+runtime::PlantSignal shown_signal(const Plant& plant, const Place& place, std::string_view name) {
+  if (const runtime::Gateway* gateway = gateway_of(plant, place.station))
+    return runtime::find_among(runtime::gateway_signals(*gateway),
+                               fmt::format("{}.{}", gateway->config().name, name))
+        .value();
+  return runtime::find_station_signals(*plant.stations()[place.station], name).front();
+}
+
+namespace {
+
+std::vector<std::string> gateway_names(const runtime::Gateway& gateway, Kind kind) {
+  std::vector<std::string> names;
+  for (const runtime::PlantSignal& signal : runtime::gateway_signals(gateway))
+    if (kind == Kind::Signal || (kind == Kind::State && signal.group == runtime::SignalGroup::State))
+      names.push_back(signal.name.substr(signal.station.size() + 1));
+  return names;
+}
+
+}  // namespace
+
+std::vector<std::string> place_names(const Plant& plant, uint32_t number, Kind kind, std::string_view part) {
+  if (const runtime::Gateway* gateway = gateway_of(plant, number)) return gateway_names(*gateway, kind);
+  const Station& station = *plant.stations()[number];
   std::vector<std::string> names;
   const auto list = [&](std::span<const std::string_view> all) { names.assign(all.begin(), all.end()); };
   switch (kind) {
@@ -157,13 +202,21 @@ std::vector<std::string> place_names(const Station& station, Kind kind, std::str
 }
 
 tl::expected<Place, std::string> find_place(Plant& plant, uint32_t number, Kind kind, std::string_view name) {
+  if (const runtime::Gateway* gateway = gateway_of(plant, number)) {
+    const auto all = runtime::gateway_signals(*gateway);
+    const bool fits = kind == Kind::Any || kind == Kind::Signal || kind == Kind::State;
+    if (fits && runtime::find_among(all, fmt::format("{}.{}", gateway->config().name, name)))
+      return Place{number, Kind::Signal, 0};
+    return tl::unexpected(fmt::format("gateway '{}' has no {} '{}'; it has {}", gateway->config().name,
+                                      kind_word(kind), name, runtime::names_of(all)));
+  }
   const Station& station = *plant.stations()[number];
   for (uint8_t n = kind == Kind::Any ? 1 : static_cast<uint8_t>(kind);
        n <= static_cast<uint8_t>(kind == Kind::Any ? Kind::Signal : kind); ++n)
     if (const auto found = find_number(station, static_cast<Kind>(n), name))
       return Place{number, static_cast<Kind>(n), *found};
   constexpr size_t kShown = 24;
-  std::vector<std::string> names = place_names(station, kind == Kind::Any ? Kind::Variable : kind, "");
+  std::vector<std::string> names = place_names(plant, number, kind == Kind::Any ? Kind::Variable : kind, "");
   const size_t count = names.size();
   if (count > kShown) names.resize(kShown);
   std::string known = count == 0 ? "none" : fmt::format("{}", fmt::join(names, ", "));

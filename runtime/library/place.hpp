@@ -11,6 +11,7 @@
 #include <tl/expected.hpp>
 
 #include "runtime/plant/hands.hpp"
+#include "runtime/plant/station_signals.hpp"
 
 namespace ipos::library {
 
@@ -37,12 +38,19 @@ struct PlaceInfo {
   bool writable = false;
 };
 
+// Gateways are numbered behind the stations with a drive. They have power and signals, which can only be read.
+size_t station_count(const runtime::Plant& plant);
+runtime::Gateway* gateway_of(const runtime::Plant& plant, uint32_t station);  // nullptr: it is none
+std::string station_names(const runtime::Plant& plant);                       // "saw, feed"
+// What a place of the kind Signal shows, as find_place has found it.
+runtime::PlantSignal shown_signal(const runtime::Plant& plant, const Place& place, std::string_view name);
+
 // The error says what there is instead.
 tl::expected<Place, std::string> find_place(runtime::Plant& plant, uint32_t station, Kind kind,
                                             std::string_view name);
 // What the station has of this kind; of variables those of the program, member by member, and of `part` only where it is
 // not empty.
-std::vector<std::string> place_names(const Station& station, Kind kind, std::string_view part);
+std::vector<std::string> place_names(const runtime::Plant& plant, uint32_t station, Kind kind, std::string_view part);
 
 // Nothing when the station has no such place: numbers may come from anywhere.
 bool exists(const runtime::Plant& plant, const Place& place);

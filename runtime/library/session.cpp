@@ -47,8 +47,7 @@ uint32_t Session::add_signal(const Place& place, std::string_view name) {
 // Its reader looks into the world of now.
 void Session::find_again(Signal& signal) const {
   if (signal.place.kind == Kind::Signal)
-    signal.shown =
-        runtime::find_station_signals(*plant().stations()[signal.place.station], signal.name).front();
+    signal.shown = shown_signal(plant(), signal.place, signal.name);
 }
 
 PlaceInfo Session::info(const Signal& signal) const {

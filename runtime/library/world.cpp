@@ -92,6 +92,12 @@ Refusal World::perform(const Deed& deed) {
     case Act::LineFault: return plant_faults(deed);
     default: break;
   }
+  if (const runtime::Gateway* gateway = gateway_of(*plant_, deed.place.station)) {
+    if (deed.act != Act::PowerOff && deed.act != Act::PowerOn)
+      return fmt::format("'{}' is a gateway: it has no program and no drive", gateway->config().name);
+    plant_->set_power(gateway->config().name, deed.act == Act::PowerOn);
+    return std::nullopt;
+  }
   if (deed.place.station >= plant_->stations().size()) return std::string(kStrange);
   Station& station = *plant_->stations()[deed.place.station];
   switch (deed.act) {

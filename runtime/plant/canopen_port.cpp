@@ -89,7 +89,6 @@ void CanopenPort::note(Time now, Weight weight, std::string text) {
   journal_.note(now, weight, station_, std::move(text));
 }
 
-// PO4 to PO10 are words for programs, which do not get them yet.
 void CanopenPort::take_output(Time now, const canopen::Words& words, uint16_t written) {
   size_t count = 0;
   for (size_t n = 0; n < output_.size(); ++n)
@@ -105,7 +104,9 @@ void CanopenPort::take_output(Time now, const canopen::Words& words, uint16_t wr
 canopen::Words CanopenPort::input(Time now) {
   canopen::Words words{};
   const ProcessWords input = server_.input(now);
-  std::copy(input.begin(), input.end(), words.begin());
+  const auto further = std::copy(input.begin(), input.end(), words.begin());
+  const FurtherWords& more = door_.look().drive().further_pi();
+  std::copy(more.begin(), more.end(), further);
   return words;
 }
 

@@ -67,7 +67,7 @@ class CanopenPort final : public StationPort,
   SbusSettings settings_;
   Journal& journal_;
   UnitServer server_;
-  ProcessWords output_{};   // as the master last sent them
+  canopen::Words output_{};  // as the master last sent them
   bool exchanges_ = false;  // outputs have come since the node is operational
   std::optional<canopen::Node> node_;
 };

@@ -39,11 +39,44 @@ Gateway::Gateway(EventQueue& queue, uint32_t source, ProfibusBus& profibus, cons
 }
 
 void Gateway::start(CanLine& line) {
+  line_ = &line;
   port_ = std::make_unique<LinePort>(line, line.attach(config_.name, line.baud(), *this));
   sender_.use(*port_);
+  begin();
+}
+
+void Gateway::begin() {
   control_.start(*port_);
   started_ = queue_.now();
   queue_.schedule(started_ + kGatewayCycle, source_, *this, 0);
+}
+
+void Gateway::power_off() {
+  if (!powered_) return;
+  powered_ = false;
+  dp_.power_off();
+  line_->set_connected(port_->node(), false);
+  queue_.cancel_all(*this);
+  control_.stop();
+  master_.abort();
+  channel_.power_off();
+  configuration_ = nullptr;
+  received_ = {};
+  lost_ = 0;
+  for (size_t n = 0; n < watched_.size(); ++n) {
+    watched_[n].lost = false;
+    control_.set_output(n, {});
+  }
+  noted_.reset();
+}
+
+void Gateway::power_on() {
+  if (powered_) return;
+  powered_ = true;
+  line_->restart(port_->node());
+  line_->set_connected(port_->node(), true);
+  dp_.power_on(false);
+  begin();
 }
 
 bool Gateway::serves(uint8_t address) const {
@@ -54,10 +87,21 @@ bool Gateway::serves(uint8_t address) const {
 
 std::vector<Gateway::Drive> Gateway::drives() const {
   std::vector<Drive> drives;
-  for (size_t n = 0; n < watched_.size(); ++n)
-    drives.push_back({control_.settings().targets[n].address, watched_[n].lost, watched_[n].losses,
-                      control_.answers(n), control_.settings().targets[n].output});
+  for (size_t n = 0; n < watched_.size(); ++n) drives.push_back(drive(n));
   return drives;
+}
+
+Gateway::Drive Gateway::drive(size_t n) const {
+  const ControlTarget& target = control_.settings().targets[n];
+  return {target.address, watched_[n].lost, watched_[n].losses, control_.answers(n), target.output};
+}
+
+ProcessWords Gateway::input(size_t n) const {
+  return watched_[n].lost ? ProcessWords{} : control_.answers(n).input;
+}
+
+bool Gateway::exchanges() const {
+  return powered_ && dp_.slave().state() == profibus::SlaveState::DataExchange;
 }
 
 // --- SBus
@@ -73,10 +117,10 @@ void Gateway::on_sent(Time now, const Frame& /*frame*/, uint64_t tag) {
 
 void Gateway::on_event(Time now, uint32_t, uint64_t) {
   queue_.schedule(now + kGatewayCycle, source_, *this, 0);
-  uint8_t lost = 0;
+  lost_ = 0;
   for (size_t n = 0; n < watched_.size(); ++n) {
     const bool silent = now - std::max(control_.answers(n).last, started_) > kSbusReplyTimeout;
-    if (silent) lost = static_cast<uint8_t>(lost | 1U << n);
+    if (silent) lost_ = static_cast<uint8_t>(lost_ | 1U << n);
     if (std::exchange(watched_[n].lost, silent) == silent) continue;
     if (silent) ++watched_[n].losses;
     const int address = control_.settings().targets[n].address;
@@ -87,7 +131,7 @@ void Gateway::on_event(Time now, uint32_t, uint64_t) {
                                     address)
                       : fmt::format("the drive with SBus address {} answers again", address));
   }
-  dp_.slave().set_fault(now, lost == 0 ? std::nullopt : std::optional(lost));
+  dp_.slave().set_fault(now, lost_ == 0 ? std::nullopt : std::optional(lost_));
 }
 
 // --- PROFIBUS
@@ -121,7 +165,7 @@ void Gateway::read_inputs(Time, std::span<uint8_t> inputs) {
     inputs = inputs.subspan(kGatewayChannelOctets);
   }
   for (size_t n = 0; n < watched_.size(); ++n) {
-    const ProcessWords words = watched_[n].lost ? ProcessWords{} : control_.answers(n).input;
+    const ProcessWords words = input(n);
     for (size_t word = 0; word < words.size(); ++word) {
       const size_t at = kDriveOctets * n + 2 * word;
       inputs[at] = static_cast<uint8_t>(words[word] >> 8);

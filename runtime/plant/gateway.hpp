@@ -37,6 +37,11 @@ class Gateway final : private CanNode,
 
   void start(CanLine& line);
 
+  // Off: it is on neither line. On again it begins as at first; the losses of its drives are counted on.
+  void power_off();
+  void power_on();
+  bool powered() const { return powered_; }
+
   // One drive, as the gateway sees it.
   struct Drive {
     uint8_t address = 0;
@@ -45,9 +50,15 @@ class Gateway final : private CanNode,
     SbusControl::Answers answers;
     ProcessWords output{};
   };
+  size_t drive_count() const { return watched_.size(); }
+  Drive drive(size_t n) const;
   std::vector<Drive> drives() const;
+  ProcessWords input(size_t n) const;  // as the DP master gets it: 0 of a lost drive
+  bool exchanges() const;              // with a DP master
   profibus::SlaveStation& dp() { return dp_; }
+  const profibus::SlaveStation& dp() const { return dp_; }
   const GatewayChannel& channel() const { return channel_; }
+  uint8_t lost() const { return lost_; }  // a bit for each drive that does not answer, the lowest address first
   const ControlConfig& config() const { return config_; }
 
  private:
@@ -74,6 +85,7 @@ class Gateway final : private CanNode,
   void watchdog_expired(Time now) override { exchange_ended(now); }
   void exchange_ended(Time now) override;
   void on_note(Time now, profibus::SlaveNote what, uint8_t master) override;
+  void begin();
   bool serves(uint8_t address) const;
 
   // Hands frames to the line once there is one.
@@ -96,6 +108,7 @@ class Gateway final : private CanNode,
   const ControlConfig& config_;
   Journal& journal_;
   Sender sender_;
+  CanLine* line_ = nullptr;
   std::unique_ptr<LinePort> port_;
   SbusControl control_;
   SbusMaster master_;
@@ -105,6 +118,8 @@ class Gateway final : private CanNode,
   const profibus::Configuration* configuration_ = nullptr;  // of the data exchange
   ParameterTelegram received_;
   std::vector<Watched> watched_;
+  uint8_t lost_ = 0;
+  bool powered_ = true;
   Time started_ = 0;
   std::optional<Noted> noted_;  // last; a master that asks on and on is told once
 };

@@ -129,6 +129,24 @@ Bus* Plant::find_bus(std::string_view name) const {
   return bus == buses_.end() ? nullptr : bus->get();
 }
 
+Gateway* Plant::find_gateway(std::string_view name) const {
+  const auto control = std::find_if(controls_.begin(), controls_.end(), [&](const PlantControl& candidate) {
+    return candidate.gateway && candidate.config->name == name;
+  });
+  return control == controls_.end() ? nullptr : control->gateway.get();
+}
+
+void Plant::set_power(std::string_view name, bool on) {
+  if (Gateway* gateway = find_gateway(name)) return on ? gateway->power_on() : gateway->power_off();
+  for (const auto& station : stations_)
+    if (station->config().name == name) on ? station->power_on() : station->power_off();
+}
+
+std::optional<SignalPort> Plant::find_port(const Signal& signal, std::string& why) const {
+  const Gateway* gateway = find_gateway(signal.station);
+  return gateway == nullptr ? SignalPort::find(stations_, signal, why) : SignalPort::find(*gateway, signal, why);
+}
+
 CanLine* Plant::find_can(std::string_view name) const {
   auto* bus = dynamic_cast<CanBus*>(find_bus(name));
   return bus == nullptr ? nullptr : &bus->line();
@@ -247,7 +265,7 @@ void Plant::tell_findings() {
 void Plant::resolve_expectations(std::vector<PlantError>& errors) {
   for (const Expectation& expectation : file_.expectations) {
     std::string why;
-    const auto port = SignalPort::find(stations_, expectation.signal, why);
+    const auto port = find_port(expectation.signal, why);
     if (port) due_.push_back({&expectation, *port});
     if (!why.empty()) errors.push_back({expectation.place, why});
   }

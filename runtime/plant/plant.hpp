@@ -73,6 +73,8 @@ class Plant final {
 
   // For a test that acts on the plant from outside while it runs.
   Surroundings& surroundings() { return *surroundings_; }
+  // The power of a station or a gateway, which exists.
+  void set_power(std::string_view name, bool on);
   // Plants a fault of a line, whose times are those of the plant. False: its station is not on the bus.
   bool plant_fault(const FaultConfig& config);
   // Ends what was planted with the same bus, station, kind and identifier; false: there is no such fault.
@@ -82,6 +84,9 @@ class Plant final {
   std::vector<std::unique_ptr<Station>>& stations() { return stations_; }
   const std::vector<std::unique_ptr<Station>>& stations() const { return stations_; }
   const std::vector<PlantControl>& controls() const { return controls_; }
+  Gateway* find_gateway(std::string_view name) const;  // nullptr: there is none
+  // Of a station or a gateway; nothing and why when it has no such thing.
+  std::optional<SignalPort> find_port(const Signal& signal, std::string& why) const;
   // Of the file in its order, then those to keypads.
   const std::vector<std::unique_ptr<Bus>>& buses() const { return buses_; }
   Bus* find_bus(std::string_view name) const;

@@ -5,6 +5,8 @@
 
 #include <utility>
 
+#include "runtime/plant/gateway_signals.hpp"
+
 namespace ipos::runtime {
 namespace {
 
@@ -25,8 +27,12 @@ void add_line(const Plant& plant, const Bus& line, std::vector<PlantSignal>& out
       [&plant, &line] { return static_cast<int64_t>(line.load(plant.now()).frames); });
 }
 
-std::vector<PlantSignal> bus_signals(const Plant& plant) {
+// Of what is no station with a drive: gateways, and lines.
+std::vector<PlantSignal> other_signals(const Plant& plant) {
   std::vector<PlantSignal> signals;
+  for (const PlantControl& control : plant.controls())
+    if (control.gateway)
+      for (PlantSignal& signal : gateway_signals(*control.gateway)) signals.push_back(std::move(signal));
   for (const auto& bus : plant.buses()) add_line(plant, *bus, signals);
   return signals;
 }
@@ -48,8 +54,7 @@ std::vector<PlantSignal> match(const Plant& plant, std::string_view pattern) {
     }
     if (!named && plant.stations().size() == 1) take(match_station_signals(*station, pattern));
   }
-  for (PlantSignal& signal : bus_signals(plant))
-    if (matches(pattern, signal.name)) found.push_back(std::move(signal));
+  take(match_among(other_signals(plant), pattern));
   return found;
 }
 
@@ -59,7 +64,7 @@ std::vector<PlantSignal> plant_signals(const Plant& plant) {
   std::vector<PlantSignal> all;
   for (const auto& station : plant.stations())
     for (PlantSignal& signal : station_signals(*station)) all.push_back(std::move(signal));
-  for (PlantSignal& signal : bus_signals(plant)) all.push_back(std::move(signal));
+  for (PlantSignal& signal : other_signals(plant)) all.push_back(std::move(signal));
   return all;
 }
 
@@ -82,11 +87,16 @@ tl::expected<std::vector<PlantSignal>, std::string> find_signals(const Plant& pl
   if (owner == nullptr && stations.size() == 1) owner = stations.front().get();
   if (owner != nullptr)
     if (auto found = find_station_signals(*owner, rest); !found.empty()) return found;
-  std::vector<std::string> buses;
-  for (PlantSignal& signal : bus_signals(plant)) {
-    if (signal.name == name) return std::vector{std::move(signal)};
-    buses.push_back(signal.name);
-  }
+  const std::vector<PlantSignal> without_drive = other_signals(plant);
+  if (auto found = find_among(without_drive, name)) return std::vector{*std::move(found)};
+  for (const PlantControl& control : plant.controls())
+    if (control.gateway && name.starts_with(control.config->name + "."))
+      return tl::unexpected(fmt::format("gateway '{}' has no signal '{}'; it has {}", control.config->name,
+                                        name.substr(control.config->name.size() + 1),
+                                        names_of(gateway_signals(*control.gateway))));
+  std::vector<std::string_view> buses;
+  for (const PlantSignal& signal : without_drive)
+    if (signal.group == SignalGroup::Bus) buses.push_back(signal.name);
   const std::string others = buses.empty() ? "" : fmt::format("; the buses have {}", fmt::join(buses, ", "));
   if (owner != nullptr)
     return tl::unexpected(fmt::format("station '{}' has no signal '{}'; it has {}{}", owner->config().name,

@@ -55,6 +55,8 @@ void ProfibusPort::take_output(Time now, OutputChannel, std::span<const uint16_t
   tell_reasons(now);
 }
 
+profibus::FurtherWords ProfibusPort::further_input(Time /*now*/) { return door_.look().drive().further_pi(); }
+
 // The drive of a MOVIDRIVE monitors its process data itself (P819), in Sync mode, too, when no words come.
 void ProfibusPort::cyclic_request(Time) {
   if (movidrive_) door_.touch().server().fieldbus_request();

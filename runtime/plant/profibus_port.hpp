@@ -38,6 +38,7 @@ class ProfibusPort final : public StationPort,
   tl::expected<int32_t, ReturnCode> serve(Time now, const ParameterRequest& request) override;
   void take_output(Time now, OutputChannel channel, std::span<const uint16_t> words) override;
   ProcessWords input(Time now) override { return server_.input(now); }
+  profibus::FurtherWords further_input(Time now) override;
   bool has_subindices() const override { return server_.has_subindices(); }
   void cyclic_request(Time now) override;
   void synchronize(Time) override {}  // Sync is done before the words come here

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "runtime/plant/gateway_signals.hpp"
 #include "runtime/plant/station_state.hpp"
 
 namespace ipos::runtime {
@@ -43,6 +44,15 @@ std::optional<SignalPort> SignalPort::find(const std::vector<std::unique_ptr<Sta
   if (index != 0) return SignalPort(**station, signal, static_cast<uint16_t>(index));
   why = fmt::format("station '{}' has no {} '{}'", signal.station,
                     signal.kind == SignalKind::Variable ? "variable" : "parameter", signal.name);
+  return std::nullopt;
+}
+
+std::optional<SignalPort> SignalPort::find(const Gateway& gateway, const Signal& signal, std::string& why) {
+  std::vector<PlantSignal> all = gateway_signals(gateway);
+  auto found = find_among(all, fmt::format("{}.{}", signal.station, signal.name));
+  if (found) return SignalPort(std::make_shared<const PlantSignal>(*std::move(found)));
+  why = fmt::format("gateway '{}' has no signal '{}'; it has {}", signal.station, signal.name,
+                    names_of(all));
   return std::nullopt;
 }
 

@@ -13,12 +13,16 @@
 
 namespace ipos::runtime {
 
+class Gateway;
+
 class SignalPort {
  public:
   // Nothing when the station is missing, or has no such thing: then `why` says so (empty for a missing
   // station, which read_plant_file has reported).
   static std::optional<SignalPort> find(const std::vector<std::unique_ptr<Station>>& stations,
                                         const Signal& signal, std::string& why);
+  // Of a gateway, which has only what can be read.
+  static std::optional<SignalPort> find(const Gateway& gateway, const Signal& signal, std::string& why);
 
   int32_t read() const;  // of any other signal the number shown, rounded
   // A variable or parameter, volatile; why not, or nothing.
@@ -35,7 +39,9 @@ class SignalPort {
            same_terminal(line_, other.line_);
   }
 
-  const std::string& station_name() const { return station_->config().name; }
+  const std::string& station_name() const {
+    return station_ == nullptr ? any_->station : station_->config().name;
+  }
   bool operator==(const SignalPort&) const = default;
 
  private:
@@ -43,8 +49,10 @@ class SignalPort {
       : station_(&station), kind_(signal.kind), line_(signal.line), index_(index) {}
   SignalPort(Station& station, std::shared_ptr<const PlantSignal> any)
       : station_(&station), kind_(SignalKind::Any), any_(std::move(any)) {}
+  explicit SignalPort(std::shared_ptr<const PlantSignal> any)
+      : station_(nullptr), kind_(SignalKind::Any), any_(std::move(any)) {}
 
-  Station* station_;
+  Station* station_;  // null: that of a gateway
   SignalKind kind_;
   uint8_t line_ = 0;    // Input, Output, State
   uint16_t index_ = 0;  // Variable, Parameter: in the parameter channel

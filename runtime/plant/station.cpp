@@ -120,6 +120,11 @@ void Station::connect_profibus() {
     profibus_ = std::make_unique<ProfibusPort>(queue_, *lines_.profibus, config_, door_, journal_);
 }
 
+bool Station::has_further_words() const {
+  const profibus::OptionType* card = config_.profibus.option;
+  return (card != nullptr && card->accepts.most > kProcessWords) || canopen(1) != nullptr || canopen(2) != nullptr;
+}
+
 // A MOVIDRIVE whose P100 or P101 names a fieldbus that is not there.
 void Station::miss_profibus() {
   constexpr int32_t kSetpointFieldbus = 3, kControlFieldbus = 2;

@@ -120,6 +120,9 @@ class Station final : private Timed, private TaskRunner {
     return sbus_[static_cast<size_t>(number - 1)].get();
   }
 
+  // Something of it carries PO4 to PO10: a fieldbus card that can, or CANopen.
+  bool has_further_words() const;
+
   // The same with the protocol CANopen.
   const CanopenPort* canopen(int number) const {
     look();

@@ -233,6 +233,14 @@ void add_process_data(const Station& station, Collector& out) {
       signal.factor = static_cast<double>(scale.numerator) / scale.denominator;
       signal.decimals = scale.denominator == 1 ? 0 : scale.denominator <= 10 ? 1 : 2;
     }
+  if (!station.has_further_words()) return;
+  for (const bool input : {false, true})
+    for (size_t word = 0; word < kFurtherWords; ++word)
+      out.add(SignalGroup::ProcessData, fmt::format("{}{}", input ? "PI" : "PO", kProcessWords + word + 1),
+              "word of the program", [&station, input, word]() -> int64_t {
+                const Drive& drive = station.drive().state();
+                return (input ? drive.further_pi() : drive.further_po())[word];
+              }).bits = kWordBits;
 }
 
 void add_tasks(const Station& station, Collector& out) {
@@ -270,23 +278,6 @@ void add_all(const Station& station, Collector& out) {
   add_process_data(station, out);
   add_tasks(station, out);
   add_system_variables(station, out);
-}
-
-PlantSignal bit_of(const PlantSignal& whole, size_t bit) {
-  PlantSignal signal = whole;
-  signal.name += fmt::format(".{}", bit);
-  signal.meaning = fmt::format("bit {} of {}", bit, whole.name);
-  signal.bits = 1;
-  signal.is_status = false;
-  signal.decided = nullptr;
-  signal.read = [read = whole.read, bit]() -> int64_t { return read() >> bit & 1; };
-  return signal;
-}
-
-// Bits there are of bit fields and of variables.
-size_t width(const PlantSignal& signal) {
-  const bool variable = signal.group == SignalGroup::Variable || signal.group == SignalGroup::SystemVariable;
-  return variable ? kLongBits : signal.bits > 1 ? signal.bits : 0;
 }
 
 // Whether a pattern can mean what begins with the letter and a number.
@@ -344,6 +335,22 @@ void PlantSignal::append_text(std::string& out, int64_t sample) const {
   out.append(begin, text.data() + text.size());
 }
 
+PlantSignal bit_of(const PlantSignal& whole, size_t bit) {
+  PlantSignal signal = whole;
+  signal.name += fmt::format(".{}", bit);
+  signal.meaning = fmt::format("bit {} of {}", bit, whole.name);
+  signal.bits = 1;
+  signal.is_status = false;
+  signal.decided = nullptr;
+  signal.read = [read = whole.read, bit]() -> int64_t { return read() >> bit & 1; };
+  return signal;
+}
+
+size_t bit_count(const PlantSignal& signal) {
+  const bool variable = signal.group == SignalGroup::Variable || signal.group == SignalGroup::SystemVariable;
+  return variable ? kLongBits : signal.bits > 1 ? signal.bits : 0;
+}
+
 std::vector<PlantSignal> station_signals(const Station& station) {
   Collector all(station);
   add_all(station, all);
@@ -373,7 +380,7 @@ std::vector<PlantSignal> find_station_signals(const Station& station, std::strin
   const auto [end, status] = std::from_chars(name.data() + dot + 1, name.data() + name.size(), bit);
   if (status != std::errc() || end != name.data() + name.size()) return {};
   const auto whole = find_station_signals(station, name.substr(0, dot));
-  if (whole.size() != 1 || bit >= width(whole[0])) return {};
+  if (whole.size() != 1 || bit >= bit_count(whole[0])) return {};
   return {bit_of(whole[0], bit)};
 }
 
@@ -393,11 +400,43 @@ std::vector<PlantSignal> match_station_signals(const Station& station, std::stri
   for (PlantSignal& signal : all.found) {
     const std::string_view name = std::string_view(signal.name).substr(own);
     if (dot != std::string_view::npos && matches(pattern.substr(0, dot), name))
-      for (size_t bit = 0; bit < width(signal); ++bit)
+      for (size_t bit = 0; bit < bit_count(signal); ++bit)
         if (matches(pattern.substr(dot + 1), fmt::format("{}", bit))) found.push_back(bit_of(signal, bit));
     if (matches(pattern, name)) found.push_back(std::move(signal));
   }
   return found;
+}
+
+std::optional<PlantSignal> find_among(std::span<const PlantSignal> all, std::string_view name) {
+  for (const PlantSignal& signal : all)
+    if (signal.name == name) return signal;
+  const size_t dot = name.rfind('.');
+  if (dot == std::string_view::npos) return std::nullopt;
+  size_t bit = 0;
+  const auto [end, status] = std::from_chars(name.data() + dot + 1, name.data() + name.size(), bit);
+  if (status != std::errc() || end != name.data() + name.size()) return std::nullopt;
+  for (const PlantSignal& signal : all)
+    if (signal.name == name.substr(0, dot) && bit < bit_count(signal)) return bit_of(signal, bit);
+  return std::nullopt;
+}
+
+std::vector<PlantSignal> match_among(std::span<const PlantSignal> all, std::string_view pattern) {
+  const size_t dot = pattern.rfind('.');
+  std::vector<PlantSignal> found;
+  for (const PlantSignal& signal : all) {
+    if (dot != std::string_view::npos && matches(pattern.substr(0, dot), signal.name))
+      for (size_t bit = 0; bit < bit_count(signal); ++bit)
+        if (matches(pattern.substr(dot + 1), fmt::format("{}", bit))) found.push_back(bit_of(signal, bit));
+    if (matches(pattern, signal.name)) found.push_back(signal);
+  }
+  return found;
+}
+
+std::string names_of(std::span<const PlantSignal> all) {
+  std::vector<std::string_view> names;
+  for (const PlantSignal& signal : all)
+    names.push_back(std::string_view(signal.name).substr(signal.station.size() + 1));
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 std::string station_signal_names(const Station& station) {

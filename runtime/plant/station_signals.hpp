@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -55,6 +57,16 @@ std::vector<PlantSignal> find_station_signals(const Station& station, std::strin
 
 // With a pattern: parameters and numbered variables only where it begins like one, bits where it has a dot.
 std::vector<PlantSignal> match_station_signals(const Station& station, std::string_view pattern);
+
+// Bits of a bit field or of a variable, 0 of a number; and one of them as a signal, "unit1.PO1.6".
+size_t bit_count(const PlantSignal& signal);
+PlantSignal bit_of(const PlantSignal& whole, size_t bit);
+
+// By the whole name: one of these, or a bit of one. Those that a pattern fits, and their bits where it has a dot for them.
+std::optional<PlantSignal> find_among(std::span<const PlantSignal> all, std::string_view name);
+std::vector<PlantSignal> match_among(std::span<const PlantSignal> all, std::string_view pattern);
+// "powered, exchange, ...", without the station's part.
+std::string names_of(std::span<const PlantSignal> all);
 
 // "speed, ..., inputs as DI00, ...": for messages.
 std::string station_signal_names(const Station& station);

@@ -84,9 +84,14 @@ int64_t PlantReader::duration(const toml::table& table, std::string_view key, in
   return time;
 }
 
-std::string PlantReader::station(const toml::table& table, std::string_view what) {
+std::string PlantReader::station(const toml::table& table, std::string_view what, bool gateway_too) {
   std::string name = text(table, "station", what, true);
-  if (const toml::node* node = table.get("station")) use_station(name, place_of(*node));
+  const toml::node* node = table.get("station");
+  if (node == nullptr) return name;
+  if (gateway_too && gateway_names.contains(name))
+    station_uses.emplace_back(name, place_of(*node));
+  else
+    use_station(name, place_of(*node));
   return name;
 }
 
@@ -94,7 +99,7 @@ void PlantReader::use_station(const std::string& name, FilePlace place) {
   station_uses.emplace_back(name, place);
   if (gateway_names.contains(name))
     error(place,
-          fmt::format("'{}' is a gateway: it has no program, drive, inputs or parameters of its own", name));
+          fmt::format("'{}' is a gateway: it has no program, drive, inputs or parameters of its own, only signals", name));
 }
 
 std::string PlantReader::station_name(const toml::table& table, std::string_view key) {

@@ -83,8 +83,8 @@ class PlantReader {
   // The same, `otherwise` when it is not there and -1 with an error.
   int64_t duration(const toml::table& table, std::string_view key, int64_t otherwise);
 
-  // The text of a key that names a station, which must be there.
-  std::string station(const toml::table& table, std::string_view what);
+  // The text of a key that names a station, which must be there. `gateway_too`: what is wanted of it a gateway has, too.
+  std::string station(const toml::table& table, std::string_view what, bool gateway_too = false);
   std::string station_name(const toml::table& table, std::string_view key);  // may be absent
   // The bus a key names; it must be of this kind (a serial key takes both serial kinds).
   BusUse bus_use(const toml::table& table, std::string_view key, BusKind kind);

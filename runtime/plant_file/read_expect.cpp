@@ -11,7 +11,7 @@ void read_expectation(PlantReader& reader, const toml::table& table) {
       {"station", "at", "variable", "parameter", "input", "output", "state", "signal", "equals"});
   Expectation expected;
   expected.place = place_of(table);
-  expected.signal.station = reader.station(table, kWhat);
+  expected.signal.station = reader.station(table, kWhat, table.contains("signal"));
   reader.signal(table, kWhat, {"variable", "parameter", "input", "output", "state", "signal"},
                 expected.signal);
   expected.at = reader.duration(table, "at", kWhat, true);

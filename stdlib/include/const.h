@@ -102,6 +102,7 @@
 #define GS_DCVOLT      6          // dc-link voltage
 #define GS_ANINP       7          // analog inputs
 #define GS_CAM         8          // cam
+#define GS_PODATA10    9          // po-data 10
 
 // _SetSys (values ours)
 #define SS_N11         0          // fixed setpoint 11
@@ -119,6 +120,7 @@
 #define SS_BRAKE       12         // brake function
 #define SS_RAMPTYPE    13         // ramp type
 #define SS_RESET       14         // reset
+#define SS_PIDATA10    15         // pi-data 10
 
 // _FaultReaction (values of P830, 1053 1610 p. 81; names ours)
 #define FR_NORESP      0          // no response

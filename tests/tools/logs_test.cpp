@@ -20,7 +20,7 @@ using runtime::Time;
 struct Taken {
   std::vector<LogEntry> can;
   std::vector<runtime::SerialEntry> serial;
-  std::vector<DpEntry> dp;
+  std::vector<runtime::ProfibusEntry> dp;
   std::vector<std::pair<LogPlace, std::string>> wrong;
 };
 
@@ -28,7 +28,7 @@ Taken taken(std::string_view log) {
   Taken all;
   read_log(log, {[&](const LogEntry& entry, LogPlace) { all.can.push_back(entry); },
                  [&](const runtime::SerialEntry& entry, LogPlace) { all.serial.push_back(entry); },
-                 [&](const DpEntry& entry, LogPlace) { all.dp.push_back(entry); },
+                 [&](const runtime::ProfibusEntry& entry, LogPlace) { all.dp.push_back(entry); },
                  [&](LogPlace place, const std::string& text) { all.wrong.emplace_back(place, text); }});
   return all;
 }
@@ -122,8 +122,9 @@ TEST(Logs, PcapngKeepsNanosecondsTelegramsAndTheirErrors) {
   runtime::Reception bad = good;
   bad.telegram = tl::unexpected(runtime::SerialError::Parity);
   writer->serial("line1", bad);
-  const std::vector<uint8_t> token{0xDC, 2, 1};
-  writer->dp(7, "dp", token);
+  const profibus::Octets token{0xDC, 2, 1};
+  writer->dp("dp", runtime::reception_of(token, 7, 8, std::nullopt));
+  writer->dp("dp", runtime::reception_of(token, 9, 10, profibus::FrameError::Parity));
   const Taken got = taken(out.str());
   EXPECT_TRUE(got.wrong.empty());
   ASSERT_EQ(got.can.size(), 1U);
@@ -134,8 +135,12 @@ TEST(Logs, PcapngKeepsNanosecondsTelegramsAndTheirErrors) {
   EXPECT_TRUE(got.serial[0].reception.telegram == good.telegram);
   ASSERT_FALSE(got.serial[1].reception.telegram);
   EXPECT_EQ(got.serial[1].reception.telegram.error(), runtime::SerialError::Parity);
-  ASSERT_EQ(got.dp.size(), 1U);
-  EXPECT_EQ(got.dp[0].octets, token);
+  ASSERT_EQ(got.dp.size(), 2U);
+  for (const runtime::ProfibusEntry& entry : got.dp) EXPECT_EQ(entry.reception.octets, token);
+  EXPECT_EQ(got.dp[0].reception.start, 7);
+  EXPECT_TRUE(got.dp[0].reception.frame);
+  ASSERT_FALSE(got.dp[1].reception.frame) << "a parity error is not in the octets";
+  EXPECT_EQ(got.dp[1].reception.frame.error(), profibus::FrameError::Parity);
 }
 
 TEST(Logs, BlfWithContainersThatCutObjects) {

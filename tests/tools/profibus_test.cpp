@@ -187,6 +187,29 @@ TEST_F(ProfibusTools, AMasterThatSpeaksIsNotDisturbedAndIsMonitored) {
   EXPECT_TRUE(contains(heard.err, ", 40 shown")) << heard.err;
 }
 
+// pcapng and the log of serial lines of one run tell the same, also of frames that the line damaged: a parity error is not
+// in the octets.
+TEST(ProfibusLogs, PcapngHasTheFramesOfTheSerialLog) {
+  const TemporaryFolder folder;
+  std::string controller = kController;
+  controller = controller.substr(0, controller.find("[[control.command]]"));
+  folder.write("plant.toml", std::string(kLine) + kStations + controller +
+                                 "[[fault]]\nbus = \"dp\"\nkind = \"parity\"\nfrom = \"100ms\"\nuntil = \"110ms\"\n");
+  const auto run = [&](const char* option, const char* log) {
+    const CommandResult result = run_ipos({"run", "plant.toml", "--for", "200ms", option, log}, folder.path());
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const CommandResult decoded = run_ipos({"bus", "decode", log, "--format", "json"}, folder.path());
+    EXPECT_EQ(decoded.exit_code, 0) << decoded.err;
+    return decoded.out;
+  };
+  const std::string serial = run("--serial-log", "dp.log"), pcapng = run("--log", "dp.pcapng");
+  EXPECT_EQ(serial, pcapng);
+  EXPECT_TRUE(contains(serial, "\"void\":\"parity error\"")) << serial.substr(0, 2000);
+  EXPECT_GT(std::count(serial.begin(), serial.end(), '\n'), 100);
+  const CommandResult empty = run_ipos({"run", "plant.toml", "--for", "10ms", "--log", "dp.log"}, folder.path());
+  EXPECT_TRUE(contains(empty.err, "warning: dp.log stays empty")) << empty.err;
+}
+
 // 11 bits an octet: the request of 11 octets, the answer of 17, and the request again 1 ms later: 121, 187, 121. From the
 // first begin to the last end it is 1 ms and 242 us, 621 bits at 500 kbaud.
 TEST(ProfibusLoadOfALog, CountsBitsByKindOfFrame) {

@@ -57,14 +57,14 @@ class Decoder {
       fmt::print("{} {} ", runtime::serial_time_text(*entry.time), compiler::printable(entry.line));
     fmt::print("{}\n", text);
   }
-  void take(const DpEntry& entry) {
-    const auto frame = profibus::decode(entry.octets);
+  void take(const runtime::ProfibusEntry& entry) {
+    const auto& [frame, octets, start, end] = entry.reception;
     const std::string text = frame ? profibus::describe(*frame)
                                    : fmt::format("void, {}: {}", frame_error_text(frame.error()),
-                                                 profibus::hex_text(entry.octets));
+                                                 profibus::hex_text(octets));
     if (json_) return print(telegram_json(entry), text);
     if (!entry.line.empty())
-      fmt::print("{} {} ", runtime::serial_time_text(entry.time), compiler::printable(entry.line));
+      fmt::print("{} {} ", runtime::serial_time_text(start), compiler::printable(entry.line));
     fmt::print("{}\n", text);
   }
 
@@ -86,7 +86,7 @@ int decode(const DecodeFlags& flags) {
   const size_t bad = read_log_file(
       flags.log, {[&](const runtime::LogEntry& entry, LogPlace place) { decoder.take(entry, place); },
                   [&](const runtime::SerialEntry& entry, LogPlace) { decoder.take(entry); },
-                  [&](const DpEntry& entry, LogPlace) { decoder.take(entry); },
+                  [&](const runtime::ProfibusEntry& entry, LogPlace) { decoder.take(entry); },
                   {}});
   return bad == 0 ? kGood : kBadInput;
 }

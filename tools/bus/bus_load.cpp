@@ -118,9 +118,9 @@ int measure(const LoadFlags& flags) {
                                                [&](const runtime::SerialEntry&, LogPlace place) {
                                                  other(place, profibus.empty() ? "CAN" : "PROFIBUS");
                                                },
-                                               [&](const DpEntry& entry, LogPlace place) {
+                                               [&](const runtime::ProfibusEntry& entry, LogPlace place) {
                                                  if (!load.windows().empty()) return other(place, "CAN");
-                                                 profibus.add(entry.time, entry.octets);
+                                                 profibus.add(entry.reception);
                                                },
                                                {}});
   if (!profibus.empty())

@@ -52,8 +52,8 @@ void Monitor::take(const runtime::SerialEntry& entry) {
   fmt::print("{}\n", *text);
 }
 
-void Monitor::take(const DpEntry& entry) {
-  take(entry.time, entry.line, {profibus::decode(entry.octets), entry.octets, entry.time, entry.time});
+void Monitor::take(const runtime::ProfibusEntry& entry) {
+  take(entry.reception.start, entry.line, entry.reception);
 }
 
 void Monitor::take(Time time, const std::string& line, const profibus::Reception& reception) {

@@ -42,7 +42,7 @@ class Monitor {
   void take(const runtime::LogEntry& entry);
   void take(runtime::Time time, const std::string& line, const runtime::Reception& reception);
   void take(const runtime::SerialEntry& entry);
-  void take(const DpEntry& entry);
+  void take(const runtime::ProfibusEntry& entry);
   void take(runtime::Time time, const std::string& line, const profibus::Reception& reception);
   // Frames or bytes that were lost before they could be read. Losses in a row are shown once, with their sum
   // behind.

@@ -109,7 +109,7 @@ class Showing {
   LogReader reader(bool in_log) {
     return {[this, in_log](const runtime::LogEntry& entry, LogPlace) { take(entry, entry.time, in_log); },
             [this, in_log](const runtime::SerialEntry& entry, LogPlace) { take(entry, entry.time, in_log); },
-            [this, in_log](const DpEntry& entry, LogPlace) { take(entry, entry.time, in_log); },
+            [this, in_log](const runtime::ProfibusEntry& entry, LogPlace) { take(entry, entry.reception.start, in_log); },
             [this](LogPlace place, const std::string& message) { wrong(place, message); }};
   }
 

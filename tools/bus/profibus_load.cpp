@@ -25,7 +25,8 @@ void ProfibusLoad::Count::add(Time time, uint64_t more) {
   bits += more;
 }
 
-void ProfibusLoad::add(Time time, const profibus::Octets& octets) {
+void ProfibusLoad::add(const profibus::Reception& reception) {
+  const auto& [frame, octets, time, end] = reception;
   last_bits_ = profibus::kCharacterBits * octets.size();
   all_.add(time, last_bits_);
   const auto window = static_cast<size_t>((all_.last - all_.first) / kSecond);
@@ -33,7 +34,6 @@ void ProfibusLoad::add(Time time, const profibus::Octets& octets) {
   constexpr size_t kMostWindows = 100'000;
   windows_.resize(std::max(windows_.size(), std::min(window, kMostWindows - 1) + 1));
   windows_.back().add(time, last_bits_);
-  const auto frame = profibus::decode(octets);
   kinds_[frame ? profibus::frame_kind(*frame) : "void"].add(time, last_bits_);
 }
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/bus/profibus/fdl_frame.hpp"
+#include "runtime/bus/profibus/fdl_receiver.hpp"
 #include "runtime/clock/event_queue.hpp"
 
 namespace ipos::tools {
@@ -29,7 +29,7 @@ class ProfibusLoad {
   explicit ProfibusLoad(uint32_t baud) : baud_(baud) {}
 
   // In rising order of time.
-  void add(runtime::Time time, const profibus::Octets& octets);
+  void add(const profibus::Reception& reception);
   bool empty() const { return all_.frames == 0; }
 
   std::string text() const;

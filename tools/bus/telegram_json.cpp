@@ -77,9 +77,9 @@ ordered_json telegram_json(const runtime::SerialEntry& entry) {
   return fields;
 }
 
-ordered_json telegram_json(const DpEntry& entry) {
-  ordered_json fields = head(entry.time, entry.line, entry.octets);
-  const auto frame = profibus::decode(entry.octets);
+ordered_json telegram_json(const runtime::ProfibusEntry& entry) {
+  ordered_json fields = head(entry.reception.start, entry.line, entry.reception.octets);
+  const auto& frame = entry.reception.frame;
   if (!frame) {
     fields["void"] = frame_error_text(frame.error());
     return fields;

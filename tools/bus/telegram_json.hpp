@@ -10,6 +10,6 @@ namespace ipos::tools {
 
 nlohmann::ordered_json telegram_json(const runtime::LogEntry& entry);
 nlohmann::ordered_json telegram_json(const runtime::SerialEntry& entry);
-nlohmann::ordered_json telegram_json(const DpEntry& entry);
+nlohmann::ordered_json telegram_json(const runtime::ProfibusEntry& entry);
 
 }  // namespace ipos::tools

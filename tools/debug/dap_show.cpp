@@ -94,6 +94,11 @@ Json DapServer::scope_values(uint32_t station, int scope) const {
       text(fmt::format("PO{}", n + 1), fmt::format("{:#06x}", drive.po()[n]));
       text(fmt::format("PI{}", n + 1), fmt::format("{:#06x}", pi[n]));
     }
+    for (size_t n = 0; unit.has_further_words() && n < runtime::kFurtherWords; ++n) {
+      const size_t number = runtime::kProcessWords + n + 1;
+      text(fmt::format("PO{}", number), fmt::format("{:#06x}", drive.further_po()[n]));
+      text(fmt::format("PI{}", number), fmt::format("{:#06x}", drive.further_pi()[n]));
+    }
     text("status word 1", fmt::format("{:#06x}", drive.status_word_1()));
   } else if (scope == SbusObjects) {
     for (const int number : {1, 2})

@@ -46,8 +46,8 @@ void read_log_line(std::string_view row, size_t line, const LogReader& reader) {
     else
       reader.wrong({line, entry.error().column}, entry.error().message);
   };
-  if (auto frame = runtime::parse_profibus_line(row))
-    reader.dp({frame->time, std::move(frame->line), std::move(frame->octets)}, {line, 1});
+  if (const auto frame = runtime::parse_profibus_line(row))
+    reader.dp(*frame, {line, 1});
   else if (runtime::is_serial_line(row))
     take(runtime::parse_serial_line(row, line), reader.serial);
   else

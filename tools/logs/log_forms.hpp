@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "runtime/bus/log/candump.hpp"
+#include "runtime/bus/log/profibus_log.hpp"
 #include "runtime/bus/log/serial_log.hpp"
 
 namespace ipos::tools {
@@ -26,13 +27,6 @@ enum class LogForm : uint8_t {
 // By the first bytes of a log.
 LogForm log_form(std::string_view begin);
 
-// A frame of a PROFIBUS line as it was heard.
-struct DpEntry {
-  runtime::Time time;
-  std::string line;
-  std::vector<uint8_t> octets;
-};
-
 // A mistake in a binary log has a byte instead of a line.
 struct LogPlace {
   size_t line = 0;    // from 1; 0: binary
@@ -46,7 +40,7 @@ std::string place_text(const std::string& path, LogPlace place);
 struct LogReader {
   std::function<void(const runtime::LogEntry&, LogPlace)> can;
   std::function<void(const runtime::SerialEntry&, LogPlace)> serial;
-  std::function<void(const DpEntry&, LogPlace)> dp;
+  std::function<void(const runtime::ProfibusEntry&, LogPlace)> dp;
   std::function<void(LogPlace, const std::string& message)> wrong;
 };
 

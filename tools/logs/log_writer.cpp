@@ -6,6 +6,8 @@
 #include <algorithm>
 
 #include "runtime/bus/log/candump.hpp"
+#include "runtime/plant/can_bus.hpp"
+#include "runtime/plant/profibus_bus.hpp"
 #include "tools/logs/write_pcapng.hpp"
 
 namespace ipos::tools {
@@ -103,7 +105,12 @@ std::unique_ptr<LogWriter> make_log_writer(std::string_view path, std::ostream& 
 
 PlantLog::PlantLog(runtime::Plant& plant, LogWriter& writer) : writer_(writer) {
   plant.add_observer(static_cast<runtime::CanObserver&>(*this));
-  if (writer.has_serial()) plant.add_observer(static_cast<runtime::SerialObserver&>(*this));
+  for (const auto& bus : plant.buses())
+    heard_ = heard_ || writer.has_serial() || dynamic_cast<runtime::CanBus*>(bus.get()) != nullptr;
+  if (!writer.has_serial()) return;
+  plant.add_observer(static_cast<runtime::SerialObserver&>(*this));
+  for (const auto& bus : plant.buses())
+    if (auto* profibus = dynamic_cast<runtime::ProfibusBus*>(bus.get())) profibus->line().add_observer(*this);
 }
 
 void PlantLog::finish() {
@@ -118,6 +125,11 @@ void PlantLog::on_frame(const runtime::CanLine& line, const runtime::FrameRecord
 void PlantLog::on_character(const runtime::Rs485Line& line, runtime::NodeId /*sender*/,
                             const runtime::Character& character) {
   if (const auto reception = receivers_[line.name()].take(character)) writer_.serial(line.name(), *reception);
+}
+
+void PlantLog::on_frame(const profibus::Line& line, profibus::NodeId /*sender*/,
+                        const profibus::Reception& reception) {
+  writer_.dp(line.name(), reception);
 }
 
 }  // namespace ipos::tools

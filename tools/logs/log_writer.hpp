@@ -19,7 +19,7 @@ class LogWriter {
   virtual void can(runtime::Time time, const std::string& bus, const runtime::Frame& frame) = 0;
   // Forms of CAN alone leave these out.
   virtual void serial(const std::string& /*line*/, const runtime::Reception& /*reception*/) {}
-  virtual void dp(runtime::Time /*time*/, const std::string& /*line*/, std::span<const uint8_t> /*octets*/) {}
+  virtual void dp(const std::string& /*line*/, const profibus::Reception& /*reception*/) {}
   virtual bool has_serial() const { return false; }
 };
 
@@ -27,7 +27,9 @@ class LogWriter {
 std::unique_ptr<LogWriter> make_log_writer(std::string_view path, std::ostream& out);
 
 // The buses of a plant into a log.
-class PlantLog final : private runtime::CanObserver, private runtime::SerialObserver {
+class PlantLog final : private runtime::CanObserver,
+                       private runtime::SerialObserver,
+                       private profibus::LineObserver {
  public:
   // Both must outlive it.
   PlantLog(runtime::Plant& plant, LogWriter& writer);
@@ -36,6 +38,8 @@ class PlantLog final : private runtime::CanObserver, private runtime::SerialObse
 
   // At the end of a run: telegrams that were not completed.
   void finish();
+  // The form holds CAN only, and the plant has none.
+  bool stays_empty() const { return !heard_; }
 
  private:
   void on_frame(const runtime::CanLine& line, const runtime::FrameRecord& record) override;
@@ -43,8 +47,12 @@ class PlantLog final : private runtime::CanObserver, private runtime::SerialObse
   void on_character(const runtime::Rs485Line& line, runtime::NodeId sender,
                     const runtime::Character& character) override;
   void on_serial_event(const runtime::Rs485Line&, const runtime::SerialEvent&) override {}
+  void on_frame(const profibus::Line& line, profibus::NodeId sender,
+                const profibus::Reception& reception) override;
+  void on_line_event(const profibus::Line&, const profibus::LineEvent&) override {}
 
   LogWriter& writer_;
+  bool heard_ = false;  // a line of the plant has frames of a kind that the form holds
   std::map<std::string, runtime::SerialReceiver> receivers_;  // by line
 };
 

@@ -130,7 +130,7 @@ class PcapngReader {
     switch (static_cast<LinkType>(on.link)) {
       case LinkType::SocketCan: return can(on, time, data);
       case LinkType::User0Serial: return serial(on, time, data, comment);
-      case LinkType::User1Dp: return dp(on, time, data);
+      case LinkType::User1Dp: return dp(on, time, data, comment);
     }
     return wrong(at_, fmt::format("link type {} is no CAN of SocketCAN, RS-485 or PROFIBUS", on.link));
   }
@@ -169,10 +169,13 @@ class PcapngReader {
     return true;
   }
 
-  bool dp(const Interface& on, Time time, const Bytes& data) {
-    DpEntry entry{time, on.name, {}};
-    for (size_t n = 0; n < data.size(); ++n) entry.octets.push_back(data.u8(n));
-    reader_.dp(entry, {0, at_});
+  bool dp(const Interface& on, Time time, const Bytes& data, std::string_view comment) {
+    profibus::Octets octets;
+    for (size_t n = 0; n < data.size(); ++n) octets.push_back(data.u8(n));
+    std::optional<profibus::FrameError> error;
+    if (comment.starts_with(pcapng::kVoid))
+      error = profibus::frame_error(comment.substr(std::string_view(pcapng::kVoid).size()));
+    reader_.dp({on.name, runtime::reception_of(std::move(octets), time, time, error)}, {0, at_});
     return true;
   }
 

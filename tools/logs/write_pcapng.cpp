@@ -53,8 +53,9 @@ void PcapngWriter::serial(const std::string& line, const runtime::Reception& rec
       reception.telegram ? "" : pcapng::kVoid + std::string(serial_error_text(reception.telegram.error())));
 }
 
-void PcapngWriter::dp(runtime::Time time, const std::string& line, std::span<const uint8_t> octets) {
-  packet(time, line, LinkType::User1Dp, octets);
+void PcapngWriter::dp(const std::string& line, const profibus::Reception& reception) {
+  packet(reception.start, line, LinkType::User1Dp, reception.octets,
+         reception.frame ? "" : pcapng::kVoid + std::string(frame_error_text(reception.frame.error())));
 }
 
 void PcapngWriter::packet(runtime::Time time, const std::string& bus, LinkType link,

@@ -11,7 +11,7 @@ class PcapngWriter final : public LogWriter {
   explicit PcapngWriter(std::ostream& out);
   void can(runtime::Time time, const std::string& bus, const runtime::Frame& frame) override;
   void serial(const std::string& line, const runtime::Reception& reception) override;
-  void dp(runtime::Time time, const std::string& line, std::span<const uint8_t> octets) override;
+  void dp(const std::string& line, const profibus::Reception& reception) override;
   bool has_serial() const override { return true; }
 
  private:

@@ -102,6 +102,11 @@ class Logs {
     if (file_.is_open()) {
       writer_ = make_log_writer(flags.log, file_.stream());
       log_.emplace(plant, *writer_);
+      if (log_->stays_empty())
+        fmt::print(stderr,
+                   "ipos: warning: {} stays empty: its form has CAN frames only, and the plant has no CAN; name it "
+                   ".pcapng, or use --serial-log\n",
+                   flags.log);
     }
     if (!serial_file_.is_open()) return;
     plant.add_observer(serial_log_.emplace(serial_file_.stream()));
@@ -342,7 +347,7 @@ void add_run(cli::Verb& app) {
             "show named variables at the end, all or --watch=NAME,..., also other signals");
   verb.option(
       "--log", flags->log,
-      "write the frames of all buses, in the form of its ending: .pcapng (RS-485, too), .asc, .trc, else "
+      "write the frames of all buses, in the form of its ending: .pcapng (RS-485 and PROFIBUS, too), .asc, .trc, else "
       "candump; - is standard output");
   verb.option("--serial-log", flags->serial_log,
               "write the telegrams of all RS-485 lines; - is standard output");

@@ -200,18 +200,13 @@ class PlantTab final : public Tab {
   }
 
   void power(const Arguments& a) {
-    const uint32_t number = host_.station_number(a.text("station"));
+    const std::string name = a.text("station");
     const bool on = a.flag("on");
     runtime::Plant& plant = host_.plant();
-    if (plant.stations()[number]->powered() == on) throw Mistake(on ? "it is on" : "it is off");
-    plant.surroundings().act(plant.now(), [&plant, number, on] {
-      Station& station = *plant.stations()[number];
-      if (station.powered() == on) return;
-      if (on)
-        station.power_on();
-      else
-        station.power_off();
-    });
+    const runtime::Gateway* gateway = plant.find_gateway(name);
+    if ((gateway != nullptr ? gateway->powered() : host_.station(name).powered()) == on)
+      throw Mistake(on ? "it is on" : "it is off");
+    plant.surroundings().act(plant.now(), [&plant, name, on] { plant.set_power(name, on); });
   }
 
   void fault(const Arguments& a) {
@@ -262,6 +257,8 @@ class PlantTab final : public Tab {
     const runtime::Plant& plant = host_.plant();
     Json stations = Json::array();
     for (const auto& station : plant.stations()) stations.push_back(describe(*station));
+    for (const runtime::PlantControl& control : plant.controls())
+      if (control.gateway) stations.push_back(describe(*control.gateway));
     Json buses = Json::array();
     const auto add = [&](const auto& line, runtime::BusKind kind, Json faults) {
       Json on_it = Json::array();
@@ -280,8 +277,9 @@ class PlantTab final : public Tab {
     for (const auto& bus : profibus_lines(plant)) add(bus->line(), bus->kind(), Json::array());
     Json controls = Json::array();
     for (const runtime::PlantControl& control : plant.controls())
-      for (const std::string& bus : lines_of(*control.config))
-        controls.push_back({{"name", control.config->name}, {"bus", bus}});
+      if (!control.gateway)
+        for (const std::string& bus : lines_of(*control.config))
+          controls.push_back({{"name", control.config->name}, {"bus", bus}});
     Json wires = Json::array();
     const auto name = [](const runtime::Signal& signal) { return signal.station + "." + signal.name; };
     for (const runtime::Wire& wire : plant.file().wires)
@@ -321,7 +319,56 @@ class PlantTab final : public Tab {
             {"lines", lines_of(config)}};
   }
 
+  // A card without display and terminals.
+  static Json describe(const runtime::Gateway& gateway) {
+    const runtime::ControlConfig& config = gateway.config();
+    return {{"name", config.name},
+            {"unit", "gateway"},
+            {"title", "gateway from PROFIBUS to SBus"},
+            {"program", ""},
+            {"drive", false},
+            {"inputs", Json::array()},
+            {"outputs", Json::array()},
+            {"analog", Json::array()},
+            {"lines", lines_of(config)}};
+  }
+
   // --- how it stands ---
+
+  // As fault and reason what keeps the DP master from the drives.
+  static Json state(const runtime::Gateway& gateway) {
+    Json out = Json::array(), in = Json::array();
+    const auto add = [](Json& list, const runtime::ProcessWords& words) {
+      for (const Json& word : process_words(words)) list.push_back(word);
+    };
+    std::string lost;
+    for (size_t n = 0; n < gateway.drive_count(); ++n) {
+      const runtime::Gateway::Drive drive = gateway.drive(n);
+      add(out, drive.output);
+      add(in, gateway.input(n));
+      if (drive.lost) lost += fmt::format("{}{}", lost.empty() ? "" : ", ", drive.address);
+    }
+    std::string why;
+    if (!gateway.powered())
+      why = "the power is off";
+    else if (!gateway.exchanges())
+      why = "no DP master exchanges data with it";
+    else if (!lost.empty())
+      why = "no answer from the drives with SBus address " + lost;
+    return {{"powered", gateway.powered()},
+            {"in", 0},
+            {"forced", 0},
+            {"out", 0},
+            {"analog", Json::object()},
+            {"state", !gateway.powered() ? "off" : gateway.exchanges() ? "data exchange" : "waits for its DP master"},
+            {"enabled", why.empty()},
+            {"why", why},
+            {"fault", 0},
+            {"fault_text", ""},
+            {"error", false},
+            {"pd_out", std::move(out)},
+            {"pd_in", std::move(in)}};
+  }
 
   static Json state(const Station& station) {
     Json json{{"powered", station.powered()}};
@@ -380,6 +427,11 @@ class PlantTab final : public Tab {
       Json now = state(*station);
       if (subscription.is_news("s" + station->config().name, now))
         stations[station->config().name] = std::move(now);
+    }
+    for (const runtime::PlantControl& control : plant.controls()) {
+      if (!control.gateway) continue;
+      Json now = state(*control.gateway);
+      if (subscription.is_news("s" + control.config->name, now)) stations[control.config->name] = std::move(now);
     }
     Json buses = Json::object();
     const auto add = [&](const std::string& name, const runtime::LineLoad& load) {

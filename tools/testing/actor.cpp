@@ -45,8 +45,7 @@ void Actor::plan(const Item& item, const Step& step, Time at) {
     if (const auto* fault = std::get_if<DriveFaultStep>(&step))
       station(fault->station).drive().state().raise_fault(fault->number);
     if (const auto* program = std::get_if<ProgramStep>(&step)) problem = runtime::Hands::order(station(program->station), program->action);
-    if (const auto* power = std::get_if<PowerStep>(&step))
-      power->on ? station(power->station).power_on() : station(power->station).power_off();
+    if (const auto* power = std::get_if<PowerStep>(&step)) plant_.set_power(power->station, power->on);
     if (problem) on_problem_(item, *problem);
   });
 }

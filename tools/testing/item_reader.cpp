@@ -5,10 +5,11 @@
 
 namespace ipos::tools::testing {
 
-std::string read_item_station(PlantReader& reader, const toml::table& table, std::string_view what) {
+std::string read_item_station(PlantReader& reader, const toml::table& table, std::string_view what,
+                              bool gateway_too) {
   const auto& stations = reader.result.plant.stations;
   if (!table.contains("station") && stations.size() == 1) return stations.front().name;
-  return reader.station(table, what);
+  return reader.station(table, what, gateway_too);
 }
 
 const runtime::BusConfig* read_item_bus(PlantReader& reader, const toml::table& table,

@@ -12,8 +12,9 @@ using runtime::PlantReader;
 // The keys when and why of every item.
 #define IPOS_ITEM_KEYS "at", "after", "note"
 
-// `station`; of a plant with one station it may be left out.
-std::string read_item_station(PlantReader& reader, const toml::table& table, std::string_view what);
+// `station`; of a plant with one station it may be left out. `gateway_too`: it may be a gateway.
+std::string read_item_station(PlantReader& reader, const toml::table& table, std::string_view what,
+                              bool gateway_too = false);
 // The bus of the table, which must exist; nullptr with an error.
 const runtime::BusConfig* read_item_bus(PlantReader& reader, const toml::table& table, std::string_view what);
 // "PO1" to "PO3": 0 to 2, with `inputs` "PI1" to "PI3": 3 to 5; nothing with an error.

@@ -44,13 +44,14 @@ runtime::Station& Probe::station(const std::string& name) {
 }
 
 Reader Probe::reader_of(const Subject& subject, std::string& why) {
-  const runtime::Station& station = this->station(subject.signal.station);
-  if (subject.kind == Subject::Kind::ProcessData)
+  if (subject.kind == Subject::Kind::ProcessData) {
+    const runtime::Station& station = this->station(subject.signal.station);
     return [&station, word = subject.word] {
       const runtime::Drive& drive = station.drive().state();
       return int64_t{word < 3 ? drive.po()[word] : drive.pi()[word - 3U]};
     };
-  const auto port = runtime::SignalPort::find(plant_.stations(), subject.signal, why);
+  }
+  const auto port = plant_.find_port(subject.signal, why);
   if (!port) return {};
   return [port = *port] { return int64_t{port.read()}; };
 }

@@ -33,7 +33,7 @@ std::optional<Subject> read_subject(PlantReader& reader, const toml::table& tabl
     if (table.contains(key)) return read_event(reader, table, key);
   if (table.contains("bus")) return read_event(reader, table, nullptr);
   Subject subject;
-  subject.signal.station = read_item_station(reader, table, kExpect);
+  subject.signal.station = read_item_station(reader, table, kExpect, table.contains("signal"));
   if (const toml::node* node = table.get("process_data")) {
     const auto word = read_word(reader, *node, true);
     if (!word) return std::nullopt;

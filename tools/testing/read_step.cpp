@@ -107,7 +107,7 @@ std::optional<Step> read_program(PlantReader& reader, const toml::table& table) 
 }
 
 std::optional<Step> read_power(PlantReader& reader, const toml::table& table) {
-  const std::string station = read_item_station(reader, table, kStep);
+  const std::string station = read_item_station(reader, table, kStep, true);
   const auto choice = read_choice(reader, table, "power", {"off", "on"});
   if (!choice) return std::nullopt;
   return PowerStep{station, *choice == 1};

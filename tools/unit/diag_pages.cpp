@@ -130,9 +130,15 @@ std::string DiagPages::process_data() const {
   for (const char* number : {"870", "871", "872"}) text += row(number);
   for (size_t n = 0; n < drive.po().size(); ++n)
     text += line(fmt::format("PO{}", n + 1), word(drive.po()[n]));
+  const auto further = [&](std::string_view name, const runtime::FurtherWords& words) {
+    for (size_t n = 0; station_.has_further_words() && n < words.size(); ++n)
+      text += line(fmt::format("{}{}", name, drive.po().size() + n + 1), word(words[n]));
+  };
+  further("PO", drive.further_po());
   for (const char* number : {"873", "874", "875"}) text += row(number);
   const auto pi = drive.pi();
   for (size_t n = 0; n < pi.size(); ++n) text += line(fmt::format("PI{}", n + 1), word(pi[n]));
+  further("PI", drive.further_pi());
   text += line("PO data enabled", drive.po_data_enabled() ? "yes" : "no");
   text += line("status word 1", word(drive.status_word_1()));
   text += line("state", condition_text(drive.condition()));

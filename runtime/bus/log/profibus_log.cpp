@@ -50,26 +50,44 @@ void ProfibusLog::on_frame(const profibus::Line& line, profibus::NodeId,
        << ' ' << profibus::hex_text(reception.octets) << " | " << reception_text(reception) << '\n';
 }
 
+profibus::Reception reception_of(profibus::Octets octets, Time start, Time end,
+                                 std::optional<profibus::FrameError> error) {
+  auto frame = profibus::decode(octets);
+  if (error) frame = tl::unexpected(*error);
+  return {std::move(frame), std::move(octets), start, end};
+}
+
 std::optional<ProfibusEntry> parse_profibus_line(std::string_view text) {
-  ProfibusEntry entry;
-  const bool is_void = text.find(kVoidFrame) != std::string_view::npos;
-  const bool logged = text.substr(0, text.find('|')).find('.') != std::string_view::npos;
+  const size_t bar = text.find('|');
+  const bool logged = text.substr(0, bar).find('.') != std::string_view::npos;
+  std::string line;
+  Time start = 0, end = 0;
   if (logged) {
-    const auto begin = log_time(next_word(text));
-    if (!begin || !log_time(next_word(text))) return std::nullopt;
-    entry.time = *begin;
-    entry.line = next_word(text);
+    const auto from = log_time(next_word(text)), to = log_time(next_word(text));
+    if (!from || !to) return std::nullopt;
+    start = *from;
+    end = *to;
+    line = next_word(text);
   }
-  for (std::string_view word = next_word(text); !word.empty() && word != "|"; word = next_word(text)) {
+  profibus::Octets octets;
+  std::string_view word = next_word(text);
+  for (; !word.empty() && word != "|"; word = next_word(text)) {
     uint8_t octet = 0;
-    const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), octet, 16);
-    if (status != std::errc() || end != word.data() + word.size() || word.size() != 2) return std::nullopt;
-    entry.octets.push_back(octet);
+    const auto [last, status] = std::from_chars(word.data(), word.data() + word.size(), octet, 16);
+    if (status != std::errc() || last != word.data() + word.size() || word.size() != 2) return std::nullopt;
+    octets.push_back(octet);
+  }
+  std::optional<profibus::FrameError> error;
+  if (const size_t at = text.find(kVoidFrame); logged && at != std::string_view::npos) {
+    std::string_view reason = text.substr(at + kVoidFrame.size());
+    reason = reason.substr(0, reason.find_last_not_of(" \t\r") + 1);
+    error = profibus::frame_error(reason);
+    if (!error) return std::nullopt;
   }
   // MOVILINK begins with 02 or 1D; in its log a void telegram may begin with anything.
-  const bool begins_a_frame = !entry.octets.empty() && profibus::frame_size(entry.octets).has_value();
-  if (!begins_a_frame || (logged && !is_void && !profibus::decode(entry.octets))) return std::nullopt;
-  return entry;
+  const bool begins_a_frame = !octets.empty() && profibus::frame_size(octets).has_value();
+  if (!error && (!begins_a_frame || (logged && !profibus::decode(octets)))) return std::nullopt;
+  return ProfibusEntry{std::move(line), reception_of(std::move(octets), start, end, error)};
 }
 
 }  // namespace ipos::runtime

@@ -30,10 +30,14 @@ std::string reception_text(const profibus::Reception& reception);
 
 // A line of the log, or a bare frame.
 struct ProfibusEntry {
-  Time time = 0;     // begin
   std::string line;  // of a bare frame empty
-  profibus::Octets octets;
+  profibus::Reception reception;
 };
+
+// What was heard, from its octets: a frame, or why there is none. `error` is that of the receiver, who also sees what is
+// not in the octets (parity, gaps); without one the octets tell.
+profibus::Reception reception_of(profibus::Octets octets, Time start, Time end,
+                                 std::optional<profibus::FrameError> error);
 
 // Nothing for what is of another kind of line: no octets, or octets that begin no frame.
 std::optional<ProfibusEntry> parse_profibus_line(std::string_view text);

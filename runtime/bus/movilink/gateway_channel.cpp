@@ -37,6 +37,11 @@ ParameterTelegram GatewayChannel::answer(const ParameterTelegram& request) const
   return returned;
 }
 
+void GatewayChannel::power_off() {
+  acknowledged_ = busy_ = false;
+  request_ = response_ = {};
+}
+
 void GatewayChannel::on_exchange_done(Time /*now*/, const MovilinkResult& result) {
   finish(result.result != 0
              ? parameter_refusal(request_, ReturnCode::unpack(result.result))

@@ -22,10 +22,14 @@ class GatewayChannel final : public MovilinkClient {
   // The channel of the response to this request.
   ParameterTelegram answer(const ParameterTelegram& request) const;
 
+  // As at first; the master has given up its exchange.
+  void power_off();
+
   void on_exchange_done(Time now, const MovilinkResult& result) override;
 
   bool busy() const { return busy_; }
   const ParameterTelegram& last() const { return response_; }  // answer of the last service
+  uint32_t error() const { return response_.failed() ? response_.data : 0; }  // its return code; 0: it was good
 
  private:
   void finish(const ParameterTelegram& response);

@@ -27,6 +27,11 @@ void SbusControl::start(FrameSender& sender) {
     if (settings_.targets[n].every > 0) queue_.schedule(now, source_, *this, kOutput, n);
 }
 
+void SbusControl::stop() {
+  queue_.cancel_all(*this);
+  answers_.assign(settings_.targets.size(), {});
+}
+
 void SbusControl::on_event(Time now, uint32_t kind, uint64_t argument) {
   switch (kind) {
     case kSync: {

@@ -43,6 +43,8 @@ class SbusControl final : public CanNode, private EventTarget {
 
   // Begins now; `sender` is its place on the line.
   void start(FrameSender& sender);
+  // Until the next start: it sends nothing, and no target has been asked or has answered.
+  void stop();
 
   struct Answers {
     uint64_t asked = 0;  // single PO sent

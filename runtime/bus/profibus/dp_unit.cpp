@@ -76,8 +76,9 @@ void DpUnit::read_inputs(Time now, std::span<uint8_t> inputs) {
     inputs = inputs.subspan(kChannelSize);
   }
   const runtime::ProcessWords words = drive_.input(now);
+  const FurtherWords further = drive_.further_input(now);
   for (size_t n = 0; n < inputs.size() / 2; ++n) {
-    const uint16_t word = n < words.size() ? words[n] : 0;  // a drive has three
+    const uint16_t word = n < words.size() ? words[n] : further[n - words.size()];
     inputs[2 * n] = static_cast<uint8_t>(word >> 8);
     inputs[2 * n + 1] = static_cast<uint8_t>(word);
   }

@@ -23,9 +23,13 @@ runtime::ParameterTelegram execute(Time now, FieldbusParameters& parameters,
 // one, though a master can choose up to 650.25 s (the limit is ours).
 int32_t fieldbus_timeout(std::optional<Time> watchdog);
 
+inline constexpr size_t kMostWords = 10;  // process data in one direction, of any configuration
+using FurtherWords = std::array<uint16_t, kMostWords - runtime::kSbusProcessWords>;
+
 // The drive beside its parameters.
 class FieldbusDrive : public runtime::ProcessDataServer {
  public:
+  virtual FurtherWords further_input(Time /*now*/) { return {}; }       // PI4 to PI10
   virtual void set_fieldbus_timeout(Time now, int32_t hundredths) = 0;  // P571, P819
   virtual void fieldbus_timeout_expired(Time now) = 0;                  // the reaction is P572, P831
   virtual void set_fieldbus_address(Time now, uint8_t address) = 0;     // P073, P093
@@ -54,7 +58,6 @@ class DpUnit final : public SlaveUnit {
   std::optional<Time> accessed() const { return accessed_; }
 
  private:
-  static constexpr size_t kMostWords = 10;
   void send_words(Time now, std::span<const uint8_t> octets);
 
   FieldbusDrive& drive_;

@@ -2,6 +2,8 @@
 // wait for octets that a damaged length promises.
 #include "runtime/bus/profibus/fdl_frame.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -13,6 +15,11 @@ constexpr uint8_t kAddressMask = 0x7F;
 constexpr uint8_t kLastAccessPoint = 63;
 constexpr size_t kFixedData = 8;  // of SD3
 constexpr size_t kHeadSize = 4;   // of SD2
+
+constexpr std::string_view kErrorTexts[] = {
+#define FRAME_ERROR(name, text) text,
+#include "runtime/bus/profibus/frame_errors.def"
+};
 
 // Octets before DA.
 size_t head_size(Delimiter kind) { return kind == Delimiter::SD2 ? kHeadSize : 1; }
@@ -46,12 +53,12 @@ tl::expected<FdlFrame, FrameError> decode_token(std::span<const uint8_t> octets)
 
 }  // namespace
 
-std::string_view frame_error_text(FrameError error) {
-  static constexpr std::string_view kTexts[] = {
-#define FRAME_ERROR(name, text) text,
-#include "runtime/bus/profibus/frame_errors.def"
-  };
-  return kTexts[static_cast<size_t>(error)];
+std::string_view frame_error_text(FrameError error) { return kErrorTexts[static_cast<size_t>(error)]; }
+
+std::optional<FrameError> frame_error(std::string_view text) {
+  const auto found = std::find(std::begin(kErrorTexts), std::end(kErrorTexts), text);
+  if (found == std::end(kErrorTexts)) return std::nullopt;
+  return static_cast<FrameError>(found - std::begin(kErrorTexts));
 }
 
 uint8_t frame_check(std::span<const uint8_t> octets) {

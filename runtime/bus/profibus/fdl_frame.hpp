@@ -54,6 +54,7 @@ enum class FrameError : uint8_t {
 #include "runtime/bus/profibus/frame_errors.def"
 };
 std::string_view frame_error_text(FrameError error);
+std::optional<FrameError> frame_error(std::string_view text);  // of that text
 
 struct FdlFrame {
   Delimiter kind = Delimiter::SC;

@@ -26,6 +26,7 @@ class SlaveStation final : public Node, private runtime::EventTarget {
   SlaveStation& operator=(const SlaveStation&) = delete;
 
   DpSlave& slave() { return slave_; }
+  const DpSlave& slave() const { return slave_; }
   LatchedSwitches& switches() { return switches_; }
   NodeId node() const { return node_; }
   const BaudSearch& rate() const { return rate_; }

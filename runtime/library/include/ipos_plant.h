@@ -163,7 +163,9 @@ typedef struct ipos_plant_station_info {
   const char* program; /* its file as the plant names it, "" without */
 } ipos_plant_station_info;
 
-/* IPOS_PLANT_NO_STATION. In callbacks. */
+/* IPOS_PLANT_NO_STATION. In callbacks. Gateways have the numbers behind the stations with a drive, and the unit
+ * "gateway": they have power and signals to read (IPOS_PLANT_STATE, IPOS_PLANT_SIGNAL); orders to a drive or a program
+ * are IPOS_PLANT_REFUSED. */
 ipos_plant_status ipos_plant_station_at(ipos_plant* plant, uint32_t station, ipos_plant_station_info* info);
 ipos_plant_status ipos_plant_station(ipos_plant* plant, const char* name, uint32_t* station);
 

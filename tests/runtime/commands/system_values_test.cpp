@@ -90,6 +90,26 @@ TEST(SetSys, ProcessInputData) {
   EXPECT_EQ(rig.drive.pi()[2], 0xFFFE);
 }
 
+// The forms with ten words have the first three of the short ones.
+TEST(GetSys, TenProcessDataWords) {
+  ProgramRig rig("GETSYS H10 = PO-DATA 10\nSETSYS PI-DATA 10 = H30\nEND\n");
+  for (const char* number : {"P873", "P874", "P875"}) rig.preset(number, 9);
+  const uint16_t words[] = {1, 2, 3, 4, 0x8005, 6, 7, 8, 9, 10};
+  rig.drive.take_po(PoSource::Fieldbus, words);
+  rig.set(30, {11, 12, 13, 14, -15, 16, 17, 18, 19, 0x1'2345});
+  rig.tick(4);
+  EXPECT_EQ(rig.h(10), 1);
+  EXPECT_EQ(rig.h(13), 4);
+  EXPECT_EQ(rig.h(14), 0x8005 - 0x10000);
+  EXPECT_EQ(rig.h(19), 10);
+  EXPECT_EQ(rig.h(20), 0) << "ten, and no more";
+  EXPECT_EQ(rig.drive.pi(), (DriveWords{11, 12, 13}));
+  EXPECT_EQ(rig.drive.further_pi(), (FurtherWords{14, 0xFFF1, 16, 17, 18, 19, 0x2345}));
+  // A telegram of three words leaves the others as they are.
+  rig.drive.take_po(PoSource::Fieldbus, std::span(words).first(3));
+  EXPECT_EQ(rig.drive.further_po()[6], 10);
+}
+
 TEST(SetSys, ValuesThatAreParameters) {
   ProgramRig rig(R"(
       SETSYS FIXED SETPOINT 11 = H0

@@ -2,7 +2,7 @@
 import { signal, type Signal } from "@preact/signals";
 
 import { request, requestParts, subscribe } from "../server/connection";
-import { hello, plant } from "../server/live";
+import { hello, isGateway, plant } from "../server/live";
 import type { Parameter, ParameterDifference, ParameterGroup, ParameterValue } from "../server/protocol";
 import { complain } from "../shell/notice";
 
@@ -57,7 +57,7 @@ export function followParameters(): () => void {
   let stop: (() => void) | undefined;
   let followed = "";
   const stopPlant = plant.subscribe((description) => {
-    const names = description?.stations.map((one) => one.name) ?? [];
+    const names = description?.stations.filter((one) => !isGateway(one)).map((one) => one.name) ?? [];
     if (!names.includes(station.peek()) && names[0]) station.value = names[0];
   });
   const change = (name: string) => {

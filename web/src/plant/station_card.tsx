@@ -1,7 +1,7 @@
 // A station: display, shaft and speed, status and fault in words, why it is not enabled, its terminals, its switches.
 import { useMemo } from "preact/hooks";
 
-import { hello } from "../server/live";
+import { hello, isGateway } from "../server/live";
 import type { Plant, Station, StationState } from "../server/protocol";
 import { command } from "../shell/notice";
 import { SevenSegment } from "./seven_segment";
@@ -58,12 +58,14 @@ function ProcessData({ state }: { state: StationState }) {
   );
 }
 
-function Supply({ name, powered }: { name: string; powered: boolean }) {
+function Supply({ name, powered, faults }: { name: string; powered: boolean; faults: boolean }) {
   return (
     <footer>
-      <button aria-label={`Fault reset ${name}`} onClick={() => void command({ do: "reset", station: name })}>
-        Fault reset
-      </button>
+      {faults && (
+        <button aria-label={`Fault reset ${name}`} onClick={() => void command({ do: "reset", station: name })}>
+          Fault reset
+        </button>
+      )}
       <button
         class="spread power"
         aria-label={`Power ${name}`}
@@ -96,7 +98,7 @@ export function StationCard({ station, plant }: { station: Station; plant: Plant
       {state && <Words state={state} />}
       {terminals}
       {state && <ProcessData state={state} />}
-      {hello.value?.mode === "plant" && <Supply name={station.name} powered={state?.powered ?? false} />}
+      {hello.value?.mode === "plant" && <Supply name={station.name} powered={state?.powered ?? false} faults={!isGateway(station)} />}
     </section>
   );
 }

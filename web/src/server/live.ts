@@ -2,7 +2,7 @@
 import { signal } from "@preact/signals";
 
 import { listen, request } from "./connection";
-import type { Hello, Plant, Time } from "./protocol";
+import type { Hello, Plant, Station, Time } from "./protocol";
 
 export const hello = signal<Hello | null>(null);
 export const time = signal<Time>({
@@ -22,8 +22,13 @@ export function secondsText(us: number): string {
   return `${(us / 1e6).toFixed(3)} s`;
 }
 
+// A gateway has no drive, parameters or program.
+export function isGateway(station: Station): boolean {
+  return station.unit === "gateway";
+}
+
 export function stationNames(): string[] {
-  return plant.value?.stations.map((station) => station.name) ?? [];
+  return plant.value?.stations.filter((station) => !isGateway(station)).map((station) => station.name) ?? [];
 }
 
 export function listenToServer(): void {

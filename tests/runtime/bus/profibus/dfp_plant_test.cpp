@@ -31,7 +31,7 @@ TEST(DfpPlant, TenWordsOfAMovidriveB) {
   EXPECT_EQ(ten.master().slave(0).inputs().size(), 20U);
   EXPECT_EQ(ten.input(1), 1500);
   EXPECT_EQ(ten.input(0) & kEnabled, kEnabled);
-  for (size_t word = 3; word < 10; ++word) EXPECT_EQ(ten.input(word), 0) << "the drive has three";
+  for (size_t word = 3; word < 10; ++word) EXPECT_EQ(ten.input(word), 0) << "there is no program";
   EXPECT_EQ(ten.station().profibus()->card().station().slave().diagnosis(ten.plant->now()).ident, 0x6003);
 }
 

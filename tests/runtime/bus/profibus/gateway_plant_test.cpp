@@ -2,6 +2,7 @@
 // it. The process image is ours; words, speeds and return codes are those of the MOVITRAC 07 manual.
 #include <set>
 
+#include "runtime/plant/plant_signals.hpp"
 #include "tests/runtime/bus/profibus/dp_plant_rig.hpp"
 
 namespace ipos::tests {
@@ -132,6 +133,73 @@ TEST(GatewayPlant, DpMasterGoneAndBack) {
   bench.run(7 * kSecond);
   EXPECT_EQ(bench.speed(kFan), 600'000);
   EXPECT_EQ(bench.speed(kPump), 300'000);
+}
+
+// Off it is on neither line: the drives have their timeout (P815), the DP master finds nobody. On again everything is
+// there, and the drives run once their fault is reset by bit 6 of the control word.
+TEST(GatewayPlant, PowerOffAndOn) {
+  DpPlant bench(line("[[control.slave.change]]\nat = \"7s\"\npo = [0x40, 0, 0, 0x40, 0, 0]\n"
+                     "[[control.slave.change]]\nat = \"7500ms\"\npo = [6, 1500, 0, 6, 3000, 0]\n"));
+  const auto frames = [&] { return bench.plant->find_bus("sbus")->load(bench.plant->now()).frames; };
+  bench.run(2 * kSecond);
+  EXPECT_EQ(bench.speed(kPump), 300'000);
+  bench.plant->set_power("gw", false);
+  bench.run(3 * kSecond);
+  EXPECT_FALSE(bench.gateway().powered());
+  EXPECT_FALSE(bench.gateway().exchanges());
+  EXPECT_EQ(bench.fault(kPump), 47);
+  EXPECT_EQ(bench.fault(kFan), 47);
+  EXPECT_EQ(bench.speed(kPump), 0);
+  const uint64_t before = frames();
+  bench.run(4 * kSecond);
+  EXPECT_EQ(frames(), before) << "nobody asks on the SBus";
+  EXPECT_EQ(bench.gateway().lost(), 0) << "it watches nobody";
+  bench.plant->set_power("gw", true);
+  bench.run(6900 * kMillisecond);
+  EXPECT_TRUE(bench.gateway().exchanges());
+  EXPECT_GT(frames(), before);
+  EXPECT_EQ(bench.input(0, 8), bench.station(kPump).status_word_1());
+  EXPECT_EQ(bench.input(0, 8) >> 8, 47) << "their fault stands until it is reset";
+  bench.run(11 * kSecond);
+  EXPECT_EQ(bench.speed(kPump), 300'000);
+  EXPECT_EQ(bench.speed(kFan), 600'000);
+  EXPECT_EQ(bench.service("71 02 21 98 00 00 00 00", kRun), "71 02 21 98 00 00 00 02")
+      << "the parameter channel begins anew";
+}
+
+TEST(GatewayPlant, HasSignals) {
+  DpPlant bench(line(fault_of("sbus", "cut", "station = \"fan\"\nfrom = \"3s\"\n") +
+                     "[[expect]]\nstation = \"gw\"\nat = \"2s\"\nsignal = \"drive5.PI2\"\nequals = 3000\n"
+                     "[[expect]]\nstation = \"gw\"\nat = \"4s\"\nsignal = \"lost.1\"\nequals = 1\n"));
+  const auto value = [&](const std::string& name) {
+    const auto found = runtime::find_signals(*bench.plant, name);
+    EXPECT_TRUE(found) << name;
+    return found ? found->front().read() : -1;
+  };
+  EXPECT_EQ(value("gw.powered"), 1);
+  EXPECT_EQ(value("gw.exchange"), 0) << "not yet";
+  bench.run(2 * kSecond);
+  EXPECT_EQ(value("gw.exchange"), 1);
+  EXPECT_EQ(value("gw.drive2.PO1"), 6);
+  EXPECT_EQ(value("gw.drive2.PO1.1"), 1) << "6 has bits 1 and 2";
+  EXPECT_EQ(value("gw.drive2.PO2"), 1500);
+  EXPECT_EQ(value("gw.drive5.PI2"), 3000) << "600 rpm";
+  EXPECT_EQ(value("gw.lost"), 0);
+  EXPECT_GT(value("gw.drive5.answered"), 150) << "every 10 ms";
+  bench.run(4 * kSecond);
+  EXPECT_EQ(value("gw.lost"), 0b10);
+  EXPECT_EQ(value("gw.drive5.lost"), 1);
+  EXPECT_EQ(value("gw.drive5.losses"), 1);
+  EXPECT_EQ(value("gw.drive5.PI2"), 0);
+  EXPECT_EQ(value("gw.error"), 0);
+  bench.service("31 05 21 98 00 00 00 00", kRun);
+  bench.service("71 05 21 98 00 00 00 00", kRun);
+  EXPECT_EQ(value("gw.error"), 0x06020000) << "the drive is gone";
+  EXPECT_EQ(runtime::find_signals(*bench.plant, "gw.drive*.P?1")->size(), 4U);
+  EXPECT_NE(runtime::find_signals(*bench.plant, "gw.speed").error().find("gateway 'gw' has no signal 'speed'"),
+            std::string::npos);
+  ASSERT_EQ(bench.plant->results().size(), 2U);
+  for (const auto& result : bench.plant->results()) EXPECT_TRUE(result.met) << result.actual;
 }
 
 // A third of all frames is lost on one side or the other: the drives keep their words, and nothing wrong arrives.

@@ -9,7 +9,7 @@ syn keyword iposType long struct typedef
 syn keyword iposModifier initial
 syn keyword iposWordOperator numof
 syn keyword iposForeign goto sizeof int void char short unsigned signed float double enum union const static extern volatile
-syn keyword iposStructure MOVLNK MLDATA SCTRCYCL SCTRACYCL SCREC SSPOSSPEED SSPOSRAMP VARINT GSCAM GSCAM_EXT CAM_OUTPUT GSPODATA3 SSPIDATA3
+syn keyword iposStructure MOVLNK MLDATA SCTRCYCL SCTRACYCL SCREC SSPOSSPEED SSPOSRAMP VARINT GSCAM GSCAM_EXT CAM_OUTPUT GSPODATA3 SSPIDATA3 GSPODATA10 SSPIDATA10
 syn keyword iposSystemFunction _MoviLink _SBusCommDef _SBusCommOn _SBusCommState _MovCommDef _MovCommOn _Go0 _GoAbs _GoRel _AxisStop _TouchProbe _GetSys _SetSys _Wait _WdOn _WdOff _SetTask _SetTask2 _SetInterrupt _SetVarInterrupt _BitSet _BitClear _BitMove _BitMoveNeg _Copy _Memorize _FaultReaction _Reset _InputCall _SystemCall _Nop _Movilink _SBusComDef
 syn match iposVariable "\<H\d\+\>"
 syn match iposNumber "\<\d\+\>"

@@ -1,0 +1,75 @@
+// Any bytes to the readers of other tools' logs (candump, serial, pcapng, ASC, TRC, BLF): each mistake has a place in the
+// file and a text, and what is read is written in every form and read as the same frames.
+#include <algorithm>
+#include <sstream>
+
+#include "tests/fuzz/fuzz.hpp"
+#include "tools/logs/fields.hpp"
+#include "tools/logs/log_forms.hpp"
+#include "tools/logs/log_writer.hpp"
+
+using namespace ipos;         // NOLINT
+using namespace ipos::tools;  // NOLINT
+using namespace ipos::tests;  // NOLINT
+
+namespace {
+
+struct Taken {
+  std::vector<runtime::LogEntry> can;
+  std::vector<runtime::SerialEntry> serial;
+  std::vector<runtime::ProfibusEntry> dp;
+  size_t mistakes = 0;
+};
+
+Taken taken(std::string_view log) {
+  const bool binary = log_form(log) == LogForm::Pcapng || log_form(log) == LogForm::Blf;
+  const auto lines = static_cast<size_t>(std::count(log.begin(), log.end(), '\n')) + 1;
+  const auto in_log = [&](LogPlace place) {
+    require(binary ? place.line == 0 && place.column <= log.size()
+                   : place.line > 0 && place.line <= lines && place.column > 0 && place.column <= log.size() + 1,
+            "a place is in the log");
+  };
+  Taken all;
+  const LogReader reader{[&](const runtime::LogEntry& entry, LogPlace place) {
+                           in_log(place);
+                           require(is_valid(entry.frame), "a frame that was read can be sent");
+                           all.can.push_back(entry);
+                         },
+                         [&](const runtime::SerialEntry& entry, LogPlace place) {
+                           in_log(place);
+                           all.serial.push_back(entry);
+                         },
+                         [&](const runtime::ProfibusEntry& entry, LogPlace place) {
+                           in_log(place);
+                           all.dp.push_back(entry);
+                         },
+                         [&](LogPlace place, const std::string& message) {
+                           in_log(place);
+                           require(!message.empty() && !place_text("a.log", place).empty(), "a mistake has a text");
+                           ++all.mistakes;
+                         }};
+  read_log(log, reader);
+  return all;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  const Taken first = taken(text_of(data, size));
+  // Before virtual time 0, and later than a log may last, nothing is written.
+  for (const runtime::LogEntry& entry : first.can)
+    if (entry.time < 0 || entry.time >= kLongestLog) return 0;
+  for (const char* name : {"a.log", "a.pcapng", "a.asc", "a.trc"}) {
+    std::ostringstream out;
+    {
+      const auto writer = make_log_writer(name, out);
+      for (const runtime::LogEntry& entry : first.can) writer->can(entry.time, entry.bus, entry.frame);
+    }
+    const Taken again = taken(out.str());
+    require(again.mistakes == 0, "what is written is a log without mistakes");
+    require(again.can.size() == first.can.size(), "every frame is written");
+    for (size_t n = 0; n < first.can.size(); ++n)
+      require(again.can[n].frame == first.can[n].frame, "a written frame is read as the same");
+  }
+  return 0;
+}
