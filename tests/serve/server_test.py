@@ -8,6 +8,7 @@ import os
 import pathlib
 import random
 import re
+import select
 import signal
 import socket
 import struct
@@ -457,6 +458,62 @@ P101 = "RS-485"
         client.wait_for("watch", lambda event: event["values"].get("unit1.P000", {}).get("value") == 0)
 
 
+@unittest.skipUnless(os.path.exists("/dev/pts/ptmx"), "there is no /dev/pts: no pseudo-terminals here")
+class PlantWithAPort(unittest.TestCase):
+    """A plant that is served while somebody outside asks its drive."""
+
+    # 02 ADR TYP PDU BCC: TYP 86h, service 31h, index 2116h, P130 = 2 s as delivered (1053 1610 p. 18-25).
+    QUESTION = bytes.fromhex("020186310021160000000083")
+
+    def test_it_answers_at_its_port_and_time_is_that_of_the_world(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        line = pathlib.Path(folder.name) / "line1"
+        plant = pathlib.Path(folder.name) / "plant.toml"
+        plant.write_text(f'''
+[[bus]]
+name = "line1"
+kind = "rs485"
+port = "pty:{line}"
+[[station]]
+name = "saw"
+unit = "md60a"
+rs485 = "line1"
+[station.parameters]
+P810 = 1
+''')
+        ipos = subprocess.Popen([IPOS, "serve", str(plant)], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        self.addCleanup(ipos.stdout.close)
+        self.addCleanup(ipos.wait)
+        self.addCleanup(ipos.terminate)
+        match = re.search(r":(\d+)/\?token=(\w+)", ipos.stdout.readline())
+        client = Client(int(match[1]), f"/ws?token={match[2]}")
+        self.addCleanup(client.close)
+        self.assertTrue(client.wait_for("hello")["live"])
+        for command in ({"do": "pause"}, {"do": "step"}, {"do": "back", "ms": 1}, {"do": "restart"},
+                        {"do": "speed", "speed": 2}, {"do": "run", "speed": 2}):
+            self.assertIn("real ports", client.ask(**command)["error"])
+        self.assertTrue(client.ask(do="run")["ok"])
+        first = client.wait_for("time", lambda event: event["us"] > 0)
+        self.assertTrue(first["running"])
+
+        port = os.open(line, os.O_RDWR | os.O_NOCTTY)
+        self.addCleanup(os.close, port)
+        answer = b""
+        for _ in range(5):  # a busy machine may tear a telegram apart
+            os.write(port, self.QUESTION)
+            ends = time.monotonic() + 1
+            answer = b""
+            while len(answer) < 12 and time.monotonic() < ends:
+                if select.select([port], [], [], 0.1)[0]:
+                    answer += os.read(port, 64)
+            if len(answer) >= 12:
+                break
+        self.assertEqual(answer[:11].hex(), "1d018631002116000007d0")
+        trace = [frame["data"] for frame in client.ask(do="bus.trace")["frames"]]
+        self.assertIn(self.QUESTION.hex().upper(), trace)
+
+
 class NotServing(unittest.TestCase):
     def run_ipos(self, *arguments):
         return subprocess.run([IPOS, "serve", *arguments], capture_output=True, text=True, timeout=60, check=False)
@@ -472,6 +529,16 @@ class NotServing(unittest.TestCase):
             self.assertIn("cannot be listened at", result.stderr)
             result = self.run_ipos(str(plant), "--bind", "here")
             self.assertEqual(result.returncode, 64)
+
+    def test_a_port_of_the_plant_that_is_not_there_is_told(self):
+        with tempfile.TemporaryDirectory() as folder:
+            plant = pathlib.Path(folder) / "plant.toml"
+            plant.write_text('[[bus]]\nname = "line1"\nkind = "rs485"\nport = "/dev/ttyNONE"\n'
+                             '[[station]]\nname = "saw"\nunit = "md60a"\nrs485 = "line1"\n')
+            result = self.run_ipos(str(plant))
+            self.assertEqual(result.returncode, 74)
+            self.assertEqual(result.stdout, "")
+            self.assertIn("plant.toml:4:8: error: /dev/ttyNONE", result.stderr)
 
     def test_a_plant_with_mistakes_is_told(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -19,6 +19,9 @@ constexpr auto kTellTime = 50ms;  // while it runs
 constexpr auto kMeasured = 1s;    // of `rate`
 constexpr auto kBetweenSnapshots = 250ms;
 constexpr auto kLookAtMail = 2ms;  // while it runs faster than the clock
+constexpr auto kBehind =
+    1ms;  // of a plant with real ports: what comes within a millisecond is there before it is run
+constexpr const char* kPortGone = "port";
 constexpr auto kForgiven = 200ms;  // what is later than that is not made up for
 constexpr int kLettersAtOnce = 8;  // a client that floods does not hold the plant up
 constexpr Time kTelegramLimit = 10 * runtime::kSecond;
@@ -41,10 +44,11 @@ PlantHost::PlantHost(debug::MakePlant make, std::string title, std::string versi
   tabs_ = make_tabs(*this);
   debugger_.emplace(std::move(make), *this, snapshots, runtime::kNever);
   desk_.hello = [this] {
-    return Json{
-        {"protocol", 1}, {"version", version_}, {"mode", "plant"}, {"title", title_}, {"writable", true}};
+    return Json{{"protocol", 1},   {"version", version_}, {"mode", "plant"},
+                {"title", title_}, {"writable", true},    {"live", ports_.joined()}};
   };
   add_time_commands();
+  if (ports_.joined()) stay_in_step();
 }
 
 PlantHost::~PlantHost() = default;
@@ -124,6 +128,20 @@ void PlantHost::add_time_commands() {
   });
 }
 
+// With real ports time is that of the world outside, from the beginning on.
+void PlantHost::stay_in_step() {
+  running_ = true;
+  const auto refuse = [](const Desk::Call&) -> Json {
+    throw Mistake(
+        "this plant has real ports: it runs in step with the clock, and can neither stand nor go back");
+  };
+  for (const char* name : {"pause", "step", "speed", "back", "restart", "break.set", "program.step"})
+    desk_.add_command(name, refuse);
+  desk_.add_command("run", [refuse](const Desk::Call& call) {
+    return call.arguments.number("speed", 0, 1000, 1) == 1 ? Json::object() : refuse(call);
+  });
+}
+
 // One motion at a time; who orders another one meanwhile waits for the next one's end.
 Json PlantHost::begin(const Desk::Call& call, Motion motion) {
   if (next_.kind != MotionKind::None || now_.kind > MotionKind::Run)
@@ -144,6 +162,7 @@ void PlantHost::order(const Desk::Call& call, const debug::Order& order) {
 }
 
 void PlantHost::stop(const std::string& reason, const std::string& text) {
+  if (ports_.joined() && reason != kPortGone) return;
   running_ = false;
   halted_ = true;
   stopped_ = {{"reason", reason}, {"text", text}};
@@ -229,6 +248,7 @@ void PlantHost::tell_time() {
 // --- between two milliseconds ---
 
 bool PlantHost::keep_going() {
+  if (ports_.joined()) flush_ports();
   const auto now = WallClock::now();
   if (now - measured_from_ >= kMeasured) {
     rate_ = static_cast<double>(plant_->now() - measured_at_) /
@@ -239,6 +259,7 @@ bool PlantHost::keep_going() {
   if (now - last_mail_ >= kLookAtMail) look_at_mail(0);
   publish(true);
   keep_pace();
+  if (ports_.joined()) ports_.collect(paced_from_, paced_at_);
   if (now_.telegram && telegram_seen_) halted_ = true;
   if (!post_.open() || halted_ || next_.kind != MotionKind::None) return false;
   return now_.kind != MotionKind::Run || running_;
@@ -254,6 +275,12 @@ void PlantHost::look_at_mail(int milliseconds) {
   }
 }
 
+void PlantHost::flush_ports() {
+  bool gone = false;
+  for (const std::string& note : ports_.flush(gone)) fmt::print(stderr, "ipos: warning: {}\n", note);
+  if (gone) stop(kPortGone, "a port has gone");
+}
+
 // Waits until the clock has come as far as the plant, and takes commands meanwhile.
 void PlantHost::keep_pace() {
   while (now_.kind == MotionKind::Run && running_ && speed_ != 0 && post_.open() &&
@@ -261,7 +288,7 @@ void PlantHost::keep_pace() {
     const auto ahead = std::chrono::nanoseconds(
         static_cast<int64_t>(static_cast<double>(plant_->now() - paced_at_) / speed_));
     const auto now = WallClock::now();
-    const auto due = paced_from_ + ahead;
+    const auto due = paced_from_ + ahead + (ports_.joined() ? kBehind : 0ms);
     if (due <= now) {
       if (now - due > kForgiven) paced_from_ += now - due;
       return;
@@ -307,6 +334,7 @@ void PlantHost::built(runtime::Plant& plant) {
   plant_ = &plant;
   source_ = plant.next_source();
   plant.queue().schedule(kMillisecond, source_, *this, 0);
+  ports_.join(plant, title_);
   for (const auto& tab : tabs_) tab->built(plant);
 }
 

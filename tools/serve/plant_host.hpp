@@ -13,6 +13,7 @@
 
 #include "tools/debug/debugger.hpp"
 #include "tools/serve/desk.hpp"
+#include "tools/serve/plant_ports.hpp"
 
 namespace ipos::tools::serve {
 
@@ -49,7 +50,7 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
   using Action = std::function<void(const Json&)>;
   void add_action(const std::string& name, Action action) { actions_[name] = std::move(action); }
   void act(const std::string& name, Json details);
-  // The plant stands before the next millisecond.
+  // The plant stands before the next millisecond, unless it has real ports.
   void stop(const std::string& reason, const std::string& text);
   void telegram_seen() { telegram_seen_ = true; }
   // A step of the program; the reply comes when it stands.
@@ -68,6 +69,8 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
   };
 
   void add_time_commands();
+  void stay_in_step();
+  void flush_ports();
   Json begin(const Desk::Call& call, Motion motion);
   void carry_out();
   void finish(const debug::Stop& stop);
@@ -99,6 +102,7 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
   std::vector<std::unique_ptr<Tab>> tabs_;
   runtime::Plant* plant_ = nullptr;
   uint32_t source_ = 0;  // of the event that comes every millisecond, even with all units off
+  PlantPorts ports_;
   std::optional<debug::Debugger> debugger_;
 
   bool running_ = false;

@@ -63,9 +63,10 @@ int run_host(const ServeFlags& flags, PlantInput input, const Pair& sockets) {
   std::signal(SIGINT, SIG_IGN);  // Ctrl-C goes to both; the server tells
   std::signal(SIGTERM, SIG_IGN);
   serve::Channel channel(sockets.host);
+  const bool snapshots = flags.snapshots && !serve::PlantPorts::has_ports(input.file);
   const std::string title = std::filesystem::path(flags.file).filename().string();
   serve::PlantHost host([input = std::move(input)] { return make_plant(input, runtime::FileUse::Look); },
-                        title, IPOS_VERSION, channel, flags.snapshots);
+                        title, IPOS_VERSION, channel, snapshots);
   channel.send(serve::LetterKind::Ready, 0, {});
   host.run();
   return kGood;
@@ -86,25 +87,12 @@ int run_drive_host(const ServeFlags& flags, const Pair& sockets) {
   return kGood;
 }
 
-void refuse_ports(const PlantInput& input) {
-  for (const runtime::BusConfig& bus : input.file.buses)
-    if (!bus.port.empty())
-      throw Failure(
-          kUsage,
-          fmt::format("{}:{}:{}: error: bus '{}' is joined to port '{}': the page has no plants with a "
-                      "world outside; run it with ipos run --realtime",
-                      input.path, bus.port_place.line, bus.port_place.column, bus.name, bus.port));
-}
-
 int serve_page(const ServeFlags& flags) {
   const bool device = !flags.device.port.empty();
   if (device == !flags.file.empty())
     throw Failure(kUsage, "serve needs a FILE, or --device with the port of a real drive");
   PlantInput input;
-  if (!device) {
-    input = read_plant_input(flags.file, flags.compile);
-    refuse_ports(input);
-  }
+  if (!device) input = read_plant_input(flags.file, flags.compile);
   const Pair sockets = make_pair_of_sockets();
   debug::ReplaceableProcess host([&] {
     return end_of_process(

@@ -1,4 +1,5 @@
-// The page before `ipos serve --device`: the real drive is a simulated one at a pseudo-terminal.
+// The page before `ipos serve --device`: the real drive is a simulated one at a pseudo-terminal. And before a plant with
+// such a port.
 //   IPOS_PROGRAM=.../ipos node --test test/device.test.mjs
 import assert from "node:assert";
 import { spawn } from "node:child_process";
@@ -42,7 +43,7 @@ before(async () => {
   if (skip) return;
   browser = await launch();
   // A port is named relative to where the drive runs.
-  place = folderOf({ "plant.toml": plant("line1") });
+  place = folderOf({ "plant.toml": plant("line1"), "live.toml": plant("line2") });
   port = join(place.folder, "line1");
   drive = spawn(program, ["run", "plant.toml", "--realtime", "--for", "300s"], { cwd: place.folder, stdio: "ignore" });
   await until(() => existsSync(port), "the drive is not at its port");
@@ -77,6 +78,26 @@ test("bus: questions and answers of a real drive; sending needs a confirmation",
     await page.getByRole("table", { name: "Telegrams" }).getByText("unit1").first().waitFor();
     await page.getByRole("tab", { name: "Program" }).click();
     await page.getByText("A real drive does not give its source away").waitFor();
+    assert.deepStrictEqual(errors.filter((text) => !text.includes("WebSocket")), []);
+  } finally {
+    await close();
+    assert.ok([0, "SIGKILL"].includes(await server.stop()));
+  }
+});
+
+test("a plant with a real port runs in step with the clock, and nothing can stop it", { skip }, async () => {
+  const server = await serve("live.toml", [], place.folder);
+  const { page, errors, close } = await openPage(browser, server.address, { viewport: desktop });
+  try {
+    await page.getByText("real ports: in step with the clock").waitFor();
+    for (const name of ["Run", "Pause", "Step"]) assert.ok(await page.getByRole("button", { name, exact: true }).isDisabled(), name);
+    const seconds = async () => Number.parseFloat(await page.getByRole("timer", { name: "Time" }).textContent());
+    const before = await seconds();
+    await until(async () => (await seconds()) > before + 0.5, "time stands");
+    await page.getByRole("switch", { name: "saw DI00" }).click();
+    await until(async () => (await page.getByRole("switch", { name: "saw DI00" }).getAttribute("aria-checked")) === "true", "no input");
+    await page.getByRole("tab", { name: "Program" }).click();
+    await page.getByText("Real ports: the program cannot be stopped").waitFor();
     assert.deepStrictEqual(errors.filter((text) => !text.includes("WebSocket")), []);
   } finally {
     await close();

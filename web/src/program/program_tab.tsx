@@ -1,7 +1,7 @@
 // The program that runs: source with the lines where tasks stand, coverage, breakpoints, stepping forward and back.
 import { useEffect } from "preact/hooks";
 
-import { plant } from "../server/live";
+import { hello, plant } from "../server/live";
 import { offerKeys, withdrawKeys } from "../shell/keys";
 import { command } from "../shell/notice";
 import { breakpoints, chosenTask, covered, files, followProgram, openFile, station, tasks } from "./program_state";
@@ -109,7 +109,7 @@ export function Program() {
             </option>
           ))}
         </select>
-        <Motions />
+        {hello.value?.live ? <span class="quiet">Real ports: the program cannot be stopped.</span> : <Motions />}
         <Tasks />
         {file && (
           <span class="spread quiet">

@@ -6,6 +6,7 @@ export interface Hello {
   mode: "plant" | "device";
   title: string;
   writable: boolean;
+  live?: boolean; // a plant with real ports: time is that of the world outside
 }
 
 export interface Stopped {

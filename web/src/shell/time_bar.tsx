@@ -59,8 +59,9 @@ function Clock() {
 
 function TimeControls() {
   const { speed } = time.value;
-  // The time of a real drive is nobody's to stop.
-  const drive = hello.value?.mode === "device";
+  // The time of a real drive is nobody's to stop, nor that of a plant with real ports.
+  const live = hello.value?.live ?? false;
+  const drive = live || hello.value?.mode === "device";
   const listed = speeds.includes(speed) ? speeds : [speed, ...speeds];
   return (
     <div class="row controls">
@@ -104,6 +105,7 @@ function TimeControls() {
         ))}
       </select>
       <WriteArm />
+      {live && <span class="quiet">real ports: in step with the clock</span>}
       <button class="keys" aria-label="Keys" title="Keys (?)" onClick={() => (helpOpen.value = true)}>
         ?
       </button>
