@@ -8,6 +8,7 @@
 #include "runtime/bus/can/line.hpp"
 #include "runtime/bus/movilink/sbus_check.hpp"
 #include "runtime/plant/bus.hpp"
+#include "runtime/plant/last_frames.hpp"
 
 namespace ipos::runtime {
 
@@ -20,6 +21,11 @@ class CanBus final : public Bus, private CanObserver, private SbusCheckClient {
 
   CanLine& line() { return line_; }
   SbusCheck& check() { return check_; }
+  // Kept from the first call on.
+  const LastFrames& last_frames() {
+    if (!last_frames_) last_frames_ = std::make_unique<LastFrames>(line_);
+    return *last_frames_;
+  }
 
   LineLoad load(Time now) const override { return line_.load(now); }
   void attach_hand() override;
@@ -42,6 +48,7 @@ class CanBus final : public Bus, private CanObserver, private SbusCheckClient {
   std::unique_ptr<Reports> reports_;
   SbusCheck check_;
   std::unique_ptr<Hand> hand_;
+  std::unique_ptr<LastFrames> last_frames_;
 };
 
 }  // namespace ipos::runtime

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "runtime/plant/gateway_signals.hpp"
+#include "runtime/plant/telegram_signals.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -55,6 +56,7 @@ std::vector<PlantSignal> match(const Plant& plant, std::string_view pattern) {
     if (!named && plant.stations().size() == 1) take(match_station_signals(*station, pattern));
   }
   take(match_among(other_signals(plant), pattern));
+  take(match_telegram_signals(plant, pattern));
   return found;
 }
 
@@ -65,6 +67,7 @@ std::vector<PlantSignal> plant_signals(const Plant& plant) {
   for (const auto& station : plant.stations())
     for (PlantSignal& signal : station_signals(*station)) all.push_back(std::move(signal));
   for (PlantSignal& signal : other_signals(plant)) all.push_back(std::move(signal));
+  for (PlantSignal& signal : telegram_signals(plant)) all.push_back(std::move(signal));
   return all;
 }
 
@@ -89,6 +92,7 @@ tl::expected<std::vector<PlantSignal>, std::string> find_signals(const Plant& pl
     if (auto found = find_station_signals(*owner, rest); !found.empty()) return found;
   const std::vector<PlantSignal> without_drive = other_signals(plant);
   if (auto found = find_among(without_drive, name)) return std::vector{*std::move(found)};
+  if (auto found = find_telegram_signal(plant, name)) return std::vector{*std::move(found)};
   for (const PlantControl& control : plant.controls())
     if (control.gateway && name.starts_with(control.config->name + "."))
       return tl::unexpected(fmt::format("gateway '{}' has no signal '{}'; it has {}", control.config->name,

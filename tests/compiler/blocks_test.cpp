@@ -172,7 +172,7 @@ TEST(Blocks, TypesFollowTheKeyword) {
       EXPECT_EQ(expected_type(all, call("H200")), "") << "a number has no type";
     }
   }
-  EXPECT_EQ(right, 13) << "each of the two for cams counts for both of their rows";
+  EXPECT_EQ(right, 15) << "each of the two for cams counts for both of their rows";
   EXPECT_EQ(expected_type(all, "_GetSys(one, 7)"), "long[2]");
   EXPECT_EQ(expected_type(all, "_GetSys(one, 8)"), "GSCAM or GSCAM_EXT");
 }

@@ -20,12 +20,16 @@ using Entries = std::vector<Entry>;
 void add_messages(Entries& entries);  // of the compiler, the verifier and the planner
 void add_language(Entries& entries);  // functions, structures, variables, constants, commands
 void add_drive(Entries& entries);     // faults, parameters, return codes
+void add_fieldbus(Entries& entries);  // CANopen and PROFIBUS
 Entries all_entries();
 
 // What numbers mean that have no name of their own. Empty: nothing.
 std::string parameter_of_index(std::string_view number);  // "8470"
 std::string return_code(std::string_view number);         // "8/0/10", "0x08000010", "134217744"
 std::string list_faults();
+// Of hexadecimal numbers as logs print them, in one word or several: the name their entry has, "1017h" or "06020000h".
+std::string printed_number(const std::vector<std::string>& words);
+std::string parameter_of_object(const std::string& printed);  // "2070h"
 
 // A page for the terminal: no marks of Markdown, programs indented.
 std::string plain_text(std::string_view page);

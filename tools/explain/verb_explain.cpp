@@ -18,6 +18,7 @@ Entries all_entries() {
   add_messages(entries);
   add_language(entries);
   add_drive(entries);
+  add_fieldbus(entries);
   return entries;
 }
 
@@ -65,15 +66,29 @@ std::string search(const Entries& entries, const std::vector<std::string>& words
   return lines;
 }
 
+// One number may be a return code of the parameter channel, an abort of SDO, an object and its parameter.
+std::string numbers_text(const Entries& entries, const std::vector<std::string>& words) {
+  const std::string printed = printed_number(words);
+  const bool long_one = printed.size() == 9;  // with its h
+  std::string text = return_code(words.size() == 1 ? words[0] : "");
+  if (text.empty() && long_one) text = return_code("0x" + printed.substr(0, 8));
+  const auto append = [&text](const std::string& more) {
+    if (!more.empty()) text += (text.empty() ? "" : "\n") + more;
+  };
+  if (printed.empty()) return text;
+  append(texts_of(entries, printed));
+  append(parameter_of_object(printed));
+  return text;
+}
+
 std::string explain(const std::vector<std::string>& words) {
   if (words.size() == 1) {
     if (small(words[0]) == "f") return list_faults();
     if (std::string text = parameter_of_index(words[0]); !text.empty()) return text;
-    if (std::string text = return_code(words[0]); !text.empty()) return text;
   }
   const Entries entries = all_entries();
-  if (words.size() == 1)
-    if (std::string text = texts_of(entries, words[0]); !text.empty()) return text;
+  if (std::string text = numbers_text(entries, words); !text.empty()) return text;
+  if (std::string text = texts_of(entries, fmt::format("{}", fmt::join(words, " "))); !text.empty()) return text;
   if (std::string lines = search(entries, words); !lines.empty()) return lines;
   const std::string typed = fmt::format("{}", fmt::join(words, " "));
   std::vector<std::string_view> names;
@@ -84,7 +99,8 @@ std::string explain(const std::vector<std::string>& words) {
       fmt::format(
           "there is no code or word '{}'{}; codes look like E0101, W0201 (messages), V03 (verifier), "
           "B21 (bus plan), F10 (faults; F lists them), P130 or 8470 (parameters), 8/0/10 or 0x08000010 "
-          "(return codes), H511, _MoviLink, MLDATA, ML_BT_SBUS (language)",
+          "(return codes), H511, _MoviLink, MLDATA, ML_BT_SBUS (language), 1017h, 1800h:2, 06020000h, EMCY, "
+          "Prm_Fault, SAP 61 (CANopen and PROFIBUS)",
           typed, meant.empty() ? "" : fmt::format(", did you mean '{}'?", meant)));
 }
 
@@ -98,7 +114,8 @@ void add_explain(cli::Verb& app) {
   verb.option("NAME", *words,
               "for example E0203, V03, B21, F10, P130, 8470, 8/0/10, 0x08000010, H511, _MoviLink, MLDATA; F "
               "lists all "
-              "faults; other words are searched for")
+              "faults; 1017h, 06020000h, FF00h, EMCY of CANopen, Set_Prm, SAP 61, Prm_Fault of PROFIBUS; other words "
+              "are searched for")
       .required();
   verb.footer("Example:\n  ipos explain E0203\n  ipos explain ramp down");
   verb.runs([words] {

@@ -1,0 +1,24 @@
+// What the telegrams of the CAN lines of a plant carried last, as signals LINE.IDENTIFIER.WORD with the identifier in
+// hexadecimal: "sbus.013.PO2", "sbus.214.value", "can.185.PI1". A line begins to keep its frames when the first of its
+// signals is read; before that they are 0, and nobody looks at its frames for them.
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "runtime/plant/plant.hpp"
+#include "runtime/plant/station_signals.hpp"
+
+namespace ipos::runtime {
+
+// Of the identifiers that units, nodes and variable telegrams of the plant have by now. The plant must outlive them.
+std::vector<PlantSignal> telegram_signals(const Plant& plant);
+
+// By name: also of identifiers that nobody in the plant has yet, with bytes, variables and words of PDOs.
+std::optional<PlantSignal> find_telegram_signal(const Plant& plant, std::string_view name);
+
+// With a pattern that has a part for the identifier: "sbus.*.PO1", "sbus.013.*".
+std::vector<PlantSignal> match_telegram_signals(const Plant& plant, std::string_view pattern);
+
+}  // namespace ipos::runtime
