@@ -25,5 +25,7 @@ include_directories(SYSTEM ${headers})
 add_compile_definitions(_FILE_OFFSET_BITS=64 __USE_MINGW_ANSI_STDIO=1 UNICODE _UNICODE NOMINMAX WIN32_LEAN_AND_MEAN
                         _WIN32_WINNT=0x0A00)
 set(ZLIB_USE_STATIC_LIBS ON)
+# A program's manifest.
+enable_language(RC)
 # One file, without the DLLs of the compiler.
 add_link_options(-static)

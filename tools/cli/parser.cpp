@@ -129,6 +129,7 @@ int run(const Verb& program, const std::string& version, int argc, char** argv) 
   int exit_code = kGood;
   CLI::App app{program.text(), program.name()};
   app.formatter(std::make_shared<Help>());
+  app.allow_windows_style_options(false);  // a word that begins with / is a path on Windows, too
   app.set_version_flag("--version", version);
   add_verb(app, program, exit_code);
   if (argc == 1 || (argc == 2 && std::string_view(argv[1]) == "help")) {

@@ -27,6 +27,26 @@ int error_number(DWORD error) {
   }
 }
 
+// What is asked of a driver, until it takes one: it may not switch the direction, or have no parity.
+struct Way {
+  bool rs485, parity;
+};
+constexpr Way kWays[] = {{true, true}, {false, true}, {true, false}, {false, false}};
+
+bool set_state(HANDLE device, uint32_t baud, const Way& way) {
+  DCB wanted{};
+  wanted.DCBlength = sizeof wanted;
+  wanted.BaudRate = baud;
+  wanted.ByteSize = 8;
+  wanted.StopBits = ONESTOPBIT;
+  wanted.fBinary = TRUE;
+  wanted.fParity = way.parity;
+  wanted.Parity = way.parity ? EVENPARITY : NOPARITY;
+  wanted.fDtrControl = DTR_CONTROL_ENABLE;
+  wanted.fRtsControl = way.rs485 ? RTS_CONTROL_TOGGLE : RTS_CONTROL_ENABLE;
+  return SetCommState(device, &wanted) != 0;
+}
+
 }  // namespace
 
 struct Tty::System {
@@ -78,39 +98,36 @@ tl::expected<Tty, PortError> Tty::open(const std::string& path, const TtySetting
   if (GetCommState(opened, &system->former) == 0)
     return tl::unexpected(port_error(PortFault::NotSerial, path));
   system->has_former = true;
-  DCB wanted{};
-  wanted.DCBlength = sizeof wanted;
-  wanted.BaudRate = settings.baud;
-  wanted.ByteSize = 8;
-  wanted.StopBits = ONESTOPBIT;
-  wanted.fBinary = TRUE;
-  wanted.fParity = settings.even_parity;
-  wanted.Parity = settings.even_parity ? EVENPARITY : NOPARITY;
-  wanted.fDtrControl = DTR_CONTROL_ENABLE;
-  wanted.fRtsControl = settings.rs485 ? RTS_CONTROL_TOGGLE : RTS_CONTROL_ENABLE;
-  bool done = SetCommState(opened, &wanted) != 0;
-  if (!done && settings.rs485) {
-    notes.note("the driver does not switch RS-485 direction: the adapter has to do it");
-    wanted.fRtsControl = RTS_CONTROL_ENABLE;
-    done = SetCommState(opened, &wanted) != 0;
-  }
-  if (!done)
+  const bool rs485 = settings.rs485, parity = settings.even_parity;
+  const auto taken = std::find_if(std::begin(kWays), std::end(kWays), [&](const Way& way) {
+    return way.rs485 <= rs485 && way.parity <= parity && set_state(opened, settings.baud, way);
+  });
+  if (taken == std::end(kWays))
     return tl::unexpected(port_error(PortFault::NoBaudRate, path, fmt::format("{} bit/s", settings.baud)));
+  if (taken->rs485 != rs485)
+    notes.note("the driver does not switch RS-485 direction: the adapter has to do it");
   // A read takes what is there and does not wait.
   COMMTIMEOUTS times{MAXDWORD, 0, 0, 0, 0};
   if (SetCommTimeouts(opened, &times) == 0)
     return tl::unexpected(system_error(error_number(GetLastError()), path));
   PurgeComm(opened, PURGE_RXCLEAR | PURGE_TXCLEAR);
   Tty tty(std::move(system));
-  tty.parity_ = settings.even_parity;
-  if (settings.even_parity)
+  tty.parity_ = taken->parity;
+  if (taken->parity != parity)
+    notes.note("the device has no parity: neither sends it nor sees its errors");
+  else if (parity)
     notes.note("Windows does not say which byte has a parity error: the block check has to find it");
   return tty;
 }
 
+// A driver may keep a read waiting for its first byte, whatever the times say: it is asked for what is there.
 tl::expected<size_t, int> Tty::read(std::span<char> into) {
-  DWORD count = 0;
-  const auto most = static_cast<DWORD>(std::min<size_t>(into.size(), MAXDWORD));
+  DWORD count = 0, errors = 0;
+  COMSTAT state{};
+  if (ClearCommError(system_->device, &errors, &state) == 0)
+    return tl::unexpected(error_number(GetLastError()));
+  const auto most = static_cast<DWORD>(std::min<size_t>(into.size(), state.cbInQue));
+  if (most == 0) return 0;
   const bool done = ReadFile(system_->device, into.data(), most, &count, &system_->reading) != 0;
   if (!done && GetLastError() != ERROR_IO_PENDING) return tl::unexpected(error_number(GetLastError()));
   if (!done && GetOverlappedResult(system_->device, &system_->reading, &count, TRUE) == 0)
