@@ -11,7 +11,8 @@ cd "$(dirname "$0")/../.."
 work=$(mktemp -d)
 export LC_ALL=C.UTF-8 WINEDEBUG=-all WINEDLLOVERRIDES='mscoree,mshtml=' WINEPREFIX=$(dirname "$exe")/wine
 mkdir -p "$WINEPREFIX"
-trap 'wineserver -k 2>/dev/null || true; rm -rf "$work"' EXIT
+drive=
+trap 'kill $drive 2>/dev/null || true; wineserver -k 2>/dev/null || true; rm -rf "$work"' EXIT
 wine cmd /c exit >/dev/null 2>&1 || skip "wine does not start"
 
 count=0
@@ -71,7 +72,7 @@ grep -q "'bus' is not in this build" "$work/out" || fail "bus plan: $(cat "$work
 # A drive at a serial port: one of the simulation at a pseudo-terminal, which wine calls COM7.
 printf '[[bus]]\nname = "line"\nkind = "rs485"\nport = "pty:%s"\n[[station]]\nname = "saw"\nunit = "md60a"\nrs485 = "line"\n[station.parameters]\nP810 = 1\n' \
   "$work/tty" >"$work/port.toml"
-"$linux" run "$work/port.toml" --realtime --for 60s >"$work/port.out" 2>&1 &
+"$linux" run "$work/port.toml" --realtime --for 600s >"$work/port.out" 2>&1 &
 drive=$!
 for _ in $(seq 100); do [ -e "$work/tty" ] && break; sleep 0.1; done
 [ -e "$work/tty" ] || fail "the drive does not come: $(cat "$work/port.out")"
@@ -84,6 +85,7 @@ windows param set --port COM7 --address 1 P130=3s --volatile >"$work/out" 2>"$wo
 windows param get --port COM7 --address 1 P130 2>/dev/null | grep -q '3.000' || fail "serial: P130 was not set"
 kill $drive
 wait $drive 2>/dev/null || true
+drive=
 windows param get --port COM33 --address 1 P130 >"$work/out" 2>&1 && fail "a port that is not there"
 grep -q 'COM33: there is no such device' "$work/out" || fail "COM33: $(cat "$work/out")"
 windows param get --port can0 --address 1 P130 >"$work/out" 2>&1 && fail "SocketCAN"
