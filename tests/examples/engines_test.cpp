@@ -27,7 +27,7 @@ Output run(const fs::path& plant, const std::vector<std::string>& how,
                                      "--watch",
                                      "--why",
                                      "--log",
-                                     file("can.log"),
+                                     file("bus.pcapng"),
                                      "--serial-log",
                                      file("serial.log"),
                                      "--trace",
@@ -35,7 +35,7 @@ Output run(const fs::path& plant, const std::vector<std::string>& how,
                                      hash};
   arguments.insert(arguments.end(), how.begin(), how.end());
   const CommandResult result = run_ipos(arguments);
-  return {{std::to_string(result.exit_code), result.out, result.err, read_text(file("can.log")),
+  return {{std::to_string(result.exit_code), result.out, result.err, read_text(file("bus.pcapng")),
            read_text(file("serial.log")), read_text(file("run.csv"))}};
 }
 

@@ -50,7 +50,8 @@ wait_for monitoring monitor.err
 cansend vcan0 7FE#01
 ./ipos run scom.toml --realtime --for 3s --log scom.log >scom.out 2>scom.err &
 run=$!
-busybox usleep 1500000
+wait_for joined scom.err
+busybox usleep 500000
 cansend vcan0 20B#3100211600000000
 cansend vcan0 20B#3200207E00000001
 wait $run
