@@ -105,8 +105,10 @@ std::unique_ptr<LogWriter> make_log_writer(std::string_view path, std::ostream& 
 
 PlantLog::PlantLog(runtime::Plant& plant, LogWriter& writer) : writer_(writer) {
   plant.add_observer(static_cast<runtime::CanObserver&>(*this));
-  for (const auto& bus : plant.buses())
-    heard_ = heard_ || writer.has_serial() || dynamic_cast<runtime::CanBus*>(bus.get()) != nullptr;
+  const auto fits = [&](const auto& bus) {
+    return writer.has_serial() || dynamic_cast<const runtime::CanBus*>(bus.get()) != nullptr;
+  };
+  stays_empty_ = !plant.buses().empty() && std::none_of(plant.buses().begin(), plant.buses().end(), fits);
   if (!writer.has_serial()) return;
   plant.add_observer(static_cast<runtime::SerialObserver&>(*this));
   for (const auto& bus : plant.buses())

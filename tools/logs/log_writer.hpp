@@ -38,8 +38,8 @@ class PlantLog final : private runtime::CanObserver,
 
   // At the end of a run: telegrams that were not completed.
   void finish();
-  // The form holds CAN only, and the plant has none.
-  bool stays_empty() const { return !heard_; }
+  // The form holds CAN only, and the plant has buses of other kinds only.
+  bool stays_empty() const { return stays_empty_; }
 
  private:
   void on_frame(const runtime::CanLine& line, const runtime::FrameRecord& record) override;
@@ -52,7 +52,7 @@ class PlantLog final : private runtime::CanObserver,
   void on_line_event(const profibus::Line&, const profibus::LineEvent&) override {}
 
   LogWriter& writer_;
-  bool heard_ = false;  // a line of the plant has frames of a kind that the form holds
+  bool stays_empty_;
   std::map<std::string, runtime::SerialReceiver> receivers_;  // by line
 };
 
