@@ -1,5 +1,6 @@
 """canopen_master.py IPOS PLANT PATH EDS LOG CYCLES: a CANopen master that follows CiA 301 and knows nothing of ipos but
-the EDS, with python3-can at the pseudo-terminal PATH of a running plant of three nodes, 5, 6 and 7 (canopen.toml)."""
+the EDS, with python3-can at the pseudo-terminal PATH of a running plant of three nodes, 5, 6 and 7 (canopen.toml). A PATH
+without a slash is a CAN interface of the kernel."""
 import collections
 import configparser
 import subprocess
@@ -13,10 +14,12 @@ from checks import check
 ipos, plant, path, eds_path, log, cycles = sys.argv[1:]
 cycles = int(cycles)
 NODES = (5, 6, 7)
+# An interface has no memory: who comes later has not heard the boot-up.
+bus = can.Bus(interface="socketcan", channel=path) if "/" not in path else None
 run = subprocess.Popen([ipos, "run", plant, "--realtime", "--for", "600s", "--log", log],
                        stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
 run.stderr.readline()  # "... is joined to ..."
-bus = can.Bus(interface="slcan", channel=path, bitrate=1000000, sleep_after_open=0.05)
+bus = bus or can.Bus(interface="slcan", channel=path, bitrate=1000000, sleep_after_open=0.05)
 
 
 def send(identifier, data=b"", remote=False):

@@ -140,6 +140,12 @@ TEST_F(RealBus, PythonCanDrivesAStationThroughItsProfile) {
   EXPECT_EQ(text("profile.code"), "130\n") << text("profile.err");  // ended by a signal, in good order
 }
 
+// The master of python_peers_test.cpp, here at an interface of the kernel.
+TEST_F(RealBus, PythonCanIsACanopenMaster) {
+  EXPECT_EQ(text("canopen.code"), "0\n") << text("canopen.txt");
+  expect_all_ok(text("canopen.txt"), 19);
+}
+
 // canbusload prints frames, bits, data bits and percent of each second. The traffic begins and ends within
 // its seconds, so their sum is the traffic.
 TEST_F(RealBus, CanbusloadAgreesWithOurLengths) {
