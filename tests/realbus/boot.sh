@@ -9,7 +9,7 @@ done
 ln -s "$ipos" "$folder/ipos"
 ln -s "$project" "$folder/project"
 # Its memory and its files of management lie in the folder, too. A guest that hangs is killed.
-TMPDIR=$folder HOME=$folder timeout -s KILL 150 linux.uml mem=192M rootfstype=hostfs rootflags=/ rw \
+TMPDIR=$folder HOME=$folder timeout -s KILL 250 linux.uml mem=192M rootfstype=hostfs rootflags=/ rw \
   init="$folder/project/tests/realbus/guest.sh" FOLDER="$folder" con=null con0=fd:0,fd:1 quiet \
   </dev/null >"$folder/console.txt" 2>&1
 code=$?
