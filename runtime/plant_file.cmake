@@ -8,4 +8,4 @@ ipos_layer(plant_file
           plant_file/read_fault.cpp plant_file/read_surroundings.cpp plant_file/read_expect.cpp plant_file/serial_plan.cpp
   USES unit bus drive motion storage stdlib
   LIBS fmt::fmt)
-ipos_batches(ipos_plant_file SIZE 20)
+ipos_not_hot(ipos_plant_file SIZE 20)
