@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from ctypes import c_int64, c_uint32
+from struct import Struct
 from typing import TYPE_CHECKING, Sequence
 
 from . import _library as lib
@@ -32,13 +33,14 @@ class Reader:
         self._plain = all(factor == 1 for factor in self._factors)
         self._signals = (c_uint32 * len(signals))(*signals)
         self._values = (c_int64 * len(signals))()
+        self._unpack = Struct(f"{len(signals)}q").unpack  # seven times as fast as tuple(self._values)
 
     def __call__(self) -> tuple[float, ...]:
         self._plant._call("read_many", self._signals, len(self._signals), self._values)
         if self._plain:
-            return tuple(self._values)
+            return self._unpack(self._values)
         return tuple(
-            value if factor == 1 else value * factor for value, factor in zip(self._values, self._factors)
+            value if factor == 1 else value * factor for value, factor in zip(self._unpack(self._values), self._factors)
         )
 
     def __repr__(self) -> str:
