@@ -3,7 +3,8 @@
 ipos_layer(clock FOLDERS runtime/clock SOURCES clock/event_queue.cpp)
 ipos_layer(bus FOLDERS runtime/bus
            SOURCES bus/line_load.cpp
-                   bus/can/frame_bits.cpp bus/can/bit_error.cpp bus/can/line_fault.cpp bus/can/transfer.cpp
+                   bus/can/identifier_text.cpp bus/can/frame_bits.cpp bus/can/bit_error.cpp bus/can/line_fault.cpp
+                   bus/can/transfer.cpp
                    bus/can/line.cpp bus/can/line_wiring.cpp bus/can/line_report.cpp bus/can/contenders.cpp
                    bus/log/candump.cpp
                    bus/canopen/abort.cpp bus/canopen/object_dictionary.cpp bus/canopen/object_access.cpp

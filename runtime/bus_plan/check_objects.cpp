@@ -27,7 +27,7 @@ class ObjectCheck {
   void find(FindingKind kind, std::string text) { findings_.push_back({kind, plan_.name, std::move(text)}); }
 
   static std::string name(const Member& member, const ObjectDefinition& definition) {
-    return fmt::format("{}: object {} ({})", member.name, definition.object,
+    return fmt::format("{}: object {} in {}", member.name, object_words(definition.object),
                        structure_name(*member.station, definition.variable));
   }
 
@@ -54,7 +54,7 @@ class ObjectCheck {
         if (sent.accepted && received.accepted && sent.object == received.object &&
             sent.kind != ObjectKind::Receive && received.kind == ObjectKind::Receive)
           find(FindingKind::DoubleIdentifier,
-               fmt::format("identifier {} is sent ({}) and received ({}) by {}", sent.object,
+               fmt::format("identifier {} is sent ({}) and received ({}) by {}", object_words(sent.object),
                            structure_name(*member.station, sent.variable),
                            structure_name(*member.station, received.variable), member.name));
   }
@@ -93,9 +93,9 @@ class ObjectCheck {
                 sent.kind != ObjectKind::Receive && received.kind == ObjectKind::Receive &&
                 sent.format != received.format)
               find(FindingKind::Formats,
-                   fmt::format("object {} is sent by {} with {} and received by {} with {}", sent.object,
-                               sender.name, format_text(*sent.format), receiver.name,
-                               format_text(*received.format)));
+                   fmt::format("object {} is sent by {} with {} and received by {} with {}",
+                               object_words(sent.object), sender.name, format_text(*sent.format),
+                               receiver.name, format_text(*received.format)));
       }
   }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "runtime/bus/can/identifier_text.hpp"
 #include "runtime/bus_plan/checks.hpp"
 #include "stdlib/unsimulated.hpp"
 
@@ -64,8 +65,8 @@ class ProfileCheck {
       if (use.transmits) sending.push_back(&use);
     for (size_t n = 1; n < sending.size(); ++n)
       find(FindingKind::DoubleIdentifier,
-           fmt::format("identifier {} is sent by {} ({}) and by {} ({})", identifier.id, sending[0]->station,
-                       sending[0]->what, sending[n]->station, sending[n]->what));
+           fmt::format("identifier {} is sent by {} ({}) and by {} ({})", id_words(identifier.id),
+                       sending[0]->station, sending[0]->what, sending[n]->station, sending[n]->what));
   }
 
   void sync(const PlannedIdentifier& identifier) {
@@ -79,13 +80,14 @@ class ProfileCheck {
     }
     if (sync == nullptr) return;
     if (profile != nullptr)
-      find(FindingKind::SyncIdentifier, fmt::format("sync identifier {} of {} is {} of {}", identifier.id,
-                                                    sync->station, profile->what, profile->station));
+      find(FindingKind::SyncIdentifier,
+           fmt::format("sync identifier {} of {} is {} of {}", id_words(identifier.id), sync->station,
+                       profile->what, profile->station));
     if (object != nullptr)
       find(FindingKind::SyncObject,
            fmt::format("{} of {} has the sync identifier {} of {}, which takes it as sync "
                        "telegram",
-                       object->what, object->station, identifier.id, sync->station));
+                       object->what, object->station, id_words(identifier.id), sync->station));
   }
 
   std::string present(bool groups) const {

@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "runtime/bus/can/identifier_text.hpp"
 #include "runtime/bus_plan/checks.hpp"
 #include "runtime/bus_plan/identifiers.hpp"
-#include "runtime/bus_plan/roster.hpp"
 #include "runtime/bus_plan/profibus_lines.hpp"
+#include "runtime/bus_plan/roster.hpp"
 #include "runtime/bus_plan/serial_lines.hpp"
 #include "runtime/bus_plan/telegrams.hpp"
 
@@ -60,9 +61,10 @@ void check_timing(const LinePlan& plan, std::vector<Finding>& findings) {
     const std::string response = telegram.response.bounded
                                      ? fmt::format("may take {} us", telegram.response.worst / kMicrosecond)
                                      : std::string("may wait for ever");
-    findings.push_back({FindingKind::TooLate, plan.name,
-                        fmt::format("{} of {} (identifier {}) {}, its period is {} us", telegram.what,
-                                    telegram.sender, telegram.id, response, telegram.period / kMicrosecond)});
+    findings.push_back(
+        {FindingKind::TooLate, plan.name,
+         fmt::format("{} of {}, identifier {}, {}, its period is {} us", telegram.what, telegram.sender,
+                     id_words(telegram.id), response, telegram.period / kMicrosecond)});
   }
 }
 

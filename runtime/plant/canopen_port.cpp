@@ -7,6 +7,8 @@
 #include <span>
 #include <utility>
 
+#include "runtime/bus/can/identifier_text.hpp"
+
 namespace ipos::runtime {
 namespace {
 
@@ -142,7 +144,8 @@ void CanopenPort::partner_back(Time now) {
 }
 
 void CanopenPort::on_ignored(Time now, const Frame& frame, canopen::IgnoredMessage reason) {
-  note(now, Weight::Why, fmt::format("CANopen message {:03X}h {}", frame.id, canopen::ignored_text(reason)));
+  note(now, Weight::Why,
+       fmt::format("CANopen message {} {}", id_words(frame.id), canopen::ignored_text(reason)));
 }
 
 }  // namespace ipos::runtime

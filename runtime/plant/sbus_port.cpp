@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "runtime/bus/can/identifier_text.hpp"
+
 namespace ipos::runtime {
 namespace {
 
@@ -139,8 +141,8 @@ void SbusPort::tell_shared(Time now, const Frame& frame) {
   const bool receives = object->kind == ObjectKind::Receive;
   note(now, Weight::Warning,
        fmt::format(
-           "object {} has the identifier of a telegram of this unit's own MOVLNK, {} of {} {}{}", frame.id,
-           telegram_type(identifier->telegram).text,
+           "object {} has the identifier of a telegram of this unit's own MOVLNK, {} of {} {}{}",
+           id_words(frame.id), telegram_type(identifier->telegram).text,
            telegram_type(identifier->telegram).grouped ? "group" : "address", identifier->address,
            receives ? ": the telegram does not reach the receive object" : ": the identifier is used twice"));
 }
@@ -184,7 +186,7 @@ void SbusPort::on_not_sent(Time /*now*/, const Frame& /*frame*/, uint64_t tag, N
 void SbusPort::on_bus_off(Time /*now*/) { sender_.recover(); }
 
 void SbusPort::on_ignored(Time now, const Frame& frame, Ignored reason, ReturnCode code) {
-  std::string text = fmt::format("SBus telegram {} {}", frame.id, ignored_text(reason));
+  std::string text = fmt::format("SBus telegram {} {}", id_words(frame.id), ignored_text(reason));
   if (code != ReturnCode{}) text += fmt::format(" ({})", describe(code));
   note(now, Weight::Why, std::move(text));
 }

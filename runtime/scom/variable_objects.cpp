@@ -6,7 +6,15 @@
 
 #include <algorithm>
 
+#include "runtime/bus/can/identifier_text.hpp"
+
 namespace ipos::runtime {
+
+std::string object_words(int32_t object) {
+  return object < 0 || object >= static_cast<int32_t>(kStandardIdLimit)
+             ? fmt::format("{}", object)
+             : id_words(static_cast<uint32_t>(object));
+}
 
 VariableObjects::VariableObjects(const stdlib::UnitType& unit, uint32_t baud, FrameSender& sender,
                                  uint64_t first_tag, int sbus)
@@ -38,7 +46,7 @@ bool VariableObjects::define(ObjectKind kind, uint32_t variable, std::span<int32
     const SlaveSettings& profile = table_.profile();
     if (profile.synchronous && request.object == profile.sync_id)
       why = fmt::format("object number {} is also the sync telegram of this unit (P817 or P885)",
-                        request.object);
+                        object_words(request.object));
     // The table keeps no acyclic objects.
     if (const ObjectDefinition* other = another_use(definition);
         other != nullptr &&
@@ -46,7 +54,7 @@ bool VariableObjects::define(ObjectKind kind, uint32_t variable, std::span<int32
       why = fmt::format(
           "object {} stands in two structures of this unit (H{} and H{}), which may use an "
           "identifier once",
-          request.object, other->variable, variable);
+          object_words(request.object), other->variable, variable);
   }
   definition.why = why;
   remember(definition);
@@ -54,7 +62,7 @@ bool VariableObjects::define(ObjectKind kind, uint32_t variable, std::span<int32
 }
 
 std::string VariableObjects::reason(const ObjectRequest& request, ObjectVerdict verdict) const {
-  const int32_t id = request.object;
+  const std::string id = object_words(request.object);
   switch (verdict) {
     case ObjectVerdict::Accepted:
     case ObjectVerdict::NoVariables: return {};
@@ -63,7 +71,7 @@ std::string VariableObjects::reason(const ObjectRequest& request, ObjectVerdict 
                          static_cast<uint32_t>(request.format));
     case ObjectVerdict::OnSbus2:
       return fmt::format("object {} is for SBus 2, which the station is not on; the object is not set up",
-                         id & ~kSbus2Object);
+                         object_words(request.object & ~kSbus2Object));
     case ObjectVerdict::NoIdentifier:
       return fmt::format("object number {} is not 0..2047; the object is not set up", id);
     case ObjectVerdict::ClosedIdentifier:
@@ -168,7 +176,7 @@ bool VariableObjects::on_frame(const Frame& frame, std::span<int32_t> h, std::st
   if (!receiver) return false;
   if (table_.take(*receiver, frame, h)) return true;
   why = fmt::format("object {} came with {} bytes, its receive object has {}; its variables stay as they are",
-                    frame.id, frame.length, table_.state().receive[*receiver].format.length);
+                    id_words(frame.id), frame.length, table_.state().receive[*receiver].format.length);
   return false;
 }
 

@@ -29,6 +29,9 @@ struct ObjectDefinition {
   std::string why;  // why not, or a warning
 };
 
+// The number of an object in a sentence: "44Ch (1100)" where it is an identifier.
+std::string object_words(int32_t object);
+
 // The objects of one SBus of a unit; the limits of the unit hold for each bus (ours: H522 and H523 have 32
 // flags each).
 class VariableObjects {

@@ -56,6 +56,18 @@ TEST(DebugScript, AnswersMistakes) {
     EXPECT_NE(result.output.find(text), std::string::npos) << text << "\n" << result.output;
 }
 
+// 1024 and 1025 are what the programs of the example write.
+TEST(DebugScript, ObjectsHaveTheirIdentifiersAsInLogsAndPrograms) {
+  const TemporaryFolder folder;
+  const std::string input = folder.write("script", "until 200ms\ninfo sbus\nquit\n");
+  const ScriptResult result = run_script({"/bin/sh", "-c",
+                                          fmt::format("exec '{}' debug '{}' < '{}'", IPOS_PROGRAM,
+                                                      project("examples/scom/scom.toml").string(), input)});
+  for (const char* text :
+       {"cyclic   object 400h (1024) data H426, every 100 ms", "receive  object 401h (1025) data"})
+    EXPECT_NE(result.output.find(text), std::string::npos) << text << "\n" << result.output;
+}
+
 TEST(DebugScript, EndsWithItsInput) { EXPECT_EQ(debug("s\ns\nrs\n").exit_code, 0); }
 
 TEST(DebugScript, WrongProgramsEndIt) { EXPECT_EQ(run_ipos({"debug", "nobody.IPC"}).exit_code, 66); }

@@ -219,7 +219,7 @@ TEST_F(RealBus, TheMonitorShowsTheScomExampleInWords) {
   const auto stamp = [](const std::string& line) { return std::stod(line.substr(1)); };
   std::string expected, shown;
   ASSERT_TRUE(std::getline(ours, shown));
-  EXPECT_EQ(words(shown), "vcan0 2046 01");
+  EXPECT_EQ(words(shown), "vcan0 7FE 01");
   size_t rows = 0;
   while (std::getline(theirs, expected)) {
     ASSERT_TRUE(std::getline(ours, shown)) << "missing: " << expected;
@@ -229,7 +229,7 @@ TEST_F(RealBus, TheMonitorShowsTheScomExampleInWords) {
   }
   EXPECT_FALSE(std::getline(ours, shown)) << shown;
   EXPECT_GE(rows, 55U);
-  EXPECT_NE(text("monitor.txt").find(" 524 read 8470 Ramp t11 UP CW = 2.000 s <- unit2\n"),
+  EXPECT_NE(text("monitor.txt").find(" 20C read 8470 Ramp t11 UP CW = 2.000 s <- unit2\n"),
             std::string::npos);
   EXPECT_NE(text("monitor.err").find(fmt::format("ipos: {} telegrams, {} shown\n", rows + 1, rows + 1)),
             std::string::npos)
@@ -253,7 +253,7 @@ TEST_F(RealBus, TheMonitorTellsLostFramesAndBusErrors) {
     const std::string what =
         line.substr(line.find("vcan3 ") == std::string::npos ? 0 : line.find("vcan3 ") + 6);
     std::smatch found;
-    if (what == "523 read 8318 Speed -> address 1")
+    if (what == "20B read 8318 Speed -> address 1")
       ++read;
     else if (std::regex_match(what, found, std::regex("--- (\\d+) frames lost")))
       lost += std::stoull(found[1]);
@@ -264,10 +264,10 @@ TEST_F(RealBus, TheMonitorTellsLostFramesAndBusErrors) {
   EXPECT_GT(lost, 0U) << "the kernel had room for all of them";
   EXPECT_GT(read, 0U);
   ASSERT_EQ(rest.size(), 4U) << shown.substr(shown.size() > 2000 ? shown.size() - 2000 : 0);
-  EXPECT_EQ(rest[0], "524 read 8318 Speed = 1000.000 rpm <- address 1");
+  EXPECT_EQ(rest[0], "20C read 8318 Speed = 1000.000 rpm <- address 1");
   EXPECT_EQ(rest[1].substr(0, 29), "--- bus error: no acknowledge");
   EXPECT_EQ(rest[2], "--- the same error 2 more times");
-  EXPECT_EQ(rest[3], "524 read 8470 Ramp t11 UP CW = 2.000 s <- address 1");
+  EXPECT_EQ(rest[3], "20C read 8470 Ramp t11 UP CW = 2.000 s <- address 1");
   const std::string told = text("lost.err");
   EXPECT_NE(told.find(fmt::format("{} lost, 3 bus errors", lost)), std::string::npos) << told;
   EXPECT_NE(told.find("frames from it are lost: they came faster than they were read"), std::string::npos)

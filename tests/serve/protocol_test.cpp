@@ -429,6 +429,10 @@ TEST_F(Serving, TelegramsAreCountedTracedAndSent) {
   const Json trace = good({{"do", "bus.trace"}, {"filter", "01FF"}})["frames"];
   ASSERT_EQ(trace.size(), 1U);
   EXPECT_EQ(trace[0]["n"], 2);
+  good({{"do", "bus.send"}, {"bus", "sbus"}, {"identifier", 11}, {"data", "07"}});
+  step(5);
+  for (const char* known_by : {"sbus 11 ", " 00B "})
+    EXPECT_EQ(good({{"do", "bus.trace"}, {"filter", known_by}})["frames"].size(), 1U) << known_by;
   EXPECT_EQ(error({{"do", "bus.send"}, {"bus", "sbus"}, {"identifier", 5000}, {"data", ""}}),
             "'identifier' must be 0 to 2047");
   EXPECT_EQ(error({{"do", "bus.send"}, {"bus", "sbus"}, {"id", 5}, {"data", "0"}}),

@@ -61,10 +61,10 @@ TEST(Bus, RunDecodeLoadAndReplayFitTogether) {
   const CommandResult decoded = run_ipos({"bus", "decode", "a.log", "--names", plant}, folder.path());
   EXPECT_EQ(decoded.exit_code, 0);
   EXPECT_EQ(decoded.err, "");
-  EXPECT_TRUE(contains(decoded.out, " sbus 0 sync telegram\n"));
+  EXPECT_TRUE(contains(decoded.out, " sbus 000 sync telegram\n"));
   EXPECT_TRUE(contains(
-      decoded.out, " sbus 269 PO-sync CTRL. WORD 1 0006h (enable), SPEED 1000.0 rpm, 0000h -> inverter1\n"));
-  EXPECT_TRUE(contains(decoded.out, " sbus 1024 lLength = 12346 (0000303Ah) <- inverter1\n"));
+      decoded.out, " sbus 10D PO-sync CTRL. WORD 1 0006h (enable), SPEED 1000.0 rpm, 0000h -> inverter1\n"));
+  EXPECT_TRUE(contains(decoded.out, " sbus 400 lLength = 12346 (0000303Ah) <- inverter1\n"));
   // The load agrees with what the line itself counted in the run.
   const auto report =
       nlohmann::json::parse(run_ipos({"run", plant, "--for", "1s", "--format", "json"}, folder.path()).out);
@@ -98,9 +98,9 @@ TEST(Bus, ALogOfCanopen) {
                "[[bus]]\nname = \"line\"\nkind = \"can\"\n[[station]]\nname = \"saw\"\nunit = "
                "\"mdxb\"\nsbus = \"line\"\n[station.parameters]\nP880 = 1\nP886 = 5\n");
   const auto expected = [](const std::string& node) {
-    return "(1000000000.000000) can0 605h SDO read 1800h:2 TPDO1 transmission type -> " + node +
-           "\n(1000000000.001000) can0 585h SDO 1800h:2 TPDO1 transmission type = 1 <- " + node +
-           "\n(1000000000.002000) can0 606h SDO read 1800h:2 TPDO1 transmission type -> node 6\n";
+    return "(1000000000.000000) can0 605 SDO read 1800h:2 TPDO1 transmission type -> " + node +
+           "\n(1000000000.001000) can0 585 SDO 1800h:2 TPDO1 transmission type = 1 <- " + node +
+           "\n(1000000000.002000) can0 606 SDO read 1800h:2 TPDO1 transmission type -> node 6\n";
   };
   EXPECT_EQ(run_ipos({"bus", "decode", "a.log", "--canopen"}, folder.path()).out, expected("node 5"));
   EXPECT_EQ(run_ipos({"bus", "decode", "a.log", "--plant", "plant.toml"}, folder.path()).out,
@@ -112,7 +112,7 @@ TEST(Bus, ALogOfCanopen) {
         expected("saw").substr(0, expected("saw").find("(1000000000.002000)")));
   const CommandResult six =
       run_ipos({"bus", "monitor", "a.log", "--canopen", "--station", "6"}, folder.path());
-  EXPECT_EQ(six.out, "(1000000000.002000) can0 606h SDO read 1800h:2 TPDO1 transmission type -> node 6\n");
+  EXPECT_EQ(six.out, "(1000000000.002000) can0 606 SDO read 1800h:2 TPDO1 transmission type -> node 6\n");
   const CommandResult nobody =
       run_ipos({"bus", "monitor", "a.log", "--canopen", "--station", "saw"}, folder.path());
   EXPECT_EQ(nobody.exit_code, 64);
@@ -158,7 +158,7 @@ TEST(Bus, BadLogLinesAreLocatedAndTheOthersDecoded) {
                "(0000000001.000000) can0 20B#3100207E00000000\nnonsense\n(0000000002.000000) can0 7D0#1\n");
   const CommandResult result = run_ipos({"bus", "decode", "a.log"}, folder.path());
   EXPECT_EQ(result.exit_code, 65);
-  EXPECT_TRUE(contains(result.out, "523 read 8318 Speed -> address 1")) << result.out;
+  EXPECT_TRUE(contains(result.out, "20B read 8318 Speed -> address 1")) << result.out;
   EXPECT_TRUE(contains(result.err, "a.log:2:1: error: '(' expected\n"));
   EXPECT_TRUE(contains(result.err, "a.log:3:31: error: second hexadecimal digit of a data byte expected\n"))
       << result.err;
@@ -289,7 +289,7 @@ TEST(Bus, UnknownIdentifiersAreNamedOnceWithTheirPlace) {
   folder.write("a.log", "(0000000001.000000) can0 7D0#01\n(0000000002.000000) can0 7D0#02\n");
   const CommandResult result = run_ipos({"bus", "decode", "a.log"}, folder.path());
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_EQ(result.err, "a.log:1:26: note: nothing is known about identifier 2000\n");
+  EXPECT_EQ(result.err, "a.log:1:26: note: nothing is known about identifier 7D0h (2000)\n");
 }
 
 TEST(Bus, DbcOfAProgram) {

@@ -45,22 +45,22 @@ TEST(Monitor, ALogInWords) {
   const CommandResult all = run_ipos({"bus", "monitor", "a.log"}, folder.path());
   EXPECT_EQ(all.exit_code, 0);
   EXPECT_EQ(all.out,
-            "(1000000000.000000) can0 523 read 8318 Speed -> address 1\n"
-            "(1000000000.002000) can0 524 read 8318 Speed = 1000.000 rpm <- address 1\n"
-            "(1000000000.003000) can0 531 read 8318 Speed -> address 2\n"
-            "(1000000000.500000) can0 2000 AB\n"
-            "(1000000001.000000) can0 11 PO 0006h, 1388h, 3A98h -> address 1\n");
-  EXPECT_EQ(all.err, "ipos: 5 telegrams, 5 shown\nipos: nothing is known about 1 identifiers: 2000\n");
+            "(1000000000.000000) can0 20B read 8318 Speed -> address 1\n"
+            "(1000000000.002000) can0 20C read 8318 Speed = 1000.000 rpm <- address 1\n"
+            "(1000000000.003000) can0 213 read 8318 Speed -> address 2\n"
+            "(1000000000.500000) can0 7D0 AB\n"
+            "(1000000001.000000) can0 00B PO 0006h, 1388h, 3A98h -> address 1\n");
+  EXPECT_EQ(all.err, "ipos: 5 telegrams, 5 shown\nipos: nothing is known about 1 identifiers: 7D0h (2000)\n");
   const CommandResult one =
       run_ipos({"bus", "monitor", "a.log", "--station", "1", "--count", "2"}, folder.path());
   EXPECT_EQ(without_times(one.out),
-            (std::vector<std::string>{"can0 523 read 8318 Speed -> address 1",
-                                      "can0 524 read 8318 Speed = 1000.000 rpm <- address 1"}));
+            (std::vector<std::string>{"can0 20B read 8318 Speed -> address 1",
+                                      "can0 20C read 8318 Speed = 1000.000 rpm <- address 1"}));
   const CommandResult early = run_ipos({"bus", "monitor", "a.log", "--for", "500ms"}, folder.path());
   EXPECT_EQ(without_times(early.out).size(), 3U);
   EXPECT_EQ(early.exit_code, 0);
   const CommandResult two = run_ipos({"bus", "monitor", "a.log", "--station", "2"}, folder.path());
-  EXPECT_EQ(without_times(two.out), (std::vector<std::string>{"can0 531 read 8318 Speed -> address 2"}));
+  EXPECT_EQ(without_times(two.out), (std::vector<std::string>{"can0 213 read 8318 Speed -> address 2"}));
 }
 
 TEST(Monitor, NamesAndStationsOfAPlant) {
@@ -74,13 +74,13 @@ TEST(Monitor, NamesAndStationsOfAPlant) {
   const CommandResult third =
       run_ipos({"bus", "monitor", "a.log", "--plant", plant, "--station", "inverter3"}, folder.path());
   EXPECT_TRUE(
-      contains(third.out, " 91 PO CTRL. WORD 1 0006h (enable), SPEED 500.0 rpm, 0000h -> inverter3\n"));
-  EXPECT_TRUE(contains(third.out, " 0 sync telegram\n"));
+      contains(third.out, " 05B PO CTRL. WORD 1 0006h (enable), SPEED 500.0 rpm, 0000h -> inverter3\n"));
+  EXPECT_TRUE(contains(third.out, " 000 sync telegram\n"));
   EXPECT_FALSE(contains(third.out, "inverter1"));
   // Variable telegrams belong to their sender and to those that receive them.
   const CommandResult second = run_ipos(
       {"bus", "monitor", "a.log", "--plant", plant, "--station", "inverter2,inverter3"}, folder.path());
-  EXPECT_TRUE(contains(second.out, " 1024 lLength = 12346"));
+  EXPECT_TRUE(contains(second.out, " 400 lLength = 12346"));
   EXPECT_TRUE(contains(second.out, "-> inverter3"));
   EXPECT_FALSE(contains(second.out, "-> inverter1"));
 }
@@ -115,12 +115,12 @@ TEST(Monitor, ALogThatGrows) {
   const TemporaryFolder folder;
   const std::string path = folder.write("a.log", kLog);
   RunningIpos monitor({"bus", "monitor", "a.log", "--follow"}, folder.path());
-  ASSERT_TRUE(monitor.prints(" 11 PO "));
+  ASSERT_TRUE(monitor.prints(" 00B PO "));
   std::ofstream(path, std::ios::app) << "(1000000002.000000) can0 20B#31002";
   std::ofstream(path, std::ios::app) << "11600000000\n";
-  ASSERT_TRUE(monitor.prints(" 523 read 8470 Ramp t11 UP CW -> address 1\n"));
+  ASSERT_TRUE(monitor.prints(" 20B read 8470 Ramp t11 UP CW -> address 1\n"));
   folder.write("a.log", "(1000000003.000000) can0 20B#3100211700000000\n");  // begun anew
-  ASSERT_TRUE(monitor.prints(" 523 read 8471 Ramp t11 DOWN CW -> address 1\n"));
+  ASSERT_TRUE(monitor.prints(" 20B read 8471 Ramp t11 DOWN CW -> address 1\n"));
   monitor.signal(SIGINT);
   const CommandResult end = monitor.wait();
   EXPECT_EQ(end.exit_code, 130);
@@ -235,9 +235,9 @@ TEST_F(MonitorAtPorts, FramesOfAnSlcanProgram) {
   // 1053 1610 p. 57: the second variable stands first.
   EXPECT_EQ(words,
             (std::vector<std::string>{
-                "523 read 8318 Speed -> address 1", "524 read 8318 Speed = 1000.000 rpm <- address 1",
-                "1024 lTrDataLow = 287454020 (11223344h), lTrDataHigh = 1432778632 (55667788h) <- SCOM1",
-                "7 (29 bits) no data"}));
+                "20B read 8318 Speed -> address 1", "20C read 8318 Speed = 1000.000 rpm <- address 1",
+                "400 lTrDataLow = 287454020 (11223344h), lTrDataHigh = 1432778632 (55667788h) <- SCOM1",
+                "00000007 no data"}));
   EXPECT_TRUE(contains(end.err, "is refused: 't20B9'")) << end.err;
   EXPECT_TRUE(contains(end.err, "4 telegrams, 4 shown, 2 lost")) << end.err;
   EXPECT_FALSE(std::filesystem::exists(std::filesystem::symlink_status(path()))) << "the link is left";
@@ -260,7 +260,7 @@ TEST_F(MonitorAtPorts, ASimulatedPlantLive) {
   const CommandResult end = monitor.wait();
   EXPECT_EQ(end.exit_code, 130);
   EXPECT_TRUE(contains(end.out,
-                       " 1024 lTrDataLow = 287454020 (11223344h), "
+                       " 400 lTrDataLow = 287454020 (11223344h), "
                        "lTrDataHigh = 1432778632 (55667788h) <- unit1\n"))
       << end.out;
   EXPECT_TRUE(std::regex_search(end.err, std::regex("ipos: \\d+ telegrams, \\d+ shown"))) << end.err;

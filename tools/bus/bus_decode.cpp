@@ -5,6 +5,7 @@
 #include <set>
 
 #include "compiler/diag/places.hpp"
+#include "runtime/bus/can/identifier_text.hpp"
 #include "runtime/bus/log/serial_log.hpp"
 #include "runtime/bus/movilink/describe_serial.hpp"
 #include "runtime/bus/profibus/frame_text.hpp"
@@ -46,8 +47,8 @@ class Decoder {
     fmt::print("{} {} {}\n", time_text(entry), compiler::printable(entry.bus), description.text);
     if (description.known || !unknown_.emplace(entry.frame.extended, entry.frame.id).second) return;
     if (place.line != 0) place.column = identifier_column(entry);
-    fmt::print(stderr, "{}: note: nothing is known about identifier {}{}\n", place_text(flags_.log, place),
-               entry.frame.id, entry.frame.extended ? " (29 bits)" : "");
+    fmt::print(stderr, "{}: note: nothing is known about identifier {}\n", place_text(flags_.log, place),
+               runtime::id_words(entry.frame.id, entry.frame.extended));
   }
   void take(const runtime::SerialEntry& entry) {
     if (!serial_names_) serial_names_ = serial_names_of(flags_.names.plant, flags_.names.compile);
@@ -59,9 +60,9 @@ class Decoder {
   }
   void take(const runtime::ProfibusEntry& entry) {
     const auto& [frame, octets, start, end] = entry.reception;
-    const std::string text = frame ? profibus::describe(*frame)
-                                   : fmt::format("void, {}: {}", frame_error_text(frame.error()),
-                                                 profibus::hex_text(octets));
+    const std::string text =
+        frame ? profibus::describe(*frame)
+              : fmt::format("void, {}: {}", frame_error_text(frame.error()), profibus::hex_text(octets));
     if (json_) return print(telegram_json(entry), text);
     if (!entry.line.empty())
       fmt::print("{} {} ", runtime::serial_time_text(start), compiler::printable(entry.line));

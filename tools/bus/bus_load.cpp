@@ -4,6 +4,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "runtime/bus/can/identifier_text.hpp"
 #include "runtime/bus/log/bus_load.hpp"
 #include "tools/bus/bus_verbs.hpp"
 #include "tools/bus/profibus_load.hpp"
@@ -48,9 +49,7 @@ std::string seconds(Time time) {
   return fmt::format("{}.{:03}", stamp / runtime::kSecond, stamp % runtime::kSecond / runtime::kMillisecond);
 }
 
-std::string name_of(const runtime::LoggedIdentifier& id) {
-  return id.extended ? fmt::format("{}x", id.id) : fmt::format("{}", id.id);
-}
+std::string name_of(const runtime::LoggedIdentifier& id) { return runtime::id_text(id.id, id.extended); }
 
 // With its meaning behind a row.
 std::string with_meaning(std::string row, const std::string& meaning) {

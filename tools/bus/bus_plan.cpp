@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "runtime/bus/can/identifier_text.hpp"
 #include "runtime/bus_plan/plan.hpp"
 #include "tools/bus/bus_verbs.hpp"
 #include "tools/cli/exit_codes.hpp"
@@ -40,7 +41,11 @@ std::string per_mille(uint64_t part, uint64_t whole) {
   return fmt::format("{}.{} %", value / 10, value % 10);
 }
 
-std::string numbers(const std::vector<uint32_t>& ids) { return fmt::format("{}", fmt::join(ids, " ")); }
+std::string all_words(const std::vector<uint32_t>& ids) {
+  std::string text;
+  for (const uint32_t id : ids) text += (text.empty() ? "" : ", ") + runtime::id_words(id);
+  return text;
+}
 
 std::string line_text(const LinePlan& line) {
   std::string text = fmt::format("{}: {} baud, {} stations", line.name, line.baud, line.stations);
@@ -49,12 +54,12 @@ std::string line_text(const LinePlan& line) {
   text += fmt::format("\n{} identifiers\n", line.identifiers.size());
   for (const auto& identifier : line.identifiers)
     for (const auto& use : identifier.uses)
-      text += fmt::format("{:>6}  {:<8}  {:<12}  {}\n", identifier.id, use.transmits ? "transmit" : "receive",
-                          use.station, use.what);
+      text += fmt::format("  {:<11}  {:<8}  {:<12}  {}\n", runtime::id_words(identifier.id),
+                          use.transmits ? "transmit" : "receive", use.station, use.what);
   if (!line.closed.empty()) text += "\nclosed to variable objects\n";
   for (const auto& closed : line.closed) {
-    text += fmt::format("  {}, transmit: {}\n", closed.station, numbers(closed.transmit));
-    text += fmt::format("  {}, receive:  {}\n", closed.station, numbers(closed.receive));
+    text += fmt::format("  {}, transmit: {}\n", closed.station, all_words(closed.transmit));
+    text += fmt::format("  {}, receive:  {}\n", closed.station, all_words(closed.receive));
   }
   text +=
       fmt::format("\ntelegrams, worst-case load {} of at most 70 %\n", per_mille(line.load_bits, line.baud));
@@ -63,7 +68,7 @@ std::string line_text(const LinePlan& line) {
                         "bytes", "response ms", "sender", "telegram");
   for (const PlannedTelegram& telegram : line.telegrams)
     text +=
-        fmt::format("{:>6}  {:<7}  {:>11}  {:>5}  {:>13}  {:<12}  {}\n", telegram.id,
+        fmt::format("{:>6}  {:<7}  {:>11}  {:>5}  {:>13}  {:<12}  {}\n", runtime::id_text(telegram.id),
                     kRhythms[static_cast<size_t>(telegram.rhythm)], millis(telegram.period), telegram.bytes,
                     telegram.response.bounded ? millis(telegram.response.worst) : "unbounded",
                     telegram.sender, telegram.what);

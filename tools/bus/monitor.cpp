@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "compiler/diag/places.hpp"
+#include "runtime/bus/can/identifier_text.hpp"
 #include "runtime/bus/movilink/describe_serial.hpp"
 #include "runtime/bus/profibus/frame_text.hpp"
 
@@ -35,9 +36,11 @@ void Monitor::take(const runtime::LogEntry& entry) {
     unknown_.emplace(entry.frame.extended, entry.frame.id);
   if (!screen_) return show(entry.time, entry.bus, description.text);
   const runtime::Frame& frame = entry.frame;
-  screen_->table().put(entry.time, entry.bus, frame.id,
-                       frame.extended ? fmt::format("{:08X}", frame.id) : fmt::format("{:03X}", frame.id),
-                       std::span(frame.data).first(frame.remote ? 0 : frame.length), description.text);
+  const std::string id = runtime::id_text(frame.id, frame.extended);
+  // The words begin with the identifier, which the row has already.
+  screen_->table().put(entry.time, entry.bus, frame.id, id,
+                       std::span(frame.data).first(frame.remote ? 0 : frame.length),
+                       description.text.substr(id.size() + 1));
 }
 
 void Monitor::take(Time time, const std::string& line, const runtime::Reception& reception) {
@@ -162,7 +165,7 @@ void Monitor::finish() {
   size_t n = 0;
   for (const auto& [extended, id] : unknown_) {
     if (n++ == kNamedUnknown) break;
-    list += fmt::format("{}{}{}", list.empty() ? "" : ", ", id, extended ? " (29 bits)" : "");
+    list += fmt::format("{}{}", list.empty() ? "" : ", ", runtime::id_words(id, extended));
   }
   fmt::print(stderr, "ipos: nothing is known about {}{} identifiers: {}{}\n",
              unknown_.size() < kUnknown ? "" : "at least ", unknown_.size(), list,

@@ -177,8 +177,8 @@ void Console::info_sbus() {
                          port->objects().started() ? "objects run" : "objects stand"));
       for (const runtime::ObjectDefinition& object : port->objects().definitions())
         print_(fmt::format(
-            "  {:<8} object {:<5} data H{}{}{}\n", kKinds[static_cast<size_t>(object.kind)], object.object,
-            object.data,
+            "  {:<8} object {:<11} data H{}{}{}\n", kKinds[static_cast<size_t>(object.kind)],
+            runtime::object_words(object.object), object.data,
             object.cycle == 0 ? "" : fmt::format(", every {} ms from {} ms", object.cycle, object.offset),
             object.accepted ? "" : ": refused, " + object.why));
     }

@@ -104,7 +104,7 @@ Json DapServer::scope_values(uint32_t station, int scope) const {
     for (const int number : {1, 2})
       if (const runtime::SbusPort* port = plant.stations()[station]->sbus(number))
         for (const runtime::ObjectDefinition& object : port->objects().definitions())
-          text(fmt::format("SBus {} object {}", number, object.object),
+          text(fmt::format("SBus {} object {}", number, runtime::object_words(object.object)),
                fmt::format("{}, data H{}{}",
                            object.kind == runtime::ObjectKind::Receive ? "receive" : "transmit", object.data,
                            object.accepted ? "" : ", refused: " + object.why));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "runtime/bus/can/identifier_text.hpp"
 #include "tools/serve/bus_ear.hpp"
 
 namespace ipos::tools::serve {
@@ -35,7 +36,7 @@ class CanEar final : public BusEar, private runtime::CanObserver, private runtim
     return runtime::describe(names_.now(), frame_of(telegram)).text;
   }
   std::string identity_text(const Telegram& telegram) const override {
-    return fmt::format("{} {:X}", telegram.id, telegram.id);
+    return fmt::format("{} {}", telegram.id, runtime::id_text(telegram.id, telegram.extended));
   }
 
   std::vector<uint8_t> read(const std::string& text) const override {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "runtime/bus/can/identifier_text.hpp"
 #include "runtime/bus/can/line.hpp"
 
 namespace ipos::runtime {
@@ -22,7 +23,7 @@ std::string describe_fault(const CanLine& line, const LineEvent& event) {
       fmt::format("{}: planted fault '{}'{}: {} {}", line.name(), type.word, over ? " is over" : "",
                   event.node == kNoNode ? "the line" : line.node_name(event.node), type.text);
   if (event.other != kNoNode) text += " behind " + line.node_name(event.other);
-  if (type.scope == FaultScope::Frame) text += fmt::format(" (identifier {})", event.id);
+  if (type.scope == FaultScope::Frame) text += fmt::format(", identifier {}", id_words(event.id));
   return text;
 }
 
@@ -71,10 +72,10 @@ std::string describe(const CanLine& line, const LineEvent& event) {
       text +=
           fmt::format(" ({} kbaud, line {} kbaud)", line.node_baud(event.node) / 1000, line.baud() / 1000);
       break;
-    case LineEventKind::NoAcknowledge: text += fmt::format(" (identifier {})", event.id); break;
+    case LineEventKind::NoAcknowledge: text += fmt::format(", identifier {}", id_words(event.id)); break;
     case LineEventKind::Collision:
     case LineEventKind::SameFrame:
-      text += fmt::format(" (identifier {}, other station {})", event.id,
+      text += fmt::format(", identifier {}, other station {}", id_words(event.id),
                           event.other == kNoNode ? "unknown" : line.node_name(event.other));
       break;
     default: break;

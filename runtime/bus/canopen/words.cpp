@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "runtime/bus/can/identifier_text.hpp"
 #include "runtime/bus/canopen/emergency.hpp"
 #include "runtime/bus/canopen/nmt.hpp"
 
@@ -103,7 +104,7 @@ void LineWords::find_messages() {
 }
 
 Description LineWords::describe(const Frame& frame) {
-  const std::string id = fmt::format("{:0{}X}h ", frame.id, frame.extended ? 8 : 3);
+  const std::string id = id_text(frame.id, frame.extended) + ' ';
   if (frame.extended) return {false, id + bytes_text(frame)};
   if (const auto text = pdo_text(frame)) return {true, id + *text};
   if (syncs_.contains(frame.id)) return {true, id + "SYNC"};

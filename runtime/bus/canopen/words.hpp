@@ -1,4 +1,4 @@
-// The frames of a CANopen line in words: "585h SDO 1800h:2 TPDO1 transmission type = 1 <- node 5". It listens to the
+// The frames of a CANopen line in words: "585 SDO 1800h:2 TPDO1 transmission type = 1 <- node 5". It listens to the
 // line from its beginning: a mapping that a master writes is known from then on, and a segment belongs to its object.
 #pragma once
 

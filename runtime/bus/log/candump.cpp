@@ -6,6 +6,7 @@
 #include <charconv>
 #include <ostream>
 
+#include "runtime/bus/can/identifier_text.hpp"
 #include "runtime/bus/can/line.hpp"
 
 namespace ipos::runtime {
@@ -136,7 +137,7 @@ std::string candump_line(Time time, std::string_view bus, const Frame& frame) {
   const Time stamp = time + kCandumpEpoch;
   std::string line =
       fmt::format("({:010d}.{:06d}) {} ", stamp / kSecond, stamp % kSecond / kMicrosecond, bus);
-  line += frame.extended ? fmt::format("{:08X}#", frame.id) : fmt::format("{:03X}#", frame.id);
+  line += id_text(frame.id, frame.extended) + '#';
   if (frame.remote)
     line += frame.length == 0 ? std::string("R") : fmt::format("R{}", frame.length);
   else

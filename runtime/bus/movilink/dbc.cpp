@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "runtime/bus/can/identifier_text.hpp"
 #include "runtime/bus/movilink/dbc_signals.hpp"
 
 namespace ipos::runtime {
@@ -45,7 +46,8 @@ class Writer {
     out += "\n\n";
     for (const Message& message : messages_) out += message_text(message);
     for (const Message& message : messages_)
-      out += fmt::format("CM_ BO_ {} \"{}\";\n", message.id, message.comment);
+      out += fmt::format("CM_ BO_ {} \"{}, identifier {}\";\n", message.id, message.comment,
+                         id_words(message.id));
     out += "BA_DEF_ BO_ \"GenMsgCycleTime\" INT 0 65535;\nBA_DEF_DEF_ \"GenMsgCycleTime\" 0;\n";
     for (const Message& message : messages_)
       if (message.cycle > 0)

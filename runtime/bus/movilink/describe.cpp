@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "runtime/bus/can/identifier_text.hpp"
 #include "runtime/bus/movilink/process_data.hpp"
 #include "runtime/bus/movilink/telegram_words.hpp"
 
@@ -58,9 +59,9 @@ std::string process_text(const TelegramNames& names, const SbusIdentifier& ident
 Description object_text(const ObjectNames& object, const Frame& frame) {
   const auto pair = frame_variables(frame, object.format);
   if (!pair)
-    return {true, fmt::format("{} object of {} with {} bytes in place of {}: {}", frame.id, object.station,
-                              frame.length, object.format.length, bytes_text(frame))};
-  std::string text = fmt::format("{}", frame.id);
+    return {true, fmt::format("{} object of {} with {} bytes in place of {}: {}", id_text(frame.id),
+                              object.station, frame.length, object.format.length, bytes_text(frame))};
+  std::string text = id_text(frame.id);
   const std::array<int32_t, 2> values = {pair->low, pair->high};
   for (size_t n = 0; n < object.format.variables(); ++n)
     text += fmt::format("{} {} = {} ({:08X}h)", n == 0 ? "" : ",", object.variables[n], values[n],
@@ -105,17 +106,18 @@ bool concerns(const TelegramNames& names, const Frame& frame) {
 
 Description describe(const TelegramNames& names, const Frame& frame) {
   if (!is_plain(frame))
-    return {false, fmt::format("{}{} {}", frame.id, frame.extended ? " (29 bits)" : "", bytes_text(frame))};
+    return {false, fmt::format("{} {}", id_text(frame.id, frame.extended), bytes_text(frame))};
   if (const ObjectNames* object = names.object(frame.id)) return object_text(*object, frame);
   const auto identifier = classify_identifier(frame.id);
   if (!identifier) {
-    if (is_sync(names, frame)) return {true, fmt::format("{} sync telegram", frame.id)};
-    return {false, fmt::format("{} {}", frame.id, bytes_text(frame))};
+    if (is_sync(names, frame)) return {true, id_text(frame.id) + " sync telegram"};
+    return {false, fmt::format("{} {}", id_text(frame.id), bytes_text(frame))};
   }
   const std::string what = telegram_type(identifier->telegram).parameter
                                ? parameter_text(names, *identifier, frame)
                                : process_text(names, *identifier, frame);
-  return {true, fmt::format("{} {} {} {}", frame.id, what, arrow(*identifier), partner(names, *identifier))};
+  return {true, fmt::format("{} {} {} {}", id_text(frame.id), what, arrow(*identifier),
+                            partner(names, *identifier))};
 }
 
 }  // namespace ipos::runtime

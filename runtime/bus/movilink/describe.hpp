@@ -1,4 +1,4 @@
-// MOVILINK and variable telegrams in words and units: "523 read 8318 Speed -> unit1". Names come from a
+// MOVILINK and variable telegrams in words and units: "20B read 8318 Speed -> unit1". Names come from a
 // dictionary that whoever knows the plant or the programs fills.
 #pragma once
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "runtime/bus/can/identifier_text.hpp"
 #include "runtime/bus/can/line.hpp"
 #include "runtime/bus/movilink/sbus_control.hpp"
 #include "runtime/bus/movilink/sbus_master.hpp"
@@ -68,9 +69,9 @@ void SbusCheck::check_telegram(const CanLine& line, const FrameRecord& record) {
 
 void SbusCheck::tell_second_sender(const CanLine& line, const FrameRecord& record, NodeId first) {
   if (!told_.emplace(record.frame.id, record.sender).second) return;
-  tell(record.end,
-       fmt::format("{}: identifier {} is sent by {} and by {}; an identifier may have one sender",
-                   line.name(), record.frame.id, line.node_name(first), line.node_name(record.sender)));
+  tell(record.end, fmt::format("{}: identifier {} is sent by {} and by {}; an identifier may have one sender",
+                               line.name(), id_words(record.frame.id), line.node_name(first),
+                               line.node_name(record.sender)));
 }
 
 void SbusCheck::check_address(const CanLine& line, const FrameRecord& record,
@@ -123,7 +124,7 @@ void SbusCheck::check_window(const CanLine& line, const FrameRecord& record,
       tell(record.end,
            fmt::format("{}: synchronous PO telegram {} of {} starts {:.3f} ms after the sync telegram; it "
                        "belongs between 1.5 and 4.5 ms",
-                       line.name(), record.frame.id, line.node_name(record.sender),
+                       line.name(), id_words(record.frame.id), line.node_name(record.sender),
                        static_cast<double>(at) / 1e6));
   }
 }

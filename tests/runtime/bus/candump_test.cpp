@@ -6,6 +6,7 @@
 #include <random>
 #include <sstream>
 
+#include "runtime/bus/can/identifier_text.hpp"
 #include "runtime/bus/can/line.hpp"
 
 namespace ipos::runtime {
@@ -19,6 +20,18 @@ TEST(Candump, LinesAsCanUtilsWritesThem) {
   EXPECT_EQ(candump_line(0, "x", {0x12345, 1, {0xAB}, true, false}), "(0946684800.000000) x 00012345#AB");
   EXPECT_EQ(candump_line(0, "x", {0x701, 0, {}, false, true}), "(0946684800.000000) x 701#R");
   EXPECT_EQ(candump_line(0, "x", {0x701, 4, {}, false, true}), "(0946684800.000000) x 701#R4");
+}
+
+// As candump writes them: %03X, of 29 bits %08X (can-utils, lib.c).
+TEST(Candump, IdentifiersAsPeopleReadThem) {
+  EXPECT_EQ(id_text(0), "000");
+  EXPECT_EQ(id_text(300), "12C");
+  EXPECT_EQ(id_text(2047), "7FF");
+  EXPECT_EQ(id_text(300, true), "0000012C");
+  EXPECT_EQ(id_text(0x18DA'F110, true), "18DAF110");
+  EXPECT_EQ(id_words(11), "00Bh (11)");
+  EXPECT_EQ(id_words(300), "12Ch (300)");
+  EXPECT_EQ(id_words(7, true), "00000007h (7)");
 }
 
 TEST(Candump, ReadsWhatOtherToolsWrite) {

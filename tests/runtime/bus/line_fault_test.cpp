@@ -143,7 +143,8 @@ TEST(LineFault, CorruptedFrameIsRepeated) {
   EXPECT_EQ(t.line.counters(0).transmit, 7U);  // + 8, then a success
   EXPECT_EQ(t.line.counters(1).receive, 0U);   // + 1, then a success
   EXPECT_EQ(t.watcher.frames.size(), 2U);
-  EXPECT_TRUE(t.watcher.says("sbus: planted fault 'corrupt': the line has a disturbed bit (identifier 101)"));
+  EXPECT_TRUE(
+      t.watcher.says("sbus: planted fault 'corrupt': the line has a disturbed bit, identifier 065h (101)"));
 }
 
 TEST(LineFault, OneListenerWithABitErrorMakesAllRepeatAndCountsForItself) {

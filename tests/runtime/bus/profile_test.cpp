@@ -197,40 +197,40 @@ TelegramNames names() {
 std::string words(const Frame& frame) { return describe(names(), frame).text; }
 
 TEST(Describe, ParameterTelegrams) {
-  EXPECT_EQ(words({523, 8, {0x31, 0, 0x20, 0x7E}, false, false}), "523 read 8318 Speed -> unit1");
+  EXPECT_EQ(words({523, 8, {0x31, 0, 0x20, 0x7E}, false, false}), "20B read 8318 Speed -> unit1");
   EXPECT_EQ(words({524, 8, {0x31, 0, 0x20, 0x7E, 0, 0x0F, 0x42, 0x40}, false, false}),
-            "524 read 8318 Speed = 1000.000 rpm <- unit1");
+            "20C read 8318 Speed = 1000.000 rpm <- unit1");
   EXPECT_EQ(words({523, 8, {0x32, 0, 0x21, 0x16, 0, 0, 0x0B, 0xB8}, false, false}),
-            "523 write 8470 Ramp t11 UP CW = 3.000 s -> unit1");
+            "20B write 8470 Ramp t11 UP CW = 3.000 s -> unit1");
   EXPECT_EQ(words({523, 8, {0x12, 0, 0x21, 0x16, 0, 0, 0x0B, 0xB8}, false, false}),
-            "523 write 8470 Ramp t11 UP CW = 3.000 s, length 2 in place of 4 bytes -> unit1");
+            "20B write 8470 Ramp t11 UP CW = 3.000 s, length 2 in place of 4 bytes -> unit1");
   EXPECT_EQ(words({524, 8, {0xB2, 0, 0x20, 0x7E, 8, 0, 0, 0x12}, false, false}).substr(0, 47),
-            "524 write 8318 Speed refused: class 8 code 0 ad");
+            "20C write 8318 Speed refused: class 8 code 0 ad");
   EXPECT_EQ(words({534, 8, {0x33, 0, 0x2C, 0xA2, 0xFF, 0xFF, 0xFF, 0xFF}, false, false}),
-            "534 write volatile 11426 lTrDataLow = -1 -> group 2");
+            "216 write volatile 11426 lTrDataLow = -1 -> group 2");
   EXPECT_EQ(words({523, 8, {0x71, 0, 0x2A, 0xFD}, false, false}),
-            "523 read 11005 H5, answer after sync -> unit1");
-  EXPECT_EQ(words({523, 8, {0x37, 0, 0x20, 0x7E}, false, false}), "523 read scale 8318 Speed -> unit1");
+            "20B read 11005 H5, answer after sync -> unit1");
+  EXPECT_EQ(words({523, 8, {0x37, 0, 0x20, 0x7E}, false, false}), "20B read scale 8318 Speed -> unit1");
   // 1053 1610 p. 31: P131, quantity 4 = time, conversion -3; FFh: none is given.
   EXPECT_EQ(words({524, 8, {0x37, 0, 0x21, 0x17, 0, 0, 0x04, 0xFD}, false, false}),
-            "524 read scale 8471 Ramp t11 DOWN CW = quantity 4 time, conversion -3 (ms) <- unit1");
+            "20C read scale 8471 Ramp t11 DOWN CW = quantity 4 time, conversion -3 (ms) <- unit1");
   EXPECT_EQ(words({524, 8, {0x37, 0, 0x20, 0x7E, 0, 0, 0x0B, 0x42}, false, false}),
-            "524 read scale 8318 Speed = quantity 11 rotational velocity, conversion 66 <- unit1");
+            "20C read scale 8318 Speed = quantity 11 rotational velocity, conversion 66 <- unit1");
   EXPECT_EQ(words({524, 8, {0x37, 0, 0x20, 0x7E, 0, 0, 0xFF, 0x00}, false, false}),
-            "524 read scale 8318 Speed = no quantity, conversion 0 <- unit1");
+            "20C read scale 8318 Speed = no quantity, conversion 0 <- unit1");
   EXPECT_EQ(words({524, 8, {0x37, 0, 0x20, 0x7E, 0, 0, 0x30, 0x00}, false, false}),
-            "524 read scale 8318 Speed = quantity 48 unknown, conversion 0 <- unit1");
+            "20C read scale 8318 Speed = quantity 48 unknown, conversion 0 <- unit1");
   // p. 32: next index, then the attributes.
   EXPECT_EQ(
       words({524, 8, {0x38, 0, 0x21, 0x17, 0x21, 0x18, 0, 0x21}, false, false}),
-      "524 read attribute 8471 Ramp t11 DOWN CW = next index 8472, attributes 0021h (writable, needs no "
+      "20C read attribute 8471 Ramp t11 DOWN CW = next index 8472, attributes 0021h (writable, needs no "
       "inhibit) <- unit1");
   EXPECT_EQ(words({524, 8, {0x38, 0, 0x22, 0xBB, 0, 0, 0, 0}, false, false}),
-            "524 read attribute 8891 Encoder type (X14) = last index, attributes 0000h <- unit1");
+            "20C read attribute 8891 Encoder type (X14) = last index, attributes 0000h <- unit1");
   EXPECT_EQ(words({523, 8, {0x3F, 0, 0xFF, 0xFF}, false, false}),
-            "523 service 15 65535 unknown index -> unit1");
-  EXPECT_EQ(words({523, 3, {0x31}, false, false}), "523 3 bytes in place of 8: 31 00 00 -> unit1");
-  EXPECT_EQ(words({531, 8, {0x31, 0, 0x20, 0x7E}, false, false}), "531 read 8318 Speed -> address 2");
+            "20B service 15 65535 unknown index -> unit1");
+  EXPECT_EQ(words({523, 3, {0x31}, false, false}), "20B 3 bytes in place of 8: 31 00 00 -> unit1");
+  EXPECT_EQ(words({531, 8, {0x31, 0, 0x20, 0x7E}, false, false}), "213 read 8318 Speed -> address 2");
 }
 
 TEST(Describe, RequestAndResponseAreNotMixedUp) {
@@ -250,9 +250,9 @@ TEST(Describe, ProcessDataByAssignment) {
   // The sample of MOVITRAC 07 chapter 5.1: P870..P872 control word, speed, max. speed; P873, P874 status
   // word, speed.
   EXPECT_EQ(words(process_frame(11, {6, 5000, 15000})),
-            "11 PO CTRL. WORD 1 0006h (enable), SPEED 1000.0 rpm, MAX. SPEED 3000.0 rpm -> unit1");
+            "00B PO CTRL. WORD 1 0006h (enable), SPEED 1000.0 rpm, MAX. SPEED 3000.0 rpm -> unit1");
   EXPECT_EQ(words(process_frame(12, {7, 5011, 0})),
-            "12 PI STATUS WORD1 0007h (ready, output stage on, PO data on; state 0 not ready), SPEED 1002.2 "
+            "00C PI STATUS WORD1 0007h (ready, output stage on, PO data on; state 0 not ready), SPEED 1002.2 "
             "rpm, OUTP. CURRENT 0.0 % In <- unit1");
   EXPECT_EQ(process_word_text(false, 1, 5000), "1000.0 rpm");
   EXPECT_EQ(process_word_text(false, 5, 15000), "3000.0 rpm");
@@ -308,15 +308,15 @@ TEST(Describe, ScalesOfTheUnitProfile) {
 
 TEST(Describe, VariableAndOtherTelegrams) {
   EXPECT_EQ(words({1024, 8, {0x55, 0x66, 0x77, 0x88, 0x11, 0x22, 0x33, 0x44}, false, false}),
-            "1024 lTrDataLow = 287454020 (11223344h), lTrDataHigh = 1432778632 (55667788h) <- unit1");
-  EXPECT_EQ(words({1024, 2, {1, 2}, false, false}), "1024 object of unit1 with 2 bytes in place of 8: 01 02");
-  EXPECT_EQ(words({0, 0, {}, false, false}), "0 sync telegram");
+            "400 lTrDataLow = 287454020 (11223344h), lTrDataHigh = 1432778632 (55667788h) <- unit1");
+  EXPECT_EQ(words({1024, 2, {1, 2}, false, false}), "400 object of unit1 with 2 bytes in place of 8: 01 02");
+  EXPECT_EQ(words({0, 0, {}, false, false}), "000 sync telegram");
   const Description unknown = describe(names(), {2000, 2, {0xAB, 0xCD}, false, false});
   EXPECT_FALSE(unknown.known);
-  EXPECT_EQ(unknown.text, "2000 AB CD");
+  EXPECT_EQ(unknown.text, "7D0 AB CD");
   EXPECT_FALSE(describe(names(), {11, 6, {}, true, false}).known);
   EXPECT_FALSE(describe(names(), {523, 0, {}, false, true}).known);
-  EXPECT_EQ(describe({}, process_frame(11, {6, 0, 0})).text, "11 PO 0006h, 0000h, 0000h -> address 1");
+  EXPECT_EQ(describe({}, process_frame(11, {6, 0, 0})).text, "00B PO 0006h, 0000h, 0000h -> address 1");
 }
 
 }  // namespace

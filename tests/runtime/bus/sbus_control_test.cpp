@@ -125,7 +125,7 @@ TEST(SbusControl, SynchronousOutputKeepsItsWindow) {
     other.queue.run_until(at);
     hand.port.send(process_frame(13, {6, 0, 0}), 0);
     other.queue.run_until(10 * kMillisecond);
-    EXPECT_EQ(other.findings.count("synchronous PO telegram 13 of hand starts"), 1U);
+    EXPECT_EQ(other.findings.count("synchronous PO telegram 00Dh (13) of hand starts"), 1U);
   }
 }
 
@@ -158,7 +158,7 @@ TEST(SbusCheck, TwoSendersOfOneIdentifier) {
   }
   ASSERT_EQ(rig.findings.texts.size(), 1U);
   EXPECT_EQ(rig.findings.texts[0],
-            "sbus: identifier 1024 is sent by a and by b; an identifier may have one sender");
+            "sbus: identifier 400h (1024) is sent by a and by b; an identifier may have one sender");
 }
 
 TEST(SbusCheck, AddressesNobodyHasAndAddressesTwoHave) {
@@ -292,7 +292,7 @@ TEST(MasterSlave, TheMasterFollowsNoGroupTelegramsAndASecondSenderIsReported) {
   rig.queue.run_until(2 * kMillisecond);
   EXPECT_TRUE(master.outputs.empty());
   EXPECT_EQ(master.ignored, std::vector<Ignored>{Ignored::GroupMaster});
-  EXPECT_EQ(rig.findings.count("identifier 22 is sent by master and by other"), 1U);
+  EXPECT_EQ(rig.findings.count("identifier 016h (22) is sent by master and by other"), 1U);
 }
 
 TEST(SbusMaster, GroupSixtyThree) {

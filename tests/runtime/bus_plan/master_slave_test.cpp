@@ -63,7 +63,8 @@ TEST(MasterAndSlave, TheMasterFollowsNoGroupTelegrams) {
     if (master) {
       EXPECT_EQ(drive.axis().speed, 0);
     }
-    EXPECT_EQ(rig.says("identifier 46 is sent by master and by other"), master ? 1U : 0U) << rig.journal();
+    EXPECT_EQ(rig.says("identifier 02Eh (46) is sent by master and by other"), master ? 1U : 0U)
+        << rig.journal();
   }
   // Two masters of one group in the plan.
   PlantRig two(bus_text() + unit("a", 1, 2) + unit("b", 2, 2) +
@@ -73,7 +74,7 @@ TEST(MasterAndSlave, TheMasterFollowsNoGroupTelegrams) {
   for (const Finding& finding : plan.findings)
     if (finding.kind == FindingKind::DoubleIdentifier) {
       ++found;
-      EXPECT_EQ(finding.text.find("identifier 46 is sent by a ("), 0U) << finding.text;
+      EXPECT_EQ(finding.text.find("identifier 02Eh (46) is sent by a ("), 0U) << finding.text;
       EXPECT_NE(finding.text.find("and by b ("), std::string::npos) << finding.text;
     }
   EXPECT_EQ(found, 1U);

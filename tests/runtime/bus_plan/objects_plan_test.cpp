@@ -51,15 +51,15 @@ std::vector<std::string> texts(const BusPlan& plan, FindingKind kind) {
 TEST(Objects, OneSenderAndNoMovilinkIdentifiers) {
   PROVES("VAR-03");
   BusPlan plan = plan_of(two(), {{"A.IPC", send_program(1024)}, {"B.IPC", send_program(1024)}});
-  EXPECT_EQ(
-      texts(plan, FindingKind::DoubleIdentifier),
-      std::vector<std::string>{"identifier 1024 is sent by unit1 (object Tr) and by unit2 (object Tr)"});
+  EXPECT_EQ(texts(plan, FindingKind::DoubleIdentifier),
+            std::vector<std::string>{
+                "identifier 400h (1024) is sent by unit1 (object Tr) and by unit2 (object Tr)"});
   // 12 is the PI that unit 2 sends.
   plan = plan_of(two(), {{"A.IPC", send_program(12)}, {"B.IPC", send_program(1025)}});
-  EXPECT_EQ(
-      texts(plan, FindingKind::MovilinkIdentifier),
-      std::vector<std::string>{"unit1: object 12 (Tr) cannot be sent: it is the process input data (PI) of "
-                               "address 1 that unit2 sends"});
+  EXPECT_EQ(texts(plan, FindingKind::MovilinkIdentifier),
+            std::vector<std::string>{
+                "unit1: object 00Ch (12) in Tr cannot be sent: it is the process input data (PI) of "
+                "address 1 that unit2 sends"});
   // 11 it only receives: no rule against sending it, as long as nobody sends PO.
   plan = plan_of(two(), {{"A.IPC", send_program(11)}, {"B.IPC", send_program(1025)}});
   EXPECT_TRUE(texts(plan, FindingKind::MovilinkIdentifier).empty());
@@ -201,25 +201,26 @@ TEST(Objects, OneUnitSendsOrReceivesAnIdentifier) {
       {"B.IPC", receive_program(1024)}};
   PlantRig rig(two(), cyclic);
   rig.run_until(50 * kMillisecond);
-  EXPECT_EQ(rig.says("unit1: object 1024 would be sent and received by this unit"), 1U) << rig.journal();
+  EXPECT_EQ(rig.says("unit1: object 400h (1024) would be sent and received by this unit"), 1U)
+      << rig.journal();
   EXPECT_EQ(rig.variable(1, "lData"), 7);
   EXPECT_EQ(texts(plan_of(two(), cyclic), FindingKind::ObjectRefused).size(), 1U);
   const std::map<std::string, std::string> acyclic = {{"A.IPC", both("SCD_TRACYCL", "SCTRACYCL", "")},
                                                       {"B.IPC", receive_program(1024)}};
   PlantRig once(two(), acyclic);
   once.run_until(50 * kMillisecond);
-  EXPECT_EQ(once.says("unit1: object 1024 stands in two structures of this unit"), 1U) << once.journal();
+  EXPECT_EQ(once.says("unit1: object 400h (1024) stands in two structures of this unit"), 1U)
+      << once.journal();
   EXPECT_EQ(texts(plan_of(two(), acyclic), FindingKind::DoubleIdentifier),
-            std::vector<std::string>{"identifier 1024 is sent (T) and received (R) by unit1"});
+            std::vector<std::string>{"identifier 400h (1024) is sent (T) and received (R) by unit1"});
 }
 
 // A unit that calls address 1 with MOVLNK, and has an object on one of the telegrams of these calls.
 TEST(Objects, ObjectsOnTheUnitsOwnMovlnk) {
-  for (const auto& [id, text] :
-       {std::pair{12, "process input data (PI) of address 1: the telegram does not reach the receive object"},
-        {524, "parameter response of address 1: the telegram does not reach the receive object"},
-        {11, "process output data (PO) of address 1: the telegram does not reach the receive object"},
-        {523, "parameter request of address 1: the telegram does not reach the receive object"}}) {
+  for (const auto& [id, text] : {std::pair{12, "00Ch (12)| process input data (PI) of address 1"},
+                                 {524, "20Ch (524)| parameter response of address 1"},
+                                 {11, "00Bh (11)| process output data (PO) of address 1"},
+                                 {523, "20Bh (523)| parameter request of address 1"}}) {
     const std::string program =
         "#include <const.h>\nMOVLNK Ml; MLDATA Mld; SCREC R; long k, lGot;\nmain()\n{\n k = " +
         std::to_string(id) +
@@ -233,9 +234,9 @@ TEST(Objects, ObjectsOnTheUnitsOwnMovlnk) {
     rig.run_until(100 * kMillisecond);
     EXPECT_EQ(rig.variable(0, "H300"), 0);
     EXPECT_EQ(rig.variable(0, "Ml.Result"), 0);
-    EXPECT_EQ(rig.says("unit1: object " + std::to_string(id) +
-                       " has the identifier of a telegram of this unit's own MOVLNK, " + text),
-              1U)
+    std::string expected = text;
+    expected.replace(expected.find('|'), 1, " has the identifier of a telegram of this unit's own MOVLNK,");
+    EXPECT_EQ(rig.says("unit1: object " + expected + ": the telegram does not reach the receive object"), 1U)
         << rig.journal();
     EXPECT_EQ(texts(plan_of(plant, sources), FindingKind::MovilinkIdentifier).size(), 1U);
   }
@@ -258,7 +259,7 @@ TEST(Objects, NumbersFrom0To2047) {
     rig.run_until(50 * kMillisecond);
     EXPECT_EQ(rig.variable(1, "lData"), 287454020) << id;
     // With P817 = 0 units take telegram 0 as sync: a warning, and a hint in the plan.
-    EXPECT_EQ(rig.says("object number 0 is also the sync telegram"), id == 0 ? 2U : 0U);
+    EXPECT_EQ(rig.says("object number 000h (0) is also the sync telegram"), id == 0 ? 2U : 0U);
     EXPECT_EQ(texts(plan_of(two(), {{"A.IPC", send_program(id)}, {"B.IPC", receive_program(id)}}),
                     FindingKind::SyncObject)
                   .empty(),
@@ -281,24 +282,28 @@ TEST(Objects, ObjectsOnIdentifiersOfMovilink) {
     PlantRig rig(plant, sources);
     rig.run_until(30 * kMillisecond);
     EXPECT_EQ(rig.station(1).drive().state().po()[1], 0x1122) << "the object's bytes are taken for PO";
-    EXPECT_EQ(rig.says("identifier 11 is sent by unit1 and by unit3"), 1U) << rig.journal();
-    EXPECT_EQ(rig.says("unit2: object number 523 is an identifier of the unit's own MOVILINK telegrams"), 1U);
+    EXPECT_EQ(rig.says("identifier 00Bh (11) is sent by unit1 and by unit3"), 1U) << rig.journal();
+    EXPECT_EQ(
+        rig.says("unit2: object number 20Bh (523) is an identifier of the unit's own MOVILINK telegrams"),
+        1U);
     EXPECT_EQ(rig.variable(1, "lData"), 0);
     const BusPlan plan = plan_of(plant, sources);
     const std::vector<std::string> found = texts(plan, FindingKind::MovilinkIdentifier);
     ASSERT_EQ(found.size(), 2U);
-    EXPECT_EQ(found[0],
-              "unit2: object 523 (Rec) cannot be received: it is the parameter request of address 1 that "
-              "unit2 receives");
-    EXPECT_EQ(found[1],
-              "unit3: object 11 (Tr) cannot be sent: it is the process output data (PO) of address 1 that "
-              "unit1 sends");
+    EXPECT_EQ(
+        found[0],
+        "unit2: object 20Bh (523) in Rec cannot be received: it is the parameter request of address 1 that "
+        "unit2 receives");
+    EXPECT_EQ(
+        found[1],
+        "unit3: object 00Bh (11) in Tr cannot be sent: it is the process output data (PO) of address 1 that "
+        "unit1 sends");
     // Different formats of one object.
     EXPECT_EQ(texts(plan_of(two(unit),
                             {{"A.IPC", send_program(1024, "8")}, {"B.IPC", receive_program(1024, "0x108")}}),
                     FindingKind::Formats),
               std::vector<std::string>{
-                  "object 1024 is sent by unit1 with 8 bytes MOTOROLA and received by unit2 with 8 "
+                  "object 400h (1024) is sent by unit1 with 8 bytes MOTOROLA and received by unit2 with 8 "
                   "bytes INTEL"});
   }
 }
@@ -363,9 +368,9 @@ TEST(Objects, DictionaryOfAPlant) {
   rig.run_until(50 * kMillisecond);
   const TelegramNames names = telegram_names(*rig.plant);
   EXPECT_EQ(describe(names, rig.frames.back().frame).text,
-            "1024 lData = 287454020 (11223344h), lMore = 0 (00000000h) <- unit1");
+            "400 lData = 287454020 (11223344h), lMore = 0 (00000000h) <- unit1");
   EXPECT_EQ(describe(names, {523, 8, {0x31, 0, 0x2C, 0x9D}, false, false}).text,
-            "523 read 11421 Rec.Format -> unit2");
+            "20B read 11421 Rec.Format -> unit2");
 }
 
 }  // namespace

@@ -305,7 +305,7 @@ TEST(Plan, SyncIdentifierMustBeFree) {
   const BusPlan plan =
       plan_of(bus_text() + station_text("a", "P813 = 1\nP817 = 11000\n") + station_text("b", "P813 = 2\n"));
   EXPECT_EQ(text_of(plan, FindingKind::SyncIdentifier),
-            "sync identifier 11 of a is process output data (PO) of address 1 of a");
+            "sync identifier 00Bh (11) of a is process output data (PO) of address 1 of a");
   EXPECT_TRUE(codes(plan_of(bus_text() + station_text("a", "P813 = 1\nP817 = 128000\n"))).empty());
   // A unit with P817 = 128 takes 128 and not 0.
   PlantRig rig(
@@ -417,7 +417,7 @@ TEST(Plan, LoadAndResponseTimes) {
   EXPECT_EQ(text_of(plan, FindingKind::Overload), "worst-case load 108.0 %, at most 70 % may be planned");
   // 1024: blocked by one frame, then itself, 2 x 1.08 ms and a bit. 1025 waits for ever.
   EXPECT_EQ(text_of(plan, FindingKind::TooLate),
-            "object Tr of u0 (identifier 1024) may take 2168 us, its period is 2000 us");
+            "object Tr of u0, identifier 400h (1024), may take 2168 us, its period is 2000 us");
   EXPECT_EQ(plan.lines[0].telegrams[0].response.worst, 2 * 135 * 8000 + 8000);
   EXPECT_FALSE(plan.lines[0].telegrams[1].response.bounded);
   EXPECT_TRUE(plan.has_errors());

@@ -87,7 +87,7 @@ TEST(Sbus2, OnlyMovidriveBHasIt) {
   alone.run_until(50 * kMillisecond);
   EXPECT_TRUE(alone.frames.empty());
   EXPECT_EQ(alone.variable(0, "Tr2.Result"), -1);
-  EXPECT_EQ(alone.says("a: object 1025 is for SBus 2, which the station is not on"), 1U);
+  EXPECT_EQ(alone.says("a: object 401h (1025) is for SBus 2, which the station is not on"), 1U);
 }
 
 TEST(Sbus2, SecondParameterChannel) {

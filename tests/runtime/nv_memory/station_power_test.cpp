@@ -361,7 +361,7 @@ TEST(Movitrac07, ParameterTelegrams) {
   // The same to the group P814 = 0 leaves a reason.
   EXPECT_TRUE(rig.send(518, {0x72, 0, 0x21, 0x45, 0x00, 0x15, 0x5C, 0xC0}).empty());
   EXPECT_EQ(rig.ask(request(Service::Read, 8517)), maximum_speed);
-  EXPECT_TRUE(rig.told("SBus telegram 518 had no effect: group write refused"));
+  EXPECT_TRUE(rig.told("SBus telegram 206h (518) had no effect: group write refused"));
   EXPECT_EQ(rig.ask(request(Service::Read, 8622)), (Data{0x31, 0, 0x21, 0xAE, 0, 0, 0, 1}));
   EXPECT_EQ(rig.ask(request(Service::Read, 9500)), (Data{0xB1, 0, 0x25, 0x1C, 8, 0, 0, 0x10}));
   EXPECT_EQ(rig.ask(request(Service::Write, 8318, 1)), (Data{0xB2, 0, 0x20, 0x7E, 8, 0, 0, 0x12}));

@@ -64,7 +64,8 @@ TEST(Late, AUnitMayBeSwitchedOnBetweenTwoMilliseconds) {
       "[[station]]\nname = \"v\"\nunit = \"mdxb\"\nsbus = \"can\"\n[station.parameters]\nP881 = 2\n";
   const std::map<std::string, std::string> sources = {
       {"U.IPC",
-       "#include <constb.h>\nSCTRCYCL Tr; long n; main() { Tr.ObjectNo = 1100; Tr.CycleTime = 10; Tr.Format = 4;\n"
+       "#include <constb.h>\nSCTRCYCL Tr; long n; main() { Tr.ObjectNo = 1100; Tr.CycleTime = 10; Tr.Format "
+       "= 4;\n"
        "Tr.DPointer = numof(n); _SBusCommDef(SCD_TRCYCL, Tr); _SBusCommOn(); while (1) n = n + 1; }"}};
   Watched expected(make_plant(text, sources, std::nullopt, in_turn())), plant(make_plant(text, sources));
   for (const Watched* run : {&expected, &plant}) {
@@ -79,7 +80,8 @@ TEST(Late, AUnitMayBeSwitchedOnBetweenTwoMilliseconds) {
     plant.plant->run_until(now);
     late += plant.plant->stations()[0]->behind() ? 1 : 0;
     const uint64_t ticks = static_cast<uint64_t>((now - ms(1000) - 300'000) / runtime::kMillisecond) + 1;
-    ASSERT_EQ(plant.plant->stations()[0]->machine()->task(1).commands, ticks) << now << ": one command a tick";
+    ASSERT_EQ(plant.plant->stations()[0]->machine()->task(1).commands, ticks)
+        << now << ": one command a tick";
     ASSERT_NO_FATAL_FAILURE(expect_same(plant, expected, std::to_string(now)));
   }
   EXPECT_GT(late, 0U);
@@ -266,7 +268,7 @@ TEST(Late, ATelegramOfAnotherLengthIsToldOf) {
   ASSERT_TRUE(plant);
   plant->run_until(ms(1500));
   EXPECT_TRUE(plant->stations()[1]->behind());
-  EXPECT_TRUE(told(*plant, "object 1100 came with 4 bytes, its receive object has 8"));
+  EXPECT_TRUE(told(*plant, "object 44Ch (1100) came with 4 bytes, its receive object has 8"));
   EXPECT_EQ(value(*plant, "r", "hears"), 0);
 }
 

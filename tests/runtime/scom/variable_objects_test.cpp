@@ -183,7 +183,9 @@ TEST_F(Objects, AnIdentifierMayBeUsedOnceInAUnit) {
           std::copy(std::begin(elements), std::end(elements), h_.begin() + 20);
         why_.clear();
         EXPECT_TRUE(objects_.define(kind, 20, h_, why_));
-        EXPECT_EQ(why_.starts_with("object number " + std::to_string(id) +
+        char number[16];
+        std::snprintf(number, sizeof number, "%03Xh (%d)", static_cast<unsigned>(id), id);
+        EXPECT_EQ(why_.starts_with(std::string("object number ") + number +
                                    " is an identifier of the unit's own MOVILINK telegrams"),
                   own.contains(id))
             << id << " at " << address << ", " << group << ": " << why_;
@@ -202,14 +204,14 @@ TEST_F(Objects, AnIdentifierIsSentOrReceivedByAUnit) {
   PROVES("VAR-04");
   EXPECT_GE(cyclic(1024, 100), 0);
   receive(1024);
-  EXPECT_EQ(
-      why_,
-      "object 1024 would be sent and received by this unit, which may use an identifier once; the second "
-      "definition is not used");
+  EXPECT_EQ(why_,
+            "object 400h (1024) would be sent and received by this unit, which may use an identifier once; "
+            "the second "
+            "definition is not used");
   receive(1025);
   EXPECT_EQ(why_, "");
   EXPECT_LT(cyclic(1025, 100), 0);
-  EXPECT_NE(why_.find("object 1025 would be sent and received"), std::string::npos);
+  EXPECT_NE(why_.find("object 401h (1025) would be sent and received"), std::string::npos);
   objects_.start(0);
   EXPECT_FALSE(arrives(1024));
   EXPECT_TRUE(arrives(1025));
@@ -220,9 +222,9 @@ TEST_F(Objects, AnIdentifierIsSentOrReceivedByAUnit) {
   std::copy_n(std::array<int32_t, 4>{1025, 8, 426, 0}.begin(), 4, h_.begin() + 10);
   why_.clear();
   EXPECT_TRUE(objects_.define(ObjectKind::TransmitAcyclic, 10, h_, why_));
-  EXPECT_EQ(
-      why_,
-      "object 1025 stands in two structures of this unit (H428 and H10), which may use an identifier once");
+  EXPECT_EQ(why_,
+            "object 401h (1025) stands in two structures of this unit (H428 and H10), which may use an "
+            "identifier once");
   EXPECT_EQ(h_[13], 1);
 }
 

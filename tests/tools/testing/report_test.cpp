@@ -75,7 +75,7 @@ TEST(Report, ArtifactsOfWhatFailed) {
   const CommandResult result =
       run_ipos({"test", ".", "--artifacts", "left", "--html", "report.html"}, folder.path());
   EXPECT_EQ(result.exit_code, 1) << result.err;
-  EXPECT_TRUE(contains(result.out, "400#00000007 | 1024 lValue = 7 (00000007h) <- u")) << result.out;
+  EXPECT_TRUE(contains(result.out, "400#00000007 | 400 lValue = 7 (00000007h) <- u")) << result.out;
   std::set<std::string> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path() / "left"))
     if (entry.is_regular_file())
@@ -90,7 +90,7 @@ TEST(Report, ArtifactsOfWhatFailed) {
   EXPECT_TRUE(contains(trace, "\n50,"));
   const CommandResult decoded = run_ipos({"bus", "decode", "left/bad/bus.pcapng"}, folder.path());
   EXPECT_EQ(decoded.exit_code, 0) << decoded.err;
-  EXPECT_TRUE(contains(decoded.out, "sbus 1024 00 00 00 07")) << decoded.out;
+  EXPECT_TRUE(contains(decoded.out, "sbus 400 00 00 00 07")) << decoded.out;
   const std::string page = read_text(folder.path() / "report.html");
   EXPECT_TRUE(contains(page, "href=\"left/bad/plot.html\"") && !contains(page, "left/good"));
 }

@@ -26,12 +26,12 @@ TEST(CanWords, BothOnOneLine) {
   names.lines["can0"].nodes = {{5, "saw", &mdxb(), {}, {}}};
   names.lines["can1"].movilink.units = {unit_at_1()};
   runtime::CanWords words(names);
-  EXPECT_EQ(words.describe("can0", kRequest).text, "523 read 8318 Speed -> feed");
-  EXPECT_EQ(words.describe("can0", kUpload).text, "605h SDO read 207Eh P000 Speed -> saw");
-  EXPECT_EQ(words.describe("can0", kStarted).text, "000h NMT start -> saw");
+  EXPECT_EQ(words.describe("can0", kRequest).text, "20B read 8318 Speed -> feed");
+  EXPECT_EQ(words.describe("can0", kUpload).text, "605 SDO read 207Eh P000 Speed -> saw");
+  EXPECT_EQ(words.describe("can0", kStarted).text, "000 NMT start -> saw");
   // No node is on the other one.
-  EXPECT_EQ(words.describe("can1", kStarted).text, "0 sync telegram");  // P817, P885 = 0
-  EXPECT_EQ(words.describe("can1", kRequest).text, "523 read 8318 Speed -> feed");
+  EXPECT_EQ(words.describe("can1", kStarted).text, "000 sync telegram");  // P817, P885 = 0
+  EXPECT_EQ(words.describe("can1", kRequest).text, "20B read 8318 Speed -> feed");
 }
 
 // What a node was told on one line does not change that of the same number on another.
@@ -40,12 +40,12 @@ TEST(CanWords, EachLineIsListenedToByItself) {
   names.canopen = true;
   runtime::CanWords words(names);
   const Frame mapped{0x605, 8, {0x23, 0x00, 0x18, 0x01, 0x23, 0x01, 0, 0}};  // TPDO1 with 123h
-  EXPECT_EQ(words.describe("a", mapped).text, "605h SDO write 1800h:1 TPDO1 COB-ID = 00000123h -> node 5");
+  EXPECT_EQ(words.describe("a", mapped).text, "605 SDO write 1800h:1 TPDO1 COB-ID = 00000123h -> node 5");
   EXPECT_EQ(words.describe("a", {0x585, 8, {0x60, 0x00, 0x18, 0x01}}).text,
-            "585h SDO written 1800h:1 TPDO1 COB-ID <- node 5");
+            "585 SDO written 1800h:1 TPDO1 COB-ID <- node 5");
   EXPECT_TRUE(words.describe("a", {0x123, 6, {}}).known);
   EXPECT_FALSE(words.describe("b", {0x185, 6, {}}).text.empty());
-  EXPECT_EQ(words.describe("b", {0x123, 6, {}}).text, "123h 00 00 00 00 00 00");
+  EXPECT_EQ(words.describe("b", {0x123, 6, {}}).text, "123 00 00 00 00 00 00");
 }
 
 // A thousand names in a log do not make a thousand dictionaries.
@@ -54,7 +54,7 @@ TEST(CanWords, ManyNamesAreOneLine) {
   names.canopen = true;
   runtime::CanWords words(names);
   for (int n = 0; n < 1000; ++n)
-    EXPECT_EQ(words.describe("line" + std::to_string(n), kStarted).text, "000h NMT start -> node 5");
+    EXPECT_EQ(words.describe("line" + std::to_string(n), kStarted).text, "000 NMT start -> node 5");
 }
 
 }  // namespace

@@ -21,40 +21,39 @@ void expect_text(LineWords& words, const std::vector<Line>& lines) {
 TEST(CanopenWords, ALineComesUp) {
   LineWords words({{5, "saw", &mdxb(), {9, 1, 8}, {6, 1, 0}}});
   expect_text(
-      words,
-      {{{0x000, 2, {0x82, 0}}, "000h NMT reset communication -> all nodes"},
-       {{0x705, 1, {0x00}}, "705h boot-up <- saw"},
-       {{0x605, 8, {0x40, 0x00, 0x18, 0x02}}, "605h SDO read 1800h:2 TPDO1 transmission type -> saw"},
-       {{0x585, 8, {0x4F, 0x00, 0x18, 0x02, 1}}, "585h SDO 1800h:2 TPDO1 transmission type = 1 <- saw"},
-       {{0x605, 8, {0x23, 0x16, 0x21, 0, 0xD0, 7, 0, 0}},
-        "605h SDO write 2116h P130 Ramp t11 UP CW = 2.000 s -> saw"},
-       {{0x585, 8, {0x60, 0x16, 0x21, 0}}, "585h SDO written 2116h P130 Ramp t11 UP CW <- saw"},
-       {{0x605, 8, {0x40, 0x08, 0x10, 0}}, "605h SDO read 1008h Manufacturer device name -> saw"},
-       {{0x585, 8, {0x41, 0x08, 0x10, 0, 9}},
-        "585h SDO 1008h Manufacturer device name has 9 bytes, in segments <- saw"},
-       {{0x605, 8, {0x60}}, "605h SDO next segment of 1008h Manufacturer device name -> saw"},
-       {{0x585, 8, {0x00, 'M', 'O', 'V', 'I', 'D', 'R', 'I'}},
-        "585h SDO segment \"MOVIDRI\" of 1008h Manufacturer device name <- saw"},
-       {{0x605, 8, {0x70}}, "605h SDO next segment of 1008h Manufacturer device name -> saw"},
-       {{0x585, 8, {0x1B, 'V', 'E'}},
-        "585h SDO segment \"VE\" of 1008h Manufacturer device name, the last <- saw"},
-       {{0x585, 8, {0x80, 0x17, 0x10, 0, 0x10, 0, 7, 6}},
-        "585h SDO abort 1017h Producer heartbeat time: length of the data does not fit the object "
-        "(06070010h) <- saw"},
-       {{0x000, 2, {0x01, 5}}, "000h NMT start -> saw"},
-       {{0x080, 0}, "080h SYNC"},
-       {{0x205, 6, {6, 0, 0x88, 0x13, 0xD0, 0x07}},
-        "205h RPDO1 PO1 CTRL. WORD 1 0006h, PO2 SPEED 1000.0 rpm, PO3 RAMP 2000 ms -> saw"},
-       {{0x185, 6, {7, 2, 0x88, 0x13, 0, 0}},
-        "185h TPDO1 PI1 STATUS WORD1 0207h, PI2 SPEED 1000.0 rpm, PI3 0000h <- saw"},
-       {{0x185, 6, {}, false, true}, "185h TPDO1 asked for -> saw"},
-       {{0x705, 1, {}, false, true}, "705h guarding request -> saw"},
-       {{0x705, 1, {0x85}}, "705h operational, toggle 1 <- saw"},
-       {{0x085, 8, {0x00, 0xFF, 0x81, 0, 0x22, 0x2B}},
-        "085h EMCY FF00h fault, error register 81h, status word 1 2B22h <- saw"},
-       {{0x085, 8, {0, 0, 0}}, "085h EMCY gone, error register 00h <- saw"},
-       {{0x706, 1, {0x05}}, "706h operational <- node 6"},
-       {{0x7FF, 1, {0x05}}, "7FFh 05"}});
+      words, {{{0x000, 2, {0x82, 0}}, "000 NMT reset communication -> all nodes"},
+              {{0x705, 1, {0x00}}, "705 boot-up <- saw"},
+              {{0x605, 8, {0x40, 0x00, 0x18, 0x02}}, "605 SDO read 1800h:2 TPDO1 transmission type -> saw"},
+              {{0x585, 8, {0x4F, 0x00, 0x18, 0x02, 1}}, "585 SDO 1800h:2 TPDO1 transmission type = 1 <- saw"},
+              {{0x605, 8, {0x23, 0x16, 0x21, 0, 0xD0, 7, 0, 0}},
+               "605 SDO write 2116h P130 Ramp t11 UP CW = 2.000 s -> saw"},
+              {{0x585, 8, {0x60, 0x16, 0x21, 0}}, "585 SDO written 2116h P130 Ramp t11 UP CW <- saw"},
+              {{0x605, 8, {0x40, 0x08, 0x10, 0}}, "605 SDO read 1008h Manufacturer device name -> saw"},
+              {{0x585, 8, {0x41, 0x08, 0x10, 0, 9}},
+               "585 SDO 1008h Manufacturer device name has 9 bytes, in segments <- saw"},
+              {{0x605, 8, {0x60}}, "605 SDO next segment of 1008h Manufacturer device name -> saw"},
+              {{0x585, 8, {0x00, 'M', 'O', 'V', 'I', 'D', 'R', 'I'}},
+               "585 SDO segment \"MOVIDRI\" of 1008h Manufacturer device name <- saw"},
+              {{0x605, 8, {0x70}}, "605 SDO next segment of 1008h Manufacturer device name -> saw"},
+              {{0x585, 8, {0x1B, 'V', 'E'}},
+               "585 SDO segment \"VE\" of 1008h Manufacturer device name, the last <- saw"},
+              {{0x585, 8, {0x80, 0x17, 0x10, 0, 0x10, 0, 7, 6}},
+               "585 SDO abort 1017h Producer heartbeat time: length of the data does not fit the object "
+               "(06070010h) <- saw"},
+              {{0x000, 2, {0x01, 5}}, "000 NMT start -> saw"},
+              {{0x080, 0}, "080 SYNC"},
+              {{0x205, 6, {6, 0, 0x88, 0x13, 0xD0, 0x07}},
+               "205 RPDO1 PO1 CTRL. WORD 1 0006h, PO2 SPEED 1000.0 rpm, PO3 RAMP 2000 ms -> saw"},
+              {{0x185, 6, {7, 2, 0x88, 0x13, 0, 0}},
+               "185 TPDO1 PI1 STATUS WORD1 0207h, PI2 SPEED 1000.0 rpm, PI3 0000h <- saw"},
+              {{0x185, 6, {}, false, true}, "185 TPDO1 asked for -> saw"},
+              {{0x705, 1, {}, false, true}, "705 guarding request -> saw"},
+              {{0x705, 1, {0x85}}, "705 operational, toggle 1 <- saw"},
+              {{0x085, 8, {0x00, 0xFF, 0x81, 0, 0x22, 0x2B}},
+               "085 EMCY FF00h fault, error register 81h, status word 1 2B22h <- saw"},
+              {{0x085, 8, {0, 0, 0}}, "085 EMCY gone, error register 00h <- saw"},
+              {{0x706, 1, {0x05}}, "706 operational <- node 6"},
+              {{0x7FF, 1, {0x05}}, "7FF 05"}});
   EXPECT_FALSE(words.describe({0x7FF, 1, {0x05}}).known);
 }
 
@@ -65,18 +64,18 @@ TEST(CanopenWords, LearnsTheMapping) {
     words.describe({0x605, 8, sdo::initiate(byte0, {index, sub}, value)});
     words.describe({0x585, 8, sdo::initiate(0x60, {index, sub})});
   };
-  expect_text(words, {{{0x285, 2, {1, 2}}, "285h TPDO2 not mapped: 01 02 <- node 5"}});
+  expect_text(words, {{{0x285, 2, {1, 2}}, "285 TPDO2 not mapped: 01 02 <- node 5"}});
   write(0x23, 0x1A01, 1, 0x2001'0A10);
   write(0x2F, 0x1A01, 0, 1);
   write(0x23, 0x1801, 1, 0x0000'0333);
-  expect_text(words, {{{0x333, 2, {1, 2}}, "333h TPDO2 PI10 0201h <- node 5"},
-                      {{0x333, 1, {1}}, "333h TPDO2 1 of 2 bytes: 01 <- node 5"}});
+  expect_text(words, {{{0x333, 2, {1, 2}}, "333 TPDO2 PI10 0201h <- node 5"},
+                      {{0x333, 1, {1}}, "333 TPDO2 1 of 2 bytes: 01 <- node 5"}});
   // One that is refused changes nothing; a boot-up forgets all.
   words.describe({0x605, 8, sdo::initiate(0x23, {0x1801, 1}, 0x334)});
   words.describe({0x585, 8, sdo::abort({0x1801, 1}, Abort::Value)});
-  expect_text(words, {{{0x333, 2, {1, 2}}, "333h TPDO2 PI10 0201h <- node 5"},
-                      {{0x705, 1, {0}}, "705h boot-up <- node 5"},
-                      {{0x333, 2, {1, 2}}, "333h RPDO2 not mapped: 01 02 -> node 51"}});
+  expect_text(words, {{{0x333, 2, {1, 2}}, "333 TPDO2 PI10 0201h <- node 5"},
+                      {{0x705, 1, {0}}, "705 boot-up <- node 5"},
+                      {{0x333, 2, {1, 2}}, "333 RPDO2 not mapped: 01 02 -> node 51"}});
 }
 
 TEST(CanopenWords, AnyFrame) {
