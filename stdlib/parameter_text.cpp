@@ -153,10 +153,7 @@ std::string allowed(const Parameter& parameter, int32_t value, ReturnCode code) 
              parameter_text(parameter, static_cast<int32_t>(range.step));
   if (code != return_codes::kIncorrectValue)
     return range_text(parameter, parameter.minimum(), parameter.maximum());
-  std::string text;
-  for (const ValueRange& range : parameter.ranges)
-    text += (text.empty() ? "" : " or ") + range_text(parameter, range.minimum, range.maximum);
-  return text;
+  return parameter_range(parameter);
 }
 
 // A number without unit whose least step is a whole one, as an identifier that is coded in thousandths.
@@ -201,6 +198,20 @@ std::string parameter_text(const Parameter& parameter, int32_t value) {
   const double digits =
       static_cast<double>(parameter.number_of(value)) * scale.factor * std::pow(10, scale.decimals);
   return with_decimals(std::llround(digits), scale.decimals) + unit;
+}
+
+std::string parameter_range(const Parameter& parameter) {
+  if (parameter.ranges.empty()) return choices(parameter);
+  std::string text;
+  for (size_t n = 0; n < parameter.ranges.size();) {
+    const ValueRange& first = parameter.ranges[n];
+    int64_t maximum = first.maximum;
+    // Those that differ in their steps only are one.
+    while (++n < parameter.ranges.size() && parameter.ranges[n].minimum == maximum)
+      maximum = parameter.ranges[n].maximum;
+    text += (text.empty() ? "" : " or ") + range_text(parameter, first.minimum, maximum);
+  }
+  return text;
 }
 
 tl::expected<int32_t, std::string> parse_parameter_text(const Parameter& parameter, std::string_view text) {

@@ -109,6 +109,9 @@ DisplayScale display_scale(const Parameter& parameter);
 // The value as people read it: "2.000 s", "CTRL. WORD 1", "0x0202".
 std::string parameter_text(const Parameter& parameter, int32_t value);
 
+// What it takes as people read it: "0.000 s..2000.000 s", "0 = OFF or 1 = ON"; empty: any value.
+std::string parameter_range(const Parameter& parameter);
+
 // The transferred value of such a text. The unit may be left out or be another one of the quantity ("2500
 // ms"); a value of a list may be named by text, in any case of letters, or by code. The error says what would
 // be accepted. Whether the value is in range is the unit's to say.

@@ -186,9 +186,18 @@ struct PlantFile {
   std::vector<Expectation> expectations;
 };
 
+// What a key takes, where that is a short list or a range of numbers.
+struct AllowedValues {
+  std::vector<std::string> each{};  // as the file writes them; empty: the numbers from least to most
+  int64_t least = 0;
+  int64_t most = 0;
+  std::string_view unit{};  // of the numbers
+};
+
 struct PlantError {
   FilePlace place;
   std::string text;
+  std::optional<AllowedValues> allowed = std::nullopt;  // for editors: instead of the value that is wrong
 };
 
 struct PlantFileResult {

@@ -54,17 +54,18 @@ std::optional<bool> PlantReader::flag(const toml::table& table, std::string_view
   const toml::node* node = table.get(key);
   if (node == nullptr) return std::nullopt;
   if (const auto* value = node->as_boolean()) return value->get();
-  error(place_of(*node), fmt::format("{} is true or false", key));
+  error(place_of(*node), fmt::format("{} is true or false", key), AllowedValues{{"true", "false"}});
   return std::nullopt;
 }
 
 uint32_t PlantReader::count(const toml::table& table, std::string_view key, uint32_t limit,
-                            uint32_t otherwise) {
+                            uint32_t otherwise, uint32_t least) {
   const toml::node* node = table.get(key);
   int32_t value = 0;
   if (node == nullptr || !number(*node, key, value)) return otherwise;
-  if (value >= 0 && static_cast<uint32_t>(value) <= limit) return static_cast<uint32_t>(value);
-  error(place_of(*node), fmt::format("{} is 0 to {}", key, limit));
+  if (value >= 0 && static_cast<uint32_t>(value) >= least && static_cast<uint32_t>(value) <= limit)
+    return static_cast<uint32_t>(value);
+  error(place_of(*node), fmt::format("{} is {} to {}", key, least, limit), AllowedValues{{}, least, limit});
   return otherwise;
 }
 
@@ -99,7 +100,9 @@ void PlantReader::use_station(const std::string& name, FilePlace place) {
   station_uses.emplace_back(name, place);
   if (gateway_names.contains(name))
     error(place,
-          fmt::format("'{}' is a gateway: it has no program, drive, inputs or parameters of its own, only signals", name));
+          fmt::format(
+              "'{}' is a gateway: it has no program, drive, inputs or parameters of its own, only signals",
+              name));
 }
 
 std::string PlantReader::station_name(const toml::table& table, std::string_view key) {

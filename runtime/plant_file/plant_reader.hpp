@@ -42,7 +42,9 @@ class PlantReader {
   std::vector<std::pair<BusUse, BusKind>> bus_uses;  // with the kind it must be of
   std::vector<std::pair<std::string, FilePlace>> station_uses;
 
-  void error(FilePlace place, std::string text) { result.errors.push_back({place, std::move(text)}); }
+  void error(FilePlace place, std::string text, std::optional<AllowedValues> allowed = std::nullopt) {
+    result.errors.push_back({place, std::move(text), std::move(allowed)});
+  }
 
   // Every other key is an error. `what` names the table.
   void known_keys(const toml::table& table, std::string_view what, const std::vector<std::string_view>& keys);
@@ -76,8 +78,9 @@ class PlantReader {
   const stdlib::UnitType* unit_of(std::string_view station) const;
   // Nothing when it is not there.
   std::optional<bool> flag(const toml::table& table, std::string_view key);
-  // A value without sign up to `limit`, or `otherwise`.
-  uint32_t count(const toml::table& table, std::string_view key, uint32_t limit, uint32_t otherwise);
+  // A value without sign from `least` up to `limit`, or `otherwise`.
+  uint32_t count(const toml::table& table, std::string_view key, uint32_t limit, uint32_t otherwise,
+                 uint32_t least = 0);
   // "500ms" in ns, 0 when it is not there.
   int64_t duration(const toml::table& table, std::string_view key, std::string_view what, bool required);
   // The same, `otherwise` when it is not there and -1 with an error.

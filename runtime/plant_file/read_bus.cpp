@@ -21,6 +21,12 @@ void read_kind(PlantReader& reader, const toml::table& table, BusConfig& config)
   }
 }
 
+AllowedValues rates_of(const BusKindInfo& kind) {
+  AllowedValues rates;
+  for (const uint32_t rate : kind.rates) rates.each.push_back(fmt::format("{}", rate));
+  return rates;
+}
+
 void read_baud(PlantReader& reader, const toml::table& table, BusConfig& config) {
   const toml::node* node = table.get("baud");
   int32_t value = 0;
@@ -31,7 +37,8 @@ void read_baud(PlantReader& reader, const toml::table& table, BusConfig& config)
   const auto some = kind.rates.first(kind.rates.size() - 1);
   const std::string last = fmt::format("{}{}", some.empty() ? "" : " or ", kind.rates.back());
   reader.error(place_of(*node),
-               fmt::format("{} has {}{} baud, not {}", kind.name, fmt::join(some, ", "), last, value));
+               fmt::format("{} has {}{} baud, not {}", kind.name, fmt::join(some, ", "), last, value),
+               rates_of(kind));
 }
 
 // The cable, for the planner.

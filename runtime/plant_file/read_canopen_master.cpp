@@ -41,9 +41,7 @@ std::optional<canopen::Mapped> mapped_word(const toml::node& node, bool transmit
 canopen::PdoPlan read_pdo(PlantReader& reader, const toml::table& table) {
   reader.known_keys(table, kPdo, {"number", "transmit", "type", "inhibit", "event", "map"});
   canopen::PdoPlan pdo;
-  const uint32_t number = reader.count(table, "number", objects::kPdos, 1);
-  if (number == 0) reader.error(place_of(table.source()), "the PDOs of a node are number 1 to 4");
-  pdo.number = static_cast<uint8_t>(std::max(number, 1U) - 1);
+  pdo.number = static_cast<uint8_t>(reader.count(table, "number", objects::kPdos, 1, 1) - 1);
   pdo.transmit = reader.flag(table, "transmit").value_or(false);
   pdo.type = static_cast<uint8_t>(reader.count(table, "type", UINT8_MAX, 1));
   pdo.inhibit = time_of(reader, table, "inhibit", 100 * kMicrosecond);
@@ -102,11 +100,7 @@ canopen::NodePlan read_node(PlantReader& reader, const toml::table& table) {
   canopen::NodePlan plan;
   if (!table.contains("address"))
     reader.error(place_of(table.source()), "a [[control.target]] needs address = ...");
-  plan.node = static_cast<uint8_t>(reader.count(table, "address", canopen::kMaxNode, 1));
-  if (!canopen::is_node(plan.node)) {
-    reader.error(place_of(*table.get("address")), "a node has the address 1 to 127 (P886, P896)");
-    plan.node = 1;
-  }
+  plan.node = static_cast<uint8_t>(reader.count(table, "address", canopen::kMaxNode, 1, 1));  // P886, P896
   read_words(reader, table, plan.output);
   plan.guard_time = time_of(reader, table, "guard", kMillisecond);
   plan.life_factor =

@@ -30,8 +30,10 @@ void read_firmware(PlantReader& reader, const toml::table& table, uint8_t& versi
   const toml::node* node = table.get("firmware");
   int32_t value = 0;
   if (node == nullptr || !reader.number(*node, "firmware", value)) return;
-  if (value < 10 || value > 99)
-    return reader.error(place_of(*node), "firmware is a version of two digits, 10..99");
+  constexpr int32_t kLeast = 10, kMost = 99;
+  if (value < kLeast || value > kMost)
+    return reader.error(place_of(*node), "firmware is a version of two digits, 10..99",
+                        AllowedValues{{}, kLeast, kMost});
   version = static_cast<uint8_t>(value);
 }
 
@@ -91,7 +93,8 @@ void read_inputs(PlantReader& reader, const toml::table& table, StationConfig& c
     else if (!reader.number(value, key.str(), level))
       continue;
     if (level != 0 && level != 1)
-      reader.error(place_of(value.source()), fmt::format("{} is 0 or 1", key.str()));
+      reader.error(place_of(value.source()), fmt::format("{} is 0 or 1", key.str()),
+                   AllowedValues{{"0", "1", "true", "false"}});
     if (input >= 0)
       config.inputs.push_back({static_cast<uint8_t>(input), level == 1, place_of(key.source())});
   }
@@ -123,7 +126,8 @@ void read_percentage(PlantReader& reader, const toml::table& table, std::string_
   const std::optional<double> value = node->is_number() ? node->value<double>() : std::nullopt;
   if (!value) return reader.error(place_of(*node), fmt::format("{} must be a number, in %", key));
   if (!(*value >= least && *value <= most))
-    return reader.error(place_of(*node), fmt::format("{} is {} to {} %", key, least, most));
+    return reader.error(place_of(*node), fmt::format("{} is {} to {} %", key, least, most),
+                        AllowedValues{{}, least, most, "%"});
   out = static_cast<int32_t>(std::lround(*value * parts));
 }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 
 #include "tests/editor/client.hpp"
 #include "tools/lsp/transport.hpp"
@@ -268,6 +269,58 @@ TEST(LspPlants, CompletionOffersWhatTheReadersKnow) {
               has(completions_in(client, kPlant, 13, 9), "\"SBus\""));
   EXPECT_TRUE(has(completions_in(client, kPlant, 15, 7), "\"corrupt\""));
   EXPECT_TRUE(has(completions_in(client, kPlant, 16, 2), "station"));
+}
+
+// Label to detail of what is offered at the end of the last row.
+std::map<std::string, std::string> offered_behind(const std::string& path, const std::string& text) {
+  Client client;
+  client.open(path, text);
+  const int line = static_cast<int>(std::count(text.begin(), text.end(), '\n'));
+  const auto column = static_cast<int>(text.size() - (text.rfind('\n') + 1));
+  std::map<std::string, std::string> offered;
+  for (const Json& one : client.request("textDocument/completion", Client::at(path, line, column)))
+    offered[one["label"]] = one.value("detail", "");
+  return offered;
+}
+
+// P130 0..2000 s, 2 s from the factory (11264926, parameter list); rates of the lines 1053 1610 p. 8 and EN 50170; DP
+// switches 0..127; an SBus address 1053 1610 p. 39.
+TEST(LspPlants, CompletionShowsRanges) {
+  using Offered = std::map<std::string, std::string>;
+  const std::string parameters = kStation + "[station.parameters]\n";
+  Client client;
+  client.open(kPlant, parameters);
+  std::string detail, text;
+  for (const Json& one : client.request("textDocument/completion", Client::at(kPlant, 9, 0)))
+    if (one["label"] == "P130") {
+      detail = one["detail"];
+      text = one["documentation"]["value"];
+    }
+  EXPECT_EQ(detail, "Ramp t11 UP CW: 0.000 s..2000.000 s, factory setting 2.000 s");
+  EXPECT_TRUE(contains(text, "shown in s") && contains(text, "- 0.000 s..2000.000 s\n") &&
+              contains(text, "- factory setting 2.000 s"))
+      << text;
+  const auto values = offered_behind(kPlant, parameters + "P130 = ");
+  EXPECT_EQ(values, (Offered{{"\"2.000 s\"", "factory setting; 0.000 s..2000.000 s"},
+                             {"\"0.000 s\"", "smallest; 0.000 s..2000.000 s"},
+                             {"\"2000.000 s\"", "largest; 0.000 s..2000.000 s"}}));
+  const std::string bus = "[[bus]]\nname = \"b\"\n";
+  EXPECT_EQ(offered_behind(kPlant, bus + "kind = \"can\"\nbaud = "),
+            (Offered{{"125000", ""}, {"250000", ""}, {"500000", ""}, {"1000000", ""}}));
+  EXPECT_EQ(offered_behind(kPlant, bus + "kind = \"rs485\"\nbaud = "),
+            (Offered{{"9600", ""}, {"57600", ""}}));
+  EXPECT_EQ(offered_behind(kPlant, bus + "shielded = "), (Offered{{"true", ""}, {"false", ""}}));
+  EXPECT_EQ(offered_behind(kPlant, kStation + "option = \"dfp\"\nprofibus_address = "),
+            (Offered{{"0", "0 to 127"}, {"127", "0 to 127"}}));
+  EXPECT_EQ(offered_behind(kPlant, kStation + "[station.load]\ninertia = "),
+            (Offered{{"0", "0 to 100000 %"}, {"100000", "0 to 100000 %"}}));
+  EXPECT_EQ(offered_behind(kPlant, kStation + "[station.inputs]\nDI01 = "),
+            (Offered{{"0", ""}, {"1", ""}, {"true", ""}, {"false", ""}}));
+  const std::string control = "[[control]]\nname = \"plc\"\nsbus = \"sbus\"\n";
+  EXPECT_EQ(offered_behind(kPlant, kStation + control + "[[control.target]]\naddress = "),
+            (Offered{{"0", "0 to 63"}, {"63", "0 to 63"}}));
+  EXPECT_EQ(offered_behind("/p/a.test.toml", "plant = \"plant.toml\"\nspeed = "),
+            (Offered{{"0", "0 to 1000000"}, {"1000000", "0 to 1000000"}}));
 }
 
 TEST(LspPlants, HoverKnowsTheParametersOfTheUnit) {

@@ -29,12 +29,13 @@ std::string mistakes_text(const std::string& path, const std::vector<runtime::Pl
   std::istringstream text(errors.empty() ? "" : try_read_file(path).value_or(""));
   for (std::string line; std::getline(text, line);) lines.push_back(line);
   std::string out;
-  for (const auto& [place, what] : errors) {
+  for (const runtime::PlantError& error : errors) {
+    const runtime::FilePlace place = error.place;
     const std::string place_text = fmt::format("{}:{}:{}:", path, place.line, place.column);
     std::string_view line;
     if (place.line != 0 && place.line <= lines.size()) line = lines[place.line - 1];
-    out += compiler::render_mistake(place_text, what, place.line, line, bytes_before(line, place.column),
-                                    colours);
+    out += compiler::render_mistake(place_text, error.text, place.line, line,
+                                    bytes_before(line, place.column), colours);
   }
   return out;
 }

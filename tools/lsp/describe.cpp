@@ -118,6 +118,7 @@ std::string describe_parameter(const stdlib::Parameter& parameter) {
     out += fmt::format("- factory setting {}{}\n",
                        stdlib::parameter_text(parameter, static_cast<int32_t>(parameter.default_value)),
                        parameter.needs_inhibit ? ", written under controller inhibit only" : "");
+    if (!parameter.ranges.empty()) out += fmt::format("- {}\n", stdlib::parameter_range(parameter));
     for (const stdlib::ValueRange& range : parameter.ranges)
       out += fmt::format("- {} to {} in steps of {}\n", range.minimum, range.maximum, range.step);
   }

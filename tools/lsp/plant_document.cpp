@@ -147,10 +147,42 @@ std::vector<std::string> known_at(const std::string& path, const Spot& spot, con
   return known;
 }
 
-void offer(Json& items, const std::string& label, int kind, const std::string& detail = {}) {
+// What the reader takes behind the key: it is shown a number that no key has.
+std::optional<runtime::AllowedValues> allowed_at(const std::string& path, const Spot& spot) {
+  for (const PlantError& error : errors_of(path, with_row(spot, fmt::format("{} = {}", spot.key, INT32_MIN))))
+    if (error.place.line == spot.line + 1 && error.allowed) return error.allowed;
+  return std::nullopt;
+}
+
+void offer(Json& items, const std::string& label, int kind, const std::string& detail = {},
+           const std::string& documentation = {}) {
   Json item{{"label", label}, {"kind", kind}};
   if (!detail.empty()) item["detail"] = detail;
+  if (!documentation.empty()) item["documentation"] = {{"kind", "markdown"}, {"value", documentation}};
   items.push_back(std::move(item));
+}
+
+// Of a range both ends, each with the range beside it.
+void offer_allowed(Json& items, const runtime::AllowedValues& allowed) {
+  for (const std::string& value : allowed.each) offer(items, value, kValue);
+  if (!allowed.each.empty()) return;
+  const std::string range =
+      fmt::format("{} to {}{}{}", allowed.least, allowed.most, allowed.unit.empty() ? "" : " ", allowed.unit);
+  for (const int64_t end : {allowed.least, allowed.most}) offer(items, fmt::format("{}", end), kValue, range);
+}
+
+// "Ramp t11 UP CW: 0.000 s..2000.000 s, factory setting 2.000 s". A long list of texts is in the description alone.
+std::string parameter_summary(const stdlib::Parameter& row) {
+  constexpr size_t kTextsShown = 4;
+  std::string text(row.name);
+  if (row.texts.size() > kTextsShown)
+    text += fmt::format(": one of {}", row.texts.size());
+  else if (const std::string range = stdlib::parameter_range(row); !range.empty())
+    text += ": " + range;
+  if (row.writable)
+    text += fmt::format(", factory setting {}",
+                        stdlib::parameter_text(row, static_cast<int32_t>(row.default_value)));
+  return text;
 }
 
 // Names of buses and stations of the file, for keys that name one.
@@ -175,18 +207,32 @@ void offer_parameters(Json& items, const Spot& spot) {
   for (const stdlib::Parameter& row : stdlib::parameter_table(*unit).rows())
     if (row.index != 0 && !row.number.empty() && (row.writable || spot.at_value))
       offer(items, spot.at_value ? fmt::format("\"P{}\"", row.number) : fmt::format("P{}", row.number),
-            kField, std::string(row.name));
+            kField, parameter_summary(row), describe_parameter(row));
 }
 
 void offer_parameter_values(Json& items, const Spot& spot) {
   const stdlib::UnitType* unit = unit_at(spot);
   const stdlib::Parameter* row = unit == nullptr ? nullptr : stdlib::parameter_table(*unit).find(spot.key);
   if (row == nullptr) return;
+  const std::string documentation = describe_parameter(*row);
   for (const stdlib::ValueText& text : row->texts)
-    offer(items, fmt::format("\"{}\"", text.text), kValue, fmt::format("{}", text.value));
+    offer(items, fmt::format("\"{}\"", text.text), kValue,
+          fmt::format("{}{}", text.value, text.value == row->default_value ? ", factory setting" : ""),
+          documentation);
   if (!row->texts.empty()) return;
-  offer(items, fmt::format("\"{}\"", stdlib::parameter_text(*row, static_cast<int32_t>(row->default_value))),
-        kValue, "factory setting");
+  const std::string range = stdlib::parameter_range(*row);
+  std::vector<std::string> offered;
+  const auto add = [&](int64_t value, const char* what) {
+    std::string text = stdlib::parameter_text(*row, static_cast<int32_t>(static_cast<uint32_t>(value)));
+    if (std::find(offered.begin(), offered.end(), text) != offered.end()) return;
+    offer(items, fmt::format("\"{}\"", text), kValue,
+          range.empty() ? std::string(what) : fmt::format("{}; {}", what, range), documentation);
+    offered.push_back(std::move(text));
+  };
+  add(row->default_value, "factory setting");
+  if (row->ranges.empty()) return;
+  add(row->minimum(), "smallest");
+  add(row->maximum(), "largest");
 }
 
 // Letters and digits around the cursor.
@@ -273,6 +319,7 @@ Json plant_completion(Workspace& workspace, const Json& params) {
     offer_names(items, *spot);
     for (const std::string& known : known_at(path, *spot, fmt::format("{} = \"{}\"", spot->key, kProbe)))
       offer(items, fmt::format("\"{}\"", known), kValue);
+    if (const auto allowed = allowed_at(path, *spot)) offer_allowed(items, *allowed);
     if (spot->key == "program" || spot->key == "plant")
       for (const std::string& file : list_files(std::filesystem::path(path).parent_path().string()))
         if (spot->key == "program" ? is_program(file) : file.ends_with(".toml") && !is_test(file))

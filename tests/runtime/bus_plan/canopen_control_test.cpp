@@ -96,7 +96,7 @@ TEST(CanopenControl, MistakesHaveTheirPlaces) {
   const std::pair<const char*, const char*> cases[] = {
       {"[[control.target]]\n", "9: a [[control.target]] needs address = ..."},
       {"[[control.target]]\naddress = 128\n", "10: "},
-      {"[[control.target]]\naddress = 0\n", "10: a node has the address 1 to 127"},
+      {"[[control.target]]\naddress = 0\n", "10: address is 1 to 127"},
       {"[[control.target]]\naddress = 5\nguard = \"5ms\"\nheartbeat = \"5ms\"\n",
        "12: a node has guarding or heartbeat, never both"},
       {"[[control.target]]\naddress = 5\npo = [1,2,3,4,5,6,7,8,9,10,11]\n", "11: po is a list of up to ten"},
