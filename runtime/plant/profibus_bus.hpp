@@ -9,6 +9,7 @@
 
 #include "runtime/bus/profibus/line.hpp"
 #include "runtime/plant/bus.hpp"
+#include "runtime/plant/last_dp_frames.hpp"
 
 namespace ipos::runtime {
 
@@ -20,6 +21,11 @@ class ProfibusBus final : public Bus, private profibus::LineObserver {
   ~ProfibusBus() override;
 
   profibus::Line& line() { return line_; }
+  // Kept from the first call on.
+  const LastDpTraffic& last_frames() {
+    if (!last_frames_) last_frames_ = std::make_unique<LastDpTraffic>(line_);
+    return *last_frames_;
+  }
   uint32_t source() const { return place_.source; }  // of its events
 
   LineLoad load(Time now) const override { return line_.load(now); }
@@ -37,6 +43,7 @@ class ProfibusBus final : public Bus, private profibus::LineObserver {
   BusPlace place_;
   profibus::Line line_;
   std::unique_ptr<Hand> hand_;
+  std::unique_ptr<LastDpTraffic> last_frames_;
   std::set<std::pair<profibus::LineEventKind, NodeId>> told_;  // each is told once
 };
 

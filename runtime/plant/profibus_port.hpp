@@ -33,6 +33,7 @@ class ProfibusPort final : public StationPort,
   Time tick(Time now) override;
 
   profibus::InterfaceCard& card() { return card_; }
+  const profibus::InterfaceCard& card() const { return card_; }
 
  private:
   tl::expected<int32_t, ReturnCode> serve(Time now, const ParameterRequest& request) override;

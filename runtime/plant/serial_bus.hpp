@@ -9,6 +9,7 @@
 #include "runtime/bus/movilink/serial_receiver.hpp"
 #include "runtime/bus/rs485/line.hpp"
 #include "runtime/plant/bus.hpp"
+#include "runtime/plant/last_telegrams.hpp"
 
 namespace ipos::runtime {
 
@@ -20,6 +21,11 @@ class SerialBus final : public Bus, private SerialObserver {
   ~SerialBus() override;
 
   Rs485Line& line() { return line_; }
+  // Kept from the first call on.
+  const LastTelegrams& last_telegrams() {
+    if (!last_telegrams_) last_telegrams_ = std::make_unique<LastTelegrams>(line_);
+    return *last_telegrams_;
+  }
 
   LineLoad load(Time now) const override;
   Time told_until(Time now) const override {
@@ -42,6 +48,7 @@ class SerialBus final : public Bus, private SerialObserver {
   LineCheck check_;
   SerialReceiver receiver_;  // for the observers
   std::unique_ptr<Hand> hand_;
+  std::unique_ptr<LastTelegrams> last_telegrams_;
 };
 
 }  // namespace ipos::runtime

@@ -131,6 +131,7 @@ class Station final : private Timed, private TaskRunner {
 
   // Null when the station has no card on a PROFIBUS.
   ProfibusPort* profibus() { return profibus_.get(); }
+  const ProfibusPort* profibus() const { return profibus_.get(); }
 
   // The MOVLNK of this structure was carried out, over whichever bus.
   bool has_called(uint32_t structure) const { return door_.look().movilink().has_called(structure); }

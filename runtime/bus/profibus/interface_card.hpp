@@ -24,6 +24,7 @@ class InterfaceCard {
   void power_on(Time now, bool supply_was_kept);
 
   SlaveStation& station() { return station_; }
+  const SlaveStation& station() const { return station_; }
   FmsServer& fms() { return *fms_; }  // of MOVITRAC 31 alone
   FieldbusParameters& parameters() { return parameters_; }
   LedPattern leds(Time now) const;

@@ -196,5 +196,152 @@ map = ["PI3", "PI1"]
   EXPECT_GE(line.value("can.585.index"), 0x1000) << "the last object that the master wrote";
 }
 
+// Two requests go to address 1, PARAM + 3PD each (format 4, 1053 1610 p. 25), a second apart.
+const std::string kSerial = R"(
+[[bus]]
+name = "line1"
+kind = "rs485"
+[[station]]
+name = "u"
+unit = "md60a"
+program = "P.IPC"
+rs485 = "line1"
+[[station]]
+name = "pump"
+unit = "md60a"
+rs485 = "line1"
+[station.parameters]
+P810 = 1
+P811 = 105
+)";
+const std::string kAsks = R"(
+#include <const.h>
+MOVLNK m; MLDATA d;
+main() {
+  m.BusType = 2; m.Address = 1; m.Format = 4; m.Service = 1; m.Index = 8470; m.DPointer = numof(d);
+  d.PO1 = 6; d.PO2 = 5000; d.PO3 = 0xFFFE;
+  _MoviLink(m);
+  m.Index = 1;
+  _Wait(1000);
+  _MoviLink(m);
+  while (1) ;
+}
+)";
+
+TEST(TelegramSignals, Rs485ByAddress) {
+  Lines line(kSerial, {{"P.IPC", kAsks}});
+  EXPECT_EQ(line.value("line1.1.PO1"), 0) << "nothing has come";
+  line.run(kSecond);
+  EXPECT_EQ(line.value("line1.1.PO1"), 6);
+  EXPECT_EQ(line.value("line1.1.PO2"), 5000);
+  EXPECT_EQ(line.value("line1.1.PO3"), 0xFFFE);
+  EXPECT_EQ(line.value("line1.1.PO1.2"), 1) << "a bit";
+  EXPECT_EQ(line.value("line1.1.PI1"), line.plant->stations()[1]->status_word_1());
+  EXPECT_GT(line.value("line1.1.requests"), 0);
+  EXPECT_EQ(line.value("line1.1.requests"), line.value("line1.1.answers")) << "an answer each";
+  EXPECT_EQ(2 * line.value("line1.1.requests"), line.value("line1.count")) << "nobody else is asked";
+  EXPECT_EQ(line.value("line1.1.request_index"), 8470);
+  EXPECT_EQ(line.value("line1.1.request_service"), 1) << "read";
+  EXPECT_EQ(line.value("line1.1.answer_index"), 8470);
+  EXPECT_EQ(line.value("line1.1.answer_value"), line.plant->stations()[1]->drive().value("130"));
+  EXPECT_EQ(line.value("line1.1.answer_failed"), 0);
+  line.run(kSecond);
+  EXPECT_EQ(line.value("line1.1.answer_failed"), 1);
+  EXPECT_EQ(line.value("line1.1.answer_value"), 0x08000010) << "no such index";
+  EXPECT_EQ(line.value("line1.2.requests"), 0) << "every address can be named";
+}
+
+TEST(TelegramSignals, NamesOfRs485) {
+  Lines line(kSerial, {{"P.IPC", kAsks}});
+  EXPECT_EQ(line.names("line1.*.PO1"),
+            (std::vector<std::string>{"line1.0.PO1", "line1.1.PO1", "line1.105.PO1"}));
+  EXPECT_EQ(line.names("line1.*.PI1"), (std::vector<std::string>{"line1.0.PI1", "line1.1.PI1"}))
+      << "nobody answers to a group";
+  EXPECT_EQ(line.names("line1.1.*").size(), 2 * (1 + 3 + 5U))
+      << "count, words and parameter channel, both ways";
+  for (const char* wrong : {"line1.256.PO1", "line1.-1.PO1", "line1.x.PO1", "line1.1.speed", "line1.1.value"})
+    EXPECT_FALSE(runtime::find_signals(*line.plant, wrong)) << wrong;
+}
+
+// The words stand behind the eight octets of the parameter channel where the configuration has one (MOVITRAC 31
+// PROFIBUS, 3.1.1).
+const std::string kProfibus = R"(
+[[bus]]
+name = "dp"
+kind = "profibus"
+baud = 500000
+[[station]]
+name = "belt"
+unit = "mc31"
+option = "ffp31"
+profibus = "dp"
+profibus_address = 8
+[[station]]
+name = "pump"
+unit = "mc31"
+option = "size0"
+profibus = "dp"
+profibus_address = 9
+[[control]]
+name = "plc"
+profibus = "dp"
+address = 1
+[[control.slave]]
+address = 8
+cfg = "F3 F2"
+watchdog = "200ms"
+po = [6, 1500, 7]
+[[control.slave.change]]
+at = "3s"
+channel = "71 00 04 01 00 00 00 00"
+[[control.slave]]
+address = 9
+cfg = "F1"
+po = [6, 2500]
+[[control.command]]
+at = "4s"
+command = "stop"
+)";
+
+TEST(TelegramSignals, ProfibusByAddressAndConfiguration) {
+  Lines line(kProfibus);
+  EXPECT_EQ(line.value("dp.8.PO1"), 0) << "nothing has come";
+  line.run(3 * kSecond);
+  EXPECT_EQ(line.value("dp.8.PO1"), 6);
+  EXPECT_EQ(line.value("dp.8.PO2"), 1500);
+  EXPECT_EQ(line.value("dp.8.PO3"), 7);
+  EXPECT_EQ(line.value("dp.9.PO2"), 2500);
+  EXPECT_EQ(line.value("dp.9.PO3"), 0) << "two words";
+  EXPECT_EQ(line.value("dp.8.PI1"), line.value("belt.PI1"));
+  EXPECT_EQ(line.value("dp.9.PI1"), line.value("pump.PI1"));
+  EXPECT_EQ(line.value("dp.8.ident"), 0x3100);
+  EXPECT_EQ(line.value("dp.9.ident"), 0x3111);
+  EXPECT_EQ(line.value("dp.8.master"), 1);
+  EXPECT_EQ(line.value("dp.8.status2.3"), 1) << "WD_On";
+  EXPECT_EQ(line.value("dp.8.request_service"), 0);
+  line.run(kSecond / 2);
+  // Read fieldbus index 1025 = 0401h, P120.
+  EXPECT_EQ(line.value("dp.8.request_service"), 1);
+  EXPECT_EQ(line.value("dp.8.request_index"), 1025);
+  EXPECT_EQ(line.value("dp.8.answer_index"), 1025);
+  EXPECT_EQ(line.value("dp.8.answer_failed"), 0);
+  EXPECT_NE(line.value("dp.8.answer_value"), 0);
+  // The watchdog ends the data exchange: what was said last stays, where it stood.
+  line.run(2 * kSecond);
+  EXPECT_EQ(line.value("dp.8.PO2"), 1500);
+  EXPECT_EQ(line.value("dp.8.answer_index"), 1025);
+}
+
+TEST(TelegramSignals, NamesOfProfibus) {
+  Lines line(kProfibus);
+  EXPECT_EQ(line.names("dp.*.PO?"),
+            (std::vector<std::string>{"dp.8.PO1", "dp.8.PO2", "dp.8.PO3", "dp.9.PO1", "dp.9.PO2"}));
+  EXPECT_EQ(line.names("dp.*.answer_index"), (std::vector<std::string>{"dp.8.answer_index"}));
+  EXPECT_EQ(line.names("dp.127.*"), (std::vector<std::string>{"dp.127.command", "dp.127.groups"}));
+  EXPECT_EQ(line.value("dp.20.PO24"), 0) << "every address can be named, with the words of a gateway";
+  for (const char* wrong : {"dp.128.PO1", "dp.8.PO25", "dp.8.speed"})
+    EXPECT_FALSE(runtime::find_signals(*line.plant, wrong)) << wrong;
+}
+
 }  // namespace
 }  // namespace ipos::tests
