@@ -45,13 +45,22 @@ std::optional<std::string> ProfibusBus::send(const std::string& text) {
   return "the frame before is still being sent";
 }
 
+NodeId ProfibusBus::find_node(const std::string& station) const {
+  for (NodeId node = 0; node < line_.node_count() && !station.empty(); ++node)
+    if (line_.node_name(node) == station) return node;
+  return kNoNode;
+}
+
 bool ProfibusBus::plant(const FaultConfig& config) {
   profibus::LineFault fault = *config.profibus;
-  for (NodeId node = 0; node < line_.node_count() && fault.sender == kNoNode; ++node)
-    if (line_.node_name(node) == config.station) fault.sender = node;
+  fault.sender = find_node(config.station);
   if (!config.station.empty() && fault.sender == kNoNode) return false;
   line_.add_fault(fault);
   return true;
+}
+
+bool ProfibusBus::repair(const FaultConfig& config) {
+  return line_.end_fault(config.profibus->kind, find_node(config.station));
 }
 
 void ProfibusBus::on_frame(const profibus::Line&, NodeId sender, const profibus::Reception& reception) {
@@ -68,7 +77,8 @@ void ProfibusBus::on_frame(const profibus::Line&, NodeId sender, const profibus:
 }
 
 void ProfibusBus::on_line_event(const profibus::Line& line, const profibus::LineEvent& event) {
-  if (told_.emplace(event.kind, event.node).second) place_.warn(event.time, describe(line, event));
+  if (told_.emplace(event.kind, event.node, event.fault).second)
+    place_.warn(event.time, describe(line, event));
   trace_all(event.kind, event.time, event.node);
 }
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <utility>
+#include <tuple>
 
 #include "runtime/bus/profibus/line.hpp"
 #include "runtime/plant/bus.hpp"
@@ -32,10 +32,12 @@ class ProfibusBus final : public Bus, private profibus::LineObserver {
   void attach_hand() override;
   std::optional<std::string> send(const std::string& text) override;
   bool plant(const FaultConfig& config) override;
+  bool repair(const FaultConfig& config) override;
 
  private:
   class Hand;
 
+  NodeId find_node(const std::string& station) const;  // kNoNode: there is none
   void watch() override {}  // it observes for the journal anyway
   void on_frame(const profibus::Line& line, NodeId sender, const profibus::Reception& reception) override;
   void on_line_event(const profibus::Line& line, const profibus::LineEvent& event) override;
@@ -44,7 +46,8 @@ class ProfibusBus final : public Bus, private profibus::LineObserver {
   profibus::Line line_;
   std::unique_ptr<Hand> hand_;
   std::unique_ptr<LastDpTraffic> last_frames_;
-  std::set<std::pair<profibus::LineEventKind, NodeId>> told_;  // each is told once
+  // Each is told once.
+  std::set<std::tuple<profibus::LineEventKind, NodeId, std::optional<profibus::LineFaultKind>>> told_;
 };
 
 }  // namespace ipos::runtime

@@ -17,13 +17,11 @@ void read_fault_place(PlantReader& reader, const toml::table& table, FaultConfig
                  "a cut is behind a station, or of the connection of one station: not both");
   config.fault.behind = behind;
   config.station = reader.station_name(table, behind ? "behind" : "station");
-  const bool needs_station = kind == FaultKind::Cut || kind == FaultKind::Swap;
-  const bool takes_none = kind == FaultKind::Short || kind == FaultKind::Stuck ||
-                          kind == FaultKind::Terminator || kind == FaultKind::Duplicate;
-  if (needs_station && config.station.empty())
+  const FaultPlace at = fault_type(kind).at;
+  if (at == FaultPlace::Station && config.station.empty())
     reader.error(config.place, fmt::format("a fault '{}' needs station = \"...\"{}", fault_type(kind).word,
                                            kind == FaultKind::Cut ? " or behind = \"...\"" : ""));
-  if (takes_none && !config.station.empty())
+  if (at == FaultPlace::Line && !config.station.empty())
     reader.error(config.place, fmt::format("a fault '{}' concerns the whole line", fault_type(kind).word));
 }
 
@@ -64,9 +62,8 @@ void read_fault(PlantReader& reader, const toml::table& table) {
   config.place = place_of(table.source());
   config.bus = reader.bus_name(table, "bus", "a [[fault]]", true);
   const std::string word = reader.text(table, "kind", "a [[fault]]", true);
-  const auto type = std::find_if(std::begin(kFaultTypes), std::end(kFaultTypes),
-                                 [&](const FaultType& candidate) { return candidate.word == word; });
-  if (type == std::end(kFaultTypes)) {
+  const FaultType* const type = find_fault_type(word);
+  if (type == nullptr) {
     std::vector<std::string_view> words;
     for (const FaultType& known : kFaultTypes) words.push_back(known.word);
     if (!word.empty())

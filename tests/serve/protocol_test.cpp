@@ -140,6 +140,10 @@ class QuietDp : public ServingDp {
  protected:
   QuietDp() : ServingDp(kDpPlant) {}
 };
+class DpAndSerial : public ServingDp {
+ protected:
+  DpAndSerial() : ServingDp(std::string("[[bus]]\nname = \"line1\"\nkind = \"rs485\"\n") + kDpPlant) {}
+};
 
 TEST_F(Serving, SaysHelloAndStandsAtZero) {
   page.post.sent.clear();
@@ -270,6 +274,28 @@ TEST_F(Serving, CableCutsAndFaultsComeAndGo) {
   EXPECT_EQ(error(repair), "there is no such fault");
   EXPECT_EQ(error({{"do", "fault"}, {"bus", "sbus"}, {"kind", "cut"}, {"on", true}}),
             "'cut' needs a station");
+  EXPECT_EQ(error({{"do", "fault"}, {"bus", "sbus"}, {"kind", "short"}, {"station", "saw"}, {"on", true}}),
+            "'short' concerns the whole line, not one station");
+  EXPECT_EQ(error({{"do", "fault"}, {"bus", "sbus"}, {"kind", "stuck"}, {"rate", 0.5}, {"on", true}}),
+            "'stuck' lasts until it is ended: it has no rate");
+  EXPECT_EQ(error({{"do", "fault"}, {"bus", "sbus"}, {"kind", "short"}, {"identifier", 5}, {"on", true}}),
+            "'short' concerns the wires: it has no identifier");
+  EXPECT_EQ(error({{"do", "fault"}, {"bus", "sbus"}, {"kind", "drop"}, {"rate", 0.0001}, {"on", true}}),
+            "'rate' must be 0.001 to 1");
+  EXPECT_EQ(error({{"do", "fault"}, {"bus", "sbus"}, {"kind", "parity"}, {"on", true}}),
+            "there is no fault 'parity' of an SBus; there are drop, corrupt, delay, duplicate, terminator, "
+            "cut, swap, "
+            "short, stuck");
+  EXPECT_EQ(error({{"do", "fault"}, {"bus", "bus2"}, {"kind", "drop"}, {"on", true}}),
+            "there is no line 'bus2', only sbus");
+  good({{"do", "fault"},
+        {"bus", "sbus"},
+        {"kind", "drop"},
+        {"identifier", 523},
+        {"rate", 0.57},
+        {"on", true}});
+  EXPECT_EQ(topic({{"topic", "plant"}})["buses"]["sbus"]["faults"],
+            Json::array({{{"kind", "drop"}, {"station", ""}, {"id", 523}, {"rate", 0.57}}}));
   EXPECT_NE(topic({{"topic", "journal"}}).dump().find("is cut"), std::string::npos);
 }
 
@@ -471,6 +497,75 @@ TEST_F(ServingDp, RowsByAddressesAndAccessPoints) {
   EXPECT_EQ(trace[0]["dsap"], 62);
   EXPECT_EQ(good({{"do", "bus.decode"}, {"frames", {{{"bus", "dp"}, {"data", "DC 03 05"}}}}})["texts"],
             Json({"5 -> 3 token"}));
+}
+
+// Faults of a PROFIBUS line strike frames of one sender or of all.
+TEST_F(ServingDp, FaultsComeAndGo) {
+  const Json bus = good({{"do", "plant"}})["plant"]["buses"][0];
+  EXPECT_EQ(bus["faults"], Json({"lost", "cut", "parity", "noise", "collision"}));
+  EXPECT_EQ(
+      bus["fault_rules"]["cut"],
+      (Json{{"text", "cuts a frame short"}, {"station", "may"}, {"rate", true}, {"identifier", false}}));
+  const auto line = [&] { return topic({{"topic", "bus"}})["buses"]["dp"]; };
+  step(1500);
+  EXPECT_EQ(line()["errors"], 0);
+  const Json parity{{"do", "fault"}, {"bus", "dp"}, {"kind", "parity"}, {"station", "pump"}, {"on", true}};
+  good(parity);
+  EXPECT_EQ(error(parity), "this fault is there already");
+  step(100);
+  EXPECT_EQ(topic({{"topic", "plant"}})["buses"]["dp"]["faults"],
+            Json::array({{{"kind", "parity"}, {"station", "pump"}}}));
+  EXPECT_GT(line()["errors"], 3);
+  Json end = parity;
+  end["on"] = false;
+  good(end);
+  EXPECT_EQ(error(end), "there is no such fault");
+  step(10);
+  const Json errors = line()["errors"];
+  step(500);
+  EXPECT_EQ(line()["errors"], errors);
+  EXPECT_EQ(topic({{"topic", "plant"}})["buses"]["dp"]["faults"], Json::array());
+  EXPECT_GT(row(1, 9, nullptr)["rate"], 20) << "data exchange goes on";
+  // Lost frames of all: nobody hears anything.
+  good({{"do", "fault"}, {"bus", "dp"}, {"kind", "lost"}, {"on", true}});
+  step(10);
+  const Json frames = line()["frames"];
+  step(100);
+  EXPECT_EQ(line()["frames"], frames);
+  const std::string journal = topic({{"topic", "journal"}}).dump();
+  EXPECT_NE(journal.find("the line turns a parity bit round"), std::string::npos);
+  EXPECT_NE(journal.find("the line loses a frame"), std::string::npos);
+}
+
+TEST_F(ServingDp, AFaultIsNotThereBeforeItWasPlanted) {
+  const auto faults = [&] { return topic({{"topic", "plant"}})["buses"]["dp"]["faults"]; };
+  step(100);
+  good({{"do", "fault"}, {"bus", "dp"}, {"kind", "noise"}, {"rate", 0.5}, {"on", true}});
+  step(100);
+  EXPECT_EQ(faults(), Json::array({{{"kind", "noise"}, {"station", ""}, {"rate", 0.5}}}));
+  good({{"do", "back"}, {"us", 50'000}});
+  EXPECT_EQ(faults(), Json::array());
+}
+
+TEST_F(DpAndSerial, WhatALineHasNotIsRefusedInWords) {
+  const auto refused = [&](Json message) {
+    message.update({{"do", "fault"}, {"on", true}});
+    return error(message);
+  };
+  EXPECT_EQ(refused({{"bus", "dp"}, {"kind", "short"}}),
+            "there is no fault 'short' of a PROFIBUS line; there are lost, cut, parity, noise, collision");
+  EXPECT_EQ(refused({{"bus", "dp"}, {"kind", "cut"}, {"identifier", 9}}),
+            "'cut' strikes all frames of a sender: frames of a PROFIBUS line have no identifier");
+  EXPECT_EQ(refused({{"bus", "dp"}, {"kind", "cut"}, {"station", "mill"}}), "there is no 'mill' on dp");
+  EXPECT_EQ(refused({{"bus", "line1"}, {"kind", "cut"}}),
+            "line1 is a serial line: such lines have no faults that can be planted, only CAN and PROFIBUS "
+            "lines have");
+  EXPECT_EQ(refused({{"bus", "sbus"}, {"kind", "cut"}}), "there is no line 'sbus', only line1, dp");
+  for (const Json& bus : good({{"do", "plant"}})["plant"]["buses"])
+    if (bus["name"] == "line1") {
+      EXPECT_EQ(bus["faults"], Json::array());
+      EXPECT_EQ(bus["fault_rules"], Json::object());
+    }
 }
 
 // FC 46h: a request, SDN high; 66h has the frame count bit. 09h + 20h + 49h = 72h.

@@ -67,7 +67,8 @@ Json DriveBus::describe() const {
           {"kind", can ? "can" : "rs485"},
           {"baud", can ? link_.can_line()->baud() : link_.serial_line()->baud()},
           {"stations", Json::array({station_})},
-          {"faults", Json::array()}};
+          {"faults", Json::array()},
+          {"fault_rules", Json::object()}};
 }
 
 void DriveBus::publish(Client& client, Subscription& subscription) const {

@@ -2,20 +2,17 @@
 // power and faults of the lines.
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "runtime/drive/indices.hpp"
 #include "runtime/plant_file/signal.hpp"
 #include "stdlib/faults.hpp"
 #include "stdlib/parameters.hpp"
 #include "tools/serve/bus_ear.hpp"
+#include "tools/serve/line_faults.hpp"
 #include "tools/serve/tabs.hpp"
 
 namespace ipos::tools::serve {
 namespace {
 
-using runtime::FaultConfig;
-using runtime::kNever;
 using runtime::Station;
 
 constexpr int32_t kTurn = 4096;  // increments of the shaft (IPOSplus p. 22)
@@ -110,10 +107,10 @@ class PlantTab final : public Tab {
     });
     add("power", {"station", "on"}, [this](const Json& action) { power(Arguments(action)); });
     add("fault", {"bus", "kind", "station", "on", "rate", "identifier"},
-        [this](const Json& action) { fault(Arguments(action)); });
+        [this](const Json& action) { faults_.carry_out(Arguments(action)); });
   }
 
-  void built(runtime::Plant& plant) override { planted_ = plant.file().faults; }
+  void built(runtime::Plant& plant) override { faults_.built(plant); }
 
  private:
   // A command that is an action on the plant, with the members that count.
@@ -209,48 +206,6 @@ class PlantTab final : public Tab {
     plant.surroundings().act(plant.now(), [&plant, name, on] { plant.set_power(name, on); });
   }
 
-  void fault(const Arguments& a) {
-    FaultConfig config;
-    config.bus = a.text("bus");
-    const auto& lines = host_.plant().lines();
-    if (std::none_of(lines.begin(), lines.end(),
-                     [&](const auto& line) { return line->name() == config.bus; }))
-      throw Mistake(fmt::format("there is no CAN line '{}'", config.bus));
-    const std::string kind = a.text("kind");
-    const auto* const type = std::find_if(std::begin(runtime::kFaultTypes), std::end(runtime::kFaultTypes),
-                                          [&](const runtime::FaultType& row) { return row.word == kind; });
-    if (type == std::end(runtime::kFaultTypes)) throw Mistake(fmt::format("there is no fault '{}'", kind));
-    config.fault.kind = type->kind;
-    config.station = a.text("station", "");
-    const bool of_a_station = type->kind == runtime::FaultKind::Cut || type->kind == runtime::FaultKind::Swap;
-    if (of_a_station && config.station.empty()) throw Mistake(fmt::format("'{}' needs a station", kind));
-    config.fault.per_mille = static_cast<uint32_t>(a.number("rate", 0, 1, 1) * 1000);
-    if (a.has("identifier"))
-      config.fault.id = static_cast<uint32_t>(a.whole("identifier", 0, runtime::kExtendedIdLimit - 1));
-    config.fault.from = host_.plant().now();
-    if (type->kind == runtime::FaultKind::Delay) config.fault.lag = runtime::kMillisecond;
-    const auto same = [&](const FaultConfig& other) {
-      return other.bus == config.bus && other.station == config.station &&
-             other.fault.kind == config.fault.kind && other.fault.id == config.fault.id && is_active(other);
-    };
-    const auto known = std::find_if(planted_.begin(), planted_.end(), same);
-    if (a.flag("on")) {
-      if (known != planted_.end()) throw Mistake("this fault is there already");
-      if (!host_.plant().plant_fault(config))
-        throw Mistake(fmt::format("there is no '{}' on {}", config.station, config.bus));
-      planted_.push_back(config);
-      return;
-    }
-    if (known == planted_.end()) throw Mistake("there is no such fault");
-    if (!host_.plant().repair_fault(config)) throw Mistake("its end is set in the plant file");
-    planted_.erase(known);
-  }
-
-  bool is_active(const FaultConfig& config) const {
-    const runtime::Time now = host_.plant().now();
-    return config.fault.from <= now && now < config.fault.until;
-  }
-
   // --- what it is ---
 
   Json describe() const {
@@ -260,7 +215,7 @@ class PlantTab final : public Tab {
     for (const runtime::PlantControl& control : plant.controls())
       if (control.gateway) stations.push_back(describe(*control.gateway));
     Json buses = Json::array();
-    const auto add = [&](const auto& line, runtime::BusKind kind, Json faults) {
+    const auto add = [&](const auto& line, runtime::BusKind kind) {
       Json on_it = Json::array();
       for (runtime::NodeId node = 0; node < line.node_count(); ++node)
         if (line.node_name(node) != kPageNode) on_it.push_back(line.node_name(node));
@@ -268,13 +223,12 @@ class PlantTab final : public Tab {
                        {"kind", runtime::info(kind).word},
                        {"baud", line.baud()},
                        {"stations", std::move(on_it)},
-                       {"faults", std::move(faults)}});
+                       {"faults", LineFaults::kinds(kind)},
+                       {"fault_rules", LineFaults::rules(kind)}});
     };
-    Json can_faults = Json::array();
-    for (const runtime::FaultType& type : runtime::kFaultTypes) can_faults.push_back(type.word);
-    for (const auto& line : plant.lines()) add(*line, runtime::BusKind::Can, can_faults);
-    for (const auto& bus : plant.serial_lines()) add(bus->line(), bus->kind(), Json::array());
-    for (const auto& bus : profibus_lines(plant)) add(bus->line(), bus->kind(), Json::array());
+    for (const auto& line : plant.lines()) add(*line, runtime::BusKind::Can);
+    for (const auto& bus : plant.serial_lines()) add(bus->line(), bus->kind());
+    for (const auto& bus : profibus_lines(plant)) add(bus->line(), bus->kind());
     Json controls = Json::array();
     for (const runtime::PlantControl& control : plant.controls())
       if (!control.gateway)
@@ -410,14 +364,7 @@ class PlantTab final : public Tab {
   }
 
   Json line_state(const std::string& name, const runtime::LineLoad& load) const {
-    Json faults = Json::array();
-    for (const FaultConfig& config : planted_) {
-      if (config.bus != name || !is_active(config)) continue;
-      Json fault{{"kind", runtime::fault_type(config.fault.kind).word}, {"station", config.station}};
-      if (config.fault.id) fault["id"] = *config.fault.id;
-      faults.push_back(std::move(fault));
-    }
-    return {{"load", load.window_percent}, {"frames", load.frames}, {"faults", std::move(faults)}};
+    return {{"load", load.window_percent}, {"frames", load.frames}, {"faults", faults_.planted_on(name)}};
   }
 
   void publish(Client& client, Subscription& subscription) {
@@ -449,7 +396,7 @@ class PlantTab final : public Tab {
   }
 
   PlantHost& host_;
-  std::vector<FaultConfig> planted_;
+  LineFaults faults_;
 };
 
 }  // namespace

@@ -38,7 +38,20 @@ function describe() {
       analog: [{ name: "AI1", units: ["V"], least: -10, most: 10 }],
       lines: ["sbus"],
     })),
-    buses: [{ name: "sbus", kind: "can", baud: 500000, stations: stationNames, faults: ["drop", "cut", "corrupt"] }],
+    buses: [
+      {
+        name: "sbus",
+        kind: "can",
+        baud: 500000,
+        stations: stationNames,
+        faults: ["drop", "cut", "corrupt"],
+        fault_rules: {
+          drop: { text: "loses a frame behind the acknowledge", station: "may", rate: true, identifier: true },
+          cut: { text: "is cut", station: "must", rate: false, identifier: false },
+          corrupt: { text: "has a disturbed bit", station: "may", rate: true, identifier: true },
+        },
+      },
+    ],
     controls: [{ name: "plc", bus: "sbus" }],
     wires: [{ from: "saw.DO01", to: "lift.DI03", invert: false }],
     switches: [{ input: "saw.DI02", from: -1000, to: 1000, active_high: true }],

@@ -264,6 +264,32 @@ test("bus: PROFIBUS frames by addresses and access points; one of a hand collide
   ),
 );
 
+// The slave's answers are lost, so its card tells that data exchange has ended; the journal names the fault.
+test("faults: a PROFIBUS line offers its own, at a click, and ends them", { skip }, () =>
+  meet(
+    async (page) => {
+      const pane = page.getByRole("region", { name: "Line faults" });
+      assert.deepStrictEqual(await pane.getByLabel("Kind").locator("option").allTextContents(), ["lost", "cut", "parity", "noise", "collision"]);
+      assert.strictEqual(await pane.getByLabel("Identifier").count(), 0);
+      assert.strictEqual(await page.getByRole("button", { name: "Cut pump from dp" }).count(), 0);
+      await button(page, "Run").click();
+      await until(async () => (await timeOf(page)) > 1500, "it does not run");
+      await pane.getByLabel("Kind").selectOption("lost");
+      await pane.getByLabel("Sent by").selectOption("pump");
+      await pane.getByRole("button", { name: "Plant" }).click();
+      const planted = pane.getByRole("button", { name: "dp: lost at pump" });
+      await planted.waitFor();
+      await tab(page, "Journal");
+      await page.getByRole("log").getByText("the line loses a frame").first().waitFor();
+      await tab(page, "Plant");
+      await planted.click();
+      await until(async () => (await planted.count()) === 0, "the fault stays");
+    },
+    "dp.toml",
+    "pump DI00",
+  ),
+);
+
 test("program: breakpoint, steps, coverage", { skip }, () =>
   meet(async (page) => {
     await tab(page, "Program");

@@ -2,7 +2,15 @@
 // depend on the other faults.
 #include "runtime/bus/can/line_fault.hpp"
 
+#include <algorithm>
+
 namespace ipos::runtime {
+
+const FaultType* find_fault_type(std::string_view word) {
+  const auto* const found = std::find_if(std::begin(kFaultTypes), std::end(kFaultTypes),
+                                         [word](const FaultType& type) { return type.word == word; });
+  return found == std::end(kFaultTypes) ? nullptr : found;
+}
 
 size_t LineFaults::add(const LineFault& fault) {
   faults_.push_back({fault, Random(fault.seed)});

@@ -13,24 +13,28 @@
 namespace ipos::runtime {
 
 enum class FaultKind : uint8_t {
-#define LINE_FAULT(name, word, scope, text) name,
+#define LINE_FAULT(name, word, scope, at, text) name,
 #include "runtime/bus/can/line_faults.def"
 };
 enum class FaultScope : uint8_t { Frame, Wiring };
+enum class FaultPlace : uint8_t { Line, Station, Either };
 
 struct FaultType {
   FaultKind kind;
   std::string_view word;
   FaultScope scope;
+  FaultPlace at;
   std::string_view text;
 };
 
 inline constexpr FaultType kFaultTypes[] = {
-#define LINE_FAULT(name, word, scope, text) {FaultKind::name, word, FaultScope::scope, text},
+#define LINE_FAULT(name, word, scope, at, text) \
+  {FaultKind::name, word, FaultScope::scope, FaultPlace::at, text},
 #include "runtime/bus/can/line_faults.def"
 };
 
 constexpr const FaultType& fault_type(FaultKind kind) { return kFaultTypes[static_cast<size_t>(kind)]; }
+const FaultType* find_fault_type(std::string_view word);  // nullptr: there is none
 
 struct LineFault {
   FaultKind kind = FaultKind::Drop;

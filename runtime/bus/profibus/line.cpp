@@ -134,7 +134,7 @@ std::string describe(const Line& line, const LineEvent& event) {
   };
   std::string text = fmt::format("{}: {} {}", line.name(), line.node_name(event.node),
                                  kTexts[static_cast<size_t>(event.kind)]);
-  if (event.fault) text += fmt::format(": the line {}", line_fault_text(*event.fault));
+  if (event.fault) text += fmt::format(": the line {}", line_fault_type(*event.fault).text);
   return text;
 }
 

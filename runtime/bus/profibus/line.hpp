@@ -65,6 +65,8 @@ class Line final : private runtime::EventTarget {
   NodeId attach(std::string name, Node& node);
   void add_observer(LineObserver& observer) { observers_.push_back(&observer); }
   void add_fault(const LineFault& fault) { faults_.add(fault); }
+  // Frames that begin from now on are not struck any more; false: there is no such fault.
+  bool end_fault(LineFaultKind kind, NodeId sender) { return faults_.end(kind, sender, queue_.now()); }
 
   // Sends from bit `begin` on, or from now. False: not connected, still sending, or at another rate.
   bool send(NodeId node, Bits begin, const FdlFrame& frame) { return send(node, begin, encode(frame)); }

@@ -10,12 +10,7 @@
 namespace ipos::profibus {
 namespace {
 
-struct FaultRow {
-  LineFaultKind kind;
-  std::string_view word;
-  std::string_view text;
-};
-constexpr FaultRow kRows[] = {
+constexpr LineFaultType kTypes[] = {
 #define DP_LINE_FAULT(name, word, text) {LineFaultKind::name, word, text},
 #include "runtime/bus/profibus/line_faults.def"
 };
@@ -58,12 +53,26 @@ void damage(LineFaultKind kind, WireFrame& frame, runtime::Random& random) {
 
 }  // namespace
 
-std::string_view line_fault_text(LineFaultKind kind) { return kRows[static_cast<size_t>(kind)].text; }
+std::span<const LineFaultType> line_fault_types() { return kTypes; }
+
+const LineFaultType& line_fault_type(LineFaultKind kind) { return kTypes[static_cast<size_t>(kind)]; }
 
 std::optional<LineFaultKind> find_line_fault(std::string_view word) {
-  for (const FaultRow& row : kRows)
-    if (row.word == word) return row.kind;
+  for (const LineFaultType& type : kTypes)
+    if (type.word == word) return type.kind;
   return std::nullopt;
+}
+
+bool LineFaults::end(LineFaultKind kind, NodeId sender, Time now) {
+  bool found = false;
+  for (Planted& planted : faults_) {
+    LineFault& fault = planted.fault;
+    if (fault.kind != kind || fault.sender != sender || fault.from > now || fault.until != runtime::kNever)
+      continue;
+    fault.until = now;
+    found = true;
+  }
+  return found;
 }
 
 std::optional<LineFaultKind> LineFaults::strike(Time now, NodeId sender, WireFrame& frame) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -21,7 +22,13 @@ enum class LineFaultKind : uint8_t {
 #define DP_LINE_FAULT(name, word, text) name,
 #include "runtime/bus/profibus/line_faults.def"
 };
-std::string_view line_fault_text(LineFaultKind kind);
+struct LineFaultType {
+  LineFaultKind kind;
+  std::string_view word;  // `kind` in a plant file
+  std::string_view text;
+};
+std::span<const LineFaultType> line_fault_types();
+const LineFaultType& line_fault_type(LineFaultKind kind);
 std::optional<LineFaultKind> find_line_fault(std::string_view word);
 
 struct LineFault {
@@ -43,6 +50,9 @@ struct WireFrame {
 class LineFaults {
  public:
   void add(const LineFault& fault) { faults_.push_back({fault, runtime::Random(fault.seed)}); }
+
+  // Ends those of the kind and the sender that have begun and have no end of their own. False: there is none.
+  bool end(LineFaultKind kind, NodeId sender, Time now);
 
   // Of several that strike the same frame the first one planted counts.
   std::optional<LineFaultKind> strike(Time now, NodeId sender, WireFrame& frame);

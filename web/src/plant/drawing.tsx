@@ -51,9 +51,12 @@ function StationBox({ box, y }: { box: Box; y: number }) {
 
 function Tap({ box, line, from, to }: { box: Box; line: Line; from: number; to: number }) {
   const x = tapX(box, line.name);
-  const cut = lineState(line.name).value?.faults.some((fault) => fault.kind === "cut" && fault.station === box.name) ?? false;
+  // On PROFIBUS a cut shortens frames; where it is of the wires it needs a station.
+  const cuttable = line.fault_rules.cut?.station === "must";
+  const cut =
+    cuttable && (lineState(line.name).value?.faults.some((fault) => fault.kind === "cut" && fault.station === box.name) ?? false);
   const wire = <path class={`cable${cut ? " cut" : ""}`} d={`M${x} ${from}V${to}`} />;
-  if (!line.faults.includes("cut") || box.control)
+  if (!cuttable || box.control)
     return (
       <g>
         {wire}

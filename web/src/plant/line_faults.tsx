@@ -40,22 +40,27 @@ function Planted({ line }: { line: Line }) {
 }
 
 export function LineFaults({ buses }: { buses: Line[] }) {
-  const [name, setName] = useState(buses.find((bus) => bus.faults.length)?.name ?? "");
-  const line = buses.find((bus) => bus.name === name);
+  const lines = buses.filter((bus) => bus.faults.length > 0);
+  const [name, setName] = useState("");
   const [kind, setKind] = useState("");
   const [station, setStation] = useState("");
   const [id, setId] = useState("");
   const [percent, setPercent] = useState("100");
-  const chosen = kind || line?.faults[0] || "";
+  const line = lines.find((bus) => bus.name === name) ?? lines[0];
+  if (!line) return null;
+  // Another line may not have the kind or the station that was chosen.
+  const chosen = line.faults.includes(kind) ? kind : (line.faults[0] ?? "");
+  const rule = line.fault_rules[chosen];
+  const at = rule?.station !== "none" && line.stations.includes(station) ? station : "";
   const plantIt = () =>
     void command({
       do: "fault",
-      bus: name,
+      bus: line.name,
       kind: chosen,
       on: true,
-      ...(station ? { station } : {}),
-      ...(id ? { identifier: Number(id) } : {}),
-      ...(percent !== "100" ? { rate: Number(percent) / 100 } : {}),
+      ...(at ? { station: at } : {}),
+      ...(rule?.identifier && id ? { identifier: Number(id) } : {}),
+      ...(rule?.rate && percent !== "100" ? { rate: Number(percent) / 100 } : {}),
     });
   return (
     <section class="panel faults" aria-label="Line faults">
@@ -63,43 +68,49 @@ export function LineFaults({ buses }: { buses: Line[] }) {
       <div class="row">
         <label class="field">
           Line
-          <select value={name} onChange={(event) => setName(event.currentTarget.value)}>
-            {buses.map((bus) => (
+          <select value={line.name} onChange={(event) => setName(event.currentTarget.value)}>
+            {lines.map((bus) => (
               <option key={bus.name}>{bus.name}</option>
             ))}
           </select>
         </label>
-        <label class="field">
+        <label class="field" title={rule && `The line ${rule.text}`}>
           Kind
           <select value={chosen} onChange={(event) => setKind(event.currentTarget.value)}>
-            {line?.faults.map((one) => (
+            {line.faults.map((one) => (
               <option key={one}>{one}</option>
             ))}
           </select>
         </label>
-        <label class="field">
-          At
-          <select value={station} onChange={(event) => setStation(event.currentTarget.value)}>
-            <option value="">all</option>
-            {line?.stations.map((one) => (
-              <option key={one}>{one}</option>
-            ))}
-          </select>
-        </label>
-        <label class="field">
-          Identifier
-          <input type="text" size={5} value={id} placeholder="any" onInput={(event) => setId(event.currentTarget.value)} />
-        </label>
-        <label class="field">
-          How often
-          <select value={percent} onChange={(event) => setPercent(event.currentTarget.value)}>
-            {["100", "50", "10", "1"].map((one) => (
-              <option key={one} value={one}>
-                {one} %
-              </option>
-            ))}
-          </select>
-        </label>
+        {rule?.station !== "none" && (
+          <label class="field">
+            {line.kind === "profibus" ? "Sent by" : "At"}
+            <select value={at} onChange={(event) => setStation(event.currentTarget.value)}>
+              <option value="">{rule?.station === "must" ? "choose a station" : "all"}</option>
+              {line.stations.map((one) => (
+                <option key={one}>{one}</option>
+              ))}
+            </select>
+          </label>
+        )}
+        {rule?.identifier && (
+          <label class="field">
+            Identifier
+            <input type="text" size={5} value={id} placeholder="any" onInput={(event) => setId(event.currentTarget.value)} />
+          </label>
+        )}
+        {rule?.rate && (
+          <label class="field">
+            How often
+            <select value={percent} onChange={(event) => setPercent(event.currentTarget.value)}>
+              {["100", "50", "10", "1"].map((one) => (
+                <option key={one} value={one}>
+                  {one} %
+                </option>
+              ))}
+            </select>
+          </label>
+        )}
         <button class="danger" onClick={plantIt}>
           Plant
         </button>

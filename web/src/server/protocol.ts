@@ -53,12 +53,21 @@ export interface Station {
   lines: string[];
 }
 
+// What a kind of fault takes when it is planted.
+export interface FaultRule {
+  text: string;
+  station: "must" | "may" | "none";
+  rate: boolean;
+  identifier: boolean;
+}
+
 export interface Line {
   name: string;
   kind: string;
   baud: number;
   stations: string[];
   faults: string[];
+  fault_rules: Record<string, FaultRule>;
 }
 
 export interface Wire {

@@ -121,7 +121,7 @@ TEST(DpLine, PlantedFaults) {
     }
     EXPECT_EQ(b.errors(), row.errors);
     ASSERT_EQ(rig.recorder.texts.size(), 1U);
-    EXPECT_NE(rig.recorder.texts[0].find(line_fault_text(row.kind)), std::string::npos);
+    EXPECT_NE(rig.recorder.texts[0].find(line_fault_type(row.kind).text), std::string::npos);
     EXPECT_EQ(find_line_fault("lost"), LineFaultKind::Lost);
     EXPECT_FALSE(find_line_fault("nothing").has_value());
   }
@@ -142,6 +142,35 @@ TEST(DpLine, PlantedFaults) {
     for (const Reception& reception : c.heard) good += reception.frame.has_value();
     EXPECT_EQ(good, 5000U);
   }
+}
+
+// Those of a sender and those of all are two; what has an end of its own keeps it.
+TEST(DpLine, FaultsEndByHand) {
+  LineRig rig;
+  HandNode a(rig, "a"), b(rig, "b");
+  LineFault of_a;
+  of_a.kind = LineFaultKind::Lost;
+  of_a.sender = a.id;
+  rig.line.add_fault(of_a);
+  LineFault timed;
+  timed.kind = LineFaultKind::Parity;
+  timed.until = kMillisecond;
+  rig.line.add_fault(timed);
+  const auto send = [&](Bits n) {
+    a.send(n * 200, kRequest);
+    rig.queue.run_until(rig.line.at(n * 200 + 121));
+  };
+  send(0);
+  EXPECT_EQ(b.errors(), "") << "the first one planted counts";
+  EXPECT_FALSE(rig.line.end_fault(LineFaultKind::Lost, runtime::kNoNode));
+  EXPECT_FALSE(rig.line.end_fault(LineFaultKind::Parity, runtime::kNoNode));
+  EXPECT_TRUE(rig.line.end_fault(LineFaultKind::Lost, a.id));
+  EXPECT_FALSE(rig.line.end_fault(LineFaultKind::Lost, a.id));
+  send(1);
+  EXPECT_EQ(b.errors(), "parity error");
+  rig.queue.run_until(kMillisecond);
+  send(rig.line.now() / 200 + 1);
+  EXPECT_EQ(b.errors(), "parity error; -");
 }
 
 TEST(DpLine, FaultsByChanceAreTheSameForASeed) {
