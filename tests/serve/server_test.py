@@ -16,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import tty
 import unittest
 
 IPOS = sys.argv.pop(1)
@@ -512,6 +513,133 @@ P810 = 1
         self.assertEqual(answer[:11].hex(), "1d018631002116000007d0")
         trace = [frame["data"] for frame in client.ask(do="bus.trace")["frames"]]
         self.assertIn(self.QUESTION.hex().upper(), trace)
+
+
+def sd1(receiver, sender, function):
+    return bytes([0x10, receiver, sender, function, receiver + sender + function & 0xFF, 0x16])
+
+
+def sd2(receiver, sender, function, data=b"", points=()):
+    mark = 0x80 if points else 0
+    body = bytes([receiver | mark, sender | mark, function, *points]) + data
+    return bytes([0x68, len(body), len(body), 0x68]) + body + bytes([sum(body) & 0xFF, 0x16])
+
+
+class DpMaster:
+    """A master of class 1 with one slave, at a pseudo-terminal (EN 50170 volume 2): access points 60 Slave_Diag, 61
+    Set_Prm, 62 Chk_Cfg and of the master 62."""
+
+    def __init__(self, path, slave):
+        self.port = os.open(path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+        tty.setraw(self.port)
+        self.slave = slave
+        self.bit = None  # frame count bit of the next request; None: a sequence begins
+
+    def ask(self, data=b"", point=None):
+        """Data of the answer, b"" of a short acknowledgement; None without one after some tries."""
+        function = 0x6D if self.bit is None else 0x7D if self.bit else 0x5D
+        frame = sd2(self.slave, 1, function, data, (point, 62) if point else ())
+        for _ in range(5):
+            os.write(self.port, frame)
+            answer, ends = b"", time.monotonic() + 0.1
+            while time.monotonic() < ends and not self.whole(answer):
+                if select.select([self.port], [], [], 0.01)[0]:
+                    answer += os.read(self.port, 4096)
+            if self.whole(answer):
+                self.bit = False if self.bit is None else not self.bit
+                return b"" if answer == b"\xE5" else answer[9 if point else 7:-2]
+        self.bit = None
+        return None
+
+    @staticmethod
+    def whole(answer):
+        return answer == b"\xE5" or (answer[:1] == b"\x68" and len(answer) == answer[1] + 6)
+
+    def start(self, watchdog_ms, configuration):
+        """The slave finds the rate by what it hears; nobody has the address 125."""
+        for _ in range(30):
+            os.write(self.port, sd1(125, 1, 0x49))
+            time.sleep(0.01)
+        self.bit = None
+        diagnosis = self.ask(point=60)
+        if diagnosis is None:
+            return False
+        parameters = bytes([0xB8, watchdog_ms // 10, 1, 11]) + diagnosis[4:6] + b"\0"
+        return self.ask(parameters, 61) == b"" and self.ask(configuration, 62) == b"" and self.ask(point=60)[1] & 1 == 0
+
+
+@unittest.skipUnless(os.path.exists("/dev/pts/ptmx"), "there is no /dev/pts: no pseudo-terminals here")
+class PortsOfAPlant(unittest.TestCase):
+    """What a served plant does with its ports: a PROFIBUS master outside."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def serve(self, plant):
+        (self.folder / "plant.toml").write_text(plant)
+        ipos = subprocess.Popen([IPOS, "serve", str(self.folder / "plant.toml")], stdout=subprocess.PIPE,
+                                stderr=subprocess.DEVNULL, text=True)
+        self.addCleanup(ipos.stdout.close)
+        self.addCleanup(ipos.wait)
+        self.addCleanup(ipos.terminate)
+        match = re.search(r":(\d+)/\?token=(\w+)", ipos.stdout.readline())
+        client = Client(int(match[1]), f"/ws?token={match[2]}")
+        self.addCleanup(client.close)
+        return client
+
+    def test_a_profibus_master_outside_runs_a_slave_while_the_page_watches(self):
+        path = self.folder / "dp"
+        client = self.serve(f'''
+[[bus]]
+name = "dp"
+kind = "profibus"
+baud = 500000
+port = "pty:{path}"
+[[station]]
+name = "pump"
+unit = "mc31"
+option = "size0"
+profibus = "dp"
+profibus_address = 9
+[station.parameters]
+P572 = "RAPID STOP/WARNG"
+P600 = "NO FUNCTION"
+P601 = "NO FUNCTION"
+P841 = "FIELDBUS"
+[station.inputs]
+DI00 = 1
+''')
+        self.assertTrue(client.wait_for("hello")["live"])
+        for command in ({"do": "pause"}, {"do": "step"}, {"do": "back", "ms": 1}, {"do": "run", "speed": 2}):
+            self.assertIn("real ports", client.ask(**command)["error"])
+        self.assertIn(f"pty:{path}", client.ask(do="plant")["plant"]["buses"][0]["stations"])
+        master = DpMaster(path, 9)
+        self.addCleanup(os.close, master.port)
+        # Process data 6, 1500 digits of 0.2 rpm; F3 F2: a parameter channel and three words.
+        speed, good = 0, 0
+        for _ in range(1000):  # a busy machine may be late for the watchdog, then it starts again
+            if good == 0 and not master.start(2000, b"\xF3\xF2"):
+                continue
+            answer = master.ask(bytes(8) + (6).to_bytes(2, "big") + (1500).to_bytes(2, "big") + bytes(2))
+            good = good + 1 if answer is not None and len(answer) == 14 else 0
+            speed = int.from_bytes(answer[10:12], "big", signed=True) if good else 0
+            if speed == 1500 and good > 50:
+                break
+        self.assertEqual(speed, 1500)
+        client.ask(do="subscribe", topic="plant")
+        pump = client.wait_for("plant", lambda event: "pump" in event["stations"])["stations"]["pump"]
+        self.assertTrue(pump["enabled"], pump)
+        self.assertAlmostEqual(pump["speed"], 300, delta=1)
+        client.ask(do="subscribe", topic="bus")
+        rows = client.wait_for("bus", lambda event: event["rows"])["rows"]
+        ways = {(row["source"], row["destination"], row["dsap"]) for row in rows}
+        self.assertTrue({(1, 9, None), (9, 1, None), (1, 9, 60), (1, 9, 61), (1, 9, 62)} <= ways, ways)
+        # Faults strike what the master outside sends, too: no request comes through any more.
+        self.assertTrue(client.ask(do="fault", bus="dp", kind="lost", station=f"pty:{path}", on=True).get("ok"))
+        time.sleep(0.1)
+        self.assertIsNone(master.ask(point=60))
 
 
 class NotServing(unittest.TestCase):
