@@ -1,6 +1,7 @@
 # Real ports, and real time. The rest of the runtime does not know them. Windows has serial devices only.
 set(ports os_port/port_error.cpp os_port/port_notes.cpp os_port/can_port.cpp os_port/can_error_frame.cpp
           os_port/slcan_text.cpp os_port/slcan_client.cpp os_port/serial_port.cpp os_port/can_bridge.cpp
+          os_port/returning_port.cpp
           os_port/byte_bridge.cpp os_port/serial_bridge.cpp os_port/profibus_bridge.cpp os_port/real_time.cpp)
 if(CMAKE_SYSTEM_NAME STREQUAL Linux)
   list(APPEND ports os_port/system_clock.cpp os_port/port_names.cpp os_port/can_link.cpp os_port/socket_can.cpp os_port/slcan_adapter.cpp

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <tl/expected.hpp>
@@ -32,6 +33,9 @@ class Port {
 
   // Sends what waits, as far as the system takes it. An error is for good.
   virtual tl::expected<void, PortError> flush() = 0;
+
+  // Why nothing goes through now, although the port may be of use again: "the interface is down". Empty: it is there.
+  virtual std::string_view absence() const { return {}; }
 
   // Frames or bytes that wait to be sent.
   virtual size_t waiting() const = 0;

@@ -30,6 +30,11 @@ class Pty {
   // Whether a program has the other end open, as the last read() saw it.
   bool is_attached() const { return attached_; }
 
+  // What a port says of that.
+  std::string_view absence() const {
+    return attached_ ? std::string_view() : "no program has its other end open";
+  }
+
   // False when there is no room. Without a program attached the bytes go nowhere, as on a line with nobody on
   // it.
   bool write(std::string_view bytes);

@@ -21,6 +21,7 @@ class PseudoTerminal final : public BytePort {
 
   const std::string& name() const override { return name_; }
   PortNeeds needs() const override { return pty_.needs(); }
+  std::string_view absence() const override { return pty_.absence(); }
   bool has_parity() const override { return false; }
   bool paces() const override { return false; }
   Time latency() const override { return 0; }

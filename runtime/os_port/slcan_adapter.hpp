@@ -19,6 +19,7 @@ class SlcanAdapter final : public CanPort {
   void send(const Frame& frame) override;
   tl::expected<std::optional<CanArrival>, PortError> receive() override;
   tl::expected<void, PortError> flush() override;
+  std::string_view absence() const override { return pty_.absence(); }
   size_t waiting() const override { return slcan_lines(pty_.waiting()); }
   const PortCounts& counts() const override { return counts_; }
   std::vector<std::string> take_notes() override { return notes_.take(); }

@@ -8,6 +8,8 @@
 #include <linux/can/raw.h>
 #include <linux/errqueue.h>
 #include <linux/net_tstamp.h>
+#include <net/if.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 
 #include <cerrno>
@@ -18,6 +20,9 @@ namespace {
 
 // The kernel tells nobody when its transmit queue has room again after ENOBUFS: we ask again (ours).
 constexpr Time kRetry = kMillisecond;
+
+// Nor does a socket tell that its interface is up again (ours).
+constexpr Time kLookAgain = 200 * kMillisecond;
 
 // A stamp further away than this comes from a clock that was set meanwhile (ours).
 constexpr Time kLongestReading = 100 * kMicrosecond;
@@ -97,7 +102,25 @@ void SocketCan::send(const Frame& frame) {
   if (retry_ == kNever) (void)flush();  // an error is seen by the loop's next flush
 }
 
+void SocketCan::go_down() {
+  down_ = true;
+  look_again_ = clock_.now() + kLookAgain;
+}
+
+// The socket stays bound while the interface is down.
+tl::expected<void, PortError> SocketCan::look_whether_up() {
+  if (!down_ || clock_.now() < look_again_) return {};
+  look_again_ = clock_.now() + kLookAgain;
+  ifreq request{};
+  name_.copy(request.ifr_name, sizeof request.ifr_name - 1);
+  if (ioctl(descriptor_.get(), SIOCGIFFLAGS, &request) != 0)
+    return tl::unexpected(system_error(errno, name_));
+  down_ = (request.ifr_flags & IFF_UP) == 0;
+  return {};
+}
+
 tl::expected<void, PortError> SocketCan::flush() {
+  if (auto looked = look_whether_up(); !looked) return looked;
   if (retry_ != kNever && clock_.now() < retry_) return {};
   retry_ = kNever;
   while (!queue_.empty()) {
@@ -114,7 +137,10 @@ tl::expected<void, PortError> SocketCan::flush() {
         ++counts_.waited;
         retry_ = clock_.now() + kRetry;
         return {};
-      case ENETDOWN: drop_all("the interface is down: frames to it are lost"); return {};
+      case ENETDOWN:
+        drop_all("the interface is down: frames to it are lost");
+        go_down();
+        return {};
       case ENODEV:
       case ENXIO: return tl::unexpected(system_error(errno, name_));
       default:
@@ -161,6 +187,7 @@ tl::expected<std::optional<CanArrival>, PortError> SocketCan::receive() {
     if (errno == EAGAIN) return std::nullopt;
     if (errno != ENETDOWN) return tl::unexpected(system_error(errno, name_));
     notes_.note("the interface has been set down");
+    go_down();
     return std::nullopt;
   }
   Time software = 0;

@@ -18,6 +18,7 @@ class SocketCan final : public CanPort {
   void send(const Frame& frame) override;
   tl::expected<std::optional<CanArrival>, PortError> receive() override;
   tl::expected<void, PortError> flush() override;
+  std::string_view absence() const override { return down_ ? "the interface is down" : std::string_view(); }
   size_t waiting() const override { return queue_.size(); }
   const PortCounts& counts() const override { return counts_; }
   std::vector<std::string> take_notes() override { return notes_.take(); }
@@ -28,12 +29,16 @@ class SocketCan final : public CanPort {
 
   Time host_time(Time stamp);
   void drop_all(const char* why);
+  void go_down();
+  tl::expected<void, PortError> look_whether_up();
 
   std::string name_;
   Descriptor descriptor_;
   RealClock& clock_;
   std::deque<Frame> queue_;
   Time retry_ = kNever;  // the system had no room
+  bool down_ = false;
+  Time look_again_ = 0;  // whether it is up
   Time last_arrival_ = 0;
   uint32_t overruns_ = 0;  // as the kernel counts them
   PortCounts counts_;

@@ -96,6 +96,10 @@ class Plant final {
     look();
     return journal_;
   }
+  // A line for the journal about what happens to the plant from outside; each one is told.
+  void tell(Weight weight, std::string_view station, std::string text) {
+    journal_.tell(queue_.now(), weight, station, std::move(text));
+  }
   const std::vector<ExpectationResult>& results() const { return results_; }
 
  private:

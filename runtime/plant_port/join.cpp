@@ -7,6 +7,7 @@
 
 #include "runtime/os_port/can_bridge.hpp"
 #include "runtime/os_port/profibus_bridge.hpp"
+#include "runtime/os_port/returning_port.hpp"
 #include "runtime/os_port/serial_bridge.hpp"
 #include "runtime/plant/can_bus.hpp"
 #include "runtime/plant/profibus_bus.hpp"
@@ -23,32 +24,50 @@ struct Place {
   uint32_t source;
 };
 
-template <typename Bridge, typename OpenedPort, typename Line>
-Joined bridge(OpenedPort port, const Place& place, Line& line) {
+// The port, the clock it lives by, and what happens without it.
+struct Wanted {
+  std::string port;
+  RealClock& clock;
+  PortLoss loss;
+};
+
+template <typename Bridge, typename Open, typename Line>
+Joined bridge(Open open, const Wanted& wanted, const Place& place, Line& line) {
+  auto port = wanted.loss == PortLoss::Ends ? open() : open_returning(open, wanted.clock);
   if (!port) return tl::unexpected(port.error());
   auto joined = std::make_unique<Bridge>(place.queue, place.source, line, **port);
   return JoinedPort{std::move(*port), std::move(joined)};
 }
 
-Joined carry(CanBus& bus, const std::string& port, const Place& place, RealClock& clock) {
-  return bridge<CanBridge>(open_can_port(port, bus.baud(), clock), place, bus.line());
+OpenSerialPort opening(const Wanted& wanted, const SerialSettings& settings) {
+  return [name = wanted.port, settings, &clock = wanted.clock] {
+    return open_serial_port(name, settings, clock);
+  };
 }
 
-Joined carry(SerialBus& bus, const std::string& port, const Place& place, RealClock& clock) {
-  return bridge<SerialBridge>(open_serial_port(port, {bus.baud(), true}, clock), place, bus.line());
+Joined carry(CanBus& bus, const Wanted& wanted, const Place& place) {
+  const OpenCanPort open = [name = wanted.port, baud = bus.baud(), &clock = wanted.clock] {
+    return open_can_port(name, baud, clock);
+  };
+  return bridge<CanBridge>(open, wanted, place, bus.line());
 }
 
-Joined carry(ProfibusBus& bus, const std::string& port, const Place& place, RealClock& clock) {
-  return bridge<ProfibusBridge>(open_serial_port(port, {bus.baud(), true, false}, clock), place, bus.line());
+Joined carry(SerialBus& bus, const Wanted& wanted, const Place& place) {
+  return bridge<SerialBridge>(opening(wanted, {bus.baud(), true}), wanted, place, bus.line());
+}
+
+Joined carry(ProfibusBus& bus, const Wanted& wanted, const Place& place) {
+  return bridge<ProfibusBridge>(opening(wanted, {bus.baud(), true, false}), wanted, place, bus.line());
 }
 
 }  // namespace
 
-Joined join_port(Plant& plant, Bus& bus, const std::string& port, RealClock& clock) {
+Joined join_port(Plant& plant, Bus& bus, const std::string& port, RealClock& clock, PortLoss loss) {
   const Place place{plant.queue(), plant.next_source()};
-  if (auto* can = dynamic_cast<CanBus*>(&bus)) return carry(*can, port, place, clock);
-  if (auto* serial = dynamic_cast<SerialBus*>(&bus)) return carry(*serial, port, place, clock);
-  if (auto* profibus = dynamic_cast<ProfibusBus*>(&bus)) return carry(*profibus, port, place, clock);
+  const Wanted wanted{port, clock, loss};
+  if (auto* can = dynamic_cast<CanBus*>(&bus)) return carry(*can, wanted, place);
+  if (auto* serial = dynamic_cast<SerialBus*>(&bus)) return carry(*serial, wanted, place);
+  if (auto* profibus = dynamic_cast<ProfibusBus*>(&bus)) return carry(*profibus, wanted, place);
   return tl::unexpected(
       port_error(PortFault::BadName, port, fmt::format("no real port carries {}", info(bus.kind()).name)));
 }

@@ -20,8 +20,12 @@ struct JoinedPort {
   std::unique_ptr<Bridge> bridge;
 };
 
+// What becomes of a run whose port goes away: it ends, or goes on without it until the port is there again.
+enum class PortLoss : uint8_t { Ends, GoesOn };
+
 // Opens the port ("can0", "/dev/ttyUSB0", "pty:name") at the rate of the bus, before the first event of the plant runs.
 // The error says why the port cannot be had.
-tl::expected<JoinedPort, PortError> join_port(Plant& plant, Bus& bus, const std::string& port, RealClock& clock);
+tl::expected<JoinedPort, PortError> join_port(Plant& plant, Bus& bus, const std::string& port,
+                                              RealClock& clock, PortLoss loss = PortLoss::Ends);
 
 }  // namespace ipos::runtime

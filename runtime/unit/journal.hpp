@@ -37,6 +37,11 @@ class Journal {
     if (latecomers_) latecomers_();
     entries_.push_back({time, weight, std::string(station), std::move(text)});
   }
+  // What happens once each time it is told, as a hand that switches.
+  void tell(Time time, Weight weight, std::string_view station, std::string text) {
+    if (latecomers_) latecomers_();
+    entries_.push_back({time, weight, std::string(station), std::move(text)});
+  }
   const std::vector<JournalEntry>& entries() const { return entries_; }
 
  private:

@@ -147,6 +147,29 @@ kill -INT $monitor
 wait $monitor
 echo $? >lost.code
 
+# A served plant whose interface is set down and up, and is removed and made again: frames come behind that.
+ip link set lo up
+ip link add vcan5 type vcan
+ip link set vcan5 up
+plant project/examples/scom/scom.toml vcan5 >served.toml
+./ipos serve served.toml >served.out 2>served.err &
+served=$!
+wait_for http served.out
+ip link set vcan5 down
+wait_for "away: the interface is down" served.err
+ip link set vcan5 up
+wait_for "vcan5 is there again" served.err
+candump -L -n 3 -T 5000 vcan5,400:7FF >up.log
+ip link del vcan5
+wait_for "away: the device has gone" served.err
+ip link add vcan5 type vcan
+ip link set vcan5 up
+busybox usleep 2500000
+candump -L -n 3 -T 5000 vcan5,400:7FF >anew.log
+kill -INT $served
+wait $served
+echo $? >served.code
+
 # A CANopen master on three nodes, with 200 SYNC cycles.
 ip link add vcan4 type vcan
 ip link set vcan4 up

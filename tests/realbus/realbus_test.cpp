@@ -275,6 +275,23 @@ TEST_F(RealBus, TheMonitorTellsLostFramesAndBusErrors) {
   EXPECT_NE(told.find("the interface has been set down"), std::string::npos) << told;
 }
 
+// The example's identifier 1024, each time three frames; each change of the port is told once.
+TEST_F(RealBus, AServedPlantGoesOnWithoutItsInterfaceAndTakesItAgain) {
+  EXPECT_EQ(text("served.code"), "0\n");
+  EXPECT_EQ(with_id(log("up.log"), 1024).size(), 3U);
+  EXPECT_EQ(with_id(log("anew.log"), 1024).size(), 3U);
+  std::vector<std::string> told;
+  std::istringstream lines(text("served.err"));
+  for (std::string line; std::getline(lines, line);)
+    if (line.find("sbus: port") != std::string::npos) told.push_back(line);
+  const std::vector<std::string> wanted{"ipos: warning: sbus: port vcan5 is away: the interface is down",
+                                        "ipos: sbus: port vcan5 is there again",
+                                        "ipos: warning: sbus: port vcan5 is away: the device has gone",
+                                        "ipos: sbus: port vcan5 is there again"};
+  ASSERT_EQ(told.size(), wanted.size()) << text("served.err");
+  for (size_t n = 0; n < wanted.size(); ++n) EXPECT_EQ(told[n].substr(0, wanted[n].size()), wanted[n]);
+}
+
 TEST_F(RealBus, InterfacesThatCannotBeUsedSayWhy) {
   const std::string refused = text("refused.txt");
   for (const char* wanted : {"refused.toml:8:8: error: vcan1: the interface is down: ip link set vcan1 up",

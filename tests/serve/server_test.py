@@ -570,7 +570,7 @@ class DpMaster:
 
 @unittest.skipUnless(os.path.exists("/dev/pts/ptmx"), "there is no /dev/pts: no pseudo-terminals here")
 class PortsOfAPlant(unittest.TestCase):
-    """What a served plant does with its ports: a PROFIBUS master outside."""
+    """What a served plant does with its ports: a PROFIBUS master outside, and ports that go away and come back."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -585,9 +585,35 @@ class PortsOfAPlant(unittest.TestCase):
         self.addCleanup(ipos.wait)
         self.addCleanup(ipos.terminate)
         match = re.search(r":(\d+)/\?token=(\w+)", ipos.stdout.readline())
-        client = Client(int(match[1]), f"/ws?token={match[2]}")
+        self.assertTrue(match)
+        self.ipos = ipos
+        return self.connect(match)
+
+    def connect(self, match=None):
+        self.place = match or self.place
+        client = Client(int(self.place[1]), f"/ws?token={self.place[2]}")
         self.addCleanup(client.close)
         return client
+
+    def journal(self):
+        client = self.connect()
+        client.ask(do="subscribe", topic="journal")
+        entries = client.wait_for("journal")["entries"]
+        client.close()
+        return [(entry["us"], entry["weight"], entry["text"]) for entry in entries]
+
+    def seconds_of_cpu(self):
+        """Of the server and of the process that has the plant."""
+        pid = str(self.ipos.pid)
+        ticks = 0
+        for stat in pathlib.Path("/proc").glob("[0-9]*/stat"):
+            try:
+                name, fields = stat.parent.name, stat.read_text().rpartition(") ")[2].split()
+            except OSError:
+                continue
+            if pid in (name, fields[1]):
+                ticks += int(fields[11]) + int(fields[12])
+        return ticks / os.sysconf("SC_CLK_TCK")
 
     def test_a_profibus_master_outside_runs_a_slave_while_the_page_watches(self):
         path = self.folder / "dp"
@@ -640,6 +666,116 @@ DI00 = 1
         self.assertTrue(client.ask(do="fault", bus="dp", kind="lost", station=f"pty:{path}", on=True).get("ok"))
         time.sleep(0.1)
         self.assertIsNone(master.ask(point=60))
+
+    def test_a_program_leaves_its_pseudo_terminal_and_comes_back(self):
+        path = self.folder / "line1"
+        client = self.serve(f'''
+[[bus]]
+name = "line1"
+kind = "rs485"
+port = "pty:{path}"
+[[station]]
+name = "saw"
+unit = "md60a"
+rs485 = "line1"
+''')
+        first = client.wait_for("ports")["ports"]
+        self.assertEqual(first, [{"bus": "line1", "name": f"pty:{path}", "there": False, "since_us": None,
+                                  "text": "no program has its other end open"}])
+        for _ in range(2):
+            port = os.open(path, os.O_RDWR | os.O_NOCTTY)
+            there = client.wait_for("ports")["ports"][0]
+            self.assertTrue(there["there"])
+            os.close(port)
+            away = client.wait_for("ports")["ports"][0]
+            self.assertFalse(away["there"])
+            self.assertGreater(away["since_us"], there["since_us"])
+        texts = [text for _, _, text in self.journal() if "port" in text]
+        name = f"line1: port pty:{path}"
+        gone = f"{name} is away: no program has its other end open"
+        self.assertEqual(texts, [f"{name} is there", gone, f"{name} is there again", gone])
+
+    def test_a_program_that_comes_and_goes_does_not_fill_the_journal(self):
+        path = self.folder / "line1"
+        client = self.serve(f'''
+[[bus]]
+name = "line1"
+kind = "rs485"
+port = "pty:{path}"
+[[station]]
+name = "saw"
+unit = "md60a"
+rs485 = "line1"
+''')
+        client.wait_for("ports")
+        for turn in range(1000):
+            time.sleep(0.003)
+            port = os.open(path, os.O_RDWR | os.O_NOCTTY)
+            time.sleep(0.003)
+            os.close(port)
+            texts = [text for _, _, text in self.journal() if "port" in text] if turn % 50 == 49 else []
+            if texts and "further changes" in texts[-1]:
+                break
+        self.assertEqual(len(texts), 100)
+        port = os.open(path, os.O_RDWR | os.O_NOCTTY)
+        self.addCleanup(os.close, port)
+        client = self.connect()
+        client.wait_for("ports", lambda event: event["ports"][0]["there"])
+        time.sleep(0.1)
+        self.assertEqual(len([text for _, _, text in self.journal() if "port" in text]), 100)
+
+    def test_a_device_that_is_pulled_out_and_put_in_again(self):
+        def plug():
+            master, device = os.openpty()  # the far end of a pseudo-terminal does as a device
+            name = os.ttyname(device)
+            os.close(device)
+            link.unlink(missing_ok=True)
+            link.symlink_to(name)
+            return master
+
+        link = self.folder / "ttyUSB0"
+        master = plug()
+        client = self.serve(f'''
+[[bus]]
+name = "line1"
+kind = "rs485"
+port = "{link}"
+[[station]]
+name = "saw"
+unit = "md60a"
+rs485 = "line1"
+[station.parameters]
+P810 = 1
+''')
+        self.assertEqual([port["there"] for port in client.wait_for("ports")["ports"]], [True])
+        link.unlink()
+        os.close(master)
+        away = client.wait_for("ports")["ports"][0]
+        self.assertEqual((away["there"], away["text"]), (False, "the device has gone: Input/output error"))
+        time.sleep(0.3)
+        client = self.connect()
+        begin = client.wait_for("time")["us"]
+        before = self.seconds_of_cpu()
+        client.wait_for("time", lambda event: event["running"] and event["us"] > begin + 1_500_000)
+        self.assertLess(self.seconds_of_cpu() - before, 1.0, "it waits for the port without a pause")
+        self.assertIsNone(client.wait_for("time")["stopped"])
+        self.assertIn((away["since_us"], "warning", f"line1: port {link} is away: {away['text']}"), self.journal())
+
+        master = plug()
+        self.addCleanup(os.close, master)
+        client = self.connect()
+        client.wait_for("ports", lambda event: event["ports"][0]["there"])
+        self.assertIn(f"line1: port {link} is there again", [text for _, _, text in self.journal()])
+        answer = b""
+        for _ in range(5):  # a busy machine may tear a telegram apart
+            os.write(master, PlantWithAPort.QUESTION)
+            ends, answer = time.monotonic() + 1, b""
+            while len(answer) < 12 and time.monotonic() < ends:
+                if select.select([master], [], [], 0.1)[0]:
+                    answer += os.read(master, 64)
+            if len(answer) >= 12:
+                break
+        self.assertEqual(answer[:11].hex(), "1d018631002116000007d0")
 
 
 class NotServing(unittest.TestCase):

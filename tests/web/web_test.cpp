@@ -49,7 +49,7 @@ TEST_F(Browser, FindsWhatTheContractNames) { expect_node_passed(run("page.test.m
 
 TEST_F(Browser, TurnsAnAxisByAClick) { expect_node_passed(run("plant.test.mjs"), 13); }
 
-TEST_F(Browser, HearsARealDrive) { expect_node_passed(run("device.test.mjs"), 2); }
+TEST_F(Browser, HearsARealDrive) { expect_node_passed(run("device.test.mjs"), 3); }
 
 }  // namespace
 }  // namespace ipos::tests

@@ -21,7 +21,6 @@ constexpr auto kBetweenSnapshots = 250ms;
 constexpr auto kLookAtMail = 2ms;  // while it runs faster than the clock
 constexpr auto kBehind =
     1ms;  // of a plant with real ports: what comes within a millisecond is there before it is run
-constexpr const char* kPortGone = "port";
 constexpr auto kForgiven = 200ms;  // what is later than that is not made up for
 constexpr int kLettersAtOnce = 8;  // a client that floods does not hold the plant up
 constexpr Time kTelegramLimit = 10 * runtime::kSecond;
@@ -66,14 +65,7 @@ bool PlantHost::turn(int milliseconds) {
   const auto left =
       std::chrono::duration_cast<std::chrono::milliseconds>(desk_.next_due() - WallClock::now());
   const auto letter = post_.wait(static_cast<int>(std::clamp<int64_t>(left.count() + 1, 0, milliseconds)));
-  if (letter) {
-    if (letter->kind == LetterKind::Opened) {
-      desk_.take(*letter);
-      desk_.send(desk_.clients().at(letter->client), time_event());
-    } else {
-      desk_.take(*letter);
-    }
-  }
+  if (letter) take(*letter);
   return letter.has_value();
 }
 
@@ -162,7 +154,7 @@ void PlantHost::order(const Desk::Call& call, const debug::Order& order) {
 }
 
 void PlantHost::stop(const std::string& reason, const std::string& text) {
-  if (ports_.joined() && reason != kPortGone) return;
+  if (ports_.joined()) return;
   running_ = false;
   halted_ = true;
   stopped_ = {{"reason", reason}, {"text", text}};
@@ -242,13 +234,16 @@ Json PlantHost::time_event() const {
 
 void PlantHost::tell_time() {
   desk_.send_all(time_event());
+  // This is not told again, so it goes to those who are behind, too.
+  if (std::exchange(ports_changed_, false))
+    for (auto& [number, client] : desk_.clients()) desk_.send(client, ports_event());
   time_due_ = WallClock::now() + kTellTime;
 }
 
 // --- between two milliseconds ---
 
 bool PlantHost::keep_going() {
-  if (ports_.joined()) flush_ports();
+  if (ports_.joined()) ports_.flush();
   const auto now = WallClock::now();
   if (now - measured_from_ >= kMeasured) {
     rate_ = static_cast<double>(plant_->now() - measured_at_) /
@@ -259,7 +254,10 @@ bool PlantHost::keep_going() {
   if (now - last_mail_ >= kLookAtMail) look_at_mail(0);
   publish(true);
   keep_pace();
-  if (ports_.joined()) ports_.collect(paced_from_, paced_at_);
+  if (ports_.joined()) {
+    ports_.collect(paced_from_, paced_at_);
+    look_at_ports();
+  }
   if (now_.telegram && telegram_seen_) halted_ = true;
   if (!post_.open() || halted_ || next_.kind != MotionKind::None) return false;
   return now_.kind != MotionKind::Run || running_;
@@ -270,16 +268,30 @@ void PlantHost::look_at_mail(int milliseconds) {
   for (int n = 0; n < kLettersAtOnce; ++n) {
     const auto letter = post_.wait(n == 0 ? milliseconds : 0);
     if (!letter) return;
-    desk_.take(*letter);
-    if (letter->kind == LetterKind::Opened) desk_.send(desk_.clients().at(letter->client), time_event());
+    take(*letter);
   }
 }
 
-void PlantHost::flush_ports() {
-  bool gone = false;
-  for (const std::string& note : ports_.flush(gone)) fmt::print(stderr, "ipos: warning: {}\n", note);
-  if (gone) stop(kPortGone, "a port has gone");
+void PlantHost::take(const Letter& letter) {
+  desk_.take(letter);
+  if (letter.kind != LetterKind::Opened) return;
+  Client& client = desk_.clients().at(letter.client);
+  desk_.send(client, time_event());
+  if (ports_.joined()) desk_.send(client, ports_event());
 }
+
+// A port that goes away is for the journal, for the page and for who has started the server.
+void PlantHost::look_at_ports() {
+  for (const std::string& note : ports_.take_notes()) fmt::print(stderr, "ipos: warning: {}\n", note);
+  for (const PlantPorts::Change& change : ports_.take_changes(plant_->now())) {
+    ports_changed_ = true;
+    if (change.text.empty()) continue;
+    plant_->tell(change.there ? runtime::Weight::Why : runtime::Weight::Warning, "", change.text);
+    fmt::print(stderr, "ipos: {}{}\n", change.there ? "" : "warning: ", change.text);
+  }
+}
+
+Json PlantHost::ports_event() const { return {{"event", "ports"}, {"us", us()}, {"ports", ports_.states()}}; }
 
 // Waits until the clock has come as far as the plant, and takes commands meanwhile.
 void PlantHost::keep_pace() {

@@ -70,7 +70,8 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
 
   void add_time_commands();
   void stay_in_step();
-  void flush_ports();
+  void take(const Letter& letter);
+  void look_at_ports();
   Json begin(const Desk::Call& call, Motion motion);
   void carry_out();
   void finish(const debug::Stop& stop);
@@ -81,6 +82,7 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
   void keep_pace();
   void publish(bool busy);
   Json time_event() const;
+  Json ports_event() const;
 
   // of debug::FrontEnd
   Json save() override;
@@ -103,6 +105,7 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
   runtime::Plant* plant_ = nullptr;
   uint32_t source_ = 0;  // of the event that comes every millisecond, even with all units off
   PlantPorts ports_;
+  bool ports_changed_ = false;  // since the clients were told
   std::optional<debug::Debugger> debugger_;
 
   bool running_ = false;

@@ -3,7 +3,7 @@
 //   IPOS_PROGRAM=.../ipos node --test test/device.test.mjs
 import assert from "node:assert";
 import { spawn } from "node:child_process";
-import { existsSync } from "node:fs";
+import { closeSync, constants, existsSync, openSync, writeSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 
@@ -26,6 +26,21 @@ rs485 = "line1"
 P810 = 1
 `;
 
+// A slave that a master outside asks.
+const dp_plant = `
+[[bus]]
+name = "dp"
+kind = "profibus"
+baud = 500000
+port = "pty:dp"
+[[station]]
+name = "pump"
+unit = "mc31"
+option = "size0"
+profibus = "dp"
+profibus_address = 9
+`;
+
 let browser;
 let place;
 let port;
@@ -43,7 +58,7 @@ before(async () => {
   if (skip) return;
   browser = await launch();
   // A port is named relative to where the drive runs.
-  place = folderOf({ "plant.toml": plant("line1"), "live.toml": plant("line2") });
+  place = folderOf({ "plant.toml": plant("line1"), "live.toml": plant("line2"), "dp.toml": dp_plant });
   port = join(place.folder, "line1");
   drive = spawn(program, ["run", "plant.toml", "--realtime", "--for", "300s"], { cwd: place.folder, stdio: "ignore" });
   await until(() => existsSync(port), "the drive is not at its port");
@@ -98,6 +113,40 @@ test("a plant with a real port runs in step with the clock, and nothing can stop
     await until(async () => (await page.getByRole("switch", { name: "saw DI00" }).getAttribute("aria-checked")) === "true", "no input");
     await page.getByRole("tab", { name: "Program" }).click();
     await page.getByText("Real ports: the program cannot be stopped").waitFor();
+    assert.deepStrictEqual(errors.filter((text) => !text.includes("WebSocket")), []);
+  } finally {
+    await close();
+    assert.ok([0, "SIGKILL"].includes(await server.stop()));
+  }
+});
+
+// FDL_Status of the slave 9, asked by 1: 49h, and 09h + 01h + 49h = 53h. It finds the rate by what it hears.
+test("a PROFIBUS master outside is watched; that it leaves is said on every tab", { skip }, async () => {
+  const server = await serve("dp.toml", [], place.folder);
+  const { page, errors, close } = await openPage(browser, server.address, { viewport: desktop });
+  const attach = () => openSync(join(place.folder, "dp"), constants.O_RDWR | constants.O_NOCTTY | constants.O_NONBLOCK);
+  try {
+    await page.getByText("real ports: in step with the clock").waitFor();
+    for (const name of ["Run", "Pause", "Step"]) assert.ok(await page.getByRole("button", { name, exact: true }).isDisabled(), name);
+    const port = page.getByRole("status", { name: "Port of dp" });
+    assert.match(await port.textContent(), /^away: no program/);
+    assert.strictEqual(await page.getByRole("alert").count(), 0, "nobody was there yet");
+    const master = attach();
+    await page.getByRole("tab", { name: "Bus" }).click();
+    const answer = page.getByRole("table", { name: "Bus" }).getByRole("row", { name: "9 → 1" });
+    await until(async () => {
+      writeSync(master, Buffer.from("100901495316", "hex"));
+      return (await answer.count()) === 1;
+    }, "the slave does not answer");
+    closeSync(master);
+    await page.getByRole("alert").getByText(/dp: port pty:dp is away since [\d.]+ s: no program/).waitFor();
+    const again = attach();
+    await until(async () => (await page.getByRole("alert").count()) === 0, "the alert stays");
+    await page.getByRole("tab", { name: "Plant" }).click();
+    assert.match(await port.textContent(), /^there since/);
+    await page.getByRole("tab", { name: "Journal" }).click();
+    await page.getByRole("log").getByText("port pty:dp is there again").waitFor();
+    closeSync(again);
     assert.deepStrictEqual(errors.filter((text) => !text.includes("WebSocket")), []);
   } finally {
     await close();

@@ -2,7 +2,7 @@
 import { signal } from "@preact/signals";
 
 import { listen, request } from "./connection";
-import type { Hello, Plant, Station, Time } from "./protocol";
+import type { Hello, Plant, PortState, Station, Time } from "./protocol";
 
 export const hello = signal<Hello | null>(null);
 export const time = signal<Time>({
@@ -17,6 +17,7 @@ export const time = signal<Time>({
 // Of `time` the one part that many follow, so that they need not look 20 times a second.
 export const generation = signal(0);
 export const plant = signal<Plant | null>(null);
+export const ports = signal<PortState[]>([]);
 
 export function secondsText(us: number): string {
   return `${(us / 1e6).toFixed(3)} s`;
@@ -34,10 +35,14 @@ export function stationNames(): string[] {
 export function listenToServer(): void {
   listen("hello", (event) => {
     hello.value = event as unknown as Hello;
+    ports.value = [];
     document.title = `${hello.value.title} · ipos`;
     request({ do: "plant" })
       .then((reply) => (plant.value = reply.plant as Plant))
       .catch(() => (plant.value = { stations: [], buses: [], controls: [], wires: [], switches: [] }));
+  });
+  listen("ports", (event) => {
+    ports.value = event.ports as PortState[];
   });
   listen("time", (event) => {
     time.value = event as unknown as Time;

@@ -9,6 +9,15 @@ export interface Hello {
   live?: boolean; // a plant with real ports: time is that of the world outside
 }
 
+// A real port of a line. Without `since_us` it has been so from the start.
+export interface PortState {
+  bus: string;
+  name: string;
+  there: boolean;
+  text: string; // why not
+  since_us: number | null;
+}
+
 export interface Stopped {
   reason: string;
   text: string;

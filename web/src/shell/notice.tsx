@@ -1,7 +1,9 @@
-// What went wrong, in the one alert of the page; a lost server stands before everything else.
+// What went wrong, as alerts: a lost server stands before everything else, then ports that have gone, and what was
+// refused last.
 import { signal } from "@preact/signals";
 
 import { link, Refusal, request, type Message } from "../server/connection";
+import { ports, secondsText } from "../server/live";
 
 const complaint = signal<string | null>(null);
 
@@ -34,13 +36,27 @@ export function Notice() {
         <div role="alert">The connection to the server is lost. The page tries again by itself.</div>
       </div>
     );
-  if (complaint.value === null) return null;
+  // One to which nobody has come yet is no loss.
+  const lost = ports.value.filter((port) => !port.there && port.since_us !== null);
   return (
-    <div class="notice">
-      <div role="alert">{complaint.value}</div>
-      <button class="small" onClick={forgive}>
-        Close message
-      </button>
-    </div>
+    <>
+      {lost.map((port) => (
+        <div class="notice" key={port.bus}>
+          <span class="lamp fault" />
+          <div role="alert">
+            {port.bus}: port {port.name} is away since {secondsText(port.since_us ?? 0)}: {port.text}. The plant goes on
+            without it.
+          </div>
+        </div>
+      ))}
+      {complaint.value !== null && (
+        <div class="notice">
+          <div role="alert">{complaint.value}</div>
+          <button class="small" onClick={forgive}>
+            Close message
+          </button>
+        </div>
+      )}
+    </>
   );
 }
