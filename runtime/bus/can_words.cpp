@@ -33,21 +33,26 @@ std::string identifier_text(const CanLineNames& names, bool canopen, uint32_t id
   return fmt::format("{} of node {}", text, addressed->node);
 }
 
-CanWords::Listened& CanWords::listened(std::string_view line) {
+CanLineWords::CanLineWords(CanLineNames names, bool unknown_nodes) : names_(std::move(names)) {
+  if (unknown_nodes || !names_.nodes.empty()) canopen_.emplace(names_.nodes);
+}
+
+Description CanLineWords::describe(const Frame& frame) {
+  return is_canopen(frame) ? canopen_->describe(frame) : runtime::describe(names_.movilink, frame);
+}
+
+void CanLineWords::use(CanLineNames names) {
+  names_ = std::move(names);
+  if (!canopen_ && !names_.nodes.empty()) canopen_.emplace();
+  for (const canopen::NodeName& node : names_.nodes) canopen_->name(node);
+}
+
+CanLineWords& CanWords::listened(std::string_view line) {
   if (const auto found = lines_.find(line); found != lines_.end()) return found->second;
   const std::string name(lines_.size() < kLines ? line : std::string_view());
   const auto known = names_->lines.find(name);
   const CanLineNames& names = known == names_->lines.end() ? names_->all : known->second;
-  Listened& added = lines_.emplace(name, Listened{&names, {}}).first->second;
-  if (!added.canopen && (names_->canopen || !names.nodes.empty())) added.canopen.emplace(names.nodes);
-  return added;
-}
-
-Description CanWords::describe(std::string_view line, const Frame& frame) {
-  Listened& heard = listened(line);
-  if (!heard.canopen || concerns(heard.names->movilink, frame))
-    return runtime::describe(heard.names->movilink, frame);
-  return heard.canopen->describe(frame);
+  return lines_.emplace(name, CanLineWords(names, names_->canopen)).first->second;
 }
 
 }  // namespace ipos::runtime

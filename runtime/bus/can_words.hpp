@@ -30,23 +30,38 @@ struct CanNames {
 // What an identifier of a line is for: "TPDO1 of saw", "PO of feed", "object of saw"; empty when nobody knows.
 std::string identifier_text(const CanLineNames& names, bool canopen, uint32_t id);
 
+// One line, listened to from its beginning.
+class CanLineWords {
+ public:
+  // `unknown_nodes`: some may be there that have no name.
+  explicit CanLineWords(CanLineNames names, bool unknown_nodes = false);
+
+  // Of the next frame on the line. Where MOVILINK and CANopen share it, what concerns a known unit is MOVILINK.
+  Description describe(const Frame& frame);
+  // Whether its words are those of CANopen: then they depend on what went before.
+  bool is_canopen(const Frame& frame) const { return canopen_ && !concerns(names_.movilink, frame); }
+
+  // Others from now on; what was heard of nodes stays.
+  void use(CanLineNames names);
+
+ private:
+  CanLineNames names_;
+  std::optional<canopen::LineWords> canopen_;  // nothing: no node is there
+};
+
 class CanWords {
  public:
   explicit CanWords(CanNames names = {}) : names_(std::make_shared<CanNames>(std::move(names))) {}
 
-  // Of the next frame on the line. Where MOVILINK and CANopen share one, what concerns a known unit is MOVILINK.
-  Description describe(std::string_view line, const Frame& frame);
+  // Of the next frame on the line.
+  Description describe(std::string_view line, const Frame& frame) { return listened(line).describe(frame); }
   const CanNames& names() const { return *names_; }
 
  private:
-  struct Listened {
-    const CanLineNames* names;
-    std::optional<canopen::LineWords> canopen;  // nothing: no node is there
-  };
-  Listened& listened(std::string_view line);
+  CanLineWords& listened(std::string_view line);
 
   std::shared_ptr<const CanNames> names_;
-  std::map<std::string, Listened, std::less<>> lines_;
+  std::map<std::string, CanLineWords, std::less<>> lines_;
 };
 
 }  // namespace ipos::runtime

@@ -91,11 +91,14 @@ std::vector<canopen::NodeName> node_names(const Plant& plant, const CanLine* lin
 
 }  // namespace
 
+CanLineNames can_line_names(const Plant& plant, const CanLine* line) {
+  return {telegram_names(plant, line), node_names(plant, line)};
+}
+
 CanNames can_names(const Plant& plant) {
   CanNames names;
-  names.all = {telegram_names(plant), node_names(plant, nullptr)};
-  for (const auto& line : plant.lines())
-    names.lines[line->name()] = {telegram_names(plant, line), node_names(plant, line)};
+  names.all = can_line_names(plant);
+  for (const auto& line : plant.lines()) names.lines[line->name()] = can_line_names(plant, line);
   return names;
 }
 

@@ -15,6 +15,9 @@ std::string variable_name(const vm::Image* image, uint32_t variable);
 // Units and the objects they have defined so far; of one line, or of all when it is null.
 TelegramNames telegram_names(const Plant& plant, const CanLine* line = nullptr);
 
+// The same with the CANopen nodes of the line.
+CanLineNames can_line_names(const Plant& plant, const CanLine* line = nullptr);
+
 // For all CAN lines of the plant.
 CanNames can_names(const Plant& plant);
 

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "compiler/compile.hpp"
+#include "runtime/bus_plan/names.hpp"
 #include "tests/serve/page.hpp"
 #include "tools/recording/trace.hpp"
 
@@ -73,7 +74,8 @@ watchdog = "200ms"
 po = [6, 2500]
 )";
 
-tools::debug::MakePlant dp_plant(const std::string& text) {
+// A plant of one station without a program.
+tools::debug::MakePlant one_station(const std::string& text) {
   return [text] {
     std::vector<runtime::PlantError> errors;
     auto plant = std::make_unique<runtime::Plant>(runtime::read_plant_file(text).plant,
@@ -124,10 +126,37 @@ class Serving : public ::testing::Test {
   Page page;
 };
 
+// A node and its master, which writes a mapping of its own.
+constexpr const char* kCanopenPlant = R"(
+[[bus]]
+name = "can"
+kind = "can"
+baud = 500000
+[[station]]
+name = "belt"
+unit = "mdxb"
+sbus = "can"
+[station.parameters]
+P880 = 1
+P886 = 5
+[[control]]
+name = "plc"
+kind = "canopen"
+sbus = "can"
+cycle = "10ms"
+[[control.target]]
+address = 5
+po = [6, 5000, 0]
+[[control.target.pdo]]
+number = 2
+transmit = true
+map = ["PI3", "PI1"]
+)";
+
 // The rows of a PROFIBUS line by source, destination and destination access point.
 class ServingDp : public Serving {
  protected:
-  explicit ServingDp(const std::string& text = std::string(kDpPlant) + kDpMaster) : Serving(dp_plant(text)) {}
+  explicit ServingDp(const std::string& text = std::string(kDpPlant) + kDpMaster) : Serving(one_station(text)) {}
 
   Json row(int source, int destination, const Json& dsap) {
     const Json event = topic({{"topic", "bus"}});
@@ -139,6 +168,21 @@ class ServingDp : public Serving {
 class QuietDp : public ServingDp {
  protected:
   QuietDp() : ServingDp(kDpPlant) {}
+};
+class ServingCanopen : public Serving {
+ protected:
+  ServingCanopen() : Serving(one_station(kCanopenPlant)) {}
+
+  static runtime::Frame frame_of(const Json& json) {
+    runtime::Frame frame;
+    const std::string data = json["data"];
+    frame.id = json["id"];
+    frame.remote = json["remote"];
+    frame.length = static_cast<uint8_t>(data.size() / 2);
+    for (size_t n = 0; n < frame.length; ++n)
+      frame.data[n] = static_cast<uint8_t>(std::stoi(data.substr(2 * n, 2), nullptr, 16));
+    return frame;
+  }
 };
 class DpAndSerial : public ServingDp {
  protected:
@@ -566,6 +610,37 @@ TEST_F(DpAndSerial, WhatALineHasNotIsRefusedInWords) {
       EXPECT_EQ(bus["faults"], Json::array());
       EXPECT_EQ(bus["fault_rules"], Json::object());
     }
+}
+
+// The same words as those of the tools that read a log of the line from its beginning.
+TEST_F(ServingCanopen, TheTabBusHasTheWordsOfCanopen) {
+  step(300);
+  const Json frames = good({{"do", "bus.trace"}, {"limit", 1000}})["frames"];
+  ASSERT_EQ(frames[0]["n"], 1);
+  runtime::CanWords words(runtime::can_names(page.host.plant()));
+  for (const Json& frame : frames) EXPECT_EQ(frame["text"], words.describe("can", frame_of(frame)).text);
+  const auto row = [&](int id) {
+    const Json rows = topic({{"topic", "bus"}})["rows"];
+    const auto found = std::find_if(rows.begin(), rows.end(), [id](const Json& one) { return one["id"] == id; });
+    return found == rows.end() ? std::string() : (*found)["text"].get<std::string>();
+  };
+  EXPECT_EQ(row(0x000), "000h NMT start -> belt");
+  EXPECT_EQ(row(0x080), "080h SYNC");
+  EXPECT_EQ(row(0x185).substr(0, 11), "185h TPDO1 ");
+  EXPECT_NE(row(0x185).find("<- belt"), std::string::npos) << row(0x185);
+  const std::string mapped = row(0x285);
+  EXPECT_EQ(mapped.substr(0, 11), "285h TPDO2 ");
+  EXPECT_LT(mapped.find("PI3"), mapped.find("PI1")) << mapped;
+  EXPECT_FALSE(good({{"do", "bus.trace"}, {"filter", "SDO written 1A01h"}})["frames"].empty());
+  // A question leaves nothing behind: were this heard, TPDO1 would have another identifier.
+  const Json asked{{"do", "bus.decode"},
+                   {"frames",
+                    {{{"bus", "can"}, {"id", 0x605}, {"data", "2300180123010000"}},
+                     {{"bus", "can"}, {"id", 0x585}, {"data", "6000180100000000"}}}}};
+  EXPECT_EQ(good(asked)["texts"], Json({"605h SDO write 1800h:1 TPDO1 COB-ID = 00000123h -> belt",
+                                        "585h SDO written 1800h:1 TPDO1 COB-ID <- belt"}));
+  step(100);
+  EXPECT_EQ(row(0x185).substr(0, 11), "185h TPDO1 ");
 }
 
 // FC 46h: a request, SDN high; 66h has the frame count bit. 09h + 20h + 49h = 72h.

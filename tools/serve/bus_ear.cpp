@@ -32,13 +32,11 @@ std::vector<uint8_t> bytes_of(const std::string& text, size_t most) {
   return bytes;
 }
 
-const runtime::TelegramNames& KeptNames::now() {
+bool NamesAge::is_over() {
   const auto now = std::chrono::steady_clock::now();
-  if (known_ == std::chrono::steady_clock::time_point{} || now - known_ >= kNamesAge) {
-    known_ = now;
-    names_ = look_up_();
-  }
-  return names_;
+  if (known_ != std::chrono::steady_clock::time_point{} && now - known_ < kNamesAge) return false;
+  known_ = now;
+  return true;
 }
 
 }  // namespace ipos::tools::serve

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "runtime/bus/can/line.hpp"
+#include "runtime/bus/can_words.hpp"
 #include "runtime/bus/movilink/describe.hpp"
 #include "runtime/bus/profibus/line.hpp"
 #include "runtime/bus/rs485/line.hpp"
@@ -29,6 +30,7 @@ struct Telegram {
   bool extended = false, remote = false, error = false;
   uint8_t reason = 0;  // of the error, where the bytes do not tell it (profibus::FrameError)
   std::vector<uint8_t> data;
+  std::string words;  // where they depend on what went before on the line; else they are made when wanted
 
   std::span<const uint8_t> bytes() const { return remote ? std::span<const uint8_t>() : data; }
 };
@@ -36,12 +38,13 @@ struct Telegram {
 class BusEar {
  public:
   using Hear = std::function<void(Telegram)>;
-  using Names = std::function<runtime::TelegramNames()>;
 
   virtual ~BusEar() = default;
   virtual const std::string& name() const = 0;
   virtual runtime::LineLoad load(runtime::Time now) const = 0;
   virtual std::string text_of(const Telegram& telegram) = 0;
+  // The same of one that was not heard, as if it came next.
+  virtual std::string text_if_heard(const Telegram& telegram) { return text_of(telegram); }
   // What a filter finds it by, beside data and words.
   virtual std::string identity_text(const Telegram& telegram) const = 0;
   // Members of its row that only this kind of line has.
@@ -60,21 +63,22 @@ class BusEar {
 // "0006 0BB8" in bytes, at most so many; a Mistake says what is wrong.
 std::vector<uint8_t> bytes_of(const std::string& text, size_t most);
 
-// The dictionary of a line, looked up again when it may have changed.
-class KeptNames {
+// The names of a line grow old: they are looked up again when they may have changed.
+class NamesAge {
  public:
-  explicit KeptNames(BusEar::Names look_up) : look_up_(std::move(look_up)) {}
-  const runtime::TelegramNames& now();
+  // True now and then, and the first time.
+  bool is_over();
 
  private:
-  BusEar::Names look_up_;
-  runtime::TelegramNames names_;
   std::chrono::steady_clock::time_point known_{};
 };
 
+using CanNamesNow = std::function<runtime::CanLineNames()>;
+using SerialNamesNow = std::function<runtime::TelegramNames()>;
+
 // The line must outlive the ear.
-std::unique_ptr<BusEar> listen(runtime::CanLine& line, BusEar::Hear hear, BusEar::Names names);
-std::unique_ptr<BusEar> listen(runtime::Rs485Line& line, BusEar::Hear hear, BusEar::Names names);
+std::unique_ptr<BusEar> listen(runtime::CanLine& line, BusEar::Hear hear, CanNamesNow names);
+std::unique_ptr<BusEar> listen(runtime::Rs485Line& line, BusEar::Hear hear, SerialNamesNow names);
 std::unique_ptr<BusEar> listen(profibus::Line& line, BusEar::Hear hear);
 
 }  // namespace ipos::tools::serve

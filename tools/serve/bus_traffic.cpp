@@ -91,7 +91,7 @@ Json BusTraffic::decode(const Arguments& a) {
         static_cast<uint32_t>(of_row.whole("id", 0, UINT32_MAX, 0)) & (runtime::kExtendedIdLimit - 1);
     telegram.extended = of_row.flag("extended", telegram.id >= runtime::kStandardIdLimit);
     telegram.data = ears_[telegram.bus]->read(of_row.text("data"));
-    texts.push_back(ears_[telegram.bus]->text_of(telegram));
+    texts.push_back(ears_[telegram.bus]->text_if_heard(telegram));
   }
   return {{"texts", std::move(texts)}};
 }

@@ -1,4 +1,5 @@
-// CAN lines: a row an identifier.
+// CAN lines: a row an identifier. Words of CANopen frames are those of `ipos bus decode` and are made as the frames come,
+// as a mapping and a segment are known from what went before.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,15 +26,23 @@ Frame frame_of(const Telegram& telegram) {
 
 class CanEar final : public BusEar, private runtime::CanObserver, private runtime::CanNode {
  public:
-  CanEar(runtime::CanLine& line, Hear hear, Names names)
-      : line_(line), hear_(std::move(hear)), names_(std::move(names)) {
+  CanEar(runtime::CanLine& line, Hear hear, CanNamesNow names)
+      : line_(line), hear_(std::move(hear)), look_up_(std::move(names)), words_(look_up_()) {
     line.add_observer(static_cast<runtime::CanObserver&>(*this));
   }
 
   const std::string& name() const override { return line_.name(); }
   runtime::LineLoad load(Time now) const override { return line_.load(now); }
   std::string text_of(const Telegram& telegram) override {
-    return runtime::describe(names_.now(), frame_of(telegram)).text;
+    return telegram.words.empty() ? text_if_heard(telegram) : telegram.words;
+  }
+  // A copy hears it, so that a question leaves nothing behind.
+  std::string text_if_heard(const Telegram& telegram) override {
+    renew_names();
+    const Frame frame = frame_of(telegram);
+    if (!words_.is_canopen(frame)) return words_.describe(frame).text;
+    runtime::CanLineWords words = words_;
+    return words.describe(frame).text;
   }
   std::string identity_text(const Telegram& telegram) const override {
     return fmt::format("{} {}", telegram.id, runtime::id_text(telegram.id, telegram.extended));
@@ -68,7 +77,12 @@ class CanEar final : public BusEar, private runtime::CanObserver, private runtim
     telegram.extended = record.frame.extended;
     telegram.remote = record.frame.remote;
     telegram.data.assign(record.frame.data.begin(), record.frame.data.begin() + record.frame.length);
+    if (words_.is_canopen(record.frame)) telegram.words = words_.describe(record.frame).text;
     hear_(std::move(telegram));
+  }
+  // Between two milliseconds only.
+  void renew_names() {
+    if (age_.is_over()) words_.use(look_up_());
   }
   void on_line_event(const runtime::CanLine& line, const runtime::LineEvent& event) override {
     ++errors;
@@ -81,14 +95,16 @@ class CanEar final : public BusEar, private runtime::CanObserver, private runtim
 
   runtime::CanLine& line_;
   Hear hear_;
-  KeptNames names_;
+  CanNamesNow look_up_;
+  runtime::CanLineWords words_;
+  NamesAge age_;
   std::optional<runtime::NodeId> node_;
   uint64_t sent_ = 0;
 };
 
 }  // namespace
 
-std::unique_ptr<BusEar> listen(runtime::CanLine& line, BusEar::Hear hear, BusEar::Names names) {
+std::unique_ptr<BusEar> listen(runtime::CanLine& line, BusEar::Hear hear, CanNamesNow names) {
   return std::make_unique<CanEar>(line, std::move(hear), std::move(names));
 }
 

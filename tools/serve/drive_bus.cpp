@@ -47,7 +47,7 @@ DriveBus::DriveBus(Desk& desk, BusLink& link, const Drive& drive, std::function<
       traffic_(desk, *this) {
   const auto names = [known = names_of(drive)] { return known; };
   if (link.can_line() != nullptr)
-    traffic_.follow(*link.can_line(), names);
+    traffic_.follow(*link.can_line(), [names] { return runtime::CanLineNames{names(), {}}; });
   else
     traffic_.follow(*link.serial_line(), names);
 }

@@ -16,8 +16,8 @@ constexpr size_t kMostBytes = std::tuple_size_v<decltype(runtime::SerialBytes::d
 
 class SerialEar final : public BusEar, private runtime::SerialObserver, private runtime::SerialNode {
  public:
-  SerialEar(runtime::Rs485Line& line, Hear hear, Names names)
-      : line_(line), hear_(std::move(hear)), names_(std::move(names)) {
+  SerialEar(runtime::Rs485Line& line, Hear hear, SerialNamesNow names)
+      : line_(line), hear_(std::move(hear)), look_up_(std::move(names)) {
     line.add_observer(static_cast<runtime::SerialObserver&>(*this));
   }
 
@@ -25,7 +25,8 @@ class SerialEar final : public BusEar, private runtime::SerialObserver, private 
   runtime::LineLoad load(Time now) const override { return line_.load(now); }
   std::string text_of(const Telegram& telegram) override {
     const auto read = runtime::decode_serial(telegram.bytes());
-    return read ? runtime::describe(names_.now(), *read)
+    if (age_.is_over()) names_ = look_up_();
+    return read ? runtime::describe(names_, *read)
                 : fmt::format("void: {:02X}", fmt::join(telegram.data, ""));
   }
   std::string identity_text(const Telegram& telegram) const override {
@@ -62,14 +63,16 @@ class SerialEar final : public BusEar, private runtime::SerialObserver, private 
 
   runtime::Rs485Line& line_;
   Hear hear_;
-  KeptNames names_;
+  SerialNamesNow look_up_;
+  runtime::TelegramNames names_;
+  NamesAge age_;
   runtime::SerialReceiver receiver_;
   std::optional<runtime::NodeId> node_;
 };
 
 }  // namespace
 
-std::unique_ptr<BusEar> listen(runtime::Rs485Line& line, BusEar::Hear hear, BusEar::Names names) {
+std::unique_ptr<BusEar> listen(runtime::Rs485Line& line, BusEar::Hear hear, SerialNamesNow names) {
   return std::make_unique<SerialEar>(line, std::move(hear), std::move(names));
 }
 

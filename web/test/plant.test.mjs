@@ -67,6 +67,30 @@ cfg = "F1"
 watchdog = "200ms"
 po = [6, 2500]
 `;
+// A CANopen node with its master.
+const canopen_text = `
+[[bus]]
+name = "can"
+kind = "can"
+baud = 500000
+[[station]]
+name = "belt"
+unit = "mdxb"
+sbus = "can"
+[station.parameters]
+P880 = 1
+P886 = 5
+[[control]]
+name = "plc"
+kind = "canopen"
+sbus = "can"
+cycle = "10ms"
+[[control.target]]
+address = 5
+po = [6, 5000, 0]
+[control.target.parameters]
+P130 = "1 s"
+`;
 const program_text = `#include <constb.h>
 #include <iob.h>
 long lCount, lFree;
@@ -87,7 +111,7 @@ let place;
 before(async () => {
   if (skip) return;
   browser = await launch();
-  place = folderOf({ "belt.toml": plant_text, "dp.toml": dp_text, "BELT.IPC": program_text });
+  place = folderOf({ "belt.toml": plant_text, "dp.toml": dp_text, "canopen.toml": canopen_text, "BELT.IPC": program_text });
 });
 after(async () => {
   await browser?.close();
@@ -235,6 +259,22 @@ test("bus: a row an identifier; a cut is seen in the telegrams", { skip }, () =>
     await tap.press("Enter");
     await until(async () => (await tap.getAttribute("aria-pressed")) === "true", "not cut");
   }),
+);
+
+// CiA 301: 600h + node is the SDO of a client, 180h + node the first PDO that the node sends.
+test("bus: CANopen telegrams in words", { skip }, () =>
+  meet(
+    async (page) => {
+      await button(page, "Run").click();
+      await tab(page, "Bus");
+      const table = page.getByRole("table", { name: "Bus" });
+      await table.getByRole("row", { name: "389 (185h)" }).getByText(/TPDO1 .* <- belt/).waitFor();
+      await table.getByRole("row", { name: "0 (000h)" }).getByText("NMT start -> belt").waitFor();
+      await page.getByRole("searchbox", { name: "Filter of the trace" }).fill("SDO");
+      await page.getByRole("table", { name: "Telegrams" }).getByRole("row", { name: "1541 (605h)" }).getByText(/SDO write .*P130 .* -> belt/).first().waitFor();
+    },
+    "canopen.toml",
+  ),
 );
 
 // Set_Prm goes from access point 62 to 61 (EN 50170 volume 2, DP); 2500 digits are 09C4h. The master is at work, so a

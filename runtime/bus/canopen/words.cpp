@@ -71,11 +71,13 @@ std::string emergency_text(const Frame& frame) {
 
 LineWords::LineWords(std::vector<NodeName> names) {
   find_messages();
-  for (NodeName& name : names) {
-    const uint8_t number = name.node;
-    node(number).name = std::move(name);
-    if (node(number).name.unit == nullptr) node(number).name.unit = stdlib::find_unit("mdxb");
-  }
+  for (NodeName& one : names) name(std::move(one));
+}
+
+void LineWords::name(NodeName name) {
+  if (name.unit == nullptr) name.unit = stdlib::find_unit("mdxb");
+  NodeName& known = node(name.node).name;
+  known = std::move(name);
 }
 
 LineWords::Listened& LineWords::node(uint8_t number) {

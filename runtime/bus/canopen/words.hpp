@@ -35,6 +35,9 @@ class LineWords {
  public:
   explicit LineWords(std::vector<NodeName> names = {});
 
+  // What a node is called from now on; what was heard of it stays.
+  void name(NodeName name);
+
   // Of the next frame on the line.
   Description describe(const Frame& frame);
 

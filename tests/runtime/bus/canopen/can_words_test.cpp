@@ -48,6 +48,32 @@ TEST(CanWords, EachLineIsListenedToByItself) {
   EXPECT_EQ(words.describe("b", {0x123, 6, {}}).text, "123 00 00 00 00 00 00");
 }
 
+// A page looks the names up again now and then; a mapping that was heard stays known.
+TEST(CanLineWords, TakeNewNamesAndKeepWhatWasHeard) {
+  runtime::CanLineNames names;
+  names.nodes = {{5, "saw", &mdxb(), {}, {}}};
+  runtime::CanLineWords words(names);
+  words.describe({0x605, 8, {0x23, 0x00, 0x18, 0x01, 0x23, 0x01, 0, 0}});  // TPDO1 with 123h
+  words.describe({0x585, 8, {0x60, 0x00, 0x18, 0x01}});
+  const std::string before = words.describe({0x123, 6, {}}).text;
+  EXPECT_NE(before.find("TPDO1"), std::string::npos) << before;
+  names.nodes[0].name = "lift";
+  names.movilink.units = {unit_at_1()};
+  EXPECT_TRUE(words.is_canopen(kRequest));
+  words.use(names);
+  EXPECT_FALSE(words.is_canopen(kRequest));
+  EXPECT_EQ(words.describe(kRequest).text, "523 read 8318 Speed -> feed");
+  EXPECT_EQ(words.describe({0x123, 6, {}}).text, before.substr(0, before.size() - 3) + "lift");
+}
+
+// A station may become a node while somebody listens.
+TEST(CanLineWords, NodesMayComeLater) {
+  runtime::CanLineWords words{{}};
+  EXPECT_EQ(words.describe(kStarted).text, "0 01 05");
+  words.use({{}, {{5, "saw", &mdxb(), {}, {}}}});
+  EXPECT_EQ(words.describe(kStarted).text, "000h NMT start -> saw");
+}
+
 // A thousand names in a log do not make a thousand dictionaries.
 TEST(CanWords, ManyNamesAreOneLine) {
   runtime::CanNames names;
