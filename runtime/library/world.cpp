@@ -101,8 +101,8 @@ Refusal World::perform(const Deed& deed) {
   if (deed.place.station >= plant_->stations().size()) return std::string(kStrange);
   Station& station = *plant_->stations()[deed.place.station];
   switch (deed.act) {
-    case Act::PowerOff: station.power_off(); break;
-    case Act::PowerOn: station.power_on(); break;
+    case Act::PowerOff:
+    case Act::PowerOn: plant_->set_power(station.config().name, deed.act == Act::PowerOn); break;
     case Act::DriveFault:
       if (deed.value < 1 || deed.value > UINT8_MAX) return "a drive fault is 1..255";
       station.drive().state().raise_fault(static_cast<uint8_t>(deed.value));

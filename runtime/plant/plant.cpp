@@ -137,9 +137,15 @@ Gateway* Plant::find_gateway(std::string_view name) const {
 }
 
 void Plant::set_power(std::string_view name, bool on) {
-  if (Gateway* gateway = find_gateway(name)) return on ? gateway->power_on() : gateway->power_off();
+  const auto set = [&](auto& unit) {
+    if (unit.powered() == on) return;
+    // Before what follows from it.
+    tell(Weight::Why, name, on ? "the power is switched on" : "the power is switched off");
+    on ? unit.power_on() : unit.power_off();
+  };
+  if (Gateway* gateway = find_gateway(name)) return set(*gateway);
   for (const auto& station : stations_)
-    if (station->config().name == name) on ? station->power_on() : station->power_off();
+    if (station->config().name == name) set(*station);
 }
 
 std::optional<SignalPort> Plant::find_port(const Signal& signal, std::string& why) const {

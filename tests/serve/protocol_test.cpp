@@ -298,6 +298,9 @@ TEST_F(Serving, PowerGoesOffAndOn) {
   step(20);
   EXPECT_EQ(topic({{"topic", "plant"}})["stations"]["saw"]["powered"], true);
   EXPECT_LT(value("saw.lCount"), 6);
+  const std::string journal = topic({{"topic", "journal"}}).dump();
+  for (const char* told : {"the power is switched off", "the power is switched on"})
+    EXPECT_NE(journal.find(told), std::string::npos) << journal;
 }
 
 TEST_F(Serving, CableCutsAndFaultsComeAndGo) {

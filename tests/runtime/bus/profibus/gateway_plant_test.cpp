@@ -167,6 +167,26 @@ TEST(GatewayPlant, PowerOffAndOn) {
       << "the parameter channel begins anew";
 }
 
+// Each change is told, also of a station, and at its time; what changes nothing is not.
+TEST(GatewayPlant, TheJournalTellsPower) {
+  DpPlant bench(line(""));
+  const auto set = [&](const char* name, Time at, bool on) {
+    bench.run(at);
+    bench.plant->set_power(name, on);
+  };
+  set("gw", kSecond, false);
+  set("gw", 2 * kSecond, false);
+  set("gw", 3 * kSecond, true);
+  set("pump", 4 * kSecond, false);
+  set("gw", 5 * kSecond, false);
+  std::vector<std::string> told;
+  for (const runtime::JournalEntry& entry : bench.plant->journal().entries())
+    if (entry.text.find("the power is switched") != std::string::npos)
+      told.push_back(std::to_string(entry.time / kSecond) + " " + entry.station + " " + entry.text);
+  EXPECT_EQ(told, (std::vector<std::string>{"1 gw the power is switched off", "3 gw the power is switched on",
+                                            "4 pump the power is switched off", "5 gw the power is switched off"}));
+}
+
 TEST(GatewayPlant, HasSignals) {
   DpPlant bench(line(fault_of("sbus", "cut", "station = \"fan\"\nfrom = \"3s\"\n") +
                      "[[expect]]\nstation = \"gw\"\nat = \"2s\"\nsignal = \"drive5.PI2\"\nequals = 3000\n"
