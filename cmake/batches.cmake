@@ -1,7 +1,7 @@
 # ipos_batches(TARGET [SIZE n] [HOT source...]): in the optimised build of g++ and in builds with sanitizers several sources
-# of a library are compiled in one go, n at most. Most of the time of a small source goes into the headers, which a batch
-# reads once. Names of anonymous namespaces differ in a library. HOT sources are what every millisecond and every frame goes through: each is compiled by
-# itself, so that its neighbours do not change what is inlined into it.
+# of a library or a test are compiled in one go, n at most. Most of the time of a small source goes into the headers, which
+# a batch reads once. Names of anonymous namespaces differ in a batch. HOT sources are what every millisecond and every
+# frame goes through: each is compiled by itself, so that its neighbours do not change what is inlined into it.
 #
 # The daily build (preset dev) compiles each source alone, so that a change of one costs one; the preset `clang` does so,
 # too. A batch of clang says nothing about names that hide those of another source.

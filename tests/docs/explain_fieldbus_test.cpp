@@ -9,14 +9,11 @@
 #include "runtime/bus/canopen/connections.hpp"
 #include "runtime/bus/canopen/emergency.hpp"
 #include "runtime/bus/canopen/object_dictionary.hpp"
+#include "tests/harness/contains.hpp"
 #include "tests/tools/command.hpp"
 
 namespace ipos::tests {
 namespace {
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 std::string explained(std::vector<std::string> words) {
   words.insert(words.begin(), "explain");

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "tests/editor/client.hpp"
+#include "tests/harness/contains.hpp"
 #include "tools/lsp/transport.hpp"
 
 namespace ipos::tests {
@@ -15,10 +16,6 @@ const std::string kPath = "/p/A.IPC";
 std::string hover_text(Client& client, int line, int character) {
   const Json hover = client.request("textDocument/hover", Client::at(kPath, line, character));
   return hover.is_null() ? "" : hover["contents"]["value"].get<std::string>();
-}
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
 }
 
 std::vector<std::string> completions_in(Client& client, const std::string& path, int line, int character) {

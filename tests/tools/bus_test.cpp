@@ -4,14 +4,11 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "tests/harness/contains.hpp"
 #include "tests/tools/command.hpp"
 
 namespace ipos::tests {
 namespace {
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 std::string example(const std::string& name) { return project("examples/" + name).string(); }
 

@@ -4,16 +4,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/harness/contains.hpp"
 #include "tests/tools/command.hpp"
 
 namespace ipos::tests {
 namespace {
 
 using ::testing::Test;
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 const std::string kProgram = "long a;\nmain()\n{\n  a = 5;\n}\n";
 

@@ -7,14 +7,11 @@
 #include <set>
 #include <sstream>
 
+#include "tests/harness/contains.hpp"
 #include "tests/tools/command.hpp"
 
 namespace ipos::tests {
 namespace {
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 TEST(CommandLine, MisspeltWordsAreNamedWithWhatWasProbablyMeant) {
   const struct {

@@ -3,15 +3,12 @@
 
 #include <sstream>
 
+#include "tests/harness/contains.hpp"
 #include "tests/harness/proves.hpp"
 #include "tests/tools/command.hpp"
 
 namespace ipos::tests {
 namespace {
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 // One drive on every bus: SBus 1 with MOVILINK, SBus 2 with CANopen, both RS-485 sockets; AI1 lets it run up.
 std::string plant_text() {

@@ -9,14 +9,11 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "tests/harness/contains.hpp"
 #include "tests/tools/command.hpp"
 
 namespace ipos::tests {
 namespace {
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 // `ipos run plant.toml --realtime` in a folder, until the end of its life.
 class RunningPlant {

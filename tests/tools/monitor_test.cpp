@@ -10,15 +10,12 @@
 #include <regex>
 #include <sstream>
 
+#include "tests/harness/contains.hpp"
 #include "tests/harness/proves.hpp"
 #include "tests/tools/command.hpp"
 
 namespace ipos::tests {
 namespace {
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 // Without the time stamps, which are those of the day.
 std::vector<std::string> without_times(const std::string& text) {

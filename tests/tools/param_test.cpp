@@ -6,14 +6,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/harness/contains.hpp"
 #include "tests/tools/command.hpp"
 
 namespace ipos::tests {
 namespace {
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 const std::string kStation = "[[station]]\nname = \"unit1\"\nunit = \"md60a\"\n";
 const std::string kMemory = "nvram = \"unit1.nv\"\n";

@@ -4,14 +4,11 @@
 
 #include <fmt/format.h>
 
+#include "tests/harness/contains.hpp"
 #include "tests/tools/command.hpp"
 
 namespace ipos::tests {
 namespace {
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 const std::string kProgram = R"(#include <const.h>
 SCTRCYCL Tr;

@@ -10,15 +10,12 @@
 #include <sstream>
 
 #include "runtime/plant/station_state.hpp"
+#include "tests/harness/contains.hpp"
 #include "tests/tools/command.hpp"
 #include "tools/testing/test_case.hpp"
 
 namespace ipos::tests {
 namespace {
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 const std::string kFeeder = "tests/tools/testing/broken/feeder.test.toml";
 

@@ -9,16 +9,13 @@
 #include <set>
 #include <stdexcept>
 
+#include "tests/harness/contains.hpp"
 #include "tests/tools/command.hpp"
 #include "tools/testing/read_tests.hpp"
 #include "tools/testing/suite.hpp"
 
 namespace ipos::tests {
 namespace {
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 size_t lines(const std::string& text) {
   return static_cast<size_t>(std::count(text.begin(), text.end(), '\n'));
