@@ -288,6 +288,8 @@ TEST_F(RealBus, AServedPlantGoesOnWithoutItsInterfaceAndTakesItAgain) {
                                         "ipos: sbus: port vcan5 is there again",
                                         "ipos: warning: sbus: port vcan5 is away: the device has gone",
                                         "ipos: sbus: port vcan5 is there again"};
+  // The kernel sets an interface down before it removes it: who looks in between sees both.
+  if (told.size() == 5 && told[2] == wanted[0]) told.erase(told.begin() + 2);
   ASSERT_EQ(told.size(), wanted.size()) << text("served.err");
   for (size_t n = 0; n < wanted.size(); ++n) EXPECT_EQ(told[n].substr(0, wanted[n].size()), wanted[n]);
 }

@@ -627,12 +627,12 @@ TEST_F(ServingCanopen, TheTabBusHasTheWordsOfCanopen) {
     const auto found = std::find_if(rows.begin(), rows.end(), [id](const Json& one) { return one["id"] == id; });
     return found == rows.end() ? std::string() : (*found)["text"].get<std::string>();
   };
-  EXPECT_EQ(row(0x000), "000h NMT start -> belt");
-  EXPECT_EQ(row(0x080), "080h SYNC");
-  EXPECT_EQ(row(0x185).substr(0, 11), "185h TPDO1 ");
+  EXPECT_EQ(row(0x000), "000 NMT start -> belt");
+  EXPECT_EQ(row(0x080), "080 SYNC");
+  EXPECT_EQ(row(0x185).substr(0, 10), "185 TPDO1 ");
   EXPECT_NE(row(0x185).find("<- belt"), std::string::npos) << row(0x185);
   const std::string mapped = row(0x285);
-  EXPECT_EQ(mapped.substr(0, 11), "285h TPDO2 ");
+  EXPECT_EQ(mapped.substr(0, 10), "285 TPDO2 ");
   EXPECT_LT(mapped.find("PI3"), mapped.find("PI1")) << mapped;
   EXPECT_FALSE(good({{"do", "bus.trace"}, {"filter", "SDO written 1A01h"}})["frames"].empty());
   // A question leaves nothing behind: were this heard, TPDO1 would have another identifier.
@@ -640,10 +640,10 @@ TEST_F(ServingCanopen, TheTabBusHasTheWordsOfCanopen) {
                    {"frames",
                     {{{"bus", "can"}, {"id", 0x605}, {"data", "2300180123010000"}},
                      {{"bus", "can"}, {"id", 0x585}, {"data", "6000180100000000"}}}}};
-  EXPECT_EQ(good(asked)["texts"], Json({"605h SDO write 1800h:1 TPDO1 COB-ID = 00000123h -> belt",
-                                        "585h SDO written 1800h:1 TPDO1 COB-ID <- belt"}));
+  EXPECT_EQ(good(asked)["texts"], Json({"605 SDO write 1800h:1 TPDO1 COB-ID = 00000123h -> belt",
+                                        "585 SDO written 1800h:1 TPDO1 COB-ID <- belt"}));
   step(100);
-  EXPECT_EQ(row(0x185).substr(0, 11), "185h TPDO1 ");
+  EXPECT_EQ(row(0x185).substr(0, 10), "185 TPDO1 ");
 }
 
 // FC 46h: a request, SDN high; 66h has the frame count bit. 09h + 20h + 49h = 72h.

@@ -62,16 +62,16 @@ TEST(CanLineWords, TakeNewNamesAndKeepWhatWasHeard) {
   EXPECT_TRUE(words.is_canopen(kRequest));
   words.use(names);
   EXPECT_FALSE(words.is_canopen(kRequest));
-  EXPECT_EQ(words.describe(kRequest).text, "523 read 8318 Speed -> feed");
+  EXPECT_EQ(words.describe(kRequest).text, "20B read 8318 Speed -> feed");
   EXPECT_EQ(words.describe({0x123, 6, {}}).text, before.substr(0, before.size() - 3) + "lift");
 }
 
 // A station may become a node while somebody listens.
 TEST(CanLineWords, NodesMayComeLater) {
   runtime::CanLineWords words{{}};
-  EXPECT_EQ(words.describe(kStarted).text, "0 01 05");
+  EXPECT_EQ(words.describe(kStarted).text, "000 01 05");
   words.use({{}, {{5, "saw", &mdxb(), {}, {}}}});
-  EXPECT_EQ(words.describe(kStarted).text, "000h NMT start -> saw");
+  EXPECT_EQ(words.describe(kStarted).text, "000 NMT start -> saw");
 }
 
 // A thousand names in a log do not make a thousand dictionaries.
