@@ -109,10 +109,11 @@ Description describe(const TelegramNames& names, const Frame& frame) {
     return {false, fmt::format("{} {}", id_text(frame.id, frame.extended), bytes_text(frame))};
   if (const ObjectNames* object = names.object(frame.id)) return object_text(*object, frame);
   const auto identifier = classify_identifier(frame.id);
-  if (!identifier) {
-    if (is_sync(names, frame)) return {true, id_text(frame.id) + " sync telegram"};
-    return {false, fmt::format("{} {}", id_text(frame.id), bytes_text(frame))};
-  }
+  // An identifier of the profile may be the sync telegram's, too, where nobody has the address (300 is
+  // that of PI of 37).
+  if (is_sync(names, frame) && (!identifier || explaining_unit(names, *identifier) == nullptr))
+    return {true, id_text(frame.id) + " sync telegram"};
+  if (!identifier) return {false, fmt::format("{} {}", id_text(frame.id), bytes_text(frame))};
   const std::string what = telegram_type(identifier->telegram).parameter
                                ? parameter_text(names, *identifier, frame)
                                : process_text(names, *identifier, frame);

@@ -306,6 +306,16 @@ TEST(Describe, ScalesOfTheUnitProfile) {
   EXPECT_EQ(process_word_text(true, 6, 0x0202), "0202h");
 }
 
+// P885 = 300 makes an identifier of address 37 the sync telegram's (examples/isync): 300 = 8 * 37 + 4.
+TEST(Describe, TheSyncTelegramHasTheIdentifierOfAnAddressThatNobodyHas) {
+  TelegramNames with_sync = names();
+  with_sync.units[0].settings.sync_id = 300;
+  EXPECT_EQ(describe(with_sync, {300, 0, {}, false, false}).text, "12C sync telegram");
+  with_sync.units.push_back(with_sync.units[0]);
+  with_sync.units[1].settings.address = 37;
+  EXPECT_NE(describe(with_sync, {300, 6, {}, false, false}).text.find("12C PI"), std::string::npos);
+}
+
 TEST(Describe, VariableAndOtherTelegrams) {
   EXPECT_EQ(words({1024, 8, {0x55, 0x66, 0x77, 0x88, 0x11, 0x22, 0x33, 0x44}, false, false}),
             "400 lTrDataLow = 287454020 (11223344h), lTrDataHigh = 1432778632 (55667788h) <- unit1");
