@@ -17,8 +17,6 @@
 namespace ipos::runtime {
 namespace {
 
-constexpr size_t kStandardDigits = 3, kExtendedDigits = 8;
-
 using Message = TelegramMessage;
 
 std::span<const uint8_t> data_of(const Frame& frame) { return std::span(frame.data).first(frame.length); }
@@ -231,18 +229,18 @@ class CanTelegrams final : public TelegramLine {
   std::vector<PlantSignal> listed() const override { return line_telegrams(plant_, bus_); }
   std::optional<std::string> identity(std::string_view text) const override {
     const auto id = number_of(text);
-    return id ? std::optional(id_text(*id, text.size() == kExtendedDigits)) : std::nullopt;
+    return id ? std::optional(id_text(*id, text.size() == kExtendedIdDigits)) : std::nullopt;
   }
   std::vector<PlantSignal> all_of(std::string_view identity) const override {
-    return all_words(plant_, bus_, *number_of(identity), identity.size() == kExtendedDigits);
+    return all_words(plant_, bus_, *number_of(identity), identity.size() == kExtendedIdDigits);
   }
 
  private:
   static std::optional<uint32_t> number_of(std::string_view text) {
-    if (text.size() != kStandardDigits && text.size() != kExtendedDigits) return std::nullopt;
+    if (text.size() != kStandardIdDigits && text.size() != kExtendedIdDigits) return std::nullopt;
     uint32_t id = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id, 16);
-    const uint32_t limit = text.size() == kExtendedDigits ? kExtendedIdLimit : kStandardIdLimit;
+    const uint32_t limit = text.size() == kExtendedIdDigits ? kExtendedIdLimit : kStandardIdLimit;
     if (error != std::errc() || end != text.data() + text.size() || id >= limit) return std::nullopt;
     return id;
   }

@@ -4,14 +4,9 @@
 #include <fmt/format.h>
 
 namespace ipos::runtime {
-namespace {
-
-constexpr int kStandardDigits = 3, kExtendedDigits = 8;
-
-}  // namespace
 
 std::string id_text(uint32_t id, bool extended) {
-  return fmt::format("{:0{}X}", id, extended ? kExtendedDigits : kStandardDigits);
+  return fmt::format("{:0{}X}", id, extended ? kExtendedIdDigits : kStandardIdDigits);
 }
 
 std::string id_words(uint32_t id, bool extended) {

@@ -2,12 +2,15 @@
 // which also has the decimal number that programs and manuals write.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
 namespace ipos::runtime {
 
-// "12C"; an extended one has eight digits.
+inline constexpr size_t kStandardIdDigits = 3, kExtendedIdDigits = 8;
+
+// "12C"; an extended one has eight digits, as in candump logs.
 std::string id_text(uint32_t id, bool extended = false);
 
 // "12Ch (300)": a reader finds it in the log and in the program.
