@@ -11,6 +11,10 @@ set(embedded_sources
 set(fast_sources vm/fast/predecode.cpp vm/fast/engine.cpp)
 list(TRANSFORM embedded_sources PREPEND ${PROJECT_SOURCE_DIR}/)
 list(TRANSFORM fast_sources PREPEND ${PROJECT_SOURCE_DIR}/)
+if(NOT IPOS_LIBRARY_ONLY)  # the engine of the layer: it knows no size of vm/host/build.hpp
+  list(POP_BACK fast_sources)
+  list(APPEND fast_sources $<TARGET_OBJECTS:ipos_engine>)
+endif()
 
 function(ipos_embedded_library name kind)
   cmake_parse_arguments(BUILD "" "VARIABLES;WORDS;FAST" "" ${ARGN})

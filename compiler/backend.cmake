@@ -12,4 +12,4 @@ ipos_layer(compiler
   USES frontend asm isa image stdlib
   LIBS fmt::fmt)
 ipos_not_hot(ipos_asm)
-ipos_not_hot(ipos_compiler)
+ipos_not_hot(ipos_compiler SIZE 20)

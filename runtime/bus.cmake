@@ -29,7 +29,7 @@ ipos_layer(bus FOLDERS runtime/bus
                    bus/profibus/dp_unit.cpp bus/profibus/gsd.cpp bus/profibus/line_plan.cpp bus/profibus/interface_card.cpp bus/profibus/fms_connection.cpp
                    bus/profibus/fms_objects.cpp bus/profibus/fms_server.cpp
            USES clock stdlib LIBS fmt::fmt)
-ipos_batches(ipos_bus SIZE 20
+ipos_batches(ipos_bus SIZE 40
              HOT bus/can/frame_bits.cpp bus/can/transfer.cpp bus/can/line.cpp bus/can/contenders.cpp
                  bus/movilink/variable_telegram.cpp bus/movilink/sbus_slave.cpp bus/movilink/sbus_group_master.cpp
                  bus/rs485/line.cpp)

@@ -6,7 +6,7 @@ namespace {
 
 constexpr size_t kMaxFrames = 256;  // as the compiler's own limit of nesting
 
-bool ends_operand(TokenKind kind) {
+bool may_end_macro_use(TokenKind kind) {
   return kind == TokenKind::Name || kind == TokenKind::Number || kind == TokenKind::RightParen;
 }
 
@@ -107,7 +107,7 @@ bool Layout::token(const Piece& piece) {
   if (piece.token == TokenKind::Hash) return false;
   // Two operands in two lines without an operator between them: a macro stood for a whole statement.
   if (!state_.start && fresh(piece) && state_.brackets == 0 && !state_.head && !state_.label &&
-      ends_operand(last_.kind) && is_word(piece.token))
+      may_end_macro_use(last_.kind) && is_word(piece.token))
     finish_statement();
   if (state_.start) {
     statement_start(piece);

@@ -1,5 +1,16 @@
 // Any lines as messages of a page to the host of a plant (docs/reference/serve.md): each is answered, by one
 // reply or its parts, and the plant goes on.
+//
+// Making a plant takes longer than a hundred messages, so with IPOS_FUZZ_KEEP=N in the environment N inputs go to one
+// host. Its messages so far are then in the file serve-history, which outlives a finding: without its zeros it is one
+// input that does the same.
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
 #include <deque>
 #include <memory>
 #include <string>
@@ -38,7 +49,6 @@ from = "saw.DO01"
 to = "lift.DI03"
 )";
 constexpr int64_t kMostStep = 20;  // ms: more tell nothing new
-constexpr size_t kMostMessages = 64;
 
 // A page that pauses what it has started.
 class PausingPost final : public tools::serve::Post {
@@ -88,25 +98,78 @@ std::string shortened(std::string_view line) {
   return message.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+// The messages that a host has had, in a file.
+class History {
+ public:
+  History() {
+    const int file = open("serve-history", O_RDWR | O_CREAT | O_TRUNC, 0644);
+    if (file < 0 || ftruncate(file, kSize) != 0) broken("serve-history can be written");
+    text_ = static_cast<char*>(mmap(nullptr, kSize, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0));
+    if (text_ == MAP_FAILED) broken("serve-history can be written");
+    close(file);
+  }
+  bool has_room(size_t size) const { return used_ + size < kSize; }
+  void add(std::string_view text) {
+    std::memcpy(text_ + used_, text.data(), text.size());
+    used_ += text.size();
+    text_[used_++] = '\n';
+  }
+  void clear() {
+    std::memset(text_, 0, used_);
+    used_ = 0;
+  }
+
+ private:
+  static constexpr size_t kSize = 1 << 20;
+  char* text_ = nullptr;
+  size_t used_ = 0;
+};
+
+struct Session {
+  PausingPost post;
+  tools::serve::PlantHost host{make(), "plant", "0", post, false};
+
+  Session() { post.waiting.push_back({LetterKind::Opened, 1, {}}); }
+
+  void take(std::string_view text) {
+    while (!text.empty()) {
+      const size_t end = text.find('\n');
+      post.waiting.push_back({LetterKind::Message, 1, shortened(text.substr(0, end))});
+      text = end == std::string_view::npos ? std::string_view{} : text.substr(end + 1);
+      post.runs = true;
+      post.answered = false;
+      while (host.turn(0)) {
+      }
+      require(post.answered, "a message is answered");
+    }
+    require(host.plant().now() >= 0, "the plant is there");
+  }
+};
+
+// Takes an input as the one before has left the host.
+void go_on(std::string_view text, int inputs) {
+  static History history;
+  static std::unique_ptr<Session> session;
+  static int taken = 0;
+  if (taken == inputs || !history.has_room(text.size())) session.reset();
+  if (!session) {
+    history.clear();
+    session = std::make_unique<Session>();
+    taken = 0;
+  }
+  history.add(text);
+  session->take(text);
+  ++taken;
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-  std::string_view text = text_of(data, size);
-  PausingPost post;
-  tools::serve::PlantHost host(make(), "plant", "0", post, false);
-  post.waiting.push_back({LetterKind::Opened, 1, {}});
-  size_t asked = 0;
-  while (!text.empty() && asked < kMostMessages) {
-    const size_t end = text.find('\n');
-    post.waiting.push_back({LetterKind::Message, 1, shortened(text.substr(0, end))});
-    text = end == std::string_view::npos ? std::string_view{} : text.substr(end + 1);
-    ++asked;
-    post.runs = true;
-    post.answered = false;
-    while (host.turn(0)) {
-    }
-    require(post.answered, "a message is answered");
-  }
-  require(host.plant().now() >= 0, "the plant is there");
+  const std::string_view text = text_of(data, size);
+  static const char* const keep = std::getenv("IPOS_FUZZ_KEEP");
+  if (keep != nullptr)
+    go_on(text, std::max(1, std::atoi(keep)));
+  else
+    Session().take(text);
   return 0;
 }

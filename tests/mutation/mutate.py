@@ -60,21 +60,37 @@ def judge(layer, place, text, mutant, known):
     return ("same", "") if layer.same_code(text, mutated) else ("survived", "")
 
 
-def campaign(source, chosen, options):
-    """Counts by verdict."""
+def planted(source, chosen, options):
+    """(place, text, mutants) of one source."""
     place = options.header or source
     text = (ROOT / place).read_text()
     if options.replace:
         line, old, new = options.replace
-        found = [replaced(text, int(line), old, new)]
-    else:
-        found = [m for m in mutants(text) if chosen is None or m.line in chosen]
-        if options.lines:
-            first, last = map(int, options.lines.split("-"))
-            found = [m for m in found if first <= m.line <= last]
-        if options.sample and options.sample < len(found):
-            drawn = random.Random(f"{options.seed} {place}").sample(range(len(found)), options.sample)
-            found = [found[n] for n in sorted(drawn)]
+        return place, text, [replaced(text, int(line), old, new)]
+    found = [m for m in mutants(text) if chosen is None or m.line in chosen]
+    if options.lines:
+        first, last = map(int, options.lines.split("-"))
+        found = [m for m in found if first <= m.line <= last]
+    return place, text, found
+
+
+def drawn(name, found, options):
+    """At most as many of the mutants of a source or folder as are asked for, in their order."""
+    if not options.sample or options.sample >= len(found):
+        return found
+    chosen = random.Random(f"{options.seed} {name}").sample(range(len(found)), options.sample)
+    return [found[n] for n in sorted(chosen)]
+
+
+def score(name, counts):
+    real = counts.get("killed", 0) + counts.get("survived", 0)
+    if real:
+        told = ", ".join(f"{n} {verdict}" for verdict, n in sorted(counts.items()))
+        print(f"{name}: {100 * counts.get('killed', 0) // real} % noticed ({told})", flush=True)
+
+
+def campaign(source, place, text, found, options):
+    """Counts by verdict."""
     if options.list:
         for mutant in found:
             print(f"{place}:{mutant.line}: {' -> '.join(mutant.lines(text))}")
@@ -95,9 +111,9 @@ def campaign(source, chosen, options):
 
 def main():
     parser = argparse.ArgumentParser(description="Plants small mistakes and says which ones no test of the layer notices.")
-    parser.add_argument("sources", nargs="*", help="sources (.cpp), from the project root")
+    parser.add_argument("sources", nargs="*", help="sources (.cpp) or folders of them, from the project root")
     parser.add_argument("--change", metavar="COMMIT", help="the lines that differ from this commit instead")
-    parser.add_argument("--sample", type=int, help="at most this many mutants a file, drawn by chance")
+    parser.add_argument("--sample", type=int, help="at most this many mutants a file or folder, drawn by chance")
     parser.add_argument("--seed", default="1", help="of the draw")
     parser.add_argument("--lines", metavar="A-B", help="only these lines")
     parser.add_argument("--replace", nargs=3, metavar=("LINE", "OLD", "NEW"), help="this one mistake")
@@ -113,16 +129,25 @@ def main():
     sources = {str((ROOT / s).resolve().relative_to(ROOT)): None for s in options.sources} | changed
     if not sources:
         parser.error("no source")
-    total = {}
-    for source, chosen in sources.items():
-        counts = campaign(source, chosen, options)
-        real = counts.get("killed", 0) + counts.get("survived", 0)
-        if real:
-            told = ", ".join(f"{n} {verdict}" for verdict, n in sorted(counts.items()))
-            print(f"{options.header or source}: {100 * counts.get('killed', 0) // real} % noticed ({told})", flush=True)
-        for verdict, n in counts.items():
-            total[verdict] = total.get(verdict, 0) + n
-    return 1 if total.get("survived") else 0
+    survived = False
+    for name, chosen in sources.items():
+        folder = (ROOT / name).is_dir()
+        files = sorted(str(f.relative_to(ROOT)) for f in (ROOT / name).rglob("*.cpp")) if folder else [name]
+        found = {file: planted(file, chosen, options) for file in files}
+        draw = drawn(options.header or name, [(file, m) for file in files for m in found[file][2]], options)
+        total = {}
+        for file in files:
+            place, text, _ = found[file]
+            if mine := [mutant for source, mutant in draw if source == file]:
+                counts = campaign(file, place, text, mine, options)
+                if not folder or options.verbose:
+                    score(place, counts)
+                for verdict, n in counts.items():
+                    total[verdict] = total.get(verdict, 0) + n
+        if folder:
+            score(name, total)
+        survived = survived or "survived" in total
+    return 1 if survived else 0
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@
 namespace ipos::profibus {
 namespace {
 
-constexpr FmsServiceType kServices[] = {
+constexpr FmsServiceType kFmsServices[] = {
 #define FMS_SERVICE(name, feature, confirmed, text) {FmsService::name, feature, confirmed, text},
 #include "runtime/bus/profibus/fms_services.def"
 };
@@ -30,7 +30,7 @@ constexpr std::string_view kLinkTypes[] = {"MSAZ", "MSAZ_SI", "MSZY", "MSZY_SI"}
 
 }  // namespace
 
-const FmsServiceType& fms_service_type(FmsService service) { return kServices[static_cast<size_t>(service)]; }
+const FmsServiceType& fms_service_type(FmsService service) { return kFmsServices[static_cast<size_t>(service)]; }
 
 bool FmsFeatures::has(FmsService service, int from) const {
   const int feature = fms_service_type(service).feature;
@@ -46,7 +46,7 @@ std::array<uint8_t, 6> FmsFeatures::octets() const {
 
 std::vector<std::string> FmsFeatures::services() const {
   std::vector<std::string> list;
-  for (const FmsServiceType& type : kServices) {
+  for (const FmsServiceType& type : kFmsServices) {
     if (requests(type.service)) list.push_back(fmt::format("{}.request", type.text));
     if (responds(type.service)) list.push_back(fmt::format("{}.indication", type.text));
   }
@@ -85,7 +85,7 @@ std::vector<std::string> check_master_entry(const FmsMasterEntry& master, const 
                                  fms_link_type_text(slave.type)));
   if (master.rsap != slave.lsap)
     broken.push_back(fmt::format("RSAP is {}, LSAP of the slave {}", master.rsap, slave.lsap));
-  for (const FmsServiceType& type : kServices)
+  for (const FmsServiceType& type : kFmsServices)
     if (master.features.requests(type.service) && !slave.features.responds(type.service))
       broken.push_back(fmt::format("{}.request, which the slave does not have as an indication", type.text));
   if (master.pdu.receive_high < slave.pdu.send_high)
