@@ -8,7 +8,6 @@ import resource
 import shlex
 import shutil
 import subprocess
-import time
 import xml.etree.ElementTree as xml
 from pathlib import Path
 
@@ -51,14 +50,17 @@ class Program:
         self.killers = []
 
     def measure(self):
+        """True when the tests had to be run for it."""
         report = self.cache / f"{self.name}.xml"
-        if not report.exists() or report.stat().st_mtime < self.binary.stat().st_mtime:
+        missing = not report.exists() or report.stat().st_mtime < self.binary.stat().st_mtime
+        if missing:
             if not self.run(self.binary, [f"--gtest_output=xml:{report}"], 1800):
                 report.unlink(missing_ok=True)
                 raise SystemExit(f"mutate: {self.name} fails without a mutant")
         for case in xml.parse(report).iter("testcase"):
             if case.get("status") == "run":
                 self.seconds[f"{case.get('classname')}.{case.get('name')}"] = float(case.get("time"))
+        return missing
 
     def passes(self):
         """The tests, most promising first: what has noticed a mutant before, then what is quick, then the rest."""
@@ -134,10 +136,8 @@ class Layer:
             program.only = only
             if only:
                 continue
-            began = time.monotonic()
-            program.measure()
-            print(f"{program.name}: {len(program.seconds)} tests, {sum(program.seconds.values()):.1f} s "
-                  f"({time.monotonic() - began:.0f} s to measure)", flush=True)
+            if program.measure():
+                print(f"{program.name}: {len(program.seconds)} tests, {sum(program.seconds.values()):.1f} s", flush=True)
 
     def compile_command(self):
         """Of the library that the first program links, or of the program itself."""
