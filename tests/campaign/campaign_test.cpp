@@ -1,9 +1,13 @@
 // The whole system from one seed: a random plant with its programs in trouble runs on every engine, in turn and not, and is
-// the same each time. A run that fails is made smaller before it is told.
+// the same each time; what its stations keep is in their files at the end. A run that fails is made smaller before it is
+// told.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
 
+#include <unistd.h>
+
+#include <filesystem>
 #include <optional>
 
 #include "tests/campaign/trouble.hpp"
@@ -55,8 +59,49 @@ void do_deed(Plant& plant, const Deed& deed) {
       if (station.powered())
         (void)station.drive().parameters().execute(runtime::ParameterService::WriteVolatile, deed.index, deed.value);
       break;
+    case Deed::Kind::Store:
+      if (station.powered())
+        (void)station.drive().parameters().execute(runtime::ParameterService::Write, deed.index, deed.value);
+      break;
     case Deed::Kind::Look: break;
   }
+}
+
+// A new one for the files of one run.
+class Folder {
+ public:
+  Folder() : path_(std::filesystem::temp_directory_path() / fmt::format("ipos-campaign-{}", getpid())) {
+    std::filesystem::remove_all(path_);
+    std::filesystem::create_directory(path_);
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  std::string path() const { return path_.string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+// What a unit has kept, right after its power is on: parameters but those that the plant file sets at the begin of every
+// run, H0 to H127, and the fault that a memory with nothing whole in it is (F94) or one that cannot be read (F25).
+std::string kept(const Plant& plant) {
+  constexpr size_t kKeptVariables = 128;
+  std::string out;
+  for (const auto& owned : plant.stations()) {
+    const runtime::Station& station = *owned;
+    const auto& parameters = station.drive().parameters();
+    std::set<std::string, std::less<>> set;
+    for (const auto& setting : station.config().parameters) set.insert(setting.parameter);
+    out += fmt::format("{}: F{}", station.config().name, station.drive().state().fault());
+    for (const stdlib::Parameter& row : parameters.table().rows())
+      if (row.nonvolatile && row.writable && !set.contains(fmt::format("P{}", row.number)))
+        out += fmt::format(" {}={}", row.index, parameters.value(row.index));
+    if (const vm::Machine* machine = station.machine())
+      for (const int32_t value : machine->variables().first(kKeptVariables)) out += fmt::format(" {}", value);
+    out += '\n';
+  }
+  return out;
 }
 
 // What each look sees, and at the end all that was on the buses.
@@ -64,10 +109,15 @@ struct Course {
   std::vector<std::string> looks;
   std::string frames, telegrams;
   size_t entries = 0;
+  std::string kept, found;  // by the stations after a power cut at the end, and by new ones with the same files
 };
 
 std::optional<Course> run(const Trouble& trouble, const Way& way) {
-  auto made = make_plant(trouble.text(), trouble.programs, std::nullopt, execution_of(way));
+  const Folder folder;
+  const auto make = [&] {
+    return make_plant(trouble.text(folder.path()), trouble.programs, std::nullopt, execution_of(way));
+  };
+  auto made = make();
   if (!made) return std::nullopt;
   Watched watched(std::move(made));
   Plant& plant = *watched.plant;
@@ -84,6 +134,17 @@ std::optional<Course> run(const Trouble& trouble, const Way& way) {
   course.frames = watched.frames.str();
   course.telegrams = watched.telegrams.str();
   course.entries = plant.journal().entries().size();
+  if (trouble.files) {
+    for (const auto& station : plant.stations()) {
+      if (station->powered()) station->power_off();
+      station->power_on();
+    }
+    course.kept = kept(plant);
+    watched.plant.reset();  // it has locked its files
+    made = make();
+    if (!made) return std::nullopt;
+    course.found = kept(*made);
+  }
   return course;
 }
 
@@ -110,6 +171,8 @@ std::string difference(const std::string& expected, const std::string& actual) {
 std::optional<std::string> complaint(const Trouble& trouble) {
   const auto expected = run(trouble, kWays[0]);
   if (!expected) return "the plant is refused";
+  if (expected->found != expected->kept)
+    return fmt::format("in the files: {}", difference(expected->kept, expected->found));
   if (expected->entries > kMostEntries) return fmt::format("{} entries in the journal", expected->entries);
   for (const Way& way : std::span(kWays).subspan(1)) {
     const auto course = run(trouble, way);
@@ -119,6 +182,8 @@ std::optional<std::string> complaint(const Trouble& trouble) {
         return fmt::format("{}: look {}: {}", way.name, look, difference(expected->looks[look], course->looks[look]));
     if (course->frames != expected->frames) return fmt::format("{}: frames differ", way.name);
     if (course->telegrams != expected->telegrams) return fmt::format("{}: telegrams differ", way.name);
+    if (course->kept != expected->kept)
+      return fmt::format("{}: kept: {}", way.name, difference(expected->kept, course->kept));
   }
   return std::nullopt;
 }

@@ -91,8 +91,10 @@ Deed deed(Dice& dice, size_t stations) {
       deed.value = dice.pick(0, 1);
       break;
     case 5:
-      deed.kind = Deed::Kind::Write;
-      deed.index = static_cast<uint16_t>(dice.one_in(3) ? 8'300 + dice.pick(0, 700) : 11'000 + dice.pick(0, 560));
+      deed.kind = dice.one_in(2) ? Deed::Kind::Write : Deed::Kind::Store;
+      deed.index = static_cast<uint16_t>(dice.one_in(3)   ? 8'300 + dice.pick(0, 700)
+                                         : dice.one_in(2) ? 11'000 + dice.pick(0, 127)  // can be kept
+                                                          : 11'000 + dice.pick(0, 560));
       deed.value = dice.one_in(2) ? dice.pick(-3, 200) : dice.pick(INT32_MIN, INT32_MAX);
       break;
     default: break;  // who looks, or lets time stand still a while
@@ -107,6 +109,7 @@ const char* word(Deed::Kind kind) {
     case Deed::Kind::Send: return "send";
     case Deed::Kind::Force: return "force";
     case Deed::Kind::Write: return "write";
+    case Deed::Kind::Store: return "store";
     case Deed::Kind::Look: return "look";
   }
   return "";
@@ -114,8 +117,14 @@ const char* word(Deed::Kind kind) {
 
 }  // namespace
 
-std::string Trouble::text() const {
+std::string Trouble::text(const std::string& folder) const {
+  static constexpr std::string_view kTable = "[[station]]\nname = \"u";  // a drive; a gateway has no memory
   std::string text = plant;
+  if (files) {
+    int station = 0;
+    for (size_t at = 0; (at = text.find(kTable, at)) != std::string::npos; ++station)
+      text.insert(at += kTable.find('\n') + 1, fmt::format("nvram = \"{}/{}.nv\"\n", folder, station));
+  }
   for (const std::string& one : faults) text += one;
   return text;
 }
@@ -148,12 +157,13 @@ Trouble draw_trouble(uint64_t seed) {
     }
   }
   trouble.end = Time{kLongest} * kMillisecond;
+  trouble.files = dice.one_in(3);
   std::ranges::stable_sort(trouble.deeds, {}, &Deed::at);
   return trouble;
 }
 
 std::string describe(const Trouble& trouble) {
-  std::string out = fmt::format("seed {}\n{}", trouble.seed, trouble.text());
+  std::string out = fmt::format("seed {}\n{}", trouble.seed, trouble.text("."));
   for (const auto& [name, source] : trouble.programs) out += fmt::format("--- {}\n{}", name, source);
   for (const Deed& one : trouble.deeds)
     out += fmt::format("{} ns: {} {} index {} value {} '{}'\n", one.at, word(one.kind), one.target, one.index, one.value,

@@ -13,13 +13,13 @@
 namespace ipos::tests {
 
 struct Deed {
-  enum class Kind : uint8_t { PowerOff, PowerOn, Send, Force, Write, Look };
+  enum class Kind : uint8_t { PowerOff, PowerOn, Send, Force, Write, Store, Look };
   Kind kind = Kind::Look;
   runtime::Time at = 0;
   size_t target = 0;     // number of a station, or of a bus
   std::string message;   // Send
-  int value = 0;         // Force: level; Write: value
-  uint16_t index = 0;    // Write; Force: the input
+  int value = 0;         // Force: level; Write, Store: value
+  uint16_t index = 0;    // Write, Store; Force: the input
 };
 
 struct Trouble {
@@ -29,8 +29,9 @@ struct Trouble {
   std::vector<std::string> faults;  // [[fault]] tables
   std::vector<Deed> deeds;          // in the order of their times
   runtime::Time end = 0;
+  bool files = false;  // the stations keep their memory in files
 
-  std::string text() const;  // of the plant file
+  std::string text(const std::string& folder) const;  // of the plant file; files are in this folder
 };
 
 Trouble draw_trouble(uint64_t seed);
