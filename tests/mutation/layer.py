@@ -79,6 +79,7 @@ class Program:
         def limit():
             resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
             resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        (self.work / "tmp").mkdir(exist_ok=True)
         environment = dict(os.environ, TMPDIR=str(self.work / "tmp"))
         with subprocess.Popen([str(binary), *self.arguments, *arguments], cwd=self.folder, env=environment,
                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
@@ -101,7 +102,6 @@ class Program:
         done = subprocess.run(link, shell=True, cwd=self.build, capture_output=True, text=True)
         if done.returncode != 0:
             return "(does not link)"
-        (self.work / "tmp").mkdir(exist_ok=True)
         for names in [[self.only]] if self.only else self.passes():
             limit = 300 if self.only else 15 + 8 * sum(self.seconds[name] for name in names)
             if self.run(binary, ["--gtest_fail_fast", "--gtest_brief=1", "--gtest_filter=" + ":".join(names)], limit):
