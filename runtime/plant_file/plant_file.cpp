@@ -36,8 +36,8 @@ void check_plant(PlantReader& reader) {
 }
 
 std::optional<toml::table> parse_toml(PlantReader& reader, std::string_view text) {
-  if (const auto place = stray_character(text)) {
-    reader.error(*place, "this character may only stand in a text or a comment");
+  if (const auto mistake = toml_mistake(text)) {
+    reader.error(mistake->place, std::string(mistake->text));
     return std::nullopt;
   }
   toml::parse_result parsed = toml::parse(text);

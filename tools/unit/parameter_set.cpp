@@ -44,8 +44,8 @@ class Reader {
   explicit Reader(const std::string& path) : path_(path) {}
 
   tl::expected<ParameterSet, std::vector<std::string>> read(std::string_view text) {
-    if (const auto place = runtime::stray_character(text)) {
-      error(*place, "this character may only stand in a text or a comment");
+    if (const auto mistake = runtime::toml_mistake(text)) {
+      error(mistake->place, std::string(mistake->text));
       return tl::unexpected(std::move(errors_));
     }
     const toml::parse_result parsed = toml::parse(text);
