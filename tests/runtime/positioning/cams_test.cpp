@@ -66,6 +66,26 @@ TEST(StandardCam, RefusesWhatIsNoVariable) {
   EXPECT_FALSE(run_standard_cam(500, v.h, v.sources)) << "the structure ends behind the variables";
 }
 
+// Eight variables are watched, each with its change since the millisecond before. A ninth counts as at rest; a
+// variable that is watched again takes no second place.
+TEST(CamSources, WatchEightVariables) {
+  Variables v;
+  for (uint32_t n = 0; n < 9; ++n) v.h[300 + n] = static_cast<int32_t>(n) * 1'000;
+  v.h[300] = INT32_MAX;
+  for (int times = 0; times < 2; ++times)
+    for (uint32_t n = 0; n < 9; ++n) v.sources.watch(300 + n, v.h);
+  v.h[300] = INT32_MIN;  // one further: the count wraps
+  for (uint32_t n = 1; n < 9; ++n) v.h[300 + n] += n % 2 == 0 ? static_cast<int32_t>(n) : -7;
+  v.sources.tick(v.h);
+  EXPECT_EQ(v.sources.change(300), 1);
+  for (uint32_t n = 1; n < 8; ++n)
+    EXPECT_EQ(v.sources.change(300 + n), n % 2 == 0 ? static_cast<int32_t>(n) : -7) << n;
+  EXPECT_EQ(v.sources.change(308), 0) << "the ninth";
+  EXPECT_EQ(v.sources.change(400), 0) << "never watched";
+  v.sources.tick(v.h);
+  for (uint32_t n = 0; n < 8; ++n) EXPECT_EQ(v.sources.change(300 + n), 0) << "at rest now";
+}
+
 constexpr int32_t bits(uint32_t value) { return static_cast<int32_t>(value); }
 
 struct Extended : Variables {

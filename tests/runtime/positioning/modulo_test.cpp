@@ -94,6 +94,62 @@ TEST(Modulo, TooFineATurnIsOff) {
   EXPECT_TRUE(rig.said("2^31"));
 }
 
+// Whether it is wanted or not: such a turn counts as the function that is off, from the factory.
+TEST(Modulo, AnImpossibleTurnIsAsWithoutTheFunction) {
+  struct Turn {
+    int32_t numerator, denominator, resolution;
+  };
+  for (const Turn& t : {Turn{0, 1, 1}, Turn{-5, 1, 4'096}, Turn{10, 0, 4'096}, Turn{10, -3, 4'096},
+                        Turn{1'000'000, 1, 4'096}, Turn{INT32_MAX, 7, 65'535}})
+    for (const int32_t mode : {0, 1, 2, 3}) {
+      SCOPED_TRACE(testing::Message() << t.numerator << " / " << t.denominator << " x " << t.resolution);
+      runtime::PositioningSettings settings;
+      Modulo off;
+      EXPECT_TRUE(off.configure(settings, -9'000));
+      off.set(-9'000);
+      settings.modulo = mode;
+      settings.modulo_numerator = t.numerator;
+      settings.modulo_denominator = t.denominator;
+      settings.modulo_resolution = t.resolution;
+      Modulo modulo;
+      EXPECT_EQ(modulo.configure(settings, -9'000), mode == 0);
+      EXPECT_FALSE(modulo.possible());
+      for (const int32_t way : {8'000, 70'000, -200'000}) {
+        modulo.move(way);
+        off.move(way);
+        EXPECT_FALSE(modulo.on());
+        EXPECT_EQ(modulo.position(false), 0);
+        EXPECT_EQ(modulo.turns(), off.turns());
+      }
+    }
+}
+
+// 2^31 - 1 units are the longest turn.
+TEST(Modulo, TheLongestTurn) {
+  runtime::PositioningSettings settings;
+  settings.modulo = 1;
+  settings.modulo_numerator = INT32_MAX;
+  Modulo modulo;
+  EXPECT_TRUE(modulo.configure(settings, -1));
+  EXPECT_EQ(modulo.position(true), INT32_MAX - 1);
+  settings.modulo_numerator = 1 << 30;
+  settings.modulo_resolution = 2;
+  EXPECT_FALSE(modulo.configure(settings, -1));
+}
+
+TEST(Modulo, WhileItIsOffThereIsNoModuloPosition) {
+  runtime::PositioningSettings settings;
+  settings.modulo_numerator = 10;
+  settings.modulo_resolution = 4'096;
+  Modulo modulo;
+  EXPECT_TRUE(modulo.configure(settings, 10'240));
+  for (const bool high_resolution : {false, true}) EXPECT_EQ(modulo.position(high_resolution), 0);
+  settings.modulo = 1;
+  modulo.configure(settings, 10'240);
+  EXPECT_EQ(modulo.position(false), 0x4000) << "a quarter of 10 x 4096";
+  EXPECT_EQ(modulo.position(true), 10'240);
+}
+
 TEST(Modulo, WithoutItTheTargetIsRefused) {
   Rig rig;
   rig.h[454] = 0x8000;
