@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/positioning/modulo.hpp"
+#include "tests/runtime/positioning/closed_form.hpp"
 #include "tests/runtime/positioning/rig.hpp"
 
 namespace ipos::tests {
@@ -194,6 +195,41 @@ TEST(Modulo, TurnsForEver) {
   EXPECT_LT(rig.h[511], 0);
   EXPECT_EQ(rig.travel(0x30000 + start), 3 * 40'960);
   EXPECT_EQ(rig.drive.fault(), 0);
+}
+
+// An encoder so fine that its count is soon 2^32 round, and three times that, both ways: each travel is that of the
+// closed form.
+TEST(Modulo, TheCountGoesRoundManyTimes) {
+  constexpr int32_t kFiner = 32'767, kWay = 1 << 30;
+  for (const int shape : {0, 1})
+    for (const int sign : {1, -1}) {
+      Rig rig({{"941", 1},
+               {"942", 1},
+               {"943", kFiner},
+               {"960", 1},
+               {"961", INT32_MAX},
+               {"962", 1},
+               {"963", 1},
+               {"911", 300},
+               {"912", 300},
+               {"916", shape},
+               {"923", 0}});
+      const ClosedForm form(double{kWay} / kFiner, 1500, 300, 300);
+      for (int n = 0; n < 12; ++n) {
+        const int32_t from = rig.h[491];
+        rig.go_by(sign * kWay);
+        for (int t = 1; t < form.duration() + 500; ++t) {
+          rig.tick();
+          const double way = kFiner * (shape == 0 ? form.linear(t) : form.sine(t));
+          const auto expected = runtime::wrapped(from + sign * std::llround(way));
+          ASSERT_LT(std::abs(runtime::wrapped(int64_t{rig.h[491]} - expected)), 100)
+              << "travel " << n << ", after " << t << " ms";
+        }
+        ASSERT_EQ(rig.h[491], runtime::wrapped(int64_t{from} + sign * kWay));
+        ASSERT_LT(std::abs(rig.h[495]), 10 * kFiner) << "the axis is there";
+      }
+      EXPECT_EQ(rig.drive.fault(), 0);
+    }
 }
 
 TEST(Modulo, CountOfTurnsCanBeSet) {
