@@ -86,7 +86,8 @@ TEST(Modulo, HighResolution) {
   rig.run(2);
   EXPECT_EQ(rig.travel(20'480), 5'120);  // half of 10 x 4096 units, 4 of them an increment
   EXPECT_EQ(rig.h[455], 20'480);
-  EXPECT_EQ(rig.travel(40'960 + 20'480), 0) << "no several turns (IPOSplus p. 29)";
+  for (const int32_t turns : {1, 2, 7, 1'000})
+    EXPECT_EQ(rig.travel(turns * 40'960 + 20'480), 0) << "no several turns (IPOSplus p. 29)";
 }
 
 TEST(Modulo, TooFineATurnIsOff) {

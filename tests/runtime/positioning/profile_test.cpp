@@ -112,6 +112,23 @@ TEST(Profile, FromOneEndOfTheRangeToTheOther) {
   EXPECT_EQ(profile.position(), fine(INT32_MAX));
 }
 
+// 2^32 increments at 1/1000 rpm last 2000 years: more than a plan can count, and no reason to be there sooner.
+TEST(Profile, ATravelOfManyYearsIsNotCutShort) {
+  PositioningSettings settings;
+  settings.speed_cw = settings.speed_ccw = 1;
+  for (const auto& [from, to] : {std::pair{INT32_MIN, INT32_MAX}, std::pair{INT32_MAX, INT32_MIN}}) {
+    Profile profile;
+    profile.hold(fine(from), 0);
+    profile.travel(to, settings.travel_rules(1000), Goal::New);
+    const int sign = to > from ? 1 : -1;
+    for (int n = 1; n <= 100'000; ++n) {
+      profile.tick();
+      const double way = static_cast<double>(profile.position() - fine(from)) / kIncrement;
+      ASSERT_NEAR(sign * way, n * 4096 / 60e6, 0.001) << n;
+    }
+  }
+}
+
 struct Journey {
   int64_t highest = INT64_MIN, lowest = INT64_MAX;
   int ticks = 0;

@@ -225,6 +225,17 @@ TEST(Travel, GainAndFeedforward) {
   EXPECT_NEAR(half.h[495], 600, 5);
 }
 
+// Without gain the axis turns as fast as P915 says, to 1/1000 rpm.
+TEST(Travel, FeedforwardAloneIsAShareOfTheSpeed) {
+  for (const int32_t share : {0, 1'000, 50'000, 100'000, 33'000})
+    for (const int sign : {1, -1}) {
+      Rig rig({{"915", share}, {"910", 0}, {"913", 600'000}, {"914", 600'000}, {"923", 0}});
+      rig.go(sign * 400'000);
+      rig.run(1'000);
+      EXPECT_EQ(rig.drive.axis().speed, sign * 6 * share) << share;
+    }
+}
+
 TEST(Travel, LagError) {
   Rig rig({{"915", 0}, {"923", 2'000}});
   rig.go(400'000);
