@@ -270,6 +270,20 @@ TEST(ReferenceTravel, InterruptedBehindTheTurnItBeginsAnew) {
   }
 }
 
+// Also where a fault of its own has interrupted it.
+TEST(ReferenceTravel, BehindF39ItBeginsAnewWithTheReset) {
+  ReferenceRig rig(1, {0, -1, -20'000, 20'000});  // a cam that is nowhere
+  rig.positioner().start_reference(false, false);
+  rig.run_until([&] { return rig.drive.fault() == 39; });
+  rig.run(500);
+  EXPECT_TRUE(rig.drive.axis().standing);
+  rig.machine = {};
+  rig.drive.reset_fault();
+  rig.run_until([&] { return rig.referenced() && rig.arrived(); });
+  EXPECT_NEAR(static_cast<double>(rig.mechanical - rig.h[511] + 500), -30'000, kEdge);
+  EXPECT_EQ(rig.drive.fault(), 0);
+}
+
 TEST(ReferenceTravel, OrdersWaitForItsEnd) {
   ReferenceRig rig(1, {});
   rig.positioner().start_reference(false, false);
