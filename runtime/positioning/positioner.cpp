@@ -80,10 +80,7 @@ void Positioner::power_on(const PositioningSettings& settings, int32_t shaft) {
   modulo_.set(actual());
 }
 
-void Positioner::idle() {
-  profile_.hold(fine(actual()), 0);
-  drop_target();
-}
+void Positioner::idle() { drop_target(); }
 
 void Positioner::advance(int32_t before, int32_t motor_counter) {
   if (encoders_.counter() != before) move(before);
@@ -129,7 +126,6 @@ void Positioner::rest() {
   if (given_up_ || !inputs_.possible) target_follows_ = true;
   following_ = false;
   follow_state_ = FollowState::Free;
-  profile_.hold(fine(actual()), 0);
   planned_target_.reset();
   refused_target_.reset();
   at_limit_ = false;

@@ -93,11 +93,11 @@ class Program:
                 return False
         return process.returncode in (0, 77)
 
-    def notices(self, mutant):
-        """The name of a test that fails with the mutant linked in, or None."""
+    def notices(self, mutant, options):
+        """The name of a test that fails with the mutant linked in, or None. `options`: what it wants for linking."""
         binary = self.work / self.name
         own = re.compile(r"\S*/" + re.escape(self.source) + r"\.o\b")  # where a program compiles the layer itself
-        link = re.sub(r" -o \S+ ", lambda m: f" {shlex.quote(str(mutant))} -o {shlex.quote(str(binary))} ",
+        link = re.sub(r" -o \S+ ", lambda m: f" {shlex.join([*options, str(mutant)])} -o {shlex.quote(str(binary))} ",
                       own.sub("", self.link), count=1)
         done = subprocess.run(link, shell=True, cwd=self.build, capture_output=True, text=True)
         if done.returncode != 0:
@@ -130,6 +130,8 @@ class Layer:
         if not self.programs:
             raise SystemExit(f"mutate: no test program of {source}; has {build} been built?")
         self.command = self.compile_command()
+        # A mutant compiled with a sanitizer needs it in every program, also in those that have none themselves.
+        self.link_options = re.findall(r"-fsanitize=\S+", self.command)
 
     def prepare(self, only=None):
         for program in self.programs:

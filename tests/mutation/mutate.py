@@ -55,7 +55,7 @@ def judge(layer, place, text, mutant, known):
     if built is None:
         return "invalid", ""
     for program in layer.programs:
-        if killer := program.notices(built):
+        if killer := program.notices(built, layer.link_options):
             return ("invalid", killer) if killer == "(does not link)" else ("killed", f"{program.name} {killer}")
     return ("same", "") if layer.same_code(text, mutated) else ("survived", "")
 

@@ -54,6 +54,52 @@ TEST(Extremes, AnyMachines) {
   }
 }
 
+// The table of docs/inside/motion.md: what lies beyond its limits counts as the limit, what lies within stays.
+TEST(Extremes, EveryFigureOfTheMachineHasItsLimits) {
+  struct Row {
+    int32_t MachineData::*figure;
+    int32_t least, most;
+  };
+  using M = MachineData;
+  constexpr Row kRows[] = {
+      {&M::ramp_reference, 1, 100'000'000},
+      {&M::rated_speed, 1'000, 10'000'000},
+      {&M::rated_slip, 0, 1'500'000},
+      {&M::pole_pairs, 1, 50},
+      {&M::rated_power, 1, 1'000'000},
+      {&M::rated_active_current, 1'000, 1'000'000},
+      {&M::magnetizing_current, 0, 1'000'000},
+      {&M::rotor_run_up_ms, 1, 100'000},
+      {&M::motor_heat_time_ms, 1, 10'000'000},
+      {&M::inertia, 0, 100'000},
+      {&M::friction, 0, 4'000'000},
+      {&M::load_torque, -4'000'000, 4'000'000},
+      {&M::brake_torque, 0, 4'000'000},
+      {&M::dc_link, 1'000, 1'000'000},
+      {&M::chopper_level, 560'000, 1'000'000},
+      {&M::continuous_current, 1'000, 1'000'000},
+      {&M::unit_heat_time_ms, 1, 10'000'000},
+      {&M::ambient, -50, 100},
+      {&M::heat_sink_rise, 0, 200},
+      {&M::heat_sink_time_ms, 1, 10'000'000},
+  };
+  for (const auto& [figure, least, most] : kRows) {
+    SCOPED_TRACE(testing::Message() << least << " to " << most);
+    const auto limited = [figure = figure](int32_t value) {
+      MachineData machine;
+      machine.*figure = value;
+      return within_limits(machine).*figure;
+    };
+    EXPECT_EQ(limited(least), least);
+    EXPECT_EQ(limited(most), most);
+    EXPECT_EQ(limited(least - 1), least);
+    EXPECT_EQ(limited(most + 1), most);
+    EXPECT_EQ(limited(INT32_MIN), least);
+    EXPECT_EQ(limited(INT32_MAX), most);
+  }
+  EXPECT_EQ(within_limits({}), MachineData{});
+}
+
 TEST(Extremes, AllAtOneEnd) {
   for (const int32_t end : {INT32_MIN, INT32_MAX}) {
     MachineData machine;

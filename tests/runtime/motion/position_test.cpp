@@ -62,8 +62,11 @@ TEST(Position, ManyMillisecondsAtOnce) {
     Axis many = each;
     for (const uint32_t ticks : {1U, 2U, 7U, 31U, 4096U, 4097U, 60'000U}) {
       for (uint32_t n = 0; n < ticks; ++n) each.tick(order);
-      many.advance(ticks);
+      many.advance(ticks / 2);
+      many.advance(ticks - ticks / 2);  // without a look in between
       ASSERT_EQ(many.position(), each.position()) << speed << ", " << ticks << " ms";
+      ASSERT_EQ(many.state().energy, each.state().energy);
+      ASSERT_EQ(many == each, true) << "temperatures, and what is left of each division";
     }
     each.tick(order);
     many.tick(order);

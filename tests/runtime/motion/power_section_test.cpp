@@ -58,6 +58,20 @@ TEST(PowerSection, SlipMovesTheFrequency) {
   EXPECT_EQ(axis.state().frequency, 0);
 }
 
+// Direct current at standstill: what is below 0 counts as 0, and 10 x IN are the most.
+TEST(PowerSection, DirectCurrentIsThatOfTheOrder) {
+  struct Row {
+    int32_t ordered, current;
+  };
+  for (const Row& row : {Row{INT32_MIN, 0}, Row{-1, 0}, Row{0, 0}, Row{1, 1}, Row{20'000, 20'000},
+                         Row{INT32_MAX, 1'000'000}}) {
+    PowerSection power{within_limits({})};
+    power.step({Supply::DirectCurrent, 0, 50'000, 150'000, row.ordered});
+    EXPECT_EQ(power.output_current(), row.current);
+    EXPECT_EQ(power.active_current(), 0) << "it makes no torque";
+  }
+}
+
 // The square of the voltage takes the braking energy: 1e10 mV² a millisecond at rated power, less losses of
 // 20 % at IN (with the square of the current) and 1 % standby.
 TEST(PowerSection, DcLinkRisesWhenBraking) {

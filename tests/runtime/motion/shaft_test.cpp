@@ -99,6 +99,65 @@ TEST(Shaft, CurrentLimitMakesTheSpeedLag) {
   }
 }
 
+// The ramp waits at the shaft's speed: the setpoint is one of its steps ahead of that, both ways.
+TEST(Shaft, TheSetpointOfALaggingAxisIsOneStepAhead) {
+  for (const int32_t sign : {1, -1}) {
+    Axis axis{{}};
+    const AxisOrder order = run_to(sign * 1'500'000, 100);
+    for (int n = 0; n < 40; ++n) {
+      const int32_t before = axis.state().speed;
+      const AxisState& state = axis.tick(order);
+      ASSERT_TRUE(state.current_limited);
+      ASSERT_NEAR(state.setpoint, before + sign * 30'000, 1);  // 3000 rpm in 100 ms
+      ASSERT_LT(std::abs(state.speed), std::abs(state.setpoint));
+    }
+  }
+}
+
+// Coasting or magnetizing, standing or turning: no torque, no active current, no setpoint.
+TEST(Shaft, OnlyADrivingMotorHasTorque) {
+  MachineData machine;
+  machine.brake = false;
+  Axis axis(machine);
+  const auto idle = [&](AxisPhase phase) {
+    EXPECT_EQ(axis.state().phase, phase);
+    EXPECT_EQ(axis.state().torque, 0);
+    EXPECT_EQ(axis.state().active_current, 0);
+    EXPECT_EQ(axis.state().setpoint, 0);
+    EXPECT_FALSE(axis.state().current_limited);
+  };
+  AxisOrder order = run_to(600'000, 1'000);
+  order.premagnetize_ms = 10;
+  axis.tick({});
+  idle(AxisPhase::Off);
+  axis.tick(order);
+  idle(AxisPhase::Magnetizing);
+  for (int n = 0; n < 500; ++n) axis.tick(order);
+  EXPECT_EQ(axis.state().torque, 5'000);
+  axis.tick({});
+  idle(AxisPhase::Off);
+  axis.tick(order);
+  idle(AxisPhase::Magnetizing);
+  EXPECT_GT(axis.state().speed, 0);
+}
+
+// A torque that does not carry the shaft beyond the speed limit is given as it is, also where the shaft then is just
+// at the limit.
+TEST(Shaft, AtTheSpeedLimitTheTorqueIsTheGivenOne) {
+  const Shaft shaft{within_limits({})};
+  for (const int64_t torque : {4'000, -4'000}) {  // friction holds it: the speed stays 0
+    const Motion motion = shaft.turned(0, torque, 0, 200'000, {0, 5'000});
+    EXPECT_EQ(motion.speed, 0);
+    EXPECT_EQ(motion.torque, torque);
+    EXPECT_FALSE(motion.limited);
+  }
+  for (const int64_t torque : {6'000, -6'000}) {  // it would turn: only friction may be left
+    const Motion motion = shaft.turned(0, torque, 0, 200'000, {0, 5'000});
+    EXPECT_EQ(motion.speed, 0);
+    EXPECT_LE(std::abs(motion.torque), 5'000);
+  }
+}
+
 TEST(Shaft, StopOfALaggingAxisStartsFromItsSpeed) {
   Axis axis{{}};
   AxisOrder order = run_to(1'500'000, 10);

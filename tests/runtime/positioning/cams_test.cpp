@@ -66,6 +66,61 @@ TEST(StandardCam, RefusesWhatIsNoVariable) {
   EXPECT_FALSE(run_standard_cam(500, v.h, v.sources)) << "the structure ends behind the variables";
 }
 
+// Eight variables are watched, each with its change since the millisecond before. A ninth counts as at rest; a
+// variable that is watched again takes no second place.
+TEST(CamSources, WatchEightVariables) {
+  Variables v;
+  for (uint32_t n = 0; n < 9; ++n) v.h[300 + n] = static_cast<int32_t>(n) * 1'000;
+  v.h[300] = INT32_MAX;
+  for (int times = 0; times < 2; ++times)
+    for (uint32_t n = 0; n < 9; ++n) v.sources.watch(300 + n, v.h);
+  v.h[300] = INT32_MIN;  // one further: the count wraps
+  for (uint32_t n = 1; n < 9; ++n) v.h[300 + n] += n % 2 == 0 ? static_cast<int32_t>(n) : -7;
+  v.sources.tick(v.h);
+  EXPECT_EQ(v.sources.change(300), 1);
+  for (uint32_t n = 1; n < 8; ++n)
+    EXPECT_EQ(v.sources.change(300 + n), n % 2 == 0 ? static_cast<int32_t>(n) : -7) << n;
+  EXPECT_EQ(v.sources.change(308), 0) << "the ninth";
+  EXPECT_EQ(v.sources.change(400), 0) << "never watched";
+  v.sources.tick(v.h);
+  for (uint32_t n = 0; n < 8; ++n) EXPECT_EQ(v.sources.change(300 + n), 0) << "at rest now";
+}
+
+// GSCAM has 14 elements, GSCAM_EXT 16, CAM_OUTPUT 10 (IPOSplus p. 86, 91): they may end with the last variable.
+TEST(CamStructures, EndWithTheLastVariable) {
+  Variables v;
+  v.put(498, {300, 0, 200, 0, 0, 1, 0, 10});
+  EXPECT_TRUE(run_standard_cam(498, v.h, v.sources));
+  EXPECT_EQ(v.h[200], 1);
+  EXPECT_FALSE(run_standard_cam(499, v.h, v.sources));
+  EXPECT_FALSE(run_standard_cam(UINT32_MAX, v.h, v.sources));
+  ExtendedCams cams;
+  EXPECT_FALSE(cams.start(497, v.h, v.sources));
+  EXPECT_FALSE(cams.start(UINT32_MAX, v.h, v.sources));
+  EXPECT_TRUE(cams.start(496, v.h, v.sources));
+
+  for (const int32_t output : {502, 503}) {
+    Variables last;
+    ExtendedCams one;
+    last.put(100, {INT32_MIN + 3, 0, 0, 0, 0, INT32_MIN + 300, 200, 1, output});
+    last.put(static_cast<size_t>(output), {0, 1, 0, 10});
+    ASSERT_TRUE(one.start(100, last.h, last.sources));
+    EXPECT_EQ(one.tick(last.h, last.sources, {true, 0}), output == 502);
+    EXPECT_EQ(last.h[200], output == 502 ? 1 : 0);
+    EXPECT_EQ(one.runs(), output == 502) << "else it is stopped";
+  }
+}
+
+// Four controllers; one that is started again is the same.
+TEST(ExtendedCam, FourOfThemRun) {
+  Variables v;
+  ExtendedCams cams;
+  for (int times = 0; times < 5; ++times) EXPECT_TRUE(cams.start(100, v.h, v.sources));
+  for (const uint32_t structure : {120, 140, 160}) EXPECT_TRUE(cams.start(structure, v.h, v.sources));
+  EXPECT_FALSE(cams.start(180, v.h, v.sources));
+  for (const uint32_t structure : {100, 120, 140, 160}) EXPECT_TRUE(cams.start(structure, v.h, v.sources));
+}
+
 constexpr int32_t bits(uint32_t value) { return static_cast<int32_t>(value); }
 
 struct Extended : Variables {

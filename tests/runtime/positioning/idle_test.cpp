@@ -117,6 +117,52 @@ class Pair {
   Rig idles_, never_;
 };
 
+// On a travel nothing is decided but in the milliseconds in which something changes; what goes on there, or idles,
+// leaves the state and the speed of a whole millisecond.
+TEST(GoesOn, ATravelGoesOnAsAWholeMillisecondWould) {
+  for (const int32_t shape : {0, 1, 2}) {
+    Rig rig({{"916", shape}});
+    int decided = 0;
+    const auto run = [&](int ms) {
+      while (ms-- > 0) {
+        rig.tick();
+        runtime::Positioner goes_on = rig.service.positioner();
+        decided += !goes_on.goes_on();
+        if (!goes_on.goes_on()) continue;
+        runtime::Positioner whole = goes_on;
+        const int32_t speed = whole.tick(whole.inputs()).speed;
+        ASSERT_EQ(goes_on.go_on(), speed);
+        ASSERT_EQ(goes_on == whole, true);
+      }
+    };
+    rig.go(200'000);
+    run(800);
+    EXPECT_LE(decided, 1);
+    rig.go(300'000);
+    run(100);
+    if (shape == 0) rig.service.set_parameter("913", 1'000'000);  // a curved ramp must not change
+    run(4'000);
+    EXPECT_TRUE(rig.arrived());
+    EXPECT_LE(decided, 3);
+  }
+}
+
+TEST(GoesOn, IdlingIsAsAWholeMillisecondWould) {
+  Rig rig({{"100", 10}});
+  rig.go(30'000);
+  rig.run(400);
+  rig.set("700", kSpeedControl);
+  for (int n = 0; n < 300; ++n) {
+    rig.tick();
+    runtime::Positioner idles = rig.service.positioner();
+    ASSERT_TRUE(idles.idles());
+    runtime::Positioner whole = idles;
+    whole.tick(whole.inputs());
+    idles.idle();
+    ASSERT_EQ(idles == whole, true) << n;
+  }
+}
+
 struct Mode {
   int32_t setting;
   double least_possible, most_possible;  // share of the ms in which the mode is one with positioning

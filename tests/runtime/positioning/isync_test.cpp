@@ -52,6 +52,30 @@ TEST(Follower, PassesTheEndOfTheRange) {
   for (size_t t = 20; t < path.size(); ++t) ASSERT_NEAR(path[t] - path[t - 1], 10, 1e-3) << t;
 }
 
+// The gear always rounds down, to 2^-20 increments, whatever the signs: through 0 the slave goes as evenly as
+// anywhere else.
+TEST(Follower, TheGearRoundsDown) {
+  for (const int gear_master : {1, 3, 7, -3, -7})
+    for (const int gear_slave : {1, 5, -1, -5})
+      for (const int place : {1, 21, 1'000, -1, -21, -1'000}) {
+        SCOPED_TRACE(testing::Message() << gear_slave << " / " << gear_master << " to " << place);
+        Follower follower;
+        int64_t way = 0;
+        for (int t = 0; t < 50; ++t) {
+          MasterInputs inputs;
+          inputs.sync = t % kCycle == 0;
+          inputs.position = t < kCycle ? 0 : place;
+          inputs.gear_master = gear_master;
+          inputs.gear_slave = gear_slave;
+          follower.tick(inputs);
+          way += follower.step();
+        }
+        const int64_t rest = kIncrement * place * gear_slave - way * gear_master;
+        EXPECT_GE(rest * gear_master, 0);
+        EXPECT_LT(std::abs(rest), std::abs(gear_master));
+      }
+}
+
 // Numbers of a program: what comes of them is bounded, and keeps its direction.
 TEST(Follower, TakesAnyGear) {
   constexpr double kMost = 4'294'967'296.0;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/positioning/modulo.hpp"
+#include "tests/runtime/positioning/closed_form.hpp"
 #include "tests/runtime/positioning/rig.hpp"
 
 namespace ipos::tests {
@@ -85,13 +86,70 @@ TEST(Modulo, HighResolution) {
   rig.run(2);
   EXPECT_EQ(rig.travel(20'480), 5'120);  // half of 10 x 4096 units, 4 of them an increment
   EXPECT_EQ(rig.h[455], 20'480);
-  EXPECT_EQ(rig.travel(40'960 + 20'480), 0) << "no several turns (IPOSplus p. 29)";
+  for (const int32_t turns : {1, 2, 7, 1'000})
+    EXPECT_EQ(rig.travel(turns * 40'960 + 20'480), 0) << "no several turns (IPOSplus p. 29)";
 }
 
 TEST(Modulo, TooFineATurnIsOff) {
   Rig rig({{"960", 1}, {"961", 1'000'000}, {"963", 4'096}});
   EXPECT_EQ(rig.h[455], 0);
   EXPECT_TRUE(rig.said("2^31"));
+}
+
+// Whether it is wanted or not: such a turn counts as the function that is off, from the factory.
+TEST(Modulo, AnImpossibleTurnIsAsWithoutTheFunction) {
+  struct Turn {
+    int32_t numerator, denominator, resolution;
+  };
+  for (const Turn& t : {Turn{0, 1, 1}, Turn{-5, 1, 4'096}, Turn{10, 0, 4'096}, Turn{10, -3, 4'096},
+                        Turn{1'000'000, 1, 4'096}, Turn{INT32_MAX, 7, 65'535}})
+    for (const int32_t mode : {0, 1, 2, 3}) {
+      SCOPED_TRACE(testing::Message() << t.numerator << " / " << t.denominator << " x " << t.resolution);
+      runtime::PositioningSettings settings;
+      Modulo off;
+      EXPECT_TRUE(off.configure(settings, -9'000));
+      off.set(-9'000);
+      settings.modulo = mode;
+      settings.modulo_numerator = t.numerator;
+      settings.modulo_denominator = t.denominator;
+      settings.modulo_resolution = t.resolution;
+      Modulo modulo;
+      EXPECT_EQ(modulo.configure(settings, -9'000), mode == 0);
+      EXPECT_FALSE(modulo.possible());
+      for (const int32_t way : {8'000, 70'000, -200'000}) {
+        modulo.move(way);
+        off.move(way);
+        EXPECT_FALSE(modulo.on());
+        EXPECT_EQ(modulo.position(false), 0);
+        EXPECT_EQ(modulo.turns(), off.turns());
+      }
+    }
+}
+
+// 2^31 - 1 units are the longest turn.
+TEST(Modulo, TheLongestTurn) {
+  runtime::PositioningSettings settings;
+  settings.modulo = 1;
+  settings.modulo_numerator = INT32_MAX;
+  Modulo modulo;
+  EXPECT_TRUE(modulo.configure(settings, -1));
+  EXPECT_EQ(modulo.position(true), INT32_MAX - 1);
+  settings.modulo_numerator = 1 << 30;
+  settings.modulo_resolution = 2;
+  EXPECT_FALSE(modulo.configure(settings, -1));
+}
+
+TEST(Modulo, WhileItIsOffThereIsNoModuloPosition) {
+  runtime::PositioningSettings settings;
+  settings.modulo_numerator = 10;
+  settings.modulo_resolution = 4'096;
+  Modulo modulo;
+  EXPECT_TRUE(modulo.configure(settings, 10'240));
+  for (const bool high_resolution : {false, true}) EXPECT_EQ(modulo.position(high_resolution), 0);
+  settings.modulo = 1;
+  modulo.configure(settings, 10'240);
+  EXPECT_EQ(modulo.position(false), 0x4000) << "a quarter of 10 x 4096";
+  EXPECT_EQ(modulo.position(true), 10'240);
 }
 
 TEST(Modulo, WithoutItTheTargetIsRefused) {
@@ -138,6 +196,42 @@ TEST(Modulo, TurnsForEver) {
   EXPECT_LT(rig.h[511], 0);
   EXPECT_EQ(rig.travel(0x30000 + start), 3 * 40'960);
   EXPECT_EQ(rig.drive.fault(), 0);
+}
+
+// An encoder so fine that its count is soon 2^32 round, and three times that, both ways: each travel is that of the
+// closed form.
+TEST(Modulo, TheCountGoesRoundManyTimes) {
+  constexpr int32_t kFiner = 32'767, kWay = 1 << 30;
+  for (const int shape : {0, 1})
+    for (const int sign : {1, -1}) {
+      Rig rig({{"941", 1},
+               {"942", 1},
+               {"943", kFiner},
+               {"960", 1},
+               {"961", INT32_MAX},
+               {"962", 1},
+               {"963", 1},
+               {"911", 300},
+               {"912", 300},
+               {"916", shape},
+               {"923", 0}});
+      for (int n = 0; n < 12; ++n) {
+        const int32_t length = n == 0 ? kWay + 60'000'000 : kWay;  // so that it is in a ramp when it is round
+        const ClosedForm form(static_cast<double>(length) / kFiner, 1500, 300, 300);
+        const int32_t from = rig.h[491];
+        rig.go_by(sign * length);
+        for (int t = 1; t < form.duration() + 500; ++t) {
+          rig.tick();
+          const double way = kFiner * (shape == 0 ? form.linear(t) : form.sine(t));
+          const auto expected = runtime::wrapped(from + sign * std::llround(way));
+          ASSERT_LT(std::abs(runtime::wrapped(int64_t{rig.h[491]} - expected)), 100)
+              << "travel " << n << ", after " << t << " ms";
+        }
+        ASSERT_EQ(rig.h[491], runtime::wrapped(int64_t{from} + sign * length));
+        ASSERT_LT(std::abs(rig.h[495]), 10 * kFiner) << "the axis is there";
+      }
+      EXPECT_EQ(rig.drive.fault(), 0);
+    }
 }
 
 TEST(Modulo, CountOfTurnsCanBeSet) {

@@ -112,6 +112,23 @@ TEST(Profile, FromOneEndOfTheRangeToTheOther) {
   EXPECT_EQ(profile.position(), fine(INT32_MAX));
 }
 
+// 2^32 increments at 1/1000 rpm last 2000 years: more than a plan can count, and no reason to be there sooner.
+TEST(Profile, ATravelOfManyYearsIsNotCutShort) {
+  PositioningSettings settings;
+  settings.speed_cw = settings.speed_ccw = 1;
+  for (const auto& [from, to] : {std::pair{INT32_MIN, INT32_MAX}, std::pair{INT32_MAX, INT32_MIN}}) {
+    Profile profile;
+    profile.hold(fine(from), 0);
+    profile.travel(to, settings.travel_rules(1000), Goal::New);
+    const int sign = to > from ? 1 : -1;
+    for (int n = 1; n <= 100'000; ++n) {
+      profile.tick();
+      const double way = static_cast<double>(profile.position() - fine(from)) / kIncrement;
+      ASSERT_NEAR(sign * way, n * 4096 / 60e6, 0.001) << n;
+    }
+  }
+}
+
 struct Journey {
   int64_t highest = INT64_MIN, lowest = INT64_MAX;
   int ticks = 0;
@@ -313,6 +330,46 @@ TEST(Profile, EveryChangeOfSpeedHasItsOwnRamp) {
       EXPECT_NEAR(rpm_after(p, 200), 900, 0.01);
       EXPECT_NEAR(rpm_after(p, 200), 1200, 0.01);
     }
+}
+
+// Turned round on the way a run brakes on the ramp down and starts again on the ramp up: v² / 2a on each of them.
+TEST(Profile, ARunTheOtherWayBrakesFirst) {
+  for (const auto shape : {RampShape::Linear, RampShape::Sine, RampShape::Squared})
+    for (const int way : {1, -1}) {
+      const TravelRules r = rules(1500, 2000, 500, shape);
+      const auto rpm_after = [&](Profile& p, int ms) {
+        for (int n = 0; n < ms; ++n) p.tick();
+        return way * static_cast<double>(speed_of_rate(p.speed(), {})) / 1000;
+      };
+      Profile p;
+      p.run(way, r);
+      EXPECT_NEAR(rpm_after(p, 1'000), 1500, 0.01);
+      const double turned = static_cast<double>(p.position()) / kIncrement;
+      p.run(-way, r);
+      EXPECT_NEAR(rpm_after(p, 125), 750, 0.01);  // 3000 rpm in 500 ms; in its middle every shape is at half
+      EXPECT_NEAR(rpm_after(p, 125), 0, 0.01);
+      EXPECT_NEAR(static_cast<double>(p.position()) / kIncrement, turned + way * 102.4 * 125, 0.01);
+      EXPECT_NEAR(rpm_after(p, 500), -750, 0.01);  // 3000 rpm in 2000 ms
+      EXPECT_NEAR(rpm_after(p, 500), -1500, 0.01);
+      EXPECT_NEAR(static_cast<double>(p.position()) / kIncrement, turned + way * 102.4 * (125 - 500), 0.01);
+    }
+}
+
+// 1 rpm is 4096 increments a minute. P901 and P902 are at most P302, and no override scales them.
+TEST(TravelRules, ReferenceSpeedsAreP901AndP902) {
+  PositioningSettings settings;
+  settings.reference_speed_1 = 600'000;
+  settings.reference_speed_2 = 60'000;
+  settings.maximum_speed = 1'500'000;
+  for (const bool fast : {true, false}) {
+    const TravelRules r = settings.reference_rules(fast);
+    const double rate = (fast ? 600.0 : 60.0) * 4096 / 60'000 * (int64_t{1} << kRateBits);
+    EXPECT_NEAR(static_cast<double>(r.cw), rate, 1);
+    EXPECT_EQ(r.ccw, r.cw);
+  }
+  settings.maximum_speed = 300'000;
+  EXPECT_NEAR(static_cast<double>(settings.reference_rules(true).cw),
+              300.0 * 4096 / 60'000 * (int64_t{1} << kRateBits), 1);
 }
 
 // Less than half an increment from the target: with a travel speed the travel is over at once, without one the axis

@@ -184,6 +184,31 @@ TEST(ReferenceTravel, NoCamIsF39) {
   rig.run_until([&] { return rig.drive.fault() == 39; });
 }
 
+// The end of the cam, or the zero pulse behind it, lies behind the limit switch.
+TEST(ReferenceTravel, ALimitSwitchBeforeTheReferencePointIsF39) {
+  const auto fails = [](int32_t type, const Machine& machine, bool zero_pulse, int32_t start) {
+    SCOPED_TRACE(testing::Message() << "type " << type << (zero_pulse ? " ZP" : " CAM"));
+    ReferenceRig rig(type, machine);
+    rig.go(start);
+    rig.run_to_target();
+    rig.positioner().start_reference(false, zero_pulse);
+    rig.run_until([&] { return rig.drive.fault() != 0; }, 10'000);
+    EXPECT_EQ(rig.drive.fault(), 39);
+    EXPECT_FALSE(rig.referenced());
+    return rig.mechanical;
+  };
+  // A limit switch is seen in the millisecond after it, and P902 goes 4.1 increments in one.
+  for (const int32_t type : {1, 6})
+    EXPECT_NEAR(static_cast<double>(fails(type, {-9'000, 9'000, -2'000, 2'000}, false, 0)), -2'000, 50);
+  for (const int32_t type : {2, 7})
+    EXPECT_NEAR(static_cast<double>(fails(type, {-9'000, 9'000, -2'000, 2'000}, false, 0)), 2'000, 50);
+  // The edge is at 7000 increments, the zero pulse at 8192.
+  for (const int32_t type : {1, 6})
+    EXPECT_NEAR(static_cast<double>(fails(type, {-7'000, 9'000, -7'500, 9'000}, true, 0)), -7'500, 50);
+  for (const int32_t type : {2, 7})
+    EXPECT_NEAR(static_cast<double>(fails(type, {-9'000, 7'000, -9'000, 7'500}, true, 0)), 7'500, 50);
+}
+
 TEST(ReferenceTravel, NoLimitSwitchesIsF27) {
   for (const int32_t type : {3, 4}) {
     Rig rig({{"903", type}});
@@ -213,6 +238,50 @@ TEST(ReferenceTravel, InterruptedItBeginsAnew) {
   rig.levels = [&](int64_t at) { return rig.machine.levels(at); };
   rig.run_until([&] { return !rig.positioner().referencing() && rig.arrived(); });
   EXPECT_NEAR(static_cast<double>(rig.mechanical - rig.h[511] + 500), -22'000, kEdge);
+}
+
+// Turned round at the limit switch and then interrupted: anew means in the direction of its type first, and again
+// to the zero pulse.
+TEST(ReferenceTravel, InterruptedBehindTheTurnItBeginsAnew) {
+  const Machine m;
+  struct Row {
+    int32_t type, start, interrupted;
+    int way;
+    int64_t edge;
+  };
+  for (const Row& row : {Row{2, 70'000, 40'000, 1, m.cam_right}, Row{1, -80'000, -60'000, -1, m.cam_left}}) {
+    SCOPED_TRACE(row.type);
+    ReferenceRig rig(row.type, m);
+    rig.go(row.start);
+    rig.run_to_target();
+    rig.positioner().start_reference(false, true);
+    rig.run_until([&] {
+      return row.way * rig.drive.axis().speed < 0 && row.way * (rig.mechanical - row.interrupted) < 0;
+    });
+    rig.levels = [&](int64_t at) { return static_cast<uint16_t>(rig.machine.levels(at) & ~(1 << 3)); };
+    rig.run(500);
+    EXPECT_TRUE(rig.drive.axis().standing);
+    rig.levels = [&](int64_t at) { return rig.machine.levels(at); };
+    rig.run(400);
+    EXPECT_NEAR(rig.drive.axis().speed, row.way * 600'000, 3'000);
+    rig.run_until([&] { return !rig.positioner().referencing() && rig.arrived(); });
+    EXPECT_EQ(rig.mechanical - rig.h[511] + 500, row.way > 0 ? pulse_above(row.edge) : pulse_below(row.edge));
+    EXPECT_EQ(rig.drive.fault(), 0);
+  }
+}
+
+// Also where a fault of its own has interrupted it.
+TEST(ReferenceTravel, BehindF39ItBeginsAnewWithTheReset) {
+  ReferenceRig rig(1, {0, -1, -20'000, 20'000});  // a cam that is nowhere
+  rig.positioner().start_reference(false, false);
+  rig.run_until([&] { return rig.drive.fault() == 39; });
+  rig.run(500);
+  EXPECT_TRUE(rig.drive.axis().standing);
+  rig.machine = {};
+  rig.drive.reset_fault();
+  rig.run_until([&] { return rig.referenced() && rig.arrived(); });
+  EXPECT_NEAR(static_cast<double>(rig.mechanical - rig.h[511] + 500), -30'000, kEdge);
+  EXPECT_EQ(rig.drive.fault(), 0);
 }
 
 TEST(ReferenceTravel, OrdersWaitForItsEnd) {

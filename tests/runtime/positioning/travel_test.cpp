@@ -128,6 +128,51 @@ TEST(Travel, CurvedRampsMustNotChangeOnTheWay) {
     }
 }
 
+// Only speed, ramps and their type are forbidden to change: the target may, and the override waits for the next travel.
+TEST(Travel, ACurvedRampTakesAnotherTargetAndKeepsItsOverride) {
+  for (const int32_t shape : {1, 2}) {
+    Rig rig({{"916", shape}, {"930", 1}, {"302", 3'000'000}});
+    rig.drive.set_analog(volts(5'000));
+    rig.go(400'000);
+    rig.run(1'000);
+    EXPECT_NEAR(rig.drive.axis().speed, 1'125'000, 1'000);  // 75 % of 1500 rpm
+    rig.drive.set_analog(volts(2'500));
+    rig.run(300);
+    EXPECT_NEAR(rig.drive.axis().speed, 1'125'000, 1'000);
+    rig.go(300'000);
+    rig.run(300);
+    EXPECT_NEAR(rig.drive.axis().speed, 1'125'000, 1'000);
+    rig.run_to_target();
+    EXPECT_EQ(rig.h[511], 300'000);
+    rig.go(0);
+    rig.run(1'000);
+    EXPECT_NEAR(rig.drive.axis().speed, -562'500, 1'000);  // 37.5 %
+    rig.run_to_target();
+    EXPECT_EQ(rig.h[511], 0);
+    EXPECT_EQ(rig.drive.fault(), 0);
+  }
+}
+
+TEST(Travel, FromLinearToCurvedHoldsFromTheNextTravelOn) {
+  for (const int32_t shape : {1, 2}) {
+    Rig rig({{"911", 1'000}, {"912", 800}});
+    rig.go(150'000);
+    const ClosedForm form(150'000, 1500, 1000, 800);
+    for (int t = 1; t < form.duration(); ++t) {
+      if (t == 100) rig.service.set_parameter("916", shape);
+      rig.tick();
+      ASSERT_NEAR(rig.h[491], form.linear(t), 0.51) << t;
+    }
+    rig.run_to_target();
+    rig.go(0);
+    for (int t = 1; t < 200; ++t) {
+      rig.tick();
+      ASSERT_NEAR(rig.h[491], 150'000 - (shape == 1 ? form.sine(t) : form.squared(t)), 0.51) << t;
+    }
+    EXPECT_EQ(rig.drive.fault(), 0);
+  }
+}
+
 TEST(Travel, CurvedRampsTakeTheTimeOfTheLinearOne) {
   for (const int32_t shape : {1, 2}) {
     Rig rig({{"916", shape}, {"911", 1000}, {"912", 800}});
@@ -178,6 +223,17 @@ TEST(Travel, GainAndFeedforward) {
   half.go(400'000);
   half.run(1500);
   EXPECT_NEAR(half.h[495], 600, 5);
+}
+
+// Without gain the axis turns as fast as P915 says, to 1/1000 rpm.
+TEST(Travel, FeedforwardAloneIsAShareOfTheSpeed) {
+  for (const int32_t share : {0, 1'000, 50'000, 100'000, 33'000})
+    for (const int sign : {1, -1}) {
+      Rig rig({{"915", share}, {"910", 0}, {"913", 600'000}, {"914", 600'000}, {"923", 0}});
+      rig.go(sign * 400'000);
+      rig.run(1'000);
+      EXPECT_EQ(rig.drive.axis().speed, sign * 6 * share) << share;
+    }
 }
 
 TEST(Travel, LagError) {
