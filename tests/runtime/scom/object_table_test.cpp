@@ -355,6 +355,8 @@ TEST(ObjectTable, AOneShotTelegramHasThePresentValues) {
   unit.h[21] = 0x55667788;
   EXPECT_EQ(ObjectTable::acyclic_frame(Table::request(ObjectKind::TransmitAcyclic, 1024, 8, 20), unit.h),
             Frame(1024, 8, {0x55, 0x66, 0x77, 0x88, 0x11, 0x22, 0x33, 0x44}));
+  EXPECT_EQ(ObjectTable::acyclic_frame(Table::request(ObjectKind::TransmitAcyclic, 1024, 0x108, 20), unit.h),
+            Frame(1024, 8, {0x44, 0x33, 0x22, 0x11, 0x88, 0x77, 0x66, 0x55}));
   EXPECT_EQ(ObjectTable::acyclic_frame(Table::request(ObjectKind::TransmitAcyclic, 2047, 0x103, 20), unit.h),
             Frame(2047, 3, {0x44, 0x33, 0x22}));
 }

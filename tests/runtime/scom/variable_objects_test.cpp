@@ -506,6 +506,13 @@ TEST_F(Objects, TheSyncIdentifierIsWarnedOf) {
   EXPECT_TRUE(objects_.definitions().back().accepted);
   cyclic(1999, 100);
   EXPECT_EQ(why_, "");
+  EXPECT_GE(cyclic(2047, 100), 0);
+  EXPECT_EQ(why_, "");
+  for (const int32_t id : {-1, 2048}) EXPECT_LT(cyclic(id, 100), 0);
+  objects_.stop();
+  objects_.set_profile({});  // as from the factory: P817 = 0
+  EXPECT_EQ(cyclic(0, 100), 99);
+  EXPECT_EQ(why_, "object number 000h (0) is also the sync telegram of this unit (P817 or P885)");
   objects_.stop();
   profile.synchronous = false;  // MOVITRAC 07
   objects_.set_profile(profile);
@@ -578,6 +585,20 @@ TEST_F(Objects, ADefinitionStandsForItsStructure) {
   EXPECT_EQ(objects_.object(1030)->data, 431U);
   EXPECT_EQ(objects_.object(1031)->data, 20U);
   EXPECT_EQ(objects_.object(1027), nullptr);
+}
+
+// It counts from the start, too, and does not wait for the objects that were there before.
+TEST_F(Objects, AnObjectDefinedWhileOthersRunIsSentInItsOwnTime) {
+  cyclic(1024, 1000);
+  objects_.start(0);
+  EXPECT_EQ(objects_.tick(0, h_), 1000);
+  cyclic(1025, 10);
+  outbox_.sent.clear();
+  EXPECT_EQ(objects_.tick(5, h_), 10);
+  EXPECT_TRUE(outbox_.sent.empty());
+  EXPECT_EQ(objects_.tick(10, h_), 20);
+  ASSERT_EQ(outbox_.sent.size(), 1U);
+  EXPECT_EQ(outbox_.sent[0].frame.id, 1025U);
 }
 
 // SCOMST STOP: nothing is sent or received, the objects stay and can be started again. What still waits is taken back.
