@@ -67,12 +67,12 @@ ObjectRequest ObjectTable::request(ObjectKind kind, uint32_t variable, std::span
 ObjectVerdict ObjectTable::judge(const ObjectRequest& request) const {
   const auto format = variable_format(request.format);
   if (!format) return ObjectVerdict::NoFormat;
-  if (request.data < 0 || request.data >= 0x1'0000 ||
-      static_cast<uint32_t>(request.data) + format->variables() > unit_->variables)
+  if (request.data < 0 || static_cast<uint32_t>(request.data) + format->variables() > unit_->variables)
     return ObjectVerdict::NoVariables;
-  if (request.object >= kSbus2Object && unit_->generation == Generation::B) return ObjectVerdict::OnSbus2;
-  if (request.object < 0 || static_cast<uint32_t>(request.object) >= kStandardIdLimit)
-    return ObjectVerdict::NoIdentifier;
+  if (request.object < 0) return ObjectVerdict::NoIdentifier;
+  if ((request.object & kSbus2Object) != 0 && unit_->generation == Generation::B)
+    return ObjectVerdict::OnSbus2;
+  if (static_cast<uint32_t>(request.object) >= kStandardIdLimit) return ObjectVerdict::NoIdentifier;
   if (is_movilink_identifier(static_cast<uint32_t>(request.object), profile_))
     return ObjectVerdict::ClosedIdentifier;
   return ObjectVerdict::Accepted;
@@ -207,7 +207,9 @@ bool ObjectTable::is_sound(uint32_t id, VariableFormat format, uint32_t data) co
 }
 
 bool ObjectTable::restore(const State& state) {
-  if (state.cyclic_count > kMostCyclic || state.receive_count > kMostReceive) return false;
+  if (state.cyclic_count > unit_->fast_objects + unit_->slow_objects ||
+      state.receive_count > unit_->receive_objects)
+    return false;
   for (const Cyclic& object : std::span(state.cyclic).first(state.cyclic_count))
     if (object.cycle == 0 || !is_sound(object.id, object.format, object.data)) return false;
   for (const Receive& object : std::span(state.receive).first(state.receive_count))

@@ -18,9 +18,7 @@ std::string object_words(int32_t object) {
 
 VariableObjects::VariableObjects(const stdlib::UnitType& unit, uint32_t baud, FrameSender& sender,
                                  uint64_t first_tag, int sbus)
-    : sender_(sender), first_tag_(first_tag), unit_(unit), table_(unit, baud, sbus) {
-  forget_due();
-}
+    : sender_(sender), first_tag_(first_tag), unit_(unit), table_(unit, baud, sbus) {}
 
 bool VariableObjects::define(ObjectKind kind, uint32_t variable, std::span<int32_t> h, std::string& why) {
   const ObjectRequest request = table_.request(kind, variable, h);

@@ -105,10 +105,10 @@ class VariableObjects {
   const ObjectDefinition* another_use(const ObjectDefinition& definition) const;
   std::string reason(const ObjectRequest& request, ObjectVerdict verdict) const;
 
-  int64_t due_;  // before this millisecond nothing is
+  int64_t due_ = kUnknown;  // before this millisecond nothing is
   FrameSender& sender_;
   uint64_t first_tag_;
-  std::array<int64_t, ObjectTable::kMostCyclic> due_of_;  // when each object is
+  std::array<int64_t, ObjectTable::kMostCyclic> due_of_{};  // when each object is; known from the start on
   const stdlib::UnitType& unit_;
   ObjectTable table_;
   std::vector<ObjectDefinition> definitions_;
