@@ -15,7 +15,8 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
 std::optional<TomlMistake> toml_mistake(std::string_view text) {
   FilePlace place{1, 0};
-  char before = '\n';  // the last character that is neither blank nor comment; a list goes on over the ends of lines
+  char before =
+      '\n';  // the last character that is neither blank nor comment; a list goes on over the ends of lines
   std::string_view quote;  // of the text we are in
   bool comment = false;
   bool header = false;  // [ or [[ at the begin of a line, which names a table

@@ -18,10 +18,9 @@ struct TomlMistake {
   std::string_view text;  // for the user
 };
 
-// The first mistake for which toml++ 3.3 has undefined behaviour, so that it must not see it: a byte beyond ASCII outside of
-// texts and comments, a text in quotes that begins in the middle of a word, a } where a list waits for a value, and the name of a table that
-// begins with no character of a key.
-// Nothing when there is none.
+// The first mistake for which toml++ 3.3 has undefined behaviour, so that it must not see it: a byte beyond ASCII
+// outside of texts and comments, a text in quotes that begins in the middle of a word, a } where a list waits for a
+// value, and the name of a table that begins with no character of a key. Nothing when there is none.
 std::optional<TomlMistake> toml_mistake(std::string_view text);
 
 }  // namespace ipos::runtime

@@ -57,7 +57,8 @@ void do_deed(Plant& plant, const Deed& deed) {
     case Deed::Kind::Force: station.inputs().line(deed.index).forced = static_cast<int8_t>(deed.value); break;
     case Deed::Kind::Write:
       if (station.powered())
-        (void)station.drive().parameters().execute(runtime::ParameterService::WriteVolatile, deed.index, deed.value);
+        (void)station.drive().parameters().execute(runtime::ParameterService::WriteVolatile, deed.index,
+                                                   deed.value);
       break;
     case Deed::Kind::Store:
       if (station.powered())
@@ -109,7 +110,8 @@ struct Course {
   std::vector<std::string> looks;
   std::string frames, telegrams;
   size_t entries = 0;
-  std::string kept, found;  // by the stations after a power cut at the end, and by new ones with the same files
+  std::string kept,
+      found;  // by the stations after a power cut at the end, and by new ones with the same files
 };
 
 std::optional<Course> run(const Trouble& trouble, const Way& way) {
@@ -179,7 +181,8 @@ std::optional<std::string> complaint(const Trouble& trouble) {
     if (!course) return fmt::format("{}: the plant is refused", way.name);
     for (size_t look = 0; look < expected->looks.size(); ++look)
       if (course->looks[look] != expected->looks[look])
-        return fmt::format("{}: look {}: {}", way.name, look, difference(expected->looks[look], course->looks[look]));
+        return fmt::format("{}: look {}: {}", way.name, look,
+                           difference(expected->looks[look], course->looks[look]));
     if (course->frames != expected->frames) return fmt::format("{}: frames differ", way.name);
     if (course->telegrams != expected->telegrams) return fmt::format("{}: telegrams differ", way.name);
     if (course->kept != expected->kept)
@@ -194,7 +197,8 @@ void leave_out(std::vector<Part> Trouble::*parts, Trouble& trouble) {
     for (size_t at = 0; at < (trouble.*parts).size();) {
       Trouble less = trouble;
       const auto begin = (less.*parts).begin() + static_cast<std::ptrdiff_t>(at);
-      (less.*parts).erase(begin, begin + static_cast<std::ptrdiff_t>(std::min(length, (less.*parts).size() - at)));
+      (less.*parts)
+          .erase(begin, begin + static_cast<std::ptrdiff_t>(std::min(length, (less.*parts).size() - at)));
       if (complaint(less))
         trouble = std::move(less);
       else
@@ -209,7 +213,8 @@ Trouble smaller(Trouble trouble) {
   for (Time shorter = trouble.end / 2; shorter > runtime::kMillisecond; shorter /= 2) {
     Trouble less = trouble;
     less.end -= shorter;
-    if ((less.deeds.empty() || less.deeds.back().at <= less.end) && complaint(less)) trouble = std::move(less);
+    if ((less.deeds.empty() || less.deeds.back().at <= less.end) && complaint(less))
+      trouble = std::move(less);
   }
   return trouble;
 }

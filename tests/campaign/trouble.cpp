@@ -35,21 +35,23 @@ size_t count(const std::string& text, std::string_view word) {
 
 std::string fault(Dice& dice) {
   const int from = dice.pick(0, kLongest - 200);
-  const std::string until = fmt::format("from = \"{}us\"\nuntil = \"{}us\"\n", from * 1000 + dice.pick(0, 999),
-                                        (from + dice.pick(1, 800)) * 1000);
+  const std::string until = fmt::format("from = \"{}us\"\nuntil = \"{}us\"\n",
+                                        from * 1000 + dice.pick(0, 999), (from + dice.pick(1, 800)) * 1000);
   static constexpr const char* kOfFrames[] = {"drop", "corrupt", "duplicate", "terminator"};
   static constexpr const char* kOfWires[] = {"short", "stuck"};
   switch (dice.pick(0, 3)) {
     case 0:
-      return fmt::format("[[fault]]\nbus = \"can\"\nkind = \"{}\"\nrate = {}\nseed = {}\n{}", kOfFrames[dice.pick(0, 3)],
-                         dice.pick(1, 400), dice.pick(1, 999), until);
+      return fmt::format("[[fault]]\nbus = \"can\"\nkind = \"{}\"\nrate = {}\nseed = {}\n{}",
+                         kOfFrames[dice.pick(0, 3)], dice.pick(1, 400), dice.pick(1, 999), until);
     case 1:
-      return fmt::format("[[fault]]\nbus = \"can\"\nkind = \"delay\"\ndelay = \"{}us\"\nrate = {}\nseed = {}\n{}",
-                         dice.pick(1, 20'000), dice.pick(1, 400), dice.pick(1, 999), until);
+      return fmt::format(
+          "[[fault]]\nbus = \"can\"\nkind = \"delay\"\ndelay = \"{}us\"\nrate = {}\nseed = {}\n{}",
+          dice.pick(1, 20'000), dice.pick(1, 400), dice.pick(1, 999), until);
     case 2:
       return fmt::format("[[fault]]\nbus = \"can\"\nkind = \"{}\"\nstation = \"u0\"\n{}",
                          dice.one_in(2) ? "cut" : "swap", until);
-    default: return fmt::format("[[fault]]\nbus = \"can\"\nkind = \"{}\"\n{}", kOfWires[dice.pick(0, 1)], until);
+    default:
+      return fmt::format("[[fault]]\nbus = \"can\"\nkind = \"{}\"\n{}", kOfWires[dice.pick(0, 1)], until);
   }
 }
 
@@ -166,8 +168,8 @@ std::string describe(const Trouble& trouble) {
   std::string out = fmt::format("seed {}\n{}", trouble.seed, trouble.text("."));
   for (const auto& [name, source] : trouble.programs) out += fmt::format("--- {}\n{}", name, source);
   for (const Deed& one : trouble.deeds)
-    out += fmt::format("{} ns: {} {} index {} value {} '{}'\n", one.at, word(one.kind), one.target, one.index, one.value,
-                       one.message);
+    out += fmt::format("{} ns: {} {} index {} value {} '{}'\n", one.at, word(one.kind), one.target, one.index,
+                       one.value, one.message);
   return out + fmt::format("until {} ns\n", trouble.end);
 }
 

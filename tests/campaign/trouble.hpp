@@ -16,10 +16,10 @@ struct Deed {
   enum class Kind : uint8_t { PowerOff, PowerOn, Send, Force, Write, Store, Look };
   Kind kind = Kind::Look;
   runtime::Time at = 0;
-  size_t target = 0;     // number of a station, or of a bus
-  std::string message;   // Send
-  int value = 0;         // Force: level; Write, Store: value
-  uint16_t index = 0;    // Write, Store; Force: the input
+  size_t target = 0;    // number of a station, or of a bus
+  std::string message;  // Send
+  int value = 0;        // Force: level; Write, Store: value
+  uint16_t index = 0;   // Write, Store; Force: the input
 };
 
 struct Trouble {

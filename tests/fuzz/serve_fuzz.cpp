@@ -1,17 +1,20 @@
-// Any lines as messages of a page to the host of a plant (docs/reference/serve.md): each is answered, by one
-// reply or its parts, and the plant goes on.
+// Any lines as messages of a page to the host of a plant (docs/reference/serve.md): each is answered, by one reply or
+// its parts, and the plant goes on.
 //
 // Making a plant takes longer than a hundred messages, so with IPOS_FUZZ_KEEP=N in the environment N inputs go to one
-// host. Its messages so far are then in the file serve-history, which outlives a finding: without its zeros it is one
-// input that does the same.
+// host, which leaves out most messages that take long and does not read long replies. The messages that it has
+// carried out are then in the file serve-history, which outlives a finding: without its zeros it is one input that
+// does the same.
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cstdlib>
 #include <cstring>
 #include <deque>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -49,16 +52,20 @@ from = "saw.DO01"
 to = "lift.DI03"
 )";
 constexpr int64_t kMostStep = 20;  // ms: more tell nothing new
-constexpr size_t kLongReply = 4096;  // is not read: that would take longer than to make it
+constexpr size_t kLongReply =
+    4096;  // is not read by a host of many inputs: that would take longer than to make it
 // Commands that take as long as a hundred others. Of many inputs for one host only each so many-th is carried out.
-constexpr std::string_view kSlow[] = {"parameters", "parameters.compare", "parameters.save", "plant", "back", "restart"};
+constexpr std::string_view kSlow[] = {"parameters", "parameters.compare", "parameters.save", "plant", "back",
+                                      "restart"};
 constexpr int kOfSlow = 64;
 
 // A page that pauses what it has started.
 class PausingPost final : public tools::serve::Post {
  public:
+  // Replies of `longest` bytes and more are not read.
+  explicit PausingPost(size_t longest) : longest_(longest) {}
   bool send(LetterKind kind, uint16_t, std::string_view body) override {
-    if (kind == LetterKind::Reply && body.size() < kLongReply) {
+    if (kind == LetterKind::Reply && body.size() < longest_) {
       const Json reply = Json::parse(body, nullptr, false);
       require(reply.is_object() && reply.contains("re"), "a reply is an object and says to what");
       require(reply.contains("ok") != reply.contains("error"), "it is good or it is not");
@@ -79,6 +86,9 @@ class PausingPost final : public tools::serve::Post {
   std::deque<tools::serve::Letter> waiting;
   bool answered = false;
   bool runs = false;
+
+ private:
+  size_t longest_;
 };
 
 tools::debug::MakePlant make() {
@@ -104,9 +114,12 @@ std::string shortened(std::string_view line) {
   return message.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-// The messages that a host has had, in a file.
+// The messages that a host has carried out, in a file.
 class History {
  public:
+  // A message is written shortened: written again as JSON it may be longer, at worst \u00xx for a byte.
+  static constexpr size_t kGrows = 6;
+
   History() {
     const int file = open("serve-history", O_RDWR | O_CREAT | O_TRUNC, 0644);
     if (file < 0 || ftruncate(file, kSize) != 0) broken("serve-history can be written");
@@ -116,6 +129,7 @@ class History {
   }
   bool has_room(size_t size) const { return used_ + size < kSize; }
   void add(std::string_view text) {
+    assert(has_room(text.size()));
     std::memcpy(text_ + used_, text.data(), text.size());
     used_ += text.size();
     text_[used_++] = '\n';
@@ -140,17 +154,25 @@ bool is_slow(std::string_view message) {
 }
 
 struct Session {
+  History* kept;  // null for a host of one input
   PausingPost post;
   tools::serve::PlantHost host{make(), "plant", "0", post, false};
+  int slow = 0;
 
-  explicit Session(int of_slow) : left_out(of_slow) { post.waiting.push_back({LetterKind::Opened, 1, {}}); }
+  explicit Session(History* history)
+      : kept(history), post(history == nullptr ? std::numeric_limits<size_t>::max() : kLongReply) {
+    post.waiting.push_back({LetterKind::Opened, 1, {}});
+  }
 
   void take(std::string_view text) {
     while (!text.empty()) {
       const size_t end = text.find('\n');
       std::string message = shortened(text.substr(0, end));
       text = end == std::string_view::npos ? std::string_view{} : text.substr(end + 1);
-      if (is_slow(message) && slow++ % left_out != 0) continue;
+      if (kept != nullptr) {
+        if (is_slow(message) && slow++ % kOfSlow != 0) continue;
+        kept->add(message);
+      }
       post.waiting.push_back({LetterKind::Message, 1, std::move(message)});
       post.runs = true;
       post.answered = false;
@@ -160,9 +182,6 @@ struct Session {
     }
     require(host.plant().now() >= 0, "the plant is there");
   }
-
-  int left_out;
-  int slow = 0;
 };
 
 // Takes an input with the host as the one before has left it.
@@ -170,13 +189,12 @@ void go_on(std::string_view text, int inputs) {
   static History history;
   static std::unique_ptr<Session> session;
   static int taken = 0;
-  if (taken == inputs || !history.has_room(text.size())) session.reset();
+  if (taken == inputs || !history.has_room(History::kGrows * text.size())) session.reset();
   if (!session) {
     history.clear();
-    session = std::make_unique<Session>(kOfSlow);
+    session = std::make_unique<Session>(&history);
     taken = 0;
   }
-  history.add(text);
   session->take(text);
   ++taken;
 }
@@ -189,6 +207,6 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (keep != nullptr)
     go_on(text, std::max(1, std::atoi(keep)));
   else
-    Session(1).take(text);
+    Session(nullptr).take(text);
   return 0;
 }
