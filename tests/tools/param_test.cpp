@@ -12,7 +12,7 @@
 namespace ipos::tests {
 namespace {
 
-const std::string kStation = "[[station]]\nname = \"unit1\"\nunit = \"md60a\"\n";
+const std::string kUnit1 = "[[station]]\nname = \"unit1\"\nunit = \"md60a\"\n";
 const std::string kMemory = "nvram = \"unit1.nv\"\n";
 
 // Of a message that quotes its line below.
@@ -20,7 +20,7 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 
 class Param : public ::testing::Test {
  protected:
-  Param() { plant(kStation + kMemory); }
+  Param() { plant(kUnit1 + kMemory); }
   void plant(const std::string& text) { folder_.write("plant.toml", text); }
   CommandResult param(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "param");
@@ -61,7 +61,7 @@ TEST_F(Param, TheRunUsesTheMemory) {
       "A.IPC",
       "#include <const.h>\ninitial long kept;\nlong seen;\nmain()\n{\n  seen = kept;\n  kept = kept + 5;\n"
       "  _Memorize(MEM_STDATA);\n}\n");
-  plant(kStation + kMemory + "program = \"A.IPC\"\n");
+  plant(kUnit1 + kMemory + "program = \"A.IPC\"\n");
   const auto run = [&] {
     const CommandResult result =
         run_ipos({"run", "plant.toml", "--for", "20ms", "--format", "json"}, folder_.path());
@@ -89,7 +89,7 @@ TEST_F(Param, SetRefusesWhatTheUnitRefuses) {
       "refused: P003 Actual position := 1 Inc: read access only\n");
   EXPECT_EQ(result.out, "P131 Ramp t11 DOWN CW = 2.500 s (was 2.000 s)\n") << "the others go on";
   // R parameters need controller inhibit: DI00 is low.
-  plant(kStation + kMemory + "[station.inputs]\nDI00 = 1\n");
+  plant(kUnit1 + kMemory + "[station.inputs]\nDI00 = 1\n");
   result = param({"set", "plant.toml", "P100=SBus"});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_EQ(result.err, "refused: P100 Setpoint source := SBus: controller inhibit required\n");
@@ -107,7 +107,7 @@ TEST_F(Param, WhatCannotBeReadIsWrittenNowhere) {
 }
 
 TEST_F(Param, WithoutMemoryNothingIsKeptAndItSaysSo) {
-  plant(kStation);
+  plant(kUnit1);
   CommandResult result = param({"set", "plant.toml", "P130=2.5s"});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_EQ(result.err,
@@ -117,7 +117,7 @@ TEST_F(Param, WithoutMemoryNothingIsKeptAndItSaysSo) {
 }
 
 TEST_F(Param, WhatThePlantFileSetsIsChangedThere) {
-  plant(kStation + kMemory + "[station.parameters]\nP130 = \"1.5 s\"\n8471 = 1500\n");
+  plant(kUnit1 + kMemory + "[station.parameters]\nP130 = \"1.5 s\"\n8471 = 1500\n");
   EXPECT_EQ(get("P130") + get("P131"), "P130 Ramp t11 UP CW = 1.500 s\nP131 Ramp t11 DOWN CW = 1.500 s\n");
   const CommandResult result = param({"set", "plant.toml", "P130=2.5s", "P132=2.5s"});
   EXPECT_EQ(result.exit_code, 1);
@@ -128,7 +128,7 @@ TEST_F(Param, WhatThePlantFileSetsIsChangedThere) {
 
 TEST_F(Param, TextsInThePlantFileAreLocated) {
   const auto error = [&](const std::string& line) {
-    plant(kStation + "[station.parameters]\n" + line + "\n");
+    plant(kUnit1 + "[station.parameters]\n" + line + "\n");
     const CommandResult result = param({"get", "plant.toml", "P130"});
     EXPECT_EQ(result.exit_code, 65);
     return first_line(result.err);
@@ -237,7 +237,7 @@ TEST_F(Param, LoadUnderLockAndWithoutInhibit) {
   folder_.write("a.settings", head + "{ number = \"P130\", value = \"2 s\" }\n]\n");
   EXPECT_EQ(param({"load", "plant.toml", "a.settings"}).exit_code, 0);
   EXPECT_EQ(get("P130") + get("P803"), "P130 Ramp t11 UP CW = 2.000 s\nP803 Parameter lock = ON\n");
-  plant(kStation + kMemory + "[station.inputs]\nDI00 = 1\n");
+  plant(kUnit1 + kMemory + "[station.inputs]\nDI00 = 1\n");
   folder_.write("a.settings", head +
                                   "{ number = \"P100\", value = \"SBus\" },\n{ index = 8470, raw = 3000 },\n"
                                   "{ index = 8600, raw = 99 }\n]\n");
@@ -309,7 +309,7 @@ TEST_F(Param, UsageAndInput) {
   EXPECT_EQ(param({"get", "plant.toml", "P1300"}).exit_code, 65);
   EXPECT_EQ(param({"get", "plant.toml", "H512"}).exit_code, 65);
   EXPECT_EQ(param({"get", "plant.toml", "9500"}).exit_code, 1) << "the unit's answer";
-  plant(kStation + "[[station]]\nname = \"unit2\"\nunit = \"mc07\"\n");
+  plant(kUnit1 + "[[station]]\nname = \"unit2\"\nunit = \"mc07\"\n");
   const CommandResult result = param({"get", "plant.toml", "P130"});
   EXPECT_EQ(result.exit_code, 64);
   EXPECT_TRUE(contains(result.err, "choose one of unit1, unit2")) << result.err;
@@ -319,27 +319,28 @@ TEST_F(Param, UsageAndInput) {
 }
 
 TEST_F(Param, MemoryFilesThatCannotBeUsed) {
-  plant(kStation + "nvram = \"/nowhere/unit1.nv\"\n");
+  plant(kUnit1 + "nvram = \"/nowhere/unit1.nv\"\n");
   CommandResult result = run_ipos({"run", "plant.toml", "--for", "1ms"}, folder_.path());
   EXPECT_EQ(result.exit_code, 65);
   EXPECT_EQ(first_line(result.err),
             "plant.toml:4:9: error: station 'unit1': /nowhere/unit1.nv cannot be used: No such file or "
             "directory\n");
-  plant(kStation + kMemory + "[[station]]\nname = \"unit2\"\nunit = \"mc07\"\n" + kMemory);
+  plant(kUnit1 + kMemory + "[[station]]\nname = \"unit2\"\nunit = \"mc07\"\n" + kMemory);
   result = run_ipos({"run", "plant.toml", "--for", "1ms"}, folder_.path());
   EXPECT_EQ(first_line(result.err), "plant.toml:8:9: error: two stations keep their memory in 'unit1.nv'\n");
 
-  plant(kStation + kMemory);
+  plant(kUnit1 + kMemory);
   param({"set", "plant.toml", "P130=2.5s"});
   plant("[[station]]\nname = \"unit1\"\nunit = \"mc07\"\n" + kMemory);
   const std::string before = file("unit1.nv");
   result = run_ipos({"run", "plant.toml", "--for", "1ms"}, folder_.path());
   EXPECT_EQ(result.exit_code, 65);
-  EXPECT_EQ(first_line(result.err), "plant.toml:4:9: error: station 'unit1': unit1.nv: the memory of unit type 1\n");
+  EXPECT_EQ(first_line(result.err),
+            "plant.toml:4:9: error: station 'unit1': unit1.nv: the memory of unit type 1\n");
   EXPECT_EQ(param({"get", "plant.toml", "P803"}).exit_code, 65);
   EXPECT_EQ(file("unit1.nv"), before);
 
-  plant(kStation + kMemory);
+  plant(kUnit1 + kMemory);
   const int held = open((folder_.path() / "unit1.nv").c_str(), O_RDWR);
   ASSERT_EQ(flock(held, LOCK_EX), 0);
   EXPECT_EQ(param({"get", "plant.toml", "P130"}).exit_code, 0) << "looking does not disturb a run";
@@ -367,7 +368,7 @@ TEST_F(Param, MemoryFilesThatCannotBeUsed) {
 TEST_F(Param, VerbsThatLookLeaveTheMemoryAlone) {
   folder_.write("A.IPC", "#include <const.h>\nmain()\n{\n    _Memorize(MEM_STALL);\n}\n");
   folder_.write("can.log", "(1.000000) can0 400#5566778800000000\n");
-  plant("[[bus]]\nname = \"sbus\"\nkind = \"can\"\n" + kStation + "program = \"A.IPC\"\nsbus = \"sbus\"\n" +
+  plant("[[bus]]\nname = \"sbus\"\nkind = \"can\"\n" + kUnit1 + "program = \"A.IPC\"\nsbus = \"sbus\"\n" +
         kMemory);
   const std::vector<std::vector<std::string>> looks = {
       {"bus", "plan", "plant.toml"},

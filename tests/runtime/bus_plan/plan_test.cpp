@@ -28,7 +28,7 @@ size_t count(const BusPlan& plan, FindingKind kind) {
   return n;
 }
 
-const std::string& text_of(const BusPlan& plan, FindingKind kind) {
+const std::string& first_text(const BusPlan& plan, FindingKind kind) {
   static const std::string none;
   for (const Finding& finding : plan.findings)
     if (finding.kind == kind) return finding.text;
@@ -168,7 +168,7 @@ TEST(Plan, ProjectExampleOfMovitrac07) {
   plan = plan_of(bus_text() + station_text("a", "P813 = 17\n") + station_text("b", "P813 = 33\n") +
                  station_text("c", "P813 = 17\n"));
   ASSERT_EQ(count(plan, FindingKind::DoubleAddress), 1U);
-  EXPECT_EQ(text_of(plan, FindingKind::DoubleAddress), "a and c both have SBus address 17");
+  EXPECT_EQ(first_text(plan, FindingKind::DoubleAddress), "a and c both have SBus address 17");
 }
 
 TEST(Plan, AddressesAndTheirLimits) {
@@ -266,7 +266,7 @@ TEST(Plan, TerminatingResistors) {
   EXPECT_EQ(line({on + "branch = true\n", off, on}), bad);
   EXPECT_EQ(line({on, off + "branch = true\n", on}), good);
   const BusPlan too_long = plan_of(bus_text(500'000, "length = 81\n") + station_text("u", ""));
-  EXPECT_EQ(text_of(too_long, FindingKind::LineTooLong), "81 m of cable, at 500 kbaud at most 80 m");
+  EXPECT_EQ(first_text(too_long, FindingKind::LineTooLong), "81 m of cable, at 500 kbaud at most 80 m");
 }
 
 TEST(Plan, CableData) {
@@ -284,7 +284,7 @@ TEST(Plan, CableData) {
   EXPECT_EQ(cable("impedance = 60\ncapacitance = 41\n"), (std::vector<std::string>{"B08", "B08"}));
   const BusPlan plan = plan_of(bus_text(500'000, "capacitance = 41\n") + station_text("u", "", "mc07"));
   EXPECT_TRUE(plan.has_errors());
-  EXPECT_EQ(text_of(plan, FindingKind::CableData), "cable of 41 pF/m, at most 40 pF/m");
+  EXPECT_EQ(first_text(plan, FindingKind::CableData), "cable of 41 pF/m, at most 40 pF/m");
 }
 
 TEST(Plan, Mch42aAtOneMegabaud) {
@@ -304,7 +304,7 @@ TEST(Plan, SyncIdentifierMustBeFree) {
   PROVES("SYNC-02");
   const BusPlan plan =
       plan_of(bus_text() + station_text("a", "P813 = 1\nP817 = 11000\n") + station_text("b", "P813 = 2\n"));
-  EXPECT_EQ(text_of(plan, FindingKind::SyncIdentifier),
+  EXPECT_EQ(first_text(plan, FindingKind::SyncIdentifier),
             "sync identifier 00Bh (11) of a is process output data (PO) of address 1 of a");
   EXPECT_TRUE(codes(plan_of(bus_text() + station_text("a", "P813 = 1\nP817 = 128000\n"))).empty());
   // A unit with P817 = 128 takes 128 and not 0.
@@ -414,9 +414,9 @@ TEST(Plan, LoadAndResponseTimes) {
   }
   const BusPlan plan = plan_of(text, sources);
   EXPECT_EQ(plan.lines[0].load_bits, 135'000U);
-  EXPECT_EQ(text_of(plan, FindingKind::Overload), "worst-case load 108.0 %, at most 70 % may be planned");
+  EXPECT_EQ(first_text(plan, FindingKind::Overload), "worst-case load 108.0 %, at most 70 % may be planned");
   // 1024: blocked by one frame, then itself, 2 x 1.08 ms and a bit. 1025 waits for ever.
-  EXPECT_EQ(text_of(plan, FindingKind::TooLate),
+  EXPECT_EQ(first_text(plan, FindingKind::TooLate),
             "object Tr of u0, identifier 400h (1024), may take 2168 us, its period is 2000 us");
   EXPECT_EQ(plan.lines[0].telegrams[0].response.worst, 2 * 135 * 8000 + 8000);
   EXPECT_FALSE(plan.lines[0].telegrams[1].response.bounded);

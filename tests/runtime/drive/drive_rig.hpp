@@ -153,6 +153,8 @@ class DriveRig {
   int since_po_ = 0;
 };
 
+constexpr int kRampTolerance = 2;  // ms, of a measured ramp time
+
 // Time of a linear ramp: its parameter is the time for a change by 50 Hz on MOVITRAC 07 (chapter 6.1), which
 // are 1500 rpm of the four-pole motor, and by 3000 rpm on MOVIDRIVE (docs/inside/motion.md).
 constexpr int m07_ramp_ms(int rpm, int parameter_ms) { return rpm * parameter_ms / 1500; }

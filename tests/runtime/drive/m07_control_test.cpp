@@ -5,8 +5,6 @@
 namespace ipos::tests {
 namespace {
 
-constexpr int kTolerance = 2;  // ms
-
 struct BusRig : DriveRig {
   explicit BusRig(DriveOptions options = {}, const MachineData& machine = light_machine())
       : DriveRig("mc07", options, machine) {
@@ -60,7 +58,7 @@ TEST(M07Control, Bit1IsRapidStopOnP136) {
   rig.set("P136", 600);
   rig.run_up();
   rig.word(0x0004);
-  EXPECT_NEAR(rig.ms_until_standing(), m07_ramp_ms(1000, 600), kTolerance);
+  EXPECT_NEAR(rig.ms_until_standing(), m07_ramp_ms(1000, 600), kRampTolerance);
 }
 
 TEST(M07Control, Bit2IsStopOnP131) {
@@ -69,7 +67,7 @@ TEST(M07Control, Bit2IsStopOnP131) {
   rig.set("P131", 3000);
   rig.run_up();
   rig.word(0x0002);
-  EXPECT_NEAR(rig.ms_until_standing(), m07_ramp_ms(1000, 3000), kTolerance);
+  EXPECT_NEAR(rig.ms_until_standing(), m07_ramp_ms(1000, 3000), kRampTolerance);
 }
 
 TEST(M07Control, PriorityOfTheThreeBits) {
@@ -113,7 +111,7 @@ TEST(M07Control, ZeroIsTheSafeState) {
   rig.set("P736", 200);
   rig.run_up();
   rig.word(0);
-  EXPECT_NEAR(rig.ms_until_standing(), m07_ramp_ms(1000, 400), kTolerance);
+  EXPECT_NEAR(rig.ms_until_standing(), m07_ramp_ms(1000, 400), kRampTolerance);
   rig.run_ms(100);
   EXPECT_TRUE(rig.stage()) << "the motor holds until the brake is in";
   EXPECT_FALSE(rig.brake_released());
@@ -128,13 +126,14 @@ TEST(M07Control, TheMostRestrictiveSourceWins) {
   BusRig rig;
   rig.run_up();
   rig.input("DI03", false);  // ENABLE/STOP
-  EXPECT_NEAR(rig.ms_until_standing(), m07_ramp_ms(1000, 2000), kTolerance) << "bus enable, terminal stop";
+  EXPECT_NEAR(rig.ms_until_standing(), m07_ramp_ms(1000, 2000), kRampTolerance)
+      << "bus enable, terminal stop";
   EXPECT_EQ(rig.state(), 2);
   rig.input("DI03", true);
   rig.settle();
   EXPECT_EQ(rig.rpm(), 1000);
   rig.input("DI01", false);  // CW/STOP
-  EXPECT_NEAR(rig.ms_until_standing(), m07_ramp_ms(1000, 2000), kTolerance);
+  EXPECT_NEAR(rig.ms_until_standing(), m07_ramp_ms(1000, 2000), kRampTolerance);
   EXPECT_EQ(rig.state(), 2);
   rig.input("DI01", true);
   rig.settle();
@@ -232,21 +231,21 @@ TEST(M07Control, ProcessRampActsOnStopAndEnableOnly) {
   rig.set("P872", 8);
   rig.set("P136", 1000);
   rig.word(0x0006, 3000);
-  EXPECT_NEAR(rig.ms_until([&] { return rig.rpm() == 1000; }), m07_ramp_ms(1000, 3000), kTolerance);
+  EXPECT_NEAR(rig.ms_until([&] { return rig.rpm() == 1000; }), m07_ramp_ms(1000, 3000), kRampTolerance);
   rig.word(0x0004, 10'000);
-  EXPECT_NEAR(rig.ms_until_standing(), m07_ramp_ms(1000, 1000), kTolerance) << "rapid stop: P136";
+  EXPECT_NEAR(rig.ms_until_standing(), m07_ramp_ms(1000, 1000), kRampTolerance) << "rapid stop: P136";
   rig.word(0x0006, 500);
-  EXPECT_NEAR(rig.ms_until([&] { return rig.rpm() == 1000; }), m07_ramp_ms(1000, 500), kTolerance);
+  EXPECT_NEAR(rig.ms_until([&] { return rig.rpm() == 1000; }), m07_ramp_ms(1000, 500), kRampTolerance);
   rig.word(0x0002, 500);
-  EXPECT_NEAR(rig.ms_until_standing(), m07_ramp_ms(1000, 500), kTolerance) << "stop: process ramp";
+  EXPECT_NEAR(rig.ms_until_standing(), m07_ramp_ms(1000, 500), kRampTolerance) << "stop: process ramp";
 
   BusRig plain;
   plain.set("P130", 1500);
   plain.set("P131", 2500);
   plain.word(0x0006, 500);
-  EXPECT_NEAR(plain.ms_until([&] { return plain.rpm() == 1000; }), m07_ramp_ms(1000, 1500), kTolerance);
+  EXPECT_NEAR(plain.ms_until([&] { return plain.rpm() == 1000; }), m07_ramp_ms(1000, 1500), kRampTolerance);
   plain.word(0x0002, 500);
-  EXPECT_NEAR(plain.ms_until_standing(), m07_ramp_ms(1000, 2500), kTolerance) << "P872 = 0: P131";
+  EXPECT_NEAR(plain.ms_until_standing(), m07_ramp_ms(1000, 2500), kRampTolerance) << "P872 = 0: P131";
 }
 
 TEST(M07Control, MotorPotentiometerByControlWord) {
@@ -312,7 +311,7 @@ TEST(M07Control, ControlWordOfTheProgram) {
   BusRig rig;
   rig.run_up();
   rig.drive.set_ipos_control_word(1U << 1);
-  EXPECT_NEAR(rig.ms_until_standing(), m07_ramp_ms(1000, 2000), kTolerance);
+  EXPECT_NEAR(rig.ms_until_standing(), m07_ramp_ms(1000, 2000), kRampTolerance);
   EXPECT_EQ(rig.state(), 2);
   rig.drive.set_ipos_control_word(1U << 30);
   rig.run_ms(1);

@@ -4,8 +4,6 @@
 namespace ipos::tests {
 namespace {
 
-constexpr int kTolerance = 2;  // ms
-
 struct Mdx : DriveRig {
   Mdx() : DriveRig("md60a") {
     enable_terminals();
@@ -96,7 +94,7 @@ TEST(MovidriveSetpoint, SecondAnalogInput) {
   limit.ai1(10'000);
   limit.run_ms(50);
   EXPECT_NEAR(limit.drive.axis().output_current, 72'100, 200);
-  EXPECT_NEAR(50 + limit.ms_until([&] { return limit.rpm() == 1500; }), 100, kTolerance);
+  EXPECT_NEAR(50 + limit.ms_until([&] { return limit.rpm() == 1500; }), 100, kRampTolerance);
 }
 
 TEST(MovidriveSetpoint, FixedSetpointsAndTheirSums) {
@@ -238,7 +236,7 @@ TEST(MovidriveSetpoint, ChangeOfDirection) {
   rig.set("P130", 600);
   rig.set("P132", 3000);
   rig.po({0x0006, 5000, 0});
-  EXPECT_NEAR(rig.ms_until([&] { return rig.rpm() == -1000; }), mdx_ramp_ms(1000, 600), kTolerance)
+  EXPECT_NEAR(rig.ms_until([&] { return rig.rpm() == -1000; }), mdx_ramp_ms(1000, 600), kRampTolerance)
       << "CW ramp, though the shaft turns the other way";
   EXPECT_EQ(rig.drive.pi()[1], 5000) << "the speed reads as it was ordered";
   EXPECT_EQ(rig.value("P000"), 1'000'000);
@@ -256,9 +254,9 @@ TEST(MovidriveRamps, FourOfSetOne) {
     rig.po({0x0006, static_cast<uint16_t>(rpm * 5), 0});
     return rig.ms_until([&] { return rig.rpm() == rpm; });
   };
-  EXPECT_NEAR(ms_to(1000), mdx_ramp_ms(1000, 300), kTolerance);
-  EXPECT_NEAR(ms_to(-1000), mdx_ramp_ms(1000, 600) + mdx_ramp_ms(1000, 1200), kTolerance);
-  EXPECT_NEAR(ms_to(0), mdx_ramp_ms(1000, 1500), kTolerance);
+  EXPECT_NEAR(ms_to(1000), mdx_ramp_ms(1000, 300), kRampTolerance);
+  EXPECT_NEAR(ms_to(-1000), mdx_ramp_ms(1000, 600) + mdx_ramp_ms(1000, 1200), kRampTolerance);
+  EXPECT_NEAR(ms_to(0), mdx_ramp_ms(1000, 1500), kRampTolerance);
 }
 
 TEST(MovidriveRamps, SwitchoverWithSPattern) {
@@ -287,7 +285,7 @@ TEST(MovidriveRamps, ProcessRampReplacesBoth) {
   rig.bus_control();
   rig.set("P872", 8);
   rig.po({0x0016, 5000, 1500});
-  EXPECT_NEAR(rig.ms_until([&] { return rig.rpm() == 1000; }), mdx_ramp_ms(1000, 1500), kTolerance);
+  EXPECT_NEAR(rig.ms_until([&] { return rig.rpm() == 1000; }), mdx_ramp_ms(1000, 1500), kRampTolerance);
 }
 
 TEST(MovidriveRamps, HoldControlHoldsWithTorque) {
@@ -303,7 +301,7 @@ TEST(MovidriveRamps, HoldControlHoldsWithTorque) {
       rig.po({0x000E, 5000, 0});
     else
       rig.input("DI05", false);
-    EXPECT_NEAR(rig.ms_until_standing(), mdx_ramp_ms(1000, 1200), kTolerance);
+    EXPECT_NEAR(rig.ms_until_standing(), mdx_ramp_ms(1000, 1200), kRampTolerance);
     rig.run_ms(2000);
     EXPECT_TRUE(rig.stage());
     EXPECT_TRUE(rig.brake_released());
@@ -334,7 +332,7 @@ TEST(MovidriveSets, SwitchoverWhileTheOutputStageIsOff) {
     rig.run_ms(2000);
     EXPECT_NE(rig.status() & 0x10, 0) << "parameter set 2";
     rig.po({enable, 10'000, 0});
-    EXPECT_NEAR(rig.ms_until([&] { return rig.rpm() == 600; }), mdx_ramp_ms(600, 1500), kTolerance);
+    EXPECT_NEAR(rig.ms_until([&] { return rig.rpm() == 600; }), mdx_ramp_ms(600, 1500), kRampTolerance);
     rig.run_ms(100);
     EXPECT_EQ(rig.rpm(), 600) << "P312";
   }
@@ -379,7 +377,7 @@ TEST(MovidriveLimits, LimitSwitchesStopTheirDirectionOnly) {
   rig.po({0x0006, 5000, 0});
   rig.settle();
   rig.input("DI04", false);
-  EXPECT_NEAR(rig.ms_until_standing(), mdx_ramp_ms(1000, 300), kTolerance);
+  EXPECT_NEAR(rig.ms_until_standing(), mdx_ramp_ms(1000, 300), kRampTolerance);
   rig.run_ms(1);
   EXPECT_EQ(rig.state(), 9);
   EXPECT_EQ(rig.drive.verdict().reason, Block::LimitCw);
