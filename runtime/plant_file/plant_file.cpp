@@ -45,9 +45,7 @@ std::optional<toml::table> parse_toml(PlantReader& reader, std::string_view text
     const std::string_view what = parsed.error().description();
     // The commonest one, in words: name = sbus.
     const bool no_value = what.find("could not determine value type") != std::string_view::npos;
-    reader.error(
-        place_of(parsed.error().source()),
-        no_value ? "a value is a number, true, false, a list, or a text in quotes" : std::string(what));
+    reader.error(place_of(parsed.error().source()), std::string(no_value ? kWhatAValueIs : what));
     return std::nullopt;
   }
   return std::move(parsed).table();

@@ -31,9 +31,12 @@ std::string PlantReader::text(const toml::table& table, std::string_view key, st
     if (required) error(place_of(table), fmt::format("{} needs {} = \"...\"", what, key));
     return {};
   }
-  if (const auto* value = node->as_string()) return value->get();
-  error(place_of(*node), fmt::format("{} must be a text in quotes", key));
-  return {};
+  const auto* value = node->as_string();
+  if (value == nullptr)
+    error(place_of(*node), fmt::format("{} must be a text in quotes", key));
+  else if (value->get().empty())
+    error(place_of(*node), fmt::format("{} must not be empty", key));
+  return value == nullptr ? std::string() : value->get();
 }
 
 bool PlantReader::number(const toml::node& node, std::string_view what, int32_t& out) {

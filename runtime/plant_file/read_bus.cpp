@@ -61,7 +61,6 @@ void read_port(PlantReader& reader, const toml::table& table, BusConfig& config)
   const toml::node* port = table.get("port");
   if (port == nullptr) return;
   config.port_place = place_of(*port);
-  if (config.port.empty() && port->is_string()) reader.error(config.port_place, "port must not be empty");
   reader.unique(reader.port_names, config.port, "port", config.port_place);
 }
 

@@ -27,6 +27,11 @@ TEST(TomlText, MistakesHaveTheirPlace) {
       {"a = \"x\" \"y\"", 1, 9},
       {"a = [1 \"y\"]", 1, 8},
       {"a = ]\"y\"", 1, 6},
+      // In what begins like a number, with brackets in it, all up to a blank is one word.
+      {"a = 1[[\"\xC3\xB6\"", 1, 8},
+      {"a = [ +1=\"x\" ]", 1, 10},
+      {"a = { b = 1{'x' }", 1, 13},
+      {"a = -1e['x'", 1, 9},
       // A } where a list waits for a value, also in the next line and behind a comment.
       {"a = [ } ]", 1, 7},
       {"a = [ 1, } ]", 1, 10},
@@ -37,6 +42,22 @@ TEST(TomlText, MistakesHaveTheirPlace) {
       {"[{a}]", 1, 2},
       {"a = 1\n [ = ]", 2, 4},
       {"[[ + ]]", 1, 4},
+      {"[\n", 1, 2},
+      {"[[ \r\n]]", 1, 4},
+      {"[# none", 1, 2},
+      {"[[[a]]]", 1, 3},
+      {"[ [a]]", 1, 3},
+      {"[.a]", 1, 2},
+      // A byte beyond ASCII behind a backslash, also at the end of a line.
+      {"a = \"x\\\xC3\xB6\"", 1, 8},
+      {"a = \"\"\" \\ \r\n\t\n \xC3\xB6\"\"\"", 3, 2},
+      // Dates and times, right and wrong ones: no key takes one.
+      {"a = 2026-01-01", 1, 5},
+      {"a = 2026-01-01 1\n", 1, 5},
+      {"a = [ 1, 2026-01-01T:7:32:00Z ]", 1, 10},
+      {"a = 1\nb = 12:00", 2, 5},
+      {"a = 1+1", 1, 5},
+      {"a = 000e-0e-00 1", 1, 5},
   };
   for (const Case& it : kCases) {
     const auto mistake = toml_mistake(it.text);
@@ -58,11 +79,17 @@ TEST(TomlText, WhatTomlAllowsGoesThrough) {
       "a = [ \"x\", 'y' ]\nb = [\n  \"x\", # one\n  \"y\",\n]",
       "a = { \"b\" = \"c\", 'd' = { } }\ne = {}",
       "a = \"\"\"\n\xC3\xB6 \" \"\" [ }\n\"\"\"\nb = '''['''",
+      "a = \"\"\"x \\\n  y \xC3\xB6\\\\\xC3\xB6 \"\"\"\nb = '\\\xC3\xB6'",
+      "a = \"\"\"x\"\"\"\"\"\nb = '''x''''\nc = ''",
       "a = [ { b = 1 }, { b = 2 } ]\nc = [ [ 1 ], [ ] ]",
+      "a = [ -1, +2, 1e-5, 1E+5, 0x1F, -0.5 ]\nc = 12 # 2026-01-01 1\nd = \"2026-01-01 1\"\n2026-01-01 = 1",
+      "1=\"x\"\na = { 2=\"y\", 3='z' }\nb = [ { 4=\"x\" } ]\n[5.\"c\"]\n6.\"d\"=1",
+      "a = [\n  [ 1 ],\n  [ +1 ],\n]\nb = [\n  [ -1 ]\n]",
   };
   for (const char* const text : kTexts) {
     const auto mistake = toml_mistake(text);
-    EXPECT_FALSE(mistake) << text << ": " << mistake->place.line << ':' << mistake->place.column << ' ' << mistake->text;
+    EXPECT_FALSE(mistake) << text << ": " << mistake->place.line << ':' << mistake->place.column << ' '
+                          << mistake->text;
   }
 }
 
