@@ -205,6 +205,24 @@ TEST(Budget, IsExact) {
   EXPECT_EQ(run->task(1).commands, 17U);
 }
 
+// Any 32-bit number is a budget, of the fast engine too. 1000 turns of ADD and JMP, and the WAIT.
+TEST(Budget, AnyNumberIsOne) {
+  for (const uint32_t budget : {2001U, 1U << 29, (1U << 30) - 1, 1U << 30, (1U << 30) + 1, (1U << 31) - 1,
+                                1U << 31, (1U << 31) + 1, UINT32_MAX})
+    for (const bool is_fast : {false, true}) {
+      Program run(
+          {I(Opcode::AddHK, 0, 1), I(Opcode::JmpLtHK, 0, 1000, 0), I(Opcode::WaitK, 5), I(Opcode::End)});
+      std::vector<fast::Slot> slots(fast::Predecoded::slots_needed(run->program().code().size()));
+      const fast::Predecoded predecoded(run->program(), slots);
+      if (is_fast) run->use(&predecoded);
+      const RunResult result = run.run(budget);
+      EXPECT_EQ(result.stop, Stop::Waiting) << budget << " " << is_fast;
+      EXPECT_EQ(result.commands, 2001U) << budget << " " << is_fast;
+      EXPECT_EQ(run.h(0), 1000) << budget << " " << is_fast;
+      EXPECT_EQ(run->task(1).commands, 2001U) << budget << " " << is_fast;
+    }
+}
+
 TEST(Waiting, WaitTakesItsMilliseconds) {
   Program run({I(Opcode::WaitK, 3), I(Opcode::SetHK, 0, 1), I(Opcode::WaitH, 5), I(Opcode::SetHK, 0, 2),
                I(Opcode::End)});
