@@ -21,6 +21,10 @@ void expect_equal_machines(const Machine& skips, const Machine& runs) {
   for (size_t n = 0; n < runs.variables().size(); ++n)
     ASSERT_EQ(skips.variables()[n], runs.variables()[n]) << "H" << n;
   EXPECT_EQ(skips.interrupts().turn, runs.interrupts().turn);
+  for (size_t n = 0; n < kEvents; ++n)
+    EXPECT_EQ(skips.interrupts().events[n].installed, runs.interrupts().events[n].installed) << n;
+  for (size_t n = 0; n < kVariableInterrupts; ++n)
+    EXPECT_EQ(skips.interrupts().variables[n].installed, runs.interrupts().variables[n].installed) << n;
 }
 
 // Loops of 2, 3 and 5 commands, one for each task.
@@ -101,6 +105,75 @@ TEST(IdleSkip, TheTurnOfTheInterruptsGoesOn) {
       for (uint64_t n = 0; n < ticks; ++n) run_tick(runs, Rates{kBudgets});
       expect_equal_machines(run.machine(), runs);
     }
+}
+
+// Whether a loop is idle is tried out, and nothing of that stays: neither of a command that ends the task, nor of one
+// that waits, in a task as in a routine that has broken into it.
+TEST(IdleSkip, LookingChangesNothing) {
+  for (const char* const last : {"END", "RET", "WAIT 5", "JMP M03", "DIV H0 / H1", "SETI [H9] = H0",
+                                 "CALL M03", "MOVLNK H30", "TASK2 START , M03", "TASK START , M03",
+                                 "SETINT ERROR , M03", "SETINT DISABLE , M03", "VARINT H10 , M03"})
+    for (const bool in_routine : {false, true}) {
+      SCOPED_TRACE(testing::Message() << last << " " << in_routine);
+      Assembled run(std::string("SETINT TIMER0 , M03\n") + (in_routine ? "" : "JMP M03\n") +
+                    "M01 : JMP M01\nM03 : ADD H2 + 1\nSUB H2 - 1\n" + last + "\nRET\n");
+      run.h(9) = -1;  // no variable
+      run.set(10, {1, 0, 20, 0, 1, 5});
+      run.run(1);
+      if (in_routine) {
+        run.run(3);
+        run->raise_event(Event::Timer0);
+        run->tick();
+        EXPECT_EQ(run->active_context(1), context_of(Event::Timer0));
+      }
+      run.run(2);
+      const Machine before = run.machine();
+      const bool loops = std::string(last) == "JMP M03";
+      EXPECT_EQ(run->idle_ticks({5, 5, 5}), loops ? kIdleForever : 0);
+      expect_equal_machines(run.machine(), before);
+      EXPECT_EQ(run->active_context(1), before.active_context(1));
+      EXPECT_EQ(run->fault().number, 0);
+    }
+}
+
+// Task 1 goes round with one command, task 2 changes H6 for a moment: idle as long as task 1 does not use H6.
+TEST(IdleSkip, OnlyWhatALoopUsesCounts) {
+  struct Row {
+    const char* command;
+    int32_t index;  // in H1
+    bool idle;
+  };
+  for (const Row& row :
+       {Row{"SETI [H1] = H2", 5, true}, Row{"SETI [H1] = H2", 6, false}, Row{"SETI [H1] = H2", 7, true},
+        Row{"SETI H2 = [H1]", 5, true}, Row{"SETI H2 = [H1]", 6, false}, Row{"SETI H2 = [H1]", 7, true},
+        Row{"SETI [H6] = H2", 9, false}, Row{"COPY H10 = H3 , 3", 0, true},
+        Row{"COPY H10 = H4 , 3", 0, false}, Row{"COPY H10 = H7 , 3", 0, true},
+        Row{"COPY H3 = H10 , 3", 0, true}, Row{"COPY H4 = H10 , 3", 0, false}, Row{"SET H2 = H6", 0, false},
+        Row{"SET H2 = H7", 0, true}, Row{"NOP", 0, true}}) {
+    SCOPED_TRACE(testing::Message() << row.command << " " << row.index);
+    Assembled run(std::string("TASK2 START , M02\nM01 : ") + row.command +
+                  "\nJMP M01\nM02 : ADD H6 + 1\nSUB H6 - 1\nJMP M02\n");
+    run.h(1) = row.index;
+    run.run(5);
+    EXPECT_EQ(run->idle_ticks({4, 4, 4}), row.idle ? kIdleForever : 0);
+  }
+}
+
+// The unit looks at its system variables, H453 to H564, in every millisecond, and so it does at the variable that a
+// variable interrupt watches.
+TEST(IdleSkip, WhatTheUnitLooksAtDoesNotChangeForAMoment) {
+  for (const int number : {452, 453, 454, 500, 563, 564, 565}) {
+    const std::string h = "H" + std::to_string(number);
+    Assembled run("M01 : ADD " + h + " + 1\nSUB " + h + " - 1\nJMP M01\n");
+    EXPECT_EQ(run->idle_ticks({4, 4, 4}), number < 453 || number > 564 ? kIdleForever : 0) << h;
+  }
+  for (const int watched : {19, 20, 21}) {
+    Assembled run(
+        "TASK2 START , M02\nVARINT H10 , M02\nM01 : ADD H20 + 1\nSUB H20 - 1\nJMP M01\nM02 : JMP M02\n");
+    run.set(10, {1, 0, watched, 0, 1, 5});
+    run.run(2);
+    EXPECT_EQ(run->idle_ticks({3, 3, 3}), watched == 20 ? 0 : kIdleForever) << watched;
+  }
 }
 
 }  // namespace

@@ -176,6 +176,20 @@ TEST(SavedState, ContextsStandAtCommandsAndReturnToThem) {
   EXPECT_FALSE(saved.takes(context_at(1) + kCommandsAt, 8, UINT64_MAX / 2 + 1));
 }
 
+// A unit whose program may call less deep takes no more return addresses.
+TEST(SavedState, CallsAreNoDeeperThanTheUnitAllows) {
+  SavedBytes saved;
+  const std::span<const uint32_t> code = saved.machine().program().code();
+  for (const uint8_t limit : std::initializer_list<uint8_t>{1, 4, 32}) {
+    const VerifiedImage program = verify(code, Limits{1024, 16384, 3, limit}, {}).image.value();
+    for (uint8_t depth = 0; depth <= 33; ++depth) {
+      std::vector<uint8_t> state = saved.good();
+      state[context_at(1) + kDepthAt] = depth;
+      EXPECT_EQ(SavedState::check(program, state.data()), depth <= limit) << int{limit} << " " << int{depth};
+    }
+  }
+}
+
 TEST(SavedState, WaitsAreInCommandsThatWait) {
   const SavedBytes saved;
   const uint64_t function = saved.number(context_at(1) + kPcAt, 4),
