@@ -114,6 +114,22 @@ TEST(Temporaries, CopiesOfOneFunctionHaveNamesOfTheirOwn) {
   EXPECT_EQ((std::vector<std::string>{"main", "t", "t@t", "t@t@3"}), names);
 }
 
+// A program that is too long names what stands more than once: here all of it is main, once as main, once as task 2.
+TEST(Temporaries, MainAsATaskIsACopyToo) {
+  std::string text = "long a, b, c; main() { _SetTask2(1, main); ";
+  for (int n = 0; n < 500; ++n) text += "a = b * c + a; ";
+  const Compilation c = compile_text(text + "}", "md60a");
+  const auto message = std::find_if(c.diagnostics.all().begin(), c.diagnostics.all().end(),
+                                    [](const Diagnostic& row) { return row.diag == Diag::ProgramTooLong; });
+  ASSERT_NE(message, c.diagnostics.all().end());
+  // TASK2 and END or RET; SET, MUL and ADD of variables are a word each.
+  const int words = 2 * (2 + 500 * 3 + 1);
+  EXPECT_NE(message->text.find(std::to_string(words)), std::string::npos) << message->text;
+  ASSERT_EQ(message->notes.size(), 1U);
+  EXPECT_EQ(message->notes[0].text,
+            "'main' stands 2 times (main, main): " + std::to_string(words) + " words");
+}
+
 // STOP and DISABLE do not say which task or interrupt: a copy that this command has started or installed, if there is
 // one, else any.
 TEST(Temporaries, WhatIsStoppedIsACopyOfTheFunction) {
