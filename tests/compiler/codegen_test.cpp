@@ -152,6 +152,9 @@ const Construct kConditions[] = {
      {"M01 : SET H400 = H420", "ADD H400 + H421", "JMP H400 != 1 , M02", "SET H422 = 1", "M02 : END"}},
     {"if ((a & 3) != 1) c = 1;",
      {"M01 : SET H400 = H420", "AND H400 & 3", "JMP H400 == 1 , M02", "SET H422 = 1", "M02 : END"}},
+    // Without an effect there is nothing to do (W0216).
+    {"a + b * c;", {"M01 : END"}},
+    {"a && b == c;", {"M01 : END"}},
     // For what they do alone.
     {"a && (b = 1);", {"M01 : JMP H420 == 0 , M02", "SET H421 = 1", "M02 : END"}},
     {"a || b++;", {"M01 : JMP H420 != 0 , M02", "ADD H421 + 1", "M02 : END"}},
