@@ -98,10 +98,11 @@ size_t Instances::target(const Instance& from, const Reference& reference) const
   if (const auto shared = find(kShared); shared != index_.end()) return shared->second;
   if (reference.kind == ReferenceKind::Call) return find(from.root)->second;
   // STOP and DISABLE give no interrupt or start; any instance of that command will do.
-  for (size_t n = 0; n < roots_.size(); ++n)
-    if (roots_[n].function == reference.function && roots_[n].opcode == reference.opcode &&
-        (roots_[n].keyword == reference.keyword || reference.kind == ReferenceKind::Stop))
-      return find(n)->second;
+  const auto started = std::find_if(roots_.begin(), roots_.end(), [&](const Root& root) {
+    return root.function == reference.function && root.opcode == reference.opcode &&
+           (root.keyword == reference.keyword || reference.kind == ReferenceKind::Stop);
+  });
+  if (started != roots_.end()) return find(static_cast<size_t>(started - roots_.begin()))->second;
   return index_.lower_bound({reference.function, 0})->second;
 }
 
@@ -131,7 +132,7 @@ void Instances::place_temporaries() {
       for (const Command& command : functions_[from.function].commands) {
         if (!calls(command) || from.root == kShared) continue;
         Instance& to = instances_[target(from, *command.reference)];
-        if (to.root == kShared || to.first >= from.first + command.held) continue;
+        if (to.first >= from.first + command.held) continue;
         to.first = from.first + command.held;
         changed = true;
       }

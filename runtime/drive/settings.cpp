@@ -58,10 +58,11 @@ Settings read_m31(const ParameterStore& parameters) {
   settings.pi = {static_cast<uint8_t>(PiAssignment::StatusWord1), static_cast<uint8_t>(PiAssignment::Speed),
                  static_cast<uint8_t>(PiAssignment::OutputCurrent)};
   settings.inputs[0] = static_cast<uint8_t>(InputFunction::Cw);  // terminal 41
-  for (size_t n = 0; n < 2; ++n) {
-    const int32_t chosen = parameters.stored(static_cast<uint16_t>(index::kM31Terminal42 + n));
-    settings.inputs[1 + n] = static_cast<uint8_t>(kFunctions[static_cast<size_t>(chosen)]);
-  }
+  const auto function = [&](uint16_t index) {
+    return static_cast<uint8_t>(kFunctions[static_cast<size_t>(parameters.stored(index))]);
+  };
+  settings.inputs[1] = function(index::kM31Terminal42);
+  settings.inputs[2] = function(index::kM31Terminal43);
   return settings;
 }
 

@@ -79,6 +79,15 @@ const Construct kPlaces[] = {
     {"a = numof(v);", {"M01 : SET H420 = 424", "END"}},
     {"*p = *p + 1;", {"M01 : SETI H400 = [H428]", "ADD H400 + 1", "SETI [H428] = H400", "END"}},
     {"*p += a;", {"M01 : SETI H400 = [H428]", "ADD H400 + H420", "SETI [H428] = H400", "END"}},
+    // The old value counts even if the right side changes the place, so it is read first then.
+    {"*p += a++;",
+     {"M01 : SETI H400 = [H428]", "SET H401 = H420", "ADD H420 + 1", "ADD H400 + H401", "SETI [H428] = H400",
+      "END"}},
+    {"*p -= (a = 5);",
+     {"M01 : SETI H400 = [H428]", "SET H420 = 5", "SUB H400 - 5", "SETI [H428] = H400", "END"}},
+    {"*p += b * c;",
+     {"M01 : SET H400 = H421", "MUL H400 * H422", "SETI H401 = [H428]", "ADD H401 + H400",
+      "SETI [H428] = H401", "END"}},
     {"(*p)++;", {"M01 : SETI H400 = [H428]", "ADD H400 + 1", "SETI [H428] = H400", "END"}},
     // The store goes to the old p, the value is the new one.
     {"*p++ = p;", {"M01 : SET H400 = H428", "ADD H428 + 1", "SETI [H400] = H428", "END"}},
@@ -86,6 +95,11 @@ const Construct kPlaces[] = {
     {"v[2] = a;", {"M01 : SET H426 = H420", "END"}},
     {"a = v[b];", {"M01 : SET H400 = H421", "ADD H400 + 424", "SETI H420 = [H400]", "END"}},
     {"a = v[b + 1];", {"M01 : SET H400 = H421", "ADD H400 + 425", "SETI H420 = [H400]", "END"}},
+    {"a = v[b * c];",
+     {"M01 : SET H400 = H421", "MUL H400 * H422", "ADD H400 + 424", "SETI H420 = [H400]", "END"}},
+    {"a = d - v[b * c];",
+     {"M01 : SET H400 = H423", "SET H401 = H421", "MUL H401 * H422", "ADD H401 + 424", "SETI H401 = [H401]",
+      "SUB H400 - H401", "SET H420 = H400", "END"}},
     {"v[b] = a;", {"M01 : SET H400 = H421", "ADD H400 + 424", "SETI [H400] = H420", "END"}},
     {"H5 = H007;", {"M01 : SET H5 = H7", "END"}},
     // *p may be a itself, so a cannot hold the sum while it is read.
@@ -120,6 +134,30 @@ const Construct kConditions[] = {
      {"M01 : SET H400 = H483", "AND H400 & 8", "JMP H400 == 0 , M02", "SET H421 = 1", "M02 : END"}},
     {"if (((H483 >> 3) & 1) == 1) b = 1;",
      {"M01 : SET H400 = H483", "AND H400 & 8", "JMP H400 == 0 , M02", "SET H421 = 1", "M02 : END"}},
+    {"if (((H483 >> 3) & 1) != 1) b = 1;",
+     {"M01 : SET H400 = H483", "AND H400 & 8", "JMP H400 != 0 , M02", "SET H421 = 1", "M02 : END"}},
+    // Bits that are no inputs of io.h.
+    {"if (a & 1) b = 1;",
+     {"M01 : SET H400 = H420", "AND H400 & 1", "JMP H400 == 0 , M02", "SET H421 = 1", "M02 : END"}},
+    {"if ((a + 3) & 1) b = 1;",
+     {"M01 : SET H400 = H420", "ADD H400 + 3", "AND H400 & 1", "JMP H400 == 0 , M02", "SET H421 = 1",
+      "M02 : END"}},
+    {"if ((a >> b) & 1) c = 1;",
+     {"M01 : SET H400 = H420", "ASHR H400 >> H421", "AND H400 & 1", "JMP H400 == 0 , M02", "SET H422 = 1",
+      "M02 : END"}},
+    // A comparison with 1 is the condition itself only where there is nothing but 0 and 1.
+    {"if ((a < b) == 1) c = 1;", {"M01 : JMP H420 >= H421 , M02", "SET H422 = 1", "M02 : END"}},
+    {"if ((a < b) != 1) c = 1;", {"M01 : JMP H420 < H421 , M02", "SET H422 = 1", "M02 : END"}},
+    {"if ((a + b) == 1) c = 1;",
+     {"M01 : SET H400 = H420", "ADD H400 + H421", "JMP H400 != 1 , M02", "SET H422 = 1", "M02 : END"}},
+    {"if ((a & 3) != 1) c = 1;",
+     {"M01 : SET H400 = H420", "AND H400 & 3", "JMP H400 == 1 , M02", "SET H422 = 1", "M02 : END"}},
+    // Without an effect there is nothing to do (W0216).
+    {"a + b * c;", {"M01 : END"}},
+    {"a && b == c;", {"M01 : END"}},
+    // For what they do alone.
+    {"a && (b = 1);", {"M01 : JMP H420 == 0 , M02", "SET H421 = 1", "M02 : END"}},
+    {"a || b++;", {"M01 : JMP H420 != 0 , M02", "ADD H421 + 1", "M02 : END"}},
     {"if ((a = b)) c = 1;", {"M01 : SET H420 = H421", "JMP H420 == 0 , M02", "SET H422 = 1", "M02 : END"}},
     {"if (a + b > c) d = 1;",
      {"M01 : SET H400 = H420", "ADD H400 + H421", "JMP H400 <= H422 , M02", "SET H423 = 1", "M02 : END"}},
@@ -155,6 +193,16 @@ const Construct kStatements[] = {
     {"for (a = b; a < 3; a++) c++;",
      {"M01 : SET H420 = H421", "JMP H420 >= 3 , M03", "M02 : ADD H422 + 1", "ADD H420 + 1",
       "JMP H420 < 3 , M02", "M03 : END"}},
+    // Only what is true at first for certain is not asked then.
+    {"for (; a < 3; a++) b++;",
+     {"M01 : JMP H420 >= 3 , M03", "M02 : ADD H421 + 1", "ADD H420 + 1", "JMP H420 < 3 , M02", "M03 : END"}},
+    {"for (a = 0; b < 3; a++) b++;",
+     {"M01 : SET H420 = 0", "JMP H421 >= 3 , M03", "M02 : ADD H421 + 1", "ADD H420 + 1", "JMP H421 < 3 , M02",
+      "M03 : END"}},
+    {"for (a = 3; a < 3; a++) b++;",
+     {"M01 : SET H420 = 3", "JMP H420 >= 3 , M03", "M02 : ADD H421 + 1", "ADD H420 + 1", "JMP H420 < 3 , M02",
+      "M03 : END"}},
+    {"for (a = 0; ; a++) b++;", {"M01 : SET H420 = 0", "M02 : ADD H421 + 1", "ADD H420 + 1", "JMP M02"}},
     {"for (;;) { if (a) break; b++; }",
      {"M01 : JMP H420 != 0 , M02", "ADD H421 + 1", "JMP M01", "M02 : END"}},
     {"while (1) { if (a) continue; b++; }", {"M01 : JMP H420 != 0 , M01", "ADD H421 + 1", "JMP M01"}},
@@ -202,6 +250,16 @@ TEST(Functions, MainStandsFirstAndTheOthersInOrder) {
   EXPECT_EQ(
       (Lines{"M01 : CALL M03", "CALL M02", "END", "M02 : ADD H0 + 1", "RET", "M03 : ADD H1 + 1", "RET"}),
       commands(compile_text("f() { H0++; } g() { H1++; } main() { g(); f(); }")));
+}
+
+// What is called may change the target: the old value counts, so it is copied first.
+TEST(Functions, ACallMayChangeWhatHasBeenRead) {
+  EXPECT_EQ((Lines{"M01 : SET H400 = H420", "CALL M02", "ADD H400 + H421", "SET H420 = H400", "END",
+                   "M02 : SET H420 = 7", "RET"}),
+            commands(compile_text("long a, c; f() { a = 7; } main() { a += (f(), c); }")));
+  EXPECT_EQ((Lines{"M01 : SET H400 = H420", "GETSYS H420 = ACT.SPEED", "ADD H400 + H421", "SET H420 = H400",
+                   "END"}),
+            commands(compile_text("long a, c; main() { a += (_GetSys(a, 1), c); }")));
 }
 
 TEST(Functions, UnusedOnesAreLeftOut) {

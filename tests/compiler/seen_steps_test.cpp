@@ -124,6 +124,22 @@ TEST(SeenSteps, ByPointersAndByNumber) {
   EXPECT_EQ(writes_of(compile_b("main() { H10 = H11 * 2 + 1; }", true), "H10").size(), 1U);
 }
 
+// The warning points at the assignment whose steps are seen, also behind another one within it.
+TEST(SeenSteps, OfTheOuterAssignmentAreToldThere) {
+  const auto columns = [](const std::string& statement) {
+    const Compilation c = compile_b(beside(statement, "v[0] = x;"));
+    std::vector<uint32_t> out;
+    for (const Diagnostic& message : c.diagnostics.all())
+      if (message.diag == Diag::SeenSteps && message.text.starts_with("'x'"))
+        out.push_back(c.sources->position(message.span.begin).column);
+    return out;
+  };
+  const std::vector<uint32_t> plain = columns("x = a + b;");
+  ASSERT_EQ(plain.size(), 1U);
+  EXPECT_EQ(columns("x = (b = a + v[1]) ? a + b : a - b;"), plain);
+  EXPECT_EQ(columns("x = (b = a * v[1], a + b);"), plain);
+}
+
 // Statements that need one command at their target, and those that take several.
 TEST(SeenSteps, OnlyWhereThereAreSteps) {
   for (const char* one :

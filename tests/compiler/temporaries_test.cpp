@@ -1,6 +1,7 @@
 // Temporaries of tasks and interrupt routines: what one of them computes with is never touched by another.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "tests/compiler/backend_test.hpp"
@@ -101,6 +102,86 @@ TEST(Temporaries, CopiesAreNamedAfterTheirRoot) {
   std::vector<std::string> names;
   for (const vm::FunctionEntry& function : c.image->functions) names.push_back(function.name);
   EXPECT_EQ((std::vector<std::string>{"main", "f", "f@t", "t"}), names);
+}
+
+// One function may be several roots: then the copies' names go on with a number, that of the copy.
+TEST(Temporaries, CopiesOfOneFunctionHaveNamesOfTheirOwn) {
+  const Compilation c = compile_text(
+      "long a, b, c; t() { a = b * c + a; } main() { _SetTask2(1, t); _SetTask(1, t); t(); }", "mdxb");
+  ASSERT_TRUE(c.image);
+  std::vector<std::string> names;
+  for (const vm::FunctionEntry& function : c.image->functions) names.push_back(function.name);
+  EXPECT_EQ((std::vector<std::string>{"main", "t", "t@t", "t@t@3"}), names);
+}
+
+// A program that is too long names what stands more than once: here all of it is main, once as main, once as task 2.
+TEST(Temporaries, MainAsATaskIsACopyToo) {
+  std::string text = "long a, b, c; main() { _SetTask2(1, main); ";
+  for (int n = 0; n < 500; ++n) text += "a = b * c + a; ";
+  const Compilation c = compile_text(text + "}", "md60a");
+  const auto message = std::find_if(c.diagnostics.all().begin(), c.diagnostics.all().end(),
+                                    [](const Diagnostic& row) { return row.diag == Diag::ProgramTooLong; });
+  ASSERT_NE(message, c.diagnostics.all().end());
+  // TASK2 and END or RET; SET, MUL and ADD of variables are a word each.
+  const int words = 2 * (2 + 500 * 3 + 1);
+  EXPECT_NE(message->text.find(std::to_string(words)), std::string::npos) << message->text;
+  ASSERT_EQ(message->notes.size(), 1U);
+  EXPECT_EQ(message->notes[0].text,
+            "'main' stands 2 times (main, main): " + std::to_string(words) + " words");
+}
+
+// STOP and DISABLE do not say which task or interrupt: a copy that this command has started or installed, if there is
+// one, else any.
+TEST(Temporaries, WhatIsStoppedIsACopyOfTheFunction) {
+  // Where the labels of the calls lead, all of them copies of t.
+  const auto labels = [](const std::string& calls) {
+    const Compilation c = compile_text(
+        "long a, b, c; t() { a = b * c + a; } main() { t(); " + calls + " a = b * c + a; }", "mdxb");
+    std::vector<uint32_t> out;
+    if (!c.image) return out;
+    out = roots(*c.image);
+    out.erase(out.begin());  // main
+    for (const uint32_t start : out) {
+      const auto at =
+          std::find_if(c.image->functions.begin(), c.image->functions.end(),
+                       [&](const vm::FunctionEntry& function) { return function.address == start; });
+      EXPECT_TRUE(at != c.image->functions.end() && at->name.substr(0, 1) == "t") << calls;
+    }
+    return out;
+  };
+  for (const char* calls : {"_SetInterrupt(2, t); _SetInterrupt(0, t);", "_SetTask2(1, t); _SetTask2(0, t);",
+                            "_SetTask(1, t); _SetTask(0, t);"}) {
+    const std::vector<uint32_t> found = labels(calls);
+    ASSERT_EQ(found.size(), 2U) << calls;
+    EXPECT_EQ(found[0], found[1]) << calls;
+  }
+  EXPECT_EQ(labels("_SetTask2(1, t); _SetTask(0, t);").size(), 2U);
+  EXPECT_EQ(labels("_SetTask(0, t);").size(), 1U);
+}
+
+TEST(Temporaries, WhoHasTheirNumberIsNamed) {
+  const auto told = [](const std::string& text) {
+    const Compilation c = compile_text(text);
+    EXPECT_FALSE(c.image) << text;
+    for (const Diagnostic& diagnostic : c.diagnostics.all())
+      if (diagnostic.diag == Diag::TemporaryTaken)
+        return diagnostic.text.substr(0, diagnostic.text.find(';'));
+    return std::string();
+  };
+  const auto message = [&](int number) {
+    const std::string at = std::to_string(number);
+    return told("#pragma var " + at + " " + at +
+                "\nlong x, v[3], y;\n#declare Second v + 1\n"
+                "main() { Second = 2; x = v[0] * y + x; }\n");
+  };
+  // x is H420, v H421 to H423, Second H422, y H424.
+  EXPECT_EQ(message(420), "H420 holds intermediate results and is used by 'x' as well");
+  EXPECT_EQ(message(421), "H421 holds intermediate results and is used by 'v' as well");
+  EXPECT_EQ(message(422), "H422 holds intermediate results and is used by 'Second' as well");
+  EXPECT_EQ(message(423), "H423 holds intermediate results and is used by 'v' as well");
+  EXPECT_EQ(message(424), "H424 holds intermediate results and is used by 'y' as well");
+  EXPECT_EQ(told("long a, b; main() { H400 = 1; a = b * b + a; }"),
+            "H400 holds intermediate results and is used here by number as well");
 }
 
 TEST(Temporaries, CallerAndCalleeShareWhatIsNotHeld) {

@@ -128,6 +128,61 @@ TEST(Image, ReasonsOfRefusal) {
   EXPECT_EQ(error_of(write_image(image)), ImageError::BadSymbols);
 }
 
+// A section that ends within a word, a name or a row is refused, each kind with its own reason. The table has three
+// words for each section, the last of them the length.
+TEST(Image, SectionsThatEndInTheMiddleAreRefused) {
+  Image code, symbols, functions, lines;
+  code.code = symbols.code = functions.code = lines.code = {2, 2};
+  symbols.symbols = {{"abc", 420, 1}};
+  functions.functions = {{"main", 0}};
+  lines.files = {"a.IPC"};
+  lines.lines = {{0, 0, 5, 3}};
+  const struct {
+    const Image& image;
+    size_t sections;
+    ImageError error;
+  } rows[] = {{code, 1, ImageError::BadCode},
+              {symbols, 2, ImageError::BadSymbols},
+              {functions, 2, ImageError::BadFunctions},
+              {lines, 2, ImageError::BadLines}};
+  for (const auto& row : rows) {
+    const std::vector<uint8_t> good = write_image(row.image);
+    ASSERT_EQ(error_of(good), ImageError::None);
+    const size_t length_at = 16 + 12 * (row.sections - 1) + 8;
+    const size_t length = good[length_at];
+    for (size_t less = 1; less < length; ++less) {
+      std::vector<uint8_t> bytes = good;
+      bytes.erase(bytes.end() - 4 - static_cast<std::ptrdiff_t>(less), bytes.end() - 4);
+      bytes[length_at] = static_cast<uint8_t>(length - less);
+      seal(bytes);
+      // A word of code less is a shorter program; behind its name the list of files may be all.
+      const bool ends_well = row.error == ImageError::BadCode    ? less % 4 == 0
+                             : row.error == ImageError::BadLines ? less == 12
+                                                                 : false;
+      EXPECT_EQ(error_of(bytes), ends_well ? ImageError::None : row.error)
+          << to_text(row.error) << " " << less;
+    }
+  }
+}
+
+// Reading stops in front of a name that is not whole: behind number, count and length of it, two bytes each.
+TEST(Image, ACutNameIsWhereReadingStops) {
+  Image image;
+  image.code = {2};
+  image.symbols = {{"abcdefgh", 420, 1}};
+  const std::vector<uint8_t> good = write_image(image);
+  constexpr size_t kOffsetAt = 16 + 12 + 4, kLengthAt = kOffsetAt + 4;
+  for (size_t less = 1; less <= 8; ++less) {
+    std::vector<uint8_t> bytes = good;
+    bytes.erase(bytes.end() - 4 - static_cast<std::ptrdiff_t>(less), bytes.end() - 4);
+    bytes[kLengthAt] = static_cast<uint8_t>(bytes[kLengthAt] - less);
+    seal(bytes);
+    const ImageResult result = read_image(bytes);
+    EXPECT_EQ(result.error, ImageError::BadSymbols) << less;
+    EXPECT_EQ(result.offset, bytes[kOffsetAt] + 6U) << less;
+  }
+}
+
 // Whatever stands behind the last section belongs to none: refused, whatever its checksum says.
 TEST(Image, BytesBehindTheLastSectionAreRefused) {
   for (size_t more = 1; more <= 64; ++more) {

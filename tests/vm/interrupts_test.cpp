@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/vm/assembled.hpp"
+#include "vm/fast/predecode.hpp"
 
 namespace ipos::vm {
 namespace {
@@ -375,6 +376,31 @@ M03 : TASK2 START , M02
   EXPECT_EQ(run.h(0), 5);
   EXPECT_EQ(run.h(1), 0) << "behind the restart nothing runs";
   EXPECT_EQ(run->task(2).state, TaskState::Stopped);
+}
+
+// With interrupts installed every millisecond has to be looked at, so nothing runs ahead. A restart removes them.
+TEST(Interrupts, ARestartedMachineRunsAheadAgain) {
+  for (const char* const install : {"SETINT TIMER0 , M02", "VARINT H10 , M02"}) {
+    Assembled run(std::string("JMP H1 != 0 , M01\n") + install + R"(
+M01 : ADD H0 + 1
+      JMP M01
+M02 : RET
+)");
+    run.set(10, {1, 0, 20, 0, 1, 5});
+    std::vector<fast::Slot> slots(fast::Predecoded::slots_needed(run->program().code().size()));
+    const fast::Predecoded predecoded(run->program(), slots);
+    run->use(&predecoded);
+    const std::array<uint16_t, 1> written{0};
+    run.run(2);
+    EXPECT_EQ(run.h(0), 0);
+    EXPECT_FALSE(run->run_ahead({4, 0, 0}, 3, written)) << install;
+    EXPECT_EQ(run.h(0), 0);
+    run.h(1) = 1;
+    run->start();
+    run.run(1);
+    EXPECT_TRUE(run->run_ahead({4, 0, 0}, 3, written)) << install;
+    EXPECT_EQ(run.h(0), 6) << "of 12 commands every other one";
+  }
 }
 
 }  // namespace

@@ -205,6 +205,24 @@ TEST(Budget, IsExact) {
   EXPECT_EQ(run->task(1).commands, 17U);
 }
 
+// Any 32-bit number is a budget, of the fast engine too. 1000 turns of ADD and JMP, and the WAIT.
+TEST(Budget, AnyNumberIsOne) {
+  for (const uint32_t budget : {2001U, 1U << 29, (1U << 30) - 1, 1U << 30, (1U << 30) + 1, (1U << 31) - 1,
+                                1U << 31, (1U << 31) + 1, UINT32_MAX})
+    for (const bool is_fast : {false, true}) {
+      Program run(
+          {I(Opcode::AddHK, 0, 1), I(Opcode::JmpLtHK, 0, 1000, 0), I(Opcode::WaitK, 5), I(Opcode::End)});
+      std::vector<fast::Slot> slots(fast::Predecoded::slots_needed(run->program().code().size()));
+      const fast::Predecoded predecoded(run->program(), slots);
+      if (is_fast) run->use(&predecoded);
+      const RunResult result = run.run(budget);
+      EXPECT_EQ(result.stop, Stop::Waiting) << budget << " " << is_fast;
+      EXPECT_EQ(result.commands, 2001U) << budget << " " << is_fast;
+      EXPECT_EQ(run.h(0), 1000) << budget << " " << is_fast;
+      EXPECT_EQ(run->task(1).commands, 2001U) << budget << " " << is_fast;
+    }
+}
+
 TEST(Waiting, WaitTakesItsMilliseconds) {
   Program run({I(Opcode::WaitK, 3), I(Opcode::SetHK, 0, 1), I(Opcode::WaitH, 5), I(Opcode::SetHK, 0, 2),
                I(Opcode::End)});
@@ -338,6 +356,55 @@ TEST(Ahead, GivenUpItLeavesNothingBehind) {
   }
   EXPECT_EQ(run->task(1).state, TaskState::Waiting);
   EXPECT_EQ(deepest, 2);
+}
+
+// What runs ahead of others that wait takes their milliseconds, too. A wait that would end in them is too short. One for
+// the host does not end with time.
+TEST(Ahead, WaitsOfOtherTasksGoOn) {
+  Recorder recorder{{Answer::Wait}, {}};
+  Program run(
+      {I(Opcode::AddHK, 0, 1), I(Opcode::Jmp, 0), I(Opcode::WaitK, 50), I(Opcode::Movlnk, 0), I(Opcode::End)},
+      recorder.host());
+  constexpr int32_t kWait = 4, kMovlnk = 6;
+  std::vector<fast::Slot> slots(fast::Predecoded::slots_needed(run->program().code().size()));
+  const fast::Predecoded predecoded(run->program(), slots);
+  run->use(&predecoded);
+  run->start_task(2, kWait);
+  run->start_task(3, kMovlnk);
+  EXPECT_EQ(run->run(2, 1).stop, Stop::Waiting);
+  EXPECT_EQ(run->run(3, 1).stop, Stop::Waiting);
+  const std::array<uint16_t, 1> written{0};
+  const auto waits = [&](uint32_t ms) {
+    EXPECT_EQ(run->task(2).wait_ms, ms);
+    for (const int task : {2, 3}) EXPECT_EQ(run->task(task).state, TaskState::Waiting);
+    EXPECT_EQ(run->task(3).wait_ms, 0U);
+  };
+  EXPECT_FALSE(run->run_ahead({2, 2, 2}, 50, written));
+  waits(50);
+  EXPECT_TRUE(run->run_ahead({2, 2, 2}, 20, written));
+  waits(30);
+  EXPECT_EQ(run.h(0), 20);
+  EXPECT_FALSE(run->run_ahead({2, 2, 2}, 30, written));
+  EXPECT_TRUE(run->run_ahead({2, 2, 2}, 29, written));
+  waits(1);
+  run->tick();
+  EXPECT_EQ(run->task(2).state, TaskState::Ready);
+  EXPECT_EQ(run->task(3).state, TaskState::Waiting);
+}
+
+// Looking whether a loop is idle does not cause the fault of its calls; a loop whose calls return goes on for ever.
+TEST(Calls, IdleLoopsReturnAndOthersAreLeftToTheirFault) {
+  Program recursion({I(Opcode::Call, 0), I(Opcode::End)});
+  recursion.run(4);
+  EXPECT_EQ(recursion->task(1).depth, 4);
+  EXPECT_EQ(recursion->idle_ticks({5, 0, 0}), 0U);
+  EXPECT_EQ(recursion->fault().number, 0);
+  EXPECT_EQ(recursion->task(1).state, TaskState::Ready);
+  EXPECT_EQ(recursion.run(1).stop, Stop::Faulted);
+  EXPECT_EQ(recursion->fault().number, 32);
+  constexpr int32_t kRet = 4;
+  Program returns({I(Opcode::Call, kRet), I(Opcode::Jmp, 0), I(Opcode::Ret)});
+  EXPECT_EQ(returns->idle_ticks({5, 0, 0}), kIdleForever);
 }
 
 }  // namespace

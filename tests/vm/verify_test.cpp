@@ -115,6 +115,18 @@ TEST(Verifier, EveryUnknownWordIsReported) {
   }
 }
 
+// And the label of the command behind it is looked at, too.
+TEST(Verifier, LabelsBehindAnUnknownWordAreChecked) {
+  for (uint32_t unknown = 0; unknown <= 3; ++unknown) {
+    std::vector<uint32_t> code(unknown, 0xFF);
+    for (const uint32_t word : code_of({I(Opcode::Jmp, 99)})) code.push_back(word);
+    std::array<Violation, 8> out{};
+    ASSERT_EQ(verify(code, kLimits, out).violations, unknown + 1);
+    EXPECT_EQ(out[unknown].rule, Rule::LabelTarget);
+    EXPECT_EQ(out[unknown].address, unknown);
+  }
+}
+
 TEST(Verifier, AcceptsEverySingleCommandWithSoundOperands) {
   for (const OpcodeInfo& row : opcode_table()) {
     Instruction command{row.opcode, {}};

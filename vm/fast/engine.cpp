@@ -24,7 +24,8 @@ enum class Exit : uint8_t { Left, Spent };
 constexpr uint32_t kFew = 8;
 constexpr uint32_t kFewForNative = 16;
 
-constexpr uint32_t kMaxBudget = 1U << 30;  // so that State::left has room for it
+constexpr uint32_t kMaxBudget = 1U << 30;
+static_assert(kMaxBudget <= uint32_t{INT32_MAX} - UINT16_MAX, "State::left holds it and a command's number");
 
 uint32_t call_depth(const Predecoded& program) {
   return std::min<uint32_t>(program.program().limits().call_depth, kMaxCallDepth);

@@ -430,5 +430,35 @@ TEST(FaultPairs, TheHardestStopActs) {
     }
 }
 
+// The column "parameter" of the table of faults, docs/inside/drive.md: _FaultReaction alone chooses for these four. The
+// others keep the response of their parameter or their fixed one.
+TEST(FaultResponse, ByCommandOnlyWhereTheTableSaysSo) {
+  const auto by_command = [](int number) {
+    return number == 39 || number == 77 || number == 78 || number == 123;
+  };
+  for (int number = 0; number <= 255; ++number) {
+    FaultRig rig;
+    EXPECT_EQ(rig.drive.set_fault_response(static_cast<uint8_t>(number), FaultResponse{3}),
+              by_command(number))
+        << "F" << number;
+  }
+  for (const int number : {39, 77, 78, 123})
+    for (uint8_t response = 0; response <= 7; ++response) {
+      FaultRig rig;
+      EXPECT_TRUE(rig.drive.set_fault_response(static_cast<uint8_t>(number), FaultResponse{response}));
+      rig.drive.raise_fault(static_cast<uint8_t>(number));
+      EXPECT_EQ(rig.drive.fault(), response == 0 ? 0 : number) << int{response};
+      EXPECT_EQ(rig.drive.error(), is_error(response)) << "F" << number << " " << int{response};
+    }
+  // Those with the fixed response of an error cannot be silenced.
+  for (const uint8_t number : std::initializer_list<uint8_t>{1, 7, 8, 10, 11, 25, 27, 29, 32, 41, 94, 99}) {
+    FaultRig rig;
+    EXPECT_FALSE(rig.drive.set_fault_response(number, FaultResponse{0}));
+    rig.drive.raise_fault(number);
+    EXPECT_EQ(rig.drive.fault(), number);
+    EXPECT_TRUE(rig.drive.error()) << "F" << int{number};
+  }
+}
+
 }  // namespace
 }  // namespace ipos::tests

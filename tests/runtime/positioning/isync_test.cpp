@@ -167,6 +167,14 @@ class Pair {
            "[station.inputs]\nDI00 = 1\nDI01 = 1\nDI03 = 1\n";
   }
 
+  // How often the unit said that the master leads beyond a software limit switch.
+  size_t told_of_limit() {
+    const auto& entries = rig.get().journal().entries();
+    return static_cast<size_t>(std::count_if(entries.begin(), entries.end(), [](const JournalEntry& entry) {
+      return entry.text.find("leads beyond a software limit switch") != std::string::npos;
+    }));
+  }
+
   PlantRig rig;
   Time end = 0;
 };
@@ -197,6 +205,7 @@ TEST(Isync, SlaveFollowsWithinOneCycle) {
   EXPECT_GE(fastest, 102) << "the master was as fast as it may be";
   EXPECT_LT(own_lag, kOneCycle);
   EXPECT_EQ(pair.slave("H511"), 0);
+  EXPECT_EQ(pair.told_of_limit(), 0U) << "there is none";
   RecordProperty("furthest_behind", behind);
 }
 
@@ -213,6 +222,20 @@ TEST(Isync, CouplesOnTheRamp) {
   pair.run(1'800);  // until 3260 ms: the travel ends at 2953 ms, the next one begins at 3430 ms
   EXPECT_NEAR(pair.master("H511") - pair.slave("H511"), lost, 110) << "the master has stopped";
   EXPECT_EQ(pair.master("H511"), 200'000);
+}
+
+// Coupling ends at 12 000 rpm at the latest (docs/inside/positioning.md, ISYNC): four times P911, which is the time for
+// 3000 rpm.
+TEST(Isync, CouplesUpToTwelveThousandRpm) {
+  for (const char* gear : {"2147483647", "-2147483647"}) {
+    Pair pair("1200); H564 = " + std::string(gear) + "; _Wait(1", "P911 = 250\nP923 = 0\n");
+    pair.run(1'215);
+    EXPECT_EQ(pair.slave("H562"), 1);
+    pair.run(975);
+    EXPECT_EQ(pair.slave("H562"), 1) << "1000 ms are not over";
+    pair.run(25);
+    EXPECT_EQ(pair.slave("H562"), 2) << gear;
+  }
 }
 
 TEST(Isync, OnlyWithTheTechnologyFunction) {
@@ -256,6 +279,7 @@ TEST(Isync, StopsAtASoftwareLimitSwitch) {
   EXPECT_EQ(pair.slave("H562"), 0);
   EXPECT_GT(pair.slave("H509"), 50'000);
   EXPECT_LT(pair.slave("H509"), 50'000 + 25'600 + 200) << "1500 rpm on P912 of 1 s for 3000 rpm";
+  EXPECT_EQ(pair.told_of_limit(), 1U) << "it is followed no more, so it is told once";
 }
 
 }  // namespace

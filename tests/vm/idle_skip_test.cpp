@@ -1,0 +1,180 @@
+// Leaving out milliseconds (Machine::idle_ticks, skip_ticks): the machine that executes every command is the expected
+// value. docs/inside/cycle.md has the rules.
+#include <gtest/gtest.h>
+
+#include "tests/vm/assembled.hpp"
+
+namespace ipos::vm {
+namespace {
+
+using tests::Assembled;
+
+// What of a machine a skip may change, task by task.
+void expect_equal_machines(const Machine& skips, const Machine& runs) {
+  for (int number = 1; number <= kContexts; ++number) {
+    const TaskContext &is = skips.context(number), &should = runs.context(number);
+    EXPECT_EQ(is.state, should.state) << number;
+    EXPECT_EQ(is.pc, should.pc) << number;
+    EXPECT_EQ(is.wait_ms, should.wait_ms) << number;
+    EXPECT_EQ(is.commands, should.commands) << number;
+  }
+  for (size_t n = 0; n < runs.variables().size(); ++n)
+    ASSERT_EQ(skips.variables()[n], runs.variables()[n]) << "H" << n;
+  EXPECT_EQ(skips.interrupts().turn, runs.interrupts().turn);
+  for (size_t n = 0; n < kEvents; ++n)
+    EXPECT_EQ(skips.interrupts().events[n].installed, runs.interrupts().events[n].installed) << n;
+  for (size_t n = 0; n < kVariableInterrupts; ++n)
+    EXPECT_EQ(skips.interrupts().variables[n].installed, runs.interrupts().variables[n].installed) << n;
+}
+
+// Loops of 2, 3 and 5 commands, one for each task.
+const char* const kThreeLoops = R"(
+      TASK2 START , M02
+      TASK START , M03
+M01 : NOP
+      JMP M01
+M02 : NOP
+      NOP
+      JMP M02
+M03 : SET H3 = H4
+      ADD H3 + 1
+      SET H3 = H4
+      NOP
+      JMP M03
+)";
+
+// Each task has a number of commands of its own, so each stands elsewhere in its loop after each millisecond. A task
+// without commands stays where it is.
+TEST(IdleSkip, EachTaskExecutesItsOwnNumberOfCommands) {
+  for (const std::array<uint32_t, kTasks>& budgets : {std::array<uint32_t, kTasks>{1, 2, 4},
+                                                      {7, 1, 3},
+                                                      {4, 7, 1},
+                                                      {0, 4, 9},
+                                                      {3, 0, 8},
+                                                      {5, 4, 0},
+                                                      {0, 0, 0}})
+    for (const uint64_t ticks : {1, 2, 3, 7, 100}) {
+      SCOPED_TRACE(testing::Message()
+                   << budgets[0] << " " << budgets[1] << " " << budgets[2] << ", " << ticks);
+      Assembled run(kThreeLoops);
+      for (int n = 0; n < 5; ++n) run.tick(10);
+      Machine runs = run.machine();
+      EXPECT_EQ(run->idle_ticks(budgets), kIdleForever);
+      EXPECT_EQ(run->skip_ticks(budgets, ticks), ticks * (budgets[0] + budgets[1] + budgets[2]));
+      for (uint64_t n = 0; n < ticks; ++n) run_tick(runs, Rates{budgets});
+      expect_equal_machines(run.machine(), runs);
+    }
+}
+
+// Waits count down meanwhile, each by as many ms; the first one that ends bounds the skip.
+TEST(IdleSkip, WaitsGoOn) {
+  Assembled run(R"(
+      TASK2 START , M02
+      WAIT 100
+      END
+M02 : WAIT 40
+      SET H0 = 7
+      END
+)");
+  run.tick();
+  run.tick(0);
+  Machine runs = run.machine();
+  constexpr std::array<uint32_t, kTasks> kBudgets{10, 10, 10};
+  EXPECT_EQ(run->idle_ticks(kBudgets), 38U) << "one of the 40 has passed, with the last one the task goes on";
+  EXPECT_EQ(run->skip_ticks(kBudgets, 38), 0U);
+  for (int n = 0; n < 38; ++n) run_tick(runs, Rates{kBudgets});
+  expect_equal_machines(run.machine(), runs);
+  EXPECT_EQ(run->idle_ticks(kBudgets), 0U);
+  run.tick();
+  EXPECT_EQ(run.h(0), 7);
+}
+
+// One of the installed interrupts is looked at in a millisecond (IPOSplus p. 45), so the turn goes on with the skip.
+TEST(IdleSkip, TheTurnOfTheInterruptsGoesOn) {
+  for (int installed = 0; installed <= 3; ++installed)
+    for (const uint64_t ticks : {1, 2, 3, 4, 5, 6, 7}) {
+      const char* const rows[] = {"SETINT ERROR , M02\n", "SETINT TOUCHP1 , M02\n", "SETINT TIMER0 , M02\n"};
+      std::string text;
+      for (int n = 0; n < installed; ++n) text += rows[n];
+      Assembled run(text + "M01 : JMP M01\nM02 : RET\n");
+      for (int n = 0; n < 2; ++n) run.tick(10);
+      Machine runs = run.machine();
+      constexpr std::array<uint32_t, kTasks> kBudgets{2, 2, 2};
+      EXPECT_EQ(run->idle_ticks(kBudgets), kIdleForever);
+      run->skip_ticks(kBudgets, ticks);
+      for (uint64_t n = 0; n < ticks; ++n) run_tick(runs, Rates{kBudgets});
+      expect_equal_machines(run.machine(), runs);
+    }
+}
+
+// Whether a loop is idle is tried out, and nothing of that stays: neither of a command that ends the task, nor of one
+// that waits, in a task as in a routine that has broken into it.
+TEST(IdleSkip, LookingChangesNothing) {
+  for (const char* const last : {"END", "RET", "WAIT 5", "JMP M03", "DIV H0 / H1", "SETI [H9] = H0",
+                                 "CALL M03", "MOVLNK H30", "TASK2 START , M03", "TASK START , M03",
+                                 "SETINT ERROR , M03", "SETINT DISABLE , M03", "VARINT H10 , M03"})
+    for (const bool in_routine : {false, true}) {
+      SCOPED_TRACE(testing::Message() << last << " " << in_routine);
+      Assembled run(std::string("SETINT TIMER0 , M03\n") + (in_routine ? "" : "JMP M03\n") +
+                    "M01 : JMP M01\nM03 : ADD H2 + 1\nSUB H2 - 1\n" + last + "\nRET\n");
+      run.h(9) = -1;  // no variable
+      run.set(10, {1, 0, 20, 0, 1, 5});
+      run.run(1);
+      if (in_routine) {
+        run.run(3);
+        run->raise_event(Event::Timer0);
+        run->tick();
+        EXPECT_EQ(run->active_context(1), context_of(Event::Timer0));
+      }
+      run.run(2);
+      const Machine before = run.machine();
+      const bool loops = std::string(last) == "JMP M03";
+      EXPECT_EQ(run->idle_ticks({5, 5, 5}), loops ? kIdleForever : 0);
+      expect_equal_machines(run.machine(), before);
+      EXPECT_EQ(run->active_context(1), before.active_context(1));
+      EXPECT_EQ(run->fault().number, 0);
+    }
+}
+
+// Task 1 goes round with one command, task 2 changes H6 for a moment: idle as long as task 1 does not use H6.
+TEST(IdleSkip, OnlyWhatALoopUsesCounts) {
+  struct Row {
+    const char* command;
+    int32_t index;  // in H1
+    bool idle;
+  };
+  for (const Row& row :
+       {Row{"SETI [H1] = H2", 5, true}, Row{"SETI [H1] = H2", 6, false}, Row{"SETI [H1] = H2", 7, true},
+        Row{"SETI H2 = [H1]", 5, true}, Row{"SETI H2 = [H1]", 6, false}, Row{"SETI H2 = [H1]", 7, true},
+        Row{"SETI [H6] = H2", 9, false}, Row{"COPY H10 = H3 , 3", 0, true},
+        Row{"COPY H10 = H4 , 3", 0, false}, Row{"COPY H10 = H7 , 3", 0, true},
+        Row{"COPY H3 = H10 , 3", 0, true}, Row{"COPY H4 = H10 , 3", 0, false}, Row{"SET H2 = H6", 0, false},
+        Row{"SET H2 = H7", 0, true}, Row{"NOP", 0, true}}) {
+    SCOPED_TRACE(testing::Message() << row.command << " " << row.index);
+    Assembled run(std::string("TASK2 START , M02\nM01 : ") + row.command +
+                  "\nJMP M01\nM02 : ADD H6 + 1\nSUB H6 - 1\nJMP M02\n");
+    run.h(1) = row.index;
+    run.run(5);
+    EXPECT_EQ(run->idle_ticks({4, 4, 4}), row.idle ? kIdleForever : 0);
+  }
+}
+
+// The unit looks at its system variables, H453 to H564, in every millisecond, and so it does at the variable that a
+// variable interrupt watches.
+TEST(IdleSkip, WhatTheUnitLooksAtDoesNotChangeForAMoment) {
+  for (const int number : {452, 453, 454, 500, 563, 564, 565}) {
+    const std::string h = "H" + std::to_string(number);
+    Assembled run("M01 : ADD " + h + " + 1\nSUB " + h + " - 1\nJMP M01\n");
+    EXPECT_EQ(run->idle_ticks({4, 4, 4}), number < 453 || number > 564 ? kIdleForever : 0) << h;
+  }
+  for (const int watched : {19, 20, 21}) {
+    Assembled run(
+        "TASK2 START , M02\nVARINT H10 , M02\nM01 : ADD H20 + 1\nSUB H20 - 1\nJMP M01\nM02 : JMP M02\n");
+    run.set(10, {1, 0, watched, 0, 1, 5});
+    run.run(2);
+    EXPECT_EQ(run->idle_ticks({3, 3, 3}), watched == 20 ? 0 : kIdleForever) << watched;
+  }
+}
+
+}  // namespace
+}  // namespace ipos::vm
