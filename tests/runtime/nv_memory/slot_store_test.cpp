@@ -270,6 +270,14 @@ TEST(Payload, CountsAreThoseOfTheContent) {
   }
 }
 
+TEST(Payload, CountsWithoutValues) {
+  NvContent content;
+  EXPECT_EQ(encode(content), std::vector<uint8_t>(4 + 4 + 1)) << "nothing at all";
+  EXPECT_EQ(decode_content(encode(content)), content);
+  for (uint16_t n = 0; n < 100; ++n) content.writes.emplace_back(n, n + 1);
+  EXPECT_EQ(decode_content(encode(content)), content);
+}
+
 TEST(Payload, IndicesRise) {
   NvContent content;
   for (const auto& [first, second, right] : std::initializer_list<std::tuple<uint16_t, uint16_t, bool>>{
