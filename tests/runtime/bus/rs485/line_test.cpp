@@ -359,5 +359,24 @@ TEST(SerialLine, ACharacterInThePauseOfAnother) {
   EXPECT_FALSE(third.characters[1].parity_error || third.characters[1].framing_error);
 }
 
+// Who begins to observe hears who takes no part; those that know it do not hear it again.
+TEST(SerialLine, AnObserverThatComesLater) {
+  EventQueue queue;
+  Rs485Line line(queue, 7, "line1", 9600);
+  Recorder first, second;
+  line.add_observer(first);
+  const HandNode slow(line, "slow");
+  const HandNode fast(line, "fast", 57600);
+  line.set_connected(slow.port.node(), false);
+  const std::vector<std::string> texts = first.texts;
+  ASSERT_EQ(texts.size(), 2U);
+  line.add_observer(second);
+  EXPECT_EQ(second.texts, (std::vector<std::string>{texts[1], texts[0]})) << "in the order of the stations";
+  EXPECT_EQ(first.texts, texts);
+  line.set_baud(fast.port.node(), 57600);
+  EXPECT_EQ(first.texts.size(), 3U);
+  EXPECT_EQ(second.texts.size(), 3U);
+}
+
 }  // namespace
 }  // namespace ipos::tests
