@@ -290,5 +290,31 @@ TEST(CanopenMaster, GuardsWithTheToggleBit) {
   EXPECT_EQ(bench.master.report(0).phase, Phase::Lost) << "40 ms after the last answer that counted";
 }
 
+// What is due at one moment goes out one behind the other, and nothing takes the place of another kind of frame.
+TEST(CanopenMaster, SyncOutputsAndHeartbeatOfOneMoment) {
+  MasterSettings settings;
+  settings.heartbeat = 5;
+  settings.sync_cycle = 5 * kMillisecond;
+  settings.nodes = {plan(1)};
+  for (uint8_t pdo = 1; pdo < 4; ++pdo)
+    settings.nodes[0].pdos.push_back({pdo, false, 1, 0, 0, {{{0x2000, static_cast<uint8_t>(3 + pdo)}, 16}}});
+  MasterBench bench(settings);
+  bench.heard();
+  bench.answer({0x701, 1, {0x00}});
+  for (int writes = 0; bench.master.report(0).phase == Phase::Configuring && writes < 100; ++writes)
+    for (const Frame& request : bench.heard())
+      if (request.id == 0x601)
+        bench.answer({0x581, 8, {0x60, request.data[1], request.data[2], request.data[3]}});
+  ASSERT_EQ(bench.master.report(0).phase, Phase::Running);
+  bench.run(6 * kMillisecond - bench.queue.now() % (5 * kMillisecond));  // a millisecond behind a cycle
+  bench.heard();
+  for (int cycle = 0; cycle < 10; ++cycle) {
+    bench.run(5 * kMillisecond);
+    std::vector<uint32_t> ids;
+    for (const Frame& frame : bench.heard()) ids.push_back(frame.id);
+    EXPECT_EQ(ids, (std::vector<uint32_t>{0x080, 0x201, 0x301, 0x401, 0x501, 0x77F}));
+  }
+}
+
 }  // namespace
 }  // namespace ipos::tests
