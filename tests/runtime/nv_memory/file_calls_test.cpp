@@ -2,16 +2,18 @@
 // synchronising of files for itself.
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <numeric>
+#include <vector>
 
 #include "runtime/nv_memory/medium/file_medium.hpp"
 
