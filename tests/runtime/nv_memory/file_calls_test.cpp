@@ -199,21 +199,24 @@ TEST_F(FileCalls, RightsOfANewFile) {
   EXPECT_EQ(status.st_mode & 0777U, 0644U);
 }
 
-// The superuser takes the rights of somebody for a while.
-class AsSomebody {
+// The superuser takes the rights of somebody for a while, within a folder: those above it may be closed to others.
+class AsSomebodyIn {
  public:
-  AsSomebody() : root_(geteuid() == 0) {
+  explicit AsSomebodyIn(const fs::path& folder) : before_(fs::current_path()), root_(geteuid() == 0) {
+    fs::current_path(folder);
     if (root_) root_ = seteuid(65'534) == 0;
   }
-  ~AsSomebody() {
+  ~AsSomebodyIn() {
     if (root_) {
       EXPECT_EQ(seteuid(0), 0);
     }
+    fs::current_path(before_);
   }
-  AsSomebody(const AsSomebody&) = delete;
-  AsSomebody& operator=(const AsSomebody&) = delete;
+  AsSomebodyIn(const AsSomebodyIn&) = delete;
+  AsSomebodyIn& operator=(const AsSomebodyIn&) = delete;
 
  private:
+  fs::path before_;
   bool root_;
 };
 
@@ -221,16 +224,16 @@ TEST_F(FileCalls, WhoMayOnlyReadLooks) {
   opened();
   fs::permissions(folder_, fs::perms(0755));
   fs::permissions(path_, fs::perms(0444));
-  const AsSomebody somebody;
-  EXPECT_TRUE(open_file_medium(path_, FileUse::Look));
-  EXPECT_EQ(open_file_medium(path_, FileUse::Write).error(), "Permission denied");
+  const AsSomebodyIn somebody(folder_);
+  EXPECT_TRUE(open_file_medium("./unit1.nv", FileUse::Look));
+  EXPECT_EQ(open_file_medium("./unit1.nv", FileUse::Write).error(), "Permission denied");
 }
 
 // Then its entry cannot be synchronised.
 TEST_F(FileCalls, AFolderThatCannotBeRead) {
   fs::permissions(folder_, fs::perms(0333));
-  const AsSomebody somebody;
-  EXPECT_EQ(open_file_medium(path_, FileUse::Write).error(), "Permission denied");
+  const AsSomebodyIn somebody(folder_);
+  EXPECT_EQ(open_file_medium("./unit1.nv", FileUse::Write).error(), "Permission denied");
 }
 
 // A process may begin without its standard input: the file then has the number 0.
