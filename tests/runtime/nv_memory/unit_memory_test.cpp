@@ -348,6 +348,16 @@ TEST(Wear, WritesOfOneMoment) {
             "values belong into service 3, write volatile");
 }
 
+// Nine steps of 6.666 s: the memory lasts 100 000 of them, 7.7 days.
+TEST(Wear, SpansAreToldInMilliseconds) {
+  WearWatch watch;
+  std::optional<std::string> told;
+  for (uint32_t n = 1; n <= 10; ++n) told = watch.note(n * 6'666 * kMillisecond, 8470, n, "P130");
+  ASSERT_TRUE(told.has_value());
+  EXPECT_NE(told->find("within 59.994 s: "), std::string::npos) << *told;
+  EXPECT_NE(told->find("at this rate 7.7 days; "), std::string::npos) << *told;
+}
+
 // The last ten count, wherever in the row of all writes they are.
 TEST(Wear, TheLastTenWritesCount) {
   for (const uint32_t slow : std::initializer_list<uint32_t>{1, 5, 9, 10, 13, 27}) {
