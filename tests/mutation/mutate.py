@@ -82,6 +82,12 @@ def drawn(name, found, options):
     return [found[n] for n in sorted(chosen)]
 
 
+def built(file, build):
+    """False for a source of another system, of which the build has nothing. Without a build all sources count."""
+    commands = build / "compile_commands.json"
+    return not commands.exists() or f'"{ROOT / file}"' in commands.read_text()
+
+
 def score(name, counts):
     real = counts.get("killed", 0) + counts.get("survived", 0)
     if real:
@@ -132,7 +138,10 @@ def main():
     survived = False
     for name, chosen in sources.items():
         folder = (ROOT / name).is_dir()
-        files = sorted(str(f.relative_to(ROOT)) for f in (ROOT / name).rglob("*.cpp")) if folder else [name]
+        files = [name]
+        if folder:
+            files = sorted(str(f.relative_to(ROOT)) for f in (ROOT / name).rglob("*.cpp"))
+            files = [file for file in files if built(file, options.build)]
         found = {file: planted(file, chosen, options) for file in files}
         draw = drawn(options.header or name, [(file, m) for file in files for m in found[file][2]], options)
         total = {}

@@ -29,7 +29,8 @@ std::optional<Time> log_time(std::string_view word) {
   int64_t seconds = 0, micros = 0;
   const auto number = [](std::string_view digits, int64_t& out) {
     const auto [end, status] = std::from_chars(digits.data(), digits.data() + digits.size(), out);
-    return status == std::errc() && end == digits.data() + digits.size() && out >= 0 && out < 9'000'000'000;
+    return !digits.starts_with('-') && status == std::errc() && end == digits.data() + digits.size() &&
+           out < 9'000'000'000;
   };
   if (point == std::string_view::npos || word.size() != point + 7 ||
       !number(word.substr(0, point), seconds) || !number(word.substr(point + 1), micros))

@@ -13,8 +13,10 @@ constexpr std::string_view kBlanks = " \t\r";
 
 bool is_blank(char c) { return kBlanks.find(c) != std::string_view::npos; }
 
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
 int hex_digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
+  if (is_digit(c)) return c - '0';
   if (c >= 'A' && c <= 'F') return c - 'A' + 10;
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;
   return -1;
@@ -69,14 +71,15 @@ class SerialLineReader {
     int64_t seconds = 0;
     int64_t micros = 0;
     const char* end = text_.data() + text_.size();
+    if (!is_digit(peek())) return fail("time in seconds expected");
     const auto [point, error] = std::from_chars(text_.data() + at_, end, seconds);
-    if (error != std::errc{} || seconds < 0 || seconds > kLatestSecond)
-      return fail("time in seconds expected");
+    if (error != std::errc{} || seconds > kLatestSecond) return fail("time in seconds expected");
     at_ = static_cast<size_t>(point - text_.data());
     if (peek() != '.') return fail("'.' expected");
     ++at_;
+    if (!is_digit(peek())) return fail("six digits of microseconds expected");
     const auto [stop, wrong] = std::from_chars(text_.data() + at_, end, micros);
-    if (wrong != std::errc{} || micros < 0 || stop - (text_.data() + at_) != 6)
+    if (wrong != std::errc{} || stop - (text_.data() + at_) != 6)
       return fail("six digits of microseconds expected");
     at_ = static_cast<size_t>(stop - text_.data());
     if (!is_blank(peek())) return fail("blank expected");

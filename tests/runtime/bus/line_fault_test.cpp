@@ -446,5 +446,25 @@ TEST(LineFault, ALineHeldDominantCarriesNothingAndRecovers) {
   EXPECT_EQ(t.line.counters(1).state(), ErrorState::Active);
 }
 
+// The line is held dominant while a frame is under way, which is still carried to its end (ours). Its sender is
+// error-passive then, so it pauses for 8 bits behind the intermission before it sends again (ISO 11898-1, suspend
+// transmission).
+TEST(LineFault, ASenderThatBecomesPassiveInItsFramePausesBehindIt) {
+  Bench t;
+  const Time bit = t.line.bit_time();
+  t.send(0, 100);
+  t.send(0, 101);
+  t.run(10 * bit);
+  LineFault fault = t.fault(FaultKind::Stuck);
+  fault.from = 20 * bit;
+  fault.until = 30 * bit;
+  t.line.plant(fault);
+  t.run(kMillisecond);
+  ASSERT_EQ(t.watcher.frames.size(), 2U);
+  EXPECT_EQ(t.watcher.frames[0].start, bit);
+  EXPECT_EQ(t.watcher.frames[1].start, t.watcher.frames[0].start + (t.watcher.frames[0].bits + 8) * bit);
+  EXPECT_EQ(t.line.counters(0).state(), ErrorState::Passive);
+}
+
 }  // namespace
 }  // namespace ipos::runtime

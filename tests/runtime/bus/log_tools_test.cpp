@@ -72,6 +72,38 @@ TEST(BusLoad, PercentAndEmptyWindows) {
   EXPECT_EQ(load.windows().size(), 5U);
 }
 
+// Shares are rounded to hundredths of a per cent, halves up.
+TEST(BusLoad, PercentIsRounded) {
+  const auto share = [](uint64_t bits) { return LoadCount::percent_hundredths(bits, 500'000, kSecond); };
+  EXPECT_EQ(share(24), 0U);
+  EXPECT_EQ(share(25), 1U);
+  EXPECT_EQ(share(74), 1U);
+  EXPECT_EQ(share(75), 2U);
+  EXPECT_EQ(share(500'000), 10'000U);
+  EXPECT_EQ(LoadCount::percent_hundredths(1, 500'000, kMicrosecond), 0U) << "no bit fits into it";
+  EXPECT_EQ(LoadCount::percent_hundredths(1, 500'000, 2 * kMicrosecond), 10'000U);
+  EXPECT_EQ(LoadCount::percent_hundredths(1, 500'000, -kSecond), 0U);
+}
+
+// Up to an hour of silence is shown second by second; behind a longer one the seconds count anew (ours).
+TEST(BusLoad, AnHourOfSilence) {
+  for (const Time more : {Time{0}, Time{1}}) {
+    BusLoad load;
+    load.add(7 * kSecond, {});
+    load.add(7 * kSecond + 3600 * kSecond + more, {});
+    ASSERT_EQ(load.windows().size(), more == 0 ? 3601U : 2U);
+    EXPECT_EQ(load.windows().back().start, 3607 * kSecond + more);
+    EXPECT_EQ(load.windows().back().count.frames, 1U);
+    EXPECT_EQ(load.span(), 3600 * kSecond + more);
+  }
+  BusLoad load;
+  load.add(0, {});
+  load.add(kSecond - 1, {});
+  EXPECT_EQ(load.windows().size(), 1U);
+  load.add(kSecond, {});
+  EXPECT_EQ(load.windows().size(), 2U);
+}
+
 class Quiet final : public CanNode {
  public:
   void on_frame(Time now, const Frame& frame) override {
@@ -269,7 +301,6 @@ TEST(Dbc, ControlWordBitsAndTheParameterChannel) {
   EXPECT_DOUBLE_EQ(value("P130_"), 2.5);
   EXPECT_NE(text.find("VAL_ 523 Service 0 \"no service\" 1 \"read\""), std::string::npos);
   EXPECT_NE(text.find(" SG_ Index M : 23|16@0+"), std::string::npos);
-
 }
 
 }  // namespace

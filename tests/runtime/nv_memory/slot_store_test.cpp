@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 #include "tests/runtime/nv_memory/fake_medium.hpp"
 
 namespace ipos::runtime {
@@ -234,6 +236,59 @@ TEST_F(Slots, TooMuchIsRefused) {
   store.load();
   EXPECT_EQ(store.save(content), "the content is longer than a slot");
   EXPECT_TRUE(state_->writes.empty());
+}
+
+// A payload says how much there is of everything: one less or more than there is makes it none.
+TEST(Payload, CountsAreThoseOfTheContent) {
+  NvContent content;
+  content.values = {{1, 2}, {3, 4}};
+  content.writes = {{5, 6}};
+  content.program = NvProgram{7, {8, 9}};
+  const std::vector<uint8_t> bytes = encode(content);
+  ASSERT_EQ(bytes.size(), 4U + 2 * 6 + 4 + 6 + 1 + 4 + 4 + 2 * 4);
+  ASSERT_EQ(decode_content(bytes), content);
+  const size_t counts[] = {0, 16, 31};
+  for (const size_t at : counts)
+    for (const std::vector<uint8_t>& count :
+         std::initializer_list<std::vector<uint8_t>>{{static_cast<uint8_t>(bytes[at] + 1), 0, 0, 0},
+                                                     {static_cast<uint8_t>(bytes[at] - 1), 0, 0, 0},
+                                                     {bytes[at], 0, 0, 1},
+                                                     {0xFF, 0xFF, 0xFF, 0xFF}}) {
+      std::vector<uint8_t> other = bytes;
+      std::copy(count.begin(), count.end(), other.begin() + static_cast<ptrdiff_t>(at));
+      EXPECT_EQ(decode_content(other), std::nullopt) << at << ": " << int{count[0]};
+    }
+  for (size_t size = 0; size < bytes.size(); ++size)
+    EXPECT_EQ(decode_content(std::span(bytes).first(size)), std::nullopt) << size;
+  std::vector<uint8_t> longer = bytes;
+  longer.push_back(0);
+  EXPECT_EQ(decode_content(longer), std::nullopt);
+  for (const uint8_t kind : std::initializer_list<uint8_t>{0, 2, 255}) {
+    std::vector<uint8_t> other = bytes;
+    other[26] = kind;
+    EXPECT_EQ(decode_content(other), std::nullopt) << "0 or 1, and behind 0 nothing";
+  }
+}
+
+TEST(Payload, CountsWithoutValues) {
+  NvContent content;
+  EXPECT_EQ(encode(content), std::vector<uint8_t>(4 + 4 + 1)) << "nothing at all";
+  EXPECT_EQ(decode_content(encode(content)), content);
+  for (uint16_t n = 0; n < 100; ++n) content.writes.emplace_back(n, n + 1);
+  EXPECT_EQ(decode_content(encode(content)), content);
+}
+
+TEST(Payload, IndicesRise) {
+  NvContent content;
+  for (const auto& [first, second, right] : std::initializer_list<std::tuple<uint16_t, uint16_t, bool>>{
+           {0, 1, true}, {1, 1, false}, {2, 1, false}, {0xFFFE, 0xFFFF, true}, {0, 0, false}}) {
+    content.values = {{first, -1}, {second, -2}};
+    content.writes = {};
+    EXPECT_EQ(decode_content(encode(content)).has_value(), right);
+    content.values = {};
+    content.writes = {{first, 1}, {second, 2}};
+    EXPECT_EQ(decode_content(encode(content)).has_value(), right);
+  }
 }
 
 }  // namespace

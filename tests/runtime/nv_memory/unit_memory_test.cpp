@@ -320,5 +320,88 @@ TEST(Wear, SlowWritesAreNot) {
             "P130 has been stored 100000 times: the non-volatile memory may be worn out");
 }
 
+// From two years, two days and one hour on the next greater unit is used; a year has 365.25 days.
+TEST(Wear, UnitsOfTheLife) {
+  constexpr Time kYear = 36'525 * (24 * 3'600 * (kSecond / 100));  // 365.25 days
+  const auto life = [](Time span) { return memory_life(span / kEepromLife); };
+  EXPECT_EQ(life(2 * kYear), "2.0 years");
+  EXPECT_EQ(life(2 * kYear - kSecond), "730.4 days");
+  EXPECT_EQ(life(48 * 3'600 * kSecond), "2.0 days");
+  EXPECT_EQ(life(48 * 3'600 * kSecond - kSecond), "47.9 h");
+  EXPECT_EQ(life(3'600 * kSecond), "1.0 h");
+  EXPECT_EQ(life(3'599 * kSecond), "3599 s");
+  EXPECT_EQ(life(100 * kYear - kSecond), "99.9 years");
+  EXPECT_EQ(life(kSecond - 1), "0 s");
+}
+
+// Ten writes in one moment count as a millisecond, so the life is that of one write every ninth of it: 11 s.
+TEST(Wear, WritesOfOneMoment) {
+  WearWatch watch;
+  std::optional<std::string> told;
+  for (uint32_t n = 1; n <= 10; ++n) {
+    EXPECT_EQ(told, std::nullopt);
+    told = watch.note(5 * kSecond, 8470, n, "P130");
+  }
+  EXPECT_EQ(told,
+            "P130 was stored 10 times within 0.001 s: the memory lasts about 100000 writes, at this rate 11 "
+            "s; cyclic "
+            "values belong into service 3, write volatile");
+}
+
+// Nine steps of 6.666 s: the memory lasts 100 000 of them, 7.7 days.
+TEST(Wear, SpansAreToldInMilliseconds) {
+  WearWatch watch;
+  std::optional<std::string> told;
+  for (uint32_t n = 1; n <= 10; ++n) told = watch.note(n * 6'666 * kMillisecond, 8470, n, "P130");
+  ASSERT_TRUE(told.has_value());
+  EXPECT_NE(told->find("within 59.994 s: "), std::string::npos) << *told;
+  EXPECT_NE(told->find("at this rate 7.7 days; "), std::string::npos) << *told;
+}
+
+// The last ten count, wherever in the row of all writes they are.
+TEST(Wear, TheLastTenWritesCount) {
+  for (const uint32_t slow : std::initializer_list<uint32_t>{1, 5, 9, 10, 13, 27}) {
+    WearWatch watch;
+    Time now = 0;
+    for (uint32_t n = 1; n <= slow; ++n)
+      EXPECT_EQ(watch.note(now += 3'600 * kSecond, 8470, n, "P130"), std::nullopt);
+    // Nine more make ten with the last slow one: from it 60 s and a nanosecond are too long, 60 s are not.
+    for (const Time late : std::initializer_list<Time>{1, 0}) {
+      WearWatch copy = watch;
+      for (uint32_t n = 1; n <= 8; ++n)
+        EXPECT_EQ(copy.note(now + n * kSecond, 8470, slow + n, "P130"), std::nullopt) << slow;
+      EXPECT_EQ(copy.note(now + 60 * kSecond + late, 8470, slow + 9, "P130").has_value(), late == 0) << slow;
+    }
+  }
+}
+
+TEST(Wear, UsesAreCountedFromTheFirstToTheLast) {
+  WearWatch watch;
+  for (uint32_t n = 0; n < 25; ++n) watch.note((n * n + 100) * kSecond, 8470, n, "P130");
+  watch.note(7 * kSecond, 8471, 1, "P131");  // once
+  watch.note(7 * kSecond, 8469, 1, "P132");
+  watch.note(10 * kSecond, 8469, 2, "P132");
+  const auto uses = watch.uses();
+  ASSERT_EQ(uses.size(), 2U);
+  EXPECT_EQ(uses[0].index, 8469);
+  EXPECT_EQ(uses[0].writes, 2U);
+  EXPECT_EQ(uses[0].interval, 3 * kSecond);
+  EXPECT_EQ(uses[1].index, 8470);
+  EXPECT_EQ(uses[1].writes, 25U);
+  EXPECT_EQ(uses[1].interval, 24 * kSecond) << "24 * 24 s in 24 steps";
+}
+
+TEST(Wear, IntervalsAreToldInMilliseconds) {
+  Unit unit;
+  unit.ask(kWrite, 8470, 1000);
+  unit.memory.set_time(7'045 * kMillisecond);
+  unit.ask(kWrite, 8470, 1100);
+  unit.memory.report_wear();
+  // 704 500 s are 8.15 days.
+  EXPECT_EQ(unit.told(), std::vector<std::string>{
+                             "P130 Ramp t11 UP CW was stored 2 times, every 7.045 s on average: at this rate "
+                             "the memory lasts 8.1 days"});
+}
+
 }  // namespace
 }  // namespace ipos::runtime

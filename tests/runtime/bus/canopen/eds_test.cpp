@@ -77,5 +77,33 @@ TEST(CanopenEds, AgreesWithTheNode) {
   EXPECT_EQ(entries, stdlib::parameter_table(mdxb()).by_index().size() + 27 + 104 + 22);
 }
 
+// P000 is shown only and has no limits; P130 can be set from 0 to 2000 s (in ms), its factory setting is 2 s.
+TEST(CanopenEds, AccessAndLimitsOfParameters) {
+  const std::string text = eds_text(mdxb());
+  const auto section_of = [&](const std::string& name) {
+    const size_t at = text.find("\n[" + name + "]\n");
+    EXPECT_NE(at, std::string::npos) << name;
+    return text.substr(at + 1, text.find("\n\n", at) - at);
+  };
+  const std::string shown = section_of("207E");
+  EXPECT_NE(shown.find("\nAccessType=ro\n"), std::string::npos) << shown;
+  EXPECT_EQ(shown.find("Limit="), std::string::npos) << shown;
+  const std::string set = section_of("2116");
+  EXPECT_NE(set.find("\nAccessType=rw\nDefaultValue=2000\nLowLimit=0\nHighLimit=2000000\n"),
+            std::string::npos)
+      << set;
+  for (const stdlib::Parameter* parameter : stdlib::parameter_table(mdxb()).by_index()) {
+    char name[5];
+    std::snprintf(name, sizeof name, "%04X", unsigned{parameter->index});
+    const std::string section = section_of(name);
+    EXPECT_NE(section.find(parameter->writable ? "\nAccessType=rw\n" : "\nAccessType=ro\n"),
+              std::string::npos)
+        << section;
+    if (!parameter->writable) {
+      EXPECT_EQ(section.find("Limit="), std::string::npos) << section;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace ipos::tests

@@ -178,5 +178,143 @@ TEST(CanopenMaster, BringsUpAgainAndHearsEmergencies) {
   EXPECT_EQ(rig.master.report(0).emergencies[0].more, (std::array<uint8_t, 5>{0, 0x22, 0x2B, 0, 0}));
 }
 
+struct Told final : MasterObserver {
+  void on_node(Time, bool wrong, std::string text) override { texts.push_back((wrong ? "! " : "") + text); }
+  std::vector<std::string> texts;
+};
+
+// The master with a hand-driven node 1, frame by frame.
+struct MasterBench {
+  explicit MasterBench(const MasterSettings& settings)
+      : master(queue, 8, settings, &told), port(line, line.attach("master", line.baud(), master)) {
+    master.start(0, port);
+    run(kMillisecond);
+  }
+  void run(Time span) { queue.run_until(queue.now() + span); }
+  void answer(const Frame& frame) {
+    node.port.send(frame, 0);
+    run(kMillisecond);
+  }
+  std::vector<Frame> heard() { return std::exchange(node.frames, {}); }
+
+  EventQueue queue;
+  CanLine line{queue, 9, "sbus", 1'000'000};
+  Told told;
+  Master master;
+  LinePort port;
+  Hand node{line, "node1"};
+};
+
+using MasterFrames = std::vector<Frame>;
+
+// Heartbeats are one octet, the state of the master (CiA 301); nodes wait for them for twice as long.
+TEST(CanopenMaster, ProducesHeartbeats) {
+  MasterSettings settings;
+  settings.node = 100;
+  settings.heartbeat = 50;
+  settings.nodes = {plan(1)};
+  MasterBench bench(settings);
+  const Frame heartbeat{0x764, 1, {0x05}};
+  EXPECT_EQ(bench.heard(), (MasterFrames{{0x000, 2, {0x82, 0}}, heartbeat}));
+  bench.run(48 * kMillisecond);
+  EXPECT_TRUE(bench.heard().empty());
+  bench.run(2 * kMillisecond);
+  EXPECT_EQ(bench.heard(), MasterFrames{heartbeat});
+  bench.run(50 * kMillisecond);
+  EXPECT_EQ(bench.heard(), MasterFrames{heartbeat});
+  bench.answer({0x701, 1, {0x00}});
+  EXPECT_EQ(bench.heard(), (MasterFrames{{0x601, 8, {0x23, 0x16, 0x10, 0x01, 100, 0, 100, 0}}}));
+}
+
+TEST(CanopenMaster, TellsTheWayOfANode) {
+  MasterSettings settings;
+  settings.nodes = {plan(1)};
+  settings.nodes[0].writes = {{{0x1017, 0}, 30, 2}};
+  settings.nodes[0].heartbeat = 30;
+  MasterBench bench(settings);
+  bench.heard();
+  bench.answer({0x701, 1, {0x00}});
+  EXPECT_EQ(bench.heard(), (MasterFrames{{0x601, 8, {0x2B, 0x17, 0x10, 0x00, 30}}}));
+  bench.answer({0x581, 8, {0x60, 0x17, 0x10, 0x00}});
+  EXPECT_EQ(bench.heard(), (MasterFrames{{0x601, 8, {0x2B, 0x17, 0x10, 0x00, 30}}}))
+      << "the one of its heartbeat";
+  EXPECT_EQ(bench.master.report(0).phase, Phase::Configuring);
+  bench.answer({0x581, 8, {0x60, 0x17, 0x10, 0x00}});
+  EXPECT_EQ(bench.heard(), (MasterFrames{{0x000, 2, {0x01, 1}}}));
+  EXPECT_EQ(bench.master.report(0).phase, Phase::Running);
+  bench.run(58 * kMillisecond);
+  EXPECT_EQ(bench.master.report(0).phase, Phase::Running);
+  bench.run(2 * kMillisecond);
+  EXPECT_EQ(bench.master.report(0).phase, Phase::Lost) << "nothing heard for 60 ms";
+  bench.answer({0x701, 1, {0x7F}});
+  EXPECT_EQ(bench.master.report(0).phase, Phase::Lost) << "it is not operational";
+  bench.answer({0x701, 1, {0x05}});
+  EXPECT_EQ(bench.master.report(0).phase, Phase::Running);
+  bench.answer({0x701, 1, {0x00}});
+  bench.run(500 * kMillisecond);
+  EXPECT_EQ(bench.heard().back(), (Frame{0x601, 8, {0x80, 0x17, 0x10, 0x00, 0x00, 0x00, 0x04, 0x05}}));
+  EXPECT_EQ(bench.told.texts,
+            (std::vector<std::string>{
+                "CANopen: node 1 boots up", "CANopen: node 1 is configured and started",
+                "! CANopen: node 1 is missed: no sign of life within its time",
+                "CANopen: node 1 is there again", "CANopen: node 1 boots up",
+                "! CANopen: node 1 does not answer over SDO: it is not started before its next boot-up"}));
+  EXPECT_EQ(bench.master.report(0).losses, 2U);
+}
+
+// Guarding asks with a remote frame of one octet; an answer whose toggle bit has not changed is no sign of life.
+TEST(CanopenMaster, GuardsWithTheToggleBit) {
+  MasterSettings settings;
+  settings.nodes = {plan(1)};
+  settings.nodes[0].guard_time = 20;
+  settings.nodes[0].life_factor = 2;
+  MasterBench bench(settings);
+  bench.answer({0x701, 1, {0x00}});
+  bench.answer({0x581, 8, {0x60, 0x0C, 0x10, 0x00}});
+  bench.heard();
+  bench.answer({0x581, 8, {0x60, 0x0D, 0x10, 0x00}});
+  const Frame asks = remote(0x701, 1);
+  EXPECT_EQ(bench.heard(), (MasterFrames{{0x000, 2, {0x01, 1}}, asks}));
+  bench.answer({0x701, 1, {0x05}});
+  bench.run(17 * kMillisecond);
+  EXPECT_TRUE(bench.heard().empty());
+  bench.run(2 * kMillisecond);
+  EXPECT_EQ(bench.heard(), MasterFrames{asks}) << "20 ms after the one before";
+  bench.run(10 * kMillisecond);
+  bench.answer({0x701, 1, {0x85}});
+  EXPECT_EQ(bench.master.report(0).phase, Phase::Running);
+  bench.run(38 * kMillisecond);
+  bench.answer({0x701, 1, {0x85}});
+  EXPECT_EQ(bench.master.report(0).phase, Phase::Running);
+  bench.run(kMillisecond);
+  EXPECT_EQ(bench.master.report(0).phase, Phase::Lost) << "40 ms after the last answer that counted";
+}
+
+// What is due at one moment goes out one behind the other, and nothing takes the place of another kind of frame.
+TEST(CanopenMaster, SyncOutputsAndHeartbeatOfOneMoment) {
+  MasterSettings settings;
+  settings.heartbeat = 5;
+  settings.sync_cycle = 5 * kMillisecond;
+  settings.nodes = {plan(1)};
+  for (uint8_t pdo = 1; pdo < 4; ++pdo)
+    settings.nodes[0].pdos.push_back({pdo, false, 1, 0, 0, {{{0x2000, static_cast<uint8_t>(3 + pdo)}, 16}}});
+  MasterBench bench(settings);
+  bench.heard();
+  bench.answer({0x701, 1, {0x00}});
+  for (int writes = 0; bench.master.report(0).phase == Phase::Configuring && writes < 100; ++writes)
+    for (const Frame& request : bench.heard())
+      if (request.id == 0x601)
+        bench.answer({0x581, 8, {0x60, request.data[1], request.data[2], request.data[3]}});
+  ASSERT_EQ(bench.master.report(0).phase, Phase::Running);
+  bench.run(6 * kMillisecond - bench.queue.now() % (5 * kMillisecond));  // a millisecond behind a cycle
+  bench.heard();
+  for (int cycle = 0; cycle < 10; ++cycle) {
+    bench.run(5 * kMillisecond);
+    std::vector<uint32_t> ids;
+    for (const Frame& frame : bench.heard()) ids.push_back(frame.id);
+    EXPECT_EQ(ids, (std::vector<uint32_t>{0x080, 0x201, 0x301, 0x401, 0x501, 0x77F}));
+  }
+}
+
 }  // namespace
 }  // namespace ipos::tests

@@ -264,5 +264,28 @@ TEST(CanopenHeartbeat, Consumed) {
   EXPECT_EQ(rig.station.foreign, 0);
 }
 
+// What waits to be sent when the communication is reset is not sent any more, of whatever kind it is: here the answer
+// to a SYNC of each transmit PDO, and an EMCY.
+TEST(CanopenNode, AResetWithdrawsWhatWaits) {
+  NodeRig rig;
+  for (uint16_t n = 1; n < 4; ++n) {
+    rig.write(static_cast<uint16_t>(0x1A00 + n), 1, 0x2001'0110, 4);
+    rig.write(static_cast<uint16_t>(0x1A00 + n), 0, 1, 1);
+    rig.write(static_cast<uint16_t>(0x1800 + n), 1, 0x185U + 0x100U * n, 4);
+  }
+  rig.nmt(NmtCommand::Start);
+  rig.sync(5 * kMillisecond);
+  for (const uint32_t id : {0x185U, 0x285U, 0x385U, 0x485U}) EXPECT_EQ(rig.count(id), 1U) << id;
+  rig.clear();
+  const size_t syncs = rig.station.unit.syncs.size();
+  rig.master.port.send({0x080, 0}, 0);
+  while (rig.station.unit.syncs.size() == syncs) rig.run(rig.line.bit_time());
+  rig.station.unit.state = {0x2B22, true, false};
+  rig.station.node.unit_changed(rig.queue.now());
+  rig.station.node.start(rig.queue.now());
+  rig.run(10 * kMillisecond);
+  EXPECT_EQ(rig.master.frames, Frames{kBootUp});
+}
+
 }  // namespace
 }  // namespace ipos::tests

@@ -245,5 +245,21 @@ TEST(CanopenObjects, OutputsBySdo) {
   EXPECT_EQ(rig.read(0x2001, 10), (Bytes{0xCD, 0xAB}));
 }
 
+// Bits 0 to 29 of a COB-ID are the identifier and the kind of frame: an identifier of more than 11 bits is refused,
+// also of a PDO that is off, and only an equal one may be written while it is on.
+TEST(CanopenObjects, EveryBitOfAPdoIdentifierCounts) {
+  ObjectRig rig;
+  for (unsigned bit = 11; bit <= 29; ++bit) {
+    EXPECT_EQ(rig.write(0x1401, 1, 0x8000'0305 | 1U << bit, 4), 0x0609'0030U) << bit;
+    EXPECT_EQ(rig.write(0x1400, 1, 0x0000'0205 | 1U << bit, 4), 0x0609'0030U) << bit;
+  }
+  EXPECT_EQ(rig.write(0x1401, 1, 0xC000'0305, 4), 0U) << "bit 30 does not belong to it";
+  EXPECT_EQ(rig.write(0x1401, 1, 0x8000'07FF, 4), 0U);
+  for (unsigned bit = 0; bit <= 10; ++bit)
+    EXPECT_EQ(rig.write(0x1400, 1, 0x205U ^ 1U << bit, 4), 0x0609'0030U) << "it is on: " << bit;
+  EXPECT_EQ(rig.write(0x1400, 1, 0x205, 4), 0U);
+  EXPECT_EQ(rig.write(0x1400, 1, 0x4000'0205, 4), 0U);
+}
+
 }  // namespace
 }  // namespace ipos::tests

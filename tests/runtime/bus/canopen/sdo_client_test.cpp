@@ -89,5 +89,35 @@ TEST(CanopenSdoClient, AnyAnswers) {
   }));
 }
 
+// More octets than the server has said, or than 64 KiB where it has not: the transfer ends at once.
+TEST(CanopenSdoClient, AnUploadThatDoesNotEnd) {
+  constexpr uint32_t kLength = 0x0607'0010;
+  SdoClient client;
+  client.read({0x1008, 0});
+  EXPECT_EQ(client.take({0x41, 0x08, 0x10, 0x00, 8}), (SdoBytes{0x60}));
+  EXPECT_EQ(client.take({0x00, 1, 2, 3, 4, 5, 6, 7}), (SdoBytes{0x70}));
+  EXPECT_EQ(client.take({0x1A, 8, 9}), (SdoBytes{0x80, 0x08, 0x10, 0x00, 0x10, 0x00, 0x07, 0x06}))
+      << "nine of eight";
+  EXPECT_FALSE(client.is_busy());
+  EXPECT_EQ(client.result().error(), kLength);
+
+  client.read({0x1008, 0});
+  EXPECT_EQ(client.take({0x41, 0x08, 0x10, 0x00, 8}), (SdoBytes{0x60}));
+  EXPECT_EQ(client.take({0x01, 1, 2, 3, 4, 5, 6, 7}),
+            (SdoBytes{0x80, 0x08, 0x10, 0x00, 0x10, 0x00, 0x07, 0x06}))
+      << "seven of eight, and the last";
+  EXPECT_EQ(client.result().error(), kLength);
+
+  client.read({0x1008, 0});
+  EXPECT_EQ(client.take({0x40, 0x08, 0x10, 0x00}), (SdoBytes{0x60}));
+  size_t octets = 0;
+  for (uint8_t toggle = 0; client.is_busy() && octets < 70'000; toggle ^= 0x10) {
+    client.take({toggle, 1, 2, 3, 4, 5, 6, 7});
+    octets += 7;
+  }
+  EXPECT_EQ(octets, 65'541U) << "the first multiple of 7 above 65536";
+  EXPECT_EQ(client.result().error(), kLength);
+}
+
 }  // namespace
 }  // namespace ipos::tests

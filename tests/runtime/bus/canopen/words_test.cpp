@@ -78,6 +78,27 @@ TEST(CanopenWords, LearnsTheMapping) {
                       {{0x333, 2, {1, 2}}, "333 RPDO2 not mapped: 01 02 -> node 51"}});
 }
 
+// A write that nobody has answered is forgotten with the next request, here one in segments to the same object.
+TEST(CanopenWords, AnUnansweredWriteIsForgotten) {
+  LineWords words;
+  words.describe({0x605, 8, sdo::initiate(0x23, {0x1801, 1}, 0x334)});
+  words.describe({0x605, 8, sdo::initiate(0x21, {0x1801, 1}, 4)});
+  words.describe({0x585, 8, sdo::initiate(0x60, {0x1801, 1})});
+  expect_text(words, {{{0x334, 2, {1, 2}}, "334 RPDO2 not mapped: 01 02 -> node 52"}});
+}
+
+// Four octets of an object that nobody knows are a number with sign, fewer have none; those of the communication part
+// are shown in hexadecimal.
+TEST(CanopenWords, ValuesOfObjects) {
+  LineWords words;
+  expect_text(
+      words,
+      {{{0x585, 8, {0x43, 0x00, 0x50, 1, 0xFE, 0xFF, 0xFF, 0xFF}}, "585 SDO 5000h:1 = -2 <- node 5"},
+       {{0x585, 8, {0x4B, 0x00, 0x50, 1, 0xFE, 0xFF, 0xFF, 0xFF}}, "585 SDO 5000h:1 = 65534 <- node 5"},
+       {{0x585, 8, {0x4F, 0x00, 0x50, 1, 0xFE, 0xFF, 0xFF, 0xFF}}, "585 SDO 5000h:1 = 254 <- node 5"},
+       {{0x585, 8, {0x43, 0x00, 0x12, 9, 0x05, 6, 0, 0}}, "585 SDO 1200h:9 = 00000605h <- node 5"}});
+}
+
 TEST(CanopenWords, AnyFrame) {
   EXPECT_TRUE(rc::check("any frame has a text", [] {
     LineWords words;

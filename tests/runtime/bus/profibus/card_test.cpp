@@ -105,5 +105,19 @@ TEST(Options, ByWord) {
   EXPECT_EQ(find_option_type("ffp32"), nullptr);
 }
 
+// What a card accepts of configurations is what its slave accepts.
+TEST(Options, AreThoseOfTheSlave) {
+  const auto accepts = [](const char* word, const char* unit) {
+    return LatchedSwitches({4}).slave_settings(*find_option_type(word, unit), 9600).accepts;
+  };
+  EXPECT_EQ(accepts("ffp31", "mc31").set, ConfigurationSet::Mc31);
+  EXPECT_EQ(accepts("ffp31", "mc31").most, 3);
+  EXPECT_EQ(accepts("dfp", "mdxb").set, ConfigurationSet::Movidrive);
+  EXPECT_EQ(accepts("dfp", "mdxb").least, 1);
+  EXPECT_EQ(accepts("dfp", "mdxb").most, 10);
+  EXPECT_EQ(accepts("dfp", "md60a").most, 3);
+  EXPECT_EQ(accepts("gateway", "gateway").set, ConfigurationSet::Gateway);
+}
+
 }  // namespace
 }  // namespace ipos::tests

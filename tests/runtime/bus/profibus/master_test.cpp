@@ -498,5 +498,28 @@ TEST(MasterView, AFaultOfTheUnitArrives) {
   EXPECT_EQ(one.view(), "00 04 00 02 31 00");
 }
 
+// What a client sets when all slaves have had their turn goes out in the next cycle: no value is left out.
+TEST(DpMaster, OutputsOfEachCycle) {
+  LineRig rig(1'500'000);
+  auto& slave = rig.add_slave(8);
+  Counting counting;
+  Master& master = rig.add_master({}, &counting);
+  counting.master = &master;
+  master.add_slave(plan_of(8, "F1", 4));
+  master.start();
+  settle(rig);
+  ASSERT_TRUE(master.slave(0).exchanging());
+  EXPECT_EQ(counting.value, master.cycles());
+  const auto seen = [&] { return static_cast<uint32_t>(slave.unit.outputs[0] << 8 | slave.unit.outputs[1]); };
+  uint32_t last = seen();
+  for (int n = 0; n < 100; ++n) {
+    const int taken = slave.unit.taken;
+    while (slave.unit.taken == taken) rig.queue.step();
+    ASSERT_EQ(seen(), last + 1);
+    ASSERT_EQ(seen(), counting.value);
+    last = seen();
+  }
+}
+
 }  // namespace
 }  // namespace ipos::tests

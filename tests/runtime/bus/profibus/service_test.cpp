@@ -84,6 +84,12 @@ TEST(CfgData, IdentifierOctets) {
   // Special format: 02 octets of outputs, then 3 words of inputs, then two octets of the manufacturer.
   EXPECT_EQ(module_of("C2 01 C2 AA BB"), (CfgModule{3, 2, true, false, true, false}));
   EXPECT_EQ(module_of("4F 81"), (CfgModule{2, 0, false, false, true, false}));
+  EXPECT_EQ(module_of("8F C2"), (CfgModule{0, 3, false, true, false, true}));
+  EXPECT_EQ(module_of("8F 42"), (CfgModule{0, 3, false, true, false, false}));
+  EXPECT_EQ(module_of("8F 82"), (CfgModule{0, 3, false, false, false, true}));
+  EXPECT_EQ(module_of("4F C2"), (CfgModule{3, 0, true, false, true, false}));
+  EXPECT_EQ(module_of("CF 81 41"), (CfgModule{2, 2, true, false, false, true}));
+  EXPECT_EQ(module_of("CF 3F BF"), (CfgModule{64, 64, false, false, true, false}));
   EXPECT_EQ(decode_cfg(hex("C2 01 C2 AA BB 31"))->size(), 2U);
   for (const char* cut : {"C0", "C0 01", "C1 01 01", "40", "80", "01"})
     EXPECT_FALSE(decode_cfg(hex(cut)).has_value()) << cut;

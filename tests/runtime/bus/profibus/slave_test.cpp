@@ -471,5 +471,17 @@ TEST(DpSlave, PowerOnForgetsAll) {
   EXPECT_EQ(bench.slave.min_tsdr(), 11);
 }
 
+// A frame that answers is no request, whoever it names: it is not answered, and does not keep the watchdog quiet.
+TEST(DpSlave, AnswersOfOthersAreNothing) {
+  SlaveBench bench;
+  bench.start(1, prm("88 14 01"));
+  bench.now = 100 * kMillisecond;
+  for (const uint8_t function : std::initializer_list<uint8_t>{0x00, 0x03, 0x08, 0x0A, 0x20, 0x2D})
+    EXPECT_FALSE(bench.slave.on_frame(bench.now, make_frame(8, 1, function, 62, 60, hex("00 0C"))));
+  EXPECT_EQ(bench.slave.watchdog_deadline(), 200 * kMillisecond);
+  EXPECT_EQ(bench.exchange(1, "00 06 05 DC 00 00").substr(0, 2), "08");
+  EXPECT_EQ(bench.slave.watchdog_deadline(), 300 * kMillisecond);
+}
+
 }  // namespace
 }  // namespace ipos::tests

@@ -228,5 +228,47 @@ TEST(Mc31List, WhatTheManualNames) {
   EXPECT_EQ(mc31_table().find("841")->default_value, 0);
 }
 
+struct TenWords final : runtime::ParameterServer, FieldbusDrive {
+  tl::expected<int32_t, ReturnCode> serve(Time, const runtime::ParameterRequest&) override { return 0; }
+  void take_output(Time, runtime::OutputChannel, std::span<const uint16_t> words) override {
+    output.assign(words.begin(), words.end());
+  }
+  runtime::ProcessWords input(Time) override { return {0x0101, 0x0202, 0x0303}; }
+  FurtherWords further_input(Time) override {
+    return {0x0404, 0x0505, 0x0606, 0x0707, 0x0808, 0x0909, 0x0A0A};
+  }
+  void synchronize(Time) override {}
+  void set_fieldbus_timeout(Time, int32_t) override {}
+  void fieldbus_timeout_expired(Time) override {}
+  void set_fieldbus_address(Time, uint8_t) override {}
+  std::vector<uint16_t> output;
+};
+
+// Each word stands in its place, high octet first, whatever the configuration carries.
+TEST(ProcessData, WordsOfEveryConfigurationOfMovidrive) {
+  TenWords drive;
+  DpUnit unit(drive, drive);
+  size_t longest = 0;
+  for (const Configuration& configuration : configurations(ConfigurationSet::Movidrive)) {
+    unit.configured(0, configuration);
+    const size_t channel = configuration.parameter_channel ? 8 : 0;
+    const size_t words = (configuration.octets - channel) / 2;
+    longest = std::max(longest, words);
+    Octets inputs(configuration.octets), outputs(configuration.octets);
+    unit.read_inputs(0, inputs);
+    std::vector<uint16_t> expected;
+    for (size_t n = 0; n < words; ++n) {
+      EXPECT_EQ(inputs[channel + 2 * n], n + 1) << configuration.name;
+      EXPECT_EQ(inputs[channel + 2 * n + 1], n + 1) << configuration.name;
+      outputs[channel + 2 * n] = static_cast<uint8_t>(0x10 + n);
+      outputs[channel + 2 * n + 1] = static_cast<uint8_t>(n);
+      expected.push_back(static_cast<uint16_t>(0x1000 + 0x101 * n));
+    }
+    unit.take_outputs(0, outputs);
+    EXPECT_EQ(drive.output, expected) << configuration.name;
+  }
+  EXPECT_EQ(longest, 10U);
+}
+
 }  // namespace
 }  // namespace ipos::tests

@@ -334,5 +334,49 @@ TEST(SerialLog, OneTelegramALine) {
       "2.000000 2.005729 line1 1D 01 05 00 00 | void: character delay exceeded\n");
 }
 
+// One station leaves the line at 1 for three characters between two of its own; another one sends one meanwhile. Its
+// start bit comes before the one that was known, so it is heard, and then the second of the first station.
+TEST(SerialLine, ACharacterInThePauseOfAnother) {
+  Pair pair;
+  HandNode third(pair.line, "third");
+  std::vector<bool> bits;
+  const auto put = [&](uint8_t byte) {
+    for (int n = 0; n < 11; ++n) bits.push_back((wire_character(byte) >> n & 1) != 0);
+  };
+  put(0x11);
+  bits.insert(bits.end(), 33, true);
+  put(0x22);
+  EXPECT_TRUE(pair.line.send_bits(pair.a.port.node(), bits));
+  const Time meanwhile = 2 * wire_time(1, 9600);
+  pair.queue.run_until(meanwhile);
+  pair.b.send({0x33});
+  pair.queue.run_until(kSecond);
+  EXPECT_EQ(data_of(third.characters), hex("11 33 22"));
+  EXPECT_EQ(data_of(pair.recorder.characters), hex("11 33 22"));
+  ASSERT_EQ(third.characters.size(), 3U);
+  EXPECT_NEAR(static_cast<double>(third.characters[1].start), static_cast<double>(meanwhile), 17'362);
+  EXPECT_EQ(third.characters[2].end, wire_time(5, 9600));
+  EXPECT_FALSE(third.characters[1].parity_error || third.characters[1].framing_error);
+}
+
+// Who begins to observe hears who takes no part; those that know it do not hear it again.
+TEST(SerialLine, AnObserverThatComesLater) {
+  EventQueue queue;
+  Rs485Line line(queue, 7, "line1", 9600);
+  Recorder first, second;
+  line.add_observer(first);
+  const HandNode slow(line, "slow");
+  const HandNode fast(line, "fast", 57600);
+  line.set_connected(slow.port.node(), false);
+  const std::vector<std::string> texts = first.texts;
+  ASSERT_EQ(texts.size(), 2U);
+  line.add_observer(second);
+  EXPECT_EQ(second.texts, (std::vector<std::string>{texts[1], texts[0]})) << "in the order of the stations";
+  EXPECT_EQ(first.texts, texts);
+  line.set_baud(fast.port.node(), 57600);
+  EXPECT_EQ(first.texts.size(), 3U);
+  EXPECT_EQ(second.texts.size(), 3U);
+}
+
 }  // namespace
 }  // namespace ipos::tests
