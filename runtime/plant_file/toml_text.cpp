@@ -53,10 +53,10 @@ class Scanner {
   char innermost() const { return open_.empty() ? '\0' : open_.back(); }
   bool is_value_next() const { return before_ == '=' || (innermost() == '[' && is_one_of(before_, "[,")); }
 
-  void step(size_t characters) {
-    characters = std::min(characters, text_.size() - at_);
-    at_ += characters;
-    place_.column += static_cast<uint32_t>(characters);
+  // Columns are those of the parser: a character beyond ASCII is one, whatever bytes it has.
+  void step(size_t bytes) {
+    for (const size_t end = at_ + std::min(bytes, text_.size() - at_); at_ < end; ++at_)
+      place_.column += (static_cast<unsigned char>(text_[at_]) & 0xC0) != 0x80;
   }
   void end_line() {
     ++at_;

@@ -24,9 +24,9 @@ inline constexpr std::string_view kWhatAValueIs =
 
 // The first mistake for which toml++ 3.3 has undefined behaviour, so that it must not see it: a byte beyond ASCII
 // outside of texts and comments, a text in quotes that begins in the middle of a word, a } where a list waits for a
-// value, the name of a table that begins with no character of a key, a byte beyond ASCII behind a backslash, and what begins
-// as a date or a time. Nothing when there is none. TOML allows two of these: dates and times, of which no key here takes
-// one, and a byte beyond ASCII as the next character behind a backslash that ends its line.
+// value, the name of a table that begins with no character of a key, a byte beyond ASCII behind a backslash, and what
+// begins as a date or a time. Nothing when there is none. TOML allows two of these: dates and times, of which no key
+// here takes one, and a byte beyond ASCII as the next character behind a backslash that ends its line.
 std::optional<TomlMistake> toml_mistake(std::string_view text);
 
 }  // namespace ipos::runtime

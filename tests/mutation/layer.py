@@ -16,14 +16,14 @@ COMPILE_SECONDS = 600
 
 
 def programs_of(source, readme):
-    """The ctest names of the rows whose folder is the nearest one above the source."""
+    """The ctest names of the rows whose folder is the nearest one above the source, or that name the file itself."""
     found = {}
     for row in re.findall(r"^\| ([^|]*`[^|]*) \| [^|]* \| ([^|]*) \|$", readme, re.M):
         folders = re.findall(r"`([^`]+)`", row[0])
         for folder in folders:
             for base in ["", *[str(p) + "/" for p in Path(folders[0]).parents]]:
                 path = (base + folder).removeprefix("./")
-                if source.startswith(path.rstrip("*")) and (path.endswith("*") or source.startswith(path + "/")):
+                if source.startswith(path.rstrip("*")) and (path.endswith("*") or source[len(path)] in "/."):
                     found.setdefault(len(path), []).extend(re.findall(r"`(ipos_\w+)`", row[1]))
     return list(dict.fromkeys(found[max(found)])) if found else []
 

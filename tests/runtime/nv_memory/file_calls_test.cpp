@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "runtime/nv_memory/medium/file_medium.hpp"
+#include "tests/runtime/nv_memory/file_folder.hpp"
 
 namespace {
 
@@ -67,19 +67,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class FileCalls : public ::testing::Test {
+class FileCalls : public FileFolder {
  protected:
-  FileCalls() {
-    std::string name = (fs::temp_directory_path() / "ipos-nv-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-    path_ = (folder_ / "unit1.nv").string();
-    g_trouble = {};
-  }
-  ~FileCalls() override {
-    g_trouble = {};
-    fs::permissions(folder_, fs::perms::owner_all);
-    fs::remove_all(folder_);
-  }
+  FileCalls() { g_trouble = {}; }
+  ~FileCalls() override { g_trouble = {}; }
 
   std::unique_ptr<NvMedium> opened(FileUse use = FileUse::Write) {
     auto medium = open_file_medium(path_, use);
@@ -95,9 +86,6 @@ class FileCalls : public ::testing::Test {
     std::iota(bytes.begin(), bytes.end(), uint8_t{1});
     return bytes;
   }
-
-  fs::path folder_;
-  std::string path_;
 };
 
 TEST_F(FileCalls, InterruptedAndInParts) {

@@ -5,27 +5,17 @@
 #include <sys/stat.h>
 
 #include <array>
-#include <cstdlib>
 #include <filesystem>
 
 #include "runtime/nv_memory/medium/slot_store.hpp"
+#include "tests/runtime/nv_memory/file_folder.hpp"
 
 namespace ipos::runtime {
 namespace {
 
 namespace fs = std::filesystem;
 
-class PosixFile : public ::testing::Test {
- protected:
-  PosixFile() {
-    std::string name = (fs::temp_directory_path() / "ipos-nv-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-    path_ = (folder_ / "unit1.nv").string();
-  }
-  ~PosixFile() override { fs::remove_all(folder_); }
-  fs::path folder_;
-  std::string path_;
-};
+class PosixFile : public FileFolder {};
 
 TEST_F(PosixFile, KeepsWhatIsStored) {
   NvContent content;

@@ -51,6 +51,8 @@ TEST(TomlText, MistakesHaveTheirPlace) {
       // A byte beyond ASCII behind a backslash, also at the end of a line.
       {"a = \"x\\\xC3\xB6\"", 1, 8},
       {"a = \"\"\" \\ \r\n\t\n \xC3\xB6\"\"\"", 3, 2},
+      // A column is a character, also behind one of several bytes.
+      {"a = \"\xC3\xB6\xE2\x82\xAC\" \"y\"", 1, 10},
       // Dates and times, right and wrong ones: no key takes one.
       {"a = 2026-01-01", 1, 5},
       {"a = 2026-01-01 1\n", 1, 5},
