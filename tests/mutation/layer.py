@@ -28,6 +28,11 @@ def programs_of(source, readme):
     return list(dict.fromkeys(found[max(found)])) if found else []
 
 
+def quick_linker():
+    """mold or lld link in a quarter of the time, where the machine has one."""
+    return next(([f"-fuse-ld={name}"] for name in ("mold", "lld") if shutil.which(f"ld.{name}")), [])
+
+
 class Program:
     """One GoogleTest program, and what a run of it says."""
 
@@ -131,7 +136,7 @@ class Layer:
             raise SystemExit(f"mutate: no test program of {source}; has {build} been built?")
         self.command = self.compile_command()
         # A mutant compiled with a sanitizer needs it in every program, also in those that have none themselves.
-        self.link_options = re.findall(r"-fsanitize=\S+", self.command)
+        self.link_options = re.findall(r"-fsanitize=\S+", self.command) + quick_linker()
 
     def prepare(self, only=None):
         for program in self.programs:
@@ -163,7 +168,7 @@ class Layer:
         planted.write_text(text)
         words = shlex.split(self.command)
         words = words[: words.index("-MD")] if "-MD" in words else words[: words.index("-o")]
-        words += ["-w", "-iquote", str(folder), "-iquote", str((self.root / self.source).parent), *options]
+        words += ["-w", "-g0", "-iquote", str(folder), "-iquote", str((self.root / self.source).parent), *options]
         done = subprocess.run([*words, "-o", str(folder / "it.o"), "-c", source.name], cwd=folder,
                               capture_output=True, text=True, timeout=COMPILE_SECONDS)
         return folder / "it.o" if done.returncode == 0 else None
