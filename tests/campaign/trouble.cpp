@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <random>
 
+#include "tests/campaign/promises.hpp"
 #include "tests/runtime/plant/busy_plant.hpp"
 #include "tests/runtime/plant/waiting_plant.hpp"
 
@@ -57,9 +58,10 @@ std::string fault(Dice& dice) {
 
 // A frame that nobody should send: identifiers of units and objects, wrong lengths, remote frames, noise.
 std::string hostile_frame(Dice& dice) {
-  const int id = dice.one_in(2)   ? dice.pick(0, 0x7FF)
-                 : dice.one_in(2) ? 8 * dice.pick(0, 9) + dice.pick(0, 7)
-                                  : 1100 + dice.pick(0, 6);
+  int id = dice.one_in(2)   ? dice.pick(0, 0x7FF)
+           : dice.one_in(2) ? 8 * dice.pick(0, 9) + dice.pick(0, 7)
+                            : 1100 + dice.pick(0, 6);
+  if (id == kPairObject) ++id;
   if (dice.one_in(12)) return fmt::format("{:03X}#R", id);
   std::string text = fmt::format("{:03X}#", id);
   for (int n = dice.pick(0, 8); n > 0; --n) text += fmt::format("{:02X}", dice.pick(0, 255));
@@ -74,19 +76,59 @@ std::string hostile_bytes(Dice& dice) {
   return text.starts_with(' ') ? text.substr(1) : text;
 }
 
-Deed deed(Dice& dice, size_t stations) {
+// A frame on PROFIBUS: a right one to anybody (a request for data, Set_Prm, Chk_Cfg, Get_Cfg, a token), one with turned or
+// missing octets, or noise.
+std::string hostile_octets(Dice& dice) {
+  static constexpr int kServices[] = {0, 54, 55, 56, 57, 58, 59, 60, 61, 62};  // access points of a DP slave
+  const auto octet = [&] { return fmt::format(" {:02X}", dice.pick(0, 255)); };
+  std::string data;
+  for (int n = dice.pick(0, 12); n > 0; --n) data += octet();
+  const int to = dice.one_in(3) ? dice.pick(0, 127) : dice.pick(8, 9), from = dice.pick(0, 10);
+  const int function = dice.one_in(2) ? 0x5D : dice.pick(0, 255);
+  switch (dice.pick(0, 4)) {
+    case 0: return fmt::format("DC {:02X} {:02X}", to, from);
+    case 1: return fmt::format("10 {:02X} {:02X} {:02X} fcs 16", to, from, function);
+    case 2: {  // with access points
+      const std::string units = fmt::format(" {:02X} {:02X} {:02X} {:02X} {:02X}{}", to | 128, from | 128,
+                                            function, kServices[dice.pick(0, 9)], 62, data);
+      const int length = static_cast<int>(units.size()) / 3;
+      return fmt::format("68 {0:02X} {0:02X} 68{1} fcs 16", length, units);
+    }
+    case 3: return fmt::format("68 {0:02X} {0:02X} 68{1} fcs 16", dice.pick(0, 255), data + octet());
+    default: return (data + octet()).substr(1);
+  }
+}
+
+// The kinds of the buses, in the order of the plant file.
+enum class Line { Can, Serial, Profibus };
+
+std::string hostile_message(Dice& dice, Line line) {
+  switch (line) {
+    case Line::Can: return hostile_frame(dice);
+    case Line::Serial: return hostile_bytes(dice);
+    case Line::Profibus: return hostile_octets(dice);
+  }
+  return {};
+}
+
+Deed deed(Dice& dice, size_t stations, int lines) {
   Deed deed;
   deed.at = Time{dice.pick(0, kLongest * 1000)} * runtime::kMicrosecond;
   deed.target = static_cast<size_t>(dice.pick(0, static_cast<int>(stations) - 1));
   switch (dice.pick(0, 7)) {
-    case 0: deed.kind = Deed::Kind::PowerOff; break;
-    case 1: deed.kind = Deed::Kind::PowerOn; break;
-    case 2:
-    case 3:
-      deed.kind = Deed::Kind::Send;
-      deed.target = dice.one_in(3) ? 1 : 0;
-      deed.message = deed.target == 0 ? hostile_frame(dice) : hostile_bytes(dice);
+    case 0:
+    case 1:
+      deed.kind = dice.one_in(2) ? Deed::Kind::PowerOff : Deed::Kind::PowerOn;
+      deed.target = static_cast<size_t>(dice.pick(0, static_cast<int>(stations) + kPairStations - 1));
       break;
+    case 2:
+    case 3: {
+      deed.kind = Deed::Kind::Send;
+      const int line = dice.one_in(3) ? dice.pick(1, lines - 1) : 0;
+      deed.target = static_cast<size_t>(line);
+      deed.message = hostile_message(dice, static_cast<Line>(line));
+      break;
+    }
     case 4:
       deed.kind = Deed::Kind::Force;
       deed.index = static_cast<uint16_t>(dice.pick(0, 5));
@@ -102,6 +144,13 @@ Deed deed(Dice& dice, size_t stations) {
     default: break;  // who looks, or lets time stand still a while
   }
   return deed;
+}
+
+// The first bus of each plant is its CAN.
+std::string_view baud_of_can(std::string_view plant) {
+  static constexpr std::string_view kKey = "baud = ";
+  const size_t at = plant.find(kKey) + kKey.size();
+  return plant.substr(at, plant.find('\n', at) - at);
 }
 
 const char* word(Deed::Kind kind) {
@@ -145,8 +194,12 @@ Trouble draw_trouble(uint64_t seed) {
     trouble.programs = plant.sources();
   }
   const size_t stations = count(trouble.plant, "[[station]]");
+  const int lines = static_cast<int>(count(trouble.plant, "[[bus]]"));
+  Pair pair = make_pair_at(baud_of_can(trouble.plant));
+  trouble.plant += pair.stations;
+  trouble.programs.merge(pair.programs);
   for (int n = dice.pick(0, 4); n > 0; --n) trouble.faults.push_back(fault(dice));
-  for (int n = dice.pick(4, 40); n > 0; --n) trouble.deeds.push_back(deed(dice, stations));
+  for (int n = dice.pick(4, 40); n > 0; --n) trouble.deeds.push_back(deed(dice, stations, lines));
   // A storm: many messages in a row.
   if (dice.one_in(4)) {
     Deed storm;
