@@ -205,6 +205,9 @@ TEST(Isa, BlocksAreTheRowsOfTheKeyword) {
   EXPECT_EQ(types(Opcode::Movlnk, 0, kAnyKeyword), "MOVLNK ");
   EXPECT_EQ(types(Opcode::Copy, 1, kAnyKeyword), " ") << "of any type";
   EXPECT_EQ(types(Opcode::AddHH, 0, kAnyKeyword), "");
+  const std::span<const BlockInfo> cams = blocks_of(Opcode::GetSys, 0, 8);  // IPOSplus p. 86, 91
+  EXPECT_EQ(cams.front().variables, 14);
+  EXPECT_EQ(cams.back().variables, 16);
   EXPECT_EQ(block_size(I(Opcode::GetSys, 0, 8), 0), 14U) << "the smaller of both";
   EXPECT_EQ(block_size(I(Opcode::Copy, 0, 0, 77), 0), 77U);
   EXPECT_EQ(block_size(I(Opcode::AddHH, 0, 0), 1), 1U);
