@@ -14,7 +14,7 @@ bool FunctionGenerator::shows_steps(int32_t target) {
   // What another root writes meanwhile is lost either way: W0258 says so.
   if (onlooker->writes_only && assignment_.reads_target) return false;
   std::vector<SeenSteps>& seen = code_.seen_steps;
-  if (seen.empty() || seen.back().span != assignment_.span || seen.back().variable != target)
+  if (seen.empty() || seen.back().span != assignment_.span)
     seen.push_back({target, assignment_.span, std::move(*onlooker)});
   return false;
 }

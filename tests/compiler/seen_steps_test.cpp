@@ -140,6 +140,13 @@ TEST(SeenSteps, OfTheOuterAssignmentAreToldThere) {
   EXPECT_EQ(columns("x = (b = a * v[1], a + b);"), plain);
 }
 
+// Each assignment is told, once, however often its variable takes part and whatever it stands beside.
+TEST(SeenSteps, OfEachAssignmentAreToldOnce) {
+  EXPECT_EQ(seen(beside("x = a + b; x = a - b;", "v[0] = x;")), "x: 'T' uses it\nx: 'T' uses it\n");
+  EXPECT_EQ(seen(beside("x = a ? a + b : a - b;", "v[0] = x;")), "x: 'T' uses it\n");
+  EXPECT_EQ(seen(beside("x = a * 2 + b * 3 - 5;", "v[0] = x;")), "x: 'T' uses it\n");
+}
+
 // Statements that need one command at their target, and those that take several.
 TEST(SeenSteps, OnlyWhereThereAreSteps) {
   for (const char* one :
@@ -203,6 +210,12 @@ TEST(SystemVariables, GetTheirValueAndNothingOnTheWay) {
       EXPECT_EQ(writes.size(), expression.find('?') != std::string::npos ? 2U : 1U)
           << name << " = " << expression;
     }
+  // Their neighbours are a program's own, which are computed where they are.
+  for (const char* name : {"H452", "H561"}) {
+    const Compilation c = compile_b("long a; main() { a = 1; " + std::string(name) + " = a * 2; }");
+    EXPECT_EQ(writes_of(c, name), (std::vector<std::string>{"SET " + std::string(name) + " = H420",
+                                                            "MUL " + std::string(name) + " * 2"}));
+  }
 }
 
 // 10 s of a program on a MOVIDRIVE B, without a host; `each_ms` sees the variables as a telegram would.

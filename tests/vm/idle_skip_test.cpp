@@ -176,5 +176,41 @@ TEST(IdleSkip, WhatTheUnitLooksAtDoesNotChangeForAMoment) {
   }
 }
 
+// A loop may change up to 64 variables for a moment, in blocks and one by one; with more it is executed. In every case
+// looking changes nothing, and what is left out is what would have been.
+TEST(IdleSkip, VariablesThatChangeForAMomentAreAtMost64) {
+  for (const bool blocks : {true, false})
+    for (const int count : {1, 2, 5, 63, 64, 65, 66, 100}) {
+      SCOPED_TRACE(testing::Message() << blocks << " " << count);
+      std::string text = "M01 : NOP\n";
+      if (blocks) {
+        const std::string size = " , " + std::to_string(count) + "\n";
+        text += "COPY H100 = H200" + size + "COPY H100 = H300" + size;
+      } else {
+        for (int n = 0; n < count; ++n) text += "ADD H" + std::to_string(100 + n) + " + 1\n";
+        for (int n = 0; n < count; ++n) text += "SUB H" + std::to_string(100 + n) + " - 1\n";
+      }
+      Assembled run(text + "JMP M01\n");
+      for (size_t n = 0; n < 100; ++n) {
+        run.h(200 + n) = static_cast<int32_t>(1000 + n);
+        run.h(100 + n) = run.h(300 + n) = static_cast<int32_t>(2000 + n);
+      }
+      const uint32_t round = blocks ? 4 : 2 * static_cast<uint32_t>(count) + 2;
+      for (const uint32_t budget : {1U, 2U, 3U, round - 1, round + 1}) {
+        const std::array<uint32_t, kTasks> budgets{budget, 0, 0};
+        Machine runs = run.machine();
+        const uint64_t ticks = run->idle_ticks(budgets);
+        EXPECT_EQ(ticks, count <= 64 ? kIdleForever : 0);
+        expect_equal_machines(run.machine(), runs);
+        for (int n = 0; n < 3; ++n) run_tick(runs, Rates{budgets});
+        if (ticks != 0)
+          run->skip_ticks(budgets, 3);
+        else
+          for (int n = 0; n < 3; ++n) run.tick(budget);
+        ASSERT_NO_FATAL_FAILURE(expect_equal_machines(run.machine(), runs));
+      }
+    }
+}
+
 }  // namespace
 }  // namespace ipos::vm

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace ipos::vm {
 namespace {
 
@@ -193,6 +195,151 @@ TEST(Image, BytesBehindTheLastSectionAreRefused) {
     const ImageResult result = read_image(bytes);
     EXPECT_EQ(result.error, ImageError::BadSectionTable) << more;
     EXPECT_EQ(result.offset, end) << more;
+  }
+}
+
+// The bytes of docs/reference/isa.md, written by hand, without the checksum.
+TEST(Image, HasTheLayoutOfTheReference) {
+  Image image;
+  image.unit = 0xFF;
+  image.code = {0x04030201, 0x08070605};
+  image.symbols = {{"ab", 0x1211, 0x1413}};
+  image.functions = {{"f", 1}};
+  image.files = {"x", "yz"};
+  image.lines = {{1, 1, 0x24232221, 0x2625}};
+  const std::vector<uint8_t> wanted{
+      'I',  'P',  'X',  '1',  1,    0,    0,    0,    0xFF, 0,    0,    0,    4, 0, 0,   0,    // head
+      1,    0,    0,    0,    64,   0,    0,    0,    8,    0,    0,    0,                     // code
+      2,    0,    0,    0,    72,   0,    0,    0,    8,    0,    0,    0,                     // symbols
+      3,    0,    0,    0,    80,   0,    0,    0,    7,    0,    0,    0,                     // functions
+      4,    0,    0,    0,    87,   0,    0,    0,    21,   0,    0,    0,                     // lines
+      0x01, 0x02, 0x03, 0x04, 0x05, 0x06, 0x07, 0x08, 0x11, 0x12, 0x13, 0x14, 2, 0, 'a', 'b',  // payloads
+      1,    0,    0,    0,    1,    0,    'f',  2,    0,    1,    0,    'x',  2, 0, 'y', 'z',
+      1,    0,    0,    0,    1,    0,    0x21, 0x22, 0x23, 0x24, 0x25, 0x26};
+  const std::vector<uint8_t> bytes = write_image(image);
+  EXPECT_EQ((std::vector<uint8_t>{bytes.begin(), bytes.end() - 4}), wanted);
+  EXPECT_EQ(read_image(bytes).image, image);
+}
+
+// Where the trouble was seen: the first byte of the number or row that is wrong. What is changed is a number of four
+// bytes; the sample has the sections code, symbols, functions and lines.
+TEST(Image, RefusalsNameTheirPlace) {
+  const std::vector<uint8_t> good = write_image(sample());
+  const auto end = static_cast<uint32_t>(good.size() - 4);
+  const auto word = [&](size_t at) { return good[at] | uint32_t{good[at + 1]} << 8; };
+  const auto row = [](uint32_t section) { return 16 + 12 * section; };
+  const struct {
+    size_t at;
+    uint32_t value;
+    ImageError error;
+    uint32_t offset;
+  } rows[] = {
+      {0, 0x31585048, ImageError::BadMagic, 0},
+      {4, 0, ImageError::BadVersion, 4},
+      {4, 2, ImageError::BadVersion, 4},
+      {8, 256, ImageError::BadSectionTable, 8},
+      {8, 0x0100'0001, ImageError::BadSectionTable, 8},
+      {12, 5, ImageError::BadSectionTable, 12},
+      {12, 0x8000'0000, ImageError::BadSectionTable, 12},
+      {12, 3, ImageError::BadSectionTable, row(0)},  // so the payloads would begin where the fourth row is
+      {row(0), 0, ImageError::BadSectionTable, row(0)},
+      {row(1), 1, ImageError::BadSectionTable, row(1)},  // twice
+      {row(2), 1, ImageError::BadSectionTable, row(2)},  // falling
+      {row(3), 5, ImageError::BadSectionTable, row(3)},
+      {row(3), UINT32_MAX, ImageError::BadSectionTable, row(3)},
+      {row(0) + 4, word(row(0) + 4) - 1, ImageError::BadSectionTable, row(0)},  // overlapping
+      {row(1) + 4, word(row(1) + 4) + 1, ImageError::BadSectionTable, row(1)},  // a gap
+      {row(3) + 8, word(row(3) + 8) + 1, ImageError::BadSectionTable, row(3)},  // beyond the end
+      {row(3) + 8, UINT32_MAX, ImageError::BadSectionTable, row(3)},
+      {row(3) + 8, word(row(3) + 8) - 1, ImageError::BadSectionTable, end - 1},  // a byte is nobody's
+  };
+  for (const auto& change : rows) {
+    std::vector<uint8_t> bytes = good;
+    for (size_t n = 0; n < 4; ++n) bytes[change.at + n] = static_cast<uint8_t>(change.value >> (8 * n));
+    seal(bytes);
+    const ImageResult result = read_image(bytes);
+    EXPECT_EQ(result.error, change.error) << change.at << " " << change.value;
+    EXPECT_EQ(result.offset, change.offset) << change.at << " " << change.value;
+    EXPECT_EQ(view_image(bytes).error, change.error) << change.at << " " << change.value;
+  }
+  std::vector<uint8_t> bytes = good;
+  bytes.back() ^= 1;
+  EXPECT_EQ(read_image(bytes).error, ImageError::BadChecksum);
+  EXPECT_EQ(read_image(bytes).offset, end);
+  EXPECT_EQ(read_image({good.begin(), good.begin() + 19}).offset, 19U) << "too short";
+}
+
+// Head and checksum alone are 20 bytes: whole, but for the code. With a byte less the file is too short.
+TEST(Image, HeadAndChecksumAreTheLeast) {
+  std::vector<uint8_t> bytes{'I', 'P', 'X', '1', 1, 0, 0, 0, 7, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+  seal(bytes);
+  EXPECT_EQ(read_image(bytes).error, ImageError::MissingCode);
+  EXPECT_EQ(read_image(bytes).offset, 16U);
+  bytes[12] = 1;  // a section, for which there is no row
+  seal(bytes);
+  EXPECT_EQ(read_image(bytes).error, ImageError::BadSectionTable);
+  EXPECT_EQ(read_image(bytes).offset, 12U);
+  bytes.pop_back();
+  EXPECT_EQ(read_image(bytes).error, ImageError::TooShort);
+}
+
+// Functions and lines are at words of the code, files are those of the list, lines rise or stand still.
+TEST(Image, WhatPointsIntoTheCodePointsAtAWordOfIt) {
+  for (uint32_t address = 0; address <= 5; ++address) {
+    Image image = sample();  // of three words
+    image.functions[1].address = address;
+    EXPECT_EQ(error_of(write_image(image)), address < 3 ? ImageError::None : ImageError::BadFunctions)
+        << address;
+    image = sample();
+    image.lines[1].address = address;
+    EXPECT_EQ(error_of(write_image(image)), address < 3 ? ImageError::None : ImageError::BadLines) << address;
+    image.lines[0].address = 1;
+    EXPECT_EQ(error_of(write_image(image)),
+              address == 1 || address == 2 ? ImageError::None : ImageError::BadLines)
+        << address;
+    image = sample();
+    image.lines[0].file = static_cast<uint16_t>(address);
+    EXPECT_EQ(error_of(write_image(image)), address < 2 ? ImageError::None : ImageError::BadLines) << address;
+  }
+}
+
+// A text has two bytes for its length; what is longer is cut.
+TEST(Image, TextsHaveAtMost65535Bytes) {
+  for (const size_t length :
+       {size_t{0}, size_t{255}, size_t{256}, size_t{65535}, size_t{65536}, size_t{70000}}) {
+    Image image = sample();
+    image.functions[0].name = std::string(length, 'f');
+    const ImageResult back = read_image(write_image(image));
+    ASSERT_EQ(back.error, ImageError::None) << length;
+    EXPECT_EQ(back.image.functions[0].name, std::string(std::min(length, size_t{65535}), 'f'));
+    EXPECT_EQ(back.image.functions[1].name, "helper");
+  }
+}
+
+// Beyond the end every number is 0 and every text empty, and the reader says so for good.
+TEST(Reader, GivesNothingBeyondItsBytes) {
+  const std::vector<uint8_t> bytes{1, 2, 3, 4, 5};
+  for (size_t length = 0; length <= bytes.size(); ++length) {
+    const auto part = std::span(bytes).first(length);
+    Reader words(part, 100);
+    EXPECT_EQ(words.u32(), length == 0   ? 0U
+                           : length == 1 ? 0x1U
+                           : length == 2 ? 0x201U
+                           : length == 3 ? 0x30201U
+                                         : 0x4030201U);
+    EXPECT_EQ(words.ok(), length >= 4) << length;
+    EXPECT_EQ(words.at_end(), length == 4) << length;
+    EXPECT_EQ(words.offset(), 100 + std::min<size_t>(length, 4)) << length;
+    EXPECT_EQ(words.u8(), length == 5 ? 5U : 0U);
+    EXPECT_EQ(words.ok(), length == 5) << length;
+    EXPECT_EQ(words.at_end(), length == 5) << length;
+  }
+  const std::vector<uint8_t> text{2, 0, 'a', 'b', 'c'};
+  for (size_t length = 0; length <= text.size(); ++length) {
+    Reader in(std::span<const uint8_t>(text.data(), length));
+    EXPECT_EQ(in.text(), length >= 4 ? "ab" : "") << length;
+    EXPECT_EQ(in.ok(), length >= 4) << length;
+    EXPECT_EQ(in.at_end(), length == 4) << length;
   }
 }
 

@@ -403,5 +403,66 @@ M02 : RET
   }
 }
 
+// An event that was pending when the task ended is not made up for, by whatever the task has ended.
+TEST(Interrupts, WhatIsPendingEndsWithTheTask) {
+  for (const bool by_host : {false, true}) {
+    Assembled run(R"(
+      SETINT ERROR , M02
+      SETINT TIMER0 , M02
+M01 : JMP H5 == 0 , M01
+      END
+M02 : ADD H1 + 1
+      RET
+)");
+    run.tick();
+    run->raise_event(Event::Error);
+    run->raise_event(Event::Timer0);
+    run.h(5) = 1;
+    if (by_host)
+      run->stop_task(1);
+    else
+      run.run();
+    EXPECT_EQ(run->task(1).state, TaskState::Stopped);
+    for (int n = 0; n < 4; ++n) run.tick();
+    EXPECT_EQ(run.h(1), 0);
+    run.h(5) = 0;
+    run->start_task(1, 4);
+    for (int n = 0; n < 4; ++n) run.tick();
+    EXPECT_EQ(run.h(1), 0) << "the events were those of the task that ended";
+    run->raise_event(Event::Error);
+    for (int n = 0; n < 2; ++n) run.tick();
+    EXPECT_EQ(run.h(1), 1) << "the interrupt is installed still";
+  }
+}
+
+// However many there were before, the ones that are installed now answer within as many milliseconds (p. 45).
+TEST(Interrupts, LatencyIsThatOfTheInstalledOnesAfterADisable) {
+  const char* const keywords[] = {"ERROR", "TOUCHP1", "TIMER0"};
+  for (int phase = 1; phase <= 3; ++phase)
+    for (size_t installed = 1; installed <= 3; ++installed) {
+      std::string program =
+          "SETINT ERROR , M02\nSETINT TOUCHP1 , M02\nSETINT TIMER0 , M02\n"
+          "M01 : JMP H5 == 0 , M01\nSETINT DISABLE , M02\n";
+      for (size_t n = 0; n < installed; ++n) program += std::string("SETINT ") + keywords[n] + " , M02\n";
+      for (size_t event = 0; event < installed; ++event) {
+        Assembled run(program + "M03 : JMP M03\nM02 : ADD H1 + 1\nRET\n");
+        for (int n = 0; n < phase; ++n) run.tick();
+        run.h(5) = 1;
+        run.run();
+        run->raise_event(static_cast<Event>(event));
+        size_t ticks = 0;
+        while (run.h(1) == 0 && ticks < 10) run.tick(), ++ticks;
+        EXPECT_LE(ticks, installed) << phase << " " << event;
+        // And each of them in each round.
+        for (int round = 0; round < 6; ++round) {
+          const int32_t before = run.h(1);
+          run->raise_event(static_cast<Event>(event));
+          for (size_t n = 0; n < installed; ++n) run.tick();
+          EXPECT_EQ(run.h(1), before + 1);
+        }
+      }
+    }
+}
+
 }  // namespace
 }  // namespace ipos::vm

@@ -407,5 +407,172 @@ TEST(Calls, IdleLoopsReturnAndOthersAreLeftToTheirFault) {
   EXPECT_EQ(returns->idle_ticks({5, 0, 0}), kIdleForever);
 }
 
+// The depth of calls is the unit's, at most that of the machine. So many calls are open when the next one faults.
+TEST(Calls, AreAsDeepAsTheUnitAllowsAndTheMachineHas) {
+  const std::vector<uint32_t> code = code_of({I(Opcode::AddHK, 0, 1), I(Opcode::Call, 0), I(Opcode::End)});
+  for (const uint8_t limit : std::initializer_list<uint8_t>{0, 1, 31, 32, 33, 255}) {
+    Machine machine(verify(code, Limits{1024, 16384, 3, limit}, {}).image.value(), {});
+    machine.start();
+    EXPECT_EQ(machine.run(1, 1000).stop, Stop::Faulted);
+    EXPECT_EQ(machine.fault().number, 32);
+    const int depth = std::min<int>(limit, 32);
+    EXPECT_EQ(machine.task(1).depth, depth) << int{limit};
+    EXPECT_EQ(machine.variables()[0], depth + 1) << int{limit};
+    EXPECT_EQ(machine.idle_ticks({5, 5, 5}), kIdleForever) << "nothing runs";
+  }
+}
+
+// Each distance between the two blocks, each length: as if all had been read before anything is written.
+TEST(Blocks, CopyIsAsIfEverythingWereReadFirst) {
+  for (int32_t from = 0; from <= 8; ++from)
+    for (int32_t to = 0; to <= 8; ++to)
+      for (const int32_t count : {1, 2, 3, 8}) {
+        Program run({I(Opcode::Copy, to, from, count), I(Opcode::End)});
+        std::array<int32_t, 20> wanted{};
+        for (size_t n = 0; n < wanted.size(); ++n) run.h(n) = wanted[n] = 100 + static_cast<int32_t>(n);
+        for (int32_t n = 0; n < count; ++n) wanted[static_cast<size_t>(to + n)] = 100 + from + n;
+        run.run();
+        for (size_t n = 0; n < wanted.size(); ++n)
+          ASSERT_EQ(run.h(n), wanted[n]) << from << " " << to << " " << count << " H" << n;
+      }
+}
+
+// Waits of nothing and less are none (ours); others last as many ticks as they say.
+TEST(Waiting, OnlyPositiveTimesAreWaitedFor) {
+  for (const int32_t ms : {kMin, -1, 0, 1, 2, 7}) {
+    Program constant({I(Opcode::WaitK, ms), I(Opcode::SetHK, 0, 1), I(Opcode::End)});
+    Program variable({I(Opcode::WaitH, 5), I(Opcode::SetHK, 0, 1), I(Opcode::End)});
+    variable.h(5) = ms;
+    for (Program* run : {&constant, &variable}) {
+      EXPECT_EQ(run->run().stop, ms > 0 ? Stop::Waiting : Stop::Ended) << ms;
+      int ticks = 0;
+      for (; run->h(0) == 0 && ticks < 10; ++ticks) {
+        (*run)->tick();
+        run->run();
+      }
+      EXPECT_EQ(ticks, std::max(0, ms)) << ms;
+    }
+  }
+}
+
+// The call goes to the label, which is the last operand, and comes back behind the command.
+TEST(HostCalls, EveryEventCommandCallsItsLabel) {
+  for (const Instruction& command : {I(Opcode::InputCall, 1, 0, 6), I(Opcode::SystemCall, 1, 6)}) {
+    Recorder recorder{{Answer::Taken}, {}};
+    Program run({command, I(Opcode::SetHK, 1, 2), I(Opcode::End), I(Opcode::Nop), I(Opcode::SetHK, 0, 1),
+                 I(Opcode::Ret)},
+                recorder.host());
+    const uint32_t length = coding(command.opcode).words;
+    run.run(1);
+    EXPECT_EQ(run->task(1).pc, 6U);
+    EXPECT_EQ(run->task(1).depth, 1);
+    EXPECT_EQ(run->task(1).calls[0], length);
+    EXPECT_EQ(recorder.asked.at(0), command);
+  }
+  // Deeper than the unit allows it does not call either.
+  Recorder recorder{{Answer::Taken}, {}};
+  Program recursion({I(Opcode::AddHK, 0, 1), I(Opcode::SystemCall, 1, 0), I(Opcode::End)}, recorder.host());
+  EXPECT_EQ(recursion.run().stop, Stop::Faulted);
+  EXPECT_EQ(recursion->fault().number, 32);
+  EXPECT_EQ(recursion.h(0), 5) << "four nested calls are the limit given";
+}
+
+// What a run says of itself: why it stopped and how many commands it took, with each budget.
+TEST(Budget, ARunSaysWhyItStopped) {
+  const struct {
+    Instruction last;
+    Stop stop;
+  } rows[] = {{I(Opcode::End), Stop::Ended},
+              {I(Opcode::Ret), Stop::Ended},
+              {I(Opcode::WaitK, 5), Stop::Waiting},
+              {I(Opcode::Movlnk, 0), Stop::Waiting},
+              {I(Opcode::DivHK, 0, 0), Stop::Faulted}};
+  for (const auto& row : rows)
+    for (const bool is_fast : {false, true})
+      for (uint32_t budget = 0; budget <= 5; ++budget) {
+        Recorder recorder{{Answer::Wait}, {}};
+        Program run({I(Opcode::Nop), I(Opcode::AddHK, 1, 1), row.last, I(Opcode::End)}, recorder.host());
+        std::vector<fast::Slot> slots(fast::Predecoded::slots_needed(run->program().code().size()));
+        const fast::Predecoded predecoded(run->program(), slots);
+        if (is_fast) run->use(&predecoded);
+        const RunResult result = run.run(budget);
+        EXPECT_EQ(result.commands, std::min(budget, 3U)) << info(row.last.opcode).text;
+        EXPECT_EQ(result.stop, budget < 3 ? Stop::Budget : row.stop) << info(row.last.opcode).text << budget;
+        EXPECT_EQ(run->task(1).commands, result.commands);
+        EXPECT_EQ(run.h(1), budget > 1 ? 1 : 0);
+        if (budget < 3) continue;
+        const RunResult again = run.run(budget);
+        EXPECT_EQ(again.commands, 0U);
+        EXPECT_EQ(again.stop, row.stop == Stop::Faulted ? Stop::Ended : row.stop);
+      }
+}
+
+// As many variables as it keeps aside, and not one more.
+TEST(Ahead, WritesAtMostAsManyVariablesAsItKeeps) {
+  Program run({I(Opcode::AddHK, 0, 1), I(Opcode::Jmp, 0)});
+  std::vector<fast::Slot> slots(fast::Predecoded::slots_needed(run->program().code().size()));
+  const fast::Predecoded predecoded(run->program(), slots);
+  run->use(&predecoded);
+  for (const size_t count : {size_t{1}, size_t{255}, size_t{256}, size_t{257}, size_t{1000}}) {
+    std::vector<uint16_t> written(count);
+    for (size_t n = 0; n < count; ++n) written[n] = static_cast<uint16_t>(n);
+    EXPECT_EQ(run->run_ahead({2, 2, 2}, 1, written), count <= Machine::kMostRollback) << count;
+  }
+  EXPECT_EQ(run.h(0), 3);
+}
+
+// Milliseconds in single steps: the same commands in the same order as in one go, whatever budgets and steps are.
+TEST(Steps, AreTheCommandsOfTheMillisecond) {
+  const auto program = {I(Opcode::AddHK, 1, 1),
+                        I(Opcode::MulHK, 9, 3),
+                        I(Opcode::AddHK, 9, 1),
+                        I(Opcode::Jmp, 0),
+                        I(Opcode::AddHK, 2, 1),
+                        I(Opcode::MulHK, 9, 5),
+                        I(Opcode::AddHK, 9, 2),
+                        I(Opcode::WaitK, 2),
+                        I(Opcode::Jmp, 8),
+                        I(Opcode::AddHK, 3, 1),
+                        I(Opcode::MulHK, 9, 7),
+                        I(Opcode::AddHK, 9, 3),
+                        I(Opcode::JmpLtHK, 3, 6, 18),
+                        I(Opcode::End)};
+  for (const std::array<uint32_t, kTasks>& budgets :
+       {std::array<uint32_t, kTasks>{1, 2, 20}, {3, 1, 1}, {0, 4, 5}, {5, 0, 5}, {5, 5, 0}, {0, 0, 0}})
+    for (const uint32_t most : {1U, 2U, 3U, 100U}) {
+      Program whole(program), steps(program);
+      for (Program* run : {&whole, &steps}) {
+        (*run)->start_task(2, 8);
+        (*run)->start_task(3, 18);
+      }
+      TickSteps step;
+      EXPECT_EQ(step.task(), 0) << "before the first millisecond";
+      for (int ms = 0; ms < 20; ++ms) {
+        const uint32_t executed = run_tick(*whole.operator->(), Rates{budgets});
+        step.begin(*steps.operator->(), Rates{budgets});
+        uint32_t sum = 0;
+        int last = 1;
+        while (step.task() != 0) {
+          const int task = step.task();
+          EXPECT_GE(task, last) << "in turn";
+          EXPECT_EQ(steps->task(task).state, TaskState::Ready);
+          const uint64_t before = steps->task(task).commands;
+          const uint32_t count = step.step(*steps.operator->(), most);
+          EXPECT_GE(count, 1U);
+          EXPECT_LE(count, most);
+          EXPECT_EQ(steps->task(task).commands, before + count);
+          sum += count;
+          last = task;
+        }
+        ASSERT_EQ(sum, executed) << ms;
+        for (const size_t n : {1, 2, 3, 9}) ASSERT_EQ(steps.h(n), whole.h(n)) << ms;
+        for (int task = 1; task <= kTasks; ++task) {
+          ASSERT_EQ(steps->task(task).pc, whole->task(task).pc);
+          ASSERT_EQ(steps->task(task).state, whole->task(task).state);
+        }
+      }
+    }
+}
+
 }  // namespace
 }  // namespace ipos::vm

@@ -227,5 +227,19 @@ TEST(SavedState, NumbersOfInterruptsAndFaultAreInTheirRanges) {
   }
 }
 
+// An event is pending of an interrupt that is installed only; of the others also the address may be anything.
+TEST(SavedState, OnlyInstalledInterruptsArePending) {
+  const SavedBytes saved;
+  for (size_t event = 0; event < kEvents; ++event) {
+    const size_t at = kEventsAt + event * kEventBytes;
+    for (uint64_t installed = 0; installed <= 2; ++installed)
+      for (uint64_t pending = 0; pending <= 2; ++pending)
+        for (const uint64_t address : {0U, 0xFFFFU})
+          EXPECT_EQ(saved.takes_all({{at, 1, installed}, {at + 1, 1, pending}, {at + 2, 4, address}}),
+                    installed <= 1 && pending <= 1 && (installed == 1 ? address == 0 : pending == 0))
+              << event << " " << installed << " " << pending << " " << address;
+  }
+}
+
 }  // namespace
 }  // namespace ipos::vm

@@ -279,5 +279,128 @@ M06 : WAIT 100
   EXPECT_EQ(counts(), (std::array{before[0], before[1] + 5, before[2]}));
 }
 
+// The ends of all ranges are values of the structure (docs/reference/stdlib.md).
+TEST(VariableInterrupts, TheEndsOfTheRangesAreTaken) {
+  for (const int32_t control : {1, 2})
+    for (const int32_t number : {0, 3})
+      for (const int32_t source : {0, 1023})
+        for (const int32_t mode : {0, 9})
+          for (const int32_t priority : {1, 10}) {
+            Assembled run(
+                "TASK2 START , M01\nTASK START , M01\nVARINT H10 , M02\nM01 : JMP M01\nM02 : ADD H1 + "
+                "1\nRET\n");
+            run.h(0) = run.h(1023) = 1;
+            run.set(10, {control, number, source, 1, mode, priority});
+            run.tick();
+            EXPECT_EQ(run->fault().number, 0);
+            const VariableInterrupt& row = run->interrupts().variables[static_cast<size_t>(number)];
+            EXPECT_TRUE(row.installed);
+            EXPECT_EQ(row.task, control + 1);
+            EXPECT_EQ(row.source, source);
+            EXPECT_EQ(static_cast<int32_t>(row.mode), mode);
+            EXPECT_EQ(row.priority, priority);
+            run.h(kVarIntReq) = 1 << number;
+            run.tick();
+            EXPECT_EQ(run.h(1), 1);
+            EXPECT_EQ(run.h(kVarIntReq), 0);
+          }
+}
+
+// Bits of H530 that are no requests are nobody's, with interrupts that begin, wait and are not installed.
+TEST(VariableInterrupts, OtherBitsOfTheRequestsStay) {
+  for (int32_t number = 0; number < kVariableInterrupts; ++number) {
+    Assembled run(kOne);
+    run.set(10, {1, number, 20, 0, 0, 5});
+    run.tick(8);
+    run.h(530) = -1;
+    run.tick(8);
+    EXPECT_EQ(run.h(1), 1);
+    EXPECT_EQ(run.h(530), -16);
+  }
+}
+
+// A routine that runs is not begun again, also when it has meanwhile been installed anew with a higher priority or for the
+// other task: the request waits for its end.
+TEST(VariableInterrupts, ARoutineThatRunsIsNotBegunAgain) {
+  for (const int32_t control : {1, 2}) {
+    Assembled run(R"(
+      TASK2 START , M01
+      TASK START , M01
+      VARINT H10 , M02
+M03 : JMP H5 == 0 , M03
+      VARINT H10 , M02
+M01 : JMP M01
+M02 : MUL H1 * 10
+      ADD H1 + 1
+      WAIT 5
+      ADD H1 + 1
+      RET
+)");
+    run.set(10, {1, 0, 20, 0, 0, 1});
+    run.tick();
+    run.h(530) = 1;
+    run.tick();
+    EXPECT_EQ(run.h(1), 1);
+    run.set(10, {control, 0, 20, 0, 0, 9});
+    run.h(5) = 1;
+    run.tick();
+    run.h(530) = 1;
+    for (int n = 0; n < 3; ++n) run.tick();
+    EXPECT_EQ(run.h(1), 1);
+    EXPECT_EQ(run.h(530), 1) << "pending";
+    for (int n = 0; n < 20; ++n) run.tick();
+    EXPECT_EQ(run.h(1), 22) << "the first to its end, then the second";
+    EXPECT_EQ(run->context(context_of_variable_interrupt(0)).task, control + 1);
+  }
+}
+
+// Among all numbers and priorities: the higher one begins, of equals the lower number, and all of them run once.
+TEST(VariableInterrupts, EveryPairOfPrioritiesIsInOrder) {
+  for (int32_t first = 1; first <= kMaxPriority; ++first)
+    for (int32_t second = 1; second <= kMaxPriority; ++second)
+      for (const auto& [one, two] : {std::pair(0, 1), std::pair(1, 3), std::pair(2, 3)}) {
+        Assembled run(R"(
+      TASK2 START , M01
+      VARINT H10 , M02
+      VARINT H20 , M03
+M01 : JMP M01
+M02 : MUL H1 * 10
+      ADD H1 + 1
+      RET
+M03 : MUL H1 * 10
+      ADD H1 + 2
+      RET
+)");
+        run.set(10, {1, one, 100, 0, 0, first});
+        run.set(20, {1, two, 100, 0, 0, second});
+        run.tick();
+        run.h(530) = 1 << one | 1 << two;
+        for (int n = 0; n < 3; ++n) run.tick();
+        // The lower one begins in a later millisecond, when the higher one has ended.
+        EXPECT_EQ(run.h(1), first >= second ? 12 : 21) << first << " " << second;
+      }
+}
+
+// Without H530 there are no variable interrupts: a unit ends in front of it or behind.
+TEST(VariableInterrupts, NeedTheVariableOfTheRequests) {
+  for (const uint16_t variables : std::initializer_list<uint16_t>{512, 529, 530, 531, 532, 1024}) {
+    Assembled unit(kOne);
+    const std::vector<uint32_t> code(unit->program().code().begin(), unit->program().code().end());
+    Machine machine(verify(code, Limits{variables, 16384, 3, 32}, {}).image.value(), {});
+    machine.start();
+    const auto h = [&](size_t n) -> int32_t& { return machine.variables()[n]; };
+    const int32_t structure[] = {1, 0, 20, 7, 4, 5};
+    std::copy(std::begin(structure), std::end(structure), machine.variables().begin() + 10);
+    run_tick(machine, Rates{{8, 8, 8}});
+    EXPECT_EQ(machine.idle_ticks({0, 0, 0}), kIdleForever) << variables;
+    h(20) = 7;
+    const bool has_requests = variables > 530;
+    EXPECT_EQ(machine.idle_ticks({0, 0, 0}), has_requests ? 0 : kIdleForever) << variables;
+    run_tick(machine, Rates{{8, 8, 8}});
+    EXPECT_EQ(h(1), has_requests ? 1 : 0) << variables;
+    EXPECT_EQ(machine.fault().number, 0);
+  }
+}
+
 }  // namespace
 }  // namespace ipos::vm

@@ -88,6 +88,19 @@ TEST(Verifier, ReportsAllAndCountsThoseThatDoNotFit) {
   EXPECT_EQ(verify(code, kLimits, out).violations, 5U);  // two variables, a bit, a label, and the end
 }
 
+// A program that is too long has this one violation, whatever is in it: it is not read, nor is there room for its starts.
+TEST(Verifier, WhatIsTooLongIsNotRead) {
+  for (const uint16_t words : {uint16_t{4}, uint16_t{2048}, uint16_t{16384}, uint16_t{65535}})
+    for (const uint32_t word : {0U, static_cast<uint32_t>(Opcode::Ret), static_cast<uint32_t>(Opcode::Nop)}) {
+      const uint32_t longest = words < kMaxProgramWords ? words : kMaxProgramWords;
+      const std::vector<uint32_t> code(longest + 100, word);
+      const Seen seen = first_violation(code, Limits{512, words, 2, 32});
+      EXPECT_EQ(seen.count, 1U) << words << " " << word;
+      EXPECT_EQ(seen.rule, Rule::TooLong);
+      EXPECT_EQ(seen.address, longest);
+    }
+}
+
 // To every word of a program that is longer than the words the verifier remembers its starts in: commands of two words
 // can be jumped to at the even ones.
 TEST(Verifier, LabelsHitStartsWhereverTheyAre) {
@@ -146,7 +159,8 @@ uint32_t printed_length(Opcode opcode, int32_t keyword) {
     case Opcode::Movlnk:
     case Opcode::VarInt: return 7;
     case Opcode::Scom: return keyword == 1 ? 6 : keyword == 2 ? 4 : 3;
-    case Opcode::GetSys: return keyword == 5 ? 3 : keyword == 7 ? 2 : keyword == 8 ? 14 : keyword == 9 ? 10 : 1;
+    case Opcode::GetSys:
+      return keyword == 5 ? 3 : keyword == 7 ? 2 : keyword == 8 ? 14 : keyword == 9 ? 10 : 1;
     case Opcode::SetSys: return keyword == 6 ? 3 : keyword == 9 || keyword == 10 ? 2 : keyword == 15 ? 10 : 1;
     default: return 1;
   }

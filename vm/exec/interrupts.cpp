@@ -23,7 +23,7 @@ constexpr const char* kNames[kContexts] = {"task 1",
                                            "variable interrupt 2",
                                            "variable interrupt 3"};
 
-constexpr uint32_t request(size_t number) { return 1U << number; }
+constexpr uint32_t request(int number) { return 1U << number; }
 
 }  // namespace
 
@@ -82,7 +82,7 @@ const char* Machine::set_variable_interrupt(uint32_t structure, uint32_t address
   if (element(kControl) < 0 || element(kControl) > 2) return "Control of VARINT is none of 0, 1, 2";
   if (element(kIntNum) < 0 || element(kIntNum) >= kVariableInterrupts)
     return "IntNum of VARINT is none of 0..3";
-  if (element(kSrcVar) < 0 || bits(element(kSrcVar)) >= program_.limits().variables)
+  if (bits(element(kSrcVar)) >= program_.limits().variables)
     return "SrcVar of VARINT is no variable of the unit";
   if (element(kMode) < 0 || element(kMode) >= kCompareModes) return "Mode of VARINT is none of 0..9";
   if (element(kPriority) < 0 || element(kPriority) > kMaxPriority)
@@ -116,7 +116,7 @@ void Machine::choose_active(int task) {
 void Machine::see_interrupts() {
   events_ = watches_ = false;
   for (const EventInterrupt& interrupt : interrupts_.events)
-    events_ = events_ || interrupt.installed || interrupt.pending;
+    events_ = events_ || interrupt.installed;
   for (const VariableInterrupt& interrupt : interrupts_.variables) watches_ = watches_ || interrupt.installed;
 }
 
@@ -155,23 +155,22 @@ void Machine::take_events() {
 void Machine::take_variable_interrupts() {
   if (program_.limits().variables <= kVarIntReq) return;
   auto requests = bits(h_[kVarIntReq]);
-  for (size_t n = 0; n < interrupts_.variables.size(); ++n) {
-    VariableInterrupt& interrupt = interrupts_.variables[n];
+  for (int n = 0; VariableInterrupt & interrupt : interrupts_.variables) {
     if (!interrupt.installed || context_at(interrupt.task).state == TaskState::Stopped) {
       requests &= ~request(n);
     } else if (interrupt.look(h_[interrupt.source])) {
       requests |= request(n);
       h_[interrupt.structure + kIntEvent] = interrupt.last;
     }
+    ++n;
   }
   // The highest priority first, of equals the lowest number.
   for (uint8_t priority = requests != 0 ? kMaxPriority : 0; priority > 0; --priority)
-    for (size_t n = 0; n < interrupts_.variables.size(); ++n) {
-      const VariableInterrupt& interrupt = interrupts_.variables[n];
+    for (int n = 0; const VariableInterrupt& interrupt : interrupts_.variables) {
       if (interrupt.priority == priority && (requests & request(n)) != 0 &&
-          begin_routine(context_of_variable_interrupt(static_cast<int>(n)), interrupt.task, priority,
-                        interrupt.address))
+          begin_routine(context_of_variable_interrupt(n), interrupt.task, priority, interrupt.address))
         requests &= ~request(n);
+      ++n;
     }
   h_[kVarIntReq] = static_cast<int32_t>(requests);
 }

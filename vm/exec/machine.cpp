@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstring>
 #include <type_traits>
 
 #include "vm/exec/arithmetic.hpp"
@@ -18,19 +19,19 @@ struct Stand {
   uint32_t pc;
   uint8_t depth;
   uint64_t commands;
-  uint16_t calls[kMaxCallDepth];
+  std::array<uint16_t, kMaxCallDepth> calls;
 
   void note(const TaskContext& t) {
     pc = t.pc;
     depth = t.depth;
     commands = t.commands;
-    for (size_t n = 0; n < t.depth; ++n) calls[n] = t.calls[n];
+    std::copy_n(t.calls.begin(), depth, calls.begin());
   }
   void give_back(TaskContext& t) const {
     t.pc = pc;
     t.depth = depth;
     t.commands = commands;
-    for (size_t n = 0; n < depth; ++n) t.calls[n] = calls[n];
+    std::copy_n(calls.begin(), depth, t.calls.begin());
   }
 };
 
@@ -77,7 +78,7 @@ void Machine::stop_context(int number) {
 
 void Machine::stop_task(int task) {
   for (int number = 1; number <= kContexts; ++number)
-    if (number == task || (number > kTasks && context(number).task == task)) stop_context(number);
+    if (context(number).task == task) stop_context(number);
 }
 
 void Machine::stop_all() {
@@ -262,16 +263,7 @@ Stop Machine::execute(int number, TaskContext& t) {
       if (!is_variable(hb())) return fail(kFaultIllop, kNoVariable);
       ha() = h_[bits(hb())];
       break;
-    case Opcode::Copy: {
-      const auto* from = h_.data() + b;
-      auto* to = h_.data() + a;
-      const int32_t count = command.operands[2];
-      if (to < from)
-        std::copy(from, from + count, to);
-      else
-        std::copy_backward(from, from + count, to + count);
-      break;
-    }
+    case Opcode::Copy: std::memmove(&ha(), &hb(), sizeof(int32_t) * bits(command.operands[2])); break;
 
     case Opcode::AddHH: ha() = add(ha(), hb()); break;
     case Opcode::SubHH: ha() = subtract(ha(), hb()); break;
@@ -336,7 +328,7 @@ Stop Machine::execute(int number, TaskContext& t) {
       else
         start_task(other, bits(b));
       if (t.state == TaskState::Stopped) return Stop::Ended;
-      if (a != 0 && other == number) return Stop::Budget;  // it has started itself anew
+      if (other == number) return Stop::Budget;  // it has started itself anew
       break;
     }
     case Opcode::SetInt: set_interrupt(a, bits(b)); break;

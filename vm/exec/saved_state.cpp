@@ -1,7 +1,7 @@
 // What is saved of a machine stands once, in the visit() functions.
 #include "vm/exec/saved_state.hpp"
 
-#include <array>
+#include <bitset>
 
 #include "vm/exec/saved_bytes.hpp"
 
@@ -45,7 +45,7 @@ class Check {
  public:
   explicit Check(const VerifiedImage& program) : program_(program) {
     const auto code = program.code();
-    for (uint32_t at = 0; at < code.size(); at += decode(code, at).words) starts_[at / 32] |= 1U << (at % 32);
+    for (uint32_t at = 0; at < code.size(); at += decode(code, at).words) starts_[at] = true;
   }
 
   bool context(const TaskContext& t, int number) const {
@@ -68,7 +68,7 @@ class Check {
 
   bool interrupts(const Interrupts& all) const {
     for (const EventInterrupt& row : all.events)
-      if (row.installed && !starts(row.address)) return false;
+      if (row.installed ? !starts(row.address) : row.pending) return false;
     const uint32_t variables = program_.limits().variables;
     for (const VariableInterrupt& row : all.variables) {
       if (!row.installed) continue;
@@ -81,12 +81,10 @@ class Check {
   }
 
  private:
-  bool starts(uint32_t address) const {
-    return address < program_.code().size() && (starts_[address / 32] >> (address % 32) & 1U) != 0;
-  }
+  bool starts(uint32_t address) const { return address < program_.code().size() && starts_[address]; }
 
   const VerifiedImage& program_;
-  std::array<uint32_t, (kMaxProgramWords + 31) / 32> starts_{};
+  std::bitset<kMaxProgramWords> starts_;
 };
 
 }  // namespace

@@ -32,9 +32,10 @@ uint32_t block_size(const Instruction& instruction, size_t operand) {
   const Coding& row = coding(instruction.opcode);
   int32_t keyword = kAnyKeyword;
   uint32_t count = 1;
-  for (size_t n = 0; n < row.operand_count; ++n) {
-    if (row.kinds[n] == OperandKind::Keyword) keyword = instruction.operands[n];
-    if (row.kinds[n] == OperandKind::Count) count = static_cast<uint32_t>(instruction.operands[n]);
+  for (auto value = instruction.operands.begin(); const OperandKind kind : row.kinds) {
+    if (kind == OperandKind::Keyword) keyword = *value;
+    if (kind == OperandKind::Count) count = static_cast<uint32_t>(*value);
+    ++value;
   }
   const auto blocks = blocks_of(instruction.opcode, operand, keyword);
   if (blocks.empty()) return 1;

@@ -81,19 +81,21 @@ Decoded decode(std::span<const uint32_t> code, uint32_t address) {
   std::array<uint32_t, 2> used{0xFF, 0};  // bits of the packed words that mean something
   size_t small = 0;
   uint32_t packed_words = 1;
-  for (size_t n = 0; n < row->operand_count; ++n) {
-    if (!is_small(row->kinds[n])) continue;
+  for (auto operand = out.instruction.operands.begin(); const OperandKind kind : row->kinds) {
+    int32_t& value = *operand++;
+    if (!is_small(kind)) continue;
     const Field& field = kFields[small++];
     packed_words = field.word + 1U;
     used[field.word] |= uint32_t{field.mask} << field.shift;
-    out.instruction.operands[n] =
-        static_cast<int32_t>((code[address + field.word] >> field.shift) & field.mask);
+    value = static_cast<int32_t>((code[address + field.word] >> field.shift) & field.mask);
   }
   for (uint32_t word = 0; word < packed_words; ++word)
     if ((code[address + word] & ~used[word]) != 0) out.status = DecodeStatus::ReservedBits;
   uint32_t next = packed_words;
-  for (size_t n = 0; n < row->operand_count; ++n)
-    if (is_word(row->kinds[n])) out.instruction.operands[n] = static_cast<int32_t>(code[address + next++]);
+  for (auto operand = out.instruction.operands.begin(); const OperandKind kind : row->kinds) {
+    int32_t& value = *operand++;
+    if (is_word(kind)) value = static_cast<int32_t>(code[address + next++]);
+  }
   return out;
 }
 
@@ -103,14 +105,17 @@ uint32_t encode(const Instruction& instruction, std::span<uint32_t, kMaxWords> o
   out[0] = static_cast<uint8_t>(instruction.opcode);
   size_t small = 0;
   uint32_t next = 1;
-  for (size_t n = 0; n < row.operand_count; ++n) {
-    if (!is_small(row.kinds[n])) continue;
+  for (auto operand = instruction.operands.begin(); const OperandKind kind : row.kinds) {
+    const auto value = static_cast<uint32_t>(*operand++);
+    if (!is_small(kind)) continue;
     const Field& field = kFields[small++];
     next = field.word + 1U;
-    out[field.word] |= (static_cast<uint32_t>(instruction.operands[n]) & field.mask) << field.shift;
+    out[field.word] |= (value & field.mask) << field.shift;
   }
-  for (size_t n = 0; n < row.operand_count; ++n)
-    if (is_word(row.kinds[n])) out[next++] = static_cast<uint32_t>(instruction.operands[n]);
+  for (auto operand = instruction.operands.begin(); const OperandKind kind : row.kinds) {
+    const auto value = static_cast<uint32_t>(*operand++);
+    if (is_word(kind)) out[next++] = value;
+  }
   return next;
 }
 

@@ -48,9 +48,10 @@ class Outlook::Walk {
         can_fault(command) || (row.flow != Flow::Next && row.flow != Flow::Jump && row.flow != Flow::Branch);
     outlook.calls_ |= row.flow == Flow::System || row.flow == Flow::SystemCall;
     note_variables(tasks_[static_cast<size_t>(task - 1)], command, row);
-    for (size_t n = 0; n < row.operand_count; ++n)
-      if (row.kinds[n] == OperandKind::Label)
-        follow(task, command, static_cast<uint32_t>(command.operands[n]));
+    for (auto value = command.operands.begin(); const OperandKind kind : row.kinds) {
+      const auto label = static_cast<uint32_t>(*value++);
+      if (kind == OperandKind::Label) follow(task, command, label);
+    }
     if (row.flow != Flow::Jump && row.flow != Flow::Return && row.flow != Flow::End)
       begin(task, address + decoded.words);
   }
@@ -94,7 +95,7 @@ Outlook::Outlook(const Machine& machine) {
     for (size_t n = 0; n < t.depth; ++n) walk.begin(t.task, t.calls[n]);
   }
   for (const EventInterrupt& interrupt : machine.interrupts().events)
-    if (interrupt.installed || interrupt.pending) walk.begin(1, interrupt.address);
+    if (interrupt.installed) walk.begin(1, interrupt.address);
   for (const VariableInterrupt& interrupt : machine.interrupts().variables)
     if (interrupt.installed) walk.begin(interrupt.task, interrupt.address);
   walk.finish(*this);

@@ -2,7 +2,7 @@
 // hit starts. Structures of the communication commands are checked for their whole length.
 #include "vm/verify/verify.hpp"
 
-#include <array>
+#include <bitset>
 
 #include "vm/isa/blocks.hpp"
 
@@ -42,13 +42,13 @@ class Checker {
       return static_cast<uint32_t>(code_.size()) - at;  // what follows is part of it
     }
     if (decoded.status == DecodeStatus::ReservedBits) report(Rule::ReservedBits, at);
-    starts_[at / 32] |= 1U << (at % 32);
+    starts_[at] = true;
 
     const Instruction& instruction = decoded.instruction;
     const Coding& row = coding(instruction.opcode);
-    for (size_t n = 0; n < row.operand_count; ++n) {
+    for (size_t n = 0; const OperandKind kind : row.kinds) {
       const int32_t value = instruction.operands[n];
-      switch (row.kinds[n]) {
+      switch (kind) {
         case OperandKind::Variable: {
           const auto number = static_cast<uint32_t>(value);
           const uint32_t size = block_size(instruction, n);
@@ -71,6 +71,7 @@ class Checker {
         case OperandKind::Label:
         case OperandKind::None: break;
       }
+      ++n;
     }
     if ((instruction.opcode == Opcode::Task2 && limits_.tasks < 2) ||
         (instruction.opcode == Opcode::Task && limits_.tasks < 3) ||
@@ -80,16 +81,14 @@ class Checker {
     return decoded.words;
   }
 
-  bool is_start(uint32_t at) const { return (starts_[at / 32] >> (at % 32) & 1U) != 0; }
-
   uint32_t labels(uint32_t at) {
-    if (!is_start(at)) return 1;
+    if (!starts_[at]) return 1;
     const Decoded decoded = decode(code_, at);
     const Coding& row = coding(decoded.instruction.opcode);
-    for (size_t n = 0; n < row.operand_count; ++n) {
-      if (row.kinds[n] != OperandKind::Label) continue;
-      const auto target = static_cast<uint32_t>(decoded.instruction.operands[n]);
-      if (target >= code_.size() || !is_start(target)) report(Rule::LabelTarget, at);
+    for (auto value = decoded.instruction.operands.begin(); const OperandKind kind : row.kinds) {
+      const auto target = static_cast<uint32_t>(*value++);
+      if (kind == OperandKind::Label && (target >= code_.size() || !starts_[target]))
+        report(Rule::LabelTarget, at);
     }
     return decoded.words;
   }
@@ -102,7 +101,7 @@ class Checker {
   std::span<const uint32_t> code_;
   const Limits& limits_;
   std::span<Violation> out_;
-  std::array<uint32_t, (kMaxProgramWords + 31) / 32> starts_{};
+  std::bitset<kMaxProgramWords> starts_;  // of commands
   uint32_t count_ = 0;
 };
 
