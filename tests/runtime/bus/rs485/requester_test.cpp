@@ -90,6 +90,22 @@ TEST(Requester, AnAnswerBeginsWithinTheDelay) {
   }
 }
 
+// The start pause is also that between a request and its response (p. 19); what comes earlier is no telegram.
+TEST(Requester, AnAnswerKeepsTheStartPause) {
+  for (const Time more : {Time{-1}, Time{0}}) {
+    Desk desk;
+    desk.start(1, desk.a);
+    desk.queue.run_until(0);
+    const Time out = desk.out();
+    desk.hear(out + kPause + more, kAnswer);
+    desk.queue.run_until(kSecond);
+    const End right{out + kPause + 6 * kChar, RequestEnd::Answered, true};
+    const End none{out + kDelay + kChar, RequestEnd::NoResponse, false};
+    EXPECT_EQ(desk.a.ends, std::vector{more < 0 ? none : right});
+    EXPECT_EQ(desk.requester.statistics().of(SerialError::Pause), more < 0 ? 1U : 0U);
+  }
+}
+
 TEST(Requester, NothingElseIsTheAnswer) {
   // Another slave's, a request, and another type; then the right one, in time or not at all.
   for (const char* other :
