@@ -42,6 +42,7 @@ void SdoMaster::on_frame(Time now, const Frame& frame) {
 void SdoMaster::on_timer(Time now, uint32_t /*kind*/) {
   abort();
   MovilinkResult result;
+  result.result = stdlib::return_codes::kCommunication.packed();
   result.reason = "no answer";
   client_.on_exchange_done(now, result);
 }

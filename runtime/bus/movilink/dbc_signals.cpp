@@ -49,7 +49,7 @@ std::string identifier(std::string_view text) {
   }
   while (!name.empty() && name.back() == '_') name.pop_back();
   if (name.empty() || std::isdigit(static_cast<unsigned char>(name[0])) != 0) name.insert(0, "_");
-  return name.size() > kLongestName ? name.substr(0, kLongestName) : name;
+  return name.substr(0, kLongestName);
 }
 
 // DPointer carries the low-order bytes, DPointer + 1 those beyond the fourth. What is shorter than a variable

@@ -62,7 +62,6 @@ std::string attribute_text(uint32_t data) {
 }
 
 std::string value_text(const IndexText& index, Service service, uint32_t data) {
-  if (service == Service::None) return fmt::format("{:08X}h", data);
   if (service == Service::ReadScale) return scale_text(data);
   if (service == Service::ReadAttribute) return attribute_text(data);
   const auto value = static_cast<int32_t>(data);

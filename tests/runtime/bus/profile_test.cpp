@@ -42,6 +42,29 @@ TEST(Profile, IdentifiersOfAUnit) {
     EXPECT_EQ(use.transmits, use.id != 12 && use.id != 524) << use.id;
 }
 
+// The second channel is not used by MOVLNK (ours).
+TEST(Profile, TelegramsAndAddressesOfTheIdentifiers) {
+  SlaveSettings b{1, 2, 0};
+  b.second_channel = true;
+  using Uses = std::vector<IdentifierUse>;
+  EXPECT_EQ(slave_identifiers(b), (Uses{{11, Telegram::ProcessOutput, 1, false},
+                                        {12, Telegram::ProcessInput, 1, true},
+                                        {13, Telegram::ProcessOutputSync, 1, false},
+                                        {22, Telegram::GroupProcessOutput, 2, false},
+                                        {523, Telegram::ParameterRequest, 1, false},
+                                        {524, Telegram::ParameterResponse, 1, true},
+                                        {525, Telegram::ParameterRequest2, 1, false},
+                                        {527, Telegram::ParameterResponse2, 1, true},
+                                        {534, Telegram::GroupParameterRequest, 2, false}}));
+  EXPECT_EQ(master_identifiers(3, b), (Uses{{27, Telegram::ProcessOutput, 3, true},
+                                            {28, Telegram::ProcessInput, 3, false},
+                                            {29, Telegram::ProcessOutputSync, 3, true},
+                                            {539, Telegram::ParameterRequest, 3, true},
+                                            {540, Telegram::ParameterResponse, 3, false}}));
+  EXPECT_EQ(master_identifiers(100, m07(1, 2)), (Uses{{6, Telegram::GroupProcessOutput, 0, true},
+                                                      {518, Telegram::GroupParameterRequest, 0, true}}));
+}
+
 TEST(Profile, FieldsOfTheIdentifier) {
   PROVES("SBUS-01", "M07-SBUS-01", "M07-SBUS-02");
   std::set<uint32_t> used;

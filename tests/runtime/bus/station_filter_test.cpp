@@ -75,6 +75,36 @@ TEST(StationFilter, WhatIsNoStation) {
   EXPECT_EQ(passing(filter), (std::vector<uint32_t>{507, 508, 509, 1019, 1020, 1021, 1023}));
 }
 
+TEST(StationFilter, IdentifiersByThemselves) {
+  StationFilter filter;
+  filter.add(300);
+  filter.add(2000);
+  EXPECT_EQ(passing(filter), (std::vector<uint32_t>{300, 2000}));
+  EXPECT_FALSE(filter.passes(SerialTelegram{false, 37, {}, {}, {}}));
+  StationFilter closed;
+  closed.close();
+  EXPECT_TRUE(passing(closed).empty());
+  ASSERT_TRUE(closed.add(two_units(), "2")) << "by its address, with its group and objects";
+  EXPECT_EQ(passing(closed), (std::vector<uint32_t>{7, 19, 20, 21, 46, 531, 532, 533, 535, 558, 1024, 1025}));
+  TelegramNames names = two_units();
+  names.units[1].settings.synchronous = false;
+  StationFilter no_sync;
+  ASSERT_TRUE(no_sync.add(names, "unit2"));
+  EXPECT_FALSE(no_sync.passes(Frame{7, 0}));
+  // Two units of one name, each on its own.
+  names.units[1].name = "unit1";
+  StationFilter both;
+  ASSERT_TRUE(both.add(names, "unit1"));
+  EXPECT_TRUE(both.passes(Frame{11, 0}) && both.passes(Frame{19, 0}));
+}
+
+TEST(StationFilter, NumbersOfStations) {
+  EXPECT_EQ(station_number("0"), 0);
+  EXPECT_EQ(station_number("255"), 255);
+  for (const char* text : {"", "256", "-1", "+1", " 1", "1 ", "0x1", "a"})
+    EXPECT_EQ(station_number(text), std::nullopt) << text;
+}
+
 SerialTelegram serial(uint8_t address, int format, ProcessWords words = {}, bool response = false) {
   return {response, address, *telegram_format(format), {}, words};
 }
@@ -98,7 +128,8 @@ TEST(DescribeSerial, PartnersAndParts) {
             "3PD cyclic, PO CTRL. WORD 1 0006h (enable), SPEED 1000.0 rpm, 0001h -> unit1");
   EXPECT_EQ(words(serial(1, 0x81, {6, 5000, 1})), "1PD acyclic, PO CTRL. WORD 1 0006h (enable) -> unit1");
   EXPECT_EQ(words(serial(1, 3, {7, 5011, 0}, true)),
-            "2PD cyclic, PI STATUS WORD1 0007h (ready, output stage on, PO data on; state 0 not ready), SPEED 1002.2 rpm <- unit1");
+            "2PD cyclic, PI STATUS WORD1 0007h (ready, output stage on, PO data on; state 0 not ready), "
+            "SPEED 1002.2 rpm <- unit1");
   EXPECT_EQ(words(serial(3, 1, {6, 0, 0})), "1PD cyclic, PO 0006h -> address 3");
   EXPECT_EQ(words(serial(104, 1, {6, 0, 0})), "1PD cyclic, PO CTRL. WORD 1 0006h (enable) -> group 104");
   EXPECT_EQ(words(serial(105, 1, {6, 0, 0})), "1PD cyclic, PO 0006h -> group 105");
@@ -117,7 +148,8 @@ TEST(DescribeSerial, PartnersAndParts) {
   parameter.parameter = decode_parameter({0xB2, 0, 0x20, 0x7E, 8, 0, 0, 0x12});
   EXPECT_EQ(words(parameter),
             "PARAM + 3PD cyclic, write 8318 Speed refused: class 8 code 0 additional 12h: read access only, "
-            "PI STATUS WORD1 0007h (ready, output stage on, PO data on; state 0 not ready), SPEED 1002.2 rpm, OUTP. CURRENT 0.0 % In <- unit1");
+            "PI STATUS WORD1 0007h (ready, output stage on, PO data on; state 0 not ready), SPEED 1002.2 "
+            "rpm, OUTP. CURRENT 0.0 % In <- unit1");
 }
 
 TEST(DescribeSerial, WhatIsNoTelegram) {

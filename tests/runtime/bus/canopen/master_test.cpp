@@ -316,5 +316,146 @@ TEST(CanopenMaster, SyncOutputsAndHeartbeatOfOneMoment) {
   }
 }
 
+// Its first PDO has three words (page 54 of 11264926); one that is too short is none, and the second is off.
+TEST(CanopenMaster, InputsByTheMapping) {
+  MasterSettings settings;
+  settings.nodes = {plan(1), plan(2)};
+  settings.nodes[1].pdos.push_back({1, true, 255, 0, 0, {{{0x2001, 10}, 16}}});
+  MasterBench bench(settings);
+  bench.answer({0x181, 5, {1, 2, 3, 4, 5}});
+  EXPECT_EQ(bench.master.report(0).pdos, 0U);
+  bench.answer({0x181, 6, {1, 2, 3, 4, 5, 6}});
+  EXPECT_EQ(bench.master.report(0).input, (Words{0x0201, 0x0403, 0x0605}));
+  bench.answer({0x181, 8, {9, 0, 8, 0, 7, 0, 6, 0}});
+  EXPECT_EQ(bench.master.report(0).input, (Words{9, 8, 7}));
+  bench.answer({0x281, 8, {1, 1, 1, 1, 1, 1, 1, 1}});
+  EXPECT_EQ(bench.master.report(0).pdos, 2U) << "what is not mapped is not taken";
+  EXPECT_EQ(bench.master.report(1).pdos, 0U) << "of another node";
+  bench.answer({0x282, 2, {0x34, 0x12}});
+  EXPECT_EQ(bench.master.report(1).input[9], 0x1234);
+  EXPECT_EQ(bench.master.report(1).pdos, 1U);
+  bench.answer({0x181, 6, {1}, true, false});
+  bench.answer({0x181, 6, {}, false, true});
+  EXPECT_EQ(bench.master.report(0).pdos, 2U);
+}
+
+TEST(CanopenMaster, FramesThatMeanNothingToIt) {
+  MasterSettings settings;
+  settings.nodes = {plan(1)};
+  MasterBench bench(settings);
+  bench.heard();
+  for (const Frame& frame :
+       {Frame{0x701, 2, {0, 0}}, Frame{0x701, 0}, Frame{0x581, 8, {0x60}}, Frame{0x581, 7, {0x60}},
+        Frame{0x081, 7, {0, 0xFF}}, Frame{0x702, 1, {0}}, Frame{0x7FF, 1, {0}}})
+    bench.answer(frame);
+  EXPECT_EQ(bench.master.report(0).phase, Phase::Silent);
+  EXPECT_EQ(bench.master.report(0).state, std::nullopt);
+  EXPECT_TRUE(bench.master.report(0).emergencies.empty());
+  EXPECT_TRUE(bench.told.texts.empty());
+  EXPECT_TRUE(bench.heard().empty());
+  // Before its start it hears nothing.
+  EventQueue queue;
+  Master silent(queue, 8, settings);
+  silent.on_frame(0, {0x701, 1, {0x7F}});
+  EXPECT_EQ(silent.report(0).state, std::nullopt);
+}
+
+TEST(CanopenMaster, EmergenciesAndRefusalsInWords) {
+  MasterSettings settings;
+  settings.nodes = {plan(1)};
+  settings.nodes[0].writes = {{{0x1017, 0}, 0x1234'5678, 2}, {{0x1400, 2}, 255, 1}};
+  MasterBench bench(settings);
+  bench.heard();
+  bench.answer({0x081, 8, {0x00, 0xFF, 0x81, 9, 0x22, 0x2B, 7, 6}});
+  bench.answer({0x081, 8, {0x01, 0x00, 0x81}});
+  bench.answer({0x081, 8, {}});
+  ASSERT_EQ(bench.master.report(0).emergencies.size(), 3U);
+  EXPECT_EQ(bench.master.report(0).emergencies[0].code, 0xFF00);
+  EXPECT_EQ(bench.master.report(0).emergencies[0].error_register, 0x81);
+  EXPECT_EQ(bench.master.report(0).emergencies[0].more, (std::array<uint8_t, 5>{9, 0x22, 0x2B, 7, 6}));
+  EXPECT_EQ(bench.master.report(0).emergencies[1].code, 1);
+  bench.answer({0x701, 1, {0x00}});
+  EXPECT_EQ(bench.heard(), (MasterFrames{{0x601, 8, {0x2B, 0x17, 0x10, 0x00, 0x78, 0x56}}}));
+  bench.answer({0x581, 8, {0x60, 0x17, 0x10, 0x00}});
+  EXPECT_EQ(bench.heard(), (MasterFrames{{0x601, 8, {0x2F, 0x00, 0x14, 0x02, 0xFF}}}));
+  bench.answer({0x581, 8, {0x80, 0x00, 0x14, 0x02, 0x30, 0x00, 0x09, 0x06}});
+  EXPECT_TRUE(bench.heard().empty()) << "it is not started";
+  bench.run(kSecond);
+  EXPECT_EQ(bench.told.texts,
+            (std::vector<std::string>{
+                "! CANopen: node 1 sends EMCY FF00h fault, error register 81h, status word 1 2B22h",
+                "! CANopen: node 1 sends EMCY 0001h, error register 81h",
+                "CANopen: node 1 sends EMCY gone, error register 00h", "CANopen: node 1 boots up",
+                "! CANopen: node 1 refuses to write 1400h:2 RPDO1 transmission type: value not allowed "
+                "(06090030h); it is not started"}));
+  EXPECT_EQ(bench.master.report(0).phase, Phase::Refused);
+  // The next boot-up begins with the first write.
+  bench.answer({0x701, 1, {0x00}});
+  EXPECT_EQ(bench.heard(), (MasterFrames{{0x601, 8, {0x2B, 0x17, 0x10, 0x00, 0x78, 0x56}}}));
+  EXPECT_EQ(bench.master.report(0).boot_ups, 2U);
+}
+
+// After a loss either value of the toggle bit is new, and so it is after a boot-up, which also ends the guarding.
+TEST(CanopenMaster, TheToggleBitAfterALoss) {
+  MasterSettings settings;
+  settings.nodes = {plan(1)};
+  settings.nodes[0].guard_time = 20;
+  settings.nodes[0].life_factor = 2;
+  for (const uint8_t byte : {uint8_t{0x05}, uint8_t{0x85}}) {
+    MasterBench bench(settings);
+    const auto bring_up = [&] {
+      bench.answer({0x701, 1, {0x00}});
+      bench.answer({0x581, 8, {0x60, 0x0C, 0x10, 0x00}});
+      bench.answer({0x581, 8, {0x60, 0x0D, 0x10, 0x00}});
+      EXPECT_EQ(bench.master.report(0).phase, Phase::Running);
+    };
+    bring_up();
+    bench.answer({0x701, 1, {byte}});
+    bench.run(100 * kMillisecond);
+    EXPECT_EQ(bench.master.report(0).phase, Phase::Lost);
+    bench.answer({0x701, 1, {byte}});
+    EXPECT_EQ(bench.master.report(0).phase, Phase::Running) << "though it is the bit of before";
+    EXPECT_EQ(bench.master.report(0).losses, 1U);
+    bench.heard();
+    bench.answer({0x701, 1, {0x00}});
+    bench.run(100 * kMillisecond);
+    EXPECT_EQ(bench.heard(), (MasterFrames{{0x601, 8, {0x2B, 0x0C, 0x10, 0x00, 20}}}))
+        << "no guarding meanwhile";
+    EXPECT_EQ(bench.master.report(0).losses, 1U);
+    bring_up();
+    bench.answer({0x701, 1, {byte}});
+    bench.run(39 * kMillisecond);
+    EXPECT_EQ(bench.master.report(0).phase, Phase::Running);
+  }
+}
+
+TEST(CanopenMaster, OutputsGoToWhatRuns) {
+  MasterSettings settings;
+  settings.sync_cycle = 5 * kMillisecond;
+  settings.nodes = {plan(1), plan(2)};
+  settings.nodes[0].output = {1, 2, 3};
+  MasterBench bench(settings);
+  bench.heard();
+  bench.run(10 * kMillisecond);
+  EXPECT_EQ(bench.heard(), (MasterFrames{{0x080, 0}, {0x080, 0}})) << "none to a node that does not run";
+  bench.answer({0x701, 1, {0x00}});
+  EXPECT_EQ(bench.heard(), (MasterFrames{{0x000, 2, {0x01, 1}}})) << "it has nothing to be written";
+  bench.run(5 * kMillisecond);
+  EXPECT_EQ(bench.heard(), (MasterFrames{{0x080, 0}, {0x201, 6, {1, 0, 2, 0, 3, 0}}}));
+  bench.master.set_output(0, {0x1234});
+  bench.run(5 * kMillisecond);
+  EXPECT_EQ(bench.heard(), (MasterFrames{{0x080, 0}, {0x201, 6, {0x34, 0x12}}}));
+  EXPECT_EQ(bench.master.syncs(), 4U);
+  // A receive PDO without a mapping is switched off.
+  EXPECT_EQ(remapping({2, false, 1, 7, 7, {}}, 5), (std::vector<SdoWrite>{{{0x1402, 1}, 0x8000'0405, 4}}));
+  EXPECT_EQ(remapping({3, false, 255, 7, 7, {{{0x2000, 1}, 16}}}, 127),
+            (std::vector<SdoWrite>{{{0x1403, 1}, 0x8000'057F, 4},
+                                   {{0x1403, 2}, 255, 1},
+                                   {{0x1603, 0}, 0, 1},
+                                   {{0x1603, 1}, 0x2000'0110, 4},
+                                   {{0x1603, 0}, 1, 1},
+                                   {{0x1403, 1}, 0x0000'057F, 4}}));
+}
+
 }  // namespace
 }  // namespace ipos::tests

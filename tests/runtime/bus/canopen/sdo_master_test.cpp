@@ -108,6 +108,8 @@ TEST(CanopenSdoMaster, WithoutAnAnswerItAborts) {
   ASSERT_EQ(bench.results.size(), 1U);
   EXPECT_EQ(bench.done_at, 100 * kMillisecond);
   EXPECT_EQ(bench.results[0].reason, "no answer");
+  EXPECT_EQ(bench.results[0].result, 0x0602'0000U) << "class 6, code 2, as on every other bus";
+  EXPECT_EQ(bench.results[0].read_value, std::nullopt);
   const SdoFrames abort{{0x605, 8, {0x80, 0x7E, 0x20, 0x00, 0x00, 0x00, 0x04, 0x05}}};
   EXPECT_EQ(bench.heard(), abort);
   // The program gives up: the node hears of it, the program nothing.

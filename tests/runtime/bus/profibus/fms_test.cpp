@@ -346,6 +346,41 @@ TEST(FmsServices, InitiateTwiceAborts) {
   EXPECT_FALSE(bench.server.is_open(2));
 }
 
+// A connection ends with a request it does not have the time or the room for; others stay as they are.
+TEST(FmsServices, WhatEndsAConnection) {
+  FmsBench bench;
+  EXPECT_EQ(bench.read(1025), "Abort") << "never opened";
+  bench.open(7);
+  bench.open(8);
+  EXPECT_EQ(bench.server.request(0, 7, {FmsService::Read, 1025, {}}), std::nullopt);
+  EXPECT_TRUE(bench.server.busy());
+  EXPECT_EQ(bench.server.response(0, 7), std::nullopt) << "not at once";
+  EXPECT_EQ(bench.server.response(kSecond, 8), std::nullopt) << "nothing was asked there";
+  EXPECT_EQ(bench.server.request(0, 7, {FmsService::Read, 1025, {}})->end, FmsEnd::Aborted);
+  EXPECT_FALSE(bench.server.is_open(7));
+  EXPECT_TRUE(bench.server.is_open(8));
+  EXPECT_FALSE(bench.server.busy());
+  // Units of data have 241 octets at most.
+  bench.open(7);
+  EXPECT_EQ(bench.write(1025, Octets(241)), kType);
+  EXPECT_TRUE(bench.server.is_open(7));
+  EXPECT_EQ(bench.write(1025, Octets(242)), "Abort");
+  EXPECT_FALSE(bench.server.is_open(7));
+  // One whose control interval is over.
+  bench.open(2);
+  EXPECT_EQ(bench.server.request(bench.now + 30 * kSecond, 2, {FmsService::Read, 1025, {}})->end,
+            FmsEnd::Aborted);
+  EXPECT_FALSE(bench.server.is_open(2));
+  const FmsMasterEntry good = master_entry(*find_fms_connection(7), 8);
+  FmsMasterEntry wrong = good;
+  wrong.pdu.receive_low = 240;
+  EXPECT_EQ(bench.server.initiate(0, 7, 2, wrong).error, (ReturnCode{0, 1, 0}));
+  wrong = good;
+  wrong.rsap = 24;
+  EXPECT_EQ(bench.server.initiate(0, 7, 2, wrong).error, (ReturnCode{0, 2, 0}));
+  EXPECT_EQ(bench.server.initiate(0, 99, 2, good).end, FmsEnd::Rejected);
+}
+
 TEST(FmsServices, WhatIsThereAndWhatNot) {
   PROVES("FMS-SVC-01", "FMS-SVC-06");
   FmsBench bench;

@@ -1,6 +1,8 @@
 // A line on paper: cable type A, terminators, who fits where, and the cycle against its closed form.
 #include "runtime/bus/profibus/line_plan.hpp"
 
+#include <tuple>
+
 #include "tests/runtime/bus/profibus/octets.hpp"
 
 namespace ipos::tests {
@@ -140,6 +142,72 @@ TEST(LinePlan, AddressesIdentsAndWatchdog) {
       "inv0: the watchdog of 100 ms is not longer than a cycle of 132.81 ms|inv1: the watchdog of 10 ms is "
       "not longer than a cycle of 132.81 ms");
   EXPECT_NE(findings(good(32)).find("33 stations; a segment has at most 32"), std::string::npos);
+}
+
+// Every limit itself is good, on both sides; a little beyond it is not.
+TEST(LinePlan, LimitsAreStillGood) {
+  const auto with = [](double Cable::*value, double to) {
+    LinePlan plan = good();
+    plan.cable.*value = to;
+    return findings(plan).empty();
+  };
+  for (const auto& [value, limit, beyond] : {std::tuple(&Cable::ohms, 135.0, 134.9),
+                                             {&Cable::ohms, 165.0, 165.1},
+                                             {&Cable::picofarads_a_metre, 30.0, 30.1},
+                                             {&Cable::picofarads_a_metre, 0.0, -0.1},
+                                             {&Cable::ohms_a_kilometre, 110.0, 110.1},
+                                             {&Cable::diameter, 0.64, 0.63},
+                                             {&Cable::section, 0.34, 0.33}}) {
+    EXPECT_TRUE(with(value, limit)) << limit;
+    EXPECT_FALSE(with(value, beyond)) << beyond;
+  }
+  EXPECT_TRUE(with(&Cable::diameter, 100));
+  EXPECT_EQ(findings({}), "") << "a line without stations wants no terminators";
+  LinePlan plan = good();
+  plan.stations[1].address = 125;
+  EXPECT_EQ(findings(plan), "");
+  plan = good(31);
+  plan.cable.metres = 400;
+  EXPECT_EQ(findings(plan), "") << "31 and the master";
+  PlannedStation& station = plan.stations[0];
+  station.interface = Interface::Size0;
+  station.ident = 0x3111;
+  station.size = 0;
+  station.series = InverterSeries::B;
+  EXPECT_EQ(findings(plan), "inv0: the built-in interface is that of MOVITRAC 31C size 0");
+  station.interface = Interface::Ffp31C;
+  station.ident = 0x3100;
+  EXPECT_EQ(findings(plan), "inv0: FFP 31C is for MOVITRAC 31C");
+}
+
+// SYN, token and TID2, for each station SYN, two frames, Tsdr and TID1, and one poll of the GAP that nobody answers.
+TEST(LinePlan, CycleInBits) {
+  LinePlan plan;
+  plan.gap_poll = false;
+  plan.idle_2 = 160;
+  EXPECT_EQ(cycle_bits(plan), 33U + 33 + 160);
+  plan.stations.resize(2);
+  plan.stations[0].octets = 2;
+  plan.stations[1].octets = 14;
+  plan.tsdr = 31;
+  plan.idle_1 = 38;
+  const Bits first = 33 + 2 * (99 + 22) + 31 + 38, second = 33 + 2 * (99 + 154) + 31 + 38;
+  EXPECT_EQ(cycle_bits(plan), 226U + first + second);
+  plan.gap_poll = true;
+  EXPECT_EQ(cycle_bits(plan), 226U + first + second + 33 + 66 + 200) << "500 kbaud";
+  plan.baud = 1'500'000;
+  EXPECT_EQ(cycle_bits(plan), 226U + first + second + 33 + 66 + 300);
+  plan.baud = 1;
+  EXPECT_EQ(cycle_bits(plan), 226U + first + second) << "a rate without a slot time";
+  // A watchdog as long as the cycle is too short.
+  plan = good(1);
+  plan.gap_poll = false;
+  plan.baud = 500'000;
+  const Time cycle = static_cast<Time>(cycle_bits(plan)) * 2'000;
+  plan.stations[0].watchdog = cycle + 1;
+  EXPECT_EQ(findings(plan), "");
+  plan.stations[0].watchdog = cycle;
+  EXPECT_NE(findings(plan), "");
 }
 
 }  // namespace

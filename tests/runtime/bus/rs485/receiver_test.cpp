@@ -191,5 +191,111 @@ TEST(Receiver, MonitorDeadline) {
   EXPECT_EQ(cut->bytes.size, 1);
 }
 
+// A receiver by itself: each byte one character of a millisecond, the first one at `at`.
+std::vector<std::optional<Reception>> take_all(SerialReceiver& receiver, Time at, const Bytes& bytes) {
+  std::vector<std::optional<Reception>> receptions;
+  for (const uint8_t byte : bytes) {
+    receptions.push_back(receiver.take({at, at + kMillisecond, byte, false, false}));
+    at += kMillisecond;
+  }
+  return receptions;
+}
+
+TEST(Receiver, ATelegramHasItsTimesAndBytes) {
+  SerialReceiver receiver;
+  const Bytes bytes = telegram("02 01 01 00 01");
+  const auto receptions = take_all(receiver, kSecond, bytes);
+  for (size_t n = 0; n + 1 < receptions.size(); ++n) EXPECT_FALSE(receptions[n].has_value()) << n;
+  ASSERT_TRUE(receptions.back());
+  EXPECT_TRUE(receptions.back()->telegram.has_value());
+  EXPECT_EQ(receptions.back()->start, kSecond);
+  EXPECT_EQ(receptions.back()->end, kSecond + 6 * kMillisecond);
+  EXPECT_EQ(text_of(receptions.back()->bytes.span()), text_of(bytes));
+  EXPECT_FALSE(receiver.receiving());
+  EXPECT_EQ(receiver.deadline(), kNever);
+}
+
+// After an error the rest is left until the next pause; a start character without one begins nothing.
+TEST(Receiver, ErrorsAreToldOnceUntilTheNextPause) {
+  SerialReceiver receiver;
+  auto receptions = take_all(receiver, 0, hex("55 02 01 1D"));
+  ASSERT_TRUE(receptions[0]);
+  EXPECT_EQ(receptions[0]->telegram.error(), SerialError::Start);
+  for (size_t n = 1; n < 4; ++n) EXPECT_FALSE(receptions[n].has_value()) << n;
+  // A good telegram, and what follows it at once: a start character after too short a pause, then silence.
+  const Time good = 4 * kMillisecond + kStartPause;
+  EXPECT_TRUE(take_all(receiver, good, telegram("02 01 01 00 01")).back()->telegram.has_value());
+  receptions = take_all(receiver, good + 6 * kMillisecond, hex("02 02 55"));
+  ASSERT_TRUE(receptions[0]);
+  EXPECT_EQ(receptions[0]->telegram.error(), SerialError::Pause);
+  EXPECT_EQ(receptions[0]->bytes.size, 1);
+  EXPECT_FALSE(receptions[1].has_value());
+  EXPECT_FALSE(receptions[2].has_value());
+  // After the pause it is told again.
+  receptions = take_all(receiver, good + 9 * kMillisecond + kStartPause, hex("55 55"));
+  ASSERT_TRUE(receptions[0]);
+  EXPECT_EQ(receptions[0]->telegram.error(), SerialError::Start);
+  EXPECT_FALSE(receptions[1].has_value());
+  // A first character with an error of its own.
+  SerialReceiver faulty;
+  EXPECT_EQ(faulty.take({0, 1000, 0x02, true, false})->telegram.error(), SerialError::Parity);
+  EXPECT_EQ(faulty.take({kSecond, kSecond + 1000, 0x55, true, true})->telegram.error(), SerialError::Frame);
+}
+
+// The character that comes after a gap voids the telegram before it; behind a whole pause it begins the next one.
+TEST(Receiver, ACharacterAfterAGap) {
+  for (const auto& [gap, begins] : {std::pair<Time, bool>{kCharacterGap + 1, false},
+                                    {kStartPause - 1, false},
+                                    {kStartPause, true},
+                                    {kSecond, true}}) {
+    SerialReceiver receiver;
+    take_all(receiver, 0, hex("02 01"));
+    const auto receptions = take_all(receiver, 2 * kMillisecond + gap, telegram("1D 01 01 00 01"));
+    ASSERT_TRUE(receptions[0]) << gap;
+    EXPECT_EQ(receptions[0]->telegram.error(), SerialError::Gap);
+    EXPECT_EQ(text_of(receptions[0]->bytes.span()), "02 01");
+    EXPECT_EQ(receptions[0]->start, 0);
+    EXPECT_EQ(receptions[0]->end, 2 * kMillisecond);
+    for (size_t n = 1; n < 5; ++n) EXPECT_FALSE(receptions[n].has_value()) << n;
+    ASSERT_EQ(receptions[5].has_value(), begins) << gap;
+    if (begins) {
+      EXPECT_EQ(receptions[5]->start, 2 * kMillisecond + gap);
+    }
+  }
+  SerialReceiver receiver;
+  take_all(receiver, 0, hex("02 01"));
+  EXPECT_TRUE(
+      take_all(receiver, 2 * kMillisecond + kCharacterGap, hex("01 00 01 03")).back()->telegram.has_value());
+}
+
+TEST(Receiver, WhatItsOwnStationSendsIsNoPause) {
+  for (const auto& [more, good] : {std::pair<Time, bool>{-1, false}, {0, true}}) {
+    SerialReceiver receiver;
+    receiver.occupied(kSecond);
+    receiver.occupied(kMillisecond);  // does not end earlier for it
+    const auto receptions = take_all(receiver, kSecond + kStartPause + more, telegram("02 01 01 00 01"));
+    EXPECT_EQ(receptions[0].has_value(), !good);
+    ASSERT_EQ(receptions[5].has_value(), good);
+    if (!good) {
+      EXPECT_EQ(receptions[0]->telegram.error(), SerialError::Pause);
+    }
+  }
+  // A telegram under way is gone, and so is an error before it.
+  SerialReceiver receiver;
+  take_all(receiver, 0, hex("02 01"));
+  EXPECT_TRUE(receiver.receiving());
+  receiver.occupied(5 * kMillisecond);
+  EXPECT_FALSE(receiver.receiving());
+  EXPECT_EQ(receiver.deadline(), kNever);
+  EXPECT_EQ(take_all(receiver, 6 * kMillisecond, hex("55"))[0]->telegram.error(), SerialError::Start);
+  receiver.occupied(8 * kMillisecond);
+  EXPECT_EQ(take_all(receiver, 9 * kMillisecond, hex("02"))[0]->telegram.error(), SerialError::Pause);
+  // Given up, the rest is left until the next pause.
+  SerialReceiver stopped;
+  take_all(stopped, 0, hex("02 01"));
+  EXPECT_TRUE(stopped.give_up().has_value());
+  EXPECT_FALSE(take_all(stopped, 3 * kMillisecond, hex("55"))[0].has_value());
+}
+
 }  // namespace
 }  // namespace ipos::tests

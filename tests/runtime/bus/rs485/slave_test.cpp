@@ -303,5 +303,112 @@ TEST(SerialSlave, ConnectionToTheMaster) {
   EXPECT_EQ(bench.unit.lost.size(), 2U);
 }
 
+// Only the cyclic telegram of three words to its group is the master's setpoint (MDX60B/61B p. 29); all others are what
+// they are to any slave.
+TEST(SerialSlave, WhatIsNotTheMastersSetpoint) {
+  struct Row {
+    const char* request;
+    bool setpoint;
+    size_t answers;
+  };
+  const Row rows[] = {{"02 65 05 00 06 07 D0 00 09", true, 0},  {"02 65 85 00 06 07 D0 00 09", false, 0},
+                      {"02 65 03 00 06 07 D0", false, 0},       {"02 01 05 00 06 07 D0 00 09", false, 1},
+                      {"02 FF 05 00 06 07 D0 00 09", false, 0}, {"02 FE 05 00 06 07 D0 00 09", false, 1}};
+  for (const Row& row : rows)
+    for (const bool follows : {true, false}) {
+      SlaveBench bench({1, 101, false, follows});
+      bench.feed(telegram(row.request), 10 * kMillisecond);
+      const bool setpoint = row.setpoint && follows;
+      EXPECT_EQ(bench.unit.setpoints.size(), setpoint ? 1U : 0U) << row.request;
+      EXPECT_EQ(bench.unit.channels.size(), setpoint ? 0U : 1U) << row.request;
+      EXPECT_EQ(bench.answers().size(), row.answers) << row.request;
+      bench.queue.run_until(kSecond);
+      EXPECT_EQ(bench.unit.lost.size(), setpoint ? 1U : 0U) << row.request;
+      EXPECT_EQ(bench.slave.statistics().of(SerialError::Timeout), setpoint ? 1U : 0U);
+      // The timeout of P812 is counted where a cyclic request was heard that is no setpoint.
+      bench.slave.count_timeout();
+      const bool cyclic = !setpoint && (hex(row.request)[2] & 0x80) == 0;
+      EXPECT_EQ(bench.slave.statistics().of(SerialError::Timeout), setpoint || cyclic ? 1U : 0U)
+          << row.request;
+    }
+  // Who follows no more by then has lost nobody.
+  SlaveBench bench({1, 101, false, true});
+  bench.feed(telegram("02 65 05 00 06 07 D0 00 00"), 10 * kMillisecond);
+  bench.slave.configure({1, 101, false, false});
+  bench.queue.run_until(kSecond);
+  EXPECT_TRUE(bench.unit.lost.empty());
+  EXPECT_EQ(bench.slave.statistics().of(SerialError::Timeout), 0U);
+}
+
+TEST(SerialSlave, AnAnswerComesAfterItsDelayAndTakesTheInputOfThatMoment) {
+  SlaveBench bench({1}, {7 * kMillisecond, 0});
+  bench.feed(telegram("02 01 05 00 06 07 D0 00 00"), 10 * kMillisecond);
+  const Time end = bench.queue.now();
+  bench.queue.run_until(end + 7 * kMillisecond - 1);
+  EXPECT_TRUE(bench.wire.sent.empty());
+  bench.unit.inputs = {1, 2, 3};
+  bench.queue.run_until(end + 7 * kMillisecond);
+  EXPECT_EQ(bench.wire.sent, std::vector<Bytes>{telegram("1D 01 05 00 01 00 02 00 03")});
+  EXPECT_EQ(bench.wire.times, std::vector{end + 7 * kMillisecond});
+  // The master has not waited: one answer, to the second request.
+  SlaveBench hasty({1}, {20 * kMillisecond, 0});
+  hasty.feed(telegram("02 01 05 00 06 07 D0 00 00"), 10 * kMillisecond);
+  hasty.feed(telegram("02 01 81 00 02"), 4 * kMillisecond);
+  const Time second = hasty.queue.now();
+  hasty.queue.run_until(kSecond);
+  EXPECT_EQ(hasty.wire.sent, std::vector<Bytes>{telegram("1D 01 81 04 07")});
+  EXPECT_EQ(hasty.wire.times, std::vector{second + 20 * kMillisecond});
+}
+
+// What cannot be done for a group is told; to a single address it is the answer that says so.
+TEST(SerialSlave, ReasonsInGroupsAndAnswersElsewhere) {
+  struct Row {
+    const char* channel;
+    std::vector<Ignored> group;
+  };
+  const Row rows[] = {{"70 00 21 16 00 00 00 01", {}},
+                      {"71 00 21 16 00 00 00 01", {Ignored::GroupService}},
+                      {"7F 00 21 16 00 00 00 01", {Ignored::GroupService}},
+                      {"72 00 21 16 00 00 00 01", {}},
+                      {"73 00 20 7E 00 00 00 01", {Ignored::GroupRefused}},
+                      {"62 00 21 16 00 00 00 01", {Ignored::GroupRefused}}};
+  for (const Row& row : rows)
+    for (const char* type : {" 06 ", " 86 "}) {
+      SlaveBench group({1, 101});
+      group.feed(telegram("02 65" + std::string(type) + row.channel), 10 * kMillisecond);
+      EXPECT_EQ(group.unit.ignored, row.group) << row.channel << type;
+      EXPECT_TRUE(group.answers().empty());
+      // A repeated cyclic request is not carried out again.
+      group.feed(telegram("02 65" + std::string(type) + row.channel), 10 * kMillisecond);
+      const bool again = std::string(type) == " 86 " || row.group == std::vector{Ignored::GroupService};
+      EXPECT_EQ(group.unit.ignored.size(), row.group.size() * (again ? 2 : 1)) << row.channel << type;
+      SlaveBench single({1, 101});
+      single.feed(telegram("02 01" + std::string(type) + row.channel), 10 * kMillisecond);
+      EXPECT_TRUE(single.unit.ignored.empty());
+      EXPECT_EQ(single.answers().size(), 1U);
+    }
+  // An acyclic write to the group leaves the answer of a single request alone.
+  SlaveBench bench({1, 101}, {30 * kMillisecond, 0});
+  bench.feed(telegram("02 01 86 31 00 21 16 00 00 00 00"), 10 * kMillisecond);
+  bench.feed(telegram("02 65 86 32 00 20 7E 00 00 00 01"), 4 * kMillisecond);
+  EXPECT_EQ(bench.answers(), std::vector<Bytes>{telegram("1D 01 86 31 00 21 16 00 00 07 D0")});
+}
+
+TEST(SerialSlave, ItsOwnEchoIsNoRequest) {
+  SlaveBench bench({1});
+  bench.slave.on_sent(kSecond);
+  Time at = kSecond - 3 * kMillisecond;
+  for (const uint8_t byte : hex("02 01 01")) {
+    bench.slave.on_character(at + kMillisecond, {at, at + kMillisecond, byte, false, false});
+    at += kMillisecond;
+  }
+  EXPECT_TRUE(bench.unit.rejected.empty());
+  // From its end on it hears again, after a pause.
+  bench.quiet_since = kSecond;
+  bench.feed(telegram("02 01 01 00 06"), kStartPause);
+  EXPECT_EQ(bench.answers().size(), 1U);
+  EXPECT_TRUE(bench.unit.rejected.empty());
+}
+
 }  // namespace
 }  // namespace ipos::tests

@@ -204,5 +204,37 @@ TEST(Telegram, TextForPeople) {
   EXPECT_EQ(decode_serial(hex("02 01 05 00")).error(), SerialError::Gap);
 }
 
+TEST(Telegram, EveryPartHasItsText) {
+  const ParameterTelegram write = parameter_request(Service::Write, 8470, 0, -2);
+  EXPECT_EQ(describe(request(7, 0x04, {6, 5, 4}, write)),
+            "request to 7, PARAM + 3PD cyclic, write 8470: FFFFFFFE (-2), PO 0006 0005 0004");
+  ParameterTelegram handed = write;
+  handed.management |= 0x40;
+  EXPECT_EQ(describe(request(7, 0x82, {6, 5, 4}, handed)),
+            "request to 7, PARAM + 2PD acyclic, write 8470 (handshake 1): FFFFFFFE (-2), PO 0006 0005");
+  EXPECT_EQ(describe(response(7, 0x00, {6, 5, 4}, parameter_response(write, 3))),
+            "response of 7, PARAM + 1PD cyclic, write 8470: 00000003 (3), PI 0006");
+  // A request has not failed, whatever its bit 7 is; a service without a number of its own is unknown.
+  ParameterTelegram odd{0xBF, 0, 1, 0x05050000};
+  EXPECT_EQ(describe(request(7, 6, {}, odd)),
+            "request to 7, PARAM cyclic, unknown service 1: 05050000 (84213760)");
+  EXPECT_EQ(describe(response(7, 6, {}, odd)),
+            "response of 7, PARAM cyclic, unknown service 1: " + describe(return_codes::kWrongManagement));
+  EXPECT_EQ(describe(request(255, 0x81, {6, 5, 4})), "request to 255, 1PD acyclic, PO 0006");
+  EXPECT_EQ(format_text({}), " cyclic");
+}
+
+TEST(Telegram, WhatIsNoTelegram) {
+  const auto error = [](const std::string& text) { return decode_serial(hex(text)).error(); };
+  EXPECT_EQ(error(""), SerialError::Gap);
+  EXPECT_EQ(error("02 01"), SerialError::Gap);
+  EXPECT_EQ(error("03 01 01 00 01 02"), SerialError::Start);
+  EXPECT_EQ(error("02 01 07"), SerialError::Type);
+  EXPECT_EQ(error("02 01 01"), SerialError::Gap);
+  EXPECT_EQ(error("02 01 01 00 01"), SerialError::Gap);
+  EXPECT_EQ(error("02 01 01 00 01 03 00"), SerialError::Gap);
+  EXPECT_EQ(error("02 01 01 00 01 02"), SerialError::BlockCheck);
+}
+
 }  // namespace
 }  // namespace ipos::tests
