@@ -287,6 +287,20 @@ TEST(Drive, FactorySettingTakesItsTime) {
   }
 }
 
+// 2 s (docs/inside/drive.md), and the same again the next time.
+TEST(Drive, FactorySettingTakesTwoSeconds) {
+  for (const char* name : {"md60a", "mc07", "mdxb"}) {
+    Unit unit(name);
+    for (int times = 0; times < 2; ++times) {
+      unit.run_ms(700);
+      EXPECT_TRUE(unit.parameters.execute(kWrite, 8594, 1));
+      int ms = 0;
+      for (; ms < 5000 && unit.state.condition() == UnitCondition::FactorySetting; ++ms) unit.run_ms(1);
+      EXPECT_EQ(ms, 2000) << name;
+    }
+  }
+}
+
 TEST(Drive, OperatingHours) {
   PROVES("PAR-25");
   Unit unit("md60a");
