@@ -429,6 +429,30 @@ TEST(MovidriveLimits, LimitSwitchesActOnAnEnabledDriveOnly) {
       }
 }
 
+// What the stop function P720 has stopped does not turn towards a switch, and its ramp is no emergency stop.
+TEST(MovidriveLimits, LimitSwitchesSayNothingOfAStoppedDrive) {
+  for (const int way : {1, -1}) {
+    Mdx rig;
+    rig.bus_control();
+    rig.set("P603", 14);
+    rig.set("P604", 15);
+    rig.set("P720", 1);
+    rig.set("P721", 300'000);
+    for (const char* name : {"DI04", "DI05"}) rig.input(name, true);
+    rig.po({6, static_cast<uint16_t>(way * 5000), 0});
+    rig.settle();
+    rig.po({6, static_cast<uint16_t>(way * 1000), 0});  // 200 rpm
+    rig.run_ms(10);
+    rig.input(way > 0 ? "DI04" : "DI05", false);
+    rig.run_ms(1);
+    EXPECT_EQ(rig.drive.verdict().command, runtime::Command::Stop);
+    EXPECT_EQ(rig.drive.verdict().reason, Block::StopFunction);
+    rig.po({6, static_cast<uint16_t>(way * 5000), 0});
+    rig.run_ms(2);
+    EXPECT_EQ(rig.drive.verdict().reason, way > 0 ? Block::LimitCw : Block::LimitCcw);
+  }
+}
+
 // More than the torque of P303 = 150 %: friction blocks the motor, a hanging load drags it backwards.
 TEST(MovidriveLimits, SpeedMonitoring) {
   for (const bool dragged : {false, true})
