@@ -385,6 +385,33 @@ TEST(MovlnkToTheOwnUnit, ReadsAndWritesParameters) {
   EXPECT_TRUE(rig.carrier.jobs.empty());
 }
 
+// Service, index and subindex are handed on one by one, with the value that is written.
+TEST(MovlnkToTheOwnUnit, HandsTheWholeRequestOn) {
+  struct Parameters final : ParameterServer {
+    tl::expected<int32_t, ReturnCode> serve(Time now, const ParameterRequest& request) override {
+      times.push_back(now);
+      requests.push_back(request);
+      return 42;
+    }
+    std::vector<ParameterRequest> requests;
+    std::vector<Time> times;
+  } parameters;
+  MovlnkRig rig;
+  MovilinkCommand command(rig.unit, parameters, rig.server, rig.journal, "unit1");
+  for (const int32_t index : {0x2116, 0x1'2116, 0x80'FFFF, 0xFF'0001}) {
+    rig.put(100, kSbus, kOwn, 6, 1, index, 200);
+    rig.set(200, {-9, kBefore});
+    EXPECT_EQ(command.start(index, rig.machine, 1, 100, rig.why).answer, vm::Answer::Done);
+    EXPECT_EQ(rig.h(201), 42);
+    const ParameterRequest& request = parameters.requests.back();
+    EXPECT_EQ(request.service, Service::Read);
+    EXPECT_EQ(request.index, index & 0xFFFF);
+    EXPECT_EQ(request.subindex, index >> 16);
+    EXPECT_EQ(request.value, -9);
+    EXPECT_EQ(parameters.times.back(), index);
+  }
+}
+
 TEST(MovlnkToTheOwnUnit, RefusesWhatIsNoService) {
   struct Row {
     int32_t service, index, result;
