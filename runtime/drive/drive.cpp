@@ -132,11 +132,12 @@ bool Drive::po_data_enabled() const {
   return settings().po_enable == 1 && (settings().setpoint_bus || settings().control_bus);
 }
 
+// Not asked while positioning controls: that looks after the limit switches itself, as a reference travel has to reach
+// them.
 Verdict Drive::verdict_with_setpoint(const Decisions& d) const {
   Verdict verdict = d.controls;
   if (state_.stopped_by_setpoint) verdict.restrict_to(Command::Stop, Block::StopFunction);
-  // Positioning looks after the limit switches itself: a reference travel has to reach them.
-  if (verdict.command != Command::Enable || now_->positioning) return verdict;
+  if (verdict.command != Command::Enable) return verdict;
   if (d.terminals.off(InputFunction::LimitCw) && state_.setpoint.speed > 0)
     verdict.restrict_to(Command::EmergencyStop, Block::LimitCw);
   if (d.terminals.off(InputFunction::LimitCcw) && state_.setpoint.speed < 0)

@@ -1,6 +1,8 @@
 // Settings from the parameter table; what a unit lacks is taken from a neighbour.
 #include "runtime/drive/settings.hpp"
 
+#include <span>
+
 #include "runtime/drive/indices.hpp"
 #include "runtime/drive/process_data.hpp"
 #include "runtime/drive/terminals.hpp"
@@ -114,11 +116,13 @@ Settings SettingsReader::read(const ParameterStore& parameters) const {
       settings.po[1] = static_cast<uint8_t>(PoAssignment::Current);
     settings.pi = kSlavePi;
   }
-  for (uint32_t n = 1; n <= 5; ++n) settings.inputs[n] = function(index::kInputFunction + n);
-  for (uint32_t n = 0; n < 8; ++n) settings.inputs[8 + n] = function(index::kOptionInputFunction + n);
-  settings.outputs[1] = function(index::kOutputFunction);
-  settings.outputs[2] = function(index::kOutputFunction + 1);
-  for (uint32_t n = 0; n < 8; ++n) settings.outputs[8 + n] = function(index::kOptionOutputFunction + n);
+  const auto read_terminals = [&](std::span<uint8_t> terminals, uint32_t first) {
+    for (uint8_t& terminal : terminals) terminal = function(first++);
+  };
+  read_terminals(std::span(settings.inputs).subspan(1, 5), index::kInputFunction + 1);
+  read_terminals(std::span(settings.inputs).last(8), index::kOptionInputFunction);
+  read_terminals(std::span(settings.outputs).subspan(1, 2), index::kOutputFunction);
+  read_terminals(std::span(settings.outputs).last(8), index::kOptionOutputFunction);
   if (is_m07_)
     settings.inputs[kM07FixedInput] = static_cast<uint8_t>(InputFunction::Cw);
   else

@@ -143,6 +143,62 @@ TEST(SetSys, ValuesThatAreParameters) {
   EXPECT_EQ(rig.parameter("P160"), 150'000) << "volatile";
 }
 
+// Towards 0, both ways: a shaft that is dragged shows every figure between.
+TEST(GetSys, SpeedsAreCutToTenthsOfARpm) {
+  ProgramRig rig(
+      "M01 : GETSYS H0 = ACT.SPEED\nGETSYS H1 = SPEED SETPOINT\nGETSYS H2 = ACT.CURRENT\nJMP M01\n");
+  rig.preset("P160", -777'800);
+  rig.drive.set_inputs(kRunning);
+  int32_t least = 0;
+  for (int ms = 0; ms < 2000; ++ms) {
+    rig.tick(8);
+    least = std::min(least, rig.h(0));
+    EXPECT_LE(std::abs(int64_t{rig.h(0)} * 100), std::abs(int64_t{rig.drive.axis().speed}));
+    EXPECT_GT(std::abs(int64_t{rig.h(0)} * 100) + 100, std::abs(int64_t{rig.drive.axis().speed}));
+    EXPECT_GE(rig.drive.axis().output_current, rig.h(2) * 100);
+  }
+  EXPECT_EQ(rig.h(1), -7'778);
+  EXPECT_EQ(least, -7'778);
+}
+
+// What a parameter cannot hold is refused, also where the number times its factor does not fit into 32 bits.
+TEST(SetSys, GreatNumbersAreRefused) {
+  // Of these 42949673 x 100 is 4 and -42949673 x 100 is -4 behind 32 bits.
+  for (const int32_t given : {55'001, -55'001, 42'949'673, -42'949'673, INT32_MAX, INT32_MIN}) {
+    ProgramRig rig("SETSYS FIXED SETPOINT 11 = H0\nEND\n");
+    rig.h(0) = given;
+    rig.run();
+    EXPECT_EQ(rig.machine.fault().number, 10) << given;
+    EXPECT_EQ(rig.parameter("P160"), 150'000) << given;
+    EXPECT_NE(rig.told().find("P160"), std::string::npos) << rig.told();
+  }
+  ProgramRig rig("SETSYS MAX.CURRENT = H0\nEND\n");
+  rig.h(0) = 1'009;
+  rig.run();
+  EXPECT_EQ(rig.parameter("P303"), 100'000) << "steps of 1 %, toward 0";
+}
+
+// The shape P916 is locked only while it is not linear, another one is wanted, and the drive is enabled.
+TEST(SetSys, TheRampTypeIsLockedWhileACurvedOneMoves) {
+  for (const int32_t before : {0, 1, 2})
+    for (const int32_t wanted : {0, 1, 2})
+      for (const bool enabled : {false, true}) {
+        ProgramRig rig("SETSYS RAMP TYPE = H0\nSET H1 = 1\nM01 : JMP M01\n");
+        rig.preset("P916", before);
+        rig.h(0) = wanted;
+        if (enabled) rig.drive.set_inputs(kRunning);
+        rig.tick(4);
+        rig.tick(4);
+        const bool locked = enabled && before != 0 && wanted != before;
+        EXPECT_EQ(rig.parameter("P916"), locked ? before : wanted) << before << wanted << enabled;
+        EXPECT_EQ(rig.drive.fault(), locked ? 99 : 0) << before << wanted << enabled;
+        EXPECT_EQ(rig.h(1), 1) << "the program goes on";
+        if (locked) {
+          EXPECT_NE(rig.told().find("F99 caused by task 1"), std::string::npos) << rig.told();
+        }
+      }
+}
+
 TEST(SetSys, RefusedValuesAreF10WithAReason) {
   ProgramRig rig("SETSYS MAX.CURRENT = H0\nEND\n");
   rig.h(0) = 1501;  // 150.1 %, P303 ends at 150 %; rounded to a step of P303 it would pass

@@ -43,11 +43,54 @@ TEST(FaultReaction, FixedAndUnknownOnesAreF10) {
   }
 }
 
+// Where the list of the unit has no parameter for it, or the parameter not this response, the program stops with F10.
+TEST(FaultReaction, WhatTheUnitCannotDoIsF10) {
+  struct Row {
+    const char *unit, *command, *told;
+  };
+  for (const Row& row :
+       {Row{"mc07", "SETFR 26 = IMMEDIATE STOP/WARNING", "P830"}, Row{"mc07", "SETFR 31 = NO RESPONSE", ""},
+        Row{"mdxb", "SETFR 26 = RAPID STOP/WARNING", nullptr}}) {
+    ProgramRig rig(std::string(row.command) + "\nSET H0 = 1\nEND\n", row.unit);
+    rig.run();
+    EXPECT_EQ(rig.machine.fault().number, row.told == nullptr ? 0 : 10) << row.command;
+    EXPECT_EQ(rig.h(0), row.told == nullptr ? 1 : 0);
+    if (row.told != nullptr && *row.told != '\0') {
+      EXPECT_NE(rig.told().find(row.told), std::string::npos) << rig.told();
+    } else {
+      EXPECT_EQ(rig.told(), "");
+    }
+  }
+}
+
+// H490 has the time (IPOSplus p. 34); 0 is one, a negative number is none.
+TEST(WatchdogCommands, ByConstantAndByVariable) {
+  for (const auto& [text, time, fault] :
+       {std::tuple{"WDON 10\nEND\n", 10, 0}, {"WDON 0\nEND\n", 0, 0}, {"WDON H7\nEND\n", 25, 0}}) {
+    ProgramRig rig(text);
+    rig.h(7) = 25;
+    rig.h("WdogTimer") = 3;
+    rig.run();
+    EXPECT_EQ(rig.machine.fault().number, fault) << text;
+    EXPECT_EQ(rig.h("WdogTimer"), time) << text;
+    EXPECT_TRUE(rig.timers.watchdog_runs());
+  }
+  ProgramRig negative("WDON H7\nEND\n");
+  negative.h(7) = -1;
+  negative.run();
+  EXPECT_EQ(negative.machine.fault().number, 10);
+  EXPECT_FALSE(negative.timers.watchdog_runs());
+  ProgramRig off("WDON 10\nWDOFF\nEND\n");
+  off.run();
+  EXPECT_FALSE(off.timers.watchdog_runs());
+}
+
 TEST(Reset, TakesTheNumberAndResets) {
   ProgramRig rig("RESET H0\nRESET H1\nEND\n");
   rig.h(1) = 5;
   rig.drive.raise_fault(39);
   rig.run();
+  EXPECT_EQ(rig.drive.resets(), 1U) << "only while there is something to reset";
   EXPECT_EQ(rig.h(0), 39);
   EXPECT_EQ(rig.h(1), 0);
   EXPECT_EQ(rig.drive.fault(), 0);

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
+#include <utility>
 
 #include "tests/harness/proves.hpp"
 #include "tests/runtime/drive/drive_rig.hpp"
@@ -287,6 +289,20 @@ TEST(Drive, FactorySettingTakesItsTime) {
   }
 }
 
+// 2 s (docs/inside/drive.md), and the same again the next time.
+TEST(Drive, FactorySettingTakesTwoSeconds) {
+  for (const char* name : {"md60a", "mc07", "mdxb"}) {
+    Unit unit(name);
+    for (int times = 0; times < 2; ++times) {
+      unit.run_ms(700);
+      EXPECT_TRUE(unit.parameters.execute(kWrite, 8594, 1));
+      int ms = 0;
+      for (; ms < 5000 && unit.state.condition() == UnitCondition::FactorySetting; ++ms) unit.run_ms(1);
+      EXPECT_EQ(ms, 2000) << name;
+    }
+  }
+}
+
 TEST(Drive, OperatingHours) {
   PROVES("PAR-25");
   Unit unit("md60a");
@@ -294,6 +310,54 @@ TEST(Drive, OperatingHours) {
   EXPECT_EQ(unit.parameters.value(8328), 120);
   EXPECT_EQ(stdlib::parameter_text(*unit.parameters.table().find("P015"), 120), "2.000 h");
   EXPECT_EQ(stdlib::parameter_text(*unit.parameters.table().find("P017"), 36), "1.000 kWh");
+}
+
+// A digit of P017 is 1/36 kWh, 100 000 Ws: it counts in the millisecond behind the one in which it is full. With a light
+// load no Ws is left out on the way.
+TEST(Drive, EnergyCountsWholeDigits) {
+  MachineData machine = tests::light_machine();
+  machine.load_torque = 20'000;
+  machine.rated_power = 3'000;
+  tests::DriveRig rig("md60a", {}, machine);
+  rig.enable_terminals();
+  rig.ai1(10'000);
+  const uint16_t shown = rig.index("P017");
+  int64_t drawn = 0;
+  int digits = 0, most = 0;
+  for (int ms = 0; digits < 2 && ms < 1'000'000; ++ms) {
+    rig.run_ms(1);
+    ASSERT_EQ(rig.parameters.value(shown), drawn / 100'000) << drawn << " Ws";
+    const int64_t before = std::exchange(drawn, rig.drive.axis().energy);
+    most = std::max(most, static_cast<int>(drawn - before));
+    digits += drawn / 100'000 != before / 100'000;
+  }
+  EXPECT_EQ(digits, 2);
+  EXPECT_EQ(most, 1);
+}
+
+// Positioning is for the modes of P700 with IPOS (1053 1610 p. 80) and the first set of parameters.
+TEST(Drive, PositionsInModesWithIpos) {
+  for (const char* name : {"md60a", "mdxb", "mc07"}) {
+    tests::DriveRig rig(name);
+    const auto& modes = rig.parameters.table().find("P700")->texts;
+    ASSERT_FALSE(modes.empty());
+    bool positions = false;
+    for (const auto& mode : modes) {
+      if (!rig.parameters.preset(rig.index("P700"), mode.value)) continue;
+      const bool wanted = mode.text.find("IPOS") != std::string_view::npos;
+      EXPECT_EQ(rig.drive.can_position(), wanted) << name << ": " << mode.text;
+      if (!wanted) continue;
+      positions = true;
+      rig.set("P600", 7);  // DI01: switches to the second set
+      rig.input("DI01", true);
+      rig.run_ms(2);
+      EXPECT_FALSE(rig.drive.can_position()) << name << ": " << mode.text;
+      rig.input("DI01", false);
+      rig.run_ms(2);
+      EXPECT_TRUE(rig.drive.can_position());
+    }
+    EXPECT_EQ(positions, name != std::string_view("mc07"));
+  }
 }
 
 TEST(Drive, LimitSwitches) {

@@ -394,6 +394,65 @@ TEST(MovidriveLimits, LimitSwitchesStopTheirDirectionOnly) {
   EXPECT_EQ(rig.drive.fault(), 27) << "both at once";
 }
 
+// A limit switch is an emergency stop of a drive that is enabled and turns towards it. What already stops the drive
+// stays what it is.
+TEST(MovidriveLimits, LimitSwitchesActOnAnEnabledDriveOnly) {
+  struct Row {
+    const char* input;  // taken away
+    uint16_t control;
+    Block reason;
+  };
+  const Row rows[] = {{"DI03", 6, Block::RapidStopTerminal}, {"DI01", 6, Block::NoDirection},
+                      {"DI00", 6, Block::TerminalInhibit},   {"DI17", 6, Block::None},  // nothing
+                      {"DI17", 4, Block::BusRapidStop},      {"DI17", 2, Block::BusStop},
+                      {"DI17", 14, Block::BusHold}};
+  for (const Row& row : rows)
+    for (const int way : {1, -1})
+      for (const int reached : {1, -1, 0}) {
+        Mdx rig;
+        rig.bus_control();
+        rig.set("P603", 14);
+        rig.set("P604", 15);
+        for (const char* name : {"DI04", "DI05", "DI17"}) rig.input(name, true);
+        rig.po({6, static_cast<uint16_t>(way * 5000), 0});
+        rig.run_ms(100);
+        if (reached != 0) rig.input(reached > 0 ? "DI04" : "DI05", false);
+        rig.input(row.input, false);
+        rig.po({row.control, static_cast<uint16_t>(way * 5000), 0});
+        rig.run_ms(1);
+        const bool stops = row.reason == Block::None && reached == way;
+        EXPECT_EQ(rig.drive.verdict().reason,
+                  stops ? (way > 0 ? Block::LimitCw : Block::LimitCcw) : row.reason)
+            << row.input << ' ' << row.control << ", way " << way << ", reached " << reached;
+        EXPECT_EQ(rig.drive.condition() == UnitCondition::LimitSwitch, stops);
+        EXPECT_EQ(rig.drive.fault(), 0);
+      }
+}
+
+// What the stop function P720 has stopped does not turn towards a switch, and its ramp is no emergency stop.
+TEST(MovidriveLimits, LimitSwitchesSayNothingOfAStoppedDrive) {
+  for (const int way : {1, -1}) {
+    Mdx rig;
+    rig.bus_control();
+    rig.set("P603", 14);
+    rig.set("P604", 15);
+    rig.set("P720", 1);
+    rig.set("P721", 300'000);
+    for (const char* name : {"DI04", "DI05"}) rig.input(name, true);
+    rig.po({6, static_cast<uint16_t>(way * 5000), 0});
+    rig.settle();
+    rig.po({6, static_cast<uint16_t>(way * 1000), 0});  // 200 rpm
+    rig.run_ms(10);
+    rig.input(way > 0 ? "DI04" : "DI05", false);
+    rig.run_ms(1);
+    EXPECT_EQ(rig.drive.verdict().command, runtime::Command::Stop);
+    EXPECT_EQ(rig.drive.verdict().reason, Block::StopFunction);
+    rig.po({6, static_cast<uint16_t>(way * 5000), 0});
+    rig.run_ms(2);
+    EXPECT_EQ(rig.drive.verdict().reason, way > 0 ? Block::LimitCw : Block::LimitCcw);
+  }
+}
+
 // More than the torque of P303 = 150 %: friction blocks the motor, a hanging load drags it backwards.
 TEST(MovidriveLimits, SpeedMonitoring) {
   for (const bool dragged : {false, true})

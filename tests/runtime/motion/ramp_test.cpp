@@ -127,6 +127,22 @@ TEST(LinearRamp, AnotherTimeBeginsWithoutARest) {
       }
 }
 
+// After n steps of reference / time the speed is the whole part of n times that, to the last of its 32 places: also in
+// the step in which nothing is left undivided.
+TEST(LinearRamp, StepsAreExactToTheLastPlace) {
+  __extension__ using Wide = __int128;
+  for (const int32_t reference : {kMovidrive, kMovitrac, 1})
+    for (const uint32_t ms : {3U, 7U, 48U, 333U, 1'000U, 1'777U, 2'009U, 1'999'999U}) {
+      Ramp ramp(reference);
+      for (int n = 1; n <= 3'000; ++n) {
+        const auto want = static_cast<FineSpeed>(Wide{reference} * kFine * n / ms);
+        if (want > kTopFine / 2) break;
+        ramp.step(kTopFine, all(ms));
+        ASSERT_EQ(ramp.output(), want) << reference << " in " << ms << " ms, step " << n;
+      }
+    }
+}
+
 TEST(LinearRamp, NoDriftOn2000Seconds) {
   Ramp ramp(kMovidrive);
   const RampTimes times = all(1'999'999);

@@ -53,6 +53,23 @@ TEST(SPattern, SpeedAfterEachMillisecond) {
   }
 }
 
+// The same to the last of the 32 places: the levels gone through are an exact share of the reference.
+TEST(SPattern, StepsAreExactToTheLastPlace) {
+  __extension__ using Wide = __int128;
+  for (const int grade : {1, 2, 3})
+    for (const uint32_t ms : {8U, 30U, 96U, 333U, 1'000U, 2'009U}) {
+      const int levels = rounding(ms, grade);
+      Ramp ramp(kReference);
+      Wide gone = 0;
+      for (int n = 1; n <= 2'000 && ramp.output() < kTopFine / 2; ++n) {
+        gone += std::min(n, levels);
+        ramp.step(kTopFine, pattern(ms, grade));
+        const Wide want = Wide{kReference} * kFine * gone / (int64_t{ms} * levels);
+        ASSERT_EQ(ramp.output(), static_cast<FineSpeed>(want)) << grade << ", " << ms << " ms, step " << n;
+      }
+    }
+}
+
 TEST(SPattern, DurationAndDistance) {
   for (const int grade : {1, 2, 3})
     for (const uint32_t ms : {8U, 100U, 333U, 1'000U, 2'000U, 9'999U, 100'000U, 2'000'000U})

@@ -229,13 +229,27 @@ TEST_F(Slots, TheLongestPayload) {
   EXPECT_EQ(says(kRoom).find("wrong length in its header"), std::string::npos);
 }
 
+// Words of a program are 4 bytes and values are 6: contents of all odd lengths. One byte more than the slot has room
+// for is too much, one byte less is not.
 TEST_F(Slots, TooMuchIsRefused) {
-  NvContent content;
-  content.program = NvProgram{0, std::vector<uint32_t>(kSlotStride / 4)};
-  SlotStore store(medium_, kUnit);
-  store.load();
-  EXPECT_EQ(store.save(content), "the content is longer than a slot");
-  EXPECT_TRUE(state_->writes.empty());
+  constexpr size_t kRoom = kSlotStride - 16 - 4;
+  for (const size_t length : {kRoom - 1, kRoom + 1, kRoom + 3, kSlotStride + 17}) {
+    NvContent content;
+    content.program = NvProgram{0, {}};
+    if ((length - encode(content).size()) % 4 != 0) content.values.emplace_back(1, 2);
+    content.program->words.resize((length - encode(content).size()) / 4);
+    ASSERT_EQ(encode(content).size(), length);
+    state_->writes.clear();
+    SlotStore store(medium_, kUnit);
+    store.load();
+    if (length < kRoom) {
+      EXPECT_EQ(store.save(content), std::nullopt);
+      EXPECT_EQ(load().content, content);
+    } else {
+      EXPECT_EQ(store.save(content), "the content is longer than a slot");
+      EXPECT_TRUE(state_->writes.empty());
+    }
+  }
 }
 
 // A payload says how much there is of everything: one less or more than there is makes it none.
