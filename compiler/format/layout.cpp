@@ -227,12 +227,14 @@ void Layout::directive(const Piece& piece) {
   start_line(0, std::string(piece.text), piece, state_.start);
   lines_.back().verbatim = true;
   const std::string_view word = directive_word(piece.text);
-  if (word == "if" || word == "ifdef" || word == "ifndef")
+  if (word == "if" || word == "ifdef" || word == "ifndef") {
     conditions_.push_back({state_, last_});
-  else if ((word == "elif" || word == "else") && !conditions_.empty())
-    state_ = conditions_.back().state, last_ = conditions_.back().last;
-  else if (word == "endif" && !conditions_.empty())
+  } else if ((word == "elif" || word == "else") && !conditions_.empty()) {
+    state_ = conditions_.back().state;
+    last_ = conditions_.back().last;
+  } else if (word == "endif" && !conditions_.empty()) {
     conditions_.pop_back();
+  }
 }
 
 }  // namespace ipos::compiler
