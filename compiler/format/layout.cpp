@@ -113,8 +113,9 @@ bool Layout::token(const Piece& piece) {
     statement_start(piece);
     return true;
   }
-  // A ; behind the brace of a function or of a structure stays there.
-  place(piece, fresh(piece) && last_.kind != TokenKind::RightBrace, state_.indent + 1);
+  // The name behind the brace of a structure stays there, but for one behind a preprocessor line.
+  const bool behind_brace = last_.kind == TokenKind::RightBrace && !lines_.back().verbatim;
+  place(piece, fresh(piece) && !behind_brace, state_.indent + 1);
   behind(piece);
   return true;
 }
@@ -226,12 +227,14 @@ void Layout::directive(const Piece& piece) {
   start_line(0, std::string(piece.text), piece, state_.start);
   lines_.back().verbatim = true;
   const std::string_view word = directive_word(piece.text);
-  if (word == "if" || word == "ifdef" || word == "ifndef")
-    conditions_.push_back(state_);
-  else if ((word == "elif" || word == "else") && !conditions_.empty())
-    state_ = conditions_.back();
-  else if (word == "endif" && !conditions_.empty())
+  if (word == "if" || word == "ifdef" || word == "ifndef") {
+    conditions_.push_back({state_, last_});
+  } else if ((word == "elif" || word == "else") && !conditions_.empty()) {
+    state_ = conditions_.back().state;
+    last_ = conditions_.back().last;
+  } else if (word == "endif" && !conditions_.empty()) {
     conditions_.pop_back();
+  }
 }
 
 }  // namespace ipos::compiler

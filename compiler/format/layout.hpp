@@ -72,8 +72,13 @@ class Layout {
   std::vector<const Piece*> comments_;  // not placed yet
   std::vector<Line> lines_;
   State state_;
-  std::vector<State> conditions_;  // at each open #if
   Last last_;
+  // At each open #if.
+  struct Condition {
+    State state;
+    Last last;
+  };
+  std::vector<Condition> conditions_;
 };
 
 }  // namespace ipos::compiler

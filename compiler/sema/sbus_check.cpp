@@ -87,7 +87,7 @@ class SbusChecker {
 
   void check_identifier(const ConstantStore& store) {
     int32_t value = store.value;
-    if (context_.unit.generation == stdlib::Generation::B && value >= 0) value &= ~kSbus2;
+    if (context_.unit.generation == stdlib::Generation::B) value &= ~kSbus2;  // a negative one stays negative
     std::string reason;
     if (value < 0 || value > 2047) {
       reason = "does not exist; identifiers are 0 to 2047";

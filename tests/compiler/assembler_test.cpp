@@ -3,31 +3,12 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
-#include "compiler/asm/assembler.hpp"
 #include "compiler/asm/disassembler.hpp"
-#include "compiler/diag/render.hpp"
 #include "stdlib/system_variables.hpp"
+#include "tests/compiler/assembler_run.hpp"
 
 namespace ipos::compiler::test {
 namespace {
-
-struct Assembled {
-  SourceMap sources;
-  Diagnostics diagnostics;
-  std::optional<vm::Image> image;
-};
-
-std::unique_ptr<Assembled> assemble_text(const std::string& text) {
-  auto out = std::make_unique<Assembled>();
-  out->image = assemble(out->sources.add("test.ipa", "test.ipa", text), out->diagnostics);
-  return out;
-}
-
-std::vector<uint32_t> code(const std::string& text) {
-  const auto result = assemble_text(text);
-  EXPECT_TRUE(result->image) << text << render_text(result->diagnostics.all(), result->sources, false);
-  return result->image ? result->image->code : std::vector<uint32_t>{};
-}
 
 std::vector<uint32_t> encoded(std::vector<vm::Instruction> commands) {
   std::vector<uint32_t> out;

@@ -39,4 +39,22 @@ inline std::vector<std::string> main_commands(const std::string& statements) {
   return commands(compile_text("long a, b, c, d;\nlong v[4];\nlong p;\nmain() {\n" + statements + "\n}\n"));
 }
 
+// The codes of all messages.
+inline std::vector<std::string> codes(const std::string& source, const char* unit = nullptr) {
+  std::vector<std::string> out;
+  const Compilation c = compile_text(source, unit);
+  for (const Diagnostic& one : c.diagnostics.all()) out.emplace_back(info(one.diag).code);
+  return out;
+}
+
+// The same as "LINE CODE TEXT", for programs with a case in each line.
+inline std::vector<std::string> told_by_line(const std::string& source, const char* unit = nullptr) {
+  std::vector<std::string> out;
+  const Compilation c = compile_text(source, unit);
+  for (const Diagnostic& one : c.diagnostics.all())
+    out.push_back(std::to_string(c.sources->position(one.span.begin).line) + " " +
+                  std::string(info(one.diag).code) + " " + one.text);
+  return out;
+}
+
 }  // namespace ipos::compiler::test

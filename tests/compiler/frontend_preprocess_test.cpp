@@ -1,6 +1,8 @@
 // Macros, conditions, includes, #declare and #pragma.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/compiler/frontend_run.hpp"
 
 namespace ipos::tests {
@@ -165,6 +167,139 @@ TEST(FrontendIncludes, DepthIsLimited) {
 
 TEST(FrontendIncludes, TwiceIsFine) {
   EXPECT_EQ(FrontendRun("#include \"a.h\"\n#include \"a.h\"", {{"a.h", "x"}}).words(), "x x");
+}
+
+// The first note of the first message.
+std::string hint(const FrontendRun::Files& folders, compiler::PreprocessOptions options,
+                 const std::string& source) {
+  options.list_files = [folders](const std::string& folder) {
+    const auto found = folders.find(folder);
+    return found == folders.end() ? std::vector<std::string>{} : std::vector<std::string>{found->second};
+  };
+  FrontendRun run(source, {}, std::move(options));
+  run.words();
+  return run.diagnostics.all().empty() ? "" : run.diagnostics.all()[0].notes.at(0).text;
+}
+
+TEST(FrontendIncludes, NotFoundNamesWhatIsSimilar) {
+  const stdlib::EmbeddedFile built_in[] = {{"const.h", "constants"}, {"io.h", "terminals"}};
+  compiler::PreprocessOptions options;
+  options.headers = built_in;
+  options.include_dirs = {"one"};
+  EXPECT_EQ(hint({{"", "Own.h"}}, options, "#include \"own.h\""), "did you mean 'Own.h'?");
+  EXPECT_EQ(hint({{"one/", "OWN.H"}}, options, "#include \"own.h\""), "did you mean 'OWN.H'?");
+  EXPECT_EQ(hint({{"one/lib/", "OWN.H"}}, options, "#include \"lib\\own.h\""), "did you mean 'lib/OWN.H'?");
+  EXPECT_EQ(hint({{"", "other.h"}}, options, "#include \"own.h\""),
+            "searched: the current directory, one/, the built-in headers");
+  EXPECT_EQ(hint({}, options, "#include <cnst.h>"), "did you mean 'const.h'?");
+  EXPECT_EQ(hint({}, options, "#include <const>"), "did you mean 'const.h'?");
+  EXPECT_EQ(hint({}, options, "#include </abs/own.h>"),
+            "searched: the current directory, the built-in headers");
+}
+
+TEST(FrontendIncludes, PathsOfBothWorlds) {
+  compiler::PreprocessOptions options;
+  options.include_dirs = {"dir", "", "two/"};
+  const auto read = [&](const std::string& name, const std::string& path) {
+    return FrontendRun("#include <" + name + ">", {{path, "found"}}, options).words();
+  };
+  EXPECT_EQ(read("C:/x.h", "C:/x.h"), "found");
+  EXPECT_EQ(read("C:\\x.h", "C:/x.h"), "found");
+  EXPECT_EQ(read("C:/x.h", "dir/C:/x.h"), "");
+  EXPECT_EQ(read("C:x.h", "dir/C:x.h"), "found");
+  EXPECT_EQ(read("C/:x.h", "dir/C/:x.h"), "found");
+  EXPECT_EQ(read("a/b.h", "dir/a/b.h"), "found");
+  EXPECT_EQ(read("x.h", "x.h"), "found");
+  EXPECT_EQ(read("x.h", "two/x.h"), "found");
+  EXPECT_EQ(read("x.h", "two//x.h"), "");
+}
+
+TEST(FrontendIncludes, TextBehindTheNameIsTold) {
+  FrontendRun run("#include <a.h> b\n#include \"a.h\" // nothing\nc", {{"a.h", "x"}});
+  EXPECT_EQ(run.words(), "x x c");
+  EXPECT_EQ(run.messages(), Messages{"W0123 1:16"});
+}
+
+TEST(FrontendMacros, RecordForEditors) {
+  FrontendRun run(
+      "#define A 1 + B\n#define B 2\n#ifdef A\nA\n#endif\n#undef B\n#if defined(A) && defined "
+      "B\n#endif\n#include \"a.h\"\nB",
+      {{"a.h", "#ifndef A\n#endif\n"}});
+  const compiler::PreprocessedText text =
+      compiler::preprocess(run.map, *run.main, run.options, run.diagnostics);
+  EXPECT_TRUE(text.complete);
+  const auto place = [&](compiler::Location at) {
+    at = run.map.spelling(at);
+    const compiler::Position found = run.map.position(at);
+    return (found.file == run.main ? "" : found.file->name + ":") + std::to_string(found.line) + ":" +
+           std::to_string(found.column);
+  };
+  std::vector<std::string> definitions;
+  for (const auto& one : text.record.definitions)
+    definitions.push_back(place(one.name.begin) + " " + std::to_string(one.body.size()));
+  EXPECT_EQ(definitions, (std::vector<std::string>{"1:9 3", "2:9 1"}));
+  std::vector<std::string> includes;
+  for (const auto& one : text.record.includes)
+    includes.push_back(place(one.header.begin) + " " + one.file->name);
+  EXPECT_EQ(includes, std::vector<std::string>{"9:10 a.h"});
+  // A is asked for in lines 3 and 7 and in the header, and replaced in line 4, with it the B of its text; B is
+  // taken back in line 6.
+  std::vector<std::string> asked;
+  for (const auto& one : text.record.uses)
+    asked.push_back(place(one.name.begin) + " " + place(one.definition.begin));
+  std::sort(asked.begin(), asked.end());
+  EXPECT_EQ(std::count(asked.begin(), asked.end(), "3:8 1:9"), 1);
+  EXPECT_EQ(std::count(asked.begin(), asked.end(), "4:1 1:9"), 1);
+  EXPECT_EQ(std::count(asked.begin(), asked.end(), "1:15 2:9"), 1);
+  EXPECT_EQ(std::count(asked.begin(), asked.end(), "6:8 2:9"), 1);
+  EXPECT_EQ(std::count(asked.begin(), asked.end(), "7:13 1:9"), 1);
+  EXPECT_EQ(std::count(asked.begin(), asked.end(), "a.h:1:9 1:9"), 1);
+  EXPECT_EQ(asked.size(), 6U) << "B is none any more";
+}
+
+TEST(FrontendMacros, TokensKnowWhereTheyStand) {
+  FrontendRun run("#define A (x)\nA b\n  c A\n");
+  const auto tokens = compiler::preprocess(run.map, *run.main, run.options, run.diagnostics).tokens;
+  std::string starts;
+  for (const compiler::Token& token : tokens)
+    starts += std::string(token.text) + (token.line_start ? "! " : " ");
+  EXPECT_EQ(starts, "(! x ) b c! ( x ) ! ");
+}
+
+TEST(FrontendLimits, OfTokensCountLineEndsAndTheEnd) {
+  const auto said = [](const std::string& source, size_t most) {
+    compiler::PreprocessOptions options;
+    options.max_tokens = most;
+    FrontendRun run(source, {}, options);
+    const Messages found = run.parse().messages();
+    return found.empty() ? "" : run.diagnostics.all()[0].text;
+  };
+  EXPECT_EQ(said("long a;", 4), "");
+  EXPECT_EQ(said("long a;", 3), "the program is too large: more than 3 tokens");
+  EXPECT_EQ(said("long\na;\n", 6), "");
+  EXPECT_EQ(said("long\na;\n", 5), "the program is too large: more than 5 tokens");
+  // Six for the #define with its line end, then A and its three, `b`, `;` and the end.
+  EXPECT_EQ(said("#define A long a,\nA b;", 7 + 1 + 3 + 3), "");
+  EXPECT_EQ(said("#define A long a,\nA b;", 13), "the program is too large: more than 13 tokens");
+}
+
+TEST(FrontendLimits, OfBytesCountAllFiles) {
+  const std::string large((64U << 20U) - 20, ' ');
+  FrontendRun one(large + std::string(21, ' '));
+  EXPECT_EQ(one.parse().messages(), Messages{"E0127 1:1"});
+  EXPECT_EQ(one.diagnostics.all()[0].text, "the program is too large: more than 64 MB of text");
+  FrontendRun two("#include \"large.h\"   ", {{"large.h", large}});
+  EXPECT_EQ(two.parse().messages(), Messages{"E0127 1:10"});
+}
+
+TEST(FrontendText, InSixteenBitsIsRefused) {
+  for (const char* mark : {"\xFF\xFE", "\xFE\xFF"}) {
+    FrontendRun run(mark + std::string("long a"));
+    EXPECT_EQ(run.parse().messages(), Messages{"E0103 1:1"});
+    FrontendRun inner("#include \"a.h\"\nnonsense (", {{"a.h", mark + std::string("x")}});
+    EXPECT_EQ(inner.parse().messages(), Messages{"E0103 a.h:1:1"});
+  }
+  EXPECT_EQ(FrontendRun("\xFF\xFF").parse().messages()[0], "E0105 1:1");
 }
 
 TEST(FrontendDirectives, DeclareAndPragmaReachTheTree) {

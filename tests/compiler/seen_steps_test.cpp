@@ -111,6 +111,102 @@ TEST(SeenSteps, ByWhatTheUnitLooksAt) {
             "x: a variable interrupt watches it\n");
 }
 
+TEST(SeenSteps, OnlyBehindWhatStartsSomething) {
+  const std::string head =
+      "#pragma globals 300 399\nSCTRCYCL o; SCREC r; GSCAM cam; GSCAM_EXT ext; VARINT i; long x, a, b; "
+      "main() { b = r.Len + "
+      "cam.BitValue + ext.CamState + o.Len + i.Mode; ";
+  const std::string rest = " _SetTask2(T2_START, T); } T() { a = x; f(); } f() { b = 1; }";
+  for (const char* other :
+       {"_Wait(1);", "_BitSet(b, 1);", "_Copy(b, a, 1);", "_GetSys(b, GS_ACTCUR);", "_SetSys(SS_N11, b);",
+        "_GoAbs(GO_NOWAIT, 5);", "_SBusCommDef(SCD_TRCYCL, o);", "_SBusCommDef(SCD_REC, r);",
+        "_SetTask2(T2_STOP, f);", "_Memorize(MEM_NOP);", "b++;"})
+    EXPECT_EQ(seen(head + other + kSteps + rest), "") << other;
+  for (const char* start :
+       {"_SBusCommOn();", "_GetSys(cam, GS_CAM);", "_GetSys(ext, GS_CAM);", "_SetInterrupt(SI_TIMER0, f);",
+        "_SetVarInterrupt(i, f);", "if (b) _SetTask2(T2_START, T);", "H0 = (_SBusCommOn(), 1);",
+        "while (a) { { _SBusCommOn(); } }"})
+    EXPECT_NE(seen(head + start + kSteps + rest).find("x: 'T' uses it\n"), std::string::npos) << start;
+  EXPECT_EQ(seen("long x, a; main() { set(); _SetTask2(T2_START, T); while (1) set(); } set() { " +
+                 std::string(kSteps) + " } T() { a = x; }"),
+            "x: 'T' uses it\n")
+      << "called again later";
+  EXPECT_NE(seen("long x, a; main() { " + std::string(kSteps) +
+                 " _SetTask2(T2_START, T); if (a) main(); } T() { a = x; }")
+                .find("x: 'T' uses it\n"),
+            std::string::npos)
+      << "main runs again";
+}
+
+TEST(SeenSteps, ByEveryKindOfRoot) {
+  const std::string s = "} S() { " + std::string(kSteps) + " } T() { a = x; }";
+  const auto both = [&](const char* first, const char* second) {
+    return seen("VARINT i, k; long x, a; main() { i.IntNum = k.IntNum; " + std::string(first) + second + s);
+  };
+  const char* const starts[] = {"_SetTask2(T2_START, ", "_SetTask(T2_START, ", "_SetInterrupt(SI_TIMER0, ",
+                                "_SetInterrupt(SI_ERROR, "};
+  for (const char* one : starts)
+    for (const char* other : starts) {
+      const std::string first = one + std::string("S);");
+      const std::string second = other + std::string("T);");
+      EXPECT_EQ(both(first.c_str(), second.c_str()), one == other ? "" : "x: 'T' uses it\n") << one << other;
+    }
+  EXPECT_EQ(both("_SetVarInterrupt(i, S);", "_SetVarInterrupt(k, T);"), "x: 'T' uses it\n");
+  EXPECT_EQ(both("_SetVarInterrupt(i, S);", "_SetVarInterrupt(i, T);"), "x: 'T' uses it\n")
+      << "each routine may be of another";
+  EXPECT_EQ(both("_SystemCall(1, S);", "_InputCall(1, 3, T);"), "") << "called, not started";
+}
+
+// More roots than are told apart: those beyond count as several, the ones before are still themselves.
+TEST(SeenSteps, ByMoreRootsThanAreCounted) {
+  const auto with = [](int writer, int reader) {
+    std::string text = "VARINT i; long x, a, b; main() { ";
+    for (int n = 1; n <= 70; ++n) text += "_SetVarInterrupt(i, f" + std::to_string(n) + ");";
+    text += "}";
+    for (int n = 1; n <= 70; ++n)
+      text += " f" + std::to_string(n) + "() { " + (n == writer ? kSteps : "") +
+              (n == reader ? "b = x;" : "") + " }";
+    return seen(text);
+  };
+  EXPECT_EQ(with(1, 1), "");
+  EXPECT_EQ(with(62, 62), "");
+  EXPECT_EQ(with(70, 1), "x: 'f1' uses it\n");
+  EXPECT_EQ(with(69, 70), "x: 'f70' uses it\n");
+}
+
+TEST(SeenSteps, ByMembersThatHoldNumbers) {
+  const auto object = [](const std::string& declared, const std::string& set, const std::string& call) {
+    return seen("long w, x, y, z, a; " + declared + " main() { f(); a = w + y + z; " + set + " " + call +
+                " while (1) { " + kSteps + " y = a * 2; z = a * 3; } } f() { a = 0; }");
+  };
+  const std::string receive = "_SBusCommDef(SCD_REC, o); _SBusCommOn();";
+  EXPECT_EQ(object("SCREC o;", "o.DPointer = numof(x);", receive),
+            "x: the SBus receives it\ny: the SBus receives it\n");
+  EXPECT_EQ(object("SCREC o;", "o.DPointer = numof(z);", receive), "z: the SBus receives it\n");
+  EXPECT_EQ(object("SCREC o;", "o.DPointer = numof(w); o.DPointer = numof(y);", receive),
+            "x: the SBus receives it\ny: the SBus receives it\nz: the SBus receives it\n")
+      << "any of the numbers it gets";
+  // A number that is computed, or never set: whatever has given its number to somebody.
+  const std::string anywhere = ": the SBus receives it\n";
+  EXPECT_EQ(object("SCREC o; long p;", "p = numof(y); o.DPointer = p + 1;", receive), "y" + anywhere);
+  EXPECT_EQ(object("SCREC o; long p;", "p = numof(y); H0 = p;", receive), "y" + anywhere);
+  EXPECT_EQ(object("SCREC o;", "o.DPointer = a + 1;", receive), "");
+  // One variable of an interrupt, one of the destination of a cam controller, ten of its data.
+  EXPECT_EQ(object("VARINT i;", "i.SrcVar = numof(y);", "_SetVarInterrupt(i, f);"),
+            "y: a variable interrupt watches it\n");
+  EXPECT_EQ(object("GSCAM_EXT c;", "c.CamDestination = numof(x);", "_GetSys(c, GS_CAM);"),
+            "x: the cam controller writes it\n");
+  for (int n = 1; n <= 8; ++n)
+    EXPECT_EQ(object("GSCAM_EXT c;", "c.CamData" + std::to_string(n) + " = numof(y);", "_GetSys(c, GS_CAM);"),
+              "y: the cam controller reads it\nz: the cam controller reads it\n")
+        << n;
+  EXPECT_EQ(object("GSCAM_EXT c;", "c.CamData1 = 412;", "_GetSys(c, GS_CAM);"),
+            "x: the cam controller reads it\n");
+  EXPECT_EQ(object("GSCAM_EXT c;", "c.CamData1 = 411;", "_GetSys(c, GS_CAM);"), "");
+  EXPECT_EQ(object("GSCAM c;", "c.SourceVar = numof(x); c.DestVar = numof(y);", "_GetSys(c, GS_CAM);"), "")
+      << "its form without tables";
+}
+
 TEST(SeenSteps, ByPointersAndByNumber) {
   const std::string pointer = "long x, p, a; main() { p = numof(x); _SetTask2(T2_START, T); while (1) ";
   EXPECT_EQ(seen(pointer + kSteps + " } T() { a = *p; }"), "x: 'T' uses variables by their numbers\n");

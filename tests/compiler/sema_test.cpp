@@ -227,13 +227,6 @@ TEST(Mistakes, NoMain) {
   EXPECT_EQ(Diag::NoMain, c.diagnostics.all()[0].diag);
 }
 
-std::vector<std::string> codes(const std::string& source) {
-  std::vector<std::string> out;
-  const Compilation c = compile_text(source);
-  for (const Diagnostic& d : c.diagnostics.all()) out.emplace_back(info(d.diag).code);
-  return out;
-}
-
 TEST(Mistakes, VariablesOfTwoRangesMeet) {
   EXPECT_EQ((std::vector<std::string>{"W0208", "E0230"}),
             codes("#pragma initials 100 127\n#pragma globals 120 140\n"

@@ -8,18 +8,13 @@
 #include <sstream>
 
 #include "compiler/compile.hpp"
-#include "compiler/format/format.hpp"
+#include "tests/format/formatted.hpp"
 
 namespace ipos::tests {
 namespace {
 
 namespace fs = std::filesystem;
 using compiler::format_source;
-
-std::string formatted(const std::string& text) {
-  const auto result = format_source(text);
-  return result ? *result : "line " + std::to_string(result.error().line) + ": " + result.error().text;
-}
 
 TEST(Format, BracesStandAloneAndStatementsHaveLinesOfTheirOwn) {
   EXPECT_EQ(formatted("main(){H0=1;H1 = 2 ;while(1){}}"), R"(main()
