@@ -216,6 +216,7 @@ TEST(PlantFileCanopen, MistakesOfItsNodes) {
           {"po = [1, ^'2']\n", "a process data word must be a whole number"},
           {"guard = ^'1001us'\n", "guard is a multiple of 1000 us up to 65535000 us"},
           {"guard = ^'65536ms'\n", "guard is a multiple of 1000 us up to 65535000 us"},
+          {"guard = ^'1500us'\nheartbeat = '1ms'\n", "guard is a multiple"},
           {"life = ^256\n", "life is 0 to 255"},
           {"guard = '1ms'\nheartbeat = ^'1ms'\n", "a node has guarding or heartbeat, never both"},
           {"parameters = ^5\n", "write [station.parameters]"},

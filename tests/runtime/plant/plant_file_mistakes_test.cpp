@@ -42,7 +42,7 @@ TEST(PlantFileMistakes, OfTheForms) {
                   kMistakenUnit);
   expect_mistakes("", {{"^", "the plant has no [[station]]"}, {"^[[bus]]\nkind = 'can'\n", "needs name"}});
   // Nothing but the first mistake of a text that is no TOML.
-  expect_mistakes("", {{"a = 1\na = ^2\n", ""}, {"car = 1\nb = \"x^\n", ""}});
+  expect_mistakes("", {{"a = 1\na = ^2\n", "redefine"}, {"car = 1\nb = \"x^\n", ""}});
 }
 
 TEST(PlantFileMistakes, NumbersHave32Bits) {
