@@ -73,7 +73,7 @@ bool find_factors(Time watchdog, profibus::PrmData& prm) {
     if (watchdog % kUnit == 0 && product % factor == 0 && product / factor <= 255) {
       prm.watchdog_factor_1 = static_cast<uint8_t>(product / factor);
       prm.watchdog_factor_2 = static_cast<uint8_t>(factor);
-      return product != 0;
+      return true;
     }
   return false;
 }

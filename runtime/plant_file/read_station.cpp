@@ -58,7 +58,6 @@ void read_memory(PlantReader& reader, const toml::table& table, StationConfig& c
   const toml::node* nvram = table.get("nvram");
   if (nvram == nullptr) return;
   config.nvram_place = place_of(*nvram);
-  if (nvram->is_string() && config.nvram.empty()) reader.error(config.nvram_place, "nvram must name a file");
   if (!config.nvram.empty() && !reader.nvram_files.insert(config.nvram).second)
     reader.error(config.nvram_place, fmt::format("two stations keep their memory in '{}'", config.nvram));
 }

@@ -33,6 +33,10 @@ def quick_linker():
     return next(([f"-fuse-ld={name}"] for name in ("mold", "lld") if shutil.which(f"ld.{name}")), [])
 
 
+def object_of(command):
+    return re.search(r" -o (\S+)", command)[1]
+
+
 class Program:
     """One GoogleTest program, and what a run of it says."""
 
@@ -98,10 +102,12 @@ class Program:
                 return False
         return process.returncode in (0, 77)
 
-    def notices(self, mutant, options):
-        """The name of a test that fails with the mutant linked in, or None. `options`: what it wants for linking."""
+    def notices(self, mutant, original, options):
+        """The name of a test that fails with the mutant linked in for the original object, or None. `options`: what it
+        wants for linking."""
         binary = self.work / self.name
-        own = re.compile(r"\S*/" + re.escape(self.source) + r"\.o\b")  # where a program compiles the layer itself
+        # Where a program compiles the layer itself, or takes the objects of a library one by one.
+        own = re.compile(rf"\S*/{re.escape(self.source)}\.o\b|(?<!\S){re.escape(original)}(?!\S)")
         link = re.sub(r" -o \S+ ", lambda m: f" {shlex.join([*options, str(mutant)])} -o {shlex.quote(str(binary))} ",
                       own.sub("", self.link), count=1)
         done = subprocess.run(link, shell=True, cwd=self.build, capture_output=True, text=True)
@@ -152,7 +158,8 @@ class Layer:
         for row in json.loads((self.build / "compile_commands.json").read_text()):
             library = re.search(r" -o \S*CMakeFiles/(\w+)\.dir/", row["command"])
             if Path(row["file"]) == self.root / self.source and (
-                    library[1] == program.name or f"lib{library[1]}.a" in program.link):
+                    library[1] == program.name or f"lib{library[1]}.a" in program.link
+                    or object_of(row["command"]) in program.link.split()):
                 return row["command"]
         raise SystemExit(f"mutate: {self.source} is in no library of {program.name}")
 

@@ -10,7 +10,7 @@ import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
-from layer import Layer  # noqa: E402
+from layer import Layer, object_of  # noqa: E402
 from mutants import Mutant, mutants  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -55,7 +55,7 @@ def judge(layer, place, text, mutant, known):
     if built is None:
         return "invalid", ""
     for program in layer.programs:
-        if killer := program.notices(built, layer.link_options):
+        if killer := program.notices(built, object_of(layer.command), layer.link_options):
             return ("invalid", killer) if killer == "(does not link)" else ("killed", f"{program.name} {killer}")
     return ("same", "") if layer.same_code(text, mutated) else ("survived", "")
 
