@@ -1,6 +1,10 @@
 // Settings from the parameter table; what a unit lacks is taken from a neighbour.
 #include "runtime/drive/settings.hpp"
 
+#include <map>
+#include <mutex>
+#include <utility>
+
 #include "runtime/drive/indices.hpp"
 #include "runtime/drive/process_data.hpp"
 #include "runtime/drive/terminals.hpp"
@@ -72,16 +76,26 @@ SettingsReader::SettingsReader(const ParameterStore& parameters)
     : is_m07_(parameters.unit().generation == stdlib::Generation::M07),
       is_m31_(parameters.unit().generation == stdlib::Generation::None) {
   if (is_m31_) return;  // its numbers mean other things
-  const auto index_of = [&](std::string_view number) -> uint16_t {
-    const stdlib::Parameter* row = parameters.table().find(number);
-    return row == nullptr ? 0 : row->index;
-  };
+  // The search is most of what a new drive costs, so each table is searched once.
+  static std::mutex mutex;
+  static std::map<const stdlib::ParameterTable*, std::pair<std::vector<Cell>, std::vector<SetCell>>> known;
+  const std::lock_guard guard(mutex);
+  const auto [row, is_new] = known.try_emplace(&parameters.table());
+  auto& [cells, set_cells] = row->second;
+  if (is_new) {
+    const auto index_of = [&](std::string_view number) -> uint16_t {
+      const stdlib::Parameter* found = parameters.table().find(number);
+      return found == nullptr ? 0 : found->index;
+    };
 #define SETTING(name, number, absent) \
-  if (const uint16_t index = index_of(number)) cells_.push_back({&Settings::name, index});
+  if (const uint16_t index = index_of(number)) cells.push_back({&Settings::name, index});
 #define SET_SETTING(name, first, second, absent) \
   if (const uint16_t index = index_of(first))    \
-    set_cells_.push_back({&ParameterSet::name, {index, index_of(second)}});
+    set_cells.push_back({&ParameterSet::name, {index, index_of(second)}});
 #include "runtime/drive/settings.def"
+  }
+  cells_ = cells;
+  set_cells_ = set_cells;
 }
 
 Settings SettingsReader::read(const ParameterStore& parameters) const {
