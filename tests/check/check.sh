@@ -1,13 +1,15 @@
 #!/usr/bin/env bash
-# What takes too long for every test run: all sources read by clang, all suites with AddressSanitizer and UBSan, what
-# has threads with ThreadSanitizer, the examples under valgrind, and the tutorial in an empty Debian. Prints the time of
-# each part; goes on after a failure.
+# What takes too long for every test run: all sources read by clang, all suites with AddressSanitizer and UBSan, every
+# preset configured, a short run of every fuzz target, what has threads with ThreadSanitizer, the examples under valgrind,
+# and the tutorial in an empty Debian. Prints the time of each part; goes on after a failure.
 #   tests/check/check.sh              all parts
-#   tests/check/check.sh PART...      of: asan clang tsan valgrind tutorial
+#   tests/check/check.sh PART...      of: asan clang presets fuzz tsan valgrind tutorial
 set -uo pipefail
 cd "$(dirname "$0")/../.."
 jobs=$(nproc)
-[ $# -gt 0 ] || set -- asan clang tsan valgrind tutorial
+parts='asan clang presets fuzz tsan valgrind tutorial'
+# shellcheck disable=SC2086
+[ $# -gt 0 ] || set -- $parts
 
 # Programs with threads: `ipos test -j` and the reader behind the ports and the page.
 threaded=(ipos_testing_tests ipos_port_tests ipos_serve_tests ipos_library_tests)
@@ -25,6 +27,35 @@ asan() {
 
 clang() { # a build that has the generated sources and knows the commands
   configure asan && tests/check/clang_reads.py build/asan
+}
+
+# Every preset can be configured, and its compiler makes the first layer; one without its compiler here is told.
+presets() {
+  local preset compiler target status=0
+  local -A compilers=([windows]=x86_64-w64-mingw32-g++-posix [cortex-m3]=arm-none-eabi-g++ [cortex-m4f]=arm-none-eabi-g++
+    [clang]=clang++ [fuzz]=clang++)
+  for preset in $(cmake --list-presets | sed -n 's/^ *"\(.*\)" *-.*/\1/p'); do
+    compiler=${compilers[$preset]:-g++} target=ipos_isa
+    case $preset in cortex-*) target=all ;; esac
+    if ! command -v "$compiler" >/dev/null; then
+      echo "preset $preset: no $compiler here"
+    elif cmake --preset "$preset" -B "build/presets/$preset" >/dev/null &&
+      cmake --build "build/presets/$preset" -j "$jobs" --target "$target" >/dev/null; then
+      echo "preset $preset: configured, $target built"
+    else
+      status=1
+    fi
+  done
+  rm -rf build/presets
+  return $status
+}
+
+fuzz() { # the targets are those of the folder: one that is not built is missed
+  local targets
+  targets=$(cd tests/fuzz && printf 'ipos_fuzz_%s\n' *_fuzz.cpp | sed 's/_fuzz\.cpp$//')
+  # shellcheck disable=SC2086
+  cmake --preset fuzz >/dev/null && cmake --build --preset fuzz -j "$jobs" --target ipos_fuzz_seeds $targets &&
+    ctest --test-dir build/fuzz -R '^ipos_fuzz_seeds$' >/dev/null && tests/fuzz/short.sh build/fuzz
 }
 
 tsan() {
@@ -51,7 +82,7 @@ tutorial() {
 failed=()
 times=()
 for part in "$@"; do
-  case $part in asan | clang | tsan | valgrind | tutorial) ;; *) sed -n '5,6s/^# *//p' "$0"; exit 64 ;; esac
+  [[ " $parts " == *" $part "* ]] || { sed -n '5,6s/^# *//p' "$0"; exit 64; }
   echo "== $part"
   began=$SECONDS
   "$part" || failed+=("$part")

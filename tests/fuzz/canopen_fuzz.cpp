@@ -101,7 +101,7 @@ void check_mapping(const ObjectDictionary& dictionary) {
 }
 
 void check_node(Input input) {
-  EventQueue queue;
+  EventQueue queue(kEvents);
   Wire wire;
   LineWords words;
   wire.words = &words;

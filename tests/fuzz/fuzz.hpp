@@ -20,6 +20,9 @@ inline std::string_view text_of(const uint8_t* data, size_t size) {
   return {reinterpret_cast<const char*>(data), size};
 }
 
+// Room for events of a queue: it grows, but making a large one is a tenth of the time of a run.
+inline constexpr size_t kEvents = 30;
+
 // Behind the end all numbers are 0.
 class Input {
  public:

@@ -65,10 +65,14 @@ void check_slave(Input input) {
   const stdlib::UnitType* units[] = {stdlib::find_unit(uint8_t{1}), stdlib::find_unit(uint8_t{3}),
                                      stdlib::find_unit(uint8_t{4})};
   DriveServer drive(*units[input.u8() % 3]);
-  EventQueue queue;
+  EventQueue queue(kEvents);
   Wire wire;
-  const SlaveSettings settings{static_cast<uint8_t>(input.u8() % 64), static_cast<uint8_t>(input.u8() % 64),
-                               static_cast<uint16_t>(input.u16() % kStandardIdLimit), input.u8() % 2 == 0};
+  SlaveSettings settings{static_cast<uint8_t>(input.u8() % 64), static_cast<uint8_t>(input.u8() % 64),
+                         static_cast<uint16_t>(input.u16() % kStandardIdLimit)};
+  const uint8_t choice = input.u8();
+  settings.second_channel = choice % 2 == 0;
+  settings.synchronous = choice / 2 % 4 != 0;
+  settings.group_output = choice / 8 % 4 != 0;
   SbusSlave slave(queue, 1, wire, 1, settings, {}, drive, drive);
   size_t received = 0;
   while (!input.empty()) {
@@ -89,7 +93,7 @@ void check_slave(Input input) {
 }
 
 void check_master(Input input) {
-  EventQueue queue;
+  EventQueue queue(kEvents);
   Wire wire;
   Client client;
   SbusMaster master(queue, 1, wire, 1, kSbusReplyTimeout, client);
@@ -97,7 +101,7 @@ void check_master(Input input) {
   while (!input.empty()) {
     if (!master.busy()) {
       MovilinkJob job{input.u8() - 4,           input.u8() % 140, input.u8() % 12 - 1,
-                  input.i32() % 0x100'0000, input.i32(),      {}};
+                      input.i32() % 0x100'0000, input.i32(),      {}};
       for (int32_t& word : job.output) word = input.i32();
       const auto refused = master.start(queue.now(), job);
       require(master.busy() != refused.has_value(), "a job is refused or begun");

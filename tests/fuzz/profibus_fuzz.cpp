@@ -13,7 +13,7 @@ namespace runtime = ipos::runtime;
 namespace {
 
 void check_line(Input input) {
-  runtime::EventQueue queue;
+  runtime::EventQueue queue(kEvents);
   Line line(queue, 0, "dp", kBaudRates[input.u8() % std::size(kBaudRates)].baud);
   ProfibusUnit units[2];
   std::vector<std::unique_ptr<SlaveStation>> slaves;

@@ -67,7 +67,7 @@ void check_slave(Input input) {
   const stdlib::UnitType* units[] = {stdlib::find_unit(uint8_t{1}), stdlib::find_unit(uint8_t{3}),
                                      stdlib::find_unit(uint8_t{4})};
   DriveServer drive(*units[input.u8() % 3]);
-  EventQueue queue;
+  EventQueue queue(kEvents);
   Wire wire;
   const SerialSlaveSettings settings{static_cast<uint8_t>(input.u8() % 100),
                                      static_cast<uint8_t>(100 + input.u8() % 100), input.u8() % 16 == 1,
@@ -138,7 +138,7 @@ struct Faults final : SerialFaults {
 };
 
 void check_line(Input input) {
-  EventQueue queue;
+  EventQueue queue(kEvents);
   Rs485Line line(queue, 0, "line", input.u8() % 2 == 0 ? 9'600 : 57'600);
   uint64_t told = 0;
   LineCheck check([&told](Time, const std::string& text) { told += text.size(); });

@@ -27,8 +27,9 @@ std::optional<uint32_t> answer_of(const SbusIdentifier& request) {
 
 SbusCheck::SbusCheck(SbusCheckClient& client, bool units_outside)
     : client_(client), units_outside_(units_outside) {
-  for (uint32_t id = 0; id < kStandardIdLimit; ++id)
-    identifiers_[id].watched = classify_identifier(id).has_value();
+  for (const TelegramType& type : kTelegrams)
+    for (uint8_t address = 0; address < kSbusAddresses; ++address)
+      identifiers_[sbus_identifier(type.telegram, address)].watched = true;
 }
 
 void SbusCheck::tell(Time now, std::string text) { client_.on_sbus_finding(now, std::move(text)); }

@@ -59,8 +59,10 @@ bool SbusSlave::is_movilink(uint32_t id) const {
 }
 
 void SbusSlave::listen() {
-  for (uint32_t id = 0; id < kStandardIdLimit; ++id)
+  for (const TelegramType& type : kTelegrams) {
+    const uint32_t id = sbus_identifier(type.telegram, type.grouped ? settings_.group : settings_.address);
     if (is_movilink(id)) sender_.listen(id);
+  }
   if (settings_.synchronous) sender_.listen(settings_.sync_id);
 }
 

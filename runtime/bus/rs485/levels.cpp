@@ -1,7 +1,26 @@
 // The receiver of a UART (1053 1610 p. 26), on recorded levels.
 #include "runtime/bus/rs485/levels.hpp"
 
+#include <algorithm>
+#include <limits>
+
 namespace ipos::runtime {
+namespace {
+
+// The first tick after `tick` that may have another level: a bit or a transmission begins or ends there.
+Tick next_edge(std::span<const Transmission> line, Tick tick) {
+  Tick next = std::numeric_limits<Tick>::max();
+  for (const Transmission& transmission : line) {
+    if (tick < transmission.begin)
+      next = std::min(next, transmission.begin);
+    else if (tick < transmission.end())
+      next = std::min(next,
+                      tick + transmission.bit_ticks - (tick - transmission.begin) % transmission.bit_ticks);
+  }
+  return next;
+}
+
+}  // namespace
 
 std::vector<bool> wire_bits(std::span<const uint8_t> bytes) {
   std::vector<bool> bits;
@@ -24,7 +43,7 @@ bool level_at(std::span<const Transmission> line, const Ear& ear, Tick tick) {
 
 std::optional<Tick> next_start(std::span<const Transmission> line, const Ear& ear, Tick from, Tick until) {
   bool before = from == 0 || level_at(line, ear, from - 1);
-  for (Tick tick = from; tick < until; ++tick) {
+  for (Tick tick = from; tick < until; tick = next_edge(line, tick)) {
     const bool level = level_at(line, ear, tick);
     if (before && !level) return tick;
     before = level;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <set>
 
 #include "tests/harness/proves.hpp"
@@ -262,6 +263,30 @@ TEST(SbusSlave, RequestsInARowAreAllAnswered) {
   for (int i = 0; i < 5; ++i) rig.master.port.send(parameter(523, {0x31, 0, 0x20, 0x7E, 0, 0, 0, 0}), 0);
   rig.run(20 * kMillisecond);
   EXPECT_EQ(rig.master.frames.size(), 10U);
+}
+
+// A slave that asks its line for too little is deaf, one that asks for too much costs time.
+TEST(SbusSlave, ListensToWhatItTakesAndToNothingElse) {
+  struct Filter final : FrameSender {
+    SendStatus send(const Frame&, uint64_t) override { return SendStatus::Queued; }
+    void withdraw(uint64_t) override {}
+    void listen(uint32_t id) override { ids.insert(id); }
+    std::set<uint32_t> ids;
+  };
+  for (const uint8_t address : std::array<uint8_t, 5>{0, 1, 2, 62, 63})
+    for (const uint8_t group : std::array<uint8_t, 3>{0, 2, 63})
+      for (const bool synchronous : {false, true})
+        for (const bool channel2 : {false, true}) {
+          Rig rig;
+          Filter filter;
+          SbusSlave slave(rig.queue, 2, filter, 1, {address, group, 0x7F0, channel2, synchronous}, {},
+                          rig.unit, rig.unit);
+          std::set<uint32_t> taken;
+          for (uint32_t id = 0; id < kStandardIdLimit; ++id)
+            if (slave.on_frame(0, Frame{id, 6, {}, false, false})) taken.insert(id);
+          EXPECT_EQ(filter.ids, taken) << int{address} << ", group " << int{group};
+          EXPECT_GE(taken.size(), 4U);
+        }
 }
 
 }  // namespace
