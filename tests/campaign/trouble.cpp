@@ -193,7 +193,7 @@ Trouble draw_trouble(uint64_t seed) {
     trouble.plant = plant.text();
     trouble.programs = plant.sources();
   }
-  const size_t stations = count(trouble.plant, "[[station]]");
+  const size_t stations = count(trouble.plant, "[[station]]") - count(trouble.plant, "unit = \"gateway\"");
   const int lines = static_cast<int>(count(trouble.plant, "[[bus]]"));
   Pair pair = make_pair_at(baud_of_can(trouble.plant));
   trouble.plant += pair.stations;

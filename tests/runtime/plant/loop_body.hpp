@@ -18,10 +18,13 @@ inline std::string numbered(std::string text, int k, int l) {
   return text;
 }
 
-// How many random plants a test tries: its own number, or that of the variable IPOS_PLANTS for a longer run.
-inline uint64_t plant_count(uint64_t usual) {
-  const char* const wanted = std::getenv("IPOS_PLANTS");
+// How many random plants a test tries: its own number, or that of the variable IPOS_PLANTS for a longer run. Those before
+// IPOS_FIRST_PLANT are left out, so that a long run can be shared out, and one seed be looked at.
+inline uint64_t number_of_environment(const char* name, uint64_t usual) {
+  const char* const wanted = std::getenv(name);
   return wanted == nullptr ? usual : std::strtoull(wanted, nullptr, 10);
 }
+inline uint64_t plant_count(uint64_t usual) { return number_of_environment("IPOS_PLANTS", usual); }
+inline uint64_t first_plant() { return number_of_environment("IPOS_FIRST_PLANT", 1); }
 
 }  // namespace ipos::tests

@@ -22,7 +22,7 @@ using runtime::Time;
 
 TEST(Sleep, RandomPlantsAreTheSameAsWithoutIt) {
   uint64_t asleep = 0, steady = 0, late = 0, looked = 0;
-  for (uint64_t seed = 1; seed <= plant_count(150); ++seed) {
+  for (uint64_t seed = first_plant(); seed <= plant_count(150); ++seed) {
     WaitingPlant random(seed);
     auto all = make_plant(random.text(), random.sources(), std::nullopt, in_turn()),
          some = make_plant(random.text(), random.sources());
