@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <iostream>
 #include <optional>
 
 #include "tests/campaign/promises.hpp"
@@ -243,6 +244,7 @@ Trouble smaller(Trouble trouble) {
 
 TEST(Campaign, PlantsInTroubleAreTheSameInAllWays) {
   for (uint64_t seed = first_plant(); seed <= plant_count(60); ++seed) {
+    if (seed % 1000 == 0) std::cout << "seed " << seed << std::endl;
     const Trouble trouble = draw_trouble(seed);
     if (!complaint(trouble)) continue;
     const Trouble least = smaller(trouble);
