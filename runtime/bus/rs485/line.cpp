@@ -174,9 +174,7 @@ void Rs485Line::on_event(Time now, uint32_t kind, uint64_t argument) {
 
 // The character being received is lost. A receiver without a start bit looks for one from now on.
 void Rs485Line::restart_receiver(NodeId node) {
-  Node& n = nodes_[node];
-  queue_.cancel(std::exchange(n.event, kNoEvent));
-  n.start.reset();
+  nodes_[node].start.reset();
   look_again();
 }
 

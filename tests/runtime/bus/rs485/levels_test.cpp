@@ -189,22 +189,31 @@ TEST(SerialLine, ObserversKnowTheSenderOfACharacter) {
 
 // A station that changes its rate or is cut off loses the character it is hearing, and hears the next one.
 TEST(SerialLine, AReceiverBeginsAnew) {
-  for (const bool cut : {false, true}) {
-    Wired rig;
-    rig.a.send(hex("FE"));  // from its second data bit on all is 1
-    rig.queue.run_until(time_of(30));
-    if (cut) {
-      rig.line.set_connected(1, false);
-      rig.line.set_connected(1, true);
-    } else {
-      rig.line.set_baud(1, 9600);
+  for (const bool cut : {false, true})
+    for (const bool at_once : {false, true}) {
+      Wired rig;
+      // From its second data bit on all of FEh is 1.
+      rig.a.send(at_once ? hex("FE 7F") : hex("FE"));
+      rig.queue.run_until(time_of(30));
+      if (cut) {
+        rig.line.set_connected(1, false);
+        rig.line.set_connected(1, true);
+      } else {
+        rig.line.set_baud(1, 9600);
+      }
+      rig.queue.run_until(time_of(66));
+      if (!at_once) rig.a.send(hex("7F"));
+      rig.queue.run_until(kSecond);
+      EXPECT_EQ(rig.heard_by(rig.b), hex("7F")) << cut << at_once;
+      EXPECT_EQ(rig.heard_by(rig.c), hex("FE 7F"));
     }
-    rig.queue.run_until(time_of(66));
-    rig.a.send(hex("7F"));
-    rig.queue.run_until(kSecond);
-    EXPECT_EQ(rig.heard_by(rig.b), hex("7F")) << cut;
-    EXPECT_EQ(rig.heard_by(rig.c), hex("FE 7F"));
-  }
+  // One that is cut off hears nothing more, not even the character it was hearing.
+  Wired rig;
+  rig.a.send(hex("FE 7F"));
+  rig.queue.run_until(time_of(30));
+  rig.line.set_connected(1, false);
+  rig.queue.run_until(kSecond);
+  EXPECT_TRUE(rig.b.characters.empty());
 }
 
 TEST(SerialLine, WhatWillBeHeard) {
