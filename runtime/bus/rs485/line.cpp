@@ -48,7 +48,8 @@ Transmission* Rs485Line::sending(NodeId node) {
   if (nodes_[node].sent == kNoEvent) return nullptr;
   const auto found = std::find_if(transmissions_.rbegin(), transmissions_.rend(),
                                   [node](const Transmission& t) { return t.sender == node; });
-  return found == transmissions_.rend() ? nullptr : &*found;
+  assert(found != transmissions_.rend());  // one under way is not forgotten
+  return &*found;
 }
 
 bool Rs485Line::send_bits(NodeId node, std::vector<bool> bits) {
