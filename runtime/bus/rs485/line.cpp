@@ -86,9 +86,13 @@ void Rs485Line::shorten(NodeId node, Tick end) {
   look_again();
 }
 
-// Transmissions overlap only while stations collide; then the time counts once.
+// Transmissions overlap only while stations collide; then the time counts once, up to here also that of those that go
+// on.
 void Rs485Line::end_transmission(Transmission& transmission) {
-  const Tick begin = std::max(transmission.begin, counted_until_);
+  Tick begin = transmission.begin;
+  for (const Transmission& other : transmissions_)
+    if (other.end() >= transmission.end()) begin = std::min(begin, other.begin);
+  begin = std::max(begin, counted_until_);
   if (transmission.end() <= begin) return;
   meter_.add(begin, transmission.end() - begin);
   counted_until_ = transmission.end();

@@ -297,6 +297,24 @@ TEST(DpLine, FramesThatFollowEachOtherDoNotCollide) {
   }
 }
 
+// Of frames that collide each bit counts once, whoever ends first.
+TEST(DpLine, LoadOfCollisions) {
+  const auto busy = [](Bits second) {
+    LineRig rig;
+    Talker a(rig, "a"), b(rig, "b");
+    rig.line.send(a.id, 100, hex("10 03 02 49 4E 16"));  // 66 bits
+    rig.line.send(b.id, second, hex("E5"));
+    rig.run(kSecond);
+    return rig.line.load(kSecond).busy_bits;
+  };
+  EXPECT_EQ(busy(120), 66U) << "within the other one";
+  EXPECT_EQ(busy(155), 66U) << "both end at once";
+  EXPECT_EQ(busy(160), 71U);
+  EXPECT_EQ(busy(166), 77U) << "one behind the other";
+  EXPECT_EQ(busy(90), 76U);
+  EXPECT_EQ(busy(40), 77U) << "one before the other";
+}
+
 TEST(DpLine, IsBusyWhileAFrameCanBeHeard) {
   LineRig rig;
   Talker a(rig, "a"), b(rig, "b");

@@ -216,6 +216,48 @@ TEST(SerialLine, AReceiverBeginsAnew) {
   EXPECT_TRUE(rig.b.characters.empty());
 }
 
+// Whoever finds no start bit waits for none.
+TEST(SerialLine, NothingWaitsOnAQuietLine) {
+  Wired rig;
+  EXPECT_EQ(rig.queue.pending(), 0U);
+  rig.a.send(hex("55"));
+  EXPECT_EQ(rig.queue.pending(), 4U) << "the end of it, two receivers and the observers";
+  rig.line.set_connected(1, false);
+  EXPECT_EQ(rig.queue.pending(), 3U);
+  rig.queue.run_until(time_of(66));
+  EXPECT_EQ(rig.queue.pending(), 0U);
+  rig.line.set_connected(1, true);
+  rig.line.set_baud(2, 57'600);
+  EXPECT_EQ(rig.queue.pending(), 0U);
+  rig.a.send(hex("55"));
+  rig.line.set_connected(0, false);
+  EXPECT_EQ(rig.queue.pending(), 0U) << "cut before its first bit";
+}
+
+// Of two that collide each tick counts once, whoever ends first.
+TEST(SerialLine, LoadOfCollisions) {
+  const auto busy = [](Tick second, size_t bytes, Tick cut) {
+    EventQueue queue;
+    Rs485Line line(queue, 0, "x", 57'600);
+    HandNode a(line, "a"), b(line, "b", 9600);
+    b.send(Bytes(2, 0x55));  // 132 ticks
+    queue.run_until(time_of(second));
+    a.send(Bytes(bytes, 0x55));
+    queue.run_until(time_of(cut));
+    if (cut != 0) line.set_connected(b.port.node(), false);
+    queue.run_until(kSecond);
+    return line.load(kSecond).busy_bits;
+  };
+  EXPECT_EQ(busy(50, 1, 0), 132U) << "within the other one";
+  EXPECT_EQ(busy(121, 1, 0), 132U) << "both end at once";
+  EXPECT_EQ(busy(125, 1, 0), 136U) << "the second one ends later";
+  EXPECT_EQ(busy(132, 1, 0), 143U) << "one behind the other";
+  EXPECT_EQ(busy(0, 1, 0), 132U);
+  // Cut off, the last whole bit counts: it ended before the other one.
+  EXPECT_EQ(busy(20, 1, 35), 31U);
+  EXPECT_EQ(busy(20, 1, 41), 36U);
+}
+
 TEST(SerialLine, WhatWillBeHeard) {
   Wired rig;
   rig.a.send(hex("55 66"));
