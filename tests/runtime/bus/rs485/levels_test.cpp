@@ -234,6 +234,35 @@ TEST(SerialLine, NothingWaitsOnAQuietLine) {
   EXPECT_EQ(rig.queue.pending(), 0U) << "cut before its first bit";
 }
 
+// A low level shorter than half a bit is no start bit to anybody, and the next character is heard.
+TEST(SerialLine, ASpikeIsNoCharacter) {
+  for (const Tick ticks : {Tick{1}, Tick{3}, Tick{4}}) {
+    Wired rig;
+    HandNode fast(rig.line, "fast", 57'600);
+    EXPECT_TRUE(rig.line.send_bits(fast.port.node(), std::vector<bool>(ticks, false)));
+    rig.queue.run_until(time_of(100));
+    const bool spike = ticks <= 3;
+    EXPECT_EQ(rig.b.characters.size(), spike ? 0U : 1U) << ticks;
+    EXPECT_EQ(rig.recorder.characters.size(), spike ? 0U : 1U) << ticks;
+    EXPECT_EQ(rig.line.load(kSecond).frames, spike ? 0U : 1U);
+    rig.a.send(hex("55"));
+    rig.queue.run_until(kSecond);
+    EXPECT_EQ(rig.heard_by(rig.b).back(), 0x55);
+    EXPECT_EQ(rig.b.characters.size(), spike ? 1U : 2U);
+  }
+}
+
+TEST(SerialLine, LoadOfPartsOfASecond) {
+  Wired rig;
+  rig.a.send(hex("55"));
+  rig.queue.run_until(2 * kSecond);
+  EXPECT_EQ(rig.line.load(0).elapsed_bits, 0U);
+  EXPECT_EQ(rig.line.load(kSecond / 2).elapsed_bits, 4'800U);
+  EXPECT_EQ(rig.line.load(kSecond / 2 - 1).elapsed_bits, 4'799U);
+  EXPECT_EQ(rig.line.load(kSecond + kSecond / 4).elapsed_bits, 12'000U);
+  EXPECT_EQ(rig.line.load(kSecond + kSecond / 4).busy_bits, 11U);
+}
+
 // Of two that collide each tick counts once, whoever ends first.
 TEST(SerialLine, LoadOfCollisions) {
   const auto busy = [](Tick second, size_t bytes, Tick cut) {
