@@ -4,6 +4,7 @@
 
 #include "runtime/bus/can/frame_bits.hpp"
 #include "runtime/bus/can/line.hpp"
+#include "runtime/bus/can/transfer.hpp"
 
 namespace ipos::tests {
 namespace {
@@ -220,6 +221,45 @@ TEST(LineFault, LateFramesOfAllAndOfOne) {
     EXPECT_EQ(t.ears[2].heard[0].first, t.told.frames[0].end + 3 * kMillisecond);
     EXPECT_EQ(t.ears[2].heard[1].first, t.told.frames[1].end + 3 * kMillisecond);
     EXPECT_EQ(t.ears[0].sent.size(), 2U) << "its sender knows nothing";
+  }
+}
+
+// Who is error-passive and alone in seeing a disturbed bit makes no flag and gives no acknowledge: without another
+// listener the sender finds that out in the slot, nine bits before the end of its frame, and sends its flag of 6 bits.
+TEST(LineFault, APassiveListenerAloneIsNoListener) {
+  for (const uint8_t length : {uint8_t{0}, uint8_t{3}, uint8_t{8}}) {
+    const Frame frame{100, length, {1, 2, 3, 4, 5, 6, 7, 8}};
+    const uint32_t bits = frame_bits(frame) - 3;  // to the end of the end of frame
+    for (const bool others : {false, true}) {
+      KnownFrames known;
+      Transfer transfer;
+      transfer.senders = {{0, canonical(frame), 0, true, false}};
+      transfer.fault.kind = FaultKind::Corrupt;
+      transfer.fault.node = 1;
+      resolve(transfer, {true, others, true, false, others}, known);
+      EXPECT_EQ(transfer.outcome, others ? Transfer::Outcome::Delivered : Transfer::Outcome::NoAcknowledge);
+      EXPECT_EQ(transfer.end, others ? bits : bits - 9 + 1 + 6 + 8);
+      EXPECT_EQ(transfer.bits, transfer.end + 3);
+    }
+    KnownFrames known;
+    Transfer alone;
+    alone.senders = {{0, canonical(frame), 0, true, false}};
+    resolve(alone, {}, known);
+    EXPECT_EQ(alone.outcome, Transfer::Outcome::NoAcknowledge);
+    EXPECT_EQ(alone.end, bits - 9 + 1 + 6 + 8);
+    // Without any dominant level not even the start of frame is seen: its flag begins at once.
+    resolve(alone, {true, true}, known, true);
+    EXPECT_EQ(alone.outcome, Transfer::Outcome::NoLevel);
+    EXPECT_EQ(alone.end, 1U + 6 + 8);
+    EXPECT_EQ(alone.bits, 1U + 6 + 8 + 3);
+    // The last bit disturbed at the sender: all have the frame, and an overload flag follows.
+    Transfer twice;
+    twice.senders = {{0, canonical(frame), 0, true, false}};
+    twice.fault.kind = FaultKind::Duplicate;
+    resolve(twice, {true, true}, known);
+    EXPECT_EQ(twice.outcome, Transfer::Outcome::Repeated);
+    EXPECT_EQ(twice.end, bits);
+    EXPECT_EQ(twice.bits, bits + 1 + 6 + 8 + 3);
   }
 }
 
