@@ -282,6 +282,34 @@ TEST(LineFault, WordsOfFaults) {
              "sbus: planted fault 'short': the line has high and low short-circuited: no dominant level"}));
 }
 
+// Back from bus-off after 128 runs of 11 recessive bits (ISO 11898-1). Behind a frame there are 11 up to the end of the
+// intermission; with 10 bits of rest more it is still one run a frame, and the last one ends with the intermission.
+TEST(LineRepair, RunsOfRecessiveBitsAreCountedToTheBit) {
+  FaultBench t;
+  LineFault wire = planted(FaultKind::Short);
+  wire.until = 1500 * kMicrosecond;
+  t.line.plant(wire);
+  t.run(kMicrosecond);
+  t.send(0, 100);
+  t.run(10 * kMillisecond);
+  ASSERT_FALSE(t.line.is_active(0));
+  t.told.take();
+  t.told.times.clear();
+  const Time bit = t.line.bit_time();
+  const Time period = static_cast<Time>(frame_bits({200, 2, {1, 2}}) + 10) * bit;
+  const Time base = 20 * kMillisecond;
+  t.queue.run_until(base);
+  t.line.recover(0);
+  for (int n = 0; n < 200 && t.told.texts.empty(); ++n) {
+    t.queue.run_until(base + n * period);
+    if (t.told.texts.empty()) t.send(1, 200);
+  }
+  EXPECT_EQ(t.told.frames.size(), 128U);
+  EXPECT_EQ(t.told.texts, Words{"sbus: unit1 is back on the line after bus-off"});
+  EXPECT_EQ(t.told.times.at(0), t.told.frames.back().end + 3 * bit);
+  EXPECT_TRUE(t.line.is_active(0));
+}
+
 // --- frames of one tag
 
 TEST(CanLine, OnlyTheLatestFrameOfATagWaits) {
