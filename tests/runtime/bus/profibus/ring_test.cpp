@@ -176,6 +176,17 @@ TEST(DpRing, ATokenThatNobodyTakes) {
   EXPECT_EQ(ring.master.next_station(), 2);
 }
 
+// Repeated requests to a slave do not count as attempts of the token behind them.
+TEST(DpRing, ATokenBehindASlaveThatDoesNotAnswer) {
+  Ring ring(station(2));
+  ring.master.add_slave(plan_of(9, "F0", 2));
+  into_ring_with_5(ring);
+  ring.say(50, "DC 02 05");
+  std::string spoken;
+  for (int n = 0; n < 7; ++n) spoken += ring.next().octets.substr(0, 5) + " ";
+  EXPECT_EQ(spoken, "68 05 68 05 10 03 DC 05 DC 05 DC 05 DC 02 ");
+}
+
 // While it listens a master says that it is not ready; two whole rotations make it so.
 TEST(DpRing, ListensForTwoRotations) {
   Ring ring(station(2));
