@@ -77,7 +77,6 @@ uint32_t flags_end(WireBits seen, uint32_t begin, FirstFlag first) {
 
 uint32_t silence_end(WireBits seen, uint32_t last) {
   for (uint32_t i = last + 1; i < seen.recessive.size(); ++i) seen.recessive.set(i);
-  seen.count = std::max(seen.count, last + 1 + kTailBits);
   return receiver_notices(seen, false) + 1 + kErrorFlagBits;
 }
 

@@ -26,7 +26,7 @@ enum class FirstFlag : uint8_t { Sender, Listener };
 // bits as the listeners see them without any flag.
 uint32_t flags_end(WireBits seen, uint32_t begin, FirstFlag first);
 
-// The same when an error-passive sender falls silent behind bit `last`.
+// The same when an error-passive sender falls silent behind bit `last`, which lies before the CRC delimiter.
 uint32_t silence_end(WireBits seen, uint32_t last);
 
 }  // namespace ipos::runtime

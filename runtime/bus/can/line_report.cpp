@@ -75,8 +75,8 @@ std::string describe(const CanLine& line, const LineEvent& event) {
     case LineEventKind::NoAcknowledge: text += fmt::format(", identifier {}", id_words(event.id)); break;
     case LineEventKind::Collision:
     case LineEventKind::SameFrame:
-      text += fmt::format(", identifier {}, other station {}", id_words(event.id),
-                          event.other == kNoNode ? "unknown" : line.node_name(event.other));
+      text +=
+          fmt::format(", identifier {}, other station {}", id_words(event.id), line.node_name(event.other));
       break;
     default: break;
   }

@@ -71,9 +71,11 @@ Reception Line::reception_of(const Transmission& transmission) const {
   return reception;
 }
 
-// Frames overlap only in collisions; then the time counts once.
+// Frames overlap only in collisions; then the time counts once, up to here also that of those that go on.
 void Line::count(const Transmission& transmission) {
-  const Bits begin = std::max(transmission.begin, counted_until_);
+  Bits begin = transmission.begin;
+  for (const Transmission& other : under_way_) begin = std::min(begin, other.begin);
+  begin = std::max(begin, counted_until_);
   if (transmission.end <= begin) return;
   meter_.add(begin, transmission.end - begin);
   counted_until_ = transmission.end;

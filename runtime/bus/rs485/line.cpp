@@ -48,7 +48,8 @@ Transmission* Rs485Line::sending(NodeId node) {
   if (nodes_[node].sent == kNoEvent) return nullptr;
   const auto found = std::find_if(transmissions_.rbegin(), transmissions_.rend(),
                                   [node](const Transmission& t) { return t.sender == node; });
-  return found == transmissions_.rend() ? nullptr : &*found;
+  assert(found != transmissions_.rend());  // one under way is not forgotten
+  return &*found;
 }
 
 bool Rs485Line::send_bits(NodeId node, std::vector<bool> bits) {
@@ -85,9 +86,13 @@ void Rs485Line::shorten(NodeId node, Tick end) {
   look_again();
 }
 
-// Transmissions overlap only while stations collide; then the time counts once.
+// Transmissions overlap only while stations collide; then the time counts once, up to here also that of those that go
+// on.
 void Rs485Line::end_transmission(Transmission& transmission) {
-  const Tick begin = std::max(transmission.begin, counted_until_);
+  Tick begin = transmission.begin;
+  for (const Transmission& other : transmissions_)
+    if (other.end() >= transmission.end()) begin = std::min(begin, other.begin);
+  begin = std::max(begin, counted_until_);
   if (transmission.end() <= begin) return;
   meter_.add(begin, transmission.end() - begin);
   counted_until_ = transmission.end();
@@ -174,9 +179,7 @@ void Rs485Line::on_event(Time now, uint32_t kind, uint64_t argument) {
 
 // The character being received is lost. A receiver without a start bit looks for one from now on.
 void Rs485Line::restart_receiver(NodeId node) {
-  Node& n = nodes_[node];
-  queue_.cancel(std::exchange(n.event, kNoEvent));
-  n.start.reset();
+  nodes_[node].start.reset();
   look_again();
 }
 

@@ -4,6 +4,7 @@
 
 #include "runtime/bus/can/frame_bits.hpp"
 #include "runtime/bus/can/line.hpp"
+#include "runtime/bus/can/transfer.hpp"
 
 namespace ipos::tests {
 namespace {
@@ -223,6 +224,45 @@ TEST(LineFault, LateFramesOfAllAndOfOne) {
   }
 }
 
+// Who is error-passive and alone in seeing a disturbed bit makes no flag and gives no acknowledge: without another
+// listener the sender finds that out in the slot, nine bits before the end of its frame, and sends its flag of 6 bits.
+TEST(LineFault, APassiveListenerAloneIsNoListener) {
+  for (const uint8_t length : {uint8_t{0}, uint8_t{3}, uint8_t{8}}) {
+    const Frame frame{100, length, {1, 2, 3, 4, 5, 6, 7, 8}};
+    const uint32_t bits = frame_bits(frame) - 3;  // to the end of the end of frame
+    for (const bool others : {false, true}) {
+      KnownFrames known;
+      Transfer transfer;
+      transfer.senders = {{0, canonical(frame), 0, true, false}};
+      transfer.fault.kind = FaultKind::Corrupt;
+      transfer.fault.node = 1;
+      resolve(transfer, {true, others, true, false, others}, known);
+      EXPECT_EQ(transfer.outcome, others ? Transfer::Outcome::Delivered : Transfer::Outcome::NoAcknowledge);
+      EXPECT_EQ(transfer.end, others ? bits : bits - 9 + 1 + 6 + 8);
+      EXPECT_EQ(transfer.bits, transfer.end + 3);
+    }
+    KnownFrames known;
+    Transfer alone;
+    alone.senders = {{0, canonical(frame), 0, true, false}};
+    resolve(alone, {}, known);
+    EXPECT_EQ(alone.outcome, Transfer::Outcome::NoAcknowledge);
+    EXPECT_EQ(alone.end, bits - 9 + 1 + 6 + 8);
+    // Without any dominant level not even the start of frame is seen: its flag begins at once.
+    resolve(alone, {true, true}, known, true);
+    EXPECT_EQ(alone.outcome, Transfer::Outcome::NoLevel);
+    EXPECT_EQ(alone.end, 1U + 6 + 8);
+    EXPECT_EQ(alone.bits, 1U + 6 + 8 + 3);
+    // The last bit disturbed at the sender: all have the frame, and an overload flag follows.
+    Transfer twice;
+    twice.senders = {{0, canonical(frame), 0, true, false}};
+    twice.fault.kind = FaultKind::Duplicate;
+    resolve(twice, {true, true}, known);
+    EXPECT_EQ(twice.outcome, Transfer::Outcome::Repeated);
+    EXPECT_EQ(twice.end, bits);
+    EXPECT_EQ(twice.bits, bits + 1 + 6 + 8 + 3);
+  }
+}
+
 TEST(LineFault, WordsOfFaults) {
   for (const FaultType& type : kFaultTypes) EXPECT_EQ(find_fault_type(type.word), &type);
   EXPECT_EQ(find_fault_type("nothing"), nullptr);
@@ -240,6 +280,34 @@ TEST(LineFault, WordsOfFaults) {
       t.told.take(),
       (Words{"sbus: planted fault 'corrupt': unit2 has a disturbed bit, identifier 7FFh (2047)",
              "sbus: planted fault 'short': the line has high and low short-circuited: no dominant level"}));
+}
+
+// Back from bus-off after 128 runs of 11 recessive bits (ISO 11898-1). Behind a frame there are 11 up to the end of the
+// intermission; with 10 bits of rest more it is still one run a frame, and the last one ends with the intermission.
+TEST(LineRepair, RunsOfRecessiveBitsAreCountedToTheBit) {
+  FaultBench t;
+  LineFault wire = planted(FaultKind::Short);
+  wire.until = 1500 * kMicrosecond;
+  t.line.plant(wire);
+  t.run(kMicrosecond);
+  t.send(0, 100);
+  t.run(10 * kMillisecond);
+  ASSERT_FALSE(t.line.is_active(0));
+  t.told.take();
+  t.told.times.clear();
+  const Time bit = t.line.bit_time();
+  const Time period = static_cast<Time>(frame_bits({200, 2, {1, 2}}) + 10) * bit;
+  const Time base = 20 * kMillisecond;
+  t.queue.run_until(base);
+  t.line.recover(0);
+  for (int n = 0; n < 200 && t.told.texts.empty(); ++n) {
+    t.queue.run_until(base + n * period);
+    if (t.told.texts.empty()) t.send(1, 200);
+  }
+  EXPECT_EQ(t.told.frames.size(), 128U);
+  EXPECT_EQ(t.told.texts, Words{"sbus: unit1 is back on the line after bus-off"});
+  EXPECT_EQ(t.told.times.at(0), t.told.frames.back().end + 3 * bit);
+  EXPECT_TRUE(t.line.is_active(0));
 }
 
 // --- frames of one tag

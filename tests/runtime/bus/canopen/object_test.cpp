@@ -110,6 +110,55 @@ TEST(CanopenObjects, ParametersOfTheUnit) {
   EXPECT_EQ(rig.write(8318, 1, 1, 4), 0x0609'0011U);
 }
 
+// The unit is asked for nothing below 2000h, whatever it has there (page 55 of 11264926: its own indices begin above).
+TEST(CanopenObjects, ParametersBeginAt2000h) {
+  ObjectRig rig;
+  rig.unit.parameters[0x1FFF] = rig.unit.parameters[0x1002] = rig.unit.parameters[0x2002] = 5;
+  for (const uint16_t index : {uint16_t{0x1FFF}, uint16_t{0x1002}, uint16_t{0x0000}, uint16_t{0x0FFF}}) {
+    EXPECT_EQ(rig.refused_read(index, 0), 0x0602'0000U) << index;
+    EXPECT_EQ(rig.write(index, 0, 7, 4), 0x0602'0000U) << index;
+    EXPECT_EQ(rig.write(index, 1, 7, 4), 0x0602'0000U) << index;
+    EXPECT_EQ(rig.write(0x1601, 1, uint32_t{index} << 16 | 16, 4), 0x0602'0000U);
+  }
+  EXPECT_EQ(rig.unit.requests, 0);
+  EXPECT_EQ(rig.unit.parameters[0x1FFF], 5);
+  EXPECT_EQ(rig.read(0x2002), (Bytes{5, 0, 0, 0}));
+  EXPECT_EQ(rig.write(0x2002, 0, 7, 4), 0U);
+  EXPECT_EQ(rig.unit.parameters[0x2002], 7);
+  // A dummy is not there for SDO, and is no parameter.
+  EXPECT_EQ(rig.write(0x0005, 0, 7, 1), 0x0602'0000U);
+  EXPECT_EQ(rig.refused_read(0x0008, 0), 0x0602'0000U);
+}
+
+// At the edges of what CiA 301 keeps from being chosen for SYNC, EMCY and PDO.
+TEST(CanopenObjects, RestrictedIdentifiers) {
+  ObjectRig rig;
+  const std::pair<uint32_t, uint32_t> kept[] = {{0x000, 0x07F}, {0x101, 0x180}, {0x581, 0x5FF},
+                                                {0x601, 0x67F}, {0x6E0, 0x6FF}, {0x701, 0x7FF}};
+  for (uint32_t id = 0; id < 0x800; ++id) {
+    bool good = true;
+    for (const auto& [first, last] : kept) good = good && (id < first || id > last);
+    const uint32_t expected = good ? 0 : 0x0609'0030;
+    EXPECT_EQ(rig.write(0x1005, 0, id, 4), expected) << id;
+    EXPECT_EQ(rig.write(0x1014, 0, id, 4), expected) << id;
+  }
+  // Values of the life time at its edge: 10 ms (page 54), and without one of the two there is none.
+  EXPECT_EQ(rig.write(0x100C, 0, 10, 2), 0U);
+  EXPECT_EQ(rig.write(0x100D, 0, 1, 1), 0U);
+  EXPECT_EQ(rig.write(0x100C, 0, 9, 2), 0x0609'0032U);
+  EXPECT_EQ(rig.write(0x100C, 0, 0, 2), 0U);
+  EXPECT_EQ(rig.write(0x1017, 0, 1, 2), 0U);
+  EXPECT_EQ(rig.write(0x100C, 0, 9, 2), 0x0609'0032U) << "the shorter one of two reasons";
+  EXPECT_EQ(rig.write(0x100C, 0, 10, 2), 0x0604'0043U);
+  // The node whose heartbeat is awaited: 127 at most, and not itself.
+  EXPECT_EQ(rig.write(0x1016, 1, 0x007F'0001, 4), 0U);
+  EXPECT_EQ(rig.write(0x1016, 1, 0x0080'0001, 4), 0x0609'0030U);
+  EXPECT_EQ(rig.write(0x1016, 1, 0x0004'FFFF, 4), 0U);
+  EXPECT_EQ(rig.write(0x1016, 1, 0x0005'0000, 4), 0x0604'0043U);
+  EXPECT_EQ(rig.write(0x1003, 0, 1, 1), 0x0609'0030U) << "only 0 clears the list";
+  EXPECT_EQ(rig.write(0x1003, 0, 0, 1), 0U);
+}
+
 // The contract of this project; the manual prints no codes.
 TEST(CanopenObjects, ReturnCodesAsAborts) {
   const std::pair<uint16_t, uint32_t> rows[] = {{0x10, 0x0602'0000}, {0x12, 0x0601'0002}, {0x13, 0x0800'0021},

@@ -120,5 +120,24 @@ TEST(GsdFile, CardsOfMovidriveAndGateway) {
   EXPECT_EQ(gateway.keys["Max_Module"], "9");
 }
 
+TEST(GsdFile, WholeText) {
+  EXPECT_EQ(
+      gsd_text(option_type(OptionKind::Dfp11)),
+      "#Profibus_DP\n"
+      "; SEW_6000.GSD, written by ipos from the tables of its simulated slave\n"
+      "GSD_Revision=1\nVendor_Name=\"SEW-EURODRIVE\"\nModel_Name=\"MOVIDRIVE A DFP11A/DP\"\n"
+      "Revision=\"1.0\"\nIdent_Number=0x6000\nProtocol_Ident=0\nStation_Type=0\nFMS_supp=0\n"
+      "Hardware_Release=\"1.0\"\nSoftware_Release=\"1.0\"\n"
+      "9.6_supp=1\n19.2_supp=1\n93.75_supp=1\n187.5_supp=1\n500_supp=1\n1.5M_supp=1\n"
+      "MaxTsdr_9.6=60\nMaxTsdr_19.2=60\nMaxTsdr_93.75=60\nMaxTsdr_187.5=60\nMaxTsdr_500=100\n"
+      "MaxTsdr_1.5M=150\n"
+      "Redundancy=0\nRepeater_Ctrl_Sig=2\n24V_Pins=0\nFreeze_Mode_supp=1\nSync_Mode_supp=1\n"
+      "Auto_Baud_supp=1\nSet_Slave_Add_supp=0\nMin_Slave_Intervall=10\nModular_Station=1\n"
+      "Max_Module=2\nMax_Input_Len=14\nMax_Output_Len=14\nMax_Data_Len=28\nMax_Diag_Data_Len=8\n"
+      "Module=\"1 PD\" 0xF0\nEndModule\nModule=\"2 PD\" 0xF1\nEndModule\nModule=\"3 PD\" 0xF2\nEndModule\n"
+      "Module=\"Param + 1 PD\" 0xF3,0xF0\nEndModule\nModule=\"Param + 2 PD\" 0xF3,0xF1\nEndModule\n"
+      "Module=\"Param + 3 PD\" 0xF3,0xF2\nEndModule\n");
+}
+
 }  // namespace
 }  // namespace ipos::tests

@@ -176,6 +176,17 @@ TEST(DpRing, ATokenThatNobodyTakes) {
   EXPECT_EQ(ring.master.next_station(), 2);
 }
 
+// Repeated requests to a slave do not count as attempts of the token behind them.
+TEST(DpRing, ATokenBehindASlaveThatDoesNotAnswer) {
+  Ring ring(station(2));
+  ring.master.add_slave(plan_of(9, "F0", 2));
+  into_ring_with_5(ring);
+  ring.say(50, "DC 02 05");
+  std::string spoken;
+  for (int n = 0; n < 7; ++n) spoken += ring.next().octets.substr(0, 5) + " ";
+  EXPECT_EQ(spoken, "68 05 68 05 10 03 DC 05 DC 05 DC 05 DC 02 ");
+}
+
 // While it listens a master says that it is not ready; two whole rotations make it so.
 TEST(DpRing, ListensForTwoRotations) {
   Ring ring(station(2));
@@ -295,6 +306,24 @@ TEST(DpLine, FramesThatFollowEachOtherDoNotCollide) {
     EXPECT_EQ(i.heard[0].second, "-");
     EXPECT_EQ(g.sent, std::vector{lost.line.at(166)}) << "the sender knows nothing";
   }
+}
+
+// Of frames that collide each bit counts once, whoever ends first.
+TEST(DpLine, LoadOfCollisions) {
+  const auto busy = [](Bits second) {
+    LineRig rig;
+    Talker a(rig, "a"), b(rig, "b");
+    rig.line.send(a.id, 100, hex("10 03 02 49 4E 16"));  // 66 bits
+    rig.line.send(b.id, second, hex("E5"));
+    rig.run(kSecond);
+    return rig.line.load(kSecond).busy_bits;
+  };
+  EXPECT_EQ(busy(120), 66U) << "within the other one";
+  EXPECT_EQ(busy(155), 66U) << "both end at once";
+  EXPECT_EQ(busy(160), 71U);
+  EXPECT_EQ(busy(166), 77U) << "one behind the other";
+  EXPECT_EQ(busy(90), 76U);
+  EXPECT_EQ(busy(40), 77U) << "one before the other";
 }
 
 TEST(DpLine, IsBusyWhileAFrameCanBeHeard) {

@@ -35,6 +35,7 @@ struct FakeUnit final : SlaveUnit {
     ++expired;
     expired_at = now;
   }
+  void exchanged(Time now) override { exchanges.push_back(now); }
   void exchange_ended(Time) override { ++ended; }
 
   std::string name;
@@ -47,6 +48,7 @@ struct FakeUnit final : SlaveUnit {
   int expired = 0;
   Time expired_at = 0;
   int ended = 0;
+  std::vector<Time> exchanges;
 };
 
 struct Notes final : SlaveObserver {

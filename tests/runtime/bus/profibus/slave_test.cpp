@@ -366,6 +366,25 @@ TEST(DpSlave, Watchdog) {
   EXPECT_EQ(bench.unit.watchdog, 650'250 * kMillisecond);
 }
 
+// The unit hears of each exchange of its master, also of one whose outputs wait for the next Sync.
+TEST(DpSlave, EachExchangeIsTold) {
+  SlaveBench bench;
+  EXPECT_EQ(bench.exchange(1, "00 06 00 00 00 00"), "RS");
+  bench.start(1, prm(kModes));
+  bench.now = 5;
+  bench.exchange(1, "00 06 00 00 00 00");
+  bench.control(1, 0x20);
+  bench.now = 6;
+  bench.exchange(1, "00 07 00 00 00 00");
+  EXPECT_EQ(bench.unit.exchanges, (std::vector<Time>{5, 6}));
+  const int taken = bench.unit.taken;
+  bench.now = 7;
+  bench.exchange(2, "00 08 00 00 00 00");  // another master
+  bench.exchange(1, "00 08");              // another length
+  EXPECT_EQ(bench.unit.exchanges.size(), 2U);
+  EXPECT_EQ(bench.unit.taken, taken);
+}
+
 TEST(DpSlave, Sync) {
   PROVES("DP-SYNC-01", "DP-SYNC-03", "DP-DIAG-14", "DP-SYNC-09");
   SlaveBench bench;

@@ -266,6 +266,8 @@ TEST(ProcessData, WordsOfEveryConfigurationOfMovidrive) {
     }
     unit.take_outputs(0, outputs);
     EXPECT_EQ(drive.output, expected) << configuration.name;
+    unit.exchange_ended(0);
+    EXPECT_EQ(drive.output, std::vector<uint16_t>(words, 0)) << configuration.name;
   }
   EXPECT_EQ(longest, 10U);
 }

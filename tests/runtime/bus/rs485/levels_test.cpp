@@ -231,22 +231,102 @@ TEST(SerialLine, ObserversKnowTheSenderOfACharacter) {
 
 // A station that changes its rate or is cut off loses the character it is hearing, and hears the next one.
 TEST(SerialLine, AReceiverBeginsAnew) {
-  for (const bool cut : {false, true}) {
-    Wired rig;
-    rig.a.send(hex("FE"));  // from its second data bit on all is 1
-    rig.queue.run_until(time_of(30));
-    if (cut) {
-      rig.line.set_connected(1, false);
-      rig.line.set_connected(1, true);
-    } else {
-      rig.line.set_baud(1, 9600);
+  for (const bool cut : {false, true})
+    for (const bool at_once : {false, true}) {
+      Wired rig;
+      // From its second data bit on all of FEh is 1.
+      rig.a.send(at_once ? hex("FE 7F") : hex("FE"));
+      rig.queue.run_until(time_of(30));
+      if (cut) {
+        rig.line.set_connected(1, false);
+        rig.line.set_connected(1, true);
+      } else {
+        rig.line.set_baud(1, 9600);
+      }
+      rig.queue.run_until(time_of(66));
+      if (!at_once) rig.a.send(hex("7F"));
+      rig.queue.run_until(kSecond);
+      EXPECT_EQ(rig.heard_by(rig.b), hex("7F")) << cut << at_once;
+      EXPECT_EQ(rig.heard_by(rig.c), hex("FE 7F"));
     }
-    rig.queue.run_until(time_of(66));
-    rig.a.send(hex("7F"));
+  // One that is cut off hears nothing more, not even the character it was hearing.
+  Wired rig;
+  rig.a.send(hex("FE 7F"));
+  rig.queue.run_until(time_of(30));
+  rig.line.set_connected(1, false);
+  rig.queue.run_until(kSecond);
+  EXPECT_TRUE(rig.b.characters.empty());
+}
+
+// Whoever finds no start bit waits for none.
+TEST(SerialLine, NothingWaitsOnAQuietLine) {
+  Wired rig;
+  EXPECT_EQ(rig.queue.pending(), 0U);
+  rig.a.send(hex("55"));
+  EXPECT_EQ(rig.queue.pending(), 4U) << "the end of it, two receivers and the observers";
+  rig.line.set_connected(1, false);
+  EXPECT_EQ(rig.queue.pending(), 3U);
+  rig.queue.run_until(time_of(66));
+  EXPECT_EQ(rig.queue.pending(), 0U);
+  rig.line.set_connected(1, true);
+  rig.line.set_baud(2, 57'600);
+  EXPECT_EQ(rig.queue.pending(), 0U);
+  rig.a.send(hex("55"));
+  rig.line.set_connected(0, false);
+  EXPECT_EQ(rig.queue.pending(), 0U) << "cut before its first bit";
+}
+
+// A low level shorter than half a bit is no start bit to anybody, and the next character is heard.
+TEST(SerialLine, ASpikeIsNoCharacter) {
+  for (const Tick ticks : {Tick{1}, Tick{3}, Tick{4}}) {
+    Wired rig;
+    HandNode fast(rig.line, "fast", 57'600);
+    EXPECT_TRUE(rig.line.send_bits(fast.port.node(), std::vector<bool>(ticks, false)));
+    rig.queue.run_until(time_of(100));
+    const bool spike = ticks <= 3;
+    EXPECT_EQ(rig.b.characters.size(), spike ? 0U : 1U) << ticks;
+    EXPECT_EQ(rig.recorder.characters.size(), spike ? 0U : 1U) << ticks;
+    EXPECT_EQ(rig.line.load(kSecond).frames, spike ? 0U : 1U);
+    rig.a.send(hex("55"));
     rig.queue.run_until(kSecond);
-    EXPECT_EQ(rig.heard_by(rig.b), hex("7F")) << cut;
-    EXPECT_EQ(rig.heard_by(rig.c), hex("FE 7F"));
+    EXPECT_EQ(rig.heard_by(rig.b).back(), 0x55);
+    EXPECT_EQ(rig.b.characters.size(), spike ? 1U : 2U);
   }
+}
+
+TEST(SerialLine, LoadOfPartsOfASecond) {
+  Wired rig;
+  rig.a.send(hex("55"));
+  rig.queue.run_until(2 * kSecond);
+  EXPECT_EQ(rig.line.load(0).elapsed_bits, 0U);
+  EXPECT_EQ(rig.line.load(kSecond / 2).elapsed_bits, 4'800U);
+  EXPECT_EQ(rig.line.load(kSecond / 2 - 1).elapsed_bits, 4'799U);
+  EXPECT_EQ(rig.line.load(kSecond + kSecond / 4).elapsed_bits, 12'000U);
+  EXPECT_EQ(rig.line.load(kSecond + kSecond / 4).busy_bits, 11U);
+}
+
+// Of two that collide each tick counts once, whoever ends first.
+TEST(SerialLine, LoadOfCollisions) {
+  const auto busy = [](Tick second, size_t bytes, Tick cut) {
+    EventQueue queue;
+    Rs485Line line(queue, 0, "x", 57'600);
+    HandNode a(line, "a"), b(line, "b", 9600);
+    b.send(Bytes(2, 0x55));  // 132 ticks
+    queue.run_until(time_of(second));
+    a.send(Bytes(bytes, 0x55));
+    queue.run_until(time_of(cut));
+    if (cut != 0) line.set_connected(b.port.node(), false);
+    queue.run_until(kSecond);
+    return line.load(kSecond).busy_bits;
+  };
+  EXPECT_EQ(busy(50, 1, 0), 132U) << "within the other one";
+  EXPECT_EQ(busy(121, 1, 0), 132U) << "both end at once";
+  EXPECT_EQ(busy(125, 1, 0), 136U) << "the second one ends later";
+  EXPECT_EQ(busy(132, 1, 0), 143U) << "one behind the other";
+  EXPECT_EQ(busy(0, 1, 0), 132U);
+  // Cut off, the last whole bit counts: it ended before the other one.
+  EXPECT_EQ(busy(20, 1, 35), 31U);
+  EXPECT_EQ(busy(20, 1, 41), 36U);
 }
 
 TEST(SerialLine, WhatWillBeHeard) {
