@@ -43,7 +43,6 @@ void Indexer::add_occurrence(Place where, size_t symbol, std::optional<uint32_t>
 void Indexer::add_macros(const PreprocessRecord& record) {
   for (const PreprocessRecord::Definition& one : record.definitions) {
     const Place where = place(one.name);
-    if (where.file == nullptr) continue;
     IndexedSymbol symbol;
     symbol.kind = SymbolKind::Macro;
     symbol.name = where.file->text.substr(where.begin, where.end - where.begin);
