@@ -185,6 +185,37 @@ TEST(FrontendDepthLimit, IsTheSameForEveryConstruct) {
   }
 }
 
+// Levels outside and inside of any construct count together.
+TEST(FrontendDepthLimit, CountsThroughEveryConstruct) {
+  const auto filled = [](std::string form, const std::string& inside) {
+    return form.replace(form.find('%'), 1, inside);
+  };
+  for (const char* form :
+       {"f(%)",   "f(a, %)", "f(%, a)", "v[%]",     "(a ? % : b)", "(a ? b : %)", "(% ? a : b)",
+        "(%, a)", "(a, %)",  "(a = %)", "(a += %)", "(v[%] = a)",  "(% + a)",     "(a + %)",
+        "*%",     "(%).m",   "(%)[1]",  "++*%",     "(*%)++",      "!%",          "numof(*%)"}) {
+    const auto said = [&](int outside, int inside) {
+      return messages_of("main() { x = " + times("- ", outside) + filled(form, times("- ", inside) + "y") +
+                         "; }");
+    };
+    EXPECT_EQ(said(100, 100), Messages{}) << form;
+    const Messages found = said(150, 150);
+    ASSERT_EQ(found.size(), 1U) << form;
+    EXPECT_EQ(found[0].substr(0, 5), "E0176") << form;
+  }
+  for (const char* form : {"{ % }", "{ a; % }", "{ % a; }", "if (c) %", "if (c) % else ;", "if (c) ; else %",
+                           "while (c) %", "do % while (c);", "for (;;) %", "switch (c) %"}) {
+    const auto said = [&](int outside, int inside) {
+      return messages_of("main() { " + times("while (x) ", outside) +
+                         filled(form, times("while (x) ", inside) + ";") + " }");
+    };
+    EXPECT_EQ(said(100, 100), Messages{}) << form;
+    const Messages found = said(150, 150);
+    ASSERT_EQ(found.size(), 1U) << form;
+    EXPECT_EQ(found[0].substr(0, 5), "E0176") << form;
+  }
+}
+
 TEST(FrontendErrorLimits, StopAfterAHundred) {
   for (int count = 98; count <= 103; ++count) {
     const Messages found = messages_of("main() {\n" + times("x = ;\n", count) + "}");
