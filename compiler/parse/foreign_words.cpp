@@ -3,7 +3,6 @@
 #include "compiler/parse/foreign_words.hpp"
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <unordered_set>
 
@@ -166,7 +165,7 @@ class Translator {
       if (equal_but_for_case(token.text, row.spelling) && stands_for(row.kind)) return meant(row);
     // Misspelt heads of statements have something in their brackets and a statement behind them.
     if (depth_ <= 0 || !filled_bracket(at_ + 1) || !statement_at(behind_bracket(at_ + 1))) return false;
-    static constexpr std::array<std::string_view, 4> kHeads = {"if", "while", "for", "switch"};
+    static constexpr std::string_view kHeads[] = {"if", "while", "for", "switch"};
     const std::string_view best = stdlib::nearest(token.text, kHeads);
     for (const Keyword& row : kKeywords)
       if (!best.empty() && row.spelling == best) return meant(row);

@@ -43,7 +43,6 @@ void Indexer::add_occurrence(Place where, size_t symbol, std::optional<uint32_t>
 void Indexer::add_macros(const PreprocessRecord& record) {
   for (const PreprocessRecord::Definition& one : record.definitions) {
     const Place where = place(one.name);
-    if (where.file == nullptr) continue;
     IndexedSymbol symbol;
     symbol.kind = SymbolKind::Macro;
     symbol.name = where.file->text.substr(where.begin, where.end - where.begin);
@@ -210,7 +209,8 @@ void Indexer::close(TokenKind bracket, Chain& chain) {
     if (kind != open) continue;
     if (open == TokenKind::LeftParen) return;  // (a).b: what is inside goes on
     std::optional<uint32_t> element;
-    if (chain.before != nullptr && chain.before->kind == TokenKind::Number && object.number) {
+    // A number alone; of `[n + 1]` nobody knows the element. A bracket stands in front of it, so it is not the first.
+    if (chain.before->kind == TokenKind::Number && chain.before[-1].kind == open && object.number) {
       const ParsedNumber parsed = parse_number(chain.before->text, false);
       if (parsed.form == NumberForm::Good && parsed.value < object.type.count)
         element = *object.number + parsed.value * object.type.element().size();

@@ -92,6 +92,49 @@ TEST(Folding, EveryUnaryOperatorIsWhatTheMachineComputes) {
   }
 }
 
+// Where one side is known the other may still be asked for; the value is what C says.
+TEST(Folding, OneConstantSideOfALogicalOperatorOrOfAConditional) {
+  for (const int32_t known : {INT32_MIN, -1, 0, 1, 2, INT32_MAX}) {
+    const std::string c = constant(known);
+    const bool yes = known != 0;
+    struct Form {
+      std::string expression;
+      int32_t (*value)(bool, int32_t, int32_t);
+    };
+    for (const Form& form :
+         {Form{c + " && H0", [](bool k, int32_t a, int32_t) { return static_cast<int32_t>(k && a != 0); }},
+          Form{"H0 && " + c, [](bool k, int32_t a, int32_t) { return static_cast<int32_t>(k && a != 0); }},
+          Form{c + " || H0", [](bool k, int32_t a, int32_t) { return static_cast<int32_t>(k || a != 0); }},
+          Form{"H0 || " + c, [](bool k, int32_t a, int32_t) { return static_cast<int32_t>(k || a != 0); }},
+          Form{c + " ? H0 : H1", [](bool k, int32_t a, int32_t b) { return k ? a : b; }},
+          Form{"H0 ? H1 : " + c + " == 0",
+               [](bool k, int32_t a, int32_t b) { return a != 0 ? b
+                                                         : k    ? 0
+                                                                : 1; }},
+          Form{"!" + c + " + H0", [](bool k, int32_t a, int32_t) { return (k ? 0 : 1) + a; }}}) {
+      Executed computed("main() { H2 = " + form.expression + "; }");
+      ASSERT_TRUE(computed.is_compiled()) << form.expression;
+      for (const int32_t a : {INT32_MIN, -1, 0, 1, 7})
+        for (const int32_t b : {-5, 0, 9})
+          EXPECT_EQ(computed.result(a, b), form.value(yes, a, b)) << form.expression << " " << a << " " << b;
+    }
+  }
+}
+
+// `+=` and the like with a constant behind them, against the operator alone.
+TEST(Folding, AssignmentsWithAConstantAreTheirOperators) {
+  for (const char* op : {"*", "/", "%", "+", "-", "<<", ">>", "&", "^", "|"}) {
+    Executed computed("main() { H2 = H0 " + std::string(op) + " H1; }");
+    for (const int32_t right : kEdges) {
+      if (right == 0 && (*op == '/' || *op == '%')) continue;
+      Executed assigned("main() { H2 = H0; H2 " + std::string(op) + "= " + constant(right) + "; }");
+      ASSERT_TRUE(assigned.is_compiled()) << op << right;
+      for (const int32_t left : kEdges)
+        EXPECT_EQ(assigned.result(left, right), computed.result(left, right)) << left << op << right;
+    }
+  }
+}
+
 TEST(Folding, DivisionByAConstantZeroIsNotFolded) {
   for (const char* op : {"/", "%"}) {
     const Compilation c = compile_text("main() { H2 = 5 " + std::string(op) + " 0; }", "mdxb");

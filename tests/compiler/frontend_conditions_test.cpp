@@ -261,6 +261,18 @@ TEST(FrontendConditions, BranchesAreTakenOnce) {
   EXPECT_EQ(behind.words(), "one four");
 }
 
+TEST(FrontendConditions, ThatAreWrongAreNotTaken) {
+  for (const char* wrong :
+       {"#if", "#if 1 +", "#if 1 / 0", "#if (1", "#if 1 2", "#if 1 ? 2", "#if 12ab", "#if defined",
+        "#if 1 || defined(", "#ifdef", "#ifdef 5", "#ifndef", "#ifndef 5", "#ifndef defined"}) {
+    EXPECT_EQ(FrontendRun(wrong + std::string("\nyes\n#else\nno\n#endif")).words(), "no") << wrong;
+    EXPECT_EQ(FrontendRun(wrong + std::string("\nyes\n#elif 1\nelse\n#endif")).words(), "else") << wrong;
+  }
+  for (const char* wrong : {"#elif", "#elif 1 +", "#elif 1 / 0", "#elif defined"})
+    EXPECT_EQ(FrontendRun("#if 0\n" + std::string(wrong) + "\nyes\n#else\nno\n#endif").words(), "no")
+        << wrong;
+}
+
 TEST(FrontendConditions, NamesAreAskedForBeforeTheyAreReplaced) {
   const std::string head = "#define A B\n#define ONE 1\n";
   const std::pair<const char*, const char*> rows[] = {{"#ifdef A", "yes"},

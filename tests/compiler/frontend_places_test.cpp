@@ -195,6 +195,21 @@ TEST(FrontendQuotes, NameTheFlagOfAWarning) {
   EXPECT_EQ(compiler::severity_word(compiler::Severity::Note), "note");
 }
 
+TEST(FrontendQuotes, ColourEveryKindOfMessage) {
+  FrontendRun run("#define A 1.5\n#if B\n#endif\nmain() { x = A; }");
+  run.parse();
+  EXPECT_EQ(compiler::render_text(run.diagnostics.all(), run.map, true),
+            "\x1b[1mt.IPC:2:5:\x1b[0m \x1b[1;35mwarning:\x1b[0m 'B' is not defined and counts as 0 [W0124, "
+            "-Wundefined-macro]\n"
+            "    2 | #if B\n      |     \x1b[1;32m^\x1b[0m\n"
+            "\x1b[1mt.IPC:4:14:\x1b[0m \x1b[1;31merror:\x1b[0m '1.5' has a fraction, but there are whole "
+            "numbers only; scale "
+            "the value [E0108]\n"
+            "    4 | main() { x = A; }\n      |              \x1b[1;32m^\x1b[0m\n"
+            "\x1b[1mt.IPC:1:11:\x1b[0m \x1b[1;36mnote:\x1b[0m in macro 'A', defined at t.IPC:1\n"
+            "    1 | #define A 1.5\n      |           \x1b[1;32m^\x1b[0m\n");
+}
+
 TEST(FrontendQuotes, TellEightMacrosAndEightFilesOfAChain) {
   for (int length = 7; length <= 10; ++length) {
     std::string source;

@@ -37,7 +37,7 @@ TEST(FrontendNumbers, Forms) {
   EXPECT_TRUE(parse_number("0x1", false).pattern);
   EXPECT_TRUE(parse_number("0b1", false).pattern);
   EXPECT_FALSE(parse_number("1", false).pattern);
-  for (const char* bad : {"0x", "0b", "0b2", "0xG", "12ab", "1_0", "10L", "0b1.1"})
+  for (const char* bad : {"0x", "0b", "0b2", "0xG", "12ab", "1_0", "10L", "0b1.1", "e5", "E5"})
     EXPECT_EQ(parse_number(bad, false).form, NumberForm::Bad) << bad;
   for (const char* fraction : {"1.5", ".5", "1.", "1e6", "2E3", "1.5e2"})
     EXPECT_EQ(parse_number(fraction, false).form, NumberForm::Fraction) << fraction;

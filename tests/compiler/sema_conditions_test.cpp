@@ -289,6 +289,7 @@ TEST(Statements, ThatAreNeverReached) {
       {"switch (H1) { case 1: return; H2 = 1; H3 = 1; case 2: return; H4 = 1; }", {"W0203", "W0203"}},
       {"switch (H1) { case 1: return; break; }", {}},
       {"switch (H1) { case 1: return; while (H2) { case 2: H3 = 1; } H4 = 1; }", {}},
+      {"switch (H1) while (H2) H3++; H0 = 1;", {}},
       {"while (H1) { continue; H0 = 1; }", never},
       {"while (H1) { break; H0 = 1; }", never},
       {"while (H1) { if (H2) continue; H0 = 1; }", {}},

@@ -233,6 +233,24 @@ TEST(Mistakes, VariablesOfTwoRangesMeet) {
                   "initial long a[28]; long b; main() { a[0] = b; }"));
 }
 
+TEST(Mistakes, VariablesOfTwoRangesNameEachOther) {
+  const Compilation c = compile_text(
+      "#pragma initials 100 127\n#pragma globals 120 140\n"
+      "initial long a[28]; long b, c[3]; main() { a[0] = b; b = c[1]; c[0] = 1; }");
+  std::vector<std::string> texts;
+  for (const Diagnostic& one : c.diagnostics.all()) {
+    texts.push_back(one.text);
+    for (const Note& note : one.notes) texts.push_back("  " + note.text);
+  }
+  // 21 numbers in a row, the highest below the system variables.
+  EXPECT_EQ(
+      texts,
+      (std::vector<std::string>{
+          "range H100 to H127 of initials overlaps range H120 to H140 of globals",
+          "'b' and 'a' both get H120; '#pragma globals 432 452' makes room", "  'a' is declared here",
+          "'c' and 'a' both get H121; '#pragma globals 432 452' makes room", "  'a' is declared here"}));
+}
+
 TEST(Mistakes, RecursionThatLosesATemporary) {
   EXPECT_EQ((std::vector<std::string>{"W0209", "E0233"}),
             codes("long a, b; f() { a = a * b + (f(), b); } main() { b = 2; f(); }"));

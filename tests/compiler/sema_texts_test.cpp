@@ -243,6 +243,33 @@ std::vector<Told> told_statements() {
   };
 }
 
+std::vector<Told> told_blocks() {
+  return {
+      {"SCREC r; main() { r.Len = 1; _SBusCommDef(1, @r$); }",
+       "argument 2 of '_SBusCommDef' should be of type SCTRCYCL, but 'r' is SCREC"},
+      {"SCTRCYCL t[2]; main() { t[0].Len = 1; _SBusCommDef(1, @t$); }",
+       "argument 2 of '_SBusCommDef' should be of type SCTRCYCL, but 't' is SCTRCYCL[2]"},
+      {"long v[6]; main() { v[0] = 1; _SBusCommDef(1, @v$); }",
+       "argument 2 of '_SBusCommDef' should be of type SCTRCYCL, but 'v' is long[6]"},
+      {"long m; main() { m = 1; _MoviLink(@m$); }",
+       "argument 1 of '_MoviLink' should be of type MOVLNK, but 'm' is long"},
+      {"long a; main() { _GetSys(@a$, 7); H0 = a; }",
+       "argument 1 of '_GetSys' should be of type long[2], but 'a' is long"},
+      {"long v[2]; main() { _GetSys(@v$, 0); H0 = v[0]; }",
+       "argument 1 of '_GetSys' should be of type long, but 'v' is long[2]"},
+      {"long v[13]; main() { _GetSys(@v$, 8); H0 = v[0]; }",
+       "argument 1 of '_GetSys' should be of type GSCAM or GSCAM_EXT, but 'v' is long[13]"},
+      {"long v[1]; main() { v[0] = 1; _SetSys(9, @v$); }",
+       "argument 2 of '_SetSys' should be of type SSPOSRAMP, but 'v' is long[1]"},
+      {"MLDATA d; main() { d.PO1 = 1; _SetSys(9, @d$); }",
+       "argument 2 of '_SetSys' should be of type SSPOSRAMP, but 'd' is MLDATA"},
+      {"typedef struct { long a; } S; S s; main() { s.a = 1; _SetSys(9, @s$); }",
+       "argument 2 of '_SetSys' should be of type SSPOSRAMP, but 's' is S"},
+      {"typedef struct { MOVLNK m; SCREC r; } S; S s; main() { s.m.Index = s.r.Len; _MoviLink(@s.r$); }",
+       "argument 1 of '_MoviLink' should be of type MOVLNK, but 'r' is SCREC"},
+  };
+}
+
 std::vector<Told> told_ranges() {
   const std::string system = "H453 to H560 are system variables";
   return {
@@ -353,8 +380,23 @@ TEST_P(ToldMistakes, AreToldInTheseWords) {
 INSTANTIATE_TEST_SUITE_P(Names, ToldMistakes, testing::ValuesIn(told_names()));
 INSTANTIATE_TEST_SUITE_P(Objects, ToldMistakes, testing::ValuesIn(told_objects()));
 INSTANTIATE_TEST_SUITE_P(Calls, ToldMistakes, testing::ValuesIn(told_calls()));
+INSTANTIATE_TEST_SUITE_P(Blocks, ToldMistakes, testing::ValuesIn(told_blocks()));
 INSTANTIATE_TEST_SUITE_P(Statements, ToldMistakes, testing::ValuesIn(told_statements()));
 INSTANTIATE_TEST_SUITE_P(Ranges, ToldMistakes, testing::ValuesIn(told_ranges()));
+
+// A value of the unit is words, which an array or a structure of the program holds as well.
+TEST(ToldBlocks, WhatFitsIsNotTold) {
+  for (const char* good :
+       {"long v[2]; main() { v[0] = 1; _SetSys(9, v); }", "long v[3]; main() { v[0] = 1; _SetSys(9, v); }",
+        "typedef struct { long a; long b; } S; S s; main() { s.a = s.b = 1; _SetSys(9, s); }",
+        "SSPOSRAMP r; main() { r.Up = 1; _SetSys(9, r); }", "long a; main() { _GetSys(a, 0); H0 = a; }",
+        "long v[2]; main() { _GetSys(v, 7); H0 = v[0]; }", "long v[14]; main() { _GetSys(v, 8); H0 = v[0]; }",
+        "GSCAM_EXT e; main() { e.CamState = 1; _GetSys(e, 8); }", "main() { _SBusCommDef(1, H300); }",
+        "#declare A H300\nmain() { _SBusCommDef(1, A); }",
+        "long v[2]; main() { v[0] = 1; _SetSys(0, v[1]); v[1] = 2; }", "main() { _SBusCommDef(3, H509); }",
+        "main() { _Copy(H0, H510, 2); _Copy(H0, H511, 1); }"})
+    EXPECT_EQ(codes(good), std::vector<std::string>{}) << good;
+}
 
 }  // namespace
 }  // namespace ipos::compiler::test

@@ -210,6 +210,10 @@ TEST(Writers, OfOneVariable) {
             "'v' is written by 'main' and 't'\n");
   EXPECT_EQ(said("long v[3]; main() { _SetTask2(1, t); v[0] = 1; v[2] = 1; } t() { v[H0] = 2; }"),
             "'v' is written by 'main' and 't'\n");
+  EXPECT_EQ(said("long v[3], w; main() { _SetTask2(1, t); v[0] = 1; w = 1; } t() { w = 2; }"),
+            "'w' is written by 'main' and 't'\n");
+  EXPECT_EQ(said("long w, v[3]; main() { _SetTask2(1, t); v[0] = 1; w = 1; } t() { w = 2; }"),
+            "'w' is written by 'main' and 't'\n");
   EXPECT_EQ(said("#declare N H300\nmain() { _SetTask2(1, t); N = 1; } t() { N = 2; }"), "")
       << "others know its number";
 }
@@ -398,6 +402,19 @@ TEST(Allocation, OfVariablesNobodyUses) {
   EXPECT_EQ(said("initial long a; main() { }"), "variable 'a' is never used\n");
   EXPECT_EQ(said("#declare A H300\nmain() { }"), "");
   EXPECT_EQ(said("long v[3]; main() { v[2] = 1; }"), "");
+  // A use reaches no further than what is used.
+  const std::string b = "variable 'b' is never used\n";
+  for (const char* exact :
+       {"long v[3], b; main() { v[2] = 1; }", "long b, v[3]; main() { v[0] = 1; }",
+        "SCREC r; long b; main() { r.DPointer = 5; }", "long b; SCREC r; main() { r.ObjectNo = 5; }",
+        "SCREC r[2]; long b; main() { r[1].DPointer = 1; }", "SCREC q, r; long b; main() { q = r; r = q; }",
+        "long a[2], c[2], b; main() { a = c; c = a; }", "long a, b; main() { a++; }",
+        "long a, b; main() { H0 = a; a = H0; }",
+        "typedef struct { long x[2]; long y; } S; S s; long b; main() { s.x[1] = 1; s.y = 1; }",
+        "long a[2], b; main() { _Copy(a, H200, 2); }",
+        "SCREC r; long b; main() { r.Len = 1; _SBusCommDef(3, r); }",
+        "SCTRCYCL r; long b; main() { r.CycleTime = 10; _SBusCommDef(1, r); }"})
+    EXPECT_EQ(said(exact), b) << exact;
   // The eight variables from one whose number is taken on may be used by their numbers.
   EXPECT_EQ(said("long a, v[6], b, p; main() { p = numof(a); }"), "");
   EXPECT_EQ(said("long a, v[7], b, p; main() { p = numof(a); H0 = p; }"), "variable 'b' is never used\n");

@@ -130,6 +130,62 @@ TEST_F(Index, TellsWhatEveryNameMeans) {
   for (const auto& [text, meaning] : rows) EXPECT_EQ(means(text), meaning) << text;
 }
 
+// The name behind '@' in `text`: the member of Axis it means.
+std::string member_meant(const std::string& text) {
+  std::string source =
+      "typedef struct { long target; long steps[2]; } Axis;\nAxis left[2], one; MOVLNK Ml; long n;\n" + text;
+  const size_t mark = source.find('@');
+  source.erase(mark, 1);
+  const compiler::ProgramIndex index =
+      compiler::index_program("B.IPC", "/p/B.IPC", source, {}, *stdlib::find_unit(std::string_view("md60a")));
+  const Occurrence* found = index.at(*index.main, static_cast<uint32_t>(mark));
+  if (found == nullptr) return "nothing";
+  return index.symbols[found->symbol].name + (found->number ? " " + std::to_string(*found->number) : "");
+}
+
+TEST(IndexOfAnyText, FollowsTheObjectsInFrontOfADot) {
+  // left is H420 to H425, one H426 to H428.
+  const std::pair<const char*, const char*> rows[] = {
+      {"main() { left[n + 1].@target = 1; }", "target"},
+      {"main() { left[1].@target = 1; }", "target 423"},
+      {"main() { left[-1].@target = 1; }", "target"},
+      {"main() { left[n = 1].@target = 1; }", "target"},
+      {"main() { left[n * (n - 1)].@target = 1; }", "target"},
+      {"main() { left[left[1].target].@target = 1; }", "target"},
+      {"main() { left[left[1].@target].target = 1; }", "target 423"},
+      {"main() { (one).@target = 1; }", "target 426"},
+      {"main() { ((one)).@steps[0] = 1; }", "steps 427"},
+      {"main() { f(n, one).@target = 1; }", "target 426"},
+      {"main() { one[0].@target = 1; }", "nothing"},
+      {"main() { left[0][1].@target = 1; }", "nothing"},
+      {"main() { one->@target = 1; }", "target 426"},
+      {"main() { one + .@target = 1; }", "nothing"},
+      {"main() { n.@target = 1; }", "nothing"},
+      {"main() { one.steps.@target = 1; }", "nothing"},
+      {"main() { one.steps[1].@target = 1; }", "nothing"},
+      {"main() { left[1].@ta = 1; }", "nothing"},
+      // Text that is not finished: a ';' or a '{' ends what is open in front of it.
+      {"main() { left[ ; 1].@target = 1; }", "nothing"},
+      {"main() { left[ { 1].@target = 1; }", "nothing"},
+      {"main() { left[ ( 1].@target = 1; }", "target"},
+      {"main() { left 1].@target = 1; }", "nothing"},
+      {"main() { left[1].target = 1; one.@", "nothing"},
+      {"main() { Ml.Index = @8318; }", "8318 8318"},
+      {"main() { Ml.Index = 1 + @8318; }", "nothing"},
+      {"main() { Ml.Index += @8318; }", "nothing"},
+      {"main() { one.target = @8318; }", "nothing"},
+      {"main() { Ml.Index; n = @8318; }", "nothing"},
+  };
+  for (const auto& [text, meant] : rows) EXPECT_EQ(member_meant(text), meant) << text;
+}
+
+TEST_F(Index, KnowsTheNumberOfAParameter) {
+  const Occurrence* found = find("= @8318", kSource, *index_.main);
+  ASSERT_NE(found, nullptr);
+  EXPECT_EQ(index_.symbols[found->symbol].kind, SymbolKind::Parameter);
+  EXPECT_EQ(index_.symbols[found->symbol].number, 8318U);
+}
+
 TEST_F(Index, FindsTheOccurrenceAnOffsetTouches) {
   const auto first = static_cast<uint32_t>(kSource.find("kept"));
   const auto is_kept = [&](uint32_t offset) {

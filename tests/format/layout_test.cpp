@@ -195,6 +195,8 @@ TEST(Layout, CommentsInsideAndAboveCode) {
   EXPECT_EQ(formatted("\t/* x\n\t   y\n z */\nlong a;"), "/* x\n   y\nz */\nlong a;\n");
   EXPECT_EQ(formatted("long a; // x  \n// y \t\n/* z  \n  w */"), "long a;  // x\n// y\n/* z\n  w */\n");
   EXPECT_EQ(formatted("// only"), "// only\n");
+  EXPECT_EQ(formatted("long a;//\nlong b;//"), "long a;  //\nlong b;  //\n");
+  EXPECT_EQ(formatted("//\n/**/long a;"), "//\n/**/ long a;\n");
   EXPECT_EQ(formatted("long a;\n// x\n\n// y\n"), "long a;\n// x\n\n// y\n");
   EXPECT_EQ(formatted("long a = b / c; // d /* e\n"), "long a = b / c;  // d /* e\n");
   EXPECT_EQ(formatted("long a; /* // */ long b; /**/ long c; /***/"),
@@ -237,6 +239,7 @@ TEST(Layout, LineEndsFollowTheFirst) {
 
 TEST(Layout, BracesTooMany) {
   EXPECT_EQ(formatted("}\nlong  a;"), "}\nlong a;\n");
+  EXPECT_EQ(formatted("long  a;}long  b;"), "long a;\n}\nlong b;\n");
   EXPECT_EQ(formatted("main(){if(a)}long  b;"), "main()\n{\n    if (a)\n}\nlong b;\n");
   EXPECT_EQ(formatted("main(){a=(1;}b;"), "main()\n{\n    a = (1;\n}\nb;\n");
   EXPECT_EQ(formatted("a);b;"), "a);\nb;\n");

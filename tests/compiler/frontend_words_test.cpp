@@ -1,0 +1,247 @@
+// Words and signs of other languages are read as what was meant, names that only look like them are left alone; and
+// the limits of nesting and of errors, to the last one.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <regex>
+
+#include "tests/compiler/frontend_run.hpp"
+
+namespace ipos::tests {
+namespace {
+
+// The tree without its places.
+std::string shape_of_program(FrontendRun& run) {
+  return std::regex_replace(run.tree(), std::regex("\\d+:\\d+ "), "");
+}
+
+// Read as `right` is, with these codes said on the way.
+void expect_read_as(const std::string& wrong, const std::string& right,
+                    const std::vector<std::string>& codes) {
+  FrontendRun meant(right);
+  meant.parse();
+  FrontendRun run(wrong);
+  std::vector<std::string> found;
+  for (const std::string& message : run.parse().messages()) found.push_back(message.substr(0, 5));
+  EXPECT_EQ(found, codes) << wrong;
+  EXPECT_EQ(shape_of_program(run), shape_of_program(meant)) << wrong;
+}
+
+void expect_statement_read_as(const std::string& wrong, const std::string& right,
+                              const std::vector<std::string>& codes) {
+  expect_read_as("main() { " + wrong + " }", "main() { " + right + " }", codes);
+}
+
+TEST(FrontendWords, OperatorsOfPlcs) {
+  const std::vector<std::string> one = {"E0181"};
+  for (const auto& [word, sign] : {std::pair<const char*, const char*>{"AND", "&&"},
+                                   {"or", "||"},
+                                   {"Xor", "^"},
+                                   {"MOD", "%"},
+                                   {"div", "/"}}) {
+    const std::string w = " " + std::string(word) + " ";
+    const std::string s = " " + std::string(sign) + " ";
+    for (const char* left : {"a", "5", "(a)", "v[1]", "f.x"})
+      for (const char* right : {"b", "7", "(b)", "numof(b)", "!b", "-b", "~b", "numof(v)"})
+        expect_statement_read_as("x = " + std::string(left) + w + right + ";",
+                                 "x = " + std::string(left) + s + right + ";", one);
+    // A name like the word stands where no operator can.
+    for (const std::string& name :
+         {"x = " + std::string(word) + " + 1;", std::string(word) + " = 1;", "x = " + std::string(word) + ";",
+          "x." + std::string(word) + " = 1;", std::string(word) + "();", "x = 1 + " + std::string(word) + ";",
+          "x = a * " + std::string(word) + " - b;"})
+      expect_statement_read_as(name, name, {});
+  }
+  expect_statement_read_as("x = NOT y;", "x = !y;", one);
+  expect_statement_read_as("if (Not y) z;", "if (!y) z;", one);
+  expect_statement_read_as("if (NOT (y)) z;", "if (!(y)) z;", one);
+  expect_statement_read_as("if (NOT numof(y)) z;", "if (!numof(y)) z;", one);
+  expect_statement_read_as("x = not;", "x = not;", {});
+  expect_statement_read_as("x = not + 1;", "x = not + 1;", {});
+  expect_statement_read_as("not();", "not();", {});
+  expect_statement_read_as("x := 5;", "x = 5;", one);
+  expect_statement_read_as("if (x <> 5) y;", "if (x != 5) y;", one);
+  expect_statement_read_as("x = a ? b : c;", "x = a ? b : c;", {});
+  expect_statement_read_as("x = a AND b OR NOT c;", "x = a && b || !c;", {"E0181", "E0181", "E0181"});
+}
+
+TEST(FrontendWords, BlocksOfPlcs) {
+  const std::vector<std::string> one = {"E0181"};
+  const std::vector<std::string> two = {"E0181", "E0181"};
+  for (const char* statement : {"y = 1;", "{ y = 1; }", "while (y) z;", "for (;;) z;", "break;", "5;"})
+    expect_statement_read_as("if (x) THEN " + std::string(statement), "if (x) " + std::string(statement),
+                             one);
+  expect_statement_read_as("if (x) then();", "if (x) then();", {});
+  expect_statement_read_as("then = 1;", "then = 1;", {});
+  expect_statement_read_as("while (x) BEGIN y = 1; END", "while (x) { y = 1; }", two);
+  expect_statement_read_as("while (x) BEGIN y = 1; END;", "while (x) { y = 1; }", two);
+  expect_statement_read_as("while (x) begin y = 1; z = 2; end z = 3;", "while (x) { y = 1; z = 2; } z = 3;",
+                           two);
+  expect_statement_read_as("if (x) y; else BEGIN y = 1; END", "if (x) y; else { y = 1; }", two);
+  expect_statement_read_as("do BEGIN y = 1; END while (x);", "do { y = 1; } while (x);", two);
+  expect_statement_read_as("while (x) BEGIN while (y) BEGIN z; END; END; z = 1;",
+                           "while (x) { while (y) { z; } } z = 1;", {"E0181", "E0181", "E0181", "E0181"});
+  expect_statement_read_as("begin = 1; end = 2;", "begin = 1; end = 2;", {});
+  expect_statement_read_as("end(); begin();", "end(); begin();", {});
+  expect_statement_read_as("while (x) BEGIN y = end; END", "while (x) { y = end; }", two);
+  for (const char* end : {"END_IF", "end_while", "End_For", "END_CASE", "endif"}) {
+    expect_statement_read_as("while (x) y = 1; " + std::string(end) + "; z = 1;", "while (x) y = 1; z = 1;",
+                             one);
+    expect_statement_read_as(std::string(end) + " = 1;", std::string(end) + " = 1;", {});
+    expect_statement_read_as("x = " + std::string(end) + ";", "x = " + std::string(end) + ";", {});
+    expect_statement_read_as(std::string(end) + "();", std::string(end) + "();", {});
+  }
+}
+
+TEST(FrontendWords, KeywordsInOtherLetters) {
+  const std::vector<std::string> one = {"E0180"};
+  for (const auto& [wrong, right] :
+       {std::pair<const char*, const char*>{"IF (x) y;", "if (x) y;"},
+        {"WHILE (x) y;", "while (x) y;"},
+        {"For (x;;) y;", "for (x;;) y;"},
+        {"SWITCH (x) { case 1: y; }", "switch (x) { case 1: y; }"},
+        {"if (x) y; ELSE z;", "if (x) y; else z;"},
+        {"if (x) { } Else { z; }", "if (x) { } else { z; }"},
+        {"DO y; while (x);", "do y; while (x);"},
+        {"if (x) Do { y; } while (x);", "if (x) do { y; } while (x);"},
+        {"switch (x) { CASE 1: y; }", "switch (x) { case 1: y; }"},
+        {"switch (x) { Case n: y; }", "switch (x) { case n: y; }"},
+        {"switch (x) { case 1: CASE 2: y; }", "switch (x) { case 1: case 2: y; }"},
+        {"switch (x) { DEFAULT: y; }", "switch (x) { default: y; }"},
+        {"x = NUMOF(y);", "x = numof(y);"},
+        {"if (x) WHILE (y) z;", "if (x) while (y) z;"}})
+    expect_statement_read_as(wrong, right, one);
+  for (const char* name : {"If = 1;", "While();", "For++;", "x = Else;", "Else();", "Do = 1;", "x = Case;",
+                           "Default = 1;", "x.If = 1;", "Numof();", "Numof = 1;", "x = If + 1;", "Long = 1;",
+                           "Switch(x);", "x = y ? Default : z;", "While(x) + 1;"})
+    expect_statement_read_as(name, name, {});
+  expect_read_as(
+      "Long a;\nINITIAL long b;\nInitial SCREC c;\nTYPEDEF struct { LONG d; } T;\ntypedef STRUCT { long e; } "
+      "U;",
+      "long a;\ninitial long b;\ninitial SCREC c;\ntypedef struct { long d; } T;\ntypedef struct { long e; } "
+      "U;",
+      {"E0180", "E0180", "E0180", "E0180", "E0180", "E0180"});
+  expect_read_as("typedef struct { long a; } Long;\nLong b;\nmain() { }",
+                 "typedef struct { long a; } Long;\nLong b;\nmain() { }", {});
+  expect_read_as("#declare While H5\n#declare If While\nmain() { While = If; }",
+                 "#declare While H5\n#declare If While\nmain() { While = If; }", {});
+}
+
+TEST(FrontendWords, MisspeltHeadsOfStatements) {
+  const std::vector<std::string> one = {"E0180"};
+  for (const auto& [wrong, right] : {std::pair<const char*, const char*>{"whlie (x) y;", "while (x) y;"},
+                                     {"fro (x;;) y;", "for (x;;) y;"},
+                                     {"swtich (x) { case 1: y; }", "switch (x) { case 1: y; }"},
+                                     {"wihle ((x) && (y)) { z; }", "while ((x) && (y)) { z; }"},
+                                     {"forr (x;;) 5;", "for (x;;) 5;"},
+                                     {"whil (x) if (y) z;", "while (x) if (y) z;"}})
+    expect_statement_read_as(wrong, right, one);
+  for (const char* call : {"whlie(x);", "whlie();", "fro(x) + 1;", "x = whlie;", "whlie = 1;"})
+    expect_statement_read_as(call, call, {});
+  // 500 tokens of a head are looked at, its brackets among them.
+  const auto head = [](int sums) {
+    std::string out = "main() { whlie (x";
+    for (int n = 0; n < sums; ++n) out += " + x";
+    return messages_of(out + ") y; }");
+  };
+  EXPECT_EQ(head(248).front(), "E0180 1:10");
+  EXPECT_NE(head(249).front().substr(0, 5), "E0180");
+}
+
+std::string times(const std::string& text, int count) {
+  std::string all;
+  for (int n = 0; n < count; ++n) all += text;
+  return all;
+}
+
+// 256 nodes within each other are the deepest tree.
+TEST(FrontendDepthLimit, IsTheSameForEveryConstruct) {
+  struct Construct {
+    const char* before;
+    const char* repeated;
+    const char* inside;
+    const char* closing;
+    const char* after;
+  };
+  const Construct constructs[] = {{"x = ", "- ", "1", "", ";"},        {"x = ", "!", "1", "", ";"},
+                                  {"x = 1", " + 1", "", "", ";"},      {"", "x = ", "1", "", ";"},
+                                  {"x = ", "1 ? 2 : ", "3", "", ";"},  {"x", ".m", "", "", ";"},
+                                  {"x", "[1]", "", "", ";"},           {"", "x[", "1", "]", ";"},
+                                  {"1", ", 1", "", "", ";"},           {"", "if (x) ", ";", "", ""},
+                                  {"", "if (x) ; else ", ";", "", ""}, {"", "while (x) ", ";", "", ""},
+                                  {"", "do ", ";", " while (x);", ""}, {"", "for (;;) ", ";", "", ""},
+                                  {"", "switch (x) ", "y;", "", ""},   {"x = ", "*", "y", "", ";"},
+                                  {"x = ", "(", "1", ")", ";"}};
+  for (const Construct& one : constructs) {
+    const auto said = [&](int count) {
+      return messages_of("main() { " + std::string(one.before) + times(one.repeated, count) + one.inside +
+                         times(one.closing, count) + one.after + " }");
+    };
+    // A statement is in the block of its function, an expression may have all 256 for itself.
+    EXPECT_EQ(said(254), Messages{}) << one.repeated;
+    const Messages found = said(256);
+    ASSERT_EQ(found.size(), 1U) << one.repeated;
+    EXPECT_EQ(found[0].substr(0, 5), "E0176") << one.repeated;
+  }
+}
+
+// Levels outside and inside of any construct count together.
+TEST(FrontendDepthLimit, CountsThroughEveryConstruct) {
+  const auto filled = [](std::string form, const std::string& inside) {
+    return form.replace(form.find('%'), 1, inside);
+  };
+  for (const char* form :
+       {"f(%)",   "f(a, %)", "f(%, a)", "v[%]",     "(a ? % : b)", "(a ? b : %)", "(% ? a : b)",
+        "(%, a)", "(a, %)",  "(a = %)", "(a += %)", "(v[%] = a)",  "(% + a)",     "(a + %)",
+        "*%",     "(%).m",   "(%)[1]",  "++*%",     "(*%)++",      "!%",          "numof(*%)"}) {
+    const auto said = [&](int outside, int inside) {
+      return messages_of("main() { x = " + times("- ", outside) + filled(form, times("- ", inside) + "y") +
+                         "; }");
+    };
+    EXPECT_EQ(said(100, 100), Messages{}) << form;
+    const Messages found = said(150, 150);
+    ASSERT_EQ(found.size(), 1U) << form;
+    EXPECT_EQ(found[0].substr(0, 5), "E0176") << form;
+  }
+  for (const char* form : {"{ % }", "{ a; % }", "{ % a; }", "if (c) %", "if (c) % else ;", "if (c) ; else %",
+                           "while (c) %", "do % while (c);", "for (;;) %", "switch (c) %"}) {
+    const auto said = [&](int outside, int inside) {
+      return messages_of("main() { " + times("while (x) ", outside) +
+                         filled(form, times("while (x) ", inside) + ";") + " }");
+    };
+    EXPECT_EQ(said(100, 100), Messages{}) << form;
+    const Messages found = said(150, 150);
+    ASSERT_EQ(found.size(), 1U) << form;
+    EXPECT_EQ(found[0].substr(0, 5), "E0176") << form;
+  }
+}
+
+TEST(FrontendErrorLimits, StopAfterAHundred) {
+  for (int count = 98; count <= 103; ++count) {
+    const Messages found = messages_of("main() {\n" + times("x = ;\n", count) + "}");
+    ASSERT_EQ(found.size(), count < 100 ? static_cast<size_t>(count) : 101U) << count;
+    EXPECT_EQ(found.back().substr(0, 5), count >= 100 ? "E0177" : "E0150") << count;
+  }
+}
+
+TEST(FrontendErrorLimits, NameStrayBytes) {
+  const auto said = [](const std::string& text) {
+    FrontendRun run("main() { " + text + " x = 1; }");
+    run.parse();
+    std::string out;
+    for (const auto& one : run.diagnostics.all()) out += one.text + "\n";
+    return out;
+  };
+  EXPECT_EQ(said("@"), "'@' has no meaning here\n");
+  EXPECT_EQ(said("\x01"), "the byte 0x01 has no meaning here\n");
+  EXPECT_EQ(said("\x1F"), "the byte 0x1F has no meaning here\n");
+  EXPECT_EQ(said("\x7F"), "the byte 0x7F has no meaning here\n");
+  EXPECT_EQ(said("\x1A"), "the byte 0x1A has no meaning here\n");
+  EXPECT_EQ(said("`"), "'`' has no meaning here\n");
+  EXPECT_EQ(said("$$$"), "'$' has no meaning here\n") << "a run is one mistake";
+  EXPECT_EQ(said("$ $"), "'$' has no meaning here\n'$' has no meaning here\n");
+  EXPECT_EQ(said("$\n$"), "'$' has no meaning here\n'$' has no meaning here\n");
+}
+
+}  // namespace
+}  // namespace ipos::tests
