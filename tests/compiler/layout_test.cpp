@@ -74,6 +74,20 @@ TEST(Copies, OfATooLongProgramAreTheLongestFive) {
   EXPECT_EQ(notes, wanted);
 }
 
+// To stop what stands somewhere already makes no further copy of it.
+TEST(Copies, AreNotMadeForAStop) {
+  for (const char* const calls :
+       {"t(); _SetTask2(0, t);", "t(); _SetTask(0, t); _SetTask2(0, t); _SetInterrupt(0, t);",
+        "_SetTask2(0, t);", "_SetTask2(1, t); _SetTask2(0, t); _SetTask(0, t);"}) {
+    const Compilation c =
+        compile_text("long a, b, c; t() { a = b * c + a; } main() { " + std::string(calls) + " }", "mdxb");
+    ASSERT_TRUE(c.image) << calls;
+    std::vector<std::string> names;
+    for (const vm::FunctionEntry& function : c.image->functions) names.push_back(function.name);
+    EXPECT_EQ(names, (std::vector<std::string>{"main", "t"})) << calls;
+  }
+}
+
 std::string lost(const std::string& text) {
   const Compilation c = compile_text("long a, b;\n" + text);
   std::string out;
