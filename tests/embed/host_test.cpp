@@ -183,5 +183,20 @@ TEST(ApiHost, EventsAreThoseOfTheirKeyword) {
     }
 }
 
+// A command that calls a function if something holds: the host says whether it does.
+TEST(ApiHost, TakenCallsTheFunctionAndDoneDoesNot) {
+  const LoadedProgram loaded(
+      "f() { H1++; } g() { H2++; } main() { _SystemCall(1, f); _InputCall(1, 12, g); H3 = 1; while (1) ; }");
+  for (const bool taken : {true, false}) {
+    RecordingHost host;
+    host.reply.answer = taken ? IPOS_ANSWER_TAKEN : IPOS_ANSWER_DONE;
+    const ipos_host callbacks = host.callbacks();
+    RunningMachine machine(loaded, &callbacks);
+    ASSERT_EQ(ipos_run_ticks(machine.vm, 20, nullptr), IPOS_OK);
+    for (const uint32_t function : {1U, 2U}) EXPECT_EQ(machine[function], taken ? 1 : 0) << function;
+    EXPECT_EQ(machine[3U], 1);
+  }
+}
+
 }  // namespace
 }  // namespace ipos::tests
