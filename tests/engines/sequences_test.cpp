@@ -1,12 +1,14 @@
 // The operations of the fast engine (vm/fast/operations.def): each row of the table is found in a program that has its
-// commands, and does what they do. The reference interpreter is the expected value.
+// commands, and does what they do, as machine code does. The reference interpreter is the expected value.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 #include <random>
 
 #include "vm/exec/machine.hpp"
 #include "vm/fast/predecode.hpp"
+#include "vm/jit/jit.hpp"
 
 namespace ipos::tests {
 namespace {
@@ -36,28 +38,37 @@ class Sequence {
   bool good() const { return image_.has_value(); }
   const Predecoded& predecoded() const { return *predecoded_; }
 
-  // Both engines from the first command on, with every budget up to `most`: the same in the end, and so again with what
-  // is left.
+  // The fast engine and machine code from the first command on, with every budget up to `most`: the same as the reference
+  // in the end, and so again with further ones. Machine code wants more than 16 commands.
   void expect_equal(const std::vector<int32_t>& variables, uint32_t most) const {
+    const std::unique_ptr<vm::jit::Code> code = vm::jit::compile(*image_);
+    ASSERT_EQ(code != nullptr, vm::jit::available());
     for (uint32_t budget = 0; budget <= most; ++budget) {
-      vm::Machine reference(*image_, {}), fast(*image_, {});
+      vm::Machine reference(*image_, {}), fast(*image_, {}), native(*image_, {});
       fast.use(&*predecoded_);
-      for (vm::Machine* machine : {&reference, &fast}) {
+      native.use(&*predecoded_, code ? &code->native() : nullptr);
+      for (vm::Machine* machine : {&reference, &fast, &native}) {
         std::copy(variables.begin(), variables.end(), machine->variables().begin());
         machine->start();
       }
-      for (const uint32_t part : {budget, 3U, 500U}) {
-        const vm::RunResult is = fast.run(1, part), should = reference.run(1, part);
-        ASSERT_EQ(is.commands, should.commands) << budget;
-        ASSERT_EQ(is.stop, should.stop) << budget;
-        const vm::TaskContext &t = fast.task(1), &wanted = reference.task(1);
-        ASSERT_EQ(t.pc, wanted.pc) << budget;
-        ASSERT_EQ(t.depth, wanted.depth) << budget;
-        ASSERT_EQ(t.commands, wanted.commands) << budget;
-        ASSERT_EQ(fast.fault().address, reference.fault().address) << budget;
-        ASSERT_EQ(fast.fault().number, reference.fault().number) << budget;
-        for (size_t n = 0; n < kRowLimits.variables; ++n)
-          ASSERT_EQ(fast.variables()[n], reference.variables()[n]) << "H" << n << ", budget " << budget;
+      for (const uint32_t part : {budget, 3U, 37U, 500U}) {
+        const vm::RunResult should = reference.run(1, part);
+        for (vm::Machine* machine : {&fast, &native}) {
+          SCOPED_TRACE(testing::Message()
+                       << (machine == &native ? "machine code" : "fast") << ", budget " << budget);
+          const vm::RunResult is = machine->run(1, part);
+          ASSERT_EQ(is.commands, should.commands);
+          ASSERT_EQ(is.stop, should.stop);
+          const vm::TaskContext &t = machine->task(1), &wanted = reference.task(1);
+          ASSERT_EQ(t.pc, wanted.pc);
+          ASSERT_EQ(t.depth, wanted.depth);
+          ASSERT_EQ(t.commands, wanted.commands);
+          ASSERT_EQ(machine->fault().address, reference.fault().address);
+          ASSERT_EQ(machine->fault().number, reference.fault().number);
+          const std::span<const int32_t> values = machine->variables(), right = reference.variables();
+          for (size_t n = 0; n < right.size(); ++n)
+            if (values[n] != right[n]) FAIL() << "H" << n << " is " << values[n] << ", not " << right[n];
+        }
       }
     }
   }
