@@ -133,6 +133,22 @@ TEST(Rows, OfTheTableAreFoundAndDoWhatTheirCommandsDo) {
   EXPECT_GT(found, 200U);
 }
 
+// All bits of a variable stay but the one that is meant, whatever they are.
+TEST(Rows, BitsAreMovedAlone) {
+  for (const int32_t to : {0, 1, 7, 30, 31})
+    for (const int32_t from : {0, 1, 7, 30, 31}) {
+      const Sequence sequence({{Opcode::BitMove, {1, to, 2, from}},
+                               {Opcode::BitMoveNeg, {3, to, 2, from}},
+                               {Opcode::BitSet, {4, to, 0, 0}},
+                               {Opcode::BitClear, {5, to, 0, 0}},
+                               {Opcode::End, {}}});
+      ASSERT_TRUE(sequence.good());
+      for (const int32_t target : {0, -1, 0x12345678})
+        for (const int32_t source : {0, -1, 0x12345678})
+          ASSERT_NO_FATAL_FAILURE(sequence.expect_equal({0, target, source, target, target, target}, 1));
+    }
+}
+
 // A chain of comparisons of H1 with constants, each of which leads to a case of its own. Three of them and more are a
 // switch: a dense one as far as the constants count up by one, else a sparse one.
 TEST(Switches, AreChainsOfAtLeastThreeComparisons) {
