@@ -1,5 +1,7 @@
 // From the machine to the callbacks: variable telegrams and non-volatile memory are done here when the host
 // gives the means, everything else is asked of its `command`.
+#include <algorithm>
+
 #include "embed/objects.hpp"
 #include "vm/image/view.hpp"
 
@@ -17,7 +19,7 @@ vm::HostReply fail(uint8_t fault, const char* reason) { return {vm::Answer::Faul
 
 ipos_frame to_c(const runtime::Frame& frame) {
   ipos_frame out{static_cast<uint16_t>(frame.id), frame.length, {}};
-  for (size_t n = 0; n < frame.data.size(); ++n) out.data[n] = frame.data[n];
+  std::copy(frame.data.begin(), frame.data.end(), out.data);
   return out;
 }
 
@@ -68,7 +70,7 @@ vm::HostReply ask(ipos_vm& self, int context, const vm::Instruction& instruction
                        static_cast<uint8_t>(context),
                        self.machine.context(context).pc,
                        {}};
-  for (size_t n = 0; n < instruction.operands.size(); ++n) command.operands[n] = instruction.operands[n];
+  std::copy(instruction.operands.begin(), instruction.operands.end(), command.operands);
   const ipos_reply reply = self.host.command(self.host.user, &self, &command);
   switch (reply.answer) {
     case IPOS_ANSWER_DONE: return {};
@@ -135,7 +137,7 @@ ipos_status ipos_receive(ipos_vm* vm, const ipos_frame* frame) {
   runtime::Frame received;
   received.id = frame->id;
   received.length = frame->length;
-  for (size_t n = 0; n < frame->length; ++n) received.data[n] = frame->data[n];
+  std::copy_n(frame->data, frame->length, received.data.begin());
   const auto receiver = vm->objects.receiver(received);
   return receiver && vm->objects.take(*receiver, received, vm->machine.variables()) ? IPOS_OK
                                                                                     : IPOS_NOT_TAKEN;

@@ -1,4 +1,5 @@
 // Making machines and running them; their variables and tasks.
+#include <algorithm>
 #include <new>
 
 #include "embed/objects.hpp"
@@ -44,7 +45,7 @@ uint64_t run_tick(ipos_vm& self) {
     executed += run_task(self, task, self.rates.commands[static_cast<size_t>(task - 1)]);
   const auto send = [&](uint32_t tag, const runtime::Frame& frame) {
     ipos_frame out{static_cast<uint16_t>(frame.id), frame.length, {}};
-    for (size_t n = 0; n < frame.data.size(); ++n) out.data[n] = frame.data[n];
+    std::copy(frame.data.begin(), frame.data.end(), out.data);
     self.host.send(self.host.user, &self, &out, tag);  // a failed one comes again with its next cycle
   };
   if (self.machine.fault().number == 0)

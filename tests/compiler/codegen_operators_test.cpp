@@ -57,8 +57,8 @@ TEST(Operators, HaveTheirCommands) {
     // Each side is evaluated once, the left one first.
     expect_sequence("a = b++ " + op + " ++c;",
                     {"SET H420 = H421", "ADD H421 + 1", "ADD H422 + 1", command("H420", "H422"), "END"});
+    // Division by 0 is left to the unit, whose fault it is.
     for (const std::string number : {"-1", "0", "1", "2"}) {
-      if (number == "0" && (op == "/" || op == "%")) continue;
       // Counts of shifts are taken modulo 32.
       const std::string count = number == "-1" && (op == "<<" || op == ">>") ? "31" : number;
       const bool nothing = number == row.neutral;

@@ -140,7 +140,9 @@ class Layer:
                          if n in tests and Path(tests[n]["command"][0]).name == n]
         if not self.programs:
             raise SystemExit(f"mutate: no test program of {source}; has {build} been built?")
-        self.command = self.compile_command()
+        self.command, library = self.compile_command()
+        # Another library may compile the same source with other options; the mutant does not fit into its programs.
+        self.programs = [p for p in self.programs if p.name == library or f"lib{library}.a" in p.link]
         # A mutant compiled with a sanitizer needs it in every program, also in those that have none themselves.
         self.link_options = re.findall(r"-fsanitize=\S+", self.command) + quick_linker()
 
@@ -153,15 +155,16 @@ class Layer:
                 print(f"{program.name}: {len(program.seconds)} tests, {sum(program.seconds.values()):.1f} s", flush=True)
 
     def compile_command(self):
-        """Of the library that the first program links, or of the program itself."""
-        program = self.programs[0]
-        for row in json.loads((self.build / "compile_commands.json").read_text()):
-            library = re.search(r" -o \S*CMakeFiles/(\w+)\.dir/", row["command"])
-            if Path(row["file"]) == self.root / self.source and (
-                    library[1] == program.name or f"lib{library[1]}.a" in program.link
-                    or object_of(row["command"]) in program.link.split()):
-                return row["command"]
-        raise SystemExit(f"mutate: {self.source} is in no library of {program.name}")
+        """Of the first library that one of the programs links, or of a program itself; and its name."""
+        rows = [row["command"] for row in json.loads((self.build / "compile_commands.json").read_text())
+                if Path(row["file"]) == self.root / self.source]
+        for program in self.programs:
+            for command in rows:
+                library = re.search(r" -o \S*CMakeFiles/(\w+)\.dir/", command)
+                if (library[1] == program.name or f"lib{library[1]}.a" in program.link
+                        or object_of(command) in program.link.split()):
+                    return command, library[1]
+        raise SystemExit(f"mutate: {self.source} is in no library of {', '.join(p.name for p in self.programs)}")
 
     def compile(self, text, name, *options):
         """The object, or None. `text` is the source's, or that of the header which only this source then sees; at -O0

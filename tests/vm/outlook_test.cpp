@@ -13,13 +13,13 @@ namespace {
 
 using tests::Assembled;
 
-std::set<uint32_t> numbers(const Outlook::Variables& variables) {
+std::set<uint32_t> numbers_of(const Outlook::Variables& variables) {
   std::set<uint32_t> out;
   for (uint32_t n = 0; n < variables.size(); ++n)
     if (variables[n]) out.insert(n);
   return out;
 }
-using Numbers = std::set<uint32_t>;
+using VariableNumbers = std::set<uint32_t>;
 
 // What is behind a command and what is at its label.
 TEST(Outlook, FollowsEveryWayOfACommand) {
@@ -76,23 +76,23 @@ M05 : ADD H6 + 1
       RET
 )");
   run.set(20, {1, 2, 30, 0, 1, 5});
-  const auto written = [&] { return numbers(Outlook(run.machine()).written()); };
+  const auto written = [&] { return numbers_of(Outlook(run.machine()).written()); };
   EXPECT_EQ(written().size(), kMaxVariables) << "VARINT is to come, and its structure may be any";
   run.run(5);  // in the function
-  EXPECT_EQ(written(), (Numbers{2, 3, 4, 5, 6}));
+  EXPECT_EQ(written(), (VariableNumbers{2, 3, 4, 5, 6}));
   run.run(2);
-  EXPECT_EQ(written(), (Numbers{2, 3, 4, 5}));
+  EXPECT_EQ(written(), (VariableNumbers{2, 3, 4, 5}));
   run.run(1);
-  EXPECT_EQ(written(), (Numbers{3, 4, 5}));
+  EXPECT_EQ(written(), (VariableNumbers{3, 4, 5}));
   run->run(2, 10);
-  EXPECT_EQ(written(), (Numbers{3, 4})) << "task 2 has ended, the interrupts stay";
+  EXPECT_EQ(written(), (VariableNumbers{3, 4})) << "task 2 has ended, the interrupts stay";
   run->raise_event(Event::Timer0);
   run->tick();
   run->stop_task(1);
-  EXPECT_EQ(written(), (Numbers{3, 4}));
+  EXPECT_EQ(written(), (VariableNumbers{3, 4}));
   run->start();
   run->stop_all();
-  EXPECT_EQ(written(), Numbers{}) << "nothing runs, nothing is installed";
+  EXPECT_EQ(written(), VariableNumbers{}) << "nothing runs, nothing is installed";
 }
 
 // A routine that runs goes on also when its interrupt is gone.
@@ -109,18 +109,18 @@ M02 : SETINT DISABLE , M02
   run->raise_event(Event::Timer0);
   run->tick();
   run.run(1);
-  EXPECT_EQ(numbers(Outlook(run.machine()).written()), (Numbers{3}));
+  EXPECT_EQ(numbers_of(Outlook(run.machine()).written()), (VariableNumbers{3}));
   run.run(2);
-  EXPECT_EQ(numbers(Outlook(run.machine()).written()), Numbers{});
+  EXPECT_EQ(numbers_of(Outlook(run.machine()).written()), VariableNumbers{});
 }
 
 // What a command reads and writes, and whether it can fault, stop the loop or ask the host.
 TEST(Outlook, KnowsWhatCommandsDo) {
-  Numbers all;
+  VariableNumbers all;
   for (uint32_t n = 0; n < kMaxVariables; ++n) all.insert(n);
   struct Row {
     const char* command;
-    Numbers used, written;
+    VariableNumbers used, written;
     bool faults, stops, calls;
   };
   for (const Row& row : {Row{"NOP", {}, {}, false, false, false},
@@ -142,8 +142,8 @@ TEST(Outlook, KnowsWhatCommandsDo) {
                          {"SYSCALL STANDSTILL , M02", {}, {}, true, true, true}}) {
     Assembled run(std::string("M01 : ") + row.command + "\nJMP M01\nM02 : JMP M02\n");
     const Outlook outlook(run.machine());
-    EXPECT_EQ(numbers(outlook.used()), row.used) << row.command;
-    EXPECT_EQ(numbers(outlook.written()), row.written) << row.command;
+    EXPECT_EQ(numbers_of(outlook.used()), row.used) << row.command;
+    EXPECT_EQ(numbers_of(outlook.written()), row.written) << row.command;
     EXPECT_EQ(outlook.may_fault(), row.faults) << row.command;
     EXPECT_EQ(outlook.may_stop(), row.stops) << row.command;
     EXPECT_EQ(outlook.calls(), row.calls) << row.command;

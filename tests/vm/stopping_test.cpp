@@ -60,39 +60,39 @@ class AllWait {
   Assembled run_;
 };
 
-using Numbers = std::vector<int>;
-const Numbers kAll{1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
+using ContextNumbers = std::vector<int>;
+const ContextNumbers kAllContexts{1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
 // The task with its routines.
-const Numbers kOfTask[] = {{1, 4, 5, 6}, {2, 7, 8}, {3, 9, 10}};
+const ContextNumbers kContextsOfTask[] = {{1, 4, 5, 6}, {2, 7, 8}, {3, 9, 10}};
 
 // The host hears of each wait for it that ends so; a WAIT is nothing of his.
 TEST(Stopping, EndsEveryRoutineAndCancelsTheWaitsForTheHost) {
   for (const bool host_waits : {true, false}) {
     const char* const command = host_waits ? "MOVLNK H60" : "WAIT 1000";
-    const auto expect = [&](AllWait& all, const Numbers& numbers) {
+    const auto expect = [&](AllWait& all, const ContextNumbers& numbers) {
       EXPECT_EQ(all.stopped(), numbers);
-      EXPECT_EQ(all.cancelled(), host_waits ? numbers : Numbers{});
+      EXPECT_EQ(all.cancelled(), host_waits ? numbers : ContextNumbers{});
     };
     AllWait all(command);
     all->stop_all();
-    expect(all, kAll);
+    expect(all, kAllContexts);
     for (int task = 1; task <= kTasks; ++task) {
       AllWait one(command);
       one->stop_task(task);
-      expect(one, kOfTask[task - 1]);
+      expect(one, kContextsOfTask[task - 1]);
       EXPECT_EQ(one->active_context(task), task);
       one->stop_task(task);
-      expect(one, kOfTask[task - 1]);  // once
+      expect(one, kContextsOfTask[task - 1]);  // once
     }
     AllWait fault(command);
     fault->raise_fault(17, "watchdog");
-    expect(fault, kAll);
+    expect(fault, kAllContexts);
     EXPECT_EQ(fault->fault().context, context_of(Event::Error)) << "what executed of the first task";
     AllWait anew(command);
     anew->start();
     EXPECT_EQ(anew->task(1).state, TaskState::Ready);
-    EXPECT_EQ(anew.stopped(), Numbers(kAll.begin() + 1, kAll.end()));
-    EXPECT_EQ(anew.cancelled(), host_waits ? kAll : Numbers{});
+    EXPECT_EQ(anew.stopped(), ContextNumbers(kAllContexts.begin() + 1, kAllContexts.end()));
+    EXPECT_EQ(anew.cancelled(), host_waits ? kAllContexts : ContextNumbers{});
   }
 }
 
@@ -100,7 +100,7 @@ TEST(Stopping, AStartEndsTheRoutinesOfTheTaskAndBeginsAtItsBeginning) {
   for (int task = 1; task <= kTasks; ++task) {
     AllWait all("MOVLNK H60");
     all->start_task(task, 2);
-    Numbers routines = kOfTask[task - 1];
+    ContextNumbers routines = kContextsOfTask[task - 1];
     EXPECT_EQ(all.cancelled(), routines);
     routines.erase(routines.begin());
     EXPECT_EQ(all.stopped(), routines);

@@ -1,6 +1,8 @@
 // What a line tells: events in words, and its load.
 #include <fmt/format.h>
 
+#include <cassert>
+
 #include <algorithm>
 
 #include "runtime/bus/can/identifier_text.hpp"
@@ -75,6 +77,7 @@ std::string describe(const CanLine& line, const LineEvent& event) {
     case LineEventKind::NoAcknowledge: text += fmt::format(", identifier {}", id_words(event.id)); break;
     case LineEventKind::Collision:
     case LineEventKind::SameFrame:
+      assert(event.other != kNoNode);  // it takes two
       text +=
           fmt::format(", identifier {}, other station {}", id_words(event.id), line.node_name(event.other));
       break;
