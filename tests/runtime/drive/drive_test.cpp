@@ -373,7 +373,7 @@ TEST(Drive, PowerOnIsANewDrive) {
         rig->set("P100", kSources[life % 3]);
         rig->set("P101", life % 3 == 1 ? 3 : m07 && life % 2 == 0 ? 4 : 0);
         rig->set("P602", 9);   // DI03: motor potentiometer up
-        rig->set("P603", 11);  // DI04: reset
+        rig->set("P603", 12);  // DI04: reset
         // AUTO RESET, PI controller, stop function and filter, where the unit has them.
         for (const auto& [number, value] : {std::pair{"P841", life % 4 == 3 ? 1 : 0},
                                             {"P250", life % 4 == 1 ? 1 : 0},
