@@ -378,6 +378,8 @@ TEST(Drive, PowerOnIsANewDrive) {
         for (const auto& [number, value] : {std::pair{"P841", life % 4 == 3 ? 1 : 0},
                                             {"P250", life % 4 == 1 ? 1 : 0},
                                             {"P720", 1},
+                                            {"P251", 5},
+                                            {"P252", 20},
                                             {"P115", 20'000}})
           if (rig->parameters.table().find(number) != nullptr) rig->set(number, value);
       }
@@ -395,7 +397,15 @@ TEST(Drive, PowerOnIsANewDrive) {
       used.run_ms(30);
       used.drive.set_position(12'345);
       used.silence();
-      for (const char* input : {"DI00", "DI01", "DI03"}) used.input(input, false);
+      // The power is cut in a fault and comes back with open terminals, or while it runs and is enabled all the time.
+      if (life % 2 == 0) {
+        for (const char* input : {"DI00", "DI01", "DI03"}) used.input(input, false);
+      } else {
+        used.drive.reset_fault();
+        used.ai1(1'000);
+        used.potentiometer(900);
+        used.run_ms(60);
+      }
       used.input("DI04", life % 2 == 0);
       used.drive.set_analog({});
       used.parameters.power_cycle();
