@@ -2,12 +2,13 @@
 #include "runtime/positioning/ramp_shape.hpp"
 
 #include <initializer_list>
+#include <numbers>
 
 namespace ipos::runtime {
 namespace {
 
 constexpr int64_t kHalf = kWholeShare / 2;
-constexpr int64_t kPi = 3'373'259'426;  // pi x 2^30
+constexpr auto kPi = static_cast<int64_t>(std::numbers::pi * kWholeShare);
 
 constexpr int64_t times(int64_t a, int64_t b) { return (a * b) >> kShareBits; }
 

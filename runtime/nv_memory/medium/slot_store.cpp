@@ -29,7 +29,6 @@ struct SlotState {
 
 std::vector<uint8_t> header_of(uint8_t unit, uint32_t sequence, uint32_t length) {
   std::vector<uint8_t> header;
-  header.reserve(kSlotHeaderSize);
   put(header, kMagic, 4);
   put(header, kNvVersion, 2);
   put(header, unit, 1);

@@ -442,6 +442,7 @@ TEST(MovlnkToTheOwnUnit, ExchangesAsManyWordsAsTheFormatHas) {
     EXPECT_EQ(rig.start(100), vm::Answer::Done);
     EXPECT_EQ(rig.result(100), 0);
     EXPECT_EQ(rig.h(201) != kBefore, row.parameter) << row.code;
+    EXPECT_EQ(rig.server.has_reasons(), row.words > 0) << "P101 keeps words away, where any came";
     const uint16_t sent[] = {6, 0xFFFE, 3};
     const int32_t received[] = {0x8001 - 0x10000, 2, -1};
     for (uint32_t n = 0; n < 3; ++n) {

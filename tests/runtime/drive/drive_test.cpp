@@ -360,6 +360,90 @@ TEST(Drive, PositionsInModesWithIpos) {
   }
 }
 
+// Behind a power cycle a drive is as one that is new, whatever it was: latches, edges, potentiometer, controller, faults,
+// resets that are made by itself, words of the bus and of the program. Only its counters and its error memory go on.
+TEST(Drive, PowerOnIsANewDrive) {
+  for (const char* name : {"md60a", "mc07", "mdxb"})
+    for (int life = 0; life < 12; ++life) {
+      SCOPED_TRACE(testing::Message() << name << ", life " << life);
+      const bool m07 = name == std::string_view("mc07");
+      tests::DriveRig used(name), fresh(name);
+      for (tests::DriveRig* rig : {&used, &fresh}) {
+        constexpr int32_t kSources[] = {4, 10, 1};  // motor potentiometer, SBus, unipolar
+        rig->set("P100", kSources[life % 3]);
+        rig->set("P101", life % 3 == 1 ? 3 : m07 && life % 2 == 0 ? 4 : 0);
+        rig->set("P602", 9);   // DI03: motor potentiometer up
+        rig->set("P603", 12);  // DI04: reset
+        // AUTO RESET, PI controller, stop function and filter, where the unit has them.
+        for (const auto& [number, value] : {std::pair{"P841", life % 4 == 3 ? 1 : 0},
+                                            {"P250", life % 4 == 1 ? 1 : 0},
+                                            {"P720", 1},
+                                            {"P251", 5},
+                                            {"P252", 20},
+                                            {"P115", 20'000}})
+          if (rig->parameters.table().find(number) != nullptr) rig->set(number, value);
+      }
+      // A life with everything that can be left behind.
+      for (const char* input : {"DI00", "DI01", "DI03", "DI04"}) used.input(input, true);
+      used.ai1(6'000);
+      used.run_ms(50);
+      used.po({0x46, 3000, 7});
+      used.drive.set_ipos_pi({1, 2, 3});
+      used.drive.set_ipos_outputs(0xFFFF);
+      used.drive.set_ipos_control_word(1U << (life % 5));
+      used.run_ms(400);
+      used.drive.set_fault_response(39, FaultResponse::Display);
+      used.drive.raise_fault(life % 2 == 0 ? 39 : 47);
+      used.run_ms(30);
+      used.drive.set_position(12'345);
+      used.silence();
+      // The power is cut in a fault and comes back with open terminals, or while it runs and is enabled all the time.
+      if (life % 2 == 0) {
+        for (const char* input : {"DI00", "DI01", "DI03"}) used.input(input, false);
+      } else {
+        used.drive.reset_fault();
+        used.ai1(1'000);
+        used.potentiometer(900);
+        used.run_ms(60);
+      }
+      used.input("DI04", life % 2 == 0);
+      used.drive.set_analog({});
+      used.parameters.power_cycle();
+      used.drive.power_cycle();
+      fresh.drive.set_inputs(used.drive.inputs());
+
+      const auto compare = [&](int ms) {
+        ASSERT_EQ(used.status(), fresh.status()) << ms;
+        ASSERT_EQ(used.drive.fault(), fresh.drive.fault()) << ms;
+        ASSERT_EQ(used.drive.setpoint().speed, fresh.drive.setpoint().speed) << ms;
+        ASSERT_EQ(used.drive.verdict().reason, fresh.drive.verdict().reason) << ms;
+        ASSERT_EQ(used.drive.pi(), fresh.drive.pi()) << ms;
+        ASSERT_EQ(used.drive.po(), fresh.drive.po()) << ms;
+        ASSERT_EQ(used.drive.outputs(), fresh.drive.outputs()) << ms;
+        ASSERT_EQ(used.drive.axis() == fresh.drive.axis(), true) << ms;
+        ASSERT_EQ(used.drive.display(), fresh.drive.display()) << ms;
+      };
+      const uint32_t resets = used.drive.resets() - fresh.drive.resets();
+      for (int ms = 0; ms < 400; ++ms) {
+        for (tests::DriveRig* rig : {&used, &fresh}) {
+          if (ms == 5) rig->drive.raise_fault(39);
+          if (ms == 40) rig->drive.reset_fault();
+          if (ms == 50) rig->drive.set_inputs(0b1011);
+          if (ms == 60) rig->ai1(4'000);
+          if (ms == 80) rig->drive.take_po(PoSource::Sbus, Words{0x46, 2000, 0});
+          if (ms == 200) rig->drive.raise_fault(47);
+          if (ms == 210) rig->drive.take_po(PoSource::Sbus, Words{0x06, 2000, 0});
+          if (ms == 220) rig->drive.take_po(PoSource::Sbus, Words{0x46, 2000, 0});
+          if (ms == 240) rig->drive.set_inputs(0b11011);
+          rig->run_ms(1);
+        }
+        compare(ms);
+        ASSERT_EQ(used.drive.resets() - fresh.drive.resets(), resets) << ms;
+        if (HasFatalFailure()) return;
+      }
+    }
+}
+
 TEST(Drive, LimitSwitches) {
   Unit unit("md60a");
   unit.set(8337, 14);  // DI03 = /LIM. SWITCH CW

@@ -43,6 +43,19 @@ TEST(M31Control, TerminalWithoutFunctionDoesNothing) {
   }
 }
 
+// There is no minimum speed (ours): a setpoint of 0 is 0, and small ones are what they are.
+TEST(M31Control, SmallSetpointsAreNotRaised) {
+  for (const int32_t millivolt : {0, 1, 5, 100}) {
+    M31Rig rig(kM31Terminals[0], kNoFunction);
+    rig.ai1(millivolt);
+    rig.input(kTerminal41, true);
+    rig.run_ms(10);
+    EXPECT_EQ(rig.drive.setpoint().speed, rig.drive.setpoint().requested) << millivolt;
+    EXPECT_EQ(rig.drive.setpoint().speed == 0, millivolt == 0) << millivolt;
+    EXPECT_EQ(rig.drive.setpoint().note, SetpointNote::None);
+  }
+}
+
 TEST(M31Control, EnableAtEitherTerminal) {
   for (const M31Terminal& terminal : kM31Terminals) {
     M31Rig rig(terminal, kEnableStop);

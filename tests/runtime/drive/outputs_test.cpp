@@ -405,6 +405,22 @@ TEST(M07Parameters, MonitoringModesAndBrakeTime) {
   }
 }
 
+// P009 is P004 of the rated current P071, in whole mA towards 0, to the last digit.
+TEST(M07Parameters, EveryCurrentInAmperes) {
+  int above_rated = 0;
+  for (int32_t load = 0; load < 160'000; load += 500) {
+    MachineData machine = light_machine();
+    machine.load_torque = load;
+    DriveRig rig("mc07", {}, machine);
+    rig.enable_terminals();
+    rig.run_ms(5);
+    const int64_t current = rig.value("P004");
+    EXPECT_EQ(rig.value("P009"), current * rig.value("P071") / 100'000) << current;
+    above_rated += current > 100'000;
+  }
+  EXPECT_GT(above_rated, 100);
+}
+
 TEST(M07Parameters, CurrentInAmperes) {
   DriveRig rig("mc07");
   rig.bus_control();

@@ -399,6 +399,39 @@ TEST(M07Timeout, InterfacesAreWatchedSeparately) {
   EXPECT_EQ(other.drive.fault(), 0) << "SBus silence does not trip P812";
 }
 
+// SBus and fieldbus are watched as the source of the setpoint, of the control word or of both, and while the terminals
+// enable; RS-485 always (docs/inside/drive.md).
+TEST(Timeouts, WhatIsUsedIsWatched) {
+  struct Link {
+    PoSource source;
+    int32_t p100, p101;
+    uint8_t fault;
+  };
+  constexpr Link kLinks[] = {
+      {PoSource::Rs485, 2, 1, 43}, {PoSource::Fieldbus, 3, 2, 28}, {PoSource::Sbus, 10, 3, 47}};
+  for (const Link& link : kLinks)
+    for (const int32_t p100 : {1, 2, 3, 10})
+      for (const int32_t p101 : {0, 1, 2, 3})
+        for (const bool enabled : {false, true})
+          for (const int32_t p876 : {0, 1}) {
+            DriveRig rig("md60a");
+            for (const char* number : {"P812", "P815", "P819"}) rig.set(number, 100);
+            rig.set("P100", p100);
+            rig.set("P101", p101);
+            rig.set("P876", p876);
+            if (enabled) rig.enable_terminals();
+            const uint16_t words[] = {6, 5000, 0};
+            rig.drive.take_po(link.source, words);
+            rig.run_ms(100);
+            EXPECT_EQ(rig.drive.fault(), 0);
+            rig.run_ms(10);
+            const bool used = p876 == 1 && enabled && (p100 == link.p100 || p101 == link.p101);
+            EXPECT_EQ(rig.drive.fault(), used || link.fault == 43 ? link.fault : 0)
+                << "F" << int{link.fault} << ": P100 " << p100 << ", P101 " << p101 << ", enabled " << enabled
+                << ", P876 " << p876;
+          }
+}
+
 TEST(FieldbusTimeout, P819) {
   DriveRig rig("md60a");
   rig.enable_terminals();

@@ -250,6 +250,22 @@ TEST_F(Memory, MemorizeStoresAndLoadsVariables) {
   EXPECT_FALSE(unit.memory.memorize(Memorize::StoreData));
 }
 
+// A program word that was written volatile is kept by the orders for the program and for all, not by that for the data.
+TEST_F(Memory, MemorizeStoresTheProgram) {
+  for (const Memorize what : {Memorize::Nothing, Memorize::StoreAll, Memorize::LoadAll,
+                              Memorize::StoreProgram, Memorize::StoreData}) {
+    const auto state = std::make_shared<MediumState>();
+    Unit unit(state);
+    unit.memory.program().restart(std::vector<uint32_t>{1, 2});
+    EXPECT_EQ(unit.ask(kVolatile, 16007, 0xEE), 0xEE);
+    EXPECT_TRUE(unit.memory.memorize(what));
+    unit.memory.tick(kMillisecond);
+    const bool kept = what == Memorize::StoreAll || what == Memorize::StoreProgram;
+    EXPECT_EQ(unit.memory.program().kept().has_value(), kept) << static_cast<int>(what);
+    EXPECT_EQ(Unit(state).memory.program().kept(), unit.memory.program().kept()) << static_cast<int>(what);
+  }
+}
+
 // 10 writes of one index within a minute count as cyclic (ours).
 TEST(Wear, CyclicWritesAreWarnedOfOnce) {
   Unit unit;

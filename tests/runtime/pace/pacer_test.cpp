@@ -38,7 +38,9 @@ struct Toy final : runtime::Timed, runtime::TelegramReader {
     return now + ((n / 7 + 1) * 7 - n) * kMillisecond;
   }
   Ticks horizon(Time first) override { return static_cast<Ticks>((10 - first / kMillisecond % 10) % 10); }
-  Ticks advance(Time /*first*/, Ticks most) override {
+  Ticks advance(Time first, Ticks most) override {
+    EXPECT_GT(most, 0U) << "where nothing can be done at once it is not asked";
+    EXPECT_LE(most, horizon(first));
     ++advances;
     if (advances % 5 == 0) return 0;  // it cannot, now and then
     const Ticks some = advances % 3 == 0 ? (most + 1) / 2 : most;
@@ -180,6 +182,49 @@ TEST(Pacer, ATickThatStopsIsResumed) {
   pacer.resume();
   EXPECT_EQ(stopping.sends, 3);
   EXPECT_EQ(queue.next_time(), 10 * kMillisecond) << "a time that has passed counts as now";
+  // And so on, whenever one stops; the ticks that are made up for send nothing.
+  for (int stops = 2; stops <= 4; ++stops) {
+    queue.run_until(stops * 10 * kMillisecond);
+    EXPECT_EQ(stopping.ticks, 3 * stops);
+    EXPECT_EQ(stopping.sends, stops + 1);
+    EXPECT_EQ(queue.pending(), 0U) << "nothing comes before it is resumed";
+    pacer.resume();
+  }
+}
+
+// A run that had stopped is as any other when it becomes lazy: who writes has the next tick in its turn.
+TEST(Pacer, WhoHasStoppedMayBecomeLazy) {
+  struct Once final : runtime::Timed {
+    bool tick(Time /*now*/) override { return ++ticks != 3; }
+    Time send(Time /*now*/) override { return runtime::kNever; }
+    Ticks horizon(Time) override { return 5; }
+    Ticks advance(Time, Ticks most) override {
+      ticks += static_cast<int>(most);
+      return most;
+    }
+    Ticks silence(Time) override { return 20; }
+    void settle() override {}
+    void touched() override {}
+    bool lets_wait() const override { return false; }
+    bool rests() const override { return true; }
+    int ticks = 0;
+  } once;
+  runtime::EventQueue queue;
+  runtime::Pacer pacer(queue, kSource, once, Pace::InTurn);
+  pacer.start();
+  queue.run_until(2 * kMillisecond);
+  EXPECT_EQ(once.ticks, 3);
+  pacer.resume();
+  pacer.use(Pace::Lazy);
+  EXPECT_EQ(pacer.pace(), Pace::Lazy);
+  queue.run_until(5 * kMillisecond);
+  EXPECT_TRUE(pacer.behind());
+  EXPECT_TRUE(pacer.rests());
+  pacer.touch();
+  EXPECT_EQ(once.ticks, 6);
+  EXPECT_FALSE(pacer.behind());
+  EXPECT_FALSE(pacer.rests());
+  EXPECT_EQ(queue.next_time(), 6 * kMillisecond);
 }
 
 }  // namespace

@@ -227,6 +227,17 @@ TEST(ControlWord, OfTheProgramRestrictsTheDrive) {
   }
 }
 
+// The block of a MOVIDRIVE B works by itself: in mode 2 its output is the setpoint (IPOSplus p. 38).
+TEST(PidOfAProgram, WorksInEveryMillisecond) {
+  const auto plant = make_station(R"(#include <constb.h>
+long n;
+main() { PID_Mode = 2; while (n < 10) { n++; PID_Command = 100 * n; _Wait(2); } while (1) ; }
+)");
+  plant->run_until(ms(200));
+  EXPECT_EQ(value(*plant, "n"), 10);
+  EXPECT_EQ(value(*plant, "IPOS_Setp"), 1'000);
+}
+
 // A timer interrupt every 10 ms: 99 times in the ticks up to 999 ms, see docs/inside/cycle.md.
 TEST(Timer0, InterruptsEveryReloadMilliseconds) {
   const auto plant = make_station(R"(#include <constb.h>

@@ -194,6 +194,43 @@ TEST(ExtendedCam, FourOutputsAMillisecondTheOthersEveryFour) {
   EXPECT_EQ(cam.at(520, 4), 1 << 9);
 }
 
+// With bit 31 CamSource is the number of a variable, whatever it is; without it there are three encoders (p. 91).
+TEST(ExtendedCam, EveryVariableMayBeTheSource) {
+  for (size_t n = 220; n < 512; ++n) {
+    Extended cam(0x8000'0003, 1);
+    cam.h.fill(60);  // beside the window
+    const Extended fresh(0x8000'0003, 1);
+    std::copy_n(fresh.h.begin(), 220, cam.h.begin());
+    cam.h[105] = bits(static_cast<uint32_t>(0x8000'0000 + n));
+    cam.h[n] = 20;
+    EXPECT_TRUE(cam.cams.tick(cam.h, cam.sources, {true, 0}));
+    EXPECT_EQ(cam.h[200], 1 << 4) << n;
+  }
+  for (const uint32_t none : {3U, 511U, 0x7FFF'FFFFU, 0x8000'0200U, 0xC000'0000U, 0xFFFF'FFFFU}) {
+    Extended cam(0x8000'0003, 1);
+    cam.h[105] = bits(none);
+    EXPECT_FALSE(cam.cams.tick(cam.h, cam.sources, {true, 0})) << none;
+  }
+}
+
+// The bit of GSCAM is one of 32, and its destination any variable (p. 86).
+TEST(StandardCam, EveryBitOfEveryDestination) {
+  for (int32_t bit = 0; bit < 32; ++bit)
+    for (const int32_t destination : {0, 1, 99, 120, 511})
+      for (const uint32_t before : {0U, 0x5A5A'5A5AU, 0xFFFF'FFFFU}) {
+        Variables v;
+        v.put(100, {300, 0, destination, bit, 0, 1, 10, 20});
+        for (const int32_t position : {9, 10, 20, 21}) {
+          v.h[300] = position;
+          v.h[static_cast<size_t>(destination)] = static_cast<int32_t>(before);
+          ASSERT_TRUE(run_standard_cam(100, v.h, v.sources));
+          const uint32_t mask = 1U << bit;
+          const uint32_t want = position == 10 || position == 20 ? before | mask : before & ~mask;
+          ASSERT_EQ(static_cast<uint32_t>(v.h[static_cast<size_t>(destination)]), want) << bit << destination;
+        }
+      }
+}
+
 TEST(ExtendedCam, SourcesAndDeadTime) {
   Extended cam(0x8000'0003, 1);
   cam.h[105] = 1;

@@ -163,6 +163,26 @@ TEST(GoesOn, IdlingIsAsAWholeMillisecondWould) {
   }
 }
 
+// Several idle milliseconds at once leave what each of them leaves: the target follows the axis one behind it.
+TEST(GoesOn, ManyIdleMillisecondsAreAsEachOfThem) {
+  Rig rig({{"700", kSpeedControl}});
+  rig.run(5);
+  runtime::Positioner each = rig.service.positioner(), many = each;
+  int32_t counter = each.encoders().counter();
+  for (const int ms : {1, 2, 5, 1, 40}) {
+    int32_t before = counter;
+    for (int n = 0; n < ms; ++n) {
+      before = counter;
+      counter += 37;
+      each.idle();
+      each.observe(counter);
+    }
+    many.advance(before, counter);
+    ASSERT_EQ(many == each, true) << ms;
+    ASSERT_EQ(many.target(), before);
+  }
+}
+
 struct Mode {
   int32_t setting;
   double least_possible, most_possible;  // share of the ms in which the mode is one with positioning

@@ -76,6 +76,28 @@ TEST(Follower, TheGearRoundsDown) {
       }
 }
 
+// A master that has gone round the circle of its count many times: still one rounding, not one for each round.
+TEST(Follower, ALongWayIsRoundedOnce) {
+  constexpr int kTelegrams = 64;
+  for (const int gear_master : {3, 7, -3, -7})
+    for (const int sign : {1, -1}) {
+      SCOPED_TRACE(testing::Message() << "1 / " << gear_master << ", way " << sign);
+      Follower follower;
+      Wide way = 0;
+      for (int t = 0; t < (kTelegrams + 10) * kCycle; ++t) {
+        MasterInputs inputs;
+        inputs.sync = t % kCycle == 0;
+        inputs.position = wrapped(int64_t{sign} * std::min(t / kCycle, kTelegrams) << 30);
+        inputs.gear_master = gear_master;
+        follower.tick(inputs);
+        way += follower.step();
+      }
+      const Wide rest = (Wide{sign} * kTelegrams << 30) * kIncrement - way * gear_master;
+      EXPECT_GE(static_cast<int64_t>(rest) * gear_master, 0);
+      EXPECT_LT(std::abs(static_cast<int64_t>(rest)), std::abs(gear_master));
+    }
+}
+
 // Numbers of a program: what comes of them is bounded, and keeps its direction.
 TEST(Follower, TakesAnyGear) {
   constexpr double kMost = 4'294'967'296.0;
