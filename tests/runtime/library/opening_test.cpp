@@ -122,6 +122,25 @@ TEST(LibraryOpening, AProgramAloneIsAPlant) {
   EXPECT_EQ(first, "0: there is no such file");
 }
 
+// Relative to the folder; without the flag nothing is written.
+TEST(LibraryOpening, MemoryFilesStandBesideThePlant) {
+  const OwnFolder folder;
+  const std::string path = folder.path();
+  for (const bool writes : {false, true}) {
+    ipos_plant_source source{};
+    source.text =
+        "[[station]]\nname = \"a\"\nunit = \"mdxb\"\nnvram = \"a.nv\"\n[[station]]\nname = \"b\"\nunit = "
+        "\"mdxb\"\n";
+    source.folder = path.c_str();
+    source.flags = writes ? uint32_t{IPOS_PLANT_WRITE_MEMORY} : 0U;
+    ipos_plant* plant = nullptr;
+    ASSERT_EQ(ipos_plant_open(&source, &plant), IPOS_PLANT_OK) << ipos_plant_message(plant);
+    EXPECT_EQ(ipos_plant_run(plant, 10'000'000), IPOS_PLANT_OK);
+    EXPECT_EQ(ipos_plant_close(plant), IPOS_PLANT_OK);
+    EXPECT_EQ(std::filesystem::exists(folder.path("a.nv")), writes);
+  }
+}
+
 constexpr const char* kTwoDrives = R"([[bus]]
 name = "can"
 kind = "can"
