@@ -285,6 +285,19 @@ TEST(LibraryStates, GoOnAsTheOneThatWasSaved) {
   EXPECT_EQ(ipos_plant_restore(changed.plant, saved.data(), saved.size()), IPOS_PLANT_OTHER_PLANT);
 }
 
+TEST(LibraryStates, TagsBeginAgainWithTheState) {
+  const OpenedPlant plant(kTwoDrives, kGoesOn);
+  const std::string fresh = saved_state(plant);
+  ipos_plant_frame frame{};
+  uint32_t first = 0, second = 0, again = 0;
+  EXPECT_EQ(ipos_plant_send(plant.plant, 0, &frame, &first), IPOS_PLANT_OK);
+  EXPECT_EQ(ipos_plant_send(plant.plant, 0, &frame, &second), IPOS_PLANT_OK);
+  EXPECT_NE(first, second);
+  EXPECT_EQ(ipos_plant_restore(plant.plant, fresh.data(), fresh.size()), IPOS_PLANT_OK);
+  EXPECT_EQ(ipos_plant_send(plant.plant, 0, &frame, &again), IPOS_PLANT_OK);
+  EXPECT_EQ(again, first);
+}
+
 TEST(LibraryStates, AReplayLooksAtEveryMillisecond) {
   const OpenedPlant plant("[[station]]\nname = \"a\"\nunit = \"mdxb\"\n");
   plant.run(3);
