@@ -89,6 +89,8 @@ TEST(PlanTiming, RhythmOfPdos) {
     for (const PlannedTelegram& telegram : plan.lines.at(0).telegrams)
       if (telegram.id == 0x185) {
         EXPECT_EQ(std::tuple(telegram.sender, telegram.what, telegram.bytes), std::tuple("saw", "TPDO1", 8));
+        const bool synchronous = keys.find("type = 25") == std::string::npos;
+        EXPECT_EQ(telegram.request, synchronous ? 0x080U : ~0U) << "it follows SYNC";
         return telegram.rhythm == Rhythm::Cyclic ? telegram.period : -telegram.period;
       }
     return Time{0};
