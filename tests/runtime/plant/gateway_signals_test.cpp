@@ -80,6 +80,29 @@ TEST_F(GatewaySignals, CountTelegramsAndLosses) {
   }
 }
 
+// On the line before it they stand behind the parameter channel, three for each drive; from the first look on.
+TEST_F(GatewaySignals, AreThoseOfTheTelegramsOnItsLine) {
+  std::vector<std::string> names;
+  std::map<std::string, std::function<int64_t()>> read;
+  const auto found = find_signals(*plant_, "dp.10.P?*");
+  ASSERT_TRUE(found) << found.error();
+  for (const PlantSignal& signal : *found) {
+    names.push_back(signal.name);
+    read[signal.name] = signal.read;
+    EXPECT_EQ(signal.read(), 0);
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"dp.10.PO1", "dp.10.PO2", "dp.10.PO3", "dp.10.PO4", "dp.10.PO5",
+                                             "dp.10.PO6", "dp.10.PI1", "dp.10.PI2", "dp.10.PI3", "dp.10.PI4",
+                                             "dp.10.PI5", "dp.10.PI6"}));
+  plant_->run_until(plant_->now() + 100 * kMillisecond);
+  const std::vector<int64_t> sent = {4, 1500, 7, 4, 3000, 0x8008};
+  for (size_t word = 0; word < sent.size(); ++word) {
+    EXPECT_EQ(read["dp.10.PO" + std::to_string(word + 1)](), sent[word]);
+    EXPECT_EQ(read["dp.10.PI" + std::to_string(word + 1)](),
+              plant_.station(word < 3 ? 1 : 0).drive().state().pi()[word % 3]);
+  }
+}
+
 TEST_F(GatewaySignals, AreFoundByNameAndPattern) {
   const auto names = [&](const std::string& pattern) {
     std::vector<std::string> all;
