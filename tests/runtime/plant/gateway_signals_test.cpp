@@ -45,6 +45,11 @@ TEST_F(GatewaySignals, AreTheWordsOfEachDrive) {
   EXPECT_EQ(value("g.powered"), 1);
   EXPECT_EQ(value("g.exchange"), 1);
   EXPECT_EQ(value("g.error"), 0);
+  for (const auto& [name, bits] :
+       {std::pair("g.error", 32), std::pair("g.lost", 8), std::pair("g.drive2.PO3", 16),
+        std::pair("g.drive5.PI1", 16), std::pair("g.powered", 1), std::pair("g.drive2.lost", 1),
+        std::pair("g.drive2.asked", 0)})
+    EXPECT_EQ(find_signals(*plant_, name).value()[0].bits, static_cast<size_t>(bits)) << name;
 }
 
 // A telegram to each drive every 10 ms; who has not answered for the reply timeout is lost.
