@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/os_port/can_port.hpp"
+#include "runtime/os_port/serial_port.hpp"
 #include "runtime/os_port/system_clock.hpp"
 #include "tests/tools/command.hpp"
 
@@ -54,6 +55,36 @@ TEST_F(JoinedLines, EachKindHasItsBridge) {
     }
   const auto profibus = join("dp", "pty:" + path("dp"));
   ASSERT_TRUE(profibus) << profibus.error().text << ": PROFIBUS has other rates than MOVILINK";
+}
+
+// MOVILINK and PROFIBUS have even parity, which a pseudo-terminal cannot have.
+TEST_F(JoinedLines, SerialLinesHaveEvenParity) {
+  for (const char* bus : {"rs", "slow", "dp"}) {
+    const auto joined = join(bus, "pty:" + path(bus));
+    ASSERT_TRUE(joined) << joined.error().text;
+    std::string told;
+    for (const std::string& note : joined->bridge->take_notes()) told += note;
+    EXPECT_NE(told.find("a pseudo-terminal has no parity"), std::string::npos) << bus;
+  }
+}
+
+TEST_F(JoinedLines, ARunEndsWithItsPortOrGoesOnWithoutIt) {
+  for (const PortLoss loss : {PortLoss::Ends, PortLoss::GoesOn}) {
+    auto other = open_serial_port("pty:" + path("line"), {9'600, true}, clock_);
+    ASSERT_TRUE(other) << other.error().text;
+    const auto joined = join("rs", path("line"), loss);
+    ASSERT_TRUE(joined) << joined.error().text;
+    EXPECT_TRUE(joined->bridge->collect(clock_.now()));
+    EXPECT_EQ(joined->port->absence(), "");
+    other->reset();
+    bool there = true;
+    for (int n = 0; n < 100 && there && joined->port->absence().empty(); ++n) {
+      there = joined->bridge->collect(clock_.now());
+      clock_.wait(clock_.now() + kMillisecond, {});
+    }
+    EXPECT_EQ(there, loss == PortLoss::GoesOn);
+    EXPECT_EQ(joined->port->absence().empty(), loss == PortLoss::Ends);
+  }
 }
 
 TEST_F(JoinedLines, APortThatCannotBeHadSaysWhy) {
