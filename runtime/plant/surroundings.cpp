@@ -104,7 +104,7 @@ void Surroundings::force(const SignalPort& port, int32_t value) {
 Surroundings::Hold& Surroundings::hold(const SignalPort& port, int32_t value) {
   auto held =
       std::find_if(holds_.begin(), holds_.end(), [&](const Hold& other) { return other.port == port; });
-  if (held == holds_.end()) held = holds_.insert(held, {port, 0, 0, std::nullopt});
+  if (held == holds_.end()) held = holds_.insert(held, {port, {}, {}, {}});  // the numbers follow
   held->value = value;
   held->number = ++holds_made_;
   if (port.is_input()) port.line().forced = value;

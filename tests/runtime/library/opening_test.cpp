@@ -122,6 +122,25 @@ TEST(LibraryOpening, AProgramAloneIsAPlant) {
   EXPECT_EQ(first, "0: there is no such file");
 }
 
+// Relative to the folder; without the flag nothing is written.
+TEST(LibraryOpening, MemoryFilesStandBesideThePlant) {
+  const OwnFolder folder;
+  const std::string path = folder.path();
+  for (const bool writes : {false, true}) {
+    ipos_plant_source source{};
+    source.text =
+        "[[station]]\nname = \"a\"\nunit = \"mdxb\"\nnvram = \"a.nv\"\n[[station]]\nname = \"b\"\nunit = "
+        "\"mdxb\"\n";
+    source.folder = path.c_str();
+    source.flags = writes ? uint32_t{IPOS_PLANT_WRITE_MEMORY} : 0U;
+    ipos_plant* plant = nullptr;
+    ASSERT_EQ(ipos_plant_open(&source, &plant), IPOS_PLANT_OK) << ipos_plant_message(plant);
+    EXPECT_EQ(ipos_plant_run(plant, 10'000'000), IPOS_PLANT_OK);
+    EXPECT_EQ(ipos_plant_close(plant), IPOS_PLANT_OK);
+    EXPECT_EQ(std::filesystem::exists(folder.path("a.nv")), writes);
+  }
+}
+
 constexpr const char* kTwoDrives = R"([[bus]]
 name = "can"
 kind = "can"
@@ -264,6 +283,19 @@ TEST(LibraryStates, GoOnAsTheOneThatWasSaved) {
   EXPECT_EQ(saved_state(other), saved);
   const OpenedPlant changed(kTwoDrives, "long n;\nmain() { while (1) n = n + 2; }\n");
   EXPECT_EQ(ipos_plant_restore(changed.plant, saved.data(), saved.size()), IPOS_PLANT_OTHER_PLANT);
+}
+
+TEST(LibraryStates, TagsBeginAgainWithTheState) {
+  const OpenedPlant plant(kTwoDrives, kGoesOn);
+  const std::string fresh = saved_state(plant);
+  ipos_plant_frame frame{};
+  uint32_t first = 0, second = 0, again = 0;
+  EXPECT_EQ(ipos_plant_send(plant.plant, 0, &frame, &first), IPOS_PLANT_OK);
+  EXPECT_EQ(ipos_plant_send(plant.plant, 0, &frame, &second), IPOS_PLANT_OK);
+  EXPECT_NE(first, second);
+  EXPECT_EQ(ipos_plant_restore(plant.plant, fresh.data(), fresh.size()), IPOS_PLANT_OK);
+  EXPECT_EQ(ipos_plant_send(plant.plant, 0, &frame, &again), IPOS_PLANT_OK);
+  EXPECT_EQ(again, first);
 }
 
 TEST(LibraryStates, AReplayLooksAtEveryMillisecond) {

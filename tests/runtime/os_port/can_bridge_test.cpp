@@ -118,6 +118,45 @@ TEST(CanBridge, AFloodWaitsAndLosesNothing) {
     ASSERT_EQ(a.frames[n].data[0] << 8 | a.frames[n].data[1], n & 0xFFFF);
 }
 
+TEST(CanBridge, TakesAsManyAsItHasRoomFor) {
+  Rig rig;
+  Node a(rig.line, "a");
+  for (uint32_t n = 0; n < 4096; ++n) rig.arrive(0, frame(100));
+  EXPECT_TRUE(rig.bridge.collect(0));
+  EXPECT_EQ(rig.bridge.waiting(), 4096U);
+  EXPECT_EQ(rig.bridge.take_notes(),
+            std::vector<std::string>{
+                "loop: 4096 frames wait for the simulated line: the real bus is faster than it"});
+  rig.arrive(0, frame(101));
+  EXPECT_TRUE(rig.bridge.collect(0));
+  EXPECT_EQ(rig.port.incoming.size(), 1U);
+  rig.run(10 * kMillisecond);
+  EXPECT_EQ(rig.port.incoming.size(), 1U) << "of this moment none is over";
+  rig.run(11 * kMillisecond);
+  EXPECT_EQ(rig.port.incoming.size(), 0U);
+}
+
+// A moment that is now is not late; time counts from the epoch of the run.
+TEST(CanBridge, LateIsWhatIsBeforeNow) {
+  Rig rig;
+  Node a(rig.line, "a");
+  rig.run(10 * kMillisecond);
+  rig.arrive(10 * kMillisecond, frame(100));
+  EXPECT_TRUE(rig.bridge.collect(0));
+  EXPECT_EQ(rig.bridge.counts().late, 0U);
+  rig.arrive(10 * kMillisecond, frame(101));
+  EXPECT_TRUE(rig.bridge.collect(1));
+  EXPECT_EQ(rig.bridge.counts().late, 1U);
+  EXPECT_EQ(rig.bridge.counts().worst_late, 1);
+  rig.arrive(10 * kMillisecond, frame(102));
+  EXPECT_TRUE(rig.bridge.collect(7));
+  EXPECT_EQ(rig.bridge.counts().worst_late, 7) << "the worst one";
+  rig.arrive(10 * kMillisecond, frame(103));
+  EXPECT_TRUE(rig.bridge.collect(3));
+  EXPECT_EQ(rig.bridge.counts().worst_late, 7);
+  EXPECT_EQ(rig.bridge.counts().late, 3U);
+}
+
 TEST(CanBridge, ErrorFramesAreToldOnce) {
   Rig rig;
   // Class CAN_ERR_ACK (20h), and CAN_ERR_CRTL (4) with "error passive by transmit errors" (20h in byte 1).

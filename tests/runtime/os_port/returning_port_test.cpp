@@ -83,7 +83,14 @@ class Pulled final : public BytePort {
   bool has_parity() const override { return true; }
   bool paces() const override { return true; }
   Time latency() const override { return 16 * kMillisecond; }
-  void send(std::span<const uint8_t> bytes) override { counts_.sent += bytes.size(); }
+  void send(std::span<const uint8_t> bytes) override {
+    counts_.sent += bytes.size();
+    counts_.received += 2 * bytes.size();
+    counts_.lost_out += 3 * bytes.size();
+    counts_.lost_in += 5 * bytes.size();
+    counts_.waited += 7 * bytes.size();
+  }
+  std::vector<std::string> repeats() const override { return {"a note: 2 times"}; }
   tl::expected<size_t, PortError> receive(std::span<ByteArrival>) override {
     if (pulled_) return tl::unexpected(port_error(PortFault::Gone, name_, "Input/output error"));
     return size_t{0};
@@ -115,6 +122,10 @@ TEST(ReturningPort, ASerialPortKeepsItsNature) {
   EXPECT_TRUE((*port)->has_parity() && (*port)->paces());
   EXPECT_EQ((*port)->latency(), 16 * kMillisecond);
   EXPECT_EQ((*port)->waiting(), 0U);
+  EXPECT_TRUE((*port)->repeats().empty());
+  const PortNeeds away = (*port)->needs();
+  EXPECT_EQ(std::tuple(away.descriptor, away.output, away.wake),
+            std::tuple(-1, false, clock.now() + kReopenPause));
   EXPECT_EQ((*port)->take_notes(), std::vector<std::string>{"a note"}) << "said before it went";
   (*port)->send(bytes);
   pulled = false;
@@ -122,8 +133,34 @@ TEST(ReturningPort, ASerialPortKeepsItsNature) {
   ASSERT_TRUE((*port)->flush());
   EXPECT_EQ(opened, 2);
   (*port)->send(bytes);
-  EXPECT_EQ((*port)->counts().sent, 8U);
-  EXPECT_EQ((*port)->counts().lost_out, 4U);
+  EXPECT_EQ((*port)->needs().descriptor, 5);
+  EXPECT_EQ((*port)->waiting(), 3U);
+  EXPECT_EQ((*port)->repeats(), std::vector<std::string>{"a note: 2 times"});
+  const PortCounts& counts = (*port)->counts();
+  EXPECT_EQ(std::tuple(counts.sent, counts.received, counts.lost_in, counts.waited),
+            std::tuple(8U, 16U, 40U, 56U))
+      << "of both times that it was there";
+  EXPECT_EQ(counts.lost_out, 3U * 8U + 4U) << "and what it got while it was away";
+}
+
+// Not before the pause is over, and again a pause later.
+TEST(ReturningPort, IsOpenedAgainWhenThePauseIsOver) {
+  Socket socket;
+  const auto opened = open_returning([&] { return socket.open(); }, socket.clock);
+  ASSERT_TRUE(opened);
+  CanPort& port = **opened;
+  socket.empty = true;
+  socket.plugged->gone_at = socket.clock.now();
+  ASSERT_TRUE(port.receive());
+  for (const int attempts : {2, 3}) {
+    socket.clock.advance(kReopenPause - 1);
+    ASSERT_TRUE(port.flush());
+    EXPECT_EQ(socket.attempts, attempts - 1);
+    socket.clock.advance(1);
+    EXPECT_EQ(port.needs().wake, socket.clock.now());
+    ASSERT_TRUE(port.flush());
+    EXPECT_EQ(socket.attempts, attempts);
+  }
 }
 
 // The next program that wants a pseudo-terminal may have got the number.

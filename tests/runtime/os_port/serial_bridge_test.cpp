@@ -171,5 +171,28 @@ TEST(SerialBridge, CollisionsOfAnswersGoOutAsVoidTelegrams) {
   EXPECT_FALSE(decode_serial(all).has_value()) << text_of(all);
 }
 
+TEST(SerialBridge, TakesAsManyBytesAsItHasRoomFor) {
+  Rig rig;
+  for (int n = 0; n < 4'097; ++n) rig.port.incoming.push_back({0, 0x55, false});
+  EXPECT_TRUE(rig.bridge->collect(0));
+  EXPECT_EQ(rig.bridge->waiting(), 4'096U);
+  EXPECT_EQ(rig.port.incoming.size(), 1U);
+  EXPECT_TRUE(
+      rig.noted("serial: 4096 bytes wait for the simulated line: they come faster than its 9600 baud"));
+}
+
+TEST(SerialBridge, LateIsWhatIsBeforeNow) {
+  Rig rig;
+  rig.run(10 * kMillisecond);
+  for (const auto& [epoch, late, worst] :
+       {std::tuple(0, 0U, 0), std::tuple(1, 1U, 1), std::tuple(7, 2U, 7), std::tuple(3, 3U, 7)}) {
+    rig.port.incoming.push_back({10 * kMillisecond, 0x55, false});
+    EXPECT_TRUE(rig.bridge->collect(epoch));
+    EXPECT_EQ(
+        std::pair(std::as_const(*rig.bridge).counts().late, std::as_const(*rig.bridge).counts().worst_late),
+        std::pair(uint64_t{late}, Time{worst}));
+  }
+}
+
 }  // namespace
 }  // namespace ipos::tests

@@ -187,6 +187,30 @@ TEST_F(SlcanAdapterCommands, AnswersOfTheProtocol) {
   EXPECT_EQ(heard(), "");
 }
 
+// S0 to S8 are rates, s four hexadecimal digits of timing registers, which nobody can compare; both while it is closed.
+TEST_F(SlcanAdapterCommands, RatesAndTimingRegisters) {
+  for (const char digit : std::string("012345678")) {
+    EXPECT_EQ(talk(std::string("S") + digit + "\r"), "\r") << digit;
+    EXPECT_EQ(talk("O\r"), digit == '6' ? "\r" : "\a") << digit << ": the bus has 500 kbit/s";
+    EXPECT_EQ(talk("C\r"), "\r");
+  }
+  EXPECT_EQ(talk("S0\r"), "\r");
+  EXPECT_EQ(talk("s031C\r"), "\r");
+  EXPECT_EQ(talk("O\r"), "\r") << "in place of the rate";
+  for (const char* not_now : {"s031C\r", "S6\r", "Z1\r", "Z0\r", "L\r", "O\r"})
+    EXPECT_EQ(talk(not_now), "\a") << not_now;
+  EXPECT_EQ(talk("C\r"), "\r");
+  for (const char* wrong : {"s031\r", "s031CC\r", "s03XC\r", "x031C\r", "S\r", "S66\r", "s6\r", "S/\r",
+                            "S:\r", "Z2\r", "Z\r", "v\r"})
+    EXPECT_EQ(talk(wrong), "\a") << wrong;
+  EXPECT_EQ(talk("Z1\r"), "\r");
+  EXPECT_EQ(talk("Z0\r"), "\r");
+  EXPECT_EQ(talk("saBcD\r"), "\r");
+  EXPECT_EQ(talk("O\r"), "\r");
+  adapter_->send(frame(0x123, 0xAB));
+  EXPECT_EQ(heard(), "t1231AB\r") << "without a stamp again";
+}
+
 TEST_F(SlcanAdapterCommands, ListenOnlyHearsAndIsSilent) {
   EXPECT_EQ(talk("L\r"), "\r");
   EXPECT_EQ(talk("t1000\r"), "\a");

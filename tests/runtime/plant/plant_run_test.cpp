@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/plant/station_signals.hpp"
 #include "runtime/plant/trace_hash.hpp"
 
 namespace ipos::runtime {
@@ -224,6 +225,50 @@ TEST(PlantRun, SignalsOfAGateway) {
   }
   EXPECT_FALSE(plant->find_port({"g", SignalKind::Any, "x", 0}, why));
   EXPECT_TRUE(why.starts_with("gateway 'g' has no signal 'x'; it has powered, exchange")) << why;
+}
+
+// As docs/guide/recording.md shows them: number, unit and digits, and which are bits or bit fields.
+TEST(PlantRun, SignalsOfAStationAreShownWithUnitAndDigits) {
+  const PlainPlant plant(plain_unit("u"));
+  const struct {
+    const char* name;
+    SignalGroup group;
+    const char* unit;
+    double factor;
+    int decimals;
+    size_t bits;
+  } rows[] = {{"setpoint", SignalGroup::Drive, "rpm", 0.001, 3, 0},
+              {"shaft_speed", SignalGroup::Drive, "rpm", 0.001, 3, 0},
+              {"torque", SignalGroup::Drive, "%Mn", 0.001, 3, 0},
+              {"status", SignalGroup::Drive, "", 1, 0, 16},
+              {"fault", SignalGroup::Drive, "", 1, 0, 0},
+              {"enabled", SignalGroup::State, "", 1, 0, 1},
+              {"program_fault", SignalGroup::State, "", 1, 0, 0},
+              {"DI00", SignalGroup::Input, "", 1, 0, 1},
+              {"DI17", SignalGroup::Input, "", 1, 0, 1},
+              {"DB00", SignalGroup::Output, "", 1, 0, 1},
+              {"DO05", SignalGroup::Output, "", 1, 0, 1},
+              {"DO17", SignalGroup::Output, "", 1, 0, 1},
+              {"AI1", SignalGroup::Analog, "V", 0.001, 3, 0},
+              {"AI2_current", SignalGroup::Analog, "mA", 0.001, 3, 0},
+              {"potentiometer", SignalGroup::Analog, "%", 0.1, 1, 0},
+              {"PO1", SignalGroup::ProcessData, "", 1, 0, 16},
+              {"PI3", SignalGroup::ProcessData, "", 1, 0, 16},
+              {"P130", SignalGroup::Parameter, "s", 0.001, 3, 0}};
+  for (const auto& row : rows) {
+    const auto found = find_station_signals(plant.station(), row.name);
+    ASSERT_EQ(found.size(), 1U) << row.name;
+    const PlantSignal& signal = found[0];
+    EXPECT_EQ(std::tuple(signal.name, signal.station), std::tuple("u." + std::string(row.name), "u"));
+    EXPECT_EQ(std::tuple(signal.group, signal.unit, signal.decimals, signal.bits),
+              std::tuple(row.group, row.unit, row.decimals, row.bits))
+        << row.name;
+    EXPECT_DOUBLE_EQ(signal.factor, row.factor) << row.name;
+    EXPECT_EQ(signal.is_status, std::string(row.name) == "status");
+  }
+  for (const char* none : {"position_setpoint", "task1.line", "lCount", "H0", "DO06", "DI08", "PO4"})
+    EXPECT_TRUE(find_station_signals(plant.station(), none).empty())
+        << none << " is of a program or not there";
 }
 
 // CiA 301: a number is given once on a line.

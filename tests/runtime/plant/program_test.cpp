@@ -1,6 +1,7 @@
 // Programs in a station: rates, tasks, interrupts from the drive, faults with place, response and reset.
 #include <gtest/gtest.h>
 
+#include "runtime/plant/hands.hpp"
 #include "tests/harness/proves.hpp"
 #include "tests/runtime/plant/plant_rig.hpp"
 
@@ -432,6 +433,89 @@ main() {
   station.stop_program();
   plant->run_until(ms(600));
   EXPECT_TRUE(station.program_over());
+}
+
+// Of a hand: to start what runs is refused, to begin anew is not.
+TEST(ProgramOrders, StartStopAndRestart) {
+  const auto plant = make_station("#include <constb.h>\nlong n;\nmain() { while (1) n = n + 1; }\n");
+  Station& station = *plant->stations()[0];
+  plant->run_until(ms(20));
+  EXPECT_GT(value(*plant, "n"), 5);
+  EXPECT_EQ(Hands::order(station, ProgramOrder::Start), "the program runs already");
+  EXPECT_EQ(Hands::order(station, ProgramOrder::Stop), std::nullopt);
+  EXPECT_TRUE(station.program_over());
+  const int32_t stopped = value(*plant, "n");
+  plant->run_until(ms(40));
+  EXPECT_EQ(value(*plant, "n"), stopped);
+  EXPECT_EQ(Hands::order(station, ProgramOrder::Start), std::nullopt);
+  EXPECT_FALSE(station.program_over());
+  plant->run_until(ms(60));
+  EXPECT_NE(value(*plant, "n"), stopped);
+  EXPECT_EQ(Hands::order(station, ProgramOrder::Restart), std::nullopt);
+  EXPECT_FALSE(station.program_over());
+}
+
+// MOVLNK over X13 (bus type 2), XT (1), SBus 1 (5) and SBus 2 (8) of a unit that was off meanwhile.
+TEST(Power, MovlnkGoesOverEveryInterfaceAgain) {
+  for (const int type : {1, 2, 5, 8}) {
+    const auto plant = make_plant(R"(
+[[bus]]
+name = "can"
+kind = "can"
+[[bus]]
+name = "can2"
+kind = "can"
+[[bus]]
+name = "rs"
+kind = "rs485"
+[[bus]]
+name = "xt"
+kind = "rs485"
+[[station]]
+name = "u"
+unit = "mdxb"
+program = "P.IPC"
+sbus = "can"
+sbus2 = "can2"
+rs485 = "rs"
+rs485_xt = "xt"
+s13 = true
+[station.parameters]
+P881 = 1
+P891 = 1
+[[station]]
+name = "v"
+unit = "mdxb"
+sbus = "can"
+sbus2 = "can2"
+rs485 = "rs"
+[station.parameters]
+P810 = 5
+P881 = 5
+P891 = 5
+[[station]]
+name = "w"
+unit = "mc07"
+rs485 = "xt"
+[station.parameters]
+P810 = 5
+)",
+                                  {{"P.IPC", "#include <constb.h>\nMOVLNK m; MLDATA d; long good;\nmain() {\n"
+                                             "  m.BusType = " + std::to_string(type) +
+                                                 "; m.Address = 5; m.Format = ML_FT_PAR3; m.Service = ML_S_RD; "
+                                                 "m.Index = 8318; m.DPointer = numof(d);\n"
+                                                 "  while (1) { _MoviLink(m); if (m.Result == 0) good = good + 1; }\n}\n"}});
+    ASSERT_TRUE(plant);
+    for (int round = 0; round < 3; ++round) {
+      plant->run_until(plant->now() + ms(600));
+      EXPECT_GT(value(*plant, "good"), 2) << "bus type " << type << ", round " << round;
+      plant->set_power("u", false);
+      plant->run_until(plant->now() + ms(100));
+      plant->set_power("u", true);
+      plant->run_until(plant->now() + ms(1));
+      EXPECT_EQ(value(*plant, "good"), 0);
+    }
+  }
 }
 
 }  // namespace
