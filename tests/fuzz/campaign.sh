@@ -13,6 +13,8 @@ corpus=$here/corpus/$target
 found=$build/campaign/$target
 seeds=$build/tests/fuzz/seeds
 mkdir -p "$found" "$corpus"
+exec {lock}>"$found.lock"
+flock "$lock" # another one would take away what this one merges
 words=() more=()
 for dict in "$here/$target.dict" "$seeds/$target.dict"; do
   [ ! -e "$dict" ] || words=("-dict=$dict")
