@@ -7,6 +7,7 @@
 #include <array>
 #include <utility>
 
+#include "runtime/bus/log/log_name.hpp"
 #include "runtime/nv_memory/medium/file_medium.hpp"
 #include "runtime/plant/station_state.hpp"
 #include "runtime/plant_file/serial_plan.hpp"
@@ -252,7 +253,7 @@ StationLines Plant::lines_of(const StationConfig& station) {
   found.profibus = dynamic_cast<ProfibusBus*>(find_bus(station.profibus.bus.bus));
   if (station.serial.keypad) {
     BusConfig& line = keypads_.emplace_back();
-    line.name = station.name + ".keypad";
+    line.name = log_name(station.name + ".keypad");
     line.kind = BusKind::Rs485;
     line.baud = xt_baud(station);
     found.xt = serial(&add_bus(line));

@@ -1,6 +1,7 @@
 // [[bus]] of the plant file.
 #include <algorithm>
 
+#include "runtime/bus/log/log_name.hpp"
 #include "runtime/plant_file/plant_reader.hpp"
 
 namespace ipos::runtime {
@@ -72,6 +73,9 @@ void read_bus(PlantReader& reader, const toml::table& table) {
   config.place = place_of(table);
   config.name = reader.text(table, "name", "a [[bus]]", true);
   reader.unique(reader.bus_names, config.name, "bus", config.place);
+  if (log_name(config.name) != config.name)
+    reader.error(place_of(*table.get("name")),
+                 "the name of a bus is one word: it stands in the lines of logs");
   read_kind(reader, table, config);
   read_baud(reader, table, config);
   read_wiring(reader, table, config);

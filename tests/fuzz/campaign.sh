@@ -13,13 +13,15 @@ corpus=$here/corpus/$target
 found=$build/campaign/$target
 seeds=$build/tests/fuzz/seeds
 mkdir -p "$found" "$corpus"
+exec {lock}>"$found.lock"
+flock "$lock" # another one would take away what this one merges
 words=() more=()
 for dict in "$here/$target.dict" "$seeds/$target.dict"; do
   [ ! -e "$dict" ] || words=("-dict=$dict")
 done
 [ ! -d "$seeds/$target" ] || more=("$seeds/$target")
-fuzz() { nice -n 19 "$build/tests/fuzz/ipos_fuzz_$target" -detect_leaks=0 -entropic=0 -max_len="$length" "$@" 2>>"$found.log"; }
-merge() { fuzz -merge=1 -use_counters=0 "$@"; }
+fuzz() { nice -n "${IPOS_FUZZ_NICE:-19}" "$build/tests/fuzz/ipos_fuzz_$target" -detect_leaks=0 -entropic=0 "$@" 2>>"$found.log"; }
+merge() { fuzz -merge=1 -use_counters=0 -max_len=65536 "$@"; } # inputs of the corpus may be longer, and are not cut
 size_of() { echo "$(find "$corpus" -type f | wc -l) inputs, $(find "$corpus" -type f -printf '%s\n' | awk '{s += $1} END {print s + 0}') bytes"; }
 
 : >"$found.log"
@@ -35,7 +37,7 @@ if [ "$runs" -eq 0 ]; then
 else
   # What leaks is found by the replay of the corpus, which ends with a look for leaks.
   TIMEFORMAT='%U %S'
-  { time IPOS_FUZZ_KEEP=1000 fuzz -runs="$runs" "${words[@]}" -len_control=0 -print_final_stats=1 \
+  { time IPOS_FUZZ_KEEP=1000 fuzz -runs="$runs" -max_len="$length" "${words[@]}" -len_control=0 -print_final_stats=1 \
     -artifact_prefix="$found-" "$@" "$found" "$corpus" "${more[@]}"; } 2>"$found.time" ||
     { tail -n 40 "$found.log"; exit 1; }
   grep -E "INITED|DONE" "$found.log"

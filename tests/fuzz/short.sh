@@ -22,7 +22,7 @@ for source in "$here"/*_fuzz.cpp; do
   elif [ -z "$(ls "$here/corpus/$target" 2>/dev/null)" ]; then
     echo "$target: no inputs in corpus/$target"
   elif ! "$program" -runs=0 "${inputs[@]}" >"$target.log" 2>&1 ||
-    ! "$program" -runs="$runs" -seed=1 -max_len=96 -len_control=0 -entropic=0 -detect_leaks=0 -timeout=30 \
+    ! IPOS_FUZZ_KEEP=1000 "$program" -runs="$runs" -seed=1 -max_len=96 -len_control=0 -entropic=0 -detect_leaks=0 -timeout=30 \
       -print_final_stats=1 -artifact_prefix="$out/$target-" "$target" "${inputs[@]}" >>"$target.log" 2>&1; then
     tail -n 40 "$target.log"
   else

@@ -143,6 +143,41 @@ TEST(Logs, PcapngKeepsNanosecondsTelegramsAndTheirErrors) {
   EXPECT_EQ(got.dp[1].reception.frame.error(), profibus::FrameError::Parity);
 }
 
+// A keypad's line is named after its station, so a bus may have that name, too.
+TEST(Logs, BusesOfTwoKindsWithOneNameStayApart) {
+  std::ostringstream out;
+  const auto writer = make_log_writer("a.pcapng", out);
+  runtime::Reception telegram{{}, {}, 1, 2};
+  telegram.bytes.push(0x02);
+  telegram.telegram = tl::unexpected(runtime::SerialError::Timeout);
+  for (int n = 0; n < 2; ++n) {
+    writer->serial("a.keypad", telegram);
+    writer->can(3, "a.keypad", Frame(5, 1, {9}));
+    writer->dp("a.keypad", runtime::reception_of({0xE5}, 7, 8, std::nullopt));
+  }
+  const Taken got = taken(out.str());
+  EXPECT_TRUE(got.wrong.empty());
+  EXPECT_EQ(got.can.size(), 2U);
+  EXPECT_EQ(got.serial.size(), 2U);
+  EXPECT_EQ(got.dp.size(), 2U);
+}
+
+// Wireshark takes any text as the name of an interface; a line of a log ends its name at a blank.
+TEST(Logs, NoNameOfAnInterfaceBreaksALineOfALog) {
+  for (int c = 0; c < 256; ++c) {
+    std::ostringstream out;
+    make_log_writer("a.pcapng", out)->can(0, std::string("a") + static_cast<char>(c) + "b", Frame(0x100, 0));
+    const Taken read = taken(out.str());
+    ASSERT_EQ(read.can.size(), 1U) << c;
+    std::ostringstream lines;
+    make_log_writer("a.log", lines)->can(0, read.can[0].bus, read.can[0].frame);
+    const Taken again = taken(lines.str());
+    ASSERT_TRUE(again.wrong.empty()) << c << ": " << again.wrong[0].second;
+    EXPECT_EQ(again.can[0].bus, read.can[0].bus) << c;
+    EXPECT_EQ(read.can[0].bus == "a_b", c <= ' ' || c == '_' || c == 0x7F) << c;
+  }
+}
+
 TEST(Logs, BlfWithContainersThatCutObjects) {
   for (const size_t chunk : {5'000U, 700U, 48U, 33U})
     for (const bool compressed : {true, false}) {

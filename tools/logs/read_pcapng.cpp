@@ -4,8 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
+#include "runtime/bus/log/log_name.hpp"
 #include "tools/logs/bytes.hpp"
 #include "tools/logs/log_forms.hpp"
 
@@ -101,8 +100,7 @@ class PcapngReader {
         }))
       return false;
     if (!good) return wrong(at_, "times finer than a nanosecond");
-    std::replace_if(
-        made.name.begin(), made.name.end(), [](char c) { return c == ' ' || c == '\t' || c == '\n'; }, '_');
+    made.name = runtime::log_name(std::move(made.name));
     interfaces_.push_back(std::move(made));
     return true;
   }

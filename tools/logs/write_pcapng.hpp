@@ -21,7 +21,7 @@ class PcapngWriter final : public LogWriter {
   void block(uint32_t type, const std::string& body);
 
   std::ostream& out_;
-  std::vector<std::string> interfaces_;
+  std::vector<std::pair<std::string, pcapng::LinkType>> interfaces_;
 };
 
 }  // namespace ipos::tools

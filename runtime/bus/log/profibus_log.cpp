@@ -85,7 +85,10 @@ std::optional<ProfibusEntry> parse_profibus_line(std::string_view text) {
     error = profibus::frame_error(reason);
     if (!error) return std::nullopt;
   }
-  // MOVILINK begins with 02 or 1D; in its log a void telegram may begin with anything.
+  // MOVILINK begins with 02 or 1D; in its log a void telegram may begin with anything, and be a frame by chance.
+  constexpr std::string_view kVoidTelegram = "void: ";
+  if (logged && text.substr(std::min(text.find_first_not_of(" \t"), text.size())).starts_with(kVoidTelegram))
+    return std::nullopt;
   const bool begins_a_frame = !octets.empty() && profibus::frame_size(octets).has_value();
   if (!error && (!begins_a_frame || (logged && !profibus::decode(octets)))) return std::nullopt;
   return ProfibusEntry{std::move(line), reception_of(std::move(octets), start, end, error)};

@@ -75,6 +75,17 @@ TEST(ProfibusLog, TheReasonOfAVoidFrameComesFromTheLog) {
       << "not of the log";
 }
 
+// On a line of MOVILINK noise may look like a frame of PROFIBUS.
+TEST(ProfibusLog, AVoidTelegramOfAnotherLineIsNoFrame) {
+  for (const std::string octets : {"E5", "DC 01 02", "10 08 01 49 52 16"}) {
+    const std::string bytes = kTimes + octets;
+    EXPECT_TRUE(parse_profibus_line(bytes + " | 1 -> 8 anything")) << octets;
+    EXPECT_TRUE(parse_profibus_line(bytes + " | void frame: parity error")) << octets;
+    EXPECT_FALSE(parse_profibus_line(bytes + " | void: character delay exceeded")) << octets;
+    EXPECT_TRUE(parse_profibus_line(octets + " | void: a word of a person")) << "not of a log: " << octets;
+  }
+}
+
 TEST(ProfibusLog, LinesOfOtherKinds) {
   const std::string bad[] = {
       "",

@@ -65,6 +65,15 @@ TEST(SerialPlan, Rs232ConnectsTwo) {
   refuses(line + "baud = 57600\n" + slave, "RS-232 has 9600 baud");
 }
 
+// In a log of lines a blank ends the name.
+TEST(SerialPlan, TheNameOfALineIsOneWord) {
+  for (const char* hidden : {" ", "\\t", "\\r", "\\n", "\\u0000", "\\u001F", "\\u007F"})
+    refuses(bus(std::string("a") + hidden + "b"), "the name of a bus is one word");
+  accepts(bus("a_b!\u00E4~") + station("a", "md60a", ""));
+  const PlantRun run(station("left axis", "md60a", "keypad = true\n"));
+  EXPECT_EQ(run.plant->serial_lines().at(0)->line().name(), "left_axis.keypad");
+}
+
 TEST(SerialPlan, Uss21aAndKeypad) {
   PROVES("RS485-26");
   refuses(bus("l") + station("a", "compact", "rs485_xt = \"l\"\n"), "needs uss21a");
