@@ -20,5 +20,9 @@ endfunction()
 # ipos_not_hot(TARGET [SIZE n]): batches, and the optimiser does less. Not for what executes programs, drives and buses.
 function(ipos_not_hot target)
   ipos_batches(${target} ${ARGN})
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  if(IPOS_SANITIZE)
+    target_compile_options(${target} PRIVATE -O0)  # what sanitizers add is most of the time of an optimised build
+  else()
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
 endfunction()

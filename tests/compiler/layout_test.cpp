@@ -68,7 +68,7 @@ TEST(Copies, OfATooLongProgramAreTheLongestFive) {
   ASSERT_NE(message, c.diagnostics.all().end());
   std::vector<std::string> notes, wanted;
   for (const Note& note : message->notes) notes.push_back(note.text);
-  for (const size_t n : {3, 5, 1, 4, 0})
+  for (const size_t n : {3U, 5U, 1U, 4U, 0U})
     wanted.push_back("'f" + std::to_string(n) +
                      "' stands 2 times (main, t): " + std::to_string(2 * (3 * statements[n] + 1)) + " words");
   EXPECT_EQ(notes, wanted);

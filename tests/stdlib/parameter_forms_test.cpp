@@ -24,8 +24,8 @@ struct Lists {
         text += row + "\n";
       }
       texts.push_back(std::make_unique<std::string>(std::move(text)));
-      files.push_back(std::make_unique<EmbeddedFile>(
-          EmbeddedFile{"list" + std::string(files.size(), 'x'), *texts.back()}));
+      names.push_back(std::make_unique<std::string>("list" + std::string(files.size(), 'x')));
+      files.push_back(std::make_unique<EmbeddedFile>(EmbeddedFile{*names.back(), *texts.back()}));
       pointers.push_back(files.back().get());
     }
     table = std::make_unique<ParameterTable>(pointers, cards);
@@ -33,7 +33,7 @@ struct Lists {
   const Parameter& operator[](std::string_view number) const { return *table->find(number); }
   std::vector<std::string> problems() const { return {table->problems().begin(), table->problems().end()}; }
 
-  std::vector<std::unique_ptr<std::string>> texts;
+  std::vector<std::unique_ptr<std::string>> names, texts;  // the files only look at them
   std::vector<std::unique_ptr<EmbeddedFile>> files;
   std::vector<const EmbeddedFile*> pointers;
   std::unique_ptr<ParameterTable> table;

@@ -53,7 +53,7 @@ TEST(IdleSkip, EachTaskExecutesItsOwnNumberOfCommands) {
                                                       {3, 0, 8},
                                                       {5, 4, 0},
                                                       {0, 0, 0}})
-    for (const uint64_t ticks : {1, 2, 3, 7, 100}) {
+    for (const uint64_t ticks : {1U, 2U, 3U, 7U, 100U}) {
       SCOPED_TRACE(testing::Message()
                    << budgets[0] << " " << budgets[1] << " " << budgets[2] << ", " << ticks);
       Assembled run(kThreeLoops);
@@ -92,7 +92,7 @@ M02 : WAIT 40
 // One of the installed interrupts is looked at in a millisecond (IPOSplus p. 45), so the turn goes on with the skip.
 TEST(IdleSkip, TheTurnOfTheInterruptsGoesOn) {
   for (int installed = 0; installed <= 3; ++installed)
-    for (const uint64_t ticks : {1, 2, 3, 4, 5, 6, 7}) {
+    for (const uint64_t ticks : {1U, 2U, 3U, 4U, 5U, 6U, 7U}) {
       const char* const rows[] = {"SETINT ERROR , M02\n", "SETINT TOUCHP1 , M02\n", "SETINT TIMER0 , M02\n"};
       std::string text;
       for (int n = 0; n < installed; ++n) text += rows[n];

@@ -565,7 +565,7 @@ TEST(Steps, AreTheCommandsOfTheMillisecond) {
           last = task;
         }
         ASSERT_EQ(sum, executed) << ms;
-        for (const size_t n : {1, 2, 3, 9}) ASSERT_EQ(steps.h(n), whole.h(n)) << ms;
+        for (const size_t n : {1U, 2U, 3U, 9U}) ASSERT_EQ(steps.h(n), whole.h(n)) << ms;
         for (int task = 1; task <= kTasks; ++task) {
           ASSERT_EQ(steps->task(task).pc, whole->task(task).pc);
           ASSERT_EQ(steps->task(task).state, whole->task(task).state);

@@ -200,7 +200,7 @@ TEST(SavedState, WaitsAreInCommandsThatWait) {
                             {context_at(2) + kWaitAt, 4, wait_ms}});
   };
   for (const uint64_t pc : {function, wait, host})
-    for (const uint64_t wait_ms : {0, 1, 50}) {
+    for (const uint64_t wait_ms : {0U, 1U, 50U}) {
       EXPECT_TRUE(takes(0, pc, wait_ms));
       EXPECT_TRUE(takes(1, pc, wait_ms));
       EXPECT_EQ(takes(2, pc, wait_ms), wait_ms == 0 ? pc == host : pc == wait) << pc << " " << wait_ms;

@@ -115,7 +115,7 @@ TEST(Movlnk, AnErrorWritesItsCodeOnly) {
   result.reason = "nobody there";
   rig.answer(result);
   EXPECT_EQ(rig.result(100), kNoAnswer);
-  for (const size_t n : {201, 205, 206, 207}) EXPECT_EQ(rig.h(n), kBefore) << n;
+  for (const size_t n : {201U, 205U, 206U, 207U}) EXPECT_EQ(rig.h(n), kBefore) << n;
   EXPECT_EQ(rig.told(), "MOVLNK to address 17: nobody there");
 }
 

@@ -165,7 +165,8 @@ TEST(LibraryLines, BytesOfSerialLines) {
   EXPECT_EQ(ipos_plant_serial_send(plant.plant, 0, bytes.data(), 1), IPOS_PLANT_NO_BUS);
   EXPECT_EQ(plant.message(), "no serial line has number 0");
   // Of nobody here: address 9, and the block check that is right.
-  const std::vector<uint8_t> telegram = {2, 9, 0x85, 0, 6, 0x13, 0x88, 0, 0, 2 ^ 9 ^ 0x85 ^ 6 ^ 0x13 ^ 0x88};
+  const std::vector<uint8_t> telegram = {0x02, 0x09, 0x85, 0, 0x06,
+                                         0x13, 0x88, 0,    0, 0x02 ^ 0x09 ^ 0x85 ^ 0x06 ^ 0x13 ^ 0x88};
   plant.run(10);
   EXPECT_EQ(ipos_plant_serial_send(plant.plant, 2, telegram.data(), telegram.size()), IPOS_PLANT_OK);
   plant.run(100);

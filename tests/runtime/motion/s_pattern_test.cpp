@@ -37,7 +37,7 @@ Change change(Ramp& ramp, int32_t target, const RampTimes& times) {
 
 TEST(SPattern, SpeedAfterEachMillisecond) {
   for (const int grade : {1, 2, 3}) {
-    const uint32_t ms = 2'000;
+    const int ms = 2'000;
     const int levels = rounding(ms, grade);
     const double step = double{kReference} / (ms * levels);
     const int flat = static_cast<int>(1'500'000 / (step * levels)) - levels;  // whole for these figures
@@ -93,7 +93,7 @@ TEST(SPattern, DurationAndDistance) {
 TEST(SPattern, SmallChange) {
   for (const int grade : {1, 2, 3})
     for (const int32_t size : {1'000, 10'000, 33'333}) {
-      const uint32_t ms = 2'000;
+      const int ms = 2'000;
       const double step = double{kReference} / (ms * rounding(ms, grade));
       Ramp ramp(kReference);
       EXPECT_NEAR(change(ramp, size, pattern(ms, grade)).ms, 2 * std::sqrt(size / step), 2.5) << grade;

@@ -116,9 +116,10 @@ TEST(ExtendedCam, FourOfThemRun) {
   Variables v;
   ExtendedCams cams;
   for (int times = 0; times < 5; ++times) EXPECT_TRUE(cams.start(100, v.h, v.sources));
-  for (const uint32_t structure : {120, 140, 160}) EXPECT_TRUE(cams.start(structure, v.h, v.sources));
+  for (const uint32_t structure : {120U, 140U, 160U}) EXPECT_TRUE(cams.start(structure, v.h, v.sources));
   EXPECT_FALSE(cams.start(180, v.h, v.sources));
-  for (const uint32_t structure : {100, 120, 140, 160}) EXPECT_TRUE(cams.start(structure, v.h, v.sources));
+  for (const uint32_t structure : {100U, 120U, 140U, 160U})
+    EXPECT_TRUE(cams.start(structure, v.h, v.sources));
 }
 
 constexpr int32_t bits(uint32_t value) { return static_cast<int32_t>(value); }

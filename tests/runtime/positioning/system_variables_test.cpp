@@ -38,7 +38,7 @@ TEST(PositioningVariables, ComeBackIntoTheRangeOfTheParameter) {
 
 TEST(PositioningVariables, OnlyTheDriveWritesItsOwn) {
   Rig rig;
-  for (const size_t n : {455, 491, 495, 499, 502, 503, 504, 505, 506, 507, 509, 510, 511}) {
+  for (const size_t n : {455U, 491U, 495U, 499U, 502U, 503U, 504U, 505U, 506U, 507U, 509U, 510U, 511U}) {
     rig.h[n] = 12'345;
     rig.tick();
     EXPECT_EQ(rig.h[n], 0) << "H" << n;

@@ -1,6 +1,7 @@
 // FMS at service level: objects, connections and services against the tables of the manual.
 #include "runtime/bus/profibus/fms_server.hpp"
 
+#include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 

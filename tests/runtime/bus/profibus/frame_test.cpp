@@ -1,6 +1,7 @@
 // The five frame formats against captured frames, the norm's table and properties in both directions.
 #include "runtime/bus/profibus/fdl_frame.hpp"
 
+#include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 

@@ -2,6 +2,7 @@
 // back what was sent however the octets fall.
 #include "runtime/bus/profibus/fdl_receiver.hpp"
 
+#include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 

@@ -1,6 +1,7 @@
 // Set_Prm, Global_Control, Slave_Diag and Cfg_Data against the tables of the manual.
 #include "runtime/bus/profibus/dp_service.hpp"
 
+#include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 

@@ -1,6 +1,7 @@
 // The parameter channel, the process data words and the watchdog time of a MOVITRAC 31, through its slave.
 #include "runtime/bus/profibus/dp_unit.hpp"
 
+#include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
