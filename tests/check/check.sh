@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# What takes too long for every test run: all sources read by clang, all suites with AddressSanitizer and UBSan, every
-# preset configured, a short run of every fuzz target, what has threads with ThreadSanitizer, the examples under valgrind,
-# and the tutorial in an empty Debian. Prints the time of each part; goes on after a failure.
+# What takes too long for every test run: all sources compiled by clang and all suites with AddressSanitizer and UBSan,
+# every preset configured, a short run of every fuzz target, what has threads with ThreadSanitizer, the examples under
+# valgrind, and the tutorial in an empty Debian. Prints the time of each part; goes on after a failure.
 #   tests/check/check.sh              all parts
-#   tests/check/check.sh PART...      of: asan clang presets fuzz tsan valgrind tutorial
+#   tests/check/check.sh PART...      of: asan presets fuzz tsan valgrind tutorial
 set -uo pipefail
 cd "$(dirname "$0")/../.."
 jobs=$(nproc)
-parts='asan clang presets fuzz tsan valgrind tutorial'
+parts='asan presets fuzz tsan valgrind tutorial'
 # shellcheck disable=SC2086
 [ $# -gt 0 ] || set -- $parts
 
@@ -25,15 +25,11 @@ asan() {
     ctest --preset asan --parallel "$jobs" -E "$unfit" --timeout 900
 }
 
-clang() { # a build that has the generated sources and knows the commands
-  configure asan && tests/check/clang_reads.py build/asan
-}
-
 # Every preset can be configured, and its compiler makes the first layer; one without its compiler here is told.
 presets() {
   local preset compiler target status=0
   local -A compilers=([windows]=x86_64-w64-mingw32-g++-posix [cortex-m3]=arm-none-eabi-g++ [cortex-m4f]=arm-none-eabi-g++
-    [clang]=clang++ [fuzz]=clang++)
+    [clang]=clang++ [asan]=clang++ [fuzz]=clang++)
   for preset in $(cmake --list-presets | sed -n 's/^ *"\(.*\)" *-.*/\1/p'); do
     compiler=${compilers[$preset]:-g++} target=ipos_isa
     case $preset in cortex-*) target=all ;; esac
