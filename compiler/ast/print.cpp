@@ -52,7 +52,10 @@ class Printer {
   }
   void decl(const PragmaDecl& decl) {
     line(decl.span, "pragma {}", decl.kind.text);
-    if (decl.range) child(decl.range->first), child(decl.range->second);
+    if (decl.range) {
+      child(decl.range->first);
+      child(decl.range->second);
+    }
   }
 
   std::string take() { return fmt::to_string(out_); }

@@ -1,9 +1,8 @@
 // What a line tells: events in words, and its load.
 #include <fmt/format.h>
 
-#include <cassert>
-
 #include <algorithm>
+#include <cassert>
 
 #include "runtime/bus/can/identifier_text.hpp"
 #include "runtime/bus/can/line.hpp"
