@@ -14,6 +14,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LES
   # g++ 12 reports overlaps inside its own std::string (GCC bug 105651).
   target_compile_options(ipos_options INTERFACE -Wno-restrict)
 endif()
+# An index behind the end and an empty optional are told where they happen, in the daily build and beside sanitizers.
+if(IPOS_SANITIZE OR CMAKE_BUILD_TYPE STREQUAL Debug)
+  target_compile_definitions(ipos_options INTERFACE _GLIBCXX_ASSERTIONS)
+endif()
 if(IPOS_SANITIZE)
   target_compile_options(ipos_options INTERFACE -fsanitize=${IPOS_SANITIZE} -fno-omit-frame-pointer
                          -fno-sanitize-recover=all)
