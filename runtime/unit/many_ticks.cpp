@@ -82,10 +82,7 @@ bool ManyTicks::is_steady(const Before& before) {
                                         : positioning->idles();
     if (!rests) return false;
   }
-  if (unit_.machine() != nullptr) {
-    const std::span<const int32_t> h = unit_.variables();
-    if (!noted_.same(h) || !PidBlock::is_off(h)) return false;
-  }
+  if (unit_.machine() != nullptr && (!noted_.same(unit_.variables()) || unit_.controls())) return false;
   drive.hold_steady(ticks);
   return true;
 }

@@ -103,6 +103,8 @@ class Unit final {
   const UnitInputs& inputs() const { return inputs_; }
   const PositioningService* positioning() const { return positioning_ ? &*positioning_ : nullptr; }
   const Timers& timers() const { return timers_; }
+  // The unit has a PID controller, and it is on.
+  bool controls() const { return pid_ && !PidBlock::is_off(machine_->variables()); }
   MovilinkCommand& movilink() { return movilink_; }
   const MovilinkCommand& movilink() const { return movilink_; }
   const std::array<VariableObjects*, 2>& objects() const { return objects_; }

@@ -95,7 +95,7 @@ TEST_F(Ahead, EveryWayIsFollowed) {
   for (const Opcode opcode : {Opcode::ShlHK, Opcode::XorHK, Opcode::NotH, Opcode::AshrHK})
     EXPECT_TRUE(outlook.reaches(opcode)) << vm::info(opcode).text;
   EXPECT_FALSE(outlook.reaches(Opcode::Call)) << "called already";
-  for (const size_t n : {1, 2, 3, 4}) EXPECT_TRUE(outlook.written()[n]) << n;
+  for (const size_t n : {1u, 2u, 3u, 4u}) EXPECT_TRUE(outlook.written()[n]) << n;
   EXPECT_TRUE(outlook.apart());
   ticks(m, 300);
   EXPECT_FALSE(Outlook(m).reaches(Opcode::ShlHK));

@@ -50,7 +50,7 @@ PlantHost::PlantHost(debug::MakePlant make, std::string title, std::string versi
   if (ports_.joined()) stay_in_step();
 }
 
-PlantHost::~PlantHost() = default;
+PlantHost::~PlantHost() { ports_.leave(); }  // while there is a plant
 
 void PlantHost::run() {
   while (post_.open()) turn(100);

@@ -25,6 +25,8 @@ class PlantPorts {
 
   // Opens them before the first event; a Failure names one that cannot be had. `file`: of the plant.
   void join(runtime::Plant& plant, const std::string& file);
+  // Closes them. The plant must still be there.
+  void leave() { joined_.clear(); }
   bool joined() const { return !joined_.empty(); }
 
   // Sends on what the lines have carried.

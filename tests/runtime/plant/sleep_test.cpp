@@ -58,6 +58,18 @@ TEST(Sleep, RandomPlantsAreTheSameAsWithoutIt) {
   EXPECT_GT(late * 8, looked) << "of " << looked << " looks at a station " << late << " found it late";
 }
 
+// The smaller units have neither the variables nor the PID controller of MOVIDRIVE B.
+TEST(Sleep, AWaitingProgramSleepsInEveryUnitThatHasPrograms) {
+  for (const stdlib::UnitType& unit : stdlib::unit_types()) {
+    if (unit.tasks == 0) continue;
+    SCOPED_TRACE(unit.title);
+    const auto plant = make_station("main() { while (1) _Wait(5000); }", "", std::string(unit.name));
+    ASSERT_TRUE(plant);
+    plant->run_until(ms(3000));
+    EXPECT_TRUE(is_asleep(*plant->stations()[0]));
+  }
+}
+
 // Within the first second the reference signals P400..P434 come to rest.
 TEST(Sleep, AWaitingProgramSleepsUntilItsWaitIsOver) {
   const auto plant = make_station("long n; main() { while (1) { _Wait(5000); n = n + 1; } }");
