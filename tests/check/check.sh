@@ -13,9 +13,9 @@ parts='asan presets fuzz tsan valgrind tutorial'
 
 # Programs with threads: `ipos test -j` and the reader behind the ports and the page.
 threaded=(ipos_testing_tests ipos_port_tests ipos_serve_tests ipos_library_tests)
-# Not for sanitizers: they count instructions and allocations, run another processor's code, boot a kernel, or build
-# the project anew.
-unfit='ipos_bench|aarch64|ipos_realbus|ipos_memcheck|ipos_debian|ipos_install|ipos_subdirectory|ipos_hello|cortex|ipos_pictures|conformance'
+# Not for sanitizers: they count instructions and allocations, run another processor's code, boot a kernel, build the
+# project anew, or start the program some thousand times (ipos_schemas: 40 s without sanitizers).
+unfit='ipos_bench|ipos_schemas|aarch64|ipos_realbus|ipos_memcheck|ipos_debian|ipos_install|ipos_subdirectory|ipos_hello|cortex|ipos_pictures|conformance'
 
 configure() { cmake --preset "$1" -DIPOS_TESTS=ON >/dev/null; }
 
@@ -29,7 +29,7 @@ asan() {
 presets() {
   local preset compiler target status=0
   local -A compilers=([windows]=x86_64-w64-mingw32-g++-posix [cortex-m3]=arm-none-eabi-g++ [cortex-m4f]=arm-none-eabi-g++
-    [clang]=clang++ [asan]=clang++ [fuzz]=clang++)
+    [clang]=clang++ [asan]=clang++ [tsan]=clang++ [fuzz]=clang++)
   for preset in $(cmake --list-presets | sed -n 's/^ *"\(.*\)" *-.*/\1/p'); do
     compiler=${compilers[$preset]:-g++} target=ipos_isa
     case $preset in cortex-*) target=all ;; esac

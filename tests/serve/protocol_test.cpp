@@ -608,7 +608,8 @@ TEST_F(DpAndSerial, WhatALineHasNotIsRefusedInWords) {
             "line1 is a serial line: such lines have no faults that can be planted, only CAN and PROFIBUS "
             "lines have");
   EXPECT_EQ(refused({{"bus", "sbus"}, {"kind", "cut"}}), "there is no line 'sbus', only line1, dp");
-  for (const Json& bus : good({{"do", "plant"}})["plant"]["buses"])
+  const Json answer = good({{"do", "plant"}});
+  for (const Json& bus : answer["plant"]["buses"])
     if (bus["name"] == "line1") {
       EXPECT_EQ(bus["faults"], Json::array());
       EXPECT_EQ(bus["fault_rules"], Json::object());
