@@ -187,19 +187,21 @@ TEST(PositionerFollows, ToTheEndOfTheMasterOrOfTheProgramsWish) {
 TEST(PositionerFollows, ToAStopOfItsShape) {
   const std::pair<int32_t, double> shapes[] = {{0, 0.75}, {1, (1 + std::sqrt(0.5)) / 2}, {2, 0.875}};
   for (const auto& [shape, share] : shapes) {
-    PositioningSettings settings;
-    settings.ramp_shape = shape;
-    IdealAxis axis(settings);
+    IdealAxis axis;
     axis.master_told = true;
     axis.master_speed = 40;
     axis.run(30);
     axis.inputs.master.follow = true;
-    axis.run(400);
+    axis.run(200);
+    axis.settings.ramp_shape = shape;  // set while it follows, with another time
+    axis.settings.ramp_down = 800;
+    axis.positioner.take_over(axis.settings);
+    axis.run(200);
     const double speed = axis.inputs.speed;
     axis.inputs.master.follow = false;
-    axis.run(49);  // of 195
+    axis.run(39);  // of 156
     EXPECT_NEAR(axis.inputs.speed / speed, share, 0.015) << shape;
-    axis.run(49);
+    axis.run(39);
     EXPECT_NEAR(axis.inputs.speed / speed, 0.5, 0.02) << shape;
   }
 }
