@@ -12,7 +12,7 @@ void Contenders::insert_between(uint64_t rank) {
     ranks_[--first_] = rank;
     return;
   }
-  const auto place = std::lower_bound(at(first_), at(end_), rank);
+  const auto place = std::upper_bound(at(first_), at(end_), rank);
   std::copy_backward(place, at(end_), at(end_ + 1));
   *place = rank;
   ++end_;

@@ -15,6 +15,11 @@ constexpr uint8_t request_code(FdlRequest request) {
   return static_cast<uint8_t>(control::kRequest | static_cast<uint8_t>(request));
 }
 
+// Behind which a master claims the ring: longer for higher addresses, so that the lowest one does.
+constexpr Bits silence_of(const MasterSettings& settings) {
+  return (6 + 2 * Bits{settings.address}) * settings.slot;
+}
+
 }  // namespace
 
 Master::Master(runtime::EventQueue& queue, uint32_t source, Line& line, std::string name,
@@ -70,14 +75,13 @@ void Master::listen() {
   await_silence();
 }
 
-// Longer for higher addresses, so that the lowest claims the ring.
 void Master::await_silence() {
-  const Bits timeout = (6 + 2 * Bits{settings_.address}) * settings_.slot;
+  const Bits timeout = silence_of(settings_);
   arm(std::max(line_.quiet_since() + timeout, line_.now() + 1));
 }
 
 void Master::silence_over() {
-  const Bits timeout = (6 + 2 * Bits{settings_.address}) * settings_.slot;
+  const Bits timeout = silence_of(settings_);
   if (line_.is_busy() || line_.now() < line_.quiet_since() + timeout) {
     arm(std::max(line_.quiet_since(), line_.is_busy() ? line_.now() : 0) + timeout);
     return;

@@ -58,6 +58,18 @@ TEST(PowerSection, SlipMovesTheFrequency) {
   EXPECT_EQ(axis.state().frequency, 0);
 }
 
+// A motor that needs no magnetizing current, with 80 % active current a rated torque.
+TEST(PowerSection, TheCurrentLimitIsATorque) {
+  MachineData machine;
+  machine.magnetizing_current = 0;
+  PowerSection power{within_limits(machine)};
+  for (const auto& [limit, torque] :
+       {std::pair(0, 0), std::pair(-1, 0), std::pair(INT32_MIN, 0), std::pair(1, 1),
+        std::pair(80'000, 100'000), std::pair(999'999, 1'249'998), std::pair(1'000'000, 1'250'000),
+        std::pair(INT32_MAX, 1'250'000)})
+    EXPECT_EQ(power.torque_limit(limit), torque) << limit;
+}
+
 // Direct current at standstill: what is below 0 counts as 0, and 10 x IN are the most.
 TEST(PowerSection, DirectCurrentIsThatOfTheOrder) {
   struct Row {

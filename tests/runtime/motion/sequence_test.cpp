@@ -138,6 +138,17 @@ TEST(Sequence, StandstillCurrent) {
   EXPECT_FALSE(drive.run(AxisCommand::Inhibit, 1).output_stage);
 }
 
+// However little it is.
+TEST(Sequence, StandstillCurrentIsAnyAboveZero) {
+  for (const int32_t current : {-1, 0, 1, 2}) {
+    Drive drive;
+    drive.order.standstill_current = current;
+    EXPECT_EQ(drive.run(AxisCommand::Stop, 1).phase,
+              current > 0 ? AxisPhase::StandstillCurrent : AxisPhase::Off);
+    EXPECT_EQ(drive.axis.state().output_current, std::max(current, 0));
+  }
+}
+
 TEST(Sequence, TurningMotorIsCaughtAtItsSpeed) {
   MachineData machine;
   machine.brake = false;

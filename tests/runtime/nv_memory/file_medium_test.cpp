@@ -6,6 +6,7 @@
 
 #include <array>
 #include <filesystem>
+#include <iterator>
 
 #include "runtime/nv_memory/medium/slot_store.hpp"
 #include "tests/runtime/nv_memory/file_folder.hpp"
@@ -54,6 +55,34 @@ TEST_F(PosixFile, SaysWhyItCannotBeUsed) {
     EXPECT_EQ(open_file_medium("/dev/zero", use).error(), "not a file");
     EXPECT_EQ(open_file_medium((folder_ / "loop").string(), use).error(),
               "Too many levels of symbolic links");
+  }
+}
+
+// The owner may write it, everybody may read it, as far as the user's mask allows.
+TEST_F(PosixFile, ANewFileIsTheOwnersToWrite) {
+  for (const mode_t mask : {mode_t{0}, mode_t{022}, mode_t{077}}) {
+    fs::remove(path_);
+    const mode_t before = umask(mask);
+    const auto medium = open_file_medium(path_, FileUse::Write);
+    umask(before);
+    ASSERT_TRUE(medium);
+    struct stat status {};
+    ASSERT_EQ(stat(path_.c_str(), &status), 0);
+    EXPECT_EQ(status.st_mode & 07777, 0644U & ~mask);
+  }
+}
+
+// Neither the file nor its folder, which is synchronised, stays open.
+TEST_F(PosixFile, LeavesNothingOpen) {
+  const auto open_now = [] {
+    return std::distance(fs::directory_iterator("/proc/self/fd"), fs::directory_iterator());
+  };
+  const auto before = open_now();
+  for (const FileUse use : {FileUse::Write, FileUse::Look}) {
+    ASSERT_TRUE(open_file_medium(path_, use));
+    ASSERT_FALSE(open_file_medium(folder_.string(), use));
+    ASSERT_FALSE(open_file_medium((folder_ / "no" / "unit1.nv").string(), FileUse::Write));
+    EXPECT_EQ(open_now(), before);
   }
 }
 

@@ -130,5 +130,64 @@ TEST(ProfibusBridge, AParityErrorVoidsTheFrame) {
   EXPECT_NE(notes.front().find("parity error"), std::string::npos) << notes.front();
 }
 
+// As many frames as there is room for; the rest waits at the port, and is not asked for.
+TEST(ProfibusBridge, TakesAsManyFramesAsItHasRoomFor) {
+  DpRig rig;
+  const Octets token = octets("DC 01 01");
+  for (int n = 0; n < 66; ++n)
+    for (const uint8_t octet : token) rig.port.incoming.push_back({rig.clock.now(), octet, false});
+  for (int n = 0; n < 3; ++n) ASSERT_TRUE(rig.bridge->collect(0));
+  EXPECT_EQ(rig.bridge->waiting(), 64U + 2U) << "a reading takes 256 octets at once";
+  EXPECT_EQ(rig.bridge->take_notes(),
+            std::vector<std::string>{
+                "serial: frames wait for the simulated line: they come faster than its 500000 baud"});
+  rig.port.incoming.push_back({rig.clock.now(), 0xE5, false});
+  ASSERT_TRUE(rig.bridge->collect(0));
+  EXPECT_EQ(rig.port.incoming.size(), 1U) << "there is no room";
+  EXPECT_EQ(rig.bridge->needs().descriptor, -1);
+  rig.ask(Octets{});
+  EXPECT_TRUE(rig.port.incoming.empty());
+  EXPECT_EQ(rig.bridge->waiting(), 0U);
+}
+
+// What is disturbed on the simulated line is void outside, too: a port cannot send a character with an error.
+TEST(ProfibusBridge, DisturbedFramesAreNotPassedOn) {
+  for (const bool disturbed : {false, true}) {
+    DpRig rig;
+    profibus::LineFault fault;
+    fault.kind = profibus::LineFaultKind::Parity;
+    fault.sender = rig.slave.node();
+    fault.from = rig.queue.now();
+    if (disturbed) rig.line.add_fault(fault);
+    EXPECT_EQ(rig.ask("68 05 05 68 88 81 6D 3C 3E F0 16").empty(), disturbed);
+    const auto notes = rig.bridge->take_notes();
+    EXPECT_EQ(notes, disturbed
+                         ? std::vector<std::string>{"serial: disturbed frames of the simulated line are not "
+                                                    "passed on"}
+                         : std::vector<std::string>{});
+  }
+}
+
+// What came is no frame: told once a kind, with the reason, and counted.
+TEST(ProfibusBridge, WhatIsNoFrameIsTold) {
+  DpRig rig;
+  rig.bridge->take_notes();
+  for (int n = 0; n < 2; ++n) EXPECT_TRUE(rig.ask("10 7D 01 49 C8 16").empty());
+  const auto notes = rig.bridge->take_notes();
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_TRUE(notes[0].starts_with("serial: what came is no frame: ")) << notes[0];
+  EXPECT_EQ(rig.bridge->repeats(), std::vector<std::string>{notes[0] + ": 2 times"});
+}
+
+// Frames for a line that the bridge is not connected to are counted, and none of them stays.
+TEST(ProfibusBridge, WhatTheLineDoesNotTakeIsCounted) {
+  DpRig rig;
+  const auto bridge = static_cast<NodeId>(rig.slave.node() + 1);
+  rig.line.set_connected(bridge, false);
+  for (int n = 0; n < 3; ++n) EXPECT_TRUE(rig.ask("68 05 05 68 88 81 6D 3C 3E F0 16").empty());
+  EXPECT_EQ(std::as_const(*rig.bridge).counts().undelivered, 3U);
+  EXPECT_EQ(rig.bridge->waiting(), 0U);
+}
+
 }  // namespace
 }  // namespace ipos::tests

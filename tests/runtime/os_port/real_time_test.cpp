@@ -132,5 +132,28 @@ TEST(RealTime, EndsWithTheSimulationAndWithAPort) {
   EXPECT_EQ(gone.queue.now(), 7 * kMillisecond);
 }
 
+// Each round takes in, runs, and then sends; a port that fails in either ends the run, and the others are still served.
+TEST(RealTime, EveryRoundCollectsAndFlushesEachMember) {
+  struct Member final : RealTimeMember {
+    PortNeeds needs() const override { return {}; }
+    bool collect(Time) override { return ++collected != fails_to_collect; }
+    bool flush() override { return ++flushed != fails_to_flush; }
+    int collected = 0, flushed = 0;
+    int fails_to_collect = -1, fails_to_flush = -1;  // at which time
+  };
+  for (const bool in_flush : {false, true}) {
+    Rig rig;
+    Member first, second;
+    (in_flush ? first.fails_to_flush : first.fails_to_collect) = 3;
+    rig.loop.add(first);
+    rig.loop.add(second);
+    EXPECT_EQ(rig.loop.run(kSecond), RealTimeLoop::End::PortGone);
+    for (const Member* member : {&first, &second}) {
+      EXPECT_EQ(member->collected, 3) << in_flush;
+      EXPECT_EQ(member->flushed, 3) << in_flush;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace ipos::tests

@@ -13,10 +13,10 @@ namespace {
 constexpr Time kCharacter = wire_time(1, 9600);
 
 struct Rig {
-  explicit Rig(bool paced = true, Time latency = 0) {
+  explicit Rig(bool paced = true, Time latency = 0, Time slack = 0) {
     port.paced = paced;
     port.late = latency;
-    bridge.emplace(queue, 9, line, port);
+    bridge.emplace(queue, 9, line, port, slack);
     line.add_observer(recorder);
   }
   // The bytes of a telegram, each complete a character time after the one before; the first one at `at`.
@@ -157,6 +157,128 @@ TEST(SerialBridge, NoiseIsNoEcho) {
     rig.run(250 * kMillisecond);
     EXPECT_EQ(rig.port.sent.size(), 2U);
   }
+}
+
+// An echo comes when its bytes have gone out, at most 32 ms and the adapter's latency later.
+TEST(SerialBridge, AnEchoHasItsTime) {
+  for (const Time latency : {Time{0}, 16 * kMillisecond})
+    for (const size_t size : {size_t{1}, size_t{3}})
+      for (const bool late : {false, true}) {
+        Rig rig(true, latency);
+        HandNode hand(rig.line, "hand");
+        const Bytes bytes(size, 0x41);
+        hand.send(bytes);
+        rig.run(10 * kMillisecond);
+        ASSERT_EQ(rig.port.sent.size(), 1U);
+        EXPECT_EQ(rig.port.sent[0].bytes, bytes);
+        ASSERT_EQ(rig.recorder.characters.size(), size);
+        // The first character has been heard then, and the telegram goes out as a whole.
+        const Time end = rig.recorder.characters[0].end + static_cast<Time>(size) * kCharacter + latency +
+                         32 * kMillisecond;
+        rig.port.incoming.push_back({end + (late ? 1 : 0), 0x41, false});
+        rig.run(150 * kMillisecond);
+        EXPECT_EQ(rig.bridge->echoed_bytes(), late ? 0U : 1U);
+        EXPECT_EQ(rig.recorder.characters.size(), size + (late ? 1U : 0U));
+      }
+}
+
+// The first byte that is another one, or a bad one, ends an echo; a telegram as a whole is told as one.
+TEST(SerialBridge, AnEchoIsWhatWentOut) {
+  struct Row {
+    Bytes back;
+    bool bad;  // the last of them
+    uint64_t echoed;
+    bool told;
+  };
+  for (const Row& row :
+       {Row{{1, 2, 3}, false, 3, true}, Row{{1, 2}, false, 2, false}, Row{{1, 9, 2, 3}, false, 1, false},
+        Row{{9, 1, 2, 3}, false, 0, false}, Row{{1, 2, 3}, true, 2, false}, Row{{1, 2, 3, 1}, false, 3, true},
+        Row{{2, 3}, false, 0, false}}) {
+    Rig rig;
+    HandNode hand(rig.line, "hand");
+    hand.send({1, 2, 3});
+    rig.run(10 * kMillisecond);
+    rig.arrive(12 * kMillisecond, row.back);
+    rig.port.incoming.back().bad = row.bad;
+    rig.run(60 * kMillisecond);
+    SCOPED_TRACE(text_of(row.back));
+    EXPECT_EQ(rig.bridge->echoed_bytes(), row.echoed);
+    EXPECT_EQ(rig.recorder.characters.size(), 3 + row.back.size() - row.echoed);
+    EXPECT_EQ(rig.bridge->bad_bytes(), row.bad ? 1U : 0U);
+    EXPECT_EQ(rig.bridge->take_notes(),
+              row.told ? std::vector<std::string>{"serial: the adapter hears itself: its echo "
+                                                  "is left out"}
+                       : std::vector<std::string>{});
+  }
+}
+
+// A port has no way to send a character with an error, so it is left out: the telegram is void outside, too.
+TEST(SerialBridge, DisturbedCharactersAreLeftOut) {
+  struct : SerialFaults {
+    void disturb(NodeId, std::vector<bool>& bits) override {
+      constexpr size_t kParity = 9, kStop = 10, kCharacterBits = 11;
+      bits[kCharacterBits + (framing ? kStop : kParity)].flip();
+    }
+    bool framing = false;
+  } faults;
+  for (const bool framing : {false, true})
+    for (const bool paced : {true, false}) {
+      Rig rig(paced);
+      HandNode hand(rig.line, "hand");
+      faults.framing = framing;
+      rig.line.set_faults(&faults);
+      hand.send({0x41, 0x42});
+      rig.run(20 * kMillisecond);
+      Bytes all;
+      for (const auto& part : rig.port.sent) all.insert(all.end(), part.bytes.begin(), part.bytes.end());
+      EXPECT_EQ(text_of(all), "41") << framing << paced;
+      EXPECT_EQ(
+          rig.bridge->take_notes(),
+          std::vector<std::string>{"serial: disturbed characters of the simulated line are not passed on"});
+    }
+}
+
+// Bytes for a line that it is not connected to are counted, and the next ones have their turn.
+TEST(SerialBridge, WhatTheLineDoesNotTakeIsCounted) {
+  Rig rig;
+  constexpr NodeId kBridge = 1;  // behind the slave
+  ASSERT_EQ(rig.line.node_name(kBridge), "serial");
+  rig.line.set_connected(kBridge, false);
+  rig.arrive(5 * kMillisecond, {1, 2, 3});
+  rig.run(20 * kMillisecond);
+  EXPECT_EQ(std::as_const(*rig.bridge).counts().undelivered, 3U);
+  EXPECT_EQ(rig.bridge->waiting(), 0U);
+  EXPECT_TRUE(rig.recorder.characters.empty());
+}
+
+// What has gone out in one piece is disturbed later by a second station: that cannot be taken back, and is told.
+TEST(SerialBridge, ACollisionBehindTheFirstCharacterIsTold) {
+  for (const bool collides : {false, true}) {
+    Rig rig;
+    HandNode first(rig.line, "first"), second(rig.line, "second");
+    first.send(Bytes(8, 0x55));
+    rig.run(3 * kMillisecond);
+    ASSERT_EQ(rig.port.sent.size(), 1U);
+    EXPECT_EQ(rig.port.sent[0].bytes, Bytes(8, 0x55));
+    if (collides) second.send(Bytes(2, 0x00));
+    rig.run(20 * kMillisecond);
+    EXPECT_EQ(rig.noted("serial: telegrams that collide on the simulated line have gone out in part"), collides);
+  }
+}
+
+// The first byte of a telegram goes on the line as late as an adapter may be, or as the host is given: the longer of
+// both. A port gives a byte when it is complete.
+TEST(SerialBridge, ATelegramBeginsAsLateAsItMayCome) {
+  for (const Time latency : {Time{0}, 5 * kMillisecond, 16 * kMillisecond})
+    for (const Time slack : {Time{0}, 8 * kMillisecond}) {
+      Rig rig(true, latency, slack);
+      rig.arrive(10 * kMillisecond, {0x55, 0x56});
+      rig.run(60 * kMillisecond);
+      ASSERT_EQ(rig.recorder.characters.size(), 2U);
+      const Time begin = 10 * kMillisecond + std::max(latency, slack);
+      EXPECT_NEAR(static_cast<double>(rig.recorder.characters[0].start), static_cast<double>(begin), 110e3)
+          << "a bit";
+    }
 }
 
 // Two units answer 254 at once: what collides is not passed on as if it were good.

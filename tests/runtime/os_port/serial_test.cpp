@@ -173,6 +173,61 @@ TEST(PseudoTerminal, SaysOnceThatItHasNoParity) {
   EXPECT_TRUE((*port)->take_notes().empty());
 }
 
+TEST(PseudoTerminal, SaysWhatItIs) {
+  if (!has_pty()) GTEST_SKIP() << kNoPty;
+  const TemporaryFolder folder;
+  SystemClock clock;
+  const std::string path = (folder.path() / "line1").string();
+  for (const bool parity : {false, true}) {
+    const SerialPortResult opened = open_serial_port("pty:" + path, {9'600, parity}, clock);
+    ASSERT_TRUE(opened) << opened.error().text;
+    BytePort& port = **opened;
+    EXPECT_EQ(port.name(), "pty:" + path);
+    EXPECT_FALSE(port.paces()) << "bytes are at the other end at once";
+    EXPECT_EQ(port.latency(), 0);
+    EXPECT_FALSE(port.has_parity());
+    EXPECT_EQ(port.take_notes().size(), parity ? 1U : 0U);
+    EXPECT_EQ(port.waiting(), 0U);
+  }
+}
+
+// Bytes that went out, came in and found no room. Those that come have the time at which they are read.
+TEST(PseudoTerminal, CountsItsBytes) {
+  if (!has_pty()) GTEST_SKIP() << kNoPty;
+  const TemporaryFolder folder;
+  SystemClock clock;
+  const std::string path = (folder.path() / "line1").string();
+  const SerialPortResult opened = open_serial_port("pty:" + path, {9'600, false}, clock);
+  ASSERT_TRUE(opened) << opened.error().text;
+  BytePort& port = **opened;
+  const Descriptor program(open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK));
+  std::array<ByteArrival, 2> part{};
+  ASSERT_EQ(port.receive(part), 0U);
+  ASSERT_EQ(write(program.get(), "abc", 3), 3);
+  const Time before = clock.now();
+  const std::vector<ByteArrival> got = receive(port, 3);
+  ASSERT_EQ(got.size(), 3U);
+  for (size_t n = 0; n < 3; ++n) {
+    EXPECT_EQ(got[n].value, 'a' + n);
+    EXPECT_FALSE(got[n].bad);
+    EXPECT_GE(got[n].at, before);
+    EXPECT_LE(got[n].at, clock.now());
+  }
+  const std::array<uint8_t, 5> bytes{1, 2, 3, 4, 5};
+  port.send(bytes);
+  const PortCounts& counts = port.counts();
+  EXPECT_EQ(std::tuple(counts.received, counts.sent, counts.lost_out), std::tuple(3U, 5U, 0U));
+  EXPECT_TRUE(port.take_notes().empty());
+  const std::vector<uint8_t> much(1'000, 'x');
+  uint64_t tried = 5;
+  for (; counts.lost_out == 0 && tried < 1'000'000; tried += much.size()) port.send(much);
+  EXPECT_EQ(counts.lost_out, much.size());
+  EXPECT_EQ(counts.sent + counts.lost_out, tried);
+  EXPECT_GT(port.waiting(), kSerialPortQueue - much.size());
+  EXPECT_EQ(port.take_notes(),
+            std::vector<std::string>{"bytes are lost: the program at the other end does not read them"});
+}
+
 TEST(PseudoTerminal, LinkComesAndGoes) {
   if (!has_pty()) GTEST_SKIP() << kNoPty;
   const TemporaryFolder folder;

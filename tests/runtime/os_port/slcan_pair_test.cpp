@@ -233,6 +233,58 @@ TEST_F(SlcanAdapterCommands, AProgramThatLeavesClosesTheChannel) {
   EXPECT_EQ(adapter_->counts().lost_out, 0U);
 }
 
+// Milliseconds of the host's clock, which begin again every minute.
+TEST_F(SlcanAdapterCommands, StampsAreMillisecondsOfTheMinute) {
+  EXPECT_EQ(talk("Z1\r"), "\r");
+  EXPECT_EQ(talk("O\r"), "\r");
+  const Time before = clock_.now() / kMillisecond;
+  adapter_->send(frame(0x123, 0xAB));
+  const Time after = clock_.now() / kMillisecond;
+  const std::string text = heard();
+  ASSERT_EQ(text.size(), 12U);
+  const Time stamp = std::stol(text.substr(7, 4), nullptr, 16);
+  EXPECT_LT(stamp, 60'000);
+  EXPECT_LE((stamp - before % 60'000 + 60'000) % 60'000, after - before);
+}
+
+// What one program has set up is not for the next one: neither rate nor stamps nor half a line.
+TEST_F(SlcanAdapterCommands, TheNextProgramBeginsAnew) {
+  EXPECT_EQ(talk("S4\rZ1\r"), "\r\r");
+  EXPECT_EQ(talk("O\r"), "\a") << "the bus has 500 kbit/s";
+  ASSERT_EQ(::write(program_.get(), "t10", 3), 3);
+  take_frames();
+  program_ = Descriptor();
+  for (int n = 0; n < 20; ++n) take_frames();
+  attach();
+  EXPECT_EQ(talk("O\r"), "\r");
+  adapter_->send(frame(0x123, 0xAB));
+  EXPECT_EQ(heard(), "t1231AB\r");
+}
+
+// Frames that came, lines that were none, and frames that went out. What comes while the channel is closed, or may not
+// send, is refused and not lost.
+TEST_F(SlcanAdapterCommands, CountsWhatGoesThrough) {
+  const auto counts = [&] {
+    const PortCounts& all = adapter_->counts();
+    return std::tuple(all.sent, all.received, all.lost_in, all.lost_out);
+  };
+  adapter_->send(frame(1));
+  EXPECT_EQ(talk("t1000\rt1\r"), "\a\a");
+  EXPECT_EQ(counts(), std::tuple(0U, 0U, 0U, 0U)) << "it is closed";
+  EXPECT_EQ(talk("L\r"), "\r");
+  EXPECT_EQ(talk("t1000\rt1\r"), "\a\a");
+  adapter_->send(frame(1));
+  EXPECT_EQ(heard(), "t001100\r");
+  EXPECT_EQ(counts(), std::tuple(1U, 0U, 0U, 0U)) << "it only listens";
+  EXPECT_EQ(talk("C\rO\r"), "\r\r");
+  EXPECT_EQ(talk("t1000\rr1004\r"), "z\rz\r");
+  EXPECT_EQ(talk("t1\rt10000001\r"), "\a\a") << "a stamp is not for us";
+  EXPECT_EQ(counts(), std::tuple(1U, 2U, 2U, 0U));
+  EXPECT_EQ(talk(std::string(60, 't') + "\r"), "\a") << "longer than any line";
+  EXPECT_EQ(counts(), std::tuple(1U, 2U, 3U, 0U));
+  EXPECT_EQ(adapter_->waiting(), 0U);
+}
+
 TEST_F(SlcanAdapterCommands, AProgramThatDoesNotReadLosesWholeFramesAndThatIsTold) {
   EXPECT_EQ(talk("O\r"), "\r");
   constexpr uint32_t kFrames = 10'000;

@@ -214,6 +214,18 @@ TEST(ExtendedCam, EveryVariableMayBeTheSource) {
   }
 }
 
+// CamSource 0, 1 and 2 are the encoders of the motor H511, the external H510 and the absolute one H509 (p. 91).
+TEST(ExtendedCam, EncodersAreSources) {
+  for (const int32_t source : {0, 1, 2}) {
+    Extended cam(0x8000'0003, 1);
+    cam.h[105] = source;
+    for (const size_t encoder : {509U, 510U, 511U}) cam.h[encoder] = 999;
+    cam.h[static_cast<size_t>(511 - source)] = 20;
+    EXPECT_TRUE(cam.cams.tick(cam.h, cam.sources, {true, 0}));
+    EXPECT_EQ(cam.h[200], 1 << 4) << source;
+  }
+}
+
 // The bit of GSCAM is one of 32, and its destination any variable (p. 86).
 TEST(StandardCam, EveryBitOfEveryDestination) {
   for (int32_t bit = 0; bit < 32; ++bit)

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <utility>
 
 #include "runtime/positioning/touch_probe.hpp"
 #include "tests/runtime/positioning/rig.hpp"
@@ -92,6 +93,92 @@ TEST(Encoders, ZeroPulsesAtWholeTurns) {
   encoders.set_position(kMotor, 100);
   encoders.recount(100);
   EXPECT_EQ(pulse(102, 1), 101);
+}
+
+// Each source has its own number; another number for one of them is none for the others.
+TEST(Encoders, EachHasItsOwnNumber) {
+  PositioningSettings settings = factor(2, 1);
+  settings.absolute_zero = 30;
+  for (const auto source : {kMotor, kExternal, kAbsolute}) {
+    Encoders encoders;
+    encoders.configure(settings);
+    encoders.count(1'001);
+    encoders.set_position(source, -7);
+    EXPECT_EQ(encoders.position(kMotor), source == kMotor ? -7 : 1'001);
+    EXPECT_EQ(encoders.position(kExternal), source == kExternal ? -7 : 500);
+    EXPECT_EQ(encoders.position(kAbsolute), source == kAbsolute ? -7 : 530);
+    encoders.count(1'003);
+    EXPECT_EQ(encoders.position(source), source == kMotor ? -5 : -6);
+  }
+}
+
+// Power-on finds the incremental encoders at 0; the absolute one knows what the shaft was ever turned.
+TEST(Encoders, PowerOnForgetsAllButTheAbsoluteOne) {
+  PositioningSettings settings = factor(2, 1);
+  settings.absolute_zero = 30;
+  Encoders encoders;
+  encoders.configure(settings);
+  encoders.count(500);
+  for (const auto source : {kMotor, kExternal, kAbsolute}) encoders.set_position(source, 9);
+  encoders.power_on(10'000);
+  EXPECT_EQ(encoders.counter(), 0);
+  EXPECT_EQ(encoders.position(kMotor), 0);
+  EXPECT_EQ(encoders.position(kExternal), 0);
+  EXPECT_EQ(encoders.position(kAbsolute), 5'030);
+  encoders.count(100);
+  EXPECT_EQ(encoders.position(kMotor), 100);
+  EXPECT_EQ(encoders.position(kExternal), 50);
+  EXPECT_EQ(encoders.position(kAbsolute), 5'080);
+}
+
+// The pulse is the motor's; its place is told in the count of the source.
+TEST(Encoders, ZeroPulsesHaveThePlaceOfTheirSource) {
+  for (const bool inverted : {false, true}) {
+    PositioningSettings settings = factor(4, 1);
+    settings.absolute_inverted = inverted ? 1 : 0;
+    settings.absolute_zero = 30;
+    Encoders encoders;
+    encoders.configure(settings);
+    encoders.count(8'000);
+    encoders.set_position(kExternal, 1'000);  // 2000 before
+    encoders.count(8'200);
+    EXPECT_EQ(encoders.zero_pulse(kMotor, 1), 8'192);
+    EXPECT_EQ(encoders.zero_pulse(kExternal, 1), 1'048);
+    EXPECT_EQ(encoders.zero_pulse(kAbsolute, 1), inverted ? 30 - 2'048 : 30 + 2'048);
+    EXPECT_EQ(encoders.zero_pulse(kMotor, -1), std::nullopt);
+    encoders.count(8'192);
+    EXPECT_EQ(encoders.zero_pulse(kMotor, -1), 8'192) << "down to it";
+    encoders.count(8'191);
+    EXPECT_EQ(encoders.zero_pulse(kMotor, -1), std::nullopt) << "it was there already";
+    encoders.count(8'192);
+    EXPECT_EQ(encoders.zero_pulse(kMotor, 1), 8'192);
+    encoders.count(8'193);
+    EXPECT_EQ(encoders.zero_pulse(kMotor, 1), std::nullopt);
+  }
+}
+
+// Inputs DI02 and DI03, rising and falling edges as they are wanted; nothing else is an edge.
+TEST(TouchProbes, WantEachEdgeByItself) {
+  for (const size_t n : {size_t{0}, size_t{1}})
+    for (const bool rising : {false, true})
+      for (const bool falling : {false, true}) {
+        SCOPED_TRACE(testing::Message() << n << ' ' << rising << ' ' << falling);
+        Encoders encoders;
+        TouchProbes probes;
+        probes.enable(n, rising, falling);
+        const auto bit = static_cast<uint16_t>(1U << (2 + n));
+        int32_t at = 0, want = 0;
+        bool before = false;
+        for (const bool level : {true, true, false, false, true, false}) {
+          at += 1'000;
+          encoders.count(at);
+          probes.tick(static_cast<uint16_t>(level ? 0xFFFF : ~bit), encoders);
+          if (std::exchange(before, level) != level && (level ? rising : falling)) want = at;
+          EXPECT_EQ(probes.probe(n).motor, want);
+          EXPECT_EQ(probes.probe(n).touched, want != 0);
+          EXPECT_EQ(probes.probe(1 - n).motor, 0) << "the other one is off";
+        }
+      }
 }
 
 TEST(TouchProbes, StoreAllEncodersAtTheEdge) {

@@ -1,6 +1,9 @@
 // The modulo function (IPOSplus p. 29, 76, 81).
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
+
 #include "runtime/positioning/modulo.hpp"
 #include "tests/runtime/positioning/closed_form.hpp"
 #include "tests/runtime/positioning/rig.hpp"
@@ -232,6 +235,73 @@ TEST(Modulo, TheCountGoesRoundManyTimes) {
       }
       EXPECT_EQ(rig.drive.fault(), 0);
     }
+}
+
+// Wherever the axis is, and wherever the target: the way ends at the increment next to it, goes round as P960 says, and
+// has as many turns more as the target has (normal form, one way only).
+TEST(Modulo, EveryWayEndsAtItsTarget) {
+  struct Turn {
+    int32_t numerator, denominator, resolution;
+  };
+  std::mt19937 random(11);
+  const auto around = [&](int32_t most) {
+    return static_cast<int32_t>(random() % (2 * static_cast<uint32_t>(most) + 1)) - most;
+  };
+  for (const Turn& t : {Turn{10, 1, 4'096}, Turn{113'553, 1'088, 4'096}, Turn{7, 3, 100}, Turn{1, 1, 360},
+                        Turn{5, 4, 4'096}, Turn{1, 1, 65'536}})
+    for (const int32_t mode : {1, 2, 3})
+      for (int n = 0; n < 4'000; ++n) {
+        runtime::PositioningSettings settings;
+        settings.modulo = mode;
+        settings.modulo_numerator = t.numerator;
+        settings.modulo_denominator = t.denominator;
+        settings.modulo_resolution = t.resolution;
+        const bool high = n % 2 == 0;
+        const int32_t position = around(1'000'000), offset = n % 3 == 0 ? 0 : around(5'000);
+        const int32_t target = n % 5 == 0 ? around(3) * 65'536 : around(250'000);
+        Modulo modulo;
+        ASSERT_TRUE(modulo.configure(settings, position));
+        SCOPED_TRACE(testing::Message() << t.numerator << "/" << t.denominator << " mode " << mode << " from "
+                                        << position << " + " << offset << " to " << target << " " << high);
+        const double turn = 1.0 * t.numerator * t.resolution, increment = t.denominator;  // units
+        const auto within = [](double value, double of) { return value - of * std::floor(value / of); };
+        const double at = within((1.0 * position + offset) * increment, turn);
+        const double place = high ? within(target, turn) : within(target, 65'536) / 65'536 * turn;
+        const double way = static_cast<double>(modulo.way_to(target, high, offset)) * increment;
+        const double missed = within(at + way - place + turn / 2, turn) - turn / 2;
+        ASSERT_LE(std::abs(missed), increment / 2 + 0.5001);
+        const double full = high ? 0 : std::max(0.0, std::floor(target / 65'536.0)) * turn;
+        if (mode == 1) {
+          ASSERT_LE(std::abs(way), turn / 2 + increment / 2 + 0.5);
+        } else {
+          const double ahead = mode == 2 ? way - full : -way - full;
+          ASSERT_GE(ahead, -increment);
+          ASSERT_LT(ahead, turn + increment / 2);
+        }
+      }
+}
+
+// Positions in a turn: floor of the share in steps of 1/65536, or in units.
+TEST(Modulo, PositionsAreSharesOfTheTurn) {
+  runtime::PositioningSettings settings;
+  settings.modulo = 2;
+  settings.modulo_numerator = 7;
+  settings.modulo_denominator = 3;
+  settings.modulo_resolution = 100;
+  for (int32_t position = -2'000; position < 2'000; position += 7) {
+    Modulo set, moved;
+    set.configure(settings, position);
+    moved.configure(settings, 0);
+    moved.move(position);
+    const int64_t turns = static_cast<int64_t>(std::floor(position * 3 / 700.0)), units = position * 3 - turns * 700;
+    for (const Modulo* modulo : {&set, &moved}) {
+      EXPECT_EQ(modulo->position(true), units) << position;
+      EXPECT_EQ(modulo->position(false), units * 65'536 / 700) << position;
+      EXPECT_EQ(modulo->turns(), turns) << position;
+      EXPECT_EQ(modulo->within_turn(position, true), (position % 700 + 700) % 700);
+      EXPECT_EQ(modulo->within_turn(position, false), (position % 65'536 + 65'536) % 65'536);
+    }
+  }
 }
 
 TEST(Modulo, CountOfTurnsCanBeSet) {

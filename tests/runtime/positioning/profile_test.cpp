@@ -372,6 +372,26 @@ TEST(TravelRules, ReferenceSpeedsAreP901AndP902) {
               300.0 * 4096 / 60'000 * (int64_t{1} << kRateBits), 1);
 }
 
+// Only what lies ahead and is nearer than the brake needs is overrun; a hundredth less is rounding. 1500 rpm and 3000 rpm
+// in 1 s: 25600 increments.
+TEST(Profile, OverrunsWhatIsTooNear) {
+  const TravelRules r = rules(1500, 1000, 1000);
+  for (const int way : {1, -1}) {
+    Profile profile;
+    profile.run(way, r);
+    for (int n = 0; n < 500; ++n) profile.tick();
+    const int64_t now = whole(profile.position());
+    ASSERT_EQ(now, way * 25'600);
+    for (const auto& [ahead, overruns] :
+         {std::pair(100'000, false), std::pair(25'700, false), std::pair(25'600, false),
+          std::pair(24'000, true), std::pair(100, true), std::pair(1, true), std::pair(-1, false),
+          std::pair(-25'000, false), std::pair(-100'000, false)})
+      EXPECT_EQ(profile.overruns(now + way * ahead, r), overruns) << way << ", " << ahead;
+  }
+  Profile rests;
+  for (const int64_t target : {-1, 0, 1, 1'000}) EXPECT_FALSE(rests.overruns(target, r)) << target;
+}
+
 // Less than half an increment from the target: with a travel speed the travel is over at once, without one the axis
 // may not move, not even so little.
 TEST(Profile, NextToTheTarget) {

@@ -181,6 +181,17 @@ TEST(FdlFrame, WhatIsNoFrame) {
   EXPECT_EQ(decode({}).error(), FrameError::Size);
 }
 
+// The words of an error lead back to it: a log is read by them.
+TEST(FdlFrame, ErrorsByTheirWords) {
+  for (const FrameError error :
+       {FrameError::Size, FrameError::Start, FrameError::Length, FrameError::LengthTwice,
+        FrameError::SecondStart, FrameError::Check, FrameError::End, FrameError::Address, FrameError::Parity,
+        FrameError::Framing, FrameError::Gap, FrameError::Idle})
+    EXPECT_EQ(frame_error(frame_error_text(error)), error);
+  EXPECT_EQ(frame_error("nothing of that kind"), std::nullopt);
+  EXPECT_EQ(frame_error(""), std::nullopt);
+}
+
 TEST(FdlFrame, RolesAndFunctions) {
   EXPECT_TRUE(make_token(2, 1).needs_idle());
   EXPECT_TRUE(make_frame(8, 1, 0x6D, 60, 62).needs_idle());

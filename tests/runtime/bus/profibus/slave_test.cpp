@@ -429,6 +429,22 @@ TEST(DpSlave, Freeze) {
   EXPECT_EQ(bench.exchange(1, "00 01"), "08 05 05");
 }
 
+// Whoever leaves data exchange leaves Sync and Freeze, too: the next start has neither.
+TEST(DpSlave, ModesEndWithTheExchange) {
+  SlaveBench bench;
+  bench.start(1, prm(kModes), "F0");
+  bench.control(1, 0x28);
+  EXPECT_EQ(bench.diag(), "00 34 00 01 31 00");
+  EXPECT_EQ(bench.ask(1, 61, "40 00 00 00 00 00 00"), "E5");
+  EXPECT_EQ(bench.diag(), "02 05 00 FF 31 00");
+  bench.start(1, prm(kModes), "F0");
+  EXPECT_EQ(bench.diag(), "00 04 00 01 31 00");
+  const std::string first = bench.exchange(1, "00 05");
+  EXPECT_EQ(text_of(bench.unit.outputs), "00 05");
+  EXPECT_NE(bench.exchange(1, "00 06"), first) << "fresh inputs each time";
+  EXPECT_EQ(text_of(bench.unit.outputs), "00 06");
+}
+
 TEST(DpSlave, ClearAndOperate) {
   SlaveBench bench;
   bench.start(1, prm(kModes), "F0");
