@@ -3,17 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <regex>
 
 #include "tests/compiler/frontend_run.hpp"
 
 namespace ipos::tests {
 namespace {
-
-// The tree without its places.
-std::string shape_of_program(FrontendRun& run) {
-  return std::regex_replace(run.tree(), std::regex("\\d+:\\d+ "), "");
-}
 
 // Read as `right` is, with these codes said on the way.
 void expect_read_as(const std::string& wrong, const std::string& right,
