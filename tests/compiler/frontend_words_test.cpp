@@ -121,6 +121,33 @@ TEST(FrontendWords, KeywordsInOtherLetters) {
                  "#declare While H5\n#declare If While\nmain() { While = If; }", {});
 }
 
+// The two signs of `:=` and `<>` belong together only where nothing is between them; and outside of a function no word is
+// a keyword of a statement.
+TEST(FrontendWords, OnlyWhatIsWrittenTogetherIsOneSign) {
+  const auto codes_of = [](const std::string& source) {
+    std::string codes;
+    for (const std::string& message : messages_of(source)) codes += message.substr(0, 5) + " ";
+    return codes;
+  };
+  for (const char* statement : {"x : = 5;", "x :\n= 5;", "x :/* */= 5;", "x :\\\n= 5;", "if (x < > 5) y;",
+                                "if (x <\n> 5) y;", "if (x </* */> 5) y;"})
+    EXPECT_EQ(codes_of("main() { " + std::string(statement) + " }").find("E0181"), std::string::npos)
+        << statement;
+  for (const char* statement :
+       {"x := 5;", "x\n:= 5;", "x :=\n5;", "if (x <> 5) y;", "if (x\n<> 5) y;", "if (x <>\n5) y;"})
+    EXPECT_EQ(codes_of("main() { " + std::string(statement) + " }"), "E0181 ") << statement;
+  for (const char* outside : {"IF (x) y;", "WHILE (x) y;", "FOR (x;;) y;", "SWITCH (x) { }", "ELSE x;",
+                              "DO x;", "CASE 1: x;", "DEFAULT: x;", "whlie (x) y;"}) {
+    EXPECT_EQ(codes_of(outside).find("E0180"), std::string::npos) << outside;
+    EXPECT_EQ(codes_of("main() { }\n" + std::string(outside)).find("E0180"), std::string::npos) << outside;
+    EXPECT_EQ(codes_of("main() { while (x) BEGIN y; END }\n" + std::string(outside)).find("E0180"),
+              std::string::npos)
+        << outside;
+  }
+  expect_statement_read_as("while (x) BEGIN IF (y) z; END WHILE (x) y;",
+                           "while (x) { if (y) z; } while (x) y;", {"E0181", "E0180", "E0181", "E0180"});
+}
+
 TEST(FrontendWords, MisspeltHeadsOfStatements) {
   const std::vector<std::string> one = {"E0180"};
   for (const auto& [wrong, right] : {std::pair<const char*, const char*>{"whlie (x) y;", "while (x) y;"},
