@@ -18,6 +18,8 @@ TEST(FrontendMacros, NameInItsOwnTextStays) {
   EXPECT_EQ(words("#define A A + 1\nA"), "A + 1");
   EXPECT_EQ(words("#define A B\n#define B A\nA B"), "A B");
   EXPECT_EQ(words("#define A B B\n#define B A 1\nA"), "A 1 A 1");
+  EXPECT_EQ(words("#define A B\n#define B B + 1\nA B A"), "B + 1 B + 1 B + 1");
+  EXPECT_EQ(words("#define A B C\n#define B C B\n#define C A B C\nA"), "A B C B A C B C");
 }
 
 TEST(FrontendMacros, TakenWhenUsedNotWhenDefined) {

@@ -187,6 +187,8 @@ TEST(FrontendRecovery, GoesOnAtADeclaration) {
       {"foo bar() { x = ; }", "", {"E0169", "E0150"}},
       {"foo() x = ; }", "", {"E0150", "E0150"}},
       {"foo() if (a) { x = ; } y; }", "", {"E0150", "E0150"}},
+      {"foo() x = (1); y = ; }", "", {"E0150", "E0150"}},
+      {"foo() x[(1)] = 2; y = ; }", "", {"E0150", "E0150"}},
       {"foo() if (a) x; y = ; }", "", {"E0150", "E0150"}},
       {"long while (1) x;\nfoo bar() { y = ; }", "", {"E0150", "E0169", "E0150"}},
       {"#pragma globals 1\n", "", {"E0178"}},
