@@ -148,6 +148,20 @@ TEST(FrontendWords, OnlyWhatIsWrittenTogetherIsOneSign) {
                            "while (x) { if (y) z; } while (x) y;", {"E0181", "E0180", "E0181", "E0180"});
 }
 
+// `initial` stands in front of long, or of the name of a type and that of a variable, wherever that is.
+TEST(FrontendWords, InitialInOtherLetters) {
+  const std::vector<std::string> one = {"E0180"};
+  for (const char* before : {"", "long a; ", "SCREC r; ", "main() { } ", "long a, b[2]; ", ";"})
+    for (const char* behind : {"long c;", "SCREC c;", "SCREC c, d;", "long c[3];"})
+      for (const char* word : {"Initial", "INITIAL", "initiaL"})
+        expect_read_as(std::string(before) + word + " " + behind, std::string(before) + "initial " + behind,
+                       one);
+  for (const char* before : {"", "long a; ", "SCREC r; ", "long a, b; "})
+    for (const char* name : {"Initial b;", "Initial() { }", "long Initial;"})
+      for (const std::string& message : messages_of(before + std::string(name)))
+        EXPECT_NE(message.substr(0, 5), "E0180") << before << name;
+}
+
 TEST(FrontendWords, MisspeltHeadsOfStatements) {
   const std::vector<std::string> one = {"E0180"};
   for (const auto& [wrong, right] : {std::pair<const char*, const char*>{"whlie (x) y;", "while (x) y;"},
