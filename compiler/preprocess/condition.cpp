@@ -75,10 +75,10 @@ class Evaluator {
   int32_t conditional(bool live) {
     const int32_t condition = binary(1, live);
     if (failed_ || peek() != TokenKind::Question) return condition;
-    if (++depth_ > kMaxDepth) return fail("nested too deeply");
+    ++depth_;
     ++next_;
     const int32_t then = conditional(live && condition != 0);
-    if (failed_ || !expect(TokenKind::Colon, ":")) return 0;
+    if (!expect(TokenKind::Colon, ":")) return 0;
     const int32_t otherwise = conditional(live && condition == 0);
     --depth_;
     return condition != 0 ? then : otherwise;
@@ -150,7 +150,7 @@ class Evaluator {
       case TokenKind::LeftParen: {
         ++next_;
         const int32_t value = conditional(live);
-        if (!failed_) expect(TokenKind::RightParen, ")");
+        expect(TokenKind::RightParen, ")");
         return value;
       }
       case TokenKind::Number: return number();

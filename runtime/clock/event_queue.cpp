@@ -105,7 +105,7 @@ bool EventQueue::cancel(EventId id) {
     return true;
   }
   const uint32_t index = static_cast<uint32_t>(id);
-  if (id == kNoEvent || index >= slots_.size() || slots_[index].generation != id >> 32) return false;
+  if (index >= slots_.size() || slots_[index].generation != id >> 32) return false;
   remove(slots_[index].position);
   return true;
 }

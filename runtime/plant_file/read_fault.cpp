@@ -36,12 +36,13 @@ void read_fault_choice(PlantReader& reader, const toml::table& table, LineFault&
     return;
   }
   if (table.contains("id")) fault.id = reader.count(table, "id", 0x1FFF'FFFF, 0);
-  fault.frame = reader.count(table, "frame", INT32_MAX, 0);
+  const bool counted = table.contains("frame");
+  fault.frame = reader.count(table, "frame", INT32_MAX, counted ? 1 : 0);
   fault.per_mille = reader.count(table, "rate", 1000, 1000);
   fault.seed = reader.count(table, "seed", INT32_MAX, 1);
-  if (table.contains("frame") && fault.frame == 0)
+  if (counted && fault.frame == 0)
     reader.error(place_of(table.get("frame")->source()), "frames are counted from 1");
-  if (table.contains("frame") && table.contains("rate"))
+  if (counted && table.contains("rate"))
     reader.error(place_of(table.get("rate")->source()),
                  "a fault strikes the n-th frame, or a rate of them: not both");
 }

@@ -236,10 +236,11 @@ void read_profibus_fault(PlantReader& reader, const toml::table& table) {
         place_of(*table.get("kind")),
         fmt::format("'{}' is no fault of a PROFIBUS line; known are lost, cut, parity, noise, collision",
                     word));
-  fault.frame = reader.count(table, "frame", INT32_MAX, 0);
+  const bool counted = table.contains("frame");
+  fault.frame = reader.count(table, "frame", INT32_MAX, counted ? 1 : 0);
   fault.per_mille = reader.count(table, "rate", 1000, 1000);
   fault.seed = reader.count(table, "seed", INT32_MAX, 1);
-  if (table.contains("frame") && (fault.frame == 0 || table.contains("rate")))
+  if (counted && (fault.frame == 0 || table.contains("rate")))
     reader.error(place_of(*table.get("frame")),
                  "a fault strikes the n-th frame, counted from 1, or a rate of them");
   fault.from = reader.duration(table, "from", 0);

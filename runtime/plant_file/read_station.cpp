@@ -148,7 +148,8 @@ void read_hex(PlantReader& reader, const toml::table& table, StationConfig& conf
   const toml::array* names = node->as_array();
   if (names == nullptr) return reader.error(place_of(node->source()), "hex must be a list of variable names");
   for (const toml::node& name : *names) {
-    if (const auto* value = name.as_string())
+    const auto* value = name.as_string();
+    if (value != nullptr && !value->get().empty())
       config.hex.push_back(value->get());
     else
       reader.error(place_of(name.source()), "hex must be a list of variable names");

@@ -152,7 +152,12 @@ TEST(FrontendConditions, NestAsDeepAsTwoHundredFiftySix) {
   EXPECT_EQ(said(repeated("!", 256) + "1"), Messages{"E0131 1:261"});
   EXPECT_EQ(said("1" + repeated(" ? 1 : 1", 255)), Messages{});
   EXPECT_EQ(said(repeated("0 ? 1 : ", 255) + "1"), Messages{});
-  EXPECT_EQ(said(repeated("0 ? 1 : ", 257) + "1").size(), 1U);
+  EXPECT_EQ(said(repeated("0 ? 1 : ", 256) + "1"), Messages{"E0131 1:2049"})
+      << "the value behind the last '?'";
+  EXPECT_EQ(said(repeated("0 ? 1 : ", 257) + "1"), Messages{"E0131 1:2049"});
+  EXPECT_EQ(said("1" + repeated(" ? 1", 256) + repeated(" : 1", 256)), Messages{"E0131 1:1029"});
+  EXPECT_EQ(said("1" + repeated(" ? 1", 255) + repeated(" : 1", 255)), Messages{});
+  EXPECT_EQ(said("(" + repeated("!", 253) + "0 ? 1 : 2) + " + repeated("!", 254) + "(1)"), Messages{});
   EXPECT_EQ(said("1" + repeated(" && (1)", 300)), Messages{}) << "brackets beside each other are not nested";
   EXPECT_EQ(said("(1" + repeated(" ? 1 : 1)", 1) + repeated(" && (1 ? 1 : 1)", 300)), Messages{});
 }

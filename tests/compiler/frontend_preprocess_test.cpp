@@ -18,6 +18,8 @@ TEST(FrontendMacros, NameInItsOwnTextStays) {
   EXPECT_EQ(words("#define A A + 1\nA"), "A + 1");
   EXPECT_EQ(words("#define A B\n#define B A\nA B"), "A B");
   EXPECT_EQ(words("#define A B B\n#define B A 1\nA"), "A 1 A 1");
+  EXPECT_EQ(words("#define A B\n#define B B + 1\nA B A"), "B + 1 B + 1 B + 1");
+  EXPECT_EQ(words("#define A B C\n#define B C B\n#define C A B C\nA"), "A B C B A C B C");
 }
 
 TEST(FrontendMacros, TakenWhenUsedNotWhenDefined) {
@@ -165,6 +167,22 @@ TEST(FrontendIncludes, DepthIsLimited) {
   EXPECT_EQ(FrontendRun("#include \"f0\"", files).words(), "deep");
 }
 
+TEST(FrontendIncludes, LimitsSayWhatTheyAre) {
+  FrontendRun::Files files;
+  for (int i = 0; i < 100; ++i)
+    files["f" + std::to_string(i)] = "#include \"f" + std::to_string(i + 1) + "\"";
+  FrontendRun deep("#include \"f0\"", files);
+  deep.parse();
+  EXPECT_EQ(deep.diagnostics.all().at(0).text, "more than 64 files included within each other");
+  FrontendRun cycle("#include <a.h>\nx", {{"a.h", "y\n#include <a.h>\nz"}});
+  EXPECT_EQ(cycle.parse().messages(), Messages{"E0125 a.h:2:10"});
+  EXPECT_EQ(cycle.diagnostics.all().at(0).text, "'a.h' includes itself");
+}
+
+TEST(FrontendIncludes, OfAShortName) {
+  EXPECT_EQ(FrontendRun("#include <a>\n#include \"b\"", {{"a", "x"}, {"b", "y"}}).words(), "x y");
+}
+
 TEST(FrontendIncludes, TwiceIsFine) {
   EXPECT_EQ(FrontendRun("#include \"a.h\"\n#include \"a.h\"", {{"a.h", "x"}}).words(), "x x");
 }
@@ -290,6 +308,8 @@ TEST(FrontendLimits, OfBytesCountAllFiles) {
   EXPECT_EQ(one.diagnostics.all()[0].text, "the program is too large: more than 64 MB of text");
   FrontendRun two("#include \"large.h\"   ", {{"large.h", large}});
   EXPECT_EQ(two.parse().messages(), Messages{"E0127 1:10"});
+  FrontendRun full("#include \"large.h\"  ", {{"large.h", large}});
+  EXPECT_EQ(full.parse().messages(), Messages{}) << "64 MB to the byte";
 }
 
 TEST(FrontendText, InSixteenBitsIsRefused) {

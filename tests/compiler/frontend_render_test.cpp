@@ -1,7 +1,9 @@
 // Diagnostics as text, JSON and SARIF; chains of macros and includes; the -W options.
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "compiler/diag/render.hpp"
 #include "tests/compiler/frontend_run.hpp"
@@ -67,6 +69,31 @@ TEST(FrontendText, LongLinesAreCutAroundThePlace) {
   FrontendRun run("main() { " + std::string(5000, ' ') + "x = 1.5;" + std::string(5000, ' ') + "}");
   for (std::string rest = text_of(run); !rest.empty(); rest.erase(0, rest.find('\n') + 1))
     EXPECT_LT(rest.find('\n'), 200U);
+}
+
+TEST(FrontendText, UnderlinesToTheEndOfWhatIsShown) {
+  const std::string name(300, 'n');
+  const auto expected = [&](size_t blanks) {
+    const std::string line = "long" + std::string(blanks, ' ') + name + ";";
+    const size_t column = 4 + blanks;
+    const size_t cut = column > 80 ? column - 80 : 0;
+    const size_t caret = column - cut;
+    return "t.IPC:1:" + std::to_string(column + 1) + ": warning: '" + name +
+           "' is longer than 32 characters; only '" + name.substr(0, 32) +
+           "' counts [W0101, -Wlong-identifier]\n    1 | " + line.substr(cut, 160) + "\n      | " +
+           std::string(caret, ' ') + "^" + std::string(159 - caret, '~') + "\n";
+  };
+  for (const size_t blanks : {1U, 75U, 76U, 77U, 100U}) {
+    FrontendRun run("long" + std::string(blanks, ' ') + name + ";");
+    EXPECT_EQ(text_of(run), expected(blanks)) << blanks;
+  }
+}
+
+TEST(FrontendText, UnderlinesCharactersNotBytes) {
+  FrontendRun run("long a, Dr\xC3\xBC_\xC3\xBC;");
+  EXPECT_NE(text_of(run).find("\n      |         ^~~~~\n"), std::string::npos) << text_of(run);
+  FrontendRun one("long a, \xC3\xBC;");
+  EXPECT_NE(text_of(one).find("\n      |         ^\n"), std::string::npos) << text_of(one);
 }
 
 TEST(FrontendText, Color) {
@@ -146,6 +173,102 @@ TEST(FrontendSarif, FileNamesBecomeUris) {
   const auto log = nlohmann::json::parse(compiler::render_sarif(diagnostics.all(), map));
   EXPECT_EQ(log["runs"][0]["results"][0]["locations"][0]["physicalLocation"]["artifactLocation"]["uri"],
             "dir/my%20prog%E4.IPC");
+}
+
+TEST(FrontendJson, RangesOverSeveralLinesHaveBothEnds) {
+  FrontendRun run("\nf(long a,\n  long \xC3\xA4x) { }");
+  run.parse();
+  ASSERT_FALSE(run.diagnostics.all().empty());
+  const auto& parameters = run.diagnostics.all().back();
+  ASSERT_EQ(parameters.diag, compiler::Diag::FunctionParameters);
+  const auto json = nlohmann::json::parse(compiler::render_json({&parameters, 1}, run.map));
+  EXPECT_EQ(json["line"], 2);
+  EXPECT_EQ(json["column"], 3);
+  EXPECT_EQ(json["end_line"], 3);
+  EXPECT_EQ(json["end_column"], 11);
+  EXPECT_EQ(json["source"], "f(long a,");
+  const auto log = nlohmann::json::parse(compiler::render_sarif({&parameters, 1}, run.map));
+  const auto& region = log["runs"][0]["results"][0]["locations"][0]["physicalLocation"]["region"];
+  EXPECT_EQ(region,
+            nlohmann::json::parse(R"({"startLine": 2, "startColumn": 3, "endLine": 3, "endColumn": 10})"));
+}
+
+// The severities of all warnings under some options, by flag; the errors stay errors.
+std::map<std::string_view, compiler::Severity> severities(const std::vector<std::string>& options) {
+  compiler::WarningOptions warnings;
+  for (const std::string& option : options) EXPECT_TRUE(warnings.apply(option)) << option;
+  std::map<std::string_view, compiler::Severity> out;
+  for (const compiler::DiagInfo& row : compiler::diagnostic_table()) {
+    if (row.severity == compiler::Severity::Error)
+      EXPECT_EQ(warnings.severity(row), compiler::Severity::Error) << row.code;
+    else
+      out[row.flag] = warnings.severity(row);
+  }
+  return out;
+}
+
+TEST(FrontendWarnings, EveryFlagAloneAndTogether) {
+  using compiler::Severity;
+  // Rows marked OPT_IN say on their page that they have to be asked for.
+  const std::set<std::string_view> by_request = {"steps-by-number", "fall-through", "several-writers"};
+  const std::map<std::string_view, Severity> at_first = severities({});
+  for (const auto& [flag, severity] : at_first)
+    EXPECT_EQ(severity == Severity::Note, by_request.contains(flag)) << flag;
+  for (const auto& row : at_first) {
+    const std::string flag(row.first);
+    const std::pair<std::vector<std::string>, Severity> cases[] = {
+        {{flag}, Severity::Warning},
+        {{"no-" + flag}, Severity::Note},
+        {{"error=" + flag}, Severity::Error},
+        {{"no-error=" + flag}, Severity::Warning},
+        {{"no-" + flag, flag}, Severity::Warning},
+        {{flag, "no-" + flag}, Severity::Note},
+        {{"error=" + flag, flag}, Severity::Error},
+        {{"error=" + flag, "no-error=" + flag}, Severity::Warning},
+        {{"no-error=" + flag, "error=" + flag}, Severity::Error},
+        {{"error=" + flag, "no-" + flag}, Severity::Note},
+        {{"error=" + flag, "no-" + flag, flag}, Severity::Warning},
+        {{"error", flag}, Severity::Error},
+        {{flag, "error", "no-error"}, Severity::Warning},
+        {{"error", "no-error=" + flag}, Severity::Warning},
+        {{"error", "no-error=" + flag, flag}, Severity::Warning},
+        {{"error", "no-" + flag}, Severity::Note},
+    };
+    for (const auto& [options, expected] : cases) {
+      std::map<std::string_view, Severity> wanted = at_first;
+      wanted[flag] = expected;
+      const bool all_errors = options.front() == "error";
+      for (auto& [other, severity] : wanted)
+        if (all_errors && other != flag && severity == Severity::Warning) severity = Severity::Error;
+      EXPECT_EQ(severities(options), wanted) << options.back();
+    }
+  }
+  for (const auto& [options, expected] :
+       {std::pair<std::vector<std::string>, Severity>{{"all"}, Severity::Warning},
+        {{"no-all"}, Severity::Note},
+        {{"error=all"}, Severity::Error},
+        {{"no-error=all"}, Severity::Warning},
+        {{"no-all", "all"}, Severity::Warning},
+        {{"no-all", "error"}, Severity::Note},
+        {{"all", "error"}, Severity::Error},
+        {{"error=all", "all", "no-error"}, Severity::Error}})
+    for (const auto& [flag, severity] : severities(options))
+      EXPECT_EQ(severity, expected) << flag << options[0];
+  for (const char* unknown : {"no-", "error=", "no-error=", "no-no-comment", "error=no-comment", "comments",
+                              "commen", "error=none", "no-error=none", "Comment"})
+    EXPECT_FALSE(compiler::WarningOptions().apply(unknown)) << unknown;
+}
+
+// A warning that is off takes notes, too, and nobody reads them.
+TEST(FrontendWarnings, ThatAreOffAreNotKept) {
+  compiler::WarningOptions off;
+  ASSERT_TRUE(off.apply("no-comment"));
+  compiler::Diagnostics diagnostics(off);
+  diagnostics.report(compiler::Diag::BackslashInComment, {}).notes.push_back({{}, "a note"});
+  EXPECT_TRUE(diagnostics.report(compiler::Diag::NestedComment, {}).notes.empty());
+  EXPECT_TRUE(diagnostics.all().empty());
+  EXPECT_EQ(diagnostics.error_count(), 0U);
+  EXPECT_FALSE(diagnostics.has_errors());
 }
 
 Messages with_options(const std::vector<std::string>& options, bool& errors) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -61,6 +62,12 @@ struct FrontendRun {
 };
 
 using Messages = std::vector<std::string>;
+
+// The tree without its places.
+inline std::string shape_of_program(const FrontendRun& run) {
+  static const std::regex kPlace("\\d+:\\d+ ");
+  return std::regex_replace(run.tree(), kPlace, "");
+}
 
 inline Messages messages_of(const std::string& source) { return FrontendRun(source).parse().messages(); }
 

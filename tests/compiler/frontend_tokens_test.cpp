@@ -43,6 +43,96 @@ TEST(FrontendNumbers, Forms) {
     EXPECT_EQ(parse_number(fraction, false).form, NumberForm::Fraction) << fraction;
 }
 
+TEST(FrontendNumbers, EveryDigitHasItsValue) {
+  const std::string_view small = "0123456789abcdef";
+  const std::string_view large = "0123456789ABCDEF";
+  for (uint32_t digit = 0; digit < 16; ++digit)
+    for (const std::string_view letters : {small, large})
+      for (const char* prefix : {"0x", "0X"}) {
+        const std::string one(1, letters[digit]);
+        EXPECT_EQ(parse_number(prefix + one, false).value, digit);
+        EXPECT_EQ(parse_number(prefix + one + "0", false).value, 16 * digit);
+        EXPECT_EQ(parse_number(prefix + one, false).form, NumberForm::Good);
+        EXPECT_EQ(parse_number("0b1" + one, false).form, digit < 2 ? NumberForm::Good : NumberForm::Bad)
+            << one;
+        EXPECT_EQ(parse_number("0B1" + one, false).form, digit < 2 ? NumberForm::Good : NumberForm::Bad)
+            << one;
+        if (digit < 10) {
+          EXPECT_EQ(parse_number(one, false).value, digit);
+          EXPECT_EQ(parse_number(one + "7", false).value, 10 * digit + 7);
+        } else {
+          EXPECT_EQ(parse_number(one + "1", false).form, NumberForm::Bad);
+        }
+      }
+  // What stands beside the digits in ASCII.
+  for (const char beside : {'/', ':', '@', 'G', '`', 'g', '_', '\xB1'})
+    for (const char* prefix : {"0x", "0b", "1"})
+      EXPECT_EQ(parse_number(prefix + std::string(1, beside), false).form, NumberForm::Bad) << beside;
+}
+
+TEST(FrontendNumbers, OnlyDecimalOnesAreLargerBehindAMinus) {
+  for (const bool minus : {false, true}) {
+    EXPECT_EQ(parse_number("0x80000000", minus).value, 0x8000'0000U);
+    EXPECT_EQ(parse_number("0xFFFFFFFF", minus).value, 0xFFFF'FFFFU);
+    EXPECT_EQ(parse_number("0x100000000", minus).form, NumberForm::TooLarge);
+    EXPECT_EQ(parse_number("2147483649", minus).form, NumberForm::TooLarge);
+    EXPECT_EQ(parse_number("99999999999999999999999x", minus).form, NumberForm::Bad);
+    EXPECT_EQ(parse_number("0xFFFFFFFFFFFFFFFFFFFFFFFG", minus).form, NumberForm::Bad);
+    EXPECT_EQ(parse_number("21474836480", minus).form, NumberForm::TooLarge);
+    EXPECT_EQ(parse_number("42949672960", minus).form, NumberForm::TooLarge);
+    EXPECT_EQ(parse_number("0x1000000000", minus).form, NumberForm::TooLarge);
+  }
+  EXPECT_EQ(parse_number("2147483648", true).value, 0x8000'0000U);
+  EXPECT_FALSE(parse_number("2147483648", true).pattern);
+  EXPECT_TRUE(parse_number("0x100000000", false).pattern);
+  EXPECT_FALSE(parse_number("4294967296", false).pattern);
+  EXPECT_FALSE(parse_number("1.5", false).pattern);
+}
+
+// All spellings of the table: what the program reads is what it was written for.
+TEST(FrontendTokens, EverySpellingIsItsOwnKind) {
+  using compiler::TokenKind;
+  struct Spelling {
+    TokenKind kind;
+    std::string text;
+    bool word;
+  };
+  const Spelling rows[] = {
+#define PUNCTUATOR(kind, spelling) {TokenKind::kind, spelling, false},
+#define KEYWORD(kind, spelling) {TokenKind::kind, spelling, true},
+#include "compiler/preprocess/tokens.def"
+  };
+  for (const Spelling& row : rows) {
+    EXPECT_EQ(compiler::punctuator_kind(row.text).has_value(), !row.word) << row.text;
+    if (!row.word) {
+      EXPECT_EQ(compiler::punctuator_kind(row.text), row.kind) << row.text;
+    }
+    EXPECT_EQ(compiler::keyword_kind(row.text), row.word ? row.kind : TokenKind::Name) << row.text;
+    EXPECT_EQ(compiler::category(row.kind), row.word ? "keyword" : "operator") << row.text;
+    EXPECT_EQ(FrontendRun("a " + row.text + " b").tokens(),
+              "1:1 name a\n1:3 " + std::string(compiler::category(row.kind)) + " " + row.text +
+                  "\n1:" + std::to_string(row.text.size() + 4) +
+                  " name b\n1:" + std::to_string(row.text.size() + 5) + " end\n");
+    // Nothing may stand in front of it: of a longer word only the last eight bytes fit into a number.
+    const std::string longer = "x" + std::string(8 - row.text.size(), '\0') + row.text;
+    EXPECT_EQ(compiler::punctuator_kind(longer), std::nullopt) << row.text;
+    EXPECT_EQ(compiler::keyword_kind(longer), TokenKind::Name) << row.text;
+  }
+  EXPECT_EQ(compiler::punctuator_kind(""), std::nullopt);
+  EXPECT_EQ(compiler::keyword_kind(""), TokenKind::Name);
+  EXPECT_EQ(compiler::keyword_kind("Long"), TokenKind::Name);
+}
+
+TEST(FrontendTokens, ListingNamesEveryCategory) {
+  EXPECT_EQ(
+      FrontendRun("n 1 \"s\" 'c' \xE4 @ x # \n#declare A B\n#pragma list\n\"o\n").tokens(),
+      "1:1 name n\n1:3 number 1\n1:5 string \"s\"\n1:9 character 'c'\n1:13 bad name \xE4\n1:15 stray @\n"
+      "1:17 name x\n1:19 hash #\n2:1 directive declare\n2:10 name A\n2:12 name B\n2:13 directive end\n"
+      "3:1 directive pragma\n3:9 name list\n3:13 directive end\n4:1 open quote \"o\n5:1 end\n");
+  EXPECT_EQ(compiler::category(compiler::TokenKind::Newline), "newline");
+  EXPECT_EQ(compiler::category(compiler::TokenKind::HeaderName), "header");
+}
+
 TEST(FrontendTokens, Listing) {
   EXPECT_EQ(FrontendRun("long x;\n  x<<=0x1F;").tokens(),
             "1:1 keyword long\n1:6 name x\n1:7 operator ;\n"
@@ -94,6 +184,13 @@ TEST(FrontendTokens, NameOfThirtyTwoCharactersIsWhole) {
   FrontendRun good(name32 + " " + name32 + "a " + name32 + "b " + name32 + "b");
   EXPECT_EQ(good.words(), name32 + " " + name32 + " " + name32 + " " + name32);
   EXPECT_EQ(good.messages(), (Messages{"W0101 1:34", "W0101 1:68"}));  // once for each spelling
+}
+
+TEST(FrontendTokens, LongNamesOfTextLeftOutAreNotTold) {
+  const std::string name33(33, 'n');
+  FrontendRun run("#if 0\n" + name33 + "\n#else\nx\n#endif");
+  EXPECT_EQ(run.words(), "x");
+  EXPECT_EQ(run.messages(), Messages{});
 }
 
 TEST(FrontendTokens, LongNamesAreTheSameMacro) {

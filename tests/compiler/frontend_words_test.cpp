@@ -3,17 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <regex>
 
 #include "tests/compiler/frontend_run.hpp"
 
 namespace ipos::tests {
 namespace {
-
-// The tree without its places.
-std::string shape_of_program(FrontendRun& run) {
-  return std::regex_replace(run.tree(), std::regex("\\d+:\\d+ "), "");
-}
 
 // Read as `right` is, with these codes said on the way.
 void expect_read_as(const std::string& wrong, const std::string& right,
@@ -125,6 +119,47 @@ TEST(FrontendWords, KeywordsInOtherLetters) {
                  "typedef struct { long a; } Long;\nLong b;\nmain() { }", {});
   expect_read_as("#declare While H5\n#declare If While\nmain() { While = If; }",
                  "#declare While H5\n#declare If While\nmain() { While = If; }", {});
+}
+
+// The two signs of `:=` and `<>` belong together only where nothing is between them; and outside of a function no word is
+// a keyword of a statement.
+TEST(FrontendWords, OnlyWhatIsWrittenTogetherIsOneSign) {
+  const auto codes_of = [](const std::string& source) {
+    std::string codes;
+    for (const std::string& message : messages_of(source)) codes += message.substr(0, 5) + " ";
+    return codes;
+  };
+  for (const char* statement : {"x : = 5;", "x :\n= 5;", "x :/* */= 5;", "x :\\\n= 5;", "if (x < > 5) y;",
+                                "if (x <\n> 5) y;", "if (x </* */> 5) y;"})
+    EXPECT_EQ(codes_of("main() { " + std::string(statement) + " }").find("E0181"), std::string::npos)
+        << statement;
+  for (const char* statement :
+       {"x := 5;", "x\n:= 5;", "x :=\n5;", "if (x <> 5) y;", "if (x\n<> 5) y;", "if (x <>\n5) y;"})
+    EXPECT_EQ(codes_of("main() { " + std::string(statement) + " }"), "E0181 ") << statement;
+  for (const char* outside : {"IF (x) y;", "WHILE (x) y;", "FOR (x;;) y;", "SWITCH (x) { }", "ELSE x;",
+                              "DO x;", "CASE 1: x;", "DEFAULT: x;", "whlie (x) y;"}) {
+    EXPECT_EQ(codes_of(outside).find("E0180"), std::string::npos) << outside;
+    EXPECT_EQ(codes_of("main() { }\n" + std::string(outside)).find("E0180"), std::string::npos) << outside;
+    EXPECT_EQ(codes_of("main() { while (x) BEGIN y; END }\n" + std::string(outside)).find("E0180"),
+              std::string::npos)
+        << outside;
+  }
+  expect_statement_read_as("while (x) BEGIN IF (y) z; END WHILE (x) y;",
+                           "while (x) { if (y) z; } while (x) y;", {"E0181", "E0180", "E0181", "E0180"});
+}
+
+// `initial` stands in front of long, or of the name of a type and that of a variable, wherever that is.
+TEST(FrontendWords, InitialInOtherLetters) {
+  const std::vector<std::string> one = {"E0180"};
+  for (const char* before : {"", "long a; ", "SCREC r; ", "main() { } ", "long a, b[2]; ", ";"})
+    for (const char* behind : {"long c;", "SCREC c;", "SCREC c, d;", "long c[3];"})
+      for (const char* word : {"Initial", "INITIAL", "initiaL"})
+        expect_read_as(std::string(before) + word + " " + behind, std::string(before) + "initial " + behind,
+                       one);
+  for (const char* before : {"", "long a; ", "SCREC r; ", "long a, b; "})
+    for (const char* name : {"Initial b;", "Initial() { }", "long Initial;"})
+      for (const std::string& message : messages_of(before + std::string(name)))
+        EXPECT_NE(message.substr(0, 5), "E0180") << before << name;
 }
 
 TEST(FrontendWords, MisspeltHeadsOfStatements) {

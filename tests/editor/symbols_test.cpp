@@ -179,6 +179,28 @@ TEST(IndexOfAnyText, FollowsTheObjectsInFrontOfADot) {
   for (const auto& [text, meant] : rows) EXPECT_EQ(member_meant(text), meant) << text;
 }
 
+// A declaration that reaches around its name is the extent of it; one that a macro has brought elsewhere is not.
+TEST(IndexOfAnyText, TheExtentOfADeclarationHasItsNameInIt) {
+  const std::string source =
+      "#define NAME first\n#define DECLARATION long second\n#define WHOLE long third;\n"
+      "long NAME;\nDECLARATION;\nWHOLE\nlong fourth, fifth[2];\n"
+      "seventh() { fourth = 1; }\n";
+  const compiler::ProgramIndex index =
+      compiler::index_program("B.IPC", "/p/B.IPC", source, {}, *stdlib::find_unit(std::string_view("md60a")));
+  const auto extent = [&](const char* name) {
+    const IndexedSymbol* found = index.find(name, "");
+    if (found == nullptr || !found->definition) return std::string("none");
+    EXPECT_EQ(source.substr(found->definition->begin, found->definition->end - found->definition->begin),
+              name);
+    return source.substr(found->extent.begin, found->extent.end - found->extent.begin);
+  };
+  EXPECT_EQ(extent("first"), "first");
+  EXPECT_EQ(extent("third"), "long third;");
+  EXPECT_EQ(extent("fourth"), "long fourth, fifth[2];");
+  EXPECT_EQ(extent("fifth"), "long fourth, fifth[2];");
+  EXPECT_EQ(extent("seventh"), "seventh() { fourth = 1; }");
+}
+
 TEST_F(Index, KnowsTheNumberOfAParameter) {
   const Occurrence* found = find("= @8318", kSource, *index_.main);
   ASSERT_NE(found, nullptr);

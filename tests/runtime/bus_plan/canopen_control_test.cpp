@@ -92,6 +92,46 @@ TEST(CanopenControl, IsPlanned) {
   EXPECT_EQ(lost.findings[0].kind, FindingKind::NobodyThere);
 }
 
+// A PDO of types 1 to 240 is sent at each n-th SYNC, one of an event as often as its inhibit time lets it, or by its timer
+// (CiA 301); a word has two bytes.
+TEST(CanopenControl, IsPlannedByTheTypesOfThePdos) {
+  const auto pdo = [](int number, const std::string& keys) {
+    return "[[control.target.pdo]]\nnumber = " + std::to_string(number) + "\ntransmit = true\n" + keys;
+  };
+  PlantRig rig(bus_text() + node("saw", 5) +
+               control("cycle = \"4ms\"\n[[control.target]]\naddress = 5\nheartbeat = \"100ms\"\n" +
+                       pdo(2, "type = 254\ninhibit = \"2500us\"\nevent = \"20ms\"\nmap = [\"PI1\"]\n") +
+                       pdo(3, "type = 255\nevent = \"20ms\"\nmap = [\"PI1\", \"PI2\"]\n") +
+                       pdo(4, "type = 10\nmap = [\"PI1\", \"PI2\", \"PI3\", \"PI4\"]\n")));
+  ASSERT_TRUE(rig.errors.empty()) << rig.errors[0];
+  const BusPlan plan = make_plan(rig.get(), {});
+  std::map<uint32_t, std::pair<Time, int>> cyclic;
+  for (const PlannedTelegram& telegram : plan.lines.at(0).telegrams)
+    if (telegram.rhythm == Rhythm::Cyclic) cyclic[telegram.id] = {telegram.period, telegram.bytes};
+  EXPECT_EQ(cyclic, (std::map<uint32_t, std::pair<Time, int>>{{0x080, {4 * kMillisecond, 0}},
+                                                              {0x185, {4 * kMillisecond, 6}},
+                                                              {0x205, {4 * kMillisecond, 6}},
+                                                              {0x285, {2'500 * kMicrosecond, 2}},
+                                                              {0x385, {20 * kMillisecond, 4}},
+                                                              {0x485, {40 * kMillisecond, 8}},
+                                                              {0x705, {100 * kMillisecond, 1}}}));
+  std::map<uint32_t, std::string> names;
+  for (const PlannedIdentifier& identifier : plan.lines.at(0).identifiers)
+    for (const PlannedUse& use : identifier.uses)
+      if (use.station == "saw") names[identifier.id] = (use.transmits ? "> " : "< ") + use.what;
+  EXPECT_EQ(names, (std::map<uint32_t, std::string>{{0x000, "< NMT"},
+                                                    {0x080, "< SYNC"},
+                                                    {0x085, "> EMCY"},
+                                                    {0x185, "> TPDO1"},
+                                                    {0x205, "< RPDO1"},
+                                                    {0x285, "> TPDO2"},
+                                                    {0x385, "> TPDO3"},
+                                                    {0x485, "> TPDO4"},
+                                                    {0x585, "> SDO response"},
+                                                    {0x605, "< SDO request"},
+                                                    {0x705, "> guarding or heartbeat"}}));
+}
+
 TEST(CanopenControl, MistakesHaveTheirPlaces) {
   const std::pair<const char*, const char*> cases[] = {
       {"[[control.target]]\n", "9: a [[control.target]] needs address = ..."},

@@ -193,6 +193,88 @@ TEST(EventQueue, AdvancesToWhatIsNextAnyway) {
   EXPECT_EQ(queue.now(), 55);
 }
 
+TEST(EventQueue, WhatIsToComeAtNeverDoesNot) {
+  for (const Time now : {Time{0}, kNever - 1, kNever - kMillisecond, kNever - 11 * kMillisecond}) {
+    EventQueue queue;
+    Recorder recorder;
+    queue.run_until(now);
+    const EventId never = queue.schedule(kNever, 0, recorder, 1);
+    queue.schedule(kNever - 1, 0, recorder, 2);
+    queue.run_until(kNever);
+    EXPECT_EQ(recorder.calls, (std::vector<Recorder::Call>{{kNever - 1, 2, 0}})) << now;
+    EXPECT_FALSE(queue.step());
+    EXPECT_EQ(queue.pending(), 1U);
+    EXPECT_TRUE(queue.cancel(never));
+    EXPECT_EQ(queue.pending(), 0U);
+  }
+}
+
+// Kind and argument come back from the rows and from the heap, and from a slot that was used before.
+TEST(EventQueue, BringsBackWhatWasScheduled) {
+  for (const size_t capacity : {0U, 1U, 256U}) {
+    EventQueue queue(capacity);
+    Recorder recorder;
+    std::vector<Recorder::Call> expected;
+    for (int round = 0; round < 3; ++round) {
+      const Time now = queue.now();
+      uint32_t kind = 0;
+      // From the last to the first, so that neither row takes them all.
+      for (Time ahead = 20; ahead >= 0; --ahead)
+        for (const Time unit : {Time{1}, kMillisecond, kSecond}) {
+          ++kind;
+          queue.schedule(now + ahead * unit, 3, recorder, kind, uint64_t{kind} << 33 | 5);
+          expected.push_back({now + ahead * unit, kind, uint64_t{kind} << 33 | 5});
+        }
+      queue.run_until(now + 30 * kSecond);
+    }
+    std::stable_sort(expected.begin(), expected.end(),
+                     [](const auto& a, const auto& b) { return a.now < b.now; });
+    EXPECT_EQ(recorder.calls, expected) << capacity;
+  }
+}
+
+TEST(EventQueue, KnowsNoIdsOfOthers) {
+  EventQueue queue;
+  Recorder recorder;
+  for (const EventId id : {kNoEvent, EventId{1}, EventId{1} << 32, EventId{1} << 32 | 7, EventId{1} << 63,
+                           EventId{3} << 62, ~EventId{0}})
+    EXPECT_FALSE(queue.cancel(id)) << id;
+  const EventId near = queue.schedule(1, 0, recorder, 0);
+  const EventId far = queue.schedule(kSecond, 0, recorder, 0);
+  queue.schedule(2, 0, recorder, 0);
+  for (const EventId id :
+       {kNoEvent, near + 2, near + 100, far + 1, far + (EventId{1} << 32), EventId{3} << 62})
+    EXPECT_FALSE(queue.cancel(id)) << id;
+  EXPECT_EQ(queue.pending(), 3U);
+  queue.run_until(1);
+  EXPECT_FALSE(queue.cancel(near));
+  EXPECT_EQ(queue.pending(), 2U);
+  EXPECT_TRUE(queue.cancel(far));
+  EXPECT_FALSE(queue.cancel(far));
+}
+
+// Behind the last event of a run its source counts as passed, however many others came first.
+TEST(EventQueue, KnowsWhoHasHadItsTurn) {
+  class Asker final : public EventTarget {
+   public:
+    explicit Asker(EventQueue& q) : queue(q) {}
+    void on_event(Time, uint32_t, uint64_t) override {
+      uint32_t passed = 0;
+      while (queue.has_passed(passed)) ++passed;
+      seen.push_back(passed);
+    }
+    EventQueue& queue;
+    std::vector<uint32_t> seen;
+  };
+  EventQueue queue;
+  Asker asker(queue);
+  for (const uint32_t source : {2U, 5U, 9U}) queue.schedule(10, source, asker, 0);
+  queue.schedule(20, 1, asker, 0);
+  queue.schedule(20, 1, asker, 0);
+  queue.run_until(30);
+  EXPECT_EQ(asker.seen, (std::vector<uint32_t>{2, 5, 9, 1, 1}));
+}
+
 TEST(EventQueue, ThePastIsAsItWas) {
   EventQueue queue;
   queue.run_until(50);

@@ -106,6 +106,8 @@ TEST(PlantFileMistakes, OfAStation) {
                              {"^[[station]]\nname = 'u'\nunit = 'mdxb'\n", "there are two of station 'u'"},
                              {"hex = ^'x'\n", "hex must be a list of variable names"},
                              {"hex = [ 'x', ^5 ]\n", "hex must be"},
+                             {"hex = [ ^'' ]\n", "hex must be a list of variable names"},
+                             {"hex = [ 'x', ^'', 'y', ^true ]\n", "hex must be a list of variable names"},
                          });
   expect_mistakes(
       "", {{"^[[station]]\nname = 'u'\n", "a [[station]] needs unit"},

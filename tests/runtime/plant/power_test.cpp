@@ -103,6 +103,40 @@ P891 = 9
   }
 }
 
+// Who is on stays as it is when it is switched on, and nothing begins twice.
+TEST(StationPower, SwitchedOnTwiceIsOnOnce) {
+  const PlainPlant plant(
+      "[[bus]]\nname = 'b'\nkind = 'can'\n[[bus]]\nname = 'p'\nkind = 'profibus'\n"
+      "[[station]]\nname = 'u'\nunit = 'mdxb'\nsbus = 'b'\n[station.parameters]\nP881 = 5\n"
+      "[[station]]\nname = 'g'\nunit = 'gateway'\nprofibus = 'p'\nprofibus_address = 5\nsbus = 'b'\n");
+  ASSERT_TRUE(plant.errors.empty());
+  plant->run_until(100 * kMillisecond);
+  const auto frames_of_a_second = [&] {
+    const uint64_t before = plant->find_bus("b")->load(plant->now()).frames;
+    plant->run_until(plant->now() + kSecond);
+    return plant->find_bus("b")->load(plant->now()).frames - before;
+  };
+  const uint64_t frames = frames_of_a_second();
+  EXPECT_GT(frames, 100U);
+  const SbusPort* port = std::as_const(plant.station()).sbus(1);
+  plant.station().power_on();
+  plant->find_gateway("g")->power_on();
+  EXPECT_EQ(std::as_const(plant.station()).sbus(1), port);
+  EXPECT_EQ(frames_of_a_second(), frames);
+  for (int n = 0; n < 2; ++n) {
+    plant.station().power_off();
+    plant->find_gateway("g")->power_off();
+  }
+  plant->run_until(plant->now() + 10 * kMillisecond);
+  EXPECT_EQ(frames_of_a_second(), 0U);
+  for (int n = 0; n < 2; ++n) {
+    plant.station().power_on();
+    plant->find_gateway("g")->power_on();
+  }
+  plant->run_until(plant->now() + 100 * kMillisecond);
+  EXPECT_NEAR(static_cast<double>(frames_of_a_second()), static_cast<double>(frames), 2);
+}
+
 TEST(StationPower, TheKeypadAsksWhileItIsOn) {
   const PlainPlant plant("[[station]]\nname = 'u'\nunit = 'mdxb'\nkeypad = true\n");
   const auto frames = [&] { return plant->find_bus("u.keypad")->load(plant->now()).frames; };

@@ -7,6 +7,7 @@
 
 #include "plant_rig.hpp"
 #include "runtime/plant/plant_signals.hpp"
+#include "runtime/plant_file/state_names.hpp"
 #include "stdlib/parameters.hpp"
 
 namespace ipos::runtime {
@@ -103,6 +104,56 @@ TEST_F(Signals, NamesThatStandForSeveral) {
   EXPECT_EQ(names("u.P13?"), ramps);
   EXPECT_EQ(names("u.H50?").size(), 10U);
   EXPECT_EQ(names("*.load"), (std::vector<std::string>{"sbus.load"}));
+}
+
+// A letter and a pattern behind it may mean all parameters, or all variables.
+TEST_F(Signals, PatternsOfParametersAndVariables) {
+  const auto numbered = [&](std::string_view pattern, char letter) {
+    size_t count = 0;
+    const auto found = find_signals(*plant_, pattern);
+    if (found)
+      for (const PlantSignal& signal : *found)
+        count += signal.name.size() > 3 && signal.name[2] == letter && signal.name[3] >= '0' &&
+                 signal.name[3] <= '9';
+    return count;
+  };
+  const stdlib::UnitType& unit = *station(0).config().unit;
+  std::set<std::string_view> parameters;  // P852 has two rows
+  size_t hundreds = 0;
+  for (const stdlib::Parameter& row : stdlib::parameter_table(unit).rows()) {
+    if (row.index == 0 || row.number.empty()) continue;
+    parameters.insert(row.number);
+    hundreds += row.number.size() == 3 && row.number[0] == '1' ? 1 : 0;
+  }
+  EXPECT_EQ(numbered("u.P*", 'P'), parameters.size());
+  EXPECT_EQ(numbered("u.P1??", 'P'), hundreds);
+  EXPECT_EQ(numbered("u.P", 'P'), 0U);
+  EXPECT_EQ(numbered("u.Px*", 'P'), 0U);
+  EXPECT_EQ(numbered("u.H*", 'H'), unit.variables);
+  EXPECT_EQ(numbered("u.H?", 'H'), 10U);
+  EXPECT_EQ(numbered("u.H1???", 'H'), 24U);
+  EXPECT_EQ(numbered("u.Hx*", 'H'), 0U);
+  EXPECT_FALSE(find_signals(*plant_, "v.w.H*")) << "no program, no variables";
+  EXPECT_EQ(shown("u.130"), "2.500 s") << "a parameter by its number alone";
+}
+
+TEST_F(Signals, WhatAStationHasIsTold) {
+  const auto found = find_signals(*plant_, "u.sped");
+  ASSERT_FALSE(found);
+  EXPECT_EQ(
+      found.error(),
+      "station 'u' has no signal 'sped'; it has speed, frequency, position, current, active_current, "
+      "motor_utilization, dc_link, temperature, setpoint, shaft_speed, torque, position_setpoint, "
+      "position_target, lag, status, fault, parameters as P000, inputs as DI00 and AI1, outputs as DO01, "
+      "process data as PO1 and PI1, bits as PO1.6, states as " +
+          state_names() +
+          ", tasks as task1.line, variables H0 to H1023, lCount, T.a, T.b; the buses have sbus.load, "
+          "sbus.count");
+  const auto other = find_signals(*plant_, "v.w.sped");
+  ASSERT_FALSE(other);
+  EXPECT_NE(other.error().find("states as " + state_names() + "; the buses have"), std::string::npos)
+      << other.error();
+  EXPECT_EQ(other.error().find("position_setpoint"), std::string::npos) << "no unit that positions";
 }
 
 TEST_F(Signals, WhatIsListedIsFound) {

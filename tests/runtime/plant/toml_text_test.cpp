@@ -53,6 +53,13 @@ TEST(TomlText, MistakesHaveTheirPlace) {
       {"a = \"\"\" \\ \r\n\t\n \xC3\xB6\"\"\"", 3, 2},
       // A column is a character, also behind one of several bytes.
       {"a = \"\xC3\xB6\xE2\x82\xAC\" \"y\"", 1, 10},
+      // Behind empty texts and texts of several lines with quotes in front of their end.
+      {"a = \"\" \"y\"", 1, 8},
+      {"a = '' 'y'", 1, 8},
+      {"a = \"\"\"\"\"\" \"y\"", 1, 12},
+      {"a = \"\"\"x\"\"\"\"\" \"y\"", 1, 15},
+      {"a = '''x'''' 'y'", 1, 14},
+      {"a = '''\n\nx''' 'y'", 3, 6},
       // Dates and times, right and wrong ones: no key takes one.
       {"a = 2026-01-01", 1, 5},
       {"a = 2026-01-01 1\n", 1, 5},

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <memory>
+#include <tuple>
 
 #include "tests/runtime/positioning/rig.hpp"
 
@@ -163,6 +164,32 @@ TEST(PositioningVariables, WhatIsWrittenActsInTheNextMillisecond) {
   parameter->set("913", 600'000);
   parameter->run(2);
   EXPECT_LT(parameter->drive.axis().speed, 1'500'000);
+}
+
+// P930: 0 to 10 V at AI1 are 0 to 150 % of the travel speeds; what is beyond counts as the end.
+TEST(PositioningVariables, TheOverrideIsAtAi1) {
+  constexpr int32_t kTravel = 600'000;  // 600 rpm
+  for (const auto& [on, millivolt, permille] : {std::tuple{1, 0, 0},
+                                                {1, -1, 0},
+                                                {1, -10'000, 0},
+                                                {1, 1'000, 150},
+                                                {1, 4'000, 600},
+                                                {1, 6'670, 1'000},
+                                                {1, 9'999, 1'499},
+                                                {1, 10'000, 1'500},
+                                                {1, 10'001, 1'500},
+                                                {1, 20'000, 1'500},
+                                                {0, 10'000, 1'000},
+                                                {0, 0, 1'000}}) {
+    Rig rig({{"930", on}, {"913", kTravel}, {"914", kTravel}, {"911", 200}, {"912", 200}});
+    rig.drive.set_analog({{millivolt, 0}, {5'000, 0}, 0, 0});
+    rig.go(2'000'000);
+    rig.run(1'000);
+    const int32_t before = rig.h[491];
+    rig.run(500);
+    // 600 rpm of 4096 increments for half a second are 20480.
+    EXPECT_NEAR(rig.h[491] - before, 20'480 * permille / 1'000, 2) << on << ' ' << millivolt;
+  }
 }
 
 // What is reported says where the command stands that ordered it; a variable that was written has no such place.

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/runtime/unit/program_rig.hpp"
 
 namespace ipos::runtime {
@@ -72,6 +74,37 @@ TEST(Timers, RestWhenATickDoesNothing) {
   EXPECT_FALSE(rig.timers.rest(rig.machine.variables()));
   rig.timers.stop_watchdog();
   EXPECT_FALSE(rig.timers.watchdog_runs());
+}
+
+// Up to its bound as tick for tick, and the tick behind it reports or loads something.
+TEST(Timers, AdvanceAsTheyTick) {
+  for (const int32_t timer_0 : {-1, 0, 1, 2, 6})
+    for (const int32_t other : {-3, 0, 1, 2, 9})
+      for (const int32_t reload : {-1, 0, 1, 4})
+        for (const int32_t watchdog : {-1, 0, 1, 2, 7})
+          for (const bool watched : {false, true}) {
+            const Timers::Counts begin{timer_0, other, 9 - other, reload, watchdog, watched};
+            SCOPED_TRACE(testing::Message()
+                         << timer_0 << ' ' << other << ' ' << reload << ' ' << watchdog << ' ' << watched);
+            const Ticks bound = begin.bound();
+            Timers::Counts ticked = begin;
+            for (Ticks n = 0; n <= std::min<Ticks>(bound, 12); ++n) {
+              Timers::Counts advanced = begin;
+              advanced.advance(n);
+              EXPECT_EQ(advanced, ticked) << n;
+              const Timers::Counts before = ticked;
+              const Timers::Expired expired = ticked.tick();
+              const bool decided =
+                  expired.timer_0 || expired.watchdog || ticked.timer_0 > std::max(before.timer_0, 0);
+              EXPECT_EQ(decided, n == bound) << n;
+            }
+            const bool ends = timer_0 > 0 || (timer_0 == 0 && reload > 0) || watched;
+            EXPECT_EQ(bound == kNoBound, !ends);
+          }
+  Timers::Counts far{INT32_MAX, INT32_MAX, 5, 0, INT32_MAX, true};
+  EXPECT_EQ(far.bound(), static_cast<Ticks>(INT32_MAX) - 1);
+  far.advance(far.bound());
+  EXPECT_EQ(far, (Timers::Counts{1, 1, 0, 0, 1, true}));
 }
 
 TEST(Watchdog, RunsOutUnlessRenewed) {
