@@ -280,9 +280,9 @@ TEST_F(WaysIn, AJumpBehindASetIsDecided) {
 // The end of a loop that is short is repeated in place of a jump to it, the jump decided or not.
 TEST_F(WaysIn, ShortEndsOfLoopsAreRepeated) {
   for (int32_t length = 0; length <= 5; ++length)
-    for (const bool known : {false, true})
+    for (const auto& [known, changed] : {std::pair{false, 3}, {true, 3}, {true, 1}})
       for (const bool returns : {false, true}) {
-        // if (H1 == 1) H2 += 5; else H2 += 7; and the end of the loop, or of a subroutine.
+        // if (H1 == 1) H2 += 5; else H2 += 7; and the end of the loop, or of a subroutine. There H1 may change.
         Commands commands{returns ? I(Opcode::Call, 3) : kNop, returns ? less(4, 9, 0) : kNop,
                           returns ? kEnd : kNop};
         const auto head = static_cast<int32_t>(commands.size());
@@ -291,11 +291,24 @@ TEST_F(WaysIn, ShortEndsOfLoopsAreRepeated) {
         commands.push_back(known ? set(1, 1) : add(2, 1));
         commands.push_back(jump(head + 5));
         commands.push_back(add(2, 7));
-        for (int32_t n = 0; n < length; ++n) commands.push_back(n == 1 ? set(3, n) : add(4, n + 1));
+        for (int32_t n = 0; n < length; ++n) commands.push_back(n == 1 ? set(changed, 2) : add(4, n + 1));
         commands.push_back(returns ? kRet : less(4, 40, head));
         for (const Instruction& command : {add(2, 100), kEnd}) commands.push_back(command);
-        ASSERT_NO_FATAL_FAILURE(expect_same(commands, 24)) << length << known << returns;
+        ASSERT_NO_FATAL_FAILURE(expect_same(commands, 24)) << length << known << changed << returns;
       }
+}
+
+// Two states that lead to each other, until the end of the loop does not lead back: it is left from either of them.
+TEST_F(WaysIn, StateMachinesEndBehindAnyState) {
+  for (int32_t length = 0; length <= 4; ++length)
+    for (int32_t limit = 20; limit <= 28; ++limit) {
+      Commands commands{kNop,      equal(1, 1, 6), equal(1, 2, 9), add(4, 1), set(1, 1), jump(11),
+                        add(4, 3), set(1, 2),      jump(11),       add(4, 5), set(1, 1)};
+      for (int32_t n = 0; n < length; ++n) commands.push_back(add(2 + n % 2, n + 1));
+      for (const Instruction& command : {less(4, limit, 1), add(2, 100), add(3, 50), kEnd})
+        commands.push_back(command);
+      ASSERT_NO_FATAL_FAILURE(expect_same(commands, 12)) << length << ", " << limit;
+    }
 }
 
 // What is in the way of that: a command that is not machine code, one that may fault, one that others come to, a branch, a
