@@ -25,7 +25,7 @@ void check_bodies(const ast::Program& program, Context& context) {
     if (function == nullptr) continue;
     // A second function of the same name, or one with a reserved name, has been reported.
     const Entity* entity = context.scope.find(function->name.text);
-    const auto* name = entity != nullptr ? std::get_if<const FunctionName*>(entity) : nullptr;
+    const auto* name = std::get_if<const FunctionName*>(entity);
     if (name == nullptr || (*name)->span != function->name.span) continue;
     context.program.functions.push_back({std::string(function->name.text), function->name.span, nullptr});
     bodies.push_back(function);
@@ -63,7 +63,7 @@ std::optional<checked::Program> check(const ast::Program& program, const stdlib:
   check_numbers(context);
 
   const Entity* main = context.scope.find("main");
-  const auto* function = main != nullptr ? std::get_if<const FunctionName*>(main) : nullptr;
+  const auto* function = std::get_if<const FunctionName*>(main);
   if (function == nullptr) report_no_main(context);
   // What follows looks at the program as a whole and would complain of the gaps that errors leave.
   if (diagnostics.has_errors()) return std::nullopt;

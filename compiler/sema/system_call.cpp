@@ -210,7 +210,7 @@ class SystemCallChecker {
   bool function(size_t n, const ast::Expr& expr) {
     const auto* name = std::get_if<ast::Name>(&expr.node);
     const Entity* entity = name != nullptr ? context_.scope.find(name->text) : nullptr;
-    const auto* found = entity != nullptr ? std::get_if<const FunctionName*>(entity) : nullptr;
+    const auto* found = std::get_if<const FunctionName*>(entity);
     if (found != nullptr) {
       arguments_.emplace_back(checked::FunctionRef{(*found)->index});
       return true;

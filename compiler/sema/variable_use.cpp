@@ -65,7 +65,7 @@ class VariableUse {
   std::optional<Part> part(const ast::Expr& expr) const {
     if (const auto* name = std::get_if<ast::Name>(&expr.node)) {
       const Entity* entity = context_.scope.find(name->text);
-      const auto* variable = entity != nullptr ? std::get_if<const Variable*>(entity) : nullptr;
+      const auto* variable = std::get_if<const Variable*>(entity);
       if (variable == nullptr) return std::nullopt;
       return Part{*variable, (*variable)->type, {}, {}};
     }

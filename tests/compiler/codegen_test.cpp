@@ -278,6 +278,18 @@ TEST(Functions, TasksAndInterruptsAreLabels) {
 TEST(Functions, WhatIsOnlyStoppedHasAnAddress) {
   EXPECT_EQ((Lines{"M01 : TASK2 STOP , M02", "END", "M02 : ADD H0 + 1", "RET"}),
             commands(compile_text("t() { H0++; } main() { _SetTask2(0, t); }")));
+  // Wherever it stands among the functions, and with others that stand nowhere yet.
+  for (const char* text :
+       {"main() { _SetTask2(0, t); } t() { H0++; }", "u() { } main() { _SetTask2(0, t); } t() { H0++; }",
+        "main() { _SetTask2(0, t); } u() { } t() { H0++; }",
+        "main() { _SetTask2(0, t); } t() { H0++; } u() { }"})
+    EXPECT_EQ((Lines{"M01 : TASK2 STOP , M02", "END", "M02 : ADD H0 + 1", "RET"}),
+              commands(compile_text(text)))
+        << text;
+  EXPECT_EQ((Lines{"M01 : TASK2 STOP , M02", "SETINT DISABLE , M03", "END", "M02 : ADD H0 + 1", "RET",
+                   "M03 : ADD H1 + 1", "RET"}),
+            commands(compile_text(
+                "main() { _SetTask2(0, t); _SetInterrupt(0, r); } t() { H0++; } r() { H1++; }", "mdxb")));
 }
 
 TEST(Structures, MembersAreConsecutiveVariables) {

@@ -19,6 +19,15 @@ TEST(Engines, AgreeOnAllProgramsOfTheRepository) {
   EXPECT_GT(campaign.programs, 300U);
 }
 
+// Quick, and so the first to notice a mistake: further seeds of what needs no compiler.
+TEST(Engines, AgreeOnAFewLoopsStateMachinesAndMixes) {
+  EngineCampaign campaign;
+  for (uint64_t seed = 1001; seed <= 1015; ++seed)
+    for (const EngineProgram& program : assembled_programs_of(seed)) campaign.run(program);
+  EXPECT_EQ(campaign.difference, "");
+  EXPECT_GT(campaign.programs, 40U);
+}
+
 // 10 000 seeds by ipos_engines.
 TEST(Engines, AgreeOnRandomPrograms) {
   EngineCampaign campaign;

@@ -37,7 +37,7 @@ class Native : public testing::Test {
 
   // Executes with machine code, these in H500.., and leaves the machine in machine_.
   vm::RunResult run(const std::vector<int32_t>& numbers = {}) {
-    const vm::Verification verified = vm::verify(code_, kLimits, {});
+    const vm::Verification verified = vm::verify(code_, limits_, {});
     EXPECT_TRUE(verified.image);
     slots_.resize(vm::fast::Predecoded::slots_needed(code_.size()));
     predecoded_.emplace(*verified.image, slots_);
@@ -51,6 +51,7 @@ class Native : public testing::Test {
   }
   int32_t h(size_t number) const { return machine_->variables()[number]; }
 
+  vm::Limits limits_ = kLimits;
   std::vector<uint32_t> code_;
   std::vector<vm::fast::Slot> slots_;
   std::optional<vm::fast::Predecoded> predecoded_;
@@ -330,11 +331,21 @@ TEST_F(Native, CallsTooDeepAreAFault) {
   add(Opcode::AddHK, {10, 1, 0, 0});
   add(Opcode::Call, {down, 0, 0, 0});
   add(Opcode::Ret, {});
-  const vm::RunResult result = run();
-  EXPECT_EQ(result.stop, vm::Stop::Faulted);
-  EXPECT_EQ(machine_->fault().number, vm::kFaultIndexOverflow);
-  EXPECT_EQ(machine_->task(1).depth, kLimits.call_depth);
-  EXPECT_EQ(h(10), kLimits.call_depth);
+  // No unit has a deeper one than 32.
+  for (const uint8_t limit : std::initializer_list<uint8_t>{1, 2, 6, 31, 32, 33, 255}) {
+    limits_.call_depth = limit;
+    const int most = std::min(int{limit}, 32);
+    const vm::RunResult result = run();
+    EXPECT_EQ(result.stop, vm::Stop::Faulted);
+    EXPECT_EQ(machine_->fault().number, vm::kFaultIndexOverflow);
+    EXPECT_EQ(machine_->fault().address, static_cast<uint32_t>(down + words(Opcode::AddHK)));
+    EXPECT_EQ(machine_->task(1).depth, most);
+    EXPECT_EQ(h(10), most);
+    EXPECT_EQ(machine_->task(1).commands, 2U * static_cast<uint32_t>(most) + 1) << "what faults counts, too";
+    for (int n = 0; n < most; ++n)
+      EXPECT_EQ(machine_->task(1).calls[static_cast<size_t>(n)],
+                n == 0 ? words(Opcode::Call) : down + words(Opcode::AddHK) + words(Opcode::Call));
+  }
 }
 
 TEST_F(Native, NoPageIsWritableAndExecutable) {

@@ -257,9 +257,6 @@ std::vector<uint32_t> with_interrupts(const std::vector<uint32_t>& code, const v
   return out.size() <= limits.program_words ? out : std::vector<uint32_t>{};
 }
 
-namespace {
-
-// The code of commands whose labels are numbers of commands.
 std::vector<uint32_t> assembled(std::vector<vm::Instruction> commands) {
   std::vector<int32_t> addresses;
   int32_t next = 0;
@@ -276,8 +273,6 @@ std::vector<uint32_t> assembled(std::vector<vm::Instruction> commands) {
   }
   return code;
 }
-
-}  // namespace
 
 std::vector<uint32_t> sequence_soup(uint64_t seed) {
   Pcg random(seed);

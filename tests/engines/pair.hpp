@@ -34,6 +34,9 @@ std::string run_idle_pair(const vm::VerifiedImage& program, uint64_t seed, uint3
 std::vector<uint32_t> with_interrupts(const std::vector<uint32_t>& code, const vm::Limits& limits,
                                       uint64_t seed);
 
+// The code of commands whose labels are numbers of commands.
+std::vector<uint32_t> assembled(std::vector<vm::Instruction> commands);
+
 // A program for a MOVIDRIVE B made of the command sequences of the fast engine's table, with few variables
 // and many jumps.
 std::vector<uint32_t> sequence_soup(uint64_t seed);

@@ -32,24 +32,35 @@ std::optional<std::string> read_text(const std::string& path) {
 
 }  // namespace
 
-std::vector<EngineProgram> programs_of(uint64_t seed) {
+namespace {
+
+void add(std::vector<EngineProgram>& programs, const char* what, std::vector<uint32_t> code,
+         const vm::Limits& limits, uint64_t seed) {
+  if (!code.empty())
+    programs.push_back({what + (" " + std::to_string(seed)), std::move(code), limits, seed, kOrders});
+}
+
+}  // namespace
+
+std::vector<EngineProgram> assembled_programs_of(uint64_t seed) {
   std::vector<EngineProgram> programs;
-  const auto add = [&](const char* what, std::vector<uint32_t> code, const vm::Limits& limits) {
-    if (!code.empty())
-      programs.push_back({what + (" " + std::to_string(seed)), std::move(code), limits, seed, kOrders});
-  };
+  add(programs, "loops over tables", table_loops(seed, kLoopLimits), kLoopLimits, seed);
+  add(programs, "state machine", state_machine(seed), kLoopLimits, seed);
+  add(programs, "soup", with_interrupts(sequence_soup(seed), kSoupLimits, seed), kSoupLimits, seed);
+  return programs;
+}
+
+std::vector<EngineProgram> programs_of(uint64_t seed) {
+  std::vector<EngineProgram> programs = assembled_programs_of(seed);
   Program program = generate_program(seed);
   compiler::CompileOptions options;
   options.unit = stdlib::find_unit(std::string_view(program.unit));
   const compiler::Compilation made = compiler::compile("generated.IPC", "", source_text(program), options);
   if (made.image) {
     const vm::Limits limits = limits_of(*options.unit);
-    add("generated", made.image->code, limits);
-    add("generated with interrupts", with_interrupts(made.image->code, limits, seed), limits);
+    add(programs, "generated", made.image->code, limits, seed);
+    add(programs, "generated with interrupts", with_interrupts(made.image->code, limits, seed), limits, seed);
   }
-  add("loops over tables", table_loops(seed, kLoopLimits), kLoopLimits);
-  add("state machine", state_machine(seed), kLoopLimits);
-  add("soup", with_interrupts(sequence_soup(seed), kSoupLimits, seed), kSoupLimits);
   return programs;
 }
 

@@ -13,6 +13,9 @@ namespace ipos::tests {
 // they do not fit.
 std::vector<EngineProgram> programs_of(uint64_t seed);
 
+// Those of them that are made of commands, which takes no time.
+std::vector<EngineProgram> assembled_programs_of(uint64_t seed);
+
 // Each .IPC file of examples, language tests and benchmarks that compiles, without and with interrupts.
 std::vector<EngineProgram> programs_of_the_repository();
 

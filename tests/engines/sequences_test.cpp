@@ -2,13 +2,9 @@
 // commands, and does what they do, as machine code does. The reference interpreter is the expected value.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <memory>
 #include <random>
 
-#include "vm/exec/machine.hpp"
-#include "vm/fast/predecode.hpp"
-#include "vm/jit/jit.hpp"
+#include "tests/engines/sequence.hpp"
 
 namespace ipos::tests {
 namespace {
@@ -17,74 +13,6 @@ using vm::Instruction;
 using vm::Opcode;
 using vm::fast::Operation;
 using vm::fast::Predecoded;
-
-constexpr vm::Limits kRowLimits{64, 2048, 3, 4};
-
-// A program with its predecoded form.
-class Sequence {
- public:
-  explicit Sequence(const std::vector<Instruction>& commands) {
-    for (const Instruction& command : commands) {
-      std::array<uint32_t, vm::kMaxWords> words{};
-      const uint32_t count = vm::encode(command, words);
-      code_.insert(code_.end(), words.begin(), words.begin() + count);
-    }
-    slots_.resize(Predecoded::slots_needed(code_.size()), dirt());
-    image_ = vm::verify(code_, kRowLimits, {}).image;
-    if (image_) predecoded_.emplace(*image_, slots_);
-  }
-  Sequence(const Sequence&) = delete;
-  Sequence& operator=(const Sequence&) = delete;
-  bool good() const { return image_.has_value(); }
-  const Predecoded& predecoded() const { return *predecoded_; }
-
-  // The fast engine and machine code from the first command on, with every budget up to `most`: the same as the reference
-  // in the end, and so again with further ones. Machine code wants more than 16 commands.
-  void expect_equal(const std::vector<int32_t>& variables, uint32_t most) const {
-    const std::unique_ptr<vm::jit::Code> code = vm::jit::compile(*image_);
-    ASSERT_EQ(code != nullptr, vm::jit::available());
-    for (uint32_t budget = 0; budget <= most; ++budget) {
-      vm::Machine reference(*image_, {}), fast(*image_, {}), native(*image_, {});
-      fast.use(&*predecoded_);
-      native.use(&*predecoded_, code ? &code->native() : nullptr);
-      for (vm::Machine* machine : {&reference, &fast, &native}) {
-        std::copy(variables.begin(), variables.end(), machine->variables().begin());
-        machine->start();
-      }
-      for (const uint32_t part : {budget, 37U, 500U}) {
-        const vm::RunResult should = reference.run(1, part);
-        for (vm::Machine* machine : {&fast, &native}) {
-          SCOPED_TRACE(testing::Message()
-                       << (machine == &native ? "machine code" : "fast") << ", budget " << budget);
-          const vm::RunResult is = machine->run(1, part);
-          ASSERT_EQ(is.commands, should.commands);
-          ASSERT_EQ(is.stop, should.stop);
-          const vm::TaskContext &t = machine->task(1), &wanted = reference.task(1);
-          ASSERT_EQ(t.pc, wanted.pc);
-          ASSERT_EQ(t.depth, wanted.depth);
-          ASSERT_EQ(t.commands, wanted.commands);
-          ASSERT_EQ(machine->fault().address, reference.fault().address);
-          ASSERT_EQ(machine->fault().number, reference.fault().number);
-          const std::span<const int32_t> values = machine->variables(), right = reference.variables();
-          for (size_t n = 0; n < right.size(); ++n)
-            if (values[n] != right[n]) FAIL() << "H" << n << " is " << values[n] << ", not " << right[n];
-        }
-      }
-    }
-  }
-
- private:
-  // The memory is the caller's and may have anything in it.
-  static vm::fast::Slot dirt() {
-    vm::fast::Slot out;
-    out.lines.fill(0xAAAA);
-    return out;
-  }
-  std::vector<uint32_t> code_;
-  std::vector<vm::fast::Slot> slots_;
-  std::optional<vm::VerifiedImage> image_;
-  std::optional<Predecoded> predecoded_;
-};
 
 // Three variables are few enough that by chance each way comes up in which the commands of a row meet.
 TEST(Rows, OfTheTableAreFoundAndDoWhatTheirCommandsDo) {
@@ -239,6 +167,26 @@ TEST(Switches, AreOfOneVariable) {
             std::string::npos);
   EXPECT_EQ(name({{Opcode::SetHH, {1, 2, 0, 0}}, test(1, 6), test(1, 7)}, 0).find("Switch"),
             std::string::npos);
+}
+
+// A switch counts as one operation: what stands in front of it joins its first command only where a result stays in a
+// register then, and else the fewest operations are taken, the plain ones first.
+TEST(Switches, AreOneOperationBehindOthers) {
+  for (const int32_t last : {7, 17}) {
+    const auto name = [&](std::vector<Instruction> commands, uint32_t at) {
+      for (const int32_t constant : {5, 6, last}) commands.push_back({Opcode::JmpEqHK, {1, constant, 0, 0}});
+      commands.push_back({Opcode::End, {}});
+      return std::string(vm::fast::operation_name(Sequence(commands).predecoded().operation(at)));
+    };
+    const std::string kind = last == 7 ? "Dense" : "Sparse";
+    const Instruction other_sum{Opcode::AddHK, {3, 1, 0, 0}};
+    const Instruction set{Opcode::SetHH, {1, 2, 0, 0}}, sum_to_set{Opcode::AddHK, {2, 1, 0, 0}};
+    EXPECT_EQ(name({{Opcode::SetHK, {3, 0, 0, 0}}}, 0), "SetHK");
+    EXPECT_EQ(name({{Opcode::SetHK, {3, 0, 0, 0}}}, 2), "Switch" + kind);
+    EXPECT_EQ(name({other_sum, set}, 0), "AddHK");
+    EXPECT_EQ(name({other_sum, set}, 2), "SetSwitch" + kind);
+    EXPECT_EQ(name({sum_to_set, set}, 0), "AddHK_to_SetHH");
+  }
 }
 
 // A line is what follows until a command that leads elsewhere, itself included; branches do not end it.

@@ -9,7 +9,7 @@ namespace ipos::vm::jit {
 namespace {
 
 constexpr int32_t kCaller = kBlock - 8;
-static_assert(kReturnsEnd <= kCaller);
+static_assert(kReturnsEnd <= kCaller && kCaller + 8 <= kBlock && kCaller % 8 == 0);
 
 // What AAPCS64 has the callee save: x19 to x28; and where it returns to.
 constexpr uint32_t kFirstSaved = 19, kLastSaved = 30;

@@ -12,7 +12,8 @@ namespace {
 
 constexpr int32_t kCaller = kBlock - 16;
 constexpr int32_t kFrame = kBlock - 8;
-static_assert(kReturnsEnd <= kCaller);
+static_assert(kReturnsEnd <= kCaller && kCaller + 8 <= kFrame && kFrame + 8 <= kBlock && kCaller % 8 == 0 &&
+              kFrame % 8 == 0);
 
 constexpr x86::Gp kSaved[] = {x86::rbx, x86::rbp, x86::r12, x86::r13, x86::r14, x86::r15};
 
