@@ -97,7 +97,7 @@ TEST_F(OwnPty, ASpeedOfItsOwnComesBack) {
     return cfgetospeed(&settings);
   };
   EXPECT_EQ(speed(), static_cast<speed_t>(B50));
-  for (const speed_t mark : {B75, B50, B75}) {
+  for (const speed_t mark : {speed_t{B75}, speed_t{B50}, speed_t{B75}}) {
     termios settings{};
     ASSERT_EQ(tcgetattr(other.get(), &settings), 0);
     cfsetspeed(&settings, B57600);

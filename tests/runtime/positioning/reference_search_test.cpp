@@ -8,7 +8,7 @@ namespace ipos::runtime {
 namespace {
 
 using Outcome = ReferenceTravel::Outcome;
-using Order = ReferenceTravel::Order;
+using SearchOrder = ReferenceTravel::Order;
 
 // By type: where it searches, and in which direction it leaves the switch.
 struct Type {
@@ -32,7 +32,7 @@ struct Search {
   bool& its_switch() { return type.limit ? limit(type.to) : in.cam; }
   void expect_moving(int way, bool fast) {
     ASSERT_EQ(travel.tick(in), Outcome::Moving);
-    EXPECT_EQ(travel.order(), (Order{way, fast}));
+    EXPECT_EQ(travel.order(), (SearchOrder{way, fast}));
     EXPECT_TRUE(travel.active());
   }
 };
@@ -151,7 +151,7 @@ TEST(ReferenceSearch, WithoutASwitch) {
     ReferenceInputs in;
     in.zero_pulse_cw = 3;
     EXPECT_EQ(travel.tick(in), Outcome::Moving);
-    EXPECT_EQ(travel.order(), (Order{-1, false}));
+    EXPECT_EQ(travel.order(), (SearchOrder{-1, false}));
     in.limit_cw = true;
     EXPECT_EQ(travel.tick(in), Outcome::Moving);
     in.limit_ccw = true;
