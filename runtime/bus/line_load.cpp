@@ -17,13 +17,7 @@ void LoadMeter::add_beyond(uint64_t begin, uint64_t count) {
   busy_ += count;
   while (count > 0) {
     const uint64_t window = begin / rate_;
-    if (window != window_) {
-      peak_window_busy_ = std::max(peak_window_busy_, window_busy_);
-      previous_window_busy_ = window == window_ + 1 ? window_busy_ : 0;
-      window_ = window;
-      window_end_ = (window + 1) * rate_;
-      window_busy_ = 0;
-    }
+    if (window != window_) begin_window(window);
     const uint64_t part = std::min(count, window_end_ - begin);
     window_busy_ += part;
     begin += part;
@@ -31,18 +25,31 @@ void LoadMeter::add_beyond(uint64_t begin, uint64_t count) {
   }
 }
 
+void LoadMeter::begin_window(uint64_t window) {
+  const uint64_t gap = window - window_;
+  peak_busy_ = std::max({peak_busy_, previous_busy_, gap == 1 ? 0 : window_busy_});
+  before_previous_busy_ = gap == 1 ? previous_busy_ : gap == 2 ? window_busy_ : 0;
+  previous_busy_ = gap == 1 ? window_busy_ : 0;
+  window_ = window;
+  window_end_ = (window + 1) * rate_;
+  window_busy_ = 0;
+}
+
 LineLoad LoadMeter::load(uint64_t elapsed) const {
   LineLoad load;
   load.busy_bits = busy_;
   load.elapsed_bits = elapsed;
   load.percent = percent_of(busy_, elapsed);
-  const uint64_t current = elapsed / rate_;
+  const uint64_t current = elapsed / rate_;  // a second before window_ where the end of a frame lies ahead
   uint64_t last = 0;
-  if (current == window_) last = previous_window_busy_;
+  uint64_t peak = peak_busy_;
+  if (current + 1 == window_) last = before_previous_busy_;
+  if (current == window_) last = previous_busy_;
   if (current == window_ + 1) last = window_busy_;
+  if (current >= window_) peak = std::max(peak, previous_busy_);
+  if (current > window_) peak = std::max(peak, window_busy_);
   load.window_percent = percent_of(last, rate_);
-  load.peak_window_percent =
-      percent_of(current > window_ ? std::max(peak_window_busy_, window_busy_) : peak_window_busy_, rate_);
+  load.peak_window_percent = percent_of(peak, rate_);
   return load;
 }
 

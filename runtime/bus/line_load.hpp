@@ -26,19 +26,21 @@ class LoadMeter {
     window_busy_ += count;
   }
 
-  // With `elapsed` units since time 0; `frames` is left to the caller.
+  // With `elapsed` units since time 0, at most a second before what was added last; `frames` is left to the caller.
   LineLoad load(uint64_t elapsed) const;
 
  private:
   void add_beyond(uint64_t begin, uint64_t count);
+  void begin_window(uint64_t window);
 
   uint32_t rate_;
   uint64_t busy_ = 0;
   uint64_t window_ = 0;  // number of the second being counted
   uint64_t window_end_;  // its end
   uint64_t window_busy_ = 0;
-  uint64_t previous_window_busy_ = 0;  // of second window_ - 1
-  uint64_t peak_window_busy_ = 0;      // of the seconds before window_
+  uint64_t previous_busy_ = 0;         // of second window_ - 1
+  uint64_t before_previous_busy_ = 0;  // of second window_ - 2
+  uint64_t peak_busy_ = 0;             // of the seconds before window_ - 1
 };
 
 }  // namespace ipos::runtime

@@ -137,6 +137,24 @@ TEST(StationPower, SwitchedOnTwiceIsOnOnce) {
   EXPECT_NEAR(static_cast<double>(frames_of_a_second()), static_cast<double>(frames), 2);
 }
 
+// What a gateway has found out about its drives is not forgotten when it is switched on again while it is on.
+TEST(StationPower, AGatewayThatIsOnGoesOn) {
+  const PlainPlant plant(
+      "[[bus]]\nname = 'b'\nkind = 'can'\n[[bus]]\nname = 'p'\nkind = 'profibus'\n"
+      "[[station]]\nname = 'u'\nunit = 'mdxb'\n"
+      "[[station]]\nname = 'g'\nunit = 'gateway'\nprofibus = 'p'\nprofibus_address = 5\nsbus = 'b'\n"
+      "drives = [9]\n");
+  ASSERT_TRUE(plant.errors.empty());
+  Gateway& gateway = *plant->find_gateway("g");
+  plant->run_until(kSecond);
+  EXPECT_TRUE(gateway.drives().at(0).lost);
+  gateway.power_on();
+  plant->run_until(kSecond + 50 * kMillisecond);
+  EXPECT_TRUE(gateway.drives().at(0).lost);
+  EXPECT_EQ(gateway.drives().at(0).losses, 1U);
+  EXPECT_TRUE(plant.told("g", "answers again").empty());
+}
+
 TEST(StationPower, TheKeypadAsksWhileItIsOn) {
   const PlainPlant plant("[[station]]\nname = 'u'\nunit = 'mdxb'\nkeypad = true\n");
   const auto frames = [&] { return plant->find_bus("u.keypad")->load(plant->now()).frames; };

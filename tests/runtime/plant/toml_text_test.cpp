@@ -60,6 +60,7 @@ TEST(TomlText, MistakesHaveTheirPlace) {
       {"a = \"\"\"x\"\"\"\"\" \"y\"", 1, 15},
       {"a = '''x'''' 'y'", 1, 14},
       {"a = '''\n\nx''' 'y'", 3, 6},
+      {"a = \"\xC3\xA9\xC2\xBF\" \"y\"", 1, 10},
       // Dates and times, right and wrong ones: no key takes one.
       {"a = 2026-01-01", 1, 5},
       {"a = 2026-01-01 1\n", 1, 5},
