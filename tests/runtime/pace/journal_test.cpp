@@ -359,7 +359,7 @@ TEST(PacerJournal, WhoIsAskedMayCatchUpAndTouchItself) {
 TEST(Backoff, PausesAreTwiceAsLongEachTimeUpToTheLongest) {
   runtime::Backoff backoff;
   EXPECT_TRUE(backoff.due(0));
-  for (const uint32_t pause : {2, 4, 8, 16, 20, 20}) {
+  for (const uint32_t pause : {2u, 4u, 8u, 16u, 20u, 20u}) {
     backoff.fail(100 * kMillisecond, 20);
     const Time again = (100 + pause) * kMillisecond;
     EXPECT_FALSE(backoff.due(again - 1)) << pause;
