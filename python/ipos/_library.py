@@ -175,20 +175,25 @@ _FUNCTIONS = {
     "trace_hash": [c_void_p, POINTER(c_uint64)],
 }
 
+# Those that return something else.
+_ANSWERS = {
+    "message": ([c_void_p], c_char_p),
+    "mistakes": ([c_void_p], c_size_t),
+    "status_text": ([c_int32], c_char_p),
+    "return_code": ([c_uint32], c_char_p),
+    "version": ([], c_uint32),
+}
+
+
+def _typed(name: str, argtypes: list, restype: type):
+    found = getattr(_library, "ipos_plant_" + name)
+    found.argtypes, found.restype = argtypes, restype
+    return found
+
+
 _library = _load()
-for _function, _types in _FUNCTIONS.items():
-    getattr(_library, "ipos_plant_" + _function).argtypes = _types
-    getattr(_library, "ipos_plant_" + _function).restype = c_int32
-_library.ipos_plant_message.argtypes = [c_void_p]
-_library.ipos_plant_message.restype = c_char_p
-_library.ipos_plant_mistakes.argtypes = [c_void_p]
-_library.ipos_plant_mistakes.restype = c_size_t
-_library.ipos_plant_status_text.argtypes = [c_int32]
-_library.ipos_plant_status_text.restype = c_char_p
-_library.ipos_plant_return_code.argtypes = [c_uint32]
-_library.ipos_plant_return_code.restype = c_char_p
-_library.ipos_plant_version.argtypes = []
-_library.ipos_plant_version.restype = c_uint32
+_functions = {name: _typed(name, types, c_int32) for name, types in _FUNCTIONS.items()}
+_functions |= {name: _typed(name, *types) for name, types in _ANSWERS.items()}
 
 OK, NOT_REACHED, INVALID_ARGUMENT, BAD_PLANT, NOT_OPEN, OTHER_THREAD, BUSY, NO_STATION, NO_SIGNAL, NO_BUS = range(10)
 READ_ONLY, BAD_VALUE, REFUSED, BAD_STATE, OTHER_PLANT, NOT_RECORDED, TOO_SMALL = range(10, 17)
@@ -245,12 +250,12 @@ def text(value: bytes | None) -> str:
 
 
 def status_text(status: int) -> str:
-    return text(_library.ipos_plant_status_text(status))
+    return text(function("status_text")(status))
 
 
 def version() -> str:
     """Version of the library."""
-    number = _library.ipos_plant_version()
+    number = function("version")()
     return f"{number // 10000}.{number // 100 % 100}.{number % 100}"
 
 
@@ -282,7 +287,7 @@ def error_of(status: int, message: str) -> Exception:
 
 def function(name: str):
     """The function ipos_plant_`name` as it is."""
-    return getattr(_library, "ipos_plant_" + name)
+    return _functions[name]
 
 
 def duration_ns(value: object) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from ctypes import byref, c_char_p, c_size_t, c_uint8, c_uint32
+from ctypes import byref, c_size_t, c_uint8, c_uint32
 from typing import TYPE_CHECKING
 
 from . import _library as lib
@@ -66,7 +66,7 @@ class Bus:
         self.last: "deque[Frame | Telegram]" = deque(maxlen=_LAST)  # of those that were given
 
     def __repr__(self) -> str:
-        if self._plant._handle is None:
+        if self._plant._closed:
             return f"<Bus {self.name} of a closed plant>"
         return f"<Bus {self.name}: {self.kind}, {self.baud} baud, load {self.load:.2f} %>"
 
@@ -120,14 +120,15 @@ class Bus:
         """The telegrams of an RS-485 line, or the frames of a PROFIBUS line, since the last call."""
         found: list[Telegram] = []
         row = lib.TelegramRow()
-        while True:
-            status = lib.function("serial_receive")(self._plant._as_parameter_, self._number, byref(row))
-            if status == lib.NOTHING:
-                self.last.extend(found[-_LAST:])
-                return found
-            if status != lib.OK:
-                raise self._plant._error(status)
-            found.append(Telegram(row))
+        with self._plant._gate as handle:
+            while True:
+                status = lib.function("serial_receive")(handle, self._number, byref(row))
+                if status == lib.NOTHING:
+                    self.last.extend(found[-_LAST:])
+                    return found
+                if status != lib.OK:
+                    raise self._plant._error(status)
+                found.append(Telegram(row))
 
     @property
     def load(self) -> float:
@@ -153,9 +154,7 @@ class Bus:
         if node == 0xFFFFFFFF:
             return ""
         if node not in self._senders:
-            name = c_char_p()
-            self._plant._call("node_name", self._number, node, byref(name))
-            self._senders[node] = lib.text(name.value)
+            self._senders[node] = self._plant._text("node_name", self._number, node)
         return self._senders[node]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import threading
 from ctypes import byref, c_char_p, c_int64, c_size_t, c_uint64, c_void_p, create_string_buffer
 from typing import Callable, Iterator, Mapping, NamedTuple, Sequence
 
@@ -52,6 +53,34 @@ class _Named(Mapping):
         return f"<buses {', '.join(self._buses) or 'none'}>"
 
 
+class _Gate:
+    """The way into the library: nobody ends a plant while a thread is inside, or reads a text that it has handed out."""
+
+    def __init__(self, handle: c_void_p | None) -> None:
+        self.handle = handle
+        self._inside = 0
+        self._lock = threading.Lock()
+
+    def __enter__(self) -> c_void_p:
+        with self._lock:
+            if self.handle is None:
+                raise lib.ClosedError("the plant is closed")
+            self._inside += 1
+            return self.handle
+
+    def __exit__(self, *_: object) -> None:
+        with self._lock:
+            self._inside -= 1
+
+    def shut(self) -> c_void_p | None:
+        """Takes the handle away from all; nothing if somebody has done so."""
+        with self._lock:
+            if self._inside:
+                raise lib.ThreadError("the plant cannot be closed while a call of it is under way")
+            handle, self.handle = self.handle, None
+            return handle
+
+
 class Plant:
     """Opens a plant file (or a program, which makes a plant of one station), or the text of one.
 
@@ -62,6 +91,8 @@ class Plant:
     write_memory nvram files are written, as `ipos run` does; such a plant keeps no record
     record       False: what is done to the plant is not recorded; no snapshots and no trace hash then
     """
+
+    _gate = _Gate(None)  # of a plant that was never opened
 
     def __init__(
         self,
@@ -76,7 +107,6 @@ class Plant:
         write_memory: bool = False,
         record: bool = True,
     ) -> None:
-        self._handle: c_void_p | None = None
         if path is None and text is None:
             raise TypeError("a plant is opened from a path or from text=...")
         if isinstance(defines, Mapping):
@@ -95,7 +125,7 @@ class Plant:
         handle = c_void_p()
         status = lib.function("open")(byref(source), byref(handle))
         if status == lib.OK:
-            self._handle = handle
+            self._gate = _Gate(handle)
             self._find_members()
         else:
             self._fail_to_open(status, handle)
@@ -114,41 +144,42 @@ class Plant:
     def _find_members(self) -> None:
         self._stations: dict[str, Station] = {}
         info = lib.StationInfo()
-        while lib.function("station_at")(self._handle, len(self._stations), byref(info)) == lib.OK:
+        while lib.function("station_at")(self._gate.handle, len(self._stations), byref(info)) == lib.OK:
             name = lib.text(info.name)
             self._stations[name] = Station(self, len(self._stations), info)
         buses: dict[str, Bus] = {}
         row = lib.BusInfo()
-        while lib.function("bus_at")(self._handle, len(buses), byref(row)) == lib.OK:
+        while lib.function("bus_at")(self._gate.handle, len(buses), byref(row)) == lib.OK:
             buses[lib.text(row.name)] = Bus(self, len(buses), row)
         self._buses = _Named(self, buses)
 
     # --- the library
 
     @property
-    def _as_parameter_(self) -> c_void_p:
-        if self._handle is None:
-            raise lib.ClosedError("the plant is closed")
-        return self._handle
+    def _closed(self) -> bool:
+        return self._gate.handle is None
 
     def _call(self, name: str, *arguments: object) -> None:
-        status = lib.function(name)(self._as_parameter_, *arguments)
-        if status != lib.OK:
-            raise self._error(status)
+        with self._gate as handle:
+            status = lib.function(name)(handle, *arguments)
+            if status != lib.OK:
+                raise self._error(status)
+
+    def _text(self, name: str, *arguments: object) -> str:
+        """The text a function hands out: the library keeps it until the next call."""
+        text = c_char_p()
+        with self._gate:
+            self._call(name, *arguments, byref(text))
+            return lib.text(text.value)
 
     def _error(self, status: int) -> Exception:
-        return lib.error_of(status, lib.text(lib.function("message")(self._as_parameter_)))
+        with self._gate as handle:
+            return lib.error_of(status, lib.text(lib.function("message")(handle)))
 
     def close(self) -> None:
         """Ends the plant; what it was asked to keep is stored. Closing twice is allowed."""
-        handle = getattr(self, "_handle", None)
-        if handle is None:
-            return
-        status = lib.function("close")(handle)
-        if status == lib.BUSY:
-            raise lib.ThreadError("the plant cannot be closed while a call of it is under way")
-        self._handle = None
-        if status != lib.OK:
+        handle = self._gate.shut()
+        if handle is not None and lib.function("close")(handle) != lib.OK:
             raise lib.PlantError("a memory file could not be written")
 
     def adopt(self) -> None:
@@ -156,8 +187,8 @@ class Plant:
         self._call("adopt")
 
     def __enter__(self) -> "Plant":
-        self._as_parameter_
-        return self
+        with self._gate:
+            return self
 
     def __exit__(self, *_: object) -> None:
         self.close()
@@ -173,7 +204,7 @@ class Plant:
 
     def __repr__(self) -> str:
         what = self._path or "of a text"
-        if self._handle is None:
+        if self._closed:
             return f"<Plant {what}, closed>"
         return f"<Plant {what} at {self.time:.3f} s: {', '.join(self._stations)}>"
 
@@ -238,10 +269,10 @@ class Plant:
     # --- what is in it
 
     def __getitem__(self, name: str) -> Station:
-        self._as_parameter_
-        if name not in self._stations:
-            raise lib._KeyError(f"there is no station '{name}'; the plant has {', '.join(self._stations)}")
-        return self._stations[name]
+        with self._gate:
+            if name not in self._stations:
+                raise lib._KeyError(f"there is no station '{name}'; the plant has {', '.join(self._stations)}")
+            return self._stations[name]
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._stations)
@@ -260,18 +291,19 @@ class Plant:
     @property
     def buses(self) -> Mapping[str, Bus]:
         """The buses by name."""
-        self._as_parameter_
-        return self._buses
+        with self._gate:
+            return self._buses
 
     @property
     def journal(self) -> list[JournalEntry]:
         """What there is to tell so far."""
         entries = []
         row = lib.Entry()
-        while lib.function("journal_at")(self._as_parameter_, len(entries), byref(row)) == lib.OK:
-            entries.append(
-                JournalEntry(row.time / 1e9, _WEIGHTS[row.weight], lib.text(row.station), lib.text(row.text))
-            )
+        with self._gate as handle:
+            while lib.function("journal_at")(handle, len(entries), byref(row)) == lib.OK:
+                entries.append(
+                    JournalEntry(row.time / 1e9, _WEIGHTS[row.weight], lib.text(row.station), lib.text(row.text))
+                )
         if not entries:
             self._now()  # says why it cannot be read
         return entries
@@ -322,9 +354,10 @@ class Plant:
     def snapshot(self) -> bytes:
         """The whole state; restore() takes it in any plant of the same contents, also in another process."""
         size = c_size_t(0)
-        status = lib.function("save")(self._as_parameter_, None, byref(size))
-        if status != lib.TOO_SMALL:
-            raise self._error(status)
+        with self._gate as handle:
+            status = lib.function("save")(handle, None, byref(size))
+            if status != lib.TOO_SMALL:
+                raise self._error(status)
         room = create_string_buffer(size.value)
         self._call("save", room, byref(size))
         return room.raw[: size.value]

@@ -110,7 +110,7 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]):
     outcome = yield
     report = outcome.get_result()
     opened = item.stash.get(_PLANT, None)
-    if opened is None or call.when != "call" or not report.failed or opened._handle is None:
+    if opened is None or call.when != "call" or not report.failed or opened._closed:
         return
     try:
         _describe(item, report, opened)

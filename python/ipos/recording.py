@@ -25,10 +25,10 @@ class Reader:
         for name in self.names:
             station, rest = plant._signal_of(name)
             signal = station._find(lib.ANY, rest)
-            info = station._info(signal)
+            scale = station._scale(signal)
             signals.append(signal)
-            self._factors.append(info.factor)
-            units.append(lib.text(info.unit))
+            self._factors.append(scale.factor)
+            units.append(scale.unit)
         self.units = tuple(units)
         self._plain = all(factor == 1 for factor in self._factors)
         self._signals = (c_uint32 * len(signals))(*signals)

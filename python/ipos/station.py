@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import operator
 from ctypes import byref, c_char_p, c_int64, c_uint32
-from typing import TYPE_CHECKING, Iterator, Mapping
+from typing import TYPE_CHECKING, Iterator, Mapping, NamedTuple
 
 from . import _library as lib
 
@@ -12,6 +12,13 @@ if TYPE_CHECKING:
     from .plant import Plant
 
 _PROGRAM_ORDERS = {"start": 0, "stop": 1, "restart": 2}
+
+
+class Scale(NamedTuple):
+    """How people read the numbers of a signal: times `factor`, in `unit`."""
+
+    factor: float
+    unit: str
 
 
 class ParameterValue(int):
@@ -160,15 +167,15 @@ class Analog(_Signals):
     what = "analog inputs"
 
     def _read(self, signal: int, name: str) -> AnalogValue:
-        info = self._station._info(signal)
-        value = AnalogValue(self._station._read(signal) * info.factor)
-        value.name, value.unit = name, lib.text(info.unit)
+        scale = self._station._scale(signal)
+        value = AnalogValue(self._station._read(signal) * scale.factor)
+        value.name, value.unit = name, scale.unit
         return value
 
     def _write(self, how: str, name: str, value: object) -> None:
         signal = self._station._find(self.kind, name)
         if isinstance(value, (int, float)) and not isinstance(value, bool):
-            value = f"{float(value):.6f} {lib.text(self._station._info(signal).unit)}"
+            value = f"{float(value):.6f} {self._station._scale(signal).unit}"
         if not isinstance(value, str):
             raise TypeError(f"{name} takes a text with unit such as '5 V', or a number, not {type(value).__name__}")
         self._station._write_text(how, signal, value)
@@ -199,7 +206,7 @@ class Station:
         self.words = Words(self)
 
     def __repr__(self) -> str:
-        if self._plant._handle is None:
+        if self._plant._closed:
             return f"<Station {self.name} of a closed plant>"
         state = f"F{self.fault:02}" if self.fault else ("enabled" if self.enabled else "not enabled")
         return f"<Station {self.name} ({self.title}{', ' + self.program if self.program else ''}): {state}>"
@@ -307,9 +314,7 @@ class Station:
     @property
     def why(self) -> str:
         """Why the drive does not run, or not as its setpoint says; "enabled" when it does."""
-        text = c_char_p()
-        self._plant._call("why", self._number, byref(text))
-        return lib.text(text.value)
+        return self._plant._text("why", self._number)
 
     @property
     def running(self) -> bool:
@@ -372,20 +377,21 @@ class Station:
     def _names(self, kind: int, part: str | None = None) -> list[str]:
         names: list[str] = []
         name = c_char_p()
-        handle = self._plant._as_parameter_
         whole = None if part is None else _name(part)
-        while True:
-            status = lib.function("name_at")(handle, self._number, kind, whole, len(names), byref(name))
-            if status == lib.NOTHING:
-                return names
-            if status != lib.OK:
-                raise self._plant._error(status)
-            names.append(lib.text(name.value))
+        with self._plant._gate as handle:
+            while True:
+                status = lib.function("name_at")(handle, self._number, kind, whole, len(names), byref(name))
+                if status == lib.NOTHING:
+                    return names
+                if status != lib.OK:
+                    raise self._plant._error(status)
+                names.append(lib.text(name.value))
 
-    def _info(self, signal: int) -> lib.SignalInfo:
+    def _scale(self, signal: int) -> Scale:
         info = lib.SignalInfo()
-        self._plant._call("signal_info_of", signal, byref(info))
-        return info
+        with self._plant._gate:
+            self._plant._call("signal_info_of", signal, byref(info))
+            return Scale(info.factor, lib.text(info.unit))
 
     def _read(self, signal: int) -> int:
         value = c_int64()
@@ -393,9 +399,7 @@ class Station:
         return value.value
 
     def _text(self, signal: int) -> str:
-        text = c_char_p()
-        self._plant._call("read_text", signal, byref(text))
-        return lib.text(text.value)
+        return self._plant._text("read_text", signal)
 
     def _write(self, how: str, signal: int, value: int) -> None:
         self._plant._call(how, signal, value)

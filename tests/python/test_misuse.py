@@ -188,6 +188,37 @@ def test_from_other_threads_while_it_runs(tmp_path):
     """, tmp_path)
 
 
+def test_closing_beside_calls_of_other_threads(tmp_path):
+    out = interpreter("""
+        sys.setswitchinterval(1e-6)
+        late = 0  # plants that a call found closed while it was asked for again
+        for _ in range(150):
+            plant = ipos.Plant(LINE)
+            saw, bus = plant["saw"], plant.buses["sbus"]
+            together = threading.Barrier(5)
+            ends, odd = [], []
+            def ask(*calls):
+                together.wait()
+                for error in (ended(call) for _ in range(20) for call in calls):
+                    (ends if isinstance(error, ipos.ClosedError) else odd).append(error)
+            def close():
+                together.wait()
+                while isinstance(ended(plant.close), ipos.ThreadError):
+                    pass
+            calls = (lambda: plant.time, lambda: saw.why, lambda: saw.variables, lambda: bus.load, lambda: plant.journal)
+            threads = [threading.Thread(target=ask, args=calls) for _ in range(2)]
+            threads += [threading.Thread(target=close) for _ in range(2)]
+            for thread in threads: thread.start()
+            ask(*calls)
+            for thread in threads: thread.join()
+            assert all(error is None or isinstance(error, ipos.ThreadError) for error in odd), odd
+            assert isinstance(ended(lambda: plant.time), ipos.ClosedError)
+            late += bool(ends)
+        print(late)
+    """, tmp_path)
+    assert int(out) > 0
+
+
 def test_calls_within_a_callback_and_of_what_is_gone(tmp_path):
     interpreter("""
         plant = ipos.Plant(LINE)
