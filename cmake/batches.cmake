@@ -3,6 +3,8 @@
 # a batch reads once. Names of anonymous namespaces differ in a batch. HOT sources are what every millisecond and every
 # frame goes through: each is compiled by itself, so that its neighbours do not change what is inlined into it.
 #
+# With sanitizers the sources of all other libraries are compiled so, too (CMAKE_UNITY_BUILD).
+#
 # The daily build (preset dev) compiles each source alone, so that a change of one costs one; the preset `clang` does so,
 # too. A batch of clang says nothing about names that hide those of another source.
 function(ipos_batches target)

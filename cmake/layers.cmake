@@ -22,6 +22,10 @@ if(IPOS_SANITIZE)
   target_compile_options(ipos_options INTERFACE -fsanitize=${IPOS_SANITIZE} -fno-omit-frame-pointer
                          -fno-sanitize-recover=all)
   target_link_options(ipos_options INTERFACE -fsanitize=${IPOS_SANITIZE})
+  find_program(IPOS_LLD ld.lld)
+  if(IPOS_LLD AND CMAKE_CXX_COMPILER_ID STREQUAL Clang)  # in a quarter of the time of ld
+    target_link_options(ipos_options INTERFACE -fuse-ld=lld)
+  endif()
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     # With sanitizers g++ 12 reports members of its own std::regex (GCC bug 105562), and with ThreadSanitizer copies out of
     # spans that it takes for empty.

@@ -5,3 +5,4 @@ ipos_layer(drive FOLDERS runtime/drive
                    drive/setpoint_memory.cpp drive/outputs.cpp drive/scope.cpp drive/drive.cpp drive/drive_decisions.cpp drive/drive_orders.cpp
                    drive/drive_display.cpp
            USES stdlib motion LIBS fmt::fmt)
+set_target_properties(ipos_drive PROPERTIES UNITY_BUILD OFF)  # sources of it have names that are alike

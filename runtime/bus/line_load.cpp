@@ -2,6 +2,7 @@
 #include "runtime/bus/line_load.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 namespace ipos::runtime {
 namespace {
@@ -40,7 +41,8 @@ LineLoad LoadMeter::load(uint64_t elapsed) const {
   load.busy_bits = busy_;
   load.elapsed_bits = elapsed;
   load.percent = percent_of(busy_, elapsed);
-  const uint64_t current = elapsed / rate_;  // a second before window_ where the end of a frame lies ahead
+  const uint64_t current = elapsed / rate_;
+  assert(current + 1 >= window_);  // a second before window_ where the end of a frame lies ahead
   uint64_t last = 0;
   uint64_t peak = peak_busy_;
   if (current + 1 == window_) last = before_previous_busy_;

@@ -36,7 +36,7 @@ void read_fault_choice(PlantReader& reader, const toml::table& table, LineFault&
     return;
   }
   if (table.contains("id")) fault.id = reader.count(table, "id", 0x1FFF'FFFF, 0);
-  const bool counted = table.contains("frame");
+  const bool counted = table.contains("frame");  // a wrong number is told once, and then goes as the first
   fault.frame = reader.count(table, "frame", INT32_MAX, counted ? 1 : 0);
   fault.per_mille = reader.count(table, "rate", 1000, 1000);
   fault.seed = reader.count(table, "seed", INT32_MAX, 1);

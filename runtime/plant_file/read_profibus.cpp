@@ -236,7 +236,7 @@ void read_profibus_fault(PlantReader& reader, const toml::table& table) {
         place_of(*table.get("kind")),
         fmt::format("'{}' is no fault of a PROFIBUS line; known are lost, cut, parity, noise, collision",
                     word));
-  const bool counted = table.contains("frame");
+  const bool counted = table.contains("frame");  // a wrong number is told once, and then goes as the first
   fault.frame = reader.count(table, "frame", INT32_MAX, counted ? 1 : 0);
   fault.per_mille = reader.count(table, "rate", 1000, 1000);
   fault.seed = reader.count(table, "seed", INT32_MAX, 1);

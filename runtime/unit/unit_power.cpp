@@ -78,7 +78,6 @@ std::optional<std::string> Unit::load_program() {
   drive_.connect_program(*machine_);
   start_machine();
   resets_seen_ = drive().resets();
-  error_seen_ = 0;
   drive_changes_ = drive().changes() - 1;
   return std::nullopt;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <limits>
 
 #include "tests/generated/pcg.hpp"
@@ -62,10 +63,12 @@ void start(Machine& machine) {
 }
 
 std::string difference(const Machine& a, const Machine& b) {
-  for (size_t n = 0; n < a.variables().size(); ++n)
-    if (a.variables()[n] != b.variables()[n])
-      return "H" + std::to_string(n) + ": " + std::to_string(a.variables()[n]) + " and " +
-             std::to_string(b.variables()[n]);
+  const auto ours = a.variables(), theirs = b.variables();
+  assert(ours.size() == theirs.size());
+  if (!std::equal(ours.begin(), ours.end(), theirs.begin())) {
+    const auto [x, y] = std::mismatch(ours.begin(), ours.end(), theirs.begin());
+    return "H" + std::to_string(x - ours.begin()) + ": " + std::to_string(*x) + " and " + std::to_string(*y);
+  }
   for (int number = 1; number <= vm::kContexts; ++number) {
     const TaskContext &x = a.context(number), &y = b.context(number);
     const std::string name = vm::context_name(number);

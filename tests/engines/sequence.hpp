@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/vm/code.hpp"
 #include "vm/exec/machine.hpp"
 #include "vm/fast/predecode.hpp"
 #include "vm/jit/jit.hpp"
@@ -22,7 +23,7 @@ inline constexpr vm::Limits kRowLimits{64, 2048, 3, 4};
 class Sequence {
  public:
   // Labels are word addresses.
-  explicit Sequence(const std::vector<vm::Instruction>& commands) : Sequence(coded(commands)) {}
+  explicit Sequence(const std::vector<vm::Instruction>& commands) : Sequence(code_of(commands)) {}
   explicit Sequence(std::vector<uint32_t> code) : code_(std::move(code)) {
     slots_.resize(vm::fast::Predecoded::slots_needed(code_.size()), dirt());
     image_ = vm::verify(code_, kRowLimits, {}).image;
@@ -82,15 +83,6 @@ class Sequence {
   }
 
  private:
-  static std::vector<uint32_t> coded(const std::vector<vm::Instruction>& commands) {
-    std::vector<uint32_t> code;
-    for (const vm::Instruction& command : commands) {
-      std::array<uint32_t, vm::kMaxWords> words{};
-      const uint32_t count = vm::encode(command, words);
-      code.insert(code.end(), words.begin(), words.begin() + count);
-    }
-    return code;
-  }
   // The memory is the caller's and may have anything in it.
   static vm::fast::Slot dirt() {
     vm::fast::Slot out;

@@ -1,7 +1,8 @@
 // Writes programs for VM tests as lists of commands.
 #pragma once
 
-#include <initializer_list>
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "vm/isa/isa.hpp"
@@ -13,7 +14,7 @@ inline vm::Instruction I(vm::Opcode opcode, int32_t a = 0, int32_t b = 0, int32_
   return {opcode, {a, b, c, d}};
 }
 
-inline std::vector<uint32_t> code_of(std::initializer_list<vm::Instruction> commands) {
+inline std::vector<uint32_t> code_of(const std::vector<vm::Instruction>& commands) {
   std::vector<uint32_t> code;
   for (const vm::Instruction& command : commands) {
     std::array<uint32_t, vm::kMaxWords> words{};

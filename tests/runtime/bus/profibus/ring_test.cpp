@@ -247,6 +247,21 @@ TEST(DpRing, AMasterThatIsPassedOverListensAnew) {
   EXPECT_FALSE(ring.master.in_ring()) << "its turn was between the two";
 }
 
+// Who is between the sender and the receiver of a token has left, next to either of them, too.
+TEST(DpRing, StationsThatATokenPassesOverHaveLeft) {
+  Ring ring(station(2));
+  ring.attach();
+  ring.master.start();
+  for (int n = 0; n < 3; ++n)
+    for (const char* token : {"DC 04 03", "DC 06 04", "DC 07 06", "DC 03 07"}) ring.say(50, token);
+  ring.say(50, "DC 07 03");
+  ring.say(50, "DC 02 07");
+  ASSERT_TRUE(ring.master.in_ring());
+  std::string spoken;
+  for (int n = 0; n < 4; ++n) spoken += ring.next().octets + ", ";
+  EXPECT_EQ(spoken, "DC 03 02, DC 03 02, DC 03 02, DC 07 02, ") << "3 does not take it, and 4 and 6 are gone";
+}
+
 TEST(DpRing, AStoppedMasterIsSilent) {
   Ring ring(station(2));
   into_ring_with_5(ring);
