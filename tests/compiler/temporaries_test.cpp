@@ -164,8 +164,11 @@ TEST(Temporaries, WhoHasTheirNumberIsNamed) {
     const Compilation c = compile_text(text);
     EXPECT_FALSE(c.image) << text;
     for (const Diagnostic& diagnostic : c.diagnostics.all())
-      if (diagnostic.diag == Diag::TemporaryTaken)
-        return diagnostic.text.substr(0, diagnostic.text.find(';'));
+      if (diagnostic.diag == Diag::TemporaryTaken) {
+        const Position at = c.sources->position(diagnostic.span.begin);
+        return std::to_string(at.line) + ":" + std::to_string(at.column) + " " +
+               diagnostic.text.substr(0, diagnostic.text.find(';'));
+      }
     return std::string();
   };
   const auto message = [&](int number) {
@@ -174,14 +177,14 @@ TEST(Temporaries, WhoHasTheirNumberIsNamed) {
                 "\nlong x, v[3], y;\n#declare Second v + 1\n"
                 "main() { Second = 2; x = v[0] * y + x; }\n");
   };
-  // x is H420, v H421 to H423, Second H422, y H424.
-  EXPECT_EQ(message(420), "H420 holds intermediate results and is used by 'x' as well");
-  EXPECT_EQ(message(421), "H421 holds intermediate results and is used by 'v' as well");
-  EXPECT_EQ(message(422), "H422 holds intermediate results and is used by 'Second' as well");
-  EXPECT_EQ(message(423), "H423 holds intermediate results and is used by 'v' as well");
-  EXPECT_EQ(message(424), "H424 holds intermediate results and is used by 'y' as well");
-  EXPECT_EQ(told("long a, b; main() { H400 = 1; a = b * b + a; }"),
-            "H400 holds intermediate results and is used here by number as well");
+  // x is H420, v H421 to H423, Second H422, y H424; main has to make room. A number is told where it stands.
+  EXPECT_EQ(message(420), "4:1 H420 holds intermediate results and is used by 'x' as well");
+  EXPECT_EQ(message(421), "4:1 H421 holds intermediate results and is used by 'v' as well");
+  EXPECT_EQ(message(422), "4:1 H422 holds intermediate results and is used by 'Second' as well");
+  EXPECT_EQ(message(423), "4:1 H423 holds intermediate results and is used by 'v' as well");
+  EXPECT_EQ(message(424), "4:1 H424 holds intermediate results and is used by 'y' as well");
+  EXPECT_EQ(told("long a, b; main() {\n H400 = 1; a = b * b + a; }"),
+            "2:2 H400 holds intermediate results and is used here by number as well");
 }
 
 TEST(Temporaries, CallerAndCalleeShareWhatIsNotHeld) {

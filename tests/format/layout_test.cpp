@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/format/format.hpp"
+#include "compiler/format/pieces.hpp"
 #include "tests/format/formatted.hpp"
 
 namespace ipos::tests {
@@ -269,6 +270,22 @@ TEST(ForeignWords, OfCAreFound) {
        {"a : : b", ". . .", "a . * b", "a -> * b", "a <= > b", "a < : b", "a % : b", "// ::", "/* \"a\" */",
         "#define A \"::\"", "#include \"a.h\"", "a = b ? c : d; e->f; *g; h[1] <<= 0x1F;", ""})
     EXPECT_FALSE(compiler::foreign_word(good)) << good;
+}
+
+// What keeps the formatter from writing another program: each of what makes a piece counts by itself.
+TEST(Pieces, DifferInKindTokenOrText) {
+  using compiler::Piece;
+  using compiler::TokenKind;
+  const Piece end{Piece::Kind::End, TokenKind::End, "", 0, 9, 0};
+  const Piece word{Piece::Kind::Token, TokenKind::Name, "a", 0, 3, 0};
+  const auto with = [&](Piece piece) { return std::vector<Piece>{piece, end}; };
+  EXPECT_EQ(compiler::difference(with(word), with(word)), 0U);
+  EXPECT_EQ(compiler::difference(with(word), with({word.kind, word.token, "a", 2, 4, 1})), 0U) << "only its place";
+  EXPECT_EQ(compiler::difference(with(word), with({Piece::Kind::Directive, word.token, "a", 0, 3, 0})), 3U);
+  EXPECT_EQ(compiler::difference(with(word), with({word.kind, TokenKind::Number, "a", 0, 3, 0})), 3U);
+  EXPECT_EQ(compiler::difference(with(word), with({word.kind, word.token, "b", 0, 3, 0})), 3U);
+  EXPECT_EQ(compiler::difference(with(word), {end}), 3U) << "one less";
+  EXPECT_EQ(compiler::difference({word}, with(word)), 3U) << "one more, told at the last line there is";
 }
 
 }  // namespace

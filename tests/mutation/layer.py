@@ -142,7 +142,10 @@ class Layer:
             raise SystemExit(f"mutate: no test program of {source}; has {build} been built?")
         self.command, library = self.compile_command()
         # Another library may compile the same source with other options; the mutant does not fit into its programs.
-        self.programs = [p for p in self.programs if p.name == library or f"lib{library}.a" in p.link]
+        self.programs = [p for p in self.programs if p.name == library or f"lib{library}.a" in p.link
+                         or object_of(self.command) in p.link.split()]
+        if not self.programs:  # else all mutants would survive
+            raise SystemExit(f"mutate: no test program of {source} links {object_of(self.command)}")
         # A mutant compiled with a sanitizer needs it in every program, also in those that have none themselves.
         self.link_options = re.findall(r"-fsanitize=\S+", self.command) + quick_linker()
 

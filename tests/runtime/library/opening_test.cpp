@@ -1,6 +1,8 @@
 // Opening, stations, orders, and the state as bytes: what a plant is made of, what is refused, and that a state that is
 // restored goes on as the one that was saved.
+#include "stdlib/unit_types.hpp"
 #include "tests/runtime/library/opened_plant.hpp"
+#include "vm/image/image.hpp"
 
 namespace ipos::tests {
 namespace {
@@ -69,6 +71,16 @@ TEST(LibraryOpening, MistakesOfProgramsStandAtTheirPlace) {
   EXPECT_EQ(mistake("mdxb", "."), "4: station 'a': program " + path + ": is no file");
   EXPECT_TRUE(mistake("mdxb", "NONE.IPX")
                   .starts_with("4: station 'a': image " + folder.path("NONE.IPX") + " refused at byte "));
+  // An image names the unit it was made for: none, one without programs, another one.
+  for (const int unit : {200, int{stdlib::find_unit(std::string_view("mc31"))->code}}) {
+    vm::Image image;
+    image.unit = static_cast<uint8_t>(unit);
+    const std::vector<uint8_t> bytes = vm::write_image(image);
+    folder.write("ODD.IPX", std::string(bytes.begin(), bytes.end()));
+    EXPECT_EQ(mistake("mdxb", "ODD.IPX"),
+              "4: station 'a': " + folder.path("ODD.IPX") + " is for a unit that runs no program")
+        << unit;
+  }
 }
 
 TEST(LibraryOpening, IncludesAndDefinesReachTheCompiler) {
