@@ -13,8 +13,8 @@ parts='asan presets fuzz tsan valgrind tutorial'
 
 # Programs with threads: `ipos test -j` and the reader behind the ports and the page.
 threaded=(ipos_testing_tests ipos_port_tests ipos_serve_tests ipos_library_tests)
-# Not for sanitizers: they run another processor's code, boot a kernel, build the
-# project anew, or start the program some thousand times (ipos_schemas: 40 s without sanitizers).
+# Not for sanitizers: they run another processor's code, boot a kernel, build the project anew, or start the program some
+# thousand times (ipos_schemas: 40 s without sanitizers).
 unfit='ipos_schemas|aarch64|ipos_realbus|ipos_memcheck|ipos_debian|ipos_install|ipos_subdirectory|ipos_hello|cortex|ipos_pictures|conformance'
 
 configure() { cmake --preset "$1" -DIPOS_TESTS=ON >/dev/null; }

@@ -71,16 +71,19 @@ TEST(LibraryOpening, MistakesOfProgramsStandAtTheirPlace) {
   EXPECT_EQ(mistake("mdxb", "."), "4: station 'a': program " + path + ": is no file");
   EXPECT_TRUE(mistake("mdxb", "NONE.IPX")
                   .starts_with("4: station 'a': image " + folder.path("NONE.IPX") + " refused at byte "));
-  // An image names the unit it was made for: none, one without programs, another one.
-  for (const int unit : {200, int{stdlib::find_unit(std::string_view("mc31"))->code}}) {
+  // An image names the unit it was made for: one that there is not, one without programs, another one.
+  const auto of_unit = [&](uint8_t unit) {
     vm::Image image;
-    image.unit = static_cast<uint8_t>(unit);
+    image.unit = unit;
     const std::vector<uint8_t> bytes = vm::write_image(image);
     folder.write("ODD.IPX", std::string(bytes.begin(), bytes.end()));
-    EXPECT_EQ(mistake("mdxb", "ODD.IPX"),
-              "4: station 'a': " + folder.path("ODD.IPX") + " is for a unit that runs no program")
-        << unit;
-  }
+    return mistake("mdxb", "ODD.IPX");
+  };
+  const auto code_of = [](std::string_view name) { return stdlib::find_unit(name)->code; };
+  const std::string odd = "4: station 'a': " + folder.path("ODD.IPX");
+  EXPECT_EQ(of_unit(200), odd + " is for a unit that runs no program");
+  EXPECT_EQ(of_unit(code_of("mc31")), odd + " is for a unit that runs no program");
+  EXPECT_EQ(of_unit(code_of("mc07")), odd + " is for unit mc07, the station is mdxb");
 }
 
 TEST(LibraryOpening, IncludesAndDefinesReachTheCompiler) {
