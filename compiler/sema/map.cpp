@@ -76,10 +76,9 @@ bool unused(const Context& context, const Variable& variable) {
 void describe_variables(Context& context) {
   checked::Program& program = context.program;
   for (const Variable& variable : context.scope.variables()) {
-    if (!variable.standard) add_symbols(variable.name, variable.type, variable.number, program.symbols);
+    add_symbols(variable.name, variable.type, variable.number, program.symbols);
     if (variable.storage != Storage::Alias && unused(context, variable))
       context.diagnostics.report(Diag::UnusedVariable, variable.span, {variable.name});
-    if (variable.standard && unused(context, variable)) continue;
     const char* range = variable.storage == Storage::Alias     ? "alias"
                         : variable.storage == Storage::Initial ? "initials"
                                                                : "globals";

@@ -55,8 +55,7 @@ struct Variable {
   uint32_t number = 0;
   Storage storage = Storage::Global;
   Span span;
-  size_t order = 0;       // place among the declarations
-  bool standard = false;  // declared by a built-in header
+  size_t order = 0;  // place among the declarations
 };
 
 struct FunctionName {

@@ -136,7 +136,7 @@ class VariableUse {
   void check_number(const ast::Number& number, Span span) {
     for (const Variable& variable : context_.scope.variables()) {
       const auto at = static_cast<int64_t>(variable.number);
-      if (variable.standard || number.value < at || number.value >= at + variable.type.size()) continue;
+      if (number.value < at || number.value >= at + variable.type.size()) continue;
       context_.diagnostics
           .report(Diag::NumberOfOther, span, {fmt::format("{}", number.value), variable.name, variable.name})
           .notes.push_back({variable.span, "declared here"});
@@ -168,7 +168,7 @@ class VariableUse {
 
   // Initials may be set once and for all by an operator panel, aliases and raw names are numbers others know.
   void check_written(const Variable& variable) {
-    if (variable.storage != Storage::Global || variable.standard) return;
+    if (variable.storage != Storage::Global) return;
     bool read = false;
     for (uint32_t n = variable.number; n < variable.number + variable.type.size() && n < kMaxNumbers; ++n) {
       if (reached_.test(n)) return;

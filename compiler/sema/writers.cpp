@@ -27,7 +27,7 @@ class Writers {
 
   void run() {
     for (const Variable& variable : context_.scope.variables())
-      if (variable.storage != Storage::Alias && !variable.standard) several(variable);
+      if (variable.storage != Storage::Alias) several(variable);
     for (size_t n = 0; n < context_.program.functions.size(); ++n) {
       const checked::Stmt* body = context_.program.functions[n].body;
       if (body == nullptr || roots_[n].empty()) continue;

@@ -8,6 +8,7 @@ import resource
 import shlex
 import shutil
 import subprocess
+import time
 import xml.etree.ElementTree as xml
 from pathlib import Path
 
@@ -55,6 +56,7 @@ class Program:
                                   capture_output=True, text=True).stdout.strip().splitlines()
         self.link = re.sub(r"^: && | && :$", "", commands[-1])
         self.only = None  # a filter of GoogleTest, instead of all tests
+        self.only_seconds = 0.0
         self.seconds = {}
         self.killers = []
 
@@ -70,6 +72,13 @@ class Program:
             if case.get("status") == "run":
                 self.seconds[f"{case.get('classname')}.{case.get('name')}"] = float(case.get("time"))
         return missing
+
+    def restrict(self, only):
+        """From now on only the tests of a filter, which run once without a mutant for their time."""
+        began = time.monotonic()
+        if not self.run(self.binary, ["--gtest_brief=1", f"--gtest_filter={only}"], 1800):
+            raise SystemExit(f"mutate: {self.name} fails without a mutant")
+        self.only, self.only_seconds = only, time.monotonic() - began
 
     def passes(self):
         """The tests, most promising first: what has noticed a mutant before, then what is quick, then the rest."""
@@ -114,7 +123,7 @@ class Program:
         if done.returncode != 0:
             return "(does not link)"
         for names in [[self.only]] if self.only else self.passes():
-            limit = 300 if self.only else 15 + 8 * sum(self.seconds[name] for name in names)
+            limit = 15 + 8 * (self.only_seconds if self.only else sum(self.seconds[name] for name in names))
             if self.run(binary, ["--gtest_fail_fast", "--gtest_brief=1", "--gtest_filter=" + ":".join(names)], limit):
                 continue
             failed = re.search(r"\[  FAILED  \] (\w\S*?),?\s", self.output + " ")
@@ -151,10 +160,9 @@ class Layer:
 
     def prepare(self, only=None):
         for program in self.programs:
-            program.only = only
             if only:
-                continue
-            if program.measure():
+                program.restrict(only)
+            elif program.measure():
                 print(f"{program.name}: {len(program.seconds)} tests, {sum(program.seconds.values()):.1f} s", flush=True)
 
     def compile_command(self):
