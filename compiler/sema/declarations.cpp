@@ -77,10 +77,10 @@ class Declarations {
       fill.count = std::min(fill.count + type->size(), kHugeSize);
       if (fill.count > context_.program.ranges.of(kind).size() && !fill.overflow.begin.valid())
         fill.overflow = declarator.name.span;
-      context_.scope.add(Variable{std::string(declarator.name.text), *type, std::min(number, kHugeSize),
-                                  decl.initial ? Storage::Initial : Storage::Global, declarator.name.span,
-                                  context_.order, is_standard(decl.span)},
-                         context_.diagnostics);
+      context_.scope.add(
+          Variable{std::string(declarator.name.text), *type, std::min(number, kHugeSize),
+                   decl.initial ? Storage::Initial : Storage::Global, declarator.name.span, context_.order},
+          context_.diagnostics);
     }
   }
 
@@ -107,7 +107,7 @@ class Declarations {
     }
     const Type type = *offset == 0 ? object->type : Type{};
     context_.scope.add(Variable{std::string(decl.name.text), type, static_cast<uint32_t>(number),
-                                Storage::Alias, decl.name.span, context_.order, is_standard(decl.span)},
+                                Storage::Alias, decl.name.span, context_.order},
                        context_.diagnostics);
   }
 
@@ -131,12 +131,6 @@ class Declarations {
       type.count = static_cast<uint32_t>(*count);
     }
     return type;
-  }
-
-  // Built-in headers have no path; what they declare is not the user's.
-  bool is_standard(Span span) const {
-    const Position at = context_.sources.position(span.begin);
-    return at.file != nullptr && at.file->path.empty() && at.file->included_at.valid();
   }
 
   void add(const ast::PragmaDecl& decl) {

@@ -42,11 +42,14 @@ class Analysis {
   }
 
  private:
-  // More than the line carries, in millionths.
+  // The frames take the whole of each second, where what each takes is rounded up to nanoseconds.
   bool overloaded() const {
-    Time sum = subject_.length * 1'000'000 / subject_.period;
-    for (const PeriodicFrame& frame : higher_) sum += frame.length * 1'000'000 / frame.period;
-    return sum >= 1'000'000;
+    const auto share = [](const PeriodicFrame& frame) {
+      return ceil_div(frame.length * kSecond, frame.period);
+    };
+    Time sum = share(subject_);
+    for (const PeriodicFrame& frame : higher_) sum += share(frame);
+    return sum >= kSecond;
   }
 
   Time busy_period() const {

@@ -1,6 +1,9 @@
 // Modulo arithmetic in units, so that a turn that is no whole number of increments does not drift.
 #include "runtime/positioning/modulo.hpp"
 
+#include <algorithm>
+#include <cassert>
+
 namespace ipos::runtime {
 namespace {
 
@@ -51,13 +54,14 @@ int64_t Modulo::units_within(int32_t target, bool high_resolution) const {
 }
 
 int64_t Modulo::way_to(int32_t target, bool high_resolution, int64_t offset) const {
+  assert(on());
   const int64_t from = remainder(units_ + Wide{offset} * increment_, turn_);
   int64_t ahead = remainder(units_within(target, high_resolution) - from, turn_);
   // The target is a point between two increments; an axis less than one away is there.
   if (turn_ - ahead < increment_) ahead -= turn_;
   const int64_t full = high_resolution ? 0 : std::max<int64_t>(0, floor_divide(target, kSteps)) * turn_;
   switch (mode_) {
-    case ModuloMode::Off: return 0;
+    case ModuloMode::Off: break;
     case ModuloMode::Short:
       if (2 * ahead > turn_) ahead -= turn_;
       break;

@@ -46,7 +46,7 @@ class Modulo {
   int32_t within_turn(int32_t target, bool high_resolution) const;
 
   // Increments from a point, `offset` from the present position, to the target: the way P960 demands, in the
-  // normal form with the full turns of the target added when it goes one way only.
+  // normal form with the full turns of the target added when it goes one way only. Only while the function is on.
   int64_t way_to(int32_t target, bool high_resolution, int64_t offset) const;
   bool operator==(const Modulo&) const = default;
 

@@ -133,7 +133,9 @@ TEST_F(Index, TellsWhatEveryNameMeans) {
 // The name behind '@' in `text`: the member of Axis it means.
 std::string member_meant(const std::string& text) {
   std::string source =
-      "typedef struct { long target; long steps[2]; } Axis;\nAxis left[2], one; MOVLNK Ml; long n;\n" + text;
+      "typedef struct { long target; long steps[2]; } Axis;\nAxis left[2], one, target; MOVLNK Ml; long "
+      "n;\n" +
+      text;
   const size_t mark = source.find('@');
   source.erase(mark, 1);
   const compiler::ProgramIndex index =
@@ -144,7 +146,7 @@ std::string member_meant(const std::string& text) {
 }
 
 TEST(IndexOfAnyText, FollowsTheObjectsInFrontOfADot) {
-  // left is H420 to H425, one H426 to H428.
+  // left is H420 to H425, one H426 to H428, target, which is called like a member, H429 to H431.
   const std::pair<const char*, const char*> rows[] = {
       {"main() { left[n + 1].@target = 1; }", "target"},
       {"main() { left[1].@target = 1; }", "target 423"},
@@ -162,6 +164,8 @@ TEST(IndexOfAnyText, FollowsTheObjectsInFrontOfADot) {
       {"main() { one + .@target = 1; }", "nothing"},
       {"main() { n.@target = 1; }", "nothing"},
       {"main() { one.steps.@target = 1; }", "nothing"},
+      {"main() { one.target.@steps[0] = 1; }", "nothing"},
+      {"main() { target.@steps[0] = 1; }", "steps 430"},
       {"main() { one.steps[1].@target = 1; }", "nothing"},
       {"main() { left[1].@ta = 1; }", "nothing"},
       // Text that is not finished: a ';' or a '{' ends what is open in front of it.
@@ -175,6 +179,7 @@ TEST(IndexOfAnyText, FollowsTheObjectsInFrontOfADot) {
       {"main() { Ml.Index += @8318; }", "nothing"},
       {"main() { one.target = @8318; }", "nothing"},
       {"main() { Ml.Index; n = @8318; }", "nothing"},
+      {"main() { Ml.Index; = @8318; }", "nothing"},
   };
   for (const auto& [text, meant] : rows) EXPECT_EQ(member_meant(text), meant) << text;
 }

@@ -399,6 +399,19 @@ TEST(Plan, MasterSlave) {
   EXPECT_EQ(plan.lines[0].load_bits, 115'000U);
 }
 
+// A control sends one kind of process data to each target; identifiers by 1053 1610 p. 37.
+TEST(Plan, IdentifiersOfAControl) {
+  const auto uses = [](const std::string& target) {
+    return uses_of(
+        plan_of(bus_text() + station_text("u", "P813 = 1\nP814 = 2\nP817 = 1100000\n") +
+                "[[control]]\nname = 'plc'\nsbus = 'sbus'\nsync = 1100\n[[control.target]]\n" + target),
+        "plc");
+  };
+  EXPECT_EQ(uses("address = 1\nevery = '10ms'\n"), (std::set<std::string>{"transmit 11", "receive 12"}));
+  EXPECT_EQ(uses("address = 1\n"), (std::set<std::string>{"transmit 13", "receive 12"}));
+  EXPECT_EQ(uses("group = 2\nevery = '10ms'\n"), (std::set<std::string>{"transmit 22"}));
+}
+
 TEST(Plan, LoadAndResponseTimes) {
   // Two units with 8 bytes every 2 ms at 125 kbaud: 2 x 135 bits x 500 = 135 kbit/s.
   std::string text = bus_text(125'000);

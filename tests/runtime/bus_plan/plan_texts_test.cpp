@@ -99,6 +99,13 @@ TEST(PlanTexts, WhatKeepsAUnitFromFollowing) {
       FoundTexts{"no PO word of a is a control word (P870..P872): it is enabled as if the bus had sent it"});
   EXPECT_EQ(hints(kFollowing + "P871 = 0\nP872 = 0\n"),
             FoundTexts{"no PO word of a is a speed (P870..P872): its setpoint counts as 0"});
+  // Torque control wants a current (2), in whichever word.
+  const std::string torque = kFollowing + "P700 = 12\n";
+  const FoundTexts no_current{"no PO word of a is a current (P870..P872): its torque counts as 0"};
+  EXPECT_EQ(hints(torque, "md60a"), no_current);
+  EXPECT_EQ(hints(torque + "P871 = 2\n", "md60a"), FoundTexts{});
+  EXPECT_EQ(hints(torque + "P872 = 2\n", "md60a"), FoundTexts{});
+  EXPECT_EQ(hints(torque + "P870 = 2\nP871 = 9\n", "md60a"), FoundTexts{});
   EXPECT_EQ(hints("P100 = 10\nP870 = 0\n").size(), 1U) << "terminals control it";
   EXPECT_EQ(hints("P101 = 3\nP871 = 0\nP872 = 0\n").size(), 1U) << "the setpoint is another one";
   EXPECT_EQ(found_of(FindingKind::ProcessData,
@@ -110,6 +117,18 @@ TEST(PlanTexts, WhatKeepsAUnitFromFollowing) {
                 .size(),
             1U)
       << "once a station";
+}
+
+// 1053 1610 p. 13: the longest line at each baud rate.
+TEST(PlanTexts, CableAtEachBaudRate) {
+  const std::pair<uint32_t, uint32_t> rows[] = {
+      {125'000, 320}, {250'000, 160}, {500'000, 80}, {1'000'000, 40}};
+  for (const auto& [baud, metres] : rows) {
+    PlantRig rig(bus_text(baud, "length = 7.5\n") + station_text("u", ""));
+    const BusPlan plan = make_plan(rig.get(), {});
+    EXPECT_EQ(plan.lines[0].length_limit, metres) << baud;
+    EXPECT_EQ(plan.lines[0].length, 8U) << "begun metres count";
+  }
 }
 
 TEST(PlanTexts, OfTheCable) {

@@ -11,6 +11,7 @@
 
 #include "runtime/bus/can/frame_bits.hpp"
 #include "runtime/bus/can/line.hpp"
+#include "runtime/bus_plan/telegrams.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -68,6 +69,49 @@ TEST(ResponseTime, JitterAndOverload) {
   EXPECT_TRUE(results[2].bounded);
   EXPECT_FALSE(results[3].bounded);
   EXPECT_FALSE(results[4].bounded);
+}
+
+// A line that is full to the last nanosecond has no bound, one with a nanosecond left in a second has.
+TEST(ResponseTime, TheLastNanosecondOfTheLine) {
+  const auto of_the_lower = [](Time higher, Time lower) {
+    return response_times(std::vector<PeriodicFrame>{{1, higher, kSecond, 0}, {2, lower, kSecond, 0}},
+                          2 * kMicrosecond)[1];
+  };
+  for (const Time first : std::vector<Time>{0, 400 * kMillisecond, 599'999'999, 600 * kMillisecond,
+                                            kSecond - kMillisecond, kSecond}) {
+    EXPECT_FALSE(of_the_lower(first, kSecond - first).bounded) << first;
+    EXPECT_FALSE(of_the_lower(first, kSecond - first + 1).bounded) << first;
+    if (first == kSecond) continue;
+    const ResponseTime least = of_the_lower(first, kSecond - first - 1);
+    EXPECT_TRUE(least.bounded) << first;
+    EXPECT_EQ(least.worst, kSecond - 1) << first;
+  }
+  // Thirds of a second are rounded up: three of them are full.
+  const Time third = kSecond / 3;
+  EXPECT_FALSE(response_times(
+                   std::vector<PeriodicFrame>{
+                       {1, third, 3 * third, 0}, {2, third, 3 * third, 0}, {3, third, 3 * third, 0}},
+                   2 * kMicrosecond)[2]
+                   .bounded);
+}
+
+// The answer to a telegram of a low priority, which never comes on a full line, has no bound either, however high its
+// own priority is.
+TEST(ResponseTime, NoAnswerWithoutARequest) {
+  const Time bit = 2 * kMicrosecond;
+  const auto planned = [&](Time of_the_object) {
+    std::vector<PlannedTelegram> telegrams(3);
+    telegrams[0] = {12, "unit", "PI", 6, Rhythm::Answer, 10 * kMillisecond, kMillisecond, 2000, {}};
+    telegrams[1] = {1024, "other", "object", 8, Rhythm::Cyclic, of_the_object, 0, ~0U, {}};
+    telegrams[2] = {2000, "plc", "sync", 0, Rhythm::Cyclic, 10 * kMillisecond, 0, ~0U, {}};
+    analyse(telegrams, bit);
+    return telegrams;
+  };
+  for (const PlannedTelegram& telegram : planned(kMillisecond))
+    EXPECT_TRUE(telegram.response.bounded) << telegram.what;
+  // 270 us of every 250 us.
+  for (const PlannedTelegram& telegram : planned(250 * kMicrosecond))
+    EXPECT_EQ(telegram.response.bounded, false) << telegram.what;
 }
 
 // Sends one message periodically, each instance with a jitter of its own.
