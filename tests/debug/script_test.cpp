@@ -28,7 +28,7 @@ ScriptResult debug(const std::string& script, const std::string& options = {}) {
   const std::string input = folder.write("script", script);
   return run_script({"/bin/sh", "-c",
                      fmt::format("cd '{}' && exec 2>&1; '{}' debug --unit mdxb {} MAIN.IPC < '{}'",
-                                 folder.path().string(), IPOS_PROGRAM, options, input)});
+                                 folder.path().string(), ipos_program(), options, input)});
 }
 
 // A session that goes back over many snapshots; what comes behind it in the script is done by the process
@@ -61,7 +61,7 @@ TEST(DebugScript, ObjectsHaveTheirIdentifiersAsInLogsAndPrograms) {
   const TemporaryFolder folder;
   const std::string input = folder.write("script", "until 200ms\ninfo sbus\nquit\n");
   const ScriptResult result = run_script({"/bin/sh", "-c",
-                                          fmt::format("exec '{}' debug '{}' < '{}'", IPOS_PROGRAM,
+                                          fmt::format("exec '{}' debug '{}' < '{}'", ipos_program(),
                                                       project("examples/scom/scom.toml").string(), input)});
   for (const char* text :
        {"cyclic   object 400h (1024) data H426, every 100 ms", "receive  object 401h (1025) data"})

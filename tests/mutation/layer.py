@@ -55,6 +55,7 @@ class Program:
         commands = subprocess.run(["ninja", "-C", str(build), "-t", "commands", relative], check=True,
                                   capture_output=True, text=True).stdout.strip().splitlines()
         self.link = re.sub(r"^: && | && :$", "", commands[-1])
+        self.tool = None  # the `ipos` with the mutant, for tests that run it
         self.only = None  # a filter of GoogleTest, instead of all tests
         self.only_seconds = 0.0
         self.seconds = {}
@@ -99,6 +100,8 @@ class Program:
             resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         (self.work / "tmp").mkdir(exist_ok=True)
         environment = dict(os.environ, TMPDIR=str(self.work / "tmp"))
+        if self.tool:
+            environment["IPOS_PROGRAM"] = str(self.tool)
         with subprocess.Popen([str(binary), *self.arguments, *arguments], cwd=self.folder, env=environment,
                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                               start_new_session=True, preexec_fn=limit) as process:
@@ -111,17 +114,23 @@ class Program:
                 return False
         return process.returncode in (0, 77)
 
-    def notices(self, mutant, original, options):
-        """The name of a test that fails with the mutant linked in for the original object, or None. `options`: what it
-        wants for linking."""
+    def holds(self, original, library):
+        """The program has the source in it: as its own, in a library, or as one object of a library."""
+        return self.name == library or f"lib{library}.a" in self.link or original in self.link.split()
+
+    def linked(self, mutant, original, options):
+        """The program with the mutant instead of the original object, or None. `options`: what it wants for linking."""
         binary = self.work / self.name
         # Where a program compiles the layer itself, or takes the objects of a library one by one.
         own = re.compile(rf"\S*/{re.escape(self.source)}\.o\b|(?<!\S){re.escape(original)}(?!\S)")
         link = re.sub(r" -o \S+ ", lambda m: f" {shlex.join([*options, str(mutant)])} -o {shlex.quote(str(binary))} ",
                       own.sub("", self.link), count=1)
         done = subprocess.run(link, shell=True, cwd=self.build, capture_output=True, text=True)
-        if done.returncode != 0:
-            return "(does not link)"
+        return binary if done.returncode == 0 else None
+
+    def notices(self, binary, tool):
+        """The name of a test of the program that fails, or None; its tests run `tool` where there is one."""
+        self.tool = tool
         for names in [[self.only]] if self.only else self.passes():
             limit = 15 + 8 * (self.only_seconds if self.only else sum(self.seconds[name] for name in names))
             if self.run(binary, ["--gtest_fail_fast", "--gtest_brief=1", "--gtest_filter=" + ":".join(names)], limit):
@@ -149,12 +158,21 @@ class Layer:
                          if n in tests and Path(tests[n]["command"][0]).name == n]
         if not self.programs:
             raise SystemExit(f"mutate: no test program of {source}; has {build} been built?")
+        # Most tests of tools run the program `ipos`, some link a library of it.
+        tool = build / "tools/ipos"
+        self.tool = None
+        if source.startswith("tools/") and tool.exists():
+            self.tool = Program(build, work, cache, source, {"name": "ipos", "command": [str(tool)]})
         self.command, library = self.compile_command()
+        self.original = object_of(self.command)
         # Another library may compile the same source with other options; the mutant does not fit into its programs.
-        self.programs = [p for p in self.programs if p.name == library or f"lib{library}.a" in p.link
-                         or object_of(self.command) in p.link.split()]
+        if self.tool and not self.tool.holds(self.original, library):
+            self.tool = None
+        self.linking = [p for p in self.programs if p.holds(self.original, library)]
+        if not self.tool:
+            self.programs = self.linking
         if not self.programs:  # else all mutants would survive
-            raise SystemExit(f"mutate: no test program of {source} links {object_of(self.command)}")
+            raise SystemExit(f"mutate: no test program of {source} links {self.original}")
         # A mutant compiled with a sanitizer needs it in every program, also in those that have none themselves.
         self.link_options = re.findall(r"-fsanitize=\S+", self.command) + quick_linker()
 
@@ -165,15 +183,29 @@ class Layer:
             elif program.measure():
                 print(f"{program.name}: {len(program.seconds)} tests, {sum(program.seconds.values()):.1f} s", flush=True)
 
+    def notices(self, mutant):
+        """What fails with the mutant, as program and test, or None."""
+        tool = self.tool and self.tool.linked(mutant, self.original, self.link_options)
+        if self.tool and not tool:
+            return "(does not link)"
+        for program in self.programs:
+            binary = program.binary
+            if program in self.linking:
+                binary = program.linked(mutant, self.original, self.link_options)
+            if not binary:
+                return "(does not link)"
+            if killer := program.notices(binary, tool):
+                return f"{program.name} {killer}"
+        return None
+
     def compile_command(self):
         """Of the first library that one of the programs links, or of a program itself; and its name."""
         rows = [row["command"] for row in json.loads((self.build / "compile_commands.json").read_text())
                 if Path(row["file"]) == self.root / self.source]
-        for program in self.programs:
+        for program in [*self.programs, *([self.tool] if self.tool else [])]:
             for command in rows:
                 library = re.search(r" -o \S*CMakeFiles/(\w+)\.dir/", command)
-                if (library[1] == program.name or f"lib{library[1]}.a" in program.link
-                        or object_of(command) in program.link.split()):
+                if program.holds(object_of(command), library[1]):
                     return command, library[1]
         raise SystemExit(f"mutate: {self.source} is in no library of {', '.join(p.name for p in self.programs)}")
 

@@ -10,7 +10,7 @@ import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
-from layer import Layer, object_of  # noqa: E402
+from layer import Layer  # noqa: E402
 from mutants import Mutant, mutants  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -54,9 +54,8 @@ def judge(layer, place, text, mutant, known):
     built = layer.compile(mutated, "mutant")
     if built is None:
         return "invalid", ""
-    for program in layer.programs:
-        if killer := program.notices(built, object_of(layer.command), layer.link_options):
-            return ("invalid", killer) if killer == "(does not link)" else ("killed", f"{program.name} {killer}")
+    if killer := layer.notices(built):
+        return ("invalid" if killer == "(does not link)" else "killed"), killer
     return ("same", "") if layer.same_code(text, mutated) else ("survived", "")
 
 

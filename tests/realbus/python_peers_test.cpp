@@ -34,7 +34,8 @@ TEST(PythonPeers, SlcanInterfaceOfPythonCan) {
   const std::string plant = folder.write(
       "scom.toml", std::regex_replace(read_text(project("examples/scom/scom.toml")),
                                       std::regex("kind = \"can\""), "$&\nport = \"slcan:pty:" + path + "\""));
-  const ScriptResult result = run_script({kPython, "-B", script("slcan_peer.py"), IPOS_PROGRAM, plant, path});
+  const ScriptResult result =
+      run_script({kPython, "-B", script("slcan_peer.py"), ipos_program(), plant, path});
   EXPECT_EQ(result.exit_code, 0) << result.output;
   expect_all_ok(result.output, 12);
   EXPECT_FALSE(std::filesystem::exists(std::filesystem::symlink_status(path))) << "the link is left";
@@ -78,14 +79,14 @@ TEST(PythonPeers, SerialLineOfPythonSerial) {
 // Some seconds of it; noise.py IPOS 600 is the long form.
 TEST(PythonPeers, NoiseAtThePorts) {
   if (!has_pty()) GTEST_SKIP() << kNoPty;
-  const ScriptResult result = run_script({kPython, "-B", script("noise.py"), IPOS_PROGRAM, "4"});
+  const ScriptResult result = run_script({kPython, "-B", script("noise.py"), ipos_program(), "4"});
   EXPECT_EQ(result.exit_code, 0) << result.output;
   expect_all_ok(result.output, 6);
 }
 
 TEST(PythonPeers, TheLogOfAKilledRun) {
   const ScriptResult result = run_script(
-      {kPython, "-B", script("killed_log.py"), IPOS_PROGRAM, project("examples/scom/scom.toml").string()});
+      {kPython, "-B", script("killed_log.py"), ipos_program(), project("examples/scom/scom.toml").string()});
   EXPECT_EQ(result.exit_code, 0) << result.output;
   expect_all_ok(result.output, 1);
 }
@@ -99,7 +100,7 @@ TEST(PythonPeers, MovilinkMasterOfPythonSerial) {
       "movilink.toml", std::regex_replace(read_text(project("tests/realbus/movilink.toml")),
                                           std::regex("kind = \"rs485\""), "$&\nport = \"pty:" + path + "\""));
   const ScriptResult result =
-      run_script({kPython, "-B", script("movilink_peer.py"), IPOS_PROGRAM, plant, path});
+      run_script({kPython, "-B", script("movilink_peer.py"), ipos_program(), plant, path});
   EXPECT_EQ(result.exit_code, 0) << result.output;
   expect_all_ok(result.output, 35);
 }
@@ -118,7 +119,7 @@ TEST(PythonPeers, CanopenMasterOfPythonCan) {
                    std::regex_replace(read_text(project("tests/realbus/canopen.toml")),
                                       std::regex("kind = \"can\""), "$&\nport = \"slcan:pty:" + path + "\""));
   ASSERT_EQ(run_ipos({"canopen", "eds", plant, "a", "-o", "a.eds"}, folder.path()).exit_code, 0);
-  const ScriptResult result = run_script({kPython, "-B", script("canopen_master.py"), IPOS_PROGRAM, plant,
+  const ScriptResult result = run_script({kPython, "-B", script("canopen_master.py"), ipos_program(), plant,
                                           path, (folder.path() / "a.eds").string(), log, "300"});
   EXPECT_EQ(result.exit_code, 0) << result.output;
   expect_all_ok(result.output, 19);
@@ -151,7 +152,7 @@ TEST(PythonPeers, ProfibusMasterOfClassOne) {
       "dp.toml", std::regex_replace(read_text(project("tests/realbus/profibus_plant.toml")),
                                     std::regex("kind = \"profibus\""), "$&\nport = \"pty:" + path + "\""));
   const ScriptResult result = run_script(
-      {kPython, "-B", script("profibus_master.py"), IPOS_PROGRAM, plant, path, "600", "800", "72"});
+      {kPython, "-B", script("profibus_master.py"), ipos_program(), plant, path, "600", "800", "72"});
   EXPECT_EQ(result.exit_code, 0) << result.output;
   expect_all_ok(result.output, 14);
 }

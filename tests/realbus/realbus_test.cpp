@@ -29,7 +29,7 @@ class RealBus : public ::testing::Test {
   static void SetUpTestSuite() {
     folder_ = std::make_unique<TemporaryFolder>();
     boot_ = run_script({"/bin/sh", project("tests/realbus/boot.sh").string(), folder_->path().string(),
-                        IPOS_PROGRAM, project("").string(), IPOS_WIDE_REGISTERS});
+                        ipos_program(), project("").string(), IPOS_WIDE_REGISTERS});
   }
   static void TearDownTestSuite() { folder_.reset(); }
 

@@ -40,6 +40,11 @@ std::string TemporaryFolder::write(const std::string& name, const std::string& t
   return (path_ / name).string();
 }
 
+const char* ipos_program() {
+  const char* other = std::getenv("IPOS_PROGRAM");
+  return other != nullptr ? other : IPOS_PROGRAM;
+}
+
 RunningIpos::RunningIpos(const std::vector<std::string>& arguments, const fs::path& directory)
     : folder_(std::make_unique<TemporaryFolder>()) {
   const std::string out = (folder_->path() / "out").string();
@@ -59,7 +64,7 @@ RunningIpos::RunningIpos(const std::vector<std::string>& arguments, const fs::pa
   std::vector<char*> argv{const_cast<char*>("ipos")};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
-  execv(IPOS_PROGRAM, argv.data());
+  execv(ipos_program(), argv.data());
   _exit(127);
 }
 

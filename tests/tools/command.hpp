@@ -27,6 +27,10 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
+// The program that is tested: that of the build, or the one that IPOS_PROGRAM names in the environment, in which
+// tests/mutation has planted a mistake.
+const char* ipos_program();
+
 struct CommandResult {
   int exit_code;
   std::string out;

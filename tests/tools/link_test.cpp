@@ -27,7 +27,7 @@ class RunningPlant {
       dup2(null_file, 0);
       dup2(null_file, 1);
       dup2(err, 2);
-      execl(IPOS_PROGRAM, "ipos", "run", "plant.toml", "--realtime", "--for", "100s", nullptr);
+      execl(ipos_program(), "ipos", "run", "plant.toml", "--realtime", "--for", "100s", nullptr);
       _exit(127);
     }
     constexpr int kBuses = 3;

@@ -64,7 +64,7 @@ class RunningLine {
       const int null_file = open("/dev/null", O_RDWR);
       if (chdir(folder.path().c_str()) != 0) _exit(126);
       for (const int n : {0, 1, 2}) dup2(null_file, n);
-      execl(IPOS_PROGRAM, "ipos", "run", "plant.toml", "--realtime", "--for", "100s", nullptr);
+      execl(ipos_program(), "ipos", "run", "plant.toml", "--realtime", "--for", "100s", nullptr);
       _exit(127);
     }
     for (int n = 0; n < 500 && !std::filesystem::exists(folder.path() / "dp"); ++n) usleep(20'000);
@@ -190,10 +190,12 @@ TEST(ProfibusLogs, PcapngHasTheFramesOfTheSerialLog) {
   const TemporaryFolder folder;
   std::string controller = kController;
   controller = controller.substr(0, controller.find("[[control.command]]"));
-  folder.write("plant.toml", std::string(kLine) + kStations + controller +
-                                 "[[fault]]\nbus = \"dp\"\nkind = \"parity\"\nfrom = \"100ms\"\nuntil = \"110ms\"\n");
+  folder.write("plant.toml",
+               std::string(kLine) + kStations + controller +
+                   "[[fault]]\nbus = \"dp\"\nkind = \"parity\"\nfrom = \"100ms\"\nuntil = \"110ms\"\n");
   const auto run = [&](const char* option, const char* log) {
-    const CommandResult result = run_ipos({"run", "plant.toml", "--for", "200ms", option, log}, folder.path());
+    const CommandResult result =
+        run_ipos({"run", "plant.toml", "--for", "200ms", option, log}, folder.path());
     EXPECT_EQ(result.exit_code, 0) << result.err;
     const CommandResult decoded = run_ipos({"bus", "decode", log, "--format", "json"}, folder.path());
     EXPECT_EQ(decoded.exit_code, 0) << decoded.err;
@@ -203,7 +205,8 @@ TEST(ProfibusLogs, PcapngHasTheFramesOfTheSerialLog) {
   EXPECT_EQ(serial, pcapng);
   EXPECT_TRUE(contains(serial, "\"void\":\"parity error\"")) << serial.substr(0, 2000);
   EXPECT_GT(std::count(serial.begin(), serial.end(), '\n'), 100);
-  const CommandResult empty = run_ipos({"run", "plant.toml", "--for", "10ms", "--log", "dp.log"}, folder.path());
+  const CommandResult empty =
+      run_ipos({"run", "plant.toml", "--for", "10ms", "--log", "dp.log"}, folder.path());
   EXPECT_TRUE(contains(empty.err, "warning: dp.log stays empty")) << empty.err;
 }
 

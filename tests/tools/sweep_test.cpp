@@ -211,7 +211,7 @@ class Sweep : public ::testing::Test {
       std::vector<char*> argv{const_cast<char*>("ipos")};
       for (std::string& word : words) argv.push_back(word.data());
       argv.push_back(nullptr);
-      execv(IPOS_PROGRAM, argv.data());
+      execv(ipos_program(), argv.data());
       _exit(127);
     }
     int status = 0;

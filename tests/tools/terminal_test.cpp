@@ -14,7 +14,7 @@ ScriptResult on_terminal(const TemporaryFolder& folder, const std::string& envir
   return run_script(
       {"/bin/sh", "-c",
        fmt::format("cd '{}' && exec env {} XDG_CACHE_HOME=. '{}' '{}' '{}' '{}' {}", folder.path().string(),
-                   environment, kPython, project("tests/tools/terminal.py").string(), keys, IPOS_PROGRAM,
+                   environment, kPython, project("tests/tools/terminal.py").string(), keys, ipos_program(),
                    arguments)});
 }
 

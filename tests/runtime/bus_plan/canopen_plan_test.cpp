@@ -43,6 +43,22 @@ TEST(CanopenPlan, IdentifiersAndTelegrams) {
   EXPECT_FALSE(plan.has_errors());
 }
 
+// SYNC has no bytes, a heartbeat one (CiA 301), and each PDO the three words of the unit.
+TEST(CanopenPlan, WhatAMasterSends) {
+  PlantRig rig(
+      bus_text() + node("saw", 5) +
+      "[[control]]\nname = 'plc'\nkind = 'canopen'\nsbus = 'sbus'\ncycle = '4ms'\nheartbeat = '20ms'\n"
+      "node = 100\n[[control.target]]\naddress = 5\n");
+  const BusPlan plan = make_plan(rig.get(), {});
+  std::vector<std::tuple<uint32_t, std::string, int, Time>> cyclic;
+  for (const PlannedTelegram& telegram : plan.lines.at(0).telegrams)
+    if (telegram.rhythm == Rhythm::Cyclic)
+      cyclic.emplace_back(telegram.id, telegram.sender, telegram.bytes, telegram.period / kMillisecond);
+  EXPECT_EQ(cyclic,
+            (decltype(cyclic){
+                {0x080, "plc", 0, 4}, {0x185, "saw", 6, 4}, {0x205, "plc", 6, 4}, {0x764, "plc", 1, 20}}));
+}
+
 TEST(CanopenPlan, OneAddressTwice) {
   PlantRig rig(bus_text() + node("saw", 5) + node("feed", 5));
   const BusPlan plan = make_plan(rig.get(), {});

@@ -95,6 +95,18 @@ TEST(ResponseTime, TheLastNanosecondOfTheLine) {
                    .bounded);
 }
 
+// A line that is busy for 1000 s without an end has no bound (ours).
+TEST(ResponseTime, GivesUpAfterAThousandSeconds) {
+  const auto of_the_last = [](size_t frames) {
+    std::vector<PeriodicFrame> set;
+    for (uint32_t id = 0; id < frames; ++id) set.push_back({id, kSecond, 2000 * kSecond, 0});
+    return response_times(set, 2 * kMicrosecond).back();
+  };
+  EXPECT_TRUE(of_the_last(999).bounded);
+  EXPECT_EQ(of_the_last(999).worst, 999 * kSecond);
+  EXPECT_FALSE(of_the_last(1000).bounded);
+}
+
 // The answer to a telegram of a low priority, which never comes on a full line, has no bound either, however high its
 // own priority is.
 TEST(ResponseTime, NoAnswerWithoutARequest) {
