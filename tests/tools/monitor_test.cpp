@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
 #include <regex>
 #include <sstream>
@@ -126,6 +127,21 @@ TEST(Monitor, ALogThatGrows) {
   const CommandResult timed = run_ipos({"bus", "monitor", "a.log", "-f", "--for", "100ms"}, folder.path());
   EXPECT_EQ(timed.exit_code, 0);
   EXPECT_EQ(without_times(timed.out).size(), 1U);
+}
+
+// Whoever writes to a pipe may pause for longer than the monitor waits at a time.
+TEST(Monitor, StandardInput) {
+  const TemporaryFolder folder;
+  folder.write("a.log", kLog);
+  const auto monitor = [&](const std::string& before, const std::string& behind) {
+    const std::string command = "cd '" + folder.path().string() + "' && " + before + "'" + ipos_program() +
+                                "' bus monitor - > out 2> err" + behind;
+    return WEXITSTATUS(std::system(command.c_str()));
+  };
+  EXPECT_EQ(monitor("(cat a.log; sleep 0.3; cat a.log) | ", ""), 0) << read_text(folder.path() / "err");
+  EXPECT_EQ(without_times(read_text(folder.path() / "out")).size(), 10U);
+  EXPECT_EQ(monitor("", " < ."), 66);
+  EXPECT_EQ(read_text(folder.path() / "err"), "ipos: -: Is a directory\n");
 }
 
 class MonitorAtPorts : public ::testing::Test {
