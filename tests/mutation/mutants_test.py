@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 # What mutate.py plants and whom it asks; without a build.
+import re
 import sys
 import unittest
 from pathlib import Path
@@ -69,6 +70,18 @@ class Layers(unittest.TestCase):
             "embed/instance.cpp": "ipos_api_tests",
         }.items():
             self.assertEqual(programs_of(source, self.README)[0], program, source)
+
+    def test_the_table_has_every_test_program(self):
+        for file in (ROOT / "tests").rglob("CMakeLists.txt"):
+            for name in re.findall(r"^\s*ipos_test\((ipos_\w+)", file.read_text(), re.M):
+                group = re.sub(r"^(ipos_[a-z]+_)\w+", r"`\1*`", name)  # `ipos_bench_*`
+                self.assertTrue(f"`{name}`" in self.README or group in self.README, f"{file}: {name}")
+
+    def test_the_table_has_every_source(self):
+        for folder in ("compiler", "embed", "runtime", "stdlib", "tools", "vm"):
+            for file in (ROOT / folder).rglob("*.cpp"):
+                source = str(file.relative_to(ROOT))
+                self.assertTrue(programs_of(source, self.README), source)
 
     def test_equivalents_are_still_there(self):
         for row in (ROOT / "tests/mutation/equivalents.tsv").read_text().splitlines():

@@ -149,6 +149,29 @@ TEST(Bus, TheDataSheetOfAUnit) {
   EXPECT_EQ(run_ipos({"canopen", "eds"}, folder.path()).exit_code, 64);
 }
 
+// A master finds the device data by the name of the file, so that is the one without -o.
+TEST(Bus, TheDeviceDataOfAProfibusCard) {
+  const TemporaryFolder folder;
+  for (const auto& [card, unit, file] : {std::tuple{"ffp31", "", "SEW_3100.GSD"},
+                                         {"size0", "", "SEW_3111.GSD"},
+                                         {"dfp", "mdxb", "SEW_6003.GSD"},
+                                         {"dfp", "md60a", "SEW_6000.GSD"}}) {
+    std::vector<std::string> words{"profibus", "gsd", card};
+    if (*unit != '\0') words.insert(words.end(), {"--unit", unit});
+    EXPECT_EQ(run_ipos(words, folder.path()).exit_code, 0) << file;
+    const std::string text = read_text(folder.path() / file);
+    EXPECT_TRUE(text.starts_with("#Profibus_DP")) << file << ": " << text;
+    words.insert(words.end(), {"-o", "-"});
+    EXPECT_EQ(run_ipos(words, folder.path()).out, text) << file;
+    words.back() = "own.gsd";
+    EXPECT_EQ(run_ipos(words, folder.path()).exit_code, 0) << file;
+    EXPECT_EQ(read_text(folder.path() / "own.gsd"), text) << file;
+  }
+  const CommandResult wrong = run_ipos({"profibus", "gsd", "dfp21", "--unit", "mdxb"}, folder.path());
+  EXPECT_EQ(wrong.exit_code, 64);
+  EXPECT_TRUE(contains(wrong.err, "'dfp21' of unit mdxb is no PROFIBUS interface; known are ")) << wrong.err;
+}
+
 TEST(Bus, BadLogLinesAreLocatedAndTheOthersDecoded) {
   const TemporaryFolder folder;
   folder.write("a.log",
