@@ -149,6 +149,38 @@ TEST(Bus, TheDataSheetOfAUnit) {
   EXPECT_EQ(run_ipos({"canopen", "eds"}, folder.path()).exit_code, 64);
 }
 
+// The variable of DPointer has the low-order bytes, which Motorola's order puts behind those of the next variable
+// (1053 1610 p. 55 and 57).
+TEST(Bus, TheDissectorTakesObjectsApart) {
+  const TemporaryFolder folder;
+  std::string program = "#include <constb.h>\n", body;
+  for (const auto& [number, format] : {std::pair{1024, 6}, {1025, 0x106}, {1026, 3}, {1027, 0x104}}) {
+    const std::string n = std::to_string(number);
+    program += "SCTRCYCL t" + n + "; long low" + n + ", high" + n + ";\n";
+    body += "t" + n + ".ObjectNo = " + n + "; t" + n + ".CycleTime = 10; t" + n +
+            ".Format = " + std::to_string(format) + "; t" + n + ".DPointer = numof(low" + n +
+            "); _SBusCommDef(SCD_TRCYCL, t" + n + ");\n";
+  }
+  folder.write("A.IPC", program + "main() {\n" + body + "_SBusCommOn(); while (1) ; }\n");
+  folder.write("plant.toml",
+               "[[bus]]\nname = 'sbus'\nkind = 'can'\n[[station]]\nname = 'a'\nunit = 'mdxb'\nsbus = 'sbus'\n"
+               "program = 'A.IPC'\n");
+  const CommandResult lua = run_ipos({"bus", "dissector", "plant.toml", "-o", "-"}, folder.path());
+  ASSERT_EQ(lua.exit_code, 0) << lua.err;
+  const auto part = [](const char* name, int number, int offset, int size) {
+    return "{name = \"" + std::string(name) + std::to_string(number) +
+           "\", offset = " + std::to_string(offset) + ", size = " + std::to_string(size) + "}";
+  };
+  for (const std::string& row :
+       {"[1024] = {station = \"a\", little = false, parts = {" + part("low", 1024, 2, 4) + ", " +
+            part("high", 1024, 0, 2) + "}}",
+        "[1025] = {station = \"a\", little = true, parts = {" + part("low", 1025, 0, 4) + ", " +
+            part("high", 1025, 4, 2) + "}}",
+        "[1026] = {station = \"a\", little = false, parts = {" + part("low", 1026, 0, 3) + ", }}",
+        "[1027] = {station = \"a\", little = true, parts = {" + part("low", 1027, 0, 4) + ", }}"})
+    EXPECT_TRUE(contains(lua.out, row)) << row << "\n" << lua.out.substr(lua.out.find("local objects"), 900);
+}
+
 // A master finds the device data by the name of the file, so that is the one without -o.
 TEST(Bus, TheDeviceDataOfAProfibusCard) {
   const TemporaryFolder folder;

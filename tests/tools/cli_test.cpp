@@ -281,6 +281,9 @@ TEST(Run, WatchTakesTheNamesItPrints) {
   EXPECT_TRUE(contains(watched("y[0].b"), "H421 y[0].b[0]  0\nH422 y[0].b[1]  9\n"));
   EXPECT_TRUE(contains(watched("y"), "H423 y[1].a     0\n"));
   EXPECT_TRUE(contains(watched("RefOffset"), "H498 RefOffset  0\n"));
+  // Signals have no number, and a pattern takes several.
+  EXPECT_TRUE(contains(watched("speed,DI0*"), "     speed  0.000 rpm\n     DI00   0\n"))
+      << watched("speed,DI0*");
   EXPECT_FALSE(contains(watched("y"), "B.IPC")) << "a station without the name has no section";
   const CommandResult traced = run_ipos({"run", "two.toml", "--for", "20ms", "--trace", "t.csv", "--signals",
                                          "a.y[0].b[1],a.RefOffset,a.DI03,a.DO01"},

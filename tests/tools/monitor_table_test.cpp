@@ -42,6 +42,16 @@ TEST_F(MonitorTableTest, ARowAnIdentifierWithItsChanges) {
   EXPECT_EQ(all[2], "2 telegrams, 1 of 1 rows, sorted by identifier");
 }
 
+// The text stands in one column behind the place of eight bytes, and further on where there are more.
+TEST_F(MonitorTableTest, TextsStandBelowEachOther) {
+  const size_t column = std::string("sbus     1                1         -     0.000  ").size() + 8 * 4 + 1;
+  for (uint32_t count = 0; count <= 8; ++count) put(0, count, std::vector<uint8_t>(count, 0x11), "text");
+  put(0, 9, std::vector<uint8_t>(12, 0x11), "text");
+  const auto all = lines();
+  for (size_t n = 0; n <= 8; ++n) EXPECT_EQ(all[n + 1].find("text"), column) << all[n + 1];
+  EXPECT_GT(all[10].find("text"), column) << all[10];
+}
+
 TEST_F(MonitorTableTest, SortsByIdentifierCountAndLastChange) {
   put(0, 5, {0});
   put(1, 3, {0});

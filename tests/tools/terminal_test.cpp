@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <regex>
+
 #include "tests/realbus/script.hpp"
 #include "tests/tools/command.hpp"
 
@@ -47,6 +49,17 @@ TEST_F(Terminal, ADumbOneGetsNoEscapes) {
   const ScriptResult result = on_terminal(folder_, "TERM=dumb", "", "test A.IPC");
   EXPECT_EQ(result.exit_code, 0) << result.output;
   EXPECT_EQ(result.output.find('\x1b'), std::string::npos) << result.output;
+}
+
+// A run that takes longer than half a second shows how far it is, and takes that away at its end.
+TEST_F(Terminal, ARunShowsHowFarItIs) {
+  const ScriptResult result = on_terminal(folder_, "TERM=xterm", "", "run A.IPC --realtime --for 1200ms");
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  std::smatch shown;
+  ASSERT_TRUE(std::regex_search(result.output, shown, std::regex(R"(\r([01]\.\d) s of 1\.2 s)")))
+      << result.output;
+  EXPECT_NE(result.output.find("\r\x1b[K", static_cast<size_t>(shown.position())), std::string::npos)
+      << result.output;
 }
 
 TEST_F(Terminal, CtrlCAtThePromptGivesAPrompt) {
