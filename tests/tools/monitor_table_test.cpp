@@ -84,6 +84,15 @@ TEST_F(MonitorTableTest, FiltersByWhatIsSeen) {
   type("/sq");
   ASSERT_EQ(lines().size(), 2U) << "no row has sq";
   EXPECT_EQ(lines()[1].substr(0, 9), "2 telegra") << "q is a letter of the filter here";
+  type("\x7f");  // and each of the two keys takes one away
+  EXPECT_EQ(lines().size(), 4U) << "both rows have an s";
+  type("pxy\b\b");
+  ASSERT_EQ(lines().size(), 3U);
+  EXPECT_TRUE(lines()[1].ends_with("PO SPEED"));
+  type("\b\b\b\b\x7f");
+  EXPECT_EQ(lines().size(), 4U) << "there is nothing more to take away";
+  type("\x01\t");
+  EXPECT_EQ(lines().size(), 4U) << "control characters are no text";
 }
 
 TEST_F(MonitorTableTest, PausesWhileTelegramsGoOn) {
