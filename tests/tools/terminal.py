@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 """Runs a program on a terminal of its own and prints what it wrote there.
 
-usage: terminal.py KEYS PROGRAM ARGUMENT...     KEYS is typed bit by bit: each | waits for a prompt `(ipos) ` first
+usage: terminal.py KEYS PROGRAM ARGUMENT...     KEYS is typed bit by bit: each | waits for a prompt first
+The prompt is `(ipos) `, or what TERMINAL_PROMPT says in the environment.
 """
 import os
 import pty
 import select
 import sys
 
-PROMPT = b"(ipos) "
+PROMPT = os.environ.get("TERMINAL_PROMPT", "(ipos) ").encode()
 
 
 def main(keys, command):

@@ -123,7 +123,7 @@ TEST(ResponseTime, NoAnswerWithoutARequest) {
     EXPECT_TRUE(telegram.response.bounded) << telegram.what;
   // 270 us of every 250 us.
   for (const PlannedTelegram& telegram : planned(250 * kMicrosecond))
-    EXPECT_EQ(telegram.response.bounded, false) << telegram.what;
+    EXPECT_FALSE(telegram.response.bounded) << telegram.what;
 }
 
 // Sends one message periodically, each instance with a jitter of its own.
