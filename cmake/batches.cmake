@@ -19,12 +19,11 @@ function(ipos_batches target)
   endif()
 endfunction()
 
-# ipos_not_hot(TARGET [SIZE n] [FUZZED]): batches, and the optimiser does less. Not for what executes programs, drives and
-# buses. FUZZED: fuzz targets of its own run it a million times, so in their build it is optimised.
+# ipos_not_hot(TARGET [SIZE n]): batches, and the optimiser does less. Not for what executes programs, drives and buses.
+# Fuzz targets run all of it millions of times, so in their build it is optimised.
 function(ipos_not_hot target)
-  cmake_parse_arguments(COLD "FUZZED" "" "" ${ARGN})
-  ipos_batches(${target} ${COLD_UNPARSED_ARGUMENTS})
-  if(IPOS_SANITIZE AND NOT (IPOS_FUZZ AND COLD_FUZZED))
+  ipos_batches(${target} ${ARGN})
+  if(IPOS_SANITIZE AND NOT IPOS_FUZZ)
     target_compile_options(${target} PRIVATE -O0)  # what sanitizers add is most of the time of an optimised build
   elseif(NOT IPOS_SANITIZE)
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)

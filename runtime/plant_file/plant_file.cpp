@@ -36,19 +36,10 @@ void check_plant(PlantReader& reader) {
 }
 
 std::optional<toml::table> parse_toml(PlantReader& reader, std::string_view text) {
-  if (const auto mistake = toml_mistake(text)) {
-    reader.error(mistake->place, std::string(mistake->text));
-    return std::nullopt;
-  }
-  toml::parse_result parsed = toml::parse(text);
-  if (!parsed) {
-    const std::string_view what = parsed.error().description();
-    // The commonest one, in words: name = sbus.
-    const bool no_value = what.find("could not determine value type") != std::string_view::npos;
-    reader.error(place_of(parsed.error().source()), std::string(no_value ? kWhatAValueIs : what));
-    return std::nullopt;
-  }
-  return std::move(parsed).table();
+  auto table = read_toml(text);
+  if (table) return *std::move(table);
+  reader.error(table.error().place, table.error().text);
+  return std::nullopt;
 }
 
 void read_plant_sections(PlantReader& reader, const toml::table& root,

@@ -2,10 +2,8 @@
 // forms of values. Only the readers include this; it needs toml++.
 #pragma once
 
-#define TOML_EXCEPTIONS 0
 #include <fmt/format.h>
 
-#include <toml++/toml.h>
 #include <initializer_list>
 #include <optional>
 #include <set>
@@ -15,13 +13,9 @@
 #include <vector>
 
 #include "runtime/plant_file/plant_file.hpp"
+#include "runtime/plant_file/read_toml.hpp"
 
 namespace ipos::runtime {
-
-inline FilePlace place_of(const toml::source_region& region) {
-  return {region.begin.line, region.begin.column};
-}
-inline FilePlace place_of(const toml::node& node) { return place_of(node.source()); }
 
 // What an analog input is set to.
 inline constexpr std::string_view kAnalogForms =

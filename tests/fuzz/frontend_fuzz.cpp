@@ -14,9 +14,12 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   for (const compiler::Diagnostic& message : messages) require(!message.text.empty(), "a message has a text");
   require(messages.empty() == compiler::render_text(messages, *made.sources, false).empty(),
           "messages are shown");
-  require(messages.empty() == compiler::render_json(messages, *made.sources).empty(),
-          "messages are shown as JSON");
-  require(!compiler::render_sarif(messages, *made.sources).empty(), "SARIF has always a text");
+  // They would be half of the time of all runs.
+  if (size % 8 == 0) {
+    require(messages.empty() == compiler::render_json(messages, *made.sources).empty(),
+            "messages are shown as JSON");
+    require(!compiler::render_sarif(messages, *made.sources).empty(), "SARIF has always a text");
+  }
   if (!made.image) return 0;
   check_round_trips(*made.image);
   const auto limits = limits_of(made.image->unit);

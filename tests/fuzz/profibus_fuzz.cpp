@@ -14,7 +14,8 @@ namespace {
 
 void check_line(Input input) {
   runtime::EventQueue queue(kEvents);
-  Line line(queue, 0, "dp", kBaudRates[input.u8() % std::size(kBaudRates)].baud);
+  const uint32_t baud = kBaudRates[input.u8() % std::size(kBaudRates)].baud;
+  Line line(queue, 0, "dp", baud);
   ProfibusUnit units[2];
   std::vector<std::unique_ptr<SlaveStation>> slaves;
   std::vector<std::unique_ptr<Master>> masters;
@@ -29,7 +30,8 @@ void check_line(Input input) {
     PrmData prm;
     prm.lock = prm.sync = prm.freeze = true;
     prm.watchdog = n == 0;
-    prm.watchdog_factor_1 = prm.watchdog_factor_2 = 3;
+    prm.watchdog_factor_1 = 1;  // 10 ms, which a run can reach
+    prm.watchdog_factor_2 = 1;
     prm.ident = option_type(static_cast<OptionKind>(n)).ident;
     masters[n]->add_slave({static_cast<uint8_t>(10 + n), prm, {0xF0}, 2, 2});
     masters[n]->start();
@@ -51,7 +53,11 @@ void check_line(Input input) {
       case 6: slaves[input.u8() % 2]->slave().set_fault(queue.now(), input.u8()); break;
       default: break;
     }
-    const Time until = queue.now() + input.u8() * (runtime::kMillisecond / 64);
+    // A run costs its telegrams, so it goes on for some of them at any baud rate; every eighth step takes up to 4 ms, as
+    // the units and the watchdog know milliseconds.
+    const uint8_t wait = input.u8();
+    const Time until = queue.now() + (wait % 8 == 0 ? wait * (runtime::kMillisecond / 64)
+                                                    : wait * (12 * runtime::kSecond / baud));
     for (int events = 0; queue.next_time() <= until; ++events) {
       require(events < 20'000, "time goes on");
       queue.step();

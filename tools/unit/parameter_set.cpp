@@ -1,19 +1,19 @@
 // Reading a unit's settings, and their file in both directions.
-#define TOML_EXCEPTIONS 0
 #include "tools/unit/parameter_set.hpp"
 
 #include <fmt/format.h>
 
-#include <toml++/toml.h>
 #include <algorithm>
 #include <map>
 
+#include "runtime/plant_file/read_toml.hpp"
 #include "tools/cli/failure.hpp"
 
 namespace ipos::tools {
 namespace {
 
 using runtime::FilePlace;
+using runtime::place_of;
 using stdlib::Parameter;
 using stdlib::Service;
 
@@ -37,23 +37,15 @@ std::string in_quotes(std::string_view text) {
   return out + '"';
 }
 
-FilePlace place_of(const toml::node& node) { return {node.source().begin.line, node.source().begin.column}; }
-
 class Reader {
  public:
   explicit Reader(const std::string& path) : path_(path) {}
 
   tl::expected<ParameterSet, std::vector<std::string>> read(std::string_view text) {
-    if (const auto mistake = runtime::toml_mistake(text)) {
-      error(mistake->place, std::string(mistake->text));
-      return tl::unexpected(std::move(errors_));
-    }
-    const toml::parse_result parsed = toml::parse(text);
-    if (!parsed)
-      error({parsed.error().source().begin.line, parsed.error().source().begin.column},
-            std::string(parsed.error().description()));
+    if (const auto table = runtime::read_toml(text))
+      file(*table);
     else
-      file(parsed.table());
+      error(table.error().place, table.error().text);
     if (!errors_.empty()) return tl::unexpected(std::move(errors_));
     return std::move(set_);
   }
