@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "tests/harness/contains.hpp"
 #include "tests/tools/command.hpp"
@@ -17,6 +18,9 @@ TEST(Bus, UsageAndHelp) {
   EXPECT_EQ(run_ipos({"bus", "frob"}).exit_code, 64);
   EXPECT_EQ(run_ipos({"bus", "load", "x.log"}).exit_code, 64);  // needs --baud
   EXPECT_EQ(run_ipos({"bus", "plan", "x.toml", "--trial", "soon"}).exit_code, 64);
+  const CommandResult no_distance = run_ipos({"bus", "plan", "x.toml", "--acyclic", "0ms"});
+  EXPECT_EQ(no_distance.exit_code, 64);
+  EXPECT_TRUE(contains(no_distance.err, "'0ms' is no time above 0")) << no_distance.err;
   EXPECT_EQ(run_ipos({"bus", "replay", "a", "b", "--id", "xyz"}).exit_code, 64);
   for (const std::string verb : {"plan", "decode", "monitor", "load", "replay", "dbc", "dissector"}) {
     const CommandResult help = run_ipos({"bus", verb, "--help"});
@@ -38,6 +42,10 @@ TEST(Bus, PlanOfTheExamplesHasNoErrors) {
     for (const auto& finding : plan["findings"]) EXPECT_EQ(finding["weight"], "hint") << finding;
   }
   EXPECT_EQ(run_ipos({"bus", "plan", example("scom/SCOM1.IPC")}).exit_code, 0);  // a single program
+  const CommandResult timed = run_ipos(
+      {"bus", "plan", example("scom/scom.toml"), "--format", "json", "--trial", "20ms", "--acyclic", "1us"});
+  EXPECT_EQ(nlohmann::json::parse(timed.out)["trial_ns"], 20'000'000);
+  EXPECT_EQ(nlohmann::json::parse(timed.out)["acyclic_ns"], 1000);
 }
 
 TEST(Bus, PlanWithAnErrorIsExitCode1) {
@@ -240,6 +248,16 @@ TEST(Bus, TelegramsOfRs485InHexadecimal) {
   const CommandResult shown = run_ipos({"bus", "monitor", "t.hex", "--station", "1"}, folder.path());
   EXPECT_EQ(shown.out, result.out);
   EXPECT_TRUE(contains(shown.err, "6 telegrams, 6 shown, 2 void\n")) << shown.err;
+  // Of one address the requests are one row of the table, and the answers another.
+  const CommandResult table = run_ipos({"bus", "monitor", "t.hex", "--table"}, folder.path());
+  EXPECT_TRUE(std::regex_search(table.out, std::regex("-> 1 +2 .*PARAM acyclic, read scale 8471.*\n"
+                                                      ".*<- 1 +2 .*PARAM acyclic, read scale 8471.*\n"
+                                                      ".*void +2 .*void, BCC incorrect")))
+      << table.out;
+  // And 2 stands before 10.
+  folder.write("order.hex", "02 0A 05 00 06 3A 98 01 F4 5C\n02 02 05 00 06 3A 98 01 F4 54\n");
+  const CommandResult order = run_ipos({"bus", "monitor", "order.hex", "--table"}, folder.path());
+  EXPECT_LT(order.out.find("-> 2 "), order.out.find("-> 10 ")) << order.out;
   const CommandResult other = run_ipos({"bus", "monitor", "t.hex", "--station", "2"}, folder.path());
   EXPECT_TRUE(contains(other.err, "6 telegrams, 2 shown, 2 void\n")) << other.err;
   // Located errors; the others are decoded.

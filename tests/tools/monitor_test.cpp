@@ -7,6 +7,7 @@
 
 #include <csignal>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <regex>
 #include <sstream>
@@ -218,6 +219,7 @@ TEST_F(MonitorAtPorts, VariableTelegramsGoThroughAPort) {
 // The monitor is the adapter; this test is the program that puts frames on the bus.
 TEST_F(MonitorAtPorts, FramesOfAnSlcanProgram) {
   PROVES("M07-MON-10");  // it observes; the control mode: BusMonitor.ControlsOrObserves
+  const time_t before = std::time(nullptr);
   RunningIpos monitor({"bus", "monitor", "slcan:pty:" + path(), "--program",
                        project("examples/scom/SCOM1.IPC").string(), "--count", "4"});
   ASSERT_TRUE(monitor.tells("monitoring slcan:pty:"));
@@ -236,6 +238,10 @@ TEST_F(MonitorAtPorts, FramesOfAnSlcanProgram) {
   EXPECT_EQ(heard.find_first_of("tTrR"), std::string::npos) << heard;
   EXPECT_NE(heard.find('\r'), std::string::npos);
   EXPECT_EQ(end.exit_code, 0);
+  // Time stamps are of the clock on the wall.
+  const time_t first = std::stoll(end.out.substr(1, 10));
+  EXPECT_GE(first, before);
+  EXPECT_LE(first, std::time(nullptr));
   uint64_t lost = 0;
   std::vector<std::string> words;
   for (const std::string& line : without_times(end.out)) {

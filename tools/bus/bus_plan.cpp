@@ -243,7 +243,6 @@ int plan_bus(const PlanFlags& flags) {
   runtime::PlanOptions options;
   if (!flags.trial.empty()) options.trial = runtime::parse_duration(flags.trial);
   if (!flags.acyclic.empty()) options.acyclic = runtime::parse_duration(flags.acyclic);
-  if (options.acyclic == 0) options.acyclic = 1;
   const auto plant = make_plant(read_plant_input(flags.plant, flags.compile, "sbus"), runtime::FileUse::Look);
   const BusPlan plan = make_plan(*plant, options);
   if (flags.format == "json") {
@@ -261,6 +260,10 @@ int plan_bus(const PlanFlags& flags) {
   return plan.has_errors() ? kFindings : kGood;
 }
 
+std::string check_distance(const std::string& text) {
+  return runtime::parse_duration(text) <= 0 ? "'" + text + "' is no time above 0; write for example 10ms" : "";
+}
+
 }  // namespace
 
 void add_bus_plan(cli::Verb& bus) {
@@ -271,7 +274,7 @@ void add_bus_plan(cli::Verb& bus) {
   verb.option("--trial", flags->trial, "virtual time the programs run first; default 100ms")
       .check(check_time, "TIME");
   verb.option("--acyclic", flags->acyclic, "assumed distance of telegrams the trial shows once; default 10ms")
-      .check(check_time, "TIME");
+      .check(check_distance, "TIME");
   verb.option("--format", flags->format, "text or json").one_of({"text", "json"});
   add_compile_options(verb, flags->compile);
   verb.footer("Example:\n  ipos bus plan examples/scom/scom.toml");

@@ -84,7 +84,7 @@ void Monitor::show(Time time, const std::string& line, const runtime::Reception&
   uint32_t number = UINT32_MAX;
   if (const auto& telegram = reception.telegram) {
     id = fmt::format("{} {}", telegram->response ? "<-" : "->", telegram->address);
-    number = 2U * telegram->address + (telegram->response ? 1 : 0);
+    number = telegram->address;
   }
   screen_->table().put(time, line, number, id, reception.bytes.span(), text);
 }

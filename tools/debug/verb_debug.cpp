@@ -19,6 +19,7 @@
 #include "tools/debug/console.hpp"
 #include "tools/debug/dap.hpp"
 #include "tools/input/plant_input.hpp"
+#include "tools/input/plant_source.hpp"
 #include "tools/input/program.hpp"
 #include "tools/lsp/transport.hpp"
 
@@ -269,11 +270,6 @@ int serve_port(const DebugFlags& flags) {
 int replaceable(const std::function<int()>& body) {
   const int code = debug::run_replaceable([&body] { return end_of_process(body); });
   return code < 0 ? kInternal : code;
-}
-
-std::string check_time(const std::string& text) {
-  return runtime::parse_duration(text) < 0 ? "'" + text + "' is no time; write for example 500ms or 1.5s"
-                                           : "";
 }
 
 void add_common(cli::Verb& verb, DebugFlags& flags) {

@@ -324,11 +324,6 @@ int run(const RunFlags& flags) {
   return print_faults(plant, is_plant(flags.file)) + unmet != 0 ? kFindings : kGood;
 }
 
-std::string check_duration(const std::string& text) {
-  return runtime::parse_duration(text) < 0 ? "'" + text + "' is no time; write for example 500ms or 1.5s"
-                                           : "";
-}
-
 }  // namespace
 
 void add_run(cli::Verb& app) {
@@ -336,7 +331,7 @@ void add_run(cli::Verb& app) {
   cli::Verb& verb = app.verb("run", "run a program or a plant in virtual time");
   verb.option("FILE", flags->file, "source (.IPC), image (.ipx) or plant (.toml)").required();
   verb.option("--for", flags->duration, "virtual time to run, for example 500ms; default 60s")
-      .check(check_duration, "TIME");
+      .check(check_time, "TIME");
   verb.option("--until", flags->until, "'end': stop when every program has ended").one_of({"end"});
   verb.option("--speed", flags->speed, "commands per ms of every task, instead of P938 and P939")
       .between(1U, 1'000'000U);
