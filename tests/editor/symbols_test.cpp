@@ -184,6 +184,16 @@ TEST(IndexOfAnyText, FollowsTheObjectsInFrontOfADot) {
   for (const auto& [text, meant] : rows) EXPECT_EQ(member_meant(text), meant) << text;
 }
 
+// In a macro that nobody uses: a variable is what it is everywhere, a member could be of any object.
+TEST(IndexOfAnyText, NamesInTheBodyOfAMacro) {
+  EXPECT_EQ(member_meant("#define M @target\nmain() { }"), "target 429");
+  EXPECT_EQ(member_meant("#define M (1 + @target)\nmain() { }"), "target 429");
+  EXPECT_EQ(member_meant("#define M one.@target\nmain() { }"), "nothing");
+  EXPECT_EQ(member_meant("#define M one->@target\nmain() { }"), "nothing");
+  EXPECT_EQ(member_meant("#define N 5\n#define M one.@N\nmain() { }"), "nothing");
+  EXPECT_EQ(member_meant("#define N 5\n#define M (@N)\nmain() { }"), "N");
+}
+
 // A declaration that reaches around its name is the extent of it; one that a macro has brought elsewhere is not.
 TEST(IndexOfAnyText, TheExtentOfADeclarationHasItsNameInIt) {
   const std::string source =

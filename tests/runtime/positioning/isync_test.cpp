@@ -140,7 +140,18 @@ TEST(Follower, IsLostAfterThreeCycles) {
   }
   follower.tick(inputs);
   EXPECT_FALSE(follower.known());
+  EXPECT_TRUE(follower.silent());
   EXPECT_EQ(follower.step(), 0);
+  // It begins anew: where the master has gone meanwhile is no way, and the third telegram makes it known again.
+  for (int t = 0; t < 15; ++t) {
+    inputs.sync = t % kCycle == 0;
+    inputs.position = 1'000'000 + 20 * t;
+    follower.tick(inputs);
+    EXPECT_EQ(follower.known(), t >= 10) << t;
+    EXPECT_NEAR(static_cast<double>(follower.step()) / static_cast<double>(kIncrement), t < 5 ? 0 : t < 10 ? 40 : 20,
+                1e-3)
+        << t;
+  }
 }
 
 constexpr const char* kMaster = R"(#include <constb.h>
