@@ -189,8 +189,8 @@ class Translator {
       case TokenKind::While:
       case TokenKind::For:
       case TokenKind::Switch:
-        if (is_word_or_number(next())) return inside && ends_statement(before());  // IF a THEN
-        return inside && filled_bracket(at_ + 1) && statement_at(behind_bracket(at_ + 1));
+        // IF a THEN; with brackets it is found as a misspelt head is.
+        return inside && is_word_or_number(next()) && ends_statement(before());
       case TokenKind::Long: return next() == TokenKind::Name && !is_operand_end(before());
       case TokenKind::Initial:
         return next() == TokenKind::Long || (next() == TokenKind::Name && kind(at_ + 2) == TokenKind::Name);

@@ -15,7 +15,7 @@ class BitWriter {
     crc_ = (crc_ << 1) ^ (((crc_ >> 14 & 1U) != 0) != recessive ? kCrcPolynomial : 0U);
     crc_ &= 0x7FFF;
     append(recessive);
-    if (run_ == 0 || recessive != last_) {
+    if (recessive != last_) {
       last_ = recessive;
       run_ = 1;
     } else if (++run_ == 5) {
@@ -42,8 +42,8 @@ class BitWriter {
 
   WireBits bits_;
   uint32_t crc_ = 0;
-  uint32_t run_ = 0;
-  bool last_ = false;
+  uint32_t run_ = 0;   // equal bits up to here
+  bool last_ = false;  // a frame begins with a dominant bit
 };
 
 }  // namespace

@@ -24,14 +24,15 @@ struct FakeDrive final : runtime::DriveLink {
 struct FakeWindow final : runtime::IndexWindow {
   explicit FakeWindow(size_t count) : words(count) {}
   std::vector<int32_t> words;
-  int stored = 0;
+  int stores = 0;
 
   runtime::ParameterReply read(uint16_t offset) override { return words.at(offset); }
   runtime::ParameterReply write(uint16_t offset, int32_t value, bool nonvolatile) override {
     words.at(offset) = value;
-    stored += nonvolatile;
+    stores += nonvolatile;
     return value;
   }
+  bool stored(uint16_t offset) const override { return offset < 128; }
 };
 
 }  // namespace ipos::tests

@@ -271,12 +271,18 @@ TEST(M07Control, MotorPotentiometerByControlWord) {
 
 TEST(M07Control, MotorPotentiometerIgnoresTheProcessRamp) {
   PROVES("M07-CW-23");
-  BusRig rig;
-  rig.set("P872", 8);
-  rig.set("P100", 4);
-  rig.word(0x0206, 100);
-  rig.run_ms(4000);
-  EXPECT_NEAR(rig.rpm(), 300, 0.2);
+  // 75 rpm a second in both directions, whether the process ramp is faster or slower.
+  for (const uint16_t ramp : {uint16_t{100}, uint16_t{60'000}}) {
+    BusRig rig;
+    rig.set("P872", 8);
+    rig.set("P100", 4);
+    rig.word(0x0206, ramp);
+    rig.run_ms(4000);
+    EXPECT_NEAR(rig.rpm(), 300, 0.2) << ramp;
+    rig.word(0x0406, ramp);
+    rig.run_ms(2000);
+    EXPECT_NEAR(rig.rpm(), 150, 0.2) << ramp;
+  }
 }
 
 TEST(M07Control, FixedSetpointsByControlWord) {

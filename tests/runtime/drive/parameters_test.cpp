@@ -250,7 +250,7 @@ TEST_F(Md60a, Windows) {
   ask(kVolatile, 11000, 9);
   EXPECT_EQ(variables.words[511], -7);
   EXPECT_EQ(variables.words[0], 9);
-  EXPECT_EQ(variables.stored, 1);
+  EXPECT_EQ(variables.stores, 1);
   EXPECT_EQ(refused(store.execute(kRead, 11512)), codes::kInvalidIndex);
   ask(kWrite, 20512, 5);
   EXPECT_EQ(ask(kRead, 20512), 5);
@@ -261,6 +261,9 @@ TEST_F(Md60a, Windows) {
   EXPECT_EQ(ask(kDefault, 11020), 0);
   EXPECT_EQ(ask(ParameterService::ReadAttribute, 11000) >> 16, 11001);
   EXPECT_EQ(ask(ParameterService::ReadAttribute, 11511) >> 16, 0);
+  // Bits 0 writable, 1 stored, 4 valid after power-on, 5 needs no inhibit.
+  EXPECT_EQ(ask(ParameterService::ReadAttribute, 11127) & 0xFFFF, 0b110011);
+  EXPECT_EQ(ask(ParameterService::ReadAttribute, 11128) & 0xFFFF, 0b100001);
   EXPECT_EQ(refused(store.execute(kRead, 16000)), codes::kNotImplemented);  // nothing plugged in
   // The lock is about parameters, not about variables; the factory setting stops both.
   ask(kWrite, 8595, 1);

@@ -177,6 +177,10 @@ TEST(ServicesSweep, AttributesWalkTheList) {
       const auto word = static_cast<uint32_t>(*reply);
       EXPECT_EQ((word >> 0) & 1, p.has("RW") ? 1U : 0U) << index;
       EXPECT_EQ((word >> 1) & 1, p.has("N") ? 1U : 0U) << index;
+      EXPECT_EQ((word >> 2) & 1, p.has("RW") ? 1U : 0U)
+          << index << ": the factory setting, of the working value";
+      EXPECT_EQ((word >> 3) & 1, p.has("RW") && p.has("N") ? 1U : 0U) << index << ": and of the stored one";
+      EXPECT_EQ((word >> 4) & 1, p.has("N") ? 1U : 0U) << index << ": valid after power-on";
       EXPECT_EQ((word >> 5) & 1, p.has("R") ? 0U : 1U) << index;
       index = static_cast<uint16_t>(word >> 16);
     }

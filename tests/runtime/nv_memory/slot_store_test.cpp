@@ -281,6 +281,8 @@ TEST(Payload, CountsAreThoseOfTheContent) {
     std::vector<uint8_t> other = bytes;
     other[26] = kind;
     EXPECT_EQ(decode_content(other), std::nullopt) << "0 or 1, and behind 0 nothing";
+    other.resize(27);
+    EXPECT_EQ(decode_content(other).has_value(), kind == 0) << "0 or 1, also with nothing behind it";
   }
 }
 
