@@ -95,6 +95,32 @@ M05 : ADD H6 + 1
   EXPECT_EQ(written(), VariableNumbers{}) << "nothing runs, nothing is installed";
 }
 
+// Behind each call that is open the program goes on.
+TEST(Outlook, KnowsAllOpenCalls) {
+  Assembled run(R"(
+      CALL M01
+      ADD H1 + 1
+      END
+M01 : CALL M02
+      ADD H2 + 1
+      RET
+M02 : CALL M03
+      ADD H3 + 1
+      RET
+M03 : ADD H4 + 1
+      RET
+)");
+  const auto written = [&] { return numbers_of(Outlook(run.machine()).written()); };
+  run.run(3);
+  EXPECT_EQ(written(), (VariableNumbers{1, 2, 3, 4}));
+  run.run(2);
+  EXPECT_EQ(written(), (VariableNumbers{1, 2, 3}));
+  run.run(2);
+  EXPECT_EQ(written(), (VariableNumbers{1, 2}));
+  run.run(2);
+  EXPECT_EQ(written(), (VariableNumbers{1}));
+}
+
 // A routine that runs goes on also when its interrupt is gone.
 TEST(Outlook, ARoutineThatRunsCounts) {
   Assembled run(R"(

@@ -160,5 +160,18 @@ TEST(PowerSection, MotorAndHeatSinkWarmUp) {
   EXPECT_EQ(axis.state().heat_sink, 25);
 }
 
+// However small the heat sink is: 1000 K above the surroundings.
+TEST(PowerSection, TheHeatSinkHasAnEnd) {
+  MachineData machine;
+  machine.heat_sink_rise = 200;
+  machine.heat_sink_time_ms = 1;
+  Axis axis{machine};
+  AxisOrder order = order_of(AxisCommand::HoldZero, 0, 0);
+  order.current_limit = 300'000;
+  order.load_torque = 300'000;  // about 250 % IN, which would be 1200 K
+  run(axis, order, 100);
+  EXPECT_EQ(axis.state().heat_sink, 1025);
+}
+
 }  // namespace
 }  // namespace ipos::runtime
