@@ -1,3 +1,4 @@
+// The only place that calls the parser of toml++, so that no text reaches it unseen.
 #include "runtime/plant_file/read_toml.hpp"
 
 #include <utility>

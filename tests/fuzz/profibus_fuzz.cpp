@@ -30,8 +30,7 @@ void check_line(Input input) {
     PrmData prm;
     prm.lock = prm.sync = prm.freeze = true;
     prm.watchdog = n == 0;
-    prm.watchdog_factor_1 = 1;  // 10 ms, which a run can reach
-    prm.watchdog_factor_2 = 1;
+    prm.watchdog_factor_1 = prm.watchdog_factor_2 = 1;  // 10 ms, which a run can reach
     prm.ident = option_type(static_cast<OptionKind>(n)).ident;
     masters[n]->add_slave({static_cast<uint8_t>(10 + n), prm, {0xF0}, 2, 2});
     masters[n]->start();

@@ -148,7 +148,10 @@ TEST(Follower, IsLostAfterThreeCycles) {
     inputs.position = 1'000'000 + 20 * t;
     follower.tick(inputs);
     EXPECT_EQ(follower.known(), t >= 10) << t;
-    EXPECT_NEAR(static_cast<double>(follower.step()) / static_cast<double>(kIncrement), t < 5 ? 0 : t < 10 ? 40 : 20,
+    EXPECT_NEAR(static_cast<double>(follower.step()) / static_cast<double>(kIncrement),
+                t < 5    ? 0
+                : t < 10 ? 40
+                         : 20,
                 1e-3)
         << t;
   }
