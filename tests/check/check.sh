@@ -28,13 +28,24 @@ asan() {
   return $status
 }
 
+# The compiler that a preset names, or its toolchain file.
+compiler_of() {
+  local settings toolchain
+  settings=$(cmake --preset "$1" -N)
+  toolchain=$(sed -n 's/^ *CMAKE_TOOLCHAIN_FILE.*="\(.*\)"$/\1/p' <<<"$settings")
+  if [ -n "$toolchain" ]; then
+    sed -n 's/^set(CMAKE_CXX_COMPILER \(.*\))$/\1/p' "$toolchain"
+  else
+    sed -n 's/^ *CMAKE_CXX_COMPILER="\(.*\)"$/\1/p' <<<"$settings"
+  fi
+}
+
 # Every preset can be configured, and its compiler makes the first layer; one without its compiler here is told.
 presets() {
   local preset compiler target status=0
-  local -A compilers=([windows]=x86_64-w64-mingw32-g++-posix [cortex-m3]=arm-none-eabi-g++ [cortex-m4f]=arm-none-eabi-g++
-    [clang]=clang++ [asan]=clang++ [tsan]=clang++ [fuzz]=clang++)
   for preset in $(cmake --list-presets | sed -n 's/^ *"\(.*\)" *-.*/\1/p'); do
-    compiler=${compilers[$preset]:-g++} target=ipos_isa
+    compiler=$(compiler_of "$preset") target=ipos_isa
+    compiler=${compiler:-g++}
     case $preset in cortex-*) target=all ;; esac
     if ! command -v "$compiler" >/dev/null; then
       echo "preset $preset: no $compiler here"
