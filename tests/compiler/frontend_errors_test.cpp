@@ -211,6 +211,8 @@ TEST(FrontendErrorTexts, SayWhatWasFoundAndExpected) {
       {body("x = 1\n}"), "expected ';' before '}'"},
       {body("x = (1;"), "expected ')' before ';'"},
       {body("x = a[1;"), "expected ']' before ';'"},
+      {"long x[2] = {1 2};", "expected '}' before '2'"},
+      {"long x[2] = {1;", "expected '}' before ';'"},
       {body("x = ;"), "expected an expression before ';'"},
       {body(")"), "expected a statement before ')'"},
       {body("case 1;"), "expected ':' before ';'"},
