@@ -25,8 +25,10 @@ bool ends_operand(TokenKind kind) {
 
 Symbol TokenFeed::resume() {
   resuming_ = false;
-  // A second error at the same token: leave it behind, or there would be no end.
-  const size_t at = repeated_ && found().kind != TokenKind::End ? last_ + 1 : last_;
+  // More errors at the same token: leave it behind, or there would be no end. A '}' may fit behind the second one, as
+  // then the statement that is missing before it is taken as there.
+  const int patience = found().kind == TokenKind::RightBrace ? 1 : 0;
+  const size_t at = repeated_ > patience && found().kind != TokenKind::End ? last_ + 1 : last_;
   if (directive_) {
     directive_.reset();
     return sync(behind_directive(at));

@@ -62,7 +62,7 @@ TokenFeed::Expected::Expected(const Parser::context& context) : set(Parser::YYNT
 
 void TokenFeed::syntax_error(const Parser::context& context) {
   const Expected expected(context);
-  repeated_ = last_ == last_error_;
+  repeated_ = last_ == last_error_ ? repeated_ + 1 : 0;
   last_error_ = last_;
   resuming_ = true;
   semicolon_fits_ = expected.has(Kind::S_Semicolon);
@@ -71,7 +71,7 @@ void TokenFeed::syntax_error(const Parser::context& context) {
   const TokenKind previous = before(1).kind;
   const bool consequence =
       previous == TokenKind::Stray || previous == TokenKind::Hash || previous == TokenKind::OpenQuote;
-  if (!repeated_ && !stopped_ && !consequence) explain(expected);
+  if (repeated_ == 0 && !stopped_ && !consequence) explain(expected);
 }
 
 void TokenFeed::explain(const Expected& expected) {

@@ -95,7 +95,7 @@ class TokenFeed {
   size_t last_error_ = SIZE_MAX;     // token of the last syntax error: never two at one place
   bool fresh_ = true;                // the next token begins a declaration
   bool resuming_ = false;            // next() has to send Sync
-  bool repeated_ = false;            // the error is at the place of the one before
+  int repeated_ = 0;                 // errors before at the place of this one
   bool semicolon_fits_ = false;      // a ';' would have been right at the error
   bool brace_fits_ = false;          // a '{' would have been
   bool brace_reported_ = false;      // a missing '}' is known

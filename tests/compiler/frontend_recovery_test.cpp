@@ -106,6 +106,13 @@ TEST(FrontendRecovery, GoesOnBehindAHead) {
   const RecoveryRow rows[] = {
       {"if (x { y; } z;", "if (0) { y; } z;"},
       {"if (x y; z;", "if (0) ; z;"},
+      {"{ if (x } z;", "{ if (0) ; } z;"},
+      {"{ y; while (x } z;", "{ y; while (0) ; } z;"},
+      {"{ for (;x } z;", "{ for (;;) ; } z;"},
+      {"{ switch } z;", "{ switch (0) ; } z;"},
+      {"{ if (x) } z;", "{ if (x) ; } z;"},
+      {"{ do } z;", "{ } z;"},
+      {"{ if (x) y; else } z;", "{ if (x) y; } z;"},
       {"if (x y) z; w;", "if (0) z; w;"},
       {"if x) y; z;", "if (0) y; z;"},
       {"if ) y; z;", "if (0) y; z;"},
