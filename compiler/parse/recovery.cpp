@@ -25,10 +25,9 @@ bool ends_operand(TokenKind kind) {
 
 Symbol TokenFeed::resume() {
   resuming_ = false;
-  // More errors at the same token: leave it behind, or there would be no end. A '}' may fit behind the second one, as
-  // then the statement that is missing before it is taken as there.
-  const int patience = found().kind == TokenKind::RightBrace ? 1 : 0;
-  const size_t at = repeated_ > patience && found().kind != TokenKind::End ? last_ + 1 : last_;
+  // A third error at the same token: leave it behind, or there would be no end. At the second one it stays: a '}' fits as
+  // soon as the statement that is missing before it is taken as there.
+  const size_t at = repeated_ > 1 && found().kind != TokenKind::End ? last_ + 1 : last_;
   if (directive_) {
     directive_.reset();
     return sync(behind_directive(at));

@@ -58,6 +58,7 @@ TEST(FrontendRecovery, GoesOnBehindAStatement) {
       {"switch (a) { default 1; y; }", "switch (a) { y; }"},
       {"\n#pragma globals 1\n y;", "y;", {"E0178"}},
       {"\n#pragma var ( 1\n y;", "y;", {"E0178"}},
+      {"\n#pragma globals 1\n x = ; y;", "y;", {"E0178", "E0150"}},
       {"\n#declare X\n y;", "y;", {"E0179"}},
       {"\n#declare X ; ; (\n y;", "y;", {"E0179"}},
       {"x = 1 +\n#pragma list\n y;", "\n#pragma list\n y;"},
