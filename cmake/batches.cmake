@@ -20,7 +20,7 @@ function(ipos_batches target)
 endfunction()
 
 # ipos_not_hot(TARGET [SIZE n]): batches, and the optimiser does less. Not for what executes programs, drives and buses.
-# Fuzz targets run all of it millions of times, so in their build it is optimised.
+# Fuzz targets run it millions of times, so in their build it is optimised (but for most tools: tools/CMakeLists.txt).
 function(ipos_not_hot target)
   ipos_batches(${target} ${ARGN})
   if(IPOS_SANITIZE AND NOT IPOS_FUZZ)
