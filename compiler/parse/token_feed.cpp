@@ -2,6 +2,9 @@
 // here and delivered as something harmless, so that they cause no second message.
 #include "compiler/parse/token_feed.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "compiler/preprocess/number.hpp"
 
 namespace ipos::compiler {
@@ -35,7 +38,9 @@ Symbol TokenFeed::next() {
   if (found().kind != TokenKind::End) ++next_;
   // Adjacent texts are one in C: one message is enough.
   while (found().kind == TokenKind::String && tokens_[next_].kind == TokenKind::String) ++next_;
-  return symbol(found());
+  const Symbol made = symbol(found());
+  told_ = std::max(told_, next_);
+  return made;
 }
 
 void TokenFeed::stop() {
@@ -50,6 +55,11 @@ void TokenFeed::stray() {
   while (is_stray(tokens_[next_]) && !tokens_[next_].spaced && !tokens_[next_].line_start)
     span.end = tokens_[next_++].span.end;
   diagnostics_.report(Diag::StrayCharacter, span, {describe_byte(first.text)});
+}
+
+// What is wrong in the token itself. Behind an error the same token may come again.
+void TokenFeed::tell(Diag diag, Span place, std::vector<std::string> words) {
+  if (last_ >= told_) diagnostics_.report(diag, place, std::move(words));
 }
 
 Symbol TokenFeed::symbol(const Token& token) {
@@ -72,12 +82,12 @@ Symbol TokenFeed::symbol(const Token& token) {
                                                           : Parser::token::Identifier);
     }
     case TokenKind::BadName:
-      diagnostics_.report(Diag::BadIdentifier, span, {std::string(token.text)});
+      tell(Diag::BadIdentifier, span, {std::string(token.text)});
       return ident(Parser::token::Identifier);
     case TokenKind::Number: return constant(number(token));
-    case TokenKind::String: diagnostics_.report(Diag::StringConstant, span); break;
-    case TokenKind::Character: diagnostics_.report(Diag::CharConstant, span); break;
-    case TokenKind::OpenQuote: diagnostics_.report(Diag::UnterminatedString, span); break;
+    case TokenKind::String: tell(Diag::StringConstant, span); break;
+    case TokenKind::Character: tell(Diag::CharConstant, span); break;
+    case TokenKind::OpenQuote: tell(Diag::UnterminatedString, span); break;
     case TokenKind::Pragma: return {Parser::token::Pragma, span, {}};
     case TokenKind::Declare: return {Parser::token::Declare, span, {}};
     case TokenKind::DirectiveEnd:
@@ -108,7 +118,7 @@ ast::Number TokenFeed::number(const Token& token) {
     case NumberForm::Fraction: diag = Diag::FloatConstant; break;
     case NumberForm::TooLarge: diag = Diag::NumberTooLarge; break;
   }
-  diagnostics_.report(diag, token.span, {std::string(token.text)});
+  tell(diag, token.span, {std::string(token.text)});
   return {0};
 }
 

@@ -50,6 +50,7 @@ class TokenFeed {
   // token_feed.cpp
   Symbol symbol(const Token& token);
   ast::Number number(const Token& token);
+  void tell(Diag diag, Span place, std::vector<std::string> words = {});
   void stray();
   void accepted(size_t token);
   void close(TokenKind opener);
@@ -90,6 +91,7 @@ class TokenFeed {
   std::unordered_map<size_t, size_t> behind_groups_;  // of each '{', once it is asked for
   size_t next_ = 0;                  // token to deliver next
   size_t last_ = SIZE_MAX;           // token delivered last, not yet known to be accepted
+  size_t told_ = 0;                  // tokens before it have been delivered, and told what is wrong in them
   size_t declaration_ = 0;           // where the outermost declaration began
   std::optional<size_t> directive_;  // the open #pragma or #declare
   size_t last_error_ = SIZE_MAX;     // token of the last syntax error: never two at one place

@@ -103,6 +103,21 @@ TEST(FrontendRecovery, GoesOnAtALineBehindAnOperand) {
   for (const RecoveryRow& row : rows) expect_recovery(row, "main() { ", " }");
 }
 
+// The parser may ask for a token again behind an error.
+TEST(FrontendRecovery, TellsOnceWhatIsWrongInAToken) {
+  const std::pair<const char*, std::string> rows[] = {
+      {"0h->e}", "E0106"},      {"    0bed15", "E0106"}, {".2", "E0108"},       {" 99999999999.", "E0108"},
+      {"99999999999;", "E0107"}, {"'a' + }", "E0110"},   {"a\xE4 + }", "E0105"},    {"\"a\" + }", "E0109"}, {"  'x", "E0102"},
+  };
+  for (const auto& [source, code] : rows) {
+    FrontendRun run(source);
+    std::vector<std::string> told;
+    for (const std::string& message : run.parse().messages())
+      if (message.starts_with(code)) told.push_back(message);
+    EXPECT_EQ(told.size(), 1U) << source;
+  }
+}
+
 TEST(FrontendRecovery, GoesOnBehindAHead) {
   const RecoveryRow rows[] = {
       {"if (x { y; } z;", "if (0) { y; } z;"},
