@@ -8,13 +8,16 @@ import os
 import pathlib
 import random
 import re
+import select
 import signal
 import socket
 import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import time
+import tty
 import unittest
 
 IPOS = sys.argv.pop(1)
@@ -105,11 +108,13 @@ class Client:
             self.events.append(answer)
 
     def wait_for(self, event, wanted=lambda _: True):
-        while True:
+        end = time.monotonic() + 30
+        while time.monotonic() < end:
             opcode, data = self.receive()
             answer = json.loads(data) if opcode == 1 else {}
             if answer.get("event") == event and wanted(answer):
                 return answer
+        raise TimeoutError(f"no such event: {event}")
 
     def close(self):
         self.socket.close()
@@ -391,6 +396,16 @@ P101 = "RS-485"
         before = [float(row[1]) for row in rows[1:] if float(row[0]) * 1000 < state["trigger_us"] - 1]
         self.assertLess(before[-1], 100)
 
+    def test_a_drive_that_is_silent_when_the_scope_begins_is_asked_again(self):
+        client = self.serve()
+        self.drive.send_signal(signal.SIGSTOP)
+        self.assertTrue(client.ask(do="subscribe", topic="scope")["ok"])
+        time.sleep(1)
+        self.assertTrue(client.ask(do="plant")["ok"], "the server is there")
+        self.drive.send_signal(signal.SIGCONT)
+        client.ask(do="subscribe", topic="bus")
+        client.wait_for("bus", lambda event: any(row["text"].endswith("unit1") and row["count"] > 20 for row in event["rows"]))
+
     # Reading P130, index 8470 = 2116h: MOVILINK on RS-485, 02 ADR TYP PDU BCC with TYP 86h (parameter channel, acyclic)
     # and the service 31h; its answer begins with 1D (1053 1610 p. 18-25). BCC is the exclusive or of all bytes before.
     def test_the_tab_bus_shows_questions_and_answers_and_sends_when_confirmed(self):
@@ -455,6 +470,80 @@ P101 = "RS-485"
             time.sleep(0.05)
         self.assertGreater(speed, 200_000)
         client.wait_for("watch", lambda event: event["values"].get("unit1.P000", {}).get("value") == 0)
+
+
+@unittest.skipUnless(os.path.exists("/dev/pts/ptmx"), "there is no /dev/pts: no pseudo-terminals here")
+class SilentAtFirst(unittest.TestCase):
+    """A drive of this test, at the far end of a pseudo-terminal: it does not answer the first questions of an index."""
+
+    TRIES = 6  # of ipos for one question: three, and its master repeats each
+    values = {}
+
+    def drive(self):
+        rest, asked = b"", {}
+        while not self.done:
+            if not select.select([self.far], [], [], 0.05)[0]:
+                continue
+            rest += os.read(self.far, 4096)
+            while len(rest) >= 12:
+                question, rest = rest[:12], rest[12:]
+                index = int.from_bytes(question[5:7], "big")
+                asked[index] = asked.get(index, 0) + 1
+                if index in self.silent and asked[index] <= self.TRIES:
+                    continue
+                octets = b"\x1d" + question[1:7] + self.values.get(index, 0).to_bytes(4, "big")
+                check = 0
+                for octet in octets:
+                    check ^= octet
+                time.sleep(0.02)  # the question takes 14 ms at 9.6 kbaud, and a pause is in front of an answer
+                os.write(self.far, octets + bytes([check]))
+
+    def serve(self):
+        self.done = False
+        self.far, near = os.openpty()
+        name = os.ttyname(near)
+        tty.setraw(near)
+        self.addCleanup(os.close, self.far)
+        self.addCleanup(os.close, near)
+        thread = threading.Thread(target=self.drive)
+        thread.start()
+        self.addCleanup(thread.join)
+        self.addCleanup(lambda: setattr(self, "done", True))
+        ipos = subprocess.Popen([IPOS, "serve", "--device", name, "--address", "1", "--unit", "md60a", "--quiet"],
+                                stdout=subprocess.PIPE, text=True)
+        self.addCleanup(ipos.stdout.close)
+        self.addCleanup(ipos.wait)
+        self.addCleanup(ipos.terminate)
+        match = re.search(r":(\d+)/\?token=(\w+)", ipos.stdout.readline())
+        self.assertTrue(match)
+        client = Client(int(match[1]), f"/ws?token={match[2]}")
+        self.addCleanup(client.close)
+        return client
+
+    def test_all_that_the_scope_proposes_is_recorded(self):
+        self.silent = {8318, 8321, 8325}  # P000, P004 and P008
+        client = self.serve()
+        client.ask(do="subscribe", topic="scope")
+        for _ in range(100):
+            scope = client.ask(do="scope")
+            if scope["channels"] and scope["last_us"] > scope["first_us"]:
+                break
+            time.sleep(0.1)
+        self.assertEqual([one["name"] for one in scope["channels"]], ["unit1.P000", "unit1.P004", "unit1.P008"])
+        rows = client.ask(do="scope.csv")["csv"].splitlines()
+        self.assertGreater(len(rows), 1)
+
+    # TYP 85h: three process data words, acyclic (1053 1610 p. 18-25); BCC is the exclusive or of all bytes before.
+    def test_the_meaning_of_process_data_words_is_told(self):
+        self.silent = {8304}  # P870
+        self.values = {8304: 9}  # CTRL. WORD 1
+        client = self.serve()
+        for _ in range(100):
+            text = client.ask(do="bus.decode", frames=[{"bus": "RS-485", "id": 1, "data": "020185000600000000" + "80"}])["texts"][0]
+            if "CTRL. WORD 1" in text:
+                break
+            time.sleep(0.1)
+        self.assertIn("CTRL. WORD 1 0006h", text)
 
 
 class NotServing(unittest.TestCase):

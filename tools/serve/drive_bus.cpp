@@ -10,29 +10,17 @@ constexpr runtime::Time kListens = 5 * runtime::kMillisecond;  // at once; then 
 // An answer to a client's telegram on a half duplex line: the longest telegram at 9.6 kbaud twice, and the drive's time.
 constexpr runtime::Time kAnswer = 150 * runtime::kMillisecond;
 
-// P870 to P872, P873 to P875: what the process data words mean.
-runtime::WordAssignment words_from(ParameterAccess& access, int first) {
-  runtime::WordAssignment words{};
+// P870 to P872, P873 to P875: what the process data words mean. False where the drive is silent.
+bool ask_words(ParameterAccess& access, int first, runtime::WordAssignment& words) {
   for (size_t n = 0; n < words.size(); ++n) {
     const std::string number = std::to_string(first + static_cast<int>(n));
     const stdlib::Parameter* row = stdlib::parameter_table(access.unit()).find(std::string_view(number));
     if (row == nullptr) continue;
-    if (const AccessReply reply = access.execute(stdlib::Service::Read, row->index, 0))
-      words[n] = static_cast<uint8_t>(*reply);
+    const AccessReply reply = access.execute(stdlib::Service::Read, row->index, 0);
+    if (!reply && !reply.error().code) return false;
+    if (reply) words[n] = static_cast<uint8_t>(*reply);
   }
-  return words;
-}
-
-runtime::TelegramNames names_of(const DriveBus::Drive& drive) {
-  runtime::UnitNames unit;
-  unit.name = drive.name;
-  unit.unit = &drive.access.unit();
-  unit.settings.address = drive.address;
-  unit.output = words_from(drive.access, 870);
-  unit.input = words_from(drive.access, 873);
-  runtime::TelegramNames names;
-  names.units.push_back(std::move(unit));
-  return names;
+  return true;
 }
 
 }  // namespace
@@ -41,15 +29,26 @@ DriveBus::DriveBus(Desk& desk, BusLink& link, const Drive& drive, std::function<
                    std::function<void(const Desk::Call&)> must_write)
     : desk_(desk),
       link_(link),
-      station_(drive.name),
+      drive_(drive),
       now_(std::move(now)),
       must_write_(std::move(must_write)),
       traffic_(desk, *this) {
-  const auto names = [known = names_of(drive)] { return known; };
+  runtime::UnitNames unit;
+  unit.name = drive.name;
+  unit.unit = &drive.access.unit();
+  unit.settings.address = drive.address;
+  names_.units.push_back(std::move(unit));
+  ask_names();
+  const auto names = [this] { return names_; };
   if (link.can_line() != nullptr)
     traffic_.follow(*link.can_line(), [names] { return runtime::CanLineNames{names(), {}}; });
   else
     traffic_.follow(*link.serial_line(), names);
+}
+
+void DriveBus::ask_names() {
+  runtime::UnitNames& unit = names_.units.front();
+  known_ = ask_words(drive_.access, 870, unit.output) && ask_words(drive_.access, 873, unit.input);
 }
 
 const std::string& DriveBus::line() const {
@@ -66,7 +65,7 @@ Json DriveBus::describe() const {
   return {{"name", line()},
           {"kind", can ? "can" : "rs485"},
           {"baud", can ? link_.can_line()->baud() : link_.serial_line()->baud()},
-          {"stations", Json::array({station_})},
+          {"stations", Json::array({drive_.name})},
           {"faults", Json::array()},
           {"fault_rules", Json::object()}};
 }
@@ -86,6 +85,7 @@ void DriveBus::turn(bool waits) {
   if (now_() < next_second_) return;
   next_second_ = now_() + runtime::kSecond;
   traffic_.second_passed();
+  if (!known_) ask_names();
 }
 
 void DriveBus::send(const Desk::Call& call) {

@@ -32,13 +32,17 @@ class DriveBus final : private BusSource {
   runtime::Time line_now() const override { return link_.now(); }
   runtime::Time shown(runtime::Time of_line) const override { return now_() - (link_.now() - of_line); }
   void send(const Desk::Call& call) override;
+  // What the process data words mean; a drive that was silent is asked again.
+  void ask_names();
   runtime::LineLoad load() const;
 
   Desk& desk_;
   BusLink& link_;
-  std::string station_;
+  Drive drive_;
   std::function<runtime::Time()> now_;
   std::function<void(const Desk::Call&)> must_write_;
+  runtime::TelegramNames names_;  // of the drive
+  bool known_ = false;            // all of them
   BusTraffic traffic_;
   runtime::Time next_second_ = runtime::kSecond;
 };

@@ -32,11 +32,21 @@ DriveScope::DriveScope(Desk& desk, ParameterAccess& access, std::string station,
   std::vector<std::string> names;
   for (const char* number : kFirstOnes) {
     const stdlib::Parameter* row = stdlib::parameter_table(access_.unit()).find(std::string_view(number + 1));
-    if (row != nullptr && access_.execute(stdlib::Service::Read, row->index, 0))
-      names.push_back(station_ + "." + number);
+    if (row == nullptr) continue;
+    const AccessReply reply = access_.execute(stdlib::Service::Read, row->index, 0);
+    if (reply || !reply.error().code) names.push_back(station_ + "." + number);
   }
   scope_.propose(std::move(names));
-  scope_.built();
+  begin();
+}
+
+bool DriveScope::begin() {
+  try {
+    scope_.built();
+  } catch (const Mistake&) {
+    return false;
+  }
+  return true;
 }
 
 bool DriveScope::wanted() {
@@ -47,7 +57,7 @@ bool DriveScope::wanted() {
   const bool wanted = looks || (was_wanted_ && now - looked_ < kStays);
   if (wanted && !was_wanted_) {
     recorded_ = now;
-    scope_.built();
+    if (!begin()) return false;
   }
   was_wanted_ = wanted;
   return wanted;
