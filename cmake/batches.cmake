@@ -19,12 +19,14 @@ function(ipos_batches target)
   endif()
 endfunction()
 
-# ipos_not_hot(TARGET [SIZE n]): batches, and the optimiser does less. Not for what executes programs, drives and buses.
-# Fuzz targets run it millions of times, so in their build it is optimised (but for most tools: tools/CMakeLists.txt).
+# ipos_not_hot(TARGET [SIZE n] [BUSY]): batches, and the optimiser does less. Not for what executes programs, drives and
+# buses. With sanitizers it does nothing, as what they add is most of the time of an optimised build; but for what is BUSY,
+# as the suites call it some hundred thousand times, and in a build for campaigns of fuzzing alone.
 function(ipos_not_hot target)
-  ipos_batches(${target} ${ARGN})
-  if(IPOS_SANITIZE AND NOT IPOS_FUZZ)
-    target_compile_options(${target} PRIVATE -O0)  # what sanitizers add is most of the time of an optimised build
+  cmake_parse_arguments(COLD "BUSY" "" "" ${ARGN})
+  ipos_batches(${target} ${COLD_UNPARSED_ARGUMENTS})
+  if(IPOS_SANITIZE AND IPOS_TESTS AND NOT COLD_BUSY)
+    target_compile_options(${target} PRIVATE -O0)
   elseif(NOT IPOS_SANITIZE)
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()

@@ -19,7 +19,7 @@ endif()
 function(ipos_embedded_library name kind)
   cmake_parse_arguments(BUILD "" "VARIABLES;WORDS;FAST" "" ${ARGN})
   add_library(${name} ${kind} ${embedded_sources})
-  set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)  # as in vm/CMakeLists.txt
+  set_target_properties(${name} PROPERTIES IPOS_FUZZED ON UNITY_BUILD OFF)  # as in vm/CMakeLists.txt
   if(BUILD_FAST)
     target_sources(${name} PRIVATE ${fast_sources})
     target_compile_definitions(${name} PRIVATE IPOS_LABEL_ALIGNMENT=0

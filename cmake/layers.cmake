@@ -22,6 +22,9 @@ if(IPOS_SANITIZE)
   target_compile_options(ipos_options INTERFACE -fsanitize=${IPOS_SANITIZE} -fno-omit-frame-pointer
                          -fno-sanitize-recover=all)
   target_link_options(ipos_options INTERFACE -fsanitize=${IPOS_SANITIZE})
+  # What sanitizers write down of each check has addresses in it, a million in all. A program at a fixed place need not
+  # correct them as it starts, which takes two thirds of the time then; some suites start it hundreds of times.
+  target_link_options(ipos_options INTERFACE $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:-no-pie>)
   find_program(IPOS_LLD ld.lld)
   if(IPOS_LLD AND CMAKE_CXX_COMPILER_ID STREQUAL Clang)  # in two thirds of the time of ld
     target_link_options(ipos_options INTERFACE -fuse-ld=lld)
@@ -31,6 +34,15 @@ if(IPOS_SANITIZE)
     # spans that it takes for empty.
     target_compile_options(ipos_options INTERFACE -Wno-maybe-uninitialized -Wno-array-bounds)
   endif()
+endif()
+if(IPOS_FUZZ)
+  # A fuzzer that sees no branches finds nothing, so all that its targets run counts them (IPOS_FUZZED). Notes of what is
+  # compared find the words of a form and cost a quarter of the time of a run, so only what reads a form of bytes takes
+  # them (IPOS_FUZZ_COMPARES).
+  set(fuzzed $<BOOL:$<TARGET_PROPERTY:IPOS_FUZZED>>)
+  set(compares $<BOOL:$<TARGET_PROPERTY:IPOS_FUZZ_COMPARES>>)
+  target_compile_options(ipos_options INTERFACE $<${fuzzed}:-fsanitize=fuzzer-no-link>
+                         $<$<AND:${fuzzed},$<NOT:${compares}>>:-fno-sanitize-coverage=trace-cmp>)
 endif()
 if(IPOS_COVERAGE)
   target_compile_options(ipos_options INTERFACE --coverage -O0)
@@ -57,6 +69,7 @@ function(ipos_layer name)
     target_link_libraries(ipos_${name} PUBLIC ipos::${used})
   endforeach()
   target_link_libraries(ipos_${name} PRIVATE ipos_options ${LAYER_LIBS})
+  set_target_properties(ipos_${name} PROPERTIES IPOS_FUZZED ON)
   ipos_for_shared_libraries(ipos_${name})
   if("fmt::fmt" IN_LIST LAYER_LIBS)
     ipos_precompiled(ipos_${name})

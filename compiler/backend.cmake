@@ -11,5 +11,5 @@ ipos_layer(compiler
   SOURCES ${compiler_sources}
   USES frontend asm isa image stdlib
   LIBS fmt::fmt)
-ipos_not_hot(ipos_asm)
-ipos_not_hot(ipos_compiler SIZE 20)
+ipos_not_hot(ipos_asm BUSY)
+ipos_not_hot(ipos_compiler SIZE 20 BUSY)

@@ -14,8 +14,8 @@ parts='asan presets fuzz tsan valgrind tutorial'
 # Programs with threads: `ipos test -j` and the reader behind the ports and the page.
 threaded=(ipos_testing_tests ipos_port_tests ipos_serve_tests ipos_library_tests)
 # Not for sanitizers: they run another processor's code, boot a kernel, build the project anew, or start the program some
-# thousand times (ipos_schemas: 40 s without sanitizers).
-unfit='ipos_schemas|aarch64|ipos_realbus|ipos_memcheck|ipos_debian|ipos_install|ipos_subdirectory|ipos_hello|cortex|ipos_pictures|conformance'
+# thousand times (ipos_schemas: 40 s without sanitizers). The corpora of fuzzing are replayed by `fuzz`.
+unfit='ipos_fuzz_replay|ipos_schemas|aarch64|ipos_realbus|ipos_memcheck|ipos_debian|ipos_install|ipos_subdirectory|ipos_hello|cortex|ipos_pictures|conformance'
 
 configure() { cmake --preset "$1" -DIPOS_TESTS=ON >/dev/null; }
 
@@ -64,8 +64,8 @@ fuzz() { # the targets are those of the folder: one that is not built is missed
   local targets
   targets=$(cd tests/fuzz && printf 'ipos_fuzz_%s\n' *_fuzz.cpp | sed 's/_fuzz\.cpp$//')
   # shellcheck disable=SC2086
-  cmake --preset fuzz >/dev/null && cmake --build --preset fuzz -j "$jobs" --target ipos_fuzz_seeds $targets &&
-    ctest --test-dir build/fuzz -R '^ipos_fuzz_seeds$' >/dev/null && tests/fuzz/short.sh build/fuzz
+  configure asan && cmake --build --preset asan -j "$jobs" --target ipos_fuzz_seeds $targets &&
+    ctest --preset asan -R '^ipos_fuzz_seeds$' >/dev/null && tests/fuzz/short.sh build/asan
 }
 
 tsan() {

@@ -106,8 +106,9 @@ TEST(FrontendRecovery, GoesOnAtALineBehindAnOperand) {
 // The parser may ask for a token again behind an error.
 TEST(FrontendRecovery, TellsOnceWhatIsWrongInAToken) {
   const std::pair<const char*, std::string> rows[] = {
-      {"0h->e}", "E0106"},      {"    0bed15", "E0106"}, {".2", "E0108"},       {" 99999999999.", "E0108"},
-      {"99999999999;", "E0107"}, {"'a' + }", "E0110"},   {"a\xE4 + }", "E0105"},    {"\"a\" + }", "E0109"}, {"  'x", "E0102"},
+      {"0h->e}", "E0106"},       {"    0bed15", "E0106"}, {".2", "E0108"},
+      {" 99999999999.", "E0108"}, {"99999999999;", "E0107"}, {"'a' + }", "E0110"},
+      {"\"a\" + }", "E0109"},    {"a\xE4 + }", "E0105"},    {"  'x", "E0102"},
   };
   for (const auto& [source, code] : rows) {
     FrontendRun run(source);

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A short run of every target with a fixed seed: `short.sh BUILD [RUNS]`, of a build with the preset `fuzz`. First each
+# A short run of every target with a fixed seed: `short.sh BUILD [RUNS]`, of a build with the preset `asan` or `fuzz`. First each
 # replays its corpus, with a look for leaks. The targets are those of the folder, so one that is not built is a failure,
 # and so is one without inputs. Nothing is written to the corpora; inputs that fail are left in BUILD/short. As many
 # targets run at a time as there are processors.

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <type_traits>
 
 namespace ipos::vm {
@@ -27,7 +28,10 @@ class ByteWriter {
   void operator()(const T& value) {
     static_assert(std::is_integral_v<T> || std::is_enum_v<T>);
     auto rest = static_cast<uint64_t>(value);
-    for (size_t n = 0; n < sizeof(T); ++n, rest >>= 8) *at_++ = static_cast<uint8_t>(rest);
+    uint8_t bytes[sizeof(T)];
+    for (size_t n = 0; n < sizeof(T); ++n, rest >>= 8) bytes[n] = static_cast<uint8_t>(rest);
+    std::memcpy(at_, bytes, sizeof(T));  // one store
+    at_ += sizeof(T);
   }
   uint8_t* at() const { return at_; }
 
@@ -42,8 +46,11 @@ class ByteReader {
   explicit ByteReader(const uint8_t* at) : at_(at) {}
   template <class T>
   void operator()(T& value) {
+    uint8_t bytes[sizeof(T)];
+    std::memcpy(bytes, at_, sizeof(T));  // one load
+    at_ += sizeof(T);
     uint64_t all = 0;
-    for (size_t n = 0; n < sizeof(T); ++n) all |= uint64_t{*at_++} << (8 * n);
+    for (size_t n = 0; n < sizeof(T); ++n) all |= uint64_t{bytes[n]} << (8 * n);
     if constexpr (std::is_same_v<T, bool>) {
       ok_ = ok_ && all <= 1;
       value = (all & 1) != 0;

@@ -22,7 +22,11 @@ struct LittleEndianReader {
       return 0;
     }
     uint32_t number = 0;
-    for (size_t i = 0; i < bytes; ++i) number |= static_cast<uint32_t>(rest[i]) << (8 * i);
+    int shift = 0;
+    for (const uint8_t byte : rest.first(bytes)) {
+      number |= uint32_t{byte} << shift;
+      shift += 8;
+    }
     rest = rest.subspan(bytes);
     return number;
   }

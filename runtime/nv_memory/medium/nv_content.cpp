@@ -23,6 +23,7 @@ template <typename Number>
 bool take_list(LittleEndianReader& in, std::vector<std::pair<uint16_t, Number>>& list) {
   const uint32_t count = in.take(4);
   if (!in.good || count > in.rest.size() / kEntrySize) return false;
+  list.reserve(count);
   for (uint32_t i = 0; i < count; ++i) {
     const auto index = static_cast<uint16_t>(in.take(2));
     const auto number = static_cast<Number>(in.take(4));

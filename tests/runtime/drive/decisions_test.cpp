@@ -256,10 +256,11 @@ class Pair {
     EXPECT_EQ(a.can_position(), anew_.drive().can_position());
     EXPECT_EQ(a.follows(), anew_.drive().follows());
     EXPECT_EQ(a.po_data_enabled(), anew_.drive().po_data_enabled());
+    const runtime::Terminals &ours = a.terminals(), &theirs = anew_.drive().terminals();
     for (unsigned f = 0; f < 33; ++f) {
       const auto function = static_cast<runtime::InputFunction>(f);
-      EXPECT_EQ(a.terminals().on(function), anew_.drive().terminals().on(function));
-      EXPECT_EQ(a.terminals().off(function), anew_.drive().terminals().off(function));
+      EXPECT_EQ(ours.on(function), theirs.on(function));
+      EXPECT_EQ(ours.off(function), theirs.off(function));
     }
     for (const char* counter : {"015", "016", "017"})
       if (kept_.rig.parameters.table().find(counter) != nullptr) {
