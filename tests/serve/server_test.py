@@ -303,6 +303,20 @@ class Serving(unittest.TestCase):
         self.assertEqual(self.ipos.stderr.read(), "")
 
 
+def client_of_device(test, line, *more):
+    """`ipos serve --device` for a test, and a client of it."""
+    ipos = subprocess.Popen([IPOS, "serve", "--device", line, "--address", "1", "--quiet", *more],
+                            stdout=subprocess.PIPE, text=True)
+    test.addCleanup(ipos.stdout.close)
+    test.addCleanup(ipos.wait)
+    test.addCleanup(ipos.terminate)
+    match = re.search(r":(\d+)/\?token=(\w+)", ipos.stdout.readline())
+    test.assertTrue(match)
+    client = Client(int(match[1]), f"/ws?token={match[2]}")
+    test.addCleanup(client.close)
+    return client
+
+
 @unittest.skipUnless(os.path.exists("/dev/pts/ptmx"), "there is no /dev/pts: no pseudo-terminals here")
 class RealDrive(unittest.TestCase):
     """A simulated drive at a pseudo-terminal, which is a real one for `ipos serve --device`."""
@@ -343,16 +357,7 @@ P101 = "RS-485"
         self.line = str(line)
 
     def serve(self, *more):
-        ipos = subprocess.Popen([IPOS, "serve", "--device", self.line, "--address", "1", "--quiet", *more],
-                                stdout=subprocess.PIPE, text=True)
-        self.addCleanup(ipos.stdout.close)
-        self.addCleanup(ipos.wait)
-        self.addCleanup(ipos.terminate)
-        match = re.search(r":(\d+)/\?token=(\w+)", ipos.stdout.readline())
-        self.assertTrue(match)
-        client = Client(int(match[1]), f"/ws?token={match[2]}")
-        self.addCleanup(client.close)
-        return client
+        return client_of_device(self, self.line, *more)
 
     def test_it_only_reads_unless_told(self):
         client = self.serve()
@@ -509,16 +514,7 @@ class SilentAtFirst(unittest.TestCase):
         thread.start()
         self.addCleanup(thread.join)
         self.addCleanup(lambda: setattr(self, "done", True))
-        ipos = subprocess.Popen([IPOS, "serve", "--device", name, "--address", "1", "--unit", "md60a", "--quiet"],
-                                stdout=subprocess.PIPE, text=True)
-        self.addCleanup(ipos.stdout.close)
-        self.addCleanup(ipos.wait)
-        self.addCleanup(ipos.terminate)
-        match = re.search(r":(\d+)/\?token=(\w+)", ipos.stdout.readline())
-        self.assertTrue(match)
-        client = Client(int(match[1]), f"/ws?token={match[2]}")
-        self.addCleanup(client.close)
-        return client
+        return client_of_device(self, name, "--unit", "md60a")
 
     def test_all_that_the_scope_proposes_is_recorded(self):
         self.silent = {8318, 8321, 8325}  # P000, P004 and P008
