@@ -20,8 +20,8 @@ function(ipos_batches target)
 endfunction()
 
 # ipos_not_hot(TARGET [SIZE n] [BUSY]): batches, and the optimiser does less. Not for what executes programs, drives and
-# buses. With sanitizers it does nothing, as what they add is most of the time of an optimised build; but for what is BUSY,
-# as the suites call it some hundred thousand times, and in a build for campaigns of fuzzing alone.
+# buses. In builds with sanitizers the optimiser does nothing, as what they add is most of the time to optimise. Two things
+# are optimised there, too: what is BUSY, which the suites call very often, and all in a build for campaigns of fuzzing alone.
 function(ipos_not_hot target)
   cmake_parse_arguments(COLD "BUSY" "" "" ${ARGN})
   ipos_batches(${target} ${COLD_UNPARSED_ARGUMENTS})

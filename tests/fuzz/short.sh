@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# A short run of every target with a fixed seed: `short.sh BUILD [RUNS]`, of a build with the preset `asan` or `fuzz`. First each
-# replays its corpus, with a look for leaks. The targets are those of the folder, so one that is not built is a failure,
-# and so is one without inputs. Nothing is written to the corpora; inputs that fail are left in BUILD/short. As many
-# targets run at a time as there are processors.
+# A short run of every target with a fixed seed: `short.sh BUILD [RUNS]`, of a build with the preset `asan` or `fuzz`. First
+# each replays its corpus, with a look for leaks. The targets are those of the folder, so one that is not built is a
+# failure, and so is one without inputs. Nothing is written to the corpora; inputs that fail are left in BUILD/short. As
+# many targets run at a time as there are processors.
 set -uo pipefail
 build=$(cd "$1" && pwd)/tests/fuzz runs=${2:-3000}
 here=$(cd "$(dirname "$0")" && pwd)
