@@ -1,20 +1,21 @@
 #!/usr/bin/env bash
 # A campaign with one target of a build with the preset `fuzz`: `campaign.sh BUILD TARGET RUNS [LENGTH [OPTION...]]`. Inputs
 # have LENGTH bytes at most (96); OPTIONs are libFuzzer's, such as -max_total_time=600 -seed=2. What it found is kept in
-# BUILD/campaign/TARGET, so the next one goes on from there; what of it reaches code that corpus/TARGET does not is put
-# there. With 0 runs corpus/TARGET is put together anew: the inputs with a name stay, and of all others as few as reach
+# BUILD/campaign/TARGET, so the next one goes on from there; what of it reaches code that corpus/TARGET.ar does not is put
+# there. With 0 runs corpus/TARGET.ar is put together anew: the inputs with a name stay, and of all others as few as reach
 # the same. Prints executions, executions a second of processor time and coverage, for README.md. A finding ends it; its
 # input is BUILD/campaign/TARGET-crash-*.
 set -euo pipefail
 build=$(cd "$1" && pwd) target=$2 runs=$3 length=${4:-96}
 shift $(($# < 4 ? $# : 4))
 here=$(cd "$(dirname "$0")" && pwd)
-corpus=$here/corpus/$target
+corpus=$build/campaign/corpus/$target
 found=$build/campaign/$target
 seeds=$build/tests/fuzz/seeds
-mkdir -p "$found" "$corpus"
+mkdir -p "$found"
 exec {lock}>"$found.lock"
 flock "$lock" # another one would take away what this one merges
+"$here/corpora.sh" unpack "$build/campaign/corpus" "$target"
 words=() more=()
 for dict in "$here/$target.dict" "$seeds/$target.dict"; do
   [ ! -e "$dict" ] || words=("-dict=$dict")
@@ -45,4 +46,5 @@ else
     '{printf "%d executions, %d a second\n", units, units / ($1 + $2)}' "$found.time"
   merge "$corpus" "$found"
 fi
+"$here/corpora.sh" pack "$build/campaign/corpus" "$target"
 echo "before: $before; now: $(size_of)"

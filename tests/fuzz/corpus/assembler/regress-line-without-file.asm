@@ -1,3 +1,0 @@
-.file a.IPC
-.line 2 7 17
-  END
