@@ -20,22 +20,24 @@ def main():
     except ImportError:
         print("the examples are not tried: there is no jsonschema or no tomllib here")
         return bad
+    roots = {kind: json.loads((schemas / f"{kind}.schema.json").read_text()) for kind in ("plant", "test")}
+    files = jsonschema.RefResolver(schemas.as_uri() + "/", None)  # a test refers to tables of a plant
+    validators = {kind: jsonschema.Draft7Validator(root, resolver=files) if kind == "test" else
+                  jsonschema.Draft7Validator(root) for kind, root in roots.items()}
     taken = 0
     for path in sorted((root / "examples").rglob("*.toml")):
         kind = "test" if path.name.endswith(".test.toml") else "plant"
         content = tomllib.loads(path.read_text())
         if kind == "plant" and "station" not in content:
             continue
-        schema = json.loads((schemas / f"{kind}.schema.json").read_text())
-        for error in jsonschema.Draft7Validator(schema).iter_errors(content):
+        for error in validators[kind].iter_errors(content):
             print(f"{path}: {list(error.path)}: {error.message[:200]}")
             bad = 1
         taken += 1
     # What no reader takes no schema takes.
-    plant = jsonschema.Draft7Validator(json.loads((schemas / "plant.schema.json").read_text()))
     for wrong in ('[[station]]\nname = "a"\nunit = "md60b"\n', '[[station]]\nname = 5\nunit = "md60a"\n',
                   '[[buss]]\n', '[[bus]]\nname = "b"\n', '[[station]]\nname = "a"\nunit = "md60a"\nspeed = 1\n'):
-        if plant.is_valid(tomllib.loads(wrong)):
+        if validators["plant"].is_valid(tomllib.loads(wrong)):
             print(f"the schema takes {wrong!r}")
             bad = 1
     print(f"{taken} plants and tests")

@@ -4,6 +4,8 @@
     schema.py IPOS FOLDER            writes plant.schema.json and test.schema.json
     schema.py IPOS FOLDER --check    fails where they differ from what is there
 
+A table that both files have in the same form stands in the $defs of plant.schema.json; test.schema.json refers to it.
+
 Nothing is listed here: each table is shown to `ipos` with a key and values it cannot know, and what it says is known,
 needed or wrong there is the schema. The parameters are those of `ipos param list`.
 """
@@ -193,12 +195,35 @@ def root_schema(ipos, folder, test):
     }
 
 
+def share(plant, test):
+    """Moves the tables of a plant to its $defs, and lets a test refer to those that it has in the same form."""
+    plant["$defs"] = {}
+    for key, table in plant["properties"].items():
+        if "items" not in table:
+            continue
+        plant["$defs"][key] = table["items"]
+        if test["properties"].get(key) == table:
+            test["properties"][key] = {"type": "array", "items": {"$ref": f"plant.schema.json#/$defs/{key}"}}
+        plant["properties"][key] = {"type": "array", "items": {"$ref": f"#/$defs/{key}"}}
+
+
+def text_of(value, indent=""):
+    """JSON with a line for each value that fits into one, so that a change of a key is a line in a diff."""
+    line = json.dumps(value)
+    if len(indent) + len(line) <= 120 or not isinstance(value, dict):
+        return line
+    rows = [f"{indent} {json.dumps(key)}: {text_of(part, indent + ' ')}" for key, part in value.items()]
+    return "{\n" + ",\n".join(rows) + "\n" + indent + "}"
+
+
 def main():
     ipos, target, check = str(Path(sys.argv[1]).resolve()), Path(sys.argv[2]), "--check" in sys.argv
     different = 0
     with tempfile.TemporaryDirectory() as folder:
-        for name, test in (("plant", False), ("test", True)):
-            text = json.dumps(root_schema(ipos, folder, test), indent=1) + "\n"
+        schemas = {name: root_schema(ipos, folder, name == "test") for name in ("plant", "test")}
+        share(*schemas.values())
+        for name, schema in schemas.items():
+            text = text_of(schema) + "\n"
             file = target / f"{name}.schema.json"
             if not check:
                 file.write_text(text)
