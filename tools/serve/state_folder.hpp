@@ -1,0 +1,25 @@
+// What `ipos serve` keeps for its next start: small files in the user's state folder, which only this user can read
+// (0700, 0600). A file is the old one or the new one, whatever happens while it is written.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace ipos::tools::serve {
+
+// `$XDG_STATE_HOME/ipos`, else `~/.local/state/ipos`; made where it is missing. Empty: this user has no such place.
+std::filesystem::path state_folder();
+
+// A name of a file there for something whose own name may have any characters, as a port or a path has: the kind in
+// front, then what can be read of it, then a sum that tells two of them apart.
+std::string state_name(std::string_view kind, std::string_view of);
+
+// Nothing where there is none, where it is no plain file of this user, or where others may read or write it.
+std::optional<std::string> read_state(const std::string& name);
+// False: it could not be written, and the old one is there.
+bool write_state(const std::string& name, std::string_view text);
+void remove_state(const std::string& name);
+
+}  // namespace ipos::tools::serve
