@@ -45,12 +45,11 @@ vm::HostReply system_call(const CommandCall& call) {
 
 }  // namespace
 
-FamilyReply call_command(CommandCall& call) {
-  switch (call.command.opcode) {
-    case vm::Opcode::InputCall: return input_call(call);
-    case vm::Opcode::SystemCall: return system_call(call);
-    default: return std::nullopt;
-  }
-}
+namespace commands {
+
+vm::HostReply InputCall(CommandCall& call) { return input_call(call); }
+vm::HostReply SystemCall(CommandCall& call) { return system_call(call); }
+
+}  // namespace commands
 
 }  // namespace ipos::runtime

@@ -1,5 +1,5 @@
 // One system command on its way to the service that carries it out, and what all services may work on. Each
-// family of commands is a function over a CommandCall, in a file of its own.
+// command of a program that the host executes is a function over a CommandCall.
 #pragma once
 
 #include <array>
@@ -51,12 +51,19 @@ struct CommandCall {
 };
 
 constexpr vm::HostReply illegal(const char* reason) { return {vm::Answer::Fault, vm::kFaultIllop, reason}; }
+// The reason of a command that the simulated drive does not know.
+inline constexpr const char* kNotSimulated = "this command is not simulated yet, see docs/reference/limits.md";
 
-// The families. Nothing: the command belongs to another one.
-using FamilyReply = std::optional<vm::HostReply>;
-FamilyReply communication_command(CommandCall& call);  // SCOM, SCOMON, SCOMST, MOVLNK
-FamilyReply call_command(CommandCall& call);           // INPCALL, SYSCALL
-FamilyReply unit_command(CommandCall& call);           // SETFR, RESET, MEM, WDON, WDOFF
-FamilyReply system_value_command(CommandCall& call);   // GETSYS, SETSYS
+// A function with the name of its row for each row of opcodes.def that the host executes.
+namespace commands {
+#define COMMAND_Never(Name)
+#define COMMAND_Zero(Name)
+#define COMMAND_Index(Name)
+#define COMMAND_Depth(Name)
+#define COMMAND_Host(Name) vm::HostReply Name(CommandCall& call);
+#define OPCODE(code, Name, text, flow, reads, writes, faults, meaning) COMMAND_##faults(Name)
+#include "vm/isa/opcodes.def"
+#undef COMMAND_Host
+}  // namespace commands
 
 }  // namespace ipos::runtime

@@ -1,4 +1,4 @@
-// SCOM, SCOMON and SCOMST (1053 1610 p. 53 to 56), MOVLNK (p. 47).
+// SCOM, SCOMON and SCOMST (1053 1610 p. 53 to 56), MOVLNK (p. 47); MOVCOM and MOVON are not simulated.
 #include <algorithm>
 
 #include "runtime/commands/command_call.hpp"
@@ -41,17 +41,21 @@ vm::HostReply switch_objects(CommandCall& call) {
 
 }  // namespace
 
-FamilyReply communication_command(CommandCall& call) {
+namespace commands {
+
+vm::HostReply Scom(CommandCall& call) { return define_object(call); }
+vm::HostReply ScomOn(CommandCall& call) { return start_objects(call.services); }
+vm::HostReply ScomState(CommandCall& call) { return switch_objects(call); }
+
+vm::HostReply Movlnk(CommandCall& call) {
   const StationServices& s = call.services;
-  switch (call.command.opcode) {
-    case vm::Opcode::Scom: return define_object(call);
-    case vm::Opcode::ScomOn: return start_objects(s);
-    case vm::Opcode::ScomState: return switch_objects(call);
-    case vm::Opcode::Movlnk:
-      return s.movilink.start(s.clock.now(), call.machine, call.context,
-                              static_cast<uint32_t>(call.operand(0)), call.why);
-    default: return std::nullopt;
-  }
+  return s.movilink.start(s.clock.now(), call.machine, call.context, static_cast<uint32_t>(call.operand(0)),
+                          call.why);
 }
+
+vm::HostReply MovCom(CommandCall&) { return illegal(kNotSimulated); }
+vm::HostReply MovOn(CommandCall&) { return illegal(kNotSimulated); }
+
+}  // namespace commands
 
 }  // namespace ipos::runtime

@@ -1,7 +1,10 @@
 // The commands one by one. Keyword values are those of vm/isa/keywords.def.
 #include "runtime/commands/positioning_commands.hpp"
 
+#include <cassert>
 #include <utility>
+
+#include "runtime/commands/command_call.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -26,8 +29,12 @@ enum SetSysKeyword : int32_t { kPosRamp = 9, kPosSpeed = 10 };
 
 }  // namespace
 
-std::optional<vm::HostReply> PositioningCommands::execute(vm::Machine& machine, int context,
-                                                          const vm::Instruction& command) {
+bool PositioningCommands::has_value(Opcode opcode, int32_t keyword) {
+  return opcode == Opcode::GetSys ? keyword == kGetCam : keyword == kPosRamp || keyword == kPosSpeed;
+}
+
+vm::HostReply PositioningCommands::execute(vm::Machine& machine, int context,
+                                           const vm::Instruction& command) {
   const auto h = machine.variables();
   const int32_t a = command.operands[0];
   const uint32_t address = machine.context(context).pc;
@@ -67,12 +74,12 @@ std::optional<vm::HostReply> PositioningCommands::execute(vm::Machine& machine, 
       return vm::HostReply{};
     }
 
-    case Opcode::GetSys:
-      if (command.operands[1] != kGetCam) return std::nullopt;
-      return run_cam(h, static_cast<uint32_t>(a));
+    case Opcode::GetSys: return run_cam(h, static_cast<uint32_t>(a));
     case Opcode::SetSys: return set_system_value(h, a, static_cast<size_t>(command.operands[1]), address);
-    default: return std::nullopt;
+    default: break;
   }
+  assert(false && "the command is one of positioning");
+  return {};
 }
 
 vm::HostReply PositioningCommands::travel(vm::Machine& machine, int context, const vm::Instruction& command) {
@@ -103,28 +110,25 @@ void PositioningCommands::resume(vm::Machine& machine) {
     if (std::exchange(waiting_[slot(context)], false)) machine.resume(context);
 }
 
-std::optional<vm::HostReply> PositioningCommands::set_system_value(std::span<const int32_t> h,
-                                                                   int32_t keyword, size_t variable,
-                                                                   uint32_t address) {
+vm::HostReply PositioningCommands::set_system_value(std::span<const int32_t> h, int32_t keyword,
+                                                    size_t variable, uint32_t address) {
   constexpr int32_t kDigit = 100;  // in 1/1000 rpm
   const auto speed = [&](size_t n) {
     const int64_t mrpm = int64_t{h[variable + n]} * kDigit;
     return static_cast<int32_t>(std::clamp<int64_t>(mrpm, 0, INT32_MAX));
   };
   const auto has = [&](size_t count) { return variable + count <= h.size(); };
-  switch (keyword) {
-    case kPosRamp:
-      if (!has(2)) return fail("SETSYS POS.RAMP: the structure ends behind the variables of the unit");
-      service_.set_parameter("911", h[variable], address);
-      service_.set_parameter("912", h[variable + 1], address);
-      return vm::HostReply{};
-    case kPosSpeed:
-      if (!has(2)) return fail("SETSYS POS.SPEED: the structure ends behind the variables of the unit");
-      service_.set_parameter("913", speed(0), address);
-      service_.set_parameter("914", speed(1), address);
-      return vm::HostReply{};
-    default: return std::nullopt;
+  assert(has_value(Opcode::SetSys, keyword));
+  if (keyword == kPosRamp) {
+    if (!has(2)) return fail("SETSYS POS.RAMP: the structure ends behind the variables of the unit");
+    service_.set_parameter("911", h[variable], address);
+    service_.set_parameter("912", h[variable + 1], address);
+    return {};
   }
+  if (!has(2)) return fail("SETSYS POS.SPEED: the structure ends behind the variables of the unit");
+  service_.set_parameter("913", speed(0), address);
+  service_.set_parameter("914", speed(1), address);
+  return {};
 }
 
 vm::HostReply PositioningCommands::run_cam(std::span<int32_t> h, uint32_t structure) {
@@ -135,5 +139,26 @@ vm::HostReply PositioningCommands::run_cam(std::span<int32_t> h, uint32_t struct
   return good ? vm::HostReply{}
               : fail("GETSYS CAM: the structure leads to no variable of the unit, or there are too many");
 }
+
+namespace commands {
+namespace {
+
+vm::HostReply position(CommandCall& call) {
+  PositioningCommands* positioning = call.services.positioning;
+  if (positioning == nullptr) return illegal("the unit does not position");
+  return positioning->execute(call.machine, call.context, call.command);
+}
+
+}  // namespace
+
+vm::HostReply GoAbsH(CommandCall& call) { return position(call); }
+vm::HostReply GoAbsK(CommandCall& call) { return position(call); }
+vm::HostReply GoRelH(CommandCall& call) { return position(call); }
+vm::HostReply GoRelK(CommandCall& call) { return position(call); }
+vm::HostReply Go0(CommandCall& call) { return position(call); }
+vm::HostReply AxisStop(CommandCall& call) { return position(call); }
+vm::HostReply TouchProbe(CommandCall& call) { return position(call); }
+
+}  // namespace commands
 
 }  // namespace ipos::runtime

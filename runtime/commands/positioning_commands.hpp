@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 
 #include "runtime/unit/positioning_service.hpp"
 #include "vm/exec/machine.hpp"
@@ -16,8 +15,10 @@ class PositioningCommands {
 
   bool touched() const { return service_.positioner().touch_probes().probe(0).touched; }
 
-  // Nothing: the command belongs to another family.
-  std::optional<vm::HostReply> execute(vm::Machine& machine, int context, const vm::Instruction& command);
+  // Whether this value of GETSYS or SETSYS belongs to positioning.
+  static bool has_value(vm::Opcode opcode, int32_t keyword);
+  // One of the commands above.
+  vm::HostReply execute(vm::Machine& machine, int context, const vm::Instruction& command);
 
   // Once a millisecond, after the service has shown what there is: contexts whose wait is over go on.
   void tick(vm::Machine& machine) {
@@ -34,8 +35,8 @@ class PositioningCommands {
   void resume(vm::Machine& machine);
   vm::HostReply wait(int context);
   vm::HostReply travel(vm::Machine& machine, int context, const vm::Instruction& command);
-  std::optional<vm::HostReply> set_system_value(std::span<const int32_t> h, int32_t keyword, size_t variable,
-                                                uint32_t address);
+  vm::HostReply set_system_value(std::span<const int32_t> h, int32_t keyword, size_t variable,
+                                 uint32_t address);
   vm::HostReply run_cam(std::span<int32_t> h, uint32_t structure);
 
   PositioningService& service_;

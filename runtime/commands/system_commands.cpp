@@ -1,7 +1,9 @@
-// A system command goes to the families of commands, one after the other, until one takes it.
+// A system command goes to the function with its name.
 #include "runtime/commands/system_commands.hpp"
 
 #include <fmt/format.h>
+
+#include <cassert>
 
 #include "runtime/commands/source_places.hpp"
 
@@ -9,12 +11,16 @@ namespace ipos::runtime {
 namespace {
 
 vm::HostReply forward(CommandCall& call) {
-  if (PositioningCommands* positioning = call.services.positioning)
-    if (const auto reply = positioning->execute(call.machine, call.context, call.command)) return *reply;
-  for (FamilyReply (*family)(CommandCall&) :
-       {communication_command, call_command, unit_command, system_value_command})
-    if (const FamilyReply reply = family(call)) return *reply;
-  return illegal("this command is not simulated yet, see docs/reference/limits.md");
+  switch (call.command.opcode) {
+#define COMMAND_Host(Name) \
+  case vm::Opcode::Name: return commands::Name(call);
+#define OPCODE(code, Name, text, flow, reads, writes, faults, meaning) COMMAND_##faults(Name)
+#include "vm/isa/opcodes.def"
+#undef COMMAND_Host
+    default: break;
+  }
+  assert(false && "the machine executes the command itself");
+  return illegal("the host does not execute this command");
 }
 
 }  // namespace

@@ -165,12 +165,23 @@ vm::HostReply set_system_value(CommandCall& call) {
 
 }  // namespace
 
-FamilyReply system_value_command(CommandCall& call) {
-  switch (call.command.opcode) {
-    case vm::Opcode::GetSys: return get_system_value(call);
-    case vm::Opcode::SetSys: return set_system_value(call);
-    default: return std::nullopt;
-  }
+namespace commands {
+
+// Of a unit that positions, positioning has some of the values.
+vm::HostReply GetSys(CommandCall& call) {
+  PositioningCommands* positioning = call.services.positioning;
+  if (positioning != nullptr && positioning->has_value(call.command.opcode, call.operand(1)))
+    return positioning->execute(call.machine, call.context, call.command);
+  return get_system_value(call);
 }
+
+vm::HostReply SetSys(CommandCall& call) {
+  PositioningCommands* positioning = call.services.positioning;
+  if (positioning != nullptr && positioning->has_value(call.command.opcode, call.operand(0)))
+    return positioning->execute(call.machine, call.context, call.command);
+  return set_system_value(call);
+}
+
+}  // namespace commands
 
 }  // namespace ipos::runtime

@@ -54,16 +54,19 @@ vm::HostReply reset_fault(const CommandCall& call) {
 
 }  // namespace
 
-FamilyReply unit_command(CommandCall& call) {
-  switch (call.command.opcode) {
-    case vm::Opcode::SetFault: return set_fault_response(call);
-    case vm::Opcode::Memorize: return memorize(call);
-    case vm::Opcode::WdOnH: return start_watchdog(call, call.variable(0));
-    case vm::Opcode::WdOnK: return start_watchdog(call, call.operand(0));
-    case vm::Opcode::WdOff: call.services.timers.stop_watchdog(); return vm::HostReply{};
-    case vm::Opcode::Reset: return reset_fault(call);
-    default: return std::nullopt;
-  }
+namespace commands {
+
+vm::HostReply SetFault(CommandCall& call) { return set_fault_response(call); }
+vm::HostReply Memorize(CommandCall& call) { return memorize(call); }
+vm::HostReply WdOnH(CommandCall& call) { return start_watchdog(call, call.variable(0)); }
+vm::HostReply WdOnK(CommandCall& call) { return start_watchdog(call, call.operand(0)); }
+vm::HostReply Reset(CommandCall& call) { return reset_fault(call); }
+
+vm::HostReply WdOff(CommandCall& call) {
+  call.services.timers.stop_watchdog();
+  return {};
 }
+
+}  // namespace commands
 
 }  // namespace ipos::runtime

@@ -303,9 +303,10 @@ TEST(PositioningValues, TheStructureEndsWithTheLastVariable) {
       EXPECT_EQ(reply->fault, at == 1'022 ? 0 : vm::kFaultIllop);
     }
   AxisRig rig("END\n");
-  for (const int32_t other : {0, 8, 11, 15}) EXPECT_FALSE(rig.order(Opcode::SetSys, other, 20)) << other;
-  for (const int32_t other : {0, 7, 9}) EXPECT_FALSE(rig.order(Opcode::GetSys, 20, other)) << other;
-  EXPECT_FALSE(rig.order(Opcode::Scom, 1, 20));
+  for (const int32_t other : {0, 8, 11, 15})
+    EXPECT_FALSE(PositioningCommands::has_value(Opcode::SetSys, other)) << other;
+  for (const int32_t other : {0, 7, 9})
+    EXPECT_FALSE(PositioningCommands::has_value(Opcode::GetSys, other)) << other;
 }
 
 // Bit 31 of the first element tells GSCAM_EXT from GSCAM (IPOSplus p. 86, 91).
