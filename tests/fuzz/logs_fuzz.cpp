@@ -1,4 +1,4 @@
-// Any bytes to the readers of other tools' logs (candump, serial, pcapng, ASC, TRC, BLF): each mistake has a place in the
+// Any bytes to the readers of other tools' logs (candump, serial, pcap, pcapng, ASC, TRC, BLF): each mistake has a place in the
 // file and a text, and what is read is written in every form and read as the same frames.
 #include <algorithm>
 #include <sstream>
@@ -24,7 +24,8 @@ struct Taken {
 };
 
 Taken taken(std::string_view log) {
-  const bool binary = log_form(log) == LogForm::Pcapng || log_form(log) == LogForm::Blf;
+  const LogForm form = log_form(log);
+  const bool binary = form != LogForm::Lines && form != LogForm::Asc && form != LogForm::Trc;
   const auto lines = static_cast<size_t>(std::count(log.begin(), log.end(), '\n')) + 1;
   const auto in_log = [&](LogPlace place) {
     require(binary
@@ -51,8 +52,13 @@ Taken taken(std::string_view log) {
                            require(!message.empty() && !place_text("a.log", place).empty(),
                                    "a mistake has a text");
                            ++all.mistakes;
-                         }};
+                         },
+                         [](LeftOut) {},
+                         [&](LogPlace place, const std::string&) { in_log(place); }};
   read_log(log, reader);
+  if (const auto unpacked = unpacked_log(log))
+    require(unpacked->size() <= std::max(size_t{1} << 20U, 32 * log.size()),
+            "a packed log is bounded by its size");
   return all;
 }
 

@@ -272,7 +272,8 @@ TEST(Bus, TelegramsOfRs485InHexadecimal) {
             "bad.hex:2:5: error: second hexadecimal digit of a byte expected\n"
             "bad.hex:3:3: error: six digits of microseconds expected\n"
             "bad.hex:4:18: error: blank expected\n"
-            "bad.hex:5:55: error: more than 18 bytes, the longest telegram\n");
+            "bad.hex:5:55: error: more than 18 bytes, the longest telegram\n"
+            "bad.hex: note: 5 lines not understood left out\n");
   EXPECT_EQ(bad.out, "3PD cyclic, PO 0006h, 3A98h, 01F4h -> address 1\n");
 }
 

@@ -10,6 +10,7 @@
 #include "runtime/bus/movilink/describe_serial.hpp"
 #include "runtime/bus/profibus/frame_text.hpp"
 #include "tools/bus/bus_verbs.hpp"
+#include "tools/bus/log_input.hpp"
 #include "tools/bus/telegram_json.hpp"
 #include "tools/cli/exit_codes.hpp"
 #include "tools/input/program.hpp"
@@ -18,7 +19,7 @@ namespace ipos::tools {
 namespace {
 
 struct DecodeFlags {
-  std::string log;
+  LogFlags log;
   NamesFlags names;
   std::string format = "text";
 };
@@ -47,7 +48,7 @@ class Decoder {
     fmt::print("{} {} {}\n", time_text(entry), compiler::printable(entry.bus), description.text);
     if (description.known || !unknown_.emplace(entry.frame.extended, entry.frame.id).second) return;
     if (place.line != 0) place.column = identifier_column(entry);
-    fmt::print(stderr, "{}: note: nothing is known about identifier {}\n", place_text(flags_.log, place),
+    fmt::print(stderr, "{}: note: nothing is known about identifier {}\n", place_text(flags_.log.path, place),
                runtime::id_words(entry.frame.id, entry.frame.extended));
   }
   void take(const runtime::SerialEntry& entry) {
@@ -84,12 +85,13 @@ class Decoder {
 
 int decode(const DecodeFlags& flags) {
   Decoder decoder(flags);
-  const size_t bad = read_log_file(
-      flags.log, {[&](const runtime::LogEntry& entry, LogPlace place) { decoder.take(entry, place); },
-                  [&](const runtime::SerialEntry& entry, LogPlace) { decoder.take(entry); },
-                  [&](const runtime::ProfibusEntry& entry, LogPlace) { decoder.take(entry); },
-                  {}});
-  return bad == 0 ? kGood : kBadInput;
+  LogFindings findings(flags.log.path);
+  read_log_file(flags.log, findings,
+                {[&](const runtime::LogEntry& entry, LogPlace place) { decoder.take(entry, place); },
+                 [&](const runtime::SerialEntry& entry, LogPlace) { decoder.take(entry); },
+                 [&](const runtime::ProfibusEntry& entry, LogPlace) { decoder.take(entry); },
+                 {}});
+  return findings.finish() ? kGood : kBadInput;
 }
 
 }  // namespace
@@ -97,11 +99,10 @@ int decode(const DecodeFlags& flags) {
 void add_bus_decode(cli::Verb& bus) {
   auto flags = std::make_shared<DecodeFlags>();
   cli::Verb& verb = bus.verb("decode", "telegrams of a log in words and units");
-  verb.option("LOG", flags->log,
-              "log: candump, pcapng, ASC, TRC, BLF, of --serial-log, or RS-485 telegrams in hexadecimal; - "
-              "is standard "
-              "input")
-      .required();
+  add_log_options(
+      verb, flags->log,
+      "log: candump, pcap, pcapng, ASC, TRC, BLF, of --serial-log, or RS-485 telegrams in hexadecimal, "
+      "also packed with gzip; - is standard input");
   verb.option("--format", flags->format, "text, or json: an object a telegram, a line each")
       .one_of({"text", "json"});
   add_names_options(verb, flags->names);

@@ -1,35 +1,11 @@
-// What the subcommands of `ipos bus` read: logs and dictionaries.
-#include <fmt/format.h>
-
+// The dictionaries of the subcommands of `ipos bus`.
 #include "runtime/bus_plan/names.hpp"
 #include "runtime/bus_plan/plan.hpp"
 #include "tools/bus/bus_verbs.hpp"
-#include "tools/cli/files.hpp"
 #include "tools/input/plant_input.hpp"
 #include "tools/input/program.hpp"
 
 namespace ipos::tools {
-
-size_t read_log_file(const std::string& path, LogReader reader) {
-  size_t bad = 0;
-  reader.wrong = [&](LogPlace place, const std::string& message) {
-    ++bad;
-    fmt::print(stderr, "{}: error: {}\n", place_text(path, place), message);
-  };
-  read_log(read_file(path, kLogLimit), reader);
-  return bad;
-}
-
-size_t read_frames(const std::string& path, const std::function<void(const runtime::LogEntry&)>& take) {
-  size_t others = 0;
-  const auto other = [&](const auto&, LogPlace place) {
-    ++others;
-    fmt::print(stderr, "{}: error: no CAN frame\n", place_text(path, place));
-  };
-  return read_log_file(path,
-                       {[&](const runtime::LogEntry& entry, LogPlace) { take(entry); }, other, other, {}}) +
-         others;
-}
 
 namespace {
 

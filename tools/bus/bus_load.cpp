@@ -1,14 +1,21 @@
 // ipos bus load: load of a log in windows of one second and by identifier.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <vector>
+
+#include "compiler/diag/places.hpp"
 
 #include "runtime/bus/can/identifier_text.hpp"
 #include "runtime/bus/log/bus_load.hpp"
 #include "tools/bus/bus_verbs.hpp"
+#include "tools/bus/log_input.hpp"
 #include "tools/bus/profibus_load.hpp"
-#include "tools/cli/exit_codes.hpp"
+#include "tools/cli/failure.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -18,7 +25,7 @@ using runtime::LoadCount;
 using runtime::Time;
 
 struct LoadFlags {
-  std::string log;
+  LogFlags log;
   uint32_t baud = 0;
   std::string format = "text";
   NamesFlags names;
@@ -81,7 +88,7 @@ nlohmann::ordered_json json_row(const LoadCount& count, uint32_t baud, Time span
           {"worst_percent", share(count.worst_bits)}};
 }
 
-std::string json_report(const BusLoad& load, uint32_t baud, const Meaning& meaning) {
+nlohmann::ordered_json json_report(const BusLoad& load, uint32_t baud, const Meaning& meaning) {
   nlohmann::ordered_json report = {{"baud", baud}};
   report["windows"] = nlohmann::ordered_json::array();
   for (const runtime::LoadWindow& window : load.windows()) {
@@ -98,36 +105,90 @@ std::string json_report(const BusLoad& load, uint32_t baud, const Meaning& meani
     if (const std::string text = meaning(id); !text.empty()) entry["meaning"] = text;
     report["identifiers"].push_back(std::move(entry));
   }
-  return report.dump() + "\n";
+  return report;
 }
 
-// The first entry says which kind of line the log is of; others are errors.
+struct TimedFrame {
+  Time time;
+  runtime::Frame frame;
+};
+
+// Logs of several channels, and those of a clock that was set, are not always in the order of time. False: this one was not.
+bool put_in_order(std::vector<TimedFrame>& frames) {
+  const auto earlier = [](const TimedFrame& a, const TimedFrame& b) { return a.time < b.time; };
+  const bool sorted = std::is_sorted(frames.begin(), frames.end(), earlier);
+  if (!sorted) std::stable_sort(frames.begin(), frames.end(), earlier);
+  return sorted;
+}
+
+// The reports of the buses of a log. A log of one bus is one report.
+class Reports {
+ public:
+  explicit Reports(const LoadFlags& flags) : flags_(flags) {}
+
+  void add(const std::string& bus, const std::string& text, nlohmann::ordered_json json) {
+    texts_ += fmt::format("{}bus {}\n{}", texts_.empty() ? "" : "\n", compiler::printable(bus), text);
+    nlohmann::ordered_json named = {{"bus", bus}};
+    named.update(json);
+    all_.push_back(std::move(named));
+    last_text_ = text;
+    last_ = std::move(json);
+    names_.insert(bus);
+  }
+  void print(LogFindings& findings) const {
+    const bool several = names_.size() > 1;
+    if (flags_.format == "json")
+      fmt::print("{}\n", (several ? nlohmann::ordered_json{{"buses", all_}} : last_)
+                             .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    else
+      fmt::print("{}", several ? texts_ : last_text_);
+    if (several)
+      findings.note(
+          fmt::format("{} buses, each for itself: {}; --channel chooses", names_.size(), bus_list(names_)));
+  }
+
+ private:
+  const LoadFlags& flags_;
+  std::string texts_, last_text_;
+  nlohmann::ordered_json all_ = nlohmann::ordered_json::array(), last_;
+  std::set<std::string> names_;
+};
+
+// The first entry says which kind of bus the log is of; telegrams of others are left out.
 int measure(const LoadFlags& flags) {
-  BusLoad load;
-  ProfibusLoad profibus(flags.baud);
-  size_t others = 0;
-  const auto other = [&](LogPlace place, const char* expected) {
-    ++others;
-    fmt::print(stderr, "{}: error: no {} frame\n", place_text(flags.log, place), expected);
-  };
-  const size_t bad = read_log_file(flags.log, {[&](const runtime::LogEntry& entry, LogPlace place) {
-                                                 if (!profibus.empty()) return other(place, "PROFIBUS");
-                                                 load.add(entry.time, entry.frame);
-                                               },
-                                               [&](const runtime::SerialEntry&, LogPlace place) {
-                                                 other(place, profibus.empty() ? "CAN" : "PROFIBUS");
-                                               },
-                                               [&](const runtime::ProfibusEntry& entry, LogPlace place) {
-                                                 if (!load.windows().empty()) return other(place, "CAN");
-                                                 profibus.add(entry.reception);
-                                               },
-                                               {}});
-  if (!profibus.empty())
-    fmt::print("{}", flags.format == "json" ? profibus.json() : profibus.text());
-  else
-    fmt::print("{}", flags.format == "json" ? json_report(load, flags.baud, meaning_of(flags.names))
-                                            : text_report(load, flags.baud, meaning_of(flags.names)));
-  return bad + others == 0 ? kGood : kBadInput;
+  std::map<std::string, std::vector<TimedFrame>> can;
+  std::map<std::string, ProfibusLoad> profibus;
+  LogFindings findings(flags.log.path);
+  const auto other = [&] { findings.leave_out(LeftOut::OtherBus); };
+  read_log_file(flags.log, findings,
+                {[&](const runtime::LogEntry& entry, LogPlace) {
+                   if (!profibus.empty()) return other();
+                   can[entry.bus].push_back({entry.time, entry.frame});
+                 },
+                 [&](const runtime::SerialEntry&, LogPlace) { other(); },
+                 [&](const runtime::ProfibusEntry& entry, LogPlace) {
+                   if (!can.empty()) return other();
+                   profibus.try_emplace(entry.line, flags.baud).first->second.add(entry.reception);
+                 },
+                 {}});
+  Reports reports(flags);
+  for (const auto& [line, load] : profibus) reports.add(line, load.text(), load.json());
+  const Meaning meaning = can.empty() ? Meaning() : meaning_of(flags.names);
+  bool in_order = true;
+  for (auto& [bus, frames] : can) {
+    in_order = put_in_order(frames) && in_order;
+    BusLoad load;
+    for (const TimedFrame& timed : frames) load.add(timed.time, timed.frame);
+    reports.add(bus, text_report(load, flags.baud, meaning), json_report(load, flags.baud, meaning));
+  }
+  if (can.empty() && profibus.empty()) {
+    findings.finish();
+    throw Failure(kBadInput, fmt::format("{}: no frame of CAN or PROFIBUS is in it",
+                                         compiler::printable(flags.log.path)));
+  }
+  reports.print(findings);
+  if (!in_order) findings.note("its times go back; the load is that of the frames in the order of time");
+  return findings.finish() ? kGood : kBadInput;
 }
 
 }  // namespace
@@ -136,9 +197,8 @@ void add_bus_load(cli::Verb& bus) {
   auto flags = std::make_shared<LoadFlags>();
   cli::Verb& verb = bus.verb(
       "load", "load of a log: of CAN exact with stuff bits and at worst, of PROFIBUS by kind of frame");
-  verb.option("LOG", flags->log,
-              "log of one line, candump, pcapng, ASC, TRC, BLF or --serial-log; - is standard input")
-      .required();
+  add_log_options(verb, flags->log,
+                  "log, candump, pcap, pcapng, ASC, TRC, BLF or --serial-log; - is standard input");
   verb.option("--baud", flags->baud, "of the line, for example 500000").required().between(1000U, 1'500'000U);
   verb.option("--format", flags->format, "text or json").one_of({"text", "json"});
   add_names_options(verb, flags->names);

@@ -22,7 +22,7 @@ constexpr uint32_t kProfibusBaud = 500'000;  // as without `baud` in a plant fil
 constexpr uint32_t kCanBaud = 500'000;       // factory setting of P816 (1053 1610 p. 41)
 
 struct MonitorFlags {
-  std::string source;
+  LogFlags source;  // or a port
   NamesFlags names;
   std::vector<std::string> stations;
   uint64_t count = 0;
@@ -70,11 +70,13 @@ Monitor make_monitor(const MonitorFlags& flags, MonitorSource source) {
 }
 
 int monitor(const MonitorFlags& flags) {
-  const MonitorSource source = monitor_source(flags.source);
+  const MonitorSource source = monitor_source(flags.source.path);
   if (flags.follow && source != MonitorSource::Log)
     throw Failure(kUsage, "--follow is for logs: a port is followed anyway");
-  if (flags.follow && flags.source == "-")
+  if (flags.follow && flags.source.path == "-")
     throw Failure(kUsage, "--follow is for files: standard input is read as it comes");
+  if (!flags.source.channels.empty() && source != MonitorSource::Log)
+    throw Failure(kUsage, "--channel is for logs: a port is one bus");
   if (flags.baud != 0 && source == MonitorSource::Log)
     throw Failure(kUsage, "--baud is for ports: a log has none");
   if (flags.profibus && source != MonitorSource::Serial)
@@ -90,12 +92,13 @@ int monitor(const MonitorFlags& flags) {
   catch_interrupts();
   switch (source) {
     case MonitorSource::Can:
-      return monitor_can(view, flags.source, flags.baud == 0 ? kCanBaud : flags.baud, duration);
+      return monitor_can(view, flags.source.path, flags.baud == 0 ? kCanBaud : flags.baud, duration);
     case MonitorSource::Serial:
       if (flags.profibus)
-        return monitor_profibus(view, flags.source, flags.baud == 0 ? kProfibusBaud : flags.baud, duration);
-      return monitor_serial(view, flags.source, flags.baud == 0 ? runtime::kSerialBaudRates[0] : flags.baud,
-                            duration);
+        return monitor_profibus(view, flags.source.path, flags.baud == 0 ? kProfibusBaud : flags.baud,
+                                duration);
+      return monitor_serial(view, flags.source.path,
+                            flags.baud == 0 ? runtime::kSerialBaudRates[0] : flags.baud, duration);
     case MonitorSource::Log: break;
   }
   return monitor_log(view, flags.source, flags.follow, duration);
@@ -106,9 +109,10 @@ int monitor(const MonitorFlags& flags) {
 void add_bus_monitor(cli::Verb& bus) {
   auto flags = std::make_shared<MonitorFlags>();
   cli::Verb& verb = bus.verb("monitor", "telegrams of a port or a log in words and units, live");
-  verb.option("PORT|LOG", flags->source,
+  verb.option("PORT|LOG", flags->source.path,
               "can0, slcan:/dev/ttyACM0, slcan:pty:/path, /dev/ttyUSB0, pty:/path, a log as in decode, or -")
       .required();
+  add_channel_option(verb, flags->source);
   add_names_options(verb, flags->names);
   verb.option("--station", flags->stations, "only telegrams of this station, by name or address")
       .separated_by(',')

@@ -1,7 +1,6 @@
 // The subcommands of `ipos bus`, one file each.
 #pragma once
 
-#include <functional>
 #include <string>
 
 #include "runtime/bus/can_words.hpp"
@@ -11,7 +10,6 @@
 #include "tools/cli/verbs.hpp"
 #include "tools/input/plant_source.hpp"
 #include "tools/input/program.hpp"
-#include "tools/logs/log_forms.hpp"
 
 namespace ipos::tools {
 
@@ -22,13 +20,6 @@ void add_bus_load(cli::Verb& bus);
 void add_bus_replay(cli::Verb& bus);
 void add_bus_dbc(cli::Verb& bus);
 void add_bus_dissector(cli::Verb& bus);
-
-// Reads a log of any form (tools/logs) from a file or standard input; prints what it finds wrong as
-// "LOG:line:column: error: ...". Returns how many places were bad. `wrong` of the reader is left to it.
-size_t read_log_file(const std::string& path, LogReader reader);
-
-// The same for the frames of a CAN log.
-size_t read_frames(const std::string& path, const std::function<void(const runtime::LogEntry&)>& take);
 
 // The dictionary of a plant or program for its CAN lines. Without one `canopen` says that nodes are there.
 struct NamesFlags {

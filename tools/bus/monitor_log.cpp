@@ -9,6 +9,7 @@
 #include <cstring>
 #include <optional>
 
+#include "compiler/diag/places.hpp"
 #include "runtime/os_port/descriptor.hpp"
 #include "runtime/os_port/system_clock.hpp"
 #include "tools/bus/monitor_sources.hpp"
@@ -22,7 +23,6 @@ namespace {
 
 using runtime::Time;
 
-constexpr size_t kToKnowTheForm = 8;                // bytes
 constexpr Time kLook = 50 * runtime::kMillisecond;  // how often a log that is followed is looked at (ours)
 
 class LogFile {
@@ -66,7 +66,12 @@ class LogFile {
     return true;
   }
 
-  size_t size() const { return text_.size(); }
+  // Forms are known by their first line; binary ones may have none.
+  bool tells_its_form() const {
+    constexpr size_t kShortest = 8;
+    return text_.size() >= kToKnowTheForm ||
+           (text_.size() >= kShortest && text_.find('\n') != std::string::npos);
+  }
   std::string_view text() const { return text_; }
   size_t number() const { return number_; }  // of the last line, from 1
 
@@ -81,8 +86,8 @@ class LogFile {
 // Whether more may be shown, and what came of it.
 class Showing {
  public:
-  Showing(Monitor& monitor, const std::string& path, Time duration)
-      : monitor_(monitor), path_(path), duration_(duration) {}
+  Showing(Monitor& monitor, const LogFlags& log, Time duration)
+      : monitor_(monitor), findings_(log.path), choice_(log), duration_(duration) {}
 
   // Of a log that is not followed, `duration` is time in the log.
   template <typename Entry>
@@ -93,52 +98,68 @@ class Showing {
     else if (!over())
       monitor_.take(entry);
   }
-  void wrong(LogPlace place, const std::string& message) {
-    if (over()) return;
-    bad_ = true;
-    fmt::print(stderr, "{}: error: {}\n", place_text(path_, place), message);
-  }
   void end() { over_ = true; }
   bool over() const { return over_ || interrupted() || monitor_.full(); }
   int finish() {
     monitor_.finish();
+    const bool good = findings_.finish();
     if (interrupted()) return kInterrupted;
-    return bad_ ? kBadInput : kGood;
+    if (findings_.understood() && !over_ && !monitor_.full()) choice_.check();
+    return good ? kGood : kBadInput;
   }
-  // Passes on what a reader finds.
+  // Passes on what a reader finds, but nothing of what comes when all is over.
   LogReader reader(bool in_log) {
-    return {[this, in_log](const runtime::LogEntry& entry, LogPlace) { take(entry, entry.time, in_log); },
-            [this, in_log](const runtime::SerialEntry& entry, LogPlace) { take(entry, entry.time, in_log); },
-            [this, in_log](const runtime::ProfibusEntry& entry, LogPlace) { take(entry, entry.reception.start, in_log); },
-            [this](LogPlace place, const std::string& message) { wrong(place, message); }};
+    LogReader all = findings_.watch(choice_.choose(
+        {[this, in_log](const runtime::LogEntry& entry, LogPlace) { take(entry, entry.time, in_log); },
+         [this, in_log](const runtime::SerialEntry& entry, LogPlace) { take(entry, entry.time, in_log); },
+         [this, in_log](const runtime::ProfibusEntry& entry, LogPlace) {
+           take(entry, entry.reception.start, in_log);
+         },
+         {}}));
+    all.wrong = [this, wrong = std::move(all.wrong)](LogPlace place, const std::string& message) {
+      if (!over()) wrong(place, message);
+    };
+    all.left_out = [this, left_out = std::move(all.left_out)](LeftOut what) {
+      if (!over()) left_out(what);
+    };
+    return all;
   }
 
  private:
   Monitor& monitor_;
-  const std::string& path_;
+  LogFindings findings_;
+  ChannelChoice choice_;
   Time duration_;
   std::optional<Time> first_;
-  bool bad_ = false;
   bool over_ = false;
 };
 
+// All of it, for a log whose form is not one of lines.
+void read_whole(LogFile& log, const LogReader& reader) {
+  while (log.read_more() && !interrupted()) continue;
+  if (log_form(log.text()) != LogForm::Packed) return read_log(log.text(), reader);
+  if (const auto unpacked = unpacked_log(log.text()))
+    read_log(*unpacked, reader);
+  else
+    reader.wrong({0, 0}, unpacked.error());
+}
+
 }  // namespace
 
-int monitor_log(Monitor& monitor, const std::string& path, bool follow, Time duration) {
+int monitor_log(Monitor& monitor, const LogFlags& flags, bool follow, Time duration) {
   runtime::SystemClock clock;
-  LogFile log(path);
-  Showing showing(monitor, path, duration);
+  LogFile log(flags.path);
+  Showing showing(monitor, flags, duration);
   const LogReader reader = showing.reader(!follow);
   const Time begin = clock.now();
   bool looked = false;
   for (bool more = true; !showing.over();) {
     more = log.read_more();
-    if (!looked && (!more || log.size() >= kToKnowTheForm)) {
+    if (!looked && (!more || log.tells_its_form())) {
       looked = true;
       if (log_form(log.text()) != LogForm::Lines) {
         if (follow) throw Failure(kUsage, "--follow is for candump and serial logs");
-        while (log.read_more() && !interrupted()) continue;
-        read_log(log.text(), reader);
+        read_whole(log, reader);
         return showing.finish();
       }
     }
@@ -151,7 +172,7 @@ int monitor_log(Monitor& monitor, const std::string& path, bool follow, Time dur
     if (follow && duration != runtime::kNever && clock.now() - begin >= duration) showing.end();
     if (more || showing.over()) continue;
     if (!follow) break;
-    if (log.begun_anew()) monitor.note(path + " has been begun anew");
+    if (log.begun_anew()) monitor.note(compiler::printable(flags.path) + " has been begun anew");
     clock.wait(clock.now() + kLook, {});
   }
   return showing.finish();

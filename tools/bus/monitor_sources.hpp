@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "tools/bus/log_input.hpp"
 #include "tools/bus/monitor.hpp"
 
 namespace ipos::tools {
@@ -19,6 +20,6 @@ MonitorSource monitor_source(const std::string& name);
 int monitor_can(Monitor& monitor, const std::string& port, uint32_t baud, runtime::Time duration);
 int monitor_serial(Monitor& monitor, const std::string& port, uint32_t baud, runtime::Time duration);
 int monitor_profibus(Monitor& monitor, const std::string& port, uint32_t baud, runtime::Time duration);
-int monitor_log(Monitor& monitor, const std::string& path, bool follow, runtime::Time duration);
+int monitor_log(Monitor& monitor, const LogFlags& log, bool follow, runtime::Time duration);
 
 }  // namespace ipos::tools

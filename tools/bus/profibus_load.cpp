@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "runtime/bus/log/candump.hpp"
 #include "runtime/bus/profibus/frame_text.hpp"
@@ -62,7 +61,7 @@ std::string ProfibusLoad::text() const {
   return text;
 }
 
-std::string ProfibusLoad::json() const {
+nlohmann::ordered_json ProfibusLoad::json() const {
   using Json = nlohmann::ordered_json;
   const auto row = [&](const Count& count, Time span) {
     return Json{{"frames", count.frames},
@@ -83,7 +82,7 @@ std::string ProfibusLoad::json() const {
     entry["kind"] = kind;
     report["frames"].push_back(std::move(entry));
   }
-  return report.dump() + "\n";
+  return report;
 }
 
 }  // namespace ipos::tools

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -30,10 +31,9 @@ class ProfibusLoad {
 
   // In rising order of time.
   void add(const profibus::Reception& reception);
-  bool empty() const { return all_.frames == 0; }
 
   std::string text() const;
-  std::string json() const;
+  nlohmann::ordered_json json() const;
 
  private:
   double percent(uint64_t bits, runtime::Time span) const;

@@ -71,6 +71,10 @@ inline std::optional<runtime::Time> decimal_time(std::string_view text, size_t d
   return *units * unit + *digits * scale;
 }
 
+// A classic frame may have a DLC up to 15, and has eight bytes then (ISO 11898-1).
+inline constexpr uint8_t kLargestDlc = 15;
+constexpr uint8_t classic_length(uint8_t dlc) { return dlc > 8 ? 8 : dlc; }
+
 // The bytes of a data frame; nothing on success.
 inline std::optional<FieldError> read_bytes(Fields& fields, int base, runtime::Frame& frame) {
   for (uint8_t n = 0; n < frame.length; ++n) {

@@ -1,12 +1,13 @@
-// Forms by their first bytes; logs whose lines tell by themselves.
+// Forms by their first bytes, and who reads them.
 #include "tools/logs/log_forms.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
-#include "runtime/bus/log/profibus_log.hpp"
+#include "compiler/diag/places.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -17,44 +18,51 @@ struct Beginning {
   std::string_view text;
   LogForm form;
 };
-constexpr std::array<Beginning, 5> kBeginnings{{{"LOGG", LogForm::Blf},
-                                                {"\n\r\r\n", LogForm::Pcapng},
-                                                {";", LogForm::Trc},
-                                                {"date ", LogForm::Asc},
-                                                {"base ", LogForm::Asc}}};
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+constexpr std::array<Beginning, 10> kBeginnings{{{"LOGG", LogForm::Blf},
+                                                 {"\n\r\r\n", LogForm::Pcapng},
+                                                 {"\xD4\xC3\xB2\xA1", LogForm::Pcap},
+                                                 {"\xA1\xB2\xC3\xD4", LogForm::Pcap},
+                                                 {"\x4D\x3C\xB2\xA1", LogForm::Pcap},
+                                                 {"\xA1\xB2\x3C\x4D", LogForm::Pcap},
+                                                 {"\x1F\x8B", LogForm::Packed},
+                                                 {";", LogForm::Trc},
+                                                 {"date ", LogForm::Asc},
+                                                 {"base ", LogForm::Asc}}};
+
+std::optional<LogForm> form_of(std::string_view begin) {
+  for (const Beginning& row : kBeginnings)
+    if (begin.starts_with(row.text)) return row.form;
+  return std::nullopt;
+}
+
+std::string_view without_mark(std::string_view text) {
+  return text.starts_with(kByteOrderMark) ? text.substr(kByteOrderMark.size()) : text;
+}
+
+std::string_view text_of(std::string_view begin) {
+  begin = without_mark(begin);
+  return begin.substr(std::min(begin.find_first_not_of(kBlanks), begin.size()));
+}
 
 }  // namespace
 
 std::string place_text(const std::string& path, LogPlace place) {
-  return place.line == 0 ? fmt::format("{}: byte {}", path, place.column)
-                         : fmt::format("{}:{}:{}", path, place.line, place.column);
+  const std::string name = compiler::printable(path);
+  return place.line == 0 ? fmt::format("{}: byte {}", name, place.column)
+                         : fmt::format("{}:{}:{}", name, place.line, place.column);
 }
 
 LogForm log_form(std::string_view begin) {
-  for (const Beginning& row : kBeginnings)
-    if (begin.starts_with(row.text)) return row.form;
-  // Texts may begin with empty lines.
-  const size_t first = begin.find_first_not_of(kBlanks);
-  return first == std::string_view::npos || first == 0 ? LogForm::Lines : log_form(begin.substr(first));
-}
-
-void read_log_line(std::string_view row, size_t line, const LogReader& reader) {
-  if (row.find_first_not_of(kBlanks) == std::string_view::npos) return;
-  const auto take = [&](const auto& entry, const auto& to) {
-    if (entry)
-      to(*entry, LogPlace{line, 1});
-    else
-      reader.wrong({line, entry.error().column}, entry.error().message);
-  };
-  if (const auto frame = runtime::parse_profibus_line(row))
-    reader.dp(*frame, {line, 1});
-  else if (runtime::is_serial_line(row))
-    take(runtime::parse_serial_line(row, line), reader.serial);
-  else
-    take(runtime::parse_candump_line(row, line), reader.can);
+  if (const auto form = form_of(begin)) return *form;
+  // Texts may begin with the mark of an editor and with empty lines.
+  begin = text_of(begin.substr(0, kToKnowTheForm));
+  if (const auto form = form_of(begin)) return *form;
+  return other_file(begin) ? LogForm::Other : LogForm::Lines;
 }
 
 void for_each_line(std::string_view text, const std::function<void(std::string_view, size_t)>& take) {
+  text = without_mark(text);
   for (size_t line = 1; !text.empty(); ++line) {
     const size_t end = text.find('\n');
     const std::string_view row = text.substr(0, end);
@@ -69,6 +77,11 @@ void read_log(std::string_view bytes, const LogReader& reader) {
     case LogForm::Asc: return read_asc(bytes, reader);
     case LogForm::Trc: return read_trc(bytes, reader);
     case LogForm::Blf: return read_blf(bytes, reader);
+    case LogForm::Pcap: return read_pcap(bytes, reader);
+    case LogForm::Packed: return reader.wrong({0, 0}, "a log packed with gzip within another one");
+    case LogForm::Other:
+      return reader.wrong(
+          {0, 0}, "no log that ipos reads, but " + *other_file(text_of(bytes.substr(0, kToKnowTheForm))));
     case LogForm::Lines: break;
   }
   for_each_line(bytes, [&](std::string_view row, size_t line) { read_log_line(row, line, reader); });

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,18 +14,23 @@
 #include "runtime/bus/log/candump.hpp"
 #include "runtime/bus/log/profibus_log.hpp"
 #include "runtime/bus/log/serial_log.hpp"
+#include "tools/logs/left_out.hpp"
 
 namespace ipos::tools {
 
 enum class LogForm : uint8_t {
   Lines,   // candump, the serial log, bare telegrams: each line tells by itself
   Pcapng,  // Wireshark
+  Pcap,    // tcpdump, and Wireshark on demand
   Asc,     // Vector, text
   Trc,     // PEAK
   Blf,     // Vector, binary
+  Packed,  // one of these with gzip: see unpacked_log()
+  Other,   // no log, or one of a form that is not read: see other_file()
 };
 
-// By the first bytes of a log.
+// By the first bytes of a log, kToKnowTheForm of them or all.
+inline constexpr size_t kToKnowTheForm = 512;
 LogForm log_form(std::string_view begin);
 
 // A mistake in a binary log has a byte instead of a line.
@@ -42,6 +48,9 @@ struct LogReader {
   std::function<void(const runtime::SerialEntry&, LogPlace)> serial;
   std::function<void(const runtime::ProfibusEntry&, LogPlace)> dp;
   std::function<void(LogPlace, const std::string& message)> wrong;
+  std::function<void(LeftOut)> left_out = [](LeftOut) {};
+  // What is read, but not as it was meant.
+  std::function<void(LogPlace, const std::string& message)> note = [](LogPlace, const std::string&) {};
 };
 
 // All of a log in order. Text goes on behind a bad line; a binary log ends where it is damaged.
@@ -49,10 +58,19 @@ void read_log(std::string_view bytes, const LogReader& reader);
 
 // A line of LogForm::Lines.
 void read_log_line(std::string_view row, size_t line, const LogReader& reader);
+// As candump prints it on a terminal. False: it is of another form.
+bool read_terminal_line(std::string_view row, size_t line, const LogReader& reader);
+
+// What a file is that is no log to be read, in words and with what to do; nothing for a log.
+std::optional<std::string> other_file(std::string_view begin);
+
+// Of a log packed with gzip; the error is why not.
+tl::expected<std::string, std::string> unpacked_log(std::string_view packed);
 
 // The forms, each in a file of its own. Times are those of the log, since runtime::kCandumpEpoch.
 void read_asc(std::string_view text, const LogReader& reader);
 void read_trc(std::string_view text, const LogReader& reader);
+void read_pcap(std::string_view bytes, const LogReader& reader);
 void read_pcapng(std::string_view bytes, const LogReader& reader);
 void read_blf(std::string_view bytes, const LogReader& reader);
 

@@ -50,8 +50,8 @@ std::string bytes_text(const Frame& frame) {
 class Asc final : public LogWriter {
  public:
   explicit Asc(std::ostream& out) : out_(out) {
-    out_ << "date Sat Jan 01 00:00:00.000 am 2000\nbase hex  timestamps absolute\nno internal events logged\n"
-            "Begin Triggerblock Sat Jan 01 00:00:00.000 am 2000\n   0.000000 Start of measurement\n";
+    out_ << "date Sat Jan 01 12:00:00.000 am 2000\nbase hex  timestamps absolute\nno internal events logged\n"
+            "Begin Triggerblock Sat Jan 01 12:00:00.000 am 2000\n   0.000000 Start of measurement\n";
   }
   // A reader wants the end, and a log of a run that was killed has none: it is written with the last line.
   ~Asc() override { out_ << "End TriggerBlock\n"; }

@@ -1,13 +1,15 @@
-// Vector's binary form: a head, then containers of compressed objects. Only CAN messages are taken; objects of
-// other kinds are passed over. An object may begin in one container and end in the next.
+// Vector's binary form: a head, then containers of compressed objects, of which one may begin in a container and end in the
+// next. Classic CAN messages are taken, also from the objects of CAN FD hardware, whose flags tell the kind of the frame; the
+// other objects are left out.
 #include <fmt/format.h>
-#include <zlib.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "tools/logs/bytes.hpp"
 #include "tools/logs/fields.hpp"
 #include "tools/logs/log_forms.hpp"
+#include "tools/logs/unpack.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -16,7 +18,9 @@ using runtime::Time;
 
 constexpr size_t kHead = 16;                             // of an object: signature, sizes, type
 constexpr size_t kLargestContainer = size_t{64} << 20U;  // unpacked (ours); Vector's have 128 KiB
-constexpr uint32_t kMessage = 1, kContainer = 10, kMessage2 = 86;
+constexpr size_t kLargestObject = size_t{1} << 20U;      // a message has less than 200 bytes (ours)
+constexpr uint32_t kMessage = 1, kError = 2, kContainer = 10, kErrorExt = 73, kMessage2 = 86,
+                   kFdMessage = 100, kFdMessage64 = 101, kFdError64 = 104;
 constexpr uint16_t kPlain = 0, kDeflated = 2;
 
 // SYSTEMTIME: year, month, day of the week, day, hour, minute, second, millisecond; UTC is taken (ours).
@@ -32,17 +36,6 @@ std::optional<Time> system_time(const Bytes& head) {
          word(7) * runtime::kMillisecond - runtime::kCandumpEpoch;
 }
 
-// Empty: not what it claims to be.
-std::optional<std::string> unpacked(std::string_view packed, size_t size) {
-  std::string out(size, '\0');
-  auto length = static_cast<uLongf>(size);  // files have fields of 32 bits for sizes
-  const int status = uncompress(reinterpret_cast<Bytef*>(out.data()), &length,
-                                reinterpret_cast<const Bytef*>(packed.data()),
-                                static_cast<uLong>(packed.size()));
-  if (status != Z_OK || length != size) return std::nullopt;
-  return out;
-}
-
 class BlfReader {
  public:
   BlfReader(std::string_view bytes, const LogReader& reader) : bytes_(bytes), reader_(reader) {}
@@ -54,7 +47,7 @@ class BlfReader {
     if (at < 72) return wrong(4, "a head that is too short");
     while (at < bytes_.size()) {
       if (!find(bytes_, at)) {
-        if (bytes_.size() - at < 4) return;  // filled up
+        if (bytes_.size() - at < 4) break;  // filled up
         return wrong(at, "an object expected");
       }
       if (!bytes_.has(at, kHead)) return wrong(at, "the file ends within an object");
@@ -68,7 +61,9 @@ class BlfReader {
       }
       at += size;
     }
-    if (!rest_.empty() && rest_.size() >= kHead) wrong(bytes_.size(), "the file ends within an object");
+    // Zeros fill up.
+    if (rest_.find_first_not_of('\0') != std::string::npos)
+      wrong(bytes_.size(), "the file ends within an object");
   }
 
  private:
@@ -92,16 +87,19 @@ class BlfReader {
     const std::string_view packed = bytes_.text(data, at + size - data);
     if (length > kLargestContainer)
       return wrong(at + kHead + 8, fmt::format("a container of {} bytes", length)), false;
-    std::optional<std::string> content;
-    if (method == kDeflated)
-      content = unpacked(packed, length);
-    else if (method == kPlain)
-      content = std::string(packed);
-    else
+    if (method != kDeflated && method != kPlain)
       return wrong(at + kHead, fmt::format("packed by method {}, which is not known", method)), false;
-    if (!content) return wrong(data, "a container that cannot be unpacked"), false;
-    rest_ += *content;
-    return objects(at);
+    bool good = true;
+    size_t given = 0;
+    const auto take = [&](std::string_view piece) {
+      rest_ += piece;
+      given += piece.size();
+      return given <= length && (good = objects(at));
+    };
+    if (method == kPlain) return take(packed), good;
+    const bool whole = unpack(packed, Packing::Zlib, take);
+    if (good && (!whole || given != length)) return wrong(data, "a container that cannot be unpacked"), false;
+    return good;
   }
 
   // All that are complete; messages have the place of their container.
@@ -116,7 +114,7 @@ class BlfReader {
       }
       if (!inner.has(found, kHead)) break;
       const uint32_t size = inner.u32(found + 8);
-      if (size < kHead)
+      if (size < kHead || size > kLargestObject)
         return wrong(place, fmt::format("an object of {} bytes in this container", size)), false;
       if (!inner.has(found, size)) break;
       if (!object(inner.part(found, size), place)) return false;
@@ -126,25 +124,64 @@ class BlfReader {
     return true;
   }
 
+  // Where the parts of a message stand behind the head of its object, and which flag is that of a remote frame.
+  struct Layout {
+    size_t dlc, data;
+    uint32_t remote;
+  };
+
   bool object(const Bytes& bytes, size_t place) {
-    const uint32_t type = bytes.u32(12);
-    if (type != kMessage && type != kMessage2) return true;
     const size_t head = bytes.u16(4);
-    if (head < 32 || !bytes.has(head, 16)) return wrong(place, "a CAN message that is too short"), false;
+    const auto is_there = [&](size_t size) { return head >= 32 && bytes.has(head, size); };
+    switch (bytes.u32(12)) {
+      case kMessage:
+      case kMessage2:
+        if (!is_there(8)) break;
+        return message(bytes, place, {3, 8, 0x80}, bytes.u16(head), bytes.u8(head + 2));
+      case kFdMessage:
+        if (!is_there(20)) break;
+        if ((bytes.u8(head + 13) & 1U) != 0) return leave_out(LeftOut::FdFrame);
+        return message(bytes, place, {3, 20, 0x80}, bytes.u16(head), bytes.u8(head + 2));
+      case kFdMessage64: {
+        if (!is_there(40)) break;
+        const uint32_t flags = bytes.u32(head + 12);
+        if ((flags & 0x1000U) != 0) return leave_out(LeftOut::FdFrame);
+        if ((flags & 0x80U) != 0) return leave_out(LeftOut::TransmitRequest);
+        return message(bytes, place, {1, 40, 0x10}, bytes.u8(head), flags);
+      }
+      case kError:
+      case kErrorExt:
+      case kFdError64: return leave_out(LeftOut::ErrorFrame);
+      default: return leave_out(LeftOut::Record);
+    }
+    return wrong(place, "a CAN message that is too short"), false;
+  }
+
+  bool leave_out(LeftOut what) {
+    reader_.left_out(what);
+    return true;
+  }
+
+  bool message(const Bytes& bytes, size_t place, const Layout& layout, unsigned channel, uint32_t flags) {
+    const size_t head = bytes.u16(4);
     const uint64_t units = bytes.u64(24);
     const uint64_t unit = bytes.u32(16) == 1 ? 10'000 : 1;  // 10 us, or ns
     if (units > static_cast<uint64_t>(kLongestLog) / unit)
       return wrong(place, "a time later than this project knows"), false;
     runtime::Frame frame;
     const uint32_t id = bytes.u32(head + 4);
-    frame.extended = (id & 0x8000'0000) != 0;
-    frame.id = id & 0x7FFF'FFFF;
-    frame.remote = (bytes.u8(head + 2) & 0x80) != 0;
-    frame.length = bytes.u8(head + 3);
-    if (!is_valid(frame)) return wrong(place, "a CAN message that is none of classic CAN"), false;
-    for (uint8_t n = 0; n < frame.length && !frame.remote; ++n) frame.data[n] = bytes.u8(head + 8 + n);
-    reader_.can({begin_ + static_cast<Time>(units * unit), fmt::format("can{}", bytes.u16(head)), frame},
-                {0, place});
+    frame.extended = (id & 0x8000'0000U) != 0;
+    frame.id = id & 0x7FFF'FFFFU;
+    frame.remote = (flags & layout.remote) != 0;
+    const uint8_t dlc = bytes.u8(head + layout.dlc);
+    frame.length = classic_length(dlc);
+    if (dlc > kLargestDlc || !is_valid(frame))
+      return wrong(place, "a CAN message that is none of classic CAN"), false;
+    if (!frame.remote && !bytes.has(head + layout.data, frame.length))
+      return wrong(place, "a CAN message without all its data"), false;
+    for (uint8_t n = 0; n < frame.length && !frame.remote; ++n)
+      frame.data[n] = bytes.u8(head + layout.data + n);
+    reader_.can({begin_ + static_cast<Time>(units * unit), fmt::format("can{}", channel), frame}, {0, place});
     return true;
   }
 

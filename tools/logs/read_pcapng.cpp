@@ -1,30 +1,37 @@
-// Reads pcapng of either byte order, also such as Wireshark has captured: blocks and options that say nothing
-// about frames are passed over, and so are error frames.
+// Reads pcapng of either byte order, also such as Wireshark has captured: sections, interfaces with the unit of their times,
+// packets. Blocks and options that say nothing about frames are passed over.
 #include "tools/logs/pcapng.hpp"
 
 #include <fmt/format.h>
 
-#include "runtime/bus/log/log_name.hpp"
-#include "tools/logs/bytes.hpp"
-#include "tools/logs/log_forms.hpp"
+#include "tools/logs/packets.hpp"
 
 namespace ipos::tools {
 namespace {
 
-using pcapng::LinkType;
 using runtime::Time;
+
+__extension__ using Wide = unsigned __int128;
+
+constexpr uint64_t kBillion = 1'000'000'000;
 
 struct Interface {
   uint16_t link = 0;
   std::string name;
-  uint64_t units = 1'000'000;  // of the time in a second
+  // Of its times: parts of a second, as a power of ten or of two, and what is to be added.
+  unsigned power = 6;
+  bool binary = false;
+  int64_t offset = 0;  // s
 };
 
-std::optional<runtime::SerialError> serial_error(std::string_view text) {
-  for (size_t n = 0; n < runtime::kSerialErrors; ++n)
-    if (serial_error_text(static_cast<runtime::SerialError>(n)) == text)
-      return static_cast<runtime::SerialError>(n);
-  return std::nullopt;
+// The nanoseconds of a stamp; parts beyond them are cut off.
+Wide nanoseconds_of(uint64_t stamp, const Interface& on) {
+  constexpr unsigned kNano = 9, kNothingLeft = 64;
+  Wide time = stamp;
+  if (on.binary) return on.power >= 2 * kNothingLeft ? 0 : time * kBillion >> on.power;
+  for (unsigned n = on.power; n < kNano; ++n) time *= 10;
+  for (unsigned n = on.power; n > kNano && time != 0; --n) time /= 10;
+  return time;
 }
 
 class PcapngReader {
@@ -54,8 +61,9 @@ class PcapngReader {
     if (all.u32(at_ + size - 4) != size) return wrong(at_ + size - 4, "the two sizes of the block differ");
     const Bytes body = all.part(at_ + 8, size - 12);
     const bool good = type == pcapng::kInterface      ? interface(body)
-                      : type == pcapng::kPacket       ? packet(body)
-                      : type == pcapng::kSimplePacket ? wrong(at_, "a packet without time")
+                      : type == pcapng::kPacket       ? packet(body, false)
+                      : type == pcapng::kOldPacket    ? packet(body, true)
+                      : type == pcapng::kSimplePacket ? untimed()
                                                       : true;
     at_ += size;
     return good;
@@ -87,94 +95,54 @@ class PcapngReader {
     if (body.size() < 8) return wrong(at_, "an interface without link type");
     Interface made;
     made.link = body.u16(0);
-    made.name = fmt::format("can{}", interfaces_.size());
-    bool good = true;
+    std::string_view name;
     if (!options(body, 8, [&](uint16_t code, const Bytes& value) {
-          if (code == pcapng::kName && value.size() != 0) made.name = value.text(0, value.size());
+          if (code == pcapng::kName) name = value.text(0, value.size());
+          if (code == pcapng::kTimeOffset && value.size() == 8)
+            made.offset = static_cast<int64_t>(value.u64(0));
           if (code != pcapng::kResolution || value.size() != 1) return;
-          const unsigned power = value.u8(0) & 0x7F;
-          const bool binary = (value.u8(0) & 0x80) != 0;
-          good = binary ? power <= 32 : power <= 9;  // to the nanosecond
-          made.units = 1;
-          for (unsigned n = 0; good && n < power; ++n) made.units *= binary ? 2 : 10;
+          made.power = value.u8(0) & 0x7FU;
+          made.binary = (value.u8(0) & 0x80U) != 0;
         }))
       return false;
-    if (!good) return wrong(at_, "times finer than a nanosecond");
-    made.name = runtime::log_name(std::move(made.name));
+    made.name = interface_name(name, interfaces_.size());
     interfaces_.push_back(std::move(made));
     return true;
   }
 
-  bool packet(const Bytes& body) {
+  bool untimed() {
+    reader_.left_out(LeftOut::UntimedPacket);
+    return true;
+  }
+
+  // The old kind of block has a number of 16 bits, and how many packets were lost before it.
+  bool packet(const Bytes& body, bool old) {
     if (body.size() < 20) return wrong(at_, "a packet without head");
-    const uint32_t number = body.u32(0);
+    const uint32_t number = old ? body.u16(0) : body.u32(0);
     if (number >= interfaces_.size()) return wrong(at_ + 8, fmt::format("there is no interface {}", number));
     const Interface& on = interfaces_[number];
-    const uint64_t stamp = uint64_t{body.u32(4)} << 32 | body.u32(8);
-    const uint64_t seconds = stamp / on.units;
-    if (seconds > 9'000'000'000) return wrong(at_ + 12, "a time later than this project knows");
-    const Time time =
-        static_cast<Time>(seconds) * runtime::kSecond +
-        static_cast<Time>(stamp % on.units * static_cast<uint64_t>(runtime::kSecond) / on.units) -
-        runtime::kCandumpEpoch;
-    const uint32_t captured = body.u32(12);
+    const uint32_t captured = body.u32(12), original = body.u32(16);
     if (!body.has(20, captured)) return wrong(at_ + 20, "a packet longer than its block");
-    const Bytes data = Bytes(text_, true).part(at_ + 28, captured);
-    std::string comment;
+    const auto time = time_of(uint64_t{body.u32(4)} << 32 | body.u32(8), on);
+    if (!time) return wrong(at_ + 12, "a time later than this project knows");
+    std::string_view comment;
     if (!options(body, 20 + (size_t{captured} + 3) / 4 * 4, [&](uint16_t code, const Bytes& value) {
           if (code == pcapng::kComment) comment = value.text(0, value.size());
         }))
       return false;
-    switch (static_cast<LinkType>(on.link)) {
-      case LinkType::SocketCan: return can(on, time, data);
-      case LinkType::User0Serial: return serial(on, time, data, comment);
-      case LinkType::User1Dp: return dp(on, time, data, comment);
-    }
-    return wrong(at_, fmt::format("link type {} is no CAN of SocketCAN, RS-485 or PROFIBUS", on.link));
-  }
-
-  bool can(const Interface& on, Time time, const Bytes& data) {
-    if (data.size() < 8) return wrong(at_ + 28, "a CAN frame without head");
-    const uint32_t word = data.u32(0);
-    if ((word & pcapng::kError) != 0) return true;
-    runtime::Frame frame;
-    frame.extended = (word & pcapng::kExtended) != 0;
-    frame.remote = (word & pcapng::kRemote) != 0;
-    frame.id = word & ~(pcapng::kExtended | pcapng::kRemote);
-    frame.length = data.u8(4);
-    if (!is_valid(frame)) return wrong(at_ + 28, "no frame of classic CAN");
-    if (!frame.remote && !data.has(8, frame.length))
-      return wrong(at_ + 28, "a CAN frame without all its data");
-    for (uint8_t n = 0; n < frame.length && !frame.remote; ++n) frame.data[n] = data.u8(8U + n);
-    reader_.can({time, on.name, frame}, {0, at_});
+    read_packet({on.link, on.name, *time, body.text(20, captured), original, comment, at_, big_endian_},
+                reader_);
     return true;
   }
 
-  bool serial(const Interface& on, Time time, const Bytes& data, std::string_view comment) {
-    if (data.size() > runtime::SerialBytes::kLongest)
-      return wrong(at_ + 28,
-                   fmt::format("more than {} bytes, the longest telegram", runtime::SerialBytes::kLongest));
-    runtime::SerialEntry entry;
-    entry.time = time;
-    entry.line = on.name;
-    entry.reception.start = entry.reception.end = time;
-    for (size_t n = 0; n < data.size(); ++n) entry.reception.bytes.push(data.u8(n));
-    entry.reception.telegram = runtime::decode_serial(entry.reception.bytes.span());
-    if (comment.starts_with(pcapng::kVoid))
-      if (const auto error = serial_error(comment.substr(std::string_view(pcapng::kVoid).size())))
-        entry.reception.telegram = tl::unexpected(*error);
-    reader_.serial(entry, {0, at_});
-    return true;
-  }
-
-  bool dp(const Interface& on, Time time, const Bytes& data, std::string_view comment) {
-    profibus::Octets octets;
-    for (size_t n = 0; n < data.size(); ++n) octets.push_back(data.u8(n));
-    std::optional<profibus::FrameError> error;
-    if (comment.starts_with(pcapng::kVoid))
-      error = profibus::frame_error(comment.substr(std::string_view(pcapng::kVoid).size()));
-    reader_.dp({on.name, runtime::reception_of(std::move(octets), time, time, error)}, {0, at_});
-    return true;
+  static std::optional<Time> time_of(uint64_t stamp, const Interface& on) {
+    const Wide nanoseconds = nanoseconds_of(stamp, on);
+    constexpr int64_t kLatest = 100'000'000'000;  // s; capture_time() wants less
+    if (nanoseconds / kBillion > kLatest || on.offset > kLatest) return std::nullopt;
+    const auto seconds = static_cast<int64_t>(nanoseconds / kBillion);
+    if (seconds + on.offset < 0) return std::nullopt;
+    return capture_time(static_cast<uint64_t>(seconds + on.offset),
+                        static_cast<uint64_t>(nanoseconds % kBillion));
   }
 
   std::string_view text_;

@@ -31,6 +31,13 @@ std::string_view columns_of(std::string_view version) {
   return "N,O,I,l,D";
 }
 
+// Types of version 2 that are no classic frames: FD with bit rate switch, error state or both; ER error frame; ST, EC, EV status,
+// counters and events.
+LeftOut what_of(std::string_view type) {
+  if (type == "FD" || type == "FB" || type == "FE" || type == "BI") return LeftOut::FdFrame;
+  return type == "ER" ? LeftOut::ErrorFrame : LeftOut::Record;
+}
+
 class TrcReader {
  public:
   explicit TrcReader(const LogReader& reader) : reader_(reader) {}
@@ -80,26 +87,27 @@ class TrcReader {
         if (!time) return fields.wrong("time in milliseconds expected");
       } else if (column == 'T') {
         type = field;
-        if (type != "DT" && type != "RR") return {};  // status, errors, CAN FD
+        if (type != "DT" && type != "RR") return leave_out(what_of(type));
       } else if (column == 'B') {
         if (!whole<unsigned>(field)) return fields.wrong("number of the bus expected");
         bus = field;
       } else if (column == 'd') {
-        if (field == "Warng" || field == "Error") return {};  // version 1
+        if (field == "Warng" || field == "Error")  // version 1
+          return leave_out(field == "Error" ? LeftOut::ErrorFrame : LeftOut::Record);
         if (field != "Rx" && field != "Tx") return fields.wrong("Rx or Tx expected");
       } else if (column == 'I') {
         const auto id = whole<uint32_t>(field, 16);
         frame.extended = field.size() > 4;  // some tools leave zeros out
         frame.id = id.value_or(UINT32_MAX);
         // Version 1 writes what went wrong in place of the identifier.
-        if (field == "FFFFFFFF") return {};
-        if (!id || !is_valid(frame))
-          return fields.wrong("identifier of up to 8 hexadecimal digits expected");
+        if (field == "FFFFFFFF") return leave_out(LeftOut::Record);
+        if (!id || !is_valid(frame)) return fields.wrong("identifier of up to 8 hexadecimal digits expected");
         has_id = true;
       } else if (column == 'l' || column == 'L') {
         const auto length = whole<uint8_t>(field);
-        if (!length || *length > 8) return fields.wrong("length of 0 to 8 expected");
-        frame.length = *length;
+        if (!length || *length > kLargestDlc)
+          return fields.wrong("length of 0 to 8, or a DLC up to 15, expected");
+        frame.length = classic_length(*length);
         has_length = true;
       }
     }
@@ -109,6 +117,11 @@ class TrcReader {
     if (!frame.remote)
       if (auto error = read_bytes(fields, 16, frame)) return tl::unexpected(std::move(*error));
     reader_.can({begin_ + *time, fmt::format("can{}", bus), frame}, {line, 1});
+    return {};
+  }
+
+  tl::expected<void, FieldError> leave_out(LeftOut what) {
+    reader_.left_out(what);
     return {};
   }
 

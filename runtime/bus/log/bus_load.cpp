@@ -10,6 +10,8 @@ namespace {
 
 // A log whose time jumps by days must not make a window for each second of them.
 constexpr Time kLongestGap = 3600 * kSecond;
+// Nor must many jumps together: behind so many windows seconds without frames get none (ours).
+constexpr size_t kMostWindows = 100'000;
 
 }  // namespace
 
@@ -33,7 +35,9 @@ void BusLoad::add(Time time, const Frame& frame) {
     last_ = time;
     windows_.push_back({time, {}});
   }
-  if (time - windows_.back().start > kLongestGap) windows_.push_back({time, {}});
+  const Time gap = time - windows_.back().start;
+  if (gap > kLongestGap || (gap >= kSecond && windows_.size() >= kMostWindows))
+    windows_.push_back({time, {}});
   while (time - windows_.back().start >= kSecond) windows_.push_back({windows_.back().start + kSecond, {}});
   windows_.back().count.add(frame);
   identifiers_[{frame.id, frame.extended}].add(frame);

@@ -62,18 +62,20 @@ class LineReader {
     return true;
   }
   bool time(Time& out) {
-    constexpr int64_t kLatestSecond = 9'000'000'000;  // fits into nanoseconds of 64 bits
+    constexpr int64_t kLatestSecond = 9'000'000'000;     // fits into nanoseconds of 64 bits
+    constexpr size_t kLeastDigits = 6, kMostDigits = 9;  // 9: candump -N
     int64_t seconds = 0;
-    int64_t micros = 0;
+    int64_t part = 0;
     size_t digits = 0;
     if (!number(kLatestSecond, seconds, digits) || !expect('.')) return false;
     const size_t fraction = at_;
-    if (!number(999'999, micros, digits)) return false;
-    if (digits != 6) {
+    if (!number(999'999'999, part, digits)) return false;
+    if (digits < kLeastDigits || digits > kMostDigits) {
       at_ = fraction;
-      return fail("six digits of microseconds expected");
+      return fail("six digits of microseconds, or up to nine, expected");
     }
-    out = seconds * kSecond + micros * kMicrosecond - kCandumpEpoch;
+    for (; digits < kMostDigits; ++digits) part *= 10;
+    out = seconds * kSecond + part - kCandumpEpoch;
     return true;
   }
   bool name(std::string& out) {
@@ -99,23 +101,35 @@ class LineReader {
     return peek() == '#' ? fail("CAN FD frames are not supported") : true;
   }
   bool content(Frame& frame) {
-    if (peek() == 'R') {
+    if (peek() == 'R' || peek() == 'r') {
       ++at_;
       frame.remote = true;
       if (peek() < '0' || peek() > '8') return true;
       frame.length = static_cast<uint8_t>(peek() - '0');
       ++at_;
-      return true;
+      return raw_dlc(frame);
     }
-    while (hex_digit(peek()) >= 0) {
+    // Bytes may have points between them, as cansend takes them.
+    while (hex_digit(peek()) >= 0 || (peek() == '.' && frame.length != 0)) {
+      if (peek() == '.') ++at_;
       if (frame.length == frame.data.size()) return fail("more than 8 data bytes");
       const int high = hex_digit(peek());
+      if (high < 0) return fail("hexadecimal data byte expected");
       ++at_;
       const int low = hex_digit(peek());
       if (low < 0) return fail("second hexadecimal digit of a data byte expected");
       ++at_;
       frame.data[frame.length++] = static_cast<uint8_t>(high << 4 | low);
     }
+    return raw_dlc(frame);
+  }
+  // "_E": a DLC from 9 to 15, with which a frame has eight bytes, too.
+  bool raw_dlc(const Frame& frame) {
+    if (peek() != '_') return true;
+    ++at_;
+    if (frame.length != frame.data.size() || hex_digit(peek()) <= static_cast<int>(frame.data.size()))
+      return fail("a DLC from 9 to F behind eight bytes expected");
+    ++at_;
     return true;
   }
   bool direction() {  // newer candump adds R or T

@@ -64,8 +64,9 @@ TEST(Candump, ErrorsAreLocated) {
       {"(-1.000000) a 001#", 2, "digit expected"},
       {"(99999999999.000000) a 001#", 2, "too large"},
       {"(1.0000) a 001#", 4, "six digits"},
-      {"(1.0000000) a 001#", 4, "six digits"},
-      {"(1.9999999) a 001#", 4, "number too large"},
+      {"(1.00000) a 001#", 4, "six digits"},
+      {"(1.0000000000) a 001#", 4, "six digits"},
+      {"(1.9999999999) a 001#", 4, "number too large"},
       {"(1.x00000) a 001#", 4, "digit expected"},
       {"(9000000001.000000) a 001#", 2, "number too large"},
       {"(1.000000)a 001#", 11, "blank expected"},
@@ -91,6 +92,29 @@ TEST(Candump, ErrorsAreLocated) {
     EXPECT_NE(entry.error().message.find(c.message), std::string::npos)
         << c.text << ": " << entry.error().message;
   }
+}
+
+// Of candump -N, and of tools that write other parts of a second (can-utils#592, #313).
+TEST(Candump, StampsOfUpToNineDigits) {
+  const auto time = [](const char* text) { return parse_candump_line(text)->time + kCandumpEpoch; };
+  EXPECT_EQ(time("(1.000001) a 001#"), kSecond + kMicrosecond);
+  EXPECT_EQ(time("(1.0000001) a 001#"), kSecond + 100);
+  EXPECT_EQ(time("(1.00000001) a 001#"), kSecond + 10);
+  EXPECT_EQ(time("(1.000000001) a 001#"), kSecond + 1);
+  EXPECT_EQ(time("(1.999999999) a 001#"), 2 * kSecond - 1);
+}
+
+// What canplayer takes: small r, points between bytes, a DLC above 8 behind the data.
+TEST(Candump, DataAsCanUtilsTakesIt) {
+  for (const char* text : {"(1.000000) a 001#11.22", "(1.000000) a 001#1122"})
+    EXPECT_EQ(parse_candump_line(text)->frame, (Frame{1, 2, {0x11, 0x22}})) << text;
+  EXPECT_EQ(parse_candump_line("(1.000000) a 001#r4")->frame, (Frame{1, 4, {}, false, true}));
+  EXPECT_EQ(parse_candump_line("(1.000000) a 001#0102030405060708_9")->frame,
+            (Frame{1, 8, {1, 2, 3, 4, 5, 6, 7, 8}}));
+  EXPECT_EQ(parse_candump_line("(1.000000) a 001#R8_F")->frame, (Frame{1, 8, {}, false, true}));
+  for (const char* text : {"(1.000000) a 001#0102030405060708_8", "(1.000000) a 001#01_9",
+                           "(1.000000) a 001#R_9", "(1.000000) a 001#.01", "(1.000000) a 001#01."})
+    EXPECT_FALSE(parse_candump_line(text)) << text;
 }
 
 TEST(Candump, RoundTripAndRandomBytes) {

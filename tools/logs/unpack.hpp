@@ -1,0 +1,15 @@
+// Unpacks piece by piece: packed bytes may claim any size, and never is more than a piece of them in memory.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string_view>
+
+namespace ipos::tools {
+
+enum class Packing : uint8_t { Zlib, Gzip };
+
+// Calls `take` with each piece until it is false. False: the bytes are damaged or end too early.
+bool unpack(std::string_view packed, Packing packing, const std::function<bool(std::string_view)>& take);
+
+}  // namespace ipos::tools
