@@ -2,6 +2,7 @@
 #include "tools/serve/channel.hpp"
 
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 
 #include <cerrno>
@@ -12,17 +13,22 @@ namespace ipos::tools::serve {
 std::array<char, kLetterHead> head_bytes(const Letter& letter) {
   std::array<char, kLetterHead> bytes{};
   const auto length = static_cast<uint32_t>(letter.body.size());
-  std::memcpy(bytes.data(), &length, sizeof length);
-  std::memcpy(bytes.data() + 4, &letter.client, sizeof letter.client);
-  bytes[6] = static_cast<char>(letter.kind);
+  const int64_t arrived = letter.arrived.time_since_epoch().count();
+  std::memcpy(bytes.data(), &arrived, sizeof arrived);
+  std::memcpy(bytes.data() + 8, &length, sizeof length);
+  std::memcpy(bytes.data() + 12, &letter.client, sizeof letter.client);
+  bytes[14] = static_cast<char>(letter.kind);
   return bytes;
 }
 
 LetterHead head_of(const std::array<char, kLetterHead>& bytes) {
   LetterHead head;
-  std::memcpy(&head.length, bytes.data(), sizeof head.length);
-  std::memcpy(&head.client, bytes.data() + 4, sizeof head.client);
-  head.kind = static_cast<LetterKind>(bytes[6]);
+  int64_t arrived = 0;
+  std::memcpy(&arrived, bytes.data(), sizeof arrived);
+  head.arrived = WallClock::time_point(WallClock::duration(arrived));
+  std::memcpy(&head.length, bytes.data() + 8, sizeof head.length);
+  std::memcpy(&head.client, bytes.data() + 12, sizeof head.client);
+  head.kind = static_cast<LetterKind>(bytes[14]);
   return head;
 }
 
@@ -49,17 +55,31 @@ bool Channel::read_all(char* bytes, size_t size) {
 }
 
 bool Channel::send(LetterKind kind, uint16_t client, std::string_view body) {
-  const auto head = head_bytes({kind, client, std::string(body)});
+  const auto head = head_bytes({kind, client, std::string(body), {}});
   return write_all(head.data(), head.size()) && write_all(body.data(), body.size());
+}
+
+// Of a letter that is not whole the rest may never come: its writer may have been stopped.
+bool Channel::has_letter() {
+  std::array<char, kLetterHead> bytes{};
+  const ssize_t count = ::recv(socket_, bytes.data(), bytes.size(), MSG_PEEK | MSG_DONTWAIT);
+  if (count == 0) return open_ = false;
+  int there = 0;
+  return count == static_cast<ssize_t>(bytes.size()) && ioctl(socket_, FIONREAD, &there) == 0 &&
+         static_cast<size_t>(there) >= kLetterHead + head_of(bytes).length;
 }
 
 std::optional<Letter> Channel::wait(int milliseconds) {
   pollfd waiting{socket_, POLLIN, 0};
   if (!open_ || poll(&waiting, 1, milliseconds) <= 0) return std::nullopt;
+  if (!has_letter()) {
+    if (open_ && milliseconds > 0) poll(nullptr, 0, 1);
+    return std::nullopt;
+  }
   std::array<char, kLetterHead> bytes{};
   if (!read_all(bytes.data(), bytes.size())) return std::nullopt;
   const LetterHead head = head_of(bytes);
-  Letter letter{head.kind, head.client, std::string(head.length, '\0')};
+  Letter letter{head.kind, head.client, std::string(head.length, '\0'), head.arrived};
   if (!read_all(letter.body.data(), letter.body.size())) return std::nullopt;
   return letter;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -25,15 +26,20 @@ enum class LetterKind : uint8_t {
   Taken,   // a message of the client was carried out
 };
 
+// The clock of both processes: it has one zero for all of this machine.
+using WallClock = std::chrono::steady_clock;
+
 struct Letter {
   LetterKind kind = LetterKind::Ready;
   uint16_t client = 0;
   std::string body{};
+  WallClock::time_point arrived{};  // of a Message: when the server had it, at the latest (arrival.hpp)
 };
 
-// Length of the body, client, kind; 8 bytes in the order of this machine.
-inline constexpr size_t kLetterHead = 8;
+// Arrival, length of the body, client, kind; in the order of this machine.
+inline constexpr size_t kLetterHead = 16;
 struct LetterHead {
+  WallClock::time_point arrived{};
   uint32_t length = 0;
   uint16_t client = 0;
   LetterKind kind = LetterKind::Ready;
@@ -63,6 +69,7 @@ class Channel final : public Post {
  private:
   bool write_all(const char* bytes, size_t size);
   bool read_all(char* bytes, size_t size);
+  bool has_letter();  // a whole one
 
   int socket_;
   bool open_ = true;

@@ -16,8 +16,6 @@
 
 namespace ipos::tools::serve {
 
-using WallClock = std::chrono::steady_clock;
-
 struct Subscription {
   std::string topic;
   double rate = 20;

@@ -3,6 +3,7 @@
 
 #include <sys/random.h>
 
+#include <algorithm>
 #include <deque>
 #include <list>
 #include <map>
@@ -24,6 +25,7 @@
 #include <fmt/format.h>
 
 #include "tools/cli/failure.hpp"
+#include "tools/serve/arrival.hpp"
 #include "tools/serve/channel.hpp"
 
 namespace ipos::tools::serve {
@@ -109,6 +111,7 @@ class Server::Listener {
       if (!error) end();
     });
     read_head();
+    stay_awake();
     io_.run();
   }
 
@@ -121,7 +124,7 @@ class Server::Listener {
     asio::async_read(host_, asio::buffer(head_), [this](Error error, size_t) {
       if (error) return host_gone();
       const LetterHead head = head_of(head_);
-      letter_ = {head.kind, head.client, std::string(head.length, '\0')};
+      letter_ = {head.kind, head.client, std::string(head.length, '\0'), {}};
       asio::async_read(host_, asio::buffer(letter_.body), [this](Error broken, size_t) {
         if (broken) return host_gone();
         take(letter_);
@@ -134,9 +137,10 @@ class Server::Listener {
     host_there_ = false;
     end();
   }
-  void tell_host(LetterKind kind, uint16_t client, std::string body = {}) {
+  void tell_host(LetterKind kind, uint16_t client, std::string body = {},
+                 WallClock::time_point arrived = {}) {
     if (!host_there_) return;
-    Letter letter{kind, client, std::move(body)};
+    Letter letter{kind, client, std::move(body), arrived};
     const auto head = head_bytes(letter);
     to_host_.push_back(std::string(head.data(), head.size()) + letter.body);
     if (to_host_.size() == 1) write_to_host();
@@ -153,14 +157,30 @@ class Server::Listener {
   void accept() {
     acceptor_.async_accept([this](Error error, tcp::socket socket) {
       if (error == asio::error::operation_aborted || ending_) return;
-      if (!error && connections_ < kMostConnections) begin(std::move(socket));
-      if (!error) return accept();
+      if (!error) {
+        begin(std::move(socket));
+        return accept();
+      }
       // No descriptor left, perhaps: a moment later there may be one.
       pause_.expires_after(std::chrono::milliseconds(100));
       pause_.async_wait([this](Error) { accept(); });
     });
   }
   void begin(tcp::socket socket);
+  std::optional<uint16_t> free_number();
+  // Reads the clock each time, so that a pause of this process is known before the first message after it is read.
+  WallClock::time_point now() {
+    const auto now = WallClock::now();
+    arrival_.awake(now);
+    return now;
+  }
+  void stay_awake() {
+    (void)now();
+    heartbeat_.expires_after(Arrival::kNap / 5);
+    heartbeat_.async_wait([this](Error error) {
+      if (!error) stay_awake();
+    });
+  }
   bool is_ours(std::string_view host) const;
   std::optional<std::pair<http::status, std::string>> refusal(const Request& request) const;
   Response answer(const Request& request) const;
@@ -183,7 +203,9 @@ class Server::Listener {
   std::array<char, kLetterHead> head_{};
   Letter letter_;
   std::deque<std::string> to_host_;
-  size_t connections_ = 0;
+  std::list<Connection*> asking_;  // of one request; who has been silent for longest stands in front
+  Arrival arrival_;
+  asio::steady_timer heartbeat_{io_};
   uint16_t last_client_ = 0;
   std::map<uint16_t, std::shared_ptr<Socket>> sockets_;
 };
@@ -216,7 +238,9 @@ class Server::Listener::Socket : public std::enable_shared_from_this<Socket> {
   }
   void taken() {
     --unanswered_;
-    if (held_ && unanswered_ < kMostUnanswered) read();
+    if (!held_ || unanswered_ >= kMostUnanswered) return;
+    arrival_.resume(WallClock::now());
+    read();
   }
   void close(websocket::close_code code) {
     if (!open_ || closing_) return;
@@ -233,11 +257,14 @@ class Server::Listener::Socket : public std::enable_shared_from_this<Socket> {
     held_ = false;
     stream_.async_read(buffer_, [self = shared_from_this()](Error error, size_t) {
       if (error) return self->gone();
-      self->listener_.tell_host(LetterKind::Message, self->number_,
-                                beast::buffers_to_string(self->buffer_.data()));
+      const auto now = self->listener_.now();
+      self->listener_.tell_host(
+          LetterKind::Message, self->number_, beast::buffers_to_string(self->buffer_.data()),
+          std::min(self->arrival_.of_message(now), self->listener_.arrival_.of_message(now)));
       self->buffer_.consume(self->buffer_.size());
       self->held_ = ++self->unanswered_ >= kMostUnanswered;
-      if (!self->held_) self->read();
+      if (!self->held_) return self->read();
+      self->arrival_.pause(now);
     });
   }
   void write() {
@@ -261,7 +288,6 @@ class Server::Listener::Socket : public std::enable_shared_from_this<Socket> {
     out_.clear();
     beast::get_lowest_layer(stream_).close();
     const auto self = shared_from_this();  // the listener has the last other one
-    --listener_.connections_;
     listener_.sockets_.erase(number_);
     if (listener_.ending_ && listener_.sockets_.empty()) listener_.io_.stop();
   }
@@ -277,6 +303,7 @@ class Server::Listener::Socket : public std::enable_shared_from_this<Socket> {
   std::deque<Out> out_;
   size_t waiting_ = 0;
   int unanswered_ = 0;
+  Arrival arrival_;
   bool open_ = false, closing_ = false, gone_ = false, writing_ = false, held_ = false;
 };
 
@@ -284,22 +311,33 @@ class Server::Listener::Socket : public std::enable_shared_from_this<Socket> {
 class Server::Listener::Connection : public std::enable_shared_from_this<Connection> {
  public:
   Connection(Listener& listener, tcp::socket socket) : listener_(listener), stream_(std::move(socket)) {
-    ++listener_.connections_;
+    place_ = listener_.asking_.insert(listener_.asking_.end(), this);
     parser_.header_limit(kMostHeader);
     parser_.body_limit(kMostBody);
   }
   ~Connection() {
-    if (!handed_over_) --listener_.connections_;
+    if (!ended_) listener_.asking_.erase(place_);
   }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
 
   void read() {
     stream_.expires_after(kRequestTime);
     http::async_read(stream_, buffer_, parser_,
                      [self = shared_from_this()](Error error, size_t) { self->on_read(error); });
   }
+  // Makes room for somebody who asks for something.
+  void end() {
+    ended_ = true;
+    listener_.asking_.erase(place_);
+    Error ignored;
+    stream_.socket().close(ignored);
+  }
 
  private:
   void on_read(Error error) {
+    if (ended_) return;
+    listener_.asking_.splice(listener_.asking_.end(), listener_.asking_, place_);
     if (error == http::error::header_limit)
       return write(http::status::request_header_fields_too_large, "the header is too long\n");
     if (error == http::error::body_limit)
@@ -312,13 +350,12 @@ class Server::Listener::Connection : public std::enable_shared_from_this<Connect
     const bool is_socket = websocket::is_upgrade(request) && view(request.target()).starts_with("/ws");
     if (!is_socket) return write(listener_.answer(request));
     if (const auto refused = listener_.refusal(request)) return write(refused->first, refused->second);
-    if (listener_.sockets_.size() >= kMostClients)
+    const auto number = listener_.free_number();
+    if (!number)
       return write(http::status::service_unavailable,
                    fmt::format("there are {} clients already\n", kMostClients));
-    handed_over_ = true;
-    const uint16_t number = ++listener_.last_client_;
-    const auto socket = std::make_shared<Socket>(listener_, std::move(stream_), number);
-    listener_.sockets_[number] = socket;
+    const auto socket = std::make_shared<Socket>(listener_, std::move(stream_), *number);
+    listener_.sockets_[*number] = socket;
     socket->accept(request);
   }
   void write(http::status status, const std::string& text) {
@@ -337,11 +374,24 @@ class Server::Listener::Connection : public std::enable_shared_from_this<Connect
   beast::flat_buffer buffer_;
   http::request_parser<http::string_body> parser_;
   Response response_;
-  bool handed_over_ = false;
+  std::list<Connection*>::iterator place_;
+  bool ended_ = false;
 };
 
+// Whoever has said nothing for longest goes: silent ones keep nobody out.
 void Server::Listener::begin(tcp::socket socket) {
+  if (asking_.size() + sockets_.size() >= kMostConnections && !asking_.empty()) asking_.front()->end();
   std::make_shared<Connection>(*this, std::move(socket))->read();
+}
+
+// An old client may still have a number when they begin anew.
+std::optional<uint16_t> Server::Listener::free_number() {
+  if (sockets_.size() >= kMostClients) return std::nullopt;
+  do
+    last_client_ =
+        last_client_ < options_.last_number ? static_cast<uint16_t>(last_client_ + 1) : uint16_t{1};
+  while (sockets_.contains(last_client_));
+  return last_client_;
 }
 
 void Server::Listener::take(Letter& letter) {
@@ -424,6 +474,7 @@ void Server::Listener::end() {
   acceptor_.close(ignored);
   signals_.cancel(ignored);
   pause_.cancel();
+  heartbeat_.cancel();
   host_.close(ignored);
   host_there_ = false;
   const auto sockets = sockets_;
@@ -433,8 +484,11 @@ void Server::Listener::end() {
   if (sockets.empty()) io_.stop();
 }
 
-Server::Server(const ServerOptions& options, int host)
-    : listener_(std::make_unique<Listener>(options, host)) {}
+Server::Server(const ServerOptions& options, int host) try
+    : listener_(std::make_unique<Listener>(options, host)) {
+} catch (const boost::system::system_error& error) {  // descriptors of its own, mostly
+  throw Failure(kIoError, fmt::format("the system does not give what a server needs: {}", error.what()));
+}
 Server::~Server() = default;
 std::string Server::address() const { return listener_->address(); }
 void Server::run(const std::function<void()>& ready) { listener_->run(ready); }

@@ -15,6 +15,7 @@ struct ServerOptions {
   uint16_t port = 0;  // 0: a free one
   std::string token;
   std::string_view page;
+  uint16_t last_number = UINT16_MAX;  // of clients; then they begin anew at 1
 };
 
 // Limits (ours).

@@ -17,6 +17,7 @@
 #include "tools/input/plant_source.hpp"
 #include "tools/serve/channel.hpp"
 #include "tools/serve/drive_host.hpp"
+#include "tools/serve/opened_page.hpp"
 #include "tools/serve/page.hpp"
 #include "tools/serve/plant_host.hpp"
 #include "tools/serve/server.hpp"
@@ -47,15 +48,6 @@ Pair make_pair_of_sockets() {
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
     throw Failure(kIoError, "the system gives no sockets");
   return {ends[0], ends[1]};
-}
-
-// A browser that outlives this process.
-void open_browser(const std::string& address) {
-  const pid_t opener = fork();
-  if (opener != 0) return;
-  if (freopen("/dev/null", "w", stdout) == nullptr || freopen("/dev/null", "w", stderr) == nullptr) _exit(1);
-  execlp("xdg-open", "xdg-open", address.c_str(), static_cast<char*>(nullptr));
-  _exit(1);
 }
 
 int run_host(const ServeFlags& flags, PlantInput input, const Pair& sockets) {
@@ -101,14 +93,19 @@ int serve_page(const ServeFlags& flags) {
   if (!host.started()) throw Failure(kIoError, "there is no room for another process");
   close(sockets.host);
   bool was_there = false;
+  std::optional<serve::OpenedPage> page;
   {
-    serve::Server server({flags.bind, flags.port, serve::make_token(), serve::embedded_files().front().text},
-                         sockets.server);
+    serve::ServerOptions options;
+    options.bind = flags.bind;
+    options.port = flags.port;
+    options.token = serve::make_token();
+    options.page = serve::embedded_files().front().text;
+    serve::Server server(options, sockets.server);
     server.run([&] {
       was_there = true;
       fmt::print("{}\n", server.address());
       std::fflush(stdout);
-      if (flags.open) open_browser(server.address());
+      if (flags.open) page.emplace(server.address());
     });
   }
   const int code = host.wait();

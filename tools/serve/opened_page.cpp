@@ -1,0 +1,38 @@
+// A page that leads to another one at once, and xdg-open.
+#include "tools/serve/opened_page.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "tools/serve/state_folder.hpp"
+
+namespace ipos::tools::serve {
+
+OpenedPage::OpenedPage(const std::string& address) : name_(fmt::format("open-{}.html", getpid())) {
+  const bool written = write_state(
+      name_,
+      fmt::format(
+          "<!doctype html>\n<meta charset=\"utf-8\">\n<meta name=\"referrer\" content=\"no-referrer\">\n"
+          "<meta http-equiv=\"refresh\" content=\"0; url={0}\">\n<a href=\"{0}\">ipos</a>\n",
+          address));
+  if (!written) {  // the address stands on standard output
+    fmt::print(stderr,
+               "ipos: --open: the file that leads a browser to the page cannot be written in the user's "
+               "state folder "
+               "(XDG_STATE_HOME); open the address above\n");
+    return;
+  }
+  const std::string path = (state_folder() / name_).string();
+  const pid_t opener = fork();
+  if (opener != 0) return;
+  setsid();  // a browser outlives this process
+  if (freopen("/dev/null", "w", stdout) == nullptr || freopen("/dev/null", "w", stderr) == nullptr) _exit(1);
+  execlp("xdg-open", "xdg-open", path.c_str(), static_cast<char*>(nullptr));
+  _exit(1);
+}
+
+OpenedPage::~OpenedPage() { remove_state(name_); }
+
+}  // namespace ipos::tools::serve
