@@ -1,21 +1,22 @@
 #!/usr/bin/env bash
 # What takes too long for every test run: all sources compiled by clang and all suites with AddressSanitizer and UBSan,
 # every preset configured, a short run of every fuzz target, what has threads with ThreadSanitizer, the examples under
-# valgrind, and the tutorial in an empty Debian. Prints the time of each part; goes on after a failure.
+# valgrind, the tutorial in an empty Debian, and 500 releases of a button that moves a real drive, on a machine that has
+# more to do than it can. Prints the time of each part; goes on after a failure.
 #   tests/check/check.sh              all parts
-#   tests/check/check.sh PART...      of: asan presets fuzz tsan valgrind tutorial
+#   tests/check/check.sh PART...      of: asan presets fuzz tsan valgrind tutorial jog
 set -uo pipefail
 cd "$(dirname "$0")/../.." || exit
 jobs=$(nproc)
-parts='asan presets fuzz tsan valgrind tutorial'
+parts='asan presets fuzz tsan valgrind tutorial jog'
 # shellcheck disable=SC2086
 [ $# -gt 0 ] || set -- $parts
 
 # Programs with threads: `ipos test -j` and the reader behind the ports and the page.
 threaded=(ipos_testing_tests ipos_port_tests ipos_serve_tests ipos_library_tests)
 # Not for sanitizers: they run another processor's code, boot a kernel, build the project anew, or start the program some
-# thousand times (ipos_schemas: 40 s without sanitizers). The corpora of fuzzing are replayed by `fuzz`.
-unfit='ipos_fuzz_replay|ipos_schemas|aarch64|ipos_realbus|ipos_memcheck|ipos_debian|ipos_install|ipos_subdirectory|ipos_hello|cortex|ipos_pictures|conformance'
+# thousand times (ipos_schemas: 40 s without sanitizers), or measure how long it takes (ipos_server_jog). The corpora of fuzzing are replayed by `fuzz`.
+unfit='ipos_fuzz_replay|ipos_server_jog|ipos_schemas|aarch64|ipos_realbus|ipos_memcheck|ipos_debian|ipos_install|ipos_subdirectory|ipos_hello|cortex|ipos_pictures|conformance'
 
 configure() { cmake --preset "$1" -DIPOS_TESTS=ON >/dev/null; }
 
@@ -91,6 +92,19 @@ tutorial() {
 
 failed=()
 times=()
+# Twice as many busy loops as processors beside it.
+jog() {
+  local status=0 busy=()
+  for _ in $(seq $((2 * jobs))); do
+    while :; do :; done &
+    busy+=($!)
+  done
+  python3 tests/serve/jog_test.py build/release/tools/ipos --releases 500 HandOff.test_releases || status=1
+  kill "${busy[@]}"
+  wait "${busy[@]}" 2>/dev/null
+  return $status
+}
+
 for part in "$@"; do
   [[ " $parts " == *" $part "* ]] || { sed -n '5,6s/^# *//p' "$0"; exit 64; }
   echo "== $part"

@@ -190,6 +190,24 @@ class Serving(unittest.TestCase):
             client.close()
             self.assertEqual(client.status, 401)
 
+    def test_an_origin_is_ours_as_a_whole(self):
+        """Another port or name that begins or ends like ours is another page."""
+        ours = f"http://127.0.0.1:{self.port}"
+        for origin in (ours + "0", ours + ".evil.example", ours + "/", ours[:-1], "http://127.0.0.1", "https" + ours[4:],
+                       "http://evil.example/" + ours, ours.upper(), "null", ""):
+            self.assertEqual(self.status(f"/?token={self.token}", more=f"Origin: {origin}\r\n"), 403, origin)
+            if origin:
+                self.assertEqual(self.connect(origin=origin).status, 403, origin)
+
+    def test_silent_connections_keep_nobody_out(self):
+        silent = [socket.create_connection(("127.0.0.1", self.port), timeout=20) for _ in range(200)]
+        for connection in silent:
+            self.addCleanup(connection.close)
+        begin = time.monotonic()
+        self.assertTrue(self.connect().ask(do="plant")["ok"])
+        self.assertLess(time.monotonic() - begin, 8, "they have 10 s for their request")
+        self.assertEqual(self.status(f"/?token={self.token}"), 200)
+
     def test_too_much_is_refused(self):
         self.assertEqual(self.status(f"/?token={self.token}", more="X: " + "x" * 9000 + "\r\n"), 431)
         client = self.connect()
@@ -467,6 +485,43 @@ P101 = "RS-485"
         client = self.serve()
         self.assertIn("--write", client.ask(do="bus.send", bus="RS-485", data="0201")["error"])
 
+    @staticmethod
+    def telegram(address, typ, *words):
+        """02 ADR TYP, words with the high byte first, BCC (1053 1610 p. 18-25)."""
+        octets = bytes([2, address, typ]) + struct.pack(f">{len(words)}H", *words)
+        check = 0
+        for octet in octets:
+            check ^= octet
+        return (octets + bytes([check])).hex()
+
+    def test_a_telegram_that_could_enable_a_drive_needs_its_monitoring(self):
+        client = self.serve("--write")
+        client.ask(do="arm", yes=True)
+
+        def send(data):
+            return client.ask(do="bus.send", bus="RS-485", data=data).get("error", "")
+
+        for typ, *words in ((5, 6, 1000, 0), (3, 6, 1000), (1, 6), (5, 0, 0, 0x0C16), (5, 0x000E, 1, 1)):
+            with self.subTest(typ=typ, words=words):
+                self.assertIn("Switch the monitoring on first: P812 = 0.5 s", send(self.telegram(1, typ, *words)))
+        with_parameter = self.telegram(1, 4, 0x3100, 0x2116, 0, 0, 6, 1000, 0)
+        self.assertIn("P812", send(with_parameter))
+        for harmless in (self.telegram(1, 5, 0, 1000, 0), self.telegram(1, 5, 2, 1000, 0), self.telegram(1, 5, 1, 7, 3),
+                         self.telegram(1, 6, 0x3100, 0x2116, 0, 6), self.telegram(1, 5, 6, 6, 6)[:-2] + "ff"):
+            self.assertEqual(send(harmless), "")
+        self.assertIn("does not tell", send(self.telegram(2, 5, 6, 1000, 0)))
+        for group in (101, 254, 255):
+            self.assertIn("several drives", send(self.telegram(group, 5, 6, 1000, 0)))
+        client.ask(do="parameters.set", number="P812", value="650 s")
+        self.assertIn("P812 is off", send(self.telegram(1, 5, 6, 1000, 0)))
+        client.ask(do="parameters.set", number="P812", value="0.3 s")
+        client.ask(do="parameters.set", number="P833", value="NO RESPONSE")
+        self.assertIn("P833 lets it go on", send(self.telegram(1, 5, 6, 1000, 0)))
+        client.ask(do="parameters.set", number="P833", value="RAPID STOP/WARNG")
+        for acyclic in (0x85, 0x81, 0x83):
+            self.assertIn("acyclic", send(self.telegram(1, acyclic, *[6, 1, 1][:(acyclic & 7) // 2 + 1])))
+        self.assertEqual(send(self.telegram(1, 5, 6, 1000, 0)), "")
+
     def test_it_writes_when_confirmed_and_stops_when_the_hand_is_off(self):
         client = self.serve("--write")
         self.assertIn("confirm", client.ask(do="parameters.set", number="P130", value="1 s")["error"])
@@ -546,9 +601,51 @@ class SilentAtFirst(unittest.TestCase):
         self.assertIn("CTRL. WORD 1 0006h", text)
 
 
+class OpensABrowser(unittest.TestCase):
+    def test_the_token_is_in_no_argument(self):
+        """A script in the place of xdg-open says what it is given."""
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "plant.toml").write_text('[[station]]\nname = "saw"\nunit = "md60a"\n')
+            opener = folder / "xdg-open"
+            opener.write_text(f'#!/bin/sh\necho "$@" > {folder}/given.tmp\ncat "$1" > {folder}/page\nstat -c %a "$1" > {folder}/mode\n'
+                              f'mv {folder}/given.tmp {folder}/given\n')
+            opener.chmod(0o755)
+            ipos = subprocess.Popen([IPOS, "serve", str(folder / "plant.toml"), "--open"], stdout=subprocess.PIPE, text=True,
+                                    env={**os.environ, "PATH": f"{folder}:{os.environ['PATH']}",
+                                         "XDG_STATE_HOME": str(folder / "state")})
+            try:
+                address = ipos.stdout.readline().strip()
+                given = folder / "given"
+                for _ in range(1000):
+                    if given.exists():
+                        break
+                    time.sleep(0.02)
+                self.assertNotIn(address.split("=")[1], given.read_text())
+                self.assertIn(f"url={address}", (folder / "page").read_text())
+                self.assertEqual((folder / "mode").read_text().strip(), "600")
+            finally:
+                ipos.send_signal(signal.SIGINT)
+                ipos.wait(timeout=30)
+                ipos.stdout.close()
+            self.assertEqual([path.name for path in (folder / "state" / "ipos").iterdir() if path.name.startswith("open")], [])
+
+
 class NotServing(unittest.TestCase):
     def run_ipos(self, *arguments):
         return subprocess.run([IPOS, "serve", *arguments], capture_output=True, text=True, timeout=60, check=False)
+
+    def test_too_few_descriptors_are_told(self):
+        with tempfile.TemporaryDirectory() as folder, socket.socket() as taken:  # so that it ends where there are enough
+            taken.bind(("127.0.0.1", 0))
+            taken.listen()
+            plant = pathlib.Path(folder) / "plant.toml"
+            plant.write_text('[[station]]\nname = "saw"\nunit = "md60a"\n')
+            for limit in range(4, 14):
+                result = subprocess.run(["sh", "-c", f'ulimit -n {limit}; exec "$0" serve "$1" --port "$2"', IPOS, str(plant),
+                                         str(taken.getsockname()[1])], capture_output=True, text=True, timeout=60, check=False)
+                self.assertNotIn("internal error", result.stderr, limit)
+                self.assertIn(result.returncode, (66, 74, 127), f"{limit}: {result.stderr}")
 
     def test_a_port_that_is_taken_is_told(self):
         with tempfile.TemporaryDirectory() as folder, socket.socket() as taken:

@@ -1,6 +1,9 @@
 // The tab Bus of a plant: ears on all its lines.
+#include <algorithm>
+
 #include "runtime/bus_plan/names.hpp"
 #include "tools/serve/bus_traffic.hpp"
+#include "tools/serve/enabling_telegrams.hpp"
 #include "tools/serve/tabs.hpp"
 
 namespace ipos::tools::serve {
@@ -30,7 +33,34 @@ class BusTab final : public Tab, private BusSource {
   runtime::Time line_now() const override { return host_.plant().now(); }
   void heard() override { host_.telegram_seen(); }
   // Done again when its time comes again.
-  void send(const Desk::Call& call) override { host_.act("bus.send", call.arguments.json()); }
+  void send(const Desk::Call& call) override {
+    if (const std::string bus = call.arguments.text("bus"); host_.has_port(bus)) guard(bus, call.arguments);
+    host_.act("bus.send", call.arguments.json());
+  }
+  // A real drive may be at the port.
+  void guard(const std::string& bus, const Arguments& arguments) {
+    runtime::Plant& plant = host_.plant();
+    runtime::CanLineNames names;
+    std::optional<EnablingTelegram> enabling;
+    for (const runtime::CanLine* line : plant.lines())
+      if (line->name() == bus) {
+        names = runtime::can_line_names(plant, line);
+        enabling = enabling_on_can(arguments, !names.nodes.empty());
+      }
+    for (runtime::SerialBus* line : plant.serial_lines())
+      if (line->line().name() == bus) {
+        names.movilink = runtime::serial_names(plant);
+        enabling = enabling_on_serial(arguments);
+      }
+    if (!enabling) return;
+    refuse_outside(*enabling, [&](uint8_t address) {
+      const auto& units = names.movilink.units;
+      return std::any_of(units.begin(), units.end(),
+                         [&](const auto& unit) { return unit.settings.address == address; }) ||
+             std::any_of(names.nodes.begin(), names.nodes.end(),
+                         [&](const auto& node) { return node.node == address; });
+    });
+  }
 
   PlantHost& host_;
   BusTraffic traffic_;

@@ -2,6 +2,7 @@
 #include "tools/serve/drive_bus.hpp"
 
 #include "stdlib/parameters.hpp"
+#include "tools/serve/enabling_telegrams.hpp"
 
 namespace ipos::tools::serve {
 namespace {
@@ -90,6 +91,10 @@ void DriveBus::turn(bool waits) {
 
 void DriveBus::send(const Desk::Call& call) {
   must_write_(call);
+  const auto enabling = link_.can_line() != nullptr
+                            ? enabling_on_can(call.arguments, !link_.carries_process_data())
+                            : enabling_on_serial(call.arguments);
+  if (enabling) refuse_unmonitored(link_, *enabling);
   traffic_.send(call.arguments);
   // The next question would talk into the answer.
   link_.serve(link_.can_line() != nullptr ? kListens : kAnswer);

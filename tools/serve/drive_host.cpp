@@ -6,9 +6,11 @@
 #include <algorithm>
 
 #include "runtime/bus/movilink/format.hpp"
-#include "runtime/os_port/port_names.hpp"
 #include "stdlib/parameters.hpp"
+#include "tools/cli/failure.hpp"
 #include "tools/serve/parameter_rows.hpp"
+#include "tools/serve/server.hpp"
+#include "tools/serve/while.hpp"
 #include "tools/unit/link_access.hpp"
 #include "tools/unit/parameter_set.hpp"
 
@@ -21,13 +23,13 @@ using namespace std::chrono_literals;
 
 constexpr size_t kReadsAtOnce = 8;  // of a topic, then others have their turn
 constexpr size_t kMostWatchedValues = 100;
-constexpr auto kJogHolds = 300ms;  // without a `jog` it stops
-constexpr auto kJogPeriod = 50ms;  // of the process data; drives monitor them from 10 ms on (P812, P815)
 constexpr auto kTimePeriod = 50ms;
-constexpr int kLettersAtATime = 8;     // a client that floods does not hold a jog up
-constexpr double kDigitsOfRpm = 5;    // a speed word counts 0.2 rpm (1053 1610 p. 42)
-constexpr uint16_t kEnable = 0x0006;  // control word 1: no inhibit, no rapid stop, no stop
-constexpr uint16_t kStop = 0x0002;    // the stop with the ramp of the setpoint
+constexpr int kLettersAtATime = 8;  // a client that floods does not hold the topics up
+constexpr auto kAttends = 20ms;     // at a time, to what comes; then the drive has its turn
+// Of a client. The server reads on, whatever waits here: a stop may be behind it (server.hpp).
+constexpr size_t kMostWaitingOrders = kMostUnanswered / 2;
+constexpr size_t kLongestJog = 512;  // bytes of a message that may be one
+constexpr auto kFarewell = 5s;       // to a drive that does not answer
 
 // The list without a drive: what its table knows.
 class TableAccess final : public ParameterAccess {
@@ -58,7 +60,11 @@ DriveHost::DriveHost(std::unique_ptr<BusLink> link, Options options, Post& post)
       scope_(desk_, *access_, name(), [this] { return us() / 1000 * runtime::kMillisecond; }),
       bus_(
           desk_, link_, {*access_, name(), options_.address}, [this] { return us() * runtime::kMicrosecond; },
-          [this](const Desk::Call& call) { must_write(call); }) {
+          [this](const Desk::Call& call) {
+            must_write(call);
+            must_stand();
+          }),
+      manual_(link_, *access_, options_.address, [this] { tell_manual(); }) {
   desk_.hello = [this] {
     return Json{{"protocol", 1},
                 {"version", options_.version},
@@ -66,25 +72,26 @@ DriveHost::DriveHost(std::unique_ptr<BusLink> link, Options options, Post& post)
                 {"title", access_->name()},
                 {"writable", options_.may_write}};
   };
-  desk_.on_closed = [this](const Client& client) {
-    watched_.erase(client.number);
-    if (jog_ && jog_->client == client.number) end_jog();
-  };
+  desk_.on_closed = [this](const Client& client) { watched_.erase(client.number); };
   add_commands();
+  for (const std::string& text : manual_.left())
+    fmt::print(stderr, "ipos: an earlier run left something behind: {}\n", text);
+  link_.before_question = [this] { attend(); };
 }
 
+// Where the port has gone there is nobody to be told: the drive's own monitoring has stopped it.
 DriveHost::~DriveHost() {
-  if (jog_) end_jog();
+  try {
+    manual_.finish(kFarewell);
+  } catch (const Failure&) {
+    for (const std::string& text : manual_.left()) fmt::print(stderr, "ipos: {}\n", text);
+  }
 }
 
 void DriveHost::run() {
   while (post_.open()) {
+    attend();
     const auto now = WallClock::now();
-    if (jog_ && now >= jog_->ends) end_jog();
-    if (jog_ && now >= jog_->next) {
-      jog_->next = now + kJogPeriod;
-      send_words(jog_->words);
-    }
     if (now >= next_time_) {
       next_time_ = now + kTimePeriod;
       desk_.send_all(time());
@@ -93,13 +100,63 @@ void DriveHost::run() {
     const bool samples = scope_.wanted();
     if (samples) scope_.sample();
     bus_.turn(!samples);
-    for (int n = 0; n < kLettersAtATime; ++n) {
-      const auto letter = post_.wait(0);
-      if (!letter) break;
-      desk_.take(*letter);
-      if (letter->kind == LetterKind::Opened) desk_.send(desk_.clients().at(letter->client), time());
+    attend();
+    for (int n = 0; n < kLettersAtATime && !waiting_.empty(); ++n) {
+      const Letter letter = std::move(waiting_.front());
+      waiting_.pop_front();
+      arrived_ = letter.arrived;
+      desk_.take(letter);
+      if (letter.kind != LetterKind::Opened) continue;
+      Client& client = desk_.clients().at(letter.client);
+      desk_.send(client, time());
+      desk_.send(client, manual());
     }
   }
+}
+
+void DriveHost::attend() {
+  for (const auto until = WallClock::now() + kAttends; WallClock::now() < until;) {
+    auto letter = post_.wait(0);
+    if (!letter) break;
+    if (letter->kind == LetterKind::Closed) manual_.let_go(letter->client);
+    if (!overtakes(*letter)) {
+      keep(std::move(*letter));
+      continue;
+    }
+    arrived_ = letter->arrived;
+    desk_.take(*letter);
+  }
+  if (!post_.open()) manual_.let_go();
+  manual_.turn();
+}
+
+// What a hand does: it changes nothing that another order under way could be using. The order of a client that nobody
+// knows yet waits.
+bool DriveHost::overtakes(const Letter& letter) {
+  if (letter.kind != LetterKind::Message || letter.body.size() > kLongestJog) return false;
+  const auto client = desk_.clients().find(letter.client);
+  if (client == desk_.clients().end()) return false;
+  const Json message = Json::parse(letter.body, nullptr, false);
+  if (!message.is_object()) return false;
+  const Json order = message.value("do", Json());
+  return order == "arm" || order == "jog";
+}
+
+void DriveHost::keep(Letter letter) {
+  const auto is_of_client = [&](const Letter& one) {
+    return one.kind == LetterKind::Message && one.client == letter.client;
+  };
+  if (letter.kind == LetterKind::Closed) std::erase_if(waiting_, is_of_client);
+  if (letter.kind == LetterKind::Message && std::count_if(waiting_.begin(), waiting_.end(), is_of_client) >=
+                                                static_cast<ptrdiff_t>(kMostWaitingOrders)) {
+    const Json message = Json::parse(letter.body, nullptr, false);
+    const Json id = message.is_object() ? message.value("id", Json()) : Json();
+    desk_.fail(letter.client, id.is_number_integer() ? id : Json(),
+               "too many orders of this client wait already");
+    post_.send(LetterKind::Taken, letter.client, {});
+    return;
+  }
+  waiting_.push_back(std::move(letter));
 }
 
 Json DriveHost::time() const {
@@ -117,16 +174,25 @@ void DriveHost::must_write(const Desk::Call& call) const {
   if (!call.client.armed) throw Mistake("this is a real drive: confirm first that it may be written to");
 }
 
+void DriveHost::must_stand() const {
+  if (!manual_.stands()) throw Mistake("the drive is being moved by hand: let go of the button first");
+}
+
 void DriveHost::add_commands() {
   desk_.add_command("arm", [this](const Desk::Call& call) {
     if (!options_.may_write) throw Mistake("ipos serve was started without --write");
     call.client.armed = call.arguments.flag("yes");
+    if (call.client.armed)
+      manual_.may_write();
+    else
+      manual_.let_go(call.client.number);
     return Json::object();
   });
   desk_.add_command("plant", [this](const Desk::Call&) { return Json{{"plant", describe()}}; });
   desk_.add_command("watch", [this](const Desk::Call& call) { return watch(call); });
   desk_.add_command("set", [this](const Desk::Call& call) {
     must_write(call);
+    must_stand();
     const Target target = find_target(access_->unit(), call.arguments.text("name"));
     const int32_t value = value_of(target, call.arguments.text("value"));
     write_parameter(*access_, target.index, value, true);
@@ -138,18 +204,22 @@ void DriveHost::add_commands() {
   });
   desk_.add_command("parameters.set", [this](const Desk::Call& call) {
     must_write(call);
+    must_stand();
     const Target target = find_target(access_->unit(), call.arguments.text("number"));
     const int32_t value = value_of(target, call.arguments.text("value"));
     write_parameter(*access_, target.index, value, call.arguments.flag("volatile", false));
     return Json{{"text", text_of(target, value)}};
   });
   desk_.add_command("parameters.save", [this](const Desk::Call&) {
+    must_stand();
     bool complete = true;
     const ParameterSet settings = read_settings(*access_, complete);
     return Json{{"file", name() + ".settings"}, {"text", to_text(settings)}};
   });
   desk_.add_command("parameters.load", [this](const Desk::Call& call) {
     must_write(call);
+    must_stand();
+    const While writes(writes_);
     return load_settings(*access_, call.arguments.text("text"));
   });
   desk_.add_command("jog", [this](const Desk::Call& call) { return jog(call); });
@@ -203,13 +273,13 @@ Json DriveHost::watch(const Desk::Call& call) {
   return {{"names", std::move(rows)}};
 }
 
-// A few at a time: a slow line must not keep the others waiting.
+// A few at a time, and none while letters wait: a slow line must not keep the others waiting.
 void DriveHost::publish_watch(Client& client, Subscription& subscription) {
   const auto found = watched_.find(client.number);
   if (found == watched_.end()) return;
   const std::vector<LiveItem>& items = found->second;
   Json values = Json::object();
-  for (size_t n = 0; n < std::min(kReadsAtOnce, items.size()); ++n) {
+  for (size_t n = 0; n < std::min(kReadsAtOnce, items.size()) && waiting_.empty(); ++n) {
     const LiveItem& item = items[subscription.mark++ % items.size()];
     const AccessReply reply = access_->execute(Service::Read, item.target.index, 0);
     Json now = nullptr;
@@ -226,7 +296,7 @@ void DriveHost::publish_watch(Client& client, Subscription& subscription) {
 void DriveHost::publish_parameters(Client& client, Subscription& subscription) {
   const auto rows = stdlib::parameter_table(access_->unit()).by_index();
   Json values = Json::object();
-  for (size_t n = 0; n < kReadsAtOnce && !rows.empty(); ++n) {
+  for (size_t n = 0; n < kReadsAtOnce && !rows.empty() && waiting_.empty(); ++n) {
     const Parameter& parameter = *rows[subscription.mark++ % rows.size()];
     const AccessReply reply = access_->execute(Service::Read, parameter.index, 0);
     if (!reply) continue;
@@ -239,70 +309,33 @@ void DriveHost::publish_parameters(Client& client, Subscription& subscription) {
                {{"event", "parameters"}, {"us", us()}, {"station", name()}, {"values", std::move(values)}});
 }
 
-// --- manual operation (MDX60B/61B 4.4.3): control is taken at the first jog and given back at its end ---
+// --- manual operation ---
 
+// The stop is nobody's privilege.
 Json DriveHost::jog(const Desk::Call& call) {
-  must_write(call);
   const std::string direction = call.arguments.text("direction");
   if (direction == "stop") {
-    if (jog_) end_jog();
+    manual_.stop(call.client.number);
     return Json::object();
   }
+  must_write(call);
   if (direction != "cw" && direction != "ccw") throw Mistake("'direction' must be cw, ccw or stop");
   const double rpm = call.arguments.number("rpm", 0, 3000);
-  if (jog_ && jog_->client != call.client.number) throw Mistake("another client moves the drive");
-  if (!jog_) {
-    Jog jog;
-    jog.client = call.client.number;
-    take_control(jog);
-    jog_ = std::move(jog);
-  }
-  const auto speed = static_cast<int16_t>(rpm * kDigitsOfRpm * (direction == "cw" ? 1 : -1));
-  jog_->words = {kEnable, static_cast<uint16_t>(speed), 0};
-  jog_->ends = WallClock::now() + kJogHolds;
-  jog_->next = {};
+  if (writes_) throw Mistake("settings are being written to the drive: it is not moved meanwhile");
+  manual_.hold(call.client.number, direction == "cw" ? rpm : -rpm, arrived_);
   return Json::object();
 }
 
-void DriveHost::take_control(Jog& jog) {
-  const bool serial = runtime::kind_of_port(link_.port_name()) == runtime::PortKind::Serial;
-  const stdlib::ParameterTable& table = stdlib::parameter_table(access_->unit());
-  const auto value = [&](const char* number, const char* text) {
-    const Parameter* parameter = table.find(std::string_view(number));
-    const auto wanted = parameter == nullptr ? tl::expected<int32_t, std::string>(0)
-                                             : stdlib::parse_parameter_text(*parameter, text);
-    if (parameter == nullptr || !wanted)
-      throw Mistake(fmt::format("this unit has no P{} = {}", number, text));
-    const AccessReply now = access_->execute(Service::Read, parameter->index, 0);
-    if (!now) throw Mistake(why(table, Service::Read, parameter->index, 0, now.error()));
-    return std::tuple(parameter->index, *wanted, *now);
-  };
-  for (const auto& [number, text] : {std::pair{"870", "CTRL. WORD 1"}, {"871", "SPEED"}}) {
-    const auto [index, wanted, now] = value(number, text);
-    if (now != wanted) throw Mistake(fmt::format("manual operation needs P{} = {}", number, text));
-  }
-  try {
-    for (const char* number : {"100", "101"}) {
-      const auto [index, wanted, now] = value(number, serial ? "RS-485" : "SBus");
-      if (now == wanted) continue;
-      write_parameter(*access_, index, wanted, true);
-      jog.before.emplace_back(index, now);
-    }
-  } catch (const Mistake&) {
-    for (const auto& [index, before] : jog.before) access_->execute(Service::WriteVolatile, index, before);
-    throw;
-  }
+Json DriveHost::manual() const {
+  return {
+      {"event", "manual"}, {"moves", manual_.moves()}, {"alarm", manual_.alarm()}, {"left", manual_.left()}};
 }
 
-void DriveHost::end_jog() {
-  const Jog ended = std::exchange(jog_, std::nullopt).value();
-  send_words({kStop, 0, 0});
-  for (const auto& [index, before] : ended.before) access_->execute(Service::WriteVolatile, index, before);
-}
-
-// The next ones come soon; a drive that hears none stops by itself.
-void DriveHost::send_words(const std::array<uint16_t, 3>& words) {
-  link_.send_process_data(options_.address, words);
+// Also to a client that does not keep up: it is about people.
+void DriveHost::tell_manual() {
+  const Json event = manual();
+  if (std::string text = event.dump(); std::exchange(told_, text) == text) return;
+  for (auto& [number, client] : desk_.clients()) desk_.send(client, event);
 }
 
 }  // namespace ipos::tools::serve

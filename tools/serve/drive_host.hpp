@@ -3,6 +3,7 @@
 // confirmed it.
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <memory>
 #include <string>
@@ -11,6 +12,7 @@
 #include "tools/serve/desk.hpp"
 #include "tools/serve/drive_bus.hpp"
 #include "tools/serve/drive_scope.hpp"
+#include "tools/serve/manual_operation.hpp"
 #include "tools/unit/bus_link.hpp"
 #include "tools/unit/live_values.hpp"
 #include "tools/unit/parameter_access.hpp"
@@ -32,24 +34,20 @@ class DriveHost {
   void run();
 
  private:
-  struct Jog {
-    uint16_t client = 0;
-    std::array<uint16_t, 3> words{};
-    WallClock::time_point ends{};
-    WallClock::time_point next{};
-    std::vector<std::pair<uint16_t, int32_t>> before;  // control and setpoint source, to be given back
-  };
-
   void add_commands();
   void must_write(const Desk::Call& call) const;  // a Mistake says why not
+  void must_stand() const;                        // the same, while the drive is moved
+  // Before every question to the drive: takes what has come, does at once what must not wait, and moves or stops the drive.
+  void attend();
+  bool overtakes(const Letter& letter);
+  void keep(Letter letter);
+  Json manual() const;
+  void tell_manual();
   Json describe() const;
   Json watch(const Desk::Call& call);
   void publish_watch(Client& client, Subscription& subscription);
   void publish_parameters(Client& client, Subscription& subscription);
   Json jog(const Desk::Call& call);
-  void take_control(Jog& jog);
-  void end_jog();
-  void send_words(const std::array<uint16_t, 3>& words);
   int64_t us() const;
   std::string name() const;
   Json time() const;
@@ -61,9 +59,13 @@ class DriveHost {
   std::unique_ptr<ParameterAccess> access_;
   WallClock::time_point begin_ = WallClock::now();
   std::map<uint16_t, std::vector<LiveItem>> watched_;  // by client
-  std::optional<Jog> jog_;
+  std::deque<Letter> waiting_;                         // letters that are not carried out yet
+  WallClock::time_point arrived_{};                    // of the message that is carried out
+  bool writes_ = false;                                // an order that writes for long is under way
   DriveScope scope_;
   DriveBus bus_;
+  ManualOperation manual_;
+  std::string told_;                   // of manual operation, to all
   WallClock::time_point next_time_{};  // event
 };
 

@@ -50,6 +50,8 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
   using Action = std::function<void(const Json&)>;
   void add_action(const std::string& name, Action action) { actions_[name] = std::move(action); }
   void act(const std::string& name, Json details);
+  // A line that goes on outside.
+  bool has_port(const std::string& bus) const { return ports_.joined(bus); }
   // The plant stands before the next millisecond, unless it has real ports.
   void stop(const std::string& reason, const std::string& text);
   void telegram_seen() { telegram_seen_ = true; }

@@ -35,6 +35,10 @@ void PlantPorts::join(runtime::Plant& plant, const std::string& file) {
 }
 
 // They come back (runtime/os_port/returning_port.hpp), so no bridge tells that its port has gone for good.
+bool PlantPorts::joined(const std::string& bus) const {
+  return std::any_of(joined_.begin(), joined_.end(), [&](const Joined& one) { return one.bus == bus; });
+}
+
 void PlantPorts::flush() {
   for (const Joined& joined : joined_) joined.port.bridge->flush();
 }

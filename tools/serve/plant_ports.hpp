@@ -28,6 +28,7 @@ class PlantPorts {
   // Closes them. The plant must still be there.
   void leave() { joined_.clear(); }
   bool joined() const { return !joined_.empty(); }
+  bool joined(const std::string& bus) const;
 
   // Sends on what the lines have carried.
   void flush();

@@ -26,15 +26,19 @@ constexpr Time kIdle = 5 * kMillisecond;  // how often a port without descriptor
 // Gaps this host tears into an answer are closed; nobody else's pauses depend on it here (ours).
 constexpr Time kGapSlack = 10 * kMillisecond;
 constexpr Time kForEver = 60 * kSecond;  // no exchange takes so long
+// This process was stopped, or had no processor (ours). Process data are about now: they are neither begun nor repeated
+// after that.
+constexpr Time kNap = 200 * kMillisecond;
 
 // The line runs until the exchange is done.
 class LineSimulation final : public Simulation {
  public:
-  LineSimulation(EventQueue& queue, const std::optional<MovilinkResult>& result)
-      : queue_(queue), result_(result) {}
+  LineSimulation(EventQueue& queue, const std::optional<MovilinkResult>& result, Time longest_nap)
+      : queue_(queue), result_(result), longest_nap_(longest_nap) {}
   Time now() const override { return queue_.now(); }
   Time next_time() const override { return std::min(queue_.next_time(), queue_.now() + kIdle); }
   bool run_until(Time end) override {
+    if (end - queue_.now() > longest_nap_) return false;
     queue_.run_until(end);
     return !result_ && !interrupted();
   }
@@ -42,6 +46,7 @@ class LineSimulation final : public Simulation {
  private:
   EventQueue& queue_;
   const std::optional<MovilinkResult>& result_;
+  Time longest_nap_;
 };
 
 // A PC on a CAN line, whatever is spoken there.
@@ -101,6 +106,7 @@ class CanopenLink final : public CanLink {
       : CanLink(link, baud), master_({queue(), 1, sender(), 1}, kSbusReplyTimeout + kHostDelay, client()) {}
   uint8_t first_address() const override { return 1; }
   uint8_t last_address() const override { return canopen::kMaxNode; }
+  bool carries_process_data() const override { return false; }
 
  private:
   void on_frame(Time now, const Frame& frame) override { master_.on_frame(now, frame); }
@@ -198,8 +204,8 @@ std::unique_ptr<BusLink> BusLink::open(const LinkFlags& flags) {
 
 void BusLink::on_exchange_done(Time /*now*/, const MovilinkResult& result) { result_ = result; }
 
-RealTimeLoop::End BusLink::run(Time limit) {
-  LineSimulation simulation(queue_, result_);
+RealTimeLoop::End BusLink::run(Time limit, Time longest_nap) {
+  LineSimulation simulation(queue_, result_, longest_nap);
   RealTimeLoop loop(clock_, simulation);
   loop.add(bridge());
   const RealTimeLoop::End end = loop.run(queue_.now() + limit);
@@ -224,15 +230,15 @@ bool BusLink::send_process_data(uint8_t address, const std::array<uint16_t, 3>& 
   std::copy(words.begin(), words.end(), job.output.begin());
   result_.reset();
   if (master().start(queue_.now(), job)) return false;
-  run(kForEver);
-  if (!result_) {
-    master().abort();
-    throw Failure(kInterrupted, "");
-  }
-  return result_->reason.empty();
+  run(kForEver, kNap);
+  if (result_) return result_->reason.empty();
+  master().abort();
+  if (interrupted()) throw Failure(kInterrupted, "");
+  return false;
 }
 
 AccessReply BusLink::execute(uint8_t address, stdlib::Service service, uint16_t index, int32_t value) {
+  before_question();
   MovilinkJob job;
   job.address = address;
   job.format = kParameterOnly;

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -42,7 +43,11 @@ class BusLink : private runtime::MovilinkClient {
   // Waits for the answer. A port that goes away, and Ctrl-C, are Failures.
   AccessReply execute(uint8_t address, stdlib::Service service, uint16_t index, int32_t value);
 
-  // Three words of process output data as a cyclic telegram. False: no answer.
+  // Called before each question of execute(), also before it is asked again; it may ask itself.
+  std::function<void()> before_question = [] {};
+
+  // Three words of process output data as a cyclic telegram. False: no answer, or this process slept meanwhile.
+  virtual bool carries_process_data() const { return true; }
   bool send_process_data(uint8_t address, const std::array<uint16_t, 3>& words);
 
   // Serves the port for so long; false: Ctrl-C.
@@ -70,7 +75,8 @@ class BusLink : private runtime::MovilinkClient {
 
  private:
   void on_exchange_done(runtime::Time now, const runtime::MovilinkResult& result) override;
-  runtime::RealTimeLoop::End run(runtime::Time limit);
+  // Ends also when the clock has gone on by more than a nap between two looks at it.
+  runtime::RealTimeLoop::End run(runtime::Time limit, runtime::Time longest_nap = runtime::kNever);
   void tell();
 
   virtual runtime::MovilinkMaster& master() = 0;

@@ -78,6 +78,10 @@ export async function startMock({ port = 0, token = "mock", mode = "plant", writ
     plant,
     requests,
     received,
+    // To all tabs, unasked.
+    announce(message) {
+      for (const client of sockets.clients) client.send(JSON.stringify(message));
+    },
     async stop() {
       clearInterval(clock);
       for (const client of sockets.clients) client.terminate();

@@ -227,6 +227,26 @@ test("keys: run, step, tabs, search, help; none while one types", { skip }, () =
   }),
 );
 
+test("a stop that the drive has not answered is red on every tab", { skip }, () =>
+  meet(
+    async (page, mock) => {
+      await page.getByRole("button", { name: "Allow writing" }).waitFor();
+      const left = "P100 Setpoint source is RS-485 in place of TERMINALS";
+      mock.announce({ event: "manual", moves: false, alarm: "The drive has not answered the stop.", left: [left] });
+      for (const name of ["Plant", "Watch", "Scope", "Parameters", "Bus", "Program", "Journal"]) {
+        await page.getByRole("tab", { name }).click();
+        const alert = page.getByRole("alert").filter({ hasText: "The drive has not answered the stop." });
+        await alert.waitFor();
+        assert.ok(await alert.evaluate((element) => getComputedStyle(element.parentElement).borderTopWidth === "3px"));
+        await page.getByText(left).waitFor();
+      }
+      mock.announce({ event: "manual", moves: false, alarm: "", left: [] });
+      await until(async () => (await page.getByRole("alert").count()) === 0, "the alarm stays");
+    },
+    { server: { mode: "device" } },
+  ),
+);
+
 test("a real drive is written only after a confirmation", { skip }, () =>
   meet(
     async (page, mock) => {

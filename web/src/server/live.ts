@@ -2,7 +2,7 @@
 import { signal } from "@preact/signals";
 
 import { listen, request } from "./connection";
-import type { Hello, Plant, PortState, Station, Time } from "./protocol";
+import type { Hello, Manual, Plant, PortState, Station, Time } from "./protocol";
 
 export const hello = signal<Hello | null>(null);
 export const time = signal<Time>({
@@ -18,6 +18,8 @@ export const time = signal<Time>({
 export const generation = signal(0);
 export const plant = signal<Plant | null>(null);
 export const ports = signal<PortState[]>([]);
+const standing: Manual = { moves: false, alarm: "", left: [] };
+export const manual = signal<Manual>(standing);
 
 export function secondsText(us: number): string {
   return `${(us / 1e6).toFixed(3)} s`;
@@ -36,6 +38,7 @@ export function listenToServer(): void {
   listen("hello", (event) => {
     hello.value = event as unknown as Hello;
     ports.value = [];
+    manual.value = standing;
     document.title = `${hello.value.title} · ipos`;
     request({ do: "plant" })
       .then((reply) => (plant.value = reply.plant as Plant))
@@ -43,6 +46,9 @@ export function listenToServer(): void {
   });
   listen("ports", (event) => {
     ports.value = event.ports as PortState[];
+  });
+  listen("manual", (event) => {
+    manual.value = event as unknown as Manual;
   });
   listen("time", (event) => {
     time.value = event as unknown as Time;

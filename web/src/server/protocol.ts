@@ -18,6 +18,13 @@ export interface PortState {
   since_us: number | null;
 }
 
+// Manual operation of a real drive.
+export interface Manual {
+  moves: boolean;
+  alarm: string; // the drive has not answered the stop: in red, on every tab
+  left: string[]; // parameters that are not the drive's own values yet, and why
+}
+
 export interface Stopped {
   reason: string;
   text: string;

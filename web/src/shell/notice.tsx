@@ -1,9 +1,9 @@
-// What went wrong, as alerts: a lost server stands before everything else, then ports that have gone, and what was
-// refused last.
+// What went wrong, as alerts: a lost server stands before everything else, then a drive that has not answered the stop,
+// ports that have gone, and what was refused last.
 import { signal } from "@preact/signals";
 
 import { link, Refusal, request, type Message } from "../server/connection";
-import { ports, secondsText } from "../server/live";
+import { manual, ports, secondsText } from "../server/live";
 
 const complaint = signal<string | null>(null);
 
@@ -40,6 +40,17 @@ export function Notice() {
   const lost = ports.value.filter((port) => !port.there && port.since_us !== null);
   return (
     <>
+      {manual.value.alarm !== "" && (
+        <div class="notice danger">
+          <span class="lamp fault" />
+          <div role="alert">{manual.value.alarm}</div>
+        </div>
+      )}
+      {manual.value.left.map((text) => (
+        <div class="notice" key={text}>
+          <div role="status">After manual operation {text}.</div>
+        </div>
+      ))}
       {lost.map((port) => (
         <div class="notice" key={port.bus}>
           <span class="lamp fault" />

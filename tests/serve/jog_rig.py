@@ -1,0 +1,221 @@
+"""A simulated drive at a pseudo-terminal that `ipos serve --device` takes for a real one, a hand on its button, and what
+the shaft does: the trace of `ipos run --realtime`, in its own time."""
+import json
+import os
+import pathlib
+import re
+import select
+import signal
+import subprocess
+import tempfile
+import threading
+import time
+
+from server_test import IPOS, Client
+
+RPM = 1500
+FALLS_WITHIN = 0.7  # s: what the tests promise
+PERIOD = 0.1  # s between two `jog`, as the page has it
+PATIENCE = 40  # s for anything that must come; a loaded machine needs more than an idle one
+
+# kind of line, unit, parameters. P815 of MOVIDRIVE A is 100 ms as delivered: a loaded machine is silent for longer, and
+# then the drive stops with F47 until somebody resets it.
+LINES = {
+    "RS-485 md60a": ("rs485", "md60a", {}),
+    "RS-485 mc07": ("rs485", "mc07", {}),
+    "RS-485 mdxb": ("rs485", "mdxb", {}),
+    "SBus md60a": ("can", "md60a", {"P815": "0.4 s"}),
+    "SBus mdxb": ("can", "mdxb", {}),
+}
+
+
+def wait_until(what, condition, seconds=PATIENCE):
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        value = condition()
+        if value:
+            return value
+        time.sleep(0.01)
+    raise TimeoutError(f"waited {seconds} s for: {what}")
+
+
+def plant_text(kind, unit, port, parameters, inputs, more):
+    source = "RS-485" if kind == "rs485" else "SBus"
+    settings = {"P870": "CTRL. WORD 1", "P871": "SPEED", "P100": source, "P101": source,
+                "P810" if kind == "rs485" else "P881" if unit == "mdxb" else "P813": 1, **parameters}
+    lines = ["[[bus]]", 'name = "line"', f'kind = "{kind}"', f'port = "{port}"', "[[station]]", 'name = "saw"',
+             f'unit = "{unit}"', f'{"rs485" if kind == "rs485" else "sbus"} = "line"', "[station.inputs]"]
+    lines += [f"{name} = {value}" for name, value in inputs.items()]
+    lines += ["[station.parameters]"]
+    lines += [f"{name} = {json.dumps(value)}" for name, value in settings.items()]
+    return "\n".join(lines) + "\n" + more
+
+
+class Rig:
+    """Drive, server and folder of one trial. Everything that was started ends with the test."""
+
+    INPUTS = {"DI00": 1, "DI01": 1, "DI03": 1}
+
+    def __init__(self, test, line="RS-485 md60a", parameters=None, inputs=None, more="", serve=("--write",), seconds=90):
+        self.test = test
+        kind, unit, own = LINES[line]
+        folder = tempfile.TemporaryDirectory()
+        test.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        place = self.folder / "port"
+        self.port = f"slcan:{place}" if kind == "can" else str(place)
+        pty = f"slcan:pty:{place}" if kind == "can" else f"pty:{place}"
+        plant = self.folder / "plant.toml"
+        plant.write_text(plant_text(kind, unit, pty, {**own, **(parameters or {})}, inputs or self.INPUTS, more))
+        self.csv = self.folder / "t.csv"
+        self.environment = {**os.environ, "XDG_STATE_HOME": str(self.folder / "state")}
+        self.drive = subprocess.Popen([IPOS, "run", str(plant), "--realtime", "--for", f"{seconds}s", "--trace", str(self.csv),
+                                       "--signals", "saw.speed"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        test.addCleanup(self.drive.wait)
+        test.addCleanup(self.drive.kill)
+        wait_until(f"the port {place}", place.exists)
+        self.servers = []
+        self.rows, self.unread, self.offset, self.read_to = [], "", None, 0
+        self.serve(*serve)
+
+    # --- the server ---
+
+    def serve(self, *more):
+        """Another one at the same port."""
+        self.server = subprocess.Popen([IPOS, "serve", "--device", self.port, "--address", "1", "--quiet", *more],
+                                       stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
+                                       env=self.environment)
+        server = self.server
+        self.test.addCleanup(server.stderr.close)
+        self.test.addCleanup(server.stdout.close)
+        self.test.addCleanup(server.wait)
+        self.test.addCleanup(self.signal_group, server, signal.SIGKILL)
+        match = re.search(r":(\d+)/\?token=(\w+)", server.stdout.readline())
+        self.test.assertTrue(match, "the server has not come up")
+        self.http, self.token = int(match[1]), match[2]
+        self.host = wait_until("the process with the line", lambda: self.child(server.pid))
+
+    @staticmethod
+    def child(parent):
+        try:
+            return int(pathlib.Path(f"/proc/{parent}/task/{parent}/children").read_text().split()[0])
+        except (OSError, IndexError):
+            return None
+
+    @staticmethod
+    def signal_group(server, number):
+        try:
+            os.killpg(server.pid, signal.SIGCONT)
+            os.killpg(server.pid, number)
+        except ProcessLookupError:
+            pass
+
+    def connect(self):
+        client = Client(self.http, f"/ws?token={self.token}")
+        self.test.addCleanup(client.close)
+        return client
+
+    def armed(self):
+        client = self.connect()
+        self.test.assertTrue(client.ask(do="arm", yes=True)["ok"])
+        return client
+
+    # --- the shaft ---
+
+    def look(self):
+        """New rows of the trace; and how the clock of this test stands to the time of the drive."""
+        if not self.csv.exists():
+            return
+        with open(self.csv, encoding="utf-8") as file:
+            file.seek(self.read_to)
+            text = file.read()
+            self.read_to = file.tell()
+        *lines, self.unread = (self.unread + text).split("\n")
+        for line in lines:
+            milliseconds, _, speed = line.partition(",")
+            if milliseconds[:1].isdigit():
+                self.rows.append((int(milliseconds) / 1000, float(speed)))
+        if lines and self.rows:
+            behind = time.monotonic() - self.rows[-1][0]
+            self.offset = behind if self.offset is None else min(self.offset, behind)
+
+    def speed(self):
+        self.look()
+        return self.rows[-1][1] if self.rows else 0
+
+    def wait_for_speed(self, wanted=RPM * 0.99):
+        wait_until(f"{wanted:.0f} rpm, it has {self.speed():.0f}", lambda: abs(self.speed()) >= wanted)
+
+    def after(self, moment):
+        """(begins to fall, stands) in seconds after a moment of this test's clock; the time is the drive's."""
+        begin = moment - self.offset
+        before = [abs(speed) for at, speed in self.rows if at <= begin]
+        top = before[-1]
+        falls = stands = None
+        for at, speed in self.rows:
+            if at <= begin:
+                continue
+            top = max(top, abs(speed)) if falls is None else top
+            if falls is None and abs(speed) < top * 0.98:
+                falls = at - begin
+            if falls is not None and abs(speed) < 1:
+                stands = at - begin
+                break
+        return falls, stands
+
+    def wait_until_it_stands(self, moment):
+        wait_until("the shaft to stand", lambda: self.look() or self.after(moment)[1] is not None)
+        return self.after(moment)
+
+
+class Hand:
+    """Holds the button as the page does: a `jog` each 100 ms, without waiting for the replies."""
+
+    def __init__(self, client, direction="cw", rpm=RPM):
+        self.client, self.direction, self.rpm = client, direction, rpm
+        self.held = True
+        self.errors, self.events = [], []
+        self.thread = threading.Thread(target=self.hold)
+        self.thread.start()
+
+    def hold(self):
+        due = time.monotonic()
+        try:
+            while self.held:
+                self.client.id += 1
+                self.client.send(json.dumps({"id": self.client.id, "do": "jog", "direction": self.direction,
+                                             "rpm": self.rpm}).encode())
+                due += PERIOD
+                while self.held and time.monotonic() < due:
+                    self.read(max(0, min(0.02, due - time.monotonic())))
+        except (OSError, EOFError, ValueError):
+            pass
+
+    def read(self, seconds):
+        if not self.client.rest and not select.select([self.client.socket], [], [], seconds)[0]:
+            return
+        opcode, data = self.client.receive()
+        if opcode == 1:
+            message = json.loads(data)
+            if "error" in message:
+                self.errors.append(message["error"])
+            if message.get("event") == "manual":
+                self.events.append(message)
+
+    def off(self):
+        """The hand is off, and nobody says so."""
+        self.held = False
+        self.thread.join()
+        return time.monotonic()
+
+    def release(self):
+        """As the page does it."""
+        moment = self.off()
+        self.client.id += 1
+        self.client.send(json.dumps({"id": self.client.id, "do": "jog", "direction": "stop", "rpm": 0}).encode())
+        return moment
+
+    def close(self):
+        moment = self.off()
+        self.client.close()
+        return moment
