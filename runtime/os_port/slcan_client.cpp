@@ -100,9 +100,9 @@ std::optional<CanArrival> SlcanClient::take_line(std::string_view line) {
     return std::nullopt;
   }
   if (line == "z" || line == "Z") return std::nullopt;  // a frame has been taken
-  const auto parsed = parse_slcan(line);
+  const auto parsed = parse_adapter_slcan(line);
   if (!parsed) {
-    if (is_slcan_frame_letter(line[0])) {
+    if (is_slcan_frame_letter(line[0]) || line[0] == 'x') {
       ++counts_.lost_in;
       notes_.count("a broken line from the adapter", line);
     }

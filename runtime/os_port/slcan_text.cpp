@@ -71,6 +71,18 @@ std::optional<SlcanFrame> parse_slcan(std::string_view line) {
   return result;
 }
 
+std::optional<SlcanFrame> parse_adapter_slcan(std::string_view line) {
+  constexpr size_t kLongStamp = 8;
+  std::string plain(line);
+  if (line.starts_with('x')) plain[0] = 'T';
+  if (auto frame = parse_slcan(plain)) return frame;
+  if (plain.size() <= kLongStamp) return std::nullopt;
+  std::string_view stamp = std::string_view(plain).substr(plain.size() - kLongStamp);
+  if (!take_hex(stamp, kLongStamp)) return std::nullopt;
+  const auto frame = parse_slcan(std::string_view(plain).substr(0, plain.size() - kLongStamp));
+  return frame && !frame->stamp ? frame : std::nullopt;
+}
+
 std::optional<SlcanLines::Kind> SlcanLines::push(char c) {
   if (c == kSlcanError) {
     clear();

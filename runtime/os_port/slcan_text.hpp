@@ -41,6 +41,10 @@ struct SlcanFrame {
 // A line without its CR; nothing when it is not exactly a frame.
 std::optional<SlcanFrame> parse_slcan(std::string_view line);
 
+// The same as adapters of others send it: CANDapter has x in place of T (python-can#1528), and newer firmware of CANable has
+// stamps of eight digits. Their unit is not in the protocol, so such a frame has none.
+std::optional<SlcanFrame> parse_adapter_slcan(std::string_view line);
+
 constexpr bool is_slcan_frame_letter(char c) { return c == 't' || c == 'T' || c == 'r' || c == 'R'; }
 
 // Puts characters together to lines. Line feeds are skipped (ours: terminals send them).

@@ -6,6 +6,7 @@ logs_peers.py IPOS SOURCE_DIR: every comparison is frame by frame, and field by 
 import json
 import os
 import random
+import struct
 import subprocess
 import sys
 import tempfile
@@ -113,6 +114,84 @@ def written_by_python_can(folder):
     same("blf under another name", expected, times(ours(str(blf))))
 
 
+def absolute_times(folder):
+    """The date of its head is one for python-can. asc2log wants the locale en_US for dates, so there times count from the first."""
+    log = str(folder / "date.asc")
+    run(IPOS, "run", str(SOURCE / "examples/movilink/movilink.toml"), "--for", "400ms", "--log", log)
+    expected = [(key(row), float(row["time"]) - EPOCH) for row in ours(log)]
+    got = [((m.arbitration_id, m.is_extended_id, m.is_remote_frame, m.data.hex().upper()), m.timestamp - EPOCH)
+           for m in can.ASCReader(log, relative_timestamp=False)]
+    same("ASC with times of the clock in python-can", expected, got)
+    rewritten = folder / "asc2log.log"
+    rewritten.write_text(run("asc2log", "-I", log))
+    from_first = [(k, t - expected[0][1]) for k, t in expected]
+    same("ASC through asc2log", from_first, times(ours(str(rewritten))))
+    back = folder / "log2asc.asc"
+    back.write_text(run("log2asc", "-f", "-I", str(rewritten), "can0"))
+    same("ASC of log2asc with lines of CAN FD", from_first, times(ours(str(back))))
+
+
+def block(kind, body, order="<"):
+    body += bytes(-len(body) % 4)
+    return struct.pack(order + "II", kind, len(body) + 12) + body + struct.pack(order + "I", len(body) + 12)
+
+
+def section(order="<"):
+    return block(0x0A0D0D0A, struct.pack(order + "IHHq", 0x1A2B3C4D, 1, 0, -1), order)
+
+
+def interface(link, options=(), order="<"):
+    body = struct.pack(order + "HHI", link, 0, 0)
+    for code, value in options:
+        body += struct.pack(order + "HH", code, len(value)) + value + bytes(-len(value) % 4)
+    return block(1, body + (struct.pack(order + "HH", 0, 0) if options else b""), order)
+
+
+def packet(number, stamp, data, order="<"):
+    return block(6, struct.pack(order + "IIIII", number, stamp >> 32, stamp & 0xFFFFFFFF, len(data), len(data)) + data, order)
+
+
+def frame(identifier, flags=0, order=">"):
+    return struct.pack(order + "I", identifier) + struct.pack("BBBB", 8, flags, 0, 0) + bytes(range(8))
+
+
+def cooked(protocol, content):
+    return struct.pack(">HHH8sH", 4, 280, 0, bytes(8), protocol) + content
+
+
+def captured(folder):
+    """Captures of other tools: units of time, byte orders, other interfaces and FD frames, as tshark reads them."""
+    second = 1711000000
+    stamp = second * 10**6 + 123456
+    logs = {"plain": section() + interface(227) + packet(0, stamp, frame(0x203)) + packet(0, stamp + 5, frame(0x92345678)),
+            "fd": section() + interface(227) + packet(0, stamp, frame(0x204, 4)) + packet(0, stamp, frame(0x203)),
+            "ethernet": section() + interface(1) + interface(227) + packet(0, stamp, bytes(60)) + packet(1, stamp, frame(0x203)),
+            "offset": section() + interface(227, [(14, struct.pack("<q", -3600))]) + packet(0, stamp, frame(0x203)),
+            "old": section() + interface(227) + block(2, struct.pack("<HHIIII", 0, 0, stamp >> 32, stamp & 0xFFFFFFFF, 16, 16) + frame(0x203)),
+            "any": section() + interface(113) + packet(0, stamp, cooked(0x0C, frame(0x203, 0, "<"))) + packet(0, stamp, cooked(0x0800, bytes(40))),
+            "sections": section() + interface(227) + packet(0, stamp, frame(0x203)) + section(">") + interface(227, [(9, b"\x09")], ">") +
+            packet(0, second * 10**9, frame(0x204), ">")}
+    for resolution, time in ((0, second), (3, second * 1000 + 123), (9, second * 10**9 + 123456789), (12, 10**18 + 5 * 10**8),
+                             (0x80 | 10, second << 10 | 512), (0x80 | 20, second << 20 | 1), (0x80 | 30, second << 30 | 1 << 29)):
+        logs[f"resolution {resolution}"] = section() + interface(227, [(9, bytes([resolution]))]) + packet(0, time, frame(0x203))
+    for order in "<>":
+        for magic in (0xA1B2C3D4, 0xA1B23C4D):
+            logs[f"pcap {order}{magic:X}"] = struct.pack(order + "IHHiIII", magic, 2, 4, 0, 0, 65535, 227) + b"".join(
+                struct.pack(order + "IIII", second, 123456, 16, 16) + data for data in (frame(0x203), frame(0x204, 4), frame(0x92345678)))
+    for name, content in logs.items():
+        path = folder / "capture"
+        path.write_bytes(content)
+        rows = run("tshark", "-r", str(path), "-T", "fields", "-E", "separator=;", "-e", "frame.time_epoch", "-e", "can.id", "-e",
+                   "can.flags.xtd", "-e", "_ws.col.Protocol", "-e", "data.data")
+        expected = []
+        for row in rows.splitlines():
+            time, identifier, extended, protocol, data = row.split(";")
+            if protocol == "CAN":
+                expected.append(((int(identifier, 0), extended in ("1", "True"), False, data.replace(":", "").upper()), float(time)))
+        assert expected, name
+        same(f"capture '{name}' as in tshark", expected, [(key(row), float(row["time"])) for row in ours(str(path))])
+
+
 def dissected(folder):
     """All examples in one pcapng: sections may follow each other."""
     lua = str(folder / "movilink.lua")
@@ -167,4 +246,6 @@ def dissected(folder):
 with tempfile.TemporaryDirectory() as name:
     written_by_us(Path(name))
     written_by_python_can(Path(name))
+    absolute_times(Path(name))
+    captured(Path(name))
     dissected(Path(name))

@@ -71,9 +71,10 @@ class Decoder {
   }
 
  private:
+  // In ASCII: names come from strangers, and the output may be a terminal.
   static void print(nlohmann::ordered_json fields, const std::string& text) {
     fields["text"] = text;
-    fmt::print("{}\n", fields.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}\n", fields.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace));
   }
 
   const DecodeFlags& flags_;

@@ -137,9 +137,9 @@ class Reports {
   }
   void print(LogFindings& findings) const {
     const bool several = names_.size() > 1;
-    if (flags_.format == "json")
+    if (flags_.format == "json")  // in ASCII: names come from strangers, and the output may be a terminal
       fmt::print("{}\n", (several ? nlohmann::ordered_json{{"buses", all_}} : last_)
-                             .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+                             .dump(-1, ' ', true, nlohmann::json::error_handler_t::replace));
     else
       fmt::print("{}", several ? texts_ : last_text_);
     if (several)

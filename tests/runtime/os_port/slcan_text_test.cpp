@@ -75,6 +75,21 @@ TEST(SlcanText, WhatIsNoFrame) {
     EXPECT_FALSE(parse_slcan(line)) << line;
 }
 
+// CANDapter's x, and stamps of eight digits; both only from an adapter.
+TEST(SlcanText, FramesOfOtherAdapters) {
+  const Frame extended(0x12ABCDEF, 2, {0xAA, 0x55}, true, false);
+  EXPECT_EQ(parse_adapter_slcan("x12ABCDEF2AA55")->frame, extended);
+  EXPECT_EQ(parse_adapter_slcan("x12ABCDEF2AA55EA5F")->stamp, 59'999);
+  EXPECT_EQ(parse_adapter_slcan("T12ABCDEF2AA5500ABCDEF")->frame, extended);
+  EXPECT_EQ(parse_adapter_slcan("T12ABCDEF2AA5500ABCDEF")->stamp, std::nullopt);
+  EXPECT_EQ(parse_adapter_slcan("t1001FFFFFFFFFF")->frame, (Frame{0x100, 1, {0xFF}}));
+  EXPECT_EQ(parse_adapter_slcan("r100800000000")->frame, (Frame{0x100, 8, {}, false, true}));
+  EXPECT_EQ(parse_adapter_slcan("t1001FF0001")->stamp, 1);
+  for (const char* line : {"", "x", "x1000", "x200000000", "t1001FF0000000", "t1001FF000000000",
+                           "t1001FF0000000G", "t1001FF000000000001", "00000000", "z00000000"})
+    EXPECT_FALSE(parse_adapter_slcan(line)) << line;
+}
+
 TEST(SlcanText, RatesHaveTheirDigits) {
   EXPECT_EQ(slcan_rate_digit(125'000), '4');
   EXPECT_EQ(slcan_rate_digit(250'000), '5');
