@@ -451,6 +451,7 @@ void Drive::select_parameter_set() {
   in.flags = decisions_.output_flags | flag(axis.output_stage(), output_flags::kOutputStage) |
              flag(axis.brake_released(), output_flags::kBrakeReleased) |
              flag(axis.standing(), output_flags::kStandstill) |
+             flag(axis.power().gives_all(), output_flags::kCurrentLimited) |
              flag(axis.power().motor_utilization() >= kFullUtilization, decisions_.overload_flag) |
              flag(state_.position.in_position, output_flags::kInPosition) |
              flag(state_.position.referenced, output_flags::kReferenced);

@@ -2,6 +2,20 @@
 #include "runtime/drive/outputs.hpp"
 
 namespace ipos::runtime {
+namespace {
+
+// Where a signal falls again. A hysteresis wider than its reference ends at 0, or the signal would stay for ever
+// (ours).
+constexpr int64_t falls_at(int64_t reference, int64_t hysteresis) {
+  return std::max<int64_t>(reference - hysteresis, 0);
+}
+
+// That of Imax is still within its hysteresis at the edge.
+constexpr int64_t limit_falls_at(int64_t limit, int64_t hysteresis) {
+  return std::max<int64_t>(limit - hysteresis - 1, 0);
+}
+
+}  // namespace
 
 uint16_t Outputs::tick(const Settings& s, const OutputInputs& in) {
   for (ReferenceSignal* signal : {&speed_, &window_, &compare_, &current_, &limit_}) signal->advance(ticks_);
@@ -10,14 +24,14 @@ uint16_t Outputs::tick(const Settings& s, const OutputInputs& in) {
   const int64_t deviation = magnitude(int64_t{in.speed} - in.setpoint);
   const int64_t half = s.window_width / 2;
   const int64_t from_center = magnitude(speed - s.window_center);
-  speed_.tick(speed > s.speed_reference, speed <= int64_t{s.speed_reference} - s.speed_hysteresis,
-              s.speed_delay);
+  speed_.tick(speed > s.speed_reference, speed <= falls_at(s.speed_reference, s.speed_hysteresis), s.speed_delay);
   window_.tick(from_center <= half, from_center > half, s.window_delay);
   compare_.tick(deviation <= s.compare_hysteresis, deviation > s.compare_hysteresis, s.compare_delay);
-  current_.tick(current > s.current_reference, current <= int64_t{s.current_reference} - s.current_hysteresis,
+  current_.tick(current > s.current_reference, current <= falls_at(s.current_reference, s.current_hysteresis),
                 s.current_delay);
-  limit_.tick(current >= in.current_limit, current < int64_t{in.current_limit} - s.limit_hysteresis,
-              s.limit_delay);
+  // The current that shows is rounded down, so at the limit it may be less; the flag tells it exactly.
+  limit_.tick(in.is(output_flags::kCurrentLimited) || current >= in.current_limit,
+              current <= limit_falls_at(in.current_limit, s.limit_hysteresis), s.limit_delay);
   find_ranges(s, in);
 
   signals_ = {speed_.value() == (s.speed_when == 1), window_.value() == (s.window_when == 0),
@@ -40,14 +54,13 @@ void Outputs::find_ranges(const Settings& s, const OutputInputs& in) {
   const int64_t speed = magnitude(in.speed);
   const int64_t half = s.window_width / 2;
   speeds_ =
-      both(staying(speed_, int64_t{s.speed_reference} + 1, int64_t{s.speed_reference} - s.speed_hysteresis),
+      both(staying(speed_, int64_t{s.speed_reference} + 1, falls_at(s.speed_reference, s.speed_hysteresis)),
            around(window_, s.window_center - half, s.window_center + half, speed));
   const int64_t deviation = magnitude(int64_t{in.speed} - in.setpoint);
   deviations_ = around(compare_, 0, s.compare_hysteresis, deviation);
-  const int64_t limit = in.current_limit;
   currents_ = both(staying(current_, int64_t{s.current_reference} + 1,
-                           int64_t{s.current_reference} - s.current_hysteresis),
-                   staying(limit_, limit, limit - s.limit_hysteresis - 1));
+                           falls_at(s.current_reference, s.current_hysteresis)),
+                   staying(limit_, in.current_limit, limit_falls_at(in.current_limit, s.limit_hysteresis)));
   current_limit_ = in.current_limit;
   ticks_left_ =
       std::min({speed_.bound(s.speed_delay), window_.bound(s.window_delay), compare_.bound(s.compare_delay),

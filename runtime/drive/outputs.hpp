@@ -86,6 +86,7 @@ inline constexpr uint32_t kMotor1Overloaded = 1 << 7;
 inline constexpr uint32_t kMotor2Overloaded = 1 << 8;
 inline constexpr uint32_t kInPosition = 1 << 9;
 inline constexpr uint32_t kReferenced = 1 << 10;
+inline constexpr uint32_t kCurrentLimited = 1 << 11;  // the motor gives all that the current limit lets it
 }  // namespace output_flags
 
 struct OutputInputs {

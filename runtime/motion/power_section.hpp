@@ -24,6 +24,12 @@ class PowerSection {
     return torque_limit_;
   }
 
+  // The motor drives or brakes with the greatest torque: the output current is at its limit.
+  bool gives_all() const {
+    const int64_t torque = currents_.torque < 0 ? -currents_.torque : currents_.torque;
+    return torque != 0 && torque >= torque_limit_;
+  }
+
   // Torque of an active current, both in 1/1000 %.
   int64_t torque_of(int32_t active_current) const {
     return int64_t{std::clamp(active_current, -kTopCurrent, kTopCurrent)} * 100'000 /

@@ -3,6 +3,7 @@
 #include "runtime/drive/outputs.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "tests/runtime/drive/drive_rig.hpp"
@@ -78,6 +79,7 @@ TEST(ReferenceSignals, GoOnAsTicksDo) {
       if (pick(0, 99) == 0) in.setpoint = pick(-60, 60);
       if (pick(0, 99) == 0) in.current_limit = pick(0, 60);
       if (pick(0, 99) == 0) in.flags ^= output_flags::kFault;
+      if (pick(0, 19) == 0) in.flags ^= output_flags::kCurrentLimited;
       if (pick(0, 99) == 0) in.ipos_outputs = static_cast<uint16_t>(pick(0, 0xFFFF));
       ticked.in = in;
       if (ms != 0 && kept.outputs.go_on(in))
@@ -191,6 +193,145 @@ TEST(ReferenceSignals, CurrentLimit) {
     expect_signal(bench, 100, limited, to(150'000), "at the limit");
     expect_no_change(bench, to(140'000), "inside the hysteresis");
     expect_signal(bench, 100, !limited, to(139'900), "below");
+  }
+}
+
+// The current that shows may be a little less than the limit, however it was rounded.
+TEST(ReferenceSignals, CurrentLimitOfTheAxis) {
+  for (const int32_t when : {0, 1}) {
+    Bench bench(OutputFunction::CurrentLimit);
+    bench.in.current_limit = 150'000;
+    bench.settings.limit_hysteresis = 10'000;
+    bench.settings.limit_delay = 100;
+    bench.settings.limit_when = when;
+    const bool limited = when == 0;
+    const auto to = [&](int32_t current, uint32_t flags) {
+      return [&bench, current, flags] { bench.in.current = current, bench.in.flags = flags; };
+    };
+    EXPECT_EQ(bench.run(2000), !limited);
+    expect_signal(bench, 100, limited, to(149'998, output_flags::kCurrentLimited), "at the limit");
+    expect_no_change(bench, to(149'998, 0), "inside the hysteresis");
+    expect_signal(bench, 100, !limited, to(139'900, 0), "below");
+  }
+}
+
+// A hysteresis that is wider than its reference ends at 0: no signal stays when everything is at rest.
+TEST(ReferenceSignals, FallAtRestWhateverTheirHysteresis) {
+  using F = OutputFunction;
+  for (const F function : {F::SpeedReference, F::CurrentReference, F::CurrentLimit})
+    for (const int32_t reference : {1, 50, 99, 100, 101, 5'000})
+      for (const int32_t hysteresis : {0, 1, 50, 99, 100, 101, 5'000}) {
+        Bench bench(function);
+        runtime::Settings& s = bench.settings;
+        s.speed_reference = s.current_reference = bench.in.current_limit = reference;
+        s.speed_hysteresis = s.current_hysteresis = s.limit_hysteresis = hysteresis;
+        s.speed_delay = s.current_delay = s.limit_delay = 0;
+        s.speed_when = s.current_when = 1;
+        s.limit_when = 0;
+        bench.in.speed = bench.in.current = reference + 1;
+        EXPECT_TRUE(bench.run()) << reference << ", " << hysteresis;
+        bench.in.speed = bench.in.current = 0;
+        EXPECT_FALSE(bench.run()) << static_cast<int>(function) << ": " << reference << ", " << hysteresis;
+      }
+}
+
+// Imax of a drive with a heavy load, at every current limit. The active current is what the magnetizing one, 60 % of
+// IN, leaves of the limit; rated torque needs 80 % and turns the bare rotor from 0 to 1500 rpm in 50 ms. A load of 19
+// rotors makes that 20 times as long. The drive is at its limit until it has its speed; then it needs no torque.
+struct ImaxRun {
+  int32_t limit;       // P303, %
+  int32_t hysteresis;  // P440, %
+  int32_t delay;       // P441, ms
+  int32_t when;        // P442
+  bool ccw;
+};
+double ms_to_1500_rpm(int32_t limit) {
+  const double torque = std::sqrt(double(limit) * limit - 60.0 * 60.0) / 80;
+  return 50 * 20 / torque;
+}
+void expect_imax(const ImaxRun& run) {
+  MachineData machine = light_machine();
+  machine.inertia = 1'900;
+  DriveRig rig("md60a", {}, machine);
+  rig.bus_control();
+  for (const char* ramp : {"P130", "P131", "P132", "P133"}) rig.set(ramp, 0);
+  rig.set("P303", run.limit * 1'000);
+  rig.set("P440", run.hysteresis * 1'000);
+  rig.set("P441", run.delay);
+  rig.set("P442", run.when);
+  rig.set("P500", 0);
+  rig.set("P621", 13);
+  const auto imax = [&] { return rig.output("DO02") == (run.when == 0); };
+  const auto word = [&](int rpm) { return static_cast<uint16_t>(static_cast<int16_t>((run.ccw ? -rpm : rpm) * 5)); };
+  if (run.limit > 60) {  // the magnetizing current alone is below the limit
+    rig.run_ms(run.delay + 5);
+    EXPECT_FALSE(imax()) << "at rest";
+  }
+  rig.po({6, word(1'500), 0});
+  EXPECT_NEAR(rig.ms_until(imax, 1'000), run.delay, 3);
+  // Motor: until it has 1500 rpm. The signal of a narrow limit is still within its hysteresis then.
+  const bool falls = run.limit > 60 && 60 < run.limit - run.hysteresis;
+  const double way = run.limit > 60 ? ms_to_1500_rpm(run.limit) : 0;
+  if (run.limit == 60) {
+    rig.run_ms(2'000);
+    EXPECT_EQ(rig.rpm(), 0) << "all current magnetizes";
+    EXPECT_TRUE(imax());
+    return;
+  }
+  if (!falls) {
+    rig.run_ms(static_cast<int>(way) + 2'000);
+    EXPECT_TRUE(imax());
+    return;
+  }
+  EXPECT_NEAR(rig.ms_until([&] { return !imax(); }), way, 5 + way / 200);
+  EXPECT_NEAR(std::abs(rig.rpm()), 1'500, 0.01);
+  rig.run_ms(500);
+  // Generator and motor: down to 0 and up again.
+  rig.po({6, word(-1'500), 0});
+  EXPECT_NEAR(rig.ms_until(imax, 1'000), run.delay, 3);
+  EXPECT_NEAR(rig.ms_until([&] { return !imax(); }), 2 * way, 5 + way / 100);
+  rig.run_ms(500);
+  EXPECT_FALSE(imax());
+}
+
+TEST(Imax, AtEveryLimit) {
+  for (int32_t limit = 60; limit <= 150; ++limit)
+    for (const int32_t when : {0, 1}) {
+      SCOPED_TRACE(testing::Message() << "P303 " << limit << " %, P442 " << when);
+      expect_imax({limit, 5, limit % 2 == 0 ? 0 : 100, when, limit % 3 == 0});
+    }
+}
+
+TEST(Imax, HysteresisAndDelay) {
+  for (const int32_t limit : {70, 109, 111, 150})
+    for (const int32_t hysteresis : {5, 50})
+      for (const int32_t delay : {0, 100, 1'000}) {
+        // What is over before the delay does not show: then there is nothing to expect.
+        if (delay >= ms_to_1500_rpm(limit)) continue;
+        SCOPED_TRACE(testing::Message() << limit << " %, " << hysteresis << " %, " << delay << " ms");
+        expect_imax({limit, hysteresis, delay, 0, false});
+      }
+}
+
+// In torque control the current setpoint alone may be beyond the limit; nothing lags then.
+TEST(Imax, OfATorqueSetpointBeyondTheLimit) {
+  for (const int32_t limit : {70, 80, 100, 145}) {
+    DriveRig rig("md60a");
+    rig.bus_control();
+    rig.set("P700", 12);
+    rig.set("P871", 2);
+    rig.set("P302", 5'000'000);
+    rig.set("P303", limit * 1'000);
+    rig.set("P441", 0);
+    rig.set("P442", 0);
+    rig.set("P621", 13);
+    const double most = std::sqrt(double(limit) * limit - 60.0 * 60.0);  // active current, %
+    rig.po({6, static_cast<uint16_t>(most * 10 - 20), 0});
+    rig.run_ms(5);
+    EXPECT_FALSE(rig.output("DO02")) << limit << ": 2 % below";
+    rig.po({6, static_cast<uint16_t>(most * 10 + 20), 0});
+    rig.run_ms(5);
+    EXPECT_TRUE(rig.output("DO02")) << limit << ": 2 % beyond";
   }
 }
 
