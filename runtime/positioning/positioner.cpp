@@ -31,6 +31,7 @@ void Positioner::write_target(int32_t target) {
     pending_value_ = target;
     return;
   }
+  ordered_target_ = target;
   if (!inputs_.possible) report(PositioningEvent::NoPositioning);
   target_ = target;
   target_follows_ = given_up_ = false;
@@ -44,7 +45,7 @@ void Positioner::move_target(int64_t way) {
     return;
   }
   const int64_t target = target_ + way;
-  if (target != wrapped(target) && !modulo_.on()) return report(PositioningEvent::TargetOutOfRange);
+  if (target != wrapped(target) && !modulo_.on()) return report(PositioningEvent::TargetOutOfRange, target);
   write_target(wrapped(target));
 }
 
@@ -55,7 +56,7 @@ void Positioner::write_modulo_target(int32_t target) {
     pending_value_ = target;
     return;
   }
-  if (!modulo_.on()) return report(PositioningEvent::ModuloOff);
+  if (!modulo_.on()) return report(PositioningEvent::ModuloOff, target);
   // From where the axis can be stopped, so that a one-way axis never has to turn back.
   const int64_t base = following_ ? profile_.stop_position(rules_) : in_position() ? target_ : actual();
   write_target(wrapped(base + modulo_.way_to(target, high_resolution(), wrapped(base - actual()))));
@@ -148,6 +149,7 @@ void Positioner::resume() {
 }
 
 void Positioner::drop_target() {
+  ordered_target_.reset();
   target_ = actual();
   target_follows_ = true;
   if (modulo_.on()) modulo_target_ = modulo_.position(high_resolution());
@@ -156,6 +158,7 @@ void Positioner::drop_target() {
 void Positioner::brake_here() {
   const int64_t end = profile_.stop_position(rules_);
   profile_.stop(rules_);
+  ordered_target_.reset();
   target_ = wrapped(end);
   planned_target_ = end;
   planned_rules_ = rules_;
@@ -279,7 +282,7 @@ bool Positioner::goes_on() const {
   const bool sensed =
       inputs_.limit_cw || inputs_.limit_ccw || touch_probes_.probe(0).fresh || touch_probes_.probe(1).fresh;
   return following_ && alone && !sensed && !modulo_.on() && modulo_.possible() && target_allowed() &&
-         plan_holds(target_) && events_.none();
+         plan_holds(target_) && !has_events();
 }
 
 }  // namespace ipos::runtime

@@ -79,7 +79,7 @@ class Positioner {
   // Then idle() is tick() with settings and inputs that are the same but for the speed, which it orders.
   bool idles() const {
     return !inputs_.possible && !reference_.active() && follower_.silent() && !touch_probes_.probe(0).fresh &&
-           !touch_probes_.probe(1).fresh && events_.none();
+           !touch_probes_.probe(1).fresh && !has_events();
   }
   void idle();
   // The last tick() has gone on with its plan, or rested at the end of it. Then go_on() is tick() with
@@ -97,9 +97,15 @@ class Positioner {
   }
   // A reference travel has given the motor encoder another count, which the axis must take over.
   std::optional<int32_t> take_motor_counter() { return std::exchange(motor_counter_, std::nullopt); }
-  bool has_events() const { return events_.any(); }
-  // What has been reported since the last call.
-  std::bitset<kPositioningEvents> take_events() { return std::exchange(events_, {}); }
+  bool has_events() const { return events_.which.any(); }
+  // What has been reported since the last call, and the target that was ordered by then; nothing: there was none, as
+  // the axis stopped, was referenced or followed a master.
+  struct Events {
+    std::bitset<kPositioningEvents> which;
+    std::optional<int64_t> target;
+    bool operator==(const Events&) const = default;
+  };
+  Events take_events() { return std::exchange(events_, {}); }
 
   // --- the program ---
   void write_target(int32_t target);                                  // H492, _GoAbs
@@ -112,7 +118,7 @@ class Positioner {
   void halt(Halt halt) { halt_ = halt; }
   void stop_here();  // on the positioning ramp; the target is where that ends
   TouchProbes& touch_probes() { return touch_probes_; }
-  void report(PositioningEvent event) { events_.set(static_cast<size_t>(event)); }
+  void report(PositioningEvent event) { report(event, ordered_target_); }
 
   // --- what it shows ---
   int32_t setpoint() const {  // H491
@@ -148,6 +154,10 @@ class Positioner {
   int64_t target_on_line() const;
   bool target_allowed() const;
 
+  void report(PositioningEvent event, std::optional<int64_t> target) {
+    events_.which.set(static_cast<size_t>(event));
+    if (target) events_.target = target;
+  }
   void configure_modulo();
   void find_rules();
   void rest();
@@ -217,7 +227,9 @@ class Positioner {
   int64_t pending_value_ = 0;
 
   std::optional<int32_t> motor_counter_;
-  std::bitset<kPositioningEvents> events_;
+  // The target as it was given, while the axis has it or is on its way there. target_ is also where a stop ends.
+  std::optional<int64_t> ordered_target_;
+  Events events_;
 };
 
 static_assert(std::is_trivially_copyable_v<Positioner>, "a copy is a snapshot");

@@ -39,6 +39,7 @@ void Positioner::couple() {
   profile_.hold(profile_.position() + step, next);
   planned_target_.reset();
   target_ = setpoint();
+  ordered_target_.reset();
   target_follows_ = false;
   watch_limit_switches();
   if (!target_allowed()) report(PositioningEvent::FollowedBeyondLimit);

@@ -5,6 +5,7 @@ namespace ipos::runtime {
 
 void Positioner::start_reference(bool conditional, bool zero_pulse) {
   if (conditional && referenced()) return;
+  ordered_target_.reset();
   if (!inputs_.possible) report(PositioningEvent::NoReferencing);
   referenced_ = false;
   pending_ = Pending::None;

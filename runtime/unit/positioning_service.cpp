@@ -277,7 +277,7 @@ std::string PositioningService::place_of(PositioningEvent event) const {
 }
 
 void PositioningService::report_events(Time now) {
-  const auto events = positioner_.take_events();
+  const auto [events, target] = positioner_.take_events();
   const auto fresh = events & ~reported_;
   reported_ = events;
   for (size_t n = 0; n < fresh.size(); ++n) {
@@ -288,8 +288,8 @@ void PositioningService::report_events(Time now) {
     const std::string place = place_of(event);
     journal_.note(
         now, Weight::Warning, station_,
-        fmt::format("{}{} (target {}, position {}{}{})", fault == 0 ? "" : fmt::format("F{:02}: ", fault),
-                    text_of(event), positioner_.target(), positioner_.setpoint(),
+        fmt::format("{}{} ({}position {}{}{})", fault == 0 ? "" : fmt::format("F{:02}: ", fault), text_of(event),
+                    target ? fmt::format("target {}, ", *target) : "", positioner_.setpoint(),
                     place.empty() ? "" : ", ordered at ", place));
   }
 }

@@ -116,6 +116,73 @@ TEST(LimitSwitches, AreF29WithEmergencyStop) {
   }
 }
 
+// What is told of a travel names the target that was ordered, not where the axis stops instead or where it is by then.
+// Where nothing was ordered no target is named.
+TEST(PositioningReports, NameTheOrderedTarget) {
+  const auto check = [](const char* what, Rig::Settings settings, const std::function<void(Rig&)>& act, const char* told,
+                        const std::string& target) {  // empty: none is named
+    SCOPED_TRACE(what);
+    Rig rig(settings);
+    act(rig);
+    EXPECT_TRUE(rig.said(told));
+    EXPECT_EQ(rig.said("(target "), !target.empty());
+    if (!target.empty()) {
+      EXPECT_TRUE(rig.said("(target " + target + ", position "));
+    }
+  };
+  const auto go = [](int32_t target) { return [target](Rig& rig) { rig.go(target), rig.run(2); }; };
+  const auto until_fault = [](Rig& rig) { rig.run_until([&] { return rig.drive.fault() != 0; }); };
+  const auto switch_at_40000 = [](Rig& rig) {
+    rig.levels = [](int64_t at) { return static_cast<uint16_t>(kEnabled | (at < 40'000 ? 1 << 4 : 0) | 1 << 5); };
+    rig.drive.reset_fault();
+    rig.run(2);
+  };
+  check("limit switch", {{"603", 14}, {"604", 15}},
+      [&](Rig& rig) {
+        switch_at_40000(rig);
+        rig.go(100'000);
+        until_fault(rig);
+      },
+      "F29", "100000");
+  check("limit switch, relative", {{"603", 14}, {"604", 15}},
+      [&](Rig& rig) {
+        switch_at_40000(rig);
+        rig.go_by(70'000);
+        rig.go_by(5'000);
+        until_fault(rig);
+      },
+      "F29", "75000");
+  check("mode without positioning", {{"700", 11}}, go(12'345), "F77", "12345");
+  check("beyond the range", {}, [](Rig& rig) { rig.go(INT32_MAX), rig.go_by(10), rig.run(2); }, "F78", "2147483657");
+  check("lag", {{"915", 0}, {"923", 2'000}}, [&](Rig& rig) { rig.go(400'000), until_fault(rig); }, "F42", "400000");
+  check("ramp", {{"916", 1}},
+      [](Rig& rig) { rig.go(400'000), rig.run(500), rig.service.set_parameter("911", 700), rig.run(2); }, "F99",
+      "400000");
+  check("overrun", {{"136", 20'000}, {"912", 1'000}, {"137", 200}},
+      [](Rig& rig) {
+        rig.go(100'000);
+        rig.run_until([&] { return rig.h[511] > 100'000 - 25'600; });
+        rig.drive.set_inputs(kEnabled & ~0b1000);
+        rig.run(50);
+        rig.drive.set_inputs(kEnabled);
+        rig.run(2);
+      },
+      "F123", "100000");
+  check("modulo off", {}, [](Rig& rig) { rig.h[454] = 777, rig.run(2); }, "H454", "777");
+  check("reference travel", {{"903", 3}},
+      [](Rig& rig) { rig.go(1'000), rig.run_to_target(), rig.positioner().start_reference(false, false), rig.run(3); },
+      "F27", "");
+  check("stop on the ramp", {{"915", 0}, {"923", 0}},
+      [&](Rig& rig) {
+        rig.go(400'000);
+        rig.run(1'000);
+        rig.positioner().stop_here();
+        rig.service.set_parameter("923", 100);
+        until_fault(rig);
+      },
+      "F42", "");
+}
+
 TEST(LimitSwitches, BothAtOnceAreF27) {
   LimitRig rig;
   rig.levels = {};

@@ -39,7 +39,7 @@ struct IdealAxis {
       inputs.master.sync = false;
     }
     const PositioningOrder order = positioner.tick(inputs);
-    const auto told = positioner.take_events();
+    const auto told = positioner.take_events().which;
     for (size_t n = 0; n < told.size(); ++n)
       if (told.test(n)) events.push_back(static_cast<PositioningEvent>(n));
     inputs.speed = order.speed;
