@@ -136,7 +136,7 @@ int64_t Profile::stop_position(const TravelRules& rules) const {
 bool Profile::overruns(int64_t target, const TravelRules& rules) const {
   const Fine ahead = sign(speed_) * (fine(target) - position_);
   const Fine brake = ramp_way(magnitude(speed_), rules.down_ms, rules);
-  return speed_ != 0 && ahead >= 0 && brake > ahead && !stops_within(ahead, brake, rules.shape);
+  return speed_ != 0 && ahead >= 0 && !stops_within(ahead, brake, rules.shape);
 }
 
 // What an earlier plan has left behind is no position.

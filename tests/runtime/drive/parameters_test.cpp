@@ -5,7 +5,7 @@
 
 #include "runtime/drive/drive.hpp"
 #include "tests/harness/proves.hpp"
-#include "tests/runtime/drive/fake_drive.hpp"
+#include "tests/runtime/drive/drive_rig.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -181,6 +181,25 @@ TEST_F(Md60a, FactorySetting) {
   EXPECT_EQ(store.value(8328), 77);
   store.power_cycle();
   EXPECT_EQ(store.value(8600), 0) << "the EEPROM has the factory setting too";
+}
+
+// It ends with the power: what the unit had is there again, and nothing is set back later.
+TEST_F(Md60a, FactorySettingEndsWithThePower) {
+  ask(kWrite, 8470, 2500);
+  ask(kWrite, 8594, 1);
+  store.power_cycle();
+  EXPECT_FALSE(store.factory_setting_running());
+  EXPECT_EQ(ask(kRead, 8470), 2500);
+  EXPECT_EQ(ask(kWrite, 8470, 3000), 3000) << "parameters can be written";
+
+  tests::DriveRig rig("md60a");
+  rig.set("P130", 2500);
+  ASSERT_EQ(rig.write("P802", 1), 0);
+  rig.run_ms(1'000);
+  rig.parameters.power_cycle();
+  rig.drive.power_cycle();
+  rig.run_ms(5'000);
+  EXPECT_EQ(rig.value("P130"), 2500);
 }
 
 // P802 writes what differs, once; what has its factory value already is not worn.

@@ -432,6 +432,36 @@ TEST(Timeouts, WhatIsUsedIsWatched) {
           }
 }
 
+// Silence of a bus while the terminals do not enable is no fault. The drive then waits for the next telegram as at the
+// beginning (1053 1610 p. 27): it is neither a fault at the moment of the enable nor an enable by words of before.
+TEST(Timeouts, SilenceBeforeTheEnableBringsBackTheWaiting) {
+  struct Link {
+    PoSource source;
+    int32_t p100, p101;
+  };
+  constexpr Link kLinks[] = {{PoSource::Fieldbus, 3, 2}, {PoSource::Sbus, 10, 3}};
+  for (const Link& link : kLinks) {
+    SCOPED_TRACE(link.p100);
+    DriveRig rig("md60a");
+    for (const char* number : {"P815", "P819"}) rig.set(number, 100);
+    rig.set("P100", link.p100);
+    rig.set("P101", link.p101);
+    const uint16_t words[] = {6, 5000, 0};
+    rig.drive.take_po(link.source, words);
+    rig.run_ms(1'000);
+    EXPECT_EQ(rig.drive.fault(), 0);
+    rig.enable_terminals();
+    rig.run_ms(1'000);
+    EXPECT_EQ(rig.drive.fault(), 0);
+    EXPECT_EQ(rig.drive.display(), 't');
+    EXPECT_EQ(rig.rpm(), 0);
+    rig.drive.take_po(link.source, words);
+    rig.run_ms(90);
+    EXPECT_EQ(rig.drive.fault(), 0);
+    EXPECT_GT(rig.rpm(), 0);
+  }
+}
+
 TEST(FieldbusTimeout, P819) {
   DriveRig rig("md60a");
   rig.enable_terminals();

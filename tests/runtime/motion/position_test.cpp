@@ -102,6 +102,30 @@ TEST(Position, ForwardAndBackIsNothing) {
   EXPECT_NEAR(axis.state().position, 0, 1);
 }
 
+// The counter is the whole increments below the exact way, in both directions. An axis that follows has its speed from
+// the first millisecond on; in the units of the speed a millisecond is worth 8 / 234375 increments of twice the mean.
+TEST(Position, IsRoundedDownInBothDirections) {
+  for (const int32_t speed : {1, -1, 700, -700, 12'345, -12'345, 999'999, -999'999}) {
+    MachineData machine;
+    machine.inertia = 0;
+    machine.rotor_run_up_ms = 1;
+    Axis axis{machine};
+    AxisOrder order = order_of(AxisCommand::Follow, speed, 0);
+    order.current_limit = 150'000;
+    int64_t twice_the_way = 0;
+    int32_t before = 0;
+    for (int n = 1; n <= 3'000; ++n) {
+      const AxisState& state = axis.tick(order);
+      twice_the_way += before + state.speed;
+      before = state.speed;
+      const int64_t exact = twice_the_way * 8;
+      const int64_t down = exact >= 0 ? exact / 234'375 : -((-exact + 234'374) / 234'375);
+      ASSERT_EQ(state.position, down) << speed << " after " << n << " ms";
+    }
+    ASSERT_EQ(before, speed);
+  }
+}
+
 TEST(Position, WrapsLikeTheCounter) {
   Axis axis{{}};
   axis.set_position(INT32_MAX);

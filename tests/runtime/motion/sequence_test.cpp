@@ -149,6 +149,27 @@ TEST(Sequence, StandstillCurrentIsAnyAboveZero) {
   }
 }
 
+// A hoist that is enabled again while it still turns, and stopped while its brake opens: the brake falls in at
+// standstill, on the stop ramp (500 ms for 3000 rpm) from the speed that was found.
+TEST(Sequence, StopWhileTheBrakeOpensOnATurningShaft) {
+  MachineData machine;
+  machine.brake = false;
+  machine.friction = 0;
+  Drive drive(machine);
+  drive.run(AxisCommand::Run, 300);
+  drive.run(AxisCommand::Inhibit, 10);
+  ASSERT_EQ(drive.run(AxisCommand::Run, 115).phase, AxisPhase::Releasing);
+  const int32_t found = drive.axis.state().speed;
+  ASSERT_EQ(found, 300'000);
+  drive.order.command = AxisCommand::Stop;
+  for (int ms = 1; ms <= 260; ++ms) {
+    const AxisState& state = drive.run(1);
+    ASSERT_EQ(state.speed, std::max(0, found - 6'000 * ms)) << ms;
+    ASSERT_EQ(state.brake_released, ms <= 50) << ms;
+    ASSERT_EQ(state.output_stage, ms <= 250) << ms;
+  }
+}
+
 TEST(Sequence, TurningMotorIsCaughtAtItsSpeed) {
   MachineData machine;
   machine.brake = false;

@@ -184,6 +184,19 @@ TEST_F(Memory, ADamagedFileGivesFactoryValuesAndAWarning) {
   EXPECT_EQ(next.memory.fault(), 0) << "a whole state is there again";
 }
 
+// F94 is the state of the memory at this power-on, not at one before.
+TEST_F(Memory, TheFaultOfADamagedFileEndsWhenItIsWholeAgain) {
+  { EXPECT_EQ(*Unit(state_).ask(kWrite, 8470, 2500), 2500); }
+  state_->bytes[20] ^= 1;
+  Unit unit(state_);
+  ASSERT_EQ(unit.memory.fault(), 94);
+  unit.memory.reload();
+  EXPECT_EQ(unit.memory.fault(), 94) << "nothing has been stored";
+  unit.memory.tick(0);
+  unit.memory.reload();
+  EXPECT_EQ(unit.memory.fault(), 0);
+}
+
 TEST_F(Memory, OneDamagedSlotIsNoFault) {
   {
     Unit unit(state_);
@@ -286,6 +299,22 @@ TEST(Wear, CyclicWritesAreWarnedOfOnce) {
   unit.ask(kWrite, 8470, 2500);
   EXPECT_TRUE(unit.told().empty()) << "once";
   EXPECT_EQ(unit.parameters.eeprom_writes(8470), 11U);
+}
+
+// A program that stores in a loop wears the memory, too; what has not changed does not.
+TEST(Wear, MemorizeIsWarnedOf) {
+  for (const Memorize what : {Memorize::StoreData, Memorize::StoreAll}) {
+    Unit unit;
+    for (int n = 1; n <= 10; ++n) {
+      EXPECT_TRUE(unit.told().empty()) << n;
+      unit.memory.set_time(n * kSecond);
+      unit.ask(kVolatile, 11005, n);
+      ASSERT_TRUE(unit.memory.memorize(what));
+    }
+    const std::vector<std::string> told = unit.told();
+    ASSERT_EQ(told.size(), 1U) << static_cast<int>(what);
+    EXPECT_NE(told[0].find("H5 was stored 10 times within 9.000 s"), std::string::npos) << told[0];
+  }
 }
 
 // 100 000 writes of the life: every 20 min they are gone after 3.8 years, at two a minute after 34.7 days.

@@ -195,6 +195,17 @@ TEST(ExtendedCam, FourOutputsAMillisecondTheOthersEveryFour) {
   EXPECT_EQ(cam.at(520, 4), 1 << 9);
 }
 
+// Each output by itself: 0 to 3 in every millisecond, 4 to 7 in every fourth.
+TEST(ExtendedCam, EachOutputAtItsRate) {
+  for (int32_t output = 0; output < 8; ++output)
+    for (uint64_t ms = 1; ms <= 8; ++ms) {
+      Extended cam(0x8000'0003);
+      cam.at(70, 0);
+      const bool shows = output < 4 || ms % 4 == 0;
+      EXPECT_EQ(cam.at(output * 100 + 20, ms), shows ? 1 << (4 + output) : 0) << output << " at " << ms << " ms";
+    }
+}
+
 // With bit 31 CamSource is the number of a variable, whatever it is; without it there are three encoders (p. 91).
 TEST(ExtendedCam, EveryVariableMayBeTheSource) {
   for (size_t n = 220; n < 512; ++n) {

@@ -111,6 +111,21 @@ TEST(ReferenceTravel, EveryTypeFindsItsEdge) {
     }
 }
 
+// The brake way from P901 is longer than this cam: the axis comes back over it and leaves it at its left edge, the
+// second time as the first.
+TEST(ReferenceTravel, AShortCamThatIsOverrunIsFoundEachTime) {
+  Machine machine;
+  machine.cam_right = machine.cam_left + 300;
+  ReferenceRig rig(1, machine);
+  for (int times = 0; times < 3; ++times) {
+    SCOPED_TRACE(times);
+    rig.go(static_cast<int32_t>(-60'000 - rig.mechanical + rig.h[511]));
+    rig.run_to_target();
+    ASSERT_EQ(rig.mechanical, -60'000);
+    EXPECT_NEAR(static_cast<double>(rig.reference(false)), static_cast<double>(machine.cam_left), kEdge);
+  }
+}
+
 TEST(ReferenceTravel, Type5TakesThePlaceItIsAtWithoutEnable) {
   Rig rig({{"903", 5}, {"900", -700}});
   rig.go(10'000);
