@@ -95,6 +95,18 @@ CanLineNames can_line_names(const Plant& plant, const CanLine* line) {
   return {telegram_names(plant, line), node_names(plant, line)};
 }
 
+size_t defined_objects(const Plant& plant, const CanLine& line) {
+  size_t count = 0;
+  for (const auto& station : plant.stations())
+    for (const int number : {1, 2}) {
+      const SbusPort* port = std::as_const(*station).sbus(number);
+      const CanopenPort* canopen = std::as_const(*station).canopen(number);
+      if (port != nullptr && &port->line() == &line) count += port->objects().definitions().size();
+      if (canopen != nullptr && &canopen->line() == &line) count += canopen->objects().definitions().size();
+    }
+  return count;
+}
+
 CanNames can_names(const Plant& plant) {
   CanNames names;
   names.all = can_line_names(plant);

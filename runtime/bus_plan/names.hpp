@@ -18,6 +18,9 @@ TelegramNames telegram_names(const Plant& plant, const CanLine* line = nullptr);
 // The same with the CANopen nodes of the line.
 CanLineNames can_line_names(const Plant& plant, const CanLine* line = nullptr);
 
+// How many objects of variable telegrams its stations have defined by now.
+size_t defined_objects(const Plant& plant, const CanLine& line);
+
 // For all CAN lines of the plant.
 CanNames can_names(const Plant& plant);
 

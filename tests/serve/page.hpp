@@ -1,9 +1,11 @@
 // A page without a browser: it posts messages to the host of a plant and keeps what the host sends.
 #pragma once
 
+#include <chrono>
 #include <deque>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "tools/serve/plant_host.hpp"
@@ -48,14 +50,18 @@ class Page {
     message["id"] = ++id_;
     post.sent.clear();
     post.waiting.push_back({LetterKind::Message, client, message.dump()});
-    while (host.turn(0)) {
+    // What another process computes for it comes some time later.
+    for (int n = 0; n < kPatience; ++n) {
+      while (host.turn(0)) {
+      }
+      parts.clear();
+      for (const auto& letter : post.sent)
+        if (letter.kind == LetterKind::Reply && letter.client == client) parts.push_back(Json::parse(letter.body));
+      if (!parts.empty() && !parts.back().contains("more")) return parts.back();
+      if (message["do"] == "scope.view") return {};  // binary() is its answer
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    parts.clear();
-    for (const auto& letter : post.sent) {
-      if (letter.kind != LetterKind::Reply || letter.client != client) continue;
-      parts.push_back(Json::parse(letter.body));
-    }
-    return parts.empty() ? Json() : parts.back();
+    return {};
   }
   // The same as raw text.
   Json say(const std::string& text) {
@@ -88,6 +94,7 @@ class Page {
   std::vector<Json> parts;
 
  private:
+  static constexpr int kPatience = 60'000;  // milliseconds
   int id_ = 0;
 };
 

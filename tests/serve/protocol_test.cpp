@@ -5,49 +5,12 @@
 #include <cstring>
 #include <sstream>
 
-#include "compiler/compile.hpp"
 #include "runtime/bus_plan/names.hpp"
-#include "tests/serve/page.hpp"
+#include "tests/serve/serving.hpp"
 #include "tools/recording/trace.hpp"
 
 namespace ipos::tests {
 namespace {
-
-// Line numbers count from 1; line 1 is the header. DI02 and DI03 of a MOVIDRIVE as delivered: CW and enable.
-constexpr const char* kProgram = R"(#include <const.h>
-long lCount;
-long lTable[3];
-main()
-{
-  while (1)
-  {
-    lCount++;
-    lTable[1] = lCount * 2;
-    _Wait(5);
-  }
-}
-)";
-constexpr const char* kPlant = R"(
-[[bus]]
-name = "sbus"
-kind = "can"
-[[station]]
-name = "saw"
-unit = "md60a"
-program = "SAW.IPC"
-sbus = "sbus"
-[station.inputs]
-DI00 = 1
-[[station]]
-name = "lift"
-unit = "mdxb"
-sbus = "sbus"
-[station.parameters]
-P881 = 2
-[[wire]]
-from = "saw.DO01"
-to = "lift.DI05"
-)";
 
 // A master and a slave with two process data words; speeds count 0.2 rpm.
 constexpr const char* kDpPlant = R"(
@@ -85,46 +48,6 @@ tools::debug::MakePlant one_station(const std::string& text) {
     return plant;
   };
 }
-
-tools::debug::MakePlant the_plant() {
-  compiler::CompileOptions options;
-  options.unit = stdlib::find_unit("md60a");
-  const auto image = compiler::compile("SAW.IPC", "", kProgram, options).image;
-  return [image] {
-    std::vector<runtime::PlantError> errors;
-    auto plant = std::make_unique<runtime::Plant>(runtime::read_plant_file(kPlant).plant,
-                                                  std::vector<std::optional<vm::Image>>{image, std::nullopt},
-                                                  std::nullopt, errors);
-    EXPECT_TRUE(errors.empty());
-    return plant;
-  };
-}
-
-class Serving : public ::testing::Test {
- protected:
-  Json good(Json message) {
-    Json reply = page.ask(std::move(message));
-    EXPECT_TRUE(reply.value("ok", false)) << reply;
-    return reply;
-  }
-  std::string error(Json message) { return page.ask(std::move(message)).value("error", "no error"); }
-  Json step(int ms) { return good({{"do", "step"}, {"ms", ms}}); }
-  // The whole state of a topic.
-  Json topic(Json message) {
-    message["do"] = "subscribe";
-    good(message);
-    const std::string name = message["topic"];
-    return page.event(name);
-  }
-  int64_t value(const std::string& name) {
-    good({{"do", "watch"}, {"names", {name}}});
-    return topic({{"topic", "watch"}})["values"].front()["value"].get<int64_t>();
-  }
-
-  explicit Serving(tools::debug::MakePlant make = the_plant()) : page(std::move(make)) {}
-
-  Page page;
-};
 
 // A node and its master, which writes a mapping of its own.
 constexpr const char* kCanopenPlant = R"(

@@ -321,6 +321,67 @@ class Serving(unittest.TestCase):
         self.assertEqual(self.ipos.stderr.read(), "")
 
 
+def memory_of_group(process):
+    """MB of a process that leads its group and of all others in it, shared pages counted once."""
+    total = 0
+    for entry in pathlib.Path("/proc").iterdir():
+        try:
+            if entry.name.isdigit() and os.getpgid(int(entry.name)) == process.pid:
+                for line in (entry / "smaps_rollup").read_text().splitlines():
+                    if line.startswith("Pss:"):
+                        total += int(line.split()[1]) / 1024
+        except OSError:
+            pass
+    return total
+
+
+class Memory(unittest.TestCase):
+    """The recordings of scope and trace are there once, whatever number of copies for going back there is."""
+
+    BOUND = 150  # MB
+
+    def run_until(self, plant, seconds):
+        """As fast as it goes to that time of the plant; the most memory on the way, at ten looks."""
+        ipos = subprocess.Popen([IPOS, "serve", str(plant)], stdout=subprocess.PIPE, text=True, start_new_session=True)
+        self.addCleanup(ipos.stdout.close)
+        self.addCleanup(ipos.wait)
+        self.addCleanup(ipos.terminate)
+        match = re.search(r":(\d+)/\?token=(\w+)", ipos.stdout.readline())
+        client = Client(int(match[1]), f"/ws?token={match[2]}")
+        self.addCleanup(client.close)
+        client.socket.settimeout(120)
+        for topic in ("plant", "bus", "trace", "journal"):
+            client.ask(do="subscribe", topic=topic, rate=5)
+        client.ask(do="run", speed=0)
+        most = 0
+        for part in range(1, 11):
+            while True:
+                opcode, data = client.receive()
+                if opcode == 1 and b'"event":"time"' in data and json.loads(data)["us"] >= seconds * 100_000 * part:
+                    break
+            most = max(most, memory_of_group(ipos))
+        return most, client
+
+    def test_a_recording_that_has_turned_over(self):
+        most, client = self.run_until(pathlib.Path(__file__).parents[2] / "examples/isync/isync.toml", 2_500)
+        self.assertLess(most, self.BOUND)
+        # And the copies still lead back, with what was recorded.
+        client.ask(do="pause")
+        us = client.ask(do="step")["us"]
+        self.assertEqual(client.ask(do="back", us=us - 100_000_000)["us"], us - 100_000_000)
+        rows = client.ask(do="scope.csv", from_us=us - 100_010_000)["csv"].splitlines()
+        self.assertEqual(rows[-1].split(",")[0], str((us - 100_000_000) // 1000))
+        self.assertEqual(len(rows), 12)
+
+    def test_many_drives(self):
+        sys.path.insert(0, str(pathlib.Path(__file__).parent))
+        import figures
+
+        with tempfile.TemporaryDirectory() as folder:
+            most, _ = self.run_until(figures.write_plant(pathlib.Path(folder), 64), 120)
+        self.assertLess(most, self.BOUND)
+
+
 def client_of_device(test, line, *more):
     """`ipos serve --device` for a test, and a client of it."""
     ipos = subprocess.Popen([IPOS, "serve", "--device", line, "--address", "1", "--quiet", *more],

@@ -82,6 +82,16 @@ Stop Debugger::go_back(Time time) {
   return go();
 }
 
+void Debugger::run_again() {
+  use_snapshots_ = false;
+  goal_ = {};
+  goal_.kind = Goal::Kind::Replay;
+  goal_.end = start_ = position_;
+  build();
+  prime();
+  go();
+}
+
 void Debugger::restart() {
   snapshots_.clear();
   changes_.clear();

@@ -53,6 +53,8 @@ class Debugger final : private runtime::CommandRunner {
   Order order_for(Motion motion, TaskRef task, bool backward = false) const;
   // To the millisecond in which that time begins; the plant stands there.
   Stop go_back(runtime::Time time);
+  // From the beginning up to here, without copies: for a copy of the process that gathers what was not gathered before.
+  void run_again();
   // The plant as at power-on. What the user has done is forgotten, breakpoints stay.
   void restart();
 

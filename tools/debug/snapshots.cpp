@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -18,7 +19,11 @@ namespace {
 
 // More cost memory and gain little: a step back replays what lies between two of them.
 constexpr size_t kMost = 48;
-constexpr size_t kKeptDense = 16;  // the latest ones are never thinned out
+// Of a large plant there are fewer, so that all of them together have no more than that for themselves (ours).
+constexpr size_t kMostKib = 32 * 1024;
+constexpr size_t kFewest = 8;
+constexpr size_t kLookEvery = 8;  // at what they have
+constexpr size_t kDensePart = 3;  // of so many the latest one is never thinned out
 
 bool write_all(int file, const char* bytes, size_t size) {
   while (size != 0) {
@@ -59,6 +64,7 @@ std::string receive(int file) {
 
 }  // namespace
 
+Snapshots::Snapshots() : most_(kMost) {}
 Snapshots::~Snapshots() { clear(); }
 
 void Snapshots::clear() {
@@ -73,7 +79,7 @@ void Snapshots::drop(size_t n) {
 
 // Every second one of the older ones goes: the way back to them gets longer the older they are.
 void Snapshots::thin_out() {
-  for (size_t n = 1; n + kKeptDense < held_.size(); ++n) drop(n);
+  for (size_t n = 1; n + most_ / kDensePart < held_.size(); ++n) drop(n);
 }
 
 std::optional<std::string> Snapshots::take(const Position& now) {
@@ -88,7 +94,9 @@ std::optional<std::string> Snapshots::take(const Position& now) {
       return std::nullopt;
     }
     held_.push_back({now, ends[1], copy});
-    if (held_.size() > kMost) thin_out();
+    if (++taken_ % kLookEvery == 0)
+      most_ = std::clamp(held_.size() * kMostKib / std::max<size_t>(memory().own, 1), kFewest, kMost);
+    if (held_.size() > most_) thin_out();
     return std::nullopt;
   }
   const auto on_interrupt = std::signal(SIGINT, SIG_IGN);

@@ -15,7 +15,7 @@ namespace ipos::tools::debug {
 
 class Snapshots {
  public:
-  Snapshots() = default;
+  Snapshots();
   ~Snapshots();
   Snapshots(const Snapshots&) = delete;
   Snapshots& operator=(const Snapshots&) = delete;
@@ -50,6 +50,8 @@ class Snapshots {
   void thin_out();
 
   std::vector<Held> held_;  // in rising order
+  size_t most_;             // that are kept
+  size_t taken_ = 0;
 };
 
 // Runs `body` in a process whose snapshots may take its place. wait() returns what the last of them returns; -1 when

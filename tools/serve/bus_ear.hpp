@@ -17,23 +17,12 @@
 #include "runtime/bus/profibus/line.hpp"
 #include "runtime/bus/rs485/line.hpp"
 #include "tools/serve/arguments.hpp"
+#include "tools/serve/telegram.hpp"
 
 namespace ipos::tools::serve {
 
 // The name under which the page hangs on the lines.
 inline constexpr const char* kPageNode = "the page";
-
-struct Telegram {
-  runtime::Time time = 0;
-  uint32_t id = 0;  // CAN: the identifier; RS-485: the address; PROFIBUS: a number for frames of one kind
-  uint8_t bus = 0;  // number in the reply to `plant`
-  bool extended = false, remote = false, error = false;
-  uint8_t reason = 0;  // of the error, where the bytes do not tell it (profibus::FrameError)
-  std::vector<uint8_t> data;
-  std::string words;  // where they depend on what went before on the line; else they are made when wanted
-
-  std::span<const uint8_t> bytes() const { return remote ? std::span<const uint8_t>() : data; }
-};
 
 class BusEar {
  public:
@@ -42,6 +31,11 @@ class BusEar {
   virtual ~BusEar() = default;
   virtual const std::string& name() const = 0;
   virtual runtime::LineLoad load(runtime::Time now) const = 0;
+  // Behind the millisecond in which telegrams came, before their words are made: whoever is on the line may have got another
+  // name, or a new object, since the last time.
+  virtual void renew_names(runtime::Time /*now*/) {}
+  // Its words, where they depend on what goes before on the line; asked for once, in the order of the line.
+  virtual std::string words_of(const Telegram&) { return {}; }
   virtual std::string text_of(const Telegram& telegram) = 0;
   // The same of one that was not heard, as if it came next.
   virtual std::string text_if_heard(const Telegram& telegram) { return text_of(telegram); }
@@ -73,7 +67,12 @@ class NamesAge {
   std::chrono::steady_clock::time_point known_{};
 };
 
-using CanNamesNow = std::function<runtime::CanLineNames()>;
+// Who is on a CAN line. What the words of a frame depend on must be known in the millisecond of the frame: so many objects
+// are defined by now.
+struct CanNamesNow {
+  std::function<runtime::CanLineNames()> names;
+  std::function<size_t()> objects = [] { return size_t{0}; };
+};
 using SerialNamesNow = std::function<runtime::TelegramNames()>;
 
 // The line must outlive the ear.

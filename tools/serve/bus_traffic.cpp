@@ -8,7 +8,6 @@
 namespace ipos::tools::serve {
 namespace {
 
-constexpr size_t kKept = 100'000;  // telegrams of the trace
 constexpr size_t kTraceAtOnce = 2'000;
 constexpr size_t kMostRows = 4'096;  // identifiers that are told apart (ours)
 
@@ -37,7 +36,7 @@ BusTraffic::BusTraffic(Desk& desk, BusSource& source) : desk_(desk), source_(sou
 void BusTraffic::clear() {
   ears_.clear();
   rows_.clear();
-  trace_.clear();
+  waiting_.clear();
   seen_ = 0;
 }
 
@@ -60,11 +59,22 @@ uint8_t BusTraffic::number_of(const std::string& name) const {
 }
 
 void BusTraffic::take(Telegram telegram) {
+  if (!hears_) return;
   source_.heard();
-  ++seen_;
   telegram.time = source_.shown(telegram.time);
-  if (trace_.size() == kKept) trace_.pop_front();
-  trace_.push_back(telegram);
+  waiting_.push_back(std::move(telegram));
+}
+
+void BusTraffic::settle() {
+  if (waiting_.empty()) return;
+  for (const auto& ear : ears_) ear->renew_names(source_.line_now());
+  for (Telegram& telegram : waiting_) note(std::move(telegram));
+  waiting_.clear();
+}
+
+void BusTraffic::note(Telegram telegram) {
+  telegram.words = ears_[telegram.bus]->words_of(telegram);
+  trace_.add(++seen_, telegram);
   const Key key{telegram.bus, telegram.extended, telegram.remote, telegram.id};
   if (rows_.size() >= kMostRows && rows_.count(key) == 0) return;
   Row& row = rows_[key];
@@ -110,21 +120,41 @@ Json BusTraffic::json_of(uint64_t n, const Telegram& telegram) {
   return json;
 }
 
+void BusTraffic::look_back(std::optional<uint8_t> line,
+                           const std::function<bool(const NumberedTelegram&)>& look) const {
+  std::vector<uint64_t> ends(ears_.size()), firsts(ears_.size());
+  for (size_t n = 0; n < ears_.size(); ++n) {
+    firsts[n] = trace_.first(n);
+    ends[n] = !line || *line == n ? trace_.end(n) : firsts[n];
+  }
+  for (;;) {
+    std::optional<size_t> newest;
+    uint64_t number = 0;
+    for (size_t n = 0; n < ears_.size(); ++n)
+      if (ends[n] > firsts[n] && trace_.number(n, ends[n] - 1) > number) {
+        newest = n;
+        number = trace_.number(n, ends[n] - 1);
+      }
+    if (!newest || !look(trace_.at(*newest, --ends[*newest]))) return;
+  }
+}
+
 Json BusTraffic::trace(const Arguments& a) {
   const auto before = static_cast<uint64_t>(a.whole("before", 0, INT64_MAX, INT64_MAX));
   const auto limit = static_cast<size_t>(a.whole("limit", 1, 1000, 200));
   const std::string filter = a.text("filter", "");
-  const uint64_t first = seen_ - trace_.size() + 1;
+  const auto line = a.has("bus") ? std::optional(number_of(a.text("bus"))) : std::nullopt;
   Json rows = Json::array();
-  for (size_t n = trace_.size(); n-- > 0 && rows.size() < limit;) {
-    if (first + n >= before) continue;
-    const Telegram& telegram = trace_[n];
-    BusEar& ear = *ears_[telegram.bus];
-    const std::string words = fmt::format("{} {} {} {}", ear.name(), ear.identity_text(telegram),
-                                          hex(telegram.bytes()), ear.text_of(telegram));
-    if (filter.empty() || words.find(filter) != std::string::npos)
-      rows.push_back(json_of(first + n, telegram));
-  }
+  look_back(line, [&](const NumberedTelegram& one) {
+    if (one.number >= before) return true;
+    BusEar& ear = *ears_[one.telegram.bus];
+    if (filter.empty() ||
+        fmt::format("{} {} {} {}", ear.name(), ear.identity_text(one.telegram), hex(one.telegram.bytes()),
+                    ear.text_of(one.telegram))
+                .find(filter) != std::string::npos)
+      rows.push_back(json_of(one.number, one.telegram));
+    return rows.size() < limit;
+  });
   std::reverse(rows.begin(), rows.end());
   return {{"frames", std::move(rows)}};
 }
@@ -165,12 +195,15 @@ void BusTraffic::publish_rows(Client& client, Subscription& subscription) {
 }
 
 void BusTraffic::publish_trace(Client& client, Subscription& subscription) {
-  const uint64_t first = seen_ - trace_.size();  // of those that are kept
-  uint64_t from = subscription.fresh ? seen_ : std::max(subscription.mark, first);
-  if (seen_ - from > kTraceAtOnce) from = seen_ - kTraceAtOnce;
-  const uint64_t lost = subscription.fresh ? 0 : from - subscription.mark;
+  const uint64_t known = subscription.fresh ? seen_ : subscription.mark;
+  std::vector<NumberedTelegram> news;
+  look_back({}, [&](const NumberedTelegram& one) {
+    if (one.number <= known) return false;
+    news.push_back(one);
+    return news.size() < kTraceAtOnce;
+  });
   subscription.mark = seen_;
-  if (from == seen_) return;
+  if (news.empty()) return;
   std::string bytes;
   const auto put = [&bytes](const auto& value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
@@ -178,11 +211,11 @@ void BusTraffic::publish_trace(Client& client, Subscription& subscription) {
   put(uint8_t{2});
   put(uint8_t{0});
   put(uint16_t{0});
-  put(static_cast<uint32_t>(lost));
-  for (uint64_t n = from; n < seen_; ++n) {
-    const Telegram& telegram = trace_[n - first];
+  put(static_cast<uint32_t>(seen_ - known - news.size()));
+  for (auto one = news.rbegin(); one != news.rend(); ++one) {
+    const Telegram& telegram = one->telegram;
     put(static_cast<uint64_t>(telegram.time));
-    put(static_cast<uint32_t>(n + 1));
+    put(static_cast<uint32_t>(one->number));
     put(telegram.id);
     put(telegram.bus);
     put(static_cast<uint8_t>((telegram.extended ? 1 : 0) | (telegram.remote ? 2 : 0) |

@@ -3,15 +3,17 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
+#include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
 
 #include "tools/serve/bus_ear.hpp"
 #include "tools/serve/desk.hpp"
+#include "tools/serve/trace_memory.hpp"
 
 namespace ipos::tools::serve {
 
@@ -33,8 +35,9 @@ class BusTraffic final {
   // Adds its commands and its topics.
   BusTraffic(Desk& desk, BusSource& source);
 
-  // The lines are others: nothing is known any more.
+  // The lines are others: nothing is known any more. Then all of them are followed, and then they are complete.
   void clear();
+  void complete() { trace_.restart(ears_.size()); }
   template <typename Line, typename... Names>
   void follow(Line& line, Names... names) {
     const auto number = static_cast<uint8_t>(ears_.size());
@@ -44,6 +47,10 @@ class BusTraffic final {
     };
     ears_.push_back(listen(line, hear, std::move(names)...));
   }
+  // The millisecond is over: what came in it is told.
+  void settle();
+  // This process only runs again what was: the trace is that of the others.
+  void stop_hearing() { hears_ = false; }
   // `rate` counts from second to second.
   void second_passed();
   void send(const Arguments& arguments);
@@ -58,6 +65,9 @@ class BusTraffic final {
   using Key = std::tuple<uint8_t, bool, bool, uint32_t>;
 
   void take(Telegram telegram);
+  void note(Telegram telegram);
+  // From the newest one back, of one line or of all; until `look` returns false.
+  void look_back(std::optional<uint8_t> line, const std::function<bool(const NumberedTelegram&)>& look) const;
   uint8_t number_of(const std::string& name) const;  // a Mistake: there is none
   int64_t us(runtime::Time of_line) const { return source_.shown(of_line) / runtime::kMicrosecond; }
   Json json_of(uint64_t n, const Telegram& telegram);
@@ -70,8 +80,10 @@ class BusTraffic final {
   BusSource& source_;
   std::vector<std::unique_ptr<BusEar>> ears_;
   std::map<Key, Row> rows_;
-  std::deque<Telegram> trace_;  // their times are those shown
+  std::vector<Telegram> waiting_;  // for the end of the millisecond
+  TraceMemory trace_;              // their times are those shown
   uint64_t seen_ = 0;
+  bool hears_ = true;
 };
 
 }  // namespace ipos::tools::serve

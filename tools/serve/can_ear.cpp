@@ -14,6 +14,9 @@ namespace {
 using runtime::Frame;
 using runtime::Time;
 
+// What a process data word means may change, too; it is looked at so often.
+constexpr Time kNamesStay = 100 * runtime::kMillisecond;
+
 Frame frame_of(const Telegram& telegram) {
   Frame frame;
   frame.id = telegram.id;
@@ -27,7 +30,7 @@ Frame frame_of(const Telegram& telegram) {
 class CanEar final : public BusEar, private runtime::CanObserver, private runtime::CanNode {
  public:
   CanEar(runtime::CanLine& line, Hear hear, CanNamesNow names)
-      : line_(line), hear_(std::move(hear)), look_up_(std::move(names)), words_(look_up_()) {
+      : line_(line), hear_(std::move(hear)), look_up_(std::move(names)), words_(look_up_.names()) {
     line.add_observer(static_cast<runtime::CanObserver&>(*this));
   }
 
@@ -36,9 +39,20 @@ class CanEar final : public BusEar, private runtime::CanObserver, private runtim
   std::string text_of(const Telegram& telegram) override {
     return telegram.words.empty() ? text_if_heard(telegram) : telegram.words;
   }
+  void renew_names(Time now) override {
+    const size_t objects = look_up_.objects();
+    if (objects == objects_ && now < renewed_ + kNamesStay) return;
+    objects_ = objects;
+    renewed_ = now;
+    words_.use(look_up_.names());
+  }
+  std::string words_of(const Telegram& telegram) override {
+    const Frame frame = frame_of(telegram);
+    return words_.is_canopen(frame) ? words_.describe(frame).text : std::string();
+  }
   // A copy hears it, so that a question leaves nothing behind.
   std::string text_if_heard(const Telegram& telegram) override {
-    renew_names();
+    if (age_.is_over()) words_.use(look_up_.names());
     const Frame frame = frame_of(telegram);
     if (!words_.is_canopen(frame)) return words_.describe(frame).text;
     runtime::CanLineWords words = words_;
@@ -77,12 +91,7 @@ class CanEar final : public BusEar, private runtime::CanObserver, private runtim
     telegram.extended = record.frame.extended;
     telegram.remote = record.frame.remote;
     telegram.data.assign(record.frame.data.begin(), record.frame.data.begin() + record.frame.length);
-    if (words_.is_canopen(record.frame)) telegram.words = words_.describe(record.frame).text;
     hear_(std::move(telegram));
-  }
-  // Between two milliseconds only.
-  void renew_names() {
-    if (age_.is_over()) words_.use(look_up_());
   }
   void on_line_event(const runtime::CanLine& line, const runtime::LineEvent& event) override {
     ++errors;
@@ -97,7 +106,9 @@ class CanEar final : public BusEar, private runtime::CanObserver, private runtim
   Hear hear_;
   CanNamesNow look_up_;
   runtime::CanLineWords words_;
-  NamesAge age_;
+  NamesAge age_;       // of the words of what was not heard, and of all that is not CANopen
+  size_t objects_ = 0;  // of which words_ knows
+  Time renewed_ = 0;
   std::optional<runtime::NodeId> node_;
   uint64_t sent_ = 0;
 };

@@ -42,9 +42,10 @@ DriveBus::DriveBus(Desk& desk, BusLink& link, const Drive& drive, std::function<
   ask_names();
   const auto names = [this] { return names_; };
   if (link.can_line() != nullptr)
-    traffic_.follow(*link.can_line(), [names] { return runtime::CanLineNames{names(), {}}; });
+    traffic_.follow(*link.can_line(), CanNamesNow{[names] { return runtime::CanLineNames{names(), {}}; }});
   else
     traffic_.follow(*link.serial_line(), names);
+  traffic_.complete();
 }
 
 void DriveBus::ask_names() {
@@ -83,6 +84,7 @@ void DriveBus::publish(Client& client, Subscription& subscription) const {
 
 void DriveBus::turn(bool waits) {
   if (waits) link_.serve(kListens);
+  traffic_.settle();
   if (now_() < next_second_) return;
   next_second_ = now_() + runtime::kSecond;
   traffic_.second_passed();

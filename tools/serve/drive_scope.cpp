@@ -50,6 +50,7 @@ bool DriveScope::begin() {
 }
 
 bool DriveScope::wanted() {
+  scope_.tend();
   bool looks = scope_.waits();
   for (const auto& [number, client] : desk_.clients()) looks = looks || client.subscriptions.contains("scope");
   const Time now = now_();

@@ -312,7 +312,17 @@ void PlantHost::keep_pace() {
   }
 }
 
+std::unique_ptr<SecondRun> PlantHost::run_again() {
+  if (ports_.joined()) return nullptr;
+  return std::make_unique<SecondRun>([this] {
+    desk_.clients().clear();
+    for (const auto& tab : tabs_) tab->runs_again();
+    debugger_->run_again();
+  });
+}
+
 void PlantHost::publish(bool busy) {
+  for (const auto& tab : tabs_) tab->tend();
   const auto now = WallClock::now();
   if (running_ && now >= time_due_) tell_time();
   desk_.publish(now, busy);

@@ -14,6 +14,7 @@
 #include "tools/debug/debugger.hpp"
 #include "tools/serve/desk.hpp"
 #include "tools/serve/plant_ports.hpp"
+#include "tools/serve/second_run.hpp"
 
 namespace ipos::tools::serve {
 
@@ -25,7 +26,9 @@ class Tab {
   virtual void restarted() {}  // by the user; it will be built next
   virtual void passed(runtime::Time /*now*/) {}
   virtual void executes(uint32_t /*station*/, uint32_t /*address*/) {}
-  virtual Json save() const { return nullptr; }
+  virtual void tend() {}        // now and then, between two milliseconds
+  virtual void runs_again() {}  // this process: PlantHost::run_again()
+  virtual Json save() { return nullptr; }
   virtual void load(const Json& /*state*/) {}
 };
 
@@ -55,6 +58,9 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
   // The plant stands before the next millisecond, unless it has real ports.
   void stop(const std::string& reason, const std::string& text);
   void telegram_seen() { telegram_seen_ = true; }
+  // A copy of this process that runs again from the beginning up to now, for what was not gathered the first time.
+  // Nothing: the world outside does not come again.
+  std::unique_ptr<SecondRun> run_again();
   // A step of the program; the reply comes when it stands.
   void order(const Desk::Call& call, const debug::Order& order);
 

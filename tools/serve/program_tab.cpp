@@ -51,7 +51,7 @@ class ProgramTab final : public Tab {
     covered.order.push_back(address);
   }
 
-  Json save() const override {
+  Json save() override {
     Json all = Json::array();
     for (const Covered& covered : covered_) all.push_back(covered.order);
     return all;

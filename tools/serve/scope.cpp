@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "tools/recording/trace.hpp"
@@ -23,6 +23,9 @@ constexpr uint64_t kRowsAtOnce = 5'000;             // of CSV
 constexpr int64_t kLastUs = 1'000'000'000'000'000;  // us
 constexpr const char* kStates[] = {"free", "armed", "triggered", "done"};
 
+// Of a sample: it has the number of its millisecond.
+int64_t us_of(uint64_t number) { return static_cast<int64_t>(number) * 1000; }
+
 }  // namespace
 
 Scope::Scope(Desk& desk, ScopeSource& source) : desk_(desk), source_(source) {
@@ -32,12 +35,10 @@ Scope::Scope(Desk& desk, ScopeSource& source) : desk_(desk), source_(source) {
     return describe();
   });
   desk.add_command("scope.trigger", [this](const Desk::Call&) {
-    if (state_ == State::Done) begin_again();
     fire(source_.now(), "by hand");
     return describe();
   });
   desk.add_command("scope.free", [this](const Desk::Call&) {
-    if (state_ == State::Done) begin_again();
     state_ = State::Free;
     single_ = false;
     return describe();
@@ -56,6 +57,11 @@ void Scope::propose(std::vector<std::string> names) {
 
 void Scope::built() {
   channels_ = find(names_);
+  if (fills_) {
+    last_ = 0;
+    return;
+  }
+  memory_.choose(std::vector<std::optional<size_t>>(channels_.size()));
   if (trigger_.signal) trigger_.signal = find({trigger_.signal->name}).front();
   begin_again();
 }
@@ -63,35 +69,115 @@ void Scope::built() {
 void Scope::passed(Time now) {
   if (now <= last_) return;
   last_ = now;
-  if (state_ != State::Done) {
-    for (size_t n = 0; n < channels_.size(); ++n) samples_[n] = channels_[n].read();
-    if (memory_.end() == 0) begin_ = now;
-    memory_.push(samples_);
-  }
+  const auto number = static_cast<uint64_t>(now / kMillisecond);
+  if (fills_) return fill(number);
+  record(number);
   look(now);
 }
 
-Json Scope::save() const {
-  return {{"names", names_},         {"trigger", trigger_.settings},      {"pre", pre_},
-          {"length_ms", length_ms_}, {"state", static_cast<int>(state_)}, {"single", single_},
-          {"recording", recording_}};
+// A complete recording is shown until another one is wanted: nothing is recorded over it.
+void Scope::record(uint64_t number) {
+  if (state_ == State::Done) {
+    const Time begin = *triggered_at_ - length_ms_ * pre_ / 100 * kMillisecond;
+    if (begin / kMillisecond < static_cast<Time>(ScopeMemory::first_kept(number + 1))) return;
+  }
+  for (size_t n = 0; n < channels_.size(); ++n) samples_[n] = channels_[n].read();
+  if (!memory_.push(number, samples_)) asks_ = true;
+}
+
+// --- what was before a channel was chosen ---
+
+std::vector<size_t> Scope::incomplete() const {
+  const uint64_t least = std::max<uint64_t>(1, ScopeMemory::first_kept(memory_.end()));
+  std::vector<size_t> late;
+  for (size_t n = 0; n < channels_.size(); ++n)
+    if (memory_.first(n) > least && memory_.end() > least) late.push_back(n);
+  return late;
+}
+
+void Scope::tend() {
+  if (computing_) {
+    const auto result = computing_->result();
+    if (!result) return;
+    if (*result)
+      for (const size_t channel : late_) memory_.filled(channel, filled_from_);
+    computing_.reset();
+    ++recording_;  // who looks at it looks again
+  } else if (asks_) {
+    compute();
+  }
+  if (computing_ || asks_) return;
+  for (const Question& question : std::exchange(questions_, {})) {
+    const auto client = desk_.clients().find(question.client);
+    if (client == desk_.clients().end()) continue;
+    const Desk::Call call{desk_, client->second, question.id, Arguments(question.message)};
+    desk_.reply(question.client, question.id, csv(call));
+  }
+}
+
+// The same commands at the same times give the same run. What it puts into the memory lies before what is recorded here.
+void Scope::compute() {
+  asks_ = false;
+  late_ = incomplete();
+  if (late_.empty()) return;
+  filled_from_ = std::max<uint64_t>(1, ScopeMemory::first_kept(memory_.end()));
+  fills_ = true;
+  computing_ = source_.run_again();  // the copy does not come back from here
+  fills_ = false;
+}
+
+void Scope::fill(uint64_t number) {
+  if (number < filled_from_) return;
+  for (const size_t channel : late_)
+    memory_.fill(channel, filled_from_, number, channels_[channel].read());
+}
+
+Json Scope::save() {
+  if (computing_) asks_ = true;
+  computing_.reset();
+  Json state{{"names", names_},
+             {"columns", memory_.columns()},
+             {"trigger", trigger_.settings},
+             {"pre", pre_},
+             {"length_ms", length_ms_},
+             {"state", static_cast<int>(state_)},
+             {"single", single_},
+             {"armed_at", armed_at_},
+             {"done_end", done_end_},
+             {"trigger_text", trigger_text_},
+             {"asks", asks_},
+             {"questions", questions_},
+             {"recording", recording_}};
+  state["triggered_at"] = triggered_at_ ? Json(*triggered_at_) : Json(nullptr);
+  return state;
 }
 
 void Scope::load(const Json& state) {
-  if (const auto names = state["names"].get<std::vector<std::string>>(); names != names_) {
-    names_ = names;
-    channels_ = find(names_);
-    begin_again();
-  }
+  names_ = state["names"].get<std::vector<std::string>>();
+  channels_ = find(names_);
+  samples_.assign(channels_.size(), 0);
+  memory_.use(state["columns"].get<std::vector<ScopeMemory::Column>>());
   trigger_ = trigger_of(state["trigger"]);
+  previous_.reset();
   pre_ = state["pre"];
   length_ms_ = state["length_ms"];
   single_ = state["single"];
+  armed_at_ = state["armed_at"];
+  asks_ = true;
+  questions_ = state["questions"].get<std::vector<Question>>();
   recording_ = state["recording"];
-  // What has triggered it is still to come.
-  state_ = state["state"] == static_cast<int>(State::Free) ? State::Free : State::Armed;
-  triggered_at_.reset();
   seen_.reset();
+  state_ = static_cast<State>(state["state"].get<int>());
+  done_end_ = state["done_end"];
+  trigger_text_ = state["trigger_text"];
+  triggered_at_.reset();
+  if (!state["triggered_at"].is_null()) triggered_at_ = state["triggered_at"].get<Time>();
+  if (state_ == State::Done && done_end_ > memory_.end()) state_ = State::Triggered;
+  if (triggered_at_ && *triggered_at_ > last_) {  // that is still to come, and comes by itself
+    triggered_at_.reset();
+    trigger_text_.clear();
+    if (state_ == State::Triggered) state_ = State::Armed;
+  }
 }
 
 std::vector<PlantSignal> Scope::find(const std::vector<std::string>& names) {
@@ -101,12 +187,32 @@ std::vector<PlantSignal> Scope::find(const std::vector<std::string>& names) {
   return signals;
 }
 
+// What is recorded of those that stay is kept.
+void Scope::choose(std::vector<PlantSignal> channels) {
+  std::vector<std::optional<size_t>> known;
+  std::vector<std::string> names;
+  for (const PlantSignal& channel : channels) {
+    const auto before = std::find(names_.begin(), names_.end(), channel.name);
+    known.push_back(before == names_.end() ? std::nullopt : std::optional<size_t>(before - names_.begin()));
+    names.push_back(channel.name);
+  }
+  if (names == names_) return;
+  if (computing_) computing_.reset();
+  memory_.choose(known);
+  names_ = std::move(names);
+  channels_ = std::move(channels);
+  samples_.assign(channels_.size(), 0);
+  asks_ = true;
+  ++recording_;
+}
+
 void Scope::begin_again() {
   ++recording_;
-  memory_ = ScopeMemory(channels_.size());
+  computing_.reset();
+  asks_ = false;
   samples_.assign(channels_.size(), 0);
   last_ = source_.now();
-  begin_ = last_ + kMillisecond;
+  memory_.restart(static_cast<uint64_t>(last_ / kMillisecond) + 1);
   if (state_ == State::Triggered || state_ == State::Done) state_ = State::Armed;
   triggered_at_.reset();
   seen_.reset();
@@ -128,12 +234,12 @@ Json Scope::set(const Arguments& a) {
     if (channels.empty() || channels.size() > kMostChannels)
       throw Mistake(
           fmt::format("a scope has 1 to {} channels, these are {}", kMostChannels, channels.size()));
-    names_.clear();
-    for (const PlantSignal& channel : channels) names_.push_back(channel.name);
-    channels_ = std::move(channels);
-    begin_again();
+    choose(std::move(channels));
   }
-  if (a.has("trigger")) trigger_ = trigger_of(a.json()["trigger"]);
+  if (a.has("trigger")) {
+    trigger_ = trigger_of(a.json()["trigger"]);
+    previous_.reset();
+  }
   pre_ = a.whole("pre", 0, 100, pre_);
   length_ms_ = a.whole("length_ms", 1, static_cast<int64_t>(ScopeMemory::kKept), length_ms_);
   return describe();
@@ -163,8 +269,8 @@ Scope::Trigger Scope::trigger_of(const Json& json) {
 }
 
 void Scope::arm(bool single) {
-  if (state_ == State::Done) begin_again();
   state_ = State::Armed;
+  armed_at_ = source_.now();
   single_ = single;
   triggered_at_.reset();
   trigger_text_.clear();
@@ -190,10 +296,11 @@ std::optional<std::string> Scope::value_triggers() {
 void Scope::look(Time now) {
   const auto seen = std::exchange(seen_, std::nullopt);
   const std::optional<std::string> value = value_triggers();
-  if (state_ == State::Armed && (seen || value)) fire(seen ? seen->first : now, seen ? seen->second : *value);
+  if (state_ == State::Armed && now > armed_at_ && (seen || value)) fire(seen ? seen->first : now, seen ? seen->second : *value);
   if (state_ != State::Triggered || now - *triggered_at_ < length_ms_ * (100 - pre_) / 100 * kMillisecond)
     return;
   state_ = single_ ? State::Done : State::Armed;
+  done_end_ = memory_.end();
 }
 
 void Scope::fire(Time at, const std::string& why) {
@@ -205,14 +312,9 @@ void Scope::fire(Time at, const std::string& why) {
 
 // --- what is shown ---
 
-int64_t Scope::us_of(uint64_t number) const {
-  return (begin_ + static_cast<Time>(number) * kMillisecond) / runtime::kMicrosecond;
-}
 // The first sample at or behind a time.
 uint64_t Scope::number_at(int64_t us) const {
-  const int64_t begin = begin_ / runtime::kMicrosecond;
-  const auto number = us <= begin ? 0 : static_cast<uint64_t>((us - begin + 999) / 1000);
-  return std::clamp(number, memory_.first(), memory_.end());
+  return std::clamp(static_cast<uint64_t>((us + 999) / 1000), first(), end());
 }
 
 Json Scope::describe() const {
@@ -230,9 +332,12 @@ Json Scope::describe() const {
             {"state", kStates[static_cast<size_t>(state_)]},
             {"single", single_},
             {"trigger_text", trigger_text_},
-            {"first_us", us_of(memory_.first())}};
+            {"first_us", us_of(first())}};
   json["trigger_us"] = triggered_at_ ? Json(*triggered_at_ / runtime::kMicrosecond) : Json(nullptr);
-  json["last_us"] = memory_.end() == memory_.first() ? us_of(memory_.first()) : us_of(memory_.end() - 1);
+  json["last_us"] = us_of(end() == first() ? first() : end() - 1);
+  json["computes"] = Json::array();
+  if (asks_ || computing_)
+    for (const size_t channel : incomplete()) json["computes"].push_back(channels_[channel].name);
   return json;
 }
 
@@ -258,13 +363,13 @@ std::string Scope::points(uint64_t begin, uint64_t end, uint64_t step, uint32_t 
   for (uint64_t n = begin; n < end; n += step)
     for (size_t channel = 0; channel < channels_.size(); ++channel) {
       const double factor = channels_[channel].factor;
-      if (!pairs) {
-        put(static_cast<float>(static_cast<double>(memory_.at(channel, n)) * factor));
-        continue;
-      }
-      const auto [least, greatest] = memory_.extremes(channel, n, std::min(n + step, end));
-      put(static_cast<float>(static_cast<double>(least) * factor));
-      put(static_cast<float>(static_cast<double>(greatest) * factor));
+      const auto found = memory_.extremes(channel, n, std::min(n + step, end));
+      const auto shown = [&](int64_t sample) {
+        return found ? static_cast<float>(static_cast<double>(sample) * factor)
+                     : std::numeric_limits<float>::quiet_NaN();
+      };
+      put(shown(found.value_or(ScopeMemory::Extremes{}).first));
+      if (pairs) put(shown(found.value_or(ScopeMemory::Extremes{}).second));
     }
   return bytes;
 }
@@ -282,52 +387,51 @@ Json Scope::view(const Desk::Call& call) {
 }
 
 Json Scope::csv(const Desk::Call& call) {
-  uint64_t begin = call.arguments.has("from_us") ? number_at(call.arguments.whole("from_us", 0, kLastUs))
-                                                 : memory_.first();
-  const uint64_t end = call.arguments.has("to_us")
-                           ? number_at(call.arguments.whole("to_us", 0, kLastUs) + 1)
-                           : memory_.end();
-  bool with_head = true;
+  if (asks_ || computing_) {
+    questions_.push_back({call.client.number, call.id, call.arguments.json()});
+    return nullptr;
+  }
+  uint64_t begin = call.arguments.has("from_us") ? number_at(call.arguments.whole("from_us", 0, kLastUs)) : first();
+  const uint64_t end = std::max(
+      begin, call.arguments.has("to_us") ? number_at(call.arguments.whole("to_us", 0, kLastUs) + 1) : this->end());
+  std::ostringstream out;
+  const std::vector<FrameTrack> no_tracks;
+  const auto writer = csv_trace(out, channels_, no_tracks);
+  std::vector<std::optional<int64_t>> last(channels_.size());
   for (;;) {
-    const uint64_t stop = std::min(std::max(begin, end), begin + kRowsAtOnce);
-    Recording recording;
-    recording.signals = channels_;
-    recording.samples.resize(channels_.size());
+    const uint64_t stop = std::min(end, begin + kRowsAtOnce);
+    RecordedPart part;
     for (uint64_t n = begin; n < stop; ++n) {
-      recording.times.push_back(us_of(n) * runtime::kMicrosecond);
+      part.times.push_back(us_of(n) * runtime::kMicrosecond);
       for (size_t channel = 0; channel < channels_.size(); ++channel)
-        recording.samples[channel].push_back(memory_.at(channel, n));
+        if (const auto sample = memory_.at(channel, n); sample && sample != std::exchange(last[channel], sample))
+          part.changes.push_back({n - begin, channel, *sample});
     }
-    std::ostringstream out;
-    write_csv(out, recording);
-    std::string text = std::move(out).str();
-    if (!with_head) text.erase(0, text.find('\n') + 1);
-    if (stop >= end) return {{"csv", std::move(text)}};
+    writer->take(part);
+    std::string text = std::exchange(out, std::ostringstream()).str();
+    if (stop == end) return {{"csv", std::move(text)}};
     call.part({{"csv", std::move(text)}});
-    with_head = false;
     begin = stop;
   }
 }
 
 void Scope::publish(Client& client, Subscription& subscription) {
   Json now = describe();
-  const Json last = now["last_us"];
-  const Json first = now["first_us"];
+  const Json last_us = now["last_us"];
+  const Json first_us = now["first_us"];
   now.erase("last_us");
   now.erase("first_us");
   if (subscription.is_news("scope", now)) {
     now["event"] = "scope";
-    now["last_us"] = last;
-    now["first_us"] = first;
+    now["last_us"] = last_us;
+    now["first_us"] = first_us;
     desk_.send(client, now);
   }
   const auto step = static_cast<uint64_t>(Arguments(subscription.options).whole("step_ms", 1, 1000, 1));
   const bool other = subscription.is_news("recording", recording_);
-  uint64_t from = subscription.fresh ? memory_.end()
-                  : other            ? memory_.first()
-                                     : std::max(subscription.mark, memory_.first());
-  if (memory_.end() - from > kMostBehind) from = memory_.end() - kMostBehind;
-  const uint64_t count = std::min((memory_.end() - from) / step, kMostPoints);
+  uint64_t from = subscription.fresh ? end() : other ? first() : std::clamp(subscription.mark, first(), end());
+  if (end() - from > kMostBehind) from = end() - kMostBehind;
+  const uint64_t count = std::min((end() - from) / step, kMostPoints);
   subscription.mark = from + count * step;
   if (count != 0) desk_.send_binary(client, points(from, from + count * step, step, 0));
 }

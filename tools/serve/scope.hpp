@@ -3,7 +3,9 @@
 // written by the same code, so both have the same digits.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,6 +14,7 @@
 #include "runtime/plant/plant_signals.hpp"
 #include "tools/serve/desk.hpp"
 #include "tools/serve/scope_memory.hpp"
+#include "tools/serve/second_run.hpp"
 
 namespace ipos::tools::serve {
 
@@ -24,6 +27,8 @@ class ScopeSource {
   // none, level and edge are the scope's. A Mistake says why it cannot.
   virtual void watch_for(const std::string& kind, const Arguments& settings) = 0;
   virtual void stop(const std::string& why) = 0;  // the trigger is to stop the plant
+  // A copy of this process that does again what was until now, and calls Scope::passed() meanwhile. Nothing: it cannot.
+  virtual std::unique_ptr<SecondRun> run_again() { return nullptr; }
 
  protected:
   ~ScopeSource() = default;
@@ -38,6 +43,9 @@ class Scope final {
   void propose(std::vector<std::string> names);
   // The signals are others: a new recording.
   void built();
+  void restarted() { armed_at_ = 0; }
+  // Now and then, between two milliseconds: what was recorded too late for some channel is computed.
+  void tend();
   // A millisecond is over.
   void passed(runtime::Time now);
   // What the source watches for.
@@ -49,7 +57,7 @@ class Scope final {
   bool waits() const { return state_ == State::Armed || state_ == State::Triggered; }
 
   // What a copy of the host that goes on must know.
-  Json save() const;
+  Json save();
   void load(const Json& state);
 
  private:
@@ -69,14 +77,21 @@ class Scope final {
   Json set(const Arguments& settings);
   Trigger trigger_of(const Json& json);
   std::vector<runtime::PlantSignal> find(const std::vector<std::string>& names);
+  void choose(std::vector<runtime::PlantSignal> channels);
   void begin_again();
   void arm(bool single);
   void fire(runtime::Time at, const std::string& why);
+  void record(uint64_t number);
+  void fill(uint64_t number);
+  void compute();
   void look(runtime::Time now);
   std::optional<std::string> value_triggers();
 
-  int64_t us_of(uint64_t number) const;
+  // What is shown of the memory: a complete recording ends where it was complete.
+  uint64_t first() const { return std::min(memory_.first(), end()); }
+  uint64_t end() const { return state_ == State::Done ? done_end_ : memory_.end(); }
   uint64_t number_at(int64_t us) const;
+  std::vector<size_t> incomplete() const;
   Json describe() const;
   std::string points(uint64_t begin, uint64_t end, uint64_t step, uint32_t id) const;
   Json view(const Desk::Call& call);
@@ -89,18 +104,32 @@ class Scope final {
   std::vector<runtime::PlantSignal> channels_;
   ScopeMemory memory_;
   std::vector<int64_t> samples_;
-  runtime::Time begin_ = runtime::kMillisecond;  // of sample 0
-  runtime::Time last_ = 0;                       // the last millisecond looked at
+  runtime::Time last_ = 0;  // the last millisecond looked at
   uint32_t recording_ = 0;
   Trigger trigger_;
   int64_t pre_ = 20;
   int64_t length_ms_ = 5'000;
   State state_ = State::Free;
   bool single_ = false;
+  runtime::Time armed_at_ = 0;
+  uint64_t done_end_ = 0;  // behind the last sample of a complete recording
   std::optional<runtime::Time> triggered_at_;
   std::string trigger_text_;
   std::optional<std::pair<runtime::Time, std::string>> seen_;  // what the source watches for
   std::optional<double> previous_;                             // of the trigger's signal
+
+  // What the run up to now has of channels that were chosen later.
+  bool asks_ = false;  // it is to be computed
+  std::unique_ptr<SecondRun> computing_;
+  bool fills_ = false;         // this process is the copy that computes
+  std::vector<size_t> late_;   // channels
+  uint64_t filled_from_ = 0;
+  struct Question {
+    uint16_t client = 0;
+    Json id, message;
+    NLOHMANN_DEFINE_TYPE_INTRUSIVE(Question, client, id, message)
+  };
+  std::vector<Question> questions_;  // for the CSV, until all is there
 };
 
 }  // namespace ipos::tools::serve

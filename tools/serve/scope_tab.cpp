@@ -33,6 +33,9 @@ class ScopeTab final : public Tab,
     plant.add_observer(static_cast<runtime::SerialObserver&>(*this));
   }
 
+  void restarted() override { scope_.restarted(); }
+  void tend() override { scope_.tend(); }
+
   void passed(Time now) override {
     look_for_faults(now);
     scope_.passed(now);
@@ -43,7 +46,7 @@ class ScopeTab final : public Tab,
       scope_.happened(host_.plant().now(), "the line executes");
   }
 
-  Json save() const override { return scope_.save(); }
+  Json save() override { return scope_.save(); }
   void load(const Json& state) override { scope_.load(state); }
 
  private:
@@ -63,6 +66,7 @@ class ScopeTab final : public Tab,
   }
   Time now() const override { return host_.plant().now(); }
   void stop(const std::string& why) override { host_.stop("trigger", why); }
+  std::unique_ptr<SecondRun> run_again() override { return host_.run_again(); }
 
   void watch_for(const std::string& kind, const Arguments& a) override {
     Event event;

@@ -1,0 +1,25 @@
+// One telegram of a line as the tab Bus keeps it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runtime/clock/event_queue.hpp"
+
+namespace ipos::tools::serve {
+
+struct Telegram {
+  runtime::Time time = 0;
+  uint32_t id = 0;  // CAN: the identifier; RS-485: the address; PROFIBUS: a number for frames of one kind
+  uint8_t bus = 0;  // number in the reply to `plant`
+  bool extended = false, remote = false, error = false;
+  uint8_t reason = 0;  // of the error, where the bytes do not tell it (profibus::FrameError)
+  std::vector<uint8_t> data;
+  std::string words;  // where they depend on what went before on the line; else they are made when wanted
+
+  std::span<const uint8_t> bytes() const { return remote ? std::span<const uint8_t>() : data; }
+};
+
+}  // namespace ipos::tools::serve
