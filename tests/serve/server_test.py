@@ -21,6 +21,8 @@ import tty
 import unittest
 
 IPOS = sys.argv.pop(1)
+STATE = tempfile.TemporaryDirectory()  # tokens of these tests are no business of the user's
+os.environ["XDG_STATE_HOME"] = STATE.name
 PLANT = """
 [[bus]]
 name = "sbus"
@@ -308,6 +310,68 @@ class Serving(unittest.TestCase):
         client.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
         client.close()
         self.assertTrue(self.connect().ask(do="plant")["ok"])
+
+    def test_a_channel_added_later_is_there_in_every_copy(self):
+        """By way of snapshots: chosen late, looked at after going back before that, and after going on."""
+        client = self.connect()
+        client.ask(do="scope", channels=["saw.lCount"])
+        for _ in range(4):
+            client.ask(do="step", ms=700)
+            time.sleep(0.3)  # snapshots are a quarter of a second of the clock apart
+        client.ask(do="set", name="saw.H300", value="7")
+        client.ask(do="step", ms=200)
+        client.ask(do="scope", channels=["saw.lCount", "saw.H300", "saw.speed"])
+        rows = client.ask(do="scope.csv")["csv"].splitlines()
+        self.assertEqual(len(rows), 3001)
+        self.assertEqual([row.split(",")[2] for row in rows[2799:2803]], ["0", "0", "7", "7"])
+        counts = [int(row.split(",")[1]) for row in rows[1:]]
+        client.ask(do="back", us=1_500_000)
+        rows = client.ask(do="scope.csv")["csv"].splitlines()
+        self.assertEqual(len(rows), 1501)
+        self.assertTrue(all(row.count(",") == 3 and ",," not in row for row in rows))
+        client.ask(do="step", ms=1500)
+        rows = client.ask(do="scope.csv")["csv"].splitlines()
+        self.assertEqual([int(row.split(",")[1]) for row in rows[1:]], counts)
+        self.assertEqual(rows[-1].split(",")[2], "0")  # what was written later is undone
+
+    def test_a_second_start_has_the_address_of_the_first(self):
+        """Without --port the free one of the time before; the token in any case. Nobody else may read it."""
+        files = list(pathlib.Path(os.environ["XDG_STATE_HOME"]).rglob("*"))
+        self.assertTrue([file for file in files if file.is_file() and self.token in file.read_text()])
+        for file in files:
+            self.assertEqual(file.stat().st_mode & 0o77, 0, file)
+        plant = str(pathlib.Path(self.folder.name) / "plant.toml")
+
+        def start(*more):
+            other = subprocess.Popen([IPOS, "serve", plant, *more], stdout=subprocess.PIPE, text=True)
+            self.addCleanup(other.stdout.close)
+            self.addCleanup(other.wait)
+            self.addCleanup(other.kill)
+            return other, other.stdout.readline().strip()
+
+        beside, address = start()  # its port is taken, so it has another one
+        self.assertTrue(address.endswith(f"?token={self.token}"))
+        self.assertNotEqual(address, self.address)
+        beside.send_signal(signal.SIGINT)
+        beside.wait()
+        self.ipos.kill()  # whatever ended it
+        self.ipos.wait()
+        again, address = start("--port", str(self.port))
+        self.assertEqual(address, self.address)
+        client = self.connect()
+        self.assertTrue(client.ask(do="plant")["ok"])
+        client.close()
+        again.send_signal(signal.SIGINT)
+        again.wait()
+        self.assertEqual(start()[1], self.address)
+
+    def test_settings_are_kept(self):
+        one = self.connect()
+        self.assertEqual(one.ask(do="settings")["settings"], {})
+        self.assertTrue(one.ask(do="settings.set", name="keys", value=False)["ok"])
+        one.ask(do="step", ms=500)
+        one.ask(do="restart")
+        self.assertEqual(self.connect().ask(do="settings")["settings"], {"keys": False})
 
     def test_ctrl_c_ends_it(self):
         client = self.connect()

@@ -1,6 +1,7 @@
 // The plot as a document: it is XML, every panel and name is there, lines lie where the values are.
 #include "tools/recording/plot_svg.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tinyxml2.h>
 
@@ -240,6 +241,34 @@ TEST(AxisTicks, RoundSteps) {
       EXPECT_GE(ticks.front(), least - 1e-9 * size);
       EXPECT_LE(ticks.back(), least + size * (1 + 1e-9));
     }
+}
+
+// Twenty stations, two curves each: every name has a place of its own within its panel.
+TEST(PlotSvg, ManyNamesAllHaveRoom) {
+  Recording recording;
+  for (int n = 0; n < 40; ++n) {
+    recording.signals.emplace_back();
+    recording.signals.back().name = fmt::format("axis{:02}.speed", n);
+    recording.signals.back().unit = "rpm";
+    recording.samples.push_back({0, 1000, 1000});
+  }
+  recording.times = {kMillisecond, 2 * kMillisecond, 3 * kMillisecond};
+  const std::string text = plot_svg(recording, "t");
+  tinyxml2::XMLDocument document;
+  ASSERT_EQ(document.Parse(text.c_str()), tinyxml2::XML_SUCCESS);
+  std::vector<double> places;
+  double title = 0, bottom = document.RootElement()->DoubleAttribute("height");
+  for (auto* node = document.RootElement()->FirstChildElement("text"); node;
+       node = node->NextSiblingElement("text")) {
+    const std::string words = node->GetText();
+    if (words == "rpm") title = node->DoubleAttribute("y");
+    if (words.starts_with("axis")) places.push_back(node->DoubleAttribute("y"));
+  }
+  ASSERT_EQ(places.size(), 40U);
+  std::sort(places.begin(), places.end());
+  EXPECT_GT(places.front(), title) << "no name lies above the panel";
+  EXPECT_LT(places.back(), bottom);
+  for (size_t n = 1; n < places.size(); ++n) EXPECT_GE(places[n] - places[n - 1], 12) << "they overlap";
 }
 
 }  // namespace

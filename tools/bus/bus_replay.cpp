@@ -11,6 +11,7 @@
 #include "tools/bus/bus_verbs.hpp"
 #include "tools/bus/log_input.hpp"
 #include "tools/cli/failure.hpp"
+#include "tools/cli/output_forms.hpp"
 #include "tools/cli/outputs.hpp"
 #include "tools/input/plant_input.hpp"
 #include "tools/input/program.hpp"
@@ -109,6 +110,7 @@ int replay(const ReplayFlags& flags) {
   runtime::LinePort port(line, line.attach("replay", line.baud(), player));
   player.start(port, line.bit_time());
 
+  output_ending("--log", flags.record);
   LogOutput file(flags.record);
   std::unique_ptr<LogWriter> writer;
   std::optional<PlantLog> log;

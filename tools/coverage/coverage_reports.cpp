@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "tools/cli/failure.hpp"
+#include "tools/cli/output_forms.hpp"
 #include "tools/cli/outputs.hpp"
 #include "tools/coverage/write.hpp"
 
@@ -16,12 +17,8 @@ namespace {
 using CoverageWriter = void (*)(std::ostream&, const coverage::Coverage&);
 
 CoverageWriter coverage_writer(const std::string& path) {
-  const std::string ending = std::filesystem::path(path).extension().string();
-  if (is_standard_output(path) || ending == ".txt") return coverage::write_text;
-  if (ending == ".info") return coverage::write_lcov;
-  if (ending == ".xml") return coverage::write_cobertura;
-  throw Failure(kUsage,
-                fmt::format("--coverage {}: the name must end in .info, .xml or .txt, or be -", path));
+  const std::string ending = output_ending("--coverage", path);
+  return ending == ".info" ? coverage::write_lcov : ending == ".xml" ? coverage::write_cobertura : coverage::write_text;
 }
 
 }  // namespace

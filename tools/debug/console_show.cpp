@@ -5,8 +5,8 @@
 #include <charconv>
 #include <sstream>
 
-#include "tools/cli/files.hpp"
 #include "tools/debug/console.hpp"
+#include "tools/input/sources.hpp"
 
 namespace ipos::tools::debug {
 namespace {
@@ -20,7 +20,7 @@ std::string number_text(int32_t value, bool hex) {
 std::string Console::source_line(const std::string& file, uint32_t line) {
   auto [entry, is_new] = sources_.try_emplace(file);
   if (is_new) {
-    std::istringstream in(try_read_file(file).value_or(""));
+    std::istringstream in(source_text(file).value_or(""));
     for (std::string text; std::getline(in, text);) {
       if (text.ends_with('\r')) text.pop_back();
       entry->second.push_back(std::move(text));
@@ -57,6 +57,8 @@ void Console::list(const std::string& arguments) {
   source_line(place.file, 1);
   const size_t count = sources_[place.file].size();
   if (count == 0) throw ValueError(fmt::format("the source {} is not at hand", place.file));
+  if (source_has_changed(place.file))
+    print_(fmt::format("{} has changed since it was compiled; this is the text that runs\n", place.file));
   listed_ = from;
   for (; listed_ < from + kLines && listed_ <= count; ++listed_)
     print_(fmt::format("{}{}\t{}\n", listed_ == place.line ? ">" : " ", listed_,

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "tools/debug/dap.hpp"
+#include "tools/input/sources.hpp"
 
 namespace ipos::tools::debug {
 namespace {
@@ -39,6 +40,8 @@ Json DapServer::stack_trace(const Json& arguments) {
       std::error_code error;
       const auto path = std::filesystem::absolute(frame.place.file, error);
       one["source"] = {{"name", path.filename().string()}, {"path", path.string()}};
+      if (source_has_changed(frame.place.file))
+        one["source"]["origin"] = "changed since it was compiled: the lines are those of the text that runs";
     }
     all.push_back(std::move(one));
   }

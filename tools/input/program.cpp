@@ -19,6 +19,7 @@
 #include "tools/cli/failure.hpp"
 #include "tools/cli/files.hpp"
 #include "tools/cli/terminal.hpp"
+#include "tools/input/sources.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -32,21 +33,27 @@ const stdlib::UnitType* unit_of(const CompileFlags& flags) {
   return unit;
 }
 
+std::string read_main(const std::string& path) {
+  std::string text = read_file(path);
+  keep_source(path, text);
+  return text;
+}
+
 // Compiles and prints the messages.
 compiler::Compilation compile(const std::string& path, const CompileFlags& flags) {
   compiler::CompileOptions options = options_of(flags);
-  compiler::Compilation result = compiler::compile(path, path, read_file(path), options);
+  compiler::Compilation result = compiler::compile(path, path, read_main(path), options);
   print_diagnostics(*result.sources, result.diagnostics, flags.diagnostics);
   return result;
 }
 
-// Source lines for the listing: read again from the files the image names.
+// Source lines for the listing.
 compiler::SourceLines source_lines(const vm::Image& image) {
   auto texts = std::make_shared<std::map<size_t, std::vector<std::string>>>();
   return [&image, texts](size_t file, uint32_t line) -> std::optional<std::string_view> {
     auto [entry, is_new] = texts->try_emplace(file);
     if (is_new) {
-      const std::string text = try_read_file(image.files[file]).value_or("");
+      const std::string text = source_text(image.files[file]).value_or("");
       size_t begin = 0;
       while (begin < text.size()) {
         const size_t end = std::min(text.find('\n', begin), text.size());
@@ -82,7 +89,7 @@ compiler::CompileOptions options_of(const CompileFlags& flags) {
   compiler::CompileOptions options;
   options.include_dirs = flags.include_dirs;
   options.defines = flags.defines;
-  options.read_file = try_read_file;
+  options.read_file = read_source;
   options.list_files = list_files;
   options.unit = unit_of(flags);
   options.atomic = flags.atomic;

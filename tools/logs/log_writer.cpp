@@ -8,6 +8,7 @@
 #include "runtime/bus/log/candump.hpp"
 #include "runtime/plant/can_bus.hpp"
 #include "runtime/plant/profibus_bus.hpp"
+#include "tools/cli/output_forms.hpp"
 #include "tools/logs/write_pcapng.hpp"
 
 namespace ipos::tools {
@@ -96,10 +97,11 @@ class Trc final : public LogWriter {
 
 }  // namespace
 
-std::unique_ptr<LogWriter> make_log_writer(std::string_view path, std::ostream& out) {
-  if (path.ends_with(".pcapng")) return std::make_unique<PcapngWriter>(out);
-  if (path.ends_with(".asc")) return std::make_unique<Asc>(out);
-  if (path.ends_with(".trc")) return std::make_unique<Trc>(out);
+std::unique_ptr<LogWriter> make_log_writer(const std::string& path, std::ostream& out) {
+  const std::string ending = output_ending("--log", path);
+  if (ending == ".pcapng") return std::make_unique<PcapngWriter>(out);
+  if (ending == ".asc") return std::make_unique<Asc>(out);
+  if (ending == ".trc") return std::make_unique<Trc>(out);
   return std::make_unique<Candump>(out);
 }
 

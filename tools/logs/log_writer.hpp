@@ -23,8 +23,8 @@ class LogWriter {
   virtual bool has_serial() const { return false; }
 };
 
-// By the ending of the file's name: .pcapng, .asc, .trc, else candump. The stream must outlive it.
-std::unique_ptr<LogWriter> make_log_writer(std::string_view path, std::ostream& out);
+// By the ending of the file's name (tools/cli/output_forms.hpp), which is known. The stream must outlive it.
+std::unique_ptr<LogWriter> make_log_writer(const std::string& path, std::ostream& out);
 
 // The buses of a plant into a log.
 class PlantLog final : private runtime::CanObserver,

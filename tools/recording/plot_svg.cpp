@@ -46,6 +46,8 @@ struct Scale {
 struct Panel {
   std::string unit;
   std::vector<size_t> signals;
+  // The names of its lines have room beside it.
+  double height() const { return std::max(kPanelHeight, kRowHeight * static_cast<double>(signals.size())); }
 };
 
 struct NameTag {
@@ -72,7 +74,8 @@ class Plot {
     split_into_panels();
     const std::string labels = event_labels();
     top_ = kTitleHeight + kRowHeight * static_cast<double>(rows_.size()) + 18;
-    bottom_ = top_ + static_cast<double>(panels_.size()) * (kPanelHeight + kPanelGap) - kPanelGap;
+    bottom_ = top_ - kPanelGap;
+    for (const Panel& panel : panels_) bottom_ += panel.height() + kPanelGap;
     if (panels_.empty()) bottom_ = top_ + kPanelHeight;
     if (panels_.empty() && !strips_.empty()) bottom_ = top_;
     const double strips = bottom_ + kRowHeight;
@@ -82,7 +85,7 @@ class Plot {
     double y = top_;
     for (const Panel& panel : panels_) {
       body += draw_panel(panel, y);
-      y += kPanelHeight + kPanelGap;
+      y += panel.height() + kPanelGap;
     }
     y = strips;
     for (const size_t n : strips_) {
@@ -175,7 +178,7 @@ class Plot {
       most += 1;
     }
     const double margin = 0.06 * (most - least);
-    return {least - margin, most + margin, y + kPanelHeight, y};
+    return {least - margin, most + margin, y + panel.height(), y};
   }
 
   std::string draw_panel(const Panel& panel, double y) const {
@@ -192,7 +195,7 @@ class Plot {
           "<text x=\"{4:.0f}\" y=\"{5:.1f}\" fill=\"#444\" text-anchor=\"end\">{6}</text>\n",
           kLeft, kRight, scale(ticks[n]), ticks[n] == 0 ? "#909090" : "#e4e4e4", kLeft - 6,
           scale(ticks[n]) + 4, labels[n]);
-    out += vertical_grid(y);
+    out += vertical_grid(y, panel.height());
     std::vector<NameTag> tags;
     for (size_t place = 0; place < panel.signals.size(); ++place) {
       const size_t n = panel.signals[place];
@@ -211,7 +214,7 @@ class Plot {
                          kColours[colour], place == 0 && panel.signals.size() > 1 ? 3 : 1.5, points);
       tags.push_back({ys.back(), colour, signal.name});
     }
-    return out + name_tags(std::move(tags), y);
+    return out + name_tags(std::move(tags), y + panel.height());
   }
 
   // Of a binary signal: a line that is high while it is 1.
@@ -254,10 +257,9 @@ class Plot {
   }
 
   // Names keep their lines' order and a line's height of distance.
-  static std::string name_tags(std::vector<NameTag> tags, double y) {
+  static std::string name_tags(std::vector<NameTag> tags, double lowest) {
     std::stable_sort(tags.begin(), tags.end(), [](const NameTag& a, const NameTag& b) { return a.y < b.y; });
     for (size_t n = 1; n < tags.size(); ++n) tags[n].y = std::max(tags[n].y, tags[n - 1].y + kRowHeight);
-    double lowest = y + kPanelHeight;
     std::string out;
     for (auto tag = tags.rbegin(); tag != tags.rend(); ++tag) {
       tag->y = std::min(tag->y, lowest);
@@ -268,12 +270,12 @@ class Plot {
     return out;
   }
 
-  std::string vertical_grid(double y) const {
+  std::string vertical_grid(double y, double height) const {
     std::string out;
     for (const double tick : axis_ticks(time_.least, time_.most, 9))
       out += fmt::format(
           "<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1:.1f}\" y2=\"{2:.1f}\" stroke=\"#f0f0f0\"/>\n",
-          time_(tick), y, y + kPanelHeight);
+          time_(tick), y, y + height);
     return out;
   }
 

@@ -13,6 +13,7 @@
 #include "stdlib/parameters.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/interrupt.hpp"
+#include "tools/cli/output_forms.hpp"
 #include "tools/cli/outputs.hpp"
 #include "tools/cli/terminal.hpp"
 #include "tools/cli/verbs.hpp"
@@ -223,18 +224,15 @@ Time hash_step(const std::string& text) {
 
 // By the ending of the file's name.
 TraceForm trace_form(const std::string& path) {
-  const std::string ending = std::filesystem::path(path).extension().string();
-  if (path.empty() || ending == ".csv") return csv_trace;
-  if (ending == ".vcd") return vcd_trace;
-  if (ending == ".jsonl") return jsonl_trace;
-  throw Failure(kUsage, fmt::format("--trace {}: the name must end in .csv, .vcd or .jsonl", path));
+  const std::string ending = output_ending("--trace", path);
+  return ending == ".vcd" ? vcd_trace : ending == ".jsonl" ? jsonl_trace : csv_trace;
 }
 
 using Plotter = std::string (*)(const Recording&, const std::string& title);
 
 // By the ending of the file's name.
 Plotter plot_of(const std::string& path) {
-  return path.ends_with(".html") || path.ends_with(".htm") ? plot_html : plot_svg;
+  return output_ending("--plot", path).starts_with(".htm") ? plot_html : plot_svg;
 }
 
 int run(const RunFlags& flags) {
@@ -262,6 +260,9 @@ int run(const RunFlags& flags) {
   const bool output_taken = taking != 0;
   CoverageReports coverage(flags.coverage, flags.format == "json" || output_taken);
   const TraceForm form = trace_form(flags.trace);
+  const Plotter plot = plot_of(flags.plot);
+  output_ending("--log", flags.log);
+  output_ending("--serial-log", flags.serial_log);
   std::optional<Recorder> recorder;
   if (!flags.plot.empty() || !flags.trace.empty()) recorder.emplace(plant, flags.signals);
   // Before the run: a long one must not end without its result.
@@ -304,7 +305,7 @@ int run(const RunFlags& flags) {
   logs.finish();
   if (recorder) recorder->finish();
   if (!flags.plot.empty())
-    replace_file(flags.plot, plot_of(flags.plot)(recorder->recording(),
+    replace_file(flags.plot, plot(recorder->recording(),
                                                  std::filesystem::path(flags.file).filename().string()));
   trace.finish();
 
@@ -347,7 +348,7 @@ void add_run(cli::Verb& app) {
   verb.option("--serial-log", flags->serial_log,
               "write the telegrams of all RS-485 lines; - is standard output");
   verb.option("--plot", flags->plot,
-              "draw signals over time: .html with zoom and cursors, else SVG; - is standard output");
+              "draw signals over time: .svg, or .html with zoom and cursors; - is standard output");
   verb.option("--trace", flags->trace, "write signals over time: .csv, .vcd or .jsonl");
   verb.option("--signals", flags->signals,
               "what to plot and trace, for example unit1.speed,unit1.D*,unit1.H500,sbus1.frames; default: "

@@ -37,7 +37,9 @@ class BusTraffic final {
 
   // The lines are others: nothing is known any more. Then all of them are followed, and then they are complete.
   void clear();
-  void complete() { trace_.restart(ears_.size()); }
+  void complete() {
+    if (hears_) trace_.restart(ears_.size());
+  }
   template <typename Line, typename... Names>
   void follow(Line& line, Names... names) {
     const auto number = static_cast<uint8_t>(ears_.size());

@@ -61,6 +61,8 @@ class Desk {
   // What every client hears first.
   std::function<Json()> hello = [] { return Json::object(); };
   std::function<void(const Client&)> on_closed = [](const Client&) {};
+  // A setting of all clients that outlives this process (tools/serve/kept.hpp).
+  std::function<void(const std::string& name, const Json& value)> keep = [](const std::string&, const Json&) {};
 
   void take(const Letter& letter);
   void reply(uint16_t client, const Json& id, Json fields, bool more = false);

@@ -32,6 +32,7 @@ class DriveHost {
 
   // Until nobody listens any more.
   void run();
+  Desk& desk() { return desk_; }
 
  private:
   void add_commands();

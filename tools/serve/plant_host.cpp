@@ -52,6 +52,11 @@ PlantHost::PlantHost(debug::MakePlant make, std::string title, std::string versi
 
 PlantHost::~PlantHost() { ports_.leave(); }  // while there is a plant
 
+void PlantHost::restore(const Kept& kept) {
+  kept.add_commands(desk_);
+  for (const auto& tab : tabs_) tab->restore(kept);
+}
+
 void PlantHost::run() {
   while (post_.open()) turn(100);
 }
@@ -356,6 +361,7 @@ void PlantHost::built(runtime::Plant& plant) {
   plant_ = &plant;
   source_ = plant.next_source();
   plant.queue().schedule(kMillisecond, source_, *this, 0);
+  acted_.clear();
   ports_.join(plant, title_);
   for (const auto& tab : tabs_) tab->built(plant);
 }
@@ -365,6 +371,7 @@ void PlantHost::on_event(Time now, uint32_t, uint64_t) {
 }
 
 void PlantHost::passed(Time now) {
+  acted_.clear();
   for (const auto& tab : tabs_) tab->passed(now);
 }
 
@@ -377,7 +384,11 @@ void PlantHost::act(const std::string& name, Json details) {
   debugger_->perform(details);
 }
 
-void PlantHost::perform(const Json& action) { actions_.at(action["act"].get<std::string>())(action); }
+void PlantHost::perform(const Json& action) {
+  actions_.at(action["act"].get<std::string>())(action);
+  if (const auto station = action.find("station"); station != action.end() && station->is_string())
+    acted_.insert(station->get<std::string>());
+}
 
 bool PlantHost::wants_snapshot() {
   const auto now = WallClock::now();

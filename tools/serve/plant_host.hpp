@@ -8,11 +8,13 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "tools/debug/debugger.hpp"
 #include "tools/serve/desk.hpp"
+#include "tools/serve/kept.hpp"
 #include "tools/serve/plant_ports.hpp"
 #include "tools/serve/second_run.hpp"
 
@@ -24,6 +26,7 @@ class Tab {
   virtual ~Tab() = default;
   virtual void built(runtime::Plant& /*plant*/) {}
   virtual void restarted() {}  // by the user; it will be built next
+  virtual void restore(const Kept& /*kept*/) {}  // settings of an earlier start
   virtual void passed(runtime::Time /*now*/) {}
   virtual void executes(uint32_t /*station*/, uint32_t /*address*/) {}
   virtual void tend() {}        // now and then, between two milliseconds
@@ -37,6 +40,8 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
   PlantHost(debug::MakePlant make, std::string title, std::string version, Post& post, bool snapshots);
   ~PlantHost() override;
 
+  // What was kept of the plant at an earlier start; before run().
+  void restore(const Kept& kept);
   // Until nobody listens any more.
   void run();
   // What is waiting, and one motion of the plant if one is ordered; for tests. False: there was nothing to do.
@@ -55,6 +60,8 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
   void act(const std::string& name, Json details);
   // A line that goes on outside.
   bool has_port(const std::string& bus) const { return ports_.joined(bus); }
+  // Something was done to this station that it sees with the next millisecond only; at 0 s that is all there is.
+  bool sees_later(const std::string& station) const { return us() == 0 || acted_.contains(station); }
   // The plant stands before the next millisecond, unless it has real ports.
   void stop(const std::string& reason, const std::string& text);
   void telegram_seen() { telegram_seen_ = true; }
@@ -109,6 +116,7 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
   std::string title_;
   std::string version_;
   std::map<std::string, Action> actions_;
+  std::set<std::string> acted_;  // stations, since the last millisecond
   std::vector<std::unique_ptr<Tab>> tabs_;
   runtime::Plant* plant_ = nullptr;
   uint32_t source_ = 0;  // of the event that comes every millisecond, even with all units off

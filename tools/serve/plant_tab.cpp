@@ -363,6 +363,15 @@ class PlantTab final : public Tab {
     return json;
   }
 
+  // Terminals show at once what was done to them; what the unit says of it is older.
+  void tell_later(Json& json) const {
+    const std::string why = json["why"];
+    if (host_.us() == 0)
+      json["why"] = "it stands before the first millisecond, with which its terminals act";
+    else if (!why.empty() && json["powered"].get<bool>())
+      json["why"] = why + ", at the last millisecond; what was done since acts with the next one";
+  }
+
   Json line_state(const std::string& name, const runtime::LineLoad& load) const {
     return {{"load", load.window_percent}, {"frames", load.frames}, {"faults", faults_.planted_on(name)}};
   }
@@ -372,6 +381,7 @@ class PlantTab final : public Tab {
     Json stations = Json::object();
     for (const auto& station : plant.stations()) {
       Json now = state(*station);
+      if (host_.sees_later(station->config().name)) tell_later(now);
       if (subscription.is_news("s" + station->config().name, now))
         stations[station->config().name] = std::move(now);
     }

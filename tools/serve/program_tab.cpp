@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <set>
 
-#include "tools/cli/files.hpp"
+#include "tools/input/sources.hpp"
 #include "tools/serve/tabs.hpp"
 
 namespace ipos::tools::serve {
@@ -83,7 +83,7 @@ class ProgramTab final : public Tab {
       std::set<uint32_t> lines;
       for (const vm::LineEntry& entry : image.lines)
         if (entry.file == n) lines.insert(entry.line);
-      const auto text = try_read_file(image.files[n]);
+      const auto text = source_text(image.files[n]);
       Json file{{"name", image.files[n]}, {"lines", lines}};
       file["text"] = text ? Json(*text) : Json(nullptr);
       files.push_back(std::move(file));
@@ -154,6 +154,22 @@ class ProgramTab final : public Tab {
     return nullptr;
   }
 
+  // Looked at once a second.
+  Json changed_sources(uint32_t station) {
+    if (const auto now = WallClock::now(); now >= looks_) {
+      looks_ = now + std::chrono::seconds(1);
+      changed_.clear();
+      for (const auto& one : host_.plant().stations())
+        if (one->image() != nullptr)
+          for (const std::string& file : one->image()->files)
+            if (source_has_changed(file)) changed_.insert(file);
+    }
+    Json names = Json::array();
+    for (const std::string& file : host_.plant().stations()[station]->image()->files)
+      if (changed_.contains(file)) names.push_back(file);
+    return names;
+  }
+
   void publish(Client& client, Subscription& subscription) {
     const std::string name = Arguments(subscription.options).text("station", "");
     const auto& stations = host_.plant().stations();
@@ -179,10 +195,12 @@ class ProgramTab final : public Tab {
       tasks.push_back(std::move(row));
     }
     Json points = breakpoints(number);
+    const Json changed = changed_sources(number);
     const Covered& covered = covered_[number];
     const bool other_tasks = subscription.is_news("tasks", tasks);
     const bool other_points = subscription.is_news("points", points);
-    if (!other_tasks && !other_points && subscription.mark == covered.order.size()) return;
+    const bool other_sources = subscription.is_news("changed", changed);
+    if (!other_tasks && !other_points && !other_sources && subscription.mark == covered.order.size()) return;
     std::map<std::string, std::set<uint32_t>> lines;
     for (; subscription.mark < covered.order.size(); ++subscription.mark) {
       const debug::SourcePlace place = debugger.code(number)->place(covered.order[subscription.mark]);
@@ -193,11 +211,14 @@ class ProgramTab final : public Tab {
                                {"station", name},
                                {"tasks", std::move(tasks)},
                                {"covered", Json(lines)},
+                               {"changed", changed},
                                {"breakpoints", std::move(points)}});
   }
 
   PlantHost& host_;
   std::vector<Covered> covered_;  // by station
+  std::set<std::string> changed_;  // sources
+  WallClock::time_point looks_{};
 };
 
 }  // namespace

@@ -29,7 +29,13 @@ int64_t us_of(uint64_t number) { return static_cast<int64_t>(number) * 1000; }
 }  // namespace
 
 Scope::Scope(Desk& desk, ScopeSource& source) : desk_(desk), source_(source) {
-  desk.add_command("scope", [this](const Desk::Call& call) { return set(call.arguments); });
+  desk.add_command("scope", [this](const Desk::Call& call) {
+    set(call.arguments);
+    if (call.arguments.has("channels") || call.arguments.has("trigger") || call.arguments.has("pre") ||
+        call.arguments.has("length_ms"))
+      desk_.keep("scope", {{"channels", names_}, {"trigger", trigger_.settings}, {"pre", pre_}, {"length_ms", length_ms_}});
+    return describe();
+  });
   desk.add_command("scope.arm", [this](const Desk::Call& call) {
     arm(call.arguments.flag("single", false));
     return describe();
@@ -156,6 +162,7 @@ void Scope::load(const Json& state) {
   names_ = state["names"].get<std::vector<std::string>>();
   channels_ = find(names_);
   samples_.assign(channels_.size(), 0);
+  computing_.reset();  // that of the time when this copy was made
   memory_.use(state["columns"].get<std::vector<ScopeMemory::Column>>());
   trigger_ = trigger_of(state["trigger"]);
   previous_.reset();
@@ -228,7 +235,19 @@ std::vector<const PlantSignal*> Scope::asked() const {
 
 // --- settings ---
 
-Json Scope::set(const Arguments& a) {
+void Scope::restore(const Json& settings) {
+  if (!settings.is_object()) return;
+  for (const char* name : {"channels", "trigger", "pre", "length_ms"}) {
+    if (!settings.contains(name)) continue;
+    const Json one{{name, settings[name]}};
+    try {
+      set(Arguments(one));
+    } catch (const Mistake&) {  // the plant file or a program is another one by now
+    }
+  }
+}
+
+void Scope::set(const Arguments& a) {
   if (a.has("channels")) {
     std::vector<PlantSignal> channels = find(a.texts("channels", kMostChannels));
     if (channels.empty() || channels.size() > kMostChannels)
@@ -242,7 +261,6 @@ Json Scope::set(const Arguments& a) {
   }
   pre_ = a.whole("pre", 0, 100, pre_);
   length_ms_ = a.whole("length_ms", 1, static_cast<int64_t>(ScopeMemory::kKept), length_ms_);
-  return describe();
 }
 
 Scope::Trigger Scope::trigger_of(const Json& json) {

@@ -41,6 +41,8 @@ class Scope final {
 
   // The channels of the start; nothing where a client has chosen others.
   void propose(std::vector<std::string> names);
+  // The settings of an earlier start, as far as there still is what they name.
+  void restore(const Json& settings);
   // The signals are others: a new recording.
   void built();
   void restarted() { armed_at_ = 0; }
@@ -74,7 +76,7 @@ class Scope final {
     bool stops = false;
   };
 
-  Json set(const Arguments& settings);
+  void set(const Arguments& settings);
   Trigger trigger_of(const Json& json);
   std::vector<runtime::PlantSignal> find(const std::vector<std::string>& names);
   void choose(std::vector<runtime::PlantSignal> channels);

@@ -34,6 +34,7 @@ class ScopeTab final : public Tab,
   }
 
   void restarted() override { scope_.restarted(); }
+  void restore(const Kept& kept) override { scope_.restore(kept.setting("scope")); }
   void tend() override { scope_.tend(); }
 
   void passed(Time now) override {

@@ -25,12 +25,12 @@ SecondRun::SecondRun(const std::function<void()>& body) {
     return;
   }
   std::fflush(nullptr);
-  const pid_t parent = getpid();
+  owner_ = getpid();
   copy_ = fork();
   if (copy_ == 0) {
     close(ends[0]);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != parent) _exit(1);
+    if (getppid() != owner_) _exit(1);
     if (nice(kGivesWay) == -1) errno = 0;
     try {
       body();
@@ -46,7 +46,7 @@ SecondRun::SecondRun(const std::function<void()>& body) {
 }
 
 SecondRun::~SecondRun() {
-  if (copy_ > 0) {
+  if (copy_ > 0 && owner_ == getpid()) {
     kill(copy_, SIGKILL);
     char byte = 0;
     while (read(pipe_, &byte, 1) == 1 || errno == EINTR) errno = 0;

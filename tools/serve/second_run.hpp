@@ -13,7 +13,7 @@ class SecondRun {
  public:
   // `body` is what the copy does; it never comes back here.
   explicit SecondRun(const std::function<void()>& body);
-  // Ends the copy: behind this it writes no more.
+  // Ends the copy: behind this it writes no more. Another process than the one that began it leaves it alone.
   ~SecondRun();
   SecondRun(const SecondRun&) = delete;
   SecondRun& operator=(const SecondRun&) = delete;
@@ -23,6 +23,7 @@ class SecondRun {
 
  private:
   int pipe_ = -1;
+  pid_t owner_ = -1;
   pid_t copy_ = -1;
   std::optional<bool> result_;
 };

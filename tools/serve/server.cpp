@@ -87,11 +87,7 @@ class Server::Listener {
     if (error)
       throw Failure(kUsage,
                     fmt::format("--bind {}: this is no address, write for example 127.0.0.1", options_.bind));
-    const tcp::endpoint at(address, options_.port);
-    acceptor_.open(at.protocol(), error);
-    if (!error) acceptor_.set_option(asio::socket_base::reuse_address(true), error);
-    if (!error) acceptor_.bind(at, error);
-    if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
+    if (!options_.rather || listen({address, *options_.rather})) error = listen({address, options_.port});
     if (error)
       throw Failure(kIoError, fmt::format("port {} of {} cannot be listened at: {}", options_.port,
                                           options_.bind, error.message()));
@@ -104,6 +100,8 @@ class Server::Listener {
     return fmt::format("http://{}:{}/?token={}",
                        host.find(':') == std::string::npos ? host : "[" + host + "]", port_, options_.token);
   }
+
+  uint16_t port() const { return port_; }
 
   void run(const std::function<void()>& ready) {
     ready_ = ready;
@@ -118,6 +116,16 @@ class Server::Listener {
  private:
   class Connection;
   class Socket;
+
+  Error listen(const tcp::endpoint& at) {
+    Error error, ignored;
+    acceptor_.close(ignored);
+    acceptor_.open(at.protocol(), error);
+    if (!error) acceptor_.set_option(asio::socket_base::reuse_address(true), error);
+    if (!error) acceptor_.bind(at, error);
+    if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
+    return error;
+  }
 
   // --- the host ---
   void read_head() {
@@ -433,13 +441,17 @@ std::optional<std::pair<http::status, std::string>> Server::Listener::refusal(co
   if (request.method() != http::verb::get) return {{http::status::method_not_allowed, "only GET\n"}};
   if (!same(token_of(target), options_.token))
     return {{http::status::unauthorized,
-             "the token is missing or wrong: take the address that ipos serve has printed\n"}};
+             "<!doctype html><meta charset=\"utf-8\"><title>ipos</title><h1>The token is missing or wrong</h1>"
+             "<p>This is an address of another time: open the one that <code>ipos serve</code> has printed last, with "
+             "its token.</p>\n"}};
   return std::nullopt;
 }
 
 Response Server::Listener::answer(const Request& request) const {
   if (const auto refused = refusal(request))
-    return make(refused->first, request.version(), refused->second, "text/plain; charset=utf-8");
+    return make(refused->first, request.version(), refused->second,
+                refused->first == http::status::unauthorized ? "text/html; charset=utf-8"
+                                                             : "text/plain; charset=utf-8");
   if (view(request.target()).starts_with("/ws")) {
     Response response = make(http::status::upgrade_required, request.version(), "this is a WebSocket\n",
                              "text/plain; charset=utf-8");
@@ -491,6 +503,7 @@ Server::Server(const ServerOptions& options, int host) try
 }
 Server::~Server() = default;
 std::string Server::address() const { return listener_->address(); }
+uint16_t Server::port() const { return listener_->port(); }
 void Server::run(const std::function<void()>& ready) { listener_->run(ready); }
 
 }  // namespace ipos::tools::serve

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -12,7 +13,8 @@ namespace ipos::tools::serve {
 
 struct ServerOptions {
   std::string bind = "127.0.0.1";
-  uint16_t port = 0;  // 0: a free one
+  uint16_t port = 0;                     // 0: a free one
+  std::optional<uint16_t> rather = {};  // of the free ones
   std::string token;
   std::string_view page;
   uint16_t last_number = UINT16_MAX;  // of clients; then they begin anew at 1
@@ -34,6 +36,7 @@ class Server {
 
   // "http://127.0.0.1:8080/?token=..."
   std::string address() const;
+  uint16_t port() const;
   // Until Ctrl-C or the end of the host. `ready` is called once, when the host is there.
   void run(const std::function<void()>& ready);
 

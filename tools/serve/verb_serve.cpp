@@ -17,6 +17,7 @@
 #include "tools/input/plant_source.hpp"
 #include "tools/serve/channel.hpp"
 #include "tools/serve/drive_host.hpp"
+#include "tools/serve/kept.hpp"
 #include "tools/serve/opened_page.hpp"
 #include "tools/serve/page.hpp"
 #include "tools/serve/plant_host.hpp"
@@ -50,6 +51,11 @@ Pair make_pair_of_sockets() {
   return {ends[0], ends[1]};
 }
 
+serve::Kept kept_of(const ServeFlags& flags) {
+  return flags.device.port.empty() ? serve::Kept::of_plant(flags.file)
+                                   : serve::Kept::of_drive(flags.device.port, flags.address);
+}
+
 int run_host(const ServeFlags& flags, PlantInput input, const Pair& sockets) {
   close(sockets.server);
   std::signal(SIGINT, SIG_IGN);  // Ctrl-C goes to both; the server tells
@@ -59,6 +65,7 @@ int run_host(const ServeFlags& flags, PlantInput input, const Pair& sockets) {
   const std::string title = std::filesystem::path(flags.file).filename().string();
   serve::PlantHost host([input = std::move(input)] { return make_plant(input, runtime::FileUse::Look); },
                         title, IPOS_VERSION, channel, snapshots);
+  host.restore(kept_of(flags));
   channel.send(serve::LetterKind::Ready, 0, {});
   host.run();
   return kGood;
@@ -74,6 +81,7 @@ int run_drive_host(const ServeFlags& flags, const Pair& sockets) {
       std::move(link),
       {static_cast<uint8_t>(std::stoi(flags.address)), flags.compile.unit, flags.write, IPOS_VERSION},
       channel);
+  kept_of(flags).add_commands(host.desk());
   channel.send(serve::LetterKind::Ready, 0, {});
   host.run();
   return kGood;
@@ -95,12 +103,15 @@ int serve_page(const ServeFlags& flags) {
   bool was_there = false;
   std::optional<serve::OpenedPage> page;
   {
+    const serve::Kept kept = kept_of(flags);
     serve::ServerOptions options;
     options.bind = flags.bind;
     options.port = flags.port;
-    options.token = serve::make_token();
+    if (flags.port == 0) options.rather = kept.port();
+    options.token = kept.token();
     options.page = serve::embedded_files().front().text;
     serve::Server server(options, sockets.server);
+    kept.keep_port(server.port());
     server.run([&] {
       was_there = true;
       fmt::print("{}\n", server.address());
@@ -119,7 +130,7 @@ void add_serve(cli::Verb& app) {
   auto flags = std::make_shared<ServeFlags>();
   cli::Verb& verb = app.verb("serve", "a page in the browser to watch, touch and understand a plant");
   verb.option("FILE", flags->file, "source (.IPC), image (.ipx) or plant (.toml)");
-  verb.option("--port", flags->port, "port to listen at; default 0: any free one");
+  verb.option("--port", flags->port, "port to listen at; default 0: that of the last time, or any free one");
   verb.option("--bind", flags->bind, "address to listen at; default 127.0.0.1, which others cannot reach");
   verb.flag("--open", flags->open, "open the page in a browser");
   verb.option("--device", flags->device.port,

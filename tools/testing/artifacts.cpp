@@ -62,7 +62,7 @@ class Witness {
         test_(test),
         folder_(std::move(folder)),
         recorder_(plant, signals_of(test, plant)),
-        writer_(make_log_writer(".pcapng", log_)),
+        writer_(make_log_writer("bus.pcapng", log_)),
         bus_(plant, *writer_) {}
 
   void sample(Time now) {

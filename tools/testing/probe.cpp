@@ -5,11 +5,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <sstream>
 
 #include "runtime/bus_plan/names.hpp"
 #include "runtime/plant/signal_port.hpp"
-#include "tools/cli/files.hpp"
+#include "tools/input/sources.hpp"
 
 namespace ipos::tools::testing {
 namespace {
@@ -25,9 +24,7 @@ std::string with_source(const std::string& place) {
   if (line == std::string::npos) return place;
   size_t number = 0;
   std::from_chars(place.data() + line + 1, place.data() + column, number);
-  std::istringstream in(try_read_file(place.substr(0, line)).value_or(""));
-  std::string text;
-  for (size_t n = 0; n < number && std::getline(in, text);) ++n;
+  const std::string text = source_line(place.substr(0, line), number);
   const size_t begin = text.find_first_not_of(" \t");
   return begin == std::string::npos ? place : place + ": " + text.substr(begin);
 }

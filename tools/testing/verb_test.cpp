@@ -14,6 +14,7 @@
 #include "stdlib/unit_types.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/interrupt.hpp"
+#include "tools/cli/output_forms.hpp"
 #include "tools/cli/outputs.hpp"
 #include "tools/cli/terminal.hpp"
 #include "tools/cli/verbs.hpp"
@@ -100,6 +101,10 @@ void check_flags(const TestFlags& flags) {
     throw Failure(kUsage, "the messages of programs are part of the report; --json has them");
   if (is_standard_output(flags.junit) + is_standard_output(flags.tap) + is_standard_output(flags.json) > 1)
     throw Failure(kUsage, "only one report can go to standard output");
+  output_ending("--junit", flags.junit);
+  output_ending("--tap", flags.tap);
+  output_ending("--json", flags.json);
+  output_ending("--html", flags.html);
 }
 
 // In steps of GitHub's, its variable says so.

@@ -9,6 +9,7 @@
 #include "tools/cli/exit_codes.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/interrupt.hpp"
+#include "tools/cli/output_forms.hpp"
 #include "tools/cli/outputs.hpp"
 #include "tools/cli/verbs.hpp"
 #include "tools/input/plant_input.hpp"
@@ -150,6 +151,7 @@ class ScopeRun {
 };
 
 int scope_of_plant(const ScopeFlags& flags) {
+  output_ending("scope -o", flags.out);
   catch_interrupts();
   const auto plant = make_plant(read_plant_input(flags.where, flags.compile), runtime::FileUse::Look);
   RunningStation access(find_station(*plant, flags.where, flags.unit_at), flags.where);
@@ -162,6 +164,7 @@ int scope_of_plant(const ScopeFlags& flags) {
 }
 
 int scope_at_port(ScopeFlags& flags) {
+  output_ending("scope -o", flags.out);
   flags.link.port = flags.where;
   auto link = BusLink::open(flags.link);
   BusLink& line = *link;

@@ -73,6 +73,7 @@ export function newPlant() {
     forced: {},
     changed: {},
     breakpoints: [],
+    settings: {},
     scope: {
       recording: 1,
       channels: stationNames.map((name) => ({ name: `${name}.speed`, unit: "rpm", decimals: 1 })),
@@ -247,6 +248,8 @@ const commands = {
       n, us: n * 5000, bus: "sbus", id: 524, extended: false, remote: false, error: false, data: "000613880000", text: "PO1-PO3 to 33",
     })),
   }),
+  settings: (plant) => ({ ok: true, settings: plant.settings }),
+  "settings.set": (plant, { name, value }) => ((plant.settings[name] = value), { ok: true }),
   program: () => ({ ok: true, files: [{ name: "SAW.IPC", text: source, lines: [6, 8, 9, 10, 11] }], tasks: ["1"] }),
   "break.set": (plant, { station, file, line }) => {
     const breakpoint = { number: plant.breakpoints.length + 1, station, file, line, hits: 0 };

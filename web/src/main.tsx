@@ -13,6 +13,7 @@ import { listenToServer } from "./server/live";
 import { Help, helpOpen } from "./shell/help";
 import { listenToKeys, offerKeys } from "./shell/keys";
 import { Notice } from "./shell/notice";
+import { followSettings } from "./shell/settings";
 import { open, openTab, TabList, TabPanels, type Tab } from "./shell/tabs";
 import { offerTimeKeys, TimeBar } from "./shell/time_bar";
 import { Watch } from "./watch/watch_tab";
@@ -66,6 +67,7 @@ function Page() {
 
 if (!tabs.some((tab) => tab.name === openTab.peek())) openTab.value = "Plant";
 listenToServer();
+followSettings();
 offerTimeKeys();
 offerPageKeys();
 connect();

@@ -2,9 +2,10 @@
 //   IPOS_PROGRAM=.../ipos node --test test/plant.test.mjs
 import assert from "node:assert";
 import { execFileSync } from "node:child_process";
-import { readFileSync } from "node:fs";
+import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
+import { fileURLToPath } from "node:url";
 
 import { launch, missing, openPage, tab_names } from "./browser.mjs";
 import { folderOf, program, serve } from "./serve.mjs";
@@ -377,6 +378,127 @@ test("a killed server is an alert; a wrong token gets nothing", { skip }, () =>
     await page.getByRole("alert").waitFor();
   }),
 );
+
+// --- what is kept, and that the page shows what is ---
+
+// What the server sent is gone when it ends: the browser says so itself.
+const own_mistakes = (errors) => errors.filter((text) => !/WebSocket|ERR_CONNECTION_REFUSED/.test(text));
+
+test("a restarted server takes its tabs back, with stars and settings, and the page goes on", { skip }, async () => {
+  const state = folderOf({});
+  let server = await serve("belt.toml", [], place.folder, state.folder);
+  const opened = await openPage(browser, server.address);
+  const { page } = opened;
+  const star = (name) => page.getByRole("button", { name: `Pin belt.${name}`, exact: true });
+  const isPinned = async (name) => (await star(name).getAttribute("aria-pressed")) === "true";
+  try {
+    await tab(page, "Watch");
+    await star("lCount").click();
+    await until(() => isPinned("lCount"), "no star");
+    await page.reload();
+    await until(() => isPinned("lCount"), "the star is lost by a reload");
+    await star("lFree").click();
+    await until(() => isPinned("lFree"), "no second star");
+    assert.ok(await isPinned("lCount"), "the second star takes the first one away");
+    await page.getByLabel("hexadecimal").check();
+    const address = server.address;
+    assert.strictEqual(await server.stop(), 0);
+    await page.getByRole("alert").waitFor();
+    server = await serve("belt.toml", [], place.folder, state.folder);
+    assert.strictEqual(server.address, address);
+    await page.getByRole("alert").waitFor({ state: "detached", timeout: 20_000 });
+    await button(page, "Step").click();
+    await until(async () => (await timeOf(page)) === 1, "the page does not go on");
+    await until(async () => (await isPinned("lCount")) && (await isPinned("lFree")), "the stars are lost by a restart");
+    assert.ok(await page.getByLabel("hexadecimal").isChecked());
+    assert.deepStrictEqual(own_mistakes(opened.errors), []);
+    // A page of another token says what to do.
+    const old = await fetch(server.address.replace(/token=.*/, "token=0123"));
+    assert.strictEqual(old.status, 401);
+    assert.match(await old.text(), /open the one that <code>ipos serve<\/code> has printed last/);
+  } finally {
+    await opened.close();
+    await server.stop();
+    state.remove();
+  }
+});
+
+test("program: the text that was compiled, and that the file has changed since", { skip }, async () => {
+  const own = folderOf({ "belt.toml": plant_text, "BELT.IPC": program_text });
+  const server = await serve("belt.toml", [], own.folder);
+  const opened = await openPage(browser, server.address);
+  const { page } = opened;
+  try {
+    await tab(page, "Program");
+    const source = page.getByRole("region", { name: "Source" });
+    await source.getByText("if (lCount == 100000)").waitFor();
+    assert.strictEqual(await page.getByRole("status", { name: "Changed source" }).count(), 0);
+    writeFileSync(join(own.folder, "BELT.IPC"), program_text.replace("100000", "4711"));
+    await page.getByRole("status", { name: "Changed source" }).waitFor();
+    await page.keyboard.press("0");
+    await page.reload();
+    await source.getByText("if (lCount == 100000)").waitFor();
+    await page.getByRole("status", { name: "Changed source" }).waitFor();
+    assert.strictEqual(await source.getByText("4711").count(), 0);
+  } finally {
+    await opened.close();
+    await server.stop();
+    own.remove();
+  }
+});
+
+test("scope: a channel more leaves a complete recording as it is, and has its past", { skip }, () =>
+  meet(async (page) => {
+    await enable(page);
+    await tab(page, "Scope");
+    await page.getByRole("group", { name: "Trigger" }).locator("select").first().selectOption("edge");
+    await page.getByRole("textbox", { name: "Value" }).fill("100");
+    await page.getByRole("textbox", { name: "Value" }).press("Enter");
+    await page.getByRole("spinbutton", { name: "Length, ms" }).fill("500");
+    await page.getByRole("spinbutton", { name: "Length, ms" }).press("Enter");
+    await button(page, "Single").click();
+    await button(page, "Run").click();
+    await page.getByText(/^complete/).waitFor({ timeout: 30_000 });
+    await button(page, "Pause").click();
+    const csv = async () => {
+      const [download] = await Promise.all([page.waitForEvent("download"), button(page, "CSV").click()]);
+      return readFileSync(await download.path(), "utf8").trim().split("\n");
+    };
+    const before = await csv();
+    const count = before[0].split(",").length;
+    const field = page.getByRole("combobox", { name: `Channel ${count}`, exact: true });
+    await field.fill("belt.lCount");
+    await field.press("Enter");
+    await until(async () => (await page.getByRole("combobox", { name: `Channel ${count + 1}`, exact: true }).count()) === 1, "no channel more");
+    const after = await csv();
+    assert.deepStrictEqual(after.map((row) => row.split(",").slice(0, count).join(",")), before, "what was recorded has changed");
+    const texts = after.slice(1).map((row) => row.split(",")[count]);
+    assert.ok(!texts.includes(""), "the past of the channel is not there");
+    const counts = texts.map(Number);
+    assert.ok(counts.every((value, n) => n === 0 || value >= counts[n - 1]), "it counts up");
+    assert.ok(counts[100] > counts[0] && counts.at(-1) > counts[100]);
+    await page.getByText(/^complete/).waitFor();
+  }),
+);
+
+test("bus: the last 200 telegrams of the chosen line, whatever the others do", { skip }, async () => {
+  const gateway = fileURLToPath(new URL("../../examples/gateway/gateway.toml", import.meta.url));
+  const server = await serve(gateway);
+  const opened = await openPage(browser, server.address);
+  const { page } = opened;
+  try {
+    await tab(page, "Bus");
+    await page.getByRole("combobox", { name: "Speed" }).selectOption("0").catch(() => undefined);
+    await button(page, "Run").click();
+    await page.getByRole("combobox", { name: "Line" }).selectOption("axes");
+    const rows = page.getByRole("table", { name: "Telegrams" }).locator("tbody tr");
+    await until(async () => (await rows.count()) === 200, "never 200 of this line");
+    assert.deepStrictEqual([...new Set(await rows.locator("td:nth-child(2)").allTextContents())], ["axes"]);
+  } finally {
+    await opened.close();
+    await server.stop();
+  }
+});
 
 test("one request for all tabs", { skip }, () =>
   meet(async (page) => {

@@ -7,9 +7,20 @@ import { createInterface } from "node:readline";
 
 export const program = process.env.IPOS_PROGRAM;
 
-export async function serve(plant, options = [], folder = ".") {
-  const child = spawn(program, ["serve", plant, "--port", "0", ...options], { cwd: folder, stdio: ["ignore", "pipe", "inherit"] });
-  const ended = new Promise((done) => child.on("exit", (code, signal) => done(code ?? signal)));
+// Token, port and settings are kept in the folder `state`, by default in one that no other server has.
+export async function serve(plant, options = [], folder = ".", state = undefined) {
+  const own = state ?? mkdtempSync(join(tmpdir(), "ipos-state-"));
+  const child = spawn(program, ["serve", plant, ...options], {
+    cwd: folder,
+    stdio: ["ignore", "pipe", "inherit"],
+    env: { ...process.env, XDG_STATE_HOME: own },
+  });
+  const ended = new Promise((done) =>
+    child.on("exit", (code, signal) => {
+      if (!state) rmSync(own, { recursive: true });
+      done(code ?? signal);
+    }),
+  );
   const address = await new Promise((done, failed) => {
     createInterface(child.stdout).once("line", done);
     void ended.then((code) => failed(new Error(`ipos serve ended with ${code}`)));

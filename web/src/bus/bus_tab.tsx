@@ -6,13 +6,14 @@ import { subscribe } from "../server/connection";
 import { generation, hello, plant } from "../server/live";
 import type { BusRow, BusState } from "../server/protocol";
 import { command } from "../shell/notice";
+import { setting } from "../shell/settings";
 import { identityText } from "./identity";
 import { Send, SendHint } from "./send";
 import { long_data, Trace } from "./trace";
 
 const rows = signal<Map<string, BusRow>>(new Map());
 const states = signal<Record<string, BusState>>({});
-const line = signal("");
+const line = setting("bus.line", "");
 
 function follow(): () => void {
   rows.value = new Map();
@@ -61,13 +62,14 @@ export function Bus() {
   // A server that came back, or time that did, begins anew.
   useEffect(follow, [generation.value, hello.value]);
   const kinds = new Map(plant.value?.buses.map((bus) => [bus.name, bus.kind]));
-  const target = line.value || [...kinds.keys()][0] || "";
-  const shown = [...rows.value.entries()].filter(([, row]) => !line.value || row.bus === line.value).sort(([a], [b]) => (a < b ? -1 : 1));
+  const chosen = kinds.has(line.value) ? line.value : "";
+  const target = chosen || [...kinds.keys()][0] || "";
+  const shown = [...rows.value.entries()].filter(([, row]) => !chosen || row.bus === chosen).sort(([a], [b]) => (a < b ? -1 : 1));
   return (
     <>
       <LineLoads />
       <div class="bar">
-        <select aria-label="Line" value={line.value} onChange={(event) => (line.value = event.currentTarget.value)}>
+        <select aria-label="Line" value={chosen} onChange={(event) => (line.value = event.currentTarget.value)}>
           <option value="">all lines</option>
           {[...kinds.keys()].map((name) => (
             <option key={name}>{name}</option>
@@ -120,7 +122,7 @@ export function Bus() {
         </table>
         {shown.length === 0 && <p class="empty">No telegram yet.</p>}
       </div>
-      <Trace line={line.value} kinds={kinds} />
+      <Trace line={chosen} kinds={kinds} />
     </>
   );
 }

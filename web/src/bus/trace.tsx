@@ -23,15 +23,15 @@ export function Trace({ line, kinds }: { line: string; kinds: Map<string, string
     const look = () => {
       if (asked_us === time.peek().us) return;
       asked_us = time.peek().us;
-      request({ do: "bus.trace", limit: shown_frames, ...(filter ? { filter } : {}) })
+      request({ do: "bus.trace", limit: shown_frames, ...(line ? { bus: line } : {}), ...(filter ? { filter } : {}) })
         .then((reply) => setFrames(reply.frames as TraceFrame[]))
         .catch(complain);
     };
     look();
     const timer = setInterval(look, refresh_ms);
     return () => clearInterval(timer);
-  }, [filter, held]);
-  const shown = frames.filter((frame) => !line || frame.bus === line).reverse();
+  }, [line, filter, held]);
+  const shown = [...frames].reverse();
   return (
     <section aria-label="Trace" style="margin-top:14px">
       <div class="bar">

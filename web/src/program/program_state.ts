@@ -2,7 +2,7 @@
 import { signal } from "@preact/signals";
 
 import { requestParts, subscribe } from "../server/connection";
-import { generation, plant, time } from "../server/live";
+import { generation, hello, plant, time } from "../server/live";
 import type { Breakpoint, SourceFile, TaskState } from "../server/protocol";
 import { complain } from "../shell/notice";
 
@@ -13,6 +13,8 @@ export const tasks = signal<TaskState[]>([]);
 export const covered = signal<ReadonlyMap<string, ReadonlySet<number>>>(new Map());
 export const breakpoints = signal<Breakpoint[]>([]);
 export const chosenTask = signal(1);
+// Files that are no longer what was compiled.
+export const changed = signal<string[]>([]);
 
 async function read(name: string): Promise<void> {
   const parts = await requestParts({ do: "program", station: name });
@@ -35,6 +37,7 @@ function follow(name: string): () => void {
   void read(name).catch(complain);
   return subscribe("program", { station: name, rate: 10 }, (event) => {
     if (event.station !== name) return;
+    if (event.changed) changed.value = event.changed as string[];
     if (event.tasks) tasks.value = event.tasks as TaskState[];
     if (event.covered) addCovered(event.covered as Record<string, number[]>);
     if (event.breakpoints) breakpoints.value = event.breakpoints as Breakpoint[];
@@ -58,6 +61,12 @@ export function followProgram(): () => void {
     seen = now;
   });
   const stopStation = station.subscribe(again);
+  // A server that came back may have compiled other sources.
+  let server = hello.peek();
+  const stopHello = hello.subscribe((now) => {
+    if (now !== server) again();
+    server = now;
+  });
   // A stop at a place opens it.
   const stopTime = time.subscribe(({ running, stopped }) => {
     if (running || !stopped?.file || !stopped.station) return;
@@ -69,6 +78,7 @@ export function followProgram(): () => void {
     stopPlant();
     stopGeneration();
     stopStation();
+    stopHello();
     stopTime();
     stop?.();
   };

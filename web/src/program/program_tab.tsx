@@ -4,7 +4,7 @@ import { useEffect } from "preact/hooks";
 import { hello, plant } from "../server/live";
 import { offerKeys, withdrawKeys } from "../shell/keys";
 import { command } from "../shell/notice";
-import { breakpoints, chosenTask, covered, files, followProgram, openFile, station, tasks } from "./program_state";
+import { breakpoints, changed, chosenTask, covered, files, followProgram, openFile, station, tasks } from "./program_state";
 import { Source } from "./source";
 
 const motions = [
@@ -117,6 +117,11 @@ export function Program() {
           </span>
         )}
       </div>
+      {file && changed.value.includes(file.name) && (
+        <p class="warn" role="status" aria-label="Changed source">
+          {baseName(file.name)} has changed since it was compiled. Here stands the text that runs; start ipos serve again to run the new one.
+        </p>
+      )}
       {file ? (
         <Source
           file={file}

@@ -78,6 +78,7 @@ function Buttons() {
       <span class={state?.state === "armed" ? "warn" : "quiet"}>
         {state ? state_texts[state.state] : ""}
         {state?.trigger_text && ` · ${state.trigger_text}`}
+        {state?.computes?.length ? ` · computes what was of ${state.computes.join(", ")}` : ""}
       </span>
       <span class="spread group">
         <button aria-label="Zoom in" title="Zoom in (z)" onClick={() => zoomBy(0.5)}>

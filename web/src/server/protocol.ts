@@ -191,6 +191,7 @@ export interface ScopeState {
   single: boolean;
   trigger_us: number | null;
   trigger_text: string;
+  computes?: string[]; // channels whose past is not there yet
   first_us: number;
   last_us: number;
 }

@@ -1,5 +1,7 @@
 // The keys of the page: one table that the handler and the help sheet read. What is open may add its own.
-import { effect, signal } from "@preact/signals";
+import { signal } from "@preact/signals";
+
+import { setting } from "./settings";
 
 export interface Key {
   key: string;
@@ -14,8 +16,7 @@ export interface KeyGroup {
 
 export const keyGroups = signal<KeyGroup[]>([]);
 // Single letters can be switched off: speech input types them by mistake (WCAG 2.1.4).
-export const keysOn = signal(localStorage.getItem("ipos.keys") !== "off");
-effect(() => localStorage.setItem("ipos.keys", keysOn.value ? "on" : "off"));
+export const keysOn = setting("keys", true);
 
 // Puts the group in place of an earlier one with its title.
 export function offerKeys(title: string, keys: Key[]): void {

@@ -33,7 +33,10 @@ export function Notice() {
     return (
       <div class="notice">
         <span class="lamp fault" />
-        <div role="alert">The connection to the server is lost. The page tries again by itself.</div>
+        <div role="alert">
+          The connection to the server is lost. The page tries again by itself, and goes on when ipos serve runs again. If that
+          prints another address, open it.
+        </div>
       </div>
     );
   // One to which nobody has come yet is no loss.

@@ -5,6 +5,7 @@ import { request, subscribe } from "../server/connection";
 import { hello } from "../server/live";
 import type { WatchName, WatchValue } from "../server/protocol";
 import { complain } from "../shell/notice";
+import { setting } from "../shell/settings";
 
 const most_names = 1000;
 
@@ -14,7 +15,7 @@ export const chosenGroup = signal<string | null>(null);
 export const groups = signal<string[]>([]);
 export const found = signal<WatchName[]>([]);
 export const total = signal(0);
-export const pinned = signal<WatchName[]>([]);
+export const pinned = setting<WatchName[]>("watch.pinned", []);
 export const shown = computed(() => {
   const names = new Set(pinned.value.map((one) => one.name));
   return [...pinned.value, ...found.value.filter((one) => !names.has(one.name))].slice(0, most_names);
@@ -28,20 +29,9 @@ export function valueOf(name: string): Signal<WatchValue | null> {
   return value;
 }
 
-const storeKey = () => `ipos.watch ${hello.peek()?.title ?? ""}`;
-
 export function pin(one: WatchName): void {
   const without = pinned.peek().filter((other) => other.name !== one.name);
   pinned.value = without.length === pinned.peek().length ? [...without, one] : without;
-  localStorage.setItem(storeKey(), JSON.stringify(pinned.value));
-}
-
-function readPinned(): void {
-  try {
-    pinned.value = JSON.parse(localStorage.getItem(storeKey()) ?? "[]") as WatchName[];
-  } catch {
-    pinned.value = [];
-  }
 }
 
 // Of a real drive nothing is searched: names are given, those below to begin with (speed, current, DC link).
@@ -88,7 +78,6 @@ async function watchShown(names: string[]): Promise<void> {
 
 // As long as the tab is open: searches when what is looked for changes, watches what is shown.
 export function followWatch(): () => void {
-  readPinned();
   let wait: ReturnType<typeof setTimeout> | undefined;
   const stopSearch = hello.subscribe((known) => {
     // A server that came back knows no list.

@@ -1,10 +1,10 @@
 // The watch window: names with their values, to search, to set and to force.
-import { signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 
 import { hello, stationNames } from "../server/live";
 import type { WatchName } from "../server/protocol";
 import { command } from "../shell/notice";
+import { setting } from "../shell/settings";
 import {
   chosenGroup,
   chosenStation,
@@ -19,7 +19,7 @@ import {
   valueOf,
 } from "./watch_list";
 
-const hexadecimal = signal(false);
+const hexadecimal = setting("watch.hexadecimal", false);
 
 function Row({ one, isPinned }: { one: WatchName; isPinned: boolean }) {
   const field = useRef<HTMLInputElement>(null);

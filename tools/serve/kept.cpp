@@ -1,0 +1,96 @@
+// One JSON object a plant: "token", "port", "settings".
+#include "tools/serve/kept.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "tools/serve/server.hpp"
+#include "tools/serve/state_folder.hpp"
+
+namespace ipos::tools::serve {
+namespace {
+
+constexpr size_t kMostSettings = 256 * 1024;  // bytes of all of them (ours)
+
+bool is_token(const std::string& text) {
+  return text.size() == 32 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+}  // namespace
+
+Kept::Kept(std::string of) : name_(state_name("serve", of)) {}
+
+Kept Kept::of_plant(const std::string& file) {
+  std::error_code error;
+  const auto whole = std::filesystem::weakly_canonical(file, error);
+  return Kept(error ? file : whole.string());
+}
+Kept Kept::of_drive(const std::string& port, const std::string& address) {
+  return Kept("drive " + address + " at " + port);
+}
+
+Json Kept::read() const {
+  Json kept = Json::parse(read_state(name_).value_or("{}"), nullptr, false);
+  return kept.is_object() ? kept : Json::object();
+}
+bool Kept::write(const Json& kept) const {
+  return write_state(name_, kept.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+std::string Kept::token() const {
+  Json kept = read();
+  if (kept.contains("token") && kept["token"].is_string() && is_token(kept["token"])) return kept["token"];
+  std::string token = make_token();
+  kept["token"] = token;
+  write(kept);
+  return token;
+}
+
+std::optional<uint16_t> Kept::port() const {
+  const Json kept = read();
+  if (!kept.contains("port") || !kept["port"].is_number_unsigned() || kept["port"] > UINT16_MAX) return std::nullopt;
+  return kept["port"].get<uint16_t>();
+}
+
+void Kept::keep_port(uint16_t port) const {
+  Json kept = read();
+  if (kept.contains("port") && kept["port"] == port) return;
+  kept["port"] = port;
+  write(kept);
+}
+
+Json Kept::setting(const std::string& name) const {
+  const Json all = read();
+  if (!all.contains("settings") || !all["settings"].is_object()) return nullptr;
+  return all["settings"].value(name, Json());
+}
+
+void Kept::set(const std::string& name, const Json& value) const {
+  Json all = read();
+  if (!all.contains("settings") || !all["settings"].is_object()) all["settings"] = Json::object();
+  if (all["settings"].contains(name) && all["settings"][name] == value) return;
+  all["settings"][name] = value;
+  if (all["settings"].dump(-1, ' ', false, Json::error_handler_t::replace).size() > kMostSettings)
+    throw Mistake("there is no room for more settings");
+  if (!write(all)) throw Mistake("the settings cannot be kept: the state folder cannot be written");
+}
+
+void Kept::add_commands(Desk& desk) const {
+  desk.add_command("settings", [kept = *this](const Desk::Call&) {
+    const Json all = kept.read();
+    return Json{{"settings", all.value("settings", Json::object())}};
+  });
+  desk.add_command("settings.set", [kept = *this](const Desk::Call& call) {
+    if (!call.arguments.has("value")) throw Mistake("'value' is missing");
+    kept.set(call.arguments.text("name"), call.arguments.json()["value"]);
+    return Json::object();
+  });
+  desk.keep = [kept = *this](const std::string& name, const Json& value) {
+    try {
+      kept.set(name, value);
+    } catch (const Mistake&) {  // it is done all the same, and only forgotten at the next start
+    }
+  };
+}
+
+}  // namespace ipos::tools::serve

@@ -1,0 +1,37 @@
+// What `ipos serve` keeps of one plant or drive from start to start, in the user's state folder: the token and the port, so
+// that tabs of the time before find their server again, and what a person has set on the page.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "tools/serve/desk.hpp"
+
+namespace ipos::tools::serve {
+
+class Kept {
+ public:
+  // Of a plant file, or of a real drive by its line and address.
+  static Kept of_plant(const std::string& file);
+  static Kept of_drive(const std::string& port, const std::string& address);
+
+  // The one of the time before, else a new one. Where it cannot be kept each start has its own.
+  std::string token() const;
+  std::optional<uint16_t> port() const;
+  void keep_port(uint16_t port) const;
+  // The commands `settings` and `settings.set`, and Desk::keep. Each reads and writes the file: another server may have the
+  // same plant.
+  void add_commands(Desk& desk) const;
+  Json setting(const std::string& name) const;  // null: there is none
+
+ private:
+  explicit Kept(std::string of);
+  Json read() const;
+  bool write(const Json& kept) const;
+  void set(const std::string& name, const Json& value) const;  // a Mistake says why not
+
+  std::string name_;  // of the file
+};
+
+}  // namespace ipos::tools::serve
