@@ -160,13 +160,27 @@ TEST(Scom, MixedFormats) {
 }
 
 TEST(Movilink, WatchWindow) {
-  PROVES("EX-12", "EX-13", "MOVLNK-01", "MOVLNK-02", "MOVLNK-08");
+  PROVES("EX-12", "EX-13", "MOVLNK-02", "MOVLNK-08");
   const ExampleRun run = run_example("movilink/movilink.toml");
   const std::vector<int32_t> values{5, 1, 4, 1, 8318, 427, 0, 0, 0, 6, 5000, 0, 514, 0, 0};
   for (size_t n = 0; n < values.size(); ++n)
     EXPECT_EQ(run.h(0, 420 + static_cast<int>(n)), values[n]) << "H" << 420 + n;
   EXPECT_EQ(run.name(0, 427), "Mld.WritePar");
   EXPECT_EQ(run.name(0, 434), "Mld.PI3");
+}
+
+// Seven variables from H420 on, in the order of the manual, and both names: _MoviLink in C, MOVLNK in assembler and in what
+// the disassembler shows.
+TEST(Movilink, NamesAndOffsets) {
+  PROVES("MOVLNK-01");
+  const ExampleRun run = run_example("movilink/movilink.toml");
+  const char* kElements[] = {"BusType", "Address", "Format", "Service", "Index", "DPointer", "Result"};
+  for (int n = 0; n < 7; ++n) EXPECT_EQ(run.name(0, 420 + n), std::string("Ml.") + kElements[n]);
+  const TemporaryFolder folder;
+  const std::string source = project("examples/movilink/Movilink.IPC").string();
+  ASSERT_EQ(run_ipos({"build", source, "-o", "c.ipx"}, folder.path()).exit_code, 0);
+  const CommandResult listing = run_ipos({"disasm", "c.ipx"}, folder.path());
+  EXPECT_NE(listing.out.find("MOVLNK"), std::string::npos) << listing.out << listing.err;
 }
 
 TEST(Movilink, FramesOfOneCall) {

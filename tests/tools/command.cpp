@@ -2,6 +2,7 @@
 #include "tests/tools/command.hpp"
 
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,6 +13,8 @@
 #include <sstream>
 #include <stdexcept>
 #include <thread>
+
+#include "tests/harness/reach.hpp"
 
 namespace ipos::tests {
 
@@ -47,6 +50,7 @@ const char* ipos_program() {
 
 RunningIpos::RunningIpos(const std::vector<std::string>& arguments, const fs::path& directory)
     : folder_(std::make_unique<TemporaryFolder>()) {
+  goes_through(kVerb);
   const std::string out = (folder_->path() / "out").string();
   const std::string err = (folder_->path() / "err").string();
   child_ = fork();
@@ -77,10 +81,11 @@ RunningIpos::~RunningIpos() {
 namespace {
 
 bool comes(const fs::path& file, const std::string& text) {
-  for (int n = 0; n < 1000; ++n) {
+  for (int n = 0; n < 6000; ++n) {
     if (read_text(file).find(text) != std::string::npos) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
+  ADD_FAILURE() << "'" << text << "' has not come within a minute; there is: " << read_text(file);
   return false;
 }
 

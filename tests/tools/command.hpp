@@ -49,7 +49,7 @@ class RunningIpos {
   RunningIpos(const RunningIpos&) = delete;
   RunningIpos& operator=(const RunningIpos&) = delete;
 
-  // Waits until its standard output or its messages contain the text, at most 10 s.
+  // Waits until its standard output or its messages contain the text. If it does not come within a minute, the test has failed.
   bool prints(const std::string& text) const;
   bool tells(const std::string& text) const;
 

@@ -120,10 +120,21 @@ TEST(MdxChapters, CyclicChannelRunsOncePerToggle) {
   for (int n = 0; n < 5; ++n) send("86", "32", false);
   EXPECT_EQ(writes(), start + 7) << "each telegram is a service";
   EXPECT_EQ(rig.station(0).drive().value("130"), value);
-  // A return code: index 1001 does not exist.
-  EXPECT_EQ(line.send("02 01 86 31 00 03 E9 00 00 00 00 bcc"), std::nullopt);
-  rig.run_until(rig.get().now() + 100 * kMillisecond);
-  EXPECT_EQ(rig.says("refused"), 1U) << rig.journal();
+  // Return codes in the answers, bit 7 of the management byte set (1053 1610 p. 46): index 1001 does not exist, class 8 and
+  // additional code 10h; P000 can only be read, 12h.
+  struct Answers final : BusObserver {
+    void on_message(const Bus&, const BusMessage& message) override { last = message.text; }
+    std::string last;
+  } answers;
+  line.add_observer(answers);
+  for (const auto& [asked, answered] :
+       {std::pair{"31 00 03 E9 00 00 00 00", "B1 00 03 E9 08 00 00 10"}, {"32 00 20 7E 00 00 00 01", "B2 00 20 7E 08 00 00 12"},
+        {"31 00 21 16 00 00 00 00", "31 00 21 16 00 00"}}) {
+    EXPECT_EQ(line.send(std::string("02 01 86 ") + asked + " bcc"), std::nullopt);
+    rig.run_until(rig.get().now() + 100 * kMillisecond);
+    EXPECT_EQ(answers.last.substr(0, 9 + std::string_view(answered).size()), std::string("1D 01 86 ") + answered) << asked;
+  }
+  EXPECT_EQ(rig.says("refused"), 2U) << rig.journal();
 }
 
 }  // namespace

@@ -25,6 +25,7 @@ class PlantRig final : private CanObserver {
   // Sources by the file name that the plant gives as program; `atomic` as in the compiler's options.
   explicit PlantRig(const std::string& toml, const std::map<std::string, std::string>& sources = {},
                     std::optional<vm::Rates> rates = {}, bool atomic = false) {
+    goes_through(kPlantFile);
     PlantFileResult file = read_plant_file(toml);
     for (const PlantError& error : file.errors)
       errors.push_back(std::to_string(error.place.line) + ": " + error.text);
@@ -74,6 +75,7 @@ class PlantRig final : private CanObserver {
     constexpr std::string_view kNotes[] = {
 #define SETPOINT_NOTE(name, text) text,
 #include "runtime/drive/setpoint_notes.def"
+#include "tests/harness/reach.hpp"
     };
     std::string text;
     for (const JournalEntry& entry : plant->journal().entries()) {

@@ -11,7 +11,7 @@
 
 #include "runtime/drive/drive.hpp"
 #include "tests/harness/proves.hpp"
-#include "tests/runtime/drive/fake_drive.hpp"
+#include "tests/runtime/drive/bench.hpp"
 
 namespace ipos::tests {
 
@@ -33,11 +33,11 @@ inline MachineData light_machine() {
   return machine;
 }
 
-class DriveRig {
+class DriveRig : public Bench {
  public:
   explicit DriveRig(std::string_view name, DriveOptions options = {},
                     const MachineData& machine = light_machine())
-      : parameters(unit(name), options), drive(parameters, machine) {
+      : Bench(name, options, machine) {
     // No time but that of the ramps, no least speed and no monitoring, unless the test wants them.
     for (const char* number : {"P323", "P731", "P732", "P736", "P301", "P815"})
       if (parameters.table().find(number) != nullptr) set(number, 0);
@@ -110,7 +110,7 @@ class DriveRig {
         since_po_ = 0;
         drive.take_po(source_, words_);
       }
-      drive.tick(positioning);
+      tick();
     }
   }
   // How long it takes; limit + 1 when it does not happen.
@@ -141,10 +141,6 @@ class DriveRig {
     run_ms(1);
     return drive.setpoint().requested / 1000.0;
   }
-
-  runtime::ParameterStore parameters;
-  Drive drive;
-  runtime::PositionControl positioning;  // nothing, unless the test wants it
 
  private:
   Words words_{};

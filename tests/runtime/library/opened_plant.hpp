@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/harness/reach.hpp"
 #include "tests/runtime/library/functions.hpp"
 
 namespace ipos::tests {
@@ -39,6 +40,7 @@ class OpenedPlant {
  public:
   explicit OpenedPlant(const std::string& text, const std::string& program = "",
                        ipos_plant_source source = {}) {
+    goes_through(kLibrary);
     folder.write("P.IPC", program);
     const std::string path = folder.path();
     source.text = text.c_str();

@@ -3,9 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "runtime/bus/movilink/format.hpp"
-#include "runtime/plant/station.hpp"
+#include "runtime/plant/plant.hpp"
 #include "runtime/plant/station_signals.hpp"
 #include "tests/harness/proves.hpp"
+#include "tests/harness/reach.hpp"
 #include "tests/runtime/bus/rs485/serial_rig.hpp"
 #include "tests/runtime/bus/sbus_rig.hpp"
 #include "tests/runtime/nv_memory/fake_medium.hpp"
@@ -22,32 +23,73 @@ using tests::MediumState;
 using vm::Opcode;
 using Data = std::array<uint8_t, 8>;
 
-// One unit at address 1 and a hand-driven master on a line.
-class Rig {
- public:
-  explicit Rig(std::vector<uint32_t> code = {}, std::string_view unit = "md60a",
-               std::shared_ptr<MediumState> state = nullptr)
-      : master(line, "control") {
+constexpr std::string_view kLines = "[[bus]]\nname = 'sbus'\nkind = 'can'\n[[bus]]\nname = 'line1'\nkind = 'rs485'\n";
+
+std::optional<vm::Image> image_of(const stdlib::UnitType& unit, std::vector<uint32_t> code) {
+  if (code.empty()) return std::nullopt;
+  vm::Image image;
+  image.unit = unit.code;
+  image.code = std::move(code);
+  return image;
+}
+
+std::unique_ptr<Plant> plant_of(std::vector<uint32_t> code, const std::string& unit) {
+  tests::goes_through(tests::kPlantFile);
+  PlantFileResult file = read_plant_file(std::string(kLines) + "[[station]]\nname = 'unit1'\nunit = '" + unit +
+                                         "'\nsbus = 'sbus'\nrs485 = 'line1'\n[station.parameters]\n8600 = 1\n");
+  for (const PlantError& error : file.errors) ADD_FAILURE() << error.text;
+  StationConfig& config = file.plant.stations.at(0);
+  if (!code.empty()) config.program = "A.IPC";
+  std::vector<std::optional<vm::Image>> programs{image_of(*config.unit, std::move(code))};
+  std::vector<PlantError> errors;
+  auto plant = std::make_unique<Plant>(std::move(file.plant), std::move(programs), std::nullopt, errors);
+  for (const PlantError& error : errors) ADD_FAILURE() << error.text;
+  return plant;
+}
+
+// The same by hand around a memory that lies in a test, for which a plant file has no name.
+struct Alone {
+  Alone(std::vector<uint32_t> code, std::string_view unit, std::shared_ptr<MediumState> state) {
     config.name = "unit1";
     config.unit = stdlib::find_unit(unit);
     config.program = "A.IPC";
-    std::optional<vm::Image> image;
-    if (!code.empty()) {
-      image.emplace();
-      image->unit = config.unit->code;
-      image->code = std::move(code);
-    }
-    station.emplace(queue, 1, config, std::move(image), StationLines{{&line, nullptr}, &serial, nullptr},
+    station.emplace(queue, 1, config, image_of(*config.unit, std::move(code)), StationLines{{&line, nullptr}, &serial, nullptr},
                     journal, std::nullopt);
-    if (state) {
-      EXPECT_EQ(station->use_memory(std::make_unique<FakeMedium>(std::move(state)), "u.nv"), std::nullopt);
-    }
+    EXPECT_EQ(station->use_memory(std::make_unique<FakeMedium>(std::move(state)), "u.nv"), std::nullopt);
     EXPECT_EQ(station->set_parameter({"8600", 1, {}}), std::nullopt);
     station->power_on();
+  }
+
+  EventQueue queue;
+  CanLine line{queue, 0, "sbus", 500'000};
+  Rs485Line serial{queue, 2, "line1", 9600};
+  Journal journal;
+  StationConfig config;
+  std::optional<Station> station;
+};
+
+// One unit at address 1 and a hand-driven master on a line.
+class Rig {
+ public:
+  explicit Rig(std::vector<uint32_t> code = {}, const std::string& unit = "md60a",
+               std::shared_ptr<MediumState> state = nullptr)
+      : plant(state ? nullptr : plant_of(code, unit)),
+        alone(state ? std::make_unique<Alone>(std::move(code), unit, std::move(state)) : nullptr),
+        queue(plant ? plant->queue() : alone->queue),
+        line(plant ? *plant->lines()[0] : alone->line),
+        serial(plant ? plant->serial_lines()[0]->line() : alone->serial),
+        master(line, "control"),
+        journal(plant ? plant->journal() : alone->journal),
+        station(plant ? &*plant->stations()[0] : &*alone->station) {
     run(5 * kMillisecond);
   }
 
-  void run(Time span) { queue.run_until(queue.now() + span); }
+  void run(Time span) {
+    if (plant)
+      plant->run_until(plant->now() + span);
+    else
+      queue.run_until(queue.now() + span);
+  }
   std::vector<Frame> send(uint32_t id, const Data& data, uint8_t length = 8) {
     master.frames.clear();
     master.port.send({id, length, data, false, false}, 0);
@@ -87,15 +129,16 @@ class Rig {
     run(5 * kMillisecond);
   }
 
-  EventQueue queue;
-  CanLine line{queue, 0, "sbus", 500'000};
-  Rs485Line serial{queue, 2, "line1", 9600};
+  std::unique_ptr<Plant> plant;
+  std::unique_ptr<Alone> alone;
+  EventQueue& queue;
+  CanLine& line;
+  Rs485Line& serial;
   Hand master;
   tests::HandNode pc{serial, "pc"};
   tests::Recorder recorder;
-  Journal journal;
-  StationConfig config;
-  std::optional<Station> station;
+  const Journal& journal;
+  Station* station;
 };
 
 const std::vector<uint32_t> kEndless = code_of({I(Opcode::AddHK, 200, 1), I(Opcode::Jmp, 0)});

@@ -9,11 +9,13 @@
 #include <vector>
 
 #include "runtime/plant/plant.hpp"
+#include "tests/harness/reach.hpp"
 
 namespace ipos::tests {
 
 struct PlainPlant {
   explicit PlainPlant(const std::string& text) {
+    goes_through(kPlantFile);
     runtime::PlantFileResult file = runtime::read_plant_file(text);
     for (const auto& error : file.errors) ADD_FAILURE() << text << error.place.line << ": " << error.text;
     std::vector<std::optional<vm::Image>> programs(file.plant.stations.size());

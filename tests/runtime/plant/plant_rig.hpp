@@ -9,6 +9,7 @@
 #include "compiler/compile.hpp"
 #include "compiler/diag/render.hpp"
 #include "runtime/plant/plant.hpp"
+#include "tests/harness/reach.hpp"
 
 namespace ipos::tests {
 
@@ -28,6 +29,7 @@ template <class Program = std::string>
 std::unique_ptr<runtime::Plant> make_plant(
     const std::string& text, const std::map<std::string, std::type_identity_t<Program>>& files = {},
     std::optional<vm::Rates> rates = std::nullopt, const runtime::Execution& execution = {}) {
+  goes_through(kPlantFile);
   runtime::PlantFileResult file = runtime::read_plant_file(text);
   for (const auto& error : file.errors) ADD_FAILURE() << error.place.line << ": " << error.text;
   if (!file.errors.empty()) return nullptr;

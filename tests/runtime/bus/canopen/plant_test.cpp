@@ -10,6 +10,7 @@
 #include "runtime/plant/plant.hpp"
 #include "runtime/plant_file/plant_file.hpp"
 #include "tests/harness/proves.hpp"
+#include "tests/harness/reach.hpp"
 
 namespace ipos::tests {
 namespace {
@@ -31,6 +32,7 @@ std::string station(const std::string& name, int address, const std::string& mor
 
 struct PlantOfNodes {
   PlantOfNodes(const std::string& stations, MasterSettings settings) {
+    goes_through(kPlantFile);
     auto file =
         runtime::read_plant_file("[[bus]]\nname = \"can\"\nkind = \"can\"\nbaud = 500000\n" + stations);
     for (const auto& error : file.errors) ADD_FAILURE() << error.place.line << ": " << error.text;

@@ -83,7 +83,6 @@ TEST(Switches, ActFromThePowerOnWithout24Volts) {
 }
 
 TEST(Switches, ChooseTheDefaultOfMinTsdr) {
-  PROVES("DP-ID-09");
   const OptionType& ffp31 = option_type(OptionKind::Ffp31);
   const OptionType& size0 = option_type(OptionKind::Size0);
   for (const BaudRate& rate : kBaudRates) {

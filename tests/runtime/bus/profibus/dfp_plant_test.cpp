@@ -35,6 +35,28 @@ TEST(DfpPlant, TenWordsOfAMovidriveB) {
   EXPECT_EQ(ten.station().profibus()->card().station().slave().diagnosis(ten.plant->now()).ident, 0x6003);
 }
 
+// The master falls silent at 2 s. P819 is its watchdog time; P831 decides: 0 nothing, 1 the fault is shown, 4 rapid stop with
+// fault, 7 rapid stop with warning.
+TEST(DfpPlant, TimeoutOfAMovidriveB) {
+  PROVES("MDB-TOC-23");
+  struct Row {
+    int response, fault, speed;
+  };
+  for (const Row& row : {Row{0, 0, 300'000}, {1, 28, 300'000}, {4, 28, 0}, {7, 28, 0}}) {
+    DpPlant silent(unit("mdxb", "", "P100 = 3\nP101 = 2\nP831 = " + std::to_string(row.response) + "\n") +
+                   master("cfg = \"F1\"\nwatchdog = \"200ms\"\npo = [6, 1500]\n", "[[control.command]]\nat = \"2s\"\ncommand = \"stop\"\n"));
+    silent.run(2 * kSecond);
+    EXPECT_EQ(silent.speed(), 300'000) << row.response;
+    EXPECT_EQ(silent.value("819"), 200) << "ms";
+    silent.run(2195 * kMillisecond);
+    EXPECT_EQ(silent.fault(), 0) << row.response;
+    silent.run(2215 * kMillisecond);
+    EXPECT_EQ(silent.fault(), row.fault) << row.response;
+    silent.run(5 * kSecond);
+    EXPECT_EQ(silent.speed(), row.speed) << row.response;
+  }
+}
+
 TEST(DfpPlant, AMovidriveAHasThreeWords) {
   DpPlant three(unit("md60a") + master("cfg = \"F2\"\npo = [6, 1500]\n"));
   three.run(3 * kSecond);

@@ -11,12 +11,14 @@
 
 #include "runtime/plant/plant.hpp"
 #include "tests/harness/proves.hpp"
+#include "tests/harness/reach.hpp"
 #include "tests/runtime/bus/profibus/octets.hpp"
 
 namespace ipos::tests {
 
 struct DpPlant {
   explicit DpPlant(const std::string& text, runtime::Pace pace = runtime::Execution{}.pace) {
+    goes_through(kPlantFile);
     runtime::PlantFileResult file = runtime::read_plant_file(text);
     for (const auto& error : file.errors) ADD_FAILURE() << error.place.line << ": " << error.text;
     std::vector<runtime::PlantError> errors;

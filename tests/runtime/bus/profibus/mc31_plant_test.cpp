@@ -7,6 +7,7 @@
 
 #include "runtime/plant/plant.hpp"
 #include "tests/harness/proves.hpp"
+#include "tests/harness/reach.hpp"
 #include "tests/runtime/bus/profibus/octets.hpp"
 #include "tests/runtime/bus/profibus/step5.hpp"
 
@@ -34,6 +35,7 @@ std::string control(const std::string& slave, const std::string& more = "") {
 
 struct Mc31Plant {
   explicit Mc31Plant(const std::string& text) {
+    goes_through(kPlantFile);
     runtime::PlantFileResult file = runtime::read_plant_file(text);
     for (const auto& error : file.errors) ADD_FAILURE() << error.place.line << ": " << error.text;
     std::vector<runtime::PlantError> errors;
@@ -138,7 +140,6 @@ TEST(Mc31Plant, ExampleOfTheProcessData) {
 }
 
 TEST(Mc31Plant, CyclicWritingNeedsSaveEepromOff) {
-  PROVES("DP-PAR-18");
   const auto writes = [](const std::string& save) {
     std::string changes;
     for (int n = 1; n <= 10; ++n)
@@ -182,7 +183,6 @@ TEST(Mc31Plant, TimeoutResponse) {
 }
 
 TEST(Mc31Plant, TimeoutIsShownAndReset) {
-  PROVES("DP-WD-06");
   const std::string again = "[[control.command]]\nat = \"4s\"\ncommand = \"start\"\n";
   Silenced fault("4", again);
   fault.run(3 * kSecond);
@@ -241,7 +241,7 @@ profibus::FmsResponse ask(Mc31Plant& bench, profibus::FmsService service, uint16
 }
 
 TEST(Mc31Plant, FmsControlsOrReadsWhatDpSends) {
-  PROVES("FMS-OBJ-09");
+  PROVES_BY_CLASSES("FMS-OBJ-09");  // no key, verb or view speaks FMS
   using profibus::FmsEnd;
   using profibus::FmsService;
   Mc31Plant alone(unit());

@@ -45,6 +45,22 @@ TEST(SerialPlan, StationsOnALine) {
   EXPECT_TRUE(two.told("a and b are both masters (P750)"));
 }
 
+// P811 is index 8598 (2196h): 100 from the works; 99 is below the minimum (class 8, 16h), 200 above the maximum (15h).
+TEST(SerialPlant, GroupAddressOfAMovidriveB) {
+  PROVES("MDB-PAR-10");
+  PlantRun run(bus("l") + station("a", "mdxb", "rs485 = \"l\"\n", "P810 = 1\n"));
+  const auto ask = [&](const std::string& channel) {
+    const auto heard = run.ask(0, "02 01 86 " + channel);
+    EXPECT_EQ(heard.size(), 1U) << channel;
+    return heard.empty() ? "" : heard[0].substr(9, 23);
+  };
+  EXPECT_EQ(ask("31 00 21 96 00 00 00 00"), "31 00 21 96 00 00 00 64");
+  EXPECT_EQ(ask("32 00 21 96 00 00 00 63"), "B2 00 21 96 08 00 00 16");
+  EXPECT_EQ(ask("32 00 21 96 00 00 00 C8"), "B2 00 21 96 08 00 00 15");
+  for (const char* good : {"C7", "64"})
+    EXPECT_EQ(ask(std::string("32 00 21 96 00 00 00 ") + good), std::string("32 00 21 96 00 00 00 ") + good);
+}
+
 TEST(SerialPlan, LengthOfALine) {
   PROVES("RS485-24");
   const std::string units =

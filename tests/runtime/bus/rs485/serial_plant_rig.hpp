@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runtime/plant/plant.hpp"
+#include "tests/harness/reach.hpp"
 #include "tests/runtime/bus/rs485/serial_rig.hpp"
 
 namespace ipos::tests {
@@ -22,6 +23,7 @@ inline std::string station(const std::string& name, const std::string& unit, con
 // A plant without programs, with a recorder and a hand-driven station on each line.
 struct PlantRun {
   explicit PlantRun(const std::string& text) {
+    goes_through(kPlantFile);
     PlantFileResult file = read_plant_file(text);
     EXPECT_TRUE(file.errors.empty()) << file.errors[0].text;
     std::vector<PlantError> errors;
