@@ -6,11 +6,13 @@
 namespace ipos::runtime {
 
 RealTimeLoop::End RealTimeLoop::run(Time end) {
-  const Time epoch = clock_.now() - simulation_.now();
+  Time epoch = clock_.now() - simulation_.now();
   End result = End::Reached;
   for (;;) {
     // The clock first: what arrives after this reading belongs to the next round, at its own time.
-    const Time target = std::min(clock_.now() - epoch, end);
+    const Time now = clock_.now();
+    epoch += forgive(now - epoch);
+    const Time target = std::min(now - epoch, end);
     bool all_there = true;
     for (RealTimeMember* member : members_) all_there &= member->collect(epoch);
     judge(target);
@@ -33,13 +35,24 @@ bool RealTimeLoop::flush() {
   return all_there;
 }
 
-void RealTimeLoop::judge(Time target) {
-  const Time due = simulation_.next_time();
-  if (due >= target) return;
-  const Time late = target - due;
+Time RealTimeLoop::forgive(Time target) {
+  const Time late = target - simulation_.next_time();
+  if (late <= kForgiven) return 0;
+  note_late(late);
+  punctuality_.left_out += late;
+  return late;
+}
+
+void RealTimeLoop::note_late(Time late) {
   punctuality_.worst = std::max(punctuality_.worst, late);
+  if (late > kLateTick && punctuality_.first_late < 0) punctuality_.first_late = simulation_.next_time();
+}
+
+void RealTimeLoop::judge(Time target) {
+  const Time late = target - simulation_.next_time();
+  if (late <= 0) return;
+  note_late(late);
   if (late <= kLateTick) return;
-  if (punctuality_.first_late < 0) punctuality_.first_late = due;
   punctuality_.late_ticks += static_cast<uint64_t>((late - kLateTick + kMillisecond - 1) / kMillisecond);
 }
 

@@ -36,11 +36,16 @@ class RealTimeMember {
 // A tick that comes later than this is counted: the next one is due by then (ours).
 inline constexpr Time kLateTick = kMillisecond;
 
+// What is later than this is not made up for (ours): behind a process that was stopped for seconds, a real bus would get all
+// the telegrams of that time at once, with setpoints of then. The clock of the run goes on from there.
+inline constexpr Time kForgiven = 200 * kMillisecond;
+
 struct Punctuality {
   uint64_t late_ticks = 0;  // milliseconds of virtual time that ran more than kLateTick late
   Time worst = 0;           // the latest start of an event
   Time first_late = -1;     // virtual time of the first late tick, -1 without one
-  Time lag = 0;             // host time minus virtual time when the loop ended
+  Time lag = 0;             // host time minus virtual time when the loop ended, without what was left out
+  Time left_out = 0;        // host time that was not made up for
 };
 
 class RealTimeLoop {
@@ -59,6 +64,9 @@ class RealTimeLoop {
  private:
   bool flush();
   void judge(Time target);
+  // How much of the clock is left out, that virtual time begins its next event now; 0 when it is not later than is made up for.
+  Time forgive(Time target);
+  void note_late(Time late);
 
   RealClock& clock_;
   Simulation& simulation_;

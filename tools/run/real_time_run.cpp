@@ -89,6 +89,12 @@ void RealTimeRun::tell_news(const runtime::RealTimeLoop& loop) {
   for (const runtime::JoinedPort& joined : joined_)
     for (const std::string& text : joined.bridge->take_notes()) message("warning: " + text);
   const runtime::Punctuality& punctuality = loop.punctuality();
+  if (!told_left_out_ && punctuality.left_out != 0) {
+    told_left_out_ = true;
+    message(fmt::format("warning: real time: this process stood still for {:.0f} ms; they are left out, for what is later than "
+                        "{} ms is not made up for",
+                        ms(punctuality.left_out), runtime::kForgiven / runtime::kMillisecond));
+  }
   if (told_late_ || punctuality.first_late < 0) return;
   told_late_ = true;
   message(fmt::format("warning: real time: the tick of {:.3f} ms came {:.1f} ms late; later ones are counted",
@@ -98,9 +104,10 @@ void RealTimeRun::tell_news(const runtime::RealTimeLoop& loop) {
 void RealTimeRun::report(const runtime::Punctuality& punctuality) const {
   message(fmt::format(
       "real time: {:.3f} s; {} ticks more than {} ms late, the worst {:.2f} ms; {:.2f} ms behind at the "
-      "end",
+      "end{}",
       ms(plant_.now()) / 1e3, punctuality.late_ticks, runtime::kLateTick / runtime::kMillisecond,
-      ms(punctuality.worst), ms(punctuality.lag)));
+      ms(punctuality.worst), ms(punctuality.lag),
+      punctuality.left_out == 0 ? "" : fmt::format("; {:.3f} s left out", ms(punctuality.left_out) / 1e3)));
   for (const runtime::JoinedPort& joined : joined_) {
     const runtime::PortCounts& counts = joined.port->counts();
     const runtime::BridgeCounts& bridge = joined.bridge->counts();

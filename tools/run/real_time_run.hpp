@@ -33,6 +33,7 @@ class RealTimeRun {
   runtime::SystemClock clock_;
   std::vector<runtime::JoinedPort> joined_;
   bool told_late_ = false;
+  bool told_left_out_ = false;
 };
 
 }  // namespace ipos::tools

@@ -21,7 +21,7 @@ constexpr auto kBetweenSnapshots = 250ms;
 constexpr auto kLookAtMail = 2ms;  // while it runs faster than the clock
 constexpr auto kBehind =
     1ms;  // of a plant with real ports: what comes within a millisecond is there before it is run
-constexpr auto kForgiven = 200ms;  // what is later than that is not made up for
+constexpr auto kForgiven = std::chrono::nanoseconds(runtime::kForgiven);  // as `ipos run --realtime`
 constexpr int kLettersAtOnce = 8;  // a client that floods does not hold the plant up
 constexpr Time kTelegramLimit = 10 * runtime::kSecond;
 constexpr int64_t kFarthest = 1'000'000'000'000'000;  // us

@@ -35,15 +35,16 @@ class OwnPty : public ::testing::Test {
   // What comes from the program, as soon as the system has handed it on.
   std::string take(size_t room = 64) {
     std::string bytes(room, '\0');
-    for (int tries = 0; tries < 200; ++tries) {
+    for (int tries = 0; tries < 20'000; ++tries) {
       if (const size_t size = pty_->read(bytes)) return bytes.substr(0, size);
       usleep(500);
     }
     return "";
   }
-  static std::string heard(const Descriptor& program) {
+  // The same for the program; `patience` is for what does not come, in fifths of a millisecond.
+  static std::string heard(const Descriptor& program, int patience = 50'000) {
     std::array<char, 256> bytes{};
-    for (int tries = 0; tries < 50; ++tries) {
+    for (int tries = 0; tries < patience; ++tries) {
       const ssize_t size = ::read(program.get(), bytes.data(), bytes.size());
       if (size > 0) return std::string(bytes.data(), static_cast<size_t>(size));
       usleep(200);
@@ -170,7 +171,7 @@ TEST_F(OwnPty, WithoutAProgramBytesGoNowhere) {
   EXPECT_EQ(pty_->waiting(), "");
   const Descriptor other = program();
   look();
-  EXPECT_EQ(heard(other), "");
+  EXPECT_EQ(heard(other, 50), "");
 }
 
 TEST_F(OwnPty, BytesWaitForAProgramThatDoesNotRead) {
@@ -184,7 +185,7 @@ TEST_F(OwnPty, BytesWaitForAProgramThatDoesNotRead) {
   EXPECT_GT(waiting, 0U);
   EXPECT_LE(waiting, kLimit);
   std::string all;
-  for (std::string got; !(got = heard(other)).empty(); pty_->flush()) all += got;
+  for (std::string got; !(got = heard(other, 500)).empty(); pty_->flush()) all += got;
   EXPECT_EQ(all.size(), sent);
   EXPECT_EQ(pty_->waiting(), "");
   EXPECT_TRUE(pty_->write(part));

@@ -121,6 +121,37 @@ TEST(RealTime, ASlowSimulationFallsBehindAndSaysSo) {
   EXPECT_LT(rig.station.times[0], 3 * kMillisecond);
 }
 
+// A process that is stopped for two seconds: what a station sends each 10 ms comes no faster than that afterwards but for the
+// 200 ms that are made up for. Stopped for less, it sends all.
+TEST(RealTime, WhatIsMuchTooLateIsNotMadeUpFor) {
+  for (const Time stop : {2 * kSecond, 150 * kMillisecond}) {
+    Rig rig;
+    rig.ticker.action = [&](Time now) {
+      if (now % (10 * kMillisecond) == 0) rig.station.port.send(frame(7), 1);
+    };
+    bool stopped = false;
+    rig.clock.oversleep = [&]() -> Time {
+      if (stopped || rig.clock.now() - rig.start < 500 * kMillisecond) return 0;
+      stopped = true;
+      return stop;
+    };
+    rig.arrive(600 * kMillisecond, frame(100));  // while it is stopped, or shortly afterwards
+    EXPECT_EQ(rig.loop.run(kSecond), RealTimeLoop::End::Reached);
+    const bool forgiven = stop > kForgiven;
+    EXPECT_NEAR(static_cast<double>(rig.loop.punctuality().left_out), forgiven ? static_cast<double>(stop) : 0, 1e6);
+    EXPECT_NEAR(static_cast<double>(rig.loop.punctuality().worst), static_cast<double>(stop), 1e6);
+    EXPECT_EQ(rig.loop.punctuality().first_late / kMillisecond, 501);
+    EXPECT_NEAR(static_cast<double>(rig.clock.now() - rig.start), 1e9 + (forgiven ? static_cast<double>(stop) : 0), 1e6);
+    size_t at_once = 0;  // sent within the millisecond behind the stop
+    for (const CanArrival& sent : rig.port.outgoing)
+      at_once += sent.at - rig.start >= 500 * kMillisecond + stop && sent.at - rig.start < 503 * kMillisecond + stop ? 1U : 0U;
+    EXPECT_EQ(at_once, forgiven ? 0U : 15U);
+    EXPECT_EQ(rig.port.outgoing.size(), 100U);  // virtual time is all there
+    ASSERT_EQ(rig.station.frames.size(), 1U);
+    EXPECT_EQ(rig.bridge.counts().late, 0U);
+  }
+}
+
 TEST(RealTime, EndsWithTheSimulationAndWithAPort) {
   Rig stopped;
   stopped.simulation.stop_at = 5 * kMillisecond;

@@ -330,7 +330,7 @@ TEST_F(OpenTty, WhatCameBeforeIsNobodys) {
   ASSERT_EQ(write(master_.get(), "new\n", 4), 4);
   std::array<char, 16> bytes{};
   size_t size = 0;
-  for (int tries = 0; tries < 100 && size == 0; ++tries) {
+  for (int tries = 0; tries < 10'000 && size == 0; ++tries) {
     size = tty->read(bytes).value_or(0);
     if (size == 0) usleep(1'000);
   }
@@ -348,7 +348,7 @@ class TtyPort : public OpenTty {
   }
   // As soon as the system has handed them on.
   static size_t receive(BytePort& port, std::span<ByteArrival> into) {
-    for (int tries = 0; tries < 200; ++tries) {
+    for (int tries = 0; tries < 20'000; ++tries) {
       const auto count = port.receive(into);
       if (!count || *count != 0) return count.value_or(0);
       usleep(500);
@@ -359,10 +359,11 @@ class TtyPort : public OpenTty {
   void arrive(BytePort& port, const std::string& bytes) {
     ASSERT_EQ(write(master_.get(), bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
     int there = 0;
-    for (int tries = 0; tries < 200 && there < static_cast<int>(bytes.size()); ++tries) {
+    for (int tries = 0; tries < 20'000 && there < static_cast<int>(bytes.size()); ++tries) {
       ASSERT_EQ(ioctl(port.needs().descriptor, FIONREAD, &there), 0);
       usleep(500);
     }
+    ASSERT_EQ(there, static_cast<int>(bytes.size())) << "not all bytes are at the device after ten seconds";
   }
   ManualClock clock_;
 };
