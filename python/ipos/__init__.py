@@ -7,7 +7,7 @@
         print(plant["saw"]["lCount"])
 """
 
-from ._library import ClosedError, Mistake, PlantError, RefusedError, ThreadError, version
+from ._library import ClosedError, Mistake, PlantError, QueueFullError, RefusedError, ThreadError, version
 from .bus import Bus, Frame, Telegram
 from .plant import JournalEntry, Plant
 from .station import AnalogValue, ParameterValue, Station
@@ -23,6 +23,7 @@ __all__ = [
     "ParameterValue",
     "Plant",
     "PlantError",
+    "QueueFullError",
     "RefusedError",
     "Station",
     "Telegram",

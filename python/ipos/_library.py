@@ -22,7 +22,7 @@ from ctypes import (
     c_void_p,
 )
 from pathlib import Path
-from typing import Iterator
+from typing import Iterator, Mapping
 
 _NAME = "libipos_plant.so"
 
@@ -197,7 +197,7 @@ _functions |= {name: _typed(name, *types) for name, types in _ANSWERS.items()}
 
 OK, NOT_REACHED, INVALID_ARGUMENT, BAD_PLANT, NOT_OPEN, OTHER_THREAD, BUSY, NO_STATION, NO_SIGNAL, NO_BUS = range(10)
 READ_ONLY, BAD_VALUE, REFUSED, BAD_STATE, OTHER_PLANT, NOT_RECORDED, TOO_SMALL = range(10, 17)
-OUT_OF_MEMORY, BROKEN, NOTHING = range(17, 20)
+OUT_OF_MEMORY, BROKEN, NOTHING, FULL = range(17, 21)
 
 ANY, VARIABLE, PARAMETER, INPUT, OUTPUT, ANALOG, STATE, WORD = range(8)
 
@@ -237,6 +237,10 @@ class RefusedError(PlantError):
     """The unit or the line has refused a value or an order; the text says why, with the return code."""
 
 
+class QueueFullError(RefusedError):
+    """So many frames wait to be sent that there is no room for one more. There is when one of them has gone."""
+
+
 class ThreadError(PlantError, RuntimeError):
     """The plant belongs to another thread, or a call of it is under way."""
 
@@ -259,26 +263,57 @@ def version() -> str:
     return f"{number // 10000}.{number // 100 % 100}.{number % 100}"
 
 
-class _KeyError(KeyError):
-    """A KeyError whose text is shown as it is."""
+class _Words(KeyError):
+    """A KeyError whose text is shown as it is, without quotes around it, under the name that people know."""
 
-    __module__, __qualname__ = "builtins", "KeyError"
+    __module__ = "builtins"
 
     def __str__(self) -> str:
         return str(self.args[0]) if self.args else ""
 
 
+_Words.__name__ = _Words.__qualname__ = "KeyError"
+
+
+def unknown(what: str) -> KeyError:
+    """The KeyError of a name that leads nowhere; its text says what there is."""
+    return _Words(what)
+
+
+class Named(Mapping):
+    """What has things by name: dict(), keys(), items() and get() work, and [ completes in a notebook."""
+
+    __eq__ = object.__eq__
+    __hash__ = object.__hash__
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self)
+
+
+def encoded(value: object, is_path: bool = False) -> bytes:
+    """A text as the library takes it: the one way for every text that is handed over."""
+    if not isinstance(value, str):
+        raise TypeError(f"this is a text, not {type(value).__name__}")
+    if "\0" in value:
+        raise ValueError("a text with a zero character names nothing")
+    return os.fsencode(value) if is_path else value.encode("utf-8", "surrogateescape")
+
+
 def error_of(status: int, message: str) -> Exception:
     said = message or status_text(status)
     if status in (NO_STATION, NO_SIGNAL, NO_BUS):
-        return _KeyError(said)
+        return unknown(said)
     if status == READ_ONLY:
         return TypeError(said)
     if status in (BAD_VALUE, INVALID_ARGUMENT):
         return ValueError(said)
     if status == REFUSED:
         return RefusedError(said)
-    if status in (OTHER_THREAD, BUSY):
+    if status == FULL:
+        return QueueFullError(said)
+    if status == OTHER_THREAD:
+        return ThreadError("the plant belongs to another thread; plant.adopt() takes it over")
+    if status == BUSY:
         return ThreadError(status_text(status))
     if status == OUT_OF_MEMORY:
         return MemoryError(status_text(status))
@@ -294,7 +329,7 @@ def duration_ns(value: object) -> int:
     """A duration: a text with unit ("500ms"), or a number of seconds."""
     if isinstance(value, str):
         ns = c_int64()
-        if function("duration")(value.encode(), byref(ns)) != OK:
+        if function("duration")(encoded(value), byref(ns)) != OK:
             raise ValueError(f"'{value}' is no time; write for example 500ms or 1.5s")
         return ns.value
     if isinstance(value, bool) or not isinstance(value, (int, float)):

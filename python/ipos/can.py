@@ -3,7 +3,8 @@
     bus = can.Bus(interface="ipos", channel="line.toml#sbus")
 
 Lockstep (the default): virtual time stands until recv() moves it, to the next frame or by the timeout, and recv() returns
-at once. The same calls see the same frames at the same times. One thread.
+at once. send() moves it only where 64 frames wait already, until there is room. The same calls see the same frames at the
+same times. One thread.
 
 realtime=True: a thread runs the plant in step with the clock; send() and recv() may come from any thread, so Notifiers
 and masters with threads of their own work. A Notifier on a lockstep bus would run virtual time away.
@@ -27,7 +28,7 @@ from can.broadcastmanager import (
     RestartableCyclicTaskABC,
 )
 
-from ._library import CONTROLLER, PASSIVE, PlantError
+from ._library import CONTROLLER, PASSIVE, PlantError, QueueFullError
 from .bus import Frame
 from .plant import Plant
 
@@ -68,7 +69,15 @@ class _Line:
         if self.owned:
             self.plant.close()
 
-    def send(self, member: "IposBus", message: can.Message) -> None:
+    def queue(self, member: "IposBus", message: can.Message) -> bool:
+        """False: 64 frames wait, and there is no room."""
+        try:
+            self._queue(member, message)
+        except QueueFullError:
+            return False
+        return True
+
+    def _queue(self, member: "IposBus", message: can.Message) -> None:
         tag = self.bus.send(
             message.arbitration_id,
             bytes(message.data or b""),
@@ -84,6 +93,14 @@ class _Line:
                 member.take(frame)
 
     # --- lockstep
+
+    def send(self, member: "IposBus", message: can.Message, timeout: Optional[float]) -> bool:
+        """Waits for room in virtual time; False: the timeout is over. None waits as long as it takes."""
+        end = None if timeout is None else self.plant._now() + round(max(timeout, 0) * 1e9)
+        while not self.run_to(self.plant._now() + _FOR_EVER_NS if end is None else end, lambda: self.queue(member, message)):
+            if end is not None:
+                return False
+        return True
 
     def run_to(self, end: int, heard: Callable[[], bool]) -> bool:
         """Runs until `heard` is true or it is `end`; cyclic messages go out at their times."""
@@ -116,7 +133,7 @@ class _RealTimeLine(_Line):
     def _run(self) -> None:
         try:
             self.plant.adopt()
-            begin, start = time.monotonic_ns(), self.plant._now()
+            self._begin = time.monotonic_ns() - self.plant._now()
             while True:
                 try:
                     order = self._orders.get(timeout=_POLL)
@@ -125,12 +142,27 @@ class _RealTimeLine(_Line):
                     order()
                 except queue.Empty:
                     pass
-                self.plant._run_to(start + time.monotonic_ns() - begin)
-                self.deliver()
+                self._follow()
         except Exception as error:  # whoever waits for frames hears why none comes
             self.failure = error
         for member in tuple(self.members):
             member.frames.put(None)
+
+    def _follow(self) -> None:
+        """The plant up to the clock; in its thread."""
+        self.plant._run_to(time.monotonic_ns() - self._begin)
+        self.deliver()
+
+    def send(self, member: "IposBus", message: can.Message, timeout: Optional[float]) -> bool:
+        """Waits for room by the clock."""
+        end = None if timeout is None else time.monotonic() + timeout
+        while not self.call(lambda _: self.queue(member, message)):
+            if end is not None and time.monotonic() >= end:
+                return False
+            time.sleep(_POLL)
+            if threading.current_thread() is self._thread:
+                self._follow()
+        return True
 
     def end(self) -> None:
         self._orders.put(None)
@@ -190,7 +222,7 @@ class _Cyclic(LimitedDurationCyclicSendTaskABC, ModifiableCyclicTaskABC, Restart
         while self.running and self.next <= now:
             if self.end is not None and self.next >= self.end:
                 return self.stop()
-            self.bus.send(self.messages[self.number % len(self.messages)])
+            self.bus.send(self.messages[self.number % len(self.messages)], timeout=0)
             self.number += 1
             self.next += self.step
 
@@ -202,6 +234,7 @@ class IposBus(can.BusABC):
     plant     a Plant that is open, in place of the file; it stays open, and its time is moved by this bus, too
     realtime  in step with the clock, in a thread
     receive_own_messages   what is sent comes back when it has been on the line
+    bitrate, timing        where given, they have to be those of the line
     """
 
     def __init__(
@@ -214,6 +247,7 @@ class IposBus(can.BusABC):
         receive_own_messages: Union[bool, str] = False,
         **kwargs: Any,
     ) -> None:
+        _refuse_fd(kwargs)
         self.realtime = _flag(realtime)
         self.receive_own_messages = _flag(receive_own_messages)
         self.frames: "queue.SimpleQueue[Optional[can.Message]]" = queue.SimpleQueue()
@@ -223,8 +257,13 @@ class IposBus(can.BusABC):
         self._closed = False
         try:
             self.line = self._line_of(channel, plant)
-        except (PlantError, OSError, KeyError) as error:
+        except (PlantError, OSError, KeyError, ValueError) as error:
             raise can.CanInitializationError(str(error)) from error
+        rate = getattr(kwargs.get("timing"), "bitrate", kwargs.get("bitrate"))
+        if rate is not None and int(rate) != self.line.bus.baud:
+            baud = self.line.bus.baud
+            self.line.leave(self)
+            raise can.CanInitializationError(f"bus '{self.line.name}' of the plant has {baud} bit/s, not {rate}")
         self.channel_info = f"ipos {self.line.name} of {self.line.plant._path or 'a plant'}"
         super().__init__(channel=channel, can_filters=can_filters, **kwargs)
         self.line.enter(self)
@@ -290,15 +329,19 @@ class IposBus(can.BusABC):
             raise can.CanOperationError("the bus is shut down")
 
     def send(self, msg: can.Message, timeout: Optional[float] = None) -> None:
+        """Queues a frame. 64 wait at most: then it waits for room, `timeout` seconds, or with None as long as it takes;
+        in lockstep that is virtual time."""
         self._check_open()
         if msg.is_fd:
             raise can.CanOperationError("a plant has no CAN FD")
         if msg.is_error_frame:
             raise can.CanOperationError("error frames cannot be sent; plant.plant_fault() plants errors")
         try:
-            self.line.call(lambda _: self.line.send(self, msg))
+            has_room = self.line.send(self, msg, timeout)
         except (PlantError, ValueError) as error:
             raise can.CanOperationError(str(error)) from error
+        if not has_room:
+            raise can.CanTimeoutError(f"too many frames wait to be sent, also after {timeout or 0:g} s")
 
     def recv(self, timeout: Optional[float] = None) -> Optional[can.Message]:
         """The next message that fits the filters. In lockstep the timeout is virtual time."""
@@ -379,6 +422,13 @@ def _only_bus(plant: Plant) -> str:
     if len(lines) != 1:
         raise can.CanInitializationError(f"the channel names a bus behind #; the plant has {', '.join(lines) or 'none'}")
     return lines[0]
+
+
+def _refuse_fd(options: dict[str, Any]) -> None:
+    """What would ask for CAN FD; a plant has none, and to take it without a word would mislead."""
+    timing = options.get("timing")
+    if _flag(options.get("fd", False)) or options.get("data_bitrate") is not None or hasattr(timing, "data_bitrate"):
+        raise can.CanInitializationError("a plant has no CAN FD: leave out fd, data_bitrate and timings of FD")
 
 
 def _flag(value: Union[bool, str]) -> bool:

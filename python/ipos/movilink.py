@@ -16,7 +16,7 @@ from ctypes import byref, c_int32, c_uint16, create_string_buffer
 from typing import Any, Callable, Iterator, Optional, Protocol
 
 from . import _library as lib
-from .station import ParameterValue, _name
+from .station import ParameterValue
 
 READ, WRITE, WRITE_VOLATILE, READ_MINIMUM, READ_MAXIMUM, READ_DEFAULT = 1, 2, 3, 4, 5, 6
 
@@ -83,12 +83,26 @@ class Serial:
 
     addresses = range(100)
     _TYP = 0x86  # parameter channel, acyclic
+    _TRIES = 5
     _PAUSE = 0.004  # s before a telegram: a start pause is 3.44 ms
 
     def __init__(self, port: Any, timeout: float = 0.1, sleep: Callable[[float], None] = time.sleep) -> None:
         self.port, self.timeout, self._sleep = port, timeout, sleep
-        if hasattr(port, "timeout"):
-            port.timeout = timeout
+        self._set_timeout()
+
+    def _set_timeout(self) -> None:
+        """pyserial sets the whole port anew for it. A pseudo-terminal may refuse that while the program on its other side
+        takes over the settings of the open: then the same is right a moment later."""
+        if getattr(self.port, "timeout", self.timeout) == self.timeout:
+            return
+        for left in reversed(range(self._TRIES)):
+            try:
+                self.port.timeout = self.timeout
+                return
+            except Exception:  # termios.error, which is no OSError, or an error of pyserial
+                if not left:
+                    raise
+                self._sleep(0.002)
 
     def exchange(self, address: int, request: bytes) -> Optional[bytes]:
         if hasattr(self.port, "reset_input_buffer"):
@@ -155,18 +169,18 @@ class Drive:
         if isinstance(name, str) and name[:1] == "H" and name[1:].isdigit() and int(name[1:]) < 1024:
             return _FIRST_VARIABLE + int(name[1:])
         index = c_uint16()
-        status = lib.function("parameter_index")(self.unit.encode(), _name(name), byref(index))
+        status = lib.function("parameter_index")(lib.encoded(self.unit), lib.encoded(name), byref(index))
         if status == lib.NO_STATION:
             raise ValueError(f"'{self.unit}' is no unit type; known are md60a, compact, mc07, mdxb, mc31")
         if status != lib.OK:
-            raise lib._KeyError(f"unit {self.unit} has no parameter '{name}'")
+            raise lib.unknown(f"unit {self.unit} has no parameter '{name}'")
         return index.value
 
     def __getitem__(self, name: str | int) -> ParameterValue:
         index = self.index_of(name)
         value = ParameterValue(self.execute(READ, index))
         room = create_string_buffer(200)
-        known = lib.function("parameter_text")(self.unit.encode(), index, value, room, len(room)) == lib.OK
+        known = lib.function("parameter_text")(lib.encoded(self.unit), index, value, room, len(room)) == lib.OK
         value.name, value.text = str(name), lib.text(room.value) if known else str(int(value))
         return value
 
@@ -179,7 +193,7 @@ class Drive:
         if isinstance(value, str):
             number, room = c_int32(), create_string_buffer(500)
             status = lib.function("parameter_value")(
-                self.unit.encode(), index, _name(value), byref(number), room, len(room)
+                lib.encoded(self.unit), index, lib.encoded(value), byref(number), room, len(room)
             )
             if status != lib.OK:
                 raise ValueError(f"{name}: {lib.text(room.value) or lib.status_text(status)}")

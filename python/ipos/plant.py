@@ -31,7 +31,7 @@ class JournalEntry(NamedTuple):
         return f"{self.time * 1e3:.3f} ms {who}{self.weight}: {self.text}"
 
 
-class _Named(Mapping):
+class _Buses(lib.Named):
     """Buses by name."""
 
     def __init__(self, plant: "Plant", buses: Mapping[str, Bus]) -> None:
@@ -40,7 +40,7 @@ class _Named(Mapping):
     def __getitem__(self, name: str) -> Bus:
         if name not in self._buses:
             known = ", ".join(self._buses) or "none"
-            raise lib._KeyError(f"there is no bus '{name}'; the plant has {known}")
+            raise lib.unknown(f"there is no bus '{name}'; the plant has {known}")
         return self._buses[name]
 
     def __iter__(self) -> Iterator[str]:
@@ -81,7 +81,7 @@ class _Gate:
             return handle
 
 
-class Plant:
+class Plant(lib.Named):
     """Opens a plant file (or a program, which makes a plant of one station), or the text of one.
 
     folder       where programs are, with `text`; else that of the file
@@ -114,11 +114,11 @@ class Plant:
         self._path = os.fspath(path) if path is not None else None
         self.recorded = record and not write_memory
         source = lib.Source()
-        source.path = _encoded(self._path)
-        source.text = _encoded(text)
-        source.folder = _encoded(None if folder is None else os.fspath(folder))
-        source.include_dirs, source.include_dir_count = _array([os.fspath(each) for each in include_dirs])
-        source.defines, source.define_count = _array(list(defines))
+        source.path = None if path is None else lib.encoded(self._path, is_path=True)
+        source.text = None if text is None else lib.encoded(text)
+        source.folder = None if folder is None else lib.encoded(os.fspath(folder), is_path=True)
+        source.include_dirs, source.include_dir_count = _array([lib.encoded(os.fspath(each), is_path=True) for each in include_dirs])
+        source.defines, source.define_count = _array([lib.encoded(each) for each in defines])
         source.flags = (lib.WRITE_MEMORY if write_memory else 0) | (0 if record else lib.NO_RECORD)
         source.commands_a_ms = _in_range("speed", speed, 1_000_000)
         source.seed = _in_range("seed", seed, 2**64 - 1)
@@ -151,7 +151,7 @@ class Plant:
         row = lib.BusInfo()
         while lib.function("bus_at")(self._gate.handle, len(buses), byref(row)) == lib.OK:
             buses[lib.text(row.name)] = Bus(self, len(buses), row)
-        self._buses = _Named(self, buses)
+        self._buses = _Buses(self, buses)
 
     # --- the library
 
@@ -271,7 +271,7 @@ class Plant:
     def __getitem__(self, name: str) -> Station:
         with self._gate:
             if name not in self._stations:
-                raise lib._KeyError(f"there is no station '{name}'; the plant has {', '.join(self._stations)}")
+                raise lib.unknown(f"there is no station '{name}'; the plant has {', '.join(self._stations)}")
             return self._stations[name]
 
     def __iter__(self) -> Iterator[str]:
@@ -326,7 +326,7 @@ class Plant:
             raise TypeError(f"a signal is named by a text such as 'saw.lCount', not {type(name).__name__}")
         fits = [each for each in self._stations if name.startswith(each + ".")]
         if not fits:
-            raise lib._KeyError(
+            raise lib.unknown(
                 f"'{name}' is no signal; signals begin with {', '.join(each + '.' for each in self._stations)}"
             )
         station = max(fits, key=len)
@@ -340,7 +340,7 @@ class Plant:
         plant.plant_fault("sbus", "drop", id=0x40B, rate=100)
         """
         rows = [f"{key.rstrip('_')} = {_toml(value)}" for key, value in {"bus": bus, "kind": kind, **keys}.items()]
-        self._call("line_fault", _encoded("[[fault]]\n" + "\n".join(rows) + "\n"))
+        self._call("line_fault", lib.encoded("[[fault]]\n" + "\n".join(rows) + "\n"))
 
     # --- state
 
@@ -369,18 +369,8 @@ class Plant:
         self._call("restore", bytes(snapshot), len(snapshot))
 
 
-def _encoded(text: str | None) -> bytes | None:
-    if text is None:
-        return None
-    if not isinstance(text, str):
-        raise TypeError(f"this is a text, not {type(text).__name__}")
-    if "\0" in text:
-        raise ValueError("a text with a zero character names nothing")
-    return os.fsencode(text)
-
-
-def _array(texts: Sequence[str]) -> tuple[object, int]:
-    return (c_char_p * len(texts))(*[_encoded(text) for text in texts]), len(texts)
+def _array(texts: Sequence[bytes]) -> tuple[object, int]:
+    return (c_char_p * len(texts))(*texts), len(texts)
 
 
 def _in_range(what: str, value: int, most: int) -> int:

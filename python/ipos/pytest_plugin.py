@@ -19,6 +19,7 @@ from typing import Any, Iterator, Optional
 
 import pytest
 
+from ._library import PlantError
 from .plant import Plant
 
 _ENDING = ".test.toml"
@@ -78,7 +79,11 @@ def plant(request: pytest.FixtureRequest) -> Iterator[Plant]:
         file = request.path.parent / file
     elif "folder" not in case:
         case["folder"] = request.path.parent
-    with Plant(file, **case) as opened:
+    try:
+        made = Plant(file, **case)
+    except PlantError as error:  # its mistakes, without the code of this package around them
+        pytest.fail(str(error), pytrace=False)
+    with made as opened:
         request.node.stash[_PLANT] = opened
         yield opened
 
@@ -169,7 +174,8 @@ class TestFailure(Exception):
     """What `ipos test` says."""
 
 
-def _program(config: pytest.Config) -> str:
+def _program(config: pytest.Config) -> Optional[str]:
+    """The program that runs the tests; None: there is none here."""
     named = config.getoption("--ipos-program") or os.environ.get("IPOS")
     if named:
         return named
@@ -177,19 +183,21 @@ def _program(config: pytest.Config) -> str:
     for place in (here / "ipos-program", *(here.parent.parent / "build" / build / "tools" / "ipos" for build in ("release", "dev"))):
         if place.is_file():
             return str(place)
-    found = shutil.which("ipos")
-    if found is None:
-        raise pytest.UsageError("*.test.toml files need the program ipos: on the path, by --ipos-program, or by IPOS")
-    return found
+    return shutil.which("ipos")
 
 
 class TestFile(pytest.File):
     """A *.test.toml file."""
 
     def collect(self) -> Iterator[pytest.Item]:
-        listed = subprocess.run(
-            [_program(self.config), "test", str(self.path), "--list"], capture_output=True, text=True, check=False
-        )
+        program = _program(self.config)
+        if program is None:
+            yield WithoutProgram.from_parent(self, name=self.path.name.removesuffix(_ENDING))
+            return
+        try:
+            listed = subprocess.run([program, "test", str(self.path), "--list"], capture_output=True, text=True, check=False)
+        except OSError as error:
+            raise self.CollectError(f"the program {program} cannot be started: {error.strerror}") from None
         if listed.returncode != 0 and not listed.stdout:
             raise self.CollectError(listed.stderr.strip())
         for line in listed.stdout.splitlines():
@@ -198,6 +206,13 @@ class TestFile(pytest.File):
             yield TestItem.from_parent(
                 self, name=name.strip().rpartition("/")[2], full_name=name.strip(), line=int(number) if number.isdigit() else 1
             )
+
+
+class WithoutProgram(pytest.Item):
+    """The tests of a file that nothing here can run."""
+
+    def runtest(self) -> None:
+        pytest.skip("*.test.toml files need the program ipos: on the path, by --ipos-program, or by IPOS")
 
 
 class TestItem(pytest.Item):

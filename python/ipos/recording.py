@@ -108,7 +108,7 @@ class Recording:
 
     def __getitem__(self, name: str) -> list[float]:
         if name not in self.names:
-            raise lib._KeyError(f"'{name}' was not recorded; there are {', '.join(self.names)}")
+            raise lib.unknown(f"'{name}' was not recorded; there are {', '.join(self.names)}")
         return self._columns[self.names.index(name)]
 
     def __len__(self) -> int:

@@ -62,7 +62,7 @@ def _level(value: object) -> int:
     return number
 
 
-class _Signals:
+class _Signals(lib.Named):
     """Signals of one kind of a station, by name."""
 
     kind = lib.ANY
@@ -188,7 +188,7 @@ class Words(_Signals):
     what = "process words"
 
 
-class Station:
+class Station(lib.Named):
     """plant["saw"]. Variables by name: saw["lCount"], saw["TrCycl.Result"], saw["H430"]; saw["lCount"] = 5."""
 
     def __init__(self, plant: "Plant", number: int, info: lib.StationInfo) -> None:
@@ -243,7 +243,7 @@ class Station:
         if isinstance(value, Mapping):
             wrong = [key for key in value if f"{name}.{key}" not in whole and f"{name}{key}" not in whole]
             if wrong:
-                raise lib._KeyError(f"'{name}' has no {wrong[0]!r}; it has {', '.join(whole)}")
+                raise lib.unknown(f"'{name}' has no {wrong[0]!r}; it has {', '.join(whole)}")
             return [(f"{name}.{key}" if f"{name}.{key}" in whole else f"{name}{key}", each) for key, each in value.items()]
         if isinstance(value, (list, tuple)) and len(value) == len(whole):
             return list(zip(whole, value))
@@ -370,14 +370,14 @@ class Station:
         if found is not None:
             return found
         signal = c_uint32()
-        self._plant._call("find", self._number, kind, _name(name), byref(signal))
+        self._plant._call("find", self._number, kind, lib.encoded(name), byref(signal))
         self._found[(kind, name)] = signal.value  # type: ignore[index]
         return signal.value
 
     def _names(self, kind: int, part: str | None = None) -> list[str]:
         names: list[str] = []
         name = c_char_p()
-        whole = None if part is None else _name(part)
+        whole = None if part is None else lib.encoded(part)
         with self._plant._gate as handle:
             while True:
                 status = lib.function("name_at")(handle, self._number, kind, whole, len(names), byref(name))
@@ -405,12 +405,4 @@ class Station:
         self._plant._call(how, signal, value)
 
     def _write_text(self, how: str, signal: int, text: str) -> None:
-        self._plant._call(how + "_text", signal, _name(text))
-
-
-def _name(name: object) -> bytes:
-    if not isinstance(name, str):
-        raise TypeError(f"this is named by a text, not {type(name).__name__}")
-    if "\0" in name:
-        raise ValueError("a text with a zero character names nothing")
-    return name.encode("utf-8", "surrogateescape")
+        self._plant._call(how + "_text", signal, lib.encoded(text))

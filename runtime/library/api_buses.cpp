@@ -145,7 +145,7 @@ ipos_plant_status ipos_plant_join(ipos_plant* plant, uint32_t bus) {
 
 ipos_plant_status ipos_plant_send(ipos_plant* plant, uint32_t bus, const ipos_plant_frame* frame,
                                   uint32_t* tag) {
-  return with_can(plant, bus, Allowed::NotInCallbacks, [=](Session& session, CanTap&) {
+  return with_can(plant, bus, Allowed::NotInCallbacks, [=](Session& session, CanTap& tap) {
     if (frame == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
     ipos::runtime::Frame sent;
     sent.id = frame->id;
@@ -156,6 +156,8 @@ ipos_plant_status ipos_plant_send(ipos_plant* plant, uint32_t bus, const ipos_pl
     if (!is_valid(sent) || (frame->flags & ~uint32_t{IPOS_PLANT_EXTENDED | IPOS_PLANT_REMOTE}) != 0)
       return plant->fail(IPOS_PLANT_BAD_VALUE,
                          "a frame has 8 bytes at most and an identifier of 11 or, extended, 29 bits");
+    // Who waits for room asks again and again: that is no deed, and the record does not grow by it.
+    if (tap.is_full()) return plant->fail(IPOS_PLANT_FULL, ipos_plant_status_text(IPOS_PLANT_FULL));
     const uint32_t number = session.next_tag();
     if (tag != nullptr) *tag = number;
     return perform(plant, session, Act::Send, bus, number, frame_bytes(canonical(sent)));

@@ -95,10 +95,11 @@ ipos_plant_status ipos_plant_name_at(ipos_plant* plant, uint32_t station, ipos_p
     if (name == nullptr || !is_kind(kind) || kind == IPOS_PLANT_ANY)
       return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
     if (station >= station_count(session.plant())) return no_station(plant, station);
-    const std::string asked = fmt::format("{} {} {}", station, kind, part == nullptr ? "" : part);
+    const auto whole = part == nullptr ? std::nullopt : std::optional<std::string_view>(part);
+    const std::string asked = fmt::format("{} {} {}{}", station, kind, whole ? "of " : "", whole.value_or(""));
     if (plant->listed_for != asked) {
       plant->listed_for.clear();
-      plant->listed = place_names(session.plant(), station, static_cast<Kind>(kind), part == nullptr ? "" : part);
+      plant->listed = place_names(session.plant(), station, static_cast<Kind>(kind), whole);
       plant->listed_for = asked;
     }
     if (number >= plant->listed.size()) return ipos_plant_status{IPOS_PLANT_NOTHING};

@@ -42,6 +42,7 @@ Refusal CanTap::send(const runtime::Frame& frame, uint32_t tag) {
     case runtime::SendStatus::NotActive: return "the bus is off";
     case runtime::SendStatus::InvalidFrame: return "no frame is like that";
   }
+  ++queued_;
   waiting_.emplace_back(runtime::canonical(frame), tag);
   if (waiting_.size() > 2 * runtime::kSendQueueLimit) waiting_.pop_front();
   return std::nullopt;

@@ -64,6 +64,7 @@ class CanTap final : private runtime::CanObserver, private runtime::CanNode {
 
   void join();
   Refusal send(const runtime::Frame& frame, uint32_t tag);
+  bool is_full() const { return queued_ >= runtime::kSendQueueLimit; }
   Kept<Heard>& heard() { return heard_; }
   const Kept<Heard>& heard() const { return heard_; }
   const runtime::CanLine& line() const { return line_; }
@@ -72,12 +73,17 @@ class CanTap final : private runtime::CanObserver, private runtime::CanNode {
   void on_frame(const runtime::CanLine&, const runtime::FrameRecord& record) override;
   void on_line_event(const runtime::CanLine&, const runtime::LineEvent& event) override;
   void on_frame(Time, const runtime::Frame&) override {}
-  void on_sent(Time, const runtime::Frame&, uint64_t) override {}
-  void on_not_sent(Time, const runtime::Frame&, uint64_t, runtime::NotSent) override {}
+  void on_sent(Time, const runtime::Frame&, uint64_t) override { leave_queue(); }
+  void on_not_sent(Time, const runtime::Frame&, uint64_t, runtime::NotSent why) override {
+    if (why == runtime::NotSent::Dropped) leave_queue();  // for every other reason it is tried again
+  }
+  // At bus-off all are dropped, also the one on the wire, which may be carried to its end all the same.
+  void leave_queue() { queued_ -= queued_ == 0 ? 0 : 1; }
   void on_bus_off(Time) override { line_.recover(*node_); }
 
   runtime::CanLine& line_;
   std::optional<NodeId> node_;
+  size_t queued_ = 0;  // of what was sent here: neither on the line nor given up yet
   std::deque<std::pair<runtime::Frame, uint32_t>> waiting_;  // with their tags
   Kept<Heard> heard_;
 };

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "compiler/compile.hpp"
+#include "runtime/plant/all_mistakes.hpp"
 #include "stdlib/unit_types.hpp"
 
 namespace ipos::library {
@@ -99,6 +100,7 @@ tl::expected<Contents, Mistakes> Contents::read(const Source& source) {
   contents.folder_ = source.folder.value_or(fs::path(source.path).parent_path().string());
   const bool is_program = !source.text && (ending(source.path) == ".ipc" || ending(source.path) == ".ipx");
   std::string text;
+  std::vector<runtime::PlantError> errors;
   if (is_program) {
     contents.file_ = plant_of_program(source.path);
   } else {
@@ -110,7 +112,7 @@ tl::expected<Contents, Mistakes> Contents::read(const Source& source) {
       text = *std::move(file);
     }
     runtime::PlantFileResult read = runtime::read_plant_file(text);
-    if (!read.errors.empty()) return tl::unexpected(mistakes_of(contents.name_, read.errors));
+    errors = std::move(read.errors);
     contents.file_ = std::move(read.plant);
   }
   for (runtime::StationConfig& station : contents.file_.stations) {
@@ -120,26 +122,32 @@ tl::expected<Contents, Mistakes> Contents::read(const Source& source) {
   for (runtime::FaultConfig& fault : contents.file_.faults) fault.fault.seed += source.seed;
   if (source.commands_a_ms != 0)
     contents.rates_ = vm::Rates{{source.commands_a_ms, source.commands_a_ms, source.commands_a_ms}};
-  Mistakes mistakes = contents.load_programs(source);
-  if (!mistakes.empty()) return tl::unexpected(std::move(mistakes));
+  Mistakes of_programs;
+  contents.load_programs(source, errors, of_programs);
+  if (!errors.empty() || !of_programs.empty()) {
+    if (!is_program)
+      errors = runtime::all_mistakes(contents.file_, std::move(contents.programs_), std::move(errors));
+    Mistakes mistakes = mistakes_of(contents.name_, errors);
+    mistakes.insert(mistakes.end(), of_programs.begin(), of_programs.end());
+    return tl::unexpected(std::move(mistakes));
+  }
   contents.identify(text, source);
   return contents;
 }
 
-Mistakes Contents::load_programs(const Source& source) {
-  Mistakes mistakes;
+void Contents::load_programs(const Source& source, std::vector<runtime::PlantError>& errors, Mistakes& of_programs) {
+  const bool has_mistakes = !errors.empty();
   for (runtime::StationConfig& station : file_.stations) {
     programs_.emplace_back();
-    if (!station.program.empty()) programs_.back() = load_program(source, station, mistakes);
+    if (station.program.empty() || (has_mistakes && station.unit == nullptr)) continue;
+    programs_.back() = load_program(source, station, errors, of_programs);
   }
-  return mistakes;
 }
 
 std::optional<vm::Image> Contents::load_program(const Source& source, runtime::StationConfig& station,
-                                                Mistakes& mistakes) {
+                                                std::vector<runtime::PlantError>& errors, Mistakes& of_programs) {
   const auto mistake = [&](std::string text) {
-    mistakes.push_back({name_, station.program_place.line, station.program_place.column,
-                        fmt::format("station '{}': {}", station.name, std::move(text))});
+    errors.push_back({station.program_place, fmt::format("station '{}': {}", station.name, std::move(text))});
     return std::nullopt;
   };
   const std::string path = beside(folder_, station.program);
@@ -155,7 +163,7 @@ std::optional<vm::Image> Contents::load_program(const Source& source, runtime::S
     compiler::Compilation compiled = compiler::compile(path, path, *std::move(bytes), options);
     if (!compiled.image) {
       const Mistakes found = mistakes_of(compiled);
-      mistakes.insert(mistakes.end(), found.begin(), found.end());
+      of_programs.insert(of_programs.end(), found.begin(), found.end());
       return std::nullopt;
     }
     image = *std::move(compiled.image);

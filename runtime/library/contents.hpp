@@ -37,6 +37,7 @@ struct Source {
 
 class Contents {
  public:
+  // All mistakes at once, as `ipos run` tells them.
   static tl::expected<Contents, Mistakes> read(const Source& source);
 
   // At time 0, switched on. Mistakes are those that only the units find.
@@ -46,9 +47,10 @@ class Contents {
   uint64_t identity() const { return identity_; }
 
  private:
-  Mistakes load_programs(const Source& source);
+  // What is wrong with a program stands in `errors` if it has a place in the plant file, else in `of_programs`.
+  void load_programs(const Source& source, std::vector<runtime::PlantError>& errors, Mistakes& of_programs);
   std::optional<vm::Image> load_program(const Source& source, runtime::StationConfig& station,
-                                        Mistakes& mistakes);
+                                        std::vector<runtime::PlantError>& errors, Mistakes& of_programs);
   void identify(std::string_view text, const Source& source);
 
   std::string name_;    // of the plant file in messages

@@ -15,6 +15,7 @@
 #include "runtime/plant/variable_names.hpp"
 #include "runtime/plant_file/signal.hpp"
 #include "stdlib/parameters.hpp"
+#include "stdlib/spelling.hpp"
 
 namespace ipos::library {
 namespace {
@@ -155,7 +156,8 @@ std::vector<std::string> gateway_names(const runtime::Gateway& gateway, Kind kin
 
 }  // namespace
 
-std::vector<std::string> place_names(const Plant& plant, uint32_t number, Kind kind, std::string_view part) {
+std::vector<std::string> place_names(const Plant& plant, uint32_t number, Kind kind,
+                                     std::optional<std::string_view> part) {
   if (const runtime::Gateway* gateway = gateway_of(plant, number)) return gateway_names(*gateway, kind);
   const Station& station = *plant.stations()[number];
   std::vector<std::string> names;
@@ -163,19 +165,26 @@ std::vector<std::string> place_names(const Plant& plant, uint32_t number, Kind k
   switch (kind) {
     case Kind::Variable:
       if (station.image() == nullptr) break;
-      if (!part.empty()) {
-        for (auto& found : runtime::named_variables(station.image()->symbols, *station.config().unit, part))
+      if (part) {
+        for (auto& found : runtime::named_variables(station.image()->symbols, *station.config().unit, *part))
           names.push_back(std::move(found.name));
         break;
       }
       for (const vm::Symbol& symbol : station.image()->symbols)
         for (auto& element : runtime::elements_of(symbol)) names.push_back(std::move(element.name));
       break;
-    case Kind::Parameter:
-      for (const stdlib::Parameter& row : stdlib::parameter_table(*station.config().unit).rows())
-        if (row.index != 0)
-          names.push_back(row.number.empty() ? fmt::format("{}", row.index) : fmt::format("P{}", row.number));
+    case Kind::Parameter: {
+      // Of rows that share a number or an index, that one which the name leads to.
+      const stdlib::ParameterTable& table = stdlib::parameter_table(*station.config().unit);
+      for (const stdlib::Parameter& row : table.rows()) {
+        const std::string shown = fmt::format("P{}", row.number);
+        if (row.index != 0 && table.find(std::string_view(shown)) == &row)
+          names.push_back(shown);
+        else if (row.index != 0 && table.find(row.index) == &row)
+          names.push_back(fmt::format("{}", row.index));
+      }
       break;
+    }
     case Kind::Input:
       for (uint32_t bit = 0; bit < runtime::kBinaryLines; ++bit) names.push_back(input_name(bit));
       break;
@@ -201,6 +210,43 @@ std::vector<std::string> place_names(const Plant& plant, uint32_t number, Kind k
   return names;
 }
 
+namespace {
+
+// Every name that a kind has; of Any those of all kinds that have a few.
+std::vector<std::string> all_names(const Plant& plant, uint32_t number, Kind kind) {
+  if (kind != Kind::Any) return place_names(plant, number, kind);
+  std::vector<std::string> names;
+  for (const Kind each : {Kind::Variable, Kind::Parameter, Kind::Input, Kind::Output, Kind::Analog, Kind::State, Kind::Word,
+                          Kind::Signal})
+    for (std::string& name : place_names(plant, number, each)) names.push_back(std::move(name));
+  return names;
+}
+
+// " (did you mean 'speed'?); it has lCount, ...": the nearest name of all, and the first ones of the kind.
+std::string what_there_is(const Plant& plant, uint32_t number, Kind kind, std::string_view name) {
+  const Station& station = *plant.stations()[number];
+  constexpr size_t kShown = 24;
+  std::vector<std::string> names = place_names(plant, number, kind == Kind::Any ? Kind::Variable : kind);
+  const size_t count = names.size();
+  if (count > kShown) names.resize(kShown);
+  std::string known = count == 0 ? "none" : fmt::format("{}", fmt::join(names, ", "));
+  if (count > kShown) known += fmt::format(" and {} more", count - kShown);
+  if (kind == Kind::Any || kind == Kind::Variable)
+    known = station.image() == nullptr ? "no program"
+                                       : fmt::format("{}, H0..H{} and the system variables", known,
+                                                     station.config().unit->variables - 1);
+  if (kind == Kind::Any)
+    known += fmt::format("; states {}; terminals, words and parameters",
+                         fmt::join(place_names(plant, number, Kind::State), ", "));
+  const bool is_whole = count <= kShown && kind != Kind::Any && kind != Kind::Variable;  // the list needs no hint
+  const std::vector<std::string> all = is_whole ? std::vector<std::string>() : all_names(plant, number, kind);
+  const std::vector<std::string_view> candidates(all.begin(), all.end());
+  const std::string_view best = stdlib::nearest(name, candidates);
+  return fmt::format("{}; it has {}", best.empty() ? "" : fmt::format(" (did you mean '{}'?)", best), known);
+}
+
+}  // namespace
+
 tl::expected<Place, std::string> find_place(Plant& plant, uint32_t number, Kind kind, std::string_view name) {
   if (const runtime::Gateway* gateway = gateway_of(plant, number)) {
     const auto all = runtime::gateway_signals(*gateway);
@@ -215,18 +261,8 @@ tl::expected<Place, std::string> find_place(Plant& plant, uint32_t number, Kind 
        n <= static_cast<uint8_t>(kind == Kind::Any ? Kind::Signal : kind); ++n)
     if (const auto found = find_number(station, static_cast<Kind>(n), name))
       return Place{number, static_cast<Kind>(n), *found};
-  constexpr size_t kShown = 24;
-  std::vector<std::string> names = place_names(plant, number, kind == Kind::Any ? Kind::Variable : kind, "");
-  const size_t count = names.size();
-  if (count > kShown) names.resize(kShown);
-  std::string known = count == 0 ? "none" : fmt::format("{}", fmt::join(names, ", "));
-  if (count > kShown) known += fmt::format(" and {} more", count - kShown);
-  if (kind == Kind::Any || kind == Kind::Variable)
-    known = station.image() == nullptr ? "no program"
-                                       : fmt::format("{}, H0..H{} and the system variables", known,
-                                                     station.config().unit->variables - 1);
-  return tl::unexpected(fmt::format("station '{}' has no {} '{}'; it has {}", station.config().name,
-                                    kind_word(kind), name, known));
+  return tl::unexpected(fmt::format("station '{}' has no {} '{}'{}", station.config().name, kind_word(kind), name,
+                                    what_there_is(plant, number, kind, name)));
 }
 
 bool exists(const Plant& plant, const Place& place) {

@@ -48,9 +48,10 @@ runtime::PlantSignal shown_signal(const runtime::Plant& plant, const Place& plac
 // The error says what there is instead.
 tl::expected<Place, std::string> find_place(runtime::Plant& plant, uint32_t station, Kind kind,
                                             std::string_view name);
-// What the station has of this kind; of variables those of the program, member by member, and of `part` only where it is
-// not empty.
-std::vector<std::string> place_names(const runtime::Plant& plant, uint32_t station, Kind kind, std::string_view part);
+// What the station has of this kind; of variables those of the program, member by member, or only the members of the whole
+// `part`.
+std::vector<std::string> place_names(const runtime::Plant& plant, uint32_t station, Kind kind,
+                                     std::optional<std::string_view> part = std::nullopt);
 
 // Nothing when the station has no such place: numbers may come from anywhere.
 bool exists(const runtime::Plant& plant, const Place& place);

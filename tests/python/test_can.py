@@ -95,14 +95,69 @@ def test_refusals_are_those_of_python_can(bus):
             can.Bus(interface="ipos", channel=channel)
     with pytest.raises(can.CanOperationError):
         bus.send(can.Message(arbitration_id=1, is_fd=True, data=bytes(16)))
-    with pytest.raises(can.CanOperationError, match="too many frames"):
-        for _ in range(100):
-            bus.send(can.Message(arbitration_id=1, is_extended_id=False))
+    for options in ({"fd": True}, {"fd": "true"}, {"data_bitrate": 2_000_000}, {"bitrate": 250_000}, {"bitrate": "125000"}):
+        with pytest.raises(can.CanInitializationError, match="CAN FD|500000 bit/s"):
+            can.Bus(interface="ipos", channel=CHANNEL, **options)
+    can.Bus(interface="ipos", channel=CHANNEL, bitrate=500_000, fd=False).shutdown()
     bus.shutdown()
     with pytest.raises(can.CanOperationError):
         bus.send(can.Message(arbitration_id=1))
     with pytest.raises(can.CanOperationError):
         bus.recv(0)
+
+
+BURST = 300  # frames; 64 wait in a station of a plant, and python-can wants the rest to wait for room
+
+
+def numbered(number):
+    return can.Message(arbitration_id=0x300 + number, data=[7], is_extended_id=False)
+
+
+def burst_of(bus):
+    """The identifiers of a burst that came, in their order: waits for them, not for a time."""
+    heard = []
+    while len(heard) < BURST:
+        message = bus.recv(60)
+        assert message is not None, f"{len(heard)} of {BURST} frames came within 60 s"
+        if message.data == b"\7":
+            heard.append(message.arbitration_id - 0x300)
+    return heard
+
+
+@pytest.mark.parametrize("timeout", [None, 5])
+@pytest.mark.parametrize("realtime", [False, True])
+def test_send_waits_for_room(realtime, timeout):
+    with can.Bus(interface="ipos", channel=CHANNEL, realtime=realtime) as bus:
+        with can.Bus(interface="ipos", channel=CHANNEL, realtime=realtime) as other:
+            for number in range(BURST):
+                bus.send(numbered(number), timeout=timeout)
+            assert burst_of(other) == list(range(BURST))
+
+
+def test_a_burst_from_the_thread_of_the_plant():
+    with can.Bus(interface="ipos", channel=CHANNEL, realtime=True) as bus:
+        bus.call(lambda _: [bus.send(numbered(number)) for number in range(BURST)])
+
+
+def test_a_timeout_of_send_ends(bus):
+    bus.plant.run("1ms")
+    before = bus.plant.time_us
+    with pytest.raises(can.CanTimeoutError, match="too many frames wait"):
+        for number in range(BURST):
+            bus.send(numbered(number), timeout=0)
+    assert bus.plant.time_us == before  # a frame of 8 bytes takes a quarter of a millisecond
+    with pytest.raises(can.CanTimeoutError, match="after 1e-05 s"):
+        for number in range(2):
+            bus.send(numbered(number), timeout=1e-5)
+    assert bus.plant.time_us == before + 10
+    bus.send(numbered(1), timeout=0.001)
+
+
+# python-canopen's network.scanner.search(): a question to each of the 127 nodes.
+def test_a_scanner_asks_all_nodes():
+    with can.Bus(interface="ipos", channel=CHANNEL, realtime=True) as bus:
+        for node in range(1, 128):
+            bus.send(can.Message(arbitration_id=0x600 + node, data=[0x40, 0, 0x10, 0, 0, 0, 0, 0], is_extended_id=False))
 
 
 def test_error_frames_and_state(bus):

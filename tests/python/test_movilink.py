@@ -1,5 +1,7 @@
 """MOVILINK in Python, with simulated drives that answer on a CAN line and on a serial one."""
 
+import termios
+
 import pytest
 
 can = pytest.importorskip("can")
@@ -103,3 +105,32 @@ def test_parameters_over_rs485():
             drive["P130"] = 99_000_000
         with pytest.raises(movilink.NoAnswerError):
             movilink.Drive(movilink.Serial(port, sleep=port.sleep), 8)
+
+
+class PortThatIsBusy:
+    """What a pseudo-terminal does in its first millisecond: the settings are refused, once or for ever."""
+
+    def __init__(self, timeout, refusals):
+        self.refusals, self.set, self._timeout = refusals, [], timeout
+
+    @property
+    def timeout(self):
+        return self._timeout
+
+    @timeout.setter
+    def timeout(self, value):
+        self.set.append(value)
+        if len(self.set) <= self.refusals:
+            raise termios.error(22, "Invalid argument")
+        self._timeout = value
+
+
+def test_the_timeout_of_a_port_is_set_where_it_differs():
+    slept = []
+    for timeout, refusals, tries in ((0.1, 0, 0), (None, 0, 1), (None, 2, 3)):
+        port = PortThatIsBusy(timeout, refusals)
+        movilink.Serial(port, sleep=slept.append)
+        assert (port.timeout, len(port.set)) == (0.1, tries)
+    assert len(slept) == 2 and all(0.001 <= each < 0.01 for each in slept)
+    with pytest.raises(termios.error):
+        movilink.Serial(PortThatIsBusy(None, 99), sleep=slept.append)

@@ -1,6 +1,8 @@
 """Plants, stations, signals: the sample of the contract and every function behind it."""
 
 import gc
+import os
+import subprocess
 import threading
 import weakref
 
@@ -94,6 +96,48 @@ def test_a_wrong_name_says_what_there_is(line):
         line.buses["can7"]
     with pytest.raises(KeyError, match="PO1, PO2"):
         line["saw"].words["PO9"]
+
+
+def test_a_wrong_name_says_which_is_nearest(line):
+    with pytest.raises(KeyError, match="did you mean 'speed'.*lCount.*states .*position"):
+        line.record(["saw.sped"], "1ms")
+    with pytest.raises(KeyError, match="did you mean 'lCount'"):
+        line["saw"]["lCuont"]
+    with pytest.raises(KeyError, match="has no variable ''"):
+        line["saw"][""]
+    with pytest.raises(KeyError) as caught:
+        line["mill"]
+    assert type(caught.value).__name__ == "KeyError"
+
+
+def test_what_has_names_is_a_mapping(line):
+    saw = line["saw"]
+    for named in (line, line.buses, saw, saw.parameters, saw.inputs, saw.outputs, saw.analog, saw.words):
+        assert list(dict(named)) == list(named) == list(named.keys())
+        assert named.get("no such name") is None
+        assert named._ipython_key_completions_() == list(named)
+    assert dict(saw.inputs)["DI00"] is True or dict(saw.inputs)["DI00"] is False
+
+
+# Every text that the package hands to the library: with a zero in it the library would see another one.
+def test_no_text_may_have_a_zero_in_it(line):
+    saw, wrong = line["saw"], "P130\0x"
+    for use in (
+        lambda: line.run("1s\0x"), lambda: line.record(["saw.lCount"], "1s\0x"), lambda: line.reader("saw.lCount\0x"),
+        lambda: line.replay(["saw.lCount"], "1ms\0x"), lambda: saw["lCount\0x"], lambda: saw.parameters[wrong],
+        lambda: saw.parameters.__setitem__("P130", "2 s\0x"), lambda: saw.analog.__setitem__("AI1", "5 V\0x"),
+        lambda: saw.inputs["DI01\0x"], lambda: line.plant_fault("sbus\0x", "cut"), lambda: ipos.Plant(LINE + "\0x"),
+        lambda: ipos.Plant(text="\0"), lambda: ipos.Plant(LINE, folder="x\0"), lambda: ipos.Plant(LINE, defines=["A\0"]),
+        lambda: ipos.Plant(LINE, include_dirs=["x\0"]), lambda: line.run(until=lambda: False, limit="1s\0x"),
+    ):  # fmt: skip
+        with pytest.raises(ValueError):
+            use()
+    assert line.time == 0
+
+
+def test_no_message_names_a_function_of_c(line):
+    for number in range(64):
+        assert "ipos_plant" not in str(ipos._library.error_of(number, "")), number
 
 
 def test_wrong_types_and_values(line):
@@ -284,6 +328,32 @@ def test_mistakes_have_places():
             ipos.Plant(wrong)
     with pytest.raises(TypeError):
         ipos.Plant()
+
+
+# A plant text, what of it is wrong, and programs beside it. `ipos run` is the measure: the same places, the same words.
+@pytest.mark.parametrize(
+    "keys, places",
+    [
+        ('unit = "mdxb"\n[station.parameters]\nP130 = "x"\nP131 = -1\nP9999 = 3\n', [(5, 8), (6, 8), (7, 9)]),
+        ('unit = "mdxb"\nunti = 1\n[station.parameters]\nP130 = "x"\nP131 = -1\n', [(4, 1), (6, 8), (7, 8)]),
+        ('unit = "mdxb"\nprogram = "none.IPC"\n[station.parameters]\nP131 = -1\n', [(4, 11), (6, 8)]),
+        ('unit = "mdxb"\nprogram = "P.IPC"\nunti = 1\n[station.parameters]\nP131 = -1\n', [(5, 1), (7, 8), (2, 10)]),
+        ('unit = "mdxx"\n[[station]]\nname = "b"\nunit = "mc07"\n[station.parameters]\nP130 = -1\n', [(3, 8), (8, 8)]),
+    ],
+)
+def test_all_mistakes_are_told_as_run_tells_them(tmp_path, keys, places):
+    (tmp_path / "P.IPC").write_text("#include <constb.h>\nmain() { lNone = 1; }\n")
+    (tmp_path / "l.toml").write_text('[[station]]\nname = "a"\n' + keys)
+    with pytest.raises(ipos.PlantError) as caught:
+        ipos.Plant(tmp_path / "l.toml")
+    found = [(error.line, error.column) for error in caught.value.errors]
+    assert [line for line, _ in found] == [line for line, _ in places], caught.value
+    if "IPOS" not in os.environ:
+        return
+    told = subprocess.run([os.environ["IPOS"], "run", "l.toml"], cwd=tmp_path, capture_output=True, text=True).stderr
+    for error in caught.value.errors:
+        assert f"{os.path.basename(error.file)}:{error.line}:{error.column}: error: {error.text.split(' [')[0]}" in told.replace("error[", "error: ["), told
+    assert told.count(": error") == len(found), told
 
 
 def test_a_mistake_of_a_program_has_its_file(tmp_path):

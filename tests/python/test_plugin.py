@@ -6,7 +6,7 @@ import pytest
 
 from conftest import HERE, PACKAGE
 
-ARGUMENTS = ("-p", "ipos.pytest_plugin", "-p", "no:cacheprovider")
+ARGUMENTS = ("-p", "no:cacheprovider")  # the plugin itself is found by what stands beside the package
 
 
 @pytest.fixture
@@ -82,6 +82,22 @@ def test_toml_files_are_tests_with_the_text_of_ipos_test(folder):
     result.stdout.fnmatch_lines(["*lCount of saw did not become 1000 from 0 ms to 100 ms*"])
 
 
+def test_without_the_program_the_other_tests_run(folder, monkeypatch):
+    # A wheel alone: no program on the path, none named, no build beside the package.
+    package = folder.path / "alone"
+    shutil.copytree(PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__", "build", "*.egg-info"))
+    monkeypatch.setenv("PYTHONPATH", str(package))
+    monkeypatch.setenv("PATH", str(folder.path))
+    monkeypatch.delenv("IPOS", raising=False)
+    (folder.path / "saw.test.toml").write_text('plant = "line.toml"\n')
+    folder.makepyfile("import pytest\n@pytest.mark.plant('line.toml')\ndef test_other(plant): plant.run('1ms')\n")
+    result = folder.runpytest_subprocess(*ARGUMENTS, "-rs")
+    result.assert_outcomes(passed=1, skipped=1)
+    result.stdout.fnmatch_lines(["*need the program ipos: on the path, by --ipos-program, or by IPOS*"])
+    result = folder.runpytest_subprocess(*ARGUMENTS, "--ipos-program", "/no/ipos")
+    result.stdout.fnmatch_lines(["*the program /no/ipos cannot be started: No such file or directory*"])
+
+
 def test_several_workers(folder):
     pytest.importorskip("xdist")
     folder.makepyfile(
@@ -112,3 +128,4 @@ def test_a_plant_with_mistakes_says_where(folder):
     result = folder.runpytest_subprocess(*ARGUMENTS)
     result.assert_outcomes(errors=1)
     result.stdout.fnmatch_lines(["*3:8: 'mdxx' is no unit type*"])
+    result.stdout.no_fnmatch_line("*_fail_to_open*")  # the mistake, not the way to it

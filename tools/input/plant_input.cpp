@@ -3,10 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
-#include <set>
 
+#include "runtime/plant/all_mistakes.hpp"
 #include "stdlib/unit_types.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/files.hpp"
@@ -19,7 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 using Errors = std::vector<runtime::PlantError>;
-using Images = std::vector<std::optional<vm::Image>>;
 
 runtime::PlantFile plant_of_program(const std::string& path, const std::string& sbus) {
   runtime::PlantFile plant;
@@ -48,44 +46,6 @@ vm::Image program_of(const std::string& path, runtime::StationConfig& station, C
     throw Failure(kFindings, fmt::format("{}: the image is for unit {}, station '{}' is {}", path, unit->name,
                                          station.name, station.unit->name));
   return image;
-}
-
-// What the units refuse, and the names that lead nowhere, in a plant whose file has mistakes elsewhere: its stations
-// with their programs and what the surroundings do to them, without lines, memories and the stations that have no unit.
-Errors further_mistakes(const runtime::PlantFile& file, Images programs) {
-  runtime::PlantFile plant;
-  Images images;
-  std::set<std::string> names;
-  for (size_t n = 0; n < file.stations.size(); ++n) {
-    const runtime::StationConfig& from = file.stations[n];
-    if (from.unit == nullptr || !names.insert(from.name).second) continue;
-    runtime::StationConfig station;
-    station.name = from.name;
-    station.unit = from.unit;
-    station.options = from.options;
-    station.parameters = from.parameters;
-    station.place = from.place;
-    plant.stations.push_back(std::move(station));
-    images.push_back(std::move(programs[n]));
-  }
-  // A name cannot be looked for in a program that was not read.
-  const auto is_known = [&](const runtime::Signal& signal) {
-    for (size_t n = 0; n < plant.stations.size(); ++n)
-      if (plant.stations[n].name == signal.station)
-        return signal.kind != runtime::SignalKind::Variable || images[n];
-    return false;
-  };
-  for (const runtime::Stimulus& stimulus : file.stimuli)
-    if (is_known(stimulus.signal)) plant.stimuli.push_back(stimulus);
-  for (const runtime::Expectation& expectation : file.expectations)
-    if (is_known(expectation.signal)) plant.expectations.push_back(expectation);
-  Errors errors;
-  const runtime::Plant built(std::move(plant), std::move(images), {}, errors, execution_of());
-  return errors;
-}
-
-bool is_before(const runtime::PlantError& a, const runtime::PlantError& b) {
-  return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
 }
 
 }  // namespace
@@ -123,13 +83,7 @@ PlantInput read_plant_input(const std::string& path, const CompileFlags& compile
   }
   if (code == kGood) return input;
   if (is_plant(path)) {
-    // What follows from a mistake that is told already stands where it does.
-    for (runtime::PlantError& error : further_mistakes(input.file, std::move(input.programs)))
-      if (std::none_of(errors.begin(), errors.end(), [&](const runtime::PlantError& known) {
-            return !is_before(known, error) && !is_before(error, known);
-          }))
-        errors.push_back(std::move(error));
-    std::stable_sort(errors.begin(), errors.end(), is_before);
+    errors = runtime::all_mistakes(input.file, std::move(input.programs), std::move(errors));
     print_mistakes(path, errors);
   }
   throw Failure(code, last);

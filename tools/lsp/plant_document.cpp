@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "runtime/plant/all_mistakes.hpp"
 #include "runtime/plant/plant.hpp"
 #include "stdlib/parameters.hpp"
 #include "tools/cli/files.hpp"
@@ -46,7 +47,9 @@ std::vector<PlantError> errors_of(const std::string& path, const std::string& te
     return errors;
   }
   runtime::PlantFileResult result = runtime::read_plant_file(text);
-  return result.errors.empty() ? refused_parameters(std::move(result.plant)) : result.errors;
+  if (result.errors.empty()) return refused_parameters(std::move(result.plant));
+  std::vector<std::optional<vm::Image>> programs(result.plant.stations.size());
+  return runtime::all_mistakes(result.plant, std::move(programs), std::move(result.errors));
 }
 
 // Where the cursor stands: in which table, at a key or behind '='.

@@ -50,9 +50,9 @@ uint32_t ipos_plant_version(void);
   X(IPOS_PLANT_OK, 0, "done")                                                                           \
   X(IPOS_PLANT_NOT_REACHED, 1, "the time limit came before the condition")                              \
   X(IPOS_PLANT_INVALID_ARGUMENT, 2, "a pointer is null or a number is out of its range")                \
-  X(IPOS_PLANT_BAD_PLANT, 3, "the plant or a program has mistakes; see ipos_plant_mistake_at()")        \
+  X(IPOS_PLANT_BAD_PLANT, 3, "the plant or a program has mistakes")                                     \
   X(IPOS_PLANT_NOT_OPEN, 4, "the plant could not be opened: only its mistakes can be read, and it can be closed") \
-  X(IPOS_PLANT_OTHER_THREAD, 5, "the plant belongs to another thread; ipos_plant_adopt() takes it over") \
+  X(IPOS_PLANT_OTHER_THREAD, 5, "the plant belongs to another thread until this one adopts it")          \
   X(IPOS_PLANT_BUSY, 6, "the function cannot be called from a callback of the plant, or another thread is inside") \
   X(IPOS_PLANT_NO_STATION, 7, "the plant has no station of this name or number")                        \
   X(IPOS_PLANT_NO_SIGNAL, 8, "the station has nothing of this name, or no signal has this number")      \
@@ -66,7 +66,8 @@ uint32_t ipos_plant_version(void);
   X(IPOS_PLANT_TOO_SMALL, 16, "the memory handed over is too small")                                    \
   X(IPOS_PLANT_OUT_OF_MEMORY, 17, "there is no memory any more; an open plant is broken by that") \
   X(IPOS_PLANT_BROKEN, 18, "the plant broke in an earlier call and can only be closed")                 \
-  X(IPOS_PLANT_NOTHING, 19, "there is nothing more to read")
+  X(IPOS_PLANT_NOTHING, 19, "there is nothing more to read")                                           \
+  X(IPOS_PLANT_FULL, 20, "too many frames wait to be sent")
 
 typedef int32_t ipos_plant_status;
 enum {
@@ -286,7 +287,8 @@ typedef struct ipos_plant_frame {
  * ipos_plant_send() on: it acknowledges frames. Before, it only listens. */
 ipos_plant_status ipos_plant_join(ipos_plant* plant, uint32_t bus);
 
-/* Queues a frame, at most 64 at a time. *tag may be null. IPOS_PLANT_BAD_VALUE, IPOS_PLANT_REFUSED. */
+/* Queues a frame. *tag may be null. IPOS_PLANT_FULL: 64 frames wait; there is room again when one has gone.
+ * IPOS_PLANT_BAD_VALUE, IPOS_PLANT_REFUSED. */
 ipos_plant_status ipos_plant_send(ipos_plant* plant, uint32_t bus, const ipos_plant_frame* frame, uint32_t* tag);
 
 /* Takes what the line has carried since the last call, oldest first, own frames included: each is given once.
