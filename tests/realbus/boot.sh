@@ -12,7 +12,7 @@ ln -s "$project" "$folder/project"
 preloaded=
 if grep -qw amx_tile /proc/cpuinfo; then preloaded=$wide_registers; fi
 # Its memory and its files of management lie in the folder, too. A guest that hangs is killed.
-TMPDIR=$folder HOME=$folder LD_PRELOAD=$preloaded timeout -s KILL 250 linux.uml mem=192M rootfstype=hostfs rootflags=/ rw \
+TMPDIR=$folder HOME=$folder LD_PRELOAD=$preloaded timeout -s KILL 900 linux.uml mem=192M rootfstype=hostfs rootflags=/ rw \
   init="$folder/project/tests/realbus/guest.sh" FOLDER="$folder" con=null con0=fd:0,fd:1 quiet \
   </dev/null >"$folder/console.txt" 2>&1
 code=$?

@@ -21,7 +21,7 @@ class Master:
     def send(self, identifier, data):
         self.bus.send(can.Message(arbitration_id=identifier, data=data, is_extended_id=False))
 
-    def receive(self, identifier, timeout=1.0):
+    def receive(self, identifier, timeout=30.0):
         """Data of the next frame with this identifier as hexadecimal text, None when there is none in time."""
         end = time.monotonic() + timeout
         while (left := end - time.monotonic()) > 0:
@@ -30,11 +30,11 @@ class Master:
                 return frame.data.hex().upper()
         return None
 
-    def parameter(self, service, index, value=0, address=ADDRESS):
+    def parameter(self, service, index, value=0, address=ADDRESS, timeout=30.0):
         # Length code 11 (4 bytes) in bits 4 and 5 of the management byte.
         request = bytes([0x30 | service, 0]) + index.to_bytes(2, "big") + (value & 0xFFFFFFFF).to_bytes(4, "big")
         self.send(8 * address + 515, request)
-        return self.receive(8 * address + 516)
+        return self.receive(8 * address + 516, timeout)
 
     def process(self, words, address=ADDRESS):
         self.send(8 * address + 3, b"".join(word.to_bytes(2, "big") for word in words))
@@ -55,7 +55,7 @@ def parameter_channel(master):
     check("index that is not there: class 8, 11h", master.parameter(READ, 8415), "B10020DF08000011")
     check("service 15: class 5, code 5", master.parameter(15, P000_SPEED), "BF00207E05050000")
     check("volatile write", master.parameter(WRITE_VOLATILE, P130_RAMP, 500), "33002116000001F4")
-    check("no station 3", master.parameter(READ, P130_RAMP, address=3), None)
+    check("no station 3", master.parameter(READ, P130_RAMP, address=3, timeout=0.5), None)
 
 
 def group_parameter(master):
@@ -77,26 +77,31 @@ def process_data(master):
     check("but taken", master.parameter(READ, P094_PO1)[8:], "00000001")
 
 
-def cyclic(master, words, seconds):
-    """The same PO telegram every 20 ms, within P815 = 100 ms; the last PI telegram."""
-    end = time.monotonic() + seconds
+def cyclic(master, words, done):
+    """The same PO telegram every 20 ms, within P815 = 3 s; the first PI telegram that is as wanted, or the last one."""
+    end = time.monotonic() + 60
     while True:
         reply = master.process(words)
-        if time.monotonic() >= end:
+        if done(reply) or time.monotonic() >= end:
             return reply
         time.sleep(0.02)
 
 
+def speed(reply):
+    return int(reply[4:8], 16)
+
+
 def enable_and_speed(master):
     """Control word 6 is enable; 5000 digits are 1000 rpm (p. 48). Speed is reached after the ramp P130."""
-    time.sleep(0.3)  # the pauses of the steps before were longer than P815: F47 is pending (p. 64)
+    master.process((0x0000, 0, 0))
+    time.sleep(3.5)  # longer than P815: F47 is pending (p. 64)
     check("F47 after silence", master.process((0x0006, 5000, 0))[:4], "2F24")
     master.process((0x0040, 0, 0))  # reset, 0 -> 1
     master.parameter(WRITE_VOLATILE, P130_RAMP, 500)
-    reply = cyclic(master, (0x0006, 5000, 0), 1.0)
+    reply = cyclic(master, (0x0006, 5000, 0), lambda reply: abs(speed(reply) - 5000) <= 10)
     check("enabled: state 4, output stage on", reply[:4], "0407")
-    check("speed is 1000 rpm", abs(int(reply[4:8], 16) - 5000) <= 10, True)
-    check("rapid stop ends at 0 rpm", cyclic(master, (0x0000, 0, 0), 2.0)[4:8], "0000")
+    check("speed is 1000 rpm", abs(speed(reply) - 5000) <= 10, True)
+    check("rapid stop ends at 0 rpm", cyclic(master, (0x0000, 0, 0), lambda reply: speed(reply) == 0)[4:8], "0000")
 
 
 def main():

@@ -316,9 +316,9 @@ TEST_F(MonitorAtPorts, TelegramsOfASerialLine) {
   // 02 01 05 00 06 13 88 0B B8 ..: control word 6, 5000 digits = 1000 rpm; the answer right behind it.
   write_all(program, hex("02 01 05 00 06 13 88 0B B8 28") + hex("1D 01 05 00 07 13 93 00 00 9E"));
   ASSERT_TRUE(monitor.prints("<- unit1"));
-  usleep(50'000);
+  usleep(500'000);  // nothing tells when the monitor has read what it does not show, so it gets a pause that is long
   write_all(program, hex("02 02 05 00 06 13 88 0B B8 2B"));  // for address 2: not shown
-  usleep(50'000);
+  usleep(500'000);
   write_all(program, hex("02 69 86 32 00 21 16 00 00 0B B8 5B"));  // group 105: P130 = 3 s
   ASSERT_TRUE(monitor.prints("group 105"));
   usleep(50'000);

@@ -64,10 +64,11 @@ class RunningLine {
       const int null_file = open("/dev/null", O_RDWR);
       if (chdir(folder.path().c_str()) != 0) _exit(126);
       for (const int n : {0, 1, 2}) dup2(null_file, n);
-      execl(ipos_program(), "ipos", "run", "plant.toml", "--realtime", "--for", "100s", nullptr);
+      execl(ipos_program(), "ipos", "run", "plant.toml", "--realtime", "--for", "1000s", nullptr);
       _exit(127);
     }
-    for (int n = 0; n < 500 && !std::filesystem::exists(folder.path() / "dp"); ++n) usleep(20'000);
+    for (int n = 0; n < 3000 && !std::filesystem::exists(folder.path() / "dp"); ++n) usleep(20'000);
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "dp")) << "no pseudo-terminal dp within a minute";
   }
   ~RunningLine() {
     kill(child_, SIGTERM);
@@ -151,8 +152,12 @@ TEST_F(ProfibusTools, WrongUseAndRefusalsSayWhy) {
 
 TEST_F(ProfibusTools, ASlaveThatIsLockedSaysByWhom) {
   const RunningLine line(folder_, kController);
-  usleep(900'000);
-  const CommandResult found = scan();
+  // The master orders 0006 05DC after some time, when the slave has found the rate.
+  CommandResult found = scan();
+  for (int tries = 0; tries < 60 && !contains(found.out, "00 06 05 DC 00 00"); ++tries) {
+    usleep(100'000);
+    found = scan();
+  }
   EXPECT_EQ(found.exit_code, 0) << found.err;
   EXPECT_TRUE(contains(found.out, "data exchange with master 1")) << found.out;
   EXPECT_TRUE(contains(found.out, "F2 (3 PD)")) << found.out;
@@ -174,7 +179,7 @@ TEST_F(ProfibusTools, AMasterThatSpeaksIsNotDisturbedAndIsMonitored) {
   };
   // The slave looks for the rate first.
   CommandResult heard = monitor();
-  for (int tries = 0; tries < 20 && !contains(heard.out, "Data_Exchange answer"); ++tries) {
+  for (int tries = 0; tries < 100 && !contains(heard.out, "Data_Exchange answer"); ++tries) {
     usleep(200'000);
     heard = monitor();
   }

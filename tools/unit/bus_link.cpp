@@ -13,6 +13,7 @@
 #include "runtime/os_port/can_bridge.hpp"
 #include "runtime/os_port/port_names.hpp"
 #include "runtime/os_port/serial_bridge.hpp"
+#include "runtime/plant_file/plant_file.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/interrupt.hpp"
 
@@ -83,7 +84,7 @@ class CanLink : public BusLink, private CanNode {
 class SbusLink final : public CanLink {
  public:
   SbusLink(const LinkFlags& link, uint32_t baud)
-      : CanLink(link, baud), master_(queue(), 1, sender(), 1, kSbusReplyTimeout + kHostDelay, client()) {}
+      : CanLink(link, baud), master_(queue(), 1, sender(), 1, kSbusReplyTimeout + link.host_delay(), client()) {}
   uint8_t last_address() const override { return kSbusAddresses - 1; }
 
  private:
@@ -103,7 +104,7 @@ class SbusLink final : public CanLink {
 class CanopenLink final : public CanLink {
  public:
   CanopenLink(const LinkFlags& link, uint32_t baud)
-      : CanLink(link, baud), master_({queue(), 1, sender(), 1}, kSbusReplyTimeout + kHostDelay, client()) {}
+      : CanLink(link, baud), master_({queue(), 1, sender(), 1}, kSbusReplyTimeout + link.host_delay(), client()) {}
   uint8_t first_address() const override { return 1; }
   uint8_t last_address() const override { return canopen::kMaxNode; }
   bool carries_process_data() const override { return false; }
@@ -128,7 +129,7 @@ RequesterTiming timing_of(const LinkFlags& link, uint32_t baud, Time latency) {
   RequesterTiming timing;
   timing.character = character_time(baud);
   // The bridge hands characters over one later, in both directions.
-  timing.response_delay = kResponseDelay + 2 * timing.character + latency + kHostDelay;
+  timing.response_delay = kResponseDelay + 2 * timing.character + latency + link.host_delay();
   if (!link.repeats) timing.repeats = 0;
   return timing;
 }
@@ -186,6 +187,8 @@ class SerialLink final : public BusLink, private SerialNode {
 };
 
 }  // namespace
+
+Time LinkFlags::host_delay() const { return parse_duration(patience); }
 
 std::unique_ptr<BusLink> BusLink::open(const LinkFlags& flags) {
   catch_interrupts();

@@ -27,10 +27,11 @@ struct LinkFlags {
   std::string cfg = "F3 F0";  // over DP: identifiers of the configuration with the parameter channel
   bool repeats = true;        // ask a second time after no answer
   bool quiet = false;         // tell nothing about the port unless it goes away
-};
+  // How much longer than a unit may take an answer is waited for: the host's share (ours).
+  std::string patience = "30ms";
 
-// How much longer than a unit may take an answer is waited for: the host's share (ours).
-inline constexpr runtime::Time kHostDelay = 30 * runtime::kMillisecond;
+  runtime::Time host_delay() const;
+};
 
 class BusLink : private runtime::MovilinkClient {
  public:

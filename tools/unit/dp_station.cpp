@@ -110,7 +110,7 @@ std::optional<FdlFrame> DpStation::receive(Time end) {
 // Frames take their time on the wire, and once more on the line of a simulated slave behind a pseudo-terminal.
 std::optional<FdlFrame> DpStation::ask(const FdlFrame& request, size_t longest_answer, int tries) {
   const Time patience =
-      kHostDelay + port_->latency() + 2 * wire_time(encode(request).size() + longest_answer + kSynBits);
+      flags_.host_delay() + port_->latency() + 2 * wire_time(encode(request).size() + longest_answer + kSynBits);
   for (int n = 0; n < tries; ++n) {
     while (receive(0)) continue;  // late answers
     send(request);

@@ -8,10 +8,21 @@
 #include "runtime/bus/canopen/connections.hpp"
 #include "runtime/bus/movilink/serial_telegram.hpp"
 #include "runtime/os_port/port_names.hpp"
+#include "runtime/plant_file/plant_file.hpp"
 #include "stdlib/parameters.hpp"
 #include "tools/cli/failure.hpp"
 
 namespace ipos::tools {
+
+namespace {
+
+std::string check_patience(const std::string& text) {
+  const runtime::Time time = runtime::parse_duration(text);
+  return time >= runtime::kMillisecond && time <= 20 * runtime::kSecond ? ""
+                                                                          : "'" + text + "' is no time from 1ms to 20s";
+}
+
+}  // namespace
 
 void add_link_options(cli::Verb& verb, LinkFlags& flags, bool port) {
   if (port)
@@ -21,6 +32,9 @@ void add_link_options(cli::Verb& verb, LinkFlags& flags, bool port) {
       .one_of(
           {"9600", "19200", "57600", "93750", "125000", "187500", "250000", "500000", "1000000", "1500000"});
   verb.flag("--canopen", flags.canopen, "the units are CANopen nodes (P880 = 1): SDO in place of MOVILINK");
+  verb.option("--patience", flags.patience,
+              "how much longer than a unit may take an answer is waited for: 1ms to 20s, default 30ms")
+      .check(check_patience, "TIME");
   verb.flag("--quiet", flags.quiet, "do not tell what the port cannot do; only when it goes away");
 }
 
