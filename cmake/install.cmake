@@ -45,16 +45,12 @@ add_custom_command(OUTPUT ${PROJECT_BINARY_DIR}/vscode/ipos.vsix
 add_custom_target(ipos_vsix DEPENDS ${PROJECT_BINARY_DIR}/vscode/ipos.vsix)
 install(FILES ${PROJECT_BINARY_DIR}/vscode/ipos.vsix DESTINATION ${CMAKE_INSTALL_DATADIR}/ipos OPTIONAL)
 
-# The Python package, where Debian's Python looks; it finds libipos_plant by the loader. Entry points are those of
-# python/pyproject.toml.
+# The Python package, where Debian's Python looks; it finds libipos_plant by the loader. What tells python-can and pytest of it
+# stands beside it.
 set(python_dir lib/python3/dist-packages)
-set(dist_info ${PROJECT_BINARY_DIR}/ipos-${PROJECT_VERSION}.dist-info)
-file(CONFIGURE OUTPUT ${dist_info}/METADATA CONTENT "Metadata-Version: 2.1\nName: ipos\nVersion: ${PROJECT_VERSION}\n")
-file(CONFIGURE OUTPUT ${dist_info}/entry_points.txt CONTENT
-"[pytest11]\nipos = ipos.pytest_plugin\n\n[can.interface]\nipos = ipos.can:IposBus\n")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/ipos DESTINATION ${python_dir}
         FILES_MATCHING PATTERN *.py PATTERN py.typed PATTERN __pycache__ EXCLUDE)
-install(DIRECTORY ${dist_info} DESTINATION ${python_dir})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/ipos-${PROJECT_VERSION}.dist-info DESTINATION ${python_dir})
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/ipos)
 install(EXPORT ipos NAMESPACE ipos:: FILE iposTargets.cmake DESTINATION ${package_dir})

@@ -117,7 +117,8 @@ class Plant(lib.Named):
         source.path = None if path is None else lib.encoded(self._path, is_path=True)
         source.text = None if text is None else lib.encoded(text)
         source.folder = None if folder is None else lib.encoded(os.fspath(folder), is_path=True)
-        source.include_dirs, source.include_dir_count = _array([lib.encoded(os.fspath(each), is_path=True) for each in include_dirs])
+        folders = [lib.encoded(os.fspath(each), is_path=True) for each in include_dirs]
+        source.include_dirs, source.include_dir_count = _array(folders)
         source.defines, source.define_count = _array([lib.encoded(each) for each in defines])
         source.flags = (lib.WRITE_MEMORY if write_memory else 0) | (0 if record else lib.NO_RECORD)
         source.commands_a_ms = _in_range("speed", speed, 1_000_000)

@@ -1,5 +1,6 @@
 """The package installs from its folder with pip, without an index, into an empty environment, and works there."""
 
+import configparser
 import os
 import shutil
 import subprocess
@@ -27,6 +28,16 @@ def run(*command, **keys):
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=300, **keys)
     assert done.returncode == 0, f"{command}\n{done.stdout}\n{done.stderr}"
     return done.stdout
+
+
+def test_a_source_folder_shows_what_the_wheel_has():
+    tomllib = pytest.importorskip("tomllib")
+    project = tomllib.loads((PACKAGE / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    info = PACKAGE / f"ipos-{project['version']}.dist-info"
+    points = configparser.ConfigParser(delimiters=("=",))
+    points.read(info / "entry_points.txt", encoding="utf-8")
+    assert {group: dict(points[group]) for group in points.sections()} == project["entry-points"]
+    assert f"Version: {project['version']}\n" in (info / "METADATA").read_text(encoding="utf-8")
 
 
 @pytest.mark.skipif("IPOS_PLANT_LIBRARY" not in os.environ, reason="IPOS_PLANT_LIBRARY names the library to put in")

@@ -32,9 +32,9 @@ ANSWER = bytes.fromhex("1d018631002116000007d0")
 
 
 def answer_at(port):
-    """What comes back at a descriptor, without its BCC; a busy machine may tear a telegram apart, so five tries."""
+    """What comes back at a descriptor, without its BCC; a busy machine may tear a telegram apart, so it is asked again."""
     answer = b""
-    for _ in range(5):
+    for _ in range(30):
         os.write(port, QUESTION)
         ends, answer = time.monotonic() + 1, b""
         while len(answer) <= len(ANSWER) and time.monotonic() < ends:
@@ -103,7 +103,7 @@ class DpMaster:
         frame = sd2(self.slave, 1, function, data, (point, 62) if point else ())
         for _ in range(5):
             os.write(self.port, frame)
-            answer, ends = b"", time.monotonic() + 0.1
+            answer, ends = b"", time.monotonic() + 1
             while time.monotonic() < ends and not self.whole(answer):
                 if select.select([self.port], [], [], 0.01)[0]:
                     answer += os.read(self.port, 4096)

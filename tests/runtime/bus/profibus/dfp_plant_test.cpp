@@ -44,7 +44,8 @@ TEST(DfpPlant, TimeoutOfAMovidriveB) {
   };
   for (const Row& row : {Row{0, 0, 300'000}, {1, 28, 300'000}, {4, 28, 0}, {7, 28, 0}}) {
     DpPlant silent(unit("mdxb", "", "P100 = 3\nP101 = 2\nP831 = " + std::to_string(row.response) + "\n") +
-                   master("cfg = \"F1\"\nwatchdog = \"200ms\"\npo = [6, 1500]\n", "[[control.command]]\nat = \"2s\"\ncommand = \"stop\"\n"));
+                   master("cfg = \"F1\"\nwatchdog = \"200ms\"\npo = [6, 1500]\n",
+                          "[[control.command]]\nat = \"2s\"\ncommand = \"stop\"\n"));
     silent.run(2 * kSecond);
     EXPECT_EQ(silent.speed(), 300'000) << row.response;
     EXPECT_EQ(silent.value("819"), 200) << "ms";
