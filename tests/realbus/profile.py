@@ -11,7 +11,7 @@ from checks import check
 ADDRESS = 1  # P813 of unit1
 GROUP = 2  # P814 of both units
 READ, WRITE, WRITE_VOLATILE, MINIMUM, MAXIMUM, DEFAULT = 1, 2, 3, 4, 5, 6
-P000_SPEED, P130_RAMP, P094_PO1 = 8318, 8470, 8455
+P000_SPEED, P130_RAMP, P094_PO1, STATUS_WORD_1 = 8318, 8470, 8455, 8310
 
 
 class Master:
@@ -94,7 +94,10 @@ def speed(reply):
 def enable_and_speed(master):
     """Control word 6 is enable; 5000 digits are 1000 rpm (p. 48). Speed is reached after the ramp P130."""
     master.process((0x0000, 0, 0))
-    time.sleep(3.5)  # longer than P815: F47 is pending (p. 64)
+    # Silent for longer than P815: F47 is pending (p. 64). Questions of the parameter channel are no process data.
+    end = time.monotonic() + 60
+    while master.parameter(READ, STATUS_WORD_1)[12:14] != "2F" and time.monotonic() < end:
+        time.sleep(0.2)
     check("F47 after silence", master.process((0x0006, 5000, 0))[:4], "2F24")
     master.process((0x0040, 0, 0))  # reset, 0 -> 1
     master.parameter(WRITE_VOLATILE, P130_RAMP, 500)

@@ -15,6 +15,7 @@
 #include "compiler/compile.hpp"
 #include "compiler/diag/render.hpp"
 #include "runtime/plant/plant.hpp"
+#include "tests/harness/reach.hpp"
 
 namespace ipos::tests {
 
@@ -75,7 +76,6 @@ class PlantRig final : private CanObserver {
     constexpr std::string_view kNotes[] = {
 #define SETPOINT_NOTE(name, text) text,
 #include "runtime/drive/setpoint_notes.def"
-#include "tests/harness/reach.hpp"
     };
     std::string text;
     for (const JournalEntry& entry : plant->journal().entries()) {

@@ -62,7 +62,7 @@ class Bench : private PlantOfOne {
   runtime::Drive& drive;
 
  private:
-  runtime::Time next_ = 0;
+  runtime::Time next_ = runtime::kMillisecond;  // the first one of a plant
 };
 
 #else

@@ -40,11 +40,14 @@ TEST_F(LibraryPlaces, NamesOfEveryKind) {
   EXPECT_EQ(plant_.names(IPOS_PLANT_STATE),
             (Names{"fault", "status", "enabled", "ready", "speed", "setpoint", "position", "powered",
                    "running", "program_fault", "program_fault_line"}));
+  // Each once: some rows show another meaning of an index that a row before has.
   Names parameters;
   for (const stdlib::Parameter& row : stdlib::parameter_table(*stdlib::find_unit("mdxb")).rows())
-    if (row.index != 0)
-      parameters.push_back(row.number.empty() ? std::to_string(row.index) : "P" + std::string(row.number));
+    if (const std::string name = row.number.empty() ? std::to_string(row.index) : "P" + std::string(row.number);
+        row.index != 0 && std::find(parameters.begin(), parameters.end(), name) == parameters.end())
+      parameters.push_back(name);
   EXPECT_EQ(plant_.names(IPOS_PLANT_PARAMETER), parameters);
+  EXPECT_EQ(plant_.names(IPOS_PLANT_VARIABLE, ""), Names{}) << "no whole has no name";
   EXPECT_GT(plant_.names(IPOS_PLANT_SIGNAL).size(), 50U);
   EXPECT_EQ(plant_.names(IPOS_PLANT_SIGNAL)[0], "speed");
   const char* name = nullptr;
@@ -95,17 +98,21 @@ TEST_F(LibraryPlaces, WhatIsMissingIsToldWithWhatThereIs) {
     EXPECT_EQ(ipos_plant_find(plant_.plant, 0, kind, name, &signal), IPOS_PLANT_NO_SIGNAL) << name;
     return plant_.message();
   };
+  const std::string kStates =
+      "states fault, status, enabled, ready, speed, setpoint, position, powered, running, program_fault, "
+      "program_fault_line; terminals, words and parameters";
   EXPECT_EQ(
       told(IPOS_PLANT_VARIABLE, "x"),
       "station 'a' has no variable 'x'; it has n, T.a, T.b[0], T.b[1], H0..H1023 and the system variables");
   EXPECT_EQ(
       told(IPOS_PLANT_ANY, "x"),
-      "station 'a' has no signal 'x'; it has n, T.a, T.b[0], T.b[1], H0..H1023 and the system variables");
+      "station 'a' has no signal 'x'; it has n, T.a, T.b[0], T.b[1], H0..H1023 and the system variables; " + kStates);
+  EXPECT_TRUE(told(IPOS_PLANT_ANY, "sped").starts_with("station 'a' has no signal 'sped' (did you mean 'speed'?); it has n"));
   EXPECT_EQ(told(IPOS_PLANT_ANALOG, "AI3"),
             "station 'a' has no analog input 'AI3'; it has AI1, AI2, frequency, potentiometer");
   EXPECT_EQ(told(IPOS_PLANT_WORD, "PO4"),
             "station 'a' has no process word 'PO4'; it has PO1, PO2, PO3, PI1, PI2, PI3");
-  EXPECT_TRUE(told(IPOS_PLANT_PARAMETER, "P999").starts_with("station 'a' has no parameter 'P999'; it has "));
+  EXPECT_TRUE(told(IPOS_PLANT_PARAMETER, "P999").starts_with("station 'a' has no parameter 'P999' (did you mean 'P"));
   EXPECT_TRUE(told(IPOS_PLANT_PARAMETER, "P999").ends_with(" more"));
   const size_t parameters = plant_.names(IPOS_PLANT_PARAMETER).size();
   EXPECT_TRUE(
@@ -118,7 +125,7 @@ TEST_F(LibraryPlaces, WhatIsMissingIsToldWithWhatThereIs) {
     told(kind, name);
   const OpenedPlant plain("[[station]]\nname = \"a\"\nunit = \"mc31\"\n");
   EXPECT_EQ(ipos_plant_find(plain.plant, 0, IPOS_PLANT_ANY, "x", &signal), IPOS_PLANT_NO_SIGNAL);
-  EXPECT_EQ(plain.message(), "station 'a' has no signal 'x'; it has no program");
+  EXPECT_EQ(plain.message(), "station 'a' has no signal 'x'; it has no program; " + kStates);
 }
 
 TEST_F(LibraryPlaces, AreReadAsNumberAndAsText) {

@@ -28,7 +28,7 @@ TEST(StationProcessData, ReservedBitsAreNamed) {
                                     {0x0086, "(0080h)"},
                                     {0xC006, "(C000h)"},
                                     {0x3F46, ""}}) {
-    goes_through(kPlantFile);
+    tests::goes_through(tests::kPlantFile);
     PlantFileResult file = read_plant_file(
         "[[station]]\nname = \"u\"\nunit = \"mc07\"\n[station.parameters]\nP100 = 10\nP101 = 3\n");
     std::vector<PlantError> errors;
