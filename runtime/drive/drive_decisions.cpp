@@ -98,7 +98,8 @@ Terminals Drive::read_terminals() const {
 
 // Silence of a bus that nobody has heard yet: the drive waits (1053 1610 p. 27, 64). On MOVITRAC 07 the same
 // silence on the SBus is a fault (its manual, chapter 7.1). Over RS-485 the drive waits even with the
-// monitoring off (TIME-04), over the others it does not (DIAG-12). MOVITRAC 31 waits for its PROFIBUS (ours).
+// monitoring off (TIME-04), over the others it does not (DIAG-12): then terminals enable it, or a control word that
+// has come. MOVITRAC 31 waits for its PROFIBUS (ours).
 bool Drive::waits_for(PoSource bus) const {
   if (bus == PoSource::Rs485 || is_m31_) return true;
   if (bus == PoSource::Sbus && is_m07_) return false;
@@ -144,12 +145,10 @@ ControlInputs Drive::control_inputs(const Terminals& t) const {
     in.bus_word = 0;
     if (s.po_enable != 1)
       in.bus_word_missing = Block::PoDisabled;
-    else if (const BusOrder& order = order_of(*bus); !order.control_word)
-      in.bus_word = control_bits::kEnable;  // no PO word is a control word: as if enabled (unit profile)
-    else if (!heard(*bus) && !is_m07_ && !waits_for(*bus))
-      in.bus_word = control_bits::kEnable;  // without monitoring the enable takes effect (1053 1610 p. 64)
     else if (!heard(*bus))
       in.bus_word_missing = Block::NoControlWord;
+    else if (const BusOrder& order = order_of(*bus); !order.control_word)
+      in.bus_word = control_bits::kEnable;  // no PO word is a control word: as if enabled (unit profile)
     else
       in.bus_word = order.control_word;
   }

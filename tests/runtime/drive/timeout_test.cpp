@@ -272,7 +272,8 @@ TEST(SbusTimeout, CausesOfF47) {
   }
 }
 
-// Setpoint source, control source or both are the SBus; two cures.
+// Setpoint source, control source or both are the SBus. Process data cure it; P815 = 0 cures the display, and the enable
+// where it does not come from the bus: 0000h is the word of a bus that has sent none (MOVITRAC 07 chapter 6.3).
 TEST(SbusTimeout, DisplayTWithoutProcessData) {
   PROVES("DIAG-12");
   for (const auto& [p100, p101] : {std::pair{10, 3}, {10, 0}, {1, 3}})
@@ -295,8 +296,11 @@ TEST(SbusTimeout, DisplayTWithoutProcessData) {
       else
         rig.set("P815", 0);
       rig.run_ms(1000);
-      EXPECT_EQ(rig.drive.display(), '4') << p100 << p101;
-      EXPECT_EQ(rig.rpm(), 60) << "the minimum speed";
+      const bool enabled = by_telegram || p101 == 0;
+      EXPECT_NE(rig.drive.display(), 't') << p100 << p101;
+      EXPECT_EQ(rig.drive.display() == '4', enabled) << p100 << p101;
+      EXPECT_EQ(rig.rpm(), enabled ? 60 : 0) << "the minimum speed";
+      EXPECT_EQ(rig.drive.verdict().reason == Block::NoControlWord, !enabled) << p100 << p101;
       EXPECT_EQ(rig.drive.setpoint().note == SetpointNote::NoBusData, p100 == 10 && !by_telegram);
     }
   // MOVITRAC 07 has no t; there a control word that never came is no enable.
