@@ -22,7 +22,7 @@ enum class MovilinkBus : uint8_t {
 #define MOVILINK_BUS(name, code, units, text) name,
 #include "runtime/commands/movilink_buses.def"
 };
-inline constexpr size_t kMovilinkBuses = static_cast<size_t>(MovilinkBus::Sbus2) + 1;
+inline constexpr size_t kMovilinkBuses = static_cast<size_t>(MovilinkBus::Canopen) + 1;
 
 class MovilinkCommand final {
  public:

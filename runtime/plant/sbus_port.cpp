@@ -15,6 +15,7 @@ namespace {
 constexpr uint64_t kSlaveTag = 1;
 constexpr uint64_t kMasterTag = 2;
 constexpr uint64_t kGroupTag = 3;
+constexpr uint64_t kClientTag = 4;
 constexpr uint64_t kObjectTags = 0x100;  // and above
 constexpr uint64_t kAcyclicObjectTags = kObjectTags + ObjectTable::kAcyclicTags;
 
@@ -75,9 +76,14 @@ SbusPort::SbusPort(EventQueue& queue, uint32_t source, CanLine& line, std::optio
       bus_(kBuses[sbus - 1]),
       exchanges_(door, door.touch().movilink().client(bus_)),
       master_(queue, source, sender_, kMasterTag, kSbusReplyTimeout, exchanges_),
+      client_exchanges_(door, door.touch().movilink().client(MovilinkBus::Canopen)),
       group_master_(sender_, kGroupTag, server_) {
   Unit& unit = door.touch();
   unit.movilink().connect(bus_, master_);
+  if (unit.server().unit().generation == stdlib::Generation::M07) {
+    client_.emplace(canopen::Place{queue, source, sender_, kClientTag}, kSbusReplyTimeout, client_exchanges_);
+    unit.movilink().connect(MovilinkBus::Canopen, *client_);
+  }
   unit.connect(sbus, objects_);
   objects_.set_profile(settings.slave);
   // Master/slave operation is a matter of SBus 1 (MDX60B/61B chapter 5.5.1).
@@ -106,6 +112,7 @@ void SbusPort::power_off() {
 void SbusPort::on_frame(Time now, const Frame& frame) {
   if (waits(frame)) return;
   if (master_.busy() && master_.on_frame(now, frame)) return tell_shared(now, frame);
+  if (client_ && client_->busy() && client_->on_frame(now, frame)) return;
   const bool received = receive(now, frame);
   // A receive object with the sync identifier takes nothing away from the drive.
   if (!received || slave_.is_sync(frame)) slave_.on_frame(now, frame);
@@ -114,7 +121,7 @@ void SbusPort::on_frame(Time now, const Frame& frame) {
 
 // It is for variables alone and can wait until the program has come so far.
 bool SbusPort::waits(const Frame& frame) {
-  if (!door_.is_behind() || master_.busy() || slave_.is_sync(frame)) return false;
+  if (!door_.is_behind() || calls() || slave_.is_sync(frame)) return false;
   const auto receiver = objects_.receiver(frame);
   return receiver && objects_.fits(*receiver, frame) &&
          door_.post(*this, *receiver, {frame.data, frame.length});
@@ -154,7 +161,7 @@ bool SbusPort::receive(Time now, const Frame& frame) {
   const std::span<const int32_t> variables = door_.variables();
   if (variables.empty()) return false;
   if (objects_.has_taken(*receiver, frame, variables)) {
-    if (door_.variables_rest() && !master_.busy() && !slave_.is_sync(frame)) {
+    if (door_.variables_rest() && !calls() && !slave_.is_sync(frame)) {
       line_.rest(node(), frame);
       rests_ = true;
     }

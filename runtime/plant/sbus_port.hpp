@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "runtime/bus/can/line.hpp"
+#include "runtime/bus/canopen/sdo_master.hpp"
 #include "runtime/bus/movilink/sbus_group_master.hpp"
 #include "runtime/bus/movilink/sbus_master.hpp"
 #include "runtime/bus/movilink/sbus_slave.hpp"
@@ -71,6 +72,7 @@ class SbusPort final : public StationPort, private CanNode, private SlaveObserve
   Time lead(Time now);
   void on_frame(Time now, const Frame& frame) override;
   void want_each_again();
+  bool calls() const { return master_.busy() || (client_ && client_->busy()); }
   bool waits(const Frame& frame);
   bool receive(Time now, const Frame& frame);
   void read(size_t object, const TelegramData& data) override;
@@ -99,6 +101,8 @@ class SbusPort final : public StationPort, private CanNode, private SlaveObserve
   MovilinkBus bus_;
   ExchangeDoor exchanges_;
   SbusMaster master_;
+  ExchangeDoor client_exchanges_;
+  std::optional<canopen::SdoMaster> client_;  // MOVITRAC 07: MOVLNK over CANopen
   GroupMaster group_master_;
 };
 

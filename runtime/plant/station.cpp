@@ -84,6 +84,7 @@ void Station::connect_sbus(int number) {
                                                : std::nullopt;
   if (!settings.movilink) {
     unit_.movilink().disconnect(number == 1 ? MovilinkBus::Sbus : MovilinkBus::Sbus2);
+    if (number == 1) unit_.movilink().disconnect(MovilinkBus::Canopen);
     port.reset();
     canopen = std::make_unique<CanopenPort>(queue_, source_, *line, node, number, config_.name, settings,
                                             door_, journal_);

@@ -146,19 +146,25 @@ TEST(MoviLinkOverRs485, BusTypesOfMovidriveB) {
 TEST(MoviLinkOverRs485, Movitrac07) {
   PROVES("M07-SCOM-02");
   std::string program = kEachType;
-  program.replace(program.find("8470"), 4, "8807");  // ramp t11 up of this unit
+  program.replace(program.find("8470"), 4, "8517");  // P302, the maximum speed of all of them
   const Outcome out =
       run(kBuses + station("master", "mc07", "program = \"A.IPC\"\nsbus = \"sbus\"\nrs485 = \"x13\"\n", "") +
-              station("on_x13", "mc07", "rs485 = \"x13\"\n", "P810 = 1\nP130 = 1300\n") +
-              station("on_sbus", "mc07", "sbus = \"sbus\"\n", "P813 = 1\nP130 = 1500\n"),
+              station("on_x13", "mc07", "rs485 = \"x13\"\n", "P810 = 1\nP302 = 1300000\n") +
+              station("on_sbus", "mc07", "sbus = \"sbus\"\n", "P813 = 1\nP302 = 1500000\n") +
+              // Node 1 of CANopen (chapter 5.1: bus type 6).
+              station("node", "mdxb", "sbus = \"sbus\"\n", "P880 = 1\nP886 = 1\nP302 = 1700000\n"),
           program);
   ASSERT_EQ(out.variables.at("done"), 1);
-  for (const int type : {0, 1, 3, 4, 6})
+  for (const int type : {0, 1, 3, 4})
     EXPECT_NE(out.variables.at("result[" + std::to_string(type) + "]"), 0) << type;
-  EXPECT_EQ(out.variables.at("value[2]"), 1300);
-  EXPECT_EQ(out.variables.at("value[5]"), 1500);
+  EXPECT_EQ(out.variables.at("value[2]"), 1'300'000);
+  EXPECT_EQ(out.variables.at("value[5]"), 1'500'000);
+  EXPECT_EQ(out.variables.at("result[6]"), 0);
+  EXPECT_EQ(out.variables.at("value[6]"), 1'700'000);
   EXPECT_EQ(count(out.serial, "\n"), 2U);
-  EXPECT_EQ(count(out.can, "\n"), 2U);
+  // SBus, SDO and the boot-up of the node.
+  EXPECT_EQ(count(out.can, "\n"), 5U);
+  EXPECT_EQ(count(out.can, " 601#4045210000000000"), 1U) << out.can;
 }
 
 TEST(MoviLinkOverRs485, OwnUnit) {

@@ -45,6 +45,7 @@ void Node::reset_communication(Time now) {
   server_.reset();
   for (TransmitPdo& pdo : transmit_) pdo.stop();
   dictionary_.restore();
+  for (size_t n = 0; n < too_short_.size(); ++n) note_length(now, n, false);
   emergency_.reset();
   for (ReceivePdo& pdo : receive_) pdo.configure();
   for (TransmitPdo& pdo : transmit_) pdo.configure(now);
@@ -130,7 +131,8 @@ bool Node::take_remote(Time now, const Frame& frame) {
 
 bool Node::take_pdo(Time now, const Frame& frame) {
   bool mine = false;
-  for (ReceivePdo& pdo : receive_) {
+  for (size_t n = 0; n < receive_.size(); ++n) {
+    ReceivePdo& pdo = receive_[n];
     if (pdo.id() != frame.id) continue;
     mine = true;
     if (!has_pdo(state_)) {
@@ -138,10 +140,19 @@ bool Node::take_pdo(Time now, const Frame& frame) {
       continue;
     }
     const ReceivePdo::Outcome outcome = pdo.take(now, frame);
+    note_length(now, n, outcome == ReceivePdo::Outcome::TooShort);
     if (outcome == ReceivePdo::Outcome::TooShort) ignore(now, frame, IgnoredMessage::PdoTooShort);
     if (outcome == ReceivePdo::Outcome::TooLong) ignore(now, frame, IgnoredMessage::PdoTooLong);
   }
   return mine;
+}
+
+// An error until each of them that was too short has come long enough, or is received no more (that it ends so is ours).
+void Node::note_length(Time now, size_t pdo, bool too_short) {
+  if (too_short_[pdo] == too_short) return;
+  too_short_[pdo] = too_short;
+  const bool any = std::find(too_short_.begin(), too_short_.end(), true) != too_short_.end();
+  emergency_.set(now, Cause::PdoTooShort, any, unit_.status(now).status_word_1);
 }
 
 void Node::take_nmt(Time now, const Frame& frame) {
@@ -203,9 +214,10 @@ void Node::on_written(Time now, Address address, Rule rule) {
   }
   const uint16_t index = address.index;
   const auto pdo = static_cast<size_t>(index % objects::kPdos);
-  if (index >= objects::kReceivePdo && index < objects::kTransmitPdo)
+  if (index >= objects::kReceivePdo && index < objects::kTransmitPdo) {
     receive_[pdo].configure();
-  else if (index >= objects::kTransmitPdo && index < objects::kOutput)
+    note_length(now, pdo, false);
+  } else if (index >= objects::kTransmitPdo && index < objects::kOutput)
     transmit_[pdo].configure(now);
   else if (index == objects::kEmergencyId || index == objects::kEmergencyInhibit)
     emergency_.may_send(now);

@@ -70,6 +70,7 @@ class Node final : private EventTarget,
   void on_partner(Time now, bool lost) override;
   bool take_remote(Time now, const Frame& frame);
   bool take_pdo(Time now, const Frame& frame);
+  void note_length(Time now, size_t pdo, bool too_short);
   void take_nmt(Time now, const Frame& frame);
   void take_sync(Time now, const Frame& frame);
   void take_sdo(Time now, const Frame& frame);
@@ -89,6 +90,7 @@ class Node final : private EventTarget,
   SdoServer server_;
   Timer sdo_timeout_;
   std::array<ReceivePdo, objects::kPdos> receive_;
+  std::array<bool, objects::kPdos> too_short_{};  // its last PDO was
   std::array<TransmitPdo, objects::kPdos> transmit_;
   Emergency emergency_;
   ErrorControl error_control_;

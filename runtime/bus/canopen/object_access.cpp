@@ -28,9 +28,14 @@ uint32_t number_of(std::span<const uint8_t> data) {
   return value;
 }
 
-// An 11-bit identifier that may be chosen.
+// The identifier with bit 29, which makes it one of 29 bits; no unit has those.
+constexpr uint32_t kFrame = objects::kExtended | (objects::kExtended - 1);
+
+// An 11-bit identifier that may be chosen, of whichever object. What is off may have 0 in its place, which is none (ours:
+// CiA 301 restricts 0, and masters switch off with 80000000h).
 bool is_identifier(uint32_t cob_id) {
-  const uint32_t id = cob_id & ~(objects::kOff | objects::kNoRemote);
+  const uint32_t id = cob_id & kFrame;
+  if ((cob_id & objects::kOff) != 0 && id == 0) return true;
   return id <= objects::kIdMask && !is_restricted(id);
 }
 
@@ -94,6 +99,9 @@ tl::expected<std::vector<uint8_t>, Abort> ObjectAccess::read(Time now, Address a
     const std::string value = text(now, row.rule);
     return std::vector<uint8_t>(value.begin(), value.end());
   }
+  // The list of errors is as long as there are errors.
+  if (row.rule == Rule::ErrorEntry && address.sub > dictionary_.value(address.index))
+    return tl::unexpected(Abort::NoData);
   const uint32_t value =
       row.rule == Rule::Input ? unit_.input(now)[static_cast<size_t>(address.sub - 1)] : entry->value;
   return low_byte_first(value, bytes_of(row.type));
@@ -149,8 +157,8 @@ std::optional<Abort> ObjectAccess::check(Time now, const ObjectDictionary::Entry
   switch (entry.row->rule) {
     case Rule::ErrorCount: return unless(value == 0, Abort::Value);
     case Rule::SyncId:
-      // The unit sends no SYNC.
-      return unless((value & objects::kNoRemote) == 0 && is_identifier(value), Abort::Value);
+      // The unit sends no SYNC, and bit 31 says nothing here.
+      return unless((value & objects::kNoRemote) == 0 && is_identifier(value & ~objects::kOff), Abort::Value);
     case Rule::EmergencyId:
       if (state_ != State::PreOperational) return Abort::State;
       return unless((value & objects::kNoRemote) == 0 && is_identifier(value), Abort::Value);
@@ -175,6 +183,7 @@ std::optional<Abort> ObjectAccess::check(Time now, const ObjectDictionary::Entry
     case Rule::DeviceName:
     case Rule::HardwareVersion:
     case Rule::SoftwareVersion:
+    case Rule::ErrorEntry:
     case Rule::Input: break;
   }
   return std::nullopt;
@@ -182,9 +191,8 @@ std::optional<Abort> ObjectAccess::check(Time now, const ObjectDictionary::Entry
 
 // Its identifier changes only while the PDO is off. One that carries nothing is not switched on (ours).
 std::optional<Abort> ObjectAccess::check_pdo_id(Address address, uint32_t old, uint32_t value) const {
-  constexpr uint32_t kFrame = objects::kExtended | (objects::kExtended - 1);
-  if ((value & objects::kOff) != 0) return unless((value & kFrame) <= objects::kIdMask, Abort::Value);
   if (!is_identifier(value)) return Abort::Value;
+  if ((value & objects::kOff) != 0) return std::nullopt;
   if ((old & objects::kOff) == 0 && (old & kFrame) != (value & kFrame)) return Abort::Value;
   return unless(dictionary_.value(address.index + kPdoObjects) != 0, Abort::Value);
 }

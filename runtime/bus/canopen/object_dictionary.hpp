@@ -39,6 +39,7 @@ enum class Rule : uint8_t {
   HardwareVersion,
   SoftwareVersion,
   ErrorCount,
+  ErrorEntry,
   SyncId,
   EmergencyId,
   GuardTime,

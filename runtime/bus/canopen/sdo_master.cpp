@@ -13,10 +13,13 @@ SdoMaster::SdoMaster(const Place& place, Time timeout, MovilinkClient& client)
 
 std::optional<ReturnCode> SdoMaster::start(Time now, const MovilinkJob& job) {
   const auto service = static_cast<Service>(job.service);
+  const auto format = telegram_format(job.format);
   const bool known = service == Service::Read || service == Service::Write;
-  if (!known || !is_node(static_cast<uint32_t>(job.address)) || job.index < 0 || job.index > 0xFFFF)
+  if (!format || !format->parameter || format->words > 0 || !known ||
+      !is_node(static_cast<uint32_t>(job.address)) || job.index < 0 || job.index > 0xFFFF)
     return stdlib::return_codes::kWrongManagement;
   node_ = static_cast<uint8_t>(job.address);
+  place_.sender.listen(identifier(Connection::SdoResponse, node_));
   const Address address{static_cast<uint16_t>(job.index), 0};
   const auto value = static_cast<uint32_t>(job.write_value);
   const std::array<uint8_t, 4> data = {static_cast<uint8_t>(value), static_cast<uint8_t>(value >> 8),
@@ -31,12 +34,13 @@ void SdoMaster::abort() {
     place_.sender.send({identifier(Connection::SdoRequest, node_), 8, transfer_.expire()}, place_.tag);
 }
 
-void SdoMaster::on_frame(Time now, const Frame& frame) {
+bool SdoMaster::on_frame(Time now, const Frame& frame) {
   if (!transfer_.is_busy() || !is_plain(frame) || frame.length != 8 ||
       frame.id != identifier(Connection::SdoResponse, node_))
-    return;
+    return false;
   if (const auto request = transfer_.take(frame.data)) send(now, *request);
   if (!transfer_.is_busy()) finish(now);
+  return true;
 }
 
 void SdoMaster::on_timer(Time now, uint32_t /*kind*/) {

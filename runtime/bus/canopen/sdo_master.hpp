@@ -16,11 +16,13 @@ class SdoMaster final : public MovilinkMaster, private Timer::Owner {
   // `timeout` is that of one answer. The client must outlive the master.
   SdoMaster(const Place& place, Time timeout, MovilinkClient& client);
 
-  // Reads and writes alone: SDO knows no other services, and a write is always stored. The address is 1..127.
+  // Reads and writes alone, without process data: SDO knows no other services, and a write is always stored. The address
+  // is 1..127.
   std::optional<ReturnCode> start(Time now, const MovilinkJob& job) override;
   void abort() override;
 
-  void on_frame(Time now, const Frame& frame);
+  bool busy() const { return transfer_.is_busy(); }
+  bool on_frame(Time now, const Frame& frame);  // true when it was the awaited answer
 
  private:
   void on_timer(Time now, uint32_t kind) override;

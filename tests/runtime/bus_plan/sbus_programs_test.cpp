@@ -133,6 +133,18 @@ TEST(Movlnk, AddressesAndFormatsOfMovitrac07) {
   EXPECT_EQ(trace("Ml.Format = 4;"), (std::vector<uint32_t>{523, 524, 11, 12}));
   EXPECT_EQ(trace("Ml.Format = 5;"), (std::vector<uint32_t>{11, 12}));
   EXPECT_EQ(trace("Ml.Format = 6;"), (std::vector<uint32_t>{523, 524}));
+  // 1..127 over CANopen: SDO requests, which nobody here answers, so that an abort follows.
+  for (const int address : {1, 63, 64, 127}) {
+    Call canopen("Ml.BusType = 6; Ml.Format = 6; Ml.Address = " + std::to_string(address) + ";", "", "mc07");
+    EXPECT_EQ(canopen["Ml.Result"], 0x0602'0000) << "no answer";
+    const auto id = static_cast<uint32_t>(0x600 + address);
+    EXPECT_EQ(canopen.rig.ids(), (std::vector<uint32_t>{id, id}));
+  }
+  for (const int address : {0, 128, 150, -1}) {
+    Call outside("Ml.BusType = 6; Ml.Format = 6; Ml.Address = " + std::to_string(address) + ";", "", "mc07");
+    EXPECT_EQ(outside["Ml.Result"], 0x0505'0000) << address;
+    EXPECT_TRUE(outside.rig.frames.empty()) << address;
+  }
   for (const int words : {1, 2, 3}) {
     Call format("Ml.Format = " + std::to_string(2 * words - 1) + "; Mld.PO1 = 1; Mld.PO2 = 2; Mld.PO3 = 3;",
                 "", "mc07");

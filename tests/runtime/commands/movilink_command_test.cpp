@@ -158,11 +158,12 @@ TEST(Movlnk, TheBusTypeNamesTheBus) {
   const Row rows[] = {{1, MovilinkBus::SerialXt, "md60a compact mdxb"},
                       {2, MovilinkBus::SerialX13, "md60a mc07 mdxb"},
                       {5, MovilinkBus::Sbus, "md60a compact mc07 mdxb"},
-                      {8, MovilinkBus::Sbus2, "mdxb"}};
+                      {8, MovilinkBus::Sbus2, "mdxb"},
+                      {6, MovilinkBus::Canopen, "mc07"}};
   for (const char* unit : {"md60a", "compact", "mc07", "mdxb"})
     for (int32_t code = -1; code <= 10; ++code) {
       MovlnkRig rig(unit);
-      Carrier carriers[4];
+      Carrier carriers[5];
       for (const Row& row : rows) rig.movilink.connect(row.bus, carriers[static_cast<size_t>(row.bus)]);
       rig.put(100, code, 3, 6, 1, 8470, 200);
       const vm::Answer answer = rig.start(100);
@@ -188,11 +189,12 @@ TEST(Movlnk, SaysWhichBusesThereAre) {
   };
   EXPECT_NE(why("compact", 2).find("bus type 2 is none of 1, 5, which "), std::string::npos)
       << why("compact", 2);
-  EXPECT_NE(why("mc07", 1).find("bus type 1 is none of 2, 5, which "), std::string::npos) << why("mc07", 1);
+  EXPECT_NE(why("mc07", 1).find("bus type 1 is none of 2, 5, 6, which "), std::string::npos)
+      << why("mc07", 1);
   EXPECT_NE(why("mdxb", 4).find("bus type 4 is none of 1, 2, 5, 8, which "), std::string::npos);
   EXPECT_NE(why("mdxb", 3).find("only answers its master"), std::string::npos) << why("mdxb", 3);
   EXPECT_NE(why("md60a", 3).find("none of 1, 2, 5"), std::string::npos) << why("md60a", 3);
-  EXPECT_NE(why("mc07", 6).find("CANopen"), std::string::npos) << why("mc07", 6);
+  EXPECT_NE(why("mdxb", 6).find("none of 1, 2, 5, 8"), std::string::npos) << why("mdxb", 6);
 }
 
 TEST(Movlnk, ABusThatIsNotConnectedIsNoAnswer) {

@@ -86,7 +86,11 @@ TEST(CanopenObjects, EveryAddress) {
       const auto at = static_cast<uint8_t>(sub);
       const bool there = rig.dictionary.find({index, at}) != nullptr;
       entries += there;
-      const uint32_t expected = there ? 0 : find_object(index) != nullptr ? 0x0609'0011 : 0x0602'0000;
+      // The list of errors is empty.
+      const bool no_data = index == 0x1003 && sub != 0;
+      const uint32_t expected = there                           ? no_data ? 0x0800'0024 : 0
+                                : find_object(index) != nullptr ? 0x0609'0011
+                                                                : 0x0602'0000;
       ASSERT_EQ(rig.refused_read(index, at), expected) << std::hex << index << ":" << sub;
       if (there) {
         ASSERT_FALSE(entry_name({index, at}).empty());
@@ -141,6 +145,14 @@ TEST(CanopenObjects, RestrictedIdentifiers) {
     const uint32_t expected = good ? 0 : 0x0609'0030;
     EXPECT_EQ(rig.write(0x1005, 0, id, 4), expected) << id;
     EXPECT_EQ(rig.write(0x1014, 0, id, 4), expected) << id;
+    // Of what is off, too; 0 is none there.
+    const uint32_t off = 0x8000'0000 | id;
+    const uint32_t expected_off = id == 0 ? 0 : expected;
+    EXPECT_EQ(rig.write(0x1005, 0, off, 4), expected) << id << ": bit 31 says nothing of SYNC";
+    EXPECT_EQ(rig.write(0x1014, 0, off, 4), expected_off) << id;
+    for (const uint16_t pdo : std::initializer_list<uint16_t>{0x1400, 0x1403, 0x1800, 0x1801, 0x1803})
+      EXPECT_EQ(rig.write(pdo, 1, off, 4), expected_off) << pdo << ' ' << id;
+    EXPECT_EQ(rig.write(0x1200, 1, id, 4), 0x0601'0002U);
   }
   // Values of the life time at its edge: 10 ms (page 54), and without one of the two there is none.
   EXPECT_EQ(rig.write(0x100C, 0, 10, 2), 0U);
@@ -303,7 +315,7 @@ TEST(CanopenObjects, EveryBitOfAPdoIdentifierCounts) {
     EXPECT_EQ(rig.write(0x1400, 1, 0x0000'0205 | 1U << bit, 4), 0x0609'0030U) << bit;
   }
   EXPECT_EQ(rig.write(0x1401, 1, 0xC000'0305, 4), 0U) << "bit 30 does not belong to it";
-  EXPECT_EQ(rig.write(0x1401, 1, 0x8000'07FF, 4), 0U);
+  EXPECT_EQ(rig.write(0x1401, 1, 0x8000'06DF, 4), 0U) << "the highest that is not restricted below the SDO";
   for (unsigned bit = 0; bit <= 10; ++bit)
     EXPECT_EQ(rig.write(0x1400, 1, 0x205U ^ 1U << bit, 4), 0x0609'0030U) << "it is on: " << bit;
   EXPECT_EQ(rig.write(0x1400, 1, 0x205, 4), 0U);

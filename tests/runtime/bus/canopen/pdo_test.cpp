@@ -172,6 +172,39 @@ TEST(CanopenPdo, WrongLength) {
   EXPECT_EQ(rig.station.ignored, (std::vector{IgnoredMessage::PdoTooShort, IgnoredMessage::PdoTooLong}));
 }
 
+// CiA 301: a PDO that is too short is told by EMCY 8210h, generic and communication error. It is gone when each of them
+// has come long enough (ours).
+TEST(CanopenPdo, TooShortIsAnEmergency) {
+  PdoRig rig;
+  rig.map(false, 1, 0x2000'0410, 255, 0x305);
+  rig.map(false, 2, 0x2000'0510, 254, 0x405);
+  rig.nmt(NmtCommand::Start);
+  const auto emergencies = [&](const Frame& pdo) {
+    std::vector<Frame> found;
+    for (const Frame& frame : rig.ask(pdo))
+      if (frame.id == 0x085) found.push_back(frame);
+    return found;
+  };
+  const Frame short_one{0x305, 1, {0x34}}, other{0x405, 0};
+  const std::vector<Frame> told{{0x085, 8, {0x10, 0x82, 0x11}}}, gone{{0x085, 8, {0, 0, 0}}}, nothing;
+  EXPECT_EQ(emergencies(short_one), told);
+  EXPECT_EQ(rig.station.node.dictionary().value(0x1001), 0x11U);
+  EXPECT_EQ(rig.station.node.dictionary().value(0x1003, 1), 0x8210U);
+  EXPECT_EQ(emergencies(short_one), nothing) << "it is known already";
+  EXPECT_EQ(emergencies(other), nothing);
+  EXPECT_EQ(emergencies({0x305, 2, {0x34, 0x12}}), nothing) << "the other one was too short, too";
+  EXPECT_EQ(emergencies({0x405, 3, {0x34, 0x12, 0}}), gone) << "too long is long enough";
+  EXPECT_EQ(rig.station.node.dictionary().value(0x1001), 0U);
+  // Who maps less, or begins anew, has no such PDO any more.
+  EXPECT_EQ(emergencies(short_one), told);
+  rig.write(0x1401, 1, 0x8000'0305, 4);
+  EXPECT_EQ(rig.station.node.dictionary().value(0x1001), 0U);
+  rig.write(0x1401, 1, 0x0000'0305, 4);
+  EXPECT_EQ(emergencies(short_one), told);
+  rig.nmt(NmtCommand::ResetCommunication);
+  EXPECT_EQ(rig.station.node.dictionary().value(0x1001), 0U);
+}
+
 TEST(CanopenPdo, LengthIsTheSumOfWhatIsMapped) {
   PROVES("MDB-TOC-09");
   PdoRig rig;

@@ -25,6 +25,7 @@ struct SdoMasterBench final : CanNode, MovilinkClient {
   std::optional<ReturnCode> start(Service service, int32_t address, int32_t index, int32_t value = 0) {
     MovilinkJob job;
     job.address = address;
+    job.format = format;
     job.service = static_cast<int32_t>(service);
     job.index = index;
     job.write_value = value;
@@ -44,6 +45,7 @@ struct SdoMasterBench final : CanNode, MovilinkClient {
   LinePort port{line, line.attach("master", 500'000, *this)};
   Hand node{line, "node5"};
   SdoMaster master{{queue, 1, port, 7}, 100 * kMillisecond, *this};
+  int32_t format = 6;  // a parameter alone
   std::vector<MovilinkResult> results;
   Time done_at = 0;
 };
@@ -138,7 +140,16 @@ TEST(CanopenSdoMaster, JobsThatSdoCannotCarry) {
     ASSERT_TRUE(refused.has_value()) << address << ' ' << index;
     EXPECT_EQ(refused->packed(), 0x0505'0000U) << "class 5, code 5";
   }
+  // SDO carries no process data.
+  for (const int32_t format : {0, 1, 2, 3, 4, 5, 128, 133, 7, -1}) {
+    bench.format = format;
+    EXPECT_TRUE(bench.start(Service::Read, 5, 8318).has_value()) << format;
+  }
   EXPECT_TRUE(bench.heard().empty());
+  bench.format = 134;
+  EXPECT_EQ(bench.start(Service::Read, 5, 8318), std::nullopt);
+  bench.master.abort();
+  bench.format = 6;
   EXPECT_EQ(bench.start(Service::Read, 1, 0), std::nullopt);
   bench.master.abort();
   EXPECT_EQ(bench.start(Service::Read, 127, 0xFFFF), std::nullopt);

@@ -72,6 +72,19 @@ TEST(CanopenSdo, SegmentedDownload) {
   EXPECT_EQ(rig.unit.parameters[8318], 0x0403'0201);
 }
 
+// Each transfer begins with toggle bit 0, whatever the one before ended with: here each has an odd number of segments.
+TEST(CanopenSdo, EveryTransferTogglesAnew) {
+  ObjectRig rig;
+  for (int n = 0; n < 3; ++n) {
+    ASSERT_EQ(rig.ask({0x21, 0x7E, 0x20, 0x00, 4}), (SdoBytes{0x60, 0x7E, 0x20, 0x00})) << n;
+    EXPECT_EQ(rig.ask({0x07, 1, 2, 3, 4}), (SdoBytes{0x20})) << n;
+    ASSERT_EQ(rig.ask({0x40, 0x08, 0x10, 0x00}), (SdoBytes{0x41, 0x08, 0x10, 0x00, 20})) << n;
+    EXPECT_EQ(rig.ask({0x60}), (SdoBytes{0x00, 'M', 'O', 'V', 'I', 'D', 'R', 'I'})) << n;
+    // The client begins anew in the middle.
+  }
+  EXPECT_EQ(rig.unit.parameters[8318], 0x0403'0201);
+}
+
 TEST(CanopenSdo, EveryAbort) {
   PROVES("MDB-TOC-16");
   ObjectRig rig;
