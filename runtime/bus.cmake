@@ -10,7 +10,7 @@ ipos_layer(bus FOLDERS runtime/bus
                    bus/canopen/abort.cpp bus/canopen/object_dictionary.cpp bus/canopen/object_access.cpp
                    bus/canopen/eds.cpp bus/canopen/sdo_server.cpp bus/canopen/pdo.cpp bus/canopen/emergency.cpp
                    bus/canopen/error_control.cpp bus/canopen/node.cpp bus/canopen/sdo_client.cpp bus/canopen/master.cpp
-                   bus/canopen/sdo_master.cpp bus/canopen/words.cpp bus/canopen/sdo_words.cpp bus/can_words.cpp
+                   bus/canopen/sdo_master.cpp bus/canopen/dbc_messages.cpp bus/canopen/words.cpp bus/canopen/sdo_words.cpp bus/can_words.cpp bus/bus_words.cpp
                    bus/movilink/parameter_telegram.cpp bus/movilink/return_code.cpp
                    bus/movilink/variable_telegram.cpp bus/movilink/profile.cpp bus/movilink/unit_servers.cpp
                    bus/movilink/sbus_slave.cpp bus/movilink/sbus_master.cpp bus/movilink/sbus_group_master.cpp

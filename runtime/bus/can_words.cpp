@@ -50,9 +50,17 @@ void CanLineWords::use(CanLineNames names) {
 CanLineWords& CanWords::listened(std::string_view line) {
   if (const auto found = lines_.find(line); found != lines_.end()) return found->second;
   const std::string name(lines_.size() < kLines ? line : std::string_view());
-  const auto known = names_->lines.find(name);
-  const CanLineNames& names = known == names_->lines.end() ? names_->all : known->second;
-  return lines_.emplace(name, CanLineWords(names, names_->canopen)).first->second;
+  return lines_.emplace(name, CanLineWords(names_of(name), names_->canopen)).first->second;
+}
+
+const CanLineNames& CanWords::names_of(const std::string& line) const {
+  const auto known = names_->lines.find(line);
+  return known == names_->lines.end() ? names_->all : known->second;
+}
+
+void CanWords::use(CanNames names) {
+  names_ = std::make_shared<CanNames>(std::move(names));
+  for (auto& [line, words] : lines_) words.use(names_of(line));
 }
 
 }  // namespace ipos::runtime

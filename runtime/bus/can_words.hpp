@@ -41,6 +41,11 @@ class CanLineWords {
   // Whether its words are those of CANopen: then they depend on what went before.
   bool is_canopen(const Frame& frame) const { return canopen_ && !concerns(names_.movilink, frame); }
 
+  // The same for a frame whose words nobody wants: what it says of nodes is kept.
+  void listen(const Frame& frame) {
+    if (is_canopen(frame)) canopen_->listen(frame);
+  }
+
   // Others from now on; what was heard of nodes stays.
   void use(CanLineNames names);
 
@@ -55,9 +60,13 @@ class CanWords {
 
   // Of the next frame on the line.
   Description describe(std::string_view line, const Frame& frame) { return listened(line).describe(frame); }
+  void listen(std::string_view line, const Frame& frame) { listened(line).listen(frame); }
+  // Others from now on; what was heard of nodes stays.
+  void use(CanNames names);
   const CanNames& names() const { return *names_; }
 
  private:
+  const CanLineNames& names_of(const std::string& line) const;
   CanLineWords& listened(std::string_view line);
 
   std::shared_ptr<const CanNames> names_;

@@ -83,8 +83,11 @@ std::vector<canopen::NodeName> node_names(const Plant& plant, const CanLine* lin
       const CanopenPort* port = std::as_const(*station).canopen(number);
       if (port == nullptr || (line != nullptr && &port->line() != line)) continue;
       const StationConfig& config = station->config();
-      names.push_back({port->settings().canopen_address, config.name, config.unit,
-                       assignment(station->drive(), 870), assignment(station->drive(), 873)});
+      const canopen::Node* node = port->canopen();
+      names.push_back(
+          {port->settings().canopen_address, config.name, config.unit, assignment(station->drive(), 870),
+           assignment(station->drive(), 873),
+           node == nullptr ? nullptr : std::make_shared<canopen::ObjectDictionary>(node->dictionary())});
     }
   return names;
 }
@@ -124,5 +127,7 @@ TelegramNames serial_names(const Plant& plant) {
   }
   return names;
 }
+
+BusNames bus_names(const Plant& plant) { return {can_names(plant), serial_names(plant)}; }
 
 }  // namespace ipos::runtime

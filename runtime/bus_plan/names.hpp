@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "runtime/bus/can_words.hpp"
+#include "runtime/bus/bus_words.hpp"
 #include "runtime/bus/movilink/describe.hpp"
 #include "runtime/plant/plant.hpp"
 
@@ -26,5 +26,8 @@ CanNames can_names(const Plant& plant);
 
 // The same for RS-485: P810 as address, P811 as group, no objects.
 TelegramNames serial_names(const Plant& plant);
+
+// For every line of the plant.
+BusNames bus_names(const Plant& plant);
 
 }  // namespace ipos::runtime

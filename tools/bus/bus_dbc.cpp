@@ -1,4 +1,4 @@
-// ipos bus dbc: a DBC file of the variable telegrams and process data of a plant or program.
+// ipos bus dbc: a DBC file of the variable telegrams, the process data and the CANopen messages of a plant or program.
 #include <fmt/format.h>
 
 #include "runtime/bus/movilink/dbc.hpp"
@@ -16,13 +16,13 @@ void add_bus_dbc(cli::Verb& bus) {
     CompileFlags compile;
   };
   auto flags = std::make_shared<Flags>();
-  cli::Verb& verb = bus.verb("dbc", "write a DBC file of variable telegrams and process data");
+  cli::Verb& verb = bus.verb("dbc", "write a DBC file of variable telegrams, process data and CANopen");
   verb.option("FILE", flags->file, "plant (.toml), source (.IPC) or image (.ipx)").required();
   verb.option("-o", flags->out, "file to write; - is standard output");
   add_compile_options(verb, flags->compile);
   verb.footer("Example:\n  ipos bus dbc examples/scom/scom.toml -o scom.dbc");
   verb.runs([flags] {
-    replace_file(flags->out, runtime::dbc_text(names_of(flags->file, flags->compile)));
+    replace_file(flags->out, runtime::dbc_text(bus_names_of(flags->file, flags->compile).can.all));
     return kGood;
   });
 }

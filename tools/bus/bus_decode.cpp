@@ -7,8 +7,6 @@
 #include "compiler/diag/places.hpp"
 #include "runtime/bus/can/identifier_text.hpp"
 #include "runtime/bus/log/serial_log.hpp"
-#include "runtime/bus/movilink/describe_serial.hpp"
-#include "runtime/bus/profibus/frame_text.hpp"
 #include "tools/bus/bus_verbs.hpp"
 #include "tools/bus/log_input.hpp"
 #include "tools/bus/telegram_json.hpp"
@@ -35,15 +33,13 @@ size_t identifier_column(const runtime::LogEntry& entry) {
   return time_text(entry).size() + entry.bus.size() + 3;
 }
 
-// Telegrams of every kind of bus, each with the dictionary of its bus: that of a plant is made when it is
-// first needed.
+// Telegrams of every kind of bus. The names of a plant are looked up when they are first needed.
 class Decoder {
  public:
   explicit Decoder(const DecodeFlags& flags) : flags_(flags), json_(flags.format == "json") {}
 
   void take(const runtime::LogEntry& entry, LogPlace place) {
-    if (!words_) words_.emplace(can_names_of(flags_.names));
-    const runtime::Description description = words_->describe(entry.bus, entry.frame);
+    const runtime::Description description = words().describe(entry.bus, entry.frame);
     if (json_) return print(telegram_json(entry), description.text);
     fmt::print("{} {} {}\n", time_text(entry), compiler::printable(entry.bus), description.text);
     if (description.known || !unknown_.emplace(entry.frame.extended, entry.frame.id).second) return;
@@ -52,25 +48,25 @@ class Decoder {
                runtime::id_words(entry.frame.id, entry.frame.extended));
   }
   void take(const runtime::SerialEntry& entry) {
-    if (!serial_names_) serial_names_ = serial_names_of(flags_.names.plant, flags_.names.compile);
-    const std::string text = runtime::describe(*serial_names_, entry.reception);
+    const std::string text = words().describe(entry.reception);
     if (json_) return print(telegram_json(entry), text);
     if (entry.time)
       fmt::print("{} {} ", runtime::serial_time_text(*entry.time), compiler::printable(entry.line));
     fmt::print("{}\n", text);
   }
   void take(const runtime::ProfibusEntry& entry) {
-    const auto& [frame, octets, start, end] = entry.reception;
-    const std::string text =
-        frame ? profibus::describe(*frame)
-              : fmt::format("void, {}: {}", frame_error_text(frame.error()), profibus::hex_text(octets));
+    const std::string text = words().describe(entry.reception);
     if (json_) return print(telegram_json(entry), text);
     if (!entry.line.empty())
-      fmt::print("{} {} ", runtime::serial_time_text(start), compiler::printable(entry.line));
+      fmt::print("{} {} ", runtime::serial_time_text(entry.reception.start), compiler::printable(entry.line));
     fmt::print("{}\n", text);
   }
 
  private:
+  runtime::BusWords& words() {
+    if (!words_) words_.emplace(bus_names_of(flags_.names));
+    return *words_;
+  }
   // In ASCII: names come from strangers, and the output may be a terminal.
   static void print(nlohmann::ordered_json fields, const std::string& text) {
     fields["text"] = text;
@@ -79,8 +75,7 @@ class Decoder {
 
   const DecodeFlags& flags_;
   bool json_;
-  std::optional<runtime::CanWords> words_;
-  std::optional<runtime::TelegramNames> serial_names_;
+  std::optional<runtime::BusWords> words_;
   std::set<std::pair<bool, uint32_t>> unknown_;
 };
 

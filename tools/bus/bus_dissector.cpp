@@ -172,8 +172,8 @@ void add_bus_dissector(cli::Verb& bus) {
       "Example:\n  ipos bus dissector examples/scom/scom.toml -o "
       "~/.local/lib/wireshark/plugins/movilink.lua");
   verb.runs([flags] {
-    replace_file(flags->out, dissector(names_of(flags->plant, flags->compile),
-                                       serial_names_of(flags->plant, flags->compile)));
+    const runtime::BusNames names = bus_names_of(flags->plant, flags->compile);
+    replace_file(flags->out, dissector(names.can.all.movilink, names.serial));
     return kGood;
   });
 }

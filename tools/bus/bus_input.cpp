@@ -17,19 +17,14 @@ std::unique_ptr<runtime::Plant> trial_run(const std::string& path, const Compile
 
 }  // namespace
 
-runtime::CanNames can_names_of(const NamesFlags& flags) {
-  runtime::CanNames names;
-  if (!flags.plant.empty()) names = runtime::can_names(*trial_run(flags.plant, flags.compile));
-  names.canopen = flags.canopen;
+runtime::BusNames bus_names_of(const std::string& path, const CompileFlags& compile) {
+  return path.empty() ? runtime::BusNames{} : runtime::bus_names(*trial_run(path, compile));
+}
+
+runtime::BusNames bus_names_of(const NamesFlags& flags) {
+  runtime::BusNames names = bus_names_of(flags.plant, flags.compile);
+  names.can.canopen = flags.canopen;
   return names;
-}
-
-runtime::TelegramNames names_of(const std::string& path, const CompileFlags& compile) {
-  return path.empty() ? runtime::TelegramNames{} : runtime::telegram_names(*trial_run(path, compile));
-}
-
-runtime::TelegramNames serial_names_of(const std::string& path, const CompileFlags& compile) {
-  return path.empty() ? runtime::TelegramNames{} : runtime::serial_names(*trial_run(path, compile));
 }
 
 void add_names_options(cli::Verb& verb, NamesFlags& flags) {

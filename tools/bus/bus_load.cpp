@@ -35,7 +35,7 @@ struct LoadFlags {
 using Meaning = std::function<std::string(const runtime::LoggedIdentifier&)>;
 
 Meaning meaning_of(const NamesFlags& flags) {
-  return [names = can_names_of(flags)](const runtime::LoggedIdentifier& id) {
+  return [names = bus_names_of(flags).can](const runtime::LoggedIdentifier& id) {
     return id.extended ? std::string() : runtime::identifier_text(names.all, names.canopen, id.id);
   };
 }

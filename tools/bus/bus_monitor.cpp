@@ -35,37 +35,36 @@ struct MonitorFlags {
 };
 
 // By its name or number. With --canopen a number is that of a node. False: there is no such station.
-bool add_station(Monitor::CanView& can, const std::string& station) {
-  const runtime::CanNames& names = can.words.names();
+bool add_station(const runtime::CanNames& names, const std::string& station, runtime::StationFilter& filter) {
   const auto number = runtime::station_number(station);
-  bool found = names.canopen ? number && runtime::canopen::is_node(*number)
-                             : can.filter.add(names.all.movilink, station);
+  bool found =
+      names.canopen ? number && runtime::canopen::is_node(*number) : filter.add(names.all.movilink, station);
   std::set<uint8_t> nodes;
   if (names.canopen && found) nodes.insert(*number);
   for (const runtime::canopen::NodeName& node : names.all.nodes)
     if (node.name == station || number == node.node) nodes.insert(node.node);
   for (const uint8_t node : nodes)
-    for (const uint32_t id : runtime::canopen::identifiers_of(node)) can.filter.add(id);
+    for (const uint32_t id : runtime::canopen::identifiers_of(node)) filter.add(id);
   return found || !nodes.empty();
 }
 
 // A log may be of either kind of bus.
 Monitor make_monitor(const MonitorFlags& flags, MonitorSource source) {
-  Monitor::CanView can;
-  Monitor::SerialView serial;
-  if (source != MonitorSource::Serial) can.words = runtime::CanWords(can_names_of(flags.names));
-  if (source != MonitorSource::Can) serial.names = serial_names_of(flags.names.plant, flags.names.compile);
+  runtime::BusNames names = bus_names_of(flags.names);
+  if (source == MonitorSource::Serial) names.can = {};
+  if (source == MonitorSource::Can) names.serial = {};
+  Monitor::Filters filters;
   for (const std::string& station : flags.stations) {
-    can.filter.close();
-    serial.filter.close();
-    const bool on_can = add_station(can, station);
-    if (!serial.filter.add(serial.names, station) && !on_can)
+    filters.can.close();
+    filters.serial.close();
+    const bool on_can = add_station(names.can, station, filters.can);
+    if (!filters.serial.add(names.serial, station) && !on_can)
       throw Failure(kUsage, fmt::format("--station {}: {} has no such station, and it is no address", station,
                                         flags.names.plant.empty() ? "nothing known" : flags.names.plant));
   }
   const bool live = source != MonitorSource::Log || flags.follow;
   const bool table = flags.table || (live && !flags.scroll && flags.count == 0 && is_terminal(STDOUT_FILENO));
-  return {std::move(can), std::move(serial), flags.count,
+  return {runtime::BusWords(std::move(names)), std::move(filters), flags.count,
           table ? std::make_unique<MonitorScreen>(live && is_terminal(STDOUT_FILENO)) : nullptr};
 }
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "runtime/bus/can_words.hpp"
+#include "runtime/bus/bus_words.hpp"
 #include "runtime/bus/log/candump.hpp"
 #include "runtime/bus/movilink/describe.hpp"
 #include "tools/cli/verb.hpp"
@@ -21,17 +21,15 @@ void add_bus_replay(cli::Verb& bus);
 void add_bus_dbc(cli::Verb& bus);
 void add_bus_dissector(cli::Verb& bus);
 
-// The dictionary of a plant or program for its CAN lines. Without one `canopen` says that nodes are there.
+// The dictionary of a plant or program for its lines; it runs for a moment, so that its programs define their objects.
+// Without one `canopen` says that nodes are there.
 struct NamesFlags {
   std::string plant;
   bool canopen = false;
   CompileFlags compile;
 };
-runtime::CanNames can_names_of(const NamesFlags& flags);
-
-// Of MOVILINK alone: it runs for a moment, so that its programs define their objects.
-runtime::TelegramNames names_of(const std::string& path, const CompileFlags& compile);
-runtime::TelegramNames serial_names_of(const std::string& path, const CompileFlags& compile);
+runtime::BusNames bus_names_of(const NamesFlags& flags);
+runtime::BusNames bus_names_of(const std::string& path, const CompileFlags& compile);
 
 // --names FILE, also as --plant and --program; --canopen; and what its programs are compiled with.
 void add_names_options(cli::Verb& verb, NamesFlags& flags);

@@ -7,8 +7,6 @@
 
 #include "compiler/diag/places.hpp"
 #include "runtime/bus/can/identifier_text.hpp"
-#include "runtime/bus/movilink/describe_serial.hpp"
-#include "runtime/bus/profibus/frame_text.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -29,8 +27,8 @@ std::string stamp(Time time) {
 void Monitor::take(const runtime::LogEntry& entry) {
   ++seen_;
   // A node is known by what was said before, so its words go on behind what is not shown.
-  const runtime::Description description = can_.words.describe(entry.bus, entry.frame);
-  if (!can_.filter.passes(entry.frame) || full()) return;
+  const runtime::Description description = words_.describe(entry.bus, entry.frame);
+  if (!filters_.can.passes(entry.frame) || full()) return;
   ++shown_;
   if (!description.known && unknown_.size() < kUnknown)
     unknown_.emplace(entry.frame.extended, entry.frame.id);
@@ -65,9 +63,7 @@ void Monitor::take(Time time, const std::string& line, const profibus::Reception
   ++shown_;
   const auto& frame = reception.frame;
   if (!frame) ++void_;
-  const std::string text = frame ? profibus::describe(*frame)
-                                 : fmt::format("void, {}: {}", frame_error_text(frame.error()),
-                                               profibus::hex_text(reception.octets));
+  const std::string text = words_.describe(reception);
   if (!screen_) return show(time, line, text);
   // A row for each pair of stations.
   const uint32_t pair = frame ? uint32_t{frame->source} << 8 | frame->destination : UINT32_MAX;
@@ -93,9 +89,9 @@ std::optional<std::string> Monitor::words(const runtime::Reception& reception) {
   ++seen_;
   if (!reception.telegram) ++void_;
   // What was no telegram concerns everybody.
-  if ((reception.telegram && !serial_.filter.passes(*reception.telegram)) || full()) return std::nullopt;
+  if ((reception.telegram && !filters_.serial.passes(*reception.telegram)) || full()) return std::nullopt;
   ++shown_;
-  return runtime::describe(serial_.names, reception);
+  return words_.describe(reception);
 }
 
 void Monitor::lost(Time time, const std::string& line, uint64_t count, const char* what) {

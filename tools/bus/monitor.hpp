@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "runtime/bus/can_words.hpp"
+#include "runtime/bus/bus_words.hpp"
 #include "runtime/bus/log/candump.hpp"
 #include "runtime/bus/log/serial_log.hpp"
 #include "runtime/bus/movilink/describe.hpp"
@@ -23,20 +23,15 @@ namespace ipos::tools {
 
 class Monitor {
  public:
-  // What explains and chooses the telegrams of one kind of bus.
-  struct CanView {
-    runtime::CanWords words;
-    runtime::StationFilter filter;
-  };
-  struct SerialView {
-    runtime::TelegramNames names;
-    runtime::StationFilter filter;
+  // Which telegrams are shown; those of PROFIBUS all.
+  struct Filters {
+    runtime::StationFilter can, serial;
   };
 
   // `count` telegrams are shown, 0: no limit.
   // `screen` for a table in place of a line a telegram.
-  Monitor(CanView can, SerialView serial, uint64_t count, std::unique_ptr<MonitorScreen> screen)
-      : can_(std::move(can)), serial_(std::move(serial)), limit_(count), screen_(std::move(screen)) {}
+  Monitor(runtime::BusWords words, Filters filters, uint64_t count, std::unique_ptr<MonitorScreen> screen)
+      : words_(std::move(words)), filters_(std::move(filters)), limit_(count), screen_(std::move(screen)) {}
 
   // Times as in candump logs (kCandumpEpoch).
   void take(const runtime::LogEntry& entry);
@@ -67,8 +62,8 @@ class Monitor {
   void begin_line();
   void end_repetition();
 
-  CanView can_;
-  SerialView serial_;
+  runtime::BusWords words_;
+  Filters filters_;
   uint64_t limit_;
   std::unique_ptr<MonitorScreen> screen_;
   uint64_t seen_ = 0;

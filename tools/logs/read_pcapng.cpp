@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/bus/log/unique_names.hpp"
 #include "tools/logs/packets.hpp"
 
 namespace ipos::tools {
@@ -105,7 +106,8 @@ class PcapngReader {
           made.binary = (value.u8(0) & 0x80U) != 0;
         }))
       return false;
-    made.name = interface_name(name, interfaces_.size());
+    const std::string word = interface_name(name, interfaces_.size());
+    made.name = names_.of(name.empty() ? word : std::string(name), word);
     interfaces_.push_back(std::move(made));
     return true;
   }
@@ -150,6 +152,7 @@ class PcapngReader {
   size_t at_ = 0;
   bool big_endian_ = false;
   std::vector<Interface> interfaces_;
+  runtime::UniqueNames names_{std::string::npos};  // two names that become one word stay two lines
 };
 
 }  // namespace

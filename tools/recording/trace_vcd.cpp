@@ -11,6 +11,7 @@
 #include <iterator>
 #include <limits>
 
+#include "runtime/bus/log/unique_names.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/recording/trace.hpp"
 
@@ -153,7 +154,7 @@ class VcdTrace final : public TraceWriter {
   }
 
   void scope(const std::string& name) {
-    if (!name.empty()) out_ << fmt::format("$scope module {} $end\n", reference(name));
+    if (!name.empty()) out_ << fmt::format("$scope module {} $end\n", modules_.of(name, reference(name)));
   }
 
   void declare(size_t n) {
@@ -221,6 +222,7 @@ class VcdTrace final : public TraceWriter {
     text_ += (frame.bytes.empty() ? "b0" : data) + ' ' + line.data + "\n1" + line.event + '\n';
   }
 
+  runtime::UniqueNames modules_{std::string::npos};  // where letters were replaced
   std::ostream& out_;
   const std::vector<Signal>& signals_;
   const std::vector<FrameTrack>& tracks_;

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "runtime/bus/log/unique_names.hpp"
 #include "tools/cli/outputs.hpp"
 #include "tools/logs/log_writer.hpp"
 #include "tools/recording/plot_html.hpp"
@@ -102,21 +103,28 @@ class Witness {
 
 }  // namespace
 
-std::string artifact_folder(const std::string& test) {
-  std::string name = test;
-  for (char& c : name)
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '.' && c != '-') c = '_';
-  if (name.empty() || name[0] == '.') name.insert(0, "_");
-  return name;
+std::vector<std::string> artifact_folders(const std::vector<TestResult>& results) {
+  constexpr size_t kLongest = 200;  // file systems take 255 bytes
+  runtime::UniqueNames unique(kLongest);
+  std::vector<std::string> folders;
+  for (size_t n = 0; n < results.size(); ++n) {
+    std::string name = results[n].name;
+    for (char& c : name)
+      if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '.' && c != '-') c = '_';
+    if (name.empty() || name[0] == '.') name.insert(0, "_");
+    folders.push_back(unique.of(fmt::format("{}", n), name));
+  }
+  return folders;
 }
 
 void write_artifacts(const std::string& folder, const std::vector<TestCase>& tests,
                      const std::vector<TestResult>& results, const SuiteOptions& options) {
   Programs programs(options.compile);
+  const std::vector<std::string> folders = artifact_folders(results);
   for (size_t n = 0; n < results.size(); ++n) {
     const TestResult& result = results[n];
     if (result.outcome != Outcome::Failed && result.outcome != Outcome::Malformed) continue;
-    const std::string own = folder + "/" + artifact_folder(result.name);
+    const std::string own = folder + "/" + folders[n];
     std::filesystem::create_directories(own);
     replace_file(own + "/report.txt", text_of(result));
     if (result.outcome == Outcome::Malformed) continue;

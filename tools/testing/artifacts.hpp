@@ -9,8 +9,8 @@
 
 namespace ipos::tools::testing {
 
-// The name of a test as the name of a folder.
-std::string artifact_folder(const std::string& test);
+// The folder of each result: the name of its test as a name of a file, and no two alike.
+std::vector<std::string> artifact_folders(const std::vector<TestResult>& results);
 
 // Of each result that did not pass: plot.html, trace.csv, trace.vcd, bus.pcapng, journal.txt, report.txt. `results`
 // are those of run_suite() with these tests.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "runtime/bus/movilink/describe_serial.hpp"
 #include "runtime/bus_plan/names.hpp"
 #include "runtime/plant/signal_port.hpp"
 #include "tools/input/sources.hpp"
@@ -31,7 +32,8 @@ std::string with_source(const std::string& place) {
 
 }  // namespace
 
-Probe::Probe(runtime::Plant& plant, Listener on_event) : plant_(plant), on_event_(std::move(on_event)) {
+Probe::Probe(runtime::Plant& plant, Listener on_event)
+    : plant_(plant), on_event_(std::move(on_event)), words_(runtime::bus_names(plant)) {
   for (const auto& bus : plant.buses()) bus->add_observer(*this);
 }
 
@@ -70,14 +72,23 @@ void Probe::sample(Time now) {
   }
 }
 
-void Probe::note(Shown shown) {
-  on_event_(shown.bus, shown.time, shown.text, shown.meaning);
-  shown_.push_back(std::move(shown));
-  if (shown_.size() > kFrames) shown_.pop_front();
+void Probe::on_message(const runtime::Bus& bus, const runtime::BusMessage& message) {
+  on_event_(bus.name(), message.end, message.text, message.meaning);
+  shown_.push_back({&bus, message});
+  if (shown_.size() <= kFrames) return;
+  const Shown& gone = shown_.front();
+  if (gone.message.frame) words_.listen(gone.bus->name(), *gone.message.frame);
+  shown_.pop_front();
 }
 
-void Probe::on_message(const runtime::Bus& bus, const runtime::BusMessage& message) {
-  note({message.end, bus.name(), message.text, message.meaning, message.frame});
+// As `ipos bus decode --names` of this plant says it.
+std::string Probe::words_of(const Shown& shown, runtime::BusWords& words) const {
+  const runtime::BusMessage& message = shown.message;
+  if (message.frame) return words.describe(shown.bus->name(), *message.frame).text;
+  if (runtime::is_serial(shown.bus->kind()))
+    if (const auto telegram = runtime::decode_serial(message.bytes))
+      return runtime::describe(words.serial_names(), *telegram);
+  return message.meaning;
 }
 
 std::vector<std::string> Probe::tasks_of(const std::string& name) const {
@@ -116,13 +127,11 @@ void Probe::describe(const Subject& subject, Finding& finding) const {
   }
   finding.tasks = tasks_of(station);
   // The programs have defined their objects by now.
-  const runtime::TelegramNames names =
-      plant_.lines().empty() ? runtime::TelegramNames{} : runtime::telegram_names(plant_);
-  for (const Shown& shown : shown_) {
-    const std::string meaning = shown.frame ? runtime::describe(names, *shown.frame).text : shown.meaning;
-    finding.frames.push_back(fmt::format("{:>12}  {} {}{}", time_text(shown.time), shown.bus, shown.text,
-                                         meaning.empty() ? "" : " | " + meaning));
-  }
+  runtime::BusWords words = words_;
+  words.use(runtime::bus_names(plant_));
+  for (const Shown& shown : shown_)
+    finding.frames.push_back(fmt::format("{:>12}  {} {} | {}", time_text(shown.message.end),
+                                         shown.bus->name(), shown.message.text, words_of(shown, words)));
   for (const runtime::JournalEntry& entry : plant_.journal().entries()) {
     if (!station.empty() && !entry.station.empty() && entry.station != station) continue;
     finding.reasons.push_back(fmt::format("{:>12}  {}{}{}", time_text(entry.time), entry.station,

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/bus/bus_words.hpp"
 #include "tools/testing/result.hpp"
 #include "tools/testing/test_case.hpp"
 
@@ -44,20 +45,20 @@ class Probe final : private runtime::BusObserver {
     std::deque<Change> changes;  // the last ones
   };
   struct Shown {
-    Time time;
-    std::string bus, text, meaning;
-    std::optional<runtime::Frame> frame;  // of CAN: its meaning is found when it is asked for
+    const runtime::Bus* bus;
+    runtime::BusMessage message;
   };
 
   void on_message(const runtime::Bus& bus, const runtime::BusMessage& message) override;
-  void note(Shown shown);
+  std::string words_of(const Shown& shown, runtime::BusWords& words) const;
   Reader reader_of(const Subject& subject, std::string& why);
   std::vector<std::string> tasks_of(const std::string& station) const;
 
   runtime::Plant& plant_;
   Listener on_event_;
   std::deque<Followed> followed_;
-  std::deque<Shown> shown_;  // the last ones
+  std::deque<Shown> shown_;  // the last ones; their words are made when they are asked for
+  runtime::BusWords words_;  // has listened to all before them
 };
 
 }  // namespace ipos::tools::testing

@@ -20,10 +20,10 @@ constexpr std::string_view kHead =
     "pre { background: #f6f6f6; padding: 6px; overflow-x: auto; }\n"
     "</style></head><body>\n";
 
-std::string links(const std::string& artifacts, const TestResult& result) {
-  if (artifacts.empty() || (result.outcome != Outcome::Failed && result.outcome != Outcome::Malformed))
+// `folder` is empty without artifacts.
+std::string links(const std::string& folder, const TestResult& result) {
+  if (folder.empty() || (result.outcome != Outcome::Failed && result.outcome != Outcome::Malformed))
     return "";
-  const std::string folder = artifacts + "/" + artifact_folder(result.name);
   std::string text = "<p>";
   for (const char* file : {"plot.html", "trace.csv", "trace.vcd", "bus.pcapng", "journal.txt", "report.txt"})
     if (result.outcome == Outcome::Failed || std::string_view(file) == "report.txt")
@@ -31,12 +31,12 @@ std::string links(const std::string& artifacts, const TestResult& result) {
   return text + "</p>";
 }
 
-std::string row(const TestResult& result, const std::string& artifacts) {
+std::string row(const TestResult& result, const std::string& folder) {
   std::string details;
   if (!result.messages.empty()) details += fmt::format("<pre>{}</pre>", xml_text(result.messages));
   for (const Finding& finding : result.findings)
     details += fmt::format("<pre>{}</pre>", xml_text(text_of_finding(finding)));
-  details += links(artifacts, result);
+  details += links(folder, result);
   return fmt::format(
       "<tr><td class=\"{0}\">{0}</td><td>{1}{2}</td><td class=\"number\">{3}</td><td "
       "class=\"number\">{4:.3f}</td>"
@@ -52,11 +52,12 @@ std::string html_report(const std::vector<TestResult>& results, const std::strin
   text +=
       "<table><thead><tr><th>outcome</th><th>test</th><th>checks</th><th>virtual "
       "s</th><th>s</th></tr></thead><tbody>\n";
+  const std::vector<std::string> folders = artifact_folders(results);
   // What is wrong comes first.
   for (const bool bad : {true, false})
-    for (const TestResult& result : results)
-      if ((result.outcome == Outcome::Failed || result.outcome == Outcome::Malformed) == bad)
-        text += row(result, artifacts);
+    for (size_t n = 0; n < results.size(); ++n)
+      if ((results[n].outcome == Outcome::Failed || results[n].outcome == Outcome::Malformed) == bad)
+        text += row(results[n], artifacts.empty() ? "" : artifacts + "/" + folders[n]);
   return text + "</tbody></table>\n</body></html>\n";
 }
 

@@ -115,6 +115,18 @@ Description LineWords::describe(const Frame& frame) {
   return {true, id + addressed_text(frame, *addressed)};
 }
 
+// Objects are known by what SDO write and boot-up sets back; of all other frames nothing is kept.
+void LineWords::listen(const Frame& frame) {
+  const auto addressed = connection_of(frame.id);
+  if (frame.extended || !addressed) return;
+  switch (addressed->connection) {
+    case Connection::SdoRequest:
+    case Connection::SdoResponse:
+    case Connection::ErrorControl: describe(frame); return;
+    default: return;
+  }
+}
+
 // By the mapping that the node has as far as heard; nothing when no PDO that is on has this identifier.
 std::optional<std::string> LineWords::pdo_text(const Frame& frame) {
   if (const auto addressed = connection_of(frame.id); addressed && addressed->node != 0)

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -26,6 +27,8 @@ struct NodeName {
   const stdlib::UnitType* unit = nullptr;  // whose parameters it has; MOVIDRIVE MDX60B/61B when not known
   WordAssignment output{};                 // P870..P872
   WordAssignment input{};                  // P873..P875
+  std::shared_ptr<const ObjectDictionary>
+      dictionary{};  // as it is when the name is looked up; null: the defaults
 };
 
 // "EMCY FF00h fault, error register 81h, status word 1 2B22h"
@@ -40,6 +43,8 @@ class LineWords {
 
   // Of the next frame on the line.
   Description describe(const Frame& frame);
+  // The same for a frame whose words nobody wants.
+  void listen(const Frame& frame);
 
  private:
   // What is known of a node: its name, its objects as they were written, and the SDO transfer under way.

@@ -8,40 +8,41 @@
 #include <set>
 
 #include "runtime/bus/can/identifier_text.hpp"
+#include "runtime/bus/canopen/dbc_messages.hpp"
+#include "runtime/bus/log/unique_names.hpp"
 #include "runtime/bus/movilink/dbc_signals.hpp"
 
 namespace ipos::runtime {
 namespace {
 
-constexpr const char* kNobody = "Vector__XXX";
-
 using dbc::identifier;
+using dbc::kNobody;
+using dbc::Message;
 using dbc::Signal;
-
-struct Message {
-  uint32_t id;
-  std::string name;
-  uint32_t bytes;
-  std::string sender;
-  std::set<std::string> receivers;
-  std::vector<Signal> signals;
-  int32_t cycle = 0;
-  std::string comment;
-};
 
 class Writer {
  public:
-  explicit Writer(const TelegramNames& names) : names_(names) {
-    for (const UnitNames& unit : names.units) add_unit(unit);
-    for (const ObjectNames& object : names.objects) add_object(object);
+  explicit Writer(const CanLineNames& names) {
+    for (const UnitNames& unit : names.movilink.units) add_unit(unit);
+    for (const canopen::NodeName& node : names.nodes) add_node(node);
+    for (const ObjectNames& object : names.movilink.objects) add_object(object);
     std::stable_sort(messages_.begin(), messages_.end(),
                      [](const auto& a, const auto& b) { return a.id < b.id; });
+    UniqueNames unique(dbc::kLongestName);
+    for (Message& message : messages_) {
+      message.name = unique.of(fmt::format("{}", message.id), identifier(message.name));
+      UniqueNames in_message(dbc::kLongestName);
+      for (size_t n = 0; n < message.signals.size(); ++n) {
+        Signal& signal = message.signals[n];
+        signal.name = in_message.of(fmt::format("{}", n), signal.name);
+      }
+    }
   }
 
-  std::string text() const {
+  std::string text() {
     std::string out = "VERSION \"\"\n\nNS_ :\n\nBS_:\n\nBU_:";
     std::set<std::string> nodes;
-    for (const UnitNames& unit : names_.units) nodes.insert(identifier(unit.name));
+    for (const std::string& station : stations_) nodes.insert(node(station));
     for (const std::string& node : nodes) out += " " + node;
     out += "\n\n";
     for (const Message& message : messages_) out += message_text(message);
@@ -58,6 +59,9 @@ class Writer {
   }
 
  private:
+  // What a station is called here.
+  const std::string& node(const std::string& station) { return nodes_.of(station, identifier(station)); }
+
   Message* find(uint32_t id) {
     for (Message& message : messages_)
       if (message.id == id) return &message;
@@ -65,26 +69,41 @@ class Writer {
   }
 
   void add_unit(const UnitNames& unit) {
+    add_station(unit.name);
     for (const TelegramType& type : kTelegrams) {
       if (!has_telegram(unit.settings, type.telegram)) continue;
       const bool input = !type.from_master;
       const uint8_t address = type.grouped ? unit.settings.group : unit.settings.address;
       const uint32_t id = sbus_identifier(type.telegram, address);
       if (Message* known = find(id)) {  // a group with several members, named by the first one
-        known->receivers.insert(identifier(unit.name));
+        known->receivers.insert(unit.name);
         continue;
       }
       const std::string whose = type.grouped ? fmt::format("group_{}", address) : unit.name;
       Message message{id,
-                      identifier(fmt::format("{}_{}", kind_of(type), whose)),
+                      fmt::format("{}_{}", kind_of(type), whose),
                       type.parameter ? 8U : 6U,
-                      input ? identifier(unit.name) : kNobody,
+                      input ? unit.name : kNobody,
                       {},
                       type.parameter ? dbc::parameter_signals(unit) : dbc::process_signals(unit, input),
                       0,
                       std::string(type.text)};
-      if (!input) message.receivers.insert(identifier(unit.name));
+      if (!input) message.receivers.insert(unit.name);
       messages_.push_back(std::move(message));
+    }
+  }
+
+  void add_station(const std::string& name) {
+    if (std::find(stations_.begin(), stations_.end(), name) == stations_.end()) stations_.push_back(name);
+  }
+
+  void add_node(const canopen::NodeName& node) {
+    add_station(node.name);
+    for (Message& message : canopen::dbc_messages(node)) {
+      if (Message* known = find(message.id))  // to all nodes
+        known->receivers.merge(message.receivers);
+      else
+        messages_.push_back(std::move(message));
     }
   }
 
@@ -112,11 +131,11 @@ class Writer {
       message = &messages_.back();
     }
     if (!object.sent) {
-      message->receivers.insert(identifier(object.station));
+      message->receivers.insert(object.station);
       return;
     }
     if (message->sender != kNobody) return;
-    message->sender = identifier(object.station);
+    message->sender = object.station;
     message->signals = dbc::object_signals(object);
     message->bytes = object.format.length;
     message->cycle = object.cycle;
@@ -129,11 +148,12 @@ class Writer {
     return text + " ;\n";
   }
 
-  static std::string message_text(const Message& message) {
-    std::string text =
-        fmt::format("BO_ {} {}: {} {}\n", message.id, message.name, message.bytes, message.sender);
-    const std::string receivers =
-        message.receivers.empty() ? kNobody : fmt::format("{}", fmt::join(message.receivers, ","));
+  std::string message_text(const Message& message) {
+    std::string text = fmt::format("BO_ {} {}: {} {}\n", message.id, message.name, message.bytes,
+                                   message.sender == kNobody ? kNobody : node(message.sender));
+    std::set<std::string> names;
+    for (const std::string& station : message.receivers) names.insert(node(station));
+    const std::string receivers = names.empty() ? kNobody : fmt::format("{}", fmt::join(names, ","));
     for (const Signal& signal : message.signals) {
       const std::string multiplex = signal.multiplexor   ? " M"
                                     : signal.multiplexed ? fmt::format(" m{}", *signal.multiplexed)
@@ -149,12 +169,13 @@ class Writer {
     return text + "\n";
   }
 
-  const TelegramNames& names_;
+  std::vector<std::string> stations_;
+  UniqueNames nodes_{dbc::kLongestName};
   std::vector<Message> messages_;
 };
 
 }  // namespace
 
-std::string dbc_text(const TelegramNames& names) { return Writer(names).text(); }
+std::string dbc_text(const CanLineNames& names) { return Writer(names).text(); }
 
 }  // namespace ipos::runtime

@@ -14,8 +14,6 @@
 namespace ipos::runtime::dbc {
 namespace {
 
-constexpr size_t kLongestName = 32;
-
 // A text in quotes has none inside.
 std::string quotable(std::string_view text) {
   std::string out(text);
@@ -23,16 +21,16 @@ std::string quotable(std::string_view text) {
   return out;
 }
 
-// Word n, high byte first: the bits of a control or status word, and the high byte of a status word.
-void add_bits(std::vector<Signal>& signals, uint32_t n, const std::string& word, const UnitNames& unit,
-              bool input, uint8_t code) {
-  for (const WordBit& row : unit_word_bits(*unit.unit, input, code)) {
-    const uint32_t byte = 2 * n + (row.bit < 8 ? 1 : 0);
+// The bits of a control or status word, and the high byte of a status word.
+void add_bits(std::vector<Signal>& signals, const std::string& word, WordPlace place,
+              const stdlib::UnitType& unit, bool input, uint8_t code) {
+  for (const WordBit& row : unit_word_bits(unit, input, code)) {
+    const uint32_t byte = row.bit < 8 ? place.low : place.high;
     signals.push_back({identifier(fmt::format("{}_{}", word, row.text)), 8 * byte + row.bit % 8, 1});
     if (!row.off.empty()) signals.back().values = {{0, row.off}, {1, row.on}};
   }
   if (!input) return;
-  signals.push_back({word + "_state", 16 * n + 7, 8});
+  signals.push_back({word + "_state", 8 * place.high + (place.is_intel() ? 0 : 7), 8, place.is_intel()});
   for (const auto& [value, text] : unit_state_texts(code)) signals.back().values.emplace_back(value, text);
 }
 
@@ -70,23 +68,26 @@ std::vector<Signal> object_signals(const ObjectNames& object) {
   return signals;
 }
 
+void add_word(std::vector<Signal>& signals, const std::string& word, WordPlace place,
+              const stdlib::UnitType* unit, bool input, uint8_t code) {
+  if (unit != nullptr && !unit_word_bits(*unit, input, code).empty())
+    return add_bits(signals, word, place, *unit, input, code);
+  const ProcessWordScale scale = process_word_scale(input, code);
+  const std::string_view name = unit == nullptr ? "" : process_word_name(*unit, input, code);
+  const double factor = scale.denominator == 0
+                            ? 1
+                            : static_cast<double>(scale.numerator) / static_cast<double>(scale.denominator);
+  signals.push_back({identifier(fmt::format("{}_{}", word, name)),
+                     place.is_intel() ? 8 * place.low : 8 * place.high + 7, 16, place.is_intel(),
+                     scale.is_signed && scale.denominator != 0, factor, std::string(scale.unit)});
+}
+
+// Of SBus: high byte first.
 std::vector<Signal> process_signals(const UnitNames& unit, bool input) {
   std::vector<Signal> signals;
-  for (uint32_t n = 0; n < 3; ++n) {
-    const uint8_t code = (input ? unit.input : unit.output)[n];
-    const std::string word = fmt::format("{}{}", input ? "PI" : "PO", n + 1);
-    if (unit.unit != nullptr && !unit_word_bits(*unit.unit, input, code).empty()) {
-      add_bits(signals, n, word, unit, input, code);
-      continue;
-    }
-    const ProcessWordScale scale = process_word_scale(input, code);
-    const std::string_view name = unit.unit == nullptr ? "" : process_word_name(*unit.unit, input, code);
-    const double factor = scale.denominator == 0
-                              ? 1
-                              : static_cast<double>(scale.numerator) / static_cast<double>(scale.denominator);
-    signals.push_back({identifier(fmt::format("{}_{}", word, name)), 16 * n + 7, 16, false,
-                       scale.is_signed && scale.denominator != 0, factor, std::string(scale.unit)});
-  }
+  for (uint32_t n = 0; n < 3; ++n)
+    add_word(signals, fmt::format("{}{}", input ? "PI" : "PO", n + 1), {2 * n + 1, 2 * n}, unit.unit, input,
+             (input ? unit.input : unit.output)[n]);
   return signals;
 }
 

@@ -1,10 +1,11 @@
-// The signals of a DBC file: where they lie in a telegram, their scale, and what their values are called. Bit
+// The messages and signals of a DBC file: where they lie in a telegram, their scale, and what their values are called. Bit
 // numbers: 8 * byte + bit, bit 7 the highest. A big-endian signal is named by its highest bit, a little-endian
 // one by its lowest.
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -27,8 +28,31 @@ struct Signal {
   std::optional<uint16_t> multiplexed{};                  // there only with this value of the multiplexor
 };
 
-// Letters, digits and underscores, at most 32.
+inline constexpr const char* kNobody = "Vector__XXX";
+
+struct Message {
+  uint32_t id = 0;
+  std::string name;
+  uint32_t bytes = 0;
+  std::string sender = kNobody;       // station
+  std::set<std::string> receivers{};  // stations
+  std::vector<Signal> signals{};
+  int32_t cycle = 0;
+  std::string comment{};
+};
+
+// Letters, digits and underscores, at most kLongestName.
+inline constexpr size_t kLongestName = 32;
 std::string identifier(std::string_view text);
+
+// A process data word in a telegram: the numbers of its two bytes.
+struct WordPlace {
+  uint32_t low = 0, high = 0;
+  bool is_intel() const { return low < high; }
+};
+// Its bits where it is a control or status word, else the word with its scale; `word` is "PO1".
+void add_word(std::vector<Signal>& signals, const std::string& word, WordPlace place,
+              const stdlib::UnitType* unit, bool input, uint8_t code);
 
 std::vector<Signal> object_signals(const ObjectNames& object);
 // Control and status words as their bits.

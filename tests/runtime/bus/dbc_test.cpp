@@ -6,6 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <memory>
+#include <set>
+#include <sstream>
 
 #include "runtime/bus/movilink/dbc_signals.hpp"
 #include "runtime/bus/movilink/process_data.hpp"
@@ -148,7 +151,91 @@ TEST(Dbc, TextOfASmallBus) {
       "BA_ \"GenMsgCycleTime\" BO_ 1025 1;\n" +
       services(534) + mc31_texts(534) + services(555) + mc31_texts(555) + services(556) + mc31_texts(556) +
       services(563) + services(564) + services(565) + services(567);
-  EXPECT_EQ(dbc_text(small_bus()), all);
+  EXPECT_EQ(dbc_text({small_bus(), {}}), all);
+}
+
+// PDOs low byte first and by their mapping, EMCY by page 53 of 11264926, the rest by CiA 301.
+TEST(Dbc, MessagesOfACanopenNode) {
+  canopen::ObjectDictionary dictionary(5);
+  // TPDO2 has PI5 behind two bytes for somebody else, on 299h; RPDO1 is off.
+  dictionary.set({0x1A01, 0}, 2);
+  dictionary.set({0x1A01, 1}, 0x0006'0010);
+  dictionary.set({0x1A01, 2}, 0x2001'0510);
+  dictionary.set({0x1801, 1}, 0x299);
+  dictionary.set({0x1400, 1}, 0x8000'0205);
+  dictionary.set({0x1014, 0}, 0x8000'0085);
+  const canopen::NodeName saw{5,         "saw 1",   stdlib::find_unit("mdxb"),
+                              {9, 1, 0}, {0, 1, 0}, std::make_shared<canopen::ObjectDictionary>(dictionary)};
+  const canopen::NodeName plain{6, "feed", stdlib::find_unit("mdxb"), {0, 1, 0}, {0, 0, 0}, nullptr};
+  const std::string text = dbc_text({{}, {saw, plain}});
+  const auto has = [&](const std::string& line) {
+    EXPECT_NE(text.find(line), std::string::npos) << line << "\n" << text;
+  };
+  has("BU_: feed saw_1\n");
+  has("BO_ 0 NMT: 2 Vector__XXX\n SG_ Command : 0|8@1+ (1,0) [0|255] \"\" feed,saw_1\n SG_ Node : 8|8@1+ ");
+  has("BO_ 128 SYNC: 0 Vector__XXX\n\n");
+  has("BO_ 389 TPDO1_saw_1: 6 saw_1\n SG_ PI1 : 0|16@1- (1,0) [-32768|32767] \"\" Vector__XXX\n"
+      " SG_ PI2_SPEED : 16|16@1- (0.2,0) [-6553.6|6553.4] \"rpm\" Vector__XXX\n SG_ PI3 : 32|16@1- ");
+  has("BO_ 665 TPDO2_saw_1: 4 saw_1\n SG_ PI5 : 16|16@1- ");
+  EXPECT_EQ(text.find("RPDO1_saw_1"), std::string::npos) << "it is off";
+  EXPECT_EQ(text.find("EMCY_saw_1"), std::string::npos) << "it is off";
+  has("BO_ 518 RPDO1_feed: 6 Vector__XXX\n SG_ PO1 : 0|16@1- (1,0) [-32768|32767] \"\" feed\n");
+  has("BO_ 134 EMCY_feed: 8 feed\n SG_ Error_code : 0|16@1+ (1,0) [0|65535] \"\" Vector__XXX\n"
+      " SG_ Error_register : 16|8@1+ (1,0) [0|255] \"\" Vector__XXX\n"
+      " SG_ Status_word_1 : 32|16@1+ (1,0) [0|65535] \"\" Vector__XXX\n");
+  has("BO_ 1413 SDO_response_saw_1: 8 saw_1\n SG_ Command : 0|8@1+ (1,0) [0|255] \"\" Vector__XXX\n"
+      " SG_ Index : 8|16@1+ (1,0) [0|65535] \"\" Vector__XXX\n"
+      " SG_ Subindex : 24|8@1+ (1,0) [0|255] \"\" Vector__XXX\n"
+      " SG_ Data : 32|32@1+ (1,0) [0|4294967295] \"\" Vector__XXX\n");
+  has("BO_ 1541 SDO_request_saw_1: 8 Vector__XXX\n");
+  has("BO_ 1797 Life_saw_1: 1 saw_1\n SG_ State : 0|7@1+ (1,0) [0|127] \"\" Vector__XXX\n"
+      " SG_ Toggle : 7|1@1+ (1,0) [0|1] \"\" Vector__XXX\n");
+  has("VAL_ 1797 State 0 \"boot-up\" 4 \"stopped\" 5 \"operational\" 127 \"pre-operational\" ;\n");
+  has("CM_ BO_ 1797 \"guarding or heartbeat, identifier 705h (1797)\";\n");
+}
+
+// What is cut or replaced may be equal then; a second name of one kind gets a number.
+TEST(Dbc, NoNameIsThereTwice) {
+  TelegramNames names;
+  const std::string longest = "the_left_conveyor_behind_the_saw_in_hall_";
+  uint8_t address = 0;
+  for (const std::string& name : {std::string("band 1"), std::string("band-1"), std::string("band_1"),
+                                  longest + "1", longest + "2", longest + "3"}) {
+    UnitNames unit;
+    unit.name = name;
+    unit.unit = stdlib::find_unit("mdxb");
+    unit.settings.address = address++;
+    names.units.push_back(unit);
+  }
+  const std::string text =
+      dbc_text({names, {{9, longest + "4", stdlib::find_unit("mdxb"), {}, {}, nullptr}}});
+  EXPECT_NE(text.find("BU_: band_1 band_1_2 band_1_3 the_left_conveyor_behind_the_s_2 "), std::string::npos)
+      << text.substr(0, 400);
+  std::map<std::string, int> messages, nodes;
+  std::istringstream lines(text);
+  std::set<std::string> signals;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string first, id, name;
+    words >> first;
+    if (first == "BU_:")
+      while (words >> name) ++nodes[name];
+    if (first == "BO_") {
+      words >> id >> name;
+      name.pop_back();  // the colon
+      ++messages[name];
+      signals.clear();
+    }
+    if (first == "SG_") {
+      words >> name;
+      EXPECT_TRUE(signals.insert(name).second) << name;
+    }
+    EXPECT_LE(name.size(), dbc::kLongestName) << name;
+  }
+  EXPECT_EQ(nodes.size(), 7U);
+  for (const auto& [name, count] : nodes) EXPECT_EQ(count, 1) << name;
+  EXPECT_GT(messages.size(), 6U * 4);
+  for (const auto& [name, count] : messages) EXPECT_EQ(count, 1) << name;
 }
 
 TEST(Dbc, NamesHaveLettersDigitsAndSingleUnderscores) {

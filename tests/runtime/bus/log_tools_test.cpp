@@ -219,7 +219,7 @@ TEST(Dbc, SignalsDecodeToTheVariablesInEveryLengthAndLayout) {
       unit.unit = stdlib::find_unit("md60a");
       unit.settings = {1, 2, 0};
       names.units.push_back(unit);
-      const std::string text = dbc_text(names);
+      const std::string text = dbc_text({names, {}});
       const auto messages = parse_dbc(text);
       ASSERT_TRUE(messages.contains(1024));
       const Message& message = messages.at(1024);
@@ -250,7 +250,7 @@ TEST(Dbc, ProcessDataWithScaleAndNodes) {
   unit.name = "unit2";
   unit.settings.address = 2;
   names.units.push_back(unit);
-  const auto messages = parse_dbc(dbc_text(names));
+  const auto messages = parse_dbc(dbc_text({names, {}}));
   const Frame frame = process_frame(12, {0x0202, static_cast<uint16_t>(-5000), 100});
   const Message& input = messages.at(12);
   EXPECT_EQ(input.sender, "unit1");
@@ -279,7 +279,7 @@ TEST(Dbc, ControlWordBitsAndTheParameterChannel) {
   unit.settings = {1, 2, 0};
   unit.output = {9, 1, 8};
   names.units.push_back(unit);
-  const std::string text = dbc_text(names);
+  const std::string text = dbc_text({names, {}});
   const auto messages = parse_dbc(text);
   // 0806h in bytes 0 and 1: enable (bits 1 and 2), bit 11 a fixed setpoint.
   const Frame po = process_frame(11, {0x0806, 0, 0});

@@ -92,6 +92,70 @@ TEST(Report, ArtifactsOfWhatFailed) {
   EXPECT_TRUE(contains(page, "href=\"left/bad/plot.html\"") && !contains(page, "left/good"));
 }
 
+// The last frames are told in the words of `ipos bus decode` with the same plant, on lines of every kind. What a master wrote
+// long before they came decides about CANopen: here PO5 on a PDO that was off.
+TEST(Report, LastFramesHaveTheWordsOfDecode) {
+  const TemporaryFolder folder;
+  std::string text =
+      "[[bus]]\nname = \"can\"\nkind = \"can\"\n[[bus]]\nname = \"line\"\nkind = \"rs485\"\n"
+      "[[bus]]\nname = \"dp\"\nkind = \"profibus\"\n"
+      "[[station]]\nname = \"saw\"\nunit = \"mdxb\"\nsbus = \"can\"\nrs485 = \"line\"\noption = \"dfp\"\n"
+      "profibus = \"dp\"\nprofibus_address = 8\n[station.parameters]\nP880 = 1\nP886 = 5\nP810 = 3\n";
+  const auto send = [&](const std::string& bus, const std::string& what) {
+    text += "[[step]]\nbus = \"" + bus + "\"\nsend = \"" + what + "\"\n[[step]]\nwait = \"50ms\"\n";
+  };
+  send("can", "605#2301160110050020");  // 1601h:1 = 2000h:5, 16 bits
+  send("can", "605#2F01160001000000");
+  send("can", "605#2F011402FF000000");  // type 255
+  send("can", "605#2301140105030000");  // 305h
+  send("can", "000#0105");
+  for (int n = 0; n < 9; ++n) send("can", "305#3412");
+  send("can", "605#4017100000000000");
+  send("line", "02 03 85 00 06 13 88 00 00 bcc");
+  send("dp", "10 08 02 49 fcs 16");
+  text += "[[expect]]\nstation = \"saw\"\nstate = \"speed\"\nequals = 7\n";
+  folder.write("bad.test.toml", text);
+  const CommandResult result = run_ipos({"test", "bad.test.toml", "--artifacts", "left"}, folder.path());
+  EXPECT_EQ(result.exit_code, 1) << result.out << result.err;
+  EXPECT_TRUE(contains(result.out, "can 305#3412 | 305 RPDO2 PO5 1234h -> saw")) << result.out;
+  EXPECT_TRUE(contains(result.out, "-> saw\n")) << result.out;
+  folder.write("plant.toml", text.substr(0, text.find("[[step]]")));
+  const CommandResult decoded =
+      run_ipos({"bus", "decode", "left/bad/bus.pcapng", "--names", "plant.toml"}, folder.path());
+  EXPECT_EQ(decoded.exit_code, 0) << decoded.err;
+  // Each line of the report has the words of one of the log.
+  size_t compared = 0;
+  std::istringstream lines(result.out);
+  for (std::string line; std::getline(lines, line);) {
+    const size_t words = line.find(" | ");
+    if (words == std::string::npos || line.find(" ms ") == std::string::npos) continue;
+    ++compared;
+    EXPECT_TRUE(contains(decoded.out, line.substr(words + 3) + "\n")) << line << "\n" << decoded.out;
+  }
+  EXPECT_EQ(compared, 8U) << result.out;
+}
+
+// Folders whose names become equal stay two; names beyond what a file system takes are cut.
+TEST(Report, EachFailedTestHasItsOwnFolder) {
+  const TemporaryFolder folder;
+  const std::string plant =
+      "[[station]]\nname = \"u\"\nunit = \"md60a\"\n[[expect]]\nstation = \"u\"\nstate = \"speed\"\nequals "
+      "= ";
+  for (const std::string& name : {std::string("a b"), std::string("a+b"), std::string("a_b")})
+    folder.write(name + ".test.toml", plant + "1\n");
+  const CommandResult result =
+      run_ipos({"test", ".", "--artifacts", "left", "--html", "r.html"}, folder.path());
+  EXPECT_EQ(result.exit_code, 1);
+  const std::string page = read_text(folder.path() / "r.html");
+  std::set<std::string> tests;
+  for (const char* one : {"a_b", "a_b_2", "a_b_3"}) {
+    const std::string report = read_text(folder.path() / "left" / one / "report.txt");
+    tests.insert(report.substr(0, report.find(" check")));
+    EXPECT_TRUE(contains(page, std::string("href=\"left/") + one + "/plot.html\"")) << one;
+  }
+  EXPECT_EQ(tests.size(), 3U);
+}
+
 TEST(Report, SaysWhenAValueComesTooLate) {
   const TemporaryFolder folder;
   folder.write("A.IPC", "long a;\nmain()\n{\n  _Wait(150);\n  a = 5;\n}\n");
