@@ -8,8 +8,6 @@
 
 namespace ipos::runtime {
 
-uint32_t cable_limit(uint32_t baud);  // m (1053 1610 p. 13)
-
 // Stations, baud rates, length, termination, cable, planted cable faults.
 void check_cable(const LineRoster& roster, const PlantFile& file, std::vector<Finding>& findings);
 

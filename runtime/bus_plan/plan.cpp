@@ -13,6 +13,7 @@
 #include "runtime/bus_plan/roster.hpp"
 #include "runtime/bus_plan/serial_lines.hpp"
 #include "runtime/bus_plan/telegrams.hpp"
+#include "runtime/plant_file/can_cable.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -84,7 +85,7 @@ BusPlan make_plan(Plant& plant, const PlanOptions& options) {
     line.baud = roster.config->baud;
     line.stations = roster.members.size();
     line.length = (roster.config->length_mm + 999) / 1000;
-    line.length_limit = cable_limit(line.baud);
+    line.length_limit = can_length_limit(line.baud);
     line.identifiers = planned_identifiers(roster);
     line.closed = closed_identifiers(roster);
     line.telegrams = planned_telegrams(roster, watcher.seen[roster.line], options);

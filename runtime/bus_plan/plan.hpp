@@ -128,7 +128,7 @@ struct ProfibusLinePlan {
   uint32_t baud = 0;
   uint32_t length = 0;  // m, 0: not given
   uint32_t length_limit = 0;
-  uint8_t master = 0;
+  std::vector<uint8_t> masters;
   std::vector<PlannedProfibusStation> stations;  // in the order of the file
   uint64_t cycle_bits = 0;                       // docs/reference/protocols/profibus.md
   Time cycle = 0;

@@ -37,13 +37,13 @@ std::vector<LineRoster> line_rosters(const Plant& plant) {
             (canopen == nullptr || &canopen->line() != roster.line))
           continue;
         const StationConfig& config = station->config();
-        roster.members.push_back({config.name, station.get(), port, canopen, number, nullptr,
-                                  config.terminator, config.branch, config.place.line});
+        roster.members.push_back(
+            {config.name, station.get(), port, canopen, number, nullptr, config.place.line});
       }
     for (const PlantControl& control : plant.controls())
       if (control.line == roster.line)
-        roster.members.push_back({control.config->name, nullptr, nullptr, nullptr, 1, &control,
-                                  control.config->terminator, false, control.config->place.line});
+        roster.members.push_back(
+            {control.config->name, nullptr, nullptr, nullptr, 1, &control, control.config->place.line});
     std::stable_sort(roster.members.begin(), roster.members.end(),
                      [](const Member& a, const Member& b) { return a.place < b.place; });
     rosters.push_back(std::move(roster));

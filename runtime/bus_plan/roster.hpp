@@ -17,8 +17,6 @@ struct Member {
   const CanopenPort* canopen = nullptr;
   int sbus = 1;  // 1 or 2
   const PlantControl* control = nullptr;
-  std::optional<bool> terminator;
-  bool branch = false;
   uint32_t place = 0;  // line in the plant file
 };
 

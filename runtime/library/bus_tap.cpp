@@ -13,7 +13,8 @@ namespace {
 uint32_t error_classes(runtime::LineEventKind kind, std::array<uint8_t, 8>& data) {
   using Event = runtime::LineEventKind;
   switch (kind) {
-    case Event::NoAcknowledge: return CAN_ERR_ACK;
+    case Event::NoAcknowledge:
+    case Event::AllSendTheSame: return CAN_ERR_ACK;
     case Event::Collision: return CAN_ERR_PROT;
     case Event::ErrorPassive:
       data[1] = CAN_ERR_CRTL_TX_PASSIVE | CAN_ERR_CRTL_RX_PASSIVE;

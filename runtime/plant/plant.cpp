@@ -10,6 +10,8 @@
 #include "runtime/bus/log/log_name.hpp"
 #include "runtime/nv_memory/medium/file_medium.hpp"
 #include "runtime/plant/station_state.hpp"
+#include "runtime/plant_file/can_cable.hpp"
+#include "runtime/plant_file/profibus_paper.hpp"
 #include "runtime/plant_file/serial_plan.hpp"
 
 namespace ipos::runtime {
@@ -119,7 +121,7 @@ void Plant::add_control(ControlConfig& config, std::vector<PlantError>& errors) 
     control.line = find_can(config.sbus);
     control.control = std::make_unique<SbusControl>(queue_, next_source_++, config.settings);
   } else if (auto* bus = dynamic_cast<ProfibusBus*>(find_bus(config.profibus->bus))) {
-    control.profibus = std::make_unique<ProfibusControl>(queue_, next_source_++, *bus, config);
+    control.profibus = std::make_unique<ProfibusControl>(queue_, next_source_++, *bus, config, journal_);
   }
   controls_.push_back(std::move(control));
 }
@@ -253,7 +255,10 @@ StationLines Plant::lines_of(const StationConfig& station) {
   found.profibus = dynamic_cast<ProfibusBus*>(find_bus(station.profibus.bus.bus));
   if (station.serial.keypad) {
     BusConfig& line = keypads_.emplace_back();
-    line.name = log_name(station.name + ".keypad");
+    const std::string name = log_name(station.name + ".keypad");
+    line.name = name;
+    // Another line may have the name, where letters were replaced.
+    for (int n = 2; find_bus(line.name) != nullptr; ++n) line.name = fmt::format("{}_{}", name, n);
     line.kind = BusKind::Rs485;
     line.baud = xt_baud(station);
     found.xt = serial(&add_bus(line));
@@ -267,6 +272,17 @@ void Plant::tell_findings() {
   };
   for (const PlanFinding& finding : serial_findings(file_, parameter))
     journal_.note(queue_.now(), Weight::Warning, finding.station, finding.text);
+  // Of RS-485 the plant file refuses such lines.
+  for (const BusConfig& bus : file_.buses) {
+    const auto warn = [&](const std::string& text) {
+      journal_.note(queue_.now(), Weight::Warning, "", fmt::format("{}: {}", bus.name, text));
+    };
+    if (bus.kind == BusKind::Can)
+      for (const CableFinding& finding : can_cable_findings(file_, bus)) warn(finding.text);
+    if (bus.kind == BusKind::Profibus)
+      for (const auto& found : {check_line(profibus_paper(file_, bus)), profibus_master_findings(file_, bus)})
+        for (const std::string& text : found) warn(text);
+  }
 }
 
 void Plant::resolve_expectations(std::vector<PlantError>& errors) {

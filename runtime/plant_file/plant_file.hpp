@@ -76,9 +76,11 @@ struct StationConfig {
   FileUse nvram_use = FileUse::Write;
   SerialConfig serial;
   ProfibusUse profibus;
-  std::string device;              // type designation, where a rule needs it: "MCH42A"
-  std::optional<bool> terminator;  // S12, for `ipos bus plan`
-  bool branch = false;             // the cable goes on over SC21/SC22
+  std::string device;  // type designation, where a rule needs it: "MCH42A"
+  // The switches of the terminating resistors, for `ipos bus plan` and the journal.
+  std::optional<bool> terminator;   // S12, of the SBus
+  std::optional<bool> terminator2;  // R of DFC11B, of SBus 2 (MDX60B/61B chapter 3.3.1)
+  bool branch = false;              // the cable goes on over SC21/SC22
   std::vector<ParameterSetting> parameters;
   std::vector<InputSetting> inputs;
   AnalogInputs analog;

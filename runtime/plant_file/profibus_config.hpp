@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,7 @@ struct ProfibusUse {
   FilePlace option_place;
   BusUse bus;
   uint8_t address = profibus::kNoAddressYet;  // of the switches on the card
+  std::optional<bool> terminator{};           // the one of the card, for `ipos bus plan` and the journal
 };
 
 // New outputs, as octets from the first or, with the words alone, behind the parameter channel.

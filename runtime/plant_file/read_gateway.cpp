@@ -38,7 +38,8 @@ std::vector<uint8_t> read_drives(PlantReader& reader, const toml::table& table) 
 void read_gateway(PlantReader& reader, const toml::table& table) {
   constexpr std::string_view kWhat = "a [[station]] of unit gateway";
   reader.known_keys(table, kWhat,
-                    {"name", "unit", "profibus", "profibus_address", "sbus", "drives", "terminator"});
+                    {"name", "unit", "profibus", "profibus_address", "sbus", "drives", "terminator",
+                     "profibus_terminator"});
   ControlConfig config;
   config.place = place_of(table.source());
   config.name = reader.text(table, "name", kWhat, true);
@@ -51,6 +52,7 @@ void read_gateway(PlantReader& reader, const toml::table& table) {
   ProfibusUse& use = gateway.profibus;
   use.option = &profibus::option_type(profibus::OptionKind::Gateway);
   use.option_place = config.place;
+  use.terminator = reader.flag(table, "profibus_terminator");
   use.bus = reader.bus_use(table, "profibus", BusKind::Profibus);
   for (const std::string_view key : {"profibus", "profibus_address"})
     if (!table.contains(key)) reader.error(config.place, fmt::format("{} needs {} = ...", kWhat, key));

@@ -156,14 +156,51 @@ void read_hex(PlantReader& reader, const toml::table& table, StationConfig& conf
   }
 }
 
+// Each line has a switch of its own. A unit on one line alone needs no other key than the plain one.
+void read_terminators(PlantReader& reader, const toml::table& table, StationConfig& config) {
+  const std::optional<bool> plain = config.terminator = reader.flag(table, "terminator");
+  config.terminator2 = reader.flag(table, "terminator2");
+  config.profibus.terminator = reader.flag(table, "profibus_terminator");
+  if (config.terminator2 && config.sbus2.empty())
+    reader.error(place_of(*table.get("terminator2")), "terminator2 is switch R of SBus 2: it needs sbus2");
+  if (config.profibus.terminator && !table.contains("profibus"))
+    reader.error(place_of(*table.get("profibus_terminator")),
+                 "profibus_terminator is the one of the fieldbus card: it needs profibus");
+  if (!plain || !config.sbus.empty()) return;
+  std::optional<bool>& only = config.sbus2.empty() ? config.profibus.terminator : config.terminator2;
+  if (!only) only = plain;
+}
+
 void read_station(PlantReader& reader, const toml::table& table) {
   if (table["unit"].value_or(std::string()) == kGatewayUnit) return read_gateway(reader, table);
-  reader.known_keys(
-      table, "[[station]]",
-      {"name",   "unit",       "firmware",         "logodrive", "start_up",   "program", "sbus",   "sbus2",
-       "device", "terminator", "branch",           "rs485",     "rs485_xt",   "keypad",  "uss21a", "s13",
-       "option", "profibus",   "profibus_address", "nvram",     "parameters", "inputs",  "analog", "load",
-       "hex"});
+  reader.known_keys(table, "[[station]]",
+                    {"name",
+                     "unit",
+                     "firmware",
+                     "logodrive",
+                     "start_up",
+                     "program",
+                     "sbus",
+                     "sbus2",
+                     "device",
+                     "terminator",
+                     "branch",
+                     "rs485",
+                     "rs485_xt",
+                     "keypad",
+                     "uss21a",
+                     "s13",
+                     "option",
+                     "profibus",
+                     "profibus_address",
+                     "nvram",
+                     "parameters",
+                     "inputs",
+                     "analog",
+                     "load",
+                     "hex",
+                     "terminator2",
+                     "profibus_terminator"});
   StationConfig config;
   config.place = place_of(table.source());
   config.name = reader.text(table, "name", "a [[station]]", true);
@@ -194,7 +231,7 @@ void read_station(PlantReader& reader, const toml::table& table) {
   if (!config.sbus2.empty() && config.unit != nullptr && config.unit->generation != stdlib::Generation::B)
     reader.error(place_of(*table.get("sbus2")), fmt::format("unit {} has no SBus 2", config.unit->name));
   config.device = reader.text(table, "device", "", false);
-  config.terminator = reader.flag(table, "terminator");
+  read_terminators(reader, table, config);
   config.branch = reader.flag(table, "branch").value_or(false);
   config.serial = read_serial(reader, table);
   read_profibus_card(reader, table, config);

@@ -96,8 +96,9 @@ std::string serial_text(const runtime::SerialLinePlan& line, Time trial) {
 }
 
 std::string profibus_text(const runtime::ProfibusLinePlan& line) {
-  std::string text = fmt::format("{}: PROFIBUS, {} baud, {} stations, master {}", line.name, line.baud,
-                                 line.stations.size(), line.master);
+  std::string text = fmt::format("{}: PROFIBUS, {} baud, {} stations, master{} {}", line.name, line.baud,
+                                 line.stations.size(), line.masters.size() > 1 ? "s" : "",
+                                 fmt::join(line.masters, ", "));
   text += line.length == 0 ? fmt::format(", cable up to {} m\n\n", line.length_limit)
                            : fmt::format(", {} m of cable, up to {} m\n\n", line.length, line.length_limit);
   for (const auto& station : line.stations)
@@ -107,8 +108,10 @@ std::string profibus_text(const runtime::ProfibusLinePlan& line) {
                             : fmt::format("{} octets each way", station.octets),
         station.watchdog == runtime::kNever ? std::string()
                                             : fmt::format(", watchdog {} ms", millis(station.watchdog)));
-  return text + fmt::format("\ncycle of one master with a GAP poll: {} bits, {} ms\n", line.cycle_bits,
-                            millis(line.cycle));
+  const size_t masters = line.masters.size();
+  return text + fmt::format("\ncycle of {} with a GAP poll: {} bits, {} ms\n",
+                            masters == 1 ? "one master" : fmt::format("{} masters, each", masters),
+                            line.cycle_bits, millis(line.cycle));
 }
 
 std::string assumptions(const BusPlan& plan) {
@@ -201,7 +204,7 @@ nlohmann::ordered_json profibus_json(const runtime::ProfibusLinePlan& line) {
   using nlohmann::ordered_json;
   ordered_json entry = {{"name", line.name},
                         {"baud", line.baud},
-                        {"master", line.master},
+                        {"masters", line.masters},
                         {"length_m", line.length},
                         {"length_limit_m", line.length_limit},
                         {"cycle_bits", line.cycle_bits},

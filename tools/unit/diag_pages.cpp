@@ -23,15 +23,6 @@ std::string line(std::string_view name, std::string_view value) {
 
 std::string word(uint16_t value) { return fmt::format("{:04X} hex", value); }
 
-constexpr std::string_view light_text(profibus::Light light) {
-  switch (light) {
-    case profibus::Light::Off: return "off";
-    case profibus::Light::On: return "on";
-    case profibus::Light::Flicker: return "flickers";
-    default: return "flashes";
-  }
-}
-
 constexpr std::string_view slave_text(profibus::SlaveState state) {
   switch (state) {
     case profibus::SlaveState::WaitPrm: return "waits for parameters (Wait_Prm)";
@@ -194,6 +185,11 @@ std::string DiagPages::fieldbus() const {
   if (port == nullptr || use.option == nullptr) return text + line("fieldbus card", "none");
   text += line("fieldbus card", fmt::format("{} on {}", use.option->model, use.bus.bus));
   text += dp_lines(port->card().station(), plant_.now());
+  const uint8_t address = port->card().station().slave().address();
+  for (const runtime::PlantControl& control : plant_.controls())
+    if (const auto* view = control.profibus ? control.profibus->view(address) : nullptr;
+        view != nullptr && control.config->profibus->bus == use.bus.bus)
+      text += line("as " + control.config->name + " sees it", profibus::describe(*view));
   const profibus::LedPattern lights = port->card().leds(plant_.now());
   text += line("RUN", light_text(lights.green));
   return text + line("BUS FAULT", light_text(lights.red));

@@ -453,8 +453,12 @@ void CanLine::settle_sender(Time now, const Segment& segment, const Transfer::Se
   } else if (transfer.outcome == Outcome::NoAcknowledge && !sender.lost) {
     reason = NotSent::NoAcknowledge;
     node.counters.not_acknowledged();
-    if (!std::exchange(node.unacknowledged, true))
+    const bool told = std::exchange(node.unacknowledged, true);
+    if (!told && partner == kNoNode)
       report({LineEventKind::NoAcknowledge, now, sender.node, kNoNode, sender.frame.id});
+    else if (!told && sender.node == transfer.winner().node)
+      report({LineEventKind::AllSendTheSame, now, sender.node, partner, sender.frame.id, 0,
+              transfer.senders.size()});
   } else if (transfer.outcome == Outcome::Collision || sender.lost) {
     node.counters.send_failed();
     report({LineEventKind::Collision, now, sender.node, partner, sender.frame.id});

@@ -80,6 +80,10 @@ std::string describe(const CanLine& line, const LineEvent& event) {
       text +=
           fmt::format(", identifier {}, other station {}", id_words(event.id), line.node_name(event.other));
       break;
+    case LineEventKind::AllSendTheSame:
+      text += fmt::format(", identifier {}, {} stations from {} to {}", id_words(event.id), event.senders,
+                          line.node_name(event.node), line.node_name(event.other));
+      break;
     default: break;
   }
   return text;

@@ -73,6 +73,7 @@ struct LineEvent {
   NodeId other = kNoNode;  // the partner of a collision; the station before a cut
   uint32_t id = 0;         // identifier of the frame, where there is one
   uint8_t fault = 0;       // FaultKind of the events about planted faults
+  size_t senders = 1;      // how many stations send the frame
 };
 
 // Looks at what happens to a line, but not at its frames.

@@ -1,6 +1,8 @@
 // Classes 1 to 7 of the return codes come from the gateway, class 8 from the drive (MOVITRAC 07 chapter 7.2).
 #include "runtime/bus/movilink/gateway_channel.hpp"
 
+#include "runtime/bus/movilink/length_refusal.hpp"
+
 namespace ipos::runtime {
 namespace {
 
@@ -17,8 +19,7 @@ void GatewayChannel::take(Time now, const ParameterTelegram& request) {
     return finish(parameter_response(request, static_cast<int32_t>(request.data)));
   if (!service || !serves_(request.subindex))
     return finish(parameter_refusal(request, return_codes::kWrongManagement));
-  if (is_write(*service) && request.data_length() != kFourOctets)
-    return finish(parameter_refusal(request, return_codes::kTypeConflict));
+  if (is_write(*service) && request.data_length() != kFourOctets) return finish(length_refusal(request));
   MovilinkJob job;
   job.address = request.subindex;
   job.format = kParameterOnly;

@@ -33,8 +33,10 @@ class ParameterServer {
   ~ParameterServer() = default;
 };
 
-// Carries out the request of a parameter telegram and makes its answer.
-ParameterTelegram execute(Time now, ParameterServer& parameters, const ParameterTelegram& request);
+// Carries out the request of a parameter telegram and makes its answer. `wrong_length` is the code for a write of
+// another length than 4 bytes, which is another one over a fieldbus.
+ParameterTelegram execute(Time now, ParameterServer& parameters, const ParameterTelegram& request,
+                          ReturnCode wrong_length = return_codes::kWrongManagement);
 
 enum class OutputChannel : uint8_t { Single, Group, Sync };
 

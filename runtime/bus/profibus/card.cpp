@@ -49,6 +49,18 @@ LedPattern leds(const CardState& state) {
   return {state.accessing ? Light::Flicker : Light::On, in_use(state) ? Light::Off : Light::On};
 }
 
+std::string_view light_text(Light light) {
+  switch (light) {
+    case Light::Off: return "off";
+    case Light::On: return "on";
+    case Light::HalfHertz: return "flashes at 0.5 Hz";
+    case Light::OneHertz: return "flashes at 1 Hz";
+    case Light::ThreeHertz: return "flashes at 3 Hz";
+    case Light::Flicker: break;
+  }
+  return "flickers";
+}
+
 bool is_lit(Light light, Time now) {
   switch (light) {
     case Light::Off: return false;

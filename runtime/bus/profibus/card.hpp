@@ -66,6 +66,8 @@ class LatchedSwitches {
 
 enum class Light : uint8_t { Off, On, HalfHertz, OneHertz, ThreeHertz, Flicker };
 
+std::string_view light_text(Light light);  // "flashes at 3 Hz"
+
 struct LedPattern {
   Light green;  // RUN
   Light red;    // BUS FAULT

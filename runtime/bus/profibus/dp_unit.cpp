@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "runtime/bus/movilink/length_refusal.hpp"
+
 namespace ipos::profibus {
 namespace {
 
@@ -21,6 +23,14 @@ tl::expected<uint32_t, ReturnCode> carry_out(Time now, FieldbusParameters& param
   if (service != runtime::Service::Write) return tl::unexpected(codes::kWrongManagement);
   if (request.data_length() != 4) return tl::unexpected(codes::kTypeConflict);
   return parameters.write(now, request.index, request.data);
+}
+
+// The channel of MOVILINK, but for the answer to a wrong length.
+ParameterTelegram execute_movilink(Time now, runtime::ParameterServer& parameters,
+                                   const ParameterTelegram& request) {
+  const ParameterTelegram answer = runtime::execute(now, parameters, request, codes::kTypeConflict);
+  const bool wrong_length = answer.failed() && answer.return_code() == codes::kTypeConflict;
+  return wrong_length ? runtime::length_refusal(request) : answer;
 }
 
 }  // namespace
@@ -47,7 +57,12 @@ DpUnit::DpUnit(FieldbusParameters& parameters, FieldbusDrive& drive, Time proces
                processing) {}
 
 DpUnit::DpUnit(runtime::ParameterServer& parameters, FieldbusDrive& drive, Time processing)
-    : drive_(drive), channel_(parameters, processing) {}
+    : drive_(drive),
+      channel_(
+          [&parameters](Time now, const ParameterTelegram& request) {
+            return execute_movilink(now, parameters, request);
+          },
+          processing) {}
 
 void DpUnit::configured(Time, const Configuration& configuration) { configuration_ = &configuration; }
 

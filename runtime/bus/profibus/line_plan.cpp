@@ -81,8 +81,6 @@ std::string misfit(const PlannedStation& s) {
 
 void check_station(const PlannedStation& s, std::vector<std::string>& found) {
   if (const std::string text = misfit(s); !text.empty()) found.push_back(fmt::format("{}: {}", s.name, text));
-  if (s.address > kLastStation)
-    found.push_back(fmt::format("{}: address {} is not in 0..{}", s.name, s.address, kLastStation));
   const auto kind = s.interface == Interface::Size0 ? OptionKind::Size0 : OptionKind::Ffp31;
   const OptionType& type = s.card != nullptr ? *s.card : option_type(kind);
   if (s.ident != type.ident)
@@ -98,26 +96,38 @@ void check_station(const PlannedStation& s, std::vector<std::string>& found) {
 }  // namespace
 
 Bits cycle_bits(const LinePlan& plan) {
-  Bits bits = kSynBits + kTokenFrame + plan.idle_2;
+  const auto masters = static_cast<Bits>(plan.masters.size());
+  Bits bits = masters * (kSynBits + kTokenFrame + plan.idle_2);
   for (const PlannedStation& station : plan.stations)
     bits += kSynBits + 2 * (kDataFrame + kCharacterBits * station.octets) + plan.tsdr + plan.idle_1;
   const BaudRate* rate = find_baud_rate(plan.baud);
-  if (plan.gap_poll && rate != nullptr) bits += kSynBits + kStatusFrame + rate->slot;
+  if (plan.gap_poll && rate != nullptr) bits += masters * (kSynBits + kStatusFrame + rate->slot);
   return bits;
 }
 
-std::vector<std::string> check_plan(const LinePlan& plan) {
+std::vector<std::string> check_line(const LinePlan& plan) {
   std::vector<std::string> found;
   check_cable(plan, found);
   check_terminators(plan, found);
-  if (plan.stations.size() + 1 > kMostInSegment)
-    found.push_back(
-        fmt::format("{} stations; a segment has at most {}", plan.stations.size() + 1, kMostInSegment));
-  std::set<uint8_t> addresses{plan.master};
+  if (const size_t all = plan.stations.size() + plan.masters.size(); all > kMostInSegment)
+    found.push_back(fmt::format("{} stations; a segment has at most {}", all, kMostInSegment));
+  std::set<uint8_t> addresses;
+  for (const uint8_t master : plan.masters)
+    if (!addresses.insert(master).second)
+      found.push_back(fmt::format("two masters have the address {}", master));
+  for (const PlannedStation& s : plan.stations) {
+    if (s.address > kLastStation)
+      found.push_back(fmt::format("{}: address {} is not in 0..{}", s.name, s.address, kLastStation));
+    if (!addresses.insert(s.address).second)
+      found.push_back(fmt::format("{}: address {} is given twice", s.name, s.address));
+  }
+  return found;
+}
+
+std::vector<std::string> check_plan(const LinePlan& plan) {
+  std::vector<std::string> found = check_line(plan);
   for (const PlannedStation& station : plan.stations) {
     check_station(station, found);
-    if (!addresses.insert(station.address).second)
-      found.push_back(fmt::format("{}: address {} is given twice", station.name, station.address));
     if (!station.watchdog || find_baud_rate(plan.baud) == nullptr) continue;
     const Time cycle = time_of(cycle_bits(plan), plan.baud);
     if (*station.watchdog <= cycle)

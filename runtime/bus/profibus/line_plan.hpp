@@ -43,8 +43,8 @@ struct PlannedStation {
 struct LinePlan {
   uint32_t baud = 500'000;
   Cable cable;
-  uint8_t master = 1;
-  bool master_terminated = true;         // it stands at the begin of the line
+  std::vector<uint8_t> masters{1};
+  bool master_terminated = true;         // the first stands at the begin of the line
   std::vector<PlannedStation> stations;  // in the order of the cable
   Bits tsdr = 30;
   Bits idle_1 = 37;
@@ -57,5 +57,8 @@ Bits cycle_bits(const LinePlan& plan);
 
 // In words; empty when all is well.
 std::vector<std::string> check_plan(const LinePlan& plan);
+
+// Of these those of cable, terminators, number of stations and addresses: what a master does not find out by itself.
+std::vector<std::string> check_line(const LinePlan& plan);
 
 }  // namespace ipos::profibus

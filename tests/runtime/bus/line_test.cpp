@@ -334,6 +334,29 @@ TEST(CanLine, EqualFramesAtOneTimeGoThroughAndAreReported) {
   EXPECT_EQ(t.watcher.count(LineEventKind::SameFrame), 1U);
 }
 
+// Where everybody sends, nobody listens: that is told, and not that the line were empty.
+TEST(CanLine, EqualFramesOfAllStationsGetNoAcknowledge) {
+  Bench t;
+  t.line.attach("axis1", 500'000, t.a);
+  t.line.attach("axis2", 500'000, t.b);
+  t.line.attach("axis3", 500'000, t.c);
+  for (NodeId node = 0; node < 3; ++node) t.line.send(node, data_frame(1024), 1);
+  t.queue.run_until(100 * kMillisecond);
+  EXPECT_TRUE(t.watcher.frames.empty());
+  EXPECT_EQ(t.watcher.count(LineEventKind::NoAcknowledge), 0U);
+  ASSERT_EQ(t.watcher.count(LineEventKind::AllSendTheSame), 1U);
+  EXPECT_EQ(
+      t.watcher.texts[0],
+      "sbus: axis1 gets no acknowledge: all stations that could give it send the same frame at the same "
+      "time, identifier 400h (1024), 3 stations from axis1 to axis3");
+  // A fourth one acknowledges what they send.
+  Station d;
+  t.line.attach("unit4", 500'000, d);
+  t.queue.run_until(200 * kMillisecond);
+  EXPECT_EQ(t.watcher.frames.size(), 1U);
+  EXPECT_EQ(t.watcher.count(LineEventKind::SameFrame), 1U);
+}
+
 TEST(CanLine, BusOffAfterManyErrorsAndBackByRestart) {
   Bench t;
   const NodeId a = t.line.attach("unit1", 500'000, t.a);

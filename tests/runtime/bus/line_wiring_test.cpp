@@ -318,6 +318,10 @@ TEST(LineWiring, ARestartEndsTheWayBack) {
   t.send(0, 100);
   t.run(kMillisecond);
   EXPECT_EQ(t.stations[1]->ids(), WiringIds{100});
+  // Nor does it come back behind a frame, where a way back goes on.
+  t.send(1, 101);
+  t.run(10 * kMillisecond);
+  EXPECT_EQ(t.times(LineEventKind::Recovered).size(), 0U);
 }
 
 // Nothing counts while the line is held dominant, nor what was counted before.

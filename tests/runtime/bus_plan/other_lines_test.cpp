@@ -148,8 +148,8 @@ TEST(ProfibusLinePlan, CycleAndStations) {
                       dp_slave_at(9, "cfg = 'F0'\nwatchdog = '200ms'\n") + dp_slave_at(8));
   EXPECT_TRUE(of.texts(FindingKind::ProfibusLine).empty()) << of.texts(FindingKind::ProfibusLine)[0];
   const ProfibusLinePlan& line = of.plan.profibus_lines.at(0);
-  EXPECT_EQ(std::tuple(line.name, line.baud, line.length, line.length_limit, line.master),
-            std::tuple("p", 500'000U, 101U, 400U, 2));
+  EXPECT_EQ(std::tuple(line.name, line.baud, line.length, line.length_limit, line.masters),
+            std::tuple("p", 500'000U, 101U, 400U, std::vector<uint8_t>{2}));
   const uint64_t slaves = 2 * (33 + 30 + 37) + 2 * (99 + 11 * 6) + 2 * (99 + 11 * 2);
   EXPECT_EQ(line.cycle_bits, 33U + 33U + 150U + slaves + 33U + 66U + 200U);
   EXPECT_EQ(line.cycle, static_cast<Time>(line.cycle_bits) * 2 * kMicrosecond);
@@ -195,6 +195,20 @@ TEST(ProfibusLinePlan, WhatIsAgainstTheRules) {
                               dp_slave_at(8, "watchdog = '10ms'\n"))
                 .size(),
             1U);
+}
+
+// A slave takes one master; the other finds Master_Lock (MOVITRAC 31 PROFIBUS, 3.4.1).
+TEST(ProfibusLinePlan, TwoMastersOfOneSlave) {
+  const std::string second = "[[control]]\nname = 'plc2'\nprofibus = 'p'\naddress = 3\n";
+  const PlannedRig of(dp_bus() + dp_station("a", 8) + kDpControl + dp_slave_at(8) + second + dp_slave_at(8) +
+                      dp_slave_at(9));
+  EXPECT_EQ(of.plan.profibus_lines.at(0).masters, (std::vector<uint8_t>{2, 3}));
+  const std::vector<std::string> wanted = {
+      "masters 2 and 3 both configure the slave 8: it takes the first that parameterises it, and the other "
+      "gets "
+      "Master_Lock",
+      "master 3 configures a slave with the address 9, which no station has"};
+  EXPECT_EQ(of.texts(FindingKind::ProfibusLine), wanted);
 }
 
 // Where the file says nothing of terminators, they are where they belong; from the first that is given on all count.

@@ -168,6 +168,52 @@ TEST(PlanTexts, OfTheCable) {
       << "one station has no line";
 }
 
+// SBus 1 is terminated by S12, SBus 2 by switch R of DFC11B (MDX60B/61B chapter 3.3.1): a unit on both has both.
+TEST(PlanTexts, EachLineHasItsOwnTerminator) {
+  const auto ends = [](const std::string& x) {
+    const auto station = [](const std::string& name, const std::string& keys) {
+      return "[[station]]\nname = '" + name + "'\nunit = 'mdxb'\n" + keys;
+    };
+    std::vector<std::string> found;
+    PlantRig rig(
+        "[[bus]]\nname = 's1'\nkind = 'can'\n[[bus]]\nname = 's2'\nkind = 'can'\n" +
+        station("a", "sbus = 's1'\nterminator = true\n[station.parameters]\nP881 = 1\n") +
+        station("b", "sbus2 = 's2'\nterminator2 = true\n[station.parameters]\nP891 = 3\n") +
+        station("x", "sbus = 's1'\nsbus2 = 's2'\n" + x + "[station.parameters]\nP881 = 2\nP891 = 2\n") +
+        // On one line alone the plain key is enough.
+        station("c", "sbus2 = 's2'\nterminator = true\n[station.parameters]\nP891 = 4\n"));
+    for (const Finding& finding : make_plan(rig.get(), {}).findings) {
+      if (finding.kind != FindingKind::Termination) continue;
+      found.push_back(finding.line + ": " + finding.text);
+      // The journal of a run says the same.
+      EXPECT_EQ(rig.says(found.back()), 1U) << found.back();
+    }
+    return found;
+  };
+  EXPECT_EQ(ends("terminator = true\n"), std::vector<std::string>{});
+  EXPECT_EQ(ends("terminator = true\nterminator2 = false\n"), std::vector<std::string>{});
+  EXPECT_EQ(ends("terminator2 = true\n"),
+            (std::vector<std::string>{"s1: x is at an end of the line, but its S12 is off",
+                                      "s2: x is not at an end of the line, but its switch R is on"}));
+}
+
+// What the plan finds of a cable, a plant tells when it starts.
+TEST(PlanTexts, ARunTellsWhatIsWrongWithTheCable) {
+  const std::string off = "terminator = false\n";
+  PlantRig rig("[[bus]]\nname = 'sbus'\nkind = 'can'\nlength = 300\nimpedance = 60\ncapacitance = 41\n" +
+               station_text("a", "P813 = 1\n", "md60a", "", off) +
+               station_text("b", "P813 = 2\nP816 = 1\n", "md60a", "", off));
+  rig.run_until(kMillisecond);
+  for (const char* text :
+       {"300 m of cable, at 500 kbaud at most 80 m", "cable of 60 ohm, 120 ohm are needed",
+        "cable of 41 pF/m, at most 40 pF/m", "a is at an end of the line, but its S12 is off",
+        "b is at an end of the line, but its S12 is off",
+        "b takes no part: its baud rate is not that of the line (250 kbaud, line 500 kbaud)"})
+    EXPECT_EQ(rig.says(std::string("sbus: ") + text), 1U) << text;
+  PlantRig good(bus_text() + station_text("a", "P813 = 1\n") + station_text("b", "P813 = 2\n"));
+  EXPECT_EQ(good.journal(), "");
+}
+
 TEST(PlanTexts, OfPlantedFaults) {
   const auto faults = [](FindingKind kind, const std::string& fault, const std::string& more) {
     return found_of(kind, bus_text() + kTwoUnits + fault_text(fault, more));

@@ -57,6 +57,10 @@ TEST(Leds, Frequencies) {
     }
     return count;
   };
+  // A page of text tells the three rates apart (2.8).
+  EXPECT_EQ(light_text(Light::HalfHertz), "flashes at 0.5 Hz");
+  EXPECT_EQ(light_text(Light::OneHertz), "flashes at 1 Hz");
+  EXPECT_EQ(light_text(Light::ThreeHertz), "flashes at 3 Hz");
   EXPECT_EQ(flashes(Light::HalfHertz), 5);
   EXPECT_EQ(flashes(Light::OneHertz), 10);
   EXPECT_NEAR(flashes(Light::ThreeHertz), 30, 1);

@@ -94,7 +94,40 @@ TEST(DfpPlant, TheChannelIsThatOfMovilink) {
   // P302 = 8517 = 2145h in 1/1000 rpm: 1200 rpm.
   EXPECT_EQ(bench.service("32 00 21 45 00 12 4F 80", words), "32 00 21 45 00 12 4F 80");
   EXPECT_EQ(bench.value("302"), 1'200'000);
-  EXPECT_EQ(bench.service("62 00 21 45 00 00 00 01", words), "F2 00 21 45 05 05 00 00") << "three octets";
+  // A wrong length has the code that MOVITRAC 31 and the gateway have for it (MOVITRAC 31 PROFIBUS, 5.2).
+  EXPECT_EQ(bench.service("62 00 21 45 00 00 00 01", words), "E2 00 21 45 06 08 00 00") << "three octets";
+  EXPECT_EQ(bench.service("03 00 21 45 00 00 00 01", words), "83 00 21 45 06 08 00 00")
+      << "volatile, one octet";
+  EXPECT_EQ(bench.service("7F 00 21 45 00 00 00 00", words), "FF 00 21 45 05 05 00 00") << "service 15";
+  EXPECT_EQ(bench.value("302"), 1'200'000);
+}
+
+// The bits that a master sets by itself (MOVITRAC 31 PROFIBUS, 3.4.1), and what the configuration has wrong.
+TEST(DfpPlant, AMasterTellsWhatItFindsOfItsSlaves) {
+  DpPlant absent(unit() + master("cfg = \"F2\"\n", "[[control.slave]]\naddress = 10\nident = 0x6003\n"));
+  absent.run(500 * kMillisecond);
+  EXPECT_TRUE(absent.told("dp: master 1 configures a slave with the address 10, which no station has"));
+  EXPECT_TRUE(absent.told("slave 10 does not answer (Station_Non_Existent)"));
+  EXPECT_FALSE(absent.told("slave 9 "));
+  runtime::ProfibusControl& plc = *absent.plant->controls()[0].profibus;
+  EXPECT_TRUE(plc.view(10)->has(profibus::diag::kNonExistent));
+  EXPECT_FALSE(plc.view(9)->has(profibus::diag::kNonExistent));
+  EXPECT_EQ(plc.view(11), nullptr);
+  // One that loses its power, and comes back.
+  absent.plant->set_power("b2", false);
+  absent.run_on(500 * kMillisecond);
+  EXPECT_TRUE(absent.told("slave 9 does not answer (Station_Non_Existent)"));
+  EXPECT_FALSE(absent.told("slave 9 answers now"));
+  absent.plant->set_power("b2", true);
+  absent.run_on(500 * kMillisecond);
+  EXPECT_TRUE(absent.told("slave 9 answers now"));
+  // Two masters of one slave.
+  DpPlant two(unit() + master("cfg = \"F2\"\n") +
+              "[[control]]\nname = \"plc2\"\nprofibus = \"dp\"\naddress = 2\n[[control.slave]]\naddress = "
+              "9\ncfg = \"F2\"\n");
+  two.run(2 * kSecond);
+  EXPECT_TRUE(two.told("dp: masters 1 and 2 both configure the slave 9"));
+  EXPECT_TRUE(two.told("slave 9 belongs to another master (Master_Lock)"));
 }
 
 TEST(DfpPlant, TimeoutIsThatOfTheMaster) {

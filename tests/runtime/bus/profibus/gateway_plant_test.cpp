@@ -82,7 +82,7 @@ TEST(GatewayPlant, ErrorClasses) {
   EXPECT_EQ(bench.service("31 03 21 98 00 00 00 00", kRun), "B1 03 21 98 05 05 00 00")
       << "nobody has address 3";
   EXPECT_EQ(bench.service("4F 02 21 98 00 00 00 00", kRun), "FF 02 21 98 05 05 00 00") << "service 15";
-  EXPECT_EQ(bench.service("22 02 21 45 00 00 00 01", kRun), "B2 02 21 45 06 08 00 00") << "three octets";
+  EXPECT_EQ(bench.service("22 02 21 45 00 00 00 01", kRun), "A2 02 21 45 06 08 00 00") << "three octets";
 }
 
 TEST(GatewayPlant, LosesItsInverter) {

@@ -122,7 +122,7 @@ TEST(LinePlan, AddressesIdentsAndWatchdog) {
   plan.stations[2].address = 126;
   EXPECT_EQ(findings(plan), "inv1: address 10 is given twice|inv2: address 126 is not in 0..125");
   plan = good();
-  plan.stations[0].address = plan.master;
+  plan.stations[0].address = plan.masters[0];
   EXPECT_EQ(findings(plan), "inv0: address 1 is given twice");
   plan = good();
   plan.stations[0].ident = 0x3111;

@@ -506,6 +506,19 @@ TEST(DpSlave, PowerOnForgetsAll) {
   EXPECT_EQ(bench.slave.min_tsdr(), 11);
 }
 
+// Who has lost its power knows no answer any more: a request that repeats the one before it is answered anew.
+TEST(DpSlave, PowerOnForgetsTheAnswerBefore) {
+  SlaveBench bench;
+  bench.start();
+  EXPECT_EQ(bench.diag(), "00 04 00 01 31 00") << "exchanges data with master 1";
+  const FdlFrame repeated = bench.last_request;
+  ASSERT_TRUE(repeated.frame_count_valid());
+  EXPECT_EQ(bench.answer_of(bench.slave.on_frame(bench.now, repeated)).substr(3), "00 04 00 01 31 00");
+  bench.slave.power_on(5 * kSecond, {8, 0x3100});
+  bench.now = 5 * kSecond;
+  EXPECT_EQ(bench.answer_of(bench.slave.on_frame(bench.now, repeated)).substr(3), "02 05 00 FF 31 00");
+}
+
 // A frame that answers is no request, whoever it names: it is not answered, and does not keep the watchdog quiet.
 TEST(DpSlave, AnswersOfOthersAreNothing) {
   SlaveBench bench;

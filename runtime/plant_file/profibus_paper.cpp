@@ -1,0 +1,116 @@
+// From the plant file alone.
+#include "runtime/plant_file/profibus_paper.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+namespace ipos::runtime {
+namespace {
+
+struct Slave {
+  std::string name;
+  const ProfibusUse* use;
+  uint32_t place;
+};
+
+// In the order of the cable, which is that of the file.
+std::vector<Slave> slaves_of(const PlantFile& file, const std::string& bus) {
+  std::vector<Slave> slaves;
+  for (const StationConfig& station : file.stations)
+    if (station.profibus.bus.bus == bus)
+      slaves.push_back({station.name, &station.profibus, station.place.line});
+  for (const ControlConfig& control : file.controls)
+    if (control.gateway && control.gateway->profibus.bus.bus == bus)
+      slaves.push_back({control.name, &control.gateway->profibus, control.place.line});
+  std::stable_sort(slaves.begin(), slaves.end(),
+                   [](const Slave& a, const Slave& b) { return a.place < b.place; });
+  return slaves;
+}
+
+std::vector<const ProfibusMasterConfig*> masters_of(const PlantFile& file, const std::string& bus) {
+  std::vector<const ProfibusMasterConfig*> masters;
+  for (const ControlConfig& control : file.controls)
+    if (control.profibus && control.profibus->bus == bus) masters.push_back(&*control.profibus);
+  return masters;
+}
+
+profibus::Interface interface_of(profibus::OptionKind kind) {
+  switch (kind) {
+    case profibus::OptionKind::Ffp31: return profibus::Interface::Ffp31C;
+    case profibus::OptionKind::Size0: return profibus::Interface::Size0;
+    default: return profibus::Interface::Card;
+  }
+}
+
+profibus::PlannedStation planned(const Slave& slave,
+                                 const std::vector<const ProfibusMasterConfig*>& masters) {
+  const profibus::OptionType& option = *slave.use->option;
+  profibus::PlannedStation station;
+  station.name = slave.name;
+  station.address = slave.use->address;
+  station.interface = interface_of(option.kind);
+  if (station.interface == profibus::Interface::Size0) station.size = 0;
+  if (station.interface == profibus::Interface::Card) station.card = &option;
+  station.ident = option.ident;
+  station.octets = 0;
+  for (const ProfibusMasterConfig* master : masters)
+    for (const profibus::SlavePlan& plan : master->slaves) {
+      if (plan.address != station.address || station.octets != 0) continue;
+      station.octets = plan.outputs;
+      station.ident = plan.prm.ident;
+      if (plan.prm.watchdog) station.watchdog = plan.prm.watchdog_time();
+    }
+  return station;
+}
+
+}  // namespace
+
+profibus::LinePlan profibus_paper(const PlantFile& file, const BusConfig& bus) {
+  profibus::LinePlan paper;
+  paper.baud = bus.baud;
+  paper.cable.metres = bus.length_mm / 1000.0;
+  if (bus.impedance != 0) paper.cable.ohms = bus.impedance;
+  if (bus.capacitance != 0) paper.cable.picofarads_a_metre = bus.capacitance;
+  const auto masters = masters_of(file, bus.name);
+  if (!masters.empty()) {
+    paper.masters.clear();
+    for (const ProfibusMasterConfig* master : masters) paper.masters.push_back(master->settings.address);
+    paper.gap_poll = masters[0]->settings.gap_factor != 0;
+  }
+  const std::vector<Slave> slaves = slaves_of(file, bus.name);
+  // Where the file says nothing of terminators, they are where they belong.
+  const bool given = std::any_of(slaves.begin(), slaves.end(),
+                                 [](const Slave& slave) { return slave.use->terminator.has_value(); });
+  for (const Slave& slave : slaves) {
+    paper.stations.push_back(planned(slave, masters));
+    paper.stations.back().terminated = slave.use->terminator.value_or(!given && &slave == &slaves.back());
+  }
+  return paper;
+}
+
+// A master that finds a slave with another one is told Master_Lock (MOVITRAC 31 PROFIBUS, 3.4.1).
+std::vector<std::string> profibus_master_findings(const PlantFile& file, const BusConfig& bus) {
+  std::vector<std::string> found;
+  const std::vector<Slave> slaves = slaves_of(file, bus.name);
+  std::map<uint8_t, uint8_t> first;  // master of a slave's address
+  for (const ProfibusMasterConfig* master : masters_of(file, bus.name))
+    for (const profibus::SlavePlan& plan : master->slaves) {
+      const uint8_t own = master->settings.address;
+      const bool there = std::any_of(slaves.begin(), slaves.end(),
+                                     [&](const Slave& slave) { return slave.use->address == plan.address; });
+      if (!there && bus.port.empty())
+        found.push_back(fmt::format("master {} configures a slave with the address {}, which no station has",
+                                    own, plan.address));
+      const auto [owner, is_first] = first.emplace(plan.address, own);
+      if (!is_first)
+        found.push_back(
+            fmt::format("masters {} and {} both configure the slave {}: it takes the first that "
+                        "parameterises it, and the other gets Master_Lock",
+                        owner->second, own, plan.address));
+    }
+  return found;
+}
+
+}  // namespace ipos::runtime
