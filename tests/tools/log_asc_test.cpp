@@ -144,5 +144,15 @@ TEST(AscForms, LinesThatAreNoFrames) {
   EXPECT_EQ(got.left_out.text(), "1 error frame, 3 records of other kinds");
 }
 
+// Seconds have up to nine decimals.
+TEST(AscForms, PartsOfASecond) {
+  const std::string head = "date Sat Jan 01 12:00:00.000 am 2000\n";
+  EXPECT_EQ(taken(head + "1.123456789 1 203 Rx d 0\n").can,
+            on_bus(kSecond + 123'456'789, Frame(0x203, 0), "can1"));
+  EXPECT_EQ(taken(head + "1 1 203 Rx d 0\n").can, on_bus(kSecond, Frame(0x203, 0), "can1"));
+  for (const char* time : {"1.1234567890", "1.", "1.-1", "2000000000.0", "1..2"})
+    EXPECT_EQ(first_mistake(head + time + " 1 203 Rx d 0\n"), "x:2:1: time in seconds expected") << time;
+}
+
 }  // namespace
 }  // namespace ipos::tests

@@ -104,5 +104,45 @@ TEST(BlfForms, TheEndOfAFile) {
     }
 }
 
+// SYSTEMTIME: 21 March 2024, a Thursday, 15:29:03.103, second 1711034943 of 1970. What is no date counts as virtual time 0.
+TEST(BlfForms, TheDateOfTheHead) {
+  const auto begin = [](const std::vector<unsigned>& words) {
+    std::string file = "LOGG" + number(144, 4) + std::string(32, '\0');
+    for (const unsigned word : words) file += number(word, 2);
+    file.resize(144);
+    const Taken got = taken(file + timed(1, 2, 7, message(0x203, 0, 8)));
+    EXPECT_EQ(got.can.size(), 1U);
+    return got.can.empty() ? -1 : got.can[0].time - 7;
+  };
+  EXPECT_EQ(begin({2024, 3, 4, 21, 15, 29, 3, 103}), unix_time(1'711'034'943, 103 * runtime::kMillisecond));
+  EXPECT_EQ(begin({2024, 3, 4, 21, 23, 59, 59, 999}), unix_time(1'711'065'599, 999 * runtime::kMillisecond));
+  for (const std::vector<unsigned>& none : {std::vector<unsigned>{0, 0, 0, 0, 0, 0, 0, 0},
+                                            {2024, 2, 4, 30, 0, 0, 0, 0},
+                                            {2024, 3, 4, 21, 24, 0, 0, 0},
+                                            {2024, 3, 4, 21, 0, 60, 0, 0},
+                                            {2024, 3, 4, 21, 0, 0, 61, 0},
+                                            {2024, 3, 4, 21, 0, 0, 0, 1'000},
+                                            {1969, 3, 4, 21, 0, 0, 0, 0},
+                                            {2151, 3, 4, 21, 0, 0, 0, 0}})
+    EXPECT_EQ(begin(none), 0);
+}
+
+TEST(BlfForms, HeadsAndGaps) {
+  const std::string object = timed(1, 2, 5, message(0x203, 0, 8));
+  for (size_t gap = 0; gap < 8; ++gap)
+    EXPECT_EQ(taken(blf(std::string(gap, '\0') + object)).can.size(), 1U) << gap;
+  EXPECT_EQ(first_mistake(blf(std::string(8, '\0') + object)), "x: byte 144: an object expected");
+  std::string file = blf(object);
+  file.replace(4, 4, number(71, 4));
+  EXPECT_EQ(first_mistake(file), "x: byte 4: a head that is too short");
+  EXPECT_EQ(first_mistake(blf(object.substr(0, 40))), "x: byte 144: the file ends within an object");
+  EXPECT_EQ(first_mistake(blf(object.substr(0, 15))), "x: byte 144: the file ends within an object");
+  EXPECT_EQ(first_mistake(blf("LOBJ" + number(16, 2) + number(1, 2) + number(15, 4) + number(1, 4))),
+            "x: byte 152: an object of 15 bytes");
+  EXPECT_EQ(first_mistake(blf(blf_object(10, number(3, 2) + std::string(14, '\0')))),
+            "x: byte 160: packed by method 3, which is not known");
+  EXPECT_EQ(first_mistake(blf(blf_object(10, "short"))), "x: byte 144: a container without head");
+}
+
 }  // namespace
 }  // namespace ipos::tests

@@ -284,5 +284,17 @@ TEST(Captures, NamesOfInterfaces) {
   EXPECT_EQ(buses, (std::vector<std::string>{name, name + "~1", name + "~2", "can3", "a_[2J_b"}));
 }
 
+// The longest telegram of RS-485 has 18 bytes.
+TEST(Captures, TelegramsOfRs485) {
+  Capture capture;
+  capture.interface(147).packet(0, 0, std::string(18, '\x02'));
+  EXPECT_EQ(taken(capture.bytes).serial.size(), 1U);
+  capture.packet(0, 0, std::string(19, '\x02')).packet(0, 0, "\x02");
+  const Taken got = taken(capture.bytes);
+  EXPECT_EQ(got.serial.size(), 2U);
+  ASSERT_EQ(got.wrong.size(), 1U);
+  EXPECT_EQ(got.wrong[0].second, "more than 18 bytes, the longest telegram");
+}
+
 }  // namespace
 }  // namespace ipos::tests

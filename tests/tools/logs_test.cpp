@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "tests/tools/taken_log.hpp"
+#include "tools/logs/log_findings.hpp"
 #include "tools/logs/log_writer.hpp"
 
 namespace ipos::tests {
@@ -148,6 +149,58 @@ TEST(Logs, NoNameOfAnInterfaceBreaksALineOfALog) {
     EXPECT_EQ(again.can[0].bus, read.can[0].bus) << c;
     EXPECT_EQ(read.can[0].bus == "a_b", c <= ' ' || c == '_' || c == 0x7F) << c;
   }
+}
+
+// As the descriptions of the forms want it, byte by byte: a remote frame has no data, and times their unit.
+TEST(Logs, WhatIsWrittenByTheLetter) {
+  const auto text = [](const char* name) {
+    std::ostringstream out;
+    {
+      const auto writer = make_log_writer(name, out);
+      writer->can(61 * runtime::kSecond + 2'003 * runtime::kMicrosecond, "a",
+                  Frame(0x12ABCDE, 2, {1, 0xAB}, true));
+      writer->can(62 * runtime::kSecond, "b", Frame(0x203, 5, {1, 2, 3, 4, 5}, false, true));
+    }
+    return out.str();
+  };
+  EXPECT_NE(text("a.asc").find(
+                "\n  61.002003 1  12ABCDEx        Rx   d 2 01 AB\n  62.000000 2  203             Rx   r 5\n"),
+            std::string::npos)
+      << text("a.asc");
+  EXPECT_TRUE(
+      text("a.asc").starts_with("date Sat Jan 01 12:00:00.000 am 2000\nbase hex  timestamps absolute\n"));
+  EXPECT_NE(text("a.trc").find("\n      1     61002.003 DT  1 012ABCDE Rx -  2    01 AB\n      2     "
+                               "62000.000 RR  2     0203 Rx -  5   \n"),
+            std::string::npos)
+      << text("a.trc");
+  EXPECT_EQ(text("a.log"), "(0946684861.002003) a 012ABCDE#01AB\n(0946684862.000000) b 203#R5\n");
+  // The packet of the remote frame is its head of eight bytes: 28 + 40 of the block.
+  const std::string capture = text("a.pcapng");
+  EXPECT_EQ(capture.substr(capture.size() - 40, 8), number(6, 4) + number(40, 4));
+  EXPECT_EQ(capture.substr(capture.size() - 12, 8), number(0x40000203, 4, true) + number(5, 4));
+}
+
+// Of equal mistakes twenty are printed, of others all; the sum stands at the end.
+TEST(Logs, FindingsOfALog) {
+  LogFindings findings("a\x1B.log");
+  size_t frames = 0;
+  const LogReader reader = findings.watch({[&](const LogEntry&, LogPlace) { ++frames; },
+                                           [](const auto&, LogPlace) {},
+                                           [](const auto&, LogPlace) {},
+                                           {}});
+  std::string log;
+  for (int n = 0; n < 22; ++n) log += "nonsense\n";
+  testing::internal::CaptureStderr();
+  read_log(log + "(1.000000) can0 203#\n(1.000000) can0 203#0\n(1.000000) can0 203##0\n", reader);
+  EXPECT_FALSE(findings.finish());
+  const std::string told = testing::internal::GetCapturedStderr();
+  std::string expected;
+  for (int n = 1; n <= 20; ++n) expected += "a?.log:" + std::to_string(n) + ":1: error: '(' expected\n";
+  EXPECT_EQ(told, expected +
+                      "a?.log: note: more mistakes of this kind are only counted\n"
+                      "a?.log:24:22: error: second hexadecimal digit of a data byte expected\n"
+                      "a?.log: note: 1 FD frame, 23 lines not understood left out\n");
+  EXPECT_EQ(frames, 1U);
 }
 
 TEST(Logs, BlfWithContainersThatCutObjects) {
