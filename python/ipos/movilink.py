@@ -1,4 +1,4 @@
-"""MOVILINK to drives: the parameter channel over SBus (any python-can bus: SocketCAN, slcan, or a plant) and RS-485.
+"""MOVILINK to drives: parameter channel and process data over SBus (any python-can bus: SocketCAN, slcan, or a plant) and RS-485.
 
     with can.Bus(interface="socketcan", channel="can0") as bus:
         drive = ipos.movilink.Drive(ipos.movilink.Sbus(bus), address=1)
@@ -40,26 +40,41 @@ class DriveRefusedError(lib.RefusedError):
         self.code = code
 
 
+class UnmonitoredError(lib.PlantError):
+    """Process data that could enable a drive which does not monitor them: it would move on when nobody sends any more."""
+
+
 class Line(Protocol):
-    """What carries the eight bytes of the parameter channel to a unit and its answer back; None: no answer."""
+    """What carries the eight bytes of the parameter channel, or process data words, to a unit and its answer back; None: no
+    answer. `monitoring`: the drive's own monitoring of the words of this line, as names and indices of its delay and of its
+    response."""
 
     addresses: range
+    monitoring: tuple[str, int, str, int]
 
     def exchange(self, address: int, request: bytes) -> Optional[bytes]: ...
+
+    def exchange_words(self, address: int, words: bytes) -> Optional[bytes]: ...
 
 
 class Sbus:
     """SBus, over a bus of python-can. `timeout` in seconds; a plant counts it in virtual time."""
 
     addresses = range(64)
+    monitoring = ("P815 (P883 of MOVIDRIVE B)", 8602, "P836", 8615)
 
     def __init__(self, bus: Any, timeout: float = 0.08) -> None:
         self.bus, self.timeout = bus, timeout
 
     def exchange(self, address: int, request: bytes) -> Optional[bytes]:
+        return self._ask(512 + 8 * address + 3, request, lambda data: len(data) == 8 and data[2:4] == request[2:4])
+
+    def exchange_words(self, address: int, words: bytes) -> Optional[bytes]:
+        return self._ask(8 * address + 3, words.ljust(6, b"\0"), lambda data: len(data) == 6)
+
+    def _ask(self, asked: int, request: bytes, answers: Callable[[bytes], bool]) -> Optional[bytes]:
         import can
 
-        asked = 512 + 8 * address + 3
         self.bus.send(can.Message(arbitration_id=asked, data=request, is_extended_id=False))
         begin = last = None
         left = self.timeout
@@ -69,7 +84,7 @@ class Sbus:
             if message is None:
                 return None
             if message.arbitration_id == asked + 1 and not message.is_extended_id and not message.is_error_frame:
-                if len(message.data) == 8 and bytes(message.data[2:4]) == request[2:4]:
+                if answers(bytes(message.data)):
                     return bytes(message.data)
             # Time is that of the frames where they come one after the other at once, else that of the clock.
             begin = message.timestamp if begin is None else begin
@@ -82,8 +97,10 @@ class Serial:
     """RS-485 or RS-232 at 9600 baud, 8E1, over an open port with read(count) and write(bytes), as pyserial has it."""
 
     addresses = range(100)
+    monitoring = ("P812", 8599, "P833", 8612)
     _TYP = 0x86  # parameter channel, acyclic
     _TRIES = 5
+    _WORDS_TYP = {2: 0x01, 4: 0x03, 6: 0x05}  # cyclic: acyclic telegrams are not monitored (1053 1610 p. 23)
     _PAUSE = 0.004  # s before a telegram: a start pause is 3.44 ms
 
     def __init__(self, port: Any, timeout: float = 0.1, sleep: Callable[[float], None] = time.sleep) -> None:
@@ -105,17 +122,24 @@ class Serial:
                 self._sleep(0.002)
 
     def exchange(self, address: int, request: bytes) -> Optional[bytes]:
+        answer = self._ask(address, self._TYP, request)
+        return answer if answer is not None and answer[2:4] == request[2:4] else None
+
+    def exchange_words(self, address: int, words: bytes) -> Optional[bytes]:
+        return self._ask(address, self._WORDS_TYP[len(words)], words)
+
+    def _ask(self, address: int, typ: int, request: bytes) -> Optional[bytes]:
         if hasattr(self.port, "reset_input_buffer"):
             self.port.reset_input_buffer()
         self._sleep(self._PAUSE)
-        self.port.write(_checked(bytes([0x02, address, self._TYP]) + request))
-        length = 3 + 8 + 1
+        self.port.write(_checked(bytes([0x02, address, typ]) + request))
+        length = 3 + len(request) + 1
         answer = self.port.read(length)
         if len(answer) == length and answer[0] == 0x02:  # an adapter that hears itself
             answer = self.port.read(length)
-        if len(answer) != length or answer[:3] != bytes([0x1D, address, self._TYP]) or _checked(answer[:-1]) != answer:
+        if len(answer) != length or answer[:3] != bytes([0x1D, address, typ]) or _checked(answer[:-1]) != answer:
             return None
-        return answer[3:-1] if answer[5:7] == request[2:4] else None
+        return answer[3:-1]
 
 
 def _checked(telegram: bytes) -> bytes:
@@ -133,6 +157,7 @@ class Drive:
         if address not in line.addresses:
             raise ValueError(f"an address is {line.addresses.start} to {line.addresses.stop - 1}, not {address}")
         self.line, self.address, self.tries = line, address, tries
+        self._monitored_until = 0.0
         self.unit = unit or self._identify()
         self.index_of("8300")  # a type that has no list is refused here
 
@@ -203,6 +228,45 @@ class Drive:
         if not -(2**31) <= value < 2**32:
             raise ValueError(f"{value} is out of range")
         self.execute(WRITE_VOLATILE if volatile else WRITE, index, value)
+
+    def send_process_data(self, *words: int) -> tuple[int, ...]:
+        """One to three process output data words to the unit; returns as many of its input data. A drive that monitors
+        them wants them again and again, within its delay (P812, P815, P883). Words that could enable a drive, as bits 0 to 2
+        are those of an enabling control word, go only to one that monitors them; else it is an UnmonitoredError."""
+        if not 1 <= len(words) <= 3:
+            raise ValueError(f"a telegram has one to three process data words, not {len(words)}")
+        for word in words:
+            if isinstance(word, bool) or not isinstance(word, int):
+                raise TypeError(f"a process data word is a whole number, not {type(word).__name__}")
+            if not 0 <= word <= 0xFFFF:
+                raise ValueError(f"{word} is no word: 0 to 65535, a negative speed as 65536 + it")
+        if any(word & 7 == 6 for word in words):
+            self._refuse_unmonitored()
+        answer = self.line.exchange_words(self.address, b"".join(word.to_bytes(2, "big") for word in words))
+        if answer is None:
+            raise NoAnswerError(f"unit {self.address} does not answer")
+        return tuple(int.from_bytes(answer[2 * n : 2 * n + 2], "big") for n in range(len(words)))
+
+    # Asked for again after a second: words come more often than that, and somebody else may have switched it off.
+    def _refuse_unmonitored(self) -> None:
+        if time.monotonic() < self._monitored_until:
+            return
+        name, delay, response_name, response = self.line.monitoring
+        trouble = None
+        if not 0 < self.execute(READ, delay) < 650_000:
+            trouble = f"{name} is off. Switch it on first: drive.write({delay}, 500)"  # ms
+        else:
+            try:
+                if self.execute(READ, response) <= 1:
+                    trouble = f"{response_name} lets it go on. Choose a stop first: drive.write({response}, 4)"
+            except DriveRefusedError:  # it cannot be chosen: the unit stops
+                pass
+        if trouble:
+            raise UnmonitoredError(
+                f"these process data could enable unit {self.address}, and it does not monitor them, so it would move on when "
+                f"nobody sends any more: {trouble}"
+            )
+        self._monitored_until = time.monotonic() + 1
 
     @property
     def status_word(self) -> int:

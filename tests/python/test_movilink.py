@@ -134,3 +134,73 @@ def test_the_timeout_of_a_port_is_set_where_it_differs():
     assert len(slept) == 2 and all(0.001 <= each < 0.01 for each in slept)
     with pytest.raises(termios.error):
         movilink.Serial(PortThatIsBusy(None, 99), sleep=slept.append)
+
+
+DRIVE = """
+[[bus]]
+name = "line"
+kind = "{kind}"
+[[station]]
+name = "a"
+unit = "{unit}"
+{line} = "line"
+[station.inputs]
+DI00 = 1
+DI01 = 1
+DI03 = 1
+[station.parameters]
+P100 = "{source}"
+P101 = "{source}"
+P870 = "CTRL. WORD 1"
+P871 = "SPEED"
+{address} = 1
+"""
+
+
+# 6: enabled; 5000 x 0.2 rpm (1053 1610 p. 40, 42). The timeouts are P812 and P883, both off as delivered; 0 and 650 s are
+# off (p. 41).
+def check_that_it_moves_only_where_it_is_monitored(plant, drive, delay, response, run):
+    speed = lambda: abs(plant["a"].speed)  # noqa: E731
+    assert len(drive.send_process_data(0, 5000, 0)) == 3
+    for words in ((6, 5000, 0), (6, 5000), (6,), (0, 0, 0x0C16)):
+        with pytest.raises(movilink.UnmonitoredError, match=delay):
+            drive.send_process_data(*words)
+    drive.write(drive.line.monitoring[1], 650_000)
+    with pytest.raises(movilink.UnmonitoredError, match="Switch it on"):
+        drive.send_process_data(6, 5000, 0)
+    drive.write(drive.line.monitoring[1], 500)
+    drive.write(response, "NO RESPONSE")
+    with pytest.raises(movilink.UnmonitoredError, match=response):
+        drive.send_process_data(6, 5000, 0)
+    assert speed() == 0
+    drive.write(response, "RAPID STOP/WARNG")
+    for _ in range(40):
+        drive.send_process_data(6, 5000, 0)
+        run("0.05s")
+    assert speed() > 900
+    run("1.5s")  # nobody sends any more
+    assert speed() == 0
+
+
+def test_process_data_over_rs485():
+    text = DRIVE.format(kind="rs485", unit="md60a", line="rs485", source="RS-485", address="P810")
+    with ipos.Plant(text=text) as plant:
+        port = PortOfPlant(plant)
+        drive = movilink.Drive(movilink.Serial(port, sleep=port.sleep), 1)
+        check_that_it_moves_only_where_it_is_monitored(plant, drive, "P812", "P833", plant.run)
+
+
+def test_process_data_over_sbus():
+    text = DRIVE.format(kind="can", unit="mdxb", line="sbus", source="SBus", address="P881")
+    with ipos.Plant(text=text) as plant, can.Bus(interface="ipos", channel="line", plant=plant) as bus:
+        drive = movilink.Drive(movilink.Sbus(bus), 1)
+        check_that_it_moves_only_where_it_is_monitored(plant, drive, "P883", "P836", plant.run)
+
+
+def test_process_data_words_are_words(sbus):
+    drive = movilink.Drive(sbus, 1)
+    for words in ((), (1, 2, 3, 4), (-1,), (65536,)):
+        with pytest.raises(ValueError):
+            drive.send_process_data(*words)
+    with pytest.raises(TypeError):
+        drive.send_process_data(1.5)

@@ -67,6 +67,11 @@ class PlantWithAPort(unittest.TestCase):
                         {"do": "speed", "speed": 2}, {"do": "run", "speed": 2}):
             self.assertIn("real ports", client.ask(**command)["error"])
         self.assertTrue(client.ask(do="run")["ok"])
+        # 02 ADR TYP 05h: three words; 6 enables. A drive at the port cannot be asked; the plant's own is here to be tried.
+        for data, trouble in (("02020500061388000098", "outside of the plant"), ("0201050006138800009b", ""),
+                              ("0202050002138800009c", "")):
+            self.assertIn(trouble, client.ask(do="bus.send", bus="line1", data=data).get("error", ""))
+            time.sleep(0.1)
         first = client.wait_for("time", lambda event: event["us"] > 0)
         self.assertTrue(first["running"])
 

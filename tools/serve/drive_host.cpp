@@ -29,7 +29,7 @@ constexpr auto kAttends = 20ms;     // at a time, to what comes; then the drive 
 // Of a client. The server reads on, whatever waits here: a stop may be behind it (server.hpp).
 constexpr size_t kMostWaitingOrders = kMostUnanswered / 2;
 constexpr size_t kLongestJog = 512;  // bytes of a message that may be one
-constexpr auto kFarewell = 5s;       // to a drive that does not answer
+constexpr auto kFarewell = 15s;      // to a drive that does not answer
 
 // The list without a drive: what its table knows.
 class TableAccess final : public ParameterAccess {

@@ -18,6 +18,10 @@ namespace {
 using namespace std::chrono_literals;
 
 // All ours.
+// The last word that enables goes out so long after the last `jog`. The exchange may repeat it, and the drive's monitoring
+// follows: together less than 0.7 s, also where no stop reaches the drive.
+constexpr auto kFresh = 150ms;
+constexpr int32_t kSilence = 400;       // ms: of the monitoring, where it is off or too long
 constexpr auto kLongestPeriod = 50ms;   // of the words
 constexpr auto kShortestPeriod = 10ms;  // drives monitor them from 10 ms on (P812, P815)
 constexpr auto kRetry = 200ms;          // of a value that was not taken back
@@ -47,20 +51,19 @@ void ManualOperation::enter(State state) {
 }
 
 void ManualOperation::hold(uint16_t client, double rpm, WallClock::time_point arrived) {
-  const auto until = arrived + kJogHolds;
   if (stopped_ && stopped_->client == client) {
     const bool still_held = arrived - stopped_->last < kForgotten;
     stopped_->last = arrived;
     if (still_held) throw Mistake("another tab has stopped the drive: let go of the button first");
     stopped_.reset();
   }
-  if (WallClock::now() > until)
+  if (WallClock::now() > arrived + kJogHolds)
     throw Mistake("this order to move is too old: it has waited too long on its way");
   if (hand_ && hand_->client != client) throw Mistake("another client moves the drive");
   if (state_ == State::Stopping) throw Mistake("the drive has not answered the last stop yet");
   if (!link_.carries_process_data())
     throw Mistake("manual operation needs SBus or RS-485: over CANopen the page reaches parameters only");
-  hand_ = Hand{client, static_cast<uint16_t>(static_cast<int16_t>(std::lround(rpm * kDigitsOfRpm))), until};
+  hand_ = Hand{client, static_cast<uint16_t>(static_cast<int16_t>(std::lround(rpm * kDigitsOfRpm))), arrived};
   if (state_ == State::Taking || state_ == State::Moving) return;
   enter(State::Taking);
   try {
@@ -115,9 +118,9 @@ void ManualOperation::watch_over() {
     throw Mistake("this unit does not monitor the process data of this line, so it is not moved over it");
   const int32_t timeout = borrowed_.read(own.timeout->index);
   const bool too_long = is_off(timeout) || timeout > kLongestSilence;
-  if (too_long) borrowed_.set(own.timeout->index, kLongestSilence);
-  period_ = std::clamp<WallClock::duration>(
-      std::chrono::milliseconds(too_long ? kLongestSilence : timeout) / 4, kShortestPeriod, kLongestPeriod);
+  if (too_long) borrowed_.set(own.timeout->index, kSilence);
+  period_ = std::clamp<WallClock::duration>(std::chrono::milliseconds(too_long ? kSilence : timeout) / 4,
+                                            kShortestPeriod, kLongestPeriod);
   rests_for_.reset();
   if (hand_ && !borrowed_.is_borrowed(own.timeout->index)) rests_for_ = hand_->client;
   if (own.response != nullptr && lets_go_on(borrowed_.read(own.response->index)))
@@ -160,7 +163,7 @@ void ManualOperation::turn() {
 }
 
 void ManualOperation::move(WallClock::time_point now) {
-  const bool held = hand_ && now < hand_->until;
+  const bool held = hand_ && now < hand_->arrived + kJogHolds;
   const bool silent = now - heard_ > std::chrono::milliseconds(kLongestSilence);
   if (silent || !(held || (hand_ && now < waits_until_))) {
     hand_.reset();
@@ -170,10 +173,10 @@ void ManualOperation::move(WallClock::time_point now) {
     return stop_drive();
   }
   if (now < next_words_) return;
-  if (held)
-    send(kEnable, hand_->speed);
-  else
+  if (!held)
     send(kStop, 0);
+  else if (now < hand_->arrived + kFresh)
+    send(kEnable, hand_->speed);
 }
 
 void ManualOperation::stop_drive() {

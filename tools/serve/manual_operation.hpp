@@ -56,7 +56,7 @@ class ManualOperation {
   struct Hand {
     uint16_t client;
     uint16_t speed;  // the setpoint word
-    WallClock::time_point until;
+    WallClock::time_point arrived;
   };
   struct Stopped {  // by another client; the one that holds must let go first
     uint16_t client;
