@@ -1,5 +1,7 @@
 // Expressions into variables. Commands have two addresses, so `a = b + c` is SET a = b, ADD a + c; the target
 // itself is the accumulator unless the rest of the expression uses it, or somebody sees each of its values.
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "compiler/codegen/generator.hpp"
@@ -94,8 +96,11 @@ Uses uses(const Expr& expr, int32_t variable) {
 }
 
 bool acts_at_once(int32_t variable) {
-  return variable >= static_cast<int32_t>(kFirstSystemVariable) &&
-         variable <= static_cast<int32_t>(kLastSystemVariable);
+  const auto number = static_cast<uint32_t>(variable);
+  if (number >= stdlib::kFirstSystemVariable && number <= kLastReservedVariable) return true;
+  const auto has_number = [&](const stdlib::UsedVariable& row) { return row.number == number; };
+  const auto* const row = std::ranges::find_if(stdlib::kUsedVariables, has_number);
+  return row != std::end(stdlib::kUsedVariables) && row->use != stdlib::VariableUse::Nothing;
 }
 
 FunctionGenerator::Operand FunctionGenerator::value(const Expr& expr) {

@@ -148,7 +148,20 @@ class Declarations {
       context_.program.ranges.of(kind) = {static_cast<uint32_t>(*low), static_cast<uint32_t>(*high)};
       if (kind == RangeKind::Initials && *high > static_cast<int32_t>(kLastNonVolatile))
         context_.diagnostics.report(Diag::VolatileInitial, decl.span, {fmt::format("{}", *high)});
+      warn_of_system_variable(context_.program.ranges.of(kind), decl.span);
     }
+  }
+
+  // Told of the first one in the range.
+  void warn_of_system_variable(const NumberRange& range, Span span) {
+    for (const stdlib::SystemVariable& row : stdlib::system_variables())
+      if (range.contains(row.number)) {
+        context_.diagnostics
+            .report(Diag::RawOverlap, span, {fmt::format("{}", row.number), std::string(row.compiler_name)})
+            .notes.push_back({{}, fmt::format("the unit works with it; H{} and up are free",
+                                                stdlib::kLastSystemVariable + 1)});
+        return;
+      }
   }
 
   // `130` and `H130` are the same.
@@ -165,9 +178,10 @@ class Declarations {
       reason = fmt::format("{} has H0 to H{}", context_.unit.name, context_.unit.variables - 1);
     else if (low > high)
       reason = "the first number is the larger one";
-    else if (low <= static_cast<int32_t>(kLastSystemVariable) &&
-             high >= static_cast<int32_t>(kFirstSystemVariable))
-      reason = fmt::format("H{} to H{} are system variables", kFirstSystemVariable, kLastSystemVariable);
+    else if (low <= static_cast<int32_t>(kLastReservedVariable) &&
+             high >= static_cast<int32_t>(stdlib::kFirstSystemVariable))
+      reason = fmt::format("H{} to H{} are system variables", stdlib::kFirstSystemVariable,
+                           kLastReservedVariable);
     if (reason.empty()) return true;
     context_.diagnostics.report(Diag::BadRange, span,
                                 {fmt::format("{}", low), fmt::format("{}", high), reason});

@@ -47,9 +47,9 @@ std::string range_advice(RangeKind kind, uint32_t count, const Ranges& ranges,
   if (kind == RangeKind::Initials) {
     run = free_run({0, kLastNonVolatile}, count, taken);
   } else {
-    run = free_run({kLastNonVolatile + 1, kFirstSystemVariable - 1}, count, taken);
-    if (!run && unit.variables > kLastSystemVariable + 1)
-      run = free_run({kLastSystemVariable + 1, unit.variables - 1U}, count, taken);
+    constexpr uint32_t kFirst = stdlib::kFirstSystemVariable, kLast = stdlib::kLastSystemVariable;
+    run = free_run({kLastNonVolatile + 1, kFirst - 1}, count, taken);
+    if (!run && unit.variables > kLast + 1) run = free_run({kLast + 1, unit.variables - 1U}, count, taken);
   }
   if (!run) return fmt::format("there are no {} free variables in a row", count);
   return fmt::format("'#pragma {} {} {}' makes room", pragma_name(kind), run->low, run->high);

@@ -1,20 +1,20 @@
 // Ranges of variable numbers that the compiler hands out, and advice where there is room for more. Defaults
-// as in docs/guide/language.md: globals from H420 (1053 1610 p. 49, watch window), H453 begins the system variables
-// (IPOSplus p. 29).
+// as in docs/guide/language.md: globals from H420 (1053 1610 p. 49, watch window), up to the system variables.
 #pragma once
 
 #include <bitset>
 #include <cstdint>
 #include <string>
 
+#include "stdlib/system_variables.hpp"
 #include "stdlib/unit_types.hpp"
 
 namespace ipos::compiler {
 
 inline constexpr uint32_t kMaxNumbers = 1024;
-inline constexpr uint32_t kFirstSystemVariable = 453;
-// IPOSplus p. 39. A program may use H561 and up; the simulated ISYNC of a MOVIDRIVE B has H561 to H564, numbers of ours.
-inline constexpr uint32_t kLastSystemVariable = 560;
+// The last number that a program cannot claim (IPOSplus p. 39). Those of the simulated ISYNC of a MOVIDRIVE B above it,
+// up to stdlib::kLastSystemVariable, are ours: a program may claim them, and is told.
+inline constexpr uint32_t kLastReservedVariable = 560;
 inline constexpr uint32_t kLastNonVolatile = 127;     // IPOSplus p. 320
 
 struct NumberRange {

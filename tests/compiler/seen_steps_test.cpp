@@ -5,8 +5,11 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <span>
 
+#include "compiler/sema/ranges.hpp"
+#include "stdlib/system_variables.hpp"
 #include "tests/compiler/backend_test.hpp"
 #include "vm/exec/machine.hpp"
 #include "vm/sched/scheduler.hpp"
@@ -273,32 +276,49 @@ TEST(Atomic, WritesOnceWhatOthersSee) {
       << "costs nothing where nobody looks on";
 }
 
-// System variables act at once (outputs, setpoints): whatever the expression, they get its value and nothing on the
-// way, in one command. The first and the last of them (IPOSplus p. 29, 39) and one whose neighbours are ones, too.
+// What a program may write of the unit: each row of the table that is not only read, and the numbers that the unit keeps
+// without a row (IPOSplus p. 29, 39).
+std::vector<uint32_t> written_system_variables() {
+  std::vector<uint32_t> out{457, 472, 512, 556};
+  for (const stdlib::SystemVariable& row : stdlib::system_variables())
+    if (row.access == stdlib::VariableAccess::RW) out.push_back(row.number);
+  return out;
+}
+
+// An expression with the name in place of each '%'; "%%" is the operator.
+std::string with_name(std::string expression, const std::string& name) {
+  for (size_t at = 0; (at = expression.find('%', at)) != std::string::npos;) {
+    if (expression.compare(at, 2, "%%") == 0)
+      expression.erase(at++, 1);
+    else
+      expression.replace(at, 1, name), at += name.size();
+  }
+  return expression;
+}
+
+constexpr const char* kAssigned[] = {"a + b",
+                                     "a - b",
+                                     "a - %",
+                                     "-%",
+                                     "-a",
+                                     "b - % * a",
+                                     "(% + 1) %% 8",
+                                     "a * 2 + b - %",
+                                     "a - (b - %)",
+                                     "a * b - 12",
+                                     "a ? a + b : -%",
+                                     "(a && b) + 1",
+                                     "a %% 8 + %",
+                                     "~(% + a)",
+                                     "v[a] - %",
+                                     "(a, b - %)"};
+
+// The unit acts on system variables (outputs, setpoints, gears) or others read them there: whatever the expression, they
+// get its value and nothing on the way, in one command.
 TEST(SystemVariables, GetTheirValueAndNothingOnTheWay) {
-  const std::string kHeads[] = {"a + b",
-                                "a - %",
-                                "-%",
-                                "-a",
-                                "b - % * a",
-                                "(% + 1) %% 8",
-                                "a * 2 + b - %",
-                                "a - (b - %)",
-                                "a ? a + b : -%",
-                                "(a && b) + 1",
-                                "a %% 8 + %",
-                                "~(% + a)",
-                                "v[a] - %",
-                                "(a, b - %)"};
-  for (const int variable : {453, 484, 560})
-    for (std::string expression : kHeads) {
-      const std::string name = "H" + std::to_string(variable);
-      for (size_t at = 0; (at = expression.find('%', at)) != std::string::npos;) {
-        if (expression.compare(at, 2, "%%") == 0)
-          expression.erase(at++, 1);  // the operator
-        else
-          expression.replace(at, 1, name);
-      }
+  for (const uint32_t number : written_system_variables())
+    for (const char* const assigned : kAssigned) {
+      const std::string name = "H" + std::to_string(number), expression = with_name(assigned, name);
       const Compilation c =
           compile_b("long a, b, v[4]; main() { a = 1; b = 2; v[a] = 3; " + name + " = " + expression + "; }");
       ASSERT_TRUE(c.image) << expression;
@@ -307,10 +327,53 @@ TEST(SystemVariables, GetTheirValueAndNothingOnTheWay) {
           << name << " = " << expression;
     }
   // Their neighbours are a program's own, which are computed where they are.
-  for (const char* name : {"H452", "H561"}) {
+  for (const char* name : {"H452", "H565"}) {
     const Compilation c = compile_b("long a; main() { a = 1; " + std::string(name) + " = a * 2; }");
     EXPECT_EQ(writes_of(c, name), (std::vector<std::string>{"SET " + std::string(name) + " = H420",
                                                             "MUL " + std::string(name) + " * 2"}));
+  }
+}
+
+// All values that a variable has behind the commands of a program, from the second turn of its loop on.
+std::set<int32_t> values_of(const std::string& text, uint32_t number) {
+  const Compilation c = compile_b(text);
+  EXPECT_TRUE(c.image) << text;
+  const stdlib::UnitType& unit = *stdlib::find_unit(std::string_view("mdxb"));
+  const vm::Limits limits{unit.variables, unit.program_words, unit.tasks, unit.call_depth};
+  const vm::VerifiedImage image = vm::verify(c.image->code, limits, {}).image.value();
+  auto machine = std::make_unique<vm::Machine>(image, vm::Host{});
+  machine->start();
+  std::set<int32_t> seen;
+  for (int command = 0; command < 400; ++command) {
+    machine->run(1, 1);
+    if (command > 100) seen.insert(machine->variables()[number]);
+  }
+  return seen;
+}
+
+// The same of a run, command by command: what does not depend on the variable itself is its only value, in the variable of
+// the table as in a program's own that a #pragma has put there.
+TEST(SystemVariables, NobodySeesAThirdValue) {
+  for (const auto& [expression, value] : {std::pair("lA - lB", 2),
+                                          {"-lA", -20},
+                                          {"lA * lB - 12", 348},
+                                          {"(lA && lB) + 1", 2},
+                                          {"lA ? lA + lB : lB", 38},
+                                          {"lV[lC] - lB", -11},
+                                          {"~(lA + lB)", -39},
+                                          {"(lA << 2) / lB + lA % 7", 10}}) {
+    const auto program = [&, assigned = std::string(expression)](const std::string& head, const std::string& name) {
+      return head + "long lA, lB, lC, lV[4];\nmain() { lA = 20; lB = 18; lC = 3; lV[3] = 7; while (1) { " + name +
+             " = " + assigned + "; } }";
+    };
+    for (const uint32_t number : written_system_variables())
+      EXPECT_EQ(values_of(program("", "H" + std::to_string(number)), number), std::set<int32_t>{value})
+          << "H" << number << " = " << expression;
+    for (uint32_t number = kLastReservedVariable + 1; number <= stdlib::kLastSystemVariable; ++number)
+      EXPECT_EQ(values_of(program("#pragma globals " + std::to_string(number) + " 600\nlong lGear;\n", "lGear"),
+                          number),
+                std::set<int32_t>{value})
+          << "H" << number << " = " << expression;
   }
 }
 
