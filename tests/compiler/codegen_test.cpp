@@ -119,6 +119,11 @@ const Construct kConditions[] = {
     {"if (a >= b) c = 1;", {"M01 : JMP H420 < H421 , M02", "SET H422 = 1", "M02 : END"}},
     {"if (a) b = 1; else b = 2;",
      {"M01 : JMP H420 == 0 , M02", "SET H421 = 1", "END", "M02 : SET H421 = 2", "END"}},
+    // The loop around nothing is where the branch leads, in every form of it.
+    {"if (a) while (1); b = 2;", {"M01 : JMP H420 == 0 , M03", "M02 : JMP M02", "M03 : SET H421 = 2", "END"}},
+    {"if (a) for (;;); b = 2;", {"M01 : JMP H420 == 0 , M03", "M02 : JMP M02", "M03 : SET H421 = 2", "END"}},
+    {"if (a < b) do ; while (1); b = 2;",
+     {"M01 : JMP H420 >= H421 , M03", "M02 : JMP M02", "M03 : SET H421 = 2", "END"}},
     {"if (!a) b = 1;", {"M01 : JMP H420 != 0 , M02", "SET H421 = 1", "M02 : END"}},
     {"if (1) a = 1;", {"M01 : SET H420 = 1", "END"}},
     {"if (0) a = 1; b = 2;", {"M01 : SET H421 = 2", "END"}},

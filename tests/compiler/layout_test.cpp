@@ -48,6 +48,26 @@ TEST(Lines, EveryFunctionHasOne) {
         << function.name;
 }
 
+// A program may fill the memory of its unit to the last word, and not by one more.
+TEST(Length, TheLastWordOfTheUnitIsTheProgramsOwn) {
+  for (const char* const name : {"md60a", "compact", "mc07", "mdxb"}) {
+    const stdlib::UnitType& unit = *stdlib::find_unit(std::string_view(name));
+    // A copy of a variable is a word, and so is the END.
+    const auto program = [](uint32_t words) {
+      std::string text = "long a, b; main() {\n";
+      for (uint32_t n = 1; n < words; ++n) text += n % 2 == 0 ? "a = b;\n" : "b = a;\n";
+      return text + "}";
+    };
+    const Compilation full = compile_text(program(unit.program_words), name);
+    ASSERT_TRUE(full.image) << name;
+    EXPECT_EQ(full.image->code.size(), unit.program_words) << name;
+    const Compilation beyond = compile_text(program(unit.program_words + 1U), name);
+    EXPECT_FALSE(beyond.image && !beyond.diagnostics.has_errors()) << name;
+    ASSERT_FALSE(beyond.diagnostics.all().empty()) << name;
+    EXPECT_EQ(beyond.diagnostics.all().back().diag, Diag::ProgramTooLong) << name;
+  }
+}
+
 // The five longest, the longest first, of equals in the order of the source; what stands once is none of them.
 TEST(Copies, OfATooLongProgramAreTheLongestFive) {
   const int statements[] = {60, 100, 40, 140, 80, 140, 20};

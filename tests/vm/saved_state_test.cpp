@@ -131,6 +131,56 @@ TEST(SavedState, AMachineGoesOnFromIt) {
   }
 }
 
+// Each task goes on in the routine that it was in, and one that was in none in itself, whatever the machine that takes the
+// state was in.
+TEST(SavedState, EveryTaskIsInItsRoutineAgain) {
+  const char* const program = R"(
+      TASK2 START , M02
+      TASK START , M03
+      SETINT TIMER0 , M04
+      VARINT H10 , M05
+      VARINT H20 , M06
+M01 : ADD H1 + 1
+      JMP M01
+M02 : ADD H2 + 1
+      JMP M02
+M03 : ADD H3 + 1
+      JMP M03
+M04 : ADD H4 + 1
+      JMP M04
+M05 : ADD H5 + 1
+      JMP M05
+M06 : ADD H6 + 1
+      JMP M06
+)";
+  const auto in_routines = [&](int which) {
+    auto run = std::make_unique<Assembled>(program);
+    run->set(10, {1, 0, 30, 0, 0, 1});
+    run->set(20, {2, 3, 30, 0, 0, 9});
+    run->tick();
+    if ((which & 1) != 0) (*run)->raise_event(Event::Timer0);
+    run->h(kVarIntReq) = ((which & 2) != 0 ? 1 : 0) | ((which & 4) != 0 ? 8 : 0);
+    run->tick();
+    return run;
+  };
+  for (int which = 0; which < 8; ++which)
+    for (int of_other = 0; of_other < 8; ++of_other) {
+      SCOPED_TRACE(testing::Message() << which << " " << of_other);
+      const auto original = in_routines(which), other = in_routines(of_other);
+      std::vector<uint8_t> state(SavedState::size((*original)->program()));
+      SavedState::write(original->machine(), state.data());
+      ASSERT_TRUE(SavedState::check((*other)->program(), state.data()));
+      SavedState::read(state.data(), other->machine());
+      const int routines[] = {context_of(Event::Timer0), context_of_variable_interrupt(0),
+                              context_of_variable_interrupt(3)};
+      for (int task = 1; task <= kTasks; ++task)
+        EXPECT_EQ((*other)->active_context(task), (which >> (task - 1) & 1) != 0 ? routines[task - 1] : task);
+      original->tick();
+      other->tick();
+      for (size_t n = 1; n <= 6; ++n) EXPECT_EQ(other->h(n), original->h(n)) << "H" << n;
+    }
+}
+
 // A task has its own number and the rank 0; a routine that does something belongs to a task.
 TEST(SavedState, ContextsBelongToTheirTask) {
   const SavedBytes saved;
