@@ -4,6 +4,7 @@
 
 #include "stdlib/headers.hpp"
 #include "stdlib/system_variables.hpp"
+#include "tests/generated/pcg.hpp"
 #include "tests/vm/assembled.hpp"
 #include "vm/exec/interrupts.hpp"
 
@@ -164,8 +165,122 @@ M03 : ADD H1 + 1
   run.h(5) = 1;
   run.tick(8);
   run.tick(8);
+  EXPECT_EQ(run.h(1), 0) << "nor is the condition that has lasted since then";
+  EXPECT_EQ(run.h(16), 0) << "what is lost is no event";
+  run.h(20) = 8;
+  run.tick(8);
+  run.h(20) = 7;
+  run.tick(8);
   EXPECT_EQ(run.h(1), 1);
   EXPECT_EQ(run->context(context_of_variable_interrupt(0)).task, 3);
+}
+
+// What a mode makes of two values, as compare_modes.def has it; `held`: it was so at the last look.
+bool is_event(CompareMode mode, int32_t compare, int32_t before, int32_t now, bool& held) {
+  bool holds = false;
+  switch (mode) {
+    case CompareMode::Never: return false;
+    case CompareMode::Changed: return (before & compare) != (now & compare);
+    case CompareMode::Rising: return (~before & now & compare) != 0;
+    case CompareMode::Falling: return (before & ~now & compare) != 0;
+    case CompareMode::Equal: holds = now == compare; break;
+    case CompareMode::NotEqual: holds = now != compare; break;
+    case CompareMode::AtLeast: holds = now >= compare; break;
+    case CompareMode::AtMost: holds = now <= compare; break;
+    case CompareMode::AnySet: holds = (now & compare) != 0; break;
+    case CompareMode::NoneSet: holds = (now & compare) == 0; break;
+  }
+  const bool event = holds && !held;
+  held = holds;
+  return event;
+}
+
+// The unit looks in every millisecond, whether the task runs or not; what happens while it does not is over, in each mode.
+TEST(VariableInterrupts, EventsOfAStoppedTaskAreLost) {
+  tests::Pcg random(44);
+  for (int32_t mode = 0; mode < kCompareModes; ++mode) {
+    int32_t events = 0;
+    for (int course = 0; course < 60; ++course) {
+      SCOPED_TRACE(testing::Message() << "mode " << mode << ", course " << course);
+      const int32_t compare = 1 + random.below(6), number = random.below(4), task = 2 + random.below(2);
+      Assembled run(kOne);
+      run.set(10, {task - 1, number, 20, compare, mode, 5});
+      int32_t before = run.h(20) = random.below(8);
+      run->run(1, 10);
+      const uint32_t begin = run->task(2).pc;  // of both tasks
+      run->stop_task(2);
+      bool held = false, runs = false;
+      int32_t expected = 0, seen = 0;
+      for (int ms = 0; ms < 60; ++ms) {
+        if (random.one_in(5)) {
+          runs = !runs;
+          runs ? run->start_task(task, begin) : run->stop_task(task);
+        }
+        if (random.one_in(2)) run.h(20) = random.below(8);
+        const int32_t now = run.h(20);
+        if (is_event(static_cast<CompareMode>(mode), compare, before, now, held) && runs) ++expected, seen = now;
+        before = now;
+        run.tick(8);
+        ASSERT_EQ(run.h(1), expected) << ms;
+        ASSERT_EQ(run.h(16), seen) << ms;
+        ASSERT_EQ(run.h(530), 0) << ms;
+      }
+      events += expected;
+    }
+    EXPECT_EQ(events > 60, mode != 0) << "mode " << mode << ", " << events << " events";
+  }
+}
+
+// Also a program that a fault has stopped: the unit goes on looking, takes its requests away, and none of the routines begins.
+TEST(VariableInterrupts, AfterAFaultNoneBegins) {
+  Assembled run(R"(
+      TASK2 START , M02
+      VARINT H10 , M03
+      DIV H0 / H0
+M02 : JMP M02
+M03 : ADD H1 + 1
+      RET
+)");
+  run.set(10, {1, 2, 20, 7, 4, 5});
+  run.tick(8);
+  ASSERT_EQ(run->fault().number, kFaultIllop);
+  run.h(20) = 7;
+  run.h(530) = -1;
+  run.tick(8);
+  EXPECT_EQ(run.h(530), ~kAllRequests);
+  EXPECT_EQ(run.h(1), 0);
+  EXPECT_EQ(run.h(16), 0);
+}
+
+// IntEvent is written when the event comes, also where its routine has to wait.
+TEST(VariableInterrupts, IntEventIsWrittenAtTheEvent) {
+  Assembled run(R"(
+      TASK2 START , M02
+      VARINT H10 , M03
+      VARINT H20 , M04
+M01 : JMP M01
+M02 : JMP M02
+M03 : WAIT 10
+      RET
+M04 : SET H1 = H26
+      RET
+)");
+  run.set(10, {1, 0, 30, 0, 0, 9});
+  run.set(20, {1, 1, 31, 5, 6, 1});
+  run.tick(8);
+  run.h(530) = 1;
+  run.tick(8);
+  run.h(31) = 6;
+  run.tick(8);
+  EXPECT_EQ(run.h(26), 6);
+  EXPECT_EQ(run.h(1), 0) << "its routine waits for the end of the other one";
+  run.h(31) = 4;
+  run.tick(8);
+  run.h(31) = 8;
+  run.tick(8);
+  EXPECT_EQ(run.h(26), 8) << "an event that comes again before that, remembered once";
+  for (int n = 0; n < 12; ++n) run.tick(8);
+  EXPECT_EQ(run.h(1), 8);
 }
 
 // Structures at H10, H20, H30, H40 for numbers 0..3, all on task 2, in mode 0; routines wait 9 ms and note

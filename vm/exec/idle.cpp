@@ -113,7 +113,7 @@ bool Machine::interrupts_rest() const {
   if (program_.limits().variables <= kVarIntReq) return true;
   if ((h_[kVarIntReq] & kAllRequests) != 0) return false;
   for (const VariableInterrupt& interrupt : interrupts_.variables) {
-    if (!interrupt.installed || context(interrupt.task).state == TaskState::Stopped) continue;
+    if (!interrupt.installed) continue;
     VariableInterrupt next = interrupt;
     if (next.look(h_[next.source]) || next.held != interrupt.held || next.last != interrupt.last)
       return false;

@@ -156,9 +156,11 @@ void Machine::take_variable_interrupts() {
   if (program_.limits().variables <= kVarIntReq) return;
   auto requests = bits(h_[kVarIntReq]);
   for (int n = 0; VariableInterrupt & interrupt : interrupts_.variables) {
+    // A stopped task has its variable looked at, too: what happens meanwhile is over when it starts.
+    const bool event = interrupt.installed && interrupt.look(h_[interrupt.source]);
     if (!interrupt.installed || context_at(interrupt.task).state == TaskState::Stopped) {
       requests &= ~request(n);
-    } else if (interrupt.look(h_[interrupt.source])) {
+    } else if (event) {
       requests |= request(n);
       h_[interrupt.structure + kIntEvent] = interrupt.last;
     }
