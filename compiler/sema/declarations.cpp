@@ -158,8 +158,9 @@ class Declarations {
       if (range.contains(row.number)) {
         context_.diagnostics
             .report(Diag::RawOverlap, span, {fmt::format("{}", row.number), std::string(row.compiler_name)})
-            .notes.push_back({{}, fmt::format("the unit works with it; H{} and up are free",
-                                                stdlib::kLastSystemVariable + 1)});
+            .notes.push_back({{},
+                              fmt::format("the unit works with it; H{} and up are free",
+                                          stdlib::kLastSystemVariable + 1)});
         return;
       }
   }
@@ -180,8 +181,8 @@ class Declarations {
       reason = "the first number is the larger one";
     else if (low <= static_cast<int32_t>(kLastReservedVariable) &&
              high >= static_cast<int32_t>(stdlib::kFirstSystemVariable))
-      reason = fmt::format("H{} to H{} are system variables", stdlib::kFirstSystemVariable,
-                           kLastReservedVariable);
+      reason =
+          fmt::format("H{} to H{} are system variables", stdlib::kFirstSystemVariable, kLastReservedVariable);
     if (reason.empty()) return true;
     context_.diagnostics.report(Diag::BadRange, span,
                                 {fmt::format("{}", low), fmt::format("{}", high), reason});

@@ -59,6 +59,7 @@ bool Pacer::run_to(Time last) {
       }
     }
     if (inbox_.next() > last) break;
+    timed_.before_telegram();
     inbox_.read_next();
   }
   runs_ = nested;

@@ -31,6 +31,8 @@ class Timed {
   virtual void settle() = 0;
   // Somebody is about to write. Everything is settled.
   virtual void touched() = 0;
+  // A telegram that has waited is about to be read. The ticks in front of it are executed, but not settled.
+  virtual void before_telegram() = 0;
   // A telegram that only writes variables can wait until the ticks have come as far as it.
   virtual bool lets_wait() const = 0;
   // In all of this silence nothing changes that others can see, and what is sent is the same without its ticks.

@@ -228,6 +228,13 @@ void Station::touched() {
   want_frames_again();
 }
 
+// A unit that ran ahead when the telegram came may be idle by now: then its loops are those of the variables before.
+void Station::before_telegram() {
+  if (ticks_.way() != ManyTicks::Way::Idle) return;
+  settle();
+  touched();
+}
+
 void Station::want_frames_again() {
   for (StationPort* port : ports_) port->want_again();
 }

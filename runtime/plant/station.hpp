@@ -168,6 +168,7 @@ class Station final : private Timed, private TaskRunner {
   Ticks find_silence(Time first);
   void settle() override { ticks_.settle(); }
   void touched() override;
+  void before_telegram() override;
   bool lets_wait() const override { return ticks_.lets_wait(); }
   bool rests() const override { return ticks_.variables_rest() && !leads_; }
   bool run(vm::Machine& machine, vm::TickSteps& steps) override;

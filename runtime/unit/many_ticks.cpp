@@ -19,9 +19,6 @@ constexpr size_t kControlWord = stdlib::system_variable("ControlWord");
 constexpr uint32_t kSteadyPause = 32, kAheadPause = 64, kIdlePause = 32, kProgramPause = 1024,
                    kReachPause = 4096;
 
-// A loop with more commands is not looked for.
-constexpr uint32_t kLongestLoop = 256;
-
 }  // namespace
 
 // What was found out about another program is forgotten.
@@ -128,16 +125,14 @@ void ManyTicks::choose(Time first, bool touched) {
 }
 
 bool ManyTicks::try_idle(Time first, Ticks steady) {
-  const vm::Machine* machine = unit_.machine();
   uint64_t ticks = steady;
-  variables_rest_ = true;
-  if (machine != nullptr) {
+  if (vm::Machine* machine = unit_.machine(); machine != nullptr) {
     if (!unit_.timers().rest(unit_.variables())) {
       idle_backoff_.fail(first, kIdlePause);
       return false;
     }
-    ticks =
-        std::min(ticks, unit_.machine()->idle_ticks(unit_.rates().commands, kLongestLoop, &variables_rest_));
+    rates_ = unit_.rates();
+    ticks = std::min(ticks, machine->idle_ticks(rates_.commands, idle_));
   }
   if (ticks == 0) {
     idle_backoff_.fail(first, kProgramPause);
@@ -197,7 +192,7 @@ Ticks ManyTicks::steady_tick(Time now) {
 void ManyTicks::settle_pending() {
   const Ticks ticks = std::exchange(pending_, 0);
   if (way_ == Way::Idle && unit_.machine() != nullptr)
-    unit_.machine()->skip_ticks(unit_.rates().commands, ticks);
+    unit_.machine()->skip_ticks(rates_.commands, idle_, ticks);
   unit_.advance(ticks);
   unit_.server().memory().set_time(last_);
 }

@@ -52,9 +52,9 @@ class ManyTicks final {
 
   // --- what others may do while it is not settled ---
   // The variables are those of the present.
-  bool shows_variables() const { return way_ != Way::Idle || variables_rest_; }
+  bool shows_variables() const { return way_ != Way::Idle || idle_.steady; }
   // They stay as they are until somebody writes.
-  bool variables_rest() const { return way_ == Way::Idle && left_ != 0 && variables_rest_; }
+  bool variables_rest() const { return way_ == Way::Idle && left_ != 0 && idle_.steady; }
   // Writing this variable and the next one changes what the next ticks do beyond what the tasks read.
   bool minds(uint32_t first) const;
   // Telegrams have variables that are not there before settle().
@@ -90,15 +90,15 @@ class ManyTicks final {
 
   Unit& unit_;
   Way way_ = Way::InFull;
-  Ticks left_ = 0;              // ticks that are done in this way
-  Ticks pending_ = 0;           // ticks that drive and positioning, and idle tasks, are behind
-  Time last_ = 0;               // the last one of them
-  bool touched_ = false;        // somebody has written since the last tick
-  bool variables_rest_ = true;  // idle: the loops change no variable, not even for a moment
-  bool may_order_ = true;       // the program can write the control word of the drive
-  uint32_t commands_ = 0;       // to positioning, when the ticks became steady
-  uint32_t program_ = 0;        // that all this is known of
-  vm::Rates rates_;             // of Ahead
+  Ticks left_ = 0;         // ticks that are done in this way
+  Ticks pending_ = 0;      // ticks that drive and positioning, and idle tasks, are behind
+  Time last_ = 0;          // the last one of them
+  bool touched_ = false;   // somebody has written since the last tick
+  bool may_order_ = true;  // the program can write the control word of the drive
+  uint32_t commands_ = 0;  // to positioning, when the ticks became steady
+  uint32_t program_ = 0;   // that all this is known of
+  vm::Rates rates_;        // of Ahead and Idle
+  vm::Idle idle_;          // of Idle
   ProgramReach reach_;
   Backoff steady_backoff_, idle_backoff_, ahead_backoff_, reach_backoff_;
   NotedVariables noted_;

@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # What takes too long for every test run: all sources compiled by clang and all suites with AddressSanitizer and UBSan,
 # every preset configured, a short run of every fuzz target, what has threads with ThreadSanitizer, the examples under
-# valgrind, the tutorial in an empty Debian, and 500 releases of a button that moves a real drive, on a machine that has
-# more to do than it can. Prints the time of each part; goes on after a failure.
+# valgrind, thousands of plants in the default way against --no-skip, the tutorial in an empty Debian, and 500 releases of a
+# button that moves a real drive, on a machine that has more to do than it can. Prints the time of each part; goes on after a
+# failure.
 #   tests/check/check.sh              all parts
-#   tests/check/check.sh PART...      of: asan presets fuzz tsan valgrind tutorial jog
+#   tests/check/check.sh PART...      of: asan presets fuzz tsan valgrind skip tutorial jog
 set -uo pipefail
 cd "$(dirname "$0")/../.." || exit
 jobs=$(nproc)
-parts='asan presets fuzz tsan valgrind tutorial jog'
+parts='asan presets fuzz tsan valgrind skip tutorial jog'
 # shellcheck disable=SC2086
 [ $# -gt 0 ] || set -- $parts
 
@@ -83,6 +84,19 @@ valgrind() {
   tests/examples/memcheck.sh "$ipos"
 }
 
+skip() { # each processor has its share of the 5000
+  configure release && cmake --build --preset release --target ipos_default_run_tests || return 1
+  local plants=5000 tests share status=0 runs=()
+  tests=$(find build/release/tests -name ipos_default_run_tests -type f)
+  for ((share = 0; share < jobs; ++share)); do
+    IPOS_FIRST_PLANT=$((plants * share / jobs + 1)) IPOS_PLANTS=$((plants * (share + 1) / jobs)) \
+      "$tests" --gtest_brief=1 &
+    runs+=($!)
+  done
+  for run in "${runs[@]}"; do wait "$run" || status=1; done
+  return $status
+}
+
 tutorial() {
   configure release && cmake --build --preset release --target ipos_static || return 1
   local status=0
@@ -106,7 +120,7 @@ jog() {
 }
 
 for part in "$@"; do
-  [[ " $parts " == *" $part "* ]] || { sed -n '5,6s/^# *//p' "$0"; exit 64; }
+  [[ " $parts " == *" $part "* ]] || { sed -n '7,8s/^# *//p' "$0"; exit 64; }
   echo "== $part"
   began=$SECONDS
   "$part" || failed+=("$part")

@@ -296,22 +296,10 @@ std::string with_name(std::string expression, const std::string& name) {
   return expression;
 }
 
-constexpr const char* kAssigned[] = {"a + b",
-                                     "a - b",
-                                     "a - %",
-                                     "-%",
-                                     "-a",
-                                     "b - % * a",
-                                     "(% + 1) %% 8",
-                                     "a * 2 + b - %",
-                                     "a - (b - %)",
-                                     "a * b - 12",
-                                     "a ? a + b : -%",
-                                     "(a && b) + 1",
-                                     "a %% 8 + %",
-                                     "~(% + a)",
-                                     "v[a] - %",
-                                     "(a, b - %)"};
+constexpr const char* kAssigned[] = {"a + b",       "a - b",      "a - %",          "-%",
+                                     "-a",          "b - % * a",  "(% + 1) %% 8",   "a * 2 + b - %",
+                                     "a - (b - %)", "a * b - 12", "a ? a + b : -%", "(a && b) + 1",
+                                     "a %% 8 + %",  "~(% + a)",   "v[a] - %",       "(a, b - %)"};
 
 // The unit acts on system variables (outputs, setpoints, gears) or others read them there: whatever the expression, they
 // get its value and nothing on the way, in one command.
@@ -362,17 +350,19 @@ TEST(SystemVariables, NobodySeesAThirdValue) {
                                           {"lV[lC] - lB", -11},
                                           {"~(lA + lB)", -39},
                                           {"(lA << 2) / lB + lA % 7", 10}}) {
-    const auto program = [&, assigned = std::string(expression)](const std::string& head, const std::string& name) {
-      return head + "long lA, lB, lC, lV[4];\nmain() { lA = 20; lB = 18; lC = 3; lV[3] = 7; while (1) { " + name +
-             " = " + assigned + "; } }";
+    const auto program = [&, assigned = std::string(expression)](const std::string& head,
+                                                                 const std::string& name) {
+      return head + "long lA, lB, lC, lV[4];\nmain() { lA = 20; lB = 18; lC = 3; lV[3] = 7; while (1) { " +
+             name + " = " + assigned + "; } }";
     };
     for (const uint32_t number : written_system_variables())
       EXPECT_EQ(values_of(program("", "H" + std::to_string(number)), number), std::set<int32_t>{value})
           << "H" << number << " = " << expression;
     for (uint32_t number = kLastReservedVariable + 1; number <= stdlib::kLastSystemVariable; ++number)
-      EXPECT_EQ(values_of(program("#pragma globals " + std::to_string(number) + " 600\nlong lGear;\n", "lGear"),
-                          number),
-                std::set<int32_t>{value})
+      EXPECT_EQ(
+          values_of(program("#pragma globals " + std::to_string(number) + " 600\nlong lGear;\n", "lGear"),
+                    number),
+          std::set<int32_t>{value})
           << "H" << number << " = " << expression;
   }
 }

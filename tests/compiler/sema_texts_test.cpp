@@ -336,7 +336,8 @@ std::vector<Told> told_ranges() {
       {"#pragma initials 0 9\ninitial long a[9], @b$[3]; main() { a[0] = 1; b[0] = 1; }",
        "the initial variables need 12 numbers, range H0 to H9 has 10; '#pragma initials 116 127' makes room"},
       {"#pragma initials 5 100\ninitial long @a$[128]; main() { a[0] = 1; }",
-       "the initial variables need 128 numbers, range H5 to H100 has 96; '#pragma initials 0 127' makes room"},
+       "the initial variables need 128 numbers, range H5 to H100 has 96; '#pragma initials 0 127' makes "
+       "room"},
       {"initial long a[120], @b$[9]; main() { a[0] = 1; b[0] = 1; }",
        "the initial variables need 129 numbers, range H0 to H127 has 128; there are no 129 free variables in "
        "a row"},

@@ -92,15 +92,15 @@ TEST_F(Idle, ALoopIsIdleInItsFunctionsToo) {
 }
 
 TEST_F(Idle, VariablesThatChangeForAMomentAreNotSteady) {
-  bool steady = false;
+  vm::Idle idle;
   vm::Machine rests = machine("main() { while (1); }");
   for (int n = 0; n < 3; ++n) vm::run_tick(rests, rates_);
-  EXPECT_EQ(rests.idle_ticks(rates_.commands, 256, &steady), vm::kIdleForever);
-  EXPECT_TRUE(steady);
+  EXPECT_EQ(rests.idle_ticks(rates_.commands, idle), vm::kIdleForever);
+  EXPECT_TRUE(idle.steady);
   vm::Machine counts = machine("main() { while (1) { H1 = H5; H1 = H1 + 1; } }");
   for (int n = 0; n < 3; ++n) vm::run_tick(counts, rates_);
-  EXPECT_EQ(counts.idle_ticks(rates_.commands, 256, &steady), vm::kIdleForever);
-  EXPECT_FALSE(steady);
+  EXPECT_EQ(counts.idle_ticks(rates_.commands, idle), vm::kIdleForever);
+  EXPECT_FALSE(idle.steady);
 }
 
 TEST_F(Idle, WhatOthersSeeChangeIsNotIdle) {

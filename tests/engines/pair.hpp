@@ -50,8 +50,9 @@ std::vector<uint32_t> state_machine(uint64_t seed);
 // The same as `ticks` of run_tick, as far as they are idle ones (Machine::idle_ticks): no more than `most`,
 // and 0 when the next one is not. Adds the commands to `executed`.
 inline uint64_t skip_idle(vm::Machine& machine, const vm::Rates& rates, uint64_t most, uint64_t& executed) {
-  const uint64_t ticks = std::min(most, machine.idle_ticks(rates.commands));
-  if (ticks != 0) executed += machine.skip_ticks(rates.commands, ticks);
+  vm::Idle idle;
+  const uint64_t ticks = std::min(most, machine.idle_ticks(rates.commands, idle));
+  if (ticks != 0) executed += machine.skip_ticks(rates.commands, idle, ticks);
   return ticks;
 }
 

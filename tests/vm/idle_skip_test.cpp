@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/vm/assembled.hpp"
+#include "vm/exec/saved_state.hpp"
 
 namespace ipos::vm {
 namespace {
@@ -59,8 +60,9 @@ TEST(IdleSkip, EachTaskExecutesItsOwnNumberOfCommands) {
       Assembled run(kThreeLoops);
       for (int n = 0; n < 5; ++n) run.tick(10);
       Machine runs = run.machine();
-      EXPECT_EQ(run->idle_ticks(budgets), kIdleForever);
-      EXPECT_EQ(run->skip_ticks(budgets, ticks), ticks * (budgets[0] + budgets[1] + budgets[2]));
+      Idle idle;
+      EXPECT_EQ(run->idle_ticks(budgets, idle), kIdleForever);
+      EXPECT_EQ(run->skip_ticks(budgets, idle, ticks), ticks * (budgets[0] + budgets[1] + budgets[2]));
       for (uint64_t n = 0; n < ticks; ++n) run_tick(runs, Rates{budgets});
       expect_equal_machines(run.machine(), runs);
     }
@@ -80,8 +82,10 @@ M02 : WAIT 40
   run.tick(0);
   Machine runs = run.machine();
   constexpr std::array<uint32_t, kTasks> kBudgets{10, 10, 10};
-  EXPECT_EQ(run->idle_ticks(kBudgets), 38U) << "one of the 40 has passed, with the last one the task goes on";
-  EXPECT_EQ(run->skip_ticks(kBudgets, 38), 0U);
+  Idle idle;
+  EXPECT_EQ(run->idle_ticks(kBudgets, idle), 38U)
+      << "one of the 40 has passed, with the last one the task goes on";
+  EXPECT_EQ(run->skip_ticks(kBudgets, idle, 38), 0U);
   for (int n = 0; n < 38; ++n) run_tick(runs, Rates{kBudgets});
   expect_equal_machines(run.machine(), runs);
   EXPECT_EQ(run->idle_ticks(kBudgets), 0U);
@@ -100,8 +104,9 @@ TEST(IdleSkip, TheTurnOfTheInterruptsGoesOn) {
       for (int n = 0; n < 2; ++n) run.tick(10);
       Machine runs = run.machine();
       constexpr std::array<uint32_t, kTasks> kBudgets{2, 2, 2};
-      EXPECT_EQ(run->idle_ticks(kBudgets), kIdleForever);
-      run->skip_ticks(kBudgets, ticks);
+      Idle idle;
+      EXPECT_EQ(run->idle_ticks(kBudgets, idle), kIdleForever);
+      run->skip_ticks(kBudgets, idle, ticks);
       for (uint64_t n = 0; n < ticks; ++n) run_tick(runs, Rates{kBudgets});
       expect_equal_machines(run.machine(), runs);
     }
@@ -199,17 +204,134 @@ TEST(IdleSkip, VariablesThatChangeForAMomentAreAtMost64) {
       for (const uint32_t budget : {1U, 2U, 3U, round - 1, round + 1}) {
         const std::array<uint32_t, kTasks> budgets{budget, 0, 0};
         Machine runs = run.machine();
-        const uint64_t ticks = run->idle_ticks(budgets);
+        Idle idle;
+        const uint64_t ticks = run->idle_ticks(budgets, idle);
         EXPECT_EQ(ticks, count <= 64 ? kIdleForever : 0);
         expect_equal_machines(run.machine(), runs);
         for (int n = 0; n < 3; ++n) run_tick(runs, Rates{budgets});
         if (ticks != 0)
-          run->skip_ticks(budgets, 3);
+          run->skip_ticks(budgets, idle, 3);
         else
           for (int n = 0; n < 3; ++n) run.tick(budget);
         ASSERT_NO_FATAL_FAILURE(expect_equal_machines(run.machine(), runs));
       }
     }
+}
+
+// A program with a loop that reads, one that calls, one that changes a variable for a moment, a wait, and interrupts of
+// both kinds. Task 1 may be told by H8 to leave its loop.
+const char* const kWatched = R"(
+      TASK2 START , M04
+      TASK START , M05
+      SETINT TIMER0 , M07
+      VARINT H10 , M08
+M01 : SET H1 = H2
+      JMP H8 == 0 , M01
+M02 : WAIT 20
+      ADD H3 + 1
+      JMP M01
+M04 : CALL M06
+      JMP M04
+M05 : SET H5 = H6
+      ADD H5 + 1
+      SET H5 = H6
+      JMP M05
+M06 : SET H7 = H6
+      RET
+M07 : ADD H4 + 1
+      RET
+M08 : ADD H9 + 1
+      RET
+)";
+
+// What somebody may do to a machine between the moment at which it was found idle and that at which the ticks are left out.
+using Deed = void (*)(Assembled&);
+constexpr Deed kDeeds[] = {
+    [](Assembled&) {},
+    [](Assembled& run) { run.h(2) = 5; },
+    [](Assembled& run) { run.h(6) = 5; },
+    [](Assembled& run) { run.h(1) = 5; },
+    [](Assembled& run) { run.h(8) = 1; },
+    [](Assembled& run) { run.h(20) = 3; },
+    [](Assembled& run) { run.h(kVarIntReq) = 2; },
+    [](Assembled& run) { run->raise_event(Event::Timer0); },
+    [](Assembled& run) { run->run(1, 1); },
+    [](Assembled& run) { run->run(2, 3); },
+    [](Assembled& run) { run.tick(1); },
+    [](Assembled& run) { run->stop_task(2); },
+    [](Assembled& run) { run->start_task(3, run->task(3).pc); },
+    [](Assembled& run) { run->stop_all(); },
+    [](Assembled& run) { run->start(); },
+};
+
+// What was found of a state is of use for that state alone: whatever was done meanwhile, and however often the same finding
+// is used, the machine is what one is that executes every tick.
+TEST(IdleSkip, WhatWasFoundHoldsForItsStateAlone) {
+  constexpr std::array<uint32_t, kTasks> kBudgets{1, 2, 5};
+  for (const bool waits : {false, true})
+    for (size_t deed = 0; deed < std::size(kDeeds); ++deed)
+      for (const uint64_t ticks : {1U, 2U, 7U, 18U, 19U, 40U}) {
+        SCOPED_TRACE(testing::Message() << waits << ", deed " << deed << ", " << ticks);
+        Assembled skips(kWatched), runs(kWatched);
+        Idle idle;
+        for (Assembled* run : {&skips, &runs}) {
+          run->set(10, {1, 1, 20, 3, 4, 5});
+          run->h(8) = waits ? 1 : 0;
+          for (int n = 0; n < 9; ++n) run_tick(run->machine(), Rates{{8, 8, 8}});
+        }
+        const uint64_t found = skips->idle_ticks(kBudgets, idle);
+        EXPECT_EQ(found, waits ? 11U : kIdleForever);
+        for (int time = 0; time < 3; ++time) {
+          for (Assembled* run : {&skips, &runs}) kDeeds[deed](*run);
+          uint64_t commands = 0;
+          for (uint64_t n = 0; n < ticks; ++n) commands += run_tick(runs.machine(), Rates{kBudgets});
+          EXPECT_EQ(skips->skip_ticks(kBudgets, idle, ticks), commands);
+          ASSERT_NO_FATAL_FAILURE(expect_equal_machines(skips.machine(), runs.machine()));
+        }
+        if (deed == 0 && !waits) {
+          EXPECT_EQ(idle.ticks, kIdleForever) << "it is of use again and again";
+        }
+        if (deed == 1 && !waits) {
+          EXPECT_EQ(idle.ticks, 0U) << "it is of no use any more";
+        }
+      }
+}
+
+// Also a saved state that is read into the machine is another one.
+TEST(IdleSkip, ARestoredMachineIsAnotherOne) {
+  constexpr std::array<uint32_t, kTasks> kBudgets{1, 2, 5};
+  Assembled skips(kWatched), runs(kWatched);
+  for (int n = 0; n < 9; ++n) run_tick(skips.machine(), Rates{{8, 8, 8}});
+  std::vector<uint8_t> state(SavedState::size(skips->program()));
+  SavedState::write(skips.machine(), state.data());
+  Idle idle;
+  EXPECT_EQ(skips->idle_ticks(kBudgets, idle), kIdleForever);
+  for (Assembled* run : {&skips, &runs}) SavedState::read(state.data(), run->machine());
+  EXPECT_EQ(skips->skip_ticks(kBudgets, idle, 5), 5U * 8U);
+  for (int n = 0; n < 5; ++n) run_tick(runs.machine(), Rates{kBudgets});
+  EXPECT_EQ(idle.ticks, 0U);
+  ASSERT_NO_FATAL_FAILURE(expect_equal_machines(skips.machine(), runs.machine()));
+}
+
+// A loop that is longer than what is looked for, or uses more variables, is executed; each within its bound of commands.
+TEST(IdleSkip, LongLoopsAreExecuted) {
+  for (const uint32_t length : {2U, 255U, 256U, 257U, 1000U}) {
+    std::string text = "M01 : NOP\n";
+    for (uint32_t n = 2; n < length; ++n) text += "NOP\n";
+    Assembled run(text + "JMP M01\n");
+    Idle idle;
+    EXPECT_EQ(run->idle_ticks({1, 0, 0}, idle), length <= Machine::kLongestLoop ? kIdleForever : 0) << length;
+    Assembled runs(text + "JMP M01\n");
+    EXPECT_EQ(run->skip_ticks({3, 0, 0}, idle, 1'000), 3'000U) << length;
+    for (int n = 0; n < 1'000; ++n) run_tick(runs.machine(), Rates{{3, 0, 0}});
+    ASSERT_NO_FATAL_FAILURE(expect_equal_machines(run.machine(), runs.machine()));
+  }
+  // Four blocks of 48 variables, and one variable more.
+  for (const bool more : {false, true}) {
+    Assembled run(std::string("M01 : COPY H100 = H200 , 48\nCOPY H300 = H700 , 48\n") +
+                  (more ? "SET H1 = H1\n" : "") + "JMP M01\n");
+    EXPECT_EQ(run->idle_ticks({1, 0, 0}), more ? 0 : kIdleForever);
+  }
 }
 
 }  // namespace

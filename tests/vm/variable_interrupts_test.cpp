@@ -218,7 +218,8 @@ TEST(VariableInterrupts, EventsOfAStoppedTaskAreLost) {
         }
         if (random.one_in(2)) run.h(20) = random.below(8);
         const int32_t now = run.h(20);
-        if (is_event(static_cast<CompareMode>(mode), compare, before, now, held) && runs) ++expected, seen = now;
+        if (is_event(static_cast<CompareMode>(mode), compare, before, now, held) && runs)
+          ++expected, seen = now;
         before = now;
         run.tick(8);
         ASSERT_EQ(run.h(1), expected) << ms;

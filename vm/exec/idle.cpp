@@ -1,7 +1,10 @@
 // Idle skipping. A loop that has come back to where it was, with all variables as they were and without
 // having called the host, goes on so for ever, until something from outside changes what it reads. That is
 // tried, not proved from the code: the loop is executed once and taken back. Within a turn variables may
-// change for a moment (SET t = x, AND t & 1); then nobody else may look at them.
+// change for a moment (SET t = x, AND t & 1); then nobody else may look at them. What was found is used for
+// the state it was found in alone; in any other the ticks are executed.
+#include "vm/exec/idle.hpp"
+
 #include <algorithm>
 #include <bitset>
 
@@ -21,6 +24,7 @@ struct Machine::Spin {
   static constexpr uint32_t kMostChanged = 64;
 
   uint32_t length = 0;  // commands; 0: there is none
+  Idle* found;          // where what it uses is listed
   Variables used;       // read or written
   Variables changed;    // for a moment within a turn
   std::array<uint16_t, kMostChanged> numbers{};
@@ -58,15 +62,21 @@ bool Machine::try_command(int number, Spin& spin) {
   const bool leaves = row.flow == Flow::End || row.flow == Flow::System || row.flow == Flow::SystemCall ||
                       (row.flow == Flow::Return && t.depth == 0);
   if (leaves || would_fault(t, command)) return false;
+  bool fits = true;
   const auto use = [&](VariableRange range) {
-    for (uint32_t n = range.first; n < range.end(); ++n) spin.used[n] = true;
+    for (uint32_t n = range.first; n < range.end(); ++n) {
+      if (spin.used[n]) continue;
+      spin.used[n] = true;
+      fits = fits && spin.found->used < Idle::kMostUsed;
+      if (fits) spin.found->numbers[spin.found->used++] = static_cast<uint16_t>(n);
+    }
   };
   each_named(command, use);
   VariableRange target = named_target(command);
   if (row.writes == Writes::Indexed) target = {index_of(command), 1};
   if (row.reads == Reads::Indexed) use({index_of(command), 1});
   use(target);
-  if (target.count > Spin::kMostChanged) return false;
+  if (!fits || target.count > Spin::kMostChanged) return false;
   std::array<int32_t, Spin::kMostChanged> before;
   std::copy_n(h_.begin() + target.first, target.count, before.begin());
   if (execute(number, t) != Stop::Budget) return false;
@@ -85,10 +95,11 @@ bool Machine::try_command(int number, Spin& spin) {
 }
 
 // The loop a context is in now, which may pass the same command several times. Leaves everything as it is.
-Machine::Spin Machine::find_spin(int number, uint32_t longest) {
+Machine::Spin Machine::find_spin(int number, uint32_t longest, Idle& found) {
   TaskContext& t = context_at(number);
   const TaskContext before = t;
   Spin spin;
+  spin.found = &found;
   const auto as_before = [&] {
     for (uint32_t n = 0; n < spin.count; ++n)
       if (h_[spin.numbers[n]] != spin.originals[n]) return false;
@@ -121,7 +132,15 @@ bool Machine::interrupts_rest() const {
   return true;
 }
 
-uint64_t Machine::idle_ticks(const std::array<uint32_t, kTasks>& budgets, uint32_t longest, bool* steady) {
+// Whether the task goes round in the next ticks.
+bool Machine::executes(int task, const std::array<uint32_t, kTasks>& budgets) const {
+  return context(active_context(task)).state == TaskState::Ready &&
+         budgets[static_cast<size_t>(task - 1)] != 0;
+}
+
+uint64_t Machine::idle_ticks(const std::array<uint32_t, kTasks>& budgets, Idle& found, uint32_t longest) {
+  found.ticks = 0;
+  found.used = 0;
   if (!interrupts_rest()) return 0;
   uint64_t ticks = kIdleForever;
   for (const TaskContext& t : contexts_)
@@ -134,35 +153,83 @@ uint64_t Machine::idle_ticks(const std::array<uint32_t, kTasks>& budgets, uint32
   for (const VariableInterrupt& interrupt : interrupts_.variables)
     if (interrupt.installed) used[interrupt.source] = true;
   for (int task = 1; task <= kTasks; ++task) {
-    const int number = active_context(task);
-    if (context(number).state != TaskState::Ready || budgets[static_cast<size_t>(task - 1)] == 0) continue;
-    const Spin spin = find_spin(number, longest);
+    Idle::Loop& loop = found.loops[static_cast<size_t>(task - 1)];
+    loop.length = 0;
+    if (!executes(task, budgets)) continue;
+    const Spin spin = find_spin(active_context(task), longest, found);
     if (spin.length == 0 || (spin.changed & used).any() || (spin.used & changed).any()) return 0;
+    loop.length = spin.length;
     changed |= spin.changed;
     used |= spin.used;
   }
-  if (steady != nullptr) *steady = changed.none();
+  found.steady = changed.none();
+  found.ticks = ticks;
+  note_state(found);
   return ticks;
 }
 
-uint64_t Machine::skip_ticks(const std::array<uint32_t, kTasks>& budgets, uint64_t ticks) {
+uint64_t Machine::idle_ticks(const std::array<uint32_t, kTasks>& budgets) {
+  Idle found;
+  return idle_ticks(budgets, found);
+}
+
+// The state that what was found is true of.
+void Machine::note_state(Idle& found) const {
+  found.begun = begun_;
+  for (int task = 1; task <= kTasks; ++task) {
+    Idle::Loop& loop = found.loops[static_cast<size_t>(task - 1)];
+    const TaskContext& t = context(loop.context = active_context(task));
+    loop.pc = t.pc;
+    loop.commands = t.commands;
+  }
+  for (uint32_t n = 0; n < found.used; ++n) found.values[n] = h_[found.numbers[n]];
+}
+
+// The machine is in that state, and all is as it was for these ticks.
+bool Machine::is_in_state(const Idle& found, const std::array<uint32_t, kTasks>& budgets,
+                          uint64_t ticks) const {
+  if (ticks > found.ticks || begun_ != found.begun || !interrupts_rest()) return false;
+  for (int task = 1; task <= kTasks; ++task) {
+    const Idle::Loop& loop = found.loops[static_cast<size_t>(task - 1)];
+    if (executes(task, budgets) != (loop.length != 0)) return false;
+    if (loop.length == 0) continue;
+    const TaskContext& t = context(loop.context);
+    if (active_context(task) != loop.context || t.pc != loop.pc || t.commands != loop.commands) return false;
+  }
+  for (uint32_t n = 0; n < found.used; ++n)
+    if (h_[found.numbers[n]] != found.values[n]) return false;
+  return std::none_of(contexts_.begin(), contexts_.end(), [&](const TaskContext& t) {
+    return t.state == TaskState::Waiting && t.wait_ms != 0 && t.wait_ms <= ticks;
+  });
+}
+
+uint64_t Machine::skip_ticks(const std::array<uint32_t, kTasks>& budgets, Idle& found, uint64_t ticks) {
+  uint64_t executed = 0;
+  if (!is_in_state(found, budgets, ticks)) {
+    found.ticks = 0;
+    for (; ticks != 0; --ticks) {
+      tick();
+      executed += run_tasks(budgets);
+    }
+    return executed;
+  }
   for (TaskContext& t : contexts_)
     if (t.state == TaskState::Waiting && t.wait_ms != 0) t.wait_ms -= static_cast<uint32_t>(ticks);
   const auto installed = static_cast<uint64_t>(std::count_if(
       interrupts_.events.begin(), interrupts_.events.end(), [](const auto& row) { return row.installed; }));
   if (installed != 0)
     interrupts_.turn = static_cast<uint8_t>((interrupts_.turn % installed + ticks % installed) % installed);
-  uint64_t executed = 0;
   for (int task = 1; task <= kTasks; ++task) {
-    const int number = active_context(task);
-    const uint64_t budget = budgets[static_cast<size_t>(task - 1)];
-    if (context(number).state != TaskState::Ready || budget == 0) continue;
-    const uint64_t commands = budget * ticks;
-    const auto rest = static_cast<uint32_t>(commands % find_spin(number, UINT32_MAX).length);
-    context_at(number).commands += commands - rest;
+    const Idle::Loop& loop = found.loops[static_cast<size_t>(task - 1)];
+    if (loop.length == 0) continue;
+    const uint64_t commands = budgets[static_cast<size_t>(task - 1)] * ticks;
+    const auto rest = static_cast<uint32_t>(commands % loop.length);
+    context_at(loop.context).commands += commands - rest;
     run(task, rest);
     executed += commands;
   }
+  if (found.ticks != kIdleForever) found.ticks -= ticks;
+  note_state(found);
   return executed;
 }
 

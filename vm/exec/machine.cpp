@@ -55,6 +55,7 @@ void Machine::begin(int number, uint32_t address) {
   t = {};
   t.state = TaskState::Ready;
   t.pc = address;
+  ++begun_;
 }
 
 void Machine::start_task(int task, uint32_t address) {

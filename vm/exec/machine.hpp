@@ -11,6 +11,7 @@
 #include <span>
 
 #include "vm/exec/context.hpp"
+#include "vm/exec/idle.hpp"
 #include "vm/exec/interrupts.hpp"
 #include "vm/host/build.hpp"
 #include "vm/host/host.hpp"
@@ -21,8 +22,6 @@ namespace ipos::vm {
 // The unit looks at them in every tick (IPOSplus p. 29); what each is stands in stdlib/system_variables.def.
 inline constexpr uint32_t kFirstSystemVariable = 453;
 inline constexpr uint32_t kLastSystemVariable = 564;
-
-inline constexpr uint64_t kIdleForever = UINT64_MAX;
 
 // Faults a program can cause by itself.
 inline constexpr uint8_t kFaultIllop = 10;          // F10 IPOS ILLOP
@@ -86,14 +85,15 @@ class Machine {
   // How many ticks from now on, each with these budgets of commands for the tasks, lead nowhere, if meanwhile
   // nobody else writes variables, resumes, raises events or starts and stops tasks: tasks wait, have ended,
   // or go round in a loop of at most `longest` commands that leaves all variables as they were and changes
-  // none that others look at. kIdleForever: no end to it. Costs up to `longest` commands for each task.
-  // `steady` becomes whether no variable changes even for a moment.
-  uint64_t idle_ticks(const std::array<uint32_t, kTasks>& budgets, uint32_t longest = 256,
-                      bool* steady = nullptr);
+  // none that others look at. Costs up to `longest` commands for each task. `found` is what skip_ticks() needs.
+  static constexpr uint32_t kLongestLoop = 256;
+  uint64_t idle_ticks(const std::array<uint32_t, kTasks>& budgets, Idle& found,
+                      uint32_t longest = kLongestLoop);
+  uint64_t idle_ticks(const std::array<uint32_t, kTasks>& budgets);
 
-  // What `ticks` of tick() and run() would have done, not more than idle_ticks() has promised. Returns the
-  // commands they would have executed.
-  uint64_t skip_ticks(const std::array<uint32_t, kTasks>& budgets, uint64_t ticks);
+  // What `ticks` of tick() and run() do. At once, where the machine is in the state of `found`, which then is that
+  // of the state it leaves; else one by one, and `found` is of no more use. Returns the commands executed.
+  uint64_t skip_ticks(const std::array<uint32_t, kTasks>& budgets, Idle& found, uint64_t ticks);
 
   // `ticks` times tick() and run() with these budgets, the tasks one behind the other instead of in turn.
   // False, and nothing has changed: that is not possible, as something else than variables and jumps would
@@ -146,7 +146,10 @@ class Machine {
   void choose_active(int task);
   void see_interrupts();
   struct Spin;
-  Spin find_spin(int number, uint32_t longest);
+  Spin find_spin(int number, uint32_t longest, Idle& found);
+  bool executes(int task, const std::array<uint32_t, kTasks>& budgets) const;
+  void note_state(Idle& found) const;
+  bool is_in_state(const Idle& found, const std::array<uint32_t, kTasks>& budgets, uint64_t ticks) const;
   bool would_fault(const TaskContext& t, const Instruction& command) const;
   uint32_t index_of(const Instruction& command) const;
   bool try_command(int number, Spin& spin);
@@ -164,6 +167,7 @@ class Machine {
   bool events_ = false;                          // an interrupt of task 1 is installed or pending
   bool watches_ = false;                         // a variable interrupt is installed
   bool waits_ = false;                           // a context may wait for time to pass
+  uint32_t begun_ = 0;                           // contexts, since the machine was made
   std::array<TaskContext, kContexts> contexts_{};
   std::array<int32_t, kMaxVariables> h_{};
 };

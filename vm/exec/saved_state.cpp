@@ -127,6 +127,7 @@ const uint8_t* SavedState::read(const uint8_t* bytes, Machine& machine) {
   for (int task = 1; task <= kTasks; ++task) machine.choose_active(task);
   machine.see_interrupts();
   machine.waits_ = true;
+  ++machine.begun_;
   return in.at();
 }
 

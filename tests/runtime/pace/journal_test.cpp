@@ -51,6 +51,7 @@ struct Journal final : runtime::Timed, runtime::TelegramReader {
   }
   void settle() override { text += "settle; "; }
   void touched() override { text += "touched; "; }
+  void before_telegram() override { text += "telegram; "; }
   bool lets_wait() const override { return waits; }
   bool rests() const override { return idle; }
   void read(size_t number, const runtime::TelegramData& data) override {
@@ -292,7 +293,8 @@ TEST(PacerJournal, TelegramsWaitForTheTickBehindWhichTheyCame) {
   EXPECT_FALSE(desk.post(5, 50)) << "no room for more than four";
   EXPECT_EQ(desk.timed.take(), "");
   EXPECT_EQ(desk.until(10),
-            "read 1:10; tick 1; tick 2; tick 3; read 2:20; read 3:30; tick 4; tick 5; read 4:40; tick 6; "
+            "telegram; read 1:10; tick 1; tick 2; tick 3; telegram; read 2:20; telegram; read 3:30; tick 4; "
+            "tick 5; telegram; read 4:40; tick 6; "
             "tick 7; tick 8; tick 9; tick 10; send 10; silence 11; ");
   // What is done at once ends at the telegram, too.
   desk.timed.ahead = 100;
@@ -300,14 +302,14 @@ TEST(PacerJournal, TelegramsWaitForTheTickBehindWhichTheyCame) {
   EXPECT_TRUE(desk.post(6, 60));
   EXPECT_TRUE(desk.post(7, 70));
   desk.pacer.catch_up();
-  EXPECT_EQ(desk.timed.take(), "advance 11+2; read 6:60; read 7:70; settle; ");
+  EXPECT_EQ(desk.timed.take(), "advance 11+2; telegram; read 6:60; telegram; read 7:70; settle; ");
   desk.timed.waits = false;
   EXPECT_FALSE(desk.post(8, 80)) << "its reader cannot wait";
   desk.timed.waits = true;
   // One that comes behind ticks that have been executed is read by the next who looks.
   EXPECT_TRUE(desk.post(9, 90));
   desk.pacer.catch_up();
-  EXPECT_EQ(desk.timed.take(), "read 9:90; settle; ");
+  EXPECT_EQ(desk.timed.take(), "telegram; read 9:90; settle; ");
 }
 
 // A telegram of this very tick: who has a lower place than the pacer comes in front of the tick, others behind it.
@@ -328,8 +330,9 @@ TEST(PacerJournal, AtTheMomentOfATickTheOrderOfPlacesCounts) {
   desk.until(6);
   desk.timed.take();
   desk.pacer.catch_up();
-  EXPECT_EQ(desk.timed.take(),
-            "tick 1; tick 2; tick 3; read 1:1; tick 4; read 2:2; tick 5; tick 6; settle; ");
+  EXPECT_EQ(
+      desk.timed.take(),
+      "tick 1; tick 2; tick 3; telegram; read 1:1; tick 4; telegram; read 2:2; tick 5; tick 6; settle; ");
 }
 
 // Who reads a telegram, or whom a tick asks, may catch up and touch: it finds what has been executed, and the run that
@@ -347,7 +350,8 @@ TEST(PacerJournal, WhoIsAskedMayCatchUpAndTouchItself) {
     EXPECT_TRUE(desk.pacer.behind()) << "what is under way goes on";
   };
   desk.pacer.catch_up();
-  EXPECT_EQ(desk.timed.take(), "tick 1; tick 2; read 1:10; settle; touched; tick 3; tick 4; settle; ");
+  EXPECT_EQ(desk.timed.take(),
+            "tick 1; tick 2; telegram; read 1:10; settle; touched; tick 3; tick 4; settle; ");
   EXPECT_EQ(desk.queue.pending(), 1U);
   EXPECT_EQ(desk.next(), 10);
   desk.pacer.touch();

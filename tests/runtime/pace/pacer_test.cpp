@@ -50,10 +50,11 @@ struct Toy final : runtime::Timed, runtime::TelegramReader {
   Ticks silence(Time /*first*/) override { return quiet; }
   void settle() override { sum += step * static_cast<int64_t>(std::exchange(unsettled, 0)); }
   void touched() override { EXPECT_EQ(unsettled, 0U) << "who writes finds everything settled"; }
+  void before_telegram() override { settle(); }
   bool lets_wait() const override { return true; }
   bool rests() const override { return false; }
   void read(size_t number, const runtime::TelegramData& data) override {
-    settle();
+    EXPECT_EQ(unsettled, 0U) << "it was told in front of the telegram";
     sum += static_cast<int64_t>(number) * data.bytes[0];
   }
 
@@ -169,6 +170,7 @@ TEST(Pacer, ATickThatStopsIsResumed) {
     Ticks silence(Time) override { return 0; }
     void settle() override {}
     void touched() override {}
+    void before_telegram() override {}
     bool lets_wait() const override { return false; }
     bool rests() const override { return false; }
     int ticks = 0, sends = 0;
@@ -205,6 +207,7 @@ TEST(Pacer, WhoHasStoppedMayBecomeLazy) {
     Ticks silence(Time) override { return 20; }
     void settle() override {}
     void touched() override {}
+    void before_telegram() override {}
     bool lets_wait() const override { return false; }
     bool rests() const override { return true; }
     int ticks = 0;

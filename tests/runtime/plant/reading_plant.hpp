@@ -1,0 +1,297 @@
+// Random plants whose programs read as people write it: every kind of value (telegram, input, parameter, process data,
+// timer, system variable), read, compared, latched, counted or forwarded, in every kind of loop, on every kind of bus.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <map>
+#include <random>
+#include <string>
+
+#include "tests/runtime/plant/loop_body.hpp"
+
+namespace ipos::tests {
+
+inline constexpr const char* kReadingHead = R"(
+#include <constb.h>
+#pragma globals 320 399
+SCTRCYCL Tr; long t1; long t2;
+SCTRACYCL Ta; long s1; long s2;
+SCREC Re; long r1; long r2;
+MOVLNK Ml; MLDATA Md;
+GSPODATA3 Po;
+VARINT Vi;
+long a; long b; long n; long m; long old; long hits; long v[8];
+Look() { if (r1 > b) b = r1; if (r2 & 1) n = n + 1; }
+Clock() { hits = hits + 1; }
+Event() { hits = hits + 1; old = Vi.IntEvent; }
+)";
+
+// What is read, and what fetches it. K and L are replaced by numbers.
+struct Reading {
+  const char* fetch;
+  const char* value;
+};
+inline constexpr Reading kReadings[] = {
+    {"", "r1"},
+    {"", "r1"},
+    {"", "r2"},
+    {"", "(r1 & 7)"},
+    {"", "(H483 & L)"},
+    {"", "((H483 >> L) & 1)"},
+    {"_MoviLink(Ml);", "Md.ReadPar"},
+    {"_MoviLink(Ml);", "Md.PI2"},
+    {"_GetSys(Po, GS_PODATA);", "Po.PO2"},
+    {"_GetSys(a, GS_ACTSPEED);", "a"},
+    {"_GetSys(a, GS_SEN);", "a"},
+    {"", "H511"},
+    {"", "H492"},
+    {"", "H473"},
+    {"", "H482"},
+    {"", "H488"},
+    {"if (H488 == 0) H488 = K;", "H488"},
+    {"", "hits"},
+    {"", "t1"},
+    {"", "v[L & 7]"},
+    {"a = numof(r1) + (n & 1);", "*a"},
+};
+
+// What is done with it; F stands for what fetches it, V for the value.
+inline constexpr const char* kUses[] = {
+    "F b = V;",
+    "F b = V; old = V;",
+    "F if (V > b) b = V;",
+    "F if (V != old) { old = V; n = n + 1; }",
+    "F if (V & L) b = 1;",
+    "F if ((V & 1) && !old) n = n + 1; old = V & 1;",
+    "F if (V == L) n = n + 1;",
+    "F if (V < L * 100) b = b | 1; else b = b & ~1;",
+    "F n = n + 1; b = V;",
+    "F b = b + (V - b) / 4;",
+    "F t1 = V;",
+    "F t1 = V * 3 - 1; t2 = n;",
+    "F H481 = V;",
+    "F if (V) SETOUT else CLEAROUT",
+    "F if (V != old) { old = V; s1 = V; _SBusCommDef(SCD_TRACYCL, Ta); }",
+    "F _GoAbs(GO_NOWAIT, V);",
+    "F a = V & 4095; _SetSys(SS_N11, a);",
+    "do { F } while (V < L * 50); n = n + 1; _Wait(K);",
+    "do { F } while (V & L); n = n + 1;",
+    "F switch (V & 3) { case 0: b = 1; break; case 1: b = 2; n = n + 1; break; default: b = 0; }",
+    "F v[V & 7] = n;",
+    "F b = v[V & 7];",
+    "F a = numof(v[0]) + (V & 7); *a = V;",
+    "F b = V & 3; if (b == 3) n = n + 1;",
+    "F b = V; for (m = 0; m < L; m++) b = b * 2;",
+    "F _Copy(v[1], v[0], L & 3 | 1); v[0] = V;",
+    "F if (V > K) { b = 1; } else if (V > L) { b = 2; } else { b = 3; }",
+    "F b = V; Look();",
+    "Look();",
+    "F b = V ? V : b;",
+    "",
+};
+
+// B and C stand for what is done in it.
+inline constexpr const char* kLoops[] = {
+    "while (1) { B }",
+    "while (1) { B }",
+    "while (1) { B C }",
+    "for (;;) { B _Wait(K); }",
+    "while (1) { B _Wait(1); }",
+    "while (1) { B C _Wait(K * 3); }",
+    "_Wait(K * 5); while (1) { B }",
+    "while (1) { B for (m = 0; m < L; m++); }",
+    "while (1) { while (H488 > 0) { B } H488 = K * 4; n = n + 1; }",
+    "for (n = 0; n < K; n++) { B } while (1) { C }",
+    "while (1) { if (H483 & 8) { B } else { C } }",
+    "B C",
+};
+
+class ReadingPlant {
+ public:
+  enum class Kind : uint8_t { Sbus, Serial, Card, Canopen, Gateway };
+  static constexpr int kKinds = 5;
+
+  explicit ReadingPlant(uint64_t seed)
+      : random_(seed),
+        kind_(static_cast<Kind>(seed % kKinds)),
+        moves_(pick(0, 1) != 0),
+        plain_(pick(0, 1) != 0) {
+    stations_ = pick(2, 3);
+    text_ = "[[bus]]\nname = \"can\"\nkind = \"can\"\nbaud = 500000\n";
+    if (kind_ == Kind::Serial) text_ += "[[bus]]\nname = \"line\"\nkind = \"rs485\"\n";
+    if (kind_ == Kind::Canopen) canopen();
+    for (int n = 0; n < stations_; ++n) station(n);
+    if (kind_ == Kind::Card || kind_ == Kind::Gateway) profibus();
+    for (int n = pick(0, 4); n > 0; --n) stimulus();
+  }
+
+  const std::string& text() const { return text_; }  // of the plant file
+  const std::map<std::string, std::string>& sources() const { return sources_; }
+  int pick(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random_); }
+  template <class Row, size_t count>
+  const Row& one_of(const Row (&rows)[count]) {
+    return rows[static_cast<size_t>(pick(0, static_cast<int>(count) - 1))];
+  }
+
+ private:
+  static void replace(std::string& text, const std::string& word, const std::string& by) {
+    const auto letter = [&](size_t at) {
+      return at < text.size() && (std::isalnum(text[at]) != 0 || text[at] == '_');
+    };
+    for (size_t at = 0; (at = text.find(word, at)) != std::string::npos;)
+      if ((at != 0 && letter(at - 1)) || letter(at + word.size()))
+        ++at;
+      else
+        text.replace(at, word.size(), by), at += by.size();
+  }
+
+  std::string use() {
+    const Reading& reading = one_of(kReadings);
+    std::string text = one_of(kUses);
+    replace(text, "SETOUT", "_BitSet(H481, 1);");
+    replace(text, "CLEAROUT", "_BitClear(H481, 1);");
+    replace(text, "F", reading.fetch);
+    replace(text, "V", reading.value);
+    return text;
+  }
+
+  std::string loop() {
+    std::string text = plain_ ? kLoops[0] : one_of(kLoops);
+    replace(text, "B", use());
+    replace(text, "C", use());
+    return numbered(text, pick(1, 40), pick(1, 7));
+  }
+
+  // The first station is the one whose values the others get: they move, or stand after a while.
+  std::string source() {
+    static constexpr const char* kMoving[] = {
+        "while (1) { t1 = t1 + 1; _Wait(K); }", "while (1) { t1 = t1 + L; t2 = t1 & 15; }",
+        "while (1) { t1 = H511; t2 = H483; }", "while (1) { t1 = (t1 + 1) % 9; _Wait(K * L); }",
+        "while (1) { _Wait(K * 9); t2 = !t2; }"};
+    static constexpr const char* kStanding[] = {"t1 = K; while (1);", "t2 = L; t1 = L * 700;",
+                                                "_Wait(K * 40); t1 = L; while (1) _Wait(K);",
+                                                "while (1) t1 = H492;", ""};
+    return numbered(moves_ ? one_of(kMoving) : one_of(kStanding), pick(1, 33), pick(1, 7));
+  }
+
+  void station(int n) {
+    static constexpr const char* kUnits[] = {"mdxb", "mdxb", "md60a", "mc07"};
+    std::string unit = one_of(kUnits);
+    const bool card = kind_ == Kind::Card && n == 1, canopen = kind_ == Kind::Canopen && n == 1;
+    if (canopen || (card && unit == "mc07")) unit = "mdxb";
+    const bool b = unit == "mdxb", m07 = unit == "mc07";
+    text_ += fmt::format(
+        "[[station]]\nname = \"u{0}\"\nunit = \"{1}\"\nprogram = \"P{0}.IPC\"\nsbus = \"can\"\n", n, unit);
+    if (kind_ == Kind::Serial) text_ += "rs485 = \"line\"\n";
+    if (card) text_ += "option = \"dfp\"\nprofibus = \"dp\"\nprofibus_address = 9\n";
+    text_ += fmt::format("[station.parameters]\nP{0} = {1}\nP810 = {1}\nP130 = 200\nP136 = 100\n",
+                         b ? 881 : 813, n + 1);
+    if (canopen) text_ += "P880 = 1\nP886 = 5\n";
+    if (card || canopen || (kind_ == Kind::Gateway && pick(0, 1) == 0))
+      text_ += card ? "P100 = 3\nP101 = 2\n" : "P100 = 10\nP101 = 3\n";
+    else if (pick(0, 2) == 0)
+      text_ += fmt::format("P160 = {}\n", pick(-4, 4) * 200'200);
+    if (b && pick(0, 2) == 0) text_ += "P700 = 13\nP903 = 5\n";
+    if (b && pick(0, 1) == 0) text_ += fmt::format("P938 = {}\n", pick(0, 9));
+    if (!m07 && pick(0, 3) == 0) text_ += "P841 = 1\n";
+    text_ += "[station.inputs]\n";
+    if (pick(0, 1) == 0) text_ += fmt::format("DI00 = {}\nDI01 = 1\nDI03 = 1\n", m07 ? 0 : 1);
+    if (pick(0, 1) == 0) text_ += "DI04 = 1\n";
+    sources_[fmt::format("P{}.IPC", n)] = program(n, b, m07);
+  }
+
+  std::string program(int n, bool b, bool m07) {
+    std::string text =
+        std::string(kReadingHead) + "T2() { " + loop() + " }\nT3() { " + loop() + " }\nmain() {\n";
+    text += fmt::format(
+        "Tr.ObjectNo = {0}; Tr.CycleTime = {1}; Tr.Offset = {2}; Tr.Format = 8; Tr.DPointer = numof(t1);\n"
+        "Re.ObjectNo = {3}; Re.Format = {4}; Re.DPointer = numof(r1);\n"
+        "Ta.ObjectNo = {5}; Ta.Format = 8; Ta.DPointer = numof(s1);\n"
+        "Ml.BusType = {6}; Ml.Address = {7}; Ml.Format = {8}; Ml.Service = ML_S_RD; Ml.Index = {9};\n"
+        "Ml.DPointer = numof(Md); Md.PO1 = {10}; Md.PO2 = 1000;\n",
+        1100 + n, pick(0, 2) == 0 ? pick(1, 9) : pick(1, 5) * 10, pick(0, 1) * pick(0, 30),
+        1100 + (n == 0 ? stations_ - 1 : 0), pick(0, 3) == 0 ? 4 : 8, 1200 + n, kind_ == Kind::Serial ? 2 : 5,
+        (n + 1) % stations_ + 1, pick(1, 5), pick(0, 1) == 0 ? 8318 : 11'000 + pick(320, 350), pick(0, 7));
+    // Many only send, many only receive.
+    if (n == 0 ? pick(0, 5) != 0 : pick(0, 2) == 0) text += "_SBusCommDef(SCD_TRCYCL, Tr);\n";
+    if (n == 0 ? pick(0, 2) == 0 : pick(0, 5) != 0) text += "_SBusCommDef(SCD_REC, Re);\n";
+    if (kind_ == Kind::Sbus || pick(0, 3) != 0) text += "_SBusCommOn();\n";
+    if (!plain_ && !m07 && pick(0, 4) == 0)
+      text +=
+          fmt::format("H485 = {}; H489 = 10; _SetInterrupt(SI_TIMER0, Clock);\n", pick(0, 1) * pick(50, 900));
+    if (!plain_ && b && pick(0, 2) == 0)
+      text += fmt::format(
+          "Vi.Control = {}; Vi.IntNum = {}; Vi.SrcVar = {}; Vi.CompareVar = {}; Vi.Mode = {}; Vi.Priority = "
+          "{};\n"
+          "_SetVarInterrupt(Vi, Event);\n",
+          pick(1, 2), pick(0, 3),
+          pick(0, 2) == 0   ? "483"
+          : pick(0, 1) == 0 ? "numof(r1)"
+                            : "numof(b)",
+          pick(0, 9), pick(0, 9), pick(1, 10));
+    if (!plain_ && pick(0, 2) == 0) text += "_SetTask2(T2_START, T2);\n";
+    if (!plain_ && b && pick(0, 2) == 0) text += "_SetTask(T2_START, T3);\n";
+    return text + (n == 0 ? source() : loop()) + "\n}\n";
+  }
+
+  std::string words() {
+    return moves_ ? fmt::format("[[control.slave.change]]\nat = \"{}ms\"\npo = [6, {}, {}{}]\n",
+                                pick(100, 3000), pick(-2000, 2000), pick(0, 9), further_words())
+                  : std::string();
+  }
+  std::string further_words() const {
+    std::string out;
+    for (int n = 1; kind_ == Kind::Gateway && n < stations_; ++n) out += ", 6, 700, 1";
+    return out;
+  }
+
+  void profibus() {
+    text_ += "[[bus]]\nname = \"dp\"\nkind = \"profibus\"\nbaud = 500000\n";
+    std::string cfg = "F3 F2";
+    if (kind_ == Kind::Gateway) {
+      text_ +=
+          "[[station]]\nname = \"gw\"\nunit = \"gateway\"\nprofibus = \"dp\"\nprofibus_address = 9\nsbus = "
+          "\"can\"\n";
+      for (int n = 1; n < stations_; ++n) cfg += " F2";
+    }
+    text_ += fmt::format(
+        "[[control]]\nname = \"plc\"\nprofibus = \"dp\"\n[[control.slave]]\naddress = 9\ncfg = \"{}\"\n"
+        "watchdog = \"{}ms\"\npo = [6, 1000, 0{}]\n",
+        cfg, pick(2, 30) * 10, further_words());
+    for (int n = pick(0, 5); n > 0; --n) text_ += words();
+  }
+
+  void canopen() {
+    text_ += fmt::format(
+        "[[control]]\nname = \"plc\"\nkind = \"canopen\"\nsbus = \"can\"\ncycle = "
+        "\"{}ms\"\n[[control.target]]\n"
+        "address = 5\npo = [6, {}]\n{}",
+        pick(1, 5) * 10, pick(0, 5) * 1000,
+        pick(0, 1) == 0 ? "guard = \"100ms\"\n" : "heartbeat = \"50ms\"\n");
+  }
+
+  void stimulus() {
+    static constexpr const char* kWhat[] = {
+        "input = \"DI04\"\npulse = 1\nfor = \"300ms\"\n",
+        "input = \"DI01\"\nset = 1\n",
+        "input = \"DI03\"\nset = 0\n",
+        "input = \"DI05\"\npulse = 1\nfor = \"20ms\"\nevery = \"177ms\"\n",
+        "variable = \"r1\"\nset = 77\n",
+        "variable = \"n\"\nset = -5\n",
+        "parameter = \"P130\"\nset = 400\n"};
+    text_ += fmt::format("[[stimulus]]\nstation = \"u{}\"\nat = \"{}us\"\n{}", pick(0, stations_ - 1),
+                         pick(0, 3'000'000), one_of(kWhat));
+  }
+
+  std::mt19937_64 random_;
+  Kind kind_;
+  bool moves_;
+  bool plain_;  // a loop in main, and nothing else
+  int stations_ = 0;
+  std::string text_;
+  std::map<std::string, std::string> sources_;
+};
+
+}  // namespace ipos::tests
