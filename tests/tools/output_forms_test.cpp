@@ -31,9 +31,8 @@ TEST(OutputForms, EveryRowKnowsItsEndingsAndRefusesOthers) {
 TEST(OutputForms, TheVerbsAskForTheirForms) {
   const TemporaryFolder folder;
   folder.write("p.toml",
-               "[[station]]\nname = \"saw\"\nunit = \"md60a\"\n[[expect]]\nstation = \"saw\"\nat = \"1ms\"\nvariable = "
-               "\"H1\"\nequals = 0\n");
-  folder.write("t.test.toml", "plant = \"p.toml\"\n");
+               "[[bus]]\nname = \"sbus\"\nkind = \"can\"\n[[station]]\nname = \"saw\"\nunit = \"md60a\"\nsbus = \"sbus\"\n");
+  folder.write("can.log", "(1.000000) sbus 100#00\n");
   const auto refused = [&](std::vector<std::string> arguments, const std::string& file) {
     arguments.push_back(file);
     const CommandResult result = run_ipos(arguments, folder.path());
@@ -48,7 +47,7 @@ TEST(OutputForms, TheVerbsAskForTheirForms) {
   for (const char* option : {"--junit", "--tap", "--json", "--html", "--coverage"})
     refused({"test", "p.toml", option}, "a.png");
   refused({"scope", "p.toml", "saw", "-o"}, "a.png");
-  refused({"bus", "replay", "p.toml", "p.toml", "--log"}, "a.png");
+  refused({"bus", "replay", "can.log", "p.toml", "--log"}, "a.png");
   EXPECT_EQ(run_ipos({"run", "p.toml", "--for", "1ms", "--plot", "a.SVG"}, folder.path()).exit_code, 0);
 }
 
