@@ -22,11 +22,11 @@ ipos_status status_of(vm::ImageError error) {
   }
 }
 
-// The number of symbols; nothing when the table is damaged, then at trouble.offset.
-std::optional<uint32_t> count_symbols(vm::Reader in, ipos_trouble& trouble) {
+// The number of symbols; nothing when the table is damaged or goes beyond the unit's variables, then at trouble.offset.
+std::optional<uint32_t> count_symbols(vm::Reader in, uint32_t variables, ipos_trouble& trouble) {
   uint32_t count = 0;
   for (; !in.at_end(); ++count)
-    if (!vm::read_symbol(in)) {
+    if (const auto symbol = vm::read_symbol(in); !symbol || symbol->variable + symbol->count > variables) {
       trouble.offset = in.offset();
       return std::nullopt;
     }
@@ -46,7 +46,7 @@ ipos_status load(void* memory, std::span<const uint8_t> bytes, ipos_program*& ou
   trouble.offset = code.offset;
   if (code.bytes.size() % sizeof(uint32_t) != 0) return IPOS_IMAGE_DAMAGED;
   const auto& symbols = container.view.section(vm::Section::Symbols);
-  const auto symbol_count = count_symbols(container.view.reader(vm::Section::Symbols), trouble);
+  const auto symbol_count = count_symbols(container.view.reader(vm::Section::Symbols), unit->variables, trouble);
   if (!symbol_count) return IPOS_IMAGE_DAMAGED;
 
   const std::span words(reinterpret_cast<const uint32_t*>(code.bytes.data()),

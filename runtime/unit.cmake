@@ -2,7 +2,7 @@
 ipos_layer(unit
   FOLDERS runtime/commands runtime/unit runtime/nv_memory/kept
   SOURCES commands/movilink_command.cpp
-          unit/timers.cpp unit/mirrored_values.cpp unit/pid_block.cpp commands/source_places.cpp
+          unit/timers.cpp unit/mirrored_values.cpp unit/pid_block.cpp unit/program_image.cpp commands/source_places.cpp
           commands/communication_commands.cpp commands/call_commands.cpp commands/unit_commands.cpp
           commands/system_values.cpp commands/system_commands.cpp unit/positioning_service.cpp
           commands/positioning_commands.cpp

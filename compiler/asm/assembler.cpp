@@ -312,6 +312,7 @@ class Assembler {
     } else if (name == "symbol") {
       form = "symbol Hn NAME [COUNT]";
       ok = symbol(line);
+      if (ok) symbol_spans_.push_back(name_span);
     } else if (name == "function") {
       form = "function NAME LABEL";
       const auto function = line.name();
@@ -405,6 +406,11 @@ class Assembler {
 
   // What the image's reader will demand of its tables (docs/reference/isa.md).
   void check_tables() {
+    const stdlib::UnitType* unit = stdlib::find_unit(image_.unit);
+    for (size_t n = 0; n < image_.symbols.size() && unit != nullptr && unit->tasks != 0; ++n)
+      if (image_.symbols[n].variable + image_.symbols[n].count > unit->variables)
+        error(Diag::AsmNumberRange, symbol_spans_[n],
+              {fmt::format("of variables that the unit has, up to H{}", unit->variables - 1)});
     for (size_t n = 0; n < image_.functions.size(); ++n)
       if (image_.functions[n].address >= image_.code.size())
         error(Diag::AsmNumberRange, function_spans_[n], {"the address of a code word"});
@@ -421,6 +427,7 @@ class Assembler {
   const SourceFile& file_;
   Diagnostics& diagnostics_;
   vm::Image image_;
+  std::vector<Span> symbol_spans_;
   std::vector<Span> function_spans_;
   std::vector<Span> line_spans_;
   std::map<uint64_t, uint32_t> labels_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "compiler/asm/text_forms.hpp"
+#include "stdlib/plain_text.hpp"
 #include "stdlib/system_variables.hpp"
 
 namespace ipos::compiler {
@@ -156,7 +157,7 @@ std::optional<std::string> LineReader::name() {
     out += static_cast<char>(*value);
     at_ += 2;
   }
-  if (at_ == line_.size()) return go(begin), std::nullopt;
+  if (at_ == line_.size() || !stdlib::is_plain(out)) return go(begin), std::nullopt;
   ++at_;
   return out;
 }

@@ -8,6 +8,8 @@
 #include <map>
 
 #include "compiler/codegen/roots.hpp"
+#include "compiler/diag/places.hpp"
+#include "stdlib/plain_text.hpp"
 
 namespace ipos::compiler {
 namespace {
@@ -165,7 +167,8 @@ class Layout {
     vm::Image& image = out_.image;
     auto file = std::find(files_.begin(), files_.end(), at.file);
     if (file == files_.end()) {
-      image.files.push_back(at.file->name);
+      // An image with other names would be refused; whoever opens files by such a name has none.
+      image.files.push_back(stdlib::is_plain(at.file->name) ? at.file->name : printable(at.file->name));
       file = files_.insert(files_.end(), at.file);
     }
     const vm::LineEntry entry{address, static_cast<uint16_t>(file - files_.begin()), at.line,

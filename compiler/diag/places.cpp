@@ -3,34 +3,10 @@
 
 #include <fmt/format.h>
 
+#include "stdlib/plain_text.hpp"
+
 namespace ipos::compiler {
 namespace {
-
-// Length of the UTF-8 character at the start of the text, 0 when there is none.
-size_t utf8_length(std::string_view text) {
-  const auto byte = [&text](size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
-  const auto follows = [&byte](size_t i) { return (byte(i) & 0xC0U) == 0x80U; };
-  const unsigned first = byte(0);
-  if (first < 0x80) return 1;
-  if (first >= 0xC2 && first <= 0xDF) return follows(1) ? 2 : 0;
-  if (first >= 0xE0 && first <= 0xEF) {
-    const bool overlong = first == 0xE0 && byte(1) < 0xA0;
-    const bool surrogate = first == 0xED && byte(1) >= 0xA0;
-    return follows(1) && follows(2) && !overlong && !surrogate ? 3 : 0;
-  }
-  if (first >= 0xF0 && first <= 0xF4) {
-    const bool overlong = first == 0xF0 && byte(1) < 0x90;
-    const bool beyond = first == 0xF4 && byte(1) >= 0x90;
-    return follows(1) && follows(2) && follows(3) && !overlong && !beyond ? 4 : 0;
-  }
-  return 0;
-}
-
-bool is_control(std::string_view character) {
-  const auto first = static_cast<unsigned char>(character[0]);
-  const bool high = character.size() == 2 && first == 0xC2 && static_cast<unsigned char>(character[1]) < 0xA0;
-  return (first < 0x20 && first != '\t') || first == 0x7F || high;
-}
 
 constexpr size_t kMaxChain = 8;  // notes of one chain (ours)
 
@@ -65,7 +41,7 @@ std::string printable(std::string_view text) {
   std::string out;
   out.reserve(text.size());
   while (!text.empty()) {
-    const size_t length = utf8_length(text);
+    const size_t length = stdlib::utf8_length(text);
     const std::string_view character = text.substr(0, length == 0 ? 1 : length);
     if (length == 0) {
       const auto byte = static_cast<unsigned char>(text[0]);
@@ -75,7 +51,7 @@ std::string printable(std::string_view text) {
         out += static_cast<char>(0xC0U | byte >> 6U);
         out += static_cast<char>(0x80U | (byte & 0x3FU));
       }
-    } else if (is_control(character)) {
+    } else if (stdlib::is_control(character) && character != "\t") {
       out += '?';
     } else {
       out += character;
@@ -88,7 +64,7 @@ std::string printable(std::string_view text) {
 size_t characters(std::string_view text) {
   size_t count = 0;
   while (!text.empty()) {
-    const size_t length = utf8_length(text);
+    const size_t length = stdlib::utf8_length(text);
     text.remove_prefix(length == 0 ? 1 : length);
     ++count;
   }

@@ -12,6 +12,7 @@
 
 #include "compiler/compile.hpp"
 #include "runtime/plant/all_mistakes.hpp"
+#include "runtime/unit/program_image.hpp"
 #include "stdlib/unit_types.hpp"
 
 namespace ipos::library {
@@ -168,11 +169,9 @@ std::optional<vm::Image> Contents::load_program(const Source& source, runtime::S
     }
     image = *std::move(compiled.image);
   } else {
-    vm::ImageResult result = vm::read_image({reinterpret_cast<const uint8_t*>(bytes->data()), bytes->size()});
-    if (result.error != vm::ImageError::None)
-      return mistake(
-          fmt::format("image {} refused at byte {}: {}", path, result.offset, to_text(result.error)));
-    image = std::move(result.image);
+    auto read = read_program_image({reinterpret_cast<const uint8_t*>(bytes->data()), bytes->size()});
+    if (!read) return mistake(fmt::format("image {} {}", path, read.error()));
+    image = *std::move(read);
   }
   const stdlib::UnitType* unit = stdlib::find_unit(image.unit);
   if (unit == nullptr || unit->tasks == 0)

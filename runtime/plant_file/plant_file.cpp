@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "runtime/plant_file/expect_keys.hpp"
 #include "runtime/plant_file/plant_reader.hpp"
 #include "runtime/plant_file/serial_plan.hpp"
 
@@ -58,6 +59,16 @@ PlantFileResult read_plant_file(std::string_view text) {
   PlantReader reader;
   const auto root = parse_toml(reader, text);
   if (!root) return std::move(reader.result);
+  for (const std::string_view key : kTestKeys)
+    if (const toml::node* node = key == "expect" ? nullptr : root->get(key)) {
+      const std::string named = (*root)["plant"].value_or(std::string());
+      reader.error(place_of(*node), named.empty()
+                                        ? "this is a test: `ipos test` carries out what stands here"
+                                        : fmt::format("this is a test of the plant '{}': `ipos test` carries it "
+                                                      "out, other verbs take the plant",
+                                                      named));
+      return std::move(reader.result);
+    }
   read_plant_sections(reader, *root, {"expect"});
   read_expectations(reader, *root);
   check_plant(reader);

@@ -186,6 +186,7 @@ struct PlantFile {
   std::vector<Wire> wires;
   std::vector<PositionSwitch> switches;
   std::vector<Expectation> expectations;
+  size_t expectations_of_tests = 0;  // [[expect]] of kinds that only `ipos test` looks at
 };
 
 // What a key takes, where that is a short list or a range of numbers.

@@ -5,6 +5,7 @@
 
 #include "runtime/plant_file/state_names.hpp"
 #include "stdlib/parameters.hpp"
+#include "stdlib/plain_text.hpp"
 
 namespace ipos::runtime {
 
@@ -26,6 +27,13 @@ const toml::table* PlantReader::subtable(const toml::table& table, std::string_v
 
 std::string PlantReader::text(const toml::table& table, std::string_view key, std::string_view what,
                               bool required) {
+  std::string one = lines(table, key, what, required);
+  if (!stdlib::is_plain(one)) error(place_of(*table.get(key)), fmt::format("{} is one line", key));
+  return one;
+}
+
+std::string PlantReader::lines(const toml::table& table, std::string_view key, std::string_view what,
+                               bool required) {
   const toml::node* node = table.get(key);
   if (node == nullptr) {
     if (required) error(place_of(table), fmt::format("{} needs {} = \"...\"", what, key));

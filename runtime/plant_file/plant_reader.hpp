@@ -26,6 +26,7 @@ inline constexpr int64_t kShortest = 1'000'000;  // ns: nothing in a station is 
 
 class PlantReader {
  public:
+  static constexpr size_t kMostErrors = 100;  // ours
   PlantFileResult result;
   // Names given and names used; what is used and not given is an error at the end.
   std::set<std::string> bus_names;
@@ -37,7 +38,9 @@ class PlantReader {
   std::vector<std::pair<std::string, FilePlace>> station_uses;
 
   void error(FilePlace place, std::string text, std::optional<AllowedValues> allowed = std::nullopt) {
-    result.errors.push_back({place, std::move(text), std::move(allowed)});
+    if (result.errors.size() == kMostErrors)
+      result.errors.push_back({place, "too many mistakes; the rest is not told", std::nullopt});
+    if (result.errors.size() < kMostErrors) result.errors.push_back({place, std::move(text), std::move(allowed)});
   }
 
   // Every other key is an error. `what` names the table.
@@ -60,8 +63,9 @@ class PlantReader {
   // [station.KEY], or nullptr.
   const toml::table* subtable(const toml::table& table, std::string_view key);
 
-  // A text value, or an empty one; `required` makes absence an error.
+  // A text value, or an empty one; `required` makes absence an error. It is one line; lines() takes several.
   std::string text(const toml::table& table, std::string_view key, std::string_view what, bool required);
+  std::string lines(const toml::table& table, std::string_view key, std::string_view what, bool required);
   // A 32-bit value; hexadecimal numbers may use all 32 bits.
   bool number(const toml::node& node, std::string_view what, int32_t& out);
   // The value of a parameter of a unit: a number is the coding of the parameter channel, a text is what

@@ -1,4 +1,7 @@
 // [[expect]] of the plant file.
+#include <algorithm>
+
+#include "runtime/plant_file/expect_keys.hpp"
 #include "runtime/plant_file/plant_reader.hpp"
 
 namespace ipos::runtime {
@@ -6,9 +9,17 @@ namespace {
 
 void read_expectation(PlantReader& reader, const toml::table& table) {
   constexpr std::string_view kWhat = "an [[expect]]";
-  reader.known_keys(
-      table, "[[expect]]",
-      {"station", "at", "variable", "parameter", "input", "output", "state", "signal", "equals"});
+  // What only tests look at is theirs: the plant is the same without it.
+  const auto of_test = [&](std::string_view key) { return table.contains(key); };
+  const bool at_end = table["at"].value_or(std::string()) == "end";
+  if (at_end || std::any_of(kTestExpectKeys.begin(), kTestExpectKeys.end(), of_test)) {
+    std::vector<std::string_view> known = kExpectKeys;
+    known.insert(known.end(), kTestExpectKeys.begin(), kTestExpectKeys.end());
+    reader.known_keys(table, "[[expect]]", known);
+    ++reader.result.plant.expectations_of_tests;
+    return;
+  }
+  reader.known_keys(table, "[[expect]]", kExpectKeys);
   Expectation expected;
   expected.place = place_of(table);
   expected.signal.station = reader.station(table, kWhat, table.contains("signal"));

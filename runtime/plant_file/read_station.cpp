@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "runtime/plant_file/plant_reader.hpp"
+#include "stdlib/plain_text.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -149,7 +150,7 @@ void read_hex(PlantReader& reader, const toml::table& table, StationConfig& conf
   if (names == nullptr) return reader.error(place_of(node->source()), "hex must be a list of variable names");
   for (const toml::node& name : *names) {
     const auto* value = name.as_string();
-    if (value != nullptr && !value->get().empty())
+    if (value != nullptr && stdlib::is_plain(value->get()) && !value->get().empty())
       config.hex.push_back(value->get());
     else
       reader.error(place_of(name.source()), "hex must be a list of variable names");

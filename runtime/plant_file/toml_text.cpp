@@ -2,8 +2,12 @@
 // first mistake of a text; behind that the parser reads no further than the end of a word.
 #include "runtime/plant_file/toml_text.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <string>
+#include <vector>
+
+#include "stdlib/plain_text.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -48,6 +52,7 @@ class Scanner {
     }
     return mistake_;
   }
+  const std::vector<size_t>& folded_letters() const { return letters_; }
 
  private:
   char innermost() const { return open_.empty() ? '\0' : open_.back(); }
@@ -63,6 +68,7 @@ class Scanner {
     place_ = {place_.line + 1, 1};
     if (innermost() == '[') return;  // a list goes on
     if (innermost() == kHeader) open_.clear();
+    dots_ = 0;
     before_ = '\n';
   }
   void mistake(std::string_view text) { mistake_ = TomlMistake{place_, text}; }
@@ -99,12 +105,17 @@ class Scanner {
     step(1);
     if (at_ < text_.size() && !is_beyond_ascii(text_[at_]) && !is_one_of(text_[at_], " \t\r\n"))
       return step(1);
+    bool folded = false;
     while (several_lines && at_ < text_.size() && is_one_of(text_[at_], " \t\r\n")) {
       const bool line_ends = text_[at_] == '\n';
       step(1);
       if (line_ends) place_ = {place_.line + 1, 1};
+      folded = folded || line_ends;
     }
-    if (at_ < text_.size() && is_beyond_ascii(text_[at_])) mistake("this character cannot follow a \\");
+    if (at_ == text_.size() || !is_beyond_ascii(text_[at_])) return;
+    if (!folded || stdlib::utf8_length(text_.substr(at_)) == 0)
+      return mistake("this character cannot follow a \\");
+    letters_.push_back(at_);
   }
 
   // Dates and times are no values here: no key takes one, and the parser's ways with wrong ones are many. So there is
@@ -140,22 +151,45 @@ class Scanner {
     }
     if (c == '[' || c == '{') open_ += header || innermost() == kHeader ? kHeader : c;
     if ((c == ']' || c == '}') && !open_.empty()) open_.pop_back();
+    if (c == '.' && ++dots_ == kMostParts) return mistake("a key has 16 parts at most");
+    if (c != '.' && !is_key_character(c) && !is_one_of(c, " \t")) dots_ = 0;
     before_ = c;
     step(1);
   }
 
   static constexpr char kHeader = 'h';  // an open [ of a table's name
+  // Of a key with dots. Each is a table in a table, and the parser takes stack for each of them in turn: with its own
+  // limit of 256 values in values some 4000 tables, a tenth of what a thread of 1 MiB holds.
+  static constexpr int kMostParts = 16;
 
   std::string_view text_;
   size_t at_ = 0;
   FilePlace place_{1, 1};
   char before_ = '\n';  // the last character of what is neither blank nor comment; '0' of a number
+  int dots_ = 0;        // in the key that is being read
   std::string open_;    // brackets: [ of lists, {, and kHeader
   std::optional<TomlMistake> mistake_;
+  std::vector<size_t> letters_;
 };
 
 }  // namespace
 
 std::optional<TomlMistake> toml_mistake(std::string_view text) { return Scanner(text).find(); }
+
+std::string toml_for_parser(std::string_view text) {
+  Scanner scanner(text);
+  scanner.find();
+  std::string out;
+  size_t done = 0;
+  for (const size_t at : scanner.folded_letters()) {
+    const size_t length = stdlib::utf8_length(text.substr(at));
+    uint32_t code = static_cast<unsigned char>(text[at]) & (0x7FU >> length);
+    for (size_t n = 1; n < length; ++n) code = code << 6U | (static_cast<unsigned char>(text[at + n]) & 0x3FU);
+    out += text.substr(done, at - done);
+    out += fmt::format("\\U{:08X}", code);
+    done = at + length;
+  }
+  return out.append(text.substr(done));
+}
 
 }  // namespace ipos::runtime

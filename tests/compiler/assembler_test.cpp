@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
+#include <algorithm>
+
 #include "compiler/asm/disassembler.hpp"
+#include "compiler/diag/places.hpp"
 #include "stdlib/system_variables.hpp"
+#include "stdlib/unit_types.hpp"
 #include "tests/compiler/assembler_run.hpp"
 
 namespace ipos::compiler::test {
@@ -188,11 +192,18 @@ TEST(RoundTrip, AnyWordsAndTables) {
     for (uint32_t& word : image.code)
       if (word % 3 != 0) word &= 0x0FFF00FFU;
     // Tables as the image's reader accepts them.
-    const auto name = rc::gen::arbitrary<std::string>();
+    const auto name = rc::gen::map(rc::gen::arbitrary<std::string>(), [](const std::string& text) {
+      std::string plain = printable(text);
+      std::replace(plain.begin(), plain.end(), '\t', ' ');
+      return plain;
+    });
+    const stdlib::UnitType* unit = stdlib::find_unit(image.unit);
+    const uint32_t variables = unit == nullptr || unit->tasks == 0 ? 0x20000 : unit->variables;
     const auto words = static_cast<uint32_t>(image.code.size());
     for (int n = words == 0 ? 0 : *rc::gen::inRange(0, 4); n > 0; --n) {
-      image.symbols.push_back(
-          {*name, *rc::gen::arbitrary<uint16_t>(), *rc::gen::inRange<uint16_t>(1, 0xFFFF)});
+      const auto first = *rc::gen::inRange<uint32_t>(0, std::min(variables, 0x10000U));
+      const auto count = *rc::gen::inRange<uint32_t>(1, std::min(variables - first + 1, 0x10000U));
+      image.symbols.push_back({*name, static_cast<uint16_t>(first), static_cast<uint16_t>(count)});
       image.functions.push_back({*name, *rc::gen::inRange<uint32_t>(0, words)});
       image.files.push_back(*name);
       const uint32_t after = image.lines.empty() ? 0 : image.lines.back().address;

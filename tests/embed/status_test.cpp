@@ -75,6 +75,21 @@ TEST(ApiStatus, MemoryIsChecked) {
          IPOS_MISALIGNED);
 }
 
+// A host reads as many variables as a symbol says.
+TEST(ApiStatus, SymbolsBeyondTheUnitAreRefused) {
+  const auto load = [&](uint16_t variable, uint16_t count) {
+    vm::Image image;
+    image.unit = 1;  // md60a: H0 to H511
+    image.code = {kEnd};
+    image.symbols = {{"x", variable, count}};
+    return LoadedProgram(vm::write_image(image)).status;
+  };
+  for (const auto& [variable, count] : {std::pair<uint16_t, uint16_t>{511, 1}, {0, 512}})
+    expect(load(variable, count), IPOS_OK);
+  for (const auto& [variable, count] : {std::pair<uint16_t, uint16_t>{512, 1}, {511, 2}, {0, 513}, {500, 3000}, {65535, 65535}})
+    expect(load(variable, count), IPOS_IMAGE_DAMAGED);
+}
+
 TEST(ApiStatus, AcceleratingIsBuiltInOrSaysSo) {
   LoadedProgram loaded(kForever);
   const size_t size = ipos_accelerate_size(loaded.program);

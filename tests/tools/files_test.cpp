@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -51,6 +52,35 @@ TEST_F(Files, AReplacedFileKeepsItsModeAndItsLinks) {
   tools::replace_file(path("dangling"), "made");
   EXPECT_EQ(read_text(path("b")), "made");
   EXPECT_EQ(count(), 5U) << "nothing is left beside them";
+}
+
+// A writer that was killed leaves its new file; the next one takes it away, but none that is being written.
+TEST_F(Files, WhatKilledWritersLeftIsRemoved) {
+  const pid_t gone = fork();
+  if (gone == 0) _exit(0);
+  waitpid(gone, nullptr, 0);
+  const std::string dead = std::to_string(gone), own = std::to_string(getpid());
+  folder_.write("a", "old");
+  folder_.write(".a." + dead + ".0.tmp", "half");
+  folder_.write(".a." + dead + ".1.tmp", "half");
+  for (const std::string other : {".a." + own + ".7.tmp", ".b." + dead + ".0.tmp", ".a." + dead + "x.tmp",
+                                  ".a..tmp", ".a.b." + dead + ".0.tmp", ".a." + dead + ".0.tmp~"})
+    folder_.write(other, "of others");
+  tools::replace_file(path("a"), "new");
+  EXPECT_EQ(read_text(path("a")), "new");
+  EXPECT_FALSE(fs::exists(path(".a." + dead + ".0.tmp")));
+  EXPECT_FALSE(fs::exists(path(".a." + dead + ".1.tmp")));
+  EXPECT_EQ(count(), 7U);
+}
+
+TEST_F(Files, NamesWithControlCharactersAreRefused) {
+  for (const char* name : {"a\x1b[2J", "a\nb", "a\rb", "a\x9b"}) {
+    folder_.write(name, "x");
+    EXPECT_EQ(exit_code_of([&] { tools::read_file(path(name)); }), 66);
+    EXPECT_FALSE(tools::try_read_file(path(name)));
+  }
+  folder_.write("Gr\xf6sse", "x");
+  EXPECT_EQ(tools::read_file(path("Gr\xf6sse")), "x");
 }
 
 // As on a full disk: the file may not grow beyond a limit.

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <set>
 
+#include "compiler/diag/places.hpp"
 #include "compiler/format/format.hpp"
 #include "tools/build/line_diff.hpp"
 #include "tools/cli/failure.hpp"
@@ -51,7 +52,8 @@ bool find_sources(const std::vector<std::string>& paths, std::vector<std::string
     } else if (path == "-" || is_source(path) || is_header(path)) {
       sources.push_back(path);
     } else {
-      fmt::print(stderr, "{}: error: no IPOS source: those are called *.IPC, their headers *.h\n", path);
+      fmt::print(stderr, "{}: error: no IPOS source: those are called *.IPC, their headers *.h\n",
+                 compiler::printable(path));
       good = false;
     }
   }
@@ -63,7 +65,7 @@ int format(const FmtFlags& flags) {
   bool changed = false;
   bool failed = !find_sources(flags.paths.empty() ? std::vector<std::string>{"-"} : flags.paths, sources);
   for (const std::string& path : sources) {
-    const std::string name = path == "-" ? "<stdin>" : path;
+    const std::string name = path == "-" ? "<stdin>" : compiler::printable(path);
     const std::string before = read_file(path);
     const auto foreign = is_header(path) ? compiler::foreign_word(before) : std::nullopt;
     const auto after = foreign ? tl::unexpected(*foreign) : compiler::format_source(before);

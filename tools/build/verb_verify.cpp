@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "tools/cli/exit_codes.hpp"
+#include "compiler/diag/places.hpp"
 #include "tools/cli/verbs.hpp"
 #include "tools/input/program.hpp"
 
@@ -15,7 +16,7 @@ void add_verify(cli::Verb& app) {
   verb.runs([file] {
     const vm::Image image = load_image(*file);
     if (!verify_image(*file, image)) return kFindings;
-    fmt::print("{}: good, {} words\n", *file, image.code.size());
+    fmt::print("{}: good, {} words\n", compiler::printable(*file), image.code.size());
     return kGood;
   });
 }

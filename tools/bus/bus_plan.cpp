@@ -8,6 +8,7 @@
 #include "runtime/bus_plan/plan.hpp"
 #include "tools/bus/bus_verbs.hpp"
 #include "tools/cli/exit_codes.hpp"
+#include "tools/cli/json_text.hpp"
 #include "tools/input/plant_input.hpp"
 #include "tools/input/program.hpp"
 
@@ -239,7 +240,7 @@ std::string json_report(const BusPlan& plan) {
                                   {"line", finding.line},
                                   {"text", finding.text}});
   }
-  return report.dump() + "\n";
+  return json_text(report) + "\n";
 }
 
 int plan_bus(const PlanFlags& flags) {

@@ -8,16 +8,18 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <new>
 #include <string>
 #include <system_error>
 
+#include "compiler/diag/places.hpp"
 #include "tools/cli/failure.hpp"
 
 namespace ipos::tools {
 namespace {
 
 // To standard error without an exception of its own.
-void tell(const std::string& text) { std::fputs(("ipos: " + text + "\n").c_str(), stderr); }
+void tell(const std::string& text) { std::fputs(("ipos: " + compiler::printable(text) + "\n").c_str(), stderr); }
 
 // Brings what is left to standard output. `error` is that of the exception, 0 for none, and then that of the
 // flush.
@@ -40,6 +42,9 @@ int end_of_process(const std::function<int()>& body) {
   } catch (const Failure& failure) {
     code = failure.exit_code();
     text = failure.what();
+  } catch (const std::bad_alloc&) {
+    code = kBadInput;
+    text = "this input needs more memory than there is";
   } catch (const std::system_error& error) {
     error_code = error.code().value();
     text = std::string("internal error: ") + error.what();

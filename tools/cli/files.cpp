@@ -14,6 +14,7 @@
 #include <set>
 #include <utility>
 
+#include "stdlib/plain_text.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/os_file.hpp"
 
@@ -40,6 +41,7 @@ std::optional<std::string> trouble(const struct stat& info, size_t limit) {
 
 tl::expected<Descriptor, std::string> open_regular(const std::string& path, size_t limit) {
   struct stat info {};
+  if (!stdlib::is_plain(path)) return tl::unexpected(std::string("a file name has no control characters"));
   if (stat(path.c_str(), &info) != 0) return tl::unexpected(std::string(std::strerror(errno)));
   if (auto why = trouble(info, limit)) return tl::unexpected(std::move(*why));
   Descriptor file = open_to_read(path);

@@ -28,6 +28,10 @@ runtime::Descriptor open_to_read(const std::string& path);
 runtime::Descriptor open_to_write(const std::string& path);  // a device or a pipe with a reader
 runtime::Descriptor open_new(const std::string& path);       // EEXIST where something is there
 
+// A file that is being written is held; it is not written any more when nobody holds it and its process is gone.
+void hold(const runtime::Descriptor& file);
+bool is_written(const std::string& path, int64_t process);
+
 // The file at `from` comes to the disk and takes the place of `to` in one step for everybody who looks, with the mode of
 // what is there. False: it did not.
 bool put_in_place(runtime::Descriptor file, const std::string& from, const std::string& to);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -73,16 +74,35 @@ Descriptor open_special(const std::string& path) {
   return file;
 }
 
+// Files of writers that were killed before their file took its place.
+void remove_left_overs(const fs::path& folder, const std::string& name) {
+  std::error_code error;
+  const std::string begin = "." + name + ".";
+  for (fs::directory_iterator at(folder.empty() ? "." : folder, error), end; !error && at != end;
+       at.increment(error)) {
+    const std::string file = at->path().filename().string();
+    if (!file.starts_with(begin) || !file.ends_with(".tmp")) continue;
+    int64_t process = 0;
+    const char* const behind = file.data() + file.size();
+    const auto read = std::from_chars(file.data() + begin.size(), behind, process);
+    const bool ours = read.ec == std::errc() && std::string_view(read.ptr, behind).starts_with('.');
+    if (ours && !is_written(at->path().string(), process))
+      unlink(at->path().c_str());
+  }
+}
+
 // A new file beside `target`; removed again unless it takes its place.
 class Beside {
  public:
   explicit Beside(const std::string& target) {
     const fs::path path(target);
     const std::string name = path.filename().string().substr(0, kNameLimit);
+    remove_left_overs(path.parent_path(), name);
     for (int number = 0; !file_.is_open(); ++number) {
       path_ = (path.parent_path() / fmt::format(".{}.{}.{}.tmp", name, getpid(), number)).string();
       file_ = open_new(path_);
       if (!file_.is_open() && errno != EEXIST) fail(target, errno);
+      if (file_.is_open()) hold(file_);
     }
   }
   ~Beside() {

@@ -9,7 +9,9 @@ std::string utf8(std::string_view text) {
   std::string out;
   while (true) {
     const size_t end = text.find('\n');
-    out += compiler::printable(text.substr(0, end));
+    std::string_view line = text.substr(0, end);
+    if (end != std::string_view::npos && line.ends_with('\r')) line.remove_suffix(1);
+    out += compiler::printable(line);
     if (end == std::string_view::npos) return out;
     out += '\n';
     text.remove_prefix(end + 1);
@@ -18,7 +20,12 @@ std::string utf8(std::string_view text) {
 
 std::string xml_text(std::string_view text) {
   std::string out;
-  for (const char c : utf8(text)) {
+  std::string characters = utf8(text);
+  // U+FFFE and U+FFFF are no characters of XML.
+  for (const std::string_view none : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"})
+    for (size_t at = 0; (at = characters.find(none, at)) != std::string::npos;)
+      characters.replace(at, none.size(), "\xEF\xBF\xBD");
+  for (const char c : characters) {
     switch (c) {
       case '&': out += "&amp;"; break;
       case '<': out += "&lt;"; break;

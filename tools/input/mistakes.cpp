@@ -4,11 +4,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <sstream>
-
 #include "compiler/diag/render.hpp"
 #include "tools/cli/files.hpp"
 #include "tools/cli/terminal.hpp"
+#include "tools/cli/text_lines.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -25,9 +24,7 @@ size_t bytes_before(std::string_view line, uint32_t column) {
 
 std::string mistakes_text(const std::string& path, const std::vector<runtime::PlantError>& errors,
                           bool colours) {
-  std::vector<std::string> lines;
-  std::istringstream text(errors.empty() ? "" : try_read_file(path).value_or(""));
-  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  const auto lines = text_lines(errors.empty() ? "" : try_read_file(path).value_or(""));
   std::string out;
   for (const runtime::PlantError& error : errors) {
     const runtime::FilePlace place = error.place;

@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
+#include "compiler/diag/places.hpp"
 #include "runtime/plant/all_mistakes.hpp"
 #include "stdlib/unit_types.hpp"
 #include "tools/cli/failure.hpp"
@@ -22,7 +24,7 @@ using Errors = std::vector<runtime::PlantError>;
 runtime::PlantFile plant_of_program(const std::string& path, const std::string& sbus) {
   runtime::PlantFile plant;
   runtime::StationConfig station;
-  station.name = fs::path(path).stem().string();
+  station.name = compiler::printable(fs::path(path).stem().string());
   station.program = path;
   station.sbus = sbus;
   plant.stations.push_back(std::move(station));
@@ -46,6 +48,21 @@ vm::Image program_of(const std::string& path, runtime::StationConfig& station, C
     throw Failure(kFindings, fmt::format("{}: the image is for unit {}, station '{}' is {}", path, unit->name,
                                          station.name, station.unit->name));
   return image;
+}
+
+// A plant file of a stranger may name any file. The form of a memory keeps other files safe, but not folders tidy.
+void warn_of_far_memories(const PlantInput& input) {
+  const fs::path folder = fs::weakly_canonical(fs::absolute(input.path).parent_path());
+  for (const runtime::StationConfig& station : input.file.stations) {
+    if (station.nvram.empty()) continue;
+    std::error_code error;
+    const fs::path memory = fs::weakly_canonical(fs::absolute(station.nvram), error);
+    const auto [end, ignored] = std::mismatch(folder.begin(), folder.end(), memory.begin(), memory.end());
+    if (end != folder.end())
+      fmt::print(stderr, "ipos: warning: {}:{}:{}: the memory of '{}' is outside of the folder of the plant: {}\n",
+                 compiler::printable(input.path), station.nvram_place.line, station.nvram_place.column,
+                 station.name, compiler::printable(memory.string()));
+  }
 }
 
 }  // namespace
@@ -76,7 +93,7 @@ PlantInput read_plant_input(const std::string& path, const CompileFlags& compile
     try {
       input.programs.back() = program_of(program, station, compile);
     } catch (const Failure& failure) {
-      if (!last.empty()) fmt::print(stderr, "ipos: {}\n", last);
+      if (!last.empty()) fmt::print(stderr, "ipos: {}\n", compiler::printable(last));
       last = failure.what();
       if (!has_mistakes) code = failure.exit_code();
     }
@@ -92,6 +109,7 @@ PlantInput read_plant_input(const std::string& path, const CompileFlags& compile
 std::unique_ptr<runtime::Plant> make_plant(PlantInput input, runtime::FileUse memories,
                                            std::optional<vm::Rates> rates,
                                            const runtime::Execution& execution) {
+  if (memories == runtime::FileUse::Write) warn_of_far_memories(input);
   for (runtime::StationConfig& station : input.file.stations) station.nvram_use = memories;
   std::vector<runtime::PlantError> errors;
   auto plant = std::make_unique<runtime::Plant>(std::move(input.file), std::move(input.programs), rates,

@@ -11,14 +11,17 @@
 
 #include "compiler/ast/print.hpp"
 #include "compiler/compile.hpp"
+#include "compiler/diag/places.hpp"
 #include "compiler/parse/parse.hpp"
 #include "compiler/sema/map.hpp"
 #include "runtime/plant/station.hpp"
+#include "runtime/unit/program_image.hpp"
 #include "stdlib/headers.hpp"
 #include "stdlib/unit_types.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/files.hpp"
 #include "tools/cli/terminal.hpp"
+#include "tools/cli/text_lines.hpp"
 #include "tools/input/sources.hpp"
 
 namespace ipos::tools {
@@ -52,15 +55,9 @@ compiler::SourceLines source_lines(const vm::Image& image) {
   auto texts = std::make_shared<std::map<size_t, std::vector<std::string>>>();
   return [&image, texts](size_t file, uint32_t line) -> std::optional<std::string_view> {
     auto [entry, is_new] = texts->try_emplace(file);
-    if (is_new) {
-      const std::string text = source_text(image.files[file]).value_or("");
-      size_t begin = 0;
-      while (begin < text.size()) {
-        const size_t end = std::min(text.find('\n', begin), text.size());
-        entry->second.push_back(text.substr(begin, end - begin));
-        begin = end + 1;
-      }
-    }
+    if (is_new)
+      for (const std::string& one : text_lines(source_text(image.files[file]).value_or("")))
+        entry->second.push_back(compiler::printable(one));
     const std::vector<std::string>& lines = entry->second;
     if (line == 0 || line > lines.size()) return std::nullopt;
     return lines[line - 1];
@@ -140,11 +137,9 @@ std::vector<std::string> included_files(const std::string& path) {
 
 vm::Image load_image(const std::string& path) {
   const std::string bytes = read_file(path);
-  vm::ImageResult result = vm::read_image({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
-  if (result.error != vm::ImageError::None)
-    throw Failure(kFindings, fmt::format("{}: image refused at byte {}: {}", path, result.offset,
-                                         to_text(result.error)));
-  return std::move(result.image);
+  auto image = runtime::read_program_image({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
+  if (!image) throw Failure(kFindings, fmt::format("{}: image {}", path, image.error()));
+  return *std::move(image);
 }
 
 vm::Image load_program(const std::string& path, const CompileFlags& flags) {
@@ -206,7 +201,8 @@ std::string dump_image(const vm::Image& image) {
   return text;
 }
 
-bool verify_image(const std::string& path, const vm::Image& image) {
+bool verify_image(const std::string& file, const vm::Image& image) {
+  const std::string path = compiler::printable(file);
   const stdlib::UnitType* unit = stdlib::find_unit(image.unit);
   if (unit == nullptr || unit->tasks == 0) {
     fmt::print(stderr, "{}: error: unit type {} runs no program\n", path, image.unit);

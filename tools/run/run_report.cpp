@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "tools/cli/json_text.hpp"
+#include "tools/cli/xml_text.hpp"
 #include "tools/run/watch.hpp"
 
 namespace ipos::tools {
@@ -55,7 +57,7 @@ std::string text_report(runtime::Plant& plant, const WatchChoice& watch) {
                         runtime::info(bus->kind()).message, static_cast<double>(plant.now()) / 1e9,
                         load_percent(load), bus->baud());
   }
-  return text;
+  return utf8(text);
 }
 
 std::string json_report(runtime::Plant& plant, const WatchChoice& watch) {
@@ -85,7 +87,7 @@ std::string json_report(runtime::Plant& plant, const WatchChoice& watch) {
                                {"frames", load.frames},
                                {"load_percent", load_percent(load)}});
   }
-  return report.dump() + "\n";
+  return json_text(report) + "\n";
 }
 
 }  // namespace ipos::tools

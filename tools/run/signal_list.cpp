@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/plant/plant_signals.hpp"
+#include "tools/cli/json_text.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -27,7 +28,7 @@ std::string signal_list(const runtime::Plant& plant, bool json) {
                       {"unit", signal.unit},
                       {"bits", signal.bits},
                       {"meaning", signal.meaning}});
-    return list.dump() + "\n";
+    return json_text(list) + "\n";
   }
   size_t name = 0, unit = 0;
   for (const runtime::PlantSignal& signal : signals) {

@@ -202,6 +202,8 @@ size_t print_expectations(const runtime::Plant& plant, const std::string& file) 
     if (expectation.at > plant.now()) print(expectation, "the run ended before");
   const size_t total = plant.file().expectations.size();
   if (total != 0) fmt::print(stderr, "{} of {} expectations met\n", total - failed, total);
+  if (const size_t others = plant.file().expectations_of_tests; others != 0)
+    fmt::print(stderr, "{} more of kinds that `ipos test {}` looks at\n", others, file);
   return failed;
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "compiler/diag/places.hpp"
 #include "runtime/plant/station_signals.hpp"
 #include "runtime/plant/variable_names.hpp"
 
@@ -19,7 +20,8 @@ void add(const runtime::Station& station, const std::vector<runtime::NamedVariab
   };
   for (const runtime::NamedVariable& row : variables)
     rows.push_back(
-        {row.name, row.number, station.variable(row.number), in_hex(row.symbol) || in_hex(row.name), ""});
+        {compiler::printable(row.name), row.number, station.variable(row.number),
+         in_hex(row.symbol) || in_hex(row.name), ""});
 }
 
 void add_signals(const runtime::Station& station, const std::string& name, std::vector<WatchRow>& rows) {
@@ -44,7 +46,9 @@ std::vector<WatchRow> watch_rows(const runtime::Station& station, const std::vec
   if (names.empty() && station.image() != nullptr)
     for (const vm::Symbol& symbol : station.image()->symbols)
       add(station, runtime::elements_of(symbol), rows);
-  for (const std::string& name : names) {
+  for (std::string name : names) {
+    // "u.H200" is of the station u only.
+    if (const std::string own = station.config().name + "."; name.starts_with(own)) name.erase(0, own.size());
     const size_t before = rows.size();
     if (station.image() != nullptr)
       add(station, runtime::named_variables(station.image()->symbols, *station.config().unit, name), rows);

@@ -9,6 +9,7 @@
 
 #include "runtime/plant/variable_names.hpp"
 #include "tools/cli/failure.hpp"
+#include "tools/cli/json_text.hpp"
 #include "tools/input/program.hpp"
 #include "tools/unit/param_columns.hpp"
 #include "tools/unit/parameter_set.hpp"
@@ -88,7 +89,7 @@ void LiveTable::print(double seconds, ParameterAccess& access) {
     fmt::print(stderr, "ipos: {}: {}\n", access.name(), reason);
   }
   if (form_ == LiveForm::Json) {
-    fmt::print("{}\n", json.dump());
+    fmt::print("{}\n", json_text(json));
   } else if (form_ == LiveForm::Once) {
     std::vector<std::vector<std::string>> lines;
     for (size_t n = 0; n < items_.size(); ++n) {

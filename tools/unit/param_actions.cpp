@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/cli/failure.hpp"
+#include "tools/cli/json_text.hpp"
 #include "tools/unit/param_columns.hpp"
 #include "tools/unit/parameter_target.hpp"
 
@@ -95,7 +96,7 @@ int list_parameters(ParameterAccess& access, const ListChoice& choice) {
     lines.push_back(std::move(line));
     json["parameters"].push_back(std::move(row));
   }
-  fmt::print("{}", choice.json ? json.dump(2) + "\n" : columns(lines));
+  fmt::print("{}", choice.json ? json_text(json, 2) + "\n" : columns(lines));
   return exit_code;
 }
 
@@ -117,7 +118,7 @@ int get_parameters(ParameterAccess& access, const std::vector<std::string>& name
     else
       fmt::print("{} = {}\n", name_of(table, target), text_of(target, *reply));
   }
-  if (as_json) fmt::print("{}\n", json.dump(2));
+  if (as_json) fmt::print("{}\n", json_text(json, 2));
   return exit_code;
 }
 
@@ -176,7 +177,7 @@ int set_parameters(ParameterAccess& access, const std::vector<std::string>& assi
       exit_code = kFindings;
     }
   }
-  if (as_json) fmt::print("{}\n", json.dump(2));
+  if (as_json) fmt::print("{}\n", json_text(json, 2));
   if (const std::string forgets = access.forgets(); !forgets.empty()) {
     fmt::print(stderr, "nothing is kept: {}\n", forgets);
     exit_code = is_volatile ? exit_code : kFindings;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/cli/failure.hpp"
+#include "tools/cli/json_text.hpp"
 #include "tools/cli/outputs.hpp"
 #include "tools/unit/param_actions.hpp"
 #include "tools/unit/param_columns.hpp"
@@ -62,7 +63,7 @@ int load_parameters(ParameterAccess& access, const std::string& file, const Para
                     {"written", written},
                     {"unchanged", unchanged},
                     {"refused", refused}};
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json_text(json, 2));
   } else {
     fmt::print("{}: {} parameters: {} written, {} unchanged, {} refused\n", access.name(), rows, written,
                unchanged, refused);
@@ -100,7 +101,7 @@ int diff_parameters(const ParameterSet& a, const std::string& a_name, const Para
   }
   const bool differ = lines.size() > 1;
   if (as_json)
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json_text(json, 2));
   else if (differ)
     fmt::print("{}", columns(lines));
   return differ ? kFindings : kGood;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "runtime/plant_file/plant_file.hpp"
+#include "runtime/plant_file/read_toml.hpp"
 #include "runtime/plant_file/toml_text.hpp"
 
 namespace ipos::runtime {
@@ -50,7 +51,7 @@ TEST(TomlText, MistakesHaveTheirPlace) {
       {"[.a]", 1, 2},
       // A byte beyond ASCII behind a backslash, also at the end of a line.
       {"a = \"x\\\xC3\xB6\"", 1, 8},
-      {"a = \"\"\" \\ \r\n\t\n \xC3\xB6\"\"\"", 3, 2},
+      {"a = \"\"\"\\\n\xC3\"\"\"", 2, 1},  // and no whole character
       // A column is a character, also behind one of several bytes.
       {"a = \"\xC3\xB6\xE2\x82\xAC\" \"y\"", 1, 10},
       // Behind empty texts and texts of several lines with quotes in front of their end.
@@ -101,6 +102,87 @@ TEST(TomlText, WhatTomlAllowsGoesThrough) {
     EXPECT_FALSE(mistake) << text << ": " << mistake->place.line << ':' << mistake->place.column << ' '
                           << mistake->text;
   }
+}
+
+// toml-test valid/string/start-mb and its like: the first character behind a folded line end, in two, three and four bytes.
+TEST(TomlText, ACharacterBeyondAsciiMayFollowAFoldedLine) {
+  for (const char* letter : {"\xC3\xA9", "\xE2\x82\xAC", "\xF0\x9F\x98\x80"})
+    for (const char* fold : {"\\\n", "\\ \r\n\t\n  "}) {
+      const auto table = read_toml("a = \"\"\"x" + std::string(fold) + letter + "y\"\"\"\nb = \"" + letter + "\"\n");
+      ASSERT_TRUE(table) << table.error().text;
+      EXPECT_EQ((*table)["a"].value_or(std::string()), std::string("x") + letter + "y") << fold;
+      EXPECT_EQ((*table)["b"].value_or(std::string()), letter);
+    }
+}
+
+// The parser takes stack for each part of a key and each value in a value. The longest that is taken, all at once, and
+// much more.
+TEST(TomlText, DeepTextsAreRefusedAndNotFollowed) {
+  const auto times = [](const std::string& text, size_t n) {
+    std::string all;
+    for (size_t k = 0; k < n; ++k) all += text;
+    return all;
+  };
+  EXPECT_TRUE(read_toml(times("a.", 15) + "a = 1"));
+  EXPECT_TRUE(read_toml("[" + times("a . \"b.c.d\" . ", 7) + "a]\n"));
+  EXPECT_TRUE(read_toml("[" + times("a.", 15) + "a]\n" + times("a.", 15) + "a = " + times("{" + times("a.", 15) + "a = ", 100) + "1" +
+                        times("}", 100)));
+  const std::string deep[] = {times("a.", 16) + "a = 1", times("a.", 100'000) + "a=1", "[" + times("a.", 100'000) + "a]",
+                              "[[" + times("'a'.", 100'000) + "a]]", "a = {" + times("a.", 100'000) + "a = 1}",
+                              "a = [{" + times("\"a\" . ", 100'000) + "a = 1}]", "a = " + times("[", 1'000'000),
+                              times("a = {", 1'000'000), "a = " + times("[{a = ", 1'000'000),
+                              times("[a.a]\n[[", 1'000'000)};
+  for (const std::string& text : deep) {
+    const auto table = read_toml(text);
+    ASSERT_FALSE(table) << text.substr(0, 40);
+    EXPECT_FALSE(table.error().text.empty());
+    EXPECT_FALSE(read_plant_file(text).errors.empty());
+  }
+}
+
+// They would act on a terminal, or end a line of a report.
+TEST(TomlText, ControlCharactersAreRefusedAtTheirPlace) {
+  for (const char* escape : {"\\u001b[2J", "\\u0007", "\\u0000", "\\b", "\\r", "\\u007f", "\\u009b31m"}) {
+    for (const std::string& text : {"x = 1\n" + std::string("a = \"") + escape + "\"",
+                                    "x = 1\na = { b = [ \"" + std::string(escape) + "\" ] }",
+                                    "x = 1\n\"" + std::string(escape) + "\" = 1",
+                                    "x = 1\n[\"" + std::string(escape) + "\"]\n"}) {
+      const auto table = read_toml(text);
+      ASSERT_FALSE(table) << text;
+      EXPECT_EQ(table.error().place.line, 2U) << text;
+      EXPECT_NE(table.error().text.find("control characters"), std::string::npos) << text;
+    }
+  }
+  EXPECT_TRUE(read_toml("a = \"\"\"one\r\ntwo\tthree\"\"\"\nb = \"\\u00e4\\ufffe\""));
+  const PlantFileResult plant = read_plant_file("[[station]]\nname = \"a\\nb\"\nunit = \"mdxb\"\n");
+  ASSERT_EQ(plant.errors.size(), 1U);
+  EXPECT_EQ(plant.errors[0].place.line, 2U);
+  EXPECT_EQ(plant.errors[0].text, "name is one line");
+}
+
+// The hundredth is the last one told, in time that grows with the text.
+TEST(TomlText, ManyMistakesEnd) {
+  std::string text;
+  for (int n = 0; n < 200'000; ++n) text += "k" + std::to_string(n) + " = 1\n";
+  const PlantFileResult plant = read_plant_file(text);
+  ASSERT_EQ(plant.errors.size(), 101U);
+  EXPECT_NE(plant.errors.back().text.find("too many"), std::string::npos);
+}
+
+// What only `ipos test` looks at does not keep others from the plant; a mistake in it does.
+TEST(TomlText, ExpectationsOfTestsArePassedOver) {
+  const std::string station = "[[station]]\nname = \"u\"\nunit = \"mdxb\"\n[[expect]]\nstation = \"u\"\n";
+  for (const char* rest : {"at = \"5ms\"\nparameter = \"P130\"\nmin = 3\n", "at = \"end\"\nparameter = \"P130\"\nequals = 3\n",
+                           "after = \"5ms\"\nparameter = \"P130\"\nequals = 3\nwithin = \"1s\"\nnote = \"x\"\n"}) {
+    const PlantFileResult plant = read_plant_file(station + rest);
+    EXPECT_TRUE(plant.errors.empty()) << rest << plant.errors[0].text;
+    EXPECT_EQ(plant.plant.expectations_of_tests, 1U) << rest;
+    EXPECT_TRUE(plant.plant.expectations.empty());
+  }
+  EXPECT_EQ(read_plant_file(station + "min = 3\nmix = 4\n").errors.size(), 1U);
+  const PlantFileResult named = read_plant_file("plant = \"line.toml\"\n[[step]]\nat = \"1s\"\n");
+  ASSERT_EQ(named.errors.size(), 1U);
+  EXPECT_NE(named.errors[0].text.find("a test of the plant 'line.toml'"), std::string::npos);
 }
 
 }  // namespace

@@ -2,11 +2,13 @@
 #include "tools/cli/os_file.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <utility>
@@ -53,6 +55,16 @@ Descriptor open_to_write(const std::string& path) {
 
 Descriptor open_new(const std::string& path) {
   return Descriptor(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+}
+
+void hold(const Descriptor& file) { flock(file.get(), LOCK_EX | LOCK_NB); }
+
+// The process is asked for first: a file that was made this moment is not held yet. The lock tells of processes that
+// have a number of another container.
+bool is_written(const std::string& path, int64_t process) {
+  if (process <= 0 || kill(static_cast<pid_t>(process), 0) == 0 || errno != ESRCH) return true;
+  const Descriptor file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC));
+  return !file.is_open() || flock(file.get(), LOCK_EX | LOCK_NB) != 0;
 }
 
 bool put_in_place(Descriptor file, const std::string& from, const std::string& to) {

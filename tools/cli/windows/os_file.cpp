@@ -53,6 +53,10 @@ Descriptor open_new(const std::string& path) {
       open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_BINARY | O_NOINHERIT, S_IREAD | S_IWRITE));
 }
 
+// A file that somebody has open cannot be removed here, so who removes need not ask.
+void hold(const Descriptor&) {}
+bool is_written(const std::string&, int64_t) { return false; }
+
 bool put_in_place(Descriptor file, const std::string& from, const std::string& to) {
   if (_commit(file.get()) != 0) return false;
   file = Descriptor();  // closes it
