@@ -2,6 +2,7 @@
 #include "compiler/diag/diag.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace ipos::compiler {
 namespace {
@@ -89,7 +90,16 @@ Diagnostic& Diagnostics::report(Diag diag, Span span, std::vector<std::string> a
     ignored_ = {};
     return ignored_;
   }
-  if (severity == Severity::Error) ++errors_;
+  if (severity == Severity::Error && errors_++ >= kMostErrors) {
+    if (std::exchange(too_many_, true)) {
+      ignored_ = {};
+      return ignored_;
+    }
+    all_.push_back({Diag::TooManyErrors, severity, span, std::string(info(Diag::TooManyErrors).format), {}});
+    if (diag == Diag::TooManyErrors) return all_.back();
+    ignored_ = {};
+    return ignored_;
+  }
   all_.push_back({diag, severity, span, fill_in(row.format, args), {}});
   return all_.back();
 }

@@ -61,10 +61,13 @@ class WarningOptions {
 // Collects the diagnostics of one compilation, in the order found.
 class Diagnostics {
  public:
+  // Ours; TooManyErrors stands behind them.
+  static constexpr uint32_t kMostErrors = 100;
+
   explicit Diagnostics(WarningOptions options = {}) : options_(std::move(options)) {}
 
   // Adds a message; its text is the row's format with args filled in. Returns it so that notes can be added.
-  // A warning that is off goes to a place nobody reads.
+  // A warning that is off, and an error behind the hundredth, goes to a place nobody reads.
   Diagnostic& report(Diag diag, Span span, std::vector<std::string> args = {});
 
   bool has_errors() const { return errors_ != 0; }
@@ -75,7 +78,8 @@ class Diagnostics {
   WarningOptions options_;
   std::vector<Diagnostic> all_;
   Diagnostic ignored_{};
-  uint32_t errors_ = 0;
+  uint32_t errors_ = 0;  // those that nobody reads, too
+  bool too_many_ = false;
 };
 
 }  // namespace ipos::compiler

@@ -10,8 +10,6 @@
 namespace ipos::compiler {
 namespace {
 
-constexpr uint32_t kMaxErrors = 100;  // ours
-
 bool is_stray(const Token& token) { return token.kind == TokenKind::Stray || token.kind == TokenKind::Hash; }
 
 std::string describe_byte(std::string_view text) {
@@ -26,7 +24,7 @@ std::string describe_byte(std::string_view text) {
 Symbol TokenFeed::next() {
   if (resuming_) return resume();
   if (last_ < tokens_.size()) accepted(last_);
-  if (!stopped_ && diagnostics_.error_count() >= kMaxErrors) {
+  if (!stopped_ && diagnostics_.error_count() >= Diagnostics::kMostErrors) {
     diagnostics_.report(Diag::TooManyErrors, tokens_[next_].span);
     stop();
   } else if (!stopped_ && open_.size() > ast::kMaxDepth) {
