@@ -9,6 +9,7 @@
 #include "compiler/diag/places.hpp"
 #include "compiler/format/layout.hpp"
 #include "compiler/format/pieces.hpp"
+#include "compiler/preprocess/preprocess.hpp"
 
 namespace ipos::compiler {
 namespace {
@@ -88,8 +89,14 @@ std::optional<FormatError> foreign_word(std::string_view text) {
   const auto pieces = cut(file);
   if (!pieces) return pieces.error();
   for (const Piece& piece : *pieces)
-    if (is_foreign(piece, file.text))
+    if (piece.token != TokenKind::Stray && is_foreign(piece, file.text))
       return FormatError{piece.line, fmt::format("'{}' is no word of an IPOS program", piece.text)};
+  // A character of no word is kept as it is; it tells nothing where a condition leaves it out.
+  Diagnostics ignored;
+  for (const Token& token : preprocess(sources, file, {}, ignored).tokens)
+    if (token.kind == TokenKind::Stray)
+      return FormatError{sources.position(token.span.begin).line,
+                         fmt::format("'{}' is no word of an IPOS program", token.text)};
   return std::nullopt;
 }
 

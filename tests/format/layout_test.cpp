@@ -265,6 +265,10 @@ TEST(ForeignWords, OfCAreFound) {
     EXPECT_NE(found->text.find("is no word of an IPOS program"), std::string::npos) << found->text;
   }
   EXPECT_EQ(compiler::foreign_word("a\n= 1.5;")->text, "'1.5' is no word of an IPOS program");
+  EXPECT_EQ(compiler::foreign_word("long a;\n#if 1\n@\n#endif\n")->line, 3U);
+  for (const char* left_out : {"#if 0\n @ $ \xA7\n#endif\nlong a;\n", "#ifdef NOBODY\n a @ b\n#else\nlong a;\n#endif\n",
+                               "#ifndef H\n#define H\nlong a;\n#if 2 > 3\n`\n#endif\n#endif\n"})
+    EXPECT_FALSE(compiler::foreign_word(left_out)) << left_out;
   EXPECT_EQ(compiler::foreign_word("/* open")->text, "this comment is not closed before the end of the file");
   for (const char* good :
        {"a : : b", ". . .", "a . * b", "a -> * b", "a <= > b", "a < : b", "a % : b", "// ::", "/* \"a\" */",
