@@ -7,6 +7,7 @@
 
 #include "compiler/compile.hpp"
 #include "compiler/diag/render.hpp"
+#include "runtime/unit/program_image.hpp"
 #include "tools/cli/files.hpp"
 #include "tools/input/program.hpp"
 
@@ -15,14 +16,13 @@ namespace {
 
 Program read_image(const std::string& path, const std::string& bytes) {
   Program program;
-  vm::ImageResult result = vm::read_image({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
-  if (result.error != vm::ImageError::None) {
-    program.messages =
-        fmt::format("{}: image refused at byte {}: {}\n", path, result.offset, to_text(result.error));
+  auto image = runtime::read_program_image({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
+  if (!image) {
+    program.messages = fmt::format("{}: image {}\n", path, image.error());
     return program;
   }
-  program.unit = stdlib::find_unit(result.image.unit);
-  program.image = std::move(result.image);
+  program.unit = stdlib::find_unit(image->unit);
+  program.image = *std::move(image);
   return program;
 }
 

@@ -1,6 +1,7 @@
 // [[expect]] of a test file: what is looked at, which values are right, and when they have to be.
 #include <algorithm>
 
+#include "runtime/plant_file/expect_keys.hpp"
 #include "tools/testing/item_reader.hpp"
 
 namespace ipos::tools::testing {
@@ -195,12 +196,9 @@ void read_sequence(PlantReader& reader, const toml::table& table, Expect& expect
 }  // namespace
 
 std::optional<Expect> read_expect(PlantReader& reader, const toml::table& table) {
-  reader.known_keys(
-      table, "[[expect]]",
-      {IPOS_ITEM_KEYS, "station", "variable", "parameter", "input",    "output",   "process_data",
-       "state",        "signal",  "bus",      "frame",     "telegram", "equals",   "not",
-       "min",          "max",     "one_of",   "tolerance", "within",   "during",   "always",
-       "never",        "times",   "at_least", "at_most",   "every",    "sequence", "repeat"});
+  std::vector<std::string_view> known = runtime::kExpectKeys;
+  known.insert(known.end(), runtime::kTestExpectKeys.begin(), runtime::kTestExpectKeys.end());
+  reader.known_keys(table, "[[expect]]", known);
   const auto subject = read_subject(reader, table);
   if (!subject) return std::nullopt;
   Expect expect;

@@ -12,11 +12,12 @@
 #include <charconv>
 #include <filesystem>
 #include <regex>
-#include <sstream>
 
+#include "compiler/diag/places.hpp"
 #include "runtime/plant_file/signal.hpp"
 #include "runtime/plant_file/state_names.hpp"
 #include "stdlib/unit_types.hpp"
+#include "tools/cli/text_lines.hpp"
 #include "tools/testing/read_tests.hpp"
 
 namespace ipos::tools::testing {
@@ -144,15 +145,13 @@ TestCase read_program_test(const std::string& path, const std::string& text) {
   test.plant_path = path;
   test.is_program = true;
   runtime::StationConfig station;
-  station.name = file.stem().string();
+  station.name = compiler::printable(file.stem().string());
   station.program = file.filename().string();
   station.program_place = {1, 1};
   CommentReader comments(test, station.name);
-  std::vector<std::string> lines;
-  std::istringstream in(text);
-  std::string line;
-  for (uint32_t number = 1; std::getline(in, line); ++number) {
-    lines.push_back(line);
+  std::vector<std::string> lines = text_lines(text);
+  for (uint32_t number = 1; number <= lines.size(); ++number) {
+    const std::string& line = lines[number - 1];
     std::smatch match;
     if (std::regex_search(line, match, kSpeed)) test.speed = static_cast<uint32_t>(std::stoul(match[1]));
     if (std::regex_search(line, match, kUnit)) {

@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <sstream>
 
+#include "runtime/plant_file/expect_keys.hpp"
 #include "tools/cli/files.hpp"
+#include "tools/cli/text_lines.hpp"
 #include "tools/testing/item_reader.hpp"
 #include "tools/testing/read_tests.hpp"
 
@@ -12,8 +14,6 @@ namespace ipos::tools::testing {
 namespace {
 
 namespace fs = std::filesystem;
-
-const std::vector<std::string_view> kOwnKeys = {"plant", "plant_expects", "speed", "step", "expect", "case"};
 
 struct CaseValue {
   std::string name;
@@ -107,6 +107,10 @@ void read_named_plant(PlantReader& reader, const toml::table& root, TestCase& te
     test.errors_in = test.plant_path;
     return;
   }
+  if (test.plant_expects && plant.plant.expectations_of_tests != 0)
+    reader.error(place_of(*root.get("plant_expects")),
+                 fmt::format("{} has {} [[expect]] of kinds that only its own test looks at", test.plant_path,
+                             plant.plant.expectations_of_tests));
   for (const runtime::StationConfig& station : plant.plant.stations)
     reader.station_names.insert(station.name);
   for (const runtime::ControlConfig& control : plant.plant.controls)
@@ -136,7 +140,8 @@ void add_plant_expectations(const runtime::PlantFile& plant, TestCase& test) {
 Item item_of(PlantReader& reader, const toml::table& table) {
   Item item;
   item.place = place_of(table);
-  item.note = reader.text(table, "note", "", false);
+  item.note = reader.lines(table, "note", "", false);
+  std::replace(item.note.begin(), item.note.end(), '\n', ' ');
   if (const auto* at = table.get("at"); at != nullptr && at->value<std::string_view>() == "end")
     item.at_end = true;
   else if (at != nullptr)
@@ -199,11 +204,11 @@ void read_one(const std::string& text, TestCase& test) {
   if (root) {
     const bool named = root->contains("plant");
     if (named) {
-      reader.known_keys(*root, "a test", kOwnKeys);
+      reader.known_keys(*root, "a test", runtime::kTestKeys);
       read_named_plant(reader, *root, test);
       if (!test.errors.empty()) return;
     } else {
-      runtime::read_plant_sections(reader, *root, kOwnKeys);
+      runtime::read_plant_sections(reader, *root, runtime::kTestKeys);
       if (const toml::node* node = root->get("plant_expects"))
         reader.error(place_of(*node), "plant_expects belongs to plant = \"...\"");
       test.plant_path = test.file;
@@ -217,13 +222,6 @@ void read_one(const std::string& text, TestCase& test) {
   test.errors = std::move(reader.result.errors);
   test.plant = std::move(reader.result.plant);
   test.plant.expectations.clear();  // they are items now
-}
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) lines.push_back(line);
-  return lines;
 }
 
 std::string test_name(const std::string& path) {
@@ -240,7 +238,7 @@ std::vector<TestCase> read_test_file(const std::string& path, const std::string&
   base.name = test_name(path);
   base.file = path;
   base.place = {1, 1};
-  base.lines = std::make_shared<const std::vector<std::string>>(lines_of(text));
+  base.lines = std::make_shared<const std::vector<std::string>>(text_lines(text));
   std::vector<TestCase> tests;
   PlantReader reader;
   const auto root = runtime::parse_toml(reader, text);

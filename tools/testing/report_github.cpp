@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "tools/cli/xml_text.hpp"
 #include "tools/testing/reports.hpp"
 
 namespace ipos::tools::testing {
@@ -11,7 +12,7 @@ namespace {
 // Both escape what would end the command; a property also what would end the property.
 std::string escaped(std::string_view text, bool property) {
   std::string out;
-  for (const char c : text) {
+  for (const char c : utf8(text)) {
     const bool special = c == '%' || c == '\r' || c == '\n' || (property && (c == ':' || c == ','));
     out += special ? fmt::format("%{:02X}", c) : std::string(1, c);
   }

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/cli/xml_text.hpp"
+#include "tools/cli/json_text.hpp"
 #include "tools/testing/report_words.hpp"
 #include "tools/testing/reports.hpp"
 
@@ -53,7 +54,7 @@ std::string json_report(const std::vector<TestResult>& results) {
     for (const Finding& finding : result.findings) one["findings"].push_back(entry(finding));
     report["results"].push_back(std::move(one));
   }
-  return report.dump(2) + "\n";
+  return json_text(report, 2) + "\n";
 }
 
 }  // namespace ipos::tools::testing

@@ -1,4 +1,4 @@
-// The forms in which results are told: for people, for Jenkins and its relatives (JUnit XML), TAP 14, JSON, HTML.
+// The forms in which results are told: for people, for Jenkins and its relatives (JUnit XML), TAP 13, JSON, HTML.
 // Every text is valid UTF-8.
 #pragma once
 

@@ -198,6 +198,7 @@ class Run {
 
   // Everything of this time has happened. False: the script goes on from here.
   bool tick(Time now) {
+    if (!stopped_ && std::chrono::steady_clock::now() >= ends_) too_long();
     if ((now + 1) % kMillisecond == 0) return !stopped_;  // right before a step
     probe_.sample(now);
     if (options_.sample) options_.sample(now);
@@ -241,6 +242,13 @@ class Run {
     for (const Open& open : open_)
       if (open.check.end() != runtime::kNever) last = std::max(last, open.check.end());
     return last;
+  }
+
+  void too_long() {
+    stopped_ = true;
+    add_finding(waiting_, fmt::format("time: the test takes more than {} s on the clock and is at {} of virtual time; "
+                                      "--time-limit allows more",
+                                      options_.limit_s, time_text(plant_.now())));
   }
 
   // What follows makes no sense any more.
@@ -316,6 +324,8 @@ class Run {
   Time done_ = -1;   // up to here, this time included, everything has happened
   const Item* waiting_ = nullptr;
   bool stopped_ = false;
+  const std::chrono::steady_clock::time_point ends_ =
+      std::chrono::steady_clock::now() + std::chrono::seconds(options_.limit_s);
 };
 
 void carry_out(const TestCase& test, Programs& programs, const RunOptions& options, TestResult& result) {

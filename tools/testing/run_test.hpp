@@ -10,8 +10,12 @@
 
 namespace ipos::tools::testing {
 
+// Seconds on the clock that a test may take. Ours: a hundred times what the longest tests of whole machines take.
+inline constexpr uint32_t kClockLimit = 600;
+
 struct RunOptions {
   uint32_t speed = 0;  // commands per ms of every task where the test does not say; 0: P938 and P939
+  uint32_t limit_s = kClockLimit;  // on the clock; a test that takes longer has failed
   uint64_t seed = 0;   // moves the seeds of faults that strike by chance
 
   // Called when a plant is built, before its first event: here collectors attach themselves to the machines

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <thread>
 
+#include "compiler/diag/places.hpp"
 #include "stdlib/unit_types.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/interrupt.hpp"
@@ -176,7 +177,8 @@ int run_once(const TestFlags& flags, std::vector<TestCase>& tests) {
     return kFindings;
   }
   if (flags.list) {
-    for (const TestCase& test : tests) fmt::print("{}  {}:{}\n", test.name, test.file, test.place.line);
+    for (const TestCase& test : tests)
+      fmt::print("{}\n", compiler::printable(fmt::format("{}  {}:{}", test.name, test.file, test.place.line)));
     return kGood;
   }
   for (const std::string& report : {flags.junit, flags.tap, flags.json, flags.html}) check_output(report);
@@ -205,7 +207,7 @@ int watch(const TestFlags& flags) {
     try {
       run_once(flags, tests);
     } catch (const Failure& failure) {
-      fmt::print(stderr, "ipos: {}\n", failure.what());
+      fmt::print(stderr, "ipos: {}\n", compiler::printable(failure.what()));
     }
     std::fflush(stdout);
     changes.add(tests);
@@ -244,6 +246,9 @@ void add_test(cli::Verb& app) {
   verb.option("--seed", flags->suite.run.seed, "moves the seeds of faults that strike by chance");
   verb.option("--repeat", flags->suite.repeat, "run every test so often, each time with the next seed")
       .between(1U, 1'000'000U);
+  verb.option("--time-limit", flags->suite.run.limit_s,
+              "seconds on the clock that a test may take; default 600. One that takes longer has failed")
+      .between(1U, 1'000'000U);
   verb.flag("--fail-fast", flags->suite.fail_fast, "begin no test any more when one has not passed");
   verb.option("--speed", flags->suite.run.speed,
               "commands per ms of every task, instead of P938 and P939, where the test does not say")
@@ -256,7 +261,7 @@ void add_test(cli::Verb& app) {
               "GITHUB_ACTIONS is true, else text")
       .one_of({"text", "github"});
   verb.option("--junit", flags->junit, "write a report as JUnit XML; - is standard output");
-  verb.option("--tap", flags->tap, "write a report as TAP 14");
+  verb.option("--tap", flags->tap, "write a report as TAP 13");
   verb.option("--json", flags->json, "write a report as JSON");
   verb.option("--html", flags->html, "write a report as HTML");
   verb.option("--artifacts", flags->artifacts,
