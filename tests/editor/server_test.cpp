@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "compiler/format/format.hpp"
 #include "tests/editor/client.hpp"
 #include "tests/harness/contains.hpp"
 #include "tools/lsp/transport.hpp"
@@ -43,6 +44,130 @@ TEST(LspDiagnostics, AllOfTheProgramAndItsHeaders) {
   EXPECT_TRUE(has(client.codes(kPath), "E0201"));
   client.notify("textDocument/didClose", Client::document("/p/h.h"));
   EXPECT_EQ(client.codes("/p/h.h").size(), 1U) << "the disk counts again";
+}
+
+// As vscode-languageserver-textdocument does it: CR LF, LF and CR end lines, a character behind the end of a line is its
+// end, in front of the CR.
+size_t offset_in_document(const std::string& text, const Json& position) {
+  size_t at = 0;
+  for (int line = position["line"]; line > 0; --line) {
+    at = text.find_first_of("\r\n", at);
+    if (at == std::string::npos) return text.size();
+    at += text.compare(at, 2, "\r\n") == 0 ? 2 : 1;
+  }
+  const size_t end = std::min(text.find_first_of("\r\n", at), text.size());
+  return std::min(at + position["character"].get<size_t>(), end);
+}
+
+std::string formatted(const std::string& text) {
+  Client client;
+  client.open(kPath, text);
+  std::string out = text;
+  for (const Json& edit : client.request("textDocument/formatting", Client::document(kPath))) {
+    const size_t begin = offset_in_document(out, edit["range"]["start"]);
+    const size_t end = offset_in_document(out, edit["range"]["end"]);
+    out.replace(begin, end - begin, edit["newText"].get<std::string>());
+  }
+  return out;
+}
+
+std::string with_ends(std::string text, const std::string& end) {
+  for (size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += end.size()) text.replace(at, 1, end);
+  return text;
+}
+
+// The document of the editor becomes what `ipos fmt` writes, whatever ends its lines, and then stays as it is.
+TEST(LspFormatting, GivesWhatTheFormatterGives) {
+  const char* texts[] = {"long x;\nmain()\n{\nx=2;\n}\n",
+                         "long x;\nmain()\n{\n    x = 2;\n}\n",
+                         "long x;\n\n\n\nmain()\n\n\n{\n    x = 2; // a\n}\n",
+                         "long x;\nmain() { x=2; }",
+                         "\n\nlong x;   \nmain()\n{\nx=2;   \n}",
+                         "long x;\nmain()\n{\n  if (x) {\n  x=1; }\n else x=2;\n /* a\n b */\n}\n\n\n"};
+  for (const std::string text : texts)
+    for (const std::string& all : {with_ends(text, "\n"), with_ends(text, "\r\n"),
+                                   with_ends(text.substr(0, text.size() / 2), "\r\n") + text.substr(text.size() / 2),
+                                   text.substr(0, text.size() / 2) + with_ends(text.substr(text.size() / 2), "\r\n")}) {
+      const auto wanted = compiler::format_source(all);
+      ASSERT_TRUE(wanted) << all;
+      EXPECT_EQ(formatted(all), *wanted) << Json(all);
+      EXPECT_EQ(formatted(*wanted), *wanted) << Json(all);
+    }
+}
+
+TEST(LspDiagnostics, ACrAloneEndsALine) {
+  Client client;
+  client.open(kPath, "long q;\r// a\r\nmain() { q = zz; }\n");
+  for (const Json& one : client.diagnostics["file://" + kPath])
+    if (one["code"] == "E0201") {
+      EXPECT_EQ(one["range"]["start"]["line"], 2) << one;
+      EXPECT_EQ(one["range"]["start"]["character"], 13) << one;
+    }
+  client.notify("textDocument/didChange",
+                {{"textDocument", {{"uri", "file://" + kPath}}},
+                 {"contentChanges", {{{"range", {{"start", {{"line", 2}, {"character", 13}}}, {"end", {{"line", 2}, {"character", 15}}}}}, {"text", "7"}}}}});
+  EXPECT_FALSE(has(client.codes(kPath), "E0201"));
+}
+
+// A text that is cut in the middle of an emoji.
+TEST(LspDocuments, HalfASurrogatePairIsAReplacement) {
+  Client client;
+  const auto open = [&](const std::string& text) {
+    client.server().receive(R"({"jsonrpc":"2.0","method":"textDocument/didOpen","params":{"textDocument":{"uri":"file:///p/A.IPC","text":")" +
+                            text + R"("}}})");
+    client.settle();
+    return client.diagnostics["file:///p/A.IPC"];
+  };
+  for (const char* half : {"\\ud83d", "\\uDE00", "\\ud83d\\ud83d\\ude00", "\\ud83dx", "\xff", "\xed\xa0\xbd", "\\\\\\ud83d"}) {
+    const Json shown = open(std::string("long q; // ") + half + " \\\"\\nmain() { q = zz; }\\n");
+    ASSERT_EQ(shown.size(), 1U) << half;
+    EXPECT_EQ(shown[0]["code"], "E0201") << half;
+    EXPECT_EQ(shown[0]["range"]["start"]["line"], 1) << half;
+    open("main() { }\\n");
+  }
+}
+
+TEST(LspDocuments, OtherSchemesAreDocumentsToo) {
+  for (const std::string uri : {"untitled:A.IPC", "vscode-vfs://github/owner/A.IPC", "vscode-vfs://github/a/../b/A.IPC",
+                                "FILE:///p/A.IPC", "File://host/p/A.IPC", "zipfile:///x.zip/A.IPC", "git:/p/A.IPC?ref"}) {
+    Client client;
+    client.notify("textDocument/didOpen", {{"textDocument", {{"uri", uri}, {"text", "long q;\nmain() { q = zz; }\n"}}}});
+    ASSERT_EQ(client.diagnostics.count(uri), 1U) << uri << ": another spelling";
+    std::vector<std::string> codes;
+    for (const Json& one : client.diagnostics[uri]) codes.push_back(one["code"]);
+    if (uri.find(".IPC?") == std::string::npos) {
+      EXPECT_EQ(codes, std::vector<std::string>{"E0201"}) << uri;
+    }
+  }
+}
+
+// All that an answer says of a document has the spelling that the editor has opened it under.
+TEST(LspDocuments, KeepTheSpellingOfTheirUri) {
+  for (const std::string uri : {"file:///p/Stra\xc3\x9f" "e.IPC", "file://localhost/p/B.IPC", "file:///p/%41.IPC"}) {
+    Client client;
+    client.notify("textDocument/didOpen", {{"textDocument", {{"uri", uri}, {"text", "long q;\nmain() { q = zz; }\n"}}}});
+    ASSERT_EQ(client.diagnostics.size(), 1U);
+    EXPECT_EQ(client.diagnostics.begin()->first, uri);
+    const Json at{{"textDocument", {{"uri", uri}}}, {"position", {{"line", 1}, {"character", 9}}}};
+    EXPECT_EQ(client.request("textDocument/definition", at)[0]["uri"], uri);
+    Json rename = at;
+    rename["newName"] = "r";
+    const Json changes = client.request("textDocument/rename", rename)["changes"];
+    ASSERT_EQ(changes.size(), 1U);
+    EXPECT_EQ(changes.begin().key(), uri);
+    client.notify("textDocument/didClose", {{"textDocument", {{"uri", uri}}}});
+    EXPECT_TRUE(client.diagnostics[uri].empty());
+  }
+}
+
+// A forgotten header: thousands of messages would stop an editor.
+TEST(LspDiagnostics, EndAfterAHundredErrors) {
+  std::string text = "main()\n{\n";
+  for (int n = 0; n < 20'000; ++n) text += "  x" + std::to_string(n) + " = 1;\n";
+  Client client;
+  client.open(kPath, text + "}\n");
+  EXPECT_EQ(client.codes(kPath).size(), 101U);
+  EXPECT_EQ(client.codes(kPath).back(), "E0177");
 }
 
 TEST(LspDiagnostics, OptionsOfTheClient) {

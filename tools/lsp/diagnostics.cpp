@@ -1,6 +1,6 @@
 // Messages of the compiler for the editor, and formatting, which has a message, too.
 #include <algorithm>
-#include <filesystem>
+#include <map>
 
 #include "compiler/diag/places.hpp"
 #include "compiler/format/format.hpp"
@@ -12,23 +12,52 @@ namespace {
 using compiler::Diagnostic;
 using compiler::Severity;
 
-Json range(const compiler::Range& place, Encoding encoding) {
-  if (place.begin.file == nullptr) return range_of("", 0, 0, encoding);
-  const compiler::SourceFile& file = *place.begin.file;
-  const auto offset = [&](const compiler::Position& at) {
-    return file.line_starts[at.line - 1] + at.column - 1;
-  };
-  return range_of(file.text, offset(place.begin), offset(place.end), encoding);
-}
+// Places of one program, which may be thousands. Lines of the compiler end with LF; the editor takes a CR alone for the
+// end of a line, too, and behind the first of those the text is counted anew for each place.
+class Ranges {
+ public:
+  explicit Ranges(Encoding encoding) : encoding_(encoding) {}
+
+  Json of(const compiler::Range& place) {
+    if (place.begin.file == nullptr) return range_of("", 0, 0, encoding_);
+    const compiler::SourceFile& file = *place.begin.file;
+    const auto offset = [&](const compiler::Position& at) {
+      return file.line_starts[at.line - 1] + at.column - 1;
+    };
+    if (first_lone_cr(file) < offset(place.end))
+      return range_of(file.text, offset(place.begin), offset(place.end), encoding_);
+    return {{"start", position(file, place.begin)}, {"end", position(file, place.end)}};
+  }
+
+ private:
+  Json position(const compiler::SourceFile& file, const compiler::Position& at) const {
+    const std::string_view line = compiler::SourceMap::line_text(file, at.line);
+    const auto column = std::min<size_t>(at.column - 1, line.size());
+    Json json = position_of(line, static_cast<uint32_t>(column), encoding_);
+    json["line"] = at.line - 1;
+    return json;
+  }
+  size_t first_lone_cr(const compiler::SourceFile& file) {
+    const auto [known, fresh] = lone_.try_emplace(&file, std::string::npos);
+    size_t& at = known->second;
+    if (!fresh) return at;
+    at = file.text.find('\r');
+    while (at != std::string::npos && file.text.compare(at, 2, "\r\n") == 0) at = file.text.find('\r', at + 2);
+    return at;
+  }
+
+  Encoding encoding_;
+  std::map<const compiler::SourceFile*, size_t> lone_;
+};
 
 std::string clean(const compiler::SourceFile& file) {
-  return file.path.empty() ? file.name : std::filesystem::path(file.path).lexically_normal().string();
+  return file.path.empty() ? file.name : tidy(file.path);
 }
 
-Json message(const Diagnostic& diagnostic, const Program& program, const Workspace& workspace) {
+Json message(const Diagnostic& diagnostic, const Program& program, Ranges& ranges) {
   const compiler::SourceMap& map = *program.compiled.sources;
   const compiler::DiagInfo& row = compiler::info(diagnostic.diag);
-  Json out{{"range", range(compiler::range_of(diagnostic.span, map), workspace.encoding)},
+  Json out{{"range", ranges.of(compiler::range_of(diagnostic.span, map))},
            {"severity", diagnostic.severity == Severity::Error ? 1 : 2},
            {"code", row.code},
            {"source", "ipos"}};
@@ -40,7 +69,7 @@ Json message(const Diagnostic& diagnostic, const Program& program, const Workspa
     else
       out["relatedInformation"].push_back(
           {{"location",
-            {{"uri", uri_of(clean(*place.begin.file))}, {"range", range(place, workspace.encoding)}}},
+            {{"uri", uri_of(clean(*place.begin.file))}, {"range", ranges.of(place)}}},
            {"message", compiler::printable(note.text)}});
   }
   // Notes of several lines stay several lines.
@@ -62,13 +91,14 @@ std::map<std::string, Json> diagnostics_of(const Workspace& workspace, const Pro
   std::map<std::string, Json> out{{program.path, Json::array()}};
   for (const std::string& file : program.files) out.emplace(file, Json::array());
   const bool header = !is_program(program.path);
+  Ranges ranges(workspace.encoding);
   for (const Diagnostic& diagnostic : program.compiled.diagnostics.all()) {
     // A header on its own has no main() and uses nothing of what it declares.
     if (header && (diagnostic.severity != Severity::Error || diagnostic.diag == compiler::Diag::NoMain))
       continue;
     const compiler::Position at = program.compiled.sources->position(diagnostic.span.begin);
     const std::string path = at.file == nullptr || at.file->path.empty() ? program.path : clean(*at.file);
-    out[path].push_back(message(diagnostic, program, workspace));
+    out[path].push_back(message(diagnostic, program, ranges));
   }
   return out;
 }
@@ -91,8 +121,15 @@ Json formatting(Workspace& workspace, const Json& params) {
   size_t tail = 0;
   while (tail < shorter - head && (*before)[before->size() - 1 - tail] == (*after)[after->size() - 1 - tail])
     ++tail;
-  // Not within a line, nor within a character.
-  while (tail > 0 && (*before)[before->size() - tail] != '\n') --tail;
+  // Not within a line, nor within a character, nor within CR LF.
+  const auto is_end = [&](size_t left) {
+    const auto begins = [left](const std::string& text) {
+      return text[text.size() - left] == '\r' ||
+             (text[text.size() - left] == '\n' && (left == text.size() || text[text.size() - left - 1] != '\r'));
+    };
+    return begins(*before) && begins(*after);
+  };
+  while (tail > 0 && !is_end(tail)) --tail;
   edits.push_back({{"range", range_of(*before, static_cast<uint32_t>(head),
                                       static_cast<uint32_t>(before->size() - tail), workspace.encoding)},
                    {"newText", after->substr(head, after->size() - tail - head)}});

@@ -1,6 +1,5 @@
 // Where a name is: definition, references, highlights, and the cursor all requests begin with.
 #include <algorithm>
-#include <filesystem>
 
 #include "stdlib/headers.hpp"
 #include "tools/lsp/features.hpp"
@@ -14,10 +13,6 @@ using compiler::Place;
 using compiler::ProgramIndex;
 using compiler::SymbolKind;
 
-std::string clean(const std::string& path) {
-  return path.starts_with('/') ? std::filesystem::path(path).lexically_normal().string() : path;
-}
-
 // The symbol of another program that stands at the same place of the same file, or that the language brings
 // under the same name.
 std::optional<size_t> same_symbol(const compiler::IndexedSymbol& symbol, const ProgramIndex& index) {
@@ -27,7 +22,7 @@ std::optional<size_t> same_symbol(const compiler::IndexedSymbol& symbol, const P
       continue;
     if (!symbol.definition && !other.definition) return n;
     if (symbol.definition && other.definition && symbol.definition->begin == other.definition->begin &&
-        clean(identity(*symbol.definition->file)) == clean(identity(*other.definition->file)))
+        tidy(identity(*symbol.definition->file)) == tidy(identity(*other.definition->file)))
       return n;
   }
   return std::nullopt;
@@ -40,7 +35,7 @@ std::string document_path(const Json& params) {
   if (document == params.end() || !document->is_object() || !document->contains("uri") ||
       !(*document)["uri"].is_string())
     throw RequestError(ErrorCode::InvalidParams, "no textDocument.uri");
-  return clean(path_of((*document)["uri"].get_ref<const std::string&>()));
+  return tidy(path_of((*document)["uri"].get_ref<const std::string&>()));
 }
 
 Cursor cursor_of(Workspace& workspace, const Json& params) {
@@ -48,7 +43,7 @@ Cursor cursor_of(Workspace& workspace, const Json& params) {
   const Program& program = workspace.program(path);
   Cursor cursor{program, nullptr, 0, nullptr, nullptr};
   for (const auto& file : program.index.sources->files())
-    if (cursor.file == nullptr && clean(file->path) == path) cursor.file = file.get();
+    if (cursor.file == nullptr && tidy(file->path) == path) cursor.file = file.get();
   if (cursor.file == nullptr) return cursor;
   cursor.offset = offset_of(cursor.file->text, params.value("position", Json()), workspace.encoding);
   cursor.occurrence = program.index.at(*cursor.file, cursor.offset);
@@ -65,7 +60,7 @@ Place word_at(const Cursor& cursor) {
 }
 
 Json location(const Workspace& workspace, const Place& place) {
-  return {{"uri", uri_of(clean(compiler::identity(*place.file)))},
+  return {{"uri", uri_of(tidy(compiler::identity(*place.file)))},
           {"range", range_of(place.file->text, place.begin, place.end, workspace.encoding)}};
 }
 
@@ -93,7 +88,7 @@ Json program_references(Workspace& workspace, const Json& params) {
   std::vector<const Program*> programs{&cursor.program};
   // A name of a header may be used by every program that includes it.
   if (cursor.symbol->definition)
-    programs = workspace.programs_with(clean(compiler::identity(*cursor.symbol->definition->file)));
+    programs = workspace.programs_with(tidy(compiler::identity(*cursor.symbol->definition->file)));
   if (std::find(programs.begin(), programs.end(), &cursor.program) == programs.end())
     programs.push_back(&cursor.program);
   for (const Program* program : programs) {
@@ -113,7 +108,7 @@ Json references(Workspace& workspace, const Json& params) {
   Json all = program_references(workspace, params);
   const Cursor cursor = cursor_of(workspace, params);
   if (cursor.symbol == nullptr || !cursor.symbol->definition) return all;
-  const std::string path = clean(compiler::identity(*cursor.symbol->definition->file));
+  const std::string path = tidy(compiler::identity(*cursor.symbol->definition->file));
   for (const Program* program : workspace.programs_with(path))
     for (const NameUse& use : uses_of(workspace, *program, *cursor.symbol)) {
       Json where = location_of(workspace, use);

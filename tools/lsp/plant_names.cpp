@@ -2,7 +2,6 @@
 #include "tools/lsp/plant_names.hpp"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "tools/cli/files.hpp"
 #include "tools/lsp/plant_document.hpp"
@@ -11,7 +10,6 @@
 namespace ipos::tools::lsp {
 namespace {
 
-namespace fs = std::filesystem;
 using compiler::IndexedSymbol;
 using compiler::SymbolKind;
 
@@ -44,8 +42,6 @@ std::unique_ptr<const TomlDocument> read_toml(const Workspace& workspace, const 
   document->tables = tables_of(document->lines);
   return document;
 }
-
-std::string tidy(const std::string& path) { return fs::path(path).lexically_normal().string(); }
 
 // The plant whose stations the file has: itself, or that which a test names.
 std::string plant_of(const TomlDocument& document) {

@@ -2,11 +2,16 @@
 #include "tools/lsp/positions.hpp"
 
 #include <algorithm>
+#include <cctype>
+#include <filesystem>
 
 namespace ipos::tools::lsp {
 namespace {
 
 constexpr std::string_view kFileScheme = "file://";
+constexpr std::string_view kLineEnds = "\r\n";  // LF, CR LF, or CR alone (LSP 3.17, text documents)
+
+bool is_line_end(char c) { return kLineEnds.find(c) != std::string_view::npos; }
 
 int hex_digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
@@ -38,7 +43,11 @@ size_t units(size_t character, Encoding encoding) {
 }  // namespace
 
 std::string path_of(std::string_view uri) {
-  if (!uri.starts_with(kFileScheme)) return std::string(uri);
+  const bool file = uri.size() >= kFileScheme.size() &&
+                    std::equal(kFileScheme.begin(), kFileScheme.end(), uri.begin(), [](char a, char b) {
+                      return a == std::tolower(static_cast<unsigned char>(b));
+                    });
+  if (!file) return std::string(uri);
   uri.remove_prefix(kFileScheme.size());
   uri.remove_prefix(std::min(uri.find('/'), uri.size()));  // a host
   std::string path;
@@ -75,6 +84,12 @@ std::string uri_of(std::string_view path) {
   return uri;
 }
 
+std::string tidy(const std::string& path) {
+  const size_t scheme = path.find("://");
+  const size_t root = scheme == std::string::npos ? 0 : std::min(path.find('/', scheme + 3), path.size());
+  return path.substr(0, root) + std::filesystem::path(path.substr(root)).lexically_normal().string();
+}
+
 uint32_t offset_of(std::string_view text, const Json& position, Encoding encoding) {
   const auto number = [&](const char* name) {
     const auto found = position.find(name);
@@ -85,11 +100,11 @@ uint32_t offset_of(std::string_view text, const Json& position, Encoding encodin
   if (!position.is_object()) throw RequestError(ErrorCode::InvalidParams, "no position");
   size_t at = 0;
   for (size_t line = number("line"); line != 0; --line) {
-    const size_t end = text.find('\n', at);
+    const size_t end = text.find_first_of(kLineEnds, at);
     if (end == std::string_view::npos) return static_cast<uint32_t>(text.size());
-    at = end + 1;
+    at = end + (text.substr(end).starts_with("\r\n") ? 2 : 1);
   }
-  for (size_t left = number("character"); at < text.size() && text[at] != '\n' && left != 0;) {
+  for (size_t left = number("character"); at < text.size() && !is_line_end(text[at]) && left != 0;) {
     const size_t length = character_length(text.substr(at));
     left -= std::min(left, units(length, encoding));
     at += length;
@@ -98,9 +113,13 @@ uint32_t offset_of(std::string_view text, const Json& position, Encoding encodin
 }
 
 Json position_of(std::string_view text, uint32_t offset, Encoding encoding) {
+  // Within CR LF is in front of it.
+  if (offset != 0 && offset < text.size() && text.substr(offset - 1).starts_with("\r\n")) --offset;
   const std::string_view before = text.substr(0, offset);
-  const auto line = std::count(before.begin(), before.end(), '\n');
-  const size_t start = before.rfind('\n') + 1;  // npos + 1 is 0
+  int64_t line = 0;
+  for (size_t n = 0; n < before.size(); ++n)
+    line += before[n] == '\n' || (before[n] == '\r' && !text.substr(n).starts_with("\r\n"));
+  const size_t start = before.find_last_of(kLineEnds) + 1;  // npos + 1 is 0
   size_t character = 0;
   for (std::string_view rest = before.substr(start); !rest.empty();) {
     const size_t length = character_length(rest);

@@ -19,6 +19,9 @@ inline constexpr std::string_view kHeaderScheme = "ipos:/";
 std::string path_of(std::string_view uri);
 std::string uri_of(std::string_view path);
 
+// Without "/../" and the like, also behind the scheme of a document that is no file: two spellings are one document.
+std::string tidy(const std::string& path);
+
 // Of a name of the language.
 constexpr bool is_word(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';

@@ -8,6 +8,7 @@
 #include "tools/lsp/marks.hpp"
 #include "tools/lsp/plant_document.hpp"
 #include "tools/lsp/plant_names.hpp"
+#include "tools/lsp/transport.hpp"
 
 namespace ipos::tools::lsp {
 namespace {
@@ -88,7 +89,7 @@ Json member(const Json& object, const char* name) {
 }  // namespace
 
 void Server::receive(std::string_view body) {
-  Json message = Json::parse(body, nullptr, false);
+  Json message = parsed(body);
   if (message.is_discarded()) {
     refuse(nullptr, ErrorCode::ParseError, "the message is no JSON");
     return;
@@ -137,10 +138,10 @@ void Server::handle(const Json& message) {
       request(id, method, params);
   } catch (const RequestError& error) {
     if (!id.is_null()) refuse(id, error.code(), error.what());
-  } catch (const Json::exception& error) {
-    if (!id.is_null()) refuse(id, ErrorCode::InvalidParams, error.what());
-  } catch (const std::exception& error) {
-    if (!id.is_null()) refuse(id, ErrorCode::InternalError, error.what());
+  } catch (const Json::exception&) {  // whose text is about our code
+    if (!id.is_null()) refuse(id, ErrorCode::InvalidParams, "the parameters are not as the protocol says");
+  } catch (const std::exception&) {
+    if (!id.is_null()) refuse(id, ErrorCode::InternalError, "the request failed");
   }
 }
 
@@ -208,6 +209,11 @@ void Server::notification(const std::string& method, const Json& params) {
 
 void Server::document(const std::string& method, const Json& params) {
   const std::string path = document_path(params);
+  const std::string asked = string_or(member(params, "textDocument"), "uri");
+  if (asked == uri_of(path))
+    spellings_.erase(asked);
+  else
+    spellings_[uri_of(path)] = asked;
   if (method == "textDocument/didOpen")
     workspace_.open(path, string_or(member(params, "textDocument"), "text"));
   else if (method == "textDocument/didChange")
@@ -222,6 +228,7 @@ void Server::document(const std::string& method, const Json& params) {
 // none any more are told so.
 void Server::publish() {
   std::map<std::string, Json> all;
+  std::map<std::string, std::set<std::string>> told;  // of files that several programs have
   std::set<const Program*> programs;
   for (const std::string& path : workspace_.open_documents()) {
     if (is_plant_document(workspace_, path))
@@ -233,16 +240,16 @@ void Server::publish() {
     for (auto& [path, messages] : diagnostics_of(workspace_, *program)) {
       Json& target = all.try_emplace(path, Json::array()).first->second;
       for (Json& one : messages)
-        if (std::find(target.begin(), target.end(), one) == target.end()) target.push_back(std::move(one));
+        if (programs.size() == 1 || told[path].insert(one.dump()).second) target.push_back(std::move(one));
     }
   }
   for (const std::string& path : published_) all.try_emplace(path, Json::array());
   for (auto& [path, messages] : all) {
     const bool empty = messages.empty();
     if (empty && !published_.contains(path) && !workspace_.is_open(path)) continue;
-    send_({{"jsonrpc", "2.0"},
-           {"method", "textDocument/publishDiagnostics"},
-           {"params", {{"uri", uri_of(path)}, {"diagnostics", std::move(messages)}}}});
+    Json params{{"uri", uri_of(path)}, {"diagnostics", std::move(messages)}};
+    respell(params);
+    send_({{"jsonrpc", "2.0"}, {"method", "textDocument/publishDiagnostics"}, {"params", std::move(params)}});
     if (empty)
       published_.erase(path);
     else
@@ -250,7 +257,27 @@ void Server::publish() {
   }
 }
 
-void Server::respond(const Json& id, const Json& result) {
+// Some editors take another spelling of a URI for another document, so it is named as it was opened.
+void Server::respell(Json& value) const {
+  if (spellings_.empty()) return;
+  if (value.is_string()) {
+    const auto found = spellings_.find(value.get_ref<const std::string&>());
+    if (found != spellings_.end()) value = found->second;
+  } else if (value.is_array()) {
+    for (Json& one : value) respell(one);
+  } else if (value.is_object()) {
+    Json named = Json::object();  // "changes" has the URIs as names
+    for (auto& [name, one] : value.items()) {
+      if (one.is_structured() || name == "uri" || name == "targetUri") respell(one);
+      const auto found = spellings_.find(name);
+      named[found == spellings_.end() ? name : found->second] = std::move(one);
+    }
+    value = std::move(named);
+  }
+}
+
+void Server::respond(const Json& id, Json result) {
+  respell(result);
   send_({{"jsonrpc", "2.0"}, {"id", id}, {"result", result}});
 }
 

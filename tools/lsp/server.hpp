@@ -32,13 +32,15 @@ class Server {
   void notification(const std::string& method, const Json& params);
   Json initialize(const Json& params);
   void document(const std::string& method, const Json& params);
-  void respond(const Json& id, const Json& result);
+  void respond(const Json& id, Json result);
+  void respell(Json& value) const;
   void refuse(const Json& id, ErrorCode code, const std::string& message);
   void publish();
 
   Workspace workspace_;
   std::function<void(const Json&)> send_;
   std::deque<Json> queue_;
+  std::map<std::string, std::string> spellings_;  // of open documents: ours, and that of the editor where it differs
   std::set<std::string> published_;  // paths with messages shown
   bool outdated_ = false;            // texts changed since publish()
   bool initialized_ = false;

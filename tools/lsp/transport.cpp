@@ -7,6 +7,8 @@
 #include <cctype>
 #include <charconv>
 
+#include "stdlib/plain_text.hpp"
+
 namespace ipos::tools::lsp {
 namespace {
 
@@ -26,6 +28,37 @@ std::optional<size_t> content_length(std::string_view header) {
     if (std::from_chars(line.data(), line.data() + line.size(), length).ec == std::errc{}) return length;
   }
   return std::nullopt;
+}
+
+constexpr std::string_view kReplacement = "\\uFFFD";
+
+// The number of a \u at the beginning of the text.
+std::optional<uint32_t> unit_at(std::string_view text) {
+  if (!text.starts_with("\\u") || text.size() < 6) return std::nullopt;
+  uint32_t unit = 0;
+  const auto [end, status] = std::from_chars(text.data() + 2, text.data() + 6, unit, 16);
+  return status == std::errc() && end == text.data() + 6 ? std::optional(unit) : std::nullopt;
+}
+
+std::string with_characters_only(std::string_view body) {
+  const auto is_high = [](std::optional<uint32_t> unit) { return unit && *unit >= 0xD800 && *unit < 0xDC00; };
+  const auto is_low = [](std::optional<uint32_t> unit) { return unit && *unit >= 0xDC00 && *unit < 0xE000; };
+  std::string out;
+  while (!body.empty()) {
+    size_t length = stdlib::utf8_length(body);
+    const auto unit = unit_at(body);
+    const bool pair = is_high(unit) && is_low(unit_at(body.substr(6)));
+    if (unit) length = pair ? 12 : 6;
+    if (body[0] == '\\' && !unit) length = std::min<size_t>(2, body.size());
+    if (length == 0 || (!pair && (is_high(unit) || is_low(unit)))) {
+      out += kReplacement;
+      body.remove_prefix(std::max<size_t>(length, 1));
+    } else {
+      out += body.substr(0, length);
+      body.remove_prefix(length);
+    }
+  }
+  return out;
 }
 
 }  // namespace
@@ -52,6 +85,12 @@ std::optional<std::string> MessageReader::next() {
     return body;
   }
   return std::nullopt;
+}
+
+nlohmann::json parsed(std::string_view body) {
+  nlohmann::json message = nlohmann::json::parse(body, nullptr, false);
+  if (message.is_discarded()) message = nlohmann::json::parse(with_characters_only(body), nullptr, false);
+  return message;
 }
 
 std::string framed(std::string_view body) {

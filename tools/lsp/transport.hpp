@@ -1,7 +1,7 @@
 // Messages on a byte stream: a header with Content-Length, an empty line, that many bytes of JSON.
 #pragma once
 
-#include <deque>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,5 +27,9 @@ inline constexpr size_t kMaxMessage = 256U << 20U;
 inline constexpr size_t kMaxHeader = 64U << 10U;
 
 std::string framed(std::string_view body);
+
+// The JSON of a body; discarded when it is none. What is no character is U+FFFD: a text that is cut within an emoji
+// has half a surrogate pair, and editors send it.
+nlohmann::json parsed(std::string_view body);
 
 }  // namespace ipos::tools::lsp

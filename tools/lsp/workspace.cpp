@@ -145,7 +145,7 @@ Program Workspace::compile(const std::string& path, const std::map<std::string, 
   compiler::CompileOptions options = options_;
   options.read_file = [this, &texts](const std::string& wanted) {
     // "/a/../b" and "/b" are one file to the editor.
-    const std::string clean = fs::path(wanted).lexically_normal().string();
+    const std::string clean = tidy(wanted);
     const auto other = texts.find(clean);
     return other != texts.end() ? std::optional(other->second) : text(clean);
   };
@@ -153,7 +153,7 @@ Program Workspace::compile(const std::string& path, const std::map<std::string, 
   program.compiled = compiler::compile(path, path, source, options);
   program.index = compiler::index_program(path, path, source, options, *program.compiled.unit);
   for (const auto& file : program.index.sources->files())
-    if (!file->path.empty()) program.files.insert(fs::path(file->path).lexically_normal().string());
+    if (!file->path.empty()) program.files.insert(tidy(file->path));
   return program;
 }
 
