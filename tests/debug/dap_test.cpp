@@ -1,6 +1,10 @@
 // The debug adapter in one process: requests and what they answer.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
 #include "tests/debug/plants.hpp"
 #include "tools/debug/dap.hpp"
 
@@ -24,6 +28,11 @@ class Dap : public ::testing::Test {
     for (size_t n = sent_.size(); n-- > 0;)
       if (sent_[n]["type"] == "event" && sent_[n]["event"] == "stopped") return sent_[n]["body"];
     return nullptr;
+  }
+  // After a stop the references begin anew.
+  void references_again() {
+    const int thread = ask("threads")["body"]["threads"][0]["id"];
+    ask("scopes", {{"frameId", thread * 64}});
   }
   void launch() {
     ask("initialize");
@@ -88,7 +97,7 @@ TEST_F(Dap, ACursorInAWordIsCompleted) {
   const Json targets = ask("completions", {{"text", "1 + lFi"}, {"column", 8}})["body"]["targets"];
   ASSERT_EQ(targets.size(), 1U);
   EXPECT_EQ(targets[0]["label"], "lFirst");
-  EXPECT_EQ(targets[0]["start"], 4);
+  EXPECT_EQ(targets[0]["start"], 5);  // from 1, as `column`
   EXPECT_EQ(targets[0]["length"], 3);
 }
 
@@ -160,6 +169,9 @@ TEST_F(DapOfAPlant, AFrameStopsThePlant) {
   EXPECT_EQ(ask("setFunctionBreakpoints", {{"breakpoints", {{{"name", "sbus 40A#*"}}}}})["success"], true);
   ask("continue", {{"threadId", thread}});
   EXPECT_EQ(last_stop()["reason"], "function breakpoint");
+  const Json others = ask("setFunctionBreakpoints", {{"breakpoints", {{{"name", ""}}, {{"name", "???"}}, {{"name", "*"}},
+                                                                      {{"name", "sbus hello"}}}}})["body"]["breakpoints"];
+  for (const Json& one : others) EXPECT_EQ(one["verified"], false) << one;
   EXPECT_EQ(last_stop()["text"].get<std::string>().substr(0, 4), "40A#");
 }
 
@@ -186,6 +198,230 @@ TEST_F(Dap, InstructionsAreShownAndStoppedAt) {
   EXPECT_EQ(
       ask("stackTrace", {{"threadId", thread}})["body"]["stackFrames"][0]["instructionPointerReference"],
       second["address"]);
+}
+
+// What comes with the order in one piece is behind it and counts.
+TEST_F(Dap, APauseThatComesWithTheOrderPauses) {
+  launch();
+  const auto send = [&](const std::string& command) {
+    server_.receive(Json{{"type", "request"}, {"seq", ++seq_}, {"command", command}}.dump());
+  };
+  for (const char* stops : {"pause", "terminate"}) {
+    sent_.clear();
+    send("continue");
+    send(stops);
+    while (server_.handle_next()) {
+    }
+    std::vector<std::string> answered;
+    for (const Json& message : sent_)
+      if (message["type"] == "response") answered.push_back(message["command"]);
+    EXPECT_EQ(answered, (std::vector<std::string>{"continue", stops}));
+    EXPECT_EQ(last_stop()["reason"], "pause");
+  }
+  EXPECT_EQ(sent_.back()["event"], "terminated");
+  EXPECT_FALSE(server_.ended());
+  EXPECT_TRUE(ask("disconnect")["success"]);
+  EXPECT_TRUE(server_.ended());
+}
+
+// Behind an evaluation that waits for a stop a breakpoint still acts at once.
+TEST_F(Dap, BreakpointsOvertakeWhatWaits) {
+  launch();
+  bool asked = false;
+  server_.poll = [&] {
+    if (std::exchange(asked, true)) return;
+    server_.receive(Json{{"type", "request"}, {"seq", 900}, {"command", "evaluate"},
+                         {"arguments", {{"expression", "lFirst"}}}}.dump());
+    server_.receive(Json{{"type", "request"}, {"seq", 901}, {"command", "setBreakpoints"},
+                         {"arguments", {{"source", {{"path", "P1.IPC"}}}, {"breakpoints", {{{"line", 9}}}}}}}
+                        .dump());
+  };
+  ask("continue");
+  EXPECT_EQ(last_stop()["reason"], "breakpoint");
+  std::vector<int> order;
+  for (const Json& message : sent_)
+    if (message["type"] == "response" && message["request_seq"] >= 900) order.push_back(message["request_seq"]);
+  EXPECT_EQ(order, (std::vector<int>{901, 900}));
+}
+
+TEST_F(Dap, AFunctionStopsByItsNameAndOtherTextsAreNotVerified) {
+  plant_ = plant_of({"long n;\nmain()\n{\n  while (1) { work(); _Wait(1); }\n}\nwork()\n{\n  n++;\n}\n"});
+  launch();
+  const Json set = ask("setFunctionBreakpoints",
+                       {{"breakpoints", {{{"name", "work"}, {"hitCondition", "%3"}},
+                                         {{"name", ""}}, {{"name", "???"}}, {{"name", "nobody"}}, {{"name", "40A#*"}}}}});
+  std::vector<bool> verified;
+  for (const Json& one : set["body"]["breakpoints"]) verified.push_back(one["verified"]);
+  EXPECT_EQ(verified, (std::vector<bool>{true, false, false, false, false})) << set;  // this plant has no bus
+  for (const char* passed : {"2", "5", "8"}) {  // before the 3rd, 6th and 9th n++
+    ask("continue");
+    EXPECT_EQ(last_stop()["reason"], "breakpoint");
+    EXPECT_EQ(ask("evaluate", {{"expression", "n"}})["body"]["result"], passed);
+  }
+  ask("setInstructionBreakpoints", {{"breakpoints", Json::array()}});  // leaves those of functions alone
+  ask("continue");
+  EXPECT_EQ(ask("evaluate", {{"expression", "n"}})["body"]["result"], "11");
+}
+
+TEST_F(Dap, ExpressionsHaveTheFormsOfTheLanguage) {
+  launch();
+  const auto value = [&](const std::string& expression) {
+    const Json answer = ask("evaluate", {{"expression", expression}});
+    return answer["success"] ? answer["body"]["result"].get<std::string>() : answer["message"].get<std::string>();
+  };
+  ask("evaluate", {{"expression", "aTable[1] = 7"}, {"context", "repl"}});
+  EXPECT_EQ(value("0b101 + 0B1"), "6");
+  EXPECT_EQ(value("numof(aTable[1]) - numof(aTable)"), "1");
+  EXPECT_EQ(value("*numof(aTable[1])"), "7");
+  EXPECT_EQ(value("5 * *(numof(aTable) + 1)"), "35");
+  EXPECT_EQ(value("aTable"), "{0, 7, 0}");
+  EXPECT_EQ(value("aTable[1],h"), "0x7");
+  EXPECT_NE(value("aTable[3]").find("has 3 elements"), std::string::npos) << value("aTable[3]");
+  EXPECT_NE(value("aTable + 1").find("is 3 variables"), std::string::npos) << value("aTable + 1");
+  EXPECT_NE(value("0b102").find("no number"), std::string::npos);
+  EXPECT_NE(value("numof(7)").find("'7'"), std::string::npos) << value("numof(7)");
+  EXPECT_NE(value("*4711").find("no H4711"), std::string::npos);
+}
+
+// Every parameter takes what is shown of it, each in the form it is shown in.
+TEST_F(Dap, ParametersTakeWhatIsShown) {
+  launch();
+  const int thread = ask("threads")["body"]["threads"][0]["id"];
+  const int frame = ask("stackTrace", {{"threadId", thread}})["body"]["stackFrames"][0]["id"];
+  const Json reference = ask("scopes", {{"frameId", frame}})["body"]["scopes"][2]["variablesReference"];
+  size_t set = 0;
+  for (const bool hex : {false, true}) {
+    const Json all =
+        ask("variables", {{"variablesReference", reference}, {"format", {{"hex", hex}}}})["body"]["variables"];
+    EXPECT_GT(all.size(), 300U);
+    for (const Json& one : all) {
+      const Json answer = ask("setVariable", {{"variablesReference", reference}, {"name", one["name"]},
+                                              {"value", one["value"]}, {"format", {{"hex", hex}}}});
+      // What is refused is refused for what the parameter is (read only, inhibit), not for the form of the text.
+      const std::string why = answer.value("message", "");
+      EXPECT_EQ(why.find(" in '"), std::string::npos) << one << " " << why;
+      if (answer["success"]) {
+        EXPECT_EQ(answer["body"]["value"], one["value"]);
+      }
+      set += answer["success"].get<bool>();
+    }
+  }
+  EXPECT_GT(set, 400U);
+  const auto after = [&](const char* text) {
+    return ask("setVariable", {{"variablesReference", reference}, {"name", "P130"}, {"value", text}})["body"]["value"];
+  };
+  EXPECT_EQ(after("2.5 s"), "2500 (2.500 s)");
+  EXPECT_EQ(after("3000"), "3000 (3.000 s)");
+  EXPECT_EQ(after("3000 (4.000 s)"), "4000 (4.000 s)");
+  EXPECT_EQ(after("5000 (4.000 s)"), "5000 (5.000 s)");
+}
+
+TEST_F(Dap, LinesColumnsAndPathsAreThoseOfTheEditor) {
+  ask("initialize", {{"linesStartAt1", false}, {"columnsStartAt1", false}, {"pathFormat", "uri"}});
+  ask("launch", {{"program", "P1.IPC"}, {"stopOnEntry", false}});
+  const std::string uri = "file://" + std::filesystem::absolute("P1.IPC").string();
+  const Json set = ask("setBreakpoints",
+                       {{"source", {{"path", uri}}}, {"breakpoints", Json::array({Json{{"line", 6}}})}});
+  EXPECT_EQ(set["body"]["breakpoints"][0]["line"], 6) << set;
+  ask("configurationDone");
+  const int thread = ask("threads")["body"]["threads"][0]["id"];
+  const Json top = ask("stackTrace", {{"threadId", thread}})["body"]["stackFrames"][0];
+  EXPECT_EQ(top["line"], 6);    // aTable[1] = lFirst;
+  EXPECT_EQ(top["column"], 2);  // behind two blanks
+  EXPECT_EQ(top["source"]["path"], uri);
+  const Json targets = ask("completions", {{"text", "1 + lFi"}, {"column", 7}})["body"]["targets"];
+  ASSERT_EQ(targets.size(), 1U);
+  EXPECT_EQ(targets[0]["start"], 4);
+}
+
+// VS Code searches for the present command by halves.
+TEST_F(DapOfAPlant, AddressesOfAViewRise) {
+  launch();
+  const int thread = ask("threads")["body"]["threads"][0]["id"];
+  const Json here = ask("stackTrace", {{"threadId", thread}})["body"]["stackFrames"][0]["instructionPointerReference"];
+  const auto addresses = [&](const Json& reference, int offset, int count) {
+    const Json rows = ask("disassemble", {{"memoryReference", reference}, {"instructionOffset", offset},
+                                          {"instructionCount", count}})["body"]["instructions"];
+    std::vector<int64_t> all;
+    for (const Json& row : rows) all.push_back(std::stoll(row["address"].get<std::string>()));
+    return all;
+  };
+  const auto all = addresses(here, -200, 400);
+  ASSERT_EQ(all.size(), 400U);
+  EXPECT_TRUE(std::is_sorted(all.begin(), all.end()));
+  EXPECT_EQ(std::adjacent_find(all.begin(), all.end()), all.end());
+  EXPECT_EQ(all[200], std::stoll(here.get<std::string>()));
+  // What fills up has references, too: going on from one gives the same rows.
+  const auto further = addresses(std::to_string(all[0]), 100, 200);
+  EXPECT_EQ(further, std::vector<int64_t>(all.begin() + 100, all.begin() + 300));
+  const auto behind = addresses(std::to_string(all[399]), -300, 200);
+  EXPECT_EQ(behind, std::vector<int64_t>(all.begin() + 99, all.begin() + 299));
+}
+
+TEST_F(DapOfAPlant, WatchesOpenStructuresAndArrays) {
+  launch();
+  const int thread = ask("threads")["body"]["threads"][0]["id"];
+  const Json scopes = ask("scopes", {{"frameId", ask("stackTrace", {{"threadId", thread}})["body"]["stackFrames"][0]["id"]}})["body"]["scopes"];
+  const Json left = ask("evaluate", {{"expression", "left"}, {"context", "watch"}})["body"];
+  EXPECT_EQ(left["result"], "{0, 0, 0}");
+  const Json members = ask("variables", {{"variablesReference", left["variablesReference"]}})["body"]["variables"];
+  ASSERT_EQ(members.size(), 2U);
+  EXPECT_EQ(members[1]["name"], "speed");
+  const Json speed = ask("evaluate", {{"expression", "unit1.left.speed"}, {"context", "hover"}})["body"];
+  EXPECT_EQ(speed["indexedVariables"], 2);
+  const auto children = [&](const Json& reference, const char* filter) {
+    return ask("variables", {{"variablesReference", reference}, {"filter", filter}})["body"]["variables"].size();
+  };
+  EXPECT_EQ(children(speed["variablesReference"], "indexed"), 2U);
+  EXPECT_EQ(children(speed["variablesReference"], "named"), 0U);
+  EXPECT_EQ(children(scopes[1]["variablesReference"], "named"), 0U);
+  EXPECT_EQ(children(scopes[1]["variablesReference"], "indexed"), 1024U);
+  EXPECT_GT(children(scopes[0]["variablesReference"], "named"), 0U);
+  EXPECT_EQ(children(scopes[0]["variablesReference"], "indexed"), 0U);
+  // A member is watched by the name it has within its structure.
+  EXPECT_FALSE(ask("dataBreakpointInfo", {{"variablesReference", left["variablesReference"]}, {"name", "target"}})
+                   ["body"]["dataId"].is_null());
+}
+
+// An axis of a plant that is built anew each time: the signal is that of the present plant.
+TEST_F(DapOfAPlant, AWatchedSignalSurvivesTheWayBack) {
+  launch();
+  const Json id = ask("dataBreakpointInfo", {{"name", "unit1.status"}})["body"]["dataId"];
+  ASSERT_FALSE(id.is_null());
+  const Json set = ask("setDataBreakpoints", {{"breakpoints", {{{"dataId", id}}, {{"dataId", "nonsense"}}, {{"dataId", "{}"}}}}});
+  EXPECT_EQ(set["body"]["breakpoints"][0]["verified"], true) << set;
+  EXPECT_EQ(set["body"]["breakpoints"][1]["verified"], false);
+  EXPECT_EQ(set["body"]["breakpoints"][2]["verified"], false);
+  ask("continue");
+  EXPECT_TRUE(ask("reverseContinue")["success"]);
+  EXPECT_TRUE(ask("evaluate", {{"expression", "unit1.status"}})["success"]);
+}
+
+// Nothing that a client may send brings a text of the libraries below to it.
+TEST_F(DapOfAPlant, NoTextOfAnExceptionReachesTheClient) {
+  launch();
+  const Json values[] = {nullptr, true, -1, 1e99, "x", "99999999999999999999", "0xzz", Json::array({1}), {{"a", 1}}};
+  for (const char* command :
+       {"setBreakpoints", "setInstructionBreakpoints", "dataBreakpointInfo", "setDataBreakpoints",
+        "setExceptionBreakpoints", "setFunctionBreakpoints", "stackTrace", "scopes", "variables", "setVariable",
+        "setExpression", "evaluate", "completions", "disassemble", "next", "stepIn", "threads"})
+    for (const char* key :
+         {"source", "breakpoints", "name", "variablesReference", "filters", "threadId", "frameId", "start", "count",
+          "value", "expression", "text", "column", "memoryReference", "instructionCount", "instructionOffset",
+          "offset", "granularity", "format", "context"})
+      for (const Json& value : values) {
+        Json arguments{{"breakpoints", Json::array({Json{{"line", value}, {"instructionReference", value},
+                                                         {"name", value}, {"dataId", value}}})},
+                       {"name", "left"}, {"expression", "left"}, {"variablesReference", 1}, {"value", "1"},
+                       {"source", {{"path", value}}}, {"memoryReference", "65536"}, {"instructionCount", 1}};
+        arguments[key] = value;
+        const Json answer = ask(command, arguments);
+        const std::string why = answer.value("message", "");
+        for (const char* part : {"json", "exception", "stoul", "stoi", "type_error", "std::", "basic_string", "vector", "map::at"})
+          EXPECT_EQ(why.find(part), std::string::npos) << command << " " << key << " " << value << ": " << why;
+        references_again();
+      }
+  EXPECT_TRUE(ask("threads")["success"]);
 }
 
 TEST_F(Dap, BadRequestsAreRefusedAndTheSessionGoesOn) {

@@ -2,6 +2,10 @@
 // back.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
 
 #include "tests/realbus/script.hpp"
 #include "tests/tools/command.hpp"
@@ -46,6 +50,75 @@ TEST(DebugScript, GoesBackToTheCauseOfAWrongValue) {
 TEST(DebugScript, SnapshotsGiveTheSameSessionAsRunningAnew) {
   const ScriptResult anew = debug(kBack, "--no-snapshots");
   EXPECT_EQ(debug(kBack).output, anew.output);
+}
+
+// A script of another system.
+TEST(DebugScript, LinesMayEndWithCrLf) {
+  std::string script = kBack;
+  for (size_t at = 0; (at = script.find('\n', at)) != std::string::npos; at += 2) script.insert(at, "\r");
+  EXPECT_EQ(debug(script).output, debug(kBack).output);
+}
+
+// Where no process can be made at the moment of going back, the way is the longer one. The limit counts the processes of
+// a user; it does not bind root.
+TEST(DebugScript, GoesTheLongerWayWhenAForkFailsOnTheWayBack) {
+  if (geteuid() == 0 && std::system("command -v setpriv > /dev/null") != 0) GTEST_SKIP() << "no setpriv here";
+  const TemporaryFolder folder;
+  std::filesystem::permissions(folder.path(), std::filesystem::perms::all);
+  folder.write("MAIN.IPC", kProgram);
+  const std::string input = folder.write("script", kBack);
+  const std::string as = geteuid() == 0 ? "setpriv --reuid 54321 --clear-groups" : "";
+  // Nobody else is that user: the shell's process becomes the first of ipos, the second is its worker, and there is
+  // room for one snapshot but not for the copy that would go on from it.
+  for (const int processes : {2, 3, 4}) {
+    const ScriptResult result =
+        run_script({"/bin/sh", "-c",
+                    fmt::format("cd '{}' && {} sh -c \"ulimit -u {}; exec '{}' debug --unit mdxb MAIN.IPC < '{}'\" 2>&1",
+                                folder.path().string(), as, processes, ipos_program(), input)});
+    EXPECT_EQ(result.exit_code, 0) << processes << "\n" << result.output;
+    EXPECT_EQ(result.output, debug(kBack).output) << processes;
+  }
+}
+
+// What an editor sends arrives in pieces of any size. dd writes byte by byte.
+TEST(DapSession, IsTheSameInOnePieceAndByteByByte) {
+  const TemporaryFolder folder;
+  const std::string program = folder.write("MAIN.IPC", kProgram);
+  std::string session;
+  int seq = 0;
+  const auto send = [&](const std::string& command, const std::string& arguments = "{}") {
+    const std::string body = fmt::format(R"({{"type":"request","seq":{},"command":"{}","arguments":{}}})", ++seq,
+                                         command, arguments);
+    session += fmt::format("Content-Length: {}\r\n\r\n{}", body.size(), body);
+  };
+  send("initialize");
+  send("launch", fmt::format(R"({{"program":"{}","unit":"mdxb"}})", program));
+  send("setBreakpoints", fmt::format(R"({{"source":{{"path":"{}"}},"breakpoints":[{{"line":8,"hitCondition":"%3"}}]}})", program));
+  send("configurationDone");
+  send("continue", R"({"threadId":2})");
+  send("stackTrace", R"({"threadId":2})");
+  send("evaluate", R"({"expression":"lCount"})");
+  send("setBreakpoints", fmt::format(R"({{"source":{{"path":"{}"}},"breakpoints":[]}})", program));
+  send("continue", R"({"threadId":2})");  // nothing stops it but what follows
+  send("pause", R"({"threadId":2})");
+  send("threads");
+  send("continue", R"({"threadId":2})");
+  send("terminate");
+  send("disconnect");
+  folder.write("session", session);
+  for (const char* feed : {"cat session", "dd bs=1 if=session status=none", "dd bs=37 if=session status=none"}) {
+    const ScriptResult result =
+        run_script({"/bin/sh", "-c", fmt::format("cd '{}' && {} | '{}' dap 2>&1", folder.path().string(), feed,
+                                                 ipos_program())});
+    EXPECT_EQ(result.exit_code, 0) << feed;
+    for (int n = 1; n <= seq; ++n) {
+      const std::string answer = fmt::format("\"request_seq\":{},", n);
+      EXPECT_NE(result.output.find(answer), std::string::npos) << feed << " " << n << "\n" << result.output;
+    }
+    EXPECT_EQ(result.output.find("\"success\":false"), std::string::npos) << feed << "\n" << result.output;
+    EXPECT_NE(result.output.find("\"event\":\"terminated\""), std::string::npos) << feed;
+    EXPECT_NE(result.output.find("\"result\":\"3\""), std::string::npos) << feed << "\n" << result.output;
+  }
 }
 
 TEST(DebugScript, AnswersMistakes) {

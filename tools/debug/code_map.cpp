@@ -18,7 +18,10 @@ bool same_file(std::string_view known, std::string_view asked) {
   if (known == asked) return true;
   if (asked.find('/') == std::string_view::npos) return fs::path(known).filename() == asked;
   std::error_code error;
-  return fs::weakly_canonical(known, error) == fs::weakly_canonical(asked, error);
+  const auto whole = [&error](std::string_view path) {
+    return fs::weakly_canonical(fs::absolute(path, error), error);
+  };
+  return whole(known) == whole(asked);
 }
 
 }  // namespace

@@ -87,16 +87,17 @@ void Console::attach(Debugger& debugger) {
 }
 
 bool Console::execute(const std::string& line) {
-  size_t begin = line.find_first_not_of(" \t\r");
+  const size_t begin = line.find_first_not_of(" \t\r");
   if (begin != std::string::npos && line[begin] == '#') return true;
-  const std::string text = begin == std::string::npos ? last_line_ : line.substr(begin);
+  const std::string text = begin == std::string::npos
+                               ? last_line_
+                               : line.substr(begin, line.find_last_not_of(" \t\r") + 1 - begin);
   last_line_ = text;
   if (text.empty()) return true;
   const size_t end = std::min(text.find_first_of(" \t/"), text.size());
   const std::string word = text.substr(0, end);
   std::string arguments = text.substr(end);
   arguments.erase(0, arguments.find_first_not_of(" \t"));
-  arguments.erase(arguments.find_last_not_of(" \t\r") + 1);
   try {
     const Command* command = find(word);
     if (command == nullptr) throw ValueError(fmt::format("'{}' is no command; see help", word));
@@ -113,6 +114,9 @@ void Console::go(Motion motion, bool backward, const std::string& count) {
       (std::from_chars(count.data(), count.data() + count.size(), times).ec != std::errc() || times < 1))
     throw ValueError(fmt::format("'{}' is no count", count));
   if (motion != Motion::Continue && current_.task == 0) throw ValueError("no task runs");
+  if (motion == Motion::Out && !backward && debugger_->order_for(motion, current_).depth == 0 &&
+      debugger_->order_for(motion, current_).context <= vm::kTasks)
+    throw ValueError("finish leaves a function that was called; main() is none");
   if (backward && times != 1) throw ValueError("one step back at a time");
   more_ = times - 1;
   run(debugger_->order_for(motion, current_, backward));

@@ -125,12 +125,13 @@ void Console::hits(const std::string& arguments) {
   in >> id >> std::ws;
   std::string text;
   std::getline(in, text);
-  for (Breakpoint& point : debugger_->breakpoints())
-    if (point.id == id) {
-      point.hit_condition = text;
-      return;
-    }
-  throw ValueError(fmt::format("there is no breakpoint {}", id));
+  const auto change = [&](auto& points) {
+    for (auto& point : points)
+      if (point.id == id) return point.hit_condition = text, true;
+    return false;
+  };
+  if (!change(debugger_->breakpoints()) && !change(debugger_->watchpoints()))
+    throw ValueError(fmt::format("there is no breakpoint {}", id));
 }
 
 void Console::remove(const std::string& arguments) {
@@ -150,7 +151,16 @@ void Console::remove(const std::string& arguments) {
 void Console::enable(const std::string& arguments, bool on) {
   std::istringstream in(arguments);
   std::vector<int> ids;
-  for (int id = 0; in >> id;) ids.push_back(id);
+  for (std::string word; in >> word;) {
+    const auto id = number_of(word);
+    const auto same = [&id](const auto& point) { return id && point.id == static_cast<int>(*id); };
+    const auto& breakpoints = debugger_->breakpoints();
+    const auto& watchpoints = debugger_->watchpoints();
+    if (std::none_of(breakpoints.begin(), breakpoints.end(), same) &&
+        std::none_of(watchpoints.begin(), watchpoints.end(), same))
+      throw ValueError(fmt::format("there is no breakpoint {}", word));
+    ids.push_back(static_cast<int>(*id));
+  }
   const auto change = [&](auto& points) {
     for (auto& point : points)
       if (ids.empty() || std::find(ids.begin(), ids.end(), point.id) != ids.end()) point.enabled = on;
@@ -164,6 +174,9 @@ void Console::until(const std::string& arguments) {
   const runtime::Time time = runtime::parse_duration(arguments);
   Order order = debugger_->order_for(time >= 0 ? Motion::ToTime : Motion::ToAddress, current_);
   if (time >= 0) {
+    if (time <= debugger_->plant().now())
+      throw ValueError(fmt::format("it is {:.3f} ms already; see reverse-continue",
+                                   static_cast<double>(debugger_->plant().now()) / 1e6));
     order.time = time;
   } else {
     const Location at = locate(arguments);
@@ -181,8 +194,9 @@ void Console::info_breakpoints() {
                        point.log.empty() ? "" : " prints " + point.log, point.hits,
                        point.enabled ? "" : ", disabled"));
   for (const Watchpoint& point : debugger_->watchpoints())
-    print_(fmt::format("{:<3} watch {}{}, {} hits{}\n", point.id, point.place.name,
-                       point.condition.empty() ? "" : " if " + point.condition, point.hits,
+    print_(fmt::format("{:<3} watch {}{}{}, {} hits{}\n", point.id, point.place.name,
+                       point.condition.empty() ? "" : " if " + point.condition,
+                       point.hit_condition.empty() ? "" : " at hits " + point.hit_condition, point.hits,
                        point.enabled ? "" : ", disabled"));
 }
 

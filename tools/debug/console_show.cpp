@@ -3,29 +3,15 @@
 
 #include <algorithm>
 #include <charconv>
-#include <sstream>
 
+#include "tools/cli/text_lines.hpp"
 #include "tools/debug/console.hpp"
 #include "tools/input/sources.hpp"
 
 namespace ipos::tools::debug {
-namespace {
-
-std::string number_text(int32_t value, bool hex) {
-  return hex ? fmt::format("{:#x}", static_cast<uint32_t>(value)) : fmt::format("{}", value);
-}
-
-}  // namespace
-
 std::string Console::source_line(const std::string& file, uint32_t line) {
   auto [entry, is_new] = sources_.try_emplace(file);
-  if (is_new) {
-    std::istringstream in(source_text(file).value_or(""));
-    for (std::string text; std::getline(in, text);) {
-      if (text.ends_with('\r')) text.pop_back();
-      entry->second.push_back(std::move(text));
-    }
-  }
+  if (is_new) entry->second = text_lines(source_text(file).value_or(""));
   return line == 0 || line > entry->second.size() ? std::string() : entry->second[line - 1];
 }
 
@@ -112,7 +98,7 @@ void Console::examine(const std::string& arguments) {
           fmt::format("{:>6}  {}\n", code->items()[item].address, code->text(code->items()[item].address)));
     return;
   }
-  ValuePlace place = evaluate_place(debugger_->plant(), current_.station, what);
+  ValuePlace place = evaluate_place(debugger_->plant(), current_.station, what, true);
   if (place.kind != ValueKind::Variable) throw ValueError("x shows variables; see print");
   const auto& station = *debugger_->plant().stations()[place.station];
   for (; count != 0 && place.number < station.config().unit->variables; --count, ++place.number)
@@ -126,7 +112,8 @@ void Console::set(const std::string& arguments) {
   const ValuePlace place = evaluate_place(
       debugger_->plant(), current_.station,
       arguments.substr(arguments.starts_with("var ") ? 4 : 0, arguments.starts_with("var ") ? at - 4 : at));
-  debugger_->write(place, evaluate(debugger_->plant(), current_.station, arguments.substr(at + 1)));
+  debugger_->write(place,
+                   evaluate_for(debugger_->plant(), current_.station, place, arguments.substr(at + 1)));
 }
 
 void Console::disassemble(const std::string& arguments) {

@@ -1,16 +1,30 @@
-// Requests of the debug adapter protocol: the session, breakpoints, running.
+// Requests of the debug adapter protocol: the session, running, what stops.
 #include "tools/debug/dap.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "compiler/diag/places.hpp"
 #include "runtime/plant/station_signals.hpp"
+#include "tools/cli/failure.hpp"
+#include "tools/lsp/transport.hpp"
 
 namespace ipos::tools::debug {
 namespace {
 
 constexpr int kTaskNumbers = 4;  // thread = station x this + task + 1, as 0 is none
+
+std::string command_of(const Json& message) {
+  const auto command = message.find("command");
+  return command != message.end() && command->is_string() ? command->get<std::string>() : std::string();
+}
+
+// What ends a run that is under way.
+bool stops_running(const Json& message) {
+  const std::string command = command_of(message);
+  return command == "pause" || command == "disconnect" || command == "terminate";
+}
 
 }  // namespace
 
@@ -49,16 +63,15 @@ const std::vector<DapServer::Request>& DapServer::requests() {
       {"reverseContinue", &S::reverse_continue},
       {"pause", &S::pause},
       {"disconnect", &S::disconnect},
-      {"terminate", &S::disconnect},
+      {"terminate", &S::terminate},
   };
   return kRequests;
 }
 
 void DapServer::receive(std::string_view body) {
-  Json message = Json::parse(body, nullptr, false);
+  Json message = lsp::parsed(body);
   if (!message.is_object()) return;
-  const std::string command = message.value("command", "");
-  if (command == "pause" || command == "disconnect" || command == "terminate") pause_ = true;
+  pause_ = pause_ || stops_running(message);
   queue_.push_back(std::move(message));
 }
 
@@ -66,27 +79,45 @@ bool DapServer::handle_next() {
   if (queue_.empty()) return false;
   const Json message = std::move(queue_.front());
   queue_.pop_front();
-  Json answer{{"type", "response"}, {"request_seq", message.value("seq", int64_t{0})}, {"success", true}};
-  const std::string command = message.contains("command") && message["command"].is_string()
-                                  ? message["command"].get<std::string>()
-                                  : std::string();
-  answer["command"] = command;
+  answer(message);
+  return true;
+}
+
+// The text of no exception but ours reaches the editor: others are about our code, not about what was asked.
+void DapServer::answer(const Json& message) {
+  const std::string command = command_of(message);
+  const auto seq = message.find("seq");
+  Json answer{{"type", "response"},
+              {"request_seq", seq != message.end() && seq->is_number_integer() ? seq->get<int64_t>() : 0},
+              {"success", true},
+              {"command", command}};
+  const auto refuse = [&answer](const std::string& why) {
+    answer["success"] = false;
+    answer["message"] = why;
+  };
   try {
     const Request* found = nullptr;
     for (const Request& request : requests())
       if (request.command == command) found = &request;
-    if (found == nullptr) throw ValueError(fmt::format("'{}' is not known", command));
-    const Json arguments = message.value("arguments", Json::object());
-    answer["body"] = (this->*found->handle)(arguments);
-  } catch (const std::exception& error) {
-    answer["success"] = false;
-    answer["message"] = error.what()[0] == '\0' ? "see the messages of ipos" : error.what();
+    if (found == nullptr) throw ValueError(fmt::format("'{}' is not known", compiler::printable(command)));
+    const auto arguments = message.find("arguments");
+    const bool some = arguments != message.end() && arguments->is_object();
+    answer["body"] = (this->*found->handle)(some ? *arguments : Json::object());
+  } catch (const ValueError& error) {
+    refuse(error.what());
+  } catch (const Failure& failure) {
+    refuse(failure.what()[0] == '\0' ? "see the messages of ipos" : failure.what());
+  } catch (const Json::exception&) {
+    refuse(fmt::format("the arguments of '{}' are not as the protocol says", command));
+  } catch (const std::exception&) {
+    refuse(fmt::format("'{}' failed", command));
   }
   answer["seq"] = ++seq_;
+  const bool good = answer["success"].get<bool>();
   send_(answer);
-  if (command == "initialize" && answer["success"].get<bool>()) event("initialized", Json::object());
+  if (command == "initialize" && good) event("initialized", Json::object());
+  if (command == "terminate" && good) event("terminated", Json::object());
   if (order_) go();
-  return true;
 }
 
 void DapServer::event(const std::string& name, Json body) {
@@ -101,7 +132,8 @@ void DapServer::output(const std::string& text) {
 void DapServer::go() {
   const Order order = *order_;
   order_.reset();
-  pause_ = false;
+  // What the editor has sent behind this order is not lost.
+  pause_ = closed_ || std::any_of(queue_.begin(), queue_.end(), stops_running);
   forward_ = !order.backward;
   frame_seen_.clear();
   report(debugger_->run(order));
@@ -150,10 +182,18 @@ void DapServer::report(const Stop& stop) {
 bool DapServer::keep_going() {
   poll();
   // What an editor does while the plant runs takes effect at once; everything else waits for a stop.
-  static constexpr std::string_view kAlways[] = {"setBreakpoints", "setInstructionBreakpoints", "threads"};
-  while (!queue_.empty() && std::find(std::begin(kAlways), std::end(kAlways),
-                                      queue_.front().value("command", "")) != std::end(kAlways))
-    handle_next();
+  static constexpr std::string_view kAlways[] = {"setBreakpoints", "setInstructionBreakpoints",
+                                                 "setFunctionBreakpoints", "threads"};
+  const auto at_once = [](const Json& message) {
+    return std::find(std::begin(kAlways), std::end(kAlways), command_of(message)) != std::end(kAlways);
+  };
+  for (;;) {
+    const auto next = std::find_if(queue_.begin(), queue_.end(), at_once);
+    if (next == queue_.end()) break;
+    const Json message = std::move(*next);
+    queue_.erase(next);
+    answer(message);
+  }
   return !pause_ && frame_seen_.empty();
 }
 
@@ -176,7 +216,8 @@ Json DapServer::save() {
   Json sources = Json::array();
   for (const auto& [id, source] : sources_) sources.push_back({id, source.first, source.second});
   return {{"seq", seq_},        {"told", told_},         {"queue", queue_}, {"faults", fault_points_},
-          {"sources", sources}, {"input", save_input()}, {"pause", pause_}, {"frames", frame_points_}};
+          {"sources", sources}, {"input", save_input()}, {"pause", pause_}, {"frames", frame_points_},
+          {"functions", function_points_}, {"closed", closed_}};
 }
 
 void DapServer::load(const Json& state) {
@@ -184,6 +225,8 @@ void DapServer::load(const Json& state) {
   told_ = state["told"];
   queue_ = state["queue"].get<std::deque<Json>>();
   pause_ = state["pause"];
+  closed_ = state["closed"];
+  function_points_ = state["functions"].get<std::vector<int>>();
   fault_points_ = state["faults"].get<std::vector<int>>();
   frame_points_ = state["frames"].get<std::vector<std::pair<int, std::string>>>();
   order_.reset();
@@ -207,14 +250,18 @@ TaskRef DapServer::task_of(const Json& arguments, const char* key) const {
   return task;
 }
 
-Json DapServer::initialize(const Json&) {
+Json DapServer::initialize(const Json& arguments) {
+  lines_from_1_ = arguments.value("linesStartAt1", true);
+  columns_from_1_ = arguments.value("columnsStartAt1", true);
+  uris_ = arguments.value("pathFormat", "path") == "uri";
   Json can = Json::object();
   for (const char* word :
        {"supportsConfigurationDoneRequest", "supportsFunctionBreakpoints", "supportsConditionalBreakpoints",
         "supportsHitConditionalBreakpoints", "supportsLogPoints", "supportsEvaluateForHovers",
         "supportsStepBack", "supportsSetVariable", "supportsSetExpression", "supportsDataBreakpoints",
         "supportsDisassembleRequest", "supportsInstructionBreakpoints", "supportsSteppingGranularity",
-        "supportsTerminateRequest", "supportsRestartRequest", "supportsCompletionsRequest"})
+        "supportsTerminateRequest", "supportsRestartRequest", "supportsCompletionsRequest",
+        "supportsValueFormattingOptions"})
     can[word] = true;
   can["exceptionBreakpointFilters"] =
       Json::array({{{"filter", "fault"}, {"label", "Faults of drives"}, {"default", true}}});
@@ -238,139 +285,6 @@ Json DapServer::configured(const Json&) {
   else
     order_ = Order{};
   return Json::object();
-}
-
-Json DapServer::breakpoint_json(const Breakpoint& breakpoint) const {
-  const SourcePlace place = debugger_->code(breakpoint.station)->place(breakpoint.address);
-  Json json{{"id", breakpoint.id},
-            {"verified", true},
-            {"instructionReference", fmt::format("{}", breakpoint.station * 65536 + breakpoint.address)}};
-  if (place.line != 0) json["line"] = place.line;
-  return json;
-}
-
-Json DapServer::set_breakpoints(const Json& arguments) {
-  auto& all = debugger().breakpoints();
-  const std::string file = arguments.at("source").value("path", arguments.at("source").value("name", ""));
-  std::erase_if(all, [&](const Breakpoint& point) {
-    const auto source = sources_.find(point.id);
-    return source != sources_.end() && source->second.first == file;
-  });
-  Json answer = Json::array();
-  for (const Json& asked : arguments.value("breakpoints", Json::array())) {
-    const auto line = asked.at("line").get<uint32_t>();
-    Json shown;
-    // A source that several stations run stops each of them; the editor hears of one.
-    for (uint32_t station = 0; station < debugger_->plant().stations().size(); ++station) {
-      const CodeMap* code = debugger_->code(station);
-      const auto address = code == nullptr ? std::nullopt : code->address_of(file, line);
-      if (!address) continue;
-      Breakpoint made{debugger_->next_id(),
-                      station,
-                      *address,
-                      asked.value("condition", ""),
-                      asked.value("hitCondition", ""),
-                      asked.value("logMessage", ""),
-                      false,
-                      true,
-                      0};
-      sources_[made.id] = {file, line};
-      if (shown.is_null()) shown = breakpoint_json(made);
-      all.push_back(std::move(made));
-    }
-    if (shown.is_null())
-      shown = {{"verified", false}, {"line", line}, {"message", "no command belongs to this line"}};
-    answer.push_back(std::move(shown));
-  }
-  return {{"breakpoints", answer}};
-}
-
-// References of commands are station x 65536 + word address.
-Json DapServer::set_instruction_breakpoints(const Json& arguments) {
-  auto& all = debugger().breakpoints();
-  std::erase_if(all, [&](const Breakpoint& point) { return !sources_.contains(point.id); });
-  Json answer = Json::array();
-  for (const Json& asked : arguments.at("breakpoints")) {
-    const auto number =
-        static_cast<uint32_t>(std::stoul(asked.at("instructionReference").get<std::string>(), nullptr, 0)) +
-        static_cast<uint32_t>(asked.value("offset", 0));
-    const uint32_t station = number >> 16U, address = number & 0xFFFFU;
-    if (station >= debugger_->plant().stations().size() || debugger_->code(station) == nullptr ||
-        !debugger_->code(station)->is_command(address)) {
-      answer.push_back({{"verified", false}, {"message", "no command begins there"}});
-      continue;
-    }
-    all.push_back({debugger_->next_id(), station, address, asked.value("condition", ""),
-                   asked.value("hitCondition", ""), "", false, true, 0});
-    answer.push_back(breakpoint_json(all.back()));
-  }
-  return {{"breakpoints", answer}};
-}
-
-Json DapServer::data_breakpoint_info(const Json& arguments) {
-  uint32_t station = 0;
-  const auto reference = arguments.value("variablesReference", 0U);
-  if (reference > 0 && reference <= references_.size()) station = references_[reference - 1].station;
-  std::string name = arguments.at("name");
-  if (reference > 0 && reference <= references_.size() && name.starts_with('['))
-    name = references_[reference - 1].name + name;
-  try {
-    const ValuePlace place = evaluate_place(debugger().plant(), station, name);
-    const std::string whole = debugger_->plant().stations()[place.station]->config().name + "." +
-                              place.name.substr(place.station == station ? 0 : place.name.find('.') + 1);
-    return {{"dataId", Json(place).dump()},
-            {"description", whole},
-            {"accessTypes", Json::array({"write"})},
-            {"canPersist", false}};
-  } catch (const ValueError& error) {
-    return {{"dataId", nullptr}, {"description", error.what()}};
-  }
-}
-
-Json DapServer::set_data_breakpoints(const Json& arguments) {
-  std::erase_if(debugger().watchpoints(), [this](const Watchpoint& point) {
-    return std::find(fault_points_.begin(), fault_points_.end(), point.id) == fault_points_.end();
-  });
-  Json answer = Json::array();
-  for (const Json& asked : arguments.at("breakpoints")) {
-    ValuePlace place = Json::parse(asked.at("dataId").get<std::string>());
-    if (place.station >= debugger_->plant().stations().size() ||
-        !find_value(debugger_->plant(), place.station, place.name.substr(0, place.name.find('['))))
-      throw ValueError("the data id is none of this session");
-    debugger_->watchpoints().push_back(
-        {debugger_->next_id(), place.station, place, asked.value("condition", ""), true, 0});
-    answer.push_back({{"id", debugger_->watchpoints().back().id}, {"verified", true}});
-  }
-  return {{"breakpoints", answer}};
-}
-
-// A program that faults stops anyway.
-Json DapServer::set_exception_breakpoints(const Json& arguments) {
-  auto& all = debugger().watchpoints();
-  std::erase_if(all, [this](const Watchpoint& point) {
-    return std::find(fault_points_.begin(), fault_points_.end(), point.id) != fault_points_.end();
-  });
-  fault_points_.clear();
-  const Json filters = arguments.value("filters", Json::array());
-  if (std::find(filters.begin(), filters.end(), "fault") == filters.end()) return Json::object();
-  const auto& stations = debugger_->plant().stations();
-  for (uint32_t n = 0; n < stations.size(); ++n) {
-    const std::string name = stations[n]->config().name + ".fault";
-    all.push_back({debugger_->next_id(), n, {n, ValueKind::Fault, 0, 1, name}, name, true, 0});
-    fault_points_.push_back(all.back().id);
-  }
-  return Json::object();
-}
-
-// Functions are lines already; here a name is a frame: "40A#80*", "sbus1 40A#*", or the bytes of a telegram.
-Json DapServer::set_function_breakpoints(const Json& arguments) {
-  frame_points_.clear();
-  Json answer = Json::array();
-  for (const Json& asked : arguments.value("breakpoints", Json::array())) {
-    frame_points_.emplace_back(debugger().next_id(), asked.at("name").get<std::string>());
-    answer.push_back({{"id", frame_points_.back().first}, {"verified", true}});
-  }
-  return {{"breakpoints", answer}};
 }
 
 Json DapServer::restart(const Json&) {
@@ -419,6 +333,12 @@ Json DapServer::reverse_continue(const Json&) {
 
 // A plant that runs has stopped by the time this is handled; one that stands has nothing to pause.
 Json DapServer::pause(const Json&) { return Json::object(); }
+
+// The plant is gone; the session ends by `disconnect` or the end of the input.
+Json DapServer::terminate(const Json&) {
+  debugger_.reset();
+  return Json::object();
+}
 
 Json DapServer::disconnect(const Json&) {
   ended_ = true;

@@ -13,6 +13,8 @@
 
 namespace ipos::tools::debug {
 
+inline constexpr int kFramesOfTask = 64;  // frame = thread x this + number
+
 // What the editor wants to debug.
 struct DapLaunch {
   std::string file;
@@ -35,7 +37,8 @@ class DapServer final : public FrontEnd, private runtime::BusObserver {
   void receive(std::string_view body);
   // False when there was nothing to do.
   bool handle_next();
-  void close() { pause_ = ended_ = true; }  // nobody listens any more
+  // Nothing more will come. What has come is answered, but a plant runs no further.
+  void close() { pause_ = closed_ = true; }
   bool ended() const { return ended_; }
 
   Json save() override;
@@ -75,8 +78,10 @@ class DapServer final : public FrontEnd, private runtime::BusObserver {
   Json step_back(const Json& arguments);
   Json reverse_continue(const Json& arguments);
   Json pause(const Json& arguments);
+  Json terminate(const Json& arguments);
   Json disconnect(const Json& arguments);
 
+  void answer(const Json& message);
   void go();
   void report(const Stop& stop);
   void tell_journal();
@@ -85,11 +90,31 @@ class DapServer final : public FrontEnd, private runtime::BusObserver {
   Debugger& debugger();
   TaskRef task_of(const Json& arguments, const char* key) const;
   Json breakpoint_json(const Breakpoint& breakpoint) const;
+  bool is_frame(std::string_view name) const;
+  std::optional<ValuePlace> place_of_data(const std::string& id);
+
+  // As the editor counts (initialize), and as ipos does: from 1.
+  uint32_t line_of_client(const Json& line) const;
+  int64_t line_for_client(uint32_t line) const { return int64_t{line} - (lines_from_1_ ? 0 : 1); }
+  int64_t column_for_client(uint32_t column) const { return int64_t{column} - (columns_from_1_ ? 0 : 1); }
+  std::string path_for_client(const std::string& path) const;
+
+  // A command by number; below 0 and behind the program stands what fills up a view of commands.
+  struct CommandPlace {
+    uint32_t station;
+    int64_t address;
+  };
+  static std::string command_reference(uint32_t station, int64_t address);
+  // Nothing when it is no reference to a station with a program.
+  std::optional<CommandPlace> command_of_reference(const std::string& text, int64_t offset);
   uint32_t reference(uint32_t station, int scope, uint32_t first = 0, uint32_t count = 0,
                      std::string name = {});
-  Json value_json(const ValuePlace& place) const;
-  Json scope_values(uint32_t station, int scope) const;
-  Json named_values(uint32_t station, const std::string& prefix);
+  Json value_json(const ValuePlace& place, bool hex) const;
+  Json scope_values(uint32_t station, int scope, bool hex) const;
+  Json named_values(uint32_t station, const std::string& prefix, bool hex);
+  Json whole_json(const Whole& whole, bool hex);
+  Json set_value(const ValuePlace& place, uint32_t station, const Json& arguments);
+  uint32_t station_of_frame(const Json& arguments);
   void on_message(const runtime::Bus& bus, const runtime::BusMessage& message) override;
 
   Make make_;
@@ -100,10 +125,13 @@ class DapServer final : public FrontEnd, private runtime::BusObserver {
   int64_t seq_ = 0;
   bool stop_on_entry_ = true;
   bool pause_ = false;
+  bool closed_ = false;
   bool ended_ = false;
+  bool lines_from_1_ = true, columns_from_1_ = true, uris_ = false;  // of the editor
   size_t told_ = 0;                                          // entries of the journal
   std::optional<Order> order_;                               // given, not yet carried out
   std::map<int, std::pair<std::string, uint32_t>> sources_;  // of source breakpoints: file, line asked for
+  std::vector<int> function_points_;                         // breakpoints by the name of a function
   std::vector<int> fault_points_;                            // watchpoints on the faults of drives
   // Frames to stop at, as their text or behind the name of their bus; while time goes on.
   std::vector<std::pair<int, std::string>> frame_points_;

@@ -42,6 +42,10 @@ void Debugger::build() {
 
 void Debugger::prime() {
   watched_.clear();
+  // What a signal is read from belongs to one plant and does not go with the session.
+  for (Watchpoint& watchpoint : watchpoints_)
+    if (watchpoint.place.kind == ValueKind::Signal)
+      watchpoint.place = evaluate_place(*plant_, watchpoint.station, watchpoint.place.name);
   for (const Watchpoint& watchpoint : watchpoints_) watched_.push_back(read_value(*plant_, watchpoint.place));
 }
 

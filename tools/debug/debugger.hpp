@@ -100,6 +100,7 @@ class Debugger final : private runtime::CommandRunner {
   std::optional<Stop> task_ended() const;
   std::optional<Stop> data_changed(bool backward);
   bool holds(Breakpoint& breakpoint, bool backward);
+  bool hits_hold(uint32_t station, const std::string& condition, uint64_t hits) const;
   bool take(Stop stop);
   void candidate(const Position& at, Stop stop);
   void rewind(const Position& to, bool strictly);

@@ -47,10 +47,11 @@ class Reader {
     expect_end();
     return value;
   }
-  ValuePlace place() {
+  ValuePlace place(bool first_of_array) {
     skip();
-    const ValuePlace found = named(word());
+    const ValuePlace found = take('*') ? at_number(unary()) : named(word());
     expect_end();
+    if (!first_of_array) expect_one(found);
     return found;
   }
 
@@ -132,6 +133,7 @@ class Reader {
     if (take('+')) return unary();
     if (take('!')) return unary() == 0;
     if (take('~')) return ~unary();
+    if (take('*')) return read_value(plant_, at_number(unary()));
     if (take('(')) {
       const int32_t value = binary(1);
       if (!take(')')) fail("')' is missing");
@@ -142,15 +144,50 @@ class Reader {
     if (text.empty()) fail("a value is missing");
     if (std::isdigit(static_cast<unsigned char>(text[0])) != 0) return number(text);
     if (text == "hits" && hits_) return *hits_;
-    return read_value(plant_, named(text));
+    if (text == "numof" && take('(')) return number_of_variable();
+    const ValuePlace place = named(text);
+    expect_one(place);
+    return read_value(plant_, place);
+  }
+  void expect_one(const ValuePlace& place) const {
+    if (place.kind == ValueKind::Variable && place.elements > 1)
+      fail(fmt::format("'{0}' is {1} variables: {0}[0] is one", place.name, place.elements));
+  }
+
+  // numof(name): the number of the variable, the first one of a whole, as in programs.
+  int32_t number_of_variable() {
+    skip();
+    const size_t begin = at_;
+    at_ = std::min(text_.find(')', begin), text_.size());
+    size_t end = at_;
+    while (end > begin && std::isspace(static_cast<unsigned char>(text_[end - 1])) != 0) --end;
+    const std::string_view name = text_.substr(begin, end - begin);
+    if (!take(')')) fail("')' is missing");
+    if (const auto whole = find_whole(plant_, station_, name)) return vm::wrap(whole->variables[0].number);
+    Reader inner(plant_, station_, name, hits_);
+    const ValuePlace place = inner.place(true);
+    if (place.kind != ValueKind::Variable) fail(fmt::format("'{}' is no variable", name));
+    return vm::wrap(place.number);
+  }
+
+  // *420 is H420.
+  ValuePlace at_number(int32_t number) const {
+    const auto first = find_value(plant_, station_, "H0");
+    if (!first) fail("the station has no variables");
+    const auto found = moved(*first, number, fmt::format("H{}", number));
+    if (!found) fail(fmt::format("there is no H{}", number));
+    return *found;
   }
 
   int32_t number(std::string_view text) const {
     const bool hex = text.starts_with("0x") || text.starts_with("0X");
-    const std::string_view digits = hex ? text.substr(2) : text;
+    const bool binary = text.starts_with("0b") || text.starts_with("0B");
+    const std::string_view digits = hex || binary ? text.substr(2) : text;
     uint64_t value = 0;
-    const auto [end, status] =
-        std::from_chars(digits.data(), digits.data() + digits.size(), value, hex ? 16 : 10);
+    const auto [end, status] = std::from_chars(digits.data(), digits.data() + digits.size(), value,
+                                               hex      ? 16
+                                               : binary ? 2
+                                                        : 10);
     if (status != std::errc() || end != digits.data() + digits.size() || value > UINT32_MAX)
       fail(fmt::format("'{}' is no number", text));
     return vm::wrap(static_cast<uint32_t>(value));
@@ -165,7 +202,12 @@ class Reader {
       const int32_t index = index_behind();
       const std::string element = fmt::format("{}[{}]", path, index);
       auto exact = find_value(plant_, station_, element);
-      if (!exact && found && found->kind == ValueKind::Variable) exact = moved(*found, index, element);
+      if (!exact && found && found->kind == ValueKind::Variable) {
+        // Of an array there is nothing behind its end; programs reach what is behind a single variable.
+        if (found->elements > 1 && (index < 0 || vm::bits(index) >= found->elements))
+          fail(fmt::format("'{}' has {} elements", path, found->elements));
+        exact = moved(*found, index, element);
+      }
       found = exact;
       path = element + std::string(word());
       if (path != element) found = find_value(plant_, station_, path);
@@ -210,8 +252,9 @@ class Reader {
 
 }  // namespace
 
-ValuePlace evaluate_place(const runtime::Plant& plant, uint32_t station, std::string_view text) {
-  return Reader(plant, station, text, {}).place();
+ValuePlace evaluate_place(const runtime::Plant& plant, uint32_t station, std::string_view text,
+                          bool first_of_array) {
+  return Reader(plant, station, text, {}).place(first_of_array);
 }
 
 int32_t evaluate(const runtime::Plant& plant, uint32_t station, std::string_view text,

@@ -26,7 +26,7 @@ struct Breakpoint {
   uint32_t station = 0;
   uint32_t address = 0;
   std::string condition;      // empty: always
-  std::string hit_condition;  // ">= 5", "% 3", or a number: from that one on
+  std::string hit_condition;  // ">= 5", "% 3": each third, or a number: from that one on
   std::string log;            // a logpoint: printed instead of stopping, {expressions} with their values
   bool temporary = false;
   bool enabled = true;
@@ -41,6 +41,7 @@ struct Watchpoint {
   std::string condition;
   bool enabled = true;
   uint64_t hits = 0;
+  std::string hit_condition{};  // as of a breakpoint
 };
 
 // What the user has written, and when: done again when that moment is passed again.
@@ -100,7 +101,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ValuePlace, station, kind, number, elements, 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TaskRef, station, task)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Breakpoint, id, station, address, condition, hit_condition, log, temporary,
                                    enabled, hits)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Watchpoint, id, station, place, condition, enabled, hits)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Watchpoint, id, station, place, condition, enabled, hits, hit_condition)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Change, at, place, value, action)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Order, motion, backward, task, address, time, context, depth)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Stop, reason, task, ids, text)

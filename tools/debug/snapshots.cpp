@@ -1,8 +1,9 @@
-// fork(), a pipe to each copy, and nothing else. A copy whose pipe nobody can write to any more ends, so none
-// is left behind.
+// fork(), a line to each copy, and nothing else. A copy whose line nobody can write to any more ends, so none
+// is left behind. Who goes back ends when the copy has said that it goes on, not before.
 #include "tools/debug/snapshots.hpp"
 
 #include <fmt/format.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -47,6 +48,14 @@ bool read_all(int file, char* bytes, size_t size) {
   return true;
 }
 
+// What a copy answers to who wants to go on from it.
+constexpr char kGoesOn = '1';
+constexpr char kCannot = '0';
+
+bool connected(std::array<int, 2>& ends) {
+  return socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()) == 0;
+}
+
 // Size 0 tells it to end.
 bool send(int file, const std::string& bytes) {
   const uint64_t size = bytes.size();
@@ -72,8 +81,8 @@ void Snapshots::clear() {
 }
 
 void Snapshots::drop(size_t n) {
-  send(held_[n].pipe, {});
-  close(held_[n].pipe);
+  send(held_[n].line, {});
+  close(held_[n].line);
   held_.erase(held_.begin() + static_cast<ptrdiff_t>(n));
 }
 
@@ -84,7 +93,7 @@ void Snapshots::thin_out() {
 
 std::optional<std::string> Snapshots::take(const Position& now) {
   std::array<int, 2> ends{};
-  if (pipe(ends.data()) != 0) return std::nullopt;
+  if (!connected(ends)) return std::nullopt;
   std::fflush(nullptr);
   const pid_t copy = fork();
   if (copy != 0) {
@@ -100,16 +109,29 @@ std::optional<std::string> Snapshots::take(const Position& now) {
     return std::nullopt;
   }
   const auto on_interrupt = std::signal(SIGINT, SIG_IGN);
-  for (;;) {
-    close(ends[1]);
-    std::string bytes = receive(ends[0]);
-    close(ends[0]);
-    // A new pipe, as the end to write to belongs to who goes on from here.
-    if (bytes.empty() || pipe(ends.data()) != 0) _exit(0);
-    const pid_t next = fork();
-    if (next != 0) continue;
-    close(ends[0]);
-    held_.push_back({now, ends[1], getppid()});
+  close(ends[1]);
+  for (int line = ends[0];;) {
+    const std::string bytes = receive(line);
+    if (bytes.empty()) _exit(0);
+    // A new line, as the other end belongs to who goes on from here.
+    std::array<int, 2> next{};
+    const pid_t going_on = connected(next) ? fork() : -1;
+    if (going_on < 0) {  // no room for another one: whoever asked goes the longer way
+      for (const int end : next)
+        if (end > 0) close(end);
+      write_all(line, &kCannot, 1);
+      continue;
+    }
+    if (going_on > 0) {
+      close(line);
+      close(next[1]);
+      line = next[0];
+      continue;
+    }
+    close(next[0]);
+    write_all(line, &kGoesOn, 1);
+    close(line);
+    held_.push_back({now, next[1], getppid()});
     std::signal(SIGINT, on_interrupt);
     return bytes;
   }
@@ -134,7 +156,8 @@ void Snapshots::go_on_from(const Position& snapshot, const std::string& bytes) {
   for (size_t n = held_.size(); n-- > 0;) {
     if (held_[n].position > snapshot)
       drop(n);
-    else if (send(held_[n].pipe, bytes))
+    else if (char reply = kCannot;
+             send(held_[n].line, bytes) && read_all(held_[n].line, &reply, 1) && reply == kGoesOn)
       _exit(0);
     else
       drop(n);

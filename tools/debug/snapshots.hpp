@@ -43,7 +43,7 @@ class Snapshots {
  private:
   struct Held {
     Position position;
-    int pipe;  // to write to
+    int line;  // to write to, and to be answered on
     int process;
   };
   void drop(size_t n);

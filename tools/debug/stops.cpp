@@ -10,6 +10,16 @@ namespace ipos::tools::debug {
 
 using runtime::Station;
 
+// "N" is from that one on, "% N" each Nth, else a comparison.
+bool Debugger::hits_hold(uint32_t station, const std::string& condition, uint64_t hits) const {
+  if (condition.empty()) return true;
+  const bool bare = std::isdigit(static_cast<unsigned char>(condition[0])) != 0;
+  const bool each = condition[0] == '%';
+  return evaluate(*plant_, station,
+                  (bare ? "hits >= " : "hits ") + condition + (each ? " == 0" : ""),
+                  static_cast<int32_t>(hits)) != 0;
+}
+
 // A condition that makes no sense holds, so that its user sees it.
 bool Debugger::holds(Breakpoint& breakpoint, bool backward) {
   try {
@@ -17,10 +27,7 @@ bool Debugger::holds(Breakpoint& breakpoint, bool backward) {
       return false;
     if (backward) return breakpoint.log.empty();
     ++breakpoint.hits;
-    if (breakpoint.hit_condition.empty()) return true;
-    const bool bare = std::isdigit(static_cast<unsigned char>(breakpoint.hit_condition[0])) != 0;
-    return evaluate(*plant_, breakpoint.station, (bare ? "hits >= " : "hits ") + breakpoint.hit_condition,
-                    static_cast<int32_t>(breakpoint.hits)) != 0;
+    return hits_hold(breakpoint.station, breakpoint.hit_condition, breakpoint.hits);
   } catch (const ValueError& error) {
     front_end_.output(fmt::format("breakpoint {}: {}\n", breakpoint.id, error.what()));
     return true;
@@ -78,6 +85,11 @@ std::optional<Stop> Debugger::data_changed(bool backward) {
     }
     if (!counts) continue;
     if (!backward) ++watchpoint.hits;
+    try {
+      if (!backward && !hits_hold(watchpoint.station, watchpoint.hit_condition, watchpoint.hits)) continue;
+    } catch (const ValueError& error) {
+      front_end_.output(fmt::format("watchpoint {}: {}\n", watchpoint.id, error.what()));
+    }
     if (!stop) stop = Stop{Reason::Data, {}, {}, {}};
     stop->ids.push_back(watchpoint.id);
     stop->text += fmt::format("{}{}: {} -> {}", stop->text.empty() ? "" : ", ", watchpoint.place.name,

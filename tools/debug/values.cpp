@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "runtime/plant/variable_names.hpp"
 #include "runtime/plant_file/signal.hpp"
 #include "stdlib/parameters.hpp"
@@ -58,6 +60,14 @@ std::optional<ValuePlace> find_in(const Station& station, uint32_t number, std::
   return place;
 }
 
+// The row of the table; nullptr when the place is no parameter.
+const stdlib::Parameter* parameter_of(const runtime::Plant& plant, const ValuePlace& place) {
+  if (place.kind != ValueKind::Parameter) return nullptr;
+  const auto& table = stdlib::parameter_table(*plant.stations()[place.station]->config().unit);
+  const auto* row = table.find(place.name.substr(place.name.rfind('.') + 1));
+  return row != nullptr ? row : table.find(static_cast<uint16_t>(place.number));
+}
+
 }  // namespace
 
 std::optional<ValuePlace> find_value(const runtime::Plant& plant, uint32_t station, std::string_view name) {
@@ -87,7 +97,9 @@ int32_t read_value(const runtime::Plant& plant, const ValuePlace& place) {
     case ValueKind::Signal: return static_cast<int32_t>(place.signal->read());
     case ValueKind::Fault: break;
   }
-  return station.fault();
+  // Behind the command that faults the drive does not know of it yet.
+  const uint8_t fault = station.fault();
+  return fault == 0 && station.machine() != nullptr ? station.machine()->fault().number : fault;
 }
 
 void write_value(runtime::Plant& plant, const ValuePlace& place, int32_t value) {
@@ -110,16 +122,66 @@ void write_value(runtime::Plant& plant, const ValuePlace& place, int32_t value) 
                                         reply.error()));
 }
 
-std::string value_text(const runtime::Plant& plant, const ValuePlace& place, int32_t value) {
+std::string number_text(int32_t value, bool hex) {
+  return hex ? fmt::format("{:#x}", static_cast<uint32_t>(value)) : fmt::format("{}", value);
+}
+
+std::string value_text(const runtime::Plant& plant, const ValuePlace& place, int32_t value, bool hex) {
   if (place.kind == ValueKind::Signal && !place.signal->unit.empty())
-    return fmt::format("{} ({} {})", value, place.signal->text(value), place.signal->unit);
-  if (place.kind != ValueKind::Parameter) return fmt::format("{}", value);
-  const Station& station = *plant.stations()[place.station];
-  const auto& table = stdlib::parameter_table(*station.config().unit);
-  const auto* row = table.find(place.name.substr(place.name.rfind('.') + 1));
-  if (row == nullptr) row = table.find(static_cast<uint16_t>(place.number));
-  if (row == nullptr) return fmt::format("{}", value);
-  return fmt::format("{} ({})", row->number_of(value), stdlib::parameter_text(*row, value));
+    return fmt::format("{} ({} {})", number_text(value, hex), place.signal->text(value), place.signal->unit);
+  const stdlib::Parameter* row = parameter_of(plant, place);
+  if (row == nullptr) return number_text(value, hex);
+  return fmt::format("{} ({})", hex ? number_text(value, true) : fmt::format("{}", row->number_of(value)),
+                     stdlib::parameter_text(*row, value));
+}
+
+std::optional<Whole> find_whole(const runtime::Plant& plant, uint32_t station, std::string_view name) {
+  const auto in = [&](uint32_t number, std::string_view own) -> std::optional<Whole> {
+    const Station& unit = *plant.stations()[number];
+    if (unit.machine() == nullptr || unit.image() == nullptr) return std::nullopt;
+    auto all = runtime::named_variables(unit.image()->symbols, *unit.config().unit, own);
+    if (all.size() < 2) return std::nullopt;
+    return Whole{number, std::string(own), std::move(all)};
+  };
+  const auto& stations = plant.stations();
+  if (station < stations.size())
+    if (auto found = in(station, name)) return found;
+  for (uint32_t n = 0; n < stations.size(); ++n)
+    if (const std::string prefix = stations[n]->config().name + "."; name.starts_with(prefix))
+      if (auto found = in(n, name.substr(prefix.size()))) return found;
+  return std::nullopt;
+}
+
+std::string whole_text(const runtime::Plant& plant, const Whole& whole, bool hex) {
+  constexpr size_t kShown = 32;
+  std::string text = "{";
+  for (size_t n = 0; n < std::min(whole.variables.size(), kShown); ++n)
+    text += (n == 0 ? "" : ", ") +
+            number_text(plant.stations()[whole.station]->variable(whole.variables[n].number), hex);
+  return text + (whole.variables.size() > kShown ? ", ...}" : "}");
+}
+
+int32_t evaluate_for(const runtime::Plant& plant, uint32_t station, const ValuePlace& place,
+                     std::string_view text) {
+  const size_t begin = std::min(text.find_first_not_of(" \t"), text.size());
+  const std::string_view words = text.substr(begin, text.find_last_not_of(" \t") + 1 - begin);
+  const stdlib::Parameter* row = parameter_of(plant, place);
+  if (row == nullptr) return evaluate(plant, station, words);
+  if (const auto shown = words.find(" ("); words.ends_with(')') && shown != std::string_view::npos) {
+    // Of what is shown a person changes either the number or the words.
+    try {
+      const int32_t value = evaluate(plant, station, words.substr(0, shown));
+      const auto told = stdlib::parse_parameter_text(*row, words.substr(shown + 2, words.size() - shown - 3));
+      return told && value == read_value(plant, place) ? *told : value;
+    } catch (const ValueError&) {  // "2 * (1 + 1)" is an expression as a whole
+    }
+  }
+  try {
+    return evaluate(plant, station, words);
+  } catch (const ValueError&) {
+    if (const auto told = stdlib::parse_parameter_text(*row, words)) return *told;
+    throw;
+  }
 }
 
 }  // namespace ipos::tools::debug

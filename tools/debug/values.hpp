@@ -9,9 +9,11 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "runtime/plant/plant.hpp"
 #include "runtime/plant/station_signals.hpp"
+#include "runtime/plant/variable_names.hpp"
 
 namespace ipos::tools::debug {
 
@@ -38,13 +40,30 @@ int32_t read_value(const runtime::Plant& plant, const ValuePlace& place);
 // Throws ValueError when it is refused.
 void write_value(runtime::Plant& plant, const ValuePlace& place, int32_t value);
 
-// "2000", of a parameter "2500 (2.500 s)".
-std::string value_text(const runtime::Plant& plant, const ValuePlace& place, int32_t value);
+// "2000" or "0x7d0".
+std::string number_text(int32_t value, bool hex);
+// The same, of a parameter "2500 (2.500 s)".
+std::string value_text(const runtime::Plant& plant, const ValuePlace& place, int32_t value, bool hex = false);
 
-// What the expression names: a variable, an element, H[..], a parameter... Throws ValueError.
-ValuePlace evaluate_place(const runtime::Plant& plant, uint32_t station, std::string_view text);
+// A structure, an array or an array of structures: what a name of several variables stands for.
+struct Whole {
+  uint32_t station = 0;
+  std::string name;  // without the station
+  std::vector<runtime::NamedVariable> variables;
+};
+std::optional<Whole> find_whole(const runtime::Plant& plant, uint32_t station, std::string_view name);
+// "{1, 2, 3}", the first of many.
+std::string whole_text(const runtime::Plant& plant, const Whole& whole, bool hex);
+
+// What the expression names: a variable, an element, H[..], *420, a parameter... Throws ValueError, also for an array,
+// which is no one value, unless its first element is wanted of it.
+ValuePlace evaluate_place(const runtime::Plant& plant, uint32_t station, std::string_view text,
+                          bool first_of_array = false);
 // Operators of C on 32-bit numbers, names as above, `hits` where a breakpoint counts. Throws ValueError.
 int32_t evaluate(const runtime::Plant& plant, uint32_t station, std::string_view text,
                  std::optional<int32_t> hits = {});
+// What a person wants to be there: an expression, what value_text() shows of a parameter, or its words ("2.5 s").
+int32_t evaluate_for(const runtime::Plant& plant, uint32_t station, const ValuePlace& place,
+                     std::string_view text);
 
 }  // namespace ipos::tools::debug

@@ -13,9 +13,11 @@
 #include <editline/readline.h>
 #endif
 
+#include "compiler/diag/places.hpp"
 #include "tools/cli/end_of_process.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/verbs.hpp"
+#include "tools/cli/xml_text.hpp"
 #include "tools/debug/console.hpp"
 #include "tools/debug/dap.hpp"
 #include "tools/input/plant_input.hpp"
@@ -100,6 +102,7 @@ class LineInput {
     for (;;) {
       if (const size_t end = rest_.find('\n'); end != std::string::npos) {
         std::string line = rest_.substr(0, end);
+        if (line.ends_with('\r')) line.pop_back();
         rest_.erase(0, end + 1);
         return line;
       }
@@ -174,7 +177,7 @@ char** offers(const char* part, int, int) {
 int debug_console(const DebugFlags& flags) {
   PlantInput input = read_plant_input(flags.file, flags.compile);
   LineInput lines;
-  debug::Console console([](const std::string& text) { fmt::print("{}", text); });
+  debug::Console console([](const std::string& text) { fmt::print("{}", utf8(text)); });
   console.save_input = [&] { return lines.save(); };
   console.load_input = [&](const debug::Json& state) { lines.load(state); };
   console.not_interrupted = [] { return stop_asked == 0; };
@@ -188,7 +191,7 @@ int debug_console(const DebugFlags& flags) {
 #endif
   while (const auto line = lines.next()) {
     stop_asked = 0;
-    if (!lines.is_terminal()) fmt::print("(ipos) {}\n", *line);
+    if (!lines.is_terminal()) fmt::print("(ipos) {}\n", compiler::printable(*line));
     if (!console.execute(*line)) break;
     std::fflush(stdout);
   }

@@ -1,11 +1,9 @@
-// Requests of the debug adapter protocol: what a plant that stands still looks like.
+// Requests of the debug adapter protocol: the values of a plant that stands still.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "tools/debug/dap.hpp"
-#include "tools/input/sources.hpp"
 
 namespace ipos::tools::debug {
 namespace {
@@ -14,7 +12,11 @@ namespace {
 enum Scope : int { Named, Numbers, Parameters, Io, ProcessData, SbusObjects, Elements };
 constexpr const char* kScopes[] = {"Variables",    "H",           "Parameters", "Inputs and outputs",
                                    "Process data", "SBus objects"};
-constexpr int kFrames = 64;  // frame = thread x this + number
+
+bool wants_hex(const Json& arguments) {
+  const auto format = arguments.find("format");
+  return format != arguments.end() && format->is_object() && format->value("hex", false);
+}
 
 }  // namespace
 
@@ -23,33 +25,8 @@ uint32_t DapServer::reference(uint32_t station, int scope, uint32_t first, uint3
   return static_cast<uint32_t>(references_.size());
 }
 
-Json DapServer::stack_trace(const Json& arguments) {
-  const TaskRef task = task_of(arguments, "threadId");
-  const std::vector<Frame> frames = debugger_->frames(task);
-  const auto from = arguments.value("startFrame", size_t{0});
-  const auto levels = arguments.value("levels", size_t{0});
-  Json all = Json::array();
-  for (size_t n = from; n < frames.size() && (levels == 0 || n < from + levels); ++n) {
-    const Frame& frame = frames[n];
-    Json one{{"id", arguments.at("threadId").get<int>() * kFrames + static_cast<int>(n)},
-             {"name", frame.function.empty() ? fmt::format("word {}", frame.address) : frame.function},
-             {"line", frame.place.line},
-             {"column", frame.place.column},
-             {"instructionPointerReference", fmt::format("{}", task.station * 65536 + frame.address)}};
-    if (frame.place.line != 0) {
-      std::error_code error;
-      const auto path = std::filesystem::absolute(frame.place.file, error);
-      one["source"] = {{"name", path.filename().string()}, {"path", path.string()}};
-      if (source_has_changed(frame.place.file))
-        one["source"]["origin"] = "changed since it was compiled: the lines are those of the text that runs";
-    }
-    all.push_back(std::move(one));
-  }
-  return {{"stackFrames", all}, {"totalFrames", frames.size()}};
-}
-
 Json DapServer::scopes(const Json& arguments) {
-  const Json thread{{"id", arguments.at("frameId").get<int>() / kFrames}};
+  const Json thread{{"id", arguments.at("frameId").get<int>() / kFramesOfTask}};
   const uint32_t station = task_of(thread, "id").station;
   Json all = Json::array();
   for (int scope = Named; scope < Elements; ++scope) {
@@ -63,14 +40,14 @@ Json DapServer::scopes(const Json& arguments) {
   return {{"scopes", all}};
 }
 
-Json DapServer::value_json(const ValuePlace& place) const {
+Json DapServer::value_json(const ValuePlace& place, bool hex) const {
   return {{"name", place.name},
-          {"value", value_text(debugger_->plant(), place, read_value(debugger_->plant(), place))},
+          {"value", value_text(debugger_->plant(), place, read_value(debugger_->plant(), place), hex)},
           {"evaluateName", place.name},
           {"variablesReference", 0}};
 }
 
-Json DapServer::scope_values(uint32_t station, int scope) const {
+Json DapServer::scope_values(uint32_t station, int scope, bool hex) const {
   Json all = Json::array();
   const runtime::Plant& plant = debugger_->plant();
   runtime::Station& unit = *plant.stations()[station];
@@ -81,15 +58,15 @@ Json DapServer::scope_values(uint32_t station, int scope) const {
     for (const stdlib::Parameter& row : stdlib::parameter_table(*unit.config().unit).rows())
       if (!row.number.empty() && row.index != 0)
         all.push_back(
-            value_json({station, ValueKind::Parameter, row.index, 1, fmt::format("P{}", row.number)}));
+            value_json({station, ValueKind::Parameter, row.index, 1, fmt::format("P{}", row.number)}, hex));
   } else if (scope == Io) {
     for (uint32_t line = 0; line < runtime::kBinaryLines; ++line)
       all.push_back(
-          value_json({station, ValueKind::Input, line, 1, fmt::format("DI{}{}", line / 8, line % 8)}));
+          value_json({station, ValueKind::Input, line, 1, fmt::format("DI{}{}", line / 8, line % 8)}, hex));
     for (uint32_t bit = 0; bit < 16; ++bit)
       if (const std::string name = bit == 0 ? "DB00" : fmt::format("DO{}{}", bit / 8, bit % 8);
           runtime::parse_output(name) >= 0)
-        all.push_back(value_json({station, ValueKind::Output, bit, 1, name}));
+        all.push_back(value_json({station, ValueKind::Output, bit, 1, name}, hex));
   } else if (scope == ProcessData) {
     const runtime::Drive& drive = unit.drive().state();
     const auto pi = drive.pi();
@@ -115,8 +92,8 @@ Json DapServer::scope_values(uint32_t station, int scope) const {
   return all;
 }
 
-// Behind the prefix, "" or "left.": what has more parts is a structure, and stands there once.
-Json DapServer::named_values(uint32_t station, const std::string& prefix) {
+// Behind the prefix, "", "left." or "all[": what has more parts is a structure, and stands there once.
+Json DapServer::named_values(uint32_t station, const std::string& prefix, bool hex) {
   Json all = Json::array();
   std::vector<std::string> structures;
   for (const vm::Symbol& symbol : debugger_->plant().stations()[station]->image()->symbols) {
@@ -126,12 +103,13 @@ Json DapServer::named_values(uint32_t station, const std::string& prefix) {
       const std::string name = rest.substr(0, dot);
       if (std::find(structures.begin(), structures.end(), name) != structures.end()) continue;
       structures.push_back(name);
-      all.push_back({{"name", name},
+      all.push_back({{"name", prefix.ends_with('[') ? "[" + name : name},
                      {"value", "{...}"},
+                     {"evaluateName", prefix + name},
                      {"variablesReference", reference(station, Named, 0, 0, prefix + name + ".")}});
       continue;
     }
-    Json one = value_json({station, ValueKind::Variable, symbol.variable, 1, symbol.name});
+    Json one = value_json({station, ValueKind::Variable, symbol.variable, 1, symbol.name}, hex);
     one["name"] = rest;
     if (symbol.count > 1) {
       one["value"] = fmt::format("{} elements", symbol.count);
@@ -143,83 +121,118 @@ Json DapServer::named_values(uint32_t station, const std::string& prefix) {
   return all;
 }
 
+// Elements of an array and numbers are the indexed children, all others named ones.
 Json DapServer::variables(const Json& arguments) {
   const auto number = arguments.at("variablesReference").get<size_t>();
   if (number == 0 || number > references_.size()) throw ValueError("there is no such reference");
   const Reference asked = references_[number - 1];
   const runtime::Station& station = *debugger().plant().stations()[asked.station];
+  const bool hex = wants_hex(arguments);
+  const bool indexed = asked.scope == Numbers || asked.scope == Elements;
+  const std::string filter = arguments.value("filter", "");
   Json all = Json::array();
+  if ((filter == "named" && indexed) || (filter == "indexed" && !indexed)) return {{"variables", all}};
   if (asked.scope == Named && station.image() != nullptr) {
-    all = named_values(asked.station, asked.name);
-  } else if (asked.scope == Numbers || asked.scope == Elements) {
+    all = named_values(asked.station, asked.name, hex);
+  } else if (indexed) {
     const uint32_t most = asked.scope == Numbers ? station.config().unit->variables : asked.count;
     const uint32_t from = std::min(arguments.value("start", 0U), most);
     const uint32_t asked_count = arguments.value("count", 0U);
     const uint32_t end = asked_count == 0 ? most : std::min(most - from, asked_count) + from;
     for (uint32_t n = from; n < end; ++n) {
       Json one = value_json({asked.station, ValueKind::Variable, asked.first + n, 1,
-                             asked.scope == Numbers ? fmt::format("H{}", n) : fmt::format("[{}]", n)});
+                             asked.scope == Numbers ? fmt::format("H{}", n) : fmt::format("[{}]", n)},
+                            hex);
       if (asked.scope == Elements) one["evaluateName"] = fmt::format("{}[{}]", asked.name, n);
       all.push_back(std::move(one));
     }
   } else {
-    all = scope_values(asked.station, asked.scope);
+    all = scope_values(asked.station, asked.scope, hex);
   }
   return {{"variables", all}};
+}
+
+Json DapServer::set_value(const ValuePlace& place, uint32_t station, const Json& arguments) {
+  debugger().write(place, evaluate_for(debugger_->plant(), station, place,
+                                       arguments.at("value").get<std::string>()));
+  return {{"value", value_text(debugger_->plant(), place, read_value(debugger_->plant(), place),
+                               wants_hex(arguments))}};
 }
 
 Json DapServer::set_variable(const Json& arguments) {
   const auto number = arguments.at("variablesReference").get<size_t>();
   if (number == 0 || number > references_.size()) throw ValueError("there is no such reference");
-  const Reference& within = references_[number - 1];
+  const Reference within = references_[number - 1];
   const std::string name = arguments.at("name");
   const bool inside = within.scope == Elements || within.scope == Named;
-  const ValuePlace place =
-      evaluate_place(debugger().plant(), within.station, inside ? within.name + name : name);
-  debugger_->write(place,
-                   evaluate(debugger_->plant(), within.station, arguments.at("value").get<std::string>()));
-  return {{"value", value_text(debugger_->plant(), place, read_value(debugger_->plant(), place))}};
+  return set_value(evaluate_place(debugger().plant(), within.station, inside ? within.name + name : name),
+                   within.station, arguments);
+}
+
+// The first station when no frame is given.
+uint32_t DapServer::station_of_frame(const Json& arguments) {
+  if (!arguments.contains("frameId")) return debugger(), 0;
+  return task_of({{"id", arguments["frameId"].get<int>() / kFramesOfTask}}, "id").station;
 }
 
 Json DapServer::set_expression(const Json& arguments) {
-  const Json thread{{"id", arguments.value("frameId", 2 * kFrames) / kFrames}};
-  const uint32_t station = task_of(thread, "id").station;
-  const ValuePlace place =
-      evaluate_place(debugger().plant(), station, arguments.at("expression").get<std::string>());
-  debugger_->write(place, evaluate(debugger_->plant(), station, arguments.at("value").get<std::string>()));
-  return {{"value", value_text(debugger_->plant(), place, read_value(debugger_->plant(), place))}};
+  const uint32_t station = station_of_frame(arguments);
+  return set_value(
+      evaluate_place(debugger_->plant(), station, arguments.at("expression").get<std::string>()), station,
+      arguments);
 }
 
-// "speed = 5" writes where the user types it.
+// "speed = 5" writes where the user types it; "speed,h" is hexadecimal.
 Json DapServer::evaluate_text(const Json& arguments) {
-  const std::string text = arguments.at("expression");
-  uint32_t station = 0;
-  if (arguments.contains("frameId")) {
-    const Json thread{{"id", arguments["frameId"].get<int>() / kFrames}};
-    station = task_of(thread, "id").station;
-  }
+  std::string text = arguments.at("expression");
+  const uint32_t station = station_of_frame(arguments);
+  bool hex = wants_hex(arguments);
+  for (const std::string_view ending : {",h", ",x", ", h", ", x"})
+    if (text.ends_with(ending)) {
+      hex = true;
+      text.resize(text.size() - ending.size());
+      break;
+    }
   const size_t at = text.find('=');
   const bool writes = arguments.value("context", "") == "repl" && at != std::string::npos && at != 0 &&
                       at + 1 < text.size() && text[at + 1] != '=' &&
                       std::string_view("=!<>").find(text[at - 1]) == std::string_view::npos;
-  if (writes)
-    debugger().write(evaluate_place(debugger_->plant(), station, text.substr(0, at)),
-                     evaluate(debugger_->plant(), station, text.substr(at + 1)));
-  const std::string name = writes ? text.substr(0, at) : text;
-  if (const auto place = find_value(debugger().plant(), station, name))
-    return {{"result", value_text(debugger_->plant(), *place, read_value(debugger_->plant(), *place))},
-            {"variablesReference", 0}};
-  return {{"result", fmt::format("{}", evaluate(debugger_->plant(), station, name))},
-          {"variablesReference", 0}};
+  std::string name = writes ? text.substr(0, at) : text;
+  name.erase(0, name.find_first_not_of(" \t"));
+  name.erase(name.find_last_not_of(" \t") + 1);
+  const runtime::Plant& plant = debugger_->plant();
+  if (writes) {
+    const ValuePlace place = evaluate_place(plant, station, name);
+    debugger_->write(place, evaluate_for(plant, station, place, text.substr(at + 1)));
+  }
+  if (const auto whole = find_whole(plant, station, name)) return whole_json(*whole, hex);
+  if (const auto place = find_value(plant, station, name))
+    return {{"result", value_text(plant, *place, read_value(plant, *place), hex)}, {"variablesReference", 0}};
+  return {{"result", number_text(evaluate(plant, station, name), hex)}, {"variablesReference", 0}};
+}
+
+// A structure opens to its members, an array to its elements.
+Json DapServer::whole_json(const Whole& whole, bool hex) {
+  Json json{{"result", whole_text(debugger_->plant(), whole, hex)}};
+  std::string prefix = whole.name + "[";  // of an array of structures
+  for (const vm::Symbol& symbol : debugger_->plant().stations()[whole.station]->image()->symbols) {
+    if (symbol.name == whole.name) {
+      json["variablesReference"] = reference(whole.station, Elements, symbol.variable, symbol.count, symbol.name);
+      json["indexedVariables"] = symbol.count;
+      return json;
+    }
+    if (symbol.name.starts_with(whole.name + ".")) prefix = whole.name + ".";
+  }
+  json["variablesReference"] = reference(whole.station, Named, 0, 0, prefix);
+  return json;
 }
 
 // What the word in front of the cursor begins: variables and signals of the station.
 Json DapServer::completions(const Json& arguments) {
-  uint32_t station = 0;
-  if (arguments.contains("frameId"))
-    station = task_of({{"id", arguments["frameId"].get<int>() / kFrames}}, "id").station;
+  const uint32_t station = station_of_frame(arguments);
   const std::string text = arguments.at("text");
-  const size_t column = std::min(std::max(arguments.at("column").get<size_t>(), size_t{1}) - 1, text.size());
+  const int64_t asked = arguments.at("column").get<int64_t>() - (columns_from_1_ ? 1 : 0);
+  const auto column = static_cast<size_t>(std::clamp<int64_t>(asked, 0, static_cast<int64_t>(text.size())));
   size_t begin = column;
   while (begin > 0 && std::string_view(" +-*/%&|^!<>=(,").find(text[begin - 1]) == std::string_view::npos)
     --begin;
@@ -229,41 +242,9 @@ Json DapServer::completions(const Json& arguments) {
   for (const runtime::PlantSignal& signal : runtime::station_signals(unit)) {
     const std::string name = signal.name.substr(unit.config().name.size() + 1);
     if (name.starts_with(word))
-      all.push_back({{"label", name}, {"start", begin}, {"length", word.size()}, {"type", "variable"}});
+      all.push_back({{"label", name}, {"start", column_for_client(static_cast<uint32_t>(begin) + 1)}, {"length", word.size()}, {"type", "variable"}});
   }
   return {{"targets", std::move(all)}};
-}
-
-Json DapServer::disassemble(const Json& arguments) {
-  const auto number =
-      static_cast<uint32_t>(std::stoul(arguments.at("memoryReference").get<std::string>(), nullptr, 0)) +
-      static_cast<uint32_t>(arguments.value("offset", 0));
-  const uint32_t station = number >> 16U;
-  if (station >= debugger().plant().stations().size() || debugger_->code(station) == nullptr)
-    throw ValueError("there is no program at this reference");
-  const CodeMap& code = *debugger_->code(station);
-  const auto count = std::min<int64_t>(arguments.at("instructionCount").get<int64_t>(), 10'000);
-  const int64_t first =
-      static_cast<int64_t>(code.item_at(number & 0xFFFFU)) + arguments.value("instructionOffset", int64_t{0});
-  Json all = Json::array();
-  for (int64_t n = first; n < first + count; ++n) {
-    if (n < 0 ||
-        n >= static_cast<int64_t>(code.items().size())) {  // the editor wants as many as it asked for
-      all.push_back({{"address", fmt::format("{}", station * 65536 + 65535)},
-                     {"instruction", "-"},
-                     {"presentationHint", "invalid"}});
-      continue;
-    }
-    const uint32_t address = code.items()[static_cast<size_t>(n)].address;
-    Json one{{"address", fmt::format("{}", station * 65536 + address)}, {"instruction", code.text(address)}};
-    if (const SourcePlace place = code.place(address); place.line != 0) {
-      std::error_code error;
-      one["line"] = place.line;
-      one["location"] = {{"path", std::filesystem::absolute(place.file, error).string()}};
-    }
-    all.push_back(std::move(one));
-  }
-  return {{"instructions", all}};
 }
 
 }  // namespace ipos::tools::debug

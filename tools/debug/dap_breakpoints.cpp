@@ -1,0 +1,193 @@
+// Requests of the debug adapter protocol: what a plant stops for.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tools/debug/dap.hpp"
+#include "tools/lsp/positions.hpp"
+
+namespace ipos::tools::debug {
+
+Json DapServer::breakpoint_json(const Breakpoint& breakpoint) const {
+  const SourcePlace place = debugger_->code(breakpoint.station)->place(breakpoint.address);
+  Json json{{"id", breakpoint.id},
+            {"verified", true},
+            {"instructionReference", command_reference(breakpoint.station, breakpoint.address)}};
+  if (place.line != 0) json["line"] = line_for_client(place.line);
+  return json;
+}
+
+Json DapServer::set_breakpoints(const Json& arguments) {
+  auto& all = debugger().breakpoints();
+  const Json& source = arguments.at("source");
+  const std::string asked_file = source.value("path", source.value("name", ""));
+  const std::string file = uris_ ? lsp::path_of(asked_file) : asked_file;
+  std::erase_if(all, [&](const Breakpoint& point) {
+    const auto known = sources_.find(point.id);
+    return known != sources_.end() && known->second.first == file;
+  });
+  Json answer = Json::array();
+  for (const Json& asked : arguments.value("breakpoints", Json::array())) {
+    const uint32_t line = line_of_client(asked.at("line"));
+    Json shown;
+    // A source that several stations run stops each of them; the editor hears of one.
+    for (uint32_t station = 0; station < debugger_->plant().stations().size(); ++station) {
+      const CodeMap* code = debugger_->code(station);
+      const auto address = code == nullptr ? std::nullopt : code->address_of(file, line);
+      if (!address) continue;
+      Breakpoint made{debugger_->next_id(),
+                      station,
+                      *address,
+                      asked.value("condition", ""),
+                      asked.value("hitCondition", ""),
+                      asked.value("logMessage", ""),
+                      false,
+                      true,
+                      0};
+      sources_[made.id] = {file, line};
+      if (shown.is_null()) shown = breakpoint_json(made);
+      all.push_back(std::move(made));
+    }
+    if (shown.is_null())
+      shown = {{"verified", false}, {"line", line_for_client(line)}, {"message", "no command belongs to this line"}};
+    answer.push_back(std::move(shown));
+  }
+  return {{"breakpoints", answer}};
+}
+
+Json DapServer::set_instruction_breakpoints(const Json& arguments) {
+  auto& all = debugger().breakpoints();
+  std::erase_if(all, [&](const Breakpoint& point) {
+    return !sources_.contains(point.id) &&
+           std::find(function_points_.begin(), function_points_.end(), point.id) == function_points_.end();
+  });
+  Json answer = Json::array();
+  for (const Json& asked : arguments.at("breakpoints")) {
+    const auto command = command_of_reference(asked.at("instructionReference").get<std::string>(),
+                                              asked.value("offset", int64_t{0}));
+    if (!command || command->address < 0 ||
+        !debugger_->code(command->station)->is_command(static_cast<uint32_t>(command->address))) {
+      answer.push_back({{"verified", false}, {"message", "no command begins there"}});
+      continue;
+    }
+    all.push_back({debugger_->next_id(), command->station, static_cast<uint32_t>(command->address),
+                   asked.value("condition", ""), asked.value("hitCondition", ""), "", false, true, 0});
+    answer.push_back(breakpoint_json(all.back()));
+  }
+  return {{"breakpoints", answer}};
+}
+
+Json DapServer::data_breakpoint_info(const Json& arguments) {
+  uint32_t station = 0;
+  const auto reference = arguments.value("variablesReference", 0U);
+  if (reference > 0 && reference <= references_.size()) station = references_[reference - 1].station;
+  std::string name = arguments.at("name");
+  if (reference > 0 && reference <= references_.size()) name = references_[reference - 1].name + name;
+  try {
+    const ValuePlace place = evaluate_place(debugger().plant(), station, name);
+    const std::string whole = debugger_->plant().stations()[place.station]->config().name + "." +
+                              place.name.substr(place.station == station ? 0 : place.name.find('.') + 1);
+    return {{"dataId", Json(place).dump()},
+            {"description", whole},
+            {"accessTypes", Json::array({"write"})},
+            {"canPersist", false}};
+  } catch (const ValueError& error) {
+    return {{"dataId", nullptr}, {"description", error.what()}};
+  }
+}
+
+// What data_breakpoint_info() has given out; nothing when it is none of that.
+std::optional<ValuePlace> DapServer::place_of_data(const std::string& id) {
+  const Json json = Json::parse(id, nullptr, false);
+  if (!json.is_object()) return std::nullopt;
+  try {
+    const ValuePlace place = json;
+    ValuePlace found = evaluate_place(debugger().plant(), place.station, place.name);
+    if (found.station == place.station && found.kind == place.kind && found.number == place.number) return found;
+  } catch (const Json::exception&) {
+  } catch (const ValueError&) {
+  }
+  return std::nullopt;
+}
+
+Json DapServer::set_data_breakpoints(const Json& arguments) {
+  std::erase_if(debugger().watchpoints(), [this](const Watchpoint& point) {
+    return std::find(fault_points_.begin(), fault_points_.end(), point.id) == fault_points_.end();
+  });
+  Json answer = Json::array();
+  for (const Json& asked : arguments.at("breakpoints")) {
+    const auto place = place_of_data(asked.value("dataId", ""));
+    if (!place) {
+      answer.push_back({{"verified", false}, {"message", "the data id is none of this session"}});
+      continue;
+    }
+    debugger_->watchpoints().push_back({debugger_->next_id(), place->station, *place,
+                                        asked.value("condition", ""), true, 0,
+                                        asked.value("hitCondition", "")});
+    answer.push_back({{"id", debugger_->watchpoints().back().id}, {"verified", true}});
+  }
+  return {{"breakpoints", answer}};
+}
+
+// A program that faults stops anyway.
+Json DapServer::set_exception_breakpoints(const Json& arguments) {
+  auto& all = debugger().watchpoints();
+  std::erase_if(all, [this](const Watchpoint& point) {
+    return std::find(fault_points_.begin(), fault_points_.end(), point.id) != fault_points_.end();
+  });
+  fault_points_.clear();
+  const Json filters = arguments.value("filters", Json::array());
+  if (std::find(filters.begin(), filters.end(), "fault") == filters.end()) return Json::object();
+  const auto& stations = debugger_->plant().stations();
+  for (uint32_t n = 0; n < stations.size(); ++n) {
+    const std::string name = stations[n]->config().name + ".fault";
+    all.push_back({debugger_->next_id(), n, {n, ValueKind::Fault, 0, 1, name}, name, true, 0});
+    fault_points_.push_back(all.back().id);
+  }
+  return Json::object();
+}
+
+// The commands at which a function of this name begins, in all stations; else a name is a frame: "40A#80*",
+// "sbus1 40A#*", or the bytes of a telegram.
+Json DapServer::set_function_breakpoints(const Json& arguments) {
+  auto& all = debugger().breakpoints();
+  std::erase_if(all, [&](const Breakpoint& point) {
+    return std::find(function_points_.begin(), function_points_.end(), point.id) != function_points_.end();
+  });
+  function_points_.clear();
+  frame_points_.clear();
+  Json answer = Json::array();
+  for (const Json& asked : arguments.value("breakpoints", Json::array())) {
+    const auto name = asked.at("name").get<std::string>();
+    Json shown;
+    for (uint32_t station = 0; station < debugger_->plant().stations().size(); ++station) {
+      const CodeMap* code = debugger_->code(station);
+      const auto address = code == nullptr ? std::nullopt : code->function_address(name);
+      if (!address) continue;
+      all.push_back({debugger_->next_id(), station, *address, asked.value("condition", ""),
+                     asked.value("hitCondition", ""), "", false, true, 0});
+      function_points_.push_back(all.back().id);
+      if (shown.is_null()) shown = breakpoint_json(all.back());
+    }
+    if (shown.is_null() && is_frame(name)) {
+      frame_points_.emplace_back(debugger_->next_id(), name);
+      shown = {{"id", frame_points_.back().first}, {"verified", true}};
+    }
+    if (shown.is_null())
+      shown = {{"verified", false},
+               {"message", "no program has a function of this name, and it is no frame such as 40A#80*"}};
+    answer.push_back(std::move(shown));
+  }
+  return {{"breakpoints", answer}};
+}
+
+// Whether a frame or telegram of a bus of the plant can look so: digits, # and wildcards, with a digit or # among them.
+bool DapServer::is_frame(std::string_view name) const {
+  for (const auto& bus : debugger_->plant().buses())
+    if (name.starts_with(bus->name() + " ")) name.remove_prefix(bus->name().size() + 1);
+  constexpr std::string_view kDigits = "0123456789ABCDEF#";
+  return !debugger_->plant().buses().empty() && name.find_first_of(kDigits) != std::string_view::npos &&
+         name.find_first_not_of("0123456789ABCDEF#R*? ") == std::string_view::npos;
+}
+
+}  // namespace ipos::tools::debug

@@ -1,0 +1,124 @@
+// Requests of the debug adapter protocol: frames and commands of a plant that stands still.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+
+#include "tools/debug/dap.hpp"
+#include "tools/input/sources.hpp"
+#include "tools/lsp/positions.hpp"
+
+namespace ipos::tools::debug {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int64_t kMostShown = 10'000;  // commands of one request
+
+// Without .. where that is the same file: an editor takes another spelling for another document.
+std::string whole_path(const std::string& file) {
+  std::error_code error;
+  const fs::path path = fs::absolute(file, error);
+  const fs::path normal = path.lexically_normal();
+  return (normal == path || fs::equivalent(normal, path, error) ? normal : path).string();
+}
+
+}  // namespace
+
+uint32_t DapServer::line_of_client(const Json& line) const {
+  const int64_t number = line.get<int64_t>() + (lines_from_1_ ? 0 : 1);
+  return static_cast<uint32_t>(std::clamp<int64_t>(number, 0, UINT32_MAX));
+}
+
+std::string DapServer::path_for_client(const std::string& path) const {
+  const std::string whole = whole_path(path);
+  return uris_ ? lsp::uri_of(whole) : whole;
+}
+
+// (station + 1) x 65536 + address: what fills a view up in front of the first command has smaller numbers, which belong
+// to no other station, as programs are much shorter.
+std::string DapServer::command_reference(uint32_t station, int64_t address) {
+  return fmt::format("{}", (int64_t{station} + 1) * 65536 + address);
+}
+
+std::optional<DapServer::CommandPlace> DapServer::command_of_reference(const std::string& text,
+                                                                       int64_t offset) {
+  const bool hex = text.starts_with("0x") || text.starts_with("0X");
+  int64_t number = 0;
+  const char* const end = text.data() + text.size();
+  const auto read = std::from_chars(text.data() + (hex ? 2 : 0), end, number, hex ? 16 : 10);
+  constexpr int64_t kFarthest = int64_t{1} << 40;
+  if (read.ec != std::errc() || read.ptr != end || number < 0 || number > kFarthest || offset < -kFarthest ||
+      offset > kFarthest)
+    return std::nullopt;
+  number += offset;
+  const int64_t station = (number + kMostShown) / 65536 - 1;
+  const auto& stations = debugger().plant().stations();
+  if (number < 0 || station < 0 || station >= static_cast<int64_t>(stations.size()) ||
+      debugger_->code(static_cast<uint32_t>(station)) == nullptr)
+    return std::nullopt;
+  return CommandPlace{static_cast<uint32_t>(station), number - (station + 1) * 65536};
+}
+
+Json DapServer::stack_trace(const Json& arguments) {
+  const TaskRef task = task_of(arguments, "threadId");
+  const std::vector<Frame> frames = debugger_->frames(task);
+  const auto from = arguments.value("startFrame", size_t{0});
+  const auto levels = arguments.value("levels", size_t{0});
+  Json all = Json::array();
+  for (size_t n = from; n < frames.size() && (levels == 0 || n < from + levels); ++n) {
+    const Frame& frame = frames[n];
+    Json one{{"id", arguments.at("threadId").get<int>() * kFramesOfTask + static_cast<int>(n)},
+             {"name", frame.function.empty() ? fmt::format("word {}", frame.address) : frame.function},
+             {"line", 0},
+             {"column", 0},
+             {"instructionPointerReference", command_reference(task.station, frame.address)}};
+    if (frame.place.line != 0) {
+      one["line"] = line_for_client(frame.place.line);
+      one["column"] = column_for_client(frame.place.column);
+      one["source"] = {{"name", fs::path(frame.place.file).filename().string()},
+                       {"path", path_for_client(frame.place.file)}};
+      if (source_has_changed(frame.place.file))
+        one["source"]["origin"] = "changed since it was compiled: the lines are those of the text that runs";
+    }
+    all.push_back(std::move(one));
+  }
+  return {{"stackFrames", all}, {"totalFrames", frames.size()}};
+}
+
+// Addresses rise, also of what fills up in front of the first command and behind the last: editors search in them.
+Json DapServer::disassemble(const Json& arguments) {
+  const auto place = command_of_reference(arguments.at("memoryReference").get<std::string>(),
+                                          arguments.value("offset", int64_t{0}));
+  if (!place) throw ValueError("there is no program at this reference");
+  const CodeMap& code = *debugger_->code(place->station);
+  const auto items = static_cast<int64_t>(code.items().size());
+  const int64_t words = debugger_->plant().stations()[place->station]->image()->code.size();
+  const int64_t here = place->address < 0        ? place->address
+                       : place->address >= words ? items + place->address - words
+                                                 : code.item_at(static_cast<uint32_t>(place->address));
+  const auto count = std::clamp<int64_t>(arguments.at("instructionCount").get<int64_t>(), 0, kMostShown);
+  const int64_t first =
+      std::clamp(here + std::clamp(arguments.value("instructionOffset", int64_t{0}), -kMostShown, kMostShown),
+                 -kMostShown, items + kMostShown);
+  Json all = Json::array();
+  for (int64_t n = first; n < first + count; ++n) {
+    if (n < 0 || n >= items) {  // the editor wants as many as it asked for
+      all.push_back({{"address", command_reference(place->station, n < 0 ? n : words + n - items)},
+                     {"instruction", "-"},
+                     {"presentationHint", "invalid"}});
+      continue;
+    }
+    const uint32_t address = code.items()[static_cast<size_t>(n)].address;
+    Json one{{"address", command_reference(place->station, address)}, {"instruction", code.text(address)}};
+    if (const SourcePlace source = code.place(address); source.line != 0) {
+      one["line"] = line_for_client(source.line);
+      one["location"] = {{"path", path_for_client(source.file)}};
+    }
+    all.push_back(std::move(one));
+  }
+  return {{"instructions", all}};
+}
+
+}  // namespace ipos::tools::debug
