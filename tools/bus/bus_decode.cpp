@@ -11,7 +11,6 @@
 #include "tools/bus/log_input.hpp"
 #include "tools/bus/telegram_json.hpp"
 #include "tools/cli/exit_codes.hpp"
-#include "tools/cli/json_text.hpp"
 #include "tools/input/program.hpp"
 
 namespace ipos::tools {
