@@ -41,6 +41,7 @@ class DriveRig : public Bench {
     // No time but that of the ramps, no least speed and no monitoring, unless the test wants them.
     for (const char* number : {"P323", "P731", "P732", "P736", "P301", "P815"})
       if (parameters.table().find(number) != nullptr) set(number, 0);
+    begin();
   }
 
   // Before power-on, or with the access of the parameter channel left out.

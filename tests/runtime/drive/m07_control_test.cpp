@@ -376,7 +376,7 @@ TEST(M07Status, StatesZeroToFive) {
   options.start_up_ms = 300;
   BusRig rig(options);
   rig.word(0x0006);
-  rig.run_ms(299);
+  rig.run_ms(299 - BusRig::kTicksBefore);
   EXPECT_EQ(rig.status(), 0x0004) << "not ready: bit 1 and the state are 0";
   EXPECT_FALSE(rig.stage());
   rig.word(0x0000);

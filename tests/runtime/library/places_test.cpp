@@ -1,4 +1,6 @@
 // Signals of every kind: their names, what they are, reading, writing and holding them, and the limits of each.
+#include <set>
+
 #include "runtime/library/include/ipos_plant.h"
 #include "stdlib/parameters.hpp"
 #include "tests/runtime/library/opened_plant.hpp"
@@ -40,13 +42,22 @@ TEST_F(LibraryPlaces, NamesOfEveryKind) {
   EXPECT_EQ(plant_.names(IPOS_PLANT_STATE),
             (Names{"fault", "status", "enabled", "ready", "speed", "setpoint", "position", "powered",
                    "running", "program_fault", "program_fault_line"}));
-  // Each once: some rows show another meaning of an index that a row before has.
-  Names parameters;
-  for (const stdlib::Parameter& row : stdlib::parameter_table(*stdlib::find_unit("mdxb")).rows())
-    if (const std::string name = row.number.empty() ? std::to_string(row.index) : "P" + std::string(row.number);
-        row.index != 0 && std::find(parameters.begin(), parameters.end(), name) == parameters.end())
-      parameters.push_back(name);
-  EXPECT_EQ(plant_.names(IPOS_PLANT_PARAMETER), parameters);
+  // Each once, and every number and every index that the table has is reached.
+  const stdlib::ParameterTable& table = stdlib::parameter_table(*stdlib::find_unit("mdxb"));
+  const Names parameters = plant_.names(IPOS_PLANT_PARAMETER);
+  const std::set<std::string> once(parameters.begin(), parameters.end());
+  EXPECT_EQ(once.size(), parameters.size());
+  std::set<uint16_t> reached;
+  for (const std::string& name : parameters) {
+    const stdlib::Parameter* row = table.find(std::string_view(name));
+    if (name[0] != 'P') row = table.find(static_cast<uint16_t>(std::stoi(name)));
+    ASSERT_NE(row, nullptr) << name;
+    reached.insert(row->index);
+  }
+  for (const stdlib::Parameter& row : table.rows()) {
+    EXPECT_TRUE(row.index == 0 || reached.count(row.index) != 0) << row.index;
+    EXPECT_TRUE(row.index == 0 || row.number.empty() || once.count("P" + std::string(row.number)) != 0) << row.number;
+  }
   EXPECT_EQ(plant_.names(IPOS_PLANT_VARIABLE, ""), Names{}) << "no whole has no name";
   EXPECT_GT(plant_.names(IPOS_PLANT_SIGNAL).size(), 50U);
   EXPECT_EQ(plant_.names(IPOS_PLANT_SIGNAL)[0], "speed");

@@ -35,8 +35,9 @@ std::optional<vm::Image> image_of(const stdlib::UnitType& unit, std::vector<uint
 
 std::unique_ptr<Plant> plant_of(std::vector<uint32_t> code, const std::string& unit) {
   tests::goes_through(tests::kPlantFile);
+  const std::string_view serial = unit == "compact" ? "rs485_xt = 'line1'\nuss21a = true\n" : "rs485 = 'line1'\n";
   PlantFileResult file = read_plant_file(std::string(kLines) + "[[station]]\nname = 'unit1'\nunit = '" + unit +
-                                         "'\nsbus = 'sbus'\nrs485 = 'line1'\n[station.parameters]\n8600 = 1\n");
+                                         "'\nsbus = 'sbus'\n" + std::string(serial) + "[station.parameters]\n8600 = 1\n");
   for (const PlantError& error : file.errors) ADD_FAILURE() << error.text;
   StationConfig& config = file.plant.stations.at(0);
   if (!code.empty()) config.program = "A.IPC";
