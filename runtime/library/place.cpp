@@ -164,13 +164,12 @@ std::vector<std::string> place_names(const Plant& plant, uint32_t number, Kind k
   const auto list = [&](std::span<const std::string_view> all) { names.assign(all.begin(), all.end()); };
   switch (kind) {
     case Kind::Variable:
-      if (station.image() == nullptr) break;
       if (part) {
-        for (auto& found : runtime::named_variables(station.image()->symbols, *station.config().unit, *part))
+        for (auto& found : runtime::named_variables(station.symbols(), *station.config().unit, *part))
           names.push_back(std::move(found.name));
         break;
       }
-      for (const vm::Symbol& symbol : station.image()->symbols)
+      for (const vm::Symbol& symbol : station.symbols())
         for (auto& element : runtime::elements_of(symbol)) names.push_back(std::move(element.name));
       break;
     case Kind::Parameter: {
@@ -232,9 +231,9 @@ std::string what_there_is(const Plant& plant, uint32_t number, Kind kind, std::s
   std::string known = count == 0 ? "none" : fmt::format("{}", fmt::join(names, ", "));
   if (count > kShown) known += fmt::format(" and {} more", count - kShown);
   if (kind == Kind::Any || kind == Kind::Variable)
-    known = station.image() == nullptr ? "no program"
-                                       : fmt::format("{}, H0..H{} and the system variables", known,
-                                                     station.config().unit->variables - 1);
+    known = station.has_variables() ? fmt::format("{}H0..H{} and the system variables",
+                                                  count == 0 ? "" : known + ", ", station.config().unit->variables - 1)
+                                    : "no variables: its unit has no IPOS";
   if (kind == Kind::Any)
     known += fmt::format("; states {}; terminals, words and parameters",
                          fmt::join(place_names(plant, number, Kind::State), ", "));
@@ -269,7 +268,7 @@ bool exists(const Plant& plant, const Place& place) {
   if (place.station >= plant.stations().size()) return false;
   const Station& station = station_of(plant, place);
   switch (place.kind) {
-    case Kind::Variable: return station.image() != nullptr && place.number < station.config().unit->variables;
+    case Kind::Variable: return place.number < station.config().unit->variables;
     case Kind::Parameter: return parameter_of(station, place.number) != nullptr;
     case Kind::Input: return place.number < runtime::kBinaryLines;
     case Kind::Output: return place.number < 16;

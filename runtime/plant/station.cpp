@@ -267,8 +267,7 @@ int32_t Station::read(uint16_t index) const {
 }
 
 std::optional<uint32_t> Station::find_variable(std::string_view name) const {
-  if (unit_.image() == nullptr) return std::nullopt;
-  const auto named = named_variables(unit_.image()->symbols, *config_.unit, name);
+  const auto named = named_variables(symbols(), *config_.unit, name);
   return named.empty() ? std::nullopt : std::optional(named.front().number);
 }
 

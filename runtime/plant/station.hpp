@@ -101,6 +101,11 @@ class Station final : private Timed, private TaskRunner {
 
   const StationConfig& config() const { return config_; }
   const vm::Image* image() const { return unit_.image(); }
+  bool has_variables() const { return config_.unit->variables != 0; }  // it has IPOS
+  // Of its program; none without one.
+  std::span<const vm::Symbol> symbols() const {
+    return image() == nullptr ? std::span<const vm::Symbol>() : image()->symbols;
+  }
   const vm::Machine* machine() const { return door_.look().machine(); }
   // To change something; what only reads takes the others.
   DriveServer& drive() { return door_.touch().server(); }
@@ -145,10 +150,7 @@ class Station final : private Timed, private TaskRunner {
   // Number of the variable with this name (variable_names.hpp), of a whole the first; nothing when there is
   // none.
   std::optional<uint32_t> find_variable(std::string_view name) const;
-  // 0 where there is no program: the one in its memory was refused at power-on.
-  int32_t variable(uint32_t number) const {
-    return machine() == nullptr ? 0 : machine()->variables()[number];
-  }
+  int32_t variable(uint32_t number) const { return door_.look().variables()[number]; }
 
   // "SCOM1.IPC:12:5" of a word address, or empty.
   std::string source_place(uint32_t address) const { return unit_.source_place(address); }

@@ -91,7 +91,7 @@ const stdlib::Parameter* find_parameter(const Station& station, std::string_view
 bool has(const Station& station, const DriveValue& row) {
   if (row.read != nullptr) return true;
   if (row.variable >= 0)
-    return station.image() != nullptr && station.config().unit->generation != stdlib::Generation::M07;
+    return station.has_variables() && station.config().unit->generation != stdlib::Generation::M07;
   return find_parameter(station, row.parameter) != nullptr;
 }
 
@@ -163,8 +163,7 @@ void add_drive(const Station& station, Collector& out) {
 }
 
 void add_symbols(const Station& station, Collector& out) {
-  if (station.image() == nullptr) return;
-  for (const vm::Symbol& symbol : station.image()->symbols)
+  for (const vm::Symbol& symbol : station.symbols())
     for (const NamedVariable& element : elements_of(symbol))
       out.add_variable(SignalGroup::Variable, element.name, element.number,
                        fmt::format("H{}", element.number));
@@ -261,7 +260,6 @@ void add_tasks(const Station& station, Collector& out) {
 }
 
 void add_system_variables(const Station& station, Collector& out) {
-  if (station.image() == nullptr) return;
   const stdlib::UnitType& unit = *station.config().unit;
   for (const stdlib::SystemVariable& row : stdlib::system_variables()) {
     const bool known = row.units == stdlib::VariableUnits::A || unit.generation == stdlib::Generation::B;
@@ -368,11 +366,9 @@ std::vector<PlantSignal> find_station_signals(const Station& station, std::strin
     more.add_parameter(*row, SignalGroup::Parameter, name);
     return std::move(more.found);
   }
-  if (station.image() != nullptr)
-    for (const NamedVariable& variable :
-         named_variables(station.image()->symbols, *station.config().unit, name))
-      more.add_variable(SignalGroup::Variable, variable.name, variable.number,
-                        fmt::format("H{}", variable.number));
+  for (const NamedVariable& variable : named_variables(station.symbols(), *station.config().unit, name))
+    more.add_variable(SignalGroup::Variable, variable.name, variable.number,
+                      fmt::format("H{}", variable.number));
   if (!more.found.empty()) return std::move(more.found);
   const size_t dot = name.rfind('.');
   if (dot == std::string_view::npos) return {};
@@ -391,7 +387,7 @@ std::vector<PlantSignal> match_station_signals(const Station& station, std::stri
     for (const stdlib::Parameter& row : stdlib::parameter_table(*station.config().unit).rows())
       if (row.index != 0 && !row.number.empty())
         all.add_parameter(row, SignalGroup::Parameter, fmt::format("P{}", row.number));
-  if (can_mean(pattern, 'H') && station.image() != nullptr)
+  if (can_mean(pattern, 'H'))
     for (uint32_t n = 0; n < station.config().unit->variables; ++n)
       all.add_variable(SignalGroup::Variable, fmt::format("H{}", n), n, "");
   const size_t own = station.config().name.size() + 1;
@@ -449,11 +445,10 @@ std::string station_signal_names(const Station& station) {
   names.emplace_back("process data as PO1 and PI1");
   names.emplace_back("bits as PO1.6");
   names.push_back("states as " + state_names());
-  if (station.image() != nullptr) {
-    names.emplace_back("tasks as task1.line");
+  if (station.image() != nullptr) names.emplace_back("tasks as task1.line");
+  if (station.has_variables())
     names.push_back(fmt::format("variables H0 to H{}", station.config().unit->variables - 1));
-    for (const vm::Symbol& symbol : station.image()->symbols) names.push_back(symbol.name);
-  }
+  for (const vm::Symbol& symbol : station.symbols()) names.push_back(symbol.name);
   return fmt::format("{}", fmt::join(names, ", "));
 }
 

@@ -35,7 +35,7 @@ class Door final {
   bool post(TelegramReader& reader, size_t number, const TelegramData& data) const {
     return pacer_.post(reader, number, data);
   }
-  // The variables as the program has left them by now; none without a program.
+  // The variables as program and unit have left them by now; none of a unit without IPOS.
   std::span<const int32_t> variables() const {
     pacer_.execute_pending();
     if (!ticks_.shows_variables()) ticks_.settle();

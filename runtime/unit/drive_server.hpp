@@ -63,6 +63,7 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
   const ParameterStore& parameters() const { return parameters_; }
   const stdlib::UnitType& unit() const { return parameters_.unit(); }
   UnitMemory& memory() { return memory_; }
+  const UnitMemory& memory() const { return memory_; }
 
   // Why the last access was refused, empty when it was not. Reading it clears it.
   std::string take_reason() { return std::exchange(reason_, {}); }
@@ -101,6 +102,8 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
   // The master exchanges data, with or without new words.
   void fieldbus_request() { state_.take_request(PoSource::Fieldbus); }
   void fieldbus_lost() { state_.lose(PoSource::Fieldbus); }
+  // Of a PROFIBUS card: what the unit finds at power-on.
+  void show_fieldbus_card(uint8_t address);
 
   // Master/slave operation over RS-485 and SBus: what the master sends, and a slave takes.
   ProcessWords setpoint_to_send(Time now) override;

@@ -53,7 +53,7 @@ ManyTicks::Before::Before(const Unit& unit) : drive(unit.drive().moment()) {
 void ManyTicks::compare_tick(Time now) {
   const Before before(unit_);
   unit_.begin(now);
-  if (unit_.machine() != nullptr) noted_.note(unit_.variables());
+  if (unit_.has_variables()) noted_.note(unit_.variables());
   unit_.run_tasks();
   unit_.finish(now);
   know_program();
@@ -71,15 +71,14 @@ bool ManyTicks::is_steady(const Before& before) {
   Drive& drive = unit_.drive();
   const Ticks ticks = drive.steady_since(before.drive);
   if (ticks == 0 || before.commands != positioning_commands()) return false;
-  if (const PositioningService* positioning = unit_.positioning();
-      positioning != nullptr && unit_.machine() != nullptr) {
+  if (const PositioningService* positioning = unit_.positioning(); positioning != nullptr) {
     if (!positioning->reads_system_variables_only()) return false;
     // In motion only what positioning cannot act on goes on by itself.
     const bool rests = drive.standing() ? before.positioning && positioning->has_left(*before.positioning)
                                         : positioning->idles();
     if (!rests) return false;
   }
-  if (unit_.machine() != nullptr && (!noted_.same(unit_.variables()) || unit_.controls())) return false;
+  if (unit_.has_variables() && (!noted_.same(unit_.variables()) || unit_.controls())) return false;
   drive.hold_steady(ticks);
   return true;
 }
@@ -91,13 +90,13 @@ bool ManyTicks::is_still_steady() {
   if (!touched_) return true;
   touched_ = false;
   return commands_ == positioning_commands() &&
-         (unit_.machine() == nullptr || noted_.same(unit_.variables()));
+         (!unit_.has_variables() || noted_.same(unit_.variables()));
 }
 
 // Behind the tasks of a steady tick: something has happened that a part of the unit must see.
 bool ManyTicks::must_look() {
   return unit_.server().has_reasons() || unit_.has_fresh_fault() ||
-         (!reach_.quiet && (commands_ != positioning_commands() || !noted_.same(unit_.variables())));
+         (!is_quiet() && (commands_ != positioning_commands() || !noted_.same(unit_.variables())));
 }
 
 Ticks ManyTicks::find_horizon(Time first) {
@@ -126,11 +125,12 @@ void ManyTicks::choose(Time first, bool touched) {
 
 bool ManyTicks::try_idle(Time first, Ticks steady) {
   uint64_t ticks = steady;
+  if (unit_.has_variables() && !unit_.timers().rest(unit_.variables())) {
+    idle_backoff_.fail(first, kIdlePause);
+    return false;
+  }
+  idle_.steady = true;
   if (vm::Machine* machine = unit_.machine(); machine != nullptr) {
-    if (!unit_.timers().rest(unit_.variables())) {
-      idle_backoff_.fail(first, kIdlePause);
-      return false;
-    }
     rates_ = unit_.rates();
     ticks = std::min(ticks, machine->idle_ticks(rates_.commands, idle_));
   }
@@ -146,10 +146,11 @@ bool ManyTicks::try_idle(Time first, Ticks steady) {
 
 // Nothing that is asked here changes before somebody touches the unit.
 bool ManyTicks::can_run_ahead() {
-  if (unit_.machine() == nullptr) return true;
-  if (!reach_.apart || !reach_.quiet) return false;
-  if (reach_.reads_position && !unit_.drive().standing()) return false;
-  return unit_.timers().rest(unit_.variables());
+  if (unit_.machine() != nullptr) {
+    if (!reach_.apart || !reach_.quiet) return false;
+    if (reach_.reads_position && !unit_.drive().standing()) return false;
+  }
+  return !unit_.has_variables() || unit_.timers().rest(unit_.variables());
 }
 
 Ticks ManyTicks::advance(Time first, Ticks most) {
@@ -174,12 +175,12 @@ Ticks ManyTicks::advance(Time first, Ticks most) {
 Ticks ManyTicks::steady_tick(Time now) {
   left_ = 0;
   unit_.advance(1);
-  if (unit_.machine() == nullptr) {
+  if (!unit_.has_variables()) {
     unit_.store(now);
     return 1;
   }
   unit_.count_timers();
-  if (!reach_.quiet) noted_.note(unit_.variables());
+  if (!is_quiet()) noted_.note(unit_.variables());
   unit_.run_tasks();
   if (must_look()) {
     unit_.take_variables(now);
@@ -204,7 +205,7 @@ void ManyTicks::touched() {
   left_ = 0;
   idle_backoff_.try_now();
   if (std::exchange(touched_, true) || way_ == Way::InFull) return;
-  if (reach_.quiet) noted_.note(unit_.variables());
+  if (is_quiet() && unit_.has_variables()) noted_.note(unit_.variables());
   way_ = Way::Steady;
 }
 

@@ -80,6 +80,8 @@ class ManyTicks final {
   void choose(Time first, bool touched);
   bool try_idle(Time first, Ticks steady);
   bool can_run_ahead();
+  // Between two ticks only others write system variables.
+  bool is_quiet() const { return unit_.machine() == nullptr || reach_.quiet; }
   Ticks steady_tick(Time now);
   void settle_pending();
   void find_reach(Time first);

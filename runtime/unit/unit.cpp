@@ -33,14 +33,14 @@ void Unit::begin(Time now) {
   const bool drive_changed = changes != drive_changes_;
   drive_changes_ = changes;
   if (drive_changed) report_drive(now);
-  if (!machine_) return;
-  if (drive_changed) {
+  if (!has_variables()) return;
+  if (machine_ && drive_changed) {
     raise_events();
     restart_after_reset(now);
   }
   show_variables(now);
   count_timers();
-  if (pid_) pid_->tick(machine_->variables());
+  if (pid_) pid_->tick(variables());
 }
 
 bool Unit::run_tasks() {
@@ -55,7 +55,7 @@ bool Unit::run_tasks() {
 }
 
 void Unit::finish(Time now) {
-  if (machine_) take_variables(now);
+  if (has_variables()) take_variables(now);
   store(now);
 }
 
@@ -67,8 +67,7 @@ void Unit::take_inputs() {
 
 const PositionControl& Unit::order_position(Time now) {
   static constexpr PositionControl kNone;
-  if (!positioning_ || !machine_) return kNone;
-  return positioning_->order(now, machine_->variables(), drive_.syncs());
+  return positioning_ ? positioning_->order(now, variables(), drive_.syncs()) : kNone;
 }
 
 // An error that is new, or back after a reset, is the event of the ERROR interrupt; warnings are not (ours).
@@ -98,27 +97,29 @@ void Unit::restart_after_reset(Time now) {
 }
 
 void Unit::show_variables(Time now) {
-  const std::span<int32_t> h = machine_->variables();
+  const std::span<int32_t> h = variables();
   mirrored_->show(h);
   show_drive(drive(), h);
   if (positioning_) show_positioning(now);
 }
 
 void Unit::show_positioning(Time now) {
-  positioning_->show(now, machine_->variables());
+  positioning_->show(now, variables());
+  if (!machine_) return;
   if (positioning_->positioner().touch_probes().probe(0).fresh) machine_->raise_event(vm::Event::TouchProbe);
   positioning_commands_->tick(*machine_);
 }
 
 void Unit::count_timers() {
-  if (machine_->fault().number != 0) return;
-  const Timers::Expired expired = timers_.tick(machine_->variables());
+  if (machine_ && machine_->fault().number != 0) return;
+  const Timers::Expired expired = timers_.tick(variables());
+  if (!machine_) return;
   if (expired.timer_0) machine_->raise_event(vm::Event::Timer0);
   if (expired.watchdog) machine_->raise_fault(kFaultWatchdog, "the watchdog has run out, H490 is 0");
 }
 
 void Unit::take_variables(Time now) {
-  const std::span<int32_t> h = machine_->variables();
+  const std::span<int32_t> h = variables();
   mirrored_->take(h);
   take_program_orders(h, drive());
   if (drive_.has_reasons()) report_reasons(now);
@@ -135,8 +136,8 @@ void Unit::advance(Ticks ticks) {
   if (ticks > 1) drive().advance(ticks - 1);
   const int32_t before = drive().position();
   drive().advance(1);
-  if (!machine_) return;
-  const std::span<int32_t> h = machine_->variables();
+  if (!has_variables()) return;
+  const std::span<int32_t> h = variables();
   if (positioning_)
     positioning_->advance(h, drive_.syncs(), before);
   else

@@ -94,7 +94,11 @@ class Unit final {
   const vm::Image* image() const { return image_ ? &*image_ : nullptr; }
   vm::Machine* machine() { return machine_ ? &*machine_ : nullptr; }
   const vm::Machine* machine() const { return machine_ ? &*machine_ : nullptr; }
-  std::span<int32_t> variables() { return machine_ ? machine_->variables() : std::span<int32_t>(); }
+  // The H variables: the unit has them with and without a program, so a master that knows indices only finds the
+  // system variables alive (ours: the manuals tie them to the unit, not to its program). Empty for a unit without IPOS.
+  std::span<int32_t> variables() { return drive_.memory().variables().words(); }
+  std::span<const int32_t> variables() const { return drive_.memory().variables().words(); }
+  bool has_variables() const { return config_.type.variables != 0; }
   DriveServer& server() { return drive_; }
   const DriveServer& server() const { return drive_; }
   Drive& drive() { return drive_.state(); }
@@ -104,7 +108,7 @@ class Unit final {
   const PositioningService* positioning() const { return positioning_ ? &*positioning_ : nullptr; }
   const Timers& timers() const { return timers_; }
   // The unit has a PID controller, and it is on.
-  bool controls() const { return pid_ && !PidBlock::is_off(machine_->variables()); }
+  bool controls() const { return pid_ && !PidBlock::is_off(variables()); }
   MovilinkCommand& movilink() { return movilink_; }
   const MovilinkCommand& movilink() const { return movilink_; }
   const std::array<VariableObjects*, 2>& objects() const { return objects_; }
@@ -125,6 +129,7 @@ class Unit final {
   void restart_after_reset(Time now);
   void show_variables(Time now);
   void show_positioning(Time now);
+  void begin_variables();
   void start_machine();
   void choose_engine(const vm::VerifiedImage& program);
   StationServices services();
@@ -161,7 +166,7 @@ class Unit final {
   std::shared_ptr<const vm::fast::Native> native_;  // null: no machine code
   uint32_t programs_ = 0;
 
-  // What the program works with.
+  // What works with the variables beside the program.
   std::optional<MirroredValues> mirrored_;
   std::optional<PidBlock> pid_;  // MOVIDRIVE B
   std::optional<PositioningCommands> positioning_commands_;

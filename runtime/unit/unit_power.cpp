@@ -21,6 +21,8 @@ void Unit::power_on() {
     drive_.power_cycle();
   }
   if (const uint8_t fault = drive_.memory().fault(); fault != 0) drive().raise_fault(fault);
+  if (!has_variables()) return;
+  begin_variables();
   if (config_.type.generation == stdlib::Generation::M07) return;
   positioning_.emplace(drive(), drive_.parameters(), journal_, config_.name,
                        [this](uint32_t address) { return source_place(address); });
@@ -66,9 +68,7 @@ std::optional<std::string> Unit::load_program() {
   stop_tasks();
   drive_.disconnect_program();
   code_ = std::move(code);
-  timers_ = {};
-  mirrored_.emplace(drive_.parameters());
-  if (config_.type.generation == stdlib::Generation::B) pid_.emplace(drive_.parameters());
+  begin_variables();
   const bool of_image = image_ && code_ == image_->code;
   commands_.emplace(services(), journal_, config_.name, of_image ? &*image_ : nullptr);
   const vm::VerifiedImage program = *vm::verify(code_, limits, {}).image;
@@ -80,6 +80,12 @@ std::optional<std::string> Unit::load_program() {
   resets_seen_ = drive().resets();
   drive_changes_ = drive().changes() - 1;
   return std::nullopt;
+}
+
+void Unit::begin_variables() {
+  timers_ = {};
+  mirrored_.emplace(drive_.parameters());
+  if (config_.type.generation == stdlib::Generation::B) pid_.emplace(drive_.parameters());
 }
 
 void Unit::start_machine() {

@@ -57,9 +57,8 @@ void Console::print(const std::string& arguments) {
   text.erase(0, text.find_first_not_of(' '));
   const runtime::Plant& plant = debugger_->plant();
   // A structure is shown member by member, an array element by element.
-  const vm::Image* image = plant.stations()[current_.station]->image();
   bool shown = false;
-  for (const vm::Symbol& symbol : image == nullptr ? std::vector<vm::Symbol>() : image->symbols) {
+  for (const vm::Symbol& symbol : plant.stations()[current_.station]->symbols()) {
     const bool member = symbol.name.starts_with(text + ".");
     if (!member && !(symbol.name == text && symbol.count > 1)) continue;
     shown = true;

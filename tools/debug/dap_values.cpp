@@ -96,7 +96,7 @@ Json DapServer::scope_values(uint32_t station, int scope, bool hex) const {
 Json DapServer::named_values(uint32_t station, const std::string& prefix, bool hex) {
   Json all = Json::array();
   std::vector<std::string> structures;
-  for (const vm::Symbol& symbol : debugger_->plant().stations()[station]->image()->symbols) {
+  for (const vm::Symbol& symbol : debugger_->plant().stations()[station]->symbols()) {
     if (!symbol.name.starts_with(prefix)) continue;
     const std::string rest = symbol.name.substr(prefix.size());
     if (const size_t dot = rest.find('.'); dot != std::string::npos) {
@@ -132,7 +132,7 @@ Json DapServer::variables(const Json& arguments) {
   const std::string filter = arguments.value("filter", "");
   Json all = Json::array();
   if ((filter == "named" && indexed) || (filter == "indexed" && !indexed)) return {{"variables", all}};
-  if (asked.scope == Named && station.image() != nullptr) {
+  if (asked.scope == Named) {
     all = named_values(asked.station, asked.name, hex);
   } else if (indexed) {
     const uint32_t most = asked.scope == Numbers ? station.config().unit->variables : asked.count;

@@ -18,15 +18,14 @@ using runtime::Station;
 constexpr uint32_t kFirstVariable = 11'000;
 
 std::optional<ValuePlace> find_variable(const Station& station, uint32_t number, std::string_view name) {
-  if (station.machine() == nullptr) return std::nullopt;
   ValuePlace place{number, ValueKind::Variable, 0, 1, std::string(name)};
-  for (const vm::Symbol& symbol : station.image()->symbols)
+  for (const vm::Symbol& symbol : station.symbols())
     if (symbol.name == name) {
       place.number = symbol.variable;
       place.elements = symbol.count;
       return place;
     }
-  const auto found = runtime::named_variables(station.image()->symbols, *station.config().unit, name);
+  const auto found = runtime::named_variables(station.symbols(), *station.config().unit, name);
   if (found.size() != 1) return std::nullopt;  // a structure has no value of its own
   place.number = found.front().number;
   return place;
@@ -89,7 +88,7 @@ std::optional<ValuePlace> find_value(const runtime::Plant& plant, uint32_t stati
 int32_t read_value(const runtime::Plant& plant, const ValuePlace& place) {
   Station& station = *plant.stations()[place.station];
   switch (place.kind) {
-    case ValueKind::Variable: return station.machine() == nullptr ? 0 : station.variable(place.number);
+    case ValueKind::Variable: return station.variable(place.number);
     case ValueKind::Parameter: return station.drive().parameters().value(static_cast<uint16_t>(place.number));
     case ValueKind::Input: return station.inputs().line(place.number).value();
     case ValueKind::Output: return station.drive().state().outputs() >> place.number & 1;

@@ -30,7 +30,7 @@ void add_signals(const runtime::Station& station, const std::string& name, std::
   for (const runtime::PlantSignal& signal : found) {
     const std::string own = signal.name.substr(signal.station.size() + 1);
     if (signal.group == runtime::SignalGroup::Variable && signal.bits == 0) {
-      add(station, runtime::named_variables(station.image()->symbols, *station.config().unit, own), rows);
+      add(station, runtime::named_variables(station.symbols(), *station.config().unit, own), rows);
       continue;
     }
     const int64_t value = signal.read();
@@ -43,15 +43,13 @@ void add_signals(const runtime::Station& station, const std::string& name, std::
 
 std::vector<WatchRow> watch_rows(const runtime::Station& station, const std::vector<std::string>& names) {
   std::vector<WatchRow> rows;
-  if (names.empty() && station.image() != nullptr)
-    for (const vm::Symbol& symbol : station.image()->symbols)
-      add(station, runtime::elements_of(symbol), rows);
+  if (names.empty())
+    for (const vm::Symbol& symbol : station.symbols()) add(station, runtime::elements_of(symbol), rows);
   for (std::string name : names) {
     // "u.H200" is of the station u only.
     if (const std::string own = station.config().name + "."; name.starts_with(own)) name.erase(0, own.size());
     const size_t before = rows.size();
-    if (station.image() != nullptr)
-      add(station, runtime::named_variables(station.image()->symbols, *station.config().unit, name), rows);
+    add(station, runtime::named_variables(station.symbols(), *station.config().unit, name), rows);
     if (rows.size() == before) add_signals(station, name, rows);
   }
   return rows;

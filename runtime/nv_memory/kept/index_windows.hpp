@@ -31,6 +31,7 @@ class ValueWindow final : public IndexWindow {
   int32_t* kept_at(uint16_t index);  // nullptr for an index that is not kept here
   std::span<const int32_t> kept() const { return kept_; }
   std::span<int32_t> words() { return words_; }
+  std::span<const int32_t> words() const { return words_; }
   uint16_t first_index() const { return first_index_; }
 
   ParameterReply read(uint16_t offset) override { return words_[offset]; }

@@ -45,6 +45,7 @@ class UnitMemory final : public NonvolatileMemory, public RetainedMemory {
   void set_time(Time now) { now_ = now; }
 
   ValueWindow& variables() { return variables_; }
+  const ValueWindow& variables() const { return variables_; }
   ProgramWindow& program() { return program_; }
   bool has_medium() const { return slots_.has_value(); }
 

@@ -266,7 +266,9 @@ TEST(PlantRun, SignalsOfAStationAreShownWithUnitAndDigits) {
     EXPECT_DOUBLE_EQ(signal.factor, row.factor) << row.name;
     EXPECT_EQ(signal.is_status, std::string(row.name) == "status");
   }
-  for (const char* none : {"position_setpoint", "task1.line", "lCount", "H0", "DO06", "DI08", "PO4"})
+  for (const char* own : {"position_setpoint", "H0", "ActPos_Mot"})
+    EXPECT_EQ(find_station_signals(plant.station(), own).size(), 1U) << own << " is of the unit";
+  for (const char* none : {"task1.line", "lCount", "H1024", "DO06", "DI08", "PO4"})
     EXPECT_TRUE(find_station_signals(plant.station(), none).empty())
         << none << " is of a program or not there";
 }
