@@ -3,7 +3,10 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
+
+#include "stdlib/parameters.hpp"
 
 namespace ipos::stdlib {
 
@@ -26,11 +29,17 @@ struct FaultRow {
   uint8_t number;
   std::string_view name;
   FaultResponse response;      // factory setting
-  std::string_view parameter;  // number of the parameter that chooses the response; kByCommand; empty: fixed
-  std::string_view meaning;
+  std::string_view parameter;  // numbers of parameters that choose the response; kByCommand; empty: fixed
+  std::string_view meaning;    // of all units; meaning_on() has that of one
 };
 
 std::span<const FaultRow> fault_table();  // in rising order of the numbers
 const FaultRow* find_fault(uint8_t number);
+
+std::string meaning_on(const UnitType& unit, const FaultRow& row);
+// The parameter of this unit that chooses the response; nullptr: none does.
+const Parameter* response_parameter(const ParameterTable& table, const FaultRow& row);
+// Where none does: that from the factory, on MOVITRAC 07 a rapid stop (its manual, chapter 7.1).
+FaultResponse fixed_response(const UnitType& unit, const FaultRow& row);
 
 }  // namespace ipos::stdlib

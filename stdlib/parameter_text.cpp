@@ -252,7 +252,8 @@ std::string index_name(const ParameterTable& table, uint16_t index) {
   static constexpr struct {
     uint16_t first, count;
     std::string_view before;
-  } kAreas[] = {{11000, 1024, "H"}, {16000, 2048, "program word "}, {20000, 513, "curve point "}};
+  } kAreas[] = {{10000, 100, "error response "},     {10300, 40, "motor current "}, {10600, 40, "motor flux "},
+                {11000, 1024, "H"}, {16000, 2048, "program word "}, {20000, 513, "curve point "}};
   if (const Parameter* parameter = table.find(index)) {
     const std::string number =
         parameter->number.empty() ? "index " + std::to_string(index) : "P" + std::string(parameter->number);
@@ -284,6 +285,8 @@ std::string explain_refusal(const ParameterTable& table, uint8_t service, uint16
   if (parameter && about_value && !(parameter->ranges.empty() && parameter->texts.empty()))
     text += " (" + allowed(*parameter, value, code) + ")";
   if (code == return_codes::kParameterLock) text += " (P803 = ON)";
+  if (code == return_codes::kNotImplemented && parameter == nullptr)
+    text += " (this area of the unit is not simulated, docs/reference/limits.md)";
   return text;
 }
 

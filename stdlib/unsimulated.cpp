@@ -15,6 +15,14 @@ constexpr UnsimulatedRow kRows[] = {
 #include "stdlib/unsimulated.def"
 };
 
+struct UnshownRow {
+  std::string_view parameters, units, text;
+};
+constexpr UnshownRow kUnshown[] = {
+#define UNSHOWN(parameters, units, text) {parameters, units, text},
+#include "stdlib/unsimulated.def"
+};
+
 int64_t number_of(std::string_view text) {
   int64_t number = 0;
   std::from_chars(text.data(), text.data() + text.size(), number);
@@ -61,6 +69,14 @@ std::vector<Unsimulated> make_list(const UnitType& unit) {
 }  // namespace
 
 std::span<const UnsimulatedRow> unsimulated_rows() { return kRows; }
+
+std::string_view unshown(const UnitType& unit, const Parameter& parameter) {
+  if (parameter.writable || parameter.number.empty()) return {};
+  for (const UnshownRow& row : kUnshown)
+    if (among_units(row.units, unit) && holds(ranges_of(row.parameters), number_of(parameter.number)))
+      return row.text;
+  return {};
+}
 
 bool Unsimulated::applies(int32_t value) const {
   const int64_t number = parameter->number_of(value);

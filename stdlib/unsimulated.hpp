@@ -24,6 +24,9 @@ struct UnsimulatedRow {
 };
 std::span<const UnsimulatedRow> unsimulated_rows();
 
+// What a display value of the unit reads where the simulation has nothing to show; empty: it shows something.
+std::string_view unshown(const UnitType& unit, const Parameter& parameter);
+
 // A row for one parameter of one unit.
 struct Unsimulated {
   const Parameter* parameter;  // leads its index

@@ -19,7 +19,7 @@ vm::HostReply set_fault_response(CommandCall& call) {
   if (call.services.drive.set_fault_response(row->number, static_cast<FaultResponse>(response))) return {};
   if (row->parameter.empty()) return illegal("SETFR: the response to this fault is fixed");
   ParameterStore& parameters = call.services.parameters;
-  const stdlib::Parameter* parameter = parameters.table().find(row->parameter);
+  const stdlib::Parameter* parameter = stdlib::response_parameter(parameters.table(), *row);
   if (parameter == nullptr) return illegal("SETFR: on this unit the response to this fault is fixed");
   const ParameterReply reply =
       parameters.execute(ParameterService::WriteVolatile, parameter->index, response);

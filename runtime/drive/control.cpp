@@ -2,6 +2,7 @@
 #include "runtime/drive/control.hpp"
 
 #include "runtime/drive/process_data.hpp"
+#include "stdlib/unit_text.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -74,7 +75,9 @@ void hear_faults(const ControlInputs& in, Verdict& verdict) {
 
 }  // namespace
 
-std::string_view block_text(Block block) { return kTexts[static_cast<size_t>(block)]; }
+std::string block_text(Block block, const stdlib::UnitType& unit) {
+  return stdlib::unit_text(unit, kTexts[static_cast<size_t>(block)]);
+}
 
 Verdict decide_locally(const ControlInputs& inputs) {
   Verdict verdict;

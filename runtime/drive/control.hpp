@@ -5,10 +5,11 @@
 
 #include <cstdint>
 #include <optional>
-#include <string_view>
+#include <string>
 
 #include "runtime/drive/fault_state.hpp"
 #include "runtime/drive/terminals.hpp"
+#include "stdlib/unit_types.hpp"
 
 namespace ipos::runtime {
 
@@ -19,7 +20,7 @@ enum class Block : uint8_t {
 #define BLOCK(name, text) name,
 #include "runtime/drive/blocks.def"
 };
-std::string_view block_text(Block block);
+std::string block_text(Block block, const stdlib::UnitType& unit);
 
 struct Verdict {
   Command command = Command::Enable;

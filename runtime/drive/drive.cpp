@@ -167,13 +167,9 @@ int32_t Drive::shaft_position() const {
 FaultResponse Drive::response_of(uint8_t number) const {
   const stdlib::FaultRow* row = stdlib::find_fault(number);
   if (row == nullptr) return FaultResponse::ImmediateError;
-  if (is_m31_ && number == faults::kFieldbus)
-    return static_cast<FaultResponse>(parameters_.value(index::kM31TimeoutResponse));
-  if (row->parameter.empty() || row->parameter == stdlib::kByCommand)
-    return responses_[number].value_or(row->response);
-  const stdlib::Parameter* parameter = parameters_.table().find(row->parameter);
-  if (parameter != nullptr) return static_cast<FaultResponse>(parameters_.value(parameter->index));
-  return is_m07_ ? FaultResponse::RapidError : row->response;  // fixed there (M07-MON-03)
+  if (const stdlib::Parameter* parameter = stdlib::response_parameter(parameters_.table(), *row))
+    return static_cast<FaultResponse>(parameters_.value(parameter->index));
+  return responses_[number].value_or(stdlib::fixed_response(parameters_.unit(), *row));
 }
 
 bool Drive::set_fault_response(uint8_t number, FaultResponse response) {
@@ -456,8 +452,10 @@ void Drive::select_parameter_set() {
              flag(state_.position.in_position, output_flags::kInPosition) |
              flag(state_.position.referenced, output_flags::kReferenced);
   in.speed = axis.speed();
-  // Compared with the setpoint before the ramp, so that P420 tells when it is reached (ours).
-  in.setpoint = order_.command == AxisCommand::Run ? order_.target : 0;
+  // Compared with the setpoint before the ramp, so that P420 tells when it is reached (ours); positioning orders one
+  // without a ramp.
+  const bool has_setpoint = order_.command == AxisCommand::Run || order_.command == AxisCommand::Follow;
+  in.setpoint = has_setpoint ? order_.target : 0;
   in.current = axis.output_current();
   in.current_limit = order_.current_limit;
   in.ipos_outputs = state_.ipos_outputs;

@@ -228,6 +228,8 @@ class Drive final : private DriveLink {
   UnitCondition enabled_condition() const;
   uint8_t status_block() const;
   uint16_t pi_word(size_t n) const;
+  int32_t user_display() const;
+  int32_t share_of_ai2(int32_t limit) const;
 
   LinkWatch& touched_watch(PoSource source);
   void note_heard();

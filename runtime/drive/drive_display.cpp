@@ -1,5 +1,8 @@
 // What the drive shows: unit condition, status words, process input data and display values.
 #include "runtime/drive/drive.hpp"
+
+#include <algorithm>
+
 #include "runtime/drive/indices.hpp"
 
 namespace ipos::runtime {
@@ -133,6 +136,12 @@ Drive::Words Drive::master_words(SlaveSetpoint what) const {
   return {control, setpoint, state_.ipos_pi[2]};
 }
 
+// P000 x P850 / P851 (1053 1610 p. 68, 81), as far as 32 bits go.
+int32_t Drive::user_display() const {
+  const int64_t value = int64_t{shown_speed()} * settings().user_numerator / settings().user_denominator;
+  return static_cast<int32_t>(std::clamp<int64_t>(value, INT32_MIN, INT32_MAX));
+}
+
 std::optional<int32_t> Drive::scope_value(uint16_t index) const {
   switch (index) {
     case index::kScopeControl: return scope_.runs() ? 1 : 0;
@@ -181,6 +190,8 @@ std::optional<int32_t> Drive::live_value(uint16_t index) const {
     case index::kHeatSink: return axis.heat_sink;
     case index::kAnalogInput1: return now_->analog.ai1.millivolt;
     case index::kAnalogInput2: return now_->analog.ai2.millivolt;
+    case index::kExternalLimit: return share_of_ai2(set().current_limit);
+    case index::kUserDisplay: return user_display();
     case index::kInputs: return now_->inputs & (is_m07_ ? 0x3E : 0x3F);  // M07 has no DI00
     case index::kOptionInputs: return now_->inputs >> 8;
     case index::kOutputs: return state_.outputs.levels() & (is_m07_ ? 0x06 : 0x07);  // nor DB00

@@ -103,10 +103,14 @@ AxisOrder Drive::axis_order(Command command) const {
   const std::optional<int32_t> limit = bus.maximum_current ? bus.maximum_current : control.maximum_current;
   if (limit) order.current_limit = std::clamp(*limit, 0, order.current_limit);
   constexpr int32_t kAi2IsLimit = 2;
-  if (s.ai2_mode == kAi2IsLimit)
-    order.current_limit = static_cast<int32_t>(int64_t{order.current_limit} *
-                                               std::clamp(now_->analog.ai2.millivolt, 0, 10'000) / 10'000);
+  if (s.ai2_mode == kAi2IsLimit) order.current_limit = share_of_ai2(order.current_limit);
   return order;
+}
+
+// P120 = 2: 0..10 V at AI2 are 0..100 % of the current limit. P022 shows it of P303, whatever P120 is (ours).
+int32_t Drive::share_of_ai2(int32_t limit) const {
+  constexpr int32_t kFullVoltage = 10'000;
+  return static_cast<int32_t>(int64_t{limit} * std::clamp(now_->analog.ai2.millivolt, 0, kFullVoltage) / kFullVoltage);
 }
 
 }  // namespace ipos::runtime

@@ -29,6 +29,7 @@ inline constexpr uint16_t kOptionInputFunction = 8340;  // + n = function of DI1
 inline constexpr uint16_t kOptionInputs = 8348;         // P048, DI10..DI17
 inline constexpr uint16_t kAnalogInput1 = 8331;         // P020, P021, P022
 inline constexpr uint16_t kAnalogInput2 = 8332;
+inline constexpr uint16_t kUserDisplay = 8501;  // P001
 inline constexpr uint16_t kExternalLimit = 8333;
 inline constexpr uint16_t kOutputs = 8349;
 inline constexpr uint16_t kOutputFunction = 8350;        // + n = function of DO01, DO02
@@ -65,7 +66,6 @@ inline constexpr uint16_t kFieldbusTimeout = 8606;  // P819
 // MOVITRAC 31 (stdlib/parameters/mc31.tsv).
 inline constexpr uint16_t kM31RampUp = 25;            // P120
 inline constexpr uint16_t kM31Timeout = 116;          // P571
-inline constexpr uint16_t kM31TimeoutResponse = 117;  // P572
 inline constexpr uint16_t kM31Terminal42 = 120;       // P600
 inline constexpr uint16_t kM31Terminal43 = 121;       // P601
 inline constexpr uint16_t kM31SaveEeprom = 164;       // P802

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "stdlib/unit_text.hpp"
+
 namespace ipos::runtime {
 namespace {
 
@@ -86,7 +88,9 @@ Setpoint select_current(const Settings& settings, const ParameterSet& set, const
 
 }  // namespace
 
-std::string_view setpoint_note_text(SetpointNote note) { return kTexts[static_cast<size_t>(note)]; }
+std::string setpoint_note_text(SetpointNote note, const stdlib::UnitType& unit) {
+  return stdlib::unit_text(unit, kTexts[static_cast<size_t>(note)]);
+}
 
 bool sign_decides(const Settings& settings, bool slave_free_run) {
   return is_bus(source_of(settings, slave_free_run));

@@ -4,9 +4,10 @@
 
 #include <cstdint>
 #include <optional>
-#include <string_view>
+#include <string>
 
 #include "runtime/drive/settings.hpp"
+#include "stdlib/unit_types.hpp"
 
 namespace ipos::runtime {
 
@@ -45,7 +46,7 @@ enum class SetpointNote : uint8_t {
 #define SETPOINT_NOTE(name, text) name,
 #include "runtime/drive/setpoint_notes.def"
 };
-std::string_view setpoint_note_text(SetpointNote note);
+std::string setpoint_note_text(SetpointNote note, const stdlib::UnitType& unit);
 
 struct SetpointInputs {
   bool m07 = false;

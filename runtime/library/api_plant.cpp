@@ -251,7 +251,7 @@ ipos_plant_status ipos_plant_why(ipos_plant* plant, uint32_t station, const char
     if (station >= stations.size())
       return plant->fail(IPOS_PLANT_NO_STATION, fmt::format("there is no station number {}", station));
     const Station& asked = *stations[station];
-    *text = plant->hand_out(asked.powered() ? std::string(block_text(asked.drive().state().verdict().reason))
+    *text = plant->hand_out(asked.powered() ? block_text(asked.drive().state().verdict().reason, *asked.config().unit)
                                             : "the power is off");
     return ipos_plant_status{IPOS_PLANT_OK};
   });

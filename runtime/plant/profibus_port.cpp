@@ -76,12 +76,7 @@ void ProfibusPort::fieldbus_timeout_expired(Time) {
 }
 
 void ProfibusPort::set_fieldbus_address(Time, uint8_t address) {
-  constexpr int32_t kFieldbusCard = 2, kProfibusDp = 5;  // codes of P072 and P091
-  ParameterStore& parameters = door_.touch().server().parameters();
-  if (!movidrive_) return parameters.set_display(index::kM31Address, address);
-  parameters.set_display(index::kOption1, kFieldbusCard);
-  parameters.set_display(index::kFieldbusType, kProfibusDp);
-  parameters.set_display(index::kFieldbusAddress, address);
+  door_.touch().server().show_fieldbus_card(address);
 }
 
 void ProfibusPort::on_note(Time now, profibus::SlaveNote what, uint8_t master) {

@@ -194,9 +194,23 @@ bool PlantReader::signal(const toml::table& table, std::string_view what,
   return true;
 }
 
+// A whole number is the transferred value, so 2 and 2.0 would not be the same.
+bool PlantReader::refuse_decimal(const toml::value<double>& node, const stdlib::UnitType* unit,
+                                 std::string_view parameter) {
+  const std::string written = fmt::format("{}", node.get());
+  const stdlib::Parameter* row = unit == nullptr ? nullptr : stdlib::parameter_table(*unit).find(parameter);
+  const auto value = row == nullptr ? tl::expected<int32_t, std::string>(tl::unexpected(std::string()))
+                                    : stdlib::parse_parameter_text(*row, written);
+  error(place_of(node), fmt::format("{} must be a text as it is shown, \"{}\", or the whole number that is "
+                                    "transferred{}",
+                                    parameter, written, value ? fmt::format(", {}", *value) : ""));
+  return false;
+}
+
 bool PlantReader::parameter_value(const toml::node& node, const stdlib::UnitType* unit,
                                   std::string_view parameter, int32_t& out) {
   const auto* words = node.as_string();
+  if (const auto* decimal = node.as_floating_point()) return refuse_decimal(*decimal, unit, parameter);
   if (words == nullptr) return number(node, parameter, out);
   if (unit == nullptr) return false;  // reported already
   const stdlib::Parameter* row = stdlib::parameter_table(*unit).find(parameter);

@@ -72,6 +72,7 @@ class PlantReader {
   // people read: "2.5 s", "500 kBaud". False with an error, or when the unit is unknown.
   bool parameter_value(const toml::node& node, const stdlib::UnitType* unit, std::string_view parameter,
                        int32_t& out);
+  bool refuse_decimal(const toml::value<double>& node, const stdlib::UnitType* unit, std::string_view parameter);
   // Of a station that has been read; nullptr when there is none of this name.
   const stdlib::UnitType* unit_of(std::string_view station) const;
   // Nothing when it is not there.

@@ -104,6 +104,7 @@ class ObjectTable {
 
   // The identifiers closed to the unit's objects are those of its MOVILINK profile (1053 1610 p. 51 to 53).
   void set_profile(const SlaveSettings& profile) { profile_ = profile; }
+  const stdlib::UnitType& unit() const { return *unit_; }
   const SlaveSettings& profile() const { return profile_; }
 
   ObjectRequest request(ObjectKind kind, uint32_t variable, std::span<const int32_t> h) const;

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "runtime/bus/can/identifier_text.hpp"
+#include "stdlib/unit_text.hpp"
 
 namespace ipos::runtime {
 
@@ -43,8 +44,8 @@ bool VariableObjects::define(ObjectKind kind, uint32_t variable, std::span<int32
     if (kind == ObjectKind::Receive) sender_.listen(static_cast<uint32_t>(request.object));
     const SlaveSettings& profile = table_.profile();
     if (profile.synchronous && request.object == profile.sync_id)
-      why = fmt::format("object number {} is also the sync telegram of this unit (P817 or P885)",
-                        object_words(request.object));
+      why = fmt::format("object number {} is also the sync telegram of this unit ({})", object_words(request.object),
+                        stdlib::unit_text(table_.unit(), "{P885 or P895|P817}"));
     // The table keeps no acyclic objects.
     if (const ObjectDefinition* other = another_use(definition);
         other != nullptr &&

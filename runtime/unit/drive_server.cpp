@@ -120,6 +120,14 @@ void DriveServer::take_fieldbus(std::span<const uint16_t> words) {
   state_.take_po(PoSource::Fieldbus, words);
 }
 
+void DriveServer::show_fieldbus_card(uint8_t address) {
+  constexpr int32_t kFieldbusCard = 2, kProfibusDp = 5;  // codes of P072 and P091
+  if (unit().generation == stdlib::Generation::None) return parameters_.set_display(index::kM31Address, address);
+  parameters_.set_display(index::kOption1, kFieldbusCard);
+  parameters_.set_display(index::kFieldbusType, kProfibusDp);
+  parameters_.set_display(index::kFieldbusAddress, address);
+}
+
 // P876, P101 and P100 (1053 1610 p. 41); P841 of MOVITRAC 31 stands for them.
 void DriveServer::look_for_obstacles(const DataBus& bus, bool slave) {
   constexpr int32_t kOn = 1;

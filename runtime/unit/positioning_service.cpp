@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "stdlib/unit_text.hpp"
+
 namespace ipos::runtime {
 namespace {
 
@@ -288,7 +290,8 @@ void PositioningService::report_events(Time now) {
     const std::string place = place_of(event);
     journal_.note(
         now, Weight::Warning, station_,
-        fmt::format("{}{} ({}position {}{}{})", fault == 0 ? "" : fmt::format("F{:02}: ", fault), text_of(event),
+        fmt::format("{}{} ({}position {}{}{})", fault == 0 ? "" : fmt::format("F{:02}: ", fault),
+                    stdlib::unit_text(parameters_.unit(), text_of(event)),
                     target ? fmt::format("target {}, ", *target) : "", positioner_.setpoint(),
                     place.empty() ? "" : ", ordered at ", place));
   }

@@ -37,7 +37,7 @@ void Unit::report_drive(Time now) {
     const stdlib::FaultRow* row = stdlib::find_fault(fault);
     note(now, d.error() ? Weight::Fault : Weight::Warning,
          row == nullptr ? fmt::format("F{:02}", fault)
-                        : fmt::format("F{:02} {}: {}", fault, row->name, row->meaning));
+                        : fmt::format("F{:02} {}: {}", fault, row->name, stdlib::meaning_on(config_.type, *row)));
   }
   told_fault_ = fault;
   if (const uint16_t reserved = d.reserved_control_bits(); reserved != told_reserved_) {
@@ -51,13 +51,12 @@ void Unit::report_drive(Time now) {
   if (const Block block = d.verdict().reason; block != told_block_) {
     told_block_ = block;
     note(now, Weight::Why,
-         block == Block::None ? std::string(block_text(block))
-                              : fmt::format("not enabled: {}", block_text(block)));
+         (block == Block::None ? "" : "not enabled: ") + block_text(block, config_.type));
   }
   if (const SetpointNote setpoint_note = d.setpoint().note; setpoint_note != told_note_) {
     told_note_ = setpoint_note;
     if (setpoint_note != SetpointNote::None)
-      note(now, Weight::Why, std::string(setpoint_note_text(setpoint_note)));
+      note(now, Weight::Why, setpoint_note_text(setpoint_note, config_.type));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "stdlib/faults.hpp"
@@ -16,7 +17,26 @@ namespace {
 
 std::string response_parameter(const stdlib::FaultRow& row) {
   if (row.parameter == stdlib::kByCommand) return "`_FaultReaction`";
-  return row.parameter.empty() ? "" : "P" + std::string(row.parameter);
+  std::string text = row.parameter.empty() ? "" : "P" + std::string(row.parameter);
+  if (const size_t comma = text.find(','); comma != std::string::npos) text.replace(comma, 1, ", P");
+  return text;
+}
+
+// "no process data over the SBus within P883 (mdxb); within P815 (md60a, compact, mc07)", in the words of each unit.
+std::string meanings(const stdlib::FaultRow& row) {
+  std::vector<std::pair<std::string, std::string>> groups;  // text, units
+  for (const stdlib::UnitType& unit : stdlib::unit_types()) {
+    const std::string text = stdlib::meaning_on(unit, row);
+    const auto same = std::find_if(groups.begin(), groups.end(), [&](const auto& one) { return one.first == text; });
+    if (same == groups.end())
+      groups.emplace_back(text, unit.name);
+    else
+      same->second += ", " + std::string(unit.name);
+  }
+  if (groups.size() == 1) return groups[0].first;
+  std::string all;
+  for (const auto& [text, units] : groups) all += (all.empty() ? "" : "; ") + text + " (" + units + ")";
+  return all;
 }
 
 TEST(DrivePage, FaultTable) {
@@ -25,7 +45,7 @@ TEST(DrivePage, FaultTable) {
   for (const stdlib::FaultRow& row : stdlib::fault_table())
     want.push_back(fmt::format("| F{:02} | {} | {} | {} | {} |", row.number, row.name,
                                stdlib::parameter_text(*p830, static_cast<int32_t>(row.response)),
-                               response_parameter(row), row.meaning));
+                               response_parameter(row), meanings(row)));
   std::vector<std::string> found;
   std::istringstream page(read_text(project("docs/inside/drive.md")));
   for (std::string line; std::getline(page, line);)

@@ -69,11 +69,20 @@ TEST(Explain, FaultsOfTheDrive) {
   for (const char* part : {"P815", "P836", "EMERG.STOP/ERROR"})
     EXPECT_NE(text.find(part), std::string::npos) << text;
   EXPECT_EQ(explained("f047"), text);
+  // Each unit in its own words: MOVIDRIVE B has P883, MOVITRAC 31 has P571 and P572 (0922 6818, 3.3).
+  EXPECT_NE(text.find("MOVIDRIVE MDX60B/61B: no process data over the SBus within P883"), std::string::npos) << text;
+  const std::string fieldbus = explained("F28");
+  EXPECT_NE(fieldbus.find("MOVITRAC 31: no process data over PROFIBUS within the fieldbus timeout P571"),
+            std::string::npos)
+      << fieldbus;
+  EXPECT_NE(fieldbus.find("response: P572"), std::string::npos) << fieldbus;
+  EXPECT_NE(fieldbus.find("response: P831"), std::string::npos) << fieldbus;
   EXPECT_NE(explained("F01").find("overcurrent"), std::string::npos);
   EXPECT_NE(explained("F1").find("IMM. STOP/ERROR"), std::string::npos);
   const std::string all = explained("F");
   for (const stdlib::FaultRow& row : stdlib::fault_table())
-    EXPECT_NE(all.find(std::string(row.name) + ": " + std::string(row.meaning)), std::string::npos)
+    EXPECT_NE(all.find(std::string(row.name) + ": " + stdlib::meaning_on(*stdlib::find_unit("mdxb"), row)),
+              std::string::npos)
         << row.name;
 }
 

@@ -82,7 +82,7 @@ def test_a_wrong_name_says_what_there_is(line):
         line["mill"]
     with pytest.raises(KeyError, match="no variable 'lNone'; it has .*lCount"):
         line["saw"]["lNone"]
-    with pytest.raises(KeyError, match="no program"):
+    with pytest.raises(KeyError, match="no variable 'lCount'; it has H0"):
         line["belt"]["lCount"]
     with pytest.raises(KeyError, match="no input 'DI99'; it has DI00, .*DI17"):
         line["saw"].inputs["DI99"]

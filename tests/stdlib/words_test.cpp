@@ -11,10 +11,33 @@
 #include "stdlib/language_tables.hpp"
 #include "stdlib/services.hpp"
 #include "stdlib/spelling.hpp"
+#include "stdlib/unit_text.hpp"
 #include "stdlib/unit_types.hpp"
 
 namespace ipos::stdlib {
 namespace {
+
+const UnitType& unit_named(std::string_view name) { return *find_unit(name); }
+
+TEST(UnitText, TakesTheFirstAlternativeThatTheUnitHas) {
+  const std::string_view text = "within {P883|P815|its timeout}, {P840 = YES|}{P61x|P60x|nothing}.";
+  EXPECT_EQ(unit_text(unit_named("mdxb"), text), "within P883, P840 = YESP61x.");
+  EXPECT_EQ(unit_text(unit_named("md60a"), text), "within P815, P840 = YESP61x.");
+  EXPECT_EQ(unit_text(unit_named("mc07"), text), "within P815, P840 = YESP60x.");
+  EXPECT_EQ(unit_text(unit_named("mc31"), text), "within its timeout, P60x.");
+  EXPECT_EQ(unit_text(unit_named("mc31"), "without braces P815"), "without braces P815");
+  EXPECT_EQ(unit_text(unit_named("mc31"), "{P815}"), "") << "no alternative is left";
+  EXPECT_EQ(unit_text(unit_named("mc31"), ""), "");
+}
+
+TEST(UnitText, KnowsNamesOfParameters) {
+  EXPECT_EQ(named_parameters("P815, P60x/P61x; P830..P837 (P10), PO1, xP815, P8151, P1x0"),
+            (std::vector<std::string>{"P815", "P60x", "P61x", "P830", "P837"}));
+  EXPECT_TRUE(has_named(unit_named("mc31"), "P572"));
+  EXPECT_FALSE(has_named(unit_named("mc31"), "P815"));
+  EXPECT_TRUE(has_named(unit_named("mc31"), "P60x"));
+  EXPECT_FALSE(has_named(unit_named("mc31"), "P61x"));
+}
 
 std::string closest(std::string_view name, std::vector<std::string_view> candidates) {
   return std::string(nearest(name, candidates));

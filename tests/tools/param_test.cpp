@@ -143,7 +143,19 @@ TEST_F(Param, TextsInThePlantFileAreLocated) {
       "(0.000 s..2000.000 s)\n");
   EXPECT_EQ(error("P999 = \"1 s\""),
             "plant.toml:5:1: error: station 'unit1': unit md60a has no parameter P999\n");
-  EXPECT_TRUE(contains(error("P130 = 2.5"), "plant.toml:5:8: error: P130 must be a whole number"));
+  EXPECT_TRUE(contains(error("P130 = 2.5"), "plant.toml:5:8: error: P130 must be a text as it is shown, \"2.5\", or"));
+}
+
+// Cards, firmware and analog inputs are those of the plant file, as in a run.
+TEST_F(Param, ShowsWhatThePlantFileSaysOfTheUnit) {
+  const std::string bus = "[[bus]]\nname = \"dp\"\nkind = \"profibus\"\nbaud = 500000\n";
+  const std::string card = "profibus = \"dp\"\nprofibus_address = ";
+  plant(bus + "[[station]]\nname = \"m\"\nunit = \"mc31\"\noption = \"ffp31\"\n" + card + "8\n");
+  EXPECT_EQ(get("P073"), "P073 Fieldbus address = 8\n");
+  plant(bus + kUnit1 + "option = \"dfp\"\nfirmware = 11\n" + card + "12\n[station.analog]\nAI1 = \"5 V\"\n");
+  EXPECT_TRUE(contains(get("P093"), "= 12\n")) << get("P093");
+  EXPECT_TRUE(contains(get("P020"), "= 5.000 V\n")) << get("P020");
+  EXPECT_TRUE(contains(get("P076"), "= 822 609 7.11\n")) << get("P076");
 }
 
 TEST_F(Param, ListGroupsAndChanges) {

@@ -57,12 +57,32 @@ std::string response_text(stdlib::FaultResponse response) {
   return stdlib::parameter_text(*p830, static_cast<int32_t>(response));
 }
 
+// Meaning and response on one unit.
+std::string fault_on(const stdlib::UnitType& unit, const stdlib::FaultRow& row) {
+  std::string text = stdlib::meaning_on(unit, row) + "\n  response: ";
+  if (const auto* parameter = stdlib::response_parameter(stdlib::parameter_table(unit), row))
+    return text + fmt::format("P{}, factory setting {}", parameter->number,
+                              stdlib::parameter_text(*parameter, static_cast<int32_t>(parameter->default_value)));
+  text += response_text(stdlib::fixed_response(unit, row));
+  return row.parameter == stdlib::kByCommand ? text + ", another one by _FaultReaction" : text;
+}
+
+// What the units say of the fault; those that say the same stand together.
 std::string fault_text(const stdlib::FaultRow& row) {
-  std::string text = fmt::format("F{:02}: fault of the drive, {}\n  {}\n", row.number, row.name, row.meaning);
-  if (row.parameter.empty()) return text + fmt::format("  response: {}\n", response_text(row.response));
-  return text +
-         fmt::format("  response: P{}, factory setting {}; RAPID STOP/ERROR on a MOVITRAC 07 without it\n",
-                     row.parameter, response_text(row.response));
+  std::vector<std::pair<std::string, std::string>> groups;  // titles, text
+  for (const stdlib::UnitType& unit : stdlib::unit_types()) {
+    const std::string text = fault_on(unit, row);
+    const auto same =
+        std::find_if(groups.begin(), groups.end(), [&](const auto& group) { return group.second == text; });
+    if (same == groups.end())
+      groups.emplace_back(unit.title, text);
+    else
+      same->first += fmt::format(", {}", unit.title);
+  }
+  std::string out = fmt::format("F{:02}: fault of the drive, {}\n", row.number, row.name);
+  for (const auto& [titles, text] : groups)
+    out += groups.size() == 1 ? fmt::format("  {}\n", text) : fmt::format("  {}: {}\n", titles, text);
+  return out;
 }
 
 // `name` is a number as P130 or an index. Units with the same row stand together.
@@ -94,6 +114,8 @@ std::string parameter_text(std::string_view name) {
         text += fmt::format("\n  not simulated{}: {}",
                             one.values.empty() ? "" : fmt::format(" ({})", one.row->values), one.row->text);
     }
+    if (const std::string_view nothing = stdlib::unshown(unit, *row); !nothing.empty())
+      text += fmt::format("\n  not simulated: {}", nothing);
     const auto same = std::find_if(rows.begin(), rows.end(),
                                    [&](const Row& one) { return one.label == label && one.text == text; });
     if (same == rows.end())
@@ -106,12 +128,17 @@ std::string parameter_text(std::string_view name) {
   return out;
 }
 
+// In one line, in the words of MOVIDRIVE B.
+std::string meaning_of(const stdlib::FaultRow& row) {
+  return stdlib::meaning_on(*stdlib::find_unit("mdxb"), row);
+}
+
 }  // namespace
 
 std::string list_faults() {
   std::string text;
   for (const stdlib::FaultRow& row : stdlib::fault_table())
-    text += fmt::format("F{:02}  {}: {}\n", row.number, row.name, row.meaning);
+    text += fmt::format("F{:02}  {}: {}\n", row.number, row.name, meaning_of(row));
   return text;
 }
 
@@ -130,7 +157,7 @@ void add_drive(Entries& entries) {
   for (const stdlib::FaultRow& row : stdlib::fault_table())
     entries.push_back({{fmt::format("F{:02}", row.number), fmt::format("F{}", row.number),
                         fmt::format("F{:03}", row.number)},
-                       fmt::format("{}: {}", row.name, row.meaning),
+                       fmt::format("{}: {}", row.name, meaning_of(row)),
                        [&row] { return fault_text(row); }});
   std::set<std::string> known;
   for (const stdlib::UnitType& unit : stdlib::unit_types())

@@ -35,7 +35,8 @@ std::string describe_code(const Program& program, std::string_view word) {
     return {};
   const stdlib::FaultRow* row = stdlib::find_fault(number);
   return row == nullptr ? std::string()
-                        : fmt::format("**F{:02} {}**: {}\n", row->number, row->name, row->meaning);
+                        : fmt::format("**F{:02} {}**: {}\n", row->number, row->name,
+                                      stdlib::meaning_on(*program.compiled.unit, *row));
 }
 
 }  // namespace

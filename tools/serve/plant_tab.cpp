@@ -344,7 +344,7 @@ class PlantTab final : public Tab {
     json["enabled"] = powered && reason == runtime::Block::None;
     json["why"] = !powered                         ? "the power is off"
                   : reason == runtime::Block::None ? ""
-                                                   : std::string(runtime::block_text(reason));
+                                                   : runtime::block_text(reason, *station.config().unit);
     json["display"] = powered ? std::string(1, drive.display()) : "";
     json["status"] = station.status_word_1();
     json["fault"] = station.fault();

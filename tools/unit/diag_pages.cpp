@@ -134,9 +134,9 @@ std::string DiagPages::process_data() const {
   text += line("status word 1", word(drive.status_word_1()));
   text += line("state", condition_text(drive.condition()));
   const runtime::Verdict verdict = drive.verdict();
-  if (verdict.reason != runtime::Block::None) text += line("not enabled", block_text(verdict.reason));
+  if (verdict.reason != runtime::Block::None) text += line("not enabled", block_text(verdict.reason, *station_.config().unit));
   if (const auto note = drive.setpoint().note; note != runtime::SetpointNote::None)
-    text += line("setpoint", setpoint_note_text(note));
+    text += line("setpoint", setpoint_note_text(note, *station_.config().unit));
   return text;
 }
 

@@ -14,11 +14,13 @@ namespace {
 class StationAccess final : public ParameterAccess {
  public:
   StationAccess(runtime::StationConfig config, std::string plant)
-      : config_(std::move(config)), plant_(std::move(plant)), drive_(*config_.unit) {
+      : config_(std::move(config)), plant_(std::move(plant)), drive_(*config_.unit, config_.machine, config_.options) {
     uint16_t inputs = 0;
     for (const runtime::InputSetting& input : config_.inputs)
       if (input.level) inputs = static_cast<uint16_t>(inputs | 1U << input.input);
     drive_.state().set_inputs(inputs);
+    drive_.state().set_analog(config_.analog);
+    if (!config_.profibus.bus.bus.empty()) drive_.show_fieldbus_card(config_.profibus.address);
   }
 
   void open_memory(runtime::FileUse use) {

@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <random>
+#include <set>
+
+#include "stdlib/unsimulated.hpp"
 
 #include "tests/runtime/drive/drive_rig.hpp"
 
@@ -159,6 +163,22 @@ TEST(ReferenceSignals, SetpointReached) {
         bench, [&] { bench.in.speed = 1'050'000; }, "within above");
     expect_signal(
         bench, 200, !reached, [&] { bench.in.speed = -1'000'000; }, "the sign counts");
+  }
+}
+
+// A travel has the speed that positioning orders as its setpoint, in both directions.
+TEST(ReferenceSignals, SetpointReachedWhilePositioning) {
+  DriveRig rig("md60a");
+  rig.set("P700", 13);
+  rig.set("P421", 0);
+  rig.set("P621", 11);
+  rig.enable_terminals();
+  rig.positioning.controls = true;
+  for (const int32_t speed : {500'000, -500'000, 30'000}) {
+    rig.positioning.speed = speed;
+    rig.run_ms(100);
+    ASSERT_EQ(rig.drive.axis().speed, speed);
+    EXPECT_TRUE(rig.output("DO02")) << speed;
   }
 }
 
@@ -369,6 +389,93 @@ TEST(OutputFunctions, EachFollowsItsState) {
     EXPECT_EQ(bench.run(), row.before) << static_cast<int>(row.function);
     row.act(bench.in);
     EXPECT_EQ(bench.run(), row.after) << static_cast<int>(row.function);
+  }
+}
+
+// P001 = P000 x P850 / P851 (1053 1610 p. 68, 81), P022 = P303 x AI2 / 10 V (p. 68), to the last digit.
+TEST(DisplayValues, UserDisplayAndExternalLimit) {
+  DriveRig rig("md60a");
+  rig.bus_control();
+  rig.set("P302", 5'000'000);
+  const auto ai2 = [&](int32_t millivolt) {
+    auto analog = rig.drive.analog();
+    analog.ai2 = {millivolt, 0};
+    rig.drive.set_analog(analog);
+  };
+  for (const int rpm : {1'000, -1'000, 4'000, 7})
+    for (const auto& [numerator, denominator] : {std::pair(1, 1), {2, 1}, {1, 3}, {65'535, 1}, {1, 65'535}}) {
+      rig.set("P850", numerator);
+      rig.set("P851", denominator);
+      rig.po({6, static_cast<uint16_t>(static_cast<int16_t>(rpm * 5)), 0});
+      rig.settle();
+      rig.run_ms(10);
+      const int64_t exact = int64_t{rpm} * 1'000 * numerator / denominator;
+      EXPECT_EQ(rig.value("P001"), std::clamp<int64_t>(exact, INT32_MIN, INT32_MAX)) << rpm << " x " << numerator;
+    }
+  for (const int32_t limit : {150, 100, 60})
+    for (const int32_t millivolt : {0, 1, 5'000, 10'000, 12'000, -3}) {
+      rig.set("P303", limit * 1'000);
+      ai2(millivolt);
+      rig.run_ms(1);
+      EXPECT_EQ(rig.value("P022"), limit * std::clamp(millivolt, 0, 10'000) / 10) << limit << ", " << millivolt;
+    }
+}
+
+// A display value that reads the same whatever the drive goes through says nothing: `ipos explain` tells it then.
+TEST(DisplayValues, ThatSayNothingAreTold) {
+  for (const char* name : {"md60a", "compact", "mc07", "mdxb"}) {
+    MachineData machine;
+    machine.inertia = 5'000;  // so that braking shows in the DC link
+    DriveRig rig(name, {}, machine);
+    for (const char* monitoring : {"P500", "P502"})
+      if (rig.parameters.table().find(monitoring) != nullptr) rig.set(monitoring, 0);
+    if (rig.parameters.table().find("P875") != nullptr) rig.set("P875", 6);
+    std::map<uint16_t, std::set<int32_t>> seen;
+    const auto look = [&] {
+      for (const stdlib::Parameter* p : rig.parameters.table().by_index())
+        if (!p->writable) seen[p->index].insert(rig.parameters.value(p->index));
+    };
+    look();
+    rig.bus_control();
+    constexpr uint16_t kAllButCcw = 0xFFFB;
+    rig.drive.set_inputs(kAllButCcw);
+    runtime::AnalogInputs analog;
+    analog.ai1 = {5'000, 10'000};
+    analog.ai2 = {5'000, 10'000};
+    rig.drive.set_analog(analog);
+    rig.po({6, 5'000, 17});
+    rig.run_ms(500'000);
+    look();
+    rig.po({6, static_cast<uint16_t>(-5'000), 17});
+    rig.run_ms(200);
+    look();
+    const auto has = [&](const char* number) { return rig.parameters.table().find(number) != nullptr; };
+    if (has("P630")) rig.set("P630", 3);  // DO10: the output stage is on
+    rig.po({1, 0, 0});
+    rig.run_ms(10'000);
+    if (has("P313")) rig.set("P604", 7);  // DI05: the other parameter set
+    rig.po({6, 5'000, 17});
+    rig.run_ms(60'000);
+    look();
+    for (int fault = 0; fault < 6; ++fault) {  // the error memory has five entries
+      rig.drive.raise_fault(static_cast<uint8_t>(fault % 2 == 0 ? 1 : 7));
+      rig.run_ms(100);
+      look();
+      rig.drive.reset_fault();
+      rig.po({6, 5'000, 17});
+      rig.run_ms(60'000);
+    }
+    look();
+    for (const stdlib::Parameter* p : rig.parameters.table().by_index()) {
+      if (p->writable || p->number.empty()) continue;
+      const bool told = !stdlib::unshown(unit(name), *p).empty();
+      // Without the option DIO there are no such outputs.
+      if (p->number == "068" && name == std::string_view("compact")) continue;
+      const bool set_by_card = p->index == 8362 || (p->index >= 8452 && p->index <= 8454);  // P072, P091..P093
+      const bool constant = p->index == 8300 || p->index == 8361;                            // P076, P071
+      const bool says = seen[p->index].size() > 1 || set_by_card || constant;
+      EXPECT_EQ(told, !says) << name << ": P" << p->number << " " << p->name;
+    }
   }
 }
 

@@ -258,6 +258,25 @@ TEST_F(Md60a, ResetStatistics) {
   EXPECT_EQ(ask(kRead, 8596), 0) << "an order, not a setting";
 }
 
+// Areas that exist and hold nothing here are refused by name (docs/reference/limits.md).
+TEST_F(Md60a, AreasThatAreNotSimulated) {
+  struct Area {
+    uint16_t first, count;
+    std::string name;
+  };
+  for (const Area& area : {Area{10'000, 100, "error response "}, {10'300, 40, "motor current "}, {10'600, 40, "motor flux "}})
+    for (const int n : {0, area.count - 1}) {
+      const auto index = static_cast<uint16_t>(area.first + n);
+      for (const auto service : {kRead, kWrite, kVolatile}) {
+        const ParameterReply reply = store.execute(service, index, 1);
+        ASSERT_EQ(refused(reply), codes::kNotImplemented) << index;
+        const std::string why = store.explain(static_cast<uint8_t>(service), index, 1, reply.error());
+        EXPECT_TRUE(why.starts_with(area.name + std::to_string(n))) << why;
+        EXPECT_NE(why.find("not simulated"), std::string::npos) << why;
+      }
+    }
+}
+
 TEST_F(Md60a, Windows) {
   tests::FakeWindow variables(512);
   tests::FakeWindow curve(513);

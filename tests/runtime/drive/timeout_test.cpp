@@ -122,7 +122,7 @@ TEST(Rs485Timeout, WaitsForTheFirstTelegram) {
     EXPECT_EQ(rig.rpm(), 0);
     EXPECT_FALSE(rig.stage());
     EXPECT_EQ(rig.drive.verdict().reason, Block::Waiting);
-    EXPECT_NE(runtime::block_text(Block::Waiting).find("waiting for process data"), std::string_view::npos);
+    EXPECT_NE(runtime::block_text(Block::Waiting, unit("md60a")).find("waiting for process data"), std::string::npos);
     EXPECT_EQ(rig.drive.fault(), 0) << "no time runs before the first request";
     rig.input("DI03", false);
     rig.run_ms(1);
@@ -288,9 +288,9 @@ TEST(SbusTimeout, DisplayTWithoutProcessData) {
       EXPECT_EQ(rig.drive.display(), 't');
       EXPECT_FALSE(rig.stage());
       EXPECT_EQ(rig.drive.verdict().reason, Block::Waiting);
-      const std::string_view hint = runtime::block_text(Block::Waiting);
-      EXPECT_NE(hint.find("send process data"), std::string_view::npos);
-      EXPECT_NE(hint.find("P815 or P883 = 0"), std::string_view::npos);
+      const std::string hint = runtime::block_text(Block::Waiting, unit("md60a"));
+      EXPECT_NE(hint.find("send process data"), std::string::npos);
+      EXPECT_NE(hint.find("P815 = 0"), std::string::npos);
       if (by_telegram)
         rig.po({0x0006, 0, 0});
       else

@@ -2,6 +2,7 @@
 // what a person at the machine can look at.
 #include <map>
 
+#include "stdlib/unit_text.hpp"
 #include "tests/runtime/drive/drive_rig.hpp"
 
 namespace ipos::tests {
@@ -138,12 +139,12 @@ TEST(Why, EveryBlockOccurs) {
     Running rig(one.unit);
     one.spoil(rig);
     rig.run_ms(20);
-    EXPECT_EQ(rig.drive.verdict().reason, one.block) << runtime::block_text(one.block);
+    EXPECT_EQ(rig.drive.verdict().reason, one.block) << runtime::block_text(one.block, unit(one.unit));
     const bool runs = rig.drive.verdict().command == runtime::Command::Enable;
     EXPECT_EQ(runs, one.block == Block::None);
     ++seen[rig.drive.verdict().reason];
   }
-  for (const Block block : kBlocks) EXPECT_EQ(seen[block], 1) << runtime::block_text(block);
+  for (const Block block : kBlocks) EXPECT_EQ(seen[block], 1) << static_cast<int>(block);
 }
 
 TEST(Why, EveryNoteOccurs) {
@@ -171,10 +172,10 @@ TEST(Why, EveryNoteOccurs) {
     Running rig("md60a");
     spoil(rig);
     rig.run_ms(20);
-    EXPECT_EQ(rig.drive.setpoint().note, note) << runtime::setpoint_note_text(note);
+    EXPECT_EQ(rig.drive.setpoint().note, note) << static_cast<int>(note);
     ++seen[rig.drive.setpoint().note];
   }
-  for (const SetpointNote note : kNotes) EXPECT_EQ(seen[note], 1) << runtime::setpoint_note_text(note);
+  for (const SetpointNote note : kNotes) EXPECT_EQ(seen[note], 1) << static_cast<int>(note);
 }
 
 // A parameter number, or the variable or command of the program.
@@ -187,12 +188,51 @@ bool names_its_place(std::string_view text) {
 TEST(Why, TextsNameParameters) {
   for (const Block block : kBlocks)
     if (block != Block::None) {
-      EXPECT_TRUE(names_its_place(runtime::block_text(block))) << runtime::block_text(block);
+      const std::string text = runtime::block_text(block, unit("md60a"));
+      EXPECT_TRUE(names_its_place(text)) << text;
     }
   for (const SetpointNote note : kNotes)
     if (note != SetpointNote::None) {
-      EXPECT_TRUE(names_its_place(runtime::setpoint_note_text(note))) << runtime::setpoint_note_text(note);
+      const std::string text = runtime::setpoint_note_text(note, unit("md60a"));
+      EXPECT_TRUE(names_its_place(text)) << text;
     }
+}
+
+// What a unit can come into, it tells with parameters that its own list has.
+void expect_own_parameters(const stdlib::UnitType& unit, const std::string& text) {
+  for (const std::string& parameter : stdlib::named_parameters(text))
+    EXPECT_TRUE(stdlib::has_named(unit, parameter)) << unit.name << " has no " << parameter << ": " << text;
+  EXPECT_EQ(text.find_first_of("{|}"), std::string::npos) << text;
+}
+
+// Of master/slave operation, IPOS and torque control MOVITRAC has nothing, and MOVITRAC 31 knows no setpoint but that of
+// its bus or its terminals.
+bool can_come(const stdlib::UnitType& unit, Block block) {
+  const bool movidrive = unit.generation == stdlib::Generation::A || unit.generation == stdlib::Generation::B;
+  switch (block) {
+    case Block::MasterInhibit:
+    case Block::MasterRapidStop:
+    case Block::MasterStop:
+    case Block::MasterHold: return movidrive;
+    case Block::PoDisabled:
+    case Block::StopFunction: return unit.generation != stdlib::Generation::None;
+    default: return true;
+  }
+}
+
+TEST(Why, EveryUnitNamesParametersThatItHas) {
+  for (const stdlib::UnitType& unit : stdlib::unit_types()) {
+    for (const Block block : kBlocks)
+      if (can_come(unit, block)) expect_own_parameters(unit, runtime::block_text(block, unit));
+    for (const stdlib::FaultRow& row : stdlib::fault_table())
+      expect_own_parameters(unit, stdlib::meaning_on(unit, row));
+    if (unit.generation == stdlib::Generation::None) continue;
+    for (const SetpointNote note : kNotes) {
+      const bool torque = note == SetpointNote::NoCurrentWord;
+      if (!torque || unit.generation != stdlib::Generation::M07)
+        expect_own_parameters(unit, runtime::setpoint_note_text(note, unit));
+    }
+  }
 }
 
 }  // namespace

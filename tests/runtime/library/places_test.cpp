@@ -136,7 +136,7 @@ TEST_F(LibraryPlaces, WhatIsMissingIsToldWithWhatThereIs) {
     told(kind, name);
   const OpenedPlant plain("[[station]]\nname = \"a\"\nunit = \"mc31\"\n");
   EXPECT_EQ(ipos_plant_find(plain.plant, 0, IPOS_PLANT_ANY, "x", &signal), IPOS_PLANT_NO_SIGNAL);
-  EXPECT_EQ(plain.message(), "station 'a' has no signal 'x'; it has no program; " + kStates);
+  EXPECT_EQ(plain.message(), "station 'a' has no signal 'x'; it has no variables: its unit has no IPOS; " + kStates);
 }
 
 TEST_F(LibraryPlaces, AreReadAsNumberAndAsText) {

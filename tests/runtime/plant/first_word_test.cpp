@@ -84,7 +84,7 @@ TEST(FirstWord, NobodyMovesBeforeIt) {
     EXPECT_FALSE(drive.output_stage()) << text;
     const Block why = drive.verdict().reason;
     EXPECT_TRUE(why == Block::NoControlWord || why == Block::Waiting || why == Block::Fault)
-        << block_text(why) << "\n"
+        << block_text(why, *plant->stations()[0]->config().unit) << "\n"
         << text;
     if (one.sender.empty()) continue;
     const auto called = plant_of(text + one.sender);
@@ -100,18 +100,18 @@ TEST(FirstWord, FromItOnTheBusDecides) {
                               "[[station]]\nname = 'n'\nunit = 'mdxb'\nsbus = 'sbus'\n[station.parameters]\n"
                               "P100 = 10\nP101 = 3\nP881 = 1\nP883 = 0\n" +
                               kEnabled);
-  DriveServer& server = plant->stations()[0]->drive();
+  Station& station = *plant->stations()[0];
   const auto speed_at = [&](Time end) {
     plant->run_until(end);
-    return server.state().speed();
+    return station.drive().state().speed();
   };
   EXPECT_EQ(speed_at(kSecond), 0);
   const uint16_t words[] = {0x0006, 1500, 0};
-  server.take_output(kSecond, OutputChannel::Single, words);
+  station.drive().take_output(kSecond, OutputChannel::Single, words);
   EXPECT_EQ(speed_at(4 * kSecond), 300'000);
   EXPECT_EQ(speed_at(10 * kSecond), 300'000) << "P883 = 0: silence is no fault";
   const uint16_t stop[] = {0x0000, 1500, 0};
-  server.take_output(10 * kSecond, OutputChannel::Single, stop);
+  station.drive().take_output(10 * kSecond, OutputChannel::Single, stop);
   EXPECT_EQ(speed_at(12 * kSecond), 0);
 }
 

@@ -23,7 +23,6 @@ using stdlib::Unsimulated;
 const std::set<std::string_view> kReadElsewhere = {
     "260", "263", "264", "265", "266", "271", "276", "284", "285",  // PID block
     "751",                                                          // setpoint of a slave
-    "572",                                                          // response of MOVITRAC 31 to a timeout
     "802", "803", "804", "840",                                     // what ParameterStore carries out
 };
 
@@ -74,8 +73,11 @@ std::vector<int64_t> other_values(const Parameter& parameter) {
 
 bool is_read(const stdlib::UnitType& type, const Parameter& parameter) {
   if (kReadElsewhere.count(parameter.number) > 0) return true;
+  if (parameter.name.starts_with("Scope")) return true;  // when the scope starts (tests/runtime/drive/scope_test.cpp)
   for (const stdlib::FaultRow& fault : stdlib::fault_table())
-    if (fault.parameter == parameter.number) return true;
+    if (const Parameter* found = stdlib::response_parameter(stdlib::parameter_table(type), fault);
+        found != nullptr && found->number == parameter.number)
+      return true;
   DriveServer unit(type);
   const Reading before = read(unit);
   for (const int64_t value : other_values(parameter))

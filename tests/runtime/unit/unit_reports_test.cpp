@@ -48,7 +48,8 @@ TEST(UnitReports, NameEveryFaultOnce) {
     const auto told = rig.told("F");
     ASSERT_EQ(told.size(), shown ? 1U : 0U) << number;
     if (!shown) continue;
-    EXPECT_EQ(told[0].text, fmt::format("F{:02} {}: {}", number, row->name, row->meaning));
+    EXPECT_EQ(told[0].text, fmt::format("F{:02} {}: {}", number, row->name,
+                                         stdlib::meaning_on(rig.unit.server().unit(), *row)));
     EXPECT_EQ(told[0].station, "u");
     EXPECT_EQ(told[0].time, 2 * kMillisecond);
     EXPECT_EQ(told[0].weight, rig.unit.drive().error() ? Weight::Fault : Weight::Warning) << number;
