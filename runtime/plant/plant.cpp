@@ -9,6 +9,7 @@
 
 #include "runtime/bus/log/log_name.hpp"
 #include "runtime/nv_memory/medium/file_medium.hpp"
+#include "runtime/plant/station_signals.hpp"
 #include "runtime/plant/station_state.hpp"
 #include "runtime/plant_file/can_cable.hpp"
 #include "runtime/plant_file/profibus_paper.hpp"
@@ -267,6 +268,10 @@ StationLines Plant::lines_of(const StationConfig& station) {
 }
 
 void Plant::tell_findings() {
+  for (const auto& station : stations_)
+    for (const std::string& name : hidden_names(*station))
+      journal_.note(queue_.now(), Weight::Why, station->config().name,
+                    fmt::format("'{0}' is a variable of the program, and hides what the unit calls so: that is 'drive.{0}'", name));
   const ParameterOf parameter = [this](size_t station, std::string_view number) {
     return stations_[station]->drive().value(number);
   };

@@ -1,5 +1,5 @@
-// What a station has, group by group. Where one name means two things the earlier group counts: values of the
-// drive, then variables, then the rest.
+// What a station has, group by group. A program's own name hides a value of the unit that is called the same, as an
+// inner scope does; "drive.NAME" is always the unit's.
 #include "runtime/plant/station_signals.hpp"
 
 #include <fmt/format.h>
@@ -95,17 +95,19 @@ bool has(const Station& station, const DriveValue& row) {
   return find_parameter(station, row.parameter) != nullptr;
 }
 
-// Collects them under the name of the station; the first of a name counts.
+constexpr std::string_view kUnitPrefix = "drive.";
+
+// Collects them under the name of the station. What the unit calls as the program calls a variable gets the prefix.
 class Collector {
  public:
   explicit Collector(const Station& station) : station_(station) {}
 
   PlantSignal& add(SignalGroup group, std::string_view name, std::string_view meaning,
                    std::function<int64_t()> read) {
-    if (!names_.emplace(name).second) return shadowed_;
+    const bool hidden = !names_.emplace(name).second;
     PlantSignal& signal = found.emplace_back();
     signal.station = station_.config().name;
-    signal.name = fmt::format("{}.{}", signal.station, name);
+    signal.name = fmt::format("{}.{}{}", signal.station, hidden ? kUnitPrefix : "", name);
     signal.group = group;
     signal.meaning = meaning;
     signal.read = std::move(read);
@@ -136,7 +138,6 @@ class Collector {
  private:
   const Station& station_;
   std::unordered_set<std::string> names_;
-  PlantSignal shadowed_;
 };
 
 void add_drive(const Station& station, Collector& out) {
@@ -268,14 +269,25 @@ void add_system_variables(const Station& station, Collector& out) {
   }
 }
 
-void add_all(const Station& station, Collector& out) {
+void add_unit(const Station& station, Collector& out) {
   add_drive(station, out);
-  add_symbols(station, out);
   add_states(station, out);
   add_terminals(station, out);
   add_process_data(station, out);
   add_tasks(station, out);
   add_system_variables(station, out);
+}
+
+void add_all(const Station& station, Collector& out) {
+  add_symbols(station, out);
+  add_unit(station, out);
+}
+
+// What the program calls so: a variable, a member, or all that a structure or an array has.
+std::vector<NamedVariable> own_variables(const Station& station, std::string_view name) {
+  std::vector<NamedVariable> found = named_variables(station.symbols(), *station.config().unit, name);
+  if (!found.empty() && found.front().symbol.empty()) found.clear();  // by number or a system variable
+  return found;
 }
 
 // Whether a pattern can mean what begins with the letter and a number.
@@ -356,9 +368,21 @@ std::vector<PlantSignal> station_signals(const Station& station) {
 }
 
 std::vector<PlantSignal> find_station_signals(const Station& station, std::string_view name) {
-  const std::string full = fmt::format("{}.{}", station.config().name, name);
-  for (PlantSignal& signal : station_signals(station))
-    if (signal.name == full) return {std::move(signal)};
+  Collector own(station);
+  for (const NamedVariable& variable : own_variables(station, name))
+    own.add_variable(SignalGroup::Variable, variable.name, variable.number,
+                     fmt::format("H{}", variable.number));
+  if (!own.found.empty() && !name.starts_with(kUnitPrefix)) return std::move(own.found);
+  Collector unit(station);
+  add_unit(station, unit);
+  const std::string_view of_unit = name.starts_with(kUnitPrefix) ? name.substr(kUnitPrefix.size()) : name;
+  const std::string full = fmt::format("{}.{}", station.config().name, of_unit);
+  for (PlantSignal& signal : unit.found)
+    if (signal.name == full) {
+      signal.name = fmt::format("{}.{}", station.config().name, name);
+      return {std::move(signal)};
+    }
+  if (!own.found.empty()) return std::move(own.found);  // a structure of the program that is called "drive"
   Collector more(station);
   const bool may_be_parameter =
       name.starts_with('P') || name.find_first_not_of("0123456789") == std::string_view::npos;
@@ -378,6 +402,36 @@ std::vector<PlantSignal> find_station_signals(const Station& station, std::strin
   const auto whole = find_station_signals(station, name.substr(0, dot));
   if (whole.size() != 1 || bit >= bit_count(whole[0])) return {};
   return {bit_of(whole[0], bit)};
+}
+
+std::vector<PlantSignal> default_signals(const Station& station) {
+  std::vector<PlantSignal> found;
+  for (const std::string_view name : {"speed", "setpoint", "status"}) {
+    const bool hidden = !own_variables(station, name).empty();
+    for (PlantSignal& signal :
+         find_station_signals(station, hidden ? std::string(kUnitPrefix).append(name) : std::string(name)))
+      found.push_back(std::move(signal));
+  }
+  return found;
+}
+
+std::vector<std::string> hidden_names(const Station& station) {
+  const auto is_of_unit = [&station](std::string_view name) {
+    const auto is_called = [name](const auto& row) { return row.name == name; };
+    const auto is_terminal = [name](const AnalogKind& kind) { return kind.signal == name; };
+    const bool drive_value = std::any_of(std::begin(kDriveValues), std::end(kDriveValues), [&](const DriveValue& row) {
+      return is_called(row) && has(station, row);
+    });
+    const bool word = name.size() >= 3 && (name.starts_with("PO") || name.starts_with("PI")) && name[2] >= '1' &&
+                      name[2] <= '9' && name.find_first_not_of("0123456789", 2) == std::string_view::npos;
+    return drive_value || word || find_state(name) >= 0 || parse_input(name) >= 0 || parse_output(name) >= 0 ||
+           std::any_of(analog_kinds().begin(), analog_kinds().end(), is_terminal) ||
+           stdlib::find_system_variable(name) != nullptr;
+  };
+  std::vector<std::string> names;
+  for (const vm::Symbol& symbol : station.symbols())
+    if (is_of_unit(symbol.name)) names.push_back(symbol.name);
+  return names;
 }
 
 std::vector<PlantSignal> match_station_signals(const Station& station, std::string_view pattern) {

@@ -48,12 +48,20 @@ struct PlantSignal {
   void append_text(std::string& out, int64_t sample) const;
 };
 
-// All of a station but its parameters and the bits and numbers of what it has; a name stands for one thing.
+// All of a station but its parameters and the bits and numbers of what it has; a name stands for one thing: a program's
+// own name hides the unit's.
 std::vector<PlantSignal> station_signals(const Station& station);
 
-// What a name without the station's means: a signal of these, a parameter ("P130", "8807"), a variable
-// ("H500", "TrCycl" for all its members), a bit ("PO1.6"). Empty when the station has no such thing.
+// What a name without the station's means: a signal of these, a value of the unit whatever the program calls its own
+// ("drive.speed"), a parameter ("P130", "8807"), a variable ("H500", "TrCycl" for all its members), a bit ("PO1.6"). Empty
+// when the station has no such thing.
 std::vector<PlantSignal> find_station_signals(const Station& station, std::string_view name);
+
+// What a recording has where nobody names its signals: speed, setpoint and status of the unit, as far as it has them.
+std::vector<PlantSignal> default_signals(const Station& station);
+
+// Names of the unit that the program has given to variables of its own: "speed".
+std::vector<std::string> hidden_names(const Station& station);
 
 // With a pattern: parameters and numbered variables only where it begins like one, bits where it has a dot.
 std::vector<PlantSignal> match_station_signals(const Station& station, std::string_view pattern);

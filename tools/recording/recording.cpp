@@ -115,8 +115,7 @@ Recorder::Recorder(runtime::Plant& plant, const std::vector<std::string>& names)
   for (const std::string& name : names) add(name);
   if (names.empty())
     for (const auto& station : plant.stations())
-      for (const std::string_view name : {"speed", "setpoint", "status"})
-        for (Signal& signal : runtime::find_station_signals(*station, name)) add(std::move(signal));
+      for (Signal& signal : runtime::default_signals(*station)) add(std::move(signal));
   for (const auto& decided : decided_) decided->station().add_watcher(*decided);
 }
 

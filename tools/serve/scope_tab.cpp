@@ -22,9 +22,7 @@ class ScopeTab final : public Tab,
   void built(runtime::Plant& plant) override {
     std::vector<std::string> names;
     for (const auto& station : plant.stations())
-      for (const char* name : {"speed", "setpoint", "status"})
-        if (!runtime::find_station_signals(*station, name).empty())
-          names.push_back(station->config().name + "." + name);
+      for (PlantSignal& signal : runtime::default_signals(*station)) names.push_back(std::move(signal.name));
     scope_.propose(std::move(names));
     scope_.built();
     old_faults_.clear();

@@ -44,8 +44,7 @@ std::vector<std::string> names_in(const TestCase& test) {
 std::vector<std::string> signals_of(const TestCase& test, const runtime::Plant& plant) {
   std::vector<std::string> wanted;
   for (const auto& station : plant.stations())
-    for (const char* name : {"speed", "setpoint", "status"})
-      wanted.push_back(fmt::format("{}.{}", station->config().name, name));
+    for (runtime::PlantSignal& signal : runtime::default_signals(*station)) wanted.push_back(std::move(signal.name));
   for (const std::string& name : names_in(test)) wanted.push_back(name);
   std::vector<std::string> names;
   for (const std::string& name : wanted)
