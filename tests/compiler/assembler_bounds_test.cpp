@@ -168,9 +168,12 @@ TEST(AssemblerBounds, NamesAndTheirEscapes) {
   const std::pair<const char*, std::string> rows[] = {
       {"aZ09_.[]@", "aZ09_.[]@"}, {"\"a b\"", "a b"},      {"\"a;b\" ; c", "a;b"},
       {"\"a\\\"b\"", "a\"b"},     {"\"a\\\\\"", "a\\"},    {"\"\\x41\\x7aB\"", "AzB"},
-      {"\"\\xfF\"", "\xFF"},      {"\"\\x0A\"", "\n"},     {"\"\"", ""},
+      {"\"\\xfF\"", "\xFF"},      {"\"\"", ""},
       {"\"\\q\"", "q"},           {"\"\\\\\" ; \"", "\\"}, {"\"\\\";\"", "\";"}};
   for (const auto& [text, name] : rows) EXPECT_EQ(names(text), std::vector<std::string>{name}) << text;
+  // What would act where a name is shown is refused.
+  for (const char* text : {"\"\\x0A\"", "\"a\\x1Bb\"", "\"\\x7F\"", "\"\\x9b\"", "\"\\xC2\\x9B\"", "\"a\tb\""})
+    EXPECT_FALSE(assemble_text(std::string(".file ") + text + "\nNOP")->image) << text;
   // And written back: bare where nothing else is in them, bytes beyond ASCII by their numbers.
   vm::Image image;
   image.unit = 1;

@@ -63,7 +63,7 @@ TEST_F(Files, WhatKilledWritersLeftIsRemoved) {
   folder_.write("a", "old");
   folder_.write(".a." + dead + ".0.tmp", "half");
   folder_.write(".a." + dead + ".1.tmp", "half");
-  for (const std::string other : {".a." + own + ".7.tmp", ".b." + dead + ".0.tmp", ".a." + dead + "x.tmp",
+  for (const std::string& other : std::vector<std::string>{".a." + own + ".7.tmp", ".b." + dead + ".0.tmp", ".a." + dead + "x.tmp",
                                   ".a..tmp", ".a.b." + dead + ".0.tmp", ".a." + dead + ".0.tmp~"})
     folder_.write(other, "of others");
   tools::replace_file(path("a"), "new");

@@ -334,9 +334,11 @@ TEST_F(Param, MemoryFilesThatCannotBeUsed) {
   plant(kUnit1 + "nvram = \"/nowhere/unit1.nv\"\n");
   CommandResult result = run_ipos({"run", "plant.toml", "--for", "1ms"}, folder_.path());
   EXPECT_EQ(result.exit_code, 65);
-  EXPECT_EQ(first_line(result.err),
-            "plant.toml:4:9: error: station 'unit1': /nowhere/unit1.nv cannot be used: No such file or "
-            "directory\n");
+  EXPECT_EQ(first_line(result.err), "ipos: warning: plant.toml:4:9: the memory of 'unit1' is outside of the folder of the "
+                                    "plant: /nowhere/unit1.nv\n");
+  EXPECT_TRUE(contains(result.err, "\nplant.toml:4:9: error: station 'unit1': /nowhere/unit1.nv cannot be used: No such file or "
+                                   "directory\n"))
+      << result.err;
   plant(kUnit1 + kMemory + "[[station]]\nname = \"unit2\"\nunit = \"mc07\"\n" + kMemory);
   result = run_ipos({"run", "plant.toml", "--for", "1ms"}, folder_.path());
   EXPECT_EQ(first_line(result.err), "plant.toml:8:9: error: two stations keep their memory in 'unit1.nv'\n");

@@ -26,6 +26,13 @@ bool stops_running(const Json& message) {
   return command == "pause" || command == "disconnect" || command == "terminate";
 }
 
+// What runs the plant once it is handled.
+bool gives_order(const Json& message) {
+  static constexpr std::string_view kOrders[] = {"configurationDone", "continue", "next",   "stepIn",
+                                                 "stepOut",           "stepBack", "restart", "reverseContinue"};
+  return std::find(std::begin(kOrders), std::end(kOrders), command_of(message)) != std::end(kOrders);
+}
+
 }  // namespace
 
 struct DapServer::Request {
@@ -71,7 +78,6 @@ const std::vector<DapServer::Request>& DapServer::requests() {
 void DapServer::receive(std::string_view body) {
   Json message = lsp::parsed(body);
   if (!message.is_object()) return;
-  pause_ = pause_ || stops_running(message);
   queue_.push_back(std::move(message));
 }
 
@@ -132,8 +138,7 @@ void DapServer::output(const std::string& text) {
 void DapServer::go() {
   const Order order = *order_;
   order_.reset();
-  // What the editor has sent behind this order is not lost.
-  pause_ = closed_ || std::any_of(queue_.begin(), queue_.end(), stops_running);
+  began_ = std::chrono::steady_clock::now();
   forward_ = !order.backward;
   frame_seen_.clear();
   report(debugger_->run(order));
@@ -188,13 +193,23 @@ bool DapServer::keep_going() {
     return std::find(std::begin(kAlways), std::end(kAlways), command_of(message)) != std::end(kAlways);
   };
   for (;;) {
-    const auto next = std::find_if(queue_.begin(), queue_.end(), at_once);
-    if (next == queue_.end()) break;
+    const auto order = std::find_if(queue_.begin(), queue_.end(), gives_order);  // behind it is behind this run
+    const auto next = std::find_if(queue_.begin(), order, at_once);
+    if (next == order) break;
     const Json message = std::move(*next);
     queue_.erase(next);
     answer(message);
   }
-  return !pause_ && frame_seen_.empty();
+  return frame_seen_.empty() && !stop_is_asked();
+}
+
+// What ends this run, the end of the input at last, stands in the queue in front of the next order; what stands behind one is meant for that. If this
+// run does not come to an end by itself, it ends for that, too: nothing the editor has sent waits for ever.
+bool DapServer::stop_is_asked() const {
+  const auto stop = std::find_if(queue_.begin(), queue_.end(), stops_running);
+  if (stop == queue_.end() && !closed_) return false;
+  return std::none_of(queue_.begin(), stop, gives_order) ||
+         std::chrono::steady_clock::now() - began_ > std::chrono::seconds(1);
 }
 
 void DapServer::built(runtime::Plant& plant) {
@@ -216,7 +231,7 @@ Json DapServer::save() {
   Json sources = Json::array();
   for (const auto& [id, source] : sources_) sources.push_back({id, source.first, source.second});
   return {{"seq", seq_},        {"told", told_},         {"queue", queue_}, {"faults", fault_points_},
-          {"sources", sources}, {"input", save_input()}, {"pause", pause_}, {"frames", frame_points_},
+          {"sources", sources}, {"input", save_input()}, {"frames", frame_points_},
           {"functions", function_points_}, {"closed", closed_}};
 }
 
@@ -224,7 +239,7 @@ void DapServer::load(const Json& state) {
   seq_ = state["seq"];
   told_ = state["told"];
   queue_ = state["queue"].get<std::deque<Json>>();
-  pause_ = state["pause"];
+  began_ = std::chrono::steady_clock::now();
   closed_ = state["closed"];
   function_points_ = state["functions"].get<std::vector<int>>();
   fault_points_ = state["faults"].get<std::vector<int>>();

@@ -2,6 +2,7 @@
 // Tasks are threads; time stands still for the whole plant when one of them stops.
 #pragma once
 
+#include <chrono>
 #include <deque>
 #include <functional>
 #include <map>
@@ -38,7 +39,7 @@ class DapServer final : public FrontEnd, private runtime::BusObserver {
   // False when there was nothing to do.
   bool handle_next();
   // Nothing more will come. What has come is answered, but a plant runs no further.
-  void close() { pause_ = closed_ = true; }
+  void close() { closed_ = true; }
   bool ended() const { return ended_; }
 
   Json save() override;
@@ -83,6 +84,7 @@ class DapServer final : public FrontEnd, private runtime::BusObserver {
 
   void answer(const Json& message);
   void go();
+  bool stop_is_asked() const;
   void report(const Stop& stop);
   void tell_journal();
   void event(const std::string& name, Json body);
@@ -124,7 +126,7 @@ class DapServer final : public FrontEnd, private runtime::BusObserver {
   std::deque<Json> queue_;
   int64_t seq_ = 0;
   bool stop_on_entry_ = true;
-  bool pause_ = false;
+  std::chrono::steady_clock::time_point began_;  // of the run that is under way
   bool closed_ = false;
   bool ended_ = false;
   bool lines_from_1_ = true, columns_from_1_ = true, uris_ = false;  // of the editor
