@@ -169,7 +169,7 @@ std::optional<vm::Image> Contents::load_program(const Source& source, runtime::S
     }
     image = *std::move(compiled.image);
   } else {
-    auto read = read_program_image({reinterpret_cast<const uint8_t*>(bytes->data()), bytes->size()});
+    auto read = runtime::read_program_image({reinterpret_cast<const uint8_t*>(bytes->data()), bytes->size()});
     if (!read) return mistake(fmt::format("image {} {}", path, read.error()));
     image = *std::move(read);
   }
