@@ -113,6 +113,8 @@ for section in eds.sections():
     try:
         value = read(5, index, sub)
     except Abort as abort:
+        if index == 0x1003 and sub > 0 and "08000024" in str(abort):
+            continue  # no error has been stored (CiA 301, 1003h)
         wrong.append(f"{section} read {abort}")
         continue
     counts["read"] += 1

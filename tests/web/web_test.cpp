@@ -40,8 +40,8 @@ class Browser : public Page {
     if (!std::filesystem::exists("/usr/bin/chromium")) GTEST_SKIP() << "/usr/bin/chromium is not installed";
   }
   static ScriptResult run(const std::string& file) {
-    return shell(package().folder,
-                 "IPOS_PROGRAM='" IPOS_PROGRAM "' node --test --test-reporter=tap test/" + file);
+    return shell(package().folder, "IPOS_PROGRAM='" IPOS_PROGRAM "' IPOS_EXAMPLES='" + project("examples").string() +
+                                       "' node --test --test-reporter=tap test/" + file);
   }
 };
 

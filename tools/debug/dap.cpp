@@ -13,6 +13,9 @@
 namespace ipos::tools::debug {
 namespace {
 
+// A pause behind a further order ends the run in front of that order after this time on the clock (ours); a loaded machine
+// reaches the breakpoints of a short run before.
+constexpr std::chrono::seconds kLongestWait{5};
 constexpr int kTaskNumbers = 4;  // thread = station x this + task + 1, as 0 is none
 
 std::string command_of(const Json& message) {
@@ -209,7 +212,7 @@ bool DapServer::stop_is_asked() const {
   const auto stop = std::find_if(queue_.begin(), queue_.end(), stops_running);
   if (stop == queue_.end() && !closed_) return false;
   return std::none_of(queue_.begin(), stop, gives_order) ||
-         std::chrono::steady_clock::now() - began_ > std::chrono::seconds(1);
+         std::chrono::steady_clock::now() - began_ > kLongestWait;
 }
 
 void DapServer::built(runtime::Plant& plant) {

@@ -5,10 +5,9 @@ import { execFileSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { fileURLToPath } from "node:url";
 
 import { launch, missing, openPage, tab_names } from "./browser.mjs";
-import { folderOf, program, serve } from "./serve.mjs";
+import { examples, folderOf, program, serve } from "./serve.mjs";
 
 const skip = missing ?? (program ? false : "IPOS_PROGRAM does not name the ipos to test");
 
@@ -482,8 +481,7 @@ test("scope: a channel more leaves a complete recording as it is, and has its pa
 );
 
 test("bus: the last 200 telegrams of the chosen line, whatever the others do", { skip }, async () => {
-  const gateway = fileURLToPath(new URL("../../examples/gateway/gateway.toml", import.meta.url));
-  const server = await serve(gateway);
+  const server = await serve(`${examples}/gateway/gateway.toml`);
   const opened = await openPage(browser, server.address);
   const { page } = opened;
   try {

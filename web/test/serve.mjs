@@ -4,8 +4,11 @@ import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
+import { fileURLToPath } from "node:url";
 
 export const program = process.env.IPOS_PROGRAM;
+// The examples of the project; tests may run in a copy of this package.
+export const examples = process.env.IPOS_EXAMPLES ?? fileURLToPath(new URL("../../examples", import.meta.url));
 
 // Token, port and settings are kept in the folder `state`, by default in one that no other server has.
 export async function serve(plant, options = [], folder = ".", state = undefined) {

@@ -174,12 +174,12 @@ TEST(Dbc, MessagesOfACanopenNode) {
   has("BU_: feed saw_1\n");
   has("BO_ 0 NMT: 2 Vector__XXX\n SG_ Command : 0|8@1+ (1,0) [0|255] \"\" feed,saw_1\n SG_ Node : 8|8@1+ ");
   has("BO_ 128 SYNC: 0 Vector__XXX\n\n");
-  has("BO_ 389 TPDO1_saw_1: 6 saw_1\n SG_ PI1 : 0|16@1- (1,0) [-32768|32767] \"\" Vector__XXX\n"
-      " SG_ PI2_SPEED : 16|16@1- (0.2,0) [-6553.6|6553.4] \"rpm\" Vector__XXX\n SG_ PI3 : 32|16@1- ");
-  has("BO_ 665 TPDO2_saw_1: 4 saw_1\n SG_ PI5 : 16|16@1- ");
+  has("BO_ 389 TPDO1_saw_1: 6 saw_1\n SG_ PI1_NO_FUNCTION : 0|16@1- (1,0) [-32768|32767] \"\" Vector__XXX\n"
+      " SG_ PI2_SPEED : 16|16@1- (0.2,0) [-6553.6|6553.4] \"rpm\" Vector__XXX\n SG_ PI3_NO_FUNCTION : 32|16@1- ");
+  has("BO_ 665 TPDO2_saw_1: 4 saw_1\n SG_ PI5_NO_FUNCTION : 16|16@1- ");
   EXPECT_EQ(text.find("RPDO1_saw_1"), std::string::npos) << "it is off";
   EXPECT_EQ(text.find("EMCY_saw_1"), std::string::npos) << "it is off";
-  has("BO_ 518 RPDO1_feed: 6 Vector__XXX\n SG_ PO1 : 0|16@1- (1,0) [-32768|32767] \"\" feed\n");
+  has("BO_ 518 RPDO1_feed: 6 Vector__XXX\n SG_ PO1_NO_FUNCTION : 0|16@1- (1,0) [-32768|32767] \"\" feed\n");
   has("BO_ 134 EMCY_feed: 8 feed\n SG_ Error_code : 0|16@1+ (1,0) [0|65535] \"\" Vector__XXX\n"
       " SG_ Error_register : 16|8@1+ (1,0) [0|255] \"\" Vector__XXX\n"
       " SG_ Status_word_1 : 32|16@1+ (1,0) [0|65535] \"\" Vector__XXX\n");

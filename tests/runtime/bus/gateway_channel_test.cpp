@@ -56,7 +56,7 @@ TEST(GatewayChannel, ReturnCodes) {
   Bench bench;
   EXPECT_EQ(bench.ask(0x71, 4, 8600), (ParameterTelegram{0xF1, 4, 8600, 0x05050000}));
   EXPECT_EQ(bench.ask(0x3F, 5, 8600), (ParameterTelegram{0xBF, 5, 8600, 0x05050000}));
-  EXPECT_EQ(bench.ask(0x62, 5, 8600), (ParameterTelegram{0xF2, 5, 8600, 0x06080000}));
+  EXPECT_EQ(bench.ask(0x62, 5, 8600), (ParameterTelegram{0xE2, 5, 8600, 0x06080000}));
   EXPECT_TRUE(bench.master.jobs.empty());
   bench.ask(0x32, 5, 8600, 9);
   bench.finish(std::nullopt, 0x06020000);

@@ -404,8 +404,8 @@ TEST(CanLine, EventsInWords) {
   t.line.send(0, {11, 1, {0}}, 1);
   t.line.send(1, {11, 1, {0}}, 1);
   t.run(kMillisecond);
-  const std::string alone = " gets no acknowledge: no other station on the line, identifier 00Bh (11)";
-  EXPECT_EQ(t.told.take(), (Words{"sbus: unit1" + alone, "sbus: unit2" + alone}));
+  EXPECT_EQ(t.told.take(), (Words{"sbus: unit1 gets no acknowledge: all stations that could give it send the same frame at "
+                                  "the same time, identifier 00Bh (11), 2 stations from unit1 to unit2"}));
 }
 
 TEST(CanLine, CollisionsInWords) {

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <algorithm>
 
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
 #include <map>
@@ -15,6 +15,7 @@
 #include "compiler/compile.hpp"
 #include "compiler/diag/render.hpp"
 #include "runtime/plant/plant.hpp"
+#include "stdlib/unit_text.hpp"
 #include "tests/harness/reach.hpp"
 
 namespace ipos::tests {
@@ -80,7 +81,12 @@ class PlantRig final : private CanObserver {
     std::string text;
     for (const JournalEntry& entry : plant->journal().entries()) {
       const bool of_drive = entry.text.starts_with("not enabled: ") ||
-                            std::find(std::begin(kNotes), std::end(kNotes), entry.text) != std::end(kNotes);
+                            std::any_of(std::begin(kNotes), std::end(kNotes), [&entry](std::string_view note) {
+                              const auto& units = stdlib::unit_types();
+                              return std::any_of(units.begin(), units.end(), [&](const stdlib::UnitType& unit) {
+                                return stdlib::unit_text(unit, note) == entry.text;
+                              });
+                            });
       if (!of_drive) text += entry.station + ": " + entry.text + "\n";
     }
     return text;

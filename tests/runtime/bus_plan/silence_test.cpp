@@ -195,7 +195,7 @@ TEST(Silence, BusTypesOfMovlnk) {
       if (type == 5) reason = "MOVLNK to address 1: no answer";
       if (type == 3 && newer)
         reason = "bus type 3 is the fieldbus, whose card is a slave: it only answers its master";
-      if (type == 6 && older_small) reason = "bus type 6 is CANopen, which is not simulated";
+      if (type == 6 && older_small) reason = "MOVLNK to address 1: no answer";  // CANopen nodes
       EXPECT_EQ(rig.says(reason), 1U) << unit.name << " " << type << "\n" << rig.journal();
       EXPECT_EQ(rig.variable(0, "Ml.Result"), reason.starts_with("bus type") ? 0x05050000 : 0x06020000)
           << unit.name << " " << type;

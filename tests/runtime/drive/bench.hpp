@@ -62,6 +62,14 @@ class Bench : private PlantOfOne {
     next_ += runtime::kMillisecond;
   }
 
+  // The control word of a program, H484; the station has no program, and its variables can be written all the same.
+  void program_word(uint32_t word) {
+    constexpr uint16_t kControlWord = 11'484;
+    const auto reply = parameters.execute(runtime::ParameterService::WriteVolatile, kControlWord, static_cast<int32_t>(word));
+    EXPECT_TRUE(reply) << word;
+    drive.set_ipos_control_word(word);
+  }
+
   runtime::ParameterStore& parameters;
   runtime::Drive& drive;
 
@@ -79,6 +87,7 @@ class Bench {
   void begin() {}
 
   void tick() { drive.tick(positioning); }
+  void program_word(uint32_t word) { drive.set_ipos_control_word(word); }
 
   runtime::ParameterStore parameters;
   runtime::Drive drive;

@@ -248,7 +248,7 @@ TEST(FaultReset, EveryWay) {
     if (name == "P840") {
       EXPECT_EQ(rig.write("P840", 1), 0);
     }
-    if (name == "program") rig.drive.set_ipos_control_word(1U << 12);
+    if (name == "program") rig.program_word(1U << 12);
     if (name == "drive") rig.drive.reset_fault();
     rig.run_ms(1);
     EXPECT_EQ(rig.drive.fault(), 0);

@@ -143,7 +143,7 @@ TEST(M07Control, TheMostRestrictiveSourceWins) {
   rig.word(0x0006);
   rig.run_ms(1);
   EXPECT_EQ(rig.state(), 4);
-  rig.drive.set_ipos_control_word(1U << 30);
+  rig.program_word(1U << 30);
   rig.run_ms(1);
   EXPECT_EQ(rig.state(), 1) << "inhibit by the program, both others enable";
   EXPECT_FALSE(rig.stage());
@@ -196,7 +196,7 @@ TEST(M07Control, OtherFunctionsAreOrCombined) {
     pot.set("P603", 9);  // DI04 MOTOR POT UP
     pot.po({source == 1 ? uint16_t{0x0206} : uint16_t{0x0006}, 0, 0});
     if (source == 0) pot.input("DI04", true);
-    if (source == 2) pot.drive.set_ipos_control_word(1U << 9);
+    if (source == 2) pot.program_word(1U << 9);
     pot.run_ms(2000);
     EXPECT_NEAR(pot.drive.setpoint().speed, 150'000, 200) << source;  // 1500 rpm in 20 s
   }
@@ -316,13 +316,13 @@ TEST(M07Control, ControlWordOfTheProgram) {
   PROVES("M07-CW-26");
   BusRig rig;
   rig.run_up();
-  rig.drive.set_ipos_control_word(1U << 1);
+  rig.program_word(1U << 1);
   EXPECT_NEAR(rig.ms_until_standing(), m07_ramp_ms(1000, 2000), kRampTolerance);
   EXPECT_EQ(rig.state(), 2);
-  rig.drive.set_ipos_control_word(1U << 30);
+  rig.program_word(1U << 30);
   rig.run_ms(1);
   EXPECT_EQ(rig.state(), 1);
-  rig.drive.set_ipos_control_word(1U << 11);
+  rig.program_word(1U << 11);
   rig.run_ms(1);
   EXPECT_NE(rig.status() & 0x20, 0);
   EXPECT_EQ(rig.status() & 0x02, 0);

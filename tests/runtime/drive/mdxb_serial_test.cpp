@@ -119,9 +119,9 @@ TEST(MdxbSerial, TerminalsAndProgramStayEffective) {
       EXPECT_TRUE(runs()) << source.p101 << input;
     }
     for (const uint32_t word : {1U << 30, 1U << 1}) {  // H484: controller inhibit, no enable
-      rig.drive.set_ipos_control_word(word);
+      rig.program_word(word);
       EXPECT_FALSE(runs()) << source.p101 << " " << word;
-      rig.drive.set_ipos_control_word(0);
+      rig.program_word(0);
       EXPECT_TRUE(runs()) << source.p101 << " " << word;
     }
   }

@@ -268,7 +268,7 @@ TEST(MovidriveRamps, SwitchoverWithSPattern) {
       rig.set("P135", pattern);
       rig.set("P604", 8);  // DI05 RAMP SWITCHOVER
       if (by == 0) rig.input("DI05", true);
-      if (by == 2) rig.drive.set_ipos_control_word(1U << 8);
+      if (by == 2) rig.program_word(1U << 8);
       const uint16_t enable = by == 1 ? 0x0016 : 0x0006;
       rig.po({enable, 5000, 0});
       EXPECT_NEAR(rig.ms_until([&] { return rig.rpm() == 1000; }), mdx_ramp_ms(1000, 3000) + rounding, 5)

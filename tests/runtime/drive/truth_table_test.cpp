@@ -59,7 +59,7 @@ TEST(TruthTable, Movitrac07) {
       rig.set("P604", 32);  // DI05 CONTROL.INHIBIT
       for (unsigned row = 0; row < 1U << 10; ++row) {
         const unsigned terminals = row & 15, control = row >> 4 & 7, program = row >> 7;
-        rig.drive.set_ipos_control_word(0);
+        rig.program_word(0);
         rig.drive.set_inputs(0);
         rig.run_ms(1);
         rig.drive.reset_fault();
@@ -67,7 +67,7 @@ TEST(TruthTable, Movitrac07) {
         rig.input("DI01", bit(terminals, 1));
         rig.input("DI02", bit(terminals, 2));
         rig.input("DI05", bit(terminals, 3));
-        rig.drive.set_ipos_control_word((bit(program, 0) ? 1U << 1 : 0) | (bit(program, 1) ? 1U << 11 : 0) |
+        rig.program_word((bit(program, 0) ? 1U << 1 : 0) | (bit(program, 1) ? 1U << 11 : 0) |
                                         (bit(program, 2) ? 1U << 30 : 0));
         send(rig.drive, p101, static_cast<uint16_t>(control));
         rig.run_ms(1);
@@ -106,7 +106,7 @@ TEST(TruthTable, Movidrive) {
       rig.set("P604", 13);  // DI05 /HOLD CONTROL
       for (unsigned row = 0; row < 1U << 12; ++row) {
         const unsigned terminals = row & 31, control = row >> 5 & 15, program = row >> 9;
-        rig.drive.set_ipos_control_word(0);
+        rig.program_word(0);
         rig.drive.set_inputs(0);
         rig.run_ms(1);
         rig.drive.reset_fault();
@@ -115,7 +115,7 @@ TEST(TruthTable, Movidrive) {
         rig.input("DI01", bit(terminals, 2));
         rig.input("DI02", bit(terminals, 3));
         rig.input("DI05", bit(terminals, 4));
-        rig.drive.set_ipos_control_word((bit(program, 0) ? 1U << 1 : 0) | (bit(program, 1) ? 1U << 11 : 0) |
+        rig.program_word((bit(program, 0) ? 1U << 1 : 0) | (bit(program, 1) ? 1U << 11 : 0) |
                                         (bit(program, 2) ? 1U << 30 : 0));
         send(rig.drive, p101, static_cast<uint16_t>(control));
         rig.run_ms(1);

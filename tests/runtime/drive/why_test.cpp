@@ -65,7 +65,7 @@ TEST(Why, EveryBlockOccurs) {
        [](DriveRig& rig) {
          rig.po({0x0007, 3000, 0});
        }},
-      {Block::IposInhibit, "md60a", [](DriveRig& rig) { rig.drive.set_ipos_control_word(1U << 30); }},
+      {Block::IposInhibit, "md60a", [](DriveRig& rig) { rig.program_word(1U << 30); }},
       {Block::Waiting, "md60a",
        [](DriveRig& rig) {
          rig.silence();
@@ -93,7 +93,7 @@ TEST(Why, EveryBlockOccurs) {
        [](DriveRig& rig) {
          rig.po({0x0002, 3000, 0});
        }},
-      {Block::IposNoEnable, "md60a", [](DriveRig& rig) { rig.drive.set_ipos_control_word(1U << 1); }},
+      {Block::IposNoEnable, "md60a", [](DriveRig& rig) { rig.program_word(1U << 1); }},
       {Block::AxisStop, "md60a", [](DriveRig& rig) { rig.positioning.halt = runtime::Command::RapidStop; }},
       {Block::HoldTerminal, "md60a", [](DriveRig& rig) { rig.set("P604", 13); }},
       {Block::BusHold, "md60a",

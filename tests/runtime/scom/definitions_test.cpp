@@ -108,7 +108,7 @@ TEST_F(Objects, OnlyReceiveObjectsListen) {
 TEST_F(Objects, TheSyncIdentifierIsWarnedOf) {
   PROVES("VAR-06");
   const std::string warning =
-      "object number 7D0h (2000) is also the sync telegram of this unit (P817 or P885)";
+      "object number 7D0h (2000) is also the sync telegram of this unit (P817)";
   SlaveSettings profile{.sync_id = 2000};
   objects_.set_profile(profile);
   EXPECT_EQ(cyclic(2000, 100), 99);
@@ -123,7 +123,7 @@ TEST_F(Objects, TheSyncIdentifierIsWarnedOf) {
   objects_.stop();
   objects_.set_profile({});  // as from the factory: P817 = 0
   EXPECT_EQ(cyclic(0, 100), 99);
-  EXPECT_EQ(why_, "object number 000h (0) is also the sync telegram of this unit (P817 or P885)");
+  EXPECT_EQ(why_, "object number 000h (0) is also the sync telegram of this unit (P817)");
   objects_.stop();
   profile.synchronous = false;  // MOVITRAC 07
   objects_.set_profile(profile);

@@ -254,7 +254,7 @@ TEST(GatewayPlant, WrongNumberOfDrives) {
 TEST(GatewayPlant, ErrorsOfThePlantFile) {
   EXPECT_EQ(errors_of(kLines + gateway("program = \"A.IPC\"\n")),
             "14: unknown key 'program' in a [[station]] of unit gateway; known are name, unit, profibus, "
-            "profibus_address, sbus, drives, terminator\n");
+            "profibus_address, sbus, drives, terminator, profibus_terminator\n");
   EXPECT_NE(errors_of(kLines + "[[station]]\nname = \"gw\"\nunit = \"gateway\"\nsbus = \"sbus\"\n")
                 .find("a [[station]] of unit gateway needs profibus = ..."),
             std::string::npos);

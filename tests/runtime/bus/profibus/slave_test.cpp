@@ -510,10 +510,10 @@ TEST(DpSlave, PowerOnForgetsAll) {
 TEST(DpSlave, PowerOnForgetsTheAnswerBefore) {
   SlaveBench bench;
   bench.start();
-  EXPECT_EQ(bench.diag(), "00 04 00 01 31 00") << "exchanges data with master 1";
+  EXPECT_EQ(bench.diag(), "00 0C 00 01 31 00") << "exchanges data with master 1, and its watchdog is on";
   const FdlFrame repeated = bench.last_request;
   ASSERT_TRUE(repeated.frame_count_valid());
-  EXPECT_EQ(bench.answer_of(bench.slave.on_frame(bench.now, repeated)).substr(3), "00 04 00 01 31 00");
+  EXPECT_EQ(bench.answer_of(bench.slave.on_frame(bench.now, repeated)).substr(3), "00 0C 00 01 31 00");
   bench.slave.power_on(5 * kSecond, {8, 0x3100});
   bench.now = 5 * kSecond;
   EXPECT_EQ(bench.answer_of(bench.slave.on_frame(bench.now, repeated)).substr(3), "02 05 00 FF 31 00");
