@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import time
 from ctypes import byref, c_int32, c_uint16, create_string_buffer
-from typing import Any, Callable, Iterator, Optional, Protocol
+from typing import Any, Callable, Iterator, NamedTuple, Optional, Protocol
 
 from . import _library as lib
 from .station import ParameterValue
@@ -24,6 +24,7 @@ _FOUR_BYTES, _FAILED, _SERVICE = 0x30, 0x80, 0x0F
 _FIRST_VARIABLE = 11000
 _STATUS = 8310  # status word 1 in the low word
 _FIRMWARE = 8300
+LONGEST_SILENCE = 500  # ms, of a drive's monitoring that ends a movement in time (ours)
 # An index that only this unit type has among those below it.
 _SIGNS = ((8807, "mc07"), (8937, "mdxb"), (8509, "md60a"), (8470, "compact"))
 
@@ -44,13 +45,23 @@ class UnmonitoredError(lib.PlantError):
     """Process data that could enable a drive which does not monitor them: it would move on when nobody sends any more."""
 
 
+class Monitoring(NamedTuple):
+    """A drive's own monitoring of process data, as names and indices of its parameters. `address` has the drive's own
+    address on the line that it monitors; None: there is one line only."""
+
+    address: Optional[int]
+    delay_name: str
+    delay: int
+    response_name: str
+    response: int
+
+
 class Line(Protocol):
     """What carries the eight bytes of the parameter channel, or process data words, to a unit and its answer back; None: no
-    answer. `monitoring`: the drive's own monitoring of the words of this line, as names and indices of its delay and of its
-    response."""
+    answer. `monitoring`: what monitors the words of such a line in a drive."""
 
     addresses: range
-    monitoring: tuple[str, int, str, int]
+    monitoring: tuple[Monitoring, ...]
 
     def exchange(self, address: int, request: bytes) -> Optional[bytes]: ...
 
@@ -61,7 +72,11 @@ class Sbus:
     """SBus, over a bus of python-can. `timeout` in seconds; a plant counts it in virtual time."""
 
     addresses = range(64)
-    monitoring = ("P815 (P883 of MOVIDRIVE B)", 8602, "P836", 8615)
+    # P813 or P881; P891 of the second SBus, which a MOVIDRIVE B has.
+    monitoring = (
+        Monitoring(8600, "P815 (P883 of MOVIDRIVE B)", 8602, "P836", 8615),
+        Monitoring(8932, "P893", 8934, "P837", 8936),
+    )
 
     def __init__(self, bus: Any, timeout: float = 0.08) -> None:
         self.bus, self.timeout = bus, timeout
@@ -97,7 +112,7 @@ class Serial:
     """RS-485 or RS-232 at 9600 baud, 8E1, over an open port with read(count) and write(bytes), as pyserial has it."""
 
     addresses = range(100)
-    monitoring = ("P812", 8599, "P833", 8612)
+    monitoring = (Monitoring(None, "P812", 8599, "P833", 8612),)
     _TYP = 0x86  # parameter channel, acyclic
     _TRIES = 5
     _WORDS_TYP = {2: 0x01, 4: 0x03, 6: 0x05}  # cyclic: acyclic telegrams are not monitored (1053 1610 p. 23)
@@ -232,7 +247,7 @@ class Drive:
     def send_process_data(self, *words: int) -> tuple[int, ...]:
         """One to three process output data words to the unit; returns as many of its input data. A drive that monitors
         them wants them again and again, within its delay (P812, P815, P883). Words that could enable a drive, as bits 0 to 2
-        are those of an enabling control word, go only to one that monitors them; else it is an UnmonitoredError."""
+        are those of an enabling control word, go only to one that monitors them within 0.5 s; else it is an UnmonitoredError."""
         if not 1 <= len(words) <= 3:
             raise ValueError(f"a telegram has one to three process data words, not {len(words)}")
         for word in words:
@@ -251,22 +266,33 @@ class Drive:
     def _refuse_unmonitored(self) -> None:
         if time.monotonic() < self._monitored_until:
             return
-        name, delay, response_name, response = self.line.monitoring
-        trouble = None
-        if not 0 < self.execute(READ, delay) < 650_000:
-            trouble = f"{name} is off. Switch it on first: drive.write({delay}, 500)"  # ms
-        else:
-            try:
-                if self.execute(READ, response) <= 1:
-                    trouble = f"{response_name} lets it go on. Choose a stop first: drive.write({response}, 4)"
-            except DriveRefusedError:  # it cannot be chosen: the unit stops
-                pass
-        if trouble:
-            raise UnmonitoredError(
-                f"these process data could enable unit {self.address}, and it does not monitor them, so it would move on when "
-                f"nobody sends any more: {trouble}"
-            )
+        for own in self._monitorings():
+            trouble = None
+            if not 0 < self.execute(READ, own.delay) <= LONGEST_SILENCE:
+                trouble = (
+                    f"{own.delay_name} is off or longer than {LONGEST_SILENCE} ms. Switch it on first: "
+                    f"drive.write({own.delay}, {LONGEST_SILENCE})"
+                )
+            elif self._read_if_there(own.response) in (0, 1):  # None: it cannot be chosen, the unit stops
+                trouble = f"{own.response_name} lets it go on. Choose a stop first: drive.write({own.response}, 4)"
+            if trouble:
+                raise UnmonitoredError(
+                    f"these process data could enable unit {self.address}, and it does not monitor them, so it would move on "
+                    f"when nobody sends any more: {trouble}"
+                )
         self._monitored_until = time.monotonic() + 1
+
+    # Of the lines over which the drive has this address; of all where it tells none.
+    def _monitorings(self) -> list[Monitoring]:
+        own = [(each, each.address and self._read_if_there(each.address)) for each in self.line.monitoring]
+        here = [each for each, address in own if address == self.address]
+        return here or [each for each, address in own if address is not None or each is self.line.monitoring[0]]
+
+    def _read_if_there(self, index: int) -> Optional[int]:
+        try:
+            return self.execute(READ, index)
+        except DriveRefusedError:
+            return None
 
     @property
     def status_word(self) -> int:

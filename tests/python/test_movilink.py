@@ -165,10 +165,11 @@ def check_that_it_moves_only_where_it_is_monitored(plant, drive, delay, response
     for words in ((6, 5000, 0), (6, 5000), (6,), (0, 0, 0x0C16)):
         with pytest.raises(movilink.UnmonitoredError, match=delay):
             drive.send_process_data(*words)
-    drive.write(drive.line.monitoring[1], 650_000)
-    with pytest.raises(movilink.UnmonitoredError, match="Switch it on"):
-        drive.send_process_data(6, 5000, 0)
-    drive.write(drive.line.monitoring[1], 500)
+    for too_long in (650_000, 649_990, 10_000, 510):  # a shaft turns on for as long
+        drive.write(delay, too_long)
+        with pytest.raises(movilink.UnmonitoredError, match=f"{delay}.*Switch it on"):
+            drive.send_process_data(6, 5000, 0)
+    drive.write(delay, 500)
     drive.write(response, "NO RESPONSE")
     with pytest.raises(movilink.UnmonitoredError, match=response):
         drive.send_process_data(6, 5000, 0)
@@ -195,6 +196,25 @@ def test_process_data_over_sbus():
     with ipos.Plant(text=text) as plant, can.Bus(interface="ipos", channel="line", plant=plant) as bus:
         drive = movilink.Drive(movilink.Sbus(bus), 1)
         check_that_it_moves_only_where_it_is_monitored(plant, drive, "P883", "P836", plant.run)
+
+
+def test_process_data_over_the_second_sbus():
+    text = DRIVE.format(kind="can", unit="mdxb", line="sbus2", source="SBus", address="P891")
+    with ipos.Plant(text=text) as plant, can.Bus(interface="ipos", channel="line", plant=plant) as bus:
+        drive = movilink.Drive(movilink.Sbus(bus), 1)
+        drive.write("P883", 400)  # of the other one
+        check_that_it_moves_only_where_it_is_monitored(plant, drive, "P893", "P837", plant.run)
+
+
+def test_a_drive_with_one_address_on_both_lines_monitors_both():
+    text = DRIVE.format(kind="can", unit="mdxb", line="sbus2", source="SBus", address="P891") + "P881 = 1\n"
+    with ipos.Plant(text=text) as plant, can.Bus(interface="ipos", channel="line", plant=plant) as bus:
+        drive = movilink.Drive(movilink.Sbus(bus), 1)
+        for name, other in (("P893", "P883"), ("P883", "P893")):
+            drive.write(name, 400)
+            drive.write(other, 0)
+            with pytest.raises(movilink.UnmonitoredError, match=other):
+                drive.send_process_data(6, 5000, 0)
 
 
 def test_process_data_words_are_words(sbus):

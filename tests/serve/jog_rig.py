@@ -26,7 +26,9 @@ LINES = {
     "RS-485 mc07": ("rs485", "mc07", {}),
     "RS-485 mdxb": ("rs485", "mdxb", {}),
     "SBus md60a": ("can", "md60a", {"P815": "0.4 s"}),
+    "SBus mc07": ("can", "mc07", {}),
     "SBus mdxb": ("can", "mdxb", {}),
+    "SBus 2 mdxb": ("can", "mdxb", {}),
 }
 
 
@@ -40,12 +42,14 @@ def wait_until(what, condition, seconds=PATIENCE):
     raise TimeoutError(f"waited {seconds} s for: {what}")
 
 
-def plant_text(kind, unit, port, parameters, inputs, more):
+def plant_text(line, port, parameters, inputs, more):
+    kind, unit, own = LINES[line]
     source = "RS-485" if kind == "rs485" else "SBus"
-    settings = {"P870": "CTRL. WORD 1", "P871": "SPEED", "P100": source, "P101": source,
-                "P810" if kind == "rs485" else "P881" if unit == "mdxb" else "P813": 1, **parameters}
+    second = line.startswith("SBus 2")
+    address = "P810" if kind == "rs485" else "P891" if second else "P881" if unit == "mdxb" else "P813"
+    settings = {"P870": "CTRL. WORD 1", "P871": "SPEED", "P100": source, "P101": source, address: 1, **own, **parameters}
     lines = ["[[bus]]", 'name = "line"', f'kind = "{kind}"', f'port = "{port}"', "[[station]]", 'name = "saw"',
-             f'unit = "{unit}"', f'{"rs485" if kind == "rs485" else "sbus"} = "line"', "[station.inputs]"]
+             f'unit = "{unit}"', f'{"rs485" if kind == "rs485" else "sbus2" if second else "sbus"} = "line"', "[station.inputs]"]
     lines += [f"{name} = {value}" for name, value in inputs.items()]
     lines += ["[station.parameters]"]
     lines += [f"{name} = {json.dumps(value)}" for name, value in settings.items()]
@@ -59,7 +63,7 @@ class Rig:
 
     def __init__(self, test, line="RS-485 md60a", parameters=None, inputs=None, more="", serve=("--write",), seconds=90):
         self.test = test
-        kind, unit, own = LINES[line]
+        kind = LINES[line][0]
         folder = tempfile.TemporaryDirectory()
         test.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
@@ -67,7 +71,7 @@ class Rig:
         self.port = f"slcan:{place}" if kind == "can" else str(place)
         pty = f"slcan:pty:{place}" if kind == "can" else f"pty:{place}"
         plant = self.folder / "plant.toml"
-        plant.write_text(plant_text(kind, unit, pty, {**own, **(parameters or {})}, inputs or self.INPUTS, more))
+        plant.write_text(plant_text(line, pty, parameters or {}, inputs or self.INPUTS, more))
         self.csv = self.folder / "t.csv"
         self.environment = {**os.environ, "XDG_STATE_HOME": str(self.folder / "state")}
         self.drive = subprocess.Popen([IPOS, "run", str(plant), "--realtime", "--for", f"{seconds}s", "--trace", str(self.csv),
@@ -124,6 +128,14 @@ class Rig:
         self.test.assertTrue(client.ask(do="arm", yes=True)["ok"])
         return client
 
+    def records(self):
+        """Of what was changed in the drive; other files there are the page's."""
+        return list((self.folder / "state" / "ipos").glob("borrowed-*"))
+
+    def end(self):
+        self.signal_group(self.server, signal.SIGKILL)
+        self.drive.kill()
+
     # --- the shaft ---
 
     def look(self):
@@ -147,13 +159,27 @@ class Rig:
         self.look()
         return self.rows[-1][1] if self.rows else 0
 
+    def row_after(self, moment):
+        """The number of the first row behind a moment of this test's clock."""
+        return bisect.bisect(self.rows, (moment - self.offset, RPM * 9))
+
+    def wait_for_time(self, moment):
+        wait_until("the drive's time", lambda: self.look() or self.row_after(moment) < len(self.rows))
+
+    def fastest(self, moment):
+        """Since a moment."""
+        return max((abs(speed) for _, speed in self.rows[self.row_after(moment):]), default=0)
+
+    def moves_at(self, moment):
+        return abs(self.rows[self.row_after(moment) - 1][1]) >= RPM * 0.02
+
     def wait_for_speed(self, wanted=RPM * 0.99):
         wait_until(f"{wanted:.0f} rpm, it has {self.speed():.0f}", lambda: abs(self.speed()) >= wanted)
 
     def after(self, moment):
         """(begins to fall, stands) in seconds after a moment of this test's clock; the time is the drive's."""
         begin = moment - self.offset
-        first = bisect.bisect(self.rows, (begin, RPM * 9))
+        first = self.row_after(moment)
         top = abs(self.rows[first - 1][1])
         falls = stands = None
         for at, speed in self.rows[first:]:
@@ -176,7 +202,7 @@ class Hand:
     def __init__(self, client, direction="cw", rpm=RPM):
         self.client, self.direction, self.rpm = client, direction, rpm
         self.held = True
-        self.errors, self.events = [], []
+        self.errors, self.events, self.accepted = [], [], 0
         self.thread = threading.Thread(target=self.hold)
         self.thread.start()
 
@@ -199,6 +225,7 @@ class Hand:
         opcode, data = self.client.receive()
         if opcode == 1:
             message = json.loads(data)
+            self.accepted += message.get("ok") is True
             if "error" in message:
                 self.errors.append(message["error"])
             if message.get("event") == "manual":

@@ -1,7 +1,9 @@
 """A real drive never moves without a hand on the button: whatever fails, the speed begins to fall within 0.7 s and
 reaches 0 by the drive's own ramp. Prints a table of what was tried and how long it took.
 
-    python3 jog_test.py IPOS [--releases N] [unittest arguments]
+    python3 jog_test.py IPOS [--releases N] [--everywhere] [unittest arguments]
+
+--everywhere: each cause on each kind of line, else on some.
 """
 import concurrent.futures
 import json
@@ -16,16 +18,30 @@ if "--releases" in sys.argv:
     at = sys.argv.index("--releases")
     RELEASES = int(sys.argv[at + 1])
     del sys.argv[at:at + 2]
+EVERYWHERE = "--everywhere" in sys.argv
+if EVERYWHERE:
+    sys.argv.remove("--everywhere")
 
 from jog_rig import FALLS_WITHIN, LINES, RPM, Hand, Rig, wait_until  # noqa: E402 (takes the program from sys.argv)
 
+AT_ONCE = 6  # drives side by side: their tests mostly wait
 TABLE = []
+SKIPPED = []
 
 
 def tearDownModule():
     print("cause | line | begins to fall | stands")
-    for cause, line, falls, stands in TABLE:
+    for cause, line, falls, stands in sorted(TABLE):
         print(f"{cause} | {line} | {falls:.2f} s | {stands:.2f} s")
+    for text in SKIPPED:
+        print(f"skipped: {text}")
+
+
+def side_by_side(trial, arguments, at_once=AT_ONCE):
+    """trial(*each) of all; the first failure counts."""
+    with concurrent.futures.ThreadPoolExecutor(at_once) as pool:
+        for done in [pool.submit(trial, *each) for each in arguments]:
+            done.result()
 
 
 @unittest.skipUnless(os.path.exists("/dev/pts/ptmx"), "there is no /dev/pts: no pseudo-terminals here")
@@ -47,12 +63,11 @@ class HandOff(unittest.TestCase):
         return rig, hand
 
     def test_the_hand_is_off(self):
-        for line in LINES:
-            with self.subTest(line):
-                rig, hand = self.moving(line)
-                self.judge(rig, "stop", line, hand.release())
-                rig.signal_group(rig.server, signal.SIGKILL)
-                rig.drive.kill()
+        def trial(line):
+            rig, hand = self.moving(line)
+            self.judge(rig, "stop", line, hand.release())
+            rig.end()
+        side_by_side(trial, [(line,) for line in LINES])
 
     def test_the_page_is_closed(self):
         """At once: the hold runs out 0.2 s after it at the earliest. A loaded machine may be that slow now and then."""
@@ -66,57 +81,55 @@ class HandOff(unittest.TestCase):
                 return
         self.fail("a closed page stops the drive only when the hold has run out")
 
-    def test_the_page_is_silent(self):
-        rig, hand = self.moving()
-        self.judge(rig, "page silent", "RS-485 md60a", hand.off())
+    # Of the process with the line, of the server, and of their group.
+    ENDS = {
+        "page closed": lambda rig, hand: hand.close(),
+        "page silent": lambda rig, hand: hand.off(),
+        "host killed": lambda rig, hand: os.kill(rig.host, signal.SIGKILL),
+        "host stopped": lambda rig, hand: os.kill(rig.host, signal.SIGSTOP),
+        "server killed": lambda rig, hand: os.kill(rig.server.pid, signal.SIGKILL),
+        "server stopped": lambda rig, hand: os.kill(rig.server.pid, signal.SIGSTOP),
+        "both killed": lambda rig, hand: (os.kill(rig.host, signal.SIGKILL), os.kill(rig.server.pid, signal.SIGKILL)),
+        "both stopped": lambda rig, hand: (os.kill(rig.host, signal.SIGSTOP), os.kill(rig.server.pid, signal.SIGSTOP)),
+        "group killed": lambda rig, hand: os.killpg(rig.server.pid, signal.SIGKILL),
+        "group stopped": lambda rig, hand: os.killpg(rig.server.pid, signal.SIGSTOP),
+    }
+    # Nobody is left to stop the drive: its monitoring of this line does.
+    NOBODY_LEFT = ("host killed", "host stopped")
 
-    def kill(self, line, cause, deed, **more):
-        rig, hand = self.moving(line, **more)
-        moment = time.monotonic()
-        deed(rig)
-        self.judge(rig, cause, line, moment)
-        hand.off()
-        rig.signal_group(rig.server, signal.SIGKILL)
-        rig.drive.kill()
-
-    def test_a_process_is_killed(self):
-        for line in LINES:
-            with self.subTest(line):
-                self.kill(line, "host killed", lambda rig: os.kill(rig.host, signal.SIGKILL))
-        self.kill("RS-485 md60a", "server killed", lambda rig: os.kill(rig.server.pid, signal.SIGKILL))
-        for line in ("RS-485 md60a", "SBus mdxb"):
-            self.kill(line, "both killed", lambda rig: os.killpg(rig.server.pid, signal.SIGKILL))
-
-    def test_a_process_is_stopped(self):
-        self.kill("RS-485 md60a", "server stopped", lambda rig: os.kill(rig.server.pid, signal.SIGSTOP))
-        for line in ("RS-485 md60a", "RS-485 mc07", "SBus mdxb"):
-            with self.subTest(line):
-                self.kill(line, "host stopped", lambda rig: os.kill(rig.host, signal.SIGSTOP))
-        self.kill("RS-485 md60a", "both stopped", lambda rig: os.killpg(rig.server.pid, signal.SIGSTOP))
+    def test_whatever_ends(self):
+        def trial(cause, line):
+            rig, hand = self.moving(line)
+            moment = time.monotonic()
+            self.ENDS[cause](rig, hand)
+            self.judge(rig, cause, line, moment)
+            hand.off()
+            rig.end()
+        one, other = "RS-485 md60a", "SBus mdxb"
+        side_by_side(trial, [(cause, line) for n, cause in enumerate(self.ENDS) for line in LINES
+                             if EVERYWHERE or cause in self.NOBODY_LEFT or line == (one, other)[n % 2]])
 
     def test_a_process_that_goes_on_moves_nothing_by_old_orders(self):
         """What was said while nobody read is no hand on the button, now."""
-        for line in ("RS-485 md60a", "SBus mdxb"):
-            for who in ("host", "server"):
-                with self.subTest(f"{line} {who}"):
-                    rig, hand = self.moving(line)
-                    number = rig.host if who == "host" else rig.server.pid
-                    moment = time.monotonic()
-                    os.kill(number, signal.SIGSTOP)
-                    rig.wait_until_it_stands(moment)
-                    time.sleep(1)  # the page goes on saying that the button is held
-                    hand.off()
-                    time.sleep(0.5)
-                    os.kill(number, signal.SIGCONT)
-                    other = rig.connect()
-                    self.assertTrue(other.ask(do="plant")["ok"])
-                    rig.look()
-                    goes_on = rig.rows[-1][0]
-                    wait_until("two seconds of the drive", lambda: rig.look() or rig.rows[-1][0] > goes_on + 2)
-                    fastest = max(abs(speed) for at, speed in rig.rows if at > moment - rig.offset + 2)
-                    self.assertLess(fastest, 1, f"{line}, {who} goes on")
-                    rig.signal_group(rig.server, signal.SIGKILL)
-                    rig.drive.kill()
+        def trial(line, who):
+            rig, hand = self.moving(line)
+            number = rig.host if who == "host" else rig.server.pid
+            moment = time.monotonic()
+            os.kill(number, signal.SIGSTOP)
+            rig.wait_until_it_stands(moment)
+            time.sleep(1)  # the page goes on saying that the button is held
+            hand.off()
+            time.sleep(0.5)
+            os.kill(number, signal.SIGCONT)
+            other = rig.connect()
+            self.assertTrue(other.ask(do="plant")["ok"])
+            rig.look()
+            goes_on = rig.rows[-1][0]
+            wait_until("two seconds of the drive", lambda: rig.look() or rig.rows[-1][0] > goes_on + 2)
+            fastest = max(abs(speed) for at, speed in rig.rows if at > moment - rig.offset + 2)
+            self.assertLess(fastest, 1, f"{line}, {who} goes on")
+            rig.end()
+        side_by_side(trial, [(line, who) for line in ("RS-485 md60a", "SBus mdxb") for who in ("host", "server")])
 
     def test_busy_tabs(self):
         """Six tabs with a hundred values and all parameters; the jog neither begins late nor goes on."""
@@ -193,36 +206,42 @@ class HandOff(unittest.TestCase):
         wait_until("the shaft to stand", lambda: rig.speed() == 0)
 
     def test_releases(self):
-        """Stops, closed pages and silent ones by turns, at two lines, several drives at once."""
+        """Stops, closed pages and silent ones by turns, at two lines, several drives at once. On an overloaded machine an order
+        to move may be too old before it is read: it is refused, and then the drive must not have moved by it."""
         places = [("RS-485 md60a", "SBus mdxb")[n % 2] for n in range(2 if RELEASES <= 20 else 10)]
 
         def some(line):
-            # On an overloaded machine this program is silent for longer than the drive lets it be: then it stops, and
-            # goes on with the next telegram.
+            # This program may be silent for longer than the drive lets it be: then it stops, and goes on with the next
+            # telegram.
             rig = Rig(self, line, seconds=60 + 10 * RELEASES // len(places), parameters={"P836": "RAPID STOP/WARNG"})
             client = rig.armed()
             for n in range(RELEASES // len(places)):
+                kind = ("stop", "page closed", "page silent")[n % 3]
+                about = f"{kind}, release {n}"
+                begin = time.monotonic()
                 hand = Hand(client)
                 try:
-                    wait_until("450 rpm", lambda: abs(rig.speed()) >= RPM * 0.3, 15)
+                    wait_until("450 rpm, or refusals", lambda: abs(rig.speed()) >= RPM * 0.3 or len(hand.errors) > 20)
                     moment = (hand.release, hand.close, hand.off)[n % 3]()
-                except TimeoutError as late:
-                    # A server that gets no processor for a quarter of a second takes all it reads then for old.
-                    self.assertIn("too old", "".join(hand.errors[-1:]), f"{line}, release {n}: {late}")
-                    continue
                 finally:
                     hand.off()
-                falls, stands = rig.wait_until_it_stands(moment)
-                yet = f"{('stop', 'page closed', 'page silent')[n % 3]}, release {n}"
-                TABLE.append((yet, line, falls, stands))
-                self.assertLessEqual(falls, FALLS_WITHIN, f"{line}: {yet}")
-                if n % 3 == 1:
+                rig.wait_for_time(moment + 1)
+                if rig.moves_at(moment):
+                    falls, stands = rig.wait_until_it_stands(moment)
+                    TABLE.append((about, line, falls, stands))
+                    self.assertLessEqual(falls, FALLS_WITHIN, f"{line}: {about}")
+                else:  # no order has come in time: it has not moved, or stood again before the release
+                    why = f"{line}: {about}: {hand.accepted} orders taken, {hand.errors}"
+                    self.assertTrue(hand.errors and all("too old" in text for text in hand.errors), why)
+                    self.assertLess(rig.fastest(moment), 1, f"{why}, and the drive moves behind the release")
+                    if not hand.accepted:
+                        self.assertLess(rig.fastest(begin), 1, f"{why}, and yet the drive has moved")
+                    SKIPPED.append(why[:200])
+                if kind == "page closed":
                     client = rig.armed()
 
-        with concurrent.futures.ThreadPoolExecutor(len(places)) as pool:
-            for done in [pool.submit(some, line) for line in places]:
-                done.result()
-        self.assertGreaterEqual(sum("release" in cause for cause, *_ in TABLE), RELEASES // 2, "too few have moved at all")
+        side_by_side(some, [(line,) for line in places], len(places))
+        self.assertLessEqual(len(SKIPPED), RELEASES // 50 + 1, "too few have moved at all")
 
 
 @unittest.skipUnless(os.path.exists("/dev/pts/ptmx"), "there is no /dev/pts: no pseudo-terminals here")
@@ -257,7 +276,7 @@ class GivenBack(unittest.TestCase):
 
     @staticmethod
     def wait_until_nothing_is_written_down(rig):
-        wait_until("the record to go", lambda: not list((rig.folder / "state" / "ipos").iterdir()))
+        wait_until("the record to go", lambda: not rig.records())
 
     def jog(self, rig, client, seconds=0.5):
         hand = Hand(client, rpm=300)
@@ -266,19 +285,33 @@ class GivenBack(unittest.TestCase):
         time.sleep(seconds)
         return hand
 
+    MONITORED_BY = {"RS-485 md60a": "P812", "RS-485 mc07": "P812", "SBus md60a": "P815", "SBus mc07": "P815", "SBus mdxb": "P883",
+                    "SBus 2 mdxb": "P893"}
+
     def test_the_monitoring(self):
-        for line, number in (("RS-485 md60a", "P812"), ("RS-485 mc07", "P812"), ("SBus mdxb", "P883")):
-            for own, before in ((None, "0.000 s"), ("60 s", "60.000 s"), ("0.2 s", "0.200 s")):
-                with self.subTest(f"{line} {own}"):
-                    rig = Rig(self, line, parameters={number: own} if own else {})
-                    client, other = rig.armed(), rig.connect()
-                    self.assertEqual(self.value(other, number), before)
-                    hand = self.jog(rig, client)
-                    self.assertEqual(self.value(other, number), "0.200 s" if own == "0.2 s" else "0.400 s")
-                    hand.release()
-                    self.becomes(other, {number: before})
-                    rig.signal_group(rig.server, signal.SIGKILL)
-                    rig.drive.kill()
+        """Off, too long, by a little also, and as short as it must be."""
+        def trial(line, own):
+            number = self.MONITORED_BY[line]
+            rig = Rig(self, line, parameters={number: own})
+            client, other = rig.armed(), rig.connect()
+            before = self.value(other, number)
+            hand = self.jog(rig, client)
+            self.assertEqual(self.value(other, number), before if own in ("0.2 s", "0.5 s") else "0.400 s", f"{line} {own}")
+            hand.release()
+            self.becomes(other, {number: before})
+            rig.end()
+        side_by_side(trial, [(line, own) for n, line in enumerate(self.MONITORED_BY)
+                             for own in ("0 s", "60 s" if n % 2 else "0.51 s", "0.5 s" if n % 2 else "0.2 s")])
+
+    def test_a_drive_that_has_its_address_on_both_lines(self):
+        """Nobody can tell over which of them it is reached, so both are monitored."""
+        rig = Rig(self, "SBus 2 mdxb", parameters={"P881": 1, "P836": "NO RESPONSE", "P837": "NO RESPONSE"})
+        client, other = rig.armed(), rig.connect()
+        hand = self.jog(rig, client)
+        names = ("P883", "P893", "P836", "P837")
+        self.assertEqual([self.value(other, name) for name in names], ["0.400 s"] * 2 + ["EMERG.STOP/ERROR"] * 2)
+        hand.release()
+        self.becomes(other, {"P883": "0.000 s", "P893": "0.000 s", "P836": "NO RESPONSE", "P837": "NO RESPONSE"})
 
     def test_a_response_that_lets_it_go_on(self):
         rig = Rig(self, "RS-485 md60a", parameters={"P833": "NO RESPONSE", "P812": "0.4 s"})
@@ -330,7 +363,7 @@ class GivenBack(unittest.TestCase):
     def test_the_next_start_says_what_a_killed_host_left_and_gives_it_back(self):
         rig = Rig(self, "RS-485 md60a", parameters={"P100": "BIPOL./FIX.SETPT", "P101": "TERMINALS"}, inputs={"DI00": 0})
         hand = self.jog(rig, rig.armed())
-        record, = (rig.folder / "state" / "ipos").iterdir()
+        record, = rig.records()
         self.assertEqual(record.stat().st_mode & 0o777, 0o600)
         os.kill(rig.host, signal.SIGKILL)
         rig.server.wait()
@@ -365,12 +398,22 @@ class GivenBack(unittest.TestCase):
         self.assertIn("several drives", send(8 + 6, "00060BB80000"))
         for identifier, data in ((8 + 3, "00020BB80000"), (8 + 4, "00060BB80000"), (512 + 8 + 3, "3100211600000006")):
             self.assertEqual(send(identifier, data), "")
-        client.ask(do="parameters.set", number="P883", value="0.3 s")
+        client.ask(do="parameters.set", number="P883", value="0.51 s")
+        self.assertIn("longer than 500 ms", send(8 + 3, "00060BB80000"))
+        client.ask(do="parameters.set", number="P883", value="0.5 s")
         self.assertEqual(send(8 + 3, "00060BB80000"), "")
         begin = time.monotonic()
         rig.look()
         wait_until("half a second", lambda: rig.look() or time.monotonic() > begin + 1)
         self.assertEqual(rig.speed(), 0, "one telegram moves it for as long as its monitoring lets it")
+
+    def test_a_telegram_on_the_second_sbus(self):
+        rig = Rig(self, "SBus 2 mdxb", parameters={"P883": "0.4 s"})
+        client = rig.armed()
+        telegram = {"do": "bus.send", "bus": "CAN", "identifier": 8 + 3, "data": "00060BB80000"}
+        self.assertIn("Switch the monitoring on first: P893", client.ask(**telegram)["error"])
+        client.ask(do="parameters.set", number="P893", value="0.4 s")
+        self.assertTrue(client.ask(**telegram).get("ok"))
 
     def test_over_canopen_it_is_refused(self):
         rig = Rig(self, "SBus mdxb", parameters={"P880": 1, "P886": 1}, serve=("--write", "--canopen"))
@@ -389,7 +432,7 @@ class GivenBack(unittest.TestCase):
         self.assertLessEqual(falls, FALLS_WITHIN)
         rig.server.wait(timeout=30)
         hand.off()
-        self.assertEqual(list((rig.folder / "state" / "ipos").iterdir()), [])
+        self.assertEqual(rig.records(), [])
 
     def test_jogs_follow_one_another_where_the_monitoring_is_on(self):
         """The words go on between two of them, so the drive tells no timeout: F47 would want a reset. A loaded machine may be

@@ -635,13 +635,17 @@ P101 = "RS-485"
                          self.telegram(1, 6, 0x3100, 0x2116, 0, 6), self.telegram(1, 5, 6, 6, 6)[:-2] + "ff"):
             self.assertEqual(send(harmless), "")
         self.assertIn("does not tell", send(self.telegram(2, 5, 6, 1000, 0)))
-        for group in (101, 254, 255):
+        for group in (100, 101, 199, 254, 255):
             self.assertIn("several drives", send(self.telegram(group, 5, 6, 1000, 0)))
-        client.ask(do="parameters.set", number="P812", value="650 s")
-        self.assertIn("P812 is off", send(self.telegram(1, 5, 6, 1000, 0)))
-        client.ask(do="parameters.set", number="P812", value="0.3 s")
+        for too_long in ("650 s", "649.99 s", "10 s", "0.51 s"):  # a shaft turns on for as long
+            client.ask(do="parameters.set", number="P812", value=too_long)
+            self.assertIn("P812 is off or longer than 500 ms", send(self.telegram(1, 5, 6, 1000, 0)), too_long)
+        client.ask(do="parameters.set", number="P812", value="0.5 s")
         client.ask(do="parameters.set", number="P833", value="NO RESPONSE")
-        self.assertIn("P833 lets it go on", send(self.telegram(1, 5, 6, 1000, 0)))
+        refused = send(self.telegram(1, 5, 6, 1000, 0))
+        self.assertIn("P833 lets it go on", refused)
+        advice = refused.rpartition("P833 = ")[2]
+        self.assertEqual(client.ask(do="parameters.set", number="P833", value=advice).get("text"), advice)
         client.ask(do="parameters.set", number="P833", value="RAPID STOP/WARNG")
         for acyclic in (0x85, 0x81, 0x83):
             self.assertIn("acyclic", send(self.telegram(1, acyclic, *[6, 1, 1][:(acyclic & 7) // 2 + 1])))

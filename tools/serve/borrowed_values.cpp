@@ -60,21 +60,30 @@ void BorrowedValues::set(uint16_t index, int32_t value) {
     write_down();
     throw;
   }
+  if (read(index) != value)
+    throw Mistake(fmt::format("the drive has not taken {} of {}", value,
+                              stdlib::index_name(stdlib::parameter_table(access_.unit()), index)));
 }
 
+// An answer to a write may be a late one to an earlier write of the same parameter, so what counts is what is read.
 // The last one first: the sources of control and setpoint before the monitoring.
 bool BorrowedValues::give_back() {
   const stdlib::ParameterTable& table = stdlib::parameter_table(access_.unit());
   const size_t had = values_.size();
   for (size_t n = values_.size(); n-- > 0;) {
     Value& value = values_[n];
-    const AccessReply reply = access_.execute(Service::WriteVolatile, value.index, value.before);
-    if (reply) {
-      values_.erase(values_.begin() + static_cast<ptrdiff_t>(n));
+    const AccessReply written = access_.execute(Service::WriteVolatile, value.index, value.before);
+    value.needs_inhibit = !written && written.error().code == stdlib::return_codes::kInhibitRequired;
+    if (!written) {
+      value.why = why(table, Service::WriteVolatile, value.index, value.before, written.error());
       continue;
     }
-    value.needs_inhibit = reply.error().code == stdlib::return_codes::kInhibitRequired;
-    value.why = why(table, Service::WriteVolatile, value.index, value.before, reply.error());
+    const AccessReply now = access_.execute(Service::Read, value.index);
+    if (now && *now == value.before)
+      values_.erase(values_.begin() + static_cast<ptrdiff_t>(n));
+    else
+      value.why = now ? "the drive has not taken it back"
+                      : why(table, Service::Read, value.index, 0, now.error());
   }
   if (values_.size() != had) write_down();
   return values_.empty();

@@ -45,25 +45,44 @@ class BusTab final : public Tab, private BusSource {
   // A real drive may be at the port.
   void guard(const std::string& bus, const Arguments& arguments) {
     runtime::Plant& plant = host_.plant();
-    runtime::CanLineNames names;
+    std::vector<int> addresses;  // that stations of the plant have there
+    const auto have = [&](const auto& all, auto address) {
+      for (const auto& one : all) addresses.push_back(address(one));
+    };
+    const auto unit_address = [](const auto& unit) { return int{unit.settings.address}; };
     std::optional<EnablingTelegram> enabling;
     for (const runtime::CanLine* line : plant.lines())
       if (line->name() == bus) {
-        names = runtime::can_line_names(plant, line);
+        const runtime::CanLineNames names = runtime::can_line_names(plant, line);
         enabling = enabling_on_can(arguments, !names.nodes.empty());
+        if (names.nodes.empty())
+          have(names.movilink.units, unit_address);
+        else
+          have(names.nodes, [](const auto& node) { return int{node.node}; });
       }
     for (runtime::SerialBus* line : plant.serial_lines())
       if (line->line().name() == bus) {
-        names.movilink = runtime::serial_names(plant);
         enabling = enabling_on_serial(arguments);
+        std::vector<runtime::UnitNames> units = runtime::serial_names(plant).units;
+        std::erase_if(units, [&](const auto& unit) { return !is_at(plant, unit.name, bus); });
+        have(units, unit_address);
+      }
+    for (const runtime::ProfibusBus* line : profibus_lines(plant))
+      if (line->name() == bus) {
+        enabling = enabling_on_profibus(traffic_.octets_of(arguments));
+        for (const runtime::StationConfig& station : plant.file().stations)
+          if (station.profibus.bus.bus == bus) addresses.push_back(station.profibus.address);
       }
     if (!enabling) return;
     refuse_outside(*enabling, [&](uint8_t address) {
-      const auto& units = names.movilink.units;
-      return std::any_of(units.begin(), units.end(),
-                         [&](const auto& unit) { return unit.settings.address == address; }) ||
-             std::any_of(names.nodes.begin(), names.nodes.end(),
-                         [&](const auto& node) { return node.node == address; });
+      return std::find(addresses.begin(), addresses.end(), int{address}) != addresses.end();
+    });
+  }
+
+  static bool is_at(const runtime::Plant& plant, const std::string& station, const std::string& serial_bus) {
+    const auto& all = plant.file().stations;
+    return std::any_of(all.begin(), all.end(), [&](const runtime::StationConfig& one) {
+      return one.name == station && (one.serial.x13.bus == serial_bus || one.serial.xt.bus == serial_bus);
     });
   }
 

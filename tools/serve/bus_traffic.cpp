@@ -51,6 +51,10 @@ void BusTraffic::send(const Arguments& arguments) {
   ears_[number_of(arguments.text("bus"))]->send(arguments);
 }
 
+std::vector<uint8_t> BusTraffic::octets_of(const Arguments& arguments) const {
+  return ears_[number_of(arguments.text("bus"))]->read(arguments.text("data", ""));
+}
+
 uint8_t BusTraffic::number_of(const std::string& name) const {
   const auto found =
       std::find_if(ears_.begin(), ears_.end(), [&](const auto& ear) { return ear->name() == name; });

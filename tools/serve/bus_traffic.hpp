@@ -56,6 +56,8 @@ class BusTraffic final {
   // `rate` counts from second to second.
   void second_passed();
   void send(const Arguments& arguments);
+  // What it would send.
+  std::vector<uint8_t> octets_of(const Arguments& arguments) const;
 
  private:
   struct Row {

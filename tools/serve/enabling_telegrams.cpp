@@ -8,6 +8,7 @@
 #include "runtime/bus/canopen/connections.hpp"
 #include "runtime/bus/movilink/identifiers.hpp"
 #include "runtime/bus/movilink/serial_telegram.hpp"
+#include "runtime/bus/profibus/fdl_frame.hpp"
 #include "tools/serve/bus_ear.hpp"
 #include "tools/unit/own_monitoring.hpp"
 
@@ -24,23 +25,32 @@ std::vector<uint16_t> words_of(const std::vector<uint8_t>& bytes, bool low_byte_
   return words;
 }
 
+constexpr const char* kAcyclic =
+    "no drive monitors acyclic telegrams, so nothing but a person would end the movement: send it cyclic (TYP 00h to "
+    "05h), to a unit that monitors them (P812)";
+constexpr const char* kSeveral =
+    "it goes to several drives, or to whoever hears it, and they cannot be asked whether they monitor their process "
+    "data: send it to single units";
+constexpr const char* kOtherProfile =
+    "with --canopen only CANopen nodes can be asked whether they monitor their process data, without it only units of "
+    "the SBus";
+
 }  // namespace
 
 std::optional<EnablingTelegram> enabling_on_can(const Arguments& arguments, bool canopen) {
   const auto id = static_cast<uint32_t>(arguments.whole("identifier", 0, runtime::kExtendedIdLimit - 1));
   if (arguments.flag("extended", false) || arguments.flag("remote", false)) return std::nullopt;
   const std::vector<uint8_t> bytes = bytes_of(arguments.text("data", ""), 8);
-  // 200h, 300h, 400h and 500h with the node (CiA 301, 7.3.3).
-  constexpr uint32_t kFirstRpdo = 0x200, kBeyondRpdo = 0x580, kNodes = 0x80;
-  if (canopen && id >= kFirstRpdo && id < kBeyondRpdo && (id / kNodes) % 2 == 0 &&
-      could_enable(words_of(bytes, true)))
-    return EnablingTelegram{static_cast<uint8_t>(id % kNodes)};
   const auto identifier = runtime::classify_identifier(id);
+  // 200h, 300h, 400h and 500h with the node (CiA 301, 7.3.3). Telegrams of the SBus are what the line speaks.
+  constexpr uint32_t kFirstRpdo = 0x200, kBeyondRpdo = 0x580, kNodes = 0x80;
+  if ((canopen || !identifier) && id >= kFirstRpdo && id < kBeyondRpdo && (id / kNodes) % 2 == 0 &&
+      could_enable(words_of(bytes, true)))
+    return EnablingTelegram{static_cast<uint8_t>(id % kNodes), canopen ? nullptr : kOtherProfile};
   if (!identifier) return std::nullopt;
   const runtime::TelegramType& type = runtime::telegram_type(identifier->telegram);
   if (type.parameter || !type.from_master || !could_enable(words_of(bytes, false))) return std::nullopt;
-  if (type.grouped || canopen) return EnablingTelegram{};
-  return EnablingTelegram{identifier->address};
+  return EnablingTelegram{identifier->address, type.grouped ? kSeveral : canopen ? kOtherProfile : nullptr};
 }
 
 std::optional<EnablingTelegram> enabling_on_serial(const Arguments& arguments) {
@@ -48,43 +58,51 @@ std::optional<EnablingTelegram> enabling_on_serial(const Arguments& arguments) {
       runtime::decode_serial(bytes_of(arguments.text("data", ""), runtime::SerialBytes::kLongest));
   if (!telegram || telegram->response) return std::nullopt;
   if (!could_enable(std::span(telegram->words).first(telegram->format.words))) return std::nullopt;
-  EnablingTelegram enabling{std::nullopt, !telegram->format.acyclic};
-  if (runtime::address_kind(telegram->address) == runtime::AddressKind::Single)
-    enabling.address = telegram->address;
-  return enabling;
+  const bool single = runtime::address_kind(telegram->address) == runtime::AddressKind::Single;
+  return EnablingTelegram{telegram->address, telegram->format.acyclic ? kAcyclic : single ? nullptr : kSeveral};
+}
+
+// Data without access points are the output data of a slave (EN 50170 volume 2).
+std::optional<EnablingTelegram> enabling_on_profibus(const std::vector<uint8_t>& octets) {
+  const auto frame = profibus::decode(octets);
+  if (!frame || !frame->is_request() || frame->dsap || !could_enable(words_of(frame->data, false)))
+    return std::nullopt;
+  return EnablingTelegram{frame->destination, frame->destination == profibus::kBroadcast ? kSeveral : nullptr};
 }
 
 void refuse_unmonitored(BusLink& link, const EnablingTelegram& telegram) {
-  if (!telegram.monitored)
-    throw Mistake(
-        "this telegram could enable a drive, and no drive monitors acyclic telegrams, so nothing but a "
-        "person would end "
-        "the movement: send it cyclic (TYP 00h to 05h), to a unit that monitors them (P812)");
-  if (!telegram.address)
-    throw Mistake(
-        "this telegram could enable several drives, and they cannot be asked whether they monitor their "
-        "process data: "
-        "send it to single units");
-  const MonitoringIndices own = monitoring_indices(link.serial_line() != nullptr);
-  const AccessReply timeout = link.execute(*telegram.address, Service::Read, own.timeout, 0);
-  if (!timeout)
-    throw Mistake(fmt::format(
-        "this telegram could enable unit {}, which does not tell whether it monitors its process data ({})",
-        *telegram.address, own.names));
-  const AccessReply response = link.execute(*telegram.address, Service::Read, own.response, 0);
-  const bool goes_on = response && lets_go_on(*response);
-  if (!is_off(*timeout) && !goes_on) return;
-  throw Mistake(fmt::format(
-      "this telegram could enable unit {}, and the unit does not monitor its process data ({}), so nothing "
-      "but a person "
-      "would end the movement. Switch the monitoring on first: {}",
-      *telegram.address, is_off(*timeout) ? own.names + " is off" : own.response_name + " lets it go on",
-      is_off(*timeout) ? own.names + " = 0.5 s, as a parameter on the page or by 'ipos param set'"
-                       : own.response_name + " = RAPID STOP/FAULT"));
+  if (telegram.unasked != nullptr)
+    throw Mistake(fmt::format("this telegram could enable a drive: {}", telegram.unasked));
+  const std::string could = fmt::format("this telegram could enable unit {}, ", telegram.address);
+  const auto read = [&](uint16_t index) { return link.execute(telegram.address, Service::Read, index, 0); };
+  const WordLine line = link.serial_line() != nullptr    ? WordLine::Rs485
+                        : link.carries_process_data() ? WordLine::Sbus
+                                                        : WordLine::Canopen;
+  const auto all = monitorings(line, telegram.address, read);
+  if (!all) throw Mistake(could + "which does not tell whether it monitors its process data");
+  for (const Monitoring& own : *all) {
+    const AccessReply timeout = read(own.timeout);
+    if (!timeout)
+      throw Mistake(fmt::format("{}which does not tell whether it monitors its process data ({})", could,
+                                own.timeout_name));
+    const AccessReply response = read(own.response);  // where it cannot be chosen the unit stops
+    const bool goes_on = response ? lets_go_on(*response) : !response.error().code;
+    if (ends_in_time(*timeout) && !goes_on) continue;
+    const std::string why =
+        ends_in_time(*timeout)
+            ? fmt::format("{0} lets it go on, so nothing but a person would end the movement. Let it stop first: {0} = "
+                          "RAPID STOP/ERROR",
+                          own.response_name)
+            : fmt::format("{0} is off or longer than {1} ms, so nothing but a person would end the movement in time. "
+                          "Switch the monitoring on first: {0} = {2} s, as a parameter on the page or by 'ipos param "
+                          "set'",
+                          own.timeout_name, kLongestSilence, kLongestSilence / 1000.0);
+    throw Mistake(fmt::format("{}and {}", could, why));
+  }
 }
 
 void refuse_outside(const EnablingTelegram& telegram, const std::function<bool(uint8_t)>& simulated) {
-  if (telegram.address && simulated(*telegram.address)) return;
+  if (telegram.unasked == nullptr && simulated(telegram.address)) return;
   throw Mistake(
       "this telegram could enable a drive outside of the plant, and the plant cannot ask it whether it "
       "monitors its process "

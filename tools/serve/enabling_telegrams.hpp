@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "tools/serve/arguments.hpp"
 #include "tools/unit/bus_link.hpp"
@@ -14,13 +15,14 @@ namespace ipos::tools::serve {
 
 // Process data of MOVILINK that could enable whoever gets them.
 struct EnablingTelegram {
-  std::optional<uint8_t> address;  // of the unit; else a group, or whoever hears it
-  bool monitored = true;           // acyclic telegrams of RS-485 are not (1053 1610 p. 23)
+  uint8_t address = 0;         // of the unit
+  const char* unasked = nullptr;  // why no unit can be asked whether it monitors them
 };
-// What the arguments of `bus.send` on such a line are, if they are one. `canopen`: process data travel as RPDO of the
-// identifiers that nodes have by default.
+// What the arguments of `bus.send` on such a line are, if they are one. RPDO count with the identifiers that nodes have by
+// default. `canopen`: nodes can be asked, and units of the SBus cannot.
 std::optional<EnablingTelegram> enabling_on_can(const Arguments& arguments, bool canopen);
 std::optional<EnablingTelegram> enabling_on_serial(const Arguments& arguments);
+std::optional<EnablingTelegram> enabling_on_profibus(const std::vector<uint8_t>& octets);
 
 // Asks the unit. A Mistake says why the telegram does not go out, and what would have to be switched on.
 void refuse_unmonitored(BusLink& link, const EnablingTelegram& telegram);

@@ -113,18 +113,24 @@ void ManualOperation::expect(const char* number, const char* text) {
 
 // A cable, this program and this computer may fail at any moment; then nobody but the drive can end the movement.
 void ManualOperation::watch_over() {
-  const OwnMonitoring own = own_monitoring(access_.unit(), serial_);
-  if (own.timeout == nullptr)
-    throw Mistake("this unit does not monitor the process data of this line, so it is not moved over it");
-  const int32_t timeout = borrowed_.read(own.timeout->index);
-  const bool too_long = is_off(timeout) || timeout > kLongestSilence;
-  if (too_long) borrowed_.set(own.timeout->index, kSilence);
-  period_ = std::clamp<WallClock::duration>(std::chrono::milliseconds(too_long ? kSilence : timeout) / 4,
-                                            kShortestPeriod, kLongestPeriod);
+  const auto lines =
+      monitorings(serial_ ? WordLine::Rs485 : WordLine::Sbus, address_,
+                  [this](uint16_t index) { return access_.execute(stdlib::Service::Read, index); });
+  if (!lines) throw Mistake(lines.error().trouble);
+  const stdlib::ParameterTable& table = stdlib::parameter_table(access_.unit());
   rests_for_.reset();
-  if (hand_ && !borrowed_.is_borrowed(own.timeout->index)) rests_for_ = hand_->client;
-  if (own.response != nullptr && lets_go_on(borrowed_.read(own.response->index)))
-    borrowed_.set(own.response->index, static_cast<int32_t>(own.response->default_value));
+  period_ = kLongestPeriod;
+  for (const Monitoring& line : *lines) {
+    if (table.find(line.timeout) == nullptr)
+      throw Mistake("this unit does not monitor the process data of this line, so it is not moved over it");
+    int32_t timeout = borrowed_.read(line.timeout);
+    if (!ends_in_time(timeout)) borrowed_.set(line.timeout, timeout = kSilence);
+    period_ = std::clamp<WallClock::duration>(std::chrono::milliseconds(timeout) / 4, kShortestPeriod, period_);
+    if (hand_ && !borrowed_.is_borrowed(line.timeout)) rests_for_ = hand_->client;
+    const stdlib::Parameter* response = table.find(line.response);
+    if (response != nullptr && lets_go_on(borrowed_.read(line.response)))
+      borrowed_.set(line.response, static_cast<int32_t>(response->default_value));
+  }
 }
 
 void ManualOperation::use_this_line(const char* number) {

@@ -20,9 +20,8 @@
 
 namespace ipos::tools::serve {
 
-// All ours.
+// Ours.
 inline constexpr auto kJogHolds = std::chrono::milliseconds(300);  // without a `jog` it stops
-inline constexpr int32_t kLongestSilence = 500;  // ms: of the drive's own monitoring meanwhile
 
 class ManualOperation {
  public:

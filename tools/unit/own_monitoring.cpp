@@ -1,17 +1,29 @@
-// By index: it is the same for the units that name the parameter otherwise.
+// One row a line that a unit can have.
 #include "tools/unit/own_monitoring.hpp"
 
 namespace ipos::tools {
+namespace {
 
-MonitoringIndices monitoring_indices(bool serial) {
-  if (serial) return {8599, 8612, "P812", "P833"};
-  return {8602, 8615, "P815 (P883 of MOVIDRIVE B)", "P836"};
-}
+constexpr Monitoring kRs485{0, 0, 8599, 8612, "P812", "P833"};
+constexpr Monitoring kSbus[] = {
+    {8600, 8987, 8602, 8615, "P815 (P883 of MOVIDRIVE B)", "P836"},  // P813 or P881, P886
+    {8932, 8991, 8934, 8936, "P893", "P837"},                        // P891, P896
+};
 
-OwnMonitoring own_monitoring(const stdlib::UnitType& unit, bool serial) {
-  const MonitoringIndices indices = monitoring_indices(serial);
-  const stdlib::ParameterTable& table = stdlib::parameter_table(unit);
-  return {table.find(indices.timeout), table.find(indices.response)};
+}  // namespace
+
+tl::expected<std::vector<Monitoring>, AccessError> monitorings(
+    WordLine line, uint8_t address, const std::function<AccessReply(uint16_t index)>& read) {
+  if (line == WordLine::Rs485) return std::vector{kRs485};
+  std::vector<Monitoring> of_unit{kSbus[0]}, of_address;
+  for (const Monitoring& one : kSbus) {
+    const AccessReply own = read(line == WordLine::Canopen ? one.node : one.address);
+    if (!own && !own.error().code) return tl::unexpected(own.error());
+    if (!own) continue;  // the unit has no such line
+    if (&one != &kSbus[0]) of_unit.push_back(one);
+    if (*own == address) of_address.push_back(one);
+  }
+  return of_address.empty() ? of_unit : of_address;
 }
 
 }  // namespace ipos::tools

@@ -3,29 +3,34 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
-#include <string>
+#include <string_view>
+#include <vector>
 
-#include "stdlib/parameters.hpp"
+#include "tools/unit/parameter_access.hpp"
 
 namespace ipos::tools {
 
-// Lines over which ipos can send process data to a drive: RS-485 (P812, P833), and SBus (P815, on MOVIDRIVE B P883, and
-// P836), which also holds for CANopen nodes. DP slaves get zeros only.
-struct MonitoringIndices {  // the same in all units
+// Lines over which ipos can send process data to a drive. DP slaves get zeros only.
+enum class WordLine : uint8_t { Rs485, Sbus, Canopen };
+
+// By index: it is the same for the units that name the parameter otherwise.
+struct Monitoring {
+  uint16_t address;  // the parameter with the unit's address on an SBus; 0: there is one line only
+  uint16_t node;     // the same of CANopen
   uint16_t timeout, response;
-  std::string names, response_name;  // of the parameters
+  std::string_view timeout_name, response_name;
 };
-MonitoringIndices monitoring_indices(bool serial);
+// What monitors the words to this address: a MOVIDRIVE B has a second SBus, and the line may be either, or both where
+// they have one address. An error: the unit does not answer. `read` asks it for a parameter.
+tl::expected<std::vector<Monitoring>, AccessError> monitorings(
+    WordLine line, uint8_t address, const std::function<AccessReply(uint16_t index)>& read);
 
-struct OwnMonitoring {
-  const stdlib::Parameter* timeout = nullptr;   // null: this unit has none over this line
-  const stdlib::Parameter* response = nullptr;  // null: it cannot be chosen, the unit stops
-};
-OwnMonitoring own_monitoring(const stdlib::UnitType& unit, bool serial);
-
+// Of the monitoring that ends a movement in time (ours).
+inline constexpr int32_t kLongestSilence = 500;  // ms
 // 0 switches it off, and on MOVIDRIVE 650 s do (1053 1610 p. 41).
-constexpr bool is_off(int32_t timeout_ms) { return timeout_ms <= 0 || timeout_ms >= 650'000; }
+constexpr bool ends_in_time(int32_t timeout_ms) { return timeout_ms > 0 && timeout_ms <= kLongestSilence; }
 // NO RESPONSE and DISPLAY ERROR let the drive go on with its last words (P830).
 constexpr bool lets_go_on(int32_t response) { return response <= 1; }
 
