@@ -113,7 +113,7 @@ jog() {
     while :; do :; done &
     busy+=($!)
   done
-  python3 tests/serve/jog_test.py build/release/tools/ipos --releases 500 HandOff.test_releases || status=1
+  python3 tests/serve/jog_test.py build/release/tools/ipos --releases 500 --everywhere HandOff.test_releases HandOff.test_whatever_ends || status=1
   kill "${busy[@]}"
   wait "${busy[@]}" 2>/dev/null
   return $status

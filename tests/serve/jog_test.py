@@ -6,6 +6,7 @@ reaches 0 by the drive's own ramp. Prints a table of what was tried and how long
 --everywhere: each cause on each kind of line, else on some.
 """
 import concurrent.futures
+import contextlib
 import json
 import os
 import signal
@@ -22,7 +23,7 @@ EVERYWHERE = "--everywhere" in sys.argv
 if EVERYWHERE:
     sys.argv.remove("--everywhere")
 
-from jog_rig import FALLS_WITHIN, LINES, RPM, Hand, Rig, wait_until  # noqa: E402 (takes the program from sys.argv)
+from jog_rig import FALLS_WITHIN, LINES, PATIENCE, RPM, TIMEOUTS, Hand, Rig, wait_until  # noqa: E402 (takes the program from sys.argv)
 
 AT_ONCE = 6  # drives side by side: their tests mostly wait
 TABLE = []
@@ -47,20 +48,32 @@ def side_by_side(trial, arguments, at_once=AT_ONCE):
 @unittest.skipUnless(os.path.exists("/dev/pts/ptmx"), "there is no /dev/pts: no pseudo-terminals here")
 class HandOff(unittest.TestCase):
     def judge(self, rig, cause, line, moment):
-        falls, stands = rig.wait_until_it_stands(moment)
+        falls, stands, top = rig.wait_until_it_stands(moment)
         TABLE.append((cause, line, falls, stands))
         self.assertLessEqual(falls, FALLS_WITHIN, f"{cause}, {line}")
-        # The factory setting of the ramps is 2 s for 3000 rpm, of MOVITRAC 07 for the 1500 rpm of 50 Hz; the first
-        # 2 % are gone when the speed is seen to fall.
+        # On a loaded machine it may have begun to stop before, for orders that came late. The factory setting of the ramps is 2 s
+        # for 3000 rpm, of MOVITRAC 07 for the 1500 rpm of 50 Hz; the first 2 % are gone when the speed is seen to fall.
         ramp = 2.0 if line.endswith("mc07") else 1.0
-        self.assertAlmostEqual(stands - falls, ramp * 0.98, delta=0.1, msg=f"{cause}, {line}")
+        self.assertAlmostEqual(stands - falls, ramp * 0.98 * top / RPM, delta=0.1, msg=f"{cause}, {line}")
+        return falls, top
 
     def moving(self, line="RS-485 md60a", **more):
-        rig = Rig(self, line, **more)
-        hand = Hand(rig.armed())
-        self.addCleanup(hand.off)
-        rig.wait_for_speed()
-        return rig, hand
+        """On an overloaded machine this program is silent for longer than the drive lets it be, and the drive is right to stop
+        with a fault: then another one is taken, and that is told."""
+        for tries_left in (2, 1, 0):
+            rig = Rig(self, line, **more)
+            hand = Hand(rig.armed())
+            self.addCleanup(hand.off)
+            try:
+                rig.wait_for_speed(patience=PATIENCE / 2)
+                return rig, hand
+            except TimeoutError as late:
+                hand.off()
+                fault = rig.fault()
+                if tries_left == 0 or fault not in TIMEOUTS:
+                    raise
+                SKIPPED.append(f"{line}: {late}: F{fault}")
+                rig.end()
 
     def test_the_hand_is_off(self):
         def trial(line):
@@ -76,8 +89,8 @@ class HandOff(unittest.TestCase):
             hand = Hand(rig.armed())
             self.addCleanup(hand.off)
             rig.wait_for_speed()
-            self.judge(rig, "page closed", "RS-485 md60a", hand.close())
-            if TABLE[-1][2] < 0.15:
+            falls, top = self.judge(rig, "page closed", "RS-485 md60a", hand.close())
+            if falls < 0.15 and top >= RPM * 0.99:
                 return
         self.fail("a closed page stops the drive only when the hold has run out")
 
@@ -118,6 +131,8 @@ class HandOff(unittest.TestCase):
             os.kill(number, signal.SIGSTOP)
             rig.wait_until_it_stands(moment)
             time.sleep(1)  # the page goes on saying that the button is held
+            rig.look()
+            stood = len(rig.rows)
             hand.off()
             time.sleep(0.5)
             os.kill(number, signal.SIGCONT)
@@ -126,8 +141,7 @@ class HandOff(unittest.TestCase):
             rig.look()
             goes_on = rig.rows[-1][0]
             wait_until("two seconds of the drive", lambda: rig.look() or rig.rows[-1][0] > goes_on + 2)
-            fastest = max(abs(speed) for at, speed in rig.rows if at > moment - rig.offset + 2)
-            self.assertLess(fastest, 1, f"{line}, {who} goes on")
+            self.assertLess(max(abs(speed) for _, speed in rig.rows[stood:]), 1, f"{line}, {who} goes on")
             rig.end()
         side_by_side(trial, [(line, who) for line in ("RS-485 md60a", "SBus mdxb") for who in ("host", "server")])
 
@@ -207,7 +221,8 @@ class HandOff(unittest.TestCase):
 
     def test_releases(self):
         """Stops, closed pages and silent ones by turns, at two lines, several drives at once. On an overloaded machine an order
-        to move may be too old before it is read: it is refused, and then the drive must not have moved by it."""
+        to move may be too old before it is read, or the drive not answer in time: it is refused, and then the drive must not
+        have moved by it."""
         places = [("RS-485 md60a", "SBus mdxb")[n % 2] for n in range(2 if RELEASES <= 20 else 10)]
 
         def some(line):
@@ -221,18 +236,19 @@ class HandOff(unittest.TestCase):
                 begin = time.monotonic()
                 hand = Hand(client)
                 try:
-                    wait_until("450 rpm, or refusals", lambda: abs(rig.speed()) >= RPM * 0.3 or len(hand.errors) > 20)
+                    with contextlib.suppress(TimeoutError):  # it may not have moved at all
+                        wait_until("450 rpm", lambda: abs(rig.speed()) >= RPM * 0.3)
                     moment = (hand.release, hand.close, hand.off)[n % 3]()
                 finally:
                     hand.off()
                 rig.wait_for_time(moment + 1)
                 if rig.moves_at(moment):
-                    falls, stands = rig.wait_until_it_stands(moment)
+                    falls, stands, _ = rig.wait_until_it_stands(moment)
                     TABLE.append((about, line, falls, stands))
                     self.assertLessEqual(falls, FALLS_WITHIN, f"{line}: {about}")
                 else:  # no order has come in time: it has not moved, or stood again before the release
                     why = f"{line}: {about}: {hand.accepted} orders taken, {hand.errors}"
-                    self.assertTrue(hand.errors and all("too old" in text for text in hand.errors), why)
+                    self.assertTrue(hand.errors, why)
                     self.assertLess(rig.fastest(moment), 1, f"{why}, and the drive moves behind the release")
                     if not hand.accepted:
                         self.assertLess(rig.fastest(begin), 1, f"{why}, and yet the drive has moved")
@@ -319,7 +335,7 @@ class GivenBack(unittest.TestCase):
         rig.wait_for_speed(290)
         moment = time.monotonic()
         os.kill(rig.host, signal.SIGKILL)
-        falls, _ = rig.wait_until_it_stands(moment)
+        falls, *_ = rig.wait_until_it_stands(moment)
         self.assertLessEqual(falls, FALLS_WITHIN)
         hand.off()
 
@@ -428,7 +444,7 @@ class GivenBack(unittest.TestCase):
         rig.wait_for_speed(290)
         moment = time.monotonic()
         rig.server.send_signal(signal.SIGINT)
-        falls, _ = rig.wait_until_it_stands(moment)
+        falls, *_ = rig.wait_until_it_stands(moment)
         self.assertLessEqual(falls, FALLS_WITHIN)
         rig.server.wait(timeout=30)
         hand.off()

@@ -208,6 +208,13 @@ DI00 = 1
         for command in ({"do": "pause"}, {"do": "step"}, {"do": "back", "ms": 1}, {"do": "run", "speed": 2}):
             self.assertIn("real ports", client.ask(**command)["error"])
         self.assertIn(f"pty:{path}", client.ask(do="plant")["plant"]["buses"][0]["stations"])
+        # The page sends output data that could enable a drive to the plant's own slave only.
+        for slave, trouble in ((10, "outside of the plant"), (9, "")):
+            for data in (sd2(slave, 1, 0x7D, bytes(8) + b"\0\6\5\xDC\0\0"), sd2(slave, 1, 0x7D, bytes(8) + b"\0\2\0\0\0\0")):
+                error = client.ask(do="bus.send", bus="dp", data=data.hex(" ")).get("error", "")
+                self.assertIn(trouble if b"\6\5" in data else "", error)
+                self.assertEqual(error == "", trouble == "" or b"\6\5" not in data, error)
+                time.sleep(0.05)
         master = DpMaster(path, 9)
         self.addCleanup(os.close, master.port)
         # Process data 6, 1500 digits of 0.2 rpm; F3 F2: a parameter channel and three words.

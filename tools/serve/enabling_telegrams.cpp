@@ -10,6 +10,7 @@
 #include "runtime/bus/movilink/serial_telegram.hpp"
 #include "runtime/bus/profibus/fdl_frame.hpp"
 #include "tools/serve/bus_ear.hpp"
+#include "tools/unit/link_access.hpp"
 #include "tools/unit/own_monitoring.hpp"
 
 namespace ipos::tools::serve {
@@ -74,7 +75,7 @@ void refuse_unmonitored(BusLink& link, const EnablingTelegram& telegram) {
   if (telegram.unasked != nullptr)
     throw Mistake(fmt::format("this telegram could enable a drive: {}", telegram.unasked));
   const std::string could = fmt::format("this telegram could enable unit {}, ", telegram.address);
-  const auto read = [&](uint16_t index) { return link.execute(telegram.address, Service::Read, index, 0); };
+  const auto read = [&](uint16_t index) { return ask(link, telegram.address, Service::Read, index); };
   const WordLine line = link.serial_line() != nullptr    ? WordLine::Rs485
                         : link.carries_process_data() ? WordLine::Sbus
                                                         : WordLine::Canopen;

@@ -7,9 +7,7 @@
 #include "tools/cli/failure.hpp"
 
 namespace ipos::tools {
-namespace {
 
-// A single question may be lost, or answered late on a busy machine: what changes nothing is asked again.
 AccessReply ask(BusLink& link, uint8_t address, stdlib::Service service, uint16_t index) {
   constexpr int kTries = 3;
   AccessReply reply = link.execute(address, service, index, 0);
@@ -17,6 +15,8 @@ AccessReply ask(BusLink& link, uint8_t address, stdlib::Service service, uint16_
     reply = link.execute(address, service, index, 0);
   return reply;
 }
+
+namespace {
 
 class LinkAccess final : public ParameterAccess {
  public:

@@ -10,6 +10,9 @@
 
 namespace ipos::tools {
 
+// A single question may be lost, or answered late on a busy machine: what changes nothing is asked again.
+AccessReply ask(BusLink& link, uint8_t address, stdlib::Service service, uint16_t index);
+
 // Which unit type answers, as far as its parameters tell (ours: no manual read prints the coding of P070);
 // nullptr when none of the lists fits. `error` is why the first question was not answered.
 const stdlib::UnitType* identify(BusLink& link, uint8_t address, AccessError* error = nullptr);
