@@ -31,21 +31,26 @@ TEST(EnablingTelegrams, OfRs485GoToSingleUnitsOnly) {
     const auto found = over_rs485({2, static_cast<uint8_t>(address), 5, 0, 6, 1, 1, 1, 1});
     ASSERT_TRUE(found) << address;
     EXPECT_EQ(found->address, address);
-    EXPECT_EQ(found->unasked == nullptr, address < 100) << address;  // 100 to 199 groups, 253 local, 254, 255 all
+    EXPECT_EQ(found->unasked == nullptr, address < 100)
+        << address;  // 100 to 199 groups, 253 local, 254, 255 all
     EXPECT_TRUE(over_rs485({2, static_cast<uint8_t>(address), 0x85, 0, 6, 1, 1, 1, 1})->unasked) << address;
     EXPECT_FALSE(over_rs485({2, static_cast<uint8_t>(address), 5, 0, 2, 1, 1, 1, 1})) << address;
-    EXPECT_FALSE(over_rs485({0x1D, static_cast<uint8_t>(address), 5, 0, 6, 1, 1, 1, 1})) << address;  // an answer
+    EXPECT_FALSE(over_rs485({0x1D, static_cast<uint8_t>(address), 5, 0, 6, 1, 1, 1, 1}))
+        << address;  // an answer
   }
 }
 
 TEST(EnablingTelegrams, OfRs485HaveTheWordsOfTheirFormat) {
   for (unsigned word = 0; word < 65536; ++word)
-    ASSERT_EQ(over_rs485({2, 1, 1, static_cast<uint8_t>(word >> 8), static_cast<uint8_t>(word)}).has_value(), (word & 7) == 6)
+    ASSERT_EQ(over_rs485({2, 1, 1, static_cast<uint8_t>(word >> 8), static_cast<uint8_t>(word)}).has_value(),
+              (word & 7) == 6)
         << word;
   EXPECT_TRUE(over_rs485({2, 1, 3, 0, 0, 0, 6}));
   EXPECT_TRUE(over_rs485({2, 1, 5, 0, 0, 0, 0, 0, 6}));
-  EXPECT_TRUE(over_rs485({2, 1, 4, 0x31, 0, 0x21, 0x16, 0, 0, 0, 0, 0, 6, 0, 0, 0, 0}));  // with a parameter channel
-  EXPECT_FALSE(over_rs485({2, 1, 4, 0x31, 0, 0x21, 0x16, 0, 0, 0, 6, 0, 2, 0, 0, 0, 0}));  // the 6 is the parameter's
+  EXPECT_TRUE(
+      over_rs485({2, 1, 4, 0x31, 0, 0x21, 0x16, 0, 0, 0, 0, 0, 6, 0, 0, 0, 0}));  // with a parameter channel
+  EXPECT_FALSE(
+      over_rs485({2, 1, 4, 0x31, 0, 0x21, 0x16, 0, 0, 0, 6, 0, 2, 0, 0, 0, 0}));  // the 6 is the parameter's
   EXPECT_FALSE(over_rs485({2, 1, 0x86, 0x31, 0, 0x21, 0x16, 0, 0, 0, 6}));
 }
 
@@ -59,8 +64,8 @@ TEST(EnablingTelegrams, OnCanAreToldByTheirIdentifier) {
         EXPECT_EQ(big->address, id / 8 % 64);
         EXPECT_EQ(big->unasked == nullptr, po && !canopen) << id;
       }
-      const bool rpdo = (id >= 0x200 && id < 0x280) || (id >= 0x300 && id < 0x380) || (id >= 0x400 && id < 0x480) ||
-                        (id >= 0x500 && id < 0x580);
+      const bool rpdo = (id >= 0x200 && id < 0x280) || (id >= 0x300 && id < 0x380) ||
+                        (id >= 0x400 && id < 0x480) || (id >= 0x500 && id < 0x580);
       const bool parameters = id >= 512 && id < 1024 && id % 8 >= 3;  // functions of the SBus with 512
       const auto little = on_can(id, "0600 0000 0000", canopen);
       ASSERT_EQ(little.has_value(), rpdo && (canopen || !parameters)) << id << ' ' << canopen;
@@ -70,7 +75,8 @@ TEST(EnablingTelegrams, OnCanAreToldByTheirIdentifier) {
       }
     }
   for (const char* other : {"extended", "remote"})
-    EXPECT_FALSE(enabling_on_can(Arguments(Json{{"identifier", 11}, {"data", "0006"}, {other, true}}), false)) << other;
+    EXPECT_FALSE(enabling_on_can(Arguments(Json{{"identifier", 11}, {"data", "0006"}, {other, true}}), false))
+        << other;
 }
 
 std::vector<uint8_t> sd2(std::vector<uint8_t> body) {
@@ -87,7 +93,8 @@ TEST(EnablingTelegrams, OnProfibusAreOutputDataOfASlave) {
   ASSERT_TRUE(found);
   EXPECT_EQ(found->address, 9);
   EXPECT_FALSE(found->unasked);
-  EXPECT_TRUE(enabling_on_profibus(sd2({9, 1, 0x7D, 1, 2, 3, 4, 5, 0, 7, 0, 0, 6})));  // behind a parameter channel
+  EXPECT_TRUE(
+      enabling_on_profibus(sd2({9, 1, 0x7D, 1, 2, 3, 4, 5, 0, 7, 0, 0, 6})));  // behind a parameter channel
   EXPECT_TRUE(enabling_on_profibus(sd2({127, 1, 0x46, 0, 6}))->unasked);
   EXPECT_FALSE(enabling_on_profibus(sd2({9, 1, 0x7D, 0, 2, 1, 1})));
   EXPECT_FALSE(enabling_on_profibus(sd2({9 | 0x80, 1 | 0x80, 0x7D, 61, 62, 0, 6})));  // Set_Prm

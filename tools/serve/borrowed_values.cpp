@@ -82,8 +82,8 @@ bool BorrowedValues::give_back() {
     if (now && *now == value.before)
       values_.erase(values_.begin() + static_cast<ptrdiff_t>(n));
     else
-      value.why = now ? "the drive has not taken it back"
-                      : why(table, Service::Read, value.index, 0, now.error());
+      value.why =
+          now ? "the drive has not taken it back" : why(table, Service::Read, value.index, 0, now.error());
   }
   if (values_.size() != had) write_down();
   return values_.empty();

@@ -19,8 +19,9 @@ class BusTab final : public Tab, private BusSource {
   void built(runtime::Plant& plant) override {
     traffic_.clear();
     for (runtime::CanLine* line : plant.lines())
-      traffic_.follow(*line, CanNamesNow{[this, line] { return runtime::can_line_names(host_.plant(), line); },
-                                         [this, line] { return runtime::defined_objects(host_.plant(), *line); }});
+      traffic_.follow(*line,
+                      CanNamesNow{[this, line] { return runtime::can_line_names(host_.plant(), line); },
+                                  [this, line] { return runtime::defined_objects(host_.plant(), *line); }});
     for (runtime::SerialBus* bus : plant.serial_lines())
       traffic_.follow(bus->line(), [this] { return runtime::serial_names(host_.plant()); });
     for (runtime::ProfibusBus* bus : profibus_lines(plant)) traffic_.follow(bus->line());

@@ -27,13 +27,16 @@ std::vector<uint16_t> words_of(const std::vector<uint8_t>& bytes, bool low_byte_
 }
 
 constexpr const char* kAcyclic =
-    "no drive monitors acyclic telegrams, so nothing but a person would end the movement: send it cyclic (TYP 00h to "
+    "no drive monitors acyclic telegrams, so nothing but a person would end the movement: send it cyclic "
+    "(TYP 00h to "
     "05h), to a unit that monitors them (P812)";
 constexpr const char* kSeveral =
-    "it goes to several drives, or to whoever hears it, and they cannot be asked whether they monitor their process "
+    "it goes to several drives, or to whoever hears it, and they cannot be asked whether they monitor their "
+    "process "
     "data: send it to single units";
 constexpr const char* kOtherProfile =
-    "with --canopen only CANopen nodes can be asked whether they monitor their process data, without it only units of "
+    "with --canopen only CANopen nodes can be asked whether they monitor their process data, without it only "
+    "units of "
     "the SBus";
 
 }  // namespace
@@ -60,7 +63,9 @@ std::optional<EnablingTelegram> enabling_on_serial(const Arguments& arguments) {
   if (!telegram || telegram->response) return std::nullopt;
   if (!could_enable(std::span(telegram->words).first(telegram->format.words))) return std::nullopt;
   const bool single = runtime::address_kind(telegram->address) == runtime::AddressKind::Single;
-  return EnablingTelegram{telegram->address, telegram->format.acyclic ? kAcyclic : single ? nullptr : kSeveral};
+  return EnablingTelegram{telegram->address, telegram->format.acyclic ? kAcyclic
+                                             : single                 ? nullptr
+                                                                      : kSeveral};
 }
 
 // Data without access points are the output data of a slave (EN 50170 volume 2).
@@ -68,7 +73,8 @@ std::optional<EnablingTelegram> enabling_on_profibus(const std::vector<uint8_t>&
   const auto frame = profibus::decode(octets);
   if (!frame || !frame->is_request() || frame->dsap || !could_enable(words_of(frame->data, false)))
     return std::nullopt;
-  return EnablingTelegram{frame->destination, frame->destination == profibus::kBroadcast ? kSeveral : nullptr};
+  return EnablingTelegram{frame->destination,
+                          frame->destination == profibus::kBroadcast ? kSeveral : nullptr};
 }
 
 void refuse_unmonitored(BusLink& link, const EnablingTelegram& telegram) {
@@ -76,9 +82,9 @@ void refuse_unmonitored(BusLink& link, const EnablingTelegram& telegram) {
     throw Mistake(fmt::format("this telegram could enable a drive: {}", telegram.unasked));
   const std::string could = fmt::format("this telegram could enable unit {}, ", telegram.address);
   const auto read = [&](uint16_t index) { return ask(link, telegram.address, Service::Read, index); };
-  const WordLine line = link.serial_line() != nullptr    ? WordLine::Rs485
+  const WordLine line = link.serial_line() != nullptr ? WordLine::Rs485
                         : link.carries_process_data() ? WordLine::Sbus
-                                                        : WordLine::Canopen;
+                                                      : WordLine::Canopen;
   const auto all = monitorings(line, telegram.address, read);
   if (!all) throw Mistake(could + "which does not tell whether it monitors its process data");
   for (const Monitoring& own : *all) {
@@ -91,13 +97,16 @@ void refuse_unmonitored(BusLink& link, const EnablingTelegram& telegram) {
     if (ends_in_time(*timeout) && !goes_on) continue;
     const std::string why =
         ends_in_time(*timeout)
-            ? fmt::format("{0} lets it go on, so nothing but a person would end the movement. Let it stop first: {0} = "
-                          "RAPID STOP/ERROR",
-                          own.response_name)
-            : fmt::format("{0} is off or longer than {1} ms, so nothing but a person would end the movement in time. "
-                          "Switch the monitoring on first: {0} = {2} s, as a parameter on the page or by 'ipos param "
-                          "set'",
-                          own.timeout_name, kLongestSilence, kLongestSilence / 1000.0);
+            ? fmt::format(
+                  "{0} lets it go on, so nothing but a person would end the movement. Let it stop first: {0} "
+                  "= "
+                  "RAPID STOP/ERROR",
+                  own.response_name)
+            : fmt::format(
+                  "{0} is off or longer than {1} ms, so nothing but a person would end the movement in time. "
+                  "Switch the monitoring on first: {0} = {2} s, as a parameter on the page or by 'ipos param "
+                  "set'",
+                  own.timeout_name, kLongestSilence, kLongestSilence / 1000.0);
     throw Mistake(fmt::format("{}and {}", could, why));
   }
 }

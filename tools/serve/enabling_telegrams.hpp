@@ -15,7 +15,7 @@ namespace ipos::tools::serve {
 
 // Process data of MOVILINK that could enable whoever gets them.
 struct EnablingTelegram {
-  uint8_t address = 0;         // of the unit
+  uint8_t address = 0;            // of the unit
   const char* unasked = nullptr;  // why no unit can be asked whether it monitors them
 };
 // What the arguments of `bus.send` on such a line are, if they are one. RPDO count with the identifiers that nodes have by

@@ -125,7 +125,8 @@ void ManualOperation::watch_over() {
       throw Mistake("this unit does not monitor the process data of this line, so it is not moved over it");
     int32_t timeout = borrowed_.read(line.timeout);
     if (!ends_in_time(timeout)) borrowed_.set(line.timeout, timeout = kSilence);
-    period_ = std::clamp<WallClock::duration>(std::chrono::milliseconds(timeout) / 4, kShortestPeriod, period_);
+    period_ =
+        std::clamp<WallClock::duration>(std::chrono::milliseconds(timeout) / 4, kShortestPeriod, period_);
     if (hand_ && !borrowed_.is_borrowed(line.timeout)) rests_for_ = hand_->client;
     const stdlib::Parameter* response = table.find(line.response);
     if (response != nullptr && lets_go_on(borrowed_.read(line.response)))
