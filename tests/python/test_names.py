@@ -23,18 +23,21 @@ unit = "mdxb"
 program = "U.IPC"
 [station.parameters]
 P160 = "300 rpm"
-P600 = "N11/N21"
+P601 = "ENABLE/RAP.STOP"
+P602 = "NO FUNCTION"
+P603 = "n11/n21"
 P130 = "0.1 s"
 [station.inputs]
 DI00 = 1
 DI01 = 1
 DI02 = 1
+DI04 = 1
 [[station]]
 name = "w"
 unit = "md60a"
 """
 PROGRAM = """
-long speed, fault, DI03, torque, lag[2], lCount;
+long speed, fault, DI03, torque, lag[2];
 main()
 {
     speed = 77;
@@ -84,7 +87,7 @@ def number(text):
 
 
 def of_watch(folder):
-    text = run(folder, "run", "p.toml", "--for", "2s", "--watch=" + ",".join(ROWS))
+    text = run(folder, "run", "p.toml", "--for", "2s", "--watch=" + ",".join(ROWS)).split("\nw (")[0]
     rows = re.findall(r"^(?:H\d+)?\s+(\S+)\s+(\S+)", text, re.M)
     return {name: number(value) for name, value in rows if name in ROWS}
 
@@ -107,10 +110,10 @@ def of_expectation(folder):
 
 
 def of_debugger(folder):
-    script = "continue 2s\n" + "".join(f"print u.{name}\n" for name in ROWS) + "quit\n"
+    script = "until 2s\n" + "".join(f"print u.{name}\n" for name in ROWS) + "quit\n"
     out = run(folder, "debug", "p.toml", input=script)
     values = re.findall(r"^(?:\(\w+\) )*(?:.*= )?(-?\d+)(?: \((-?[\d.]+) ?(.*)\))?$", out, re.M)[-len(ROWS):]
-    return {name: float(value) for name, (value, _, _) in zip(ROWS, values)}
+    return {name: float(shown or value) for name, (value, shown, _) in zip(ROWS, values)}
 
 
 def of_python(folder):
