@@ -62,6 +62,9 @@ TEST(AscForms, ADlcAboveEightIsEightBytes) {
         << dlc;
   EXPECT_EQ(taken(head + "base dec timestamps absolute\n0.5 1 515 Rx d 13 49 0 32 126 0 0 0 0\n").can,
             on_bus(500 * kMillisecond, kAscFrame, "can1"));
+  EXPECT_EQ(taken(head + "base dec timestamps absolute\n0.5 1 515 Rx d d 49 0 32 126 0 0 0 0\n").can,
+            on_bus(500 * kMillisecond, kAscFrame, "can1"))
+      << "one digit is hexadecimal in every base";
   EXPECT_EQ(taken(head + "0.5 1 203 Rx r F\n").can,
             on_bus(500 * kMillisecond, Frame(0x203, 8, {}, false, true), "can1"));
   EXPECT_EQ(first_mistake(head + "0.5 1 203 Rx d 10 31 00 20 7E 00 00 00 00\n"), "x:2:16: a DLC above 15");
@@ -116,6 +119,24 @@ TEST(AscForms, TheClockOfTwelveHours) {
   EXPECT_EQ(hour("00:00:00.000 am"), 0) << "as ipos wrote it";
   EXPECT_EQ(hour("23:00:00.000"), 23);
   EXPECT_EQ(hour("24:00:00.000"), -1);
+}
+
+// A leap second is one: 1 January 2017 began a second after 23:59:60.
+TEST(AscForms, ALeapSecondIsADate) {
+  const auto date = [](std::string_view text) { return asc_date(Fields(text)); };
+  EXPECT_EQ(date("Sat Dec 31 23:59:60.500 2016"), unix_time(1'483'228'800, 500 * kMillisecond));
+  EXPECT_FALSE(date("Sat Dec 31 23:59:61 2016"));
+}
+
+// Steps that would add up to more than a log can last: the line is wrong, not the clock.
+TEST(AscForms, RelativeTimesThatAddUpToTooMuch) {
+  const std::string head = "date Sat Jan 01 12:00:00.000 am 2000\nbase hex timestamps relative\n";
+  const std::string step = "1999999999.0 1 203 Rx d 0\n";
+  EXPECT_EQ(taken(head + step + "0.5 1 203 Rx d 0\n").can.size(), 2U);
+  EXPECT_EQ(first_mistake(head + step + step), "x:4:1: a time later than this project knows");
+  const Taken got = taken(head + step + step + "0.5 1 203 Rx d 0\n");
+  ASSERT_EQ(got.can.size(), 2U) << "the next line is read";
+  EXPECT_EQ(got.can[1].time, got.can[0].time + 500 * kMillisecond);
 }
 
 TEST(AscForms, ADateThatIsNotUnderstoodIsTold) {

@@ -122,6 +122,11 @@ TEST(Captures, TwoSections) {
   EXPECT_EQ(got.can[0], (LogEntry{unix_time(1), "one", kFrame}));
   EXPECT_EQ(got.can[1], (LogEntry{unix_time(2), "two", Frame(0x204, 8, kFrame.data)}));
   EXPECT_EQ(got.left_out.text(), "1 packet of another link type");
+  const Taken turned = taken(second.bytes + first.bytes + second.bytes);
+  EXPECT_TRUE(turned.wrong.empty()) << "the order of bytes goes back, too";
+  ASSERT_EQ(turned.can.size(), 3U);
+  EXPECT_EQ(turned.can[1], got.can[0]);
+  EXPECT_EQ(turned.can[2].time, got.can[1].time);
   Capture third(true);
   third.packet(0, 1, can(0x203));
   EXPECT_EQ(taken(first.bytes + third.bytes).wrong.size(), 1U) << "no interface in the third section";

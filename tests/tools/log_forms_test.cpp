@@ -1,5 +1,6 @@
 // Logs as candump and PEAK's tools write them, beside what is plain: other frames, other stamps, marks of editors; and files
 // that are no logs. Expected values by hand, from the descriptions of the forms and the sources of can-utils and python-can.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "tests/tools/taken_log.hpp"
@@ -107,7 +108,12 @@ TEST(CandumpForms, OfATerminal) {
   EXPECT_EQ(first_mistake("  can0  800   [0]"), "x:1:1: identifier of 3 or 8 hexadecimal digits expected");
   EXPECT_EQ(first_mistake("  can0  20G   [0]"), "x:1:1: identifier of 3 or 8 hexadecimal digits expected");
   EXPECT_EQ(first_mistake(" (2024-02-30 05:46:40.0)  can0  203   [0]"), "x:1:1: time in seconds expected");
-  EXPECT_EQ(first_mistake(" (2024-03-21 25:46:40.0)  can0  203   [0]"), "x:1:1: time in seconds expected");
+  for (const char* clock : {"25:46:40.0", "24:00:00.0", "23:60:00.0", "2:00:00.0", "23-59:00.0"})
+    EXPECT_EQ(first_mistake(" (2024-03-21 " + std::string(clock) + ")  can0  203   [0]"),
+              "x:1:1: time in seconds expected")
+        << clock;
+  EXPECT_EQ(taken(" (2024-03-21 23:59:59.5)  can0  203   [0]").can,
+            at(unix_time(1'711'065'599, 500 * kMillisecond), Frame(0x203, 0)));
   EXPECT_EQ(first_mistake(" (1.x)  can0  203   [0]"), "x:1:1: time in seconds expected");
 }
 
@@ -139,6 +145,32 @@ TEST(TrcForms, EveryVersion) {
                   "      1         1.500 DT 2   0203 Rx -  8    31 00 20 7E 00 00 00 00\n")
                 .can,
             at(ms + ms / 2, kRequest, "can2"));
+}
+
+// A day of doubles is exact to less than a microsecond; what is meant are its milliseconds. 45372.65 is 21 March 2024, 15:36.
+TEST(TrcForms, TheStartIsRoundedToMilliseconds) {
+  const auto begin = [](const char* days) {
+    const Taken got = taken(";$FILEVERSION=1.1\n;$STARTTIME=" + std::string(days) + "\n1) 0.0 Rx 0203 0\n");
+    EXPECT_EQ(got.can.size(), 1U) << days;
+    return got.can.empty() ? -1 : got.can[0].time;
+  };
+  EXPECT_EQ(begin("45372.65"), unix_time(1'711'035'360));
+  for (int ms = 1; ms < 1'000; ++ms) {
+    const double days = 45'372 + (43'200'000 + ms) / 86'400'000.0;
+    EXPECT_EQ(begin(fmt::format("{:.10f}", days).c_str()), unix_time(1'711'022'400, ms * kMillisecond)) << ms;
+  }
+}
+
+TEST(TrcForms, MistakesOfALine) {
+  const std::string head = ";$FILEVERSION=2.1\n;$STARTTIME=36526.0\n;$COLUMNS=N,O,T,B,I,d,R,L,D\n";
+  EXPECT_EQ(first_mistake(head + "1 1.0 DT x 0203 Rx - 0\n"), "x:4:10: number of the bus expected");
+  EXPECT_EQ(first_mistake(head + "1 1.0 DT 1 0203 Up - 0\n"), "x:4:17: Rx or Tx expected");
+  EXPECT_EQ(first_mistake(head + "1 1,0 DT 1 0203 Rx - 0\n"), "x:4:3: time in milliseconds expected");
+  EXPECT_EQ(first_mistake(head + "1 1.0 DT 1 0203\n"), "x:4:16: the line ends too early");
+  EXPECT_EQ(first_mistake(head + "1 1.0 DT 1 20000000 Rx - 0\n"),
+            "x:4:12: identifier of up to 8 hexadecimal digits expected");
+  EXPECT_EQ(first_mistake(";$FILEVERSION=2.0\n;$COLUMNS=N,O,T,d,l,D\n1 1.0 DT Rx 0\n"),
+            "x:3:13: the columns have no time, identifier or length");
 }
 
 TEST(TrcForms, WhatIsLeftOut) {
@@ -177,6 +209,30 @@ TEST(LogForms, LineEndsAndMarksOfWindows) {
                   "02 01 05 00 06 3A 98 01 F4 57\r\n")
                 .serial.size(),
             1U);
+}
+
+// The places of mistakes are those an editor shows: empty lines count.
+TEST(LogForms, EmptyLinesAreCounted) {
+  for (const std::string end : {"\n", "\r\n"}) {
+    EXPECT_EQ(first_mistake("(1.000000) can0 203#" + end + end + "  " + end + "nonsense" + end), "x:4:1: '(' expected");
+    EXPECT_EQ(first_mistake("base hex timestamps absolute" + end + end + "0.5 1 800 Rx d 0" + end),
+              "x:3:7: identifier too large");
+    EXPECT_EQ(first_mistake(";$FILEVERSION=1.1" + end + end + "1) 1.0 Up 0203 0" + end), "x:3:8: Rx or Tx expected");
+  }
+}
+
+// A table has at least four columns; a line of a log may have commas, too.
+TEST(LogForms, ATableIsKnownByItsSeparators) {
+  for (const char separator : {',', ';'}) {
+    const auto columns = [&](size_t count) {
+      std::string row = "time";
+      for (size_t n = 1; n < count; ++n) row += separator + std::string("id");
+      return other_file(row + "\n1" + separator + "2\n").has_value();
+    };
+    EXPECT_FALSE(columns(3));
+    EXPECT_TRUE(columns(4));
+    EXPECT_TRUE(columns(12));
+  }
 }
 
 TEST(LogForms, AFileThatIsNoLogIsNamed) {

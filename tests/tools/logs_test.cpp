@@ -203,6 +203,34 @@ TEST(Logs, FindingsOfALog) {
   EXPECT_EQ(frames, 1U);
 }
 
+// Binary logs have no lines: a mistake of theirs is told once and is no line that was left out. A capture of Ethernet alone is
+// no log of a bus.
+TEST(Logs, FindingsOfACapture) {
+  const auto told = [](const std::string& log) {
+    LogFindings findings("a.pcap");
+    const LogReader reader = findings.watch(
+        {[](const LogEntry&, LogPlace) {}, [](const auto&, LogPlace) {}, [](const auto&, LogPlace) {}, {}});
+    testing::internal::CaptureStderr();
+    read_log(log, reader);
+    const bool good = findings.finish();
+    return testing::internal::GetCapturedStderr() + (good ? "good" : "bad");
+  };
+  const auto head = [](uint32_t link) { return number(0xA1B2C3D4, 4) + std::string(16, '\0') + number(link, 4); };
+  const auto packet = [](const std::string& data) {
+    return number(1, 4) + number(0, 4) + number(data.size(), 4) + number(data.size(), 4) + data;
+  };
+  const std::string good = packet(number(0x203, 4, true) + std::string(4, '\0'));
+  const std::string bad = packet(number(0x800, 4, true) + std::string(4, '\0'));
+  EXPECT_EQ(told(head(227) + good), "good");
+  EXPECT_EQ(told(head(227) + good + good.substr(1, 9)),
+            "a.pcap: byte 48: error: the file ends within a packet\nbad");
+  EXPECT_EQ(told(head(227) + bad + bad), "a.pcap: byte 24: error: no frame of classic CAN\n"
+                                         "a.pcap: byte 48: error: no frame of classic CAN\nbad");
+  EXPECT_EQ(told(head(1) + good + good),
+            "a.pcap: error: no bus is in this capture: 2 packets of other link types\nbad");
+  EXPECT_EQ(told(head(227)), "good") << "a bus that was silent";
+}
+
 TEST(Logs, BlfWithContainersThatCutObjects) {
   for (const size_t chunk : {5'000U, 700U, 48U, 33U})
     for (const bool compressed : {true, false}) {
