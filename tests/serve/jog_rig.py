@@ -19,8 +19,6 @@ FALLS_WITHIN = 0.7  # s: what the tests promise
 PERIOD = 0.1  # s between two `jog`, as the page has it
 PATIENCE = 40  # s for anything that must come; a loaded machine needs more than an idle one
 
-TIMEOUTS = (43, 46, 47)  # faults of RS-485, SBus 2 and SBus
-
 # kind of line, unit, parameters. P815 of MOVIDRIVE A is 100 ms as delivered: a loaded machine is silent for longer, and
 # then the drive stops with F47 until somebody resets it.
 LINES = {
@@ -182,15 +180,8 @@ class Rig:
     def moves_at(self, moment):
         return abs(self.rows[self.row_after(moment) - 1][1]) >= RPM * 0.02
 
-    def wait_for_speed(self, wanted=RPM * 0.99, patience=PATIENCE):
-        wait_until(f"{wanted:.0f} rpm, it has {self.speed():.0f}", lambda: abs(self.speed()) >= wanted, patience)
-
-    def fault(self):
-        """The last one of the drive, P080; 0: there was none."""
-        client = self.connect()
-        client.ask(do="watch", names=["P080"])
-        client.ask(do="subscribe", topic="watch")
-        return client.wait_for("watch", lambda event: event["values"].get("unit1.P080"))["values"]["unit1.P080"]["value"]
+    def wait_for_speed(self, wanted=RPM * 0.99):
+        wait_until(f"{wanted:.0f} rpm, it has {self.speed():.0f}", lambda: abs(self.speed()) >= wanted)
 
     def after(self, moment):
         """(begins to fall, stands, the speed from which it falls): seconds after a moment of this test's clock; the time is the
