@@ -53,20 +53,23 @@ std::unique_ptr<Plant> run_of(const Project& project, const Engine& engine, runt
   return make_plant<vm::Image>(project.text, project.programs, std::nullopt, execution);
 }
 
-// The first line in which two pictures differ, and the words in it.
+// The first line in which two different pictures differ, and the words in it.
 std::string difference(const std::string& expected, const std::string& actual) {
   std::istringstream wanted(expected), had(actual);
   std::string wanted_line, had_line;
-  for (int line = 1; std::getline(wanted, wanted_line); ++line) {
-    std::getline(had, had_line);
+  for (int line = 1;; ++line) {
+    const bool more = static_cast<bool>(std::getline(wanted, wanted_line));
+    if (!std::getline(had, had_line))
+      return more ? fmt::format("no line {}: {}", line, wanted_line) : "equal";
+    if (!more) return fmt::format("one line more, {}: {}", line, had_line);
     if (wanted_line == had_line) continue;
     std::istringstream left(wanted_line), right(had_line);
     std::string a, b, out = fmt::format("line {}", line);
-    for (int word = 0; left >> a; ++word)
-      if (b.clear(), right >> b; a != b) out += fmt::format(", word {}: {}, not {}", word, b, a);
+    for (int word = 0; a.clear(), b.clear(), left >> a, right >> b, !a.empty() || !b.empty(); ++word)
+      if (a != b)
+        out += fmt::format(", word {}: {}, not {}", word, b.empty() ? "none" : b, a.empty() ? "none" : a);
     return out;
   }
-  return "there is more";
 }
 
 // Nothing, or how a default run differs from one in turn. One of two runs with the usual engine is looked at only once, at its
@@ -208,6 +211,16 @@ TEST(DefaultRun, EventsOfAStoppedTaskAreLost) {
               << row.mode << ' ' << engine.name;
         }
     }
+}
+
+// What is told of two pictures is where they differ, also where one ends before the other.
+TEST(DefaultRun, ADifferenceIsToldByItsPlace) {
+  EXPECT_EQ(difference("a b\nc d\n", "a b\nc e\n"), "line 2, word 1: e, not d");
+  EXPECT_EQ(difference("a b\n", "a\n"), "line 1, word 1: none, not b");
+  EXPECT_EQ(difference("a\n", "a b\n"), "line 1, word 1: b, not none");
+  EXPECT_EQ(difference("a\nb\n", "a\n"), "no line 2: b");
+  EXPECT_EQ(difference("a\n", "a\nb\n"), "one line more, 2: b");
+  EXPECT_EQ(difference("a\nb\n", "a\nb\n"), "equal");
 }
 
 // A hang is told.

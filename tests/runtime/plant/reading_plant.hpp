@@ -1,5 +1,4 @@
-// Random plants whose programs read as people write it: every kind of value (telegram, input, parameter, process data,
-// timer, system variable), read, compared, latched, counted or forwarded, in every kind of loop, on every kind of bus.
+// Random plants whose programs read as people write it, on every kind of bus.
 #pragma once
 
 #include <fmt/format.h>
@@ -10,103 +9,9 @@
 #include <string>
 
 #include "tests/runtime/plant/loop_body.hpp"
+#include "tests/runtime/plant/reading_programs.hpp"
 
 namespace ipos::tests {
-
-inline constexpr const char* kReadingHead = R"(
-#include <constb.h>
-#pragma globals 320 399
-SCTRCYCL Tr; long t1; long t2;
-SCTRACYCL Ta; long s1; long s2;
-SCREC Re; long r1; long r2;
-MOVLNK Ml; MLDATA Md;
-GSPODATA3 Po;
-VARINT Vi;
-long a; long b; long n; long m; long old; long hits; long v[8];
-Look() { if (r1 > b) b = r1; if (r2 & 1) n = n + 1; }
-Clock() { hits = hits + 1; }
-Event() { hits = hits + 1; old = Vi.IntEvent; }
-)";
-
-// What is read, and what fetches it. K and L are replaced by numbers.
-struct Reading {
-  const char* fetch;
-  const char* value;
-};
-inline constexpr Reading kReadings[] = {
-    {"", "r1"},
-    {"", "r1"},
-    {"", "r2"},
-    {"", "(r1 & 7)"},
-    {"", "(H483 & L)"},
-    {"", "((H483 >> L) & 1)"},
-    {"_MoviLink(Ml);", "Md.ReadPar"},
-    {"_MoviLink(Ml);", "Md.PI2"},
-    {"_GetSys(Po, GS_PODATA);", "Po.PO2"},
-    {"_GetSys(a, GS_ACTSPEED);", "a"},
-    {"_GetSys(a, GS_SEN);", "a"},
-    {"", "H511"},
-    {"", "H492"},
-    {"", "H473"},
-    {"", "H482"},
-    {"", "H488"},
-    {"if (H488 == 0) H488 = K;", "H488"},
-    {"", "hits"},
-    {"", "t1"},
-    {"", "v[L & 7]"},
-    {"a = numof(r1) + (n & 1);", "*a"},
-};
-
-// What is done with it; F stands for what fetches it, V for the value.
-inline constexpr const char* kUses[] = {
-    "F b = V;",
-    "F b = V; old = V;",
-    "F if (V > b) b = V;",
-    "F if (V != old) { old = V; n = n + 1; }",
-    "F if (V & L) b = 1;",
-    "F if ((V & 1) && !old) n = n + 1; old = V & 1;",
-    "F if (V == L) n = n + 1;",
-    "F if (V < L * 100) b = b | 1; else b = b & ~1;",
-    "F n = n + 1; b = V;",
-    "F b = b + (V - b) / 4;",
-    "F t1 = V;",
-    "F t1 = V * 3 - 1; t2 = n;",
-    "F H481 = V;",
-    "F if (V) SETOUT else CLEAROUT",
-    "F if (V != old) { old = V; s1 = V; _SBusCommDef(SCD_TRACYCL, Ta); }",
-    "F _GoAbs(GO_NOWAIT, V);",
-    "F a = V & 4095; _SetSys(SS_N11, a);",
-    "do { F } while (V < L * 50); n = n + 1; _Wait(K);",
-    "do { F } while (V & L); n = n + 1;",
-    "F switch (V & 3) { case 0: b = 1; break; case 1: b = 2; n = n + 1; break; default: b = 0; }",
-    "F v[V & 7] = n;",
-    "F b = v[V & 7];",
-    "F a = numof(v[0]) + (V & 7); *a = V;",
-    "F b = V & 3; if (b == 3) n = n + 1;",
-    "F b = V; for (m = 0; m < L; m++) b = b * 2;",
-    "F _Copy(v[1], v[0], L & 3 | 1); v[0] = V;",
-    "F if (V > K) { b = 1; } else if (V > L) { b = 2; } else { b = 3; }",
-    "F b = V; Look();",
-    "Look();",
-    "F b = V ? V : b;",
-    "",
-};
-
-// B and C stand for what is done in it.
-inline constexpr const char* kLoops[] = {
-    "while (1) { B }",
-    "while (1) { B }",
-    "while (1) { B C }",
-    "for (;;) { B _Wait(K); }",
-    "while (1) { B _Wait(1); }",
-    "while (1) { B C _Wait(K * 3); }",
-    "_Wait(K * 5); while (1) { B }",
-    "while (1) { B for (m = 0; m < L; m++); }",
-    "while (1) { while (H488 > 0) { B } H488 = K * 4; n = n + 1; }",
-    "for (n = 0; n < K; n++) { B } while (1) { C }",
-    "while (1) { if (H483 & 8) { B } else { C } }",
-    "B C",
-};
 
 class ReadingPlant {
  public:
@@ -116,8 +21,9 @@ class ReadingPlant {
   explicit ReadingPlant(uint64_t seed)
       : random_(seed),
         kind_(static_cast<Kind>(seed % kKinds)),
-        moves_(pick(0, 1) != 0),
-        plain_(pick(0, 1) != 0) {
+        receives_(pick(0, 2) == 0),
+        moves_(receives_ || pick(0, 1) != 0),
+        plain_(receives_ || pick(0, 1) != 0) {
     stations_ = pick(2, 3);
     text_ = "[[bus]]\nname = \"can\"\nkind = \"can\"\nbaud = 500000\n";
     if (kind_ == Kind::Serial) text_ += "[[bus]]\nname = \"line\"\nkind = \"rs485\"\n";
@@ -148,7 +54,7 @@ class ReadingPlant {
   }
 
   std::string use() {
-    const Reading& reading = one_of(kReadings);
+    const Reading& reading = receives_ || pick(0, 5) == 0 ? one_of(kTelegrams) : one_of(kReadings);
     std::string text = one_of(kUses);
     replace(text, "SETOUT", "_BitSet(H481, 1);");
     replace(text, "CLEAROUT", "_BitClear(H481, 1);");
@@ -164,16 +70,10 @@ class ReadingPlant {
     return numbered(text, pick(1, 40), pick(1, 7));
   }
 
-  // The first station is the one whose values the others get: they move, or stand after a while.
+  // Of the first station, whose values the others get.
   std::string source() {
-    static constexpr const char* kMoving[] = {
-        "while (1) { t1 = t1 + 1; _Wait(K); }", "while (1) { t1 = t1 + L; t2 = t1 & 15; }",
-        "while (1) { t1 = H511; t2 = H483; }", "while (1) { t1 = (t1 + 1) % 9; _Wait(K * L); }",
-        "while (1) { _Wait(K * 9); t2 = !t2; }"};
-    static constexpr const char* kStanding[] = {"t1 = K; while (1);", "t2 = L; t1 = L * 700;",
-                                                "_Wait(K * 40); t1 = L; while (1) _Wait(K);",
-                                                "while (1) t1 = H492;", ""};
-    return numbered(moves_ ? one_of(kMoving) : one_of(kStanding), pick(1, 33), pick(1, 7));
+    const char* const text = receives_ ? one_of(kRhythms) : moves_ ? one_of(kMoving) : one_of(kStanding);
+    return numbered(text, pick(1, 33), pick(1, 7));
   }
 
   void station(int n) {
@@ -215,9 +115,9 @@ class ReadingPlant {
         1100 + (n == 0 ? stations_ - 1 : 0), pick(0, 3) == 0 ? 4 : 8, 1200 + n, kind_ == Kind::Serial ? 2 : 5,
         (n + 1) % stations_ + 1, pick(1, 5), pick(0, 1) == 0 ? 8318 : 11'000 + pick(320, 350), pick(0, 7));
     // Many only send, many only receive.
-    if (n == 0 ? pick(0, 5) != 0 : pick(0, 2) == 0) text += "_SBusCommDef(SCD_TRCYCL, Tr);\n";
-    if (n == 0 ? pick(0, 2) == 0 : pick(0, 5) != 0) text += "_SBusCommDef(SCD_REC, Re);\n";
-    if (kind_ == Kind::Sbus || pick(0, 3) != 0) text += "_SBusCommOn();\n";
+    if (n == 0 ? receives_ || pick(0, 5) != 0 : pick(0, 2) == 0) text += "_SBusCommDef(SCD_TRCYCL, Tr);\n";
+    if (n == 0 ? pick(0, 2) == 0 : receives_ || pick(0, 5) != 0) text += "_SBusCommDef(SCD_REC, Re);\n";
+    if (receives_ || kind_ == Kind::Sbus || pick(0, 3) != 0) text += "_SBusCommOn();\n";
     if (!plain_ && !m07 && pick(0, 4) == 0)
       text +=
           fmt::format("H485 = {}; H489 = 10; _SetInterrupt(SI_TIMER0, Clock);\n", pick(0, 1) * pick(50, 900));
@@ -287,6 +187,7 @@ class ReadingPlant {
 
   std::mt19937_64 random_;
   Kind kind_;
+  bool receives_;  // the others do nothing but use the telegrams of the first station, as fast as they can
   bool moves_;
   bool plain_;  // a loop in main, and nothing else
   int stations_ = 0;
