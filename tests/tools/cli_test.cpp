@@ -359,7 +359,7 @@ TEST_F(Recordings, MistakesAreTold) {
   refuses({"two.toml", "--trace", "t.csv", "--signals", "u1.b"}, "variables H0 to H511, a", 64);
   refuses({"two.toml", "--trace", "t.csv", "--signals", "u1.P99999"}, "parameters as P000", 64);
   refuses({"two.toml", "--trace", "t.csv", "--signals", "u1.H512"}, "variables H0 to H511", 64);
-  refuses({"two.toml", "--trace", "t.csv", "--signals", "u2.H0"}, "it has speed, frequency, current, ", 64);
+  refuses({"two.toml", "--trace", "t.csv", "--signals", "u2.H512"}, "it has speed, frequency, current, ", 64);
   refuses({"two.toml", "--trace", "/nowhere/t.csv"}, "/nowhere/t.csv: No such file or directory", 74);
   refuses({"two.toml", "--plot", "/nowhere/p.svg"}, "/nowhere/p.svg: No such file or directory", 74);
 }

@@ -132,6 +132,7 @@ TEST(CanopenSweep, EveryObjectOfTheEds) {
     const auto value = rig.read(at);
     if (at.index == 0x1003 && at.sub > 0) {  // no error has been stored (CiA 301, 1003h)
       EXPECT_FALSE(value.has_value()) << name;
+      ++reads;
       continue;
     }
     ASSERT_TRUE(value.has_value()) << name;
