@@ -121,6 +121,46 @@ TEST_F(AtTheDesk, WhoDoesNotReadGetsNoEventsButReplies) {
   EXPECT_EQ(news(1).at(0)["value"], 2);
 }
 
+// What was read is taken off, not more.
+TEST_F(AtTheDesk, WhoReadsALittleWaitsStill) {
+  come(1);
+  say(1, {{"do", "subscribe"}, {"topic", "news"}});
+  value = std::string(300'000, 'x');
+  news(1);
+  value = 2;
+  desk.take({LetterKind::Drained, 1, "10"});
+  EXPECT_TRUE(news(1).empty());
+  const auto binaries = [&] {
+    size_t count = 0;
+    for (const auto& letter : post.sent) count += letter.kind == LetterKind::Binary ? 1 : 0;
+    post.sent.clear();
+    return count;
+  };
+  desk.send_binary(desk.clients().at(1), "event");
+  EXPECT_EQ(binaries(), 0U);
+  desk.send_binary(desk.clients().at(1), "view", true);
+  EXPECT_EQ(binaries(), 1U) << "it was asked for";
+  desk.take({LetterKind::Drained, 1, "300000"});
+  desk.send_binary(desk.clients().at(1), "event");
+  EXPECT_EQ(binaries(), 1U);
+}
+
+// While the plant has its share of the time, only who has just come is served.
+TEST_F(AtTheDesk, WhoComesWhileThePlantIsBusyIsServedAtOnce) {
+  come(1);
+  say(1, {{"do", "subscribe"}, {"topic", "news"}});
+  desk.publish(WallClock::now() - std::chrono::hours(1), true);  // took an hour: nine are the plant's
+  come(2);
+  say(2, {{"do", "subscribe"}, {"topic", "news"}});
+  value = 2;
+  post.sent.clear();
+  desk.publish(WallClock::now(), true);
+  EXPECT_EQ(post.sent.size(), 1U);
+  EXPECT_EQ(heard(2, LetterKind::Event).size(), 1U);
+  desk.publish(WallClock::now(), false);
+  EXPECT_EQ(heard(1, LetterKind::Event).size(), 1U) << "it is not busy any more";
+}
+
 TEST_F(AtTheDesk, ACopyKnowsWhoIsThere) {
   come(7);
   say(7, {{"do", "subscribe"}, {"topic", "news"}, {"rate", 3}});

@@ -202,6 +202,45 @@ TEST_F(Serving, ANumberBeyond32BitsIsNoNumber) {
   EXPECT_NE(error({{"do", "force"}, {"name", "saw.H300"}, {"value", "4294967295"}}).find("is no number of 32 bits"), std::string::npos);
 }
 
+TEST_F(Serving, AUnitWithoutPowerHasNoValues) {
+  step(5);
+  EXPECT_EQ(value("saw.DI00"), 1);
+  good({{"do", "power"}, {"station", "saw"}, {"on", false}});
+  step(5);
+  EXPECT_TRUE(topic({{"topic", "watch"}})["values"]["saw.DI00"].is_null());
+}
+
+TEST_F(Serving, ARateIsThatOfTheLastSecond) {
+  const auto row = [&] { return topic({{"topic", "bus"}})["rows"][0]; };
+  for (int n = 0; n < 3; ++n) good({{"do", "bus.send"}, {"bus", "sbus"}, {"identifier", 523}, {"data", "01"}});
+  step(1000);
+  EXPECT_EQ(row()["rate"], 3);
+  step(1000);
+  EXPECT_EQ(row()["rate"], 0);
+  EXPECT_EQ(row()["count"], 3);
+}
+
+TEST_F(Serving, AUnitComparedWithItselfHasNoDifferences) {
+  EXPECT_EQ(good({{"do", "parameters.compare"}, {"station", "saw"}, {"with", "saw"}})["rows"], Json::array());
+  const Json list = good({{"do", "parameters"}, {"station", "saw"}});
+  for (const Json& row : list["parameters"]) {
+    if (row["access"] == "RO") {
+      EXPECT_EQ(row["changed"], false) << row;
+    }
+  }
+}
+
+TEST_F(Serving, TheScopeWaitsForTheTelegramThatWasNamed) {
+  good({{"do", "scope"}, {"channels", {"saw.lCount"}}, {"trigger", {{"kind", "telegram"}, {"bus", "sbus"}, {"id", 523}}}});
+  good({{"do", "scope.arm"}});
+  good({{"do", "bus.send"}, {"bus", "sbus"}, {"identifier", 11}, {"data", "01"}});
+  step(100);
+  EXPECT_EQ(topic({{"topic", "scope"}})["state"], "armed");
+  good({{"do", "bus.send"}, {"bus", "sbus"}, {"identifier", 523}, {"data", "01"}});
+  step(20);
+  EXPECT_NE(topic({{"topic", "scope"}})["state"], "armed");
+}
+
 // A second subscription and time that went back both send what has not changed, too.
 TEST_F(Serving, BehindATimeThatWentBackValuesAreSentAnew) {
   good({{"do", "watch"}, {"names", {"saw.H300"}}});

@@ -62,6 +62,18 @@ TEST(ScopeMemory, KeepsTheLastMillionAndForgetsTheRest) {
   EXPECT_FALSE(memory.extremes(0, 0, 1000));
 }
 
+TEST(ScopeMemory, ExtremesForgetWhatWasOverwritten) {
+  ScopeMemory memory;
+  memory.choose({std::nullopt});
+  memory.restart(0);
+  const uint64_t turn = ScopeMemory::kKept + 1'000;
+  for (uint64_t n = 0; n < 2 * turn; ++n) {
+    const int64_t sample = n >= turn ? 0 : n % 2 == 0 ? 1'000'000 : -1'000'000;
+    memory.push(n, {&sample, 1});
+  }
+  EXPECT_EQ(memory.extremes(0, turn + 64, 2 * turn), (Extremes{0, 0}));
+}
+
 TEST(ScopeMemory, ExtremesAreThoseOfThisTimeWhereTimeWentBackIntoABlock) {
   ScopeMemory memory;
   memory.choose({std::nullopt});
