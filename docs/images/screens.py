@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes the screenshots of the monitor's table, of an HTML plot and of an editor anew: screens.py IPOS
 
-It needs Chromium and vim; the pictures are what these draw, so no test compares them.
+It needs Chromium, vim, pngquant and optipng; the pictures are what these draw, so no test compares them.
 """
 import shutil
 import subprocess
@@ -20,6 +20,7 @@ def shoot(page, picture, width, height):
     subprocess.run([chromium, "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars",
                     f"--window-size={width},{height}", "--virtual-time-budget=3000",
                     f"--screenshot={HERE / picture}", page.as_uri()], check=True, capture_output=True)
+    subprocess.run([HERE / "smaller.sh", HERE / picture], check=True)
 
 
 def monitor(ipos, folder):

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The pictures on the pages are what the commands print or plot.
+# The pictures on the pages are what the commands print or plot, and pictures of screens are small.
 #   tests/docs/pictures.sh IPOS           compares
 #   tests/docs/pictures.sh IPOS --renew   draws them anew
 set -euo pipefail
@@ -31,4 +31,7 @@ plot() {
 [ "${2:-}" = --renew ] && renew=1
 terminal test-report.svg "test tests/tools/testing/broken/feeder.test.toml"
 plot isync.svg "run examples/isync/isync.toml --for 4s --plot - --signals master.speed,slave.speed,master.position,slave.position"
+for picture in docs/images/*.png; do
+  [ "$(stat -c %s "$picture")" -le 65536 ] || { echo "$picture is larger than 64 KiB; docs/images/smaller.sh makes it smaller" >&2; status=1; }
+done
 exit $status

@@ -1,5 +1,7 @@
 // Remakes the pictures of docs/guide/workbench.md: two drives in synchronous operation, after some seconds.
 //   IPOS_PROGRAM=.../ipos npm run screenshots
+// docs/images/smaller.sh, which needs pngquant and optipng, then makes them smaller.
+import { execFileSync } from "node:child_process";
 import { fileURLToPath } from "node:url";
 
 import { desktop, launch, openPage, phone, tab_names } from "./browser.mjs";
@@ -57,6 +59,7 @@ try {
     if (name === "Scope") await page.keyboard.press("r");
   }
   await phones();
+  execFileSync(`${project}docs/images/smaller.sh`, [...tab_names, "phone"].map(image));
 } finally {
   await browser.close();
   await server.stop();
