@@ -1,4 +1,4 @@
-// Memory of a tree: its nodes lie one behind the other and are all given back at once, with no destructor.
+// Memory of a tree: its nodes lie one after the other and are all given back at once, with no destructor.
 #pragma once
 
 #include <algorithm>

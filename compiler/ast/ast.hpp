@@ -146,7 +146,7 @@ struct Switch {
 };
 struct Case {
   ExprPtr value = nullptr;
-};  // a label on its own; the statements behind it follow in the block
+};  // a label on its own; the statements after it follow in the block
 struct Default {};
 struct Break {};
 struct Continue {};

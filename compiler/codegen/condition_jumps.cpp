@@ -57,7 +57,7 @@ const Expr* single_bit(const Expr& expr, int32_t& mask) {
 
 }  // namespace
 
-// Jumps to `label` when the condition is `when`, else goes on behind.
+// Jumps to `label` when the condition is `when`, else goes on after.
 void FunctionGenerator::branch(const Expr& expr, int label, bool when) {
   const Hold hold(top_);
   if (const int32_t* known = as_constant(expr)) {

@@ -167,7 +167,7 @@ class Layout {
     vm::Image& image = out_.image;
     auto file = std::find(files_.begin(), files_.end(), at.file);
     if (file == files_.end()) {
-      // An image with other names would be refused; whoever opens files by such a name has none.
+      // An image with other names would be refused; a program opened under such a name has none.
       image.files.push_back(stdlib::is_plain(at.file->name) ? at.file->name : printable(at.file->name));
       file = files_.insert(files_.end(), at.file);
     }

@@ -47,7 +47,7 @@ struct Diagnostic {
 // -Wno-error=<flag>, -Wall, -Wno-all. All but the OPT_IN rows are on at first; later options win over earlier ones.
 class WarningOptions {
  public:
-  // False when no warning has that flag. `option` is the text behind "-W".
+  // False when no warning has that flag. `option` is the text after "-W".
   bool apply(std::string_view option);
   // Severity of a row under these options, or Note for "off".
   Severity severity(const DiagInfo& row) const;
@@ -61,13 +61,13 @@ class WarningOptions {
 // Collects the diagnostics of one compilation, in the order found.
 class Diagnostics {
  public:
-  // Ours; TooManyErrors stands behind them.
+  // Ours; TooManyErrors stands after them.
   static constexpr uint32_t kMostErrors = 100;
 
   explicit Diagnostics(WarningOptions options = {}) : options_(std::move(options)) {}
 
   // Adds a message; its text is the row's format with args filled in. Returns it so that notes can be added.
-  // A warning that is off, and an error behind the hundredth, goes to a place nobody reads.
+  // A warning that is off, and an error after the hundredth, goes to a place nobody reads.
   Diagnostic& report(Diag diag, Span span, std::vector<std::string> args = {});
 
   bool has_errors() const { return errors_ != 0; }

@@ -16,7 +16,7 @@ size_t characters(std::string_view text);
 
 struct Range {
   Position begin;
-  Position end;  // behind the last byte; in the same file, not before begin
+  Position end;  // after the last byte; in the same file, not before begin
 };
 Range range_of(Span span, const SourceMap& map);
 

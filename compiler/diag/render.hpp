@@ -1,4 +1,4 @@
-// Diagnostics for people and for programs. All forms name the chain of macros and includes behind a place.
+// Diagnostics for people and for programs. All forms name the chain of macros and includes after a place.
 // Bytes that are not UTF-8 are shown as Latin-1, so every output is valid UTF-8.
 #pragma once
 

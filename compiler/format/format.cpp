@@ -21,7 +21,7 @@ bool aligned(const Line& line) {
          line.code.find('\n') == std::string::npos;
 }
 
-// Comments behind the code of neighbouring lines of one depth stand in one column.
+// Comments after the code of neighbouring lines of one depth stand in one column.
 size_t run_end(const std::vector<Line>& lines, size_t begin) {
   size_t end = begin + 1;
   while (end < lines.size() && aligned(lines[end]) && !lines[end].blank_before &&

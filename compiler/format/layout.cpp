@@ -113,7 +113,7 @@ bool Layout::token(const Piece& piece) {
     statement_start(piece);
     return true;
   }
-  // The name behind the brace of a structure stays there, but for one behind a preprocessor line.
+  // The name after the brace of a structure stays there, except after a preprocessor line.
   const bool behind_brace = last_.kind == TokenKind::RightBrace && !lines_.back().verbatim;
   place(piece, fresh(piece) && !behind_brace, state_.indent + 1);
   behind(piece);

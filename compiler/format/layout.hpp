@@ -12,7 +12,7 @@ namespace ipos::compiler {
 struct Line {
   uint32_t indent = 0;  // levels
   std::string code;     // words, or a comment that has its line to itself
-  std::string comment;  // behind the code
+  std::string comment;  // after the code
   bool blank_before = false;
   bool verbatim = false;  // a preprocessor line
 };
@@ -24,7 +24,7 @@ class Layout {
 
  private:
   // Something that the next statement is inside of: braces, or the head of a statement that waits for its
-  // body. IfDone waits for an else, DoTail for the while behind its body.
+  // body. IfDone waits for an else, DoTail for the while after its body.
   struct Frame {
     enum class Kind : uint8_t { Braces, If, IfDone, For, Plain, Do, DoTail };
     Kind kind;
@@ -40,14 +40,14 @@ class Layout {
     size_t questions = 0;  // ? without their :
     bool start = true;     // a statement begins
     bool body = false;     // and it is the body of the top frame
-    bool head = false;     // inside the brackets behind if, for, while, switch
+    bool head = false;     // inside the brackets after if, for, while, switch
     bool label = false;    // between case and its :
     bool record = false;   // the statement began with typedef
   };
   struct Last {
     TokenKind kind = TokenKind::Semicolon;
     std::string_view text;
-    bool prefix = false;  // an operator with its operand behind it
+    bool prefix = false;  // an operator with its operand after it
   };
 
   bool token(const Piece& piece);

@@ -1,4 +1,4 @@
-// Words and comments into lines: blanks between words, comments behind, between and above code.
+// Words and comments into lines: blanks between words, comments after, between and above code.
 #include <algorithm>
 
 #include "compiler/format/layout.hpp"

@@ -163,7 +163,7 @@ class Translator {
   bool keyword(const Token& token) {
     for (const Keyword& row : kKeywords)
       if (equal_but_for_case(token.text, row.spelling) && stands_for(row.kind)) return meant(row);
-    // Misspelt heads of statements have something in their brackets and a statement behind them.
+    // Misspelt heads of statements have something in their brackets and a statement after them.
     if (depth_ <= 0 || !filled_bracket(at_ + 1) || !statement_at(behind_bracket(at_ + 1))) return false;
     static constexpr std::string_view kHeads[] = {"if", "while", "for", "switch"};
     const std::string_view best = stdlib::nearest(token.text, kHeads);
@@ -219,7 +219,7 @@ class Translator {
   std::span<const Token> tokens_;
   Diagnostics& diagnostics_;
   std::vector<Token> out_;
-  std::unordered_set<std::string_view> types_;  // names behind a '}': of structure types
+  std::unordered_set<std::string_view> types_;  // names after a '}': of structure types
   size_t at_ = 0;
   int depth_ = 0;
   int begun_ = 0;  // BEGIN without END so far

@@ -1,6 +1,6 @@
 // Grammar of the IPOS language (LALR(1) with exact look-ahead for messages). Each action is one call of the Builder.
 //
-// Recovery: behind every `error` only Sync, SyncBlock or SyncBody may follow. No source text holds them; after an
+// Recovery: after every `error` only Sync, SyncBlock or SyncBody may follow. No source text holds them; after an
 // error the TokenFeed skips to a place where parsing can go on and sends one of them from there. SyncBlock: the block
 // of a function follows; SyncBody: its '{' is missing.
 %skeleton "lalr1.cc"

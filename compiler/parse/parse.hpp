@@ -17,7 +17,7 @@ ast::Program parse_program(SourceMap& map, const SourceFile& main, const Preproc
 // The same from tokens that are there already.
 ast::Program parse_tokens(const SourceMap& map, const PreprocessedText& text, Diagnostics& diagnostics);
 
-// The tokens behind the preprocessor, one a line: `line:col kind text`, with the file in front when it is not
+// The tokens after the preprocessor, one a line: `line:col kind text`, with the file in front when it is not
 // `main`.
 std::string print_tokens(const SourceMap& map, const SourceFile& main, const PreprocessedText& text);
 

@@ -74,7 +74,7 @@ size_t TokenFeed::behind_directive(size_t at) const {
   return tokens_[at].kind == TokenKind::End ? at : at + 1;
 }
 
-// Behind the ')' of the head, or where its statement seems to begin without one.
+// After the ')' of the head, or where its statement seems to begin without one.
 size_t TokenFeed::behind_head(size_t at, size_t head) const {
   auto level = std::count_if(open_.begin() + static_cast<std::ptrdiff_t>(head), open_.end(),
                              [](const Open& open) { return open.kind == TokenKind::LeftParen; });
@@ -154,7 +154,7 @@ bool TokenFeed::is_function_head(size_t begin, size_t end) const {
   return bracket;
 }
 
-// Behind the matching '}', or the '{' itself when there is none.
+// After the matching '}', or the '{' itself when there is none.
 size_t TokenFeed::behind_group(size_t brace) {
   if (behind_groups_.empty()) {
     std::vector<size_t> open;

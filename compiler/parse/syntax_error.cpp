@@ -1,5 +1,5 @@
 // What a syntax error says: what was found, what was expected in words a user knows, or the likely mistake
-// behind it.
+// after it.
 #include <cassert>
 
 #include "compiler/parse/token_feed.hpp"
@@ -165,7 +165,7 @@ bool TokenFeed::explain_outside(const Expected& expected) {
   return true;
 }
 
-// Something between the brackets behind a name outside of functions: parameters, or a call that is misplaced.
+// Something between the brackets after a name outside of functions: parameters, or a call that is misplaced.
 bool TokenFeed::explain_parameters() {
   const size_t opener = open_[0].token;
   size_t behind = opener;
@@ -192,7 +192,7 @@ std::string TokenFeed::expected_words(const Expected& expected) const {
   if (expected.has(Kind::S_Typedef)) return "a declaration or a function";
   if (expected.has(Kind::S_LeftBrace)) return "'{'";
 
-  // Behind an operand every operator would do: only what ends the expression is worth naming.
+  // After an operand every operator would do: only what ends the expression is worth naming.
   const bool behind_operand = expected.has(Kind::S_EqualEqual);
   struct Row {
     Parser::symbol_kind_type kind;
@@ -215,7 +215,7 @@ std::string TokenFeed::expected_words(const Expected& expected) const {
     words += row.words;
     if (behind_operand) break;
   }
-  assert(!words.empty());  // what else the grammar wants, in directives and behind 'typedef', is explained apart
+  assert(!words.empty());  // what else the grammar wants, in directives and after 'typedef', is explained apart
   return words;
 }
 

@@ -55,7 +55,7 @@ void TokenFeed::stray() {
   diagnostics_.report(Diag::StrayCharacter, span, {describe_byte(first.text)});
 }
 
-// What is wrong in the token itself. Behind an error the same token may come again.
+// What is wrong in the token itself. After an error the same token may come again.
 void TokenFeed::tell(Diag diag, Span place, std::vector<std::string> words) {
   if (last_ >= told_) diagnostics_.report(diag, place, std::move(words));
 }

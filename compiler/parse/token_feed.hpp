@@ -25,7 +25,7 @@ class TokenFeed {
             std::optional<size_t> unclosed)
       : tokens_(tokens), types_(types), diagnostics_(diagnostics), unclosed_(unclosed) {}
 
-  // The parser's next symbol; behind an error, Sync or SyncBlock from the place to go on.
+  // The parser's next symbol; after an error, Sync or SyncBlock from the place to go on.
   Symbol next();
 
   // Called by the parser when the symbol delivered last fits nowhere.
@@ -36,7 +36,7 @@ class TokenFeed {
   struct Open {
     TokenKind kind;  // LeftBrace, LeftParen, LeftBracket or the keyword
     size_t token;
-    bool values;  // a brace behind '='
+    bool values;  // a brace after '='
   };
   // Which tokens the parser would have taken.
   struct Expected {

@@ -1,4 +1,4 @@
-// The directives but for conditions. Each function reads its line to the end.
+// All directives except conditions. Each function reads its line to the end.
 #include <algorithm>
 
 #include "compiler/preprocess/include.hpp"
@@ -68,7 +68,7 @@ bool Preprocessor::macro_name(const Token& directive, const Line& line) {
   return true;
 }
 
-// In #undef, #ifdef and behind `defined`.
+// In #undef, #ifdef and after `defined`.
 void Preprocessor::macro_used(const Token& name) {
   if (const Macro* macro = macros_.find(name.text)) result_.record.uses.push_back({name.span, macro->name});
 }
@@ -153,7 +153,7 @@ void Preprocessor::include(const Token& directive) {
   open(file);
 }
 
-// The new name is taken as written, all behind it with macros expanded.
+// The new name is taken as written, all after it with macros expanded.
 void Preprocessor::declare(const Token& directive) {
   const Line line = read_line();
   Token mark = directive;

@@ -22,7 +22,7 @@ std::optional<FoundFile> find_include(const std::string& name, const SourceFile&
                                       const SourceFile& main, const PreprocessOptions& options,
                                       std::vector<std::string>& searched);
 
-// The file that a wrong name was probably meant to be: the same but for capitals, or a built-in header like it;
+// The file that a wrong name was probably meant to be: the same apart from capitals, or a built-in header like it;
 // empty when there is none.
 std::string similar_include(const std::string& name, const SourceFile& includer, const SourceFile& main,
                             const PreprocessOptions& options);

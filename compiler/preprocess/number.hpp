@@ -14,7 +14,7 @@ struct ParsedNumber {
   bool pattern = false;  // written as hexadecimal or binary
 };
 
-// A decimal number may be up to 2147483647, or one more behind a minus sign.
+// A decimal number may be up to 2147483647, or one more after a minus sign.
 ParsedNumber parse_number(std::string_view text, bool behind_minus);
 
 }  // namespace ipos::compiler

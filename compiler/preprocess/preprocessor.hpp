@@ -50,7 +50,7 @@ class Preprocessor {
   void give_up(std::string limit, Span place);
   void too_much(Span place);
 
-  // directives.cpp: one function a directive; `directive` is the word behind the #.
+  // directives.cpp: one function a directive; `directive` is the word after the #.
   void directive(const Token& hash);
   void define(const Token& directive);
   void undefine(const Token& directive);

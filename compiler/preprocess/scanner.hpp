@@ -20,7 +20,7 @@ class Scanner {
   // The next token; at the end of the file End, again and again.
   Token next();
 
-  // As next(), but <...> and "..." are a HeaderName: for the place behind #include.
+  // As next(), but <...> and "..." are a HeaderName: for the place after #include.
   Token header_name();
 
  private:

@@ -20,7 +20,7 @@ enum class TokenKind : uint8_t {
   BadName,     // word with letters outside of ASCII
   Stray,       // byte without a meaning
   Hash,        // #
-  HeaderName,  // <...> or "..." behind #include
+  HeaderName,  // <...> or "..." after #include
   Pragma,      // #pragma, then its words, then DirectiveEnd
   Declare,     // #declare, then its words, then DirectiveEnd
   DirectiveEnd,

@@ -1,5 +1,5 @@
 // The checked tree: what the program means. Names have become variable numbers, constants are folded, every
-// statement stands where it may; code generation finds nothing here that it would have to refuse but for
+// statement stands where it may; code generation finds nothing here that it would have to refuse, except
 // size.
 #pragma once
 

@@ -85,7 +85,7 @@ class Declarations {
   }
 
   void declare_one(const ast::AliasDecl& decl) {
-    // BASE is a name, so its place is fixed; BASE + K is the long K variables behind its first one.
+    // BASE is a name, so its place is fixed; BASE + K is the long K variables after its first one.
     const ast::Expr* base = decl.base;
     const auto* sum = std::get_if<ast::Binary>(&base->node);
     std::optional<int32_t> offset = 0;

@@ -14,7 +14,7 @@ namespace ipos::compiler {
 struct Object {
   Type type;
   checked::Place place;
-  std::string_view name;               // of the variable or member, for messages; empty behind a '*'
+  std::string_view name;               // of the variable or member, for messages; empty after a '*'
   std::optional<NumberRange> extent;   // variables it may be, when they are known
   const Variable* variable = nullptr;  // declared one it is (part of)
 

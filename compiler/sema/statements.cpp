@@ -58,7 +58,7 @@ StatementChecker::Result StatementChecker::block(const ast::Block& node, Span sp
     Result result = statement(*stmt);
     // A label inside, as in switch (x) { while (1) { case 1: ... } }, is a way in.
     if (around != nullptr && innermost_switch()->target->labels != labels) reached = true;
-    // A break behind a return is a habit of case branches, not a mistake.
+    // A break after a return is a habit of case branches, not a mistake.
     if (!reached && !reported && !is_one_of<ast::Empty, ast::Break>(*stmt)) {
       context_.diagnostics.report(Diag::UnreachableCode, stmt->span);
       reported = true;

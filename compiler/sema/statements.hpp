@@ -15,7 +15,7 @@ class StatementChecker {
   checked::StmtPtr function_body(const ast::Stmt& body) { return statement(body).stmt; }
 
  private:
-  // A checked statement, and whether what stands behind it can be reached.
+  // A checked statement, and whether what stands after it can be reached.
   struct Result {
     checked::StmtPtr stmt = nullptr;
     bool falls_through = true;

@@ -95,7 +95,7 @@ class VariableUse {
     for (uint32_t n = number; n < number + kReachOfNumber && n < kMaxNumbers; ++n) reached_.set(n);
   }
 
-  // Variables in the number behind a '*' hold numbers themselves.
+  // Variables in the number after a '*' hold numbers themselves.
   void is_pointer(const ast::Expr& number) {
     const auto visit = [this](const ast::Expr& inner) {
       if (const auto of = part(inner)) mark(*of->variable, 0, pointers_);

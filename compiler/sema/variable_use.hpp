@@ -13,7 +13,7 @@
 namespace ipos::compiler {
 
 // A number that was taken (numof, DPointer) leads to a block of variables, not only to the one it names: the
-// second variable of a telegram, the eight of MLDATA. Variables so close behind it count as used.
+// second variable of a telegram, the eight of MLDATA. Variables so close after it count as used.
 inline constexpr uint32_t kReachOfNumber = 8;
 
 // After all bodies were checked: looks at the accesses of the whole program.

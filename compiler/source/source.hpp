@@ -18,7 +18,7 @@ struct Location {
   bool operator==(const Location&) const = default;
 };
 
-// From the first byte of the first token to behind the last byte of the last one.
+// From the first byte of the first token to after the last byte of the last one.
 struct Span {
   Location begin;
   Location end;

@@ -67,7 +67,7 @@ struct ProgramIndex {
   };
   std::vector<Include> includes;
 
-  // The occurrence an offset is in or directly behind; nullptr when there is none.
+  // The occurrence an offset is in or directly after; nullptr when there is none.
   const Occurrence* at(const SourceFile& file, uint32_t offset) const;
   const IndexedSymbol* find(std::string_view name, std::string_view container = {}) const;
   // The file of this path, or the built-in header of this name; nullptr when the program does not read it.

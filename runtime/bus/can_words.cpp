@@ -9,7 +9,7 @@
 namespace ipos::runtime {
 namespace {
 
-constexpr size_t kLines = 100;  // a log of more names is noise: those behind are heard as one (ours)
+constexpr size_t kLines = 100;  // a log of more names is noise: those after are heard as one (ours)
 
 }  // namespace
 

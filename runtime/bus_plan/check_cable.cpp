@@ -1,4 +1,4 @@
-// What can be wrong with the cable and who is on it (1053 1610 p. 8, 12, 13; MOVITRAC 07
+// What can be wrong with the cable and its stations (1053 1610 p. 8, 12, 13; MOVITRAC 07
 // chapters 2.1, 3.1, 7.1): what the file says, the rates of the stations, and the faults that it plants.
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-// The PROFIBUS lines of a plant on paper: who is on them, how long a cycle takes, and what is wrong.
+// The PROFIBUS lines of a plant on paper: their stations, how long a cycle takes, and what is wrong.
 #pragma once
 
 #include "runtime/bus_plan/plan.hpp"

@@ -1,4 +1,4 @@
-// The RS-485 and RS-232 lines of a plan: who is on them, which telegrams the trial run showed, and what is
+// The RS-485 and RS-232 lines of a plan: their stations, which telegrams the trial run showed, and what is
 // against the rules (1053 1610 p. 14-22; MDX60B/61B p. 14-20, 29). What cannot be wired at all is refused
 // with the plant file (runtime/plant_file/serial_plan.hpp).
 #pragma once

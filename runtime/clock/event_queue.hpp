@@ -20,7 +20,7 @@ inline constexpr Time kMillisecond = 1'000'000;
 inline constexpr Time kSecond = 1'000'000'000;
 inline constexpr Time kNever = std::numeric_limits<Time>::max();
 
-// Whoever takes events; `kind` and `argument` come back as they were scheduled. Must outlive its events.
+// A receiver of events; `kind` and `argument` come back as they were scheduled. Must outlive its events.
 class EventTarget {
  public:
   virtual void on_event(Time now, uint32_t kind, uint64_t argument) = 0;
@@ -135,7 +135,7 @@ class EventQueue {
     Time reach;
     std::vector<Waiting> ring{};  // its size is a power of 2
     uint64_t mask = 0;
-    uint64_t begin = 0;  // numbers of its entries, first and behind the last
+    uint64_t begin = 0;  // numbers of its entries, first and after the last
     uint64_t end = 0;
     Time first_at = kNever;  // of the first entry
     Time last_at = 0;        // of the last one, and its source

@@ -1,5 +1,5 @@
 // The one source of pseudo-random numbers of the simulation: SplitMix64 (Steele, Lea, Flood 2014), its seed
-// an argument. Whoever needs chance owns a generator, so that no two parts disturb each other's numbers.
+// an argument. Each part that needs chance owns a generator, so that no two parts disturb each other's numbers.
 #pragma once
 
 #include <cstdint>

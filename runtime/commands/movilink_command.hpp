@@ -31,7 +31,7 @@ class MovilinkCommand final {
   MovilinkCommand(const stdlib::UnitType& unit, ParameterServer& own, ProcessDataServer& own_data,
                   Journal& journal, std::string_view station);
 
-  // Whoever carries the exchanges of a bus reports to client(bus). A bus without master is not connected.
+  // The class that carries the exchanges of a bus reports to client(bus). A bus without master is not connected.
   MovilinkClient& client(MovilinkBus bus) { return routes_[static_cast<size_t>(bus)]; }
   void connect(MovilinkBus bus, MovilinkMaster& master) {
     routes_[static_cast<size_t>(bus)].master = &master;

@@ -46,7 +46,7 @@ struct Situation {
 };
 static_assert(std::has_unique_object_representations_v<Situation>);
 
-// The situation of a drive, and how often somebody may have changed it: whoever can write it says so by that.
+// The situation of a drive and a count of its changes. change() and set() are the only writers.
 class WatchedSituation {
  public:
   const Situation& operator*() const { return now_; }

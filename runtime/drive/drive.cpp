@@ -103,7 +103,7 @@ void Drive::lose(PoSource source) {
   raise_fault(fault_of(source));
 }
 
-// A telegram changes what is decided unless it only begins the time of silence anew.
+// A telegram changes what is decided unless it only restarts the time of silence.
 LinkWatch& Drive::touched_watch(PoSource source) {
   LinkWatch& watch = state_.watches[static_cast<size_t>(source)];
   if (!watch.alert()) now_.change();
@@ -119,7 +119,7 @@ void Drive::note_heard() {
 
 // --- who controls ---
 
-// Decides anew when anything is other than it was.
+// Decides again when anything has changed.
 void Drive::look_around() const {
   now_.set(&Situation::settings, parameters_.changes());
   now_.set(&Situation::factory_setting, parameters_.factory_setting_running());
@@ -334,7 +334,7 @@ Ticks Drive::State::bound() const {
   return ticks;
 }
 
-// A position that is ordered anew every millisecond is no steady one: that is seen first.
+// A position that is ordered again every millisecond is not steady: that is seen first.
 Ticks Drive::steady_since(const Moment& before) const {
   if (!(before.state.position == state_.position) || !applied_ || scope_.runs() || now_.changed() ||
       now_->settings != parameters_.changes())

@@ -118,7 +118,7 @@ class Drive final : private DriveLink {
   // control word bit 6, P840, the program, or auto reset P841.
   void raise_fault(uint8_t number);
   void raise_fault(uint8_t number, FaultResponse response);
-  void reset_fault();                                // by hand: auto reset counts anew
+  void reset_fault();                                // by hand: auto reset counts from zero
   uint32_t resets() const { return state_.resets; }  // how often a reset was ordered, by whomever
   uint32_t rs485_timeouts() const { return state_.rs485_timeouts; }  // F43 by P812, so far
   // _FaultReaction on a fault without a parameter for its response; false: that of this one is fixed.
@@ -159,11 +159,11 @@ class Drive final : private DriveLink {
 
   const Scope& scope() const { return scope_; }
 
-  // Power off and on: everything as at first, but for the motor potentiometer with P152. The parameters are
+  // Power off and on: everything as at first, except the motor potentiometer with P152. The parameters are
   // the caller's.
   void power_cycle();
 
-  // Decides anew at the next occasion. Changes nothing but the time it takes; for tests that compare a drive
+  // Decides again at the next occasion. Changes only the time it takes; for tests that compare a drive
   // with one that decides everything every millisecond.
   void forget_decisions() {
     now_.change();

@@ -33,7 +33,7 @@ constexpr bool is_error(FaultResponse response) {
 
 class FaultState {
  public:
-  // True when it is new and shown from now on: an error behind another error is not, the first one stays.
+  // True when it is new and shown from now on: an error after another error is not, the first one stays.
   bool raise(uint8_t number, FaultResponse response);
   void clear_cause(uint8_t number);  // ends a warning
   void reset();                      // ends an error and what is only displayed

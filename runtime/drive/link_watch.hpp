@@ -42,7 +42,7 @@ class LinkWatch {
     return rules_.delay_ms != 0 && !reported_ && (running_ || (rules_.without_first && rules_.supervised));
   }
   // Ticks that only count the silence (pace/part.hpp). Telegrams that come while it is alert only begin the
-  // count anew.
+  // count from zero.
   void advance(Ticks ticks) {
     if (counts()) silent_ms_ += ticks;
   }

@@ -50,7 +50,7 @@ class Scope {
   Order order_;
   State state_ = State::Off;
   uint32_t wait_ = 0;  // ms until the next sample
-  uint32_t left_ = 0;  // samples before or behind the trigger that are still to come
+  uint32_t left_ = 0;  // samples before or after the trigger that are still to come
   std::vector<Sample> samples_;
   size_t oldest_ = 0;
 };

@@ -41,7 +41,7 @@ enum class SetpointSource : uint8_t {
   Frequency = 11,
 };
 
-// Why a setpoint is other than one may think; shown with --why.
+// Why a setpoint differs from what one expects; shown with --why.
 enum class SetpointNote : uint8_t {
 #define SETPOINT_NOTE(name, text) name,
 #include "runtime/drive/setpoint_notes.def"

@@ -103,7 +103,7 @@ ipos_plant_status ipos_plant_open(const ipos_plant_source* source, ipos_plant** 
     const ipos_plant_status status = open(*source, *made);
     *plant = made.release();
     return status;
-  } catch (const std::exception&) {  // the library throws nothing but for want of memory
+  } catch (const std::exception&) {  // the library throws only when memory runs out
     return IPOS_PLANT_OUT_OF_MEMORY;
   }
 }

@@ -121,7 +121,7 @@ class ProfibusTap final : private profibus::LineObserver, private profibus::Node
   ProfibusTap(const ProfibusTap&) = delete;
   ProfibusTap& operator=(const ProfibusTap&) = delete;
 
-  // Behind the idle time that a request wants; into a frame that is under way.
+  // After the idle time that a request wants; into a frame that is under way.
   Refusal send(std::span<const uint8_t> octets);
   Kept<profibus::Reception>& heard() { return heard_; }
   const Kept<profibus::Reception>& heard() const { return heard_; }

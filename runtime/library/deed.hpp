@@ -34,7 +34,7 @@ struct Deed {
   Place place{};
   uint32_t number = 0;
   int64_t value = 0;
-  std::vector<uint8_t> bytes{};  // of Send: flags, length and data behind the identifier
+  std::vector<uint8_t> bytes{};  // of Send: flags, length and data after the identifier
 };
 
 // A saved state: what leads from time 0 to it.

@@ -1,5 +1,5 @@
 // An open plant: its world, the record of what was done to it, and its signals by number. A state is saved as the record
-// and restored by doing it again; so is the trace hash found by who has not watched from the beginning.
+// and restored by doing it again; the trace hash is computed by running again from the start.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// A plant with the library's hands and ears in it: everything that is made anew when a state is restored.
+// A plant with the library's hands and ears in it: everything that is rebuilt when a state is restored.
 #pragma once
 
 #include <memory>

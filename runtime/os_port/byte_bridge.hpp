@@ -33,7 +33,7 @@ class ByteBridge : public Bridge {
   virtual bool has_room() const = 0;
   // `at` is virtual time.
   virtual void arrive(const ByteArrival& byte) = 0;
-  // What the user is told while there is no room, behind the port's name.
+  // What the user is told while there is no room, after the port's name.
   virtual std::string crowded() const = 0;
 
   bool gone(const PortError& error);

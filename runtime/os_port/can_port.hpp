@@ -23,7 +23,7 @@ struct CanArrival {
 
 class CanPort : public Port {
  public:
-  // Queues the frame behind those that wait, and sends what it can. A frame that finds the queue full is
+  // Queues the frame after those that wait, and sends what it can. A frame that finds the queue full is
   // lost, counted and told. Frames sent never come back through receive().
   virtual void send(const Frame& frame) = 0;
 

@@ -7,7 +7,7 @@
 
 namespace ipos::runtime {
 
-// Behind "is no name of a port": both kinds, as the user may have meant the other one.
+// After "is no name of a port": both kinds, as the user may have meant the other one.
 extern const std::string_view kPortNames;
 
 // Before the path of a pseudo-terminal.
@@ -19,7 +19,7 @@ enum class PortKind : uint8_t { Can, Serial };
 // else.
 PortKind kind_of_port(std::string_view name);
 
-// Without what stands behind an @: "/dev/ttyUSB0" of "/dev/ttyUSB0@16ms".
+// Without what stands after an @: "/dev/ttyUSB0" of "/dev/ttyUSB0@16ms".
 std::string device_path(std::string_view name);
 
 // A path, or a file of this name in the current folder. Anything else may be meant to be in /dev. On Windows COM1 and up.

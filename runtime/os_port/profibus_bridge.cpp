@@ -49,7 +49,7 @@ void ProfibusBridge::begin_first() {
   queue_.schedule(std::max(queue_.now(), arrivals_.front().at), source_, *this, 0);
 }
 
-// Behind what goes on on the line, with the idle time that a request wants; an answer to the frame before begins within
+// After what goes on on the line, with the idle time that a request wants; an answer to the frame before begins within
 // it.
 void ProfibusBridge::on_event(Time now, uint32_t, uint64_t) {
   const Time idle = line_.at(line_.quiet_since() + profibus::kSynBits);

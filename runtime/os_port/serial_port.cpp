@@ -90,7 +90,7 @@ class Device final : public BytePort {
   PortNotes notes_;
 };
 
-// "/dev/ttyUSB0@16ms": path and latency; nothing when what stands behind the @ is no number of milliseconds.
+// "/dev/ttyUSB0@16ms": path and latency; nothing when what stands after the @ is no number of milliseconds.
 struct DeviceName {
   std::string path;
   Time latency = 0;

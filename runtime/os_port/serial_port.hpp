@@ -35,7 +35,7 @@ class BytePort : public Port {
   // (ours).
   virtual tl::expected<size_t, PortError> receive(std::span<ByteArrival> into) = 0;
 
-  // False: parity is neither sent nor checked; whoever needs it has only the block check.
+  // False: parity is neither sent nor checked; only the block check protects the data then.
   virtual bool has_parity() const = 0;
 
   // True: each byte takes its time on the wire once it is handed over, so bytes may be handed over early.

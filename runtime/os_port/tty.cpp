@@ -38,7 +38,7 @@ const BaudRate* find_baud(uint32_t baud) {
 // Of the protocols here, and of USB adapters (ours).
 constexpr uint32_t kSlowest = 9'600, kFastest = 4'000'000;
 
-// Half duplex by the driver: it switches the transmitter on for our bytes and off behind the last one.
+// Half duplex by the driver: it switches the transmitter on for our bytes and off after the last one.
 bool switch_rs485(int descriptor) {
   serial_rs485 rs485{};
   rs485.flags = SER_RS485_ENABLED | SER_RS485_RTS_ON_SEND;

@@ -10,7 +10,7 @@ namespace ipos::runtime {
 class Backoff {
  public:
   bool due(Time tick) const { return tick >= at_; }
-  // `next` is the tick behind the one in which it failed.
+  // `next` is the tick after the one in which it failed.
   void fail(Time next, uint32_t longest) {
     pause_ = std::min(2 * pause_, longest);
     at_ = next + pause_ * kMillisecond;

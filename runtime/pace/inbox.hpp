@@ -16,14 +16,14 @@ class Inbox {
 
   bool full() const { return posted_ == kMost; }
 
-  // A telegram that came behind the tick at `after`, in the order of time.
+  // A telegram that came after the tick at `after`, in the order of time.
   void post(Time after, TelegramReader& reader, size_t number, const TelegramData& data) {
     assert(!full());
     if (read_ == posted_) next_ = after;
     telegrams_[posted_++] = {after, &reader, number, data};
   }
 
-  // The tick behind which the next one came; kNever for none.
+  // The tick after which the next one came; kNever for none.
   Time next() const { return next_; }
 
   void read_next() {

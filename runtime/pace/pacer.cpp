@@ -68,7 +68,7 @@ bool Pacer::run_to(Time last) {
 
 void Pacer::resume() { plan(queue_.now()); }
 
-// Behind the tick at `now`: what is due is sent, and the next event is the next tick, the end of the silence
+// After the tick at `now`: what is due is sent, and the next event is the next tick, the end of the silence
 // or the next telegram.
 void Pacer::plan(Time now) {
   const Time telegram = timed_.send(now);

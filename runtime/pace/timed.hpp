@@ -16,7 +16,7 @@ class Timed {
   // Pacer::resume() says when it has come to its end.
   virtual bool tick(Time now) = 0;
 
-  // Sends what is due behind the tick at `now`. Returns the next tick that sends something; kNever for none.
+  // Sends what is due after the tick at `now`. Returns the next tick that sends something; kNever for none.
   virtual Time send(Time now) = 0;
 
   // --- asked of a lazy one only ---
@@ -25,7 +25,7 @@ class Timed {
   // Does `most` ticks at once, or as many of them as it can, and returns how many. 0: nothing has changed, and
   // the next one is tick().
   virtual Ticks advance(Time first, Ticks most) = 0;
-  // For how many of the ticks from `first` on nobody can notice when they are executed, but for what is sent.
+  // How many ticks from `first` on may run late unnoticed, telegrams aside.
   virtual Ticks silence(Time first) = 0;
   // advance() may leave what only a reader needs; this does it.
   virtual void settle() = 0;

@@ -118,7 +118,7 @@ canopen::UnitStatus CanopenPort::status(Time /*now*/) {
   return {status, (status & kFaultBit) != 0, false};
 }
 
-// Behind operational the drive stops rapidly until process data come again (ours): control word and setpoints 0.
+// After operational the drive stops rapidly until process data come again (ours): control word and setpoints 0.
 void CanopenPort::state_changed(Time now, canopen::State state) {
   if (canopen::has_pdo(state) || !std::exchange(exchanges_, false)) return;
   output_ = {};

@@ -8,7 +8,7 @@
 namespace ipos::runtime {
 namespace {
 
-constexpr uint64_t kServiceTag = 0x1000;  // behind those of the process data
+constexpr uint64_t kServiceTag = 0x1000;  // after those of the process data
 constexpr size_t kGatewayChannelOctets = 8;
 constexpr size_t kDriveWords = std::tuple_size_v<ProcessWords>;
 constexpr size_t kDriveOctets = 2 * kDriveWords;

@@ -67,7 +67,7 @@ class Plant final {
   Time next_time() const { return queue_.next_time(); }  // of the next event
 
   // For what joins the plant from outside, before the first event runs: its events, and the number that puts
-  // them behind those of all others.
+  // them after those of all others.
   EventQueue& queue() { return queue_; }
   uint32_t next_source() { return next_source_++; }
 

@@ -46,7 +46,7 @@ std::vector<PlantSignal> match(const Plant& plant, std::string_view pattern) {
   };
   for (const auto& station : plant.stations()) {
     const std::string& name = station->config().name;
-    // Names of stations may contain dots themselves: every dot may be the one behind the name.
+    // Names of stations may contain dots themselves: every dot may be the one after the name.
     bool named = false;
     for (size_t dot = pattern.find('.'); dot != std::string_view::npos && !named;
          dot = pattern.find('.', dot + 1)) {

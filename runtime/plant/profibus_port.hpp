@@ -29,7 +29,7 @@ class ProfibusPort final : public StationPort,
   void power_off() override { card_.station().power_off(); }
   void power_on();
 
-  // Behind the tasks, at the times it asks for: the fault that Slave_Diag shows is taken over. Returns the next one.
+  // After the tasks, at the times it asks for: the fault that Slave_Diag shows is taken over. Returns the next one.
   Time tick(Time now) override;
 
   profibus::InterfaceCard& card() { return card_; }

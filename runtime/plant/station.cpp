@@ -47,7 +47,7 @@ void Station::power_on() {
   pacer_.start();
 }
 
-// The bus ports are off the line until the next power-on makes them anew.
+// The bus ports are off the line until the next power-on creates them again.
 void Station::power_off() {
   if (!powered_) return;
   pacer_.touch();

@@ -91,7 +91,7 @@ class Station final : private Timed, private TaskRunner {
   void use_pace(Pace pace) { pacer_.use(pace); }
   // It must outlive the run. What is written between two ticks it finds in the station itself, which then is not behind.
   void add_watcher(DriveWatcher& watcher) { watchers_.push_back(&watcher); }
-  // Ticks are still to be executed; whoever reads the station does it first.
+  // Ticks are pending; a read executes them first.
   bool behind() const { return pacer_.behind(); }
   // How its next ticks are done.
   ManyTicks::Way way() const { return ticks_.way(); }

@@ -7,7 +7,7 @@ namespace ipos::runtime {
 
 class StationPort {
  public:
-  // Behind the tick at `now`: sends what is due, with the variables as they are now. Returns the next tick that
+  // After the tick at `now`: sends what is due, with the variables as they are now. Returns the next tick that
   // sends something; kNever for none.
   virtual Time tick(Time now) = 0;
   // The unit has no power: nothing is heard or sent any more. The line is told first, as frames that were waiting

@@ -30,7 +30,7 @@ class Surroundings final : private EventTarget {
   void start();
 
   // While the plant runs: one more stimulus, or anything else that acts from outside. Both happen at the
-  // beginning of the millisecond of their time, or of the next one if that has begun, behind what is due
+  // beginning of the millisecond of their time, or of the next one if that has begun, after what is due
   // then already.
   void add(const SignalPort& port, const Stimulus& stimulus);
   void act(Time at, std::function<void()> action);

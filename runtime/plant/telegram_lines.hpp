@@ -63,10 +63,10 @@ struct TelegramField {
 };
 
 std::span<const TelegramField> telegram_fields();
-// Bytes behind the end count as 0.
+// Bytes after the end count as 0.
 int64_t number_in(std::span<const uint8_t> data, const TelegramField& field);
 
-// "sbus.013.PO2"; whoever calls it sets `read`.
+// "sbus.013.PO2"; the caller sets `read`.
 PlantSignal telegram_signal(const Bus& bus, std::string_view identity, std::string_view word,
                             std::string meaning, size_t bits);
 

@@ -127,7 +127,7 @@ void read_faults(PlantReader& reader, const toml::table& root);
 void read_surroundings(PlantReader& reader, const toml::table& root);  // stimulus, wire, switch
 void read_expectations(PlantReader& reader, const toml::table& root);
 
-// Parts of them that a test file has, too. Signal, action and times of a stimulus, but for station and `at`.
+// Parts of them that a test file has, too. Signal, action and times of a stimulus, without station and `at`.
 bool read_stimulus(PlantReader& reader, const toml::table& table, std::string_view what, Stimulus& stimulus);
 void read_fault(PlantReader& reader, const toml::table& table);  // adds it to the result
 

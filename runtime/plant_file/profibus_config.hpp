@@ -30,7 +30,7 @@ struct ProfibusUse {
   std::optional<bool> terminator{};           // the one of the card, for `ipos bus plan` and the journal
 };
 
-// New outputs, as octets from the first or, with the words alone, behind the parameter channel.
+// New outputs, as octets from the first or, with the words alone, after the parameter channel.
 struct ProfibusOutput {
   Time at = 0;
   size_t slave = 0;  // in the order of the file

@@ -26,7 +26,7 @@ SerialConfig read_serial(PlantReader& reader, const toml::table& table) {
   return config;
 }
 
-// The two digits behind the point, as the MOVITRAC 07 manual writes versions: 15 for .15.
+// The two digits after the point, as the MOVITRAC 07 manual writes versions: 15 for .15.
 void read_firmware(PlantReader& reader, const toml::table& table, uint8_t& version) {
   const toml::node* node = table.get("firmware");
   int32_t value = 0;

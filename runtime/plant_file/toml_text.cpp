@@ -1,5 +1,5 @@
 // A scanner that knows texts and comments of TOML, open brackets, and where a value stands. It is right up to the
-// first mistake of a text; behind that the parser reads no further than the end of a word.
+// first mistake of a text; after that the parser reads no further than the end of a word.
 #include "runtime/plant_file/toml_text.hpp"
 
 #include <fmt/format.h>
@@ -100,7 +100,7 @@ class Scanner {
     }
   }
 
-  // \ and the character behind it; in a text of several lines a \ at the end of one takes all blanks behind it along.
+  // \ and the character after it; in a text of several lines a \ at the end of one takes all blanks after it along.
   void take_escape(bool several_lines) {
     step(1);
     if (at_ < text_.size() && !is_beyond_ascii(text_[at_]) && !is_one_of(text_[at_], " \t\r\n"))

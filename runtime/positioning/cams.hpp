@@ -31,7 +31,7 @@ class CamSources {
 // GSCAM at `structure`: sets or clears its bit once.
 bool run_standard_cam(uint32_t structure, std::span<int32_t> h, CamSources& sources);
 
-// GSCAM_EXT; the structure is read anew every time.
+// GSCAM_EXT; the structure is read again every time.
 class ExtendedCams {
  public:
   static constexpr size_t kOutputs = 8;
@@ -41,7 +41,7 @@ class ExtendedCams {
 
   struct Status {
     bool referenced;
-    uint64_t ms;  // of the run: the first four outputs are made anew every millisecond, the others every 4
+    uint64_t ms;  // of the run: the first four outputs are computed every millisecond, the others every 4
   };
   // One millisecond. False: a structure leads to no variable; it is stopped.
   bool tick(std::span<int32_t> h, CamSources& sources, const Status& status);

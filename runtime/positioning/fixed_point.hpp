@@ -46,7 +46,7 @@ constexpr Rate rate_of_speed(int64_t mrpm, EncoderFactor factor) {
                            (Wide{234'375} * factor.numerator));
 }
 // Rounded to the nearest, halves away from 0. The unit is 2^32 x denominator: to divide by its parts one
-// behind the other gives the same whole number. With a numerator of 15 bits (P942) the amount has less than
+// after the other gives the same whole number. With a numerator of 15 bits (P942) the amount has less than
 // 96, so 64 are left for the second one. Both parts of the factor are above 0.
 constexpr int64_t speed_of_rate(Rate rate, EncoderFactor factor) {
   static_assert(Wide{16} << kRateBits == Wide{1} << 32);

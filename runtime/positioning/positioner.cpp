@@ -132,7 +132,7 @@ void Positioner::rest() {
   at_limit_ = false;
   lag_ = 0;
   if (target_follows_) drop_target();
-  // Interrupted, it begins anew.
+  // Interrupted, it starts again.
   if (reference_.active()) reference_.start(settings_.reference_type, reference_.zero_pulse());
   reference_failed_ = false;
 }

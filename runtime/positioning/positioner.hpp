@@ -76,14 +76,14 @@ class Positioner {
   // Before the axis moves: sensors belong to where it is now.
   PositioningOrder tick(const PositioningInputs& inputs);
   // Nothing can act: the mode is one without positioning, nothing is under way and nothing has just happened.
-  // Then idle() is tick() with settings and inputs that are the same but for the speed, which it orders.
+  // Then idle() is tick() with the same settings and inputs except the speed, which it orders.
   bool idles() const {
     return !inputs_.possible && !reference_.active() && follower_.silent() && !touch_probes_.probe(0).fresh &&
            !touch_probes_.probe(1).fresh && !has_events();
   }
   void idle();
   // The last tick() has gone on with its plan, or rested at the end of it. Then go_on() is tick() with
-  // settings and inputs that are the same but for the speed; the speed it orders.
+  // the same settings and inputs except the speed, which it orders.
   bool goes_on() const;
   int32_t go_on();
   // idle() and observe() for several ms at once, where nobody looks at the order, and for how many of them
@@ -221,7 +221,7 @@ class Positioner {
   bool at_limit_ = false;                  // moving into a limit switch, already reported
   bool given_up_ = false;                  // the travel, for that
 
-  // Ordered during a reference travel, for behind it.
+  // Ordered during a reference travel, for after it.
   enum class Pending : uint8_t { None, Absolute, Relative, Modulo };
   Pending pending_ = Pending::None;
   int64_t pending_value_ = 0;

@@ -56,7 +56,7 @@ void Positioner::run_reference() {
   target_ = setpoint();
 }
 
-// The reference point gets the number P900; the axis stops behind it.
+// The reference point gets the number P900; the axis stops after it.
 void Positioner::finish_reference(int32_t reference_point) {
   const int32_t before = actual();
   const int32_t now = wrapped(int64_t{before} - reference_point + settings_.reference_offset);

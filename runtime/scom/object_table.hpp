@@ -109,7 +109,7 @@ class ObjectTable {
 
   ObjectRequest request(ObjectKind kind, uint32_t variable, std::span<const int32_t> h) const;
 
-  // SCOM: sets the object up and stores the result, but for an acyclic one that is accepted: its frame is to
+  // SCOM: sets the object up and stores the result, except for an accepted acyclic one: its frame is to
   // be sent and the status set by note_acyclic().
   ObjectVerdict define(const ObjectRequest& request, std::span<int32_t> h);
   static Frame acyclic_frame(const ObjectRequest& request, std::span<const int32_t> h);
@@ -133,7 +133,7 @@ class ObjectTable {
     }
   }
 
-  // The same object by object: so many are sent, when the n-th is due behind `tick`, and its frame.
+  // The same object by object: so many are sent, when the n-th is due after `tick`, and its frame.
   size_t sending() const { return state_.started ? state_.cyclic_count : 0; }
   int64_t next_due(size_t n, int64_t tick) const;
   Frame frame(size_t n, std::span<const int32_t> h) const {

@@ -43,7 +43,7 @@ class Door final {
   }
   // They stay as they are until somebody writes, or the port wants repeated frames again.
   bool variables_rest() const { return pacer_.rests(); }
-  // Behind variables(): to write this one and the next.
+  // After variables(): to write this one and the next.
   std::span<int32_t> variables_to_write(uint32_t first) const {
     if (!pacer_.behind() || ticks_.minds(first)) return touch().variables();
     return unit_.variables();

@@ -27,7 +27,7 @@ struct JournalEntry {
 
 class Journal {
  public:
-  // Is called before a note: who is late with what comes before it makes up for that.
+  // Called before a note, so that stations that are behind add their earlier notes first.
   void ask_first(std::function<void()> latecomers) { latecomers_ = std::move(latecomers); }
 
   // A text that the station has already said is not repeated: a cyclic cause gives one entry.

@@ -93,7 +93,7 @@ bool ManyTicks::is_still_steady() {
          (!unit_.has_variables() || noted_.same(unit_.variables()));
 }
 
-// Behind the tasks of a steady tick: something has happened that a part of the unit must see.
+// After the tasks of a steady tick: something has happened that a part of the unit must see.
 bool ManyTicks::must_look() {
   return unit_.server().has_reasons() || unit_.has_fresh_fault() ||
          (!is_quiet() && (commands_ != positioning_commands() || !noted_.same(unit_.variables())));
@@ -223,7 +223,7 @@ void ManyTicks::find_reach(Time first) {
 }
 
 // Nothing the unit does reaches anybody before its next telegram. A fault of the program would: it takes back
-// telegrams that wait, and when it is reset the program, started anew, calls the bus. It is not reset in time
+// telegrams that wait, and when it is reset the restarted program calls the bus. It is not reset in time
 // where the program does not order it.
 bool ManyTicks::can_be_late(bool waits) const {
   const vm::Machine* machine = unit_.machine();

@@ -217,7 +217,7 @@ inline bool PositioningService::written(std::span<const int32_t> h) const {
          mirrors_written(h);
 }
 
-// Where nothing that an order follows is other than in the one before, a travel goes on with its plan, and
+// If no input of an order has changed, a travel goes on with its plan, and
 // who idles goes on to do so.
 const PositionControl& PositioningService::order(Time now, std::span<int32_t> h, uint32_t syncs) {
   if (!followed_ || !(*followed_ == Followed{drive_.changes(), changes_}) || written(h))

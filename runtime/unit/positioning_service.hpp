@@ -38,7 +38,7 @@ class PositioningService {
   // In every millisecond, of the program's choice: an extended cam controller runs.
   bool writes_variables() const { return cams_run_ && extended_cams_.runs(); }
 
-  // What a millisecond leaves behind, but for what it shows.
+  // State after a millisecond, without displayed values.
   struct Left {
     explicit Left(const PositioningService& service)
         : positioner(service.positioner_), reported(service.reported_) {}
@@ -143,7 +143,7 @@ class PositioningService {
   PositionControl ordered_;
   std::array<int32_t, 6> probed_{};  // H502 to H507
   uint32_t changes_ = 0;
-  // How often what an order follows, besides variables, had changed by the last one that was made anew; there
+  // The count of changes of what an order depends on, besides variables, at the last computed order; there
   // only where the next ones need not be while it is the same. Settings are what the drive decides by, too.
   struct Followed {
     uint32_t drive = 0;
@@ -155,7 +155,7 @@ class PositioningService {
   std::bitset<kPositioningEvents> reported_;  // in the last millisecond
   // Of each kind the last one; nothing: not by a command, but by writing a variable or an input.
   std::array<std::optional<uint32_t>, kPositioningCauses> ordered_at_;
-  uint32_t setting_version_ = 0;  // of the parameters, behind the last command that has set one
+  uint32_t setting_version_ = 0;  // of the parameters, after the last command that has set one
 };
 
 }  // namespace ipos::runtime

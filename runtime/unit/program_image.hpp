@@ -13,7 +13,7 @@
 namespace ipos::runtime {
 
 // Or that it is "refused: ..." and why, for the user: the container is damaged, a symbol names variables that the unit does not have,
-// which whoever shows it would read, or a name has control characters, which would act where it is shown.
+// which a viewer would read, or a name has control characters, which would act on the terminal that shows it.
 tl::expected<vm::Image, std::string> read_program_image(std::span<const uint8_t> bytes);
 
 }  // namespace ipos::runtime

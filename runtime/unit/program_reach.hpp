@@ -1,5 +1,5 @@
 // What the program of a unit can still do, starting from where its tasks stand now (vm/sched/outlook.hpp).
-// It stays true until the program is started anew.
+// It stays true until the program is restarted.
 #pragma once
 
 #include <cstddef>

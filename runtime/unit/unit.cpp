@@ -78,7 +78,7 @@ void Unit::raise_events() {
   error_seen_ = error;
 }
 
-// A program that a fault has stopped begins anew when the fault is reset, by whatever (ours); its variables
+// A program that a fault has stopped starts again when the fault is reset by any means (ours); its variables
 // keep their values. Where the program memory has been changed meanwhile, what it holds now begins.
 void Unit::restart_after_reset(Time now) {
   const uint32_t resets = drive().resets();

@@ -38,7 +38,7 @@ struct InputLine {
 
 class UnitInputs {
  public:
-  // To be written at once, not kept: what the lines say together is found anew after this.
+  // To be written at once, not kept: after this the lines are combined again.
   InputLine& line(size_t n) {
     known_ = false;
     return lines_[n];

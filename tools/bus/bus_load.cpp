@@ -58,7 +58,7 @@ std::string seconds(Time time) {
 
 std::string name_of(const runtime::LoggedIdentifier& id) { return runtime::id_text(id.id, id.extended); }
 
-// With its meaning behind a row.
+// With its meaning after a row.
 std::string with_meaning(std::string row, const std::string& meaning) {
   if (!meaning.empty()) row.insert(row.size() - 1, "  " + meaning);
   return row;

@@ -26,7 +26,7 @@ std::string stamp(Time time) {
 
 void Monitor::take(const runtime::LogEntry& entry) {
   ++seen_;
-  // A node is known by what was said before, so its words go on behind what is not shown.
+  // A node is known by what was said before, so its words go on after what is not shown.
   const runtime::Description description = words_.describe(entry.bus, entry.frame);
   if (!filters_.can.passes(entry.frame) || full()) return;
   ++shown_;

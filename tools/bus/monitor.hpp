@@ -40,7 +40,7 @@ class Monitor {
   void take(const runtime::ProfibusEntry& entry);
   void take(runtime::Time time, const std::string& line, const profibus::Reception& reception);
   // Frames or bytes that were lost before they could be read. Losses in a row are shown once, with their sum
-  // behind.
+  // after.
   void lost(runtime::Time time, const std::string& line, uint64_t count, const char* what);
   // An error of the bus. Equal ones in a row are shown once and counted.
   void bus_error(runtime::Time time, const std::string& line, const std::string& text);

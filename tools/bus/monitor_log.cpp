@@ -55,7 +55,7 @@ class LogFile {
     return std::string_view(text_).substr(from, (end == std::string::npos ? text_.size() : end) - from);
   }
 
-  // The file has become shorter: somebody began it anew.
+  // The file has become shorter: somebody started it again.
   bool begun_anew() {
     struct stat now {};
     const off_t place = lseek(descriptor_.get(), 0, SEEK_CUR);

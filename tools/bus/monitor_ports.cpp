@@ -48,7 +48,7 @@ class Stamps {
 };
 
 // Bytes of a port to telegrams. Bytes read in one go stand without the pauses that were between them, so a
-// start character right behind a complete telegram begins the next one (ours).
+// start character right after a complete telegram begins the next one (ours).
 class SerialListener {
  public:
   SerialListener(Monitor& monitor, const std::string& name, uint32_t baud)

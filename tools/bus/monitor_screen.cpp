@@ -24,7 +24,7 @@ winsize terminal_size() {
   return size;
 }
 
-// Each line is cleared behind its end, and so is all below.
+// Each line is cleared after its end, and so is all below.
 std::string over(const std::string& text) {
   std::string out = "\033[H";
   for (const char c : text) out += c == '\n' ? std::string("\033[K\r\n") : std::string(1, c);

@@ -15,7 +15,7 @@ enum class MonitorSource : uint8_t { Log, Can, Serial };
 // By the name: a file or "-" is a log, see docs/guide/ports.md for the others. Throws for a path where nothing is.
 MonitorSource monitor_source(const std::string& name);
 
-// Exit codes. `duration` is time on the clock; in a log that is not followed, time in the log behind its
+// Exit codes. `duration` is time on the clock; in a log that is not followed, time in the log after its
 // first frame. Nothing is ever sent to a port.
 int monitor_can(Monitor& monitor, const std::string& port, uint32_t baud, runtime::Time duration);
 int monitor_serial(Monitor& monitor, const std::string& port, uint32_t baud, runtime::Time duration);

@@ -145,7 +145,7 @@ std::string fish_completion(const Verb& program) {
   std::string out =
       fmt::format("# Completion of {0} for fish, printed by `{0} completion fish`.\n", program.name());
   each_verb(program, "", [&](const Verb& verb, const std::string& path) {
-    // Behind these words, and behind none of the verbs that could follow them.
+    // After these words, and after none of the verbs that could follow them.
     std::string behind = "true";
     std::vector<std::string> parts{""};
     for (const char c : path)

@@ -1,5 +1,5 @@
 // A file is looked at before it is opened, as opening a device or a pipe may have effects or block; and once
-// more behind it, as another one may stand there by then.
+// more after it, as another one may stand there by then.
 #include "tools/cli/files.hpp"
 
 #include <fmt/format.h>

@@ -99,7 +99,7 @@ const CLI::App& innermost(const CLI::App& app) {
   return verbs.empty() ? app : innermost(*verbs.front());
 }
 
-// Says what is wrong with the words of the command line; `words` are those behind the program's name.
+// Says what is wrong with the words of the command line; `words` are those after the program's name.
 void tell_mistake(const CLI::App& app, const CLI::ParseError& error, std::span<char* const> words) {
   const CLI::App& verb = innermost(app);
   const bool lacks_verb = !verb.get_subcommands({}).empty();

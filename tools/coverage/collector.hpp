@@ -29,7 +29,7 @@ class Collector final : private runtime::CommandRunner {
  private:
   struct Tally {
     vm::Image image;
-    std::vector<uint32_t> next;  // of each command the one behind it
+    std::vector<uint32_t> next;  // of each command the one after it
     std::vector<bool> calls;     // what it jumps to is a function
     std::vector<CommandCount> counts;
     std::array<bool, vm::kContexts> called{};  // the last command of the context was a call

@@ -18,7 +18,7 @@ using compiler::CodeItem;
 using vm::Flow;
 using vm::Opcode;
 
-// One copy of a function of the source. Copies have the same commands at the same offsets, but for the
+// One copy of a function of the source. Copies have the same commands at the same offsets, except the
 // temporaries in them; `first` is where the first one begins.
 struct Copy {
   std::string_view name;
@@ -68,7 +68,7 @@ class Fold {
     return next == image_.lines.begin() ? nullptr : &*(next - 1);
   }
 
-  // Where a way leads, behind jumps alone.
+  // Where a way leads, after jumps alone.
   Place place(uint32_t address) const {
     constexpr int kLongestChain = 64;  // a ring of jumps has no end
     for (int n = 0; n < kLongestChain && address < image_.code.size(); ++n) {

@@ -11,7 +11,7 @@ namespace ipos::tools::coverage {
 
 struct CommandCount {
   uint64_t executed = 0;
-  uint64_t passed = 0;   // went on with the command behind it
+  uint64_t passed = 0;   // went on with the command after it
   uint64_t entered = 0;  // was called here, or started here as a task or an interrupt
 };
 

@@ -122,7 +122,7 @@ void Console::go(Motion motion, bool backward, const std::string& count) {
   run(debugger_->order_for(motion, current_, backward));
 }
 
-// Behind Debugger::run another process may go on, which knows nothing of locals: only members are used.
+// After Debugger::run another process may go on, which knows nothing of locals: only members are used.
 void Console::run(const Order& order) {
   motion_ = order.motion;
   Stop stop = debugger_->run(order);

@@ -85,7 +85,7 @@ class Console final : public FrontEnd {
   std::string last_line_;  // an empty line repeats it
   Motion motion_ = Motion::Continue;
   int more_ = 0;         // steps of that kind to go
-  uint32_t listed_ = 0;  // line behind the last one listed
+  uint32_t listed_ = 0;  // line after the last one listed
   size_t told_ = 0;      // entries of the journal
   std::map<std::string, std::vector<std::string>> sources_;
 };

@@ -13,7 +13,7 @@
 namespace ipos::tools::debug {
 namespace {
 
-// A pause behind a further order ends the run in front of that order after this time on the clock (ours); a loaded machine
+// A pause after a further order ends the run in front of that order after this time on the clock (ours); a loaded machine
 // reaches the breakpoints of a short run before.
 constexpr std::chrono::seconds kLongestWait{5};
 constexpr int kTaskNumbers = 4;  // thread = station x this + task + 1, as 0 is none
@@ -137,7 +137,7 @@ void DapServer::output(const std::string& text) {
   event("output", {{"category", "console"}, {"output", text}});
 }
 
-// Behind run() this may be another process: only members are used.
+// After run() this may be another process: only members are used.
 void DapServer::go() {
   const Order order = *order_;
   order_.reset();
@@ -206,7 +206,7 @@ bool DapServer::keep_going() {
   return frame_seen_.empty() && !stop_is_asked();
 }
 
-// What ends this run, the end of the input at last, stands in the queue in front of the next order; what stands behind one is meant for that. If this
+// What ends this run, the end of the input at last, stands in the queue in front of the next order; what stands after one is meant for that. If this
 // run does not come to an end by itself, it ends for that, too: nothing the editor has sent waits for ever.
 bool DapServer::stop_is_asked() const {
   const auto stop = std::find_if(queue_.begin(), queue_.end(), stops_running);

@@ -101,7 +101,7 @@ class DapServer final : public FrontEnd, private runtime::BusObserver {
   int64_t column_for_client(uint32_t column) const { return int64_t{column} - (columns_from_1_ ? 0 : 1); }
   std::string path_for_client(const std::string& path) const;
 
-  // A command by number; below 0 and behind the program stands what fills up a view of commands.
+  // A command by number; below 0 and after the program stands what fills up a view of commands.
   struct CommandPlace {
     uint32_t station;
     int64_t address;
@@ -135,7 +135,7 @@ class DapServer final : public FrontEnd, private runtime::BusObserver {
   std::map<int, std::pair<std::string, uint32_t>> sources_;  // of source breakpoints: file, line asked for
   std::vector<int> function_points_;                         // breakpoints by the name of a function
   std::vector<int> fault_points_;                            // watchpoints on the faults of drives
-  // Frames to stop at, as their text or behind the name of their bus; while time goes on.
+  // Frames to stop at, as their text or after the name of their bus; while time goes on.
   std::vector<std::pair<int, std::string>> frame_points_;
   bool forward_ = false;
   int frame_id_ = 0;        // of the frame that has come

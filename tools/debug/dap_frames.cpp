@@ -87,7 +87,7 @@ Json DapServer::stack_trace(const Json& arguments) {
   return {{"stackFrames", all}, {"totalFrames", frames.size()}};
 }
 
-// Addresses rise, also of what fills up in front of the first command and behind the last: editors search in them.
+// Addresses rise, also of what fills up in front of the first command and after the last: editors search in them.
 Json DapServer::disassemble(const Json& arguments) {
   const auto place = command_of_reference(arguments.at("memoryReference").get<std::string>(),
                                           arguments.value("offset", int64_t{0}));

@@ -92,7 +92,7 @@ Json DapServer::scope_values(uint32_t station, int scope, bool hex) const {
   return all;
 }
 
-// Behind the prefix, "", "left." or "all[": what has more parts is a structure, and stands there once.
+// After the prefix, "", "left." or "all[": what has more parts is a structure, and stands there once.
 Json DapServer::named_values(uint32_t station, const std::string& prefix, bool hex) {
   Json all = Json::array();
   std::vector<std::string> structures;

@@ -17,7 +17,7 @@ namespace ipos::tools::debug {
 // The plant as at power-on, each time.
 using MakePlant = std::function<std::unique_ptr<runtime::Plant>()>;
 
-// Whoever talks to the user. Its state goes with the session when another process goes on.
+// A front end that talks to the user. Its state goes with the session when another process goes on.
 class FrontEnd {
  public:
   virtual ~FrontEnd() = default;
@@ -26,7 +26,7 @@ class FrontEnd {
   virtual bool keep_going() = 0;                     // asked once a virtual millisecond; false: stop
   virtual void output(const std::string& text) = 0;  // of a logpoint
 
-  // For who does more than to stop and go on. The plant was made anew; and a millisecond of it has passed, whatever it
+  // For front ends with state of their own. The plant was rebuilt; and a millisecond of it has passed, whatever it
   // is run for.
   virtual void built(runtime::Plant& /*plant*/) {}
   virtual void passed(runtime::Time /*now*/) {}

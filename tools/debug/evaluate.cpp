@@ -232,7 +232,7 @@ class Reader {
     return index;
   }
 
-  // The variable `index` behind this one; programs reach it by a computed index, too.
+  // The variable `index` after this one; programs reach it by a computed index, too.
   std::optional<ValuePlace> moved(ValuePlace place, int32_t index, const std::string& name) const {
     const uint32_t variables = plant_.stations()[place.station]->config().unit->variables;
     if (index < 0 || place.number + vm::bits(index) >= variables) return std::nullopt;

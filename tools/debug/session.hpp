@@ -33,7 +33,7 @@ struct Breakpoint {
   uint64_t hits = 0;
 };
 
-// Stops behind a change of a variable or parameter, whoever has changed it.
+// Stops after a change of a variable or parameter, no matter what changed it.
 struct Watchpoint {
   int id = 0;
   uint32_t station = 0;

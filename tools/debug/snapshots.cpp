@@ -116,7 +116,7 @@ std::optional<std::string> Snapshots::take(const Position& now) {
     // A new line, as the other end belongs to who goes on from here.
     std::array<int, 2> next{};
     const pid_t going_on = connected(next) ? fork() : -1;
-    if (going_on < 0) {  // no room for another one: whoever asked goes the longer way
+    if (going_on < 0) {  // no room for another one: the caller takes the longer way
       for (const int end : next)
         if (end > 0) close(end);
       write_all(line, &kCannot, 1);

@@ -96,7 +96,7 @@ int32_t read_value(const runtime::Plant& plant, const ValuePlace& place) {
     case ValueKind::Signal: return static_cast<int32_t>(place.signal->read());
     case ValueKind::Fault: break;
   }
-  // Behind the command that faults the drive does not know of it yet.
+  // After the command that faults the drive does not know of it yet.
   const uint8_t fault = station.fault();
   return fault == 0 && station.machine() != nullptr ? station.machine()->fault().number : fault;
 }

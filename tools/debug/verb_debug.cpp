@@ -31,7 +31,7 @@ namespace {
 volatile std::sig_atomic_t stop_asked = 0;
 void on_stop(int) { stop_asked = 1; }
 
-// Calls of the system that a command makes go on behind Ctrl-C.
+// Calls of the system that a command makes go on after Ctrl-C.
 void catch_stop() {
   struct sigaction action {};
   action.sa_handler = on_stop;
@@ -97,7 +97,7 @@ class LineInput {
     }
   }
 
-  // `open` is null for a script, which no Ctrl-C starts anew.
+  // `open` is null for a script, which no Ctrl-C restarts.
   std::optional<std::string> next_of(const sigset_t* open) {
     for (;;) {
       if (const size_t end = rest_.find('\n'); end != std::string::npos) {

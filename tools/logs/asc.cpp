@@ -73,7 +73,7 @@ class AscReader {
     return give(fields, *channel, frame, line);
   }
 
-  // Behind "CANFD": channel, direction, identifier, name of the frame or nothing, bit rate switch, error state, DLC, number of
+  // After "CANFD": channel, direction, identifier, name of the frame or nothing, bit rate switch, error state, DLC, number of
   // bytes, bytes, duration, length, flags.
   tl::expected<void, FieldError> fd_line(Fields fields, size_t line) {
     const auto channel = whole<unsigned>(fields.next());

@@ -1,5 +1,5 @@
 // What candump prints on a terminal, which people save and send: "  can0  203   [8]  31 00 20 7E", with a time of -ta, -tz
-// or -tA in front, and with -x a direction behind the name. Without times every frame has second 0 of 1970, "no time".
+// or -tA in front, and with -x a direction after the name. Without times every frame has second 0 of 1970, "no time".
 #include <chrono>
 
 #include "tools/logs/fields.hpp"

@@ -29,7 +29,7 @@ std::optional<LeftOut> left_out_of(std::string_view row) {
 }
 
 // Of candump, and what people write between its lines; canplayer passes over them, too. In the terminal form the words of
-// an error frame stand in lines of their own, behind a tabulator.
+// an error frame stand in lines of their own, after a tabulator.
 bool is_comment(std::string_view row) {
   const std::string_view first = Fields(row).next();
   return first.starts_with('#') || first.starts_with("//") ||

@@ -53,7 +53,7 @@ struct LogReader {
   std::function<void(LogPlace, const std::string& message)> note = [](LogPlace, const std::string&) {};
 };
 
-// All of a log in order. Text goes on behind a bad line; a binary log ends where it is damaged.
+// All of a log in order. Text goes on after a bad line; a binary log ends where it is damaged.
 void read_log(std::string_view bytes, const LogReader& reader);
 
 // A line of LogForm::Lines.

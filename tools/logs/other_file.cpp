@@ -62,7 +62,7 @@ std::optional<std::string> other_file(std::string_view begin) {
     return kUtf16;
   if (begin.find('\0') != std::string_view::npos) return "binary data";
   const std::string_view row = begin.substr(0, begin.find_first_of("\r\n"));
-  // Sentences of a serial log have commas, too, with blanks behind them.
+  // Sentences of a serial log have commas, too, with blanks after them.
   constexpr std::ptrdiff_t kLeastCommas = 3;
   const bool is_table =
       row.find(", ") == std::string_view::npos && row.find_first_of("([|") == std::string_view::npos;

@@ -51,7 +51,7 @@ class PacketReader {
   }
 
   // Of "any": the protocol tells whether it is CAN (LINKTYPE_LINUX_SLL, _SLL2). The identifier has the byte order of the
-  // machine that captured, as Wireshark reads it, but for those who write it as in a capture of one interface.
+  // machine that captured, as Wireshark reads it, except from programs that write it as in a capture of one interface.
   void cooked(size_t protocol, size_t head) {
     const Bytes bytes(packet_.data, true);
     if (!bytes.has(0, head)) return too_short("a packet without its head");

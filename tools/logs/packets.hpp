@@ -1,4 +1,4 @@
-// What a packet of a capture holds (pcap and pcapng), by its link type: CAN of SocketCAN, also behind the head of a capture of
+// What a packet of a capture holds (pcap and pcapng), by its link type: CAN of SocketCAN, also after the head of a capture of
 // all interfaces (SLL), and the telegrams that ipos writes under link types for private use.
 #pragma once
 
@@ -25,7 +25,7 @@ struct Packet {
 void read_packet(const Packet& packet, const LogReader& reader);
 
 // Of an interface in a capture, for logs of lines and for people: as one word, and cut where a stranger made it long. A cut one
-// has the number of the interface behind, so that two of them stay two.
+// has the number of the interface after, so that two of them stay two.
 std::string interface_name(std::string_view name, size_t number);
 
 // Seconds since 1970 and nanoseconds; nothing for a time later than this project knows.

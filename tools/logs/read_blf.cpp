@@ -124,7 +124,7 @@ class BlfReader {
     return true;
   }
 
-  // Where the parts of a message stand behind the head of its object, and which flag is that of a remote frame.
+  // Where the parts of a message stand after the head of its object, and which flag is that of a remote frame.
   struct Layout {
     size_t dlc, data;
     uint32_t remote;

@@ -10,7 +10,7 @@
 namespace ipos::tools::lsp {
 namespace {
 
-// The text between the first two quotes behind `label`; empty without.
+// The text between the first two quotes after `label`; empty without.
 std::string quoted_behind(std::string_view text, std::string_view label) {
   const size_t at = text.find(label);
   if (at == std::string_view::npos) return {};

@@ -13,7 +13,7 @@ using compiler::Diagnostic;
 using compiler::Severity;
 
 // Places of one program, which may be thousands. Lines of the compiler end with LF; the editor takes a CR alone for the
-// end of a line, too, and behind the first of those the text is counted anew for each place.
+// end of a line, too, and after the first of those the text is counted again for each place.
 class Ranges {
  public:
   explicit Ranges(Encoding encoding) : encoding_(encoding) {}

@@ -44,7 +44,7 @@ std::string describe(const Program& program, const compiler::IndexedSymbol& symb
                      std::optional<uint32_t> number);
 std::string describe_system_function(std::string_view name);
 std::string describe_parameter(const stdlib::Parameter& parameter);
-// The comment behind a declaration, else those above it.
+// The comment after a declaration, else those above it.
 std::string comment_of(const compiler::IndexedSymbol& symbol);
 
 }  // namespace ipos::tools::lsp

@@ -1,4 +1,4 @@
-// What an editor draws on a text: folds, colours by meaning, numbers behind declarations, and lenses above what can be
+// What an editor draws on a text: folds, colours by meaning, numbers after declarations, and lenses above what can be
 // run. Programs here, plants and tests in plant_marks.cpp.
 #include <fmt/format.h>
 
@@ -93,7 +93,7 @@ Json folding_ranges(Workspace& workspace, const Json& params) {
   return out;
 }
 
-// The number of its first variable behind each declared name.
+// The number of its first variable after each declared name.
 Json inlay_hints(Workspace& workspace, const Json& params) {
   Json out = Json::array();
   const Program* program = nullptr;

@@ -52,7 +52,7 @@ std::vector<PlantError> errors_of(const std::string& path, const std::string& te
   return runtime::all_mistakes(result.plant, std::move(programs), std::move(result.errors));
 }
 
-// Where the cursor stands: in which table, at a key or behind '='.
+// Where the cursor stands: in which table, at a key or after '='.
 struct Spot {
   std::shared_ptr<const std::string> source;
   std::string_view text;                // of source
@@ -150,7 +150,7 @@ std::vector<std::string> known_at(const std::string& path, const Spot& spot, con
   return known;
 }
 
-// What the reader takes behind the key: it is shown a number that no key has.
+// What the reader takes after the key: it is shown a number that no key has.
 std::optional<runtime::AllowedValues> allowed_at(const std::string& path, const Spot& spot) {
   for (const PlantError& error : errors_of(path, with_row(spot, fmt::format("{} = {}", spot.key, INT32_MIN))))
     if (error.place.line == spot.line + 1 && error.allowed) return error.allowed;

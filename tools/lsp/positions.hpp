@@ -19,7 +19,7 @@ inline constexpr std::string_view kHeaderScheme = "ipos:/";
 std::string path_of(std::string_view uri);
 std::string uri_of(std::string_view path);
 
-// Without "/../" and the like, also behind the scheme of a document that is no file: two spellings are one document.
+// Without "/../" and the like, also after the scheme of a document that is no file: two spellings are one document.
 std::string tidy(const std::string& path);
 
 // Of a name of the language.

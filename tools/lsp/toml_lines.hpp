@@ -17,10 +17,10 @@ bool is_test(std::string_view path);
 std::string_view table_of(std::string_view row);
 // What stands before '='; empty without one.
 std::string_view key_of(std::string_view row);
-// The first text behind '=', without its quotes.
+// The first text after '=', without its quotes.
 std::string_view value_of(std::string_view row);
 
-// The texts in quotes of a row, each with the key it stands behind (also in inline tables and lists).
+// The texts in quotes of a row, each with the key it stands after (also in inline tables and lists).
 struct TextInRow {
   std::string_view key;
   std::string_view text;  // without quotes, a piece of the row
@@ -31,7 +31,7 @@ std::vector<TextInRow> texts_in(std::string_view row);
 struct TomlTable {
   std::string_view name;
   size_t first = 0;  // row of the head
-  size_t end = 0;    // behind the last row
+  size_t end = 0;    // after the last row
 };
 // The rows before the first head are a table without name.
 std::vector<TomlTable> tables_of(const std::vector<std::string_view>& lines);

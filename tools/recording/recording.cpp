@@ -236,7 +236,7 @@ void Recorder::take_points(Course& course, const std::vector<runtime::Time>& row
 void Recorder::take_changes(RecordedPart& part) {
   std::vector<Change>& by_signal = by_signal_;
   by_signal.clear();
-  std::vector<size_t> places(part.times.size() + 1);  // of the changes of a row, from the row behind it on
+  std::vector<size_t> places(part.times.size() + 1);  // of the changes of a row, from the row after it on
   for (size_t n = 0; n < courses_.size(); ++n) {
     Course& course = courses_[n];
     const auto add = [&](size_t row, int64_t sample) {

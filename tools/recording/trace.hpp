@@ -12,7 +12,7 @@ namespace ipos::tools {
 // What it was made with must outlive it.
 class TraceWriter : public PartReader {
  public:
-  virtual void finish() {}  // behind the last part
+  virtual void finish() {}  // after the last part
 };
 
 using TraceForm = std::unique_ptr<TraceWriter> (*)(std::ostream& out, const std::vector<Signal>& signals,

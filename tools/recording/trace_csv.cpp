@@ -79,7 +79,7 @@ class CsvTrace final : public TraceWriter {
   std::vector<std::string> cells_;   // as the signals
   std::vector<std::string> frames_;  // of this row, as the tracks
   bool has_frames_ = false;          // there are some in this row
-  std::string row_;                  // behind the time
+  std::string row_;                  // after the time
   std::string text_;                 // of this part
 };
 

@@ -146,7 +146,7 @@ class TraceFile {
     recorder->give_to(*writer_, plots);
   }
   void flush() { file_.flush(); }
-  // Behind Recorder::finish().
+  // After Recorder::finish().
   void finish() {
     if (writer_) writer_->finish();
     file_.finish();

@@ -26,7 +26,7 @@ constexpr size_t kMostWatchedValues = 100;
 constexpr auto kTimePeriod = 50ms;
 constexpr int kLettersAtATime = 8;  // a client that floods does not hold the topics up
 constexpr auto kAttends = 20ms;     // at a time, to what comes; then the drive has its turn
-// Of a client. The server reads on, whatever waits here: a stop may be behind it (server.hpp).
+// Of a client. The server reads on, whatever waits here: a stop may be after it (server.hpp).
 constexpr size_t kMostWaitingOrders = kMostUnanswered / 2;
 constexpr size_t kLongestJog = 512;  // bytes of a message that may be one
 constexpr auto kFarewell = 15s;      // to a drive that does not answer

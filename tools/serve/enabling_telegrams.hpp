@@ -13,7 +13,7 @@
 
 namespace ipos::tools::serve {
 
-// Process data of MOVILINK that could enable whoever gets them.
+// Process data of MOVILINK that could enable the drive that receives them.
 struct EnablingTelegram {
   uint8_t address = 0;            // of the unit
   const char* unasked = nullptr;  // why no unit can be asked whether it monitors them

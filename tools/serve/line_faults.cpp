@@ -1,4 +1,4 @@
-// CAN lines have faults of their wiring and of single frames; PROFIBUS lines of single frames, whoever sends them.
+// CAN lines have faults of their wiring and of single frames; PROFIBUS lines of single frames, no matter which station sends them.
 #include "tools/serve/line_faults.hpp"
 
 #include <fmt/format.h>

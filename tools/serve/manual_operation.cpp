@@ -73,7 +73,7 @@ void ManualOperation::hold(uint16_t client, double rpm, WallClock::time_point ar
     enter(State::GivingBack);
     throw;
   }
-  // Whoever waits for the answer has not been able to say more meanwhile.
+  // The caller that waits for the answer could not say more meanwhile.
   heard_ = WallClock::now();
   waits_until_ = heard_ + kJogHolds;
   enter(State::Moving);

@@ -1,6 +1,6 @@
 // Manual operation of a real drive (MDX60B/61B 4.4.3): it moves while somebody holds a button, and not longer. The line
 // becomes the source of control and setpoint, the drive's own monitoring of process data is on as long, and both are
-// given back behind a stop that the drive has answered.
+// given back after a stop that the drive has answered.
 //
 // What a hand does is noted at once, also between two questions to the drive; turn() lets the drive follow. It is called
 // before every single question, so no order of anybody keeps a stop waiting.
@@ -85,7 +85,7 @@ class ManualOperation {
   // A client after whose jog the words go on, where the drive's monitoring was on before: it would tell a fault.
   std::optional<uint16_t> rests_for_;
   WallClock::duration period_{};         // of the words
-  WallClock::time_point waits_until_{};  // for the first word of a hand, behind what taking over has taken
+  WallClock::time_point waits_until_{};  // for the first word of a hand, after what taking over has taken
   WallClock::time_point next_words_{};
   WallClock::time_point next_try_{};  // to give a value back
   WallClock::time_point heard_{};     // the last answer to process data

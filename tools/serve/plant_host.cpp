@@ -165,7 +165,7 @@ void PlantHost::stop(const std::string& reason, const std::string& text) {
   stopped_ = {{"reason", reason}, {"text", text}};
 }
 
-// Behind the debugger's motions this may be another process: only members are used.
+// After the debugger's motions this may be another process: only members are used.
 void PlantHost::carry_out() {
   now_ = std::exchange(next_, {});
   halted_ = telegram_seen_ = false;
@@ -285,7 +285,7 @@ void PlantHost::take(const Letter& letter) {
   if (ports_.joined()) desk_.send(client, ports_event());
 }
 
-// A port that goes away is for the journal, for the page and for who has started the server.
+// A port that goes away is told to the journal, the page and the terminal that started the server.
 void PlantHost::look_at_ports() {
   for (const std::string& note : ports_.take_notes()) fmt::print(stderr, "ipos: warning: {}\n", note);
   for (const PlantPorts::Change& change : ports_.take_changes(plant_->now())) {

@@ -38,7 +38,7 @@ bool has_analog(const Station& station, std::string_view terminal) {
   return terminal == "AI1" || (terminal == "AI2") != m07;
 }
 
-// Of units without the parameter there is no such terminal, but for the two that have a fixed function.
+// Of units without the parameter there is no such terminal, except the two with a fixed function.
 Json terminals(const Station& station, std::span<const Terminal> all, const char* fixed) {
   const stdlib::ParameterTable& table = stdlib::parameter_table(*station.config().unit);
   Json list = Json::array();

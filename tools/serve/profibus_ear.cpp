@@ -21,7 +21,7 @@ using runtime::Time;
 constexpr size_t kMostOctets = profibus::kLongestLength + 6;  // SD2: 68 LE LE 68 .. FCS 16
 constexpr uint8_t kNoAccessPoint = 64;                        // they are 0 to 63
 
-// Where FC stands: behind DA and SA.
+// Where FC stands: after DA and SA.
 constexpr size_t control_place(Delimiter kind) { return kind == Delimiter::SD2 ? 6 : 3; }
 
 // Questions about the station, which no service answers; and answers without data.
@@ -92,7 +92,7 @@ class ProfibusEar final : public BusEar, private profibus::LineObserver, private
     return *octets;
   }
 
-  // Without the token and any manners, but behind the idle time that a request wants.
+  // Without the token and any manners, but after the idle time that a request wants.
   void send(const Arguments& a) override {
     const std::vector<uint8_t> octets = read(a.text("data", ""));
     if (octets.empty()) throw Mistake("a frame needs octets");

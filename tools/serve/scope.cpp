@@ -310,7 +310,7 @@ std::optional<std::string> Scope::value_triggers() {
   return fmt::format("{} is {:.{}f}", trigger_.signal->name, value, trigger_.signal->decimals);
 }
 
-// Behind a millisecond. Everything is looked at in every one, so that an edge is one when the scope is armed later.
+// After a millisecond. Everything is looked at in every one, so that an edge is one when the scope is armed later.
 void Scope::look(Time now) {
   const auto seen = std::exchange(seen_, std::nullopt);
   const std::optional<std::string> value = value_triggers();
@@ -330,7 +330,7 @@ void Scope::fire(Time at, const std::string& why) {
 
 // --- what is shown ---
 
-// The first sample at or behind a time.
+// The first sample at or after a time.
 uint64_t Scope::number_at(int64_t us) const {
   return std::clamp(static_cast<uint64_t>((us + 999) / 1000), first(), end());
 }

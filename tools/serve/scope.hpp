@@ -114,7 +114,7 @@ class Scope final {
   State state_ = State::Free;
   bool single_ = false;
   runtime::Time armed_at_ = 0;
-  uint64_t done_end_ = 0;  // behind the last sample of a complete recording
+  uint64_t done_end_ = 0;  // after the last sample of a complete recording
   std::optional<runtime::Time> triggered_at_;
   std::string trigger_text_;
   std::optional<std::pair<runtime::Time, std::string>> seen_;  // what the source watches for

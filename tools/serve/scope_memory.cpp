@@ -76,7 +76,7 @@ bool ScopeMemory::push(uint64_t number, std::span<const int64_t> samples) {
     for (Column& column : columns_) column.from = number;
   }
   if (shared_->reached <= number) shared_->reached = number + 1;
-  // The copy that fills in looks at `reached` behind its sign, so one of the two sees the other.
+  // The copy that fills in looks at `reached` after its sign, so one of the two sees the other.
   for (int n = 0; n < kPatience && number >= kRing && shared_->filling == number - kRing + 1; ++n) sched_yield();
   for (size_t n = 0; n < columns_.size(); ++n) put(columns_[n], number, samples[n], begins_);
   end_ = number + 1;

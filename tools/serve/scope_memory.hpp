@@ -37,7 +37,7 @@ class ScopeMemory {
   void use(std::vector<Column> columns);
   const std::vector<Column>& columns() const { return columns_; }
 
-  // What is known must be without holes: behind one it begins anew. False then.
+  // What is known must be without holes: after a hole it starts again. False then.
   bool push(uint64_t number, std::span<const int64_t> samples);
   // The first sample that is kept once there are those up to before `end`.
   static uint64_t first_kept(uint64_t end);

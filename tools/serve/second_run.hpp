@@ -13,7 +13,7 @@ class SecondRun {
  public:
   // `body` is what the copy does; it never comes back here.
   explicit SecondRun(const std::function<void()>& body);
-  // Ends the copy: behind this it writes no more. Another process than the one that began it leaves it alone.
+  // Ends the copy: after this it writes no more. Another process than the one that began it leaves it alone.
   ~SecondRun();
   SecondRun(const SecondRun&) = delete;
   SecondRun& operator=(const SecondRun&) = delete;

@@ -211,7 +211,7 @@ class Server::Listener {
   std::array<char, kLetterHead> head_{};
   Letter letter_;
   std::deque<std::string> to_host_;
-  std::list<Connection*> asking_;  // of one request; who has been silent for longest stands in front
+  std::list<Connection*> asking_;  // of one request; the longest silent one is in front
   Arrival arrival_;
   asio::steady_timer heartbeat_{io_};
   uint16_t last_client_ = 0;
@@ -386,13 +386,13 @@ class Server::Listener::Connection : public std::enable_shared_from_this<Connect
   bool ended_ = false;
 };
 
-// Whoever has said nothing for longest goes: silent ones keep nobody out.
+// The longest silent client is dropped: silent ones keep nobody out.
 void Server::Listener::begin(tcp::socket socket) {
   if (asking_.size() + sockets_.size() >= kMostConnections && !asking_.empty()) asking_.front()->end();
   std::make_shared<Connection>(*this, std::move(socket))->read();
 }
 
-// An old client may still have a number when they begin anew.
+// An old client may still have a number when numbers start again.
 std::optional<uint16_t> Server::Listener::free_number() {
   if (sockets_.size() >= kMostClients) return std::nullopt;
   do

@@ -17,7 +17,7 @@ struct ServerOptions {
   std::optional<uint16_t> rather = {};  // of the free ones
   std::string token;
   std::string_view page;
-  uint16_t last_number = UINT16_MAX;  // of clients; then they begin anew at 1
+  uint16_t last_number = UINT16_MAX;  // of clients; then numbers start again at 1
 };
 
 // Limits (ours).

@@ -17,7 +17,7 @@ std::unique_ptr<Tab> make_bus_tab(PlantHost& host);
 std::unique_ptr<Tab> make_program_tab(PlantHost& host);
 std::unique_ptr<Tab> make_journal_tab(PlantHost& host);
 
-// They come behind CAN and RS-485 lines wherever lines have numbers.
+// They come after CAN and RS-485 lines wherever lines have numbers.
 std::vector<runtime::ProfibusBus*> profibus_lines(const runtime::Plant& plant);
 
 std::vector<std::unique_ptr<Tab>> make_tabs(PlantHost& host);

@@ -1,4 +1,4 @@
-// Of each line a ring of bytes with one telegram behind the other, and a ring of where each begins.
+// Of each line a ring of bytes with one telegram after the other, and a ring of where each begins.
 #include "tools/serve/trace_memory.hpp"
 
 #include <algorithm>
@@ -10,7 +10,7 @@ struct TraceMemory::Head {
   uint64_t number;
   runtime::Time time;
   uint32_t id;
-  uint16_t data, words;  // bytes behind it
+  uint16_t data, words;  // bytes after it
   uint8_t bus, reason;
   bool extended, remote, error;
 };

@@ -14,7 +14,7 @@ struct Element {
   bool fits;
 };
 
-// `[..]` at `at`; without its end the bracket is a letter. A `]` right behind the opening stands for itself.
+// `[..]` at `at`; without its end the bracket is a letter. A `]` right after the opening stands for itself.
 Element bracket(std::string_view pattern, size_t at, char letter) {
   size_t n = at + 1;
   const bool inverted = n < pattern.size() && (pattern[n] == '!' || pattern[n] == '^');

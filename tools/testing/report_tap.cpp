@@ -32,7 +32,7 @@ std::string scalar(std::string_view text) {
   return out;
 }
 
-// Lines of a literal block, moved to the left together; the reader of `prove` knows no number behind the |, no empty
+// Lines of a literal block, moved to the left together; the reader of `prove` knows no number after the |, no empty
 // line and no first line that stands deeper. What has one of them, or a character that only an escape can say, is a
 // scalar.
 std::string block(std::string_view key, const std::string& text) {

@@ -2,7 +2,7 @@
 //
 // Time of the script and time of the plant: a step at T is planned while the plant stands right before T, so
 // that it acts in the millisecond T; an expectation at T looks when everything of T has happened. A step
-// behind it then acts in the next millisecond.
+// after it then acts in the next millisecond.
 #include "tools/testing/run_test.hpp"
 
 #include <fmt/format.h>

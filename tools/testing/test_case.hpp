@@ -101,7 +101,7 @@ using Step = std::variant<Wait, runtime::Stimulus, ProcessDataStep, SendStep, Aw
 struct Item {
   FilePlace place;
   std::string note;        // what it is for, in the words of the file
-  std::optional<Time> at;  // else `after` behind the item before
+  std::optional<Time> at;  // else `after` after the item before
   Time after = 0;
   bool at_end = false;    // when every program has ended
   bool in_plant = false;  // it stands in the plant file

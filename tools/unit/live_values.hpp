@@ -16,7 +16,7 @@ struct LiveItem {
   bool hex = false;
 };
 
-// "P000", "8318", "H420", "lTrDataLow@PROGRAM.IPC", each with ":hex" behind it if wanted. A structure or
+// "P000", "8318", "H420", "lTrDataLow@PROGRAM.IPC", each with ":hex" after it if wanted. A structure or
 // array stands for all its members. Without "@" a symbol is looked up in `image`, the program of a simulated
 // station; it may be null. What is not known is a Failure.
 std::vector<LiveItem> live_items(const stdlib::UnitType& unit, const std::vector<std::string>& names,

@@ -20,7 +20,7 @@ namespace {
 using runtime::FileUse;
 
 struct ParamFlags {
-  std::vector<std::string> words;  // PLANT.toml and what comes behind it
+  std::vector<std::string> words;  // PLANT.toml and what comes after it
   std::string station;
   std::string unit;
   LinkFlags link;

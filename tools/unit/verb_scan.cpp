@@ -45,7 +45,7 @@ std::string fault_of(const AccessReply& reply) {
   return fmt::format("F{:02} {}", number, row ? row->name : "unknown fault");
 }
 
-// What a master of class 2 may ask each of them, whoever has locked it.
+// What a master of class 2 may ask each of them, no matter which master locked it.
 int scan_profibus(const ScanFlags& flags) {
   DpStation line(flags.link);
   const int last = std::min<int>(flags.to < 0 ? profibus::kLastStation : flags.to, profibus::kLastStation);

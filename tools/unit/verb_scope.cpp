@@ -92,7 +92,7 @@ class ScopeRun {
     write(index::kScopeControl, 1);
   }
 
-  // "P000>500 rpm": the value stands behind the sign, in words of the first channel.
+  // "P000>500 rpm": the value stands after the sign, in words of the first channel.
   void order_trigger() {
     auto edge = Scope::Edge::None;
     if (!flags_.trigger.empty()) {
@@ -109,7 +109,7 @@ class ScopeRun {
     write(index::kScopeTrigger, static_cast<int32_t>(edge));
   }
 
-  // The time of the first sample behind the trigger is 0.
+  // The time of the first sample after the trigger is 0.
   std::string csv() {
     std::string text = "time_ms";
     for (const Target& channel : channels_) text += fmt::format(",{}", name_of(table(), channel));

@@ -146,7 +146,7 @@ uint64_t Machine::idle_ticks(const std::array<uint32_t, kTasks>& budgets, Idle& 
   for (const TaskContext& t : contexts_)
     if (t.state == TaskState::Waiting && t.wait_ms != 0) ticks = std::min<uint64_t>(ticks, t.wait_ms - 1);
   if (ticks == 0) return 0;
-  // Variables that somebody looks at, but for the loops that are still to come.
+  // Variables that something reads, apart from the loops still to come.
   Variables changed, used;
   const uint32_t end = std::min<uint32_t>(kLastSystemVariable + 1, program_.limits().variables);
   for (uint32_t n = kFirstSystemVariable; n < end; ++n) used[n] = true;

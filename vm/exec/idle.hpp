@@ -26,7 +26,7 @@ struct Idle {
 
   uint64_t ticks = 0;  // 0: the next one may lead somewhere. kIdleForever: no end to it
   bool steady = true;  // no variable changes, not even for a moment
-  uint32_t begun = 0;  // contexts, by then: none has begun anew
+  uint32_t begun = 0;  // contexts, by then: none has restarted
   std::array<Loop, kTasks> loops{};
   // What the loops read and write, and the values of it.
   uint32_t used = 0;

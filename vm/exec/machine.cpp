@@ -329,7 +329,7 @@ Stop Machine::execute(int number, TaskContext& t) {
       else
         start_task(other, bits(b));
       if (t.state == TaskState::Stopped) return Stop::Ended;
-      if (other == number) return Stop::Budget;  // it has started itself anew
+      if (other == number) return Stop::Budget;  // it has restarted itself
       break;
     }
     case Opcode::SetInt: set_interrupt(a, bits(b)); break;
@@ -344,7 +344,7 @@ Stop Machine::execute(int number, TaskContext& t) {
               : host_.execute(host_.self, *this, number, command);
       if (reply.answer == Answer::Fault) return fail(reply.fault, reply.reason);
       if (t.state == TaskState::Stopped) return Stop::Ended;
-      if (t.commands == 0) return Stop::Budget;  // the command has started its own task anew
+      if (t.commands == 0) return Stop::Budget;  // the command has restarted its own task
       if (reply.answer == Answer::Wait) {
         t.state = TaskState::Waiting;
         return Stop::Waiting;

@@ -95,7 +95,7 @@ class Machine {
   // of the state it leaves; else one by one, and `found` is of no more use. Returns the commands executed.
   uint64_t skip_ticks(const std::array<uint32_t, kTasks>& budgets, Idle& found, uint64_t ticks);
 
-  // `ticks` times tick() and run() with these budgets, the tasks one behind the other instead of in turn.
+  // `ticks` times tick() and run() with these budgets, the tasks one after the other instead of in turn.
   // False, and nothing has changed: that is not possible, as something else than variables and jumps would
   // come in between, or without the fast engine. Only for tasks that use no variable another one writes, nor
   // one that anybody else changes in these ticks (vm/sched/outlook.hpp), and not when interrupts have been
@@ -107,7 +107,7 @@ class Machine {
   // An event of task 1 has happened. Without an installed routine nothing follows.
   void raise_event(Event event);
 
-  // The host has finished the command the context waits in: it goes on behind it. A context that no longer
+  // The host has finished the command the context waits in: it goes on after it. A context that no longer
   // waits for the host is left alone.
   void resume(int context);
 

@@ -58,7 +58,7 @@ class Check {
     if (t.state == TaskState::Stopped) return true;
     if (t.task == 0 || t.commands > UINT64_MAX / 2 || !starts(t.pc)) return false;
     if (t.state == TaskState::Ready) return true;
-    // Only a command that waits has one behind it to go on with.
+    // Only a command that waits has one after it to go on with.
     const Opcode opcode = decode(program_.code(), t.pc).instruction.opcode;
     const Flow flow = coding(opcode).flow;
     const bool waits_for_time = opcode == Opcode::WaitH || opcode == Opcode::WaitK;

@@ -168,7 +168,7 @@ struct Fused {
     return good;
   }
 
-  // Whether the variable is written anew at once, without anything between that looks at it.
+  // Whether the variable is written again at once, with no read in between.
   template <class...>
   struct Overwritten {
     static constexpr bool value = false;

@@ -1,6 +1,6 @@
 // Handlers of all operations. Each one jumps to the next: with g++ by an offset that stands in the slot, in
 // units of the alignment of labels; with clang, which does not align them, by a table; else by a switch. The
-// budget is looked at where a jump leads, for the line of commands behind it; when it may not suffice, step()
+// budget is looked at where a jump leads, for the line of commands after it; when it may not suffice, step()
 // does what is left of it command by command.
 #include "vm/fast/engine.hpp"
 
@@ -240,7 +240,7 @@ return Exit::Spent;
 }
 
 // Exactly `budget` commands, at least one, or those in front of one that is left to the reference
-// interpreter. Ends early behind a jump, too, where many are left and would do for the line there. Returns
+// interpreter. Ends early after a jump, too, where many are left and would do for the line there. Returns
 // what is left.
 uint32_t step(const Predecoded& program, TaskContext& t, int32_t* h, uint32_t budget) {
   const Slot* const slots = program.slots();
@@ -316,7 +316,7 @@ leave:
   while (left != 0) {
     if (native != nullptr && left > kFewForNative) {
       const uint32_t need = native->needs[t.pc];
-      if (need == 0) {  // no way in: one command is done here, so that it is found behind it
+      if (need == 0) {  // no way in: one command is done here, so that it is found after it
         if (step(program, t, h, 1) != 0) break;
         --left;
         continue;

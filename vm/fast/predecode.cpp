@@ -168,7 +168,7 @@ void Predecoded::choose() {
   // what stays in a register.
   std::array<uint32_t, 32> cost{};
   const auto cost_at = [&](uint32_t at) -> uint32_t& { return cost[at % cost.size()]; };
-  Chain chain;  // of the command behind
+  Chain chain;  // of the command after
   for (uint32_t at = static_cast<uint32_t>(code.size()); at-- > 0;) {
     if (line_at(at) == 0) continue;
     const Opcode opcode = opcode_at(at);

@@ -27,12 +27,12 @@ union Slot {
     int16_t delta;    // number of the command + 1 - number of the target
     uint16_t bound;   // number of the target + what stands in a line from there on: `left` must reach it
     int16_t offset;   // slots from here to the target
-    uint16_t behind;  // word address behind the command, where a CALL returns to
+    uint16_t behind;  // word address after the command, where a CALL returns to
   };
   Command command;
   Constant constant;
   Route route;
-  std::array<uint16_t, 4> lines;  // behind the slots of the words, see Predecoded
+  std::array<uint16_t, 4> lines;  // after the slots of the words, see Predecoded
 };
 static_assert(sizeof(Slot) == 8);
 

@@ -85,7 +85,7 @@ std::optional<CountedLoop> counted_loop(const Program& program, uint32_t first) 
   return loop;
 }
 
-// With the counter at least `begin` and below `end` all indexes are in these variables. What is tested behind
+// With the counter at least `begin` and below `end` all indexes are in these variables. What is tested after
 // the step keeps it below the limit, and the step keeps it from falling, as it is above 0 and so small that
 // the sum does not overflow.
 std::optional<std::vector<Instruction>> CountedLoop::doubts(uint32_t in, uint32_t count) const {

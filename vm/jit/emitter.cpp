@@ -123,7 +123,7 @@ void Emitter::unchecked_loops() {
   in_range_ = false;
 }
 
-// A command on variables, with the one behind it where two make one. Returns how many.
+// A command on variables, with the one after it where two make one. Returns how many.
 uint32_t Emitter::next(uint32_t n) {
   const Command& behind = program_.commands[n + 1];
   flags_of_ = -1;
@@ -250,7 +250,7 @@ std::optional<Emitter::Decided> Emitter::decide(const std::optional<Known>& know
   return out;
 }
 
-// Behind the command `jump`, which nobody may enter by itself: who did not come through the SET before it may
+// After the command `jump`, which nobody may enter by itself: who did not come through the SET before it may
 // find another value.
 void Emitter::jump_decided(uint32_t jump, const Command& from, const Decided& decided) {
   out_.entries[program_.commands[jump].at] = {};

@@ -43,7 +43,7 @@ struct Entry {
 };
 struct ReturnSite {
   uint32_t offset;
-  uint32_t at;  // word address behind the CALL
+  uint32_t at;  // word address after the CALL
 };
 struct Emitted {
   std::vector<Entry> entries;       // by word address
@@ -110,7 +110,7 @@ class Emitter {
   const std::vector<uint16_t>& pinned() const { return pinned_; }
   // For each word address the way from the table to the code of a return to it.
   void table_of_returns(const asmjit::Label& table, const asmjit::Label& none);
-  // Behind an access: where the code for any other index comes back to.
+  // After an access: where the code for any other index comes back to.
   void finish_access(const Slow& slow);
 
   const Program& program_;

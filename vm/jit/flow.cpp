@@ -68,7 +68,7 @@ void Program::mark() {
 }
 
 // Loops are what lies between a backward jump and its target. A subroutine is as deep as its deepest call,
-// one deeper when it is called from behind, as it may call itself.
+// one deeper when it is called from further down, as it may call itself.
 void Program::nest() {
   const size_t size = commands.size();
   std::vector<uint32_t> end(size, 0);  // of the loop that begins here

@@ -16,7 +16,7 @@ inline constexpr uint32_t kNowhere = UINT32_MAX;
 //
 // Machine code keeps one number: commands left less the `credit` of the command it stands at. Each command
 // has a credit one below that of the command in front of it, so that a line of commands costs nothing; where
-// ways with different credits meet, some of them correct the number. It is negative behind a check exactly
+// ways with different credits meet, some of them correct the number. It is negative after a check exactly
 // when less than `need` are left.
 struct Command {
   Instruction instruction;
@@ -26,11 +26,11 @@ struct Command {
   bool native = false;         // machine code is made of it
   bool joins = false;          // control comes from elsewhere than from the command in front
   bool checks = false;         // the budget is looked at
-  bool called = false;         // begins a subroutine or stands behind a call
+  bool called = false;         // begins a subroutine or stands after a call
   int depth = 0;               // of loops around it; calls count
   int32_t table = -1;          // SETI: where the index most likely leads, if that is known
   int32_t need = 0;
-  int32_t credit = 0;   // behind the check
+  int32_t credit = 0;   // after the check
   int32_t arrival = 0;  // credit in front of the check, for who comes here
 
   int32_t credit_of_arrival() const { return checks ? arrival : credit; }
@@ -57,7 +57,7 @@ struct Program {
 };
 
 // The variables used most, loops weighing more, at most `most` of them; none that is used outside of loops
-// only, and none behind the beginning of a table that is used much more, as it may be an element.
+// only, and none after the beginning of a table that is used much more, as it may be an element.
 std::vector<uint16_t> hottest_variables(const Program& program, size_t most);
 
 }  // namespace ipos::vm::jit

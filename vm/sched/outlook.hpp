@@ -1,5 +1,5 @@
 // What the program of a machine can still do from where its tasks are. The commands a task can reach are
-// closed: whatever happens it executes no other ones, until the program is started anew. So what is missing
+// closed: whatever happens it executes no other ones, until the program is restarted. So what is missing
 // here stays missing.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Follows the rules bit by bit: stuffing up to the end of the CRC, fixed form behind it.
+// Follows the rules bit by bit: stuffing up to the end of the CRC, fixed form after it.
 #include "runtime/bus/can/bit_error.hpp"
 
 #include <algorithm>

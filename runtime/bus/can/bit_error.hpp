@@ -11,12 +11,12 @@ namespace ipos::runtime {
 inline constexpr uint32_t kErrorFlagBits = 6;
 inline constexpr uint32_t kErrorDelimiterBits = 8;
 
-// Bits that a fault disturbs: behind the arbitration field, where a bit error would only lose the
+// Bits that a fault disturbs: after the arbitration field, where a bit error would only lose the
 // arbitration, up to the end of the CRC.
 uint32_t disturbed_bit(const WireBits& bits, bool extended, uint64_t chance);
 
 // Where a receiver of these bits notices an error: at the sixth equal bit, at a dominant bit where the form
-// is fixed, else, unless its CRC fits, behind the acknowledge delimiter. That a wrong CRC fits by chance is
+// is fixed, else, unless its CRC fits, after the acknowledge delimiter. That a wrong CRC fits by chance is
 // left out (ours).
 uint32_t receiver_notices(const WireBits& seen, bool crc_fits);
 
@@ -26,7 +26,7 @@ enum class FirstFlag : uint8_t { Sender, Listener };
 // bits as the listeners see them without any flag.
 uint32_t flags_end(WireBits seen, uint32_t begin, FirstFlag first);
 
-// The same when an error-passive sender falls silent behind bit `last`, which lies before the CRC delimiter.
+// The same when an error-passive sender falls silent after bit `last`, which lies before the CRC delimiter.
 uint32_t silence_end(WireBits seen, uint32_t last);
 
 }  // namespace ipos::runtime

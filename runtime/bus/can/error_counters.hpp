@@ -23,7 +23,7 @@ struct ErrorCounters {
   // count: so a lone station stays on the bus at 128 for ever.
   void not_acknowledged() { transmit += state() == ErrorState::Active ? 8 : 0; }
   void received() { receive = receive > 127 ? 127 : receive - (receive > 0 ? 1 : 0); }
-  // `first`: its own flag was the first one, so it sees a dominant bit behind it.
+  // `first`: its own flag was the first one, so it sees a dominant bit after it.
   void receive_failed(bool first = false) { receive = std::min(receive + (first ? 9U : 1U), 255U); }
 };
 

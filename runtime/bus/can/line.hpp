@@ -64,7 +64,7 @@ class CanLine final : private EventTarget {
 
   void set_baud(NodeId node, uint32_t baud);
   void set_connected(NodeId node, bool connected);
-  void replace(NodeId node, CanNode& by);  // the station behind it has been made anew
+  void replace(NodeId node, CanNode& by);  // the station behind it has been rebuilt
   void restart(NodeId node);               // leaves bus-off at once with cleared counters
   // Leaves bus-off once the node has seen 128 times 11 recessive bits in a row (ISO 11898-1).
   void recover(NodeId node);
@@ -196,7 +196,7 @@ class CanLine final : private EventTarget {
   AcceptanceFilter filter_;
   NodeSet erring_;           // receive counter not 0
   bool recovering_ = false;  // some node may be
-  // No fault is planted, nobody recovers, and whoever sends is acknowledged. False: to be found out.
+  // No fault is planted, no node recovers, and every sender is acknowledged. False: not known yet.
   bool sound_ = false;
   std::vector<LineObserver*> observers_;
   std::vector<CanObserver*> frame_observers_;  // those of them who look at frames

@@ -16,7 +16,7 @@ constexpr std::string_view kEventTexts[] = {
 };
 
 // "sbus: planted fault 'swap': unit2 has high and low interchanged", "... 'cut' is over: the line is cut
-// behind unit1"
+// after unit1"
 std::string describe_fault(const CanLine& line, const LineEvent& event) {
   const FaultType& type = kFaultTypes[event.fault];
   const bool over = event.kind == LineEventKind::FaultEnds;

@@ -76,7 +76,7 @@ void CanLine::switch_fault(Time now, size_t number, bool on) {
     case FaultKind::Short: shorts_ += on ? 1 : ~0U; break;
     case FaultKind::Stuck:
       stuck_ += on ? 1 : ~0U;
-      for (Segment& segment : segments_) {  // behind it an error delimiter and the intermission
+      for (Segment& segment : segments_) {  // after it an error delimiter and the intermission
         segment.recessive_from = static_cast<uint64_t>(now / bit_time_) + 1;
         segment.free_bit = std::max(segment.free_bit, segment.recessive_from + kRecoveryBits);
       }

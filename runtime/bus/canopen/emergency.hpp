@@ -36,7 +36,7 @@ class Emergency final : private Timer::Owner {
 
   void set(Time now, Cause cause, bool present, uint16_t status_word_1);
   void may_send(Time now);  // the state or an entry has changed
-  void reset();             // communication begins anew; what is wrong is so still
+  void reset();             // communication restarts; errors stay
 
  private:
   void on_timer(Time now, uint32_t /*kind*/) override { may_send(now); }

@@ -1,4 +1,4 @@
-// Guarding and heartbeat. Supervision begins with the first request or heartbeat behind the setting, and what
+// Guarding and heartbeat. Supervision begins with the first request or heartbeat after the setting, and what
 // was missed ends with the next one, or when supervision is switched off (the latter ours).
 #include "runtime/bus/canopen/error_control.hpp"
 

@@ -26,7 +26,7 @@ constexpr Connection kTransmit[] = {Connection::TransmitPdo1, Connection::Transm
                                     Connection::TransmitPdo3, Connection::TransmitPdo4};
 
 // Tags of frames: of those with one tag only the latest still waits, so that a line that is dead for a while does not
-// fill the queue. The rest, behind kOfNodes, belongs to the nodes.
+// fill the queue. The rest, after kOfNodes, belongs to the nodes.
 enum Tag : uint64_t { kCommands, kSyncs, kHeartbeats, kOfNodes };
 enum NodeTag : uint64_t { kOutput1, kOutput4 = kOutput1 + 3, kGuardings, kRequests, kNodeTags };
 constexpr uint64_t tag_of(size_t node, uint64_t tag) { return kOfNodes + node * kNodeTags + tag; }

@@ -73,7 +73,7 @@ class Master final : public CanNode, private Timer::Owner {
     Configuring,  // its writes are under way
     Running,      // operational
     Refused,      // a write failed; it is not started
-    Lost          // it did not answer in time; a boot-up begins anew
+    Lost          // it did not answer in time; boot-up starts again
   };
   struct Event {  // an EMCY of a node
     Time time;

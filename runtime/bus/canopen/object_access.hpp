@@ -1,4 +1,4 @@
-// The objects of a node as SDO reaches them: the dictionary with the rules of its entries, and behind it every
+// The objects of a node as SDO reaches them: the dictionary with the rules of its entries, and after it every
 // parameter of the unit under its own index with sub-index 0, four bytes, low byte first (page 55 of 11264926).
 #pragma once
 

@@ -15,7 +15,7 @@ struct Place {
   EventQueue& queue;
   uint32_t source;
   FrameSender& sender;
-  uint64_t tag;  // of the frames of a node: this one and the kTags - 1 behind it
+  uint64_t tag;  // of the frames of a node: this one and the kTags - 1 after it
 };
 inline constexpr uint64_t kTags =
     5;  // one for each transmit PDO, whose latest frame counts, and one for the rest

@@ -10,7 +10,7 @@ namespace {
 
 // A log whose time jumps by days must not make a window for each second of them.
 constexpr Time kLongestGap = 3600 * kSecond;
-// Nor must many jumps together: behind so many windows seconds without frames get none (ours).
+// Nor must many jumps together: after so many windows seconds without frames get none (ours).
 constexpr size_t kMostWindows = 100'000;
 
 }  // namespace

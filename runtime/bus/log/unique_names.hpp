@@ -1,5 +1,5 @@
 // Names in files of others, where fewer letters are allowed than here: what was cut or replaced may be equal to another
-// one then, and gets a number behind it.
+// one then, and gets a number after it.
 #pragma once
 
 #include <cstddef>

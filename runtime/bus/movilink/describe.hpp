@@ -1,5 +1,5 @@
 // MOVILINK and variable telegrams in words and units: "20B read 8318 Speed -> unit1". Names come from a
-// dictionary that whoever knows the plant or the programs fills.
+// dictionary, which the caller fills from the plant or the programs.
 #pragma once
 
 #include <array>

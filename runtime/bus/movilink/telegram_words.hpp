@@ -14,7 +14,7 @@ namespace ipos::runtime {
 // bus.
 std::string parameter_words(const UnitNames* unit, const ParameterTelegram& telegram, bool request);
 
-// "PI STATUS WORD1 0007h, SPEED 1002.2 rpm" behind `what`; without a unit in hexadecimal.
+// "PI STATUS WORD1 0007h, SPEED 1002.2 rpm" after `what`; without a unit in hexadecimal.
 std::string process_words_text(const UnitNames* unit, const std::string& what, bool input,
                                std::span<const uint16_t> words);
 

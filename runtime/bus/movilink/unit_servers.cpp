@@ -1,4 +1,4 @@
-// The parameter channel between telegram and unit, the same on every interface but for one code.
+// The parameter channel between telegram and unit, the same on every interface except for one code.
 #include "runtime/bus/movilink/unit_servers.hpp"
 
 namespace ipos::runtime {

@@ -1,4 +1,4 @@
-// A DP slave as MOVITRAC 31, the cards of MOVIDRIVE and the gateway have it: the whole of DP-V0 behind the frames of layer 2, as a pure machine: frames
+// A DP slave as MOVITRAC 31, the cards of MOVIDRIVE and the gateway have it: the whole of DP-V0 after the frames of layer 2, as a pure machine: frames
 // and times in, answers out. The line, the automatic rate and the delay of the answer are the station's.
 //
 // States and what is not printed (which requests of other masters get RS, what leads back to Wait_Prm) are

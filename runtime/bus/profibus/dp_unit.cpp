@@ -25,7 +25,7 @@ tl::expected<uint32_t, ReturnCode> carry_out(Time now, FieldbusParameters& param
   return parameters.write(now, request.index, request.data);
 }
 
-// The channel of MOVILINK, but for the answer to a wrong length.
+// The MOVILINK channel, except for the answer to a wrong length.
 ParameterTelegram execute_movilink(Time now, runtime::ParameterServer& parameters,
                                    const ParameterTelegram& request) {
   const ParameterTelegram answer = runtime::execute(now, parameters, request, codes::kTypeConflict);
@@ -35,7 +35,7 @@ ParameterTelegram execute_movilink(Time now, runtime::ParameterServer& parameter
 
 }  // namespace
 
-// The answer mirrors the request but for the data and bit 7.
+// The answer mirrors the request except for the data and bit 7.
 ParameterTelegram execute(Time now, FieldbusParameters& parameters, const ParameterTelegram& request) {
   ParameterTelegram answer = request;
   answer.management &= static_cast<uint8_t>(~management::kFailed);

@@ -80,7 +80,7 @@ void FmsObjects::power_on() {
   outputs_.assign(outputs_.size(), 0);
 }
 
-// In mixed mode the words of the DP master, behind its parameter channel; else those written over FMS.
+// In mixed mode the words of the DP master, after its parameter channel; else those written over FMS.
 Octets FmsObjects::outputs(size_t length) const {
   Octets octets = outputs_;
   if (const Configuration* dp = slave_.configuration()) {
@@ -142,7 +142,7 @@ tl::expected<FmsAccessed, ReturnCode> FmsObjects::write_parameter(Time now, uint
   return FmsAccessed{{}, 1};
 }
 
-// The additional code's high octet tells which entry is wrong; those before it are written, those behind not.
+// The additional code's high octet tells which entry is wrong; those before it are written, those after not.
 tl::expected<FmsAccessed, ReturnCode> FmsObjects::write_block(Time now, std::span<const uint8_t> data) {
   const auto entries = decode_block(data);
   if (!entries) return tl::unexpected(fms_errors::kTypeConflict);

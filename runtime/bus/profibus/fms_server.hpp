@@ -43,7 +43,7 @@ class FmsServer {
 
   FmsServer(FmsObjects& objects, const OptionType& option) : objects_(objects), option_(option) {}
 
-  // A master opens connection `cref`. On an open connection it ends it: both have to begin anew.
+  // A master opens connection `cref`. On an open connection this ends it: both sides start again.
   FmsResponse initiate(Time now, uint8_t cref, uint8_t master, const FmsMasterEntry& entry);
   void abort(uint8_t cref) { open_.erase(cref); }
   void power_on() { open_.clear(); }

@@ -13,7 +13,7 @@ namespace ipos::profibus {
 
 class InterfaceCard {
  public:
-  // How long the green LED flickers behind a service of the parameter channel (ours).
+  // How long the green LED flickers after a service of the parameter channel (ours).
   static constexpr Time kFlicker = 100 * runtime::kMillisecond;
 
   InterfaceCard(runtime::EventQueue& queue, uint32_t source, Line& line, std::string name,

@@ -1,5 +1,5 @@
 // The master as a machine of three kinds of event: a frame of its own has gone out, something was heard, or
-// its one timer has run out: the slot time behind a request, or the silence of a lost token.
+// its one timer has run out: the slot time after a request, or the silence of a lost token.
 #include "runtime/bus/profibus/master.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ constexpr uint8_t request_code(FdlRequest request) {
   return static_cast<uint8_t>(control::kRequest | static_cast<uint8_t>(request));
 }
 
-// Behind which a master claims the ring: longer for higher addresses, so that the lowest one does.
+// After which a master claims the ring: longer for higher addresses, so that the lowest one does.
 constexpr Bits silence_of(const MasterSettings& settings) {
   return (6 + 2 * Bits{settings.address}) * settings.slot;
 }
@@ -34,7 +34,7 @@ Master::Master(runtime::EventQueue& queue, uint32_t source, Line& line, std::str
   set_next(settings_.address);
 }
 
-// The GAP begins anew with each new successor.
+// The GAP starts again with each new successor.
 void Master::set_next(uint8_t address) {
   next_ = address;
   gap_ = settings_.address;

@@ -31,7 +31,7 @@ class ProcessImage {
   bool is_frozen() const { return !frozen_.empty(); }
   const Octets& frozen() const { return frozen_; }
 
-  // The following say whether the outputs that act were given anew.
+  // The following say whether the acting outputs were given again.
   bool take(std::span<const uint8_t> octets) {
     buffer_.assign(octets.begin(), octets.end());
     waiting_ = true;

@@ -220,7 +220,7 @@ ipos_plant_status ipos_plant_signal_info_of(ipos_plant* plant, uint32_t signal, 
 
 /* Name number `number`, 0 and up, of what a station has of a kind (not IPOS_PLANT_ANY). Variables: the named ones of its
  * program, a structure or array member by member. `part`: only members of this whole, "TrCycl"; may be null. The name is
- * good until the next call. IPOS_PLANT_NOTHING behind the last. In callbacks. */
+ * good until the next call. IPOS_PLANT_NOTHING after the last. In callbacks. */
 ipos_plant_status ipos_plant_name_at(ipos_plant* plant, uint32_t station, ipos_plant_kind kind, const char* part,
                                      uint32_t number, const char** name);
 
@@ -346,7 +346,7 @@ typedef struct ipos_plant_entry {
   const char* text;
 } ipos_plant_entry;
 
-/* IPOS_PLANT_NOTHING behind the last entry. The texts are good until time passes or the plant changes. In callbacks. */
+/* IPOS_PLANT_NOTHING after the last entry. The texts are good until time passes or the plant changes. In callbacks. */
 ipos_plant_status ipos_plant_journal_at(ipos_plant* plant, size_t number, ipos_plant_entry* entry);
 
 /* The whole state as bytes, the same on every build: what was done to the plant and when. Restoring does it again, from

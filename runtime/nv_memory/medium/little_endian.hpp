@@ -11,7 +11,7 @@ inline void put(std::vector<uint8_t>& out, uint32_t number, int bytes) {
   for (int i = 0; i < bytes; ++i) out.push_back(static_cast<uint8_t>(number >> (8 * i)));
 }
 
-// Reads one number after the other; behind the end `good` is false and numbers are 0.
+// Reads one number after the other; after the end `good` is false and numbers are 0.
 struct LittleEndianReader {
   std::span<const uint8_t> rest;
   bool good = true;

@@ -59,7 +59,7 @@ function LineLoads() {
 }
 
 export function Bus() {
-  // A server that came back, or time that did, begins anew.
+  // When the server or time has gone back, the trace starts again.
   useEffect(follow, [generation.value, hello.value]);
   const kinds = new Map(plant.value?.buses.map((bus) => [bus.name, bus.kind]));
   const chosen = kinds.has(line.value) ? line.value : "";

@@ -54,7 +54,7 @@ function Entry({ entry }: { entry: JournalEntry }) {
 }
 
 export function Journal() {
-  // A server that came back, or time that did, begins anew.
+  // When the server or time has gone back, the journal starts again.
   useEffect(follow, [generation.value, hello.value]);
   const log = useRef<HTMLDivElement>(null);
   const atEnd = useRef(true);
