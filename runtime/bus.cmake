@@ -2,7 +2,7 @@
 
 ipos_layer(clock FOLDERS runtime/clock SOURCES clock/event_queue.cpp)
 ipos_layer(bus FOLDERS runtime/bus
-           SOURCES bus/line_load.cpp
+           SOURCES bus/line/line_load.cpp
                    bus/can/identifier_text.cpp bus/can/frame_bits.cpp bus/can/bit_error.cpp bus/can/line_fault.cpp
                    bus/can/transfer.cpp
                    bus/can/line.cpp bus/can/line_wiring.cpp bus/can/line_report.cpp bus/can/contenders.cpp
@@ -10,13 +10,13 @@ ipos_layer(bus FOLDERS runtime/bus
                    bus/canopen/abort.cpp bus/canopen/object_dictionary.cpp bus/canopen/object_access.cpp
                    bus/canopen/eds.cpp bus/canopen/sdo_server.cpp bus/canopen/pdo.cpp bus/canopen/emergency.cpp
                    bus/canopen/error_control.cpp bus/canopen/node.cpp bus/canopen/sdo_client.cpp bus/canopen/master.cpp
-                   bus/canopen/sdo_master.cpp bus/canopen/dbc_messages.cpp bus/canopen/words.cpp bus/canopen/sdo_words.cpp bus/can_words.cpp bus/bus_words.cpp
+                   bus/canopen/sdo_master.cpp bus/canopen/dbc_messages.cpp bus/canopen/words.cpp bus/canopen/sdo_words.cpp bus/words/can_words.cpp bus/words/bus_words.cpp
                    bus/movilink/parameter_telegram.cpp bus/movilink/return_code.cpp
                    bus/movilink/variable_telegram.cpp bus/movilink/profile.cpp bus/movilink/unit_servers.cpp
                    bus/movilink/sbus_slave.cpp bus/movilink/sbus_master.cpp bus/movilink/sbus_group_master.cpp
                    bus/movilink/sbus_control.cpp bus/movilink/gateway_channel.cpp bus/movilink/sbus_check.cpp bus/movilink/process_words.cpp
                    bus/movilink/unit_words.cpp bus/movilink/telegram_words.cpp bus/movilink/describe.cpp
-                   bus/movilink/describe_serial.cpp bus/movilink/station_filter.cpp bus/movilink/dbc.cpp bus/movilink/dbc_signals.cpp
+                   bus/movilink/describe_serial.cpp bus/movilink/station_filter.cpp bus/dbc/dbc.cpp bus/movilink/dbc_signals.cpp
                    bus/log/bus_load.cpp bus/log/replay.cpp
                    bus/rs485/levels.cpp bus/rs485/line.cpp bus/log/serial_log.cpp bus/log/profibus_log.cpp bus/log/read_serial_log.cpp
                    bus/movilink/serial_telegram.cpp bus/movilink/serial_receiver.cpp bus/movilink/handshake.cpp

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "runtime/bus/bus_words.hpp"
+#include "runtime/bus/words/bus_words.hpp"
 #include "runtime/bus/movilink/describe.hpp"
 #include "runtime/plant/plant.hpp"
 

@@ -14,7 +14,7 @@
 #include "runtime/drive/drive.hpp"
 #include "runtime/nv_memory/kept/retained_memory.hpp"
 #include "runtime/scom/variable_objects.hpp"
-#include "runtime/unit/timers.hpp"
+#include "runtime/services/timers.hpp"
 #include "vm/exec/machine.hpp"
 
 namespace ipos::runtime {
@@ -34,7 +34,7 @@ struct StationServices {
 struct CommandCall {
   const StationServices& services;
   vm::Machine& machine;
-  int context;  // vm/exec/context.hpp
+  int context;  // vm/context/context.hpp
   const vm::Instruction& command;
 
   // What the user has to be told, whatever the answer is.

@@ -11,7 +11,7 @@
 
 #include "runtime/bus/movilink/exchange.hpp"
 #include "runtime/bus/movilink/unit_servers.hpp"
-#include "runtime/unit/journal.hpp"
+#include "runtime/journal/journal.hpp"
 #include "stdlib/unit_types.hpp"
 #include "vm/exec/machine.hpp"
 

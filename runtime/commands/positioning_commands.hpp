@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "runtime/unit/positioning_service.hpp"
+#include "runtime/services/positioning_service.hpp"
 #include "vm/exec/machine.hpp"
 
 namespace ipos::runtime {

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "runtime/commands/command_call.hpp"
-#include "runtime/unit/journal.hpp"
+#include "runtime/journal/journal.hpp"
 #include "vm/image/image.hpp"
 
 namespace ipos::runtime {

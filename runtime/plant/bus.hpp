@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "runtime/bus/can/frame.hpp"
-#include "runtime/bus/line_load.hpp"
-#include "runtime/bus/node_id.hpp"
+#include "runtime/bus/line/line_load.hpp"
+#include "runtime/bus/line/node_id.hpp"
 #include "runtime/clock/event_queue.hpp"
 #include "runtime/plant_file/plant_file.hpp"
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "runtime/bus/canopen/master.hpp"
-#include "runtime/unit/journal.hpp"
+#include "runtime/journal/journal.hpp"
 
 namespace ipos::runtime {
 

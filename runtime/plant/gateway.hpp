@@ -18,7 +18,7 @@
 #include "runtime/bus/profibus/slave_station.hpp"
 #include "runtime/plant/profibus_bus.hpp"
 #include "runtime/plant_file/plant_file.hpp"
-#include "runtime/unit/journal.hpp"
+#include "runtime/journal/journal.hpp"
 
 namespace ipos::runtime {
 

@@ -19,7 +19,7 @@
 #include "runtime/plant/station.hpp"
 #include "runtime/plant/surroundings.hpp"
 #include "runtime/plant_file/plant_file.hpp"
-#include "runtime/unit/journal.hpp"
+#include "runtime/journal/journal.hpp"
 
 namespace ipos::runtime {
 

@@ -8,7 +8,7 @@
 #include "runtime/clock/event_queue.hpp"
 #include "runtime/plant/profibus_bus.hpp"
 #include "runtime/plant_file/plant_file.hpp"
-#include "runtime/unit/journal.hpp"
+#include "runtime/journal/journal.hpp"
 
 namespace ipos::runtime {
 

@@ -13,7 +13,7 @@
 #include "runtime/plant/unit_server.hpp"
 #include "runtime/plant_file/plant_file.hpp"
 #include "runtime/unit/door.hpp"
-#include "runtime/unit/journal.hpp"
+#include "runtime/journal/journal.hpp"
 
 namespace ipos::runtime {
 

@@ -18,7 +18,7 @@
 #include "runtime/plant/unit_server.hpp"
 #include "runtime/scom/variable_objects.hpp"
 #include "runtime/unit/door.hpp"
-#include "runtime/unit/journal.hpp"
+#include "runtime/journal/journal.hpp"
 
 namespace ipos::runtime {
 

@@ -10,7 +10,7 @@
 #include "runtime/bus/rs485/line.hpp"
 #include "runtime/plant/station_port.hpp"
 #include "runtime/plant/unit_server.hpp"
-#include "runtime/unit/journal.hpp"
+#include "runtime/journal/journal.hpp"
 
 namespace ipos::runtime {
 

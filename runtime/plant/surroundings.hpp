@@ -12,7 +12,7 @@
 #include "runtime/clock/event_queue.hpp"
 #include "runtime/plant/signal_port.hpp"
 #include "runtime/plant_file/plant_file.hpp"
-#include "runtime/unit/journal.hpp"
+#include "runtime/journal/journal.hpp"
 
 namespace ipos::runtime {
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <string>
 
-#include "vm/exec/arithmetic.hpp"
+#include "vm/context/arithmetic.hpp"
 #include "vm/exec/machine.hpp"
 #include "vm/fast/predecode.hpp"
 #include "vm/jit/jit.hpp"

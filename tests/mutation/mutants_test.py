@@ -61,7 +61,7 @@ class Layers(unittest.TestCase):
             "vm/exec/idle.cpp": "ipos_engine_tests",
             "runtime/drive/setpoint.cpp": "ipos_drive_tests",
             "runtime/bus/can/line.cpp": "ipos_bus_tests",
-            "runtime/bus/can_words.cpp": "ipos_bus_tests",
+            "runtime/bus/words/can_words.cpp": "ipos_bus_tests",
             "runtime/bus/movilink/serial_master.cpp": "ipos_rs485_tests",
             "runtime/bus/movilink/profile.cpp": "ipos_bus_tests",
             "runtime/scom/object_table.cpp": "ipos_scom_tests",

@@ -1,7 +1,7 @@
 // ipos bus dbc: a DBC file of the variable telegrams, the process data and the CANopen messages of a plant or program.
 #include <fmt/format.h>
 
-#include "runtime/bus/movilink/dbc.hpp"
+#include "runtime/bus/dbc/dbc.hpp"
 #include "tools/bus/bus_verbs.hpp"
 #include "tools/cli/exit_codes.hpp"
 #include "tools/cli/outputs.hpp"

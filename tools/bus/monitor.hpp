@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "runtime/bus/bus_words.hpp"
+#include "runtime/bus/words/bus_words.hpp"
 #include "runtime/bus/log/candump.hpp"
 #include "runtime/bus/log/serial_log.hpp"
 #include "runtime/bus/movilink/describe.hpp"

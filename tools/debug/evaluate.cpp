@@ -7,7 +7,7 @@
 #include <charconv>
 
 #include "tools/debug/values.hpp"
-#include "vm/exec/arithmetic.hpp"
+#include "vm/context/arithmetic.hpp"
 
 namespace ipos::tools::debug {
 namespace {

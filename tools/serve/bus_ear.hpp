@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "runtime/bus/can/line.hpp"
-#include "runtime/bus/can_words.hpp"
+#include "runtime/bus/words/can_words.hpp"
 #include "runtime/bus/movilink/describe.hpp"
 #include "runtime/bus/profibus/line.hpp"
 #include "runtime/bus/rs485/line.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/bus/bus_words.hpp"
+#include "runtime/bus/words/bus_words.hpp"
 #include "tools/testing/result.hpp"
 #include "tools/testing/test_case.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/bus/can_words.hpp"
+#include "runtime/bus/words/can_words.hpp"
 #include "runtime/bus/movilink/serial_receiver.hpp"
 #include "runtime/plant/plant.hpp"
 

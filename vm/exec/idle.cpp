@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <bitset>
 
-#include "vm/exec/arithmetic.hpp"
+#include "vm/context/arithmetic.hpp"
 #include "vm/exec/machine.hpp"
 #include "vm/isa/effects.hpp"
 

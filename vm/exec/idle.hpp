@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-#include "vm/exec/context.hpp"
+#include "vm/context/context.hpp"
 
 namespace ipos::vm {
 

@@ -3,7 +3,7 @@
 // happens meanwhile is not made up for; DISABLE ends all three of task 1.
 #include "vm/exec/interrupts.hpp"
 
-#include "vm/exec/arithmetic.hpp"
+#include "vm/context/arithmetic.hpp"
 #include "vm/exec/machine.hpp"
 
 namespace ipos::vm {

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <type_traits>
 
-#include "vm/exec/arithmetic.hpp"
+#include "vm/context/arithmetic.hpp"
 #include "vm/fast/engine.hpp"
 
 namespace ipos::vm {

@@ -10,7 +10,7 @@
 #include <optional>
 #include <span>
 
-#include "vm/exec/context.hpp"
+#include "vm/context/context.hpp"
 #include "vm/exec/idle.hpp"
 #include "vm/exec/interrupts.hpp"
 #include "vm/host/build.hpp"

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "vm/exec/arithmetic.hpp"
+#include "vm/context/arithmetic.hpp"
 #include "vm/fast/slot.hpp"
 #include "vm/isa/isa.hpp"
 

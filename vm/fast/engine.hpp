@@ -2,7 +2,7 @@
 // (vm/exec), whose work it leaves to it whenever a command needs more than variables.
 #pragma once
 
-#include "vm/exec/context.hpp"
+#include "vm/context/context.hpp"
 #include "vm/fast/native.hpp"
 #include "vm/fast/predecode.hpp"
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "vm/exec/context.hpp"
+#include "vm/context/context.hpp"
 
 namespace ipos::vm::fast {
 

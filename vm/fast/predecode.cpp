@@ -1,7 +1,7 @@
 // Two passes: forward, each command by itself; backward, the best cut of every line into operations.
 #include "vm/fast/predecode.hpp"
 
-#include "vm/exec/arithmetic.hpp"
+#include "vm/context/arithmetic.hpp"
 #include "vm/fast/commands.hpp"
 #include "vm/fast/engine.hpp"
 #include "vm/fast/fill_loop.hpp"

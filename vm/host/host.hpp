@@ -25,7 +25,7 @@ struct HostReply {
 
 struct Host {
   void* self = nullptr;
-  // Carries out one system command. `context` says who executes it (vm/exec/context.hpp), 1..3 are the tasks;
+  // Carries out one system command. `context` says who executes it (vm/context/context.hpp), 1..3 are the tasks;
   // with Answer::Wait it is what to give to Machine::resume. Must not throw and not block.
   HostReply (*execute)(void* self, Machine& machine, int context,
                        const Instruction& command) noexcept = nullptr;

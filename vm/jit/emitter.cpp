@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "vm/exec/arithmetic.hpp"
+#include "vm/context/arithmetic.hpp"
 #include "vm/isa/effects.hpp"
 
 namespace ipos::vm::jit {

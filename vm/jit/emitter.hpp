@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "vm/exec/context.hpp"
+#include "vm/context/context.hpp"
 #include "vm/jit/counted.hpp"
 
 namespace ipos::vm::jit {

@@ -8,7 +8,7 @@
 
 #include "runtime/bus/can/frame.hpp"
 #include "runtime/bus/can/frame_bits.hpp"
-#include "runtime/bus/node_id.hpp"
+#include "runtime/bus/line/node_id.hpp"
 
 namespace ipos::runtime {
 

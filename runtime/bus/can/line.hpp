@@ -21,7 +21,7 @@
 #include "runtime/bus/can/node.hpp"
 #include "runtime/bus/can/node_set.hpp"
 #include "runtime/bus/can/transfer.hpp"
-#include "runtime/bus/line_load.hpp"
+#include "runtime/bus/line/line_load.hpp"
 #include "runtime/clock/event_queue.hpp"
 
 namespace ipos::runtime {

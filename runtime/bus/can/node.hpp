@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "runtime/bus/can/frame.hpp"
-#include "runtime/bus/node_id.hpp"
+#include "runtime/bus/line/node_id.hpp"
 #include "runtime/clock/event_queue.hpp"
 
 namespace ipos::runtime {

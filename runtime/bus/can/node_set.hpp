@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/bus/node_id.hpp"
+#include "runtime/bus/line/node_id.hpp"
 
 namespace ipos::runtime {
 

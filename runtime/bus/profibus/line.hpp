@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "runtime/bus/line_load.hpp"
-#include "runtime/bus/node_id.hpp"
+#include "runtime/bus/line/line_load.hpp"
+#include "runtime/bus/line/node_id.hpp"
 #include "runtime/bus/profibus/fdl_receiver.hpp"
 #include "runtime/bus/profibus/line_fault.hpp"
 #include "runtime/bus/profibus/timing.hpp"

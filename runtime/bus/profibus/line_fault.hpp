@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "runtime/bus/node_id.hpp"
+#include "runtime/bus/line/node_id.hpp"
 #include "runtime/bus/profibus/fdl_frame.hpp"
 #include "runtime/clock/event_queue.hpp"
 #include "runtime/clock/random.hpp"

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "runtime/bus/node_id.hpp"
+#include "runtime/bus/line/node_id.hpp"
 #include "runtime/bus/rs485/character.hpp"
 
 namespace ipos::runtime {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/bus/line_load.hpp"
+#include "runtime/bus/line/line_load.hpp"
 #include "runtime/bus/rs485/levels.hpp"
 #include "runtime/bus/rs485/node.hpp"
 #include "runtime/clock/event_queue.hpp"

@@ -12,7 +12,7 @@
 #include "runtime/nv_memory/kept/retained_memory.hpp"
 #include "runtime/nv_memory/kept/wear.hpp"
 #include "runtime/nv_memory/medium/slot_store.hpp"
-#include "runtime/unit/journal.hpp"
+#include "runtime/journal/journal.hpp"
 
 namespace ipos::runtime {
 

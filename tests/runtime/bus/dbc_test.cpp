@@ -1,7 +1,7 @@
 // The whole text of a DBC file for a small bus, the places of all bits of control and status words, and names. What is
 // expected follows from the rules of the format: a big-endian signal is named by its highest bit, 8 * byte + bit, and a
 // range is that of its bits times its factor.
-#include "runtime/bus/movilink/dbc.hpp"
+#include "runtime/bus/dbc/dbc.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The load of a line second by second, against a count of every occupied unit.
-#include "runtime/bus/line_load.hpp"
+#include "runtime/bus/line/line_load.hpp"
 
 #include <gtest/gtest.h>
 

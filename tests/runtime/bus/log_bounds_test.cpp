@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "runtime/bus/can/frame_bits.hpp"
-#include "runtime/bus/line_load.hpp"
+#include "runtime/bus/line/line_load.hpp"
 #include "runtime/bus/log/bus_load.hpp"
 #include "runtime/bus/log/candump.hpp"
 #include "runtime/bus/log/replay.hpp"

@@ -4,8 +4,8 @@
 #include <array>
 
 #include "runtime/positioning/positioner.hpp"
-#include "runtime/unit/pid_block.hpp"
-#include "runtime/unit/timers.hpp"
+#include "runtime/services/pid_block.hpp"
+#include "runtime/services/timers.hpp"
 #include "stdlib/system_variables.hpp"
 #include "stdlib/unit_types.hpp"
 

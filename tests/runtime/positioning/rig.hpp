@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "runtime/unit/positioning_service.hpp"
+#include "runtime/services/positioning_service.hpp"
 #include "stdlib/unit_types.hpp"
 
 namespace ipos::tests {

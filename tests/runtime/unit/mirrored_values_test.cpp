@@ -1,6 +1,6 @@
 // The variables that are the same datum as a parameter of the PID controller (IPOSplus p. 38, 39): which is which, who
 // wins, and what a value does that the parameter refuses.
-#include "runtime/unit/mirrored_values.hpp"
+#include "runtime/services/mirrored_values.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The PID controller against the closed form of each share.
-#include "runtime/unit/pid_block.hpp"
+#include "runtime/services/pid_block.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // The system variables of positioning (IPOSplus p. 34 to 36; 8 IPOSplus p. 24 to 29): which one shows what, which one is a
 // parameter, and what a value that the program writes does in the next millisecond.
-#include "runtime/unit/positioning_service.hpp"
+#include "runtime/services/positioning_service.hpp"
 
 #include <gtest/gtest.h>
 

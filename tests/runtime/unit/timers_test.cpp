@@ -1,5 +1,5 @@
 // Timers and watchdog to the millisecond.
-#include "runtime/unit/timers.hpp"
+#include "runtime/services/timers.hpp"
 
 #include <gtest/gtest.h>
 

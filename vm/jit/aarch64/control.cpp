@@ -1,5 +1,5 @@
 // Budget, jumps and calls on AArch64.
-#include "vm/exec/arithmetic.hpp"
+#include "vm/context/arithmetic.hpp"
 #include "vm/jit/aarch64/emitter.hpp"
 
 namespace ipos::vm::jit {

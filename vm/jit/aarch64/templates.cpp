@@ -2,7 +2,7 @@
 // an operation on what it sets are always one.
 #include <bit>
 
-#include "vm/exec/arithmetic.hpp"
+#include "vm/context/arithmetic.hpp"
 #include "vm/jit/aarch64/emitter.hpp"
 #include "vm/jit/reciprocal.hpp"
 

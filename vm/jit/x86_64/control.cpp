@@ -1,5 +1,5 @@
 // Budget, jumps and calls on x86-64.
-#include "vm/exec/arithmetic.hpp"
+#include "vm/context/arithmetic.hpp"
 #include "vm/jit/x86_64/emitter.hpp"
 
 namespace ipos::vm::jit {

@@ -1,7 +1,7 @@
 // Commands that work on variables, for x86-64.
 #include <bit>
 
-#include "vm/exec/arithmetic.hpp"
+#include "vm/context/arithmetic.hpp"
 #include "vm/jit/reciprocal.hpp"
 #include "vm/jit/x86_64/emitter.hpp"
 

@@ -1,5 +1,5 @@
 // Frames of lines on which MOVILINK, CANopen or both are spoken.
-#include "runtime/bus/can_words.hpp"
+#include "runtime/bus/words/can_words.hpp"
 
 #include <gtest/gtest.h>
 

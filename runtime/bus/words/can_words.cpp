@@ -1,5 +1,5 @@
 // Which dictionary explains a frame.
-#include "runtime/bus/can_words.hpp"
+#include "runtime/bus/words/can_words.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // Each kind of line has its own words; here they are together.
-#include "runtime/bus/bus_words.hpp"
+#include "runtime/bus/words/bus_words.hpp"
 
 #include <fmt/format.h>
 

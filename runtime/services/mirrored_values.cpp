@@ -1,5 +1,5 @@
 // The pairs, and who changed last.
-#include "runtime/unit/mirrored_values.hpp"
+#include "runtime/services/mirrored_values.hpp"
 
 namespace ipos::runtime {
 

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "runtime/bus/can_words.hpp"
+#include "runtime/bus/words/can_words.hpp"
 
 namespace ipos::runtime {
 

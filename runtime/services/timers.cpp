@@ -1,5 +1,5 @@
 // Counting down, once a millisecond.
-#include "runtime/unit/timers.hpp"
+#include "runtime/services/timers.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // PID_Outp_P + PID_Outp_I + PID_Outp_D + PID_Feedf, within PID_SetpMin and PID_SetpMax, is IPOS_Setp.
-#include "runtime/unit/pid_block.hpp"
+#include "runtime/services/pid_block.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // Writes DBC: which messages there are, and their text.
-#include "runtime/bus/movilink/dbc.hpp"
+#include "runtime/bus/dbc/dbc.hpp"
 
 #include <fmt/format.h>
 

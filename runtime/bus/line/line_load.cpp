@@ -1,5 +1,5 @@
 // Counts occupied units second by second.
-#include "runtime/bus/line_load.hpp"
+#include "runtime/bus/line/line_load.hpp"
 
 #include <algorithm>
 #include <cassert>

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "runtime/bus/can_words.hpp"
+#include "runtime/bus/words/can_words.hpp"
 #include "runtime/bus/movilink/serial_receiver.hpp"
 #include "runtime/bus/profibus/fdl_receiver.hpp"
 

@@ -1,5 +1,5 @@
 // Copies between H variables, parameters, drive and positioner.
-#include "runtime/unit/positioning_service.hpp"
+#include "runtime/services/positioning_service.hpp"
 
 #include <fmt/format.h>
 

@@ -13,7 +13,7 @@
 #include "runtime/drive/drive.hpp"
 #include "runtime/positioning/cams.hpp"
 #include "runtime/positioning/positioner.hpp"
-#include "runtime/unit/journal.hpp"
+#include "runtime/journal/journal.hpp"
 #include "stdlib/system_variables.hpp"
 
 namespace ipos::runtime {
