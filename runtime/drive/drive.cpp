@@ -447,7 +447,6 @@ void Drive::select_parameter_set() {
   in.flags = decisions_.output_flags | flag(axis.output_stage(), output_flags::kOutputStage) |
              flag(axis.brake_released(), output_flags::kBrakeReleased) |
              flag(axis.standing(), output_flags::kStandstill) |
-             flag(axis.power().gives_all(), output_flags::kCurrentLimited) |
              flag(axis.power().motor_utilization() >= kFullUtilization, decisions_.overload_flag) |
              flag(state_.position.in_position, output_flags::kInPosition) |
              flag(state_.position.referenced, output_flags::kReferenced);
@@ -458,6 +457,7 @@ void Drive::select_parameter_set() {
   in.setpoint = has_setpoint ? order_.target : 0;
   in.current = axis.output_current();
   in.current_limit = order_.current_limit;
+  in.limited = axis.power().gives_all();
   in.ipos_outputs = state_.ipos_outputs;
   return in;
 }

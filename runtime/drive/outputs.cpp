@@ -29,9 +29,8 @@ uint16_t Outputs::tick(const Settings& s, const OutputInputs& in) {
   compare_.tick(deviation <= s.compare_hysteresis, deviation > s.compare_hysteresis, s.compare_delay);
   current_.tick(current > s.current_reference, current <= falls_at(s.current_reference, s.current_hysteresis),
                 s.current_delay);
-  // The current that shows is rounded down, so at the limit it may be less; the flag tells it exactly.
-  limit_.tick(in.is(output_flags::kCurrentLimited) || current >= in.current_limit,
-              current <= limit_falls_at(in.current_limit, s.limit_hysteresis), s.limit_delay);
+  limit_.tick(in.limited_current() >= in.current_limit,
+              in.limited_current() <= limit_falls_at(in.current_limit, s.limit_hysteresis), s.limit_delay);
   find_ranges(s, in);
 
   signals_ = {speed_.value() == (s.speed_when == 1), window_.value() == (s.window_when == 0),
@@ -58,9 +57,9 @@ void Outputs::find_ranges(const Settings& s, const OutputInputs& in) {
            around(window_, s.window_center - half, s.window_center + half, speed));
   const int64_t deviation = magnitude(int64_t{in.speed} - in.setpoint);
   deviations_ = around(compare_, 0, s.compare_hysteresis, deviation);
-  currents_ = both(staying(current_, int64_t{s.current_reference} + 1,
-                           falls_at(s.current_reference, s.current_hysteresis)),
-                   staying(limit_, in.current_limit, limit_falls_at(in.current_limit, s.limit_hysteresis)));
+  currents_ = staying(current_, int64_t{s.current_reference} + 1,
+                      falls_at(s.current_reference, s.current_hysteresis));
+  limits_ = staying(limit_, in.current_limit, limit_falls_at(in.current_limit, s.limit_hysteresis));
   current_limit_ = in.current_limit;
   ticks_left_ =
       std::min({speed_.bound(s.speed_delay), window_.bound(s.window_delay), compare_.bound(s.compare_delay),

@@ -86,7 +86,6 @@ inline constexpr uint32_t kMotor1Overloaded = 1 << 7;
 inline constexpr uint32_t kMotor2Overloaded = 1 << 8;
 inline constexpr uint32_t kInPosition = 1 << 9;
 inline constexpr uint32_t kReferenced = 1 << 10;
-inline constexpr uint32_t kCurrentLimited = 1 << 11;  // the motor gives all that the current limit lets it
 }  // namespace output_flags
 
 struct OutputInputs {
@@ -95,9 +94,15 @@ struct OutputInputs {
   int32_t setpoint = 0;
   int32_t current = 0;  // 1/1000 % of IN
   int32_t current_limit = 0;
+  bool limited = false;       // the motor gives all that the current limit lets it
   uint16_t ipos_outputs = 0;  // by bit as below
 
   bool is(uint32_t flag) const { return (flags & flag) != 0; }
+  // The current that shows is rounded down, so at the limit it may be less.
+  int64_t limited_current() const {
+    const int64_t shown = current < 0 ? -int64_t{current} : current;
+    return limited ? std::max<int64_t>(shown, current_limit) : shown;
+  }
 };
 
 class Outputs {
@@ -110,7 +115,7 @@ class Outputs {
     const bool same = in.flags == basis_.flags && in.ipos_outputs == basis_.ipos_outputs &&
                       in.current_limit == current_limit_ && speeds_.have(magnitude(in.speed)) &&
                       deviations_.have(magnitude(int64_t{in.speed} - in.setpoint)) &&
-                      currents_.have(magnitude(in.current));
+                      currents_.have(magnitude(in.current)) && limits_.have(in.limited_current());
     if (!same) return false;
     if (ticks_left_ == 0) return false;
     advance(1);
@@ -158,7 +163,7 @@ class Outputs {
 
   ReferenceSignal speed_, window_, compare_, current_, limit_;
   // Range of values and number of ms for which go_on() is valid since the last tick(), and ms used.
-  Range speeds_, deviations_, currents_;
+  Range speeds_, deviations_, currents_, limits_;
   int32_t current_limit_ = 0;
   Ticks ticks_left_ = kNoBound;
   Ticks ticks_ = 0;

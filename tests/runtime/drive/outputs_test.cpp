@@ -83,7 +83,7 @@ TEST(ReferenceSignals, GoOnAsTicksDo) {
       if (pick(0, 99) == 0) in.setpoint = pick(-60, 60);
       if (pick(0, 99) == 0) in.current_limit = pick(0, 60);
       if (pick(0, 99) == 0) in.flags ^= output_flags::kFault;
-      if (pick(0, 19) == 0) in.flags ^= output_flags::kCurrentLimited;
+      if (pick(0, 19) == 0) in.limited = !in.limited;
       if (pick(0, 99) == 0) in.ipos_outputs = static_cast<uint16_t>(pick(0, 0xFFFF));
       ticked.in = in;
       if (ms != 0 && kept.outputs.go_on(in))
@@ -227,13 +227,13 @@ TEST(ReferenceSignals, CurrentLimitOfTheAxis) {
     bench.settings.limit_delay = 100;
     bench.settings.limit_when = when;
     const bool limited = when == 0;
-    const auto to = [&](int32_t current, uint32_t flags) {
-      return [&bench, current, flags] { bench.in.current = current, bench.in.flags = flags; };
+    const auto to = [&](int32_t current, bool gives_all) {
+      return [&bench, current, gives_all] { bench.in.current = current, bench.in.limited = gives_all; };
     };
     EXPECT_EQ(bench.run(2000), !limited);
-    expect_signal(bench, 100, limited, to(149'998, output_flags::kCurrentLimited), "at the limit");
-    expect_no_change(bench, to(149'998, 0), "inside the hysteresis");
-    expect_signal(bench, 100, !limited, to(139'900, 0), "below");
+    expect_signal(bench, 100, limited, to(149'998, true), "at the limit");
+    expect_no_change(bench, to(149'998, false), "inside the hysteresis");
+    expect_signal(bench, 100, !limited, to(139'900, false), "below");
   }
 }
 
