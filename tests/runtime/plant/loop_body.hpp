@@ -18,6 +18,18 @@ inline std::string numbered(std::string text, int k, int l) {
   return text;
 }
 
+// Wherever it stands by itself.
+inline void replace_word(std::string& text, const std::string& word, const std::string& by) {
+  const auto letter = [&](size_t at) {
+    return at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) != 0 || text[at] == '_');
+  };
+  for (size_t at = 0; (at = text.find(word, at)) != std::string::npos;)
+    if ((at != 0 && letter(at - 1)) || letter(at + word.size()))
+      ++at;
+    else
+      text.replace(at, word.size(), by), at += by.size();
+}
+
 // How many random plants a test tries: its own number, or that of the variable IPOS_PLANTS for a longer run. Those before
 // IPOS_FIRST_PLANT are left out, so that a long run can be shared out, and one seed be looked at.
 inline uint64_t number_of_environment(const char* name, uint64_t usual) {

@@ -21,16 +21,18 @@ class ReadingPlant {
   explicit ReadingPlant(uint64_t seed)
       : random_(seed),
         kind_(static_cast<Kind>(seed % kKinds)),
-        receives_(pick(0, 2) == 0),
-        moves_(receives_ || pick(0, 1) != 0),
+        receives_(pick(0, 1) == 0),
+        circles_(receives_ && pick(0, 2) != 0),
+        moves_((receives_ && !circles_) || pick(0, circles_ ? 4 : 1) != 0),
         plain_(receives_ || pick(0, 1) != 0) {
+    if (circles_ && pick(0, 3) != 0) kind_ = Kind::Sbus;
     stations_ = pick(2, 3);
     text_ = "[[bus]]\nname = \"can\"\nkind = \"can\"\nbaud = 500000\n";
     if (kind_ == Kind::Serial) text_ += "[[bus]]\nname = \"line\"\nkind = \"rs485\"\n";
     if (kind_ == Kind::Canopen) canopen();
     for (int n = 0; n < stations_; ++n) station(n);
     if (kind_ == Kind::Card || kind_ == Kind::Gateway) profibus();
-    for (int n = pick(0, 4); n > 0; --n) stimulus();
+    for (int n = circles_ ? 0 : pick(0, 4); n > 0; --n) stimulus();
   }
 
   const std::string& text() const { return text_; }  // of the plant file
@@ -42,37 +44,26 @@ class ReadingPlant {
   }
 
  private:
-  static void replace(std::string& text, const std::string& word, const std::string& by) {
-    const auto letter = [&](size_t at) {
-      return at < text.size() && (std::isalnum(text[at]) != 0 || text[at] == '_');
-    };
-    for (size_t at = 0; (at = text.find(word, at)) != std::string::npos;)
-      if ((at != 0 && letter(at - 1)) || letter(at + word.size()))
-        ++at;
-      else
-        text.replace(at, word.size(), by), at += by.size();
-  }
-
   std::string use() {
-    const Reading& reading = receives_ || pick(0, 5) == 0 ? one_of(kTelegrams) : one_of(kReadings);
-    std::string text = one_of(kUses);
-    replace(text, "SETOUT", "_BitSet(H481, 1);");
-    replace(text, "CLEAROUT", "_BitClear(H481, 1);");
-    replace(text, "F", reading.fetch);
-    replace(text, "V", reading.value);
+    const Reading& reading = circles_ && pick(0, 4) != 0 ? kTelegrams[0] : receives_ || pick(0, 5) == 0 ? one_of(kTelegrams) : one_of(kReadings);
+    std::string text = circles_ ? one_of(kCircles) : one_of(kUses);
+    replace_word(text, "SETOUT", "_BitSet(H481, 1);");
+    replace_word(text, "CLEAROUT", "_BitClear(H481, 1);");
+    replace_word(text, "F", reading.fetch);
+    replace_word(text, "V", reading.value);
     return text;
   }
 
   std::string loop() {
     std::string text = plain_ ? kLoops[0] : one_of(kLoops);
-    replace(text, "B", use());
-    replace(text, "C", use());
+    replace_word(text, "B", use());
+    replace_word(text, "C", use());
     return numbered(text, pick(1, 40), pick(1, 7));
   }
 
   // Of the first station, whose values the others get.
   std::string source() {
-    const char* const text = receives_ ? one_of(kRhythms) : moves_ ? one_of(kMoving) : one_of(kStanding);
+    const char* const text = !moves_ ? one_of(kStanding) : receives_ ? one_of(kRhythms) : one_of(kMoving);
     return numbered(text, pick(1, 33), pick(1, 7));
   }
 
@@ -88,34 +79,39 @@ class ReadingPlant {
     if (card) text_ += "option = \"dfp\"\nprofibus = \"dp\"\nprofibus_address = 9\n";
     text_ += fmt::format("[station.parameters]\nP{0} = {1}\nP810 = {1}\nP130 = 200\nP136 = 100\n",
                          b ? 881 : 813, n + 1);
+    sources_[fmt::format("P{}.IPC", n)] = program(n, b, m07);
     if (canopen) text_ += "P880 = 1\nP886 = 5\n";
     if (card || canopen || (kind_ == Kind::Gateway && pick(0, 1) == 0))
       text_ += card ? "P100 = 3\nP101 = 2\n" : "P100 = 10\nP101 = 3\n";
-    else if (pick(0, 2) == 0)
+    else if (!circles_ && pick(0, 2) == 0)
       text_ += fmt::format("P160 = {}\n", pick(-4, 4) * 200'200);
     if (b && pick(0, 2) == 0) text_ += "P700 = 13\nP903 = 5\n";
-    if (b && pick(0, 1) == 0) text_ += fmt::format("P938 = {}\n", pick(0, 9));
+    if (b && pick(0, circles_ ? 3 : 1) == 0) text_ += fmt::format("P938 = {}\n", pick(0, 9));
     if (!m07 && pick(0, 3) == 0) text_ += "P841 = 1\n";
+    if (circles_) return;  // its drive stands
     text_ += "[station.inputs]\n";
     if (pick(0, 1) == 0) text_ += fmt::format("DI00 = {}\nDI01 = 1\nDI03 = 1\n", m07 ? 0 : 1);
     if (pick(0, 1) == 0) text_ += "DI04 = 1\n";
-    sources_[fmt::format("P{}.IPC", n)] = program(n, b, m07);
   }
 
   std::string program(int n, bool b, bool m07) {
-    std::string text =
-        std::string(kReadingHead) + "T2() { " + loop() + " }\nT3() { " + loop() + " }\nmain() {\n";
+    const std::string body = n == 0 ? source() : loop();
+    std::string text = std::string(kReadingHead);
+    if (!circles_) text += "T2() { " + loop() + " }\nT3() { " + loop() + " }\n";
+    text += "main() {\n";
     text += fmt::format(
         "Tr.ObjectNo = {0}; Tr.CycleTime = {1}; Tr.Offset = {2}; Tr.Format = 8; Tr.DPointer = numof(t1);\n"
         "Re.ObjectNo = {3}; Re.Format = {4}; Re.DPointer = numof(r1);\n"
         "Ta.ObjectNo = {5}; Ta.Format = 8; Ta.DPointer = numof(s1);\n"
         "Ml.BusType = {6}; Ml.Address = {7}; Ml.Format = {8}; Ml.Service = ML_S_RD; Ml.Index = {9};\n"
         "Ml.DPointer = numof(Md); Md.PO1 = {10}; Md.PO2 = 1000;\n",
-        1100 + n, pick(0, 2) == 0 ? pick(1, 9) : pick(1, 5) * 10, pick(0, 1) * pick(0, 30),
+        1100 + n, circles_ ? (pick(0, 2) == 0 ? pick(1, 30) : pick(8, 12)) : pick(0, 2) == 0 ? pick(1, 9) : pick(1, 5) * 10, pick(0, 1) * pick(0, 30),
         1100 + (n == 0 ? stations_ - 1 : 0), pick(0, 3) == 0 ? 4 : 8, 1200 + n, kind_ == Kind::Serial ? 2 : 5,
         (n + 1) % stations_ + 1, pick(1, 5), pick(0, 1) == 0 ? 8318 : 11'000 + pick(320, 350), pick(0, 7));
     // Many only send, many only receive.
-    if (n == 0 ? receives_ || pick(0, 5) != 0 : pick(0, 2) == 0) text += "_SBusCommDef(SCD_TRCYCL, Tr);\n";
+    const bool forwards = circles_ && body.find("t1") != std::string::npos;
+    if (forwards || (n == 0 ? receives_ || pick(0, 5) != 0 : !circles_ && pick(0, 2) == 0))
+      text += "_SBusCommDef(SCD_TRCYCL, Tr);\n";
     if (n == 0 ? pick(0, 2) == 0 : receives_ || pick(0, 5) != 0) text += "_SBusCommDef(SCD_REC, Re);\n";
     if (receives_ || kind_ == Kind::Sbus || pick(0, 3) != 0) text += "_SBusCommOn();\n";
     if (!plain_ && !m07 && pick(0, 4) == 0)
@@ -133,7 +129,7 @@ class ReadingPlant {
           pick(0, 9), pick(0, 9), pick(1, 10));
     if (!plain_ && pick(0, 2) == 0) text += "_SetTask2(T2_START, T2);\n";
     if (!plain_ && b && pick(0, 2) == 0) text += "_SetTask(T2_START, T3);\n";
-    return text + (n == 0 ? source() : loop()) + "\n}\n";
+    return text + body + "\n}\n";
   }
 
   std::string words() {
@@ -188,6 +184,7 @@ class ReadingPlant {
   std::mt19937_64 random_;
   Kind kind_;
   bool receives_;  // the others do nothing but use the telegrams of the first station, as fast as they can
+  bool circles_;   // and nothing else is done in the plant
   bool moves_;
   bool plain_;  // a loop in main, and nothing else
   int stations_ = 0;

@@ -82,6 +82,23 @@ inline constexpr const char* kUses[] = {
     "",
 };
 
+// Of a unit that does nothing but circle round a telegram, without a wait: it runs ahead of the others or is idle between two
+// telegrams, and changes from one to the other again and again.
+inline constexpr const char* kCircles[] = {
+    "b = V;",
+    "if (V > b) b = V;",
+    "if (V != old) { old = V; n = n + 1; }",
+    "b = V & 3; a = r2;",
+    "if ((V & 1) && !old) n = n + 1; old = V & 1;",
+    "if ((V & 2) && !old) n = n + 1; old = V & 2;",
+    "if (!(V & 1) && old) { n = n + 1; b = V; } old = V & 1;",
+    "if ((V & 1) != old) { old = V & 1; if (old) n = n + 1; }",
+    "t1 = V;",
+    "b = b + (V - b) / 2;",
+    "while (V == old); old = V; n = n + 1;",
+    "",
+};
+
 // B and C stand for what is done in it.
 inline constexpr const char* kLoops[] = {
     "while (1) { B }",
