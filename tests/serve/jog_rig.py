@@ -17,19 +17,23 @@ from server_test import IPOS, Client
 RPM = 1500
 FALLS_WITHIN = 0.7  # s: what the tests promise
 PERIOD = 0.1  # s between two `jog`, as the page has it
-PATIENCE = 40  # s for anything that must come; a loaded machine needs more than an idle one
+PATIENCE = 240  # s for anything that must come: only what never comes takes as long
+DRIVE_RUNS = 3600  # s: longer than any trial, so that none ends as its drive is over
 
-# kind of line, unit, parameters. P815 of MOVIDRIVE A is 100 ms as delivered: a loaded machine is silent for longer, and
-# then the drive stops with F47 until somebody resets it.
+# kind of line, unit, parameters. Where this program is silent for too long, the drive must stop, but it goes on with the next
+# telegram, as RS-485 of MOVIDRIVE has it as delivered: a fault would wait for somebody who resets it. MOVITRAC 07 has no such
+# choice, so somebody does. P815 of MOVIDRIVE A is 100 ms as delivered.
+WARNING = "RAPID STOP/WARNG"
 LINES = {
     "RS-485 md60a": ("rs485", "md60a", {}),
-    "RS-485 mc07": ("rs485", "mc07", {}),
+    "RS-485 mc07": ("rs485", "mc07", {"P604": "FAULT RESET"}),
     "RS-485 mdxb": ("rs485", "mdxb", {}),
-    "SBus md60a": ("can", "md60a", {"P815": "0.4 s"}),
-    "SBus mc07": ("can", "mc07", {}),
-    "SBus mdxb": ("can", "mdxb", {}),
-    "SBus 2 mdxb": ("can", "mdxb", {}),
+    "SBus md60a": ("can", "md60a", {"P815": "0.4 s", "P836": WARNING}),
+    "SBus mc07": ("can", "mc07", {"P604": "FAULT RESET"}),
+    "SBus mdxb": ("can", "mdxb", {"P836": WARNING}),
+    "SBus 2 mdxb": ("can", "mdxb", {"P836": WARNING, "P837": WARNING}),
 }
+RESET_AGAIN_AND_AGAIN = '[[stimulus]]\nstation = "saw"\nat = "1s"\ninput = "DI05"\npulse = 1\nfor = "20ms"\nevery = "500ms"\n'
 
 
 def wait_until(what, condition, seconds=PATIENCE):
@@ -39,7 +43,7 @@ def wait_until(what, condition, seconds=PATIENCE):
         if value:
             return value
         time.sleep(0.01)
-    raise TimeoutError(f"waited {seconds} s for: {what}")
+    raise TimeoutError(f"waited {seconds} s for: {what() if callable(what) else what}")
 
 
 def plant_text(line, port, parameters, inputs, more):
@@ -53,7 +57,7 @@ def plant_text(line, port, parameters, inputs, more):
     lines += [f"{name} = {value}" for name, value in inputs.items()]
     lines += ["[station.parameters]"]
     lines += [f"{name} = {json.dumps(value)}" for name, value in settings.items()]
-    return "\n".join(lines) + "\n" + more
+    return "\n".join(lines) + "\n" + more + (RESET_AGAIN_AND_AGAIN if "P604" in own else "")
 
 
 class Rig:
@@ -61,7 +65,7 @@ class Rig:
 
     INPUTS = {"DI00": 1, "DI01": 1, "DI03": 1}
 
-    def __init__(self, test, line="RS-485 md60a", parameters=None, inputs=None, more="", serve=("--write",), seconds=90):
+    def __init__(self, test, line="RS-485 md60a", parameters=None, inputs=None, more="", serve=("--write",)):
         self.test = test
         kind = LINES[line][0]
         folder = tempfile.TemporaryDirectory()
@@ -74,7 +78,7 @@ class Rig:
         plant.write_text(plant_text(line, pty, parameters or {}, inputs or self.INPUTS, more))
         self.csv = self.folder / "t.csv"
         self.environment = {**os.environ, "XDG_STATE_HOME": str(self.folder / "state")}
-        self.drive = subprocess.Popen([IPOS, "run", str(plant), "--realtime", "--for", f"{seconds}s", "--trace", str(self.csv),
+        self.drive = subprocess.Popen([IPOS, "run", str(plant), "--realtime", "--for", f"{DRIVE_RUNS}s", "--trace", str(self.csv),
                                        "--signals", "saw.speed"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         test.addCleanup(self.drive.wait)
         test.addCleanup(self.drive.kill)
@@ -120,7 +124,10 @@ class Rig:
             pass
 
     def connect(self):
-        client = Client(self.http, f"/ws?token={self.token}")
+        try:
+            client = Client(self.http, f"/ws?token={self.token}")
+        except OSError as error:
+            raise AssertionError(f"{error}; {self.state()}") from error
         self.test.addCleanup(client.close)
         return client
 
@@ -128,6 +135,12 @@ class Rig:
         client = self.connect()
         self.test.assertTrue(client.ask(do="arm", yes=True)["ok"])
         return client
+
+    def state(self):
+        """Who has ended, and what the server has said until then."""
+        file = self.server.stderr.fileno()
+        said = os.read(file, 4096) if select.select([file], [], [], 0)[0] else b""
+        return f"server {self.server.poll()}, drive {self.drive.poll()}, {said.decode()!r}"
 
     def records(self):
         """Of what was changed in the drive; other files there are the page's."""
@@ -181,7 +194,7 @@ class Rig:
         return abs(self.rows[self.row_after(moment) - 1][1]) >= RPM * 0.02
 
     def wait_for_speed(self, wanted=RPM * 0.99):
-        wait_until(f"{wanted:.0f} rpm, it has {self.speed():.0f}", lambda: abs(self.speed()) >= wanted)
+        wait_until(lambda: f"{wanted:.0f} rpm, it has {self.speed():.0f}; {self.state()}", lambda: abs(self.speed()) >= wanted)
 
     def after(self, moment):
         """(begins to fall, stands, the speed from which it falls): seconds after a moment of this test's clock; the time is the
