@@ -9,11 +9,11 @@
 #include <cmath>
 #include <utility>
 
-#include "runtime/plant/gateway_signals.hpp"
-#include "runtime/plant/station_signals.hpp"
-#include "runtime/plant/station_state.hpp"
-#include "runtime/plant/variable_names.hpp"
 #include "runtime/plant_file/signal.hpp"
+#include "runtime/signals/gateway_signals.hpp"
+#include "runtime/signals/station_signals.hpp"
+#include "runtime/signals/station_state.hpp"
+#include "runtime/signals/variable_names.hpp"
 #include "stdlib/parameters.hpp"
 #include "stdlib/spelling.hpp"
 
@@ -50,7 +50,7 @@ std::optional<uint32_t> find_number(const Station& station, Kind kind, std::stri
     return number < 0 ? std::nullopt : std::optional(static_cast<uint32_t>(number));
   };
   switch (kind) {
-    case Kind::Variable: return station.find_variable(name);
+    case Kind::Variable: return signals::find_variable(station, name);
     case Kind::Parameter: {
       const auto* row = parameter_of(station, name);
       return row == nullptr ? std::nullopt : std::optional<uint32_t>(row->index);
@@ -65,7 +65,7 @@ std::optional<uint32_t> find_number(const Station& station, Kind kind, std::stri
       return static_cast<uint32_t>(found - std::begin(kWordNames));
     }
     case Kind::Signal:
-      if (runtime::find_station_signals(station, name).size() == 1) return 0;
+      if (signals::find_station_signals(station, name).size() == 1) return 0;
       break;
     case Kind::Any: break;
   }
@@ -90,7 +90,7 @@ size_t live_line(const Station& station, size_t first) {
 int decimals_of(const runtime::AnalogKind& kind) { return kind.factor < 100 ? 1 : 3; }
 
 // The signal port of what has one.
-runtime::SignalPort port_of(Plant& plant, const Place& place) {
+signals::SignalPort port_of(Plant& plant, const Place& place) {
   const Station& station = station_of(plant, place);
   runtime::Signal signal;
   signal.station = station.config().name;
@@ -104,7 +104,7 @@ runtime::SignalPort port_of(Plant& plant, const Place& place) {
     signal.line = static_cast<uint8_t>(place.number);
   }
   std::string why;
-  return runtime::SignalPort::find(plant.stations(), signal, why).value();
+  return signals::SignalPort::find(plant.stations(), signal, why).value();
 }
 
 std::string input_name(uint32_t line) {
@@ -136,20 +136,20 @@ std::string station_names(const Plant& plant) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-runtime::PlantSignal shown_signal(const Plant& plant, const Place& place, std::string_view name) {
+signals::Signal shown_signal(const Plant& plant, const Place& place, std::string_view name) {
   if (const runtime::Gateway* gateway = gateway_of(plant, place.station))
-    return runtime::find_among(runtime::gateway_signals(*gateway),
+    return signals::find_among(signals::gateway_signals(*gateway),
                                fmt::format("{}.{}", gateway->config().name, name))
         .value();
-  return runtime::find_station_signals(*plant.stations()[place.station], name).front();
+  return signals::find_station_signals(*plant.stations()[place.station], name).front();
 }
 
 namespace {
 
 std::vector<std::string> gateway_names(const runtime::Gateway& gateway, Kind kind) {
   std::vector<std::string> names;
-  for (const runtime::PlantSignal& signal : runtime::gateway_signals(gateway))
-    if (kind == Kind::Signal || (kind == Kind::State && signal.group == runtime::SignalGroup::State))
+  for (const signals::Signal& signal : signals::gateway_signals(gateway))
+    if (kind == Kind::Signal || (kind == Kind::State && signal.group == signals::Group::State))
       names.push_back(signal.name.substr(signal.station.size() + 1));
   return names;
 }
@@ -165,12 +165,12 @@ std::vector<std::string> place_names(const Plant& plant, uint32_t number, Kind k
   switch (kind) {
     case Kind::Variable:
       if (part) {
-        for (auto& found : runtime::named_variables(station.symbols(), *station.config().unit, *part))
+        for (auto& found : signals::named_variables(station.symbols(), *station.config().unit, *part))
           names.push_back(std::move(found.name));
         break;
       }
       for (const vm::Symbol& symbol : station.symbols())
-        for (auto& element : runtime::elements_of(symbol)) names.push_back(std::move(element.name));
+        for (auto& element : signals::elements_of(symbol)) names.push_back(std::move(element.name));
       break;
     case Kind::Parameter: {
       // Of rows that share a number or an index, that one which the name leads to.
@@ -197,12 +197,12 @@ std::vector<std::string> place_names(const Plant& plant, uint32_t number, Kind k
         if (names.empty() || names.back() != each.name) names.emplace_back(each.name);
       break;
     case Kind::Signal:
-      for (const runtime::PlantSignal& signal : runtime::station_signals(station))
+      for (const signals::Signal& signal : signals::station_signals(station))
         names.push_back(signal.name.substr(signal.station.size() + 1));
       break;
     case Kind::Word: list(kWordNames); break;
     case Kind::State:
-      for (const runtime::StationState& state : runtime::station_states()) names.emplace_back(state.name);
+      for (const signals::StationState& state : signals::station_states()) names.emplace_back(state.name);
       break;
     case Kind::Any: break;
   }
@@ -248,12 +248,12 @@ std::string what_there_is(const Plant& plant, uint32_t number, Kind kind, std::s
 
 tl::expected<Place, std::string> find_place(Plant& plant, uint32_t number, Kind kind, std::string_view name) {
   if (const runtime::Gateway* gateway = gateway_of(plant, number)) {
-    const auto all = runtime::gateway_signals(*gateway);
+    const auto all = signals::gateway_signals(*gateway);
     const bool fits = kind == Kind::Any || kind == Kind::Signal || kind == Kind::State;
-    if (fits && runtime::find_among(all, fmt::format("{}.{}", gateway->config().name, name)))
+    if (fits && signals::find_among(all, fmt::format("{}.{}", gateway->config().name, name)))
       return Place{number, Kind::Signal, 0};
     return tl::unexpected(fmt::format("gateway '{}' has no {} '{}'; it has {}", gateway->config().name,
-                                      kind_word(kind), name, runtime::names_of(all)));
+                                      kind_word(kind), name, signals::names_of(all)));
   }
   const Station& station = *plant.stations()[number];
   for (uint8_t n = kind == Kind::Any ? 1 : static_cast<uint8_t>(kind);
@@ -273,7 +273,7 @@ bool exists(const Plant& plant, const Place& place) {
     case Kind::Input: return place.number < runtime::kBinaryLines;
     case Kind::Output: return place.number < 16;
     case Kind::Analog: return place.number >= runtime::kBinaryLines && place.number < runtime::kInputLines;
-    case Kind::State: return place.number < runtime::station_states().size();
+    case Kind::State: return place.number < signals::station_states().size();
     case Kind::Word: return place.number < std::size(kWordNames);
     case Kind::Signal:
     case Kind::Any: break;
@@ -305,7 +305,7 @@ PlaceInfo place_info(const Plant& plant, const Place& place, std::string_view na
     info.factor = 1 / kind.factor;
     info.decimals = decimals_of(kind);
   } else if (place.kind == Kind::State) {
-    const std::string_view state = runtime::station_states()[place.number].name;
+    const std::string_view state = signals::station_states()[place.number].name;
     if (state == "speed" || state == "setpoint") {
       info.unit = "rpm";
       info.factor = 1e-3;
@@ -328,7 +328,7 @@ int64_t read_place(const Plant& plant, const Place& place) {
     case Kind::Input: return station.inputs().line(place.number).value();
     case Kind::Output: return station.outputs() >> place.number & 1;
     case Kind::Analog: return station.inputs().line(live_line(station, place.number)).value();
-    case Kind::State: return runtime::station_states()[place.number].read(station);
+    case Kind::State: return signals::station_states()[place.number].read(station);
     case Kind::Word: {
       const runtime::Drive& drive = station.drive().state();
       return place.number < runtime::Hands::kWords ? drive.po()[place.number]
@@ -409,7 +409,7 @@ runtime::Refusal do_to_place(Plant& plant, runtime::Hands& hands, const Place& p
       hands.set_word(station, word, static_cast<uint16_t>(value));
     return std::nullopt;
   }
-  const runtime::SignalPort port = port_of(plant, place);
+  const signals::SignalPort port = port_of(plant, place);
   if (touch == Touch::Release) {
     hands.release(port);
     return std::nullopt;

@@ -11,7 +11,7 @@
 #include <tl/expected.hpp>
 
 #include "runtime/plant/hands.hpp"
-#include "runtime/plant/station_signals.hpp"
+#include "runtime/signals/station_signals.hpp"
 
 namespace ipos::library {
 
@@ -43,7 +43,7 @@ size_t station_count(const runtime::Plant& plant);
 runtime::Gateway* gateway_of(const runtime::Plant& plant, uint32_t station);  // nullptr: it is none
 std::string station_names(const runtime::Plant& plant);                       // "saw, feed"
 // What a place of the kind Signal shows, as find_place has found it.
-runtime::PlantSignal shown_signal(const runtime::Plant& plant, const Place& place, std::string_view name);
+signals::Signal shown_signal(const runtime::Plant& plant, const Place& place, std::string_view name);
 
 // The error says what there is instead.
 tl::expected<Place, std::string> find_place(runtime::Plant& plant, uint32_t station, Kind kind,

@@ -10,8 +10,8 @@
 
 #include "runtime/library/contents.hpp"
 #include "runtime/library/world.hpp"
-#include "runtime/plant/station_signals.hpp"
 #include "runtime/plant/trace_hash.hpp"
+#include "runtime/signals/station_signals.hpp"
 
 namespace ipos::library {
 
@@ -36,7 +36,7 @@ class Session {
   struct Signal {
     Place place;
     std::string name;
-    runtime::PlantSignal shown;  // of kind Signal
+    signals::Signal shown;  // of kind Signal
   };
   uint32_t add_signal(const Place& place, std::string_view name);
   const Signal* signal(uint32_t number) const {

@@ -7,7 +7,7 @@
 
 namespace ipos::runtime {
 
-Refusal Hands::set(const SignalPort& port, std::string_view name, int32_t value) {
+Refusal Hands::set(const signals::SignalPort& port, std::string_view name, int32_t value) {
   if (!port.is_input()) return port.write(value);
   if (port.line().driven)
     return fmt::format("{} of {} hangs on a wire or switch: force it, do not set it", name,
@@ -16,14 +16,14 @@ Refusal Hands::set(const SignalPort& port, std::string_view name, int32_t value)
   return std::nullopt;
 }
 
-Refusal Hands::force(const SignalPort& port, int32_t value) {
+Refusal Hands::force(const signals::SignalPort& port, int32_t value) {
   if (!port.is_input())
     if (auto refused = port.write(value)) return refused;
   plant_.surroundings().force(port, value);
   return std::nullopt;
 }
 
-void Hands::release(const SignalPort& port) { plant_.surroundings().release(port); }
+void Hands::release(const signals::SignalPort& port) { plant_.surroundings().release(port); }
 
 void Hands::write_words(Station& station, const DriveWords& words) {
   DriveServer& drive = station.drive();

@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "runtime/plant/plant.hpp"
-#include "runtime/plant/signal_port.hpp"
+#include "runtime/signals/signal_port.hpp"
 
 namespace ipos::runtime {
 
@@ -29,10 +29,10 @@ class Hands {
 
   // A variable or parameter is written as over the parameter channel, volatile; an input gets this level. `name` is for
   // the refusal.
-  static Refusal set(const SignalPort& port, std::string_view name, int32_t value);
+  static Refusal set(const signals::SignalPort& port, std::string_view name, int32_t value);
   // The same, and again whenever something else has changed it; an input also against wires and switches.
-  Refusal force(const SignalPort& port, int32_t value);
-  void release(const SignalPort& port);
+  Refusal force(const signals::SignalPort& port, int32_t value);
+  void release(const signals::SignalPort& port);
 
   // A process output word PO1..PO3 (0..2) comes as over the bus that P101 names, or P100, or else the SBus; forced it comes
   // every millisecond, like telegrams of a master that never rests.

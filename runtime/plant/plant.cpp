@@ -9,11 +9,11 @@
 
 #include "runtime/bus/log/log_name.hpp"
 #include "runtime/nv_memory/medium/file_medium.hpp"
-#include "runtime/plant/station_signals.hpp"
-#include "runtime/plant/station_state.hpp"
 #include "runtime/plant_file/can_cable.hpp"
 #include "runtime/plant_file/profibus_paper.hpp"
 #include "runtime/plant_file/serial_plan.hpp"
+#include "runtime/signals/station_signals.hpp"
+#include "runtime/signals/station_state.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -152,9 +152,9 @@ void Plant::set_power(std::string_view name, bool on) {
     if (station->config().name == name) set(*station);
 }
 
-std::optional<SignalPort> Plant::find_port(const Signal& signal, std::string& why) const {
+std::optional<signals::SignalPort> Plant::find_port(const Signal& signal, std::string& why) const {
   const Gateway* gateway = find_gateway(signal.station);
-  return gateway == nullptr ? SignalPort::find(stations_, signal, why) : SignalPort::find(*gateway, signal, why);
+  return gateway == nullptr ? signals::SignalPort::find(stations_, signal, why) : signals::SignalPort::find(*gateway, signal, why);
 }
 
 CanLine* Plant::find_can(std::string_view name) const {
@@ -269,7 +269,7 @@ StationLines Plant::lines_of(const StationConfig& station) {
 
 void Plant::tell_findings() {
   for (const auto& station : stations_)
-    for (const std::string& name : hidden_names(*station))
+    for (const std::string& name : signals::hidden_names(*station))
       journal_.note(queue_.now(), Weight::Why, station->config().name,
                     fmt::format("'{0}' is a variable of the program, and hides what the unit calls so: that is 'drive.{0}'", name));
   const ParameterOf parameter = [this](size_t station, std::string_view number) {

@@ -9,17 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "runtime/plant/bus.hpp"
-#include "runtime/plant/can_bus.hpp"
-#include "runtime/plant/canopen_control.hpp"
-#include "runtime/plant/gateway.hpp"
-#include "runtime/plant/profibus_control.hpp"
-#include "runtime/plant/serial_bus.hpp"
-#include "runtime/plant/signal_port.hpp"
-#include "runtime/plant/station.hpp"
+#include "runtime/journal/journal.hpp"
 #include "runtime/plant/surroundings.hpp"
 #include "runtime/plant_file/plant_file.hpp"
-#include "runtime/journal/journal.hpp"
+#include "runtime/signals/signal_port.hpp"
+#include "runtime/station/can_bus.hpp"
+#include "runtime/station/plant_parts.hpp"
+#include "runtime/station/serial_bus.hpp"
 
 namespace ipos::runtime {
 
@@ -29,18 +25,7 @@ struct ExpectationResult {
   int32_t actual;
 };
 
-// A master control and its place on a line.
-struct PlantControl {
-  const ControlConfig* config;
-  CanLine* line;  // null: it is a master on a PROFIBUS
-  std::unique_ptr<SbusControl> control;
-  std::unique_ptr<CanopenControl> canopen;  // in place of the former
-  std::unique_ptr<LinePort> port;
-  std::unique_ptr<ProfibusControl> profibus;
-  std::unique_ptr<Gateway> gateway{};
-};
-
-class Plant final {
+class Plant final : public PlantParts {
  public:
   // One program for each station of the file, empty where it has none. `rates` overrides P938 and P939.
   // Errors (unknown parameters, refused values, programs the unit refuses, unknown variables) come back in
@@ -63,7 +48,7 @@ class Plant final {
   bool has_fault() const;
   // Stations that a fault has stopped which no [[expect]] of the plant looked for and found.
   std::vector<const Station*> unforeseen_faults() const;
-  Time now() const { return queue_.now(); }
+  Time now() const override { return queue_.now(); }
   Time next_time() const { return queue_.next_time(); }  // of the next event
 
   // For what joins the plant from outside, before the first event runs: its events, and the number that puts
@@ -82,13 +67,12 @@ class Plant final {
 
   const PlantFile& file() const { return file_; }
   std::vector<std::unique_ptr<Station>>& stations() { return stations_; }
-  const std::vector<std::unique_ptr<Station>>& stations() const { return stations_; }
-  const std::vector<PlantControl>& controls() const { return controls_; }
+  const std::vector<std::unique_ptr<Station>>& stations() const override { return stations_; }
+  const std::vector<PlantControl>& controls() const override { return controls_; }
   Gateway* find_gateway(std::string_view name) const;  // nullptr: there is none
   // Of a station or a gateway; nothing and why when it has no such thing.
-  std::optional<SignalPort> find_port(const Signal& signal, std::string& why) const;
-  // Of the file in its order, then those to keypads.
-  const std::vector<std::unique_ptr<Bus>>& buses() const { return buses_; }
+  std::optional<signals::SignalPort> find_port(const Signal& signal, std::string& why) const;
+  const std::vector<std::unique_ptr<Bus>>& buses() const override { return buses_; }
   Bus* find_bus(std::string_view name) const;
   const std::vector<CanLine*>& lines() const { return lines_; }
   const std::vector<SerialBus*>& serial_lines() const { return serial_lines_; }
@@ -133,7 +117,7 @@ class Plant final {
 
   struct Due {
     const Expectation* expectation;
-    SignalPort port;
+    signals::SignalPort port;
   };
   std::vector<Due> due_;  // in order of time
   size_t next_due_ = 0;

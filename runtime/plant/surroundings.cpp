@@ -11,7 +11,7 @@ void Surroundings::connect(const PlantFile& file, const std::vector<std::unique_
                            std::vector<PlantError>& errors) {
   const auto find = [&](const Signal& signal, FilePlace place) {
     std::string why;
-    const auto port = SignalPort::find(stations, signal, why);
+    const auto port = signals::SignalPort::find(stations, signal, why);
     if (!why.empty()) errors.push_back({place, why});
     return port;
   };
@@ -34,7 +34,7 @@ void Surroundings::connect(const PlantFile& file, const std::vector<std::unique_
 
 void Surroundings::start() { wake(queue_.now()); }
 
-void Surroundings::add(const SignalPort& port, const Stimulus& stimulus) {
+void Surroundings::add(const signals::SignalPort& port, const Stimulus& stimulus) {
   due_.emplace(stimulus.at, Due{scripts_.size(), 0, {}});
   scripts_.push_back({port, stimulus});
   schedule_next(queue_.now());
@@ -96,12 +96,12 @@ void Surroundings::perform(Time now, size_t script) {
     due_.emplace(now + stimulus.every, Due{script, 0, {}});
 }
 
-void Surroundings::force(const SignalPort& port, int32_t value) {
+void Surroundings::force(const signals::SignalPort& port, int32_t value) {
   hold(port, value);
   schedule_next(queue_.now());
 }
 
-Surroundings::Hold& Surroundings::hold(const SignalPort& port, int32_t value) {
+Surroundings::Hold& Surroundings::hold(const signals::SignalPort& port, int32_t value) {
   auto held =
       std::find_if(holds_.begin(), holds_.end(), [&](const Hold& other) { return other.port == port; });
   if (held == holds_.end()) held = holds_.insert(held, {port, {}, {}, {}});  // the numbers follow
@@ -112,7 +112,7 @@ Surroundings::Hold& Surroundings::hold(const SignalPort& port, int32_t value) {
 }
 
 void Surroundings::hold(Time now, size_t script) {
-  const SignalPort& port = scripts_[script].port;
+  const signals::SignalPort& port = scripts_[script].port;
   const Stimulus& stimulus = scripts_[script].stimulus;
   Hold& held = hold(port, stimulus.value);
   if (stimulus.action == Stimulus::Action::Pulse && !port.is_input() && !held.before)
@@ -121,7 +121,7 @@ void Surroundings::hold(Time now, size_t script) {
 }
 
 // `number` 0 releases whatever holds the terminal; the end of a pulse only its own hold.
-void Surroundings::release(const SignalPort& port, uint64_t number) {
+void Surroundings::release(const signals::SignalPort& port, uint64_t number) {
   const auto ends = [&](const Hold& held) {
     return number == 0 ? held.port.shares_terminal(port) : held.number == number;
   };
@@ -134,7 +134,7 @@ void Surroundings::release(const SignalPort& port, uint64_t number) {
   }
 }
 
-void Surroundings::write(Time now, const SignalPort& port, int32_t value) {
+void Surroundings::write(Time now, const signals::SignalPort& port, int32_t value) {
   if (const auto refused = port.write(value))
     journal_.note(now, Weight::Warning, port.station_name(), "stimulus refused: " + *refused);
 }

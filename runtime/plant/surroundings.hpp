@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "runtime/clock/event_queue.hpp"
-#include "runtime/plant/signal_port.hpp"
-#include "runtime/plant_file/plant_file.hpp"
 #include "runtime/journal/journal.hpp"
+#include "runtime/plant_file/plant_file.hpp"
+#include "runtime/signals/signal_port.hpp"
 
 namespace ipos::runtime {
 
@@ -32,33 +32,33 @@ class Surroundings final : private EventTarget {
   // While the plant runs: one more stimulus, or anything else that acts from outside. Both happen at the
   // beginning of the millisecond of their time, or of the next one if that has begun, after what is due
   // then already.
-  void add(const SignalPort& port, const Stimulus& stimulus);
+  void add(const signals::SignalPort& port, const Stimulus& stimulus);
   void act(Time at, std::function<void()> action);
 
   // At once: held from now on, as a stimulus with force holds it; and whatever holds its terminal no more.
-  void force(const SignalPort& port, int32_t value);
-  void release(const SignalPort& port) { release(port, 0); }
+  void force(const signals::SignalPort& port, int32_t value);
+  void release(const signals::SignalPort& port) { release(port, 0); }
 
  private:
   struct Lead {  // a wire
-    SignalPort from;
-    SignalPort to;
+    signals::SignalPort from;
+    signals::SignalPort to;
     bool invert;
   };
   struct Cam {
-    SignalPort input;
+    signals::SignalPort input;
     Station* station;
     int32_t from;
     int32_t to;
     bool active_high;
   };
   struct Script {
-    SignalPort port;
+    signals::SignalPort port;
     Stimulus stimulus;
     int64_t done = 0;  // how often it has happened
   };
   struct Hold {  // a signal that is forced
-    SignalPort port;
+    signals::SignalPort port;
     int32_t value;
     uint64_t number;
     std::optional<int32_t> before;  // to be written at the end
@@ -72,9 +72,9 @@ class Surroundings final : private EventTarget {
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
   void perform(Time now, size_t script);
   void hold(Time now, size_t script);
-  Hold& hold(const SignalPort& port, int32_t value);
-  void release(const SignalPort& port, uint64_t number);
-  void write(Time now, const SignalPort& port, int32_t value);
+  Hold& hold(const signals::SignalPort& port, int32_t value);
+  void release(const signals::SignalPort& port, uint64_t number);
+  void write(Time now, const signals::SignalPort& port, int32_t value);
   void schedule_next(Time now);
   void wake(Time at);
 

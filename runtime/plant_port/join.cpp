@@ -9,9 +9,9 @@
 #include "runtime/os_port/profibus_bridge.hpp"
 #include "runtime/os_port/returning_port.hpp"
 #include "runtime/os_port/serial_bridge.hpp"
-#include "runtime/plant/can_bus.hpp"
-#include "runtime/plant/profibus_bus.hpp"
-#include "runtime/plant/serial_bus.hpp"
+#include "runtime/station/can_bus.hpp"
+#include "runtime/station/profibus_bus.hpp"
+#include "runtime/station/serial_bus.hpp"
 
 namespace ipos::runtime {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "runtime/os_port/bridge.hpp"
 #include "runtime/os_port/port_error.hpp"
-#include "runtime/plant/bus.hpp"
 #include "runtime/plant/plant.hpp"
+#include "runtime/station/bus.hpp"
 
 namespace ipos::runtime {
 

@@ -10,6 +10,7 @@
 #include "compiler/compile.hpp"
 #include "compiler/diag/render.hpp"
 #include "runtime/plant/plant.hpp"
+#include "runtime/signals/variable_names.hpp"
 #include "tests/language/expectations.hpp"
 
 namespace ipos::tests {
@@ -88,7 +89,7 @@ TEST_P(Language, DoesWhatItsCommentsSay) {
 
   const runtime::Station& station = *plant.stations()[0];
   const auto check = [&](const ExpectedValue& value) {
-    const auto number = station.find_variable(value.variable);
+    const auto number = signals::find_variable(station, value.variable);
     ASSERT_TRUE(number) << "line " << value.line << ": no variable " << value.variable;
     EXPECT_EQ(station.variable(*number), value.value) << "line " << value.line << ": " << value.variable;
   };

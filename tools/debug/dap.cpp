@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "compiler/diag/places.hpp"
-#include "runtime/plant/station_signals.hpp"
+#include "runtime/signals/station_signals.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/lsp/transport.hpp"
 
@@ -223,8 +223,8 @@ void DapServer::built(runtime::Plant& plant) {
 void DapServer::on_message(const runtime::Bus& bus, const runtime::BusMessage& message) {
   if (!forward_ || !frame_seen_.empty()) return;
   for (const auto& [id, pattern] : frame_points_)
-    if (runtime::matches(pattern, message.text) ||
-        runtime::matches(pattern, bus.name() + " " + message.text)) {
+    if (signals::matches(pattern, message.text) ||
+        signals::matches(pattern, bus.name() + " " + message.text)) {
       frame_id_ = id;
       frame_seen_ = fmt::format("{} on {}", message.text, bus.name());
     }

@@ -239,7 +239,7 @@ Json DapServer::completions(const Json& arguments) {
   const std::string word = text.substr(begin, column - begin);
   const runtime::Station& unit = *debugger().plant().stations()[station];
   Json all = Json::array();
-  for (const runtime::PlantSignal& signal : runtime::station_signals(unit)) {
+  for (const signals::Signal& signal : signals::station_signals(unit)) {
     const std::string name = signal.name.substr(unit.config().name.size() + 1);
     if (name.starts_with(word))
       all.push_back({{"label", name}, {"start", column_for_client(static_cast<uint32_t>(begin) + 1)}, {"length", word.size()}, {"type", "variable"}});

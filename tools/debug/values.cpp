@@ -6,8 +6,8 @@
 
 #include <algorithm>
 
-#include "runtime/plant/variable_names.hpp"
 #include "runtime/plant_file/signal.hpp"
+#include "runtime/signals/variable_names.hpp"
 #include "stdlib/parameters.hpp"
 
 namespace ipos::tools::debug {
@@ -25,7 +25,7 @@ std::optional<ValuePlace> find_variable(const Station& station, uint32_t number,
       place.elements = symbol.count;
       return place;
     }
-  const auto found = runtime::named_variables(station.symbols(), *station.config().unit, name);
+  const auto found = signals::named_variables(station.symbols(), *station.config().unit, name);
   if (found.size() != 1) return std::nullopt;  // a structure has no value of its own
   place.number = found.front().number;
   return place;
@@ -52,10 +52,10 @@ std::optional<ValuePlace> find_in(const Station& station, uint32_t number, std::
   }
   place.kind = ValueKind::Fault;
   if (name == "fault") return place;
-  auto found = runtime::find_station_signals(station, name);
+  auto found = signals::find_station_signals(station, name);
   if (found.size() != 1) return std::nullopt;
   place.kind = ValueKind::Signal;
-  place.signal = std::make_shared<const runtime::PlantSignal>(std::move(found.front()));
+  place.signal = std::make_shared<const signals::Signal>(std::move(found.front()));
   return place;
 }
 
@@ -138,7 +138,7 @@ std::optional<Whole> find_whole(const runtime::Plant& plant, uint32_t station, s
   const auto in = [&](uint32_t number, std::string_view own) -> std::optional<Whole> {
     const Station& unit = *plant.stations()[number];
     if (unit.machine() == nullptr || unit.image() == nullptr) return std::nullopt;
-    auto all = runtime::named_variables(unit.image()->symbols, *unit.config().unit, own);
+    auto all = signals::named_variables(unit.image()->symbols, *unit.config().unit, own);
     if (all.size() < 2) return std::nullopt;
     return Whole{number, std::string(own), std::move(all)};
   };

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "runtime/plant/plant.hpp"
-#include "runtime/plant/station_signals.hpp"
-#include "runtime/plant/variable_names.hpp"
+#include "runtime/signals/station_signals.hpp"
+#include "runtime/signals/variable_names.hpp"
 
 namespace ipos::tools::debug {
 
@@ -31,7 +31,7 @@ struct ValuePlace {
   uint32_t number = 0;    // of the variable; index of the parameter; line or bit
   uint32_t elements = 1;  // of an array
   std::string name;       // as shown
-  std::shared_ptr<const runtime::PlantSignal> signal{};
+  std::shared_ptr<const signals::Signal> signal{};
 };
 
 // Nothing when the plant has no such name.
@@ -49,7 +49,7 @@ std::string value_text(const runtime::Plant& plant, const ValuePlace& place, int
 struct Whole {
   uint32_t station = 0;
   std::string name;  // without the station
-  std::vector<runtime::NamedVariable> variables;
+  std::vector<signals::NamedVariable> variables;
 };
 std::optional<Whole> find_whole(const runtime::Plant& plant, uint32_t station, std::string_view name);
 // "{1, 2, 3}", the first of many.

@@ -14,7 +14,7 @@
 #include "compiler/diag/places.hpp"
 #include "compiler/parse/parse.hpp"
 #include "compiler/sema/map.hpp"
-#include "runtime/plant/station.hpp"
+#include "runtime/station/station.hpp"
 #include "runtime/unit/program_image.hpp"
 #include "stdlib/headers.hpp"
 #include "stdlib/unit_types.hpp"

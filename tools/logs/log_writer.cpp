@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "runtime/bus/log/candump.hpp"
-#include "runtime/plant/can_bus.hpp"
-#include "runtime/plant/profibus_bus.hpp"
+#include "runtime/station/can_bus.hpp"
+#include "runtime/station/profibus_bus.hpp"
 #include "tools/cli/output_forms.hpp"
 #include "tools/logs/write_pcapng.hpp"
 

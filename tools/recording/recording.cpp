@@ -8,7 +8,7 @@
 #include <numeric>
 #include <utility>
 
-#include "runtime/plant/bus.hpp"
+#include "runtime/station/bus.hpp"
 #include "tools/cli/failure.hpp"
 
 namespace ipos::tools {
@@ -48,7 +48,7 @@ size_t row_of(const std::vector<runtime::Time>& times, runtime::Time time) {
 }  // namespace
 
 // What only a decision of the drive changes: read where the drive has decided, also in ticks that are executed late,
-// so that nobody has to execute them in their turn (runtime/plant/station.hpp).
+// so that nobody has to execute them in their turn (runtime/station/station.hpp).
 class Recorder::Decided final : public runtime::DriveWatcher {
  public:
   explicit Decided(Station& station) : station_(station) {
@@ -115,13 +115,13 @@ Recorder::Recorder(runtime::Plant& plant, const std::vector<std::string>& names)
   for (const std::string& name : names) add(name);
   if (names.empty())
     for (const auto& station : plant.stations())
-      for (Signal& signal : runtime::default_signals(*station)) add(std::move(signal));
+      for (Signal& signal : signals::default_signals(*station)) add(std::move(signal));
   for (const auto& decided : decided_) decided->station().add_watcher(*decided);
 }
 
 void Recorder::add(const std::string& name) {
   if (add_frames(name)) return;
-  auto found = runtime::find_signals(plant_, name);
+  auto found = signals::find_signals(plant_, name);
   if (!found) throw Failure(kUsage, found.error() + frames_text(plant_));
   for (Signal& signal : *found) add(std::move(signal));
 }

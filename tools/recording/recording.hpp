@@ -11,11 +11,12 @@
 #include <string_view>
 #include <vector>
 
-#include "runtime/plant/plant_signals.hpp"
+#include "runtime/plant/plant.hpp"
+#include "runtime/signals/plant_signals.hpp"
 
 namespace ipos::tools {
 
-using Signal = runtime::PlantSignal;
+using Signal = signals::Signal;
 
 struct RecordedEvent {
   runtime::Time time;

@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "runtime/plant/plant_signals.hpp"
+#include "runtime/plant/plant.hpp"
+#include "runtime/signals/plant_signals.hpp"
 #include "tools/cli/json_text.hpp"
 
 namespace ipos::tools {
@@ -19,24 +20,24 @@ constexpr std::string_view kMore =
 }  // namespace
 
 std::string signal_list(const runtime::Plant& plant, bool json) {
-  const auto signals = runtime::plant_signals(plant);
+  const auto signals = signals::plant_signals(plant);
   if (json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const runtime::PlantSignal& signal : signals)
+    for (const signals::Signal& signal : signals)
       list.push_back({{"name", signal.name},
-                      {"group", runtime::group_text(signal.group)},
+                      {"group", signals::group_text(signal.group)},
                       {"unit", signal.unit},
                       {"bits", signal.bits},
                       {"meaning", signal.meaning}});
     return json_text(list) + "\n";
   }
   size_t name = 0, unit = 0;
-  for (const runtime::PlantSignal& signal : signals) {
+  for (const signals::Signal& signal : signals) {
     name = std::max(name, signal.name.size());
     unit = std::max(unit, signal.unit.size());
   }
   std::string text;
-  for (const runtime::PlantSignal& signal : signals) {
+  for (const signals::Signal& signal : signals) {
     text += fmt::format("{:<{}}  {:<{}}  {}", signal.name, name, signal.unit, unit, signal.meaning);
     text.erase(text.find_last_not_of(' ') + 1);
     text += '\n';

@@ -6,31 +6,31 @@
 #include <algorithm>
 
 #include "compiler/diag/places.hpp"
-#include "runtime/plant/station_signals.hpp"
-#include "runtime/plant/variable_names.hpp"
+#include "runtime/signals/station_signals.hpp"
+#include "runtime/signals/variable_names.hpp"
 
 namespace ipos::tools {
 namespace {
 
-void add(const runtime::Station& station, const std::vector<runtime::NamedVariable>& variables,
+void add(const runtime::Station& station, const std::vector<signals::NamedVariable>& variables,
          std::vector<WatchRow>& rows) {
   const auto& hex = station.config().hex;
   const auto in_hex = [&hex](const std::string& name) {
     return !name.empty() && std::find(hex.begin(), hex.end(), name) != hex.end();
   };
-  for (const runtime::NamedVariable& row : variables)
+  for (const signals::NamedVariable& row : variables)
     rows.push_back(
         {compiler::printable(row.name), row.number, station.variable(row.number),
          in_hex(row.symbol) || in_hex(row.name), ""});
 }
 
 void add_signals(const runtime::Station& station, const std::string& name, std::vector<WatchRow>& rows) {
-  const auto found = runtime::is_pattern(name) ? runtime::match_station_signals(station, name)
-                                               : runtime::find_station_signals(station, name);
-  for (const runtime::PlantSignal& signal : found) {
+  const auto found = signals::is_pattern(name) ? signals::match_station_signals(station, name)
+                                               : signals::find_station_signals(station, name);
+  for (const signals::Signal& signal : found) {
     const std::string own = signal.name.substr(signal.station.size() + 1);
-    if (signal.group == runtime::SignalGroup::Variable && signal.bits == 0) {
-      add(station, runtime::named_variables(station.symbols(), *station.config().unit, own), rows);
+    if (signal.group == signals::Group::Variable && signal.bits == 0) {
+      add(station, signals::named_variables(station.symbols(), *station.config().unit, own), rows);
       continue;
     }
     const int64_t value = signal.read();
@@ -44,12 +44,12 @@ void add_signals(const runtime::Station& station, const std::string& name, std::
 std::vector<WatchRow> watch_rows(const runtime::Station& station, const std::vector<std::string>& names) {
   std::vector<WatchRow> rows;
   if (names.empty())
-    for (const vm::Symbol& symbol : station.symbols()) add(station, runtime::elements_of(symbol), rows);
+    for (const vm::Symbol& symbol : station.symbols()) add(station, signals::elements_of(symbol), rows);
   for (std::string name : names) {
     // "u.H200" is of the station u only.
     if (const std::string own = station.config().name + "."; name.starts_with(own)) name.erase(0, own.size());
     const size_t before = rows.size();
-    add(station, runtime::named_variables(station.symbols(), *station.config().unit, name), rows);
+    add(station, signals::named_variables(station.symbols(), *station.config().unit, name), rows);
     if (rows.size() == before) add_signals(station, name, rows);
   }
   return rows;

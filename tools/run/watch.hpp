@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/plant/station.hpp"
+#include "runtime/station/station.hpp"
 
 namespace ipos::tools {
 

@@ -12,7 +12,7 @@
 namespace ipos::tools::serve {
 namespace {
 
-using runtime::PlantSignal;
+using signals::Signal;
 using runtime::Time;
 
 // A page that is loaded again finds its recording; a drive that nobody looks at is left alone.
@@ -77,10 +77,10 @@ void DriveScope::sample() {
     scope_.passed(recorded_ += runtime::kMillisecond);
 }
 
-std::vector<PlantSignal> DriveScope::find_channels(const std::string& name) {
+std::vector<Signal> DriveScope::find_channels(const std::string& name) {
   const std::string prefix = station_ + ".";
   const std::string own = name.starts_with(prefix) ? name.substr(prefix.size()) : name;
-  std::vector<PlantSignal> signals;
+  std::vector<Signal> signals;
   for (const LiveItem& item : live_items(access_.unit(), {own}, nullptr, {})) {
     const uint16_t index = item.target.index;
     const stdlib::Parameter* row = item.target.parameter;
@@ -88,7 +88,7 @@ std::vector<PlantSignal> DriveScope::find_channels(const std::string& name) {
     if (!reply)
       throw Mistake(why(stdlib::parameter_table(access_.unit()), stdlib::Service::Read, index, 0, reply.error()));
     last_[index] = row == nullptr ? int64_t{*reply} : row->number_of(*reply);
-    PlantSignal signal;
+    Signal signal;
     signal.name = prefix + own;
     signal.station = station_;
     if (row != nullptr) {

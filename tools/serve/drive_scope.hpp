@@ -26,7 +26,7 @@ class DriveScope final : private ScopeSource {
  private:
   // False where the drive does not answer: then it is tried again at the next turn in which somebody looks.
   bool begin();
-  std::vector<runtime::PlantSignal> find_channels(const std::string& name) override;
+  std::vector<signals::Signal> find_channels(const std::string& name) override;
   runtime::Time now() const override { return now_(); }
   void watch_for(const std::string& kind, const Arguments& settings) override;
   void stop(const std::string& why) override;

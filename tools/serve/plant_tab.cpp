@@ -131,7 +131,7 @@ class PlantTab final : public Tab {
   void stimulate(Station& station, runtime::Signal signal, runtime::Stimulus::Action action, int32_t value,
                  int64_t ms) {
     std::string why;
-    const auto port = runtime::SignalPort::find(host_.plant().stations(), signal, why);
+    const auto port = signals::SignalPort::find(host_.plant().stations(), signal, why);
     if (!port) throw Mistake(why);
     runtime::Stimulus stimulus;
     stimulus.signal = signal;

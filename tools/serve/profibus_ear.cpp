@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "runtime/bus/profibus/frame_text.hpp"
-#include "runtime/plant/profibus_bus.hpp"
-#include "runtime/plant/profibus_octets.hpp"
+#include "runtime/station/profibus_bus.hpp"
+#include "runtime/station/profibus_octets.hpp"
 #include "tools/serve/bus_ear.hpp"
 
 namespace ipos::tools::serve {

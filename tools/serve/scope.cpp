@@ -13,7 +13,7 @@ namespace ipos::tools::serve {
 namespace {
 
 using runtime::kMillisecond;
-using runtime::PlantSignal;
+using signals::Signal;
 using runtime::Time;
 
 constexpr size_t kMostChannels = 8;
@@ -187,18 +187,18 @@ void Scope::load(const Json& state) {
   }
 }
 
-std::vector<PlantSignal> Scope::find(const std::vector<std::string>& names) {
-  std::vector<PlantSignal> signals;
+std::vector<Signal> Scope::find(const std::vector<std::string>& names) {
+  std::vector<Signal> signals;
   for (const std::string& name : names)
-    for (PlantSignal& signal : source_.find_channels(name)) signals.push_back(std::move(signal));
+    for (Signal& signal : source_.find_channels(name)) signals.push_back(std::move(signal));
   return signals;
 }
 
 // What is recorded of those that stay is kept.
-void Scope::choose(std::vector<PlantSignal> channels) {
+void Scope::choose(std::vector<Signal> channels) {
   std::vector<std::optional<size_t>> known;
   std::vector<std::string> names;
-  for (const PlantSignal& channel : channels) {
+  for (const Signal& channel : channels) {
     const auto before = std::find(names_.begin(), names_.end(), channel.name);
     known.push_back(before == names_.end() ? std::nullopt : std::optional<size_t>(before - names_.begin()));
     names.push_back(channel.name);
@@ -226,9 +226,9 @@ void Scope::begin_again() {
   previous_.reset();
 }
 
-std::vector<const PlantSignal*> Scope::asked() const {
-  std::vector<const PlantSignal*> signals;
-  for (const PlantSignal& channel : channels_) signals.push_back(&channel);
+std::vector<const Signal*> Scope::asked() const {
+  std::vector<const Signal*> signals;
+  for (const Signal& channel : channels_) signals.push_back(&channel);
   if (trigger_.signal) signals.push_back(&*trigger_.signal);
   return signals;
 }
@@ -249,7 +249,7 @@ void Scope::restore(const Json& settings) {
 
 void Scope::set(const Arguments& a) {
   if (a.has("channels")) {
-    std::vector<PlantSignal> channels = find(a.texts("channels", kMostChannels));
+    std::vector<Signal> channels = find(a.texts("channels", kMostChannels));
     if (channels.empty() || channels.size() > kMostChannels)
       throw Mistake(
           fmt::format("a scope has 1 to {} channels, these are {}", kMostChannels, channels.size()));
@@ -337,7 +337,7 @@ uint64_t Scope::number_at(int64_t us) const {
 
 Json Scope::describe() const {
   Json channels = Json::array();
-  for (const PlantSignal& channel : channels_)
+  for (const Signal& channel : channels_)
     channels.push_back({{"name", channel.name},
                         {"unit", channel.unit},
                         {"decimals", channel.decimals},

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/plant/plant_signals.hpp"
+#include "runtime/signals/plant_signals.hpp"
 #include "tools/serve/desk.hpp"
 #include "tools/serve/scope_memory.hpp"
 #include "tools/serve/second_run.hpp"
@@ -21,7 +21,7 @@ namespace ipos::tools::serve {
 class ScopeSource {
  public:
   // What a name stands for. A Mistake says what there is.
-  virtual std::vector<runtime::PlantSignal> find_channels(const std::string& name) = 0;
+  virtual std::vector<signals::Signal> find_channels(const std::string& name) = 0;
   virtual runtime::Time now() const = 0;
   // Watches for an event of this kind from now on, and calls Scope::happened(). Ends what it watched for before; the kinds
   // none, level and edge are the scope's. A Mistake says why it cannot.
@@ -54,7 +54,7 @@ class Scope final {
   void happened(runtime::Time at, std::string why) { seen_ = {at, std::move(why)}; }
 
   // What it reads each millisecond: its channels, and the signal of its trigger.
-  std::vector<const runtime::PlantSignal*> asked() const;
+  std::vector<const signals::Signal*> asked() const;
   // A recording is to be triggered or ended.
   bool waits() const { return state_ == State::Armed || state_ == State::Triggered; }
 
@@ -69,7 +69,7 @@ class Scope final {
   struct Trigger {
     Json settings{{"kind", "none"}};
     std::string kind = "none";
-    std::optional<runtime::PlantSignal> signal{};  // of level and edge
+    std::optional<signals::Signal> signal{};  // of level and edge
     double value = 0;
     bool below = false;
     bool rising = false, falling = false;
@@ -78,8 +78,8 @@ class Scope final {
 
   void set(const Arguments& settings);
   Trigger trigger_of(const Json& json);
-  std::vector<runtime::PlantSignal> find(const std::vector<std::string>& names);
-  void choose(std::vector<runtime::PlantSignal> channels);
+  std::vector<signals::Signal> find(const std::vector<std::string>& names);
+  void choose(std::vector<signals::Signal> channels);
   void begin_again();
   void arm(bool single);
   void fire(runtime::Time at, const std::string& why);
@@ -103,7 +103,7 @@ class Scope final {
   Desk& desk_;
   ScopeSource& source_;
   std::vector<std::string> names_;
-  std::vector<runtime::PlantSignal> channels_;
+  std::vector<signals::Signal> channels_;
   ScopeMemory memory_;
   std::vector<int64_t> samples_;
   runtime::Time last_ = 0;  // the last millisecond looked at

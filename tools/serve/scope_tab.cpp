@@ -2,14 +2,14 @@
 // lines, too.
 #include <fmt/format.h>
 
-#include "runtime/plant/plant_signals.hpp"
+#include "runtime/signals/plant_signals.hpp"
 #include "tools/serve/scope.hpp"
 #include "tools/serve/tabs.hpp"
 
 namespace ipos::tools::serve {
 namespace {
 
-using runtime::PlantSignal;
+using signals::Signal;
 using runtime::Time;
 
 class ScopeTab final : public Tab,
@@ -22,7 +22,7 @@ class ScopeTab final : public Tab,
   void built(runtime::Plant& plant) override {
     std::vector<std::string> names;
     for (const auto& station : plant.stations())
-      for (PlantSignal& signal : runtime::default_signals(*station)) names.push_back(std::move(signal.name));
+      for (Signal& signal : signals::default_signals(*station)) names.push_back(std::move(signal.name));
     scope_.propose(std::move(names));
     scope_.built();
     old_faults_.clear();
@@ -58,8 +58,8 @@ class ScopeTab final : public Tab,
     uint32_t address = 0;  // of line
   };
 
-  std::vector<PlantSignal> find_channels(const std::string& name) override {
-    auto found = runtime::find_signals(host_.plant(), name);
+  std::vector<Signal> find_channels(const std::string& name) override {
+    auto found = signals::find_signals(host_.plant(), name);
     if (!found) throw Mistake(found.error());
     return std::move(*found);
   }

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "runtime/plant/profibus_bus.hpp"
+#include "runtime/station/profibus_bus.hpp"
 #include "tools/serve/plant_host.hpp"
 
 namespace ipos::tools::serve {

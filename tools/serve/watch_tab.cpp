@@ -7,26 +7,26 @@
 #include <charconv>
 #include <cmath>
 
-#include "runtime/plant/plant_signals.hpp"
 #include "runtime/plant_file/signal.hpp"
+#include "runtime/signals/plant_signals.hpp"
 #include "stdlib/parameters.hpp"
 #include "tools/serve/tabs.hpp"
 
 namespace ipos::tools::serve {
 namespace {
 
-using runtime::PlantSignal;
-using runtime::SignalGroup;
+using signals::Signal;
+using signals::Group;
 using runtime::Station;
 
 constexpr size_t kMostWatched = 1000;
 constexpr size_t kLongBits = 32;
 
 // In the order of the list.
-constexpr SignalGroup kGroupOrder[] = {
-    SignalGroup::Variable, SignalGroup::SystemVariable, SignalGroup::Drive,  SignalGroup::State,
-    SignalGroup::Input,    SignalGroup::Output,         SignalGroup::Analog, SignalGroup::ProcessData,
-    SignalGroup::Task,     SignalGroup::Parameter,      SignalGroup::Bus};
+constexpr Group kGroupOrder[] = {
+    Group::Variable, Group::SystemVariable, Group::Drive,  Group::State,
+    Group::Input,    Group::Output,         Group::Analog, Group::ProcessData,
+    Group::Task,     Group::Parameter,      Group::Bus};
 
 std::string lower(std::string_view text) {
   std::string out;
@@ -35,7 +35,7 @@ std::string lower(std::string_view text) {
 }
 
 // Without the station's part.
-std::string_view short_name(const PlantSignal& signal) {
+std::string_view short_name(const Signal& signal) {
   return std::string_view(signal.name).substr(signal.station.size() + 1);
 }
 
@@ -88,24 +88,24 @@ class WatchTab final : public Tab {
  private:
   // --- names ---
 
-  const std::vector<PlantSignal>& known() {
+  const std::vector<Signal>& known() {
     if (!known_.empty()) return known_;
-    known_ = runtime::plant_signals(host_.plant());
+    known_ = signals::plant_signals(host_.plant());
     for (const auto& station : host_.plant().stations())
       for (const stdlib::Parameter& row : stdlib::parameter_table(*station->config().unit).rows())
         if (!row.number.empty() && row.index != 0)
-          for (PlantSignal& signal : runtime::find_station_signals(*station, "P" + std::string(row.number)))
+          for (Signal& signal : signals::find_station_signals(*station, "P" + std::string(row.number)))
             known_.push_back(std::move(signal));
     return known_;
   }
 
-  bool writable(const PlantSignal& signal) const {
+  bool writable(const Signal& signal) const {
     switch (signal.group) {
-      case SignalGroup::Variable:
-      case SignalGroup::SystemVariable:
-      case SignalGroup::Input: return true;
-      case SignalGroup::Analog: return runtime::parse_analog_input(short_name(signal)) >= 0;
-      case SignalGroup::Parameter: {
+      case Group::Variable:
+      case Group::SystemVariable:
+      case Group::Input: return true;
+      case Group::Analog: return runtime::parse_analog_input(short_name(signal)) >= 0;
+      case Group::Parameter: {
         const stdlib::Parameter* parameter = parameter_of(signal);
         return parameter != nullptr && parameter->writable;
       }
@@ -113,20 +113,20 @@ class WatchTab final : public Tab {
     }
   }
 
-  const Station* station_of(const PlantSignal& signal) const {
+  const Station* station_of(const Signal& signal) const {
     for (const auto& station : host_.plant().stations())
       if (station->config().name == signal.station) return station.get();
     return nullptr;
   }
-  const stdlib::Parameter* parameter_of(const PlantSignal& signal) const {
+  const stdlib::Parameter* parameter_of(const Signal& signal) const {
     const Station* station = station_of(signal);
     return station == nullptr ? nullptr
                               : stdlib::parameter_table(*station->config().unit).find(short_name(signal));
   }
 
-  Json json_of(const PlantSignal& signal) const {
+  Json json_of(const Signal& signal) const {
     return {{"name", signal.name},
-            {"group", runtime::group_text(signal.group)},
+            {"group", signals::group_text(signal.group)},
             {"unit", signal.unit},
             {"text", signal.meaning},
             {"writable", writable(signal)}};
@@ -139,9 +139,9 @@ class WatchTab final : public Tab {
     const auto limit = static_cast<size_t>(a.whole("limit", 1, 1000, 100));
     Json names = Json::array();
     size_t total = 0;
-    for (const SignalGroup wanted : kGroupOrder) {
-      if (!group.empty() && group != runtime::group_text(wanted)) continue;
-      for (const PlantSignal& signal : known()) {
+    for (const Group wanted : kGroupOrder) {
+      if (!group.empty() && group != signals::group_text(wanted)) continue;
+      for (const Signal& signal : known()) {
         if (signal.group != wanted || (!station.empty() && signal.station != station)) continue;
         if (lower(signal.name).find(text) == std::string::npos &&
             lower(signal.meaning).find(text) == std::string::npos)
@@ -151,19 +151,19 @@ class WatchTab final : public Tab {
       }
     }
     Json groups = Json::array();
-    for (const SignalGroup row : kGroupOrder)
+    for (const Group row : kGroupOrder)
       if (std::any_of(known().begin(), known().end(),
-                      [row](const PlantSignal& signal) { return signal.group == row; }))
-        groups.push_back(runtime::group_text(row));
+                      [row](const Signal& signal) { return signal.group == row; }))
+        groups.push_back(signals::group_text(row));
     return {{"names", std::move(names)}, {"total", total}, {"groups", std::move(groups)}};
   }
 
-  std::vector<PlantSignal> find(const std::string& name) const {
-    auto found = runtime::find_signals(host_.plant(), name);
+  std::vector<Signal> find(const std::string& name) const {
+    auto found = signals::find_signals(host_.plant(), name);
     if (!found) throw Mistake(found.error());
     return std::move(*found);
   }
-  PlantSignal find_one(const std::string& name) const {
+  Signal find_one(const std::string& name) const {
     auto found = find(name);
     if (found.size() != 1)
       throw Mistake(fmt::format("'{}' stands for {} values; name one", name, found.size()));
@@ -171,14 +171,14 @@ class WatchTab final : public Tab {
   }
 
   Json watch(const Desk::Call& call) {
-    std::vector<PlantSignal> signals;
+    std::vector<Signal> signals;
     for (const std::string& name : call.arguments.texts("names", kMostWatched))
-      for (PlantSignal& signal : find(name)) signals.push_back(std::move(signal));
+      for (Signal& signal : find(name)) signals.push_back(std::move(signal));
     if (signals.size() > kMostWatched)
       throw Mistake(fmt::format("these are {} values, at most {} are watched", signals.size(), kMostWatched));
     call.client.watched.clear();
     Json names = Json::array();
-    for (const PlantSignal& signal : signals) {
+    for (const Signal& signal : signals) {
       call.client.watched.push_back(signal.name);
       names.push_back(json_of(signal));
     }
@@ -190,7 +190,7 @@ class WatchTab final : public Tab {
 
   // --- values ---
 
-  Json value_json(const PlantSignal& signal) const {
+  Json value_json(const Signal& signal) const {
     const int64_t sample = signal.read();
     Json json{{"text", signal.text(sample)}, {"forced", is_forced(signal)}};
     const double value = static_cast<double>(sample) * signal.factor;
@@ -198,16 +198,16 @@ class WatchTab final : public Tab {
     const size_t bits = signal.bits > 1 ? signal.bits : kLongBits;
     json["hex"] = bits > 16 ? fmt::format("{:08X} h", static_cast<uint32_t>(sample))
                             : fmt::format("{:04X} h", static_cast<uint16_t>(sample));
-    if (signal.group == SignalGroup::Parameter)
+    if (signal.group == Group::Parameter)
       if (const stdlib::Parameter* parameter = parameter_of(signal);
           parameter != nullptr && !parameter->texts.empty())
         json["text"] = stdlib::parameter_text(*parameter, static_cast<int32_t>(sample));
     return json;
   }
 
-  bool is_forced(const PlantSignal& signal) const {
+  bool is_forced(const Signal& signal) const {
     if (forced_.count(signal.name) != 0) return true;
-    if (signal.group != SignalGroup::Input) return false;
+    if (signal.group != Group::Input) return false;
     const int line = runtime::parse_input(short_name(signal));
     return line >= 0 && station_of(signal)->inputs().line(static_cast<size_t>(line)).forced.has_value();
   }
@@ -215,13 +215,13 @@ class WatchTab final : public Tab {
   void publish(Client& client, Subscription& subscription) {
     auto found = watched_.find(client.number);
     if (found == watched_.end()) {  // the plant is another one
-      std::vector<PlantSignal> signals;
+      std::vector<Signal> signals;
       for (const std::string& name : client.watched)
-        for (PlantSignal& signal : find(name)) signals.push_back(std::move(signal));
+        for (Signal& signal : find(name)) signals.push_back(std::move(signal));
       found = watched_.emplace(client.number, std::move(signals)).first;
     }
     Json values = Json::object();
-    for (const PlantSignal& signal : found->second) {
+    for (const Signal& signal : found->second) {
       const Station* station = station_of(signal);
       Json now = station != nullptr && !station->powered() ? Json(nullptr) : value_json(signal);
       if (subscription.is_news(signal.name, now)) values[signal.name] = std::move(now);
@@ -233,16 +233,16 @@ class WatchTab final : public Tab {
   // --- what is set ---
 
   Json set(const Arguments& a) {
-    const PlantSignal signal = find_one(a.text("name"));
+    const Signal signal = find_one(a.text("name"));
     const std::string text = a.text("value");
     const std::string name(short_name(signal));
     if (!writable(signal)) throw Mistake(fmt::format("{} cannot be set", signal.name));
-    if (signal.group == SignalGroup::Input) {
+    if (signal.group == Group::Input) {
       host_.act("input",
                 {{"station", signal.station}, {"name", name}, {"action", "set"}, {"on", level_of(text)}});
-    } else if (signal.group == SignalGroup::Analog) {
+    } else if (signal.group == Group::Analog) {
       host_.act("analog", {{"station", signal.station}, {"name", name}, {"action", "set"}, {"value", text}});
-    } else if (signal.group == SignalGroup::Parameter) {
+    } else if (signal.group == Group::Parameter) {
       const stdlib::Parameter& parameter = *parameter_of(signal);
       const auto value = stdlib::parse_parameter_text(parameter, text);
       if (!value) throw Mistake(value.error());
@@ -266,13 +266,13 @@ class WatchTab final : public Tab {
   }
 
   Json force(const Arguments& a) {
-    const PlantSignal signal = find_one(a.text("name"));
+    const Signal signal = find_one(a.text("name"));
     const std::string text = a.text("value");
     const std::string name(short_name(signal));
-    if (signal.group == SignalGroup::Input) {
+    if (signal.group == Group::Input) {
       host_.act("input",
                 {{"station", signal.station}, {"name", name}, {"action", "force"}, {"on", level_of(text)}});
-    } else if (signal.group == SignalGroup::Variable || signal.group == SignalGroup::SystemVariable) {
+    } else if (signal.group == Group::Variable || signal.group == Group::SystemVariable) {
       const auto value = number_of(text);
       if (!value)
         throw Mistake(fmt::format("'{}' is no number of 32 bits; write it decimal or as 0x1F", text));
@@ -284,9 +284,9 @@ class WatchTab final : public Tab {
   }
 
   Json release(const Arguments& a) {
-    const PlantSignal signal = find_one(a.text("name"));
+    const Signal signal = find_one(a.text("name"));
     if (!is_forced(signal)) throw Mistake(fmt::format("{} is not forced", signal.name));
-    if (signal.group == SignalGroup::Input)
+    if (signal.group == Group::Input)
       host_.act(
           "input",
           {{"station", signal.station}, {"name", std::string(short_name(signal))}, {"action", "release"}});
@@ -296,13 +296,13 @@ class WatchTab final : public Tab {
   }
 
   void hold(const Arguments& a, bool on) {
-    const PlantSignal signal = find_one(a.text("name"));
+    const Signal signal = find_one(a.text("name"));
     runtime::Stimulus stimulus;
     stimulus.signal = {signal.station, runtime::SignalKind::Variable, std::string(short_name(signal)), 0};
     stimulus.action = on ? runtime::Stimulus::Action::Force : runtime::Stimulus::Action::Release;
     stimulus.at = host_.plant().now();
     std::string why;
-    const auto port = runtime::SignalPort::find(host_.plant().stations(), stimulus.signal, why);
+    const auto port = signals::SignalPort::find(host_.plant().stations(), stimulus.signal, why);
     if (!port) throw Mistake(why);
     if (on) {
       stimulus.value = static_cast<int32_t>(a.whole("value", INT32_MIN, INT32_MAX));
@@ -315,8 +315,8 @@ class WatchTab final : public Tab {
   }
 
   PlantHost& host_;
-  std::vector<PlantSignal> known_;
-  std::map<uint16_t, std::vector<PlantSignal>> watched_;  // by client
+  std::vector<Signal> known_;
+  std::map<uint16_t, std::vector<Signal>> watched_;  // by client
   std::map<std::string, int32_t> forced_;                 // variables
 };
 

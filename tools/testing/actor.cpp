@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "runtime/plant/signal_port.hpp"
+#include "runtime/signals/signal_port.hpp"
 
 namespace ipos::tools::testing {
 
@@ -27,7 +27,7 @@ void Actor::plan(const Item& item, const Step& step, Time at) {
   // What holds longer than a moment is a stimulus of the plant.
   if (const auto* stimulus = std::get_if<runtime::Stimulus>(&step)) {
     std::string why;
-    const auto port = runtime::SignalPort::find(plant_.stations(), stimulus->signal, why);
+    const auto port = signals::SignalPort::find(plant_.stations(), stimulus->signal, why);
     if (!port) return on_problem_(item, why);
     if (stimulus->action != runtime::Stimulus::Action::Set || stimulus->every != 0) {
       runtime::Stimulus timed = *stimulus;
@@ -52,7 +52,7 @@ void Actor::plan(const Item& item, const Step& step, Time at) {
 
 runtime::Refusal Actor::set(const runtime::Stimulus& stimulus) {
   std::string why;
-  const auto port = runtime::SignalPort::find(plant_.stations(), stimulus.signal, why);
+  const auto port = signals::SignalPort::find(plant_.stations(), stimulus.signal, why);
   return runtime::Hands::set(*port, stimulus.signal.name, stimulus.value);
 }
 

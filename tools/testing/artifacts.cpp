@@ -44,11 +44,11 @@ std::vector<std::string> names_in(const TestCase& test) {
 std::vector<std::string> signals_of(const TestCase& test, const runtime::Plant& plant) {
   std::vector<std::string> wanted;
   for (const auto& station : plant.stations())
-    for (runtime::PlantSignal& signal : runtime::default_signals(*station)) wanted.push_back(std::move(signal.name));
+    for (signals::Signal& signal : signals::default_signals(*station)) wanted.push_back(std::move(signal.name));
   for (const std::string& name : names_in(test)) wanted.push_back(name);
   std::vector<std::string> names;
   for (const std::string& name : wanted)
-    if (std::find(names.begin(), names.end(), name) == names.end() && runtime::find_signals(plant, name))
+    if (std::find(names.begin(), names.end(), name) == names.end() && signals::find_signals(plant, name))
       names.push_back(name);
   for (const auto& bus : plant.buses()) names.push_back(bus->name() + ".frames");
   return names;

@@ -8,7 +8,7 @@
 
 #include "runtime/bus/movilink/describe_serial.hpp"
 #include "runtime/bus_plan/names.hpp"
-#include "runtime/plant/signal_port.hpp"
+#include "runtime/signals/signal_port.hpp"
 #include "tools/input/sources.hpp"
 
 namespace ipos::tools::testing {

@@ -12,7 +12,7 @@
 #include <list>
 #include <set>
 
-#include "runtime/plant/station_state.hpp"
+#include "runtime/signals/station_state.hpp"
 #include "tools/cli/interrupt.hpp"
 #include "tools/input/mistakes.hpp"
 #include "tools/testing/actor.hpp"

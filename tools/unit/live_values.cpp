@@ -7,7 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "runtime/plant/variable_names.hpp"
+#include "runtime/signals/variable_names.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/json_text.hpp"
 #include "tools/input/program.hpp"
@@ -25,8 +25,8 @@ constexpr std::string_view kHex = ":hex";
 // What the name stands for in the program or the unit; false when there is none.
 bool add_variables(std::span<const vm::Symbol> symbols, const stdlib::UnitType& unit, const std::string& name,
                    bool hex, std::vector<LiveItem>& items) {
-  const auto found = runtime::named_variables(symbols, unit, name);
-  for (const runtime::NamedVariable& row : found)
+  const auto found = signals::named_variables(symbols, unit, name);
+  for (const signals::NamedVariable& row : found)
     items.push_back({row.name, {static_cast<uint16_t>(kFirstVariable + row.number), nullptr}, hex});
   return !found.empty();
 }

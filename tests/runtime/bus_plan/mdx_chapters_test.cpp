@@ -1,6 +1,7 @@
 // Chapters that the manual of MDX60B/61B names and other manuals print (rows MDB-TOC): the same vectors on a MOVIDRIVE B.
 #include <gtest/gtest.h>
 
+#include "runtime/signals/variable_names.hpp"
 #include "tests/harness/proves.hpp"
 #include "tests/runtime/bus_plan/plant_rig.hpp"
 
@@ -40,7 +41,7 @@ TEST(MdxChapters, MovlnkOverEachBus) {
   int32_t before = 1'500'000;  // factory setting
   for (const int type : {1, 2, 5, 8}) {
     const auto element = [&](const char* array) {
-      return rig.station(0).variable(*rig.station(0).find_variable(array) + static_cast<uint32_t>(type));
+      return rig.station(0).variable(*signals::find_variable(rig.station(0), array) + static_cast<uint32_t>(type));
     };
     EXPECT_EQ(element("lResult"), 0) << type;
     EXPECT_EQ(element("lBefore"), before) << type;

@@ -15,6 +15,7 @@
 #include "compiler/compile.hpp"
 #include "compiler/diag/render.hpp"
 #include "runtime/plant/plant.hpp"
+#include "runtime/signals/variable_names.hpp"
 #include "stdlib/unit_text.hpp"
 #include "tests/harness/reach.hpp"
 
@@ -60,7 +61,7 @@ class PlantRig final : private CanObserver {
   void run_until(Time end) { get().run_until(end); }
   Station& station(size_t n) { return *plant->stations()[n]; }
   int32_t variable(size_t n, const std::string& name) {
-    const auto number = station(n).find_variable(name);
+    const auto number = signals::find_variable(station(n), name);
     EXPECT_TRUE(number) << name;
     return number ? station(n).variable(*number) : 0;
   }

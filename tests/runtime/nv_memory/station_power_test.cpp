@@ -4,7 +4,7 @@
 
 #include "runtime/bus/movilink/format.hpp"
 #include "runtime/plant/plant.hpp"
-#include "runtime/plant/station_signals.hpp"
+#include "runtime/signals/station_signals.hpp"
 #include "tests/harness/proves.hpp"
 #include "tests/harness/reach.hpp"
 #include "tests/runtime/bus/rs485/serial_rig.hpp"
@@ -556,9 +556,9 @@ TEST(ProgramMemory, IsVerifiedBeforeItStarts) {
   // Who looks at the unit finds no program: zeros.
   EXPECT_EQ(rig.station->variable(200), 0);
   size_t tasks = 0;
-  for (const PlantSignal& signal : station_signals(*rig.station)) {
+  for (const signals::Signal& signal : signals::station_signals(*rig.station)) {
     const int64_t value = signal.read();
-    if (signal.group != SignalGroup::Task) continue;
+    if (signal.group != signals::Group::Task) continue;
     ++tasks;
     EXPECT_EQ(value, 0) << signal.name;
   }

@@ -1,6 +1,6 @@
 // PO4 to PO10 and PI4 to PI10: over a DP card and over CANopen they go to the program and come from it. The words are
 // those that the plant file's master sends; the program turns their order round.
-#include "runtime/plant/plant_signals.hpp"
+#include "runtime/signals/plant_signals.hpp"
 #include "tests/harness/proves.hpp"
 #include "tests/runtime/plant/plant_rig.hpp"
 
@@ -90,7 +90,7 @@ TEST(FurtherWords, AreSignals) {
   const auto plant = make_plant(kDp, {{"P.IPC", kEcho}});
   plant->run_until(kSecond);
   const auto signal = [&](const char* name) {
-    const auto found = runtime::find_signals(*plant, name);
+    const auto found = signals::find_signals(*plant, name);
     EXPECT_TRUE(found && found->size() == 1) << name;
     return found && !found->empty() ? found->front().read() : -1;
   };
@@ -98,7 +98,7 @@ TEST(FurtherWords, AreSignals) {
   EXPECT_EQ(signal("u.PI10"), 104);
   EXPECT_EQ(signal("u.PI10.3"), 1) << "104 is 68h";
   const auto alone = make_station("main() { }");
-  EXPECT_FALSE(runtime::find_signals(*alone, "u.PO4"));
+  EXPECT_FALSE(signals::find_signals(*alone, "u.PO4"));
 }
 
 TEST(FurtherWords, GoWithThePower) {

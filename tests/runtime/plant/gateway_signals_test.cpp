@@ -1,6 +1,6 @@
 // A gateway that works: its signals are the words and counts of its drives, and names of signals are those of the plant's
 // gateways and buses, too.
-#include "runtime/plant/plant_signals.hpp"
+#include "runtime/signals/plant_signals.hpp"
 #include "tests/runtime/plant/plain_plant.hpp"
 
 namespace ipos::runtime {
@@ -24,7 +24,7 @@ class GatewaySignals : public ::testing::Test {
  protected:
   void SetUp() override { plant_->run_until(kSecond); }
   int64_t value(const std::string& name) {
-    const auto found = find_signals(*plant_, name);
+    const auto found = signals::find_signals(*plant_, name);
     EXPECT_TRUE(found && found->size() == 1) << (found ? name : found.error());
     return found && !found->empty() ? found->front().read() : INT64_MIN;
   }
@@ -49,7 +49,7 @@ TEST_F(GatewaySignals, AreTheWordsOfEachDrive) {
        {std::pair("g.error", 32), std::pair("g.lost", 8), std::pair("g.drive2.PO3", 16),
         std::pair("g.drive5.PI1", 16), std::pair("g.powered", 1), std::pair("g.drive2.lost", 1),
         std::pair("g.drive2.asked", 0)})
-    EXPECT_EQ(find_signals(*plant_, name).value()[0].bits, static_cast<size_t>(bits)) << name;
+    EXPECT_EQ(signals::find_signals(*plant_, name).value()[0].bits, static_cast<size_t>(bits)) << name;
 }
 
 // A telegram to each drive every 10 ms; who has not answered for the reply timeout is lost.
@@ -89,9 +89,9 @@ TEST_F(GatewaySignals, CountTelegramsAndLosses) {
 TEST_F(GatewaySignals, AreThoseOfTheTelegramsOnItsLine) {
   std::vector<std::string> names;
   std::map<std::string, std::function<int64_t()>> read;
-  const auto found = find_signals(*plant_, "dp.10.P?*");
+  const auto found = signals::find_signals(*plant_, "dp.10.P?*");
   ASSERT_TRUE(found) << found.error();
-  for (const PlantSignal& signal : *found) {
+  for (const signals::Signal& signal : *found) {
     names.push_back(signal.name);
     read[signal.name] = signal.read;
     EXPECT_EQ(signal.read(), 0);
@@ -111,9 +111,9 @@ TEST_F(GatewaySignals, AreThoseOfTheTelegramsOnItsLine) {
 TEST_F(GatewaySignals, AreFoundByNameAndPattern) {
   const auto names = [&](const std::string& pattern) {
     std::vector<std::string> all;
-    const auto found = find_signals(*plant_, pattern);
+    const auto found = signals::find_signals(*plant_, pattern);
     if (found)
-      for (const PlantSignal& signal : *found) all.push_back(signal.name);
+      for (const signals::Signal& signal : *found) all.push_back(signal.name);
     return all;
   };
   using Names = std::vector<std::string>;
@@ -127,22 +127,22 @@ TEST_F(GatewaySignals, AreFoundByNameAndPattern) {
   EXPECT_GT(value("dp.count"), 100);
   EXPECT_GT(value("can.load"), 1);
   EXPECT_EQ(value("can.count"), static_cast<int64_t>(plant_->find_bus("can")->load(plant_->now()).frames));
-  EXPECT_EQ(find_signals(*plant_, "g.drive3.PO1").error().substr(0, 61),
+  EXPECT_EQ(signals::find_signals(*plant_, "g.drive3.PO1").error().substr(0, 61),
             "gateway 'g' has no signal 'drive3.PO1'; it has powered, excha");
-  EXPECT_EQ(find_signals(*plant_, "x.y").error(),
+  EXPECT_EQ(signals::find_signals(*plant_, "x.y").error(),
             "'x.y' is no signal; signals begin with fan., pump.; the buses have dp.load, dp.count, can.load, "
             "can.count");
-  EXPECT_TRUE(find_signals(*plant_, "fan.y")
+  EXPECT_TRUE(signals::find_signals(*plant_, "fan.y")
                   .error()
                   .ends_with("; the buses have dp.load, dp.count, can.load, can.count"));
-  EXPECT_EQ(find_signals(*plant_, "y*").error(), "no signal is called like 'y*'");
+  EXPECT_EQ(signals::find_signals(*plant_, "y*").error(), "no signal is called like 'y*'");
 }
 
 // With one station its name may be left out, and the longest name that fits counts.
 TEST(SignalOwners, AreFoundByTheBeginOfAName) {
   const auto found = [](const std::string& text, const std::string& name) {
     const PlainPlant plant(text);
-    const auto all = find_signals(*plant, name);
+    const auto all = signals::find_signals(*plant, name);
     return all ? all->front().name : "none";
   };
   const std::string u = "[[station]]\nname = 'u'\nunit = 'mdxb'\n",

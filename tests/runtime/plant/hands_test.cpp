@@ -10,7 +10,7 @@ using tests::PlainPlant;
 
 const std::string kHandled = "[[station]]\nname = 'u'\nunit = 'mdxb'\n";
 
-SignalPort port_of(const PlainPlant& plant, SignalKind kind, const std::string& name, int line = 0) {
+signals::SignalPort port_of(const PlainPlant& plant, SignalKind kind, const std::string& name, int line = 0) {
   std::string why;
   return plant->find_port({"u", kind, name, static_cast<uint8_t>(line)}, why).value();
 }
@@ -24,7 +24,7 @@ TEST(HandsOnAPlant, SetForceAndReleaseAnInput) {
   Hands hands(*plant);
   run_on(plant, 5);
   const auto level = [&](int line) { return std::as_const(plant.station()).inputs().levels() >> line & 1; };
-  const SignalPort free = port_of(plant, SignalKind::Input, "DI03", 3);
+  const signals::SignalPort free = port_of(plant, SignalKind::Input, "DI03", 3);
   EXPECT_EQ(Hands::set(free, "DI03", 1), std::nullopt);
   EXPECT_EQ(level(3), 1);
   EXPECT_EQ(hands.force(free, 0), std::nullopt);
@@ -34,7 +34,7 @@ TEST(HandsOnAPlant, SetForceAndReleaseAnInput) {
   EXPECT_EQ(level(3), 0) << "it is forced";
   hands.release(free);
   EXPECT_EQ(level(3), 1);
-  const SignalPort driven = port_of(plant, SignalKind::Input, "DI05", 5);
+  const signals::SignalPort driven = port_of(plant, SignalKind::Input, "DI05", 5);
   EXPECT_EQ(level(5), 1) << "the wire inverts";
   EXPECT_EQ(Hands::set(driven, "DI05", 0), "DI05 of u hangs on a wire or switch: force it, do not set it");
   EXPECT_EQ(hands.force(driven, 0), std::nullopt);
@@ -48,10 +48,10 @@ TEST(HandsOnAPlant, SetForceAndReleaseAParameter) {
   const PlainPlant plant(kHandled);
   Hands hands(*plant);
   run_on(plant, 5);
-  const SignalPort ramp = port_of(plant, SignalKind::Parameter, "P130");
+  const signals::SignalPort ramp = port_of(plant, SignalKind::Parameter, "P130");
   EXPECT_EQ(Hands::set(ramp, "P130", 3'000), std::nullopt);
   EXPECT_EQ(plant.parameter("130"), 3'000);
-  const SignalPort speed = port_of(plant, SignalKind::Parameter, "P160");
+  const signals::SignalPort speed = port_of(plant, SignalKind::Parameter, "P160");
   const Refusal refused = Hands::set(speed, "P160", 600'001);
   ASSERT_TRUE(refused) << "no step of P160";
   EXPECT_EQ(hands.force(speed, 600'001), refused);

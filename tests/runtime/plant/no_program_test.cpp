@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "plant_rig.hpp"
-#include "runtime/plant/plant_signals.hpp"
+#include "runtime/signals/plant_signals.hpp"
+#include "runtime/signals/variable_names.hpp"
 #include "stdlib/system_variables.hpp"
 
 namespace ipos::tests {
@@ -174,12 +175,12 @@ TEST(NoProgram, NamesAreFound) {
   ASSERT_NE(plant, nullptr);
   plant->run_until(ms(10));
   for (const char* name : {"a.H511", "a.H0", "a.ActPos_Mot", "a.position_target"}) {
-    const auto found = find_signals(*plant, name);
+    const auto found = signals::find_signals(*plant, name);
     EXPECT_TRUE(found && found->size() == 1) << name;
   }
-  EXPECT_EQ(plant->stations()[0]->find_variable("H512"), std::nullopt);
-  for (const char* name : {"m.H511", "m.H0", "m.ActPos_Mot"}) EXPECT_FALSE(find_signals(*plant, name)) << name;
-  EXPECT_EQ(plant->stations()[1]->find_variable("H0"), std::nullopt);
+  EXPECT_EQ(signals::find_variable(*plant->stations()[0], "H512"), std::nullopt);
+  for (const char* name : {"m.H511", "m.H0", "m.ActPos_Mot"}) EXPECT_FALSE(signals::find_signals(*plant, name)) << name;
+  EXPECT_EQ(signals::find_variable(*plant->stations()[1], "H0"), std::nullopt);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "compiler/compile.hpp"
 #include "compiler/diag/render.hpp"
 #include "runtime/plant/plant.hpp"
+#include "runtime/signals/variable_names.hpp"
 #include "tests/harness/reach.hpp"
 
 namespace ipos::tests {
@@ -59,7 +60,7 @@ inline std::unique_ptr<runtime::Plant> make_station(const std::string& source, c
 inline int32_t value(const runtime::Plant& plant, const std::string& name, const std::string& station = "u") {
   for (const auto& candidate : const_cast<runtime::Plant&>(plant).stations())
     if (candidate->config().name == station) {
-      const auto number = candidate->find_variable(name);
+      const auto number = signals::find_variable(*candidate, name);
       EXPECT_TRUE(number) << name;
       return number ? candidate->variable(*number) : 0;
     }

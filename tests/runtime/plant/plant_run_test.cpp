@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "runtime/plant/station_signals.hpp"
 #include "runtime/plant/trace_hash.hpp"
+#include "runtime/signals/station_signals.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -232,33 +232,33 @@ TEST(PlantRun, SignalsOfAStationAreShownWithUnitAndDigits) {
   const PlainPlant plant(plain_unit("u"));
   const struct {
     const char* name;
-    SignalGroup group;
+    signals::Group group;
     const char* unit;
     double factor;
     int decimals;
     size_t bits;
-  } rows[] = {{"setpoint", SignalGroup::Drive, "rpm", 0.001, 3, 0},
-              {"shaft_speed", SignalGroup::Drive, "rpm", 0.001, 3, 0},
-              {"torque", SignalGroup::Drive, "%Mn", 0.001, 3, 0},
-              {"status", SignalGroup::Drive, "", 1, 0, 16},
-              {"fault", SignalGroup::Drive, "", 1, 0, 0},
-              {"enabled", SignalGroup::State, "", 1, 0, 1},
-              {"program_fault", SignalGroup::State, "", 1, 0, 0},
-              {"DI00", SignalGroup::Input, "", 1, 0, 1},
-              {"DI17", SignalGroup::Input, "", 1, 0, 1},
-              {"DB00", SignalGroup::Output, "", 1, 0, 1},
-              {"DO05", SignalGroup::Output, "", 1, 0, 1},
-              {"DO17", SignalGroup::Output, "", 1, 0, 1},
-              {"AI1", SignalGroup::Analog, "V", 0.001, 3, 0},
-              {"AI2_current", SignalGroup::Analog, "mA", 0.001, 3, 0},
-              {"potentiometer", SignalGroup::Analog, "%", 0.1, 1, 0},
-              {"PO1", SignalGroup::ProcessData, "", 1, 0, 16},
-              {"PI3", SignalGroup::ProcessData, "", 1, 0, 16},
-              {"P130", SignalGroup::Parameter, "s", 0.001, 3, 0}};
+  } rows[] = {{"setpoint", signals::Group::Drive, "rpm", 0.001, 3, 0},
+              {"shaft_speed", signals::Group::Drive, "rpm", 0.001, 3, 0},
+              {"torque", signals::Group::Drive, "%Mn", 0.001, 3, 0},
+              {"status", signals::Group::Drive, "", 1, 0, 16},
+              {"fault", signals::Group::Drive, "", 1, 0, 0},
+              {"enabled", signals::Group::State, "", 1, 0, 1},
+              {"program_fault", signals::Group::State, "", 1, 0, 0},
+              {"DI00", signals::Group::Input, "", 1, 0, 1},
+              {"DI17", signals::Group::Input, "", 1, 0, 1},
+              {"DB00", signals::Group::Output, "", 1, 0, 1},
+              {"DO05", signals::Group::Output, "", 1, 0, 1},
+              {"DO17", signals::Group::Output, "", 1, 0, 1},
+              {"AI1", signals::Group::Analog, "V", 0.001, 3, 0},
+              {"AI2_current", signals::Group::Analog, "mA", 0.001, 3, 0},
+              {"potentiometer", signals::Group::Analog, "%", 0.1, 1, 0},
+              {"PO1", signals::Group::ProcessData, "", 1, 0, 16},
+              {"PI3", signals::Group::ProcessData, "", 1, 0, 16},
+              {"P130", signals::Group::Parameter, "s", 0.001, 3, 0}};
   for (const auto& row : rows) {
-    const auto found = find_station_signals(plant.station(), row.name);
+    const auto found = signals::find_station_signals(plant.station(), row.name);
     ASSERT_EQ(found.size(), 1U) << row.name;
-    const PlantSignal& signal = found[0];
+    const signals::Signal& signal = found[0];
     EXPECT_EQ(std::tuple(signal.name, signal.station), std::tuple("u." + std::string(row.name), "u"));
     EXPECT_EQ(std::tuple(signal.group, signal.unit, signal.decimals, signal.bits),
               std::tuple(row.group, row.unit, row.decimals, row.bits))
@@ -267,9 +267,9 @@ TEST(PlantRun, SignalsOfAStationAreShownWithUnitAndDigits) {
     EXPECT_EQ(signal.is_status, std::string(row.name) == "status");
   }
   for (const char* own : {"position_setpoint", "H0", "ActPos_Mot"})
-    EXPECT_EQ(find_station_signals(plant.station(), own).size(), 1U) << own << " is of the unit";
+    EXPECT_EQ(signals::find_station_signals(plant.station(), own).size(), 1U) << own << " is of the unit";
   for (const char* none : {"task1.line", "lCount", "H1024", "DO06", "DI08", "PO4"})
-    EXPECT_TRUE(find_station_signals(plant.station(), none).empty())
+    EXPECT_TRUE(signals::find_station_signals(plant.station(), none).empty())
         << none << " is of a program or not there";
 }
 

@@ -4,16 +4,16 @@
 
 #include <fmt/format.h>
 
-#include "runtime/plant/station_signals.hpp"
-#include "runtime/plant/telegram_lines.hpp"
 #include "runtime/plant/trace_hash.hpp"
-#include "runtime/plant/variable_names.hpp"
+#include "runtime/signals/station_signals.hpp"
+#include "runtime/signals/telegram_lines.hpp"
+#include "runtime/signals/variable_names.hpp"
 
 namespace ipos::runtime {
 namespace {
 
-PlantSignal signal_with(double factor, int decimals) {
-  PlantSignal signal;
+signals::Signal signal_with(double factor, int decimals) {
+  signals::Signal signal;
   signal.name = "u.x";
   signal.station = "u";
   signal.factor = factor;
@@ -49,39 +49,39 @@ TEST(SignalText, OtherFactorsAreMultiplied) {
 }
 
 TEST(SignalBits, OfFieldsAndVariables) {
-  const auto count = [](SignalGroup group, size_t bits) {
-    PlantSignal signal = signal_with(1, 0);
+  const auto count = [](signals::Group group, size_t bits) {
+    signals::Signal signal = signal_with(1, 0);
     signal.group = group;
     signal.bits = bits;
-    return bit_count(signal);
+    return signals::bit_count(signal);
   };
-  EXPECT_EQ(count(SignalGroup::Variable, 0), 32U);
-  EXPECT_EQ(count(SignalGroup::SystemVariable, 0), 32U);
-  EXPECT_EQ(count(SignalGroup::ProcessData, 16), 16U);
-  EXPECT_EQ(count(SignalGroup::Bus, 2), 2U);
-  EXPECT_EQ(count(SignalGroup::Input, 1), 0U) << "it is a bit itself";
-  EXPECT_EQ(count(SignalGroup::Drive, 0), 0U) << "a number";
-  PlantSignal status = signal_with(1, 0);
+  EXPECT_EQ(count(signals::Group::Variable, 0), 32U);
+  EXPECT_EQ(count(signals::Group::SystemVariable, 0), 32U);
+  EXPECT_EQ(count(signals::Group::ProcessData, 16), 16U);
+  EXPECT_EQ(count(signals::Group::Bus, 2), 2U);
+  EXPECT_EQ(count(signals::Group::Input, 1), 0U) << "it is a bit itself";
+  EXPECT_EQ(count(signals::Group::Drive, 0), 0U) << "a number";
+  signals::Signal status = signal_with(1, 0);
   status.is_status = true;
   status.decided = [](const Drive&) -> int64_t { return 0; };
   status.read = [] { return int64_t{0b1010}; };
   for (size_t bit = 0; bit < 6; ++bit) {
-    const PlantSignal one = bit_of(status, bit);
+    const signals::Signal one = signals::bit_of(status, bit);
     EXPECT_EQ(one.read(), bit == 1 || bit == 3 ? 1 : 0);
     EXPECT_EQ(std::tuple(one.name, one.bits, one.is_status, one.decided == nullptr),
               std::tuple(fmt::format("u.x.{}", bit), 1U, false, true));
     EXPECT_EQ(one.meaning, fmt::format("bit {} of u.x", bit));
   }
   status.read = [] { return int64_t{-1}; };
-  EXPECT_EQ(bit_of(status, 31).read(), 1);
+  EXPECT_EQ(signals::bit_of(status, 31).read(), 1);
 }
 
-std::vector<PlantSignal> some_signals() {
-  std::vector<PlantSignal> all;
+std::vector<signals::Signal> some_signals() {
+  std::vector<signals::Signal> all;
   for (const auto& [name, bits] : {std::pair("u.a", 4), std::pair("u.ab", 0), std::pair("u.b.c", 16)}) {
     all.push_back(signal_with(1, 0));
     all.back().name = name;
-    all.back().group = SignalGroup::Bus;
+    all.back().group = signals::Group::Bus;
     all.back().bits = static_cast<size_t>(bits);
     all.back().read = [] { return int64_t{0}; };
   }
@@ -91,7 +91,7 @@ std::vector<PlantSignal> some_signals() {
 TEST(SignalNames, AmongOthers) {
   const auto all = some_signals();
   const auto found = [&](std::string_view name) {
-    const auto one = find_among(all, name);
+    const auto one = signals::find_among(all, name);
     return one ? one->name : "none";
   };
   for (const char* name : {"u.a", "u.ab", "u.b.c", "u.a.0", "u.a.3", "u.b.c.15"})
@@ -101,7 +101,7 @@ TEST(SignalNames, AmongOthers) {
     EXPECT_EQ(found(name), "none") << name;
   const auto matching = [&](std::string_view pattern) {
     std::vector<std::string> names;
-    for (const PlantSignal& signal : match_among(all, pattern)) names.push_back(signal.name);
+    for (const signals::Signal& signal : signals::match_among(all, pattern)) names.push_back(signal.name);
     return names;
   };
   using Names = std::vector<std::string>;
@@ -112,13 +112,13 @@ TEST(SignalNames, AmongOthers) {
   EXPECT_EQ(matching("*.3"), (Names{"u.a.3", "u.b.c.3"}));
   EXPECT_EQ(matching("x*"), Names{});
   EXPECT_EQ(matching("?b"), Names{}) << "no dot at all";
-  EXPECT_EQ(names_of(all), "a, ab, b.c");
-  EXPECT_EQ(names_of({}), "");
+  EXPECT_EQ(signals::names_of(all), "a, ab, b.c");
+  EXPECT_EQ(signals::names_of({}), "");
 }
 
 TEST(SignalNames, PatternsHaveAStarOrAQuestionMark) {
-  EXPECT_TRUE(is_pattern("a*") && is_pattern("?a"));
-  EXPECT_FALSE(is_pattern("a.b[1]") || is_pattern(""));
+  EXPECT_TRUE(signals::is_pattern("a*") && signals::is_pattern("?a"));
+  EXPECT_FALSE(signals::is_pattern("a.b[1]") || signals::is_pattern(""));
   for (const auto& [pattern, text, fits] :
        {std::tuple("", "", true), std::tuple("a", "a", true), std::tuple("a", "b", false),
         std::tuple("a", "ab", false), std::tuple("ab", "a", false), std::tuple("**", "ab", true),
@@ -127,14 +127,14 @@ TEST(SignalNames, PatternsHaveAStarOrAQuestionMark) {
         std::tuple("*ab*ab", "aba", false), std::tuple("a?c", "abc", true), std::tuple("a?c", "ac", false),
         std::tuple("*?", "", false), std::tuple("*?", "x", true), std::tuple("a*b?d", "axbxbcd", true),
         std::tuple("a*bcd", "abcbcdd", false)})
-    EXPECT_EQ(matches(pattern, text), fits) << pattern << " and " << text;
+    EXPECT_EQ(signals::matches(pattern, text), fits) << pattern << " and " << text;
 }
 
 TEST(SignalNames, GroupsHaveWords) {
   const char* const words[] = {"drive",        "states", "inputs",    "outputs",          "analog inputs",
                                "process data", "tasks",  "variables", "system variables", "parameters",
                                "bus"};
-  for (size_t n = 0; n < std::size(words); ++n) EXPECT_EQ(group_text(static_cast<SignalGroup>(n)), words[n]);
+  for (size_t n = 0; n < std::size(words); ++n) EXPECT_EQ(signals::group_text(static_cast<signals::Group>(n)), words[n]);
 }
 
 // Bytes behind the end count as 0.
@@ -142,7 +142,7 @@ TEST(TelegramFields, AreNumbersInBytes) {
   const std::vector<uint8_t> data = {0x81, 0x02, 0x03, 0xFF, 0xFE};
   const auto number = [&](uint8_t byte, uint8_t bytes, bool intel, bool is_signed = false,
                           uint32_t mask = 0xFFFFFFFF) {
-    return number_in(data, {TelegramMessage::Bytes, "x", byte, bytes, intel, is_signed, mask, 0, ""});
+    return signals::number_in(data, {signals::TelegramMessage::Bytes, "x", byte, bytes, intel, is_signed, mask, 0, ""});
   };
   EXPECT_EQ(number(0, 1, false), 0x81);
   EXPECT_EQ(number(1, 2, false), 0x0203);
@@ -163,7 +163,7 @@ TEST(VariableNames, OfElementsAndWholes) {
   const stdlib::UnitType& unit = *stdlib::find_unit("mdxb");
   const auto named = [&](std::string_view name) {
     std::string text;
-    for (const NamedVariable& variable : named_variables(symbols, unit, name))
+    for (const signals::NamedVariable& variable : signals::named_variables(symbols, unit, name))
       text += fmt::format("{}={} ", variable.name, variable.number);
     return text;
   };

@@ -6,8 +6,8 @@
 #include <set>
 
 #include "plant_rig.hpp"
-#include "runtime/plant/plant_signals.hpp"
 #include "runtime/plant_file/state_names.hpp"
+#include "runtime/signals/plant_signals.hpp"
 #include "stdlib/parameters.hpp"
 
 namespace ipos::runtime {
@@ -39,19 +39,19 @@ class Signals : public ::testing::Test {
   }
   std::vector<std::string> names(std::string_view pattern) {
     std::vector<std::string> all;
-    const auto found = find_signals(*plant_, pattern);
+    const auto found = signals::find_signals(*plant_, pattern);
     EXPECT_TRUE(found) << (found ? "" : found.error());
     if (found)
-      for (const PlantSignal& signal : *found) all.push_back(signal.name);
+      for (const signals::Signal& signal : *found) all.push_back(signal.name);
     return all;
   }
-  PlantSignal one(std::string_view name) {
-    auto found = find_signals(*plant_, name);
+  signals::Signal one(std::string_view name) {
+    auto found = signals::find_signals(*plant_, name);
     EXPECT_TRUE(found && found->size() == 1) << name << (found ? "" : ": " + found.error());
-    return found && !found->empty() ? found->front() : PlantSignal{};
+    return found && !found->empty() ? found->front() : signals::Signal{};
   }
   std::string shown(std::string_view name) {
-    const PlantSignal signal = one(name);
+    const signals::Signal signal = one(name);
     return signal.read ? signal.text(signal.read()) + (signal.unit.empty() ? "" : " " + signal.unit) : "";
   }
   Station& station(size_t n) { return *plant_->stations()[n]; }
@@ -84,8 +84,8 @@ TEST_F(Signals, ProcessWordsAreWordsBitsAndNumbers) {
   EXPECT_EQ(shown("u.PO1.10"), "1");
   EXPECT_EQ(shown("u.PO2_value"), "-1.0 rpm");
   EXPECT_EQ(one("u.PO1.10").bits, 1U);
-  EXPECT_FALSE(find_signals(*plant_, "u.PO1.16"));
-  EXPECT_FALSE(find_signals(*plant_, "u.speed.0")) << "no bit field";
+  EXPECT_FALSE(signals::find_signals(*plant_, "u.PO1.16"));
+  EXPECT_FALSE(signals::find_signals(*plant_, "u.speed.0")) << "no bit field";
   EXPECT_EQ(shown("u.lCount.1"), "1");
   EXPECT_EQ(shown("u.lCount.2"), "0");
 }
@@ -110,9 +110,9 @@ TEST_F(Signals, NamesThatStandForSeveral) {
 TEST_F(Signals, PatternsOfParametersAndVariables) {
   const auto numbered = [&](std::string_view pattern, char letter) {
     size_t count = 0;
-    const auto found = find_signals(*plant_, pattern);
+    const auto found = signals::find_signals(*plant_, pattern);
     if (found)
-      for (const PlantSignal& signal : *found)
+      for (const signals::Signal& signal : *found)
         count += signal.name.size() > 3 && signal.name[2] == letter && signal.name[3] >= '0' &&
                  signal.name[3] <= '9';
     return count;
@@ -138,7 +138,7 @@ TEST_F(Signals, PatternsOfParametersAndVariables) {
 }
 
 TEST_F(Signals, WhatAStationHasIsTold) {
-  const auto found = find_signals(*plant_, "u.sped");
+  const auto found = signals::find_signals(*plant_, "u.sped");
   ASSERT_FALSE(found);
   EXPECT_EQ(
       found.error(),
@@ -149,7 +149,7 @@ TEST_F(Signals, WhatAStationHasIsTold) {
           state_names() +
           ", tasks as task1.line, variables H0 to H1023, lCount, T.a, T.b; the buses have sbus.load, "
           "sbus.count");
-  const auto other = find_signals(*plant_, "v.w.sped");
+  const auto other = signals::find_signals(*plant_, "v.w.sped");
   ASSERT_FALSE(other);
   EXPECT_NE(other.error().find("states as " + state_names() + ", variables H0 to H511; the buses have"),
             std::string::npos)
@@ -159,38 +159,38 @@ TEST_F(Signals, WhatAStationHasIsTold) {
 
 TEST_F(Signals, WhatIsListedIsFound) {
   std::set<std::string> seen;
-  for (const PlantSignal& signal : plant_signals(*plant_)) {
+  for (const signals::Signal& signal : signals::plant_signals(*plant_)) {
     EXPECT_TRUE(seen.insert(signal.name).second) << signal.name << " stands twice";
-    const PlantSignal found = one(signal.name);
+    const signals::Signal found = one(signal.name);
     EXPECT_EQ(found.meaning, signal.meaning) << signal.name;
     EXPECT_EQ(found.read(), signal.read()) << signal.name;
     EXPECT_TRUE(signal.name.starts_with(signal.station + "."));
-    EXPECT_FALSE(signal.meaning.empty() && signal.group != SignalGroup::ProcessData) << signal.name;
+    EXPECT_FALSE(signal.meaning.empty() && signal.group != signals::Group::ProcessData) << signal.name;
   }
 }
 
 TEST_F(Signals, WhatIsNotThereIsTold) {
   const auto error = [&](std::string_view name) {
-    const auto found = find_signals(*plant_, name);
+    const auto found = signals::find_signals(*plant_, name);
     return found ? "found" : found.error();
   };
   EXPECT_TRUE(error("u.sped").starts_with("station 'u' has no signal 'sped'; it has speed, frequency"));
   EXPECT_EQ(error("x.*"), "no signal is called like 'x.*'");
   EXPECT_TRUE(error("speed").starts_with("'speed' is no signal; signals begin with u., v.w."));
-  EXPECT_FALSE(find_signals(*plant_, "u.H1024"));
-  EXPECT_FALSE(find_signals(*plant_, "v.w.lCount"));
-  EXPECT_FALSE(find_signals(*plant_, ""));
-  EXPECT_FALSE(find_signals(*plant_, "u."));
+  EXPECT_FALSE(signals::find_signals(*plant_, "u.H1024"));
+  EXPECT_FALSE(signals::find_signals(*plant_, "v.w.lCount"));
+  EXPECT_FALSE(signals::find_signals(*plant_, ""));
+  EXPECT_FALSE(signals::find_signals(*plant_, "u."));
 }
 
 TEST(SignalPatterns, StarsTakeAsMuchAsTheyMust) {
-  EXPECT_TRUE(matches("*", ""));
-  EXPECT_TRUE(matches("a*b*c", "axxbyybc"));
-  EXPECT_FALSE(matches("a*b*c", "axxbyyb"));
-  EXPECT_TRUE(matches("?a", "ba"));
-  EXPECT_FALSE(matches("?a", "a"));
-  EXPECT_TRUE(matches("y[0].*", "y[0].b[1]"));
-  EXPECT_FALSE(matches("", "a"));
+  EXPECT_TRUE(signals::matches("*", ""));
+  EXPECT_TRUE(signals::matches("a*b*c", "axxbyybc"));
+  EXPECT_FALSE(signals::matches("a*b*c", "axxbyyb"));
+  EXPECT_TRUE(signals::matches("?a", "ba"));
+  EXPECT_FALSE(signals::matches("?a", "a"));
+  EXPECT_TRUE(signals::matches("y[0].*", "y[0].b[1]"));
+  EXPECT_FALSE(signals::matches("", "a"));
 }
 
 TEST(SignalExpectations, AnySignalCanBeExpected) {

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <random>
 
+#include "runtime/signals/variable_names.hpp"
 #include "tests/harness/proves.hpp"
 #include "tests/runtime/plant/picture.hpp"
 #include "tests/runtime/plant/plant_rig.hpp"
@@ -141,7 +142,7 @@ TEST(Sleep, ATelegramThatBringsNothingNewIsTakenWhenItDoesAgain) {
       make_plant(units, {{"S.IPC", kWaitingHead + sender}, {"R.IPC", kWaitingHead + receiver}}, std::nullopt, {});
   ASSERT_TRUE(plant);
   runtime::Station& hears = *plant->stations()[1];
-  const uint32_t r1 = *hears.find_variable("r1");
+  const uint32_t r1 = *signals::find_variable(hears, "r1");
   plant->run_until(ms(3002));
   ASSERT_TRUE(is_asleep(hears));
   EXPECT_EQ(hears.variable(r1), 7);

@@ -2,6 +2,7 @@
 // inputs and outputs in programs.
 #include <gtest/gtest.h>
 
+#include "runtime/signals/variable_names.hpp"
 #include "tests/runtime/plant/plant_rig.hpp"
 
 namespace ipos::runtime {
@@ -211,7 +212,7 @@ at = "20ms"
 analog = "AI2"
 release = true
 )");
-  const std::string second = "H" + std::to_string(*plant->stations()[0]->find_variable("a") + 1);
+  const std::string second = "H" + std::to_string(*signals::find_variable(*plant->stations()[0], "a") + 1);
   EXPECT_EQ(changes(*plant, second, 30), (Changes{{0, 1000}, {10, 5000}, {20, 1000}}));
 }
 

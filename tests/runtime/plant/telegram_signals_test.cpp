@@ -1,6 +1,6 @@
 // What telegrams carried last, as signals: identifiers and bytes are those of the manuals (PO 8 x address + 3, parameter
 // request + 512; PDOs of the pre-defined connection set), values what the stations sent.
-#include "runtime/plant/plant_signals.hpp"
+#include "runtime/signals/plant_signals.hpp"
 #include "tests/runtime/plant/plant_rig.hpp"
 
 namespace ipos::tests {
@@ -14,13 +14,13 @@ struct Lines {
       : plant(make_plant(text, programs)) {}
 
   int64_t value(const std::string& name) {
-    auto found = runtime::find_signals(*plant, name);
+    auto found = signals::find_signals(*plant, name);
     EXPECT_TRUE(found && found->size() == 1) << name << (found ? "" : ": " + found.error());
     return found && !found->empty() ? found->front().read() : -1;
   }
   std::vector<std::string> names(const std::string& pattern) {
     std::vector<std::string> all;
-    if (const auto found = runtime::find_signals(*plant, pattern))
+    if (const auto found = signals::find_signals(*plant, pattern))
       for (const auto& signal : *found) all.push_back(signal.name);
     return all;
   }
@@ -73,7 +73,7 @@ TEST(TelegramSignals, ProcessDataOfMovilink) {
 // A line keeps its frames from the first look on.
 TEST(TelegramSignals, BeginWithTheFirstLook) {
   Lines line(kSbus);
-  const auto listed = runtime::plant_signals(*line.plant);
+  const auto listed = signals::plant_signals(*line.plant);
   line.run(kSecond);
   EXPECT_EQ(line.value("sbus.013.count"), 0) << "a list is no look";
   line.run(100 * kMillisecond);
@@ -111,8 +111,8 @@ TEST(TelegramSignals, Patterns) {
   EXPECT_EQ(line.names("sbus.*"), (std::vector<std::string>{"sbus.load", "sbus.count"}))
       << "a telegram has a part for its identifier";
   EXPECT_EQ(line.names("*.PI1"), (std::vector<std::string>{"pump.PI1", "pump2.PI1"}));
-  EXPECT_FALSE(runtime::find_signals(*line.plant, "sbus.013.speed"));
-  EXPECT_FALSE(runtime::find_signals(*line.plant, "sbus.813.B0")) << "an identifier has 11 bits";
+  EXPECT_FALSE(signals::find_signals(*line.plant, "sbus.013.speed"));
+  EXPECT_FALSE(signals::find_signals(*line.plant, "sbus.813.B0")) << "an identifier has 11 bits";
 }
 
 // In the byte order of the object, which the program has defined meanwhile.
@@ -260,7 +260,7 @@ TEST(TelegramSignals, NamesOfRs485) {
   EXPECT_EQ(line.names("line1.1.*").size(), 2 * (1 + 3 + 5U))
       << "count, words and parameter channel, both ways";
   for (const char* wrong : {"line1.256.PO1", "line1.-1.PO1", "line1.x.PO1", "line1.1.speed", "line1.1.value"})
-    EXPECT_FALSE(runtime::find_signals(*line.plant, wrong)) << wrong;
+    EXPECT_FALSE(signals::find_signals(*line.plant, wrong)) << wrong;
 }
 
 // The words stand behind the eight octets of the parameter channel where the configuration has one (MOVITRAC 31
@@ -340,7 +340,7 @@ TEST(TelegramSignals, NamesOfProfibus) {
   EXPECT_EQ(line.names("dp.127.*"), (std::vector<std::string>{"dp.127.command", "dp.127.groups"}));
   EXPECT_EQ(line.value("dp.20.PO24"), 0) << "every address can be named, with the words of a gateway";
   for (const char* wrong : {"dp.128.PO1", "dp.8.PO25", "dp.8.speed"})
-    EXPECT_FALSE(runtime::find_signals(*line.plant, wrong)) << wrong;
+    EXPECT_FALSE(signals::find_signals(*line.plant, wrong)) << wrong;
 }
 
 }  // namespace

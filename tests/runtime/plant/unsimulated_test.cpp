@@ -5,8 +5,8 @@
 #include <set>
 
 #include "runtime/drive/settings.hpp"
-#include "runtime/plant/sbus_port.hpp"
 #include "runtime/positioning/settings.hpp"
+#include "runtime/station/sbus_port.hpp"
 #include "runtime/unit/drive_server.hpp"
 #include "stdlib/faults.hpp"
 #include "stdlib/unsimulated.hpp"

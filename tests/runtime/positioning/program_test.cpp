@@ -6,6 +6,7 @@
 #include "compiler/compile.hpp"
 #include "compiler/diag/render.hpp"
 #include "runtime/plant/plant.hpp"
+#include "runtime/signals/variable_names.hpp"
 
 namespace ipos::tests {
 namespace {
@@ -46,7 +47,7 @@ class ProgramRig {
 
   void run(int ms) { plant_->run_until(end_ += ms * kMillisecond); }
   int32_t operator[](const std::string& name) {
-    const auto number = station().find_variable(name);
+    const auto number = signals::find_variable(station(), name);
     EXPECT_TRUE(number) << name;
     return station().variable(*number);
   }

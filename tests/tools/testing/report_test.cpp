@@ -9,7 +9,7 @@
 #include <set>
 #include <sstream>
 
-#include "runtime/plant/station_state.hpp"
+#include "runtime/signals/station_state.hpp"
 #include "tests/harness/contains.hpp"
 #include "tests/tools/command.hpp"
 #include "tools/testing/test_case.hpp"
@@ -47,7 +47,7 @@ TEST(Report, InTheDocumentationIsReal) {
 
 TEST(Report, DocumentationHasEveryState) {
   const std::string page = read_text(project("docs/guide/testing.md"));
-  for (const runtime::StationState& state : runtime::station_states()) {
+  for (const signals::StationState& state : signals::station_states()) {
     const std::string row = "| `" + std::string(state.name) + "` | " + std::string(state.meaning) + " |\n";
     EXPECT_TRUE(contains(page, row)) << row;
   }

@@ -1,4 +1,5 @@
 // The plant, its faults by seed, and the checks.
+#include "runtime/signals/variable_names.hpp"
 #include "tests/runtime/bus/campaign/fault_campaign.hpp"
 
 #include <fmt/format.h>
@@ -174,7 +175,7 @@ class Run final : private CanObserver {
 
   int32_t variable(size_t station, const char* name) const {
     const Station& s = *plant_->stations()[station];
-    return s.variable(*s.find_variable(name));
+    return s.variable(*signals::find_variable(s, name));
   }
   int32_t value_of(size_t station) const {
     return plant_->stations()[station]->drive().parameters().value(kWritten);

@@ -2,7 +2,7 @@
 // it. The process image is ours; words, speeds and return codes are those of the MOVITRAC 07 manual.
 #include <set>
 
-#include "runtime/plant/plant_signals.hpp"
+#include "runtime/signals/plant_signals.hpp"
 #include "tests/runtime/bus/profibus/dp_plant_rig.hpp"
 
 namespace ipos::tests {
@@ -192,7 +192,7 @@ TEST(GatewayPlant, HasSignals) {
                      "[[expect]]\nstation = \"gw\"\nat = \"2s\"\nsignal = \"drive5.PI2\"\nequals = 3000\n"
                      "[[expect]]\nstation = \"gw\"\nat = \"4s\"\nsignal = \"lost.1\"\nequals = 1\n"));
   const auto value = [&](const std::string& name) {
-    const auto found = runtime::find_signals(*bench.plant, name);
+    const auto found = signals::find_signals(*bench.plant, name);
     EXPECT_TRUE(found) << name;
     return found ? found->front().read() : -1;
   };
@@ -215,8 +215,8 @@ TEST(GatewayPlant, HasSignals) {
   bench.service("31 05 21 98 00 00 00 00", kRun);
   bench.service("71 05 21 98 00 00 00 00", kRun);
   EXPECT_EQ(value("gw.error"), 0x06020000) << "the drive is gone";
-  EXPECT_EQ(runtime::find_signals(*bench.plant, "gw.drive*.P?1")->size(), 4U);
-  EXPECT_NE(runtime::find_signals(*bench.plant, "gw.speed").error().find("gateway 'gw' has no signal 'speed'"),
+  EXPECT_EQ(signals::find_signals(*bench.plant, "gw.drive*.P?1")->size(), 4U);
+  EXPECT_NE(signals::find_signals(*bench.plant, "gw.speed").error().find("gateway 'gw' has no signal 'speed'"),
             std::string::npos);
   ASSERT_EQ(bench.plant->results().size(), 2U);
   for (const auto& result : bench.plant->results()) EXPECT_TRUE(result.met) << result.actual;

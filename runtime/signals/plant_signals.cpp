@@ -1,0 +1,117 @@
+// Splits names into station or bus and the rest.
+#include "runtime/signals/plant_signals.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "runtime/signals/gateway_signals.hpp"
+#include "runtime/signals/telegram_signals.hpp"
+
+namespace ipos::signals {
+
+using namespace runtime;
+
+namespace {
+
+void add_line(const PlantParts& plant, const Bus& line, std::vector<Signal>& out) {
+  const auto add = [&](std::string_view name, std::string_view unit, std::string_view meaning,
+                       std::function<int64_t()> read) {
+    Signal& signal = out.emplace_back();
+    signal.station = line.name();
+    signal.name = fmt::format("{}.{}", line.name(), name);
+    signal.unit = unit;
+    signal.group = Group::Bus;
+    signal.meaning = meaning;
+    signal.read = std::move(read);
+  };
+  add("load", "%", "bus load of the last full second",
+      [&plant, &line]() -> int64_t { return line.load(plant.now()).window_percent; });
+  add("count", "", "frames, or telegrams of a serial line, so far",
+      [&plant, &line] { return static_cast<int64_t>(line.load(plant.now()).frames); });
+}
+
+// Of what is no station with a drive: gateways, and lines.
+std::vector<Signal> other_signals(const PlantParts& plant) {
+  std::vector<Signal> signals;
+  for (const PlantControl& control : plant.controls())
+    if (control.gateway)
+      for (Signal& signal : gateway_signals(*control.gateway)) signals.push_back(std::move(signal));
+  for (const auto& bus : plant.buses()) add_line(plant, *bus, signals);
+  return signals;
+}
+
+// Of a pattern: the station's part, as far as it can be told.
+std::vector<Signal> match(const PlantParts& plant, std::string_view pattern) {
+  std::vector<Signal> found;
+  const auto take = [&found](std::vector<Signal> more) {
+    for (Signal& signal : more) found.push_back(std::move(signal));
+  };
+  for (const auto& station : plant.stations()) {
+    const std::string& name = station->config().name;
+    // Names of stations may contain dots themselves: every dot may be the one after the name.
+    bool named = false;
+    for (size_t dot = pattern.find('.'); dot != std::string_view::npos && !named;
+         dot = pattern.find('.', dot + 1)) {
+      named = matches(pattern.substr(0, dot), name);
+      if (named) take(match_station_signals(*station, pattern.substr(dot + 1)));
+    }
+    if (!named && plant.stations().size() == 1) take(match_station_signals(*station, pattern));
+  }
+  take(match_among(other_signals(plant), pattern));
+  take(match_telegram_signals(plant, pattern));
+  return found;
+}
+
+}  // namespace
+
+std::vector<Signal> plant_signals(const PlantParts& plant) {
+  std::vector<Signal> all;
+  for (const auto& station : plant.stations())
+    for (Signal& signal : station_signals(*station)) all.push_back(std::move(signal));
+  for (Signal& signal : other_signals(plant)) all.push_back(std::move(signal));
+  for (Signal& signal : telegram_signals(plant)) all.push_back(std::move(signal));
+  return all;
+}
+
+tl::expected<std::vector<Signal>, std::string> find_signals(const PlantParts& plant, std::string_view name) {
+  if (is_pattern(name)) {
+    if (auto found = match(plant, name); !found.empty()) return found;
+    return tl::unexpected(fmt::format("no signal is called like '{}'", name));
+  }
+  const auto& stations = plant.stations();
+  const Station* owner = nullptr;
+  std::string_view rest = name;
+  for (const auto& station : stations) {
+    // The longest name that fits.
+    const std::string prefix = station->config().name + ".";
+    if (!name.starts_with(prefix) || (owner != nullptr && prefix.size() <= name.size() - rest.size()))
+      continue;
+    owner = station.get();
+    rest = name.substr(prefix.size());
+  }
+  if (owner == nullptr && stations.size() == 1) owner = stations.front().get();
+  if (owner != nullptr)
+    if (auto found = find_station_signals(*owner, rest); !found.empty()) return found;
+  const std::vector<Signal> without_drive = other_signals(plant);
+  if (auto found = find_among(without_drive, name)) return std::vector{*std::move(found)};
+  if (auto found = find_telegram_signal(plant, name)) return std::vector{*std::move(found)};
+  for (const PlantControl& control : plant.controls())
+    if (control.gateway && name.starts_with(control.config->name + "."))
+      return tl::unexpected(fmt::format("gateway '{}' has no signal '{}'; it has {}", control.config->name,
+                                        name.substr(control.config->name.size() + 1),
+                                        names_of(gateway_signals(*control.gateway))));
+  std::vector<std::string_view> buses;
+  for (const Signal& signal : without_drive)
+    if (signal.group == Group::Bus) buses.push_back(signal.name);
+  const std::string others = buses.empty() ? "" : fmt::format("; the buses have {}", fmt::join(buses, ", "));
+  if (owner != nullptr)
+    return tl::unexpected(fmt::format("station '{}' has no signal '{}'; it has {}{}", owner->config().name,
+                                      rest, station_signal_names(*owner), others));
+  std::vector<std::string> known;
+  for (const auto& station : stations) known.push_back(station->config().name + ".");
+  return tl::unexpected(
+      fmt::format("'{}' is no signal; signals begin with {}{}", name, fmt::join(known, ", "), others));
+}
+
+}  // namespace ipos::signals

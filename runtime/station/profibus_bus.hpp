@@ -1,0 +1,53 @@
+// A PROFIBUS line of a plant.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <tuple>
+
+#include "runtime/bus/profibus/line.hpp"
+#include "runtime/station/bus.hpp"
+#include "runtime/station/last_dp_frames.hpp"
+
+namespace ipos::runtime {
+
+class ProfibusBus final : public Bus, private profibus::LineObserver {
+ public:
+  static std::optional<std::string> refuse(const std::string& text);
+
+  explicit ProfibusBus(BusPlace place);
+  ~ProfibusBus() override;
+
+  profibus::Line& line() { return line_; }
+  // Kept from the first call on.
+  const LastDpTraffic& last_frames() {
+    if (!last_frames_) last_frames_ = std::make_unique<LastDpTraffic>(line_);
+    return *last_frames_;
+  }
+  uint32_t source() const { return place_.source; }  // of its events
+
+  LineLoad load(Time now) const override { return line_.load(now); }
+  void attach_hand() override;
+  std::optional<std::string> send(const std::string& text) override;
+  bool plant(const FaultConfig& config) override;
+  bool repair(const FaultConfig& config) override;
+
+ private:
+  class Hand;
+
+  NodeId find_node(const std::string& station) const;  // kNoNode: there is none
+  void watch() override {}  // it observes for the journal anyway
+  void on_frame(const profibus::Line& line, NodeId sender, const profibus::Reception& reception) override;
+  void on_line_event(const profibus::Line& line, const profibus::LineEvent& event) override;
+
+  BusPlace place_;
+  profibus::Line line_;
+  std::unique_ptr<Hand> hand_;
+  std::unique_ptr<LastDpTraffic> last_frames_;
+  // Each is told once.
+  std::set<std::tuple<profibus::LineEventKind, NodeId, std::optional<profibus::LineFaultKind>>> told_;
+};
+
+}  // namespace ipos::runtime
