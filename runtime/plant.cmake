@@ -1,7 +1,8 @@
 # A plant: stations on their lines, and their surroundings, on one clock.
 ipos_layer(runtime
   FOLDERS runtime/plant
-  SOURCES plant/surroundings.cpp plant/plant.cpp plant/all_mistakes.cpp plant/hands.cpp plant/trace_hash.cpp
+  SOURCES plant/surroundings.cpp plant/plant.cpp plant/start_checks.cpp plant/all_mistakes.cpp plant/hands.cpp
+          plant/trace_hash.cpp
   USES signals station plant_file unit vm image bus scom drive positioning motion storage stdlib
   LIBS fmt::fmt)
 ipos_batches(ipos_runtime SIZE 20 HOT plant/surroundings.cpp plant/plant.cpp)

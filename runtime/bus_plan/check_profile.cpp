@@ -129,11 +129,10 @@ class ProfileCheck {
           called(member.name, static_cast<uint8_t>(partner.address - (group ? kGroupAddressBase : 0)), group,
                  partner.process_data);
         }
-      if (member.control != nullptr && member.control->config->canopen)
-        for (const canopen::NodePlan& plan : member.control->config->canopen->nodes)
-          called_node(member.name, plan.node);
-      if (member.control != nullptr)
-        for (const ControlTarget& target : member.control->config->settings.targets)
+      if (const auto* settings = canopen_of(member))
+        for (const canopen::NodePlan& plan : settings->nodes) called_node(member.name, plan.node);
+      if (const auto* settings = movilink_of(member))
+        for (const ControlTarget& target : settings->targets)
           called(member.name, target.address, target.group, true);
     }
   }
@@ -144,7 +143,8 @@ class ProfileCheck {
     for (const Member& member : roster_.members) {
       const bool calls = member.port != nullptr && !member.port->partners().empty();
       if (calls) calling.push_back(member.name);
-      if (calls || (member.control != nullptr && !member.control->config->settings.targets.empty()))
+      const ControlSettings* const settings = movilink_of(member);
+      if (calls || (settings != nullptr && !settings->targets.empty()))
         all.push_back(member.name);
     }
     if (!calling.empty() && all.size() > 1)

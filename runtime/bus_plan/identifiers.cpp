@@ -28,8 +28,8 @@ std::vector<IdentifierUse> movilink_uses(const Member& member) {
         if (use.telegram == Telegram::GroupProcessOutput && use.address == settings.group)
           use.transmits = true;
   }
-  if (member.control != nullptr && !member.control->config->canopen)
-    for (const ControlTarget& target : member.control->config->settings.targets)
+  if (const auto* settings = movilink_of(member))
+    for (const ControlTarget& target : settings->targets)
       for (const IdentifierUse& use : master_identifiers(target.address + (target.group ? 100 : 0), {})) {
         const bool sent = target.group        ? use.telegram == Telegram::GroupProcessOutput
                           : target.every == 0 ? use.telegram == Telegram::ProcessOutputSync
@@ -67,11 +67,10 @@ void add_canopen(const Member& member, Collector& collector) {
 void add_sync(const Member& member, Collector& collector) {
   if (member.port != nullptr && member.port->settings().slave.synchronous)
     collector.add(member.port->settings().slave.sync_id, {member.name, "sync telegram", false, true});
-  if (member.control != nullptr && member.control->config->canopen &&
-      member.control->config->canopen->sync_cycle > 0)
+  if (const auto* settings = canopen_of(member); settings != nullptr && settings->sync_cycle > 0)
     collector.add(canopen::identifier(canopen::Connection::Sync), {member.name, "SYNC", true, true});
-  if (member.control != nullptr && member.control->config->settings.sync_id)
-    collector.add(*member.control->config->settings.sync_id, {member.name, "sync telegram", true, true});
+  if (const auto* settings = movilink_of(member); settings != nullptr && settings->sync_id)
+    collector.add(*settings->sync_id, {member.name, "sync telegram", true, true});
 }
 
 void add_objects(const Member& member, Collector& collector) {

@@ -113,7 +113,7 @@ size_t defined_objects(const Plant& plant, const CanLine& line) {
 CanNames can_names(const Plant& plant) {
   CanNames names;
   names.all = can_line_names(plant);
-  for (const auto& line : plant.lines()) names.lines[line->name()] = can_line_names(plant, line);
+  for (CanBus* bus : plant.all<CanBus>()) names.lines[bus->name()] = can_line_names(plant, &bus->line());
   return names;
 }
 

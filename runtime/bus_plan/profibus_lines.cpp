@@ -32,9 +32,8 @@ ProfibusLinePlan plan_line(const PlantFile& file, const BusConfig& bus, std::vec
 }  // namespace
 
 void plan_profibus_lines(const Plant& plant, BusPlan& plan) {
-  for (const BusConfig& bus : plant.file().buses)
-    if (bus.kind == BusKind::Profibus)
-      plan.profibus_lines.push_back(plan_line(plant.file(), bus, plan.findings));
+  for (const ProfibusBus* bus : plant.all<ProfibusBus>())
+    plan.profibus_lines.push_back(plan_line(plant.file(), bus->config(), plan.findings));
 }
 
 }  // namespace ipos::runtime

@@ -21,14 +21,24 @@ bool LineRoster::has_group(uint8_t group) const {
   });
 }
 
+const ControlSettings* movilink_of(const Member& member) {
+  if (member.control == nullptr) return nullptr;
+  return visit(
+      *member.control, [](MovilinkControl& control) { return &control.control().settings(); },
+      [](Gateway& gateway) { return &gateway.settings(); },
+      [](CanopenControl&) -> const ControlSettings* { return nullptr; },
+      [](ProfibusControl&) -> const ControlSettings* { return nullptr; });
+}
+
+const canopen::MasterSettings* canopen_of(const Member& member) {
+  const auto* const control = as<CanopenControl>(member.control);
+  return control == nullptr ? nullptr : &control->settings();
+}
+
 std::vector<LineRoster> line_rosters(const Plant& plant) {
   std::vector<LineRoster> rosters;
-  for (size_t n = 0; n < plant.lines().size(); ++n) {
-    const auto& buses = plant.file().buses;
-    const auto found = std::find_if(buses.begin(), buses.end(), [&](const BusConfig& bus) {
-      return bus.name == plant.lines()[n]->name();
-    });
-    LineRoster roster{plant.lines()[n], &*found, {}};
+  for (CanBus* bus : plant.all<CanBus>()) {
+    LineRoster roster{&bus->line(), &bus->config(), {}};
     for (const auto& station : plant.stations())
       for (const int number : {1, 2}) {
         const SbusPort* port = station->sbus(number);
@@ -40,10 +50,12 @@ std::vector<LineRoster> line_rosters(const Plant& plant) {
         roster.members.push_back(
             {config.name, station.get(), port, canopen, number, nullptr, config.place.line});
       }
-    for (const PlantControl& control : plant.controls())
-      if (control.line == roster.line)
+    for (const auto& control : plant.controls()) {
+      const std::vector<std::string> lines = control->lines();
+      if (std::find(lines.begin(), lines.end(), bus->name()) != lines.end())
         roster.members.push_back(
-            {control.config->name, nullptr, nullptr, nullptr, 1, &control, control.config->place.line});
+            {control->name(), nullptr, nullptr, nullptr, 1, control.get(), control->config().place.line});
+    }
     std::stable_sort(roster.members.begin(), roster.members.end(),
                      [](const Member& a, const Member& b) { return a.place < b.place; });
     rosters.push_back(std::move(roster));

@@ -16,7 +16,7 @@ struct Member {
   const SbusPort* port = nullptr;    // null: a node of CANopen, or a control
   const CanopenPort* canopen = nullptr;
   int sbus = 1;  // 1 or 2
-  const PlantControl* control = nullptr;
+  Control* control = nullptr;
   uint32_t place = 0;  // line in the plant file
 };
 
@@ -38,6 +38,11 @@ inline const VariableObjects& objects_of(const Member& member) {
 inline const SbusSettings& settings_of(const Member& member) {
   return member.port != nullptr ? member.port->settings() : member.canopen->settings();
 }
+
+// The process data that it sends over MOVILINK as a control of whichever kind; null: none.
+const ControlSettings* movilink_of(const Member& member);
+// The nodes that it is the master of; null: it is none.
+const canopen::MasterSettings* canopen_of(const Member& member);
 
 std::vector<LineRoster> line_rosters(const Plant& plant);
 

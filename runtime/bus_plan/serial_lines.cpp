@@ -17,7 +17,7 @@ class LinePlanner {
   LinePlanner(const Plant& plant, const BusConfig& bus, BusPlan& plan)
       : plant_(plant), bus_(bus), plan_(plan) {
     line_.name = bus.name;
-    line_.kind = bus.kind == BusKind::Rs232 ? "RS-232" : "RS-485";
+    line_.kind = info(bus.kind).name;
     line_.baud = bus.baud;
     line_.length = (bus.length_mm + 999) / 1000;
     line_.length_limit = serial_length_limit(plant.file(), bus) / 1000;

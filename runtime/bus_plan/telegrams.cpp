@@ -22,7 +22,8 @@ class Traffic {
   Traffic(const LineRoster& roster, const SeenTelegrams& seen, const PlanOptions& options)
       : roster_(roster), seen_(seen), options_(options) {
     for (const Member& member : roster.members) {
-      if (member.control != nullptr) add_control(member);
+      if (const auto* settings = canopen_of(member)) add_master(member, *settings);
+      if (const auto* settings = movilink_of(member)) add_control(member, *settings);
       if (member.canopen != nullptr && member.canopen->canopen() != nullptr) add_node(member);
       if (member.port != nullptr) {
         add_partners(member);
@@ -84,16 +85,13 @@ class Traffic {
   // As far as somebody sends it in this plant.
   Time sync_period(uint32_t sync) const {
     for (const Member& member : roster_.members)
-      if (member.control != nullptr && member.control->config->canopen &&
-          sync == canopen::identifier(canopen::Connection::Sync) &&
-          member.control->config->canopen->sync_cycle > 0)
-        return member.control->config->canopen->sync_cycle;
+      if (const auto* settings = canopen_of(member); settings != nullptr && settings->sync_cycle > 0 &&
+                                                     sync == canopen::identifier(canopen::Connection::Sync))
+        return settings->sync_cycle;
     return acyclic_period(sync);
   }
 
-  void add_control(const Member& member) {
-    if (member.control->config->canopen) return add_master(member, *member.control->config->canopen);
-    const ControlSettings& settings = member.control->config->settings;
+  void add_control(const Member& member, const ControlSettings& settings) {
     if (settings.sync_id)
       add(*settings.sync_id, member.name, "sync telegram", 0, Rhythm::Cyclic, settings.cycle);
     for (const ControlTarget& target : settings.targets) {

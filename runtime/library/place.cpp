@@ -122,17 +122,15 @@ size_t station_count(const Plant& plant) {
 
 runtime::Gateway* gateway_of(const Plant& plant, uint32_t station) {
   if (station < plant.stations().size()) return nullptr;
-  size_t behind = station - plant.stations().size();
-  for (const runtime::PlantControl& control : plant.controls())
-    if (control.gateway && behind-- == 0) return control.gateway.get();
-  return nullptr;
+  const size_t behind = station - plant.stations().size();
+  const auto gateways = plant.all<runtime::Gateway>();
+  return behind < gateways.size() ? gateways[behind] : nullptr;
 }
 
 std::string station_names(const Plant& plant) {
   std::vector<std::string_view> names;
   for (const auto& station : plant.stations()) names.push_back(station->config().name);
-  for (const runtime::PlantControl& control : plant.controls())
-    if (control.gateway) names.push_back(control.config->name);
+  for (const runtime::Gateway* gateway : plant.all<runtime::Gateway>()) names.push_back(gateway->name());
   return fmt::format("{}", fmt::join(names, ", "));
 }
 

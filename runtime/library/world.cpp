@@ -37,12 +37,11 @@ std::optional<runtime::Frame> frame_of(std::span<const uint8_t> bytes) {
 }
 
 World::World(std::unique_ptr<runtime::Plant> plant) : plant_(std::move(plant)), hands_(*plant_) {
-  for (const auto& line : plant_->lines()) can_.push_back(std::make_unique<CanTap>(*line));
-  for (const auto& line : plant_->serial_lines())
-    serial_.push_back(std::make_unique<SerialTap>(line->line()));
   for (const auto& bus : plant_->buses())
-    if (auto* line = dynamic_cast<runtime::ProfibusBus*>(bus.get()))
-      profibus_.push_back(std::make_unique<ProfibusTap>(line->line()));
+    runtime::visit(
+        *bus, [this](runtime::CanBus& can) { can_.push_back(std::make_unique<CanTap>(can.line())); },
+        [this](runtime::SerialBus& serial) { serial_.push_back(std::make_unique<SerialTap>(serial.line())); },
+        [this](runtime::ProfibusBus& dp) { profibus_.push_back(std::make_unique<ProfibusTap>(dp.line())); });
 }
 
 Refusal World::touch(const Deed& deed, Touch touch) {

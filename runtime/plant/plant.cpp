@@ -9,8 +9,7 @@
 
 #include "runtime/bus/log/log_name.hpp"
 #include "runtime/nv_memory/medium/file_medium.hpp"
-#include "runtime/plant_file/can_cable.hpp"
-#include "runtime/plant_file/profibus_paper.hpp"
+#include "runtime/plant/start_checks.hpp"
 #include "runtime/plant_file/serial_plan.hpp"
 #include "runtime/signals/station_signals.hpp"
 #include "runtime/signals/station_state.hpp"
@@ -56,15 +55,16 @@ Plant::Plant(PlantFile file, std::vector<std::optional<vm::Image>> programs, std
   surroundings_ = std::make_unique<Surroundings>(queue_, next_source_++, journal_);
   for (size_t n = 0; n < file_.stations.size(); ++n)
     add_station(n, std::move(programs[n]), rates, errors, execution);
-  for (ControlConfig& config : file_.controls) add_control(config, errors);
+  for (const ControlConfig& config : file_.controls)
+    if (auto control = make_control({*this, queue_, next_source_, journal_}, config, errors))
+      controls_.push_back(std::move(control));
   surroundings_->connect(file_, stations_, errors);
   resolve_expectations(errors);
   if (!errors.empty()) return;
   surroundings_->start();
-  tell_findings();
+  tell_findings(*this, journal_);
   power_on();
-  start_checks();
-  check_nodes();
+  check_nodes(*this, journal_);
   plant_faults();
 }
 
@@ -84,62 +84,6 @@ void Plant::add_station(size_t number, std::optional<vm::Image> program, std::op
       errors.push_back({setting.place, fmt::format("station '{}': {}", config.name, *refused)});
 }
 
-// Those of the file, or all that speak MOVILINK on the SBus: its telegrams go to each of them.
-void Plant::find_drives(ControlConfig& gateway, std::vector<PlantError>& errors) const {
-  std::vector<uint8_t> addresses = gateway.gateway->drives;
-  if (addresses.empty())
-    for (const auto& station : stations_)
-      for (const int number : {1, 2}) {
-        const StationConfig& config = station->config();
-        if ((number == 1 ? config.sbus : config.sbus2) != gateway.sbus) continue;
-        const SbusSettings settings = sbus_settings(station->drive(), number);
-        if (settings.movilink) addresses.push_back(settings.slave.address);
-      }
-  std::sort(addresses.begin(), addresses.end());
-  addresses.erase(std::unique(addresses.begin(), addresses.end()), addresses.end());
-  if (addresses.empty() || addresses.size() > kMostGatewayDrives)
-    errors.push_back(
-        {gateway.place, fmt::format("gateway '{}' has {} drives on '{}', and it takes 1 to {}: name "
-                                    "them with drives = [...]",
-                                    gateway.name, addresses.size(), gateway.sbus, kMostGatewayDrives)});
-  for (const uint8_t address : addresses)
-    gateway.settings.targets.push_back({address, false, {}, kGatewayCycle});
-}
-
-void Plant::add_control(ControlConfig& config, std::vector<PlantError>& errors) {
-  PlantControl control{&config, nullptr, {}, {}, {}, {}};
-  if (config.gateway) {
-    find_drives(config, errors);
-    control.line = find_can(config.sbus);
-    auto* dp = dynamic_cast<ProfibusBus*>(find_bus(config.gateway->profibus.bus.bus));
-    if (dp != nullptr && control.line != nullptr && config.settings.targets.size() <= kMostGatewayDrives)
-      control.gateway = std::make_unique<Gateway>(queue_, next_source_++, *dp, config, journal_);
-  } else if (config.canopen) {
-    control.line = find_can(config.sbus);
-    control.canopen =
-        std::make_unique<CanopenControl>(queue_, next_source_++, config.name, *config.canopen, journal_);
-  } else if (!config.profibus) {
-    control.line = find_can(config.sbus);
-    control.control = std::make_unique<SbusControl>(queue_, next_source_++, config.settings);
-  } else if (auto* bus = dynamic_cast<ProfibusBus*>(find_bus(config.profibus->bus))) {
-    control.profibus = std::make_unique<ProfibusControl>(queue_, next_source_++, *bus, config, journal_);
-  }
-  controls_.push_back(std::move(control));
-}
-
-Bus* Plant::find_bus(std::string_view name) const {
-  const auto bus = std::find_if(buses_.begin(), buses_.end(),
-                                [&](const auto& candidate) { return candidate->name() == name; });
-  return bus == buses_.end() ? nullptr : bus->get();
-}
-
-Gateway* Plant::find_gateway(std::string_view name) const {
-  const auto control = std::find_if(controls_.begin(), controls_.end(), [&](const PlantControl& candidate) {
-    return candidate.gateway && candidate.config->name == name;
-  });
-  return control == controls_.end() ? nullptr : control->gateway.get();
-}
-
 void Plant::set_power(std::string_view name, bool on) {
   const auto set = [&](auto& unit) {
     if (unit.powered() == on) return;
@@ -157,68 +101,15 @@ std::optional<signals::SignalPort> Plant::find_port(const Signal& signal, std::s
   return gateway == nullptr ? signals::SignalPort::find(stations_, signal, why) : signals::SignalPort::find(*gateway, signal, why);
 }
 
-CanLine* Plant::find_can(std::string_view name) const {
-  auto* bus = dynamic_cast<CanBus*>(find_bus(name));
-  return bus == nullptr ? nullptr : &bus->line();
-}
-
 // Stations and controls sit on the cable in the order in which they stand in the file.
 void Plant::power_on() {
-  size_t control = 0;
-  const auto begin_control = [&](PlantControl& started) {
-    if (started.profibus) started.profibus->start();
-    if (started.gateway) return started.gateway->start(*started.line);
-    if (started.line == nullptr) return;
-    const bool canopen = started.canopen != nullptr;
-    CanNode& master = canopen ? static_cast<CanNode&>(started.canopen->master()) : *started.control;
-    const NodeId node = started.line->attach(started.config->name, started.line->baud(), master);
-    started.port = std::make_unique<LinePort>(*started.line, node);
-    if (canopen)
-      started.canopen->master().start(queue_.now(), *started.port);
-    else
-      started.control->start(*started.port);
-  };
+  auto control = controls_.begin();
   for (const auto& station : stations_) {
-    const FilePlace place = station->config().place;
-    while (control < controls_.size() && controls_[control].config->place.line < place.line)
-      begin_control(controls_[control++]);
+    for (; control != controls_.end() && (*control)->config().place.line < station->config().place.line; ++control)
+      (*control)->start();
     station->power_on();
   }
-  while (control < controls_.size()) begin_control(controls_[control++]);
-}
-
-void Plant::start_checks() {
-  for (const auto& station : stations_)
-    for (const int number : {1, 2}) {
-      const SbusPort* port = station->sbus(number);
-      if (port == nullptr) continue;
-      auto* bus = dynamic_cast<CanBus*>(find_bus(port->line().name()));
-      bus->check().add_slave(queue_.now(), port->line(), port->node(), port->settings().slave);
-    }
-}
-
-// Two nodes with one number send the same identifiers, and both answer (CiA 301: a number is given once).
-void Plant::check_nodes() {
-  struct Numbered {
-    const CanLine* line;
-    uint8_t node;
-    const std::string* station;
-  };
-  std::vector<Numbered> nodes;
-  for (const auto& station : stations_)
-    for (const int sbus : {1, 2}) {
-      const CanopenPort* port = std::as_const(*station).canopen(sbus);
-      if (port == nullptr) continue;
-      const Numbered added{&port->line(), port->settings().canopen_address, &station->config().name};
-      for (const Numbered& other : nodes)
-        if (other.line == added.line && other.node == added.node)
-          journal_.note(
-              queue_.now(), Weight::Warning, "",
-              fmt::format("{}: {} and {} both have CANopen address {}: they send the same identifiers, and "
-                          "their answers collide",
-                          added.line->name(), *other.station, *added.station, added.node));
-      nodes.push_back(added);
-    }
+  for (; control != controls_.end(); ++control) (*control)->start();
 }
 
 void Plant::plant_faults() {
@@ -237,57 +128,30 @@ Bus& Plant::add_bus(const BusConfig& config) {
   buses_.push_back(make_bus({queue_, next_source_++, config, [this](Time now, std::string text) {
                                journal_.note(now, Weight::Warning, "", std::move(text));
                              }}));
-  Bus& bus = *buses_.back();
-  if (auto* can = dynamic_cast<CanBus*>(&bus)) lines_.push_back(&can->line());
-  if (auto* serial = dynamic_cast<SerialBus*>(&bus)) serial_lines_.push_back(serial);
-  return bus;
+  return *buses_.back();
 }
 
 // A keypad hangs on a line of its own, which comes right before its station.
 StationLines Plant::lines_of(const StationConfig& station) {
-  const auto serial = [](Bus* bus) {
-    auto* found = dynamic_cast<SerialBus*>(bus);
-    return found == nullptr ? nullptr : &found->line();
-  };
+  const auto line = [](auto* bus) { return bus == nullptr ? nullptr : &bus->line(); };
+  const auto can = [&](const std::string& name) { return line(as<CanBus>(find_bus(name))); };
+  const auto serial = [&](const std::string& name) { return line(as<SerialBus>(find_bus(name))); };
   StationLines found;
-  found.sbus = {find_can(station.sbus), find_can(station.sbus2)};
-  found.x13 = serial(find_bus(station.serial.x13.bus));
-  found.xt = serial(find_bus(station.serial.xt.bus));
-  found.profibus = dynamic_cast<ProfibusBus*>(find_bus(station.profibus.bus.bus));
+  found.sbus = {can(station.sbus), can(station.sbus2)};
+  found.x13 = serial(station.serial.x13.bus);
+  found.xt = serial(station.serial.xt.bus);
+  found.profibus = as<ProfibusBus>(find_bus(station.profibus.bus.bus));
   if (station.serial.keypad) {
-    BusConfig& line = keypads_.emplace_back();
+    BusConfig& keypad = keypads_.emplace_back();
     const std::string name = log_name(station.name + ".keypad");
-    line.name = name;
+    keypad.name = name;
     // Another line may have the name, where letters were replaced.
-    for (int n = 2; find_bus(line.name) != nullptr; ++n) line.name = fmt::format("{}_{}", name, n);
-    line.kind = BusKind::Rs485;
-    line.baud = xt_baud(station);
-    found.xt = serial(&add_bus(line));
+    for (int n = 2; find_bus(keypad.name) != nullptr; ++n) keypad.name = fmt::format("{}_{}", name, n);
+    keypad.kind = BusKind::Rs485;
+    keypad.baud = xt_baud(station);
+    found.xt = line(as<SerialBus>(&add_bus(keypad)));
   }
   return found;
-}
-
-void Plant::tell_findings() {
-  for (const auto& station : stations_)
-    for (const std::string& name : signals::hidden_names(*station))
-      journal_.note(queue_.now(), Weight::Why, station->config().name,
-                    fmt::format("'{0}' is a variable of the program, and hides what the unit calls so: that is 'drive.{0}'", name));
-  const ParameterOf parameter = [this](size_t station, std::string_view number) {
-    return stations_[station]->drive().value(number);
-  };
-  for (const PlanFinding& finding : serial_findings(file_, parameter))
-    journal_.note(queue_.now(), Weight::Warning, finding.station, finding.text);
-  // Of RS-485 the plant file refuses such lines.
-  for (const BusConfig& bus : file_.buses) {
-    const auto warn = [&](const std::string& text) {
-      journal_.note(queue_.now(), Weight::Warning, "", fmt::format("{}: {}", bus.name, text));
-    };
-    if (bus.kind == BusKind::Can)
-      for (const CableFinding& finding : can_cable_findings(file_, bus)) warn(finding.text);
-    if (bus.kind == BusKind::Profibus)
-      for (const auto& found : {check_line(profibus_paper(file_, bus)), profibus_master_findings(file_, bus)})
-        for (const std::string& text : found) warn(text);
-  }
 }
 
 void Plant::resolve_expectations(std::vector<PlantError>& errors) {
@@ -302,11 +166,11 @@ void Plant::resolve_expectations(std::vector<PlantError>& errors) {
 }
 
 void Plant::add_observer(CanObserver& observer) {
-  for (CanLine* line : lines_) line->add_observer(observer);
+  for (CanBus* bus : all<CanBus>()) bus->line().add_observer(observer);
 }
 
 void Plant::add_observer(SerialObserver& observer) {
-  for (SerialBus* bus : serial_lines_) bus->line().add_observer(observer);
+  for (SerialBus* bus : all<SerialBus>()) bus->line().add_observer(observer);
 }
 
 bool Plant::run_until(Time end, const std::function<bool(Time)>& keep_going) {

@@ -13,9 +13,7 @@
 #include "runtime/plant/surroundings.hpp"
 #include "runtime/plant_file/plant_file.hpp"
 #include "runtime/signals/signal_port.hpp"
-#include "runtime/station/can_bus.hpp"
 #include "runtime/station/plant_parts.hpp"
-#include "runtime/station/serial_bus.hpp"
 
 namespace ipos::runtime {
 
@@ -68,14 +66,10 @@ class Plant final : public PlantParts {
   const PlantFile& file() const { return file_; }
   std::vector<std::unique_ptr<Station>>& stations() { return stations_; }
   const std::vector<std::unique_ptr<Station>>& stations() const override { return stations_; }
-  const std::vector<PlantControl>& controls() const override { return controls_; }
-  Gateway* find_gateway(std::string_view name) const;  // nullptr: there is none
+  const std::vector<std::unique_ptr<Control>>& controls() const override { return controls_; }
   // Of a station or a gateway; nothing and why when it has no such thing.
   std::optional<signals::SignalPort> find_port(const Signal& signal, std::string& why) const;
   const std::vector<std::unique_ptr<Bus>>& buses() const override { return buses_; }
-  Bus* find_bus(std::string_view name) const;
-  const std::vector<CanLine*>& lines() const { return lines_; }
-  const std::vector<SerialBus*>& serial_lines() const { return serial_lines_; }
   const Journal& journal() const {
     look();
     return journal_;
@@ -90,15 +84,9 @@ class Plant final : public PlantParts {
   void look() const;  // what stations are late with they make up for
   Bus& add_bus(const BusConfig& config);
   StationLines lines_of(const StationConfig& station);
-  void tell_findings();
-  CanLine* find_can(std::string_view name) const;  // nullptr: there is none
   void add_station(size_t number, std::optional<vm::Image> program, std::optional<vm::Rates> rates,
                    std::vector<PlantError>& errors, const Execution& execution);
-  void add_control(ControlConfig& config, std::vector<PlantError>& errors);
-  void find_drives(ControlConfig& gateway, std::vector<PlantError>& errors) const;
   void power_on();
-  void start_checks();
-  void check_nodes();
   void plant_faults();
   void check_expectations(Time until);
   void resolve_expectations(std::vector<PlantError>& errors);
@@ -109,11 +97,9 @@ class Plant final : public PlantParts {
   Journal journal_;
   std::deque<BusConfig> keypads_;  // lines that are not in the file
   std::vector<std::unique_ptr<Bus>> buses_;
-  std::vector<CanLine*> lines_;           // of these
-  std::vector<SerialBus*> serial_lines_;  // of these
   std::unique_ptr<Surroundings> surroundings_;
   std::vector<std::unique_ptr<Station>> stations_;
-  std::vector<PlantControl> controls_;
+  std::vector<std::unique_ptr<Control>> controls_;
 
   struct Due {
     const Expectation* expectation;

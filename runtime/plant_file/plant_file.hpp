@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "runtime/bus/can/line_fault.hpp"
@@ -95,23 +96,27 @@ inline constexpr size_t kMostGatewayDrives = 8;
 inline constexpr int32_t kSbusAddressCount = 64;
 inline constexpr int64_t kGatewayCycle = 10'000'000;  // ns between two telegrams to a drive (ours)
 
-// The DP side of a gateway, and its drives by their SBus addresses in rising order; empty: those of the plant.
+// A gateway is the master of its SBus: its DP side, and its drives by their addresses in rising order; empty: those of
+// the plant.
 struct GatewayConfig {
   ProfibusUse profibus;
   std::vector<uint8_t> drives;
 };
 
-// A master control on an SBus: process data to units, and the sync telegram. Or a master of CANopen, or one on a
-// PROFIBUS, or a gateway, whose targets are its drives.
+// What sends without being a station with a drive. A master control on an SBus: process data to units, and the sync
+// telegram; or a master of CANopen, or one on a PROFIBUS, or a gateway. Each has a class in runtime/station/control.hpp.
 struct ControlConfig {
   std::string name;
-  std::string sbus;
-  std::optional<ProfibusMasterConfig> profibus{};
-  ControlSettings settings;
-  std::optional<canopen::MasterSettings> canopen;  // in place of the former
-  std::optional<GatewayConfig> gateway{};
+  std::string sbus;  // empty: only on a PROFIBUS
+  std::variant<ControlSettings, canopen::MasterSettings, ProfibusMasterConfig, GatewayConfig> kind{};
   std::optional<bool> terminator;
   FilePlace place;
+
+  // Null when it is of another kind.
+  template <typename Kind>
+  const Kind* as() const {
+    return std::get_if<Kind>(&kind);
+  }
 };
 
 // A planted fault of a line; its node is found when it is planted.

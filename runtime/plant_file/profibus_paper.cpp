@@ -22,8 +22,8 @@ std::vector<Slave> slaves_of(const PlantFile& file, const std::string& bus) {
     if (station.profibus.bus.bus == bus)
       slaves.push_back({station.name, &station.profibus, station.place.line});
   for (const ControlConfig& control : file.controls)
-    if (control.gateway && control.gateway->profibus.bus.bus == bus)
-      slaves.push_back({control.name, &control.gateway->profibus, control.place.line});
+    if (const auto* gateway = control.as<GatewayConfig>(); gateway != nullptr && gateway->profibus.bus.bus == bus)
+      slaves.push_back({control.name, &gateway->profibus, control.place.line});
   std::stable_sort(slaves.begin(), slaves.end(),
                    [](const Slave& a, const Slave& b) { return a.place < b.place; });
   return slaves;
@@ -32,7 +32,8 @@ std::vector<Slave> slaves_of(const PlantFile& file, const std::string& bus) {
 std::vector<const ProfibusMasterConfig*> masters_of(const PlantFile& file, const std::string& bus) {
   std::vector<const ProfibusMasterConfig*> masters;
   for (const ControlConfig& control : file.controls)
-    if (control.profibus && control.profibus->bus == bus) masters.push_back(&*control.profibus);
+    if (const auto* master = control.as<ProfibusMasterConfig>(); master != nullptr && master->bus == bus)
+      masters.push_back(master);
   return masters;
 }
 

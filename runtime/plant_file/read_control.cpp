@@ -38,17 +38,18 @@ void read_sbus_control(PlantReader& reader, const toml::table& table, ControlCon
   reader.known_keys(table, "[[control]]", {"name", "kind", "sbus", "sync", "cycle", "terminator", "target"});
   config.sbus = reader.bus_name(table, "sbus", "a [[control]]", true);
   config.terminator = reader.flag(table, "terminator");
+  auto& settings = config.kind.emplace<ControlSettings>();
   if (table.contains("sync"))
-    config.settings.sync_id = static_cast<uint16_t>(reader.count(table, "sync", 2047, 0));
-  config.settings.cycle = reader.duration(table, "cycle", kSyncCycle);
-  if (config.settings.cycle >= 0 && config.settings.cycle < kSyncCycle)
+    settings.sync_id = static_cast<uint16_t>(reader.count(table, "sync", 2047, 0));
+  settings.cycle = reader.duration(table, "cycle", kSyncCycle);
+  if (settings.cycle >= 0 && settings.cycle < kSyncCycle)
     reader.error(place_of(table.get("cycle")->source()), "a sync cycle has at least 5ms");
   reader.for_each_table(table, "target", [&](const toml::table& target) {
-    read_control_target(reader, target, config.settings);
+    read_control_target(reader, target, settings);
   });
   const auto is_synchronous = [](const ControlTarget& target) { return target.every == 0; };
-  if (!config.settings.sync_id &&
-      std::any_of(config.settings.targets.begin(), config.settings.targets.end(), is_synchronous))
+  if (!settings.sync_id &&
+      std::any_of(settings.targets.begin(), settings.targets.end(), is_synchronous))
     reader.error(config.place,
                  "a target without every = ... is synchronous and needs sync = ... in its [[control]]");
 }
@@ -67,7 +68,7 @@ void read_control(PlantReader& reader, const toml::table& table) {
   } else if (kind == "canopen") {
     config.sbus = reader.bus_name(table, "sbus", "a [[control]]", true);
     config.terminator = reader.flag(table, "terminator");
-    config.canopen = read_canopen_master(reader, table);
+    config.kind = read_canopen_master(reader, table);
   } else {
     read_sbus_control(reader, table, config);
   }

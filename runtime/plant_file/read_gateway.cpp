@@ -47,7 +47,7 @@ void read_gateway(PlantReader& reader, const toml::table& table) {
   reader.gateway_names.insert(config.name);
   config.sbus = reader.bus_name(table, "sbus", kWhat, true);
   config.terminator = reader.flag(table, "terminator");
-  GatewayConfig& gateway = config.gateway.emplace();
+  GatewayConfig& gateway = config.kind.emplace<GatewayConfig>();
   gateway.drives = read_drives(reader, table);
   ProfibusUse& use = gateway.profibus;
   use.option = &profibus::option_type(profibus::OptionKind::Gateway);

@@ -169,7 +169,8 @@ class MasterReader {
     for (const StationConfig& station : reader_.result.plant.stations)
       if (is_it(station.profibus)) return *station.profibus.option;
     for (const ControlConfig& control : reader_.result.plant.controls)
-      if (control.gateway && is_it(control.gateway->profibus)) return *control.gateway->profibus.option;
+      if (const auto* gateway = control.as<GatewayConfig>(); gateway != nullptr && is_it(gateway->profibus))
+        return *gateway->profibus.option;
     return profibus::option_type(profibus::OptionKind::Ffp31);
   }
 
@@ -252,7 +253,7 @@ void read_profibus_fault(PlantReader& reader, const toml::table& table) {
 
 void read_profibus_master(PlantReader& reader, const toml::table& table, ControlConfig& control) {
   reader.known_keys(table, "[[control]]", {"name", "profibus", "address", "gap", "slave", "command"});
-  ProfibusMasterConfig& config = control.profibus.emplace();
+  ProfibusMasterConfig& config = control.kind.emplace<ProfibusMasterConfig>();
   config.bus = reader.bus_use(table, "profibus", BusKind::Profibus).bus;
   config.settings.address = static_cast<uint8_t>(reader.count(table, "address", profibus::kLastStation, 1));
   config.settings.gap_factor = reader.count(table, "gap", 1000, config.settings.gap_factor);

@@ -1,7 +1,5 @@
-// A kind of bus that real ports can carry has an overload of `carry`.
+// Each class of bus has an overload of `carry`.
 #include "runtime/plant_port/join.hpp"
-
-#include <fmt/format.h>
 
 #include <utility>
 
@@ -65,11 +63,7 @@ Joined carry(ProfibusBus& bus, const Wanted& wanted, const Place& place) {
 Joined join_port(Plant& plant, Bus& bus, const std::string& port, RealClock& clock, PortLoss loss) {
   const Place place{plant.queue(), plant.next_source()};
   const Wanted wanted{port, clock, loss};
-  if (auto* can = dynamic_cast<CanBus*>(&bus)) return carry(*can, wanted, place);
-  if (auto* serial = dynamic_cast<SerialBus*>(&bus)) return carry(*serial, wanted, place);
-  if (auto* profibus = dynamic_cast<ProfibusBus*>(&bus)) return carry(*profibus, wanted, place);
-  return tl::unexpected(
-      port_error(PortFault::BadName, port, fmt::format("no real port carries {}", info(bus.kind()).name)));
+  return visit(bus, [&](auto& line) { return carry(line, wanted, place); });
 }
 
 }  // namespace ipos::runtime

@@ -254,7 +254,7 @@ class CanTelegrams final : public TelegramLine {
 
 }  // namespace
 
-std::unique_ptr<TelegramLine> can_telegrams(const PlantParts& plant, CanBus& bus) {
+std::unique_ptr<TelegramLine> telegrams_of(const PlantParts& plant, CanBus& bus) {
   return std::make_unique<CanTelegrams>(plant, bus);
 }
 

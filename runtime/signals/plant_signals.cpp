@@ -34,9 +34,8 @@ void add_line(const PlantParts& plant, const Bus& line, std::vector<Signal>& out
 // Of what is no station with a drive: gateways, and lines.
 std::vector<Signal> other_signals(const PlantParts& plant) {
   std::vector<Signal> signals;
-  for (const PlantControl& control : plant.controls())
-    if (control.gateway)
-      for (Signal& signal : gateway_signals(*control.gateway)) signals.push_back(std::move(signal));
+  for (const Gateway* gateway : plant.all<Gateway>())
+    for (Signal& signal : gateway_signals(*gateway)) signals.push_back(std::move(signal));
   for (const auto& bus : plant.buses()) add_line(plant, *bus, signals);
   return signals;
 }
@@ -96,11 +95,11 @@ tl::expected<std::vector<Signal>, std::string> find_signals(const PlantParts& pl
   const std::vector<Signal> without_drive = other_signals(plant);
   if (auto found = find_among(without_drive, name)) return std::vector{*std::move(found)};
   if (auto found = find_telegram_signal(plant, name)) return std::vector{*std::move(found)};
-  for (const PlantControl& control : plant.controls())
-    if (control.gateway && name.starts_with(control.config->name + "."))
-      return tl::unexpected(fmt::format("gateway '{}' has no signal '{}'; it has {}", control.config->name,
-                                        name.substr(control.config->name.size() + 1),
-                                        names_of(gateway_signals(*control.gateway))));
+  for (const Gateway* gateway : plant.all<Gateway>())
+    if (name.starts_with(gateway->name() + "."))
+      return tl::unexpected(fmt::format("gateway '{}' has no signal '{}'; it has {}", gateway->name(),
+                                        name.substr(gateway->name().size() + 1),
+                                        names_of(gateway_signals(*gateway))));
   std::vector<std::string_view> buses;
   for (const Signal& signal : without_drive)
     if (signal.group == Group::Bus) buses.push_back(signal.name);

@@ -38,19 +38,19 @@ DpSlaveOfPlant slave_at(const PlantParts& plant, const Bus& bus, uint8_t address
     const profibus::DpSlave& slave = port->card().station().slave();
     if (slave.address() == address) return {config.name, config.profibus.option, slave.configuration()};
   }
-  for (const PlantControl& control : plant.controls()) {
-    if (!control.gateway || control.config->gateway->profibus.bus.bus != bus.name()) continue;
-    const profibus::DpSlave& slave = std::as_const(*control.gateway).dp().slave();
-    if (slave.address() == address)
-      return {control.config->name, control.config->gateway->profibus.option, slave.configuration()};
+  for (const Gateway* gateway : plant.all<Gateway>()) {
+    const ProfibusUse& use = gateway->profibus();
+    const profibus::DpSlave& slave = gateway->dp().slave();
+    if (use.bus.bus == bus.name() && slave.address() == address)
+      return {gateway->name(), use.option, slave.configuration()};
   }
   return {};
 }
 
 const profibus::SlavePlan* plan_of(const PlantParts& plant, const Bus& bus, uint8_t address) {
-  for (const PlantControl& control : plant.controls())
-    if (control.config->profibus && control.config->profibus->bus == bus.name())
-      for (const profibus::SlavePlan& plan : control.config->profibus->slaves)
+  for (const ProfibusControl* master : plant.all<ProfibusControl>())
+    if (master->settings().bus == bus.name())
+      for (const profibus::SlavePlan& plan : master->settings().slaves)
         if (plan.address == address) return &plan;
   return nullptr;
 }
@@ -197,7 +197,7 @@ class ProfibusTelegrams final : public TelegramLine {
 
 }  // namespace
 
-std::unique_ptr<TelegramLine> profibus_telegrams(const PlantParts& plant, ProfibusBus& bus) {
+std::unique_ptr<TelegramLine> telegrams_of(const PlantParts& plant, ProfibusBus& bus) {
   return std::make_unique<ProfibusTelegrams>(plant, bus);
 }
 

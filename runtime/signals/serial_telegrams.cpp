@@ -114,7 +114,7 @@ class SerialTelegrams final : public TelegramLine {
 
 }  // namespace
 
-std::unique_ptr<TelegramLine> serial_telegrams(const PlantParts& plant, SerialBus& bus) {
+std::unique_ptr<TelegramLine> telegrams_of(const PlantParts& plant, SerialBus& bus) {
   return std::make_unique<SerialTelegrams>(plant, bus);
 }
 

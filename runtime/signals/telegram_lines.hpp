@@ -34,10 +34,10 @@ class TelegramLine {
   virtual std::vector<Signal> all_of(std::string_view identity) const = 0;
 };
 
-// Both must outlive it.
-std::unique_ptr<TelegramLine> can_telegrams(const runtime::PlantParts& plant, runtime::CanBus& bus);
-std::unique_ptr<TelegramLine> serial_telegrams(const runtime::PlantParts& plant, runtime::SerialBus& bus);
-std::unique_ptr<TelegramLine> profibus_telegrams(const runtime::PlantParts& plant, runtime::ProfibusBus& bus);
+// One for each class of bus. Both must outlive it.
+#define BUS_CLASS(Class) \
+  std::unique_ptr<TelegramLine> telegrams_of(const runtime::PlantParts& plant, runtime::Class& bus);
+#include "runtime/plant_file/bus_kinds.def"
 
 // --- fields, from telegram_fields.def
 

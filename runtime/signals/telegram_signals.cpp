@@ -20,17 +20,10 @@ constexpr TelegramField kFields[] = {
 #include "runtime/signals/telegram_fields.def"
 };
 
-std::unique_ptr<TelegramLine> telegram_line(const PlantParts& plant, Bus& bus) {
-  if (auto* can = dynamic_cast<CanBus*>(&bus)) return can_telegrams(plant, *can);
-  if (auto* serial = dynamic_cast<SerialBus*>(&bus)) return serial_telegrams(plant, *serial);
-  if (auto* profibus = dynamic_cast<ProfibusBus*>(&bus)) return profibus_telegrams(plant, *profibus);
-  return nullptr;
-}
-
 std::vector<std::unique_ptr<TelegramLine>> telegram_lines(const PlantParts& plant) {
   std::vector<std::unique_ptr<TelegramLine>> lines;
   for (const auto& bus : plant.buses())
-    if (auto line = telegram_line(plant, *bus)) lines.push_back(std::move(line));
+    lines.push_back(visit(*bus, [&plant](auto& line) { return telegrams_of(plant, line); }));
   return lines;
 }
 

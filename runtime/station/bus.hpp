@@ -1,6 +1,6 @@
 // A line of a plant, whatever its kind: what the plant, its reports, recordings and tests ask of it. A new kind of bus
-// is a class of this in a source NAME_bus.cpp, and a row of bus_kinds.def. Its stations take the line itself from the
-// class.
+// is a class of this in a source NAME_bus.cpp, and a row of bus_kinds.def (docs/inside/new-bus.md). Who needs the line
+// itself visits it: a case for each class, or it does not compile.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,21 @@
 #include "runtime/bus/line/node_id.hpp"
 #include "runtime/clock/event_queue.hpp"
 #include "runtime/plant_file/plant_file.hpp"
+#include "runtime/station/visit.hpp"
 
 namespace ipos::runtime {
 
 class Bus;
+
+#define BUS_CLASS(Class) class Class;
+#include "runtime/plant_file/bus_kinds.def"
+
+// clang-format off
+using AnyBus = OneOf<Bus
+#define BUS_CLASS(Class) , Class
+#include "runtime/plant_file/bus_kinds.def"
+>::Pointer;
+// clang-format on
 
 // A frame or a telegram that has ended on the line, or what came of one.
 struct BusMessage {
@@ -48,11 +59,28 @@ class BusTracer {
   ~BusTracer() = default;
 };
 
+// A kind of fault that can be planted on a line, and what it takes.
+struct FaultRule {
+  std::string_view word;
+  std::string_view text;
+  FaultPlace at;
+  bool of_frames;    // by chance: it takes a rate
+  bool of_one_kind;  // it takes the identifier of the frames
+};
+
+// A fault that begins while the plant runs.
+struct WantedFault {
+  std::string_view word;  // of a rule
+  Time from = 0;
+  uint32_t per_mille = 1000;
+  std::optional<uint32_t> id{};
+};
+
 // What a line is made of.
 struct BusPlace {
   EventQueue& queue;
-  uint32_t source;  // orders its events among those of equal time
-  const BusConfig& config;
+  uint32_t source;          // orders its events among those of equal time
+  const BusConfig& config;  // outlives the line
   std::function<void(Time now, std::string text)> warn;  // of what is wrong on it
 };
 
@@ -63,15 +91,21 @@ std::optional<std::string> refuse_message(BusKind kind, const std::string& text)
 
 class Bus {
  public:
-  explicit Bus(const BusConfig& config) : kind_(config.kind), name_(config.name), baud_(config.baud) {}
+  explicit Bus(const BusConfig& config) : config_(config) {}
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
   virtual ~Bus() = default;
 
-  BusKind kind() const { return kind_; }
-  const std::string& name() const { return name_; }
-  uint32_t baud() const { return baud_; }
+  virtual AnyBus self() = 0;
+
+  const BusConfig& config() const { return config_; }
+  BusKind kind() const { return config_.kind; }
+  const std::string& name() const { return config_.name; }
+  uint32_t baud() const { return config_.baud; }
   virtual LineLoad load(Time now) const = 0;  // frames: frames or telegrams
+  virtual std::vector<std::string> node_names() const = 0;  // in the order in which they have joined
+  // What the plant file has wrong of the line, in words.
+  virtual std::vector<std::string> findings(const PlantFile& file) const = 0;
 
   // Before the first event runs.
   void add_observer(BusObserver& observer) {
@@ -91,6 +125,9 @@ class Bus {
   virtual void attach_hand() = 0;
   virtual std::optional<std::string> send(const std::string& text) = 0;
 
+  // Lines without rules have no faults.
+  virtual std::vector<FaultRule> fault_rules() const { return {}; }
+  virtual FaultConfig make_fault(const WantedFault& /*wanted*/) const { return {}; }
   // False: its station is not on the bus.
   virtual bool plant(const FaultConfig& /*fault*/) { return false; }
   // Ends it. False: there is none like it, or it cannot be ended.
@@ -117,15 +154,21 @@ class Bus {
     if (observers_.size() + tracers_.size() == 1) watch();
   }
 
-  BusKind kind_;
-  std::string name_;
-  uint32_t baud_;
+  const BusConfig& config_;
   std::vector<BusObserver*> observers_;
   std::vector<BusTracer*> tracers_;
 };
 
+// Of a line whose nodes have numbers from 0.
+template <typename Line>
+std::vector<std::string> node_names_of(const Line& line) {
+  std::vector<std::string> names;
+  for (NodeId node = 0; node < line.node_count(); ++node) names.push_back(line.node_name(node));
+  return names;
+}
+
 // In the source of each class: bus.cpp makes a line by its row alone and knows no class.
-#define BUS_CLASS(Class)                                                                                  \
+#define IPOS_MAKES_BUS(Class)                                                                                  \
   std::unique_ptr<Bus> make_##Class(BusPlace place) { return std::make_unique<Class>(std::move(place)); } \
   std::optional<std::string> refuse_##Class(const std::string& text) { return Class::refuse(text); }
 

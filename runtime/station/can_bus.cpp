@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "runtime/bus/log/candump.hpp"
+#include "runtime/plant_file/can_cable.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -82,6 +83,31 @@ NodeId CanBus::find_node(const std::string& station) const {
   return kNoNode;
 }
 
+std::vector<std::string> CanBus::findings(const PlantFile& file) const {
+  std::vector<std::string> texts;
+  for (CableFinding& finding : can_cable_findings(file, config())) texts.push_back(std::move(finding.text));
+  return texts;
+}
+
+std::vector<FaultRule> CanBus::fault_rules() const {
+  std::vector<FaultRule> rules;
+  for (const FaultType& type : kFaultTypes) {
+    const bool of_frames = type.scope == FaultScope::Frame;
+    rules.push_back({type.word, type.text, type.at, of_frames, of_frames});
+  }
+  return rules;
+}
+
+FaultConfig CanBus::make_fault(const WantedFault& wanted) const {
+  FaultConfig config;
+  config.fault.kind = find_fault_type(wanted.word)->kind;
+  config.fault.per_mille = wanted.per_mille;
+  config.fault.from = wanted.from;
+  config.fault.id = wanted.id;
+  if (config.fault.kind == FaultKind::Delay) config.fault.lag = kMillisecond;
+  return config;
+}
+
 bool CanBus::plant(const FaultConfig& config) {
   LineFault fault = config.fault;
   fault.node = find_node(config.station);
@@ -120,6 +146,6 @@ void CanBus::on_line_event(const CanLine&, const LineEvent& event) {
   trace_all(event.kind, event.time, event.node, event.other, event.id, event.fault);
 }
 
-BUS_CLASS(CanBus)
+IPOS_MAKES_BUS(CanBus)
 
 }  // namespace ipos::runtime

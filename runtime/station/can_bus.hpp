@@ -27,9 +27,14 @@ class CanBus final : public Bus, private CanObserver, private SbusCheckClient {
     return *last_frames_;
   }
 
+  AnyBus self() override { return this; }
   LineLoad load(Time now) const override { return line_.load(now); }
+  std::vector<std::string> node_names() const override { return node_names_of(line_); }
+  std::vector<std::string> findings(const PlantFile& file) const override;
   void attach_hand() override;
   std::optional<std::string> send(const std::string& text) override;
+  std::vector<FaultRule> fault_rules() const override;
+  FaultConfig make_fault(const WantedFault& wanted) const override;
   bool plant(const FaultConfig& config) override;
   bool repair(const FaultConfig& config) override;
 

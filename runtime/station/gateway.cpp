@@ -22,25 +22,27 @@ profibus::OptionType option_for(size_t drives) {
 
 }  // namespace
 
-Gateway::Gateway(EventQueue& queue, uint32_t source, ProfibusBus& profibus, const ControlConfig& config,
+Gateway::Gateway(EventQueue& queue, uint32_t source, ProfibusBus& profibus, CanLine& sbus,
+                 const ControlConfig& config, const GatewayConfig& gateway, ControlSettings settings,
                  Journal& journal)
-    : queue_(queue),
+    : Control(config),
+      queue_(queue),
       source_(source),
-      config_(config),
+      gateway_(gateway),
       journal_(journal),
-      control_(queue, source, config.settings),
+      line_(sbus),
+      control_(queue, source, std::move(settings)),
       master_(queue, source, sender_, kServiceTag, kSbusReplyTimeout, channel_),
       channel_(master_, [this](uint8_t address) { return serves(address); }),
-      option_(option_for(config.settings.targets.size())),
+      option_(option_for(control_.settings().targets.size())),
       dp_(queue, profibus.source(), profibus.line(), config.name, option_,
-          {config.gateway->profibus.address, false, false}, *this, this),
-      watched_(config.settings.targets.size()) {
+          {gateway.profibus.address, false, false}, *this, this),
+      watched_(control_.settings().targets.size()) {
   dp_.power_on(false);
 }
 
-void Gateway::start(CanLine& line) {
-  line_ = &line;
-  port_ = std::make_unique<LinePort>(line, line.attach(config_.name, line.baud(), *this));
+void Gateway::start() {
+  port_ = std::make_unique<LinePort>(line_, line_.attach(name(), line_.baud(), *this));
   sender_.use(*port_);
   begin();
 }
@@ -55,7 +57,7 @@ void Gateway::power_off() {
   if (!powered_) return;
   powered_ = false;
   dp_.power_off();
-  line_->set_connected(port_->node(), false);
+  line_.set_connected(port_->node(), false);
   queue_.cancel_all(*this);
   control_.stop();
   master_.abort();
@@ -73,14 +75,14 @@ void Gateway::power_off() {
 void Gateway::power_on() {
   if (powered_) return;
   powered_ = true;
-  line_->restart(port_->node());
-  line_->set_connected(port_->node(), true);
+  line_.restart(port_->node());
+  line_.set_connected(port_->node(), true);
   dp_.power_on(false);
   begin();
 }
 
 bool Gateway::serves(uint8_t address) const {
-  const auto& targets = config_.settings.targets;
+  const auto& targets = control_.settings().targets;
   return std::any_of(targets.begin(), targets.end(),
                      [address](const ControlTarget& target) { return target.address == address; });
 }
@@ -124,7 +126,7 @@ void Gateway::on_event(Time now, uint32_t, uint64_t) {
     if (std::exchange(watched_[n].lost, silent) == silent) continue;
     if (silent) ++watched_[n].losses;
     const int address = control_.settings().targets[n].address;
-    journal_.note(now, silent ? Weight::Warning : Weight::Why, config_.name,
+    journal_.note(now, silent ? Weight::Warning : Weight::Why, name(),
                   silent
                       ? fmt::format("the drive with SBus address {} does not answer: its input words are 0, "
                                     "its parameters give 06 02 00 00",
@@ -181,7 +183,7 @@ void Gateway::exchange_ended(Time) {
 
 void Gateway::on_note(Time now, profibus::SlaveNote what, uint8_t master) {
   if (const Noted one{what, master}; std::exchange(noted_, one) == one) return;
-  journal_.note(now, Weight::Why, config_.name,
+  journal_.note(now, Weight::Why, name(),
                 fmt::format("PROFIBUS: {}{}", profibus::slave_note_text(what),
                             master == profibus::kNoMaster ? "" : fmt::format(" (master {})", master)));
 }

@@ -18,24 +18,26 @@
 #include "runtime/bus/profibus/slave_station.hpp"
 #include "runtime/journal/journal.hpp"
 #include "runtime/plant_file/plant_file.hpp"
+#include "runtime/station/control.hpp"
 #include "runtime/station/profibus_bus.hpp"
 
 namespace ipos::runtime {
 
-class Gateway final : private CanNode,
+class Gateway final : public Control,
+                      private CanNode,
                       private profibus::SlaveUnit,
                       private profibus::SlaveObserver,
                       private EventTarget {
  public:
-  // `config` has a target for each drive, in rising order of the addresses. It joins the PROFIBUS; the SBus with
+  // `settings` have a target for each drive, in rising order of the addresses. It joins the PROFIBUS; the SBus with
   // start(). All references must outlive it.
-  Gateway(EventQueue& queue, uint32_t source, ProfibusBus& profibus, const ControlConfig& config,
-          Journal& journal);
-  ~Gateway() { queue_.cancel_all(*this); }
-  Gateway(const Gateway&) = delete;
-  Gateway& operator=(const Gateway&) = delete;
+  Gateway(EventQueue& queue, uint32_t source, ProfibusBus& profibus, CanLine& sbus, const ControlConfig& config,
+          const GatewayConfig& gateway, ControlSettings settings, Journal& journal);
+  ~Gateway() override { queue_.cancel_all(*this); }
 
-  void start(CanLine& line);
+  AnyControl self() override { return this; }
+  void start() override;
+  std::vector<std::string> lines() const override { return {config().sbus, gateway_.profibus.bus.bus}; }
 
   // Off: it is on neither line. On again it begins as at first; the losses of its drives are counted on.
   void power_off();
@@ -59,7 +61,8 @@ class Gateway final : private CanNode,
   const profibus::SlaveStation& dp() const { return dp_; }
   const GatewayChannel& channel() const { return channel_; }
   uint8_t lost() const { return lost_; }  // a bit for each drive that does not answer, the lowest address first
-  const ControlConfig& config() const { return config_; }
+  const ControlSettings& settings() const { return control_.settings(); }
+  const ProfibusUse& profibus() const { return gateway_.profibus; }
 
  private:
   struct Watched {
@@ -105,10 +108,10 @@ class Gateway final : private CanNode,
 
   EventQueue& queue_;
   uint32_t source_;
-  const ControlConfig& config_;
+  const GatewayConfig& gateway_;
   Journal& journal_;
   Sender sender_;
-  CanLine* line_ = nullptr;
+  CanLine& line_;
   std::unique_ptr<LinePort> port_;
   SbusControl control_;
   SbusMaster master_;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runtime/bus/profibus/frame_text.hpp"
+#include "runtime/plant_file/profibus_paper.hpp"
 #include "runtime/station/profibus_octets.hpp"
 
 namespace ipos::runtime {
@@ -51,6 +52,28 @@ NodeId ProfibusBus::find_node(const std::string& station) const {
   return kNoNode;
 }
 
+std::vector<std::string> ProfibusBus::findings(const PlantFile& file) const {
+  std::vector<std::string> texts = check_line(profibus_paper(file, config()));
+  for (std::string& text : profibus_master_findings(file, config())) texts.push_back(std::move(text));
+  return texts;
+}
+
+std::vector<FaultRule> ProfibusBus::fault_rules() const {
+  std::vector<FaultRule> rules;
+  for (const profibus::LineFaultType& type : profibus::line_fault_types())
+    rules.push_back({type.word, type.text, FaultPlace::Either, true, false});
+  return rules;
+}
+
+FaultConfig ProfibusBus::make_fault(const WantedFault& wanted) const {
+  FaultConfig config;
+  profibus::LineFault& fault = config.profibus.emplace();
+  fault.kind = *profibus::find_line_fault(wanted.word);
+  fault.per_mille = wanted.per_mille;
+  fault.from = wanted.from;
+  return config;
+}
+
 bool ProfibusBus::plant(const FaultConfig& config) {
   profibus::LineFault fault = *config.profibus;
   fault.sender = find_node(config.station);
@@ -82,6 +105,6 @@ void ProfibusBus::on_line_event(const profibus::Line& line, const profibus::Line
   trace_all(event.kind, event.time, event.node);
 }
 
-BUS_CLASS(ProfibusBus)
+IPOS_MAKES_BUS(ProfibusBus)
 
 }  // namespace ipos::runtime

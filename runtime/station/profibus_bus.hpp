@@ -28,9 +28,14 @@ class ProfibusBus final : public Bus, private profibus::LineObserver {
   }
   uint32_t source() const { return place_.source; }  // of its events
 
+  AnyBus self() override { return this; }
   LineLoad load(Time now) const override { return line_.load(now); }
+  std::vector<std::string> node_names() const override { return node_names_of(line_); }
+  std::vector<std::string> findings(const PlantFile& file) const override;
   void attach_hand() override;
   std::optional<std::string> send(const std::string& text) override;
+  std::vector<FaultRule> fault_rules() const override;
+  FaultConfig make_fault(const WantedFault& wanted) const override;
   bool plant(const FaultConfig& config) override;
   bool repair(const FaultConfig& config) override;
 

@@ -23,15 +23,16 @@ constexpr OwnBit kOwnBits[] = {
 }  // namespace
 
 ProfibusControl::ProfibusControl(EventQueue& queue, uint32_t source, ProfibusBus& bus,
-                                 const ControlConfig& config, Journal& journal)
-    : queue_(queue),
+                                 const ControlConfig& config, const ProfibusMasterConfig& settings,
+                                 Journal& journal)
+    : Control(config),
+      queue_(queue),
       source_(source),
-      name_(config.name),
       journal_(journal),
-      config_(*config.profibus),
-      master_(queue, bus.source(), bus.line(), config.name, config_.settings, this),
-      told_(config_.slaves.size()) {
-  for (const profibus::SlavePlan& slave : config_.slaves) {
+      settings_(settings),
+      master_(queue, bus.source(), bus.line(), config.name, settings_.settings, this),
+      told_(settings_.slaves.size()) {
+  for (const profibus::SlavePlan& slave : settings_.slaves) {
     master_.add_slave(slave);
     outputs_.emplace_back(slave.outputs);
   }
@@ -42,14 +43,14 @@ void ProfibusControl::start() {
     for (size_t n = 0; n < things.size(); ++n)
       queue_.schedule(things[n].at, source_, *this, static_cast<uint32_t>(due), n);
   };
-  plan(Due::Output, config_.outputs);
-  plan(Due::Order, config_.orders);
+  plan(Due::Output, settings_.outputs);
+  plan(Due::Order, settings_.orders);
   master_.start();
 }
 
 const profibus::Diagnosis* ProfibusControl::view(uint8_t address) {
-  for (size_t n = 0; n < config_.slaves.size(); ++n)
-    if (config_.slaves[n].address == address) return &master_.slave(n).view();
+  for (size_t n = 0; n < settings_.slaves.size(); ++n)
+    if (settings_.slaves[n].address == address) return &master_.slave(n).view();
   return nullptr;
 }
 
@@ -69,7 +70,7 @@ void ProfibusControl::on_cycle(Time now) {
 void ProfibusControl::tell(Time now, size_t slave, unsigned bits) {
   const unsigned before = std::exchange(told_[slave], bits);
   const auto note = [&](std::string_view text) {
-    journal_.note(now, Weight::Why, name_, fmt::format("slave {} {}", config_.slaves[slave].address, text));
+    journal_.note(now, Weight::Why, name(), fmt::format("slave {} {}", settings_.slaves[slave].address, text));
   };
   for (size_t n = 0; n < std::size(kOwnBits); ++n)
     if ((bits & ~before & 1U << n) != 0) note(kOwnBits[n].text);
@@ -78,13 +79,13 @@ void ProfibusControl::tell(Time now, size_t slave, unsigned bits) {
 
 void ProfibusControl::on_event(Time, uint32_t kind, uint64_t argument) {
   if (static_cast<Due>(kind) == Due::Output) {
-    const ProfibusOutput& output = config_.outputs[argument];
+    const ProfibusOutput& output = settings_.outputs[argument];
     profibus::Octets& octets = outputs_[output.slave];
     std::copy(output.octets.begin(), output.octets.end(),
               octets.begin() + static_cast<std::ptrdiff_t>(output.first));
     return master_.slave(output.slave).set_outputs(octets);
   }
-  const ProfibusOrder& order = config_.orders[argument];
+  const ProfibusOrder& order = settings_.orders[argument];
   switch (order.kind) {
     case ProfibusOrder::Kind::Control: return master_.control(order.command);
     case ProfibusOrder::Kind::Start: return master_.start();

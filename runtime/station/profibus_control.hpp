@@ -8,20 +8,23 @@
 #include "runtime/clock/event_queue.hpp"
 #include "runtime/journal/journal.hpp"
 #include "runtime/plant_file/plant_file.hpp"
+#include "runtime/station/control.hpp"
 #include "runtime/station/profibus_bus.hpp"
 
 namespace ipos::runtime {
 
-class ProfibusControl final : private EventTarget, private profibus::MasterClient {
+class ProfibusControl final : public Control, private EventTarget, private profibus::MasterClient {
  public:
   // Attaches to the line. All references must outlive it.
   ProfibusControl(EventQueue& queue, uint32_t source, ProfibusBus& bus, const ControlConfig& config,
-                  Journal& journal);
-  ~ProfibusControl() { queue_.cancel_all(*this); }
-  ProfibusControl(const ProfibusControl&) = delete;
-  ProfibusControl& operator=(const ProfibusControl&) = delete;
+                  const ProfibusMasterConfig& settings, Journal& journal);
+  ~ProfibusControl() override { queue_.cancel_all(*this); }
 
-  void start();  // plans all of it, and the master begins
+  AnyControl self() override { return this; }
+  void start() override;  // plans all of it, and the master begins
+  std::vector<std::string> lines() const override { return {settings_.bus}; }
+
+  const ProfibusMasterConfig& settings() const { return settings_; }
   profibus::Master& master() { return master_; }
   // The slave as the master sees it, with the bits of the diagnosis that are its own; nullptr: not configured.
   const profibus::Diagnosis* view(uint8_t address);
@@ -34,9 +37,8 @@ class ProfibusControl final : private EventTarget, private profibus::MasterClien
 
   EventQueue& queue_;
   uint32_t source_;
-  const std::string& name_;
   Journal& journal_;
-  const ProfibusMasterConfig& config_;
+  const ProfibusMasterConfig& settings_;
   profibus::Master master_;
   std::vector<profibus::Octets> outputs_;  // of each slave, as they are sent
   std::vector<unsigned> told_;             // of each, which of the master's own bits

@@ -81,6 +81,6 @@ void SerialBus::tell_reception(const std::optional<Reception>& reception) {
         {bytes.begin(), bytes.end()}});
 }
 
-BUS_CLASS(SerialBus)
+IPOS_MAKES_BUS(SerialBus)
 
 }  // namespace ipos::runtime

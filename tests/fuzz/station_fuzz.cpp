@@ -69,7 +69,7 @@ class Run {
       ControlConfig& control = file.controls.emplace_back();
       control.name = "clock";
       control.sbus = "can";
-      control.settings.sync_id = 1;
+      control.kind = ControlSettings{1, kSyncCycle, {}};
     }
     for (uint8_t n = 0; n < 6; ++n) config.inputs.push_back({n, (kind >> 2 & 1) != 0 || n == 0, {}});
     vm::Image image;

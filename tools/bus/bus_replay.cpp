@@ -38,8 +38,8 @@ struct ReplayFlags {
 };
 
 runtime::CanLine& line_of(const runtime::Plant& plant, const ReplayFlags& flags) {
-  for (const auto& line : plant.lines())
-    if (flags.bus.empty() || line->name() == flags.bus) return *line;
+  for (runtime::CanBus* bus : plant.all<runtime::CanBus>())
+    if (flags.bus.empty() || bus->name() == flags.bus) return bus->line();
   throw Failure(kUsage, flags.bus.empty() ? fmt::format("{}: the plant has no CAN bus", flags.plant)
                                           : fmt::format("{}: there is no bus '{}'", flags.plant, flags.bus));
 }

@@ -106,15 +106,18 @@ std::unique_ptr<LogWriter> make_log_writer(const std::string& path, std::ostream
 }
 
 PlantLog::PlantLog(runtime::Plant& plant, LogWriter& writer) : writer_(writer) {
-  plant.add_observer(static_cast<runtime::CanObserver&>(*this));
-  const auto fits = [&](const auto& bus) {
-    return writer.has_serial() || dynamic_cast<const runtime::CanBus*>(bus.get()) != nullptr;
-  };
-  stays_empty_ = !plant.buses().empty() && std::none_of(plant.buses().begin(), plant.buses().end(), fits);
-  if (!writer.has_serial()) return;
-  plant.add_observer(static_cast<runtime::SerialObserver&>(*this));
+  const bool all = writer.has_serial();
+  stays_empty_ = !all && !plant.buses().empty() && plant.all<runtime::CanBus>().empty();
   for (const auto& bus : plant.buses())
-    if (auto* profibus = dynamic_cast<runtime::ProfibusBus*>(bus.get())) profibus->line().add_observer(*this);
+    visit(
+        *bus,
+        [this](runtime::CanBus& can) { can.line().add_observer(static_cast<runtime::CanObserver&>(*this)); },
+        [this, all](runtime::SerialBus& serial) {
+          if (all) serial.line().add_observer(*this);
+        },
+        [this, all](runtime::ProfibusBus& profibus) {
+          if (all) profibus.line().add_observer(*this);
+        });
 }
 
 void PlantLog::finish() {

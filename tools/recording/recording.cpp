@@ -155,7 +155,7 @@ bool Recorder::add_frames(std::string_view name) {
   if (bus == nullptr) return false;
   if (track_of(bus->name())) return true;
   bus->add_observer(*this);
-  recording_.tracks.push_back({bus->name(), bus->kind() == runtime::BusKind::Can});
+  recording_.tracks.push_back({bus->name(), runtime::as<runtime::CanBus>(bus) != nullptr});
   return true;
 }
 

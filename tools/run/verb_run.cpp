@@ -110,11 +110,13 @@ class Logs {
                    flags.log);
     }
     if (!serial_file_.is_open()) return;
-    plant.add_observer(serial_log_.emplace(serial_file_.stream()));
+    serial_log_.emplace(serial_file_.stream());
     profibus_log_.emplace(serial_file_.stream());
     for (const auto& bus : plant.buses())
-      if (auto* profibus = dynamic_cast<runtime::ProfibusBus*>(bus.get()))
-        profibus->line().add_observer(*profibus_log_);
+      visit(
+          *bus, [](runtime::CanBus&) {},  // its frames have logs of their own
+          [this](runtime::SerialBus& serial) { serial.line().add_observer(*serial_log_); },
+          [this](runtime::ProfibusBus& profibus) { profibus.line().add_observer(*profibus_log_); });
   }
   void flush() {
     file_.flush();

@@ -18,13 +18,18 @@ class BusTab final : public Tab, private BusSource {
   // In the order of the reply to `plant`.
   void built(runtime::Plant& plant) override {
     traffic_.clear();
-    for (runtime::CanLine* line : plant.lines())
-      traffic_.follow(*line,
-                      CanNamesNow{[this, line] { return runtime::can_line_names(host_.plant(), line); },
-                                  [this, line] { return runtime::defined_objects(host_.plant(), *line); }});
-    for (runtime::SerialBus* bus : plant.serial_lines())
-      traffic_.follow(bus->line(), [this] { return runtime::serial_names(host_.plant()); });
-    for (runtime::ProfibusBus* bus : profibus_lines(plant)) traffic_.follow(bus->line());
+    for (const auto& bus : plant.buses())
+      visit(
+          *bus,
+          [this](runtime::CanBus& can) {
+            const auto names = [this, &can] { return runtime::can_line_names(host_.plant(), &can.line()); };
+            const auto objects = [this, &can] { return runtime::defined_objects(host_.plant(), can.line()); };
+            traffic_.follow(can.line(), CanNamesNow{names, objects});
+          },
+          [this](runtime::SerialBus& serial) {
+            traffic_.follow(serial.line(), [this] { return runtime::serial_names(host_.plant()); });
+          },
+          [this](runtime::ProfibusBus& profibus) { traffic_.follow(profibus.line()); });
     traffic_.complete();
   }
 
@@ -44,40 +49,41 @@ class BusTab final : public Tab, private BusSource {
     host_.act("bus.send", call.arguments.json());
   }
   // A real drive may be at the port.
-  void guard(const std::string& bus, const Arguments& arguments) {
-    runtime::Plant& plant = host_.plant();
-    std::vector<int> addresses;  // that stations of the plant have there
-    const auto have = [&](const auto& all, auto address) {
-      for (const auto& one : all) addresses.push_back(address(one));
-    };
-    const auto unit_address = [](const auto& unit) { return int{unit.settings.address}; };
-    std::optional<EnablingTelegram> enabling;
-    for (const runtime::CanLine* line : plant.lines())
-      if (line->name() == bus) {
-        const runtime::CanLineNames names = runtime::can_line_names(plant, line);
-        enabling = enabling_on_can(arguments, !names.nodes.empty());
-        if (names.nodes.empty())
-          have(names.movilink.units, unit_address);
-        else
-          have(names.nodes, [](const auto& node) { return int{node.node}; });
-      }
-    for (runtime::SerialBus* line : plant.serial_lines())
-      if (line->line().name() == bus) {
-        enabling = enabling_on_serial(arguments);
-        std::vector<runtime::UnitNames> units = runtime::serial_names(plant).units;
-        std::erase_if(units, [&](const auto& unit) { return !is_at(plant, unit.name, bus); });
-        have(units, unit_address);
-      }
-    for (const runtime::ProfibusBus* line : profibus_lines(plant))
-      if (line->name() == bus) {
-        enabling = enabling_on_profibus(traffic_.octets_of(arguments));
-        for (const runtime::StationConfig& station : plant.file().stations)
-          if (station.profibus.bus.bus == bus) addresses.push_back(station.profibus.address);
-      }
-    if (!enabling) return;
-    refuse_outside(*enabling, [&](uint8_t address) {
-      return std::find(addresses.begin(), addresses.end(), int{address}) != addresses.end();
+  void guard(const std::string& name, const Arguments& arguments) {
+    runtime::Bus* const bus = host_.plant().find_bus(name);
+    if (bus == nullptr) return;
+    const Outside outside = visit(*bus, [&](auto& line) { return outside_of(line, arguments); });
+    if (!outside.enabling) return;
+    refuse_outside(*outside.enabling, [&](uint8_t address) {
+      return std::find(outside.simulated.begin(), outside.simulated.end(), int{address}) != outside.simulated.end();
     });
+  }
+
+  // A telegram that could enable somebody outside, and the addresses that stations of the plant have on the line.
+  struct Outside {
+    std::optional<EnablingTelegram> enabling;
+    std::vector<int> simulated;
+  };
+
+  Outside outside_of(runtime::CanBus& bus, const Arguments& arguments) {
+    const runtime::CanLineNames names = runtime::can_line_names(host_.plant(), &bus.line());
+    Outside outside{enabling_on_can(arguments, !names.nodes.empty()), {}};
+    for (const auto& node : names.nodes) outside.simulated.push_back(node.node);
+    if (names.nodes.empty())
+      for (const auto& unit : names.movilink.units) outside.simulated.push_back(unit.settings.address);
+    return outside;
+  }
+  Outside outside_of(runtime::SerialBus& bus, const Arguments& arguments) {
+    Outside outside{enabling_on_serial(arguments), {}};
+    for (const auto& unit : runtime::serial_names(host_.plant()).units)
+      if (is_at(host_.plant(), unit.name, bus.name())) outside.simulated.push_back(unit.settings.address);
+    return outside;
+  }
+  Outside outside_of(runtime::ProfibusBus& bus, const Arguments& arguments) {
+    Outside outside{enabling_on_profibus(traffic_.octets_of(arguments)), {}};
+    for (const runtime::StationConfig& station : host_.plant().file().stations)
+      if (station.profibus.bus.bus == bus.name()) outside.simulated.push_back(station.profibus.address);
+    return outside;
   }
 
   static bool is_at(const runtime::Plant& plant, const std::string& station, const std::string& serial_bus) {
@@ -92,13 +98,6 @@ class BusTab final : public Tab, private BusSource {
 };
 
 }  // namespace
-
-std::vector<runtime::ProfibusBus*> profibus_lines(const runtime::Plant& plant) {
-  std::vector<runtime::ProfibusBus*> lines;
-  for (const auto& bus : plant.buses())
-    if (auto* line = dynamic_cast<runtime::ProfibusBus*>(bus.get())) lines.push_back(line);
-  return lines;
-}
 
 std::unique_ptr<Tab> make_bus_tab(PlantHost& host) { return std::make_unique<BusTab>(host); }
 

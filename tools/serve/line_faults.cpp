@@ -1,4 +1,4 @@
-// CAN lines have faults of their wiring and of single frames; PROFIBUS lines of single frames, no matter which station sends them.
+// The class of each line knows its faults (runtime/station/bus.hpp).
 #include "tools/serve/line_faults.hpp"
 
 #include <fmt/format.h>
@@ -11,33 +11,9 @@
 namespace ipos::tools::serve {
 namespace {
 
-using runtime::BusKind;
 using runtime::FaultConfig;
 using runtime::FaultPlace;
-using runtime::FaultScope;
-using runtime::FaultType;
-
-// One kind of fault as the page needs to know it.
-struct Rule {
-  std::string_view word;
-  std::string_view text;
-  FaultPlace at;
-  bool of_frames;    // by chance: it takes a rate
-  bool of_one_kind;  // it takes the identifier of the frames
-};
-
-std::vector<Rule> rules_of(BusKind line) {
-  std::vector<Rule> rules;
-  if (line == BusKind::Can)
-    for (const FaultType& type : runtime::kFaultTypes) {
-      const bool of_frames = type.scope == FaultScope::Frame;
-      rules.push_back({type.word, type.text, type.at, of_frames, of_frames});
-    }
-  if (line == BusKind::Profibus)
-    for (const profibus::LineFaultType& type : profibus::line_fault_types())
-      rules.push_back({type.word, type.text, FaultPlace::Either, true, false});
-  return rules;
-}
+using runtime::FaultRule;
 
 const char* place_word(FaultPlace place) {
   switch (place) {
@@ -59,15 +35,15 @@ runtime::Bus& line_named(runtime::Plant& plant, const std::string& name) {
   throw Mistake(fmt::format("there is no line '{}', only {}", name, listed(known)));
 }
 
-Rule rule_named(const runtime::Bus& bus, const std::string& word) {
-  const std::vector<Rule> rules = rules_of(bus.kind());
+FaultRule rule_named(const runtime::Bus& bus, const std::string& word) {
+  const std::vector<FaultRule> rules = bus.fault_rules();
   if (rules.empty())
     throw Mistake(
         fmt::format("{} is {}: such lines have no faults that can be planted, only CAN and PROFIBUS "
                     "lines have",
                     bus.name(), info(bus.kind()).line));
   std::vector<std::string_view> known;
-  for (const Rule& rule : rules) {
+  for (const FaultRule& rule : rules) {
     if (rule.word == word) return rule;
     known.push_back(rule.word);
   }
@@ -76,7 +52,7 @@ Rule rule_named(const runtime::Bus& bus, const std::string& word) {
 }
 
 // What the kind does not take would be left out without a word.
-void check(const Rule& rule, BusKind line, const std::string& station, const Arguments& a) {
+void check(const FaultRule& rule, const runtime::Bus& bus, const std::string& station, const Arguments& a) {
   if (rule.at == FaultPlace::Station && station.empty())
     throw Mistake(fmt::format("'{}' needs a station", rule.word));
   if (rule.at == FaultPlace::Line && !station.empty())
@@ -84,10 +60,10 @@ void check(const Rule& rule, BusKind line, const std::string& station, const Arg
   if (!rule.of_frames && a.has("rate"))
     throw Mistake(fmt::format("'{}' lasts until it is ended: it has no rate", rule.word));
   if (!rule.of_one_kind && a.has("identifier"))
-    throw Mistake(line == BusKind::Can
-                      ? fmt::format("'{}' concerns the wires: it has no identifier", rule.word)
-                      : fmt::format("'{}' strikes all frames of a sender: frames of {} have no identifier",
-                                    rule.word, info(line).line));
+    throw Mistake(rule.of_frames
+                      ? fmt::format("'{}' strikes all frames of a sender: frames of {} have no identifier",
+                                    rule.word, info(bus.kind()).line)
+                      : fmt::format("'{}' concerns the wires: it has no identifier", rule.word));
 }
 
 // What the two kinds of faults have in common.
@@ -105,24 +81,14 @@ std::string_view word_of(const FaultConfig& config) {
                          : runtime::fault_type(config.fault.kind).word;
 }
 
-FaultConfig config_of(const runtime::Bus& bus, const Rule& rule, const Arguments& a, runtime::Time now) {
-  FaultConfig config;
+FaultConfig config_of(const runtime::Bus& bus, const FaultRule& rule, const Arguments& a, runtime::Time now) {
+  runtime::WantedFault wanted{rule.word, now};
+  wanted.per_mille = static_cast<uint32_t>(std::lround(a.number("rate", 0.001, 1, 1) * 1000));
+  if (a.has("identifier"))
+    wanted.id = static_cast<uint32_t>(a.whole("identifier", 0, runtime::kExtendedIdLimit - 1));
+  FaultConfig config = bus.make_fault(wanted);
   config.bus = bus.name();
   config.station = a.text("station", "");
-  const auto per_mille = static_cast<uint32_t>(std::lround(a.number("rate", 0.001, 1, 1) * 1000));
-  if (bus.kind() == BusKind::Profibus) {
-    profibus::LineFault& fault = config.profibus.emplace();
-    fault.kind = *profibus::find_line_fault(rule.word);
-    fault.per_mille = per_mille;
-    fault.from = now;
-    return config;
-  }
-  config.fault.kind = runtime::find_fault_type(rule.word)->kind;
-  config.fault.per_mille = per_mille;
-  config.fault.from = now;
-  if (a.has("identifier"))
-    config.fault.id = static_cast<uint32_t>(a.whole("identifier", 0, runtime::kExtendedIdLimit - 1));
-  if (config.fault.kind == runtime::FaultKind::Delay) config.fault.lag = runtime::kMillisecond;
   return config;
 }
 
@@ -133,15 +99,15 @@ void LineFaults::built(runtime::Plant& plant) {
   planted_ = plant.file().faults;
 }
 
-Json LineFaults::kinds(BusKind line) {
+Json LineFaults::kinds(const runtime::Bus& line) {
   Json words = Json::array();
-  for (const Rule& rule : rules_of(line)) words.push_back(rule.word);
+  for (const FaultRule& rule : line.fault_rules()) words.push_back(rule.word);
   return words;
 }
 
-Json LineFaults::rules(BusKind line) {
+Json LineFaults::rules(const runtime::Bus& line) {
   Json rules = Json::object();
-  for (const Rule& rule : rules_of(line))
+  for (const FaultRule& rule : line.fault_rules())
     rules[std::string(rule.word)] = {{"text", rule.text},
                                      {"station", place_word(rule.at)},
                                      {"rate", rule.of_frames},
@@ -151,8 +117,8 @@ Json LineFaults::rules(BusKind line) {
 
 void LineFaults::carry_out(const Arguments& a) {
   const runtime::Bus& bus = line_named(*plant_, a.text("bus"));
-  const Rule rule = rule_named(bus, a.text("kind"));
-  check(rule, bus.kind(), a.text("station", ""), a);
+  const FaultRule rule = rule_named(bus, a.text("kind"));
+  check(rule, bus, a.text("station", ""), a);
   const FaultConfig config = config_of(bus, rule, a, plant_->now());
   const auto same = [&](const FaultConfig& other) {
     return other.bus == config.bus && other.station == config.station && word_of(other) == word_of(config) &&

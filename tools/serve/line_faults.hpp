@@ -16,8 +16,8 @@ class LineFaults {
   void built(runtime::Plant& plant);
 
   // The kinds in their order, and what each of them takes; both empty for lines without faults.
-  static Json kinds(runtime::BusKind line);
-  static Json rules(runtime::BusKind line);
+  static Json kinds(const runtime::Bus& line);
+  static Json rules(const runtime::Bus& line);
 
   // The command `fault`; a Mistake says why not.
   void carry_out(const Arguments& arguments);

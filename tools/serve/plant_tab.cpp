@@ -63,16 +63,6 @@ std::vector<std::string> lines_of(const runtime::StationConfig& config) {
   return lines;
 }
 
-// A gateway is on two.
-std::vector<std::string> lines_of(const runtime::ControlConfig& config) {
-  std::vector<std::string> lines;
-  if (!config.sbus.empty()) lines.push_back(config.sbus);
-  if (config.profibus) lines.push_back(config.profibus->bus);
-  if (config.gateway && !config.gateway->profibus.bus.bus.empty())
-    lines.push_back(config.gateway->profibus.bus.bus);
-  return lines;
-}
-
 Json process_words(const runtime::DriveWords& words) {
   Json list = Json::array();
   for (const uint16_t word : words) list.push_back(fmt::format("{:04X}", word));
@@ -212,28 +202,22 @@ class PlantTab final : public Tab {
     const runtime::Plant& plant = host_.plant();
     Json stations = Json::array();
     for (const auto& station : plant.stations()) stations.push_back(describe(*station));
-    for (const runtime::PlantControl& control : plant.controls())
-      if (control.gateway) stations.push_back(describe(*control.gateway));
+    for (const runtime::Gateway* gateway : plant.all<runtime::Gateway>()) stations.push_back(describe(*gateway));
     Json buses = Json::array();
-    const auto add = [&](const auto& line, runtime::BusKind kind) {
-      Json on_it = Json::array();
-      for (runtime::NodeId node = 0; node < line.node_count(); ++node)
-        if (line.node_name(node) != kPageNode) on_it.push_back(line.node_name(node));
-      buses.push_back({{"name", line.name()},
-                       {"kind", runtime::info(kind).word},
-                       {"baud", line.baud()},
-                       {"stations", std::move(on_it)},
-                       {"faults", LineFaults::kinds(kind)},
-                       {"fault_rules", LineFaults::rules(kind)}});
-    };
-    for (const auto& line : plant.lines()) add(*line, runtime::BusKind::Can);
-    for (const auto& bus : plant.serial_lines()) add(bus->line(), bus->kind());
-    for (const auto& bus : profibus_lines(plant)) add(bus->line(), bus->kind());
+    for (const auto& bus : plant.buses()) {
+      std::vector<std::string> nodes = bus->node_names();
+      std::erase(nodes, kPageNode);
+      buses.push_back({{"name", bus->name()},
+                       {"kind", runtime::info(bus->kind()).word},
+                       {"baud", bus->baud()},
+                       {"stations", std::move(nodes)},
+                       {"faults", LineFaults::kinds(*bus)},
+                       {"fault_rules", LineFaults::rules(*bus)}});
+    }
     Json controls = Json::array();
-    for (const runtime::PlantControl& control : plant.controls())
-      if (!control.gateway)
-        for (const std::string& bus : lines_of(*control.config))
-          controls.push_back({{"name", control.config->name}, {"bus", bus}});
+    for (const auto& control : plant.controls())
+      if (runtime::as<runtime::Gateway>(control.get()) == nullptr)
+        for (const std::string& bus : control->lines()) controls.push_back({{"name", control->name()}, {"bus", bus}});
     Json wires = Json::array();
     const auto name = [](const runtime::Signal& signal) { return signal.station + "." + signal.name; };
     for (const runtime::Wire& wire : plant.file().wires)
@@ -275,8 +259,7 @@ class PlantTab final : public Tab {
 
   // A card without display and terminals.
   static Json describe(const runtime::Gateway& gateway) {
-    const runtime::ControlConfig& config = gateway.config();
-    return {{"name", config.name},
+    return {{"name", gateway.name()},
             {"unit", "gateway"},
             {"title", "gateway from PROFIBUS to SBus"},
             {"program", ""},
@@ -284,7 +267,7 @@ class PlantTab final : public Tab {
             {"inputs", Json::array()},
             {"outputs", Json::array()},
             {"analog", Json::array()},
-            {"lines", lines_of(config)}};
+            {"lines", gateway.lines()}};
   }
 
   // --- how it stands ---
@@ -385,19 +368,15 @@ class PlantTab final : public Tab {
       if (subscription.is_news("s" + station->config().name, now))
         stations[station->config().name] = std::move(now);
     }
-    for (const runtime::PlantControl& control : plant.controls()) {
-      if (!control.gateway) continue;
-      Json now = state(*control.gateway);
-      if (subscription.is_news("s" + control.config->name, now)) stations[control.config->name] = std::move(now);
+    for (const runtime::Gateway* gateway : plant.all<runtime::Gateway>()) {
+      Json now = state(*gateway);
+      if (subscription.is_news("s" + gateway->name(), now)) stations[gateway->name()] = std::move(now);
     }
     Json buses = Json::object();
-    const auto add = [&](const std::string& name, const runtime::LineLoad& load) {
-      Json now = line_state(name, load);
-      if (subscription.is_news("b" + name, now)) buses[name] = std::move(now);
-    };
-    for (const auto& line : plant.lines()) add(line->name(), line->load(plant.now()));
-    for (const auto& line : plant.serial_lines()) add(line->name(), line->load(plant.now()));
-    for (const auto& line : profibus_lines(plant)) add(line->name(), line->load(plant.now()));
+    for (const auto& bus : plant.buses()) {
+      Json now = line_state(bus->name(), bus->load(plant.now()));
+      if (subscription.is_news("b" + bus->name(), now)) buses[bus->name()] = std::move(now);
+    }
     if (stations.empty() && buses.empty()) return;
     host_.desk().send(client, {{"event", "plant"},
                                {"us", host_.us()},

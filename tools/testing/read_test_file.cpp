@@ -114,7 +114,7 @@ void read_named_plant(PlantReader& reader, const toml::table& root, TestCase& te
   for (const runtime::StationConfig& station : plant.plant.stations)
     reader.station_names.insert(station.name);
   for (const runtime::ControlConfig& control : plant.plant.controls)
-    if (control.gateway) {
+    if (control.as<runtime::GatewayConfig>() != nullptr) {
       reader.station_names.insert(control.name);
       reader.gateway_names.insert(control.name);
     }

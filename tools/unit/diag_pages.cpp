@@ -186,19 +186,17 @@ std::string DiagPages::fieldbus() const {
   text += line("fieldbus card", fmt::format("{} on {}", use.option->model, use.bus.bus));
   text += dp_lines(port->card().station(), plant_.now());
   const uint8_t address = port->card().station().slave().address();
-  for (const runtime::PlantControl& control : plant_.controls())
-    if (const auto* view = control.profibus ? control.profibus->view(address) : nullptr;
-        view != nullptr && control.config->profibus->bus == use.bus.bus)
-      text += line("as " + control.config->name + " sees it", profibus::describe(*view));
+  for (runtime::ProfibusControl* master : plant_.all<runtime::ProfibusControl>())
+    if (const auto* view = master->view(address); view != nullptr && master->settings().bus == use.bus.bus)
+      text += line("as " + master->name() + " sees it", profibus::describe(*view));
   const profibus::LedPattern lights = port->card().leds(plant_.now());
   text += line("RUN", light_text(lights.green));
   return text + line("BUS FAULT", light_text(lights.red));
 }
 
 std::string DiagPages::gateway(runtime::Gateway& gateway, runtime::Time now) {
-  const runtime::ControlConfig& config = gateway.config();
-  std::string text =
-      fmt::format("{}: gateway from {} to {}\n", config.name, config.gateway->profibus.bus.bus, config.sbus);
+  std::string text = fmt::format("{}: gateway from {} to {}\n", gateway.name(), gateway.profibus().bus.bus,
+                                 gateway.config().sbus);
   text += dp_lines(gateway.dp(), now);
   for (const runtime::Gateway::Drive& drive : gateway.drives()) {
     text += fmt::format("SBus address {}\n", drive.address);

@@ -10,7 +10,7 @@ namespace ipos::tools {
 
 void refuse_gateway(const runtime::PlantFile& file, const std::string& path, const std::string& name) {
   for (const runtime::ControlConfig& control : file.controls)
-    if (control.gateway && control.name == name)
+    if (control.as<runtime::GatewayConfig>() != nullptr && control.name == name)
       throw Failure(kUsage,
                     fmt::format("'{}' of {} is a gateway: it has no program, drive or parameters of its "
                                 "own; `ipos diag` shows what it does",

@@ -26,12 +26,11 @@ struct DiagFlags {
 
 int diagnose(const DiagFlags& flags) {
   const auto plant = make_plant(read_plant_input(flags.plant, flags.compile), runtime::FileUse::Look);
-  for (const runtime::PlantControl& control : plant->controls())
-    if (control.gateway && control.config->name == flags.station) {
-      plant->run_until(runtime::parse_duration(flags.at));
-      fmt::print("{}", DiagPages::gateway(*control.gateway, plant->now()));
-      return kGood;
-    }
+  if (runtime::Gateway* gateway = plant->find_gateway(flags.station)) {
+    plant->run_until(runtime::parse_duration(flags.at));
+    fmt::print("{}", DiagPages::gateway(*gateway, plant->now()));
+    return kGood;
+  }
   runtime::Station& station = find_station(*plant, flags.plant, flags.station);
   DiagPages pages(*plant, station, runtime::can_names(*plant));
   plant->run_until(runtime::parse_duration(flags.at));

@@ -53,7 +53,7 @@ TEST(MasterAndSlave, TheMasterFollowsNoGroupTelegrams) {
   for (const bool master : {false, true}) {
     PlantRig rig(bus_text() + unit("master", 1, master ? 2 : 0) +
                  station_text("slave", "P813 = 2\nP814 = 5\nP100 = 8\n"));
-    Stranger other(*rig.get().lines()[0]);
+    Stranger other(rig.get().all<runtime::CanBus>()[0]->line());
     for (int n = 1; n <= 200; ++n) {
       rig.run_until(n * 10 * kMillisecond - 3 * kMillisecond / 10);
       other.port.send(process_frame(kGroupTelegram, {6, 5000, 0}), 0);

@@ -65,7 +65,7 @@ TEST(ProfileSamples, MovlnkReadsSpeedAndProcessData) {
   // A stub slave with exactly the values of the sample: they fill H20 to H27.
   PlantRig stubbed(bus_text() + station_text("master", "P813 = 0\n", "md60a", "A.IPC"),
                    {{"A.IPC", kMovlnkSample}});
-  CanHand stub(*stubbed.get().lines()[0], "stub");
+  CanHand stub(stubbed.get().all<runtime::CanBus>()[0]->line(), "stub");
   stub.answer = [&stub](const Frame& frame) {
     if (frame.id == 523)
       stub.port.send({524, 8, {0x31, 0, 0x20, 0x7E, 0, 0x0F, 0x42, 0x40}, false, false}, 0);
@@ -97,7 +97,7 @@ TEST(ProfileSamples, TheAcyclicFormIsNotMonitored) {
   PlantRig rig(kSerialBus +
                "[[station]]\nname = \"unit\"\nunit = \"md60a\"\nrs485 = \"line1\"\n[station.parameters]\n"
                "P810 = 1\nP812 = 500\n");
-  HandNode hand(rig.get().serial_lines()[0]->line(), "hand");
+  HandNode hand(rig.get().all<runtime::SerialBus>()[0]->line(), "hand");
   rig.run_until(10 * kMillisecond);
   hand.send(acyclic);
   rig.run_until(5 * kSecond);
@@ -119,8 +119,8 @@ TEST(ProfileSamples, ParametersAreCodedAlikeOnBothBuses) {
   const std::string plant = bus_text() + kSerialBus +
                             station_text("unit", "P810 = 1\nP813 = 1\n", "md60a", "", "rs485 = \"line1\"\n");
   PlantRig over_can(plant), over_serial(plant);
-  CanHand can(*over_can.get().lines()[0], "hand");
-  HandNode serial(over_serial.get().serial_lines()[0]->line(), "hand");
+  CanHand can(over_can.get().all<runtime::CanBus>()[0]->line(), "hand");
+  HandNode serial(over_serial.get().all<runtime::SerialBus>()[0]->line(), "hand");
   over_can.run_until(10 * kMillisecond);
   over_serial.run_until(10 * kMillisecond);
   size_t refused = 0;
@@ -187,7 +187,7 @@ TEST(ProfileSamples, TheNextServiceWaitsForTheAcknowledgement) {
           "1\n",
       {{"A.IPC", program}});
   Recorder recorder;
-  rig.get().serial_lines()[0]->line().add_observer(recorder);
+  rig.get().all<runtime::SerialBus>()[0]->line().add_observer(recorder);
   rig.run_until(5 * kSecond);
   EXPECT_GT(rig.variable(0, "n"), 10);
   EXPECT_GT(rig.variable(0, "m"), 10);
@@ -306,7 +306,7 @@ TEST(ProfileSamples, P750SelectsWhatIsSentAndWhere) {
     const std::string plant = master_and_slave(p750, 1000);
     PlantRig rig(p750 > 3 ? in_torque_control(plant) : plant);
     Recorder serial;
-    rig.get().serial_lines()[0]->line().add_observer(serial);
+    rig.get().all<runtime::SerialBus>()[0]->line().add_observer(serial);
     rig.run_until(2 * kSecond);
     // 1, 4, 7 RS-485; 2, 5, 8 SBus; 3, 6, 9 both.
     const bool over_serial = p750 != 0 && p750 % 3 != 2;
@@ -390,7 +390,7 @@ TEST(ProfileSamples, Po3OfTheMasterComesFromItsProgram) {
                    station_text("slave", "P813 = 2\nP814 = 5\nP100 = 8\n", "md60a", "B.IPC"),
                {{"A.IPC", fill}, {"B.IPC", read}});
   Recorder serial;
-  rig.get().serial_lines()[0]->line().add_observer(serial);
+  rig.get().all<runtime::SerialBus>()[0]->line().add_observer(serial);
   rig.run_until(100 * kMillisecond);
   // Control word 1, speed, IPOS PO-data.
   EXPECT_EQ(*process_words(rig.with(8 * 5 + 6).back().frame), (ProcessWords{1, 0, 0x1234}));

@@ -102,7 +102,7 @@ TEST(Sbus2, SecondParameterChannel) {
   for (const bool on : {false, true}) {
     PlantRig rig(bus_text() +
                  station_text("a", std::string("P881 = 1\nP882 = 2\n") + (on ? "P889 = 1\n" : ""), "mdxb"));
-    CanLine& line = *rig.plant->lines()[0];
+    CanLine& line = rig.plant->all<runtime::CanBus>()[0]->line();
     LinePort port(line, line.attach("hand", 500'000, hand));
     const auto ask = [&](const Frame& frame) {
       hand.frames.clear();
@@ -167,7 +167,7 @@ TEST(Sbus2, ParametersOfBothPorts) {
                                 "P881 = 1\nP891 = 7\nP884 = " + std::to_string(code) +
                                     "\nP894 = " + std::to_string(code) + "\n",
                                 "mdxb", "", "sbus2 = \"sbus2\"\n"));
-      Hand first(*rig.get().lines()[0]), second(*rig.get().lines()[1]);
+      Hand first(rig.get().all<runtime::CanBus>()[0]->line()), second(rig.get().all<runtime::CanBus>()[1]->line());
       rig.run_until(10 * kMillisecond);
       first.port.send({8 * 1 + 515, 8, {0x31, 0, 0x21, 0x98}, false, false}, 0);
       second.port.send({8 * 7 + 515, 8, {0x31, 0, 0x21, 0x98}, false, false}, 0);
@@ -183,7 +183,7 @@ TEST(Sbus2, ParametersOfBothPorts) {
                      "mdxb", "", "sbus2 = \"sbus2\"\n"));
     EXPECT_EQ(rig.station(0).sbus(first_port ? 1 : 2), nullptr);
     EXPECT_NE(rig.station(0).canopen(first_port ? 1 : 2), nullptr);
-    Hand open(*rig.get().lines()[first_port ? 1 : 0]);
+    Hand open(rig.get().all<runtime::CanBus>()[first_port ? 1 : 0]->line());
     rig.run_until(10 * kMillisecond);
     open.port.send({8U * (first_port ? 7 : 1) + 515, 8, {0x31, 0, 0x21, 0x98}, false, false}, 0);
     rig.run_until(40 * kMillisecond);

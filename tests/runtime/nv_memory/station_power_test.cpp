@@ -77,8 +77,8 @@ class Rig {
       : plant(state ? nullptr : plant_of(code, unit)),
         alone(state ? std::make_unique<Alone>(std::move(code), unit, std::move(state)) : nullptr),
         queue(plant ? plant->queue() : alone->queue),
-        line(plant ? *plant->lines()[0] : alone->line),
-        serial(plant ? plant->serial_lines()[0]->line() : alone->serial),
+        line(plant ? plant->all<CanBus>()[0]->line() : alone->line),
+        serial(plant ? plant->all<SerialBus>()[0]->line() : alone->serial),
         master(line, "control"),
         journal(plant ? plant->journal() : alone->journal),
         station(plant ? &*plant->stations()[0] : &*alone->station) {

@@ -59,7 +59,7 @@ po = [6, 1500, 3, 204]
 )";
 
 const profibus::Octets& inputs_of(const runtime::Plant& plant) {
-  return plant.controls()[0].profibus->master().slave(0).inputs();
+  return plant.all<runtime::ProfibusControl>()[0]->master().slave(0).inputs();
 }
 int word(const profibus::Octets& octets, size_t number) {  // PI1 is 1
   return octets.at(2 * number - 2) << 8 | octets.at(2 * number - 1);
@@ -151,7 +151,7 @@ map = ["PI4", "PI10"]
   EXPECT_EQ(value(*plant, "po.PO6"), 106);
   EXPECT_EQ(value(*plant, "po.PO7"), 0) << "in no PDO";
   EXPECT_EQ(value(*plant, "po.PO10"), 110);
-  const auto& input = plant->controls()[0].canopen->master().report(0).input;
+  const auto& input = plant->all<runtime::CanopenControl>()[0]->master().report(0).input;
   EXPECT_EQ(input[3], 110);
   EXPECT_EQ(input[9], 104);
 }

@@ -13,13 +13,14 @@ const std::string kControlLine =
 const std::string kSbusControl = kControlLine + "[[control]]\nname = 'c'\nsbus = 'b'\n";
 
 ControlConfig sbus_control(const std::string& text) { return read_plant(kSbusControl + text).controls.at(0); }
+const ControlSettings& settings_of(const ControlConfig& control) { return std::get<ControlSettings>(control.kind); }
 
 TEST(PlantFileControl, OfAnSbus) {
   const ControlConfig none = sbus_control("");
   EXPECT_EQ(std::tuple(none.name, none.sbus, none.place.line), std::tuple("c", "b", 7U));
-  EXPECT_FALSE(none.terminator || none.settings.sync_id || none.canopen || none.gateway || none.profibus);
-  EXPECT_EQ(none.settings.cycle, 5 * kMillisecond);
-  EXPECT_TRUE(none.settings.targets.empty());
+  EXPECT_FALSE(none.terminator || settings_of(none).sync_id);
+  EXPECT_EQ(settings_of(none).cycle, 5 * kMillisecond);
+  EXPECT_TRUE(settings_of(none).targets.empty());
   const ControlConfig full = sbus_control(R"(kind = 'sbus'
 sync = 2047
 cycle = '5001us'
@@ -36,9 +37,9 @@ every = '2ms'
 po = [1, 2, 3]
 )");
   EXPECT_EQ(full.terminator, true);
-  EXPECT_EQ(full.settings.sync_id, 2047);
-  EXPECT_EQ(full.settings.cycle, 5'001 * kMicrosecond);
-  const auto& targets = full.settings.targets;
+  EXPECT_EQ(settings_of(full).sync_id, 2047);
+  EXPECT_EQ(settings_of(full).cycle, 5'001 * kMicrosecond);
+  const auto& targets = settings_of(full).targets;
   ASSERT_EQ(targets.size(), 3U);
   EXPECT_EQ(std::tuple(targets[0].address, targets[0].group, targets[0].every, targets[0].output),
             std::tuple(63, false, 0, ProcessWords{}));
@@ -46,7 +47,7 @@ po = [1, 2, 3]
             std::tuple(50, true, kMillisecond, ProcessWords{0xFFFF, 0x8000, 0}));
   EXPECT_EQ(std::tuple(targets[2].address, targets[2].group, targets[2].every, targets[2].output),
             std::tuple(0, false, 2 * kMillisecond, ProcessWords{1, 2, 3}));
-  EXPECT_EQ(sbus_control("sync = 0\n").settings.sync_id, 0);
+  EXPECT_EQ(settings_of(sbus_control("sync = 0\n")).sync_id, 0);
 }
 
 TEST(PlantFileControl, MistakesOfAnSbus) {
@@ -117,14 +118,14 @@ const std::string kCanopenMaster = kSbusControl + "kind = 'canopen'\n";
 const std::string kCanopenNode = kCanopenMaster + "[[control.target]]\naddress = 5\n";
 
 canopen::NodePlan canopen_node(const std::string& text) {
-  return read_plant(kCanopenNode + text).controls.at(0).canopen.value().nodes.at(0);
+  return std::get<canopen::MasterSettings>(read_plant(kCanopenNode + text).controls.at(0).kind).nodes.at(0);
 }
 
 TEST(PlantFileCanopen, OfTheMaster) {
   const ControlConfig config = read_plant(kCanopenMaster).controls.at(0);
   EXPECT_EQ(config.sbus, "b");
   EXPECT_FALSE(config.terminator);
-  const canopen::MasterSettings none = config.canopen.value();
+  const canopen::MasterSettings none = std::get<canopen::MasterSettings>(config.kind);
   EXPECT_EQ(std::tuple(none.node, none.heartbeat, none.sync_cycle, none.nodes.size()),
             std::tuple(127, 0, 5 * kMillisecond, 0U));
   const ControlConfig other = read_plant(kCanopenMaster + R"(
@@ -139,7 +140,7 @@ address = 1
 )")
                                   .controls.at(0);
   EXPECT_EQ(other.terminator, false);
-  const canopen::MasterSettings full = other.canopen.value();
+  const canopen::MasterSettings full = std::get<canopen::MasterSettings>(other.kind);
   EXPECT_EQ(std::tuple(full.node, full.heartbeat, full.sync_cycle), std::tuple(0, 32'767, 0));
   ASSERT_EQ(full.nodes.size(), 2U);
   EXPECT_EQ(std::pair(full.nodes[0].node, full.nodes[1].node), std::pair(uint8_t{127}, uint8_t{1}));

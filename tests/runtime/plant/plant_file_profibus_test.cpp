@@ -15,7 +15,7 @@ const std::string kDpMaster = kDpPlant + "[[control]]\nname = 'c'\nprofibus = 'p
 const std::string kDpSlave = kDpMaster + "[[control.slave]]\naddress = 8\n";
 
 ProfibusMasterConfig dp_master(const std::string& text) {
-  return read_plant(text).controls.at(0).profibus.value();
+  return std::get<ProfibusMasterConfig>(read_plant(text).controls.at(0).kind);
 }
 profibus::SlavePlan dp_slave(const std::string& more) { return dp_master(kDpSlave + more).slaves.at(0); }
 
@@ -70,19 +70,19 @@ TEST(PlantFileProfibus, AGateway) {
   const ControlConfig config =
       read_plant(kDpGateway + "profibus = 'p'\nprofibus_address = 0\nsbus = 'b'\n").controls.at(0);
   EXPECT_EQ(std::tuple(config.name, config.sbus, config.place.line), std::tuple("g", "b", 10U));
-  EXPECT_FALSE(config.terminator || config.profibus || config.canopen);
-  ASSERT_TRUE(config.gateway);
-  EXPECT_EQ(config.gateway->profibus.option->kind, profibus::OptionKind::Gateway);
-  EXPECT_EQ(std::pair(config.gateway->profibus.bus.bus, config.gateway->profibus.address),
+  EXPECT_FALSE(config.terminator);
+  const auto& gateway = std::get<GatewayConfig>(config.kind);
+  EXPECT_EQ(gateway.profibus.option->kind, profibus::OptionKind::Gateway);
+  EXPECT_EQ(std::pair(gateway.profibus.bus.bus, gateway.profibus.address),
             std::pair(std::string("p"), uint8_t{0}));
-  EXPECT_TRUE(config.gateway->drives.empty());
+  EXPECT_TRUE(gateway.drives.empty());
   const ControlConfig full = read_plant(kDpGateway +
                                         "profibus = 'p'\nprofibus_address = 127\nsbus = 'b'\n"
                                         "terminator = true\ndrives = [63, 0, 5, 4, 3, 2, 1, 62]\n")
                                  .controls.at(0);
-  EXPECT_EQ(full.gateway->profibus.address, 127);
+  EXPECT_EQ(std::get<GatewayConfig>(full.kind).profibus.address, 127);
   EXPECT_EQ(full.terminator, true);
-  EXPECT_EQ(full.gateway->drives, (std::vector<uint8_t>{0, 1, 2, 3, 4, 5, 62, 63}));
+  EXPECT_EQ(std::get<GatewayConfig>(full.kind).drives, (std::vector<uint8_t>{0, 1, 2, 3, 4, 5, 62, 63}));
 }
 
 TEST(PlantFileProfibus, MistakesOfAGateway) {
@@ -186,7 +186,7 @@ TEST(PlantFileProfibus, TheIdentNumberIsThatOfTheStation) {
       << "another line";
   const PlantFile plant =
       read_plant(kDpGateway + "profibus = 'p'\nprofibus_address = 10\nsbus = 'b'\n" + control + "10\n");
-  EXPECT_EQ(plant.controls.at(1).profibus->slaves.at(0).prm.ident, 0x6002);
+  EXPECT_EQ(std::get<ProfibusMasterConfig>(plant.controls.at(1).kind).slaves.at(0).prm.ident, 0x6002);
 }
 
 TEST(PlantFileProfibus, OutputsOfASlave) {

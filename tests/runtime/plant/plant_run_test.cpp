@@ -120,7 +120,7 @@ TEST(PlantRun, TheCableHasTheOrderOfTheFile) {
   const PlainPlant plant(control + "'a'\n" + control + "'b'\nkind = 'canopen'\n" +
                          plain_unit("c", "sbus = 'b'\n") + control + "'d'\n" +
                          plain_unit("e", "sbus = 'b'\n") + control + "'f'\n" + kCanLine);
-  const CanLine& line = *plant->lines().at(0);
+  const CanLine& line = plant->all<CanBus>().at(0)->line();
   std::string order;
   for (NodeId node = 0; node < line.node_count(); ++node) order += line.node_name(node);
   EXPECT_EQ(order, "abcdef");
@@ -188,7 +188,7 @@ TEST(PlantRun, AGatewayServesTheDrivesOfItsLine) {
     const PlainPlant plant(gateway_text(keys, stations));
     EXPECT_TRUE(plant.errors.empty());
     std::vector<int> found;
-    for (const ControlTarget& target : plant->controls().at(0).config->settings.targets) {
+    for (const ControlTarget& target : plant->all<Gateway>().at(0)->settings().targets) {
       found.push_back(target.address);
       EXPECT_EQ(std::tuple(target.group, target.every), std::tuple(false, 10 * kMillisecond));
     }

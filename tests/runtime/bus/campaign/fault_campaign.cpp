@@ -85,8 +85,8 @@ struct Blueprint {
     ControlConfig control;
     control.name = "plc";
     control.sbus = "sbus";
-    control.settings.sync_id = 0;
-    control.settings.targets = {{1, false, {6, 100, 0}, 0}, {2, false, {6, 200, 0}, 7 * kMillisecond}};
+    control.kind = ControlSettings{
+        0, kSyncCycle, {{1, false, {6, 100, 0}, 0}, {2, false, {6, 200, 0}, 7 * kMillisecond}}};
     control.place.line = 3;  // in the middle of the cable
     file.controls.push_back(control);
   }
@@ -195,7 +195,7 @@ class Run final : private CanObserver {
     const std::map<uint32_t, uint64_t> seen = seen_;
     const int32_t good = variable(0, "lGood");
     const int32_t failed = variable(0, "lFailed");
-    const auto& control = *plant_->controls()[0].control;
+    const SbusControl& control = plant_->all<MovilinkControl>()[0]->control();
     const auto first = control.answers(0);
     const auto second = control.answers(1);
     for (Time at = kFaultsEnd + kRecovery; at <= kEnd; at += kMillisecond) {
@@ -209,8 +209,8 @@ class Run final : private CanObserver {
     check_process_data("synchronous", first, control.answers(0), 40);
     check_process_data("asynchronous", second, control.answers(1), 28);
     check_variables(seen);
-    for (NodeId node = 0; node < plant_->lines()[0]->node_count(); ++node)
-      if (!plant_->lines()[0]->is_reachable(0, node) && node != 0) fail("a station is still not on the line");
+    for (NodeId node = 0; node < plant_->all<CanBus>()[0]->line().node_count(); ++node)
+      if (!plant_->all<CanBus>()[0]->line().is_reachable(0, node) && node != 0) fail("a station is still not on the line");
   }
 
   void check_process_data(const char* what, const SbusControl::Answers& before,

@@ -41,7 +41,7 @@ struct PlantOfNodes {
     plant =
         std::make_unique<runtime::Plant>(std::move(file.plant), std::move(programs), std::nullopt, errors);
     for (const auto& error : errors) ADD_FAILURE() << error.text;
-    runtime::CanLine& line = *plant->lines()[0];
+    runtime::CanLine& line = plant->all<runtime::CanBus>()[0]->line();
     master = std::make_unique<Master>(plant->queue(), 1000, std::move(settings));
     port = std::make_unique<runtime::LinePort>(line, line.attach("master", line.baud(), *master));
     master->start(0, *port);
@@ -103,13 +103,13 @@ TEST(CanopenPlant, WhoIsNotGuardedStops) {
   EXPECT_EQ(rig.speed(0), 1'000'000);
   EXPECT_EQ(rig.plant->stations()[0]->fault(), 0);
   // The master falls silent: SBus timeout with the response of P836.
-  rig.plant->lines()[0]->set_connected(rig.port->node(), false);
+  rig.plant->all<runtime::CanBus>()[0]->line().set_connected(rig.port->node(), false);
   rig.run(2 * kSecond);
   EXPECT_EQ(rig.plant->stations()[0]->fault(), 47);
   EXPECT_EQ(rig.speed(0), 0);
   EXPECT_TRUE(rig.says("guarding or heartbeat of the master stayed away on SBus 1"));
   // It is back, and hears of both causes.
-  rig.plant->lines()[0]->set_connected(rig.port->node(), true);
+  rig.plant->all<runtime::CanBus>()[0]->line().set_connected(rig.port->node(), true);
   rig.run(kSecond);
   std::set<unsigned> codes;
   for (const auto& event : rig.master->report(0).emergencies) codes.insert(event.code);

@@ -109,7 +109,7 @@ TEST(DfpPlant, AMasterTellsWhatItFindsOfItsSlaves) {
   EXPECT_TRUE(absent.told("dp: master 1 configures a slave with the address 10, which no station has"));
   EXPECT_TRUE(absent.told("slave 10 does not answer (Station_Non_Existent)"));
   EXPECT_FALSE(absent.told("slave 9 "));
-  runtime::ProfibusControl& plc = *absent.plant->controls()[0].profibus;
+  runtime::ProfibusControl& plc = *absent.plant->all<runtime::ProfibusControl>()[0];
   EXPECT_TRUE(plc.view(10)->has(profibus::diag::kNonExistent));
   EXPECT_FALSE(plc.view(9)->has(profibus::diag::kNonExistent));
   EXPECT_EQ(plc.view(11), nullptr);

@@ -36,13 +36,11 @@ struct DpPlant {
   int32_t value(const char* number, size_t n = 0) { return station(n).drive().value(number); }
   int fault(size_t n = 0) { return station(n).fault(); }
   profibus::Master& master() {
-    for (const runtime::PlantControl& control : plant->controls())
-      if (control.profibus) return control.profibus->master();
+    for (runtime::ProfibusControl* control : plant->all<runtime::ProfibusControl>()) return control->master();
     throw std::logic_error("no DP master");
   }
   runtime::Gateway& gateway() {
-    for (const runtime::PlantControl& control : plant->controls())
-      if (control.gateway) return *control.gateway;
+    for (runtime::Gateway* control : plant->all<runtime::Gateway>()) return *control;
     throw std::logic_error("no gateway");
   }
   uint16_t input(size_t word, size_t from = 0) {  // as the master has it

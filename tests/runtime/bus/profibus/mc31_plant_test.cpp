@@ -49,7 +49,7 @@ struct Mc31Plant {
   int32_t speed() { return inverter().drive().state().speed(); }  // 1/1000 rpm
   uint16_t status() { return inverter().status_word_1(); }
   int32_t value(const char* number) { return inverter().drive().value(number); }
-  profibus::Master& master() { return plant->controls()[0].profibus->master(); }
+  profibus::Master& master() { return plant->all<runtime::ProfibusControl>()[0]->master(); }
   uint16_t input(size_t word, size_t from = 0) {  // as the master has it
     const profibus::Octets& octets = master().slave(0).inputs();
     return static_cast<uint16_t>(octets.at(from + 2 * word) << 8 | octets.at(from + 2 * word + 1));

@@ -130,7 +130,7 @@ TEST(SerialMonitoring, MonitoringBeginsWithTheFirstCyclicRequest) {
 // S13 itself is a key of the plant and cannot be changed in a run.
 TEST(SerialMonitoring, ARateThatChanges) {
   PlantRun run(bus("x", "baud = 57600\n") + station("a", "mdxb", "rs485_xt = \"x\"\n", "P810 = 1\n"));
-  Rs485Line& line = run.plant->serial_lines()[0]->line();
+  Rs485Line& line = run.plant->all<runtime::SerialBus>()[0]->line();
   HandNode slow(line, "slow", 9'600);
   EXPECT_EQ(line.node_baud(0), 57'600U) << "factory setting";
   EXPECT_EQ(run.ask(0, "02 01 81 00 00").size(), 1U);

@@ -88,7 +88,7 @@ TEST(SerialPlan, TheNameOfALineIsOneWord) {
     EXPECT_FALSE(errors_of(bus(std::string("a") + hidden + "b")).empty()) << hidden;
   accepts(bus("a_b!\u00E4~") + station("a", "md60a", ""));
   const PlantRun run(station("left axis", "md60a", "keypad = true\n"));
-  EXPECT_EQ(run.plant->serial_lines().at(0)->line().name(), "left_axis.keypad");
+  EXPECT_EQ(run.plant->all<runtime::SerialBus>().at(0)->line().name(), "left_axis.keypad");
 }
 
 TEST(SerialPlan, Uss21aAndKeypad) {
@@ -357,7 +357,7 @@ TEST(SerialPlant, SlaveFollowsItsGroupOnly) {
                  station("m", "mdxb", "rs485 = \"l\"\n", "P810 = 1\nP811 = 101\nP750 = 1\n"));
     EXPECT_EQ(run.told("different group addresses P811"), !follows);
     run.run(kSecond);
-    run.plant->serial_lines()[0]->line().set_connected(1, false);
+    run.plant->all<runtime::SerialBus>()[0]->line().set_connected(1, false);
     run.run(kSecond);
     EXPECT_EQ(run.station(0).fault(), follows ? 43 : 0) << "only who follows misses the master";
   }
@@ -395,7 +395,7 @@ TEST(SerialPlant, ConnectionCheckAfter500Milliseconds) {
 
 TEST(SerialPlant, RequestsOfTwoMasters) {
   PlantRun run(bus("l") + station("a", "md60a", "rs485 = \"l\"\n", "P810 = 1\n"));
-  HandNode second(run.plant->serial_lines()[0]->line(), "second");
+  HandNode second(run.plant->all<runtime::SerialBus>()[0]->line(), "second");
   run.ask(0, "02 01 81 00 00");
   second.send(telegram("02 01 81 00 00"));
   run.run(100 * kMillisecond);

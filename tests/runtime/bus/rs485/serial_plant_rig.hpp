@@ -31,7 +31,7 @@ struct PlantRun {
     plant = std::make_unique<Plant>(std::move(file.plant), std::vector<std::optional<vm::Image>>(count),
                                     std::nullopt, errors);
     EXPECT_TRUE(errors.empty()) << errors[0].text;
-    for (const auto& serial : plant->serial_lines()) {
+    for (const auto& serial : plant->all<runtime::SerialBus>()) {
       recorders.push_back(std::make_unique<Recorder>());
       serial->line().add_observer(*recorders.back());
       hands.push_back(std::make_unique<HandNode>(serial->line(), "hand"));
