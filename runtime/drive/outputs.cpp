@@ -57,9 +57,10 @@ void Outputs::find_ranges(const Settings& s, const OutputInputs& in) {
            around(window_, s.window_center - half, s.window_center + half, speed));
   const int64_t deviation = magnitude(int64_t{in.speed} - in.setpoint);
   deviations_ = around(compare_, 0, s.compare_hysteresis, deviation);
-  currents_ = staying(current_, int64_t{s.current_reference} + 1,
-                      falls_at(s.current_reference, s.current_hysteresis));
-  limits_ = staying(limit_, in.current_limit, limit_falls_at(in.current_limit, s.limit_hysteresis));
+  const Range currents = staying(current_, int64_t{s.current_reference} + 1,
+                                 falls_at(s.current_reference, s.current_hysteresis));
+  const Range limits = staying(limit_, in.current_limit, limit_falls_at(in.current_limit, s.limit_hysteresis));
+  currents_ = {both(currents, limits), both(currents, at_least(limits, in.current_limit))};
   current_limit_ = in.current_limit;
   ticks_left_ =
       std::min({speed_.bound(s.speed_delay), window_.bound(s.window_delay), compare_.bound(s.compare_delay),
@@ -69,6 +70,12 @@ void Outputs::find_ranges(const Settings& s, const OutputInputs& in) {
 
 Outputs::Range Outputs::staying(const ReferenceSignal& signal, int64_t above_from, int64_t below_to) {
   return signal.raw() ? Range{below_to + 1, INT64_MAX} : Range{INT64_MIN, above_from - 1};
+}
+
+// Of values of which the greater one of it and `floor` is in the range (OutputInputs::limited_current()).
+Outputs::Range Outputs::at_least(const Range& range, int64_t floor) {
+  if (floor > range.high) return {};
+  return {floor >= range.low ? INT64_MIN : range.low, range.high};
 }
 
 Outputs::Range Outputs::around(const ReferenceSignal& signal, int64_t from, int64_t to, int64_t value) {

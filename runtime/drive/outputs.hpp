@@ -115,7 +115,7 @@ class Outputs {
     const bool same = in.flags == basis_.flags && in.ipos_outputs == basis_.ipos_outputs &&
                       in.current_limit == current_limit_ && speeds_.have(magnitude(in.speed)) &&
                       deviations_.have(magnitude(int64_t{in.speed} - in.setpoint)) &&
-                      currents_.have(magnitude(in.current)) && limits_.have(in.limited_current());
+                      currents_[in.limited ? 1 : 0].have(magnitude(in.current));
     if (!same) return false;
     if (ticks_left_ == 0) return false;
     advance(1);
@@ -159,11 +159,13 @@ class Outputs {
   }
   // With the limits of tick(), and within or outside of two limits.
   static Range staying(const ReferenceSignal& signal, int64_t above_from, int64_t below_to);
+  static Range at_least(const Range& range, int64_t floor);
   static Range around(const ReferenceSignal& signal, int64_t from, int64_t to, int64_t value);
 
   ReferenceSignal speed_, window_, compare_, current_, limit_;
   // Range of values and number of ms for which go_on() is valid since the last tick(), and ms used.
-  Range speeds_, deviations_, currents_, limits_;
+  Range speeds_, deviations_;
+  std::array<Range, 2> currents_;  // the second one where the motor gives all that the limit lets it
   int32_t current_limit_ = 0;
   Ticks ticks_left_ = kNoBound;
   Ticks ticks_ = 0;

@@ -25,9 +25,4 @@ Ticks Timers::Counts::bound() const {
   return std::min(stands ? kNoBound : before_end(timer_0), watched ? before_end(watchdog) : kNoBound);
 }
 
-bool Timers::rest(std::span<const int32_t> h) const {
-  const Counts now = counts(h);
-  return steady_ticks(now, now) == kNoBound;
-}
-
 }  // namespace ipos::runtime

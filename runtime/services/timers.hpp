@@ -63,7 +63,10 @@ class Timers {
     return expired;
   }
   // It would change nothing and report nothing.
-  bool rest(std::span<const int32_t> h) const;
+  bool rest(std::span<const int32_t> h) const {
+    const bool counts = h[kTimer0] > 0 || h[kTimer1] > 0 || h[kTimer2] > 0 || watchdog_;
+    return !counts && (h[kTimer0] < 0 || h[kReload] <= 0);
+  }
 
   // WDON: from now on WdogTimer counts, and its end is fault F41. The program writes it again before that.
   void start_watchdog(std::span<int32_t> h, int32_t ms) {

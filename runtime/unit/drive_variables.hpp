@@ -12,18 +12,22 @@ namespace ipos::runtime {
 
 // Bits 1 and 2 of H473 have the numbers of /FAULT and READY among the functions of P62x. No manual read prints them; 19
 // and 20, which are printed, have those of that list, too, and masters of others read them so (ours).
-inline void show_drive(const Drive& drive, std::span<int32_t> h) {
+constexpr uint32_t kNoFaultBit = 1U << 1, kReadyBit = 1U << 2;
+
+// They follow what the drive decides (Drive::changes()).
+inline uint32_t drive_bits(const Drive& drive) {
+  return (drive.error() ? 0 : kNoFaultBit) | (drive.ready() ? kReadyBit : 0);
+}
+
+inline void show_drive(const Drive& drive, uint32_t bits, std::span<int32_t> h) {
   using stdlib::system_variable;
-  constexpr uint32_t kNoFault = 1U << 1, kReady = 1U << 2;
   int32_t& status = h[system_variable("StatusWord")];
-  const uint32_t bits = (drive.error() ? 0 : kNoFault) | (drive.ready() ? kReady : 0);
-  status = static_cast<int32_t>((static_cast<uint32_t>(status) & ~(kNoFault | kReady)) | bits);
+  status = static_cast<int32_t>((static_cast<uint32_t>(status) & ~(kNoFaultBit | kReadyBit)) | bits);
   h[system_variable("OutputLevel")] = drive.outputs();
   h[system_variable("InputLevel")] = drive.inputs();
   h[system_variable("ActPos_Mot")] = drive.position();
 }
 
-// Bits 0..7 of OptOutpIPOS are DO10..DO17; both words together are in the order of OutputLevel.
 inline void take_program_orders(std::span<const int32_t> h, Drive& drive) {
   using stdlib::system_variable;
   drive.set_ipos_control_word(static_cast<uint32_t>(h[system_variable("ControlWord")]));

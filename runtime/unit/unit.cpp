@@ -26,13 +26,30 @@ Unit::Unit(const EventQueue& clock, UnitConfig config, std::optional<vm::Image> 
       movilink_(config_.type, drive_, drive_, journal, config_.name),
       image_(std::move(program)) {}
 
+inline void Unit::show_positioning(Time now) {
+  positioning_->show(now, variables());
+  if (!machine_) return;
+  if (positioning_->positioner().touch_probes().probe(0).fresh) machine_->raise_event(vm::Event::TouchProbe);
+  positioning_commands_->tick(*machine_);
+}
+
+inline void Unit::show_variables(Time now) {
+  const std::span<int32_t> h = variables();
+  mirrored_->show(h);
+  show_drive(drive(), drive_bits_, h);
+  if (positioning_) show_positioning(now);
+}
+
 void Unit::begin(Time now) {
   take_inputs();
   drive().tick(order_position(now));
   const uint32_t changes = drive().changes();
   const bool drive_changed = changes != drive_changes_;
   drive_changes_ = changes;
-  if (drive_changed) report_drive(now);
+  if (drive_changed) {
+    report_drive(now);
+    drive_bits_ = drive_bits(drive());
+  }
   if (!has_variables()) return;
   if (machine_ && drive_changed) {
     raise_events();
@@ -96,23 +113,10 @@ void Unit::restart_after_reset(Time now) {
   resets_seen_ = resets;
 }
 
-void Unit::show_variables(Time now) {
-  const std::span<int32_t> h = variables();
-  mirrored_->show(h);
-  show_drive(drive(), h);
-  if (positioning_) show_positioning(now);
-}
-
-void Unit::show_positioning(Time now) {
-  positioning_->show(now, variables());
-  if (!machine_) return;
-  if (positioning_->positioner().touch_probes().probe(0).fresh) machine_->raise_event(vm::Event::TouchProbe);
-  positioning_commands_->tick(*machine_);
-}
-
 void Unit::count_timers() {
-  if (machine_ && machine_->fault().number != 0) return;
-  const Timers::Expired expired = timers_.tick(variables());
+  const std::span<int32_t> h = variables();
+  if (timers_.rest(h) || (machine_ && machine_->fault().number != 0)) return;
+  const Timers::Expired expired = timers_.tick(h);
   if (!machine_) return;
   if (expired.timer_0) machine_->raise_event(vm::Event::Timer0);
   if (expired.watchdog) machine_->raise_fault(kFaultWatchdog, "the watchdog has run out, H490 is 0");
@@ -141,7 +145,7 @@ void Unit::advance(Ticks ticks) {
   if (positioning_)
     positioning_->advance(h, drive_.syncs(), before);
   else
-    show_drive(drive(), h);
+    show_drive(drive(), drive_bits_, h);
 }
 
 std::string Unit::source_place(uint32_t address) const {

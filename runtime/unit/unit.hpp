@@ -175,6 +175,7 @@ class Unit final {
 
   bool was_off_ = false;
   uint32_t drive_changes_ = 0;  // as last told
+  uint32_t drive_bits_ = 0;     // of H473, that follow from them
   uint32_t resets_seen_ = 0;    // of the drive's faults
   uint8_t error_seen_ = 0;      // error of the drive in the last millisecond
   // What was last told of the drive.

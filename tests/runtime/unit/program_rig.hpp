@@ -57,7 +57,7 @@ class ProgramRig {
     clock.run_until(clock.now() + runtime::kMillisecond);
     drive.tick();
     mirrored.show(machine.variables());
-    runtime::show_drive(drive, machine.variables());
+    runtime::show_drive(drive, runtime::drive_bits(drive), machine.variables());
     const runtime::Timers::Expired expired = timers.tick(machine.variables());
     pid.tick(machine.variables());
     vm::run_tick(machine, vm::Rates{{n, n, n}});
