@@ -21,6 +21,7 @@ import tty
 import unittest
 
 IPOS = sys.argv.pop(1)
+PATIENCE = 100  # s for anything that must come; a loaded machine needs more than an idle one
 STATE = tempfile.TemporaryDirectory()  # tokens of these tests are no business of the user's
 os.environ["XDG_STATE_HOME"] = STATE.name
 PLANT = """
@@ -40,7 +41,7 @@ class Client:
     """One WebSocket."""
 
     def __init__(self, port, path, headers=(), host=None, origin=None):
-        self.socket = socket.create_connection(("127.0.0.1", port), timeout=20)
+        self.socket = socket.create_connection(("127.0.0.1", port), timeout=PATIENCE)
         key = base64.b64encode(os.urandom(16)).decode()
         lines = [f"GET {path} HTTP/1.1", f"Host: {host or f'127.0.0.1:{port}'}", "Upgrade: websocket",
                  "Connection: Upgrade", f"Sec-WebSocket-Key: {key}", "Sec-WebSocket-Version: 13", *headers]
@@ -110,7 +111,7 @@ class Client:
             self.events.append(answer)
 
     def wait_for(self, event, wanted=lambda _: True):
-        end = time.monotonic() + 30
+        end = time.monotonic() + PATIENCE
         while time.monotonic() < end:
             opcode, data = self.receive()
             answer = json.loads(data) if opcode == 1 else {}
@@ -149,7 +150,7 @@ class Serving(unittest.TestCase):
         return client
 
     def http(self, request):
-        with socket.create_connection(("127.0.0.1", self.port), timeout=20) as connection:
+        with socket.create_connection(("127.0.0.1", self.port), timeout=PATIENCE) as connection:
             try:
                 connection.sendall(request)
             except ConnectionError:
@@ -202,7 +203,7 @@ class Serving(unittest.TestCase):
                 self.assertEqual(self.connect(origin=origin).status, 403, origin)
 
     def test_silent_connections_keep_nobody_out(self):
-        silent = [socket.create_connection(("127.0.0.1", self.port), timeout=20) for _ in range(200)]
+        silent = [socket.create_connection(("127.0.0.1", self.port), timeout=PATIENCE) for _ in range(200)]
         for connection in silent:
             self.addCleanup(connection.close)
         begin = time.monotonic()
@@ -377,7 +378,7 @@ class Serving(unittest.TestCase):
         client = self.connect()
         client.ask(do="run")
         self.ipos.send_signal(signal.SIGINT)
-        self.assertEqual(self.ipos.wait(timeout=20), 0)
+        self.assertEqual(self.ipos.wait(timeout=PATIENCE), 0)
         with self.assertRaises((EOFError, ConnectionError)):
             while client.receive()[0] != 8:
                 pass
