@@ -38,7 +38,7 @@ Compilation compile(const std::string& name, const std::string& path, std::strin
   if (out.unit == nullptr)
     out.unit = stdlib::find_unit(std::string_view(includes_b_headers(*out.sources) ? "mdxb" : "md60a"));
   if (out.diagnostics.has_errors()) return out;
-  auto program = check(tree, *out.unit, *out.sources, out.diagnostics);
+  auto program = check(tree, *out.unit, *out.sources, out.diagnostics, options.is_unit_value);
   if (!program) return out;
   auto generated = generate(*program, *out.unit, *out.sources, options.atomic, out.diagnostics);
   if (!generated) return out;

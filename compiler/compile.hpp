@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/diag/diag.hpp"
@@ -22,6 +23,8 @@ struct CompileOptions {
   std::function<std::vector<std::string>(const std::string& folder)> list_files;  // for hints; may be empty
   WarningOptions warnings;
   bool atomic = false;  // variables that others see get their values once
+  // Whether a unit has a value of this name in traces, tests and tools; a variable that hides it gets a note. May be empty.
+  std::function<bool(const stdlib::UnitType& unit, std::string_view name)> is_unit_value;
   // Null: mdxb for a source that includes constb.h or iob.h, else md60a.
   const stdlib::UnitType* unit = nullptr;
 };

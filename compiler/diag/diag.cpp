@@ -86,7 +86,7 @@ Severity WarningOptions::severity(const DiagInfo& row) const {
 Diagnostic& Diagnostics::report(Diag diag, Span span, std::vector<std::string> args) {
   const DiagInfo& row = info(diag);
   const Severity severity = options_.severity(row);
-  if (severity == Severity::Note) {
+  if (severity == Severity::Note && row.severity != Severity::Note) {  // it is off
     ignored_ = {};
     return ignored_;
   }

@@ -21,10 +21,10 @@ enum class Diag : uint16_t {
 
 struct DiagInfo {
   Diag diag;
-  std::string_view code;  // "E0123" or "W0012"
+  std::string_view code;  // "E0123", "W0012", or of a note, which no option makes an error, "N0219"
   std::string_view name;  // C++ name
   Severity severity;
-  std::string_view flag;    // of -W...: "unused-variable"; empty for errors
+  std::string_view flag;    // of -W...: "unused-variable"; empty for errors and notes
   std::string_view format;  // of the message; each {} takes the next argument
 };
 std::span<const DiagInfo> diagnostic_table();

@@ -51,8 +51,9 @@ void report_no_main(Context& context) {
 
 }  // namespace
 
-std::optional<checked::Program> check(const ast::Program& program, const stdlib::UnitType& unit,
-                                      const SourceMap& sources, Diagnostics& diagnostics) {
+std::optional<checked::Program> check(
+    const ast::Program& program, const stdlib::UnitType& unit, const SourceMap& sources, Diagnostics& diagnostics,
+    const std::function<bool(const stdlib::UnitType& unit, std::string_view name)>& is_unit_value) {
   if (unit.tasks == 0) {
     diagnostics.report(Diag::NoProgram, {}, {std::string(unit.name)});
     return std::nullopt;
@@ -70,6 +71,9 @@ std::optional<checked::Program> check(const ast::Program& program, const stdlib:
   context.program.main = (*function)->index;
   context.program.raw_names = context.raw_names;
   describe_variables(context);
+  if (is_unit_value)
+    for (const Variable& variable : context.scope.variables())
+      if (is_unit_value(unit, variable.name)) diagnostics.report(Diag::HidesUnitValue, variable.span, {variable.name, variable.name});
   check_variable_use(program, context);
   check_writers(context);
   check_calls(context.program, unit, sources, diagnostics);

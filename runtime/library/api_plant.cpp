@@ -68,7 +68,7 @@ ipos_plant_status order(ipos_plant* plant, uint32_t station, Act act, int64_t va
       return plant->fail(IPOS_PLANT_NO_STATION, fmt::format("there is no station number {}", station));
     Deed deed;
     deed.act = act;
-    deed.place.station = station;
+    deed.signal.station = station;
     deed.value = value;
     if (auto refused = session.perform(std::move(deed)))
       return plant->fail(IPOS_PLANT_REFUSED, std::move(*refused));

@@ -14,14 +14,14 @@ ipos_plant_status no_signal(ipos_plant* plant, uint32_t signal) {
 }
 
 ipos_plant_status act(ipos_plant* plant, Session& session, const Session::Signal& signal, Act what,
-                      const Place& place, int64_t value) {
-  if (!is_writable(place))
+                      uint32_t number, int64_t value) {
+  if (!signal.is_writable())
     return plant->fail(IPOS_PLANT_READ_ONLY, fmt::format("{} can only be read", signal.name));
-  if (auto wrong = check_value(session.plant(), place, value))
+  if (auto wrong = signal.shown.check(value))
     return plant->fail(IPOS_PLANT_BAD_VALUE, fmt::format("{}: {}", signal.name, *wrong));
   Deed deed;
   deed.act = what;
-  deed.place = place;
+  deed.signal = {signal.id.station, signal.id.kind, number};
   deed.value = value;
   if (auto refused = session.perform(std::move(deed)))
     return plant->fail(IPOS_PLANT_REFUSED, std::move(*refused));
@@ -32,7 +32,7 @@ ipos_plant_status act(ipos_plant* plant, uint32_t number, Act what, int64_t valu
   return enter(plant, Allowed::NotInCallbacks, [=](Session& session) {
     const Session::Signal* signal = session.signal(number);
     if (signal == nullptr) return no_signal(plant, number);
-    return act(plant, session, *signal, what, signal->place, value);
+    return act(plant, session, *signal, what, signal->id.number, value);
   });
 }
 
@@ -41,11 +41,11 @@ ipos_plant_status act(ipos_plant* plant, uint32_t number, Act what, const char* 
     if (text == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
     const Session::Signal* signal = session.signal(number);
     if (signal == nullptr) return no_signal(plant, number);
-    if (!is_writable(signal->place))
+    if (!signal->is_writable())
       return plant->fail(IPOS_PLANT_READ_ONLY, fmt::format("{} can only be read", signal->name));
-    auto value = parse_place_text(session.plant(), signal->place, text);
+    auto value = signal->shown.parse(text);
     if (!value) return plant->fail(IPOS_PLANT_BAD_VALUE, std::move(value).error());
-    return act(plant, session, *signal, what, value->place, value->value);
+    return act(plant, session, *signal, what, value->number, value->sample);
   });
 }
 
@@ -63,9 +63,9 @@ ipos_plant_status ipos_plant_find(ipos_plant* plant, uint32_t station, ipos_plan
     if (name == nullptr || signal == nullptr || !is_kind(kind))
       return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
     if (station >= station_count(session.plant())) return no_station(plant, station);
-    auto place = find_place(session.plant(), station, static_cast<Kind>(kind), name);
-    if (!place) return plant->fail(IPOS_PLANT_NO_SIGNAL, std::move(place).error());
-    *signal = session.add_signal(*place, name);
+    auto id = find_id(session.plant(), station, static_cast<Kind>(kind), name);
+    if (!id) return plant->fail(IPOS_PLANT_NO_SIGNAL, std::move(id).error());
+    *signal = session.add_signal(*id, name);
     return ipos_plant_status{IPOS_PLANT_OK};
   });
 }
@@ -76,15 +76,16 @@ ipos_plant_status ipos_plant_signal_info_of(ipos_plant* plant, uint32_t number,
     if (info == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
     const Session::Signal* signal = session.signal(number);
     if (signal == nullptr) return no_signal(plant, number);
-    const PlaceInfo place = session.info(*signal);
-    *info = {plant->keep(place.name),
-             plant->keep(place.unit),
-             place.factor,
-             place.decimals,
-             static_cast<ipos_plant_kind>(signal->place.kind),
-             signal->place.station,
-             signal->place.number,
-             place.writable ? uint32_t{IPOS_PLANT_WRITABLE} : 0U};
+    const ipos::signals::Signal now = Session::now(*signal);
+    const bool writable = signal->is_writable() && now.is_writable();
+    *info = {plant->keep(signal->name),
+             plant->keep(now.unit),
+             now.factor,
+             now.decimals,
+             static_cast<ipos_plant_kind>(signal->id.kind),
+             signal->id.station,
+             signal->id.number,
+             writable ? uint32_t{IPOS_PLANT_WRITABLE} : 0U};
     return ipos_plant_status{IPOS_PLANT_OK};
   });
 }
@@ -99,7 +100,7 @@ ipos_plant_status ipos_plant_name_at(ipos_plant* plant, uint32_t station, ipos_p
     const std::string asked = fmt::format("{} {} {}{}", station, kind, whole ? "of " : "", whole.value_or(""));
     if (plant->listed_for != asked) {
       plant->listed_for.clear();
-      plant->listed = place_names(session.plant(), station, static_cast<Kind>(kind), whole);
+      plant->listed = signal_names(session.plant(), station, static_cast<Kind>(kind), whole);
       plant->listed_for = asked;
     }
     if (number >= plant->listed.size()) return ipos_plant_status{IPOS_PLANT_NOTHING};
@@ -119,7 +120,7 @@ ipos_plant_status ipos_plant_read_many(ipos_plant* plant, const uint32_t* signal
       return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
     for (size_t n = 0; n < count; ++n)
       if (session.signal(signals[n]) == nullptr) return no_signal(plant, signals[n]);
-    for (size_t n = 0; n < count; ++n) values[n] = session.read(*session.signal(signals[n]));
+    for (size_t n = 0; n < count; ++n) values[n] = Session::read(*session.signal(signals[n]));
     return ipos_plant_status{IPOS_PLANT_OK};
   });
 }
@@ -129,7 +130,8 @@ ipos_plant_status ipos_plant_read_text(ipos_plant* plant, uint32_t number, const
     if (text == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
     const Session::Signal* signal = session.signal(number);
     if (signal == nullptr) return no_signal(plant, number);
-    *text = plant->hand_out(session.text(*signal));
+    const ipos::signals::Signal now = Session::now(*signal);
+    *text = plant->hand_out(now.words(now.read()));
     return ipos_plant_status{IPOS_PLANT_OK};
   });
 }

@@ -12,7 +12,7 @@
 
 #include "runtime/bus/movilink/serial_receiver.hpp"
 #include "runtime/bus/profibus/line.hpp"
-#include "runtime/plant/hands.hpp"
+#include "runtime/plant/actions.hpp"
 
 namespace ipos::library {
 

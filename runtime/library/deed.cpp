@@ -53,9 +53,9 @@ Deed read_deed(Reader& in) {
   Deed deed;
   deed.at = static_cast<runtime::Time>(in.number(8));
   deed.act = static_cast<Act>(in.number(1));
-  deed.place.kind = static_cast<Kind>(in.number(1));
-  deed.place.station = static_cast<uint32_t>(in.number(4));
-  deed.place.number = static_cast<uint32_t>(in.number(4));
+  deed.signal.kind = static_cast<Kind>(in.number(1));
+  deed.signal.station = static_cast<uint32_t>(in.number(4));
+  deed.signal.number = static_cast<uint32_t>(in.number(4));
   deed.number = static_cast<uint32_t>(in.number(4));
   deed.value = static_cast<int64_t>(in.number(8));
   const auto bytes = in.take(static_cast<size_t>(in.number(4)));
@@ -76,9 +76,9 @@ std::vector<uint8_t> to_bytes(uint64_t identity, runtime::Time time, uint64_t di
   for (const Deed& deed : deeds) {
     out.number(static_cast<uint64_t>(deed.at), 8);
     out.number(static_cast<uint64_t>(deed.act), 1);
-    out.number(static_cast<uint64_t>(deed.place.kind), 1);
-    out.number(deed.place.station, 4);
-    out.number(deed.place.number, 4);
+    out.number(static_cast<uint64_t>(deed.signal.kind), 1);
+    out.number(deed.signal.station, 4);
+    out.number(deed.signal.number, 4);
     out.number(deed.number, 4);
     out.number(static_cast<uint64_t>(deed.value), 8);
     out.number(deed.bytes.size(), 4);
@@ -105,7 +105,7 @@ tl::expected<SavedState, std::string> from_bytes(std::span<const uint8_t> bytes)
   for (uint64_t n = 0; n < count && !in.failed(); ++n) {
     saved.deeds.push_back(read_deed(in));
     const Deed& deed = saved.deeds.back();
-    if (deed.at < last || deed.at > saved.time || deed.act > kLastAct || deed.place.kind > Kind::Word)
+    if (deed.at < last || deed.at > saved.time || deed.act > kLastAct || deed.signal.kind > Kind::Word)
       return tl::unexpected(std::string("the saved state is damaged: what was done makes no sense"));
     last = deed.at;
   }

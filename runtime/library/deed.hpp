@@ -8,19 +8,19 @@
 
 #include <tl/expected.hpp>
 
-#include "runtime/library/place.hpp"
+#include "runtime/library/signal_id.hpp"
 
 namespace ipos::library {
 
 enum class Act : uint8_t {
-  Write,       // place, value
-  Force,       // place, value
-  Release,     // place
-  PowerOff,    // place.station
-  PowerOn,     // place.station
-  Program,     // place.station, value: ProgramOrder
-  DriveFault,  // place.station, value
-  ResetFault,  // place.station
+  Write,       // signal, value
+  Force,       // signal, value
+  Release,     // signal
+  PowerOff,    // signal.station
+  PowerOn,     // signal.station
+  Program,     // signal.station, value: ProgramOrder
+  DriveFault,  // signal.station, value
+  ResetFault,  // signal.station
   Join,        // number: bus
   Send,        // number: bus; value: tag; frame
   SerialSend,  // number: bus; bytes
@@ -31,7 +31,7 @@ inline constexpr Act kLastAct = Act::LineFault;
 struct Deed {
   runtime::Time at = 0;
   Act act = Act::Write;
-  Place place{};
+  SignalId signal{};
   uint32_t number = 0;
   int64_t value = 0;
   std::vector<uint8_t> bytes{};  // of Send: flags, length and data after the identifier
@@ -48,7 +48,7 @@ struct SavedState {
 // Bytes that are the same on every platform, with a checksum.
 std::vector<uint8_t> to_bytes(uint64_t identity, runtime::Time time, uint64_t digest,
                               std::span<const Deed> deeds);
-// The error says what is wrong with them. Whether the plant has the places is not looked at.
+// The error says what is wrong with them. Whether the plant has the signals is not looked at.
 tl::expected<SavedState, std::string> from_bytes(std::span<const uint8_t> bytes);
 
 }  // namespace ipos::library

@@ -35,34 +35,19 @@ Refusal Session::perform(Deed deed) {
   return refused;
 }
 
-uint32_t Session::add_signal(const Place& place, std::string_view name) {
-  const auto known = std::find_if(signals_.begin(), signals_.end(), [&](const Signal& signal) {
-    return signal.place == place && signal.name == name;
-  });
+uint32_t Session::add_signal(const SignalId& id, std::string_view name) {
+  const auto known = std::find_if(signals_.begin(), signals_.end(),
+                                  [&](const Signal& signal) { return signal.id == id && signal.name == name; });
   const auto number = static_cast<uint32_t>(known - signals_.begin());
-  if (known == signals_.end()) find_again(signals_.emplace_back(Signal{place, std::string(name), {}}));
+  if (known == signals_.end()) find_again(signals_.emplace_back(Signal{id, std::string(name), {}}));
   return number;
 }
 
 // Its reader looks into the world of now.
-void Session::find_again(Signal& signal) const {
-  if (signal.place.kind == Kind::Signal)
-    signal.shown = shown_signal(plant(), signal.place, signal.name);
-}
+void Session::find_again(Signal& signal) const { signal.shown = signal_of(plant(), signal.id, signal.name).value(); }
 
-PlaceInfo Session::info(const Signal& signal) const {
-  if (signal.place.kind != Kind::Signal) return place_info(plant(), signal.place, signal.name);
-  return {signal.name, signal.shown.unit, signal.shown.factor, signal.shown.decimals, false};
-}
-
-int64_t Session::read(const Signal& signal) const {
-  return signal.place.kind == Kind::Signal ? signal.shown.read() : read_place(plant(), signal.place);
-}
-
-std::string Session::text(const Signal& signal) const {
-  if (signal.place.kind != Kind::Signal) return place_text(plant(), signal.place);
-  const std::string number = signal.shown.text(signal.shown.read());
-  return signal.shown.unit.empty() ? number : number + " " + signal.shown.unit;
+int64_t Session::read(const Signal& signal) {
+  return signal.id.kind == Kind::Analog ? now(signal).read() : signal.shown.read();
 }
 
 std::vector<uint8_t> Session::save() const {

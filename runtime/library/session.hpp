@@ -11,7 +11,7 @@
 #include "runtime/library/contents.hpp"
 #include "runtime/library/world.hpp"
 #include "runtime/plant/trace_hash.hpp"
-#include "runtime/signals/station_signals.hpp"
+#include "runtime/signals/find.hpp"
 
 namespace ipos::library {
 
@@ -34,17 +34,18 @@ class Session {
   uint32_t next_tag() { return ++tags_; }
 
   struct Signal {
-    Place place;
+    SignalId id;
     std::string name;
-    signals::Signal shown;  // of kind Signal
+    signals::Signal shown;
+    bool is_writable() const { return id.kind != Kind::Signal && shown.put != nullptr; }
   };
-  uint32_t add_signal(const Place& place, std::string_view name);
+  uint32_t add_signal(const SignalId& id, std::string_view name);
   const Signal* signal(uint32_t number) const {
     return number < signals_.size() ? &signals_[number] : nullptr;
   }
-  PlaceInfo info(const Signal& signal) const;
-  int64_t read(const Signal& signal) const;
-  std::string text(const Signal& signal) const;
+  // Of an analog input the line that was set last.
+  static signals::Signal now(const Signal& signal) { return signals::live_line(signal.shown); }
+  static int64_t read(const Signal& signal);
 
   std::vector<uint8_t> save() const;
   enum class Restored : uint8_t { Done, Damaged, OtherPlant };

@@ -36,7 +36,7 @@ std::optional<runtime::Frame> frame_of(std::span<const uint8_t> bytes) {
   return runtime::is_valid(frame) ? std::optional(runtime::canonical(frame)) : std::nullopt;
 }
 
-World::World(std::unique_ptr<runtime::Plant> plant) : plant_(std::move(plant)), hands_(*plant_) {
+World::World(std::unique_ptr<runtime::Plant> plant) : plant_(std::move(plant)), actions_(*plant_, "the library") {
   for (const auto& bus : plant_->buses())
     runtime::visit(
         *bus, [this](runtime::CanBus& can) { can_.push_back(std::make_unique<CanTap>(can.line())); },
@@ -44,10 +44,14 @@ World::World(std::unique_ptr<runtime::Plant> plant) : plant_(std::move(plant)), 
         [this](runtime::ProfibusBus& dp) { profibus_.push_back(std::make_unique<ProfibusTap>(dp.line())); });
 }
 
-Refusal World::touch(const Deed& deed, Touch touch) {
-  if (!exists(*plant_, deed.place) || !is_writable(deed.place)) return std::string(kStrange);
-  if (auto refused = check_value(*plant_, deed.place, deed.value)) return refused;
-  return do_to_place(*plant_, hands_, deed.place, touch, deed.value);
+Refusal World::touch(const Deed& deed) {
+  const auto signal = signal_of(*plant_, deed.signal);
+  if (!signal || signal->put == nullptr) return std::string(kStrange);
+  if (auto refused = signal->check(deed.value)) return refused;
+  if (deed.act == Act::Write) return actions_.set(*signal, deed.value);
+  if (deed.act == Act::Force) return actions_.force(*signal, deed.value);
+  actions_.release(*signal);
+  return std::nullopt;
 }
 
 Refusal World::send(const Deed& deed) {
@@ -76,29 +80,29 @@ Refusal World::plant_faults(const Deed& deed) {
     return fmt::format("line {}, column {}: {}", read.errors.front().place.line,
                        read.errors.front().place.column, read.errors.front().text);
   for (runtime::FaultConfig& fault : read.plant.faults)
-    if (auto refused = hands_.plant_fault(fault, plant_->now())) return refused;
+    if (auto refused = actions_.plant_fault(fault, plant_->now())) return refused;
   return std::nullopt;
 }
 
 Refusal World::perform(const Deed& deed) {
   switch (deed.act) {
-    case Act::Write: return touch(deed, Touch::Write);
-    case Act::Force: return touch(deed, Touch::Force);
-    case Act::Release: return touch(deed, Touch::Release);
+    case Act::Write:
+    case Act::Force:
+    case Act::Release: return touch(deed);
     case Act::Join:
     case Act::Send:
     case Act::SerialSend: return send(deed);
     case Act::LineFault: return plant_faults(deed);
     default: break;
   }
-  if (const runtime::Gateway* gateway = gateway_of(*plant_, deed.place.station)) {
+  if (const runtime::Gateway* gateway = gateway_of(*plant_, deed.signal.station)) {
     if (deed.act != Act::PowerOff && deed.act != Act::PowerOn)
       return fmt::format("'{}' is a gateway: it has no program and no drive", gateway->config().name);
     plant_->set_power(gateway->config().name, deed.act == Act::PowerOn);
     return std::nullopt;
   }
-  if (deed.place.station >= plant_->stations().size()) return std::string(kStrange);
-  Station& station = *plant_->stations()[deed.place.station];
+  if (deed.signal.station >= plant_->stations().size()) return std::string(kStrange);
+  Station& station = *plant_->stations()[deed.signal.station];
   switch (deed.act) {
     case Act::PowerOff:
     case Act::PowerOn: plant_->set_power(station.config().name, deed.act == Act::PowerOn); break;
@@ -110,7 +114,7 @@ Refusal World::perform(const Deed& deed) {
     case Act::Program:
       if (deed.value < 0 || deed.value > static_cast<int64_t>(runtime::ProgramOrder::Restart))
         return std::string(kStrange);
-      return runtime::Hands::order(station, static_cast<runtime::ProgramOrder>(deed.value));
+      return runtime::PlantActions::order(station, static_cast<runtime::ProgramOrder>(deed.value));
     default: break;
   }
   return std::nullopt;

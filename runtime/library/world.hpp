@@ -1,4 +1,4 @@
-// A plant with the library's hands and ears in it: everything that is rebuilt when a state is restored.
+// A plant with what the library does and hears in it: everything that is rebuilt when a state is restored.
 #pragma once
 
 #include <memory>
@@ -6,7 +6,7 @@
 
 #include "runtime/library/bus_tap.hpp"
 #include "runtime/library/deed.hpp"
-#include "runtime/plant/hands.hpp"
+#include "runtime/plant/actions.hpp"
 
 namespace ipos::library {
 
@@ -36,12 +36,12 @@ class World {
   size_t line_count() const { return can_.size() + serial_.size() + profibus_.size(); }
 
  private:
-  Refusal touch(const Deed& deed, Touch touch);
+  Refusal touch(const Deed& deed);
   Refusal send(const Deed& deed);
   Refusal plant_faults(const Deed& deed);
 
   std::unique_ptr<runtime::Plant> plant_;
-  runtime::Hands hands_;
+  runtime::PlantActions actions_;
   std::vector<std::unique_ptr<CanTap>> can_;
   std::vector<std::unique_ptr<SerialTap>> serial_;
   std::vector<std::unique_ptr<ProfibusTap>> profibus_;

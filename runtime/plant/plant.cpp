@@ -11,8 +11,8 @@
 #include "runtime/nv_memory/medium/file_medium.hpp"
 #include "runtime/plant/start_checks.hpp"
 #include "runtime/plant_file/serial_plan.hpp"
-#include "runtime/signals/station_signals.hpp"
-#include "runtime/signals/station_state.hpp"
+#include "runtime/plant_file/state_names.hpp"
+#include "runtime/signals/find.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -58,7 +58,7 @@ Plant::Plant(PlantFile file, std::vector<std::optional<vm::Image>> programs, std
   for (const ControlConfig& config : file_.controls)
     if (auto control = make_control({*this, queue_, next_source_, journal_}, config, errors))
       controls_.push_back(std::move(control));
-  surroundings_->connect(file_, stations_, errors);
+  surroundings_->connect(file_, *this, errors);
   resolve_expectations(errors);
   if (!errors.empty()) return;
   surroundings_->start();
@@ -94,11 +94,6 @@ void Plant::set_power(std::string_view name, bool on) {
   if (Gateway* gateway = find_gateway(name)) return set(*gateway);
   for (const auto& station : stations_)
     if (station->config().name == name) set(*station);
-}
-
-std::optional<signals::SignalPort> Plant::find_port(const Signal& signal, std::string& why) const {
-  const Gateway* gateway = find_gateway(signal.station);
-  return gateway == nullptr ? signals::SignalPort::find(stations_, signal, why) : signals::SignalPort::find(*gateway, signal, why);
 }
 
 // Stations and controls sit on the cable in the order in which they stand in the file.
@@ -157,8 +152,8 @@ StationLines Plant::lines_of(const StationConfig& station) {
 void Plant::resolve_expectations(std::vector<PlantError>& errors) {
   for (const Expectation& expectation : file_.expectations) {
     std::string why;
-    const auto port = find_port(expectation.signal, why);
-    if (port) due_.push_back({&expectation, *port});
+    auto signal = signals::find_signal(*this, expectation.signal, why);
+    if (signal) due_.push_back({&expectation, *std::move(signal)});
     if (!why.empty()) errors.push_back({expectation.place, why});
   }
   std::stable_sort(due_.begin(), due_.end(),
@@ -193,7 +188,7 @@ void Plant::check_expectations(Time until) {
   for (; next_due_ < due_.size() && due_[next_due_].expectation->at < until; ++next_due_) {
     const Due& due = due_[next_due_];
     if (due.expectation->at > queue_.now()) queue_.run_until(due.expectation->at);
-    const int32_t actual = due.port.read();
+    const int32_t actual = signals::value_for(due.expectation->signal, due.signal);
     results_.push_back({due.expectation, actual == due.expectation->equals, actual});
   }
 }

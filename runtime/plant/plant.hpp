@@ -12,7 +12,6 @@
 #include "runtime/journal/journal.hpp"
 #include "runtime/plant/surroundings.hpp"
 #include "runtime/plant_file/plant_file.hpp"
-#include "runtime/signals/signal_port.hpp"
 #include "runtime/station/plant_parts.hpp"
 
 namespace ipos::runtime {
@@ -67,8 +66,6 @@ class Plant final : public PlantParts {
   std::vector<std::unique_ptr<Station>>& stations() { return stations_; }
   const std::vector<std::unique_ptr<Station>>& stations() const override { return stations_; }
   const std::vector<std::unique_ptr<Control>>& controls() const override { return controls_; }
-  // Of a station or a gateway; nothing and why when it has no such thing.
-  std::optional<signals::SignalPort> find_port(const Signal& signal, std::string& why) const;
   const std::vector<std::unique_ptr<Bus>>& buses() const override { return buses_; }
   const Journal& journal() const {
     look();
@@ -103,7 +100,7 @@ class Plant final : public PlantParts {
 
   struct Due {
     const Expectation* expectation;
-    signals::SignalPort port;
+    signals::Signal signal;
   };
   std::vector<Due> due_;  // in order of time
   size_t next_due_ = 0;

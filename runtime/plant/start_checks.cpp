@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "runtime/plant_file/serial_plan.hpp"
-#include "runtime/signals/station_signals.hpp"
+#include "runtime/plant_file/state_names.hpp"
+#include "runtime/signals/find.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -30,6 +31,12 @@ void tell_findings(const Plant& plant, Journal& journal) {
     for (const std::string& name : signals::hidden_names(*station))
       journal.note(now, Weight::Why, station->config().name,
                    fmt::format("'{0}' is a variable of the program, and hides what the unit calls so: that is 'drive.{0}'", name));
+  for (const Expectation& expectation : plant.file().expectations)
+    if (const std::string old = old_state(expectation.signal.name);
+        expectation.signal.kind == SignalKind::State && !old.empty()) {
+      journal.note(now, Weight::Why, expectation.signal.station, old);
+      break;
+    }
   const ParameterOf parameter = [&plant](size_t station, std::string_view number) {
     return std::as_const(*plant.stations()[station]).drive().value(number);
   };

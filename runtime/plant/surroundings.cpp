@@ -4,16 +4,27 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
+
+#include "runtime/signals/find.hpp"
 
 namespace ipos::runtime {
+namespace {
 
-void Surroundings::connect(const PlantFile& file, const std::vector<std::unique_ptr<Station>>& stations,
-                           std::vector<PlantError>& errors) {
-  const auto find = [&](const Signal& signal, FilePlace place) {
+// What a wire or switch says.
+void drive(const signals::Signal& input, bool level) {
+  const int32_t driven = level ? 1 : 0;
+  if (std::as_const(*input.owner).inputs().line(input.number).driven != driven) input.line().driven = driven;
+}
+
+}  // namespace
+
+void Surroundings::connect(const PlantFile& file, const PlantParts& plant, std::vector<PlantError>& errors) {
+  const auto find = [&](const Signal& named, FilePlace place) {
     std::string why;
-    const auto port = signals::SignalPort::find(stations, signal, why);
+    auto signal = signals::find_signal(plant, named, why);
     if (!why.empty()) errors.push_back({place, why});
-    return port;
+    return signal;
   };
   for (const Wire& wire : file.wires) {
     const auto from = find(wire.from, wire.place);
@@ -21,22 +32,19 @@ void Surroundings::connect(const PlantFile& file, const std::vector<std::unique_
     if (from && to) leads_.push_back({*from, *to, wire.invert});
   }
   for (const PositionSwitch& row : file.switches)
-    if (const auto input = find(row.input, row.place))
-      for (const auto& station : stations)
-        if (station->config().name == row.input.station)
-          cams_.push_back({*input, station.get(), row.from, row.to, row.active_high});
+    if (const auto input = find(row.input, row.place)) cams_.push_back({*input, input->owner, row.from, row.to, row.active_high});
   for (const Stimulus& stimulus : file.stimuli)
-    if (const auto port = find(stimulus.signal, stimulus.place)) {
+    if (const auto signal = find(stimulus.signal, stimulus.place)) {
       due_.emplace(stimulus.at, Due{scripts_.size(), 0, {}});
-      scripts_.push_back({*port, stimulus});
+      scripts_.push_back({*signal, stimulus});
     }
 }
 
 void Surroundings::start() { wake(queue_.now()); }
 
-void Surroundings::add(const signals::SignalPort& port, const Stimulus& stimulus) {
+void Surroundings::add(const signals::Signal& signal, const Stimulus& stimulus) {
   due_.emplace(stimulus.at, Due{scripts_.size(), 0, {}});
-  scripts_.push_back({port, stimulus});
+  scripts_.push_back({signal, stimulus});
   schedule_next(queue_.now());
 }
 
@@ -55,11 +63,11 @@ void Surroundings::wake(Time at) {
 
 void Surroundings::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
   event_at_ = kNever;
-  for (const Lead& lead : leads_) lead.to.drive((lead.from.read() != 0) != lead.invert ? 1 : 0);
+  for (const Lead& lead : leads_) drive(lead.to, (lead.from.read() != 0) != lead.invert);
   for (const Cam& cam : cams_) {
     const int32_t position = cam.station->shaft_position();
     const bool within = position >= cam.from && position <= cam.to;
-    cam.input.drive(within == cam.active_high ? 1 : 0);
+    drive(cam.input, within == cam.active_high);
   }
   while (!due_.empty() && due_.begin()->first <= now) {
     const Time at = due_.begin()->first;
@@ -68,12 +76,11 @@ void Surroundings::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) 
     if (due.action)
       due.action();
     else if (due.ends != 0)
-      release(scripts_[due.script].port, due.ends);
+      holds_.release(due.ends);
     else
       perform(at, due.script);
   }
-  for (const Hold& held : holds_)
-    if (held.port.read() != held.value) write(now, held.port, held.value);
+  holds_.act();
   schedule_next(now);
 }
 
@@ -81,62 +88,40 @@ void Surroundings::perform(Time now, size_t script) {
   Script& s = scripts_[script];
   const Stimulus& stimulus = s.stimulus;
   switch (stimulus.action) {
-    case Stimulus::Action::Set:
-      if (s.port.is_input())
-        s.port.line().set = stimulus.value;
-      else
-        write(now, s.port, stimulus.value);
-      break;
+    case Stimulus::Action::Set: write(now, s.signal, stimulus.value); break;
     case Stimulus::Action::Force:
-    case Stimulus::Action::Pulse: hold(now, script); break;
-    case Stimulus::Action::Release: release(s.port, 0); break;
+    case Stimulus::Action::Pulse:
+      hold(s.signal, stimulus.value, "a stimulus", now, stimulus.length, stimulus.action == Stimulus::Action::Pulse);
+      break;
+    case Stimulus::Action::Release: holds_.release(s.signal); break;
   }
   ++s.done;
   if (stimulus.every != 0 && (stimulus.times == 0 || s.done < stimulus.times))
     due_.emplace(now + stimulus.every, Due{script, 0, {}});
 }
 
-void Surroundings::force(const signals::SignalPort& port, int32_t value) {
-  hold(port, value);
+signals::Refusal Surroundings::force(const signals::Signal& signal, int64_t value, std::string_view by, Time length) {
+  if (auto wrong = signal.check(value)) return wrong;
+  if (!signal.is_input())
+    if (auto refused = signal.write(value)) return refused;
+  hold(signal, static_cast<int32_t>(value), by, queue_.now(), length, false);
   schedule_next(queue_.now());
+  return std::nullopt;
 }
 
-Surroundings::Hold& Surroundings::hold(const signals::SignalPort& port, int32_t value) {
-  auto held =
-      std::find_if(holds_.begin(), holds_.end(), [&](const Hold& other) { return other.port == port; });
-  if (held == holds_.end()) held = holds_.insert(held, {port, {}, {}, {}});  // the numbers follow
-  held->value = value;
-  held->number = ++holds_made_;
-  if (port.is_input()) port.line().forced = value;
-  return *held;
+// A pulse gives back what was there.
+void Surroundings::hold(const signals::Signal& signal, int32_t value, std::string_view by, Time now, Time length,
+                        bool pulse) {
+  const auto before = static_cast<int32_t>(signal.read());
+  signals::Hold& held = holds_.hold(signal, value, by);
+  if (pulse && !signal.is_input() && !held.before) held.before = before;
+  held.until = length == 0 ? kNever : now + length;
+  if (length != 0) due_.emplace(held.until, Due{0, held.number, {}});
 }
 
-void Surroundings::hold(Time now, size_t script) {
-  const signals::SignalPort& port = scripts_[script].port;
-  const Stimulus& stimulus = scripts_[script].stimulus;
-  Hold& held = hold(port, stimulus.value);
-  if (stimulus.action == Stimulus::Action::Pulse && !port.is_input() && !held.before)
-    held.before = port.read();
-  if (stimulus.length != 0) due_.emplace(now + stimulus.length, Due{script, held.number, {}});
-}
-
-// `number` 0 releases whatever holds the terminal; the end of a pulse only its own hold.
-void Surroundings::release(const signals::SignalPort& port, uint64_t number) {
-  const auto ends = [&](const Hold& held) {
-    return number == 0 ? held.port.shares_terminal(port) : held.number == number;
-  };
-  for (auto held = std::find_if(holds_.begin(), holds_.end(), ends); held != holds_.end();
-       held = std::find_if(holds_.begin(), holds_.end(), ends)) {
-    const Hold ended = *held;
-    holds_.erase(held);
-    if (ended.port.is_input()) ended.port.line().forced.reset();
-    if (ended.before) write(queue_.now(), ended.port, *ended.before);
-  }
-}
-
-void Surroundings::write(Time now, const signals::SignalPort& port, int32_t value) {
-  if (const auto refused = port.write(value))
-    journal_.note(now, Weight::Warning, port.station_name(), "stimulus refused: " + *refused);
+void Surroundings::write(Time now, const signals::Signal& signal, int32_t value) {
+  if (const auto refused = signal.write(value))
+    journal_.note(now, Weight::Warning, signal.station, "stimulus refused: " + *refused);
 }
 
 void Surroundings::schedule_next(Time now) {

@@ -12,7 +12,8 @@
 #include "runtime/clock/event_queue.hpp"
 #include "runtime/journal/journal.hpp"
 #include "runtime/plant_file/plant_file.hpp"
-#include "runtime/signals/signal_port.hpp"
+#include "runtime/signals/holds.hpp"
+#include "runtime/station/plant_parts.hpp"
 
 namespace ipos::runtime {
 
@@ -23,8 +24,7 @@ class Surroundings final : private EventTarget {
       : queue_(queue), source_(source), journal_(journal) {}
 
   // Finds the signals of the file; adds what is missing to `errors`.
-  void connect(const PlantFile& file, const std::vector<std::unique_ptr<Station>>& stations,
-               std::vector<PlantError>& errors);
+  void connect(const PlantFile& file, const PlantParts& plant, std::vector<PlantError>& errors);
 
   // At power-on, before the stations.
   void start();
@@ -32,36 +32,33 @@ class Surroundings final : private EventTarget {
   // While the plant runs: one more stimulus, or anything else that acts from outside. Both happen at the
   // beginning of the millisecond of their time, or of the next one if that has begun, after what is due
   // then already.
-  void add(const signals::SignalPort& port, const Stimulus& stimulus);
+  void add(const signals::Signal& signal, const Stimulus& stimulus);
   void act(Time at, std::function<void()> action);
 
-  // At once: held from now on, as a stimulus with force holds it; and whatever holds its terminal no more.
-  void force(const signals::SignalPort& port, int32_t value);
-  void release(const signals::SignalPort& port) { release(port, 0); }
+  // At once: held from now on by `by`, as a stimulus with force holds it, for `length` if that is not 0. What is refused is
+  // not held.
+  signals::Refusal force(const signals::Signal& signal, int64_t value, std::string_view by, Time length = 0);
+  // Whatever holds its terminal does so no more.
+  void release(const signals::Signal& signal) { holds_.release(signal); }
+  const signals::Holds& holds() const { return holds_; }
 
  private:
   struct Lead {  // a wire
-    signals::SignalPort from;
-    signals::SignalPort to;
+    signals::Signal from;
+    signals::Signal to;
     bool invert;
   };
   struct Cam {
-    signals::SignalPort input;
+    signals::Signal input;
     Station* station;
     int32_t from;
     int32_t to;
     bool active_high;
   };
   struct Script {
-    signals::SignalPort port;
+    signals::Signal signal;
     Stimulus stimulus;
     int64_t done = 0;  // how often it has happened
-  };
-  struct Hold {  // a signal that is forced
-    signals::SignalPort port;
-    int32_t value;
-    uint64_t number;
-    std::optional<int32_t> before;  // to be written at the end
   };
   struct Due {
     size_t script;
@@ -71,10 +68,8 @@ class Surroundings final : private EventTarget {
 
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
   void perform(Time now, size_t script);
-  void hold(Time now, size_t script);
-  Hold& hold(const signals::SignalPort& port, int32_t value);
-  void release(const signals::SignalPort& port, uint64_t number);
-  void write(Time now, const signals::SignalPort& port, int32_t value);
+  void hold(const signals::Signal& signal, int32_t value, std::string_view by, Time now, Time length, bool pulse);
+  void write(Time now, const signals::Signal& signal, int32_t value);
   void schedule_next(Time now);
   void wake(Time at);
 
@@ -84,8 +79,9 @@ class Surroundings final : private EventTarget {
   std::vector<Lead> leads_;
   std::vector<Cam> cams_;
   std::vector<Script> scripts_;
-  std::vector<Hold> holds_;
-  uint64_t holds_made_ = 0;
+  signals::Holds holds_{[this](const signals::Signal& signal, const std::string& text) {
+    journal_.note(queue_.now(), Weight::Warning, signal.station, "stimulus refused: " + text);
+  }};
   std::multimap<Time, Due> due_;  // equal times in the order of the file
   EventId event_ = kNoEvent;
   Time event_at_ = kNever;  // of event_; kNever: none is pending

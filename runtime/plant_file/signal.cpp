@@ -8,14 +8,20 @@
 namespace ipos::runtime {
 namespace {
 
-// "frequency" alone is the output frequency of the drive.
+constexpr BinaryTerminal kInputs[] = {
+#define BINARY_INPUT(name, bit, parameter) {name, bit, parameter},
+#include "runtime/plant_file/terminals.def"
+};
+
+constexpr BinaryTerminal kOutputs[] = {
+#define BINARY_OUTPUT(name, bit, parameter) {name, bit, parameter},
+#include "runtime/plant_file/terminals.def"
+};
+
 constexpr AnalogKind kAnalogKinds[] = {
-    {"AI1", "AI1", "V", 1e3, -10, 10, AnalogLine::Ai1Voltage},
-    {"AI1", "AI1_current", "mA", 1e3, 0, 20, AnalogLine::Ai1Current},
-    {"AI2", "AI2", "V", 1e3, -10, 10, AnalogLine::Ai2Voltage},
-    {"AI2", "AI2_current", "mA", 1e3, 0, 20, AnalogLine::Ai2Current},
-    {"frequency", "frequency_input", "kHz", 1e3, 0, 65, AnalogLine::Frequency},
-    {"potentiometer", "potentiometer", "%", 10, 0, 100, AnalogLine::Potentiometer},
+#define ANALOG_INPUT(name, signal, unit, factor, least, most, line, units) \
+  {name, signal, unit, factor, least, most, AnalogLine::line, AnalogKind::Units::units},
+#include "runtime/plant_file/terminals.def"
 };
 
 std::optional<int32_t> parse_amount(std::string_view text, const AnalogKind& kind) {
@@ -30,24 +36,29 @@ std::optional<int32_t> parse_amount(std::string_view text, const AnalogKind& kin
   return static_cast<int32_t>(std::lround(value * kind.factor));
 }
 
-// "03" with tens 0 or 1 and ones 0..7: bit 8 x tens + ones, or -1.
-int terminal_bit(std::string_view digits) {
-  if (digits.size() != 2 || (digits[0] != '0' && digits[0] != '1')) return -1;
-  return digits[1] < '0' || digits[1] > '7' ? -1 : (digits[0] - '0') * 8 + (digits[1] - '0');
+int bit_of(std::span<const BinaryTerminal> all, std::string_view name) {
+  const auto found = std::find_if(all.begin(), all.end(), [name](const BinaryTerminal& row) { return row.name == name; });
+  return found == all.end() ? -1 : found->bit;
 }
 
 }  // namespace
 
 std::span<const AnalogKind> analog_kinds() { return kAnalogKinds; }
 
-int parse_input(std::string_view name) { return name.starts_with("DI") ? terminal_bit(name.substr(2)) : -1; }
-
-int parse_output(std::string_view name) {
-  if (name == "DB00") return 0;
-  constexpr int kLastUnitOutput = 5;
-  const int bit = name.starts_with("DO") ? terminal_bit(name.substr(2)) : -1;
-  return bit == 0 || (bit > kLastUnitOutput && bit < 8) ? -1 : bit;
+bool AnalogKind::is_of(const stdlib::UnitType& of) const {
+  const bool m07 = of.generation == stdlib::Generation::M07;
+  return units == Units::All || (units == Units::Movitrac07) == m07;
 }
+
+std::span<const BinaryTerminal> binary_inputs() { return kInputs; }
+std::span<const BinaryTerminal> binary_outputs() { return kOutputs; }
+
+std::string_view input_name(size_t line) {
+  return line < kBinaryLines ? kInputs[line].name : kAnalogKinds[line - kBinaryLines].name;
+}
+
+int parse_input(std::string_view name) { return bit_of(kInputs, name); }
+int parse_output(std::string_view name) { return bit_of(kOutputs, name); }
 
 int parse_analog_input(std::string_view name) {
   for (const AnalogKind& kind : kAnalogKinds)

@@ -1,5 +1,5 @@
 // What of a station has a value that a plant file can name: variables, parameters, inputs, outputs, states, and
-// any other signal (station_signals.hpp).
+// any other signal (runtime/signals/find.hpp).
 #pragma once
 
 #include <cstdint>
@@ -20,6 +20,15 @@ struct Signal {
   std::string name;  // as written: "lCount", "H10", "P301", "DI03", "AI1", "DO01", "fault"
   uint8_t line = 0;  // Input: see above; Output: bit of OutputLevel H482; State: row of station_states()
 };
+
+struct BinaryTerminal {
+  std::string_view name;
+  uint8_t bit;
+  std::string_view parameter;  // gives it its function; empty: it is fixed
+};
+std::span<const BinaryTerminal> binary_inputs();
+std::span<const BinaryTerminal> binary_outputs();
+std::string_view input_name(size_t line);  // "DI03", "AI1"
 
 // "DI03" or "DI12": bit of InputLevel H483, or -1. DI00..DI07 are bits 0..7, DI10..DI17 bits 8..15 (ours).
 int parse_input(std::string_view name);
@@ -42,6 +51,9 @@ struct AnalogKind {
   double minimum;
   double maximum;
   AnalogLine line;
+  enum class Units : uint8_t { All, Movitrac07, Others } units;
+
+  bool is_of(const stdlib::UnitType& unit) const;
 };
 std::span<const AnalogKind> analog_kinds();
 

@@ -13,6 +13,10 @@ constexpr std::string_view kNames[] = {
 #define STATION_STATE(name, ...) name,
 #include "runtime/plant_file/station_states.def"
 };
+constexpr std::string_view kUnits[] = {
+#define STATION_STATE(name, meaning, on_off, unit, ...) unit,
+#include "runtime/plant_file/station_states.def"
+};
 
 }  // namespace
 
@@ -22,6 +26,14 @@ int find_state(std::string_view name) {
 }
 
 std::string state_names() { return fmt::format("{}", fmt::join(kNames, ", ")); }
+
+std::string old_state(std::string_view state) {
+  const int row = find_state(state);
+  constexpr std::string_view kThousandths = "1/1000 ";
+  if (row < 0 || !kUnits[row].starts_with(kThousandths)) return {};
+  return fmt::format("state = \"{0}\" counts in {1} and is kept for old tests; write signal = \"{0}\", which counts in {2}",
+                     state, kUnits[row], kUnits[row].substr(kThousandths.size()));
+}
 
 bool tells_fault(std::string_view state) { return state.find("fault") != std::string_view::npos; }
 

@@ -12,6 +12,10 @@ int find_state(std::string_view name);
 // "fault, status, ..."
 std::string state_names();
 
+// Of a state that counts in thousandths of what the signal with its name counts in: that it is old, and what to write; else
+// empty.
+std::string old_state(std::string_view state);
+
 // Whether it tells that a station or its program has a fault.
 bool tells_fault(std::string_view state);
 

@@ -1,4 +1,4 @@
-// What each kind of bus gives to the signals of telegrams (telegram_signals.hpp): the signals of what is there, and those
+// What each kind of bus gives to the signals of telegrams (telegrams.hpp): the signals of what is there, and those
 // of an identifier or address that is named. One source NAME_telegrams.cpp a kind.
 #pragma once
 
@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "runtime/signals/station_signals.hpp"
+#include "runtime/signals/find.hpp"
 #include "runtime/station/can_bus.hpp"
 #include "runtime/station/plant_parts.hpp"
 #include "runtime/station/profibus_bus.hpp"

@@ -100,6 +100,7 @@ class Station final : private Timed, private TaskRunner {
   bool store_memory();
 
   const StationConfig& config() const { return config_; }
+  Time now() const { return queue_.now(); }
   const vm::Image* image() const { return unit_.image(); }
   bool has_variables() const { return config_.unit->variables != 0; }  // it has IPOS
   // Of its program; none without one.

@@ -202,7 +202,8 @@ TEST(FrontendErrorTable, CodesAreUniqueAndMatchTheirSeverity) {
     EXPECT_TRUE(codes.insert(row.code).second) << row.code;
     EXPECT_EQ(row.code.size(), 5U);
     EXPECT_EQ(row.code[0] == 'W', row.severity == compiler::Severity::Warning) << row.code;
-    EXPECT_EQ(row.flag.empty(), row.severity == compiler::Severity::Error) << row.code;
+    EXPECT_EQ(row.code[0] == 'N', row.severity == compiler::Severity::Note) << row.code;
+    EXPECT_EQ(row.flag.empty(), row.severity != compiler::Severity::Warning) << row.code;
   }
 }
 

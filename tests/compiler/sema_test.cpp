@@ -215,10 +215,27 @@ TEST(Mistakes, IdentifiersOfMovilinkByUnitType) {
 
 // Those with a test of their own, below and in seen_steps_test.cpp.
 TEST(Mistakes, EveryRowOfTheTableIsTested) {
-  std::set<std::string_view> tested{"E0207", "E0230", "E0233", "E0236", "W0240", "W0241", "W0260", "W0261"};
+  std::set<std::string_view> tested{"E0207", "E0230", "E0233", "E0236", "W0240", "W0241", "W0260", "W0261", "N0219"};
   for (const Mistake& mistake : mistakes()) tested.insert(mistake.code);
   for (const DiagInfo& row : diagnostic_table())
     EXPECT_TRUE(row.code.substr(1, 2) != "02" || tested.contains(row.code)) << row.code << " " << row.name;
+}
+
+// A note: no option makes an error of it, and the program is good.
+TEST(Mistakes, AVariableHidesAValueOfTheUnit) {
+  compiler::CompileOptions options;
+  options.unit = stdlib::find_unit(std::string_view("mdxb"));
+  options.is_unit_value = [](const stdlib::UnitType& unit, std::string_view name) {
+    return unit.name == "mdxb" && name == "speed";
+  };
+  for (const char* option : {"all", "error", "no-all"}) {
+    ASSERT_TRUE(options.warnings.apply(option));
+    const Compilation c = compiler::compile("P.IPC", "P.IPC", "long speed, other; main() { speed = other; other = 1; }", options);
+    ASSERT_EQ(1U, c.diagnostics.all().size()) << option;
+    EXPECT_EQ(Diag::HidesUnitValue, c.diagnostics.all()[0].diag);
+    EXPECT_EQ(compiler::Severity::Note, c.diagnostics.all()[0].severity);
+    EXPECT_TRUE(c.image) << option;
+  }
 }
 
 TEST(Mistakes, NoMain) {

@@ -82,6 +82,8 @@ Compiled compile_block(const Block& block) {
     EXPECT_NE(options.unit, nullptr) << block.options;
   } else if (block.options.starts_with("-W")) {
     EXPECT_TRUE(options.warnings.apply(std::string_view(block.options).substr(2))) << block.options;
+  } else if (block.options == "beside the unit's speed") {
+    options.is_unit_value = [](const stdlib::UnitType&, std::string_view name) { return name == "speed"; };
   } else if (block.options == "encode as UTF-16") {
     text = utf16(text);
   } else {

@@ -178,6 +178,14 @@ TEST(LspDiagnostics, OptionsOfTheClient) {
   EXPECT_EQ(client.diagnostics["file://" + kPath][0]["tags"], Json({1}));
 }
 
+// Information, as the program is good.
+TEST(LspDiagnostics, AVariableWithTheNameOfAValueOfTheUnit) {
+  Client client;
+  client.open(kPath, "long speed;\nmain() { speed = 5; }\n");
+  ASSERT_EQ(client.codes(kPath), std::vector<std::string>{"N0219"});
+  EXPECT_EQ(client.diagnostics["file://" + kPath][0]["severity"], 3);
+}
+
 TEST(LspDiagnostics, AtomicAsInTheBuild) {
   const std::string source =
       "#include <constb.h>\nlong x, y;\nmain() { _SetTask2(T2_START, T); while (1) x = (x + 1) % 8; }\n"

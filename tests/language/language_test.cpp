@@ -10,7 +10,7 @@
 #include "compiler/compile.hpp"
 #include "compiler/diag/render.hpp"
 #include "runtime/plant/plant.hpp"
-#include "runtime/signals/variable_names.hpp"
+#include "runtime/signals/variables.hpp"
 #include "tests/language/expectations.hpp"
 
 namespace ipos::tests {

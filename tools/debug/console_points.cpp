@@ -101,7 +101,7 @@ void Console::watch(const std::string& arguments) {
   if (!condition.empty()) evaluate(debugger_->plant(), place.station, condition);
   debugger_->watchpoints().push_back({debugger_->next_id(), place.station, place, condition, true, 0});
   print_(fmt::format("Watchpoint {}: {} = {}\n", debugger_->watchpoints().back().id, place.name,
-                     value_text(debugger_->plant(), place, read_value(debugger_->plant(), place))));
+                     value_text(place)));
 }
 
 void Console::condition(const std::string& arguments) {

@@ -71,7 +71,7 @@ void Console::print(const std::string& arguments) {
   if (shown) return;
   if (!hex)
     if (const auto place = find_value(plant, current_.station, text))
-      return print_(fmt::format("{} = {}\n", text, value_text(plant, *place, read_value(plant, *place))));
+      return print_(fmt::format("{} = {}\n", text, value_text(*place)));
   print_(fmt::format("{} = {}\n", text, number_text(evaluate(plant, current_.station, text), hex)));
 }
 
@@ -97,12 +97,11 @@ void Console::examine(const std::string& arguments) {
           fmt::format("{:>6}  {}\n", code->items()[item].address, code->text(code->items()[item].address)));
     return;
   }
-  ValuePlace place = evaluate_place(debugger_->plant(), current_.station, what, true);
-  if (place.kind != ValueKind::Variable) throw ValueError("x shows variables; see print");
+  const ValuePlace place = evaluate_place(debugger_->plant(), current_.station, what, true);
+  if (!place.signal->is_variable()) throw ValueError("x shows variables; see print");
   const auto& station = *debugger_->plant().stations()[place.station];
-  for (; count != 0 && place.number < station.config().unit->variables; --count, ++place.number)
-    print_(
-        fmt::format("H{:<5} {}\n", place.number, number_text(station.variable(place.number), form == 'x')));
+  for (uint32_t number = place.signal->number; count != 0 && number < station.config().unit->variables; --count, ++number)
+    print_(fmt::format("H{:<5} {}\n", number, number_text(station.variable(number), form == 'x')));
 }
 
 void Console::set(const std::string& arguments) {

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "compiler/diag/places.hpp"
-#include "runtime/signals/station_signals.hpp"
+#include "runtime/signals/find.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/lsp/transport.hpp"
 

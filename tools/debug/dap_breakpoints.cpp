@@ -103,7 +103,7 @@ std::optional<ValuePlace> DapServer::place_of_data(const std::string& id) {
   try {
     const ValuePlace place = json;
     ValuePlace found = evaluate_place(debugger().plant(), place.station, place.name);
-    if (found.station == place.station && found.kind == place.kind && found.number == place.number) return found;
+    if (found.station == place.station && found.elements == place.elements) return found;
   } catch (const Json::exception&) {
   } catch (const ValueError&) {
   }
@@ -140,8 +140,13 @@ Json DapServer::set_exception_breakpoints(const Json& arguments) {
   if (std::find(filters.begin(), filters.end(), "fault") == filters.end()) return Json::object();
   const auto& stations = debugger_->plant().stations();
   for (uint32_t n = 0; n < stations.size(); ++n) {
-    const std::string name = stations[n]->config().name + ".fault";
-    all.push_back({debugger_->next_id(), n, {n, ValueKind::Fault, 0, 1, name}, name, true, 0});
+    std::string name = stations[n]->config().name + ".fault";
+    auto place = find_value(debugger_->plant(), n, name);
+    if (place->signal->is_variable()) {  // the program calls a variable so
+      name = stations[n]->config().name + ".drive.fault";
+      place = find_value(debugger_->plant(), n, name);
+    }
+    all.push_back({debugger_->next_id(), n, *place, name, true, 0});
     fault_points_.push_back(all.back().id);
   }
   return Json::object();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "runtime/signals/find.hpp"
 #include "tools/debug/dap.hpp"
 
 namespace ipos::tools::debug {
@@ -42,7 +43,7 @@ Json DapServer::scopes(const Json& arguments) {
 
 Json DapServer::value_json(const ValuePlace& place, bool hex) const {
   return {{"name", place.name},
-          {"value", value_text(debugger_->plant(), place, read_value(debugger_->plant(), place), hex)},
+          {"value", value_text(place, hex)},
           {"evaluateName", place.name},
           {"variablesReference", 0}};
 }
@@ -54,32 +55,21 @@ Json DapServer::scope_values(uint32_t station, int scope, bool hex) const {
   const auto text = [&](std::string name, std::string value) {
     all.push_back({{"name", std::move(name)}, {"value", std::move(value)}, {"variablesReference", 0}});
   };
+  const auto group = [&](signals::Group of) {
+    for (signals::Signal& signal : signals::signals_of(unit, of)) {
+      const std::string name(signal.own_name());
+      all.push_back(value_json({station, 1, name, std::make_shared<const signals::Signal>(std::move(signal))}, hex));
+    }
+  };
   if (scope == Parameters) {
-    for (const stdlib::Parameter& row : stdlib::parameter_table(*unit.config().unit).rows())
-      if (!row.number.empty() && row.index != 0)
-        all.push_back(
-            value_json({station, ValueKind::Parameter, row.index, 1, fmt::format("P{}", row.number)}, hex));
+    group(signals::Group::Parameter);
   } else if (scope == Io) {
-    for (uint32_t line = 0; line < runtime::kBinaryLines; ++line)
-      all.push_back(
-          value_json({station, ValueKind::Input, line, 1, fmt::format("DI{}{}", line / 8, line % 8)}, hex));
-    for (uint32_t bit = 0; bit < 16; ++bit)
-      if (const std::string name = bit == 0 ? "DB00" : fmt::format("DO{}{}", bit / 8, bit % 8);
-          runtime::parse_output(name) >= 0)
-        all.push_back(value_json({station, ValueKind::Output, bit, 1, name}, hex));
+    group(signals::Group::Input);
+    group(signals::Group::Output);
   } else if (scope == ProcessData) {
-    const runtime::Drive& drive = unit.drive().state();
-    const auto pi = drive.pi();
-    for (size_t n = 0; n < runtime::kProcessWords; ++n) {
-      text(fmt::format("PO{}", n + 1), fmt::format("{:#06x}", drive.po()[n]));
-      text(fmt::format("PI{}", n + 1), fmt::format("{:#06x}", pi[n]));
-    }
-    for (size_t n = 0; unit.has_further_words() && n < runtime::kFurtherWords; ++n) {
-      const size_t number = runtime::kProcessWords + n + 1;
-      text(fmt::format("PO{}", number), fmt::format("{:#06x}", drive.further_po()[n]));
-      text(fmt::format("PI{}", number), fmt::format("{:#06x}", drive.further_pi()[n]));
-    }
-    text("status word 1", fmt::format("{:#06x}", drive.status_word_1()));
+    for (const signals::Signal& signal : signals::signals_of(unit, signals::Group::ProcessData))
+      if (signal.bits != 0) text(std::string(signal.own_name()), fmt::format("{:#06x}", signal.read()));
+    text("status word 1", fmt::format("{:#06x}", unit.status_word_1()));
   } else if (scope == SbusObjects) {
     for (const int number : {1, 2})
       if (const runtime::SbusPort* port = plant.stations()[station]->sbus(number))
@@ -109,7 +99,7 @@ Json DapServer::named_values(uint32_t station, const std::string& prefix, bool h
                      {"variablesReference", reference(station, Named, 0, 0, prefix + name + ".")}});
       continue;
     }
-    Json one = value_json({station, ValueKind::Variable, symbol.variable, 1, symbol.name}, hex);
+    Json one = value_json(*variable_place(debugger_->plant(), station, symbol.variable, symbol.name), hex);
     one["name"] = rest;
     if (symbol.count > 1) {
       one["value"] = fmt::format("{} elements", symbol.count);
@@ -140,8 +130,8 @@ Json DapServer::variables(const Json& arguments) {
     const uint32_t asked_count = arguments.value("count", 0U);
     const uint32_t end = asked_count == 0 ? most : std::min(most - from, asked_count) + from;
     for (uint32_t n = from; n < end; ++n) {
-      Json one = value_json({asked.station, ValueKind::Variable, asked.first + n, 1,
-                             asked.scope == Numbers ? fmt::format("H{}", n) : fmt::format("[{}]", n)},
+      Json one = value_json(*variable_place(debugger_->plant(), asked.station, asked.first + n,
+                                            asked.scope == Numbers ? fmt::format("H{}", n) : fmt::format("[{}]", n)),
                             hex);
       if (asked.scope == Elements) one["evaluateName"] = fmt::format("{}[{}]", asked.name, n);
       all.push_back(std::move(one));
@@ -155,8 +145,7 @@ Json DapServer::variables(const Json& arguments) {
 Json DapServer::set_value(const ValuePlace& place, uint32_t station, const Json& arguments) {
   debugger().write(place, evaluate_for(debugger_->plant(), station, place,
                                        arguments.at("value").get<std::string>()));
-  return {{"value", value_text(debugger_->plant(), place, read_value(debugger_->plant(), place),
-                               wants_hex(arguments))}};
+  return {{"value", value_text(place, wants_hex(arguments))}};
 }
 
 Json DapServer::set_variable(const Json& arguments) {
@@ -207,7 +196,7 @@ Json DapServer::evaluate_text(const Json& arguments) {
   }
   if (const auto whole = find_whole(plant, station, name)) return whole_json(*whole, hex);
   if (const auto place = find_value(plant, station, name))
-    return {{"result", value_text(plant, *place, read_value(plant, *place), hex)}, {"variablesReference", 0}};
+    return {{"result", value_text(*place, hex)}, {"variablesReference", 0}};
   return {{"result", number_text(evaluate(plant, station, name), hex)}, {"variablesReference", 0}};
 }
 
@@ -240,7 +229,7 @@ Json DapServer::completions(const Json& arguments) {
   const runtime::Station& unit = *debugger().plant().stations()[station];
   Json all = Json::array();
   for (const signals::Signal& signal : signals::station_signals(unit)) {
-    const std::string name = signal.name.substr(unit.config().name.size() + 1);
+    const std::string name(signal.own_name());
     if (name.starts_with(word))
       all.push_back({{"label", name}, {"start", column_for_client(static_cast<uint32_t>(begin) + 1)}, {"length", word.size()}, {"type", "variable"}});
   }

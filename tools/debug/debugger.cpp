@@ -43,10 +43,10 @@ void Debugger::build() {
 void Debugger::prime() {
   watched_.clear();
   // What a signal is read from belongs to one plant and does not go with the session.
-  for (Watchpoint& watchpoint : watchpoints_)
-    if (watchpoint.place.kind == ValueKind::Signal)
-      watchpoint.place = evaluate_place(*plant_, watchpoint.station, watchpoint.place.name);
-  for (const Watchpoint& watchpoint : watchpoints_) watched_.push_back(read_value(*plant_, watchpoint.place));
+  for (Watchpoint& watchpoint : watchpoints_) {
+    watchpoint.place = find_again(*plant_, watchpoint.place);
+    watched_.push_back(read_value(watchpoint.place));
+  }
 }
 
 Order Debugger::order_for(Motion motion, TaskRef task, bool backward) const {
@@ -169,7 +169,7 @@ bool Debugger::arrived(Phase phase) {
   for (; next_change_ < changes_.size() && changes_[next_change_].at <= position_; ++next_change_)
     if (const Change& change = changes_[next_change_]; change.at == position_) {
       if (change.action.is_null())
-        write_value(*plant_, change.place, change.value);
+        write_value(find_again(*plant_, change.place), change.value);
       else
         front_end_.perform(change.action);
     }
@@ -296,7 +296,7 @@ void Debugger::load(const std::string& bytes) {
 }
 
 void Debugger::write(const ValuePlace& place, int32_t value) {
-  write_value(*plant_, place, value);
+  write_value(place, value);
   changes_.push_back({position_, place, value, nullptr});
   next_change_ = changes_.size();
 }

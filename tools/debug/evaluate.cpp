@@ -133,7 +133,7 @@ class Reader {
     if (take('+')) return unary();
     if (take('!')) return unary() == 0;
     if (take('~')) return ~unary();
-    if (take('*')) return read_value(plant_, at_number(unary()));
+    if (take('*')) return read_value(at_number(unary()));
     if (take('(')) {
       const int32_t value = binary(1);
       if (!take(')')) fail("')' is missing");
@@ -147,10 +147,10 @@ class Reader {
     if (text == "numof" && take('(')) return number_of_variable();
     const ValuePlace place = named(text);
     expect_one(place);
-    return read_value(plant_, place);
+    return read_value(place);
   }
   void expect_one(const ValuePlace& place) const {
-    if (place.kind == ValueKind::Variable && place.elements > 1)
+    if (place.elements > 1)
       fail(fmt::format("'{0}' is {1} variables: {0}[0] is one", place.name, place.elements));
   }
 
@@ -166,8 +166,8 @@ class Reader {
     if (const auto whole = find_whole(plant_, station_, name)) return vm::wrap(whole->variables[0].number);
     Reader inner(plant_, station_, name, hits_);
     const ValuePlace place = inner.place(true);
-    if (place.kind != ValueKind::Variable) fail(fmt::format("'{}' is no variable", name));
-    return vm::wrap(place.number);
+    if (!place.signal->is_variable()) fail(fmt::format("'{}' is no variable", name));
+    return vm::wrap(place.signal->number);
   }
 
   // *420 is H420.
@@ -202,7 +202,7 @@ class Reader {
       const int32_t index = index_behind();
       const std::string element = fmt::format("{}[{}]", path, index);
       auto exact = find_value(plant_, station_, element);
-      if (!exact && found && found->kind == ValueKind::Variable) {
+      if (!exact && found && found->signal->is_variable()) {
         // Of an array there is nothing behind its end; programs reach what is behind a single variable.
         if (found->elements > 1 && (index < 0 || vm::bits(index) >= found->elements))
           fail(fmt::format("'{}' has {} elements", path, found->elements));
@@ -233,13 +233,9 @@ class Reader {
   }
 
   // The variable `index` after this one; programs reach it by a computed index, too.
-  std::optional<ValuePlace> moved(ValuePlace place, int32_t index, const std::string& name) const {
-    const uint32_t variables = plant_.stations()[place.station]->config().unit->variables;
-    if (index < 0 || place.number + vm::bits(index) >= variables) return std::nullopt;
-    place.number += vm::bits(index);
-    place.elements = 1;
-    place.name = name;
-    return place;
+  std::optional<ValuePlace> moved(const ValuePlace& place, int32_t index, const std::string& name) const {
+    if (index < 0) return std::nullopt;
+    return variable_place(plant_, place.station, place.signal->number + vm::bits(index), name);
   }
 
   const runtime::Plant& plant_;

@@ -97,7 +97,7 @@ struct Goal {
 };
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Position, commands, time, phase)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ValuePlace, station, kind, number, elements, name)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ValuePlace, station, elements, name)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TaskRef, station, task)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Breakpoint, id, station, address, condition, hit_condition, log, temporary,
                                    enabled, hits)

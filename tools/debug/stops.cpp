@@ -73,7 +73,7 @@ std::optional<Stop> Debugger::data_changed(bool backward) {
   std::optional<Stop> stop;
   for (size_t n = 0; n < watchpoints_.size(); ++n) {
     Watchpoint& watchpoint = watchpoints_[n];
-    const int32_t value = read_value(*plant_, watchpoint.place);
+    const int32_t value = read_value(watchpoint.place);
     if (value == watched_[n]) continue;
     const int32_t before = std::exchange(watched_[n], value);
     bool counts = watchpoint.enabled;
@@ -93,8 +93,8 @@ std::optional<Stop> Debugger::data_changed(bool backward) {
     if (!stop) stop = Stop{Reason::Data, {}, {}, {}};
     stop->ids.push_back(watchpoint.id);
     stop->text += fmt::format("{}{}: {} -> {}", stop->text.empty() ? "" : ", ", watchpoint.place.name,
-                              value_text(*plant_, watchpoint.place, before),
-                              value_text(*plant_, watchpoint.place, value));
+                              value_text(watchpoint.place, before),
+                              value_text(watchpoint.place, value));
   }
   return stop;
 }

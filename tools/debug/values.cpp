@@ -1,77 +1,52 @@
-// Names to values. Parameters are read as the drive shows them and written as over the parameter channel,
-// volatile; so are variables, which are parameters 11000 + n (IPOSplus p. 28).
+// Names to signals, as every front end reads them; two values are the debugger's own: `now`, and `fault` between a command
+// that faults and the tick in which its drive learns of it.
 #include "tools/debug/values.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "runtime/plant_file/signal.hpp"
-#include "runtime/signals/variable_names.hpp"
+#include "runtime/signals/find.hpp"
 #include "stdlib/parameters.hpp"
 
 namespace ipos::tools::debug {
 namespace {
 
 using runtime::Station;
+using signals::Signal;
 
-constexpr uint32_t kFirstVariable = 11'000;
+ValuePlace place_of(uint32_t station, std::string_view name, Signal signal, uint32_t elements = 1) {
+  return {station, elements, std::string(name), std::make_shared<const Signal>(std::move(signal))};
+}
 
-std::optional<ValuePlace> find_variable(const Station& station, uint32_t number, std::string_view name) {
-  ValuePlace place{number, ValueKind::Variable, 0, 1, std::string(name)};
+int64_t fault_at_once(const Station& station) {
+  const uint8_t fault = station.fault();
+  return fault == 0 && station.machine() != nullptr ? station.machine()->fault().number : fault;
+}
+
+std::optional<ValuePlace> find_in(Station& station, uint32_t number, std::string_view name) {
   for (const vm::Symbol& symbol : station.symbols())
-    if (symbol.name == name) {
-      place.number = symbol.variable;
-      place.elements = symbol.count;
-      return place;
-    }
-  const auto found = signals::named_variables(station.symbols(), *station.config().unit, name);
-  if (found.size() != 1) return std::nullopt;  // a structure has no value of its own
-  place.number = found.front().number;
-  return place;
-}
-
-std::optional<ValuePlace> find_in(const Station& station, uint32_t number, std::string_view name) {
-  if (auto variable = find_variable(station, number, name)) return variable;
-  ValuePlace place{number, ValueKind::Input, 0, 1, std::string(name)};
-  if (const int line = runtime::parse_input(name); line >= 0) {
-    place.number = static_cast<uint32_t>(line);
-    return place;
-  }
-  place.kind = ValueKind::Output;
-  if (const int bit = runtime::parse_output(name); bit >= 0) {
-    place.number = static_cast<uint32_t>(bit);
-    return place;
-  }
-  place.kind = ValueKind::Parameter;
-  const auto* row =
-      name.starts_with('P') ? stdlib::parameter_table(*station.config().unit).find(name) : nullptr;
-  if (row != nullptr && row->index != 0) {
-    place.number = row->index;
-    return place;
-  }
-  place.kind = ValueKind::Fault;
-  if (name == "fault") return place;
+    if (symbol.name == name)
+      return place_of(number, name, signals::signal_at(station, signals::Group::Variable, symbol.variable).value(),
+                      symbol.count);
   auto found = signals::find_station_signals(station, name);
-  if (found.size() != 1) return std::nullopt;
-  place.kind = ValueKind::Signal;
-  place.signal = std::make_shared<const signals::Signal>(std::move(found.front()));
-  return place;
-}
-
-// The row of the table; nullptr when the place is no parameter.
-const stdlib::Parameter* parameter_of(const runtime::Plant& plant, const ValuePlace& place) {
-  if (place.kind != ValueKind::Parameter) return nullptr;
-  const auto& table = stdlib::parameter_table(*plant.stations()[place.station]->config().unit);
-  const auto* row = table.find(place.name.substr(place.name.rfind('.') + 1));
-  return row != nullptr ? row : table.find(static_cast<uint16_t>(place.number));
+  if (found.size() != 1) return std::nullopt;  // a structure has no value of its own
+  if (found.front().group == signals::Group::Drive && found.front().own_name().ends_with("fault"))
+    found.front().read = [&station] { return fault_at_once(station); };
+  return place_of(number, name, std::move(found.front()));
 }
 
 }  // namespace
 
 std::optional<ValuePlace> find_value(const runtime::Plant& plant, uint32_t station, std::string_view name) {
-  if (name == "now") return ValuePlace{station, ValueKind::Time, 0, 1, "now"};
   const auto& stations = plant.stations();
+  if (name == "now") {
+    Signal now;
+    now.name = name;
+    now.read = [&plant] { return plant.now() / runtime::kMillisecond; };
+    now.group = signals::Group::Task;  // no variable
+    return place_of(station, name, std::move(now));
+  }
   if (station < stations.size())
     if (auto found = find_in(*stations[station], station, name)) return found;
   for (uint32_t n = 0; n < stations.size(); ++n) {
@@ -82,56 +57,56 @@ std::optional<ValuePlace> find_value(const runtime::Plant& plant, uint32_t stati
       return found;
     }
   }
-  return std::nullopt;
+  if (name.find('.') == std::string_view::npos || signals::is_pattern(name)) return std::nullopt;
+  auto others = signals::find_signals(plant, name);  // gateways and lines
+  if (!others || others->size() != 1) return std::nullopt;
+  return place_of(station, name, std::move(others->front()));
 }
 
-int32_t read_value(const runtime::Plant& plant, const ValuePlace& place) {
-  Station& station = *plant.stations()[place.station];
-  switch (place.kind) {
-    case ValueKind::Variable: return station.variable(place.number);
-    case ValueKind::Parameter: return station.drive().parameters().value(static_cast<uint16_t>(place.number));
-    case ValueKind::Input: return station.inputs().line(place.number).value();
-    case ValueKind::Output: return station.drive().state().outputs() >> place.number & 1;
-    case ValueKind::Time: return static_cast<int32_t>(plant.now() / runtime::kMillisecond);
-    case ValueKind::Signal: return static_cast<int32_t>(place.signal->read());
-    case ValueKind::Fault: break;
-  }
-  // After the command that faults the drive does not know of it yet.
-  const uint8_t fault = station.fault();
-  return fault == 0 && station.machine() != nullptr ? station.machine()->fault().number : fault;
+std::optional<ValuePlace> variable_place(const runtime::Plant& plant, uint32_t station, uint32_t number,
+                                         std::string name) {
+  auto found = signals::signal_at(*plant.stations()[station], signals::Group::Variable, number);
+  if (!found) return std::nullopt;
+  return place_of(station, name, *std::move(found));
 }
 
-void write_value(runtime::Plant& plant, const ValuePlace& place, int32_t value) {
-  Station& station = *plant.stations()[place.station];
-  uint32_t index = place.number;
-  switch (place.kind) {
-    case ValueKind::Input: station.inputs().line(place.number).forced = value; return;
-    case ValueKind::Variable: index = kFirstVariable + place.number; break;
-    case ValueKind::Parameter: break;
-    case ValueKind::Output:
-    case ValueKind::Time:
-    case ValueKind::Signal:
-    case ValueKind::Fault: throw ValueError(fmt::format("{} cannot be set", place.name));
+ValuePlace find_again(const runtime::Plant& plant, const ValuePlace& place) {
+  ValuePlace found = evaluate_place(plant, place.station, place.name, true);
+  found.elements = place.elements;
+  return found;
+}
+
+int32_t read_value(const ValuePlace& place) {
+  const Signal& signal = *place.signal;
+  return signal.parameter != nullptr ? static_cast<int32_t>(signal.read()) : signal.rounded();
+}
+
+void write_value(const ValuePlace& place, int32_t value) {
+  const Signal& signal = *place.signal;
+  if (signal.put == nullptr) throw ValueError(fmt::format("{} cannot be set", place.name));
+  if (signal.is_input()) {
+    signal.line().forced = value;
+    return;
   }
-  runtime::ParameterStore& parameters = station.drive().parameters();
-  const auto service = runtime::ParameterService::WriteVolatile;
-  const auto reply = parameters.execute(service, static_cast<uint16_t>(index), value);
-  if (!reply)
-    throw ValueError(parameters.explain(static_cast<uint8_t>(service), static_cast<uint16_t>(index), value,
-                                        reply.error()));
+  if (const auto refused = signal.write(value)) throw ValueError(*refused);
 }
 
 std::string number_text(int32_t value, bool hex) {
   return hex ? fmt::format("{:#x}", static_cast<uint32_t>(value)) : fmt::format("{}", value);
 }
 
-std::string value_text(const runtime::Plant& plant, const ValuePlace& place, int32_t value, bool hex) {
-  if (place.kind == ValueKind::Signal && !place.signal->unit.empty())
-    return fmt::format("{} ({} {})", number_text(value, hex), place.signal->text(value), place.signal->unit);
-  const stdlib::Parameter* row = parameter_of(plant, place);
-  if (row == nullptr) return number_text(value, hex);
-  return fmt::format("{} ({})", hex ? number_text(value, true) : fmt::format("{}", row->number_of(value)),
-                     stdlib::parameter_text(*row, value));
+std::string value_text(const ValuePlace& place, int32_t value, bool hex) {
+  const Signal& signal = *place.signal;
+  if (signal.parameter != nullptr)
+    return fmt::format("{} ({})", hex ? number_text(value, true) : fmt::format("{}", signal.parameter->number_of(value)),
+                       signal.words(value));
+  return number_text(value, hex) + (signal.unit.empty() || hex ? "" : " " + signal.unit);
+}
+
+std::string value_text(const ValuePlace& place, bool hex) {
+  const Signal& signal = *place.signal;
+  if (hex || signal.parameter != nullptr || signal.factor == 1) return value_text(place, read_value(place), hex);
+  return signal.words(signal.read());
 }
 
 std::optional<Whole> find_whole(const runtime::Plant& plant, uint32_t station, std::string_view name) {
@@ -164,14 +139,14 @@ int32_t evaluate_for(const runtime::Plant& plant, uint32_t station, const ValueP
                      std::string_view text) {
   const size_t begin = std::min(text.find_first_not_of(" \t"), text.size());
   const std::string_view words = text.substr(begin, text.find_last_not_of(" \t") + 1 - begin);
-  const stdlib::Parameter* row = parameter_of(plant, place);
+  const stdlib::Parameter* row = place.signal->parameter;
   if (row == nullptr) return evaluate(plant, station, words);
   if (const auto shown = words.find(" ("); words.ends_with(')') && shown != std::string_view::npos) {
     // Of what is shown a person changes either the number or the words.
     try {
       const int32_t value = evaluate(plant, station, words.substr(0, shown));
       const auto told = stdlib::parse_parameter_text(*row, words.substr(shown + 2, words.size() - shown - 3));
-      return told && value == read_value(plant, place) ? *told : value;
+      return told && value == read_value(place) ? *told : value;
     } catch (const ValueError&) {  // "2 * (1 + 1)" is an expression as a whole
     }
   }

@@ -1,6 +1,6 @@
-// What of a plant has a value that a person can name: variables by symbol, number or system name, parameters,
-// inputs, outputs, every other signal (station_signals.hpp), and a few of the debugger's own. Names of one
-// station; "unit2.H5" is that of another.
+// What of a plant has a value that a person can name: every signal (runtime/signals), and a few of the debugger's own. Names
+// of one station; "unit2.H5" is that of another. Numbers are those that signals show, in rpm; of parameters those that the
+// parameter channel carries, with the words of the unit after them.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "runtime/plant/plant.hpp"
-#include "runtime/signals/station_signals.hpp"
-#include "runtime/signals/variable_names.hpp"
+#include "runtime/signals/signal.hpp"
+#include "runtime/signals/variables.hpp"
 
 namespace ipos::tools::debug {
 
@@ -23,27 +23,31 @@ class ValueError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-enum class ValueKind : uint8_t { Variable, Parameter, Input, Output, Time, Fault, Signal };
-
 struct ValuePlace {
   uint32_t station = 0;
-  ValueKind kind = ValueKind::Variable;
-  uint32_t number = 0;    // of the variable; index of the parameter; line or bit
   uint32_t elements = 1;  // of an array
   std::string name;       // as shown
+  // Of the plant that runs; it is found again in the next one.
   std::shared_ptr<const signals::Signal> signal{};
 };
 
 // Nothing when the plant has no such name.
 std::optional<ValuePlace> find_value(const runtime::Plant& plant, uint32_t station, std::string_view name);
-int32_t read_value(const runtime::Plant& plant, const ValuePlace& place);
+// H of this number under a name of its own; nothing when the station has none.
+std::optional<ValuePlace> variable_place(const runtime::Plant& plant, uint32_t station, uint32_t number,
+                                         std::string name);
+// The same place in a plant that was made again.
+ValuePlace find_again(const runtime::Plant& plant, const ValuePlace& place);
+int32_t read_value(const ValuePlace& place);
 // Throws ValueError when it is refused.
-void write_value(runtime::Plant& plant, const ValuePlace& place, int32_t value);
+void write_value(const ValuePlace& place, int32_t value);
 
 // "2000" or "0x7d0".
 std::string number_text(int32_t value, bool hex);
-// The same, of a parameter "2500 (2.500 s)".
-std::string value_text(const runtime::Plant& plant, const ValuePlace& place, int32_t value, bool hex = false);
+// The same, with the unit, "300.000 rpm", of a parameter "2500 (2.500 s)".
+std::string value_text(const ValuePlace& place, int32_t value, bool hex = false);
+// Of what is there now: with the digits that a rounded value has lost.
+std::string value_text(const ValuePlace& place, bool hex = false);
 
 // A structure, an array or an array of structures: what a name of several variables stands for.
 struct Whole {

@@ -14,6 +14,7 @@
 #include "compiler/diag/places.hpp"
 #include "compiler/parse/parse.hpp"
 #include "compiler/sema/map.hpp"
+#include "runtime/signals/find.hpp"
 #include "runtime/station/station.hpp"
 #include "runtime/unit/program_image.hpp"
 #include "stdlib/headers.hpp"
@@ -90,6 +91,7 @@ compiler::CompileOptions options_of(const CompileFlags& flags) {
   options.list_files = list_files;
   options.unit = unit_of(flags);
   options.atomic = flags.atomic;
+  options.is_unit_value = signals::is_unit_value;
   for (const std::string& warning : flags.warnings)
     if (!options.warnings.apply(warning))
       throw Failure(kUsage, fmt::format("there is no warning -W{}", warning));

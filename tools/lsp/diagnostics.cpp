@@ -54,11 +54,15 @@ std::string clean(const compiler::SourceFile& file) {
   return file.path.empty() ? file.name : tidy(file.path);
 }
 
+int severity_number(Severity severity) {
+  return severity == Severity::Error ? 1 : severity == Severity::Warning ? 2 : 3;  // 3: information
+}
+
 Json message(const Diagnostic& diagnostic, const Program& program, Ranges& ranges) {
   const compiler::SourceMap& map = *program.compiled.sources;
   const compiler::DiagInfo& row = compiler::info(diagnostic.diag);
   Json out{{"range", ranges.of(compiler::range_of(diagnostic.span, map))},
-           {"severity", diagnostic.severity == Severity::Error ? 1 : 2},
+           {"severity", severity_number(diagnostic.severity)},
            {"code", row.code},
            {"source", "ipos"}};
   std::string text = diagnostic.text;

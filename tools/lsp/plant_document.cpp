@@ -316,8 +316,7 @@ Json plant_completion(Workspace& workspace, const Json& params) {
   } else if (spot->table.ends_with(".parameters") || (spot->at_value && spot->key == "parameter")) {
     offer_parameters(items, *spot);
   } else if (spot->table.ends_with(".inputs") && !spot->at_value) {
-    for (const int tens : {0, 1})
-      for (int ones = 0; ones < 8; ++ones) offer(items, fmt::format("DI{}{}", tens, ones), kField);
+    for (const runtime::BinaryTerminal& terminal : runtime::binary_inputs()) offer(items, std::string(terminal.name), kField);
   } else if (spot->at_value) {
     offer_names(items, *spot);
     for (const std::string& known : known_at(path, *spot, fmt::format("{} = \"{}\"", spot->key, kProbe)))

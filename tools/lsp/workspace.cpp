@@ -5,6 +5,7 @@
 #include <cctype>
 #include <filesystem>
 
+#include "runtime/signals/find.hpp"
 #include "tools/lsp/plant_document.hpp"
 
 namespace ipos::tools::lsp {
@@ -143,6 +144,7 @@ Program Workspace::compile(const std::string& path, const std::map<std::string, 
   Program program;
   program.path = path;
   compiler::CompileOptions options = options_;
+  options.is_unit_value = signals::is_unit_value;
   options.read_file = [this, &texts](const std::string& wanted) {
     // "/a/../b" and "/b" are one file to the editor.
     const std::string clean = tidy(wanted);

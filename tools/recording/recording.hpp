@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "runtime/plant/plant.hpp"
-#include "runtime/signals/plant_signals.hpp"
+#include "runtime/signals/find.hpp"
 
 namespace ipos::tools {
 

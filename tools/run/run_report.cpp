@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -51,6 +52,8 @@ std::string text_report(runtime::Plant& plant, const WatchChoice& watch) {
       text += watch_window(rows) + "\n";
     }
   }
+  if (const std::vector<WatchRow> rows = watch_rows(plant, watch.names); !rows.empty())
+    text += "gateways and lines\n" + watch_window(rows) + "\n";
   for (const auto& bus : plant.buses()) {
     const runtime::LineLoad load = bus->load(plant.now());
     text += fmt::format("{}: {} {}s in {:.3f} s, bus load {:.2f} % of {} baud\n", bus->name(), load.frames,
@@ -59,6 +62,20 @@ std::string text_report(runtime::Plant& plant, const WatchChoice& watch) {
   }
   return utf8(text);
 }
+
+namespace {
+
+nlohmann::ordered_json number_json(double value) {
+  const auto whole = std::llround(value);
+  if (static_cast<double>(whole) == value) return whole;
+  return value;
+}
+
+nlohmann::ordered_json signal_json(const WatchRow& row) {
+  return {{"name", row.name}, {"value", number_json(row.value)}, {"text", row.text}};
+}
+
+}  // namespace
 
 std::string json_report(runtime::Plant& plant, const WatchChoice& watch) {
   using nlohmann::ordered_json;
@@ -74,11 +91,12 @@ std::string json_report(runtime::Plant& plant, const WatchChoice& watch) {
     entry["variables"] = ordered_json::array();
     for (const WatchRow& row : watch_rows(*station, watch.names))
       if (row.index)
-        entry["variables"].push_back({{"name", row.name}, {"index", *row.index}, {"value", row.value}});
+        entry["variables"].push_back({{"name", row.name}, {"index", *row.index}, {"value", number_json(row.value)}});
       else
-        entry["signals"].push_back({{"name", row.name}, {"value", row.value}, {"text", row.text}});
+        entry["signals"].push_back(signal_json(row));
     report["stations"].push_back(std::move(entry));
   }
+  for (const WatchRow& row : watch_rows(plant, watch.names)) report["signals"].push_back(signal_json(row));
   report["buses"] = ordered_json::array();
   for (const auto& bus : plant.buses()) {
     const runtime::LineLoad load = bus->load(plant.now());

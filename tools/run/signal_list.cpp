@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/plant/plant.hpp"
-#include "runtime/signals/plant_signals.hpp"
+#include "runtime/signals/find.hpp"
 #include "tools/cli/json_text.hpp"
 
 namespace ipos::tools {

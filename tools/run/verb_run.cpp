@@ -316,7 +316,8 @@ int run(const RunFlags& flags) {
   const WatchChoice watch = watch_choice(flags.watch);
   for (const std::string& name : watch.names)
     if (std::none_of(plant.stations().begin(), plant.stations().end(),
-                     [&](const auto& station) { return !watch_rows(*station, {name}).empty(); }))
+                     [&](const auto& station) { return !watch_rows(*station, {name}).empty(); }) &&
+        watch_rows(plant, {name}).empty())
       fmt::print(stderr, "ipos: warning: no station has a variable or signal '{}'\n", name);
   fmt::print(output_taken ? stderr : stdout, "{}",
              flags.format == "json" ? json_report(plant, watch) : text_report(plant, watch));

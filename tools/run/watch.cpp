@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "compiler/diag/places.hpp"
-#include "runtime/signals/station_signals.hpp"
-#include "runtime/signals/variable_names.hpp"
+#include "runtime/signals/find.hpp"
+#include "runtime/signals/variables.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -20,23 +20,13 @@ void add(const runtime::Station& station, const std::vector<signals::NamedVariab
   };
   for (const signals::NamedVariable& row : variables)
     rows.push_back(
-        {compiler::printable(row.name), row.number, station.variable(row.number),
+        {compiler::printable(row.name), row.number, static_cast<double>(station.variable(row.number)),
          in_hex(row.symbol) || in_hex(row.name), ""});
 }
 
-void add_signals(const runtime::Station& station, const std::string& name, std::vector<WatchRow>& rows) {
-  const auto found = signals::is_pattern(name) ? signals::match_station_signals(station, name)
-                                               : signals::find_station_signals(station, name);
-  for (const signals::Signal& signal : found) {
-    const std::string own = signal.name.substr(signal.station.size() + 1);
-    if (signal.group == signals::Group::Variable && signal.bits == 0) {
-      add(station, signals::named_variables(station.symbols(), *station.config().unit, own), rows);
-      continue;
-    }
-    const int64_t value = signal.read();
-    rows.push_back({own, std::nullopt, value, false,
-                    signal.text(value) + (signal.unit.empty() ? "" : " " + signal.unit)});
-  }
+WatchRow row_of(const signals::Signal& signal, const std::string& name) {
+  const int64_t sample = signal.read();
+  return {name, std::nullopt, static_cast<double>(sample) * signal.factor, false, signal.words(sample)};
 }
 
 }  // namespace
@@ -48,9 +38,28 @@ std::vector<WatchRow> watch_rows(const runtime::Station& station, const std::vec
   for (std::string name : names) {
     // "u.H200" is of the station u only.
     if (const std::string own = station.config().name + "."; name.starts_with(own)) name.erase(0, own.size());
-    const size_t before = rows.size();
-    add(station, signals::named_variables(station.symbols(), *station.config().unit, name), rows);
-    if (rows.size() == before) add_signals(station, name, rows);
+    for (const signals::Signal& signal : signals::is_pattern(name) ? signals::match_station_signals(station, name)
+                                                                   : signals::find_station_signals(station, name)) {
+      const std::string own(signal.own_name());
+      if (signal.is_variable() && signal.bits == 0)
+        add(station, signals::named_variables(station.symbols(), *station.config().unit, own), rows);
+      else
+        rows.push_back(row_of(signal, own));
+    }
+  }
+  return rows;
+}
+
+std::vector<WatchRow> watch_rows(const runtime::Plant& plant, const std::vector<std::string>& names) {
+  std::vector<WatchRow> rows;
+  for (const std::string& name : names) {
+    if (name.find('.') == std::string::npos) continue;
+    const auto found = signals::find_signals(plant, name);
+    if (!found) continue;
+    for (const signals::Signal& signal : *found)
+      if (std::none_of(plant.stations().begin(), plant.stations().end(),
+                       [&](const auto& station) { return station->config().name == signal.station; }))
+        rows.push_back(row_of(signal, signal.name));
   }
   return rows;
 }
@@ -61,8 +70,8 @@ std::string watch_window(const std::vector<WatchRow>& rows) {
   std::string text;
   for (const WatchRow& row : rows) {
     const std::string value = !row.index ? row.text
-                              : row.hex  ? fmt::format("{:08X} h", static_cast<uint32_t>(row.value))
-                                         : fmt::format("{}", row.value);
+                              : row.hex  ? fmt::format("{:08X} h", static_cast<uint32_t>(static_cast<int32_t>(row.value)))
+                                         : fmt::format("{:.0f}", row.value);
     const std::string number = row.index ? fmt::format("H{}", *row.index) : "";
     text += fmt::format("{:<4} {:<{}}  {}\n", number, row.name, width, value);
   }

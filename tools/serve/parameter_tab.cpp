@@ -9,29 +9,12 @@
 #include "tools/serve/tabs.hpp"
 #include "tools/unit/parameter_set.hpp"
 #include "tools/unit/parameter_target.hpp"
+#include "tools/unit/running_station.hpp"
 
 namespace ipos::tools::serve {
 namespace {
 
 using stdlib::Service;
-
-// A station of the plant as it runs.
-class RunningStation final : public ParameterAccess {
- public:
-  explicit RunningStation(runtime::Station& station) : station_(station) {}
-  AccessReply execute(Service service, uint16_t index, int32_t value) override {
-    const runtime::ParameterReply reply = service == Service::Read
-                                              ? std::as_const(station_).drive().parameters().read(index)
-                                              : station_.drive().parameters().execute(service, index, value);
-    if (reply) return *reply;
-    return tl::unexpected(AccessError{reply.error(), {}});
-  }
-  std::string name() const override { return station_.config().name; }
-  const stdlib::UnitType& unit() const override { return *station_.config().unit; }
-
- private:
-  runtime::Station& station_;
-};
 
 class ParameterTab final : public Tab {
  public:

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include "runtime/drive/indices.hpp"
+#include "runtime/plant/actions.hpp"
 #include "runtime/plant_file/signal.hpp"
+#include "runtime/signals/find.hpp"
 #include "stdlib/faults.hpp"
 #include "stdlib/parameters.hpp"
 #include "tools/serve/bus_ear.hpp"
@@ -17,35 +19,14 @@ using runtime::Station;
 
 constexpr int32_t kTurn = 4096;  // increments of the shaft (IPOSplus p. 22)
 
-// A terminal, its bit in the levels and the parameter that gives it its function.
-struct Terminal {
-  const char* name;
-  int bit;
-  const char* parameter;
-};
-constexpr Terminal kInputs[] = {
-    {"DI00", 0, ""},     {"DI01", 1, "600"},  {"DI02", 2, "601"},  {"DI03", 3, "602"},  {"DI04", 4, "603"},
-    {"DI05", 5, "604"},  {"DI10", 8, "610"},  {"DI11", 9, "611"},  {"DI12", 10, "612"}, {"DI13", 11, "613"},
-    {"DI14", 12, "614"}, {"DI15", 13, "615"}, {"DI16", 14, "616"}, {"DI17", 15, "617"}};
-constexpr Terminal kOutputs[] = {{"DB00", 0, ""},     {"DO01", 1, "620"},  {"DO02", 2, "621"},
-                                 {"DO10", 8, "630"},  {"DO11", 9, "631"},  {"DO12", 10, "632"},
-                                 {"DO13", 11, "633"}, {"DO14", 12, "634"}, {"DO15", 13, "635"},
-                                 {"DO16", 14, "636"}, {"DO17", 15, "637"}};
-
-// Terminals of the unit; those of the frequency and the potentiometer are MOVITRAC 07's, AI2 is MOVIDRIVE's.
-bool has_analog(const Station& station, std::string_view terminal) {
-  const bool m07 = station.config().unit->generation == stdlib::Generation::M07;
-  return terminal == "AI1" || (terminal == "AI2") != m07;
-}
-
 // Of units without the parameter there is no such terminal, except the two with a fixed function.
-Json terminals(const Station& station, std::span<const Terminal> all, const char* fixed) {
+Json terminals(const Station& station, std::span<const runtime::BinaryTerminal> all, const char* fixed) {
   const stdlib::ParameterTable& table = stdlib::parameter_table(*station.config().unit);
   Json list = Json::array();
-  for (const Terminal& terminal : all) {
-    const bool is_fixed = *terminal.parameter == 0;
+  for (const runtime::BinaryTerminal& terminal : all) {
+    const bool is_fixed = terminal.parameter.empty();
     const stdlib::Parameter* parameter =
-        is_fixed ? nullptr : table.find(std::string_view(terminal.parameter));
+        is_fixed ? nullptr : table.find(terminal.parameter);
     if (!is_fixed && parameter == nullptr) continue;
     const std::string function =
         is_fixed ? fixed
@@ -75,7 +56,7 @@ Json analog_texts(const Station& station) {
   for (const runtime::AnalogKind& kind : runtime::analog_kinds()) {
     const std::string name(kind.name);
     const int32_t value = station.inputs().line(runtime::line_of(kind)).value();
-    if (has_analog(station, name) && (value != 0 || !texts.contains(name)))
+    if (kind.is_of(*station.config().unit) && (value != 0 || !texts.contains(name)))
       texts[name] = fmt::format("{:.3f} {}", value / kind.factor, kind.unit);
   }
   return texts;
@@ -117,48 +98,26 @@ class PlantTab final : public Tab {
 
   // --- what a hand does ---
 
-  // The terminal's line, and what holds or releases it from the next millisecond on.
-  void stimulate(Station& station, runtime::Signal signal, runtime::Stimulus::Action action, int32_t value,
-                 int64_t ms) {
-    std::string why;
-    const auto port = signals::SignalPort::find(host_.plant().stations(), signal, why);
-    if (!port) throw Mistake(why);
-    runtime::Stimulus stimulus;
-    stimulus.signal = signal;
-    stimulus.action = action;
-    stimulus.value = value;
-    stimulus.at = host_.plant().now();
-    stimulus.length = ms * runtime::kMillisecond;
-    host_.plant().surroundings().add(*port, stimulus);
-    // Seen at once, also while the plant stands.
-    if (action == runtime::Stimulus::Action::Release)
-      station.inputs().line(signal.line).forced.reset();
-    else
-      station.inputs().line(signal.line).forced = value;
+  static void succeed(const runtime::Refusal& refused) {
+    if (refused) throw Mistake(*refused);
   }
 
   void input(const Arguments& a) {
     Station& station = host_.station(a.text("station"));
     const std::string name = a.text("name");
-    const int bit = runtime::parse_input(name);
-    if (bit < 0) throw Mistake(fmt::format("'{}' is no input; they are DI00 to DI07 and DI10 to DI17", name));
-    runtime::Signal signal{station.config().name, runtime::SignalKind::Input, name,
-                           static_cast<uint8_t>(bit)};
+    const auto signal = signals::find_in_group(station, signals::Group::Input, name);
+    if (!signal) throw Mistake(fmt::format("'{}' is no input; they are DI00 to DI07 and DI10 to DI17", name));
+    runtime::PlantActions actions(host_.plant(), kPerson);
     const std::string action = a.text("action", "set");
-    runtime::InputLine& line = station.inputs().line(signal.line);
-    if (action == "release") return stimulate(station, signal, runtime::Stimulus::Action::Release, 0, 0);
+    if (action == "release") return actions.release(*signal);
     const int32_t level = a.flag("on") ? 1 : 0;
-    if (action == "force") return stimulate(station, signal, runtime::Stimulus::Action::Force, level, 0);
+    if (action == "force") return succeed(actions.force(*signal, level));
     if (action == "pulse")
-      return stimulate(station, signal, runtime::Stimulus::Action::Pulse, level,
-                       a.whole("ms", 1, 3'600'000, 100));
+      return succeed(actions.force(*signal, level, a.whole("ms", 1, 3'600'000, 100) * runtime::kMillisecond));
     if (action != "set") throw Mistake("'action' must be set, pulse, force or release");
-    if (line.forced)
+    if (actions.is_forced(*signal))
       throw Mistake(fmt::format("{} of {} is forced; release it first", name, station.config().name));
-    if (line.driven)
-      throw Mistake(fmt::format("{} of {} is held by a wire or a switch of the plant; force it", name,
-                                station.config().name));
-    line.set = level;
+    succeed(actions.set(*signal, level));
   }
 
   void analog(const Arguments& a) {
@@ -169,21 +128,19 @@ class PlantTab final : public Tab {
     if (first < 0)
       throw Mistake(
           fmt::format("'{}' is no analog terminal; they are AI1, AI2, frequency, potentiometer", name));
-    runtime::Signal signal{station.config().name, runtime::SignalKind::Input, name,
-                           static_cast<uint8_t>(first)};
-    if (action == "release") return stimulate(station, signal, runtime::Stimulus::Action::Release, 0, 0);
+    const auto line = [&](int number) {
+      return *signals::signal_at(station, signals::Group::Analog, static_cast<uint32_t>(number));
+    };
+    runtime::PlantActions actions(host_.plant(), kPerson);
+    if (action == "release") return actions.release(line(first));
     const std::string value = a.text("value");
     const auto setting = runtime::parse_analog(name, value);
     if (!setting)
       throw Mistake(
           fmt::format("'{}' is no value for {}; write for example 5 V, 12 mA, 5 kHz, 50 %", value, name));
-    signal.line = setting->line;
-    if (action == "force")
-      return stimulate(station, signal, runtime::Stimulus::Action::Force, setting->value, 0);
+    if (action == "force") return succeed(actions.force(line(setting->line), setting->value));
     if (action != "set") throw Mistake("'action' must be set, force or release");
-    for (size_t line = runtime::kBinaryLines; line < runtime::kInputLines; ++line)
-      if (runtime::same_terminal(line, setting->line)) station.inputs().line(line).set = 0;
-    station.inputs().line(setting->line).set = setting->value;
+    succeed(actions.set(line(setting->line), setting->value));
   }
 
   void power(const Arguments& a) {
@@ -240,7 +197,7 @@ class PlantTab final : public Tab {
     const runtime::StationConfig& config = station.config();
     Json analog = Json::array();
     for (const runtime::AnalogKind& kind : runtime::analog_kinds()) {
-      if (!has_analog(station, kind.name)) continue;
+      if (!kind.is_of(*config.unit)) continue;
       if (analog.empty() || analog.back()["name"] != kind.name)
         analog.push_back(
             {{"name", kind.name}, {"units", Json::array()}, {"least", kind.minimum}, {"most", kind.maximum}});
@@ -251,8 +208,8 @@ class PlantTab final : public Tab {
             {"title", config.unit->title},
             {"program", config.program},
             {"drive", true},
-            {"inputs", terminals(station, kInputs, "/CONTROL.INHIBIT")},
-            {"outputs", terminals(station, kOutputs, "/BRAKE")},
+            {"inputs", terminals(station, runtime::binary_inputs(), "/CONTROL.INHIBIT")},
+            {"outputs", terminals(station, runtime::binary_outputs(), "/BRAKE")},
             {"analog", std::move(analog)},
             {"lines", lines_of(config)}};
   }

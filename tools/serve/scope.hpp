@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/signals/plant_signals.hpp"
+#include "runtime/signals/find.hpp"
 #include "tools/serve/desk.hpp"
 #include "tools/serve/scope_memory.hpp"
 #include "tools/serve/second_run.hpp"

@@ -2,7 +2,7 @@
 // lines, too.
 #include <fmt/format.h>
 
-#include "runtime/signals/plant_signals.hpp"
+#include "runtime/signals/find.hpp"
 #include "tools/serve/scope.hpp"
 #include "tools/serve/tabs.hpp"
 

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "tools/serve/plant_host.hpp"
 
 namespace ipos::tools::serve {
+
+inline constexpr std::string_view kPerson = "a person";  // who forces by the page
 
 std::unique_ptr<Tab> make_plant_tab(PlantHost& host);
 std::unique_ptr<Tab> make_watch_tab(PlantHost& host);

@@ -5,14 +5,14 @@
 
 #include <algorithm>
 
-#include "runtime/signals/signal_port.hpp"
+#include "runtime/signals/find.hpp"
 
 namespace ipos::tools::testing {
 
 using runtime::kMillisecond;
 
 Actor::Actor(runtime::Plant& plant, const std::vector<Item>& items, uint64_t seed, Problem on_problem)
-    : plant_(plant), hands_(plant), seed_(seed), on_problem_(std::move(on_problem)) {
+    : plant_(plant), actions_(plant, "a test"), seed_(seed), on_problem_(std::move(on_problem)) {
   for (const Item& item : items)
     if (const auto* step = std::get_if<Step>(&item.what))
       if (const auto* send = std::get_if<SendStep>(step)) plant.find_bus(send->bus)->attach_hand();
@@ -27,12 +27,12 @@ void Actor::plan(const Item& item, const Step& step, Time at) {
   // What holds longer than a moment is a stimulus of the plant.
   if (const auto* stimulus = std::get_if<runtime::Stimulus>(&step)) {
     std::string why;
-    const auto port = signals::SignalPort::find(plant_.stations(), stimulus->signal, why);
-    if (!port) return on_problem_(item, why);
+    const auto signal = signals::find_signal(plant_, stimulus->signal, why);
+    if (!signal) return on_problem_(item, why);
     if (stimulus->action != runtime::Stimulus::Action::Set || stimulus->every != 0) {
       runtime::Stimulus timed = *stimulus;
       timed.at = at;
-      return plant_.surroundings().add(*port, timed);
+      return plant_.surroundings().add(*signal, timed);
     }
   }
   plant_.surroundings().act(at, [this, &item, &step, at] {
@@ -44,7 +44,7 @@ void Actor::plan(const Item& item, const Step& step, Time at) {
     if (const auto* fault = std::get_if<runtime::FaultConfig>(&step)) problem = plant_fault(*fault, at);
     if (const auto* fault = std::get_if<DriveFaultStep>(&step))
       station(fault->station).drive().state().raise_fault(fault->number);
-    if (const auto* program = std::get_if<ProgramStep>(&step)) problem = runtime::Hands::order(station(program->station), program->action);
+    if (const auto* program = std::get_if<ProgramStep>(&step)) problem = runtime::PlantActions::order(station(program->station), program->action);
     if (const auto* power = std::get_if<PowerStep>(&step)) plant_.set_power(power->station, power->on);
     if (problem) on_problem_(item, *problem);
   });
@@ -52,24 +52,19 @@ void Actor::plan(const Item& item, const Step& step, Time at) {
 
 runtime::Refusal Actor::set(const runtime::Stimulus& stimulus) {
   std::string why;
-  const auto port = signals::SignalPort::find(plant_.stations(), stimulus.signal, why);
-  return runtime::Hands::set(*port, stimulus.signal.name, stimulus.value);
+  return actions_.set(*signals::find_signal(plant_, stimulus.signal, why), stimulus.value);
 }
 
 void Actor::set_word(const ProcessDataStep& step) {
-  runtime::Station& station = this->station(step.station);
-  switch (step.action) {
-    case ProcessDataStep::Action::Set:
-      hands_.release_word(station, step.word);
-      return hands_.set_word(station, step.word, step.value);
-    case ProcessDataStep::Action::Force: return hands_.force_word(station, step.word, step.value);
-    case ProcessDataStep::Action::Release: return hands_.release_word(station, step.word);
-  }
+  const auto word = signals::find_in_group(station(step.station), signals::Group::ProcessData, step.word).value();
+  if (step.action != ProcessDataStep::Action::Force) actions_.release(word);
+  if (step.action == ProcessDataStep::Action::Set) actions_.set(word, step.value);
+  if (step.action == ProcessDataStep::Action::Force) actions_.force(word, step.value);
 }
 
 runtime::Refusal Actor::plant_fault(runtime::FaultConfig fault, Time at) {
   fault.begin_at(0, seed_);
-  return hands_.plant_fault(std::move(fault), at);
+  return actions_.plant_fault(std::move(fault), at);
 }
 
 }  // namespace ipos::tools::testing

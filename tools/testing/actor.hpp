@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/plant/hands.hpp"
+#include "runtime/plant/actions.hpp"
 #include "tools/testing/test_case.hpp"
 
 namespace ipos::tools::testing {
@@ -31,7 +31,7 @@ class Actor {
   runtime::Refusal plant_fault(runtime::FaultConfig fault, Time at);
 
   runtime::Plant& plant_;
-  runtime::Hands hands_;
+  runtime::PlantActions actions_;
   uint64_t seed_;
   Problem on_problem_;
 };

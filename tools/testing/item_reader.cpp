@@ -23,12 +23,12 @@ const runtime::BusConfig* read_item_bus(PlantReader& reader, const toml::table& 
   return nullptr;
 }
 
-std::optional<uint8_t> read_word(PlantReader& reader, const toml::node& node, bool inputs) {
+std::optional<std::string> read_word(PlantReader& reader, const toml::node& node, bool inputs) {
   const std::string name = node.value_or(std::string());
   constexpr std::string_view kWords[] = {"PO1", "PO2", "PO3", "PI1", "PI2", "PI3"};
   const auto end = inputs ? std::end(kWords) : std::begin(kWords) + 3;
   const auto word = std::find(std::begin(kWords), end, name);
-  if (word != end) return static_cast<uint8_t>(word - std::begin(kWords));
+  if (word != end) return name;
   reader.error(place_of(node),
                fmt::format("process_data is {}",
                            inputs ? "\"PO1\" to \"PO3\" or \"PI1\" to \"PI3\"" : "\"PO1\" to \"PO3\""));

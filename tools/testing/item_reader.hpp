@@ -17,8 +17,8 @@ std::string read_item_station(PlantReader& reader, const toml::table& table, std
                               bool gateway_too = false);
 // The bus of the table, which must exist; nullptr with an error.
 const runtime::BusConfig* read_item_bus(PlantReader& reader, const toml::table& table, std::string_view what);
-// "PO1" to "PO3": 0 to 2, with `inputs` "PI1" to "PI3": 3 to 5; nothing with an error.
-std::optional<uint8_t> read_word(PlantReader& reader, const toml::node& node, bool inputs);
+// "PO1" to "PO3", with `inputs` also "PI1" to "PI3"; nothing with an error.
+std::optional<std::string> read_word(PlantReader& reader, const toml::node& node, bool inputs);
 
 // The plant must have been read.
 std::optional<Step> read_step(PlantReader& reader, const toml::table& table);

@@ -8,7 +8,7 @@
 
 #include "runtime/bus/movilink/describe_serial.hpp"
 #include "runtime/bus_plan/names.hpp"
-#include "runtime/signals/signal_port.hpp"
+#include "runtime/signals/find.hpp"
 #include "tools/input/sources.hpp"
 
 namespace ipos::tools::testing {
@@ -43,16 +43,11 @@ runtime::Station& Probe::station(const std::string& name) {
 }
 
 Reader Probe::reader_of(const Subject& subject, std::string& why) {
-  if (subject.kind == Subject::Kind::ProcessData) {
-    const runtime::Station& station = this->station(subject.signal.station);
-    return [&station, word = subject.word] {
-      const runtime::Drive& drive = station.drive().state();
-      return int64_t{word < 3 ? drive.po()[word] : drive.pi()[word - 3U]};
-    };
-  }
-  const auto port = plant_.find_port(subject.signal, why);
-  if (!port) return {};
-  return [port = *port] { return int64_t{port.read()}; };
+  if (subject.kind == Subject::Kind::ProcessData)
+    return signals::find_in_group(station(subject.signal.station), signals::Group::ProcessData, subject.signal.name)->read;
+  auto signal = signals::find_signal(plant_, subject.signal, why);
+  if (!signal) return {};
+  return [named = subject.signal, signal = *std::move(signal)] { return int64_t{signals::value_for(named, signal)}; };
 }
 
 Reader Probe::follow(const Subject& subject, std::string& why) {
@@ -119,8 +114,9 @@ void Probe::describe(const Subject& subject, Finding& finding) const {
     if (followed.changes.empty() || (!station.empty() && followed.subject.signal.station != station))
       continue;
     const Change& last = followed.changes.back();
-    std::string text = fmt::format("{}.{} = {} since {}", followed.subject.signal.station,
-                                   followed.subject.signal.name, last.value, time_text(last.time));
+    const Subject& of = followed.subject;
+    std::string text = of.is_old() ? of.text() : fmt::format("{}.{}", of.signal.station, of.signal.name);
+    text += fmt::format(" = {} since {}", last.value, time_text(last.time));
     for (size_t n = followed.changes.size() - 1; n-- > 0;)
       text += fmt::format(", {} from {}", followed.changes[n].value, time_text(followed.changes[n].time));
     finding.values.push_back(std::move(text));

@@ -45,6 +45,7 @@ Program Programs::make(const std::string& path, const stdlib::UnitType* unit) co
   if (!is_source(path)) return read_image(path, *text);
   compiler::CompileOptions options = options_of(flags_);
   if (unit != nullptr) options.unit = unit;
+  options.is_unit_value = nullptr;  // a test names errors and warnings
   compiler::Compilation compiled = compiler::compile(path, path, *text, options);
   const auto& all = compiled.diagnostics.all();
   program.messages = compiler::render_text(all, *compiled.sources, false);

@@ -39,7 +39,6 @@ std::optional<Subject> read_subject(PlantReader& reader, const toml::table& tabl
     const auto word = read_word(reader, *node, true);
     if (!word) return std::nullopt;
     subject.kind = Subject::Kind::ProcessData;
-    subject.word = *word;
     subject.signal.name = node->as_string()->get();
     return subject;
   }

@@ -12,7 +12,7 @@
 #include <list>
 #include <set>
 
-#include "runtime/signals/station_state.hpp"
+#include "runtime/signals/states.hpp"
 #include "tools/cli/interrupt.hpp"
 #include "tools/input/mistakes.hpp"
 #include "tools/testing/actor.hpp"

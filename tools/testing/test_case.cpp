@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "runtime/plant_file/state_names.hpp"
+
 namespace ipos::tools::testing {
 namespace {
 
@@ -18,9 +20,13 @@ std::string range_text(std::pair<int64_t, int64_t> range) {
 }  // namespace
 
 std::string Subject::text() const {
-  if (kind != Kind::Message) return fmt::format("{} of {}", signal.name, signal.station);
+  if (kind != Kind::Message) return fmt::format("{}{} of {}", is_old() ? "state " : "", signal.name, signal.station);
   const char* quote = message == "frame" && pattern.find(' ') == std::string::npos ? "" : "'";
   return fmt::format("{} {}{}{} on {}", message, quote, pattern, quote, bus);
+}
+
+bool Subject::is_old() const {
+  return kind == Kind::Signal && signal.kind == runtime::SignalKind::State && !runtime::old_state(signal.name).empty();
 }
 
 bool Subject::operator==(const Subject& other) const {

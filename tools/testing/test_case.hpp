@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "runtime/plant/hands.hpp"
+#include "runtime/plant/actions.hpp"
 #include "runtime/plant/plant.hpp"
 
 namespace ipos::tools::testing {
@@ -24,12 +24,12 @@ struct Subject {
   enum class Kind : uint8_t { Signal, ProcessData, Message };
   Kind kind = Kind::Signal;
   runtime::Signal signal;  // Signal; of the others station and name
-  uint8_t word = 0;        // ProcessData: 0..2 PO1..PO3, 3..5 PI1..PI3
   std::string bus;
   std::string message;  // "frame", "telegram"
   std::string pattern;  // glob over "400#5566778811223344", "02 01 85 .." or the meaning
 
   bool is_event() const { return kind == Kind::Message; }
+  bool is_old() const;  // a state that counts in another scale than the signal of its name
   std::string text() const;  // "lPieces of belt", "frame 400#* on sbus"
   bool operator==(const Subject& other) const;
 };
@@ -72,7 +72,7 @@ struct Wait {};  // how long is in Item::after, until when in Item::at
 struct ProcessDataStep {
   enum class Action : uint8_t { Set, Force, Release };
   std::string station;
-  uint8_t word = 0;  // PO1..PO3
+  std::string word;  // "PO1"
   Action action = Action::Set;
   uint16_t value = 0;
 };

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "compiler/diag/places.hpp"
+#include "runtime/plant_file/state_names.hpp"
 #include "stdlib/unit_types.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/interrupt.hpp"
@@ -167,6 +168,15 @@ int code_of(const std::vector<TestResult>& results) {
   return count(results, Outcome::Failed) != 0 ? kFindings : kGood;
 }
 
+// Once, however many tests still count in thousandths.
+void tell_old_states(const std::vector<TestCase>& tests) {
+  for (const TestCase& test : tests)
+    for (const Item& item : test.items)
+      if (const auto* expect = std::get_if<Expect>(&item.what); expect != nullptr && expect->subject.is_old())
+        return fmt::print(stderr, "ipos: note: {}:{}:{}: {}\n", compiler::printable(test.file), item.place.line,
+                          item.place.column, runtime::old_state(expect->subject.signal.name));
+}
+
 int run_once(const TestFlags& flags, std::vector<TestCase>& tests) {
   LastFailed last_failed(std::filesystem::current_path().string());
   tests = find_tests(flags, last_failed);
@@ -181,6 +191,7 @@ int run_once(const TestFlags& flags, std::vector<TestCase>& tests) {
       fmt::print("{}\n", compiler::printable(fmt::format("{}  {}:{}", test.name, test.file, test.place.line)));
     return kGood;
   }
+  tell_old_states(tests);
   for (const std::string& report : {flags.junit, flags.tap, flags.json, flags.html}) check_output(report);
   TotalCoverage coverage;
   SuiteOptions options = flags.suite;

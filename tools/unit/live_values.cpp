@@ -7,7 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "runtime/signals/variable_names.hpp"
+#include "runtime/signals/variables.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/json_text.hpp"
 #include "tools/input/program.hpp"

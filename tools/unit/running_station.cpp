@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
+#include "runtime/signals/parameter_channel.hpp"
 #include "tools/cli/exit_codes.hpp"
 #include "tools/cli/failure.hpp"
 
@@ -29,11 +32,15 @@ runtime::Station& find_station(runtime::Plant& plant, const std::string& path, c
 }
 
 AccessReply RunningStation::execute(stdlib::Service service, uint16_t index, int32_t value) {
-  const runtime::ParameterReply reply = station_.drive().parameters().execute(service, index, value);
+  const runtime::ParameterReply reply =
+      service == stdlib::Service::Read ? std::as_const(station_).drive().parameters().read(index)
+                                       : signals::parameter_channel(station_.drive(), service, index, value);
   if (reply) return *reply;
   return tl::unexpected(AccessError{reply.error(), {}});
 }
 
-std::string RunningStation::name() const { return fmt::format("{} of {}", station_.config().name, plant_); }
+std::string RunningStation::name() const {
+  return plant_.empty() ? station_.config().name : fmt::format("{} of {}", station_.config().name, plant_);
+}
 
 }  // namespace ipos::tools

@@ -16,7 +16,8 @@ void refuse_gateway(const runtime::PlantFile& file, const std::string& path, con
 
 class RunningStation final : public ParameterAccess {
  public:
-  RunningStation(runtime::Station& station, std::string plant)
+  // Without the name of its plant it is called by its own alone.
+  explicit RunningStation(runtime::Station& station, std::string plant = {})
       : station_(station), plant_(std::move(plant)) {}
 
   AccessReply execute(stdlib::Service service, uint16_t index, int32_t value) override;

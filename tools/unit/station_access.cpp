@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/signals/parameter_channel.hpp"
 #include "runtime/unit/drive_server.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/input/plant_source.hpp"
@@ -47,7 +48,7 @@ class StationAccess final : public ParameterAccess {
   }
 
   AccessReply execute(stdlib::Service service, uint16_t index, int32_t value) override {
-    const runtime::ParameterReply reply = drive_.parameters().execute(service, index, value);
+    const runtime::ParameterReply reply = signals::parameter_channel(drive_, service, index, value);
     tell();
     if (reply) return *reply;
     return tl::unexpected(AccessError{reply.error(), {}});

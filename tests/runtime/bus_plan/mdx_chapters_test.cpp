@@ -1,7 +1,7 @@
 // Chapters that the manual of MDX60B/61B names and other manuals print (rows MDB-TOC): the same vectors on a MOVIDRIVE B.
 #include <gtest/gtest.h>
 
-#include "runtime/signals/variable_names.hpp"
+#include "runtime/signals/variables.hpp"
 #include "tests/harness/proves.hpp"
 #include "tests/runtime/bus_plan/plant_rig.hpp"
 

@@ -15,7 +15,7 @@
 #include "compiler/compile.hpp"
 #include "compiler/diag/render.hpp"
 #include "runtime/plant/plant.hpp"
-#include "runtime/signals/variable_names.hpp"
+#include "runtime/signals/variables.hpp"
 #include "stdlib/unit_text.hpp"
 #include "tests/harness/reach.hpp"
 

@@ -12,7 +12,7 @@ Deed some_deed(runtime::Time at, uint32_t n) {
   Deed deed;
   deed.at = at;
   deed.act = Act::Force;
-  deed.place = {0x01020304 + n, Kind::Word, 0x11121314 + n};
+  deed.signal = {0x01020304 + n, Kind::Word, 0x11121314 + n};
   deed.number = 0x21222324 + n;
   deed.value = -5 - static_cast<int64_t>(n);
   deed.bytes = {1, 2, static_cast<uint8_t>(n)};
@@ -39,7 +39,7 @@ TEST(LibraryDeeds, ComeBackAsTheyWere) {
     const Deed& deed = saved->deeds[n];
     EXPECT_EQ(std::tuple(deed.at, deed.act, deed.number, deed.value, deed.bytes),
               std::tuple(deeds[n].at, deeds[n].act, deeds[n].number, deeds[n].value, deeds[n].bytes));
-    EXPECT_EQ(deed.place, deeds[n].place);
+    EXPECT_EQ(deed.signal, deeds[n].signal);
   }
   EXPECT_TRUE(from_bytes(to_bytes(0, 0, 0, {})));
 }
@@ -75,7 +75,7 @@ TEST(LibraryDeeds, WhatCannotHaveBeenDoneIsRefused) {
   last.act = static_cast<Act>(static_cast<int>(kLastAct) + 1);
   EXPECT_EQ(refused(5, {last}), senseless);
   Deed kind = some_deed(0, 0);
-  kind.place.kind = Kind::Signal;
+  kind.signal.kind = Kind::Signal;
   EXPECT_EQ(refused(5, {kind}), senseless) << "a signal can only be read";
   EXPECT_EQ(refused(-1, {}), length);
   EXPECT_EQ(refused(runtime::kNever, {}), length);

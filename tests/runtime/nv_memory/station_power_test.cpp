@@ -4,7 +4,7 @@
 
 #include "runtime/bus/movilink/format.hpp"
 #include "runtime/plant/plant.hpp"
-#include "runtime/signals/station_signals.hpp"
+#include "runtime/signals/find.hpp"
 #include "tests/harness/proves.hpp"
 #include "tests/harness/reach.hpp"
 #include "tests/runtime/bus/rs485/serial_rig.hpp"

@@ -1,6 +1,6 @@
 // PO4 to PO10 and PI4 to PI10: over a DP card and over CANopen they go to the program and come from it. The words are
 // those that the plant file's master sends; the program turns their order round.
-#include "runtime/signals/plant_signals.hpp"
+#include "runtime/signals/find.hpp"
 #include "tests/harness/proves.hpp"
 #include "tests/runtime/plant/plant_rig.hpp"
 

@@ -1,6 +1,6 @@
 // A gateway that works: its signals are the words and counts of its drives, and names of signals are those of the plant's
 // gateways and buses, too.
-#include "runtime/signals/plant_signals.hpp"
+#include "runtime/signals/find.hpp"
 #include "tests/runtime/plant/plain_plant.hpp"
 
 namespace ipos::runtime {

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "plant_rig.hpp"
-#include "runtime/signals/plant_signals.hpp"
-#include "runtime/signals/variable_names.hpp"
+#include "runtime/signals/find.hpp"
+#include "runtime/signals/variables.hpp"
 #include "stdlib/system_variables.hpp"
 
 namespace ipos::tests {

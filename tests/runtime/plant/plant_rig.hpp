@@ -9,7 +9,7 @@
 #include "compiler/compile.hpp"
 #include "compiler/diag/render.hpp"
 #include "runtime/plant/plant.hpp"
-#include "runtime/signals/variable_names.hpp"
+#include "runtime/signals/variables.hpp"
 #include "tests/harness/reach.hpp"
 
 namespace ipos::tests {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "runtime/plant/trace_hash.hpp"
-#include "runtime/signals/station_signals.hpp"
+#include "runtime/signals/find.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -137,15 +137,15 @@ TEST(PlantRun, WhatIsNotThereIsNotFound) {
   EXPECT_EQ(plant->find_bus("u.keypad")->baud(), 57'600U);
   EXPECT_EQ(plant->find_bus("v.keypad")->baud(), 9'600U);
   std::string why;
-  EXPECT_FALSE(plant->find_port({"u", SignalKind::Variable, "x", 0}, why));
+  EXPECT_FALSE(signals::find_signal(*plant, {"u", SignalKind::Variable, "x", 0}, why));
   EXPECT_EQ(why, "station 'u' has no variable 'x'");
-  EXPECT_FALSE(plant->find_port({"u", SignalKind::Parameter, "P999", 0}, why));
+  EXPECT_FALSE(signals::find_signal(*plant, {"u", SignalKind::Parameter, "P999", 0}, why));
   EXPECT_EQ(why, "station 'u' has no parameter 'P999'");
-  EXPECT_FALSE(plant->find_port({"u", SignalKind::Any, "x", 0}, why));
+  EXPECT_FALSE(signals::find_signal(*plant, {"u", SignalKind::Any, "x", 0}, why));
   EXPECT_TRUE(why.starts_with("station 'u' has no signal 'x'; it has speed")) << why;
-  EXPECT_FALSE(plant->find_port({"w", SignalKind::State, "fault", 0}, why));
+  EXPECT_FALSE(signals::find_signal(*plant, {"w", SignalKind::State, "fault", 0}, why));
   EXPECT_EQ(why, "");
-  EXPECT_TRUE(plant->find_port({"v", SignalKind::Parameter, "P130", 0}, why));
+  EXPECT_TRUE(signals::find_signal(*plant, {"v", SignalKind::Parameter, "P130", 0}, why));
 }
 
 TEST(PlantRun, TheStationsHaveWhatTheFileSays) {
@@ -218,12 +218,12 @@ TEST(PlantRun, SignalsOfAGateway) {
   std::string why;
   for (const auto& [name, value] :
        {std::pair("powered", 1), std::pair("exchange", 0), std::pair("drive5.lost", 0)}) {
-    const auto port = plant->find_port({"g", SignalKind::Any, name, 0}, why);
+    const auto port = signals::find_signal(*plant, {"g", SignalKind::Any, name, 0}, why);
     ASSERT_TRUE(port) << why;
     EXPECT_EQ(port->read(), value) << name;
-    EXPECT_EQ(port->station_name(), "g");
+    EXPECT_EQ(port->station, "g");
   }
-  EXPECT_FALSE(plant->find_port({"g", SignalKind::Any, "x", 0}, why));
+  EXPECT_FALSE(signals::find_signal(*plant, {"g", SignalKind::Any, "x", 0}, why));
   EXPECT_TRUE(why.starts_with("gateway 'g' has no signal 'x'; it has powered, exchange")) << why;
 }
 

@@ -1,7 +1,7 @@
 // Programs in a station: rates, tasks, interrupts from the drive, faults with place, response and reset.
 #include <gtest/gtest.h>
 
-#include "runtime/plant/hands.hpp"
+#include "runtime/plant/actions.hpp"
 #include "tests/harness/proves.hpp"
 #include "tests/runtime/plant/plant_rig.hpp"
 
@@ -441,17 +441,17 @@ TEST(ProgramOrders, StartStopAndRestart) {
   Station& station = *plant->stations()[0];
   plant->run_until(ms(20));
   EXPECT_GT(value(*plant, "n"), 5);
-  EXPECT_EQ(Hands::order(station, ProgramOrder::Start), "the program runs already");
-  EXPECT_EQ(Hands::order(station, ProgramOrder::Stop), std::nullopt);
+  EXPECT_EQ(PlantActions::order(station, ProgramOrder::Start), "the program runs already");
+  EXPECT_EQ(PlantActions::order(station, ProgramOrder::Stop), std::nullopt);
   EXPECT_TRUE(station.program_over());
   const int32_t stopped = value(*plant, "n");
   plant->run_until(ms(40));
   EXPECT_EQ(value(*plant, "n"), stopped);
-  EXPECT_EQ(Hands::order(station, ProgramOrder::Start), std::nullopt);
+  EXPECT_EQ(PlantActions::order(station, ProgramOrder::Start), std::nullopt);
   EXPECT_FALSE(station.program_over());
   plant->run_until(ms(60));
   EXPECT_NE(value(*plant, "n"), stopped);
-  EXPECT_EQ(Hands::order(station, ProgramOrder::Restart), std::nullopt);
+  EXPECT_EQ(PlantActions::order(station, ProgramOrder::Restart), std::nullopt);
   EXPECT_FALSE(station.program_over());
 }
 

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include "runtime/plant/trace_hash.hpp"
-#include "runtime/signals/station_signals.hpp"
+#include "runtime/signals/find.hpp"
 #include "runtime/signals/telegram_lines.hpp"
-#include "runtime/signals/variable_names.hpp"
+#include "runtime/signals/variables.hpp"
 
 namespace ipos::runtime {
 namespace {

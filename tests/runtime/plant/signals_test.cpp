@@ -7,7 +7,7 @@
 
 #include "plant_rig.hpp"
 #include "runtime/plant_file/state_names.hpp"
-#include "runtime/signals/plant_signals.hpp"
+#include "runtime/signals/find.hpp"
 #include "stdlib/parameters.hpp"
 
 namespace ipos::runtime {

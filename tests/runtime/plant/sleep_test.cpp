@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <random>
 
-#include "runtime/signals/variable_names.hpp"
+#include "runtime/signals/variables.hpp"
 #include "tests/harness/proves.hpp"
 #include "tests/runtime/plant/picture.hpp"
 #include "tests/runtime/plant/plant_rig.hpp"

@@ -2,7 +2,7 @@
 // inputs and outputs in programs.
 #include <gtest/gtest.h>
 
-#include "runtime/signals/variable_names.hpp"
+#include "runtime/signals/variables.hpp"
 #include "tests/runtime/plant/plant_rig.hpp"
 
 namespace ipos::runtime {

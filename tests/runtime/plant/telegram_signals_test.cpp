@@ -1,6 +1,6 @@
 // What telegrams carried last, as signals: identifiers and bytes are those of the manuals (PO 8 x address + 3, parameter
 // request + 512; PDOs of the pre-defined connection set), values what the stations sent.
-#include "runtime/signals/plant_signals.hpp"
+#include "runtime/signals/find.hpp"
 #include "tests/runtime/plant/plant_rig.hpp"
 
 namespace ipos::tests {

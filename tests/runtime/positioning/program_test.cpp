@@ -6,7 +6,7 @@
 #include "compiler/compile.hpp"
 #include "compiler/diag/render.hpp"
 #include "runtime/plant/plant.hpp"
-#include "runtime/signals/variable_names.hpp"
+#include "runtime/signals/variables.hpp"
 
 namespace ipos::tests {
 namespace {

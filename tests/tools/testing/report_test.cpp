@@ -9,7 +9,7 @@
 #include <set>
 #include <sstream>
 
-#include "runtime/signals/station_state.hpp"
+#include "runtime/signals/states.hpp"
 #include "tests/harness/contains.hpp"
 #include "tests/tools/command.hpp"
 #include "tools/testing/test_case.hpp"

@@ -1,5 +1,5 @@
 // The plant, its faults by seed, and the checks.
-#include "runtime/signals/variable_names.hpp"
+#include "runtime/signals/variables.hpp"
 #include "tests/runtime/bus/campaign/fault_campaign.hpp"
 
 #include <fmt/format.h>

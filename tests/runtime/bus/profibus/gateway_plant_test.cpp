@@ -2,7 +2,7 @@
 // it. The process image is ours; words, speeds and return codes are those of the MOVITRAC 07 manual.
 #include <set>
 
-#include "runtime/signals/plant_signals.hpp"
+#include "runtime/signals/find.hpp"
 #include "tests/runtime/bus/profibus/dp_plant_rig.hpp"
 
 namespace ipos::tests {

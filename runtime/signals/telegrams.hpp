@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "runtime/signals/station_signals.hpp"
+#include "runtime/signals/find.hpp"
 #include "runtime/station/plant_parts.hpp"
 
 namespace ipos::signals {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "runtime/signals/station_signals.hpp"
+#include "runtime/signals/find.hpp"
 #include "runtime/station/gateway.hpp"
 
 namespace ipos::signals {

@@ -1,4 +1,4 @@
-// The states of a station (runtime/plant_file/station_states.def), and how each is read.
+// The states of a station by name, as plant files and tests ask for them with `state = "..."`.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,7 @@ struct StationState {
   std::string_view name;
   std::string_view meaning;
   bool on_off;  // only 0 and 1
+  std::string_view unit;
   int32_t (*read)(const runtime::Station& station);
 };
 

@@ -1,12 +1,13 @@
-// Splits names into station or bus and the rest.
-#include "runtime/signals/plant_signals.hpp"
+// Names of a plant: a station, gateway or line, and the rest; and names among signals that are there already.
+#include "runtime/signals/find.hpp"
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <utility>
 
-#include "runtime/signals/gateway_signals.hpp"
-#include "runtime/signals/telegram_signals.hpp"
+#include "runtime/signals/gateways.hpp"
+#include "runtime/signals/telegrams.hpp"
 
 namespace ipos::signals {
 
@@ -79,7 +80,7 @@ tl::expected<std::vector<Signal>, std::string> find_signals(const PlantParts& pl
     return tl::unexpected(fmt::format("no signal is called like '{}'", name));
   }
   const auto& stations = plant.stations();
-  const Station* owner = nullptr;
+  Station* owner = nullptr;
   std::string_view rest = name;
   for (const auto& station : stations) {
     // The longest name that fits.
@@ -111,6 +112,85 @@ tl::expected<std::vector<Signal>, std::string> find_signals(const PlantParts& pl
   for (const auto& station : stations) known.push_back(station->config().name + ".");
   return tl::unexpected(
       fmt::format("'{}' is no signal; signals begin with {}{}", name, fmt::join(known, ", "), others));
+}
+
+namespace {
+
+struct KindOfFile {
+  Group group;
+  std::string_view word;
+};
+// In the order of the kinds of a plant file.
+constexpr KindOfFile kKinds[] = {{Group::Variable, "variable"}, {Group::Parameter, "parameter"}, {Group::Input, "input"},
+                                 {Group::Output, "output"},     {Group::State, "state"}};
+
+std::optional<Signal> find_of_gateway(const Gateway& gateway, const runtime::Signal& named, std::string& why) {
+  const std::vector<Signal> all = gateway_signals(gateway);
+  auto found = find_among(all, fmt::format("{}.{}", named.station, named.name));
+  if (!found)
+    why = fmt::format("gateway '{}' has no signal '{}'; it has {}", named.station, named.name, names_of(all));
+  return found;
+}
+
+std::optional<Signal> find_of_station(Station& station, const runtime::Signal& named, std::string& why) {
+  if (named.kind == SignalKind::Any) {
+    auto found = find_station_signals(station, named.name);
+    if (found.size() == 1) return std::move(found.front());
+    why = fmt::format("station '{}' has no signal '{}'; it has {}", named.station, named.name,
+                      station_signal_names(station));
+    return std::nullopt;
+  }
+  const KindOfFile& kind = kKinds[static_cast<size_t>(named.kind)];
+  const bool by_line = named.kind == SignalKind::Input && named.line >= kBinaryLines;
+  auto found = by_line ? signal_at(station, Group::Analog, named.line) : find_in_group(station, kind.group, named.name);
+  if (!found) why = fmt::format("station '{}' has no {} '{}'", named.station, kind.word, named.name);
+  return found;
+}
+
+}  // namespace
+
+std::optional<Signal> find_signal(const PlantParts& plant, const runtime::Signal& named, std::string& why) {
+  why.clear();
+  if (const Gateway* gateway = plant.find_gateway(named.station)) return find_of_gateway(*gateway, named, why);
+  for (const auto& station : plant.stations())
+    if (station->config().name == named.station) return find_of_station(*station, named, why);
+  return std::nullopt;
+}
+
+int32_t value_for(const runtime::Signal& named, const Signal& signal) {
+  return named.kind == SignalKind::Any ? signal.rounded() : static_cast<int32_t>(signal.read());
+}
+
+std::optional<Signal> find_among(std::span<const Signal> all, std::string_view name) {
+  for (const Signal& signal : all)
+    if (signal.name == name) return signal;
+  const size_t dot = name.rfind('.');
+  if (dot == std::string_view::npos) return std::nullopt;
+  size_t bit = 0;
+  const auto [end, status] = std::from_chars(name.data() + dot + 1, name.data() + name.size(), bit);
+  if (status != std::errc() || end != name.data() + name.size()) return std::nullopt;
+  for (const Signal& signal : all)
+    if (signal.name == name.substr(0, dot) && bit < bit_count(signal)) return bit_of(signal, bit);
+  return std::nullopt;
+}
+
+std::vector<Signal> match_among(std::span<const Signal> all, std::string_view pattern) {
+  const size_t dot = pattern.rfind('.');
+  std::vector<Signal> found;
+  for (const Signal& signal : all) {
+    if (dot != std::string_view::npos && matches(pattern.substr(0, dot), signal.name))
+      for (size_t bit = 0; bit < bit_count(signal); ++bit)
+        if (matches(pattern.substr(dot + 1), fmt::format("{}", bit))) found.push_back(bit_of(signal, bit));
+    if (matches(pattern, signal.name)) found.push_back(signal);
+  }
+  return found;
+}
+
+std::string names_of(std::span<const Signal> all) {
+  std::vector<std::string_view> names;
+  for (const Signal& signal : all)
+    names.push_back(std::string_view(signal.name).substr(signal.station.size() + 1));
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 }  // namespace ipos::signals

@@ -1,5 +1,5 @@
 // One row a value.
-#include "runtime/signals/gateway_signals.hpp"
+#include "runtime/signals/gateways.hpp"
 
 #include <fmt/format.h>
 

@@ -1,12 +1,13 @@
 // Symbols of an image are longs and arrays of longs with their whole path as name; wholes are found by its
 // beginning.
-#include "runtime/signals/variable_names.hpp"
+#include "runtime/signals/variables.hpp"
 
 #include <fmt/format.h>
 
 #include <charconv>
 #include <optional>
 
+#include "runtime/signals/collector.hpp"
 #include "stdlib/system_variables.hpp"
 
 namespace ipos::signals {
@@ -72,6 +73,36 @@ std::vector<NamedVariable> named_variables(std::span<const vm::Symbol> symbols, 
 std::optional<uint32_t> find_variable(const Station& station, std::string_view name) {
   const auto named = named_variables(station.symbols(), *station.config().unit, name);
   return named.empty() ? std::nullopt : std::optional(named.front().number);
+}
+
+Signal& Collector::add_variable(Group group, std::string_view name, uint32_t number, std::string_view meaning) {
+  Signal& signal = add(group, name, meaning,
+                       [&station = owner_.station, number] { return station.variable(number); });
+  signal.number = number;
+  if (signal.is_variable()) signal.put = write_variable;
+  return signal;
+}
+
+void add_symbols(Collector& out) {
+  for (const vm::Symbol& symbol : out.station().symbols())
+    for (const NamedVariable& element : elements_of(symbol))
+      out.add_variable(Group::Variable, element.name, element.number,
+                       fmt::format("H{}", element.number));
+}
+
+void add_system_variables(Collector& out) {
+  const stdlib::UnitType& unit = *out.station().config().unit;
+  for (const stdlib::SystemVariable& row : stdlib::system_variables()) {
+    const bool known = row.units == stdlib::VariableUnits::A || unit.generation == stdlib::Generation::B;
+    if (known && row.number < unit.variables && !row.compiler_name.empty())
+      out.add_variable(Group::SystemVariable, row.compiler_name, row.number, row.meaning);
+  }
+}
+
+// Variables are parameters 11000 + n (IPOSplus p. 28), so both go the same way.
+Refusal write_variable(Station& station, uint32_t number, int32_t value) {
+  constexpr uint32_t kFirstVariable = 11'000;
+  return write_parameter(station, kFirstVariable + number, value);
 }
 
 }  // namespace ipos::signals

@@ -1,5 +1,5 @@
 // Names and patterns, the same for every kind of bus; what a line carries says telegram_lines.hpp.
-#include "runtime/signals/telegram_signals.hpp"
+#include "runtime/signals/telegrams.hpp"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,168 @@
+// The kinds of the C functions are groups of signals; names are looked for in the order of the kinds.
+#include "runtime/library/signal_id.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "runtime/signals/gateways.hpp"
+#include "runtime/signals/variables.hpp"
+#include "stdlib/spelling.hpp"
+
+namespace ipos::library {
+namespace {
+
+using runtime::Plant;
+using signals::Group;
+using signals::Signal;
+
+struct KindRow {
+  std::string_view word;
+  std::optional<Group> group;
+};
+constexpr KindRow kKinds[] = {{"signal", {}},
+                              {"variable", Group::Variable},
+                              {"parameter", Group::Parameter},
+                              {"input", Group::Input},
+                              {"output", Group::Output},
+                              {"analog input", Group::Analog},
+                              {"state", Group::State},
+                              {"process word", Group::ProcessData},
+                              {"signal", {}}};
+constexpr Kind kNamed[] = {Kind::Variable, Kind::Parameter, Kind::Input, Kind::Output,
+                           Kind::Analog,   Kind::State,     Kind::Word,  Kind::Signal};
+
+const KindRow& row_of(Kind kind) { return kKinds[static_cast<size_t>(kind)]; }
+
+// The words are those of the bus.
+bool belongs(Kind kind, const Signal& signal) { return kind != Kind::Word || signal.number != UINT32_MAX; }
+
+// An analog input is one terminal here.
+std::string_view name_in(Kind kind, const Signal& signal) {
+  return kind == Kind::Analog ? runtime::input_name(signal.number) : signal.own_name();
+}
+
+std::optional<SignalId> find_of_kind(Station& station, uint32_t number, Kind kind, std::string_view name) {
+  const auto group = row_of(kind).group;
+  if (!group) {
+    if (signals::find_station_signals(station, name).size() != 1) return std::nullopt;
+    return SignalId{number, Kind::Signal, 0};
+  }
+  if (kind == Kind::Analog) {
+    const int line = runtime::parse_analog_input(name);
+    return line < 0 ? std::nullopt : std::optional(SignalId{number, kind, static_cast<uint32_t>(line)});
+  }
+  const auto found = signals::find_in_group(station, *group, name);
+  if (!found || !belongs(kind, *found)) return std::nullopt;
+  return SignalId{number, kind, found->number};
+}
+
+std::vector<std::string> gateway_names(const runtime::Gateway& gateway, Kind kind) {
+  std::vector<std::string> names;
+  for (const Signal& signal : signals::gateway_signals(gateway))
+    if (kind == Kind::Signal || (kind == Kind::State && signal.group == Group::State))
+      names.emplace_back(signal.own_name());
+  return names;
+}
+
+// Every name that a kind has; of Any those of all kinds that have a few.
+std::vector<std::string> all_names(const Plant& plant, uint32_t number, Kind kind) {
+  if (kind != Kind::Any) return signal_names(plant, number, kind);
+  std::vector<std::string> names;
+  for (const Kind each : kNamed)
+    for (std::string& name : signal_names(plant, number, each)) names.push_back(std::move(name));
+  return names;
+}
+
+// " (did you mean 'speed'?); it has lCount, ...": the nearest name of all, and the first ones of the kind.
+std::string what_there_is(const Plant& plant, uint32_t number, Kind kind, std::string_view name) {
+  const Station& station = *plant.stations()[number];
+  constexpr size_t kShown = 24;
+  std::vector<std::string> names = signal_names(plant, number, kind == Kind::Any ? Kind::Variable : kind);
+  const size_t count = names.size();
+  if (count > kShown) names.resize(kShown);
+  std::string known = count == 0 ? "none" : fmt::format("{}", fmt::join(names, ", "));
+  if (count > kShown) known += fmt::format(" and {} more", count - kShown);
+  if (kind == Kind::Any || kind == Kind::Variable)
+    known = station.has_variables() ? fmt::format("{}H0..H{} and the system variables",
+                                                  count == 0 ? "" : known + ", ", station.config().unit->variables - 1)
+                                    : "no variables: its unit has no IPOS";
+  if (kind == Kind::Any)
+    known += fmt::format("; states {}; terminals, words and parameters",
+                         fmt::join(signal_names(plant, number, Kind::State), ", "));
+  const bool is_whole = count <= kShown && kind != Kind::Any && kind != Kind::Variable;  // the list needs no hint
+  const std::vector<std::string> all = is_whole ? std::vector<std::string>() : all_names(plant, number, kind);
+  const std::vector<std::string_view> candidates(all.begin(), all.end());
+  const std::string_view best = stdlib::nearest(name, candidates);
+  return fmt::format("{}; it has {}", best.empty() ? "" : fmt::format(" (did you mean '{}'?)", best), known);
+}
+
+}  // namespace
+
+size_t station_count(const Plant& plant) {
+  size_t count = plant.stations().size();
+  while (gateway_of(plant, static_cast<uint32_t>(count)) != nullptr) ++count;
+  return count;
+}
+
+runtime::Gateway* gateway_of(const Plant& plant, uint32_t station) {
+  if (station < plant.stations().size()) return nullptr;
+  const size_t behind = station - plant.stations().size();
+  const auto gateways = plant.all<runtime::Gateway>();
+  return behind < gateways.size() ? gateways[behind] : nullptr;
+}
+
+std::string station_names(const Plant& plant) {
+  std::vector<std::string_view> names;
+  for (const auto& station : plant.stations()) names.push_back(station->config().name);
+  for (const runtime::Gateway* gateway : plant.all<runtime::Gateway>()) names.push_back(gateway->name());
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+tl::expected<SignalId, std::string> find_id(const Plant& plant, uint32_t number, Kind kind, std::string_view name) {
+  if (const runtime::Gateway* gateway = gateway_of(plant, number)) {
+    const bool fits = kind == Kind::Any || kind == Kind::Signal || kind == Kind::State;
+    if (fits && signal_of(plant, {number, Kind::Signal, 0}, name)) return SignalId{number, Kind::Signal, 0};
+    return tl::unexpected(fmt::format("gateway '{}' has no {} '{}'; it has {}", gateway->config().name,
+                                      row_of(kind).word, name, signals::names_of(signals::gateway_signals(*gateway))));
+  }
+  Station& station = *plant.stations()[number];
+  for (const Kind each : kNamed)
+    if (kind == Kind::Any || kind == each)
+      if (const auto found = find_of_kind(station, number, each, name)) return *found;
+  return tl::unexpected(fmt::format("station '{}' has no {} '{}'{}", station.config().name, row_of(kind).word, name,
+                                    what_there_is(plant, number, kind, name)));
+}
+
+std::optional<Signal> signal_of(const Plant& plant, const SignalId& id, std::string_view name) {
+  if (const runtime::Gateway* gateway = gateway_of(plant, id.station))
+    return id.kind == Kind::Signal ? signals::find_among(signals::gateway_signals(*gateway),
+                                                         fmt::format("{}.{}", gateway->config().name, name))
+                                   : std::nullopt;
+  if (id.station >= plant.stations().size()) return std::nullopt;
+  Station& station = *plant.stations()[id.station];
+  if (const auto group = row_of(id.kind).group) return signals::signal_at(station, *group, id.number);
+  auto found = signals::find_station_signals(station, name);
+  return found.size() == 1 ? std::optional(std::move(found.front())) : std::nullopt;
+}
+
+std::vector<std::string> signal_names(const Plant& plant, uint32_t number, Kind kind,
+                                      std::optional<std::string_view> part) {
+  if (const runtime::Gateway* gateway = gateway_of(plant, number)) return gateway_names(*gateway, kind);
+  Station& station = *plant.stations()[number];
+  std::vector<std::string> names;
+  if (kind == Kind::Variable && part) {
+    for (auto& found : signals::named_variables(station.symbols(), *station.config().unit, *part))
+      names.push_back(std::move(found.name));
+    return names;
+  }
+  const auto group = row_of(kind).group;
+  for (const Signal& signal : group ? signals::signals_of(station, *group) : signals::station_signals(station))
+    if (const std::string_view name = name_in(kind, signal);
+        belongs(kind, signal) && (names.empty() || names.back() != name))
+      names.emplace_back(name);
+  return names;
+}
+
+}  // namespace ipos::library

@@ -1,0 +1,123 @@
+// The values of the drive with a name of their own: a display value, which the drive keeps up to date in its parameter; a
+// variable; or what only the simulation knows.
+#include <algorithm>
+#include <iterator>
+
+#include "runtime/drive/indices.hpp"
+#include "runtime/signals/collector.hpp"
+#include "runtime/signals/drive_values.hpp"
+#include "stdlib/parameters.hpp"
+
+namespace ipos::signals {
+
+using namespace runtime;
+
+namespace {
+
+struct DriveValue {
+  std::string_view name;
+  std::string_view meaning;
+  std::string_view parameter;  // number
+  int variable = -1;           // of units that position
+  int64_t (*read)(const Station&) = nullptr;
+  std::string_view unit{};
+  double factor = 1;
+  int decimals = 0;
+  size_t bits = 0;
+  int64_t (*decided)(const Drive&) = nullptr;  // Signal::decided
+};
+
+template <int32_t (Drive::*value)() const>
+int64_t of_drive(const Drive& drive) {
+  return (drive.*value)();
+}
+
+template <int64_t (*value)(const Drive&)>
+int64_t of_station(const Station& station) {
+  return value(station.drive().state());
+}
+
+template <int32_t (Drive::*value)() const>
+constexpr DriveValue decided_value(DriveValue row) {
+  row.read = of_station<of_drive<value>>;
+  row.decided = of_drive<value>;
+  return row;
+}
+
+int64_t status_of(const Drive& drive) { return drive.status_word_1(); }
+int64_t fault_of(const Drive& drive) { return drive.fault(); }
+
+constexpr DriveValue kDriveValues[] = {
+    {.name = "speed", .meaning = "P000", .parameter = "000", .decided = of_drive<&Drive::shown_speed>},
+    {"frequency", "P002", "002"},
+    {"position", "P003", "003"},
+    {"current", "P004", "004"},
+    {"active_current", "P005", "005"},
+    {"motor_utilization", "P006", "006"},
+    {"dc_link", "P008", "008"},
+    {"temperature", "P014", "014"},
+    decided_value<&Drive::axis_setpoint>(
+        {"setpoint", "speed the ramp orders", "", -1, nullptr, "rpm", 0.001, 3}),
+    decided_value<&Drive::speed>(
+        {"shaft_speed", "of the motor as simulated", "", -1, nullptr, "rpm", 0.001, 3}),
+    {"torque", "of the motor as simulated", "", -1,
+     [](const Station& station) -> int64_t { return station.drive().state().axis().torque; }, "%Mn", 0.001,
+     3},
+    {"position_setpoint", "H491", "", 491, nullptr, "inc"},
+    {"position_target", "H492", "", 492, nullptr, "inc"},
+    {"lag", "H495", "", 495, nullptr, "inc"},
+    {"status", "status word 1", "", -1, of_station<status_of>, "", 1, 0, kWordBits, status_of},
+    {"fault", "fault number; 0 is none", "", -1, of_station<fault_of>, "", 1, 0, 0, fault_of},
+};
+
+bool has(const stdlib::UnitType& unit, const DriveValue& row) {
+  if (row.read != nullptr) return true;
+  if (row.variable >= 0)
+    return unit.variables != 0 && unit.generation != stdlib::Generation::M07;
+  return find_parameter(unit, row.parameter) != nullptr;
+}
+
+}  // namespace
+
+bool is_drive_value(std::string_view name) {
+  return std::any_of(std::begin(kDriveValues), std::end(kDriveValues),
+                     [name](const DriveValue& row) { return row.name == name; });
+}
+
+bool has_drive_value(const stdlib::UnitType& unit, std::string_view name) {
+  return std::any_of(std::begin(kDriveValues), std::end(kDriveValues),
+                     [&](const DriveValue& row) { return row.name == name && has(unit, row); });
+}
+
+std::vector<std::string> drive_value_names(const Station& station) {
+  std::vector<std::string> names;
+  for (const DriveValue& row : kDriveValues)
+    if (has(*station.config().unit, row)) names.emplace_back(row.name);
+  return names;
+}
+
+void add_drive_values(Collector& out) {
+  const Station& station = out.station();
+  for (const DriveValue& row : kDriveValues) {
+    if (!has(*station.config().unit, row)) continue;
+    if (row.read == nullptr && row.variable < 0) {
+      const stdlib::Parameter& parameter = *find_parameter(*station.config().unit, row.parameter);
+      Signal& signal = out.add_parameter(parameter, Group::Drive, row.name);
+      if (parameter.index == index::kSpeed) signal.decided = row.decided;
+      continue;
+    }
+    Signal& signal = row.read != nullptr
+                              ? out.add(Group::Drive, row.name, row.meaning,
+                                        [&station, read = row.read] { return read(station); })
+                              : out.add_variable(Group::Drive, row.name,
+                                                 static_cast<uint32_t>(row.variable), row.meaning);
+    signal.unit = row.unit;
+    signal.factor = row.factor;
+    signal.decimals = row.decimals;
+    signal.bits = row.bits;
+    signal.decided = row.decided;
+    signal.is_status = row.name == "status";
+  }
+}
+
+}  // namespace ipos::signals
