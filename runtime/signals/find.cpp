@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <unordered_set>
 #include <utility>
 
 #include "runtime/signals/collector.hpp"
@@ -48,6 +47,14 @@ std::vector<NamedVariable> own_variables(const Station& station, std::string_vie
 bool can_mean(std::string_view pattern, char letter) {
   if (pattern.empty() || pattern[0] != letter) return false;
   return pattern.size() > 1 && (is_pattern(pattern.substr(1, 1)) || (pattern[1] >= '0' && pattern[1] <= '9'));
+}
+
+// "PO1", "PI3": one of so many words.
+bool is_word(std::string_view name, size_t most) {
+  size_t number = 0;
+  const auto [end, error] = std::from_chars(name.data() + std::min<size_t>(2, name.size()), name.data() + name.size(), number);
+  return (name.starts_with("PO") || name.starts_with("PI")) && error == std::errc() && end == name.data() + name.size() &&
+         number >= 1 && number <= most && name[2] != '0';
 }
 
 // In the order of the groups; a bus is no station's.
@@ -111,24 +118,19 @@ std::vector<Signal> default_signals(Owner owner) {
   return found;
 }
 
-std::vector<std::string> hidden_names(const Station& station) {
-  Collector unit(station);
-  add_unit(unit);
-  std::unordered_set<std::string_view> names;
-  for (const Signal& signal : unit.found) names.insert(signal.own_name());
-  std::vector<std::string> hidden;
-  for (const vm::Symbol& symbol : station.symbols())
-    if (names.contains(symbol.name)) hidden.push_back(symbol.name);
-  return hidden;
-}
-
 bool is_unit_value(const stdlib::UnitType& unit, std::string_view name) {
-  const bool is_word = name.size() == 3 && (name.starts_with("PO") || name.starts_with("PI")) && name[2] >= '1' &&
-                       name[2] < '1' + static_cast<char>(kProcessWords);
   const auto is_called = [name](const AnalogKind& kind) { return kind.signal == name; };
-  return is_word || has_drive_value(unit, name) || find_state(name) >= 0 || parse_input(name) >= 0 ||
+  return is_word(name, kProcessWords) || has_drive_value(unit, name) || find_state(name) >= 0 || parse_input(name) >= 0 ||
          parse_output(name) >= 0 || std::any_of(analog_kinds().begin(), analog_kinds().end(), is_called) ||
          (unit.variables != 0 && stdlib::find_system_variable(name) != nullptr);
+}
+
+std::vector<std::string> hidden_names(const Station& station) {
+  const size_t words = station.has_further_words() ? kProcessWords + kFurtherWords : kProcessWords;
+  std::vector<std::string> hidden;
+  for (const vm::Symbol& symbol : station.symbols())
+    if (is_unit_value(*station.config().unit, symbol.name) || is_word(symbol.name, words)) hidden.push_back(symbol.name);
+  return hidden;
 }
 
 std::vector<Signal> signals_of(Owner owner, Group group) {

@@ -35,7 +35,7 @@ constexpr GroupWords kGroups[] = {{"drive", "a value of the drive"},
                                   {"parameters", "a parameter"},
                                   {"bus", "a value of a bus"}};
 
-// Decimal or 0x..., 32 bits.
+// Decimal or 0x...; of 32 bits the highest hexadecimal digit may be the sign.
 std::optional<int64_t> number_of(std::string_view text) {
   const bool negative = text.starts_with('-');
   if (negative) text.remove_prefix(1);
@@ -44,6 +44,7 @@ std::optional<int64_t> number_of(std::string_view text) {
   uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, hex ? 16 : 10);
   if (error != std::errc() || end != text.data() + text.size() || text.empty() || value > INT64_MAX) return std::nullopt;
+  if (hex && !negative && value > INT32_MAX && value <= UINT32_MAX) return static_cast<int32_t>(value);
   return negative ? -static_cast<int64_t>(value) : static_cast<int64_t>(value);
 }
 

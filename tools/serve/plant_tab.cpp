@@ -117,6 +117,9 @@ class PlantTab final : public Tab {
     if (action != "set") throw Mistake("'action' must be set, pulse, force or release");
     if (actions.is_forced(*signal))
       throw Mistake(fmt::format("{} of {} is forced; release it first", name, station.config().name));
+    if (std::as_const(station).inputs().line(signal->number).driven)
+      throw Mistake(fmt::format("{} of {} is held by a wire or a switch of the plant; force it", name,
+                                station.config().name));
     succeed(actions.set(*signal, level));
   }
 

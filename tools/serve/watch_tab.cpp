@@ -177,8 +177,10 @@ class WatchTab final : public Tab {
 
   static int64_t sample_of(const Signal& signal, const std::string& text) {
     const auto parsed = signal.parse(text);
-    if (!parsed) throw Mistake(parsed.error());
-    if (const auto wrong = signal.check(parsed->sample)) throw Mistake(*wrong);
+    const auto wrong = parsed ? signal.check(parsed->sample) : parsed.error();
+    if (wrong && signal.is_variable())
+      throw Mistake(fmt::format("'{}' is no number of 32 bits; write it decimal or as 0x1F", text));
+    if (wrong) throw Mistake(*wrong);
     return parsed->sample;
   }
 
