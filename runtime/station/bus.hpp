@@ -1,5 +1,5 @@
 // A line of a plant, whatever its kind: what the plant, its reports, recordings and tests ask of it. A new kind of bus
-// is a class of this in a source NAME_bus.cpp, and a row of bus_kinds.def (docs/inside/new-bus.md). Who needs the line
+// is a class of this in a source NAME_bus.cpp, and a row of bus_kinds.def (docs/inside/architecture.md). Who needs the line
 // itself visits it: a case for each class, or it does not compile.
 #pragma once
 
