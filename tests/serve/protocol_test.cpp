@@ -37,18 +37,6 @@ watchdog = "200ms"
 po = [6, 2500]
 )";
 
-// A plant of one station without a program.
-tools::debug::MakePlant one_station(const std::string& text) {
-  return [text] {
-    std::vector<runtime::PlantError> errors;
-    auto plant = std::make_unique<runtime::Plant>(runtime::read_plant_file(text).plant,
-                                                  std::vector<std::optional<vm::Image>>{std::nullopt},
-                                                  std::nullopt, errors);
-    EXPECT_TRUE(errors.empty());
-    return plant;
-  };
-}
-
 // A node and its master, which writes a mapping of its own.
 constexpr const char* kCanopenPlant = R"(
 [[bus]]
@@ -79,7 +67,7 @@ map = ["PI3", "PI1"]
 // The rows of a PROFIBUS line by source, destination and destination access point.
 class ServingDp : public Serving {
  protected:
-  explicit ServingDp(const std::string& text = std::string(kDpPlant) + kDpMaster) : Serving(one_station(text)) {}
+  explicit ServingDp(const std::string& text = std::string(kDpPlant) + kDpMaster) : Serving(plant_of(text)) {}
 
   Json row(int source, int destination, const Json& dsap) {
     const Json event = topic({{"topic", "bus"}});
@@ -94,7 +82,7 @@ class QuietDp : public ServingDp {
 };
 class ServingCanopen : public Serving {
  protected:
-  ServingCanopen() : Serving(one_station(kCanopenPlant)) {}
+  ServingCanopen() : Serving(plant_of(kCanopenPlant)) {}
 
   static runtime::Frame frame_of(const Json& json) {
     runtime::Frame frame;

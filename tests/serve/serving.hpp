@@ -44,18 +44,23 @@ from = "saw.DO01"
 to = "lift.DI05"
 )";
 
+// The first station has the program, the others have none.
+inline tools::debug::MakePlant plant_of(const std::string& text, const std::optional<vm::Image>& program = std::nullopt) {
+  return [text, program] {
+    runtime::PlantFileResult file = runtime::read_plant_file(text);
+    std::vector<runtime::PlantError> errors = file.errors;
+    std::vector<std::optional<vm::Image>> images(file.plant.stations.size());
+    images[0] = program;
+    auto plant = std::make_unique<runtime::Plant>(file.plant, std::move(images), std::nullopt, errors);
+    EXPECT_TRUE(errors.empty()) << errors.front().text;
+    return plant;
+  };
+}
+
 inline tools::debug::MakePlant the_plant() {
   compiler::CompileOptions options;
   options.unit = stdlib::find_unit("md60a");
-  const auto image = compiler::compile("SAW.IPC", "", kProgram, options).image;
-  return [image] {
-    std::vector<runtime::PlantError> errors;
-    auto plant = std::make_unique<runtime::Plant>(runtime::read_plant_file(kPlant).plant,
-                                                  std::vector<std::optional<vm::Image>>{image, std::nullopt},
-                                                  std::nullopt, errors);
-    EXPECT_TRUE(errors.empty());
-    return plant;
-  };
+  return plant_of(kPlant, compiler::compile("SAW.IPC", "", kProgram, options).image);
 }
 
 class Serving : public ::testing::Test {

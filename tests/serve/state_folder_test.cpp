@@ -56,8 +56,10 @@ TEST_F(StateFolder, WhatOthersCouldHaveWrittenIsNotBelieved) {
   EXPECT_FALSE(read_state("link"));
   ASSERT_EQ(mkfifo((state_folder() / "pipe").c_str(), 0600), 0);
   EXPECT_FALSE(read_state("pipe")) << "and it does not wait for somebody who writes";
-  ASSERT_TRUE(write_state("large", std::string(70'000, 'x')));
-  EXPECT_FALSE(read_state("large"));
+  for (const size_t size : {65'535, 65'536, 65'537, 70'000}) {
+    ASSERT_TRUE(write_state("large", std::string(size, 'x')));
+    EXPECT_EQ(read_state("large").has_value(), size <= 65'536) << size;
+  }
 }
 
 TEST_F(StateFolder, ALinkInThePlaceOfAFileIsReplacedAndNotFollowed) {
@@ -92,7 +94,9 @@ TEST_F(StateFolder, NamesTellPortsApart) {
   EXPECT_EQ(one.find('/'), std::string::npos);
   EXPECT_EQ(one, state_name("drive", "/dev/ttyUSB0 1"));
   EXPECT_NE(one, state_name("drive", "/dev/ttyUSB0_1"));
-  EXPECT_LT(state_name("drive", std::string(5000, '/')).size(), 80U);
+  // The last 40 characters, and FNV-1a of 64 bits over all (isthe.com/chongo/tech/comp/fnv: "foobar" is 85944171f73967e8).
+  EXPECT_EQ(state_name("drive", "foobar"), "drive-foobar-85944171f73967e8");
+  EXPECT_EQ(state_name("drive", std::string(5000, '/')).size(), 5 + 1 + 40 + 1 + 16U);
 }
 
 }  // namespace

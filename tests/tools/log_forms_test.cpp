@@ -161,6 +161,18 @@ TEST(TrcForms, TheStartIsRoundedToMilliseconds) {
   }
 }
 
+// Some tools leave zeros out: above four digits it is an extended one, whatever its number.
+TEST(TrcForms, DigitsTellTheKindOfIdentifier) {
+  for (const auto& [digits, id, extended] :
+       {std::tuple("203", 0x203U, false), {"0203", 0x203U, false}, {"00203", 0x203U, true}, {"1ABCD", 0x1ABCDU, true},
+        {"1ABCDE", 0x1ABCDEU, true}, {"00000203", 0x203U, true}}) {
+    const Taken got = taken(";$FILEVERSION=1.1\n1) 0.0 Rx " + std::string(digits) + " 0\n");
+    ASSERT_EQ(got.can.size(), 1U) << digits;
+    EXPECT_EQ(got.can[0].frame.id, id) << digits;
+    EXPECT_EQ(got.can[0].frame.extended, extended) << digits;
+  }
+}
+
 TEST(TrcForms, MistakesOfALine) {
   const std::string head = ";$FILEVERSION=2.1\n;$STARTTIME=36526.0\n;$COLUMNS=N,O,T,B,I,d,R,L,D\n";
   EXPECT_EQ(first_mistake(head + "1 1.0 DT x 0203 Rx - 0\n"), "x:4:10: number of the bus expected");

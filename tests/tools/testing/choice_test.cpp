@@ -138,6 +138,25 @@ TEST_F(Choice, CoverageNamesSourcesFromTheFolderOfTheCall) {
             "TN:\nSF:" + (folder_.path() / "tests/A.IPC").string() + " absolute");
 }
 
+// A test, its plant and its program in three folders.
+TEST_F(Choice, WatchLooksAtPlantsAndProgramsElsewhere) {
+  for (const char* name : {"plants", "programs"}) std::filesystem::create_directory(folder_.path() / name);
+  folder_.write("programs/B.IPC", "long a;\nmain() { a = 5; while (1) ; }\n");
+  const std::string plant = "[[station]]\nname = \"u\"\nunit = \"md60a\"\nprogram = \"../programs/B.IPC\"\n";
+  folder_.write("plants/p.toml", plant);
+  folder_.write("tests/far.test.toml",
+                "plant = \"../plants/p.toml\"\n[[expect]]\nvariable = \"a\"\nequals = 5\nat = \"100ms\"\n");
+  RunningIpos watching({"test", "tests", "--filter", "far", "--watch"}, folder_.path());
+  ASSERT_TRUE(watching.tells("waiting for a change"));
+  EXPECT_TRUE(watching.prints("1 test, 1 passed\n"));
+  folder_.write("programs/B.IPC", "long a;\nmain() { a = 55; while (1) ; }\n");
+  EXPECT_TRUE(watching.prints("a of u is 55 at 100 ms, expected 5"));
+  folder_.write("plants/p.toml", plant + "[[stimulus]]\nat = \"50ms\"\nstation = \"u\"\nvariable = \"a\"\nset = 5\n");
+  EXPECT_TRUE(watching.prints("1 failed\n\nok      tests/far"));
+  watching.signal(SIGINT);
+  EXPECT_EQ(watching.wait().exit_code, 130);
+}
+
 TEST_F(Choice, WatchRunsAgainAfterAChange) {
   RunningIpos watching({"test", "tests", "--filter", "hoist", "--watch"}, folder_.path());
   ASSERT_TRUE(watching.tells("waiting for a change"));

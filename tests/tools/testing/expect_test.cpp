@@ -6,9 +6,16 @@
 
 #include "tests/harness/contains.hpp"
 #include "tests/tools/command.hpp"
+#include "tools/testing/check.hpp"
 
 namespace ipos::tests {
 namespace {
+
+using runtime::kMillisecond;
+using tools::testing::Check;
+using tools::testing::Expect;
+using tools::testing::Subject;
+using tools::testing::Time;
 
 const std::string kProgram = R"(#include <const.h>
 SCTRCYCL Tr;
@@ -163,6 +170,95 @@ TEST(Expectations, Frames) {
   fails(kFrame + "at_most = 2\n" + kToEnd, "for the 3. time");
 }
 
+// Where a kind of expectation ends, by the check itself: a thousandth of a millisecond before and behind.
+class Checked {
+ public:
+  explicit Checked(Expect expect, Time start = 10 * kMillisecond) : expect_(std::move(expect)), check_(expect_, start) {}
+  // A frame of the pattern, or one of "b*".
+  bool comes(Time at, const char* text = "a1") {
+    check_.event(at, text, "");
+    return check_.verdict() == Check::Verdict::Open;
+  }
+  Check::Verdict until(Time end) {
+    check_.finish(end);
+    return check_.verdict();
+  }
+  Check::Verdict verdict() const { return check_.verdict(); }
+
+ private:
+  Expect expect_;
+  Check check_;
+};
+
+Expect frames(Expect::Kind kind) {
+  Expect expect;
+  expect.kind = kind;
+  expect.subject.kind = Subject::Kind::Message;
+  expect.subject.message = "frame";
+  expect.subject.bus = "sbus";
+  expect.subject.pattern = "*";
+  return expect;
+}
+
+TEST(Checks, AFrameOfTheTimeItselfWasBefore) {
+  Checked never(frames(Expect::Kind::Never));
+  EXPECT_TRUE(never.comes(10 * kMillisecond));
+  EXPECT_FALSE(never.comes(10 * kMillisecond + 1));
+  Expect within = frames(Expect::Kind::Within);
+  within.within = 5 * kMillisecond;
+  Checked last(within), late(within);
+  EXPECT_FALSE(last.comes(15 * kMillisecond));
+  EXPECT_EQ(last.verdict(), Check::Verdict::Met);
+  EXPECT_TRUE(late.comes(15 * kMillisecond + 1));
+  EXPECT_EQ(late.until(16 * kMillisecond), Check::Verdict::Failed);
+}
+
+TEST(Checks, AtLeastIsMetByTheLastThatIsMissing) {
+  Expect expect = frames(Expect::Kind::Count);
+  expect.least = 2;
+  expect.within = 50 * kMillisecond;
+  Checked check(expect);
+  EXPECT_TRUE(check.comes(11 * kMillisecond));
+  EXPECT_FALSE(check.comes(12 * kMillisecond));
+  EXPECT_EQ(check.verdict(), Check::Verdict::Met);
+}
+
+TEST(Checks, WhatIsToComeAgainAndAgainMayNotStop) {
+  Expect expect = frames(Expect::Kind::Every);
+  expect.period = 10 * kMillisecond;
+  expect.tolerance = kMillisecond;
+  for (const auto& [end, is] : {std::pair(41 * kMillisecond, Check::Verdict::Met),
+                                {41 * kMillisecond + 1, Check::Verdict::Failed}}) {
+    Checked check(expect);
+    for (const Time at : {20, 30}) EXPECT_TRUE(check.comes(at * kMillisecond));
+    EXPECT_EQ(check.until(end), is) << end;
+  }
+  Checked late(expect);
+  EXPECT_TRUE(late.comes(20 * kMillisecond));
+  EXPECT_TRUE(late.comes(31 * kMillisecond)) << "the tolerance";
+  EXPECT_FALSE(late.comes(42 * kMillisecond + 1));
+}
+
+TEST(Checks, ASequenceThatRepeatsIsLookedAtToItsEnd) {
+  Expect expect = frames(Expect::Kind::Sequence);
+  expect.patterns = {"a*", "b*"};
+  for (const bool repeat : {false, true}) {
+    expect.repeat = repeat;
+    Checked check(expect);
+    EXPECT_TRUE(check.comes(11 * kMillisecond, "a1"));
+    check.comes(12 * kMillisecond, "b1");
+    check.comes(13 * kMillisecond, "b1");
+    EXPECT_EQ(check.until(20 * kMillisecond), repeat ? Check::Verdict::Failed : Check::Verdict::Met);
+  }
+}
+
+TEST(Expectations, AReportHasTheLastFourValues) {
+  const CommandResult result = run_items(kCount + "at = \"105ms\"\nequals = 0\n");
+  EXPECT_TRUE(contains(result.out, "unit1.lCount = 10 since 101 ms, 9 from 91 ms, 8 from 81 ms, 7 from 71 ms\n") ||
+              contains(result.out, "unit1.lCount = 10 since 100 ms, 9 from 90 ms, 8 from 80 ms, 7 from 70 ms\n"))
+      << result.out;
+}
+
 TEST(Expectations, StatesParametersAndProcessData) {
   passes("[[expect]]\nstation = \"unit1\"\nstate = \"running\"\nequals = 1\nat = \"50ms\"\n");
   fails("[[expect]]\nstation = \"unit1\"\nstate = \"fault\"\nequals = 8\nat = \"50ms\"\n",
@@ -202,6 +298,12 @@ TEST(Steps, ProcessData) {
       "[[step]]\nat = \"10ms\"\nstation = \"unit2\"\nprocess_data = \"PO1\"\nforce = 6\n"
       "[[expect]]\nstation = \"unit2\"\nprocess_data = \"PO2\"\nequals = 5000\n"
       "[[expect]]\nstation = \"unit2\"\nstate = \"setpoint\"\nmin = 1\nwithin = \"1s\"\n");
+}
+
+TEST(Steps, SettingAWordEndsItsForce) {
+  const std::string word = "[[step]]\nstation = \"unit2\"\nprocess_data = \"PO1\"\n";
+  passes(word + "at = \"10ms\"\nforce = 6\n" + word + "at = \"20ms\"\nset = 2\n" +
+         "[[expect]]\nstation = \"unit2\"\nprocess_data = \"PO1\"\nequals = 2\nat = \"30ms\"\n");
 }
 
 // Control word, setpoint 1000 rpm, as a master sends them: the slave answers with its status.
@@ -246,6 +348,12 @@ TEST(Steps, FaultsOfLinesAndDrives) {
       "[[expect]]\nstation = \"unit2\"\nstate = \"fault\"\nequals = 8\n"
       "[[step]]\nstation = \"unit2\"\nparameter = \"P840\"\nset = 1\nafter = \"10ms\"\n"
       "[[expect]]\nstation = \"unit2\"\nstate = \"fault\"\nequals = 0\nafter = \"10ms\"\n");
+}
+
+// A fault that a step brings is what its author had in mind; one beside it is not.
+TEST(Steps, AFaultThatAStepBringsIsExpected) {
+  const std::string fault = "[[step]]\nat = \"10ms\"\nstation = \"unit2\"\ndrive_fault = 8\n";
+  passes(fault + kCount + "at = \"50ms\"\nmin = 1\n");
 }
 
 TEST(Steps, ProgramsStopAndBeginAnew) {

@@ -133,16 +133,35 @@ TEST_F(Runner, SeedsMoveChance) {
                 "[[fault]]\nbus = \"sbus\"\nkind = \"drop\"\nrate = 500\nseed = 7\n"
                 "[[expect]]\nstation = \"r\"\nvariable = \"d\"\nequals = -1\nat = \"505ms\"\n");
   const auto report = [&](const char* seed) { return run({"seed.test.toml", "--seed", seed}).out; };
-  EXPECT_EQ(report("1"), report("1"));
-  std::set<std::string> reports;
-  for (const char* seed : {"1", "2", "3", "4"}) {
-    const std::string text = report(seed);
-    reports.insert(text.substr(text.find("d of r is")));
-  }
-  EXPECT_GE(reports.size(), 2U);
-  const CommandResult again = run({"seed.test.toml", "--repeat", "3", "--seed", "10"});
+  const auto seeds_move_it = [&] {
+    EXPECT_EQ(report("1"), report("1"));
+    std::set<std::string> reports;
+    for (const char* seed : {"1", "2", "3", "4"}) {
+      const std::string text = report(seed);
+      reports.insert(text.substr(text.find("d of r is")));
+    }
+    EXPECT_GE(reports.size(), 2U);
+  };
+  seeds_move_it();
+  const CommandResult again = run({"seed.test.toml", "--repeat", "3", "--seed", "10", "--artifacts", "left"});
   for (const char* part : {"seed#1", "seed#2", "seed#3", "seed 10\n", "seed 11\n", "seed 12\n", "3 tests, "})
     EXPECT_TRUE(contains(again.out, part)) << part << again.out;
+  // Each run has left what it reports: the last column but one is r.d.
+  for (const char* turn : {"seed_1", "seed_2", "seed_3"}) {
+    const std::string told = read_text(folder_.path() / "left" / turn / "report.txt");
+    const std::string trace = read_text(folder_.path() / "left" / turn / "trace.csv");
+    const size_t is = told.find("d of r is ") + 10, row = trace.find("\n505,");
+    ASSERT_NE(row, std::string::npos) << trace;
+    const std::string number = told.substr(is, told.find(' ', is) - is);
+    EXPECT_TRUE(contains(trace.substr(row, trace.find('\n', row + 1) - row), "," + number + ",")) << turn << told;
+  }
+  // The same fault as a step.
+  std::string step = read_text(folder_.path() / "seed.test.toml");
+  const size_t begin = step.find("[[fault]]");
+  step.replace(begin, step.find("[[expect]]") - begin,
+               "[[step]]\nat = \"1ms\"\nfault = { bus = \"sbus\", kind = \"drop\", rate = 500, seed = 7 }\n");
+  folder_.write("seed.test.toml", step);
+  seeds_move_it();
 }
 
 TEST_F(Runner, CasesRunTheSameTestOverManyValues) {
@@ -237,6 +256,37 @@ TEST_F(Runner, AFaultThatNothingExpectsFailsTheTest) {
   EXPECT_TRUE(contains(result.out, "F.IPC:6:")) << result.out;
   folder_.write("g.test.toml", station + expect + "[[expect]]\nstate = \"program_fault\"\nnot = 0\n");
   EXPECT_EQ(run({"g.test.toml"}).exit_code, 0) << run({"g.test.toml"}).out;
+}
+
+// The plant's own expectations are of its own test, unless another one asks for them; they are found in the plant's file.
+TEST_F(Runner, ExpectationsOfThePlantAreLookedAtWhereTheTestSaysSo) {
+  folder_.write("p.toml", kStation + "[[expect]]\nstation = \"u\"\nvariable = \"a\"\nequals = 6\nat = \"100ms\"\n");
+  const std::string own = "[[expect]]\nvariable = \"a\"\nequals = 5\nat = \"100ms\"\n";
+  folder_.write("a.test.toml", "plant = \"p.toml\"\n" + own);
+  EXPECT_EQ(run({"a.test.toml"}).exit_code, 0) << run({"a.test.toml"}).out;
+  folder_.write("b.test.toml", "plant = \"p.toml\"\nplant_expects = true\n" + own);
+  const CommandResult result = run({"b.test.toml"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(contains(result.out, "  p.toml:5:1: a of u is 5")) << result.out;
+}
+
+// A test begins with an empty memory and leaves none behind.
+TEST_F(Runner, ATestHasNoMemoryOfUnits) {
+  folder_.write("p.toml", kStation + "nvram = \"u.nv\"\n");
+  folder_.write("a.test.toml", "plant = \"p.toml\"\n[[expect]]\nvariable = \"a\"\nequals = 5\nat = \"100ms\"\n");
+  folder_.write("b.test.toml", kStation + "nvram = \"u.nv\"\n[[expect]]\nvariable = \"a\"\nequals = 5\nat = \"100ms\"\n");
+  for (const char* test : {"a.test.toml", "b.test.toml"}) EXPECT_EQ(run({test}).exit_code, 0) << run({test}).out;
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "u.nv"));
+}
+
+// The numbers on both sides of what is expected.
+TEST_F(Runner, ComparisonsOfCommentsEndWhereTheySay) {
+  const auto holds = [&](const std::string& comparison) {
+    folder_.write("X.IPC", "long a;\nmain()\n{\n  a = 5;  // expect a " + comparison + "\n}\n");
+    return run({"X.IPC"}).exit_code == 0;
+  };
+  for (const char* good : {"< 6", "<= 5", "> 4", ">= 5", "== 5", "!= 4"}) EXPECT_TRUE(holds(good)) << good;
+  for (const char* bad : {"< 5", "<= 4", "> 5", ">= 6", "== 4", "!= 5"}) EXPECT_FALSE(holds(bad)) << bad;
 }
 
 TEST_F(Runner, CommentsOfAProgram) {
