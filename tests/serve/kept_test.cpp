@@ -180,7 +180,14 @@ TEST(AtTheBeginning, ACardDoesNotContradictItself) {
   EXPECT_EQ(saw()["in"], 1);
   EXPECT_EQ(saw()["why"].get<std::string>().find("DI00"), std::string::npos) << saw();
   EXPECT_NE(saw()["why"].get<std::string>().find("before the first millisecond"), std::string::npos);
-  page.ask({{"do", "step"}});
+  for (int turn = 0; turn < 2; ++turn) {
+    EXPECT_EQ(saw()["state"], "power-on");
+    EXPECT_EQ(saw()["display"], "");
+    page.ask({{"do", "step"}});
+    EXPECT_NE(saw()["state"], "power-on");
+    EXPECT_NE(saw()["display"], "");
+    if (turn == 0) page.ask({{"do", "back"}, {"us", 0}});
+  }
   EXPECT_EQ(saw()["why"].get<std::string>().find("millisecond"), std::string::npos) << saw();
   // A switch that is touched while time stands is seen at once, the unit's words are older, and say so.
   page.ask({{"do", "input"}, {"station", "saw"}, {"name", "DI00"}, {"on", false}});

@@ -577,7 +577,7 @@ TEST_F(QuietDp, FramesOfAHandAreAnsweredAndChangesAreThoseOfTheirData) {
   EXPECT_EQ(topic({{"topic", "bus"}})["buses"]["dp"]["errors"], 1);
   const Json trace = good({{"do", "bus.trace"}, {"filter", "void"}})["frames"];
   ASSERT_EQ(trace.size(), 1U);
-  EXPECT_EQ(trace[0]["text"], "void: frame check sequence incorrect");
+  EXPECT_EQ(trace[0]["text"], "void, frame check sequence incorrect: 10 09 20 49 00 16");
   EXPECT_EQ(trace[0]["source"], nullptr);
   EXPECT_EQ(error({{"do", "bus.send"}, {"bus", "dp"}, {"data", "10 xx fcs 16"}}),
             "'10 xx fcs 16' are no octets; write for example \"10 08 02 49 fcs 16\"");

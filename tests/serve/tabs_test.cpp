@@ -1,9 +1,7 @@
 // The tabs of a plant one by one: what belongs to one client, one station, one run; and what a hand does at terminals.
+#include <set>
+
 #include "tests/serve/serving.hpp"
-
-#include <fmt/format.h>
-
-#include "tools/unit/parameter_set.hpp"
 
 namespace ipos::tests {
 namespace {

@@ -309,9 +309,11 @@ class PlantTab final : public Tab {
   // Terminals show at once what was done to them; what the unit says of it is older.
   void tell_later(Json& json) const {
     const std::string why = json["why"];
-    if (host_.us() == 0)
+    if (host_.us() == 0 && json["powered"].get<bool>()) {
+      json["state"] = "power-on";  // no state of a unit (ours): it has not looked at anything yet
+      json["display"] = "";
       json["why"] = "it stands before the first millisecond, with which its terminals act";
-    else if (!why.empty() && json["powered"].get<bool>())
+    } else if (!why.empty() && json["powered"].get<bool>())
       json["why"] = why + ", at the last millisecond; what was done since acts with the next one";
   }
 

@@ -4,7 +4,9 @@
 
 #include <optional>
 
+#include "runtime/bus/log/profibus_log.hpp"
 #include "runtime/bus/profibus/frame_text.hpp"
+#include "runtime/bus/words/bus_words.hpp"
 #include "runtime/station/profibus_bus.hpp"
 #include "runtime/station/profibus_octets.hpp"
 #include "tools/serve/bus_ear.hpp"
@@ -54,10 +56,9 @@ class ProfibusEar final : public BusEar, private profibus::LineObserver, private
 
   // What overlapped or came too early has octets without a mistake: the line has said why it is void.
   std::string text_of(const Telegram& telegram) override {
-    const auto frame = profibus::decode(telegram.data);
-    if (frame && !telegram.error) return profibus::describe(*frame);
-    const FrameError reason = telegram.error ? static_cast<FrameError>(telegram.reason) : frame.error();
-    return fmt::format("void: {}", profibus::frame_error_text(reason));
+    std::optional<FrameError> reason;
+    if (telegram.error) reason = static_cast<FrameError>(telegram.reason);
+    return words_.describe(runtime::reception_of(telegram.data, telegram.time, telegram.time, reason));
   }
   std::string identity_text(const Telegram&) const override { return {}; }  // the words have it
   Json identity(const Telegram& telegram) const override {
@@ -123,6 +124,7 @@ class ProfibusEar final : public BusEar, private profibus::LineObserver, private
 
   profibus::Line& line_;
   Hear hear_;
+  runtime::BusWords words_;
   std::optional<runtime::NodeId> node_;
 };
 

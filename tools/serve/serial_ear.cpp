@@ -3,8 +3,7 @@
 
 #include <optional>
 
-#include "runtime/bus/movilink/describe_serial.hpp"
-#include "runtime/bus/movilink/serial_receiver.hpp"
+#include "runtime/bus/words/bus_words.hpp"
 #include "tools/serve/bus_ear.hpp"
 
 namespace ipos::tools::serve {
@@ -24,10 +23,12 @@ class SerialEar final : public BusEar, private runtime::SerialObserver, private 
   const std::string& name() const override { return line_.name(); }
   runtime::LineLoad load(Time now) const override { return line_.load(now); }
   std::string text_of(const Telegram& telegram) override {
-    const auto read = runtime::decode_serial(telegram.bytes());
-    if (age_.is_over()) names_ = look_up_();
-    return read ? runtime::describe(names_, *read)
-                : fmt::format("void: {:02X}", fmt::join(telegram.data, ""));
+    if (age_.is_over()) words_.use({{}, look_up_()});
+    runtime::Reception reception;
+    for (const uint8_t byte : telegram.data) reception.bytes.push(byte);
+    reception.telegram = runtime::decode_serial(telegram.data);
+    if (telegram.error) reception.telegram = tl::unexpected(static_cast<runtime::SerialError>(telegram.reason));
+    return words_.describe(reception);
   }
   std::string identity_text(const Telegram& telegram) const override {
     return fmt::format("{} {:X}", telegram.id, telegram.id);
@@ -51,6 +52,7 @@ class SerialEar final : public BusEar, private runtime::SerialObserver, private 
     Telegram telegram;
     telegram.time = reception->end;
     telegram.error = !reception->telegram;
+    telegram.reason = reception->telegram ? uint8_t{0} : static_cast<uint8_t>(reception->telegram.error());
     telegram.data.assign(bytes.begin(), bytes.begin() + size);
     telegram.id = size > 1 ? bytes[1] : 0;
     if (telegram.error) ++errors;
@@ -64,7 +66,7 @@ class SerialEar final : public BusEar, private runtime::SerialObserver, private 
   runtime::Rs485Line& line_;
   Hear hear_;
   SerialNamesNow look_up_;
-  runtime::TelegramNames names_;
+  runtime::BusWords words_;
   NamesAge age_;
   runtime::SerialReceiver receiver_;
   std::optional<runtime::NodeId> node_;

@@ -15,7 +15,7 @@ struct Telegram {
   uint32_t id = 0;  // CAN: the identifier; RS-485: the address; PROFIBUS: a number for frames of one kind
   uint8_t bus = 0;  // number in the reply to `plant`
   bool extended = false, remote = false, error = false;
-  uint8_t reason = 0;  // of the error, where the bytes do not tell it (profibus::FrameError)
+  uint8_t reason = 0;  // of the error, where the bytes do not tell it (profibus::FrameError, runtime::SerialError)
   std::vector<uint8_t> data;
   std::string words;  // where they depend on what went before on the line; else they are made when wanted
 
