@@ -57,7 +57,7 @@ Taken taken(std::string_view log) {
                          [&](LogPlace place, const std::string&) { in_log(place); }};
   read_log(log, reader);
   if (const auto unpacked = unpacked_log(log))
-    require(unpacked->size() <= std::max(size_t{1} << 20U, 32 * log.size()),
+    require(unpacked->bytes.size() <= std::max(size_t{1} << 20U, 32 * log.size()),
             "a packed log is bounded by its size");
   return all;
 }

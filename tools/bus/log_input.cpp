@@ -80,13 +80,7 @@ std::string bus_list(const std::set<std::string>& names) {
 void read_log_file(const LogFlags& flags, LogFindings& findings, LogReader reader) {
   ChannelChoice choice(flags);
   const LogReader watched = findings.watch(choice.choose(std::move(reader)));
-  std::string bytes = read_file(flags.path, kLogLimit);
-  if (log_form(bytes) == LogForm::Packed) {
-    auto unpacked = unpacked_log(bytes);
-    if (!unpacked) return findings.wrong({0, 0}, unpacked.error());
-    bytes = std::move(*unpacked);
-  }
-  read_log(bytes, watched);
+  read_log(read_file(flags.path, kLogLimit), watched);
   if (findings.understood()) choice.check();
 }
 

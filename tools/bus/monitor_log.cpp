@@ -137,11 +137,7 @@ class Showing {
 // All of it, for a log whose form is not one of lines.
 void read_whole(LogFile& log, const LogReader& reader) {
   while (log.read_more() && !interrupted()) continue;
-  if (log_form(log.text()) != LogForm::Packed) return read_log(log.text(), reader);
-  if (const auto unpacked = unpacked_log(log.text()))
-    read_log(*unpacked, reader);
-  else
-    reader.wrong({0, 0}, unpacked.error());
+  read_log(log.text(), reader);
 }
 
 }  // namespace

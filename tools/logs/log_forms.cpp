@@ -71,6 +71,19 @@ void for_each_line(std::string_view text, const std::function<void(std::string_v
   }
 }
 
+namespace {
+
+void read_packed(std::string_view packed, const LogReader& reader) {
+  const auto log = unpacked_log(packed);
+  if (!log) return reader.wrong({0, 0}, log.error());
+  if (log_form(log->bytes) == LogForm::Packed)
+    return reader.wrong({0, 0}, "a log packed with gzip within another one");
+  read_log(log->bytes, reader);
+  if (!log->whole) reader.wrong({0, packed.size()}, "packed with gzip, and cut off: the rest of the log is missing");
+}
+
+}  // namespace
+
 void read_log(std::string_view bytes, const LogReader& reader) {
   switch (log_form(bytes)) {
     case LogForm::Pcapng: return read_pcapng(bytes, reader);
@@ -78,7 +91,7 @@ void read_log(std::string_view bytes, const LogReader& reader) {
     case LogForm::Trc: return read_trc(bytes, reader);
     case LogForm::Blf: return read_blf(bytes, reader);
     case LogForm::Pcap: return read_pcap(bytes, reader);
-    case LogForm::Packed: return reader.wrong({0, 0}, "a log packed with gzip within another one");
+    case LogForm::Packed: return read_packed(bytes, reader);
     case LogForm::Other:
       return reader.wrong(
           {0, 0}, "no log that ipos reads, but " + *other_file(text_of(bytes.substr(0, kToKnowTheForm))));

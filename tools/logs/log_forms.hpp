@@ -53,7 +53,7 @@ struct LogReader {
   std::function<void(LogPlace, const std::string& message)> note = [](LogPlace, const std::string&) {};
 };
 
-// All of a log in order. Text goes on after a bad line; a binary log ends where it is damaged.
+// All of a log in order, packed or not. Text goes on after a bad line; a binary log ends where it is damaged.
 void read_log(std::string_view bytes, const LogReader& reader);
 
 // A line of LogForm::Lines.
@@ -64,8 +64,12 @@ bool read_terminal_line(std::string_view row, size_t line, const LogReader& read
 // What a file is that is no log to be read, in words and with what to do; nothing for a log.
 std::optional<std::string> other_file(std::string_view begin);
 
-// Of a log packed with gzip; the error is why not.
-tl::expected<std::string, std::string> unpacked_log(std::string_view packed);
+// What is in a log packed with gzip; the error is why nothing can be. Of a text whole lines only.
+struct UnpackedLog {
+  std::string bytes;
+  bool whole = true;  // the packed file is not cut off
+};
+tl::expected<UnpackedLog, std::string> unpacked_log(std::string_view packed);
 
 // The forms, each in a file of its own. Times are those of the log, since runtime::kCandumpEpoch.
 void read_asc(std::string_view text, const LogReader& reader);

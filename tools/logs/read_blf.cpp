@@ -97,8 +97,8 @@ class BlfReader {
       return given <= length && (good = objects(at));
     };
     if (method == kPlain) return take(packed), good;
-    const bool whole = unpack(packed, Packing::Zlib, take);
-    if (good && (!whole || given != length)) return wrong(data, "a container that cannot be unpacked"), false;
+    const Unpacked end = unpack(packed, Packing::Zlib, take);
+    if (good && (end != Unpacked::Whole || given != length)) return wrong(data, "a container that cannot be unpacked"), false;
     return good;
   }
 

@@ -32,9 +32,9 @@ class Inflate {
 
 }  // namespace
 
-bool unpack(std::string_view packed, Packing packing, const std::function<bool(std::string_view)>& take) {
+Unpacked unpack(std::string_view packed, Packing packing, const std::function<bool(std::string_view)>& take) {
   Inflate unpacking(packing);
-  if (!unpacking.ready()) return false;
+  if (!unpacking.ready()) return Unpacked::Damaged;
   z_stream& stream = unpacking.stream();
   // zlib does not write to its input; a log is at most kLogLimit long.
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
@@ -45,29 +45,35 @@ bool unpack(std::string_view packed, Packing packing, const std::function<bool(s
     stream.avail_out = static_cast<uInt>(piece.size());
     const int status = inflate(&stream, Z_NO_FLUSH);
     const size_t size = piece.size() - stream.avail_out;
-    if (size != 0 && !take(std::string_view(piece.data(), size))) return true;
+    if (size != 0 && !take(std::string_view(piece.data(), size))) return Unpacked::Whole;
     // gzip files may be joined.
     if (status == Z_STREAM_END && packing == Packing::Gzip && stream.avail_in != 0 &&
         inflateReset(&stream) == Z_OK)
       continue;
-    if (status == Z_STREAM_END) return true;
-    if (status != Z_OK) return false;  // also where the bytes end too early: Z_BUF_ERROR
+    if (status == Z_STREAM_END) return Unpacked::Whole;
+    if (status != Z_OK) return status == Z_BUF_ERROR ? Unpacked::EndsEarly : Unpacked::Damaged;
   }
 }
 
-tl::expected<std::string, std::string> unpacked_log(std::string_view packed) {
+tl::expected<UnpackedLog, std::string> unpacked_log(std::string_view packed) {
   // Logs become 5 to 20 times smaller; a short one may be all the same (ours).
   constexpr size_t kMostTimes = 32, kAlwaysGood = size_t{1} << 20U;
   const size_t limit = std::min(std::max(packed.size() * kMostTimes, kAlwaysGood), kLogLimit);
-  std::string out;
-  const bool good = unpack(packed, Packing::Gzip, [&](std::string_view piece) {
+  UnpackedLog log;
+  std::string& out = log.bytes;
+  const Unpacked end = unpack(packed, Packing::Gzip, [&](std::string_view piece) {
     out += piece;
     return out.size() <= limit;
   });
   if (out.size() > limit)
     return tl::unexpected(fmt::format("unpacks to more than {} bytes, which no log does", limit));
-  if (!good) return tl::unexpected(std::string("the packed file is damaged or ends too early"));
-  return out;
+  if (end == Unpacked::Damaged) return tl::unexpected(std::string("packed with gzip, and damaged"));
+  log.whole = end == Unpacked::Whole;
+  // Half a line may look like a whole one.
+  const LogForm form = log_form(out);
+  if (!log.whole && (form == LogForm::Lines || form == LogForm::Asc || form == LogForm::Trc))
+    out.resize(out.rfind('\n') + 1);  // to nothing where there is no line
+  return log;
 }
 
 }  // namespace ipos::tools

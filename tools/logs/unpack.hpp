@@ -9,7 +9,9 @@ namespace ipos::tools {
 
 enum class Packing : uint8_t { Zlib, Gzip };
 
-// Calls `take` with each piece until it is false. False: the bytes are damaged or end too early.
-bool unpack(std::string_view packed, Packing packing, const std::function<bool(std::string_view)>& take);
+enum class Unpacked : uint8_t { Whole, EndsEarly, Damaged };
+
+// Calls `take` with each piece until it is false, which is whole, too.
+Unpacked unpack(std::string_view packed, Packing packing, const std::function<bool(std::string_view)>& take);
 
 }  // namespace ipos::tools
