@@ -355,6 +355,42 @@ TEST(LspTransport, CutsTheStreamIntoMessages) {
   EXPECT_TRUE(reader.broken());
 }
 
+// The largest message and header, and one byte more.
+TEST(LspTransport, HasALargestMessageAndAnEndOfItsHeader) {
+  using tools::lsp::kMaxHeader, tools::lsp::kMaxMessage;
+  tools::lsp::MessageReader reader;
+  reader.feed("Content-Length: " + std::to_string(kMaxMessage) + "\r\n\r\n");
+  const std::string piece(1U << 20U, 'x');
+  for (size_t n = 0; n < kMaxMessage / piece.size(); ++n) {
+    ASSERT_FALSE(reader.next());
+    ASSERT_FALSE(reader.broken());
+    reader.feed(piece);
+  }
+  reader.feed(tools::lsp::framed("{}"));
+  const auto largest = reader.next();
+  ASSERT_TRUE(largest);
+  EXPECT_EQ(largest->size(), kMaxMessage);
+  EXPECT_EQ(reader.next(), "{}");
+  reader.feed("Content-Length: " + std::to_string(kMaxMessage + 1) + "\r\n\r\n");
+  EXPECT_FALSE(reader.next());
+  EXPECT_TRUE(reader.broken()) << "it is not waited for";
+  const auto header = [](size_t size) {
+    const std::string fields = "Content-Length: 2\r\nX: ";
+    return fields + std::string(size - fields.size(), 'x');
+  };
+  for (const size_t size : {kMaxHeader, kMaxHeader + 1})
+    for (const bool in_one : {false, true}) {
+      tools::lsp::MessageReader other;
+      other.feed(header(size));
+      for (const char* part : {"\r", "\n\r", "\n{}"}) {
+        if (!in_one) EXPECT_FALSE(other.next());
+        other.feed(part);
+      }
+      EXPECT_EQ(other.next().has_value(), size == kMaxHeader) << size << in_one;
+      EXPECT_EQ(other.broken(), size > kMaxHeader) << size << in_one;
+    }
+}
+
 // --- plants and tests
 
 const std::string kPlant = "/p/line.toml";

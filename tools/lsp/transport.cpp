@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <utility>
 
 #include "stdlib/plain_text.hpp"
 
@@ -66,10 +67,9 @@ std::string with_characters_only(std::string_view body) {
 std::optional<std::string> MessageReader::next() {
   while (!broken_) {
     const size_t end = buffer_.find("\r\n\r\n");
-    if (end == std::string::npos) {
-      broken_ = buffer_.size() > kMaxHeader;
-      return std::nullopt;
-    }
+    const bool has_ended = end != std::string::npos;  // else a part of its end may be there
+    broken_ = has_ended ? end > kMaxHeader : buffer_.size() > kMaxHeader + 3;
+    if (broken_ || !has_ended) return std::nullopt;
     const auto length = content_length(std::string_view(buffer_).substr(0, end + 2));
     if (!length) {
       buffer_.erase(0, end + 4);
@@ -80,9 +80,11 @@ std::optional<std::string> MessageReader::next() {
       return std::nullopt;
     }
     if (buffer_.size() < end + 4 + *length) return std::nullopt;
-    std::string body = buffer_.substr(end + 4, *length);
-    buffer_.erase(0, end + 4 + *length);
-    return body;
+    const size_t size = end + 4 + *length;
+    std::string rest = buffer_.substr(size);
+    buffer_.resize(size);
+    buffer_.erase(0, end + 4);
+    return std::exchange(buffer_, std::move(rest));  // a large one is not there twice
   }
   return std::nullopt;
 }
