@@ -64,8 +64,8 @@ PlantFileResult read_plant_file(std::string_view text) {
       const std::string named = (*root)["plant"].value_or(std::string());
       reader.error(place_of(*node), named.empty()
                                         ? "this is a test: `ipos test` carries out what stands here"
-                                        : fmt::format("this is a test of the plant '{}': `ipos test` carries it "
-                                                      "out, other verbs take the plant",
+                                        : fmt::format("this is a test of the plant '{}': `ipos test` and "
+                                                      "`ipos debug` carry it out, other verbs take the plant",
                                                       named));
       return std::move(reader.result);
     }

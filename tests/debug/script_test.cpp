@@ -128,6 +128,166 @@ TEST(DebugScript, AnswersMistakes) {
     EXPECT_NE(result.output.find(text), std::string::npos) << text << "\n" << result.output;
 }
 
+// A number that no point has is a mistake in every command that takes one.
+TEST(DebugScript, PointsThatAreNotThereAreTold) {
+  for (const char* command : {"enable 99", "disable 99", "hits 99 3", "condition 99 lCount", "delete 99", "enable x"}) {
+    const ScriptResult result = debug(std::string("b 7\nwatch lCount\n") + command + "\ninfo breakpoints\nquit\n");
+    EXPECT_NE(result.output.find("there is no breakpoint "), std::string::npos) << command << result.output;
+    EXPECT_EQ(result.output.find("disabled"), std::string::npos) << command << result.output;
+  }
+}
+
+TEST(DebugScript, AWatchStopsAtItsHits) {
+  const ScriptResult result = debug("watch lCount\nhits 1 3\nc\np lCount\nhits 1 % 5\nc\np lCount\ninfo breakpoints\nquit\n");
+  for (const char* text : {"lCount: 2 -> 3", "lCount: 4 -> 5", "watch lCount at hits % 5, 5 hits"})
+    EXPECT_NE(result.output.find(text), std::string::npos) << text << "\n" << result.output;
+  for (const char* text : {"lCount: 1 -> 2", "lCount: 3 -> 4"})
+    EXPECT_EQ(result.output.find(text), std::string::npos) << text << "\n" << result.output;
+}
+
+TEST(DebugScript, TimeThatIsOverIsNotRunTo) {
+  const ScriptResult result = debug("until 10ms\np lCount\nuntil 5ms\nuntil 10ms\np lCount\nquit\n");
+  const std::string told = "it is 10.000 ms already";
+  const size_t first = result.output.find(told);
+  ASSERT_NE(first, std::string::npos) << result.output;
+  EXPECT_NE(result.output.find(told, first + 1), std::string::npos) << result.output;
+  const size_t before = result.output.find("lCount = "), behind = result.output.rfind("lCount = ");
+  EXPECT_NE(before, behind);
+  EXPECT_EQ(result.output.substr(before, 12), result.output.substr(behind, 12)) << "nothing has run";
+}
+
+TEST(DebugScript, MainHasNoCallToFinish) {
+  const ScriptResult result = debug("s\nfinish\np lCount\nquit\n");
+  EXPECT_NE(result.output.find("main() is none"), std::string::npos) << result.output;
+  EXPECT_LT(result.output.size(), 1'000U) << "nothing has run";
+}
+
+// The fault of the program, and the name of the drive's own fault.
+TEST(DebugScript, TheFaultOfAProgramHasANumber) {
+  const TemporaryFolder folder;
+  folder.write("F.IPC", "long a, b;\nmain()\n{\n  a = 7;\n  a = a / b;\n}\n");
+  const std::string input = folder.write("script", "c\np fault\np program_fault\nquit\n");
+  const ScriptResult result =
+      run_script({"/bin/sh", "-c", fmt::format("cd '{}' && exec 2>&1; '{}' debug F.IPC < '{}'", folder.path().string(),
+                                               ipos_program(), input)});
+  for (const char* text : {"F10: division by zero", "program_fault = 10"})
+    EXPECT_NE(result.output.find(text), std::string::npos) << text << "\n" << result.output;
+}
+
+// What `ipos test` does is done here at the same times, and done again when time goes back and forward.
+class DebuggedTest : public ::testing::Test {
+ protected:
+  DebuggedTest() {
+    folder.write("MAIN.IPC", kProgram);
+    folder.write("p.toml", "[[station]]\nname = \"u\"\nunit = \"mdxb\"\nprogram = \"MAIN.IPC\"\n");
+    folder.write("a.test.toml", kTest);
+  }
+  std::string debug(const std::string& script, const std::string& options = "a.test.toml") {
+    const std::string input = folder.write("script", script);
+    return run_script({"/bin/sh", "-c", fmt::format("cd '{}' && exec 2>&1; '{}' debug {} < '{}'", folder.path().string(),
+                                                    ipos_program(), options, input)})
+        .output;
+  }
+  static constexpr const char* kTest =
+      "plant = \"p.toml\"\n[[step]]\nat = \"100ms\"\nvariable = \"lWrong\"\nset = 5\n"
+      "[[expect]]\nvariable = \"lWrong\"\nequals = 5\n"
+      "[[expect]]\nvariable = \"lCount\"\nmin = 100\nwithin = \"1s\"\n"
+      "[[step]]\nvariable = \"lCount\"\nset = 1000\n"
+      "[[expect]]\nnote = \"a mistake\"\nvariable = \"lCount\"\nequals = 7\nafter = \"10ms\"\n";
+  TemporaryFolder folder;
+};
+
+TEST_F(DebuggedTest, CarriesOutItsStepsAtTheirTime) {
+  for (const char* options : {"a.test.toml", "--no-snapshots a.test.toml"}) {
+    const std::string said = debug(
+        "watch lWrong\nc\ninfo tasks\nuntil 99ms\ndelete\nrc\np lWrong\nuntil 99ms\np lWrong\nuntil 100ms\np lWrong\nquit\n",
+        options);
+    EXPECT_NE(said.find("lWrong: 0 -> 5"), std::string::npos) << said;
+    EXPECT_NE(said.find("100.000 ms"), std::string::npos) << said;
+    const size_t first = said.find("lWrong = 0"), second = said.find("lWrong = 0", first + 1);
+    ASSERT_NE(second, std::string::npos) << said;
+    EXPECT_NE(said.find("lWrong = 5", second), std::string::npos) << said << "the step comes again";
+  }
+}
+
+TEST_F(DebuggedTest, TellsWhatTheTestTells) {
+  const CommandResult tested = run_ipos({"test", "a.test.toml"}, folder.path());
+  EXPECT_EQ(tested.exit_code, 1);
+  const std::string said = debug("until 2s\nquit\n");
+  const size_t begin = tested.out.find("  a.test.toml:"), end = tested.out.find("1 test, ");
+  ASSERT_LT(begin, end);
+  EXPECT_NE(said.find(tested.out.substr(begin, end - begin)), std::string::npos) << tested.out << said;
+  EXPECT_NE(said.find("3 checks, 1 not met"), std::string::npos) << said;
+}
+
+// The same number of checks at the same time, in every example whose test has no cases.
+TEST(DebuggedExamples, EndAsUnderTest) {
+  size_t compared = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(project("examples"))) {
+    const std::string path = entry.path().string();
+    if (!path.ends_with(".test.toml") || read_text(path).find("[[case]]") != std::string::npos) continue;
+    const CommandResult tested = run_ipos({"test", path, "--json", "-"});
+    const auto number = [&](const char* key) {
+      const size_t at = tested.out.find(fmt::format("\"{}\":", key));
+      return at == std::string::npos ? -1 : std::stoll(tested.out.substr(tested.out.find_first_of("0123456789", at)));
+    };
+    const TemporaryFolder folder;
+    const std::string input = folder.write("script", "until 30s\nc\nquit\n");
+    const ScriptResult debugged = run_script(
+        {"/bin/sh", "-c", fmt::format("exec '{}' debug '{}' < '{}' 2>&1", ipos_program(), path, input)});
+    EXPECT_NE(debugged.output.find(fmt::format("the test is over at {} ms: {} checks, 0 not met",
+                                               number("time_us") / 1000, number("checks"))),
+              std::string::npos)
+        << path << tested.out << debugged.output;
+    ++compared;
+  }
+  EXPECT_GT(compared, 15U);
+}
+
+TEST_F(DebuggedTest, OneOfItsCasesIsChosen) {
+  folder.write("c.test.toml", std::string("plant = \"p.toml\"\n[[case]]\nname = \"one\"\nx = 11\n[[case]]\nname = \"two\"\nx = 22\n") +
+                                  "[[step]]\nat = \"50ms\"\nvariable = \"lWrong\"\nset = \"$x\"\n[[expect]]\nvariable = \"lWrong\"\nequals = \"$x\"\n");
+  EXPECT_NE(debug("until 60ms\np lWrong\nquit\n", "--case two c.test.toml").find("lWrong = 22"), std::string::npos);
+  for (const char* options : {"c.test.toml", "--case three c.test.toml"})
+    EXPECT_NE(debug("quit\n", options).find("has the cases one, two"), std::string::npos) << options;
+  EXPECT_NE(debug("quit\n", "--case one a.test.toml").find("has no cases"), std::string::npos);
+  EXPECT_NE(debug("quit\n", "--case one p.toml").find("only a test"), std::string::npos);
+}
+
+// What is wrong is said in the response: editors hide what is printed.
+TEST_F(DebuggedTest, AnEditorIsToldWhyThereIsNothingToDebug) {
+  folder.write("BAD.IPC", "main()\n{\n  nobody = 5;\n}\n");
+  folder.write("bad.toml", "[[station]]\nname = \"u\"\nunit = \"none\"\n");
+  folder.write("bad.test.toml", "plant = \"p.toml\"\n[[step]]\nat = \"1ms\"\n");
+  folder.write("name.test.toml", "plant = \"p.toml\"\n[[expect]]\nvariable = \"lNobody\"\nequals = 1\nat = \"1ms\"\n");
+  const auto launched = [&](const std::string& arguments) {
+    std::string session;
+    for (const auto& [seq, command, of_it] :
+         {std::tuple(1, "initialize", std::string("{}")), {2, "launch", arguments}, {3, "disconnect", std::string("{}")}}) {
+      const std::string body =
+          fmt::format(R"({{"type":"request","seq":{},"command":"{}","arguments":{}}})", seq, command, of_it);
+      session += fmt::format("Content-Length: {}\r\n\r\n{}", body.size(), body);
+    }
+    folder.write("session", session);
+    const std::string out = run_script({"/bin/sh", "-c", fmt::format("cd '{}' && '{}' dap 2>printed < session",
+                                                                     folder.path().string(), ipos_program())})
+                                .output;
+    const size_t begin = out.find("\"message\":");
+    return begin == std::string::npos ? out : out.substr(begin, out.find("\"request_seq\"", begin) - begin);
+  };
+  for (const auto& [arguments, part] :
+       {std::pair(R"({"program": "BAD.IPC"})", "BAD.IPC:3:3: error"), {R"({"plant": "bad.toml"})", "bad.toml:3:8: error"},
+        {R"({"plant": "bad.test.toml"})", "bad.test.toml:2:1: error"}, {R"({"plant": "name.test.toml"})", "lNobody"},
+        {R"({"plant": "none.toml"})", "none.toml"}}) {
+    const std::string message = launched(arguments);
+    EXPECT_NE(message.find(part), std::string::npos) << arguments << message;
+    EXPECT_EQ(message.find("see the messages"), std::string::npos) << message;
+  }
+  launched(R"({"program": "BAD.IPC"})");
+  EXPECT_NE(read_text(folder.path() / "printed").find("BAD.IPC:3:3: error"), std::string::npos) << "it is printed, too";
+  EXPECT_NE(launched(R"({"plant": "a.test.toml"})").find("\"success\":true"), std::string::npos);
+}
+
 // 1024 and 1025 are what the programs of the example write.
 TEST(DebugScript, ObjectsHaveTheirIdentifiersAsInLogsAndPrograms) {
   const TemporaryFolder folder;

@@ -285,6 +285,14 @@ TEST(Run, WatchTakesTheNamesItPrints) {
   EXPECT_TRUE(contains(watched("speed,DI0*"), "     speed  0.000 rpm\n     DI00   0\n"))
       << watched("speed,DI0*");
   EXPECT_FALSE(contains(watched("y"), "B.IPC")) << "a station without the name has no section";
+  // Of one station of several that have it.
+  EXPECT_TRUE(contains(watched("RefOffset"), "B.IPC"));
+  for (const char* name : {"a.RefOffset", "a.H498", "a.H200"}) {
+    const std::string out = watched(name);
+    EXPECT_TRUE(contains(out, "A.IPC") && !contains(out, "B.IPC")) << name << out;
+    EXPECT_TRUE(contains(out, name[2] == 'H' ? name + 2 : "H498 RefOffset  0\n")) << name << out;
+  }
+  EXPECT_TRUE(contains(watched("a.y[0].b[1]"), "H422 y[0].b[1]  9\n"));
   const CommandResult traced = run_ipos({"run", "two.toml", "--for", "20ms", "--trace", "t.csv", "--signals",
                                          "a.y[0].b[1],a.RefOffset,a.DI03,a.DO01"},
                                         folder.path());

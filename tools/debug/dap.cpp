@@ -290,7 +290,7 @@ Json DapServer::launch(const Json& arguments) {
   if (debugger_) throw ValueError("there is a session already");
   const std::string plant = arguments.value("plant", ""), program = arguments.value("program", "");
   if (plant.empty() == program.empty()) throw ValueError("launch needs either a program or a plant");
-  DapLaunch launch{plant.empty() ? program : plant, arguments.value("unit", "")};
+  DapLaunch launch{plant.empty() ? program : plant, arguments.value("unit", ""), arguments.value("case", "")};
   stop_on_entry_ = arguments.value("stopOnEntry", true);
   debugger_.emplace(make_(launch), *this, snapshots_, runtime::kNever);
   return Json::object();

@@ -20,11 +20,12 @@ inline constexpr int kFramesOfTask = 64;  // frame = thread x this + number
 struct DapLaunch {
   std::string file;
   std::string unit;
+  std::string test_case;  // of a test that has several
 };
 
 class DapServer final : public FrontEnd, private runtime::BusObserver {
  public:
-  using Make = std::function<MakePlant(const DapLaunch&)>;  // may throw
+  using Make = std::function<Debuggee(const DapLaunch&)>;  // may throw
   using Send = std::function<void(const Json&)>;
   DapServer(Make make, Send send, bool snapshots)
       : make_(std::move(make)), send_(std::move(send)), snapshots_(snapshots) {}

@@ -19,15 +19,20 @@ constexpr const char* kBeginning = "this is the beginning of the run";
 
 }  // namespace
 
-Debugger::Debugger(MakePlant make, FrontEnd& front_end, bool snapshots, Time limit)
-    : make_(std::move(make)), front_end_(front_end), use_snapshots_(snapshots), limit_(limit) {
+Debugger::Debugger(Debuggee what, FrontEnd& front_end, bool snapshots, Time limit)
+    : what_(std::move(what)), front_end_(front_end), use_snapshots_(snapshots), limit_(limit) {
   build();
 }
 
 void Debugger::build() {
   codes_.clear();
+  companion_.reset();
   plant_.reset();  // its files are closed before they are opened again
-  plant_ = make_();
+  plant_ = what_.make();
+  if (what_.accompany)
+    companion_ = what_.accompany(*plant_, [this](const std::string& text) {
+      if (goal_.kind == Goal::Kind::Forward) front_end_.output(text);
+    });
   for (const auto& station : plant_->stations()) {
     station->use_runner(*this);
     codes_.emplace_back();
@@ -134,6 +139,7 @@ bool Debugger::advance() {
 }
 
 bool Debugger::between() {
+  if (companion_) companion_->passed(plant_->now());
   front_end_.passed(plant_->now());
   const bool over = arrived(Phase::Between);
   const bool searching = goal_.kind == Goal::Kind::Search;

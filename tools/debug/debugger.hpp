@@ -17,6 +17,23 @@ namespace ipos::tools::debug {
 // The plant as at power-on, each time.
 using MakePlant = std::function<std::unique_ptr<runtime::Plant>()>;
 
+// What goes with a plant and acts on it while it is debugged, as the script of a test does. Made anew with the plant.
+class Companion {
+ public:
+  virtual ~Companion() = default;
+  virtual void passed(runtime::Time now) = 0;  // everything of this millisecond has happened
+};
+// `tell` is for the user, who hears nothing twice while a stretch is run again.
+using Accompany =
+    std::function<std::unique_ptr<Companion>(runtime::Plant&, std::function<void(const std::string&)> tell)>;
+
+// What is debugged.
+struct Debuggee {
+  Debuggee(MakePlant made, Accompany with = {}) : make(std::move(made)), accompany(std::move(with)) {}
+  MakePlant make;
+  Accompany accompany;  // may be empty
+};
+
 // A front end that talks to the user. Its state goes with the session when another process goes on.
 class FrontEnd {
  public:
@@ -46,7 +63,7 @@ struct Frame {
 class Debugger final : private runtime::CommandRunner {
  public:
   // With `snapshots` steps back are fast, but run() may go on in another process. `limit` ends the run.
-  Debugger(MakePlant make, FrontEnd& front_end, bool snapshots, runtime::Time limit);
+  Debugger(Debuggee what, FrontEnd& front_end, bool snapshots, runtime::Time limit);
 
   // Carries out an order. Fill the frame of a step with order_for().
   Stop run(const Order& order);
@@ -110,11 +127,12 @@ class Debugger final : private runtime::CommandRunner {
   std::string save();
   void load(const std::string& bytes);
 
-  MakePlant make_;
+  Debuggee what_;
   FrontEnd& front_end_;
   bool use_snapshots_;
   runtime::Time limit_;
   std::unique_ptr<runtime::Plant> plant_;
+  std::unique_ptr<Companion> companion_;  // of this plant
   std::vector<std::optional<CodeMap>> codes_;
   Snapshots snapshots_;
 

@@ -20,10 +20,13 @@
 #include "tools/cli/xml_text.hpp"
 #include "tools/debug/console.hpp"
 #include "tools/debug/dap.hpp"
+#include "tools/debug/debugged_test.hpp"
+#include "tools/debug/heard_messages.hpp"
 #include "tools/input/plant_input.hpp"
 #include "tools/input/plant_source.hpp"
 #include "tools/input/program.hpp"
 #include "tools/lsp/transport.hpp"
+#include "tools/testing/read_tests.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -41,6 +44,7 @@ void catch_stop() {
 
 struct DebugFlags {
   std::string file;
+  std::string test_case;
   std::string duration = "60s";
   uint32_t speed = 0;
   bool snapshots = true;
@@ -56,6 +60,26 @@ std::optional<vm::Rates> rates_of(uint32_t speed) {
 // not be stored twice.
 debug::MakePlant plant_maker(PlantInput input, std::optional<vm::Rates> rates) {
   return [input = std::move(input), rates] { return make_plant(input, runtime::FileUse::Look, rates); };
+}
+
+debug::Debuggee debuggee_of(const DebugFlags& flags) {
+  if (testing::is_test_file(flags.file))
+    return debug::debugged_test(flags.file, flags.test_case, flags.compile, flags.speed);
+  if (!flags.test_case.empty())
+    throw Failure(kUsage, fmt::format("{}: only a test (.test.toml) has cases", compiler::printable(flags.file)));
+  return plant_maker(read_plant_input(flags.file, flags.compile), rates_of(flags.speed));
+}
+
+// Why it cannot be debugged is said in the Failure, with all that was printed before it.
+debug::Debuggee debuggee_or_why(const DebugFlags& flags) {
+  const debug::HeardMessages heard;
+  try {
+    return debuggee_of(flags);
+  } catch (const Failure& failure) {
+    std::string text = heard.text() + failure.what();
+    while (text.ends_with('\n')) text.pop_back();
+    throw Failure(failure.exit_code(), text);
+  }
 }
 
 // Lines of standard input. Ctrl-C on a terminal gives a new prompt; what stood on the line is gone. A script is
@@ -175,14 +199,13 @@ char** offers(const char* part, int, int) {
 #endif
 
 int debug_console(const DebugFlags& flags) {
-  PlantInput input = read_plant_input(flags.file, flags.compile);
+  debug::Debuggee what = debuggee_of(flags);
   LineInput lines;
   debug::Console console([](const std::string& text) { fmt::print("{}", utf8(text)); });
   console.save_input = [&] { return lines.save(); };
   console.load_input = [&](const debug::Json& state) { lines.load(state); };
   console.not_interrupted = [] { return stop_asked == 0; };
-  debug::Debugger debugger(plant_maker(std::move(input), rates_of(flags.speed)), console, flags.snapshots,
-                           runtime::parse_duration(flags.duration));
+  debug::Debugger debugger(std::move(what), console, flags.snapshots, runtime::parse_duration(flags.duration));
   console.attach(debugger);
   catch_stop();
 #ifdef IPOS_EDITLINE
@@ -205,7 +228,9 @@ int serve(const DebugFlags& flags, int in, int out) {
       [&flags](const debug::DapLaunch& launch) {
         DebugFlags own = flags;
         if (!launch.unit.empty()) own.compile.unit = launch.unit;
-        return plant_maker(read_plant_input(launch.file, own.compile), rates_of(flags.speed));
+        own.file = launch.file;
+        own.test_case = launch.test_case;
+        return debuggee_or_why(own);
       },
       [out](const debug::Json& message) {
         const std::string text =
@@ -287,7 +312,8 @@ void add_common(cli::Verb& verb, DebugFlags& flags) {
 void add_debug(cli::Verb& app) {
   auto flags = std::make_shared<DebugFlags>();
   cli::Verb& verb = app.verb("debug", "step through a program or a plant, forward and back");
-  verb.option("FILE", flags->file, "source (.IPC), image (.ipx) or plant (.toml)").required();
+  verb.option("FILE", flags->file, "source (.IPC), image (.ipx), plant (.toml) or test (.test.toml)").required();
+  verb.option("--case", flags->test_case, "of a test that has several");
   verb.option("--for", flags->duration, "virtual time to run at most; default 60s").check(check_time, "TIME");
   add_common(verb, *flags);
   verb.footer("Example, 'help' lists the words:\n  ipos debug examples/scom/scom.toml");

@@ -16,8 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_test_file(const std::string& path) { return path.ends_with(".test.toml"); }
-
 // Looked for in the text, so that a plant with mistakes is a test, too, and other people's TOML is none.
 bool is_plant_with_expectations(const std::string& path, const std::string& text) {
   const auto has_line = [&text](const std::string& line) {
@@ -42,6 +40,8 @@ std::vector<TestCase> tests_of(const std::string& path, const std::string& text)
 }
 
 }  // namespace
+
+bool is_test_file(std::string_view path) { return path.ends_with(".test.toml"); }
 
 std::vector<TestCase> read_tests(const std::string& path) {
   if (!is_folder(path)) {

@@ -30,7 +30,4 @@ struct RunOptions {
 
 TestResult run_test(const TestCase& test, Programs& programs, const RunOptions& options);
 
-// How long a program may run that is expected to end.
-inline constexpr Time kProgramLimit = 60 * runtime::kSecond;
-
 }  // namespace ipos::tools::testing
