@@ -383,7 +383,9 @@ TEST(LspTransport, HasALargestMessageAndAnEndOfItsHeader) {
       tools::lsp::MessageReader other;
       other.feed(header(size));
       for (const char* part : {"\r", "\n\r", "\n{}"}) {
-        if (!in_one) EXPECT_FALSE(other.next());
+        if (!in_one) {
+          EXPECT_FALSE(other.next());
+        }
         other.feed(part);
       }
       EXPECT_EQ(other.next().has_value(), size == kMaxHeader) << size << in_one;
