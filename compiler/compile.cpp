@@ -36,7 +36,7 @@ Compilation compile(const std::string& name, const std::string& path, std::strin
   const ast::Program tree = parse_program(*out.sources, main, preprocess, out.diagnostics);
   out.unit = options.unit;
   if (out.unit == nullptr)
-    out.unit = stdlib::find_unit(std::string_view(includes_b_headers(*out.sources) ? "mdxb" : "md60a"));
+    out.unit = includes_b_headers(*out.sources) ? &stdlib::unit_with(stdlib::Trait::NewVariables) : &stdlib::usual_unit();
   if (out.diagnostics.has_errors()) return out;
   auto program = check(tree, *out.unit, *out.sources, out.diagnostics, options.is_unit_value);
   if (!program) return out;

@@ -117,9 +117,9 @@ ipos_status ipos_set_sbus(ipos_vm* vm, uint32_t baud, uint8_t address, uint8_t g
       group >= runtime::kSbusAddresses || sync_id >= runtime::kStandardIdLimit)
     return IPOS_INVALID_ARGUMENT;
   if (vm->busy) return IPOS_BUSY;
-  const bool m07 = vm->program->unit->generation == stdlib::Generation::M07;
+  const bool synchronous = vm->program->unit->has(stdlib::Trait::SynchronousSbus);
   vm->objects = runtime::ObjectTable(*vm->program->unit, baud, 1);
-  vm->objects.set_profile({address, group, sync_id, false, !m07, true});
+  vm->objects.set_profile({address, group, sync_id, false, synchronous, true});
   return IPOS_OK;
 }
 

@@ -35,7 +35,7 @@ const Parameter* response_parameter(const ParameterTable& table, const FaultRow&
 
 FaultResponse fixed_response(const UnitType& unit, const FaultRow& row) {
   const bool by_parameter = !row.parameter.empty() && row.parameter != kByCommand;
-  return by_parameter && unit.generation == Generation::M07 ? FaultResponse::RapidError : row.response;
+  return by_parameter && unit.has(Trait::RapidStopFaults) ? FaultResponse::RapidError : row.response;
 }
 
 }  // namespace ipos::stdlib

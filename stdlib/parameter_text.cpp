@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "stdlib/index_areas.hpp"
 #include "stdlib/parameters.hpp"
 #include "stdlib/services.hpp"
 #include "stdlib/units.hpp"
@@ -252,8 +253,9 @@ std::string index_name(const ParameterTable& table, uint16_t index) {
   static constexpr struct {
     uint16_t first, count;
     std::string_view before;
-  } kAreas[] = {{10000, 100, "error response "},     {10300, 40, "motor current "}, {10600, 40, "motor flux "},
-                {11000, 1024, "H"}, {16000, 2048, "program word "}, {20000, 513, "curve point "}};
+  } kAreas[] = {{kFirstErrorResponses, 100, "error response "}, {kFirstMotorCurrent, 40, "motor current "},
+                {kFirstMotorFlux, 40, "motor flux "},           {kFirstVariables, 1024, "H"},
+                {kFirstProgram, 2048, "program word "},         {kFirstCurvePoints, 513, "curve point "}};
   if (const Parameter* parameter = table.find(index)) {
     const std::string number =
         parameter->number.empty() ? "index " + std::to_string(index) : "P" + std::string(parameter->number);

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <charconv>
-#include <initializer_list>
 #include <optional>
+#include <set>
 #include <type_traits>
 #include <utility>
 
@@ -230,7 +230,11 @@ ParameterTable::ParameterTable(std::span<const EmbeddedFile* const> lists, bool 
         rows.push_back(std::move(row));
     }
   }
-  if (!option_cards) std::erase_if(rows, [](const Parameter& p) { return p.option != OptionCard::None; });
+  std::set<uint16_t> of_cards;  // indices that go with the cards
+  if (!option_cards)
+    std::erase_if(rows, [&](const Parameter& p) {
+      return p.option != OptionCard::None && (of_cards.insert(p.index), true);
+    });
 
   const std::vector<const Parameter*> leads = leading_rows(rows);
   for (Parameter& row : rows) {
@@ -238,7 +242,7 @@ ParameterTable::ParameterTable(std::span<const EmbeddedFile* const> lists, bool 
     const Parameter* lead = find_index(leads, row.index);
     if (lead != nullptr)
       row = view_of(*lead, row);
-    else if (option_cards)
+    else if (!of_cards.contains(row.index))
       problems_.push_back("no row leads the index of " + std::string(row.name));
     if (lead == nullptr) row.index = 0;
   }
@@ -267,37 +271,32 @@ const Parameter* ParameterTable::find(std::string_view text) const {
   return at != by_number_.end() && (*at)->number == text ? *at : nullptr;
 }
 
-// Each table is read when the first unit that has it asks.
+namespace {
+
+ParameterTable read_lists(const UnitType& unit) {
+  std::vector<const EmbeddedFile*> lists;
+  for (std::string_view names = unit.lists; !names.empty();) {
+    const std::string_view name = cut(names, ' ');
+    for (const EmbeddedFile& file : parameter_lists::embedded_files())
+      if (file.name == name) lists.push_back(&file);
+  }
+  return {lists, unit.has(Trait::OptionCards)};
+}
+
+}  // namespace
+
+// Each table is read when the first who needs it asks.
 const ParameterTable& parameter_table(const UnitType& unit) {
-  using Lists = std::vector<const EmbeddedFile*>;
-  const auto lists = [](std::initializer_list<std::string_view> names) {
-    Lists found;
-    for (const std::string_view name : names)
-      for (const EmbeddedFile& file : parameter_lists::embedded_files())
-        if (file.name == name) found.push_back(&file);
-    return found;
-  };
-  if (unit.name == "md60a") {
-    static const ParameterTable md60a(lists({"md60a.tsv"}), true);
-    return md60a;
+  switch (unit.code) {
+#define UNIT(code, ...)                                   \
+  case code: {                                            \
+    static const ParameterTable table = read_lists(unit); \
+    return table;                                         \
   }
-  if (unit.name == "compact") {
-    static const ParameterTable compact(lists({"md60a.tsv"}), false);
-    return compact;
+#include "stdlib/unit_types.def"
+    default: break;
   }
-  if (unit.name == "mdxb") {
-    static const ParameterTable mdxb(lists({"md60a.tsv", "mdxb.tsv"}), true);
-    return mdxb;
-  }
-  if (unit.name == "mc07") {
-    static const ParameterTable mc07(lists({"mc07.tsv"}), true);
-    return mc07;
-  }
-  if (unit.name == "mc31") {
-    static const ParameterTable mc31(lists({"mc31.tsv"}), true);
-    return mc31;
-  }
-  static const ParameterTable none(Lists{}, true);
+  static const ParameterTable none({}, true);
   return none;
 }
 

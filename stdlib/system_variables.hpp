@@ -10,7 +10,7 @@
 namespace ipos::stdlib {
 
 enum class VariableAccess : uint8_t { R, RW };
-enum class VariableUnits : uint8_t { A, B };  // A: all units with IPOS, B: MOVIDRIVE B only
+enum class VariableUnits : uint8_t { A, B };  // A: all units with IPOS, B: those with Trait::NewVariables
 
 enum class VariableUse : uint8_t { Nothing, Follows, Shows, Moves, Counts };  // see the table
 

@@ -9,6 +9,19 @@
 namespace ipos::stdlib {
 namespace {
 
+using UnitTest = bool (*)(const UnitType&);
+
+// The codes of a value mean the same on units with the same list.
+constexpr UnitTest All = nullptr;
+bool OnMovidrive(const UnitType& unit) { return unit.lists.starts_with("md60a.tsv"); }
+bool OnMovitrac(const UnitType& unit) { return unit.lists.starts_with("mc07.tsv"); }
+bool OnMovitrac31(const UnitType& unit) { return unit.lists.starts_with("mc31.tsv"); }
+bool OnMovidriveWithoutFieldbus(const UnitType& unit) {
+  return OnMovidrive(unit) && !unit.has(Trait::FieldbusCard);
+}
+
+bool is_about(UnitTest units, const UnitType& unit) { return units == All || units(unit); }
+
 constexpr UnsimulatedRow kRows[] = {
 #define UNSIMULATED(parameters, values, units, scope, text) \
   {parameters, values, units, UnsimulatedScope::scope, text},
@@ -16,7 +29,9 @@ constexpr UnsimulatedRow kRows[] = {
 };
 
 struct UnshownRow {
-  std::string_view parameters, units, text;
+  std::string_view parameters;
+  UnitTest units;
+  std::string_view text;
 };
 constexpr UnshownRow kUnshown[] = {
 #define UNSHOWN(parameters, units, text) {parameters, units, text},
@@ -53,7 +68,7 @@ std::vector<Unsimulated> make_list(const UnitType& unit) {
   std::vector<Unsimulated> list;
   const ParameterTable& table = parameter_table(unit);
   for (const UnsimulatedRow& row : kRows) {
-    if (!among_units(row.units, unit)) continue;
+    if (!is_about(row.units, unit)) continue;
     const std::vector<ValueRange> numbers = ranges_of(row.parameters);
     for (const Parameter& parameter : table.rows())
       if (!parameter.view && parameter.writable && parameter.index != 0 && !parameter.number.empty() &&
@@ -70,10 +85,18 @@ std::vector<Unsimulated> make_list(const UnitType& unit) {
 
 std::span<const UnsimulatedRow> unsimulated_rows() { return kRows; }
 
+std::string UnsimulatedRow::unit_names() const {
+  if (units == All) return "all";
+  std::string names;
+  for (const UnitType& unit : unit_types())
+    if (units(unit)) names.append(names.empty() ? "" : ", ").append(unit.name);
+  return names;
+}
+
 std::string_view unshown(const UnitType& unit, const Parameter& parameter) {
   if (parameter.writable || parameter.number.empty()) return {};
   for (const UnshownRow& row : kUnshown)
-    if (among_units(row.units, unit) && holds(ranges_of(row.parameters), number_of(parameter.number)))
+    if (is_about(row.units, unit) && holds(ranges_of(row.parameters), number_of(parameter.number)))
       return row.text;
   return {};
 }

@@ -18,9 +18,11 @@ enum class UnsimulatedScope : uint8_t { Unit, Bus };
 struct UnsimulatedRow {
   std::string_view parameters;
   std::string_view values;
-  std::string_view units;
+  bool (*units)(const UnitType& unit);  // nullptr: all that have the parameter
   UnsimulatedScope scope;
   std::string_view text;
+
+  std::string unit_names() const;  // "all" or names
 };
 std::span<const UnsimulatedRow> unsimulated_rows();
 

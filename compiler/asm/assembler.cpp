@@ -10,7 +10,8 @@
 
 #include "compiler/asm/reader.hpp"
 #include "compiler/asm/text_forms.hpp"
-#include "stdlib/unit_types.hpp"
+#include "stdlib/unit_names.hpp"
+#include "stdlib/unit_names.hpp"
 
 namespace ipos::compiler {
 namespace {
@@ -76,7 +77,7 @@ class Assembler {
   Assembler(const SourceFile& source, Diagnostics& diagnostics) : file_(source), diagnostics_(diagnostics) {}
 
   std::optional<vm::Image> run() {
-    image_.unit = stdlib::find_unit("md60a")->code;
+    image_.unit = stdlib::usual_unit().code;
     const std::string_view text = file_.text;
     for (size_t begin = 0; begin < text.size();) {
       const size_t end = std::min(text.find('\n', begin), text.size());
@@ -346,10 +347,7 @@ class Assembler {
     } else if (const stdlib::UnitType* row = stdlib::find_unit(std::string_view(*name))) {
       image_.unit = row->code;
     } else {
-      std::string known;
-      for (const stdlib::UnitType& type : stdlib::unit_types())
-        known += (known.empty() ? "" : ", ") + std::string(type.name);
-      error(Diag::AsmUnknownUnit, span(begin, begin + name->size()), {*name, known});
+      error(Diag::AsmUnknownUnit, span(begin, begin + name->size()), {*name, stdlib::unit_names()});
     }
     return true;
   }

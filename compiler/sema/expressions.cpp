@@ -308,7 +308,7 @@ void ExpressionChecker::unknown_name(std::string_view name, Span span, bool func
                                                     span, {std::string(name)});
   // A search of all names for each of many unknown ones would take long, and nobody reads it.
   if (context_.diagnostics.error_count() > kMostExplained) return;
-  context_.scope.explain_unknown(message, name, function, context_.unit.generation == stdlib::Generation::B);
+  context_.scope.explain_unknown(message, name, function, context_.unit.has(stdlib::Trait::NewVariables));
 }
 
 }  // namespace ipos::compiler

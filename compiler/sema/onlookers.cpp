@@ -9,6 +9,7 @@
 
 #include "compiler/sema/walk.hpp"
 #include "compiler/sema/watched.hpp"
+#include "stdlib/index_areas.hpp"
 #include "vm/isa/blocks.hpp"
 
 namespace ipos::compiler {
@@ -167,7 +168,7 @@ std::optional<Onlooker> Onlookers::find(size_t function, uint32_t variable, bool
     if (const auto watched = watched_.find(variable); watched != watched_.end()) return watched->second;
   }
   if (const auto raw = raw_names_.find(variable); raw != raw_names_.end())
-    return Onlooker{fmt::format("a bus may read it as parameter {}", 11000 + variable), raw->second,
+    return Onlooker{fmt::format("a bus may read it as parameter {}", stdlib::kFirstVariables + variable), raw->second,
                     "used by its number here", true};
   return std::nullopt;
 }

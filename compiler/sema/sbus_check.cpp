@@ -4,8 +4,13 @@
 
 #include <fmt/format.h>
 
+#include <map>
+#include <string>
+#include <utility>
+
 #include "compiler/sema/call_graph.hpp"
 #include "compiler/sema/walk.hpp"
+#include "stdlib/unit_names.hpp"
 
 namespace ipos::compiler {
 namespace {
@@ -28,10 +33,10 @@ constexpr Telegram kTelegrams[] = {
 };
 
 // The MOVILINK telegram, of a unit of this type with any address and setting, that has this identifier.
-const Telegram* movilink_telegram(int32_t identifier, stdlib::Generation generation) {
+const Telegram* movilink_telegram(int32_t identifier, const stdlib::UnitType& unit) {
   for (const Telegram& telegram : kTelegrams) {
-    if (telegram.known == Known::Synchronous && generation == stdlib::Generation::M07) continue;
-    if (telegram.known == Known::Channel2 && generation != stdlib::Generation::B) continue;
+    if (telegram.known == Known::Synchronous && !unit.has(stdlib::Trait::SynchronousSbus)) continue;
+    if (telegram.known == Known::Channel2 && !unit.has(stdlib::Trait::Sbus2)) continue;
     if (identifier < 1024 && telegram.function == identifier % 8 && telegram.parameter == (identifier >= 512))
       return &telegram;
   }
@@ -76,24 +81,23 @@ class SbusChecker {
   }
 
   void check_cycle(const ConstantStore& store) {
-    const bool fast = context_.unit.fast_objects > 0;
-    const int32_t value = store.value;
-    if (fast && value >= 1 && value <= 9) return;
-    if (value >= 10 && value <= 65530 && value % 10 == 0) return;
+    if (context_.unit.objects_of(store.value) != nullptr) return;
+    std::string allowed;
+    for (const stdlib::ObjectClass& objects : context_.unit.objects)
+      allowed += (allowed.empty() ? "" : ", or ") + stdlib::cycle_text(objects);
     warn(Diag::SbusCycle, store.span,
-         {fmt::format("{}", value), std::string(context_.unit.name),
-          fast ? "1 to 9 ms, or 10 to 65530 ms in steps of 10" : "10 to 65530 ms in steps of 10"});
+         {fmt::format("{}", store.value), std::string(context_.unit.name), std::move(allowed)});
   }
 
   void check_identifier(const ConstantStore& store) {
     int32_t value = store.value;
-    if (context_.unit.generation == stdlib::Generation::B) value &= ~kSbus2;  // a negative one stays negative
+    if (context_.unit.has(stdlib::Trait::Sbus2)) value &= ~kSbus2;  // a negative one stays negative
     std::string reason;
     if (value < 0 || value > 2047) {
       reason = "does not exist; identifiers are 0 to 2047";
     } else if (value == 0) {
       reason = "is the sync telegram of units with factory setting";
-    } else if (const Telegram* telegram = movilink_telegram(value, context_.unit.generation)) {
+    } else if (const Telegram* telegram = movilink_telegram(value, context_.unit)) {
       reason = fmt::format("belongs to the MOVILINK telegrams of address {}{}; those above 1023 are free",
                            value / 8 % 64, telegram->known == Known::Channel2 ? ", second channel" : "");
     }
@@ -112,8 +116,7 @@ class SbusChecker {
   }
 
   void check_counts() {
-    uint32_t fast = 0;
-    uint32_t slow = 0;
+    std::map<const stdlib::ObjectClass*, uint32_t> cyclic;
     uint32_t receive = 0;
     const stdlib::UnitType& unit = context_.unit;
     for (size_t n = 0; n < definitions_.size(); ++n) {
@@ -122,16 +125,15 @@ class SbusChecker {
         count(++receive, unit.receive_objects, "receive", definition, "");
       } else if (definition.kind == kTransmitCyclic) {
         const ConstantStore* cycle = only_store(definition.structure + 1);
-        if (cycle != nullptr && cycle->value < 10)
-          count(++fast, unit.fast_objects, "transmit (1 to 9 ms)", definition, " (Result -2)");
-        else if (cycle != nullptr)
-          count(++slow, unit.slow_objects, "transmit (from 10 ms)", definition, " (Result -2)");
+        if (const stdlib::ObjectClass* like = cycle == nullptr ? nullptr : unit.objects_of(cycle->value))
+          count(++cyclic[like], like->objects, fmt::format("transmit ({})", stdlib::cycle_text(*like)), definition,
+                " (Result -2)");
       }
       for (size_t earlier = 0; earlier < n; ++earlier) same_identifier(definitions_[earlier], definition);
     }
   }
 
-  void count(uint32_t number, uint32_t most, const char* kind, const Definition& definition,
+  void count(uint32_t number, uint32_t most, const std::string& kind, const Definition& definition,
              const char* result) {
     if (number <= most || most == 0) return;
     warn(Diag::SbusObjects, definition.span,

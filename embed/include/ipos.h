@@ -138,7 +138,7 @@ ipos_status ipos_program_load(void* memory, size_t size, const void* image, size
 const char* ipos_rule_text(uint8_t rule);
 
 typedef struct ipos_program_info {
-  uint8_t unit;       /* unit type: 1 md60a, 2 compact, 3 mc07, 4 mdxb */
+  uint8_t unit;       /* unit type: its code in stdlib/unit_types.def, 4 is mdxb */
   uint8_t tasks;      /* 1..3 */
   uint8_t call_depth; /* nested calls of a task */
   uint16_t variables; /* H0 .. variables - 1 */

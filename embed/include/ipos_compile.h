@@ -27,7 +27,7 @@ typedef struct ipos_compile_job {
   const char* name;                /* of the file, for messages */
   const char* source;              /* its text */
   size_t source_size;              /* bytes of the text; 0: up to its terminating 0 */
-  const char* unit;                /* "md60a", "compact", "mc07", "mdxb"; null: as the included headers say */
+  const char* unit;                /* unit type, "mdxb"; null: as the included headers say */
   const char* const* defines;      /* "NAME" or "NAME=TEXT"; may be null */
   size_t define_count;
   const char* const* include_dirs; /* where #include looks, in order; may be null */

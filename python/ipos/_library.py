@@ -168,6 +168,7 @@ _FUNCTIONS = {
     "parameter_index": [c_char_p, c_char_p, POINTER(c_uint16)],
     "parameter_text": [c_char_p, c_uint16, c_int32, c_char_p, c_size_t],
     "parameter_value": [c_char_p, c_uint16, c_char_p, POINTER(c_int32), c_char_p, c_size_t],
+    "unit_signs": [c_size_t, POINTER(c_char_p), POINTER(c_uint16), POINTER(c_size_t)],
     "journal_at": [c_void_p, c_size_t, POINTER(Entry)],
     "save": [c_void_p, c_void_p, POINTER(c_size_t)],
     "restore": [c_void_p, c_char_p, c_size_t],
@@ -181,6 +182,7 @@ _ANSWERS = {
     "mistakes": ([c_void_p], c_size_t),
     "status_text": ([c_int32], c_char_p),
     "return_code": ([c_uint32], c_char_p),
+    "unit_name": ([c_size_t], c_char_p),
     "version": ([], c_uint32),
 }
 

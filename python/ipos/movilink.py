@@ -12,7 +12,8 @@ RefusedError with its return code. Telegrams: SEW 1053 1610 p. 18-25 and 29-46.
 from __future__ import annotations
 
 import time
-from ctypes import byref, c_int32, c_uint16, create_string_buffer
+from ctypes import byref, c_char_p, c_int32, c_size_t, c_uint16, create_string_buffer
+from itertools import count
 from typing import Any, Callable, Iterator, NamedTuple, Optional, Protocol
 
 from . import _library as lib
@@ -25,8 +26,24 @@ _FIRST_VARIABLE = 11000
 _STATUS = 8310  # status word 1 in the low word
 _FIRMWARE = 8300
 LONGEST_SILENCE = 500  # ms, of a drive's monitoring that ends a movement in time (ours)
-# An index that only this unit type has among those below it.
-_SIGNS = ((8807, "mc07"), (8937, "mdxb"), (8509, "md60a"), (8470, "compact"))
+
+
+def _unit_names() -> Iterator[str]:
+    for number in count():
+        name = lib.function("unit_name")(number)
+        if name is None:
+            return
+        yield lib.text(name)
+
+
+def _signs() -> Iterator[tuple[str, tuple[int, ...]]]:
+    """Unit types in the order in which they are asked for, with the indices that a unit of the type can read."""
+    unit, indices = c_char_p(), (c_uint16 * 8)()
+    for number in count():
+        size = c_size_t(len(indices))
+        if lib.function("unit_signs")(number, byref(unit), indices, byref(size)) != lib.OK:
+            return
+        yield lib.text(unit.value), tuple(indices[: size.value])
 
 
 class NoAnswerError(lib.PlantError, TimeoutError):
@@ -194,13 +211,23 @@ class Drive:
         raise NoAnswerError(f"unit {self.address} does not answer")
 
     def _identify(self) -> str:
-        for index, unit in _SIGNS:
-            try:
-                self.execute(READ, index)
+        answers: dict[int, bool] = {}  # each index is asked once
+        for unit, indices in _signs():
+            for index in indices:
+                if index not in answers:
+                    answers[index] = self._reads(index)
+                if not answers[index]:
+                    break
+            else:
                 return unit
-            except DriveRefusedError:
-                continue
         raise lib.PlantError(f"unit {self.address} answers, but has none of the parameters that tell its type; give unit=")
+
+    def _reads(self, index: int) -> bool:
+        try:
+            self.execute(READ, index)
+        except DriveRefusedError:
+            return False
+        return True
 
     def index_of(self, name: str | int) -> int:
         """ "P130", an index, or a variable "H20"."""
@@ -211,7 +238,7 @@ class Drive:
         index = c_uint16()
         status = lib.function("parameter_index")(lib.encoded(self.unit), lib.encoded(name), byref(index))
         if status == lib.NO_STATION:
-            raise ValueError(f"'{self.unit}' is no unit type; known are md60a, compact, mc07, mdxb, mc31")
+            raise ValueError(f"'{self.unit}' is no unit type; known are {', '.join(_unit_names())}")
         if status != lib.OK:
             raise lib.unknown(f"unit {self.unit} has no parameter '{name}'")
         return index.value

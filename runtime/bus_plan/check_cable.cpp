@@ -43,9 +43,9 @@ class CableCheck {
         find(FindingKind::BaudRate,
              fmt::format("{} is set to {} kbaud ({}), the line has {} kbaud: it neither hears nor answers",
                          member.name, settings_of(member).baud / 1000,
-                         member.station->config().unit->generation != stdlib::Generation::B ? "P816"
-                         : member.sbus == 1                                                 ? "P884"
-                                                                                            : "P894",
+                         !member.station->config().unit->has(stdlib::Trait::NewSbusNumbers) ? "P816"
+                         : member.sbus == 1                                                ? "P884"
+                                                                                           : "P894",
                          roster_.config->baud / 1000));
   }
 

@@ -6,14 +6,14 @@
 
 #include "runtime/bus/can/identifier_text.hpp"
 #include "runtime/bus_plan/checks.hpp"
+#include "stdlib/control_sources.hpp"
 #include "stdlib/unsimulated.hpp"
 
 namespace ipos::runtime {
 namespace {
 
-constexpr int32_t kMasterSbus = 8;     // P100
-constexpr int32_t kSetpointSbus = 10;  // P100
-constexpr int32_t kControlSbus = 3;    // P101
+constexpr int32_t kSetpointSbus = stdlib::code(stdlib::SetpointSource::Sbus);
+constexpr int32_t kControlSbus = stdlib::code(stdlib::ControlSource::Sbus);
 
 class ProfileCheck {
  public:
@@ -210,14 +210,14 @@ class ProfileCheck {
                          member.name, roster_.config->baud / 1000));
       const auto follows_it = [&](const Member& other) {
         return &other != &member && other.port != nullptr && other.port->settings().slave.group == group &&
-               other.station->drive().value("100") == kMasterSbus;
+               other.station->drive().follows_sbus_master();
       };
       if (std::none_of(roster_.members.begin(), roster_.members.end(), follows_it))
         find(FindingKind::MasterSlave,
              fmt::format("{} is a master (P750), but no slave with P100 = MASTER-SBus has its group {}",
                          member.name, group));
     }
-    if (member.station->drive().value("100") != kMasterSbus) return;
+    if (!member.station->drive().follows_sbus_master()) return;
     const auto leads = [&](const Member& other) {
       return &other != &member && is_group_master(other) && other.port->settings().slave.group == group;
     };

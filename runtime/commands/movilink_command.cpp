@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "runtime/bus/movilink/return_code.hpp"
@@ -19,17 +20,26 @@ constexpr int32_t kOwnUnit = 253;
 
 struct BusRow {
   int32_t code;
-  std::string_view units;
+  std::optional<stdlib::Trait> units;  // with this trait
   const char* text;
+
+  bool is_of(const stdlib::UnitType& unit) const { return !units || unit.has(*units); }
 };
-constexpr BusRow kBuses[] = {
+constexpr auto kBuses = [] {
+  using enum stdlib::Trait;
+  constexpr std::nullopt_t Every = std::nullopt;
+  return std::to_array<BusRow>({
 #define MOVILINK_BUS(name, code, units, text) {code, units, text},
 #include "runtime/commands/movilink_buses.def"
-};
-constexpr BusRow kAbsentBuses[] = {
+  });
+}();
+constexpr auto kAbsentBuses = [] {
+  using enum stdlib::Trait;
+  return std::to_array<BusRow>({
 #define ABSENT_BUS(code, units, text) {code, units, text},
 #include "runtime/commands/movilink_buses.def"
-};
+  });
+}();
 
 // Variables of MLDATA that a format touches.
 uint32_t data_size(TelegramFormat format) { return format.words > 0 ? kPI1 + format.words : 2U; }
@@ -85,7 +95,7 @@ vm::HostReply MovilinkCommand::start(Time now, vm::Machine& machine, int context
     return {};
   }
   const auto row = std::find_if(std::begin(kBuses), std::end(kBuses), [&](const BusRow& bus) {
-    return bus.code == element(kBusType) && stdlib::among_units(bus.units, unit_);
+    return bus.code == element(kBusType) && bus.is_of(unit_);
   });
   if (row == std::end(kBuses)) return refuse(return_codes::kWrongManagement, unknown_bus(element(kBusType)));
   Route& route = routes_[static_cast<size_t>(row - std::begin(kBuses))];
@@ -105,11 +115,11 @@ vm::HostReply MovilinkCommand::start(Time now, vm::Machine& machine, int context
 
 std::string MovilinkCommand::unknown_bus(int32_t code) const {
   for (const BusRow& bus : kAbsentBuses)
-    if (bus.code == code && stdlib::among_units(bus.units, unit_))
+    if (bus.code == code && bus.is_of(unit_))
       return fmt::format("MOVLNK: bus type {} is {}", code, bus.text);
   std::vector<int32_t> codes;
   for (const BusRow& bus : kBuses)
-    if (stdlib::among_units(bus.units, unit_)) codes.push_back(bus.code);
+    if (bus.is_of(unit_)) codes.push_back(bus.code);
   return fmt::format("MOVLNK: bus type {} is none of {}, which {} has", code, fmt::join(codes, ", "),
                      unit_.title);
 }

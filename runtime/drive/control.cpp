@@ -7,6 +7,8 @@
 namespace ipos::runtime {
 namespace {
 
+using stdlib::Trait;
+
 constexpr std::string_view kTexts[] = {
 #define BLOCK(name, text) text,
 #include "runtime/drive/blocks.def"
@@ -21,17 +23,17 @@ void hear_terminals(const ControlInputs& in, Verdict& verdict) {
   const Terminals& t = in.terminals;
   if (t.off(F::ControllerInhibit)) verdict.restrict_to(Command::Inhibit, Block::TerminalInhibit);
   if (t.off(F::Enable)) {
-    // The same function is a rapid stop on MOVIDRIVE and a stop on MOVITRAC 07.
-    if (in.m07)
-      verdict.restrict_to(Command::Stop, Block::EnableTerminal);
-    else
+    if (in.traits.has(Trait::EnableIsRapidStop))
       verdict.restrict_to(Command::RapidStop, Block::RapidStopTerminal);
+    else
+      verdict.restrict_to(Command::Stop, Block::EnableTerminal);
   }
   // A travel needs no direction, but an input that could give one still means stop at 0 (ours).
   const bool no_input = in.positioning && !t.assigned(F::Cw) && !t.assigned(F::Ccw);
   if (!in.cw && !in.ccw && !no_input) verdict.restrict_to(Command::Stop, Block::NoDirection);
   // Where the sign of a bus setpoint is the direction, MOVIDRIVE wants or allows both (MDX60B/61B p. 29).
-  if (in.cw && in.ccw && !in.positioning && (in.m07 || !in.sign_decides))
+  const bool may_be_both = in.sign_decides && in.traits.has(Trait::BothDirections);
+  if (in.cw && in.ccw && !in.positioning && !may_be_both)
     verdict.restrict_to(Command::Stop, Block::BothDirections);
   if (t.off(F::HoldControl)) verdict.restrict_to(Command::HoldControl, Block::HoldTerminal);
 }
@@ -57,7 +59,7 @@ void hear_bus(const ControlInputs& in, Verdict& verdict) {
   if ((word & kRapidStop) == 0)
     verdict.restrict_to(Command::RapidStop, of(Block::BusRapidStop, Block::MasterRapidStop));
   if ((word & kStop) == 0) verdict.restrict_to(Command::Stop, of(Block::BusStop, Block::MasterStop));
-  if (!in.m07 && (word & kHold) != 0)
+  if ((word & kHold) != 0 && in.traits.has(Trait::HoldControl))
     verdict.restrict_to(Command::HoldControl, of(Block::BusHold, Block::MasterHold));
 }
 

@@ -34,7 +34,7 @@ struct Verdict {
 
 struct ControlInputs {
   Terminals terminals;
-  bool m07 = false;
+  stdlib::Traits traits{};
   bool cw = false;  // direction terminals, after the three-wire latch
   bool ccw = false;
   bool sign_decides = false;            // bus setpoint: its sign is the direction, the terminals only enable

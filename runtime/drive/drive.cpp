@@ -8,6 +8,9 @@
 #include "runtime/drive/indices.hpp"
 
 namespace ipos::runtime {
+
+using stdlib::Trait;
+
 namespace {
 
 // How long installing the factory setting takes; ours.
@@ -32,10 +35,10 @@ constexpr uint8_t fault_of(PoSource source) {
   return faults::kSbus;
 }
 
-// A ramp time is the time for this change of speed: 3000 rpm on MOVIDRIVE (ours), 50 Hz on MOVITRAC 07 (its
-// manual, chapter 6.1) and MOVITRAC 31 (ours).
-MachineData machine_of(MachineData machine, bool is_movitrac) {
-  if (is_movitrac) machine.ramp_reference = machine.rated_speed;
+// A ramp time is the time for a change of speed: by 3000 rpm on MOVIDRIVE (ours), by 50 Hz on MOVITRAC 07 (its manual,
+// chapter 6.1) and the other MOVITRAC (ours).
+MachineData machine_of(MachineData machine, stdlib::Traits traits) {
+  if (traits.has(Trait::RampsOf50Hz)) machine.ramp_reference = machine.rated_speed;
   return machine;
 }
 
@@ -50,12 +53,11 @@ constexpr PoSource words_of(PoSource source) { return source == PoSource::Sbus2 
 
 Drive::Drive(ParameterStore& parameters, const MachineData& machine)
     : parameters_(parameters),
-      is_m07_(parameters.unit().generation == stdlib::Generation::M07),
-      is_m31_(parameters.unit().generation == stdlib::Generation::None),
+      traits_(parameters.unit().traits),
       reader_(parameters),
       settings_(reader_.read(parameters)),
       settings_version_(parameters.changes()),
-      state_(Axis(machine_of(machine, is_m07_ || is_m31_))),
+      state_(Axis(machine_of(machine, traits_))),
       shown_for_(settings_version_ - 1) {
   now_.set(&Situation::starting_up, starting_up());
   parameters.connect(*this);
@@ -145,11 +147,11 @@ Verdict Drive::verdict_with_setpoint(const Decisions& d) const {
   return verdict;
 }
 
-// MOVITRAC need not have an inhibit terminal, so there a standing drive is enough for R parameters (ours).
+// Without an inhibit terminal a standing drive is enough for R parameters (ours).
 bool Drive::controller_inhibited() const {
   ControlInputs in = control_inputs(terminals());
   in.fault_stop = FaultStop::None;
-  return decide(in).command == Command::Inhibit || ((is_m07_ || is_m31_) && !output_stage_on());
+  return decide(in).command == Command::Inhibit || (!traits_.has(Trait::InhibitTerminal) && !output_stage_on());
 }
 
 void Drive::set_position(int32_t counter) {
@@ -436,7 +438,7 @@ void Drive::count_limited() {
 
 // The set changes only while the output stage is off (ours).
 void Drive::select_parameter_set() {
-  if (output_stage_on() || is_m07_) return;
+  if (output_stage_on() || !traits_.has(Trait::ParameterSets)) return;
   now_.set(&Situation::second_set, decided().parameter_switch);
 }
 

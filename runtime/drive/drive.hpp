@@ -171,6 +171,12 @@ class Drive final : private DriveLink {
     shown_for_ = settings_version_ - 1;
   }
 
+  // What the parameters say now.
+  const Settings& settings() const {
+    if (settings_version_ != parameters_.changes()) read_settings();
+    return settings_;
+  }
+
  private:
   static constexpr uint32_t kMinuteMs = 60'000;
   // P017 counts in 1E5 Ws (quantity 8, conversion index 5).
@@ -184,10 +190,6 @@ class Drive final : private DriveLink {
   bool output_stage_on() const override { return state_.axis.output_stage(); }
   void on_parameter_written(uint16_t index, int32_t value) override;
 
-  const Settings& settings() const {
-    if (settings_version_ != parameters_.changes()) read_settings();
-    return settings_;
-  }
   void read_settings() const;
   const ParameterSet& set() const { return settings().sets[now_->second_set ? 1 : 0]; }
   const ParameterSet& other_set() const { return settings().sets[now_->second_set ? 0 : 1]; }
@@ -270,8 +272,7 @@ class Drive final : private DriveLink {
   AxisOrder axis_order(Command command) const;
 
   ParameterStore& parameters_;
-  bool is_m07_;
-  bool is_m31_;  // both are MOVITRAC: no inhibit terminal, ENABLE/STOP, ramps for 50 Hz
+  stdlib::Traits traits_;
   SettingsReader reader_;
   mutable Settings settings_;
   mutable uint32_t settings_version_;

@@ -3,6 +3,9 @@
 #include "runtime/drive/drive.hpp"
 
 namespace ipos::runtime {
+
+using stdlib::Trait;
+
 namespace {
 
 constexpr uint32_t kIposFault = 1U << 11;  // of H484, MOVITRAC 07 figure 19
@@ -77,18 +80,20 @@ const BusOrder& Drive::setpoint_order() const {
 uint16_t Drive::read_reserved_bits() const {
   using namespace control_bits;
   const BusOrder& order = control_order();
-  const unsigned reserved =
-      kReserved | (order.is_control_word_1 ? kReservedWord1 : 0U) | (is_m07_ ? kReservedM07 : 0U);
+  unsigned reserved = kReserved | (order.is_control_word_1 ? kReservedWord1 : 0U);
+  if (!traits_.has(Trait::HoldControl)) reserved |= kHold;
+  if (!traits_.has(Trait::RampSets)) reserved |= kRampSet;
+  if (!traits_.has(Trait::ParameterSets)) reserved |= kParameterSet;
   return static_cast<uint16_t>(order.control_word.value_or(0) & reserved);
 }
 
 // --- who controls ---
 
 // Control word 2 of MOVIDRIVE carries eight virtual inputs in its high byte; they act like DI10..DI17 (common
-// knowledge, in no manual read). On MOVITRAC 07 those bits are free for the program.
+// knowledge, in no manual read).
 Terminals Drive::read_terminals() const {
   uint16_t levels = now_->inputs;
-  if (!is_m07_) {
+  if (traits_.has(Trait::VirtualInputs)) {
     const BusOrder& order = control_order();
     if (order.control_word && !order.is_control_word_1)
       levels = static_cast<uint16_t>(levels | (*order.control_word & 0xFF00U));
@@ -99,10 +104,10 @@ Terminals Drive::read_terminals() const {
 // Silence of a bus that nobody has heard yet: the drive waits (1053 1610 p. 27, 64). On MOVITRAC 07 the same
 // silence on the SBus is a fault (its manual, chapter 7.1). Over RS-485 the drive waits even with the
 // monitoring off (TIME-04), over the others it does not (DIAG-12): then terminals enable it, or a control word that
-// has come. MOVITRAC 31 waits for its PROFIBUS (ours).
+// has come.
 bool Drive::waits_for(PoSource bus) const {
-  if (bus == PoSource::Rs485 || is_m31_) return true;
-  if (bus == PoSource::Sbus && is_m07_) return false;
+  if (bus == PoSource::Rs485 || traits_.has(Trait::WaitsForEveryBus)) return true;
+  if (bus == PoSource::Sbus && traits_.has(Trait::SbusFaultFromStart)) return false;
   if (bus == PoSource::Fieldbus) return monitored(settings().fieldbus_timeout) != 0;
   return monitored(settings().sbus_timeout) != 0 || monitored(settings().sbus2_timeout) != 0;
 }
@@ -125,9 +130,8 @@ ControlInputs Drive::control_inputs(const Terminals& t) const {
   const Settings& s = settings();
   ControlInputs in;
   in.terminals = t;
-  in.m07 = is_m07_ || is_m31_;
-  constexpr int32_t kThreeWire = 4;
-  const bool three_wire = is_m07_ && s.control_source == kThreeWire;
+  in.traits = traits_;
+  const bool three_wire = traits_.has(Trait::ThreeWireControl) && s.control_source == stdlib::code(stdlib::ControlSource::ThreeWire);
   in.cw = three_wire ? now_->three_wire_cw : t.on(InputFunction::Cw) || ipos_bit(InputFunction::Cw);
   in.ccw = three_wire ? now_->three_wire_ccw : t.on(InputFunction::Ccw) || ipos_bit(InputFunction::Ccw);
   in.sign_decides = sign_decides(s, t.on(InputFunction::SlaveFreeRun));
@@ -156,7 +160,7 @@ ControlInputs Drive::control_inputs(const Terminals& t) const {
 }
 
 bool Drive::mode_can_position() const {
-  if (is_m07_ || now_->second_set) return false;
+  if (!traits_.has(Trait::Positioning) || now_->second_set) return false;
   constexpr int32_t kVfcIpos = 9, kCfcIpos = 13, kServoIpos = 18;
   const int32_t mode = set().operating_mode;
   return mode == kVfcIpos || mode == kCfcIpos || mode == kServoIpos;
@@ -171,11 +175,10 @@ std::optional<int32_t> Drive::read_bus_position() const {
 
 // --- monitoring ---
 
-// 0 switches the monitoring off, on MOVIDRIVE 650 s does, too (1053 1610 p. 41; of MOVITRAC 07 chapter 4.1
-// names 0 only).
+// 0 switches the monitoring off.
 int32_t Drive::monitored(int32_t delay_ms) const {
   constexpr int32_t kOff = 650'000;
-  return !is_m07_ && delay_ms == kOff ? 0 : delay_ms;
+  return delay_ms == kOff && traits_.has(Trait::LongTimeoutIsOff) ? 0 : delay_ms;
 }
 
 // Nothing is supervised that is not taken over (P876).
@@ -195,7 +198,9 @@ std::array<LinkWatch::Rules, kPoLinks> Drive::link_rules(bool enabled_locally, b
         rule = {over_rs485 ? 0 : monitored(s.rs485_timeout), true, false};
         break;
       case PoSource::Fieldbus: rule = {monitored(s.fieldbus_timeout), used && enabled_locally, false}; break;
-      case PoSource::Sbus: rule = {monitored(s.sbus_timeout), used && enabled_locally, is_m07_}; break;
+      case PoSource::Sbus:
+        rule = {monitored(s.sbus_timeout), used && enabled_locally, traits_.has(Trait::SbusFaultFromStart)};
+        break;
       case PoSource::Sbus2: rule = {monitored(s.sbus2_timeout), used && enabled_locally, false}; break;
     }
   }
@@ -217,9 +222,9 @@ void Drive::decide_setpoint(Decisions& d) const {
   d.ai1_speed = ai1_speed(s, active, now_->analog);
 
   SetpointInputs& in = d.setpoint;
-  in.m07 = is_m07_;
+  in.unipolar_is_amount = traits_.has(Trait::UnipolarIsAmount);
   in.fixed_plus_potentiometer = parameters_.options().firmware_from(13, 12);
-  in.torque_control = !is_m07_ && is_torque_control(active.operating_mode);
+  in.torque_control = is_torque_control(active.operating_mode);
   in.slave_free_run = t.on(InputFunction::SlaveFreeRun);
   const bool low = function_on(t, InputFunction::FixedLow);
   const bool high = function_on(t, InputFunction::FixedHigh);

@@ -7,6 +7,8 @@
 
 namespace ipos::runtime {
 
+using stdlib::Trait;
+
 namespace {
 
 // Part number of P076, as in the example of both lists (1053 1610 p. 69, MOVITRAC 07 chapter 10.3); that it
@@ -28,7 +30,7 @@ std::string_view condition_text(UnitCondition condition) {
 
 // Operating modes of P700 (1053 1610 p. 80): VFC drives show 4, a speed control 5, a torque control 6.
 UnitCondition Drive::enabled_condition() const {
-  if (is_m07_) return UnitCondition::Enable;
+  if (!traits_.has(Trait::ShowsOperatingMode)) return UnitCondition::Enable;
   const int32_t mode = set().operating_mode;
   constexpr int32_t kVfcSpeedControl = 5;
   if (is_torque_control(mode)) return UnitCondition::TorqueControl;
@@ -49,7 +51,7 @@ UnitCondition Drive::condition() const {
     case Command::Stop: break;
   }
   if (now.reason == Block::LimitCw || now.reason == Block::LimitCcw) return UnitCondition::LimitSwitch;
-  if (decided().waiting && !is_m07_ && decided().enabled_locally) return UnitCondition::Waiting;
+  if (decided().waiting && traits_.has(Trait::ShowsWaiting) && decided().enabled_locally) return UnitCondition::Waiting;
   if (standing() && output_stage() && set().standstill_current > 0)
     return UnitCondition::StandstillCurrent;
   return UnitCondition::NoEnable;
@@ -68,21 +70,21 @@ uint8_t Drive::status_block() const {
   if (ready()) block |= 1U << 1;
   if (po_data_enabled()) block |= 1U << 2;
   if (now_->faults.shown() != 0) block |= 1U << 5;
-  if (is_m07_) return static_cast<uint8_t>(block);  // keeps bits 3, 4, 6, 7 at 0
-  if (function_on(t, InputFunction::RampSwitch) ||
-      (control_order().control_word.value_or(0) & control_bits::kRampSet) != 0)
+  if (traits_.has(Trait::RampSets) &&
+      (function_on(t, InputFunction::RampSwitch) ||
+       (control_order().control_word.value_or(0) & control_bits::kRampSet) != 0))
     block |= 1U << 3;
   if (now_->second_set) block |= 1U << 4;
+  if (!traits_.has(Trait::LimitSwitches)) return static_cast<uint8_t>(block);
   if (t.off(InputFunction::LimitCw)) block |= 1U << 6;  // low-active
   if (t.off(InputFunction::LimitCcw)) block |= 1U << 7;
   return static_cast<uint8_t>(block);
 }
 
 uint16_t Drive::status_word_1() const {
-  constexpr uint8_t kM07FactorySetting = 5;
   const UnitCondition now = condition();
   uint8_t high = static_cast<uint8_t>(now);
-  if (is_m07_ && now == UnitCondition::FactorySetting) high = kM07FactorySetting;
+  if (now == UnitCondition::FactorySetting && traits_.has(Trait::FactorySettingIs5)) high = 5;
   if (now_->faults.shown() != 0) high = now_->faults.shown();
   return static_cast<uint16_t>((high << 8) | status_block());
 }
@@ -113,7 +115,7 @@ uint16_t Drive::pi_word(size_t n) const {
     case PiAssignment::StatusWord3: return status_word_3();
     case PiAssignment::IposData: return state_.ipos_pi[n];
     case PiAssignment::PiActual:  // 10 is RESERVED on MOVIDRIVE
-      return is_m07_ ? relative_of_speed(state_.pi_actual, 100'000) : 0;
+      return traits_.has(Trait::PiController) ? relative_of_speed(state_.pi_actual, 100'000) : 0;
   }
   return 0;
 }
@@ -157,7 +159,7 @@ std::optional<int32_t> Drive::scope_value(uint16_t index) const {
 }
 
 std::optional<int32_t> Drive::live_value(uint16_t index) const {
-  if (is_m31_)
+  if (traits_.has(Trait::OwnParameterNumbers))
     return index == index::kM31Position ? std::optional(state_.axis.state().position) : std::nullopt;
   if (index >= index::kScopeControl && index <= index::kScopeValue) return scope_value(index);
   if (index >= index::kPoShown && index < index::kPoShown + kProcessWords)
@@ -192,9 +194,9 @@ std::optional<int32_t> Drive::live_value(uint16_t index) const {
     case index::kAnalogInput2: return now_->analog.ai2.millivolt;
     case index::kExternalLimit: return share_of_ai2(set().current_limit);
     case index::kUserDisplay: return user_display();
-    case index::kInputs: return now_->inputs & (is_m07_ ? 0x3E : 0x3F);  // M07 has no DI00
+    case index::kInputs: return now_->inputs & (traits_.has(Trait::InhibitTerminal) ? 0x3F : 0x3E);  // else no DI00
     case index::kOptionInputs: return now_->inputs >> 8;
-    case index::kOutputs: return state_.outputs.levels() & (is_m07_ ? 0x06 : 0x07);  // nor DB00
+    case index::kOutputs: return state_.outputs.levels() & (traits_.has(Trait::BrakeOutput) ? 0x07 : 0x06);
     case index::kOptionOutputs: return state_.outputs.levels() >> 8;
     default: return std::nullopt;
   }

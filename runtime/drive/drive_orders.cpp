@@ -6,6 +6,8 @@
 
 namespace ipos::runtime {
 
+using stdlib::Trait;
+
 // Filter, motor potentiometer and PI controller go on every millisecond; the choice is made again when one of
 // them gives something else.
 Setpoint Drive::next_setpoint(const Decisions& d) {
@@ -53,12 +55,12 @@ AxisOrder Drive::axis_order(Command command) const {
   AxisOrder order;
   order.ramp = {ms(p.ramp_up_cw), ms(p.ramp_down_cw), ms(p.ramp_up_ccw), ms(p.ramp_down_ccw), 0};
   const bool second_ramp = function_on(decisions_.terminals, InputFunction::RampSwitch) ||
-                           (!is_m07_ && (control.control_word.value_or(0) & control_bits::kRampSet) != 0);
+                           (traits_.has(Trait::RampSets) && (control.control_word.value_or(0) & control_bits::kRampSet) != 0);
   if (second_ramp) {
     const uint32_t t = ms(p.ramp_second);
     order.ramp = {t, t, t, t, static_cast<uint8_t>(p.s_pattern)};
   }
-  if (process_ramp && !(is_m31_ && *process_ramp == 0)) {  // MOVITRAC 31 PROFIBUS 3.6: 0 is without effect
+  if (process_ramp && !(*process_ramp == 0 && traits_.has(Trait::ZeroRampIgnored))) {
     const uint32_t t = ms(*process_ramp);
     order.ramp = {t, t, t, t, 0};
   }

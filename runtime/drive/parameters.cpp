@@ -19,11 +19,11 @@ namespace codes = stdlib::return_codes;
 struct AreaRow {
   uint16_t first;
   uint16_t count;
-  bool m07;
+  bool everywhere;
 };
 
 constexpr AreaRow kAreas[] = {
-#define INDEX_AREA(name, first, count, m07, meaning) {first, count, m07},
+#define INDEX_AREA(name, first, count, everywhere, meaning) {first, count, everywhere},
 #include "stdlib/index_areas.def"
 };
 static_assert(std::size(kAreas) == 7, "ParameterStore::windows_ has one entry an area");
@@ -51,10 +51,9 @@ ParameterStore::ParameterStore(const stdlib::UnitType& unit, DriveOptions option
   }
 }
 
-// MOVITRAC 07 has no limits and no scale to read (its manual, chapter 4.2).
 bool ParameterStore::knows_service(uint8_t service) const {
   if (service > static_cast<uint8_t>(ParameterService::ReadAttribute)) return false;
-  if (unit_.generation != stdlib::Generation::M07) return true;
+  if (unit_.has(stdlib::Trait::ReadsLimits)) return true;
   const auto s = static_cast<ParameterService>(service);
   return s != ParameterService::ReadMinimum && s != ParameterService::ReadMaximum &&
          s != ParameterService::ReadScale;
@@ -66,7 +65,7 @@ std::optional<ParameterStore::Place> ParameterStore::locate(uint16_t index) cons
     uint16_t count = kAreas[i].count;
     if (area == IndexArea::Variables) count = unit_.variables;
     if (area == IndexArea::Program) count = unit_.parameter_words;
-    if (unit_.generation == stdlib::Generation::M07 && !kAreas[i].m07) continue;
+    if (!kAreas[i].everywhere && !unit_.has(stdlib::Trait::IndexAreas)) continue;
     if (index >= kAreas[i].first && index - kAreas[i].first < count)
       return Place{area, static_cast<uint16_t>(index - kAreas[i].first), count};
   }
@@ -87,7 +86,7 @@ const ParameterStore::Slot* ParameterStore::find(uint16_t index) const {
 ParameterReply ParameterStore::read(uint16_t index) const {
   if (injected_) return tl::unexpected(*injected_);
   if (const Slot* slot = find(index)) return read(*slot);
-  const std::optional<Place> place = known_place(index);
+  const std::optional<Place> place = locate(index);
   if (!place) return tl::unexpected(codes::kInvalidIndex);
   IndexWindow* window = windows_[static_cast<size_t>(place->area)];
   if (window == nullptr) return tl::unexpected(codes::kNotImplemented);
@@ -100,17 +99,9 @@ ParameterReply ParameterStore::execute(uint8_t service, uint16_t index, int32_t 
   if (injected_) return tl::unexpected(*injected_);
   const auto known = static_cast<ParameterService>(service);
   if (Slot* slot = find(index)) return serve(*slot, known, value);
-  const std::optional<Place> place = known_place(index);
+  const std::optional<Place> place = locate(index);
   if (!place) return tl::unexpected(codes::kInvalidIndex);
   return serve_window(*place, known, index, value);
-}
-
-// MOVITRAC 07 prints no areas, so what it does not list is no index at all (M07-PAR-27).
-std::optional<ParameterStore::Place> ParameterStore::known_place(uint16_t index) const {
-  const std::optional<Place> place = locate(index);
-  if (place && place->area == IndexArea::Drive && unit_.generation == stdlib::Generation::M07)
-    return std::nullopt;
-  return place;
 }
 
 ParameterReply ParameterStore::serve(Slot& slot, ParameterService service, int32_t value) {
@@ -254,9 +245,9 @@ void ParameterStore::take_effect(uint16_t index, int32_t value) {
 
 // A unit of the newer unit profile takes no process data any more when their description is changed, until
 // P876 is written ON again (documentation of MOVITRAC B; that MDX60B/61B does the same, and only its working
-// value, is ours). The manuals of the older units say nothing of it.
+// value, is ours).
 void ParameterStore::block_process_data(const Parameter& changed) {
-  if (unit_.generation != stdlib::Generation::B || stored(index::kPoEnable) == 0) return;
+  if (!unit_.has(stdlib::Trait::BlocksProcessData) || stored(index::kPoEnable) == 0) return;
   set_working(index::kPoEnable, 0);
   if (!told_.emplace(changed.index, nullptr).second) return;
   news_.push_back("P" + std::string(changed.number) + " " + std::string(changed.name) +

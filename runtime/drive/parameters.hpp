@@ -56,7 +56,7 @@ class NonvolatileMemory {
 };
 
 enum class IndexArea : uint8_t {
-#define INDEX_AREA(name, first, count, m07, meaning) name,
+#define INDEX_AREA(name, first, count, everywhere, meaning) name,
 #include "stdlib/index_areas.def"
 };
 
@@ -182,8 +182,7 @@ class ParameterStore {
   };
 
   bool knows_service(uint8_t service) const;
-  std::optional<Place> locate(uint16_t index) const;
-  std::optional<Place> known_place(uint16_t index) const;  // of an index that the unit answers to
+  std::optional<Place> locate(uint16_t index) const;  // of an index that the unit answers to
   Slot* find(uint16_t index);
   const Slot* find(uint16_t index) const;
   int32_t read(const Slot& slot) const;

@@ -2,9 +2,13 @@
 #include "runtime/drive/process_data.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace ipos::runtime {
 namespace {
+
+using stdlib::ControlSource;
+using stdlib::SetpointSource;
 
 constexpr int32_t kSpeedDigit = 200;    // 0.2 rpm
 constexpr int32_t kCurrentDigit = 100;  // 0.1 %
@@ -13,14 +17,10 @@ constexpr int64_t kPercent = 100'000;   // 100 % in 1/1000 %
 
 // P100 and P101 name the buses by different codes (1053 1610 p. 72). P837 to P101 of SBus 2 are MOVIDRIVE B's
 // and stand with that bus.
-struct Bus {
-  PoSource source;
-  int32_t p100;
-  int32_t p101;
-  int32_t p100_master;  // the same bus with master/slave telegrams; -1: none
-};
-constexpr Bus kBuses[] = {
-    {PoSource::Rs485, 2, 1, 9}, {PoSource::Fieldbus, 3, 2, -1}, {PoSource::Sbus, 10, 3, 8}};
+constexpr BusSource kBuses[] = {
+    {PoSource::Rs485, SetpointSource::Rs485, ControlSource::Rs485, SetpointSource::MasterRs485},
+    {PoSource::Fieldbus, SetpointSource::Fieldbus, ControlSource::Fieldbus, std::nullopt},
+    {PoSource::Sbus, SetpointSource::Sbus, ControlSource::Sbus, SetpointSource::MasterSbus}};
 
 int64_t divide_rounded(int64_t value, int64_t by) {
   return value >= 0 ? (value + by / 2) / by : -((-value + by / 2) / by);
@@ -90,25 +90,27 @@ BusOrder decode_order(const DriveWords& words, const std::array<uint8_t, kProces
   return order;
 }
 
+const BusSource& bus_source(PoSource bus) {
+  return *std::find_if(std::begin(kBuses), std::end(kBuses), [&](const BusSource& row) { return row.bus == bus; });
+}
+
 std::optional<PoSource> setpoint_bus(const Settings& settings) {
-  for (const Bus& bus : kBuses)
-    if (settings.setpoint_source == bus.p100 || settings.setpoint_source == bus.p100_master)
-      return bus.source;
+  const auto source = static_cast<SetpointSource>(settings.setpoint_source);
+  for (const BusSource& row : kBuses)
+    if (source == row.setpoint || source == row.master) return row.bus;
   return std::nullopt;
 }
 
 // The master of a group sends the control word, too, whatever P101 says (MDX60B/61B p. 29).
 std::optional<PoSource> control_bus(const Settings& settings) {
   if (is_master_slave(settings)) return setpoint_bus(settings);
-  for (const Bus& bus : kBuses)
-    if (settings.control_source == bus.p101) return bus.source;
+  for (const BusSource& row : kBuses)
+    if (static_cast<ControlSource>(settings.control_source) == row.control) return row.bus;
   return std::nullopt;
 }
 
 bool is_master_slave(const Settings& settings) {
-  for (const Bus& bus : kBuses)
-    if (settings.setpoint_source == bus.p100_master) return true;
-  return false;
+  return stdlib::follows_sbus_master(settings.setpoint_source) || stdlib::follows_rs485_master(settings.setpoint_source);
 }
 
 }  // namespace ipos::runtime

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "runtime/drive/settings.hpp"
+#include "stdlib/control_sources.hpp"
 
 namespace ipos::runtime {
 
@@ -50,7 +51,7 @@ enum class PiAssignment : uint8_t {
   StatusWord3 = 11,
 };
 
-// Bits of the basic control block and of control word 1 (MOVITRAC 07 chapter 6.2; bits 3..5 MOVIDRIVE only).
+// Bits of the basic control block and of control word 1 (MOVITRAC 07 chapter 6.2; bits 3..5 not on all units).
 namespace control_bits {
 inline constexpr uint16_t kInhibit = 1 << 0;    // 1: controller inhibit
 inline constexpr uint16_t kRapidStop = 1 << 1;  // 0: rapid stop
@@ -65,9 +66,8 @@ inline constexpr uint16_t kPotDown = 1 << 10;
 inline constexpr unsigned kFixedShift = 11;  // bits 11, 12: n11, n12, n13
 inline constexpr uint16_t kFixedSwitch = 1 << 13;
 inline constexpr uint16_t kEnable = kRapidStop | kStop;
-inline constexpr uint16_t kReserved = 1 << 7;                               // in every control word
-inline constexpr uint16_t kReservedWord1 = 1 << 14 | 1 << 15;               // in control word 1
-inline constexpr uint16_t kReservedM07 = kHold | kRampSet | kParameterSet;  // on MOVITRAC 07
+inline constexpr uint16_t kReserved = 1 << 7;                  // in every control word
+inline constexpr uint16_t kReservedWord1 = 1 << 14 | 1 << 15;  // in control word 1
 }  // namespace control_bits
 
 // One digit of a speed word is 0.2 rpm, of a relative word 100 % / 4000h, of a current word 0.1 % of IN.
@@ -93,6 +93,15 @@ struct BusOrder {
 };
 BusOrder decode_order(const DriveWords& words, const std::array<uint8_t, kProcessWords>& assignments,
                       int32_t maximum_speed);
+
+// How P100 and P101 name a bus.
+struct BusSource {
+  PoSource bus;
+  stdlib::SetpointSource setpoint;
+  stdlib::ControlSource control;
+  std::optional<stdlib::SetpointSource> master;  // the same bus with master/slave telegrams
+};
+const BusSource& bus_source(PoSource bus);  // of SBus 2: that of the SBus stands for it
 
 // The bus that P100, or P101, names; nothing for terminals.
 std::optional<PoSource> setpoint_bus(const Settings& settings);

@@ -162,7 +162,6 @@ Setpoint select_setpoint(const Settings& settings, const ParameterSet& set, cons
   if (in.torque_control) return select_current(settings, set, other, in);
   const SetpointSource source = source_of(settings, in.slave_free_run);
   const int32_t fixed = fixed_setpoint(in.other_set ? other : set, in.fixed);
-  const int32_t pot = in.m07 ? potentiometer_speed(settings, set, in.analog.potentiometer) : 0;
   bool fixed_used = false;
   bool ccw = !is_bus(source) && in.ccw;
   Setpoint setpoint;
@@ -192,11 +191,10 @@ Setpoint select_setpoint(const Settings& settings, const ParameterSet& set, cons
     constexpr int32_t kAi2IsSetpoint = 1;
     if (settings.ai2_mode == kAi2IsSetpoint)
       setpoint.speed = add(setpoint.speed, scale(in.analog.ai2.millivolt, set.maximum_speed, kFullVoltage));
-    // The amount counts (ours); AI1 of MOVITRAC 07 has no sign, but its factor P110 may have one.
-    if (source == SetpointSource::Unipolar && !in.m07) setpoint.speed = std::abs(setpoint.speed);
+    if (source == SetpointSource::Unipolar && in.unipolar_is_amount) setpoint.speed = std::abs(setpoint.speed);
   }
-  if (in.m07 && !in.pi_output && adds_potentiometer(settings, in, source, fixed_used))
-    setpoint.speed = add(setpoint.speed, pot);
+  if (!in.pi_output && adds_potentiometer(settings, in, source, fixed_used))
+    setpoint.speed = add(setpoint.speed, potentiometer_speed(settings, set, in.analog.potentiometer));
   if (!is_bus(source) && in.sent_speed != 0 && setpoint.note == SetpointNote::None)
     setpoint.note = SetpointNote::BusWordIgnored;
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "runtime/drive/settings.hpp"
+#include "stdlib/control_sources.hpp"
 #include "stdlib/unit_types.hpp"
 
 namespace ipos::runtime {
@@ -25,21 +26,7 @@ struct AnalogInputs {
   bool operator==(const AnalogInputs&) const = default;
 };
 
-// Settings of P100 (1053 1610 p. 72; 11 MOVITRAC 07).
-enum class SetpointSource : uint8_t {
-  Bipolar = 0,
-  Unipolar = 1,
-  Rs485 = 2,
-  Fieldbus = 3,
-  MotorPot = 4,
-  MotorPotPlusAi1 = 5,
-  FixedPlusAi1 = 6,
-  FixedTimesAi1 = 7,
-  MasterSbus = 8,
-  MasterRs485 = 9,
-  Sbus = 10,
-  Frequency = 11,
-};
+using stdlib::SetpointSource;
 
 // Why a setpoint differs from what one expects; shown with --why.
 enum class SetpointNote : uint8_t {
@@ -49,7 +36,7 @@ enum class SetpointNote : uint8_t {
 std::string setpoint_note_text(SetpointNote note, const stdlib::UnitType& unit);
 
 struct SetpointInputs {
-  bool m07 = false;
+  bool unipolar_is_amount = false;
   bool fixed_plus_potentiometer = true;  // firmware from .13, LOGODrive .12 (MOVITRAC 07 table 3)
   bool torque_control = false;           // P700: the setpoint is a current
   bool slave_free_run = false;           // input function: the local source instead of the master's

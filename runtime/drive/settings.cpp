@@ -10,8 +10,10 @@
 namespace ipos::runtime {
 namespace {
 
-// DI01 of MOVITRAC 07 has no parameter: it is CW/STOP (its manual, chapter 10.3 begins with P601).
-constexpr size_t kM07FixedInput = 1;
+using stdlib::Trait;
+
+// The input without a parameter: DI00, or DI01 (MOVITRAC 07, chapter 10.3 begins with P601).
+constexpr size_t kInhibitInput = 0, kCwInput = 1;
 
 // The firmware of a slave in master/slave operation sets the assignments (MDX60B/61B p. 29). On the older
 // units the order of the words in the group telegram is the same (MS-07).
@@ -37,13 +39,13 @@ void fill_set(ParameterSet& set) {
 // PROFIBUS, 2.9). The three words are those of its chapter 3.1.4. T11 up is also the ramp down, and there is no
 // minimum speed (ours).
 Settings read_m31(const ParameterStore& parameters) {
-  constexpr int32_t kFieldbusSetpoint = 3, kFieldbusControl = 2, kMsADigit = 10;
+  constexpr int32_t kMsADigit = 10;
   constexpr std::array<InputFunction, 4> kFunctions = {InputFunction::None, InputFunction::Enable,
                                                        InputFunction::Ccw, InputFunction::Reset};
   Settings settings;
   if (parameters.stored(index::kM31ControlMode) == 1) {
-    settings.setpoint_source = kFieldbusSetpoint;
-    settings.control_source = kFieldbusControl;
+    settings.setpoint_source = stdlib::code(stdlib::SetpointSource::Fieldbus);
+    settings.control_source = stdlib::code(stdlib::ControlSource::Fieldbus);
   }
   settings.setpoint_bus = setpoint_bus(settings);
   settings.control_bus = control_bus(settings);
@@ -71,9 +73,8 @@ Settings read_m31(const ParameterStore& parameters) {
 }  // namespace
 
 SettingsReader::SettingsReader(const ParameterStore& parameters)
-    : is_m07_(parameters.unit().generation == stdlib::Generation::M07),
-      is_m31_(parameters.unit().generation == stdlib::Generation::None) {
-  if (is_m31_) return;  // its numbers mean other things
+    : traits_(parameters.unit().traits) {
+  if (traits_.has(Trait::OwnParameterNumbers)) return;
   const auto index_of = [&](std::string_view number) -> uint16_t {
     const stdlib::Parameter* row = parameters.table().find(number);
     return row == nullptr ? 0 : row->index;
@@ -87,7 +88,7 @@ SettingsReader::SettingsReader(const ParameterStore& parameters)
 }
 
 Settings SettingsReader::read(const ParameterStore& parameters) const {
-  if (is_m31_) return read_m31(parameters);
+  if (traits_.has(Trait::OwnParameterNumbers)) return read_m31(parameters);
   Settings settings;
   for (const Cell& cell : cells_) settings.*cell.member = parameters.stored(cell.index);
   for (const SetCell& cell : set_cells_)
@@ -123,10 +124,10 @@ Settings SettingsReader::read(const ParameterStore& parameters) const {
   read_terminals(std::span(settings.inputs).last(8), index::kOptionInputFunction);
   read_terminals(std::span(settings.outputs).subspan(1, 2), index::kOutputFunction);
   read_terminals(std::span(settings.outputs).last(8), index::kOptionOutputFunction);
-  if (is_m07_)
-    settings.inputs[kM07FixedInput] = static_cast<uint8_t>(InputFunction::Cw);
+  if (traits_.has(Trait::InhibitTerminal))
+    settings.inputs[kInhibitInput] = static_cast<uint8_t>(InputFunction::ControllerInhibit);
   else
-    settings.inputs[0] = static_cast<uint8_t>(InputFunction::ControllerInhibit);  // DI00
+    settings.inputs[kCwInput] = static_cast<uint8_t>(InputFunction::Cw);
   return settings;
 }
 

@@ -67,8 +67,7 @@ class SettingsReader {
     int32_t ParameterSet::*member;
     std::array<uint16_t, 2> index;
   };
-  bool is_m07_;
-  bool is_m31_;
+  stdlib::Traits traits_;
   std::vector<Cell> cells_;
   std::vector<SetCell> set_cells_;
 };

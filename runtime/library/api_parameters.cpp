@@ -3,6 +3,7 @@
 #include <cstring>
 #include <exception>
 #include <string>
+#include <utility>
 
 #include "runtime/library/include/ipos_plant.h"
 #include "stdlib/parameters.hpp"
@@ -75,4 +76,21 @@ ipos_plant_status ipos_plant_parameter_value(const char* unit, uint16_t index, c
 const char* ipos_plant_return_code(uint32_t code) {
   const std::string_view meaning = stdlib::return_code_meaning(stdlib::ReturnCode::unpack(code));
   return meaning.empty() ? "" : meaning.data();  // of the table, where it ends with 0
+}
+
+const char* ipos_plant_unit_name(size_t number) {
+  const auto units = stdlib::unit_types();
+  return number < units.size() ? units[number].name.data() : nullptr;
+}
+
+ipos_plant_status ipos_plant_unit_signs(size_t number, const char** unit, uint16_t* indices, size_t* count) {
+  if (unit == nullptr || indices == nullptr || count == nullptr) return IPOS_PLANT_INVALID_ARGUMENT;
+  const auto rows = stdlib::unit_signs();
+  if (number >= rows.size()) return IPOS_PLANT_NOTHING;
+  const stdlib::UnitSigns& row = rows[number];
+  const size_t places = std::exchange(*count, row.indices.size());
+  if (places < row.indices.size()) return IPOS_PLANT_TOO_SMALL;
+  *unit = row.unit.data();
+  std::copy(row.indices.begin(), row.indices.end(), indices);
+  return IPOS_PLANT_OK;
 }

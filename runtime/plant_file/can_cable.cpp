@@ -16,11 +16,6 @@ constexpr uint32_t kCanCapacitance = 40;  // pF/m at 1 kHz, at most
 constexpr std::array<std::pair<uint32_t, uint32_t>, 4> kCanLengths = {
     {{125'000, 320}, {250'000, 160}, {500'000, 80}, {1'000'000, 40}}};
 
-bool is_movidrive(const StationConfig& station) {
-  return station.unit->generation == stdlib::Generation::A ||
-         station.unit->generation == stdlib::Generation::B;
-}
-
 // Who hangs on the line, with the switch of its terminating resistor.
 struct Plug {
   std::string name;
@@ -106,7 +101,7 @@ class CableCheck {
     if (bus_.baud != 1'000'000) return;
     std::string mch, other;
     for (const Plug& plug : plugs_) {
-      if (plug.station == nullptr || !is_movidrive(*plug.station)) continue;
+      if (plug.station == nullptr || !plug.station->unit->has(stdlib::Trait::CableOfMovidrive)) continue;
       (plug.station->device == "MCH42A" ? mch : other) = plug.name;
     }
     if (!mch.empty() && !other.empty())

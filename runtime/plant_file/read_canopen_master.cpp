@@ -83,7 +83,7 @@ void read_words(PlantReader& reader, const toml::table& table, canopen::Words& o
 void read_writes(PlantReader& reader, const toml::table& table, canopen::NodePlan& plan) {
   const toml::table* settings = reader.subtable(table, "parameters");
   if (settings == nullptr) return;
-  const stdlib::UnitType& unit = *stdlib::find_unit("mdxb");
+  const stdlib::UnitType& unit = stdlib::unit_with(stdlib::Trait::Canopen);
   for (const auto& [key, value] : *settings) {
     const std::string name(key.str());
     const stdlib::Parameter* parameter = stdlib::parameter_table(unit).find(name);

@@ -4,6 +4,7 @@
 
 #include "runtime/plant_file/plant_reader.hpp"
 #include "stdlib/plain_text.hpp"
+#include "stdlib/unit_names.hpp"
 
 namespace ipos::runtime {
 namespace {
@@ -49,9 +50,10 @@ void read_logodrive(PlantReader& reader, const toml::table& table, StationConfig
   const toml::node* node = table.get("logodrive");
   if (node == nullptr) return;
   config.options.logodrive = reader.flag(table, "logodrive").value_or(true);
-  if (config.unit != nullptr && config.unit->generation != stdlib::Generation::M07)
+  if (config.unit != nullptr && !config.unit->has(stdlib::Trait::Logodrive))
     reader.error(place_of(*node),
-                 fmt::format("logodrive is of mc07; unit {} has no such variants", config.unit->name));
+                 fmt::format("logodrive is of {}; unit {} has no such variants",
+                             stdlib::unit_names(stdlib::Trait::Logodrive), config.unit->name));
 }
 
 void read_memory(PlantReader& reader, const toml::table& table, StationConfig& config) {
@@ -209,11 +211,8 @@ void read_station(PlantReader& reader, const toml::table& table) {
   const std::string unit = reader.text(table, "unit", "a [[station]]", true);
   config.unit = stdlib::find_unit(unit);
   if (config.unit == nullptr && !unit.empty()) {
-    std::vector<std::string_view> names;
-    for (const stdlib::UnitType& type : stdlib::unit_types()) names.push_back(type.name);
-    names.push_back(kGatewayUnit);
     reader.error(place_of(table.get("unit")->source()),
-                 fmt::format("'{}' is no unit type; known are {}", unit, fmt::join(names, ", ")));
+                 fmt::format("{}, {}", stdlib::no_unit_text(unit), kGatewayUnit));
   }
   read_firmware(reader, table, config.options.firmware);
   read_start_up(reader, table, config.options.start_up_ms);
@@ -221,7 +220,7 @@ void read_station(PlantReader& reader, const toml::table& table) {
   config.program = reader.text(table, "program", "", false);
   if (const toml::node* program = table.get("program")) {
     config.program_place = place_of(program->source());
-    if (config.unit != nullptr && config.unit->tasks == 0)
+    if (config.unit != nullptr && !config.unit->runs_programs())
       reader.error(config.program_place, fmt::format("unit type {} runs no program", config.unit->name));
     if (!config.options.logodrive)
       reader.error(config.program_place,
@@ -229,7 +228,7 @@ void read_station(PlantReader& reader, const toml::table& table) {
   }
   config.sbus = reader.bus_name(table, "sbus", "", false);
   config.sbus2 = reader.bus_name(table, "sbus2", "", false);
-  if (!config.sbus2.empty() && config.unit != nullptr && config.unit->generation != stdlib::Generation::B)
+  if (!config.sbus2.empty() && config.unit != nullptr && !config.unit->has(stdlib::Trait::Sbus2))
     reader.error(place_of(*table.get("sbus2")), fmt::format("unit {} has no SBus 2", config.unit->name));
   config.device = reader.text(table, "device", "", false);
   read_terminators(reader, table, config);

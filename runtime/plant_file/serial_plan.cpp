@@ -6,11 +6,12 @@
 #include <algorithm>
 
 #include "runtime/bus/movilink/serial_telegram.hpp"
+#include "stdlib/control_sources.hpp"
 
 namespace ipos::runtime {
 namespace {
 
-using stdlib::Generation;
+using stdlib::Trait;
 
 constexpr uint32_t kStationLimit = 32;  // electrical loads on a line (1053 1610 p. 8)
 constexpr uint32_t kUss21aLoads = 2;    // at most 16 of them (p. 7, 15)
@@ -156,10 +157,9 @@ class Finder {
  private:
   const std::string& name(size_t n) const { return plant_.stations[n].name; }
   bool sends(size_t n) const { return sends_setpoints(parameter_(n, "750")); }
-  bool follows(size_t n) const { return parameter_(n, "100") == kFollowsRs485Master; }
+  bool follows(size_t n) const { return stdlib::follows_rs485_master(parameter_(n, "100")); }
 
   void check(size_t n) {
-    constexpr int32_t kFollowsSbusMaster = 8;
     const SerialConfig& serial = plant_.stations[n].serial;
     if (serial.keypad && !serial.x13.bus.empty() && parameter_(n, "812") != 0)
       findings_.push_back(
@@ -168,7 +168,7 @@ class Finder {
            "interface",
            false});
     const int32_t source = parameter_(n, "100");
-    if ((source == kFollowsSbusMaster || source == kFollowsRs485Master) && parameter_(n, "750") != 0)
+    if ((stdlib::follows_sbus_master(source) || stdlib::follows_rs485_master(source)) && parameter_(n, "750") != 0)
       findings_.push_back({name(n), "a slave of a master/slave connection (P100) must have P750 = 0"});
     if ((sends(n) || follows(n)) && serial.x13.bus.empty())
       findings_.push_back({name(n), "master/slave operation over RS-485 needs X13 (key rs485)"});
@@ -203,13 +203,8 @@ class Finder {
 }  // namespace
 
 SerialInterfaces serial_interfaces(const stdlib::UnitType& unit) {
-  switch (unit.generation) {
-    case Generation::A: return {unit.name != "compact", true, true, false};
-    case Generation::M07: return {true, false, false, false};
-    case Generation::B: return {true, true, false, true};
-    case Generation::None: return {};
-  }
-  return {};
+  return {unit.has(Trait::SerialX13), unit.has(Trait::SerialXt), unit.has(Trait::SerialXtByOption),
+          unit.has(Trait::SerialXtSwitch)};
 }
 
 uint32_t xt_baud(const StationConfig& station) {

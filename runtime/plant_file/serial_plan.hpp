@@ -42,6 +42,5 @@ std::vector<PlanFinding> serial_findings(const PlantFile& plant, const Parameter
 
 // P750 with a setpoint over RS-485, and P100 = MASTER-RS-485 (1053 1610 p. 72, 80).
 bool sends_setpoints(int32_t p750);
-inline constexpr int32_t kFollowsRs485Master = 9;
 
 }  // namespace ipos::runtime

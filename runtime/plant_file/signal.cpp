@@ -46,8 +46,8 @@ int bit_of(std::span<const BinaryTerminal> all, std::string_view name) {
 std::span<const AnalogKind> analog_kinds() { return kAnalogKinds; }
 
 bool AnalogKind::is_of(const stdlib::UnitType& of) const {
-  const bool m07 = of.generation == stdlib::Generation::M07;
-  return units == Units::All || (units == Units::Movitrac07) == m07;
+  if (units == Units::All) return true;
+  return of.has(units == Units::Movitrac07 ? stdlib::Trait::BuiltInPotentiometer : stdlib::Trait::SecondAnalogInput);
 }
 
 std::span<const BinaryTerminal> binary_inputs() { return kInputs; }

@@ -5,38 +5,19 @@
 
 #include "runtime/bus/can/frame_bits.hpp"
 #include "runtime/bus/movilink/identifiers.hpp"
+#include "stdlib/system_variables.hpp"
 
 namespace ipos::runtime {
 namespace {
 
-using stdlib::Generation;
+using stdlib::ObjectClass;
+using stdlib::Trait;
 
-constexpr int32_t kLongestCycle = 65'530;       // ms, 1053 1610 p. 54
-constexpr int32_t kLongestFastOffset = 65'534;  // ms, same table
+constexpr size_t kReceiveFlags[] = {stdlib::system_variable("RecStatS1"), stdlib::system_variable("RecStatS2")};
 
-constexpr uint32_t kReceiveFlags[] = {522, 523};  // of SBus 1 and 2, MOVIDRIVE B
-
-#define UNIT(code, name, title, variables, parameter_words, program_words, tasks, depth, fast, slow, \
-             receive, ...)                                                                           \
+#define UNIT(code, name, title, family, lists, variables, parameter_words, program_words, tasks, depth, receive, ...) \
   static_assert((receive) <= ObjectTable::kMostReceive);
 #include "stdlib/unit_types.def"
-
-bool in_tens(int32_t value) { return value >= 0 && value <= kLongestCycle && value % 10 == 0; }
-
-// Permitted cycle times: 1..9 ms (not on MOVITRAC 07) and 10..65530 ms in tens.
-bool cycle_allowed(int32_t cycle, Generation generation) {
-  if (cycle >= 1 && cycle <= 9) return generation != Generation::M07;
-  return cycle >= 10 && in_tens(cycle);
-}
-
-// Permitted offsets: A p. 54 of 1053 1610; MOVITRAC 07 in tens; B p. 232 of IPOSplus, smaller than the cycle.
-bool offset_allowed(int32_t offset, int32_t cycle, Generation generation) {
-  if (generation == Generation::B) {
-    if (offset >= cycle) return false;
-    return is_fast_cycle(cycle) ? offset >= 0 && offset <= 8 : in_tens(offset);
-  }
-  return is_fast_cycle(cycle) ? offset >= 0 && offset <= kLongestFastOffset : in_tens(offset);
-}
 
 // The unit's own MOVILINK telegram with this identifier (1053 1610 p. 51): closed to its objects.
 bool is_movilink_identifier(uint32_t id, const SlaveSettings& profile) {
@@ -45,11 +26,16 @@ bool is_movilink_identifier(uint32_t id, const SlaveSettings& profile) {
   return used->address == (telegram_type(used->telegram).grouped ? profile.group : profile.address);
 }
 
+// Of all classes together.
+uint32_t most_cyclic(const stdlib::UnitType& unit) {
+  uint32_t most = 0;
+  for (const ObjectClass& objects : unit.objects) most += objects.objects;
+  return most;
+}
+
 uint8_t results_of(ObjectKind kind) { return kind == ObjectKind::TransmitCyclic ? 5 : 3; }
 
 }  // namespace
-
-bool is_fast_cycle(int32_t cycle) { return cycle < 10; }
 
 ObjectRequest ObjectTable::request(ObjectKind kind, uint32_t variable, std::span<const int32_t> h) const {
   const bool cyclic = kind == ObjectKind::TransmitCyclic;
@@ -70,7 +56,7 @@ ObjectVerdict ObjectTable::judge(const ObjectRequest& request) const {
   if (request.data < 0 || static_cast<uint32_t>(request.data) + format->variables() > unit_->variables)
     return ObjectVerdict::NoVariables;
   if (request.object < 0) return ObjectVerdict::NoIdentifier;
-  if ((request.object & kSbus2Object) != 0 && unit_->generation == Generation::B)
+  if ((request.object & kSbus2Object) != 0 && unit_->has(Trait::Sbus2))
     return ObjectVerdict::OnSbus2;
   if (static_cast<uint32_t>(request.object) >= kStandardIdLimit) return ObjectVerdict::NoIdentifier;
   if (is_movilink_identifier(static_cast<uint32_t>(request.object), profile_))
@@ -95,16 +81,16 @@ ObjectVerdict ObjectTable::define(const ObjectRequest& request, std::span<int32_
 
 ObjectVerdict ObjectTable::define_cyclic(const ObjectRequest& request, int32_t& result) {
   result = kWrongCycleTime;
-  if (!cycle_allowed(request.cycle, unit_->generation)) return ObjectVerdict::WrongCycleTime;
-  if (!offset_allowed(request.offset, request.cycle, unit_->generation)) return ObjectVerdict::WrongOffset;
+  const ObjectClass* like = unit_->objects_of(request.cycle);
+  if (like == nullptr) return ObjectVerdict::WrongCycleTime;
+  if (!like->has_offset(request.offset, request.cycle)) return ObjectVerdict::WrongOffset;
   if (sends(request.object)) return ObjectVerdict::SentTwice;
   if (receives(request.object)) return ObjectVerdict::SentAndReceived;
   int of_class = 0;
   for (const Cyclic& object : std::span(state_.cyclic).first(state_.cyclic_count))
-    of_class += is_fast_cycle(object.cycle) == is_fast_cycle(request.cycle);
+    of_class += like->has_cycle(object.cycle);
   result = kTooManyObjects;
-  if (of_class >= (is_fast_cycle(request.cycle) ? unit_->fast_objects : unit_->slow_objects))
-    return ObjectVerdict::TooManyTransmit;
+  if (of_class >= like->objects) return ObjectVerdict::TooManyTransmit;
   const Cyclic object{static_cast<uint16_t>(request.object), static_cast<uint16_t>(request.cycle),
                       static_cast<uint16_t>(request.offset), static_cast<uint16_t>(request.data),
                       *variable_format(request.format)};
@@ -184,7 +170,7 @@ bool ObjectTable::take(size_t receiver, const Frame& frame, std::span<int32_t> h
   if (!pair) return false;
   if (object.format.variables() > 0) h[object.data] = pair->low;
   if (object.format.variables() > 1) h[object.data + 1] = pair->high;
-  if (unit_->generation == Generation::B) {
+  if (unit_->has(Trait::NewVariables)) {
     int32_t& flags = h[kReceiveFlags[sbus_ - 1]];
     flags = static_cast<int32_t>(static_cast<uint32_t>(flags) | 1U << receiver);
   }
@@ -197,7 +183,7 @@ bool ObjectTable::has_taken(size_t receiver, const Frame& frame, std::span<const
   if (!pair) return false;
   if (object.format.variables() > 0 && h[object.data] != pair->low) return false;
   if (object.format.variables() > 1 && h[object.data + 1] != pair->high) return false;
-  return unit_->generation != Generation::B ||
+  return !unit_->has(Trait::NewVariables) ||
          (static_cast<uint32_t>(h[kReceiveFlags[sbus_ - 1]]) >> receiver & 1) != 0;
 }
 
@@ -207,9 +193,7 @@ bool ObjectTable::is_sound(uint32_t id, VariableFormat format, uint32_t data) co
 }
 
 bool ObjectTable::restore(const State& state) {
-  if (state.cyclic_count > unit_->fast_objects + unit_->slow_objects ||
-      state.receive_count > unit_->receive_objects)
-    return false;
+  if (state.cyclic_count > most_cyclic(*unit_) || state.receive_count > unit_->receive_objects) return false;
   for (const Cyclic& object : std::span(state.cyclic).first(state.cyclic_count))
     if (object.cycle == 0 || !is_sound(object.id, object.format, object.data)) return false;
   for (const Receive& object : std::span(state.receive).first(state.receive_count))

@@ -59,8 +59,6 @@ struct ObjectRequest {
   uint32_t result = 0;  // number of the variable for the result; none for receive objects
 };
 
-bool is_fast_cycle(int32_t cycle);  // 1..9 ms: a class of its own
-
 class ObjectTable {
  public:
   struct Cyclic {
@@ -76,11 +74,11 @@ class ObjectTable {
     VariableFormat format;
   };
   static constexpr size_t kMostCyclic = [] {
-    size_t most = 0;
-#define UNIT(code, name, title, variables, parameter_words, program_words, tasks, depth, fast, slow, ...) \
-  if (size_t{fast} + size_t{slow} > most) most = size_t{fast} + size_t{slow};
-#include "stdlib/unit_types.def"
-    return most;
+    std::array<size_t, 256> of_family{};
+#define SBUS_OBJECTS(family, shortest, longest, step, objects, ...) \
+  of_family[static_cast<size_t>(stdlib::Family::family)] += (objects);
+#include "stdlib/unit_families.def"
+    return *std::max_element(of_family.begin(), of_family.end());
   }();
   static constexpr size_t kMostReceive = 32;  // 1053 1610 p. 55
 

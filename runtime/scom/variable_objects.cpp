@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "runtime/bus/can/identifier_text.hpp"
+#include "stdlib/unit_names.hpp"
 #include "stdlib/unit_text.hpp"
 
 namespace ipos::runtime {
@@ -45,7 +46,7 @@ bool VariableObjects::define(ObjectKind kind, uint32_t variable, std::span<int32
     const SlaveSettings& profile = table_.profile();
     if (profile.synchronous && request.object == profile.sync_id)
       why = fmt::format("object number {} is also the sync telegram of this unit ({})", object_words(request.object),
-                        stdlib::unit_text(table_.unit(), "{P885 or P895|P817}"));
+                        stdlib::unit_text(table_.unit(), "{P885 or P895|P885|P817}"));
     // The table keeps no acyclic objects.
     if (const ObjectDefinition* other = another_use(definition);
         other != nullptr &&
@@ -91,10 +92,9 @@ std::string VariableObjects::reason(const ObjectRequest& request, ObjectVerdict 
           "definition is not used",
           id);
     case ObjectVerdict::TooManyTransmit: {
-      const bool fast = is_fast_cycle(request.cycle);
+      const stdlib::ObjectClass& like = *unit_.objects_of(request.cycle);
       return fmt::format("object {}: the unit has only {} transmit objects of {}; the object is not sent", id,
-                         fast ? unit_.fast_objects : unit_.slow_objects,
-                         fast ? "1 to 9 ms" : "10 ms and more");
+                         like.objects, stdlib::cycle_text(like));
     }
     case ObjectVerdict::Overload:
       return fmt::format(

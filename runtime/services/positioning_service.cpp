@@ -6,35 +6,36 @@
 #include <algorithm>
 #include <cstring>
 
+#include "stdlib/system_variables.hpp"
 #include "stdlib/unit_text.hpp"
 
 namespace ipos::runtime {
 namespace {
 
 enum SystemVariable : size_t {
-  kModuloCtrl = 453,
-  kModTagPos = 454,
-  kModActPos = 455,
-  kModCount = 456,
-  kStatusWord = 473,
-  kSetpointPos = 491,
-  kTargetPos = 492,
-  kPosWindow = 493,
-  kLagWindow = 494,
-  kLagDistance = 495,
-  kSlsRight = 496,
-  kSlsLeft = 497,
-  kRefOffset = 498,
-  kSetpointPosBus = 499,
-  kTpPos2Abs = 502,  // up to H507 in a row
-  kActPosAbs = 509,
-  kActPosExt = 510,
-  kActPosMot = 511,
-  kSyncSource = 560,
-  kSyncControl = 561,
-  kSyncState = 562,
-  kGearMaster = 563,
-  kGearSlave = 564,
+  kModuloCtrl = stdlib::system_variable("ModuloCtrl"),
+  kModTagPos = stdlib::system_variable("ModTagPos"),
+  kModActPos = stdlib::system_variable("ModActPos"),
+  kModCount = stdlib::system_variable("ModCount"),
+  kStatusWord = stdlib::system_variable("StatusWord"),
+  kSetpointPos = stdlib::system_variable("SetpointPos"),
+  kTargetPos = stdlib::system_variable("TargetPos"),
+  kPosWindow = stdlib::system_variable("PosWindow"),
+  kLagWindow = stdlib::system_variable("LagWindow"),
+  kLagDistance = stdlib::system_variable("LagDistance"),
+  kSlsRight = stdlib::system_variable("SLS_right"),
+  kSlsLeft = stdlib::system_variable("SLS_left"),
+  kRefOffset = stdlib::system_variable("RefOffset"),
+  kSetpointPosBus = stdlib::system_variable("SetpointPosBus"),
+  kTpPos2Abs = stdlib::system_variable("TpPos2_Abs"),  // up to H507 in a row
+  kActPosAbs = stdlib::system_variable("ActPos_Abs"),
+  kActPosExt = stdlib::system_variable("ActPos_Ext"),
+  kActPosMot = stdlib::system_variable("ActPos_Mot"),
+  kSyncSource = stdlib::system_variable("SyncSource"),
+  kSyncControl = stdlib::system_variable("SyncControl"),
+  kSyncState = stdlib::system_variable("SyncState"),
+  kGearMaster = stdlib::system_variable("SyncGearMaster"),
+  kGearSlave = stdlib::system_variable("SyncGearSlave"),
 };
 
 // System variables that are the same datum as a parameter; every unit with positioning has these.

@@ -73,7 +73,7 @@ constexpr DriveValue kDriveValues[] = {
 bool has(const stdlib::UnitType& unit, const DriveValue& row) {
   if (row.read != nullptr) return true;
   if (row.variable >= 0)
-    return unit.variables != 0 && unit.generation != stdlib::Generation::M07;
+    return unit.has(stdlib::Trait::Positioning);
   return find_parameter(unit, row.parameter) != nullptr;
 }
 

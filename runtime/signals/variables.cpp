@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "runtime/signals/collector.hpp"
+#include "stdlib/index_areas.hpp"
 #include "stdlib/system_variables.hpp"
 
 namespace ipos::signals {
@@ -93,7 +94,7 @@ void add_symbols(Collector& out) {
 void add_system_variables(Collector& out) {
   const stdlib::UnitType& unit = *out.station().config().unit;
   for (const stdlib::SystemVariable& row : stdlib::system_variables()) {
-    const bool known = row.units == stdlib::VariableUnits::A || unit.generation == stdlib::Generation::B;
+    const bool known = row.units == stdlib::VariableUnits::A || unit.has(stdlib::Trait::NewVariables);
     if (known && row.number < unit.variables && !row.compiler_name.empty())
       out.add_variable(Group::SystemVariable, row.compiler_name, row.number, row.meaning);
   }
@@ -101,8 +102,7 @@ void add_system_variables(Collector& out) {
 
 // Variables are parameters 11000 + n (IPOSplus p. 28), so both go the same way.
 Refusal write_variable(Station& station, uint32_t number, int32_t value) {
-  constexpr uint32_t kFirstVariable = 11'000;
-  return write_parameter(station, kFirstVariable + number, value);
+  return write_parameter(station, stdlib::kFirstVariables + number, value);
 }
 
 }  // namespace ipos::signals

@@ -67,11 +67,15 @@ Refusal set_word(Station& station, uint32_t word, int32_t value) {
   DriveServer& drive = station.drive();
   DriveWords words = drive.state().po();
   words[word] = static_cast<uint16_t>(value);
-  const int32_t control = drive.value("101");
-  const int32_t setpoint = drive.value("100");
-  if (control == 1 || (control == 0 && setpoint == 2))
+  const auto control = static_cast<stdlib::ControlSource>(drive.value("101"));
+  const auto setpoint = static_cast<stdlib::SetpointSource>(drive.value("100"));
+  const auto names = [&](PoSource bus) {
+    const BusSource& row = bus_source(bus);
+    return control == row.control || (control == stdlib::ControlSource::Terminals && setpoint == row.setpoint);
+  };
+  if (names(PoSource::Rs485))
     drive.state().take_po(PoSource::Rs485, words);
-  else if (control == 2 || (control == 0 && setpoint == 3))
+  else if (names(PoSource::Fieldbus))
     drive.state().take_po(PoSource::Fieldbus, words);
   else
     drive.take_output(station.now(), OutputChannel::Single, words);

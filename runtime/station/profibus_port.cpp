@@ -15,7 +15,7 @@ ProfibusPort::ProfibusPort(EventQueue& queue, ProfibusBus& bus, const StationCon
     : queue_(queue),
       station_(station.name),
       line_(bus.line()),
-      movidrive_(station.unit->generation != stdlib::Generation::None),
+      own_numbers_(station.unit->has(stdlib::Trait::OwnParameterNumbers)),
       door_(door),
       journal_(journal),
       server_(door),
@@ -43,7 +43,7 @@ Time ProfibusPort::tick(Time now) {
 // Save EEPROM P802 = OFF of a MOVITRAC 31: nothing is stored (MOVITRAC 31 PROFIBUS, 6).
 tl::expected<int32_t, ReturnCode> ProfibusPort::serve(Time now, const ParameterRequest& request) {
   ParameterRequest wanted = request;
-  const bool stores = movidrive_ || door_.look().server().parameters().value(index::kM31SaveEeprom) != 0;
+  const bool stores = !own_numbers_ || door_.look().server().parameters().value(index::kM31SaveEeprom) != 0;
   if (wanted.service == Service::Write && !stores) wanted.service = Service::WriteVolatile;
   auto reply = server_.serve(now, wanted);
   tell_reasons(now);
@@ -59,20 +59,20 @@ profibus::FurtherWords ProfibusPort::further_input(Time /*now*/) { return door_.
 
 // The drive of a MOVIDRIVE monitors its process data itself (P819), in Sync mode, too, when no words come.
 void ProfibusPort::cyclic_request(Time) {
-  if (movidrive_) door_.touch().server().fieldbus_request();
+  if (!own_numbers_) door_.touch().server().fieldbus_request();
 }
 
 // The watchdog time of the master replaces what the parameter had.
 void ProfibusPort::set_fieldbus_timeout(Time, int32_t hundredths) {
   ParameterStore& parameters = door_.touch().server().parameters();
-  if (!movidrive_) return parameters.set_working(index::kM31Timeout, hundredths);
+  if (own_numbers_) return parameters.set_working(index::kM31Timeout, hundredths);
   constexpr int32_t kMsAHundredth = 10;
   parameters.set_working(index::kFieldbusTimeout, kMsAHundredth * hundredths);
   parameters.set_display(index::kFieldbusBaud, static_cast<int32_t>(line_.baud()));
 }
 
 void ProfibusPort::fieldbus_timeout_expired(Time) {
-  if (!movidrive_) door_.touch().server().fieldbus_lost();
+  if (own_numbers_) door_.touch().server().fieldbus_lost();
 }
 
 void ProfibusPort::set_fieldbus_address(Time, uint8_t address) {

@@ -59,7 +59,7 @@ class ProfibusPort final : public StationPort,
   EventQueue& queue_;
   std::string_view station_;
   const profibus::Line& line_;
-  bool movidrive_;
+  bool own_numbers_;  // Trait::OwnParameterNumbers
   Door& door_;
   Journal& journal_;
   UnitServer server_;

@@ -31,15 +31,15 @@ constexpr SbusParameters kSbus2 = {"890", "891", "892", "894", "895", "899", "89
 }  // namespace
 
 SbusSettings sbus_settings(const DriveServer& drive, int sbus) {
-  const stdlib::Generation generation = drive.unit().generation;
-  const SbusParameters& p = generation != stdlib::Generation::B ? kOlder : sbus == 1 ? kSbus1 : kSbus2;
+  const stdlib::UnitType& unit = drive.unit();
+  const SbusParameters& p = !unit.has(stdlib::Trait::NewSbusNumbers) ? kOlder : sbus == 1 ? kSbus1 : kSbus2;
   const auto value = [&](std::string_view number) { return number.empty() ? 0 : drive.value(number); };
   SbusSettings settings;
   settings.slave.address = static_cast<uint8_t>(value(p.address));
   settings.slave.group = static_cast<uint8_t>(value(p.group));
   settings.slave.sync_id = static_cast<uint16_t>(value(p.sync_id) / 1000);  // coded in thousandths
   settings.slave.second_channel = value(p.second_channel) != 0;
-  settings.slave.synchronous = generation != stdlib::Generation::M07;
+  settings.slave.synchronous = unit.has(stdlib::Trait::SynchronousSbus);
   settings.slave.group_output = sbus != 1 || !sends_over_sbus(drive.value("750"));
   settings.baud = kBaudRates[std::min(static_cast<size_t>(value(p.baud)), kBaudRates.size() - 1)];
   settings.movilink = value(p.protocol) == 0;
@@ -80,7 +80,7 @@ SbusPort::SbusPort(EventQueue& queue, uint32_t source, CanLine& line, std::optio
       group_master_(sender_, kGroupTag, server_) {
   Unit& unit = door.touch();
   unit.movilink().connect(bus_, master_);
-  if (unit.server().unit().generation == stdlib::Generation::M07) {
+  if (unit.server().unit().has(stdlib::Trait::CanopenClient)) {
     client_.emplace(canopen::Place{queue, source, sender_, kClientTag}, kSbusReplyTimeout, client_exchanges_);
     unit.movilink().connect(MovilinkBus::Canopen, *client_);
   }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "runtime/plant_file/serial_plan.hpp"
+#include "stdlib/control_sources.hpp"
 
 namespace ipos::runtime {
 
@@ -57,7 +58,7 @@ void SerialPort::take_settings(Time now) {
     parts_->slave.count_timeout();
   const bool sends = master_slave_ && sends_setpoints(p.slave_setpoint);
   parts_->slave.configure(
-      {p.address, p.group, sends, master_slave_ && p.setpoint_source == kFollowsRs485Master});
+      {p.address, p.group, sends, master_slave_ && stdlib::follows_rs485_master(p.setpoint_source)});
   if (!sends || p.group <= kNoGroupAddress)
     parts_->setpoints.stop();
   else

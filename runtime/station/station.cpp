@@ -125,13 +125,12 @@ bool Station::has_further_words() const {
   return (card != nullptr && card->accepts.most > kProcessWords) || canopen(1) != nullptr || canopen(2) != nullptr;
 }
 
-// A MOVIDRIVE whose P100 or P101 names a fieldbus that is not there.
+// A unit whose P100 or P101 names a fieldbus that is not there.
 void Station::miss_profibus() {
-  constexpr int32_t kSetpointFieldbus = 3, kControlFieldbus = 2;
+  const BusSource& fieldbus = bus_source(PoSource::Fieldbus);
   const DriveServer& server = unit_.server();
-  const stdlib::Generation generation = server.unit().generation;
-  if (generation != stdlib::Generation::A && generation != stdlib::Generation::B) return;
-  for (const auto& [number, code] : {std::pair("100", kSetpointFieldbus), std::pair("101", kControlFieldbus)})
+  if (!server.unit().has(stdlib::Trait::FieldbusCard)) return;
+  for (const auto& [number, code] : {std::pair("100", stdlib::code(fieldbus.setpoint)), std::pair("101", stdlib::code(fieldbus.control))})
     if (server.value(number) == code)
       journal_.note(
           queue_.now(), Weight::Warning, config_.name,

@@ -12,22 +12,15 @@ namespace ipos::runtime {
 
 namespace codes = stdlib::return_codes;
 
-namespace {
-
-constexpr int32_t kMasterSbus = 8, kMasterRs485 = 9;
-
-}  // namespace
-
-// Codes of P100 and P101 (1053 1610 p. 73).
+// A byte of told_obstacles_ for each bus.
 struct DriveServer::DataBus {
-  int32_t setpoint, control;
+  PoSource bus;
   uint32_t told_shift;
   static const DataBus sbus, rs485, fieldbus;
 };
-constexpr DriveServer::DataBus DriveServer::DataBus::sbus{10, 3, 0};
-constexpr DriveServer::DataBus DriveServer::DataBus::rs485{2, 1, 8};
-
-constexpr DriveServer::DataBus DriveServer::DataBus::fieldbus{3, 2, 16};
+constexpr DriveServer::DataBus DriveServer::DataBus::sbus{PoSource::Sbus, 0};
+constexpr DriveServer::DataBus DriveServer::DataBus::rs485{PoSource::Rs485, 8};
+constexpr DriveServer::DataBus DriveServer::DataBus::fieldbus{PoSource::Fieldbus, 16};
 
 DriveServer::DriveServer(const stdlib::UnitType& unit, const MachineData& machine, DriveOptions options)
     : parameters_(unit, options),
@@ -106,13 +99,15 @@ void DriveServer::take_sbus2(std::span<const uint16_t> words) {
   state_.take_po(PoSource::Sbus2, words);
 }
 
-bool DriveServer::follows_sbus_master() const { return value("100") == kMasterSbus; }
+bool DriveServer::follows_sbus_master() const {
+  return stdlib::follows_sbus_master(state_.settings().setpoint_source);
+}
 
-bool DriveServer::is_slave() const { return follows_sbus_master() || value("100") == kMasterRs485; }
+bool DriveServer::is_slave() const { return is_master_slave(state_.settings()); }
 
 // A slave of master/slave operation has only parameters over its fieldbus card (MDX60B/61B p. 29).
 void DriveServer::take_fieldbus(std::span<const uint16_t> words) {
-  if (unit().generation != stdlib::Generation::None && is_slave())
+  if (is_slave())
     return tell_once(
         Obstacle::Slave, DataBus::fieldbus.told_shift,
         "PO data over the fieldbus have no effect: the unit is a slave of master/slave operation (P100)");
@@ -122,7 +117,7 @@ void DriveServer::take_fieldbus(std::span<const uint16_t> words) {
 
 void DriveServer::show_fieldbus_card(uint8_t address) {
   constexpr int32_t kFieldbusCard = 2, kProfibusDp = 5;  // codes of P072 and P091
-  if (unit().generation == stdlib::Generation::None) return parameters_.set_display(index::kM31Address, address);
+  if (unit().has(stdlib::Trait::OwnParameterNumbers)) return parameters_.set_display(index::kM31Address, address);
   parameters_.set_display(index::kOption1, kFieldbusCard);
   parameters_.set_display(index::kFieldbusType, kProfibusDp);
   parameters_.set_display(index::kFieldbusAddress, address);
@@ -131,25 +126,30 @@ void DriveServer::show_fieldbus_card(uint8_t address) {
 // P876, P101 and P100 (1053 1610 p. 41); P841 of MOVITRAC 31 stands for them.
 void DriveServer::look_for_obstacles(const DataBus& bus, bool slave) {
   constexpr int32_t kOn = 1;
-  if (unit().generation == stdlib::Generation::None) {
-    if (value("841") != kOn) obstruct(bus, Obstacle::ControlSource, "PO data have no effect", "841", kOn);
+  const Settings& settings = state_.settings();
+  const BusSource& wanted = bus_source(bus.bus);
+  const int32_t control = stdlib::code(wanted.control), setpoint = stdlib::code(wanted.setpoint);
+  if (unit().has(stdlib::Trait::OwnParameterNumbers)) {
+    if (settings.control_source != control)
+      obstruct(bus, Obstacle::ControlSource, "PO data have no effect", "841", kOn);
     return;
   }
-  if (value("876") == 0) obstruct(bus, Obstacle::PoDisabled, "PO data have no effect", "876", kOn);
+  if (settings.po_enable == 0) obstruct(bus, Obstacle::PoDisabled, "PO data have no effect", "876", kOn);
   if (slave) return;
-  if (value("101") != bus.control)
-    obstruct(bus, Obstacle::ControlSource, "the control word has no effect", "101", bus.control);
+  if (settings.control_source != control)
+    obstruct(bus, Obstacle::ControlSource, "the control word has no effect", "101", control);
   else if (!has_control_word())
     tell_once(Obstacle::NoControlWord, bus.told_shift,
               "no PO word is a control word (P870..P872): the drive is enabled as if the bus had sent it");
-  if (value("100") != bus.setpoint)
-    obstruct(bus, Obstacle::SetpointSource, "the setpoints have no effect", "100", bus.setpoint);
+  if (settings.setpoint_source != setpoint)
+    obstruct(bus, Obstacle::SetpointSource, "the setpoints have no effect", "100", setpoint);
 }
 
 void DriveServer::obstruct(const DataBus& bus, Obstacle obstacle, std::string_view what,
                            std::string_view number, int32_t wanted) {
+  if (was_told(obstacle, bus.told_shift)) return;
   const stdlib::Parameter* row = parameters_.table().find(number);
-  if (row == nullptr || was_told(obstacle, bus.told_shift)) return;
+  if (row == nullptr) return;
   tell_once(obstacle, bus.told_shift,
             fmt::format("{}: P{} {} is {}, not {}", what, number, row->name,
                         stdlib::parameter_text(*row, value(number)), stdlib::parameter_text(*row, wanted)));

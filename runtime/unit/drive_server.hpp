@@ -78,7 +78,7 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
   }
 
   tl::expected<int32_t, ReturnCode> serve(Time now, const ParameterRequest& request) override;
-  bool has_subindices() const override { return unit().generation == stdlib::Generation::B; }
+  bool has_subindices() const override { return unit().has(stdlib::Trait::Subindices); }
   void take_output(Time now, OutputChannel channel, std::span<const uint16_t> words) override;
   // Over SBus 2, which is monitored by P893.
   void take_sbus2(std::span<const uint16_t> words);

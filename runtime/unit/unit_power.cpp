@@ -23,7 +23,7 @@ void Unit::power_on() {
   if (const uint8_t fault = drive_.memory().fault(); fault != 0) drive().raise_fault(fault);
   if (!has_variables()) return;
   begin_variables();
-  if (config_.type.generation == stdlib::Generation::M07) return;
+  if (!config_.type.has(stdlib::Trait::Positioning)) return;
   positioning_.emplace(drive(), drive_.parameters(), journal_, config_.name,
                        [this](uint32_t address) { return source_place(address); });
   positioning_commands_.emplace(*positioning_);
@@ -85,7 +85,7 @@ std::optional<std::string> Unit::load_program() {
 void Unit::begin_variables() {
   timers_ = {};
   mirrored_.emplace(drive_.parameters());
-  if (config_.type.generation == stdlib::Generation::B) pid_.emplace(drive_.parameters());
+  if (config_.type.has(stdlib::Trait::PidBlock)) pid_.emplace(drive_.parameters());
 }
 
 void Unit::start_machine() {

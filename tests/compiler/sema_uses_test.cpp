@@ -113,7 +113,7 @@ TEST(SbusObjects, OfWhichAUnitHasRoomForSoMany) {
     for (const Kind& kind :
          {Kind{"SCTRCYCL", 1, 1, room.fast, "transmit (1 to 9 ms) objects, this is number {} (Result -2)"},
           Kind{"SCTRCYCL", 1, 9, room.fast, "transmit (1 to 9 ms) objects, this is number {} (Result -2)"},
-          Kind{"SCTRCYCL", 1, 10, room.slow, "transmit (from 10 ms) objects, this is number {} (Result -2)"},
+          Kind{"SCTRCYCL", 1, 10, room.slow, "transmit (10 to 65530 ms in steps of 10) objects, this is number {} (Result -2)"},
           Kind{"SCREC", 3, 0, room.receive, "receive objects, this is number {}"}}) {
       if (kind.most == 0) continue;  // refused by its cycle time
       EXPECT_EQ(codes(many_objects(kind.most, kind.type, kind.kind, kind.cycle), room.unit), Codes{})

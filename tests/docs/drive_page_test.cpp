@@ -74,7 +74,7 @@ TEST(LimitsPage, SettingsWithoutEffect) {
   std::vector<std::string> want;
   for (const stdlib::UnsimulatedRow& row : stdlib::unsimulated_rows())
     want.push_back(fmt::format("| {} | {} | {} | {} |", with_letters(row.parameters), values(row.values),
-                               row.units.empty() ? "all" : row.units, row.text));
+                               row.unit_names(), row.text));
   std::vector<std::string> found;
   std::istringstream page(read_text(project("docs/reference/limits.md")));
   for (std::string line; std::getline(page, line);)

@@ -155,7 +155,7 @@ class Run {
       const int64_t set = range.minimum + static_cast<uint32_t>(value) % (steps + 1) * range.step;
       config.parameters.push_back({"P" + std::string(row->number), static_cast<int32_t>(set), {}});
     }
-    if (unit.generation == stdlib::Generation::B && input.u8() % 2 == 0)
+    if (unit.has(stdlib::Trait::Sbus2) && input.u8() % 2 == 0)
       config.parameters.push_back({"P700", 13, {}});
   }
   Station& station() { return *plant_->stations()[0]; }

@@ -94,6 +94,24 @@ def test_scan_finds_both(sbus):
     assert [(drive.address, drive.unit) for drive in drives] == [(1, "mdxb"), (2, "mdxb")]
 
 
+def test_each_unit_is_recognised_by_the_signs_of_the_library(tmp_path):
+    known = {unit for unit, _ in movilink._signs()}
+    assert {"md60a", "compact", "mc07", "mdxb", "mc07b"} <= known <= set(movilink._unit_names())
+    for name in known:
+        plant = tmp_path / f"{name}.toml"
+        plant.write_text(
+            f'[[bus]]\nname = "sbus"\nkind = "can"\nbaud = 500000\n[[station]]\nname = "u"\nunit = "{name}"\nsbus = "sbus"\n'
+        )
+        with can.Bus(interface="ipos", channel=f"{plant}#sbus") as bus:
+            drive = movilink.Drive(movilink.Sbus(bus), 0)
+            assert drive.unit == name and drive["P130"].text == "2.000 s"
+
+
+def test_no_unit_type_is_told_with_those_there_are(sbus):
+    with pytest.raises(ValueError, match="known are md60a, compact, mc07, mdxb, mc31, mc07b$"):
+        movilink.Drive(sbus, 1, unit="nope")
+
+
 def test_parameters_over_rs485():
     with ipos.Plant(text=SERIAL) as plant:
         port = PortOfPlant(plant)

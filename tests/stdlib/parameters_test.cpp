@@ -25,7 +25,8 @@ const UnitLists kUnits[] = {{"md60a", {"md60a.tsv"}, true},
                             {"compact", {"md60a.tsv"}, false},
                             {"mdxb", {"md60a.tsv", "mdxb.tsv"}, true},
                             {"mc07", {"mc07.tsv"}, true},
-                            {"mc31", {"mc31.tsv"}, true}};
+                            {"mc31", {"mc31.tsv"}, true},
+                            {"mc07b", {"mc07.tsv", "mc07b.tsv"}, true}};
 
 TEST(ParameterTable, ListsHaveNoFaults) {
   for (const UnitLists& row : kUnits)

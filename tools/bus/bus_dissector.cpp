@@ -25,7 +25,6 @@ namespace {
 
 using runtime::UnitNames;
 
-constexpr std::string_view kDefaultUnit = "md60a";  // as bus decode takes it without a dictionary
 
 // A text of Lua; bytes that are not printable are written by their number.
 std::string lua_text(std::string_view text) {
@@ -141,7 +140,7 @@ std::string objects(const runtime::TelegramNames& names) {
 }
 
 std::string dissector(const runtime::TelegramNames& sbus, const runtime::TelegramNames& serial) {
-  const stdlib::UnitType& usual = *stdlib::find_unit(kDefaultUnit);
+  const stdlib::UnitType& usual = stdlib::usual_unit();
   std::set<const stdlib::UnitType*> types{&usual};
   for (const auto* names : {&sbus, &serial})
     for (const UnitNames& unit : names->units)

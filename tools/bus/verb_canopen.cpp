@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "runtime/bus/canopen/eds.hpp"
+#include "stdlib/unit_names.hpp"
 #include "tools/bus/bus_verbs.hpp"
 #include "tools/cli/exit_codes.hpp"
 #include "tools/cli/failure.hpp"
@@ -17,6 +18,12 @@ struct EdsFlags {
   std::string unit;
   std::string out = "-";
 };
+
+std::string check_unit(const std::string& name) {
+  const stdlib::UnitType* unit = stdlib::find_unit(name);
+  if (unit != nullptr && unit->has(stdlib::Trait::Canopen)) return "";
+  return fmt::format("'{}' is no unit with CANopen; known are {}", name, stdlib::unit_names(stdlib::Trait::Canopen));
+}
 
 const stdlib::UnitType& unit_of(const EdsFlags& flags) {
   if (flags.plant.empty() == flags.unit.empty())
@@ -36,8 +43,9 @@ const stdlib::UnitType& unit_of(const EdsFlags& flags) {
 
 int write_eds(const EdsFlags& flags) {
   const stdlib::UnitType& unit = unit_of(flags);
-  if (unit.generation != stdlib::Generation::B)
-    throw Failure(kUsage, fmt::format("unit {} has no CANopen; MOVIDRIVE MDX60B/61B (mdxb) has", unit.name));
+  if (!unit.has(stdlib::Trait::Canopen))
+    throw Failure(kUsage, fmt::format("unit {} has no CANopen profile, only {}", unit.name,
+                                      stdlib::unit_names(stdlib::Trait::Canopen)));
   replace_file(flags.out, runtime::canopen::eds_text(unit));
   return kGood;
 }
@@ -50,7 +58,7 @@ void add_canopen(cli::Verb& app) {
   cli::Verb& eds = verb.verb("eds", "write the electronic data sheet of a unit (EDS, CiA 306)");
   eds.option("PLANT", flags->plant, "plant (.toml)");
   eds.option("STATION", flags->station, "which one of the plant, where it has several");
-  eds.option("--unit", flags->unit, "in place of a plant: a unit type").one_of({"mdxb"});
+  eds.option("--unit", flags->unit, "in place of a plant: a unit type").check(check_unit, "UNIT");
   eds.option("-o", flags->out, "file to write; - is standard output");
   eds.footer("Example:\n  ipos canopen eds --unit mdxb -o mdxb.eds");
   eds.runs([flags] { return write_eds(*flags); });

@@ -40,7 +40,7 @@ void add_profibus(cli::Verb& app) {
   cli::Verb& verb = app.verb("profibus", "files for configuration tools of PROFIBUS masters");
   cli::Verb& gsd = verb.verb("gsd", "write the device data file (GSD) of a PROFIBUS interface");
   gsd.option("OPTION", flags->option, "ffp31, size0, dfp, as `option` of a station, or gateway").required();
-  gsd.option("--unit", flags->unit, "of which unit, where several have such a card: dfp is of mdxb or md60a");
+  gsd.option("--unit", flags->unit, "of which unit, where several have such a card");
   gsd.option("-o", flags->out,
              "file to write, - is standard output; the name that masters look for when left out");
   gsd.footer("Example:\n  ipos profibus gsd dfp --unit md60a");

@@ -53,7 +53,7 @@ std::string return_code_text(stdlib::ReturnCode code) {
 
 // The response in the words of P830, whose codes all responses have.
 std::string response_text(stdlib::FaultResponse response) {
-  const stdlib::Parameter* p830 = stdlib::parameter_table(*stdlib::find_unit("md60a")).find("P830");
+  const stdlib::Parameter* p830 = stdlib::parameter_table(stdlib::usual_unit()).find("P830");
   return stdlib::parameter_text(*p830, static_cast<int32_t>(response));
 }
 
@@ -130,7 +130,7 @@ std::string parameter_text(std::string_view name) {
 
 // In one line, in the words of MOVIDRIVE B.
 std::string meaning_of(const stdlib::FaultRow& row) {
-  return stdlib::meaning_on(*stdlib::find_unit("mdxb"), row);
+  return stdlib::meaning_on(stdlib::unit_with(stdlib::Trait::NewVariables), row);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "stdlib/header_names.hpp"
 #include "stdlib/language_tables.hpp"
 #include "stdlib/system_variables.hpp"
+#include "stdlib/unit_names.hpp"
 #include "tools/explain/entries.hpp"
 #include "tools/explain/pages.hpp"
 #include "vm/isa/isa.hpp"
@@ -97,7 +98,9 @@ std::string variable_text(const stdlib::SystemVariable& row) {
                      row.compiler_name, row.assembler_name, row.meaning,
                      row.access == stdlib::VariableAccess::R ? "only the drive writes it"
                                                              : "drive and program write it",
-                     row.units == stdlib::VariableUnits::B ? "; on MOVIDRIVE MDX60B/61B only" : "") +
+                     row.units == stdlib::VariableUnits::B
+                         ? fmt::format("; on {} only", stdlib::unit_names(stdlib::Trait::NewVariables))
+                         : "") +
          (row.use == stdlib::VariableUse::Nothing ? "  not simulated: it is a variable like others\n" : "") +
          source_line(row.source);
 }

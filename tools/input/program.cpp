@@ -18,7 +18,7 @@
 #include "runtime/station/station.hpp"
 #include "runtime/unit/program_image.hpp"
 #include "stdlib/headers.hpp"
-#include "stdlib/unit_types.hpp"
+#include "stdlib/unit_names.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/files.hpp"
 #include "tools/cli/terminal.hpp"
@@ -31,9 +31,9 @@ namespace {
 const stdlib::UnitType* unit_of(const CompileFlags& flags) {
   if (flags.unit.empty()) return nullptr;
   const stdlib::UnitType* unit = stdlib::find_unit(flags.unit);
-  if (unit == nullptr || unit->tasks == 0)
-    throw Failure(kUsage, fmt::format("'{}' is no unit type with IPOS; known are md60a, compact, mc07, mdxb",
-                                      flags.unit));
+  if (unit == nullptr || !unit->runs_programs())
+    throw Failure(kUsage, fmt::format("'{}' is no unit type with IPOS; known are {}", flags.unit,
+                                      stdlib::program_unit_names()));
   return unit;
 }
 
@@ -78,7 +78,7 @@ void add_compile_options(cli::Verb& verb, CompileFlags& flags) {
   verb.option("-I", flags.include_dirs, "folder for #include").one_each();
   verb.option("-D", flags.defines, "NAME=VALUE, as #define").one_each();
   verb.option("-W", flags.warnings, "warning by name: -Wunused-variable, -Wno-..., -Werror").one_each();
-  verb.option("--unit", flags.unit, "unit type: md60a, compact, mc07 or mdxb");
+  verb.option("--unit", flags.unit, "unit type: " + stdlib::program_unit_names());
   verb.flag("--atomic", flags.atomic, "variables that others see never hold intermediate results");
   verb.option("--diagnostics", flags.diagnostics, "text, json or sarif").one_of({"text", "json", "sarif"});
 }

@@ -6,6 +6,7 @@
 #include "stdlib/language_tables.hpp"
 #include "stdlib/parameters.hpp"
 #include "stdlib/system_variables.hpp"
+#include "stdlib/unit_names.hpp"
 #include "stdlib/units.hpp"
 #include "tools/lsp/features.hpp"
 
@@ -26,7 +27,9 @@ std::string system_variable(uint32_t number) {
   if (row == nullptr) return {};
   return fmt::format("System variable H{} {} ({}{}): {}\n\nSource: {}\n", row->number, row->compiler_name,
                      row->access == stdlib::VariableAccess::R ? "read only" : "read and write",
-                     row->units == stdlib::VariableUnits::B ? ", MOVIDRIVE B only" : "", row->meaning,
+                     row->units == stdlib::VariableUnits::B
+                           ? fmt::format(", {} only", stdlib::unit_names(stdlib::Trait::NewVariables))
+                           : "", row->meaning,
                      row->source);
 }
 

@@ -13,7 +13,7 @@
 
 #include "compiler/diag/places.hpp"
 #include "runtime/plant_file/state_names.hpp"
-#include "stdlib/unit_types.hpp"
+#include "stdlib/unit_names.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/interrupt.hpp"
 #include "tools/cli/output_forms.hpp"
@@ -98,7 +98,7 @@ void write_report(const std::string& path, const std::string& text) {
 void check_flags(const TestFlags& flags) {
   const CompileFlags& compile = flags.suite.compile;
   if (!compile.unit.empty() && stdlib::find_unit(compile.unit) == nullptr)
-    throw Failure(kUsage, fmt::format("'{}' is no unit type", compile.unit));
+    throw Failure(kUsage, stdlib::no_unit_text(compile.unit));
   if (compile.diagnostics != "text")
     throw Failure(kUsage, "the messages of programs are part of the report; --json has them");
   if (is_standard_output(flags.junit) + is_standard_output(flags.tap) + is_standard_output(flags.json) > 1)

@@ -159,8 +159,8 @@ std::string DiagPages::can() const {
     const CanLine& can = port != nullptr ? port->line() : canopen->line();
     const runtime::NodeId node = port != nullptr ? port->node() : canopen->node();
     text += fmt::format("SBus {} on {}\n", number, can.name());
-    const bool b = station_.config().unit->generation == stdlib::Generation::B;
-    const std::string group = !b ? "81" : number == 1 ? "88" : "89";
+    const bool renumbered = station_.config().unit->has(stdlib::Trait::NewSbusNumbers);
+    const std::string group = !renumbered ? "81" : number == 1 ? "88" : "89";
     for (const char* digit : {"0", "1", "2", "3", "4", "5", "6"}) text += row(group + digit);
     text += row(number == 1 ? "836" : "837");
     text += line("rate of the line", fmt::format("{} kbaud", can.baud() / 1000));

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <map>
+
 #include "stdlib/parameters.hpp"
 #include "tools/cli/failure.hpp"
 
@@ -37,28 +39,25 @@ class LinkAccess final : public ParameterAccess {
   const stdlib::UnitType& unit_;
 };
 
-// An index that only this unit type has among those below it in the table. A real MOVIDRIVE B may lack the
-// one here, whose number is ours, and looks like a MOVIDRIVE A then; its list contains the other's.
-struct Sign {
-  uint16_t index;
-  std::string_view unit;
-};
-constexpr Sign kSigns[] = {
-    {8807, "mc07"},     // P130 of MOVITRAC 07
-    {8937, "mdxb"},     // P880
-    {8509, "md60a"},    // P220, with option card
-    {8470, "compact"},  // P130
-};
-
 }  // namespace
 
 const stdlib::UnitType* identify(BusLink& link, uint8_t address, AccessError* error) {
-  for (const Sign& sign : kSigns) {
-    const AccessReply reply = ask(link, address, stdlib::Service::Read, sign.index);
-    if (reply) return stdlib::find_unit(sign.unit);
-    if (reply.error().code) continue;
-    if (error != nullptr) *error = reply.error();
-    return nullptr;
+  std::map<uint16_t, bool> answers;  // each index is asked once
+  for (const stdlib::UnitSigns& signs : stdlib::unit_signs()) {
+    bool all = true;
+    for (const uint16_t index : signs.indices) {
+      const auto [known, is_new] = answers.try_emplace(index, false);
+      if (is_new) {
+        const AccessReply reply = ask(link, address, stdlib::Service::Read, index);
+        if (!reply && !reply.error().code) {
+          if (error != nullptr) *error = reply.error();
+          return nullptr;
+        }
+        known->second = reply.has_value();
+      }
+      if (!(all = known->second)) break;
+    }
+    if (all) return stdlib::find_unit(signs.unit);
   }
   return nullptr;
 }

@@ -10,6 +10,7 @@
 #include "runtime/os_port/port_names.hpp"
 #include "runtime/plant_file/plant_file.hpp"
 #include "stdlib/parameters.hpp"
+#include "stdlib/unit_names.hpp"
 #include "tools/cli/failure.hpp"
 
 namespace ipos::tools {
@@ -53,7 +54,7 @@ void check_profibus(const LinkFlags& flags) {
 std::string check_unit(const std::string& name) {
   if (const stdlib::UnitType* unit = stdlib::find_unit(name))
     return stdlib::parameter_table(*unit).rows().empty() ? "unit " + name + " has no list of parameters" : "";
-  return "'" + name + "' is no unit type; known are md60a, compact, mc07, mdxb";
+  return stdlib::no_unit_text(name);
 }
 
 std::string check_address(const std::string& text) {

@@ -27,7 +27,7 @@ bool add_variables(std::span<const vm::Symbol> symbols, const stdlib::UnitType& 
                    bool hex, std::vector<LiveItem>& items) {
   const auto found = signals::named_variables(symbols, unit, name);
   for (const signals::NamedVariable& row : found)
-    items.push_back({row.name, {static_cast<uint16_t>(kFirstVariable + row.number), nullptr}, hex});
+    items.push_back({row.name, {static_cast<uint16_t>(stdlib::kFirstVariables + row.number), nullptr}, hex});
   return !found.empty();
 }
 

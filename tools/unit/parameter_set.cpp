@@ -7,6 +7,7 @@
 #include <map>
 
 #include "runtime/plant_file/read_toml.hpp"
+#include "stdlib/unit_names.hpp"
 #include "tools/cli/failure.hpp"
 
 namespace ipos::tools {
@@ -68,7 +69,7 @@ class Reader {
     set_.unit = unit && unit->is_string() ? stdlib::find_unit(unit->as_string()->get()) : nullptr;
     if (set_.unit == nullptr)
       return error(unit ? place_of(*unit) : FilePlace{1, 1},
-                   "unit must name a unit type, for example \"md60a\"");
+                   "unit must name a unit type: " + stdlib::unit_names());
     table_ = &stdlib::parameter_table(*set_.unit);
     const toml::node* parameters = root.get("parameters");
     if (parameters == nullptr || !parameters->is_array())

@@ -17,7 +17,7 @@ Target find_target(const stdlib::UnitType& unit, const std::string& name) {
   if (name.starts_with('H'))
     if (const auto variable = whole_number<uint16_t>(std::string_view(name).substr(1));
         variable && *variable < unit.variables)
-      return {static_cast<uint16_t>(kFirstVariable + *variable), nullptr};
+      return {static_cast<uint16_t>(stdlib::kFirstVariables + *variable), nullptr};
   if (const auto index = whole_number<uint16_t>(name); index && *index > 999) return {*index, nullptr};
   throw Failure(kBadInput,
                 fmt::format("unit {} has no parameter '{}'; write P130, an index such as 8470, or H20",

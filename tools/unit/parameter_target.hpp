@@ -8,11 +8,10 @@
 #include <string_view>
 #include <system_error>
 
+#include "stdlib/index_areas.hpp"
 #include "stdlib/parameters.hpp"
 
 namespace ipos::tools {
-
-inline constexpr uint16_t kFirstVariable = 11000;  // index of H0 (1053 1610 p. 74)
 
 struct Target {
   uint16_t index;

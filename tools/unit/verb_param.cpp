@@ -3,7 +3,7 @@
 
 #include <unistd.h>
 
-#include "stdlib/unit_types.hpp"
+#include "stdlib/unit_names.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/files.hpp"
 #include "tools/cli/verbs.hpp"
@@ -136,8 +136,8 @@ class Actions {
 
   void unit(cli::Verb& app) {
     app.option("--unit", flags_->unit,
-               "instead of a plant: a unit as delivered (md60a, compact, mc07, mdxb); with --port: do not "
-               "ask the unit what it is")
+               fmt::format("instead of a plant: a unit as delivered ({}); with --port: do not ask the unit what it is",
+                           stdlib::unit_names()))
         .check(check_unit, "UNIT");
   }
   void format(cli::Verb& app) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "stdlib/faults.hpp"
+#include "stdlib/index_areas.hpp"
 #include "stdlib/parameters.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/terminal.hpp"
@@ -19,7 +20,6 @@ namespace {
 
 using stdlib::Service;
 
-constexpr uint16_t kFirmware = 8300;  // P076
 constexpr uint16_t kStatus = 8310;    // P010..P013, status word 1 in the low word
 
 struct ScanFlags {
@@ -30,7 +30,7 @@ struct ScanFlags {
 
 std::string firmware_of(const stdlib::UnitType* unit, const AccessReply& reply) {
   if (!reply) return "-";
-  const stdlib::Parameter* row = unit ? stdlib::parameter_table(*unit).find(kFirmware) : nullptr;
+  const stdlib::Parameter* row = unit ? stdlib::parameter_table(*unit).find(stdlib::kFirmwareIndex) : nullptr;
   return row ? stdlib::parameter_text(*row, *reply) : std::to_string(*reply);
 }
 
@@ -80,7 +80,7 @@ int scan(ScanFlags flags) {
   for (int n = first; n <= last; ++n) {
     if (progress) fmt::print(stderr, "\r\033[Kaddress {} of {}", n, last);
     const auto address = static_cast<uint8_t>(n);
-    const AccessReply firmware = link->execute(address, Service::Read, kFirmware, 0);
+    const AccessReply firmware = link->execute(address, Service::Read, stdlib::kFirmwareIndex, 0);
     if (!firmware && !firmware.error().code) {
       trouble = firmware.error().trouble;
       continue;

@@ -49,8 +49,7 @@ class ScopeRun {
  public:
   ScopeRun(ParameterAccess& access, const ScopeFlags& flags) : access_(access), flags_(flags) {
     if (stdlib::parameter_table(access.unit()).find(index::kScopeControl) == nullptr)
-      throw Failure(kUsage, fmt::format("{}: unit {} has no scope; MOVIDRIVE MDX60B/61B (mdxb) has",
-                                        access.name(), access.unit().name));
+      throw Failure(kUsage, fmt::format("{}: unit {} has no scope", access.name(), access.unit().name));
     if (flags.channels.size() > Scope::kChannels) throw Failure(kUsage, "the scope has four channels");
     for (const std::string& name : flags.channels) {
       const Target target = find_target(access.unit(), name);

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "stdlib/unit_names.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/interrupt.hpp"
 #include "tools/cli/verbs.hpp"
@@ -116,7 +117,7 @@ void add_watch(cli::Verb& app) {
               "P000, 8318, H420, lTrDataLow@PROGRAM.IPC; with :hex behind it in hexadecimal")
       .required();
   add_link_options(verb, flags->link, false);
-  verb.option("--unit", flags->unit, "do not ask the unit what it is: md60a, compact, mc07, mdxb")
+  verb.option("--unit", flags->unit, "do not ask the unit what it is: " + stdlib::unit_names())
       .check(check_unit, "UNIT");
   verb.option("--every", flags->every, "time from row to row, default 500ms").check(check_rate, "TIME");
   verb.option("--count", flags->count, "end after so many rows; default: go on until Ctrl-C").at_least(1);

@@ -18,7 +18,6 @@ from pathlib import Path
 
 PROBE = "ipos_probe"
 VALUES = {"string": f'"{PROBE}"', "integer": "7", "number": "7.5", "boolean": "true", "array": "[7]"}
-UNITS = ["md60a", "mc07", "mdxb", "mc31"]
 SIGNALS = {"variable": "H0", "parameter": "P130", "input": "DI00", "analog": "AI1"}
 
 
@@ -41,6 +40,12 @@ def known(messages):
         if match := re.search(r"; known are (.+)$", message):
             return match[1].split(", ")
     return []
+
+
+def units(ipos):
+    """All unit types, as ipos names them where one is not known."""
+    out = subprocess.run([ipos, "param", "list", "--unit", PROBE], capture_output=True, text=True)
+    return known(out.stderr.splitlines())
 
 
 def merged(a, b):
@@ -144,7 +149,7 @@ class Table:
 
 def parameters(ipos):
     names = {}
-    for unit in UNITS[:3]:
+    for unit in units(ipos):
         out = subprocess.run([ipos, "param", "list", "--unit", unit, "--format", "json"], capture_output=True, text=True)
         for row in json.loads(out.stdout)["parameters"]:
             names.setdefault(row["number"], row["name"])
@@ -158,7 +163,7 @@ def forms_of(reader, key):
     bus = '[[bus]]\nname = "b"\nkind = "profibus"\nbaud = 500000\n'
     station = '[[station]]\nname = "s"\nunit = "md60a"\n'
     if key == "station":
-        forms = [f'unit = "{unit}"\n' for unit in UNITS]
+        forms = [f'unit = "{unit}"\n' for unit in units(reader.ipos)]
     if key == "stimulus":
         forms = [f'{kind} = "{name}"\n' for kind, name in SIGNALS.items()]
     if key == "control":

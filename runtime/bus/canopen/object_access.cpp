@@ -6,13 +6,13 @@
 
 #include "runtime/bus/canopen/connections.hpp"
 #include "runtime/bus/canopen/mapping.hpp"
+#include "stdlib/index_areas.hpp"
 #include "stdlib/parameters.hpp"
 
 namespace ipos::runtime::canopen {
 namespace {
 
 constexpr uint16_t kFirstParameter = 0x2000;
-constexpr uint16_t kFirmware = 8300;        // software version, the manual's example
 constexpr uint32_t kShortestLifeTime = 10;  // ms, page 54
 constexpr uint16_t kPdoObjects = 0x200;     // from a communication to its mapping parameter
 
@@ -82,8 +82,8 @@ ObjectAccess::ObjectAccess(ObjectDictionary& dictionary, const stdlib::UnitType&
 std::string ObjectAccess::text(Time now, Rule rule) {
   if (rule == Rule::DeviceName) return std::string(type_.title);
   if (rule == Rule::HardwareVersion) return std::string(type_.name);
-  const stdlib::Parameter* firmware = stdlib::parameter_table(type_).find(kFirmware);
-  const auto value = parameters_.serve(now, {Service::Read, kFirmware, 0, 0});
+  const stdlib::Parameter* firmware = stdlib::parameter_table(type_).find(stdlib::kFirmwareIndex);
+  const auto value = parameters_.serve(now, {Service::Read, stdlib::kFirmwareIndex, 0, 0});
   return firmware == nullptr || !value ? "unknown" : stdlib::parameter_text(*firmware, *value);
 }
 

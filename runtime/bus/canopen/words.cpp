@@ -75,7 +75,7 @@ LineWords::LineWords(std::vector<NodeName> names) {
 }
 
 void LineWords::name(NodeName name) {
-  if (name.unit == nullptr) name.unit = stdlib::find_unit("mdxb");
+  if (name.unit == nullptr) name.unit = &stdlib::unit_with(stdlib::Trait::Canopen);
   NodeName& known = node(name.node).name;
   known = std::move(name);
 }
@@ -83,7 +83,7 @@ void LineWords::name(NodeName name) {
 LineWords::Listened& LineWords::node(uint8_t number) {
   const auto found = nodes_.find(number);
   if (found != nodes_.end()) return found->second;
-  NodeName name{number, fmt::format("node {}", number), stdlib::find_unit("mdxb"), {}, {}};
+  NodeName name{number, fmt::format("node {}", number), &stdlib::unit_with(stdlib::Trait::Canopen), {}, {}};
   Listened& added =
       nodes_.emplace(number, Listened{std::move(name), ObjectDictionary(number), {}, {}}).first->second;
   find_messages();

@@ -4,17 +4,17 @@
 #include <fmt/format.h>
 
 #include "runtime/bus/movilink/unit_words.hpp"
+#include "stdlib/index_areas.hpp"
 #include "stdlib/parameters.hpp"
 #include "stdlib/units.hpp"
 
 namespace ipos::runtime {
 namespace {
 
-constexpr uint16_t kVariables = 11'000;  // index of H0 (1053 1610 p. 67)
 constexpr uint16_t kCode = 16'000;       // index of the first program word
 
 const stdlib::UnitType& unit_type(const UnitNames* unit) {
-  return unit != nullptr && unit->unit != nullptr ? *unit->unit : *stdlib::find_unit("md60a");
+  return unit != nullptr && unit->unit != nullptr ? *unit->unit : stdlib::usual_unit();
 }
 
 struct IndexText {
@@ -24,8 +24,8 @@ struct IndexText {
 
 IndexText index_text(const UnitNames* unit, uint16_t index) {
   const stdlib::UnitType& type = unit_type(unit);
-  if (index >= kVariables && index < kVariables + type.variables) {
-    const uint32_t number = index - kVariables;
+  if (index >= stdlib::kFirstVariables && index < stdlib::kFirstVariables + type.variables) {
+    const uint32_t number = index - stdlib::kFirstVariables;
     const std::string name = unit == nullptr ? fmt::format("H{}", number) : unit->variable(number);
     return {name, nullptr};
   }

@@ -4,34 +4,50 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <optional>
 
 #include "stdlib/faults.hpp"
 
 namespace ipos::runtime {
 namespace {
 
-enum Units : uint8_t { Mdx = 1, M07 = 2, Both = 3 };
+// Units with a trait, or those without.
+struct Units {
+  std::optional<stdlib::Trait> trait;
+  bool with = true;
+  bool have(const stdlib::UnitType& unit) const { return !trait || unit.has(*trait) == with; }
+};
+constexpr Units all{};
+constexpr Units with(stdlib::Trait trait) { return {trait}; }
+constexpr Units without(stdlib::Trait trait) { return {trait, false}; }
 
 struct ControlBit {
   int word;
-  uint8_t units;
+  Units units;
   unsigned bit;
   const char* text;
 };
-constexpr ControlBit kControlBits[] = {
+constexpr auto kControlBits = [] {
+  using enum stdlib::Trait;
+  return std::to_array<ControlBit>({
 #define CONTROL_BIT(word, units, bit, text) {word, units, bit, text},
 #include "runtime/bus/movilink/unit_words.def"
-};
+  });
+}();
 
 struct StatusBit {
-  uint8_t units;
+  Units units;
   unsigned bit;
   const char* text;
 };
-constexpr StatusBit kStatusBits[] = {
+constexpr auto kStatusBits = [] {
+  using enum stdlib::Trait;
+  return std::to_array<StatusBit>({
 #define STATUS_BIT(units, bit, text) {units, bit, text},
 #include "runtime/bus/movilink/unit_words.def"
-};
+  });
+}();
 
 struct Condition {
   int code;
@@ -43,9 +59,6 @@ constexpr Condition kConditions[] = {
 };
 
 constexpr bool bit(uint16_t word, unsigned number) { return (word >> number & 1) != 0; }
-uint8_t units_of(const stdlib::UnitType& unit) {
-  return unit.generation == stdlib::Generation::M07 ? M07 : Mdx;
-}
 
 // Bits 2..0: the most restrictive counts (MOVITRAC 07 chapter 6.3).
 const char* command_text(uint16_t word) {
@@ -61,9 +74,8 @@ const char* readiness_text(uint16_t word) {
 }
 
 std::string condition_of(const stdlib::UnitType& unit, int code) {
-  constexpr int kFactorySettingM07 = 5, kFactorySetting = 8;
-  const bool m07 = unit.generation == stdlib::Generation::M07;
-  const int shown = m07 && code == kFactorySettingM07 ? kFactorySetting : code;
+  constexpr int kFactorySetting = 8;
+  const int shown = code == 5 && unit.has(stdlib::Trait::FactorySettingIs5) ? kFactorySetting : code;
   for (const Condition& row : kConditions)
     if (row.code == shown) return fmt::format("; state {} {}", code, row.text);
   return fmt::format("; state {}", code);
@@ -77,7 +89,7 @@ std::string control_word_text(const stdlib::UnitType& unit, int number, uint16_t
     if (!bit(word, n)) continue;
     std::string name = fmt::format("reserved bit {}", n);
     for (const ControlBit& row : kControlBits)
-      if (row.bit == n && (row.units & units_of(unit)) != 0 && (row.word == 0 || row.word == number))
+      if (row.bit == n && row.units.have(unit) && (row.word == 0 || row.word == number))
         name = row.text;
     text += ", " + name;
   }
@@ -87,7 +99,7 @@ std::string control_word_text(const stdlib::UnitType& unit, int number, uint16_t
 std::string status_word_text(const stdlib::UnitType& unit, int number, uint16_t word) {
   std::string text = readiness_text(word);
   for (const StatusBit& row : kStatusBits)
-    if (bit(word, row.bit) && (row.units & units_of(unit)) != 0) text += fmt::format(", {}", row.text);
+    if (bit(word, row.bit) && row.units.have(unit)) text += fmt::format(", {}", row.text);
   const int high = word >> 8;
   if (number == 1 && bit(word, 5)) {
     const stdlib::FaultRow* fault = stdlib::find_fault(static_cast<uint8_t>(high));
@@ -132,13 +144,13 @@ std::vector<WordBit> unit_word_bits(const stdlib::UnitType& unit, bool input, ui
   if (input) {
     bits = {{1, "ready", "not ready", "ready"}, {5, "fault or warning"}};
     for (const StatusBit& row : kStatusBits)
-      if ((row.units & units_of(unit)) != 0) bits.push_back({row.bit, row.text});
+      if (row.units.have(unit)) bits.push_back({row.bit, row.text});
   } else {
     bits = {{0, "controller inhibit"},
             {1, "no rapid stop", "rapid stop", "enable"},
             {2, "no stop", "stop", "enable"}};
     for (const ControlBit& row : kControlBits)
-      if ((row.units & units_of(unit)) != 0 && (row.word == 0 || row.word == word->number))
+      if (row.units.have(unit) && (row.word == 0 || row.word == word->number))
         bits.push_back({row.bit, row.text});
   }
   std::sort(bits.begin(), bits.end(), [](const WordBit& a, const WordBit& b) { return a.bit < b.bit; });

@@ -333,6 +333,12 @@ ipos_plant_status ipos_plant_parameter_value(const char* unit, uint16_t index, c
 /* What a return code (class, code, additional code: the four data bytes of a refusal) means; "" for one that no manual
  * lists. Stays. */
 const char* ipos_plant_return_code(uint32_t code);
+/* The unit types by number from 0, "mdxb" among them; null behind the last. Stays. */
+const char* ipos_plant_unit_name(size_t number);
+/* How a unit at a port is recognised: it is of the type of the first row, by number from 0, all of whose indices it can
+ * read.  unit: stays.  count  in: places of `indices`; out: of the row. IPOS_PLANT_NOTHING behind the last row,
+ * IPOS_PLANT_TOO_SMALL. */
+ipos_plant_status ipos_plant_unit_signs(size_t number, const char** unit, uint16_t* indices, size_t* count);
 
 /* ---- Journal, state, hash ------------------------------------------------------------------------------- */
 

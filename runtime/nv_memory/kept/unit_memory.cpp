@@ -11,7 +11,7 @@ struct Area {
   uint16_t count;
 };
 constexpr Area kAreas[] = {
-#define INDEX_AREA(name, first, count, m07, meaning) {first, count},
+#define INDEX_AREA(name, first, count, everywhere, meaning) {first, count},
 #include "stdlib/index_areas.def"
 };
 constexpr const Area& area(IndexArea which) { return kAreas[static_cast<size_t>(which)]; }

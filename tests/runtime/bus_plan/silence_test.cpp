@@ -180,8 +180,8 @@ TEST(Silence, BusTypesOfMovlnk) {
   for (const stdlib::UnitType& unit : stdlib::unit_types()) {
     if (unit.tasks == 0) continue;
     const SerialInterfaces serial = serial_interfaces(unit);
-    const bool newer = unit.generation == stdlib::Generation::B;
-    const bool older_small = unit.generation == stdlib::Generation::M07;
+    const bool newer = unit.family == stdlib::Family::MovidriveB;
+    const bool older_small = unit.family == stdlib::Family::Movitrac07;
     for (int type = 0; type <= 9; ++type) {
       PlantRig rig(bus_text() + station_text("u", "", std::string(unit.name), "A.IPC"),
                    {{"A.IPC", "#include <const.h>\nMOVLNK Ml; MLDATA Mld;\nmain() { Ml.BusType = " +

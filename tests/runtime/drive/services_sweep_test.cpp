@@ -80,7 +80,7 @@ TEST(ServicesSweep, EveryParameterEveryServiceEveryLimit) {
   long cases = 0;
   for (const UnitLists& unit : kUnits) {
     const stdlib::UnitType& type = tests::unit(unit.unit);
-    const bool m07 = type.generation == stdlib::Generation::M07;
+    const bool m07 = type.family == stdlib::Family::Movitrac07;
     tests::FakeDrive drive;
     ParameterStore fresh(type);
     fresh.connect(drive);
@@ -196,7 +196,7 @@ TEST(ServicesSweep, EveryIndex) {
   };
   for (const UnitLists& unit : kUnits) {
     const stdlib::UnitType& type = tests::unit(unit.unit);
-    const bool m07 = type.generation == stdlib::Generation::M07;
+    const bool m07 = type.family == stdlib::Family::Movitrac07;
     const auto list = tests::listed(unit.files, unit.option_cards);
     const int variables = std::string(unit.unit) == "mdxb" ? 1024 : 512;
     std::vector<Area> areas = {{11000, variables}, {16000, m07 ? 1024 : 2048}};

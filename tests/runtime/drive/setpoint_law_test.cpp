@@ -33,7 +33,7 @@ double demand(const Settings& s, const ParameterSet& active, const ParameterSet&
     default: break;
   }
   const double ai2 = s.ai2_mode == 1 ? std::trunc(in.analog.ai2.millivolt * top / kTenVolts) : 0;
-  return source == 1 && !in.m07 ? std::abs(ai1 + ai2) : ai1 + ai2;
+  return source == 1 && in.unipolar_is_amount ? std::abs(ai1 + ai2) : ai1 + ai2;
 }
 
 // CCW of the terminals, or of the motor potentiometer where it is the source; a bus has its sign alone.
@@ -96,7 +96,7 @@ TEST(SetpointLaw, EverySourceFixedSetpointDirectionAndSign) {
             c.in.ccw = (bits & 2) != 0;
             c.in.motor_pot_ccw = (bits & 4) != 0;
             c.in.slave_free_run = (bits & 8) != 0;
-            c.in.m07 = (bits & 16) != 0;
+            c.in.unipolar_is_amount = (bits & 16) != 0;
             c.settings.ai2_mode = (bits & 32) != 0 ? 1 : 0;
             if ((bits & 64) != 0) c.in.maximum_speed = 700'000;
             SCOPED_TRACE(testing::Message() << "P100 = " << source << ", fixed " << fixed << ", AI1 " << ai1
@@ -133,7 +133,6 @@ TEST(SetpointLaw, BuiltInPotentiometerIsAddedWhereTheTableSaysSo) {
           Case c;
           c.settings.setpoint_source = source;
           c.settings.potentiometer_added = added;
-          c.in.m07 = true;
           c.in.fixed = fixed;
           c.in.fixed_plus_potentiometer = newer;
           const Setpoint without = select_setpoint(c.settings, c.active, c.other, c.in);

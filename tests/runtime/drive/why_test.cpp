@@ -208,14 +208,15 @@ void expect_own_parameters(const stdlib::UnitType& unit, const std::string& text
 // Of master/slave operation, IPOS and torque control MOVITRAC has nothing, and MOVITRAC 31 knows no setpoint but that of
 // its bus or its terminals.
 bool can_come(const stdlib::UnitType& unit, Block block) {
-  const bool movidrive = unit.generation == stdlib::Generation::A || unit.generation == stdlib::Generation::B;
+  using stdlib::Family;
+  const bool movidrive = unit.family == Family::MovidriveA || unit.family == Family::MovidriveB;
   switch (block) {
     case Block::MasterInhibit:
     case Block::MasterRapidStop:
     case Block::MasterStop:
     case Block::MasterHold: return movidrive;
     case Block::PoDisabled:
-    case Block::StopFunction: return unit.generation != stdlib::Generation::None;
+    case Block::StopFunction: return unit.family != Family::Movitrac31;
     default: return true;
   }
 }
@@ -226,10 +227,10 @@ TEST(Why, EveryUnitNamesParametersThatItHas) {
       if (can_come(unit, block)) expect_own_parameters(unit, runtime::block_text(block, unit));
     for (const stdlib::FaultRow& row : stdlib::fault_table())
       expect_own_parameters(unit, stdlib::meaning_on(unit, row));
-    if (unit.generation == stdlib::Generation::None) continue;
+    if (unit.family == stdlib::Family::Movitrac31) continue;
     for (const SetpointNote note : kNotes) {
       const bool torque = note == SetpointNote::NoCurrentWord;
-      if (!torque || unit.generation != stdlib::Generation::M07)
+      if (!torque || unit.lists.starts_with("md60a.tsv"))
         expect_own_parameters(unit, runtime::setpoint_note_text(note, unit));
     }
   }

@@ -23,7 +23,7 @@ inline constexpr std::string_view kFunctions[] = {
     "ipos_plant_bus", "ipos_plant_bus_load", "ipos_plant_join", "ipos_plant_send", "ipos_plant_receive",
     "ipos_plant_node_name", "ipos_plant_serial_send", "ipos_plant_serial_receive", "ipos_plant_line_fault",
     "ipos_plant_parameter_index", "ipos_plant_parameter_text", "ipos_plant_parameter_value",
-    "ipos_plant_return_code", "ipos_plant_journal_at", "ipos_plant_save", "ipos_plant_restore",
+    "ipos_plant_return_code", "ipos_plant_unit_name", "ipos_plant_unit_signs", "ipos_plant_journal_at", "ipos_plant_save", "ipos_plant_restore",
     "ipos_plant_replay", "ipos_plant_trace_hash",
 };
 
@@ -95,6 +95,8 @@ Result called(Result result) {
 #define ipos_plant_parameter_text(...) IPOS_CALLED(ipos_plant_parameter_text, __VA_ARGS__)
 #define ipos_plant_parameter_value(...) IPOS_CALLED(ipos_plant_parameter_value, __VA_ARGS__)
 #define ipos_plant_return_code(...) IPOS_CALLED(ipos_plant_return_code, __VA_ARGS__)
+#define ipos_plant_unit_name(...) IPOS_CALLED(ipos_plant_unit_name, __VA_ARGS__)
+#define ipos_plant_unit_signs(...) IPOS_CALLED(ipos_plant_unit_signs, __VA_ARGS__)
 #define ipos_plant_journal_at(...) IPOS_CALLED(ipos_plant_journal_at, __VA_ARGS__)
 #define ipos_plant_save(...) IPOS_CALLED(ipos_plant_save, __VA_ARGS__)
 #define ipos_plant_restore(...) IPOS_CALLED(ipos_plant_restore, __VA_ARGS__)

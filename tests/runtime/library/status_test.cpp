@@ -1,12 +1,14 @@
 // Each status comes where the header says, with its words.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "stdlib/unit_types.hpp"
 #include "tests/runtime/library/functions.hpp"
 
 namespace {
@@ -174,6 +176,29 @@ TEST_F(LibraryStatus, OfNodesOfALine) {
   EXPECT_EQ(ipos_plant_node_name(plant_, 0, frames[0].sender, &name), IPOS_PLANT_OK);
   EXPECT_STRNE(name, "a");
   EXPECT_EQ(ipos_plant_node_name(plant_, 0, 99, &name), IPOS_PLANT_NO_STATION);
+}
+
+// Against the table itself: a front end that asks the library names and recognises the units that it knows.
+TEST(LibraryParameters, UnitsAndTheirSignsAreThoseOfTheTable) {
+  size_t units = 0;
+  for (const ipos::stdlib::UnitType& unit : ipos::stdlib::unit_types()) EXPECT_EQ(ipos_plant_unit_name(units++), unit.name);
+  EXPECT_EQ(ipos_plant_unit_name(units), nullptr);
+  const char* unit = nullptr;
+  uint16_t indices[8];
+  size_t rows = 0;
+  for (const ipos::stdlib::UnitSigns& signs : ipos::stdlib::unit_signs()) {
+    size_t count = 0;
+    EXPECT_EQ(ipos_plant_unit_signs(rows, &unit, indices, &count), IPOS_PLANT_TOO_SMALL);
+    EXPECT_EQ(count, signs.indices.size());
+    ASSERT_EQ(ipos_plant_unit_signs(rows++, &unit, indices, &count), IPOS_PLANT_OK);
+    EXPECT_EQ(unit, signs.unit);
+    EXPECT_TRUE(std::equal(signs.indices.begin(), signs.indices.end(), indices, indices + count));
+  }
+  size_t count = std::size(indices);
+  EXPECT_EQ(ipos_plant_unit_signs(rows, &unit, indices, &count), IPOS_PLANT_NOTHING);
+  EXPECT_EQ(ipos_plant_unit_signs(0, nullptr, indices, &count), IPOS_PLANT_INVALID_ARGUMENT);
+  EXPECT_EQ(ipos_plant_unit_signs(0, &unit, nullptr, &count), IPOS_PLANT_INVALID_ARGUMENT);
+  EXPECT_EQ(ipos_plant_unit_signs(0, &unit, indices, nullptr), IPOS_PLANT_INVALID_ARGUMENT);
 }
 
 TEST(LibraryParameters, OfRealUnitsHaveTextsBothWays) {

@@ -37,13 +37,13 @@ struct Reading {
 Reading read(const DriveServer& unit) {
   Reading reading;
   reading.drive = SettingsReader(unit.parameters()).read(unit.parameters());
-  if (unit.unit().generation != stdlib::Generation::M07)
+  if (unit.unit().has(stdlib::Trait::Positioning))
     reading.positioning = {
 #define POSITIONING_SETTING(member, number, absent) unit.value(number),
 #include "runtime/positioning/settings.def"
     };
   for (const int sbus : {1, 2}) {
-    if (sbus == 2 && unit.unit().generation != stdlib::Generation::B) continue;
+    if (sbus == 2 && !unit.unit().has(stdlib::Trait::Sbus2)) continue;
     const SbusSettings s = sbus_settings(unit, sbus);
     for (const int64_t value : {int64_t{s.slave.address}, int64_t{s.slave.group}, int64_t{s.slave.sync_id},
                                 int64_t{s.slave.second_channel}, int64_t{s.slave.group_output},

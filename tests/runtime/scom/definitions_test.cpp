@@ -49,7 +49,8 @@ TEST_F(Objects, ALimitIsNamedWithItsClass) {
   for (int32_t n = 0; n < 11; ++n) cyclic(1050 + n, 10, 0, 0);
   EXPECT_EQ(
       why_,
-      "object 424h (1060): the unit has only 10 transmit objects of 10 ms and more; the object is not sent");
+      "object 424h (1060): the unit has only 10 transmit objects of 10 to 65530 ms in steps of 10; the object is "
+      "not sent");
   for (int32_t n = 0; n < 33; ++n) receive(1100 + n);
   EXPECT_EQ(why_, "receive object 46Ch (1132): the unit has only 32 receive objects; it is not used");
 }

@@ -175,7 +175,7 @@ TEST(ObjectTable, AnAcceptedOneShotTelegramLeavesItsResultAlone) {
   EXPECT_EQ(unit.result(), 777);
 }
 
-TEST(ObjectTable, CycleTimesOfEachGeneration) {
+TEST(ObjectTable, CycleTimesOfEachFamily) {
   PROVES("SCOM-07");
   for (const std::string_view name : {"md60a", "compact", "mc07", "mdxb"})
     for (const auto& [from, to] : {std::pair{-21, 41}, {65'500, 65'560}, {131'060, 131'081}})
@@ -192,7 +192,7 @@ TEST(ObjectTable, CycleTimesOfEachGeneration) {
 
 // A: 0 to 65534 ms in steps of 1 below 10 ms, 0 to 65530 ms in steps of 10 from there (p. 54). MOVITRAC 07 only has the
 // latter. B: smaller than the cycle, with the same steps (IPOSplus p. 232).
-TEST(ObjectTable, OffsetsOfEachGeneration) {
+TEST(ObjectTable, OffsetsOfEachFamily) {
   PROVES("SCOM-08");
   for (const std::string_view name : {"md60a", "mc07", "mdxb"})
     for (const int32_t cycle : {1, 2, 5, 9, 10, 20, 100, 65'530}) {
@@ -209,6 +209,25 @@ TEST(ObjectTable, OffsetsOfEachGeneration) {
           EXPECT_EQ(unit.result() < 0, !allowed);
         }
     }
+}
+
+// MOVITRAC B: 1 to 255 ms, offset and cycle together at most 255, 16 objects (IPOSplus p. 232).
+TEST(ObjectTable, MovitracBHasOneClassOfItsOwn) {
+  for (int32_t cycle = -2; cycle <= 600; ++cycle)
+    for (const int32_t offset : {-1, 0, 1, 7, 155, 254, 255, 256}) {
+      Table unit("mc07b");
+      const bool has_cycle = cycle >= 1 && cycle <= 255;
+      const bool allowed = has_cycle && offset >= 0 && offset + cycle <= 255;
+      EXPECT_EQ(unit.cyclic(1024, cycle, offset), allowed     ? ObjectVerdict::Accepted
+                                                  : has_cycle ? ObjectVerdict::WrongOffset
+                                                              : ObjectVerdict::WrongCycleTime)
+          << cycle << ' ' << offset;
+    }
+  Table unit("mc07b", 1, 1'000'000);
+  for (int32_t n = 0; n < 16; ++n) EXPECT_EQ(unit.cyclic(1024 + n, n < 8 ? 9 : 255), ObjectVerdict::Accepted) << n;
+  EXPECT_EQ(unit.cyclic(1100, 9), ObjectVerdict::TooManyTransmit);
+  EXPECT_EQ(unit.result(), -2);
+  EXPECT_EQ(unit.cyclic(1100, 255), ObjectVerdict::TooManyTransmit);
 }
 
 // The limits are those of each class by itself, whichever class comes first.
@@ -501,10 +520,9 @@ TEST(ObjectTable, ASavedStateGoesOn) {
     Table saved(name, 1, 1'000'000);
     EXPECT_TRUE(Table(name).table.restore(saved.table.state())) << "an empty one";
     const auto last = static_cast<int32_t>(saved.unit.variables) - 1;
-    for (int32_t n = 0; n < saved.unit.fast_objects; ++n)
-      EXPECT_EQ(saved.cyclic(1100 + n, 9), ObjectVerdict::Accepted);
-    for (int32_t n = 1; n < saved.unit.slow_objects; ++n)
-      EXPECT_EQ(saved.cyclic(1200 + n, 10), ObjectVerdict::Accepted);
+    for (const stdlib::ObjectClass& objects : saved.unit.objects)
+      for (int32_t n = objects.longest == 65'530 ? 1 : 0; n < objects.objects; ++n)
+        EXPECT_EQ(saved.cyclic(1100 + objects.shortest * 10 + n, objects.longest == 9 ? 9 : 10), ObjectVerdict::Accepted);
     EXPECT_EQ(saved.define({ObjectKind::TransmitCyclic, 2047, 65'530, 0, 4, last, 50}),
               ObjectVerdict::Accepted);
     for (int32_t n = 0; n < 31; ++n) EXPECT_EQ(saved.receive(1300 + n), ObjectVerdict::Accepted);
