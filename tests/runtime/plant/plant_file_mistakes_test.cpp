@@ -113,7 +113,7 @@ TEST(PlantFileMistakes, OfAStation) {
       "", {{"^[[station]]\nname = 'u'\n", "a [[station]] needs unit"},
            {"^[[station]]\nunit = 'mdxb'\n", "a [[station]] needs name"},
            {"[[station]]\nname = 'u'\nunit = ^'mdx'\n",
-            "'mdx' is no unit type; known are md60a, compact, mc07, mdxb, mc31, gateway"},
+            "'mdx' is no unit type; known are md60a, compact, mc07, mdxb, mc31, mc07b, gateway"},
            {"[[station]]\nname = 'u'\nunit = 'mc31'\nprogram = ^'P'\n", "unit type mc31 runs no program"},
            {"[[station]]\nname = 'u'\nunit = 'mc07'\nlogodrive = false\nprogram = ^'P'\n",
             "a standard MOVITRAC 07 (logodrive = false) is a slave only and runs no program"},
