@@ -264,7 +264,7 @@ TEST(GatewayPlant, ErrorsOfThePlantFile) {
   EXPECT_NE(errors_of(line() + "[[expect]]\nstation = \"gw\"\nat = \"1s\"\nstate = \"fault\"\nequals = 0\n")
                 .find("'gw' is a gateway: it has no program, drive, inputs or parameters of its own"),
             std::string::npos);
-  EXPECT_NE(errors_of("[[station]]\nname = \"x\"\nunit = \"mdx\"\n").find("mc31, gateway"),
+  EXPECT_NE(errors_of("[[station]]\nname = \"x\"\nunit = \"mdx\"\n").find("mc07b, gateway"),
             std::string::npos);
 }
 
