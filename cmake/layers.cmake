@@ -1,10 +1,11 @@
 # Layers: a static library that sees only the folders it owns and the folders of the layers it uses.
 #
-#   ipos_layer(vm FOLDERS vm/verify vm/exec SOURCES verify/verify.cpp USES image LIBS fmt::fmt)
+#   ipos_layer(verify FOLDERS vm/host vm/verify SOURCES verify/verify.cpp USES isa LIBS fmt::fmt)
 #
 # Their code goes into shared libraries, too (libipos_compile, libipos_plant); there as in a program nobody replaces a
 # function of it, so the optimiser may count on what it sees.
-# Every layer gets a private tree of links, <build>/layers/<name>/<folder> -> <source>/<folder>, as its only
+# A layer without sources has headers only, or is a name for several layers at once.
+# Every layer gets a private tree of links, <build>/layers/ipos_<name>/<folder> -> <source>/<folder>, as its only
 # include root. A file that includes a folder of a layer not named in USES does not compile;
 # tests/architecture tries that.
 
@@ -54,21 +55,33 @@ function(ipos_for_shared_libraries target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-fvisibility=hidden>)
 endfunction()
 
-function(ipos_layer name)
-  cmake_parse_arguments(LAYER "" "" "FOLDERS;SOURCES;USES;LIBS" ${ARGN})
-  set(view ${PROJECT_BINARY_DIR}/layers/${name})
-  foreach(folder ${LAYER_FOLDERS})
+# The folders are all that a target sees, with those of the targets it links.
+function(ipos_see target scope)
+  set(view ${PROJECT_BINARY_DIR}/layers/${target})
+  foreach(folder ${ARGN})
     get_filename_component(parent ${view}/${folder} DIRECTORY)
     file(MAKE_DIRECTORY ${parent})
     file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${folder} ${view}/${folder} SYMBOLIC)
   endforeach()
+  if(ARGN)
+    target_include_directories(${target} ${scope} $<BUILD_INTERFACE:${view}>)
+  endif()
+endfunction()
+
+function(ipos_layer name)
+  cmake_parse_arguments(LAYER "" "" "FOLDERS;SOURCES;USES;LIBS" ${ARGN})
+  list(TRANSFORM LAYER_USES PREPEND ipos::)
+  if(NOT LAYER_SOURCES)
+    add_library(ipos_${name} INTERFACE)
+    add_library(ipos::${name} ALIAS ipos_${name})
+    ipos_see(ipos_${name} INTERFACE ${LAYER_FOLDERS})
+    target_link_libraries(ipos_${name} INTERFACE ${LAYER_USES})
+    return()
+  endif()
   add_library(ipos_${name} STATIC ${LAYER_SOURCES})
   add_library(ipos::${name} ALIAS ipos_${name})
-  target_include_directories(ipos_${name} PUBLIC $<BUILD_INTERFACE:${view}>)
-  foreach(used ${LAYER_USES})
-    target_link_libraries(ipos_${name} PUBLIC ipos::${used})
-  endforeach()
-  target_link_libraries(ipos_${name} PRIVATE ipos_options ${LAYER_LIBS})
+  ipos_see(ipos_${name} PUBLIC ${LAYER_FOLDERS})
+  target_link_libraries(ipos_${name} PUBLIC ${LAYER_USES} PRIVATE ipos_options ${LAYER_LIBS})
   set_target_properties(ipos_${name} PROPERTIES IPOS_FUZZED ON)
   ipos_for_shared_libraries(ipos_${name})
   if("fmt::fmt" IN_LIST LAYER_LIBS)

@@ -1,35 +1,47 @@
 # Virtual time, and the buses on it. The bus knows nothing of drives.
 
 ipos_layer(clock FOLDERS runtime/clock SOURCES clock/event_queue.cpp)
-ipos_layer(bus FOLDERS runtime/bus
-           SOURCES bus/line/line_load.cpp
-                   bus/can/identifier_text.cpp bus/can/frame_bits.cpp bus/can/bit_error.cpp bus/can/line_fault.cpp
-                   bus/can/transfer.cpp
-                   bus/can/line.cpp bus/can/line_wiring.cpp bus/can/line_report.cpp bus/can/contenders.cpp
-                   bus/log/candump.cpp
-                   bus/canopen/abort.cpp bus/canopen/object_dictionary.cpp bus/canopen/object_access.cpp
-                   bus/canopen/eds.cpp bus/canopen/sdo_server.cpp bus/canopen/pdo.cpp bus/canopen/emergency.cpp
-                   bus/canopen/error_control.cpp bus/canopen/node.cpp bus/canopen/sdo_client.cpp bus/canopen/master.cpp
-                   bus/canopen/sdo_master.cpp bus/canopen/dbc_messages.cpp bus/canopen/words.cpp bus/canopen/sdo_words.cpp bus/words/can_words.cpp bus/words/bus_words.cpp
-                   bus/movilink/parameter_telegram.cpp bus/movilink/return_code.cpp
-                   bus/movilink/variable_telegram.cpp bus/movilink/profile.cpp bus/movilink/unit_servers.cpp
-                   bus/movilink/sbus_slave.cpp bus/movilink/sbus_master.cpp bus/movilink/sbus_group_master.cpp
-                   bus/movilink/sbus_control.cpp bus/movilink/gateway_channel.cpp bus/movilink/sbus_check.cpp bus/movilink/process_words.cpp
-                   bus/movilink/unit_words.cpp bus/movilink/telegram_words.cpp bus/movilink/describe.cpp
-                   bus/movilink/describe_serial.cpp bus/movilink/station_filter.cpp bus/dbc/dbc.cpp bus/movilink/dbc_signals.cpp
-                   bus/log/bus_load.cpp bus/log/replay.cpp
-                   bus/rs485/levels.cpp bus/rs485/line.cpp bus/log/serial_log.cpp bus/log/profibus_log.cpp bus/log/read_serial_log.cpp
-                   bus/movilink/serial_telegram.cpp bus/movilink/serial_receiver.cpp bus/movilink/handshake.cpp
-                   bus/movilink/serial_slave.cpp bus/movilink/serial_requester.cpp bus/movilink/serial_master.cpp
-                   bus/movilink/master_slave.cpp bus/movilink/line_check.cpp
-                   bus/profibus/fdl_frame.cpp bus/profibus/fdl_receiver.cpp bus/profibus/dp_service.cpp
-                   bus/profibus/cfg_data.cpp bus/profibus/frame_text.cpp bus/profibus/dp_slave.cpp bus/profibus/card.cpp
-                   bus/profibus/line_fault.cpp bus/profibus/line.cpp bus/profibus/slave_station.cpp
-                   bus/profibus/slave_handler.cpp bus/profibus/master.cpp bus/profibus/fieldbus_parameters.cpp
-                   bus/profibus/dp_unit.cpp bus/profibus/gsd.cpp bus/profibus/line_plan.cpp bus/profibus/interface_card.cpp bus/profibus/fms_connection.cpp
-                   bus/profibus/fms_objects.cpp bus/profibus/fms_server.cpp
-           USES clock stdlib LIBS fmt::fmt)
-ipos_batches(ipos_bus SIZE 40
-             HOT bus/can/frame_bits.cpp bus/can/transfer.cpp bus/can/line.cpp bus/can/contenders.cpp
-                 bus/movilink/variable_telegram.cpp bus/movilink/sbus_slave.cpp bus/movilink/sbus_group_master.cpp
-                 bus/rs485/line.cpp)
+
+# bus_layer(NAME [BATCH n] SOURCES file... HOT file... USES layer...): a folder of runtime/bus.
+function(bus_layer name)
+  cmake_parse_arguments(BUS "" "BATCH" "SOURCES;HOT;USES" ${ARGN})
+  if(NOT BUS_BATCH)
+    set(BUS_BATCH 40)
+  endif()
+  list(TRANSFORM BUS_SOURCES PREPEND bus/${name}/)
+  list(TRANSFORM BUS_HOT PREPEND bus/${name}/)
+  ipos_layer(bus_${name} FOLDERS runtime/bus/${name} SOURCES ${BUS_SOURCES} ${BUS_HOT} USES ${BUS_USES} LIBS fmt::fmt)
+  ipos_batches(ipos_bus_${name} SIZE ${BUS_BATCH} HOT ${BUS_HOT})
+endfunction()
+
+bus_layer(line SOURCES line_load.cpp)
+bus_layer(can
+  SOURCES identifier_text.cpp bit_error.cpp line_fault.cpp line_wiring.cpp line_report.cpp
+  HOT frame_bits.cpp transfer.cpp line.cpp contenders.cpp
+  USES bus_line clock)
+bus_layer(rs485 SOURCES levels.cpp HOT line.cpp USES bus_line clock)
+# What a unit says on a line, and who asks it.
+bus_layer(movilink BATCH 12  # SBus, and the serial line: some names are in both
+  SOURCES parameter_telegram.cpp return_code.cpp profile.cpp unit_servers.cpp sbus_master.cpp sbus_control.cpp
+          gateway_channel.cpp sbus_check.cpp process_words.cpp unit_words.cpp telegram_words.cpp describe.cpp
+          describe_serial.cpp station_filter.cpp dbc_signals.cpp serial_telegram.cpp serial_receiver.cpp handshake.cpp
+          serial_slave.cpp serial_requester.cpp serial_master.cpp master_slave.cpp line_check.cpp
+  HOT variable_telegram.cpp sbus_slave.cpp sbus_group_master.cpp
+  USES bus_can bus_rs485 clock stdlib)
+bus_layer(canopen
+  SOURCES abort.cpp object_dictionary.cpp object_access.cpp eds.cpp sdo_server.cpp pdo.cpp emergency.cpp error_control.cpp
+          node.cpp sdo_client.cpp master.cpp sdo_master.cpp dbc_messages.cpp words.cpp sdo_words.cpp
+  USES bus_can bus_movilink clock stdlib)
+bus_layer(profibus
+  SOURCES fdl_frame.cpp fdl_receiver.cpp dp_service.cpp cfg_data.cpp frame_text.cpp dp_slave.cpp card.cpp line_fault.cpp
+          line.cpp slave_station.cpp slave_handler.cpp master.cpp fieldbus_parameters.cpp dp_unit.cpp gsd.cpp line_plan.cpp
+          interface_card.cpp fms_connection.cpp fms_objects.cpp fms_server.cpp
+  USES bus_line bus_rs485 bus_movilink clock stdlib)
+# Telegrams of all lines as words, as logs, and as a DBC file.
+bus_layer(words SOURCES can_words.cpp bus_words.cpp USES bus_can bus_movilink bus_canopen bus_profibus)
+bus_layer(log
+  SOURCES candump.cpp bus_load.cpp replay.cpp serial_log.cpp profibus_log.cpp
+  HOT read_serial_log.cpp  # alone: its names are those of candump.cpp
+  USES bus_can bus_rs485 bus_movilink bus_profibus clock)
+bus_layer(dbc SOURCES dbc.cpp USES bus_words bus_log bus_canopen bus_movilink bus_can stdlib)
+ipos_layer(bus USES bus_line bus_can bus_rs485 bus_movilink bus_canopen bus_profibus bus_words bus_log bus_dbc)  # all of them

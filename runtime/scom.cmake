@@ -1,2 +1,2 @@
 # The variable telegrams of a unit: as data without heap (object_table), which firmware has, too, and on a simulated line.
-ipos_layer(scom FOLDERS runtime/scom SOURCES scom/object_table.cpp scom/variable_objects.cpp USES bus stdlib LIBS fmt::fmt)
+ipos_layer(scom FOLDERS runtime/scom SOURCES scom/object_table.cpp scom/variable_objects.cpp USES bus_can bus_movilink clock stdlib LIBS fmt::fmt)

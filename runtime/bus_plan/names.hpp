@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "runtime/bus/words/bus_words.hpp"
 #include "runtime/bus/movilink/describe.hpp"
+#include "runtime/bus/words/bus_words.hpp"
 #include "runtime/plant/plant.hpp"
 
 namespace ipos::runtime {

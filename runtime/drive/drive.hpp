@@ -20,7 +20,7 @@
 #include "runtime/drive/setpoint.hpp"
 #include "runtime/drive/setpoint_memory.hpp"
 #include "runtime/motion/axis.hpp"
-#include "runtime/pace/part.hpp"
+#include "runtime/part/part.hpp"
 
 namespace ipos::runtime {
 

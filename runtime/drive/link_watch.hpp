@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "runtime/pace/part.hpp"
+#include "runtime/part/part.hpp"
 
 namespace ipos::runtime {
 

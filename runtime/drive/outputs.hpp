@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "runtime/drive/settings.hpp"
-#include "runtime/pace/part.hpp"
+#include "runtime/part/part.hpp"
 
 namespace ipos::runtime {
 

@@ -11,7 +11,7 @@
 #include "runtime/motion/power_section.hpp"
 #include "runtime/motion/ramp.hpp"
 #include "runtime/motion/shaft.hpp"
-#include "runtime/pace/part.hpp"
+#include "runtime/part/part.hpp"
 
 namespace ipos::runtime {
 

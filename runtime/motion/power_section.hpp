@@ -7,7 +7,7 @@
 
 #include "runtime/motion/fine_speed.hpp"
 #include "runtime/motion/machine_data.hpp"
-#include "runtime/pace/part.hpp"
+#include "runtime/part/part.hpp"
 
 namespace ipos::runtime {
 

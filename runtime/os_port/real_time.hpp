@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "runtime/clock/lateness.hpp"
 #include "runtime/os_port/port.hpp"
 
 namespace ipos::runtime {
@@ -35,10 +36,6 @@ class RealTimeMember {
 
 // A tick that comes later than this is counted: the next one is due by then (ours).
 inline constexpr Time kLateTick = kMillisecond;
-
-// What is later than this is not made up for (ours): after a process that was stopped for seconds, a real bus would get all
-// the telegrams of that time at once, with setpoints of then. The clock of the run goes on from there.
-inline constexpr Time kForgiven = 200 * kMillisecond;
 
 struct Punctuality {
   uint64_t late_ticks = 0;  // milliseconds of virtual time that ran more than kLateTick late

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "runtime/clock/event_queue.hpp"
-#include "runtime/pace/part.hpp"
+#include "runtime/part/part.hpp"
 
 namespace ipos::runtime {
 

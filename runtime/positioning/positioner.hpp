@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "runtime/pace/part.hpp"
+#include "runtime/part/part.hpp"
 #include "runtime/positioning/encoders.hpp"
 #include "runtime/positioning/follower.hpp"
 #include "runtime/positioning/modulo.hpp"

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "runtime/drive/parameters.hpp"
-#include "runtime/pace/part.hpp"
+#include "runtime/part/part.hpp"
 #include "stdlib/system_variables.hpp"
 
 namespace ipos::runtime {

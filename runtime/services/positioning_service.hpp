@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "runtime/drive/drive.hpp"
+#include "runtime/journal/journal.hpp"
 #include "runtime/positioning/cams.hpp"
 #include "runtime/positioning/positioner.hpp"
-#include "runtime/journal/journal.hpp"
 #include "stdlib/system_variables.hpp"
 
 namespace ipos::runtime {

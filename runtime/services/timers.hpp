@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-#include "runtime/pace/part.hpp"
+#include "runtime/part/part.hpp"
 #include "stdlib/system_variables.hpp"
 
 namespace ipos::runtime {

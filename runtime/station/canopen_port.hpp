@@ -8,11 +8,11 @@
 
 #include "runtime/bus/can/line.hpp"
 #include "runtime/bus/canopen/node.hpp"
+#include "runtime/journal/journal.hpp"
 #include "runtime/scom/variable_objects.hpp"
 #include "runtime/station/sbus_port.hpp"
 #include "runtime/station/unit_server.hpp"
 #include "runtime/unit/door.hpp"
-#include "runtime/journal/journal.hpp"
 
 namespace ipos::runtime {
 

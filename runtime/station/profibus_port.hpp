@@ -8,12 +8,12 @@
 #include <string_view>
 
 #include "runtime/bus/profibus/interface_card.hpp"
+#include "runtime/journal/journal.hpp"
 #include "runtime/plant_file/plant_file.hpp"
 #include "runtime/station/profibus_bus.hpp"
 #include "runtime/station/station_port.hpp"
 #include "runtime/station/unit_server.hpp"
 #include "runtime/unit/door.hpp"
-#include "runtime/journal/journal.hpp"
 
 namespace ipos::runtime {
 

@@ -14,11 +14,11 @@
 #include "runtime/bus/movilink/sbus_master.hpp"
 #include "runtime/bus/movilink/sbus_slave.hpp"
 #include "runtime/commands/movilink_command.hpp"
+#include "runtime/journal/journal.hpp"
 #include "runtime/scom/variable_objects.hpp"
 #include "runtime/station/station_port.hpp"
 #include "runtime/station/unit_server.hpp"
 #include "runtime/unit/door.hpp"
-#include "runtime/journal/journal.hpp"
 
 namespace ipos::runtime {
 

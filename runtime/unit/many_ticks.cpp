@@ -1,5 +1,5 @@
 // A tick is a function of what the unit is. So when one has left a part as counting alone would have
-// (runtime/pace/part.hpp), and nobody has written what it follows since, the next ones do the same.
+// (runtime/part/part.hpp), and nobody has written what it follows since, the next ones do the same.
 #include "runtime/unit/many_ticks.hpp"
 
 #include <algorithm>

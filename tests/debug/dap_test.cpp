@@ -46,7 +46,7 @@ class Dap : public ::testing::Test {
       plant_of({"\nlong lFirst;\nlong aTable[3];\nmain()\n{\n  lFirst = 5;\n  aTable[1] = lFirst;\n"
                 "  lFirst = 6;\n  while (1) {}\n}\n"});
   DapServer server_{[this](const DapLaunch&) { return plant_; },
-                    [this](const Json& message) { sent_.push_back(message); }, false};
+                    [this](const Json& message) { sent_.push_back(message); }, nullptr};
 };
 
 TEST_F(Dap, BreakpointsStepsAndStepsBack) {

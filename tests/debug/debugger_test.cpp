@@ -50,7 +50,7 @@ class Debugging : public ::testing::Test {
 
   static constexpr TaskRef kTask{0, 1};
   Quiet quiet_;
-  Debugger debugger_{plant_of({kProgram, kProgram}), quiet_, false, 10 * runtime::kSecond};
+  Debugger debugger_{plant_of({kProgram, kProgram}), quiet_, nullptr, 10 * runtime::kSecond};
 };
 
 TEST_F(Debugging, StepsIntoOverAndOut) {
@@ -187,7 +187,7 @@ TEST_F(Debugging, ADebuggedPlantDoesWhatItDoesWithoutDebugger) {
 }
 
 TEST_F(Debugging, AFaultOfTheProgramStopsAtItsCommand) {
-  Debugger other(plant_of({"\nmain()\n{\n  H1 = 5;\n  H2 = H1 / H3;\n}\n"}), quiet_, false, runtime::kSecond);
+  Debugger other(plant_of({"\nmain()\n{\n  H1 = 5;\n  H2 = H1 / H3;\n}\n"}), quiet_, nullptr, runtime::kSecond);
   const Stop stop = other.run(Order{});
   EXPECT_EQ(stop.reason, Reason::Fault);
   EXPECT_TRUE(stop.text.starts_with("F10")) << stop.text;
@@ -205,7 +205,7 @@ TEST_F(Debugging, NamesOfPartsAreThoseOfTheWatch) {
   Debugger other(
       plant_of({"typedef struct { long a; long b[3]; } T;\nT y[2];\nlong v[2];\nmain()\n{\n  y[1].b[2] = 9;\n"
                 "  v[1] = 7;\n  H498 = 5;\n  y[0].a = 2;\n}\n"}),
-      quiet_, false, runtime::kSecond);
+      quiet_, nullptr, runtime::kSecond);
   other.run(Order{});
   const auto value_of = [&](const char* text) { return evaluate(other.plant(), 0, text); };
   EXPECT_EQ(value_of("y[1].b[2]"), 9);

@@ -7,7 +7,7 @@
 
 #include "compiler/compile.hpp"
 #include "runtime/plant/plant.hpp"
-#include "tools/debug/debugger.hpp"
+#include "tools/debugger/debugger.hpp"
 
 namespace ipos::tests {
 

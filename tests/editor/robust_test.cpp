@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "tests/editor/client.hpp"
-#include "tools/lsp/positions.hpp"
+#include "tools/lsp_base/positions.hpp"
 
 namespace ipos::tests {
 namespace {

@@ -7,7 +7,7 @@
 #include "compiler/format/format.hpp"
 #include "tests/editor/client.hpp"
 #include "tests/harness/contains.hpp"
-#include "tools/lsp/transport.hpp"
+#include "tools/lsp_base/transport.hpp"
 
 namespace ipos::tests {
 namespace {

@@ -13,13 +13,13 @@
 #include <cassert>
 #include <cstdlib>
 #include <cstring>
-#include <deque>
 #include <limits>
 #include <memory>
 #include <string>
 
 #include "tests/fuzz/fuzz.hpp"
-#include "tools/serve/plant_host.hpp"
+#include "tools/serve/channel.hpp"
+#include "tools/serve/host/plant_host.hpp"
 
 using namespace ipos;         // NOLINT
 using namespace ipos::tests;  // NOLINT
@@ -27,7 +27,8 @@ using namespace ipos::tests;  // NOLINT
 namespace {
 
 using tools::serve::Json;
-using tools::serve::LetterKind;
+using tools::serve::MessageKind;
+using tools::serve::SteadyClock;
 
 constexpr const char* kPlant = R"(
 [[bus]]
@@ -60,32 +61,21 @@ constexpr std::string_view kSlow[] = {"parameters", "parameters.compare", "param
 constexpr int kOfSlow = 64;
 
 // A page that pauses what it has started.
-class PausingPost final : public tools::serve::Post {
+class CheckedOutbox final : public tools::serve::Outbox {
  public:
   // Replies of `longest` bytes and more are not read.
-  explicit PausingPost(size_t longest) : longest_(longest) {}
-  bool send(LetterKind kind, uint16_t, std::string_view body) override {
-    if (kind == LetterKind::Reply && body.size() < longest_) {
+  explicit CheckedOutbox(size_t longest) : longest_(longest) {}
+  bool send(MessageKind kind, uint16_t, std::string_view body) override {
+    if (kind == MessageKind::Reply && body.size() < longest_) {
       const Json reply = Json::parse(body, nullptr, false);
       require(reply.is_object() && reply.contains("re"), "a reply is an object and says to what");
       require(reply.contains("ok") != reply.contains("error"), "it is good or it is not");
     }
-    answered = answered || kind == LetterKind::Reply || kind == LetterKind::Binary;
+    answered = answered || kind == MessageKind::Reply || kind == MessageKind::Binary;
     return true;
   }
-  std::optional<tools::serve::Letter> wait(int) override {
-    if (waiting.empty() && !runs) return std::nullopt;
-    runs = !waiting.empty();
-    if (waiting.empty()) return tools::serve::Letter{LetterKind::Message, 1, R"({"do": "pause"})"};
-    tools::serve::Letter letter = std::move(waiting.front());
-    waiting.pop_front();
-    return letter;
-  }
-  bool open() const override { return true; }
 
-  std::deque<tools::serve::Letter> waiting;
   bool answered = false;
-  bool runs = false;
 
  private:
   size_t longest_;
@@ -155,13 +145,17 @@ bool is_slow(std::string_view message) {
 
 struct Session {
   History* kept;  // null for a host of one input
-  PausingPost post;
-  tools::serve::PlantHost host{make(), "plant", "0", post, false};
+  CheckedOutbox post;
+  SteadyClock clock;
+  tools::serve::Copies copies;
+  tools::serve::Ports ports;
+  tools::serve::Sources sources;
+  tools::serve::PlantHost host{make(), "plant", "0", {post, clock, copies, ports, sources}};
   int slow = 0;
 
   explicit Session(History* history)
       : kept(history), post(history == nullptr ? std::numeric_limits<size_t>::max() : kLongReply) {
-    post.waiting.push_back({LetterKind::Opened, 1, {}});
+    host.take({MessageKind::Opened, 1, {}});
   }
 
   void take(std::string_view text) {
@@ -173,11 +167,9 @@ struct Session {
         if (is_slow(message) && slow++ % kOfSlow != 0) continue;
         kept->add(message);
       }
-      post.waiting.push_back({LetterKind::Message, 1, std::move(message)});
-      post.runs = true;
       post.answered = false;
-      while (host.turn(0)) {
-      }
+      host.take({MessageKind::Text, 1, std::move(message)});
+      for (host.turn(); host.busy(); host.turn()) host.take({MessageKind::Text, 1, R"({"do": "pause"})"});
       require(post.answered, "a message is answered");
     }
     require(host.plant().now() >= 0, "the plant is there");

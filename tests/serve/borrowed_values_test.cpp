@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <map>
 
-#include "tools/serve/arguments.hpp"
+#include "tools/serve/host/arguments.hpp"
 #include "tools/serve/state_folder.hpp"
 
 namespace ipos::tools::serve {

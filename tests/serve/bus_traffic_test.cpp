@@ -56,7 +56,7 @@ TEST_F(OnLines, TelegramsLeftOutOfTheTraceAreCounted) {
   good({{"do", "subscribe"}, {"topic", "trace"}, {"rate", 0.1}});
   auto much_later = [this, now = WallClock::now()]() mutable {
     page.post.sent.clear();
-    page.host.desk().publish(now += std::chrono::hours(1), false);
+    page.host.router().publish(now += std::chrono::hours(1), false);
     const std::string bytes = page.binary();
     uint32_t left_out = 0, first = 0;
     if (bytes.size() >= 20) {
@@ -117,7 +117,7 @@ TEST_F(OnLines, SerialTelegramsHaveARowAnAddressAndMistakesAreErrors) {
 
 // A lost frame is one that nobody heard.
 TEST(OnProfibus, LostFramesAreErrors) {
-  Page page(plant_of("[[bus]]\nname = \"dp\"\nkind = \"profibus\"\nbaud = 500000\n[[station]]\nname = \"a\"\n"
+  ServedPage page(plant_of("[[bus]]\nname = \"dp\"\nkind = \"profibus\"\nbaud = 500000\n[[station]]\nname = \"a\"\n"
                         "unit = \"mc31\"\noption = \"size0\"\nprofibus = \"dp\"\nprofibus_address = 9\n"));
   page.ask({{"do", "fault"}, {"bus", "dp"}, {"kind", "lost"}, {"on", true}});
   ASSERT_TRUE(page.ask({{"do", "bus.send"}, {"bus", "dp"}, {"data", "10 09 20 49 fcs 16"}})["ok"]);

@@ -1,6 +1,6 @@
 // Which telegrams of `bus.send` could enable a drive, over every address and identifier; expected by the tables of 1053 1610
 // p. 18-25 (RS-485) and p. 37 (SBus), CiA 301 7.3.3 and EN 50170 volume 2.
-#include "tools/serve/enabling_telegrams.hpp"
+#include "tools/serve/host/enabling_telegrams.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

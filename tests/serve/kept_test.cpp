@@ -50,13 +50,18 @@ TEST_F(KeptOfAPlant, WhatIsDamagedIsMadeAnew) {
   }
 }
 
+void restore(Page& page, const Kept& kept) {
+  kept.add_commands(page.host.router());
+  page.host.restore(kept.settings());
+}
+
 TEST_F(KeptOfAPlant, SettingsOutliveTheServer) {
   const Kept kept = Kept::of_plant(folder.write("one.toml", ""));
   const std::string token = kept.token();
   const Json pins = Json::array({{{"name", "saw.lCount"}}});
   {
-    Page page(the_plant());
-    page.host.restore(kept);
+    ServedPage page(the_plant());
+    restore(page, kept);
     EXPECT_EQ(page.ask({{"do", "settings"}})["settings"], Json::object());
     EXPECT_TRUE(page.ask({{"do", "settings.set"}, {"name", "watch.pinned"}, {"value", pins}})["ok"]);
     EXPECT_TRUE(page.ask({{"do", "settings.set"}, {"name", "keys"}, {"value", false}})["ok"]);
@@ -64,8 +69,8 @@ TEST_F(KeptOfAPlant, SettingsOutliveTheServer) {
     EXPECT_EQ(page.ask({{"do", "settings.set"}, {"name", "x"}, {"value", std::string(300'000, 'x')}}).value("error", ""),
               "there is no room for more settings");
   }
-  Page page(the_plant());
-  page.host.restore(Kept::of_plant((folder.path() / "one.toml").string()));
+  ServedPage page(the_plant());
+  restore(page, Kept::of_plant((folder.path() / "one.toml").string()));
   EXPECT_EQ(page.ask({{"do", "settings"}})["settings"], (Json{{"watch.pinned", pins}, {"keys", false}}));
   EXPECT_EQ(kept.token(), token);
 }
@@ -75,13 +80,13 @@ TEST_F(KeptOfAPlant, TheScopeHasItsSettingsAgainAsFarAsTheyStillFit) {
   const Json trigger{{"kind", "edge"}, {"signal", "saw.lCount"}, {"value", 5.0}, {"slope", "falling"}};
   const auto scope = [&](Page& page) { return page.ask({{"do", "scope"}}); };
   {
-    Page page(the_plant());
-    page.host.restore(kept);
+    ServedPage page(the_plant());
+    restore(page, kept);
     page.ask({{"do", "scope"}, {"channels", {"saw.lCount", "lift.speed"}}, {"trigger", trigger}, {"pre", 30}});
   }
   {
-    Page page(the_plant());
-    page.host.restore(kept);
+    ServedPage page(the_plant());
+    restore(page, kept);
     const Json now = scope(page);
     ASSERT_EQ(now["channels"].size(), 2U);
     EXPECT_EQ(now["channels"][1]["name"], "lift.speed");
@@ -91,13 +96,13 @@ TEST_F(KeptOfAPlant, TheScopeHasItsSettingsAgainAsFarAsTheyStillFit) {
     EXPECT_EQ(scope(page)["first_us"], 1000);
   }
   // Channels that are no more: those of the start, and the rest as it was.
-  ASSERT_TRUE(kept.setting("scope").is_object());
-  Page page(the_plant());
-  Json wrong = kept.setting("scope");
+  ASSERT_TRUE(kept.settings()["scope"].is_object());
+  ServedPage page(the_plant());
+  Json wrong = kept.settings()["scope"];
   wrong["channels"] = {"saw.lGone"};
-  kept.add_commands(page.host.desk());
-  page.host.desk().keep("scope", wrong);
-  page.host.restore(kept);
+  kept.add_commands(page.host.router());
+  page.host.router().keep("scope", wrong);
+  restore(page, kept);
   EXPECT_EQ(scope(page)["channels"].size(), 6U);
   EXPECT_EQ(scope(page)["pre"], 30);
 }
@@ -109,7 +114,7 @@ TEST(SourceOnThePage, IsWhatWasCompiled) {
   folder.write("A.IPC", old_text);
   const std::string plant = folder.write("a.toml", "[[station]]\nname = \"a\"\nunit = \"md60a\"\nprogram = \"A.IPC\"\n");
   const tools::PlantInput input = tools::read_plant_input(plant, {});
-  Page page([&] { return tools::make_plant(input, runtime::FileUse::Look); });
+  ServedPage page([&] { return tools::make_plant(input, runtime::FileUse::Look); });
   const auto text_of = [&](const std::string& name) {
     const Json reply = page.ask({{"do", "program"}, {"station", "a"}});
     for (const Json& file : reply["files"])
@@ -143,7 +148,7 @@ TEST(SourceOnThePage, ATraceHoldsTheLastOnesOfWhatIsShown) {
   const std::string text =
       "[[bus]]\nname = \"busy\"\nkind = \"can\"\n[[bus]]\nname = \"quiet\"\nkind = \"can\"\n"
       "[[station]]\nname = \"a\"\nunit = \"mdxb\"\nsbus = \"busy\"\n[[station]]\nname = \"b\"\nunit = \"mdxb\"\nsbus = \"quiet\"\n";
-  Page page([&] {
+  ServedPage page([&] {
     std::vector<runtime::PlantError> errors;
     return std::make_unique<runtime::Plant>(runtime::read_plant_file(text).plant,
                                             std::vector<std::optional<vm::Image>>(2), std::nullopt, errors);
@@ -172,7 +177,7 @@ TEST(SourceOnThePage, ATraceHoldsTheLastOnesOfWhatIsShown) {
 }
 
 TEST(AtTheBeginning, ACardDoesNotContradictItself) {
-  Page page(the_plant());
+  ServedPage page(the_plant());
   const auto saw = [&] {
     page.ask({{"do", "subscribe"}, {"topic", "plant"}});
     return page.event("plant")["stations"]["saw"];

@@ -3,8 +3,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "tools/serve/scope_memory.hpp"
-#include "tools/serve/trace_memory.hpp"
+#include "tools/serve/forked_copies.hpp"
+#include "tools/serve/host/scope_memory.hpp"
+#include "tools/serve/host/trace_memory.hpp"
 
 namespace ipos::tests {
 namespace {
@@ -13,6 +14,8 @@ using tools::serve::ScopeMemory;
 using tools::serve::Telegram;
 using tools::serve::TraceMemory;
 using Extremes = ScopeMemory::Extremes;
+
+tools::serve::ForkedCopies copies(false);
 
 int64_t value(uint64_t number) { return static_cast<int64_t>(number * 7919 % 1'000'003); }
 
@@ -44,7 +47,7 @@ void in_a_copy(const Body& body) {
 }
 
 TEST(ScopeMemory, KeepsTheLastMillionAndForgetsTheRest) {
-  ScopeMemory memory;
+  ScopeMemory memory(copies);
   memory.choose({std::nullopt});
   memory.restart(1);
   record(memory, 1, 2'500'000);
@@ -63,7 +66,7 @@ TEST(ScopeMemory, KeepsTheLastMillionAndForgetsTheRest) {
 }
 
 TEST(ScopeMemory, ExtremesForgetWhatWasOverwritten) {
-  ScopeMemory memory;
+  ScopeMemory memory(copies);
   memory.choose({std::nullopt});
   memory.restart(0);
   const uint64_t turn = ScopeMemory::kKept + 1'000;
@@ -75,7 +78,7 @@ TEST(ScopeMemory, ExtremesForgetWhatWasOverwritten) {
 }
 
 TEST(ScopeMemory, ExtremesAreThoseOfThisTimeWhereTimeWentBackIntoABlock) {
-  ScopeMemory memory;
+  ScopeMemory memory(copies);
   memory.choose({std::nullopt});
   memory.restart(0);
   record(memory, 0, 100);
@@ -90,7 +93,7 @@ TEST(ScopeMemory, ExtremesAreThoseOfThisTimeWhereTimeWentBackIntoABlock) {
 }
 
 TEST(ScopeMemory, WhatACopyHasOverwrittenIsGone) {
-  ScopeMemory memory;
+  ScopeMemory memory(copies);
   memory.choose({std::nullopt});
   memory.restart(0);
   record(memory, 0, 600'000);
@@ -102,7 +105,7 @@ TEST(ScopeMemory, WhatACopyHasOverwrittenIsGone) {
 }
 
 TEST(ScopeMemory, ChannelsThatStayKeepWhatTheyHave) {
-  ScopeMemory memory;
+  ScopeMemory memory(copies);
   memory.choose({std::nullopt, std::nullopt});
   memory.restart(0);
   for (uint64_t n = 0; n < 200; ++n) memory.push(n, std::vector<int64_t>{value(n), -value(n)});
@@ -125,7 +128,7 @@ TEST(ScopeMemory, ChannelsThatStayKeepWhatTheyHave) {
 }
 
 TEST(ScopeMemory, BehindAHoleItBeginsAnew) {
-  ScopeMemory memory;
+  ScopeMemory memory(copies);
   memory.choose({std::nullopt});
   memory.restart(0);
   record(memory, 0, 100);
@@ -148,7 +151,7 @@ Telegram telegram(uint8_t bus, uint32_t id, size_t bytes, std::string words = {}
 }
 
 TEST(TraceMemory, ABusyLineTakesNothingFromAQuietOne) {
-  TraceMemory memory;
+  TraceMemory memory(copies);
   memory.restart(2);
   memory.add(1, telegram(0, 77, 8, "quiet"));
   for (uint32_t n = 2; n < 400'000; ++n) memory.add(n, telegram(1, n, 9));
@@ -169,7 +172,7 @@ TEST(TraceMemory, ABusyLineTakesNothingFromAQuietOne) {
 }
 
 TEST(TraceMemory, OfLongOnesThereAreFewerAndAllAreWhole) {
-  TraceMemory memory;
+  TraceMemory memory(copies);
   memory.restart(3);
   for (uint32_t n = 0; n < 120'000; ++n) memory.add(n + 1, telegram(2, n, n % 256, std::string(n % 50, 'x')));
   const uint64_t first = memory.first(2);
@@ -184,7 +187,7 @@ TEST(TraceMemory, OfLongOnesThereAreFewerAndAllAreWhole) {
 }
 
 TEST(TraceMemory, WhatACopyHasOverwrittenIsGone) {
-  TraceMemory memory;
+  TraceMemory memory(copies);
   memory.restart(1);
   for (uint32_t n = 0; n < 60'000; ++n) memory.add(n + 1, telegram(0, n, 8));
   in_a_copy([&] {

@@ -34,7 +34,7 @@ class Numbers : public testing::Test {
     port_ = static_cast<uint16_t>(std::stoi(address.substr(address.rfind(':') + 1)));
     channel_.emplace(host_);
     thread_ = std::thread([this] { server_->run([] {}); });
-    channel_->send(LetterKind::Ready, 0, {});
+    channel_->send(MessageKind::Ready, 0, {});
   }
   void TearDown() override {
     close(host_);  // the server ends
@@ -55,11 +55,11 @@ class Numbers : public testing::Test {
     EXPECT_EQ(write(client, request.data(), request.size()), static_cast<ssize_t>(request.size()));
     return client;
   }
-  // The next letter of a kind.
-  Letter next(LetterKind kind) {
+  // The next message of a kind.
+  Message next(MessageKind kind) {
     for (int n = 0; n < 2000; ++n)
-      if (auto letter = channel_->wait(20); letter && letter->kind == kind) return *letter;
-    ADD_FAILURE() << "waited for a letter of kind " << static_cast<int>(kind);
+      if (auto message = channel_->wait(20); message && message->kind == kind) return *message;
+    ADD_FAILURE() << "waited for a message of kind " << static_cast<int>(kind);
     return {};
   }
   // A masked text of less than 126 bytes, as a browser sends it; the mask is 0.
@@ -78,45 +78,45 @@ class Numbers : public testing::Test {
 
 TEST_F(Numbers, AClientKeepsItsNumberWhenTheyBeginAnew) {
   const int old = connect();
-  EXPECT_EQ(next(LetterKind::Opened).client, 1);
+  EXPECT_EQ(next(MessageKind::Opened).client, 1);
   const int other = connect();
-  EXPECT_EQ(next(LetterKind::Opened).client, 2);
+  EXPECT_EQ(next(MessageKind::Opened).client, 2);
   std::set<uint16_t> given;
   for (int n = 0; n < 12; ++n) {
     const int passing = connect();
-    given.insert(next(LetterKind::Opened).client);
+    given.insert(next(MessageKind::Opened).client);
     close(passing);
-    next(LetterKind::Closed);
+    next(MessageKind::Closed);
   }
   EXPECT_EQ(given, (std::set<uint16_t>{3, 4, 5}));
   say(old, "{}");
-  EXPECT_EQ(next(LetterKind::Message).client, 1);
+  EXPECT_EQ(next(MessageKind::Text).client, 1);
   close(old);
-  EXPECT_EQ(next(LetterKind::Closed).client, 1);
+  EXPECT_EQ(next(MessageKind::Closed).client, 1);
   close(other);
 }
 
 TEST_F(Numbers, AMessageHasTheTimeAtWhichItCame) {
   const int client = connect();
-  next(LetterKind::Opened);
+  next(MessageKind::Opened);
   const auto before = WallClock::now();
   say(client, "{}");
-  const Letter letter = next(LetterKind::Message);
-  EXPECT_GE(letter.arrived, before - Arrival::kNap - 100ms);
-  EXPECT_LE(letter.arrived, WallClock::now());
+  const Message message = next(MessageKind::Text);
+  EXPECT_GE(message.arrived, before - Arrival::kNap - 100ms);
+  EXPECT_LE(message.arrived, WallClock::now());
   close(client);
 }
 
 // The server reads on when one of 32 is answered; what waited in the system meanwhile is not new.
 TEST_F(Numbers, WhatWaitedWhileNobodyReadIsOld) {
   const int client = connect();
-  next(LetterKind::Opened);
+  next(MessageKind::Opened);
   for (int n = 0; n < kMostUnanswered + 1; ++n) say(client, "{}");
-  for (int n = 0; n < kMostUnanswered; ++n) next(LetterKind::Message);
+  for (int n = 0; n < kMostUnanswered; ++n) next(MessageKind::Text);
   const auto held = WallClock::now();
   std::this_thread::sleep_for(600ms);
-  channel_->send(LetterKind::Taken, 1, {});
-  EXPECT_LE(next(LetterKind::Message).arrived, held);
+  channel_->send(MessageKind::Taken, 1, {});
+  EXPECT_LE(next(MessageKind::Text).arrived, held);
   close(client);
 }
 

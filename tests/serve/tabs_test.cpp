@@ -13,7 +13,7 @@ using tools::serve::WallClock;
 TEST_F(Serving, TheListOfAClientGoesWithIt) {
   page.come(2);
   page.ask({{"do", "watch"}, {"names", {"saw.H300"}}}, 2);
-  page.post.waiting.push_back({LetterKind::Closed, 2, {}});
+  page.post.waiting.push_back({MessageKind::Closed, 2, {}});
   page.come(2);  // another one with its number
   page.ask({{"do", "subscribe"}, {"topic", "watch"}}, 2);
   EXPECT_EQ(page.event("watch")["values"], Json::object());
@@ -31,7 +31,7 @@ TEST_F(Serving, ANewListSendsAllItsValues) {
   good({{"do", "subscribe"}, {"topic", "watch"}, {"rate", 60}});
   good({{"do", "watch"}, {"names", {"saw.H300"}}});
   page.post.sent.clear();
-  page.host.desk().publish(WallClock::now() + std::chrono::hours(1), false);
+  page.host.router().publish(WallClock::now() + std::chrono::hours(1), false);
   EXPECT_TRUE(page.event("watch")["values"].contains("saw.H300")) << "it has not changed";
 }
 
@@ -178,8 +178,7 @@ class WithCalls : public Serving {
 TEST_F(WithCalls, AStepOutEndsBehindTheCall) {
   good({{"do", "break.set"}, {"station", "saw"}, {"file", "SAW.IPC"}, {"line", 4}});
   good({{"do", "run"}, {"speed", 0}});
-  while (page.host.turn(0)) {
-  }
+  page.settle();
   ASSERT_EQ(page.event("time")["stopped"]["line"], 4) << page.event("time");
   EXPECT_EQ(place("out")["line"], 11);
 }
@@ -191,8 +190,7 @@ TEST_F(WithCalls, AConditionIsTheLastThatWasGiven) {
   EXPECT_EQ(good(point)["breakpoint"]["condition"], "lCount == 5");
   EXPECT_EQ(good({{"do", "breaks"}})["breakpoints"].size(), 1U);
   good({{"do", "run"}, {"speed", 0}});
-  while (page.host.turn(0)) {
-  }
+  page.settle();
   EXPECT_EQ(value("saw.lCount"), 5);
 }
 
@@ -219,7 +217,7 @@ TEST_F(Serving, ATerminalHasOneVoltageOrOneCurrent) {
 }
 
 TEST(OfAPlant, ASwitchHasNoEndWhereItGoesOnForEver) {
-  Page page(plant_of("[[station]]\nname = \"a\"\nunit = \"md60a\"\n[[switch]]\nstation = \"a\"\ninput = \"DI04\"\n"
+  ServedPage page(plant_of("[[station]]\nname = \"a\"\nunit = \"md60a\"\n[[switch]]\nstation = \"a\"\ninput = \"DI04\"\n"
                      "to = -5\n[[switch]]\nstation = \"a\"\ninput = \"DI05\"\nfrom = 7\n"));
   const Json switches = page.ask({{"do", "plant"}})["plant"]["switches"];
   ASSERT_EQ(switches.size(), 2U) << switches;
@@ -230,7 +228,7 @@ TEST(OfAPlant, ASwitchHasNoEndWhereItGoesOnForEver) {
 }
 
 TEST(OfAPlant, AGatewayNamesTheDrivesThatDoNotAnswer) {
-  Page page(plant_of(R"(
+  ServedPage page(plant_of(R"(
 [[bus]]
 name = "dp"
 kind = "profibus"
@@ -273,7 +271,7 @@ P813 = 2
 }
 
 TEST(OfAPlant, AStepToTheNextTelegramEndsThere) {
-  Page page(plant_of("[[bus]]\nname = \"can\"\nkind = \"can\"\nbaud = 500000\n[[station]]\nname = \"belt\"\n"
+  ServedPage page(plant_of("[[bus]]\nname = \"can\"\nkind = \"can\"\nbaud = 500000\n[[station]]\nname = \"belt\"\n"
                      "unit = \"mdxb\"\nsbus = \"can\"\n[station.parameters]\nP880 = 1\nP886 = 5\n[[control]]\n"
                      "name = \"plc\"\nkind = \"canopen\"\nsbus = \"can\"\ncycle = \"200ms\"\n[[control.target]]\n"
                      "address = 5\npo = [6, 5000, 0]\n"));
@@ -306,7 +304,7 @@ TEST_F(Serving, ALongJournalComesWhole) {
   for (int n = 1; n < 10 && numbers.size() < all; ++n) {
     for (const Json& entry : event["entries"]) numbers.push_back(entry["n"]);
     page.post.sent.clear();
-    page.host.desk().publish(WallClock::now() + std::chrono::hours(n), false);
+    page.host.router().publish(WallClock::now() + std::chrono::hours(n), false);
     event = page.event("journal");
   }
   ASSERT_EQ(numbers.size(), all);
@@ -315,7 +313,7 @@ TEST_F(Serving, ALongJournalComesWhole) {
 
 // Each weight has its word; a line without terminators is told as a warning when the plant begins.
 TEST(OfAPlant, TheJournalTellsWhatIsAWarningAndWhatAFault) {
-  Page page(plant_of(std::string(kFaults) + "[[bus]]\nname = \"wire\"\nkind = \"can\"\n[[control]]\nname = \"plc\"\n"
+  ServedPage page(plant_of(std::string(kFaults) + "[[bus]]\nname = \"wire\"\nkind = \"can\"\n[[control]]\nname = \"plc\"\n"
                                             "sbus = \"wire\"\n[[control.target]]\naddress = 7\npo = [6]\nevery = \"10ms\"\n"));
   page.ask({{"do", "step"}, {"ms", 3000}});
   page.ask({{"do", "subscribe"}, {"topic", "journal"}});

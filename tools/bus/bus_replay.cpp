@@ -16,7 +16,7 @@
 #include "tools/input/plant_input.hpp"
 #include "tools/input/program.hpp"
 #include "tools/logs/log_writer.hpp"
-#include "tools/run/run_report.hpp"
+#include "tools/running/run_report.hpp"
 
 namespace ipos::tools {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "runtime/bus/words/bus_words.hpp"
 #include "runtime/bus/log/candump.hpp"
 #include "runtime/bus/movilink/describe.hpp"
+#include "runtime/bus/words/bus_words.hpp"
 #include "tools/cli/verb.hpp"
 #include "tools/cli/verbs.hpp"
 #include "tools/input/plant_source.hpp"

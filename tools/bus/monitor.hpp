@@ -9,13 +9,13 @@
 #include <string>
 #include <utility>
 
-#include "runtime/bus/words/bus_words.hpp"
 #include "runtime/bus/log/candump.hpp"
 #include "runtime/bus/log/serial_log.hpp"
 #include "runtime/bus/movilink/describe.hpp"
 #include "runtime/bus/movilink/serial_receiver.hpp"
 #include "runtime/bus/movilink/station_filter.hpp"
 #include "runtime/bus/profibus/fdl_receiver.hpp"
+#include "runtime/bus/words/bus_words.hpp"
 #include "tools/bus/monitor_screen.hpp"
 #include "tools/logs/log_forms.hpp"
 

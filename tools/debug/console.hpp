@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/debug/debugger.hpp"
+#include "tools/debugger/debugger.hpp"
 
 namespace ipos::tools::debug {
 

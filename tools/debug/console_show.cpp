@@ -184,9 +184,10 @@ void Console::info_io() {
 }
 
 void Console::info_snapshots() {
-  const Snapshots::Memory memory = debugger_->snapshots().memory();
+  const Snapshots* snapshots = debugger_->snapshots();
+  const Snapshots::Memory memory = snapshots == nullptr ? Snapshots::Memory{} : snapshots->memory();
   print_(fmt::format("{} snapshots, {:.1f} MiB together, of it {:.1f} MiB not shared\n",
-                     debugger_->snapshots().count(), static_cast<double>(memory.shared_out) / 1024,
+                     snapshots == nullptr ? 0 : snapshots->count(), static_cast<double>(memory.shared_out) / 1024,
                      static_cast<double>(memory.own) / 1024));
 }
 

@@ -8,7 +8,7 @@
 #include "compiler/diag/places.hpp"
 #include "runtime/signals/find.hpp"
 #include "tools/cli/failure.hpp"
-#include "tools/lsp/transport.hpp"
+#include "tools/lsp_base/transport.hpp"
 
 namespace ipos::tools::debug {
 namespace {
@@ -292,7 +292,7 @@ Json DapServer::launch(const Json& arguments) {
   if (plant.empty() == program.empty()) throw ValueError("launch needs either a program or a plant");
   DapLaunch launch{plant.empty() ? program : plant, arguments.value("unit", ""), arguments.value("case", "")};
   stop_on_entry_ = arguments.value("stopOnEntry", true);
-  debugger_.emplace(make_(launch), *this, snapshots_, runtime::kNever);
+  debugger_.emplace(make_(launch), *this, std::move(snapshots_), runtime::kNever);
   return Json::object();
 }
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/debug/debugger.hpp"
+#include "tools/debugger/debugger.hpp"
 
 namespace ipos::tools::debug {
 
@@ -27,8 +27,8 @@ class DapServer final : public FrontEnd, private runtime::BusObserver {
  public:
   using Make = std::function<Debuggee(const DapLaunch&)>;  // may throw
   using Send = std::function<void(const Json&)>;
-  DapServer(Make make, Send send, bool snapshots)
-      : make_(std::move(make)), send_(std::move(send)), snapshots_(snapshots) {}
+  DapServer(Make make, Send send, std::unique_ptr<Snapshots> snapshots)
+      : make_(std::move(make)), send_(std::move(send)), snapshots_(std::move(snapshots)) {}
 
   // Asked for messages while the plant runs; and what another process must know of the input.
   std::function<void()> poll = [] {};
@@ -122,7 +122,7 @@ class DapServer final : public FrontEnd, private runtime::BusObserver {
 
   Make make_;
   Send send_;
-  bool snapshots_;
+  std::unique_ptr<Snapshots> snapshots_;  // of the debugger that is to come
   std::optional<Debugger> debugger_;
   std::deque<Json> queue_;
   int64_t seq_ = 0;

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "tools/debug/dap.hpp"
-#include "tools/lsp/positions.hpp"
+#include "tools/lsp_base/positions.hpp"
 
 namespace ipos::tools::debug {
 

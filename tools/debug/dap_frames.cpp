@@ -7,7 +7,7 @@
 
 #include "tools/debug/dap.hpp"
 #include "tools/input/sources.hpp"
-#include "tools/lsp/positions.hpp"
+#include "tools/lsp_base/positions.hpp"
 
 namespace ipos::tools::debug {
 namespace {

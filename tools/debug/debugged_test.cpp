@@ -8,7 +8,7 @@
 #include "tools/cli/failure.hpp"
 #include "tools/input/mistakes.hpp"
 #include "tools/testing/plant_builder.hpp"
-#include "tools/testing/read_tests.hpp"
+#include "tools/test_file/read_tests.hpp"
 #include "tools/testing/report_words.hpp"
 #include "tools/testing/script.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "tools/debug/debugger.hpp"
+#include "tools/debugger/debugger.hpp"
 #include "tools/input/program.hpp"
 
 namespace ipos::tools::debug {

@@ -25,8 +25,10 @@
 #include "tools/input/plant_input.hpp"
 #include "tools/input/plant_source.hpp"
 #include "tools/input/program.hpp"
-#include "tools/lsp/transport.hpp"
-#include "tools/testing/read_tests.hpp"
+#include "tools/lsp_base/transport.hpp"
+#include "tools/processes/forked_snapshots.hpp"
+#include "tools/processes/replaceable_process.hpp"
+#include "tools/test_file/read_tests.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -198,6 +200,11 @@ char** offers(const char* part, int, int) {
 }
 #endif
 
+std::unique_ptr<debug::Snapshots> snapshots_of(const DebugFlags& flags) {
+  if (!flags.snapshots) return nullptr;
+  return std::make_unique<ForkedSnapshots>();
+}
+
 int debug_console(const DebugFlags& flags) {
   debug::Debuggee what = debuggee_of(flags);
   LineInput lines;
@@ -205,7 +212,7 @@ int debug_console(const DebugFlags& flags) {
   console.save_input = [&] { return lines.save(); };
   console.load_input = [&](const debug::Json& state) { lines.load(state); };
   console.not_interrupted = [] { return stop_asked == 0; };
-  debug::Debugger debugger(std::move(what), console, flags.snapshots, runtime::parse_duration(flags.duration));
+  debug::Debugger debugger(std::move(what), console, snapshots_of(flags), runtime::parse_duration(flags.duration));
   console.attach(debugger);
   catch_stop();
 #ifdef IPOS_EDITLINE
@@ -241,7 +248,7 @@ int serve(const DebugFlags& flags, int in, int out) {
           if (count > 0) done += static_cast<size_t>(count);
         }
       },
-      flags.snapshots);
+      snapshots_of(flags));
   bool open = true;
   const auto receive = [&](bool wait) {
     pollfd input{in, POLLIN, 0};
@@ -296,7 +303,7 @@ int serve_port(const DebugFlags& flags) {
 
 // In a process of its own, which another one may take the place of.
 int replaceable(const std::function<int()>& body) {
-  const int code = debug::run_replaceable([&body] { return end_of_process(body); });
+  const int code = run_replaceable([&body] { return end_of_process(body); });
   return code < 0 ? kInternal : code;
 }
 

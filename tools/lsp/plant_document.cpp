@@ -14,7 +14,7 @@
 #include "tools/lsp/features.hpp"
 #include "tools/lsp/plant_names.hpp"
 #include "tools/lsp/toml_lines.hpp"
-#include "tools/testing/read_tests.hpp"
+#include "tools/test_file/read_tests.hpp"
 
 namespace ipos::tools::lsp {
 namespace {

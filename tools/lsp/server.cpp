@@ -8,7 +8,7 @@
 #include "tools/lsp/marks.hpp"
 #include "tools/lsp/plant_document.hpp"
 #include "tools/lsp/plant_names.hpp"
-#include "tools/lsp/transport.hpp"
+#include "tools/lsp_base/transport.hpp"
 
 namespace ipos::tools::lsp {
 namespace {

@@ -10,7 +10,7 @@
 #include "tools/cli/files.hpp"
 #include "tools/cli/verbs.hpp"
 #include "tools/lsp/server.hpp"
-#include "tools/lsp/transport.hpp"
+#include "tools/lsp_base/transport.hpp"
 
 namespace ipos::tools {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "compiler/compile.hpp"
 #include "compiler/symbols/index.hpp"
-#include "tools/lsp/positions.hpp"
+#include "tools/lsp_base/positions.hpp"
 
 namespace ipos::tools::lsp {
 

@@ -27,10 +27,10 @@
 #include "tools/recording/plot_svg.hpp"
 #include "tools/recording/recording.hpp"
 #include "tools/recording/trace.hpp"
-#include "tools/run/real_time_run.hpp"
-#include "tools/run/run_report.hpp"
 #include "tools/run/signal_list.hpp"
-#include "tools/run/watch.hpp"
+#include "tools/running/real_time_run.hpp"
+#include "tools/running/run_report.hpp"
+#include "tools/running/watch.hpp"
 
 namespace ipos::tools {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "tools/serve/channel.hpp"
+#include "tools/serve/host/message.hpp"
 
 namespace ipos::tools::serve {
 

@@ -6,10 +6,10 @@
 #include <algorithm>
 
 #include "stdlib/parameters.hpp"
-#include "tools/serve/arguments.hpp"
-#include "tools/serve/parameter_rows.hpp"
+#include "tools/parameters/parameter_set.hpp"
+#include "tools/serve/host/arguments.hpp"
+#include "tools/serve/host/parameter_rows.hpp"
 #include "tools/serve/state_folder.hpp"
-#include "tools/unit/parameter_set.hpp"
 
 namespace ipos::tools::serve {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/unit/parameter_access.hpp"
+#include "tools/parameters/parameter_access.hpp"
 
 namespace ipos::tools::serve {
 

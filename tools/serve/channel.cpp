@@ -1,4 +1,4 @@
-// Letters on a socket, whole ones only.
+// Messages on a socket, whole ones only.
 #include "tools/serve/channel.hpp"
 
 #include <poll.h>
@@ -10,25 +10,25 @@
 
 namespace ipos::tools::serve {
 
-std::array<char, kLetterHead> head_bytes(const Letter& letter) {
-  std::array<char, kLetterHead> bytes{};
-  const auto length = static_cast<uint32_t>(letter.body.size());
-  const int64_t arrived = letter.arrived.time_since_epoch().count();
+std::array<char, kMessageHead> head_bytes(const Message& message) {
+  std::array<char, kMessageHead> bytes{};
+  const auto length = static_cast<uint32_t>(message.body.size());
+  const int64_t arrived = message.arrived.time_since_epoch().count();
   std::memcpy(bytes.data(), &arrived, sizeof arrived);
   std::memcpy(bytes.data() + 8, &length, sizeof length);
-  std::memcpy(bytes.data() + 12, &letter.client, sizeof letter.client);
-  bytes[14] = static_cast<char>(letter.kind);
+  std::memcpy(bytes.data() + 12, &message.client, sizeof message.client);
+  bytes[14] = static_cast<char>(message.kind);
   return bytes;
 }
 
-LetterHead head_of(const std::array<char, kLetterHead>& bytes) {
-  LetterHead head;
+MessageHead head_of(const std::array<char, kMessageHead>& bytes) {
+  MessageHead head;
   int64_t arrived = 0;
   std::memcpy(&arrived, bytes.data(), sizeof arrived);
   head.arrived = WallClock::time_point(WallClock::duration(arrived));
   std::memcpy(&head.length, bytes.data() + 8, sizeof head.length);
   std::memcpy(&head.client, bytes.data() + 12, sizeof head.client);
-  head.kind = static_cast<LetterKind>(bytes[14]);
+  head.kind = static_cast<MessageKind>(bytes[14]);
   return head;
 }
 
@@ -54,34 +54,34 @@ bool Channel::read_all(char* bytes, size_t size) {
   return true;
 }
 
-bool Channel::send(LetterKind kind, uint16_t client, std::string_view body) {
+bool Channel::send(MessageKind kind, uint16_t client, std::string_view body) {
   const auto head = head_bytes({kind, client, std::string(body), {}});
   return write_all(head.data(), head.size()) && write_all(body.data(), body.size());
 }
 
-// Of a letter that is not whole the rest may never come: its writer may have been stopped.
-bool Channel::has_letter() {
-  std::array<char, kLetterHead> bytes{};
+// Of a message that is not whole the rest may never come: its writer may have been stopped.
+bool Channel::has_message() {
+  std::array<char, kMessageHead> bytes{};
   const ssize_t count = ::recv(socket_, bytes.data(), bytes.size(), MSG_PEEK | MSG_DONTWAIT);
   if (count == 0) return open_ = false;
   int there = 0;
   return count == static_cast<ssize_t>(bytes.size()) && ioctl(socket_, FIONREAD, &there) == 0 &&
-         static_cast<size_t>(there) >= kLetterHead + head_of(bytes).length;
+         static_cast<size_t>(there) >= kMessageHead + head_of(bytes).length;
 }
 
-std::optional<Letter> Channel::wait(int milliseconds) {
+std::optional<Message> Channel::wait(int milliseconds) {
   pollfd waiting{socket_, POLLIN, 0};
   if (!open_ || poll(&waiting, 1, milliseconds) <= 0) return std::nullopt;
-  if (!has_letter()) {
+  if (!has_message()) {
     if (open_ && milliseconds > 0) poll(nullptr, 0, 1);
     return std::nullopt;
   }
-  std::array<char, kLetterHead> bytes{};
+  std::array<char, kMessageHead> bytes{};
   if (!read_all(bytes.data(), bytes.size())) return std::nullopt;
-  const LetterHead head = head_of(bytes);
-  Letter letter{head.kind, head.client, std::string(head.length, '\0'), head.arrived};
-  if (!read_all(letter.body.data(), letter.body.size())) return std::nullopt;
-  return letter;
+  const MessageHead head = head_of(bytes);
+  Message message{head.kind, head.client, std::string(head.length, '\0'), head.arrived};
+  if (!read_all(message.body.data(), message.body.size())) return std::nullopt;
+  return message;
 }
 
 }  // namespace ipos::tools::serve

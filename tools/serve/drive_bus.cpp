@@ -2,12 +2,12 @@
 #include "tools/serve/drive_bus.hpp"
 
 #include "stdlib/parameters.hpp"
-#include "tools/serve/enabling_telegrams.hpp"
+#include "tools/serve/unmonitored.hpp"
 
 namespace ipos::tools::serve {
 namespace {
 
-constexpr runtime::Time kListens = 5 * runtime::kMillisecond;  // at once; then letters have their turn
+constexpr runtime::Time kListens = 5 * runtime::kMillisecond;  // at once; then messages have their turn
 // An answer to a client's telegram on a half duplex line: the longest telegram at 9.6 kbaud twice, and the drive's time.
 constexpr runtime::Time kAnswer = 150 * runtime::kMillisecond;
 
@@ -26,14 +26,14 @@ bool ask_words(ParameterAccess& access, int first, runtime::WordAssignment& word
 
 }  // namespace
 
-DriveBus::DriveBus(Desk& desk, BusLink& link, const Drive& drive, std::function<runtime::Time()> now,
-                   std::function<void(const Desk::Call&)> must_write)
-    : desk_(desk),
+DriveBus::DriveBus(Router& router, Copies& copies, BusLink& link, const Drive& drive, std::function<runtime::Time()> now,
+                   std::function<void(const Router::Call&)> must_write)
+    : router_(router),
       link_(link),
       drive_(drive),
       now_(std::move(now)),
       must_write_(std::move(must_write)),
-      traffic_(desk, *this) {
+      traffic_(router, *this, copies) {
   runtime::UnitNames unit;
   unit.name = drive.name;
   unit.unit = &drive.access.unit();
@@ -76,7 +76,7 @@ void DriveBus::publish(Client& client, Subscription& subscription) const {
   const runtime::LineLoad now = load();
   Json state{{"load", now.window_percent}, {"frames", now.frames}, {"faults", Json::array()}};
   if (!subscription.is_news("b", state)) return;
-  desk_.send(client, {{"event", "plant"},
+  router_.send(client, {{"event", "plant"},
                       {"us", now_() / runtime::kMicrosecond},
                       {"stations", Json::object()},
                       {"buses", {{line(), std::move(state)}}}});
@@ -91,7 +91,7 @@ void DriveBus::turn(bool waits) {
   if (!known_) ask_names();
 }
 
-void DriveBus::send(const Desk::Call& call) {
+void DriveBus::send(const Router::Call& call) {
   must_write_(call);
   const auto enabling = link_.can_line() != nullptr
                             ? enabling_on_can(call.arguments, !link_.carries_process_data())

@@ -1,4 +1,4 @@
-// Questions to the drive one after the other, between the letters of the clients.
+// Questions to the drive one after the other, between the messages of the clients.
 #include "tools/serve/drive_host.hpp"
 
 #include <fmt/format.h>
@@ -8,11 +8,11 @@
 #include "runtime/bus/movilink/format.hpp"
 #include "stdlib/parameters.hpp"
 #include "tools/cli/failure.hpp"
-#include "tools/serve/parameter_rows.hpp"
+#include "tools/links/link_access.hpp"
+#include "tools/parameters/parameter_set.hpp"
+#include "tools/serve/host/parameter_rows.hpp"
 #include "tools/serve/server.hpp"
 #include "tools/serve/while.hpp"
-#include "tools/unit/link_access.hpp"
-#include "tools/unit/parameter_set.hpp"
 
 namespace ipos::tools::serve {
 namespace {
@@ -21,58 +21,36 @@ using stdlib::Parameter;
 using stdlib::Service;
 using namespace std::chrono_literals;
 
-constexpr size_t kReadsAtOnce = 8;  // of a topic, then others have their turn
-constexpr size_t kMostWatchedValues = 100;
 constexpr auto kTimePeriod = 50ms;
-constexpr int kLettersAtATime = 8;  // a client that floods does not hold the topics up
+constexpr int kMessagesAtATime = 8;  // a client that floods does not hold the topics up
 constexpr auto kAttends = 20ms;     // at a time, to what comes; then the drive has its turn
 // Of a client. The server reads on, whatever waits here: a stop may be after it (server.hpp).
 constexpr size_t kMostWaitingOrders = kMostUnanswered / 2;
 constexpr size_t kLongestJog = 512;  // bytes of a message that may be one
 constexpr auto kFarewell = 15s;      // to a drive that does not answer
 
-// The list without a drive: what its table knows.
-class TableAccess final : public ParameterAccess {
- public:
-  explicit TableAccess(const ParameterAccess& of) : of_(of) {}
-  AccessReply execute(Service service, uint16_t index, int32_t) override {
-    const Parameter* parameter = stdlib::parameter_table(unit()).find(index);
-    const int64_t limit = service == Service::ReadMinimum ? parameter->minimum() : parameter->maximum();
-    if (service != Service::ReadMinimum && service != Service::ReadMaximum)
-      return tl::unexpected(AccessError{{}, "not asked yet"});
-    return static_cast<int32_t>(static_cast<uint32_t>(limit));
-  }
-  std::string name() const override { return of_.name(); }
-  const stdlib::UnitType& unit() const override { return of_.unit(); }
-
- private:
-  const ParameterAccess& of_;
-};
-
 }  // namespace
 
-DriveHost::DriveHost(std::unique_ptr<BusLink> link, Options options, Post& post)
-    : post_(post),
-      desk_(post),
+DriveHost::DriveHost(std::unique_ptr<BusLink> link, Options options, Mailbox& mailbox)
+    : mailbox_(mailbox),
+      router_(mailbox, clock_),
       options_(std::move(options)),
       link_(*link),
       access_(open_unit(std::move(link), options_.address, options_.unit)),
-      scope_(desk_, *access_, name(), [this] { return us() / 1000 * runtime::kMillisecond; }),
+      scope_(router_, copies_, *access_, name(), [this] { return us() / 1000 * runtime::kMillisecond; }),
       bus_(
-          desk_, link_, {*access_, name(), options_.address}, [this] { return us() * runtime::kMicrosecond; },
-          [this](const Desk::Call& call) {
-            must_write(call);
-            must_stand();
-          }),
+          router_, copies_, link_, {*access_, name(), options_.address}, [this] { return us() * runtime::kMicrosecond; },
+          [this](const Router::Call& call) { check_writing(call); }),
+      parameters_(router_, *this),
+      watch_(router_, *this),
       manual_(link_, *access_, options_.address, [this] { tell_manual(); }) {
-  desk_.hello = [this] {
+  router_.hello = [this] {
     return Json{{"protocol", 1},
                 {"version", options_.version},
                 {"mode", "device"},
                 {"title", access_->name()},
                 {"writable", options_.may_write}};
   };
-  desk_.on_closed = [this](const Client& client) { watched_.erase(client.number); };
   add_commands();
   for (const std::string& text : manual_.left())
     fmt::print(stderr, "ipos: an earlier run left something behind: {}\n", text);
@@ -89,74 +67,74 @@ DriveHost::~DriveHost() {
 }
 
 void DriveHost::run() {
-  while (post_.open()) {
+  while (mailbox_.open()) {
     attend();
     const auto now = WallClock::now();
     if (now >= next_time_) {
       next_time_ = now + kTimePeriod;
-      desk_.send_all(time());
+      router_.send_all(time());
     }
-    desk_.publish(now, false);
+    router_.publish(now, false);
     const bool samples = scope_.wanted();
     if (samples) scope_.sample();
     bus_.turn(!samples);
     attend();
-    for (int n = 0; n < kLettersAtATime && !waiting_.empty(); ++n) {
-      const Letter letter = std::move(waiting_.front());
+    for (int n = 0; n < kMessagesAtATime && !waiting_.empty(); ++n) {
+      const Message message = std::move(waiting_.front());
       waiting_.pop_front();
-      arrived_ = letter.arrived;
-      desk_.take(letter);
-      if (letter.kind != LetterKind::Opened) continue;
-      Client& client = desk_.clients().at(letter.client);
-      desk_.send(client, time());
-      desk_.send(client, manual());
+      arrived_ = message.arrived;
+      router_.take(message);
+      if (message.kind != MessageKind::Opened) continue;
+      Client& client = router_.clients().at(message.client);
+      router_.send(client, time());
+      router_.send(client, manual());
     }
   }
 }
 
 void DriveHost::attend() {
   for (const auto until = WallClock::now() + kAttends; WallClock::now() < until;) {
-    auto letter = post_.wait(0);
-    if (!letter) break;
-    if (letter->kind == LetterKind::Closed) manual_.let_go(letter->client);
-    if (!overtakes(*letter)) {
-      keep(std::move(*letter));
+    auto message = mailbox_.wait(0);
+    if (!message) break;
+    if (message->kind == MessageKind::Closed) manual_.let_go(message->client);
+    if (!overtakes(*message)) {
+      keep(std::move(*message));
       continue;
     }
-    arrived_ = letter->arrived;
-    desk_.take(*letter);
+    arrived_ = message->arrived;
+    router_.take(*message);
   }
-  if (!post_.open()) manual_.let_go();
+  if (!mailbox_.open()) manual_.let_go();
   manual_.turn();
 }
 
 // What a hand does: it changes nothing that another order under way could be using. The order of a client that nobody
 // knows yet waits.
-bool DriveHost::overtakes(const Letter& letter) {
-  if (letter.kind != LetterKind::Message || letter.body.size() > kLongestJog) return false;
-  const auto client = desk_.clients().find(letter.client);
-  if (client == desk_.clients().end()) return false;
-  const Json message = Json::parse(letter.body, nullptr, false);
-  if (!message.is_object()) return false;
-  const Json order = message.value("do", Json());
+bool DriveHost::overtakes(const Message& message) {
+  if (message.kind != MessageKind::Text || message.body.size() > kLongestJog) return false;
+  const auto client = router_.clients().find(message.client);
+  if (client == router_.clients().end()) return false;
+  const Json said = Json::parse(message.body, nullptr, false);
+  if (!said.is_object()) return false;
+  const Json order = said.value("do", Json());
   return order == "arm" || order == "jog";
 }
 
-void DriveHost::keep(Letter letter) {
-  const auto is_of_client = [&](const Letter& one) {
-    return one.kind == LetterKind::Message && one.client == letter.client;
+void DriveHost::keep(Message message) {
+  const auto is_of_client = [&](const Message& one) {
+    return one.kind == MessageKind::Text && one.client == message.client;
   };
-  if (letter.kind == LetterKind::Closed) std::erase_if(waiting_, is_of_client);
-  if (letter.kind == LetterKind::Message && std::count_if(waiting_.begin(), waiting_.end(), is_of_client) >=
+  if (message.kind == MessageKind::Closed) std::erase_if(waiting_, is_of_client);
+  if (message.kind == MessageKind::Text && std::count_if(waiting_.begin(), waiting_.end(), is_of_client) >=
                                                 static_cast<ptrdiff_t>(kMostWaitingOrders)) {
-    const Json message = Json::parse(letter.body, nullptr, false);
-    const Json id = message.is_object() ? message.value("id", Json()) : Json();
-    desk_.fail(letter.client, id.is_number_integer() ? id : Json(),
+    const Json said = Json::parse(message.body, nullptr, false);
+    const Json id = said.is_object() ? said.value("id", Json()) : Json();
+    router_.fail(message.client, id.is_number_integer() ? id : Json(),
                "too many orders of this client wait already");
-    post_.send(LetterKind::Taken, letter.client, {});
+    mailbox_.send(MessageKind::Taken, message.client, {});
     return;
   }
-  waiting_.push_back(std::move(letter));
+  waiting_.push_back(std::move(message));
 }
 
 Json DriveHost::time() const {
@@ -169,7 +147,7 @@ int64_t DriveHost::us() const {
 }
 std::string DriveHost::name() const { return fmt::format("unit{}", options_.address); }
 
-void DriveHost::must_write(const Desk::Call& call) const {
+void DriveHost::must_write(const Router::Call& call) const {
   if (!options_.may_write) throw Mistake("this is a real drive, and ipos serve was started without --write");
   if (!call.client.armed) throw Mistake("this is a real drive: confirm first that it may be written to");
 }
@@ -179,7 +157,7 @@ void DriveHost::must_stand() const {
 }
 
 void DriveHost::add_commands() {
-  desk_.add_command("arm", [this](const Desk::Call& call) {
+  router_.add_command("arm", [this](const Router::Call& call) {
     if (!options_.may_write) throw Mistake("ipos serve was started without --write");
     call.client.armed = call.arguments.flag("yes");
     if (call.client.armed)
@@ -188,48 +166,10 @@ void DriveHost::add_commands() {
       manual_.let_go(call.client.number);
     return Json::object();
   });
-  desk_.add_command("plant", [this](const Desk::Call&) { return Json{{"plant", describe()}}; });
-  desk_.add_command("watch", [this](const Desk::Call& call) { return watch(call); });
-  desk_.add_command("set", [this](const Desk::Call& call) {
-    must_write(call);
-    must_stand();
-    const Target target = find_target(access_->unit(), call.arguments.text("name"));
-    const int32_t value = value_of(target, call.arguments.text("value"));
-    write_parameter(*access_, target.index, value, true);
-    return Json{{"text", text_of(target, value)}};
-  });
-  desk_.add_command("parameters", [this](const Desk::Call&) {
-    TableAccess table(*access_);
-    return parameter_list(table);
-  });
-  desk_.add_command("parameters.set", [this](const Desk::Call& call) {
-    must_write(call);
-    must_stand();
-    const Target target = find_target(access_->unit(), call.arguments.text("number"));
-    const int32_t value = value_of(target, call.arguments.text("value"));
-    write_parameter(*access_, target.index, value, call.arguments.flag("volatile", false));
-    return Json{{"text", text_of(target, value)}};
-  });
-  desk_.add_command("parameters.save", [this](const Desk::Call&) {
-    must_stand();
-    bool complete = true;
-    const ParameterSet settings = read_settings(*access_, complete);
-    return Json{{"file", name() + ".settings"}, {"text", to_text(settings)}};
-  });
-  desk_.add_command("parameters.load", [this](const Desk::Call& call) {
-    must_write(call);
-    must_stand();
-    const While writes(writes_);
-    return load_settings(*access_, call.arguments.text("text"));
-  });
-  desk_.add_command("jog", [this](const Desk::Call& call) { return jog(call); });
-  desk_.add_topic("plant",
+  router_.add_command("plant", [this](const Router::Call&) { return Json{{"plant", describe()}}; });
+  router_.add_command("jog", [this](const Router::Call& call) { return jog(call); });
+  router_.add_topic("plant",
                   [this](Client& client, Subscription& subscription) { bus_.publish(client, subscription); });
-  desk_.add_topic(
-      "watch", [this](Client& client, Subscription& subscription) { publish_watch(client, subscription); });
-  desk_.add_topic("parameters", [this](Client& client, Subscription& subscription) {
-    publish_parameters(client, subscription);
-  });
 }
 
 Json DriveHost::describe() const {
@@ -250,69 +190,82 @@ Json DriveHost::describe() const {
           {"switches", Json::array()}};
 }
 
-Json DriveHost::watch(const Desk::Call& call) {
-  const std::vector<std::string> names = call.arguments.texts("names", kMostWatchedValues);
-  std::vector<std::string> own;
+// --- values ---
+
+std::vector<signals::Signal> DriveHost::find(const std::string& asked) {
   const std::string prefix = name() + ".";
-  for (const std::string& text : names)
-    own.push_back(text.starts_with(prefix) ? text.substr(prefix.size()) : text);
-  std::vector<LiveItem> items = live_items(access_->unit(), own, nullptr, {});
-  Json rows = Json::array();
-  for (size_t n = 0; n < items.size(); ++n) {
-    const Parameter* parameter = items[n].target.parameter;
-    items[n].name = prefix + own[n];
-    rows.push_back({{"name", items[n].name},
-                    {"group", parameter != nullptr ? "parameters" : "variables"},
-                    {"unit", parameter != nullptr ? std::string(parameter->display) : ""},
-                    {"text", parameter != nullptr ? std::string(parameter->name) : ""},
-                    {"writable", parameter == nullptr || parameter->writable}});
+  const std::string own = asked.starts_with(prefix) ? asked.substr(prefix.size()) : asked;
+  const std::vector<LiveItem> items = live_items(access_->unit(), {own}, nullptr, {});
+  std::vector<signals::Signal> found;
+  for (const LiveItem& item : items) {
+    const Parameter* parameter = item.target.parameter;
+    signals::Signal signal;
+    signal.name = prefix + (items.size() == 1 ? own : item.name);
+    signal.station = name();
+    if (parameter != nullptr) {
+      signal.group = signals::Group::Parameter;
+      signal.unit = parameter->display;
+      signal.meaning = parameter->name;
+    }
+    targets_[signal.name] = item.target;
+    found.push_back(std::move(signal));
   }
-  watched_[call.client.number] = std::move(items);
-  if (const auto topic = call.client.subscriptions.find("watch"); topic != call.client.subscriptions.end())
-    topic->second.sent.clear();
-  return {{"names", std::move(rows)}};
+  return found;
 }
 
-// A few at a time, and none while letters wait: a slow line must not keep the others waiting.
-void DriveHost::publish_watch(Client& client, Subscription& subscription) {
-  const auto found = watched_.find(client.number);
-  if (found == watched_.end()) return;
-  const std::vector<LiveItem>& items = found->second;
-  Json values = Json::object();
-  for (size_t n = 0; n < std::min(kReadsAtOnce, items.size()) && waiting_.empty(); ++n) {
-    const LiveItem& item = items[subscription.mark++ % items.size()];
-    const AccessReply reply = access_->execute(Service::Read, item.target.index, 0);
-    Json now = nullptr;
-    if (reply)
-      now = {{"value", *reply},
-             {"text", text_of(item.target, *reply)},
-             {"hex", fmt::format("{:08X} h", static_cast<uint32_t>(*reply))},
-             {"forced", false}};
-    if (subscription.is_news(item.name, now)) values[item.name] = std::move(now);
-  }
-  if (!values.empty()) desk_.send(client, {{"event", "watch"}, {"us", us()}, {"values", std::move(values)}});
+Json DriveHost::row(const signals::Signal& signal) const {
+  const Target target = targets_.at(signal.name);
+  return {{"name", signal.name},
+          {"group", target.parameter != nullptr ? "parameters" : "variables"},
+          {"unit", signal.unit},
+          {"text", signal.meaning},
+          {"writable", target.parameter == nullptr || target.parameter->writable}};
 }
 
-void DriveHost::publish_parameters(Client& client, Subscription& subscription) {
-  const auto rows = stdlib::parameter_table(access_->unit()).by_index();
-  Json values = Json::object();
-  for (size_t n = 0; n < kReadsAtOnce && !rows.empty() && waiting_.empty(); ++n) {
-    const Parameter& parameter = *rows[subscription.mark++ % rows.size()];
-    const AccessReply reply = access_->execute(Service::Read, parameter.index, 0);
-    if (!reply) continue;
-    Json now = value_json(parameter, *reply);
-    const std::string index = std::to_string(parameter.index);
-    if (subscription.is_news(index, now)) values[index] = std::move(now);
-  }
-  if (!values.empty())
-    desk_.send(client,
-               {{"event", "parameters"}, {"us", us()}, {"station", name()}, {"values", std::move(values)}});
+Json DriveHost::value(const signals::Signal& signal) {
+  const Target target = targets_.at(signal.name);
+  const AccessReply reply = access_->execute(Service::Read, target.index, 0);
+  if (!reply) return nullptr;
+  return {{"value", *reply},
+          {"text", text_of(target, *reply)},
+          {"hex", fmt::format("{:08X} h", static_cast<uint32_t>(*reply))},
+          {"forced", false}};
+}
+
+Json DriveHost::set(const Router::Call& call) {
+  check_writing(call);
+  const Target target = find_target(access_->unit(), call.arguments.text("name"));
+  const int32_t value = value_of(target, call.arguments.text("value"));
+  write_parameter(*access_, target.index, value, true);
+  return {{"text", text_of(target, value)}};
+}
+
+// --- parameters ---
+
+std::shared_ptr<ParameterAccess> DriveHost::unit(const Arguments& arguments, const char* key) {
+  const std::string asked = arguments.text(key, name());
+  if (asked != name()) throw Mistake(fmt::format("there is no unit '{}', only {}", asked, name()));
+  return std::shared_ptr<ParameterAccess>(std::shared_ptr<void>(), access_.get());
+}
+
+void DriveHost::check_writing(const Router::Call& call) const {
+  must_write(call);
+  must_stand();
+}
+
+void DriveHost::write(const Json& order) {
+  write_parameter(*access_, order["index"].get<uint16_t>(), order["value"].get<int32_t>(), order["volatile"].get<bool>());
+}
+
+Json DriveHost::write_file(const Json& order) {
+  const While writes(writes_);
+  return load_settings(*access_, order["text"].get<std::string>());
 }
 
 // --- manual operation ---
 
 // The stop is nobody's privilege.
-Json DriveHost::jog(const Desk::Call& call) {
+Json DriveHost::jog(const Router::Call& call) {
   const std::string direction = call.arguments.text("direction");
   if (direction == "stop") {
     manual_.stop(call.client.number);
@@ -335,7 +288,7 @@ Json DriveHost::manual() const {
 void DriveHost::tell_manual() {
   const Json event = manual();
   if (std::string text = event.dump(); std::exchange(told_, text) == text) return;
-  for (auto& [number, client] : desk_.clients()) desk_.send(client, event);
+  for (auto& [number, client] : router_.clients()) router_.send(client, event);
 }
 
 }  // namespace ipos::tools::serve

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "stdlib/parameters.hpp"
-#include "tools/unit/live_values.hpp"
-#include "tools/unit/parameter_set.hpp"
+#include "tools/links/live_values.hpp"
+#include "tools/parameters/parameter_set.hpp"
 
 namespace ipos::tools::serve {
 namespace {
@@ -23,12 +23,12 @@ constexpr const char* kFirstOnes[] = {"P000", "P004", "P008"};
 
 }  // namespace
 
-DriveScope::DriveScope(Desk& desk, ParameterAccess& access, std::string station, std::function<Time()> now)
-    : desk_(desk),
+DriveScope::DriveScope(Router& router, Copies& copies, ParameterAccess& access, std::string station, std::function<Time()> now)
+    : router_(router),
       access_(access),
       station_(std::move(station)),
       now_(std::move(now)),
-      scope_(desk, *this) {
+      scope_(router, *this, copies) {
   std::vector<std::string> names;
   for (const char* number : kFirstOnes) {
     const stdlib::Parameter* row = stdlib::parameter_table(access_.unit()).find(std::string_view(number + 1));
@@ -52,7 +52,7 @@ bool DriveScope::begin() {
 bool DriveScope::wanted() {
   scope_.tend();
   bool looks = scope_.waits();
-  for (const auto& [number, client] : desk_.clients()) looks = looks || client.subscriptions.contains("scope");
+  for (const auto& [number, client] : router_.clients()) looks = looks || client.subscriptions.contains("scope");
   const Time now = now_();
   if (looks) looked_ = now;
   const bool wanted = looks || (was_wanted_ && now - looked_ < kStays);

@@ -8,15 +8,15 @@
 #include <string>
 #include <vector>
 
-#include "tools/serve/scope.hpp"
-#include "tools/unit/parameter_access.hpp"
+#include "tools/parameters/parameter_access.hpp"
+#include "tools/serve/host/scope.hpp"
 
 namespace ipos::tools::serve {
 
 class DriveScope final : private ScopeSource {
  public:
   // `now`: time since the start, in whole milliseconds.
-  DriveScope(Desk& desk, ParameterAccess& access, std::string station, std::function<runtime::Time()> now);
+  DriveScope(Router& router, Copies& copies, ParameterAccess& access, std::string station, std::function<runtime::Time()> now);
 
   // Somebody looks, has looked a short while ago, or waits for the trigger.
   bool wanted();
@@ -31,7 +31,7 @@ class DriveScope final : private ScopeSource {
   void watch_for(const std::string& kind, const Arguments& settings) override;
   void stop(const std::string& why) override;
 
-  Desk& desk_;
+  Router& router_;
   ParameterAccess& access_;
   std::string station_;
   std::function<runtime::Time()> now_;

@@ -59,10 +59,9 @@ void Kept::keep_port(uint16_t port) const {
   write(kept);
 }
 
-Json Kept::setting(const std::string& name) const {
+Json Kept::settings() const {
   const Json all = read();
-  if (!all.contains("settings") || !all["settings"].is_object()) return nullptr;
-  return all["settings"].value(name, Json());
+  return all.contains("settings") && all["settings"].is_object() ? all["settings"] : Json::object();
 }
 
 void Kept::set(const std::string& name, const Json& value) const {
@@ -75,17 +74,17 @@ void Kept::set(const std::string& name, const Json& value) const {
   if (!write(all)) throw Mistake("the settings cannot be kept: the state folder cannot be written");
 }
 
-void Kept::add_commands(Desk& desk) const {
-  desk.add_command("settings", [kept = *this](const Desk::Call&) {
+void Kept::add_commands(Router& router) const {
+  router.add_command("settings", [kept = *this](const Router::Call&) {
     const Json all = kept.read();
     return Json{{"settings", all.value("settings", Json::object())}};
   });
-  desk.add_command("settings.set", [kept = *this](const Desk::Call& call) {
+  router.add_command("settings.set", [kept = *this](const Router::Call& call) {
     if (!call.arguments.has("value")) throw Mistake("'value' is missing");
     kept.set(call.arguments.text("name"), call.arguments.json()["value"]);
     return Json::object();
   });
-  desk.keep = [kept = *this](const std::string& name, const Json& value) {
+  router.keep = [kept = *this](const std::string& name, const Json& value) {
     try {
       kept.set(name, value);
     } catch (const Mistake&) {  // it is done all the same, and only forgotten at the next start

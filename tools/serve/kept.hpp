@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "tools/serve/desk.hpp"
+#include "tools/serve/host/router.hpp"
 
 namespace ipos::tools::serve {
 
@@ -20,10 +20,10 @@ class Kept {
   std::string token() const;
   std::optional<uint16_t> port() const;
   void keep_port(uint16_t port) const;
-  // The commands `settings` and `settings.set`, and Desk::keep. Each reads and writes the file: another server may have the
+  // The commands `settings` and `settings.set`, and Router::keep. Each reads and writes the file: another server may have the
   // same plant.
-  void add_commands(Desk& desk) const;
-  Json setting(const std::string& name) const;  // null: there is none
+  void add_commands(Router& router) const;
+  Json settings() const;  // by name
 
  private:
   explicit Kept(std::string of);

@@ -9,7 +9,7 @@
 #include "runtime/os_port/port_names.hpp"
 #include "stdlib/parameters.hpp"
 #include "tools/cli/failure.hpp"
-#include "tools/serve/arguments.hpp"
+#include "tools/serve/host/arguments.hpp"
 #include "tools/serve/while.hpp"
 
 namespace ipos::tools::serve {

@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
+#include "tools/links/bus_link.hpp"
+#include "tools/parameters/own_monitoring.hpp"
 #include "tools/serve/borrowed_values.hpp"
-#include "tools/serve/channel.hpp"
-#include "tools/unit/bus_link.hpp"
-#include "tools/unit/own_monitoring.hpp"
+#include "tools/serve/host/message.hpp"
 
 namespace ipos::tools::serve {
 

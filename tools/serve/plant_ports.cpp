@@ -56,7 +56,7 @@ std::vector<std::string> PlantPorts::take_notes() {
   return notes;
 }
 
-std::vector<PlantPorts::Change> PlantPorts::take_changes(runtime::Time now) {
+std::vector<Ports::Change> PlantPorts::take_changes(runtime::Time now) {
   std::vector<Change> changes;
   for (Joined& joined : joined_) {
     const std::string_view absence = joined.port.port->absence();

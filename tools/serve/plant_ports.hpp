@@ -1,5 +1,4 @@
-// The ports of a plant that is served with a world outside: what has come over them goes onto the lines between two
-// milliseconds, and what the lines have carried goes out. Such a plant runs a millisecond behind the clock, so that what
+// The ports of a plant that is served with a world outside. Such a plant runs a millisecond behind the clock, so that what
 // comes within a millisecond is there before it is run. It goes on while a port is away, and takes it again.
 #pragma once
 
@@ -9,37 +8,23 @@
 
 #include "runtime/os_port/system_clock.hpp"
 #include "runtime/plant_port/join.hpp"
-#include "tools/serve/desk.hpp"
+#include "tools/serve/host/outside.hpp"
 
 namespace ipos::tools::serve {
 
-class PlantPorts {
+class PlantPorts final : public Ports {
  public:
-  // A port that has come or gone.
-  struct Change {
-    bool there;
-    std::string text;  // for the journal; empty: it was told often enough
-  };
-
   static bool has_ports(const runtime::PlantFile& plant);
 
-  // Opens them before the first event; a Failure names one that cannot be had. `file`: of the plant.
-  void join(runtime::Plant& plant, const std::string& file);
-  // Closes them. The plant must still be there.
-  void leave() { joined_.clear(); }
-  bool joined() const { return !joined_.empty(); }
-  bool joined(const std::string& bus) const;
-
-  // Sends on what the lines have carried.
-  void flush();
-  // Takes what has come. The plant was at `at` when the clock was at `clock`.
-  void collect(WallClock::time_point clock, runtime::Time at);
-
-  // What the ports had to say since the last time, and which of them have come or gone by now.
-  std::vector<std::string> take_notes();
-  std::vector<Change> take_changes(runtime::Time now);
-  // Of each port: its line, its name, whether it is there, since when, and why not.
-  Json states() const;
+  void join(runtime::Plant& plant, const std::string& file) override;
+  void leave() override { joined_.clear(); }
+  bool joined() const override { return !joined_.empty(); }
+  bool joined(const std::string& bus) const override;
+  void flush() override;
+  void collect(WallClock::time_point clock, runtime::Time at) override;
+  std::vector<std::string> take_notes() override;
+  std::vector<Change> take_changes(runtime::Time now) override;
+  Json states() const override;
 
  private:
   struct Joined {

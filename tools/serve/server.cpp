@@ -131,26 +131,26 @@ class Server::Listener {
   void read_head() {
     asio::async_read(host_, asio::buffer(head_), [this](Error error, size_t) {
       if (error) return host_gone();
-      const LetterHead head = head_of(head_);
-      letter_ = {head.kind, head.client, std::string(head.length, '\0'), {}};
-      asio::async_read(host_, asio::buffer(letter_.body), [this](Error broken, size_t) {
+      const MessageHead head = head_of(head_);
+      message_ = {head.kind, head.client, std::string(head.length, '\0'), {}};
+      asio::async_read(host_, asio::buffer(message_.body), [this](Error broken, size_t) {
         if (broken) return host_gone();
-        take(letter_);
+        take(message_);
         read_head();
       });
     });
   }
-  void take(Letter& letter);
+  void take(Message& message);
   void host_gone() {
     host_there_ = false;
     end();
   }
-  void tell_host(LetterKind kind, uint16_t client, std::string body = {},
+  void tell_host(MessageKind kind, uint16_t client, std::string body = {},
                  WallClock::time_point arrived = {}) {
     if (!host_there_) return;
-    Letter letter{kind, client, std::move(body), arrived};
-    const auto head = head_bytes(letter);
-    to_host_.push_back(std::string(head.data(), head.size()) + letter.body);
+    Message message{kind, client, std::move(body), arrived};
+    const auto head = head_bytes(message);
+    to_host_.push_back(std::string(head.data(), head.size()) + message.body);
     if (to_host_.size() == 1) write_to_host();
   }
   void write_to_host() {
@@ -208,8 +208,8 @@ class Server::Listener {
   bool host_there_ = true;
   bool ending_ = false;
   std::function<void()> ready_;
-  std::array<char, kLetterHead> head_{};
-  Letter letter_;
+  std::array<char, kMessageHead> head_{};
+  Message message_;
   std::deque<std::string> to_host_;
   std::list<Connection*> asking_;  // of one request; the longest silent one is in front
   Arrival arrival_;
@@ -232,12 +232,12 @@ class Server::Listener::Socket : public std::enable_shared_from_this<Socket> {
     stream_.async_accept(request, [self = shared_from_this()](Error error) {
       if (error) return self->gone();
       self->open_ = true;
-      self->listener_.tell_host(LetterKind::Opened, self->number_);
+      self->listener_.tell_host(MessageKind::Opened, self->number_);
       self->read();
     });
   }
 
-  void send(LetterKind kind, std::string body) {
+  void send(MessageKind kind, std::string body) {
     if (!open_ || closing_) return;
     waiting_ += body.size();
     out_.push_back({kind, std::move(body)});
@@ -267,7 +267,7 @@ class Server::Listener::Socket : public std::enable_shared_from_this<Socket> {
       if (error) return self->gone();
       const auto now = self->listener_.now();
       self->listener_.tell_host(
-          LetterKind::Message, self->number_, beast::buffers_to_string(self->buffer_.data()),
+          MessageKind::Text, self->number_, beast::buffers_to_string(self->buffer_.data()),
           std::min(self->arrival_.of_message(now), self->listener_.arrival_.of_message(now)));
       self->buffer_.consume(self->buffer_.size());
       self->held_ = ++self->unanswered_ >= kMostUnanswered;
@@ -277,21 +277,21 @@ class Server::Listener::Socket : public std::enable_shared_from_this<Socket> {
   }
   void write() {
     writing_ = true;
-    stream_.binary(out_.front().kind == LetterKind::Binary);
+    stream_.binary(out_.front().kind == MessageKind::Binary);
     stream_.async_write(asio::buffer(out_.front().body), [self = shared_from_this()](Error error, size_t) {
       self->writing_ = false;
       if (error) return self->gone();
       const auto& sent = self->out_.front();
       self->waiting_ -= sent.body.size();
-      if (sent.kind != LetterKind::Reply)
-        self->listener_.tell_host(LetterKind::Drained, self->number_, std::to_string(sent.body.size()));
+      if (sent.kind != MessageKind::Reply)
+        self->listener_.tell_host(MessageKind::Drained, self->number_, std::to_string(sent.body.size()));
       self->out_.pop_front();
       if (!self->out_.empty() && !self->closing_) self->write();
     });
   }
   void gone() {
     if (std::exchange(gone_, true)) return;
-    if (open_) listener_.tell_host(LetterKind::Closed, number_);
+    if (open_) listener_.tell_host(MessageKind::Closed, number_);
     open_ = false;
     out_.clear();
     beast::get_lowest_layer(stream_).close();
@@ -301,7 +301,7 @@ class Server::Listener::Socket : public std::enable_shared_from_this<Socket> {
   }
 
   struct Out {
-    LetterKind kind;
+    MessageKind kind;
     std::string body;
   };
   Listener& listener_;
@@ -402,16 +402,16 @@ std::optional<uint16_t> Server::Listener::free_number() {
   return last_client_;
 }
 
-void Server::Listener::take(Letter& letter) {
-  if (letter.kind == LetterKind::Ready) {
+void Server::Listener::take(Message& message) {
+  if (message.kind == MessageKind::Ready) {
     ready_();
     return accept();
   }
-  const auto found = sockets_.find(letter.client);
+  const auto found = sockets_.find(message.client);
   if (found == sockets_.end()) return;
   const std::shared_ptr<Socket> socket = found->second;
-  if (letter.kind == LetterKind::Taken) return socket->taken();
-  socket->send(letter.kind, std::move(letter.body));
+  if (message.kind == MessageKind::Taken) return socket->taken();
+  socket->send(message.kind, std::move(message.body));
 }
 
 // A foreign name that leads to this machine is not ours (DNS rebinding); any address of it is, as it was listened at all.

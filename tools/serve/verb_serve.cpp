@@ -4,7 +4,9 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <optional>
@@ -12,17 +14,20 @@
 #include "tools/cli/end_of_process.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/verbs.hpp"
-#include "tools/debug/snapshots.hpp"
 #include "tools/input/plant_input.hpp"
 #include "tools/input/plant_source.hpp"
+#include "tools/links/link_options.hpp"
+#include "tools/processes/replaceable_process.hpp"
 #include "tools/serve/channel.hpp"
+#include "tools/serve/compiled_sources.hpp"
 #include "tools/serve/drive_host.hpp"
+#include "tools/serve/forked_copies.hpp"
+#include "tools/serve/host/plant_host.hpp"
 #include "tools/serve/kept.hpp"
 #include "tools/serve/opened_page.hpp"
 #include "tools/serve/page.hpp"
-#include "tools/serve/plant_host.hpp"
+#include "tools/serve/plant_ports.hpp"
 #include "tools/serve/server.hpp"
-#include "tools/unit/link_options.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -56,6 +61,24 @@ serve::Kept kept_of(const ServeFlags& flags) {
                                    : serve::Kept::of_drive(flags.device.port, flags.address);
 }
 
+constexpr int kMessagesAtOnce = 8;  // a client that floods does not hold the plant up
+constexpr int kLongestWait = 100;   // ms; then the tabs have their turn
+
+// Turns of the host, and what comes between them, until nobody listens any more.
+void run(serve::PlantHost& host, serve::Mailbox& mailbox) {
+  using std::chrono::milliseconds;
+  while (mailbox.open()) {
+    const auto due = host.turn();
+    const auto now = serve::WallClock::now();
+    const auto left = std::chrono::ceil<milliseconds>(std::clamp(due, now, now + milliseconds(kLongestWait)) - now);
+    for (int n = 0; n < kMessagesAtOnce; ++n) {
+      const auto message = mailbox.wait(n == 0 ? static_cast<int>(left.count()) : 0);
+      if (!message) break;
+      host.take(*message);
+    }
+  }
+}
+
 int run_host(const ServeFlags& flags, PlantInput input, const Pair& sockets) {
   close(sockets.server);
   std::signal(SIGINT, SIG_IGN);  // Ctrl-C goes to both; the server tells
@@ -63,11 +86,17 @@ int run_host(const ServeFlags& flags, PlantInput input, const Pair& sockets) {
   serve::Channel channel(sockets.host);
   const bool snapshots = flags.snapshots && !serve::PlantPorts::has_ports(input.file);
   const std::string title = std::filesystem::path(flags.file).filename().string();
+  const serve::SteadyClock clock;
+  serve::ForkedCopies copies(snapshots);
+  serve::PlantPorts ports;
+  serve::CompiledSources sources;
   serve::PlantHost host([input = std::move(input)] { return make_plant(input, runtime::FileUse::Look); },
-                        title, IPOS_VERSION, channel, snapshots);
-  host.restore(kept_of(flags));
-  channel.send(serve::LetterKind::Ready, 0, {});
-  host.run();
+                        title, IPOS_VERSION, {channel, clock, copies, ports, sources});
+  const serve::Kept kept = kept_of(flags);
+  kept.add_commands(host.router());
+  host.restore(kept.settings());
+  channel.send(serve::MessageKind::Ready, 0, {});
+  run(host, channel);
   return kGood;
 }
 
@@ -81,8 +110,8 @@ int run_drive_host(const ServeFlags& flags, const Pair& sockets) {
       std::move(link),
       {static_cast<uint8_t>(std::stoi(flags.address)), flags.compile.unit, flags.write, IPOS_VERSION},
       channel);
-  kept_of(flags).add_commands(host.desk());
-  channel.send(serve::LetterKind::Ready, 0, {});
+  kept_of(flags).add_commands(host.router());
+  channel.send(serve::MessageKind::Ready, 0, {});
   host.run();
   return kGood;
 }
@@ -94,7 +123,7 @@ int serve_page(const ServeFlags& flags) {
   PlantInput input;
   if (!device) input = read_plant_input(flags.file, flags.compile);
   const Pair sockets = make_pair_of_sockets();
-  debug::ReplaceableProcess host([&] {
+  ReplaceableProcess host([&] {
     return end_of_process(
         [&] { return device ? run_drive_host(flags, sockets) : run_host(flags, std::move(input), sockets); });
   });

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "runtime/plant/actions.hpp"
-#include "tools/testing/test_case.hpp"
+#include "tools/test_file/test_case.hpp"
 
 namespace ipos::tools::testing {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "tools/testing/test_case.hpp"
+#include "tools/test_file/test_case.hpp"
 
 namespace ipos::tools::testing {
 

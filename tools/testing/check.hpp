@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "tools/testing/test_case.hpp"
+#include "tools/test_file/test_case.hpp"
 
 namespace ipos::tools::testing {
 

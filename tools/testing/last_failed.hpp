@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/test_file/test_case.hpp"
 #include "tools/testing/result.hpp"
-#include "tools/testing/test_case.hpp"
 
 namespace ipos::tools::testing {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "runtime/bus/words/bus_words.hpp"
+#include "tools/test_file/test_case.hpp"
 #include "tools/testing/result.hpp"
-#include "tools/testing/test_case.hpp"
 
 namespace ipos::tools::testing {
 

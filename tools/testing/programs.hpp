@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "tools/input/program.hpp"
-#include "tools/testing/test_case.hpp"
+#include "tools/test_file/test_case.hpp"
 
 namespace ipos::tools::testing {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "runtime/bus/words/can_words.hpp"
 #include "runtime/bus/movilink/serial_receiver.hpp"
+#include "runtime/bus/words/can_words.hpp"
 #include "runtime/plant/plant.hpp"
 
 namespace ipos::tools {

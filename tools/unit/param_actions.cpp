@@ -10,8 +10,8 @@
 
 #include "tools/cli/failure.hpp"
 #include "tools/cli/json_text.hpp"
-#include "tools/unit/param_columns.hpp"
-#include "tools/unit/parameter_target.hpp"
+#include "tools/parameters/param_columns.hpp"
+#include "tools/parameters/parameter_target.hpp"
 
 namespace ipos::tools {
 namespace {

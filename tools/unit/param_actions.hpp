@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/unit/parameter_access.hpp"
-#include "tools/unit/parameter_set.hpp"
+#include "tools/parameters/parameter_access.hpp"
+#include "tools/parameters/parameter_set.hpp"
 
 namespace ipos::tools {
 

@@ -8,8 +8,8 @@
 #include "tools/cli/failure.hpp"
 #include "tools/cli/json_text.hpp"
 #include "tools/cli/outputs.hpp"
+#include "tools/parameters/param_columns.hpp"
 #include "tools/unit/param_actions.hpp"
-#include "tools/unit/param_columns.hpp"
 
 namespace ipos::tools {
 namespace {

@@ -7,7 +7,7 @@
 #include "runtime/unit/drive_server.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/input/plant_source.hpp"
-#include "tools/unit/running_station.hpp"
+#include "tools/parameters/running_station.hpp"
 
 namespace ipos::tools {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "runtime/nv_memory/medium/file_medium.hpp"
-#include "tools/unit/parameter_access.hpp"
+#include "tools/parameters/parameter_access.hpp"
 
 namespace ipos::tools {
 

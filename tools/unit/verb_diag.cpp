@@ -10,8 +10,8 @@
 #include "tools/cli/verbs.hpp"
 #include "tools/input/plant_input.hpp"
 #include "tools/input/plant_source.hpp"
+#include "tools/parameters/running_station.hpp"
 #include "tools/unit/diag_pages.hpp"
-#include "tools/unit/running_station.hpp"
 
 namespace ipos::tools {
 namespace {

@@ -8,9 +8,9 @@
 #include "tools/cli/files.hpp"
 #include "tools/cli/verbs.hpp"
 #include "tools/input/plant_source.hpp"
-#include "tools/unit/dp_units.hpp"
-#include "tools/unit/link_access.hpp"
-#include "tools/unit/link_options.hpp"
+#include "tools/links/dp_units.hpp"
+#include "tools/links/link_access.hpp"
+#include "tools/links/link_options.hpp"
 #include "tools/unit/param_actions.hpp"
 #include "tools/unit/station_access.hpp"
 

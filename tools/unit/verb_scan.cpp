@@ -10,10 +10,10 @@
 #include "tools/cli/failure.hpp"
 #include "tools/cli/terminal.hpp"
 #include "tools/cli/verbs.hpp"
-#include "tools/unit/dp_units.hpp"
-#include "tools/unit/link_access.hpp"
-#include "tools/unit/link_options.hpp"
-#include "tools/unit/param_columns.hpp"
+#include "tools/links/dp_units.hpp"
+#include "tools/links/link_access.hpp"
+#include "tools/links/link_options.hpp"
+#include "tools/parameters/param_columns.hpp"
 
 namespace ipos::tools {
 namespace {

@@ -14,10 +14,10 @@
 #include "tools/cli/verbs.hpp"
 #include "tools/input/plant_input.hpp"
 #include "tools/input/plant_source.hpp"
-#include "tools/unit/link_access.hpp"
-#include "tools/unit/link_options.hpp"
-#include "tools/unit/parameter_target.hpp"
-#include "tools/unit/running_station.hpp"
+#include "tools/links/link_access.hpp"
+#include "tools/links/link_options.hpp"
+#include "tools/parameters/parameter_target.hpp"
+#include "tools/parameters/running_station.hpp"
 
 namespace ipos::tools {
 namespace {

@@ -10,11 +10,11 @@
 #include "tools/input/plant_input.hpp"
 #include "tools/input/plant_source.hpp"
 #include "tools/input/program.hpp"
-#include "tools/run/real_time_run.hpp"
-#include "tools/unit/link_access.hpp"
-#include "tools/unit/link_options.hpp"
-#include "tools/unit/live_values.hpp"
-#include "tools/unit/running_station.hpp"
+#include "tools/links/link_access.hpp"
+#include "tools/links/link_options.hpp"
+#include "tools/links/live_values.hpp"
+#include "tools/parameters/running_station.hpp"
+#include "tools/running/real_time_run.hpp"
 
 namespace ipos::tools {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
-#include "runtime/bus/words/can_words.hpp"
 #include "runtime/bus/movilink/serial_receiver.hpp"
 #include "runtime/bus/profibus/fdl_receiver.hpp"
+#include "runtime/bus/words/can_words.hpp"
 
 namespace ipos::runtime {
 

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "runtime/journal/journal.hpp"
 #include "runtime/nv_memory/kept/index_windows.hpp"
 #include "runtime/nv_memory/kept/retained_memory.hpp"
 #include "runtime/nv_memory/kept/wear.hpp"
 #include "runtime/nv_memory/medium/slot_store.hpp"
-#include "runtime/journal/journal.hpp"
 
 namespace ipos::runtime {
 

@@ -9,9 +9,9 @@
 
 #include "runtime/bus/can/frame_bits.hpp"
 #include "runtime/bus/can/line.hpp"
+#include "runtime/bus/dbc/dbc.hpp"
 #include "runtime/bus/log/bus_load.hpp"
 #include "runtime/bus/log/replay.hpp"
-#include "runtime/bus/dbc/dbc.hpp"
 #include "runtime/bus/movilink/parameter_telegram.hpp"
 #include "runtime/bus/movilink/process_data.hpp"
 #include "tests/runtime/bus/wire_model.hpp"

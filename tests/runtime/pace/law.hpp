@@ -1,4 +1,4 @@
-// The law of parts (runtime/pace/part.hpp), tried on one of them with a random history.
+// The law of parts (runtime/part/part.hpp), tried on one of them with a random history.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <random>
 
-#include "runtime/pace/part.hpp"
+#include "runtime/part/part.hpp"
 
 namespace ipos::tests {
 

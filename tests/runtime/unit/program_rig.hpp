@@ -8,10 +8,10 @@
 
 #include "compiler/asm/assembler.hpp"
 #include "runtime/commands/system_commands.hpp"
-#include "runtime/unit/drive_server.hpp"
-#include "runtime/unit/drive_variables.hpp"
 #include "runtime/services/mirrored_values.hpp"
 #include "runtime/services/pid_block.hpp"
+#include "runtime/unit/drive_server.hpp"
+#include "runtime/unit/drive_variables.hpp"
 #include "stdlib/system_variables.hpp"
 #include "vm/sched/scheduler.hpp"
 

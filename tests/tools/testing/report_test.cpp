@@ -12,7 +12,7 @@
 #include "runtime/signals/states.hpp"
 #include "tests/harness/contains.hpp"
 #include "tests/tools/command.hpp"
-#include "tools/testing/test_case.hpp"
+#include "tools/test_file/test_case.hpp"
 
 namespace ipos::tests {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "tests/harness/contains.hpp"
 #include "tests/tools/command.hpp"
-#include "tools/testing/read_tests.hpp"
+#include "tools/test_file/read_tests.hpp"
 #include "tools/testing/suite.hpp"
 
 namespace ipos::tests {

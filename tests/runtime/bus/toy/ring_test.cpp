@@ -186,7 +186,7 @@ TEST(ToyBus, WhoHasNoCaseForItDoesNotCompile) {
   const std::vector<std::string> sources = visitors();
   EXPECT_EQ(sources, (std::vector<std::string>{"runtime/library/world.cpp", "runtime/plant_port/join.cpp",
                                                "tools/logs/log_writer.cpp", "tools/run/verb_run.cpp",
-                                               "tools/serve/bus_tab.cpp"}));
+                                               "tools/serve/host/bus_tab.cpp"}));
   EXPECT_LE(sources.size() + 1, 8U) << "files outside of the kind's own, with the row";
   for (const std::string& source : sources) {
     const std::string messages = output_of(std::string("'") + IPOS_COMPILER + "' -std=c++20 -fsyntax-only '@" +

@@ -1,0 +1,318 @@
+// Running forward, and the search for the last stop in what was.
+#include "tools/debugger/debugger.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ipos::tools::debug {
+namespace {
+
+using runtime::Station;
+using runtime::Time;
+
+// So far apart are snapshots: what is replayed for a step back takes some milliseconds.
+constexpr uint64_t kSnapshotCommands = 20'000;
+constexpr Time kSnapshotTime = 250 * runtime::kMillisecond;
+constexpr uint64_t kAtOnce = 1'000'000;
+constexpr const char* kBeginning = "this is the beginning of the run";
+
+}  // namespace
+
+Debugger::Debugger(Debuggee what, FrontEnd& front_end, std::unique_ptr<Snapshots> snapshots, Time limit)
+    : what_(std::move(what)), front_end_(front_end), limit_(limit), snapshots_(std::move(snapshots)) {
+  build();
+}
+
+void Debugger::build() {
+  codes_.clear();
+  companion_.reset();
+  plant_.reset();  // its files are closed before they are opened again
+  plant_ = what_.make();
+  if (what_.accompany)
+    companion_ = what_.accompany(*plant_, [this](const std::string& text) {
+      if (goal_.kind == Goal::Kind::Forward) front_end_.output(text);
+    });
+  for (const auto& station : plant_->stations()) {
+    station->use_runner(*this);
+    codes_.emplace_back();
+    if (station->image() != nullptr) codes_.back().emplace(*station->image());
+  }
+  position_ = last_ = last_snapshot_ = {};
+  open_ = nullptr;
+  next_change_ = 0;
+  told_all_ended_ = false;
+  front_end_.built(*plant_);
+}
+
+void Debugger::prime() {
+  watched_.clear();
+  // What a signal is read from belongs to one plant and does not go with the session.
+  for (Watchpoint& watchpoint : watchpoints_) {
+    watchpoint.place = find_again(*plant_, watchpoint.place);
+    watched_.push_back(read_value(watchpoint.place));
+  }
+}
+
+Order Debugger::order_for(Motion motion, TaskRef task, bool backward) const {
+  Order order{motion, backward, task, 0, 0, 0, 0};
+  const vm::Machine* of_task = machine(task.station);
+  if (of_task == nullptr || task.task == 0) return order;
+  order.context = of_task->active_context(task.task);
+  order.depth = of_task->context(order.context).depth;
+  return order;
+}
+
+Stop Debugger::run(const Order& order) {
+  goal_ = {};
+  goal_.order = order;
+  start_ = position_;
+  prime();
+  if (snapshots_ && snapshots_->count() == 0 && position_ == Position{} && snapshot()) return go();
+  if (order.backward) {
+    goal_.kind = Goal::Kind::Search;
+    goal_.end = position_;
+    if (position_ == Position{}) return {Reason::Beginning, {}, {}, kBeginning};
+    rewind(goal_.end, true);
+  }
+  return go();
+}
+
+Stop Debugger::go_back(Time time) {
+  goal_ = {};
+  goal_.kind = Goal::Kind::Replay;
+  goal_.end = start_ = position_;
+  goal_.order.motion = Motion::ToTime;
+  goal_.order.time = time;
+  goal_.stop = {Reason::Step, {}, {}, {}};
+  if (const Position* snapshot = snapshots_ ? snapshots_->before(time) : nullptr)
+    snapshots_->go_on_from(*snapshot, save());
+  build();
+  prime();
+  return go();
+}
+
+void Debugger::run_again() {
+  takes_snapshots_ = false;
+  goal_ = {};
+  goal_.kind = Goal::Kind::Replay;
+  goal_.end = start_ = position_;
+  build();
+  prime();
+  go();
+}
+
+void Debugger::restart() {
+  if (snapshots_) snapshots_->clear();
+  changes_.clear();
+  build();
+}
+
+// Until the order is carried out; perhaps in another process, which knows nothing of what stood above it
+// here.
+Stop Debugger::go() {
+  for (;;) {
+    while (!advance()) {
+    }
+    if (goal_.kind != Goal::Kind::Search) break;
+    search_further();
+  }
+  if (goal_.kind == Goal::Kind::Replay)  // what the user changed later is undone
+    std::erase_if(changes_, [this](const Change& change) { return change.at > position_; });
+  goal_.kind = Goal::Kind::Forward;
+  for (const int id : stop_.ids)
+    std::erase_if(breakpoints_,
+                  [id](const Breakpoint& breakpoint) { return breakpoint.id == id && breakpoint.temporary; });
+  return stop_;
+}
+
+// One event, or the rest of a tick. True: stopped, or the end of a search.
+bool Debugger::advance() {
+  if (open_ != nullptr) {
+    std::exchange(open_, nullptr)->resume_tick();
+  } else {
+    if (position_ == Position{} && arrived(Phase::Between)) return true;
+    if (!plant_->queue().step()) return take({Reason::AllEnded, {}, {}, "nothing happens any more"});
+  }
+  if (open_ != nullptr) return true;
+  const Time now = plant_->now();
+  return now % runtime::kMillisecond == 0 && plant_->next_time() > now && between();
+}
+
+bool Debugger::between() {
+  if (companion_) companion_->passed(plant_->now());
+  front_end_.passed(plant_->now());
+  const bool over = arrived(Phase::Between);
+  const bool searching = goal_.kind == Goal::Kind::Search;
+  if (over && !searching) return true;
+  const bool far = position_.commands - last_snapshot_.commands >= kSnapshotCommands ||
+                   position_.time - last_snapshot_.time >= kSnapshotTime;
+  if (far && !over && front_end_.wants_snapshot() && snapshot()) return arrived(Phase::Between);
+  if (searching)
+    if (auto stop = data_changed(true)) candidate(last_, std::move(*stop));
+  if (goal_.kind != Goal::Kind::Forward) return over;
+  if (auto stop = data_changed(false)) return take(std::move(*stop));
+  if (auto stop = task_ended()) return take(std::move(*stop));
+  if (goal_.order.motion == Motion::ToTime && plant_->now() >= goal_.order.time)
+    return take({Reason::Step, {}, {}, ""});
+  if (plant_->now() >= limit_) return take({Reason::Limit, {}, {}, "the time to run is over"});
+  if (!told_all_ended_ && plant_->programs_over()) {
+    told_all_ended_ = true;
+    return take({Reason::AllEnded, {}, {}, "all programs have ended"});
+  }
+  return !front_end_.keep_going() && take({Reason::Pause, {}, {}, ""});
+}
+
+bool Debugger::take(Stop stop) {
+  stop_ = std::move(stop);
+  return true;
+}
+
+// Notes the position and does again what the user did here. True: the goal is there.
+bool Debugger::arrived(Phase phase) {
+  if (phase != Phase::Behind) last_ = position_;
+  position_.time = plant_->now();
+  position_.phase = phase;
+  for (; next_change_ < changes_.size() && changes_[next_change_].at <= position_; ++next_change_)
+    if (const Change& change = changes_[next_change_]; change.at == position_) {
+      if (change.action.is_null())
+        write_value(find_again(*plant_, change.place), change.value);
+      else
+        front_end_.perform(change.action);
+    }
+  const bool back_there =
+      goal_.order.motion == Motion::ToTime && phase == Phase::Between && position_.time >= goal_.order.time;
+  if (goal_.kind == Goal::Kind::Replay && (back_there || position_ >= goal_.end)) return take(goal_.stop);
+  return goal_.kind == Goal::Kind::Search && position_ >= goal_.end;
+}
+
+bool Debugger::run(Station& station, vm::Machine& machine, vm::TickSteps& steps) {
+  const auto number = static_cast<uint32_t>(&station.config() - plant_->file().stations.data());
+  while (const int task = steps.task()) {
+    const uint64_t away = goal_.kind == Goal::Kind::Replay ? goal_.end.commands - position_.commands : 0;
+    if (away > 1 && next_change_ == changes_.size()) {  // nothing to look at before the end
+      position_.commands += steps.step(machine, static_cast<uint32_t>(std::min(away - 1, kAtOnce)));
+      continue;
+    }
+    open_ = &station;
+    if (before_command({number, task}, machine)) return false;
+    front_end_.executes(number, machine.context(machine.active_context(task)).pc);
+    last_ = position_;
+    const bool faulted = machine.fault().number != 0;
+    position_.commands += steps.step(machine);
+    if (behind_command({number, task}, machine, !faulted && machine.fault().number != 0)) return false;
+    open_ = nullptr;
+  }
+  return true;
+}
+
+bool Debugger::before_command(TaskRef task, const vm::Machine& machine) {
+  const bool over = arrived(Phase::Before);
+  if (goal_.kind == Goal::Kind::Replay || (goal_.kind == Goal::Kind::Forward && position_ == start_))
+    return over;
+  const bool backward = goal_.kind == Goal::Kind::Search;
+  if (auto stop = data_changed(backward)) {
+    if (!backward) return take(std::move(*stop));
+    candidate(last_, std::move(*stop));
+  }
+  if (over) return true;
+  auto stop = stop_at_breakpoint(task, machine, backward);
+  if (!stop) stop = step_ends(task, machine);
+  if (!stop) return false;
+  if (!backward) return take(std::move(*stop));
+  candidate(position_, std::move(*stop));
+  return false;
+}
+
+bool Debugger::behind_command(TaskRef task, const vm::Machine& machine, bool faulted) {
+  const bool over = arrived(Phase::Behind);
+  if (goal_.kind == Goal::Kind::Replay) return over;
+  const bool backward = goal_.kind == Goal::Kind::Search;
+  auto stop = data_changed(backward);
+  if (stop) stop->task = task;
+  if (backward) {
+    if (stop) candidate(last_, std::move(*stop));
+    return over;
+  }
+  if (stop) return take(std::move(*stop));
+  if (faulted)
+    return take(
+        {Reason::Fault, task, {}, fmt::format("F{:02}: {}", machine.fault().number, machine.fault().reason)});
+  stop = task_ended();
+  return stop && take(std::move(*stop));
+}
+
+// The last one found counts.
+void Debugger::candidate(const Position& at, Stop stop) {
+  if (at >= goal_.end || at < searched_from_) return;
+  goal_.found = true;
+  goal_.candidate = at;
+  goal_.stop = std::move(stop);
+}
+
+// A stretch is searched: on to what was found there, or the stretch before it.
+void Debugger::search_further() {
+  if (!goal_.found && searched_from_ != Position{}) {
+    goal_.end = searched_from_;
+    return rewind(goal_.end, true);
+  }
+  if (!goal_.found) goal_.stop = {Reason::Beginning, {}, {}, kBeginning};
+  goal_.end = goal_.candidate;  // if none was found the beginning
+  goal_.kind = Goal::Kind::Replay;
+  rewind(goal_.end, false);
+}
+
+// To the last snapshot at or before a position, or else to the beginning.
+void Debugger::rewind(const Position& to, bool strictly) {
+  if (const Position* snapshot = snapshots_ ? snapshots_->before(to, strictly) : nullptr)
+    snapshots_->go_on_from(*snapshot, save());
+  build();
+  searched_from_ = {};
+  prime();
+}
+
+// True in a process that goes on from here at a later time, with what it was given.
+bool Debugger::snapshot() {
+  if (!snapshots_ || !takes_snapshots_) return false;
+  last_snapshot_ = position_;
+  const std::optional<std::string> bytes = snapshots_->take(position_);
+  if (bytes) load(*bytes);
+  return bytes.has_value();
+}
+
+std::string Debugger::save() {
+  const Json state{{"goal", goal_},       {"breakpoints", breakpoints_}, {"watchpoints", watchpoints_},
+                   {"changes", changes_}, {"last_id", last_id_},         {"front_end", front_end_.save()}};
+  std::string bytes;
+  Json::to_cbor(state, bytes);
+  return bytes;
+}
+
+void Debugger::load(const std::string& bytes) {
+  const Json state = Json::from_cbor(bytes);
+  goal_ = state["goal"];
+  breakpoints_ = state["breakpoints"].get<std::vector<Breakpoint>>();
+  watchpoints_ = state["watchpoints"].get<std::vector<Watchpoint>>();
+  changes_ = state["changes"].get<std::vector<Change>>();
+  last_id_ = state["last_id"];
+  front_end_.load(state["front_end"]);
+  const auto later = [this](const Change& change) { return change.at >= position_; };
+  next_change_ =
+      static_cast<size_t>(std::find_if(changes_.begin(), changes_.end(), later) - changes_.begin());
+  searched_from_ = position_;
+  prime();
+}
+
+void Debugger::write(const ValuePlace& place, int32_t value) {
+  write_value(place, value);
+  changes_.push_back({position_, place, value, nullptr});
+  next_change_ = changes_.size();
+}
+
+void Debugger::perform(const Json& action) {
+  front_end_.perform(action);
+  changes_.push_back({position_, {}, 0, action});
+  next_change_ = changes_.size();
+}
+
+}  // namespace ipos::tools::debug

@@ -1,0 +1,164 @@
+// The host of a plant: runs it at the pace that is asked for, takes commands between two milliseconds and sends what is
+// news. Who calls it gives it messages and turns of some milliseconds, and tells it the time. It is a front end of the
+// debugger, so going back in time, breakpoints and steps are the debugger's. What is kept here is of the moment; a copy that
+// goes on from a snapshot is given the rest by save() and load().
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tools/debugger/debugger.hpp"
+#include "tools/serve/host/copies.hpp"
+#include "tools/serve/host/outside.hpp"
+#include "tools/serve/host/router.hpp"
+
+namespace ipos::tools::serve {
+
+// One tab of the page: its commands, its topic and what it gathers while the plant runs.
+class Tab {
+ public:
+  virtual ~Tab() = default;
+  virtual void built(runtime::Plant& /*plant*/) {}
+  virtual void restarted() {}  // by the user; it will be built next
+  virtual void restore(const Json& /*settings*/) {}  // settings of an earlier start
+  virtual void passed(runtime::Time /*now*/) {}
+  virtual void executes(uint32_t /*station*/, uint32_t /*address*/) {}
+  virtual void tend() {}        // now and then, between two milliseconds
+  virtual void runs_again() {}  // this process: PlantHost::run_again()
+  virtual Json save() { return nullptr; }
+  virtual void load(const Json& /*state*/) {}
+};
+
+class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
+ public:
+  // Where it runs. What is left out is not there.
+  struct Around {
+    Outbox& outbox;
+    const Clock& clock;
+    Copies& copies;
+    Ports& ports;
+    Sources& sources;
+  };
+  PlantHost(debug::MakePlant make, std::string title, std::string version, const Around& around);
+  ~PlantHost() override;
+
+  // What was set on the page at an earlier start; before the first turn.
+  void restore(const Json& settings);
+  void take(const Message& message);
+  // Some milliseconds of the plant, if there is something to run, and what is news. Returns when the next turn is due; a message
+  // may come before.
+  WallClock::time_point turn();
+  // The plant runs or is on its way.
+  bool busy() const { return running_ || next_.kind != MotionKind::None; }
+
+  // --- for the tabs ---
+  Router& router() { return router_; }
+  runtime::Plant& plant() const { return *plant_; }
+  debug::Debugger& debugger() { return *debugger_; }
+  uint32_t station_number(const std::string& name) const;  // a Mistake that names those there are
+  runtime::Station& station(const std::string& name) { return *plant_->stations()[station_number(name)]; }
+  int64_t us() const { return plant_->now() / runtime::kMicrosecond; }
+  // What is done to the plant goes this way: it is done again when its moment comes again.
+  using Action = std::function<void(const Json&)>;
+  void add_action(const std::string& name, Action action) { actions_[name] = std::move(action); }
+  void act(const std::string& name, Json details);
+  // A line that goes on outside.
+  bool has_port(const std::string& bus) const { return ports_.joined(bus); }
+  Copies& copies() { return copies_; }
+  Sources& sources() { return sources_; }
+  // Something was done to this station that it sees with the next millisecond only; at 0 s that is all there is.
+  bool sees_later(const std::string& station) const { return us() == 0 || acted_.contains(station); }
+  // The plant stands before the next millisecond, unless it has real ports.
+  void stop(const std::string& reason, const std::string& text);
+  void telegram_seen() { telegram_seen_ = true; }
+  // A copy of this process that runs again from the beginning up to now, for what was not gathered the first time.
+  // Nothing: the world outside does not come again.
+  std::unique_ptr<SecondRun> run_again();
+  // A step of the program; the reply comes when it stands.
+  void order(const Router::Call& call, const debug::Order& order);
+
+ private:
+  enum class MotionKind : uint8_t { None, Run, Order, Back, Restart };
+  struct Motion {
+    MotionKind kind = MotionKind::None;
+    debug::Order order;
+    runtime::Time time = 0;
+    bool telegram = false;   // it ends with one
+    bool under_way = false;  // it goes on in the next turn
+    uint16_t client = 0;
+    Json id = nullptr;
+    NLOHMANN_DEFINE_TYPE_INTRUSIVE(Motion, kind, order, time, telegram, under_way, client, id)
+  };
+
+  void add_time_commands();
+  void stay_in_step();
+  void look_at_ports();
+  Json begin(const Router::Call& call, Motion motion);
+  void carry_out();
+  void go_on(Motion motion);
+  void finish(const debug::Stop& stop);
+  void new_generation();
+  void set_speed(double speed);
+  void tell_time();
+  WallClock::time_point now() const { return clock_.now(); }
+  WallClock::time_point due() const;  // the next millisecond
+  bool is_due();                      // the same, and what has come from outside is on the lines
+  void publish(bool busy);
+  Json time_event() const;
+  Json ports_event() const;
+
+  // of debug::FrontEnd
+  Json save() override;
+  void load(const Json& state) override;
+  bool keep_going() override;
+  void output(const std::string& text) override;
+  void built(runtime::Plant& plant) override;
+  void passed(runtime::Time now) override;
+  void executes(uint32_t station, uint32_t address) override;
+  void perform(const Json& action) override;
+  bool wants_snapshot() override;
+  void on_event(runtime::Time now, uint32_t kind, uint64_t argument) override;
+
+  const Clock& clock_;
+  Copies& copies_;
+  Ports& ports_;
+  Sources& sources_;
+  Router router_;
+  std::string title_;
+  std::string version_;
+  std::map<std::string, Action> actions_;
+  std::set<std::string> acted_;  // stations, since the last millisecond
+  std::vector<std::unique_ptr<Tab>> tabs_;
+  runtime::Plant* plant_ = nullptr;
+  uint32_t source_ = 0;  // of the event that comes every millisecond, even with all units off
+  bool ports_changed_ = false;  // since the clients were told
+  std::optional<debug::Debugger> debugger_;
+
+  bool running_ = false;
+  double speed_ = 1;            // 0: as fast as it goes
+  bool halted_ = false;         // somebody wants it to stand before the next millisecond
+  bool telegram_seen_ = false;  // since the motion began
+  Json stopped_ = nullptr;
+  uint32_t generation_ = 1;
+  Motion now_;   // under way
+  Motion next_;  // ordered
+  WallClock::time_point turn_began_{};
+  bool turn_over_ = false;  // the motion goes on in the next one
+  // Where the pace counts from.
+  bool paced_ = false;  // it does
+  WallClock::time_point paced_from_{};
+  runtime::Time paced_at_ = 0;
+  // What was reached.
+  WallClock::time_point measured_from_{};
+  runtime::Time measured_at_ = 0;
+  double rate_ = 0;
+  WallClock::time_point time_due_{};
+  WallClock::time_point last_snapshot_{};
+};
+
+}  // namespace ipos::tools::serve

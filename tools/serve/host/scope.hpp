@@ -1,0 +1,136 @@
+// The scope of the page, one for all clients: channels, trigger, memory, views and CSV. It knows neither plant nor drive:
+// a source has the channels and the events that it can trigger on. It samples as `ipos run --trace` does, and its CSV is
+// written by the same code, so both have the same digits.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runtime/signals/find.hpp"
+#include "tools/serve/host/router.hpp"
+#include "tools/serve/host/scope_memory.hpp"
+
+namespace ipos::tools::serve {
+
+class ScopeSource {
+ public:
+  // What a name stands for. A Mistake says what there is.
+  virtual std::vector<signals::Signal> find_channels(const std::string& name) = 0;
+  virtual runtime::Time now() const = 0;
+  // Watches for an event of this kind from now on, and calls Scope::happened(). Ends what it watched for before; the kinds
+  // none, level and edge are the scope's. A Mistake says why it cannot.
+  virtual void watch_for(const std::string& kind, const Arguments& settings) = 0;
+  virtual void stop(const std::string& why) = 0;  // the trigger is to stop the plant
+  // A copy of this process that does again what was until now, and calls Scope::passed() meanwhile. Nothing: it cannot.
+  virtual std::unique_ptr<SecondRun> run_again() { return nullptr; }
+
+ protected:
+  ~ScopeSource() = default;
+};
+
+class Scope final {
+ public:
+  // Adds its commands and its topic.
+  Scope(Router& router, ScopeSource& source, Copies& copies);
+
+  // The channels of the start; nothing where a client has chosen others.
+  void propose(std::vector<std::string> names);
+  // The settings of an earlier start, as far as there still is what they name.
+  void restore(const Json& settings);
+  // The signals are others: a new recording.
+  void built();
+  void restarted() { armed_at_ = 0; }
+  // Now and then, between two milliseconds: what was recorded too late for some channel is computed.
+  void tend();
+  // A millisecond is over.
+  void passed(runtime::Time now);
+  // What the source watches for.
+  void happened(runtime::Time at, std::string why) { seen_ = {at, std::move(why)}; }
+
+  // What it reads each millisecond: its channels, and the signal of its trigger.
+  std::vector<const signals::Signal*> asked() const;
+  // A recording is to be triggered or ended.
+  bool waits() const { return state_ == State::Armed || state_ == State::Triggered; }
+
+  // What a copy of the host that goes on must know.
+  Json save();
+  void load(const Json& state);
+
+ private:
+  enum class State : uint8_t { Free, Armed, Triggered, Done };
+
+  // What starts a recording, beside the events of the source.
+  struct Trigger {
+    Json settings{{"kind", "none"}};
+    std::string kind = "none";
+    std::optional<signals::Signal> signal{};  // of level and edge
+    double value = 0;
+    bool below = false;
+    bool rising = false, falling = false;
+    bool stops = false;
+  };
+
+  void set(const Arguments& settings);
+  Trigger trigger_of(const Json& json);
+  std::vector<signals::Signal> find(const std::vector<std::string>& names);
+  void choose(std::vector<signals::Signal> channels);
+  void begin_again();
+  void arm(bool single);
+  void fire(runtime::Time at, const std::string& why);
+  void record(uint64_t number);
+  void fill(uint64_t number);
+  void compute();
+  void look(runtime::Time now);
+  std::optional<std::string> value_triggers();
+
+  // What is shown of the memory: a complete recording ends where it was complete.
+  uint64_t first() const { return std::min(memory_.first(), end()); }
+  uint64_t end() const { return state_ == State::Done ? done_end_ : memory_.end(); }
+  uint64_t number_at(int64_t us) const;
+  std::vector<size_t> incomplete() const;
+  Json describe() const;
+  std::string points(uint64_t begin, uint64_t end, uint64_t step, uint32_t id) const;
+  Json view(const Router::Call& call);
+  Json csv(const Router::Call& call);
+  void publish(Client& client, Subscription& subscription);
+
+  Router& router_;
+  ScopeSource& source_;
+  std::vector<std::string> names_;
+  std::vector<signals::Signal> channels_;
+  ScopeMemory memory_;
+  std::vector<int64_t> samples_;
+  runtime::Time last_ = 0;  // the last millisecond looked at
+  uint32_t recording_ = 0;
+  Trigger trigger_;
+  int64_t pre_ = 20;
+  int64_t length_ms_ = 5'000;
+  State state_ = State::Free;
+  bool single_ = false;
+  runtime::Time armed_at_ = 0;
+  uint64_t done_end_ = 0;  // after the last sample of a complete recording
+  std::optional<runtime::Time> triggered_at_;
+  std::string trigger_text_;
+  std::optional<std::pair<runtime::Time, std::string>> seen_;  // what the source watches for
+  std::optional<double> previous_;                             // of the trigger's signal
+
+  // What the run up to now has of channels that were chosen later.
+  bool asks_ = false;  // it is to be computed
+  std::unique_ptr<SecondRun> computing_;
+  bool fills_ = false;         // this process is the copy that computes
+  std::vector<size_t> late_;   // channels
+  uint64_t filled_from_ = 0;
+  struct Question {
+    uint16_t client = 0;
+    Json id, message;
+    NLOHMANN_DEFINE_TYPE_INTRUSIVE(Question, client, id, message)
+  };
+  std::vector<Question> questions_;  // for the CSV, until all is there
+};
+
+}  // namespace ipos::tools::serve
