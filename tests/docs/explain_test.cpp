@@ -93,7 +93,7 @@ TEST(Explain, Parameters) {
           "P130 of MOVIDRIVE MD_60A, MOVIDRIVE compact, MOVIDRIVE MDX60B/61B: Ramp t11 UP CW, index 8470"),
       std::string::npos)
       << ramp;
-  EXPECT_NE(ramp.find("P130 of MOVITRAC 07: Ramp t11 UP CW, index 8807"), std::string::npos) << ramp;
+  EXPECT_NE(ramp.find("P130 of MOVITRAC 07, MOVITRAC B: Ramp t11 UP CW, index 8807"), std::string::npos) << ramp;
   EXPECT_NE(ramp.find("factory setting 2.000 s"), std::string::npos) << ramp;
   EXPECT_NE(ramp.find("0.000 s .. 1.000 s in steps of 0.010 s"), std::string::npos) << ramp;
   EXPECT_NE(explained("P101").find("3 = SBus"), std::string::npos);

@@ -294,7 +294,7 @@ test("bus: PROFIBUS frames by addresses and access points; one of a hand collide
       await button(page, "Pause").click();
       await page.getByRole("searchbox", { name: "Filter of the trace" }).fill("void");
       await page.getByRole("textbox", { name: "Data" }).fill("10 09 20 49 fcs 16");
-      const collided = page.getByRole("table", { name: "Telegrams" }).getByText("void: ").first();
+      const collided = page.getByRole("table", { name: "Telegrams" }).getByText("void, ").first();
       for (let sent = 0; sent < 20 && !(await collided.isVisible()); ++sent) {
         await button(page, "Send").click();
         await stepTo(page, (await timeOf(page)) + 5);
