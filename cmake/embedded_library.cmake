@@ -30,7 +30,7 @@ function(ipos_embedded_library name kind)
                              PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/embed/include>
                                     $<BUILD_INTERFACE:${ipos_written_headers}>
                                     $<INSTALL_INTERFACE:include>)
-  target_compile_definitions(${name} PRIVATE IPOS_PROGRAM_WORDS=${BUILD_WORDS} IPOS_FAST=$<BOOL:${BUILD_FAST}>
+  target_compile_definitions(${name} PRIVATE NDEBUG IPOS_PROGRAM_WORDS=${BUILD_WORDS} IPOS_FAST=$<BOOL:${BUILD_FAST}>
                              PUBLIC IPOS_VARIABLES=${BUILD_VARIABLES})
   target_compile_options(${name} PRIVATE -fno-exceptions
                          -fvisibility=hidden -fvisibility-inlines-hidden -ffunction-sections -fdata-sections

@@ -2,6 +2,7 @@
 #include "compiler/codegen/generator.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "compiler/sema/fold.hpp"
@@ -38,6 +39,7 @@ bool true_after(const checked::ExprPtr& init, const checked::ExprPtr& condition)
 }  // namespace
 
 FunctionCode FunctionGenerator::generate() {
+  assert(code_.commands.empty());  // once
   const checked::Function& function = program_.functions[function_];
   early_ = program_.onlookers->is_early(function_);
   statement(*function.body);

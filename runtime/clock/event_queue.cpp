@@ -48,6 +48,7 @@ void EventQueue::sift_down(size_t position, const Entry& entry) {
 }
 
 void EventQueue::remove(size_t position) {
+  assert(position < heap_.size());
   const uint32_t slot = heap_[position].slot;
   const Entry last = heap_.back();
   heap_.pop_back();
@@ -64,7 +65,7 @@ void EventQueue::remove(size_t position) {
 
 EventId EventQueue::schedule(Time at, uint32_t source, EventTarget& target, uint32_t kind,
                              uint64_t argument) {
-  assert(at >= present_);
+  assert(present_ == 0 || at >= present_);
   at = std::max(at, now_);
   if (!rows_[0].takes(at, source, now_)) return schedule_behind(at, source, target, kind, argument);
   return rows_[0].join({{at, next_sequence_++, source}, kind, &target, argument});
@@ -106,6 +107,7 @@ bool EventQueue::cancel(EventId id) {
   }
   const uint32_t index = static_cast<uint32_t>(id);
   if (index >= slots_.size() || slots_[index].generation != id >> 32) return false;
+  assert(heap_[slots_[index].position].slot == index);  // slot and entry know each other
   remove(slots_[index].position);
   return true;
 }
@@ -149,6 +151,7 @@ bool EventQueue::run(Time end, bool all) {
     }
     if (row.first_at > end) return false;
     const Waiting& event = row.front();
+    assert(row.first_at >= now_ && event.target != nullptr);  // time does not go back
     reach(row.first_at, event.source);
     row.pop();
     event.target->on_event(now_, event.kind, event.argument);
@@ -160,6 +163,7 @@ bool EventQueue::run_from_heap(Time end) {
   if (heap_first_at_ > end) return false;
   const Entry entry = heap_.front();
   const Slot event = slots_[entry.slot];
+  assert(entry.at >= now_ && event.target != nullptr);  // time does not go back
   remove(0);
   reach(entry.at, entry.source);
   event.target->on_event(entry.at, event.kind, event.argument);

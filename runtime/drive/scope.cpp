@@ -2,6 +2,7 @@
 #include "runtime/drive/scope.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 namespace ipos::runtime {
 
@@ -34,6 +35,7 @@ bool Scope::tick() {
 }
 
 bool Scope::triggers(int32_t value) const {
+  assert(!samples_.empty());  // an edge has a sample to come from
   const int32_t last = samples_[(oldest_ + samples_.size() - 1) % samples_.size()][0];
   return order_.edge == Edge::Rising ? last < order_.level && value >= order_.level
                                      : last > order_.level && value <= order_.level;
@@ -54,6 +56,7 @@ void Scope::take(const Sample& sample) {
 
 // While it waits, as many are kept as come before the trigger.
 void Scope::store(const Sample& sample) {
+  assert(state_ != State::Done);
   const size_t most = state_ == State::Waiting ? std::max(order_.before, 1U) : order_.samples;
   if (samples_.size() < most) return samples_.push_back(sample);
   samples_[oldest_] = sample;

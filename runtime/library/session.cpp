@@ -2,6 +2,7 @@
 #include "runtime/library/session.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 namespace ipos::library {
@@ -51,6 +52,7 @@ int64_t Session::read(const Signal& signal) {
 }
 
 std::vector<uint8_t> Session::save() const {
+  assert(recorded_);
   return to_bytes(contents_.identity(), plant().now(), runtime::state_digest(plant()), record_);
 }
 

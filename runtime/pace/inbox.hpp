@@ -19,6 +19,7 @@ class Inbox {
   // A telegram that came after the tick at `after`, in the order of time.
   void post(Time after, TelegramReader& reader, size_t number, const TelegramData& data) {
     assert(!full());
+    assert(posted_ == 0 || after >= telegrams_[posted_ - 1U].after);
     if (read_ == posted_) next_ = after;
     telegrams_[posted_++] = {after, &reader, number, data};
   }
@@ -27,6 +28,7 @@ class Inbox {
   Time next() const { return next_; }
 
   void read_next() {
+    assert(read_ < posted_);
     const Telegram& telegram = telegrams_[read_++];
     telegram.reader->read(telegram.number, telegram.data);
     if (read_ == posted_) read_ = posted_ = 0;

@@ -8,6 +8,7 @@
 namespace ipos::runtime {
 
 void Pacer::start() {
+  assert(!runs_ && inbox_.next() == kNever);  // a telegram waits only for ticks that are pending
   first_ = done_to_ = queue_.now();
   behind_ = rests_ = false;
   event_ = queue_.schedule(done_to_, source_, *this, 0);
@@ -66,7 +67,10 @@ bool Pacer::run_to(Time last) {
   return true;
 }
 
-void Pacer::resume() { plan(queue_.now()); }
+void Pacer::resume() {
+  assert(pace_ == Pace::InTurn && !runs_);
+  plan(queue_.now());
+}
 
 // After the tick at `now`: what is due is sent, and the next event is the next tick, the end of the silence
 // or the next telegram.

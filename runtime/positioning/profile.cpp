@@ -2,6 +2,8 @@
 // distance of a plan are those of the linear one.
 #include "runtime/positioning/profile.hpp"
 
+#include <cassert>
+
 namespace ipos::runtime {
 namespace {
 
@@ -51,6 +53,7 @@ void Profile::begin() {
 }
 
 void Profile::add(Rate from, Rate to, Span duration, RampShape shape) {
+  assert(phases_ < plan_.size() && duration >= 0);
   plan_[phases_++] = {from, to, duration, shape};
 }
 

@@ -2,6 +2,7 @@
 #include "runtime/scom/object_table.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 #include "runtime/bus/can/frame_bits.hpp"
 #include "runtime/bus/movilink/identifiers.hpp"
@@ -38,6 +39,7 @@ uint8_t results_of(ObjectKind kind) { return kind == ObjectKind::TransmitCyclic 
 }  // namespace
 
 ObjectRequest ObjectTable::request(ObjectKind kind, uint32_t variable, std::span<const int32_t> h) const {
+  assert(variable + results_of(kind) <= h.size());
   const bool cyclic = kind == ObjectKind::TransmitCyclic;
   const uint32_t at = variable + (cyclic ? 3 : 1);  // where length and pointer stand in the structure
   const int32_t object = h[variable];
@@ -96,6 +98,7 @@ ObjectVerdict ObjectTable::define_cyclic(const ObjectRequest& request, int32_t& 
                       *variable_format(request.format)};
   result = free_capacity(object);
   if (result == kBusOverload) return ObjectVerdict::Overload;
+  assert(state_.cyclic_count < state_.cyclic.size());
   state_.cyclic[state_.cyclic_count++] = object;
   return ObjectVerdict::Accepted;
 }
@@ -117,6 +120,7 @@ ObjectVerdict ObjectTable::define_receive(const ObjectRequest& request) {
   if (receives(request.object)) return ObjectVerdict::ReceivedTwice;
   if (sends(request.object)) return ObjectVerdict::SentAndReceived;
   if (state_.receive_count >= unit_->receive_objects) return ObjectVerdict::TooManyReceive;
+  assert(state_.receive_count < state_.receive.size());
   state_.receive[state_.receive_count++] = {static_cast<uint16_t>(request.object),
                                             static_cast<uint16_t>(request.data),
                                             *variable_format(request.format)};

@@ -51,6 +51,7 @@ void Machine::start() {
 }
 
 void Machine::begin(int number, uint32_t address) {
+  assert(address < program_.code().size());
   TaskContext& t = context_at(number);
   t = {};
   t.state = TaskState::Ready;
@@ -59,6 +60,7 @@ void Machine::begin(int number, uint32_t address) {
 }
 
 void Machine::start_task(int task, uint32_t address) {
+  assert(task >= 1 && task <= kTasks);
   stop_task(task);
   begin(task, address);
   context_at(task).task = static_cast<uint8_t>(task);
@@ -78,6 +80,7 @@ void Machine::stop_context(int number) {
 }
 
 void Machine::stop_task(int task) {
+  assert(task >= 1 && task <= kTasks);
   for (int number = 1; number <= kContexts; ++number)
     if (context(number).task == task) stop_context(number);
 }
@@ -100,7 +103,10 @@ inline RunResult Machine::run_task(int task, uint32_t budget) {
   return left == 0 ? RunResult{Stop::Budget, budget} : run_on(task, budget, budget - left);
 }
 
-RunResult Machine::run(int task, uint32_t budget) { return run_task(task, budget); }
+RunResult Machine::run(int task, uint32_t budget) {
+  assert(task >= 1 && task <= kTasks);
+  return run_task(task, budget);
+}
 
 uint32_t Machine::run_tasks(const std::array<uint32_t, kTasks>& budgets) {
   uint32_t executed = 0;
@@ -115,7 +121,7 @@ bool Machine::run_ahead(const std::array<uint32_t, kTasks>& budgets, uint32_t ti
   if (waits_)
     for (const TaskContext& t : contexts_)
       if (t.state == TaskState::Waiting && t.wait_ms != 0 && t.wait_ms <= ticks) return false;
-#ifndef NDEBUG
+#ifndef __OPTIMIZE__  // the copy is too dear for a hot loop
   const std::array<int32_t, kMaxVariables> before = h_;
 #endif
   std::array<int32_t, kMostRollback> values;  // before
@@ -131,7 +137,9 @@ bool Machine::run_ahead(const std::array<uint32_t, kTasks>& budgets, uint32_t ti
         stands[other].give_back(back);
     for (size_t variable = 0; variable < rollback.size(); ++variable)
       h_[rollback[variable]] = values[variable];
+#ifndef __OPTIMIZE__
     assert(h_ == before);
+#endif
     return false;
   }
   if (waits_)
@@ -179,11 +187,13 @@ void Machine::pass_millisecond() {
 }
 
 void Machine::resume(int context) {
+  assert(context >= 1 && context <= kContexts);
   TaskContext& t = context_at(context);
   if (t.state == TaskState::Waiting && t.wait_ms == 0) go_on(t);
 }
 
 void Machine::go_on(TaskContext& t) {
+  assert(t.state == TaskState::Waiting && t.wait_ms == 0);
   t.state = TaskState::Ready;
   t.pc += decode(program_.code(), t.pc).words;
 }
@@ -196,6 +206,7 @@ void Machine::raise_fault(uint8_t number, const char* reason) {
 }
 
 void Machine::raise(int number, uint8_t fault, const char* reason) {
+  assert(fault != 0 && reason != nullptr);
   const TaskContext& t = context(number);
   fault_ = {fault, t.task, static_cast<uint8_t>(number), t.pc, reason};
   stop_all();

@@ -2,6 +2,7 @@
 #include "vm/jit/emitter.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 #include "vm/context/arithmetic.hpp"
 #include "vm/isa/effects.hpp"
@@ -45,6 +46,7 @@ void Emitter::choose_ranges() {
 }
 
 bool Emitter::run(Emitted& out) {
+  assert(labels_.empty());  // once
   asmjit::Error error = asmjit::kErrorOk;
   struct Handler : asmjit::ErrorHandler {
     void handleError(asmjit::Error code, const char*, asmjit::BaseEmitter*) override { *first = code; }
@@ -82,6 +84,7 @@ Label Emitter::exit(uint32_t n, int32_t credit) {
 
 // In front of a command: its label, the check of the budget, the entry.
 void Emitter::begin(uint32_t n) {
+  assert(n < program_.commands.size());
   const Command& command = program_.commands[n];
   if (command.joins) {
     if (command.checks && !command.called) a_.align(asmjit::AlignMode::kCode, kLoopAlignment);

@@ -1,6 +1,8 @@
 // What seldom happens to the ranking: a node joins in front of others, or one that is not the first leaves.
 #include "runtime/bus/can/contenders.hpp"
 
+#include <cassert>
+
 namespace ipos::runtime {
 
 void Contenders::insert_between(uint64_t rank) {
@@ -8,6 +10,7 @@ void Contenders::insert_between(uint64_t rank) {
     std::copy(at(first_), at(end_), at(0));
     end_ -= std::exchange(first_, 0);
   }
+  assert(end_ < ranks_.size());
   if (first_ > 0 && rank < ranks_[first_]) {
     ranks_[--first_] = rank;
     return;
@@ -20,6 +23,7 @@ void Contenders::insert_between(uint64_t rank) {
 
 void Contenders::erase_between(uint64_t rank) {
   const auto place = std::lower_bound(at(first_), at(end_), rank);
+  assert(place != at(end_) && *place == rank);
   std::copy(place + 1, at(end_), place);
   --end_;
 }

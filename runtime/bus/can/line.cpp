@@ -54,6 +54,7 @@ bool CanLine::is_reachable(NodeId from, NodeId to) const {
 // --- sending
 
 SendStatus CanLine::send(NodeId node, const Frame& frame, uint64_t tag, bool overtakes) {
+  assert(node < nodes_.size());
   Node& n = nodes_[node];
   if (!is_valid(frame)) return SendStatus::InvalidFrame;
   if (!is_active(n)) return SendStatus::NotActive;
@@ -86,6 +87,7 @@ void CanLine::queue_behind(NodeId node, const Pending& pending) {
 }
 
 void CanLine::withdraw(NodeId node, uint64_t tag) {
+  assert(node < nodes_.size());
   std::vector<Pending>& queue = nodes_[node].queue;
   const Segment& segment = segments_[nodes_[node].segment];
   const bool settled = segment.start_bit != kNoBit;
@@ -330,6 +332,7 @@ bool CanLine::begin_transfer(uint32_t number, uint64_t bit) {
   Segment& segment = segments_[number];
   Transfer& transfer = segment.transfer;
   transfer.plain = false;
+  assert(!segment.busy());
   transfer.start_bit = bit;
   transfer.senders.clear();
   transfer.fault = {};
@@ -381,6 +384,7 @@ void CanLine::end_transfer(Time now, uint32_t number) {
   Segment& segment = segments_[number];
   const Transfer& transfer = segment.transfer;
   const Transfer::Sender& winner = transfer.winner();
+  assert(segment.busy());
   const FrameRecord record{winner.frame, winner.node, static_cast<Time>(transfer.start_bit) * bit_time_, now,
                            transfer.bits};
   if (transfer.plain) return end_plain(record, transfer.start_bit, winner.tag);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 
 #include "runtime/bus/canopen/abort.hpp"
 #include "runtime/bus/canopen/connections.hpp"
@@ -103,7 +104,10 @@ void Master::start(Time now, FrameSender& sender) {
   if (settings_.heartbeat > 0) on_timer(now, kHeartbeatTimer);
 }
 
-void Master::command(NmtCommand command, uint8_t node) { sender_->send(nmt_frame(command, node), kCommands); }
+void Master::command(NmtCommand command, uint8_t node) {
+  assert(sender_ != nullptr);  // after start()
+  sender_->send(nmt_frame(command, node), kCommands);
+}
 
 void Master::on_timer(Time now, uint32_t kind) {
   const size_t node = kind / kKinds;

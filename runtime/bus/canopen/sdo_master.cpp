@@ -2,6 +2,7 @@
 #include "runtime/bus/canopen/sdo_master.hpp"
 
 #include <array>
+#include <cassert>
 
 #include "runtime/bus/canopen/abort.hpp"
 #include "runtime/bus/canopen/connections.hpp"
@@ -12,6 +13,7 @@ SdoMaster::SdoMaster(const Place& place, Time timeout, MovilinkClient& client)
     : place_(place), timeout_(timeout), client_(client), timer_(place, *this, 0) {}
 
 std::optional<ReturnCode> SdoMaster::start(Time now, const MovilinkJob& job) {
+  assert(!transfer_.is_busy());
   const auto service = static_cast<Service>(job.service);
   const auto format = telegram_format(job.format);
   const bool known = service == Service::Read || service == Service::Write;

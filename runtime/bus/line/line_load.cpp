@@ -27,6 +27,7 @@ void LoadMeter::add_beyond(uint64_t begin, uint64_t count) {
 }
 
 void LoadMeter::begin_window(uint64_t window) {
+  assert(window > window_);
   const uint64_t gap = window - window_;
   peak_busy_ = std::max({peak_busy_, previous_busy_, gap == 1 ? 0 : window_busy_});
   before_previous_busy_ = gap == 1 ? previous_busy_ : gap == 2 ? window_busy_ : 0;

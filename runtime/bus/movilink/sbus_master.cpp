@@ -2,6 +2,8 @@
 // RS-485; after a missing answer the exchange ends (both ours).
 #include "runtime/bus/movilink/sbus_master.hpp"
 
+#include <cassert>
+
 #include "runtime/bus/movilink/identifiers.hpp"
 
 namespace ipos::runtime {
@@ -11,6 +13,7 @@ SbusMaster::SbusMaster(EventQueue& queue, uint32_t source, FrameSender& sender, 
     : queue_(queue), source_(source), sender_(sender), tag_(tag), timeout_(timeout), client_(client) {}
 
 std::optional<ReturnCode> SbusMaster::start(Time now, const MovilinkJob& job) {
+  assert(!busy());
   const auto format = telegram_format(job.format);
   const bool group = job.address >= kGroupAddressBase;
   const int32_t address = group ? job.address - kGroupAddressBase : job.address;

@@ -2,6 +2,7 @@
 // switched off meanwhile cannot make an old answer look like a new one.
 #include "runtime/bus/movilink/serial_master.hpp"
 
+#include <cassert>
 #include <utility>
 
 namespace ipos::runtime {
@@ -10,6 +11,7 @@ SerialMaster::SerialMaster(EventQueue& queue, SerialRequester& requester, Movili
     : queue_(queue), requester_(requester), client_(client) {}
 
 std::optional<ReturnCode> SerialMaster::start(Time now, const MovilinkJob& job) {
+  assert(!busy());
   const auto format = telegram_format(job.format);
   if (!format || job.address < 0 || job.address > kBroadcastAddress) return return_codes::kWrongManagement;
   const auto address = static_cast<uint8_t>(job.address);

@@ -2,6 +2,7 @@
 #include "runtime/bus/movilink/serial_requester.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 namespace ipos::runtime {
@@ -29,6 +30,7 @@ void SerialRequester::start(Time now, const SerialTelegram& request, RequesterCl
 }
 
 void SerialRequester::begin(Time now) {
+  assert(!jobs_.empty());
   attempts_ = 0;
   begin_attempt(now);
 }

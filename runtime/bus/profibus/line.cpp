@@ -20,6 +20,7 @@ NodeId Line::attach(std::string name, Node& node) {
 }
 
 bool Line::send(NodeId node, Bits begin, Octets octets) {
+  assert(node < nodes_.size());
   Station& station = nodes_[node];
   if (!station.connected || station.sending || station.baud != baud_ || octets.empty()) return false;
   begin = std::max(begin, now());
@@ -91,6 +92,7 @@ bool Line::talks_over(NodeId node, const Transmission& transmission) const {
 void Line::on_event(Time now, uint32_t, uint64_t argument) {
   const auto ended = std::find_if(under_way_.begin(), under_way_.end(),
                                   [argument](const Transmission& t) { return t.sender == argument; });
+  assert(ended != under_way_.end());
   Transmission transmission = std::move(*ended);
   under_way_.erase(ended);
   count(transmission);

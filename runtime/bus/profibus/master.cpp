@@ -3,6 +3,7 @@
 #include "runtime/bus/profibus/master.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 namespace ipos::profibus {
@@ -41,6 +42,7 @@ void Master::set_next(uint8_t address) {
 }
 
 size_t Master::add_slave(SlavePlan plan) {
+  assert(state_ == State::Off);
   slaves_.emplace_back(settings_.address, std::move(plan));
   return slaves_.size() - 1;
 }

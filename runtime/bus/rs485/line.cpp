@@ -53,6 +53,7 @@ Transmission* Rs485Line::sending(NodeId node) {
 }
 
 bool Rs485Line::send_bits(NodeId node, std::vector<bool> bits) {
+  assert(node < nodes_.size());
   Node& n = nodes_[node];
   if (!n.connected || n.sent != kNoEvent || bits.empty()) return false;
   forget_old();

@@ -1,6 +1,8 @@
 // What a unit keeps, to and from the medium.
 #include "runtime/nv_memory/kept/unit_memory.hpp"
 
+#include <cassert>
+
 #include <fmt/format.h>
 
 namespace ipos::runtime {
@@ -35,6 +37,7 @@ UnitMemory::UnitMemory(ParameterStore& parameters)
 }
 
 std::optional<std::string> UnitMemory::open(std::unique_ptr<NvMedium> medium, std::string name) {
+  assert(!slots_);  // once
   medium_ = std::move(medium);
   name_ = std::move(name);
   slots_.emplace(*medium_, parameters_.unit().code);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 
 #include "runtime/nv_memory/medium/little_endian.hpp"
 #include "vm/image/image.hpp"
@@ -119,6 +120,7 @@ NvLoad SlotStore::load() {
   if (best.kind != SlotState::Good) {
     if (slots[0].kind == SlotState::Foreign)
       return {NvOutcome::Refused, {}, "this is no memory of a unit, and is left as it is"};
+    loaded_ = true;
     next_slot_ = 0;
     sequence_ = 0;
     is_new_ = troubles.empty();
@@ -129,6 +131,7 @@ NvLoad SlotStore::load() {
     return {NvOutcome::Refused, {}, fmt::format("written by a newer version of ipos ({})", best.version)};
   if (best.unit != unit_)
     return {NvOutcome::Refused, {}, fmt::format("the memory of unit type {}", best.unit)};
+  loaded_ = true;
   next_slot_ = second ? 0 : 1;
   sequence_ = best.sequence;
   if (!troubles.empty()) troubles += "; the other slot is used";
@@ -136,6 +139,7 @@ NvLoad SlotStore::load() {
 }
 
 std::optional<std::string> SlotStore::save(const NvContent& content) {
+  assert(loaded_);
   std::vector<uint8_t> bytes = encode(content);
   if (bytes.size() > kPayloadLimit) return "the content is longer than a slot";
   std::vector<uint8_t> checked = header_of(unit_, sequence_ + 1, static_cast<uint32_t>(bytes.size()));

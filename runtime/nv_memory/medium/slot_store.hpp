@@ -48,6 +48,7 @@ class SlotStore {
   unsigned next_slot_ = 0;
   uint32_t sequence_ = 0;  // of the newest whole slot
   bool is_new_ = false;    // nothing was ever written
+  bool loaded_ = false;    // load() has found the slot for the next save()
 };
 
 }  // namespace ipos::runtime

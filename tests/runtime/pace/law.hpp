@@ -14,7 +14,7 @@ namespace ipos::tests {
 // Of each of four seeds, together a million ticks; IPOS_LAW_STEPS is another number. A build without optimizer
 // makes fewer.
 inline uint32_t law_steps() {
-#ifdef NDEBUG
+#ifdef __OPTIMIZE__
   constexpr uint32_t kUsual = 1'000'000;
 #else
   constexpr uint32_t kUsual = 200'000;
