@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "compiler/sema/call_graph.hpp"
-#include "compiler/sema/onlookers.hpp"
+#include "compiler/sema/observers.hpp"
 #include "compiler/source/source.hpp"
 #include "vm/isa/isa.hpp"
 
@@ -29,7 +29,7 @@ struct Command {
 struct SeenSteps {
   int32_t variable;
   Span span;
-  Onlooker onlooker;
+  Observer observer;
 };
 
 struct FunctionCode {

@@ -21,10 +21,10 @@ std::string name_of(const checked::Program& program, int32_t variable) {
 }
 
 void report_steps(const checked::Program& program, const SeenSteps& steps, Diagnostics& diagnostics) {
-  const Diag diag = steps.onlooker.by_number ? Diag::StepsByNumber : Diag::SeenSteps;
+  const Diag diag = steps.observer.by_number ? Diag::StepsByNumber : Diag::SeenSteps;
   Diagnostic& message =
-      diagnostics.report(diag, steps.span, {name_of(program, steps.variable), steps.onlooker.who});
-  message.notes.push_back({steps.onlooker.span, steps.onlooker.note});
+      diagnostics.report(diag, steps.span, {name_of(program, steps.variable), steps.observer.who});
+  message.notes.push_back({steps.observer.span, steps.observer.note});
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ bool true_after(const checked::ExprPtr& init, const checked::ExprPtr& condition)
 FunctionCode FunctionGenerator::generate() {
   assert(code_.commands.empty());  // once
   const checked::Function& function = program_.functions[function_];
-  early_ = program_.onlookers->is_early(function_);
+  early_ = program_.observers->is_early(function_);
   statement(*function.body);
   // The end of the function belongs to its closing brace.
   const Span body = function.body->span;
@@ -52,7 +52,7 @@ FunctionCode FunctionGenerator::generate() {
 }
 
 void FunctionGenerator::statement(const checked::Stmt& stmt) {
-  const bool outside = std::exchange(early_, early_ || program_.onlookers->is_early(stmt));
+  const bool outside = std::exchange(early_, early_ || program_.observers->is_early(stmt));
   std::visit([&](const auto& node) { emit_stmt(node, stmt.span); }, stmt.node);
   early_ = outside;
 }

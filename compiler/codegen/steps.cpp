@@ -9,13 +9,13 @@ namespace ipos::compiler {
 bool FunctionGenerator::shows_steps(int32_t target) {
   if (is_temporary(target)) return false;
   if (acts_at_once(target)) return true;
-  auto onlooker = program_.onlookers->find(function_, static_cast<uint32_t>(target), early_);
-  if (!onlooker || atomic_) return onlooker.has_value();
+  auto observer = program_.observers->find(function_, static_cast<uint32_t>(target), early_);
+  if (!observer || atomic_) return observer.has_value();
   // What another root writes meanwhile is lost either way: W0258 says so.
-  if (onlooker->writes_only && assignment_.reads_target) return false;
+  if (observer->writes_only && assignment_.reads_target) return false;
   std::vector<SeenSteps>& seen = code_.seen_steps;
   if (seen.empty() || seen.back().span != assignment_.span)
-    seen.push_back({target, assignment_.span, std::move(*onlooker)});
+    seen.push_back({target, assignment_.span, std::move(*observer)});
   return false;
 }
 

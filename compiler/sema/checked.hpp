@@ -20,7 +20,7 @@
 #include "vm/isa/isa.hpp"
 
 namespace ipos::compiler {
-class Onlookers;
+class Observers;
 }
 
 namespace ipos::compiler::checked {
@@ -113,7 +113,7 @@ struct Program {
   std::vector<MapEntry> map;  // in rising order of number
   Ranges ranges;
   std::map<uint32_t, Span> raw_names;  // first use of H5 and the like
-  std::shared_ptr<const Onlookers> onlookers;  // who sees which variable
+  std::shared_ptr<const Observers> observers;  // who sees which variable
   std::bitset<kMaxNumbers> named;              // numbers that variables, aliases and raw names stand for
 };
 

@@ -6,7 +6,7 @@
 #include "compiler/sema/declarations.hpp"
 #include "compiler/sema/habits.hpp"
 #include "compiler/sema/map.hpp"
-#include "compiler/sema/onlookers.hpp"
+#include "compiler/sema/observers.hpp"
 #include "compiler/sema/sbus_check.hpp"
 #include "compiler/sema/statements.hpp"
 #include "compiler/sema/variable_use.hpp"
@@ -79,7 +79,7 @@ std::optional<checked::Program> check(
   check_calls(context.program, unit, sources, diagnostics);
   check_sbus_objects(context);
   if (diagnostics.has_errors()) return std::nullopt;
-  context.program.onlookers = std::make_shared<const Onlookers>(context);
+  context.program.observers = std::make_shared<const Observers>(context);
   return std::move(context.program);
 }
 

@@ -153,7 +153,7 @@ class ProfileCheck {
                        calling.size() == 1 ? "uses" : "use", fmt::join(all, ", ")));
   }
 
-  static bool has_current_word(const DriveServer& drive) {
+  static bool has_current_word(const UnitInterface& drive) {
     constexpr auto kCurrent = static_cast<int32_t>(PoAssignment::Current);
     return drive.value("870") == kCurrent || drive.value("871") == kCurrent || drive.value("872") == kCurrent;
   }
@@ -161,7 +161,7 @@ class ProfileCheck {
   // Each setting that keeps process data from acting (p. 41), once a station.
   void follows(const Member& member) {
     if (!told_.insert(member.name).second) return;
-    const DriveServer& drive = member.station->drive();
+    const UnitInterface& drive = member.station->drive();
     const auto setting = [&](std::string_view number, bool good, std::string_view wanted) {
       const stdlib::Parameter* row = stdlib::parameter_table(drive.unit()).find(number);
       if (good || row == nullptr) return;
@@ -187,7 +187,7 @@ class ProfileCheck {
   }
 
   void unsimulated(const Member& member) {
-    const DriveServer& drive = member.station->drive();
+    const UnitInterface& drive = member.station->drive();
     for (const stdlib::Unsimulated& one : stdlib::unsimulated(drive.unit())) {
       if (one.row->scope != stdlib::UnsimulatedScope::Bus) continue;
       if (const int32_t value = drive.parameters().value(one.parameter->index); one.applies(value))

@@ -6,7 +6,7 @@
 namespace ipos::runtime {
 namespace {
 
-WordAssignment assignment(const DriveServer& drive, int first) {
+WordAssignment assignment(const UnitInterface& drive, int first) {
   WordAssignment words{};
   for (size_t n = 0; n < words.size(); ++n)
     words[n] = static_cast<uint8_t>(drive.value(fmt::format("{}", first + static_cast<int>(n))));

@@ -20,7 +20,7 @@
 namespace ipos::runtime {
 
 // The parts of a station its program can reach.
-struct StationServices {
+struct ProgramServices {
   const EventQueue& clock;
   Drive& drive;
   ParameterStore& parameters;
@@ -32,7 +32,7 @@ struct StationServices {
 };
 
 struct CommandCall {
-  const StationServices& services;
+  const ProgramServices& services;
   vm::Machine& machine;
   int context;  // vm/context/context.hpp
   const vm::Instruction& command;

@@ -16,7 +16,7 @@ vm::HostReply define_object(CommandCall& call) {
   return illegal("DPointer of SCOM does not lead to variables of the unit");
 }
 
-vm::HostReply start_objects(const StationServices& services) {
+vm::HostReply start_objects(const ProgramServices& services) {
   const auto missing = [](const VariableObjects* objects) { return objects == nullptr; };
   if (std::all_of(services.objects.begin(), services.objects.end(), missing))
     return illegal("SCOMON: the station is on no SBus");
@@ -48,7 +48,7 @@ vm::HostReply ScomOn(CommandCall& call) { return start_objects(call.services); }
 vm::HostReply ScomState(CommandCall& call) { return switch_objects(call); }
 
 vm::HostReply Movlnk(CommandCall& call) {
-  const StationServices& s = call.services;
+  const ProgramServices& s = call.services;
   return s.movilink.start(s.clock.now(), call.machine, call.context, static_cast<uint32_t>(call.operand(0)),
                           call.why);
 }

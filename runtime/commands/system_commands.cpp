@@ -25,7 +25,7 @@ vm::HostReply forward(CommandCall& call) {
 
 }  // namespace
 
-SystemCommands::SystemCommands(const StationServices& services, Journal& journal, std::string_view station,
+SystemCommands::SystemCommands(const ProgramServices& services, Journal& journal, std::string_view station,
                                const vm::Image* image)
     : services_(services), journal_(journal), station_(station), image_(image) {}
 

@@ -15,7 +15,7 @@ class SystemCommands {
  public:
   // The image tells where in the source a command stands; null when the program is of another one. It and the
   // journal must outlive this.
-  SystemCommands(const StationServices& services, Journal& journal, std::string_view station,
+  SystemCommands(const ProgramServices& services, Journal& journal, std::string_view station,
                  const vm::Image* image);
 
   vm::Host host();
@@ -24,7 +24,7 @@ class SystemCommands {
   vm::HostReply execute(vm::Machine& machine, int context, const vm::Instruction& command);
   void cancel(vm::Machine& machine, int context);
 
-  StationServices services_;
+  ProgramServices services_;
   Journal& journal_;
   std::string station_;
   const vm::Image* image_;

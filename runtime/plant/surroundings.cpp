@@ -29,7 +29,7 @@ void Surroundings::connect(const PlantFile& file, const PlantParts& plant, std::
   for (const Wire& wire : file.wires) {
     const auto from = find(wire.from, wire.place);
     const auto to = find(wire.to, wire.place);
-    if (from && to) leads_.push_back({*from, *to, wire.invert});
+    if (from && to) wires_.push_back({*from, *to, wire.invert});
   }
   for (const PositionSwitch& row : file.switches)
     if (const auto input = find(row.input, row.place)) cams_.push_back({*input, input->owner, row.from, row.to, row.active_high});
@@ -63,7 +63,7 @@ void Surroundings::wake(Time at) {
 
 void Surroundings::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) {
   event_at_ = kNever;
-  for (const Lead& lead : leads_) drive(lead.to, (lead.from.read() != 0) != lead.invert);
+  for (const LiveWire& lead : wires_) drive(lead.to, (lead.from.read() != 0) != lead.invert);
   for (const Cam& cam : cams_) {
     const int32_t position = cam.station->shaft_position();
     const bool within = position >= cam.from && position <= cam.to;
@@ -126,7 +126,7 @@ void Surroundings::write(Time now, const signals::Signal& signal, int32_t value)
 
 void Surroundings::schedule_next(Time now) {
   Time next = (now / kMillisecond + 1) * kMillisecond;
-  if (leads_.empty() && cams_.empty() && holds_.empty()) {
+  if (wires_.empty() && cams_.empty() && holds_.empty()) {
     if (due_.empty()) return;
     next = std::max(next, (due_.begin()->first + kMillisecond - 1) / kMillisecond * kMillisecond);
   }

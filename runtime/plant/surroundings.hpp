@@ -43,7 +43,7 @@ class Surroundings final : private EventTarget {
   const signals::Holds& holds() const { return holds_; }
 
  private:
-  struct Lead {  // a wire
+  struct LiveWire {  // a wire
     signals::Signal from;
     signals::Signal to;
     bool invert;
@@ -76,7 +76,7 @@ class Surroundings final : private EventTarget {
   EventQueue& queue_;
   uint32_t source_;
   Journal& journal_;
-  std::vector<Lead> leads_;
+  std::vector<LiveWire> wires_;
   std::vector<Cam> cams_;
   std::vector<Script> scripts_;
   signals::Holds holds_{[this](const signals::Signal& signal, const std::string& text) {

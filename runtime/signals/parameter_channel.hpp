@@ -3,12 +3,12 @@
 
 #include <cstdint>
 
-#include "runtime/unit/drive_server.hpp"
+#include "runtime/unit/unit_interface.hpp"
 #include "stdlib/services.hpp"
 
 namespace ipos::signals {
 
-runtime::ParameterReply parameter_channel(runtime::DriveServer& drive, stdlib::Service service, uint16_t index,
+runtime::ParameterReply parameter_channel(runtime::UnitInterface& drive, stdlib::Service service, uint16_t index,
                                           int32_t value);
 
 }  // namespace ipos::signals

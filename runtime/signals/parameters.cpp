@@ -47,7 +47,7 @@ void add_parameters(Collector& out) {
   }
 }
 
-ParameterReply parameter_channel(DriveServer& drive, stdlib::Service service, uint16_t index, int32_t value) {
+ParameterReply parameter_channel(UnitInterface& drive, stdlib::Service service, uint16_t index, int32_t value) {
   return drive.parameters().execute(service, index, value);
 }
 

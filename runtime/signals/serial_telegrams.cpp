@@ -77,7 +77,7 @@ class SerialTelegrams final : public TelegramLine {
     for (const auto& station : plant_.stations()) {
       const SerialConfig& serial = station->config().serial;
       if (serial.x13.bus != bus_.name() && serial.xt.bus != bus_.name()) continue;
-      const DriveServer& drive = std::as_const(*station).drive();
+      const UnitInterface& drive = std::as_const(*station).drive();
       note(drive.value("810"), station->config().name);
       if (const int32_t group = drive.value("811"); group != kNoGroupAddress)
         note(group, fmt::format("group {}", group));

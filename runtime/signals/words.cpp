@@ -64,7 +64,7 @@ void add_words(Collector& out) {
 
 // As over the bus that P101 names, or P100, or else the SBus.
 Refusal set_word(Station& station, uint32_t word, int32_t value) {
-  DriveServer& drive = station.drive();
+  UnitInterface& drive = station.drive();
   DriveWords words = drive.state().po();
   words[word] = static_cast<uint16_t>(value);
   const auto control = static_cast<stdlib::ControlSource>(drive.value("101"));

@@ -30,7 +30,7 @@ constexpr SbusParameters kSbus2 = {"890", "891", "892", "894", "895", "899", "89
 
 }  // namespace
 
-SbusSettings sbus_settings(const DriveServer& drive, int sbus) {
+SbusSettings sbus_settings(const UnitInterface& drive, int sbus) {
   const stdlib::UnitType& unit = drive.unit();
   const SbusParameters& p = !unit.has(stdlib::Trait::NewSbusNumbers) ? kOlder : sbus == 1 ? kSbus1 : kSbus2;
   const auto value = [&](std::string_view number) { return number.empty() ? 0 : drive.value(number); };

@@ -30,7 +30,7 @@ struct SbusSettings {
   bool movilink = true;         // P880 and P890 can select CANopen
   uint8_t canopen_address = 0;  // P886, P896
 };
-SbusSettings sbus_settings(const DriveServer& drive, int sbus);
+SbusSettings sbus_settings(const UnitInterface& drive, int sbus);
 
 // A port attaches to its line, or takes the place `node` of one that went with a power-off.
 NodeId join(CanLine& line, std::optional<NodeId> node, std::string_view station, uint32_t baud,

@@ -128,7 +128,7 @@ bool Station::has_further_words() const {
 // A unit whose P100 or P101 names a fieldbus that is not there.
 void Station::miss_profibus() {
   const BusSource& fieldbus = bus_source(PoSource::Fieldbus);
-  const DriveServer& server = unit_.server();
+  const UnitInterface& server = unit_.server();
   if (!server.unit().has(stdlib::Trait::FieldbusCard)) return;
   for (const auto& [number, code] : {std::pair("100", stdlib::code(fieldbus.setpoint)), std::pair("101", stdlib::code(fieldbus.control))})
     if (server.value(number) == code)
@@ -198,7 +198,7 @@ Time Station::send(Time now) {
 }
 
 Ticks Station::horizon(Time first) {
-  return ticks_.way() == ManyTicks::Way::Idle ? horizon_of_idle(first) : ticks_.horizon(first);
+  return ticks_.mode() == ManyTicks::Mode::Idle ? horizon_of_idle(first) : ticks_.horizon(first);
 }
 
 // The ticks of an idle unit are over: from now on its variables may change.
@@ -210,7 +210,7 @@ Ticks Station::horizon_of_idle(Time first) {
 
 // Who is on a serial line is asked at any time.
 Ticks Station::silence(Time first) {
-  if (ticks_.way() != ManyTicks::Way::Idle && (x13_ || xt_)) return 0;
+  if (ticks_.mode() != ManyTicks::Mode::Idle && (x13_ || xt_)) return 0;
   const Ticks known = ticks_.known_silence();
   return known != 0 ? known : find_silence(first);
 }
@@ -228,7 +228,7 @@ void Station::touched() {
 
 // A unit that ran ahead when the telegram came may be idle by now: then its loops are those of the variables before.
 void Station::before_telegram() {
-  if (ticks_.way() != ManyTicks::Way::Idle) return;
+  if (ticks_.mode() != ManyTicks::Mode::Idle) return;
   settle();
   touched();
 }

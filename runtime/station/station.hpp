@@ -94,7 +94,7 @@ class Station final : private Timed, private TaskRunner {
   // Ticks are pending; a read executes them first.
   bool behind() const { return pacer_.behind(); }
   // How its next ticks are done.
-  ManyTicks::Way way() const { return ticks_.way(); }
+  ManyTicks::Mode mode() const { return ticks_.mode(); }
 
   // Stores what is still to be stored, at the end of the run. False: that failed, the journal says why.
   bool store_memory();
@@ -109,8 +109,8 @@ class Station final : private Timed, private TaskRunner {
   }
   const vm::Machine* machine() const { return door_.look().machine(); }
   // To change something; what only reads takes the others.
-  DriveServer& drive() { return door_.touch().server(); }
-  const DriveServer& drive() const { return door_.look().server(); }
+  UnitInterface& drive() { return door_.touch().server(); }
+  const UnitInterface& drive() const { return door_.look().server(); }
   uint16_t outputs() const { return door_.look().drive().outputs(); }
   int32_t shaft_position() const { return door_.look().drive().shaft_position(); }
   UnitInputs& inputs() { return door_.touch().inputs(); }

@@ -26,7 +26,7 @@ class UnitServer final : public ParameterServer, public ProcessDataServer, publi
   }
   bool has_subindices() const override { return door_.look().server().has_subindices(); }
   void take_output(Time now, OutputChannel channel, std::span<const uint16_t> words) override {
-    DriveServer& server = door_.touch().server();
+    UnitInterface& server = door_.touch().server();
     if (channel == OutputChannel::Group && !leads_ && server.follows_sbus_master()) return;
     if (!leads_) return server.take_sbus2(words);
     server.take_output(now, channel, words);
@@ -37,7 +37,7 @@ class UnitServer final : public ParameterServer, public ProcessDataServer, publi
   // What telegrams wanted and did not get, in words; each is told once.
   std::vector<std::string> take_reasons() {
     if (!door_.has_reasons()) return {};
-    DriveServer& drive = door_.touch().server();
+    UnitInterface& drive = door_.touch().server();
     std::string refused = drive.take_reason();
     std::vector<std::string> reasons = drive.take_obstacles();
     if (!refused.empty()) reasons.insert(reasons.begin(), "refused " + refused);

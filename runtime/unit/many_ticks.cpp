@@ -33,7 +33,7 @@ void ManyTicks::know_program() {
 
 bool ManyTicks::tick(Time now) {
   assert(pending_ == 0);
-  way_ = Way::InFull;
+  mode_ = Mode::InFull;
   left_ = 0;
   touched_ = false;
   if (steady_backoff_.due(now))
@@ -58,7 +58,7 @@ void ManyTicks::compare_tick(Time now) {
   unit_.finish(now);
   know_program();
   if (is_steady(before)) {
-    way_ = Way::Steady;
+    mode_ = Mode::Steady;
     commands_ = positioning_commands();
     steady_backoff_.succeed();
   } else {
@@ -103,7 +103,7 @@ Ticks ManyTicks::find_horizon(Time first) {
   settle();
   const bool touched = touched_;
   if (!is_still_steady())
-    way_ = Way::InFull;
+    mode_ = Mode::InFull;
   else
     choose(first, touched);
   return left_;
@@ -114,12 +114,12 @@ void ManyTicks::choose(Time first, bool touched) {
   const Ticks steady = unit_.drive().steady_left();
   if (unit_.drive().standing() && idle_backoff_.due(first) && try_idle(first, steady)) return;
   if (!touched && ahead_backoff_.due(first) && can_run_ahead()) {
-    way_ = Way::Ahead;
+    mode_ = Mode::Ahead;
     rates_ = unit_.rates();
     left_ = steady;
     return;
   }
-  way_ = Way::Steady;
+  mode_ = Mode::Steady;
   left_ = 1;
 }
 
@@ -139,7 +139,7 @@ bool ManyTicks::try_idle(Time first, Ticks steady) {
     return false;
   }
   idle_backoff_.succeed();
-  way_ = Way::Idle;
+  mode_ = Mode::Idle;
   left_ = static_cast<Ticks>(ticks);
   return true;
 }
@@ -155,12 +155,12 @@ bool ManyTicks::can_run_ahead() {
 
 Ticks ManyTicks::advance(Time first, Ticks most) {
   assert(most <= left_);
-  if (way_ == Way::Steady) return steady_tick(first);
-  if (way_ == Way::Ahead && unit_.machine() != nullptr) {
+  if (mode_ == Mode::Steady) return steady_tick(first);
+  if (mode_ == Mode::Ahead && unit_.machine() != nullptr) {
     if (!unit_.machine()->run_ahead(rates_.commands, most, reach_.rollback)) {
       settle();
       ahead_backoff_.fail(first, kAheadPause);
-      way_ = Way::Steady;
+      mode_ = Mode::Steady;
       return steady_tick(first);
     }
     ahead_backoff_.succeed();
@@ -184,7 +184,7 @@ Ticks ManyTicks::steady_tick(Time now) {
   unit_.run_tasks();
   if (must_look()) {
     unit_.take_variables(now);
-    way_ = Way::InFull;
+    mode_ = Mode::InFull;
   }
   unit_.store(now);
   return 1;
@@ -192,7 +192,7 @@ Ticks ManyTicks::steady_tick(Time now) {
 
 void ManyTicks::settle_pending() {
   const Ticks ticks = std::exchange(pending_, 0);
-  if (way_ == Way::Idle && unit_.machine() != nullptr)
+  if (mode_ == Mode::Idle && unit_.machine() != nullptr)
     unit_.machine()->skip_ticks(rates_.commands, idle_, ticks);
   unit_.advance(ticks);
   unit_.server().memory().set_time(last_);
@@ -204,13 +204,13 @@ void ManyTicks::touched() {
   assert(pending_ == 0);
   left_ = 0;
   idle_backoff_.try_now();
-  if (std::exchange(touched_, true) || way_ == Way::InFull) return;
+  if (std::exchange(touched_, true) || mode_ == Mode::InFull) return;
   if (is_quiet() && unit_.has_variables()) noted_.note(unit_.variables());
-  way_ = Way::Steady;
+  mode_ = Mode::Steady;
 }
 
 bool ManyTicks::minds(uint32_t first) const {
-  return way_ == Way::Idle || is_system_variable(first) || is_system_variable(first + 1);
+  return mode_ == Mode::Idle || is_system_variable(first) || is_system_variable(first + 1);
 }
 
 void ManyTicks::find_reach(Time first) {

@@ -16,7 +16,7 @@ namespace ipos::runtime {
 class ManyTicks final {
  public:
   // How the next ticks are done.
-  enum class Way : uint8_t {
+  enum class Mode : uint8_t {
     InFull,  // each of them in full
     Steady,  // drive and positioning decide nothing; timers and tasks tick by tick
     Ahead,   // the tasks, too, run for many ticks, and drive and positioning follow when they are asked for
@@ -32,7 +32,7 @@ class ManyTicks final {
   bool tick(Time now);
   Ticks horizon(Time first) {
     if (left_ != 0) return left_;
-    return way_ == Way::InFull ? 0 : find_horizon(first);
+    return mode_ == Mode::InFull ? 0 : find_horizon(first);
   }
   Ticks advance(Time first, Ticks most);
   void settle() {
@@ -44,23 +44,23 @@ class ManyTicks final {
   Ticks silence(Time first, bool waits);
   Ticks known_silence() const {
     if (left_ == 0) return 0;
-    return way_ == Way::Idle ? left_ : lets_wait() ? kLatest : 0;
+    return mode_ == Mode::Idle ? left_ : lets_wait() ? kLatest : 0;
   }
-  bool lets_wait() const { return way_ == Way::Ahead && left_ != 0 && !reach_.may_fault; }
+  bool lets_wait() const { return mode_ == Mode::Ahead && left_ != 0 && !reach_.may_fault; }
 
-  Way way() const { return way_; }
+  Mode mode() const { return mode_; }
 
   // --- what others may do while it is not settled ---
   // The variables are those of the present.
-  bool shows_variables() const { return way_ != Way::Idle || idle_.steady; }
+  bool shows_variables() const { return mode_ != Mode::Idle || idle_.steady; }
   // They stay as they are until somebody writes.
-  bool variables_rest() const { return way_ == Way::Idle && left_ != 0 && idle_.steady; }
+  bool variables_rest() const { return mode_ == Mode::Idle && left_ != 0 && idle_.steady; }
   // Writing this variable and the next one changes what the next ticks do beyond what the tasks read.
   bool minds(uint32_t first) const;
   // Telegrams have variables that are not there before settle().
   bool sends_pending() const { return pending_ != 0 && (reach_.sends_position || !shows_variables()); }
   // The tasks go round for ever, whatever comes.
-  bool is_endless() const { return way_ == Way::Ahead && left_ != 0 && !reach_.may_stop; }
+  bool is_endless() const { return mode_ == Mode::Ahead && left_ != 0 && !reach_.may_stop; }
 
  private:
   // What is compared with what a tick leaves.
@@ -91,7 +91,7 @@ class ManyTicks final {
   }
 
   Unit& unit_;
-  Way way_ = Way::InFull;
+  Mode mode_ = Mode::InFull;
   Ticks left_ = 0;         // ticks that are done in this way
   Ticks pending_ = 0;      // ticks that drive and positioning, and idle tasks, are behind
   Time last_ = 0;          // the last one of them

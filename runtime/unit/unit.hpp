@@ -18,7 +18,7 @@
 #include "runtime/services/mirrored_values.hpp"
 #include "runtime/services/pid_block.hpp"
 #include "runtime/services/timers.hpp"
-#include "runtime/unit/drive_server.hpp"
+#include "runtime/unit/unit_interface.hpp"
 #include "runtime/unit/execution.hpp"
 #include "runtime/unit/unit_inputs.hpp"
 #include "vm/exec/machine.hpp"
@@ -99,8 +99,8 @@ class Unit final {
   std::span<int32_t> variables() { return drive_.memory().variables().words(); }
   std::span<const int32_t> variables() const { return drive_.memory().variables().words(); }
   bool has_variables() const { return config_.type.variables != 0; }
-  DriveServer& server() { return drive_; }
-  const DriveServer& server() const { return drive_; }
+  UnitInterface& server() { return drive_; }
+  const UnitInterface& server() const { return drive_; }
   Drive& drive() { return drive_.state(); }
   const Drive& drive() const { return drive_.state(); }
   UnitInputs& inputs() { return inputs_; }
@@ -132,7 +132,7 @@ class Unit final {
   void begin_variables();
   void start_machine();
   void choose_engine(const vm::VerifiedImage& program);
-  StationServices services();
+  ProgramServices services();
   void report_drive(Time now);
   void report_reasons(Time now);
   void report_fault(Time now);
@@ -148,7 +148,7 @@ class Unit final {
   std::optional<vm::Rates> rates_;
   UnitInputs inputs_;
   Timers timers_;
-  DriveServer drive_;
+  UnitInterface drive_;
   std::optional<vm::Machine> machine_;
   std::optional<PositioningService> positioning_;  // of a unit that has it
 

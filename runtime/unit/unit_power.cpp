@@ -45,7 +45,7 @@ void Unit::power_off() {
   movilink_.stop();
 }
 
-StationServices Unit::services() {
+ProgramServices Unit::services() {
   return {clock_,
           drive(),
           drive_.parameters(),

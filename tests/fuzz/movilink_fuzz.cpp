@@ -5,7 +5,7 @@
 #include "runtime/bus/movilink/sbus_master.hpp"
 #include "runtime/bus/movilink/sbus_slave.hpp"
 #include "runtime/bus/movilink/variable_telegram.hpp"
-#include "runtime/unit/drive_server.hpp"
+#include "runtime/unit/unit_interface.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 using namespace ipos::runtime;  // NOLINT
@@ -64,7 +64,7 @@ void check_codecs(Input input) {
 void check_slave(Input input) {
   const stdlib::UnitType* units[] = {stdlib::find_unit(uint8_t{1}), stdlib::find_unit(uint8_t{3}),
                                      stdlib::find_unit(uint8_t{4})};
-  DriveServer drive(*units[input.u8() % 3]);
+  UnitInterface drive(*units[input.u8() % 3]);
   EventQueue queue(kEvents);
   Wire wire;
   SlaveSettings settings{static_cast<uint8_t>(input.u8() % 64), static_cast<uint8_t>(input.u8() % 64),

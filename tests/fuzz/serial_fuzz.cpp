@@ -9,7 +9,7 @@
 #include "runtime/bus/movilink/line_check.hpp"
 #include "runtime/bus/movilink/serial_master.hpp"
 #include "runtime/bus/movilink/serial_slave.hpp"
-#include "runtime/unit/drive_server.hpp"
+#include "runtime/unit/unit_interface.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 using namespace ipos::runtime;  // NOLINT
@@ -66,7 +66,7 @@ struct Wire final : SerialSender {
 void check_slave(Input input) {
   const stdlib::UnitType* units[] = {stdlib::find_unit(uint8_t{1}), stdlib::find_unit(uint8_t{3}),
                                      stdlib::find_unit(uint8_t{4})};
-  DriveServer drive(*units[input.u8() % 3]);
+  UnitInterface drive(*units[input.u8() % 3]);
   EventQueue queue(kEvents);
   Wire wire;
   const SerialSlaveSettings settings{static_cast<uint8_t>(input.u8() % 100),
@@ -119,7 +119,7 @@ class Station final : public SerialNode, public RequesterClient, public Movilink
             "a failed exchange stores nothing");
   }
   SerialLinePort port;
-  DriveServer drive;
+  UnitInterface drive;
   SerialSlave slave;
   SerialRequester requester;
   SerialMaster master;

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "runtime/signals/parameter_channel.hpp"
-#include "runtime/unit/drive_server.hpp"
+#include "runtime/unit/unit_interface.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/input/plant_source.hpp"
 #include "tools/parameters/running_station.hpp"
@@ -84,7 +84,7 @@ class StationAccess final : public ParameterAccess {
 
   runtime::StationConfig config_;
   std::string plant_;
-  runtime::DriveServer drive_;
+  runtime::UnitInterface drive_;
 };
 
 const runtime::StationConfig& choose(const runtime::PlantFile& file, const std::string& plant,

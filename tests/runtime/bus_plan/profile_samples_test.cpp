@@ -410,7 +410,7 @@ TEST(ProfileSamples, P751ScalesTheSlave) {
     EXPECT_EQ(slave.position < 0, p751 < 0) << p751;
   }
   // -10000 to 10000.
-  DriveServer drive(*stdlib::find_unit("md60a"));
+  UnitInterface drive(*stdlib::find_unit("md60a"));
   for (const int good : {-10'000, 10'000}) EXPECT_FALSE(drive.set_parameter("P751", good).has_value());
   for (const int bad : {-10'001, 10'001}) EXPECT_TRUE(drive.set_parameter("P751", bad).has_value());
 }

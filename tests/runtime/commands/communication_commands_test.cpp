@@ -38,7 +38,7 @@ struct BusRig : ProgramRig {
   }
   Outbox outbox;
   VariableObjects first, second;
-  StationServices with_buses;
+  ProgramServices with_buses;
   SystemCommands bus_commands;
   vm::Machine program;
 };

@@ -32,7 +32,7 @@ struct AxisRig : ProgramRig {
     for (int n = 0; n < 3; ++n) go_on(0);
     program.start();
   }
-  const StationServices& with_positioning() {
+  const ProgramServices& with_positioning() {
     positioning_services.positioning = &positioning;
     return positioning_services;
   }
@@ -59,7 +59,7 @@ struct AxisRig : ProgramRig {
 
   PositioningService service;
   PositioningCommands positioning;
-  StationServices positioning_services;
+  ProgramServices positioning_services;
   SystemCommands axis_commands;
   vm::Machine program;
   Time now = 0;

@@ -19,7 +19,7 @@ inline std::string picture(const runtime::Plant& plant) {
   std::string out;
   for (const auto& owned : plant.stations()) {
     const runtime::Station& station = *owned;
-    const runtime::DriveServer& drive = station.drive();
+    const runtime::UnitInterface& drive = station.drive();
     out += fmt::format("{}: {:04x} {:04x}", station.config().name, station.status_word_1(),
                        drive.state().outputs());
     for (const stdlib::Parameter& row : drive.parameters().table().rows())

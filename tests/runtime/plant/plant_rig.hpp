@@ -77,15 +77,15 @@ inline bool told(const runtime::Plant& plant, const std::string& text) {
 
 // Ticks are left out: the program waits, has ended, or goes round in a loop that leads nowhere.
 inline bool is_asleep(const runtime::Station& station) {
-  return station.behind() && station.way() == runtime::ManyTicks::Way::Idle;
+  return station.behind() && station.mode() == runtime::ManyTicks::Mode::Idle;
 }
 // The tasks run for many ticks, and drive and positioning follow.
 inline bool runs_ahead(const runtime::Station& station) {
-  return station.behind() && station.way() == runtime::ManyTicks::Way::Ahead;
+  return station.behind() && station.mode() == runtime::ManyTicks::Mode::Ahead;
 }
 // Drive and positioning decide nothing.
 inline bool is_steady(const runtime::Station& station) {
-  return station.way() != runtime::ManyTicks::Way::InFull;
+  return station.mode() != runtime::ManyTicks::Mode::InFull;
 }
 
 // Every millisecond of every station in its turn.

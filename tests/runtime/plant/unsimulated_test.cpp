@@ -34,7 +34,7 @@ struct Reading {
   bool operator==(const Reading&) const = default;
 };
 
-Reading read(const DriveServer& unit) {
+Reading read(const UnitInterface& unit) {
   Reading reading;
   reading.drive = SettingsReader(unit.parameters()).read(unit.parameters());
   if (unit.unit().has(stdlib::Trait::Positioning))
@@ -78,7 +78,7 @@ bool is_read(const stdlib::UnitType& type, const Parameter& parameter) {
     if (const Parameter* found = stdlib::response_parameter(stdlib::parameter_table(type), fault);
         found != nullptr && found->number == parameter.number)
       return true;
-  DriveServer unit(type);
+  UnitInterface unit(type);
   const Reading before = read(unit);
   for (const int64_t value : other_values(parameter))
     if (unit.parameters().preset(parameter.index, static_cast<int32_t>(value)) && !(read(unit) == before))
@@ -118,7 +118,7 @@ TEST(Unsimulated, RowsFitTheLists) {
       for (const stdlib::ValueRange& range : one.values)
         for (int64_t value = range.minimum; value <= range.maximum; ++value)
           EXPECT_TRUE(
-              DriveServer(type).parameters().preset(one.parameter->index, static_cast<int32_t>(value)))
+              UnitInterface(type).parameters().preset(one.parameter->index, static_cast<int32_t>(value)))
               << type.name << " P" << one.parameter->number << " = " << value;
     }
   EXPECT_EQ(used.size(), stdlib::unsimulated_rows().size());
@@ -127,12 +127,12 @@ TEST(Unsimulated, RowsFitTheLists) {
 // The factory setting says nothing; a setting and a write say it once each reason.
 TEST(Unsimulated, ToldOncePerParameter) {
   for (const stdlib::UnitType& type : stdlib::unit_types()) {
-    EXPECT_TRUE(DriveServer(type).parameters().tell_settings().empty()) << type.name;
+    EXPECT_TRUE(UnitInterface(type).parameters().tell_settings().empty()) << type.name;
     for (const Unsimulated& one : stdlib::unsimulated(type)) {
       int32_t value = 0;
       for (const int64_t other : other_values(*one.parameter))
         if (one.applies(static_cast<int32_t>(other)) &&
-            DriveServer(type).parameters().preset(one.parameter->index, static_cast<int32_t>(other)))
+            UnitInterface(type).parameters().preset(one.parameter->index, static_cast<int32_t>(other)))
           value = static_cast<int32_t>(other);
       ASSERT_TRUE(one.applies(value)) << type.name << " P" << one.parameter->number;
       const std::vector<std::string> said{one.text(value)};
@@ -174,7 +174,7 @@ TEST(Unsimulated, TextOfASetting) {
 // the value it has changes nothing, and the units whose manuals say nothing of it stay as they are (ours).
 TEST(ProcessDataDescription, ChangeBlocksProcessData) {
   for (const char* name : {"md60a", "mc07", "mdxb"}) {
-    DriveServer unit(*stdlib::find_unit(std::string_view(name)));
+    UnitInterface unit(*stdlib::find_unit(std::string_view(name)));
     ParameterStore& parameters = unit.parameters();
     const bool newer = std::string_view(name) == "mdxb";
     for (uint16_t index = 8304; index <= 8309; ++index) {
@@ -195,7 +195,7 @@ TEST(ProcessDataDescription, ChangeBlocksProcessData) {
   EXPECT_EQ(follower.value("871"), 1);
   EXPECT_EQ(follower.value("876"), 1);
   // Power off and on: the stored ON counts again (ours).
-  DriveServer unit(*stdlib::find_unit("mdxb"));
+  UnitInterface unit(*stdlib::find_unit("mdxb"));
   ASSERT_TRUE(unit.parameters().execute(ParameterService::Write, 8306, 1));
   unit.parameters().power_cycle();
   EXPECT_EQ(unit.value("876"), 1);

@@ -252,7 +252,7 @@ main() {
 }
 )");
   rig.run(10);
-  const runtime::DriveServer& server = rig.station().drive();
+  const runtime::UnitInterface& server = rig.station().drive();
   EXPECT_EQ(server.value("911"), 1'234);
   EXPECT_EQ(server.value("912"), 321);
   EXPECT_EQ(server.value("913"), 1'000'500);
@@ -271,7 +271,7 @@ main() {
 }
 )");
   rig.run(10);
-  const runtime::DriveServer& server = rig.station().drive();
+  const runtime::UnitInterface& server = rig.station().drive();
   EXPECT_EQ(server.value("911"), 10);
   EXPECT_EQ(server.value("912"), 20'000);
   EXPECT_EQ(server.value("913"), 5'000'000);

@@ -6,7 +6,7 @@
 
 #include <array>
 
-#include "runtime/unit/drive_server.hpp"
+#include "runtime/unit/unit_interface.hpp"
 #include "stdlib/unit_types.hpp"
 
 namespace ipos::runtime {
@@ -41,7 +41,7 @@ struct MirrorRig {
       EXPECT_EQ(h[pair.variable], stored(pair.parameter)) << pair.parameter;
   }
 
-  DriveServer server;
+  UnitInterface server;
   MirroredValues mirrored{server.parameters()};
   std::array<int32_t, 1024> h{};
 };

@@ -10,7 +10,7 @@
 #include "runtime/commands/system_commands.hpp"
 #include "runtime/services/mirrored_values.hpp"
 #include "runtime/services/pid_block.hpp"
-#include "runtime/unit/drive_server.hpp"
+#include "runtime/unit/unit_interface.hpp"
 #include "runtime/unit/drive_variables.hpp"
 #include "stdlib/system_variables.hpp"
 #include "vm/sched/scheduler.hpp"
@@ -35,7 +35,7 @@ class ProgramRig {
   ProgramRig(const ProgramRig&) = delete;
   ProgramRig& operator=(const ProgramRig&) = delete;
 
-  runtime::StationServices services(runtime::RetainedMemory& memory) {
+  runtime::ProgramServices services(runtime::RetainedMemory& memory) {
     return {clock, drive, parameters, timers, memory, movilink, {}};
   }
 
@@ -72,7 +72,7 @@ class ProgramRig {
   const stdlib::UnitType& unit;
   runtime::EventQueue clock;
   runtime::Journal journal;
-  runtime::DriveServer server;
+  runtime::UnitInterface server;
   runtime::ParameterStore& parameters = server.parameters();
   runtime::Drive& drive = server.state();
   runtime::MovilinkCommand movilink;

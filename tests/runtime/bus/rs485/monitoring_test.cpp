@@ -112,7 +112,7 @@ TEST(SerialMonitoring, MonitoringBeginsWithTheFirstCyclicRequest) {
   PROVES("MDB-PAR-11");
   const PlantRun fresh(unit("mdxb", ""));
   EXPECT_EQ(fresh.plant->stations()[0]->drive().value("812"), 0);
-  DriveServer drive(*stdlib::find_unit("mdxb"));
+  UnitInterface drive(*stdlib::find_unit("mdxb"));
   EXPECT_FALSE(drive.set_parameter("P812", 650'000).has_value());
   EXPECT_TRUE(drive.set_parameter("P812", 650'010).has_value());
   PlantRun run(unit("mdxb", "P812 = 2000\n"));

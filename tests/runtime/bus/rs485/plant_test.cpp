@@ -166,7 +166,7 @@ TEST(SerialPlan, AddressesAndMasterSlave) {
 
 TEST(SerialPlant, GroupAddressesOfAUnit) {
   PROVES("RS485-10");
-  DriveServer drive(*stdlib::find_unit("md60a"));
+  UnitInterface drive(*stdlib::find_unit("md60a"));
   EXPECT_EQ(drive.value("811"), 100);
   for (const int good : {100, 101, 150, 199})
     EXPECT_FALSE(drive.set_parameter("P811", good).has_value()) << good;
@@ -403,7 +403,7 @@ TEST(SerialPlant, RequestsOfTwoMasters) {
 }
 
 TEST(SerialPlant, RatesOfTheCanInterfaces) {
-  DriveServer drive(*stdlib::find_unit("mdxb"));
+  UnitInterface drive(*stdlib::find_unit("mdxb"));
   for (const char* parameter : {"P884", "P894"}) {
     for (int code = 0; code <= 3; ++code) EXPECT_FALSE(drive.set_parameter(parameter, code).has_value());
     for (const int code : {-1, 4, 500}) EXPECT_TRUE(drive.set_parameter(parameter, code).has_value());

@@ -1,6 +1,6 @@
 // Roots run at once with each other: main, task 2, task 3, each interrupt of task 1, and each routine of a
 // variable interrupt. Functions started on the same task replace one another.
-#include "compiler/sema/onlookers.hpp"
+#include "compiler/sema/observers.hpp"
 
 #include <fmt/format.h>
 
@@ -83,7 +83,7 @@ std::vector<bool> find_starting(const checked::Program& program, const CallGraph
 
 }  // namespace
 
-Onlookers::Onlookers(Context& context) {
+Observers::Observers(Context& context) {
   const checked::Program& program = context.program;
   const CallGraph graph = call_graph(program);
   const std::vector<bool> used = reachable(graph, program.main);
@@ -124,51 +124,51 @@ Onlookers::Onlookers(Context& context) {
   Watched watched = find_watched(context, used);
   handed_over_ = std::move(watched.members);
   for (const auto& [number, watch] : watched.variables)
-    watched_.emplace(number, Onlooker{watch.who, watch.span, "its number is handed over here"});
+    watched_.emplace(number, Observer{watch.who, watch.span, "its number is handed over here"});
   if (watched.anywhere)
     anywhere_ =
-        Onlooker{watched.anywhere->who, watched.anywhere->span, "the number is known at run time only"};
+        Observer{watched.anywhere->who, watched.anywhere->span, "the number is known at run time only"};
   accesses_ = std::move(context.accesses);
   raw_names_ = std::move(context.raw_names);
   indirect_ = std::move(context.indirect);
 }
 
-bool Onlookers::run_at_once(size_t one, size_t other) const {
+bool Observers::run_at_once(size_t one, size_t other) const {
   const uint64_t both = roots_[one] | roots_[other];
   if (roots_[one] == 0 || roots_[other] == 0) return false;
   return !std::has_single_bit(both) || both >> kManyRoots != 0;
 }
 
-std::optional<Onlooker> Onlookers::other_root(size_t function, uint32_t variable) const {
+std::optional<Observer> Observers::other_root(size_t function, uint32_t variable) const {
   const auto found = accesses_.find(variable);
   if (found == accesses_.end()) return std::nullopt;
   for (const auto& list : {&Access::readers, &Access::writers})
     for (const AccessPlace& place : found->second.*list) {
       if (!run_at_once(function, place.function)) continue;
       if (place.function == function)
-        return Onlooker{fmt::format("'{}' runs more than once at a time", names_[function]), place.span,
+        return Observer{fmt::format("'{}' runs more than once at a time", names_[function]), place.span,
                         "one of its uses"};
-      return Onlooker{fmt::format("'{}' uses it", names_[place.function]), place.span, "used here", false,
+      return Observer{fmt::format("'{}' uses it", names_[place.function]), place.span, "used here", false,
                       list == &Access::writers};
     }
   for (const AccessPlace& taken : found->second.takers) {
     if (handed_over_.contains(taken.into)) continue;
     for (const AccessPlace& pointer : indirect_)
       if (run_at_once(function, pointer.function))
-        return Onlooker{fmt::format("'{}' uses variables by their numbers", names_[pointer.function]),
+        return Observer{fmt::format("'{}' uses variables by their numbers", names_[pointer.function]),
                         taken.span, "its number is taken here"};
   }
   if (anywhere_ && !found->second.takers.empty()) return anywhere_;
   return std::nullopt;
 }
 
-std::optional<Onlooker> Onlookers::find(size_t function, uint32_t variable, bool early) const {
+std::optional<Observer> Observers::find(size_t function, uint32_t variable, bool early) const {
   if (!early) {
     if (auto other = other_root(function, variable)) return other;
     if (const auto watched = watched_.find(variable); watched != watched_.end()) return watched->second;
   }
   if (const auto raw = raw_names_.find(variable); raw != raw_names_.end())
-    return Onlooker{fmt::format("a bus may read it as parameter {}", stdlib::kFirstVariables + variable), raw->second,
+    return Observer{fmt::format("a bus may read it as parameter {}", stdlib::kFirstVariables + variable), raw->second,
                     "used by its number here", true};
   return std::nullopt;
 }

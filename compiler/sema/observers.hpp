@@ -16,7 +16,7 @@
 
 namespace ipos::compiler {
 
-struct Onlooker {
+struct Observer {
   std::string who;           // "'Reader' uses it"
   Span span;                 // where that can be read
   std::string note;          // what is to be read there
@@ -24,20 +24,20 @@ struct Onlooker {
   bool writes_only = false;  // does not read it
 };
 
-class Onlookers {
+class Observers {
  public:
   // Last of the checks: the record of accesses moves here.
-  explicit Onlookers(Context& context);
+  explicit Observers(Context& context);
 
   // Who sees a variable that `function` writes, if anybody. `early`: before anything is started.
-  std::optional<Onlooker> find(size_t function, uint32_t variable, bool early) const;
+  std::optional<Observer> find(size_t function, uint32_t variable, bool early) const;
 
   // Whether a statement of main comes before anything is started, or everything that calls a function does.
   bool is_early(const checked::Stmt& stmt) const { return early_.contains(&stmt); }
   bool is_early(size_t function) const { return !late_[function]; }
 
  private:
-  std::optional<Onlooker> other_root(size_t function, uint32_t variable) const;
+  std::optional<Observer> other_root(size_t function, uint32_t variable) const;
   bool run_at_once(size_t one, size_t other) const;
 
   std::unordered_map<uint32_t, Access> accesses_;
@@ -48,8 +48,8 @@ class Onlookers {
   std::set<const checked::Stmt*> early_;  // statements
   std::vector<bool> late_;                // functions
   std::set<uint32_t> handed_over_;        // members that hold numbers for the unit, not for pointers
-  std::unordered_map<uint32_t, Onlooker> watched_;  // variables the unit looks at by itself
-  std::optional<Onlooker> anywhere_;                // it does, and which ones is known at run time only
+  std::unordered_map<uint32_t, Observer> watched_;  // variables the unit looks at by itself
+  std::optional<Observer> anywhere_;                // it does, and which ones is known at run time only
 };
 
 }  // namespace ipos::compiler

@@ -1,6 +1,6 @@
 // The drive of a unit as telegrams see it: why process data have no effect, told once for each bus, the slaves of
 // master/slave operation, and the speed of the tasks.
-#include "runtime/unit/drive_server.hpp"
+#include "runtime/unit/unit_interface.hpp"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ struct Served {
       return reason.find(text) != std::string::npos;
     }));
   }
-  DriveServer server;
+  UnitInterface server;
 };
 
 constexpr uint16_t kEnable[] = {6, 1000, 0};
@@ -33,14 +33,14 @@ constexpr uint16_t kEnable[] = {6, 1000, 0};
 struct BusRow {
   const char* name;
   int32_t setpoint, control;
-  std::function<void(DriveServer&)> send;
+  std::function<void(UnitInterface&)> send;
 };
 std::vector<BusRow> bus_rows() {
   return {
-      {"SBus", 10, 3, [](DriveServer& s) { s.take_output(0, OutputChannel::Single, kEnable); }},
-      {"SBus 2", 10, 3, [](DriveServer& s) { s.take_sbus2(kEnable); }},
-      {"RS-485", 2, 1, [](DriveServer& s) { s.rs485_data().take_output(0, OutputChannel::Single, kEnable); }},
-      {"fieldbus", 3, 2, [](DriveServer& s) { s.take_fieldbus(kEnable); }}};
+      {"SBus", 10, 3, [](UnitInterface& s) { s.take_output(0, OutputChannel::Single, kEnable); }},
+      {"SBus 2", 10, 3, [](UnitInterface& s) { s.take_sbus2(kEnable); }},
+      {"RS-485", 2, 1, [](UnitInterface& s) { s.rs485_data().take_output(0, OutputChannel::Single, kEnable); }},
+      {"fieldbus", 3, 2, [](UnitInterface& s) { s.take_fieldbus(kEnable); }}};
 }
 
 TEST(Obstacles, EverySettingThatKeepsProcessDataAway) {
@@ -171,7 +171,7 @@ TEST(Obstacles, OfMovitrac31) {
 }
 
 // Words of a speed (P870 to P872): SPEED and SPEED [%].
-TEST(DriveServer, KnowsItsSpeedWord) {
+TEST(UnitInterface, KnowsItsSpeedWord) {
   for (int32_t assignment = 0; assignment <= 12; ++assignment)
     for (const char* number : {"870", "871", "872"}) {
       Served unit("md60a");
@@ -185,7 +185,7 @@ TEST(DriveServer, KnowsItsSpeedWord) {
 }
 
 // Commands a millisecond: task 1 has 1 + P938, task 2 has 2 + P939, and both together add 9 at most (IPOSplus p. 44).
-TEST(DriveServer, RatesOfTheTasks) {
+TEST(UnitInterface, RatesOfTheTasks) {
   Served unit;
   for (int32_t first = 0; first <= 9; ++first)
     for (int32_t second = 0; second <= 9; ++second) {
@@ -197,7 +197,7 @@ TEST(DriveServer, RatesOfTheTasks) {
     }
 }
 
-TEST(DriveServer, SetsParametersBeforePowerOn) {
+TEST(UnitInterface, SetsParametersBeforePowerOn) {
   Served unit;
   EXPECT_EQ(unit.server.set_parameter("P9999", 1).value_or(""), "unit mdxb has no parameter P9999");
   for (const char* name : {"P302", "302"}) {
@@ -212,7 +212,7 @@ TEST(DriveServer, SetsParametersBeforePowerOn) {
 }
 
 // Byte 1 of the channel is the subindex of MOVIDRIVE B; on others it is reserved, told once and without effect.
-TEST(DriveServer, TheReservedByteIsIgnored) {
+TEST(UnitInterface, TheReservedByteIsIgnored) {
   for (const char* name : {"md60a", "mdxb"}) {
     Served unit(name);
     const bool told = name == std::string_view("md60a");
@@ -227,7 +227,7 @@ TEST(DriveServer, TheReservedByteIsIgnored) {
   }
 }
 
-TEST(DriveServer, CountsSyncTelegrams) {
+TEST(UnitInterface, CountsSyncTelegrams) {
   Served unit;
   EXPECT_EQ(unit.server.syncs(), 0U);
   for (uint32_t n = 1; n <= 3; ++n) {

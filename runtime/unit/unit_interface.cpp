@@ -1,5 +1,5 @@
 // Bridges between the bus's, the drive's and the VM's view of one unit.
-#include "runtime/unit/drive_server.hpp"
+#include "runtime/unit/unit_interface.hpp"
 
 #include <fmt/format.h>
 
@@ -13,16 +13,16 @@ namespace ipos::runtime {
 namespace codes = stdlib::return_codes;
 
 // A byte of told_obstacles_ for each bus.
-struct DriveServer::DataBus {
+struct UnitInterface::DataBus {
   PoSource bus;
   uint32_t told_shift;
   static const DataBus sbus, rs485, fieldbus;
 };
-constexpr DriveServer::DataBus DriveServer::DataBus::sbus{PoSource::Sbus, 0};
-constexpr DriveServer::DataBus DriveServer::DataBus::rs485{PoSource::Rs485, 8};
-constexpr DriveServer::DataBus DriveServer::DataBus::fieldbus{PoSource::Fieldbus, 16};
+constexpr UnitInterface::DataBus UnitInterface::DataBus::sbus{PoSource::Sbus, 0};
+constexpr UnitInterface::DataBus UnitInterface::DataBus::rs485{PoSource::Rs485, 8};
+constexpr UnitInterface::DataBus UnitInterface::DataBus::fieldbus{PoSource::Fieldbus, 16};
 
-DriveServer::DriveServer(const stdlib::UnitType& unit, const MachineData& machine, DriveOptions options)
+UnitInterface::UnitInterface(const stdlib::UnitType& unit, const MachineData& machine, DriveOptions options)
     : parameters_(unit, options),
       memory_(parameters_),
       state_(parameters_, machine),
@@ -30,13 +30,13 @@ DriveServer::DriveServer(const stdlib::UnitType& unit, const MachineData& machin
       task1_speed_(index_of("938")),
       task2_speed_(index_of("939")) {}
 
-void DriveServer::power_cycle() {
+void UnitInterface::power_cycle() {
   memory_.reload();
   parameters_.power_cycle();
   state_.power_cycle();
 }
 
-std::optional<std::string> DriveServer::set_parameter(std::string_view parameter, int32_t value) {
+std::optional<std::string> UnitInterface::set_parameter(std::string_view parameter, int32_t value) {
   const stdlib::Parameter* row = parameters_.table().find(parameter);
   if (row == nullptr || row->index == 0)
     return fmt::format("unit {} has no parameter {}", parameters_.unit().name, parameter);
@@ -45,14 +45,14 @@ std::optional<std::string> DriveServer::set_parameter(std::string_view parameter
   return parameters_.explain(static_cast<uint8_t>(ParameterService::Write), row->index, value, reply.error());
 }
 
-uint16_t DriveServer::index_of(std::string_view number) const {
+uint16_t UnitInterface::index_of(std::string_view number) const {
   const stdlib::Parameter* row = parameters_.table().find(number);
   return row == nullptr ? 0 : row->index;
 }
 
-int32_t DriveServer::value(std::string_view number) const { return parameters_.value(index_of(number)); }
+int32_t UnitInterface::value(std::string_view number) const { return parameters_.value(index_of(number)); }
 
-void DriveServer::find_rates() const {
+void UnitInterface::find_rates() const {
   rates_for_ = parameters_.changes();
   constexpr int32_t kSharedCommands = 9;
   const int32_t first = parameters_.value(task1_speed_);
@@ -61,17 +61,17 @@ void DriveServer::find_rates() const {
   rates_.commands[1] = static_cast<uint32_t>(second + 2);
 }
 
-void DriveServer::connect_program(vm::Machine& machine) {
+void UnitInterface::connect_program(vm::Machine& machine) {
   memory_.variables().use(machine.variables());
   memory_.program().watch(&machine);
 }
 
-void DriveServer::disconnect_program() {
+void UnitInterface::disconnect_program() {
   memory_.variables().park();
   memory_.program().watch(nullptr);
 }
 
-tl::expected<int32_t, ReturnCode> DriveServer::serve(Time now, const ParameterRequest& request) {
+tl::expected<int32_t, ReturnCode> UnitInterface::serve(Time now, const ParameterRequest& request) {
   memory_.set_time(now);
   const auto service = static_cast<uint8_t>(request.service);
   const ParameterReply reply = parameters_.execute(service, request.index, request.value);
@@ -85,7 +85,7 @@ tl::expected<int32_t, ReturnCode> DriveServer::serve(Time now, const ParameterRe
   return reply;
 }
 
-void DriveServer::take_output(Time /*now*/, OutputChannel channel, std::span<const uint16_t> words) {
+void UnitInterface::take_output(Time /*now*/, OutputChannel channel, std::span<const uint16_t> words) {
   const bool slave = channel == OutputChannel::Group && follows_sbus_master();
   look_for_obstacles(DataBus::sbus, slave);
   if (!slave) return state_.take_po(PoSource::Sbus, words);
@@ -94,19 +94,19 @@ void DriveServer::take_output(Time /*now*/, OutputChannel channel, std::span<con
   state_.take_po(PoSource::Sbus, scaled_for_slave(scaled, value("751")));
 }
 
-void DriveServer::take_sbus2(std::span<const uint16_t> words) {
+void UnitInterface::take_sbus2(std::span<const uint16_t> words) {
   look_for_obstacles(DataBus::sbus, false);
   state_.take_po(PoSource::Sbus2, words);
 }
 
-bool DriveServer::follows_sbus_master() const {
+bool UnitInterface::follows_sbus_master() const {
   return stdlib::follows_sbus_master(state_.settings().setpoint_source);
 }
 
-bool DriveServer::is_slave() const { return is_master_slave(state_.settings()); }
+bool UnitInterface::is_slave() const { return is_master_slave(state_.settings()); }
 
 // A slave of master/slave operation has only parameters over its fieldbus card (MDX60B/61B p. 29).
-void DriveServer::take_fieldbus(std::span<const uint16_t> words) {
+void UnitInterface::take_fieldbus(std::span<const uint16_t> words) {
   if (is_slave())
     return tell_once(
         Obstacle::Slave, DataBus::fieldbus.told_shift,
@@ -115,7 +115,7 @@ void DriveServer::take_fieldbus(std::span<const uint16_t> words) {
   state_.take_po(PoSource::Fieldbus, words);
 }
 
-void DriveServer::show_fieldbus_card(uint8_t address) {
+void UnitInterface::show_fieldbus_card(uint8_t address) {
   constexpr int32_t kFieldbusCard = 2, kProfibusDp = 5;  // codes of P072 and P091
   if (unit().has(stdlib::Trait::OwnParameterNumbers)) return parameters_.set_display(index::kM31Address, address);
   parameters_.set_display(index::kOption1, kFieldbusCard);
@@ -124,7 +124,7 @@ void DriveServer::show_fieldbus_card(uint8_t address) {
 }
 
 // P876, P101 and P100 (1053 1610 p. 41); P841 of MOVITRAC 31 stands for them.
-void DriveServer::look_for_obstacles(const DataBus& bus, bool slave) {
+void UnitInterface::look_for_obstacles(const DataBus& bus, bool slave) {
   constexpr int32_t kOn = 1;
   const Settings& settings = state_.settings();
   const BusSource& wanted = bus_source(bus.bus);
@@ -145,7 +145,7 @@ void DriveServer::look_for_obstacles(const DataBus& bus, bool slave) {
     obstruct(bus, Obstacle::SetpointSource, "the setpoints have no effect", "100", setpoint);
 }
 
-void DriveServer::obstruct(const DataBus& bus, Obstacle obstacle, std::string_view what,
+void UnitInterface::obstruct(const DataBus& bus, Obstacle obstacle, std::string_view what,
                            std::string_view number, int32_t wanted) {
   if (was_told(obstacle, bus.told_shift)) return;
   const stdlib::Parameter* row = parameters_.table().find(number);
@@ -155,13 +155,13 @@ void DriveServer::obstruct(const DataBus& bus, Obstacle obstacle, std::string_vi
                         stdlib::parameter_text(*row, value(number)), stdlib::parameter_text(*row, wanted)));
 }
 
-void DriveServer::tell_once(Obstacle obstacle, uint32_t shift, std::string_view text) {
+void UnitInterface::tell_once(Obstacle obstacle, uint32_t shift, std::string_view text) {
   if (was_told(obstacle, shift)) return;
   told_obstacles_ |= told_bit(obstacle, shift);
   obstacles_.emplace_back(text);
 }
 
-bool DriveServer::has_po_word(std::initializer_list<PoAssignment> wanted) const {
+bool UnitInterface::has_po_word(std::initializer_list<PoAssignment> wanted) const {
   for (uint32_t n = 0; n < kProcessWords; ++n) {
     const int32_t word = parameters_.value(static_cast<uint16_t>(index::kPo1Description + n));
     if (std::find(wanted.begin(), wanted.end(), static_cast<PoAssignment>(word)) != wanted.end()) return true;
@@ -170,36 +170,36 @@ bool DriveServer::has_po_word(std::initializer_list<PoAssignment> wanted) const 
 }
 
 // Some time after the telegram that is answered.
-ProcessWords DriveServer::input(Time /*now*/) { return state_.pi(); }
+ProcessWords UnitInterface::input(Time /*now*/) { return state_.pi(); }
 
-void DriveServer::synchronize(Time /*now*/) { ++syncs_; }
+void UnitInterface::synchronize(Time /*now*/) { ++syncs_; }
 
-SerialParameters DriveServer::serial_parameters() const {
+SerialParameters UnitInterface::serial_parameters() const {
   return {static_cast<uint8_t>(parameters_.value(serial_.address)),
           static_cast<uint8_t>(parameters_.value(serial_.group)), parameters_.value(serial_.slave_setpoint),
           parameters_.value(serial_.setpoint_source)};
 }
 
-void DriveServer::Rs485Data::take_output(Time /*now*/, OutputChannel /*channel*/,
+void UnitInterface::Rs485Data::take_output(Time /*now*/, OutputChannel /*channel*/,
                                          std::span<const uint16_t> words) {
   drive_.look_for_obstacles(DataBus::rs485, false);
   // The monitoring is restarted by cyclic_request().
   drive_.state_.take_po(PoSource::Rs485, words, false);
 }
 
-ProcessWords DriveServer::Rs485Data::input(Time now) { return drive_.input(now); }
+ProcessWords UnitInterface::Rs485Data::input(Time now) { return drive_.input(now); }
 
-void DriveServer::Rs485Data::cyclic_request(Time /*now*/) { drive_.state_.take_request(PoSource::Rs485); }
+void UnitInterface::Rs485Data::cyclic_request(Time /*now*/) { drive_.state_.take_request(PoSource::Rs485); }
 
-ProcessWords DriveServer::setpoint_to_send(Time /*now*/) {
+ProcessWords UnitInterface::setpoint_to_send(Time /*now*/) {
   return state_.master_words(slave_setpoint(parameters_.value(serial_.slave_setpoint)));
 }
 
-void DriveServer::setpoint_received(Time /*now*/, const ProcessWords& words) {
+void UnitInterface::setpoint_received(Time /*now*/, const ProcessWords& words) {
   state_.take_po(PoSource::Rs485, scaled_for_slave(words, value("751")));
 }
 
-void DriveServer::link_lost(Time /*now*/) {
+void UnitInterface::link_lost(Time /*now*/) {
   constexpr uint8_t kRs485Timeout = 43;
   state_.raise_fault(kRs485Timeout, FaultResponse::EmergencyError);  // whatever P833 says (MDX60B/61B p. 30)
 }

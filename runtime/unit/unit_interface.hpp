@@ -29,12 +29,12 @@ struct SerialParameters {
 };
 
 // As ProcessDataServer it serves the SBus, rs485_data() serves both RS-485 interfaces.
-class DriveServer final : public ParameterServer, public ProcessDataServer, public MasterSlaveDrive {
+class UnitInterface final : public ParameterServer, public ProcessDataServer, public MasterSlaveDrive {
  public:
-  explicit DriveServer(const stdlib::UnitType& unit, const MachineData& machine = {},
+  explicit UnitInterface(const stdlib::UnitType& unit, const MachineData& machine = {},
                        DriveOptions options = {});
-  DriveServer(const DriveServer&) = delete;
-  DriveServer& operator=(const DriveServer&) = delete;
+  UnitInterface(const UnitInterface&) = delete;
+  UnitInterface& operator=(const UnitInterface&) = delete;
 
   // Sets a parameter before power-on, named "P813" or by index; nothing when accepted, else why not.
   std::optional<std::string> set_parameter(std::string_view parameter, int32_t value);
@@ -114,14 +114,14 @@ class DriveServer final : public ParameterServer, public ProcessDataServer, publ
   // Process data of both RS-485 interfaces: one source, one monitoring.
   class Rs485Data final : public ProcessDataServer {
    public:
-    explicit Rs485Data(DriveServer& drive) : drive_(drive) {}
+    explicit Rs485Data(UnitInterface& drive) : drive_(drive) {}
     void take_output(Time now, OutputChannel channel, std::span<const uint16_t> words) override;
     ProcessWords input(Time now) override;
     void synchronize(Time) override {}  // there is no sync telegram on RS-485
     void cyclic_request(Time now) override;
 
    private:
-    DriveServer& drive_;
+    UnitInterface& drive_;
   };
 
   enum class Obstacle : uint8_t { PoDisabled, ControlSource, SetpointSource, NoControlWord, Reserved, Slave };
