@@ -21,26 +21,26 @@ ipos_plant_status no_bus(ipos_plant* plant, std::string_view what) {
 
 std::string bus_names(Session& session) {
   std::vector<std::string_view> names;
-  for (size_t bus = 0; bus < session.world().line_count(); ++bus)
-    session.world().with_line(bus, [&](auto& tap) { names.push_back(tap.line().name()); });
+  for (size_t bus = 0; bus < session.instance().line_count(); ++bus)
+    session.instance().with_line(bus, [&](auto& tap) { names.push_back(tap.line().name()); });
   return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
 // Runs `action(tap)` for the line of this number and kind.
-template <typename Action>
-ipos_plant_status with_can(ipos_plant* plant, uint32_t bus, Allowed allowed, Action action) {
+template <typename Do>
+ipos_plant_status with_can(ipos_plant* plant, uint32_t bus, Allowed allowed, Do action) {
   return enter(plant, allowed, [&](Session& session) -> ipos_plant_status {
-    auto& taps = session.world().can();
+    auto& taps = session.instance().can();
     if (bus >= taps.size()) return no_bus(plant, fmt::format("no CAN line has number {}", bus));
     return action(session, *taps[bus]);
   });
 }
 // For the line of this number, of one of the kinds that carry octets.
-template <typename Action>
-ipos_plant_status with_octets(ipos_plant* plant, uint32_t bus, Action action) {
+template <typename Do>
+ipos_plant_status with_octets(ipos_plant* plant, uint32_t bus, Do action) {
   return enter(plant, Allowed::NotInCallbacks, [&](Session& session) -> ipos_plant_status {
     std::optional<ipos_plant_status> status;
-    session.world().with_line(bus, [&](auto& tap) {
+    session.instance().with_line(bus, [&](auto& tap) {
       if constexpr (requires { tap.kLongest; }) status = action(session, tap);
     });
     return status ? *status : no_bus(plant, fmt::format("no serial line has number {}", bus));
@@ -53,12 +53,12 @@ ipos_plant_bus_kind kind_of(const ProfibusTap&) { return IPOS_PLANT_PROFIBUS; }
 
 ipos_plant_status perform(ipos_plant* plant, Session& session, Act act, uint32_t bus, int64_t value,
                           std::vector<uint8_t> bytes) {
-  Deed deed;
-  deed.act = act;
-  deed.number = bus;
-  deed.value = value;
-  deed.bytes = std::move(bytes);
-  if (auto refused = session.perform(std::move(deed)))
+  Action action;
+  action.act = act;
+  action.number = bus;
+  action.value = value;
+  action.bytes = std::move(bytes);
+  if (auto refused = session.perform(std::move(action)))
     return plant->fail(IPOS_PLANT_REFUSED, std::move(*refused));
   return IPOS_PLANT_OK;
 }
@@ -96,7 +96,7 @@ bool is_whole(const ipos::profibus::Reception& heard) { return heard.frame.has_v
 ipos_plant_status ipos_plant_bus_at(ipos_plant* plant, uint32_t bus, ipos_plant_bus_info* info) {
   return enter(plant, Allowed::Anywhere, [=](Session& session) {
     if (info == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
-    const bool found = session.world().with_line(bus, [&](auto& tap) {
+    const bool found = session.instance().with_line(bus, [&](auto& tap) {
       *info = {plant->keep(tap.line().name()), kind_of(tap), tap.line().baud()};
     });
     return found ? ipos_plant_status{IPOS_PLANT_OK}
@@ -107,9 +107,9 @@ ipos_plant_status ipos_plant_bus_at(ipos_plant* plant, uint32_t bus, ipos_plant_
 ipos_plant_status ipos_plant_bus(ipos_plant* plant, const char* name, uint32_t* bus) {
   return enter(plant, Allowed::Anywhere, [=](Session& session) {
     if (name == nullptr || bus == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
-    for (uint32_t number = 0; number < session.world().line_count(); ++number) {
+    for (uint32_t number = 0; number < session.instance().line_count(); ++number) {
       bool is_it = false;
-      session.world().with_line(number, [&](auto& tap) { is_it = tap.line().name() == name; });
+      session.instance().with_line(number, [&](auto& tap) { is_it = tap.line().name() == name; });
       if (is_it) return *bus = number, ipos_plant_status{IPOS_PLANT_OK};
     }
     return no_bus(plant, fmt::format("there is no bus '{}'; the plant has {}", name, bus_names(session)));
@@ -120,7 +120,7 @@ ipos_plant_status ipos_plant_bus_load(ipos_plant* plant, uint32_t bus, ipos_plan
   return enter(plant, Allowed::Anywhere, [=](Session& session) {
     if (load == nullptr) return ipos_plant_status{IPOS_PLANT_INVALID_ARGUMENT};
     const ipos::runtime::Time now = session.plant().now();
-    const bool found = session.world().with_line(bus, [&](auto& tap) { *load = load_of(tap, now); });
+    const bool found = session.instance().with_line(bus, [&](auto& tap) { *load = load_of(tap, now); });
     return found ? ipos_plant_status{IPOS_PLANT_OK}
                  : no_bus(plant, fmt::format("there is no bus number {}", bus));
   });
@@ -156,7 +156,7 @@ ipos_plant_status ipos_plant_send(ipos_plant* plant, uint32_t bus, const ipos_pl
     if (!is_valid(sent) || (frame->flags & ~uint32_t{IPOS_PLANT_EXTENDED | IPOS_PLANT_REMOTE}) != 0)
       return plant->fail(IPOS_PLANT_BAD_VALUE,
                          "a frame has 8 bytes at most and an identifier of 11 or, extended, 29 bits");
-    // Who waits for room asks again and again: that is no deed, and the record does not grow by it.
+    // Who waits for room asks again and again: that is no action, and the record does not grow by it.
     if (tap.is_full()) return plant->fail(IPOS_PLANT_FULL, ipos_plant_status_text(IPOS_PLANT_FULL));
     const uint32_t number = session.next_tag();
     if (tag != nullptr) *tag = number;

@@ -15,8 +15,8 @@ using namespace ipos;
 namespace {
 
 // Runs `action(row)` with the parameter of a unit type that `find` picks of its list.
-template <typename Find, typename Action>
-ipos_plant_status with_parameter(const char* unit, Find find, Action action) noexcept {
+template <typename Find, typename Do>
+ipos_plant_status with_parameter(const char* unit, Find find, Do action) noexcept {
   if (unit == nullptr) return IPOS_PLANT_INVALID_ARGUMENT;
   try {
     const stdlib::UnitType* type = stdlib::find_unit(unit);

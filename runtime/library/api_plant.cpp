@@ -66,11 +66,11 @@ ipos_plant_status order(ipos_plant* plant, uint32_t station, Act act, int64_t va
   return enter(plant, Allowed::NotInCallbacks, [=](Session& session) {
     if (station >= station_count(session.plant()))
       return plant->fail(IPOS_PLANT_NO_STATION, fmt::format("there is no station number {}", station));
-    Deed deed;
-    deed.act = act;
-    deed.signal.station = station;
-    deed.value = value;
-    if (auto refused = session.perform(std::move(deed)))
+    Action action;
+    action.act = act;
+    action.signal.station = station;
+    action.value = value;
+    if (auto refused = session.perform(std::move(action)))
       return plant->fail(IPOS_PLANT_REFUSED, std::move(*refused));
     return ipos_plant_status{IPOS_PLANT_OK};
   });

@@ -19,11 +19,11 @@ ipos_plant_status act(ipos_plant* plant, Session& session, const Session::Signal
     return plant->fail(IPOS_PLANT_READ_ONLY, fmt::format("{} can only be read", signal.name));
   if (auto wrong = signal.shown.check(value))
     return plant->fail(IPOS_PLANT_BAD_VALUE, fmt::format("{}: {}", signal.name, *wrong));
-  Deed deed;
-  deed.act = what;
-  deed.signal = {signal.id.station, signal.id.kind, number};
-  deed.value = value;
-  if (auto refused = session.perform(std::move(deed)))
+  Action action;
+  action.act = what;
+  action.signal = {signal.id.station, signal.id.kind, number};
+  action.value = value;
+  if (auto refused = session.perform(std::move(action)))
     return plant->fail(IPOS_PLANT_REFUSED, std::move(*refused));
   return IPOS_PLANT_OK;
 }

@@ -46,8 +46,8 @@ namespace ipos::library {
 enum class Allowed : uint8_t { Anywhere, NotInCallbacks };
 
 // Runs `action(session)` where the plant may be used now.
-template <typename Action>
-ipos_plant_status enter(ipos_plant* plant, Allowed allowed, Action action) noexcept {
+template <typename Do>
+ipos_plant_status enter(ipos_plant* plant, Allowed allowed, Do action) noexcept {
   if (plant == nullptr) return IPOS_PLANT_INVALID_ARGUMENT;
   if (plant->owner.load() != std::this_thread::get_id()) return IPOS_PLANT_OTHER_THREAD;
   const bool in_callback = plant->in_callback;

@@ -15,7 +15,7 @@ tl::expected<std::unique_ptr<Session>, Mistakes> Session::open(Contents contents
 
 Session::Session(Contents contents, std::unique_ptr<runtime::Plant> plant, bool recorded)
     : contents_(std::move(contents)),
-      world_(std::make_unique<World>(std::move(plant))),
+      instance_(std::make_unique<Instance>(std::move(plant))),
       recorded_(recorded) {}
 
 bool Session::run_until(Time limit, const std::function<bool()>& condition) {
@@ -29,10 +29,10 @@ bool Session::run_until(Time limit, const std::function<bool()>& condition) {
 }
 
 // What was refused may have left something behind, a reason or a count: it is part of the record like the rest.
-Refusal Session::perform(Deed deed) {
-  deed.at = plant().now();
-  Refusal refused = world_->perform(deed);
-  if (recorded_) record_.push_back(std::move(deed));
+Refusal Session::perform(Action action) {
+  action.at = plant().now();
+  Refusal refused = instance_->perform(action);
+  if (recorded_) record_.push_back(std::move(action));
   return refused;
 }
 
@@ -44,7 +44,7 @@ uint32_t Session::add_signal(const SignalId& id, std::string_view name) {
   return number;
 }
 
-// Its reader looks into the world of now.
+// Its reader looks into the instance of now.
 void Session::find_again(Signal& signal) const { signal.shown = signal_of(plant(), signal.id, signal.name).value(); }
 
 int64_t Session::read(const Signal& signal) {
@@ -56,9 +56,9 @@ std::vector<uint8_t> Session::save() const {
   return to_bytes(contents_.identity(), plant().now(), runtime::state_digest(plant()), record_);
 }
 
-// Signals read in the world that is entered; `world` takes the one that is left.
-void Session::enter(std::unique_ptr<World>& world) {
-  std::swap(world_, world);
+// Signals read in the instance that is entered; `instance` takes the one that is left.
+void Session::enter(std::unique_ptr<Instance>& instance) {
+  std::swap(instance_, instance);
   for (Signal& signal : signals_) find_again(signal);
 }
 
@@ -78,8 +78,8 @@ Session::Restored Session::restore(std::span<const uint8_t> bytes, std::string& 
     why = plant.error().front().text;
     return Restored::Damaged;
   }
-  auto world = std::make_unique<World>(*std::move(plant));
-  enter(world);
+  auto instance = std::make_unique<Instance>(*std::move(plant));
+  enter(instance);
   std::function<bool(Time)> watch;
   if (look)
     watch = [&look](Time now) {
@@ -88,18 +88,18 @@ Session::Restored Session::restore(std::span<const uint8_t> bytes, std::string& 
     };
   if (look) look();
   uint32_t tags = 0;
-  for (const Deed& deed : saved->deeds) {
-    this->plant().run_until(deed.at, watch);
-    world_->perform(deed);
-    if (deed.act == Act::Send) tags = std::max(tags, static_cast<uint32_t>(deed.value));
+  for (const Action& action : saved->actions) {
+    this->plant().run_until(action.at, watch);
+    instance_->perform(action);
+    if (action.act == Act::Send) tags = std::max(tags, static_cast<uint32_t>(action.value));
   }
   this->plant().run_until(saved->time, watch);
   if (runtime::state_digest(this->plant()) != saved->digest) {
-    enter(world);
+    enter(instance);
     why = "the run that was saved comes to another state here: a memory file or the library has changed";
     return Restored::Damaged;
   }
-  record_ = std::move(saved->deeds);
+  record_ = std::move(saved->actions);
   tags_ = tags;
   shadow_.reset();
   return Restored::Done;
@@ -108,16 +108,16 @@ Session::Restored Session::restore(std::span<const uint8_t> bytes, std::string& 
 uint64_t Session::trace_hash() {
   if (!shadow_) shadow_ = std::make_unique<Shadow>(*contents_.build());
   const auto run = [this](Time until) {
-    if (shadow_->world.plant().now() == until) return;
-    shadow_->world.plant().run_until(until, [this](Time now) {
+    if (shadow_->instance.plant().now() == until) return;
+    shadow_->instance.plant().run_until(until, [this](Time now) {
       shadow_->hash.sample(now);
       return true;
     });
   };
   for (; shadow_->done < record_.size(); ++shadow_->done) {
-    const Deed& deed = record_[shadow_->done];
-    run(deed.at);
-    shadow_->world.perform(deed);
+    const Action& action = record_[shadow_->done];
+    run(action.at);
+    shadow_->instance.perform(action);
   }
   run(plant().now());
   return shadow_->hash.value();

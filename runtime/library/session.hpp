@@ -1,4 +1,4 @@
-// An open plant: its world, the record of what was done to it, and its signals by number. A state is saved as the record
+// An open plant: its instance, the record of what was done to it, and its signals by number. A state is saved as the record
 // and restored by doing it again; the trace hash is computed by running again from the start.
 #pragma once
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "runtime/library/contents.hpp"
-#include "runtime/library/world.hpp"
+#include "runtime/library/instance.hpp"
 #include "runtime/plant/trace_hash.hpp"
 #include "runtime/signals/find.hpp"
 
@@ -17,12 +17,12 @@ namespace ipos::library {
 
 class Session {
  public:
-  // `recorded`: the state can be saved and hashed, and the record grows with every deed.
+  // `recorded`: the state can be saved and hashed, and the record grows with every action.
   static tl::expected<std::unique_ptr<Session>, Mistakes> open(Contents contents, bool recorded);
 
-  World& world() { return *world_; }
-  runtime::Plant& plant() { return world_->plant(); }
-  const runtime::Plant& plant() const { return world_->plant(); }
+  Instance& instance() { return *instance_; }
+  runtime::Plant& plant() { return instance_->plant(); }
+  const runtime::Plant& plant() const { return instance_->plant(); }
   bool recorded() const { return recorded_; }
 
   void run(Time until) { plant().run_until(until); }
@@ -30,7 +30,7 @@ class Session {
   bool run_until(Time limit, const std::function<bool()>& condition);
 
   // Does it now and puts it into the record.
-  Refusal perform(Deed deed);
+  Refusal perform(Action action);
   uint32_t next_tag() { return ++tags_; }
 
   struct Signal {
@@ -57,21 +57,21 @@ class Session {
  private:
   // The run once more, watched from its beginning, as far as somebody has asked.
   struct Shadow {
-    explicit Shadow(std::unique_ptr<runtime::Plant> plant) : world(std::move(plant)), hash(world.plant()) {}
-    World world;
+    explicit Shadow(std::unique_ptr<runtime::Plant> plant) : instance(std::move(plant)), hash(instance.plant()) {}
+    Instance instance;
     runtime::TraceHash hash;
-    size_t done = 0;  // deeds
+    size_t done = 0;  // actions
   };
 
   Session(Contents contents, std::unique_ptr<runtime::Plant> plant, bool recorded);
 
   void find_again(Signal& signal) const;
-  void enter(std::unique_ptr<World>& world);
+  void enter(std::unique_ptr<Instance>& instance);
 
   Contents contents_;
-  std::unique_ptr<World> world_;
+  std::unique_ptr<Instance> instance_;
   bool recorded_;
-  std::vector<Deed> record_;
+  std::vector<Action> record_;
   std::vector<Signal> signals_;
   uint32_t tags_ = 0;
   std::unique_ptr<Shadow> shadow_;

@@ -49,27 +49,27 @@ runtime::Execution execution_of(const Way& way) {
   return execution;
 }
 
-void do_deed(Plant& plant, const Deed& deed) {
-  runtime::Station& station = *plant.stations()[deed.target % plant.stations().size()];
-  switch (deed.kind) {
-    case Deed::Kind::PowerOff:
+void do_action(Plant& plant, const Action& action) {
+  runtime::Station& station = *plant.stations()[action.target % plant.stations().size()];
+  switch (action.kind) {
+    case Action::Kind::PowerOff:
       if (station.powered()) station.power_off();
       break;
-    case Deed::Kind::PowerOn:
+    case Action::Kind::PowerOn:
       if (!station.powered()) station.power_on();
       break;
-    case Deed::Kind::Send: plant.buses()[deed.target]->send(deed.message); break;
-    case Deed::Kind::Force: station.inputs().line(deed.index).forced = static_cast<int8_t>(deed.value); break;
-    case Deed::Kind::Write:
+    case Action::Kind::Send: plant.buses()[action.target]->send(action.message); break;
+    case Action::Kind::Force: station.inputs().line(action.index).forced = static_cast<int8_t>(action.value); break;
+    case Action::Kind::Write:
       if (station.powered())
-        (void)station.drive().parameters().execute(runtime::ParameterService::WriteVolatile, deed.index,
-                                                   deed.value);
+        (void)station.drive().parameters().execute(runtime::ParameterService::WriteVolatile, action.index,
+                                                   action.value);
       break;
-    case Deed::Kind::Store:
+    case Action::Kind::Store:
       if (station.powered())
-        (void)station.drive().parameters().execute(runtime::ParameterService::Write, deed.index, deed.value);
+        (void)station.drive().parameters().execute(runtime::ParameterService::Write, action.index, action.value);
       break;
-    case Deed::Kind::Look: break;
+    case Action::Kind::Look: break;
   }
 }
 
@@ -136,10 +136,10 @@ std::optional<Course> run(const Trouble& trouble, const Way& way) {
     course.looks.push_back(picture(plant));
     if (!course.torn) course.torn = torn_telegram(plant);
   };
-  for (const Deed& deed : trouble.deeds) {
-    plant.run_until(deed.at);
-    do_deed(plant, deed);
-    if (deed.kind == Deed::Kind::Look) look();
+  for (const Action& action : trouble.actions) {
+    plant.run_until(action.at);
+    do_action(plant, action);
+    if (action.kind == Action::Kind::Look) look();
   }
   plant.run_until(trouble.end);
   look();
@@ -229,14 +229,14 @@ void leave_out(std::vector<Part> Trouble::*parts, Trouble& trouble) {
     }
 }
 
-// Without the deeds and faults that it does not need, and no longer than it must be.
+// Without the actions and faults that it does not need, and no longer than it must be.
 Trouble smaller(Trouble trouble) {
-  leave_out(&Trouble::deeds, trouble);
+  leave_out(&Trouble::actions, trouble);
   leave_out(&Trouble::faults, trouble);
   for (Time shorter = trouble.end / 2; shorter > runtime::kMillisecond; shorter /= 2) {
     Trouble less = trouble;
     less.end -= shorter;
-    if ((less.deeds.empty() || less.deeds.back().at <= less.end) && complaint(less))
+    if ((less.actions.empty() || less.actions.back().at <= less.end) && complaint(less))
       trouble = std::move(less);
   }
   return trouble;

@@ -111,39 +111,39 @@ std::string hostile_message(Dice& dice, Line line) {
   return {};
 }
 
-Deed deed(Dice& dice, size_t stations, int lines) {
-  Deed deed;
-  deed.at = Time{dice.pick(0, kLongest * 1000)} * runtime::kMicrosecond;
-  deed.target = static_cast<size_t>(dice.pick(0, static_cast<int>(stations) - 1));
+Action action(Dice& dice, size_t stations, int lines) {
+  Action action;
+  action.at = Time{dice.pick(0, kLongest * 1000)} * runtime::kMicrosecond;
+  action.target = static_cast<size_t>(dice.pick(0, static_cast<int>(stations) - 1));
   switch (dice.pick(0, 7)) {
     case 0:
     case 1:
-      deed.kind = dice.one_in(2) ? Deed::Kind::PowerOff : Deed::Kind::PowerOn;
-      deed.target = static_cast<size_t>(dice.pick(0, static_cast<int>(stations) + kPairStations - 1));
+      action.kind = dice.one_in(2) ? Action::Kind::PowerOff : Action::Kind::PowerOn;
+      action.target = static_cast<size_t>(dice.pick(0, static_cast<int>(stations) + kPairStations - 1));
       break;
     case 2:
     case 3: {
-      deed.kind = Deed::Kind::Send;
+      action.kind = Action::Kind::Send;
       const int line = dice.one_in(3) ? dice.pick(1, lines - 1) : 0;
-      deed.target = static_cast<size_t>(line);
-      deed.message = hostile_message(dice, static_cast<Line>(line));
+      action.target = static_cast<size_t>(line);
+      action.message = hostile_message(dice, static_cast<Line>(line));
       break;
     }
     case 4:
-      deed.kind = Deed::Kind::Force;
-      deed.index = static_cast<uint16_t>(dice.pick(0, 5));
-      deed.value = dice.pick(0, 1);
+      action.kind = Action::Kind::Force;
+      action.index = static_cast<uint16_t>(dice.pick(0, 5));
+      action.value = dice.pick(0, 1);
       break;
     case 5:
-      deed.kind = dice.one_in(2) ? Deed::Kind::Write : Deed::Kind::Store;
-      deed.index = static_cast<uint16_t>(dice.one_in(3)   ? 8'300 + dice.pick(0, 700)
+      action.kind = dice.one_in(2) ? Action::Kind::Write : Action::Kind::Store;
+      action.index = static_cast<uint16_t>(dice.one_in(3)   ? 8'300 + dice.pick(0, 700)
                                          : dice.one_in(2) ? 11'000 + dice.pick(0, 127)  // can be kept
                                                           : 11'000 + dice.pick(0, 560));
-      deed.value = dice.one_in(2) ? dice.pick(-3, 200) : dice.pick(INT32_MIN, INT32_MAX);
+      action.value = dice.one_in(2) ? dice.pick(-3, 200) : dice.pick(INT32_MIN, INT32_MAX);
       break;
     default: break;  // who looks, or lets time stand still a while
   }
-  return deed;
+  return action;
 }
 
 // The first bus of each plant is its CAN.
@@ -153,15 +153,15 @@ std::string_view baud_of_can(std::string_view plant) {
   return plant.substr(at, plant.find('\n', at) - at);
 }
 
-const char* word(Deed::Kind kind) {
+const char* word(Action::Kind kind) {
   switch (kind) {
-    case Deed::Kind::PowerOff: return "power off";
-    case Deed::Kind::PowerOn: return "power on";
-    case Deed::Kind::Send: return "send";
-    case Deed::Kind::Force: return "force";
-    case Deed::Kind::Write: return "write";
-    case Deed::Kind::Store: return "store";
-    case Deed::Kind::Look: return "look";
+    case Action::Kind::PowerOff: return "power off";
+    case Action::Kind::PowerOn: return "power on";
+    case Action::Kind::Send: return "send";
+    case Action::Kind::Force: return "force";
+    case Action::Kind::Write: return "write";
+    case Action::Kind::Store: return "store";
+    case Action::Kind::Look: return "look";
   }
   return "";
 }
@@ -199,28 +199,28 @@ Trouble draw_trouble(uint64_t seed) {
   trouble.plant += pair.stations;
   trouble.programs.merge(pair.programs);
   for (int n = dice.pick(0, 4); n > 0; --n) trouble.faults.push_back(fault(dice));
-  for (int n = dice.pick(4, 40); n > 0; --n) trouble.deeds.push_back(deed(dice, stations, lines));
+  for (int n = dice.pick(4, 40); n > 0; --n) trouble.actions.push_back(action(dice, stations, lines));
   // A storm: many messages in a row.
   if (dice.one_in(4)) {
-    Deed storm;
-    storm.kind = Deed::Kind::Send;
+    Action storm;
+    storm.kind = Action::Kind::Send;
     const Time at = Time{dice.pick(0, kLongest - 100)} * kMillisecond;
     for (int n = dice.pick(20, 200); n > 0; --n) {
       storm.at = at + Time{n * dice.pick(50, 400)} * runtime::kMicrosecond;
       storm.message = hostile_frame(dice);
-      trouble.deeds.push_back(storm);
+      trouble.actions.push_back(storm);
     }
   }
   trouble.end = Time{kLongest} * kMillisecond;
   trouble.files = dice.one_in(3);
-  std::ranges::stable_sort(trouble.deeds, {}, &Deed::at);
+  std::ranges::stable_sort(trouble.actions, {}, &Action::at);
   return trouble;
 }
 
 std::string describe(const Trouble& trouble) {
   std::string out = fmt::format("seed {}\n{}", trouble.seed, trouble.text("."));
   for (const auto& [name, source] : trouble.programs) out += fmt::format("--- {}\n{}", name, source);
-  for (const Deed& one : trouble.deeds)
+  for (const Action& one : trouble.actions)
     out += fmt::format("{} ns: {} {} index {} value {} '{}'\n", one.at, word(one.kind), one.target, one.index,
                        one.value, one.message);
   return out + fmt::format("until {} ns\n", trouble.end);

@@ -12,7 +12,7 @@
 
 namespace ipos::tests {
 
-struct Deed {
+struct Action {
   enum class Kind : uint8_t { PowerOff, PowerOn, Send, Force, Write, Store, Look };
   Kind kind = Kind::Look;
   runtime::Time at = 0;
@@ -27,7 +27,7 @@ struct Trouble {
   std::string plant;  // the plant file without faults
   std::map<std::string, std::string> programs;
   std::vector<std::string> faults;  // [[fault]] tables
-  std::vector<Deed> deeds;          // in the order of their times
+  std::vector<Action> actions;          // in the order of their times
   runtime::Time end = 0;
   bool files = false;  // the stations keep their memory in files
 

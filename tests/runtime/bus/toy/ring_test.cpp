@@ -184,7 +184,7 @@ std::vector<std::string> visitors() {
 
 TEST(ToyBus, WhoHasNoCaseForItDoesNotCompile) {
   const std::vector<std::string> sources = visitors();
-  EXPECT_EQ(sources, (std::vector<std::string>{"runtime/library/world.cpp", "runtime/plant_port/join.cpp",
+  EXPECT_EQ(sources, (std::vector<std::string>{"runtime/library/instance.cpp", "runtime/plant_port/join.cpp",
                                                "tools/logs/log_writer.cpp", "tools/run/verb_run.cpp",
                                                "tools/serve/host/bus_tab.cpp"}));
   EXPECT_LE(sources.size() + 1, 8U) << "files outside of the kind's own, with the row";

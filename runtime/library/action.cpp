@@ -1,5 +1,5 @@
-// Bytes: a head, a row a deed, a CRC-32 over all.
-#include "runtime/library/deed.hpp"
+// Bytes: a head, a row a action, a CRC-32 over all.
+#include "runtime/library/action.hpp"
 
 #include <algorithm>
 #include <array>
@@ -49,40 +49,40 @@ class Reader {
   bool failed_ = false;
 };
 
-Deed read_deed(Reader& in) {
-  Deed deed;
-  deed.at = static_cast<runtime::Time>(in.number(8));
-  deed.act = static_cast<Act>(in.number(1));
-  deed.signal.kind = static_cast<Kind>(in.number(1));
-  deed.signal.station = static_cast<uint32_t>(in.number(4));
-  deed.signal.number = static_cast<uint32_t>(in.number(4));
-  deed.number = static_cast<uint32_t>(in.number(4));
-  deed.value = static_cast<int64_t>(in.number(8));
+Action read_deed(Reader& in) {
+  Action action;
+  action.at = static_cast<runtime::Time>(in.number(8));
+  action.act = static_cast<Act>(in.number(1));
+  action.signal.kind = static_cast<Kind>(in.number(1));
+  action.signal.station = static_cast<uint32_t>(in.number(4));
+  action.signal.number = static_cast<uint32_t>(in.number(4));
+  action.number = static_cast<uint32_t>(in.number(4));
+  action.value = static_cast<int64_t>(in.number(8));
   const auto bytes = in.take(static_cast<size_t>(in.number(4)));
-  deed.bytes.assign(bytes.begin(), bytes.end());
-  return deed;
+  action.bytes.assign(bytes.begin(), bytes.end());
+  return action;
 }
 
 }  // namespace
 
 std::vector<uint8_t> to_bytes(uint64_t identity, runtime::Time time, uint64_t digest,
-                              std::span<const Deed> deeds) {
+                              std::span<const Action> actions) {
   Writer out;
   out.text(kMagic);
   out.number(identity, 8);
   out.number(static_cast<uint64_t>(time), 8);
   out.number(digest, 8);
-  out.number(deeds.size(), 8);
-  for (const Deed& deed : deeds) {
-    out.number(static_cast<uint64_t>(deed.at), 8);
-    out.number(static_cast<uint64_t>(deed.act), 1);
-    out.number(static_cast<uint64_t>(deed.signal.kind), 1);
-    out.number(deed.signal.station, 4);
-    out.number(deed.signal.number, 4);
-    out.number(deed.number, 4);
-    out.number(static_cast<uint64_t>(deed.value), 8);
-    out.number(deed.bytes.size(), 4);
-    out.text(deed.bytes);
+  out.number(actions.size(), 8);
+  for (const Action& action : actions) {
+    out.number(static_cast<uint64_t>(action.at), 8);
+    out.number(static_cast<uint64_t>(action.act), 1);
+    out.number(static_cast<uint64_t>(action.signal.kind), 1);
+    out.number(action.signal.station, 4);
+    out.number(action.signal.number, 4);
+    out.number(action.number, 4);
+    out.number(static_cast<uint64_t>(action.value), 8);
+    out.number(action.bytes.size(), 4);
+    out.text(action.bytes);
   }
   out.number(vm::crc32(out.out), kChecksumBytes);
   return std::move(out.out);
@@ -103,11 +103,11 @@ tl::expected<SavedState, std::string> from_bytes(std::span<const uint8_t> bytes)
   const uint64_t count = in.number(8);
   runtime::Time last = 0;
   for (uint64_t n = 0; n < count && !in.failed(); ++n) {
-    saved.deeds.push_back(read_deed(in));
-    const Deed& deed = saved.deeds.back();
-    if (deed.at < last || deed.at > saved.time || deed.act > kLastAct || deed.signal.kind > Kind::Word)
+    saved.actions.push_back(read_deed(in));
+    const Action& action = saved.actions.back();
+    if (action.at < last || action.at > saved.time || action.act > kLastAct || action.signal.kind > Kind::Word)
       return tl::unexpected(std::string("the saved state is damaged: what was done makes no sense"));
-    last = deed.at;
+    last = action.at;
   }
   if (in.failed() || !in.at_end() || saved.time < 0 || saved.time == runtime::kNever)
     return tl::unexpected(std::string("the saved state is damaged: its length is wrong"));

@@ -1,5 +1,5 @@
-// Deeds, one by one.
-#include "runtime/library/world.hpp"
+// Actions, one by one.
+#include "runtime/library/instance.hpp"
 
 #include <fmt/format.h>
 
@@ -36,7 +36,7 @@ std::optional<runtime::Frame> frame_of(std::span<const uint8_t> bytes) {
   return runtime::is_valid(frame) ? std::optional(runtime::canonical(frame)) : std::nullopt;
 }
 
-World::World(std::unique_ptr<runtime::Plant> plant) : plant_(std::move(plant)), actions_(*plant_, "the library") {
+Instance::Instance(std::unique_ptr<runtime::Plant> plant) : plant_(std::move(plant)), actions_(*plant_, "the library") {
   for (const auto& bus : plant_->buses())
     runtime::visit(
         *bus, [this](runtime::CanBus& can) { can_.push_back(std::make_unique<CanTap>(can.line())); },
@@ -44,37 +44,37 @@ World::World(std::unique_ptr<runtime::Plant> plant) : plant_(std::move(plant)), 
         [this](runtime::ProfibusBus& dp) { profibus_.push_back(std::make_unique<ProfibusTap>(dp.line())); });
 }
 
-Refusal World::touch(const Deed& deed) {
-  const auto signal = signal_of(*plant_, deed.signal);
+Refusal Instance::touch(const Action& action) {
+  const auto signal = signal_of(*plant_, action.signal);
   if (!signal || signal->put == nullptr) return std::string(kStrange);
-  if (auto refused = signal->check(deed.value)) return refused;
-  if (deed.act == Act::Write) return actions_.set(*signal, deed.value);
-  if (deed.act == Act::Force) return actions_.force(*signal, deed.value);
+  if (auto refused = signal->check(action.value)) return refused;
+  if (action.act == Act::Write) return actions_.set(*signal, action.value);
+  if (action.act == Act::Force) return actions_.force(*signal, action.value);
   actions_.release(*signal);
   return std::nullopt;
 }
 
-Refusal World::send(const Deed& deed) {
-  if (deed.act == Act::SerialSend) {
+Refusal Instance::send(const Action& action) {
+  if (action.act == Act::SerialSend) {
     Refusal refused = std::string(kStrange);
-    with_line(deed.number, [&](auto& tap) {
-      if constexpr (requires { tap.send(std::span(deed.bytes)); })
-        if (!deed.bytes.empty() && deed.bytes.size() <= tap.kLongest) refused = tap.send(deed.bytes);
+    with_line(action.number, [&](auto& tap) {
+      if constexpr (requires { tap.send(std::span(action.bytes)); })
+        if (!action.bytes.empty() && action.bytes.size() <= tap.kLongest) refused = tap.send(action.bytes);
     });
     return refused;
   }
-  if (deed.number >= can_.size()) return std::string(kStrange);
-  if (deed.act == Act::Join) {
-    can_[deed.number]->join();
+  if (action.number >= can_.size()) return std::string(kStrange);
+  if (action.act == Act::Join) {
+    can_[action.number]->join();
     return std::nullopt;
   }
-  const auto frame = frame_of(deed.bytes);
+  const auto frame = frame_of(action.bytes);
   if (!frame) return std::string(kStrange);
-  return can_[deed.number]->send(*frame, static_cast<uint32_t>(deed.value));
+  return can_[action.number]->send(*frame, static_cast<uint32_t>(action.value));
 }
 
-Refusal World::plant_faults(const Deed& deed) {
-  const std::string text(deed.bytes.begin(), deed.bytes.end());
+Refusal Instance::plant_faults(const Action& action) {
+  const std::string text(action.bytes.begin(), action.bytes.end());
   runtime::PlantFileResult read = runtime::read_fault_tables(text, plant_->file());
   if (!read.errors.empty())
     return fmt::format("line {}, column {}: {}", read.errors.front().place.line,
@@ -84,37 +84,37 @@ Refusal World::plant_faults(const Deed& deed) {
   return std::nullopt;
 }
 
-Refusal World::perform(const Deed& deed) {
-  switch (deed.act) {
+Refusal Instance::perform(const Action& action) {
+  switch (action.act) {
     case Act::Write:
     case Act::Force:
-    case Act::Release: return touch(deed);
+    case Act::Release: return touch(action);
     case Act::Join:
     case Act::Send:
-    case Act::SerialSend: return send(deed);
-    case Act::LineFault: return plant_faults(deed);
+    case Act::SerialSend: return send(action);
+    case Act::LineFault: return plant_faults(action);
     default: break;
   }
-  if (const runtime::Gateway* gateway = gateway_of(*plant_, deed.signal.station)) {
-    if (deed.act != Act::PowerOff && deed.act != Act::PowerOn)
+  if (const runtime::Gateway* gateway = gateway_of(*plant_, action.signal.station)) {
+    if (action.act != Act::PowerOff && action.act != Act::PowerOn)
       return fmt::format("'{}' is a gateway: it has no program and no drive", gateway->config().name);
-    plant_->set_power(gateway->config().name, deed.act == Act::PowerOn);
+    plant_->set_power(gateway->config().name, action.act == Act::PowerOn);
     return std::nullopt;
   }
-  if (deed.signal.station >= plant_->stations().size()) return std::string(kStrange);
-  Station& station = *plant_->stations()[deed.signal.station];
-  switch (deed.act) {
+  if (action.signal.station >= plant_->stations().size()) return std::string(kStrange);
+  Station& station = *plant_->stations()[action.signal.station];
+  switch (action.act) {
     case Act::PowerOff:
-    case Act::PowerOn: plant_->set_power(station.config().name, deed.act == Act::PowerOn); break;
+    case Act::PowerOn: plant_->set_power(station.config().name, action.act == Act::PowerOn); break;
     case Act::DriveFault:
-      if (deed.value < 1 || deed.value > UINT8_MAX) return "a drive fault is 1..255";
-      station.drive().state().raise_fault(static_cast<uint8_t>(deed.value));
+      if (action.value < 1 || action.value > UINT8_MAX) return "a drive fault is 1..255";
+      station.drive().state().raise_fault(static_cast<uint8_t>(action.value));
       break;
     case Act::ResetFault: station.drive().state().reset_fault(); break;
     case Act::Program:
-      if (deed.value < 0 || deed.value > static_cast<int64_t>(runtime::ProgramOrder::Restart))
+      if (action.value < 0 || action.value > static_cast<int64_t>(runtime::ProgramOrder::Restart))
         return std::string(kStrange);
-      return runtime::PlantActions::order(station, static_cast<runtime::ProgramOrder>(deed.value));
+      return runtime::PlantActions::order(station, static_cast<runtime::ProgramOrder>(action.value));
     default: break;
   }
   return std::nullopt;

@@ -28,7 +28,7 @@ enum class Act : uint8_t {
 };
 inline constexpr Act kLastAct = Act::LineFault;
 
-struct Deed {
+struct Action {
   runtime::Time at = 0;
   Act act = Act::Write;
   SignalId signal{};
@@ -41,13 +41,13 @@ struct Deed {
 struct SavedState {
   uint64_t identity = 0;  // of the contents
   runtime::Time time = 0;
-  uint64_t digest = 0;  // of the state the deeds lead to
-  std::vector<Deed> deeds;
+  uint64_t digest = 0;  // of the state the actions lead to
+  std::vector<Action> actions;
 };
 
 // Bytes that are the same on every platform, with a checksum.
 std::vector<uint8_t> to_bytes(uint64_t identity, runtime::Time time, uint64_t digest,
-                              std::span<const Deed> deeds);
+                              std::span<const Action> actions);
 // The error says what is wrong with them. Whether the plant has the signals is not looked at.
 tl::expected<SavedState, std::string> from_bytes(std::span<const uint8_t> bytes);
 

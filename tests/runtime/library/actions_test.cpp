@@ -1,22 +1,22 @@
 // What was done to a plant, as bytes and back: nothing that cannot have been saved is taken.
 #include <gtest/gtest.h>
 
-#include "runtime/library/deed.hpp"
-#include "runtime/library/world.hpp"
+#include "runtime/library/action.hpp"
+#include "runtime/library/instance.hpp"
 #include "vm/image/view.hpp"
 
 namespace ipos::library {
 namespace {
 
-Deed some_deed(runtime::Time at, uint32_t n) {
-  Deed deed;
-  deed.at = at;
-  deed.act = Act::Force;
-  deed.signal = {0x01020304 + n, Kind::Word, 0x11121314 + n};
-  deed.number = 0x21222324 + n;
-  deed.value = -5 - static_cast<int64_t>(n);
-  deed.bytes = {1, 2, static_cast<uint8_t>(n)};
-  return deed;
+Action some_deed(runtime::Time at, uint32_t n) {
+  Action action;
+  action.at = at;
+  action.act = Act::Force;
+  action.signal = {0x01020304 + n, Kind::Word, 0x11121314 + n};
+  action.number = 0x21222324 + n;
+  action.value = -5 - static_cast<int64_t>(n);
+  action.bytes = {1, 2, static_cast<uint8_t>(n)};
+  return action;
 }
 
 void with_new_checksum(std::vector<uint8_t>& bytes) {
@@ -25,8 +25,8 @@ void with_new_checksum(std::vector<uint8_t>& bytes) {
 }
 
 TEST(LibraryDeeds, ComeBackAsTheyWere) {
-  const std::vector<Deed> deeds = {some_deed(0, 0), some_deed(0, 1), some_deed(7, 2), some_deed(1'000, 3)};
-  const auto bytes = to_bytes(0x0102030405060708, 1'000, 0xF1F2F3F4F5F6F7F8, deeds);
+  const std::vector<Action> actions = {some_deed(0, 0), some_deed(0, 1), some_deed(7, 2), some_deed(1'000, 3)};
+  const auto bytes = to_bytes(0x0102030405060708, 1'000, 0xF1F2F3F4F5F6F7F8, actions);
   EXPECT_EQ(bytes.size(), 8U + 4U * 8U + 4U * (8U + 2U + 12U + 8U + 4U + 3U) + 4U);
   EXPECT_EQ(bytes[8], 8) << "the lowest byte first";
   EXPECT_EQ(bytes[15], 1);
@@ -34,19 +34,19 @@ TEST(LibraryDeeds, ComeBackAsTheyWere) {
   ASSERT_TRUE(saved);
   EXPECT_EQ(std::tuple(saved->identity, saved->time, saved->digest),
             std::tuple(0x0102030405060708U, 1'000, 0xF1F2F3F4F5F6F7F8U));
-  ASSERT_EQ(saved->deeds.size(), deeds.size());
-  for (size_t n = 0; n < deeds.size(); ++n) {
-    const Deed& deed = saved->deeds[n];
-    EXPECT_EQ(std::tuple(deed.at, deed.act, deed.number, deed.value, deed.bytes),
-              std::tuple(deeds[n].at, deeds[n].act, deeds[n].number, deeds[n].value, deeds[n].bytes));
-    EXPECT_EQ(deed.signal, deeds[n].signal);
+  ASSERT_EQ(saved->actions.size(), actions.size());
+  for (size_t n = 0; n < actions.size(); ++n) {
+    const Action& action = saved->actions[n];
+    EXPECT_EQ(std::tuple(action.at, action.act, action.number, action.value, action.bytes),
+              std::tuple(actions[n].at, actions[n].act, actions[n].number, actions[n].value, actions[n].bytes));
+    EXPECT_EQ(action.signal, actions[n].signal);
   }
   EXPECT_TRUE(from_bytes(to_bytes(0, 0, 0, {})));
 }
 
 TEST(LibraryDeeds, ADamagedStateIsRefused) {
-  const std::vector<Deed> deeds = {some_deed(0, 0)};
-  const auto bytes = to_bytes(1, 2, 3, deeds);
+  const std::vector<Action> actions = {some_deed(0, 0)};
+  const auto bytes = to_bytes(1, 2, 3, actions);
   for (size_t n = 0; n < bytes.size(); ++n) {
     auto wrong = bytes;
     wrong[n] ^= 0x10;
@@ -59,8 +59,8 @@ TEST(LibraryDeeds, ADamagedStateIsRefused) {
 }
 
 TEST(LibraryDeeds, WhatCannotHaveBeenDoneIsRefused) {
-  const auto refused = [](runtime::Time time, std::vector<Deed> deeds) {
-    const auto saved = from_bytes(to_bytes(1, time, 3, deeds));
+  const auto refused = [](runtime::Time time, std::vector<Action> actions) {
+    const auto saved = from_bytes(to_bytes(1, time, 3, actions));
     return saved ? "" : saved.error();
   };
   const std::string senseless = "the saved state is damaged: what was done makes no sense";
@@ -69,12 +69,12 @@ TEST(LibraryDeeds, WhatCannotHaveBeenDoneIsRefused) {
   EXPECT_EQ(refused(5, {some_deed(6, 0)}), senseless) << "behind the end";
   EXPECT_EQ(refused(5, {some_deed(-1, 0)}), senseless);
   EXPECT_EQ(refused(5, {some_deed(4, 0), some_deed(3, 0)}), senseless);
-  Deed last = some_deed(0, 0);
+  Action last = some_deed(0, 0);
   last.act = kLastAct;
   EXPECT_EQ(refused(5, {last}), "");
   last.act = static_cast<Act>(static_cast<int>(kLastAct) + 1);
   EXPECT_EQ(refused(5, {last}), senseless);
-  Deed kind = some_deed(0, 0);
+  Action kind = some_deed(0, 0);
   kind.signal.kind = Kind::Signal;
   EXPECT_EQ(refused(5, {kind}), senseless) << "a signal can only be read";
   EXPECT_EQ(refused(-1, {}), length);
@@ -82,7 +82,7 @@ TEST(LibraryDeeds, WhatCannotHaveBeenDoneIsRefused) {
   EXPECT_EQ(refused(runtime::kNever - 1, {}), "");
   // A count that is one too high or too low, and bytes behind the end.
   for (const uint8_t count : {uint8_t{0}, uint8_t{2}}) {
-    auto bytes = to_bytes(1, 5, 3, std::vector<Deed>{some_deed(0, 0)});
+    auto bytes = to_bytes(1, 5, 3, std::vector<Action>{some_deed(0, 0)});
     bytes[8 + 24] = count;
     with_new_checksum(bytes);
     EXPECT_FALSE(from_bytes(bytes)) << int{count};

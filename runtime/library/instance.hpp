@@ -5,17 +5,17 @@
 #include <vector>
 
 #include "runtime/library/bus_tap.hpp"
-#include "runtime/library/deed.hpp"
+#include "runtime/library/action.hpp"
 #include "runtime/plant/actions.hpp"
 
 namespace ipos::library {
 
-class World {
+class Instance {
  public:
-  explicit World(std::unique_ptr<runtime::Plant> plant);
+  explicit Instance(std::unique_ptr<runtime::Plant> plant);
 
-  // Does it now. Deeds may come from anywhere: one that this plant cannot have seen is refused.
-  Refusal perform(const Deed& deed);
+  // Does it now. Actions may come from anywhere: one that this plant cannot have seen is refused.
+  Refusal perform(const Action& action);
 
   runtime::Plant& plant() { return *plant_; }
   const runtime::Plant& plant() const { return *plant_; }
@@ -24,8 +24,8 @@ class World {
   std::vector<std::unique_ptr<ProfibusTap>>& profibus() { return profibus_; }
 
   // Runs `action(tap)` for the line of this number: CAN lines first, then serial ones, then PROFIBUS. False: there is none.
-  template <typename Action>
-  bool with_line(size_t number, Action action) {
+  template <typename Do>
+  bool with_line(size_t number, Do action) {
     const auto among = [&](auto& taps) {
       if (number < taps.size()) return action(*taps[number]), true;
       number -= taps.size();
@@ -36,9 +36,9 @@ class World {
   size_t line_count() const { return can_.size() + serial_.size() + profibus_.size(); }
 
  private:
-  Refusal touch(const Deed& deed);
-  Refusal send(const Deed& deed);
-  Refusal plant_faults(const Deed& deed);
+  Refusal touch(const Action& action);
+  Refusal send(const Action& action);
+  Refusal plant_faults(const Action& action);
 
   std::unique_ptr<runtime::Plant> plant_;
   runtime::PlantActions actions_;
@@ -47,7 +47,7 @@ class World {
   std::vector<std::unique_ptr<ProfibusTap>> profibus_;
 };
 
-// A frame in a deed, and back; nothing when the bytes are none.
+// A frame in a action, and back; nothing when the bytes are none.
 std::vector<uint8_t> frame_bytes(const runtime::Frame& frame);
 std::optional<runtime::Frame> frame_of(std::span<const uint8_t> bytes);
 
