@@ -102,7 +102,6 @@ def test_debug(plant, expected):
     assert values == expected
 
 
-@pytest.mark.skip(reason="waits for the event of a pause that the page's new host does not send again: open")
 def test_serve_as_fast_as_it_can(plant, monkeypatch):
     monkeypatch.setattr(sys, "argv", [sys.argv[0], IPOS])
     monkeypatch.syspath_prepend(str(HERE.parent / "serve"))

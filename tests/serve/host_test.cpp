@@ -65,6 +65,27 @@ TEST_F(HostAlone, OpensAPlantAndTellsWhatItIs) {
   EXPECT_TRUE(good({{"do", "program"}, {"station", "saw"}})["files"][0]["text"].is_null());
 }
 
+// Who asks and then waits for the event must not wait in vain (docs/reference/serve.md).
+TEST_F(HostAlone, TellsTheTimeAfterTheReplyThatHasChangedIt) {
+  const std::pair<Json, bool> orders[] = {
+      {{{"do", "run"}, {"speed", 1}}, true}, {{{"do", "speed"}, {"speed", 2}}, true}, {{{"do", "pause"}}, false},
+      {{{"do", "step"}, {"ms", 3}}, false},  {{{"do", "back"}, {"ms", 1}}, false},    {{{"do", "restart"}}, false}};
+  for (auto [order, runs] : orders) {
+    order["id"] = 7;
+    page.post.sent.clear();
+    say(order);
+    for (int turn = 0; turn < 20; ++turn) page.host.turn();  // less than the 50 ms between two events of a run
+    std::vector<std::string> came;
+    for (const auto& message : page.post.sent) {
+      if (message.kind != MessageKind::Reply && message.kind != MessageKind::Event) continue;
+      const Json body = Json::parse(message.body);
+      if (message.kind == MessageKind::Reply) came.push_back(body.value("ok", false) ? "reply" : "refused");
+      if (body.value("event", "") == "time") came.push_back(body["running"] == runs ? "time" : "time before the order");
+    }
+    EXPECT_EQ(came, (std::vector<std::string>{"reply", "time"})) << order;
+  }
+}
+
 TEST_F(HostAlone, RunsAsFastAsItsCallersClock) {
   say({{"do", "run"}, {"speed", 2}});
   for (int turn = 0; turn < 50; ++turn) page.host.turn();

@@ -88,19 +88,16 @@ void PlantHost::add_time_commands() {
     set_speed(call.arguments.number("speed", 0, 1000, speed_));
     stopped_ = nullptr;
     running_ = true;
-    tell_time();
-    return Json::object();
+    return reply_and_tell(call);
   });
-  router_.add_command("pause", [this](const Router::Call&) {
+  router_.add_command("pause", [this](const Router::Call& call) {
     running_ = false;
     halted_ = true;
-    tell_time();
-    return Json::object();
+    return reply_and_tell(call);
   });
   router_.add_command("speed", [this](const Router::Call& call) {
     set_speed(call.arguments.number("speed", 0, 1000));
-    tell_time();
-    return Json::object();
+    return reply_and_tell(call);
   });
   router_.add_command("step", [this](const Router::Call& call) {
     Motion motion;
@@ -130,6 +127,13 @@ void PlantHost::add_time_commands() {
     motion.kind = MotionKind::Restart;
     return begin(call, std::move(motion));
   });
+}
+
+// The event comes after the reply: a client that asks, and then waits for it, does not wait in vain.
+Json PlantHost::reply_and_tell(const Router::Call& call) {
+  router_.reply(call.client.number, call.id, Json::object());
+  tell_time();
+  return nullptr;
 }
 
 // With real ports time is that of the world outside, from the beginning on.

@@ -104,6 +104,7 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
   void finish(const debug::Stop& stop);
   void new_generation();
   void set_speed(double speed);
+  Json reply_and_tell(const Router::Call& call);
   void tell_time();
   WallClock::time_point now() const { return clock_.now(); }
   WallClock::time_point due() const;  // the next millisecond
