@@ -8,7 +8,7 @@ namespace ipos::runtime {
 // Before the power: what the plant file, the programs and the parameters say.
 void tell_findings(const Plant& plant, Journal& journal);
 
-// Behind it: the addresses of those that are on a CAN line now.
+// After it: the addresses of those that are on a CAN line now.
 void check_nodes(const Plant& plant, Journal& journal);
 
 }  // namespace ipos::runtime

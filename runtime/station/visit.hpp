@@ -1,4 +1,4 @@
-// One of several classes behind a base: `self()` of the base says which one it is, and a visit has a case for each. A case
+// One of several classes that have one base: `self()` of the base says which one it is, and a visit has a case for each. A case
 // that is missing does not compile.
 #pragma once
 

@@ -1,4 +1,4 @@
-// The script is told each millisecond that has passed, whoever runs the plant and how often.
+// The script is told each millisecond that has passed, no matter what runs the plant and how often.
 #include "tools/debug/debugged_test.hpp"
 
 #include <fmt/format.h>

@@ -17,7 +17,7 @@ namespace ipos::tools::debug {
 // The plant as at power-on, each time.
 using MakePlant = std::function<std::unique_ptr<runtime::Plant>()>;
 
-// What goes with a plant and acts on it while it is debugged, as the script of a test does. Made anew with the plant.
+// What goes with a plant and acts on it while it is debugged, as the script of a test does. Rebuilt with the plant.
 class Companion {
  public:
   virtual ~Companion() = default;

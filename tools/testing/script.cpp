@@ -185,7 +185,7 @@ bool Script::still_waits() {
   waiting_ = nullptr;
   cursor_ = std::max(cursor_, done_);
   settle();
-  // Without the frame that is waited for nothing behind it makes sense.
+  // Without the frame that is waited for nothing after it makes sense.
   if (!met && std::holds_alternative<Step>(item_->what)) stopped_ = true;
   return false;
 }

@@ -1,8 +1,8 @@
-// The script of a test: its items one behind the other, in the virtual time of a plant that somebody else runs. `ipos test`
+// The script of a test: its items one after the other, in the virtual time of a plant that somebody else runs. `ipos test`
 // runs it to where the script wants to go on; the debugger runs it as its user wants and tells what has passed.
 //
 // A step at T is planned when everything of the millisecond before has happened, so that it acts at the beginning of
-// T; an expectation at T looks when everything of T has happened. A step behind it then acts in the next millisecond.
+// T; an expectation at T looks when everything of T has happened. A step after it then acts in the next millisecond.
 #pragma once
 
 #include <list>
@@ -26,7 +26,7 @@ class Script {
   // Finds what the items name; errors are of the test file.
   std::vector<runtime::PlantError> resolve();
 
-  // Once, before the first event. Then, until it is over: passed() behind every millisecond, and go_on() when due() has
+  // Once, before the first event. Then, until it is over: passed() after every millisecond, and go_on() when due() has
   // come or passed() was false.
   void begin();
   bool over() const { return stage_ == Stage::Over; }

@@ -5,7 +5,7 @@
 
 namespace ipos::vm {
 
-// False: no command writes one of these variables, whatever happens, but for what the host does for system
+// False: no command writes one of these variables, whatever happens, apart from what the host does for system
 // commands.
 bool may_write(const VerifiedImage& program, uint32_t first, uint32_t last);
 

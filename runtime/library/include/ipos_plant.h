@@ -9,7 +9,7 @@
  * Errors     Every function that can fail returns an ipos_plant_status. Nothing throws, aborts or prints.
  *            ipos_plant_message() has the last failure in words. A refused call has changed nothing.
  * Threads    There is no global state: any number of plants may be used by any number of threads. One plant belongs to
- *            one thread, at first to the one that opened it; calls from others are IPOS_PLANT_OTHER_THREAD, but for
+ *            one thread, at first to the one that opened it; calls from others are IPOS_PLANT_OTHER_THREAD, except
  *            ipos_plant_adopt() and ipos_plant_close().
  * Time       is virtual: nanoseconds since power-on of the plant. It passes only in ipos_plant_run() and
  *            ipos_plant_run_until(); between two calls everything stands. The same calls give the same run, on any
@@ -333,10 +333,10 @@ ipos_plant_status ipos_plant_parameter_value(const char* unit, uint16_t index, c
 /* What a return code (class, code, additional code: the four data bytes of a refusal) means; "" for one that no manual
  * lists. Stays. */
 const char* ipos_plant_return_code(uint32_t code);
-/* The unit types by number from 0, "mdxb" among them; null behind the last. Stays. */
+/* The unit types by number from 0, "mdxb" among them; null after the last. Stays. */
 const char* ipos_plant_unit_name(size_t number);
 /* How a unit at a port is recognised: it is of the type of the first row, by number from 0, all of whose indices it can
- * read.  unit: stays.  count  in: places of `indices`; out: of the row. IPOS_PLANT_NOTHING behind the last row,
+ * read.  unit: stays.  count  in: places of `indices`; out: of the row. IPOS_PLANT_NOTHING after the last row,
  * IPOS_PLANT_TOO_SMALL. */
 ipos_plant_status ipos_plant_unit_signs(size_t number, const char** unit, uint16_t* indices, size_t* count);
 

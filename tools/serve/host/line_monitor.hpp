@@ -32,7 +32,7 @@ class LineMonitor {
   virtual ~LineMonitor() = default;
   virtual const std::string& name() const = 0;
   virtual runtime::LineLoad load(runtime::Time now) const = 0;
-  // After the millisecond in which telegrams came, before their words are made: whoever is on the line may have got another
+  // After the millisecond in which telegrams came, before their words are made: a station on the line may have got another
   // name, or a new object, since the last time.
   virtual void renew_names(runtime::Time /*now*/) {}
   // Its words, where they depend on what goes before on the line; asked for once, in the order of the line.

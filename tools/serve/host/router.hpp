@@ -45,7 +45,7 @@ class Router {
   Router(const Router&) = delete;
   Router& operator=(const Router&) = delete;
 
-  // Whoever carries out a command later keeps client and id, and calls reply().
+  // A command that is carried out later keeps client and id, and calls reply().
   struct Call {
     Router& router;
     Client& client;

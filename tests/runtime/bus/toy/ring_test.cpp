@@ -1,4 +1,4 @@
-// A kind of bus is a class and a row: the ring works in a plant, and whoever has no case for it does not compile.
+// A kind of bus is a class and a row: the ring works in a plant, and a visitor without a case for it does not compile.
 #include <gtest/gtest.h>
 
 #include <algorithm>
