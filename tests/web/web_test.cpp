@@ -47,6 +47,8 @@ class Browser : public Page {
 
 TEST_F(Browser, FindsWhatTheContractNames) { expect_node_passed(run("page.test.mjs"), 16); }
 
+TEST_F(Browser, PutsViewsSideBySide) { expect_node_passed(run("desk.test.mjs"), 5); }
+
 TEST_F(Browser, TurnsAnAxisByAClick) { expect_node_passed(run("plant.test.mjs"), 18); }
 
 TEST_F(Browser, HearsARealDrive) { expect_node_passed(run("device.test.mjs"), 3); }

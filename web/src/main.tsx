@@ -10,15 +10,18 @@ import { Program } from "./program/program_tab";
 import { Scope } from "./scope/scope_tab";
 import { connect } from "./server/connection";
 import { listenToServer } from "./server/live";
+import { activeView, close, nextPane, offerViews, open, openDesk, paneOf, scrollPage, type View } from "./shell/desk";
 import { Help, helpOpen } from "./shell/help";
 import { listenToKeys, offerKeys } from "./shell/keys";
 import { Notice } from "./shell/notice";
+import { Panes } from "./shell/panes";
 import { followSettings } from "./shell/settings";
-import { open, openTab, TabList, TabPanels, type Tab } from "./shell/tabs";
+import { TabList } from "./shell/tabs";
 import { offerTimeKeys, TimeBar } from "./shell/time_bar";
+import { splitMenuOpen, ViewButtons } from "./shell/view_buttons";
 import { Watch } from "./watch/watch_tab";
 
-const tabs: Tab[] = [
+const views: View[] = [
   { name: "Plant", body: PlantTab },
   { name: "Watch", body: Watch },
   { name: "Scope", body: Scope },
@@ -37,12 +40,19 @@ const tabs: Tab[] = [
 ];
 
 function focusSearch(): void {
-  document.querySelector<HTMLInputElement>('[role="tabpanel"]:not([hidden]) input[type="search"]')?.focus();
+  paneOf(activeView.peek())?.querySelector<HTMLInputElement>('input[type="search"]')?.focus();
 }
 
 function offerPageKeys(): void {
   offerKeys("Page", [
-    ...tabs.map((tab, position) => ({ key: String(position + 1), text: tab.name, act: () => open(tab.name) })),
+    ...views.map((view, position) => ({ key: String(position + 1), text: view.name, act: () => open(view.name) })),
+    { key: "e", text: "One view more", act: () => (splitMenuOpen.value = true) },
+    { key: "q", text: "Close the view", act: () => close(activeView.peek()) },
+    { key: "w", text: "Next view", act: () => nextPane(1) },
+    { key: "W", text: "View before", act: () => nextPane(-1) },
+    { key: "d", text: "Desk: program, plant and scope", act: openDesk },
+    { key: "PageDown", text: "On in the view", act: () => scrollPage(1) },
+    { key: "PageUp", text: "Back in the view", act: () => scrollPage(-1) },
     { key: "/", text: "Search field", act: focusSearch },
     { key: "?", text: "This sheet", act: () => (helpOpen.value = true) },
   ]);
@@ -54,19 +64,20 @@ function Page() {
     <>
       <header class="top">
         <TimeBar />
-        <TabList tabs={tabs} />
+        <div class="views">
+          <TabList views={views} />
+          <ViewButtons views={views} />
+        </div>
         <Notice />
       </header>
-      <main>
-        <TabPanels tabs={tabs} />
-      </main>
+      <Panes views={views} />
       <Help />
     </>
   );
 }
 
-if (!tabs.some((tab) => tab.name === openTab.peek())) openTab.value = "Plant";
 listenToServer();
+offerViews(views.map((view) => view.name));
 followSettings();
 offerTimeKeys();
 offerPageKeys();

@@ -320,7 +320,7 @@ test("faults: a PROFIBUS line offers its own, at a click, and ends them", { skip
       await until(async () => (await timeOf(page)) > 1500, "it does not run");
       await pane.getByLabel("Kind").selectOption("lost");
       await pane.getByLabel("Sent by").selectOption("pump");
-      await pane.getByRole("button", { name: "Plant" }).click();
+      await pane.getByRole("button", { name: "Inject" }).click();
       const planted = pane.getByRole("button", { name: "dp: lost at pump" });
       await planted.waitFor();
       await tab(page, "Journal");

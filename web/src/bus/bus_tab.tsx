@@ -87,7 +87,7 @@ export function Bus() {
         </button>
       </div>
       <SendHint kind={kinds.get(target) ?? ""} />
-      <div class="scroll" tabIndex={0} style="max-height:46vh">
+      <div class="scroll" tabIndex={0} style="flex-grow:1.3">
         <table class="values" aria-label="Bus">
           <thead>
             <tr>

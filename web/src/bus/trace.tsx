@@ -33,7 +33,7 @@ export function Trace({ line, kinds }: { line: string; kinds: Map<string, string
   }, [line, filter, held]);
   const shown = [...frames].reverse();
   return (
-    <section aria-label="Trace" style="margin-top:14px">
+    <section class="trace" aria-label="Trace">
       <div class="bar">
         <h3>Trace</h3>
         <input
@@ -48,7 +48,7 @@ export function Trace({ line, kinds }: { line: string; kinds: Map<string, string
         </button>
         <span class="quiet">newest first, the last {shown_frames}</span>
       </div>
-      <div class="scroll" tabIndex={0} style="max-height:36vh">
+      <div class="scroll" tabIndex={0}>
         <table class="values" aria-label="Telegrams">
           <thead>
             <tr>

@@ -6,7 +6,7 @@ import { showMoment } from "../scope/window";
 import { subscribe } from "../server/connection";
 import { generation, hello, secondsText, stationNames } from "../server/live";
 import type { JournalEntry } from "../server/protocol";
-import { open } from "../shell/tabs";
+import { open } from "../shell/desk";
 
 const weights: JournalEntry["weight"][] = ["why", "warning", "fault"];
 const weight_names = { why: "reasons", warning: "warnings", fault: "faults" };

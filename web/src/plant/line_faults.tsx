@@ -1,4 +1,4 @@
-// Faults of the lines: planted at a click, ended at another.
+// Faults of the lines: injected at a click, ended at another.
 import { useState } from "preact/hooks";
 
 import type { Line, PlantedFault } from "../server/protocol";
@@ -112,7 +112,7 @@ export function LineFaults({ buses }: { buses: Line[] }) {
           </label>
         )}
         <button class="danger" onClick={plantIt}>
-          Plant
+          Inject
         </button>
       </div>
       <div class="row">

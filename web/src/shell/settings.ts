@@ -5,27 +5,35 @@ import { effect, signal, type Signal } from "@preact/signals";
 import { request } from "../server/connection";
 import { hello } from "../server/live";
 
-const kept: { name: string; take: (value: unknown) => void }[] = [];
+const kept: { name: string; take: (value: unknown) => void; tell: () => void }[] = [];
+const followers: (() => void)[] = [];
 let known: Record<string, unknown> | undefined;
 
 // A signal that is kept under this name. What comes from the server takes the place of `first`.
 export function setting<Value>(name: string, first: Value): Signal<Value> {
   const value = signal(first);
   let told = JSON.stringify(first);
+  const tell = () => {
+    const text = JSON.stringify(value.value);
+    if (text === told || !known) return;
+    told = text;
+    void request({ do: "settings.set", name, value: value.value }).catch(() => undefined);
+  };
   kept.push({
     name,
     take: (from_server) => {
       told = JSON.stringify(from_server);
       value.value = from_server as Value;
     },
+    tell,
   });
-  effect(() => {
-    const text = JSON.stringify(value.value);
-    if (text === told || !known) return;
-    told = text;
-    void request({ do: "settings.set", name, value: value.value }).catch(() => undefined);
-  });
+  effect(tell);
   return value;
+}
+
+// Called whenever the settings of a server have come.
+export function whenSettingsCome(act: () => void): void {
+  followers.push(act);
 }
 
 // Again with each server that comes.
@@ -35,7 +43,11 @@ export function followSettings(): void {
     request({ do: "settings" })
       .then((reply) => {
         known = reply.settings as Record<string, unknown>;
-        for (const { name, take } of kept) if (name in known) take(known[name]);
+        for (const { name, take, tell } of kept) {
+          if (name in known) take(known[name]);
+          else tell(); // what was set before the server came
+        }
+        for (const act of followers) act();
       })
       .catch(() => undefined);
   });

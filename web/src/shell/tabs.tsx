@@ -1,79 +1,41 @@
-// The tabs, after the ARIA pattern: arrows move between them, all panels but the open one are hidden.
-import { signal } from "@preact/signals";
-import type { FunctionComponent } from "preact";
+// The tabs, after the ARIA pattern. With one view open the arrows open what they come to; with several they only move, so
+// that passing a tab takes no view away, and Enter opens.
+import { activeView, open, openViews, paneId, severalOpen, tabId, type View } from "./desk";
+import { startDrag } from "./drag";
 
-import { hello } from "../server/live";
-
-export interface Tab {
-  name: string;
-  notOfDrives?: string; // why real drives do not have it
-  body: FunctionComponent;
+function moveByKey(event: KeyboardEvent, views: View[], position: number): void {
+  const last = views.length - 1;
+  const to = { ArrowRight: position === last ? 0 : position + 1, ArrowLeft: position === 0 ? last : position - 1, Home: 0, End: last }[event.key];
+  const view = to === undefined ? undefined : views[to];
+  if (!view) return;
+  event.preventDefault();
+  if (!severalOpen.peek()) open(view.name);
+  document.getElementById(tabId(view.name))?.focus();
 }
 
-export const openTab = signal(decodeURIComponent(location.hash.slice(1)) || "Plant");
-
-export function open(name: string): void {
-  openTab.value = name;
-  history.replaceState(null, "", `#${encodeURIComponent(name)}`);
-}
-
-function idOf(name: string): string {
-  return name.toLowerCase();
-}
-
-export function TabList({ tabs }: { tabs: Tab[] }) {
-  const move = (event: KeyboardEvent, position: number) => {
-    const last = tabs.length - 1;
-    const to = { ArrowRight: position === last ? 0 : position + 1, ArrowLeft: position === 0 ? last : position - 1, Home: 0, End: last }[
-      event.key
-    ];
-    const tab = to === undefined ? undefined : tabs[to];
-    if (!tab) return;
-    event.preventDefault();
-    open(tab.name);
-    document.getElementById(`tab-${idOf(tab.name)}`)?.focus();
-  };
+export function TabList({ views }: { views: View[] }) {
   return (
     <div role="tablist" aria-label="Views">
-      {tabs.map((tab, position) => {
-        const selected = openTab.value === tab.name;
+      {views.map(({ name }, position) => {
+        const selected = activeView.value === name;
+        const shown = openViews.value.includes(name);
         return (
           <button
-            key={tab.name}
+            key={name}
             role="tab"
-            id={`tab-${idOf(tab.name)}`}
+            id={tabId(name)}
+            class={shown && !selected ? "shown" : ""}
             aria-selected={selected}
-            aria-controls={`panel-${idOf(tab.name)}`}
+            aria-controls={paneId(name)}
             tabIndex={selected ? 0 : -1}
-            onClick={() => open(tab.name)}
-            onKeyDown={(event) => move(event, position)}
+            onClick={() => open(name)}
+            onKeyDown={(event) => moveByKey(event, views, position)}
+            onPointerDown={(event) => event.pointerType === "mouse" && startDrag(event, name)}
           >
-            {tab.name}
+            {name}
           </button>
         );
       })}
     </div>
-  );
-}
-
-export function TabPanels({ tabs }: { tabs: Tab[] }) {
-  return (
-    <>
-      {tabs.map((tab) => {
-        const Body = tab.body;
-        const selected = openTab.value === tab.name;
-        return (
-          <div
-            key={tab.name}
-            role="tabpanel"
-            id={`panel-${idOf(tab.name)}`}
-            aria-labelledby={`tab-${idOf(tab.name)}`}
-            hidden={!selected}
-          >
-            {selected && (hello.value?.mode === "device" && tab.notOfDrives ? <p class="empty">{tab.notOfDrives}</p> : <Body />)}
-          </div>
-        );
-      })}
-    </>
   );
 }

@@ -1,0 +1,271 @@
+// Views side by side before the mock server: split, desk, dragged and moved by keys, borders, closed, kept; the keys that
+// depend on where the focus came from; one column on a phone.
+import assert from "node:assert";
+import { readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { after, before, test } from "node:test";
+
+import { startMock } from "../mock/server.mjs";
+import { desktop, launch, missing, openPage, phone, tab_names } from "./browser.mjs";
+
+const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+const skip = missing ?? false;
+let browser;
+
+before(async () => {
+  if (!skip) browser = await launch();
+});
+after(() => browser?.close());
+
+async function meet(use, { after: ending = "", ...options } = {}) {
+  const mock = await startMock();
+  const opened = await openPage(browser, mock.address + ending, options);
+  try {
+    await opened.page.getByRole("switch", { name: "saw DI00" }).waitFor();
+    await use(opened.page, mock);
+    assert.deepStrictEqual(opened.errors.filter((text) => !text.includes("WebSocket")), []);
+  } finally {
+    await opened.close();
+    await mock.stop();
+  }
+}
+
+const until = async (what, text) => {
+  for (let n = 0; n < 100; ++n) {
+    if (await what()) return;
+    await new Promise((done) => setTimeout(done, 50));
+  }
+  assert.fail(text);
+};
+
+const region = (page, name) => page.getByRole("region", { name, exact: true });
+const button = (page, name) => page.getByRole("button", { name, exact: true });
+
+async function split(page, name, side) {
+  await button(page, "Split").click();
+  if (side) await page.getByRole("menuitemradio", { name: side }).click();
+  await page.getByRole("menuitem", { name }).click();
+  await region(page, name).waitFor();
+}
+
+// The views that are open, in the order in which they are read.
+const open = (page) => page.locator("main > .pane:not([hidden])").evaluateAll((panes) => panes.map((pane) => pane.getAttribute("aria-label")));
+const focusedIn = (page) => page.evaluate(() => document.activeElement?.closest(".pane")?.getAttribute("aria-label"));
+
+// Whether the boxes lie so: "left", "above" of each other.
+async function lies(page, one, side, other) {
+  const [a, b] = [await region(page, one).boundingBox(), await region(page, other).boundingBox()];
+  return side === "left" ? a.x + a.width <= b.x + 1 : a.y + a.height <= b.y + 1;
+}
+
+test("split adds a view, a tab shows its own where it is or in the pane that was used last, the layout is kept", { skip }, () =>
+  meet(async (page, mock) => {
+    assert.strictEqual(await page.getByRole("tabpanel").count(), 1);
+    assert.strictEqual(await page.getByRole("separator").count(), 0);
+    await split(page, "Watch");
+    assert.deepStrictEqual(await open(page), ["Plant", "Watch"]);
+    assert.ok(await lies(page, "Plant", "left", "Watch"));
+    assert.strictEqual(await focusedIn(page), "Watch");
+    assert.strictEqual(await page.getByRole("tab", { selected: true }).textContent(), "Watch");
+    // By Plant's focus Journal comes there; Watch stays.
+    await region(page, "Plant").getByRole("switch", { name: "saw DI00" }).click();
+    await page.getByRole("tab", { name: "Journal" }).click();
+    assert.deepStrictEqual(await open(page), ["Journal", "Watch"]);
+    await page.getByRole("tab", { name: "Watch" }).click();
+    assert.deepStrictEqual(await open(page), ["Journal", "Watch"]);
+    await until(async () => (await focusedIn(page)) === "Watch", "the focus does not go to the view that is open");
+    // Arrows in the tabs take no view away.
+    await page.getByRole("tab", { name: "Watch" }).focus();
+    await page.keyboard.press("ArrowRight");
+    assert.strictEqual(await page.evaluate(() => document.activeElement.textContent), "Scope");
+    assert.deepStrictEqual(await open(page), ["Journal", "Watch"]);
+    await split(page, "Bus", "Below");
+    assert.ok(await lies(page, "Watch", "above", "Bus"));
+    assert.deepStrictEqual(await open(page), ["Journal", "Watch", "Bus"]);
+    // All that is open is remembered, and nothing else than the address says which one was used last.
+    await until(() => JSON.stringify(mock.plant.settings["desk.layout"] ?? null).includes("Bus"), "not kept");
+    await page.reload();
+    await until(async () => (await open(page)).join() === "Journal,Watch,Bus", "the layout is lost");
+    assert.strictEqual(await page.getByRole("tab", { selected: true }).textContent(), "Bus");
+    for (const name of ["Journal", "Bus"]) await button(page, `Close ${name}`).click();
+    assert.strictEqual(await page.getByRole("tabpanel").count(), 1);
+    assert.strictEqual(await page.getByRole("tab", { selected: true }).textContent(), "Watch");
+    await until(() => mock.plant.settings["desk.layout"] === null, "one view is no layout");
+  }),
+);
+
+test("desk: by its button, its key and its address; program left, plant and scope right", { skip }, async () => {
+  const isDesk = async (page) => {
+    await region(page, "Program").waitFor();
+    assert.deepStrictEqual(await open(page), ["Program", "Plant", "Scope"]);
+    assert.ok(await lies(page, "Program", "left", "Plant"));
+    assert.ok(await lies(page, "Program", "left", "Scope"));
+    assert.ok(await lies(page, "Plant", "above", "Scope"));
+  };
+  await meet(async (page) => {
+    await button(page, "Desk").click();
+    await isDesk(page);
+  });
+  for (const ending of ["#Desk", "&desk"])
+    await meet(
+      async (page) => {
+        await isDesk(page);
+        // What is done afterwards stays over a reload.
+        await button(page, "Close Program").click();
+        await page.reload();
+        await until(async () => (await open(page)).join() === "Plant,Scope", "the desk comes again");
+      },
+      { after: ending },
+    );
+  await meet(
+    async (page) => {
+      assert.deepStrictEqual(await page.getByRole("tab", { selected: true }).allTextContents(), ["Plant"]);
+      await page.evaluate(() => (location.hash = "#Scope"));
+      await until(async () => (await page.getByRole("tab", { selected: true }).textContent()) === "Scope", "a link in the page does nothing");
+    },
+    { after: "#Nowhere" },
+  );
+});
+
+test("views move by pointer and by keys, and keep what they hold", { skip }, () =>
+  meet(async (page) => {
+    await button(page, "Desk").click();
+    const grip = (name) => button(page, `Move ${name}`);
+    const dropAt = async (name, x, y, source = grip(name), on = "Scope") => {
+      const from = await source.boundingBox();
+      const to = await region(page, on).boundingBox();
+      await page.mouse.move(from.x + 20, from.y + 8);
+      await page.mouse.down();
+      await page.mouse.move(to.x + to.width * x, to.y + to.height * y, { steps: 5 });
+      assert.strictEqual(await page.locator(".drop-zone").count(), 1);
+      await page.mouse.up();
+      assert.strictEqual(await page.locator(".drop-zone").count(), 0);
+    };
+    await region(page, "Plant").getByRole("textbox").first().fill("4711");
+    await region(page, "Plant").locator(".view").evaluate((view) => {
+      view.scrollTop = 40;
+      view.querySelector(".station").dataset.same = "yes";
+    });
+    const holds = async () => {
+      const view = region(page, "Plant").locator(".view");
+      assert.strictEqual(await view.evaluate((one) => one.scrollTop), 40);
+      assert.strictEqual(await view.locator('[data-same="yes"]').count(), 1);
+      assert.strictEqual(await view.getByRole("textbox").first().inputValue(), "4711");
+    };
+    // To the left of the scope, into the middle of the program, to the side of the whole.
+    await dropAt("Plant", 0.1, 0.5);
+    assert.ok(await lies(page, "Plant", "left", "Scope"));
+    await holds();
+    await dropAt("Plant", 0.5, 0.5, grip("Plant"), "Program");
+    assert.deepStrictEqual(await open(page), ["Plant", "Program", "Scope"]);
+    await holds();
+    await grip("Scope").focus();
+    await page.keyboard.press("ArrowLeft");
+    assert.deepStrictEqual(await open(page), ["Plant", "Scope", "Program"]);
+    assert.ok(await grip("Scope").evaluate((one) => one === document.activeElement), "the title loses the focus");
+    await page.keyboard.press("ArrowDown");
+    assert.ok((await lies(page, "Plant", "above", "Scope")) && (await lies(page, "Program", "above", "Scope")));
+    await holds();
+    // A tab is dragged as well, and Escape gives up.
+    await dropAt("Bus", 0.5, 0.9, page.getByRole("tab", { name: "Bus" }), "Plant");
+    assert.ok(await lies(page, "Plant", "above", "Bus"));
+    assert.ok(await lies(page, "Bus", "left", "Program"));
+    const before = await open(page);
+    const from = await grip("Bus").boundingBox();
+    await page.mouse.move(from.x + 20, from.y + 8);
+    await page.mouse.down();
+    await page.mouse.move(from.x + 20, from.y - 200, { steps: 3 });
+    await page.keyboard.press("Escape");
+    await page.mouse.up();
+    assert.deepStrictEqual(await open(page), before);
+  }),
+);
+
+test("borders are separators, moved by arrows and by pointer", { skip }, () =>
+  meet(async (page, mock) => {
+    await button(page, "Desk").click();
+    const border = page.getByRole("separator", { name: "Between Program and Plant" });
+    assert.strictEqual(await border.getAttribute("aria-orientation"), "vertical");
+    assert.strictEqual(await border.getAttribute("aria-valuenow"), "50");
+    const width = async () => (await region(page, "Program").boundingBox()).width;
+    const before = await width();
+    await border.focus();
+    await page.keyboard.press("ArrowRight");
+    await page.keyboard.press("ArrowRight");
+    assert.strictEqual(await border.getAttribute("aria-valuenow"), "54");
+    assert.ok(Math.abs((await width()) - before - 0.04 * desktop.width) < 3);
+    await page.keyboard.press("Home");
+    assert.strictEqual(await border.getAttribute("aria-valuenow"), await border.getAttribute("aria-valuemin"));
+    await page.keyboard.press("End");
+    assert.strictEqual(await border.getAttribute("aria-valuenow"), await border.getAttribute("aria-valuemax"));
+    const box = await border.boundingBox();
+    await page.mouse.move(box.x + 4, box.y + 200);
+    await page.mouse.down();
+    await page.mouse.move(400, 300, { steps: 4 });
+    await page.mouse.up();
+    assert.ok(Math.abs((await width()) - 400) < 6, "it is not where the pointer left it");
+    const inner = page.getByRole("separator", { name: "Between Plant and Scope" });
+    assert.strictEqual(await inner.getAttribute("aria-orientation"), "horizontal");
+    await inner.focus();
+    await page.keyboard.press("ArrowUp");
+    assert.strictEqual(await inner.getAttribute("aria-valuenow"), "48");
+    await until(() => Math.abs((mock.plant.settings["desk.layout"]?.parts[0].share ?? 0) - 400 / desktop.width) < 0.01, "the size is not kept");
+  }),
+);
+
+test("keys: Space after a click, of a switch reached by Tab; two views with one key; split, next and close", { skip }, () =>
+  meet(async (page, mock) => {
+    await button(page, "Run").click();
+    const runs = (whether) => until(async () => (await page.locator(".clock .lamp.on").count()) === (whether ? 1 : 0) && mock.plant.running === whether, `it ${whether ? "stands" : "runs"}`);
+    await runs(true);
+    await page.keyboard.press(" ");
+    await runs(false);
+    const input = page.getByRole("switch", { name: "saw DI00" });
+    await input.click();
+    await until(async () => (await input.getAttribute("aria-checked")) === "true", "not switched");
+    await page.keyboard.press(" ");
+    await runs(true);
+    assert.strictEqual(await input.getAttribute("aria-checked"), "true");
+    await page.keyboard.press(" ");
+    await runs(false);
+    await page.getByRole("button", { name: "Force saw DI00" }).focus();
+    await page.keyboard.press("Shift+Tab");
+    await page.keyboard.press("Shift+Tab");
+    assert.ok(await input.evaluate((one) => one === document.activeElement), "Tab does not lead to the switch");
+    await page.keyboard.press(" ");
+    await until(async () => (await input.getAttribute("aria-checked")) === "false", "Space does not press the switch");
+    assert.strictEqual(mock.plant.running, false);
+    // The menu by keys alone.
+    await page.keyboard.press("e");
+    await page.getByRole("menu").waitFor();
+    await page.keyboard.press("j");
+    assert.strictEqual(await page.evaluate(() => document.activeElement.textContent), "Journal");
+    await page.keyboard.press("Enter");
+    await until(async () => (await open(page)).join() === "Plant,Journal", "no Journal");
+    await page.keyboard.press("w");
+    await until(async () => (await focusedIn(page)) === "Plant", "not the next one");
+    await page.keyboard.press("W");
+    await until(async () => (await focusedIn(page)) === "Journal", "not the one before");
+    await page.keyboard.press("q");
+    assert.deepStrictEqual(await open(page), [null]);
+    await page.keyboard.press("d");
+    await region(page, "Program").waitFor();
+    // "i" is a step of the program and a picture of the scope.
+    const steps = () => mock.received.filter((one) => one.do === "program.step").length;
+    await region(page, "Program").locator(".view").click({ position: { x: 4, y: 300 } });
+    await page.keyboard.press("i");
+    await until(() => steps() === 1, "no step");
+    await page.keyboard.press("e");
+    await page.getByRole("menu").waitFor();
+    await page.keyboard.press("Escape");
+    assert.strictEqual(await page.getByRole("menu").count(), 0);
+    await page.getByRole("tab", { name: "Scope" }).click();
+    await until(async () => (await focusedIn(page)) === "Scope", "no scope");
+    const [picture] = await Promise.all([page.waitForEvent("download"), page.keyboard.press("i")]);
+    assert.strictEqual(picture.suggestedFilename(), "scope.png");
+    assert.strictEqual(steps(), 1);
+    await page.keyboard.press("?");
+    const sheet = page.getByRole("dialog", { name: "Keys" });
+    for (const text of ["One view more", "Close the view", "Next view", "Desk: program, plant and scope"]) await sheet.getByText(text).waitFor();
+  }),
+);
