@@ -197,6 +197,9 @@ class Server::Listener {
   void end();
 
   ServerOptions options_;
+  // Connections of one request; the longest silent one is in front. Those that are left at the end go with `io_` and leave
+  // this list, so it lives longer.
+  std::list<Connection*> asking_;
   asio::io_context io_{1};
   tcp::acceptor acceptor_;
   asio::local::stream_protocol::socket host_;
@@ -211,7 +214,6 @@ class Server::Listener {
   std::array<char, kMessageHead> head_{};
   Message message_;
   std::deque<std::string> to_host_;
-  std::list<Connection*> asking_;  // of one request; the longest silent one is in front
   Arrival arrival_;
   asio::steady_timer heartbeat_{io_};
   uint16_t last_client_ = 0;

@@ -1,5 +1,6 @@
 // Debian's Chromium for the tests of the page, without any request of its own.
-import { existsSync } from "node:fs";
+//   IPOS_PAGE=dist/index.html     takes this page in place of the one in the program, which then need not be linked again
+import { existsSync, readFileSync } from "node:fs";
 
 import { chromium } from "playwright-core";
 
@@ -20,6 +21,7 @@ export function launch() {
       "--disable-background-networking",
       "--disable-component-update",
       "--disable-sync",
+      "--disable-features=LocalNetworkAccessChecks", // for IPOS_PAGE: its socket goes to this computer
     ],
   });
 }
@@ -35,6 +37,10 @@ export async function openPage(browser, address, options = {}) {
   const errors = [];
   page.on("pageerror", (error) => errors.push(String(error)));
   page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
+  if (process.env.IPOS_PAGE)
+    await page.route((url) => url.pathname === "/" && url.searchParams.has("token"), (route) =>
+      route.fulfill({ contentType: "text/html", body: readFileSync(process.env.IPOS_PAGE, "utf8") }),
+    );
   await page.goto(address);
   return { page, errors, close: () => context.close() };
 }

@@ -269,3 +269,47 @@ test("keys: Space after a click, of a switch reached by Tab; two views with one 
     for (const text of ["One view more", "Close the view", "Next view", "Desk: program, plant and scope"]) await sheet.getByText(text).waitFor();
   }),
 );
+
+for (const { name, viewport, colorScheme } of [
+  { name: "desktop", viewport: desktop, colorScheme: "dark" },
+  { name: "phone", viewport: phone, colorScheme: "light" },
+])
+  test(`${name}, ${colorScheme}: seven views at once, nothing is cut off, axe-core finds nothing serious`, { skip }, () =>
+    meet(
+      async (page, mock) => {
+        await page.evaluate(axe);
+        await button(page, "Desk").click();
+        for (const view of ["Watch", "Bus", "Journal", "Parameters"]) await split(page, view);
+        assert.strictEqual((await open(page)).length, tab_names.length);
+        await button(page, "Split").click();
+        await page.getByRole("menu").getByText("All views are open").waitFor();
+        const found = await page.evaluate(() => window.axe.run(document));
+        const serious = found.violations.filter((one) => one.impact === "serious" || one.impact === "critical");
+        assert.deepStrictEqual(serious.map((one) => `${one.id} ${one.nodes.map((node) => node.html.slice(0, 160))}`), []);
+        await page.keyboard.press("Escape");
+        assert.ok((await page.evaluate(() => document.documentElement.scrollWidth - innerWidth)) <= 0, "too wide");
+        // Each topic has one subscription, and each view hears of it.
+        await page.getByRole("button", { name: "Step" }).click();
+        const topics = mock.received.filter((one) => one.do === "subscribe").map((one) => one.topic);
+        assert.ok(new Set(topics).size >= tab_names.length - 1, topics.join());
+        if (viewport === desktop) return;
+        // One column: each view over the whole width, one below the other, each at a tap on its tab.
+        const boxes = await Promise.all((await open(page)).map((view) => region(page, view).boundingBox()));
+        boxes.forEach((box, position) => {
+          assert.strictEqual(box.width, phone.width);
+          if (position > 0) assert.ok(box.y >= boxes[position - 1].y + boxes[position - 1].height - 1);
+        });
+        await page.getByRole("tab", { name: "Watch" }).click();
+        const row = page.getByRole("table", { name: "Watch" }).getByRole("row", { name: "lift.lWrong" });
+        for (const field of [row.getByRole("textbox"), row.getByRole("button", { name: "Force" }), row.getByRole("button", { name: "Pin" })]) {
+          await field.scrollIntoViewIfNeeded();
+          const box = await field.boundingBox();
+          assert.ok(box.width >= 24 && box.x >= 0 && box.x + box.width <= phone.width, `a field lies at ${JSON.stringify(box)}`);
+        }
+        await row.getByRole("textbox").fill("7");
+        await row.getByRole("textbox").press("Enter");
+        await until(async () => (await row.getByRole("cell").first().textContent()) === "7", "the value is not there");
+      },
+      { viewport, colorScheme },
+    ),
+  );

@@ -2,6 +2,8 @@
 // back, binary frames by the request that wanted them.
 import { signal } from "@preact/signals";
 
+import { united, type Wish } from "./wishes";
+
 export type Message = Record<string, unknown>;
 export type Link = "connecting" | "open" | "lost";
 
@@ -21,11 +23,6 @@ interface Waiting {
   failed: (reason: Error) => void;
 }
 
-interface Topic {
-  options: Message;
-  take: (event: Message) => void;
-}
-
 export const link = signal<Link>("connecting");
 
 const first_pause_ms = 300;
@@ -36,7 +33,7 @@ let pause_ms = first_pause_ms;
 let next_id = 1;
 const waiting = new Map<number, Waiting>();
 const views = new Map<number, (frame: DataView) => void>();
-const topics = new Map<string, Topic>();
+const topics = new Map<string, Wish[]>();
 const listeners = new Map<string, (event: Message) => void>();
 
 // Events that come without subscription.
@@ -78,17 +75,25 @@ export function requestFrame(command: Message): Promise<DataView> {
   });
 }
 
-function ask(name: string, topic: Topic): void {
-  if (link.peek() === "open") void transmit({ do: "subscribe", topic: name, ...topic.options }).catch(() => undefined);
+function ask(name: string, wishes: Wish[]): void {
+  if (link.peek() === "open") void transmit({ do: "subscribe", topic: name, ...united(wishes) }).catch(() => undefined);
 }
 
-// One subscription a topic; a second one takes its place.
+// One subscription a topic, whoever wants it. It is asked for anew with each that comes, so that this one gets everything.
 export function subscribe(name: string, options: Message, take: (event: Message) => void): () => void {
-  const topic = { options, take };
-  topics.set(name, topic);
-  ask(name, topic);
+  const wish = { options, take };
+  const all = [...(topics.get(name) ?? []), wish];
+  topics.set(name, all);
+  ask(name, all);
   return () => {
-    if (topics.get(name) !== topic) return;
+    const before = topics.get(name) ?? [];
+    const rest = before.filter((one) => one !== wish);
+    if (rest.length === before.length) return;
+    if (rest.length > 0) {
+      topics.set(name, rest);
+      if (JSON.stringify(united(rest)) !== JSON.stringify(united(before))) ask(name, rest);
+      return;
+    }
     topics.delete(name);
     if (link.peek() === "open") void transmit({ do: "unsubscribe", topic: name }).catch(() => undefined);
   };
@@ -96,8 +101,8 @@ export function subscribe(name: string, options: Message, take: (event: Message)
 
 function take(message: Message): void {
   if (typeof message.event === "string") {
-    const topic = topics.get(message.event);
-    if (topic) topic.take(message);
+    const wishes = topics.get(message.event);
+    if (wishes) for (const wish of wishes) wish.take(message);
     else listeners.get(message.event)?.(message);
     return;
   }
@@ -133,7 +138,7 @@ export function connect(): void {
   socket.onopen = () => {
     pause_ms = first_pause_ms;
     link.value = "open";
-    for (const [name, topic] of topics) ask(name, topic);
+    for (const [name, wishes] of topics) ask(name, wishes);
   };
   socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => {
     if (typeof event.data === "string") take(JSON.parse(event.data) as Message);

@@ -5,9 +5,11 @@ import { request, subscribe } from "../server/connection";
 import { hello } from "../server/live";
 import type { WatchName, WatchValue } from "../server/protocol";
 import { complain } from "../shell/notice";
+import type { Range } from "../shell/rows";
 import { setting } from "../shell/settings";
 
 const most_names = 1000;
+const scroll_rest_ms = 60;
 
 export const searchText = signal("");
 export const chosenStation = signal("");
@@ -20,6 +22,9 @@ export const shown = computed(() => {
   const names = new Set(pinned.value.map((one) => one.name));
   return [...pinned.value, ...found.value.filter((one) => !names.has(one.name))].slice(0, most_names);
 });
+
+// Only what is in sight is watched: of a plant with many drives there are a thousand.
+export const inSight = signal<Range>({ first: 0, end: 0 });
 
 const values = new Map<string, Signal<WatchValue | null>>();
 
@@ -95,8 +100,11 @@ export function followWatch(): () => void {
       wait = setTimeout(() => void search().catch(complain), 120);
     });
   });
-  const stopShown = shown.subscribe((list) => {
-    if (list.length > 0) void watchShown(list.map((one) => one.name)).catch(complain);
+  const watched = computed(() => shown.value.slice(inSight.value.first, inSight.value.end).map((one) => one.name));
+  let rest: ReturnType<typeof setTimeout> | undefined;
+  const stopShown = watched.subscribe((list) => {
+    clearTimeout(rest);
+    if (list.length > 0) rest = setTimeout(() => void watchShown(list).catch(complain), scroll_rest_ms);
   });
   const stopTopic = subscribe("watch", { rate: 10 }, (event) => {
     for (const [name, value] of Object.entries(event.values as Record<string, WatchValue | null>))
@@ -104,6 +112,7 @@ export function followWatch(): () => void {
   });
   return () => {
     clearTimeout(wait);
+    clearTimeout(rest);
     stopSearch();
     for (const stop of stops) stop();
     stopShown();

@@ -4,6 +4,7 @@ import { useEffect, useRef } from "preact/hooks";
 import { hello, stationNames } from "../server/live";
 import type { WatchName } from "../server/protocol";
 import { command } from "../shell/notice";
+import { Rows } from "../shell/rows";
 import { setting } from "../shell/settings";
 import {
   chosenGroup,
@@ -11,6 +12,7 @@ import {
   followWatch,
   found,
   groups,
+  inSight,
   pin,
   pinned,
   searchText,
@@ -21,7 +23,7 @@ import {
 
 const hexadecimal = setting("watch.hexadecimal", false);
 
-function Row({ one, isPinned }: { one: WatchName; isPinned: boolean }) {
+function Row({ one, isPinned, position }: { one: WatchName; isPinned: boolean; position: number }) {
   const field = useRef<HTMLInputElement>(null);
   const value = valueOf(one.name).value;
   const send = async (order: "set" | "force") => {
@@ -29,13 +31,13 @@ function Row({ one, isPinned }: { one: WatchName; isPinned: boolean }) {
     if ((await command({ do: order, name: one.name, value: text })) && field.current) field.current.value = "";
   };
   return (
-    <tr class={isPinned ? "changed" : ""}>
+    <tr class={isPinned ? "changed" : ""} aria-rowindex={position + 2}>
       <th scope="row" class="mono">
         {one.name}
       </th>
       <td class="number">{value ? (hexadecimal.value ? value.hex : value.text) : "–"}</td>
-      <td class="quiet">{value?.text.endsWith(one.unit) && !hexadecimal.value ? "" : one.unit}</td>
-      <td class="shrink">
+      <td class="quiet unit">{value?.text.endsWith(one.unit) && !hexadecimal.value ? "" : one.unit}</td>
+      <td class="shrink set">
         {one.writable && (
           <span class="row" style="flex-wrap:nowrap">
             <input
@@ -59,7 +61,7 @@ function Row({ one, isPinned }: { one: WatchName; isPinned: boolean }) {
         )}
       </td>
       <td class="quiet text">{one.text}</td>
-      <td class="shrink">
+      <td class="shrink pin">
         <button class="small" aria-label={`Pin ${one.name}`} aria-pressed={isPinned} title="Stays at the top" onClick={() => pin(one)}>
           {isPinned ? "★" : "☆"}
         </button>
@@ -106,7 +108,7 @@ export function Watch() {
         </span>
       </div>
       <div class="scroll" tabIndex={0}>
-        <table class="values" aria-label="Watch">
+        <table class="values watch" aria-label="Watch" aria-rowcount={shown.value.length + 1}>
           <thead>
             <tr>
               <th scope="col">Name</th>
@@ -121,11 +123,11 @@ export function Watch() {
               </th>
             </tr>
           </thead>
-          <tbody>
-            {shown.value.map((one) => (
-              <Row key={one.name} one={one} isPinned={pins.has(one.name)} />
-            ))}
-          </tbody>
+          <Rows
+            items={shown.value}
+            row={(one, position) => <Row key={one.name} one={one} isPinned={pins.has(one.name)} position={position} />}
+            onRange={(range) => (inSight.value = range)}
+          />
         </table>
         {shown.value.length === 0 && (
           <p class="empty">
