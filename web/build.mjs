@@ -1,5 +1,6 @@
-// Bundles the page into one HTML document without any other request: dist/index.html.
-//   node build.mjs [FILE]     writes it somewhere else, for the test that compares
+// Bundles the page into one HTML document without any other request, dist/index.html, and the page of a plot with the
+// picture alone, dist/plot.html, which `ipos run --plot` fills with a recording.
+//   node build.mjs [FILE [PLOT]]     writes them somewhere else, for the test that compares
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -8,6 +9,7 @@ import { build } from "esbuild";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const output = process.argv[2] ?? join(here, "dist/index.html");
+const plot = process.argv[3] ?? join(dirname(output), "plot.html");
 
 async function bundle(entry, options) {
   const result = await build({
@@ -26,9 +28,15 @@ async function bundle(entry, options) {
 
 const style = await bundle("style/page.css", {});
 const script = await bundle("main.tsx", { format: "iife", jsx: "automatic", jsxImportSource: "preact" });
-const html = readFileSync(join(here, "src/page.html"), "utf8")
-  .replace("/*style*/", () => style.replaceAll("</style", "<\\/style"))
-  .replace("/*script*/", () => script.replaceAll("</script", "<\\/script"));
-mkdirSync(dirname(output), { recursive: true });
-writeFileSync(output, html);
-console.log(`${output}: ${html.length} characters`);
+function write(file, template, parts) {
+  let html = readFileSync(join(here, "src", template), "utf8");
+  for (const [name, text] of Object.entries(parts)) html = html.replace(`/*${name}*/`, () => text.replaceAll(`</${name}`, `<\\/${name}`));
+  mkdirSync(dirname(file), { recursive: true });
+  writeFileSync(file, html);
+  console.log(`${file}: ${html.length} characters`);
+}
+
+write(output, "page.html", { style, script });
+write(plot, "picture/plot.html", {
+  script: await bundle("picture/plot_page.ts", { format: "iife", loader: { ".css": "text" } }),
+});

@@ -127,6 +127,37 @@ TEST(ScopeMemory, ChannelsThatStayKeepWhatTheyHave) {
   EXPECT_EQ(memory.extremes(1, 0, 290), (Extremes{-looked_for(0, 290).second, -looked_for(0, 290).first}));
 }
 
+// Of a word each bit counts by itself: which were on all the time, and which at some.
+TEST(ScopeMemory, OfAWordItSaysTheBitsOfAllAndOfAny) {
+  ScopeMemory memory(copies);
+  memory.choose({std::nullopt}, {{.is_word = true}});
+  memory.restart(0);
+  const auto word = [](uint64_t n) -> int64_t { return 0x0402 | (n == 777 ? 0x8000 : 0) | (n % 5 == 0 ? 4 : 0) | (n == 900 ? 0 : 0x10); };
+  for (uint64_t n = 0; n < 2000; ++n) {
+    const int64_t sample = word(n);
+    memory.push(n, {&sample, 1});
+  }
+  for (const auto& [begin, end] : {std::pair{0UL, 2000UL}, {770UL, 780UL}, {778UL, 899UL}, {1UL, 3UL}}) {
+    Extremes expected{0xFFFF, 0};
+    for (uint64_t n = begin; n < end; ++n) expected = {expected.first & word(n), expected.second | word(n)};
+    EXPECT_EQ(memory.extremes(0, begin, end), expected) << begin;
+  }
+}
+
+TEST(ScopeMemory, KeepsNumbersOf32BitsWithAndWithoutSign) {
+  ScopeMemory memory(copies);
+  memory.choose({std::nullopt, std::nullopt}, {{}, {.is_unsigned = true}});
+  memory.restart(0);
+  memory.push(0, std::vector<int64_t>{INT32_MIN, 0});
+  memory.push(1, std::vector<int64_t>{INT32_MAX, UINT32_MAX});
+  memory.push(2, std::vector<int64_t>{-1, int64_t{INT32_MAX} + 1});
+  EXPECT_EQ(memory.at(0, 0), INT32_MIN);
+  EXPECT_EQ(memory.at(0, 2), -1);
+  EXPECT_EQ(memory.at(1, 1), int64_t{UINT32_MAX});
+  EXPECT_EQ(memory.extremes(0, 0, 3), (Extremes{INT32_MIN, INT32_MAX}));
+  EXPECT_EQ(memory.extremes(1, 0, 3), (Extremes{0, UINT32_MAX}));
+}
+
 TEST(ScopeMemory, BehindAHoleItBeginsAnew) {
   ScopeMemory memory(copies);
   memory.choose({std::nullopt});

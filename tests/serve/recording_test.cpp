@@ -1,5 +1,5 @@
 // What the scope has recorded stays, whatever is chosen afterwards: a channel that comes later is computed by running again
-// what was, and looks as if it had been there from the beginning.
+// what was, and looks as if it had been there from the beginning: by a copy of the process, or by turns.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -13,8 +13,9 @@
 namespace ipos::tests {
 namespace {
 
-class Recording : public Serving {
+class Recording : public Serving, public ::testing::WithParamInterface<bool> {
  protected:
+  Recording() : Serving(the_plant(), GetParam()) {}
   // What `ipos run --trace` writes of a plant of its own, to which `hands` does the same.
   static std::string traced(const std::vector<std::string>& names, int ms) {
     const std::unique_ptr<runtime::Plant> plant = the_plant()();
@@ -43,7 +44,7 @@ class Recording : public Serving {
   }
 };
 
-TEST_F(Recording, AChannelThatComesLaterIsThereFromTheBeginning) {
+TEST_P(Recording, AChannelThatComesLaterIsThereFromTheBeginning) {
   good({{"do", "scope"}, {"channels", {"saw.lCount"}}});
   step(700);
   const std::vector<std::string> names{"saw.lCount", "saw.lTable[1]", "lift.P008"};
@@ -54,7 +55,7 @@ TEST_F(Recording, AChannelThatComesLaterIsThereFromTheBeginning) {
   EXPECT_EQ(scope()["computes"], Json::array());
 }
 
-TEST_F(Recording, WhatAHandDidIsDoneAgain) {
+TEST_P(Recording, WhatAHandDidIsDoneAgain) {
   good({{"do", "scope"}, {"channels", {"saw.lCount"}}});
   step(100);
   good({{"do", "set"}, {"name", "saw.H300"}, {"value", "7"}});
@@ -68,7 +69,7 @@ TEST_F(Recording, WhatAHandDidIsDoneAgain) {
     EXPECT_NE(text.find(row), std::string::npos) << row;
 }
 
-TEST_F(Recording, ACompleteSingleStaysWhatItIs) {
+TEST_P(Recording, ACompleteSingleStaysWhatItIs) {
   good({{"do", "scope"},
         {"channels", {"saw.lCount"}},
         {"pre", 50},
@@ -94,7 +95,7 @@ TEST_F(Recording, ACompleteSingleStaysWhatItIs) {
   EXPECT_EQ(csv(), traced({"saw.lTable[1]"}, 2001));
 }
 
-TEST_F(Recording, ViewAndCsvHaveTheSameValues) {
+TEST_P(Recording, ViewAndCsvHaveTheSameValues) {
   step(500);
   good({{"do", "scope"}, {"channels", {"saw.lCount", "lift.status"}}});
   csv();  // all is computed
@@ -108,7 +109,7 @@ TEST_F(Recording, ViewAndCsvHaveTheSameValues) {
   EXPECT_FALSE(std::isnan(values[1]));
 }
 
-TEST_F(Recording, GoingBackKeepsChannelsAndComputesThemAgain) {
+TEST_P(Recording, GoingBackKeepsChannelsAndComputesThemAgain) {
   step(300);
   good({{"do", "scope"}, {"channels", {"saw.lCount", "saw.H300"}}});
   good({{"do", "set"}, {"name", "saw.H300"}, {"value", "7"}});
@@ -119,7 +120,7 @@ TEST_F(Recording, GoingBackKeepsChannelsAndComputesThemAgain) {
   EXPECT_EQ(csv(), traced({"saw.lCount", "saw.H300"}, 400)) << "what was written later is undone";
 }
 
-TEST_F(Recording, ATriggerOfAnotherSignalHasNoEdgeOfTheOldOne) {
+TEST_P(Recording, ATriggerOfAnotherSignalHasNoEdgeOfTheOldOne) {
   good({{"do", "scope"}, {"trigger", {{"kind", "edge"}, {"signal", "saw.H300"}, {"value", 5}}}});
   good({{"do", "scope.arm"}});
   step(200);
@@ -127,6 +128,24 @@ TEST_F(Recording, ATriggerOfAnotherSignalHasNoEdgeOfTheOldOne) {
   step(5);
   EXPECT_EQ(scope()["state"], "armed");
 }
+
+// What is still computed when another channel goes, when time goes on and when it goes back.
+TEST_P(Recording, IsRightWhateverIsDoneMeanwhile) {
+  good({{"do", "scope"}, {"channels", {"saw.lCount"}}});
+  step(3000);
+  good({{"do", "scope"}, {"channels", {"saw.lCount", "saw.lTable[1]"}}});
+  good({{"do", "scope"}, {"channels", {"saw.lTable[1]", "lift.P008"}}});
+  step(100);
+  good({{"do", "scope"}, {"channels", {"lift.P008", "saw.lCount"}}});
+  step(1);
+  EXPECT_EQ(csv(), traced({"lift.P008", "saw.lCount"}, 3101));
+  good({{"do", "scope"}, {"channels", {"lift.P008", "saw.lTable[1]"}}});
+  good({{"do", "back"}, {"us", 1'500'000}});
+  EXPECT_EQ(csv({{"to_us", 1'500'000}}), traced({"lift.P008", "saw.lTable[1]"}, 1500));
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, Recording, ::testing::Bool(),
+                         [](const auto& copied) { return copied.param ? "Copies" : "Turns"; });
 
 }  // namespace
 }  // namespace ipos::tests

@@ -9,14 +9,17 @@
 namespace ipos::tests {
 
 struct ServedParts {
+  explicit ServedParts(bool copied) : copies(copied ? std::make_unique<tools::serve::ForkedCopies>(false) : std::make_unique<tools::serve::Copies>()) {}
   tools::serve::SteadyClock clock;
-  tools::serve::ForkedCopies copies{false};
+  std::unique_ptr<tools::serve::Copies> copies;
   tools::serve::CompiledSources sources;
 };
 
 class ServedPage : private ServedParts, public Page {
  public:
-  explicit ServedPage(tools::debug::MakePlant make) : Page(std::move(make), clock, copies, sources) {}
+  // Without copies of the process it is that of a browser's worker.
+  explicit ServedPage(tools::debug::MakePlant make, bool copied = true)
+      : ServedParts(copied), Page(std::move(make), clock, *copies, sources) {}
 };
 
 }  // namespace ipos::tests

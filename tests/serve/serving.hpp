@@ -29,7 +29,7 @@ class Serving : public ::testing::Test {
     return topic({{"topic", "watch"}})["values"].front()["value"].get<int64_t>();
   }
 
-  explicit Serving(tools::debug::MakePlant make = the_plant()) : page(std::move(make)) {}
+  explicit Serving(tools::debug::MakePlant make = the_plant(), bool copied = true) : page(std::move(make), copied) {}
 
   ServedPage page;
 };

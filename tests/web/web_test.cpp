@@ -30,6 +30,7 @@ TEST_F(Page, IsTheBundleOfItsSources) {
   ASSERT_EQ(result.exit_code, 0) << result.output;
   EXPECT_TRUE(read_text(package().folder / "built.html") == read_text(project("web/dist/index.html")))
       << "web/dist/index.html is not made of web/src: run `npm ci && npm run build` in web";
+  EXPECT_TRUE(read_text(package().folder / "plot.html") == read_text(project("web/dist/plot.html"))) << "web/dist/plot.html, too";
 }
 
 class Browser : public Page {
@@ -50,6 +51,8 @@ TEST_F(Browser, FindsWhatTheContractNames) { expect_node_passed(run("page.test.m
 TEST_F(Browser, PutsViewsSideBySide) { expect_node_passed(run("desk.test.mjs"), 7); }
 
 TEST_F(Browser, TurnsAnAxisByAClick) { expect_node_passed(run("plant.test.mjs"), 18); }
+
+TEST_F(Browser, ShowsCurves) { expect_node_passed(run("scope.test.mjs"), 7); }
 
 TEST_F(Browser, HearsARealDrive) { expect_node_passed(run("device.test.mjs"), 3); }
 

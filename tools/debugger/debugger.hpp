@@ -72,6 +72,9 @@ class Debugger final : private runtime::CommandRunner {
   Stop go_back(runtime::Time time);
   // From the beginning up to here, without copies: for a copy of the process that gathers what was not gathered before.
   void run_again();
+  // The plant is as at power-on: what was done to the other one is done to this at the same moments.
+  void will_do_as(const Debugger& other) { changes_ = other.changes_; }
+  const MakePlant& maker() const { return what_.make; }
   // The plant as at power-on. What the user has done is forgotten, breakpoints stay.
   void restart();
 

@@ -1,4 +1,4 @@
-// The page is plot.html; its data are JSON in place of @DATA@.
+// The page is the second bundle of web/ (web/src/picture/plot_page.ts); its data are JSON in place of @DATA@.
 #include "tools/recording/plot_html.hpp"
 
 #include <fmt/format.h>
@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "stdlib/embedded.hpp"
+#include "tools/recording/channel_json.hpp"
 
 namespace ipos::tools {
 namespace plot_page {
@@ -37,17 +38,17 @@ json changes_of(const Signal& signal, const std::vector<int64_t>& samples) {
 std::string plot_html(const Recording& recording, const std::string& title) {
   json data;
   data["title"] = title;
+  data["begin"] = recording.times.empty() ? 1 : milliseconds(recording.times.front());
   data["end"] = recording.times.empty() ? 0 : milliseconds(recording.times.back());
   data["samples"] = recording.times.size();
   data["signals"] = json::array();
   for (size_t n = 0; n < recording.signals.size(); ++n) {
     const Signal& signal = recording.signals[n];
-    data["signals"].push_back({{"name", signal.name},
-                               {"unit", signal.unit},
-                               {"decimals", signal.decimals},
-                               {"status", signal.is_status},
-                               {"binary", is_binary(recording, n)},
-                               {"changes", changes_of(signal, recording.samples[n])}});
+    json row = channel_json(signal);
+    row["status"] = signal.is_status;
+    row["binary"] = is_binary(recording, n);
+    row["changes"] = changes_of(signal, recording.samples[n]);
+    data["signals"].push_back(std::move(row));
   }
   data["events"] = json::array();
   for (const RecordedEvent& event : recording.events)

@@ -209,12 +209,21 @@ class Plot {
         points += fmt::format("{:.1f},{:.1f} ", point.x, point.y);
       if (points.empty()) continue;
       points.pop_back();
-      // Of equal lines the first shows as the edge of the others.
+      // Of equal lines the first shows as the edge of the others, and a speed as that of its setpoint.
+      const bool is_edge = place == 0 ? panel.signals.size() > 1 : has_setpoint_later(panel, place);
       out += fmt::format("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" points=\"{}\"/>\n",
-                         kColours[colour], place == 0 && panel.signals.size() > 1 ? 3 : 1.5, points);
+                         kColours[colour], is_edge ? 3 : 1.5, points);
       tags.push_back({ys.back(), colour, signal.name});
     }
     return out + name_tags(std::move(tags), y + panel.height());
+  }
+
+  bool has_setpoint_later(const Panel& panel, size_t place) const {
+    const std::string& station = recording_.signals[panel.signals[place]].station;
+    return !station.empty() && std::any_of(panel.signals.begin() + static_cast<std::ptrdiff_t>(place) + 1, panel.signals.end(), [&](size_t later) {
+      const Signal& signal = recording_.signals[later];
+      return signal.station == station && signal.own_name().ends_with("setpoint");
+    });
   }
 
   // Of a binary signal: a line that is high while it is 1.

@@ -95,6 +95,8 @@ std::vector<Signal> DriveScope::find_channels(const std::string& name) {
       const stdlib::DisplayScale scale = stdlib::display_scale(*row);
       signal.meaning = fmt::format("P{} {}", row->number, row->name);
       signal.unit = row->display == "hex" ? "" : std::string(row->display);
+      signal.bits = row->display == "hex" ? 32 : 0;
+      signal.parameter = row;
       signal.factor = scale.factor;
       signal.decimals = scale.decimals;
     }

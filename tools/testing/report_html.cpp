@@ -18,6 +18,7 @@ constexpr std::string_view kHead =
     "td.number { text-align: right; font-variant-numeric: tabular-nums; }\n"
     ".ok { color: #006b3c; } .FAILED, .ERROR { color: #C00000; font-weight: bold; }\n"
     "pre { background: #f6f6f6; padding: 6px; overflow-x: auto; }\n"
+    "iframe { width: 100%; height: 720px; border: 1px solid #ddd; }\n"
     "</style></head><body>\n";
 
 // `folder` is empty without artifacts.
@@ -28,14 +29,26 @@ std::string links(const std::string& folder, const TestResult& result) {
   for (const char* file : {"plot.html", "trace.csv", "trace.vcd", "bus.pcapng", "journal.txt", "report.txt"})
     if (result.outcome == Outcome::Failed || std::string_view(file) == "report.txt")
       text += fmt::format("<a href=\"{}/{}\">{}</a> ", xml_attribute(folder), file, file);
-  return text + "</p>";
+  text += "</p>";
+  if (result.outcome == Outcome::Failed)
+    text += fmt::format("<details><summary>Curves</summary><iframe title=\"{}\" loading=\"lazy\" src=\"{}/plot.html\"></iframe></details>",
+                        xml_attribute(result.name), xml_attribute(folder));
+  return text;
+}
+
+// To the moment of a check in the curves.
+std::string moment(const std::string& folder, const Finding& finding) {
+  if (folder.empty() || finding.time == 0) return "";
+  return fmt::format("<a href=\"{}/plot.html#{}\">{:.3f} s in the curves</a>", xml_attribute(folder),
+                     finding.time / runtime::kMillisecond, static_cast<double>(finding.time) / 1e9);
 }
 
 std::string row(const TestResult& result, const std::string& folder) {
   std::string details;
   if (!result.messages.empty()) details += fmt::format("<pre>{}</pre>", xml_text(result.messages));
   for (const Finding& finding : result.findings)
-    details += fmt::format("<pre>{}</pre>", xml_text(text_of_finding(finding)));
+    details += fmt::format("<pre>{}</pre>{}", xml_text(text_of_finding(finding)),
+                           result.outcome == Outcome::Failed ? moment(folder, finding) : "");
   details += links(folder, result);
   return fmt::format(
       "<tr><td class=\"{0}\">{0}</td><td>{1}{2}</td><td class=\"number\">{3}</td><td "

@@ -168,17 +168,22 @@ function viewFrame(plant, command) {
   const step = Math.max(1, Math.ceil(ms / command.points));
   const count = Math.ceil(ms / step);
   const channels = plant.scope.channels.length;
-  const frame = Buffer.alloc(32 + count * channels * 4);
+  const bytes = command.exact ? 8 : 4;
+  const frame = Buffer.alloc(32 + count * channels * bytes);
   frame.writeUInt8(1, 0);
   frame.writeUInt8(channels, 1);
   frame.writeUInt8(1, 2);
+  frame.writeUInt8(command.exact ? 1 : 0, 3);
   frame.writeUInt32LE(command.id, 4);
   frame.writeUInt32LE(plant.scope.recording, 8);
   frame.writeUInt32LE(count, 12);
   frame.writeUInt32LE(step * 1000, 16);
   frame.writeBigUInt64LE(BigInt(from), 24);
-  for (let n = 0; n < count * channels; ++n)
-    frame.writeFloatLE(sine(from + Math.floor(n / channels) * step * 1000, n % channels), 32 + n * 4);
+  for (let n = 0; n < count * channels; ++n) {
+    const value = sine(from + Math.floor(n / channels) * step * 1000, n % channels);
+    if (command.exact) frame.writeDoubleLE(value, 32 + n * bytes);
+    else frame.writeFloatLE(value, 32 + n * bytes);
+  }
   return frame;
 }
 

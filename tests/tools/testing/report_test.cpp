@@ -90,6 +90,10 @@ TEST(Report, ArtifactsOfWhatFailed) {
   EXPECT_TRUE(contains(decoded.out, "sbus 400 00 00 00 07")) << decoded.out;
   const std::string page = read_text(folder.path() / "report.html");
   EXPECT_TRUE(contains(page, "href=\"left/bad/plot.html\"") && !contains(page, "left/good"));
+  // The picture stands in the report, and the failed check leads to its moment there.
+  EXPECT_TRUE(contains(page, "<iframe title=\"bad\" loading=\"lazy\" src=\"left/bad/plot.html\">")) << page;
+  EXPECT_TRUE(contains(page, "href=\"left/bad/plot.html#50\">0.050 s in the curves</a>")) << page;
+  EXPECT_TRUE(contains(read_text(folder.path() / "left/bad/plot.html"), "\"name\":\"u.lValue\""));
 }
 
 // The last frames are told in the words of `ipos bus decode` with the same plant, on lines of every kind. What a master wrote

@@ -33,7 +33,7 @@ class BusTab final : public Tab, private BusSource {
     traffic_.complete();
   }
 
-  void runs_again() override { traffic_.stop_hearing(); }
+  void runs_again(Tab&) override { traffic_.stop_hearing(); }
 
   void passed(runtime::Time now) override {
     traffic_.settle();

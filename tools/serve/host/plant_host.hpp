@@ -29,7 +29,9 @@ class Tab {
   virtual void passed(runtime::Time /*now*/) {}
   virtual void executes(uint32_t /*station*/, uint32_t /*address*/) {}
   virtual void tend() {}        // now and then, between two milliseconds
-  virtual void runs_again() {}  // this process: PlantHost::run_again()
+  // PlantHost::run_again(): this tab is of the host that runs again, for one that goes on; in a copy of the process that is
+  // itself.
+  virtual void runs_again(Tab& /*first*/) {}
   virtual Json save() { return nullptr; }
   virtual void load(const Json& /*state*/) {}
 };
@@ -76,13 +78,15 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
   // The plant stands before the next millisecond, unless it has real ports.
   void stop(const std::string& reason, const std::string& text);
   void telegram_seen() { telegram_seen_ = true; }
-  // A copy of this process that runs again from the beginning up to now, for what was not gathered the first time.
+  // What runs again from the beginning up to now, for what was not gathered the first time: a copy of this process, and
+  // where there are none a second host, which has its turn with each turn of this one.
   // Nothing: the world outside does not come again.
   std::unique_ptr<SecondRun> run_again();
   // A step of the program; the reply comes when it stands.
   void order(const Router::Call& call, const debug::Order& order);
 
  private:
+  class ByTurns;  // a second run
   enum class MotionKind : uint8_t { None, Run, Order, Back, Restart };
   struct Motion {
     MotionKind kind = MotionKind::None;
@@ -160,6 +164,7 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
   double rate_ = 0;
   WallClock::time_point time_due_{};
   WallClock::time_point last_snapshot_{};
+  int second_runs_ = 0;  // by turns
 };
 
 }  // namespace ipos::tools::serve

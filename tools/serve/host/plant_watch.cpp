@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "runtime/plant/actions.hpp"
 #include "runtime/plant_file/signal.hpp"
@@ -85,6 +87,7 @@ class PlantWatch final : public Tab, private WatchSource {
     const auto limit = static_cast<size_t>(a.whole("limit", 1, 1000, 100));
     Json names = Json::array();
     size_t total = 0;
+    std::map<std::string, std::vector<std::pair<Group, size_t>>> counts;  // by station
     for (const Group wanted : kGroupOrder) {
       if (!group.empty() && group != signals::group_text(wanted)) continue;
       for (const Signal& signal : known()) {
@@ -93,6 +96,9 @@ class PlantWatch final : public Tab, private WatchSource {
             lower(signal.meaning).find(text) == std::string::npos)
           continue;
         ++total;
+        auto& groups = counts[signal.station];
+        if (groups.empty() || groups.back().first != wanted) groups.emplace_back(wanted, 0);
+        ++groups.back().second;
         if (names.size() < limit) names.push_back(row(signal));
       }
     }
@@ -101,7 +107,22 @@ class PlantWatch final : public Tab, private WatchSource {
       if (std::any_of(known().begin(), known().end(),
                       [row](const Signal& signal) { return signal.group == row; }))
         groups.push_back(signals::group_text(row));
-    return {{"names", std::move(names)}, {"total", total}, {"groups", std::move(groups)}};
+    return {{"names", std::move(names)}, {"total", total}, {"groups", std::move(groups)}, {"tree", tree(counts)}};
+  }
+
+  // Stations in the order of the plant, then gateways and lines, each with its groups and how many were found.
+  Json tree(const std::map<std::string, std::vector<std::pair<Group, size_t>>>& counts) {
+    Json tree = Json::array();
+    std::set<std::string> done;
+    for (const Signal& signal : known()) {
+      const auto found = counts.find(signal.station);
+      if (found == counts.end() || !done.insert(signal.station).second) continue;
+      Json groups = Json::array();
+      for (const auto& [group, count] : found->second)
+        groups.push_back({{"name", signals::group_text(group)}, {"count", count}});
+      tree.push_back({{"station", signal.station}, {"groups", std::move(groups)}});
+    }
+    return tree;
   }
 
   std::vector<Signal> find(const std::string& name) override {

@@ -7,6 +7,9 @@
 #include <limits>
 #include <sstream>
 
+#include "tools/recording/channel_json.hpp"
+#include "tools/recording/plot_html.hpp"
+#include "tools/recording/plot_svg.hpp"
 #include "tools/recording/trace.hpp"
 
 namespace ipos::tools::serve {
@@ -16,8 +19,9 @@ using runtime::kMillisecond;
 using signals::Signal;
 using runtime::Time;
 
-constexpr size_t kMostChannels = 8;
 constexpr uint64_t kMostPoints = 4'096;             // of a binary frame
+constexpr uint64_t kMostDrawn = 4'000'000;          // samples in a file with a picture (ours)
+constexpr size_t kPartBytes = 1 << 20;              // of such a file
 constexpr uint64_t kMostBehind = 65'536;            // samples that a client of the topic may be late
 constexpr uint64_t kRowsAtOnce = 5'000;             // of CSV
 constexpr int64_t kLastUs = 1'000'000'000'000'000;  // us
@@ -25,6 +29,14 @@ constexpr const char* kStates[] = {"free", "armed", "triggered", "done"};
 
 // Of a sample: it has the number of its millisecond.
 int64_t us_of(uint64_t number) { return static_cast<int64_t>(number) * 1000; }
+
+std::vector<ScopeMemory::Kind> kinds_of(const std::vector<Signal>& channels) {
+  std::vector<ScopeMemory::Kind> kinds;
+  for (const Signal& channel : channels)
+    kinds.push_back({channel.limits.most > INT32_MAX && channel.parameter != nullptr && channel.parameter->is_unsigned(),
+                     signals::shape_of(channel).kind == signals::Shape::Kind::Word});
+  return kinds;
+}
 
 }  // namespace
 
@@ -64,11 +76,11 @@ void Scope::propose(std::vector<std::string> names) {
 
 void Scope::built() {
   channels_ = find(names_);
-  if (fills_) {
+  if (fills_ != nullptr) {
     last_ = 0;
     return;
   }
-  memory_.choose(std::vector<std::optional<size_t>>(channels_.size()));
+  memory_.choose(std::vector<std::optional<size_t>>(channels_.size()), kinds_of(channels_));
   if (trigger_.signal) trigger_.signal = find({trigger_.signal->name}).front();
   begin_again();
 }
@@ -77,7 +89,7 @@ void Scope::passed(Time now) {
   if (now <= last_) return;
   last_ = now;
   const auto number = static_cast<uint64_t>(now / kMillisecond);
-  if (fills_) return fill(number);
+  if (fills_ != nullptr) return fill(number);
   record(number);
   look(now);
 }
@@ -118,8 +130,18 @@ void Scope::tend() {
     const auto client = router_.clients().find(question.client);
     if (client == router_.clients().end()) continue;
     const Router::Call call{router_, client->second, question.id, Arguments(question.message)};
-    router_.reply(question.client, question.id, csv(call));
+    try {
+      router_.reply(question.client, question.id, question.name == "scope.csv" ? csv(call) : picture(call));
+    } catch (const Mistake& mistake) {
+      router_.fail(question.client, question.id, mistake.what());
+    }
   }
+}
+
+Json Scope::when_complete(const Router::Call& call, const char* name, Answer answer) {
+  if (!asks_ && !computing_) return (this->*answer)(call);
+  questions_.push_back({call.client.number, call.id, call.arguments.json(), name});
+  return nullptr;
 }
 
 // The same commands at the same times give the same run. What it puts into the memory lies before what is recorded here.
@@ -128,15 +150,21 @@ void Scope::compute() {
   late_ = incomplete();
   if (late_.empty()) return;
   filled_from_ = std::max<uint64_t>(1, ScopeMemory::first_kept(memory_.end()));
-  fills_ = true;
-  computing_ = source_.run_again();  // the copy does not come back from here
-  fills_ = false;
+  computing_ = source_.run_again();  // a copy of the process does not come back from here
+}
+
+void Scope::fill_for(Scope& first) {
+  fills_ = &first.memory_;
+  late_ = first.late_;
+  filled_from_ = first.filled_from_;
+  names_ = first.names_;
+  channels_ = find(names_);
 }
 
 void Scope::fill(uint64_t number) {
   if (number < filled_from_) return;
   for (const size_t channel : late_)
-    memory_.fill(channel, filled_from_, number, channels_[channel].read());
+    fills_->fill(channel, filled_from_, number, channels_[channel].read());
 }
 
 Json Scope::save() {
@@ -206,7 +234,7 @@ void Scope::choose(std::vector<Signal> channels) {
   }
   if (names == names_) return;
   if (computing_) computing_.reset();
-  memory_.choose(known);
+  memory_.choose(known, kinds_of(channels));
   names_ = std::move(names);
   channels_ = std::move(channels);
   samples_.assign(channels_.size(), 0);
@@ -338,13 +366,10 @@ uint64_t Scope::number_at(int64_t us) const {
 
 Json Scope::describe() const {
   Json channels = Json::array();
-  for (const Signal& channel : channels_)
-    channels.push_back({{"name", channel.name},
-                        {"unit", channel.unit},
-                        {"decimals", channel.decimals},
-                        {"bits", channel.bits}});
+  for (const Signal& channel : channels_) channels.push_back(channel_json(channel));
   Json json{{"recording", recording_},
             {"channels", std::move(channels)},
+            {"most", kMostChannels},
             {"trigger", trigger_.settings},
             {"pre", pre_},
             {"length_ms", length_ms_},
@@ -360,19 +385,19 @@ Json Scope::describe() const {
   return json;
 }
 
-// A binary frame of the samples from `begin` to before `end`, `step` of them a point.
-std::string Scope::points(uint64_t begin, uint64_t end, uint64_t step, uint32_t id) const {
+// A binary frame of the samples from `begin` to before `end`, `step` of them a point. `exact`: numbers of 64 bits.
+std::string Scope::points(uint64_t begin, uint64_t end, uint64_t step, uint32_t id, bool exact) const {
   const uint64_t count = (end - begin + step - 1) / step;
   const bool pairs = step > 1;
   std::string bytes;
-  bytes.reserve(32 + count * channels_.size() * (pairs ? 8 : 4));
+  bytes.reserve(32 + count * channels_.size() * (pairs ? 2 : 1) * (exact ? sizeof(double) : sizeof(float)));
   const auto put = [&bytes](const auto& value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
   };
   put(uint8_t{1});
   put(static_cast<uint8_t>(channels_.size()));
   put(static_cast<uint8_t>(pairs ? 2 : 1));
-  put(uint8_t{0});
+  put(static_cast<uint8_t>(exact ? 1 : 0));
   put(id);
   put(recording_);
   put(static_cast<uint32_t>(count));
@@ -383,12 +408,13 @@ std::string Scope::points(uint64_t begin, uint64_t end, uint64_t step, uint32_t 
     for (size_t channel = 0; channel < channels_.size(); ++channel) {
       const double factor = channels_[channel].factor;
       const auto found = memory_.extremes(channel, n, std::min(n + step, end));
-      const auto shown = [&](int64_t sample) {
-        return found ? static_cast<float>(static_cast<double>(sample) * factor)
-                     : std::numeric_limits<float>::quiet_NaN();
+      const auto show = [&](int64_t sample) {
+        const double shown = found ? static_cast<double>(sample) * factor : std::numeric_limits<double>::quiet_NaN();
+        if (exact) put(shown);
+        else put(static_cast<float>(shown));
       };
-      put(shown(found.value_or(ScopeMemory::Extremes{}).first));
-      if (pairs) put(shown(found.value_or(ScopeMemory::Extremes{}).second));
+      show(found.value_or(ScopeMemory::Extremes{}).first);
+      if (pairs) show(found.value_or(ScopeMemory::Extremes{}).second);
     }
   return bytes;
 }
@@ -401,15 +427,11 @@ Json Scope::view(const Router::Call& call) {
   if (!call.id.is_number_unsigned() || call.id.get<uint64_t>() == 0 || call.id.get<uint64_t>() > UINT32_MAX)
     throw Mistake("a view needs an id from 1 to 4294967295");
   const uint64_t step = std::max<uint64_t>(1, (end - begin + most - 1) / most);
-  router_.send_binary(call.client, points(begin, end, step, call.id.get<uint32_t>()), true);
+  router_.send_binary(call.client, points(begin, end, step, call.id.get<uint32_t>(), call.arguments.flag("exact", false)), true);
   return nullptr;
 }
 
 Json Scope::csv(const Router::Call& call) {
-  if (asks_ || computing_) {
-    questions_.push_back({call.client.number, call.id, call.arguments.json()});
-    return nullptr;
-  }
   uint64_t begin = call.arguments.has("from_us") ? number_at(call.arguments.whole("from_us", 0, kLastUs)) : first();
   const uint64_t end = std::max(
       begin, call.arguments.has("to_us") ? number_at(call.arguments.whole("to_us", 0, kLastUs) + 1) : this->end());
@@ -432,6 +454,45 @@ Json Scope::csv(const Router::Call& call) {
     call.part({{"csv", std::move(text)}});
     begin = stop;
   }
+}
+
+// Where all channels have values; the trigger is an event.
+Recording Scope::recorded(uint64_t begin, uint64_t end) const {
+  Recording recording;
+  recording.signals = channels_;
+  for (size_t n = 0; n < channels_.size(); ++n) begin = std::max(begin, memory_.first(n));
+  recording.samples.resize(channels_.size());
+  for (uint64_t n = begin; n < end; ++n) {
+    recording.times.push_back(us_of(n) * runtime::kMicrosecond);
+    for (size_t channel = 0; channel < channels_.size(); ++channel)
+      recording.samples[channel].push_back(memory_.at(channel, n).value_or(0));
+  }
+  if (triggered_at_ && !recording.times.empty() && *triggered_at_ >= recording.times.front() &&
+      *triggered_at_ <= recording.times.back())
+    recording.events.push_back({*triggered_at_, "trigger: " + trigger_text_, false});
+  return recording;
+}
+
+// The files that `ipos run --plot` writes.
+Json Scope::picture(const Router::Call& call) {
+  const Arguments& a = call.arguments;
+  const std::string form = a.text("form");
+  if (form != "svg" && form != "html") throw Mistake("'form' must be svg or html");
+  const uint64_t begin = a.has("from_us") ? number_at(a.whole("from_us", 0, kLastUs)) : first();
+  const uint64_t end = std::max(begin, a.has("to_us") ? number_at(a.whole("to_us", 0, kLastUs) + 1) : this->end());
+  if ((end - begin) * channels_.size() > kMostDrawn)
+    throw Mistake(fmt::format("these are {} ms of {} channels, more than a picture takes; zoom in", end - begin, channels_.size()));
+  const std::string title = a.text("title", "Scope");
+  const Recording recording = recorded(begin, end);
+  const std::string text = form == "svg" ? plot_svg(recording, title) : plot_html(recording, title);
+  size_t at = 0;
+  for (; text.size() - at > kPartBytes;) {
+    size_t length = kPartBytes;
+    while ((static_cast<unsigned char>(text[at + length]) & 0xC0) == 0x80) --length;  // a letter is not cut in two
+    call.part({{"text", text.substr(at, length)}});
+    at += length;
+  }
+  return {{"text", text.substr(at)}};
 }
 
 void Scope::publish(Client& client, Subscription& subscription) {

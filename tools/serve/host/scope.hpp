@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "runtime/signals/find.hpp"
+#include "tools/recording/recording.hpp"
 #include "tools/serve/host/router.hpp"
 #include "tools/serve/host/scope_memory.hpp"
 
@@ -26,7 +27,7 @@ class ScopeSource {
   // none, level and edge are the scope's. A Mistake says why it cannot.
   virtual void watch_for(const std::string& kind, const Arguments& settings) = 0;
   virtual void stop(const std::string& why) = 0;  // the trigger is to stop the plant
-  // A copy of this process that does again what was until now, and calls Scope::passed() meanwhile. Nothing: it cannot.
+  // What does again what was until now, with a scope that was told to fill_for() this one. Nothing: it cannot.
   virtual std::unique_ptr<SecondRun> run_again() { return nullptr; }
 
  protected:
@@ -38,6 +39,8 @@ class Scope final {
   // Adds its commands and its topic.
   Scope(Router& router, ScopeSource& source, Copies& copies);
 
+  static constexpr size_t kMostChannels = ScopeMemory::kMostChannels;
+
   // The channels of the start; nothing where a client has chosen others.
   void propose(std::vector<std::string> names);
   // The settings of an earlier start, as far as there still is what they name.
@@ -45,6 +48,8 @@ class Scope final {
   // The signals are others: a new recording.
   void built();
   void restarted() { armed_at_ = 0; }
+  // This one runs again what was, and fills in what the first one does not know. The two may be one, in a copy of the process.
+  void fill_for(Scope& first);
   // Now and then, between two milliseconds: what was recorded too late for some channel is computed.
   void tend();
   // A millisecond is over.
@@ -94,9 +99,14 @@ class Scope final {
   uint64_t number_at(int64_t us) const;
   std::vector<size_t> incomplete() const;
   Json describe() const;
-  std::string points(uint64_t begin, uint64_t end, uint64_t step, uint32_t id) const;
+  std::string points(uint64_t begin, uint64_t end, uint64_t step, uint32_t id, bool exact = false) const;
   Json view(const Router::Call& call);
+  // Those that wait until all is computed; null then.
+  using Answer = Json (Scope::*)(const Router::Call&);
+  Json when_complete(const Router::Call& call, const char* name, Answer answer);
   Json csv(const Router::Call& call);
+  Json picture(const Router::Call& call);
+  Recording recorded(uint64_t begin, uint64_t end) const;
   void publish(Client& client, Subscription& subscription);
 
   Router& router_;
@@ -122,15 +132,16 @@ class Scope final {
   // What the run up to now has of channels that were chosen later.
   bool asks_ = false;  // it is to be computed
   std::unique_ptr<SecondRun> computing_;
-  bool fills_ = false;         // this process is the copy that computes
-  std::vector<size_t> late_;   // channels
+  ScopeMemory* fills_ = nullptr;  // this scope only computes, for this memory
+  std::vector<size_t> late_;      // channels
   uint64_t filled_from_ = 0;
   struct Question {
     uint16_t client = 0;
     Json id, message;
-    NLOHMANN_DEFINE_TYPE_INTRUSIVE(Question, client, id, message)
+    std::string name;  // of the command
+    NLOHMANN_DEFINE_TYPE_INTRUSIVE(Question, client, id, message, name)
   };
-  std::vector<Question> questions_;  // for the CSV, until all is there
+  std::vector<Question> questions_;  // for files, until all is there
 };
 
 }  // namespace ipos::tools::serve

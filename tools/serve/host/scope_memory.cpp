@@ -13,15 +13,27 @@ constexpr int kPatience = 10'000;
 
 ScopeMemory::ScopeMemory(Copies& copies)
     : copies_(copies),
-      memory_(room_for(copies, kHead + kMostChannels * (kRing * sizeof(int64_t) + kBlocks * sizeof(Extremes)))),
+      memory_(room_for(copies, kHead + kMostChannels * (kRing * sizeof(Stored) + kBlocks * sizeof(Block)))),
       shared_(at_byte<Shared>(0)) {}
 
-int64_t& ScopeMemory::sample(size_t place, uint64_t number) const {
-  return at_byte<int64_t>(kHead)[place * kRing + number % kRing];
+// What no sample of the kind can be is the nearest one.
+ScopeMemory::Stored ScopeMemory::stored(const Column& column, int64_t sample) {
+  const int64_t least = column.kind.is_unsigned || column.kind.is_word ? 0 : INT32_MIN;
+  return static_cast<Stored>(std::clamp<int64_t>(sample - least, 0, UINT32_MAX));
 }
-ScopeMemory::Extremes& ScopeMemory::block(size_t place, uint64_t number) const {
-  return at_byte<Extremes>(kHead + kMostChannels * kRing * sizeof(int64_t))[place * kBlocks +
-                                                                              number / kBlock % kBlocks];
+int64_t ScopeMemory::read(const Column& column, Stored stored) {
+  return int64_t{stored} + (column.kind.is_unsigned || column.kind.is_word ? 0 : INT32_MIN);
+}
+ScopeMemory::Block ScopeMemory::join(const Column& column, Block a, Block b) {
+  if (column.kind.is_word) return {a.least & b.least, a.greatest | b.greatest};
+  return {std::min(a.least, b.least), std::max(a.greatest, b.greatest)};
+}
+
+ScopeMemory::Stored& ScopeMemory::sample(size_t place, uint64_t number) const {
+  return at_byte<Stored>(kHead)[place * kRing + number % kRing];
+}
+ScopeMemory::Block& ScopeMemory::block(size_t place, uint64_t number) const {
+  return at_byte<Block>(kHead + kMostChannels * kRing * sizeof(Stored))[place * kBlocks + number / kBlock % kBlocks];
 }
 
 void ScopeMemory::restart(uint64_t next) {
@@ -31,19 +43,19 @@ void ScopeMemory::restart(uint64_t next) {
   for (Column& column : columns_) column.from = next;
 }
 
-void ScopeMemory::choose(const std::vector<std::optional<size_t>>& channels) {
+void ScopeMemory::choose(const std::vector<std::optional<size_t>>& channels, const std::vector<Kind>& kinds) {
   std::vector<Column> columns;
   std::vector<bool> taken(kMostChannels, false);
   for (const auto& channel : channels)
     if (channel) taken[columns_[*channel].place] = true;
-  for (const auto& channel : channels) {
-    if (channel) {
-      columns.push_back(columns_[*channel]);
+  for (size_t n = 0; n < channels.size(); ++n) {
+    if (channels[n]) {
+      columns.push_back(columns_[*channels[n]]);
       continue;
     }
     const auto free = std::find(taken.begin(), taken.end(), false);
     *free = true;
-    columns.push_back({static_cast<size_t>(free - taken.begin()), end_});
+    columns.push_back({static_cast<size_t>(free - taken.begin()), end_, n < kinds.size() ? kinds[n] : Kind{}});
   }
   use(std::move(columns));
 }
@@ -84,8 +96,11 @@ bool ScopeMemory::push(uint64_t number, std::span<const int64_t> samples) {
 }
 
 void ScopeMemory::fill(size_t channel, uint64_t from, uint64_t number, int64_t sample) {
+  Column column = columns_[channel];
+  if (number >= column.from) return;
+  column.from = from;
   shared_->filling = number + 1;
-  if (number >= first_kept(shared_->reached)) put({columns_[channel].place, from}, number, sample, number == from);
+  if (number >= first_kept(shared_->reached)) put(column, number, sample, number == from);
   shared_->filling = 0;
 }
 
@@ -93,46 +108,45 @@ void ScopeMemory::filled(size_t channel, uint64_t from) {
   Column& column = columns_[channel];
   const uint64_t seam = column.from / kBlock * kBlock;
   column.from = from;
-  if (seam < end_) count_block(column.place, std::max(seam, from), std::min(seam + kBlock, end_));
+  if (seam < end_) count_block(column, std::max(seam, from), std::min(seam + kBlock, end_));
 }
 
 void ScopeMemory::put(const Column& column, uint64_t number, int64_t value, bool begins) const {
-  sample(column.place, number) = value;
+  const Stored one = stored(column, value);
+  sample(column.place, number) = one;
   const uint64_t from = number / kBlock * kBlock;
-  if (begins || from == number)
-    return count_block(column.place, std::max(from, column.from), number + 1);
-  auto& [least, greatest] = block(column.place, number);
-  least = std::min(least, value);
-  greatest = std::max(greatest, value);
+  if (begins || from == number) return count_block(column, std::max(from, column.from), number + 1);
+  Block& all = block(column.place, number);
+  all = join(column, all, {one, one});
 }
 
-void ScopeMemory::count_block(size_t place, uint64_t from, uint64_t end) const {
-  Extremes counted{sample(place, from), sample(place, from)};
+void ScopeMemory::count_block(const Column& column, uint64_t from, uint64_t end) const {
+  Block counted{sample(column.place, from), sample(column.place, from)};
   for (uint64_t n = from; n < end; ++n) {
-    counted.first = std::min(counted.first, sample(place, n));
-    counted.second = std::max(counted.second, sample(place, n));
+    const Stored one = sample(column.place, n);
+    counted = join(column, counted, {one, one});
   }
-  block(place, from) = counted;
+  block(column.place, from) = counted;
 }
 
 std::optional<int64_t> ScopeMemory::at(size_t channel, uint64_t number) const {
   if (number < first(channel) || number >= end_) return std::nullopt;
-  return sample(columns_[channel].place, number);
+  return read(columns_[channel], sample(columns_[channel].place, number));
 }
 
 std::optional<ScopeMemory::Extremes> ScopeMemory::extremes(size_t channel, uint64_t begin, uint64_t end) const {
-  const size_t place = columns_[channel].place;
+  const Column& column = columns_[channel];
   begin = std::max(begin, first(channel));
   end = std::min(end, end_);
   if (begin >= end) return std::nullopt;
-  Extremes found{sample(place, begin), sample(place, begin)};
+  Block found{sample(column.place, begin), sample(column.place, begin)};
   for (uint64_t n = begin; n < end;) {
     const bool whole = n % kBlock == 0 && n + kBlock <= end;
-    const Extremes of = whole ? block(place, n) : Extremes{sample(place, n), sample(place, n)};
-    found = {std::min(found.first, of.first), std::max(found.second, of.second)};
+    const Stored one = sample(column.place, n);
+    found = join(column, found, whole ? block(column.place, n) : Block{one, one});
     n += whole ? kBlock : 1;
   }
-  return found;
+  return Extremes{read(column, found.least), read(column, found.greatest)};
 }
 
 }  // namespace ipos::tools::serve

@@ -1,6 +1,7 @@
 // What the scope has recorded: a sample of each channel a millisecond, the last million of them, numbered by their
 // milliseconds. Copies of the process share it, so that going back keeps nothing twice: what a copy knows itself is how far
-// it has come. Extremes of long ranges are found without looking at every sample.
+// it has come. Extremes of long ranges are found without looking at every sample; of words they are the bits that were on
+// all the time, and those that were on at some time.
 #pragma once
 
 #include <atomic>
@@ -18,13 +19,21 @@ namespace ipos::tools::serve {
 class ScopeMemory {
  public:
   static constexpr uint64_t kKept = 1'000'000;  // samples a channel, at least
-  static constexpr size_t kMostChannels = 8;
+  // With 32 bits a sample they take 66 MB at most, and only as far as it is written.
+  static constexpr size_t kMostChannels = 16;
 
+  // What the 32 bits of a sample are.
+  struct Kind {
+    bool is_unsigned = false;  // else with sign
+    bool is_word = false;      // its bits count, each by itself
+    NLOHMANN_DEFINE_TYPE_INTRUSIVE(Kind, is_unsigned, is_word)
+  };
   // Where a channel stands, and from which sample on it is known.
   struct Column {
     size_t place = 0;
     uint64_t from = 0;
-    NLOHMANN_DEFINE_TYPE_INTRUSIVE(Column, place, from)
+    Kind kind{};
+    NLOHMANN_DEFINE_TYPE_INTRUSIVE(Column, place, from, kind)
   };
 
   explicit ScopeMemory(Copies& copies);
@@ -32,7 +41,8 @@ class ScopeMemory {
   // Nothing is known any more; the next sample will have this number.
   void restart(uint64_t next);
   // The channels are others: each is one that was there, by its number, or a new one, of which nothing is known yet.
-  void choose(const std::vector<std::optional<size_t>>& channels);
+  // `kinds` is of all of them; left out: plain numbers with sign.
+  void choose(const std::vector<std::optional<size_t>>& channels, const std::vector<Kind>& kinds = {});
   // As another copy of the process had them.
   void use(std::vector<Column> columns);
   const std::vector<Column>& columns() const { return columns_; }
@@ -43,6 +53,7 @@ class ScopeMemory {
   static uint64_t first_kept(uint64_t end);
 
   // What a copy that runs again writes of the time before a channel was known, in order from `from` on; and that it is there.
+  // What is known already stays.
   void fill(size_t channel, uint64_t from, uint64_t number, int64_t sample);
   void filled(size_t channel, uint64_t from);
 
@@ -54,7 +65,7 @@ class ScopeMemory {
 
   // Nothing where it is not known.
   std::optional<int64_t> at(size_t channel, uint64_t number) const;
-  // Least and greatest of those known from `begin` to before `end`.
+  // Least and greatest of those known from `begin` to before `end`; of a word the bits of all, and of any.
   using Extremes = std::pair<int64_t, int64_t>;
   std::optional<Extremes> extremes(size_t channel, uint64_t begin, uint64_t end) const;
 
@@ -68,9 +79,18 @@ class ScopeMemory {
     std::atomic<uint64_t> filling;  // the number that is just being filled in, plus one
   };
 
-  int64_t& sample(size_t place, uint64_t number) const;
-  Extremes& block(size_t place, uint64_t number) const;
-  void count_block(size_t place, uint64_t from, uint64_t end) const;
+  // As they lie there: a number counts from the least one of its kind, so that all compare as what they are.
+  using Stored = uint32_t;
+  struct Block {
+    Stored least, greatest;
+  };
+
+  static Stored stored(const Column& column, int64_t sample);
+  static int64_t read(const Column& column, Stored stored);
+  static Block join(const Column& column, Block a, Block b);
+  Stored& sample(size_t place, uint64_t number) const;
+  Block& block(size_t place, uint64_t number) const;
+  void count_block(const Column& column, uint64_t from, uint64_t end) const;
   void put(const Column& column, uint64_t number, int64_t sample, bool begins) const;
 
   template <typename Type>

@@ -2,6 +2,8 @@
 // lines, too.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "runtime/signals/find.hpp"
 #include "tools/serve/host/scope.hpp"
 #include "tools/serve/host/tabs.hpp"
@@ -20,10 +22,7 @@ class ScopeTab final : public Tab,
   explicit ScopeTab(PlantHost& host) : host_(host), scope_(host.router(), *this, host.copies()) {}
 
   void built(runtime::Plant& plant) override {
-    std::vector<std::string> names;
-    for (const auto& station : plant.stations())
-      for (Signal& signal : signals::default_signals(*station)) names.push_back(std::move(signal.name));
-    scope_.propose(std::move(names));
+    scope_.propose(first_channels(plant));
     scope_.built();
     old_faults_.clear();
     for (const auto& station : plant.stations()) old_faults_.push_back(station->fault());
@@ -31,6 +30,19 @@ class ScopeTab final : public Tab,
     plant.add_observer(static_cast<runtime::SerialObserver&>(*this));
   }
 
+  // Of a plant with many stations fewer of each, but of as many as there is room for.
+  static std::vector<std::string> first_channels(const runtime::Plant& plant) {
+    std::vector<std::string> names;
+    const size_t room = std::max<size_t>(1, Scope::kMostChannels / std::max<size_t>(1, plant.stations().size()));
+    for (const auto& station : plant.stations()) {
+      std::vector<Signal> signals = signals::default_signals(*station);
+      if (signals.size() > room) signals.resize(room);
+      for (Signal& signal : signals) names.push_back(std::move(signal.name));
+    }
+    return names;
+  }
+
+  void runs_again(Tab& first) override { scope_.fill_for(static_cast<ScopeTab&>(first).scope_); }
   void restarted() override { scope_.restarted(); }
   void restore(const Json& settings) override { scope_.restore(settings.value("scope", Json())); }
   void tend() override { scope_.tend(); }

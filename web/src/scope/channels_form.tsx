@@ -1,13 +1,13 @@
-// The names of the eight channels; the server proposes while one types.
+// The channels: what is drawn where, one more by its name, or picked from the tree.
 import { useState } from "preact/hooks";
 
 import { request } from "../server/connection";
 import { hello } from "../server/live";
-import type { Channel, WatchName } from "../server/protocol";
-import { command } from "../shell/notice";
-import { scope } from "./window";
+import type { WatchName } from "../server/protocol";
+import { addChannel, channelNames, mostChannels, places, removeChannel, setPlace } from "./channels";
+import { SignalTree } from "./signal_tree";
 
-const most_channels = 8;
+const panels = ["1", "2", "3", "4"];
 
 async function propose(text: string): Promise<string[]> {
   try {
@@ -18,46 +18,63 @@ async function propose(text: string): Promise<string[]> {
   }
 }
 
+function ChannelRow({ name, position }: { name: string; position: number }) {
+  return (
+    <div class="channel">
+      <span class="swatch" style={`background:var(--s${(position % 8) + 1})`} />
+      <span class="mono name" title={name}>
+        {name}
+      </span>
+      <select aria-label={`Panel of ${name}`} value={places.value[name] ?? ""} onChange={(event) => setPlace(name, event.currentTarget.value)}>
+        <option value="">by unit</option>
+        {panels.map((panel) => (
+          <option key={panel} value={panel}>
+            panel {panel}
+          </option>
+        ))}
+        <option value="lane">lane</option>
+      </select>
+      <button class="small" aria-label={`Remove ${name}`} disabled={channelNames.value.length < 2} onClick={() => removeChannel(name)}>
+        ✕
+      </button>
+    </div>
+  );
+}
+
 export function ChannelsForm() {
-  const channels = scope.value?.channels ?? [];
+  const names = channelNames.value;
   const [proposals, setProposals] = useState<string[]>([]);
-  const send = (position: number, name: string) => {
-    const names = channels.map((channel: Channel) => channel.name);
-    if ((names[position] ?? "") === name) return;
-    if (name) names[Math.min(position, names.length)] = name;
-    else names.splice(position, 1);
-    if (names.length > 0) void command({ do: "scope", channels: names });
-  };
-  const fields = Math.min(most_channels, channels.length + 1);
+  const drive = hello.value?.mode === "device";
   return (
     <fieldset>
-      <legend>Channels</legend>
+      <legend>
+        Channels, {names.length} of {mostChannels.value}
+      </legend>
+      {names.map((name, position) => (
+        <ChannelRow key={name} name={name} position={position} />
+      ))}
       <datalist id="signals">
         {proposals.map((name) => (
           <option key={name} value={name} />
         ))}
       </datalist>
-      {Array.from({ length: fields }, (_, position) => (
-        <div class="channel" key={`${position} ${channels[position]?.name ?? ""}`}>
-          <span class="swatch" style={position < channels.length ? `background:var(--s${position + 1})` : ""} />
-          <input
-            type="text"
-            list="signals"
-            aria-label={`Channel ${position + 1}`}
-            placeholder={hello.value?.mode === "device" ? "P000, 8318, H20" : "STATION.NAME"}
-            defaultValue={channels[position]?.name ?? ""}
-            onInput={(event) => void propose(event.currentTarget.value).then(setProposals)}
-            onChange={(event) => send(position, event.currentTarget.value.trim())}
-          />
-          {position < channels.length && channels.length > 1 ? (
-            <button class="small" aria-label={`Remove channel ${position + 1}`} onClick={() => send(position, "")}>
-              ✕
-            </button>
-          ) : (
-            <span />
-          )}
-        </div>
-      ))}
+      <input
+        type="text"
+        list="signals"
+        aria-label="Add channel"
+        placeholder={drive ? "Add P000, 8318, H20" : "Add STATION.NAME"}
+        onInput={(event) => void propose(event.currentTarget.value).then(setProposals)}
+        onChange={(event) => {
+          const field = event.currentTarget;
+          void addChannel(field.value.trim()).then(() => (field.value = ""));
+        }}
+      />
+      {!drive && (
+        <details>
+          <summary>Pick from the list</summary>
+          <SignalTree />
+        </details>
+      )}
     </fieldset>
   );
 }

@@ -1,31 +1,32 @@
-// Binary frame 1 of the protocol: points of the scope, one value each or least and greatest.
+// Binary frame 1 of the protocol: points of the scope, one value each or least and greatest, of 32 or 64 bits.
+import type { Points } from "../picture/points";
 
-export interface Points {
+export interface Frame extends Points {
   recording: number;
-  from_us: number; // the window that was asked for
-  to_us: number;
-  times: Float64Array; // s
-  channels: (number | null)[][];
 }
 
-export function readPoints(frame: DataView, from_us: number, to_us: number): Points {
-  const channel_count = frame.getUint8(1);
+const head_bytes = 32;
+
+export function readFrame(frame: DataView, from_us: number, to_us: number): Frame {
+  const channels = frame.getUint8(1);
   const per_point = frame.getUint8(2) || 1;
-  const point_count = frame.getUint32(12, true);
-  const step_us = frame.getUint32(16, true);
-  const first_us = Number(frame.getBigUint64(24, true));
-  const times = new Float64Array(point_count * per_point);
-  const channels: (number | null)[][] = Array.from({ length: channel_count }, () => []);
-  let offset = 32;
-  for (let point = 0; point < point_count; ++point) {
-    // Least and greatest stand one above the other, so that no peak is lost.
-    times.fill((first_us + point * step_us) / 1e6, point * per_point, (point + 1) * per_point);
-    for (const channel of channels) {
-      for (let n = 0; n < per_point; ++n, offset += 4) {
-        const value = frame.getFloat32(offset, true);
-        channel.push(Number.isNaN(value) ? null : value);
-      }
-    }
-  }
-  return { recording: frame.getUint32(8, true), from_us, to_us, times, channels };
+  const bytes = frame.getUint8(3) === 1 ? 8 : 4;
+  const count = frame.getUint32(12, true);
+  const read = (at: number) => (bytes === 8 ? frame.getFloat64(at, true) : frame.getFloat32(at, true));
+  const least = Array.from({ length: channels }, () => new Float64Array(count));
+  const greatest = per_point === 1 ? least : least.map(() => new Float64Array(count));
+  let at = head_bytes;
+  for (let point = 0; point < count; ++point)
+    for (let channel = 0; channel < channels; ++channel)
+      for (let n = 0; n < per_point; ++n, at += bytes) ((n === 0 ? least : greatest)[channel] as Float64Array)[point] = read(at);
+  return {
+    recording: frame.getUint32(8, true),
+    from_us,
+    to_us,
+    first_us: Number(frame.getBigUint64(24, true)),
+    step_us: frame.getUint32(16, true),
+    count,
+    least,
+    greatest,
+  };
 }

@@ -1,15 +1,18 @@
-// The scope: eight channels, trigger, two cursors, zoom, files.
+// The scope: channels, trigger, two cursors, zoom, layouts, files.
 import { useEffect } from "preact/hooks";
 
+import { hello } from "../server/live";
 import { download } from "../shell/download";
 import { offerKeys, withdrawKeys } from "../shell/keys";
 import { command, complain } from "../shell/notice";
 import { ChannelsForm } from "./channels_form";
-import { Picture, pictureFile, pointer } from "./picture";
+import { keepCursors, Layouts } from "./layouts";
+import { pictureFile, pointer, ScopePicture } from "./picture";
+import { Plane, PlaneForm } from "./plane";
 import { Readings } from "./readings";
-import { csvOrComplain, followScope } from "./recording";
+import { csv, followScope, pictureText } from "./recording";
 import { TriggerForm } from "./trigger_form";
-import { follow, moveBy, moveCursor, putCursor, scope, shownWindow, zoomBy, zoomed } from "./window";
+import { follow, moveBy, moveCursor, putCursor, scope, shownWindow, zoomBy, zoomed, type Window } from "./window";
 
 const state_texts = { free: "records", armed: "waits for the trigger", triggered: "triggered", done: "complete" };
 
@@ -20,15 +23,22 @@ function trigger(single: boolean): void {
   else void command({ do: "scope.arm", single });
 }
 
-async function saveCsv(): Promise<void> {
-  const text = await csvOrComplain();
-  if (text !== undefined) download("scope.csv", text);
+function visible(): Window {
+  const { from_us, to_us } = shownWindow.peek();
+  return { from_us: Math.max(0, Math.floor(from_us)), to_us: Math.max(0, Math.ceil(to_us)) };
 }
 
-async function saveVisible(): Promise<void> {
-  const { from_us, to_us } = shownWindow.peek();
-  const text = await csvOrComplain({ from_us: Math.max(0, Math.floor(from_us)), to_us: Math.ceil(to_us) });
-  if (text !== undefined) download("scope-part.csv", text);
+async function save(name: string, text: Promise<string | undefined>): Promise<void> {
+  const content = await text;
+  if (content !== undefined) download(name, content);
+}
+
+const saveCsv = () => save("scope.csv", csv());
+const saveVisible = () => save("scope-part.csv", csv(visible()));
+
+// SVG and HTML are those of `ipos run --plot`, of what the picture shows.
+function saveDrawing(form: "svg" | "html"): Promise<void> {
+  return save(`scope.${form}`, pictureText(form, hello.peek()?.title ?? "Scope", visible()));
 }
 
 function savePicture(): void {
@@ -39,7 +49,7 @@ function savePicture(): void {
 
 function middle(): number {
   const { from_us, to_us } = shownWindow.peek();
-  return pointer.peek()?.us ?? (from_us + to_us) / 2;
+  return pointer.peek() ?? (from_us + to_us) / 2;
 }
 
 function offerScopeKeys(): () => void {
@@ -53,6 +63,8 @@ function offerScopeKeys(): () => void {
     { key: "ArrowRight", text: "Cursor a millisecond to the right", act: () => moveCursor(1) },
     { key: "z", text: "Zoom in", act: () => zoomBy(0.5) },
     { key: "x", text: "Zoom out", act: () => zoomBy(2) },
+    { key: "+", text: "Zoom in", act: () => zoomBy(0.5) },
+    { key: "-", text: "Zoom out", act: () => zoomBy(2) },
     { key: "[", text: "Earlier", act: () => moveBy(-0.5) },
     { key: "]", text: "Later", act: () => moveBy(0.5) },
     { key: "v", text: "CSV of everything", act: () => void saveCsv() },
@@ -103,7 +115,15 @@ function Buttons() {
       <button title="Only what the picture shows (V)" onClick={() => void saveVisible()}>
         Part
       </button>
-      <button onClick={savePicture}>PNG</button>
+      <button title="The picture as it stands (i)" onClick={savePicture}>
+        PNG
+      </button>
+      <button title="What the picture shows, as ipos run --plot x.svg draws it" onClick={() => void saveDrawing("svg")}>
+        SVG
+      </button>
+      <button title="What the picture shows, as a page that stands alone" onClick={() => void saveDrawing("html")}>
+        HTML
+      </button>
     </div>
   );
 }
@@ -111,18 +131,23 @@ function Buttons() {
 export function Scope() {
   useEffect(followScope, []);
   useEffect(offerScopeKeys, []);
+  useEffect(keepCursors, []);
   return (
     <div class="scope">
       <figure class="panel" aria-label="Scope">
         <Buttons />
-        <Picture />
+        <ScopePicture />
         <Readings />
+        <Plane />
       </figure>
       <aside aria-label="Settings of the scope">
         <ChannelsForm />
         <TriggerForm />
+        <PlaneForm />
+        <Layouts />
         <p class="quiet">
-          Drag to zoom, double click to follow again, wheel to zoom while it runs. A click puts a cursor, with Shift the other one.
+          Drag to zoom, double click to follow again, wheel to zoom while it runs, right button or a finger to move. A click puts a cursor, with
+          Shift the other one; between two of them is measured.
         </p>
       </aside>
     </div>

@@ -1,13 +1,13 @@
 // Which part of the recording the scope shows, and where its two cursors stand.
 import { computed, signal } from "@preact/signals";
 
+import * as picture from "../picture/control";
 import { time } from "../server/live";
 import type { ScopeState } from "../server/protocol";
 
-export interface Window {
-  from_us: number;
-  to_us: number;
-}
+export type { CursorName, Cursors, Window } from "../picture/control";
+type Window = picture.Window;
+type CursorName = picture.CursorName;
 
 export const scope = signal<ScopeState | null>(null);
 // Of it the parts that others follow, so that an event without news asks for nothing.
@@ -15,8 +15,7 @@ export const recording = computed(() => scope.value?.recording);
 export const triggerTime = computed(() => scope.value?.trigger_us ?? null);
 // What a person has zoomed to; null: the newest part, or that around the trigger.
 export const zoomed = signal<Window | null>(null);
-export type CursorName = "A" | "B";
-export const cursors = signal<Record<CursorName, number | null>>({ A: null, B: null });
+export const cursors = signal<picture.Cursors>({ A: null, B: null });
 export const activeCursor = signal<CursorName>("A");
 
 const least_window_us = 5_000;
@@ -40,19 +39,6 @@ export function zoomTo(from_us: number, to_us: number): void {
   zoomed.value = { from_us: from, to_us: from + width };
 }
 
-// Factor below 1 shows less; `at_us` stays where it is.
-export function zoomBy(factor: number, at_us?: number): void {
-  const { from_us, to_us } = shownWindow.peek();
-  const at = at_us ?? (from_us + to_us) / 2;
-  zoomTo(at - (at - from_us) * factor, at + (to_us - at) * factor);
-}
-
-export function moveBy(part: number): void {
-  const { from_us, to_us } = shownWindow.peek();
-  const by = (to_us - from_us) * part;
-  zoomTo(from_us + by, to_us + by);
-}
-
 export function follow(): void {
   zoomed.value = null;
 }
@@ -62,9 +48,36 @@ export function putCursor(name: CursorName, us: number | null): void {
   activeCursor.value = name;
 }
 
+// What the picture moves.
+export const control: picture.Control = {
+  window: () => shownWindow.peek(),
+  cursors: () => cursors.peek(),
+  active: () => activeCursor.peek(),
+  zoomTo,
+  all: follow,
+  put: putCursor,
+};
+
+// Factor below 1 shows less.
+export function zoomBy(factor: number): void {
+  picture.zoomBy(control, factor);
+}
+
+export function moveBy(part: number): void {
+  const { from_us, to_us } = shownWindow.peek();
+  picture.moveBy(control, (to_us - from_us) * part);
+}
+
 export function moveCursor(by_ms: number): void {
-  const at = cursors.peek()[activeCursor.peek()];
-  if (at !== null) putCursor(activeCursor.peek(), at + by_ms * 1000);
+  picture.moveCursor(control, by_ms);
+}
+
+// The button of a cursor: chooses it, puts it into the picture, takes it away.
+export function toggleCursor(name: CursorName): void {
+  const { from_us, to_us } = shownWindow.peek();
+  const set = cursors.peek()[name] !== null;
+  if (activeCursor.peek() === name || !set) putCursor(name, set ? null : from_us + (to_us - from_us) * (name === "A" ? 0.4 : 0.6));
+  else activeCursor.value = name;
 }
 
 // From the journal: the moment in the middle, cursor A on it.

@@ -1,4 +1,5 @@
 // What the server sends, as docs/reference/serve.md describes it.
+import type { Channel } from "../picture/channel";
 
 export interface Hello {
   protocol: number;
@@ -175,14 +176,9 @@ export interface Trigger {
   stop?: boolean;
 }
 
-export interface Channel {
-  name: string;
-  unit: string;
-  decimals: number;
-}
-
 export interface ScopeState {
   recording: number;
+  most?: number; // channels
   channels: Channel[];
   trigger: Trigger;
   pre: number;

@@ -1,0 +1,37 @@
+// Which channels the scope has, for all who add one: the form, the tree, the trace.
+import { computed } from "@preact/signals";
+
+import type { Place } from "../picture/channel";
+import { command, complain } from "../shell/notice";
+import { setting } from "../shell/settings";
+import { scope } from "./window";
+
+export const channelNames = computed(() => scope.value?.channels.map((channel) => channel.name) ?? []);
+export const mostChannels = computed(() => scope.value?.most ?? 8);
+// By the name of the channel.
+export const places = setting<Record<string, Place>>("scope.places", {});
+
+export function placesOf(names: string[]): Place[] {
+  return names.map((name) => places.value[name] ?? "");
+}
+
+export function setPlace(name: string, place: Place): void {
+  const { [name]: _old, ...rest } = places.peek();
+  places.value = place === "" ? rest : { ...rest, [name]: place };
+}
+
+export async function setChannels(names: string[]): Promise<void> {
+  if (names.length > 0) await command({ do: "scope", channels: names });
+}
+
+export async function addChannel(name: string): Promise<void> {
+  const names = channelNames.peek();
+  if (!name || names.includes(name)) return;
+  if (names.length >= mostChannels.peek())
+    return complain(`The scope has ${mostChannels.peek()} channels at most, so that its memory stays below 66 MB. Remove one first.`);
+  await setChannels([...names, name]);
+}
+
+export function removeChannel(name: string): void {
+  void setChannels(channelNames.peek().filter((one) => one !== name));
+}
