@@ -221,7 +221,10 @@ TEST(PlotHtml, OneFileWithTheRecordingInIt) {
   const auto data = nlohmann::json::parse(page.substr(at, page.find("</script>", at) - at));
   EXPECT_EQ(data["title"], "a & b");
   EXPECT_EQ(data["samples"], 4);
+  EXPECT_EQ(data["begin"], 1);
   EXPECT_EQ(data["signals"].size(), 5U);
+  EXPECT_EQ(data["signals"][0]["kind"], "curve");
+  EXPECT_EQ(data["signals"][4]["kind"], "level");
   // A ramp to 1500 rpm in four steps, and a level that changes twice.
   EXPECT_EQ(data["signals"][0]["changes"], nlohmann::json({0, 375.0, 1, 750.0, 2, 1125.0, 3, 1500.0}));
   EXPECT_EQ(data["signals"][4]["changes"], nlohmann::json({0, 0, 1, 1, 3, 0}));
@@ -241,6 +244,26 @@ TEST(AxisTicks, RoundSteps) {
       EXPECT_GE(ticks.front(), least - 1e-9 * size);
       EXPECT_LE(ticks.back(), least + size * (1 + 1e-9));
     }
+}
+
+// Where a speed is its setpoint both are seen: the speed, drawn before it, is wider. Of every station, not only the first.
+TEST(PlotSvg, ASpeedShowsAsTheEdgeOfItsSetpoint) {
+  Recording recording;
+  for (const char* station : {"a", "b", "c"})
+    for (const char* own : {"speed", "setpoint"}) {
+      Signal& signal = recording.signals.emplace_back();
+      signal.name = fmt::format("{}.{}", station, own);
+      signal.station = station;
+      signal.unit = "rpm";
+      recording.samples.push_back({0, 1000, 1000});
+    }
+  recording.times = {kMillisecond, 2 * kMillisecond, 3 * kMillisecond};
+  tinyxml2::XMLDocument document;
+  ASSERT_EQ(document.Parse(plot_svg(recording, "t").c_str()), tinyxml2::XML_SUCCESS);
+  std::vector<double> widths;
+  for (auto* node = document.RootElement()->FirstChildElement("polyline"); node; node = node->NextSiblingElement("polyline"))
+    widths.push_back(node->DoubleAttribute("stroke-width"));
+  EXPECT_EQ(widths, (std::vector<double>{3, 1.5, 3, 1.5, 3, 1.5}));
 }
 
 // Twenty stations, two curves each: every name has a place of its own within its panel.

@@ -48,7 +48,7 @@ try {
     if (name === "Watch") await page.getByRole("row").nth(1).waitFor();
     if (name === "Scope") {
       await page.keyboard.press("p");
-      const box = await page.locator(".u-over").boundingBox();
+      const box = await page.locator(".picture").boundingBox();
       await page.mouse.click(box.x + box.width * 0.35, box.y + box.height / 2);
       await page.keyboard.down("Shift");
       await page.mouse.click(box.x + box.width * 0.6, box.y + box.height / 2);
