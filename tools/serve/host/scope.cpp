@@ -33,7 +33,7 @@ int64_t us_of(uint64_t number) { return static_cast<int64_t>(number) * 1000; }
 std::vector<ScopeMemory::Kind> kinds_of(const std::vector<Signal>& channels) {
   std::vector<ScopeMemory::Kind> kinds;
   for (const Signal& channel : channels)
-    kinds.push_back({channel.limits.most > INT32_MAX && channel.parameter != nullptr && channel.parameter->is_unsigned(),
+    kinds.push_back({channel.parameter != nullptr && channel.parameter->is_unsigned(),
                      signals::shape_of(channel).kind == signals::Shape::Kind::Word});
   return kinds;
 }
