@@ -55,18 +55,18 @@ function remove(name: string): void {
 // While the scope is open; a cursor that is dragged is kept when it stands.
 export function keepCursors(): () => void {
   let timer: ReturnType<typeof setTimeout> | undefined;
+  let told = cursors.peek();
   const stops = [
     effect(() => {
       const kept = keptCursors.value;
-      if (JSON.stringify(kept) !== JSON.stringify(cursors.peek()) && timer === undefined) cursors.value = kept;
+      const { A, B } = cursors.peek();
+      if (A === null && B === null) cursors.value = kept;
     }),
-    effect(() => {
-      const now = cursors.value;
+    cursors.subscribe((now) => {
+      if (now === told) return;
+      told = now;
       clearTimeout(timer);
-      timer = setTimeout(() => {
-        timer = undefined;
-        keptCursors.value = now;
-      }, pause_ms);
+      timer = setTimeout(() => (keptCursors.value = now), pause_ms);
     }),
   ];
   return () => {
