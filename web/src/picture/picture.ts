@@ -10,7 +10,7 @@ import { DrawnPanel, right_margin, scaleOf } from "./panel";
 import { emptyPoints, type Points } from "./points";
 
 const least_left = 34;
-const least_panel = 120;
+const least_panel = 76;
 const label_rows = 2;
 const label_height = 13;
 
