@@ -2,6 +2,8 @@
 import { computed } from "@preact/signals";
 
 import type { Place } from "../picture/channel";
+import { request } from "../server/connection";
+import type { ScopeState } from "../server/protocol";
 import { command, complain } from "../shell/notice";
 import { setting } from "../shell/settings";
 import { scope } from "./window";
@@ -24,12 +26,19 @@ export async function setChannels(names: string[]): Promise<void> {
   if (names.length > 0) await command({ do: "scope", channels: names });
 }
 
+// Also where the scope is not open.
 export async function addChannel(name: string): Promise<void> {
-  const names = channelNames.peek();
-  if (!name || names.includes(name)) return;
-  if (names.length >= mostChannels.peek())
-    return complain(`The scope has ${mostChannels.peek()} channels at most, so that its memory stays below 66 MB. Remove one first.`);
-  await setChannels([...names, name]);
+  if (!name) return;
+  try {
+    const state = scope.peek() ?? ((await request({ do: "scope" })) as unknown as ScopeState);
+    const names = state.channels.map((channel) => channel.name);
+    if (names.includes(name)) return;
+    if (names.length >= (state.most ?? names.length + 1))
+      return complain(`The scope has ${state.most} channels at most, so that its memory stays below 66 MB. Remove one first.`);
+    await setChannels([...names, name]);
+  } catch (reason) {
+    complain(reason);
+  }
 }
 
 export function removeChannel(name: string): void {

@@ -1,6 +1,8 @@
 // What the server sends, as docs/reference/serve.md describes it.
 import type { Channel } from "../picture/channel";
 
+export type { Channel };
+
 export interface Hello {
   protocol: number;
   version: string;
