@@ -26,11 +26,9 @@ export async function setChannels(names: string[]): Promise<void> {
   if (names.length > 0) await command({ do: "scope", channels: names });
 }
 
-// Also where the scope is not open.
-export async function addChannel(name: string): Promise<void> {
-  if (!name) return;
+async function add(name: string): Promise<void> {
   try {
-    const state = scope.peek() ?? ((await request({ do: "scope" })) as unknown as ScopeState);
+    const state = (await request({ do: "scope" })) as unknown as ScopeState;
     const names = state.channels.map((channel) => channel.name);
     if (names.includes(name)) return;
     if (names.length >= (state.most ?? names.length + 1))
@@ -39,6 +37,13 @@ export async function addChannel(name: string): Promise<void> {
   } catch (reason) {
     complain(reason);
   }
+}
+
+// Also where the scope is not open. One after the other, so that none is lost.
+let added = Promise.resolve();
+export function addChannel(name: string): Promise<void> {
+  if (name) added = added.then(() => add(name));
+  return added;
 }
 
 export function removeChannel(name: string): void {
