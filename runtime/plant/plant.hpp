@@ -55,6 +55,7 @@ class Plant final : public PlantParts {
 
   // For a test that acts on the plant from outside while it runs.
   Surroundings& surroundings() { return *surroundings_; }
+  const Surroundings& surroundings() const { return *surroundings_; }
   // The power of a station or a gateway, which exists. The journal tells each change.
   void set_power(std::string_view name, bool on);
   // Plants a fault of a line, whose times are those of the plant. False: its station is not on the bus.

@@ -1,4 +1,4 @@
-// Wires and switches first, then what is due, then what is held.
+// Wires, switches and belts first, then what is due, then what is held.
 #include "runtime/plant/surroundings.hpp"
 
 #include <fmt/format.h>
@@ -33,11 +33,25 @@ void Surroundings::connect(const PlantFile& file, const PlantParts& plant, std::
   }
   for (const PositionSwitch& row : file.switches)
     if (const auto input = find(row.input, row.place)) cams_.push_back({*input, input->owner, row.from, row.to, row.active_high});
+  for (const auto& station : plant.stations())
+    if (const auto& machine = station->config().driven; machine && machine->carries())
+      conveyors_.push_back({station.get(), Belt(*machine)});
+  for (const LightBarrier& row : file.barriers)
+    if (const auto input = find(row.input, row.place))
+      for (const Conveyor& conveyor : conveyors_)
+        if (conveyor.station->config().name == row.belt)
+          barriers_.push_back({*input, &conveyor.belt, conveyor.belt.way_to(row.at), row.active_high});
   for (const Stimulus& stimulus : file.stimuli)
     if (const auto signal = find(stimulus.signal, stimulus.place)) {
       due_.emplace(stimulus.at, Due{scripts_.size(), 0, {}});
       scripts_.push_back({*signal, stimulus});
     }
+}
+
+const Belt* Surroundings::belt_of(const Station& station) const {
+  for (const Conveyor& conveyor : conveyors_)
+    if (conveyor.station == &station) return &conveyor.belt;
+  return nullptr;
 }
 
 void Surroundings::start() { wake(queue_.now()); }
@@ -69,6 +83,8 @@ void Surroundings::on_event(Time now, uint32_t /*kind*/, uint64_t /*argument*/) 
     const bool within = position >= cam.from && position <= cam.to;
     drive(cam.input, within == cam.active_high);
   }
+  for (Conveyor& conveyor : conveyors_) conveyor.belt.move(conveyor.station->shaft_position());
+  for (const Barrier& barrier : barriers_) drive(barrier.input, barrier.belt->covers(barrier.way) == barrier.active_high);
   while (!due_.empty() && due_.begin()->first <= now) {
     const Time at = due_.begin()->first;
     const Due due = std::move(due_.begin()->second);
@@ -126,7 +142,7 @@ void Surroundings::write(Time now, const signals::Signal& signal, int32_t value)
 
 void Surroundings::schedule_next(Time now) {
   Time next = (now / kMillisecond + 1) * kMillisecond;
-  if (wires_.empty() && cams_.empty() && holds_.empty()) {
+  if (wires_.empty() && cams_.empty() && conveyors_.empty() && holds_.empty()) {
     if (due_.empty()) return;
     next = std::max(next, (due_.begin()->first + kMillisecond - 1) / kMillisecond * kMillisecond);
   }

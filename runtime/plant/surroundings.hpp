@@ -1,8 +1,9 @@
-// What is outside of the stations and acts on them: wires between terminals, switches at the axis, and the
-// stimuli of the plant file. It acts at the beginning of a millisecond, before any station's tick, on all
+// What is outside of the stations and acts on them: wires between terminals, switches at the axis, light barriers over
+// conveyors, and the stimuli of the plant file. It acts at the beginning of a millisecond, before any station's tick, on all
 // stations alike: so a wire brings the level its output had at the end of the millisecond before (ours).
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -11,6 +12,7 @@
 
 #include "runtime/clock/event_queue.hpp"
 #include "runtime/journal/journal.hpp"
+#include "runtime/plant/belt.hpp"
 #include "runtime/plant_file/plant_file.hpp"
 #include "runtime/signals/holds.hpp"
 #include "runtime/station/plant_parts.hpp"
@@ -42,6 +44,9 @@ class Surroundings final : private EventTarget {
   void release(const signals::Signal& signal) { holds_.release(signal); }
   const signals::Holds& holds() const { return holds_; }
 
+  // Of a station that drives a conveyor with parts; else null.
+  const Belt* belt_of(const Station& station) const;
+
  private:
   struct LiveWire {  // a wire
     signals::Signal from;
@@ -53,6 +58,16 @@ class Surroundings final : private EventTarget {
     Station* station;
     int32_t from;
     int32_t to;
+    bool active_high;
+  };
+  struct Conveyor {
+    const Station* station;
+    Belt belt;
+  };
+  struct Barrier {
+    signals::Signal input;
+    const Belt* belt;
+    int64_t way;
     bool active_high;
   };
   struct Script {
@@ -78,6 +93,8 @@ class Surroundings final : private EventTarget {
   Journal& journal_;
   std::vector<LiveWire> wires_;
   std::vector<Cam> cams_;
+  std::deque<Conveyor> conveyors_;
+  std::vector<Barrier> barriers_;
   std::vector<Script> scripts_;
   signals::Holds holds_{[this](const signals::Signal& signal, const std::string& text) {
     journal_.note(queue_.now(), Weight::Warning, signal.station, "stimulus refused: " + text);

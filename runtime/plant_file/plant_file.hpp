@@ -18,6 +18,7 @@
 #include "runtime/motion/machine_data.hpp"
 #include "runtime/nv_memory/medium/file_medium.hpp"
 #include "runtime/plant_file/bus_kind.hpp"
+#include "runtime/plant_file/driven_machine.hpp"
 #include "runtime/plant_file/profibus_config.hpp"
 #include "runtime/plant_file/signal.hpp"
 #include "runtime/plant_file/toml_text.hpp"
@@ -86,6 +87,7 @@ struct StationConfig {
   std::vector<InputSetting> inputs;
   AnalogInputs analog;
   MachineData machine;           // [station.load] on the default machine
+  std::optional<DrivenMachine> driven;  // [station.machine]
   std::vector<std::string> hex;  // variables the watch shows in hexadecimal
   FilePlace place;
   FilePlace program_place;
@@ -190,6 +192,7 @@ struct PlantFile {
   std::vector<Stimulus> stimuli;
   std::vector<Wire> wires;
   std::vector<PositionSwitch> switches;
+  std::vector<LightBarrier> barriers;
   std::vector<Expectation> expectations;
   size_t expectations_of_tests = 0;  // [[expect]] of kinds that only `ipos test` looks at
 };

@@ -117,6 +117,9 @@ void check_plant(PlantReader& reader);
 void read_buses(PlantReader& reader, const toml::table& root);
 void read_stations(PlantReader& reader, const toml::table& root);
 void read_gateway(PlantReader& reader, const toml::table& table);
+void read_machine(PlantReader& reader, const toml::table& station, StationConfig& config);
+// Of a [[switch]] with part_at, all but its input and its active level.
+void read_barrier(PlantReader& reader, const toml::table& table, LightBarrier barrier);
 void read_profibus_card(PlantReader& reader, const toml::table& table, StationConfig& config);
 void read_profibus_fault(PlantReader& reader, const toml::table& table);
 void read_profibus_master(PlantReader& reader, const toml::table& table, ControlConfig& control);

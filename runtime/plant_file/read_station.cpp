@@ -201,6 +201,7 @@ void read_station(PlantReader& reader, const toml::table& table) {
                      "inputs",
                      "analog",
                      "load",
+                     "machine",
                      "hex",
                      "terminator2",
                      "profibus_terminator"});
@@ -240,6 +241,7 @@ void read_station(PlantReader& reader, const toml::table& table) {
   read_inputs(reader, table, config);
   read_analog(reader, table, config);
   read_load(reader, table, config.machine);
+  read_machine(reader, table, config);
   read_hex(reader, table, config);
   reader.result.plant.stations.push_back(std::move(config));
 }

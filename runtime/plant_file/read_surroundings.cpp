@@ -128,22 +128,28 @@ void read_wire(PlantReader& reader, const toml::table& table) {
 
 void read_switch(PlantReader& reader, const toml::table& table) {
   constexpr std::string_view kWhat = "a [[switch]]";
-  reader.known_keys(table, "[[switch]]", {"station", "input", "from", "to", "active"});
+  reader.known_keys(table, "[[switch]]", {"station", "input", "from", "to", "active", "part_at", "belt"});
   PositionSwitch added;
   added.place = place_of(table);
   added.input.station = reader.station(table, kWhat);
   if (!reader.signal(table, kWhat, {"input"}, added.input)) return;
-  const toml::node* from = table.get("from");
-  const toml::node* to = table.get("to");
-  if (from == nullptr && to == nullptr)
-    reader.error(added.place, "a [[switch]] needs from, to or both, in increments");
-  if (from != nullptr) reader.number(*from, "from", added.from);
-  if (to != nullptr) reader.number(*to, "to", added.to);
-  if (added.from > added.to) reader.error(place_of(*to), "to is below from");
   const std::string active = reader.text(table, "active", kWhat, false);
   if (!active.empty() && active != "high" && active != "low")
     reader.error(place_of(*table.get("active")), "active is \"high\" or \"low\"");
   added.active_high = active != "low";
+  const toml::node* from = table.get("from");
+  const toml::node* to = table.get("to");
+  if (table.contains("part_at")) {
+    for (const toml::node* end : {from, to})
+      if (end != nullptr) reader.error(place_of(*end), "a [[switch]] sees the axis (from, to) or parts (part_at)");
+    return read_barrier(reader, table, {added.input, {}, 0, added.active_high, added.place});
+  }
+  if (const toml::node* belt = table.get("belt")) reader.error(place_of(*belt), "belt needs part_at");
+  if (from == nullptr && to == nullptr)
+    reader.error(added.place, "a [[switch]] needs from, to or both, in increments, or part_at");
+  if (from != nullptr) reader.number(*from, "from", added.from);
+  if (to != nullptr) reader.number(*to, "to", added.to);
+  if (added.from > added.to) reader.error(place_of(*to), "to is below from");
   reader.result.plant.switches.push_back(std::move(added));
 }
 
@@ -165,6 +171,7 @@ void check_drivers(PlantReader& reader) {
   };
   for (const Wire& wire : plant.wires) drive(wire.to, wire.place);
   for (const PositionSwitch& added : plant.switches) drive(added.input, added.place);
+  for (const LightBarrier& barrier : plant.barriers) drive(barrier.input, barrier.place);
   for (const Stimulus& stimulus : plant.stimuli)
     if (stimulus.action == Stimulus::Action::Set && is_driven(stimulus.signal))
       reader.error(stimulus.place, fmt::format("{} of {} hangs on a wire or switch: force it, do not set it",

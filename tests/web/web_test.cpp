@@ -54,6 +54,8 @@ TEST_F(Browser, TurnsAnAxisByAClick) { expect_node_passed(run("plant.test.mjs"),
 
 TEST_F(Browser, ShowsCurves) { expect_node_passed(run("scope.test.mjs"), 7); }
 
+TEST_F(Browser, SeesMachinesMove) { expect_node_passed(run("machine.test.mjs"), 4); }
+
 TEST_F(Browser, HearsARealDrive) { expect_node_passed(run("device.test.mjs"), 3); }
 
 }  // namespace

@@ -55,6 +55,7 @@ function describe() {
     controls: [{ name: "plc", bus: "sbus" }],
     wires: [{ from: "saw.DO01", to: "lift.DI03", invert: false }],
     switches: [{ input: "saw.DI02", from: -1000, to: 1000, active_high: true }],
+    barriers: [],
   };
 }
 
@@ -94,6 +95,12 @@ export function tick(plant, ms) {
     if (enabled(station)) station.shaft = (station.shaft + (ms / 60000) * 30) % 1;
 }
 
+// The lift is a hoist, the saw no more than a shaft.
+const machines = {
+  saw: { kind: "shaft", unit: "turns", per_turn: 1, given: false, from: null, to: null, limits: null, reference: null },
+  lift: { kind: "hoist", unit: "mm", per_turn: 40, given: true, from: 0, to: 2000, limits: [0, 200000], reference: 0 },
+};
+
 const enabled = (station) => station.powered && !station.fault && (station.in & 11) === 11;
 const counted = (plant) => Math.floor(plant.us / 10000);
 
@@ -117,6 +124,7 @@ function stationState(plant, name) {
     speed: on ? 30 : 0,
     position: Math.floor(station.shaft * 4096),
     shaft: station.shaft,
+    machine: { shaft: Math.floor(station.shaft * 4096), target: 102400, setpoint: 0, in_position: false, referenced: true },
     torque: 12,
     dc_link: 560,
     pd_out: ["0006", "0BB8", "0000"],
@@ -276,6 +284,7 @@ const events = {
   plant: (plant) => ({
     us: plant.us,
     stations: Object.fromEntries(stationNames.map((name) => [name, stationState(plant, name)])),
+    machines,
     buses: { sbus: { load: 12.5, frames: counted(plant) * 2, lost: 0, faults: plant.faults } },
   }),
   watch: (plant) => ({ us: plant.us, values: Object.fromEntries(plant.watched.map((name) => [name, watchValue(plant, name)])) }),

@@ -6,21 +6,22 @@
 #include "runtime/plant/actions.hpp"
 #include "runtime/plant_file/signal.hpp"
 #include "runtime/signals/find.hpp"
-#include "stdlib/faults.hpp"
 #include "stdlib/parameters.hpp"
 #include "tools/serve/host/line_faults.hpp"
 #include "tools/serve/host/line_monitor.hpp"
+#include "tools/serve/host/machine_picture.hpp"
+#include "tools/serve/host/station_state.hpp"
 #include "tools/serve/host/tabs.hpp"
+#include "tools/serve/host/used_terminals.hpp"
 
 namespace ipos::tools::serve {
 namespace {
 
 using runtime::Station;
 
-constexpr int32_t kTurn = 4096;  // increments of the shaft (IPOSplus p. 22)
-
 // Of units without the parameter there is no such terminal, except the two with a fixed function.
-Json terminals(const Station& station, std::span<const runtime::BinaryTerminal> all, const char* fixed) {
+Json terminals(const Station& station, std::span<const runtime::BinaryTerminal> all, const char* fixed,
+               const UsedTerminals& used) {
   const stdlib::ParameterTable& table = stdlib::parameter_table(*station.config().unit);
   Json list = Json::array();
   for (const runtime::BinaryTerminal& terminal : all) {
@@ -28,10 +29,11 @@ Json terminals(const Station& station, std::span<const runtime::BinaryTerminal> 
     const stdlib::Parameter* parameter =
         is_fixed ? nullptr : table.find(terminal.parameter);
     if (!is_fixed && parameter == nullptr) continue;
-    const std::string function =
-        is_fixed ? fixed
-                 : stdlib::parameter_text(*parameter, station.drive().parameters().value(parameter->index));
-    list.push_back({{"name", terminal.name}, {"bit", terminal.bit}, {"function", function}});
+    const int32_t value = is_fixed ? 0 : station.drive().parameters().value(parameter->index);
+    list.push_back({{"name", terminal.name},
+                    {"bit", terminal.bit},
+                    {"function", is_fixed ? fixed : stdlib::parameter_text(*parameter, value)},
+                    {"used", used.has(terminal, value)}});
   }
   return list;
 }
@@ -42,24 +44,6 @@ std::vector<std::string> lines_of(const runtime::StationConfig& config) {
                                  config.profibus.bus.bus})
     if (!bus.empty()) lines.push_back(bus);
   return lines;
-}
-
-Json process_words(const runtime::DriveWords& words) {
-  Json list = Json::array();
-  for (const uint16_t word : words) list.push_back(fmt::format("{:04X}", word));
-  return list;
-}
-
-// An input for a voltage and a current shows the one that is there.
-Json analog_texts(const Station& station) {
-  Json texts = Json::object();
-  for (const runtime::AnalogKind& kind : runtime::analog_kinds()) {
-    const std::string name(kind.name);
-    const int32_t value = station.inputs().line(runtime::line_of(kind)).value();
-    if (kind.is_of(*station.config().unit) && (value != 0 || !texts.contains(name)))
-      texts[name] = fmt::format("{:.3f} {}", value / kind.factor, kind.unit);
-  }
-  return texts;
 }
 
 class PlantTab final : public Tab {
@@ -189,15 +173,20 @@ class PlantTab final : public Tab {
       json["to"] = row.to == INT32_MAX ? Json(nullptr) : Json(row.to);
       switches.push_back(std::move(json));
     }
+    Json barriers = Json::array();
+    for (const runtime::LightBarrier& row : plant.file().barriers)
+      barriers.push_back({{"input", name(row.input)}, {"belt", row.belt}, {"at", row.at}, {"active_high", row.active_high}});
     return {{"stations", std::move(stations)},
             {"buses", std::move(buses)},
             {"controls", std::move(controls)},
             {"wires", std::move(wires)},
-            {"switches", std::move(switches)}};
+            {"switches", std::move(switches)},
+            {"barriers", std::move(barriers)}};
   }
 
-  static Json describe(const Station& station) {
+  Json describe(const Station& station) const {
     const runtime::StationConfig& config = station.config();
+    const UsedTerminals used(host_.plant().file(), config, host_.sources());
     Json analog = Json::array();
     for (const runtime::AnalogKind& kind : runtime::analog_kinds()) {
       if (!kind.is_of(*config.unit)) continue;
@@ -211,8 +200,8 @@ class PlantTab final : public Tab {
             {"title", config.unit->title},
             {"program", config.program},
             {"drive", true},
-            {"inputs", terminals(station, runtime::binary_inputs(), "/CONTROL.INHIBIT")},
-            {"outputs", terminals(station, runtime::binary_outputs(), "/BRAKE")},
+            {"inputs", terminals(station, runtime::binary_inputs(), "/CONTROL.INHIBIT", used)},
+            {"outputs", terminals(station, runtime::binary_outputs(), "/BRAKE", used)},
             {"analog", std::move(analog)},
             {"lines", lines_of(config)}};
   }
@@ -232,86 +221,13 @@ class PlantTab final : public Tab {
 
   // --- how it stands ---
 
-  // As fault and reason what keeps the DP master from the drives.
-  static Json state(const runtime::Gateway& gateway) {
-    Json out = Json::array(), in = Json::array();
-    const auto add = [](Json& list, const runtime::ProcessWords& words) {
-      for (const Json& word : process_words(words)) list.push_back(word);
-    };
-    std::string lost;
-    for (size_t n = 0; n < gateway.drive_count(); ++n) {
-      const runtime::Gateway::Drive drive = gateway.drive(n);
-      add(out, drive.output);
-      add(in, gateway.input(n));
-      if (drive.lost) lost += fmt::format("{}{}", lost.empty() ? "" : ", ", drive.address);
-    }
-    std::string why;
-    if (!gateway.powered())
-      why = "the power is off";
-    else if (!gateway.exchanges())
-      why = "no DP master exchanges data with it";
-    else if (!lost.empty())
-      why = "no answer from the drives with SBus address " + lost;
-    return {{"powered", gateway.powered()},
-            {"in", 0},
-            {"forced", 0},
-            {"out", 0},
-            {"analog", Json::object()},
-            {"state", !gateway.powered() ? "off" : gateway.exchanges() ? "data exchange" : "waits for its DP master"},
-            {"enabled", why.empty()},
-            {"why", why},
-            {"fault", 0},
-            {"fault_text", ""},
-            {"error", false},
-            {"pd_out", std::move(out)},
-            {"pd_in", std::move(in)}};
-  }
-
-  static Json state(const Station& station) {
-    Json json{{"powered", station.powered()}};
-    uint32_t in = 0, forced = 0;
-    for (size_t n = 0; n < runtime::kBinaryLines; ++n) {
-      const runtime::InputLine& line = station.inputs().line(n);
-      in |= (line.value() != 0 ? 1U : 0U) << n;
-      forced |= (line.forced ? 1U : 0U) << n;
-    }
-    json["in"] = in;
-    json["forced"] = forced;
-    json["out"] = station.outputs();
-    json["analog"] = analog_texts(station);
-    const runtime::Drive& drive = station.drive().state();
-    const runtime::AxisState& axis = drive.axis();
-    const bool powered = station.powered();
-    const runtime::Block reason = drive.verdict().reason;
-    json["state"] = powered ? std::string(runtime::condition_text(drive.condition())) : "off";
-    json["enabled"] = powered && reason == runtime::Block::None;
-    json["why"] = !powered                         ? "the power is off"
-                  : reason == runtime::Block::None ? ""
-                                                   : runtime::block_text(reason, *station.config().unit);
-    json["display"] = powered ? std::string(1, drive.display()) : "";
-    json["status"] = station.status_word_1();
-    json["fault"] = station.fault();
-    const stdlib::FaultRow* row = station.fault() == 0 ? nullptr : stdlib::find_fault(station.fault());
-    json["fault_text"] = row == nullptr ? "" : std::string(row->name);
-    json["error"] = station.error();
-    json["speed"] = axis.speed / 1000.0;
-    json["setpoint"] = axis.setpoint / 1000.0;
-    json["position"] = axis.position;
-    json["shaft"] = static_cast<double>(static_cast<uint32_t>(station.shaft_position()) % kTurn) / kTurn;
-    json["current"] = axis.output_current / 1000.0;
-    json["torque"] = axis.torque / 1000.0;
-    json["dc_link"] = axis.dc_link / 1000.0;
-    json["pd_out"] = process_words(drive.po());
-    json["pd_in"] = process_words(drive.pi());
-    return json;
-  }
-
   // Terminals show at once what was done to them; what the unit says of it is older.
   void tell_later(Json& json) const {
     const std::string why = json["why"];
     if (host_.us() == 0 && json["powered"].get<bool>()) {
       json["state"] = "power-on";  // no state of a unit (ours): it has not looked at anything yet
       json["display"] = "";
+      json["ordered"] = false;
       json["why"] = "it stands before the first millisecond, with which its terminals act";
     } else if (!why.empty() && json["powered"].get<bool>())
       json["why"] = why + ", at the last millisecond; what was done since acts with the next one";
@@ -325,13 +241,18 @@ class PlantTab final : public Tab {
     const runtime::Plant& plant = host_.plant();
     Json stations = Json::object();
     for (const auto& station : plant.stations()) {
-      Json now = state(*station);
+      Json now = station_state(plant, *station);
       if (host_.sees_later(station->config().name)) tell_later(now);
       if (subscription.is_news("s" + station->config().name, now))
         stations[station->config().name] = std::move(now);
     }
+    Json machines = Json::object();
+    for (const auto& station : plant.stations()) {
+      Json now = machine_picture(*station, plant.file());
+      if (subscription.is_news("m" + station->config().name, now)) machines[station->config().name] = std::move(now);
+    }
     for (const runtime::Gateway* gateway : plant.all<runtime::Gateway>()) {
-      Json now = state(*gateway);
+      Json now = gateway_state(*gateway);
       if (subscription.is_news("s" + gateway->name(), now)) stations[gateway->name()] = std::move(now);
     }
     Json buses = Json::object();
@@ -339,10 +260,11 @@ class PlantTab final : public Tab {
       Json now = line_state(bus->name(), bus->load(plant.now()));
       if (subscription.is_news("b" + bus->name(), now)) buses[bus->name()] = std::move(now);
     }
-    if (stations.empty() && buses.empty()) return;
+    if (stations.empty() && machines.empty() && buses.empty()) return;
     host_.router().send(client, {{"event", "plant"},
                                {"us", host_.us()},
                                {"stations", std::move(stations)},
+                               {"machines", std::move(machines)},
                                {"buses", std::move(buses)}});
   }
 

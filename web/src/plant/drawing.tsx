@@ -4,7 +4,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import type { Line, Plant } from "../server/protocol";
 import { command } from "../shell/notice";
 import { box_height, box_width, layOut, tapX, type Box, type DrawnWire, type Row } from "./drawing_layout";
-import { bitSet, lineState, stationState } from "./state";
+import { bitSet, lineState, stationState, wanted } from "./state";
 
 // What Enter and Space do on an element that is no button by itself.
 function pressed(act: () => void) {
@@ -22,7 +22,7 @@ function cableY(row: Row, position: number): number {
 function StationBox({ box, y }: { box: Box; y: number }) {
   const state = stationState(box.name).value;
   const face = !state?.powered ? "dark" : state.error || state.fault ? "fault" : state.enabled ? "enabled" : "";
-  const show = () => document.getElementById(`station-${box.name}`)?.scrollIntoView({ behavior: "smooth", block: "center" });
+  const show = () => (wanted.value = { station: box.name });
   const words = !state ? "" : !state.powered ? "off" : state.fault ? `fault ${state.fault}` : (state.state ?? "");
   const text = (
     <>

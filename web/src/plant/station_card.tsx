@@ -1,15 +1,18 @@
-// A station: display, shaft and speed, status and fault in words, why it is not enabled, its terminals, its switches.
+// A station: display, speed and its machine, status and fault in words, why it is not enabled, its terminals, its switches.
 import { useMemo } from "preact/hooks";
 
+import { Machine } from "../machine/machine";
 import { hello, isGateway } from "../server/live";
 import type { Plant, Station, StationState } from "../server/protocol";
 import { command } from "../shell/notice";
 import { SevenSegment } from "./seven_segment";
-import { Shaft } from "./shaft";
-import { stationState } from "./state";
+import { machinePicture, stationState } from "./state";
 import { Terminals } from "./terminals";
 
-function Face({ name, state }: { name: string; state: StationState }) {
+// A machine that is no more than a shaft stands beside the speed, others have their own place below.
+function Face({ station, plant, state }: { station: Station; plant: Plant; state: StationState }) {
+  const { name } = station;
+  const plain = (machinePicture(name).value?.kind ?? "shaft") === "shaft";
   return (
     <div class="face">
       <SevenSegment text={state.powered ? (state.display ?? "") : ""} label={`${name} display`} />
@@ -22,7 +25,7 @@ function Face({ name, state }: { name: string; state: StationState }) {
           {state.torque !== undefined && ` · ${state.torque.toFixed(0)} % torque`}
         </div>
       </div>
-      {state.shaft !== undefined && <Shaft turns={state.shaft} label={`${name} shaft at ${(state.shaft * 360).toFixed(0)} degrees`} />}
+      {plain && <Machine station={station} plant={plant} />}
     </div>
   );
 }
@@ -78,7 +81,7 @@ function Supply({ name, powered, faults }: { name: string; powered: boolean; fau
   );
 }
 
-export function StationCard({ station, plant }: { station: Station; plant: Plant }) {
+export function StationCard({ station, plant, close }: { station: Station; plant: Plant; close?: (() => void) | undefined }) {
   const state = stationState(station.name).value;
   // Most changes are those of a motion: terminals are drawn again only when one of them has changed.
   const terminals = useMemo(
@@ -87,14 +90,20 @@ export function StationCard({ station, plant }: { station: Station; plant: Plant
   );
   const lamp = !state?.powered ? "" : state.fault ? (state.error === false ? "warning" : "fault") : state.enabled ? "on" : "";
   return (
-    <section class="panel station" id={`station-${station.name}`} aria-label={station.name}>
+    <section class="panel station" aria-label={station.name}>
       <header>
         <span class={`lamp ${lamp}`} />
         <h2>{station.name}</h2>
         <span class="quiet">{station.title || station.unit}</span>
         <span class="spread quiet">{station.program}</span>
+        {close && (
+          <button class="small" aria-label={`Close card of ${station.name}`} onClick={close}>
+            ✕
+          </button>
+        )}
       </header>
-      {state && station.drive && <Face name={station.name} state={state} />}
+      {state && station.drive && <Face station={station} plant={plant} state={state} />}
+      {(machinePicture(station.name).value?.kind ?? "shaft") !== "shaft" && <Machine station={station} plant={plant} />}
       {state && <Words state={state} />}
       {terminals}
       {state && <ProcessData state={state} />}

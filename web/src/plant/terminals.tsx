@@ -1,19 +1,22 @@
 // The terminals of a station: inputs to switch, to pulse and to force, outputs as lamps, analog signals as sliders.
 import { useState } from "preact/hooks";
 
-import type { Analog, Cam, Station, StationState, Terminal, Wire } from "../server/protocol";
+import type { Analog, Barrier, Cam, Station, StationState, Terminal, Wire } from "../server/protocol";
 import { command } from "../shell/notice";
 import { bitSet } from "./state";
 
 interface Around {
   wires: Wire[];
   switches: Cam[];
+  barriers?: Barrier[];
 }
 
 // What drives an input beside a person.
-function driver(name: string, { wires, switches }: Around): string {
+function driver(name: string, { wires, switches, barriers }: Around): string {
   const wire = wires.find((one) => one.to === name);
   if (wire) return `${wire.invert ? "not " : ""}${wire.from}`;
+  const barrier = barriers?.find((one) => one.input === name);
+  if (barrier) return `part at ${barrier.at} on ${barrier.belt}`;
   const cam = switches.find((one) => one.input === name);
   return cam ? `cam ${cam.from ?? "−∞"} … ${cam.to ?? "∞"}` : "";
 }
@@ -108,29 +111,38 @@ function AnalogInput({ station, analog, text }: { station: string; analog: Analo
   );
 }
 
+// Terminals without function that nobody has touched are folded away.
+function isFolded(terminal: Terminal, ...masks: (number | undefined)[]): boolean {
+  return terminal.used === false && !masks.some((mask) => bitSet(mask, terminal.bit));
+}
+
 export function Terminals({ station, state, around }: { station: Station; state: StationState | null; around: Around }) {
+  const input = (one: Terminal) => <Input key={one.name} station={station.name} input={one} state={state} around={around} />;
+  const output = (one: Terminal) => <Output key={one.name} station={station.name} output={one} state={state} />;
+  const idle_inputs = station.inputs.filter((one) => isFolded(one, state?.in, state?.forced));
+  const idle_outputs = station.outputs.filter((one) => isFolded(one, state?.out));
+  const inputs = station.inputs.filter((one) => !idle_inputs.includes(one));
+  const outputs = station.outputs.filter((one) => !idle_outputs.includes(one));
+  const idle = idle_inputs.length + idle_outputs.length;
   return (
     <>
-      {station.inputs.length > 0 && (
-        <div class="inputs">
-          {station.inputs.map((input) => (
-            <Input key={input.name} station={station.name} input={input} state={state} around={around} />
-          ))}
-        </div>
-      )}
-      {station.outputs.length > 0 && (
-        <div class="outputs">
-          {station.outputs.map((output) => (
-            <Output key={output.name} station={station.name} output={output} state={state} />
-          ))}
-        </div>
-      )}
+      {inputs.length > 0 && <div class="inputs">{inputs.map(input)}</div>}
+      {outputs.length > 0 && <div class="outputs">{outputs.map(output)}</div>}
       {station.analog.length > 0 && (
         <div class="inputs">
           {station.analog.map((analog) => (
             <AnalogInput key={analog.name} station={station.name} analog={analog} text={state?.analog?.[analog.name] ?? ""} />
           ))}
         </div>
+      )}
+      {idle > 0 && (
+        <details class="unused">
+          <summary>
+            {idle} unused terminal{idle === 1 ? "" : "s"}
+          </summary>
+          <div class="inputs">{idle_inputs.map(input)}</div>
+          <div class="outputs">{idle_outputs.map(output)}</div>
+        </details>
       )}
     </>
   );

@@ -51,6 +51,7 @@ export interface Terminal {
   name: string;
   bit: number;
   function: string;
+  used?: boolean; // false: no function, no wire, named nowhere
 }
 
 export interface Analog {
@@ -102,12 +103,44 @@ export interface Cam {
   active_high: boolean;
 }
 
+// A light barrier over the belt of a station.
+export interface Barrier {
+  input: string;
+  belt: string;
+  at: number;
+  active_high: boolean;
+}
+
 export interface Plant {
   stations: Station[];
   buses: Line[];
   controls: { name: string; bus: string }[];
   wires: Wire[];
   switches: Cam[];
+  barriers?: Barrier[];
+}
+
+// What a station drives. `limits` and `reference` are in increments of H511, the others in the unit.
+export interface MachinePicture {
+  kind: "axis" | "hoist" | "conveyor" | "turntable" | "winder" | "fan" | "shaft";
+  unit: string;
+  per_turn: number;
+  given: boolean; // by the plant file
+  from: number | null;
+  to: number | null;
+  limits: [number, number] | null;
+  reference: number | null;
+  part_length?: number;
+}
+
+// In increments; without positioning only the shaft.
+export interface MachineState {
+  shaft: number; // turned ever
+  target?: number;
+  setpoint?: number;
+  in_position?: boolean;
+  referenced?: boolean;
+  parts?: number[]; // fronts, in the unit
 }
 
 export interface StationState {
@@ -118,6 +151,7 @@ export interface StationState {
   powered: boolean;
   state?: string;
   enabled?: boolean;
+  ordered?: boolean; // somebody wants it to run
   why?: string;
   display?: string;
   status?: number;
@@ -128,6 +162,7 @@ export interface StationState {
   setpoint?: number;
   position?: number;
   shaft?: number;
+  machine?: MachineState;
   current?: number;
   torque?: number;
   dc_link?: number;

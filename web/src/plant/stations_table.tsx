@@ -1,0 +1,132 @@
+// Many stations as a table of compact rows, of which only those in sight are made. A click on one opens its card below.
+import { useEffect, useRef, useState } from "preact/hooks";
+
+import { inUnit, unitText } from "../machine/units";
+import { time } from "../server/live";
+import type { Line, Station } from "../server/protocol";
+import { isUnwell, lineState, lineTrouble, machinePicture, stationState } from "./state";
+
+const row_height = 30;
+const height = 480; // of the box that scrolls
+const spare = 4; // rows above and below what is in sight
+
+function lampOf(station: Station): string {
+  const state = stationState(station.name).value;
+  if (!state?.powered) return "";
+  if (state.fault) return state.error === false ? "warning" : "fault";
+  return state.enabled ? "on" : isUnwell(state) ? "warning" : "";
+}
+
+function StationRow({ station, position, isOpen, toggle }: { station: Station; position: number; isOpen: boolean; toggle: () => void }) {
+  const state = stationState(station.name).value;
+  const machine = machinePicture(station.name).value;
+  const reason = state?.fault ? `fault ${state.fault}: ${state.fault_text}` : (state?.why ?? "");
+  const words = !state ? "" : state.powered ? (state.state ?? "") : "off";
+  return (
+    <tr aria-rowindex={position + 2} class={isUnwell(state) ? "unwell" : ""} onClick={toggle}>
+      <th scope="row">
+        <span class={`lamp ${lampOf(station)}`} />
+        <button
+          class="plain"
+          aria-expanded={isOpen}
+          onClick={(event) => {
+            event.stopPropagation();
+            toggle();
+          }}
+        >
+          {station.name}
+        </button>
+      </th>
+      <td class="state" title={words}>
+        {words}
+      </td>
+      <td class="why" title={reason}>
+        {reason}
+      </td>
+      <td class="number wide">{state?.speed === undefined ? "" : `${state.speed.toFixed(0)} rpm`}</td>
+      <td class="number wide">{machine && state?.position !== undefined ? unitText(machine, inUnit(machine, state.position)) : ""}</td>
+      <td class="lines wide">{station.lines.join(" ")}</td>
+    </tr>
+  );
+}
+
+function LineRow({ line, position }: { line: Line; position: number }) {
+  const state = lineState(line.name).value;
+  const trouble = lineTrouble(state);
+  return (
+    <tr aria-rowindex={position + 2} class={trouble ? "unwell" : ""}>
+      <th scope="row">
+        <span class={`lamp ${trouble ? "warning" : time.value.us > 0 ? "on" : ""}`} /> {line.name}
+      </th>
+      <td class="state">{line.kind.toUpperCase()}</td>
+      <td class="why">{trouble}</td>
+      <td class="number wide">{state ? `${state.load.toFixed(1)} %` : ""}</td>
+      <td class="number wide">{state ? `${state.frames}` : ""}</td>
+      <td class="lines wide" />
+    </tr>
+  );
+}
+
+export function StationsTable({
+  stations,
+  lines,
+  open,
+  toggle,
+}: {
+  stations: Station[];
+  lines: Line[];
+  open: string[];
+  toggle: (name: string) => void;
+}) {
+  const box = useRef<HTMLDivElement>(null);
+  const [top, setTop] = useState(0);
+  const count = lines.length + stations.length;
+  // A list that has become shorter scrolls back by itself, without an event where it no longer scrolls at all.
+  useEffect(() => setTop(box.current?.scrollTop ?? 0), [count]);
+  const first = Math.max(0, Math.min(Math.floor(top / row_height), count) - spare);
+  const last = Math.min(count, Math.ceil((top + height) / row_height) + spare);
+  return (
+    <div ref={box} class="scroll stations-table" tabIndex={0} style={{ maxHeight: `${height}px` }} onScroll={(event) => setTop(event.currentTarget.scrollTop)}>
+      <table aria-label="Stations" aria-rowcount={count + 1}>
+        <thead>
+          <tr>
+            <th scope="col">Station</th>
+            <th scope="col">State</th>
+            <th scope="col">Why not</th>
+            <th scope="col" class="number wide">
+              Speed
+            </th>
+            <th scope="col" class="number wide">
+              Position
+            </th>
+            <th scope="col" class="wide">
+              Lines
+            </th>
+          </tr>
+        </thead>
+        <tbody>
+          {first > 0 && <tr role="presentation" style={{ height: `${first * row_height}px` }} />}
+          {Array.from({ length: Math.max(0, last - first) }, (_, n) => {
+            const position = first + n;
+            const line = lines[position];
+            if (line) return <LineRow key={`line ${line.name}`} line={line} position={position} />;
+            const station = stations[position - lines.length];
+            return (
+              station && (
+                <StationRow
+                  key={station.name}
+                  station={station}
+                  position={position}
+                  isOpen={open.includes(station.name)}
+                  toggle={() => toggle(station.name)}
+                />
+              )
+            );
+          })}
+          {last < count && <tr role="presentation" style={{ height: `${(count - last) * row_height}px` }} />}
+        </tbody>
+      </table>
+      {count === 0 && <p class="empty">All is well, or nothing is called so.</p>}
+    </div>
+  );
+}
