@@ -128,6 +128,11 @@ TEST_F(Machines, BarriersStandInThePlantAndPartsInTheState) {
   // The parts were moved at the beginning of the last millisecond, 102.4 increments before.
   ASSERT_EQ(state["machine"]["parts"].size(), 1U) << state;
   EXPECT_NEAR(state["machine"]["parts"][0].get<double>(), 10 + moved, 0.11);
+  // They are part of what time goes back to.
+  step(400);
+  EXPECT_NE(plant()["stations"]["belt"]["machine"]["parts"], state["machine"]["parts"]);
+  good({{"do", "back"}, {"us", 1'000'000}});
+  EXPECT_EQ(plant()["stations"]["belt"]["machine"]["parts"], state["machine"]["parts"]);
   EXPECT_FALSE(plant()["stations"]["plain"]["machine"].contains("parts"));
   EXPECT_FALSE(plant()["stations"]["pump"]["machine"].contains("target"));
   EXPECT_EQ(state["machine"]["referenced"], false);

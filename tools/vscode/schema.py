@@ -82,6 +82,9 @@ class Table:
     def head(self):
         return f"[[{self.name}]]" if self.many else f"[{self.name}]"
 
+    def needs(self):
+        return r"an? \[\[\w+\]\] needs (\w+) = " if self.many else re.escape(self.head()) + r" needs (\w+) = "
+
     def ask(self, form, row):
         text = self.before + self.head() + "\n" + form + row + "\n"
         line = text.count("\n")
@@ -92,7 +95,7 @@ class Table:
             keys = known(self.ask(form, f"{PROBE} = 1"))
             needs = set()
             for _, message in self.reader.errors(self.before + self.head() + "\n" + form):
-                if match := re.search(r"an? \[\[\w+\]\] needs (\w+) = ", message):
+                if match := re.search(self.needs(), message):
                     needs.add(match[1])
             needs |= {row.split(" ")[0] for row in form.split("\n") if row and "kind" not in row}
             if self.name in ("stimulus", "step"):
@@ -136,7 +139,8 @@ class Table:
         return [""]
 
     def subtable(self, key):
-        table = Table(self.reader, f"{self.name}.{key}", [""], self.before + self.head() + "\n", many=False)
+        forms = ['kind = "conveyor"\n'] if key == "machine" else [""]  # the kind that takes all keys
+        table = Table(self.reader, f"{self.name}.{key}", forms, self.before + self.head() + "\n", many=False)
         found = table.schema() if known(table.ask("", f"{PROBE} = 1")) else None
         if key == "parameters":
             return {"type": "object", "properties": parameters(self.reader.ipos), "patternProperties": {

@@ -161,8 +161,11 @@ test("a hoist stands at its floor, in the user's unit; its cage, switches and li
         return label.getBoundingClientRect().top + label.getBoundingClientRect().height / 2;
       };
       const cage = element.querySelector(".car rect").getBoundingClientRect();
-      return { zero: place("0"), top: place("2500"), cage: cage.bottom };
+      const zones = [...element.querySelectorAll(".mark.switch .zone")].map((one) => one.getBoundingClientRect());
+      return { zero: place("0"), top: place("2500"), cage: cage.bottom, lower: zones.sort((a, b) => b.top - a.top)[0].top };
     });
+    // The reference travel has made the edge of the lower limit switch the zero (P903 = 4), 8000 increments below power-on.
+    assert.ok(Math.abs(drawn.lower - drawn.zero) < 4, `the lower switch ends at ${drawn.lower}, zero is ${drawn.zero}`);
     const expected = drawn.zero - ((drawn.zero - drawn.top) * mm) / 2500;
     assert.ok(Math.abs(drawn.cage - expected) < 4, `${drawn.cage} for ${expected}`);
     // A limit switch that is reached is seen.

@@ -61,7 +61,7 @@ function LineRow({ line, position }: { line: Line; position: number }) {
       <td class="state">{line.kind.toUpperCase()}</td>
       <td class="why">{trouble}</td>
       <td class="number wide">{state ? `${state.load.toFixed(1)} %` : ""}</td>
-      <td class="number wide">{state ? `${state.frames}` : ""}</td>
+      <td class="number wide">{state ? `${state.frames} frames` : ""}</td>
       <td class="lines wide" />
     </tr>
   );
