@@ -29,10 +29,10 @@ function useWindow({ machine, state, marks }: Drawn): Window {
   if (known.length === 0) known.push(inUnit(machine, -shaft_turn), inUnit(machine, shaft_turn));
   const all = [...known, ...(fixed.length > 0 ? [at] : seen.current.places)];
   const [from, to] = fixed;
-  // A switch at the very end may stand some increments outside.
-  const slack = from === undefined || to === undefined ? 0 : (to - from) / 50;
+  // Switches stand at the ends, and some increments outside.
+  const slack = from === undefined || to === undefined ? 0 : (to - from) / 25;
   const tight = from !== undefined && to !== undefined && Math.min(...all) >= from - slack && Math.max(...all) <= to + slack;
-  return tight ? { from, to } : windowOf(all);
+  return tight ? { from: from - slack, to: to + slack } : windowOf(all);
 }
 
 // Labels beside an upright way, moved apart where they would lie on each other.
