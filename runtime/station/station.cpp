@@ -154,6 +154,11 @@ std::optional<std::string> Station::start_program() {
   return door_.touch().load_program();
 }
 
+std::optional<std::string> Station::load_program(vm::Image image) {
+  if (!powered_) return "the station is off";
+  return door_.touch().take_program(std::move(image));
+}
+
 void Station::stop_program() { door_.touch().stop_tasks(); }
 
 void Station::use_runner(CommandRunner& runner) {

@@ -80,6 +80,9 @@ class Station final : private Timed, private TaskRunner {
   // The program memory, which may have been changed through indices 16000 + n, is verified and started from
   // its beginning; variables keep their values. Nothing when it was started, else the rule it breaks.
   std::optional<std::string> start_program();
+  // A download of a program for this unit, which begins anew; variables keep their values, and the drive goes on. Nothing
+  // when it was done, else why not.
+  std::optional<std::string> load_program(vm::Image image);
   void stop_program();
 
   // From the next tick on; it must outlive the station. Every tick then comes in its turn.

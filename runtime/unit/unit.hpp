@@ -84,6 +84,9 @@ class Unit final {
   // The program memory is verified and started from its beginning; variables keep their values. Nothing when
   // it was started, else the rule that it breaks.
   std::optional<std::string> load_program();
+  // A download: this program takes the place of the one in the program memory, and begins. Variables keep their values.
+  // Nothing when it was done, else the rule that the program breaks; then the old one goes on.
+  std::optional<std::string> take_program(vm::Image image);
   void stop_tasks();
   void use_runner(TaskRunner& runner) { runner_ = &runner; }
   // Stores what is still to be stored, at the end of the run. False: that failed, the journal says why.

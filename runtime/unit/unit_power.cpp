@@ -66,6 +66,7 @@ std::optional<std::string> Unit::load_program() {
     return fmt::format("word {}: {} [{}]", violations[0].address, rule.meaning, rule.code);
   }
   stop_tasks();
+  in_tasks_ = false;  // of the program before, where a runner has stopped in it
   drive_.disconnect_program();
   code_ = std::move(code);
   begin_variables();
@@ -80,6 +81,19 @@ std::optional<std::string> Unit::load_program() {
   resets_seen_ = drive().resets();
   drive_changes_ = drive().changes() - 1;
   return std::nullopt;
+}
+
+std::optional<std::string> Unit::take_program(vm::Image image) {
+  std::array<vm::Violation, 1> violations{};
+  if (!vm::verify(image.code, limits_of(config_.type), violations).image) {
+    const vm::RuleInfo& rule = vm::info(violations[0].rule);
+    return fmt::format("word {}: {} [{}]", violations[0].address, rule.meaning, rule.code);
+  }
+  stop_tasks();
+  image_ = std::move(image);
+  drive_.memory().program().set_kept(std::nullopt);
+  drive_.memory().program().restart(image_->code);
+  return load_program();
 }
 
 void Unit::begin_variables() {

@@ -49,8 +49,8 @@ class HostAlone : public ::testing::Test {
 
   TestClock clock;
   tools::serve::Copies copies;
-  tools::serve::Sources sources;
-  Page page{the_plant(), clock, copies, sources};
+  tools::serve::Files files;  // none
+  Page page{the_plant(), clock, copies, files};
 };
 
 TEST_F(HostAlone, OpensAPlantAndTellsWhatItIs) {

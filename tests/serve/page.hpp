@@ -29,8 +29,8 @@ class PagePost final : public tools::serve::Outbox {
 class Page {
  public:
   Page(tools::debug::MakePlant make, const tools::serve::Clock& clock, tools::serve::Copies& copies,
-       tools::serve::Sources& sources)
-      : host(std::move(make), "plant.toml", "0", {post, clock, copies, ports, sources}) {
+       tools::serve::Files& files)
+      : host(std::move(make), "plant.toml", "0", {post, clock, copies, ports, files, language}) {
     come(1);
   }
 
@@ -94,6 +94,7 @@ class Page {
 
   PagePost post;
   tools::serve::Ports ports;  // none
+  tools::serve::Language language;  // none
   tools::serve::PlantHost host;
   std::vector<Json> parts;
 

@@ -56,6 +56,8 @@ TEST_F(Browser, ShowsCurves) { expect_node_passed(run("scope.test.mjs"), 7); }
 
 TEST_F(Browser, SeesMachinesMove) { expect_node_passed(run("machine.test.mjs"), 4); }
 
+TEST_F(Browser, EditsAndRebuilds) { expect_node_passed(run("edit.test.mjs"), 7); }
+
 TEST_F(Browser, HearsARealDrive) { expect_node_passed(run("device.test.mjs"), 3); }
 
 }  // namespace

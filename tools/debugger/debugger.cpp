@@ -102,10 +102,23 @@ void Debugger::run_again() {
   go();
 }
 
-void Debugger::restart() {
+void Debugger::restart(MakePlant next) {
   if (snapshots_) snapshots_->clear();
   changes_.clear();
-  build();
+  if (!next) return build();
+  std::swap(what_.make, next);
+  try {
+    build();
+  } catch (...) {
+    std::swap(what_.make, next);
+    build();
+    throw;
+  }
+}
+
+void Debugger::program_changed(uint32_t station) {
+  codes_[station].reset();
+  if (const vm::Image* image = plant_->stations()[station]->image(); image != nullptr) codes_[station].emplace(*image);
 }
 
 // Until the order is carried out; perhaps in another process, which knows nothing of what stood above it

@@ -50,6 +50,12 @@ vm::Image program_of(const std::string& path, runtime::StationConfig& station, C
   return image;
 }
 
+void tell(const std::string& path, const std::vector<runtime::PlantError>& errors, BuildRecord* record) {
+  if (record == nullptr) return print_mistakes(path, errors);
+  for (const runtime::PlantError& error : errors)
+    record->tell({"error", path, error.place.line, error.place.column, error.text});
+}
+
 // A plant file of a stranger may name any file. The form of a memory keeps other files safe, but not folders tidy.
 void warn_of_far_memories(const PlantInput& input) {
   const fs::path folder = fs::weakly_canonical(fs::absolute(input.path).parent_path());
@@ -71,6 +77,7 @@ PlantInput read_plant_input(const std::string& path, const CompileFlags& compile
   PlantInput input{path, {}, {}};
   Errors errors;
   if (is_plant(path)) {
+    if (compile.record != nullptr) compile.record->texts[path] = read_file(path);
     runtime::PlantFileResult read = try_read_plant(path);
     input.file = std::move(read.plant);
     errors = std::move(read.errors);
@@ -93,7 +100,8 @@ PlantInput read_plant_input(const std::string& path, const CompileFlags& compile
     try {
       input.programs.back() = program_of(program, station, compile);
     } catch (const Failure& failure) {
-      if (!last.empty()) fmt::print(stderr, "ipos: {}\n", compiler::printable(last));
+      if (!last.empty() && compile.record != nullptr) compile.record->tell({"error", "", 0, 0, last});
+      if (!last.empty() && compile.record == nullptr) fmt::print(stderr, "ipos: {}\n", compiler::printable(last));
       last = failure.what();
       if (!has_mistakes) code = failure.exit_code();
     }
@@ -101,20 +109,20 @@ PlantInput read_plant_input(const std::string& path, const CompileFlags& compile
   if (code == kGood) return input;
   if (is_plant(path)) {
     errors = runtime::all_mistakes(input.file, std::move(input.programs), std::move(errors));
-    print_mistakes(path, errors);
+    tell(path, errors, compile.record);
   }
   throw Failure(code, last);
 }
 
 std::unique_ptr<runtime::Plant> make_plant(PlantInput input, runtime::FileUse memories,
                                            std::optional<vm::Rates> rates,
-                                           const runtime::Execution& execution) {
+                                           const runtime::Execution& execution, BuildRecord* record) {
   if (memories == runtime::FileUse::Write) warn_of_far_memories(input);
   for (runtime::StationConfig& station : input.file.stations) station.nvram_use = memories;
   std::vector<runtime::PlantError> errors;
   auto plant = std::make_unique<runtime::Plant>(std::move(input.file), std::move(input.programs), rates,
                                                 errors, execution);
-  print_mistakes(input.path, errors);
+  tell(input.path, errors, record);
   if (!errors.empty()) throw Failure(kBadInput, "");
   return plant;
 }

@@ -28,6 +28,7 @@ PlantInput read_plant_input(const std::string& path, const CompileFlags& compile
 // Builds it. Only a run keeps in the memories of its units what it changes; a verb that looks takes copies.
 std::unique_ptr<runtime::Plant> make_plant(PlantInput input, runtime::FileUse memories,
                                            std::optional<vm::Rates> rates = {},
-                                           const runtime::Execution& execution = execution_of());
+                                           const runtime::Execution& execution = execution_of(),
+                                           BuildRecord* record = nullptr);
 
 }  // namespace ipos::tools

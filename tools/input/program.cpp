@@ -37,17 +37,35 @@ const stdlib::UnitType* unit_of(const CompileFlags& flags) {
   return unit;
 }
 
-std::string read_main(const std::string& path) {
+std::string read_main(const std::string& path, const CompileFlags& flags) {
   std::string text = read_file(path);
-  keep_source(path, text);
+  if (flags.record != nullptr)
+    flags.record->texts[path] = text;
+  else
+    keep_source(path, text);
   return text;
+}
+
+void tell(const compiler::Compilation& compiled, const CompileFlags& flags) {
+  if (flags.record == nullptr) return print_diagnostics(*compiled.sources, compiled.diagnostics, flags.diagnostics);
+  for (const compiler::Diagnostic& one : compiled.diagnostics.all()) {
+    Told message{std::string(compiler::severity_word(one.severity)), "", 0, 0, one.text,
+                 std::string(compiler::info(one.diag).code)};
+    if (one.span.begin.valid()) {
+      const compiler::Position begin = compiler::range_of(one.span, *compiled.sources).begin;
+      message.file = begin.file->path.empty() ? begin.file->name : begin.file->path;
+      message.line = begin.line;
+      message.column = begin.column;
+    }
+    flags.record->tell(std::move(message));
+  }
 }
 
 // Compiles and prints the messages.
 compiler::Compilation compile(const std::string& path, const CompileFlags& flags) {
   compiler::CompileOptions options = options_of(flags);
-  compiler::Compilation result = compiler::compile(path, path, read_main(path), options);
-  print_diagnostics(*result.sources, result.diagnostics, flags.diagnostics);
+  compiler::Compilation result = compiler::compile(path, path, read_main(path, flags), options);
+  tell(result, flags);
   return result;
 }
 
@@ -74,6 +92,10 @@ std::string commands_of(vm::Image code) {
 
 }  // namespace
 
+void BuildRecord::tell(Told message) {
+  if (std::find(messages.begin(), messages.end(), message) == messages.end()) messages.push_back(std::move(message));
+}
+
 void add_compile_options(cli::Verb& verb, CompileFlags& flags) {
   verb.option("-I", flags.include_dirs, "folder for #include").one_each();
   verb.option("-D", flags.defines, "NAME=VALUE, as #define").one_each();
@@ -88,6 +110,12 @@ compiler::CompileOptions options_of(const CompileFlags& flags) {
   options.include_dirs = flags.include_dirs;
   options.defines = flags.defines;
   options.read_file = read_source;
+  if (flags.record != nullptr)
+    options.read_file = [record = flags.record](const std::string& path) {
+      std::optional<std::string> text = try_read_file(path);
+      if (text) record->texts[path] = *text;
+      return text;
+    };
   options.list_files = list_files;
   options.unit = unit_of(flags);
   options.atomic = flags.atomic;
@@ -124,12 +152,14 @@ vm::Image compile_file(const std::string& path, const CompileFlags& flags) {
   return std::move(*result.image);
 }
 
-std::vector<std::string> included_files(const std::string& path) {
+std::vector<std::string> included_files(const std::string& path, const CompileFlags& flags) {
   compiler::SourceMap sources;
   compiler::Diagnostics ignored;
   const compiler::SourceFile& main = sources.add(path, path, read_file(path));
   compiler::PreprocessOptions options;
   options.headers = stdlib::headers::embedded_files();
+  options.include_dirs = flags.include_dirs;
+  options.defines = flags.defines;
   options.read_file = try_read_file;
   std::vector<std::string> files;
   for (const auto& include : compiler::preprocess(sources, main, options, ignored).record.includes)

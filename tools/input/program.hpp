@@ -9,6 +9,7 @@
 #include "compiler/compile.hpp"
 #include "compiler/diag/render.hpp"
 #include "tools/cli/verb.hpp"
+#include "tools/input/record.hpp"
 #include "vm/image/image.hpp"
 
 namespace ipos::tools {
@@ -20,6 +21,7 @@ struct CompileFlags {
   std::string unit;                       // --unit; empty: from the source
   bool atomic = false;                    // --atomic
   std::string diagnostics = "text";       // text, json or sarif
+  BuildRecord* record = nullptr;          // takes what is read and told, in place of sources.hpp and standard error
 };
 
 // -I, -D, -W, --unit and --diagnostics, for every verb that compiles.
@@ -36,7 +38,7 @@ vm::Image compile_file(const std::string& path, const CompileFlags& flags);
 
 // The files that a source includes, those that its headers include, too; none of the built-in ones. Whatever
 // else is wrong with it is not told.
-std::vector<std::string> included_files(const std::string& path);
+std::vector<std::string> included_files(const std::string& path, const CompileFlags& flags = {});
 
 // Reads an .ipx; refused images are a Failure with the place of the damage.
 vm::Image load_image(const std::string& path);

@@ -229,7 +229,7 @@ class Server::Listener::Socket : public std::enable_shared_from_this<Socket> {
   void accept(const Request& request) {
     beast::get_lowest_layer(stream_).expires_never();
     stream_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
-    stream_.read_message_max(kMostBody);
+    stream_.read_message_max(kMostMessage);
     stream_.auto_fragment(false);
     stream_.async_accept(request, [self = shared_from_this()](Error error) {
       if (error) return self->gone();

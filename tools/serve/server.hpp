@@ -24,7 +24,8 @@ struct ServerOptions {
 inline constexpr size_t kMostClients = 8;
 inline constexpr size_t kMostConnections = 64;
 inline constexpr uint32_t kMostHeader = 8 * 1024;
-inline constexpr size_t kMostBody = 64 * 1024;
+inline constexpr size_t kMostBody = 64 * 1024;           // of a request by HTTP
+inline constexpr size_t kMostMessage = 128 * 1024;  // texts of the editor; the channel to the host holds it whole
 inline constexpr size_t kMostWaiting = 8 * 1024 * 1024;  // bytes for a client that does not read
 inline constexpr int kMostUnanswered = 32;  // messages of a client; the next is read when one was answered
 

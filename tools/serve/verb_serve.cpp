@@ -19,13 +19,14 @@
 #include "tools/links/link_options.hpp"
 #include "tools/processes/replaceable_process.hpp"
 #include "tools/serve/channel.hpp"
-#include "tools/serve/compiled_sources.hpp"
 #include "tools/serve/drive_host.hpp"
 #include "tools/serve/forked_copies.hpp"
 #include "tools/serve/host/plant_host.hpp"
 #include "tools/serve/kept.hpp"
+#include "tools/serve/language.hpp"
 #include "tools/serve/opened_page.hpp"
 #include "tools/serve/page.hpp"
+#include "tools/serve/plant_files.hpp"
 #include "tools/serve/plant_ports.hpp"
 #include "tools/serve/server.hpp"
 
@@ -79,6 +80,12 @@ void run(serve::PlantHost& host, serve::Mailbox& mailbox) {
   }
 }
 
+// Who is at another machine changes no files of this one unless that is wanted.
+std::string why_read_only(const ServeFlags& flags) {
+  if (flags.write || flags.bind.starts_with("127.") || flags.bind == "::1") return "";
+  return "this page can be reached from other machines: files are written with ipos serve --write only";
+}
+
 int run_host(const ServeFlags& flags, PlantInput input, const Pair& sockets) {
   close(sockets.server);
   std::signal(SIGINT, SIG_IGN);  // Ctrl-C goes to both; the server tells
@@ -89,9 +96,10 @@ int run_host(const ServeFlags& flags, PlantInput input, const Pair& sockets) {
   const serve::SteadyClock clock;
   serve::ForkedCopies copies(snapshots);
   serve::PlantPorts ports;
-  serve::CompiledSources sources;
+  serve::PlantFiles files(flags.file, flags.compile, why_read_only(flags));
+  serve::LanguageServer language(flags.compile);
   serve::PlantHost host([input = std::move(input)] { return make_plant(input, runtime::FileUse::Look); },
-                        title, IPOS_VERSION, {channel, clock, copies, ports, sources});
+                        title, IPOS_VERSION, {channel, clock, copies, ports, files, language});
   const serve::Kept kept = kept_of(flags);
   kept.add_commands(host.router());
   host.restore(kept.settings());
@@ -166,7 +174,7 @@ void add_serve(cli::Verb& app) {
               "in place of FILE: a real drive at can0, slcan:/dev/ttyACM0 or /dev/ttyUSB0");
   verb.option("--address", flags->address, "address of that drive, default 1")
       .check(check_address, "ADDRESS");
-  verb.flag("--write", flags->write, "let the page write to that drive; it asks once more");
+  verb.flag("--write", flags->write, "let the page write to that drive, which it asks once more, or files of the plant beyond loopback");
   add_link_options(verb, flags->device, false);
   verb.off("--no-snapshots", flags->snapshots, "go back in time by running again from the beginning");
   add_compile_options(verb, flags->compile);

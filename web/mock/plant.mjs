@@ -15,6 +15,7 @@ main()
 }
 `;
 
+const source_file = { name: "SAW.IPC", kind: "program", uri: "file:///SAW.IPC", read_only: "" };
 const stationNames = ["saw", "lift"];
 const variables = stationNames.flatMap((name) => [`${name}.lCount`, `${name}.lWrong`]);
 
@@ -221,7 +222,7 @@ const commands = {
     if (on) plant.faults.push({ kind, station });
     return { ok: true };
   },
-  search: (_plant, { text, station }) => {
+  search: (_plant, { text = "", station }) => {
     const names = variables.filter((name) => name.includes(text) && (!station || name.startsWith(`${station}.`)));
     return { ok: true, names: names.map(nameRow), total: names.length, groups: ["variables", "parameters"] };
   },
@@ -264,6 +265,9 @@ const commands = {
   settings: (plant) => ({ ok: true, settings: plant.settings }),
   "settings.set": (plant, { name, value }) => ((plant.settings[name] = value), { ok: true }),
   program: () => ({ ok: true, files: [{ name: "SAW.IPC", text: source, lines: [6, 8, 9, 10, 11] }], tasks: ["1"] }),
+  files: () => ({ ok: true, files: [source_file], build: { good: true, messages: [], waits: false } }),
+  "file.read": () => ({ ok: true, ...source_file, text: source, version: "1" }),
+  language: (_plant, { method }) => ({ ok: true, result: method === "diagnostics" ? {} : null }),
   "break.set": (plant, { station, file, line }) => {
     const breakpoint = { number: plant.breakpoints.length + 1, station, file, line, hits: 0 };
     plant.breakpoints.push(breakpoint);
@@ -304,6 +308,8 @@ const events = {
     ],
     buses: { sbus: { load: 12.5, frames: counted(plant) * 2, errors: 0, state: "" } },
   }),
+  files: () => ({ versions: { "SAW.IPC": "1" } }),
+  values: (plant, { station, names }) => ({ us: plant.us, station, values: Object.fromEntries(names.map((name) => [name, "5"])) }),
   program: (plant, { station }) => ({
     us: plant.us,
     station,

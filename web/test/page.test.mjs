@@ -185,7 +185,7 @@ test("a breakpoint is set and cleared at the edge of its line", { skip }, () =>
     assert.strictEqual(mock.plant.breakpoints[0].line, 9);
     await point.click();
     await until(async () => (await point.getAttribute("aria-pressed")) === "false", "not cleared");
-    assert.strictEqual(await page.locator(".line.missed").count(), 2);
+    assert.strictEqual(await page.locator(".editor .missed").count(), 2);
   }),
 );
 

@@ -1,12 +1,15 @@
-// What a host asks of the world around it beside messages and the time: real ports of the plant, and the texts of its
-// programs. As they stand here there is nothing: the plant is alone, and no text is known.
+// What a host asks of the world around it beside messages and the time: real ports of the plant, the files that belong to
+// it, and what a language server says of their texts. As they stand here there is nothing of it.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "runtime/plant/plant.hpp"
+#include "tools/cli/told.hpp"
+#include "tools/debugger/debugger.hpp"
 #include "tools/serve/host/arguments.hpp"
 #include "tools/serve/host/message.hpp"
 
@@ -39,13 +42,57 @@ class Ports {
   virtual Json states() const { return Json::array(); }
 };
 
-// Sources of the programs, as they were when they were compiled.
-class Sources {
+// By the name of a file.
+using Texts = std::map<std::string, std::string>;
+
+// The plant as its files are now: read, compiled and checked.
+struct Build {
+  bool good() const { return static_cast<bool>(make); }
+
+  debug::MakePlant make;  // empty: it has mistakes
+  std::vector<std::string> stations;               // their names
+  std::vector<std::optional<vm::Image>> programs;  // by station
+  Texts texts;                                     // that it was made of
+  std::vector<Told> messages;
+};
+
+// The files that belong to the open plant, by the names that the compiler and the readers know them by. As it stands here
+// there are none.
+class Files {
  public:
-  virtual ~Sources() = default;
+  enum class Kind : uint8_t { Plant, Program, Include, Test, Session };
+  struct Entry {
+    std::string name;
+    Kind kind = Kind::Program;
+    std::string uri{};        // as requests of the language server protocol have it
+    std::string read_only{};  // why it cannot be written; empty: it can
+  };
+
+  virtual ~Files() = default;
+  // The plant file, its programs and their local includes, its tests and sessions.
+  virtual std::vector<Entry> list() { return {}; }
+  // What was compiled at the start.
+  virtual std::optional<std::string> compiled(const std::string& /*file*/) { return std::nullopt; }
+  // What stands there now. Any file that was compiled can be read, and each of list().
   virtual std::optional<std::string> text(const std::string& /*file*/) { return std::nullopt; }
-  // The file is another one by now.
-  virtual bool has_changed(const std::string& /*file*/) { return false; }
+  // It is another one than this text by now.
+  virtual bool has_changed(const std::string& file, const std::string& since) { return text(file) != since; }
+  // Puts the text there, the old one or the new one at any moment: into one of list(), or into a new test or session beside
+  // the plant. Returns the name that it has in list(). A Mistake says why not.
+  virtual std::string write(const std::string& file, const std::string& /*text*/) {
+    throw Mistake("no files belong to this plant; '" + file + "' cannot be written");
+  }
+  // Reads and compiles everything again. Nothing that runs is touched.
+  virtual Build build() { throw Mistake("no files belong to this plant; it cannot be built"); }
+};
+
+// What editors ask a language server: completion, hover, messages.
+class Language {
+ public:
+  virtual ~Language() = default;
+  // Answers a request of the language server protocol. `texts` are those of the editor where they are not those of the
+  // files, by their URIs. `diagnostics` has no answer of its own in the protocol: it is the messages of all these texts.
+  virtual Json answer(const std::string& /*method*/, const Json& /*params*/, const Texts& /*texts*/) { return nullptr; }
 };
 
 }  // namespace ipos::tools::serve

@@ -42,10 +42,13 @@ PlantHost::PlantHost(debug::MakePlant make, std::string title, std::string versi
     : clock_(around.clock),
       copies_(around.copies),
       ports_(around.ports),
-      sources_(around.sources),
+      files_(around.files),
+      language_(around.language),
       router_(around.outbox, around.clock),
       title_(std::move(title)),
-      version_(std::move(version)) {
+      version_(std::move(version)),
+      texts_(around.files) {
+  add_action("load", [this](const Json& action) { load_program(Arguments(action)); });
   tabs_ = make_tabs(*this);
   debugger_.emplace(std::move(make), *this, copies_.snapshots(), runtime::kNever);
   router_.hello = [this] {
@@ -189,12 +192,88 @@ void PlantHost::carry_out() {
       now_.order = {};
       return finish(debugger_->run(now_.order));
     case MotionKind::Back: return finish(debugger_->go_back(now_.time));
-    case MotionKind::Restart:
-      for (const auto& tab : tabs_) tab->restarted();
-      debugger_->restart();
-      return finish({debug::Reason::Step, {}, {}, {}});
+    case MotionKind::Restart: return restart();
     default: return finish(debugger_->run(now_.order));
   }
+}
+
+// What a person forces stays so; what else was done to the plant is forgotten.
+void PlantHost::restart() {
+  std::vector<Json> forced;
+  for (const signals::Hold& hold : plant_->surroundings().holds().all())
+    if (hold.by == kPerson && hold.until == runtime::kNever)
+      forced.push_back({{"name", hold.signal.name}, {"value", hold.value}});
+  const RunningTexts before = texts_;
+  try {
+    debug::MakePlant next;
+    if (offered_) {
+      next = offered().make;
+      texts_.restarted(build_->texts);
+    }
+    for (const auto& tab : tabs_) tab->restarted();
+    debugger_->restart(std::move(next));
+  } catch (const std::runtime_error& mistake) {  // the old plant goes on
+    texts_ = before;
+    const Motion failed = std::exchange(now_, {});
+    new_generation();
+    router_.fail(failed.client, failed.id, mistake.what());
+    return tell_time();
+  }
+  build_.reset();
+  const bool rebuilt = std::exchange(offered_, std::nullopt).has_value();
+  for (Json& hold : forced) {
+    const std::string name = hold["name"];
+    try {
+      act("force", std::move(hold));
+    } catch (const std::runtime_error& mistake) {
+      output(fmt::format("{} is not forced any more: {}\n", name, mistake.what()));
+    }
+  }
+  finish({debug::Reason::Step, {}, {}, {}});
+  if (rebuilt) router_.send_all({{"event", "rebuilt"}});
+}
+
+// --- what was built ---
+
+namespace {
+
+std::string version_of(const Texts& texts) {
+  std::string all;
+  for (const auto& [file, text] : texts) all += fmt::format("{}:{}:", file, text.size()) + text;
+  return fmt::format("{:x}", std::hash<std::string>()(all));
+}
+
+}  // namespace
+
+void PlantHost::offer(Build build) {
+  offered_ = version_of(build.texts);
+  build_ = std::move(build);
+}
+
+// A copy that goes on from an earlier moment does not have it.
+const Build& PlantHost::offered() {
+  if (!offered_) throw Mistake("nothing was built since the plant began; save and build first");
+  if (!build_) {
+    Build again = files_.build();
+    if (!again.good() || version_of(again.texts) != *offered_) {
+      offered_.reset();
+      throw Mistake("the files have changed since they were built; build again");
+    }
+    build_ = std::move(again);
+  }
+  return *build_;
+}
+
+// `image` and `texts` are of the program, so that it is loaded again when its moment comes again, in whatever copy.
+void PlantHost::load_program(const Arguments& a) {
+  const uint32_t number = station_number(a.text("station"));
+  const auto& bytes = a.json()["image"].get_binary();
+  vm::ImageResult read = vm::read_image(bytes);
+  if (read.error != vm::ImageError::None) throw Mistake("the program is damaged");
+  if (const auto refused = plant_->stations()[number]->load_program(std::move(read.image))) throw Mistake(*refused);
+  texts_.loaded(number, a.json()["texts"].get<Texts>());
+  debugger_->program_changed(number);
+  for (const auto& tab : tabs_) tab->loaded(number);
 }
 
 void PlantHost::finish(const debug::Stop& stop) {
@@ -323,7 +402,7 @@ class PlantHost::ByTurns final : public SecondRun, private Outbox {
  public:
   explicit ByTurns(PlantHost& first)
       : first_(first),
-        second_(first.debugger_->maker(), first.title_, first.version_, {*this, first.clock_, copies_, ports_, first.sources_}),
+        second_(first.debugger_->maker(), first.title_, first.version_, {*this, first.clock_, copies_, ports_, first.files_, first.language_}),
         end_(first.plant_->now()) {
     ++first_.second_runs_;
     second_.debugger_->will_do_as(*first.debugger_);
@@ -378,7 +457,8 @@ Json PlantHost::save() {
   for (const auto& tab : tabs_) tabs.push_back(tab->save());
   return {{"router", router_.save()}, {"tabs", std::move(tabs)},   {"running", running_},
           {"speed", speed_},      {"generation", generation_}, {"now", now_},
-          {"next", next_}};
+          {"next", next_},
+          {"offered", offered_ ? Json(*offered_) : Json(nullptr)}};
 }
 
 void PlantHost::load(const Json& state) {
@@ -388,6 +468,9 @@ void PlantHost::load(const Json& state) {
   now_ = state["now"];
   next_ = state["next"];
   stopped_ = nullptr;
+  build_.reset();
+  offered_.reset();
+  if (!state["offered"].is_null()) offered_ = state["offered"].get<std::string>();
   router_.load(state["router"]);
   for (size_t n = 0; n < tabs_.size(); ++n) tabs_[n]->load(state["tabs"][n]);
   paced_ = false;
@@ -398,6 +481,7 @@ void PlantHost::output(const std::string& text) { router_.send_all({{"event", "o
 
 void PlantHost::built(runtime::Plant& plant) {
   plant_ = &plant;
+  texts_.begin_again();
   source_ = plant.next_source();
   plant.queue().schedule(kMillisecond, source_, *this, 0);
   acted_.clear();

@@ -16,6 +16,7 @@
 #include "tools/serve/host/copies.hpp"
 #include "tools/serve/host/outside.hpp"
 #include "tools/serve/host/router.hpp"
+#include "tools/serve/host/running_texts.hpp"
 
 namespace ipos::tools::serve {
 
@@ -25,6 +26,7 @@ class Tab {
   virtual ~Tab() = default;
   virtual void built(runtime::Plant& /*plant*/) {}
   virtual void restarted() {}  // by the user; it will be built next
+  virtual void loaded(uint32_t /*station*/) {}  // another program: its names and lines are others
   virtual void restore(const Json& /*settings*/) {}  // settings of an earlier start
   virtual void passed(runtime::Time /*now*/) {}
   virtual void executes(uint32_t /*station*/, uint32_t /*address*/) {}
@@ -44,7 +46,8 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
     const Clock& clock;
     Copies& copies;
     Ports& ports;
-    Sources& sources;
+    Files& files;
+    Language& language;
   };
   PlantHost(debug::MakePlant make, std::string title, std::string version, const Around& around);
   ~PlantHost() override;
@@ -72,7 +75,14 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
   // A line that goes on outside.
   bool has_port(const std::string& bus) const { return ports_.joined(bus); }
   Copies& copies() { return copies_; }
-  Sources& sources() { return sources_; }
+  Files& files() { return files_; }
+  Language& language() { return language_; }
+  const RunningTexts& texts() const { return texts_; }
+  // A plant that was built anew waits for a restart, and its programs for being loaded.
+  void offer(Build build);
+  bool offers() const { return offered_.has_value(); }
+  // What was offered; a Mistake when nothing was, or when it can no longer be had.
+  const Build& offered();
   // Something was done to this station that it sees with the next millisecond only; at 0 s that is all there is.
   bool sees_later(const std::string& station) const { return us() == 0 || acted_.contains(station); }
   // The plant stands before the next millisecond, unless it has real ports.
@@ -107,6 +117,8 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
   void go_on(Motion motion);
   void finish(const debug::Stop& stop);
   void new_generation();
+  void restart();
+  void load_program(const Arguments& a);
   void set_speed(double speed);
   Json reply_and_tell(const Router::Call& call);
   void tell_time();
@@ -132,12 +144,16 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
   const Clock& clock_;
   Copies& copies_;
   Ports& ports_;
-  Sources& sources_;
+  Files& files_;
+  Language& language_;
   Router router_;
   std::string title_;
   std::string version_;
   std::map<std::string, Action> actions_;
   std::set<std::string> acted_;  // stations, since the last millisecond
+  RunningTexts texts_;
+  std::optional<std::string> offered_;  // its version
+  std::optional<Build> build_;          // that one, where this process has it
   std::vector<std::unique_ptr<Tab>> tabs_;
   runtime::Plant* plant_ = nullptr;
   uint32_t source_ = 0;  // of the event that comes every millisecond, even with all units off

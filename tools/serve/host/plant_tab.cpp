@@ -184,9 +184,15 @@ class PlantTab final : public Tab {
             {"barriers", std::move(barriers)}};
   }
 
+  std::string text_of(const Station& station) const {
+    const vm::Image* image = station.image();
+    if (image == nullptr || image->files.empty()) return {};
+    return host_.texts().text(host_.station_number(station.config().name), image->files.front()).value_or("");
+  }
+
   Json describe(const Station& station) const {
     const runtime::StationConfig& config = station.config();
-    const UsedTerminals used(host_.plant().file(), config, host_.sources());
+    const UsedTerminals used(host_.plant().file(), config, text_of(station));
     Json analog = Json::array();
     for (const runtime::AnalogKind& kind : runtime::analog_kinds()) {
       if (!kind.is_of(*config.unit)) continue;

@@ -59,6 +59,10 @@ class PlantWatch final : public Tab, private WatchSource {
     known_.clear();
     tab_.forget();
   }
+  void loaded(uint32_t) override {
+    known_.clear();
+    tab_.forget();
+  }
   void load(const Json&) override { tab_.forget(); }
 
  private:

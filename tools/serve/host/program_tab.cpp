@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <set>
 
+#include "runtime/signals/find.hpp"
 #include "tools/serve/host/tabs.hpp"
 
 namespace ipos::tools::serve {
@@ -13,6 +14,8 @@ namespace {
 using debug::Breakpoint;
 
 constexpr size_t kMostBreakpoints = 256;
+constexpr uint32_t kNowhere = UINT32_MAX;  // of a breakpoint whose line has no command in this program
+constexpr size_t kMostValues = 200;
 
 class ProgramTab final : public Tab {
  public:
@@ -31,16 +34,27 @@ class ProgramTab final : public Tab {
     router.add_command("program.step", [this](const Router::Call& call) { return step(call); });
     router.add_topic("program",
                    [this](Client& client, Subscription& subscription) { publish(client, subscription); });
+    router.add_topic("values",
+                     [this](Client& client, Subscription& subscription) { publish_values(client, subscription); });
   }
 
-  void restarted() override { covered_.clear(); }
+  void restarted() override {
+    covered_.clear();
+    changed_.clear();
+  }
   // Going back builds the plant, too; what was executed stays covered then.
   void built(runtime::Plant& plant) override {
+    asked_.clear();
+    for (uint32_t n = 0; n < plant.stations().size() && !points_.empty(); ++n) place_points(n);
     if (!covered_.empty()) return;
-    covered_.assign(plant.stations().size(), {});
-    for (size_t n = 0; n < covered_.size(); ++n)
-      if (const vm::Image* image = plant.stations()[n]->image())
-        covered_[n].commands.assign(image->code.size(), false);
+    covered_.resize(plant.stations().size());
+    for (uint32_t n = 0; n < covered_.size(); ++n) begin_coverage(plant, n);
+  }
+
+  void loaded(uint32_t station) override {
+    asked_.clear();
+    place_points(station);
+    begin_coverage(host_.plant(), station);
   }
 
   void executes(uint32_t station, uint32_t address) override {
@@ -53,14 +67,57 @@ class ProgramTab final : public Tab {
   Json save() override {
     Json all = Json::array();
     for (const Covered& covered : covered_) all.push_back(covered.order);
-    return all;
+    Json points = Json::array(), texts = Json::array();
+    for (const auto& [number, point] : points_) {
+      const Json text = *point.text;
+      auto known = std::find(texts.begin(), texts.end(), text);
+      if (known == texts.end()) known = texts.insert(texts.end(), text);
+      points.push_back({number, point.file, point.line, known - texts.begin()});
+    }
+    return {{"covered", std::move(all)}, {"points", std::move(points)}, {"texts", std::move(texts)}};
   }
+  // This copy may be older than a program that was loaded: what was executed of that one does not count here.
   void load(const Json& state) override {
+    asked_.clear();
     for (uint32_t station = 0; station < covered_.size(); ++station)
-      for (const Json& address : state[station]) executes(station, address.get<uint32_t>());
+      for (const Json& address : state["covered"][station]) executes(station, address.get<uint32_t>());
+    std::vector<std::shared_ptr<const std::string>> texts;
+    for (const Json& text : state["texts"]) texts.push_back(std::make_shared<const std::string>(text.get<std::string>()));
+    points_.clear();
+    for (const Json& one : state["points"])
+      points_[one[0].get<int>()] = {one[1].get<std::string>(), one[2].get<uint32_t>(), texts.at(one[3].get<size_t>())};
+    for (uint32_t station = 0; station < covered_.size(); ++station) place_points(station);
   }
 
  private:
+  // Where a breakpoint was set, and in which text: in another one it stands at the line that is the same.
+  struct Point {
+    std::string file;
+    uint32_t line = 0;
+    std::shared_ptr<const std::string> text;
+  };
+
+  void begin_coverage(const runtime::Plant& plant, uint32_t station) {
+    covered_[station] = {};
+    if (const vm::Image* image = plant.stations()[station]->image())
+      covered_[station].commands.assign(image->code.size(), false);
+  }
+
+  void place_points(uint32_t station) {
+    const debug::CodeMap* const code = host_.debugger().code(station);
+    for (Breakpoint& breakpoint : host_.debugger().breakpoints()) {
+      const auto found = points_.find(breakpoint.id);
+      if (breakpoint.station != station || found == points_.end()) continue;
+      Point& point = found->second;
+      if (auto now = host_.texts().text(station, point.file); now && *now != *point.text) {
+        point.line = line_in(*point.text, *now, point.line);
+        point.text = std::make_shared<const std::string>(std::move(*now));
+      }
+      const auto address = code == nullptr ? std::nullopt : code->address_of(point.file, point.line);
+      breakpoint.address = address.value_or(kNowhere);
+    }
+  }
+
   struct Covered {
     std::vector<bool> commands;   // by address
     std::vector<uint32_t> order;  // in which they were executed first
@@ -82,7 +139,7 @@ class ProgramTab final : public Tab {
       std::set<uint32_t> lines;
       for (const vm::LineEntry& entry : image.lines)
         if (entry.file == n) lines.insert(entry.line);
-      const auto text = host_.sources().text(image.files[n]);
+      const auto text = host_.texts().text(station, image.files[n]);
       Json file{{"name", image.files[n]}, {"lines", lines}};
       file["text"] = text ? Json(*text) : Json(nullptr);
       files.push_back(std::move(file));
@@ -93,7 +150,11 @@ class ProgramTab final : public Tab {
   }
 
   Json json_of(const Breakpoint& point) const {
-    const debug::SourcePlace place = code_of(point.station).place(point.address);
+    debug::SourcePlace place;
+    if (const debug::CodeMap* const code = host_.debugger().code(point.station); code != nullptr && point.address != kNowhere)
+      place = code->place(point.address);
+    else if (const auto set = points_.find(point.id); set != points_.end())
+      place = {set->second.file, set->second.line, 0};
     return {
         {"number", point.id},           {"station", host_.plant().stations()[point.station]->config().name},
         {"file", place.file},           {"line", place.line},
@@ -126,6 +187,8 @@ class ProgramTab final : public Tab {
       return {{"breakpoint", json_of(*known)}};
     }
     all.push_back({host_.debugger().next_id(), station, *address, condition, "", "", false, true, 0});
+    if (auto text = host_.texts().text(station, file))
+      points_[all.back().id] = {file, line, std::make_shared<const std::string>(std::move(*text))};
     return {{"breakpoint", json_of(all.back())}};
   }
 
@@ -155,18 +218,41 @@ class ProgramTab final : public Tab {
 
   // Looked at once a second.
   Json changed_sources(uint32_t station) {
-    if (const auto now = host_.router().clock().now(); now >= looks_) {
-      looks_ = now + std::chrono::seconds(1);
-      changed_.clear();
-      for (const auto& one : host_.plant().stations())
-        if (one->image() != nullptr)
-          for (const std::string& file : one->image()->files)
-            if (host_.sources().has_changed(file)) changed_.insert(file);
+    Changed& changed = changed_[station];
+    if (const auto now = host_.router().clock().now(); now >= changed.due) {
+      changed.due = now + std::chrono::seconds(1);
+      changed.files = Json::array();
+      for (const std::string& file : host_.plant().stations()[station]->image()->files)
+        if (const auto text = host_.texts().text(station, file); text && host_.files().has_changed(file, *text))
+          changed.files.push_back(file);
     }
-    Json names = Json::array();
-    for (const std::string& file : host_.plant().stations()[station]->image()->files)
-      if (changed_.contains(file)) names.push_back(file);
-    return names;
+    return changed.files;
+  }
+
+  // What stands beside the lines: `names` of the station's program. Those that it does not have are left out.
+  void publish_values(Client& client, Subscription& subscription) {
+    const Arguments a(subscription.options);
+    std::string station;
+    auto [entry, is_new] = asked_.try_emplace(client.number);
+    std::vector<signals::Signal>& asked = entry->second;
+    try {
+      station = a.text("station");
+      if (is_new || subscription.fresh) {
+        asked.clear();
+        for (const std::string& name : a.texts("names", kMostValues))
+          if (auto found = signals::find_signals(host_.plant(), station + "." + name); found && found->size() == 1)
+            asked.push_back(std::move(found->front()));
+      }
+    } catch (const Mistake&) {  // it was subscribed without them
+      return;
+    }
+    Json values = Json::object();
+    for (const signals::Signal& signal : asked) {
+      const Json text = signal.text(signal.read());
+      if (subscription.is_news(signal.name, text)) values[std::string(signal.own_name())] = text;
+    }
+    if (values.empty() && !subscription.fresh) return;
+    host_.router().send(client, {{"event", "values"}, {"us", host_.us()}, {"station", station}, {"values", std::move(values)}});
   }
 
   void publish(Client& client, Subscription& subscription) {
@@ -216,8 +302,13 @@ class ProgramTab final : public Tab {
 
   PlantHost& host_;
   std::vector<Covered> covered_;  // by station
-  std::set<std::string> changed_;  // sources
-  WallClock::time_point looks_{};
+  std::map<int, Point> points_;   // by the number of the breakpoint
+  struct Changed {
+    Json files = Json::array();
+    WallClock::time_point due{};
+  };
+  std::map<uint32_t, Changed> changed_;  // by station
+  std::map<uint16_t, std::vector<signals::Signal>> asked_;  // by client
 };
 
 }  // namespace

@@ -74,14 +74,48 @@ void Scope::propose(std::vector<std::string> names) {
   names_ = std::move(names);
 }
 
+// Those that there still are: a plant or program that was built anew may have others.
+std::vector<std::string> Scope::known(std::vector<std::string> names) {
+  std::erase_if(names, [this](const std::string& name) {
+    try {
+      return source_.find_channels(name).empty();
+    } catch (const Mistake&) {
+      return true;
+    }
+  });
+  return names;
+}
+
+void Scope::find_trigger() {
+  try {
+    trigger_ = trigger_of(trigger_.settings);
+  } catch (const Mistake&) {
+    trigger_ = trigger_of({{"kind", "none"}});
+  }
+}
+
+void Scope::renamed() {
+  if (fills_) {
+    channels_ = find(names_);
+    return;
+  }
+  std::vector<std::string> names = known(names_);
+  choose(find(names));
+  channels_ = find(names_);
+  find_trigger();
+}
+
 void Scope::built() {
+  if (!fills_) {
+    names_ = known(names_);
+    find_trigger();
+  }
   channels_ = find(names_);
   if (fills_ != nullptr) {
     last_ = 0;
     return;
   }
   memory_.choose(std::vector<std::optional<size_t>>(channels_.size()), kinds_of(channels_));
-  if (trigger_.signal) trigger_.signal = find({trigger_.signal->name}).front();
   begin_again();
 }
 

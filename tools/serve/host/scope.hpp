@@ -45,8 +45,10 @@ class Scope final {
   void propose(std::vector<std::string> names);
   // The settings of an earlier start, as far as there still is what they name.
   void restore(const Json& settings);
-  // The signals are others: a new recording.
+  // The signals are others: a new recording. What the plant has no more is left out.
   void built();
+  // A program has other names by now: the recording goes on.
+  void renamed();
   void restarted() { armed_at_ = 0; }
   // This one runs again what was, and fills in what the first one does not know. The two may be one, in a copy of the process.
   void fill_for(Scope& first);
@@ -83,6 +85,8 @@ class Scope final {
   void set(const Arguments& settings);
   Trigger trigger_of(const Json& json);
   std::vector<signals::Signal> find(const std::vector<std::string>& names);
+  std::vector<std::string> known(std::vector<std::string> names);
+  void find_trigger();
   void choose(std::vector<signals::Signal> channels);
   void begin_again();
   void arm(bool single);

@@ -44,6 +44,7 @@ class ScopeTab final : public Tab,
 
   void runs_again(Tab& first) override { scope_.fill_for(static_cast<ScopeTab&>(first).scope_); }
   void restarted() override { scope_.restarted(); }
+  void loaded(uint32_t) override { scope_.renamed(); }
   void restore(const Json& settings) override { scope_.restore(settings.value("scope", Json())); }
   void tend() override { scope_.tend(); }
 

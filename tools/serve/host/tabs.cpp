@@ -11,6 +11,7 @@ std::vector<std::unique_ptr<Tab>> make_tabs(PlantHost& host) {
   tabs.push_back(make_parameter_tab(host));
   tabs.push_back(make_bus_tab(host));
   tabs.push_back(make_program_tab(host));
+  tabs.push_back(make_files_tab(host));
   tabs.push_back(make_journal_tab(host));
   return tabs;
 }

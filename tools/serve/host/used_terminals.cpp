@@ -4,16 +4,15 @@
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
 #include "runtime/drive/terminals.hpp"
 #include "runtime/plant_file/signal.hpp"
 
 namespace ipos::tools::serve {
 
-UsedTerminals::UsedTerminals(const runtime::PlantFile& file, const runtime::StationConfig& station, Sources& sources)
-    : file_(file), station_(station) {
-  if (!station.program.empty()) program_ = sources.text(station.program).value_or("");
-}
+UsedTerminals::UsedTerminals(const runtime::PlantFile& file, const runtime::StationConfig& station, std::string program)
+    : file_(file), station_(station), program_(std::move(program)) {}
 
 bool UsedTerminals::has(const runtime::BinaryTerminal& terminal, int32_t function) const {
   return terminal.parameter.empty() || function != static_cast<int32_t>(runtime::InputFunction::None) ||

@@ -5,13 +5,13 @@
 #include <string>
 
 #include "runtime/plant/plant.hpp"
-#include "tools/serve/host/outside.hpp"
 
 namespace ipos::tools::serve {
 
 class UsedTerminals {
  public:
-  UsedTerminals(const runtime::PlantFile& file, const runtime::StationConfig& station, Sources& sources);
+  // `program`: its text, as it runs.
+  UsedTerminals(const runtime::PlantFile& file, const runtime::StationConfig& station, std::string program);
   bool has(const runtime::BinaryTerminal& terminal, int32_t function) const;
 
  private:

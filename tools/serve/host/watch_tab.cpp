@@ -43,13 +43,18 @@ const std::vector<Signal>& WatchTab::watched(const Client& client) {
   const auto found = watched_.find(client.number);
   if (found != watched_.end()) return found->second;
   std::vector<Signal>& all = watched_[client.number];
-  for (const std::string& name : client.watched)
-    std::ranges::move(source_.find(name), std::back_inserter(all));
+  for (const std::string& name : client.watched) {
+    try {
+      std::ranges::move(source_.find(name), std::back_inserter(all));
+    } catch (const Mistake&) {  // the plant was built anew and has it no more
+    }
+  }
   return all;
 }
 
 void WatchTab::publish(Client& client, Subscription& subscription) {
   const std::vector<Signal>& all = watched(client);
+  if (all.empty() && !client.watched.empty()) return;
   const size_t at_once = source_.answers_at_once() ? all.size() : std::min(kReadsAtOnce, all.size());
   Json values = Json::object();
   for (size_t n = 0; n < at_once && !source_.others_wait(); ++n) {

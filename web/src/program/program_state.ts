@@ -13,14 +13,13 @@ export const tasks = signal<TaskState[]>([]);
 export const covered = signal<ReadonlyMap<string, ReadonlySet<number>>>(new Map());
 export const breakpoints = signal<Breakpoint[]>([]);
 export const chosenTask = signal(1);
-// Files that are no longer what was compiled.
-export const changed = signal<string[]>([]);
 
 async function read(name: string): Promise<void> {
   const parts = await requestParts({ do: "program", station: name });
   if (name !== station.peek()) return;
   files.value = parts.flatMap((part) => (part.files ?? []) as SourceFile[]);
-  if (!files.value.some((file) => file.name === openFile.peek())) openFile.value = files.value[0]?.name ?? "";
+  if (!openFile.peek() || (!files.value.some((file) => file.name === openFile.peek()) && !openFile.peek().endsWith(".toml")))
+    openFile.value = files.value[0]?.name ?? "";
 }
 
 function addCovered(event: Record<string, number[]>): void {
@@ -29,15 +28,17 @@ function addCovered(event: Record<string, number[]>): void {
   covered.value = next;
 }
 
+let followed = "";
+
 function follow(name: string): () => void {
-  files.value = [];
+  if (followed !== name) files.value = [];
+  followed = name;
   tasks.value = [];
   covered.value = new Map();
   if (!name) return () => undefined;
   void read(name).catch(complain);
   return subscribe("program", { station: name, rate: 10 }, (event) => {
     if (event.station !== name) return;
-    if (event.changed) changed.value = event.changed as string[];
     if (event.tasks) tasks.value = event.tasks as TaskState[];
     if (event.covered) addCovered(event.covered as Record<string, number[]>);
     if (event.breakpoints) breakpoints.value = event.breakpoints as Breakpoint[];

@@ -34,16 +34,22 @@ export function stationNames(): string[] {
   return plant.value?.stations.filter((station) => !isGateway(station)).map((station) => station.name) ?? [];
 }
 
+function askForPlant(): void {
+  request({ do: "plant" })
+    .then((reply) => (plant.value = reply.plant as Plant))
+    .catch(() => (plant.value = { stations: [], buses: [], controls: [], wires: [], switches: [] }));
+}
+
 export function listenToServer(): void {
   listen("hello", (event) => {
     hello.value = event as unknown as Hello;
     ports.value = [];
     manual.value = standing;
     document.title = `${hello.value.title} · ipos`;
-    request({ do: "plant" })
-      .then((reply) => (plant.value = reply.plant as Plant))
-      .catch(() => (plant.value = { stations: [], buses: [], controls: [], wires: [], switches: [] }));
+    askForPlant();
   });
+  // A plant that was built anew may have other stations.
+  listen("rebuilt", askForPlant);
   listen("ports", (event) => {
     ports.value = event.ports as PortState[];
   });

@@ -302,7 +302,7 @@ export interface TraceFrame extends FrameAddresses {
 
 export interface SourceFile {
   name: string;
-  text: string;
+  text: string | null; // as it was compiled; null: nobody knows it
   lines: number[];
 }
 
