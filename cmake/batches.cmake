@@ -1,4 +1,4 @@
-# ipos_batches(TARGET [SIZE n] [HOT source...]): in the optimised build of g++ and in builds with sanitizers several sources
+# ipos_batches(TARGET [SIZE n] [HOT source...]): in the optimised builds of g++ and emscripten and in builds with sanitizers several sources
 # of a library or a test are compiled in one go, n at most. Most of the time of a small source goes into the headers, which
 # a batch reads once. Names of anonymous namespaces differ in a batch. HOT sources are what every millisecond and every
 # frame goes through: each is compiled by itself, so that its neighbours do not change what is inlined into it.
@@ -12,7 +12,7 @@ function(ipos_batches target)
   if(NOT BATCH_SIZE)
     set(BATCH_SIZE 10)
   endif()
-  if(IPOS_SANITIZE OR (CMAKE_BUILD_TYPE STREQUAL Release AND CMAKE_CXX_COMPILER_ID STREQUAL GNU))
+  if(IPOS_SANITIZE OR (CMAKE_BUILD_TYPE STREQUAL Release AND (CMAKE_CXX_COMPILER_ID STREQUAL GNU OR EMSCRIPTEN)))
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${BATCH_SIZE})
     set_source_files_properties(${BATCH_HOT} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:Clang>:-Wno-shadow>)
@@ -27,6 +27,8 @@ function(ipos_not_hot target)
   ipos_batches(${target} ${COLD_UNPARSED_ARGUMENTS})
   if(IPOS_SANITIZE AND IPOS_TESTS AND NOT COLD_BUSY)
     target_compile_options(${target} PRIVATE -O0)
+  elseif(EMSCRIPTEN)  # small, as it has to be sent
+    target_compile_options(${target} PRIVATE -Os)
   elseif(NOT IPOS_SANITIZE)
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()

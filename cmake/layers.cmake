@@ -51,6 +51,9 @@ if(IPOS_COVERAGE)
 endif()
 
 function(ipos_for_shared_libraries target)
+  if(EMSCRIPTEN)  # which has none
+    return()
+  endif()
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-fvisibility=hidden>)
 endfunction()

@@ -19,6 +19,9 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LES
   target_compile_options(ipos_plant_functions PRIVATE -Wno-maybe-uninitialized)
 endif()
 
+if(EMSCRIPTEN)  # which has no shared libraries
+  return()
+endif()
 set(exports ${CMAKE_CURRENT_LIST_DIR}/library/exports.map)
 add_library(ipos_plant SHARED $<TARGET_OBJECTS:ipos_plant_functions>)
 target_link_libraries(ipos_plant PRIVATE $<BUILD_INTERFACE:ipos_options> $<BUILD_INTERFACE:ipos::library>)

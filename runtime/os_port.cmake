@@ -1,4 +1,4 @@
-# Real ports, and real time. The rest of the runtime does not know them. Windows has serial devices only.
+# Real ports, and real time. The rest of the runtime does not know them. Windows has serial devices only, a browser none.
 set(ports os_port/port_error.cpp os_port/port_notes.cpp os_port/can_port.cpp os_port/can_error_frame.cpp
           os_port/slcan_text.cpp os_port/slcan_client.cpp os_port/serial_port.cpp os_port/can_bridge.cpp
           os_port/returning_port.cpp
@@ -11,6 +11,8 @@ if(CMAKE_SYSTEM_NAME STREQUAL Linux)
 elseif(WIN32)
   list(APPEND ports os_port/windows/clock.cpp os_port/windows/port_names.cpp os_port/windows/tty.cpp os_port/windows/absent_ports.cpp)
   set(system_libraries winmm)
+elseif(EMSCRIPTEN)
+  list(APPEND ports os_port/web/clock.cpp os_port/port_names.cpp os_port/web/absent_ports.cpp)
 endif()
 ipos_layer(os_port FOLDERS runtime/os_port SOURCES ${ports} USES clock bus_can bus_rs485 bus_movilink bus_profibus LIBS fmt::fmt ${system_libraries})
 ipos_not_hot(ipos_os_port)

@@ -142,8 +142,8 @@ class EventQueue {
     uint32_t last_source = 0;
 
     bool empty() const { return begin == end; }
-    Waiting& at(uint64_t number) { return ring[number & mask]; }
-    const Waiting& at(uint64_t number) const { return ring[number & mask]; }
+    Waiting& at(uint64_t number) { return ring[static_cast<size_t>(number & mask)]; }
+    const Waiting& at(uint64_t number) const { return ring[static_cast<size_t>(number & mask)]; }
     const Waiting& front() const { return at(begin); }
     bool takes(Time time, uint32_t source, Time now) const {
       return time - now <= reach && end - begin <= mask &&

@@ -79,13 +79,13 @@ void ProfibusControl::tell(Time now, size_t slave, unsigned bits) {
 
 void ProfibusControl::on_event(Time, uint32_t kind, uint64_t argument) {
   if (static_cast<Due>(kind) == Due::Output) {
-    const ProfibusOutput& output = settings_.outputs[argument];
+    const ProfibusOutput& output = settings_.outputs[static_cast<size_t>(argument)];
     profibus::Octets& octets = outputs_[output.slave];
     std::copy(output.octets.begin(), output.octets.end(),
               octets.begin() + static_cast<std::ptrdiff_t>(output.first));
     return master_.slave(output.slave).set_outputs(octets);
   }
-  const ProfibusOrder& order = settings_.orders[argument];
+  const ProfibusOrder& order = settings_.orders[static_cast<size_t>(argument)];
   switch (order.kind) {
     case ProfibusOrder::Kind::Control: return master_.control(order.command);
     case ProfibusOrder::Kind::Start: return master_.start();

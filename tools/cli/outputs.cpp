@@ -85,7 +85,7 @@ void remove_left_overs(const fs::path& folder, const std::string& name) {
     int64_t process = 0;
     const char* const behind = file.data() + file.size();
     const auto read = std::from_chars(file.data() + begin.size(), behind, process);
-    const bool ours = read.ec == std::errc() && std::string_view(read.ptr, behind).starts_with('.');
+    const bool ours = read.ec == std::errc() && read.ptr != behind && *read.ptr == '.';
     if (ours && !is_written(at->path().string(), process))
       unlink(at->path().c_str());
   }

@@ -74,10 +74,10 @@ void PcapngWriter::packet(runtime::Time time, const std::string& bus, LinkType l
 uint32_t PcapngWriter::interface_of(const std::string& bus, LinkType link) {
   const auto found = std::find(interfaces_.begin(), interfaces_.end(), std::pair(bus, link));
   if (found != interfaces_.end()) return static_cast<uint32_t>(found - interfaces_.begin());
-  constexpr char kNanoseconds = 9;
+  constexpr char kNanosecond = 9;
   block(pcapng::kInterface, number(static_cast<uint16_t>(link)) + number(uint16_t{0}) + number(uint32_t{0}) +
                                 option(pcapng::kName, bus) +
-                                option(pcapng::kResolution, std::string(1, kNanoseconds)) + end_of_options());
+                                option(pcapng::kResolution, std::string(1, kNanosecond)) + end_of_options());
   interfaces_.emplace_back(bus, link);
   return static_cast<uint32_t>(interfaces_.size() - 1);
 }

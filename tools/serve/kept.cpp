@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "tools/serve/host/settings.hpp"
 #include "tools/serve/server.hpp"
 #include "tools/serve/state_folder.hpp"
 
 namespace ipos::tools::serve {
 namespace {
-
-constexpr size_t kMostSettings = 256 * 1024;  // bytes of all of them (ours)
 
 bool is_token(const std::string& text) {
   return text.size() == 32 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
@@ -64,32 +63,13 @@ Json Kept::settings() const {
   return all.contains("settings") && all["settings"].is_object() ? all["settings"] : Json::object();
 }
 
-void Kept::set(const std::string& name, const Json& value) const {
-  Json all = read();
-  if (!all.contains("settings") || !all["settings"].is_object()) all["settings"] = Json::object();
-  if (all["settings"].contains(name) && all["settings"][name] == value) return;
-  all["settings"][name] = value;
-  if (all["settings"].dump(-1, ' ', false, Json::error_handler_t::replace).size() > kMostSettings)
-    throw Mistake("there is no room for more settings");
-  if (!write(all)) throw Mistake("the settings cannot be kept: the state folder cannot be written");
-}
-
 void Kept::add_commands(Router& router) const {
-  router.add_command("settings", [kept = *this](const Router::Call&) {
-    const Json all = kept.read();
-    return Json{{"settings", all.value("settings", Json::object())}};
-  });
-  router.add_command("settings.set", [kept = *this](const Router::Call& call) {
-    if (!call.arguments.has("value")) throw Mistake("'value' is missing");
-    kept.set(call.arguments.text("name"), call.arguments.json()["value"]);
-    return Json::object();
-  });
-  router.keep = [kept = *this](const std::string& name, const Json& value) {
-    try {
-      kept.set(name, value);
-    } catch (const Mistake&) {  // it is done all the same, and only forgotten at the next start
-    }
-  };
+  add_settings(router, {[kept = *this] { return kept.settings(); },
+                        [kept = *this](const Json& settings) {
+                          Json all = kept.read();
+                          all["settings"] = settings;
+                          return kept.write(all);
+                        }});
 }
 
 }  // namespace ipos::tools::serve

@@ -20,7 +20,7 @@ class Kept {
   std::string token() const;
   std::optional<uint16_t> port() const;
   void keep_port(uint16_t port) const;
-  // The commands `settings` and `settings.set`, and Router::keep. Each reads and writes the file: another server may have the
+  // Those of host/settings.hpp. Each reads and writes the file: another server may have the
   // same plant.
   void add_commands(Router& router) const;
   Json settings() const;  // by name
@@ -29,7 +29,6 @@ class Kept {
   explicit Kept(std::string of);
   Json read() const;
   bool write(const Json& kept) const;
-  void set(const std::string& name, const Json& value) const;  // a Mistake says why not
 
   std::string name_;  // of the file
 };

@@ -50,7 +50,7 @@ Changes::Files Changes::look(const std::string& folder, bool with_all_below) {
   Files files;
   for (const std::string& path : files_of(folder, with_all_below)) {
     std::error_code error;  // it may just have been removed
-    const int64_t time = fs::last_write_time(path, error).time_since_epoch().count();
+    const auto time = static_cast<int64_t>(fs::last_write_time(path, error).time_since_epoch().count());
     if (matters(path)) files.emplace(path, Stamp(time, fs::file_size(path, error)));
   }
   return files;

@@ -157,9 +157,9 @@ void CanLine::on_event(Time now, uint32_t kind, uint64_t argument) {
   switch (kind) {
     case line_event::kStart: return begin_and_end(static_cast<uint32_t>(argument), true);
     case line_event::kEnd: return begin_and_end(static_cast<uint32_t>(argument), false);
-    case line_event::kFaultBegins: return switch_fault(now, argument, true);
-    case line_event::kFaultEnds: return switch_fault(now, argument, false);
-    case line_event::kLate: return deliver_late(now, argument);
+    case line_event::kFaultBegins: return switch_fault(now, static_cast<size_t>(argument), true);
+    case line_event::kFaultEnds: return switch_fault(now, static_cast<size_t>(argument), false);
+    case line_event::kLate: return deliver_late(now, static_cast<size_t>(argument));
     default: return finish_recovery(now, static_cast<NodeId>(argument));
   }
 }

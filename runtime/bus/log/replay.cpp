@@ -29,8 +29,9 @@ void Replay::schedule(size_t entry) {
 }
 
 void Replay::on_event(Time /*now*/, uint32_t /*kind*/, uint64_t argument) {
-  if (sender_->send(entries_[argument].frame, 0) != SendStatus::Queued) ++refused_;
-  if (argument + 1 < entries_.size()) schedule(argument + 1);
+  const auto entry = static_cast<size_t>(argument);
+  if (sender_->send(entries_[entry].frame, 0) != SendStatus::Queued) ++refused_;
+  if (entry + 1 < entries_.size()) schedule(entry + 1);
 }
 
 void Replay::on_not_sent(Time, const Frame&, uint64_t, NotSent reason) {

@@ -48,8 +48,8 @@ void SbusControl::on_event(Time now, uint32_t kind, uint64_t argument) {
       queue_.schedule(now + settings_.cycle, source_, *this, kSyncOutput);
       break;
     default:
-      send_output(argument);
-      queue_.schedule(now + settings_.targets[argument].every, source_, *this, kOutput, argument);
+      send_output(static_cast<size_t>(argument));
+      queue_.schedule(now + settings_.targets[static_cast<size_t>(argument)].every, source_, *this, kOutput, argument);
   }
 }
 

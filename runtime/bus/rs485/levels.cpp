@@ -36,7 +36,7 @@ bool level_at(std::span<const Transmission> line, const Ear& ear, Tick tick) {
   for (const Transmission& transmission : line) {
     if (!transmission.covers(tick)) continue;
     if (transmission.sender == ear.deaf_to && ear.deaf_to != kNoNode) return true;
-    level = level && transmission.bits[(tick - transmission.begin) / transmission.bit_ticks];
+    level = level && transmission.bits[static_cast<size_t>((tick - transmission.begin) / transmission.bit_ticks)];
   }
   return level;
 }

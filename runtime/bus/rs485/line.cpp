@@ -81,7 +81,7 @@ void Rs485Line::shorten(NodeId node, Tick end) {
   Transmission* transmission = sending(node);
   if (transmission == nullptr) return;
   const Tick bits = (std::max(end, transmission->begin) - transmission->begin) / transmission->bit_ticks;
-  transmission->bits.resize(std::min<size_t>(bits, transmission->bits.size()));
+  transmission->bits.resize(static_cast<size_t>(std::min<Tick>(bits, transmission->bits.size())));
   queue_.cancel(std::exchange(nodes_[node].sent, kNoEvent));
   end_transmission(*transmission);
   look_again();
@@ -114,7 +114,7 @@ Tick Rs485Line::last_end() const {
 
 // Finds the next start bit among what is on the wire already. A start bit in the future may still be
 // overtaken by an earlier one of another station: look_again().
-void Rs485Line::look_for_start(uint64_t number, Tick until) {
+void Rs485Line::look_for_start(size_t number, Tick until) {
   Receiver& r = receiver(number);
   queue_.cancel(std::exchange(r.event, kNoEvent));
   r.start = listens(number) ? next_start(transmissions_, r.ear, r.from, until) : std::nullopt;
@@ -125,7 +125,7 @@ void Rs485Line::look_for_start(uint64_t number, Tick until) {
 void Rs485Line::look_again() {
   const Tick until = last_end();
   const Tick now = tick_from(queue_.now());
-  const auto look = [&](uint64_t number) {
+  const auto look = [&](size_t number) {
     Receiver& r = receiver(number);
     if (r.start && *r.start < now) return;  // in the middle of a character
     if (!r.start) r.from = std::max(r.from, now);
@@ -135,7 +135,7 @@ void Rs485Line::look_again() {
   look(kObservers);
 }
 
-void Rs485Line::end_character(uint64_t number) {
+void Rs485Line::end_character(size_t number) {
   Receiver& r = receiver(number);
   const Tick start = *r.start;
   const Reading reading = read_character(transmissions_, r.ear, start);
@@ -169,8 +169,8 @@ std::vector<Character> Rs485Line::upcoming(NodeId node) const {
 }
 
 void Rs485Line::on_event(Time now, uint32_t kind, uint64_t argument) {
-  if (kind == kCharacter) return end_character(argument);
-  Node& node = nodes_[argument];
+  if (kind == kCharacter) return end_character(static_cast<size_t>(argument));
+  Node& node = nodes_[static_cast<size_t>(argument)];
   end_transmission(*sending(static_cast<NodeId>(argument)));
   node.sent = kNoEvent;
   node.node->on_sent(now);

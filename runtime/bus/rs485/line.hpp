@@ -66,12 +66,12 @@ class Rs485Line final : private EventTarget {
   };
 
   void on_event(Time now, uint32_t kind, uint64_t argument) override;
-  Receiver& receiver(uint64_t number) { return number == kObservers ? observer_ear_ : nodes_[number]; }
-  bool listens(uint64_t number) const { return number == kObservers || nodes_[number].connected; }
-  void look_for_start(uint64_t number, Tick until);
+  Receiver& receiver(size_t number) { return number == kObservers ? observer_ear_ : nodes_[number]; }
+  bool listens(size_t number) const { return number == kObservers || nodes_[number].connected; }
+  void look_for_start(size_t number, Tick until);
   void look_again();
   void restart_receiver(NodeId node);
-  void end_character(uint64_t number);
+  void end_character(size_t number);
   void end_transmission(Transmission& transmission);
   Transmission* sending(NodeId node);
   void shorten(NodeId node, Tick end);
@@ -80,7 +80,7 @@ class Rs485Line final : private EventTarget {
   void report(const SerialEvent& event, SerialObserver* only = nullptr);
   void report_absence(NodeId node, SerialObserver* only);
 
-  static constexpr uint64_t kObservers = ~uint64_t{0};  // number of the observers' receiver
+  static constexpr size_t kObservers = ~size_t{0};  // number of the observers' receiver
 
   EventQueue& queue_;
   uint32_t source_;

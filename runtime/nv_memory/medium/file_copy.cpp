@@ -16,14 +16,15 @@ class CopyMedium final : public NvMedium {
   explicit CopyMedium(std::vector<uint8_t> bytes) : bytes_(std::move(bytes)) {}
 
   tl::expected<size_t, std::string> read(uint64_t offset, std::span<uint8_t> out) override {
-    const size_t first = std::min<size_t>(offset, bytes_.size());
+    const auto first = static_cast<size_t>(std::min<uint64_t>(offset, bytes_.size()));
     const size_t count = std::min(out.size(), bytes_.size() - first);
     std::copy_n(bytes_.begin() + static_cast<ptrdiff_t>(first), count, out.begin());
     return count;
   }
   std::optional<std::string> write(uint64_t offset, std::span<const uint8_t> bytes) override {
-    if (bytes_.size() < offset + bytes.size()) bytes_.resize(offset + bytes.size());
-    std::copy(bytes.begin(), bytes.end(), bytes_.begin() + static_cast<ptrdiff_t>(offset));
+    const auto first = static_cast<size_t>(offset);
+    if (bytes_.size() < first + bytes.size()) bytes_.resize(first + bytes.size());
+    std::copy(bytes.begin(), bytes.end(), bytes_.begin() + static_cast<ptrdiff_t>(first));
     return std::nullopt;
   }
   std::optional<std::string> sync() override { return std::nullopt; }

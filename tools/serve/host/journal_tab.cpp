@@ -23,7 +23,7 @@ class JournalTab final : public Tab {
       if (!subscription.fresh && subscription.mark >= entries.size()) return;
       Json list = Json::array();
       for (; subscription.mark < entries.size() && list.size() < kAtOnce; ++subscription.mark) {
-        const runtime::JournalEntry& entry = entries[subscription.mark];
+        const runtime::JournalEntry& entry = entries[static_cast<size_t>(subscription.mark)];
         list.push_back({{"n", subscription.mark + 1},
                         {"us", entry.time / runtime::kMicrosecond},
                         {"station", entry.station},

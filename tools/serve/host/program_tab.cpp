@@ -288,7 +288,7 @@ class ProgramTab final : public Tab {
     if (!other_tasks && !other_points && !other_sources && subscription.mark == covered.order.size()) return;
     std::map<std::string, std::set<uint32_t>> lines;
     for (; subscription.mark < covered.order.size(); ++subscription.mark) {
-      const debug::SourcePlace place = debugger.code(number)->place(covered.order[subscription.mark]);
+      const debug::SourcePlace place = debugger.code(number)->place(covered.order[static_cast<size_t>(subscription.mark)]);
       if (place.line != 0) lines[place.file].insert(place.line);
     }
     host_.router().send(client, {{"event", "program"},

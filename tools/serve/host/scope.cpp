@@ -424,7 +424,7 @@ std::string Scope::points(uint64_t begin, uint64_t end, uint64_t step, uint32_t 
   const uint64_t count = (end - begin + step - 1) / step;
   const bool pairs = step > 1;
   std::string bytes;
-  bytes.reserve(32 + count * channels_.size() * (pairs ? 2 : 1) * (exact ? sizeof(double) : sizeof(float)));
+  bytes.reserve(32 + static_cast<size_t>(count) * channels_.size() * (pairs ? 2 : 1) * (exact ? sizeof(double) : sizeof(float)));
   const auto put = [&bytes](const auto& value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
   };
@@ -480,7 +480,7 @@ Json Scope::csv(const Router::Call& call) {
       part.times.push_back(us_of(n) * runtime::kMicrosecond);
       for (size_t channel = 0; channel < channels_.size(); ++channel)
         if (const auto sample = memory_.at(channel, n); sample && sample != std::exchange(last[channel], sample))
-          part.changes.push_back({n - begin, channel, *sample});
+          part.changes.push_back({static_cast<size_t>(n - begin), channel, *sample});
     }
     writer->take(part);
     std::string text = std::exchange(out, std::ostringstream()).str();

@@ -34,15 +34,17 @@ uint64_t& TraceMemory::begin_of(size_t line, uint64_t n) const {
 
 void TraceMemory::copy_in(size_t line, uint64_t at, const void* from, size_t size) const {
   auto* const ring = at_byte<char>(lines_.size() * (sizeof(Shared) + kKept * sizeof(uint64_t)) + line * room_);
-  const size_t first = std::min<size_t>(size, room_ - at % room_);
-  std::memcpy(ring + at % room_, from, first);
+  const auto begin = static_cast<size_t>(at % room_);
+  const size_t first = std::min(size, room_ - begin);
+  std::memcpy(ring + begin, from, first);
   std::memcpy(ring, static_cast<const char*>(from) + first, size - first);
 }
 void TraceMemory::copy_out(size_t line, uint64_t at, void* to, size_t size) const {
   const auto* const ring =
       at_byte<char>(lines_.size() * (sizeof(Shared) + kKept * sizeof(uint64_t)) + line * room_);
-  const size_t first = std::min<size_t>(size, room_ - at % room_);
-  std::memcpy(to, ring + at % room_, first);
+  const auto begin = static_cast<size_t>(at % room_);
+  const size_t first = std::min(size, room_ - begin);
+  std::memcpy(to, ring + begin, first);
   std::memcpy(static_cast<char*>(to) + first, ring, size - first);
 }
 

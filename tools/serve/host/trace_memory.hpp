@@ -20,8 +20,8 @@ struct NumberedTelegram {
 
 class TraceMemory {
  public:
-  static constexpr uint64_t kKept = 100'000;          // telegrams a line, at most
-  static constexpr uint64_t kBytes = uint64_t{24} << 20U;  // of all lines together (ours)
+  static constexpr size_t kKept = 100'000;          // telegrams a line, at most
+  static constexpr size_t kBytes = size_t{24} << 20U;  // of all lines together (ours)
 
   explicit TraceMemory(Copies& copies) : copies_(copies) {}
 
@@ -58,7 +58,7 @@ class TraceMemory {
   Copies& copies_;
   Memory memory_;
   std::vector<Line> lines_;
-  uint64_t room_ = 0;  // bytes of a line
+  size_t room_ = 0;  // bytes of a line
 };
 
 }  // namespace ipos::tools::serve
