@@ -1,5 +1,6 @@
-// Bundles the page into one HTML document without any other request, dist/index.html, and the page of a plot with the
-// picture alone, dist/plot.html, which `ipos run --plot` fills with a recording.
+// Bundles the page into one HTML document without any other request, dist/index.html; the worker that it has where no server
+// is, dist/index.worker.js; and the page of a plot with the picture alone, dist/plot.html, which `ipos run --plot` fills with a
+// recording.
 //   node build.mjs [FILE [PLOT]]     writes them somewhere else, for the test that compares
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
@@ -40,3 +41,4 @@ write(output, "page.html", { style, script });
 write(plot, "picture/plot.html", {
   script: await bundle("picture/plot_page.ts", { format: "iife", loader: { ".css": "text" } }),
 });
+writeFileSync(output.replace(/\.html$/, ".worker.js"), (await bundle("alone/worker.ts", { format: "iife" })) + "\n");

@@ -28,8 +28,9 @@ TEST_F(Page, HasTypesThatHold) {
 TEST_F(Page, IsTheBundleOfItsSources) {
   const ScriptResult result = shell(package().folder, "node build.mjs built.html");
   ASSERT_EQ(result.exit_code, 0) << result.output;
-  EXPECT_TRUE(read_text(package().folder / "built.html") == read_text(project("web/dist/index.html")))
-      << "web/dist/index.html is not made of web/src: run `npm ci && npm run build` in web";
+  for (const std::string file : {".html", ".worker.js"})
+    EXPECT_TRUE(read_text(package().folder / ("built" + file)) == read_text(project("web/dist/index" + file)))
+        << "web/dist/index" << file << " is not made of web/src: run `npm ci && npm run build` in web";
   EXPECT_TRUE(read_text(package().folder / "plot.html") == read_text(project("web/dist/plot.html"))) << "web/dist/plot.html, too";
 }
 

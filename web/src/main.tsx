@@ -1,7 +1,9 @@
-// The page of ipos serve: seven views of a plant over one WebSocket.
+// The page: seven views of a plant that `ipos serve` has, or a worker of the page itself.
 import { render } from "preact";
 import { useEffect } from "preact/hooks";
 
+import { standsAlone } from "./alone/packed";
+import { inBrowser, offerToPrograms } from "./alone/start";
 import { Bus } from "./bus/bus_tab";
 import { Journal } from "./journal/journal_tab";
 import { Parameters } from "./parameters/parameters_tab";
@@ -10,6 +12,7 @@ import { Program } from "./program/program_tab";
 import { Scope } from "./scope/scope_tab";
 import { connect } from "./server/connection";
 import { listenToServer } from "./server/live";
+import { overSocket } from "./server/socket";
 import { activeView, close, nextPane, offerViews, open, openDesk, paneOf, scrollPage, type View } from "./shell/desk";
 import { Help, helpOpen } from "./shell/help";
 import { listenToKeys, offerKeys } from "./shell/keys";
@@ -81,5 +84,6 @@ offerViews(views.map((view) => view.name));
 followSettings();
 offerTimeKeys();
 offerPageKeys();
-connect();
+offerToPrograms();
+connect(standsAlone ? inBrowser : overSocket);
 render(<Page />, document.getElementById("page") as HTMLElement);

@@ -1,7 +1,8 @@
-// The one WebSocket of the page: commands with their replies, topics that are asked for again when the server comes
-// back, binary frames by the request that wanted them.
+// The page's connection to its host: commands with their replies, topics that are asked for again when the host comes
+// back, binary frames by the request that wanted them. Who carries them is given to connect().
 import { signal } from "@preact/signals";
 
+import type { Carrier, Carry } from "./carrier";
 import { united, type Wish } from "./wishes";
 
 export type Message = Record<string, unknown>;
@@ -25,11 +26,7 @@ interface Waiting {
 
 export const link = signal<Link>("connecting");
 
-const first_pause_ms = 300;
-const longest_pause_ms = 3000;
-
-let socket: WebSocket | undefined;
-let pause_ms = first_pause_ms;
+let carrier: Carrier | undefined;
 let next_id = 1;
 const waiting = new Map<number, Waiting>();
 const views = new Map<number, (frame: DataView) => void>();
@@ -44,12 +41,12 @@ export function listen(event: string, take: (event: Message) => void): void {
 function transmit(command: Message): Promise<Message[]> {
   const id = next_id++;
   return new Promise((done, failed) => {
-    if (socket?.readyState !== WebSocket.OPEN) {
+    if (!carrier?.isOpen()) {
       failed(new Refusal("The server is not there.", false));
       return;
     }
     waiting.set(id, { parts: [], done, failed });
-    socket.send(JSON.stringify({ id, ...command }));
+    carrier.send(JSON.stringify({ id, ...command }));
   });
 }
 
@@ -129,28 +126,20 @@ function takeFrame(frame: DataView): void {
   done?.(frame);
 }
 
-export function connect(): void {
-  const address = new URL("/ws", location.href);
-  address.protocol = location.protocol === "https:" ? "wss:" : "ws:";
-  address.search = location.search;
-  socket = new WebSocket(address);
-  socket.binaryType = "arraybuffer";
-  socket.onopen = () => {
-    pause_ms = first_pause_ms;
-    link.value = "open";
-    for (const [name, wishes] of topics) ask(name, wishes);
-  };
-  socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => {
-    if (typeof event.data === "string") take(JSON.parse(event.data) as Message);
-    else takeFrame(new DataView(event.data));
-  };
-  socket.onclose = () => {
-    link.value = "lost";
-    const failed = [...waiting.values()];
-    waiting.clear();
-    views.clear();
-    for (const one of failed) one.failed(new Refusal("The server went away before it answered.", false));
-    setTimeout(connect, pause_ms);
-    pause_ms = Math.min(pause_ms * 2, longest_pause_ms);
-  };
+export function connect(carry: Carry): void {
+  carrier = carry({
+    opened: () => {
+      link.value = "open";
+      for (const [name, wishes] of topics) ask(name, wishes);
+    },
+    text: (text) => take(JSON.parse(text) as Message),
+    frame: takeFrame,
+    lost: () => {
+      link.value = "lost";
+      const failed = [...waiting.values()];
+      waiting.clear();
+      views.clear();
+      for (const one of failed) one.failed(new Refusal("The server went away before it answered.", false));
+    },
+  });
 }

@@ -1,4 +1,6 @@
 // The head of the page: whose plant it is, its time, and the buttons that let time pass.
+import { FilesBar } from "../alone/files_bar";
+import { standsAlone } from "../alone/packed";
 import { request } from "../server/connection";
 import { hello, secondsText, time } from "../server/live";
 import { helpOpen } from "./help";
@@ -106,6 +108,7 @@ function TimeControls() {
       </select>
       <WriteArm />
       {live && <span class="quiet">real ports: in step with the clock</span>}
+      {standsAlone && <FilesBar />}
       <button class="keys" aria-label="Keys" title="Keys (?)" onClick={() => (helpOpen.value = true)}>
         ?
       </button>
