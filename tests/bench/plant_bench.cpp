@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <new>
 #include <string>
@@ -139,29 +141,43 @@ const Kind kKinds[] = {{"busy", {kTasks, kTurning}, "P130 = 500\nP160 = 1000000\
                        {"travel", {kTasks, kTravelling}, "P700 = 13\nP911 = 300\nP912 = 300\n" ENABLED},
                        {"idle", {kIdle}, ""}};
 
-std::unique_ptr<runtime::Plant> make(const Kind& kind, int drives, bool bus,
-                                     const runtime::Execution& execution) {
+// Plant file and programs, that of unit N as PN.IPC.
+struct Project {
   std::string text = "[[bus]]\nname = \"sbus\"\nkind = \"can\"\nbaud = 1000000\n";
-  std::vector<std::optional<vm::Image>> programs;
+  std::vector<std::string> sources{};
+};
+
+Project project_of(const Kind& kind, int drives, bool bus) {
+  Project project;
   for (int n = 0; n < drives; ++n) {
-    text += fmt::format(
-        "[[station]]\nname = \"unit{0}\"\nunit = \"mdxb\"\nprogram = \"P.IPC\"\nsbus = \"sbus\"\n"
+    project.text += fmt::format(
+        "[[station]]\nname = \"unit{0}\"\nunit = \"mdxb\"\nprogram = \"P{0}.IPC\"\nsbus = \"sbus\"\n"
         "[station.parameters]\nP881 = {0}\nP884 = 3\n{1}",
         n, kind.settings);
     std::string program = bus ? fmt::format(fmt::runtime(kObjects), 1100 + n, 1100 + (n + 1) % drives)
                               : "long lWork; long lTrLow; long lTrHigh; long lReLow; long lReHigh; long "
                                 "lSteps; long lState;\nObjects() {}\n#include <const.h>\n";
     for (const char* part : kind.program) program += part;
+    project.sources.push_back(std::move(program));
+  }
+  return project;
+}
+
+std::unique_ptr<runtime::Plant> make(const Kind& kind, int drives, bool bus,
+                                     const runtime::Execution& execution) {
+  const Project project = project_of(kind, drives, bus);
+  std::vector<std::optional<vm::Image>> programs;
+  for (const std::string& source : project.sources) {
     compiler::CompileOptions options;
     options.unit = stdlib::find_unit("mdxb");
-    const auto made = compiler::compile("P.IPC", "", program, options);
+    const auto made = compiler::compile("P.IPC", "", source, options);
     if (!made.image) {
       fmt::print(stderr, "{}", compiler::render_text(made.diagnostics.all(), *made.sources, false));
       std::exit(1);
     }
     programs.push_back(made.image);
   }
-  runtime::PlantFileResult file = runtime::read_plant_file(text);
+  runtime::PlantFileResult file = runtime::read_plant_file(project.text);
   for (const auto& error : file.errors) fmt::print(stderr, "{}: {}\n", error.place.line, error.text);
   std::vector<runtime::PlantError> errors;
   auto plant = std::make_unique<runtime::Plant>(std::move(file.plant), std::move(programs), std::nullopt,
@@ -169,6 +185,14 @@ std::unique_ptr<runtime::Plant> make(const Kind& kind, int drives, bool bus,
   for (const auto& error : errors) fmt::print(stderr, "{}: {}\n", error.place.line, error.text);
   if (!errors.empty()) std::exit(1);
   return plant;
+}
+
+// As files, for `ipos run`.
+void write(const std::filesystem::path& folder, const Project& project) {
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "plant.toml") << project.text;
+  for (size_t n = 0; n < project.sources.size(); ++n)
+    std::ofstream(folder / fmt::format("P{}.IPC", n)) << project.sources[n];
 }
 
 struct Frames final : runtime::CanObserver {
@@ -222,8 +246,14 @@ void measure(const Kind& kind, int drives, bool bus, int seconds, const std::str
 }  // namespace ipos
 
 // ipos_bench_plant [SECONDS [DRIVES busy|travel|idle [ENGINE|in-turn]]]
+// ipos_bench_plant write FOLDER     the plants of 64 drives as files, a folder each
 int main(int argc, char** argv) {
   using ipos::kKinds;
+  if (argc == 3 && std::string_view(argv[1]) == "write") {
+    for (const ipos::Kind& kind : kKinds)
+      ipos::write(std::filesystem::path(argv[2]) / kind.name, ipos::project_of(kind, 64, true));
+    return 0;
+  }
   const int seconds = argc > 1 ? std::atoi(argv[1]) : 10;
   if (argc > 3) {
     for (const ipos::Kind& kind : kKinds)

@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
 # What takes too long for every test run: all sources compiled by clang and all suites with AddressSanitizer and UBSan,
 # every preset configured, a short run of every fuzz target, what has threads with ThreadSanitizer, the examples under
-# valgrind, thousands of plants in the default way against --no-skip, the tutorial in an empty Debian, and 500 releases of a
-# button that moves a real drive, on a machine that has more to do than it can. Prints the time of each part; goes on after a
-# failure.
+# valgrind, thousands of plants in the default way against --no-skip, ipos in WebAssembly against the native program, the
+# tutorial in an empty Debian, and 500 releases of a button that moves a real drive, on a machine that has more to do than it
+# can. Prints the time of each part; goes on after a failure.
 #   tests/check/check.sh              all parts
-#   tests/check/check.sh PART...      of: asan presets fuzz tsan valgrind skip tutorial jog
+#   tests/check/check.sh PART...      of: asan presets fuzz tsan valgrind skip web tutorial jog
 set -uo pipefail
 cd "$(dirname "$0")/../.." || exit
 jobs=$(nproc)
-parts='asan presets fuzz tsan valgrind skip tutorial jog'
+parts='asan presets fuzz tsan valgrind skip web tutorial jog'
 # shellcheck disable=SC2086
 [ $# -gt 0 ] || set -- $parts
 
@@ -95,6 +95,12 @@ skip() { # each processor has its share of the 5000
   done
   for run in "${runs[@]}"; do wait "$run" || status=1; done
   return $status
+}
+
+web() { # one build of it, and all that shows that it does what the native program does
+  cmake --preset web >/dev/null && cmake --build --preset web -j "$jobs" --target ipos_site || return 1
+  configure release && cmake --build --preset release --target ipos ipos_web_wasm_tests ipos_random_plants || return 1
+  build/release/tests/web-wasm/ipos_web_wasm_tests
 }
 
 tutorial() {

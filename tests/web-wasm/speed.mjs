@@ -1,0 +1,65 @@
+// How long the programs of tests/bench and the plants of 64 drives take in WebAssembly and natively: the same command line in
+// turn, the best of several rounds each. Prints a table.
+//   node speed.mjs IPOS WASM_FOLDER PROJECT PLANTS [ROUNDS]      PLANTS has busy and travel, of ipos_bench_plants
+import { spawnSync } from "node:child_process";
+import { readFileSync, readdirSync } from "node:fs";
+import { createRequire } from "node:module";
+import { cpus } from "node:os";
+import { join } from "node:path";
+
+import { filesOf } from "./cases.mjs";
+import "./instance.js";
+
+const [program, wasm_folder, project, plants, rounds = "5"] = process.argv.slice(2);
+const ipos = createRequire(import.meta.url)(join(wasm_folder, "ipos.js"));
+const wasm = await WebAssembly.compile(readFileSync(join(wasm_folder, "ipos.wasm")));
+
+// `small` is what start, reading and compiling take, which is taken off.
+const cases = [
+  ...readdirSync(join(project, "tests/bench/programs"))
+    .filter((name) => name.endsWith(".IPC"))
+    .map((name) => ({
+      name: name.slice(0, -4),
+      folder: join(project, "tests/bench/programs"),
+      words: ["run", name, "--unit", "mdxb", "--speed", "1000000", "--engine", "fast"],
+      long: ["--until", "end"],
+      small: ["--for", "0ms"],
+    })),
+  ...["busy", "travel"].map((name) => ({
+    name: `64 drives, ${name}`,
+    folder: join(plants, name),
+    words: ["run", "plant.toml", "--engine", "fast"],
+    long: ["--for", "2s"],
+    small: ["--for", "0ms"],
+  })),
+];
+
+async function inWasm({ folder }, files, words) {
+  const { code, ms, err } = await globalThis.runVerb(ipos, wasm, { folder, files, words });
+  if (code !== 0) throw new Error(`${words.join(" ")}: ${err}`);
+  return ms;
+}
+
+function natively({ folder }, words) {
+  const began = performance.now();
+  const { status, stderr } = spawnSync(program, words, { cwd: folder, encoding: "utf8" });
+  if (status !== 0) throw new Error(`${words.join(" ")}: ${stderr}`);
+  return performance.now() - began;
+}
+
+console.log(`${cpus()[0]?.model}, node ${process.version}, best of ${rounds}`);
+console.log("| program | native, ms | WebAssembly, ms | ratio |\n| --- | --- | --- | --- |");
+for (const one of cases) {
+  const files = filesOf(one.folder);
+  const best = { native: Infinity, wasm: Infinity, native_small: Infinity, wasm_small: Infinity };
+  const take = (name, ms) => (best[name] = Math.min(best[name], ms));
+  for (let round = 0; round < Number(rounds); ++round) {
+    take("native", natively(one, [...one.words, ...one.long]));
+    take("wasm", await inWasm(one, files, [...one.words, ...one.long]));
+    take("native_small", natively(one, [...one.words, ...one.small]));
+    take("wasm_small", await inWasm(one, files, [...one.words, ...one.small]));
+  }
+  const native = best.native - best.native_small;
+  const in_wasm = best.wasm - best.wasm_small;
+  console.log(`| ${one.name} | ${native.toFixed(0)} | ${in_wasm.toFixed(0)} | ${(in_wasm / native).toFixed(2)} |`);
+}

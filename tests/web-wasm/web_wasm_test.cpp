@@ -1,0 +1,77 @@
+// ipos in WebAssembly does what the native program does: every example, 300 random plants and the programs of tests/language,
+// in node and in Debian's Chromium. And the page without a server, which opens from a file. Skipped with the reason where
+// ./dev web has not been run on this commit: building it takes longer than all suites together.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/editor/npm_package.hpp"
+#include "tests/tools/command.hpp"
+
+namespace ipos::tests {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path built() { return project("build/web"); }
+
+// What --version names of both.
+std::string commit_of(const std::string& program) {
+  const std::string text = shell(".", program + " --version").output;
+  const size_t at = text.find("(commit");
+  return at == std::string::npos ? text : text.substr(at);
+}
+
+class InWebAssembly : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!fs::exists(built() / "tools/ipos.wasm"))
+      GTEST_SKIP() << "build/web is not there: ./dev web makes it, ./dev check web makes it and compares";
+    if (!package().missing.empty()) GTEST_SKIP() << package().missing;
+    ASSERT_EQ(package().broken, "");
+    const std::string in_wasm =
+        commit_of("node " + project("tests/web-wasm/verb.mjs").string() + " " + (built() / "tools").string());
+    if (in_wasm != commit_of(IPOS_PROGRAM)) GTEST_SKIP() << "build/web is of another commit: " << in_wasm;
+  }
+  static const Package& package() {
+    static const Package made = install_package("web", IPOS_PACKAGES_DIR);
+    return made;
+  }
+  // Both compare the same cases.
+  static void expect_equal(const std::string& where) {
+    const fs::path plants = fs::path(IPOS_PACKAGES_DIR) / "plants";
+    fs::remove_all(plants);
+    ASSERT_EQ(shell(".", IPOS_RANDOM_PLANTS " " + plants.string() + " 300").exit_code, 0);
+    const ScriptResult result =
+        shell(package().folder, "node " + project("tests/web-wasm/equal.mjs").string() + " " IPOS_PROGRAM " " +
+                                    (built() / "tools").string() + " " + project(".").lexically_normal().string() + " " + plants.string() + " " + where);
+    EXPECT_EQ(result.exit_code, 0) << result.output;
+    std::puts(result.output.c_str());
+    // None was left out.
+    for (const char* const group : {"examples: ", "plants: 300 cases", "language: "})
+      EXPECT_NE(result.output.find(group), std::string::npos) << group;
+  }
+};
+
+TEST_F(InWebAssembly, RunsAsNativelyInNode) { expect_equal("node"); }
+
+class InChromium : public InWebAssembly {
+ protected:
+  void SetUp() override {
+    InWebAssembly::SetUp();
+    if (IsSkipped() || HasFatalFailure()) return;
+    if (!fs::exists("/usr/bin/chromium")) GTEST_SKIP() << "/usr/bin/chromium is not installed";
+  }
+};
+
+TEST_F(InChromium, RunsAsNatively) { expect_equal("chromium"); }
+
+TEST_F(InChromium, OpensFromAFileWithoutANetwork) {
+  const ScriptResult result =
+      shell(package().folder, "IPOS_PROGRAM='" IPOS_PROGRAM "' IPOS_EXAMPLES='" + project("examples").string() + "' IPOS_WEB='" +
+                                  built().string() + "' node --test --test-reporter=tap test/alone.test.mjs");
+  expect_node_passed(result, 6);
+}
+
+}  // namespace
+}  // namespace ipos::tests
