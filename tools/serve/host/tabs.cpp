@@ -13,6 +13,7 @@ std::vector<std::unique_ptr<Tab>> make_tabs(PlantHost& host) {
   tabs.push_back(make_program_tab(host));
   tabs.push_back(make_files_tab(host));
   tabs.push_back(make_journal_tab(host));
+  tabs.push_back(make_hash_tab(host));
   return tabs;
 }
 

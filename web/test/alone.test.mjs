@@ -1,0 +1,133 @@
+// The page without a server: ipos.html from a file and with the network off, its files, its links, and the site.
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import { readFileSync } from "node:fs";
+import { createServer } from "node:http";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { pathToFileURL } from "node:url";
+
+import { launch, missing } from "./browser.mjs";
+import { examples, program } from "./serve.mjs";
+
+const built = process.env.IPOS_WEB;
+const options = { skip: missing ?? (built ? false : "IPOS_WEB names no folder with ipos.html"), timeout: 120_000 };
+const most_bytes = 2_500_000;
+
+let browser;
+before(async () => {
+  if (!options.skip) browser = await launch();
+});
+after(() => browser?.close());
+
+async function opened(address, context) {
+  context ??= await browser.newContext({ viewport: { width: 1280, height: 800 }, offline: true, acceptDownloads: true });
+  const page = await context.newPage();
+  const told = { errors: [], requests: [] };
+  page.on("pageerror", (error) => told.errors.push(String(error)));
+  page.on("console", (message) => message.type() === "error" && told.errors.push(message.text()));
+  page.on("request", (request) => told.requests.push(request.url()));
+  await page.goto(address);
+  return { page, told, context };
+}
+
+const address = () => pathToFileURL(join(built, "ipos.html")).href;
+const moves = (page) =>
+  page.waitForFunction(() => {
+    const text = document.querySelector("[role=timer]")?.textContent ?? "0.000 s";
+    return text !== "0.000 s";
+  });
+const microseconds = async (page) => Math.round(parseFloat(await page.getByRole("timer", { name: "Time" }).textContent()) * 1e6);
+
+function nativeHash(us, plant = join(examples, "hoist/hoist.toml")) {
+  const { stderr } = spawnSync(program, ["run", plant, "--for", `${us}us`, "--trace-hash"], { encoding: "utf8" });
+  return /trace hash ([0-9a-f]{16})/.exec(stderr)?.[1];
+}
+
+test("the file is small enough, opens without any request, and the hoist moves", options, async () => {
+  assert.ok(readFileSync(join(built, "ipos.html")).length <= most_bytes);
+  const { page, told, context } = await opened(address());
+  await moves(page);
+  assert.match(await page.title(), /hoist\.toml/);
+  assert.deepEqual(
+    told.requests.filter((url) => !url.startsWith("blob:")),
+    [address()],
+  );
+  assert.deepEqual(told.errors, []);
+  await context.close();
+});
+
+test("its hash is that of the native program at the same time", options, async () => {
+  const { page, context } = await opened(address());
+  await moves(page);
+  await page.getByRole("button", { name: "Pause", exact: true }).click();
+  await page.waitForFunction(() => document.querySelector(".pace")?.textContent === "stands");
+  const us = await microseconds(page);
+  assert.equal(await page.evaluate(() => window.ipos.hash()), nativeHash(us));
+  assert.match(await page.evaluate(() => window.ipos.version), /^\d+\.\d+\.\d+/);
+  await context.close();
+});
+
+test("tests of the open plant run, and an archive of its files can be opened again", options, async () => {
+  const { page, told, context } = await opened(address());
+  await moves(page);
+  await page.getByRole("button", { name: "Files" }).click();
+  await page.getByRole("button", { name: "Test all" }).click();
+  await page.getByRole("status", { name: "Test report" }).filter({ hasText: "1 test, 1 passed" }).waitFor();
+  const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "Save archive" }).click()]);
+  assert.equal(download.suggestedFilename(), "hoist.zip");
+  const archive = await download.path();
+  const listed = spawnSync("python3", ["-m", "zipfile", "-l", archive], { encoding: "utf8" }).stdout;
+  for (const name of ["HOIST.IPC", "hoist.toml", "hoist.test.toml"]) assert.ok(listed.includes(name), listed);
+  await page.getByLabel("Open archive").setInputFiles({ name: "again.zip", mimeType: "application/zip", buffer: readFileSync(archive) });
+  await page.getByRole("dialog", { name: "Files" }).waitFor({ state: "hidden" });
+  await page.getByRole("button", { name: "Files" }).click();
+  await page.getByRole("button", { name: "again/hoist.toml" }).waitFor();
+  assert.deepEqual(told.errors, []);
+  await context.close();
+});
+
+test("files and settings are there after a reload", options, async () => {
+  const { page, context } = await opened(address());
+  await moves(page);
+  await page.getByRole("button", { name: "Files" }).click();
+  await page.getByRole("button", { name: "hoist/hoist.toml" }).waitFor();
+  await page.waitForTimeout(1500); // until they are stored
+  await page.reload();
+  await page.waitForFunction(() => document.title.includes("hoist.toml"));
+  await page.getByRole("button", { name: "Files" }).click();
+  assert.equal(await page.getByRole("list", { name: "Plants" }).getByRole("listitem").count(), 1);
+  await context.close();
+});
+
+test("a link has the plant in its fragment and runs in a fresh profile", options, async () => {
+  const first = await opened(address());
+  await moves(first.page);
+  await first.page.getByRole("button", { name: "Share" }).click();
+  const link = await first.page.getByRole("textbox", { name: "Link" }).inputValue();
+  assert.ok(link.startsWith(`${address()}#`) && link.length < 8192, `${link.length}`);
+  await first.context.close();
+  const { page, told, context } = await opened(link);
+  await moves(page);
+  assert.match(await page.title(), /hoist\.toml/);
+  assert.deepEqual(told.errors, []);
+  await context.close();
+});
+
+test("the site has ipos.wasm beside the page and asks for nothing else", options, async () => {
+  const types = { "index.html": "text/html", "ipos.wasm": "application/wasm" };
+  const server = createServer((request, answer) => {
+    const name = request.url === "/" ? "index.html" : request.url.slice(1);
+    if (!(name in types)) return answer.writeHead(404).end();
+    answer.writeHead(200, { "content-type": types[name] }).end(readFileSync(join(built, "site", name)));
+  });
+  await new Promise((done) => server.listen(0, "127.0.0.1", done));
+  const place = `http://127.0.0.1:${server.address().port}/`;
+  const context = await browser.newContext();
+  const { page, told } = await opened(place, context);
+  await moves(page);
+  assert.deepEqual(told.requests.filter((url) => !url.startsWith("blob:")), [place, `${place}ipos.wasm`]);
+  assert.deepEqual(told.errors, []);
+  await context.close();
+  server.close();
+});
