@@ -34,7 +34,7 @@ class ScopeOfPlant : public Serving {
     more.update({{"do", "scope.picture"}, {"form", form}, {"title", "t"}});
     good(more);
     std::string text;
-    for (const Json& part : page.parts) text += part["text"].get<std::string>();
+    for (const Json& part : page.parts) text += part.value("text", "");
     return text;
   }
   // What `ipos run --plot` records of the same plant.

@@ -63,7 +63,10 @@ Scope::Scope(Router& router, ScopeSource& source, Copies& copies)
     return describe();
   });
   router.add_command("scope.view", [this](const Router::Call& call) { return view(call); });
-  router.add_command("scope.csv", [this](const Router::Call& call) { return csv(call); });
+  for (const auto& [name, answer] : {std::pair{"scope.csv", &Scope::csv}, {"scope.picture", &Scope::picture}})
+    router.add_command(name, [this, name = name, answer = answer](const Router::Call& call) {
+      return when_complete(call, name, answer);
+    });
   router.add_topic("scope",
                  [this](Client& client, Subscription& subscription) { publish(client, subscription); });
 }
