@@ -160,6 +160,34 @@ TEST_F(Debugging, WhatTheUserWritesIsWrittenAgainWhenItsMomentComesAgain) {
   EXPECT_EQ(value("lSum"), 0);
 }
 
+TEST_F(Debugging, AVisitLosesNothingAndRunningOnDropsWhatCameLater) {
+  const auto run_to = [this](int ms) {
+    Order order = debugger_.order_for(Motion::ToTime, kTask);
+    order.time = ms * kMillisecond;
+    debugger_.run(order);
+  };
+  run_to(100);
+  debugger_.write(evaluate_place(debugger_.plant(), 0, "lWrong"), 1000);
+  run_to(200);
+  const int32_t sum = value("lSum");
+  debugger_.visit(50 * kMillisecond);
+  EXPECT_EQ(debugger_.position().time, 50 * kMillisecond);
+  EXPECT_NE(value("lWrong"), 1000);
+  EXPECT_LT(value("lSum"), sum);
+  EXPECT_EQ(debugger_.furthest().time, 200 * kMillisecond);
+  go(Motion::Instruction, true);  // a step back is a look, too
+  debugger_.visit(200 * kMillisecond);
+  EXPECT_EQ(value("lWrong"), 1000);
+  EXPECT_EQ(value("lSum"), sum);
+  debugger_.visit(0);
+  EXPECT_EQ(value("lSum"), 0);
+  run_to(60);
+  EXPECT_EQ(debugger_.furthest().time, 60 * kMillisecond);
+  run_to(200);
+  EXPECT_NE(value("lWrong"), 1000);
+  EXPECT_EQ(value("lSum"), sum);
+}
+
 TEST_F(Debugging, TheBeginningIsAStop) {
   go(Motion::Over);
   EXPECT_EQ(go(Motion::Continue, true).reason, Reason::Beginning);

@@ -123,6 +123,18 @@ class Client:
         self.socket.close()
 
 
+def processes_with(word):
+    """Numbers of the processes that have the word in their command."""
+    found = []
+    for line in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
+        try:
+            if word.encode() in line.read_bytes():
+                found.append(int(line.parent.name))
+        except OSError:
+            pass
+    return found
+
+
 class Serving(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
@@ -282,6 +294,58 @@ class Serving(unittest.TestCase):
         self.assertEqual(client.ask(do="back", us=3_000_000)["us"], 3_000_000)
         client.ask(do="subscribe", topic="watch")
         self.assertEqual(client.wait_for("watch")["values"]["saw.lCount"]["value"], first)
+
+    def test_every_moment_is_the_same_by_snapshots(self):
+        """Back and on at random: what is watched, recorded and heard, and the scope's trigger, are those of the first time."""
+        client = self.connect()
+        client.ask(do="scope", channels=["saw.lCount"])
+        client.ask(do="scope.arm", single=False)
+        client.ask(do="watch", names=["saw.lCount", "saw.H300", "saw.DI02"])
+        client.ask(do="subscribe", topic="watch")
+
+        def seen():
+            client.ask(do="subscribe", topic="watch")
+            values = client.wait_for("watch")["values"]
+            rows = client.ask(do="scope.csv")["csv"]
+            frames = client.ask(do="bus.trace", limit=1000)["frames"]
+            scope = client.ask(do="scope")
+            return ({name: value["value"] for name, value in values.items()}, hash(rows), frames, scope["trigger_us"])
+
+        moments = {}
+        for n in range(12):
+            if n == 3:
+                client.ask(do="input", station="saw", name="DI02", action="set", on=True)
+            if n == 5:
+                client.ask(do="bus.send", bus="sbus", identifier=523, data="0102")
+                client.ask(do="set", name="saw.H300", value="5")
+            if n == 7:
+                client.ask(do="scope.trigger")
+            moments[n * 300] = seen()
+            client.ask(do="step", ms=300)
+            time.sleep(0.06)  # snapshots are a twentieth of a second of the clock apart
+        draw = random.Random(7)
+        for _ in range(40):
+            ms = draw.choice(list(moments))
+            self.assertEqual(client.ask(do="go", us=ms * 1000)["us"], ms * 1000)
+            self.assertEqual(seen(), moments[ms], ms)
+        # A dragged slider: many orders, the last one counts.
+        for n in range(200):
+            client.id += 1
+            client.send(json.dumps({"id": client.id, "do": "go", "us": draw.randrange(3600) * 1000}).encode())
+        self.assertEqual(client.ask(do="go", us=1_800_000)["us"], 1_800_000)
+        self.assertEqual(seen()[:3], moments[1800][:3])
+        client.ask(do="step", ms=1)
+        self.assertIn("error", client.ask(do="go", us=3_000_000))
+        self.assertEqual(client.ask(do="go", us=900_000)["us"], 900_000)
+        client.ask(do="step", ms=1500)
+        values = seen()[0]
+        self.assertEqual((values["saw.DI02"], values["saw.H300"]), (1, 0))  # of the clicks only that before 1.8 s stays
+        self.ipos.send_signal(signal.SIGINT)
+        self.ipos.wait(PATIENCE)
+        end = time.monotonic() + PATIENCE
+        while processes_with(self.folder.name) and time.monotonic() < end:
+            time.sleep(0.1)
+        self.assertEqual(processes_with(self.folder.name), [], "copies are left behind")
 
     def test_it_runs_in_step_with_the_clock(self):
         client = self.connect()

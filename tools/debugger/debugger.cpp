@@ -17,6 +17,10 @@ constexpr Time kSnapshotTime = 250 * runtime::kMillisecond;
 constexpr uint64_t kAtOnce = 1'000'000;
 constexpr const char* kBeginning = "this is the beginning of the run";
 
+bool is_far(const Position& from, const Position& to) {
+  return to.commands - from.commands >= kSnapshotCommands || to.time - from.time >= kSnapshotTime;
+}
+
 }  // namespace
 
 Debugger::Debugger(Debuggee what, FrontEnd& front_end, std::unique_ptr<Snapshots> snapshots, Time limit)
@@ -67,6 +71,7 @@ Stop Debugger::run(const Order& order) {
   goal_ = {};
   goal_.order = order;
   start_ = position_;
+  if (!order.backward) drop_later();
   prime();
   if (snapshots_ && snapshots_->count() == 0 && position_ == Position{} && snapshot()) return go();
   if (order.backward) {
@@ -78,18 +83,30 @@ Stop Debugger::run(const Order& order) {
   return go();
 }
 
-Stop Debugger::go_back(Time time) {
+Stop Debugger::visit(Time time) {
+  const Stop there{Reason::Step, {}, {}, {}};
+  if (position_.time == time && position_.phase == Phase::Between) return there;
   goal_ = {};
-  goal_.kind = Goal::Kind::Replay;
-  goal_.end = start_ = position_;
+  goal_.kind = Goal::Kind::Visit;
   goal_.order.motion = Motion::ToTime;
   goal_.order.time = time;
-  goal_.stop = {Reason::Step, {}, {}, {}};
-  if (const Position* snapshot = snapshots_ ? snapshots_->before(time) : nullptr)
+  goal_.stop = there;
+  start_ = position_;
+  const bool back = position_.time > time;
+  const Position* snapshot = snapshots_ ? snapshots_->before(time) : nullptr;
+  if (snapshot != nullptr && (back || (*snapshot > position_ && is_far(position_, *snapshot))))
     snapshots_->go_on_from(*snapshot, save());
-  build();
+  if (back) build();
   prime();
   return go();
+}
+
+void Debugger::drop_later() {
+  if (furthest_ <= position_) return;
+  const size_t dropped = std::erase_if(changes_, [this](const Change& change) { return change.at > position_; });
+  furthest_ = position_;
+  if (snapshots_) snapshots_->drop_after(position_);
+  front_end_.dropped(dropped);
 }
 
 void Debugger::run_again() {
@@ -105,6 +122,7 @@ void Debugger::run_again() {
 void Debugger::restart(MakePlant next) {
   if (snapshots_) snapshots_->clear();
   changes_.clear();
+  furthest_ = {};
   if (!next) return build();
   std::swap(what_.make, next);
   try {
@@ -130,9 +148,8 @@ Stop Debugger::go() {
     if (goal_.kind != Goal::Kind::Search) break;
     search_further();
   }
-  if (goal_.kind == Goal::Kind::Replay)  // what the user changed later is undone
-    std::erase_if(changes_, [this](const Change& change) { return change.at > position_; });
   goal_.kind = Goal::Kind::Forward;
+  furthest_ = std::max(furthest_, position_);
   for (const int id : stop_.ids)
     std::erase_if(breakpoints_,
                   [id](const Breakpoint& breakpoint) { return breakpoint.id == id && breakpoint.temporary; });
@@ -158,11 +175,10 @@ bool Debugger::between() {
   const bool over = arrived(Phase::Between);
   const bool searching = goal_.kind == Goal::Kind::Search;
   if (over && !searching) return true;
-  const bool far = position_.commands - last_snapshot_.commands >= kSnapshotCommands ||
-                   position_.time - last_snapshot_.time >= kSnapshotTime;
-  if (far && !over && front_end_.wants_snapshot() && snapshot()) return arrived(Phase::Between);
+  if (!over && snapshot_is_due() && front_end_.wants_snapshot() && snapshot()) return arrived(Phase::Between);
   if (searching)
     if (auto stop = data_changed(true)) candidate(last_, std::move(*stop));
+  if (goal_.kind == Goal::Kind::Visit) return over || (!front_end_.keep_going() && take({Reason::Pause, {}, {}, ""}));
   if (goal_.kind != Goal::Kind::Forward) return over;
   if (auto stop = data_changed(false)) return take(std::move(*stop));
   if (auto stop = task_ended()) return take(std::move(*stop));
@@ -195,16 +211,26 @@ bool Debugger::arrived(Phase phase) {
     }
   const bool back_there =
       goal_.order.motion == Motion::ToTime && phase == Phase::Between && position_.time >= goal_.order.time;
-  if (goal_.kind == Goal::Kind::Replay && (back_there || position_ >= goal_.end)) return take(goal_.stop);
+  const bool replayed = goal_.kind == Goal::Kind::Replay && position_ >= goal_.end;
+  if (replayed || (goal_.repeats() && back_there)) return take(goal_.stop);
   return goal_.kind == Goal::Kind::Search && position_ >= goal_.end;
+}
+
+// What is run again has nothing to look at before its end, or before the user did something.
+uint64_t Debugger::commands_to_look_at() const {
+  if (!goal_.repeats()) return 0;
+  uint64_t next = goal_.kind == Goal::Kind::Replay ? goal_.end.commands : UINT64_MAX;
+  if (next_change_ < changes_.size()) next = std::min(next, changes_[next_change_].at.commands);
+  return next - std::min(next, position_.commands);
 }
 
 bool Debugger::run(Station& station, vm::Machine& machine, vm::TickSteps& steps) {
   const auto number = static_cast<uint32_t>(&station.config() - plant_->file().stations.data());
+  const bool follows = goal_.repeats() && front_end_.follows_commands();
   while (const int task = steps.task()) {
-    const uint64_t away = goal_.kind == Goal::Kind::Replay ? goal_.end.commands - position_.commands : 0;
-    if (away > 1 && next_change_ == changes_.size()) {  // nothing to look at before the end
-      position_.commands += steps.step(machine, static_cast<uint32_t>(std::min(away - 1, kAtOnce)));
+    if (const uint64_t away = commands_to_look_at(); away > 1) {
+      if (follows) front_end_.executes(number, machine.context(machine.active_context(task)).pc);
+      position_.commands += steps.step(machine, follows ? 1U : static_cast<uint32_t>(std::min(away - 1, kAtOnce)));
       continue;
     }
     open_ = &station;
@@ -221,8 +247,7 @@ bool Debugger::run(Station& station, vm::Machine& machine, vm::TickSteps& steps)
 
 bool Debugger::before_command(TaskRef task, const vm::Machine& machine) {
   const bool over = arrived(Phase::Before);
-  if (goal_.kind == Goal::Kind::Replay || (goal_.kind == Goal::Kind::Forward && position_ == start_))
-    return over;
+  if (goal_.repeats() || (goal_.kind == Goal::Kind::Forward && position_ == start_)) return over;
   const bool backward = goal_.kind == Goal::Kind::Search;
   if (auto stop = data_changed(backward)) {
     if (!backward) return take(std::move(*stop));
@@ -239,7 +264,7 @@ bool Debugger::before_command(TaskRef task, const vm::Machine& machine) {
 
 bool Debugger::behind_command(TaskRef task, const vm::Machine& machine, bool faulted) {
   const bool over = arrived(Phase::Behind);
-  if (goal_.kind == Goal::Kind::Replay) return over;
+  if (goal_.repeats()) return over;
   const bool backward = goal_.kind == Goal::Kind::Search;
   auto stop = data_changed(backward);
   if (stop) stop->task = task;
@@ -284,6 +309,13 @@ void Debugger::rewind(const Position& to, bool strictly) {
   prime();
 }
 
+// On the way again there may be one already.
+bool Debugger::snapshot_is_due() const {
+  if (!snapshots_ || !takes_snapshots_ || !is_far(last_snapshot_, position_)) return false;
+  const Position* kept = snapshots_->before(position_, false);
+  return kept == nullptr || is_far(*kept, position_);
+}
+
 // True in a process that goes on from here at a later time, with what it was given.
 bool Debugger::snapshot() {
   if (!snapshots_ || !takes_snapshots_) return false;
@@ -295,12 +327,14 @@ bool Debugger::snapshot() {
 
 std::string Debugger::save() {
   const Json state{{"goal", goal_},       {"breakpoints", breakpoints_}, {"watchpoints", watchpoints_},
-                   {"changes", changes_}, {"last_id", last_id_},         {"front_end", front_end_.save()}};
+                   {"changes", changes_}, {"last_id", last_id_},         {"front_end", front_end_.save()},
+                   {"furthest", furthest_}};
   std::string bytes;
   Json::to_cbor(state, bytes);
   return bytes;
 }
 
+// What was done to the plant of this snapshot stands at the head of all changes, and is not done once more.
 void Debugger::load(const std::string& bytes) {
   const Json state = Json::from_cbor(bytes);
   goal_ = state["goal"];
@@ -308,22 +342,22 @@ void Debugger::load(const std::string& bytes) {
   watchpoints_ = state["watchpoints"].get<std::vector<Watchpoint>>();
   changes_ = state["changes"].get<std::vector<Change>>();
   last_id_ = state["last_id"];
+  furthest_ = state["furthest"];
   front_end_.load(state["front_end"]);
-  const auto later = [this](const Change& change) { return change.at >= position_; };
-  next_change_ =
-      static_cast<size_t>(std::find_if(changes_.begin(), changes_.end(), later) - changes_.begin());
   searched_from_ = position_;
   prime();
 }
 
 void Debugger::write(const ValuePlace& place, int32_t value) {
   write_value(place, value);
+  drop_later();
   changes_.push_back({position_, place, value, nullptr});
   next_change_ = changes_.size();
 }
 
 void Debugger::perform(const Json& action) {
   front_end_.perform(action);
+  drop_later();
   changes_.push_back({position_, {}, 0, action});
   next_change_ = changes_.size();
 }

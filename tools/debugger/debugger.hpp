@@ -1,6 +1,6 @@
 // The debugger: runs a plant command by command until there is something to stop for, and back again. Time
 // stands still for the whole plant while it is stopped. Going back is going on from a snapshot, or from the
-// beginning, to an earlier position; the plant does the same again.
+// beginning, to an earlier position; the plant does the same again. Until it runs on from there, what came later is kept.
 #pragma once
 
 #include <functional>
@@ -51,6 +51,10 @@ class FrontEnd {
   // What Debugger::perform() was given, now and whenever its moment comes again.
   virtual void perform(const Json& /*action*/) {}
   virtual bool wants_snapshot() { return true; }  // one is due
+  // Wants executes() also for what is run again.
+  virtual bool follows_commands() { return false; }
+  // What came later than now, with so many changes of the user, does not come any more.
+  virtual void dropped(size_t /*changes*/) {}
 };
 
 struct Frame {
@@ -68,8 +72,11 @@ class Debugger final : private runtime::CommandRunner {
   // Carries out an order. Fill the frame of a step with order_for().
   Stop run(const Order& order);
   Order order_for(Motion motion, TaskRef task, bool backward = false) const;
-  // To the millisecond in which that time begins; the plant stands there.
-  Stop go_back(runtime::Time time);
+  // To the end of the millisecond of that time, back or on within what was reached; the plant stands there. What the user
+  // did later is kept. Where the front end does not keep going it ends with Pause on the way, and the next visit goes on.
+  Stop visit(runtime::Time time);
+  // The latest moment of this run. Who runs on from an earlier one, or changes something there, drops what came later.
+  const Position& furthest() const { return furthest_; }
   // From the beginning up to here, without copies: for a copy of the process that gathers what was not gathered before.
   void run_again();
   // The plant is as at power-on: what was done to the other one is done to this at the same moments.
@@ -128,6 +135,9 @@ class Debugger final : private runtime::CommandRunner {
   void candidate(const Position& at, Stop stop);
   void rewind(const Position& to, bool strictly);
   void search_further();
+  uint64_t commands_to_look_at() const;
+  void drop_later();
+  bool snapshot_is_due() const;
   bool snapshot();
   void prime();
   std::string save();
@@ -148,6 +158,7 @@ class Debugger final : private runtime::CommandRunner {
   int last_id_ = 0;
 
   Position position_;
+  Position furthest_;
   Position last_;                     // where it was before
   runtime::Station* open_ = nullptr;  // in the middle of its tick
   Goal goal_;

@@ -87,13 +87,15 @@ struct Stop {
 
 // What the debugger is running for.
 struct Goal {
-  enum class Kind : uint8_t { Forward, Search, Replay };
+  // Replay and Visit: again what has been once, up to a position or a time; Visit can be interrupted.
+  enum class Kind : uint8_t { Forward, Search, Replay, Visit };
   Kind kind = Kind::Forward;
   Order order;
   Position end;        // Search: what was is looked for before this; Replay: stops here
   bool found = false;  // Search
   Position candidate;  // Search: the last place found
-  Stop stop;           // Search: at the candidate; Replay: what to tell at the end
+  Stop stop;           // Search: at the candidate; Replay and Visit: what to tell at the end
+  bool repeats() const { return kind == Kind::Replay || kind == Kind::Visit; }
 };
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Position, commands, time, phase)

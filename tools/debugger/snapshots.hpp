@@ -22,9 +22,11 @@ class Snapshots {
   virtual const Position* before(const Position& position, bool strictly) const = 0;
   // The last one at or before a time.
   virtual const Position* before(runtime::Time time) const = 0;
-  // Goes on from that one; returns only if it is gone.
+  // Goes on from that one, and all others stay, later ones, too; returns only if it is gone.
   virtual void go_on_from(const Position& snapshot, const std::string& bytes) = 0;
 
+  // Those after a position belong to what does not come any more.
+  virtual void drop_after(const Position& position) = 0;
   virtual size_t count() const = 0;
   virtual void clear() = 0;
   // Memory of all snapshots: their share of all pages, and what each has for itself, in KiB.

@@ -34,6 +34,7 @@ class BusTab final : public Tab, private BusSource {
   }
 
   void runs_again(Tab&) override { traffic_.stop_hearing(); }
+  void dropped(size_t) override { traffic_.dropped(); }
 
   void passed(runtime::Time now) override {
     traffic_.settle();

@@ -37,6 +37,7 @@ class BusTraffic final {
 
   // The lines are others: nothing is known any more. Then all of them are followed, and then they are complete.
   void clear();
+  void dropped() { trace_.forget_later(); }
   void complete() {
     if (hears_) trace_.restart(monitors_.size());
   }

@@ -18,7 +18,8 @@ using namespace std::chrono_literals;
 
 constexpr auto kTellTime = 50ms;  // while it runs
 constexpr auto kMeasured = 1s;    // of `rate`
-constexpr auto kBetweenSnapshots = 250ms;
+constexpr auto kBetweenSnapshots = 50ms;  // so long is the way from one to a moment, as long as all are kept
+constexpr int kSnapshotShare = 25;        // of the time, one part at most is for taking them (ours)
 constexpr auto kTurnLasts = 2ms;        // then messages have theirs
 constexpr WallClock::time_point kImmediately = WallClock::time_point::min();
 constexpr auto kBehind =
@@ -51,6 +52,7 @@ PlantHost::PlantHost(debug::MakePlant make, std::string title, std::string versi
   add_action("load", [this](const Json& action) { load_program(Arguments(action)); });
   tabs_ = make_tabs(*this);
   debugger_.emplace(std::move(make), *this, copies_.snapshots(), runtime::kNever);
+  elsewhere_ = false;
   router_.hello = [this] {
     return Json{{"protocol", 1},   {"version", version_}, {"mode", "plant"},
                 {"title", title_}, {"writable", true},    {"live", ports_.joined()}};
@@ -116,14 +118,21 @@ void PlantHost::add_time_commands() {
     return begin(call, std::move(motion));
   });
   router_.add_command("back", [this](const Router::Call& call) {
-    Motion motion;
-    motion.kind = MotionKind::Back;
     const int64_t to = call.arguments.has("us")
                            ? call.arguments.whole("us", 0, kFarthest)
                            : us() - call.arguments.whole("ms", 1, kFarthest / 1000) * 1000;
     if (to > us()) throw Mistake("that time is still to come");
-    motion.time = std::max<int64_t>(to, 0) * runtime::kMicrosecond;
-    return begin(call, std::move(motion));
+    return go_to(call, std::max<int64_t>(to, 0));
+  });
+  router_.add_command("go", [this](const Router::Call& call) {
+    const int64_t to = call.arguments.whole("us", 0, kFarthest);
+    if (to > furthest_us()) throw Mistake("that time is still to come");
+    // A slider that is dragged waits for nothing: what it ordered before is given up where it is.
+    if (next_.kind == MotionKind::Go || next_.kind == MotionKind::Order) {
+      router_.reply(next_.client, next_.id, {{"us", us()}, {"replaced", true}});
+      next_ = {};
+    }
+    return go_to(call, to);
   });
   router_.add_command("restart", [this](const Router::Call& call) {
     Motion motion;
@@ -146,7 +155,7 @@ void PlantHost::stay_in_step() {
     throw Mistake(
         "this plant has real ports: it runs in step with the clock, and can neither stand nor go back");
   };
-  for (const char* name : {"pause", "step", "speed", "back", "restart", "break.set", "program.step"})
+  for (const char* name : {"pause", "step", "speed", "back", "go", "restart", "break.set", "program.step"})
     router_.add_command(name, refuse);
   router_.add_command("run", [refuse](const Router::Call& call) {
     return call.arguments.number("speed", 0, 1000, 1) == 1 ? Json::object() : refuse(call);
@@ -165,6 +174,17 @@ Json PlantHost::begin(const Router::Call& call, Motion motion) {
   return nullptr;
 }
 
+Json PlantHost::go_to(const Router::Call& call, int64_t us) {
+  Motion motion;
+  motion.kind = MotionKind::Go;
+  motion.time = us * runtime::kMicrosecond / kMillisecond * kMillisecond;
+  return begin(call, std::move(motion));
+}
+
+int64_t PlantHost::furthest_us() const {
+  return std::max(us(), debugger_ ? debugger_->furthest().time / runtime::kMicrosecond : 0);
+}
+
 void PlantHost::order(const Router::Call& call, const debug::Order& order) {
   Motion motion;
   motion.kind = MotionKind::Order;
@@ -173,7 +193,7 @@ void PlantHost::order(const Router::Call& call, const debug::Order& order) {
 }
 
 void PlantHost::stop(const std::string& reason, const std::string& text) {
-  if (ports_.joined()) return;
+  if (ports_.joined() || now_.kind == MotionKind::Go) return;
   running_ = false;
   halted_ = true;
   stopped_ = {{"reason", reason}, {"text", text}};
@@ -191,7 +211,7 @@ void PlantHost::carry_out() {
       if (!goes_on) set_speed(speed_);
       now_.order = {};
       return finish(debugger_->run(now_.order));
-    case MotionKind::Back: return finish(debugger_->go_back(now_.time));
+    case MotionKind::Go: return finish(debugger_->visit(now_.time));
     case MotionKind::Restart: return restart();
     default: return finish(debugger_->run(now_.order));
   }
@@ -279,7 +299,7 @@ void PlantHost::load_program(const Arguments& a) {
 void PlantHost::finish(const debug::Stop& stop) {
   Motion done = std::exchange(now_, {});
   if (std::exchange(turn_over_, false) && stop.reason == debug::Reason::Pause && !halted_) {
-    if (done.kind == MotionKind::Order) go_on(std::move(done));
+    if (done.kind != MotionKind::Run) go_on(std::move(done));
     return;
   }
   const bool stands_there = stop.reason == debug::Reason::Breakpoint ||
@@ -301,11 +321,12 @@ void PlantHost::finish(const debug::Stop& stop) {
         stopped_["file"] = frames.front().place.file;
         stopped_["line"] = frames.front().place.line;
       }
+      if (stop.reason == debug::Reason::Breakpoint && !frames.empty())
+        mark("breakpoint", fmt::format("{}:{}", frames.front().place.file, frames.front().place.line), stopped_["station"],
+             frames.front().function);
     }
   }
-  if (done.kind == MotionKind::Back || done.kind == MotionKind::Restart ||
-      (done.kind == MotionKind::Order && done.order.backward))
-    new_generation();
+  if (std::exchange(elsewhere_, false) || done.kind == MotionKind::Go) new_generation();
   if (done.kind != MotionKind::Run) router_.reply(done.client, done.id, {{"us", us()}});
   if (!running_ || done.kind != MotionKind::Run) tell_time();
 }
@@ -334,6 +355,7 @@ Json PlantHost::time_event() const {
           {"speed", speed_},
           {"rate", running_ ? rate_ : 0.0},
           {"generation", generation_},
+          {"furthest_us", furthest_us()},
           {"over", plant_->programs_over()},
           {"stopped", stopped_}};
 }
@@ -351,6 +373,7 @@ void PlantHost::tell_time() {
 bool PlantHost::keep_going() {
   if (ports_.joined()) ports_.flush();
   const auto clock = now();
+  if (std::exchange(takes_snapshot_, false)) snapshot_took_ = clock - last_snapshot_;
   if (clock - measured_from_ >= kMeasured) {
     rate_ = static_cast<double>(plant_->now() - measured_at_) /
             static_cast<double>(std::chrono::nanoseconds(clock - measured_from_).count());
@@ -443,10 +466,13 @@ std::unique_ptr<SecondRun> PlantHost::run_again() {
   return std::make_unique<ByTurns>(*this);
 }
 
+// On the way to another moment there is nothing to look at but how far it has come.
 void PlantHost::publish(bool busy) {
-  for (const auto& tab : tabs_) tab->tend();
+  const bool goes = now_.kind == MotionKind::Go || next_.kind == MotionKind::Go;
   const auto clock = now();
-  if (running_ && clock >= time_due_) tell_time();
+  if ((running_ || goes) && clock >= time_due_) tell_time();
+  if (goes) return;
+  for (const auto& tab : tabs_) tab->tend();
   router_.publish(clock, busy);
 }
 
@@ -474,7 +500,10 @@ void PlantHost::load(const Json& state) {
   router_.load(state["router"]);
   for (size_t n = 0; n < tabs_.size(); ++n) tabs_[n]->load(state["tabs"][n]);
   paced_ = false;
+  elsewhere_ = true;
+  time_due_ = now() + kTellTime;
   last_snapshot_ = now();
+  takes_snapshot_ = false;
 }
 
 void PlantHost::output(const std::string& text) { router_.send_all({{"event", "output"}, {"text", text}}); }
@@ -482,6 +511,7 @@ void PlantHost::output(const std::string& text) { router_.send_all({{"event", "o
 void PlantHost::built(runtime::Plant& plant) {
   plant_ = &plant;
   texts_.begin_again();
+  elsewhere_ = true;
   source_ = plant.next_source();
   plant.queue().schedule(kMillisecond, source_, *this, 0);
   acted_.clear();
@@ -503,8 +533,22 @@ void PlantHost::executes(uint32_t station, uint32_t address) {
 }
 
 void PlantHost::act(const std::string& name, Json details) {
+  must_be_there();
   details["act"] = name;
   debugger_->perform(details);
+  for (const auto& tab : tabs_) tab->acted(details);
+}
+
+void PlantHost::write(const debug::ValuePlace& place, int32_t value) {
+  must_be_there();
+  debugger_->write(place, value);
+  const Json action{{"act", "set"}, {"station", plant_->stations()[place.station]->config().name}, {"name", place.name}};
+  for (const auto& tab : tabs_) tab->acted(action);
+}
+
+// Nobody means the moments that lie on the way to another one.
+void PlantHost::must_be_there() const {
+  if (next_.kind == MotionKind::Go) throw Mistake("the plant is on its way to another moment");
 }
 
 void PlantHost::perform(const Json& action) {
@@ -515,9 +559,18 @@ void PlantHost::perform(const Json& action) {
 
 bool PlantHost::wants_snapshot() {
   const auto clock = now();
-  if (clock - last_snapshot_ < kBetweenSnapshots) return false;
+  if (clock - last_snapshot_ < std::max<WallClock::duration>(kBetweenSnapshots, kSnapshotShare * snapshot_took_)) return false;
   last_snapshot_ = clock;
+  takes_snapshot_ = true;
   return true;
+}
+
+bool PlantHost::follows_commands() {
+  return std::any_of(tabs_.begin(), tabs_.end(), [](const auto& tab) { return tab->follows_commands(); });
+}
+
+void PlantHost::dropped(size_t changes) {
+  for (const auto& tab : tabs_) tab->dropped(changes);
 }
 
 uint32_t PlantHost::station_number(const std::string& name) const {

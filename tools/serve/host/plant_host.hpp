@@ -34,6 +34,9 @@ class Tab {
   // PlantHost::run_again(): this tab is of the host that runs again, for one that goes on; in a copy of the process that is
   // itself.
   virtual void runs_again(Tab& /*first*/) {}
+  virtual void acted(const Json& /*action*/) {}  // of a person, just now
+  virtual void dropped(size_t /*changes*/) {}  // what came later, with so many actions, does not come any more
+  virtual bool follows_commands() { return false; }  // wants executes() also on the way to another moment
   virtual Json save() { return nullptr; }
   virtual void load(const Json& /*state*/) {}
 };
@@ -68,10 +71,15 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
   uint32_t station_number(const std::string& name) const;  // a Mistake that names those there are
   runtime::Station& station(const std::string& name) { return *plant_->stations()[station_number(name)]; }
   int64_t us() const { return plant_->now() / runtime::kMicrosecond; }
+  int64_t furthest_us() const;  // the latest moment that one can go to
   // What is done to the plant goes this way: it is done again when its moment comes again.
   using Action = std::function<void(const Json&)>;
   void add_action(const std::string& name, Action action) { actions_[name] = std::move(action); }
   void act(const std::string& name, Json details);
+  // The same for a variable of a program.
+  void write(const debug::ValuePlace& place, int32_t value);
+  // A tab that marks what happens on the timeline.
+  std::function<void(const char* kind, const std::string& what, const std::string& station, const std::string& text)> mark;
   // A line that goes on outside.
   bool has_port(const std::string& bus) const { return ports_.joined(bus); }
   Copies& copies() { return copies_; }
@@ -97,7 +105,7 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
 
  private:
   class ByTurns;  // a second run
-  enum class MotionKind : uint8_t { None, Run, Order, Back, Restart };
+  enum class MotionKind : uint8_t { None, Run, Order, Go, Restart };
   struct Motion {
     MotionKind kind = MotionKind::None;
     debug::Order order;
@@ -112,7 +120,9 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
   void add_time_commands();
   void stay_in_step();
   void look_at_ports();
+  void must_be_there() const;
   Json begin(const Router::Call& call, Motion motion);
+  Json go_to(const Router::Call& call, int64_t us);
   void carry_out();
   void go_on(Motion motion);
   void finish(const debug::Stop& stop);
@@ -139,6 +149,8 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
   void executes(uint32_t station, uint32_t address) override;
   void perform(const Json& action) override;
   bool wants_snapshot() override;
+  bool follows_commands() override;
+  void dropped(size_t changes) override;
   void on_event(runtime::Time now, uint32_t kind, uint64_t argument) override;
 
   const Clock& clock_;
@@ -166,6 +178,7 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
   bool telegram_seen_ = false;  // since the motion began
   Json stopped_ = nullptr;
   uint32_t generation_ = 1;
+  bool elsewhere_ = false;  // another moment, which those before do not lead to
   Motion now_;   // under way
   Motion next_;  // ordered
   WallClock::time_point turn_began_{};
@@ -181,6 +194,8 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
   WallClock::time_point time_due_{};
   WallClock::time_point last_snapshot_{};
   int second_runs_ = 0;  // by turns
+  bool takes_snapshot_ = false;
+  WallClock::duration snapshot_took_{};
 };
 
 }  // namespace ipos::tools::serve

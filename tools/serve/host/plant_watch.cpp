@@ -191,8 +191,8 @@ class PlantWatch final : public Tab, private WatchSource {
       host_.act("parameters.set",
                 {{"station", signal.station}, {"index", signal.number}, {"value", static_cast<int32_t>(sample)}, {"volatile", true}});
     else
-      host_.debugger().write(*debug::find_value(host_.plant(), host_.station_number(signal.station), signal.name),
-                             static_cast<int32_t>(sample));
+      host_.write(*debug::find_value(host_.plant(), host_.station_number(signal.station), signal.name),
+                  static_cast<int32_t>(sample));
     return {{"text", value_json(signal)["text"]}};
   }
 

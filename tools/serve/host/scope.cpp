@@ -25,6 +25,7 @@ constexpr size_t kPartBytes = 1 << 20;              // of such a file
 constexpr uint64_t kMostBehind = 65'536;            // samples that a client of the topic may be late
 constexpr uint64_t kRowsAtOnce = 5'000;             // of CSV
 constexpr int64_t kLastUs = 1'000'000'000'000'000;  // us
+constexpr const char* kByHand = "by hand";
 constexpr const char* kStates[] = {"free", "armed", "triggered", "done"};
 
 // Of a sample: it has the number of its millisecond.
@@ -54,10 +55,14 @@ Scope::Scope(Router& router, ScopeSource& source, Copies& copies)
     return describe();
   });
   router.add_command("scope.trigger", [this](const Router::Call&) {
-    fire(source_.now(), "by hand");
+    ++orders_;
+    hand_at_ = source_.now();
+    fire(*hand_at_, kByHand);
     return describe();
   });
   router.add_command("scope.free", [this](const Router::Call&) {
+    ++orders_;
+    hand_at_.reset();
     state_ = State::Free;
     single_ = false;
     return describe();
@@ -219,6 +224,8 @@ Json Scope::save() {
              {"trigger_text", trigger_text_},
              {"asks", asks_},
              {"questions", questions_},
+             {"orders", orders_},
+             {"hand_at", hand_at_ ? Json(*hand_at_) : Json(nullptr)},
              {"recording", recording_}};
   state["triggered_at"] = triggered_at_ ? Json(*triggered_at_) : Json(nullptr);
   return state;
@@ -231,15 +238,20 @@ void Scope::load(const Json& state) {
   computing_.reset();  // that of the time when this copy was made
   memory_.use(state["columns"].get<std::vector<ScopeMemory::Column>>());
   trigger_ = trigger_of(state["trigger"]);
+  asks_ = true;
+  questions_ = state["questions"].get<std::vector<Question>>();
+  recording_ = state["recording"];
+  seen_.reset();
+  hand_at_.reset();
+  if (!state["hand_at"].is_null()) hand_at_ = state["hand_at"].get<Time>();
+  // Who was here before with the same orders knows what had triggered by now.
+  if (orders_ == state["orders"].get<uint64_t>()) return;
+  orders_ = state["orders"];
   previous_.reset();
   pre_ = state["pre"];
   length_ms_ = state["length_ms"];
   single_ = state["single"];
   armed_at_ = state["armed_at"];
-  asks_ = true;
-  questions_ = state["questions"].get<std::vector<Question>>();
-  recording_ = state["recording"];
-  seen_.reset();
   state_ = static_cast<State>(state["state"].get<int>());
   done_end_ = state["done_end"];
   trigger_text_ = state["trigger_text"];
@@ -321,6 +333,7 @@ void Scope::set(const Arguments& a) {
           fmt::format("a scope has 1 to {} channels, these are {}", kMostChannels, channels.size()));
     choose(std::move(channels));
   }
+  if (a.has("trigger") || a.has("pre") || a.has("length_ms")) ++orders_;
   if (a.has("trigger")) {
     trigger_ = trigger_of(a.json()["trigger"]);
     previous_.reset();
@@ -353,6 +366,8 @@ Scope::Trigger Scope::trigger_of(const Json& json) {
 }
 
 void Scope::arm(bool single) {
+  ++orders_;
+  hand_at_.reset();
   state_ = State::Armed;
   armed_at_ = source_.now();
   single_ = single;
@@ -376,11 +391,17 @@ std::optional<std::string> Scope::value_triggers() {
   return fmt::format("{} is {:.{}f}", trigger_.signal->name, value, trigger_.signal->decimals);
 }
 
+void Scope::dropped() {
+  memory_.forget_later();
+  if (hand_at_ && *hand_at_ > last_) hand_at_.reset();
+}
+
 // After a millisecond. Everything is looked at in every one, so that an edge is one when the scope is armed later.
 void Scope::look(Time now) {
   const auto seen = std::exchange(seen_, std::nullopt);
   const std::optional<std::string> value = value_triggers();
   if (state_ == State::Armed && now > armed_at_ && (seen || value)) fire(seen ? seen->first : now, seen ? seen->second : *value);
+  if (hand_at_ == now) fire(now, kByHand);
   if (state_ != State::Triggered || now - *triggered_at_ < length_ms_ * (100 - pre_) / 100 * kMillisecond)
     return;
   state_ = single_ ? State::Done : State::Armed;
@@ -391,6 +412,7 @@ void Scope::fire(Time at, const std::string& why) {
   state_ = State::Triggered;
   triggered_at_ = at;
   trigger_text_ = why;
+  source_.triggered(why);
   if (trigger_.stops) source_.stop(why);
 }
 

@@ -27,6 +27,7 @@ class ScopeSource {
   // none, level and edge are the scope's. A Mistake says why it cannot.
   virtual void watch_for(const std::string& kind, const Arguments& settings) = 0;
   virtual void stop(const std::string& why) = 0;  // the trigger is to stop the plant
+  virtual void triggered(const std::string& /*why*/) {}
   // What does again what was until now, with a scope that was told to fill_for() this one. Nothing: it cannot.
   virtual std::unique_ptr<SecondRun> run_again() { return nullptr; }
 
@@ -49,7 +50,12 @@ class Scope final {
   void built();
   // A program has other names by now: the recording goes on.
   void renamed();
-  void restarted() { armed_at_ = 0; }
+  void restarted() {
+    armed_at_ = 0;
+    hand_at_.reset();
+  }
+  // What came later does not come any more.
+  void dropped();
   // This one runs again what was, and fills in what the first one does not know. The two may be one, in a copy of the process.
   void fill_for(Scope& first);
   // Now and then, between two milliseconds: what was recorded too late for some channel is computed.
@@ -121,12 +127,14 @@ class Scope final {
   std::vector<int64_t> samples_;
   runtime::Time last_ = 0;  // the last millisecond looked at
   uint32_t recording_ = 0;
+  uint64_t orders_ = 0;  // that the state of the trigger depends on, since the start of all
   Trigger trigger_;
   int64_t pre_ = 20;
   int64_t length_ms_ = 5'000;
   State state_ = State::Free;
   bool single_ = false;
   runtime::Time armed_at_ = 0;
+  std::optional<runtime::Time> hand_at_;  // somebody triggered by hand, and does it again when that moment comes again
   uint64_t done_end_ = 0;  // after the last sample of a complete recording
   std::optional<runtime::Time> triggered_at_;
   std::string trigger_text_;

@@ -40,7 +40,7 @@ void ScopeMemory::restart(uint64_t next) {
   shared_->reached = 0;
   end_ = next;
   begins_ = true;
-  for (Column& column : columns_) column.from = next;
+  for (Column& column : columns_) column.from = column.to = next;
 }
 
 void ScopeMemory::choose(const std::vector<std::optional<size_t>>& channels, const std::vector<Kind>& kinds) {
@@ -55,14 +55,26 @@ void ScopeMemory::choose(const std::vector<std::optional<size_t>>& channels, con
     }
     const auto free = std::find(taken.begin(), taken.end(), false);
     *free = true;
-    columns.push_back({static_cast<size_t>(free - taken.begin()), end_, n < kinds.size() ? kinds[n] : Kind{}});
+    columns.push_back({static_cast<size_t>(free - taken.begin()), end_, end_, n < kinds.size() ? kinds[n] : Kind{}});
   }
   use(std::move(columns));
 }
 
 void ScopeMemory::use(std::vector<Column> columns) {
   columns_ = std::move(columns);
-  for (Column& column : columns_) column.from = std::min(column.from, end_);
+  for (Column& column : columns_)
+    if (end_ < column.from || end_ > column.to) column.from = column.to = end_;
+  begins_ = true;
+}
+
+// What others have overwritten stays gone, though they are no more.
+void ScopeMemory::forget_later() {
+  const uint64_t kept = first_kept(shared_->reached);
+  for (Column& column : columns_) {
+    column.from = std::min(std::max(column.from, kept), end_);
+    column.to = end_;
+  }
+  shared_->reached = end_;
   begins_ = true;
 }
 
@@ -84,13 +96,18 @@ bool ScopeMemory::push(uint64_t number, std::span<const int64_t> samples) {
   const bool follows = number == end_;
   if (!follows) {
     begins_ = true;
-    for (Column& column : columns_) column.from = number;
+    for (Column& column : columns_) column.from = column.to = number;
   }
+  end_ = number + 1;
+  // Its place is that of a later one, which is known.
+  if (number < first_kept(shared_->reached)) return follows;
   if (shared_->reached <= number) shared_->reached = number + 1;
   // The copy that fills in looks at `reached` after its sign, so one of the two sees the other.
   for (int n = 0; n < kPatience && number >= kRing && shared_->filling == number - kRing + 1; ++n) copies_.give_way();
-  for (size_t n = 0; n < columns_.size(); ++n) put(columns_[n], number, samples[n], begins_);
-  end_ = number + 1;
+  for (size_t n = 0; n < columns_.size(); ++n) {
+    put(columns_[n], number, samples[n], begins_);
+    columns_[n].to = std::max(columns_[n].to, end_);
+  }
   begins_ = false;
   return follows;
 }
@@ -99,6 +116,7 @@ void ScopeMemory::fill(size_t channel, uint64_t from, uint64_t number, int64_t s
   Column column = columns_[channel];
   if (number >= column.from) return;
   column.from = from;
+  column.to = number + 1;
   shared_->filling = number + 1;
   if (number >= first_kept(shared_->reached)) put(column, number, sample, number == from);
   shared_->filling = 0;
@@ -108,14 +126,15 @@ void ScopeMemory::filled(size_t channel, uint64_t from) {
   Column& column = columns_[channel];
   const uint64_t seam = column.from / kBlock * kBlock;
   column.from = from;
-  if (seam < end_) count_block(column, std::max(seam, from), std::min(seam + kBlock, end_));
+  if (seam < end_) count_block(column, std::max(seam, from), std::min(seam + kBlock, column.to));
 }
 
 void ScopeMemory::put(const Column& column, uint64_t number, int64_t value, bool begins) const {
   const Stored one = stored(column, value);
   sample(column.place, number) = one;
   const uint64_t from = number / kBlock * kBlock;
-  if (begins || from == number) return count_block(column, std::max(from, column.from), number + 1);
+  if (begins || from == number)
+    return count_block(column, std::max(from, column.from), std::max(number + 1, std::min(from + kBlock, column.to)));
   Block& all = block(column.place, number);
   all = join(column, all, {one, one});
 }

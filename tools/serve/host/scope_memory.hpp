@@ -28,12 +28,13 @@ class ScopeMemory {
     bool is_word = false;      // its bits count, each by itself
     NLOHMANN_DEFINE_TYPE_INTRUSIVE(Kind, is_unsigned, is_word)
   };
-  // Where a channel stands, and from which sample on it is known.
+  // Where a channel stands, and from which sample to which it is known: after the way back also later than now.
   struct Column {
     size_t place = 0;
     uint64_t from = 0;
+    uint64_t to = 0;
     Kind kind{};
-    NLOHMANN_DEFINE_TYPE_INTRUSIVE(Column, place, from, kind)
+    NLOHMANN_DEFINE_TYPE_INTRUSIVE(Column, place, from, to, kind)
   };
 
   explicit ScopeMemory(Copies& copies);
@@ -46,6 +47,9 @@ class ScopeMemory {
   // As another copy of the process had them.
   void use(std::vector<Column> columns);
   const std::vector<Column>& columns() const { return columns_; }
+
+  // What is known of later times is not what will be.
+  void forget_later();
 
   // What is known must be without holes: after a hole it starts again. False then.
   bool push(uint64_t number, std::span<const int64_t> samples);

@@ -47,6 +47,8 @@ class ScopeTab final : public Tab,
   void loaded(uint32_t) override { scope_.renamed(); }
   void restore(const Json& settings) override { scope_.restore(settings.value("scope", Json())); }
   void tend() override { scope_.tend(); }
+  void dropped(size_t) override { scope_.dropped(); }
+  bool follows_commands() override { return event_.kind == "line"; }
 
   void passed(Time now) override {
     look_for_faults(now);
@@ -78,6 +80,7 @@ class ScopeTab final : public Tab,
   }
   Time now() const override { return host_.plant().now(); }
   void stop(const std::string& why) override { host_.stop("trigger", why); }
+  void triggered(const std::string& why) override { host_.mark("trigger", "trigger", "", why); }
   std::unique_ptr<SecondRun> run_again() override { return host_.run_again(); }
 
   void watch_for(const std::string& kind, const Arguments& a) override {

@@ -14,6 +14,7 @@ std::vector<std::unique_ptr<Tab>> make_tabs(PlantHost& host) {
   tabs.push_back(make_files_tab(host));
   tabs.push_back(make_journal_tab(host));
   tabs.push_back(make_hash_tab(host));
+  tabs.push_back(make_timeline_tab(host));
   return tabs;
 }
 

@@ -22,7 +22,7 @@ void TraceMemory::restart(size_t lines) {
     memory_ = room_for(copies_, lines * (sizeof(Shared) + kKept * sizeof(uint64_t) + room_));
   }
   lines_.assign(lines, {});
-  for (size_t line = 0; line < lines; ++line) shared(line).count = shared(line).bytes = 0;
+  for (size_t line = 0; line < lines; ++line) shared(line).count = shared(line).bytes = shared(line).first = 0;
 }
 
 TraceMemory::Shared& TraceMemory::shared(size_t line) const {
@@ -62,13 +62,17 @@ void TraceMemory::add(uint64_t number, const Telegram& telegram) {
   head.extended = telegram.extended;
   head.remote = telegram.remote;
   head.error = telegram.error;
-  begin_of(line, of.count) = of.bytes;
-  copy_in(line, of.bytes, &head, sizeof head);
-  copy_in(line, of.bytes + sizeof head, telegram.data.data(), head.data);
-  copy_in(line, of.bytes + sizeof head + head.data, telegram.words.data(), head.words);
+  Shared& all = shared(line);
+  // Where it was once is a later one, which is known.
+  const bool gone = of.count + kKept < all.count || of.bytes + room_ < all.bytes;
+  if (!gone) {
+    begin_of(line, of.count) = of.bytes;
+    copy_in(line, of.bytes, &head, sizeof head);
+    copy_in(line, of.bytes + sizeof head, telegram.data.data(), head.data);
+    copy_in(line, of.bytes + sizeof head + head.data, telegram.words.data(), head.words);
+  }
   of.bytes += sizeof head + head.data + head.words;
   ++of.count;
-  Shared& all = shared(line);
   all.count = std::max(all.count.load(), of.count);
   all.bytes = std::max(all.bytes.load(), of.bytes);
 }
@@ -77,7 +81,7 @@ void TraceMemory::add(uint64_t number, const Telegram& telegram) {
 uint64_t TraceMemory::first(size_t line) const {
   const Line& of = lines_[line];
   const uint64_t counted = shared(line).count > kKept ? shared(line).count - kKept : 0;
-  uint64_t least = std::min(counted, of.count), end = of.count;
+  uint64_t least = std::min(std::max<uint64_t>(counted, shared(line).first), of.count), end = of.count;
   const uint64_t bytes = shared(line).bytes;
   while (least < end) {
     const uint64_t middle = (least + end) / 2;
@@ -87,6 +91,15 @@ uint64_t TraceMemory::first(size_t line) const {
       end = middle;
   }
   return least;
+}
+
+void TraceMemory::forget_later() {
+  for (size_t line = 0; line < lines_.size(); ++line) {
+    Shared& all = shared(line);
+    all.first = first(line);
+    all.count = lines_[line].count;
+    all.bytes = lines_[line].bytes;
+  }
 }
 
 uint64_t TraceMemory::number(size_t line, uint64_t n) const {

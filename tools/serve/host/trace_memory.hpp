@@ -28,6 +28,8 @@ class TraceMemory {
   // Nothing is known any more. The number of lines stays what it is the first time.
   void restart(size_t lines);
   void add(uint64_t number, const Telegram& telegram);
+  // Those of later times do not come any more. What they have overwritten stays gone.
+  void forget_later();
 
   // Telegrams of a line, from first to before end.
   uint64_t first(size_t line) const;
@@ -38,6 +40,7 @@ class TraceMemory {
  private:
   struct Shared {
     std::atomic<uint64_t> count, bytes;  // how far any copy has come
+    std::atomic<uint64_t> first;         // those before it were overwritten by what does not come any more
   };
   struct Line {
     uint64_t count = 0;  // telegrams
