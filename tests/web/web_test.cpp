@@ -59,6 +59,8 @@ TEST_F(Browser, SeesMachinesMove) { expect_node_passed(run("machine.test.mjs"), 
 
 TEST_F(Browser, EditsAndRebuilds) { expect_node_passed(run("edit.test.mjs"), 7); }
 
+TEST_F(Browser, GoesToAnyMoment) { expect_node_passed(run("timeline.test.mjs"), 5); }
+
 TEST_F(Browser, HearsARealDrive) { expect_node_passed(run("device.test.mjs"), 3); }
 
 }  // namespace

@@ -212,6 +212,7 @@ const commands = {
   step: (plant, { ms = 1 }) => ((plant.running = false), tick(plant, ms), { ok: true }),
   speed: (plant, { speed }) => ((plant.speed = speed), { ok: true }),
   back: (plant, { ms }) => ((plant.us = Math.max(0, plant.us - ms * 1000)), ++plant.generation, (plant.running = false), { ok: true }),
+  go: (plant, { us }) => ((plant.us = us), ++plant.generation, (plant.running = false), { ok: true, us }),
   restart: (plant) => ((plant.us = 0), ++plant.generation, (plant.running = false), { ok: true }),
   input: setInput,
   analog: (plant, { station, value }) => ((plant.stations[station].analog = value), { ok: true }),
@@ -284,6 +285,15 @@ export function answer(plant, command) {
 const events = {
   time: (plant) => ({
     us: plant.us, running: plant.running, speed: plant.speed, rate: 1, generation: plant.generation, over: false, stopped: null,
+    furthest_us: Math.max(plant.us, 5_000_000),
+  }),
+  timeline: (plant) => ({
+    us: plant.us, furthest_us: Math.max(plant.us, 5_000_000), dropped: null,
+    marks: [
+      { us: 1_037_000, kind: "click", what: "DI10", station: "saw", text: "" },
+      { us: 3_000_000, kind: "fault", what: "F26", station: "lift", text: "F26 external fault" },
+      { us: 3_500_000, kind: "journal", what: "not enabled: controller inhibit", station: "lift", text: "not enabled: controller inhibit" },
+    ],
   }),
   plant: (plant) => ({
     us: plant.us,

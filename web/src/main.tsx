@@ -22,6 +22,7 @@ import { followSettings } from "./shell/settings";
 import { TabList } from "./shell/tabs";
 import { offerTimeKeys, TimeBar } from "./shell/time_bar";
 import { splitMenuOpen, ViewButtons } from "./shell/view_buttons";
+import { Timeline } from "./timeline/timeline";
 import { Watch } from "./watch/watch_tab";
 
 const views: View[] = [
@@ -74,6 +75,7 @@ function Page() {
         <Notice />
       </header>
       <Panes views={views} />
+      <Timeline />
       <Help />
     </>
   );

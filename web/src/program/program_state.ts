@@ -22,8 +22,12 @@ async function read(name: string): Promise<void> {
     openFile.value = files.value[0]?.name ?? "";
 }
 
+// The plant stands at another moment: the next event has everything.
+let elsewhere = false;
+
 function addCovered(event: Record<string, number[]>): void {
-  const next = new Map(covered.peek());
+  const next = new Map(elsewhere ? [] : covered.peek());
+  elsewhere = false;
   for (const [file, lines] of Object.entries(event)) next.set(file, new Set([...(next.get(file) ?? []), ...lines]));
   covered.value = next;
 }
@@ -58,7 +62,7 @@ export function followProgram(): () => void {
   });
   let seen = generation.peek();
   const stopGeneration = generation.subscribe((now) => {
-    if (now !== seen) again();
+    if (now !== seen) elsewhere = true;
     seen = now;
   });
   const stopStation = station.subscribe(again);

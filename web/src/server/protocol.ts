@@ -43,6 +43,7 @@ export interface Time {
   speed: number;
   rate: number;
   generation: number;
+  furthest_us?: number; // of a plant: the latest moment one can go to
   over: boolean;
   stopped: Stopped | null;
 }
@@ -291,11 +292,13 @@ export interface BusState {
 export interface TraceFrame extends FrameAddresses {
   n: number;
   us: number;
+  took_us?: number; // from its first bit on; not of a real drive
   bus: string;
   id: number;
   extended: boolean;
   remote: boolean;
   error: boolean;
+  sender?: string;
   data: string;
   text: string;
 }
@@ -321,6 +324,21 @@ export interface Breakpoint {
   line: number;
   condition?: string;
   hits: number;
+}
+
+// What happened at a moment that one can go to.
+export interface Mark {
+  us: number;
+  kind: "fault" | "journal" | "trigger" | "breakpoint" | "click";
+  what: string;
+  station: string;
+  text: string; // a whole sentence, where there is one
+}
+
+// What does not come any more, as the plant went on from an earlier moment.
+export interface Dropped {
+  us: number;
+  clicks: number;
 }
 
 export interface JournalEntry {

@@ -8,7 +8,7 @@ import { offerKeys } from "./keys";
 import { command, complain } from "./notice";
 import { WriteArm } from "./write_arm";
 
-const speeds = [0.01, 0.1, 0.5, 1, 2, 10, 100, 0];
+const speeds = [0.001, 0.01, 0.1, 0.5, 1, 2, 10, 100, 0];
 
 const run = () => void command({ do: "run" });
 const pause = () => void command({ do: "pause" });
@@ -19,7 +19,7 @@ const restart = () => void command({ do: "restart" });
 
 function changeSpeed(by: number): void {
   const position = speeds.indexOf(time.peek().speed);
-  const to = speeds[Math.max(0, Math.min(speeds.length - 1, (position < 0 ? 3 : position) + by))];
+  const to = speeds[Math.max(0, Math.min(speeds.length - 1, (position < 0 ? speeds.indexOf(1) : position) + by))];
   if (to !== undefined) void command({ do: "speed", speed: to });
 }
 
