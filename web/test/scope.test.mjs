@@ -60,7 +60,7 @@ async function meet(plant, ms, use, options = {}) {
     await page.getByRole("tab", { name: "Scope" }).click();
     await page.getByRole("figure", { name: "Scope" }).waitFor();
     if (ms) {
-      await page.getByRole("combobox", { name: "Speed" }).selectOption("0").catch(() => undefined);
+      await page.getByRole("combobox", { name: "Speed" }).selectOption("0");
       await page.getByRole("button", { name: "Run", exact: true }).click();
       await until(async () => Number.parseFloat(await page.getByRole("timer", { name: "Time" }).textContent()) * 1000 >= ms, "it does not run");
       await page.getByRole("button", { name: "Pause", exact: true }).click();
@@ -174,7 +174,7 @@ test("cursors measure, a layout is kept and recalled, XY is drawn, files are tho
       `${examples}/hoist/hoist.toml`,
       3000,
       async (page, server) => {
-        await page.getByRole("combobox", { name: "Panel of hoist.setpoint" }).selectOption("2");
+        await page.getByRole("combobox", { name: "Panel of channel 2" }).selectOption("2");
         await page.locator(".picture").focus();
         for (const key of ["+", "+", "ArrowRight"]) await page.keyboard.press(key);
         const narrow = await windowOf(page);
@@ -194,12 +194,12 @@ test("cursors measure, a layout is kept and recalled, XY is drawn, files are tho
         await page.getByRole("group", { name: "XY" }).locator("select").last().selectOption("hoist.setpoint");
         await page.getByRole("img", { name: "hoist.setpoint against hoist.speed" }).waitFor();
         await page.getByRole("textbox", { name: "Layout name" }).fill("start");
-        await page.getByRole("button", { name: "Save layout" }).click();
+        await page.getByRole("button", { name: "Keep layout" }).click();
         await page.waitForTimeout(700); // cursors are kept when they stand
         await page.goto(server.address);
         await page.getByRole("tab", { name: "Scope" }).click();
         await until(async () => (await cells(page, "time"))[1] === `${(a / 1000).toFixed(3)} s`, "the cursor is not kept");
-        assert.strictEqual(await page.getByRole("combobox", { name: "Panel of hoist.setpoint" }).inputValue(), "2");
+        assert.strictEqual(await page.getByRole("combobox", { name: "Panel of channel 2" }).inputValue(), "2");
         await page.getByRole("button", { name: "Remove hoist.setpoint" }).click();
         await until(async () => (await page.getByRole("button", { name: "Remove hoist.setpoint" }).count()) === 0, "not removed");
         await page.getByRole("combobox", { name: "Layout", exact: true }).selectOption("start");
@@ -307,10 +307,19 @@ test("the plot of twenty stations: all names, no number cut, colours as in the t
         const wanted = getComputedStyle(swatch).backgroundColor.match(/\d+/g).map(Number);
         let same = 0;
         for (let n = 0; n < pixels.length; n += 4) if (wanted.every((value, part) => pixels[n + part] === value) && pixels[n + 3] === 255) ++same;
-        return { plots: plots.length, cut, same };
+        // The first line of the grid over a whole panel: all begin at the same place.
+        const lefts = plots.map((plot) => {
+          const { data, width, height } = plot.getContext("2d").getImageData(0, 0, plot.width, plot.height);
+          const rows = Array.from({ length: Math.floor(height * 0.4) }, (_, y) => y + Math.floor(height * 0.3));
+          for (let x = 0; x < width; ++x) if (rows.filter((y) => data[4 * (y * width + x) + 3] > 0).length > 0.9 * rows.length) return x;
+          return -1;
+        });
+        return { plots: plots.length, cut, same, lefts };
       });
       assert.ok(found.plots >= 2, `${found.plots} panels`);
       assert.ok(!found.cut.includes(true), `cut: ${found.cut}`);
+      assert.strictEqual(new Set(found.lefts).size, 1, `panels begin at ${found.lefts}`);
+      assert.ok(found.lefts[0] > 0);
       assert.ok(found.same > 100, `${found.same} pixels have the colour of the row`);
       assert.deepStrictEqual(await findings(page), []);
       assert.deepStrictEqual(opened.errors, []);

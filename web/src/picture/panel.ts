@@ -111,6 +111,7 @@ export class DrawnPanel {
   show(points: Points, window: Window, scale: PanelScale, left: number, seconds: number[]): void {
     this.window = window;
     this.scale = scale;
+    const moves = this.left !== left;
     this.left = left;
     this.seconds = seconds;
     const per = points.least[0] === points.greatest[0] ? 1 : 2;
@@ -120,6 +121,7 @@ export class DrawnPanel {
       column(points.least[channel] ?? new Float64Array(0), points.greatest[channel] ?? new Float64Array(0), per),
     );
     this.plot.setData([times, ...columns]);
+    if (moves) this.plot.redraw(true, true); // uPlot measures its axes only when a scale changes
   }
 
   destroy(): void {

@@ -25,7 +25,7 @@ function ChannelRow({ name, position }: { name: string; position: number }) {
       <span class="mono name" title={name}>
         {name}
       </span>
-      <select aria-label={`Panel of ${name}`} value={places.value[name] ?? ""} onChange={(event) => setPlace(name, event.currentTarget.value)}>
+      <select aria-label={`Panel of channel ${position + 1}`} title={`Where ${name} is drawn`} value={places.value[name] ?? ""} onChange={(event) => setPlace(name, event.currentTarget.value)}>
         <option value="">by unit</option>
         {panels.map((panel) => (
           <option key={panel} value={panel}>

@@ -92,7 +92,7 @@ export function Layouts() {
       </label>
       <div class="row">
         <input type="text" aria-label="Layout name" placeholder="name" onInput={(event) => (name.value = event.currentTarget.value.trim())} />
-        <button onClick={() => save(name.peek() || chosen.peek() || "Layout")}>Save layout</button>
+        <button onClick={() => save(name.peek() || chosen.peek() || "Layout")}>Keep layout</button>
         <button disabled={!chosen.value} onClick={() => remove(chosen.peek())}>
           Remove layout
         </button>
