@@ -4,6 +4,9 @@ import assert from "node:assert";
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { after, before, test } from "node:test";
+import { fileURLToPath } from "node:url";
+
+import { build } from "esbuild";
 
 import { startMock } from "../mock/server.mjs";
 import { desktop, launch, missing, openPage, phone, tab_names } from "./browser.mjs";
@@ -38,6 +41,13 @@ const until = async (what, text) => {
   assert.fail(text);
 };
 
+// A part of the page that needs no document.
+async function bundled(file) {
+  const entry = fileURLToPath(new URL(`../src/${file}`, import.meta.url));
+  const { outputFiles } = await build({ entryPoints: [entry], bundle: true, format: "esm", write: false });
+  return import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString("base64")}`);
+}
+
 const region = (page, name) => page.getByRole("region", { name, exact: true });
 const button = (page, name) => page.getByRole("button", { name, exact: true });
 
@@ -50,6 +60,7 @@ async function split(page, name, side) {
 
 // The views that are open, in the order in which they are read.
 const open = (page) => page.locator("main > .pane:not([hidden])").evaluateAll((panes) => panes.map((pane) => pane.getAttribute("aria-label")));
+const opens = (page, ...views) => until(async () => (await open(page)).join() === views.join(), `not ${views.join()}`);
 const focusedIn = (page) => page.evaluate(() => document.activeElement?.closest(".pane")?.getAttribute("aria-label"));
 
 // Whether the boxes lie so: "left", "above" of each other.
@@ -63,16 +74,16 @@ test("split adds a view, a tab shows its own where it is or in the pane that was
     assert.strictEqual(await page.getByRole("tabpanel").count(), 1);
     assert.strictEqual(await page.getByRole("separator").count(), 0);
     await split(page, "Watch");
-    assert.deepStrictEqual(await open(page), ["Plant", "Watch"]);
+    await opens(page, "Plant", "Watch");
     assert.ok(await lies(page, "Plant", "left", "Watch"));
-    assert.strictEqual(await focusedIn(page), "Watch");
+    await until(async () => (await focusedIn(page)) === "Watch", "the focus does not go to the new view");
     assert.strictEqual(await page.getByRole("tab", { selected: true }).textContent(), "Watch");
     // By Plant's focus Journal comes there; Watch stays.
     await region(page, "Plant").getByRole("switch", { name: "saw DI00" }).click();
     await page.getByRole("tab", { name: "Journal" }).click();
-    assert.deepStrictEqual(await open(page), ["Journal", "Watch"]);
+    await opens(page, "Journal", "Watch");
     await page.getByRole("tab", { name: "Watch" }).click();
-    assert.deepStrictEqual(await open(page), ["Journal", "Watch"]);
+    await opens(page, "Journal", "Watch");
     await until(async () => (await focusedIn(page)) === "Watch", "the focus does not go to the view that is open");
     // Arrows in the tabs take no view away.
     await page.getByRole("tab", { name: "Watch" }).focus();
@@ -80,14 +91,18 @@ test("split adds a view, a tab shows its own where it is or in the pane that was
     assert.strictEqual(await page.evaluate(() => document.activeElement.textContent), "Scope");
     assert.deepStrictEqual(await open(page), ["Journal", "Watch"]);
     await split(page, "Bus", "Below");
+    await opens(page, "Journal", "Watch", "Bus");
     assert.ok(await lies(page, "Watch", "above", "Bus"));
-    assert.deepStrictEqual(await open(page), ["Journal", "Watch", "Bus"]);
     // All that is open is remembered, and nothing else than the address says which one was used last.
     await until(() => JSON.stringify(mock.plant.settings["desk.layout"] ?? null).includes("Bus"), "not kept");
     await page.reload();
     await until(async () => (await open(page)).join() === "Journal,Watch,Bus", "the layout is lost");
+    // What the views ask before the server has come waits for it.
+    await until(() => mock.received.at(-1)?.do !== undefined && mock.received.some((one) => one.do === "bus.trace"), "nothing is asked");
+    assert.deepStrictEqual(await page.getByRole("alert").allTextContents(), []);
     assert.strictEqual(await page.getByRole("tab", { selected: true }).textContent(), "Bus");
     for (const name of ["Journal", "Bus"]) await button(page, `Close ${name}`).click();
+    await page.getByRole("tabpanel").waitFor();
     assert.strictEqual(await page.getByRole("tabpanel").count(), 1);
     assert.strictEqual(await page.getByRole("tab", { selected: true }).textContent(), "Watch");
     await until(() => mock.plant.settings["desk.layout"] === null, "one view is no layout");
@@ -154,20 +169,22 @@ test("views move by pointer and by keys, and keep what they hold", { skip }, () 
     };
     // To the left of the scope, into the middle of the program, to the side of the whole.
     await dropAt("Plant", 0.1, 0.5);
-    assert.ok(await lies(page, "Plant", "left", "Scope"));
+    await until(() => lies(page, "Plant", "left", "Scope"), "it does not come to the left");
     await holds();
     await dropAt("Plant", 0.5, 0.5, grip("Plant"), "Program");
-    assert.deepStrictEqual(await open(page), ["Plant", "Program", "Scope"]);
+    await opens(page, "Plant", "Program", "Scope");
     await holds();
     await grip("Scope").focus();
     await page.keyboard.press("ArrowLeft");
-    assert.deepStrictEqual(await open(page), ["Plant", "Scope", "Program"]);
-    assert.ok(await grip("Scope").evaluate((one) => one === document.activeElement), "the title loses the focus");
+    await opens(page, "Plant", "Scope", "Program");
+    await until(() => grip("Scope").evaluate((one) => one === document.activeElement), "the title loses the focus");
     await page.keyboard.press("ArrowDown");
+    await opens(page, "Plant", "Program", "Scope");
     assert.ok((await lies(page, "Plant", "above", "Scope")) && (await lies(page, "Program", "above", "Scope")));
     await holds();
     // A tab is dragged as well, and Escape gives up.
     await dropAt("Bus", 0.5, 0.9, page.getByRole("tab", { name: "Bus" }), "Plant");
+    await opens(page, "Plant", "Bus", "Program", "Scope");
     assert.ok(await lies(page, "Plant", "above", "Bus"));
     assert.ok(await lies(page, "Bus", "left", "Program"));
     const before = await open(page);
@@ -247,7 +264,7 @@ test("keys: Space after a click, of a switch reached by Tab; two views with one 
     await page.keyboard.press("W");
     await until(async () => (await focusedIn(page)) === "Journal", "not the one before");
     await page.keyboard.press("q");
-    assert.deepStrictEqual(await open(page), [null]);
+    await until(async () => (await open(page)).join() === "", "Journal stays");
     await page.keyboard.press("d");
     await region(page, "Program").waitFor();
     // "i" is a step of the program and a picture of the scope.
@@ -313,3 +330,58 @@ for (const { name, viewport, colorScheme } of [
       { viewport, colorScheme },
     ),
   );
+
+// The tree of panes alone, without a browser: whatever one does, each view has one place, and the places cover the whole.
+test("a thousand moves leave no gap, no overlap and no view twice", async () => {
+  const { bordersOf, exchange, moveBorder, place, readLayout, rectsOf, viewsOf, without } = await bundled("shell/layout.ts");
+  let seed = 4711;
+  const any = (list) => list[(seed = (seed * 48271) % 2147483647) % list.length];
+  const sides = ["left", "right", "above", "below"];
+  let layout = { view: "Plant" };
+  for (let n = 0; n < 1000; ++n) {
+    const open = viewsOf(layout);
+    const view = any(tab_names);
+    const act = any(["place", "place", "exchange", "without", "border"]);
+    if (act === "place") {
+      layout = place(layout, view, any([null, ...open.filter((one) => one !== view)]), any(sides));
+    } else if (act === "exchange") {
+      layout = exchange(layout, any(open), view);
+    } else if (act === "without") {
+      layout = without(layout, view) ?? layout;
+    } else {
+      const border = any([undefined, ...bordersOf(layout)]);
+      if (border) layout = moveBorder(layout, border.path, border.position, any([-5, 2, 10, 37, 50, 98, 400]));
+    }
+    const now = viewsOf(layout);
+    assert.strictEqual(new Set(now).size, now.length, "a view is there twice");
+    if (act === "place") assert.ok(now.includes(view));
+    const rects = [...rectsOf(layout).values()];
+    const area = rects.reduce((sum, rect) => sum + rect.width * rect.height, 0);
+    assert.ok(Math.abs(area - 1) < 1e-6, `they cover ${area}`);
+    for (const [position, a] of rects.entries())
+      for (const b of rects.slice(position + 1)) {
+        const wide = Math.min(a.x + a.width, b.x + b.width) - Math.max(a.x, b.x);
+        const high = Math.min(a.y + a.height, b.y + b.height) - Math.max(a.y, b.y);
+        assert.ok(wide < 1e-6 || high < 1e-6, "two of them overlap");
+      }
+    assert.strictEqual(bordersOf(layout).length, now.length - 1);
+    assert.deepStrictEqual(viewsOf(readLayout(JSON.parse(JSON.stringify(layout)), tab_names)), now);
+  }
+  // What is kept may be anything.
+  for (const kept of [null, 4, "Plant", [], {}, { view: "Nowhere" }, { direction: "row", parts: [] }, { direction: "up", parts: [{ share: 1, layout: { view: "Bus" } }] }])
+    assert.strictEqual(readLayout(kept, tab_names), undefined);
+  const twice = { direction: "row", parts: ["Bus", "Bus", "Gone"].map((view) => ({ share: 0.4, layout: { view } })) };
+  assert.deepStrictEqual(readLayout(twice, tab_names), { view: "Bus" });
+});
+
+test("what two views want of one topic is one wish", async () => {
+  const { united } = await bundled("server/wishes.ts");
+  const wishes = (...options) => united(options.map((one) => ({ options: one, take: () => undefined })));
+  assert.deepStrictEqual(wishes({ rate: 5, step_ms: 10, names: ["a", "b"], station: "saw" }, { rate: 20, step_ms: 1000, names: ["b", "c"], station: "lift" }), {
+    rate: 20,
+    step_ms: 10,
+    names: ["a", "b", "c"],
+    station: "lift",
+  });
+  assert.deepStrictEqual(wishes({ rate: 20 }, { rate: 5, station: "saw" }), { rate: 20, station: "saw" });
+});

@@ -28,6 +28,8 @@ export const link = signal<Link>("connecting");
 
 let carrier: Carrier | undefined;
 let next_id = 1;
+// What views ask before the first server has come.
+const early: string[] = [];
 const waiting = new Map<number, Waiting>();
 const views = new Map<number, (frame: DataView) => void>();
 const topics = new Map<string, Wish[]>();
@@ -41,12 +43,11 @@ export function listen(event: string, take: (event: Message) => void): void {
 function transmit(command: Message): Promise<Message[]> {
   const id = next_id++;
   return new Promise((done, failed) => {
-    if (!carrier?.isOpen()) {
-      failed(new Refusal("The server is not there.", false));
-      return;
-    }
+    const text = JSON.stringify({ id, ...command });
+    if (carrier?.isOpen()) carrier.send(text);
+    else if (link.peek() === "connecting") early.push(text);
+    else return failed(new Refusal("The server is not there.", false));
     waiting.set(id, { parts: [], done, failed });
-    carrier.send(JSON.stringify({ id, ...command }));
   });
 }
 
@@ -131,6 +132,7 @@ export function connect(carry: Carry): void {
     opened: () => {
       link.value = "open";
       for (const [name, wishes] of topics) ask(name, wishes);
+      for (const text of early.splice(0)) carrier?.send(text);
     },
     text: (text) => take(JSON.parse(text) as Message),
     frame: takeFrame,
@@ -139,6 +141,7 @@ export function connect(carry: Carry): void {
       const failed = [...waiting.values()];
       waiting.clear();
       views.clear();
+      early.length = 0;
       for (const one of failed) one.failed(new Refusal("The server went away before it answered.", false));
     },
   });

@@ -50,7 +50,7 @@ function Clock() {
     <div class="clock">
       <span class={`lamp${now.running ? " on" : ""}`} />
       <span class="pace">
-        {now.running ? `× ${now.rate.toFixed(2)}` : stopped ? `${stopped.reason}${where}` : now.over ? "ended" : "stands"}
+        {now.running ? `× ${now.rate.toFixed(2)}` : stopped ? `${stopped.reason}${where}` : now.over ? "ended" : "paused"}
       </span>
       <span role="timer" aria-label="Time">
         {secondsText(now.us)}

@@ -55,7 +55,7 @@ function Row({ one, isPinned, position }: { one: WatchName; isPinned: boolean; p
               title="Holds the value in the field, or the one it has, against the program"
               onClick={() => (value?.forced ? void command({ do: "release", name: one.name }) : void send("force"))}
             >
-              F
+              Force
             </button>
           </span>
         )}
