@@ -7,8 +7,7 @@ import { useMotion } from "./motion";
 import { inUnit, scaleOf, unitText } from "./units";
 import { useWidth } from "./width";
 
-const height = 128;
-const belt_y = 74;
+const below = 54; // the belt and its scale
 const roller = 15;
 const edge = 30;
 const cleat = 24; // pixels from one mark of the belt to the next
@@ -22,10 +21,11 @@ export function Belt({ station, machine, state, marks }: Drawn) {
   const first = machine.from ?? 0;
   const pixels = (right - edge) / length; // of a unit
   const x = (value: number) => edge + Math.min(1, Math.max(0, (value - first) / length)) * (right - edge);
-  const partWidth = (machine.part_length ?? 0) * pixels;
-  const parts = state.machine?.parts ?? [];
   // Points of the way other than the barriers say nothing of an endless belt.
   const barriers = marks.filter((mark) => mark.kind === "barrier");
+  const belt_y = barriers.length > 0 ? 54 : 24; // parts lie on it, barriers stand over them
+  const partWidth = (machine.part_length ?? 0) * pixels;
+  const parts = state.machine?.parts ?? [];
   useMotion(station.name, (behind) => {
     const picture = svg.current;
     if (!picture) return;
@@ -42,7 +42,7 @@ export function Belt({ station, machine, state, marks }: Drawn) {
   });
   return (
     <div ref={box} class="way">
-      <svg ref={svg} width={width} height={height + barriers.length * 14} aria-hidden="true">
+      <svg ref={svg} width={width} height={belt_y + below + barriers.length * 14} aria-hidden="true">
         {machine.from !== null &&
           scaleOf({ from: first, to: first + length }, Math.max(2, Math.floor(width / 90))).map((step) => (
             <text key={step} x={x(step)} y={belt_y + 46} text-anchor="middle" class="small">

@@ -88,6 +88,7 @@ export function StationCard({ station, plant, close }: { station: Station; plant
     () => <Terminals station={station} state={state} around={plant} />,
     [station, plant, state?.in, state?.forced, state?.out, JSON.stringify(state?.analog)],
   );
+  const kind = machinePicture(station.name).value?.kind ?? "shaft";
   const lamp = !state?.powered ? "" : state.fault ? (state.error === false ? "warning" : "fault") : state.enabled ? "on" : "";
   return (
     <section class="panel station" aria-label={station.name}>
@@ -102,9 +103,13 @@ export function StationCard({ station, plant, close }: { station: Station; plant
           </button>
         )}
       </header>
-      {state && station.drive && <Face station={station} plant={plant} state={state} />}
-      {(machinePicture(station.name).value?.kind ?? "shaft") !== "shaft" && <Machine station={station} plant={plant} />}
-      {state && <Words state={state} />}
+      <div class={`front ${kind}`}>
+        <div class="told">
+          {state && station.drive && <Face station={station} plant={plant} state={state} />}
+          {state && <Words state={state} />}
+        </div>
+        {kind !== "shaft" && <Machine station={station} plant={plant} />}
+      </div>
       {terminals}
       {state && <ProcessData state={state} />}
       {hello.value?.mode === "plant" && <Supply name={station.name} powered={state?.powered ?? false} faults={!isGateway(station)} />}
