@@ -1,6 +1,6 @@
-// How long the programs of tests/bench and the plants of 64 drives take in WebAssembly and natively: the same command line in
-// turn, the best of several rounds each. Prints a table.
-//   node speed.mjs IPOS WASM_FOLDER PROJECT PLANTS [ROUNDS]      PLANTS has busy and travel, of ipos_bench_plants
+// What processor time the programs of tests/bench and the plants of 64 drives take in WebAssembly and natively: the same command
+// line in turn, the best of several rounds each, WebAssembly with what the engine compiles meanwhile. Prints a table.
+//   node speed.mjs IPOS WASM_FOLDER PROJECT PLANTS [ROUNDS]      PLANTS is of `ipos_bench_plant write`
 import { spawnSync } from "node:child_process";
 import { readFileSync, readdirSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -35,16 +35,19 @@ const cases = [
 ];
 
 async function inWasm({ folder }, files, words) {
-  const { code, ms, err } = await globalThis.runVerb(ipos, wasm, { folder, files, words });
+  const began = process.cpuUsage();
+  const { code, err } = await globalThis.runVerb(ipos, wasm, { folder, files, words });
   if (code !== 0) throw new Error(`${words.join(" ")}: ${err}`);
-  return ms;
+  const { user, system } = process.cpuUsage(began);
+  return (user + system) / 1000;
 }
 
 function natively({ folder }, words) {
-  const began = performance.now();
-  const { status, stderr } = spawnSync(program, words, { cwd: folder, encoding: "utf8" });
+  const timed = ["-c", 'TIMEFORMAT="%U %S"; time "$@"', "bash", program, ...words];
+  const { status, stderr } = spawnSync("bash", timed, { cwd: folder, encoding: "utf8" });
   if (status !== 0) throw new Error(`${words.join(" ")}: ${stderr}`);
-  return performance.now() - began;
+  const [user, system] = stderr.trim().split("\n").pop().split(" ").map(Number);
+  return (user + system) * 1000;
 }
 
 console.log(`${cpus()[0]?.model}, node ${process.version}, best of ${rounds}`);
