@@ -1,5 +1,4 @@
-// What a worker of a browser calls of ipos: a host of a plant that takes messages and gives messages, and the language server.
-// The verbs are main(), as on a command line. Files are those of emscripten in memory; what of them is kept, and where, is the
+// What a worker of a browser calls of ipos: a host of a plant that takes messages and gives messages. The verbs are main(), as on a command line. Files are those of emscripten in memory; what of them is kept, and where, is the
 // worker's matter (web/src/worker).
 #include <emscripten.h>
 
@@ -14,16 +13,15 @@
 #include "tools/cli/end_of_process.hpp"
 #include "tools/cli/files.hpp"
 #include "tools/input/plant_input.hpp"
-#include "tools/lsp/server.hpp"
-#include "tools/serve/compiled_sources.hpp"
 #include "tools/serve/host/plant_host.hpp"
 #include "tools/serve/host/settings.hpp"
+#include "tools/serve/language.hpp"
+#include "tools/serve/plant_files.hpp"
 
 // A message of the host for one of its clients. Bytes are gone when this returns.
 EM_JS(void, ipos_give, (int kind, int client, const char* body, size_t size), {
   Module["take"](kind, client, HEAPU8.subarray(body, body + size));
 });
-EM_JS(void, ipos_give_lsp, (const char* body, size_t size), { Module["takeLsp"](UTF8ToString(body, size)); });
 
 namespace ipos::tools::browser {
 namespace {
@@ -41,9 +39,9 @@ class BrowserClock final : public serve::Clock {
   serve::WallClock::time_point now() const override { return serve::WallClock::now(); }
 };
 
-// Each plant has its own, as with `ipos serve`.
+// Each plant has its own, as with `ipos serve`; below the folder that the worker keeps.
 serve::SettingsPlace settings_of(const std::string& plant) {
-  const std::string file = "/kept/" + plant + ".json";
+  const std::string file = "/home/.kept" + std::filesystem::absolute(plant).string() + ".json";
   return {[file] {
             serve::Json settings = serve::Json::parse(try_read_file(file).value_or("{}"), nullptr, false);
             return settings.is_object() ? settings : serve::Json::object();
@@ -62,12 +60,15 @@ struct Hosted {
   BrowserClock clock;
   serve::Copies copies;
   serve::Ports ports;
-  serve::CompiledSources sources;
+  serve::PlantFiles files;
+  serve::LanguageServer language;
   serve::PlantHost host;
 
   explicit Hosted(PlantInput input)
-      : host([input] { return make_plant(input, runtime::FileUse::Look); },
-             std::filesystem::path(input.path).filename().string(), IPOS_VERSION, {out, clock, copies, ports, sources}) {
+      : files(input.path, {}),
+        language({}),
+        host([input] { return make_plant(input, runtime::FileUse::Look); },
+             std::filesystem::path(input.path).filename().string(), IPOS_VERSION, {out, clock, copies, ports, files, language}) {
     const serve::SettingsPlace place = settings_of(input.path);
     serve::add_settings(host.router(), place);
     host.restore(place.read());
@@ -75,7 +76,6 @@ struct Hosted {
 };
 
 std::unique_ptr<Hosted> hosted;
-std::unique_ptr<lsp::Server> language_server;
 
 }  // namespace
 }  // namespace ipos::tools::browser
@@ -114,18 +114,5 @@ EMSCRIPTEN_KEEPALIVE double ipos_turn() {
   const auto now = browser::hosted->clock.now();
   if (due <= now) return 0;
   return due - now > std::chrono::milliseconds(100) ? kLongest : Milliseconds(due - now).count();
-}
-
-// A message of an editor; what the server answers comes before this returns.
-EMSCRIPTEN_KEEPALIVE void ipos_lsp(const char* body, size_t size) {
-  if (!browser::language_server)
-    browser::language_server =
-        std::make_unique<ipos::tools::lsp::Server>(ipos::tools::try_read_file, [](const ipos::tools::lsp::Json& message) {
-          const std::string text = message.dump(-1, ' ', false, ipos::tools::lsp::Json::error_handler_t::replace);
-          ipos_give_lsp(text.data(), text.size());
-        });
-  browser::language_server->receive({body, size});
-  while (browser::language_server->run()) {
-  }
 }
 }
