@@ -149,8 +149,9 @@ struct Session {
   SteadyClock clock;
   tools::serve::Copies copies;
   tools::serve::Ports ports;
-  tools::serve::Sources sources;
-  tools::serve::PlantHost host{make(), "plant", "0", {post, clock, copies, ports, sources}};
+  tools::serve::Files files;
+  tools::serve::Language language;
+  tools::serve::PlantHost host{make(), "plant", "0", {post, clock, copies, ports, files, language}};
   int slow = 0;
 
   explicit Session(History* history)
