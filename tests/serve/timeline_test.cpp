@@ -78,8 +78,8 @@ class Timeline : public ::testing::Test {
 
   SlowClock clock;
   tools::serve::Copies copies;
-  tools::serve::Sources sources;
-  Page page{the_plant(), clock, copies, sources};
+  tools::serve::Files files;  // none
+  Page page{the_plant(), clock, copies, files};
 };
 
 using Texts = std::vector<std::string>;
