@@ -37,6 +37,7 @@ std::string click_text(const Json& action) {
   if (act == "fault") return fmt::format("{}{}", text("kind"), on("", " ends"));
   if (act == "parameters.set") return action.contains("number") ? text("number") : fmt::format("parameter {}", action["index"].dump());
   if (act == "parameters.load") return "parameters loaded";
+  if (act == "load") return "program loaded";
   if (act == "bus.send") return "telegram to " + text("bus");
   return without_station(text("name"));
 }
