@@ -38,7 +38,7 @@ bus_layer(profibus
           interface_card.cpp fms_connection.cpp fms_objects.cpp fms_server.cpp
   USES bus_line bus_rs485 bus_movilink clock stdlib)
 # Telegrams of all lines as words, as logs, and as a DBC file.
-bus_layer(words SOURCES can_words.cpp bus_words.cpp USES bus_can bus_movilink bus_canopen bus_profibus)
+bus_layer(words SOURCES can_words.cpp dp_words.cpp bus_words.cpp USES bus_can bus_movilink bus_canopen bus_profibus)
 bus_layer(log
   SOURCES candump.cpp bus_load.cpp replay.cpp serial_log.cpp profibus_log.cpp
   HOT read_serial_log.cpp  # alone: its names are those of candump.cpp

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "runtime/bus/profibus/fieldbus_parameters.hpp"
+#include "runtime/station/dp_slaves.hpp"
+
 namespace ipos::runtime {
 namespace {
 
@@ -18,8 +21,10 @@ UnitNames unit_names(const Station& station, const SlaveSettings& settings) {
   unit.name = station.config().name;
   unit.unit = station.config().unit;
   unit.settings = settings;
-  unit.output = assignment(station.drive(), 870);
-  unit.input = assignment(station.drive(), 873);
+  // Control word 1, speed, ramp; status word 1, speed, apparent current (docs/reference/protocols/profibus.md, The unit).
+  const bool fixed = unit.unit->has(stdlib::Trait::OwnParameterNumbers);
+  unit.output = fixed ? WordAssignment{9, 1, 8} : assignment(station.drive(), 870);
+  unit.input = fixed ? WordAssignment{6, 1, 2} : assignment(station.drive(), 873);
   if (station.image() != nullptr)
     for (const vm::Symbol& symbol : station.image()->symbols)
       for (uint32_t n = 0; n < symbol.count; ++n)
@@ -128,6 +133,49 @@ TelegramNames serial_names(const Plant& plant) {
   return names;
 }
 
-BusNames bus_names(const Plant& plant) { return {can_names(plant), serial_names(plant)}; }
+namespace {
+
+DpSlaveNames slave_names(const Plant& plant, const Bus& bus, uint8_t address) {
+  const DpSlaveOfPlant slave = dp_slave_at(plant, bus, address);
+  DpSlaveNames names;
+  if (slave.name.empty()) return names;
+  names.address = address;
+  names.name = slave.name;
+  names.accepts = slave.option->accepts;
+  names.configuration = dp_configuration_of(plant, bus, address);
+  names.gateway = slave.gateway != nullptr;
+  if (slave.station != nullptr) {
+    UnitNames unit = unit_names(*slave.station, {});
+    names.own_numbers = unit.unit->has(stdlib::Trait::OwnParameterNumbers);
+    if (names.own_numbers) unit.first_index = profibus::kFirstParameterIndex;
+    names.drives.push_back(std::move(unit));
+    return names;
+  }
+  const TelegramNames behind = telegram_names(plant, &slave.gateway->line());
+  for (size_t n = 0; n < slave.gateway->drive_count(); ++n) {
+    const uint8_t drive = slave.gateway->drive(n).address;
+    const UnitNames* known = behind.unit_at(drive);
+    UnitNames& unit = names.drives.emplace_back(known != nullptr ? *known : UnitNames{});
+    if (known == nullptr) unit.name = fmt::format("address {}", drive);
+    unit.settings.address = drive;
+  }
+  return names;
+}
+
+}  // namespace
+
+std::vector<DpSlaveNames> dp_names(const Plant& plant, const Bus& bus) {
+  std::vector<DpSlaveNames> slaves;
+  for (int address = 0; address <= profibus::kLastStation; ++address)
+    if (DpSlaveNames slave = slave_names(plant, bus, static_cast<uint8_t>(address)); !slave.name.empty())
+      slaves.push_back(std::move(slave));
+  return slaves;
+}
+
+BusNames bus_names(const Plant& plant) {
+  BusNames names{can_names(plant), serial_names(plant), {}};
+  for (const ProfibusBus* bus : plant.all<ProfibusBus>()) names.dp.lines[bus->name()] = dp_names(plant, *bus);
+  return names;
+}
 
 }  // namespace ipos::runtime

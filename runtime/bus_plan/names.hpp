@@ -27,6 +27,9 @@ CanNames can_names(const Plant& plant);
 // The same for RS-485: P810 as address, P811 as group, no objects.
 TelegramNames serial_names(const Plant& plant);
 
+// The slaves of a PROFIBUS line.
+std::vector<DpSlaveNames> dp_names(const Plant& plant, const Bus& bus);
+
 // For every line of the plant.
 BusNames bus_names(const Plant& plant);
 

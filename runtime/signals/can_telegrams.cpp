@@ -24,11 +24,17 @@ using Message = TelegramMessage;
 
 std::span<const uint8_t> data_of(const Frame& frame) { return std::span(frame.data).first(frame.length); }
 
+// The signals that are made, and what each has in a frame where one is given.
+struct Made {
+  std::vector<Signal> signals;
+  const Frame* said = nullptr;
+  std::vector<int64_t> values;
+};
+
 // One identifier of a line, for which signals are made.
 class Telegrams {
  public:
-  Telegrams(const PlantParts& plant, CanBus& bus, uint32_t id, bool extended, std::string text,
-            std::vector<Signal>& out)
+  Telegrams(const PlantParts& plant, CanBus& bus, uint32_t id, bool extended, std::string text, Made& out)
       : plant_(plant), bus_(bus), id_(id), extended_(extended), text_(std::move(text)), out_(out) {}
 
   void add_fields(Message message) {
@@ -46,8 +52,9 @@ class Telegrams {
   }
 
   void add_count() {
-    out_.push_back(signal("count", "frames since it is looked at", 0));
-    out_.back().read = [&bus = bus_, id = id_, extended = extended_] {
+    if (out_.said != nullptr) return;  // no frame carries it
+    out_.signals.push_back(signal("count", "frames since it is looked at", 0));
+    out_.signals.back().read = [&bus = bus_, id = id_, extended = extended_] {
       return static_cast<int64_t>(bus.last_frames().of(id, extended).count);
     };
   }
@@ -129,8 +136,9 @@ class Telegrams {
   }
   template <typename Read>
   void add(std::string_view word, std::string_view meaning, size_t bits, Read read) {
-    out_.push_back(signal(word, meaning, bits));
-    out_.back().read = [&bus = bus_, id = id_, extended = extended_, read]() -> int64_t {
+    if (out_.said != nullptr) out_.values.push_back(read(*out_.said));
+    out_.signals.push_back(signal(word, meaning, bits));
+    out_.signals.back().read = [&bus = bus_, id = id_, extended = extended_, read]() -> int64_t {
       return read(bus.last_frames().of(id, extended).frame);
     };
   }
@@ -140,11 +148,11 @@ class Telegrams {
   uint32_t id_;
   bool extended_;
   std::string text_;
-  std::vector<Signal>& out_;
+  Made& out_;
 };
 
 void add_movilink(const PlantParts& plant, CanBus& bus, const std::string& unit, const SlaveSettings& settings,
-                  std::vector<Signal>& out) {
+                  Made& out) {
   for (const TelegramType& type : kTelegrams) {
     if ((type.known == TelegramKnown::Synchronous && !settings.synchronous) ||
         (type.known == TelegramKnown::Channel2 && !settings.second_channel))
@@ -162,7 +170,7 @@ void add_movilink(const PlantParts& plant, CanBus& bus, const std::string& unit,
 }
 
 void add_node(const PlantParts& plant, CanBus& bus, const std::string& unit, uint8_t node,
-              std::vector<Signal>& out) {
+              Made& out) {
   using canopen::Connection;
   for (const auto& [connection, message] : {std::pair{Connection::Emergency, Message::Emergency},
                                             {Connection::SdoRequest, Message::Sdo},
@@ -176,9 +184,8 @@ void add_node(const PlantParts& plant, CanBus& bus, const std::string& unit, uin
   }
 }
 
-// What is there of a line, a signal once: several units may have one group address.
-std::vector<Signal> line_telegrams(const PlantParts& plant, CanBus& bus) {
-  std::vector<Signal> out;
+// What is there of a line; several units may have one group address.
+void add_line(const PlantParts& plant, CanBus& bus, Made& out) {
   bool nodes = false;
   for (const auto& station : plant.stations())
     for (const int number : {1, 2}) {
@@ -204,24 +211,37 @@ std::vector<Signal> line_telegrams(const PlantParts& plant, CanBus& bus) {
     made.add_count();
     for (size_t n = 0; n < object.format->variables(); ++n) made.add_variable(n);
   });
+}
+
+// Each signal once.
+std::vector<Signal> line_telegrams(const PlantParts& plant, CanBus& bus) {
+  Made made;
+  add_line(plant, bus, made);
+  std::vector<Signal>& out = made.signals;
   std::stable_sort(out.begin(), out.end(),
                    [](const Signal& a, const Signal& b) { return a.name < b.name; });
   out.erase(std::unique(out.begin(), out.end(),
                         [](const Signal& a, const Signal& b) { return a.name == b.name; }),
             out.end());
-  return out;
+  return std::move(out);
 }
 
 // Every word that any identifier can have.
 std::vector<Signal> all_words(const PlantParts& plant, CanBus& bus, uint32_t id, bool extended) {
-  std::vector<Signal> out;
+  Made out;
   Telegrams made(plant, bus, id, extended, "", out);
   made.add_count();
   made.add_fields(Message::Bytes);
   for (size_t n = 0; n < 2; ++n) made.add_variable(n);
   for (const bool input : {false, true})
     for (uint8_t n = 1; n <= canopen::objects::kProcessWords && !extended; ++n) made.add_mapped(input, n);
-  return out;
+  return std::move(out.signals);
+}
+
+// The bytes of a frame of which nothing is known.
+void add_bytes(const PlantParts& plant, CanBus& bus, const Frame& frame, Made& out) {
+  Telegrams(plant, bus, frame.id, frame.extended, "", out).add_fields(Message::Bytes);
+  out.signals.resize(std::min<size_t>(out.signals.size(), frame.length));
 }
 
 class CanTelegrams final : public TelegramLine {
@@ -236,6 +256,28 @@ class CanTelegrams final : public TelegramLine {
   }
   std::vector<Signal> all_of(std::string_view identity) const override {
     return all_words(plant_, bus_, *number_of(identity), identity.size() == kExtendedIdDigits);
+  }
+  std::vector<TelegramValue> values_of(const HeardTelegram& telegram) const override {
+    Frame frame(telegram.id, 0);
+    frame.extended = telegram.extended;
+    frame.length = static_cast<uint8_t>(std::min(telegram.bytes.size(), frame.data.size()));
+    std::copy_n(telegram.bytes.begin(), frame.length, frame.data.begin());
+    std::vector<TelegramValue> values;
+    const std::string own = fmt::format("{}.{}.", bus_.name(), id_text(frame.id, frame.extended));
+    const auto take = [&](const auto& add) {
+      Made made;
+      made.said = &frame;
+      add(made);
+      for (size_t n = 0; n < made.signals.size(); ++n) {
+        Signal& signal = made.signals[n];
+        const auto same = [&signal](const TelegramValue& known) { return known.signal.name == signal.name; };
+        if (signal.name.starts_with(own) && std::none_of(values.begin(), values.end(), same))
+          values.push_back({std::move(signal), made.values[n]});
+      }
+    };
+    take([this](Made& made) { add_line(plant_, bus_, made); });
+    if (values.empty()) take([&](Made& made) { add_bytes(plant_, bus_, frame, made); });
+    return values;
   }
 
  private:

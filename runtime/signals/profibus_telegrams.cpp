@@ -7,9 +7,9 @@
 #include <map>
 #include <utility>
 
-#include "runtime/bus/profibus/card.hpp"
 #include "runtime/bus/profibus/cfg_data.hpp"
 #include "runtime/signals/telegram_lines.hpp"
+#include "runtime/station/dp_slaves.hpp"
 
 namespace ipos::signals {
 
@@ -22,49 +22,6 @@ constexpr size_t kUsualWords = 3;
 constexpr size_t kMostDpWords = kMostGatewayDrives * kUsualWords;
 
 using profibus::Configuration;
-
-// The slave of an address, as far as the plant has it.
-struct DpSlaveOfPlant {
-  std::string name;                              // empty: it is not in the plant
-  const profibus::OptionType* option = nullptr;  // its card
-  const Configuration* configuration = nullptr;  // of the data exchange now
-};
-
-DpSlaveOfPlant slave_at(const PlantParts& plant, const Bus& bus, uint8_t address) {
-  for (const auto& station : plant.stations()) {
-    const StationConfig& config = station->config();
-    const ProfibusPort* port = std::as_const(*station).profibus();
-    if (port == nullptr || config.profibus.bus.bus != bus.name()) continue;
-    const profibus::DpSlave& slave = port->card().station().slave();
-    if (slave.address() == address) return {config.name, config.profibus.option, slave.configuration()};
-  }
-  for (const Gateway* gateway : plant.all<Gateway>()) {
-    const ProfibusUse& use = gateway->profibus();
-    const profibus::DpSlave& slave = gateway->dp().slave();
-    if (use.bus.bus == bus.name() && slave.address() == address)
-      return {gateway->name(), use.option, slave.configuration()};
-  }
-  return {};
-}
-
-const profibus::SlavePlan* plan_of(const PlantParts& plant, const Bus& bus, uint8_t address) {
-  for (const ProfibusControl* master : plant.all<ProfibusControl>())
-    if (master->settings().bus == bus.name())
-      for (const profibus::SlavePlan& plan : master->settings().slaves)
-        if (plan.address == address) return &plan;
-  return nullptr;
-}
-
-// That of the master of the plant, which lasts when the data exchange has ended; else that of the data exchange now.
-const Configuration* configuration_of(const PlantParts& plant, const Bus& bus, uint8_t address) {
-  const DpSlaveOfPlant slave = slave_at(plant, bus, address);
-  if (const profibus::SlavePlan* plan = plan_of(plant, bus, address)) {
-    const profibus::OptionType& option =
-        slave.option != nullptr ? *slave.option : profibus::option_type(profibus::OptionKind::Ffp31);
-    return profibus::find_configuration(plan->cfg, option.accepts);
-  }
-  return slave.configuration;
-}
 
 // Octets of a Data_Exchange in their two parts.
 struct ExchangeParts {
@@ -91,7 +48,7 @@ class DpSignals {
     for (const bool answer : {false, true}) {
       const std::string_view way = answer ? "answer of" : "request to";
       add(answer ? "answers" : "requests",
-          fmt::format("frames {} {} since it is looked at", answer ? "of" : "to", whose_), 0,
+          fmt::format("frames {} {} since it is looked at", answer ? "of" : "to", whose_), 0, nullptr,
           [answer](const LastDpFrames& last) {
             return static_cast<int64_t>(answer ? last.answers : last.requests);
           });
@@ -107,6 +64,21 @@ class DpSignals {
     }
     add_fields(TelegramMessage::SlaveDiag, &LastDpFrames::diagnosis);
   }
+  // What one frame to or of it says.
+  std::vector<TelegramValue> said_by(const profibus::FdlFrame& frame) {
+    said_.emplace();
+    if (frame.is_request())
+      note_request(frame, *said_);
+    else
+      note_answer(frame, *said_);
+    const Configuration* configuration = dp_configuration_of(plant_, bus_, address_);
+    add_slave(configuration == nullptr ? 0 : configuration->words,
+              configuration != nullptr && configuration->parameter_channel);
+    add_commands();
+    std::vector<TelegramValue> values;
+    for (size_t n = 0; n < made.size(); ++n) values.push_back({std::move(made[n]), values_[n]});
+    return values;
+  }
   void add_commands() { add_fields(TelegramMessage::GlobalControl, &LastDpFrames::command); }
 
   std::vector<Signal> made;
@@ -115,20 +87,24 @@ class DpSignals {
   void add_fields(TelegramMessage message, profibus::Octets LastDpFrames::*octets) {
     for (const TelegramField& field : telegram_fields())
       if (field.message == message)
-        add(field.name, fmt::format("{}: {}", whose_, field.meaning), field.bits,
+        add(field.name, fmt::format("{}: {}", whose_, field.meaning), field.bits, octets,
             [&field, octets](const LastDpFrames& last) { return number_in(last.*octets, field); });
   }
   template <typename Read>
   void add_exchange(std::string_view word, std::string meaning, size_t bits, bool answer, Read read) {
-    add(word, std::move(meaning), bits,
+    add(word, std::move(meaning), bits, answer ? &LastDpFrames::inputs : &LastDpFrames::outputs,
         [&plant = plant_, &bus = bus_, address = address_, answer,
          read](const LastDpFrames& last) -> int64_t {
           return read(
-              ExchangeParts(answer ? last.inputs : last.outputs, configuration_of(plant, bus, address)));
+              ExchangeParts(answer ? last.inputs : last.outputs, dp_configuration_of(plant, bus, address)));
         });
   }
   template <typename Read>
-  void add(std::string_view word, std::string meaning, size_t bits, Read read) {
+  void add(std::string_view word, std::string meaning, size_t bits, profibus::Octets LastDpFrames::*octets, Read read) {
+    if (said_) {
+      if (octets == nullptr || ((*said_).*octets).empty()) return;  // it does not carry it
+      values_.push_back(read(*said_));
+    }
     Signal& signal =
         made.emplace_back(telegram_signal(bus_, fmt::format("{}", address_), word, std::move(meaning), bits));
     signal.read = [&bus = bus_, address = address_, read]() -> int64_t {
@@ -140,6 +116,8 @@ class DpSignals {
   ProfibusBus& bus_;
   uint8_t address_;
   std::string whose_;
+  std::optional<LastDpFrames> said_;  // a frame whose values are wanted
+  std::vector<int64_t> values_;       // of it, one a signal
 };
 
 class ProfibusTelegrams final : public TelegramLine {
@@ -155,9 +133,9 @@ class ProfibusTelegrams final : public TelegramLine {
     };
     for (int number = 0; number <= profibus::kLastStation; ++number) {
       const auto address = static_cast<uint8_t>(number);
-      const std::string name = slave_at(plant_, bus_, address).name;
-      if (name.empty() && plan_of(plant_, bus_, address) == nullptr) continue;
-      const Configuration* configuration = configuration_of(plant_, bus_, address);
+      const std::string name = dp_slave_at(plant_, bus_, address).name;
+      if (name.empty() && dp_plan_of(plant_, bus_, address) == nullptr) continue;
+      const Configuration* configuration = dp_configuration_of(plant_, bus_, address);
       DpSignals signals(plant_, bus_, address, name.empty() ? fmt::format("address {}", address) : name);
       signals.add_slave(configuration == nullptr ? kUsualWords : configuration->words,
                         configuration != nullptr && configuration->parameter_channel);
@@ -179,6 +157,13 @@ class ProfibusTelegrams final : public TelegramLine {
     signals.add_slave(kMostDpWords, true);
     signals.add_commands();
     return std::move(signals.made);
+  }
+  std::vector<TelegramValue> values_of(const HeardTelegram& heard) const override {
+    const auto frame = profibus::decode(heard.bytes);
+    if (!frame || !frame->has_control()) return {};
+    const uint8_t address = frame->is_request() ? frame->destination : frame->source;
+    const std::string name = dp_slave_at(plant_, bus_, address).name;
+    return DpSignals(plant_, bus_, address, name.empty() ? fmt::format("address {}", address) : name).said_by(*frame);
   }
 
  private:

@@ -23,6 +23,17 @@ class AddressSignals {
   AddressSignals(SerialBus& bus, uint8_t address, std::string whose)
       : bus_(bus), address_(address), whose_(std::move(whose)) {}
 
+  // What one telegram to or of it says.
+  std::vector<TelegramValue> said_by(const SerialTelegram& telegram) {
+    said_.emplace();
+    std::copy(telegram.words.begin(), telegram.words.end(), said_->words.begin());
+    said_->parameter = telegram.parameter;
+    add_content(telegram.response, telegram.format.words, telegram.format.parameter);
+    std::vector<TelegramValue> values;
+    for (size_t n = 0; n < made_.size(); ++n) values.push_back({std::move(made_[n]), values_[n]});
+    return values;
+  }
+
   // `answered`: somebody answers to the address, so that there are answers to look at.
   std::vector<Signal> all(bool answered) {
     add_way(false);
@@ -35,11 +46,15 @@ class AddressSignals {
     add(response ? "answers" : "requests",
         fmt::format("{} since it is looked at", response ? "answers" : "requests"), 0, response,
         [](const LastTelegram& last) { return static_cast<int64_t>(last.count); });
-    for (size_t n = 0; n < kSbusProcessWords; ++n)
+    add_content(response, kSbusProcessWords, true);
+  }
+
+  void add_content(bool response, size_t words, bool parameter) {
+    for (size_t n = 0; n < words; ++n)
       add(fmt::format("{}{}", response ? "PI" : "PO", n + 1), "process word", kTelegramWordBits, response,
           [n](const LastTelegram& last) -> int64_t { return last.words[n]; });
     for (const TelegramField& field : telegram_fields())
-      if (field.message == TelegramMessage::Parameter)
+      if (parameter && field.message == TelegramMessage::Parameter)
         add(fmt::format("{}_{}", response ? "answer" : "request", field.name), field.meaning, field.bits,
             response,
             [&field](const LastTelegram& last) { return number_in(encode(last.parameter), field); });
@@ -50,6 +65,7 @@ class AddressSignals {
     Signal& signal = made_.emplace_back(telegram_signal(
         bus_, fmt::format("{}", address_), word,
         fmt::format("{} {}: {}", response ? "answer of" : "request to", whose_, meaning), bits));
+    if (said_) values_.push_back(read(*said_));
     signal.read = [&bus = bus_, address = address_, response, read]() -> int64_t {
       return read(bus.last_telegrams().of(address, response));
     };
@@ -59,6 +75,8 @@ class AddressSignals {
   uint8_t address_;
   std::string whose_;
   std::vector<Signal> made_;
+  std::optional<LastTelegram> said_;  // a telegram whose values are wanted
+  std::vector<int64_t> values_;       // of it, one a signal
 };
 
 class SerialTelegrams final : public TelegramLine {
@@ -97,6 +115,11 @@ class SerialTelegrams final : public TelegramLine {
 
   std::vector<Signal> all_of(std::string_view identity) const override {
     return AddressSignals(bus_, *number_of(identity), fmt::format("address {}", identity)).all(true);
+  }
+  std::vector<TelegramValue> values_of(const HeardTelegram& heard) const override {
+    const auto telegram = decode_serial(heard.bytes);
+    if (!telegram) return {};
+    return AddressSignals(bus_, telegram->address, fmt::format("address {}", telegram->address)).said_by(*telegram);
   }
 
  private:

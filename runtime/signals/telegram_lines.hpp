@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "runtime/signals/find.hpp"
+#include "runtime/signals/telegrams.hpp"
 #include "runtime/station/can_bus.hpp"
 #include "runtime/station/plant_parts.hpp"
 #include "runtime/station/profibus_bus.hpp"
@@ -32,6 +33,8 @@ class TelegramLine {
   virtual std::optional<std::string> identity(std::string_view text) const = 0;
   // Everything that telegrams with it may carry.
   virtual std::vector<Signal> all_of(std::string_view identity) const = 0;
+  // What one telegram of it says.
+  virtual std::vector<TelegramValue> values_of(const HeardTelegram&) const { return {}; }
 };
 
 // One for each class of bus. Both must outlive it.

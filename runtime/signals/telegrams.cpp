@@ -76,6 +76,13 @@ std::optional<Signal> find_telegram_signal(const PlantParts& plant, std::string_
   return std::nullopt;
 }
 
+std::vector<TelegramValue> values_of_telegram(const PlantParts& plant, const Bus& bus,
+                                              const HeardTelegram& telegram) {
+  for (const auto& line : telegram_lines(plant))
+    if (&line->bus() == &bus) return line->values_of(telegram);
+  return {};
+}
+
 std::vector<Signal> match_telegram_signals(const PlantParts& plant, std::string_view pattern) {
   std::vector<Signal> found;
   for (const auto& line : telegram_lines(plant)) {

@@ -63,6 +63,7 @@ class Gateway final : public Control,
   uint8_t lost() const { return lost_; }  // a bit for each drive that does not answer, the lowest address first
   const ControlSettings& settings() const { return control_.settings(); }
   const ProfibusUse& profibus() const { return gateway_.profibus; }
+  const CanLine& line() const { return line_; }
 
  private:
   struct Watched {

@@ -18,6 +18,18 @@ struct LastDpFrames {
   uint64_t answers = 0;  // all frames of it that answer; a short acknowledgement does not say whose it is
 };
 
+// Data_Exchange has no access points (EN 50170 volume 2).
+inline void note_request(const profibus::FdlFrame& frame, LastDpFrames& last) {
+  ++last.requests;
+  if (!frame.dsap && !frame.ssap && !frame.data.empty()) last.outputs = frame.data;
+  if (frame.dsap && profibus::dp_service(*frame.dsap) == profibus::DpService::GlobalControl) last.command = frame.data;
+}
+inline void note_answer(const profibus::FdlFrame& frame, LastDpFrames& last) {
+  ++last.answers;
+  if (!frame.dsap && !frame.ssap && !frame.data.empty()) last.inputs = frame.data;
+  if (frame.ssap && profibus::dp_service(*frame.ssap) == profibus::DpService::SlaveDiag) last.diagnosis = frame.data;
+}
+
 class LastDpTraffic final : public profibus::LineObserver {
  public:
   explicit LastDpTraffic(profibus::Line& line) { line.add_observer(*this); }
@@ -29,25 +41,11 @@ class LastDpTraffic final : public profibus::LineObserver {
     if (!reception.frame || !reception.frame->has_control()) return;
     const profibus::FdlFrame& frame = *reception.frame;
     if (frame.is_request())
-      take_request(frame, last_[frame.destination & profibus::kBroadcast]);
+      note_request(frame, last_[frame.destination & profibus::kBroadcast]);
     else
-      take_answer(frame, last_[frame.source & profibus::kBroadcast]);
+      note_answer(frame, last_[frame.source & profibus::kBroadcast]);
   }
   void on_line_event(const profibus::Line&, const profibus::LineEvent&) override {}
-
-  // Data_Exchange has no access points (EN 50170 volume 2).
-  static void take_request(const profibus::FdlFrame& frame, LastDpFrames& last) {
-    ++last.requests;
-    if (!frame.dsap && !frame.ssap && !frame.data.empty()) last.outputs = frame.data;
-    if (frame.dsap && profibus::dp_service(*frame.dsap) == profibus::DpService::GlobalControl)
-      last.command = frame.data;
-  }
-  static void take_answer(const profibus::FdlFrame& frame, LastDpFrames& last) {
-    ++last.answers;
-    if (!frame.dsap && !frame.ssap && !frame.data.empty()) last.inputs = frame.data;
-    if (frame.ssap && profibus::dp_service(*frame.ssap) == profibus::DpService::SlaveDiag)
-      last.diagnosis = frame.data;
-  }
 
   std::array<LastDpFrames, profibus::kBroadcast + 1> last_{};
 };

@@ -61,6 +61,10 @@ TEST_F(Browser, EditsAndRebuilds) { expect_node_passed(run("edit.test.mjs"), 7);
 
 TEST_F(Browser, GoesToAnyMoment) { expect_node_passed(run("timeline.test.mjs"), 5); }
 
+TEST_F(Browser, ReadsTelegramsAndSavesThem) { expect_node_passed(run("trace.test.mjs"), 3); }
+
+TEST_F(Browser, ComparesAndSetsParameters) { expect_node_passed(run("parameters.test.mjs"), 2); }
+
 TEST_F(Browser, HearsARealDrive) { expect_node_passed(run("device.test.mjs"), 3); }
 
 }  // namespace

@@ -55,7 +55,7 @@ class Decoder {
     fmt::print("{}\n", text);
   }
   void take(const runtime::ProfibusEntry& entry) {
-    const std::string text = words().describe(entry.reception);
+    const std::string text = words().describe(entry.line, entry.reception);
     if (json_) return print(telegram_json(entry), text);
     if (!entry.line.empty())
       fmt::print("{} {} ", runtime::serial_time_text(entry.reception.start), compiler::printable(entry.line));

@@ -63,7 +63,7 @@ void Monitor::take(Time time, const std::string& line, const profibus::Reception
   ++shown_;
   const auto& frame = reception.frame;
   if (!frame) ++void_;
-  const std::string text = words_.describe(reception);
+  const std::string text = words_.describe(line, reception);
   if (!screen_) return show(time, line, text);
   // A row for each pair of stations.
   const uint32_t pair = frame ? uint32_t{frame->source} << 8 | frame->destination : UINT32_MAX;

@@ -54,7 +54,7 @@ class LineSimulation final : public Simulation {
 class CanLink : public BusLink, private CanNode {
  public:
   CanLink(const LinkFlags& link, uint32_t baud)
-      : BusLink(link), line_(queue(), 0, "CAN", baud), sender_(line_, line_.attach("ipos", baud, *this)) {
+      : BusLink(link), line_(queue(), 0, "CAN", baud), sender_(line_, line_.attach(kNode, baud, *this)) {
     auto port = open_can_port(link.port, baud, clock());
     if (!port) throw Failure(kIoError, port.error().text);
     port_ = std::move(*port);
@@ -146,7 +146,7 @@ class SerialLink final : public BusLink, private SerialNode {
       : BusLink(link),
         port_(open_port(link, baud, clock())),
         line_(queue(), 0, "RS-485", baud),
-        sender_(line_, line_.attach("ipos", baud, *this)),
+        sender_(line_, line_.attach(kNode, baud, *this)),
         requester_(queue(), 1, sender_, timing_of(link, baud, std::max(port_->latency(), kGapSlack))),
         master_(queue(), requester_, client()),
         bridge_(queue(), 2, line_, *port_, kGapSlack) {}

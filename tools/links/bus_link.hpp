@@ -35,6 +35,8 @@ struct LinkFlags {
 
 class BusLink : private runtime::MovilinkClient {
  public:
+  static constexpr const char* kNode = "ipos";  // what it is called on its line
+
   // Opens the port; a Failure says why it cannot be used.
   static std::unique_ptr<BusLink> open(const LinkFlags& flags);
   virtual ~BusLink() = default;

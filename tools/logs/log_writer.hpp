@@ -1,27 +1,14 @@
-// Writes logs in the forms of log_forms.hpp but BLF, bit by bit, so that what is written can be read at once.
-// Virtual time 0 is 1 January 2000, as in candump logs.
+// The log that a run writes: the buses of a plant into a file of a form.
 #pragma once
 
 #include <memory>
 #include <ostream>
-#include <span>
 #include <string>
-#include <string_view>
 
 #include "runtime/plant/plant.hpp"
+#include "tools/logs/writing/writer.hpp"
 
 namespace ipos::tools {
-
-class LogWriter {
- public:
-  virtual ~LogWriter() = default;
-
-  virtual void can(runtime::Time time, const std::string& bus, const runtime::Frame& frame) = 0;
-  // Forms of CAN alone leave these out.
-  virtual void serial(const std::string& /*line*/, const runtime::Reception& /*reception*/) {}
-  virtual void dp(const std::string& /*line*/, const profibus::Reception& /*reception*/) {}
-  virtual bool has_serial() const { return false; }
-};
 
 // By the ending of the file's name (tools/cli/output_forms.hpp), which is known. The stream must outlive it.
 std::unique_ptr<LogWriter> make_log_writer(const std::string& path, std::ostream& out);

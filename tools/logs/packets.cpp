@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "runtime/bus/log/log_name.hpp"
-#include "tools/logs/pcapng.hpp"
+#include "tools/logs/writing/pcapng.hpp"
 
 namespace ipos::tools {
 namespace {

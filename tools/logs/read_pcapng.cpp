@@ -1,6 +1,6 @@
 // Reads pcapng of either byte order, also such as Wireshark has captured: sections, interfaces with the unit of their times,
 // packets. Blocks and options that say nothing about frames are passed over.
-#include "tools/logs/pcapng.hpp"
+#include "tools/logs/writing/pcapng.hpp"
 
 #include <fmt/format.h>
 

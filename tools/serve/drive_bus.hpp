@@ -31,6 +31,9 @@ class DriveBus final : private BusSource {
  private:
   runtime::Time line_now() const override { return link_.now(); }
   runtime::Time shown(runtime::Time of_line) const override { return now_() - (link_.now() - of_line); }
+  bool is_ours(const std::string&, const std::string& node) const override {
+    return node == BusLink::kNode || node == kPageNode;
+  }
   void send(const Router::Call& call) override;
   // What the process data words mean; a drive that was silent is asked again.
   void ask_names();

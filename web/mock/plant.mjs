@@ -260,9 +260,17 @@ const commands = {
   "bus.trace": (plant) => ({
     ok: true,
     frames: Array.from({ length: Math.min(40, counted(plant)) }, (_, n) => ({
-      n, us: n * 5000, bus: "sbus", id: 524, extended: false, remote: false, error: false, data: "000613880000", text: "PO1-PO3 to 33",
+      n: n + 1, us: n * 5000, bus: "sbus", id: 524, extended: false, remote: false, error: false, sender: "saw", ours: true, dlc: 6, data: "000613880000",
+      text: "PO1-PO3 to 33",
     })),
+    last: Math.min(40, counted(plant)),
+    reached: null,
   }),
+  "bus.telegram": (plant, { n, bus }) => ({
+    ok: true, telegram: { n, bus }, from_us: 0, channels: true, answer: null, question: null,
+    fields: [{ signal: "sbus.20C.PO1", meaning: "process word", value: 6, bits: 16 }],
+  }),
+  "bus.save": () => ({ ok: true, file: "trace.log", text: "(946684800.000000) sbus 20C#000613880000\n", telegrams: 1, left_out: [], until: 1, next: null }),
   settings: (plant) => ({ ok: true, settings: plant.settings }),
   "settings.set": (plant, { name, value }) => ((plant.settings[name] = value), { ok: true }),
   program: () => ({ ok: true, files: [{ name: "SAW.IPC", text: source, lines: [6, 8, 9, 10, 11] }], tasks: ["1"] }),

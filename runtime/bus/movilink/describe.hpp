@@ -27,6 +27,7 @@ struct UnitNames {
   WordAssignment output{};  // P870..P872
   WordAssignment input{};   // P873..P875
   std::vector<VariableName> variables;
+  uint16_t first_index = 0;  // indices on the bus are higher by this: 1000 of a MOVITRAC 31 over PROFIBUS
 
   // "lTrDataLow", or "H426" for a variable without a name.
   std::string variable(uint32_t number) const;

@@ -25,7 +25,7 @@ using WordAssignment = std::array<uint8_t, 3>;
 // The scale of an assignment; a plain number with sign for codes without one.
 ProcessWordScale process_word_scale(bool input, uint8_t code);
 
-// "SPEED", by the unit's own list; empty for a code it does not have.
+// "SPEED", by the unit's own list or, where it has none, that of MOVIDRIVE; empty for a code that is not in it.
 std::string_view process_word_name(const stdlib::UnitType& unit, bool input, uint8_t code);
 
 // "1000.0 rpm", "0006h", "25.00 %"

@@ -73,7 +73,9 @@ std::string value_text(const IndexText& index, Service service, uint32_t data) {
 
 std::string parameter_words(const UnitNames* unit, const ParameterTelegram& telegram, bool request) {
   const auto service = service_from_code(telegram.service_code());
-  const IndexText index = index_text(unit, telegram.index);
+  const uint16_t first = unit == nullptr ? uint16_t{0} : unit->first_index;
+  const IndexText index = telegram.index < first ? IndexText{"unknown index", nullptr}
+                                                 : index_text(unit, static_cast<uint16_t>(telegram.index - first));
   std::string text =
       service ? std::string(service_text(*service)) : fmt::format("service {}", telegram.service_code());
   text += fmt::format(" {} {}", telegram.index, index.name);
@@ -91,7 +93,8 @@ std::string process_words_text(const UnitNames* unit, const std::string& what, b
                                std::span<const uint16_t> words) {
   std::string text = what;
   for (size_t n = 0; n < words.size(); ++n) {
-    const uint8_t code = unit == nullptr ? 0 : (input ? unit->input : unit->output)[n];
+    const bool assigned = unit != nullptr && n < unit->output.size();  // a fieldbus may carry more words
+    const uint8_t code = assigned ? (input ? unit->input : unit->output)[n] : uint8_t{0};
     const std::string_view name =
         unit == nullptr ? std::string_view{} : process_word_name(unit_type(unit), input, code);
     text += n == 0 ? " " : ", ";

@@ -122,7 +122,11 @@ std::string describe(const Diagnosis& diagnosis) {
   return text;
 }
 
-std::string describe(const FdlFrame& frame) {
+bool is_data_exchange(const FdlFrame& frame) {
+  return frame.has_control() && !frame.dsap && !frame.ssap && !frame.data.empty();
+}
+
+std::string describe(const FdlFrame& frame, std::string_view data) {
   if (frame.is_acknowledgement()) return "short acknowledgement";
   const std::string way = fmt::format("{} -> {}", frame.source, frame.destination);
   if (frame.is_token()) return way + " token";
@@ -143,6 +147,7 @@ std::string describe(const FdlFrame& frame) {
           fmt::format(", FCB {}{}", frame.frame_count() ? 1 : 0, frame.frame_count_valid() ? "" : " (first)");
   }
   if (frame.data.empty()) return text;
+  if (!data.empty()) return fmt::format("{}: {}", text, data);
   const auto point = frame.is_request() ? frame.dsap : frame.ssap;
   const auto service = point ? dp_service(*point) : std::nullopt;
   return text + ": " +

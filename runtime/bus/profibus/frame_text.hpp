@@ -3,14 +3,19 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "runtime/bus/profibus/dp_service.hpp"
 #include "runtime/bus/profibus/fdl_frame.hpp"
 
 namespace ipos::profibus {
 
-// "1 -> 8 Set_Prm, SRD high, FCB 1: lock, sync, watchdog 0.2 s, min Tsdr 11, ident 3100h, groups 00h"
-std::string describe(const FdlFrame& frame);
+// "1 -> 8 Set_Prm, SRD high, FCB 1: lock, sync, watchdog 0.2 s, min Tsdr 11, ident 3100h, groups 00h"; with `data` in place of
+// the frame's own, where somebody knows better what they mean.
+std::string describe(const FdlFrame& frame, std::string_view data = {});
+
+// It carries process data: no access points.
+bool is_data_exchange(const FdlFrame& frame);
 
 // What the frames of one kind have in common, without counts and data: "1 -> 8 Set_Prm", "8 -> 1 Slave_Diag answer",
 // "1 -> 1 token".

@@ -3,18 +3,22 @@
 // it sees, in the order in which it came.
 #pragma once
 
+#include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 
 #include "runtime/bus/movilink/serial_receiver.hpp"
 #include "runtime/bus/profibus/fdl_receiver.hpp"
 #include "runtime/bus/words/can_words.hpp"
+#include "runtime/bus/words/dp_words.hpp"
 
 namespace ipos::runtime {
 
 struct BusNames {
   CanNames can;
   TelegramNames serial;  // P810 as address, P811 as group
+  DpNames dp{};
 };
 
 class BusWords {
@@ -31,14 +35,20 @@ class BusWords {
 
   // A telegram, or why there is none and its bytes.
   std::string describe(const Reception& reception) const;
-  std::string describe(const profibus::Reception& reception) const;
+  // Of the next frame on the line: how process data are divided was said before.
+  std::string describe(std::string_view line, const profibus::Reception& reception) { return listened(line).describe(reception); }
 
   const CanNames& can_names() const { return can_.names(); }
   const TelegramNames& serial_names() const { return serial_; }
 
  private:
+  DpLineWords& listened(std::string_view line);
+  const std::vector<DpSlaveNames>& slaves_of(std::string_view line) const;
+
   CanWords can_;
   TelegramNames serial_;
+  DpNames dp_;
+  std::map<std::string, DpLineWords, std::less<>> dp_lines_;
 };
 
 }  // namespace ipos::runtime

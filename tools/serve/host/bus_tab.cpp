@@ -2,12 +2,15 @@
 #include <algorithm>
 
 #include "runtime/bus_plan/names.hpp"
+#include "runtime/signals/telegrams.hpp"
 #include "tools/serve/host/bus_traffic.hpp"
 #include "tools/serve/host/enabling_telegrams.hpp"
 #include "tools/serve/host/tabs.hpp"
 
 namespace ipos::tools::serve {
 namespace {
+
+constexpr const char* kTestNode = "test";  // the hand of a test or of a stimulus
 
 class BusTab final : public Tab, private BusSource {
  public:
@@ -29,7 +32,9 @@ class BusTab final : public Tab, private BusSource {
           [this](runtime::SerialBus& serial) {
             traffic_.follow(serial.line(), [this] { return runtime::serial_names(host_.plant()); });
           },
-          [this](runtime::ProfibusBus& profibus) { traffic_.follow(profibus.line()); });
+          [this](runtime::ProfibusBus& profibus) {
+            traffic_.follow(profibus.line(), DpNamesNow([this, &profibus] { return runtime::dp_names(host_.plant(), profibus); }));
+          });
     traffic_.complete();
   }
 
@@ -44,6 +49,22 @@ class BusTab final : public Tab, private BusSource {
  private:
   runtime::Time line_now() const override { return host_.plant().now(); }
   void heard() override { host_.telegram_seen(); }
+  bool is_ours(const std::string&, const std::string& node) const override {
+    const auto named = [&node](const auto& one) { return one->name() == node; };
+    const auto configured = [&node](const auto& one) { return one->config().name == node; };
+    return node.empty() || node == kPageNode || node == kTestNode ||
+           std::any_of(host_.plant().stations().begin(), host_.plant().stations().end(), configured) ||
+           std::any_of(host_.plant().controls().begin(), host_.plant().controls().end(), named);
+  }
+  Json fields_of(const std::string& line, const Telegram& telegram) const override {
+    const runtime::Bus* const bus = host_.plant().find_bus(line);
+    if (bus == nullptr) return nullptr;
+    Json fields = Json::array();
+    for (const auto& [signal, value] :
+         signals::values_of_telegram(host_.plant(), *bus, {telegram.id, telegram.extended, telegram.bytes()}))
+      fields.push_back({{"signal", signal.name}, {"meaning", signal.meaning}, {"value", value}, {"bits", signal.bits}});
+    return fields;
+  }
   // Done again when its time comes again.
   void send(const Router::Call& call) override {
     if (const std::string bus = call.arguments.text("bus"); host_.has_port(bus)) guard(bus, call.arguments);

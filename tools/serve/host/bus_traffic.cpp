@@ -1,17 +1,14 @@
-// Rows and trace as the monitors tell them, and what is news of them.
+// Rows as the monitors tell them, and what is news of them; the trace is in bus_trace.cpp.
 #include "tools/serve/host/bus_traffic.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include "tools/serve/host/trace_choice.hpp"
 
 namespace ipos::tools::serve {
 namespace {
 
-constexpr size_t kTraceAtOnce = 2'000;
 constexpr size_t kMostRows = 4'096;  // identifiers that are told apart (ours)
-
-std::string hex(std::span<const uint8_t> bytes) { return fmt::format("{:02X}", fmt::join(bytes, "")); }
 
 }  // namespace
 
@@ -28,6 +25,8 @@ BusTraffic::BusTraffic(Router& router, BusSource& source, Copies& copies)
   });
   router.add_command("bus.decode", [this](const Router::Call& call) { return decode(call.arguments); });
   router.add_command("bus.trace", [this](const Router::Call& call) { return trace(call.arguments); });
+  router.add_command("bus.telegram", [this](const Router::Call& call) { return telegram(call.arguments); });
+  router.add_command("bus.save", [this](const Router::Call& call) { return saved(call.arguments); });
   router.add_topic("bus",
                  [this](Client& client, Subscription& subscription) { publish_rows(client, subscription); });
   router.add_topic("trace",
@@ -56,12 +55,7 @@ std::vector<uint8_t> BusTraffic::octets_of(const Arguments& arguments) const {
   return monitors_[number_of(arguments.text("bus"))]->read(arguments.text("data", ""));
 }
 
-uint8_t BusTraffic::number_of(const std::string& name) const {
-  const auto found =
-      std::find_if(monitors_.begin(), monitors_.end(), [&](const auto& monitor) { return monitor->name() == name; });
-  if (found == monitors_.end()) throw Mistake(fmt::format("there is no bus '{}'", name));
-  return static_cast<uint8_t>(found - monitors_.begin());
-}
+uint8_t BusTraffic::number_of(const std::string& name) const { return line_number(monitors_, name); }
 
 void BusTraffic::take(Telegram telegram) {
   if (!hears_) return;
@@ -111,59 +105,6 @@ Json BusTraffic::decode(const Arguments& a) {
   return {{"texts", std::move(texts)}};
 }
 
-Json BusTraffic::json_of(uint64_t n, const Telegram& telegram) {
-  Json json{{"n", n},
-            {"us", telegram.time / runtime::kMicrosecond},
-            {"bus", monitors_[telegram.bus]->name()},
-            {"id", telegram.id},
-            {"extended", telegram.extended},
-            {"remote", telegram.remote},
-            {"error", telegram.error},
-            {"data", hex(telegram.bytes())},
-            {"text", monitors_[telegram.bus]->text_of(telegram)}};
-  json.update(monitors_[telegram.bus]->identity(telegram));
-  return json;
-}
-
-void BusTraffic::look_back(std::optional<uint8_t> line,
-                           const std::function<bool(const NumberedTelegram&)>& look) const {
-  std::vector<uint64_t> ends(monitors_.size()), firsts(monitors_.size());
-  for (size_t n = 0; n < monitors_.size(); ++n) {
-    firsts[n] = trace_.first(n);
-    ends[n] = !line || *line == n ? trace_.end(n) : firsts[n];
-  }
-  for (;;) {
-    std::optional<size_t> newest;
-    uint64_t number = 0;
-    for (size_t n = 0; n < monitors_.size(); ++n)
-      if (ends[n] > firsts[n] && trace_.number(n, ends[n] - 1) > number) {
-        newest = n;
-        number = trace_.number(n, ends[n] - 1);
-      }
-    if (!newest || !look(trace_.at(*newest, --ends[*newest]))) return;
-  }
-}
-
-Json BusTraffic::trace(const Arguments& a) {
-  const auto before = static_cast<uint64_t>(a.whole("before", 0, INT64_MAX, INT64_MAX));
-  const auto limit = static_cast<size_t>(a.whole("limit", 1, 1000, 200));
-  const std::string filter = a.text("filter", "");
-  const auto line = a.has("bus") ? std::optional(number_of(a.text("bus"))) : std::nullopt;
-  Json rows = Json::array();
-  look_back(line, [&](const NumberedTelegram& one) {
-    if (one.number >= before) return true;
-    LineMonitor& monitor = *monitors_[one.telegram.bus];
-    if (filter.empty() ||
-        fmt::format("{} {} {} {}", monitor.name(), monitor.identity_text(one.telegram), hex(one.telegram.bytes()),
-                    monitor.text_of(one.telegram))
-                .find(filter) != std::string::npos)
-      rows.push_back(json_of(one.number, one.telegram));
-    return rows.size() < limit;
-  });
-  std::reverse(rows.begin(), rows.end());
-  return {{"frames", std::move(rows)}};
-}
-
 void BusTraffic::publish_rows(Client& client, Subscription& subscription) {
   Json rows = Json::array();
   for (const auto& [key, row] : rows_) {
@@ -177,7 +118,7 @@ void BusTraffic::publish_rows(Client& client, Subscription& subscription) {
               {"remote", row.last.remote},
               {"count", row.count},
               {"rate", row.rate},
-              {"data", hex(row.last.bytes())},
+              {"data", hex_digits(row.last.bytes())},
               {"changed", row.changed},
               {"text", monitor.text_of(row.last)}};
     json.update(monitor.identity(row.last));
@@ -197,38 +138,6 @@ void BusTraffic::publish_rows(Client& client, Subscription& subscription) {
                       {"us", us(source_.line_now())},
                       {"rows", std::move(rows)},
                       {"buses", std::move(buses)}});
-}
-
-void BusTraffic::publish_trace(Client& client, Subscription& subscription) {
-  const uint64_t known = subscription.fresh ? seen_ : subscription.mark;
-  std::vector<NumberedTelegram> news;
-  look_back({}, [&](const NumberedTelegram& one) {
-    if (one.number <= known) return false;
-    news.push_back(one);
-    return news.size() < kTraceAtOnce;
-  });
-  subscription.mark = seen_;
-  if (news.empty()) return;
-  std::string bytes;
-  const auto put = [&bytes](const auto& value) {
-    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-  };
-  put(uint8_t{2});
-  put(uint8_t{0});
-  put(uint16_t{0});
-  put(static_cast<uint32_t>(seen_ - known - news.size()));
-  for (auto one = news.rbegin(); one != news.rend(); ++one) {
-    const Telegram& telegram = one->telegram;
-    put(static_cast<uint64_t>(telegram.time));
-    put(static_cast<uint32_t>(one->number));
-    put(telegram.id);
-    put(telegram.bus);
-    put(static_cast<uint8_t>((telegram.extended ? 1 : 0) | (telegram.remote ? 2 : 0) |
-                             (telegram.error ? 4 : 0)));
-    put(static_cast<uint16_t>(telegram.bytes().size()));
-    bytes.append(reinterpret_cast<const char*>(telegram.bytes().data()), telegram.bytes().size());
-  }
-  router_.send_binary(client, bytes);
 }
 
 }  // namespace ipos::tools::serve

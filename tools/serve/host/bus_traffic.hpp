@@ -23,6 +23,10 @@ class BusSource {
   // What the page shows for a time of the lines.
   virtual runtime::Time shown(runtime::Time of_line) const { return of_line; }
   virtual void heard() {}
+  // Somebody on the line who is of the plant, or this program itself; the others are behind a port.
+  virtual bool is_ours(const std::string& /*line*/, const std::string& /*node*/) const { return true; }
+  // What a telegram says, value by value, and which channel of the scope follows it. Null: there are no such channels here.
+  virtual Json fields_of(const std::string& /*line*/, const Telegram&) const { return nullptr; }
   // The command `bus.send`; it ends in BusTraffic::send().
   virtual void send(const Router::Call& call) = 0;
 
@@ -71,14 +75,21 @@ class BusTraffic final {
 
   void take(Telegram telegram);
   void note(Telegram telegram);
-  // From the newest one back, of one line or of all; until `look` returns false.
-  void look_back(std::optional<uint8_t> line, const std::function<bool(const NumberedTelegram&)>& look) const;
   uint8_t number_of(const std::string& name) const;  // a Mistake: there is none
   int64_t us(runtime::Time of_line) const { return source_.shown(of_line) / runtime::kMicrosecond; }
-  Json json_of(uint64_t n, const Telegram& telegram);
   Json decode(const Arguments& arguments);
-  Json trace(const Arguments& arguments);
   void publish_rows(Client& client, Subscription& subscription);
+
+  // bus_trace.cpp
+  // From the newest one back, of one line or of all; until `look` returns false.
+  void look_back(std::optional<uint8_t> line, const std::function<bool(const NumberedTelegram&)>& look) const;
+  // Of one line, the first one with this number or a later one.
+  uint64_t find(size_t line, uint64_t number) const;
+  Json json_of(uint64_t n, const Telegram& telegram) const;
+  Json trace(const Arguments& arguments) const;
+  Json telegram(const Arguments& arguments) const;
+  std::optional<NumberedTelegram> partner_of(size_t line, uint64_t at, bool answer) const;
+  Json saved(const Arguments& arguments) const;  // bus_save.cpp
   void publish_trace(Client& client, Subscription& subscription);
 
   Router& router_;

@@ -6,6 +6,8 @@
 #include <optional>
 
 #include "runtime/bus/can/identifier_text.hpp"
+#include "runtime/bus/canopen/connections.hpp"
+#include "runtime/bus/movilink/identifiers.hpp"
 #include "tools/serve/host/line_monitor.hpp"
 
 namespace ipos::tools::serve {
@@ -13,9 +15,6 @@ namespace {
 
 using runtime::Frame;
 using runtime::Time;
-
-// What a process data word means may change, too; it is looked at so often.
-constexpr Time kNamesStay = 100 * runtime::kMillisecond;
 
 Frame frame_of(const Telegram& telegram) {
   Frame frame;
@@ -25,6 +24,25 @@ Frame frame_of(const Telegram& telegram) {
   frame.remote = telegram.remote;
   std::copy(telegram.data.begin(), telegram.data.end(), frame.data.begin());
   return frame;
+}
+
+// The identifier of the answer to a telegram of MOVILINK; nothing: there is none. A group does not answer.
+std::optional<uint32_t> answer_of_unit(uint32_t id) {
+  const auto question = runtime::classify_identifier(id);
+  if (!question) return std::nullopt;
+  using enum runtime::Telegram;
+  std::optional<runtime::Telegram> answer;
+  if (question->telegram == ProcessOutput || question->telegram == ProcessOutputSync) answer = ProcessInput;
+  if (question->telegram == ParameterRequest) answer = ParameterResponse;
+  if (question->telegram == ParameterRequest2) answer = ParameterResponse2;
+  return answer ? std::optional(runtime::sbus_identifier(*answer, question->address)) : std::nullopt;
+}
+// The same of CANopen: a client of the SDO server asks.
+std::optional<uint32_t> answer_of_node(uint32_t id) {
+  using runtime::canopen::Connection;
+  const auto question = runtime::canopen::connection_of(id);
+  if (!question || question->connection != Connection::SdoRequest) return std::nullopt;
+  return runtime::canopen::identifier(Connection::SdoResponse, question->node);
 }
 
 class CanMonitor final : public LineMonitor, private runtime::CanObserver, private runtime::CanNode {
@@ -62,6 +80,18 @@ class CanMonitor final : public LineMonitor, private runtime::CanObserver, priva
     return fmt::format("{} {}", telegram.id, runtime::id_text(telegram.id, telegram.extended));
   }
 
+  std::string sender_of(const Telegram& telegram) const override { return node_name(line_, telegram.sender); }
+  bool answers(const Telegram& question, const Telegram& later) const override {
+    if (question.extended || later.extended) return false;
+    if (question.remote) return !later.remote && later.id == question.id;
+    const auto answer = words_.is_canopen(frame_of(question)) ? answer_of_node(question.id) : answer_of_unit(question.id);
+    return answer && later.id == *answer;
+  }
+  LineKind kind() const override { return LineKind::Can; }
+  void write(LogWriter& log, const Telegram& telegram) const override {
+    log.can(telegram.time, name(), frame_of(telegram));
+  }
+
   std::vector<uint8_t> read(const std::string& text) const override {
     return bytes_of(text, std::tuple_size_v<decltype(Frame::data)>);
   }
@@ -87,6 +117,8 @@ class CanMonitor final : public LineMonitor, private runtime::CanObserver, priva
   void on_frame(const runtime::CanLine&, const runtime::FrameRecord& record) override {
     Telegram telegram;
     telegram.time = record.end;
+    telegram.took = record.end - record.start;
+    telegram.sender = sender_number(record.sender);
     telegram.id = record.frame.id;
     telegram.extended = record.frame.extended;
     telegram.remote = record.frame.remote;

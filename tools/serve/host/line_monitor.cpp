@@ -10,6 +10,8 @@ constexpr auto kNamesAge = std::chrono::seconds(2);
 
 }  // namespace
 
+std::string hex_digits(std::span<const uint8_t> bytes) { return fmt::format("{:02X}", fmt::join(bytes, "")); }
+
 std::vector<uint8_t> bytes_of(const std::string& text, size_t most) {
   std::vector<uint8_t> bytes;
   int high = -1;

@@ -16,6 +16,8 @@
 #include "runtime/bus/profibus/line.hpp"
 #include "runtime/bus/rs485/line.hpp"
 #include "runtime/bus/words/can_words.hpp"
+#include "runtime/bus/words/dp_words.hpp"
+#include "tools/logs/writing/writer.hpp"
 #include "tools/serve/host/arguments.hpp"
 #include "tools/serve/host/message.hpp"
 #include "tools/serve/host/telegram.hpp"
@@ -42,6 +44,15 @@ class LineMonitor {
   virtual std::string text_if_heard(const Telegram& telegram) { return text_of(telegram); }
   // What a filter finds it by, beside data and words.
   virtual std::string identity_text(const Telegram& telegram) const = 0;
+  // Who sent it, as the line calls him; empty: several at once, or nobody knows.
+  virtual std::string sender_of(const Telegram& telegram) const = 0;
+  // What it is known by in a filter: source and destination, or the address of the unit; empty where it has none.
+  virtual std::vector<uint32_t> addresses(const Telegram&) const { return {}; }
+  // Whether `later` is what the other side says to `question`. A question that is asked again is a new one.
+  virtual bool answers(const Telegram& question, const Telegram& later) const = 0;
+  // Into a log of a form that has a place for it.
+  virtual LineKind kind() const = 0;
+  virtual void write(LogWriter& log, const Telegram& telegram) const = 0;
   // Members of its row that only this kind of line has.
   virtual Json identity(const Telegram&) const { return Json::object(); }
   // The bytes in which a change is news.
@@ -54,6 +65,18 @@ class LineMonitor {
   uint64_t errors = 0;
   std::string state;  // the last event of the line, in words
 };
+
+// The name of a node by its number on the line; empty where that is nobody's.
+template <typename Line>
+std::string node_name(const Line& line, uint16_t node) {
+  return node < line.node_count() ? line.node_name(node) : std::string();
+}
+inline uint16_t sender_number(runtime::NodeId node) {
+  return node < Telegram::kNobody ? static_cast<uint16_t>(node) : Telegram::kNobody;
+}
+
+// "00060BB8"
+std::string hex_digits(std::span<const uint8_t> bytes);
 
 // "0006 0BB8" in bytes, at most so many; a Mistake says what is wrong.
 std::vector<uint8_t> bytes_of(const std::string& text, size_t most);
@@ -77,10 +100,14 @@ struct CanNamesNow {
   std::function<size_t()> objects = [] { return size_t{0}; };
 };
 using SerialNamesNow = std::function<runtime::TelegramNames()>;
+using DpNamesNow = std::function<std::vector<runtime::DpSlaveNames>()>;
+
+// What the words of telegrams mean may change with every parameter; it is looked at so often.
+inline constexpr runtime::Time kNamesStay = 100 * runtime::kMillisecond;
 
 // The line must outlive the monitor.
 std::unique_ptr<LineMonitor> listen(runtime::CanLine& line, const Clock& clock, LineMonitor::Hear hear, CanNamesNow names);
 std::unique_ptr<LineMonitor> listen(runtime::Rs485Line& line, const Clock& clock, LineMonitor::Hear hear, SerialNamesNow names);
-std::unique_ptr<LineMonitor> listen(profibus::Line& line, const Clock& clock, LineMonitor::Hear hear);
+std::unique_ptr<LineMonitor> listen(profibus::Line& line, const Clock& clock, LineMonitor::Hear hear, DpNamesNow names);
 
 }  // namespace ipos::tools::serve

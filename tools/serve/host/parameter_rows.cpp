@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <map>
 #include <set>
 
 #include "stdlib/parameters.hpp"
@@ -25,10 +24,6 @@ constexpr ParameterGroup kGroups[] = {
 #include "tools/serve/host/parameter_groups.def"
 };
 
-std::string number_of(const Parameter& parameter) {
-  return parameter.number.empty() ? "" : "P" + std::string(parameter.number);
-}
-
 std::string group_of(const Parameter& parameter) {
   return parameter.number.size() < 2 ? "" : "P" + std::string(parameter.number.substr(0, 2));
 }
@@ -41,12 +36,15 @@ Json limit(ParameterAccess& access, Service service, const Parameter& parameter)
   return reply ? Json(stdlib::parameter_text(parameter, *reply)) : Json(nullptr);
 }
 
-// The factory setting as the list has it: units need not be asked for what never changes.
+}  // namespace
+
+std::string number_of(const Parameter& parameter) {
+  return parameter.number.empty() ? "" : "P" + std::string(parameter.number);
+}
+
 int32_t factory_setting(const Parameter& parameter) {
   return static_cast<int32_t>(static_cast<uint32_t>(parameter.default_value));
 }
-
-}  // namespace
 
 Json value_json(const Parameter& parameter, int32_t value) {
   return {{"value", parameter.number_of(value)},
@@ -76,7 +74,9 @@ Json parameter_list(ParameterAccess& access) {
     row["least"] = p.writable ? limit(access, Service::ReadMinimum, p) : Json(nullptr);
     row["most"] = p.writable ? limit(access, Service::ReadMaximum, p) : Json(nullptr);
     row["choices"] = std::move(choices);
-    row["view"] = p.view;
+    // Another row leads what it shows.
+    const Parameter* const leads = p.view ? table.find(p.index) : nullptr;
+    row["shows"] = leads == nullptr ? Json(nullptr) : Json(leads->number.empty() ? std::to_string(p.index) : number_of(*leads));
     parameters.push_back(std::move(row));
   }
   Json groups = Json::array();
@@ -84,30 +84,6 @@ Json parameter_list(ParameterAccess& access) {
     if (used.count("P" + std::string(group.digits)) != 0)
       groups.push_back({{"number", "P" + std::string(group.digits)}, {"name", group.name}});
   return {{"groups", std::move(groups)}, {"parameters", std::move(parameters)}};
-}
-
-Json compare(ParameterAccess& one, ParameterAccess& other) {
-  std::map<uint16_t, std::pair<const SetRow*, const SetRow*>> pairs;
-  bool complete = true;
-  const ParameterSet left = read_settings(one, complete);
-  const ParameterSet right = read_settings(other, complete);
-  for (const SetRow& row : left.rows) pairs[row.parameter->index].first = &row;
-  for (const SetRow& row : right.rows) pairs[row.parameter->index].second = &row;
-  Json rows = Json::array();
-  const auto text = [](const SetRow* row) {
-    return row == nullptr ? Json(nullptr) : Json(stdlib::parameter_text(*row->parameter, row->value));
-  };
-  for (const auto& [index, sides] : pairs) {
-    const auto [a, b] = sides;
-    if (a != nullptr && b != nullptr && a->value == b->value) continue;
-    const Parameter& parameter = *(a != nullptr ? a : b)->parameter;
-    rows.push_back({{"number", number_of(parameter)},
-                    {"index", index},
-                    {"name", parameter.name},
-                    {"text", text(a)},
-                    {"with", text(b)}});
-  }
-  return {{"rows", std::move(rows)}};
 }
 
 Json load_settings(ParameterAccess& access, const std::string& text) {

@@ -13,10 +13,12 @@ namespace ipos::tools::serve {
 
 // `groups` and `parameters` of the reply to the command.
 Json parameter_list(ParameterAccess& access);
+// "P130"; empty for an index of the system.
+std::string number_of(const stdlib::Parameter& parameter);
+// As the list has it: units need not be asked for what never changes.
+int32_t factory_setting(const stdlib::Parameter& parameter);
 // `value`, `text` and `changed`.
 Json value_json(const stdlib::Parameter& parameter, int32_t value);
-// Settings that differ.
-Json compare(ParameterAccess& one, ParameterAccess& other);
 // What came of a file of `ipos param`.
 Json load_settings(ParameterAccess& access, const std::string& text);
 

@@ -4,6 +4,7 @@
 #include "stdlib/parameters.hpp"
 #include "tools/parameters/parameter_set.hpp"
 #include "tools/parameters/parameter_target.hpp"
+#include "tools/serve/host/parameter_files.hpp"
 #include "tools/serve/host/parameter_rows.hpp"
 
 namespace ipos::tools::serve {
@@ -13,6 +14,12 @@ using stdlib::Parameter;
 using stdlib::Service;
 
 constexpr const char* kStation = "station";
+
+// What a unit refuses to read is left out.
+ParameterSet settings_of(ParameterAccess& unit) {
+  bool complete = true;
+  return read_settings(unit, complete);
+}
 
 // The list without the unit: what its table knows.
 class TableAccess final : public ParameterAccess {
@@ -39,6 +46,7 @@ ParameterTab::ParameterTab(Router& router, ParameterSource& source) : router_(ro
   router.add_command("parameters.set", [this](const Router::Call& call) { return set(call); });
   router.add_command("parameters.compare", [this](const Router::Call& call) { return compare(call); });
   router.add_command("parameters.save", [this](const Router::Call& call) { return save(call); });
+  router.add_command("parameters.toml", [this](const Router::Call& call) { return toml(call); });
   router.add_command("parameters.load", [this](const Router::Call& call) { return load(call); });
   router.add_topic("parameters",
                    [this](Client& client, Subscription& subscription) { publish(client, subscription); });
@@ -67,16 +75,22 @@ Json ParameterTab::set(const Router::Call& call) {
 Json ParameterTab::compare(const Router::Call& call) {
   source_.check_reading();
   const auto one = source_.unit(call.arguments, kStation);
-  const auto other = source_.unit(call.arguments, "with");
-  return serve::compare(*one, *other);
+  const ParameterSet own = settings_of(*one);
+  if (call.arguments.has("text"))
+    return serve::compare(own, settings_in(call.arguments.text("text"), source_.station(call.arguments), one->unit()));
+  return serve::compare(own, settings_of(*source_.unit(call.arguments, "with")));
 }
 
 Json ParameterTab::save(const Router::Call& call) {
   source_.check_reading();
   const auto unit = source_.unit(call.arguments, kStation);
-  bool complete = true;
-  const ParameterSet settings = read_settings(*unit, complete);
-  return {{"file", source_.station(call.arguments) + ".settings"}, {"text", to_text(settings)}};
+  return {{"file", source_.station(call.arguments) + ".settings"}, {"text", to_text(settings_of(*unit))}};
+}
+
+Json ParameterTab::toml(const Router::Call& call) {
+  source_.check_reading();
+  const auto unit = source_.unit(call.arguments, kStation);
+  return {{"file", source_.station(call.arguments) + ".toml"}, {"text", plant_lines(settings_of(*unit))}};
 }
 
 Json ParameterTab::load(const Router::Call& call) {

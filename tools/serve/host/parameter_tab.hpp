@@ -41,6 +41,7 @@ class ParameterTab final {
   Json set(const Router::Call& call);
   Json compare(const Router::Call& call);
   Json save(const Router::Call& call);
+  Json toml(const Router::Call& call);
   Json load(const Router::Call& call);
   void publish(Client& client, Subscription& subscription);
 

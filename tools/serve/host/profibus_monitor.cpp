@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "runtime/bus/log/profibus_log.hpp"
+#include "runtime/bus/profibus/dp_service.hpp"
 #include "runtime/bus/profibus/frame_text.hpp"
-#include "runtime/bus/words/bus_words.hpp"
 #include "runtime/station/profibus_bus.hpp"
 #include "runtime/station/profibus_octets.hpp"
 #include "tools/serve/host/line_monitor.hpp"
@@ -45,20 +45,46 @@ uint32_t identity_of(const FdlFrame& frame) {
 }
 constexpr uint32_t kVoid = UINT32_MAX;
 
+bool is_configuration(const FdlFrame& frame) {
+  return frame.has_control() && frame.dsap && profibus::dp_service(*frame.dsap) == profibus::DpService::ChkCfg;
+}
+
+// What overlapped or came too early has octets without a mistake: the line has said why it is void.
+profibus::Reception dp_reception(const Telegram& telegram) {
+  std::optional<FrameError> reason;
+  if (telegram.error) reason = static_cast<FrameError>(telegram.reason);
+  return runtime::reception_of(telegram.data, telegram.time - telegram.took, telegram.time, reason);
+}
+
 class ProfibusMonitor final : public LineMonitor, private profibus::LineObserver, private profibus::Node {
  public:
-  ProfibusMonitor(profibus::Line& line, Hear hear) : line_(line), hear_(std::move(hear)) {
+  ProfibusMonitor(profibus::Line& line, const Clock& clock, Hear hear, DpNamesNow names)
+      : line_(line), hear_(std::move(hear)), look_up_(std::move(names)), words_(look_up_()), age_(clock) {
     line.add_observer(static_cast<profibus::LineObserver&>(*this));
   }
 
   const std::string& name() const override { return line_.name(); }
   runtime::LineLoad load(Time now) const override { return line_.load(now); }
 
-  // What overlapped or came too early has octets without a mistake: the line has said why it is void.
   std::string text_of(const Telegram& telegram) override {
-    std::optional<FrameError> reason;
-    if (telegram.error) reason = static_cast<FrameError>(telegram.reason);
-    return words_.describe(runtime::reception_of(telegram.data, telegram.time, telegram.time, reason));
+    return telegram.words.empty() ? text_if_heard(telegram) : telegram.words;
+  }
+  void renew_names(Time now) override {
+    if (now < renewed_ + kNamesStay) return;
+    renewed_ = now;
+    words_.use(look_up_());
+  }
+  // How process data are divided, a frame of before has said.
+  std::string words_of(const Telegram& telegram) override {
+    const profibus::Reception reception = dp_reception(telegram);
+    const bool told = reception.frame && (words_.is_known_exchange(*reception.frame) || is_configuration(*reception.frame));
+    return told ? words_.describe(reception) : std::string();
+  }
+  // A copy hears it, so that a question leaves nothing behind.
+  std::string text_if_heard(const Telegram& telegram) override {
+    if (age_.is_over()) words_.use(look_up_());
+    runtime::DpLineWords words = words_;
+    return words.describe(dp_reception(telegram));
   }
   std::string identity_text(const Telegram&) const override { return {}; }  // the words have it
   Json identity(const Telegram& telegram) const override {
@@ -72,6 +98,23 @@ class ProfibusMonitor final : public LineMonitor, private profibus::LineObserver
             {"ssap", point(&FdlFrame::ssap)},
             {"dsap", point(&FdlFrame::dsap)}};
   }
+
+  std::string sender_of(const Telegram& telegram) const override { return node_name(line_, telegram.sender); }
+  std::vector<uint32_t> addresses(const Telegram& telegram) const override {
+    const auto frame = profibus::decode(telegram.data);
+    if (!frame || telegram.error || frame->is_acknowledgement()) return {};
+    return {frame->source, frame->destination};
+  }
+  // A short acknowledgement does not say whose it is: it answers what came just before.
+  bool answers(const Telegram& question, const Telegram& later) const override {
+    const auto asked = profibus::decode(question.data), said = profibus::decode(later.data);
+    if (!asked || !said || question.error || later.error || !asked->has_control() || !asked->is_request()) return false;
+    if (said->is_acknowledgement()) return true;
+    return said->has_control() && !said->is_request() && said->source == asked->destination &&
+           said->destination == asked->source;
+  }
+  LineKind kind() const override { return LineKind::Dp; }
+  void write(LogWriter& log, const Telegram& telegram) const override { log.dp(name(), dp_reception(telegram)); }
 
   // The frame count bit turns round with every request, and the frame check follows from the rest.
   std::vector<uint8_t> compared(const Telegram& telegram) const override {
@@ -103,9 +146,11 @@ class ProfibusMonitor final : public LineMonitor, private profibus::LineObserver
   }
 
  private:
-  void on_frame(const profibus::Line&, runtime::NodeId, const profibus::Reception& reception) override {
+  void on_frame(const profibus::Line&, runtime::NodeId sender, const profibus::Reception& reception) override {
     Telegram telegram;
     telegram.time = reception.end;
+    telegram.took = reception.end - reception.start;
+    telegram.sender = sender_number(sender);
     telegram.error = !reception.frame;
     telegram.reason = reception.frame ? uint8_t{0} : static_cast<uint8_t>(reception.frame.error());
     telegram.id = reception.frame ? identity_of(*reception.frame) : kVoid;
@@ -124,14 +169,17 @@ class ProfibusMonitor final : public LineMonitor, private profibus::LineObserver
 
   profibus::Line& line_;
   Hear hear_;
-  runtime::BusWords words_;
+  DpNamesNow look_up_;
+  runtime::DpLineWords words_;
+  NamesAge age_;  // of the words of what was not heard
+  Time renewed_ = 0;
   std::optional<runtime::NodeId> node_;
 };
 
 }  // namespace
 
-std::unique_ptr<LineMonitor> listen(profibus::Line& line, const Clock&, LineMonitor::Hear hear) {
-  return std::make_unique<ProfibusMonitor>(line, std::move(hear));
+std::unique_ptr<LineMonitor> listen(profibus::Line& line, const Clock& clock, LineMonitor::Hear hear, DpNamesNow names) {
+  return std::make_unique<ProfibusMonitor>(line, clock, std::move(hear), std::move(names));
 }
 
 }  // namespace ipos::tools::serve

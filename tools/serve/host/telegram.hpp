@@ -11,10 +11,14 @@
 namespace ipos::tools::serve {
 
 struct Telegram {
-  runtime::Time time = 0;
+  static constexpr uint16_t kNobody = UINT16_MAX;  // several at once, or nobody knows
+
+  runtime::Time time = 0;  // of its end
+  runtime::Time took = 0;  // from its first bit on
   uint32_t id = 0;  // CAN: the identifier; RS-485: the address; PROFIBUS: a number for frames of one kind
   uint8_t bus = 0;  // number in the reply to `plant`
   bool extended = false, remote = false, error = false;
+  uint16_t sender = kNobody;  // who has put it on the line, by the number on it
   uint8_t reason = 0;  // of the error, where the bytes do not tell it (profibus::FrameError, runtime::SerialError)
   std::vector<uint8_t> data;
   std::string words;  // where they depend on what went before on the line; else they are made when wanted

@@ -9,8 +9,10 @@ namespace ipos::tools::serve {
 struct TraceMemory::Head {
   uint64_t number;
   runtime::Time time;
+  uint32_t took;  // ns: no telegram lasts for 4 s
   uint32_t id;
   uint16_t data, words;  // bytes after it
+  uint16_t sender;
   uint8_t bus, reason;
   bool extended, remote, error;
 };
@@ -54,7 +56,9 @@ void TraceMemory::add(uint64_t number, const Telegram& telegram) {
   Head head{};
   head.number = number;
   head.time = telegram.time;
+  head.took = static_cast<uint32_t>(telegram.took);
   head.id = telegram.id;
+  head.sender = telegram.sender;
   head.data = static_cast<uint16_t>(telegram.data.size());
   head.words = static_cast<uint16_t>(telegram.words.size());
   head.bus = telegram.bus;
@@ -115,7 +119,9 @@ NumberedTelegram TraceMemory::at(size_t line, uint64_t n) const {
   NumberedTelegram out{head.number, {}};
   Telegram& telegram = out.telegram;
   telegram.time = head.time;
+  telegram.took = head.took;
   telegram.id = head.id;
+  telegram.sender = head.sender;
   telegram.bus = head.bus;
   telegram.reason = head.reason;
   telegram.extended = head.extended;

@@ -18,3 +18,8 @@ export function identityText(telegram: Known, kind: string | undefined): string 
   if (kind !== undefined && kind !== "can") return String(telegram.id);
   return `${telegram.id} (${telegram.id.toString(16).toUpperCase().padStart(telegram.extended ? 8 : 3, "0")}h)`;
 }
+
+// To the microsecond, as a log has it.
+export function microText(us: number): string {
+  return (us / 1e6).toFixed(6);
+}

@@ -1,47 +1,59 @@
-// The journal of the plant: what drives ignored, warned of and stopped for. A time leads to the scope.
-import { signal } from "@preact/signals";
+// The journal of the plant: what drives ignored, warned of and stopped for. A time leads to its moment, a place to its line.
 import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 
+import { openLine } from "../program/open_line";
 import { showMoment } from "../scope/window";
-import { subscribe } from "../server/connection";
-import { generation, hello, secondsText, stationNames } from "../server/live";
+import { hello, secondsText, stationNames } from "../server/live";
 import type { JournalEntry } from "../server/protocol";
+import { download } from "../shell/download";
+import { command } from "../shell/notice";
 import { open } from "../shell/desk";
+import { asCsv, asText, chosen, entries, followJournal, hiddenWeights, newestFirst, searchText, station } from "./journal_entries";
 
 const weights: JournalEntry["weight"][] = ["why", "warning", "fault"];
 const weight_names = { why: "reasons", warning: "warnings", fault: "faults" };
-const kept_entries = 5000;
 const shown_entries = 500;
 
-const entries = signal<JournalEntry[]>([]);
-const station = signal("");
-const searchText = signal("");
-const hiddenWeights = signal<ReadonlySet<string>>(new Set());
-
-function follow(): () => void {
-  entries.value = [];
-  return subscribe("journal", { rate: 10 }, (event) => {
-    const last = entries.peek()[entries.peek().length - 1]?.n ?? -1;
-    const fresh = (event.entries as JournalEntry[]).filter((entry) => entry.n > last);
-    if (fresh.length > 0) entries.value = [...entries.peek(), ...fresh].slice(-kept_entries);
-  });
-}
-
-function toggle(weight: string): void {
+function toggle(weight: JournalEntry["weight"]): void {
   const next = new Set(hiddenWeights.value);
   if (!next.delete(weight)) next.add(weight);
   hiddenWeights.value = next;
 }
 
+// "HOIST.IPC:20:13" within a text is a way to that line.
+function Text({ entry }: { entry: JournalEntry }) {
+  const parts = entry.text.split(/([\w./-]+\.(?:ipc|h):\d+(?::\d+)?)/i);
+  return (
+    <span class="text">
+      {parts.map((part, n) => {
+        const [file, line] = n % 2 === 1 ? part.split(":") : [];
+        if (!file || !line) return part;
+        return (
+          <button key={n} class="link mono" title="Show this line in Program" onClick={() => openLine(entry.station, { file, line: Number(line) })}>
+            {part}
+          </button>
+        );
+      })}
+    </span>
+  );
+}
+
 function Entry({ entry }: { entry: JournalEntry }) {
+  const at = secondsText(entry.us);
   return (
     <div class={`entry ${entry.weight}`}>
-      <span class="mono quiet">{secondsText(entry.us)}</span>
+      {hello.value?.live ? (
+        <span class="mono quiet">{at}</span>
+      ) : (
+        <button class="link mono" aria-label={`Go to ${at}`} title="Go to this moment" onClick={() => void command({ do: "back", us: entry.us })}>
+          {at}
+        </button>
+      )}
       <strong>{entry.station}</strong>
-      <span class="text">{entry.text}</span>
+      <Text entry={entry} />
       <button
         class="small"
-        aria-label={`Show ${secondsText(entry.us)} in the scope`}
+        aria-label={`Show ${at} in the scope`}
         onClick={() => {
           showMoment(entry.us);
           open("Scope");
@@ -54,28 +66,23 @@ function Entry({ entry }: { entry: JournalEntry }) {
 }
 
 export function Journal() {
-  // When the server or time has gone back, the journal starts again.
-  useEffect(follow, [generation.value, hello.value]);
+  useEffect(followJournal, []);
   const log = useRef<HTMLDivElement>(null);
-  const atEnd = useRef(true);
-  // The newest entry stays in sight, unless somebody has scrolled up to read.
+  const follows = useRef(true);
+  const down = !newestFirst.value;
+  // The newest entry stays in sight, unless somebody has scrolled away to read.
   useLayoutEffect(() => {
-    if (log.current && atEnd.current) log.current.scrollTop = log.current.scrollHeight;
-  }, [entries.value.length]);
-  const text = searchText.value.toLowerCase();
-  const chosen = entries.value.filter(
-    (entry) =>
-      !hiddenWeights.value.has(entry.weight) &&
-      (!station.value || entry.station === station.value) &&
-      (!text || entry.text.toLowerCase().includes(text)),
-  );
+    if (log.current && follows.current) log.current.scrollTop = down ? log.current.scrollHeight : 0;
+  }, [entries.value.length, down]);
+  const rows = chosen.value.slice(-shown_entries);
   return (
     <>
       <div class="bar">
         <input
           type="search"
           aria-label="Search the journal"
-          placeholder="Text"
+          placeholder="F26 -warning"
+          title="All words must stand in an entry, one with a minus must not"
           value={searchText.value}
           onInput={(event) => (searchText.value = event.currentTarget.value)}
         />
@@ -91,8 +98,14 @@ export function Journal() {
             <span>{weight_names[weight]}</span>
           </label>
         ))}
+        <label class="field">
+          <input type="checkbox" checked={newestFirst.value} onChange={(event) => (newestFirst.value = event.currentTarget.checked)} />
+          <span>newest first</span>
+        </label>
+        <button onClick={() => download("journal.txt", asText(chosen.value))}>Save as text</button>
+        <button onClick={() => download("journal.csv", asCsv(chosen.value))}>Save as CSV</button>
         <span class="spread quiet">
-          {Math.min(chosen.length, shown_entries)} of {entries.value.length}
+          {rows.length} of {entries.value.length}
         </span>
       </div>
       <div
@@ -102,13 +115,15 @@ export function Journal() {
         aria-label="Journal"
         tabIndex={0}
         onScroll={({ currentTarget }) =>
-          (atEnd.current = currentTarget.scrollTop + currentTarget.clientHeight > currentTarget.scrollHeight - 30)
+          (follows.current = down
+            ? currentTarget.scrollTop + currentTarget.clientHeight > currentTarget.scrollHeight - 30
+            : currentTarget.scrollTop < 30)
         }
       >
-        {chosen.slice(-shown_entries).map((entry) => (
+        {(down ? rows : [...rows].reverse()).map((entry) => (
           <Entry key={entry.n} entry={entry} />
         ))}
-        {chosen.length === 0 && <p class="empty">No entry.</p>}
+        {rows.length === 0 && <p class="empty">No entry.</p>}
       </div>
     </>
   );

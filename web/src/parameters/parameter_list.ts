@@ -4,13 +4,21 @@ import { signal, type Signal } from "@preact/signals";
 import { request, requestParts, subscribe } from "../server/connection";
 import { hello, isGateway, plant } from "../server/live";
 import type { Parameter, ParameterDifference, ParameterGroup, ParameterValue } from "../server/protocol";
+import { shared } from "../server/shared";
 import { complain } from "../shell/notice";
 
 export const station = signal("");
 export const groups = signal<ParameterGroup[]>([]);
 export const parameters = signal<Parameter[]>([]);
-export const comparedWith = signal("");
+// A station, or a file that a person has chosen; of a plant file its station of this name counts.
+export interface Other {
+  name: string;
+  text?: string;
+}
+export const comparedWith = signal<Other | null>(null);
 export const differences = signal<Map<number, ParameterDifference>>(new Map());
+
+let other_file = ""; // what the other one has where they differ, as a file of ipos param
 
 const values = new Map<number, Signal<ParameterValue>>();
 
@@ -25,7 +33,10 @@ async function read(name: string): Promise<void> {
   if (name !== station.peek()) return;
   values.clear();
   groups.value = parts.flatMap((part) => (part.groups ?? []) as ParameterGroup[]);
-  parameters.value = parts.flatMap((part) => (part.parameters ?? []) as Parameter[]);
+  const rows = parts.flatMap((part) => (part.parameters ?? []) as Parameter[]);
+  // By P number; what has none, the system's indices, comes behind.
+  const keyOf = (row: Parameter) => (row.number ? `0${row.number}` : `1${String(row.index).padStart(6, "0")}`);
+  parameters.value = rows.sort((a, b) => (keyOf(a) < keyOf(b) ? -1 : 1));
 }
 
 export async function compare(): Promise<void> {
@@ -34,9 +45,23 @@ export async function compare(): Promise<void> {
     differences.value = new Map();
     return;
   }
-  const parts = await requestParts({ do: "parameters.compare", station: station.peek(), with: other });
+  const station_now = station.peek();
+  const parts = await requestParts({
+    do: "parameters.compare",
+    station: station_now,
+    ...(other.text === undefined ? { with: other.name } : { text: other.text }),
+  });
+  if (other !== comparedWith.peek() || station_now !== station.peek()) return;
   const rows = parts.flatMap((part) => (part.rows ?? []) as ParameterDifference[]);
+  other_file = parts.map((part) => (part.file as string | undefined) ?? "").join("");
   differences.value = new Map(rows.map((row) => [row.index, row]));
+}
+
+// What the other one has, all at once; a refusal is told and the rest is set.
+export async function copyAll(): Promise<string> {
+  const outcome = await load(other_file);
+  await compare();
+  return outcome;
 }
 
 function follow(name: string): () => void {
@@ -52,8 +77,8 @@ function follow(name: string): () => void {
   });
 }
 
-// As long as the tab is open.
-export function followParameters(): () => void {
+// As long as a view is open.
+export const followParameters = shared(() => {
   let stop: (() => void) | undefined;
   let followed = "";
   const stopPlant = plant.subscribe((description) => {
@@ -79,10 +104,11 @@ export function followParameters(): () => void {
     stopCompared();
     stop?.();
   };
-}
+});
 
-export async function save(): Promise<{ file: string; text: string }> {
-  const parts = await requestParts({ do: "parameters.save", station: station.peek() });
+// For `ipos param`, or the lines of a plant file.
+export async function save(form: "parameters.save" | "parameters.toml"): Promise<{ file: string; text: string }> {
+  const parts = await requestParts({ do: form, station: station.peek() });
   const file = parts.map((part) => part.file).find((name) => typeof name === "string");
   return { file: (file as string | undefined) ?? `${station.peek()}.param`, text: parts.map((part) => (part.text as string | undefined) ?? "").join("") };
 }

@@ -3,24 +3,22 @@ import { computed, signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 
 import { stationNames } from "../server/live";
-import type { Parameter } from "../server/protocol";
 import { download } from "../shell/download";
-import { command, complain } from "../shell/notice";
+import { complain, forgive } from "../shell/notice";
 import { GroupTree } from "./group_tree";
-import { compare, comparedWith, differences, followParameters, load, parameters, save, station, valueOf } from "./parameter_list";
+import { comparedWith, copyAll, differences, followParameters, load, parameters, save, station, valueOf } from "./parameter_list";
+import { isChanged, Row } from "./parameter_row";
 
 const searchText = signal("");
 const group = signal("");
 const onlyChanged = signal(false);
-// Of the parameter whose field has the focus: what can be set. It stands above the table, so that no row moves.
-const hint = signal("");
+const from_file = "\u0000file"; // no station is called so
 
 const shown = computed(() => {
   const words = searchText.value.toLowerCase().split(/\s+/).filter(Boolean);
-  const compared = comparedWith.value !== "";
   return parameters.value.filter((parameter) => {
-    if (compared && !differences.value.has(parameter.index)) return false;
-    if (onlyChanged.value && !valueOf(parameter).value.changed) return false;
+    if (comparedWith.value && (parameter.shows || !differences.value.has(parameter.index))) return false;
+    if (onlyChanged.value && !isChanged(parameter, valueOf(parameter).value)) return false;
     // A search looks at all groups.
     if (words.length === 0) return parameter.group.startsWith(group.value);
     const text = `${parameter.number} ${parameter.index} ${parameter.name}`.toLowerCase();
@@ -28,105 +26,93 @@ const shown = computed(() => {
   });
 });
 
-function hintOf(parameter: Parameter): string {
-  const parts: string[] = [];
-  if (parameter.choices.length > 0) parts.push(parameter.choices.join(" | "));
-  else if (parameter.least !== null && parameter.most !== null) parts.push(`${parameter.least} … ${parameter.most}`);
-  if (parameter.default !== null) parts.push(`factory setting ${parameter.default}`);
-  return `${parameter.number || parameter.index} ${parameter.name}: ${parts.join(" · ")}`;
+// A hidden chooser of files, and what to do with the text of one.
+function useFile(name: string, take: (file: string, text: string) => void) {
+  const chooser = useRef<HTMLInputElement>(null);
+  const input = (
+    <input
+      ref={chooser}
+      type="file"
+      hidden
+      aria-label={name}
+      onChange={(event) => {
+        const file = event.currentTarget.files?.[0];
+        event.currentTarget.value = "";
+        if (file) file.text().then((text) => take(file.name, text)).catch(complain);
+      }}
+    />
+  );
+  return { input, choose: () => chooser.current?.click() };
 }
 
-function Row({ parameter }: { parameter: Parameter }) {
-  const field = useRef<HTMLInputElement>(null);
-  const value = valueOf(parameter).value;
-  const other = differences.value.get(parameter.index);
-  const writable = parameter.access !== "R" && parameter.access !== "RO";
-  const ending = ` ${parameter.unit}`;
-  const bare = parameter.unit && value.text.endsWith(ending) ? value.text.slice(0, -ending.length) : value.text;
-  const set = async () => {
-    const text = field.current?.value.trim();
-    if (!text) return;
-    const reply = await command({ do: "parameters.set", station: station.peek(), number: parameter.number || String(parameter.index), value: text });
-    if (!reply) return;
-    if (field.current) field.current.value = "";
-    if (comparedWith.peek()) await compare();
+function Compare({ onOutcome }: { onOutcome: (text: string) => void }) {
+  const { input, choose } = useFile("File to compare with", (name, text) => (comparedWith.value = { name, text }));
+  const other = comparedWith.value;
+  const others = stationNames().filter((name) => name !== station.value);
+  const selected = other === null ? "" : other.text === undefined ? other.name : from_file;
+  const change = (value: string) => {
+    if (value === from_file) choose();
+    else comparedWith.value = value ? { name: value } : null;
   };
+  const count = differences.value.size;
   return (
-    <tr class={value.changed ? "changed" : ""}>
-      <th scope="row" class="mono shrink">
-        {parameter.number || parameter.index}
-      </th>
-      <td>
-        {parameter.name}
-      </td>
-      <td class="number">{bare}</td>
-      <td class="quiet shrink">{parameter.unit}</td>
-      {other && <td class="number warn">{other.with}</td>}
-      <td class="shrink">
-        {writable ? (
-          <input
-            ref={field}
-            type="text"
-            aria-label={`Set ${parameter.number || parameter.index}`}
-            title={hintOf(parameter)}
-            onFocus={() => (hint.value = hintOf(parameter))}
-            onBlur={() => (hint.value = "")}
-            onKeyDown={(event) => {
-              if (event.key === "Enter") void set();
-            }}
-          />
-        ) : (
-          <span class="quiet">read only</span>
-        )}
-        {value.changed && <span class="changed-mark">changed</span>}
-      </td>
-    </tr>
+    <>
+      <label class="field">
+        Compare with
+        <select
+          value={selected}
+          onChange={(event) => {
+            change(event.currentTarget.value);
+            event.currentTarget.value = selected; // a chooser may be left without a file
+          }}
+        >
+          <option value="">nobody</option>
+          {others.map((name) => (
+            <option key={name} value={name}>
+              {name}
+            </option>
+          ))}
+          <option value={from_file}>{other?.text === undefined ? "a file …" : other.name}</option>
+        </select>
+      </label>
+      {input}
+      {other && (
+        <>
+          <span role="status">
+            {count} {count === 1 ? "difference" : "differences"}
+          </span>
+          {count > 0 && <button onClick={() => void copyAll().then(onOutcome).catch(complain)}>{`Copy all to ${station.value}`}</button>}
+        </>
+      )}
+    </>
   );
 }
 
-function Files() {
-  const chooser = useRef<HTMLInputElement>(null);
-  const [outcome, setOutcome] = useState("");
-  const take = async (file: File) => {
-    try {
-      setOutcome(await load(await file.text()));
-    } catch (reason) {
-      complain(reason);
-    }
-  };
+function Files({ onOutcome }: { onOutcome: (text: string) => void }) {
+  const { input, choose } = useFile("File of ipos param", (_name, text) => void load(text).then(onOutcome).then(forgive).catch(complain));
+  const give = (form: "parameters.save" | "parameters.toml") =>
+    void save(form)
+      .then(({ file, text }) => download(file, text))
+      .catch(complain);
   return (
     <>
-      <button
-        onClick={() =>
-          save()
-            .then(({ file, text }) => download(file, text))
-            .catch(complain)
-        }
-      >
-        Save file
+      <button onClick={() => give("parameters.save")}>Save file</button>
+      <button title="[station.parameters]: what is not the factory setting, for the plant file" onClick={() => give("parameters.toml")}>
+        Save as TOML
       </button>
-      <button onClick={() => chooser.current?.click()}>Load file</button>
-      <input
-        ref={chooser}
-        type="file"
-        hidden
-        aria-label="File of ipos param"
-        onChange={(event) => {
-          const file = event.currentTarget.files?.[0];
-          event.currentTarget.value = "";
-          if (file) void take(file);
-        }}
-      />
-      {outcome && <span class="quiet">{outcome}</span>}
+      <button onClick={choose}>Load file</button>
+      {input}
     </>
   );
 }
 
 export function Parameters() {
   useEffect(followParameters, []);
+  const [outcome, setOutcome] = useState("");
   const rows = shown.value;
+  const other = comparedWith.value;
   return (
-    <>
+    <div class="parameters">
       <div class="bar">
         <label class="field">
           Station
@@ -143,55 +129,40 @@ export function Parameters() {
           value={searchText.value}
           onInput={(event) => (searchText.value = event.currentTarget.value)}
         />
-        <label class="field">
+        <label class="field" title="Settings that are not the factory's">
           <input type="checkbox" checked={onlyChanged.value} onChange={(event) => (onlyChanged.value = event.currentTarget.checked)} />
-          <span>changed ones</span>
+          <span>only changed ones</span>
         </label>
-        {stationNames().length > 1 && (
-          <label class="field">
-            Compare with
-            <select value={comparedWith.value} onChange={(event) => (comparedWith.value = event.currentTarget.value)}>
-              <option value="">nobody</option>
-              {stationNames()
-                .filter((name) => name !== station.value)
-                .map((name) => (
-                  <option key={name}>{name}</option>
-                ))}
-            </select>
-          </label>
+        <Compare onOutcome={setOutcome} />
+        <Files onOutcome={setOutcome} />
+        {outcome && (
+          <span class="quiet" role="status">
+            {outcome}
+          </span>
         )}
-        <Files />
       </div>
-      <p class="quiet hint">{hint.value || "Changed from the factory setting: number in colour. A field takes a number with unit, or the name of a setting."}</p>
       <div class="split">
         <GroupTree group={group} onChoose={() => (searchText.value = "")} />
-        <div class="scroll" tabIndex={0}>
-          <table class="values" aria-label="Parameters">
-            <thead>
-              <tr>
-                <th scope="col">Number</th>
-                <th scope="col">Name</th>
-                <th scope="col" class="number">
-                  Value
-                </th>
-                <th scope="col">Unit</th>
-                {comparedWith.value && (
-                  <th scope="col" class="number">
-                    {comparedWith.value}
+        <div class="scroll" tabIndex={0} role="group" aria-label="List of parameters">
+          <table class={other ? "values grid compared" : "values grid"} role="table" aria-label="Parameters">
+            <thead role="rowgroup">
+              <tr role="row">
+                {["Number", "Name", "Value", "Unit", "Range", "Factory", ...(other ? [other.name] : []), "Set with Enter"].map((name) => (
+                  <th key={name} role="columnheader" scope="col" class={name === "Set with Enter" ? "set" : name === other?.name ? "other" : name.toLowerCase()}>
+                    {name}
                   </th>
-                )}
-                <th scope="col">Set with Enter</th>
+                ))}
               </tr>
             </thead>
-            <tbody>
+            <tbody role="rowgroup">
               {rows.map((parameter) => (
-                <Row key={parameter.index} parameter={parameter} />
+                <Row key={`${parameter.number} ${parameter.index} ${parameter.name}`} parameter={parameter} />
               ))}
             </tbody>
           </table>
-          {rows.length === 0 && <p class="empty">{comparedWith.value ? "No difference." : "No such parameter."}</p>}
+          {rows.length === 0 && <p class="empty">{other ? "No difference." : "No such parameter."}</p>}
         </div>
       </div>
-    </>
+    </div>
   );
 }

@@ -26,6 +26,7 @@ import {
 import { Editor, extensionsOf } from "./editor";
 import { compiledLine, pointAt, setCompiled, setMarks, shownLine } from "./marks";
 import { Messages, messages } from "./messages";
+import { isFile, wantedLine } from "./open_line";
 import { breakpoints, chosenTask, covered, files, followProgram, openFile, station, tasks } from "./program_state";
 import { followValues } from "./values";
 
@@ -213,6 +214,14 @@ export function Program() {
     const line = view && compiled && current ? shownLine(view.state, current) : 0;
     if (view && line && !view.hasFocus) view.dispatch({ effects: EditorView.scrollIntoView(view.state.doc.line(line).from, { y: "nearest", yMargin: 40 }) });
   }, [current, view]);
+
+  // A line that a text elsewhere on the page has named, once.
+  useEffect(() => {
+    const place = wantedLine.value;
+    if (!view || !compiled || !place || !isFile(openFile.value, place.file)) return;
+    wantedLine.value = null;
+    goTo(view, Math.max(1, shownLine(view.state, place.line)), 1);
+  }, [wantedLine.value, view, compiled, openFile.value]);
 
   const go = (message: BuildMessage) => {
     if (!message.line) return;

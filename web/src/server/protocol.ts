@@ -252,14 +252,15 @@ export interface Parameter extends ParameterValue {
   least: string | null;
   most: string | null;
   choices: string[];
+  shows?: string | null; // the parameter whose value this one shows, too
 }
 
 export interface ParameterDifference {
   number: string;
   index: number;
   name: string;
-  text: string;
-  with: string;
+  text: string | null; // null: it has none
+  with: string | null;
 }
 
 // Of PROFIBUS only; null where the frame has none.
@@ -298,9 +299,28 @@ export interface TraceFrame extends FrameAddresses {
   extended: boolean;
   remote: boolean;
   error: boolean;
-  sender?: string;
+  sender: string; // empty: several at once, or nobody knows
+  ours: boolean; // of the plant; else from outside, over a port
+  dlc: number;
   data: string;
   text: string;
+}
+
+// A value in a telegram, with the signal that follows it.
+export interface TelegramField {
+  signal: string;
+  meaning: string;
+  value: number;
+  bits: number; // of a bit field; 0: a number
+}
+
+export interface TelegramDetail {
+  telegram: TraceFrame;
+  from_us: number;
+  fields: TelegramField[];
+  channels: boolean; // fields are channels of the scope
+  answer: TraceFrame | null;
+  question: TraceFrame | null;
 }
 
 export interface SourceFile {

@@ -1,5 +1,5 @@
 // Numbers little endian, but the identifier of SocketCAN, which its link type wants big endian.
-#include "tools/logs/write_pcapng.hpp"
+#include "tools/logs/writing/pcapng_writer.hpp"
 
 #include <fmt/format.h>
 
@@ -31,9 +31,15 @@ std::string end_of_options() { return number(pcapng::kEndOfOptions) + number(uin
 
 }  // namespace
 
-PcapngWriter::PcapngWriter(std::ostream& out) : out_(out) {
-  block(pcapng::kSection,
-        number(pcapng::kByteOrder) + number(uint16_t{1}) + number(uint16_t{0}) + number(UINT64_MAX));
+PcapngWriter::PcapngWriter(std::ostream& out, const LogPart& part) : out_(out), announces_(part.begins) {
+  if (part.begins)
+    block(pcapng::kSection,
+          number(pcapng::kByteOrder) + number(uint16_t{1}) + number(uint16_t{0}) + number(UINT64_MAX));
+  for (const LogPart::Line& line : part.lines)
+    interface_of(line.name, line.kind == LineKind::Can      ? LinkType::SocketCan
+                            : line.kind == LineKind::Serial ? LinkType::User0Serial
+                                                            : LinkType::User1Dp);
+  announces_ = true;
 }
 
 void PcapngWriter::can(runtime::Time time, const std::string& bus, const runtime::Frame& frame) {
@@ -75,9 +81,10 @@ uint32_t PcapngWriter::interface_of(const std::string& bus, LinkType link) {
   const auto found = std::find(interfaces_.begin(), interfaces_.end(), std::pair(bus, link));
   if (found != interfaces_.end()) return static_cast<uint32_t>(found - interfaces_.begin());
   constexpr char kNanosecond = 9;
-  block(pcapng::kInterface, number(static_cast<uint16_t>(link)) + number(uint16_t{0}) + number(uint32_t{0}) +
-                                option(pcapng::kName, bus) +
-                                option(pcapng::kResolution, std::string(1, kNanosecond)) + end_of_options());
+  if (announces_)
+    block(pcapng::kInterface, number(static_cast<uint16_t>(link)) + number(uint16_t{0}) + number(uint32_t{0}) +
+                                  option(pcapng::kName, bus) +
+                                  option(pcapng::kResolution, std::string(1, kNanosecond)) + end_of_options());
   interfaces_.emplace_back(bus, link);
   return static_cast<uint32_t>(interfaces_.size() - 1);
 }

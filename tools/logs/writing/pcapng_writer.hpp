@@ -1,14 +1,18 @@
-// Writes pcapng: an interface when a bus is first heard, then a packet a frame or telegram.
+// Writes pcapng: an interface a bus, then a packet a frame or telegram.
 #pragma once
 
-#include "tools/logs/log_writer.hpp"
-#include "tools/logs/pcapng.hpp"
+#include <span>
+#include <utility>
+
+#include "tools/logs/writing/pcapng.hpp"
+#include "tools/logs/writing/writer.hpp"
 
 namespace ipos::tools {
 
 class PcapngWriter final : public LogWriter {
  public:
-  explicit PcapngWriter(std::ostream& out);
+  // Lines that are known stand at the head; others are added when they are first heard.
+  explicit PcapngWriter(std::ostream& out, const LogPart& part = {});
   void can(runtime::Time time, const std::string& bus, const runtime::Frame& frame) override;
   void serial(const std::string& line, const runtime::Reception& reception) override;
   void dp(const std::string& line, const profibus::Reception& reception) override;
@@ -21,6 +25,7 @@ class PcapngWriter final : public LogWriter {
   void block(uint32_t type, const std::string& body);
 
   std::ostream& out_;
+  bool announces_;  // interfaces; else the part before has done it
   std::vector<std::pair<std::string, pcapng::LinkType>> interfaces_;
 };
 
