@@ -5,6 +5,19 @@
 
 namespace ipos::runtime {
 
+bool are_alike(const FaultConfig& one, const FaultConfig& other) {
+  const auto kind = [](const FaultConfig& fault) {
+    return fault.profibus ? static_cast<int>(fault.profibus->kind) : static_cast<int>(fault.fault.kind);
+  };
+  return one.bus == other.bus && one.station == other.station && one.profibus.has_value() == other.profibus.has_value() &&
+         kind(one) == kind(other) && one.fault.id == other.fault.id;
+}
+
+bool is_active(const FaultConfig& fault, Time now) {
+  const auto within = [now](const auto& part) { return part.from <= now && now < part.until; };
+  return fault.profibus ? within(*fault.profibus) : within(fault.fault);
+}
+
 Refusal PlantActions::set(const signals::Signal& signal, int64_t value) { return signal.write(value); }
 
 Refusal PlantActions::force(const signals::Signal& signal, int64_t value, Time length) {

@@ -11,6 +11,10 @@ namespace ipos::runtime {
 
 using signals::Refusal;
 
+// Two faults of the same line, station and kind, on the same frames.
+bool are_alike(const FaultConfig& one, const FaultConfig& other);
+bool is_active(const FaultConfig& fault, Time now);
+
 enum class ProgramOrder : uint8_t { Start, Stop, Restart };
 
 class PlantActions {

@@ -15,7 +15,7 @@ inline const std::vector<std::string_view> kTestExpectKeys = {
     "every",  "sequence", "repeat"};
 
 // Keys of a test file beside those of a plant.
-inline const std::vector<std::string_view> kTestKeys = {"plant", "plant_expects", "speed",
+inline const std::vector<std::string_view> kTestKeys = {"plant", "plant_expects", "by_hand", "speed",
                                                         "step",  "expect",        "case"};
 
 }  // namespace ipos::runtime

@@ -21,18 +21,19 @@ constexpr uint64_t kAcyclicObjectTags = kObjectTags + ObjectTable::kAcyclicTags;
 
 constexpr MovilinkBus kBuses[] = {MovilinkBus::Sbus, MovilinkBus::Sbus2};
 
-struct SbusParameters {
-  std::string_view protocol, address, group, baud, sync_id, second_channel, canopen_address;
-};
-constexpr SbusParameters kOlder = {"", "813", "814", "816", "817", "", ""};
-constexpr SbusParameters kSbus1 = {"880", "881", "882", "884", "885", "889", "886"};
-constexpr SbusParameters kSbus2 = {"890", "891", "892", "894", "895", "899", "896"};
+constexpr SbusNumbers kOlder = {"", "813", "814", "816", "817", "", ""};
+constexpr SbusNumbers kSbus1 = {"880", "881", "882", "884", "885", "889", "886"};
+constexpr SbusNumbers kSbus2 = {"890", "891", "892", "894", "895", "899", "896"};
 
 }  // namespace
 
+const SbusNumbers& sbus_numbers(const stdlib::UnitType& unit, int sbus) {
+  return !unit.has(stdlib::Trait::NewSbusNumbers) ? kOlder : sbus == 1 ? kSbus1 : kSbus2;
+}
+
 SbusSettings sbus_settings(const UnitInterface& drive, int sbus) {
   const stdlib::UnitType& unit = drive.unit();
-  const SbusParameters& p = !unit.has(stdlib::Trait::NewSbusNumbers) ? kOlder : sbus == 1 ? kSbus1 : kSbus2;
+  const SbusNumbers& p = sbus_numbers(unit, sbus);
   const auto value = [&](std::string_view number) { return number.empty() ? 0 : drive.value(number); };
   SbusSettings settings;
   settings.slave.address = static_cast<uint8_t>(value(p.address));

@@ -22,6 +22,12 @@
 
 namespace ipos::runtime {
 
+// The parameters of a unit for SBus 1 or 2; empty where it has none for that.
+struct SbusNumbers {
+  std::string_view protocol, address, group, baud, sync_id, second_channel, canopen_address;
+};
+const SbusNumbers& sbus_numbers(const stdlib::UnitType& unit, int sbus);
+
 // Settings of SBus 1 or 2 from the parameters of a unit: P813.. (1053 1610 p. 41), MOVIDRIVE B P881.. and
 // P891...
 struct SbusSettings {

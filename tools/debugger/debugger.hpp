@@ -110,6 +110,8 @@ class Debugger final : private runtime::CommandRunner {
   void write(const ValuePlace& place, int32_t value);
   // The same for what only the front end knows how to do. What it throws is thrown on, and nothing was done.
   void perform(const Json& action);
+  // What was done so far, in the order of time, and what is done again when time comes there.
+  const std::vector<Change>& changes() const { return changes_; }
 
   // "{speed} rpm" with the values of what is in braces.
   std::string with_values(uint32_t station, const std::string& text) const;

@@ -20,7 +20,9 @@
 #include "tools/processes/replaceable_process.hpp"
 #include "tools/serve/channel.hpp"
 #include "tools/serve/drive_host.hpp"
+#include "tools/serve/find_plant.hpp"
 #include "tools/serve/forked_copies.hpp"
+#include "tools/serve/gallery_host.hpp"
 #include "tools/serve/host/plant_host.hpp"
 #include "tools/serve/kept.hpp"
 #include "tools/serve/language.hpp"
@@ -57,8 +59,9 @@ Pair make_pair_of_sockets() {
   return {ends[0], ends[1]};
 }
 
+// The gallery is that of a folder.
 serve::Kept kept_of(const ServeFlags& flags) {
-  return flags.device.port.empty() ? serve::Kept::of_plant(flags.file)
+  return flags.device.port.empty() ? serve::Kept::of_plant(flags.file.empty() ? "." : flags.file)
                                    : serve::Kept::of_drive(flags.device.port, flags.address);
 }
 
@@ -86,11 +89,22 @@ std::string why_read_only(const ServeFlags& flags) {
   return "this page can be reached from other machines: files are written with ipos serve --write only";
 }
 
-int run_host(const ServeFlags& flags, PlantInput input, const Pair& sockets) {
+// Until somebody opens a plant, which can be built; its path. Empty: nobody listens any more.
+std::string run_gallery(const ServeFlags& flags, serve::Mailbox& mailbox, PlantInput& input) {
+  serve::GalleryHost gallery(mailbox, IPOS_VERSION, why_read_only(flags),
+                             [&](const std::string& path) { input = read_plant_input(path, flags.compile); });
+  kept_of(flags).add_commands(gallery.router());
+  mailbox.send(serve::MessageKind::Ready, 0, {});
+  return gallery.run();
+}
+
+int run_host(ServeFlags flags, PlantInput input, const Pair& sockets) {
   close(sockets.server);
   std::signal(SIGINT, SIG_IGN);  // Ctrl-C goes to both; the server tells
   std::signal(SIGTERM, SIG_IGN);
   serve::Channel channel(sockets.host);
+  const bool chosen = flags.file.empty();
+  if (chosen && (flags.file = run_gallery(flags, channel, input)).empty()) return kGood;
   const bool snapshots = flags.snapshots && !serve::PlantPorts::has_ports(input.file);
   const std::string title = std::filesystem::path(flags.file).filename().string();
   const serve::SteadyClock clock;
@@ -103,7 +117,7 @@ int run_host(const ServeFlags& flags, PlantInput input, const Pair& sockets) {
   const serve::Kept kept = kept_of(flags);
   kept.add_commands(host.router());
   host.restore(kept.settings());
-  channel.send(serve::MessageKind::Ready, 0, {});
+  if (!chosen) channel.send(serve::MessageKind::Ready, 0, {});
   run(host, channel);
   return kGood;
 }
@@ -124,12 +138,13 @@ int run_drive_host(const ServeFlags& flags, const Pair& sockets) {
   return kGood;
 }
 
-int serve_page(const ServeFlags& flags) {
+int serve_page(ServeFlags flags) {
   const bool device = !flags.device.port.empty();
-  if (device == !flags.file.empty())
-    throw Failure(kUsage, "serve needs a FILE, or --device with the port of a real drive");
+  if (device && !flags.file.empty())
+    throw Failure(kUsage, "serve takes a FILE, or --device with the port of a real drive, not both");
+  if (!device) flags.file = serve::find_plant(flags.file);
   PlantInput input;
-  if (!device) input = read_plant_input(flags.file, flags.compile);
+  if (!flags.file.empty()) input = read_plant_input(flags.file, flags.compile);
   const Pair sockets = make_pair_of_sockets();
   ReplaceableProcess host([&] {
     return end_of_process(
@@ -166,7 +181,8 @@ int serve_page(const ServeFlags& flags) {
 void add_serve(cli::Verb& app) {
   auto flags = std::make_shared<ServeFlags>();
   cli::Verb& verb = app.verb("serve", "a page in the browser to watch, touch and understand a plant");
-  verb.option("FILE", flags->file, "source (.IPC), image (.ipx) or plant (.toml)");
+  verb.option("FILE", flags->file,
+              "source (.IPC), image (.ipx), plant (.toml) or its folder; default: the only plant here, else the gallery");
   verb.option("--port", flags->port, "port to listen at; default 0: that of the last time, or any free one");
   verb.option("--bind", flags->bind, "address to listen at; default 127.0.0.1, which others cannot reach");
   verb.flag("--open", flags->open, "open the page in a browser");

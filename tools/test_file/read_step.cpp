@@ -67,12 +67,12 @@ std::optional<Step> read_awaited(PlantReader& reader, const toml::table& table) 
   return AwaitStep{std::move(*expect)};
 }
 
-// Times of the fault count from the step on.
-std::optional<Step> read_line_fault(PlantReader& reader, const toml::table& table) {
-  const toml::node& node = *table.get("fault");
+// A fault as a table in the step, with the keys of a [[fault]].
+std::optional<runtime::FaultConfig> read_planted(PlantReader& reader, const toml::table& table, std::string_view key) {
+  const toml::node& node = *table.get(key);
   if (!node.is_table()) {
     reader.error(place_of(node),
-                 "write fault = { bus = \"...\", kind = \"...\" }, with the keys of a [[fault]]");
+                 fmt::format("write {} = {{ bus = \"...\", kind = \"...\" }}, with the keys of a [[fault]]", key));
     return std::nullopt;
   }
   auto& faults = reader.result.plant.faults;
@@ -84,9 +84,28 @@ std::optional<Step> read_line_fault(PlantReader& reader, const toml::table& tabl
   return fault;
 }
 
+// Times of the fault count from the step on.
+std::optional<Step> read_line_fault(PlantReader& reader, const toml::table& table) {
+  auto fault = read_planted(reader, table, "fault");
+  if (!fault) return std::nullopt;
+  return *std::move(fault);
+}
+
+std::optional<Step> read_repair(PlantReader& reader, const toml::table& table) {
+  auto fault = read_planted(reader, table, "repair");
+  if (!fault) return std::nullopt;
+  return RepairStep{*std::move(fault)};
+}
+
 std::optional<Step> read_drive_fault(PlantReader& reader, const toml::table& table) {
   return DriveFaultStep{read_item_station(reader, table, kStep),
                         static_cast<uint8_t>(reader.count(table, "drive_fault", UINT8_MAX, 0))};
+}
+
+std::optional<Step> read_reset(PlantReader& reader, const toml::table& table) {
+  if (!reader.flag(table, "reset").value_or(false))
+    reader.error(place_of(*table.get("reset")), "write reset = true");
+  return ResetStep{read_item_station(reader, table, kStep)};
 }
 
 // The value of a key that takes one of a few words: its place among them, or nothing with an error.
@@ -126,7 +145,9 @@ const std::vector<Action> kActions = {
     {"send", {"bus"}, read_send},
     {"await", {"bus", "within"}, read_awaited},
     {"fault", {}, read_line_fault},
+    {"repair", {}, read_repair},
     {"drive_fault", {"station"}, read_drive_fault},
+    {"reset", {"station"}, read_reset},
     {"program", {"station"}, read_program},
     {"power", {"station"}, read_power},
 };

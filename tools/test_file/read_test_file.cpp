@@ -214,6 +214,7 @@ void read_one(const std::string& text, TestCase& test) {
       test.plant_path = test.file;
     }
     test.speed = reader.count(*root, "speed", 1'000'000, 0);
+    test.by_hand = reader.flag(*root, "by_hand").value_or(false);
     add_plant_expectations(reader.result.plant, test);
     if (!named || !reader.result.plant.stations.empty()) read_items(reader, *root, test);
     check_test(reader);

@@ -83,9 +83,16 @@ struct SendStep {
 struct AwaitStep {
   Expect frame;
 };
+// Ends what an earlier fault of the line, or one of the plant file, has begun.
+struct RepairStep {
+  runtime::FaultConfig fault;
+};
 struct DriveFaultStep {
   std::string station;
   uint8_t number = 0;
+};
+struct ResetStep {
+  std::string station;
 };
 struct ProgramStep {
   std::string station;
@@ -96,7 +103,7 @@ struct PowerStep {
   bool on = false;
 };
 using Step = std::variant<Wait, runtime::Stimulus, ProcessDataStep, SendStep, AwaitStep, runtime::FaultConfig,
-                          DriveFaultStep, ProgramStep, PowerStep>;
+                          RepairStep, DriveFaultStep, ResetStep, ProgramStep, PowerStep>;
 
 struct Item {
   FilePlace place;
@@ -127,6 +134,8 @@ struct TestCase {
   bool plant_expects = false;  // the [[expect]] of the plant it names are looked at
   runtime::PlantFile plant;
   std::vector<Item> items;
+  // Steps act as a hand on the page of `ipos serve` does: when everything of their millisecond has happened.
+  bool by_hand = false;
   uint32_t speed = 0;                           // commands per ms of every task; 0: P938 and P939
   std::vector<ExpectedDiagnostic> diagnostics;  // of the program, if it is the test file
   bool is_program = false;

@@ -32,7 +32,7 @@ Script::Script(const TestCase& test, runtime::Plant& plant, uint64_t seed, TestR
       result_(result),
       probe_(plant, [this](const std::string& bus, Time now, const std::string& text,
                            const std::string& meaning) { tell_event(bus, now, text, meaning); }),
-      actor_(plant, test.items, seed, [this](const Item& item, std::string text) { stop(item, std::move(text)); }) {}
+      actor_(plant, test, seed, [this](const Item& item, std::string text) { stop(item, std::move(text)); }) {}
 
 std::vector<runtime::PlantError> Script::resolve() {
   std::vector<runtime::PlantError> errors;
@@ -73,7 +73,10 @@ bool Script::further() {
     case Stage::Next: return next_item();
     case Stage::Plan:
       if (!has_come) return false;
-      actor_.plan(*item_, std::get<Step>(item_->what), cursor_);
+      if (test_.by_hand)
+        actor_.act_by_hand(*item_, std::get<Step>(item_->what), cursor_);
+      else
+        actor_.plan(*item_, std::get<Step>(item_->what), cursor_);
       break;
     case Stage::Look:
       if (!has_come) return false;
@@ -132,8 +135,12 @@ void Script::perform(const Item& item) {
     if (std::holds_alternative<Wait>(*step)) return;
     if (const auto* await = std::get_if<AwaitStep>(step)) return wait_for(item, await->frame);
     cursor_ = (cursor_ + kMillisecond - 1) / kMillisecond * kMillisecond;
-    if (done_ >= cursor_) cursor_ = (done_ / kMillisecond + 1) * kMillisecond;
     stage_ = Stage::Plan;
+    if (test_.by_hand) {
+      due_ = cursor_ == 0 ? -1 : cursor_;  // before the first event
+      return;
+    }
+    if (done_ >= cursor_) cursor_ = (done_ / kMillisecond + 1) * kMillisecond;
     due_ = cursor_ > kMillisecond ? cursor_ - kMillisecond : -1;  // in the first one nothing has happened yet
     return;
   }

@@ -2,7 +2,8 @@
 // runs it to where the script wants to go on; the debugger runs it as its user wants and tells what has passed.
 //
 // A step at T is planned when everything of the millisecond before has happened, so that it acts at the beginning of
-// T; an expectation at T looks when everything of T has happened. A step after it then acts in the next millisecond.
+// T; an expectation at T looks when everything of T has happened. A step after it then acts in the next millisecond. In a
+// test by hand a step at T acts when everything of T has happened.
 #pragma once
 
 #include <list>

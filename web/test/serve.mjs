@@ -13,7 +13,8 @@ export const examples = process.env.IPOS_EXAMPLES ?? fileURLToPath(new URL("../.
 // Token, port and settings are kept in the folder `state`, by default in one that no other server has.
 export async function serve(plant, options = [], folder = ".", state = undefined) {
   const own = state ?? mkdtempSync(join(tmpdir(), "ipos-state-"));
-  const child = spawn(program, ["serve", plant, ...options], {
+  // Without a plant it is the only one of the folder, or the gallery.
+  const child = spawn(program, ["serve", ...(plant ? [plant] : []), ...options], {
     cwd: folder,
     stdio: ["ignore", "pipe", "inherit"],
     env: { ...process.env, XDG_STATE_HOME: own },

@@ -8,6 +8,8 @@
 #include <functional>
 #include <string_view>
 
+#include "runtime/plant/actions.hpp"
+
 namespace ipos::tools::serve {
 namespace {
 
@@ -67,12 +69,6 @@ void check(const FaultRule& rule, const runtime::Bus& bus, const std::string& st
 }
 
 // What the two kinds of faults have in common.
-runtime::Time from(const FaultConfig& config) {
-  return config.profibus ? config.profibus->from : config.fault.from;
-}
-runtime::Time until(const FaultConfig& config) {
-  return config.profibus ? config.profibus->until : config.fault.until;
-}
 uint32_t per_mille(const FaultConfig& config) {
   return config.profibus ? config.profibus->per_mille : config.fault.per_mille;
 }
@@ -121,8 +117,7 @@ void LineFaults::carry_out(const Arguments& a) {
   check(rule, bus, a.text("station", ""), a);
   const FaultConfig config = config_of(bus, rule, a, plant_->now());
   const auto same = [&](const FaultConfig& other) {
-    return other.bus == config.bus && other.station == config.station && word_of(other) == word_of(config) &&
-           other.fault.id == config.fault.id && is_active(other);
+    return runtime::are_alike(other, config) && runtime::is_active(other, plant_->now());
   };
   const auto known = std::find_if(planted_.begin(), planted_.end(), same);
   if (a.flag("on")) {
@@ -140,17 +135,13 @@ void LineFaults::carry_out(const Arguments& a) {
 Json LineFaults::planted_on(const std::string& bus) const {
   Json faults = Json::array();
   for (const FaultConfig& config : planted_) {
-    if (config.bus != bus || !is_active(config)) continue;
+    if (config.bus != bus || !runtime::is_active(config, plant_->now())) continue;
     Json fault{{"kind", word_of(config)}, {"station", config.station}};
     if (config.fault.id) fault["id"] = *config.fault.id;
     if (per_mille(config) < 1000) fault["rate"] = per_mille(config) / 1000.0;
     faults.push_back(std::move(fault));
   }
   return faults;
-}
-
-bool LineFaults::is_active(const FaultConfig& config) const {
-  return from(config) <= plant_->now() && plant_->now() < until(config);
 }
 
 }  // namespace ipos::tools::serve

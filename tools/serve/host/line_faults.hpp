@@ -26,8 +26,6 @@ class LineFaults {
   Json planted_on(const std::string& bus) const;
 
  private:
-  bool is_active(const runtime::FaultConfig& config) const;
-
   runtime::Plant* plant_ = nullptr;
   std::vector<runtime::FaultConfig> planted_;
 };

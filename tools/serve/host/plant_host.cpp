@@ -551,6 +551,12 @@ void PlantHost::must_be_there() const {
   if (next_.kind == MotionKind::Go) throw Mistake("the plant is on its way to another moment");
 }
 
+std::vector<std::string> PlantHost::actions() const {
+  std::vector<std::string> names;
+  for (const auto& [name, action] : actions_) names.push_back(name);
+  return names;
+}
+
 void PlantHost::perform(const Json& action) {
   actions_.at(action["act"].get<std::string>())(action);
   if (const auto station = action.find("station"); station != action.end() && station->is_string())

@@ -70,6 +70,7 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
   debug::Debugger& debugger() { return *debugger_; }
   uint32_t station_number(const std::string& name) const;  // a Mistake that names those there are
   runtime::Station& station(const std::string& name) { return *plant_->stations()[station_number(name)]; }
+  const std::string& title() const { return title_; }  // the name of its file
   int64_t us() const { return plant_->now() / runtime::kMicrosecond; }
   int64_t furthest_us() const;  // the latest moment that one can go to
   // What is done to the plant goes this way: it is done again when its moment comes again.
@@ -80,6 +81,7 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
   void write(const debug::ValuePlace& place, int32_t value);
   // A tab that marks what happens on the timeline.
   std::function<void(const char* kind, const std::string& what, const std::string& station, const std::string& text)> mark;
+  std::vector<std::string> actions() const;
   // A line that goes on outside.
   bool has_port(const std::string& bus) const { return ports_.joined(bus); }
   Copies& copies() { return copies_; }

@@ -6,7 +6,7 @@ export type { Channel };
 export interface Hello {
   protocol: number;
   version: string;
-  mode: "plant" | "device";
+  mode: "plant" | "device" | "gallery";
   title: string;
   writable: boolean;
   live?: boolean; // a plant with real ports: time is that of the world outside

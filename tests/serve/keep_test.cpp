@@ -1,0 +1,219 @@
+// A test that the page has kept does the same run again: whatever was done on the page, in whatever plant, it is green at
+// once and ends in the same state, and it is red where one of its values is changed.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <random>
+#include <regex>
+#include <set>
+
+#include "runtime/plant/trace_hash.hpp"
+#include "tests/harness/contains.hpp"
+#include "tests/serve/served_page.hpp"
+#include "tests/tools/command.hpp"
+#include "tools/input/plant_input.hpp"
+#include "tools/serve/host/step_text.hpp"
+#include "tools/test_file/read_tests.hpp"
+#include "tools/testing/run_test.hpp"
+
+namespace ipos::tests {
+namespace {
+
+namespace fs = std::filesystem;
+using tools::testing::Outcome;
+
+// A copy of an example, so that its plant is called as the page of the tests calls it.
+class Example {
+ public:
+  explicit Example(const fs::path& plant) {
+    for (const auto& file : fs::directory_iterator(plant.parent_path()))
+      if (file.path().extension() != ".toml") fs::copy(file.path(), folder_.path() / file.path().filename());
+    folder_.write("plant.toml", read_text(plant));
+  }
+  tools::debug::MakePlant make() const {
+    return [input = tools::read_plant_input((folder_.path() / "plant.toml").string(), {})] {
+      return tools::make_plant(input, runtime::FileUse::Look);
+    };
+  }
+  struct Ran {
+    tools::testing::TestResult result;
+    uint64_t digest = 0;
+  };
+  Ran run(const std::string& text) const {
+    const std::string file = folder_.write("kept.test.toml", text);
+    const auto tests = tools::testing::read_tests(file);
+    EXPECT_EQ(tests.size(), 1U);
+    tools::testing::Programs programs{{}};
+    tools::testing::RunOptions options;
+    const runtime::Plant* plant = nullptr;
+    Ran ran;
+    options.prepare = [&](runtime::Plant& built) {
+      plant = &built;
+      return nullptr;
+    };
+    options.finish = [&] { ran.digest = runtime::state_digest(*plant); };
+    ran.result = run_test(tests.front(), programs, options);
+    return ran;
+  }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+std::string told(const tools::testing::TestResult& result) {
+  std::string text = result.messages;
+  for (const auto& finding : result.findings) text += std::to_string(finding.place.line) + ": " + finding.text + "\n";
+  return text;
+}
+
+// Somebody who clicks here and there. What the page refuses changes nothing.
+class Hand {
+ public:
+  Hand(Page& page, uint32_t seed) : page_(page), random_(seed) {
+    plant_ = page.ask({{"do", "plant"}})["plant"];
+    for (const Json& row : page.ask({{"do", "search"}, {"group", "variables"}, {"limit", 1000}})["names"])
+      variables_.push_back(row["name"]);
+    for (const Json& row : page.ask({{"do", "search"}, {"text", ""}, {"limit", 1000}})["names"])
+      names_.push_back(row["name"]);
+  }
+
+  void act() {
+    switch (below(12)) {
+      case 0: case 1: case 2: return input();
+      case 3: return set(one_of(variables_), below(2) == 0 ? "set" : "force", std::to_string(below(5000)));
+      case 4: return set(station() + (below(2) == 0 ? ".PO1" : ".PO2"), below(2) == 0 ? "set" : "force", std::to_string(below(2000)));
+      case 5: return set(station() + (below(2) == 0 ? ".P130" : ".P160"), below(2) == 0 ? "set" : "force", std::to_string(below(2000)));
+      case 6: return release();
+      case 7: return ask({{"do", "power"}, {"station", station()}, {"on", below(3) != 0}});
+      case 8: return line_fault();
+      case 9: return ask({{"do", "reset"}, {"station", station()}});
+      case 10: return send();
+      default: return ask({{"do", "analog"}, {"station", station()}, {"name", "AI1"},
+                           {"action", below(2) == 0 ? "set" : "force"}, {"value", std::to_string(below(10)) + " V"}});
+    }
+  }
+  void pass() {
+    if (below(8) == 0)
+      ask({{"do", "back"}, {"ms", 1 + below(150)}});
+    else
+      ask({{"do", "step"}, {"ms", 1 + below(below(2) == 0 ? 5 : 400)}});
+  }
+  std::vector<std::string> pins() {
+    std::vector<std::string> all;
+    for (int n = 0; n < 8; ++n) all.push_back(one_of(names_));
+    return all;
+  }
+  void ask(const Json& message) {
+    page_.ask(message);
+    done_ += message.dump() + "\n";
+  }
+  const std::string& done() const { return done_; }
+
+ private:
+  int below(int limit) { return static_cast<int>(random_() % static_cast<uint32_t>(limit)); }
+  template <typename List>
+  auto one_of(const List& list) {
+    return list.empty() ? typename List::value_type() : list[static_cast<size_t>(below(static_cast<int>(list.size())))];
+  }
+  std::string station() { return one_of(plant_["stations"].get<std::vector<Json>>())["name"]; }
+
+  void input() {
+    const char* actions[] = {"set", "set", "force", "pulse", "release"};
+    const Json station = one_of(plant_["stations"].get<std::vector<Json>>());
+    if (station["inputs"].empty()) return;
+    ask({{"do", "input"}, {"station", station["name"]}, {"name", one_of(station["inputs"].get<std::vector<Json>>())["name"]},
+         {"action", actions[below(5)]}, {"on", below(2) == 0}, {"ms", 1 + below(300)}});
+  }
+  void set(const std::string& name, const char* how, const std::string& value) {
+    if (!name.empty()) ask({{"do", how}, {"name", name}, {"value", value}});
+  }
+  void release() {
+    const Json forced = page_.ask({{"do", "forced"}})["names"];
+    if (!forced.empty()) ask({{"do", "release"}, {"name", one_of(forced.get<std::vector<std::string>>())}});
+  }
+  void line_fault() {
+    if (plant_["buses"].empty()) return;
+    const Json bus = one_of(plant_["buses"].get<std::vector<Json>>());
+    if (bus["faults"].empty()) return;
+    const std::string kind = one_of(bus["faults"].get<std::vector<std::string>>());
+    const Json& rule = bus["fault_rules"][kind];
+    Json fault{{"do", "fault"}, {"bus", bus["name"]}, {"kind", kind}, {"on", true}};
+    if (rule["station"] == "must" || (rule["station"] == "may" && below(2) == 0))
+      fault["station"] = one_of(bus["stations"].get<std::vector<std::string>>());
+    if (rule["rate"].get<bool>()) fault["rate"] = below(2) == 0 ? 1.0 : 0.25;
+    ask(fault);
+    planted_.push_back(fault);
+    if (below(2) == 0) return;
+    Json ended = one_of(planted_);
+    ended["on"] = false;
+    pass();
+    ask(ended);
+  }
+  void send() {
+    if (plant_["buses"].empty()) return;
+    const Json bus = one_of(plant_["buses"].get<std::vector<Json>>());
+    if (bus["kind"] == "can")
+      return ask({{"do", "bus.send"}, {"bus", bus["name"]}, {"identifier", 0x200 + below(0x100)}, {"data", "0006 0BB8"}});
+    ask({{"do", "bus.send"}, {"bus", bus["name"]}, {"data", bus["kind"] == "profibus" ? "10 08 02 49 53 16" : "02 01 85 00 06 13 88 00 00 1B"}});
+  }
+
+  Page& page_;
+  std::mt19937 random_;
+  Json plant_;
+  std::vector<std::string> variables_, names_;
+  std::vector<Json> planted_;
+  std::string done_;
+};
+
+std::vector<fs::path> example_plants() {
+  std::vector<fs::path> plants;
+  for (const auto& folder : fs::directory_iterator(project("examples")))
+    if (folder.is_directory())
+      for (const auto& file : fs::directory_iterator(folder.path()))
+        if (file.path().extension() == ".toml" && !file.path().string().ends_with(".test.toml")) plants.push_back(file.path());
+  std::sort(plants.begin(), plants.end());
+  return plants;
+}
+
+class KeptTestOf : public ::testing::TestWithParam<fs::path> {};
+
+TEST_P(KeptTestOf, IsGreenAtOnceAndRedAfterAChange) {
+  const Example example(GetParam());
+  const auto make = example.make();
+  for (uint32_t seed = 1; seed <= 3; ++seed) {
+    ServedPage page(make);
+    Hand hand(page, seed * 7919);
+    hand.act();
+    for (int n = 0; n < 12; ++n) {
+      hand.pass();
+      hand.act();
+      hand.act();
+    }
+    page.ask({{"do", "step"}, {"ms", 20}});
+    const Json kept = page.ask({{"do", "keep.test"}, {"pinned", hand.pins()}});
+    ASSERT_TRUE(kept.value("ok", false)) << kept;
+    for (const std::string reason : kept["left_out"])
+      EXPECT_TRUE(contains(reason, "stations and gateways only")) << reason;
+    const std::string text = kept["text"];
+    const Example::Ran ran = example.run(text);
+    ASSERT_EQ(ran.result.outcome, Outcome::Passed) << told(ran.result) << hand.done() << text;
+    EXPECT_EQ(ran.digest, runtime::state_digest(page.host.plant())) << hand.done() << text;
+
+    // One value of it is another one.
+    std::smatch last;
+    ASSERT_TRUE(std::regex_search(text, last, std::regex("equals = (-?\\d+)\n")));
+    const std::string other = last.prefix().str() + "equals = " + std::to_string(std::stoll(last[1]) ^ 1) + "\n" + last.suffix().str();
+    const auto red = example.run(other).result;
+    EXPECT_EQ(red.outcome, Outcome::Failed);
+    EXPECT_EQ(red.findings.size(), 1U) << told(red);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Examples, KeptTestOf, ::testing::ValuesIn(example_plants()), [](const auto& info) {
+  std::string name = info.param.stem().string();
+  std::replace_if(name.begin(), name.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
+  return name;
+});
+
+}  // namespace
+}  // namespace ipos::tests

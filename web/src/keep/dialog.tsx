@@ -1,0 +1,23 @@
+// A dialog over the page: it takes the focus, Escape closes it, and what had the focus before has it again.
+import type { ComponentChildren } from "preact";
+import { useLayoutEffect, useRef } from "preact/hooks";
+
+export function Dialog({ name, onClose, children }: { name: string; onClose: () => void; children: ComponentChildren }) {
+  const dialog = useRef<HTMLDialogElement>(null);
+  useLayoutEffect(() => {
+    const element = dialog.current;
+    element?.showModal();
+    return () => element?.close();
+  }, []);
+  return (
+    <dialog class="help keep" ref={dialog} aria-label={name} onClose={onClose}>
+      <div class="row">
+        <h2>{name}</h2>
+        <button class="spread" onClick={() => dialog.current?.close()}>
+          Close
+        </button>
+      </div>
+      {children}
+    </dialog>
+  );
+}

@@ -1,0 +1,36 @@
+// The session as a file beside the plant; `ipos serve FILE` opens it at the same moment.
+import { useState } from "preact/hooks";
+
+import { request } from "../server/connection";
+import { hello } from "../server/live";
+import { Dialog } from "./dialog";
+
+export function SessionDialog({ onClose }: { onClose: () => void }) {
+  const [file, setFile] = useState(`${(hello.peek()?.title ?? "plant").replace(/\.[^.]*$/, "")}.ipos`);
+  const [said, setSaid] = useState("");
+  const [wrong, setWrong] = useState("");
+  const save = async () => {
+    setWrong("");
+    try {
+      const settings = (await request({ do: "settings" })).settings;
+      const session = await request({ do: "session", settings });
+      const saved = await request({ do: "file.write", name: file, text: session.text });
+      setSaid(`Saved. Open it by: ipos serve ${saved.name as string}`);
+    } catch (reason) {
+      setWrong(reason instanceof Error ? reason.message : String(reason));
+    }
+  };
+  return (
+    <Dialog name="Save session" onClose={onClose}>
+      <p>The plant and its programs, what was done, this moment and this layout.</p>
+      <div class="row">
+        <input type="text" aria-label="File" value={file} onInput={(event) => setFile(event.currentTarget.value)} />
+        <button class="primary" onClick={() => void save()}>
+          Save
+        </button>
+      </div>
+      {wrong && <p role="alert">{wrong}</p>}
+      <p role="status">{said}</p>
+    </Dialog>
+  );
+}

@@ -1,0 +1,108 @@
+// Clicks become a test that is green at once and red when one of its values is changed, and a session that stands at the same
+// moment when it is opened.
+import assert from "node:assert";
+import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+
+import { desktop, launch, missing, openPage, phone } from "./browser.mjs";
+import { examples, program, serve } from "./serve.mjs";
+
+const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+const skip = missing ?? (program ? false : "IPOS_PROGRAM does not name the ipos to test");
+let browser;
+
+before(async () => {
+  if (!skip) browser = await launch();
+});
+after(() => browser?.close());
+
+const findings = async (page) => {
+  await page.evaluate(axe);
+  const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
+  return violations.map((one) => `${one.id}: ${one.nodes.map((node) => node.html).join(" ")}`);
+};
+
+const time = (page) => page.getByRole("timer", { name: "Time" }).textContent();
+
+const until = async (what, text) => {
+  for (let n = 0; n < 200; ++n) {
+    if (await what()) return;
+    await new Promise((done) => setTimeout(done, 50));
+  }
+  assert.fail(text);
+};
+
+test("clicks become a green test, a red one after a change, and a session of the same moment", { skip }, async () => {
+  const folder = mkdtempSync(join(tmpdir(), "ipos-keep-"));
+  cpSync(join(examples, "hoist"), folder, { recursive: true });
+  let server = await serve("hoist.toml", ["--port", "0"], folder);
+  try {
+    const { page, errors, close } = await openPage(browser, server.address);
+    await page.getByRole("switch", { name: "hoist DI10" }).waitFor();
+    // At 0 s there is nothing to keep.
+    await page.getByRole("button", { name: "Keep as test" }).click();
+    const dialog = page.getByRole("dialog", { name: "Keep as test" });
+    await dialog.getByRole("alert").getByText("nothing has run yet").waitFor();
+    await page.keyboard.press("Escape");
+
+    const step = page.getByRole("button", { name: "Step", exact: true });
+    for (let n = 0; n < 5; ++n) await step.click();
+    await page.getByRole("switch", { name: "hoist DI10" }).click();
+    for (let n = 0; n < 5; ++n) await step.click();
+    await until(async () => (await time(page)) === "0.010 s", "it does not step");
+    await page.getByRole("tab", { name: "Watch" }).click();
+    await page.getByRole("searchbox", { name: "Search names" }).fill("hoist.setpoint");
+    await page.getByRole("button", { name: "Pin hoist.setpoint", exact: true }).click();
+
+    await page.getByRole("button", { name: "Keep as test" }).click();
+    const text = dialog.getByRole("textbox", { name: "Test" });
+    await until(async () => (await text.inputValue()).includes("[[expect]]"), "no test comes");
+    const kept = await text.inputValue();
+    for (const row of ['plant = "hoist.toml"', 'at = "5ms"', 'input = "DI10"', 'signal = "setpoint"', 'at = "10ms"'])
+      assert.ok(kept.includes(row), `${row} in ${kept}`);
+    for (const size of [desktop, phone]) {
+      await page.setViewportSize(size);
+      assert.deepStrictEqual(await findings(page), []);
+      const box = await dialog.boundingBox();
+      assert.ok(box.x >= 0 && box.x + box.width <= size.width);
+    }
+    await page.setViewportSize(desktop);
+    await dialog.getByRole("textbox", { name: "File" }).fill("clicks.test.toml");
+    await dialog.getByRole("button", { name: "Save" }).click();
+    await dialog.getByText("Saved as").waitFor();
+    assert.strictEqual(readFileSync(join(folder, "clicks.test.toml"), "utf8"), kept);
+
+    await dialog.getByRole("button", { name: "Run tests" }).click();
+    const row = dialog.getByRole("table", { name: "Tests" }).getByRole("row", { name: /^clicks / });
+    await row.getByText("passed").waitFor();
+    writeFileSync(join(folder, "clicks.test.toml"), kept.replace(/equals = .*\n$/, "equals = 12345\n"));
+    await dialog.getByRole("button", { name: "Run tests" }).click();
+    await row.getByText("failed").waitFor();
+    assert.match(await row.textContent(), /clicks\.test\.toml:\d+/);
+    await page.keyboard.press("Escape");
+
+    await page.getByRole("button", { name: "Save session" }).click();
+    const session = page.getByRole("dialog", { name: "Save session" });
+    await session.getByRole("button", { name: "Save" }).click();
+    await session.getByText("ipos serve").waitFor();
+    assert.deepStrictEqual(errors, []);
+    await close();
+    assert.strictEqual(await server.stop(), 0);
+
+    server = await serve("hoist.ipos", ["--port", "0"], folder);
+    const again = await openPage(browser, server.address);
+    await again.page.getByRole("switch", { name: "hoist DI10" }).waitFor();
+    await until(async () => (await time(again.page)) === "0.010 s", "the session stands at another moment");
+    assert.strictEqual(await again.page.getByRole("switch", { name: "hoist DI10" }).getAttribute("aria-checked"), "true");
+    await again.page.getByRole("tab", { name: "Watch" }).click();
+    await again.page.getByRole("row", { name: /hoist\.setpoint/ }).first().waitFor();
+    assert.deepStrictEqual(again.errors, []);
+    await again.close();
+  } finally {
+    await server.stop();
+    rmSync(folder, { recursive: true });
+  }
+});
