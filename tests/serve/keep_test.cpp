@@ -112,7 +112,7 @@ class Hand {
  private:
   int below(int limit) { return static_cast<int>(random_() % static_cast<uint32_t>(limit)); }
   template <typename List>
-  auto one_of(const List& list) {
+  typename List::value_type one_of(const List& list) {
     return list.empty() ? typename List::value_type() : list[static_cast<size_t>(below(static_cast<int>(list.size())))];
   }
   std::string station() { return one_of(plant_["stations"].get<std::vector<Json>>())["name"]; }
@@ -209,8 +209,8 @@ TEST_P(KeptTestOf, IsGreenAtOnceAndRedAfterAChange) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Examples, KeptTestOf, ::testing::ValuesIn(example_plants()), [](const auto& info) {
-  std::string name = info.param.stem().string();
+INSTANTIATE_TEST_SUITE_P(Examples, KeptTestOf, ::testing::ValuesIn(example_plants()), [](const auto& plant) {
+  std::string name = plant.param.stem().string();
   std::replace_if(name.begin(), name.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
   return name;
 });

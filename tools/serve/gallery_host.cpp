@@ -120,7 +120,7 @@ Json GalleryHost::make(const Arguments& a) {
   try {
     return enter((fs::path(folder) / file).generic_string());
   } catch (...) {  // it can be made again, another way
-    for (const auto& [name, text] : files) fs::remove(fs::path(folder) / name);
+    for (const auto& [name, written] : files) fs::remove(fs::path(folder) / name);
     throw;
   }
 }

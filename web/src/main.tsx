@@ -5,7 +5,9 @@ import { useEffect } from "preact/hooks";
 import { standsAlone } from "./alone/packed";
 import { inBrowser, offerToPrograms } from "./alone/start";
 import { Bus } from "./bus/bus_tab";
+import { Gallery } from "./gallery/gallery";
 import { Journal } from "./journal/journal_tab";
+import { KeepButtons, offerKeepKeys } from "./keep/keep_buttons";
 import { Parameters } from "./parameters/parameters_tab";
 import { PlantTab } from "./plant/plant_tab";
 import { Program } from "./program/program_tab";
@@ -13,6 +15,7 @@ import { Scope } from "./scope/scope_tab";
 import { connect } from "./server/connection";
 import { listenToServer } from "./server/live";
 import { overSocket } from "./server/socket";
+import { hello, listenToServer } from "./server/live";
 import { activeView, close, nextPane, offerViews, open, openDesk, paneOf, scrollPage, type View } from "./shell/desk";
 import { Help, helpOpen } from "./shell/help";
 import { listenToKeys, offerKeys } from "./shell/keys";
@@ -64,6 +67,7 @@ function offerPageKeys(): void {
 
 function Page() {
   useEffect(listenToKeys, []);
+  if (hello.value?.mode === "gallery") return <Gallery />;
   return (
     <>
       <header class="top">
@@ -71,6 +75,7 @@ function Page() {
         <div class="views">
           <TabList views={views} />
           <ViewButtons views={views} />
+          <KeepButtons />
         </div>
         <Notice />
       </header>
@@ -88,4 +93,6 @@ offerTimeKeys();
 offerPageKeys();
 offerToPrograms();
 connect(standsAlone ? inBrowser : overSocket);
+offerKeepKeys();
+connect();
 render(<Page />, document.getElementById("page") as HTMLElement);

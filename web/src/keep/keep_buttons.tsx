@@ -3,10 +3,19 @@ import { signal } from "@preact/signals";
 
 import { BuildDialog } from "../build/build_dialog";
 import { hello } from "../server/live";
+import { offerKeys } from "../shell/keys";
 import { SessionDialog } from "./session_dialog";
 import { TestDialog } from "./test_dialog";
 
 const open = signal<"test" | "session" | "station" | null>(null);
+
+export function offerKeepKeys(): void {
+  offerKeys("Keep", [
+    { key: "k", text: "Keep as test", act: () => (open.value = "test") },
+    { key: "K", text: "Save session", act: () => (open.value = "session") },
+    { key: "N", text: "New station", act: () => (open.value = "station") },
+  ]);
+}
 
 export function KeepButtons() {
   if (hello.value?.mode !== "plant") return null;
