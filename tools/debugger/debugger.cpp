@@ -119,6 +119,24 @@ void Debugger::run_again() {
   go();
 }
 
+// Without copies: one of them would go on with what its caller does next. A moment that this plant does not come to ends with
+// its time.
+Stop Debugger::resume(std::vector<Change> changes, const Position& moment) {
+  changes_ = std::move(changes);
+  goal_ = {};
+  goal_.kind = Goal::Kind::Replay;
+  goal_.end = start_ = moment;
+  goal_.order.motion = Motion::ToTime;
+  goal_.order.time = moment.time + (moment.phase == Phase::Between ? 0 : runtime::kMillisecond);
+  goal_.stop = {Reason::Step, {}, {}, {}};
+  const bool takes = std::exchange(takes_snapshots_, false);
+  build();
+  prime();
+  const Stop stop = go();
+  takes_snapshots_ = takes;
+  return stop;
+}
+
 void Debugger::restart(MakePlant next) {
   if (snapshots_) snapshots_->clear();
   changes_.clear();

@@ -82,6 +82,8 @@ class Debugger final : private runtime::CommandRunner {
   // The plant is as at power-on: what was done to the other one is done to this at the same moments.
   void will_do_as(const Debugger& other) { changes_ = other.changes_; }
   const MakePlant& maker() const { return what_.make; }
+  // From the beginning, as if the user had done this, up to that moment.
+  Stop resume(std::vector<Change> changes, const Position& moment);
   // The plant as at power-on. What the user has done is forgotten, breakpoints stay. With a plant that was built anew that
   // one begins; when it cannot be made the old one does, and the reason is thrown on.
   void restart(MakePlant next = {});

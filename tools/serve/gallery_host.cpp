@@ -110,7 +110,7 @@ Json GalleryHost::make(const Arguments& a) {
   const NewFiles templates = template_files();
   if (!program.empty()) {
     const auto from = templates.find(a.text("template", ""));
-    files[program] = from == templates.end() ? std::string_view(kEmptyProgram) : from->second;
+    files[program] = from == templates.end() ? kEmptyProgram : from->second;
   }
   try {
     write_new_files(folder, files);

@@ -11,10 +11,13 @@
 #include "tools/cli/failure.hpp"
 #include "tools/cli/files.hpp"
 #include "tools/cli/outputs.hpp"
+#include "tools/examples/examples.hpp"
 #include "tools/input/plant_source.hpp"
 #include "tools/input/sources.hpp"
 #include "tools/lsp_base/positions.hpp"
 #include "tools/test_file/read_tests.hpp"
+#include "tools/testing/reports.hpp"
+#include "tools/testing/run_test.hpp"
 
 namespace ipos::tools::serve {
 namespace {
@@ -162,6 +165,27 @@ Build PlantFiles::build() {
   build.texts = std::move(record.texts);
   build.messages = std::move(record.messages);
   return build;
+}
+
+std::string PlantFiles::test(const std::vector<std::string>& files) {
+  testing::Programs programs(compile_);
+  std::vector<testing::TestResult> results;
+  try {
+    for (const std::string& file : files)
+      for (const testing::TestCase& test : testing::read_tests(file))
+        results.push_back(testing::run_test(test, programs, {}));
+  } catch (const Failure& failure) {
+    throw Mistake(failure.what());
+  }
+  return testing::json_report(results);
+}
+
+Texts PlantFiles::templates() {
+  Texts programs;
+  for (const auto& [name, text] : template_files())
+    if (is_source(name)) programs[name] = text;
+  programs["an empty program"] = kEmptyProgram;
+  return programs;
 }
 
 }  // namespace ipos::tools::serve

@@ -21,6 +21,8 @@ class PlantFiles final : public Files {
   std::optional<std::string> text(const std::string& file) override;
   std::string write(const std::string& file, const std::string& text) override;
   Build build() override;
+  std::string test(const std::vector<std::string>& files) override;
+  Texts templates() override;
 
  private:
   std::vector<std::string> programs() const;  // that the plant names now, as files

@@ -27,6 +27,7 @@
 #include "tools/serve/kept.hpp"
 #include "tools/serve/language.hpp"
 #include "tools/serve/opened_page.hpp"
+#include "tools/serve/opened_session.hpp"
 #include "tools/serve/page.hpp"
 #include "tools/serve/plant_files.hpp"
 #include "tools/serve/plant_ports.hpp"
@@ -37,6 +38,7 @@ namespace {
 
 struct ServeFlags {
   std::string file;
+  std::shared_ptr<const serve::OpenedSession> session{};  // FILE was one; `file` is its plant
   std::string bind = "127.0.0.1";
   uint16_t port = 0;
   bool open = false;
@@ -59,8 +61,9 @@ Pair make_pair_of_sockets() {
   return {ends[0], ends[1]};
 }
 
-// The gallery is that of a folder.
+// The gallery is that of a folder; a session has its own.
 serve::Kept kept_of(const ServeFlags& flags) {
+  if (flags.session) return serve::Kept::of_plant(flags.session->path());
   return flags.device.port.empty() ? serve::Kept::of_plant(flags.file.empty() ? "." : flags.file)
                                    : serve::Kept::of_drive(flags.device.port, flags.address);
 }
@@ -89,6 +92,16 @@ std::string why_read_only(const ServeFlags& flags) {
   return "this page can be reached from other machines: files are written with ipos serve --write only";
 }
 
+// The moment and the settings of the session.
+void resume(serve::PlantHost& host, const serve::OpenedSession& opened) {
+  for (const auto& [name, value] : opened.session().settings.items()) host.router().keep(name, value);
+  try {
+    host.resume(opened.session());
+  } catch (const serve::Mistake& mistake) {
+    throw Failure(kBadInput, fmt::format("{}: {}", opened.path(), mistake.what()));
+  }
+}
+
 // Until somebody opens a plant, which can be built; its path. Empty: nobody listens any more.
 std::string run_gallery(const ServeFlags& flags, serve::Mailbox& mailbox, PlantInput& input) {
   serve::GalleryHost gallery(mailbox, IPOS_VERSION, why_read_only(flags),
@@ -110,12 +123,16 @@ int run_host(ServeFlags flags, PlantInput input, const Pair& sockets) {
   const serve::SteadyClock clock;
   serve::ForkedCopies copies(snapshots);
   serve::PlantPorts ports;
-  serve::PlantFiles files(flags.file, flags.compile, why_read_only(flags));
+  serve::PlantFiles files(flags.file, flags.compile,
+                          flags.session && flags.session->is_unpacked()
+                              ? "these are the files of a session, as they were when it was saved"
+                              : why_read_only(flags));
   serve::LanguageServer language(flags.compile);
   serve::PlantHost host([input = std::move(input)] { return make_plant(input, runtime::FileUse::Look); },
                         title, IPOS_VERSION, {channel, clock, copies, ports, files, language});
   const serve::Kept kept = kept_of(flags);
   kept.add_commands(host.router());
+  if (flags.session) resume(host, *flags.session);
   host.restore(kept.settings());
   if (!chosen) channel.send(serve::MessageKind::Ready, 0, {});
   run(host, channel);
@@ -143,6 +160,10 @@ int serve_page(ServeFlags flags) {
   if (device && !flags.file.empty())
     throw Failure(kUsage, "serve takes a FILE, or --device with the port of a real drive, not both");
   if (!device) flags.file = serve::find_plant(flags.file);
+  if (serve::is_session(flags.file)) {
+    flags.session = std::make_shared<const serve::OpenedSession>(flags.file);
+    flags.file = flags.session->plant();
+  }
   PlantInput input;
   if (!flags.file.empty()) input = read_plant_input(flags.file, flags.compile);
   const Pair sockets = make_pair_of_sockets();
@@ -182,7 +203,7 @@ void add_serve(cli::Verb& app) {
   auto flags = std::make_shared<ServeFlags>();
   cli::Verb& verb = app.verb("serve", "a page in the browser to watch, touch and understand a plant");
   verb.option("FILE", flags->file,
-              "source (.IPC), image (.ipx), plant (.toml) or its folder; default: the only plant here, else the gallery");
+              "plant (.toml) or its folder, source (.IPC), image (.ipx), session (.ipos); default: the only plant here, else the gallery");
   verb.option("--port", flags->port, "port to listen at; default 0: that of the last time, or any free one");
   verb.option("--bind", flags->bind, "address to listen at; default 127.0.0.1, which others cannot reach");
   verb.flag("--open", flags->open, "open the page in a browser");

@@ -84,6 +84,10 @@ class Files {
   }
   // Reads and compiles everything again. Nothing that runs is touched.
   virtual Build build() { throw Mistake("no files belong to this plant; it cannot be built"); }
+  // Carries out these tests; the report as `ipos test --format json` prints it.
+  virtual std::string test(const std::vector<std::string>& /*files*/) { throw Mistake("no tests can be run here"); }
+  // Programs that a new station can begin with, by their names.
+  virtual Texts templates() { return {}; }
 };
 
 // What editors ask a language server: completion, hover, messages.

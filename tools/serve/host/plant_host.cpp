@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "runtime/clock/lateness.hpp"
+#include "runtime/plant/trace_hash.hpp"
+#include "tools/serve/host/session.hpp"
 #include "tools/serve/host/tabs.hpp"
 
 namespace ipos::tools::serve {
@@ -65,6 +67,18 @@ PlantHost::~PlantHost() { ports_.leave(); }  // while there is a plant
 
 void PlantHost::restore(const Json& settings) {
   for (const auto& tab : tabs_) tab->restore(settings);
+}
+
+void PlantHost::resume(const Session& session) {
+  try {
+    debugger_->resume(session.actions, session.moment);
+  } catch (const Mistake&) {
+    throw;
+  } catch (const std::exception& error) {  // an action that nobody knows, a name that is no more
+    throw Mistake(fmt::format("what was done in the session cannot be done again: {}", error.what()));
+  }
+  if (runtime::state_digest(*plant_) != session.digest)
+    throw Mistake("the plant comes to another state than in the session; it was saved by another version of ipos, or is damaged");
 }
 
 WallClock::time_point PlantHost::turn() {

@@ -20,6 +20,8 @@
 
 namespace ipos::tools::serve {
 
+struct Session;
+
 // One tab of the page: its commands, its topic and what it gathers while the plant runs.
 class Tab {
  public:
@@ -57,6 +59,8 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
 
   // What was set on the page at an earlier start; before the first turn.
   void restore(const Json& settings);
+  // The moment of a session, from 0 s on; before the first turn. A Mistake: this plant does not come to it.
+  void resume(const Session& session);
   void take(const Message& message);
   // Some milliseconds of the plant, if there is something to run, and what is news. Returns when the next turn is due; a message
   // may come before.

@@ -16,6 +16,7 @@ std::vector<std::unique_ptr<Tab>> make_tabs(PlantHost& host) {
   tabs.push_back(make_hash_tab(host));
   tabs.push_back(make_timeline_tab(host));
   tabs.push_back(make_keep_tab(host));
+  tabs.push_back(make_form_tab(host));
   return tabs;
 }
 

@@ -22,6 +22,7 @@ std::unique_ptr<Tab> make_journal_tab(PlantHost& host);
 std::unique_ptr<Tab> make_hash_tab(PlantHost& host);
 std::unique_ptr<Tab> make_timeline_tab(PlantHost& host);
 std::unique_ptr<Tab> make_keep_tab(PlantHost& host);
+std::unique_ptr<Tab> make_form_tab(PlantHost& host);
 
 std::vector<std::unique_ptr<Tab>> make_tabs(PlantHost& host);
 

@@ -6,6 +6,16 @@ import { Dialog } from "../keep/dialog";
 import { insertion, type Table } from "./form";
 import { TableForm, useForm } from "./table_form";
 
+interface BuildMessage {
+  file: string;
+  line: number;
+  text: string;
+}
+
+function textOf(messages: BuildMessage[]): string {
+  return messages.map((one) => `${one.file}:${one.line}: ${one.text}`).join("\n");
+}
+
 const tables: { table: Table; text: string }[] = [
   { table: "station", text: "station" },
   { table: "bus", text: "line" },
@@ -37,6 +47,8 @@ function Insertion({ table, onDone }: { table: Table; onDone: () => void }) {
     setWrong("");
     try {
       await request({ do: "form.insert", ...insertion(filled) });
+      const built = await request({ do: "build" });
+      if (!built.good) throw new Error(textOf(built.messages as BuildMessage[]));
       await request({ do: "restart" });
       onDone();
     } catch (reason) {

@@ -1,0 +1,37 @@
+// A session that `ipos serve NAME.ipos` opens: its texts as files, in the folder of the session where they stand there as they
+// were, else in a folder of their own that goes with the server.
+#pragma once
+
+#include <sys/types.h>
+
+#include <string>
+
+#include "tools/serve/host/session.hpp"
+
+namespace ipos::tools::serve {
+
+bool is_session(const std::string& path);  // NAME.ipos
+
+class OpenedSession {
+ public:
+  // A Failure says what is wrong with the file.
+  explicit OpenedSession(const std::string& path);
+  // In the process that has opened it.
+  ~OpenedSession();
+  OpenedSession(const OpenedSession&) = delete;
+  OpenedSession& operator=(const OpenedSession&) = delete;
+
+  const std::string& path() const { return path_; }
+  const Session& session() const { return session_; }
+  const std::string& plant() const { return plant_; }  // the path of its file
+  bool is_unpacked() const { return !folder_.empty(); }
+
+ private:
+  std::string path_;
+  Session session_;
+  std::string plant_;
+  std::string folder_;  // of its own
+  pid_t owner_;
+};
+
+}  // namespace ipos::tools::serve
