@@ -9,10 +9,13 @@
 
 #include "runtime/plant/trace_hash.hpp"
 #include "tests/harness/contains.hpp"
+#include "tests/serve/plants.hpp"
 #include "tests/serve/served_page.hpp"
 #include "tests/tools/command.hpp"
 #include "tools/input/plant_input.hpp"
+#include "tools/serve/host/session.hpp"
 #include "tools/serve/host/step_text.hpp"
+#include "tools/serve/opened_session.hpp"
 #include "tools/test_file/read_tests.hpp"
 #include "tools/testing/run_test.hpp"
 
@@ -22,6 +25,19 @@ namespace {
 namespace fs = std::filesystem;
 using tools::testing::Outcome;
 
+// A page whose plant file and tests lie in a folder.
+struct FolderParts {
+  explicit FolderParts(const std::string& plant) : files(plant, {}) {}
+  tools::serve::SteadyClock clock;
+  tools::serve::ForkedCopies copies{false};
+  tools::serve::PlantFiles files;
+};
+class FolderPage : private FolderParts, public Page {
+ public:
+  FolderPage(const std::string& plant, tools::debug::MakePlant make)
+      : FolderParts(plant), Page(std::move(make), clock, copies, files) {}
+};
+
 // A copy of an example, so that its plant is called as the page of the tests calls it.
 class Example {
  public:
@@ -30,6 +46,8 @@ class Example {
       if (file.path().extension() != ".toml") fs::copy(file.path(), folder_.path() / file.path().filename());
     folder_.write("plant.toml", read_text(plant));
   }
+  std::string at(const std::string& name) const { return (folder_.path() / name).string(); }
+  std::string write(const std::string& name, const std::string& text) const { return folder_.write(name, text); }
   tools::debug::MakePlant make() const {
     return [input = tools::read_plant_input((folder_.path() / "plant.toml").string(), {})] {
       return tools::make_plant(input, runtime::FileUse::Look);
@@ -207,6 +225,86 @@ TEST_P(KeptTestOf, IsGreenAtOnceAndRedAfterAChange) {
     EXPECT_EQ(red.outcome, Outcome::Failed);
     EXPECT_EQ(red.findings.size(), 1U) << told(red);
   }
+}
+
+// The same moment, and from there on the same run.
+TEST_P(KeptTestOf, IsTheSameMomentAsASession) {
+  const Example example(GetParam());
+  const auto make = example.make();
+  FolderPage page(example.at("plant.toml"), make);
+  Hand hand(page, 4711);
+  for (int n = 0; n < 8; ++n) {
+    hand.act();
+    hand.pass();
+  }
+  const Json saved = page.ask({{"do", "session"}, {"settings", {{"watch.pinned", {"x"}}}}});
+  ASSERT_TRUE(saved.value("ok", false)) << saved;
+  const tools::serve::OpenedSession opened(example.write("s.ipos", saved["text"]));
+  EXPECT_FALSE(opened.is_unpacked());
+  EXPECT_EQ(opened.session().settings["watch.pinned"], Json({"x"}));
+  FolderPage again(example.at("plant.toml"), make);
+  again.host.resume(opened.session());
+  for (int n = 0; n < 2; ++n) {
+    EXPECT_EQ(again.host.us(), page.host.us());
+    EXPECT_EQ(runtime::state_digest(again.host.plant()), runtime::state_digest(page.host.plant())) << hand.done();
+    for (Page* one : {static_cast<Page*>(&page), static_cast<Page*>(&again)}) one->ask({{"do", "step"}, {"ms", 250}});
+  }
+}
+
+TEST(Session, ThatIsForeignDamagedOrCutOffIsRefused) {
+  const Example example(project("examples/isync/isync.toml"));
+  FolderPage page(example.at("plant.toml"), example.make());
+  page.ask({{"do", "step"}, {"ms", 50}});
+  const std::string text = page.ask({{"do", "session"}})["text"];
+  const auto refusal = [](const std::string& session) {
+    try {
+      tools::serve::read_session(session);
+    } catch (const tools::serve::Mistake& mistake) {
+      return std::string(mistake.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refusal(text), "");
+  for (const size_t cut : {size_t{0}, size_t{10}})
+    EXPECT_EQ(refusal(text.substr(0, cut)), "this is no session of ipos");
+  for (size_t cut = 40; cut + 2 < text.size(); cut += text.size() / 50)
+    EXPECT_EQ(refusal(text.substr(0, cut)), "the session is damaged or cut off");
+  EXPECT_EQ(refusal("(1436509052.249713) can0 044#2A366C2BBA\n"), "this is no session of ipos");
+  const auto with = [&](const std::string& part, const std::string& other) {
+    const size_t at = text.find(part);
+    EXPECT_NE(at, std::string::npos) << part;
+    return text.substr(0, at) + other + text.substr(at + part.size());
+  };
+  EXPECT_EQ(refusal(with("\"ipos_session\": 1", "\"ipos_session\": 2")), "the session is of version 2, this ipos reads version 1");
+  EXPECT_EQ(refusal(with("\"MASTER.IPC\"", "\"../MASTER.IPC\"")), "'../MASTER.IPC' would lie outside of the session");
+  EXPECT_TRUE(contains(refusal(with("\"actions\"", "\"others\"")), "a part of it is missing"));
+  // A plant that has changed does not come to that state.
+  tools::serve::Session other = tools::serve::read_session(text);
+  other.digest ^= 1;
+  EXPECT_THROW(page.host.resume(other), tools::serve::Mistake);
+  other = tools::serve::read_session(text);
+  other.actions.push_back({other.moment, {}, 0, {{"act", "dance"}}});
+  EXPECT_THROW(page.host.resume(other), tools::serve::Mistake);
+}
+
+TEST(KeptTest, HasWordsForEveryActionOfThePage) {
+  ServedPage page(the_plant());
+  const auto known = tools::serve::actions_with_words();
+  for (const std::string& action : page.host.actions())
+    EXPECT_NE(std::find(known.begin(), known.end(), action), known.end()) << action;
+}
+
+TEST(KeptTest, IsNoneAtTheBeginningAndTellsWhatItLeavesOut) {
+  ServedPage page(the_plant());
+  EXPECT_TRUE(contains(page.ask({{"do", "keep.test"}})["error"], "nothing has run yet"));
+  page.ask({{"do", "step"}, {"ms", 3}});
+  page.ask({{"do", "parameters.load"}, {"station", "lift"}, {"text", page.ask({{"do", "parameters.save"}, {"station", "lift"}})["text"]}});
+  page.ask({{"do", "power"}, {"station", "lift"}, {"on", false}});
+  const Json kept = page.ask({{"do", "keep.test"}, {"pinned", {"saw.lCount", "sbus.load"}}});
+  EXPECT_EQ(kept["left_out"].size(), 2U) << kept;
+  EXPECT_EQ(kept["text"], "# Kept from the page at 0.003 s: what was done there, and what was looked at.\nby_hand = true\n"
+                          "plant = \"plant.toml\"\n\n[[step]]\nat = \"3ms\"\nstation = \"lift\"\npower = \"off\"\n\n"
+                          "[[expect]]\nat = \"3ms\"\nstation = \"saw\"\nsignal = \"lCount\"\nequals = 1\n");
 }
 
 INSTANTIATE_TEST_SUITE_P(Examples, KeptTestOf, ::testing::ValuesIn(example_plants()), [](const auto& plant) {

@@ -98,6 +98,10 @@ std::string parameters_load(const Plant&, const Arguments&) {
   throw Mistake("a step sets one parameter, not those of a file; write them into [station.parameters] of the plant");
 }
 
+std::string load(const Plant&, const Arguments&) {
+  throw Mistake("a test has the programs of the files, from its beginning on; restart the plant with the new one");
+}
+
 // A value by its name. `action`: set, force; release has no value.
 std::string value_rows(const Signal& signal, std::string_view action, std::optional<int64_t> value) {
   std::string rows = toml_row("station", signal.station);
@@ -137,6 +141,7 @@ constexpr Words kWords[] = {
     {"fault", line_fault},    {"bus.send", bus_send},
     {"force", force},         {"release", release},
     {"parameters.set", parameters_set}, {"parameters.load", parameters_load},
+    {"load", load},
 };
 
 }  // namespace
