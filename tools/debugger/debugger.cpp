@@ -123,6 +123,7 @@ void Debugger::run_again() {
 // its time.
 Stop Debugger::resume(std::vector<Change> changes, const Position& moment) {
   changes_ = std::move(changes);
+  furthest_ = {};
   goal_ = {};
   goal_.kind = Goal::Kind::Replay;
   goal_.end = start_ = moment;
