@@ -6,7 +6,11 @@ namespace ipos::tools {
 namespace {
 
 constexpr VerbRow kVerbs[] = {
-    {"build", add_build}, {"asm", add_asm}, {"disasm", add_disasm}, {"verify", add_verify}, {"run", add_run},
+    {"Run and test", "run", add_run},
+    {"Write programs", "build", add_build},
+    {"Images", "asm", add_asm},
+    {"Images", "disasm", add_disasm},
+    {"Images", "verify", add_verify},
 };
 
 }  // namespace

@@ -22,21 +22,22 @@ void add_verbs(ipos::tools::cli::Verb& program, std::string_view asked) {
   const std::span<const ipos::tools::VerbRow> verbs = ipos::tools::program_verbs();
   const auto one =
       std::find_if(verbs.begin(), verbs.end(), [asked](const auto& row) { return row.name == asked; });
-  const bool about_all = asked == "completion" || asked == "man";
+  const bool about_all = asked == "complete" || asked == "man";
   if (one != verbs.end() && one->add == nullptr)
     throw ipos::tools::Failure(ipos::tools::kUsage,
                                fmt::format("'{}' is not in this build; the builds for Linux have it", asked));
   if (one != verbs.end() && !about_all) return one->add(program);
-  for (const auto& row : verbs)
+  for (const auto& row : verbs) {
+    program.begin_group(std::string(row.group));
     if (row.add != nullptr) row.add(program);
+  }
 }
 
 int run(int argc, char** argv) {
   ipos::tools::cli::Verb program(
       "ipos", "Toolchain for IPOSplus-style drive programs: compile, run and test them without a drive.");
   program.footer(
-      "Example:\n  ipos run examples/scom/scom.toml --for 1s --watch\nEvery verb has --help with an "
-      "example.");
+      "Example:\n  ipos new line\n  ipos serve line --open\n'ipos help VERB' tells its options, with an example.");
   add_verbs(program, argc > 1 ? argv[1] : "");
   std::string version = "ipos " IPOS_VERSION;
   if (*ipos::tools::kCommit != 0) version += std::string(" (commit ") + ipos::tools::kCommit + ")";

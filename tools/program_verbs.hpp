@@ -10,6 +10,7 @@
 namespace ipos::tools {
 
 struct VerbRow {
+  std::string_view group;  // its heading in --help
   std::string_view name;
   void (*add)(cli::Verb& program);  // null: the build does not have it, and says so
 };

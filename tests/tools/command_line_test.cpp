@@ -29,7 +29,8 @@ TEST(CommandLine, MisspeltWordsAreNamedWithWhatWasProbablyMeant) {
       {{"run", "x.toml", "--speed", "0"}, "0 is not in 1 to 1000000"},
       {{"run", "x.toml", "--speed", "-1"}, "-1 is not in 1 to 1000000"},
       {{"bus", "monitor", "x", "--count", "0"}, "0 is not 1 or more"},
-      {{"run"}, "FILE is required"},
+      {{"verify"}, "FILE is required"},
+      {{"help", "tset"}, "'tset' is no verb of 'ipos'; did you mean 'test'?"},
   };
   for (const auto& one : cases) {
     const CommandResult result = run_ipos(one.words);
@@ -42,46 +43,135 @@ TEST(CommandLine, MisspeltWordsAreNamedWithWhatWasProbablyMeant) {
 TEST(CommandLine, HelpComesWithAndWithoutAsking) {
   const CommandResult asked = run_ipos({"help"});
   EXPECT_EQ(asked.exit_code, 0);
-  EXPECT_TRUE(contains(asked.out, "Subcommands:")) << asked.out;
+  // What one begins with stands first, and the verb that only shells ask nowhere.
+  EXPECT_LT(asked.out.find("\nBegin:\n  new "), asked.out.find("\nRun and test:\n  run ")) << asked.out;
+  EXPECT_LT(asked.out.find("  serve "), asked.out.find("Run and test:")) << asked.out;
+  EXPECT_FALSE(contains(asked.out, "  complete ")) << asked.out;
   const CommandResult bare = run_ipos({});
   EXPECT_EQ(bare.exit_code, 64);
   EXPECT_EQ(bare.err, asked.out);
+  EXPECT_EQ(run_ipos({"help", "run"}).out, run_ipos({"run", "--help"}).out);
+  EXPECT_EQ(run_ipos({"help", "bus", "plan"}).out, run_ipos({"bus", "plan", "--help"}).out);
+  EXPECT_EQ(run_ipos({"-V"}).out, run_ipos({"--version"}).out);
 }
 
-// All names that `ipos VERB --help` prints at the beginning of a line.
+// Each verb that works on a plant takes the only one of a folder.
+TEST(CommandLine, AFolderStandsForItsOnlyPlant) {
+  const TemporaryFolder folder;
+  folder.write("A.IPC", "long a;\nmain()\n{\n    a = 5;\n}\n");
+  const CommandResult program = run_ipos({"run", "--for", "10ms", "--watch"}, folder.path());
+  EXPECT_TRUE(contains(program.out, "a")) << program.out << program.err;
+  const std::string plant = "[[station]]\nname = \"u\"\nunit = \"MDX61B\"\nprogram = \"A.IPC\"\n";
+  folder.write("line.toml", plant);
+  folder.write("line.test.toml", "plant = \"line.toml\"\n[[expect]]\nat = \"10ms\"\nvariable = \"a\"\nequals = 5\n");
+  folder.write("other.toml", "[tool]\nname = \"nothing of ours\"\n");
+  const CommandResult run = run_ipos({"run", "--for", "10ms"}, folder.path());
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(contains(run.out, "u (MOVIDRIVE MDX60B/61B)")) << "the nameplate names the unit: " << run.out;
+  EXPECT_EQ(run_ipos({"run", ".", "--for", "10ms"}, folder.path()).out, run.out);
+  EXPECT_TRUE(contains(run_ipos({"test"}, folder.path()).out, "1 test, 1 passed"));
+  const CommandResult near = run_ipos({"run", "lin.toml"}, folder.path());
+  EXPECT_EQ(near.exit_code, 66);
+  EXPECT_TRUE(contains(near.err, "did you mean 'line.toml'?")) << near.err;
+  folder.write("two.toml", plant);
+  const CommandResult two = run_ipos({"run"}, folder.path());
+  EXPECT_EQ(two.exit_code, 64);
+  EXPECT_TRUE(contains(two.err, "this folder has 2 plants; name one of them: line.toml, two.toml")) << two.err;
+  const TemporaryFolder empty;
+  EXPECT_EQ(run_ipos({"run"}, empty.path()).exit_code, 64);
+}
+
+TEST(CommandLine, AProgramOfManyStationsTellsItsMistakeOnce) {
+  const TemporaryFolder folder;
+  folder.write("A.IPC", "main()\n{\n    b = 5;\n}\n");
+  std::string plant;
+  for (int n = 1; n <= 20; ++n)
+    plant += "[[station]]\nname = \"axis" + std::to_string(n) + "\"\nunit = \"mdxb\"\nprogram = \"A.IPC\"\n";
+  folder.write("p.toml", plant);
+  const CommandResult result = run_ipos({"run", "p.toml"}, folder.path());
+  EXPECT_EQ(result.exit_code, 65);
+  const size_t first = result.err.find("[E0201]");
+  ASSERT_NE(first, std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find("[E0201]", first + 1), std::string::npos) << result.err;
+  EXPECT_TRUE(contains(result.err, "A.IPC is the program of 20 stations: axis1 to axis20")) << result.err;
+}
+
+// What the tools print can be asked for.
+TEST(CommandLine, ExplainsWhatTheProgramItselfPrints) {
+  const std::pair<std::vector<std::string>, std::string> rows[] = {
+      {{"display", "t"}, "waiting for data"},
+      {{"display", "1"}, "controller inhibit"},
+      {{"0503h"}, "status word 1: "},
+      {{"status", "word", "1"}, "bit 2: PO data on"},
+      {{"status", "word"}, "status word 1"},
+      {{"IPOS", "INPUT"}, "a choice of P600"},
+      {{"mdxb"}, "MOVIDRIVE MDX60B/61B"},
+      {{"MDX61B0011-5A3-4-00"}, "MOVIDRIVE MDX60B/61B"},
+      {{"numof"}, "number of a variable"},
+      {{"3PD"}, "a choice of P"},
+      {{"F47"}, "reset: "},
+  };
+  for (const auto& [words, part] : rows) {
+    std::vector<std::string> arguments = words;
+    arguments.insert(arguments.begin(), "explain");
+    const CommandResult result = run_ipos(arguments);
+    EXPECT_EQ(result.exit_code, 0) << words.front() << result.err;
+    EXPECT_TRUE(contains(result.out, part)) << words.front() << ": " << result.out;
+  }
+  EXPECT_LT(run_ipos({"explain", "xyzzy"}).err.size(), 120U);
+}
+
+// All names that `ipos --help` prints at the beginning of a line.
 std::set<std::string> verbs_in_help() {
   std::istringstream lines(run_ipos({"--help"}).out);
   std::set<std::string> verbs;
-  bool inside = false;
-  for (std::string line; std::getline(lines, line);) {
-    if (line == "Subcommands:")
-      inside = true;
-    else if (line.empty())
-      inside = false;
-    else if (inside && line[2] != ' ')
+  for (std::string line; std::getline(lines, line);)
+    if (line.size() > 3 && line.starts_with("  ") && line[2] != ' ' && line[2] != '-' && !line.starts_with("  ipos "))
       verbs.insert(line.substr(2, line.find(' ', 2) - 2));
-  }
   return verbs;
 }
 
-TEST(CommandLine, TheManualPageAndTheCompletionsHaveEveryVerb) {
+// What may stand for the last word, without what it does.
+std::string completed(std::vector<std::string> words, const std::filesystem::path& folder = {}) {
+  words.insert(words.begin(), {"complete", "--"});
+  std::istringstream lines(run_ipos(words, folder).out);
+  std::string text;
+  for (std::string line; std::getline(lines, line);) text += (text.empty() ? "" : " ") + line.substr(0, line.find('\t'));
+  return text;
+}
+
+TEST(CommandLine, TheManualPageAndTheCompletionHaveEveryVerb) {
   const std::set<std::string> verbs = verbs_in_help();
-  EXPECT_GE(verbs.size(), 17U);
+  EXPECT_GE(verbs.size(), 23U);
   const std::string page = run_ipos({"man"}).out;
-  const std::string bash = run_ipos({"completion", "bash"}).out;
-  const std::string zsh = run_ipos({"completion", "zsh"}).out;
-  const std::string fish = run_ipos({"completion", "fish"}).out;
+  EXPECT_FALSE(contains(page, "ipos complete"));
   for (const std::string& verb : verbs) {
     EXPECT_TRUE(contains(page, "\n.SS ipos " + verb + "\n")) << verb;
-    EXPECT_TRUE(contains(bash, "    '" + verb + "') words=")) << verb;
-    EXPECT_TRUE(contains(zsh, "'" + verb + ":")) << verb;
-    EXPECT_TRUE(contains(fish, " -f -a " + verb + " -d ")) << verb;
+    EXPECT_TRUE(contains(" " + completed({""}) + " ", " " + verb + " ")) << verb;
   }
+}
+
+TEST(CommandLine, CompletesWhatTablesAndThePlantKnow) {
+  const TemporaryFolder folder;
+  folder.write("line.toml", "[[station]]\nname = \"saw\"\nunit = \"mdxb\"\n[[station]]\nname = \"feed\"\nunit = \"mc07\"\n");
+  EXPECT_EQ(completed({"run", "x.IPC", "--unit", "mc"}), "mc07 mc07b");
+  EXPECT_EQ(completed({"param", "list", "--unit", "mdx"}), "mdxb");
+  EXPECT_EQ(completed({"build", "x.IPC", "--emit=to"}), "--emit=tokens");
+  EXPECT_EQ(completed({"build", "x.IPC", "--emit", "=", "to"}), "tokens");
+  EXPECT_EQ(completed({"param", "get", "line.toml", "--station", ""}, folder.path()), "saw feed");
+  EXPECT_EQ(completed({"param", "get", "line.toml", "P13"}, folder.path()),
+            "P130 P131 P132 P133 P134 P135 P136 P137 P138 P139");
+  EXPECT_EQ(completed({"run", "line.toml", "--signals", "saw.spe"}, folder.path()), "saw.speed");
+  EXPECT_EQ(completed({"run", "line.toml", "--signals", "saw.speed,feed.spe"}, folder.path()), "saw.speed,feed.speed");
+  EXPECT_EQ(completed({"run", "broken.toml", "--signals", "saw.spe"}, folder.path()), "");
+  EXPECT_EQ(completed({"new", "x", "--from", "hoi"}), "hoist");
+  EXPECT_EQ(completed({"explain", "F4"}).substr(0, 3), "F43");
+  EXPECT_EQ(completed({"run", "--coverage", "x.IP"}), "") << "a file, by the shell itself";
 }
 
 // What bash offers behind the words of a line; the last one is being typed.
 std::string offered(const std::filesystem::path& script, const std::string& words) {
-  const std::string command = "bash -c 'source " + script.string() + "; COMP_WORDS=(" + words +
+  const std::string command = "bash -c 'source " + script.string() + "; COMP_WORDS=(" + ipos_program() + " " + words +
                               "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _ipos; echo \"${COMPREPLY[*]}\"'";
   FILE* pipe = popen(command.c_str(), "r");
   std::string text;
@@ -94,13 +184,13 @@ std::string offered(const std::filesystem::path& script, const std::string& word
 TEST(CommandLine, BashCompletesVerbsOptionsAndClosedLists) {
   const auto script = std::filesystem::path(testing::TempDir()) / "ipos.bash";
   std::ofstream(script) << run_ipos({"completion", "bash"}).out;
-  EXPECT_EQ(offered(script, "ipos bui"), "build");
-  EXPECT_EQ(offered(script, "ipos bus \"\""), "plan decode monitor load replay dbc dissector --help");
-  EXPECT_EQ(offered(script, "ipos bus p"), "plan");
-  EXPECT_EQ(offered(script, "ipos run --engi"), "--engine");
-  EXPECT_EQ(offered(script, "ipos run --engine \"\""), "reference fast native");
-  EXPECT_EQ(offered(script, "ipos run --engine f"), "fast");
-  EXPECT_EQ(offered(script, "ipos run plant"), "");  // files, by bash itself
+  EXPECT_EQ(offered(script, "bui"), "build");
+  EXPECT_EQ(offered(script, "bus \"\""), "plan decode monitor load replay dbc dissector --help");
+  EXPECT_EQ(offered(script, "bus p"), "plan");
+  EXPECT_EQ(offered(script, "run --engi"), "--engine");
+  EXPECT_EQ(offered(script, "run --engine \"\""), "reference fast native");
+  EXPECT_EQ(offered(script, "run --engine f"), "fast");
+  EXPECT_EQ(offered(script, "run plant"), "");  // files, by bash itself
 }
 
 // A folder that is not there yet.

@@ -13,6 +13,7 @@
 #include "tools/cli/failure.hpp"
 #include "tools/cli/interrupt.hpp"
 #include "tools/cli/terminal.hpp"
+#include "tools/input/offers.hpp"
 #include "tools/input/program.hpp"
 
 namespace ipos::tools {
@@ -115,7 +116,8 @@ void add_bus_monitor(cli::Verb& bus) {
   add_names_options(verb, flags->names);
   verb.option("--station", flags->stations, "only telegrams of this station, by name or address")
       .separated_by(',')
-      .one_each();
+      .one_each()
+      .offers(offered_stations);
   verb.option("--count", flags->count, "end after so many telegrams shown").at_least(1);
   verb.option("--for", flags->duration, "end after this time, for example 10s").check(check_time, "TIME");
   verb.option("--baud", flags->baud, "of the port; default 500000, of an RS-485 line 9600");

@@ -6,6 +6,7 @@
 #include "tools/bus/bus_verbs.hpp"
 #include "tools/cli/exit_codes.hpp"
 #include "tools/cli/failure.hpp"
+#include "tools/input/offers.hpp"
 #include "tools/cli/outputs.hpp"
 #include "tools/input/plant_source.hpp"
 
@@ -58,7 +59,7 @@ void add_canopen(cli::Verb& app) {
   cli::Verb& eds = verb.verb("eds", "write the electronic data sheet of a unit (EDS, CiA 306)");
   eds.option("PLANT", flags->plant, "plant (.toml)");
   eds.option("STATION", flags->station, "which one of the plant, where it has several");
-  eds.option("--unit", flags->unit, "in place of a plant: a unit type").check(check_unit, "UNIT");
+  eds.option("--unit", flags->unit, "in place of a plant: a unit type").check(check_unit, "UNIT").offers([](const Words&) { return offered_units(); });
   eds.option("-o", flags->out, "file to write; - is standard output");
   eds.footer("Example:\n  ipos canopen eds --unit mdxb -o mdxb.eds");
   eds.runs([flags] { return write_eds(*flags); });

@@ -1,11 +1,10 @@
-// Completion scripts. Each shell gets a table of verbs, their options and the values that are a closed list;
-// all other words are completed as files.
+// Completion: the rows of the command line answer, and each shell asks in its way.
 #include "tools/cli/completion.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string_view>
-#include <vector>
 
 namespace ipos::tools::cli {
 namespace {
@@ -21,159 +20,113 @@ std::vector<std::string> names_of(const Option& option) {
   return names;
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string out;
-  for (const std::string& word : words) out += (out.empty() ? "" : " ") + word;
-  return out;
+const Option* find_option(const Verb& verb, const std::string& name) {
+  for (const Option& option : verb.options()) {
+    const auto names = names_of(option);
+    if (!option.is_word() && std::find(names.begin(), names.end(), name) != names.end()) return &option;
+  }
+  return nullptr;
 }
 
-// What may follow a verb: its verbs, or its options.
-std::vector<std::string> words_of(const Verb& verb) {
-  std::vector<std::string> words;
-  for (const Verb& inner : verb.verbs()) words.push_back(inner.name());
-  for (const Option& option : verb.options())
-    if (!option.is_word())
-      for (const std::string& name : names_of(option)) words.push_back(name);
-  words.emplace_back("--help");
-  return words;
-}
-
-// Calls `visit` with every verb and the words that lead to it, the program first with none.
-template <typename Visit>
-void each_verb(const Verb& verb, const std::string& path, const Visit& visit) {
-  visit(verb, path);
-  for (const Verb& inner : verb.verbs())
-    each_verb(inner, path.empty() ? inner.name() : path + " " + inner.name(), visit);
-}
-
-// In single quotes, for all three shells.
-std::string in_quotes(std::string_view text) {
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
-
-// All that lead to a verb, as alternatives of a shell's `case`.
-std::string paths_of(const Verb& program) {
-  std::string paths;
-  each_verb(program, "", [&](const Verb&, const std::string& path) {
-    if (!path.empty()) paths += (paths.empty() ? "" : "|") + in_quotes(path);
-  });
-  return paths;
+// `typed` is what stands there of the value; of a list with commas the part after the last one is completed.
+std::vector<Candidate> values_of(const Option& option, const std::string& typed, const std::vector<std::string>& words,
+                                 const std::string& before = "") {
+  const Option::Row& row = option.row();
+  std::vector<std::string> values = row.choices;
+  if (row.offer) values = row.offer(words);
+  std::string front = before;
+  if (row.separator != 0)
+    if (const size_t last = typed.rfind(row.separator); last != std::string::npos) front += typed.substr(0, last + 1);
+  std::vector<Candidate> found;
+  for (const std::string& value : values) found.push_back({front + value, ""});
+  return found;
 }
 
 }  // namespace
 
+std::vector<Candidate> candidates(const Verb& program, std::vector<std::string> words) {
+  if (words.empty()) words.emplace_back();
+  const std::string typed = words.back() == "=" ? "" : words.back();
+  const Verb* verb = &program;
+  const auto next = [&] {
+    return std::find_if(verb->verbs().begin(), verb->verbs().end(),
+                        [&](const Verb& inner) { return inner.name() == words.front(); });
+  };
+  while (words.size() > 1) {
+    const auto inner = next();
+    if (inner == verb->verbs().end()) break;
+    verb = &*inner;
+    words.erase(words.begin());
+  }
+  std::vector<Candidate> found;
+  const size_t count = words.size();
+  const size_t equal = typed.find('=');
+  const Option* option = nullptr;
+  if (count > 1 && words[count - 1] == "=")  // --emit =
+    option = find_option(*verb, words[count - 2]);
+  else if (count > 2 && words[count - 2] == "=")  // --emit = as
+    option = find_option(*verb, words[count - 3]);
+  else if (count > 1 && (option = find_option(*verb, words[count - 2])) != nullptr && option->row().is_flag)
+    option = nullptr;
+  if (option != nullptr) {
+    found = values_of(*option, typed, words);
+  } else if (typed.starts_with("--") && equal != std::string::npos) {
+    option = find_option(*verb, typed.substr(0, equal));
+    if (option != nullptr) found = values_of(*option, typed.substr(equal + 1), words, typed.substr(0, equal + 1));
+  } else if (typed.starts_with("-") || !verb->verbs().empty()) {
+    for (const Verb& inner : verb->verbs())
+      if (!inner.hidden()) found.push_back({inner.name(), inner.text()});
+    for (const Option& one : verb->options())
+      if (!one.is_word())
+        for (const std::string& name : names_of(one)) found.push_back({name, one.row().text});
+    found.push_back({"--help", "tell options and an example"});
+  } else {
+    for (const Option& one : verb->options())
+      if (one.is_word())
+        for (Candidate& value : values_of(one, typed, words)) found.push_back(std::move(value));
+  }
+  std::erase_if(found, [&](const Candidate& one) { return !one.word.starts_with(typed); });
+  return found;
+}
+
 std::string bash_completion(const Verb& program) {
-  std::string words;
-  std::string values;
-  each_verb(program, "", [&](const Verb& verb, const std::string& path) {
-    words += fmt::format("    {}) words={}{} ;;\n", in_quotes(path), in_quotes(joined(words_of(verb))),
-                         verb.verbs().empty() ? "" : " dash=");
-    for (const Option& option : verb.options())
-      for (const std::string& name : names_of(option))
-        if (!option.row().choices.empty())
-          values += fmt::format("    {}) words={} dash= ;;\n", in_quotes(path + " " + name),
-                                in_quotes(joined(option.row().choices)));
-  });
   return fmt::format(R"(# Completion of {0} for bash, printed by `{0} completion bash`.
 _{0}() {{
-  local cur=${{COMP_WORDS[COMP_CWORD]}} prev=${{COMP_WORDS[COMP_CWORD-1]}} path= words= dash=-
-  local word
-  for word in "${{COMP_WORDS[@]:1:COMP_CWORD-1}}"; do
-    case "${{path:+$path }}$word" in
-      {1}) path="${{path:+$path }}$word" ;;
-    esac
-  done
-  case "$path" in
-{2}  esac
-  case "$path $prev" in
-{3}  esac
-  COMPREPLY=()
-  if [[ -z $dash || $cur == -* ]]; then
-    mapfile -t COMPREPLY < <(compgen -W "$words" -- "$cur")
-  fi
+  mapfile -t COMPREPLY < <("${{COMP_WORDS[0]}}" complete -- "${{COMP_WORDS[@]:1:COMP_CWORD}}" 2>/dev/null | cut -f 1)
+  [[ ${{#COMPREPLY[@]}} -ne 1 || ${{COMPREPLY[0]}} != *[=.] ]] || compopt -o nospace 2>/dev/null
 }}
 complete -o default -F _{0} {0}
 )",
-                     program.name(), paths_of(program), words, values);
+                     program.name());
 }
 
 std::string zsh_completion(const Verb& program) {
-  std::string cases;
-  each_verb(program, "", [&](const Verb& verb, const std::string& path) {
-    std::string lines;
-    for (const Verb& inner : verb.verbs())
-      lines += fmt::format("      {}\n", in_quotes(fmt::format("{}:{}", inner.name(), inner.text())));
-    std::string options;
-    for (const Option& option : verb.options()) {
-      if (option.is_word()) continue;
-      std::string text = option.row().text;
-      for (char& c : text)
-        if (c == '[' || c == ']' || c == ':') c = ' ';
-      const std::string value = option.row().is_flag ? ""
-                                : option.row().choices.empty()
-                                    ? ":value:_files"
-                                    : fmt::format(":value:({})", joined(option.row().choices));
-      for (const std::string& name : names_of(option))
-        options += fmt::format(" \\\n        {}", in_quotes(fmt::format("*{}[{}]{}", name, text, value)));
-    }
-    cases += fmt::format("    {})\n", in_quotes(path));
-    if (verb.verbs().empty())
-      cases += fmt::format("      _arguments{} \\\n        '*:file:_files' ;;\n", options);
-    else
-      cases += fmt::format("      local -a verbs=(\n{}      )\n      _describe verb verbs ;;\n", lines);
-  });
   return fmt::format(R"(#compdef {0}
 # Completion of {0} for zsh, printed by `{0} completion zsh`.
 _{0}() {{
-  local path= word
-  for word in "${{words[@]:1:CURRENT-2}}"; do
-    case "${{path:+$path }}$word" in
-      {1}) path="${{path:+$path }}$word" ;;
-    esac
-  done
-  case "$path" in
-{2}  esac
+  local -a found words_and_texts
+  found=("${{(@f)$("${{words[1]}}" complete -- "${{(@)words[2,CURRENT]}}" 2>/dev/null)}}")
+  if [[ -z "${{found[*]}}" ]]; then
+    _files
+    return
+  fi
+  words_and_texts=("${{(@)${{(@)found//:/\\:}}/$'\t'/:}}")
+  _describe '{0}' words_and_texts
 }}
 compdef _{0} {0}
 )",
-                     program.name(), paths_of(program), cases);
+                     program.name());
 }
 
 std::string fish_completion(const Verb& program) {
-  std::string out =
-      fmt::format("# Completion of {0} for fish, printed by `{0} completion fish`.\n", program.name());
-  each_verb(program, "", [&](const Verb& verb, const std::string& path) {
-    // After these words, and after none of the verbs that could follow them.
-    std::string behind = "true";
-    std::vector<std::string> parts{""};
-    for (const char c : path)
-      if (c == ' ')
-        parts.emplace_back();
-      else
-        parts.back() += c;
-    for (const std::string& part : parts)
-      if (!part.empty()) behind += fmt::format("; and __fish_seen_subcommand_from {}", part);
-    std::vector<std::string> inner_names;
-    for (const Verb& inner : verb.verbs()) inner_names.push_back(inner.name());
-    if (!inner_names.empty())
-      behind += fmt::format("; and not __fish_seen_subcommand_from {}", joined(inner_names));
-    const std::string condition = in_quotes(behind);
-    for (const Verb& inner : verb.verbs())
-      out += fmt::format("complete -c {} -n {} -f -a {} -d {}\n", program.name(), condition, inner.name(),
-                         in_quotes(inner.text()));
-    for (const Option& option : verb.options()) {
-      if (option.is_word()) continue;
-      std::string line = fmt::format("complete -c {} -n {}", program.name(), condition);
-      for (const std::string& name : names_of(option))
-        line += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
-      if (!option.row().is_flag) line += " -r";
-      if (!option.row().choices.empty()) line += " -f -a " + in_quotes(joined(option.row().choices));
-      out += line + " -d " + in_quotes(option.row().text) + "\n";
-    }
-  });
-  return out;
+  return fmt::format(R"(# Completion of {0} for fish, printed by `{0} completion fish`.
+function __{0}_words
+  set -l words (commandline -opc) (commandline -ct)
+  $words[1] complete -- $words[2..-1] 2>/dev/null
+end
+complete -c {0} -a '(__{0}_words)'
+)",
+                     program.name());
 }
 
 }  // namespace ipos::tools::cli

@@ -1,17 +1,26 @@
-// Completion scripts for shells, made of the rows of the command line.
+// Completion in shells: each has a few lines that ask the program (`ipos complete WORD...`), so that what is offered is
+// read where it is checked: verbs, options, closed lists, units, signals of the plant that is named.
 #pragma once
 
+#include <span>
 #include <string>
+#include <vector>
 
 #include "tools/cli/verb.hpp"
 
 namespace ipos::tools::cli {
 
-// For ~/.bashrc: complete -F of the program's name.
+struct Candidate {
+  std::string word;
+  std::string text;  // what it does; may be empty
+};
+
+// What may stand for the last word. Nothing: a file, or anything. `--emit=as` may come in one word, or in three as bash
+// divides it.
+std::vector<Candidate> candidates(const Verb& program, std::vector<std::string> words);
+
 std::string bash_completion(const Verb& program);
-// For a folder of $fpath, as _ipos.
 std::string zsh_completion(const Verb& program);
-// For ~/.config/fish/completions, as ipos.fish.
 std::string fish_completion(const Verb& program);
 
 }  // namespace ipos::tools::cli

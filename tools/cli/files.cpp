@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "stdlib/plain_text.hpp"
+#include "stdlib/spelling.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/os_file.hpp"
 
@@ -29,6 +30,18 @@ std::set<FileIdentity> opened;
 
 bool is_standard_input(const std::string& path) { return path == "-" || path == "/dev/stdin"; }
 
+// Of a file that is not there: perhaps its neighbour was meant.
+std::string missing(const std::string& path) {
+  const std::string why = std::strerror(errno);
+  if (errno != ENOENT) return why;
+  const std::filesystem::path asked(path);
+  const std::vector<std::string> names = list_files(asked.parent_path().string());
+  const std::string_view near =
+      stdlib::nearest(asked.filename().string(), std::vector<std::string_view>(names.begin(), names.end()));
+  if (near.empty()) return why;
+  return fmt::format("{}; did you mean '{}'?", why, (asked.parent_path() / near).generic_string());
+}
+
 std::string too_large(size_t limit) { return fmt::format("is larger than {} MB", limit >> 20U); }
 
 // Why it is no file to read, or nothing.
@@ -42,7 +55,7 @@ std::optional<std::string> trouble(const struct stat& info, size_t limit) {
 tl::expected<Descriptor, std::string> open_regular(const std::string& path, size_t limit) {
   struct stat info {};
   if (!stdlib::is_plain(path)) return tl::unexpected(std::string("a file name has no control characters"));
-  if (stat(path.c_str(), &info) != 0) return tl::unexpected(std::string(std::strerror(errno)));
+  if (stat(path.c_str(), &info) != 0) return tl::unexpected(missing(path));
   if (auto why = trouble(info, limit)) return tl::unexpected(std::move(*why));
   Descriptor file = open_to_read(path);
   if (!file.is_open() || fstat(file.get(), &info) != 0)

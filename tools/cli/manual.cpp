@@ -63,7 +63,8 @@ std::string manual_page(const Verb& program, const std::string& version) {
   std::string out = fmt::format(".TH IPOS 1 \"\" \"{}\" \"\"\n.SH NAME\n{} \\- {}\n", version, program.name(),
                                 escaped(program.text()));
   out += fmt::format(".SH SYNOPSIS\n.B {}\n.I VERB\n.RI [ OPTION ...]\n.SH VERBS\n", program.name());
-  for (const Verb& verb : program.verbs()) add_verb(out, verb, program.name() + " " + verb.name());
+  for (const Verb& verb : program.verbs())
+    if (!verb.hidden()) add_verb(out, verb, program.name() + " " + verb.name());
   out += ".SH EXIT STATUS\n";
   for (const ExitCode& row : kExitCodes)
     out += fmt::format(".TP\n{}\n{}\n", row.code, escaped(std::string(row.meaning)));

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <span>
 
@@ -74,8 +75,11 @@ void add_option(CLI::App& app, const Option& option) {
 
 void add_verb(CLI::App& app, const Verb& verb, int& exit_code) {
   for (const Option& option : verb.options()) add_option(app, option);
-  for (const Verb& inner : verb.verbs())
-    add_verb(*app.add_subcommand(inner.name(), inner.text()), inner, exit_code);
+  for (const Verb& inner : verb.verbs()) {
+    CLI::App* made = app.add_subcommand(inner.name(), inner.text());
+    if (inner.hidden() || !inner.group().empty()) made->group(inner.hidden() ? "" : inner.group());
+    add_verb(*made, inner, exit_code);
+  }
   if (!verb.verbs().empty()) app.require_subcommand(1);
   app.footer(verb.footer());
   if (verb.action()) app.callback([&verb, &exit_code] { exit_code = verb.action()(); });
@@ -130,18 +134,26 @@ int run(const Verb& program, const std::string& version, int argc, char** argv) 
   CLI::App app{program.text(), program.name()};
   app.formatter(std::make_shared<Help>());
   app.allow_windows_style_options(false);  // a word that begins with / is a path on Windows, too
-  app.set_version_flag("--version", version);
+  app.set_version_flag("--version,-V", version);
   add_verb(app, program, exit_code);
   if (argc == 1 || (argc == 2 && std::string_view(argv[1]) == "help")) {
     fmt::print(argc == 1 ? stderr : stdout, "{}", app.help());
     return argc == 1 ? kUsage : kGood;
   }
+  // CLI11 takes words from the last to the first.
+  std::vector<std::string> words(argv + 1, argv + argc);
+  if (words.front() == "help") {
+    words.erase(words.begin());
+    words.emplace_back("--help");
+  }
+  std::reverse(words.begin(), words.end());
   try {
-    app.parse(argc, argv);
+    app.parse(std::move(words));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success))
       return app.exit(error);  // --help, --version
-    tell_mistake(app, error, std::span<char* const>(argv, static_cast<size_t>(argc)).subspan(1));
+    const size_t first = std::string_view(argv[1]) == "help" ? 2 : 1;
+    tell_mistake(app, error, std::span<char* const>(argv, static_cast<size_t>(argc)).subspan(first));
     const auto verbs = app.get_subcommands();
     fmt::print(stderr, "Try 'ipos {}--help'.\n", verbs.empty() ? "" : verbs.front()->get_name() + " ");
     return kUsage;

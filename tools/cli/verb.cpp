@@ -4,7 +4,9 @@
 namespace ipos::tools::cli {
 
 Verb& Verb::verb(std::string name, std::string text) {
-  return verbs_.emplace_back(std::move(name), std::move(text));
+  Verb& made = verbs_.emplace_back(std::move(name), std::move(text));
+  made.group_ = inner_group_;
+  return made;
 }
 
 Option& Verb::add(std::string names, Target target, std::string text) {

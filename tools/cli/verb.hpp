@@ -21,6 +21,9 @@ using Target = std::variant<bool*, std::string*, std::vector<std::string>*, int*
 // Looks at the text of a value; says what is wrong with it, nothing if it is good.
 using Check = std::function<std::string(const std::string&)>;
 
+// What may stand for a value, for completion; `words` are those of the verb, the last one is being typed.
+using Offer = std::function<std::vector<std::string>(const std::vector<std::string>& words)>;
+
 class Option {
  public:
   struct Row {
@@ -37,6 +40,7 @@ class Option {
     std::optional<std::pair<uint64_t, uint64_t>> range;
     Check check;
     std::string kind;  // what the checked value is, in capitals: TIME, UNIT
+    Offer offer;
   };
 
   Option(std::string names, Target target, std::string text) {
@@ -59,6 +63,8 @@ class Option {
     return *this;
   }
 
+  Option& offers(Offer offer) { return row_.offer = std::move(offer), *this; }
+
   // It has no value of its own.
   Option& set_flag(bool sets, std::string implied) {
     row_.is_flag = true;
@@ -77,8 +83,11 @@ class Verb {
   Verb(const Verb&) = delete;
   Verb& operator=(const Verb&) = delete;
 
-  // A verb of this verb, as `plan` of `ipos bus`.
+  // A verb of this verb, as `plan` of `ipos bus`. It stands under the heading of begin_group() in --help.
   Verb& verb(std::string name, std::string text);
+  void begin_group(std::string heading) { inner_group_ = std::move(heading); }
+  // Of shells and not of people: --help and the manual page leave it out.
+  void hide() { hidden_ = true; }
   // An option with a value, or a word of the command line.
   template <typename T>
   Option& option(std::string names, T& target, std::string text) {
@@ -97,6 +106,8 @@ class Verb {
 
   const std::string& name() const { return name_; }
   const std::string& text() const { return text_; }
+  const std::string& group() const { return group_; }  // its heading; empty: the usual one
+  bool hidden() const { return hidden_; }
   const std::string& footer() const { return footer_; }
   const std::function<int()>& action() const { return action_; }
   const std::deque<Verb>& verbs() const { return verbs_; }
@@ -107,6 +118,9 @@ class Verb {
 
   std::string name_;
   std::string text_;
+  std::string group_;
+  std::string inner_group_;
+  bool hidden_ = false;
   std::string footer_;
   std::function<int()> action_;
   std::deque<Verb> verbs_;  // whose elements stay where they are

@@ -1,4 +1,4 @@
-// ipos completion, ipos man: what the command line takes, for shells and for man(1).
+// ipos completion, complete and man: what the command line takes, for shells and for man(1).
 #include <fmt/format.h>
 
 #include "tools/cli/completion.hpp"
@@ -17,6 +17,18 @@ void add_completion(cli::Verb& program) {
     fmt::print("{}", *shell == "bash"  ? cli::bash_completion(program)
                      : *shell == "zsh" ? cli::zsh_completion(program)
                                        : cli::fish_completion(program));
+    return kGood;
+  });
+}
+
+void add_complete(cli::Verb& program) {
+  auto words = std::make_shared<std::vector<std::string>>();
+  cli::Verb& verb = program.verb("complete", "what may stand for the last word; the completions of shells ask it");
+  verb.hide();
+  verb.option("WORD", *words, "of the command line, without the program");
+  verb.runs([words, &program] {
+    for (const auto& [word, text] : cli::candidates(program, *words))
+      fmt::print("{}{}{}\n", word, text.empty() ? "" : "\t", text);
     return kGood;
   });
 }

@@ -22,6 +22,7 @@
 #include "tools/debug/dap.hpp"
 #include "tools/debug/debugged_test.hpp"
 #include "tools/debug/heard_messages.hpp"
+#include "tools/input/folder_plant.hpp"
 #include "tools/input/plant_input.hpp"
 #include "tools/input/plant_source.hpp"
 #include "tools/input/program.hpp"
@@ -319,12 +320,16 @@ void add_common(cli::Verb& verb, DebugFlags& flags) {
 void add_debug(cli::Verb& app) {
   auto flags = std::make_shared<DebugFlags>();
   cli::Verb& verb = app.verb("debug", "step through a program or a plant, forward and back");
-  verb.option("FILE", flags->file, "source (.IPC), image (.ipx), plant (.toml) or test (.test.toml)").required();
+  verb.option("FILE", flags->file,
+              "source (.IPC), image (.ipx), plant (.toml), test (.test.toml) or folder; default: the only plant of this folder");
   verb.option("--case", flags->test_case, "of a test that has several");
   verb.option("--for", flags->duration, "virtual time to run at most; default 60s").check(check_time, "TIME");
   add_common(verb, *flags);
   verb.footer("Example, 'help' lists the words:\n  ipos debug examples/scom/scom.toml");
-  verb.runs([flags] { return replaceable([&] { return debug_console(*flags); }); });
+  verb.runs([flags] {
+    flags->file = plant_or_program(flags->file);
+    return replaceable([&] { return debug_console(*flags); });
+  });
 }
 
 void add_dap(cli::Verb& app) {

@@ -80,8 +80,11 @@ std::string fault_text(const stdlib::FaultRow& row) {
       same->first += fmt::format(", {}", unit.title);
   }
   std::string out = fmt::format("F{:02}: fault of the drive, {}\n", row.number, row.name);
+  constexpr std::string_view kReset = "  reset: an input with the function RESET, control word bit 6, P840, or auto reset P841; if the "
+                           "cause is still there, the fault comes back\n";
   for (const auto& [titles, text] : groups)
     out += groups.size() == 1 ? fmt::format("  {}\n", text) : fmt::format("  {}: {}\n", titles, text);
+  out += kReset;
   return out;
 }
 

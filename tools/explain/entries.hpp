@@ -21,12 +21,14 @@ void add_messages(Entries& entries);  // of the compiler, the verifier and the p
 void add_language(Entries& entries);  // functions, structures, variables, constants, commands
 void add_drive(Entries& entries);     // faults, parameters, return codes
 void add_fieldbus(Entries& entries);  // CANopen and PROFIBUS
+void add_shown(Entries& entries);     // units, display, words, texts of settings
 Entries all_entries();
 
 // What numbers mean that have no name of their own. Empty: nothing.
 std::string parameter_of_index(std::string_view number);  // "8470"
 std::string return_code(std::string_view number);         // "8/0/10", "0x08000010", "134217744"
 std::string list_faults();
+std::string status_word(const std::string& printed);  // "0503h": what the bits say
 // Of hexadecimal numbers as logs print them, in one word or several: the name their entry has, "1017h" or "06020000h".
 std::string printed_number(const std::vector<std::string>& words);
 std::string parameter_of_object(const std::string& printed);  // "2070h"

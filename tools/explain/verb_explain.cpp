@@ -6,6 +6,7 @@
 
 #include "stdlib/language_tables.hpp"
 #include "stdlib/spelling.hpp"
+#include "stdlib/unit_types.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/verbs.hpp"
 #include "tools/explain/entries.hpp"
@@ -19,6 +20,7 @@ Entries all_entries() {
   add_language(entries);
   add_drive(entries);
   add_fieldbus(entries);
+  add_shown(entries);
   return entries;
 }
 
@@ -78,6 +80,7 @@ std::string numbers_text(const Entries& entries, const std::vector<std::string>&
   if (printed.empty()) return text;
   append(texts_of(entries, printed));
   append(parameter_of_object(printed));
+  if (text.empty()) append(status_word(printed));
   return text;
 }
 
@@ -89,19 +92,15 @@ std::string explain(const std::vector<std::string>& words) {
   const Entries entries = all_entries();
   if (std::string text = numbers_text(entries, words); !text.empty()) return text;
   if (std::string text = texts_of(entries, fmt::format("{}", fmt::join(words, " "))); !text.empty()) return text;
+  if (words.size() == 1)
+    if (const stdlib::UnitType* unit = stdlib::find_unit(words[0])) return texts_of(entries, std::string(unit->name));
   if (std::string lines = search(entries, words); !lines.empty()) return lines;
   const std::string typed = fmt::format("{}", fmt::join(words, " "));
   std::vector<std::string_view> names;
   for (const Entry& entry : entries) names.insert(names.end(), entry.names.begin(), entry.names.end());
   const std::string_view meant = stdlib::nearest(typed, names);
-  throw Failure(
-      kBadInput,
-      fmt::format(
-          "there is no code or word '{}'{}; codes look like E0101, W0201 (messages), V03 (verifier), "
-          "B21 (bus plan), F10 (faults; F lists them), P130 or 8470 (parameters), 8/0/10 or 0x08000010 "
-          "(return codes), H511, _MoviLink, MLDATA, ML_BT_SBUS (language), 1017h, 1800h:2, 06020000h, EMCY, "
-          "Prm_Fault, SAP 61 (CANopen and PROFIBUS)",
-          typed, meant.empty() ? "" : fmt::format(", did you mean '{}'?", meant)));
+  throw Failure(kBadInput, fmt::format("there is no code or word '{}'{}; 'ipos help explain' says what can be asked", typed,
+                                       meant.empty() ? "" : fmt::format(", did you mean '{}'?", meant)));
 }
 
 }  // namespace
@@ -112,11 +111,15 @@ void add_explain(cli::Verb& app) {
   cli::Verb& verb =
       app.verb("explain", "what a code, a parameter, a function or a variable means; search by words");
   verb.option("NAME", *words,
-              "for example E0203, V03, B21, F10, P130, 8470, 8/0/10, 0x08000010, H511, _MoviLink, MLDATA; F "
-              "lists all "
-              "faults; 1017h, 06020000h, FF00h, EMCY of CANopen, Set_Prm, SAP 61, Prm_Fault of PROFIBUS; other words "
+              "for example E0203, V03, B21, F10, P130, 8470, 8/0/10, 0x08000010, H511, _MoviLink, MLDATA; F lists all faults; "
+              "display t, status word 1, 0503h, mdxb, IPOS INPUT; 1017h, 06020000h, FF00h, EMCY of CANopen, Set_Prm, SAP 61, Prm_Fault of PROFIBUS; other words "
               "are searched for")
-      .required();
+      .required()
+      .offers([](const auto&) {
+        std::vector<std::string> names;
+        for (const explain::Entry& entry : explain::all_entries()) names.push_back(entry.names.front());
+        return names;
+      });
   verb.footer("Example:\n  ipos explain E0203\n  ipos explain ramp down");
   verb.runs([words] {
     fmt::print("{}", explain::explain(*words));

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <optional>
 
 #include "compiler/diag/places.hpp"
 #include "runtime/plant/all_mistakes.hpp"
@@ -50,6 +52,21 @@ vm::Image program_of(const std::string& path, runtime::StationConfig& station, C
   return image;
 }
 
+// A program that several stations of one unit have is compiled once, and its messages come once.
+struct CompiledProgram {
+  std::optional<vm::Image> image;  // nothing: it has mistakes
+  std::vector<std::string> stations;
+};
+using Compiled = std::map<std::pair<std::string, const stdlib::UnitType*>, CompiledProgram>;
+
+// Whose programs have mistakes.
+void tell_users(const Compiled& compiled) {
+  for (const auto& [program, result] : compiled)
+    if (!result.image && result.stations.size() > 1)
+      fmt::print(stderr, "ipos: {} is the program of {} stations: {} to {}\n", compiler::printable(program.first),
+                 result.stations.size(), result.stations.front(), result.stations.back());
+}
+
 void tell(const std::string& path, const std::vector<runtime::PlantError>& errors, BuildRecord* record) {
   if (record == nullptr) return print_mistakes(path, errors);
   for (const runtime::PlantError& error : errors)
@@ -87,6 +104,7 @@ PlantInput read_plant_input(const std::string& path, const CompileFlags& compile
   const bool has_mistakes = !errors.empty();
   int code = has_mistakes ? kBadInput : kGood;
   std::string last;  // what is wrong with a program, and was not told yet
+  Compiled compiled;
   for (runtime::StationConfig& station : input.file.stations) {
     input.programs.emplace_back();
     if (station.program.empty() || (has_mistakes && station.unit == nullptr)) continue;
@@ -97,8 +115,12 @@ PlantInput read_plant_input(const std::string& path, const CompileFlags& compile
       if (code == kGood) code = kNoInput;
       continue;
     }
+    auto [known, is_new] = compiled.try_emplace({program, station.unit});
+    known->second.stations.push_back(station.name);
+    if (!is_new && !known->second.image) continue;
     try {
-      input.programs.back() = program_of(program, station, compile);
+      if (is_new) known->second.image = program_of(program, station, compile);
+      input.programs.back() = *known->second.image;
     } catch (const Failure& failure) {
       if (!last.empty() && compile.record != nullptr) compile.record->tell({"error", "", 0, 0, last});
       if (!last.empty() && compile.record == nullptr) fmt::print(stderr, "ipos: {}\n", compiler::printable(last));
@@ -106,6 +128,7 @@ PlantInput read_plant_input(const std::string& path, const CompileFlags& compile
       if (!has_mistakes) code = failure.exit_code();
     }
   }
+  tell_users(compiled);
   if (code == kGood) return input;
   if (is_plant(path)) {
     errors = runtime::all_mistakes(input.file, std::move(input.programs), std::move(errors));

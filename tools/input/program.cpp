@@ -23,6 +23,7 @@
 #include "tools/cli/files.hpp"
 #include "tools/cli/terminal.hpp"
 #include "tools/cli/text_lines.hpp"
+#include "tools/input/offers.hpp"
 #include "tools/input/sources.hpp"
 
 namespace ipos::tools {
@@ -100,7 +101,9 @@ void add_compile_options(cli::Verb& verb, CompileFlags& flags) {
   verb.option("-I", flags.include_dirs, "folder for #include").one_each();
   verb.option("-D", flags.defines, "NAME=VALUE, as #define").one_each();
   verb.option("-W", flags.warnings, "warning by name: -Wunused-variable, -Wno-..., -Werror").one_each();
-  verb.option("--unit", flags.unit, "unit type: " + stdlib::program_unit_names());
+  verb.option("--unit", flags.unit, "unit type: " + stdlib::program_unit_names()).offers([](const auto&) {
+    return offered_units();
+  });
   verb.flag("--atomic", flags.atomic, "variables that others see never hold intermediate results");
   verb.option("--diagnostics", flags.diagnostics, "text, json or sarif").one_of({"text", "json", "sarif"});
 }

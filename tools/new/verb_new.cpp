@@ -46,7 +46,12 @@ void add_new(cli::Verb& program) {
   auto flags = std::make_shared<NewFlags>();
   cli::Verb& verb = program.verb("new", "make a folder to begin with: plant, programs, test, CI files");
   verb.option("DIR", flags->folder, "folder to make, or one without these files").required();
-  verb.option("--from", flags->example, "copy an example instead, for example scom, hoist, jog");
+  verb.option("--from", flags->example, "copy an example instead, for example scom, hoist, jog")
+      .offers([](const auto&) {
+    std::vector<std::string> names;
+    for (const Example& example : all_examples()) names.push_back(example.name);
+    return names;
+  });
   verb.footer("Example:\n  ipos new line\n  ipos new shaft --from hoist");
   verb.runs([flags] { return make(*flags); });
 }

@@ -19,6 +19,8 @@
 #include "tools/cli/verbs.hpp"
 #include "tools/coverage/collector.hpp"
 #include "tools/coverage/coverage_reports.hpp"
+#include "tools/input/folder_plant.hpp"
+#include "tools/input/offers.hpp"
 #include "tools/input/plant_input.hpp"
 #include "tools/input/plant_source.hpp"
 #include "tools/input/program.hpp"
@@ -335,7 +337,7 @@ int run(const RunFlags& flags) {
 void add_run(cli::Verb& app) {
   auto flags = std::make_shared<RunFlags>();
   cli::Verb& verb = app.verb("run", "run a program or a plant in virtual time");
-  verb.option("FILE", flags->file, "source (.IPC), image (.ipx) or plant (.toml)").required();
+  verb.option("FILE", flags->file, "source (.IPC), image (.ipx), plant (.toml) or folder; default: the only plant of this folder");
   verb.option("--for", flags->duration, "virtual time to run, for example 500ms; default 60s")
       .check(check_time, "TIME");
   verb.option("--until", flags->until, "'end': stop when every program has ended").one_of({"end"});
@@ -359,7 +361,8 @@ void add_run(cli::Verb& app) {
               "what to plot and trace, for example unit1.speed,unit1.D*,unit1.H500,sbus1.frames; default: "
               "speed, setpoint and status of every station; 'list' prints what there is")
       .separated_by(',')
-      .one_each();
+      .one_each()
+      .offers(offered_signals);
   add_coverage_option(verb, flags->coverage);
   verb.option("--format", flags->format, "text or json").one_of({"text", "json"});
   verb.flag("--trace-hash", flags->trace_hash,
@@ -371,7 +374,10 @@ void add_run(cli::Verb& app) {
   verb.flag("--why", flags->why, "also tell what was ignored, and why");
   add_compile_options(verb, flags->compile);
   verb.footer("Example:\n  ipos run examples/scom/scom.toml --for 1s --watch --log can.log");
-  verb.runs([flags] { return run(*flags); });
+  verb.runs([flags] {
+    flags->file = plant_or_program(flags->file);
+    return run(*flags);
+  });
 }
 
 }  // namespace ipos::tools

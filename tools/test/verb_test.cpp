@@ -242,8 +242,7 @@ void add_test(cli::Verb& app) {
   flags->suite.jobs = std::max(1U, std::thread::hardware_concurrency());
   cli::Verb& verb = app.verb("test", "run the tests of plants and programs");
   verb.option("PATH", flags->paths,
-              "*.test.toml, plant with [[expect]], program with // expect comments, or folder of them")
-      .required();
+              "*.test.toml, plant with [[expect]], program with // expect comments, or folder of them; default: this folder");
   verb.option("--filter", flags->filters,
               "only tests whose name has this in it, or matches a pattern such as 'examples/*/scom*'")
       .separated_by(',')
@@ -280,7 +279,10 @@ void add_test(cli::Verb& app) {
   add_coverage_option(verb, flags->coverage);
   add_compile_options(verb, flags->suite.compile);
   verb.footer("Example:\n  ipos test examples --junit report.xml");
-  verb.runs([flags] { return run(*flags); });
+  verb.runs([flags] {
+    if (flags->paths.empty()) flags->paths.emplace_back(".");
+    return run(*flags);
+  });
 }
 
 }  // namespace ipos::tools

@@ -10,6 +10,7 @@
 #include "tools/input/plant_source.hpp"
 #include "tools/links/dp_units.hpp"
 #include "tools/links/link_access.hpp"
+#include "tools/input/offers.hpp"
 #include "tools/links/link_options.hpp"
 #include "tools/unit/param_actions.hpp"
 #include "tools/unit/station_access.hpp"
@@ -121,8 +122,8 @@ class Actions {
   cli::Verb& add(const char* name, const char* what, const char* words, const char* about,
                  const char* example, Action action) {
     cli::Verb& app = verb_.verb(name, what);
-    app.option(words, flags_->words, about);
-    app.option("--station", flags_->station, "which station, where the plant has several");
+    app.option(words, flags_->words, about).offers(offered_parameters);
+    app.option("--station", flags_->station, "which station, where the plant has several").offers(offered_stations);
     add_link_options(app, flags_->link, true);
     add_profibus_option(app, flags_->link);
     app.option("--cfg", flags_->link.cfg,
@@ -138,7 +139,8 @@ class Actions {
     app.option("--unit", flags_->unit,
                fmt::format("instead of a plant: a unit as delivered ({}); with --port: do not ask the unit what it is",
                            stdlib::unit_names()))
-        .check(check_unit, "UNIT");
+        .check(check_unit, "UNIT")
+        .offers([](const Words&) { return offered_units(); });
   }
   void format(cli::Verb& app) {
     app.option("--format", flags_->format, "text or json").one_of({"text", "json"});

@@ -11,6 +11,7 @@
 #include "tools/input/plant_source.hpp"
 #include "tools/input/program.hpp"
 #include "tools/links/link_access.hpp"
+#include "tools/input/offers.hpp"
 #include "tools/links/link_options.hpp"
 #include "tools/links/live_values.hpp"
 #include "tools/parameters/running_station.hpp"
@@ -118,7 +119,7 @@ void add_watch(cli::Verb& app) {
       .required();
   add_link_options(verb, flags->link, false);
   verb.option("--unit", flags->unit, "do not ask the unit what it is: " + stdlib::unit_names())
-      .check(check_unit, "UNIT");
+      .check(check_unit, "UNIT").offers([](const Words&) { return offered_units(); });
   verb.option("--every", flags->every, "time from row to row, default 500ms").check(check_rate, "TIME");
   verb.option("--count", flags->count, "end after so many rows; default: go on until Ctrl-C").at_least(1);
   verb.flag("--once", flags->once, "read once, a line for each value");
