@@ -8,7 +8,7 @@
 #include "tests/tools/command.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/examples/examples.hpp"
-#include "tools/serve/find_plant.hpp"
+#include "tools/input/folder_plant.hpp"
 #include "tools/serve/host/plant_form.hpp"
 
 namespace ipos::tests {
@@ -112,12 +112,12 @@ TEST(Examples, HaveTheirStories) {
   EXPECT_EQ(tools::head_story("[[bus]]\n# no head\n", 2), "");
 }
 
-TEST(FindPlant, TakesTheOnlyOneAndTellsWhatWasMeant) {
+TEST(PlantOrProgram, TakesTheOnlyOneAndTellsWhatWasMeant) {
   const TemporaryFolder folder;
   const auto at = [&](const std::string& name) { return (folder.path() / name).string(); };
   const auto why = [](const std::string& named) {
     try {
-      return "found " + tools::serve::find_plant(named);
+      return "found " + tools::plant_or_program(named);
     } catch (const tools::Failure& failure) {
       return std::string(failure.what());
     }
@@ -129,12 +129,12 @@ TEST(FindPlant, TakesTheOnlyOneAndTellsWhatWasMeant) {
   folder.write("pyproject.toml", "[project]\n");
   EXPECT_EQ(why(folder.path().string()), "found " + at("line.toml"));
   EXPECT_EQ(why(at("line.toml")), "found " + at("line.toml"));
-  EXPECT_TRUE(contains(why(at("lin.toml")), "did you mean " + at("line.toml") + "?"));
-  EXPECT_TRUE(contains(why(at("line.tml")), "did you mean " + at("line.toml") + "?"));
+  EXPECT_TRUE(contains(why(at("lin.toml")), "did you mean '" + at("line.toml") + "'?"));
+  EXPECT_TRUE(contains(why(at("line.tml")), "did you mean '" + at("line.toml") + "'?"));
   folder.write("other.toml", "[[station]]\nname = \"a\"\nunit = \"mdxb\"\n");
-  EXPECT_TRUE(contains(why(folder.path().string()), "which of its plants?"));
+  EXPECT_TRUE(contains(why(folder.path().string()), "has 2 plants; name one of them: "));
   const TemporaryFolder empty;
-  EXPECT_TRUE(contains(why(empty.path().string()), "there is no plant"));
+  EXPECT_TRUE(contains(why(empty.path().string()), "has no plant (.toml) and no program (.IPC)"));
 }
 
 }  // namespace

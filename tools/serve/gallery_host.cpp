@@ -11,7 +11,7 @@
 #include "tools/cli/failure.hpp"
 #include "tools/cli/files.hpp"
 #include "tools/examples/examples.hpp"
-#include "tools/serve/find_plant.hpp"
+#include "tools/input/folder_plant.hpp"
 #include "tools/serve/host/plant_form.hpp"
 
 namespace ipos::tools::serve {

@@ -14,13 +14,13 @@
 #include "tools/cli/end_of_process.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/verbs.hpp"
+#include "tools/input/folder_plant.hpp"
 #include "tools/input/plant_input.hpp"
 #include "tools/input/plant_source.hpp"
 #include "tools/links/link_options.hpp"
 #include "tools/processes/replaceable_process.hpp"
 #include "tools/serve/channel.hpp"
 #include "tools/serve/drive_host.hpp"
-#include "tools/serve/find_plant.hpp"
 #include "tools/serve/forked_copies.hpp"
 #include "tools/serve/gallery_host.hpp"
 #include "tools/serve/host/plant_host.hpp"
@@ -159,7 +159,11 @@ int serve_page(ServeFlags flags) {
   const bool device = !flags.device.port.empty();
   if (device && !flags.file.empty())
     throw Failure(kUsage, "serve takes a FILE, or --device with the port of a real drive, not both");
-  if (!device) flags.file = serve::find_plant(flags.file);
+  if (!device) {
+    // Nothing was named and nothing can be told: the gallery opens.
+    if (flags.file.empty() && plants_in("").size() == 1) flags.file = plants_in("").front();
+    if (!flags.file.empty()) flags.file = plant_or_program(flags.file);
+  }
   if (serve::is_session(flags.file)) {
     flags.session = std::make_shared<const serve::OpenedSession>(flags.file);
     flags.file = flags.session->plant();
