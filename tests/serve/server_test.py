@@ -226,7 +226,9 @@ class Serving(unittest.TestCase):
     def test_too_much_is_refused(self):
         self.assertEqual(self.status(f"/?token={self.token}", more="X: " + "x" * 9000 + "\r\n"), 431)
         client = self.connect()
-        client.send(b'"' + b"x" * 70_000 + b'"')
+        # A text of the editor is taken up to 128 KiB.
+        self.assertTrue(client.ask(do="plant", more="x" * 130_000)["ok"])
+        client.send(b'"' + b"x" * 132_000 + b'"')
         with self.assertRaises((EOFError, ConnectionError)):
             while client.receive()[0] != 8:
                 pass
