@@ -49,7 +49,7 @@ class Browser : public Page {
 
 TEST_F(Browser, FindsWhatTheContractNames) { expect_node_passed(run("page.test.mjs"), 16); }
 
-TEST_F(Browser, PutsViewsSideBySide) { expect_node_passed(run("desk.test.mjs"), 9); }
+TEST_F(Browser, PutsViewsSideBySide) { expect_node_passed(run("desk.test.mjs"), 10); }
 
 TEST_F(Browser, TurnsAnAxisByAClick) { expect_node_passed(run("plant.test.mjs"), 18); }
 

@@ -70,6 +70,7 @@ export function newPlant() {
       stationNames.map((name) => [name, { in: 0, forced: 0, powered: true, fault: 0, analog: "0.000 V", shaft: 0 }]),
     ),
     faults: [],
+    variables: [...variables],
     watched: [],
     written: {},
     forced: {},
@@ -223,8 +224,8 @@ const commands = {
     if (on) plant.faults.push({ kind, station });
     return { ok: true };
   },
-  search: (_plant, { text = "", station }) => {
-    const names = variables.filter((name) => name.includes(text) && (!station || name.startsWith(`${station}.`)));
+  search: (plant, { text = "", station }) => {
+    const names = plant.variables.filter((name) => name.includes(text) && (!station || name.startsWith(`${station}.`)));
     return { ok: true, names: names.map(nameRow), total: names.length, groups: ["variables", "parameters"] };
   },
   watch: (plant, { names }) => ((plant.watched = names), { ok: true, names: names.map(nameRow) }),

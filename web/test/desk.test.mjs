@@ -331,6 +331,43 @@ for (const { name, viewport, colorScheme } of [
     ),
   );
 
+test("of a thousand variables the rows in sight are drawn and watched", { skip }, () =>
+  meet(async (page, mock) => {
+    mock.plant.variables.push(...Array.from({ length: 996 }, (_, n) => `lift.lValue${n}`));
+    await page.getByRole("tab", { name: "Watch" }).click();
+    const table = page.getByRole("table", { name: "Watch" });
+    const row = (name) => table.getByRole("row", { name });
+    await row("lift.lValue5 ").waitFor();
+    await until(() => mock.plant.watched.includes("lift.lValue5"), "nothing is watched");
+    const few = async () => {
+      assert.strictEqual(await table.getAttribute("aria-rowcount"), "1001");
+      assert.ok((await table.getByRole("row").count()) < 200 && mock.plant.watched.length < 200);
+    };
+    await few();
+    const scroller = page.locator(".view > .scroll");
+    const height = await scroller.evaluate((one) => one.scrollHeight);
+    for (const [part, name] of [[1, "lift.lValue995"], [0.5, "lift.lValue495"], [0, "saw.lCount"]]) {
+      await scroller.evaluate((one, to) => (one.scrollTop = to * (one.scrollHeight - one.clientHeight)), part);
+      await row(name).waitFor();
+      const [inner, outer] = [await row(name).boundingBox(), await scroller.boundingBox()];
+      assert.ok(inner.y + inner.height > outer.y && inner.y < outer.y + outer.height, `${name} is not in sight`);
+      await until(() => mock.plant.watched.includes(name), `${name} is not watched`);
+      await few();
+      const now = await scroller.evaluate((one) => one.scrollHeight);
+      assert.ok(Math.abs(now - height) < height * 0.02, `the height jumps from ${height} to ${now}`);
+    }
+    // The search makes it short again, and a view that is left finds its place again.
+    await page.getByRole("searchbox", { name: "Search names" }).fill("lValue99");
+    await until(async () => (await table.getByRole("row").count()) === 8, "not the seven that have it");
+    await page.getByRole("searchbox", { name: "Search names" }).fill("");
+    await row("saw.lCount").waitFor();
+    await scroller.evaluate((one) => (one.scrollTop = 5000));
+    await page.getByRole("tab", { name: "Plant" }).click();
+    await page.getByRole("tab", { name: "Watch" }).click();
+    await until(async () => (await scroller.evaluate((one) => one.scrollTop)) === 5000, "the place is lost");
+  }),
+);
+
 // The tree of panes alone, without a browser: whatever one does, each view has one place, and the places cover the whole.
 test("a thousand moves leave no gap, no overlap and no view twice", async () => {
   const { bordersOf, exchange, moveBorder, place, readLayout, rectsOf, viewsOf, without } = await bundled("shell/layout.ts");
