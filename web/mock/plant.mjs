@@ -344,6 +344,7 @@ export function event(plant, topic, options, first) {
       ? { event: "journal", entries: [
             { n: 1, us: 1000, station: "saw", weight: "why", text: "not enabled: DI00 is off" },
             { n: 2, us: 5000, station: "lift", weight: "fault", text: "F01 overcurrent" },
+            { n: 3, us: 6000, station: "saw", weight: "warning", text: "a telegram is late (SAW.IPC:9:3)" },
           ] }
       : null;
   return { event: topic, ...events[topic]?.(plant, options) };

@@ -176,6 +176,17 @@ test("an entry of the journal leads to its time in the scope", { skip }, () =>
   }),
 );
 
+test("a place that the journal names leads to its line", { skip }, () =>
+  meet(async (page) => {
+    await page.getByRole("tab", { name: "Journal" }).click();
+    await page.getByRole("log").getByRole("button", { name: "SAW.IPC:9:3" }).click();
+    assert.strictEqual(await page.getByRole("tab", { selected: true }).textContent(), "Program");
+    await page.locator(".cm-activeLine").waitFor();
+    const lineOf = () => page.locator(".cm-activeLine").evaluate((one) => [...one.parentElement.children].indexOf(one) + 1);
+    await until(async () => (await lineOf()) === 9, "it is another line");
+  }),
+);
+
 test("a breakpoint is set and cleared at the edge of its line", { skip }, () =>
   meet(async (page, mock) => {
     await page.getByRole("tab", { name: "Program" }).click();

@@ -2,14 +2,12 @@
 import { useEffect, useState } from "preact/hooks";
 
 import { request } from "../server/connection";
-import { hello } from "../server/live";
 import type { TelegramDetail, TelegramField, TraceFrame } from "../server/protocol";
 import { addChannel } from "../scope/channels";
-import { command, complain } from "../shell/notice";
+import { complain } from "../shell/notice";
+import { goTo, noPast } from "../timeline/moments";
 import { identityText, microText } from "./identity";
 import { chosen, lineKinds, show } from "./trace_state";
-
-const goTo = (us: number) => void command({ do: "back", us });
 
 function bitsOf(field: TelegramField): string {
   if (field.bits === 0) return "";
@@ -110,8 +108,8 @@ export function Detail() {
           {!frame.ours && ", over the port"}
           {detail && `, ${microText(detail.from_us)} to ${microText(frame.us)} s, ${frame.dlc} bytes`}
         </span>
-        {hello.value?.mode === "plant" && !hello.value.live && (
-          <button class="spread" onClick={() => goTo(frame.us)}>
+        {!noPast.value && (
+          <button class="spread" onClick={() => goTo(frame.us / 1000)}>
             Go to {microText(frame.us)} s
           </button>
         )}

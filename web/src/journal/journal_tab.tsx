@@ -3,11 +3,11 @@ import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 
 import { openLine } from "../program/open_line";
 import { showMoment } from "../scope/window";
-import { hello, secondsText, stationNames } from "../server/live";
+import { secondsText, stationNames } from "../server/live";
 import type { JournalEntry } from "../server/protocol";
 import { download } from "../shell/download";
-import { command } from "../shell/notice";
 import { open } from "../shell/desk";
+import { goTo, noPast } from "../timeline/moments";
 import { asCsv, asText, chosen, entries, followJournal, hiddenWeights, newestFirst, searchText, station } from "./journal_entries";
 
 const weights: JournalEntry["weight"][] = ["why", "warning", "fault"];
@@ -42,10 +42,10 @@ function Entry({ entry }: { entry: JournalEntry }) {
   const at = secondsText(entry.us);
   return (
     <div class={`entry ${entry.weight}`}>
-      {hello.value?.live ? (
+      {noPast.value ? (
         <span class="mono quiet">{at}</span>
       ) : (
-        <button class="link mono" aria-label={`Go to ${at}`} title="Go to this moment" onClick={() => void command({ do: "back", us: entry.us })}>
+        <button class="link mono" aria-label={`Go to ${at}`} title="Go to this moment" onClick={() => goTo(entry.us / 1000)}>
           {at}
         </button>
       )}
