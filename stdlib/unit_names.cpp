@@ -1,6 +1,10 @@
 // Names in the order of the table.
 #include "stdlib/unit_names.hpp"
 
+#include <span>
+
+#include "stdlib/spelling.hpp"
+
 namespace ipos::stdlib {
 namespace {
 
@@ -12,7 +16,33 @@ std::string names_of(Test test) {
   return names;
 }
 
+// As the nameplate begins, in capitals.
+struct UnitPlates {
+  std::string_view unit;
+  std::span<const std::string_view> types;
+};
+#define PLATES(name, ...) constexpr std::string_view name##_plates[] = {__VA_ARGS__};
+#include "stdlib/unit_types.def"
+constexpr UnitPlates kPlates[] = {
+#define PLATES(name, ...) {#name, name##_plates},
+#include "stdlib/unit_types.def"
+};
+
+// The name of the unit whose nameplate begins so, in any case of letters: "MDX61B0011-5A3-4-00" is an mdxb.
+std::string_view unit_of_plate(std::string_view text) {
+  for (const UnitPlates& row : kPlates)
+    for (const std::string_view type : row.types)
+      if (equal_but_for_case(text.substr(0, type.size()), type)) return row.unit;
+  return {};
+}
+
 }  // namespace
+
+const UnitType* find_unit_or_plate(std::string_view name) {
+  if (const UnitType* unit = find_unit(name)) return unit;
+  const std::string_view plate = unit_of_plate(name);
+  return plate.empty() ? nullptr : find_unit(plate);
+}
 
 std::string unit_names() {
   return names_of([](const UnitType&) { return true; });

@@ -13,6 +13,9 @@ std::string unit_names();
 std::string program_unit_names();
 std::string unit_names(Trait trait);
 
+// A unit by its name, or by how its nameplate begins ("MDX61B..."), in any case of letters; nullptr when there is none.
+const UnitType* find_unit_or_plate(std::string_view name);
+
 // "'nope' is no unit type; known are ..."
 std::string no_unit_text(std::string_view name);
 

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "stdlib/spelling.hpp"
-
 namespace ipos::stdlib {
 namespace {
 
@@ -54,26 +52,6 @@ constexpr UnitSigns kSigns[] = {
 #include "stdlib/unit_types.def"
 };
 
-// As the nameplate begins, in capitals.
-struct UnitPlates {
-  std::string_view unit;
-  std::span<const std::string_view> types;
-};
-#define PLATES(name, ...) constexpr std::string_view name##_plates[] = {__VA_ARGS__};
-#include "stdlib/unit_types.def"
-constexpr UnitPlates kPlates[] = {
-#define PLATES(name, ...) {#name, name##_plates},
-#include "stdlib/unit_types.def"
-};
-
-// The name of the unit whose nameplate begins so, in any case of letters: "MDX61B0011-5A3-4-00" is an mdxb.
-std::string_view unit_of_plate(std::string_view text) {
-  for (const UnitPlates& row : kPlates)
-    for (const std::string_view type : row.types)
-      if (equal_but_for_case(text.substr(0, type.size()), type)) return row.unit;
-  return {};
-}
-
 // A new trait must fit into the set.
 #define TRAIT(name, meaning) +1
 static_assert(0
@@ -93,8 +71,7 @@ std::span<const UnitType> unit_types() { return kUnits; }
 const UnitType* find_unit(std::string_view name) {
   for (const UnitType& unit : kUnits)
     if (unit.name == name) return &unit;
-  const std::string_view plate = unit_of_plate(name);
-  return plate.empty() ? nullptr : find_unit(plate);
+  return nullptr;
 }
 
 const UnitType* find_unit(uint8_t code) {

@@ -210,7 +210,7 @@ void read_station(PlantReader& reader, const toml::table& table) {
   config.name = reader.text(table, "name", "a [[station]]", true);
   reader.new_station(config.name, config.place);
   const std::string unit = reader.text(table, "unit", "a [[station]]", true);
-  config.unit = stdlib::find_unit(unit);
+  config.unit = stdlib::find_unit_or_plate(unit);
   if (config.unit == nullptr && !unit.empty()) {
     reader.error(place_of(table.get("unit")->source()),
                  fmt::format("{}, {}", stdlib::no_unit_text(unit), kGatewayUnit));

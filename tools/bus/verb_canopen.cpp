@@ -21,7 +21,7 @@ struct EdsFlags {
 };
 
 std::string check_unit(const std::string& name) {
-  const stdlib::UnitType* unit = stdlib::find_unit(name);
+  const stdlib::UnitType* unit = stdlib::find_unit_or_plate(name);
   if (unit != nullptr && unit->has(stdlib::Trait::Canopen)) return "";
   return fmt::format("'{}' is no unit with CANopen; known are {}", name, stdlib::unit_names(stdlib::Trait::Canopen));
 }
@@ -29,7 +29,7 @@ std::string check_unit(const std::string& name) {
 const stdlib::UnitType& unit_of(const EdsFlags& flags) {
   if (flags.plant.empty() == flags.unit.empty())
     throw Failure(kUsage, "which unit? Write PLANT STATION, or --unit mdxb");
-  if (!flags.unit.empty()) return *stdlib::find_unit(flags.unit);
+  if (!flags.unit.empty()) return *stdlib::find_unit_or_plate(flags.unit);
   const runtime::PlantFile plant = read_plant(flags.plant);
   std::string names;
   for (const runtime::StationConfig& station : plant.stations) {

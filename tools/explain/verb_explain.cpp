@@ -6,6 +6,7 @@
 
 #include "stdlib/language_tables.hpp"
 #include "stdlib/spelling.hpp"
+#include "stdlib/unit_names.hpp"
 #include "stdlib/unit_types.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/verbs.hpp"
@@ -93,7 +94,7 @@ std::string explain(const std::vector<std::string>& words) {
   if (std::string text = numbers_text(entries, words); !text.empty()) return text;
   if (std::string text = texts_of(entries, fmt::format("{}", fmt::join(words, " "))); !text.empty()) return text;
   if (words.size() == 1)
-    if (const stdlib::UnitType* unit = stdlib::find_unit(words[0])) return texts_of(entries, std::string(unit->name));
+    if (const stdlib::UnitType* unit = stdlib::find_unit_or_plate(words[0])) return texts_of(entries, std::string(unit->name));
   if (std::string lines = search(entries, words); !lines.empty()) return lines;
   const std::string typed = fmt::format("{}", fmt::join(words, " "));
   std::vector<std::string_view> names;

@@ -31,7 +31,7 @@ namespace {
 
 const stdlib::UnitType* unit_of(const CompileFlags& flags) {
   if (flags.unit.empty()) return nullptr;
-  const stdlib::UnitType* unit = stdlib::find_unit(flags.unit);
+  const stdlib::UnitType* unit = stdlib::find_unit_or_plate(flags.unit);
   if (unit == nullptr || !unit->runs_programs())
     throw Failure(kUsage, fmt::format("'{}' is no unit type with IPOS; known are {}", flags.unit,
                                       stdlib::program_unit_names()));

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "stdlib/parameters.hpp"
+#include "stdlib/unit_names.hpp"
 #include "tools/cli/failure.hpp"
 
 namespace ipos::tools {
@@ -65,7 +66,7 @@ const stdlib::UnitType* identify(BusLink& link, uint8_t address, AccessError* er
 std::unique_ptr<ParameterAccess> open_unit(std::unique_ptr<BusLink> link, uint8_t address,
                                            const std::string& unit) {
   AccessError error;
-  const stdlib::UnitType* type = unit.empty() ? identify(*link, address, &error) : stdlib::find_unit(unit);
+  const stdlib::UnitType* type = unit.empty() ? identify(*link, address, &error) : stdlib::find_unit_or_plate(unit);
   const std::string place = fmt::format("unit {} at {}", address, link->port_name());
   if (!error.trouble.empty()) throw Failure(kIoError, fmt::format("{}: {}", place, error.trouble));
   if (type == nullptr)

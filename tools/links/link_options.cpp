@@ -52,7 +52,7 @@ void check_profibus(const LinkFlags& flags) {
 }
 
 std::string check_unit(const std::string& name) {
-  if (const stdlib::UnitType* unit = stdlib::find_unit(name))
+  if (const stdlib::UnitType* unit = stdlib::find_unit_or_plate(name))
     return stdlib::parameter_table(*unit).rows().empty() ? "unit " + name + " has no list of parameters" : "";
   return stdlib::no_unit_text(name);
 }

@@ -10,6 +10,7 @@
 #include "runtime/plant/all_mistakes.hpp"
 #include "runtime/plant/plant.hpp"
 #include "stdlib/parameters.hpp"
+#include "stdlib/unit_names.hpp"
 #include "tools/cli/files.hpp"
 #include "tools/lsp/features.hpp"
 #include "tools/lsp/plant_names.hpp"
@@ -104,7 +105,7 @@ const stdlib::UnitType* unit_at(const Spot& spot) {
     const std::string_view key = key_of(spot.lines[n]);
     if (in_station && key == "name") name = value_of(spot.lines[n]);
     if (in_station && key == "unit" && (wanted.empty() || name == wanted || name.empty()))
-      unit = stdlib::find_unit(value_of(spot.lines[n]));
+      unit = stdlib::find_unit_or_plate(value_of(spot.lines[n]));
     if (!wanted.empty() && unit != nullptr && name == wanted) break;
   }
   return unit;

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "runtime/signals/find.hpp"
+#include "stdlib/unit_names.hpp"
 #include "tools/lsp/plant_document.hpp"
 
 namespace ipos::tools::lsp {
@@ -74,7 +75,7 @@ void Workspace::set_options(const Json& options) {
     made.atomic = atomic != options.end() && atomic->is_boolean() && atomic->get<bool>();
     const auto unit = options.find("unit");
     if (unit != options.end() && unit->is_string() && !unit->get<std::string>().empty()) {
-      made.unit = stdlib::find_unit(std::string_view(unit->get_ref<const std::string&>()));
+      made.unit = stdlib::find_unit_or_plate(std::string_view(unit->get_ref<const std::string&>()));
       if (made.unit == nullptr || made.unit->tasks == 0)
         throw RequestError(ErrorCode::InvalidParams,
                            "'" + unit->get<std::string>() + "' is no unit type with IPOS");

@@ -97,7 +97,7 @@ void write_report(const std::string& path, const std::string& text) {
 // Refused before anything runs.
 void check_flags(const TestFlags& flags) {
   const CompileFlags& compile = flags.suite.compile;
-  if (!compile.unit.empty() && stdlib::find_unit(compile.unit) == nullptr)
+  if (!compile.unit.empty() && stdlib::find_unit_or_plate(compile.unit) == nullptr)
     throw Failure(kUsage, stdlib::no_unit_text(compile.unit));
   if (compile.diagnostics != "text")
     throw Failure(kUsage, "the messages of programs are part of the report; --json has them");

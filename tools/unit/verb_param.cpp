@@ -72,7 +72,7 @@ std::unique_ptr<ParameterAccess> open(ParamFlags& flags, FileUse use) {
     throw Failure(kUsage,
                   plant ? "--unit does not go with a plant file"
                         : "which unit? Name a plant file (*.toml), or give --port and --address, or --unit");
-  if (!plant) return open_factory(*stdlib::find_unit(flags.unit));
+  if (!plant) return open_factory(*stdlib::find_unit_or_plate(flags.unit));
   const std::string file = flags.words.front();
   flags.words.erase(flags.words.begin());
   return open_station(file, flags.station, use);
