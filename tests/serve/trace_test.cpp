@@ -130,6 +130,9 @@ TEST_F(OnTrace, ATelegramHasItsSenderAndItsLength) {
   EXPECT_EQ(frame["sender"], "the page");
   EXPECT_EQ(frame["ours"], true);
   EXPECT_EQ(frame["dlc"], 2);
+  // ISO 11898: 44 bits and 16 of data up to the end of the frame, and at most 12 stuffed ones, of 2 us each.
+  EXPECT_GE(frame["took_us"].get<double>(), 120);
+  EXPECT_LE(frame["took_us"].get<double>(), 144);
   step(300);
   EXPECT_EQ(trace({{"bus", "dp"}, {"filter", "sender:plc -token Set_Prm"}})[0]["sender"], "plc");
   EXPECT_EQ(trace({{"bus", "dp"}, {"filter", "sender:pump \"Slave_Diag answer\""}})[0]["sender"], "pump");

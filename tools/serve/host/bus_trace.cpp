@@ -22,6 +22,7 @@ Json BusTraffic::json_of(uint64_t n, const Telegram& telegram) const {
   const std::string sender = monitor.sender_of(telegram);
   Json json{{"n", n},
             {"us", telegram.time / runtime::kMicrosecond},
+            {"took_us", static_cast<double>(telegram.took) / static_cast<double>(runtime::kMicrosecond)},
             {"bus", monitor.name()},
             {"id", telegram.id},
             {"extended", telegram.extended},

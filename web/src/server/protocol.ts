@@ -293,7 +293,7 @@ export interface BusState {
 export interface TraceFrame extends FrameAddresses {
   n: number;
   us: number;
-  took_us?: number; // from its first bit on; not of a real drive
+  took_us?: number; // on the line, up to `us`
   bus: string;
   id: number;
   extended: boolean;
