@@ -47,7 +47,7 @@ class Browser : public Page {
   }
 };
 
-TEST_F(Browser, FindsWhatTheContractNames) { expect_node_passed(run("page.test.mjs"), 16); }
+TEST_F(Browser, FindsWhatTheContractNames) { expect_node_passed(run("page.test.mjs"), 17); }
 
 TEST_F(Browser, PutsViewsSideBySide) { expect_node_passed(run("desk.test.mjs"), 10); }
 
