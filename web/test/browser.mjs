@@ -21,7 +21,8 @@ export function launch() {
       "--disable-background-networking",
       "--disable-component-update",
       "--disable-sync",
-      "--disable-features=LocalNetworkAccessChecks", // for IPOS_PAGE: its socket goes to this computer
+      // The socket of a page that came from elsewhere goes to this computer.
+      ...(process.env.IPOS_PAGE ? ["--disable-features=LocalNetworkAccessChecks"] : []),
     ],
   });
 }
