@@ -144,7 +144,11 @@ int run(const Verb& program, const std::string& version, int argc, char** argv) 
   std::vector<std::string> words(argv + 1, argv + argc);
   if (words.front() == "help") {
     words.erase(words.begin());
-    words.emplace_back("--help");
+    const auto& known = program.verbs();
+    if (std::none_of(known.begin(), known.end(), [&](const Verb& verb) { return verb.name() == words.front(); }))
+      words.resize(1);  // so that it is told
+    else
+      words.emplace_back("--help");
   }
   std::reverse(words.begin(), words.end());
   try {
