@@ -250,7 +250,7 @@ Words verbs_of(Words words) {
   bool listed = false;
   for (std::string line; std::getline(help, line);) {
     if (!line.empty() && line.front() != ' ' && line.back() == ':') {  // a heading; most are groups of verbs
-      listed = line != "Options:" && line != "Positionals:" && line != "Example:";
+      listed = line != "Options:" && line != "Positionals:" && !line.starts_with("Example");
     } else if (listed && line.starts_with("  ") && line.size() > 2 && line[2] != ' ') {
       verbs.push_back(line.substr(2, line.find(' ', 2) - 2));
     } else if (line.empty()) {

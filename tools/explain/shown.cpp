@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <optional>
 #include <set>
 
 #include "runtime/bus/movilink/unit_words.hpp"
@@ -17,8 +18,8 @@ namespace {
 
 using stdlib::UnitType;
 
-// The code of a process data word in P870 to P876 (MOVITRAC 07 chapter 6.1): 9 is control word 1, 10 control word 2, 6
-// status word 1 and 7 status word 2. Their texts are asked of the parameter, so that no number stands here.
+// The code of a process data word in P870 to P876 (MOVITRAC 07 chapter 6.1). It is asked of the parameter, whose texts have
+// "STATUS WORD1", so that no number stands here.
 struct Word {
   std::string_view name;     // as P870 and P873 have it
   std::string_view setting;  // a parameter that may hold it
@@ -29,21 +30,25 @@ constexpr Word kWords[] = {{"control word 1", "P870", false},
                            {"status word 1", "P873", true},
                            {"status word 2", "P873", true}};
 
+std::optional<uint8_t> code_of(const UnitType& unit, const Word& word) {
+  std::string text(word.name);
+  text.erase(text.rfind(' '), 1);
+  for (const stdlib::ValueText& value : stdlib::parameter_table(unit).find(word.setting)->texts)
+    if (stdlib::equal_but_for_case(value.text, text)) return static_cast<uint8_t>(value.value);
+  return std::nullopt;
+}
+
 std::string word_text(const Word& word) {
   const UnitType& unit = stdlib::unit_with(stdlib::Trait::NewVariables);
-  const stdlib::Parameter* setting = stdlib::parameter_table(unit).find(word.setting);
   std::string text = fmt::format("{}: process data {} the unit, a choice of {} on {}\n", word.name,
                                  word.input ? "from" : "to", word.setting, unit.title);
   if (!word.input) text += "  bits 0 to 2: 6 enables, 2 is a stop, 4 a rapid stop, 1 inhibits the controller\n";
-  if (word.input) text += "  bit 1: ready\n  bit 5: fault; then the high byte of word 1 is its number\n";
-  for (const stdlib::ValueText& value : setting->texts) {
-    if (!stdlib::equal_but_for_case(value.text, word.name)) continue;
-    const auto code = static_cast<uint8_t>(value.value);
-    for (const runtime::WordBit& bit : runtime::unit_word_bits(unit, word.input, code))
-      text += fmt::format("  bit {}: {}\n", bit.bit, bit.text);
-    for (const auto& [state, meaning] : runtime::unit_state_texts(code))
-      text += fmt::format("  high byte {}: {}\n", state, meaning);
-  }
+  const std::optional<uint8_t> code = code_of(unit, word);
+  if (!code) return text;
+  for (const runtime::WordBit& bit : runtime::unit_word_bits(unit, word.input, *code))
+    text += fmt::format("  bit {}: {}\n", bit.bit, bit.text);
+  for (const auto& [state, meaning] : runtime::unit_state_texts(*code))
+    text += fmt::format("  high byte {}: {}\n", state, meaning);
   return text;
 }
 
@@ -65,11 +70,10 @@ void add_display(Entries& entries) {
                        [shown, meaning] { return fmt::format("display {}: {}\n", shown, meaning); }});
   };
   const UnitType& unit = stdlib::unit_with(stdlib::Trait::NewVariables);
-  for (const stdlib::ValueText& value : stdlib::parameter_table(unit).find("P873")->texts) {
-    if (!stdlib::equal_but_for_case(value.text, "status word 1")) continue;
-    for (const auto& [state, meaning] : runtime::unit_state_texts(static_cast<uint8_t>(value.value)))
-      if (state < 10) add(fmt::format("{}", state), meaning);
-  }
+  for (const Word& word : kWords)
+    if (const std::optional<uint8_t> code = code_of(unit, word))
+      for (const auto& [state, meaning] : runtime::unit_state_texts(*code))
+        if (state < 10) add(fmt::format("{}", state), meaning);
   add("t", "waiting for data: an enabled drive does not move until the first process data (1053 1610 p. 27)");
   add("F", "a fault: its number follows; ipos explain F lists them");
 }
