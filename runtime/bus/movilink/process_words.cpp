@@ -27,7 +27,8 @@ ProcessWordScale process_word_scale(bool input, uint8_t code) {
 std::string_view process_word_name(const stdlib::UnitType& unit, bool input, uint8_t code) {
   const char* const number = input ? "873" : "870";
   const stdlib::Parameter* row = stdlib::parameter_table(unit).find(number);
-  // The words of a MOVITRAC 31 are fixed; it has no list of them.
+  // The words of a MOVITRAC 31 are fixed; it has no list of them. Nobody has said what the others of such a unit are.
+  if (row == nullptr && code == 0) return {};
   if (row == nullptr) row = stdlib::parameter_table(stdlib::usual_unit()).find(number);
   for (const stdlib::ValueText& text : row->texts)
     if (text.value == code) return text.text;

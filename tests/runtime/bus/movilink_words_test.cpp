@@ -301,7 +301,9 @@ TEST(ProcessWords, NamesAreThoseOfTheUnit) {
   EXPECT_EQ(process_word_name(md60a, false, 9), "CTRL. WORD 1");
   EXPECT_EQ(process_word_name(md60a, true, 9), "IPOS-PI DATA");
   EXPECT_EQ(process_word_name(md60a, true, 200), "");
-  EXPECT_EQ(process_word_name(*stdlib::find_unit("mc31"), true, 1), "");
+  // One without a list has the words of MOVIDRIVE, as far as they are assigned.
+  EXPECT_EQ(process_word_name(*stdlib::find_unit("mc31"), true, 1), "SPEED");
+  EXPECT_EQ(process_word_name(*stdlib::find_unit("mc31"), true, 0), "");
   // A unit that has no such assignment, and one without a type, whose names are those of MOVIDRIVE.
   TelegramNames names = one_unit();
   UnitNames& unit = names.units[0];
