@@ -45,7 +45,7 @@ TEST(PlantForm, KnowsWhatTheReadersKnow) {
 // P881 is the SBus address, P884 its baud rate, 0 being 125 kbaud (MOVIDRIVE B, parameters); a MOVIDRIVE A has P813 and P816.
 TEST(PlantForm, ProposesAFreeAddressAndWhatMustAgree) {
   const auto line = [](const std::string& unit, const std::string& key) {
-    for (const Json& one : form({{"table", "station"}, {"unit", unit}})["lines"])
+    for (const Json reply = form({{"table", "station"}, {"unit", unit}}); const Json& one : reply["lines"])
       if (one["key"] == key) return one;
     return Json();
   };

@@ -89,9 +89,9 @@ class Hand {
  public:
   Hand(Page& page, uint32_t seed) : page_(page), random_(seed) {
     plant_ = page.ask({{"do", "plant"}})["plant"];
-    for (const Json& row : page.ask({{"do", "search"}, {"group", "variables"}, {"limit", 1000}})["names"])
+    for (const Json reply = page.ask({{"do", "search"}, {"group", "variables"}, {"limit", 1000}}); const Json& row : reply["names"])
       variables_.push_back(row["name"]);
-    for (const Json& row : page.ask({{"do", "search"}, {"text", ""}, {"limit", 1000}})["names"])
+    for (const Json reply = page.ask({{"do", "search"}, {"text", ""}, {"limit", 1000}}); const Json& row : reply["names"])
       names_.push_back(row["name"]);
   }
 

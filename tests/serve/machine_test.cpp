@@ -195,7 +195,7 @@ class Orders : public Serving {
 };
 
 TEST_F(Orders, AreWhatADriveShouldDo) {
-  for (const auto& [name, state] : topic({{"topic", "plant"}})["stations"].items())
+  for (const Json event = topic({{"topic", "plant"}}); const auto& [name, state] : event["stations"].items())
     EXPECT_EQ(state["ordered"], false) << name << " before the first millisecond";
   step(10);
   const Json stations = topic({{"topic", "plant"}})["stations"];

@@ -26,7 +26,7 @@ class OnParameters : public Serving {
     return nullptr;
   }
   std::string text_of(const char* station, const char* number) {
-    for (const Json& one : good({{"do", "parameters"}, {"station", station}})["parameters"])
+    for (const Json reply = good({{"do", "parameters"}, {"station", station}}); const Json& one : reply["parameters"])
       if (one["number"] == number) return one["text"];
     return {};
   }
@@ -105,7 +105,7 @@ TEST(LinesForAPlant, HoldForEveryUnit) {
     ServedPage page(plant_of(head));
     page.ask({{"do", "step"}, {"ms", 5}});
     size_t set = 0;
-    for (const Json& row : page.ask({{"do", "parameters"}, {"station", "one"}})["parameters"]) {
+    for (const Json reply = page.ask({{"do", "parameters"}, {"station", "one"}}); const Json& row : reply["parameters"]) {
       if (!row["shows"].is_null() || row["access"] == "R" || row["access"] == "RO") continue;
       if (row["number"] == "P802" || row["number"] == "P803" || row["number"] == "P804") continue;  // lock and factory setting
       std::vector<std::string> tries;

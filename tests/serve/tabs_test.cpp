@@ -19,9 +19,12 @@ TEST_F(Serving, TheListOfAClientGoesWithIt) {
   EXPECT_EQ(page.event("watch")["values"], Json::object());
 }
 
-TEST_F(Serving, NothingIsForcedBehindARestart) {
+TEST_F(Serving, WhatIsForcedStaysForcedBehindARestart) {
   good({{"do", "force"}, {"name", "saw.lCount"}, {"value", "7"}});
+  step(5);
   good({{"do", "restart"}});
+  EXPECT_EQ(good({{"do", "forced"}})["names"], Json::array({"saw.lCount"}));
+  good({{"do", "release"}, {"name", "saw.lCount"}});
   EXPECT_EQ(good({{"do", "forced"}})["names"], Json::array());
   EXPECT_EQ(error({{"do", "release"}, {"name", "saw.lCount"}}), "saw.lCount is not forced");
 }

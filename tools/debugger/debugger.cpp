@@ -85,14 +85,15 @@ Stop Debugger::run(const Order& order) {
 
 Stop Debugger::visit(Time time) {
   const Stop there{Reason::Step, {}, {}, {}};
-  if (position_.time == time && position_.phase == Phase::Between) return there;
+  // The beginning comes before what happens at 0 s.
+  const bool back = time == 0 ? position_ > Position{} : position_.time > time;
+  if (!back && position_.time == time && position_.phase == Phase::Between) return there;
   goal_ = {};
   goal_.kind = Goal::Kind::Visit;
   goal_.order.motion = Motion::ToTime;
   goal_.order.time = time;
   goal_.stop = there;
   start_ = position_;
-  const bool back = position_.time > time;
   const Position* snapshot = snapshots_ ? snapshots_->before(time) : nullptr;
   if (snapshot != nullptr && (back || (*snapshot > position_ && is_far(position_, *snapshot))))
     snapshots_->go_on_from(*snapshot, save());

@@ -22,13 +22,6 @@ std::string_view word_of(Files::Kind kind) {
   return "session";
 }
 
-// Tells two texts of a file apart (FNV-1a, 64 bits).
-std::string version_of(std::string_view text) {
-  uint64_t sum = 0xCBF29CE484222325;
-  for (const char c : text) sum = (sum ^ static_cast<unsigned char>(c)) * 0x100000001B3;
-  return fmt::format("{:016x}", sum);
-}
-
 class FilesTab final : public Tab {
  public:
   explicit FilesTab(PlantHost& host) : host_(host) {

@@ -271,16 +271,16 @@ void PlantHost::restart() {
 
 namespace {
 
-std::string version_of(const Texts& texts) {
+std::string version_of_all(const Texts& texts) {
   std::string all;
   for (const auto& [file, text] : texts) all += fmt::format("{}:{}:", file, text.size()) + text;
-  return fmt::format("{:x}", std::hash<std::string>()(all));
+  return version_of(all);
 }
 
 }  // namespace
 
 void PlantHost::offer(Build build) {
-  offered_ = version_of(build.texts);
+  offered_ = version_of_all(build.texts);
   build_ = std::move(build);
 }
 
@@ -289,7 +289,7 @@ const Build& PlantHost::offered() {
   if (!offered_) throw Mistake("nothing was built since the plant began; save and build first");
   if (!build_) {
     Build again = files_.build();
-    if (!again.good() || version_of(again.texts) != *offered_) {
+    if (!again.good() || version_of_all(again.texts) != *offered_) {
       offered_.reset();
       throw Mistake("the files have changed since they were built; build again");
     }

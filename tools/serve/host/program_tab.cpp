@@ -6,6 +6,7 @@
 #include <set>
 
 #include "runtime/signals/find.hpp"
+#include "tools/serve/host/running_texts.hpp"
 #include "tools/serve/host/tabs.hpp"
 
 namespace ipos::tools::serve {
@@ -45,6 +46,7 @@ class ProgramTab final : public Tab {
   // Going back builds the plant, too; what was executed stays covered then.
   void built(runtime::Plant& plant) override {
     asked_.clear();
+    versions_.clear();
     for (uint32_t n = 0; n < plant.stations().size() && !points_.empty(); ++n) place_points(n);
     if (!covered_.empty()) return;
     covered_.resize(plant.stations().size());
@@ -53,6 +55,7 @@ class ProgramTab final : public Tab {
 
   void loaded(uint32_t station) override {
     asked_.clear();
+    versions_.clear();
     place_points(station);
     begin_coverage(host_.plant(), station);
   }
@@ -79,6 +82,7 @@ class ProgramTab final : public Tab {
   // This copy may be older than a program that was loaded: what was executed of that one does not count here.
   void load(const Json& state) override {
     asked_.clear();
+    versions_.clear();
     for (uint32_t station = 0; station < covered_.size(); ++station)
       for (const Json& address : state["covered"][station]) executes(station, address.get<uint32_t>());
     std::vector<std::shared_ptr<const std::string>> texts;
@@ -160,6 +164,20 @@ class ProgramTab final : public Tab {
         {"file", place.file},           {"line", place.line},
         {"condition", point.condition}, {"hits", point.hits}};
   }
+  // Tells two programs of the station apart, so that a page hears of another one however it came: built, loaded, or by going
+  // back before it was loaded.
+  const std::string& version(uint32_t station) {
+    std::string& version = versions_[station];
+    if (version.empty()) {
+      const vm::Image& image = *host_.plant().stations()[station]->image();
+      const auto code = vm::write_image(image);
+      std::string all(code.begin(), code.end());
+      for (const std::string& file : image.files) all += host_.texts().text(station, file).value_or("");
+      version = version_of(all);
+    }
+    return version;
+  }
+
   Json breakpoints(std::optional<uint32_t> station) const {
     Json list = Json::array();
     for (const Breakpoint& point : host_.debugger().breakpoints())
@@ -282,10 +300,11 @@ class ProgramTab final : public Tab {
     Json points = breakpoints(number);
     const Json changed = changed_sources(number);
     const Covered& covered = covered_[number];
+    const bool other_program = subscription.is_news("version", version(number));
     const bool other_tasks = subscription.is_news("tasks", tasks);
     const bool other_points = subscription.is_news("points", points);
     const bool other_sources = subscription.is_news("changed", changed);
-    if (!other_tasks && !other_points && !other_sources && subscription.mark == covered.order.size()) return;
+    if (!other_program && !other_tasks && !other_points && !other_sources && subscription.mark == covered.order.size()) return;
     std::map<std::string, std::set<uint32_t>> lines;
     for (; subscription.mark < covered.order.size(); ++subscription.mark) {
       const debug::SourcePlace place = debugger.code(number)->place(covered.order[static_cast<size_t>(subscription.mark)]);
@@ -294,6 +313,7 @@ class ProgramTab final : public Tab {
     host_.router().send(client, {{"event", "program"},
                                {"us", host_.us()},
                                {"station", name},
+                               {"version", version(number)},
                                {"tasks", std::move(tasks)},
                                {"covered", Json(lines)},
                                {"changed", changed},
@@ -307,7 +327,8 @@ class ProgramTab final : public Tab {
     Json files = Json::array();
     WallClock::time_point due{};
   };
-  std::map<uint32_t, Changed> changed_;  // by station
+  std::map<uint32_t, Changed> changed_;         // by station
+  std::map<uint32_t, std::string> versions_;    // by station, of the programs that run
   std::map<uint16_t, std::vector<signals::Signal>> asked_;  // by client
 };
 

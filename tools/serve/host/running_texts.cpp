@@ -1,6 +1,8 @@
 // The longest common subsequence of the lines that differ tells which lines are the same.
 #include "tools/serve/host/running_texts.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <span>
 #include <vector>
@@ -57,6 +59,13 @@ std::optional<std::string> RunningTexts::text(uint32_t station, const std::strin
   if (all == nullptr) return files_->compiled(file);
   const auto found = all->find(file);
   return found == all->end() ? std::nullopt : std::optional(found->second);
+}
+
+// FNV-1a, 64 bits.
+std::string version_of(std::string_view text) {
+  uint64_t sum = 0xCBF29CE484222325;
+  for (const char c : text) sum = (sum ^ static_cast<unsigned char>(c)) * 0x100000001B3;
+  return fmt::format("{:016x}", sum);
 }
 
 uint32_t line_in(std::string_view before, std::string_view after, uint32_t line) {

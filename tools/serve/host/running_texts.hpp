@@ -29,6 +29,9 @@ class RunningTexts {
   std::map<uint32_t, Texts> loaded_;
 };
 
+// Tells two texts apart.
+std::string version_of(std::string_view text);
+
 // Where a line of one text is in another, from 1: the same line, else the one that stands in its place.
 uint32_t line_in(std::string_view before, std::string_view after, uint32_t line);
 

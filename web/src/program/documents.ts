@@ -3,7 +3,8 @@
 import { EditorState, type Extension } from "@codemirror/state";
 import { signal } from "@preact/signals";
 
-import { request, subscribe } from "../server/connection";
+import { listen, request, subscribe } from "../server/connection";
+import { plant } from "../server/live";
 import { complain, command } from "../shell/notice";
 import { learnWords } from "./language";
 
@@ -161,6 +162,9 @@ export async function readFiles(): Promise<void> {
   build.value = reply.build as BuildState;
 }
 
+// By whatever page.
+listen("build", (event) => (build.value = event as unknown as BuildState));
+
 // As long as an editor is open.
 export function followFiles(): () => void {
   void readFiles()
@@ -170,11 +174,21 @@ export function followFiles(): () => void {
       return program ? learnWords(program.uri, {}).catch(() => undefined) : undefined;
     })
     .then(() => (ready.value = true));
-  return subscribe("files", { rate: 1 }, (event) => {
+  const stopFiles = subscribe("files", { rate: 1 }, (event) => {
     const now = event.versions as Record<string, string>;
     if (Object.keys(now).join() !== Object.keys(versions.peek()).join()) void readFiles().catch(complain);
     versions.value = now;
   });
+  // A plant that was built anew has other files, and nothing waits any more.
+  let seen = plant.peek();
+  const stopPlant = plant.subscribe((now) => {
+    if (now !== seen) void readFiles().catch(complain);
+    seen = now;
+  });
+  return () => {
+    stopFiles();
+    stopPlant();
+  };
 }
 
 window.addEventListener("beforeunload", (event) => {

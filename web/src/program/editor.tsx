@@ -158,6 +158,9 @@ export function Editor({ document: shown, orders: own, take }: Shown) {
       state: shown.state,
       parent: place_of_it.current as HTMLElement,
       dispatchTransactions: (transactions, of) => {
+        // Another text was put in its place, which the view does not show yet.
+        const kept = documents.peek().get(shown.name)?.state;
+        if (kept && kept !== of.state) return of.setState(kept);
         of.update(transactions);
         keepState(shown.name, of.state);
       },

@@ -33,16 +33,22 @@ function addCovered(event: Record<string, number[]>): void {
 }
 
 let followed = "";
+let version = ""; // of the program that was read
 
 function follow(name: string): () => void {
   if (followed !== name) files.value = [];
   followed = name;
   tasks.value = [];
   covered.value = new Map();
+  version = "";
   if (!name) return () => undefined;
-  void read(name).catch(complain);
   return subscribe("program", { station: name, rate: 10 }, (event) => {
     if (event.station !== name) return;
+    if (event.version !== version) {
+      version = event.version as string;
+      elsewhere = true;
+      void read(name).catch(complain);
+    }
     if (event.tasks) tasks.value = event.tasks as TaskState[];
     if (event.covered) addCovered(event.covered as Record<string, number[]>);
     if (event.breakpoints) breakpoints.value = event.breakpoints as Breakpoint[];

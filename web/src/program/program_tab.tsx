@@ -33,6 +33,9 @@ import { followValues } from "./values";
 // Off at first: a plant that runs is not thrown back to 0 s by a key that saves (ours).
 const restartAfterBuild = setting("program.restart", false);
 
+// One and the same each time: marks that are the same are not set again.
+const nothing: ReadonlySet<number> = new Set();
+
 function plainText(text: string): string {
   return text.replaceAll("\r\n", "\n");
 }
@@ -162,9 +165,9 @@ function Status({ document, runs }: { document: Document; runs: boolean }) {
   if (unsaved) parts.push(`${name} is not saved.`);
   if (!build.value.good && !edited.value) parts.push(`It does not build: ${errors} ${errors === 1 ? "error" : "errors"}. The plant goes on as it was.`);
   else if (build.value.waits && !edited.value)
-    parts.push("Built. Restart begins at 0 s with it; Load puts the program into the drive, which goes on.");
+    parts.push(program && runs ? "Restart begins at 0 s with what was built." : "Built. Restart begins at 0 s with it; Load puts the program into the drive, which goes on.");
   if (program && !runs) parts.push("The text shown is not the one that runs.");
-  else if (program && !build.value.waits && !unsaved && !changed) parts.push("This text runs.");
+  else if (program && !unsaved && !changed) parts.push("This text runs.");
   return (
     <p class={`status${changed || !build.value.good || (program && !runs) ? " warn" : ""}`} role="status" aria-label="State of the text">
       {parts.join(" ")}{" "}
@@ -186,7 +189,7 @@ export function Program() {
   const stations = plant.value?.stations.filter((one) => one.program) ?? [];
   const compiled = files.value.find((one) => one.name === openFile.value);
   const document = documents.value.get(openFile.value);
-  const executed = covered.value.get(openFile.value) ?? new Set<number>();
+  const executed = covered.value.get(openFile.value) ?? nothing;
   const live = hello.value?.live ?? false;
   const names = [...files.value.map((one) => one.name), ...plantFiles.value.filter((one) => one.kind !== "program" && one.kind !== "session").map((one) => one.name)];
   const here = tasks.value.filter((task) => task.file === openFile.value);
