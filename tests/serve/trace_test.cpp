@@ -1,4 +1,6 @@
 // The trace: which telegrams a filter takes, what one of them says, what belongs to it, and the files of other tools.
+#include <fmt/format.h>
+
 #include <sstream>
 
 #include "tests/serve/bytes_of_text.hpp"
@@ -212,8 +214,10 @@ TEST_F(OnTrace, SerialTelegramsAndFramesOfDpFindTheirAnswersToo) {
   EXPECT_EQ(field(detail(heard[1]), "wire.0.answer_value"), 2000);
   EXPECT_EQ(detail(heard[1])["question"]["n"], heard[0]["n"]);
   step(500);
-  const Json exchange = trace({{"bus", "dp"}, {"filter", "sender:plc Data_Exchange"}}).back();
-  const Json said = detail(exchange);
+  // The newest question may still wait for its answer.
+  const Json exchanges = trace({{"bus", "dp"}, {"filter", "sender:plc Data_Exchange"}});
+  ASSERT_GE(exchanges.size(), 2U);
+  const Json said = detail(exchanges[exchanges.size() - 2]);
   EXPECT_EQ(field(said, "dp.9.PO1"), 6);
   EXPECT_EQ(field(said, "dp.9.PO2"), 1500);
   EXPECT_EQ(field(said, "dp.9.PI1"), nullptr) << "that is of the answer";
@@ -298,12 +302,28 @@ TEST_F(OnTrace, WhatAFormHasNoPlaceForIsLeftOutAndSaid) {
   EXPECT_EQ(error({{"do", "bus.save"}, {"form", "blf"}}), "'form' must be candump, asc or pcapng, not 'blf'");
 }
 
-// A file of many telegrams comes in parts, and together they are one file.
+// A DP slave answers at once or not at all: what anybody says after the next frame is no answer to this one.
+TEST_F(OnTrace, AFrameToNobodyHasNoAnswer) {
+  step(1000);
+  // SD1, DA 77, SA 1, FDL status, and the sum of the three (PROFIBUS FDL): there is no station 77.
+  good({{"do", "bus.send"}, {"bus", "dp"}, {"data", "104D01499716"}});
+  step(200);
+  const Json to_nobody = trace({{"bus", "dp"}, {"filter", "sender:\"the page\""}});
+  ASSERT_EQ(to_nobody.size(), 1U);
+  EXPECT_EQ(detail(to_nobody[0])["answer"], nullptr);
+  // A short acknowledgement that anybody sends now has nobody's address: it answers nothing.
+  good({{"do", "bus.send"}, {"bus", "dp"}, {"data", "E5"}});
+  step(200);
+  EXPECT_EQ(detail(to_nobody[0])["answer"], nullptr);
+}
+
+// A file of many telegrams comes in parts, and together they are one file: each telegram once, in the order of the line.
 TEST_F(OnTrace, PartsOfAFileAreOneFile) {
-  constexpr int kSent = 20'500;  // more than a part has
+  constexpr int kSent = 20'500, kAtOnce = 60;  // more than a part has
   for (int n = 0; n < kSent; ++n) {
-    good({{"do", "bus.send"}, {"bus", "sbus"}, {"identifier", n % 0x700}, {"data", ""}});
-    if (n % 60 == 59) step(20);
+    // The lowest identifier wins the line: they rise, so that the order is that in which they were sent.
+    good({{"do", "bus.send"}, {"bus", "sbus"}, {"identifier", 0x100 + n % kAtOnce}, {"data", fmt::format("{:08X}", n)}});
+    if (n % kAtOnce == kAtOnce - 1) step(20);
   }
   step(20);
   for (const char* form : {"candump", "asc", "pcapng"}) {
@@ -322,7 +342,10 @@ TEST_F(OnTrace, PartsOfAFileAreOneFile) {
     const Read log = read_all(bytes);
     EXPECT_TRUE(log.wrong.empty()) << form << ": " << log.wrong.front();
     ASSERT_EQ(log.can.size(), static_cast<size_t>(kSent)) << form;
-    for (int n = 0; n < kSent; n += 100) ASSERT_EQ(log.can[static_cast<size_t>(n)].frame.id, static_cast<uint32_t>(n % 0x700)) << form;
+    for (int n = 0; n < kSent; ++n) {
+      const auto& data = log.can[static_cast<size_t>(n)].frame.data;
+      ASSERT_EQ(data[0] << 24 | data[1] << 16 | data[2] << 8 | data[3], n) << form;
+    }
   }
 }
 

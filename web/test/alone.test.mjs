@@ -61,7 +61,7 @@ test("its hash is that of the native program at the same time", options, async (
   const { page, context } = await opened(address());
   await moves(page);
   await page.getByRole("button", { name: "Pause", exact: true }).click();
-  await page.waitForFunction(() => document.querySelector(".pace")?.textContent === "stands");
+  await page.waitForFunction(() => document.querySelector(".pace")?.textContent === "paused");
   const us = await microseconds(page);
   assert.equal(await page.evaluate(() => window.ipos.hash()), nativeHash(us));
   assert.match(await page.evaluate(() => window.ipos.version), /^\d+\.\d+\.\d+/);

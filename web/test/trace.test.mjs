@@ -57,7 +57,7 @@ async function runTo(page, seconds) {
   await button(page, "Run").click();
   await until(async () => (await timeOf(page)) >= seconds, "it does not run");
   await button(page, "Pause").click();
-  await page.getByText("stands").waitFor({ state: "attached" });
+  await until(async () => (await page.locator(".clock .lamp.on").count()) === 0, "it does not stand");
 }
 
 async function findings(page) {
@@ -96,7 +96,7 @@ test("trace: columns, filter, tokens, mute, find, one telegram, files", { skip }
 
     // Newest first, to the microsecond, each with its distance from the one below it.
     await page.getByRole("combobox", { name: "Line", exact: true }).selectOption("dp");
-    await until(async () => new Set(await column("Line")).size === 1 && (await rows.count()) === 200, "not 200 of dp");
+    await until(async () => new Set(await column("Line")).size === 1 && (await table.getAttribute("aria-rowcount")) === "201", "not 200 of dp");
     const times = (await column("Time")).map((text) => (assert.match(text, /^\d+\.\d{6}$/), Math.round(Number(text) * 1e6)));
     const deltas = (await column("Delta")).map((text) => Math.round(Number(text.slice(1)) * 1e6));
     for (let n = 0; n + 1 < times.length; ++n) assert.strictEqual(deltas[n], times[n] - times[n + 1]);
@@ -202,8 +202,8 @@ test("trace: columns, filter, tokens, mute, find, one telegram, files", { skip }
     await page.getByText("dp.10.PO2").first().waitFor({ state: "attached" });
     await tab(page, "Bus");
     await page.getByRole("combobox", { name: "Line", exact: true }).selectOption("dp");
-    await rows.nth(100).click();
-    const back_to = Number(await rows.nth(100).getByRole("cell").first().textContent());
+    await rows.nth(12).click();
+    const back_to = Number(await rows.nth(12).getByRole("cell").first().textContent());
     await page.getByRole("button", { name: /^Go to / }).click();
     await until(async () => Math.abs((await timeOf(page)) - back_to) < 0.002, "it is not there again");
 
@@ -239,15 +239,15 @@ test("trace and journal on a phone: nothing lies beside the box; the journal lea
     const csv = await saved(page, "Save as CSV");
     const lines = readFileSync(csv.path, "utf8").trim().split("\r\n");
     assert.strictEqual(lines[0], "time_s,station,weight,text");
-    assert.match(lines[1], /^4\.\d{6},hoist,(fault|warning),.*F29/);
+    assert.match(lines[1], /^\d\.\d{6},hoist,(fault|warning),.*F29/);
     const text = await saved(page, "Save as text");
-    assert.match(readFileSync(text.path, "utf8"), /^4\.\d{6} s hoist: .*F29/);
+    assert.match(readFileSync(text.path, "utf8"), /^\d\.\d{6} s hoist: .*F29/);
     // The place that it names is a way to the line.
     await log.getByRole("button", { name: /HOIST\.IPC:\d+/ }).first().click();
     await page.locator(".cm-activeLine").getByText("_GoAbs").waitFor();
     await tab(page, "Journal");
     const [moment] = await entry_times();
-    await log.getByRole("button", { name: /^Go to 4\./ }).first().click();
+    await log.getByRole("button", { name: /^Go to / }).first().click();
     await until(async () => Math.abs((await timeOf(page)) - moment) < 0.0015, "it does not go back");
   }),
 );

@@ -13,7 +13,6 @@ constexpr size_t kTraceAtOnce = 2'000;
 // One question looks at so many telegrams, and makes the words of so many (ours): the plant waits meanwhile. It says how
 // far it has come, and whoever wants the rest asks again.
 constexpr size_t kMostLooks = 100'000, kMostWords = 10'000;
-constexpr size_t kPartnerWithin = 500;   // telegrams of the line between question and answer (ours)
 
 }  // namespace
 
@@ -95,7 +94,7 @@ std::optional<NumberedTelegram> BusTraffic::partner_of(size_t line, uint64_t at,
   const LineMonitor& monitor = *monitors_[line];
   const Telegram one = trace_.at(line, at).telegram;
   const uint64_t first = trace_.first(line), end = trace_.end(line);
-  for (uint64_t n = 1; n <= kPartnerWithin; ++n) {
+  for (uint64_t n = 1; n <= monitor.answered_within(); ++n) {
     if (answer ? at + n >= end : at < first + n) return std::nullopt;
     NumberedTelegram other = trace_.at(line, answer ? at + n : at - n);
     const Telegram& telegram = other.telegram;

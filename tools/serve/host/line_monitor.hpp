@@ -50,6 +50,8 @@ class LineMonitor {
   virtual std::vector<uint32_t> addresses(const Telegram&) const { return {}; }
   // Whether `later` is what the other side says to `question`. A question that is asked again is a new one.
   virtual bool answers(const Telegram& question, const Telegram& later) const = 0;
+  // So many telegrams later at most (ours, where the line says nothing of it).
+  virtual size_t answered_within() const { return 500; }
   // Into a log of a form that has a place for it.
   virtual LineKind kind() const = 0;
   virtual void write(LogWriter& log, const Telegram& telegram) const = 0;

@@ -113,6 +113,8 @@ class ProfibusMonitor final : public LineMonitor, private profibus::LineObserver
     return said->has_control() && !said->is_request() && said->source == asked->destination &&
            said->destination == asked->source;
   }
+  // At once or not at all: nobody else speaks before (PROFIBUS, slot time).
+  size_t answered_within() const override { return 1; }
   LineKind kind() const override { return LineKind::Dp; }
   void write(LogWriter& log, const Telegram& telegram) const override { log.dp(name(), dp_reception(telegram)); }
 

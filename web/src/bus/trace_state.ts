@@ -38,6 +38,7 @@ export const choice = computed<Message>(() => ({
 }));
 
 let known = 0; // number of the last telegram that was looked at
+let begun = 0; // an answer to what was asked before a new beginning counts for nothing
 let asks = false;
 let asked_us = -1;
 
@@ -51,6 +52,7 @@ interface Answer {
 async function search(bounds: Message, limit: number, wanted: Message): Promise<TraceFrame[]> {
   let found: TraceFrame[] = [];
   let before = bounds.before as number | undefined;
+  const began = begun;
   for (let turn = 0; turn < patience; ++turn) {
     const reply = (await request({
       do: "bus.trace",
@@ -60,7 +62,7 @@ async function search(bounds: Message, limit: number, wanted: Message): Promise<
       limit: limit - found.length,
     })) as unknown as Answer;
     found = [...found, ...reply.frames.reverse()];
-    if (bounds.before === undefined && turn === 0) known = reply.last;
+    if (bounds.before === undefined && turn === 0 && began === begun) known = reply.last;
     if (reply.reached === null || found.length >= limit || wanted !== choice.peek()) break;
     before = reply.reached;
   }
@@ -78,9 +80,10 @@ async function look(): Promise<void> {
   const wanted = choice.peek();
   asked_us = time.peek().us;
   const first = known === 0;
+  const began = begun;
   try {
     const fresh = await search(first ? {} : { after: known }, newest, wanted);
-    if (wanted !== choice.peek() || !follows.peek()) return;
+    if (began !== begun || wanted !== choice.peek() || !follows.peek()) return;
     problem.value = "";
     if (first || fresh.length > 0) {
       frames.value = (fresh.length === newest ? fresh : [...fresh, ...(first ? [] : frames.peek())]).slice(0, newest);
@@ -90,11 +93,12 @@ async function look(): Promise<void> {
     if (wanted === choice.peek()) notice(reason);
   } finally {
     asks = false;
-    if (wanted !== choice.peek()) void look();
+    if (began !== begun || wanted !== choice.peek()) void look();
   }
 }
 
 function begin(): void {
+  ++begun;
   known = 0;
   asked_us = -1;
   void look();

@@ -91,7 +91,8 @@ TEST(DpWords, APlannedConfigurationCountsUntilAnotherIsHeard) {
   EXPECT_NE(words.describe(request(8, {0, 6, 5, 0xDC})).find("SPEED"), std::string::npos);
 }
 
-// Byte 1 of the channel is the address of the drive; each has three words, in the order of the addresses.
+// Byte 1 of the channel is the address of the drive; each has three words, in the order of the addresses. P302 of a
+// MOVITRAC 07 is the "Maximum speed", without a number.
 TEST(DpWords, AGatewayHasAChannelForAllAndThreeWordsForEach) {
   DpSlaveNames slave;
   slave.address = 10;
@@ -110,7 +111,7 @@ TEST(DpWords, AGatewayHasAChannelForAllAndThreeWordsForEach) {
   words.describe(configuration(10, {0xF3, 0xF2, 0xF2}));
   const Octets data{0x72, 5, 0x21, 0x45, 0, 0x0F, 0x42, 0x40, 0, 6, 5, 0xDC, 0, 0, 0, 6, 0x0B, 0xB8, 0, 0};
   EXPECT_EQ(words.describe(request(10, data)),
-            "1 -> 10 Data_Exchange, SRD high, FCB 1: write 8517 Maximum speed 1 = 1000.000 rpm of fan, pump PO CTRL. WORD 1 "
+            "1 -> 10 Data_Exchange, SRD high, FCB 1: write 8517 Maximum speed = 1000.000 rpm of fan, pump PO CTRL. WORD 1 "
             "0006h (enable), SPEED 300.0 rpm, RAMP 0 ms, fan PO CTRL. WORD 1 0006h (enable), SPEED 600.0 rpm, RAMP 0 ms -> "
             "gateway");
   Octets nobody = data;
