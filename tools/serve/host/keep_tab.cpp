@@ -15,14 +15,16 @@ namespace {
 constexpr size_t kMostReport = 4 * 1024 * 1024;  // bytes (ours)
 constexpr size_t kMostPinned = 1000;
 
-// Which outputs of a station have changed.
+// Which outputs of a station have changed. What the first millisecond makes of those of a unit that was just switched on is
+// where they begin (ours).
 class ChangedOutputs final : private runtime::DriveWatcher {
  public:
   explicit ChangedOutputs(runtime::Station& station) : first_(station.outputs()) { station.add_watcher(*this); }
   uint32_t bits() const { return changed_; }
 
  private:
-  void on_decided(const runtime::Drive& drive, runtime::Time) override {
+  void on_decided(const runtime::Drive& drive, runtime::Time tick) override {
+    if (tick <= runtime::kMillisecond) first_ = drive.outputs();
     changed_ |= static_cast<uint32_t>(drive.outputs() ^ first_);
   }
 

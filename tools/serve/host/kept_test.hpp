@@ -15,8 +15,8 @@ struct KeptTest {
   std::vector<std::string> left_out;  // what was done or looked at and does not stand in it, and why
 };
 
-// `pinned`: names of the watch. `changed`: of each station the outputs that have changed since 0 s, a bit each. A Mistake
-// says why there can be no test of this moment.
+// `pinned`: names of the watch. `changed`: of each station the outputs that have changed since the first millisecond, a bit
+// each. A Mistake says why there can be no test of this moment.
 KeptTest keep_as_test(PlantHost& host, const std::vector<std::string>& pinned, const std::vector<uint32_t>& changed);
 
 }  // namespace ipos::tools::serve

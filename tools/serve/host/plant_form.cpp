@@ -191,14 +191,16 @@ std::string with_table(const std::string& text, const Arguments& a) {
     return !key.empty() && key.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") == std::string::npos;
   };
   const auto value = [](const Json& json) { return json.is_string() ? toml_text(json.get<std::string>()) : json.dump(); };
-  for (const auto& [key, json] : members("values").items()) {
+  const Json values = members("values");
+  for (const auto& [key, json] : values.items()) {
     if (!is_key(key)) throw Mistake(fmt::format("'{}' is no key", key));
     added += fmt::format("{} = {}\n", key, value(json));
   }
-  for (const auto& [key, json] : members("written").items()) {
-    const std::string written = json.is_string() ? json.get<std::string>() : json.dump();
-    if (!is_key(key) || written.find('\n') != std::string::npos) throw Mistake(fmt::format("'{}' is one line", key));
-    added += fmt::format("{} = {}\n", key, written);
+  const Json written = members("written");
+  for (const auto& [key, json] : written.items()) {
+    const std::string row = json.is_string() ? json.get<std::string>() : json.dump();
+    if (!is_key(key) || row.find('\n') != std::string::npos) throw Mistake(fmt::format("'{}' is one line", key));
+    added += fmt::format("{} = {}\n", key, row);
   }
   if (const Json parameters = members("parameters"); !parameters.empty()) {
     added += fmt::format("[{}.parameters]\n", table);
