@@ -32,6 +32,14 @@ std::string file_name(const std::string& name, std::string_view ending) {
   return name.ends_with(ending) ? name : name + std::string(ending);
 }
 
+// The programs that a station can begin with.
+Json template_names() {
+  Json names = Json::array();
+  for (const auto& [name, text] : template_files())
+    if (name.ends_with(".IPC")) names.push_back(name);
+  return names;
+}
+
 }  // namespace
 
 GalleryHost::GalleryHost(Mailbox& mailbox, std::string version, std::string read_only, Build build)
@@ -46,7 +54,11 @@ GalleryHost::GalleryHost(Mailbox& mailbox, std::string version, std::string read
   router_.add_command("gallery", [this](const Router::Call&) { return list(); });
   router_.add_command("gallery.open", [this](const Router::Call& call) { return open(call.arguments); });
   router_.add_command("gallery.new", [this](const Router::Call& call) { return make(call.arguments); });
-  router_.add_command("form", [](const Router::Call& call) { return plant_form(std::string(kNewPlant), call.arguments); });
+  router_.add_command("form", [](const Router::Call& call) {
+    Json form = plant_form(std::string(kNewPlant), call.arguments);
+    form["templates"] = template_names();
+    return form;
+  });
 }
 
 std::string GalleryHost::run() {
@@ -63,10 +75,7 @@ Json GalleryHost::list() const {
   Json examples = Json::array();
   for (const Example& example : all_examples())
     if (!example.plant.empty()) examples.push_back({{"name", example.name}, {"story", example.story}, {"kind", example.kind}});
-  Json templates = Json::array();
-  for (const auto& [name, text] : template_files())
-    if (name.ends_with(".IPC")) templates.push_back(name);
-  return {{"examples", std::move(examples)}, {"here", plants_in("")}, {"templates", std::move(templates)}};
+  return {{"examples", std::move(examples)}, {"here", plants_in("")}, {"templates", template_names()}};
 }
 
 // An example as a copy in `folder`, or one of the plants that are here.

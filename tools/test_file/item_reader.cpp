@@ -9,7 +9,11 @@ std::string read_item_station(PlantReader& reader, const toml::table& table, std
                               bool gateway_too) {
   const auto& stations = reader.result.plant.stations;
   if (!table.contains("station") && stations.size() == 1) return stations.front().name;
-  return reader.station(table, what, gateway_too);
+  std::string name = reader.station(table, what, gateway_too);
+  const bool is_drive = std::any_of(stations.begin(), stations.end(), [&](const auto& one) { return one.name == name; });
+  if (!is_drive && reader.station_names.contains(name) && !reader.gateway_names.contains(name))
+    reader.error(place_of(*table.get("station")), fmt::format("'{}' is a control: of a test only faults of a bus name it", name));
+  return name;
 }
 
 const runtime::BusConfig* read_item_bus(PlantReader& reader, const toml::table& table,

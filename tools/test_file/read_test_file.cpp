@@ -113,11 +113,10 @@ void read_named_plant(PlantReader& reader, const toml::table& root, TestCase& te
                              plant.plant.expectations_of_tests));
   for (const runtime::StationConfig& station : plant.plant.stations)
     reader.station_names.insert(station.name);
-  for (const runtime::ControlConfig& control : plant.plant.controls)
-    if (control.as<runtime::GatewayConfig>() != nullptr) {
-      reader.station_names.insert(control.name);
-      reader.gateway_names.insert(control.name);
-    }
+  for (const runtime::ControlConfig& control : plant.plant.controls) {
+    reader.station_names.insert(control.name);  // a fault may be of one
+    if (control.as<runtime::GatewayConfig>() != nullptr) reader.gateway_names.insert(control.name);
+  }
   reader.result.plant = std::move(plant.plant);
   if (!test.plant_expects) reader.result.plant.expectations.clear();
 }

@@ -113,6 +113,11 @@ std::string value_rows(const Signal& signal, std::string_view action, std::optio
     if (value) text = parameter_value(signal.parameter, *value);
   } else if (signal.group == Group::ProcessData) {
     rows += toml_row("process_data", signal.own_name());
+  } else if (signal.group == Group::Analog) {
+    rows += toml_row("analog", signal.own_name());
+    if (value) text = toml_text(signal.words(*value));
+  } else if (signal.group == Group::Input) {
+    rows += toml_row("input", signal.own_name());
   } else {
     throw Mistake(fmt::format("{} is nothing that a step sets", signal.name));
   }
