@@ -120,7 +120,7 @@ TEST(LinesForAPlant, HoldForEveryUnit) {
         }
       }
     }
-    EXPECT_GT(set, 5U) << unit;
+    EXPECT_GE(set, 5U) << unit;  // seven of a MOVITRAC 31, without P802, and P571 is at its maximum
     const std::string lines = page.ask({{"do", "parameters.toml"}, {"station", "one"}})["text"];
     runtime::PlantFileResult file = runtime::read_plant_file(head + lines);
     EXPECT_TRUE(file.errors.empty()) << unit << ": " << file.errors.front().text << "\n" << lines;
