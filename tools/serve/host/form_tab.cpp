@@ -35,7 +35,7 @@ class FormTab final : public Tab {
     return *std::move(text);
   }
   static std::string beside(const std::string& plant, const std::string& name) {
-    return (std::filesystem::path(plant).parent_path() / name).lexically_normal().generic_string();
+    return (std::filesystem::path(plant).parent_path() / name).generic_string();
   }
 
   // Of the stations that are there, as the plant names them.
