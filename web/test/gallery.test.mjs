@@ -102,7 +102,7 @@ test("three stations exchange a telegram, by the keyboard alone", { skip }, () =
       await choose(page, "Program", "new, from FOLLOWER.IPC");
       await press(page, "sbus (sbus)", "Space");
       await press(page, "Insert");
-      await page.getByRole("switch", { name: `${name} DI01` }).waitFor();
+      await page.getByRole("combobox", { name: "Station" }).first().locator("option", { hasText: name }).waitFor({ state: "attached" });
     }
     const plant = readFileSync(join(folder, "plant.toml"), "utf8");
     assert.ok(plant.startsWith("# A plant made on the page."));
