@@ -41,7 +41,8 @@ DriveScope::DriveScope(Router& router, Copies& copies, ParameterAccess& access, 
 }
 
 bool DriveScope::begin() {
-  try {
+  try {  // a drive that is silent has its channels none the less; it is asked again
+    for (const std::string& name : scope_.names()) find_channels(name);
     scope_.built();
   } catch (const Mistake&) {
     return false;

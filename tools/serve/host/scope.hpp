@@ -44,6 +44,7 @@ class Scope final {
 
   // The channels of the start; nothing where a client has chosen others.
   void propose(std::vector<std::string> names);
+  const std::vector<std::string>& names() const { return names_; }
   // The settings of an earlier start, as far as there still is what they name.
   void restore(const Json& settings);
   // The signals are others: a new recording. What the plant has no more is left out.
