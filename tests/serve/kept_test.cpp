@@ -1,4 +1,7 @@
 // What is kept of a plant from start to start, and that the source on the page is the text that runs.
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <cstdlib>
 
 #include "tests/serve/serving.hpp"
@@ -47,6 +50,39 @@ TEST_F(KeptOfAPlant, WhatIsDamagedIsMadeAnew) {
     EXPECT_EQ(token.size(), 32U) << text;
     EXPECT_EQ(token.find_first_not_of("0123456789abcdef"), std::string::npos) << text;
     EXPECT_EQ(kept.token(), token);
+  }
+}
+
+// The server keeps the port while the host keeps the settings of a session: two processes, one file.
+TEST_F(KeptOfAPlant, WhatTwoProcessesKeepAtOnceIsAllThere) {
+  const Kept kept = Kept::of_plant(folder.write("one.toml", ""));
+  constexpr int kTimes = 200;
+  const pid_t other = fork();
+  ASSERT_GE(other, 0);
+  if (other == 0) {
+    for (int n = 1; n <= kTimes; ++n) kept.keep_port(static_cast<uint16_t>(n));
+    _exit(0);
+  }
+  ServedPage page(the_plant());
+  kept.add_commands(page.host.router());
+  for (int n = 1; n <= kTimes; ++n) page.host.router().keep("name" + std::to_string(n), n);
+  int status = -1;
+  ASSERT_EQ(waitpid(other, &status, 0), other);
+  EXPECT_EQ(status, 0);
+  EXPECT_EQ(kept.port(), kTimes);
+  EXPECT_EQ(kept.settings().size(), static_cast<size_t>(kTimes));
+}
+
+// What can be written can be read: nothing is lost by being long.
+TEST_F(KeptOfAPlant, LongSettingsComeBackOrAreRefused) {
+  const Kept kept = Kept::of_plant(folder.write("one.toml", ""));
+  const std::string token = kept.token();
+  ServedPage page(the_plant());
+  kept.add_commands(page.host.router());
+  for (const size_t length : {1000U, 100'000U, 250'000U, 300'000U}) {
+    page.host.router().keep("long", std::string(length, 'x'));
+    EXPECT_EQ(kept.settings().value("long", "").size(), std::min<size_t>(length, 250'000)) << "300 000 are refused";
+    EXPECT_EQ(kept.token(), token) << length;
   }
 }
 

@@ -42,11 +42,14 @@ class BrowserClock final : public serve::Clock {
 // Each plant has its own, as with `ipos serve`; below the folder that the worker keeps.
 serve::SettingsPlace settings_of(const std::string& plant) {
   const std::string file = "/home/.kept" + std::filesystem::absolute(plant).string() + ".json";
-  return {[file] {
-            serve::Json settings = serve::Json::parse(try_read_file(file).value_or("{}"), nullptr, false);
-            return settings.is_object() ? settings : serve::Json::object();
-          },
-          [file](const serve::Json& settings) {
+  const auto read = [file] {
+    serve::Json settings = serve::Json::parse(try_read_file(file).value_or("{}"), nullptr, false);
+    return settings.is_object() ? settings : serve::Json::object();
+  };
+  return {read,
+          [file, read](const std::function<void(serve::Json&)>& act) {
+            serve::Json settings = read();
+            act(settings);
             std::error_code error;
             std::filesystem::create_directories(std::filesystem::path(file).parent_path(), error);
             std::ofstream(file) << settings.dump(-1, ' ', false, serve::Json::error_handler_t::replace);

@@ -32,16 +32,20 @@ Json Kept::read() const {
   Json kept = Json::parse(read_state(name_).value_or("{}"), nullptr, false);
   return kept.is_object() ? kept : Json::object();
 }
-bool Kept::write(const Json& kept) const {
-  return write_state(name_, kept.dump(-1, ' ', false, Json::error_handler_t::replace));
+bool Kept::change(const std::function<void(Json&)>& act) const {
+  const StateLock lock(name_);
+  const Json before = read();
+  Json kept = before;
+  act(kept);
+  return kept == before || write_state(name_, kept.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 std::string Kept::token() const {
-  Json kept = read();
-  if (kept.contains("token") && kept["token"].is_string() && is_token(kept["token"])) return kept["token"];
-  std::string token = make_token();
-  kept["token"] = token;
-  write(kept);
+  std::string token;
+  change([&](Json& kept) {
+    if (!kept.contains("token") || !kept["token"].is_string() || !is_token(kept["token"])) kept["token"] = make_token();
+    token = kept["token"];
+  });
   return token;
 }
 
@@ -52,10 +56,7 @@ std::optional<uint16_t> Kept::port() const {
 }
 
 void Kept::keep_port(uint16_t port) const {
-  Json kept = read();
-  if (kept.contains("port") && kept["port"] == port) return;
-  kept["port"] = port;
-  write(kept);
+  change([port](Json& kept) { kept["port"] = port; });
 }
 
 Json Kept::settings() const {
@@ -65,10 +66,11 @@ Json Kept::settings() const {
 
 void Kept::add_commands(Router& router) const {
   add_settings(router, {[kept = *this] { return kept.settings(); },
-                        [kept = *this](const Json& settings) {
-                          Json all = kept.read();
-                          all["settings"] = settings;
-                          return kept.write(all);
+                        [kept = *this](const std::function<void(Json&)>& act) {
+                          return kept.change([&act](Json& all) {
+                            if (!all.contains("settings") || !all["settings"].is_object()) all["settings"] = Json::object();
+                            act(all["settings"]);
+                          });
                         }});
 }
 

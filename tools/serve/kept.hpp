@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -28,7 +29,9 @@ class Kept {
  private:
   explicit Kept(std::string of);
   Json read() const;
-  bool write(const Json& kept) const;
+  // The server and the host are two processes with one file, and another server may have the same plant: who changes it
+  // keeps the others waiting, so that nothing is lost between reading and writing. False: it cannot be kept.
+  bool change(const std::function<void(Json&)>& act) const;
 
   std::string name_;  // of the file
 };

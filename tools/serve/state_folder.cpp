@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <pwd.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -16,7 +17,7 @@
 namespace ipos::tools::serve {
 namespace {
 
-constexpr size_t kLongest = 64 * 1024;  // of a file
+constexpr size_t kLongest = 512 * 1024;  // of a file: what is longer is neither written nor read
 constexpr size_t kReadablePart = 40;    // characters of a name, the last ones
 
 class File {
@@ -99,7 +100,7 @@ std::optional<std::string> read_state(const std::string& name) {
 
 bool write_state(const std::string& name, std::string_view text) {
   const std::filesystem::path folder = state_folder();
-  if (folder.empty()) return false;
+  if (folder.empty() || text.size() > kLongest) return false;
   const std::filesystem::path aside = folder / fmt::format(".{}.{}.tmp", name, getpid());
   unlink(aside.c_str());  // of a killed one that had this number
   bool written = false;
@@ -110,6 +111,17 @@ bool write_state(const std::string& name, std::string_view text) {
   written = written && rename(aside.c_str(), (folder / name).c_str()) == 0;
   if (!written) unlink(aside.c_str());
   return written;
+}
+
+StateLock::StateLock(const std::string& name) {
+  const std::filesystem::path folder = state_folder();
+  if (folder.empty()) return;
+  file_ = open((folder / fmt::format(".{}.lock", name)).c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
+  while (file_ >= 0 && flock(file_, LOCK_EX) != 0 && errno == EINTR) continue;
+}
+
+StateLock::~StateLock() {
+  if (file_ >= 0) close(file_);
 }
 
 void remove_state(const std::string& name) {

@@ -20,6 +20,17 @@ std::string state_name(std::string_view kind, std::string_view of);
 std::optional<std::string> read_state(const std::string& name);
 // False: it could not be written, and the old one is there.
 bool write_state(const std::string& name, std::string_view text);
+// Of all who change this file one after the other; without a state folder it keeps nobody out.
+class StateLock {
+ public:
+  explicit StateLock(const std::string& name);
+  ~StateLock();
+  StateLock(const StateLock&) = delete;
+  StateLock& operator=(const StateLock&) = delete;
+
+ private:
+  int file_ = -1;
+};
 void remove_state(const std::string& name);
 
 }  // namespace ipos::tools::serve

@@ -11,12 +11,12 @@ namespace {
 constexpr size_t kMostSettings = 256 * 1024;  // bytes of all of them (ours)
 
 void set(const SettingsPlace& place, const std::string& name, const Json& value) {
-  Json all = place.read();
-  if (all.contains(name) && all[name] == value) return;
-  all[name] = value;
-  if (all.dump(-1, ' ', false, Json::error_handler_t::replace).size() > kMostSettings)
-    throw Mistake("there is no room for more settings");
-  if (!place.write(all)) throw Mistake("the settings cannot be kept: the state folder cannot be written");
+  const bool is_kept = place.change([&](Json& all) {
+    all[name] = value;
+    if (all.dump(-1, ' ', false, Json::error_handler_t::replace).size() > kMostSettings)
+      throw Mistake("there is no room for more settings");
+  });
+  if (!is_kept) throw Mistake("the settings cannot be kept: the state folder cannot be written");
 }
 
 }  // namespace

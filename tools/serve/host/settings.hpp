@@ -11,7 +11,8 @@ namespace ipos::tools::serve {
 // All settings by their names, as one object; asked for each time, as others may keep theirs in the same place.
 struct SettingsPlace {
   std::function<Json()> read;
-  std::function<bool(const Json&)> write;  // false: they cannot be kept
+  // Gives them to be changed and keeps what they are then; nobody else changes them meanwhile. False: they cannot be kept.
+  std::function<bool(const std::function<void(Json&)>&)> change;
 };
 void add_settings(Router& router, SettingsPlace place);
 
