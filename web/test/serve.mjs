@@ -6,6 +6,8 @@ import { join } from "node:path";
 import { createInterface } from "node:readline";
 import { fileURLToPath } from "node:url";
 
+import WebSocket from "ws";
+
 export const program = process.env.IPOS_PROGRAM;
 // The examples of the project; tests may run in a copy of this package.
 export const examples = process.env.IPOS_EXAMPLES ?? fileURLToPath(new URL("../../examples", import.meta.url));
@@ -45,4 +47,23 @@ export function folderOf(files) {
   const folder = mkdtempSync(join(tmpdir(), "ipos-web-"));
   for (const [name, text] of Object.entries(files)) writeFileSync(join(folder, name), text);
   return { folder, remove: () => rmSync(folder, { recursive: true }) };
+}
+
+// A command as a script gives it: to the millisecond, whatever the clock does.
+export function order(server, command) {
+  const address = new URL("/ws", server.address);
+  address.protocol = "ws:";
+  address.search = new URL(server.address).search;
+  return new Promise((done, failed) => {
+    const socket = new WebSocket(address);
+    socket.on("error", failed);
+    socket.on("open", () => socket.send(JSON.stringify({ id: 1, ...command })));
+    socket.on("message", (data, binary) => {
+      const reply = binary ? {} : JSON.parse(data);
+      if (reply.re !== 1) return;
+      socket.close();
+      if (reply.error) failed(new Error(reply.error));
+      else done(reply);
+    });
+  });
 }

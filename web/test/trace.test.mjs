@@ -8,7 +8,7 @@ import { createRequire } from "node:module";
 import { after, before, test } from "node:test";
 
 import { desktop, launch, missing, openPage, phone } from "./browser.mjs";
-import { examples, program, serve } from "./serve.mjs";
+import { examples, order, program, serve } from "./serve.mjs";
 
 const skip = missing ?? (program ? false : "IPOS_PROGRAM does not name the ipos to test");
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
@@ -217,10 +217,9 @@ test("trace: columns, filter, tokens, mute, find, one telegram, files", { skip }
 );
 
 test("trace and journal on a phone: nothing lies beside the box; the journal leads to moments and lines", { skip }, () =>
-  meet(`${examples}/hoist/hoist.toml`, phone, async (page) => {
-    await runTo(page, 0.5);
+  meet(`${examples}/hoist/hoist.toml`, phone, async (page, server) => {
     await page.getByRole("switch", { name: "hoist DI04" }).waitFor();
-    await runTo(page, 4.5);
+    await order(server, { do: "step", ms: 4500 }); // it is on its way up
     await page.getByRole("button", { name: "Force hoist DI04" }).click();
     await page.getByRole("switch", { name: "hoist DI04" }).click();
     await stepTo(page, (await timeOf(page)) + 0.02);
@@ -246,6 +245,7 @@ test("trace and journal on a phone: nothing lies beside the box; the journal lea
     await log.getByRole("button", { name: /HOIST\.IPC:\d+/ }).first().click();
     await page.locator(".cm-activeLine").getByText("_GoAbs").waitFor();
     await tab(page, "Journal");
+    await log.getByText("F29").first().waitFor();
     const [moment] = await entry_times();
     await log.getByRole("button", { name: /^Go to / }).first().click();
     await until(async () => Math.abs((await timeOf(page)) - moment) < 0.0015, "it does not go back");
@@ -262,7 +262,8 @@ test("trace on a phone: nothing lies beside its box", { skip }, () =>
     const { inner, outer } = await box.evaluate((element) => ({ inner: element.scrollWidth, outer: element.clientWidth }));
     assert.ok(inner <= outer, `${inner} in ${outer}`);
     const meaning = table.locator("tbody tr").first().locator("td.meaning");
-    const { x, width } = await meaning.boundingBox();
+    await meaning.waitFor();
+    const { x, width } = await meaning.evaluate((cell) => cell.getBoundingClientRect().toJSON());
     assert.ok(x >= 0 && x + width <= phone.width, "the meaning is outside");
     await table.locator("tbody tr").first().click();
     await page.getByRole("region", { name: "Telegram" }).waitFor();

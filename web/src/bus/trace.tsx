@@ -3,7 +3,7 @@ import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 
 import type { TraceFrame } from "../server/protocol";
 import { complain } from "../shell/notice";
-import { useWindowed } from "../tables/windowed";
+import { Rows, type Range } from "../shell/rows";
 import { identityText, microText } from "./identity";
 import { SaveTrace } from "./save_trace";
 import { Detail } from "./telegram_detail";
@@ -55,7 +55,7 @@ function Row({ frame, before }: { frame: TraceFrame; before: TraceFrame | undefi
 function Table() {
   const box = useRef<HTMLDivElement>(null);
   const frames = trace.frames.value;
-  const rows = useWindowed(box, frames.length);
+  const drawn = useRef<Range>({ first: 0, end: 0 });
   // A trace that follows stands at its newest telegram, which is the first row.
   useLayoutEffect(() => {
     if (trace.follows.value && box.current) box.current.scrollTop = 0;
@@ -75,7 +75,7 @@ function Table() {
     trace.follows.value = false;
     trace.chosen.value = frames[to] ?? null;
     if (to > frames.length - 20) void trace.older();
-    box.current?.querySelectorAll("tbody > tr")[to - rows.from]?.scrollIntoView({ block: "nearest" });
+    box.current?.querySelectorAll("tbody > tr:not([aria-hidden])")[to - drawn.current.first]?.scrollIntoView({ block: "nearest" });
   };
   return (
     <div ref={box} class="scroll part trace" tabIndex={0} role="group" aria-label="Trace, arrow keys choose a telegram" onScroll={scrolled} onKeyDown={move}>
@@ -89,11 +89,11 @@ function Table() {
             ))}
           </tr>
         </thead>
-        <tbody role="rowgroup" style={`padding:${rows.above}px 0 ${rows.below}px`}>
-          {frames.slice(rows.from, rows.to).map((frame, n) => (
-            <Row key={frame.n} frame={frame} before={frames[rows.from + n + 1]} />
-          ))}
-        </tbody>
+        <Rows
+          items={frames}
+          row={(frame, position) => <Row key={frame.n} frame={frame} before={frames[position + 1]} />}
+          onRange={(range) => (drawn.current = range)}
+        />
       </table>
       {frames.length === 0 && <p class="empty">No telegram.</p>}
     </div>

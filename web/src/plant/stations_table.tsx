@@ -1,14 +1,11 @@
 // Many stations as a table of compact rows, of which only those in sight are made. A click on one opens its card below.
-import { useEffect, useRef, useState } from "preact/hooks";
-
 import { inUnit, unitText } from "../machine/units";
 import { time } from "../server/live";
 import type { Line, Station } from "../server/protocol";
+import { Rows } from "../shell/rows";
 import { isUnwell, lineState, lineTrouble, machinePicture, stationState } from "./state";
 
-const row_height = 30;
 const height = 480; // of the box that scrolls
-const spare = 4; // rows above and below what is in sight
 
 function lampOf(station: Station): string {
   const state = stationState(station.name).value;
@@ -78,15 +75,9 @@ export function StationsTable({
   open: string[];
   toggle: (name: string) => void;
 }) {
-  const box = useRef<HTMLDivElement>(null);
-  const [top, setTop] = useState(0);
   const count = lines.length + stations.length;
-  // A list that has become shorter scrolls back by itself, without an event where it no longer scrolls at all.
-  useEffect(() => setTop(box.current?.scrollTop ?? 0), [count]);
-  const first = Math.max(0, Math.min(Math.floor(top / row_height), count) - spare);
-  const last = Math.min(count, Math.ceil((top + height) / row_height) + spare);
   return (
-    <div ref={box} class="scroll stations-table" tabIndex={0} style={{ maxHeight: `${height}px` }} onScroll={(event) => setTop(event.currentTarget.scrollTop)}>
+    <div class="scroll stations-table" tabIndex={0} style={{ maxHeight: `${height}px` }}>
       <table aria-label="Stations" aria-rowcount={count + 1}>
         <thead>
           <tr>
@@ -104,27 +95,23 @@ export function StationsTable({
             </th>
           </tr>
         </thead>
-        <tbody>
-          {first > 0 && <tr role="presentation" style={{ height: `${first * row_height}px` }} />}
-          {Array.from({ length: Math.max(0, last - first) }, (_, n) => {
-            const position = first + n;
-            const line = lines[position];
-            if (line) return <LineRow key={`line ${line.name}`} line={line} position={position} />;
-            const station = stations[position - lines.length];
-            return (
-              station && (
-                <StationRow
-                  key={station.name}
-                  station={station}
-                  position={position}
-                  isOpen={open.includes(station.name)}
-                  toggle={() => toggle(station.name)}
-                />
-              )
-            );
-          })}
-          {last < count && <tr role="presentation" style={{ height: `${(count - last) * row_height}px` }} />}
-        </tbody>
+        <Rows
+          items={[...lines, ...stations]}
+          short={0}
+          row={(item, position) =>
+            position < lines.length ? (
+              <LineRow key={`line ${item.name}`} line={item as Line} position={position} />
+            ) : (
+              <StationRow
+                key={item.name}
+                station={item as Station}
+                position={position}
+                isOpen={open.includes(item.name)}
+                toggle={() => toggle(item.name)}
+              />
+            )
+          }
+        />
       </table>
       {count === 0 && <p class="empty">All is well, or nothing is called so.</p>}
     </div>

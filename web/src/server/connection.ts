@@ -18,6 +18,9 @@ export class Refusal extends Error {
   }
 }
 
+// There is no server to ask: the page says so by itself for as long as it lasts, whoever asked.
+export class Away extends Error {}
+
 interface Waiting {
   parts: Message[];
   done: (parts: Message[]) => void;
@@ -46,7 +49,7 @@ function transmit(command: Message): Promise<Message[]> {
     const text = JSON.stringify({ id, ...command });
     if (carrier?.isOpen()) carrier.send(text);
     else if (link.peek() === "connecting") early.push(text);
-    else return failed(new Refusal("The server is not there.", false));
+    else return failed(new Away("The server is not there."));
     waiting.set(id, { parts: [], done, failed });
   });
 }
@@ -142,7 +145,7 @@ export function connect(carry: Carry): void {
       waiting.clear();
       views.clear();
       early.length = 0;
-      for (const one of failed) one.failed(new Refusal("The server went away before it answered.", false));
+      for (const one of failed) one.failed(new Away("The server went away before it answered."));
     },
   });
 }

@@ -2,12 +2,13 @@
 // ports that have gone, and what was refused last.
 import { signal } from "@preact/signals";
 
-import { link, Refusal, request, type Message } from "../server/connection";
+import { Away, link, Refusal, request, type Message } from "../server/connection";
 import { manual, ports, secondsText } from "../server/live";
 
 const complaint = signal<string | null>(null);
 
 export function complain(reason: unknown): void {
+  if (reason instanceof Away) return;
   const text = reason instanceof Error ? reason.message : String(reason);
   complaint.value = reason instanceof Refusal && reason.refused ? `Refused: ${text}` : text;
 }

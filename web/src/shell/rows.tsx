@@ -1,9 +1,9 @@
 // The body of a long table: the rows in sight and some before and behind them; empty space stands for the others. A short
-// table has all its rows. All rows are as high as each other.
+// table has all its rows: people search in it. All rows are as high as each other.
 import type { ComponentChildren } from "preact";
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 
-const short = 150;
+const usually_short = 200;
 const margin = 20;
 const guessed_height = 33;
 
@@ -16,12 +16,13 @@ interface Shown<Item> {
   items: readonly Item[];
   row: (item: Item, position: number) => ComponentChildren;
   onRange?: (range: Range) => void;
+  short?: number; // so many rows are all drawn
 }
 
-export function Rows<Item>({ items, row, onRange }: Shown<Item>) {
+export function Rows<Item>({ items, row, onRange, short = usually_short }: Shown<Item>) {
   const body = useRef<HTMLTableSectionElement>(null);
   const height = useRef(guessed_height);
-  const [range, setRange] = useState<Range>({ first: 0, end: short });
+  const [range, setRange] = useState<Range>({ first: 0, end: Math.max(short, 2 * margin) });
   const long = items.length > short;
   const first = long ? Math.min(range.first, Math.max(0, items.length - margin)) : 0;
   const end = long ? Math.min(items.length, Math.max(range.end, first + margin)) : items.length;
@@ -54,7 +55,7 @@ export function Rows<Item>({ items, row, onRange }: Shown<Item>) {
   }, [long, items.length]);
   const space = (rows: number) => rows > 0 && <tr aria-hidden="true" class="space" style={`height:${rows * height.current}px`} />;
   return (
-    <tbody ref={body}>
+    <tbody ref={body} role="rowgroup">
       {space(first)}
       {items.slice(first, end).map((item, position) => row(item, first + position))}
       {space(items.length - end)}
