@@ -8,7 +8,7 @@ import { after, before, test } from "node:test";
 
 import { startMock } from "../mock/server.mjs";
 import { desktop, launch, missing, openPage, phone } from "./browser.mjs";
-import { examples, folderOf, program, serve } from "./serve.mjs";
+import { examples, folderOf, program, serve, standAt } from "./serve.mjs";
 
 const skip = missing ?? (program ? false : "IPOS_PROGRAM does not name the ipos to test");
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
@@ -93,7 +93,7 @@ async function meet(file, use, options = {}) {
   const server = await serve(file, [], place.folder);
   const opened = await openPage(browser, server.address, options);
   try {
-    await use(opened.page);
+    await use(opened.page, server);
     assert.deepStrictEqual(opened.errors.filter((text) => !text.includes("WebSocket")), []);
   } finally {
     await opened.close();
@@ -114,15 +114,6 @@ const figure = (page, name) => page.getByRole("figure", { name: `Machine ${name}
 const timeOf = async (page) => Math.round(Number.parseFloat(await page.getByRole("timer", { name: "Time" }).textContent()) * 1000);
 const numberOf = async (locator) => Number.parseFloat(await locator.textContent());
 
-// To a time at which it then stands, whatever the pace: forwards by running, the rest back.
-async function standAt(page, ms) {
-  await page.getByRole("combobox", { name: "Speed" }).selectOption("0");
-  await button(page, "Run").click();
-  await until(async () => (await timeOf(page)) >= ms, "it does not run");
-  await button(page, "Pause").click();
-  await until(async () => (await page.locator(".clock .lamp.on").count()) === 0, "it does not stand");
-}
-
 async function hasNoFindings(page, what) {
   await page.evaluate(axe);
   const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
@@ -133,14 +124,14 @@ async function hasNoFindings(page, what) {
 
 // The upper floor is 60000 increments from zero; 150 mm a turn of 4096 increments.
 test("a hoist stands at its floor, in the user's unit; its cage, switches and limits are where they are", { skip }, () =>
-  meet(`${examples}/hoist/hoist.toml`, async (page) => {
+  meet(`${examples}/hoist/hoist.toml`, async (page, server) => {
     const hoist = figure(page, "hoist");
     await hoist.waitFor();
     assert.strictEqual(await numberOf(hoist), 0);
     assert.match(await hoist.textContent(), /^0\.00 mm/);
     const status = await page.locator(".words").first().textContent();
     assert.match(status, /power-on/, "at 0 s nothing has been looked at");
-    await standAt(page, 5500);
+    await standAt(server, page, 5500);
     const ms = await timeOf(page);
     await page.getByRole("tab", { name: "Watch" }).click();
     await page.getByRole("searchbox").fill("ActPos_Mot");
@@ -190,7 +181,7 @@ test("a hoist stands at its floor, in the user's unit; its cage, switches and li
 );
 
 test("parts ride on the conveyor and light the barrier; every kind is drawn and turns", { skip }, () =>
-  meet("belt.toml", async (page) => {
+  meet("belt.toml", async (page, server) => {
     const belt = figure(page, "belt");
     await belt.waitFor();
     const part = belt.locator("rect.part");
@@ -223,13 +214,13 @@ test("parts ride on the conveyor and light the barrier; every kind is drawn and 
     }
     await page.setViewportSize(phone);
     await hasNoFindings(page, "phone");
-    await standAt(page, 1500);
+    await standAt(server, page, 1500);
     assert.strictEqual(await part.count(), 0, "it has fallen off");
   }),
 );
 
 test("64 stations: compact rows, search, only what is not well, cards at a click, by keyboard too", { skip }, () =>
-  meet("many.toml", async (page) => {
+  meet("many.toml", async (page, server) => {
     const table = page.getByRole("table", { name: "Stations" });
     await table.waitFor();
     assert.strictEqual(await table.getAttribute("aria-rowcount"), "66");
@@ -242,7 +233,7 @@ test("64 stations: compact rows, search, only what is not well, cards at a click
     assert.strictEqual(await table.getByRole("row", { name: "axis64" }).count(), 0);
     await page.locator(".stations-table").evaluate((box) => box.scrollTo(0, box.scrollHeight));
     await table.getByRole("row", { name: "axis64" }).waitFor();
-    await standAt(page, 1200);
+    await standAt(server, page, 1200);
     await page.getByRole("checkbox", { name: "Only what is not well" }).check();
     // The one with a direction that is inhibited, the one with the fault, the line without telegrams and the station on it.
     const names = async () => (await table.locator("tbody th").allTextContents()).map((text) => text.trim());

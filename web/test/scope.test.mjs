@@ -12,7 +12,7 @@ import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
 
 import { desktop, launch, missing, openPage, phone } from "./browser.mjs";
-import { examples, program, serve } from "./serve.mjs";
+import { examples, program, serve, standAt } from "./serve.mjs";
 
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const skip = missing ?? (program ? false : "IPOS_PROGRAM names no program");
@@ -59,12 +59,7 @@ async function meet(plant, ms, use, options = {}) {
   try {
     await page.getByRole("tab", { name: "Scope" }).click();
     await page.getByRole("figure", { name: "Scope" }).waitFor();
-    if (ms) {
-      await page.getByRole("combobox", { name: "Speed" }).selectOption("0");
-      await page.getByRole("button", { name: "Run", exact: true }).click();
-      await until(async () => Number.parseFloat(await page.getByRole("timer", { name: "Time" }).textContent()) * 1000 >= ms, "it does not run");
-      await page.getByRole("button", { name: "Pause", exact: true }).click();
-    }
+    if (ms) await standAt(server, page, ms);
     await use(page, server);
     assert.deepStrictEqual(opened.errors, []);
   } finally {

@@ -67,3 +67,13 @@ export function order(server, command) {
     });
   });
 }
+
+// The plant runs to that moment and stands there, whatever the clock does, and the page shows it.
+export async function standAt(server, page, ms) {
+  const shown = async () => Math.round(Number.parseFloat(await page.getByRole("timer", { name: "Time" }).textContent()) * 1000);
+  await order(server, { do: "step", ms: ms - (await shown()) });
+  for (const end = Date.now() + 20_000; (await shown()) !== ms; ) {
+    if (Date.now() > end) throw new Error(`the page does not show ${ms} ms`);
+    await new Promise((done) => setTimeout(done, 20));
+  }
+}

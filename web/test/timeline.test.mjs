@@ -9,7 +9,7 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 
 import { desktop, launch, missing, openPage, phone } from "./browser.mjs";
-import { examples, folderOf, program, serve } from "./serve.mjs";
+import { examples, folderOf, program, serve, standAt } from "./serve.mjs";
 
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const skip = missing ?? (program ? false : "IPOS_PROGRAM does not name the ipos to test");
@@ -48,15 +48,6 @@ const seconds = (ms) => `${(ms / 1000).toFixed(3)} s`;
 const shows = (page, ms) => until(async () => (await timer(page).textContent()) === seconds(ms), `the time is not ${seconds(ms)}`);
 const valueOf = async (page) => Number(await slider(page).getAttribute("aria-valuenow"));
 const marks = (page) => page.getByRole("list", { name: "Marks" }).getByRole("listitem");
-
-// As fast as it goes to about that time.
-async function runTo(page, ms) {
-  await page.getByRole("combobox", { name: "Speed" }).selectOption("0");
-  await button(page, "Run").click();
-  await until(async () => Number.parseFloat(await timer(page).textContent()) * 1000 >= ms, "it does not run");
-  await button(page, "Pause").click();
-  await until(async () => (await page.locator(".clock .lamp.on").count()) === 0, "it does not stand");
-}
 
 // In the page: drags to a moment, as an input event says it, and waits until the timer and what the views show are those of it.
 async function drag(page, ms, shown) {
@@ -120,8 +111,8 @@ test("dragging shows every moment as it was, in all views", { skip }, async (t) 
     for (const name of chosen) {
       const file = readdirSync(join(place, name), { withFileTypes: true }).map((entry) => entry.name).find((one) => one.endsWith(".toml") && !one.endsWith(".test.toml"));
       if (!file) continue;
-      await meet(file, join(place, name), async (page) => {
-        await runTo(page, 4000);
+      await meet(file, join(place, name), async (page, server) => {
+        await standAt(server, page, 4000);
         const mine = [];
         for (const tab of all ? ["Plant", "Watch", "Program", "Bus"] : ["Plant", "Bus"]) mine.push(...(await dragAbout(page, tab)));
         mine.sort((a, b) => a - b);
@@ -176,17 +167,17 @@ const belt = () => folderOf({ "belt.toml": plant_text, "BELT.IPC": program_text 
 test("keys, marks, clicks that come again, and clicks that are dropped", { skip }, async () => {
   const place = belt();
   try {
-    await meet("belt.toml", place.folder, async (page) => {
+    await meet("belt.toml", place.folder, async (page, server) => {
       const axis = slider(page);
       assert.strictEqual(await valueOf(page), 0);
-      await runTo(page, 1000);
+      await standAt(server, page, 1000);
       const clicked = await valueOf(page);
       const input = page.getByRole("switch", { name: "belt DI10" });
       await input.click();
       const mark = marks(page).filter({ hasText: /DI10/ });
       await mark.waitFor();
       assert.strictEqual(await mark.textContent(), `${seconds(clicked)} DI10`);
-      await runTo(page, 3500);
+      await standAt(server, page, 3500);
       const end = await valueOf(page);
       assert.strictEqual(Number(await axis.getAttribute("max")), end);
       assert.strictEqual(await axis.getAttribute("aria-valuetext"), seconds(end));
@@ -227,7 +218,7 @@ test("keys, marks, clicks that come again, and clicks that are dropped", { skip 
       await page.getByRole("status").getByText(/1 click after .* dropped/).waitFor();
       await until(async () => (await mark.count()) === 0, "the mark of the click stays");
       assert.strictEqual(Number(await axis.getAttribute("max")), clicked - 499);
-      await runTo(page, clicked + 100);
+      await standAt(server, page, clicked + 100);
       assert.strictEqual(await input.getAttribute("aria-checked"), "false");
     });
   } finally {
@@ -241,8 +232,8 @@ test("the scope, the source and the watch follow; without copies it is the same"
     await meet(
       "belt.toml",
       place.folder,
-      async (page) => {
-        await runTo(page, 2000);
+      async (page, server) => {
+        await standAt(server, page, 2000);
         const end = await valueOf(page);
         await page.getByRole("tab", { name: "Watch" }).click();
         const count = page.getByRole("row", { name: "belt.lCount" }).getByRole("cell").first();
@@ -276,8 +267,8 @@ for (const [name, viewport] of [["desktop", desktop], ["phone", phone]])
       await meet(
         "belt.toml",
         place.folder,
-        async (page) => {
-          await runTo(page, 1000);
+        async (page, server) => {
+          await standAt(server, page, 1000);
           for (const input of ["DI10", "DI11", "DI12"]) {
             await page.getByRole("switch", { name: `belt ${input}` }).click();
             await button(page, "Step").click();

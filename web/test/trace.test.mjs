@@ -8,7 +8,7 @@ import { createRequire } from "node:module";
 import { after, before, test } from "node:test";
 
 import { desktop, launch, missing, openPage, phone } from "./browser.mjs";
-import { examples, order, program, serve } from "./serve.mjs";
+import { examples, order, program, serve, standAt } from "./serve.mjs";
 
 const skip = missing ?? (program ? false : "IPOS_PROGRAM does not name the ipos to test");
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
@@ -43,23 +43,6 @@ const button = (page, name) => page.getByRole("button", { name, exact: true });
 const tab = (page, name) => page.getByRole("tab", { name }).click();
 const timeOf = async (page) => Number.parseFloat(await page.getByRole("timer", { name: "Time" }).textContent());
 
-// As many steps as it takes, so that the clock does not matter.
-async function stepTo(page, seconds) {
-  while ((await timeOf(page)) < seconds) {
-    const before = await timeOf(page);
-    await button(page, "Step").click();
-    await until(async () => (await timeOf(page)) > before, "it does not step");
-  }
-}
-
-// The plant runs to about there and stands.
-async function runTo(page, seconds) {
-  await button(page, "Run").click();
-  await until(async () => (await timeOf(page)) >= seconds, "it does not run");
-  await button(page, "Pause").click();
-  await until(async () => (await page.locator(".clock .lamp.on").count()) === 0, "it does not stand");
-}
-
 async function findings(page) {
   await page.evaluate(axe);
   const found = await page.evaluate(() => window.axe.run(document));
@@ -74,7 +57,7 @@ async function saved(page, name) {
 }
 
 test("trace: columns, filter, tokens, mute, find, one telegram, files", { skip }, () =>
-  meet(gateway, desktop, async (page) => {
+  meet(gateway, desktop, async (page, server) => {
     let sent = 0;
     let largest = 0;
     page.on("websocket", (socket) =>
@@ -85,7 +68,7 @@ test("trace: columns, filter, tokens, mute, find, one telegram, files", { skip }
     );
     await page.reload();
     await tab(page, "Bus");
-    await runTo(page, 1.2);
+    await standAt(server, page, 1200);
     const table = page.getByRole("table", { name: "Telegrams" });
     const rows = table.locator("tbody tr");
     const column = async (name) => {
@@ -160,7 +143,7 @@ test("trace: columns, filter, tokens, mute, find, one telegram, files", { skip }
     await button(page, "Send").click();
     await filter.fill("sender:\"the page\"");
     await button(page, "Follow").click();
-    await stepTo(page, (await timeOf(page)) + 0.003);
+    await order(server, { do: "step", ms: 3 });
     await until(async () => (await column("Identifier")).join() === "2032 (7F0h)", "it did not go out");
     assert.deepStrictEqual(await column("Line"), ["sbus"]);
     assert.deepStrictEqual(await column("DLC"), ["2"]);
@@ -170,7 +153,7 @@ test("trace: columns, filter, tokens, mute, find, one telegram, files", { skip }
     await until(async () => (await rows.count()) > 10, "nothing to mute");
     await button(page, "Mute sbus 19 (013h)").click();
     const paused_at = await timeOf(page);
-    await stepTo(page, paused_at + 0.06);
+    await order(server, { do: "step", ms: 60 });
     await until(async () => (await column("Time")).some((text) => Number(text) > paused_at), "nothing new");
     const identifiers = await column("Identifier");
     for (const [n, text] of (await column("Time")).entries()) if (Number(text) > paused_at) assert.strictEqual(identifiers[n], "43 (02Bh)");
@@ -219,10 +202,10 @@ test("trace: columns, filter, tokens, mute, find, one telegram, files", { skip }
 test("trace and journal on a phone: nothing lies beside the box; the journal leads to moments and lines", { skip }, () =>
   meet(`${examples}/hoist/hoist.toml`, phone, async (page, server) => {
     await page.getByRole("switch", { name: "hoist DI04" }).waitFor();
-    await order(server, { do: "step", ms: 4500 }); // it is on its way up
+    await standAt(server, page, 4500); // it is on its way up
     await page.getByRole("button", { name: "Force hoist DI04" }).click();
     await page.getByRole("switch", { name: "hoist DI04" }).click();
-    await stepTo(page, (await timeOf(page)) + 0.02);
+    await order(server, { do: "step", ms: 20 });
     await tab(page, "Journal");
     const log = page.getByRole("log", { name: "Journal" });
     await log.getByText("F29").first().waitFor();
@@ -253,9 +236,9 @@ test("trace and journal on a phone: nothing lies beside the box; the journal lea
 );
 
 test("trace on a phone: nothing lies beside its box", { skip }, () =>
-  meet(gateway, phone, async (page) => {
+  meet(gateway, phone, async (page, server) => {
     await tab(page, "Bus");
-    await runTo(page, 0.6);
+    await standAt(server, page, 600);
     const table = page.getByRole("table", { name: "Telegrams" });
     await table.getByRole("row").nth(5).waitFor();
     const box = page.getByRole("group", { name: /^Trace, arrow keys/ });
