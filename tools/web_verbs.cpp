@@ -6,12 +6,30 @@ namespace ipos::tools {
 namespace {
 
 constexpr VerbRow kVerbs[] = {
-    {"build", add_build},  {"asm", add_asm},     {"disasm", add_disasm}, {"verify", add_verify},
-    {"run", add_run},      {"test", add_test},   {"bus", nullptr},       {"canopen", nullptr},
-    {"profibus", nullptr}, {"param", nullptr},   {"watch", nullptr},     {"scan", nullptr},
-    {"scope", nullptr},    {"diag", nullptr},    {"explain", add_explain}, {"fmt", add_fmt},
-    {"lsp", nullptr},      {"debug", nullptr},   {"dap", nullptr},       {"completion", nullptr},
-    {"man", nullptr},      {"new", add_new},     {"serve", nullptr},
+    {"Begin", "new", add_new},
+    {"Begin", "serve", nullptr},
+    {"Run and test", "run", add_run},
+    {"Run and test", "test", add_test},
+    {"Run and test", "debug", nullptr},
+    {"Write programs", "build", add_build},
+    {"Write programs", "fmt", add_fmt},
+    {"Write programs", "explain", add_explain},
+    {"Buses and drives", "bus", nullptr},
+    {"Buses and drives", "watch", nullptr},
+    {"Buses and drives", "param", nullptr},
+    {"Buses and drives", "scan", nullptr},
+    {"Buses and drives", "scope", nullptr},
+    {"Buses and drives", "diag", nullptr},
+    {"Buses and drives", "canopen", nullptr},
+    {"Buses and drives", "profibus", nullptr},
+    {"Images", "asm", add_asm},
+    {"Images", "disasm", add_disasm},
+    {"Images", "verify", add_verify},
+    {"Editors and shells", "lsp", nullptr},
+    {"Editors and shells", "dap", nullptr},
+    {"Editors and shells", "completion", nullptr},
+    {"Editors and shells", "man", nullptr},
+    {"Editors and shells", "complete", nullptr},
 };
 
 }  // namespace
