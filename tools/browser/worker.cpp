@@ -1,5 +1,6 @@
-// What a worker of a browser calls of ipos: a host of a plant that takes messages and gives messages. The verbs are main(), as on a command line. Files are those of emscripten in memory; what of them is kept, and where, is the
-// worker's matter (web/src/worker).
+// What a worker of a browser calls of ipos: a host of a plant, or of the gallery, that takes messages and gives messages. The
+// verbs are main(), as on a command line. Files are those of emscripten in memory; what of them is kept, and where, is the
+// worker's matter (web/src/alone).
 #include <emscripten.h>
 
 #include <algorithm>
@@ -7,15 +8,21 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "runtime/plant_file/plant_file.hpp"
 #include "tools/cli/end_of_process.hpp"
 #include "tools/cli/files.hpp"
+#include "tools/input/folder_plant.hpp"
 #include "tools/input/plant_input.hpp"
+#include "tools/serve/gallery_host.hpp"
 #include "tools/serve/host/plant_host.hpp"
 #include "tools/serve/host/settings.hpp"
 #include "tools/serve/language.hpp"
+#include "tools/serve/opened_session.hpp"
 #include "tools/serve/plant_files.hpp"
 
 // A message of the host for one of its clients. Bytes are gone when this returns.
@@ -59,6 +66,7 @@ serve::SettingsPlace settings_of(const std::string& plant) {
 
 // A host and what is around it.
 struct Hosted {
+  std::unique_ptr<const serve::OpenedSession> session;
   Out out;
   BrowserClock clock;
   serve::Copies copies;
@@ -67,45 +75,98 @@ struct Hosted {
   serve::LanguageServer language;
   serve::PlantHost host;
 
-  explicit Hosted(PlantInput input)
-      : files(input.path, {}),
+  // `opened`: the session that has the plant, if one was opened. `keeps`: what was set on the page is found again.
+  Hosted(PlantInput input, std::unique_ptr<const serve::OpenedSession> opened, bool keeps = true)
+      : session(std::move(opened)),
+        files(input.path, {}, session && session->is_unpacked() ? serve::kFilesOfSession : ""),
         language({}),
         host([input] { return make_plant(input, runtime::FileUse::Look); },
              std::filesystem::path(input.path).filename().string(), IPOS_VERSION, {out, clock, copies, ports, files, language}) {
-    const serve::SettingsPlace place = settings_of(input.path);
+    const serve::SettingsPlace place = settings_of(session ? session->path() : input.path);
     serve::add_settings(host.router(), place);
-    host.restore(place.read());
+    if (session) session->resume(host);
+    if (keeps) host.restore(place.read());
   }
 };
 
+constexpr std::string_view kStandIn = "[[station]]\nname = \"none\"\nunit = \"mdxb\"\n";
+
+// The plants of the folders below the one we are in.
+std::vector<std::string> plants_below() {
+  std::vector<std::string> all;
+  for (const auto& entry : std::filesystem::directory_iterator(".")) {
+    const std::string name = entry.path().filename().string();
+    if (!entry.is_directory() || name.starts_with('.')) continue;
+    for (const std::string& plant : plants_in(name)) all.push_back(plant);
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+struct Gallery {
+  Out out;
+  BrowserClock clock;
+  serve::GalleryHost host{out, clock, {IPOS_VERSION, "", plants_below, [](const std::string& path) { read_plant_input(path, {}); }}};
+
+  Gallery() { serve::add_settings(host.router(), settings_of(".")); }
+};
+
+// One of them, or none.
 std::unique_ptr<Hosted> hosted;
+std::unique_ptr<Gallery> gallery;
+
+void close() {
+  hosted.reset();
+  gallery.reset();
+}
 
 }  // namespace
 }  // namespace ipos::tools::browser
 
 namespace browser = ipos::tools::browser;
+namespace serve = ipos::tools::serve;
 
 extern "C" {
 
-// 0, or the exit code of what stands on standard error then.
+// Of a plant, a program or a session. 0, or the exit code of what stands on standard error then.
 EMSCRIPTEN_KEEPALIVE int ipos_open(const char* path) {
-  browser::hosted.reset();
+  browser::close();
   return ipos::tools::end_of_process([path] {
-    browser::hosted = std::make_unique<browser::Hosted>(ipos::tools::read_plant_input(path, {}));
+    auto session = serve::is_session(path) ? std::make_unique<const serve::OpenedSession>(path) : nullptr;
+    ipos::tools::PlantInput input = ipos::tools::read_plant_input(session ? session->plant() : path, {});
+    browser::hosted = std::make_unique<browser::Hosted>(std::move(input), std::move(session));
     return 0;
   });
 }
 
-EMSCRIPTEN_KEEPALIVE void ipos_close() { browser::hosted.reset(); }
+// Of a plant or a program with mistakes: a unit that does nothing stands in for it, with its files in the editor. The first build
+// that is good takes its place at a restart.
+EMSCRIPTEN_KEEPALIVE int ipos_open_to_mend(const char* path) {
+  browser::close();
+  return ipos::tools::end_of_process([path] {
+    ipos::tools::PlantInput input{path, ipos::runtime::read_plant_file(browser::kStandIn).plant, {std::nullopt}};
+    browser::hosted = std::make_unique<browser::Hosted>(std::move(input), nullptr, false);
+    return 0;
+  });
+}
+
+// That of the folder we are in.
+EMSCRIPTEN_KEEPALIVE int ipos_open_gallery() {
+  browser::close();
+  return ipos::tools::end_of_process([] {
+    browser::gallery = std::make_unique<browser::Gallery>();
+    return 0;
+  });
+}
 
 EMSCRIPTEN_KEEPALIVE void ipos_take(int kind, int client, const char* body, size_t size) {
-  if (!browser::hosted) return;
-  ipos::tools::serve::Message message;
-  message.kind = static_cast<ipos::tools::serve::MessageKind>(kind);
+  serve::Message message;
+  message.kind = static_cast<serve::MessageKind>(kind);
   message.client = static_cast<uint16_t>(client);
   message.body.assign(body, size);
-  message.arrived = browser::hosted->clock.now();
-  browser::hosted->host.take(message);
+  message.arrived = serve::WallClock::now();
+  if (browser::hosted) browser::hosted->host.take(message);
+  if (browser::gallery) browser::gallery->host.take(message);
 }
 
 // Some milliseconds of the plant. In how many of the clock's the next turn is due.

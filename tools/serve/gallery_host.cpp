@@ -11,15 +11,12 @@
 #include "tools/cli/failure.hpp"
 #include "tools/cli/files.hpp"
 #include "tools/examples/examples.hpp"
-#include "tools/input/folder_plant.hpp"
 #include "tools/serve/host/plant_form.hpp"
 
 namespace ipos::tools::serve {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int kLooks = 100;  // ms, for messages
 
 // With a bus, which a plant of one station does not need.
 constexpr std::string_view kNewPlant =
@@ -42,14 +39,10 @@ Json template_names() {
 
 }  // namespace
 
-GalleryHost::GalleryHost(Mailbox& mailbox, std::string version, std::string read_only, Build build)
-    : mailbox_(mailbox),
-      router_(mailbox, clock_),
-      version_(std::move(version)),
-      read_only_(std::move(read_only)),
-      build_(std::move(build)) {
+GalleryHost::GalleryHost(Outbox& outbox, const Clock& clock, Around around)
+    : router_(outbox, clock), around_(std::move(around)) {
   router_.hello = [this] {
-    return Json{{"protocol", 1}, {"version", version_}, {"mode", "gallery"}, {"title", "Gallery"}, {"writable", read_only_.empty()}};
+    return Json{{"protocol", 1}, {"version", around_.version}, {"mode", "gallery"}, {"title", "Gallery"}, {"writable", around_.read_only.empty()}};
   };
   router_.add_command("gallery", [this](const Router::Call&) { return list(); });
   router_.add_command("gallery.open", [this](const Router::Call& call) { return open(call.arguments); });
@@ -61,28 +54,22 @@ GalleryHost::GalleryHost(Mailbox& mailbox, std::string version, std::string read
   });
 }
 
-std::string GalleryHost::run() {
-  while (mailbox_.open() && opened_.empty())
-    if (const auto message = mailbox_.wait(kLooks)) router_.take(*message);
-  return opened_;
-}
-
 void GalleryHost::must_write() const {
-  if (!read_only_.empty()) throw Mistake(read_only_);
+  if (!around_.read_only.empty()) throw Mistake(around_.read_only);
 }
 
 Json GalleryHost::list() const {
   Json examples = Json::array();
   for (const Example& example : all_examples())
     if (!example.plant.empty()) examples.push_back({{"name", example.name}, {"story", example.story}, {"kind", example.kind}});
-  return {{"examples", std::move(examples)}, {"here", plants_in("")}, {"templates", template_names()}};
+  return {{"examples", std::move(examples)}, {"here", around_.plants()}, {"templates", template_names()}};
 }
 
 // An example as a copy in `folder`, or one of the plants that are here.
 Json GalleryHost::open(const Arguments& a) {
   if (a.has("here")) {
     const std::string path = a.text("here");
-    const std::vector<std::string> plants = plants_in("");
+    const std::vector<std::string> plants = around_.plants();
     if (std::find(plants.begin(), plants.end(), path) == plants.end()) throw Mistake(fmt::format("there is no plant {} here", path));
     return enter(path);
   }
@@ -100,7 +87,7 @@ Json GalleryHost::open(const Arguments& a) {
 
 Json GalleryHost::enter(const std::string& path) {
   try {
-    build_(path);
+    around_.build(path);
   } catch (const Failure& failure) {
     throw Mistake(*failure.what() != '\0' ? failure.what() : fmt::format("{} has mistakes: the terminal of ipos serve shows them", path));
   }

@@ -3,20 +3,25 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
-#include "tools/serve/channel.hpp"
 #include "tools/serve/host/router.hpp"
 
 namespace ipos::tools::serve {
 
 class GalleryHost {
  public:
-  // `read_only`: why no files are written; empty: they are. `build` reads and compiles a plant; a Failure: it cannot be opened.
-  using Build = std::function<void(const std::string& path)>;
-  GalleryHost(Mailbox& mailbox, std::string version, std::string read_only, Build build);
+  struct Around {
+    std::string version;
+    std::string read_only;  // why no files are written; empty: they are
+    std::function<std::vector<std::string>()> plants;      // those that are here, by their paths
+    std::function<void(const std::string& path)> build;    // reads and compiles one; a Failure: it cannot be opened
+  };
+  GalleryHost(Outbox& outbox, const Clock& clock, Around around);
 
-  // The path of the plant that was opened; empty: nobody listens any more.
-  std::string run();
+  void take(const Message& message) { router_.take(message); }
+  // The path of the plant that was opened; empty: none yet.
+  const std::string& opened() const { return opened_; }
 
   Router& router() { return router_; }
 
@@ -27,12 +32,8 @@ class GalleryHost {
   void must_write() const;
   Json enter(const std::string& path);
 
-  Mailbox& mailbox_;
-  SteadyClock clock_;
   Router router_;
-  std::string version_;
-  std::string read_only_;
-  Build build_;
+  Around around_;
   std::string opened_;
 };
 

@@ -11,6 +11,7 @@
 #include "tools/cli/failure.hpp"
 #include "tools/cli/files.hpp"
 #include "tools/cli/outputs.hpp"
+#include "tools/serve/host/plant_host.hpp"
 
 namespace ipos::tools::serve {
 namespace {
@@ -49,6 +50,15 @@ OpenedSession::OpenedSession(const std::string& path) : path_(path), owner_(getp
     }
   }
   plant_ = ((same ? beside : fs::path(folder_)) / session_.plant).generic_string();
+}
+
+void OpenedSession::resume(PlantHost& host) const {
+  for (const auto& [name, value] : session_.settings.items()) host.router().keep(name, value);
+  try {
+    host.resume(session_);
+  } catch (const Mistake& mistake) {
+    throw Failure(kBadInput, fmt::format("{}: {}", path_, mistake.what()));
+  }
 }
 
 OpenedSession::~OpenedSession() {

@@ -11,6 +11,8 @@
 namespace ipos::tools::serve {
 
 bool is_session(const std::string& path);  // NAME.ipos
+// Why the files of one that is unpacked are not written.
+inline constexpr const char* kFilesOfSession = "these are the files of a session, as they were when it was saved";
 
 class OpenedSession {
  public:
@@ -22,7 +24,8 @@ class OpenedSession {
   OpenedSession& operator=(const OpenedSession&) = delete;
 
   const std::string& path() const { return path_; }
-  const Session& session() const { return session_; }
+  // The moment and the settings of the session; before the first turn. A Failure: the plant does not come to that moment.
+  void resume(PlantHost& host) const;
   const std::string& plant() const { return plant_; }  // the path of its file
   bool is_unpacked() const { return !folder_.empty(); }
 

@@ -92,23 +92,18 @@ std::string why_read_only(const ServeFlags& flags) {
   return "this page can be reached from other machines: files are written with ipos serve --write only";
 }
 
-// The moment and the settings of the session.
-void resume(serve::PlantHost& host, const serve::OpenedSession& opened) {
-  for (const auto& [name, value] : opened.session().settings.items()) host.router().keep(name, value);
-  try {
-    host.resume(opened.session());
-  } catch (const serve::Mistake& mistake) {
-    throw Failure(kBadInput, fmt::format("{}: {}", opened.path(), mistake.what()));
-  }
-}
-
 // Until somebody opens a plant, which can be built; its path. Empty: nobody listens any more.
 std::string run_gallery(const ServeFlags& flags, serve::Mailbox& mailbox, PlantInput& input) {
-  serve::GalleryHost gallery(mailbox, IPOS_VERSION, why_read_only(flags),
-                             [&](const std::string& path) { input = read_plant_input(path, flags.compile); });
+  const serve::SteadyClock clock;
+  serve::GalleryHost gallery(
+      mailbox, clock,
+      {IPOS_VERSION, why_read_only(flags), [] { return plants_in(""); },
+       [&](const std::string& path) { input = read_plant_input(path, flags.compile); }});
   kept_of(flags).add_commands(gallery.router());
   mailbox.send(serve::MessageKind::Ready, 0, {});
-  return gallery.run();
+  while (mailbox.open() && gallery.opened().empty())
+    if (const auto message = mailbox.wait(kLongestWait)) gallery.take(*message);
+  return gallery.opened();
 }
 
 int run_host(ServeFlags flags, PlantInput input, const Pair& sockets) {
@@ -124,15 +119,13 @@ int run_host(ServeFlags flags, PlantInput input, const Pair& sockets) {
   serve::ForkedCopies copies(snapshots);
   serve::PlantPorts ports;
   serve::PlantFiles files(flags.file, flags.compile,
-                          flags.session && flags.session->is_unpacked()
-                              ? "these are the files of a session, as they were when it was saved"
-                              : why_read_only(flags));
+                          flags.session && flags.session->is_unpacked() ? serve::kFilesOfSession : why_read_only(flags));
   serve::LanguageServer language(flags.compile);
   serve::PlantHost host([input = std::move(input)] { return make_plant(input, runtime::FileUse::Look); },
                         title, IPOS_VERSION, {channel, clock, copies, ports, files, language});
   const serve::Kept kept = kept_of(flags);
   kept.add_commands(host.router());
-  if (flags.session) resume(host, *flags.session);
+  if (flags.session) flags.session->resume(host);
   host.restore(kept.settings());
   if (!chosen) channel.send(serve::MessageKind::Ready, 0, {});
   run(host, channel);
