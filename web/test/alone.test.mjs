@@ -5,13 +5,11 @@ import { readFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { pathToFileURL } from "node:url";
 
-import { launch, missing } from "./browser.mjs";
+import { address, built, microseconds, moves, opened, options } from "./alone.mjs";
+import { launch } from "./browser.mjs";
 import { examples, program } from "./serve.mjs";
 
-const built = process.env.IPOS_WEB;
-const options = { skip: missing ?? (built ? false : "IPOS_WEB names no folder with ipos.html"), timeout: 120_000 };
 const most_bytes = 2_500_000;
 
 let browser;
@@ -20,25 +18,6 @@ before(async () => {
 });
 after(() => browser?.close());
 
-async function opened(address, context) {
-  context ??= await browser.newContext({ viewport: { width: 1280, height: 800 }, offline: true, acceptDownloads: true });
-  const page = await context.newPage();
-  const told = { errors: [], requests: [] };
-  page.on("pageerror", (error) => told.errors.push(String(error)));
-  page.on("console", (message) => message.type() === "error" && told.errors.push(message.text()));
-  page.on("request", (request) => told.requests.push(request.url()));
-  await page.goto(address);
-  return { page, told, context };
-}
-
-const address = () => pathToFileURL(join(built, "ipos.html")).href;
-const moves = (page) =>
-  page.waitForFunction(() => {
-    const text = document.querySelector("[role=timer]")?.textContent ?? "0.000 s";
-    return text !== "0.000 s";
-  });
-const microseconds = async (page) => Math.round(parseFloat(await page.getByRole("timer", { name: "Time" }).textContent()) * 1e6);
-
 function nativeHash(us, plant = join(examples, "hoist/hoist.toml")) {
   const { stderr } = spawnSync(program, ["run", plant, "--for", `${us}us`, "--trace-hash"], { encoding: "utf8" });
   return /trace hash ([0-9a-f]{16})/.exec(stderr)?.[1];
@@ -46,7 +25,10 @@ function nativeHash(us, plant = join(examples, "hoist/hoist.toml")) {
 
 test("the file is small enough, opens without any request, and the hoist moves", options, async () => {
   assert.ok(readFileSync(join(built, "ipos.html")).length <= most_bytes);
-  const { page, told, context } = await opened(address());
+  const began = Date.now();
+  const { page, told, context } = await opened(browser);
+  await page.getByRole("switch", { name: "hoist DI10" }).waitFor();
+  console.log(`# first plant on screen: ${Date.now() - began} ms`);
   await moves(page);
   assert.match(await page.title(), /hoist\.toml/);
   assert.deepEqual(
@@ -58,7 +40,7 @@ test("the file is small enough, opens without any request, and the hoist moves",
 });
 
 test("its hash is that of the native program at the same time", options, async () => {
-  const { page, context } = await opened(address());
+  const { page, context } = await opened(browser);
   await moves(page);
   await page.getByRole("button", { name: "Pause", exact: true }).click();
   await page.waitForFunction(() => document.querySelector(".pace")?.textContent === "paused");
@@ -69,7 +51,7 @@ test("its hash is that of the native program at the same time", options, async (
 });
 
 test("tests of the open plant run, and an archive of its files can be opened again", options, async () => {
-  const { page, told, context } = await opened(address());
+  const { page, told, context } = await opened(browser);
   await moves(page);
   await page.getByRole("button", { name: "Files" }).click();
   await page.getByRole("button", { name: "Test all" }).click();
@@ -88,7 +70,7 @@ test("tests of the open plant run, and an archive of its files can be opened aga
 });
 
 test("files and settings are there after a reload", options, async () => {
-  const { page, context } = await opened(address());
+  const { page, context } = await opened(browser);
   await moves(page);
   await page.getByRole("button", { name: "Files" }).click();
   await page.getByRole("button", { name: "hoist/hoist.toml" }).waitFor();
@@ -101,13 +83,13 @@ test("files and settings are there after a reload", options, async () => {
 });
 
 test("a link has the plant in its fragment and runs in a fresh profile", options, async () => {
-  const first = await opened(address());
+  const first = await opened(browser);
   await moves(first.page);
   await first.page.getByRole("button", { name: "Share" }).click();
   const link = await first.page.getByRole("textbox", { name: "Link" }).inputValue();
   assert.ok(link.startsWith(`${address()}#`) && link.length < 8192, `${link.length}`);
   await first.context.close();
-  const { page, told, context } = await opened(link);
+  const { page, told, context } = await opened(browser, link);
   await moves(page);
   assert.match(await page.title(), /hoist\.toml/);
   assert.deepEqual(told.errors, []);
@@ -124,7 +106,7 @@ test("the site has ipos.wasm beside the page and asks for nothing else", options
   await new Promise((done) => server.listen(0, "127.0.0.1", done));
   const place = `http://127.0.0.1:${server.address().port}/`;
   const context = await browser.newContext();
-  const { page, told } = await opened(place, context);
+  const { page, told } = await opened(browser, place, context);
   await moves(page);
   assert.deepEqual(told.requests.filter((url) => !url.startsWith("blob:")), [place, `${place}ipos.wasm`]);
   assert.deepEqual(told.errors, []);

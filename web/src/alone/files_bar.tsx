@@ -2,17 +2,19 @@
 import { signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 
+import { request } from "../server/connection";
+import { time } from "../server/live";
 import { download } from "../shell/download";
 import { complain, forgive } from "../shell/notice";
 import { archiveOf, filesOf } from "./archive";
 import { chosenFolder, filesIn, hasFolders, writeInto, type FolderHandle } from "./disk_folder";
-import { filesBelow, openPlant, runVerb, writeFiles } from "./plant_worker";
+import { filesBelow, openGallery, openPlant, runVerb } from "./plant_worker";
 import { linkOf, longest_link } from "./share";
-import { home, open, openFolder } from "./start";
+import { canBeOpened, home, open, openFolder, placeFiles } from "./start";
 import type { Files } from "./stored";
 
 const filesOpen = signal(false);
-const plants = signal<string[]>([]); // of the storage, by path
+const plants = signal<string[]>([]); // and sessions, of the storage, by path
 const link = signal<string | null>(null);
 const report = signal<string | null>(null);
 let from_disk: FolderHandle | undefined; // of the open plant
@@ -36,8 +38,7 @@ async function ownFiles(): Promise<Files> {
 }
 
 async function take(name: string, files: Files): Promise<void> {
-  await writeFiles(Object.fromEntries(Object.entries(files).map(([path, bytes]) => [`${home}/${name}/${path}`, bytes])));
-  await openFolder(name);
+  await openFolder(await placeFiles(name, files));
   filesOpen.value = false;
 }
 
@@ -65,17 +66,38 @@ const runTests = act(async () => {
   report.value = out + err;
 });
 
+// With all that was done the one who opens the link has to do it again, which takes its time: a minute of the plant is soon done.
+const soon_done_us = 60e6;
+const withMoment = signal(true);
+const session_file = "shared.ipos";
+
 const share = act(async () => {
   const path = openPlant.peek();
   if (path === null) return;
   const name = openFolderName();
-  link.value = await linkOf({ name, plant: path.slice(home.length + name.length + 2), files: await ownFiles() });
+  const files = await ownFiles();
+  let plant = path.slice(home.length + name.length + 2);
+  if (withMoment.peek()) {
+    const { settings } = await request({ do: "settings" });
+    const { text } = await request({ do: "session", settings });
+    files[session_file] = new TextEncoder().encode(text as string);
+    plant = session_file;
+  }
+  link.value = await linkOf({ name, plant, files });
+});
+
+function beginSharing(): void {
+  withMoment.value = time.peek().us <= soon_done_us;
+  share();
+}
+
+const toGallery = act(async () => {
+  await openGallery();
+  filesOpen.value = false;
 });
 
 const showFiles = act(async () => {
-  plants.value = Object.keys(await filesBelow(home)).filter(
-    (path) => path.endsWith(".toml") && !path.endsWith(".test.toml"),
-  );
+  plants.value = Object.keys(await filesBelow(home)).filter(canBeOpened);
   report.value = null;
   filesOpen.value = true;
 });
@@ -132,6 +154,7 @@ function FilesDialog() {
               />
             </label>
             <button onClick={toArchive}>Save archive</button>
+            <button onClick={toGallery}>Gallery</button>
             <button onClick={runTests}>Test all</button>
           </div>
           {report.value !== null && (
@@ -160,6 +183,17 @@ function ShareDialog() {
           </div>
           <p>Who opens this link has the plant with its programs and tests. Nothing is sent to a server.</p>
           <input type="text" readOnly aria-label="Link" value={text} onFocus={(event) => event.currentTarget.select()} />
+          <label class="field">
+            <input
+              type="checkbox"
+              checked={withMoment.value}
+              onChange={(event) => {
+                withMoment.value = event.currentTarget.checked;
+                share();
+              }}
+            />
+            <span>With what was done, this moment and this layout</span>
+          </label>
           <div class="row">
             <button onClick={act(() => navigator.clipboard.writeText(text))}>Copy</button>
             {text.length > longest_link && <button onClick={toArchive}>Save archive</button>}
@@ -180,7 +214,7 @@ export function FilesBar() {
   return (
     <span class="group">
       <button onClick={showFiles}>Files</button>
-      <button onClick={share}>Share</button>
+      <button onClick={beginSharing}>Share</button>
       <FilesDialog />
       <ShareDialog />
     </span>

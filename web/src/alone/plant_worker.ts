@@ -6,7 +6,7 @@ import { webAssembly, workerScript } from "./packed";
 import { storedFiles, storeFiles, type Files } from "./stored";
 import type { Asked, Ended, FromWorker, ToWorker } from "./worker_messages";
 
-// The plant that is open, by its path in the worker's file system.
+// The plant or session that is open, by its path in the worker's file system; null: none yet, or the gallery.
 export const openPlant = signal<string | null>(null);
 
 interface Waiting {
@@ -17,6 +17,7 @@ interface Waiting {
 let worker: Worker | undefined;
 let has_host = false;
 let next_id = 1;
+let storing: Promise<boolean> = Promise.resolve(true);
 const waiting = new Map<number, Waiting>();
 
 function post(message: ToWorker, transfer: Transferable[] = []): void {
@@ -31,11 +32,15 @@ function ask(what: Asked): Promise<unknown> {
   });
 }
 
-export const openFile = (path: string) => ask({ ask: "open", path }) as Promise<void>;
+export const openFile = (path: string) => ask({ ask: "open", path }) as Promise<string>;
+export const openGallery = () => ask({ ask: "gallery" }) as Promise<void>;
 export const runVerb = (folder: string, words: string[]) => ask({ ask: "verb", folder, words }) as Promise<Ended>;
 export const filesBelow = (folder: string) => ask({ ask: "files", folder }) as Promise<Files>;
 export const writeFiles = (files: Record<string, Uint8Array<ArrayBuffer> | null>) =>
   ask({ ask: "write", files }) as Promise<void>;
+
+// What the worker has told of so far is stored. False: this browser keeps nothing.
+export const areStored = () => storing;
 
 // `started` says what to open, once the files of the storage are there.
 export function inWorker(started: () => Promise<void>, broken: (text: string) => void): (ends: Ends) => Carrier {
@@ -66,7 +71,8 @@ export function inWorker(started: () => Promise<void>, broken: (text: string) =>
         case "refused":
           return settle(message.id, (one) => one.failed(new Error(message.text)));
         case "changed":
-          return void storeFiles(message.files);
+          storing = storing.then(() => storeFiles(message.files));
+          return;
         case "broken":
           has_host = false;
           ends.lost();

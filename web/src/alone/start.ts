@@ -2,9 +2,12 @@
 // that moves. And what a program may ask of the page (window.ipos).
 import { request } from "../server/connection";
 import { hello } from "../server/live";
+import { open as showView } from "../shell/desk";
 import { complain } from "../shell/notice";
-import { inWorker, openFile, runVerb, writeFiles, filesBelow } from "./plant_worker";
-import { sharedFiles } from "./share";
+import { areStored, filesBelow, inWorker, openFile, runVerb, writeFiles } from "./plant_worker";
+import { programOfMessage } from "./message_program";
+import { namedInAddress, onLink, sharedFiles, type Named } from "./share";
+import type { Files } from "./stored";
 
 export const home = "/home"; // folders of plants lie below
 const first_example = "hoist";
@@ -16,13 +19,37 @@ declare global {
   }
 }
 
+// What the compiler has to say stands below the text.
+async function showMessages(): Promise<void> {
+  showView("Program");
+  await request({ do: "build" });
+}
+
+// One with mistakes stands in the editor with them.
+async function openHere(path: string): Promise<void> {
+  const mistakes = await openFile(path);
+  if (mistakes === "") return;
+  await showMessages();
+  complain(`${path.slice(home.length + 1)} has mistakes; mend them, save, and restart: ${mistakes.split("\n")[0]}`);
+}
+
+// Into a page that has shown nothing yet; else the page begins anew, as its texts and settings are those of the plant before.
 export async function open(path: string): Promise<void> {
-  await openFile(path);
   await writeFiles({ [last_opened]: new TextEncoder().encode(path) });
+  if (hello.peek() && (await areStored())) return location.reload();
+  await openHere(path);
+}
+
+function isPlant(path: string): boolean {
+  return path.endsWith(".toml") && !path.endsWith(".test.toml");
+}
+
+export function canBeOpened(path: string): boolean {
+  return isPlant(path) || path.endsWith(".ipos");
 }
 
 function plantIn(paths: string[]): string | undefined {
-  const plants = paths.filter((path) => path.endsWith(".toml") && !path.endsWith(".test.toml")).sort();
+  const plants = paths.filter(isPlant).sort();
   return plants.find((path) => path.split("/").length === 4) ?? plants[0];
 }
 
@@ -44,34 +71,78 @@ export async function openExample(name: string): Promise<void> {
   await openFolder(name);
 }
 
+function sameBytes(one: Uint8Array, other: Uint8Array | undefined): boolean {
+  return one.length === other?.length && one.every((byte, at) => byte === other[at]);
+}
+
+// Puts files that have come from elsewhere into a folder of that name, or name-2 and so on: what a person has changed stays.
+// The name of the folder.
+export async function placeFiles(name: string, files: Files): Promise<string> {
+  const known = await filesBelow(home);
+  for (let number = 1; ; ++number) {
+    const folder = number === 1 ? name : `${name}-${number}`;
+    const before = `${home}/${folder}/`;
+    const is_new = !Object.keys(known).some((path) => path.startsWith(before));
+    if (!is_new && !Object.entries(files).every(([path, bytes]) => sameBytes(bytes, known[before + path]))) continue;
+    if (is_new) await writeFiles(Object.fromEntries(Object.entries(files).map(([path, bytes]) => [before + path, bytes])));
+    return folder;
+  }
+}
+
 async function runWhenThere(): Promise<void> {
   await request({ do: "run" });
 }
 
-async function started(): Promise<void> {
-  const shared = await sharedFiles();
-  if (shared) {
-    await writeFiles(
-      Object.fromEntries(Object.entries(shared.files).map(([name, bytes]) => [`${home}/${shared.name}/${name}`, bytes])),
-    );
-    await open(`${home}/${shared.name}/${shared.plant}`);
+async function openNamed({ kind, name }: Named): Promise<void> {
+  if (kind === "example") {
+    await openExample(name);
     return runWhenThere();
+  }
+  const [code = "", version = "wrong"] = name.split(".");
+  const { out, err } = await runVerb(home, ["explain", code]);
+  const program = programOfMessage(out, version);
+  if (program === undefined) throw new Error(err || `the page of ${code} has no program for here`);
+  const file = `${code}.IPC`;
+  await open(`${home}/${await placeFiles(name, { [file]: new TextEncoder().encode(program) })}/${file}`);
+  await showMessages();
+}
+
+// What the address brings along. False: nothing.
+async function openShared(): Promise<boolean> {
+  const named = namedInAddress();
+  if (named) {
+    await openNamed(named);
+    return true;
+  }
+  const shared = await sharedFiles();
+  if (!shared) return false;
+  await open(`${home}/${await placeFiles(shared.name, shared.files)}/${shared.plant}`);
+  await runWhenThere();
+  return true;
+}
+
+async function started(): Promise<void> {
+  onLink(() => location.reload());
+  try {
+    if (await openShared()) return;
+  } catch (reason) {
+    complain(reason); // the link is cut or damaged
   }
   const known = await filesBelow(home);
   const last = known[last_opened];
   const path = last && new TextDecoder().decode(last);
   if (path !== undefined && path in known) {
     try {
-      return await openFile(path);
+      return await openHere(path);
     } catch (reason) {
-      complain(reason); // the file has mistakes by now: the hoist is there, and the folder can be opened again
+      complain(reason); // a session that its plant does not come to any more
     }
   }
   await openExample(first_example);
   await runWhenThere();
 }
 
-export const inBrowser = inWorker(started, (text) => complain(`ipos cannot go on in this page: ${text}`));
+export const inBrowser = inWorker(started, (text) => complain(`ipos cannot go on; load the page again: ${text}`));
 
 export function offerToPrograms(): void {
   hello.subscribe((host) => {

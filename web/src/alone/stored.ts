@@ -34,8 +34,8 @@ export async function storedFiles(): Promise<Files> {
   }
 }
 
-// Files that have changed; null: it is gone.
-export async function storeFiles(changed: Record<string, Uint8Array<ArrayBuffer> | null>): Promise<void> {
+// Files that have changed; null: it is gone. False: they are there until the page goes.
+export async function storeFiles(changed: Record<string, Uint8Array<ArrayBuffer> | null>): Promise<boolean> {
   try {
     const transaction = (await database()).transaction(store_name, "readwrite");
     const store = transaction.objectStore(store_name);
@@ -43,7 +43,11 @@ export async function storeFiles(changed: Record<string, Uint8Array<ArrayBuffer>
       if (bytes) store.put(bytes, path);
       else store.delete(path);
     }
+    return await new Promise((done) => {
+      transaction.oncomplete = () => done(true);
+      transaction.onabort = () => done(false);
+    });
   } catch {
-    // They are there until the page goes.
+    return false;
   }
 }

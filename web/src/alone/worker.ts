@@ -2,7 +2,7 @@
 // host, gives the host its turns, and runs verbs, each in an instance of its own as a process would have it.
 import type { Ask, Ended, FromWorker, ToWorker } from "./worker_messages";
 
-// As web/wasm/build.mjs puts emscripten's script in front of this one.
+// As web/wasm/site.mjs puts emscripten's script in front of this one.
 interface FileSystem {
   readdir(path: string): string[];
   stat(path: string): { mode: number; mtime: Date; size: number };
@@ -20,6 +20,8 @@ interface Instance {
   _malloc(size: number): number;
   _free(at: number): void;
   _ipos_open(path: number): number;
+  _ipos_open_to_mend(path: number): number;
+  _ipos_open_gallery(): number;
   _ipos_take(kind: number, client: number, body: number, size: number): void;
   _ipos_turn(): number;
 }
@@ -179,17 +181,33 @@ function guarded(act: () => void): void {
   }
 }
 
-function open(path: string): void {
+// `begin` gives 0 or what an exit code would be.
+function hostIn(folder: string, path: string | null, begin: () => number): void {
   has_host = false;
   output.err.length = 0;
-  host.FS.chdir(path.slice(0, path.lastIndexOf("/")));
-  let code = 1;
-  withBytes(encoder.encode(path.slice(path.lastIndexOf("/") + 1)), (at) => (code = host._ipos_open(at)));
-  if (code !== 0) throw new Error(textOf(output.err));
+  host.FS.chdir(folder);
+  if (begin() !== 0) throw new Error(textOf(output.err));
   has_host = true;
   tell({ kind: "opened", path });
   give(opened, "");
   turnSoon();
+}
+
+// A plant that has mistakes is opened to be mended. Returns them.
+function open(path: string): string {
+  const name = path.lastIndexOf("/") + 1;
+  let mistakes = "";
+  hostIn(path.slice(0, name - 1), path, () => {
+    let code = 1;
+    withBytes(encoder.encode(path.slice(name)), (at) => {
+      code = host._ipos_open(at);
+      if (code === 0 || path.endsWith(".ipos")) return;
+      mistakes = textOf(output.err);
+      code = host._ipos_open_to_mend(at);
+    });
+    return code;
+  });
+  return mistakes;
 }
 
 // --- verbs ---
@@ -212,6 +230,8 @@ async function answer(asked: Ask): Promise<unknown> {
   switch (asked.ask) {
     case "open":
       return open(asked.path);
+    case "gallery":
+      return hostIn(home, null, () => host._ipos_open_gallery());
     case "verb":
       return verb(asked.folder, asked.words);
     case "files":

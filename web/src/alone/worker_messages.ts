@@ -18,7 +18,8 @@ export interface Drained {
 }
 // Each is answered once.
 export type Asked =
-  | { ask: "open"; path: string } // plant file; the host begins anew
+  | { ask: "open"; path: string } // plant, program or session; the host begins anew. Answer: its mistakes, or ""
+  | { ask: "gallery" } // the host of the gallery takes its place
   | { ask: "verb"; folder: string; words: string[] } // as on a command line
   | { ask: "files"; folder: string } // those below
   | { ask: "write"; files: Record<string, Uint8Array<ArrayBuffer> | null> }; // null: it goes
@@ -34,7 +35,7 @@ export interface Ended {
 
 export type FromWorker =
   | { kind: "started" }
-  | { kind: "opened"; path: string } // a host is there
+  | { kind: "opened"; path: string | null } // a host is there; null: that of the gallery
   | { kind: "text"; text: string; drains: number } // bytes that the host counts as on their way
   | { kind: "frame"; frame: ArrayBuffer }
   | { kind: "answer"; id: number; value: unknown }

@@ -1,6 +1,8 @@
 // The page without a plant: the examples with their stories, the plants of the folder, and a new plant.
 import { useEffect, useState } from "preact/hooks";
 
+import { standsAlone } from "../alone/packed";
+import { home, open as openAlone } from "../alone/start";
 import { insertion } from "../build/form";
 import { TableForm, useForm } from "../build/table_form";
 import { Dialog } from "../keep/dialog";
@@ -18,10 +20,11 @@ interface Shown {
   here: string[];
 }
 
-// The server goes on with that plant, and the page begins anew.
+// The server goes on with that plant, and the page begins anew; a page that stands alone opens it itself.
 async function openAs(command: Message): Promise<void> {
-  await request(command);
+  const { opened } = await request(command);
   history.replaceState(null, "", "#Desk");
+  if (standsAlone) return openAlone(`${home}/${(opened as string).replace(/^\.\//, "")}`);
   location.reload();
 }
 
@@ -63,7 +66,7 @@ function NewPlantDialog({ onClose }: { onClose: () => void }) {
   const make = () => openAs({ do: "gallery.new", file, ...insertion(filled) }).catch((reason) => setWrong(textOf(reason)));
   return (
     <Dialog name="New plant" onClose={onClose}>
-      <p>A plant with an SBus and its first station, in this folder.</p>
+      <p>A plant with an SBus and its first station{standsAlone ? "" : ", in this folder"}.</p>
       <label class="field">
         <span>Plant file</span>
         <input type="text" aria-label="Plant file" value={file} onInput={(event) => setFile(event.currentTarget.value)} />
@@ -102,7 +105,7 @@ export function Gallery() {
       {wrong && <p role="alert">{wrong}</p>}
       {shown && shown.here.length > 0 && (
         <section>
-          <h2>In this folder</h2>
+          <h2>{standsAlone ? "In this browser" : "In this folder"}</h2>
           <ul class="here">
             {shown.here.map((path) => (
               <li key={path}>

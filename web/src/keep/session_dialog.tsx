@@ -1,6 +1,7 @@
 // The session as a file beside the plant; `ipos serve FILE` opens it at the same moment.
 import { useState } from "preact/hooks";
 
+import { standsAlone } from "../alone/packed";
 import { request } from "../server/connection";
 import { hello } from "../server/live";
 import { Dialog } from "./dialog";
@@ -15,7 +16,7 @@ export function SessionDialog({ onClose }: { onClose: () => void }) {
       const settings = (await request({ do: "settings" })).settings;
       const session = await request({ do: "session", settings });
       const saved = await request({ do: "file.write", name: file, text: session.text });
-      setSaid(`Saved. Open it by: ipos serve ${saved.name as string}`);
+      setSaid(standsAlone ? "Saved. Open it by the button Files." : `Saved. Open it by: ipos serve ${saved.name as string}`);
     } catch (reason) {
       setWrong(reason instanceof Error ? reason.message : String(reason));
     }

@@ -10,19 +10,21 @@ import { classHighlighter } from "@lezer/highlight";
 import { useEffect, useRef } from "preact/hooks";
 
 import { documents, keepState, unsavedTexts, type Document } from "./documents";
-import { check, diagnostics, hover, kinds, proposals, words, type Position } from "./language";
+import { check, diagnostics, formatted, hover, kinds, proposals, words, type Position } from "./language";
 import { iposMode, tomlMode } from "./language_modes";
+import { complain } from "../shell/notice";
 import { markExtensions, namesIn, valueOf } from "./marks";
 
 const typed_ms = 120; // after the last key the text is checked
 
 export interface Orders {
   save: () => void;
+  format: (view: EditorView) => void;
   toggle: (view: EditorView, line: number) => void;
 }
 
 // What the extensions of all documents call: those of the view that is open.
-let orders: Orders = { save: () => undefined, toggle: () => undefined };
+let orders: Orders = { save: () => undefined, format: () => undefined, toggle: () => undefined };
 
 function place(doc: Text, offset: number): Position {
   const line = doc.lineAt(offset);
@@ -104,6 +106,29 @@ function linterOf(uri: string): Extension {
   );
 }
 
+// As one change that can be undone. What was typed meanwhile stays, and nothing is formatted then.
+export async function format(view: EditorView, uri: string): Promise<void> {
+  const before = view.state.doc;
+  try {
+    const edits = await formatted(uri, textsWith(uri, view.state));
+    if (view.state.doc !== before) return;
+    view.dispatch({
+      changes: edits.map(({ range, newText }) => ({
+        from: offset(before, range.start),
+        to: offset(before, range.end),
+        insert: newText.replaceAll("\r\n", "\n"),
+      })),
+    });
+  } catch (reason) {
+    complain(reason);
+  }
+}
+
+// A program and its headers have a formatter.
+export function canFormat({ uri, read_only, kind }: Document): boolean {
+  return uri !== "" && read_only === "" && (kind === "program" || kind === "include");
+}
+
 const locked = new Compartment();
 
 export function extensionsOf(name: string, uri: string, read_only: string): Extension {
@@ -124,6 +149,13 @@ export function extensionsOf(name: string, uri: string, read_only: string): Exte
     uri ? [autocompletion({ override: [completionOf(uri)], activateOnTypingDelay: 50 }), linterOf(uri), hoverOf(uri)] : [],
     keymap.of([
       { key: "Mod-s", preventDefault: true, run: () => (orders.save(), true) },
+      {
+        key: "Shift-Alt-f",
+        run: (view) => {
+          orders.format(view);
+          return true;
+        },
+      },
       {
         key: "F9",
         run: (view) => {

@@ -22,6 +22,11 @@ export interface Diagnostic {
   code?: string;
 }
 
+export interface TextEdit {
+  range: { start: Position; end: Position };
+  newText: string;
+}
+
 // By word what it is, as the modes call it.
 export type Words = ReadonlyMap<string, string>;
 export const words = signal<Words>(new Map());
@@ -50,6 +55,11 @@ export async function proposals(uri: string, position: Position, texts: Texts): 
 export async function hover(uri: string, position: Position, texts: Texts): Promise<string | null> {
   const result = (await ask("textDocument/hover", at(uri, position), texts)) as { contents: { value: string } } | null;
   return result?.contents.value ?? null;
+}
+
+// A Refusal says why the text cannot be formatted.
+export async function formatted(uri: string, texts: Texts): Promise<TextEdit[]> {
+  return ((await ask("textDocument/formatting", { textDocument: { uri }, options: {} }, texts)) ?? []) as TextEdit[];
 }
 
 export async function check(texts: Texts): Promise<void> {

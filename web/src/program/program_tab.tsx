@@ -23,7 +23,7 @@ import {
   type BuildMessage,
   type Document,
 } from "./documents";
-import { Editor, extensionsOf } from "./editor";
+import { canFormat, Editor, extensionsOf, format } from "./editor";
 import { compiledLine, pointAt, setCompiled, setMarks, shownLine } from "./marks";
 import { Messages, messages } from "./messages";
 import { isFile, wantedLine } from "./open_line";
@@ -191,9 +191,15 @@ export function Program() {
   const document = documents.value.get(openFile.value);
   const executed = covered.value.get(openFile.value) ?? nothing;
   const live = hello.value?.live ?? false;
-  const names = [...files.value.map((one) => one.name), ...plantFiles.value.filter((one) => one.kind !== "program" && one.kind !== "session").map((one) => one.name)];
+  // Programs are those of the station. Where none has one they are to be mended.
+  const listed = (kind: string) => kind !== "session" && (kind !== "program" || stations.length === 0);
+  const names = [...files.value.map((one) => one.name), ...plantFiles.value.filter((one) => listed(one.kind)).map((one) => one.name)];
   const here = tasks.value.filter((task) => task.file === openFile.value);
   const points = breakpoints.value.filter((point) => point.station === station.value && point.file === openFile.value);
+
+  useEffect(() => {
+    if (plant.value && stations.length === 0 && openFile.value === "") openFile.value = plantFiles.value.find((one) => one.kind === "program")?.name ?? names[0] ?? "";
+  }, [plant.value, plantFiles.value]);
 
   const show = () => {
     if (!view) return;
@@ -226,13 +232,15 @@ export function Program() {
     goTo(view, Math.max(1, shownLine(view.state, place.line)), 1);
   }, [wantedLine.value, view, compiled, openFile.value]);
 
+  const formatIt = (of: EditorView | null) => document && of && canFormat(document) && void format(of, document.uri);
   const go = (message: BuildMessage) => {
     if (!message.line) return;
     if (message.file === openFile.value && view) return goTo(view, message.line, message.column);
     jump.current = message;
     if (names.includes(message.file)) openFile.value = message.file;
   };
-  const runs = !document || !compiled || compiled.text == null || plainText(compiled.text) === document.state.doc.toString();
+  const to_mend = stations.length === 0 && document?.kind === "program";
+  const runs = !document || (compiled?.text == null ? !to_mend : plainText(compiled.text) === document.state.doc.toString());
   return (
     <div
       class="program"
@@ -265,6 +273,9 @@ export function Program() {
           <button disabled={!build.value.waits} title="The program begins anew; H variables and the drive stay" onClick={() => void load()}>
             Load
           </button>
+          <button title="As ipos fmt (Shift+Alt+F)" disabled={!document || !canFormat(document)} onClick={() => formatIt(view)}>
+            Format
+          </button>
           <button disabled={!document || !hasChanged(document)} onClick={() => void takeChanged(openFile.peek())}>
             Take changed file
           </button>
@@ -287,7 +298,7 @@ export function Program() {
       {document ? (
         <Editor
           document={document}
-          orders={{ save: () => void saveBuildAndMaybeRestart(), toggle: (of, line) => void toggle(of, line) }}
+          orders={{ save: () => void saveBuildAndMaybeRestart(), format: formatIt, toggle: (of, line) => void toggle(of, line) }}
           take={setView}
         />
       ) : (

@@ -2,6 +2,7 @@
 // ports that have gone, and what was refused last.
 import { signal } from "@preact/signals";
 
+import { standsAlone } from "../alone/packed";
 import { Away, link, Refusal, request, type Message } from "../server/connection";
 import { manual, ports, secondsText } from "../server/live";
 
@@ -30,7 +31,7 @@ export async function command(message: Message): Promise<Message | undefined> {
 }
 
 export function Notice() {
-  if (link.value === "lost")
+  if (link.value === "lost" && !standsAlone)
     return (
       <div class="notice">
         <span class="lamp fault" />
