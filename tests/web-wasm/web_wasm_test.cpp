@@ -1,5 +1,5 @@
 // ipos in WebAssembly does what the native program does: every example, 300 random plants and the programs of tests/language,
-// in node and in Debian's Chromium. And the page without a server, which opens from a file. Skipped with the reason where
+// in node and in Debian's Chromium. And the page without a server, which opens from a file, in Chromium and in Firefox. Skipped with the reason where
 // ./dev web has not been run on this commit: building it takes longer than all suites together.
 #include <gtest/gtest.h>
 
@@ -51,6 +51,14 @@ class InWebAssembly : public ::testing::Test {
     for (const char* const group : {"examples: ", "plants: 300 cases", "language: "})
       EXPECT_NE(result.output.find(group), std::string::npos) << group;
   }
+  // web/test/NAME.test.mjs, with so many tests.
+  static void expect_journeys(const std::string& name, int count) {
+    const ScriptResult result =
+        shell(package().folder, "IPOS_PROGRAM='" IPOS_PROGRAM "' IPOS_EXAMPLES='" + project("examples").string() + "' IPOS_WEB='" +
+                                    built().string() + "' node --test --test-reporter=tap test/" + name + ".test.mjs");
+    expect_node_passed(result, count);
+    std::puts(result.output.c_str());
+  }
 };
 
 TEST_F(InWebAssembly, RunsAsNativelyInNode) { expect_equal("node"); }
@@ -66,11 +74,12 @@ class InChromium : public InWebAssembly {
 
 TEST_F(InChromium, RunsAsNatively) { expect_equal("chromium"); }
 
-TEST_F(InChromium, OpensFromAFileWithoutANetwork) {
-  const ScriptResult result =
-      shell(package().folder, "IPOS_PROGRAM='" IPOS_PROGRAM "' IPOS_EXAMPLES='" + project("examples").string() + "' IPOS_WEB='" +
-                                  built().string() + "' node --test --test-reporter=tap test/alone.test.mjs");
-  expect_node_passed(result, 6);
+TEST_F(InChromium, OpensFromAFileWithoutANetwork) { expect_journeys("alone", 6); }
+TEST_F(InChromium, HasAllViewsWithoutAServer) { expect_journeys("alone_views", 7); }
+
+TEST_F(InWebAssembly, OpensInFirefox) {
+  if (!fs::exists("/usr/bin/firefox-esr")) GTEST_SKIP() << "/usr/bin/firefox-esr is not installed";
+  expect_journeys("firefox", 4);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ std::string status_word(const std::string& printed);  // "0503h": what the bits 
 std::string printed_number(const std::vector<std::string>& words);
 std::string parameter_of_object(const std::string& printed);  // "2070h"
 
-// A page for the terminal: no marks of Markdown, programs indented.
+// A page for the terminal: no marks of Markdown, no links that run, programs indented.
 std::string plain_text(std::string_view page);
 
 }  // namespace ipos::tools::explain

@@ -43,7 +43,7 @@ std::string plain_text(std::string_view page) {
       program = !program;
     } else if (program) {
       out += "    " + line + "\n";
-    } else if (!line.starts_with("<!--")) {
+    } else if (!line.starts_with("<!--") && !line.starts_with("[Try it](")) {
       if (line.starts_with("# ")) line.erase(0, 2);
       std::erase(line, '`');
       out += line + "\n";
