@@ -58,7 +58,11 @@ uint32_t ipos_version(void);
 
 /* What a build of the library has; bits of ipos_features(). */
 enum {
-  IPOS_FEATURE_FAST = 1 /* ipos_program_accelerate() */
+  IPOS_FEATURE_FAST = 1,       /* ipos_program_accelerate() */
+  IPOS_FEATURE_TELEGRAMS = 2,  /* variable telegrams by `send`, ipos_receive() */
+  IPOS_FEATURE_INTERRUPTS = 4, /* SETINT and VARINT, ipos_raise_event() */
+  IPOS_FEATURE_STATES = 8,     /* ipos_save(), ipos_restore() */
+  IPOS_FEATURE_TEXTS = 16      /* texts of statuses, rules and faults; without, they are "" */
 };
 uint32_t ipos_features(void);
 
