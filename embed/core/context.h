@@ -34,6 +34,11 @@
 #endif
 #endif
 
+#ifdef __GNUC__
+#define APART __attribute__((noinline)) /* whose stack is not to be that of who calls it */
+#else
+#define APART
+#endif
 #define TEXT(text) (IPOS_TEXTS ? (text) : "")
 
 enum {

@@ -13,7 +13,7 @@ static ipos_status nv_store(ipos_vm* vm) {
   return stored ? IPOS_OK : IPOS_HOST_FAILED;
 }
 
-static ipos_status nv_load(ipos_vm* vm) {
+APART static ipos_status nv_load(ipos_vm* vm) {
   if (vm->host.nv_read == NULL) return IPOS_NO_CALLBACK;
   uint32_t head[2];
   int32_t values[IPOS_NV_VARIABLES];

@@ -64,7 +64,7 @@ static uint32_t check_command(const ipos_program* program, uint32_t at, command_
   return command.words;
 }
 
-static void verify(const ipos_program* program, ipos_trouble* trouble) {
+APART static void verify(const ipos_program* program, ipos_trouble* trouble) {
   const uint32_t words = program->words;
   const uint32_t longest =
       program->unit->program_words < IPOS_PROGRAM_WORDS ? program->unit->program_words : IPOS_PROGRAM_WORDS;

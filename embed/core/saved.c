@@ -137,7 +137,7 @@ static bool objects_are_sound(const ipos_vm* vm, const telegram_objects* objects
 }
 
 /* Each part in a place of its own, as nothing of the machine may change yet. */
-static bool contexts_are_sound(cursor* c, const ipos_program* program, const command_starts* starts) {
+APART static bool contexts_are_sound(cursor* c, const ipos_program* program, const command_starts* starts) {
   for (unsigned n = 0; n < kContexts; ++n) {
     ipos_context t;
     memset(&t, 0, sizeof t);
@@ -153,7 +153,7 @@ static bool contexts_are_sound(cursor* c, const ipos_program* program, const com
   return interrupts_are_sound(program, starts, &interrupts) && fault.task <= kTasks && fault.context <= kContexts;
 }
 
-static bool starts_are_met(cursor* c, const ipos_program* program) {
+APART static bool starts_are_met(cursor* c, const ipos_program* program) {
   command_starts starts;
   instruction command;
   memset(&starts, 0, sizeof starts);
@@ -164,7 +164,7 @@ static bool starts_are_met(cursor* c, const ipos_program* program) {
   return contexts_are_sound(c, program, &starts);
 }
 
-static bool rest_is_sound(cursor* c, const ipos_vm* vm) {
+APART static bool rest_is_sound(cursor* c, const ipos_vm* vm) {
   telegram_objects objects;
   memset(&objects, 0, sizeof objects);
   c->at += 4 * (size_t)vm->program->unit->variables;

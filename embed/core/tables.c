@@ -83,6 +83,7 @@ typedef enum { Decode_Ok, Decode_Unknown, Decode_Truncated, Decode_Reserved } de
 /* Word 0 has the opcode in bits 0..7 and two small operands in bits 8..19 and 20..31, a second word the next two; then
  * constants and labels follow. Bits of no operand are 0. */
 static decoding decode(const uint32_t* code, uint32_t size, uint32_t at, instruction* out) {
+  out->words = 1; /* of what is no command */
   if (at >= size) return Decode_Truncated;
   const uint32_t first = code[at];
   out->opcode = first & 0xFF;

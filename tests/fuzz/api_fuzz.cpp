@@ -263,7 +263,7 @@ void look_around(const Session& session, ipos_vm* vm, uint8_t twist, Input& in) 
     require(fault.reason != nullptr, "a fault has a text");
   require(ipos_version() == IPOS_VERSION && ipos_most_variables() >= session.info.variables &&
               ipos_most_words() >= session.info.words &&
-              (ipos_features() | IPOS_FEATURE_FAST) == IPOS_FEATURE_FAST,
+              (ipos_features() & ~IPOS_FEATURE_FAST) == 2 + 4 + 8 + 16,
           "the library is what its header says");
   require(ipos_rule_text(number) != nullptr && ipos_status_text(number) != nullptr, "texts are texts");
   if (int32_t* const h = ipos_variables(vm)) h[session.info.variables - 1U] = h[0];

@@ -67,7 +67,7 @@ class Layers(unittest.TestCase):
             "runtime/scom/object_table.cpp": "ipos_scom_tests",
             "compiler/codegen/values.cpp": "ipos_compiler_tests",
             "runtime/station/station.cpp": "ipos_plant_tests",
-            "embed/instance.cpp": "ipos_api_tests",
+            "embed/core/machine.c": "ipos_api_tests",
         }.items():
             self.assertEqual(programs_of(source, self.README)[0], program, source)
 

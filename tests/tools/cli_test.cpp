@@ -189,6 +189,7 @@ TEST(Build, EveryStageCanBePrinted) {
   EXPECT_TRUE(contains(stage("image"), "TrCycl.ObjectNo"));
   EXPECT_TRUE(contains(stage("map"), "lTrDataLow"));
   EXPECT_TRUE(contains(stage("listing"), "SCOMON"));
+  EXPECT_TRUE(contains(stage("c"), "static const uint32_t SCOM1_image[] = {\n    0x31585049,"));
 }
 
 TEST(Images, DisassembledTextAssemblesToTheSameBytes) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "tools/build/c_text.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/outputs.hpp"
 #include "tools/cli/verbs.hpp"
@@ -20,7 +21,8 @@ struct BuildFlags {
 
 int build(const BuildFlags& flags) {
   if (!is_source(flags.file)) throw Failure(kUsage, fmt::format("{}: sources are called *.IPC", flags.file));
-  if (!flags.emit.empty() && flags.emit != "image") {
+  const bool as_c = flags.emit == "c";
+  if (!flags.emit.empty() && flags.emit != "image" && !as_c) {
     fmt::print("{}", emit_stage(flags.file, flags.compile, flags.emit));
     return kGood;
   }
@@ -31,6 +33,14 @@ int build(const BuildFlags& flags) {
   }
   if (!verify_image(flags.file, image))
     throw Failure(kInternal, "the compiler made an image the verifier refuses");
+  if (as_c) {
+    const std::string text = c_text(image, flags.file);
+    if (flags.output.empty())
+      fmt::print("{}", text);
+    else
+      replace_file(flags.output, text);
+    return kGood;
+  }
   const std::string output = flags.output.empty()
                                  ? std::filesystem::path(flags.file).replace_extension(".ipx").string()
                                  : flags.output;
@@ -45,8 +55,8 @@ void add_build(cli::Verb& app) {
   cli::Verb& verb = app.verb("build", "compile a source file to an image");
   verb.option("FILE", flags->file, "source, *.IPC").required();
   verb.option("-o", flags->output, "image to write; default: the source's name with .ipx");
-  verb.option("--emit", flags->emit, "print a stage instead: tokens, ast, asm, image, map or listing")
-      .one_of({"tokens", "ast", "asm", "image", "map", "listing"});
+  verb.option("--emit", flags->emit, "print a stage instead: tokens, ast, asm, image, map or listing; c: the image as a C header, also to the file of -o")
+      .one_of({"tokens", "ast", "asm", "image", "map", "listing", "c"});
   add_compile_options(verb, flags->compile);
   verb.footer("Example:\n  ipos build SCOM1.IPC --emit=asm");
   verb.runs([flags] { return build(*flags); });

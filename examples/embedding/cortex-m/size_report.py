@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Sizes of the library in a Cortex-M build, as a table per module: flash, RAM, deepest stack.
+"""Sizes of the library in a Cortex-M build, as a table by parts: flash, RAM, deepest stack.
 
     size_report.py BUILD_DIR [--flash BYTES] [--ram BYTES]
 
@@ -13,19 +13,35 @@ import subprocess
 import sys
 
 SECTION = re.compile(r"^ (\.\S+)(?:\n\s+|\s+)0x[0-9a-f]+\s+0x([0-9a-f]+) (\S+)$", re.M)
+PART = re.compile(r"^/\* ==== (\w+)", re.M)
+DEFINITION = re.compile(r"^(?:static )?(?:const )?[\w* ]+?\b(\w+)(?:\(|\[)|^\} (k\w+)\[", re.M)
 
 
-def module_sizes(map_file):
+def parts_of(source):
+    """By the name of a function or table of ipos.c the part that defines it."""
+    text = source.read_text()
+    marks = [(mark.start(), mark[1]) for mark in PART.finditer(text)]
+    parts = {}
+    for found in DEFINITION.finditer(text):
+        before = [name for at, name in marks if at < found.start()]
+        if before:
+            parts[found[1] or found[2]] = before[-1]  # the definition stands behind what only names it
+    return parts
+
+
+def module_sizes(map_file, parts):
     text = map_file.read_text()
     text = text[text.index("Linker script and memory map"):]
     sizes = collections.defaultdict(lambda: [0, 0, 0])
     for section, size, path in SECTION.findall(text):
-        column = {".text": 0, ".rodata": 0, ".data": 1, ".bss": 2}.get("." + section.split(".")[1])
+        words = section.split(".")
+        column = {"text": 0, "rodata": 0, "data": 1, "bss": 2}.get(words[1])
         if column is None or int(size, 16) == 0:
             continue
-        inside = re.search(r"(libipos\.a|libc\.a|libgcc\.a)\((.*?)(\.cpp)?\.o(bj)?\)", path)
-        if inside:
-            name = inside[2] if inside[1] == "libipos.a" else inside[1]
+        library = re.search(r"(libipos\.a|libc\.a|libgcc\.a)\(", path)
+        if library:
+            owner = words[2] if len(words) > 2 else ""
+            name = parts.get(owner, "texts and tables of switches") if library[1] == "libipos.a" else library[1]
             sizes[name][column] += int(size, 16)
     return sizes
 
@@ -59,8 +75,20 @@ def object_sizes(library):
     text = subprocess.run(["arm-none-eabi-objdump", "-d", "--no-show-raw-insn", str(library)], capture_output=True,
                           text=True, check=True).stdout
     for name in ("ipos_program_size", "ipos_vm_size"):
-        body = text[text.index(f"<{name}>:"):][:300]
-        out[name] = int(re.search(r"mov[sw.]*\s+r0, #(\d+)", body)[1])
+        size = 0
+        for what, operands in re.findall(r"^ +[0-9a-f]+:\t(\S+)(.*)$", text[text.index(f"<{name}>:"):][:400], re.M):
+            number = re.search(r"(?:#|0x)([0-9a-f]+)", operands)
+            if what == ".word":
+                size = int(number[1], 16)
+            elif what.startswith("mov"):
+                size = int(number[1])
+            elif what.startswith("lsl"):
+                size <<= int(number[1])
+            elif what.startswith("add"):
+                size += int(number[1])
+            elif what == "bx" and size != 0:
+                break
+        out[name] = size
     return out
 
 
@@ -70,13 +98,13 @@ def main():
     arguments.add_argument("--flash", type=int)
     arguments.add_argument("--ram", type=int)
     options = arguments.parse_args()
-    sizes = module_sizes(next(options.build.rglob("whole.map")))
-    print(f"{'module':22} {'text':>7} {'data':>6} {'bss':>6}")
+    sizes = module_sizes(next(options.build.rglob("whole.map")), parts_of(options.build / "firmware/ipos.c"))
+    print(f"{'part':28} {'text':>7} {'data':>6} {'bss':>6}")
     for name, row in sorted(sizes.items(), key=lambda item: -item[1][0]):
-        print(f"{name:22} {row[0]:7} {row[1]:6} {row[2]:6}")
+        print(f"{name:28} {row[0]:7} {row[1]:6} {row[2]:6}")
     flash = sum(row[0] + row[1] for row in sizes.values())
     static = sum(row[1] + row[2] for row in sizes.values())
-    print(f"{'all':22} {flash:7}\n")
+    print(f"{'all':28} {flash:7}\n")
 
     objects = object_sizes(next(options.build.rglob("libipos.a")))
     cache = (options.build / "CMakeCache.txt").read_text()
