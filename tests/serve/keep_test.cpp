@@ -307,6 +307,20 @@ TEST(KeptTest, IsNoneAtTheBeginningAndTellsWhatItLeavesOut) {
                           "[[expect]]\nat = \"3ms\"\nstation = \"saw\"\nsignal = \"lCount\"\nequals = 1\n");
 }
 
+// The number by which a page is compared with a run (`ipos run --trace-hash`), also where something happens at 0 s.
+TEST_P(KeptTestOf, HasAPageWithTheHashOfARun) {
+  const Example example(GetParam());
+  const std::unique_ptr<runtime::Plant> plant = example.make()();
+  runtime::TraceHash hash(*plant);
+  plant->run_until(1250 * runtime::kMillisecond, [&](runtime::Time now) {
+    hash.sample(now);
+    return true;
+  });
+  FolderPage page(example.at("plant.toml"), example.make());
+  page.ask({{"do", "step"}, {"ms", 1250}});
+  EXPECT_EQ(page.ask({{"do", "hash"}})["hash"], hash.text());
+}
+
 INSTANTIATE_TEST_SUITE_P(Examples, KeptTestOf, ::testing::ValuesIn(example_plants()), [](const auto& plant) {
   std::string name = plant.param.stem().string();
   std::replace_if(name.begin(), name.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');

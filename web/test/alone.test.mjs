@@ -78,6 +78,7 @@ test("files and settings are there after a reload", options, async () => {
   await page.reload();
   await page.waitForFunction(() => document.title.includes("hoist.toml"));
   await page.getByRole("button", { name: "Files" }).click();
+  await page.getByRole("button", { name: "hoist/hoist.toml" }).waitFor();
   assert.equal(await page.getByRole("list", { name: "Plants" }).getByRole("listitem").count(), 1);
   await context.close();
 });

@@ -47,7 +47,7 @@ async function type(page, text) {
 
 async function pause(page) {
   await button(page, "Pause").click();
-  await page.waitForFunction(() => document.querySelector(".pace")?.textContent === "paused");
+  await page.waitForFunction(() => ["paused", "ended"].includes(document.querySelector(".pace")?.textContent)); // all programs may have ended
 }
 
 // By the timeline, as an input event says it; the plant must have been there before.
@@ -94,7 +94,7 @@ test("each of the seven views and the desk has something to show", options, () =
 
 const hoist = readFileSync(join(examples, "hoist/HOIST.IPC"), "utf8");
 
-test("README's link opens the hoist, and an edit changes where it stops", options, () =>
+test("README's link opens the hoist in a fresh profile, and an edit changes where it stops", options, () =>
   meet(async (page) => {
     await moves(page);
     await passes(page, 6_500);

@@ -61,13 +61,13 @@ class Page {
     }
   }
   // With the mouse, in the middle of the first element of the selector that has this text or name and can be seen.
-  async click(selector, text) {
+  async click(selector, text = null) {
     const [x, y] = await this.until(
-      `${selector} ${text} is not there`,
+      `${selector} ${text ?? ""} is not there`,
       (selector, text) => {
         const shown = (one) => one.getClientRects().length > 0;
         const names = (one) => [one.getAttribute("aria-label"), one.textContent.trim()];
-        const found = [...document.querySelectorAll(selector)].find((one) => shown(one) && (text === undefined || names(one).includes(text)));
+        const found = [...document.querySelectorAll(selector)].find((one) => shown(one) && (text === null || names(one).includes(text)));
         if (!found) return null;
         found.scrollIntoView({ block: "center" });
         const { left, top, width, height } = found.getBoundingClientRect();

@@ -11,22 +11,36 @@ const most_bytes = 2_500_000; // of ipos.html
 const packed = (bytes) => gzipSync(bytes, { level: constants.Z_BEST_COMPRESSION });
 const page = readFileSync(page_file, "utf8");
 const script = `${readFileSync(join(ipos_folder, "ipos.js"), "utf8")}\n${readFileSync(worker_file, "utf8")}`;
-const wasm = packed(readFileSync(join(ipos_folder, "ipos.wasm")));
 
-// Before the page's own script, which looks for them.
-function pageWith(wasm_element) {
-  const worker = `<script type="text/plain" id="ipos-worker">${packed(script).toString("base64")}</script>`;
-  const before = '<div id="page"></div>\n';
-  const place = page.indexOf(before) + before.length;
-  return page.slice(0, place) + worker + "\n" + wasm_element + "\n" + page.slice(place);
+function element(id, bytes) {
+  return `<script type="text/plain" id="${id}">${packed(bytes).toString("base64")}</script>\n`;
 }
 
-const alone = pageWith(`<script type="text/plain" id="ipos-wasm">${wasm.toString("base64")}</script>`);
+// Before the page's own script, which looks for them.
+const worker = element("ipos-worker", script);
+const before = '<div id="page"></div>\n';
+const place = page.indexOf(before) + before.length;
+function pageWith(wasm_element, end) {
+  return page.slice(0, place) + worker + wasm_element + end;
+}
+
+// In the one file the page's own script is packed, too: this one unpacks and begins it.
+async function begin() {
+  const text = atob(document.getElementById("ipos-page").textContent);
+  const stream = new Blob([Uint8Array.from(text, (c) => c.charCodeAt(0))]).stream().pipeThrough(new DecompressionStream("gzip"));
+  const script = document.createElement("script");
+  script.textContent = await new Response(stream).text();
+  document.body.append(script);
+}
+const rest = page.slice(place);
+const own = rest.slice(rest.indexOf("<script>") + "<script>".length, rest.lastIndexOf("</script>"));
+
+const alone = pageWith(element("ipos-wasm", readFileSync(join(ipos_folder, "ipos.wasm"))), rest.replace(own, () => `(${begin})()`).replace("<script>", () => `${element("ipos-page", own)}<script>`));
 mkdirSync(join(out, "site"), { recursive: true });
 writeFileSync(join(out, "ipos.html"), alone);
 writeFileSync(
   join(out, "site/index.html"),
-  pageWith('<script type="text/plain" id="ipos-wasm" data-address="ipos.wasm"></script>'),
+  pageWith('<script type="text/plain" id="ipos-wasm" data-address="ipos.wasm"></script>\n', rest),
 );
 copyFileSync(join(ipos_folder, "ipos.wasm"), join(out, "site/ipos.wasm"));
 const size = Buffer.byteLength(alone);

@@ -55,8 +55,9 @@ class HashTab final : public Tab {
     hash_.emplace(plant);
     note(plant.now());
   }
+  // A run takes its first sample after the first millisecond, whatever happens at 0 s.
   void passed(runtime::Time now) override {
-    if (!hash_) return;
+    if (!hash_ || now == 0) return;
     hash_->sample(now);
     note(now);
   }
