@@ -9,20 +9,26 @@ install(TARGETS ipos_embedded ipos_shared ipos_compile ipos_plant EXPORT ipos
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/embed/include/ ${ipos_written_headers}/ ${PROJECT_SOURCE_DIR}/runtime/library/include/
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(TARGETS ipos RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# As Debian's policy wants them (12.5, 12.7): licences of all that is in the package, and what has changed.
+ipos_notices(notices IN deb page plot extension)
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/debian/copyright CONTENT "@notices@" @ONLY)
+execute_process(COMMAND gzip -9nc ${PROJECT_SOURCE_DIR}/packaging/debian/changelog
+                OUTPUT_FILE ${PROJECT_BINARY_DIR}/debian/changelog.gz COMMAND_ERROR_IS_FATAL ANY)
+install(FILES ${PROJECT_BINARY_DIR}/debian/copyright ${PROJECT_BINARY_DIR}/debian/changelog.gz DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # The manual page and the completions, written by the program itself.
 set(shell ${PROJECT_BINARY_DIR}/shell)
 file(MAKE_DIRECTORY ${shell})
-add_custom_command(OUTPUT ${shell}/ipos.1 ${shell}/ipos ${shell}/_ipos ${shell}/ipos.fish
-  COMMAND ipos man >${shell}/ipos.1
+add_custom_command(OUTPUT ${shell}/ipos.1.gz ${shell}/ipos ${shell}/_ipos ${shell}/ipos.fish
+  COMMAND ipos man | gzip -9n >${shell}/ipos.1.gz
   COMMAND ipos completion bash >${shell}/ipos
   COMMAND ipos completion zsh >${shell}/_ipos
   COMMAND ipos completion fish >${shell}/ipos.fish
   DEPENDS ipos COMMENT "Writing the manual page and the completions")
-add_custom_target(ipos_shell_files ALL DEPENDS ${shell}/ipos.1)
-install(FILES ${shell}/ipos.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+add_custom_target(ipos_shell_files ALL DEPENDS ${shell}/ipos.1.gz)
+install(FILES ${shell}/ipos.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES ${shell}/ipos DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 install(FILES ${shell}/_ipos DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
 install(FILES ${shell}/ipos.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
@@ -93,11 +99,13 @@ endforeach()
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME ipos)
-set(CPACK_PACKAGE_CONTACT "the ipos authors <ipos@localhost>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_DEBIAN_PACKAGE_SECTION devel)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PRIVATE_SHLIBDEPS_DIRS ${PROJECT_BINARY_DIR}/lib)
+set(CPACK_PACKAGE_CONTACT "the ipos contributors <ipos@example.org>")
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 include(CPack)

@@ -22,9 +22,25 @@ const fs::path& root() {
 }
 
 std::vector<fs::path> pages() {
-  std::vector<fs::path> found = {root() / "README.md", root() / "examples/README.md"};
+  std::vector<fs::path> found = {root() / "examples/README.md"};
+  for (const auto& entry : fs::directory_iterator(root()))
+    if (entry.path().extension() == ".md") found.push_back(entry.path());
   for (const auto& entry : fs::recursive_directory_iterator(root() / "docs"))
     if (entry.path().extension() == ".md") found.push_back(entry.path());
+  return found;
+}
+
+// With the pages that stand beside the sources; packages of others bring their own.
+std::vector<fs::path> all_markdown() {
+  std::vector<fs::path> found = pages();
+  for (const char* folder : {"tests", "tools", "python", "web", "packaging", "embed", "runtime", "examples"}) {
+    if (!fs::exists(root() / folder)) continue;
+    for (auto entry = fs::recursive_directory_iterator(root() / folder); entry != fs::recursive_directory_iterator(); ++entry)
+      if (entry->path().filename() == "node_modules")
+        entry.disable_recursion_pending();
+      else if (entry->path().extension() == ".md" && entry->path() != root() / "examples/README.md")
+        found.push_back(entry->path());
+  }
   return found;
 }
 
@@ -95,7 +111,7 @@ bool runs(const std::string& fragment) {
 
 TEST(Pages, LinksLeadSomewhere) {
   size_t count = 0;
-  for (const fs::path& page : pages()) {
+  for (const fs::path& page : all_markdown()) {
     for (const std::string& link : links_of(page)) {
       SCOPED_TRACE(page.string() + ": " + link);
       ++count;

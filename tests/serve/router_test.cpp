@@ -71,6 +71,15 @@ TEST_F(AtTheRouter, WhoHasGoneIsForgotten) {
   EXPECT_TRUE(news(3).empty());
 }
 
+TEST_F(AtTheRouter, EveryHostShowsTheLicences) {
+  come(1);
+  post.sent.clear();
+  say(1, {{"do", "licences"}, {"id", 1}});
+  const std::vector<Json> replies = heard(1, MessageKind::Reply);
+  ASSERT_EQ(replies.size(), 1U);
+  EXPECT_NE(replies[0]["text"].get<std::string>().find("preact"), std::string::npos);
+}
+
 TEST_F(AtTheRouter, WhatHasNotChangedIsSentOnce) {
   come(1);
   say(1, {{"do", "subscribe"}, {"topic", "news"}});

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "tests/harness/contains.hpp"
 #include "tests/tools/command.hpp"
@@ -39,6 +42,31 @@ TEST(Usage, HelpAndVersion) {
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_TRUE(contains(result.out, "Example")) << verb;
   }
+}
+
+// The table is read here by itself: cmake/notices.cmake made the text.
+TEST(Usage, LicencesOfAllThatItContains) {
+  const CommandResult result = run_ipos({"--licences"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(run_ipos({"--licenses"}).out, result.out);
+  EXPECT_TRUE(contains(result.out, read_text(project("LICENSE").string())));
+  std::istringstream table(read_text(project("packaging/third_parties.tsv").string()));
+  size_t count = 0;
+  for (std::string line; std::getline(table, line);) {
+    std::istringstream row(line);
+    std::vector<std::string> cells;
+    for (std::string cell; std::getline(row, cell, '\t');) cells.push_back(cell);
+    if (line.starts_with("#")) continue;
+    ASSERT_EQ(cells.size(), 7U) << line;
+    const std::string in = " " + cells[5] + " ";
+    const bool is_here = contains(in, " linux ") || contains(in, " page ") || contains(in, " plot ");
+    EXPECT_EQ(contains(result.out, "\n----\n" + cells[0] + " " + cells[1] + ", " + cells[2] + "\n"), is_here) << line;
+    const std::string text = read_text(project("packaging/licences/" + cells[3] + ".txt").string());
+    EXPECT_FALSE(text.empty()) << line;
+    EXPECT_TRUE(!is_here || contains(result.out, text)) << line;
+    count += is_here;
+  }
+  EXPECT_GT(count, 30U);
 }
 
 TEST(Input, MissingFilesAre66) {

@@ -10,6 +10,7 @@
 
 #include "stdlib/spelling.hpp"
 #include "tools/cli/exit_codes.hpp"
+#include "tools/cli/notices.hpp"
 
 namespace ipos::tools::cli {
 namespace {
@@ -135,6 +136,9 @@ int run(const Verb& program, const std::string& version, int argc, char** argv) 
   app.formatter(std::make_shared<Help>());
   app.allow_windows_style_options(false);  // a word that begins with / is a path on Windows, too
   app.set_version_flag("--version,-V", version);
+  app.add_flag_callback(
+      "--licences,--licenses", [] { throw CLI::CallForVersion(std::string(notices_text()), 0); },
+      "Print the licences of ipos and of all that it contains");
   add_verb(app, program, exit_code);
   if (argc == 1 || (argc == 2 && std::string_view(argv[1]) == "help")) {
     fmt::print(argc == 1 ? stderr : stdout, "{}", app.help());

@@ -12,5 +12,6 @@ cd "$folder"
 # No script of a package is run: some would fetch programs from elsewhere.
 npm ci --ignore-scripts --no-audit --no-fund --prefer-offline --fetch-retries=1 >npm.log 2>&1 ||
   { cat npm.log >&2; echo "pack.sh: the packages of the extension cannot be installed" >&2; exit 69; }
+cmake -DIN=extension -DOUT=NOTICES.txt -P "$source/../../cmake/notices.cmake"
 npm run package >npm.log 2>&1 || { cat npm.log >&2; exit 1; }
 mv ipos.vsix "$out"

@@ -232,7 +232,10 @@ test("keys: run, step, tabs, search, help; none while one types", { skip }, () =
     assert.strictEqual(mock.plant.running, false);
     await page.keyboard.press("Escape");
     await page.keyboard.press("?");
-    await page.getByRole("dialog", { name: "Keys" }).waitFor();
+    const sheet = page.getByRole("dialog", { name: "Keys" });
+    await sheet.waitFor();
+    await sheet.getByRole("button", { name: "Licences" }).click();
+    await sheet.getByText("licences of cardboard").waitFor();
     await page.keyboard.press("Escape");
     assert.strictEqual(await page.getByRole("dialog", { name: "Keys" }).count(), 0);
   }),

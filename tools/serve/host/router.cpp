@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "tools/cli/notices.hpp"
+
 namespace ipos::tools::serve {
 namespace {
 
@@ -29,6 +31,11 @@ bool Subscription::is_news(const std::string& about, const Json& value) {
   if (known == text) return false;
   known = std::move(text);
   return true;
+}
+
+// The page has to show what it and its host contain, whatever host that is.
+Router::Router(Outbox& outbox, const Clock& clock) : outbox_(outbox), clock_(clock) {
+  add_command("licences", [](const Call&) { return Json{{"text", notices_text()}}; });
 }
 
 void Router::take(const Message& message) {

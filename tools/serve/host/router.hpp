@@ -41,7 +41,7 @@ struct Client {
 
 class Router {
  public:
-  Router(Outbox& outbox, const Clock& clock) : outbox_(outbox), clock_(clock) {}
+  Router(Outbox& outbox, const Clock& clock);
   Router(const Router&) = delete;
   Router& operator=(const Router&) = delete;
 

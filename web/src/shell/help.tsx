@@ -2,9 +2,15 @@
 import { signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 
+import { request } from "../server/connection";
 import { keyGroups, keysOn } from "./keys";
 
 export const helpOpen = signal(false);
+const notices = signal("");
+
+async function askNotices(): Promise<void> {
+  notices.value = String((await request({ do: "licences" })).text);
+}
 
 function shown(key: string): string {
   return key === " " ? "Space" : key.replace("Arrow", "");
@@ -49,6 +55,7 @@ export function Help() {
           <p class="quiet">
             Tab goes to every control; Enter or Space acts. In a table of values Enter sets, Escape leaves the field.
           </p>
+          {notices.value ? <pre tabIndex={0}>{notices}</pre> : <button onClick={askNotices}>Licences</button>}
           <p>
             <label class="field">
               <input
