@@ -105,6 +105,13 @@ set(CPACK_DEBIAN_PACKAGE_SECTION devel)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PRIVATE_SHLIBDEPS_DIRS ${PROJECT_BINARY_DIR}/lib)
 set(CPACK_PACKAGE_CONTACT "the ipos contributors <ipos@example.org>")
+set(CPACK_PACKAGE_DESCRIPTION "Compiles, runs and tests programs for IPOSplus-style drives without
+a drive: it simulates the drives, their inputs and the buses between them,
+and shows them in a browser. With the C libraries of the machine, of the
+compiler and of whole plants, and with the Python package.")
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3:any")
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/packaging/debian/triggers)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)

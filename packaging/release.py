@@ -29,6 +29,7 @@ PARTS = {
     "linux-x86_64": ["linux", "page", "plot"], "windows-x86_64.exe": ["windows", "plot"], ".html": ["web", "page", "plot"],
     "site.tar.gz": ["web", "page", "plot", "site"], ".deb": ["deb", "page", "plot", "extension"], ".whl": ["library"],
     ".vsix": ["extension"], ".tgz": ["web", "page", "plot"], "source.tar.gz": ["page", "plot"], "Containerfile": [], "NOTICES.txt": [],
+    ".zip": [], ".pack": [],  # firmware: the project's own sources alone
 }
 
 
@@ -73,14 +74,16 @@ def pack_again(archive: Path, out: Path) -> None:
 
 def make_native(out: Path) -> None:
     run("cmake", "-S", ROOT, "-B", NATIVE, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DIPOS_TESTS=OFF")
-    run("cmake", "--build", NATIVE, "--target", "all", "ipos_static", "ipos_vsix")
+    run("cmake", "--build", NATIVE, "--target", "all", "ipos_static", "ipos_vsix", "ipos_firmware_package")
     shutil.copy(NATIVE / "static/ipos", out / f"ipos-{version()}-linux-x86_64")
+    pack_again(NATIVE / f"ipos-firmware-{version()}.zip", out / f"ipos-firmware-{version()}.zip")
+    shutil.copy(NATIVE / f"ipos.ipos.{version()}.pack", out)
     pack_again(NATIVE / "vscode/ipos.vsix", out / f"ipos-{version()}.vsix")
     shutil.copy(out / f"ipos-{version()}.vsix", NATIVE / "vscode/ipos.vsix")  # the Debian package has the same one
     run("cpack", "--config", NATIVE / "CPackConfig.cmake", "-B", NATIVE / "pack")
     package, = (NATIVE / "pack").glob("ipos_*.deb")
     shutil.copy(package, out)
-    run("lintian", "--no-tag-display-limit", "--fail-on", "error", out / package.name)
+    run("lintian", "--tag-display-limit", "0", "--fail-on", "error", out / package.name)
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder) / "python"
         shutil.copytree(ROOT / "python", copy, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info", "build"))

@@ -5,9 +5,6 @@ to a page leads to that page, a link to an example's folder to a page with its f
 sources, which the site does not have, becomes its text. With IPOS_HTML, which goes into the folder above OUT, each example runs
 beside its text."""
 
-import base64
-import gzip
-import json
 import os
 import re
 import shutil
@@ -20,6 +17,7 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 # A picture or a link; the words may have brackets in code.
 LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s]+)\)")
+RUNNING = "build/web/ipos.html"  # examples and messages have links into it (docs/guide/browser.md)
 RENAMED = {"README.md": "index.md", "docs/README.md": "pages.md", "examples/README.md": "examples/index.md",
            "CHANGELOG.md": "changelog.md", "CONTRIBUTING.md": "contributing.md", "SECURITY.md": "security.md"}
 
@@ -42,7 +40,7 @@ def pages() -> dict[str, str]:
     return found
 
 
-def moved(text: str, page: str, places: dict[str, str]) -> str:
+def moved(text: str, page: str, places: dict[str, str], runs: bool) -> str:
     """The Markdown of a page with its links as the site needs them; code stays as it is."""
 
     def link(match: re.Match) -> str:
@@ -51,32 +49,27 @@ def moved(text: str, page: str, places: dict[str, str]) -> str:
         if "://" in target or not path:
             return match.group(0)
         named = os.path.normpath(os.path.join(os.path.dirname(page), path))
-        place = places.get(named)
+        place = "../ipos.html" if named == RUNNING and runs else places.get(named)
         if picture and named.startswith("docs/"):
             place = named.removeprefix("docs/")
         if place is None:
-            assert (ROOT / named).exists(), f"{page}: {target} leads nowhere"
+            assert named == RUNNING or (ROOT / named).exists(), f"{page}: {target} leads nowhere"
             return words
+        if named == RUNNING:  # no page of Sphinx
+            away = os.path.relpath(place, os.path.dirname(places[page]) or ".")
+            return f'<a href="{away}{hash_}{anchor}">{words}</a>'
         return f"{picture}[{words}]({os.path.relpath(place, os.path.dirname(places[page]) or '.')}{hash_}{anchor})"
 
     parts = re.split(r"(^```.*?^```$)", text, flags=re.MULTILINE | re.DOTALL)
     return "".join(part if part.startswith("```") else LINK.sub(link, part) for part in parts)
 
 
-def share_link(folder: Path, plant: Path, files: list[Path]) -> str:
-    """The fragment that `Share` of the page makes (docs/guide/browser.md)."""
-    content = {"name": folder.name, "plant": plant.name, "files": {file.name: file.read_text() for file in files}}
-    packed = gzip.compress(json.dumps(content, ensure_ascii=False).encode(), mtime=0)
-    return "#plant=" + base64.urlsafe_b64encode(packed).decode().rstrip("=")
-
-
 def example_page(folder: Path, runs: bool) -> str:
     files = sorted(file for file in folder.iterdir() if file.suffix in {".IPC", ".toml", ".h"})
-    plants = [file for file in files if file.suffix == ".toml" and not file.name.endswith(".test.toml")]
     text = f"# {folder.name}\n\n`ipos serve examples/{folder.name}` shows it; `ipos new DIR --from {folder.name}` copies it.\n"
     if runs:
         text += ('\n<details><summary>Run it here</summary>\n<iframe loading="lazy" title="ipos" width="100%" height="640" '
-                 f'src="../../ipos.html{share_link(folder, plants[0], files)}"></iframe>\n</details>\n')
+                 f'src="../../ipos.html#example={folder.name}"></iframe>\n</details>\n')
     for file in files:
         language = {".IPC": "ipc", ".toml": "toml", ".h": "c"}[file.suffix]
         text += f"\n## {file.name}\n\n```{language}\n{file.read_text().rstrip()}\n```\n"
@@ -106,7 +99,7 @@ def lay_out(folder: Path, runs: bool) -> None:
     written: dict[str, str] = {}
     for page, place in places.items():
         if (ROOT / page).is_file():
-            written[place] = moved((ROOT / page).read_text(), page, places)
+            written[place] = moved((ROOT / page).read_text(), page, places, runs)
         elif page.startswith("examples/"):
             written[place] = example_page(ROOT / page, runs)
         else:
