@@ -7,6 +7,7 @@
 #include "tests/harness/contains.hpp"
 #include "tests/tools/command.hpp"
 #include "tools/cli/failure.hpp"
+#include "tools/cli/head_story.hpp"
 #include "tools/examples/examples.hpp"
 #include "tools/input/folder_plant.hpp"
 #include "tools/serve/host/plant_form.hpp"

@@ -13,10 +13,10 @@
 #include "tests/serve/served_page.hpp"
 #include "tests/tools/command.hpp"
 #include "tools/input/plant_input.hpp"
-#include "tools/serve/host/session.hpp"
 #include "tools/serve/host/step_text.hpp"
 #include "tools/serve/opened_session.hpp"
 #include "tools/test_file/read_tests.hpp"
+#include "tools/testing/failed_state.hpp"
 #include "tools/testing/run_test.hpp"
 
 namespace ipos::tests {
@@ -34,7 +34,7 @@ struct FolderParts {
 };
 class FolderPage : private FolderParts, public Page {
  public:
-  FolderPage(const std::string& plant, tools::debug::MakePlant make)
+  FolderPage(const std::string& plant, tools::debug::Debuggee make)
       : FolderParts(plant), Page(std::move(make), clock, copies, files) {}
 };
 
@@ -232,6 +232,9 @@ TEST_P(KeptTestOf, IsTheSameMomentAsASession) {
   const Example example(GetParam());
   const auto make = example.make();
   FolderPage page(example.at("plant.toml"), make);
+  // One that has not begun comes back, too.
+  FolderPage at_power_on(example.at("plant.toml"), make);
+  at_power_on.host.resume(tools::sessions::read_session(page.ask({{"do", "session"}})["text"].get<std::string>()));
   Hand hand(page, 4711);
   for (int n = 0; n < 8; ++n) {
     hand.act();
@@ -241,15 +244,68 @@ TEST_P(KeptTestOf, IsTheSameMomentAsASession) {
   ASSERT_TRUE(saved.value("ok", false)) << saved;
   const tools::serve::OpenedSession opened(example.write("s.ipos", saved["text"]));
   EXPECT_FALSE(opened.is_unpacked());
-  EXPECT_EQ(opened.session().settings["watch.pinned"], Json({"x"}));
+  EXPECT_EQ(tools::sessions::read_session(saved["text"].get<std::string>()).settings["watch.pinned"], Json({"x"}));
   FolderPage again(example.at("plant.toml"), make);
-  again.host.resume(opened.session());
+  opened.resume(again.host);
   for (int n = 0; n < 2; ++n) {
     EXPECT_EQ(again.host.us(), page.host.us());
     EXPECT_EQ(runtime::state_digest(again.host.plant()), runtime::state_digest(page.host.plant())) << hand.done();
     for (Page* one : {static_cast<Page*>(&page), static_cast<Page*>(&again)}) one->ask({{"do", "step"}, {"ms", 250}});
   }
 }
+
+std::vector<fs::path> tests_of_examples() {
+  std::vector<fs::path> tests;
+  for (const auto& file : fs::recursive_directory_iterator(project("examples")))
+    if (file.path().string().ends_with(".test.toml")) tests.push_back(file.path());
+  std::sort(tests.begin(), tests.end());
+  return tests;
+}
+
+class FailedTestOf : public ::testing::TestWithParam<fs::path> {};
+
+// The plant of the page comes to the state that `ipos test` has had, with the script of the test beside it, and goes on as it.
+TEST_P(FailedTestOf, OpensWhereItStood) {
+  const TemporaryFolder folder;
+  for (const auto& test : tools::testing::read_tests(GetParam().string())) {
+    constexpr runtime::Time kLater = 640 * runtime::kMillisecond;
+    runtime::Time look = 321 * runtime::kMillisecond;  // or where a short test ends
+    std::map<runtime::Time, uint64_t> digests;
+    tools::testing::RunOptions options;
+    options.seed = 3;
+    const runtime::Plant* plant = nullptr;
+    options.prepare = [&](runtime::Plant& built) {
+      plant = &built;
+      return nullptr;
+    };
+    options.sample = [&](runtime::Time now) {
+      if (now <= look || now == kLater) digests[now] = runtime::state_digest(*plant);
+    };
+    tools::testing::Programs programs{{}};
+    run_test(test, programs, options);
+    look = std::prev(digests.upper_bound(look))->first;
+
+    const std::string text = tools::testing::failed_state(test, {}, {.seed = 3}, look);
+    const tools::serve::OpenedSession opened(folder.write("state.ipos", text));
+    EXPECT_TRUE(opened.is_unpacked());
+    EXPECT_EQ(tools::sessions::read_session(text).digest, digests[look]) << test.name;
+    const auto beside = opened.beside().value();
+    EXPECT_EQ(beside.seed, 3U);
+    FolderPage page(opened.plant(), tools::serve::debuggee_of(beside, {}));
+    opened.resume(page.host);
+    EXPECT_EQ(page.host.us(), look / runtime::kMicrosecond);
+    page.ask({{"do", "step"}, {"ms", (kLater - look) / runtime::kMillisecond}});
+    if (digests.contains(kLater)) {
+      EXPECT_EQ(runtime::state_digest(page.host.plant()), digests[kLater]) << test.name;
+    }
+    page.ask({{"do", "go"}, {"us", look / runtime::kMicrosecond}});
+    EXPECT_EQ(runtime::state_digest(page.host.plant()), digests[look]) << test.name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Examples, FailedTestOf, ::testing::ValuesIn(tests_of_examples()), [](const auto& test) {
+  return std::regex_replace(test.param.filename().stem().stem().string(), std::regex("[^A-Za-z0-9]"), "_");
+});
 
 TEST(Session, ThatIsForeignDamagedOrCutOffIsRefused) {
   const Example example(project("examples/isync/isync.toml"));
@@ -258,8 +314,8 @@ TEST(Session, ThatIsForeignDamagedOrCutOffIsRefused) {
   const std::string text = page.ask({{"do", "session"}})["text"];
   const auto refusal = [](const std::string& session) {
     try {
-      tools::serve::read_session(session);
-    } catch (const tools::serve::Mistake& mistake) {
+      tools::sessions::read_session(session);
+    } catch (const tools::sessions::Unreadable& mistake) {
       return std::string(mistake.what());
     }
     return std::string();
@@ -279,10 +335,10 @@ TEST(Session, ThatIsForeignDamagedOrCutOffIsRefused) {
   EXPECT_EQ(refusal(with("\"MASTER.IPC\"", "\"../MASTER.IPC\"")), "'../MASTER.IPC' would lie outside of the session");
   EXPECT_TRUE(contains(refusal(with("\"actions\"", "\"others\"")), "a part of it is missing"));
   // A plant that has changed does not come to that state.
-  tools::serve::Session other = tools::serve::read_session(text);
+  tools::sessions::Session other = tools::sessions::read_session(text);
   other.digest ^= 1;
   EXPECT_THROW(page.host.resume(other), tools::serve::Mistake);
-  other = tools::serve::read_session(text);
+  other = tools::sessions::read_session(text);
   other.actions.push_back({other.moment, {}, 0, {{"act", "dance"}}});
   EXPECT_THROW(page.host.resume(other), tools::serve::Mistake);
 }

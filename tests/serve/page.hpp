@@ -28,7 +28,7 @@ class PagePost final : public tools::serve::Outbox {
 
 class Page {
  public:
-  Page(tools::debug::MakePlant make, const tools::serve::Clock& clock, tools::serve::Copies& copies,
+  Page(tools::debug::Debuggee make, const tools::serve::Clock& clock, tools::serve::Copies& copies,
        tools::serve::Files& files)
       : host(std::move(make), "plant.toml", "0", {post, clock, copies, ports, files, language}) {
     come(1);

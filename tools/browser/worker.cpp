@@ -67,6 +67,7 @@ serve::SettingsPlace settings_of(const std::string& plant) {
 // A host and what is around it.
 struct Hosted {
   std::unique_ptr<const serve::OpenedSession> session;
+  std::optional<sessions::OfTest> test;
   Out out;
   BrowserClock clock;
   serve::Copies copies;
@@ -78,9 +79,10 @@ struct Hosted {
   // `opened`: the session that has the plant, if one was opened. `keeps`: what was set on the page is found again.
   Hosted(PlantInput input, std::unique_ptr<const serve::OpenedSession> opened, bool keeps = true)
       : session(std::move(opened)),
-        files(input.path, {}, session && session->is_unpacked() ? serve::kFilesOfSession : ""),
+        test(session ? session->beside() : std::nullopt),
+        files(input.path, {}, session && session->is_unpacked() ? serve::kFilesOfSession : "", test),
         language({}),
-        host([input] { return make_plant(input, runtime::FileUse::Look); },
+        host(test ? serve::debuggee_of(*test, {}) : debug::Debuggee([input] { return make_plant(input, runtime::FileUse::Look); }),
              std::filesystem::path(input.path).filename().string(), IPOS_VERSION, {out, clock, copies, ports, files, language}) {
     const serve::SettingsPlace place = settings_of(session ? session->path() : input.path);
     serve::add_settings(host.router(), place);
@@ -133,7 +135,11 @@ EMSCRIPTEN_KEEPALIVE int ipos_open(const char* path) {
   browser::close();
   return ipos::tools::end_of_process([path] {
     auto session = serve::is_session(path) ? std::make_unique<const serve::OpenedSession>(path) : nullptr;
-    ipos::tools::PlantInput input = ipos::tools::read_plant_input(session ? session->plant() : path, {});
+    ipos::tools::PlantInput input;
+    if (session && session->beside())
+      input.path = session->plant();  // the test makes it
+    else
+      input = ipos::tools::read_plant_input(session ? session->plant() : path, {});
     browser::hosted = std::make_unique<browser::Hosted>(std::move(input), std::move(session));
     return 0;
   });

@@ -20,7 +20,6 @@
 #include "tools/cli/xml_text.hpp"
 #include "tools/debug/console.hpp"
 #include "tools/debug/dap.hpp"
-#include "tools/debug/debugged_test.hpp"
 #include "tools/debug/heard_messages.hpp"
 #include "tools/input/folder_plant.hpp"
 #include "tools/input/plant_input.hpp"
@@ -30,6 +29,7 @@
 #include "tools/processes/forked_snapshots.hpp"
 #include "tools/processes/replaceable_process.hpp"
 #include "tools/test_file/read_tests.hpp"
+#include "tools/testing/debugged_test.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -67,7 +67,7 @@ debug::MakePlant plant_maker(PlantInput input, std::optional<vm::Rates> rates) {
 
 debug::Debuggee debuggee_of(const DebugFlags& flags) {
   if (testing::is_test_file(flags.file))
-    return debug::debugged_test(flags.file, flags.test_case, flags.compile, flags.speed);
+    return testing::debugged_test(testing::chosen_test(flags.file, flags.test_case), flags.compile, {.speed = flags.speed});
   if (!flags.test_case.empty())
     throw Failure(kUsage, fmt::format("{}: only a test (.test.toml) has cases", compiler::printable(flags.file)));
   return plant_maker(read_plant_input(flags.file, flags.compile), rates_of(flags.speed));

@@ -35,7 +35,7 @@ void Debugger::build() {
   plant_ = what_.make();
   if (what_.accompany)
     companion_ = what_.accompany(*plant_, [this](const std::string& text) {
-      if (goal_.kind == Goal::Kind::Forward) front_end_.output(text);
+      if (goal_.kind == Goal::Kind::Forward || resumes_) front_end_.output(text);
     });
   for (const auto& station : plant_->stations()) {
     station->use_runner(*this);
@@ -132,23 +132,25 @@ Stop Debugger::resume(std::vector<Change> changes, const Position& moment) {
   goal_.order.time = moment.time + (moment.phase == Phase::Between ? 0 : runtime::kMillisecond);
   goal_.stop = {Reason::Step, {}, {}, {}};
   const bool takes = std::exchange(takes_snapshots_, false);
+  resumes_ = true;  // the user has not heard of it
   build();
   prime();
   const Stop stop = go();
+  resumes_ = false;
   takes_snapshots_ = takes;
   return stop;
 }
 
-void Debugger::restart(MakePlant next) {
+void Debugger::restart(std::optional<Debuggee> next) {
   if (snapshots_) snapshots_->clear();
   changes_.clear();
   furthest_ = {};
   if (!next) return build();
-  std::swap(what_.make, next);
+  std::swap(what_, *next);
   try {
     build();
   } catch (...) {
-    std::swap(what_.make, next);
+    std::swap(what_, *next);
     build();
     throw;
   }

@@ -81,12 +81,12 @@ class Debugger final : private runtime::CommandRunner {
   void run_again();
   // The plant is as at power-on: what was done to the other one is done to this at the same moments.
   void will_do_as(const Debugger& other) { changes_ = other.changes_; }
-  const MakePlant& maker() const { return what_.make; }
+  const Debuggee& debuggee() const { return what_; }
   // From the beginning, as if the user had done this, up to that moment.
   Stop resume(std::vector<Change> changes, const Position& moment);
   // The plant as at power-on. What the user has done is forgotten, breakpoints stay. With a plant that was built anew that
   // one begins; when it cannot be made the old one does, and the reason is thrown on.
-  void restart(MakePlant next = {});
+  void restart(std::optional<Debuggee> next = {});
   // A station has another program by now: its lines are looked at anew.
   void program_changed(uint32_t station);
 
@@ -154,6 +154,7 @@ class Debugger final : private runtime::CommandRunner {
   std::unique_ptr<Companion> companion_;  // of this plant
   std::vector<std::optional<CodeMap>> codes_;
   std::unique_ptr<Snapshots> snapshots_;  // none: it runs again from the beginning
+  bool resumes_ = false;
   bool takes_snapshots_ = true;
 
   std::vector<Breakpoint> breakpoints_;

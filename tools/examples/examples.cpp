@@ -9,6 +9,7 @@
 #include "runtime/plant_file/plant_file.hpp"
 #include "stdlib/embedded.hpp"
 #include "tools/cli/failure.hpp"
+#include "tools/cli/head_story.hpp"
 #include "tools/cli/outputs.hpp"
 
 namespace ipos::tools {
@@ -63,23 +64,6 @@ std::vector<Example> read_all() {
 }
 
 }  // namespace
-
-// Comments of one line each are a text; a full stop before a space ends a sentence.
-std::string head_story(std::string_view text, size_t sentences) {
-  std::string story;
-  while (text.starts_with("#")) {
-    const size_t end = std::min(text.find('\n'), text.size());
-    std::string_view line = text.substr(1, end - 1);
-    text.remove_prefix(std::min(end + 1, text.size()));
-    while (line.starts_with(' ')) line.remove_prefix(1);
-    if (line.empty() && !story.empty()) break;
-    if (!story.empty()) story += ' ';
-    story += line;
-  }
-  size_t end = 0;
-  for (size_t n = 0; n < sentences && end != std::string::npos; ++n) end = story.find(". ", end == 0 ? 0 : end + 1);
-  return end == std::string::npos ? story : story.substr(0, end + 1);
-}
 
 const std::vector<Example>& all_examples() {
   static const std::vector<Example> all = read_all();

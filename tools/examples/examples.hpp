@@ -24,9 +24,6 @@ const std::vector<Example>& all_examples();
 // Null: there is none.
 const Example* find_example(std::string_view name);
 
-// At most so many sentences of the comment at the head of a TOML text.
-std::string head_story(std::string_view text, size_t sentences);
-
 // What `ipos new` begins with: plant, programs, test, files for CI servers, under the names of the template.
 NewFiles template_files();
 inline constexpr std::string_view kEmptyProgram =

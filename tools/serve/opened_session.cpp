@@ -32,8 +32,8 @@ bool is_session(const std::string& path) { return path.ends_with(".ipos"); }
 
 OpenedSession::OpenedSession(const std::string& path) : path_(path), owner_(getpid()) {
   try {
-    session_ = read_session(read_file(path));
-  } catch (const Mistake& mistake) {
+    session_ = sessions::read_session(read_file(path));
+  } catch (const sessions::Unreadable& mistake) {
     throw Failure(kBadInput, fmt::format("{}: {}", path, mistake.what()));
   }
   const auto& texts = session_.texts;
@@ -49,7 +49,14 @@ OpenedSession::OpenedSession(const std::string& path) : path_(path), owner_(getp
       replace_file(place.string(), text);
     }
   }
-  plant_ = ((same ? beside : fs::path(folder_)) / session_.plant).generic_string();
+  place_ = (same ? beside : fs::path(folder_)).generic_string();
+  plant_ = (fs::path(place_) / session_.plant).generic_string();
+}
+
+std::optional<sessions::OfTest> OpenedSession::beside() const {
+  std::optional<sessions::OfTest> test = session_.test;
+  if (test) test->file = (fs::path(place_) / test->file).generic_string();
+  return test;
 }
 
 void OpenedSession::resume(PlantHost& host) const {

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "tools/serve/host/session.hpp"
+#include "tools/sessions/session.hpp"
 
 namespace ipos::tools::serve {
 
@@ -28,12 +28,14 @@ class OpenedSession {
   // The moment and the settings of the session; before the first turn. A Failure: the plant does not come to that moment.
   void resume(PlantHost& host) const;
   const std::string& plant() const { return plant_; }  // the path of its file
+  std::optional<sessions::OfTest> beside() const;  // the test whose script runs beside it; the path of its file
   bool is_unpacked() const { return !folder_.empty(); }
 
  private:
   std::string path_;
-  Session session_;
+  sessions::Session session_;
   std::string plant_;
+  std::string place_;  // the folder of its texts
   std::string folder_;  // of its own
   pid_t owner_;
 };

@@ -16,6 +16,7 @@
 #include "tools/input/sources.hpp"
 #include "tools/lsp_base/positions.hpp"
 #include "tools/test_file/read_tests.hpp"
+#include "tools/testing/debugged_test.hpp"
 #include "tools/testing/reports.hpp"
 #include "tools/testing/run_test.hpp"
 
@@ -48,8 +49,9 @@ std::string uri_of_file(const std::string& path) {
 
 }  // namespace
 
-PlantFiles::PlantFiles(std::string path, CompileFlags compile, std::string read_only)
-    : path_(std::move(path)), compile_(std::move(compile)), read_only_(std::move(read_only)) {}
+PlantFiles::PlantFiles(std::string path, CompileFlags compile, std::string read_only,
+                       std::optional<sessions::OfTest> test)
+    : path_(std::move(path)), compile_(std::move(compile)), read_only_(std::move(read_only)), test_(std::move(test)) {}
 
 std::vector<std::string> PlantFiles::programs() const {
   if (!is_plant(path_)) return {path_};
@@ -79,6 +81,7 @@ std::vector<Files::Entry> PlantFiles::list() {
     all.push_back({name, kind, uri_of_file(name), read_only_.empty() ? std::move(read_only) : read_only_});
     read_.insert(name);
   };
+  if (test_) add(test_->file, Kind::Test, "");
   if (is_plant(path_)) add(path_, Kind::Plant, "");
   const std::vector<std::string> programs = this->programs();
   for (const std::string& program : programs) {
@@ -147,19 +150,31 @@ std::string PlantFiles::write(const std::string& file, const std::string& text) 
   return place;
 }
 
+debug::Debuggee debuggee_of(const sessions::OfTest& test, const CompileFlags& compile) {
+  return testing::debugged_test(testing::chosen_test(test.file, test.test_case), compile,
+                                {.speed = test.speed, .seed = test.seed});
+}
+
 Build PlantFiles::build() {
   Build build;
   BuildRecord record;
   CompileFlags flags = compile_;
   flags.record = &record;
   try {
-    PlantInput input = read_plant_input(path_, flags);
-    make_plant(input, runtime::FileUse::Look, {}, execution_of(), &record);  // tells what its units refuse
-    for (const runtime::StationConfig& station : input.file.stations) build.stations.push_back(station.name);
-    build.programs = input.programs;
-    build.make = [input = std::move(input)] { return make_plant(input, runtime::FileUse::Look); };
+    if (!testing::is_test_file(path_)) {  // a plant that stands in a test is read with it
+      PlantInput input = read_plant_input(path_, flags);
+      make_plant(input, runtime::FileUse::Look, {}, execution_of(), &record);  // tells what its units refuse
+      for (const runtime::StationConfig& station : input.file.stations) build.stations.push_back(station.name);
+      build.programs = input.programs;
+      build.make.emplace([input = std::move(input)] { return make_plant(input, runtime::FileUse::Look); });
+    }
+    if (test_) build.make = debuggee_of(*test_, compile_);
   } catch (const Failure& failure) {
-    if (*failure.what() != '\0') record.tell({"error", "", 0, 0, failure.what()});
+    build.make.reset();
+    if (*failure.what() != '\0')
+      record.tell({"error", "", 0, 0, failure.what()});
+    else if (record.messages.empty())
+      record.tell({"error", test_ ? test_->file : "", 0, 0, "the test cannot run; ipos test tells why"});
   }
   for (const auto& [file, text] : record.texts) read_.insert(file);
   build.texts = std::move(record.texts);

@@ -2,6 +2,7 @@
 // its tests and sessions. Only these are written; standard C++ and tools/cli are all that is asked of the system.
 #pragma once
 
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -11,10 +12,15 @@
 
 namespace ipos::tools::serve {
 
+// A test with its script; mistakes as of testing::debugged_test().
+debug::Debuggee debuggee_of(const sessions::OfTest& test, const CompileFlags& compile);
+
 class PlantFiles final : public Files {
  public:
   // `path`: of the plant file, or of a single program or image. `read_only`: why nothing may be written; empty: it may.
-  PlantFiles(std::string path, CompileFlags compile, std::string read_only = {});
+  // `test`: whose script runs beside the plant.
+  PlantFiles(std::string path, CompileFlags compile, std::string read_only = {},
+             std::optional<sessions::OfTest> test = {});
 
   std::vector<Entry> list() override;
   std::optional<std::string> compiled(const std::string& file) override;
@@ -23,6 +29,7 @@ class PlantFiles final : public Files {
   Build build() override;
   std::string test(const std::vector<std::string>& files) override;
   Texts templates() override;
+  std::optional<sessions::OfTest> test_beside() override { return test_; }
 
  private:
   std::vector<std::string> programs() const;  // that the plant names now, as files
@@ -32,6 +39,7 @@ class PlantFiles final : public Files {
   std::string path_;
   CompileFlags compile_;
   std::string read_only_;
+  std::optional<sessions::OfTest> test_;
   std::set<std::string> read_;  // by the builds so far
 };
 

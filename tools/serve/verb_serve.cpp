@@ -32,6 +32,8 @@
 #include "tools/serve/plant_files.hpp"
 #include "tools/serve/plant_ports.hpp"
 #include "tools/serve/server.hpp"
+#include "tools/test_file/read_tests.hpp"
+#include "tools/testing/debugged_test.hpp"
 
 namespace ipos::tools {
 namespace {
@@ -39,6 +41,8 @@ namespace {
 struct ServeFlags {
   std::string file;
   std::shared_ptr<const serve::OpenedSession> session{};  // FILE was one; `file` is its plant
+  std::optional<sessions::OfTest> test{};  // FILE was one; `file` is its plant
+  std::string test_case;
   std::string bind = "127.0.0.1";
   uint16_t port = 0;
   bool open = false;
@@ -64,6 +68,7 @@ Pair make_pair_of_sockets() {
 // The gallery is that of a folder; a session has its own.
 serve::Kept kept_of(const ServeFlags& flags) {
   if (flags.session) return serve::Kept::of_plant(flags.session->path());
+  if (flags.test) return serve::Kept::of_plant(flags.test->file);
   return flags.device.port.empty() ? serve::Kept::of_plant(flags.file.empty() ? "." : flags.file)
                                    : serve::Kept::of_drive(flags.device.port, flags.address);
 }
@@ -114,15 +119,17 @@ int run_host(ServeFlags flags, PlantInput input, const Pair& sockets) {
   const bool chosen = flags.file.empty();
   if (chosen && (flags.file = run_gallery(flags, channel, input)).empty()) return kGood;
   const bool snapshots = flags.snapshots && !serve::PlantPorts::has_ports(input.file);
-  const std::string title = std::filesystem::path(flags.file).filename().string();
+  const std::string title = std::filesystem::path(flags.test ? flags.test->file : flags.file).filename().string();
   const serve::SteadyClock clock;
   serve::ForkedCopies copies(snapshots);
   serve::PlantPorts ports;
   serve::PlantFiles files(flags.file, flags.compile,
-                          flags.session && flags.session->is_unpacked() ? serve::kFilesOfSession : why_read_only(flags));
+                          flags.session && flags.session->is_unpacked() ? serve::kFilesOfSession : why_read_only(flags),
+                          flags.test);
   serve::LanguageServer language(flags.compile);
-  serve::PlantHost host([input = std::move(input)] { return make_plant(input, runtime::FileUse::Look); },
-                        title, IPOS_VERSION, {channel, clock, copies, ports, files, language});
+  debug::Debuggee what([input = std::move(input)] { return make_plant(input, runtime::FileUse::Look); });
+  if (flags.test) what = serve::debuggee_of(*flags.test, flags.compile);
+  serve::PlantHost host(std::move(what), title, IPOS_VERSION, {channel, clock, copies, ports, files, language});
   const serve::Kept kept = kept_of(flags);
   kept.add_commands(host.router());
   if (flags.session) flags.session->resume(host);
@@ -160,9 +167,20 @@ int serve_page(ServeFlags flags) {
   if (serve::is_session(flags.file)) {
     flags.session = std::make_shared<const serve::OpenedSession>(flags.file);
     flags.file = flags.session->plant();
+    flags.test = flags.session->beside();
+  } else if (testing::is_test_file(flags.file)) {
+    flags.test = sessions::OfTest{flags.file, flags.test_case};
   }
+  if (!flags.test_case.empty() && !testing::is_test_file(flags.file))
+    throw Failure(kUsage, "--case chooses a case of a test (NAME.test.toml)");
   PlantInput input;
-  if (!flags.file.empty()) input = read_plant_input(flags.file, flags.compile);
+  if (flags.test) {
+    const auto test = testing::chosen_test(flags.test->file, flags.test->test_case);
+    flags.file = test->plant_path;
+    input.file = test->plant;
+  } else if (!flags.file.empty()) {
+    input = read_plant_input(flags.file, flags.compile);
+  }
   const Pair sockets = make_pair_of_sockets();
   ReplaceableProcess host([&] {
     return end_of_process(
@@ -200,7 +218,8 @@ void add_serve(cli::Verb& app) {
   auto flags = std::make_shared<ServeFlags>();
   cli::Verb& verb = app.verb("serve", "a page in the browser to watch, touch and understand a plant");
   verb.option("FILE", flags->file,
-              "plant (.toml) or its folder, source (.IPC), image (.ipx), session (.ipos); default: the only plant here, else the gallery");
+              "plant (.toml) or its folder, source (.IPC), image (.ipx), session (.ipos), test (.test.toml) with what it does; default: the only plant here, else the gallery");
+  verb.option("--case", flags->test_case, "case of a test that has several");
   verb.option("--port", flags->port, "port to listen at; default 0: that of the last time, or any free one");
   verb.option("--bind", flags->bind, "address to listen at; default 127.0.0.1, which others cannot reach");
   verb.flag("--open", flags->open, "open the page in a browser");

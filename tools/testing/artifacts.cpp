@@ -9,11 +9,13 @@
 #include <sstream>
 
 #include "runtime/bus/log/unique_names.hpp"
+#include "tools/cli/failure.hpp"
 #include "tools/cli/outputs.hpp"
 #include "tools/logs/log_writer.hpp"
 #include "tools/recording/plot_html.hpp"
 #include "tools/recording/recording.hpp"
 #include "tools/recording/trace.hpp"
+#include "tools/testing/failed_state.hpp"
 #include "tools/testing/reports.hpp"
 
 namespace ipos::tools::testing {
@@ -100,6 +102,21 @@ class Witness {
   Time sampled_ = 0;
 };
 
+// What cannot be kept leaves a text that says why.
+void keep_state(const std::string& folder, const TestCase& test, const TestResult& result, const SuiteOptions& options,
+                uint64_t seed) {
+  RunOptions run;
+  run.speed = options.run.speed;
+  run.seed = seed;
+  const auto first = std::min_element(result.findings.begin(), result.findings.end(),
+                                      [](const Finding& a, const Finding& b) { return a.time < b.time; });
+  try {
+    replace_file(folder + "/state.ipos", failed_state(test, options.compile, run, first->time));
+  } catch (const Failure& failure) {
+    replace_file(folder + "/no-state.txt", fmt::format("{}\n", failure.what()));
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> artifact_folders(const std::vector<TestResult>& results) {
@@ -143,6 +160,7 @@ void write_artifacts(const std::string& folder, const std::vector<TestCase>& tes
       if (const auto witness = present.lock()) witness->write();
     };
     run_test(test, programs, again);
+    if (!result.findings.empty()) keep_state(own, test, result, options, again.seed);
   }
 }
 

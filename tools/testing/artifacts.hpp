@@ -12,7 +12,8 @@ namespace ipos::tools::testing {
 // The folder of each result: the name of its test as a name of a file, and no two alike.
 std::vector<std::string> artifact_folders(const std::vector<TestResult>& results);
 
-// Of each result that did not pass: plot.html, trace.csv, trace.vcd, bus.pcapng, journal.txt, report.txt. `results`
+// Of each result that did not pass: plot.html, trace.csv, trace.vcd, bus.pcapng, journal.txt, report.txt, and state.ipos for
+// `ipos serve`. `results`
 // are those of run_suite() with these tests.
 void write_artifacts(const std::string& folder, const std::vector<TestCase>& tests,
                      const std::vector<TestResult>& results, const SuiteOptions& options);

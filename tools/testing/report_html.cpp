@@ -26,7 +26,7 @@ std::string links(const std::string& folder, const TestResult& result) {
   if (folder.empty() || (result.outcome != Outcome::Failed && result.outcome != Outcome::Malformed))
     return "";
   std::string text = "<p>";
-  for (const char* file : {"plot.html", "trace.csv", "trace.vcd", "bus.pcapng", "journal.txt", "report.txt"})
+  for (const char* file : {"plot.html", "trace.csv", "trace.vcd", "bus.pcapng", "journal.txt", "report.txt", "state.ipos"})
     if (result.outcome == Outcome::Failed || std::string_view(file) == "report.txt")
       text += fmt::format("<a href=\"{}/{}\">{}</a> ", xml_attribute(folder), file, file);
   text += "</p>";

@@ -21,11 +21,11 @@ struct RunOptions {
   // Called when a plant is built, before its first event: here collectors attach themselves to the machines
   // of its stations. What it returns lives until the test is over, but not longer than the plant. Called
   // from the thread of the test.
-  std::function<std::shared_ptr<void>(runtime::Plant&)> prepare;
+  std::function<std::shared_ptr<void>(runtime::Plant&)> prepare{};
   // Called in every millisecond when all of it has happened, and when the test is over, before what prepare()
   // has returned is gone. May be empty.
-  std::function<void(Time)> sample;
-  std::function<void()> finish;
+  std::function<void(Time)> sample{};
+  std::function<void()> finish{};
 };
 
 TestResult run_test(const TestCase& test, Programs& programs, const RunOptions& options);

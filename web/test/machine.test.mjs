@@ -165,6 +165,7 @@ test("a hoist stands at its floor, in the user's unit; its cage, switches and li
     assert.strictEqual(await hoist.locator(".reached").count(), 0);
     const forced = button(page, "Force hoist DI04");
     await forced.click();
+    await page.getByRole("button", { name: "Force hoist DI04", pressed: true }).waitFor();
     await page.getByRole("switch", { name: "hoist DI04" }).click();
     await hoist.locator(".reached").getByText("DI04 /LIM. SWITCH CW").waitFor();
     assert.strictEqual(await hoist.locator(".mark.switch.on").count(), 1);
@@ -323,3 +324,62 @@ test("between two states it moves on a straight way; at a pause, and for who wan
     }
   }
 });
+
+// A frame of 8 bytes takes some 0.2 ms at 500 kbit/s, which at the speed 0.001 is 0.2 s on the page.
+test("telegrams run along the line in slow motion; one is read by a click; a cable is cut", { skip }, () =>
+  meet(`${examples}/scom/scom.toml`, async (page, server) => {
+    await standAt(server, page, 100);
+    await page.getByRole("combobox", { name: "Speed" }).selectOption("0.001");
+    await button(page, "Run").click();
+    const dot = page.locator("g.telegram:not([style*='none'])").first();
+    const seen = new Set();
+    let text = "";
+    await until(async () => {
+      const now = await page.evaluate(() => {
+        const one = [...document.querySelectorAll("g.telegram")].find((group) => group.style.display !== "none");
+        return one && { x: one.querySelector("circle").getAttribute("cx"), label: one.getAttribute("aria-label") };
+      });
+      if (now) {
+        if (text !== now.label) seen.clear();
+        text = now.label;
+        seen.add(now.x);
+      }
+      return seen.size > 2;
+    }, "no telegram moves");
+    await until(async () => {
+      await dot.dispatchEvent("pointerdown", {}, { timeout: 5000 }).catch(() => undefined);
+      return (await page.locator(".telegram-words").textContent()) !== "";
+    }, "none can be read");
+    const words = await page.locator(".telegram-words").textContent();
+    assert.match(words, /^0\.1\d\d s sbus, unit[12]: /);
+    await button(page, "Pause").click();
+    // The trace has the same telegram, in the same words.
+    await page.getByRole("tab", { name: "Bus" }).click();
+    const row = page.getByRole("table", { name: "Telegrams" }).getByRole("row").filter({ hasText: words.match(/: (.*?) [0-9A-F]{2} /)[1] });
+    await row.first().waitFor();
+    await page.getByRole("tab", { name: "Plant" }).click();
+    await page.getByRole("button", { name: "Cut unit1 from sbus" }).click();
+    await page.getByRole("button", { name: "Cut unit1 from sbus", pressed: true }).waitFor();
+    await hasNoFindings(page, "slow motion");
+  }),
+);
+
+test("what happens here is told, and what is planned before it comes", { skip }, () =>
+  meet(`${examples}/hoist/hoist.toml`, async (page, server) => {
+    const story = page.getByRole("group").filter({ hasText: "What happens here" });
+    await story.getByText("The cabin stands 8000 increments above the lower limit switch").waitFor();
+    await story.getByText("4.000 s hoist.DI10 = 1 for 100 ms, every 4 s").waitFor();
+    const planned = page.getByRole("status", { name: "Planned" });
+    await standAt(server, page, 1900);
+    assert.strictEqual(await planned.textContent(), "");
+    await standAt(server, page, 2100);
+    await until(async () => (await planned.textContent()) === "Planned at 4.000 s: hoist.DI10 = 1 for 100 ms", "it is not announced");
+    await standAt(server, page, 4200);
+    await until(async () => /^Planned at 6\.000 s: hoist\.DI11/.test(await planned.textContent()), "the next one is not announced");
+    await story.getByText("What happens here").click();
+    await page.reload();
+    await story.waitFor();
+    assert.strictEqual(await story.getAttribute("open"), null, "it opens again by itself");
+    await hasNoFindings(page, "the story");
+  }),
+);

@@ -204,6 +204,7 @@ test("trace and journal on a phone: nothing lies beside the box; the journal lea
     await page.getByRole("switch", { name: "hoist DI04" }).waitFor();
     await standAt(server, page, 4500); // it is on its way up
     await page.getByRole("button", { name: "Force hoist DI04" }).click();
+    await page.getByRole("button", { name: "Force hoist DI04", pressed: true }).waitFor();
     await page.getByRole("switch", { name: "hoist DI04" }).click();
     await order(server, { do: "step", ms: 20 });
     await tab(page, "Journal");

@@ -78,7 +78,7 @@ TEST(Report, ArtifactsOfWhatFailed) {
     if (entry.is_regular_file())
       files.insert(entry.path().lexically_relative(folder.path() / "left").string());
   EXPECT_EQ(files, (std::set<std::string>{"bad/bus.pcapng", "bad/journal.txt", "bad/plot.html",
-                                          "bad/report.txt", "bad/trace.csv", "bad/trace.vcd"}));
+                                          "bad/report.txt", "bad/state.ipos", "bad/trace.csv", "bad/trace.vcd"}));
   const std::string trace = read_text(folder.path() / "left/bad/trace.csv");
   EXPECT_TRUE(
       trace.starts_with("time_ms,u.speed [rpm],u.setpoint [rpm],u.status,v.speed [rpm],"

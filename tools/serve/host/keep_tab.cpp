@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "runtime/plant/trace_hash.hpp"
+#include "tools/serve/host/kept_session.hpp"
 #include "tools/serve/host/kept_test.hpp"
-#include "tools/serve/host/session.hpp"
 #include "tools/serve/host/tabs.hpp"
 
 namespace ipos::tools::serve {
@@ -101,7 +101,7 @@ class KeepTab final : public Tab {
 
   // `settings`: of the page, which come back with it.
   Json session(const Arguments& a) {
-    return {{"text", session_text(session_of(host_, a.has("settings") ? a.json()["settings"] : Json::object()))}};
+    return {{"text", sessions::session_text(session_of(host_, a.has("settings") ? a.json()["settings"] : Json::object()))}};
   }
 
   // Those that are asked for, else all of the plant; beside the plant, where there are copies.

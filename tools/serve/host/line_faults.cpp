@@ -72,10 +72,6 @@ void check(const FaultRule& rule, const runtime::Bus& bus, const std::string& st
 uint32_t per_mille(const FaultConfig& config) {
   return config.profibus ? config.profibus->per_mille : config.fault.per_mille;
 }
-std::string_view word_of(const FaultConfig& config) {
-  return config.profibus ? profibus::line_fault_type(config.profibus->kind).word
-                         : runtime::fault_type(config.fault.kind).word;
-}
 
 FaultConfig config_of(const runtime::Bus& bus, const FaultRule& rule, const Arguments& a, runtime::Time now) {
   runtime::WantedFault wanted{rule.word, now};
@@ -93,6 +89,16 @@ FaultConfig config_of(const runtime::Bus& bus, const FaultRule& rule, const Argu
 void LineFaults::built(runtime::Plant& plant) {
   plant_ = &plant;
   planted_ = plant.file().faults;
+}
+
+std::string_view LineFaults::word(const FaultConfig& config) {
+  return config.profibus ? profibus::line_fault_type(config.profibus->kind).word
+                         : runtime::fault_type(config.fault.kind).word;
+}
+
+std::pair<runtime::Time, runtime::Time> LineFaults::times(const FaultConfig& config) {
+  if (config.profibus) return {config.profibus->from, config.profibus->until};
+  return {config.fault.from, config.fault.until};
 }
 
 Json LineFaults::kinds(const runtime::Bus& line) {
@@ -136,7 +142,7 @@ Json LineFaults::planted_on(const std::string& bus) const {
   Json faults = Json::array();
   for (const FaultConfig& config : planted_) {
     if (config.bus != bus || !runtime::is_active(config, plant_->now())) continue;
-    Json fault{{"kind", word_of(config)}, {"station", config.station}};
+    Json fault{{"kind", word(config)}, {"station", config.station}};
     if (config.fault.id) fault["id"] = *config.fault.id;
     if (per_mille(config) < 1000) fault["rate"] = per_mille(config) / 1000.0;
     faults.push_back(std::move(fault));

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "runtime/plant/plant.hpp"
@@ -18,6 +20,10 @@ class LineFaults {
   // The kinds in their order, and what each of them takes; both empty for lines without faults.
   static Json kinds(const runtime::Bus& line);
   static Json rules(const runtime::Bus& line);
+
+  // Of one: its kind in a word, and from when until when.
+  static std::string_view word(const runtime::FaultConfig& fault);
+  static std::pair<runtime::Time, runtime::Time> times(const runtime::FaultConfig& fault);
 
   // The command `fault`; a Mistake says why not.
   void carry_out(const Arguments& arguments);

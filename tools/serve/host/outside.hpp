@@ -12,6 +12,7 @@
 #include "tools/debugger/debugger.hpp"
 #include "tools/serve/host/arguments.hpp"
 #include "tools/serve/host/message.hpp"
+#include "tools/sessions/session.hpp"
 
 namespace ipos::tools::serve {
 
@@ -43,13 +44,13 @@ class Ports {
 };
 
 // By the name of a file.
-using Texts = std::map<std::string, std::string>;
+using sessions::Texts;
 
 // The plant as its files are now: read, compiled and checked.
 struct Build {
-  bool good() const { return static_cast<bool>(make); }
+  bool good() const { return make.has_value(); }
 
-  debug::MakePlant make;  // empty: it has mistakes
+  std::optional<debug::Debuggee> make;  // empty: it has mistakes
   std::vector<std::string> stations;               // their names
   std::vector<std::optional<vm::Image>> programs;  // by station
   Texts texts;                                     // that it was made of
@@ -88,6 +89,8 @@ class Files {
   virtual std::string test(const std::vector<std::string>& /*files*/) { throw Mistake("no tests can be run here"); }
   // Programs that a new station can begin with, by their names.
   virtual Texts templates() { return {}; }
+  // The test whose script runs beside the plant; its file by the name of the list.
+  virtual std::optional<sessions::OfTest> test_beside() { return std::nullopt; }
 };
 
 // What editors ask a language server: completion, hover, messages.

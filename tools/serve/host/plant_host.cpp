@@ -8,7 +8,6 @@
 
 #include "runtime/clock/lateness.hpp"
 #include "runtime/plant/trace_hash.hpp"
-#include "tools/serve/host/session.hpp"
 #include "tools/serve/host/tabs.hpp"
 
 namespace ipos::tools::serve {
@@ -41,7 +40,7 @@ const char* reason_text(debug::Reason reason) {
 
 }  // namespace
 
-PlantHost::PlantHost(debug::MakePlant make, std::string title, std::string version, const Around& around)
+PlantHost::PlantHost(debug::Debuggee what, std::string title, std::string version, const Around& around)
     : clock_(around.clock),
       copies_(around.copies),
       ports_(around.ports),
@@ -53,7 +52,7 @@ PlantHost::PlantHost(debug::MakePlant make, std::string title, std::string versi
       texts_(around.files) {
   add_action("load", [this](const Json& action) { load_program(Arguments(action)); });
   tabs_ = make_tabs(*this);
-  debugger_.emplace(std::move(make), *this, copies_.snapshots(), runtime::kNever);
+  debugger_.emplace(std::move(what), *this, copies_.snapshots(), runtime::kNever);
   elsewhere_ = false;
   router_.hello = [this] {
     return Json{{"protocol", 1},   {"version", version_}, {"mode", "plant"},
@@ -69,7 +68,7 @@ void PlantHost::restore(const Json& settings) {
   for (const auto& tab : tabs_) tab->restore(settings);
 }
 
-void PlantHost::resume(const Session& session) {
+void PlantHost::resume(const sessions::Session& session) {
   try {
     debugger_->resume(session.actions, session.moment);
   } catch (const Mistake&) {
@@ -360,7 +359,7 @@ class PlantHost::ByTurns final : public SecondRun, private Outbox {
  public:
   explicit ByTurns(PlantHost& first)
       : first_(first),
-        second_(first.debugger_->maker(), first.title_, first.version_, {*this, first.clock_, copies_, ports_, first.files_, first.language_}),
+        second_(first.debugger_->debuggee(), first.title_, first.version_, {*this, first.clock_, copies_, ports_, first.files_, first.language_}),
         end_(first.plant_->now()) {
     ++first_.second_runs_;
     second_.debugger_->will_do_as(*first.debugger_);
@@ -441,7 +440,13 @@ void PlantHost::load(const Json& state) {
   takes_snapshot_ = false;
 }
 
-void PlantHost::output(const std::string& text) { router_.send_all({{"event", "output"}, {"text", text}}); }
+void PlantHost::output(const std::string& text) {
+  router_.send_all({{"event", "output"}, {"text", text}});
+  if (!files_.test_beside()) return;
+  const std::string line = text.substr(0, text.find('\n'));
+  const size_t place = line.find(": ");  // of the test; the mark has its words only
+  mark("check", place == std::string::npos ? line : line.substr(place + 2), "", text);
+}
 
 void PlantHost::built(runtime::Plant& plant) {
   plant_ = &plant;

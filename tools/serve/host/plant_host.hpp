@@ -17,10 +17,9 @@
 #include "tools/serve/host/outside.hpp"
 #include "tools/serve/host/router.hpp"
 #include "tools/serve/host/running_texts.hpp"
+#include "tools/sessions/session.hpp"
 
 namespace ipos::tools::serve {
-
-struct Session;
 
 // One tab of the page: its commands, its topic and what it gathers while the plant runs.
 class Tab {
@@ -54,13 +53,13 @@ class PlantHost final : public debug::FrontEnd, private runtime::EventTarget {
     Files& files;
     Language& language;
   };
-  PlantHost(debug::MakePlant make, std::string title, std::string version, const Around& around);
+  PlantHost(debug::Debuggee what, std::string title, std::string version, const Around& around);
   ~PlantHost() override;
 
   // What was set on the page at an earlier start; before the first turn.
   void restore(const Json& settings);
   // The moment of a session, from 0 s on; before the first turn. A Mistake: this plant does not come to it.
-  void resume(const Session& session);
+  void resume(const sessions::Session& session);
   void take(const Message& message);
   // Some milliseconds of the plant, if there is something to run, and what is news. Returns when the next turn is due; a message
   // may come before.

@@ -8,6 +8,7 @@
 #include "runtime/signals/find.hpp"
 #include "stdlib/parameters.hpp"
 #include "tools/serve/host/line_faults.hpp"
+#include "tools/serve/host/story.hpp"
 #include "tools/serve/host/line_monitor.hpp"
 #include "tools/serve/host/machine_picture.hpp"
 #include "tools/serve/host/station_state.hpp"
@@ -50,7 +51,12 @@ class PlantTab final : public Tab {
  public:
   explicit PlantTab(PlantHost& host) : host_(host) {
     Router& router = host.router();
-    router.add_command("plant", [this](const Router::Call&) { return Json{{"plant", describe()}}; });
+    router.add_command("plant", [this](const Router::Call&) {
+      Json plant = describe();
+      plant["story"] = story_of(host_);
+      plant["planned"] = planned_acts(host_.plant());
+      return Json{{"plant", std::move(plant)}};
+    });
     router.add_topic("plant",
                    [this](Client& client, Subscription& subscription) { publish(client, subscription); });
     add("input", {"station", "name", "action", "on", "ms"},

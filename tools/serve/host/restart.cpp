@@ -27,7 +27,7 @@ void PlantHost::restart() {
       forced.push_back({{"name", hold.signal.name}, {"value", hold.value}});
   const RunningTexts before = texts_;
   try {
-    debug::MakePlant next;
+    std::optional<debug::Debuggee> next;
     if (offered_) {
       next = offered().make;
       texts_.restarted(build_->texts);

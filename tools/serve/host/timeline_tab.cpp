@@ -15,7 +15,7 @@ constexpr size_t kMostMarks = 2'000;  // beyond that the oldest of the journal g
 
 struct Mark {
   int64_t us = 0;
-  std::string kind;  // fault, journal, trigger, breakpoint, click
+  std::string kind;  // fault, check (of a test), journal, trigger, breakpoint, click
   std::string what;  // DI10, F26
   std::string station;
   std::string text;  // a whole sentence, where there is one

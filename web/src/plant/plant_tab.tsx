@@ -12,6 +12,7 @@ import { Ports } from "./ports";
 import { followPlant, isOnSilentLine, isUnwell, lineState, lineTrouble, stationState, wanted } from "./state";
 import { StationCard } from "./station_card";
 import { StationsTable } from "./stations_table";
+import { Story } from "./story";
 
 const many = 9; // stations, from which on they are rows
 
@@ -114,6 +115,7 @@ export function PlantTab() {
   return (
     <>
       {hello.value?.mode === "device" && <Jog />}
+      <Story />
       <Lines description={description} />
       <Ports />
       <Stations description={description} />

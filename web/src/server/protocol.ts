@@ -119,6 +119,16 @@ export interface Plant {
   wires: Wire[];
   switches: Cam[];
   barriers?: Barrier[];
+  story?: string; // at the head of the plant file
+  planned?: Planned[];
+}
+
+// What the plant file plans.
+export interface Planned {
+  us: number;
+  every_us: number; // 0: once
+  times: number; // with every_us; 0: for ever
+  text: string;
 }
 
 // What a station drives. `limits` and `reference` are in increments of H511, the others in the unit.
@@ -349,7 +359,7 @@ export interface Breakpoint {
 // What happened at a moment that one can go to.
 export interface Mark {
   us: number;
-  kind: "fault" | "journal" | "trigger" | "breakpoint" | "click";
+  kind: "fault" | "check" | "journal" | "trigger" | "breakpoint" | "click";
   what: string;
   station: string;
   text: string; // a whole sentence, where there is one

@@ -9,6 +9,7 @@ import { furthestMs, goTo, marks, nowMs } from "./moments";
 
 const kinds: [kind: Mark["kind"], text: string][] = [
   ["fault", "faults"],
+  ["check", "checks of the test"],
   ["click", "clicks"],
   ["trigger", "triggers"],
   ["breakpoint", "breakpoints"],

@@ -2,6 +2,7 @@
 import { useEffect } from "preact/hooks";
 
 import { secondsText, time } from "../server/live";
+import { Coming } from "../plant/story";
 import { MarkDots, MarkList } from "./marks";
 import { dropped, followTimeline, furthestMs, goTo, marks, noPast, nowMs } from "./moments";
 
@@ -74,6 +75,7 @@ export function Timeline() {
           <MarkList />
           <p class="told">
             <Past />
+            <Coming />
             <span role="status">
               {dropped.value && `${clicksText(dropped.value.clicks)} after ${secondsText(dropped.value.us)} dropped: the plant went on from there.`}
             </span>

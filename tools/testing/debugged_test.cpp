@@ -1,5 +1,5 @@
 // The script is told each millisecond that has passed, no matter what runs the plant and how often.
-#include "tools/debug/debugged_test.hpp"
+#include "tools/testing/debugged_test.hpp"
 
 #include <fmt/format.h>
 
@@ -12,15 +12,13 @@
 #include "tools/testing/report_words.hpp"
 #include "tools/testing/script.hpp"
 
-namespace ipos::tools::debug {
+namespace ipos::tools::testing {
 namespace {
 
-using testing::TestCase;
-
-class ScriptBeside final : public Companion {
+class ScriptBeside final : public debug::Companion {
  public:
-  ScriptBeside(const TestCase& test, runtime::Plant& plant, std::function<void(const std::string&)> tell)
-      : tell_(std::move(tell)), script_(test, plant, 0, result_) {
+  ScriptBeside(const TestCase& test, runtime::Plant& plant, uint64_t seed, std::function<void(const std::string&)> tell)
+      : tell_(std::move(tell)), script_(test, plant, seed, result_) {
     result_.name = test.name;
     script_.resolve();
     script_.begin();
@@ -30,33 +28,18 @@ class ScriptBeside final : public Companion {
     if (script_.over() || (now == 0 && script_.due() != 0)) return;
     script_.passed(now);
     script_.go_on();
-    for (; told_ < result_.findings.size(); ++told_) tell_(testing::text_of_finding(result_.findings[told_]));
+    for (; told_ < result_.findings.size(); ++told_) tell_(text_of_finding(result_.findings[told_]));
     if (script_.over())
-      tell_(fmt::format("{}: the test is over at {}: {} checks, {} not met\n", result_.name, testing::time_text(now),
+      tell_(fmt::format("{}: the test is over at {}: {} checks, {} not met\n", result_.name, time_text(now),
                         result_.checks, result_.findings.size()));
   }
 
  private:
   std::function<void(const std::string&)> tell_;
-  testing::TestResult result_;
-  testing::Script script_;
+  TestResult result_;
+  Script script_;
   size_t told_ = 0;  // findings
 };
-
-TestCase chosen(const std::string& file, const std::string& name) {
-  std::vector<TestCase> tests = testing::read_tests(file);
-  if (tests.size() == 1 && name.empty()) return std::move(tests.front());
-  std::string known;
-  for (TestCase& test : tests) {
-    const size_t slash = test.name.rfind('/');
-    const std::string own = slash == std::string::npos || tests.size() == 1 ? "" : test.name.substr(slash + 1);
-    if (!name.empty() && own == name) return std::move(test);
-    known += (known.empty() ? "" : ", ") + own;
-  }
-  throw Failure(kUsage, tests.size() == 1
-                            ? fmt::format("{} has no cases to choose from", file)
-                            : fmt::format("{} has the cases {}: choose one of them (--case NAME)", file, known));
-}
 
 [[noreturn]] void refuse(int code, const std::string& messages) {
   fmt::print(stderr, "{}", messages);
@@ -65,22 +48,34 @@ TestCase chosen(const std::string& file, const std::string& name) {
 
 }  // namespace
 
-Debuggee debugged_test(const std::string& file, const std::string& name, const CompileFlags& compile, uint32_t speed) {
-  const auto test = std::make_shared<const TestCase>(chosen(file, name));
+std::shared_ptr<const TestCase> chosen_test(const std::string& file, const std::string& name) {
+  std::vector<TestCase> tests = testing::read_tests(file);
+  if (tests.size() == 1 && name.empty()) return std::make_shared<const TestCase>(std::move(tests.front()));
+  std::string known;
+  for (TestCase& test : tests) {
+    const size_t slash = test.name.rfind('/');
+    const std::string own = slash == std::string::npos || tests.size() == 1 ? "" : test.name.substr(slash + 1);
+    if (!name.empty() && own == name) return std::make_shared<const TestCase>(std::move(test));
+    known += (known.empty() ? "" : ", ") + own;
+  }
+  throw Failure(kUsage, tests.size() == 1
+                            ? fmt::format("{} has no cases to choose from", file)
+                            : fmt::format("{} has the cases {}: choose one of them (--case NAME)", file, known));
+}
+
+debug::Debuggee debugged_test(std::shared_ptr<const TestCase> test, const CompileFlags& compile, const RunOptions& options) {
   if (!test->errors.empty())
     refuse(kBadInput, mistakes_text(test->errors_in.empty() ? test->file : test->errors_in, test->errors, false));
-  const auto programs = std::make_shared<testing::Programs>(compile);
-  testing::RunOptions options;
-  options.speed = speed;
-  const testing::BuiltPlant first = build_plant(*test, *programs, options);
+  const auto programs = std::make_shared<Programs>(compile);
+  const BuiltPlant first = build_plant(*test, *programs, options);
   if (!first.plant) refuse(kFindings, first.messages);
-  testing::TestResult result;
-  const auto mistakes = testing::Script(*test, *first.plant, 0, result).resolve();
+  TestResult result;
+  const auto mistakes = Script(*test, *first.plant, options.seed, result).resolve();
   if (!mistakes.empty()) refuse(kBadInput, mistakes_text(test->file, mistakes, false));
   return {[test, programs, options] { return std::move(build_plant(*test, *programs, options).plant); },
-          [test](runtime::Plant& plant, std::function<void(const std::string&)> tell) {
-            return std::make_unique<ScriptBeside>(*test, plant, std::move(tell));
+          [test, seed = options.seed](runtime::Plant& plant, std::function<void(const std::string&)> tell) {
+            return std::make_unique<ScriptBeside>(*test, plant, seed, std::move(tell));
           }};
 }
 
-}  // namespace ipos::tools::debug
+}  // namespace ipos::tools::testing
