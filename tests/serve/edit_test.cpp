@@ -61,8 +61,10 @@ class Editing : public ::testing::Test {
   void begin(const std::string& read_only = {}) {
     page.reset();
     files.emplace(path("saw.toml"), tools::CompileFlags{}, read_only);
-    page.emplace([input = tools::read_plant_input(path("saw.toml"), {})] { return tools::make_plant(input, runtime::FileUse::Look); },
-                 clock, copies, *files);
+    const tools::debug::MakePlant make = [input = tools::read_plant_input(path("saw.toml"), {})] {
+      return tools::make_plant(input, runtime::FileUse::Look);
+    };
+    page.emplace(make, clock, copies, *files);
   }
 
   std::string path(const std::string& name) const { return (folder / name).string(); }

@@ -4,11 +4,14 @@
 
 #include <sys/types.h>
 
+#include <optional>
 #include <string>
 
 #include "tools/sessions/session.hpp"
 
 namespace ipos::tools::serve {
+
+class PlantHost;
 
 bool is_session(const std::string& path);  // NAME.ipos
 // Why the files of one that is unpacked are not written.
