@@ -27,7 +27,6 @@ class OpenedSession {
   OpenedSession& operator=(const OpenedSession&) = delete;
 
   const std::string& path() const { return path_; }
-  const Session& session() const { return session_; }
   // The moment and the settings of the session; before the first turn. A Failure: the plant does not come to that moment.
   void resume(PlantHost& host) const;
   const std::string& plant() const { return plant_; }  // the path of its file
