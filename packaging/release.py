@@ -87,9 +87,8 @@ def make_native(out: Path) -> None:
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder) / "python"
         shutil.copytree(ROOT / "python", copy, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info", "build"))
-        write_notices(["library"], copy / "NOTICES.txt")
         run("/usr/bin/python3", "-m", "pip", "wheel", ".", "--no-build-isolation", "--no-deps", "--no-index", "-q", "-w", folder, cwd=copy,
-            env={**os.environ, "IPOS_PLANT_LIBRARY": str(NATIVE / "lib/libipos_plant.so")})
+            env={**os.environ, "IPOS_SOURCE": str(ROOT), "IPOS_PLANT_LIBRARY": str(NATIVE / "lib/libipos_plant.so")})
         wheel, = Path(folder).glob("*.whl")
         pack_again(wheel, out / wheel.name)
 

@@ -30,7 +30,11 @@ def find_library() -> Path:
 class BuildWithLibrary(build_py):
     def run(self) -> None:
         super().run()
-        shutil.copy(find_library().resolve(), Path(self.build_lib) / "ipos" / LIBRARY)
+        package = Path(self.build_lib) / "ipos"
+        shutil.copy(find_library().resolve(), package / LIBRARY)
+        # The licences of what the library contains.
+        notices = SOURCE / "cmake/notices.cmake"
+        subprocess.run(["cmake", "-DIN=library", f"-DOUT={(package / 'NOTICES.txt').resolve()}", "-P", notices], check=True)
 
 
 class Wheel(bdist_wheel):

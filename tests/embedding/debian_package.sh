@@ -27,6 +27,11 @@ for file in share/man/man1/ipos.1 share/bash-completion/completions/ipos share/z
   [ -s "$work/root/usr/$file" ] || [ -s "$work/root/usr/$file.gz" ] || fail "the package has no $file"
 done
 [ -e "$work/root/usr/lib/python3/dist-packages/ipos/py.typed" ] || fail "the Python package of the package is not marked as typed"
+for words in copyright:'MIT License' copyright:preact copyright:Boost changelog.gz:unstable; do
+  zcat -f "$work/root/usr/share/doc/ipos/${words%%:*}" | grep "${words#*:}" >/dev/null || fail "${words%%:*} has no ${words#*:}"
+done
+# What Debian's policy forbids; `./dev release` installs it.
+command -v lintian >/dev/null && { lintian --fail-on error "$package" >"$work/lintian" 2>&1 || fail "$(cat "$work/lintian")"; }
 
 [ "$(id -u)" = 0 ] || { echo "not installed: that takes root"; exit 0; }
 # The folders of the overlays must not lie on an overlay themselves.

@@ -18,6 +18,8 @@ import ipos
 assert ipos.__file__.startswith(sys.prefix), ipos.__file__
 names = {(each.group, each.name) for each in importlib.metadata.distribution("ipos").entry_points}
 assert names == {("pytest11", "ipos"), ("can.interface", "ipos")}, names
+notices = (__import__("pathlib").Path(ipos.__file__).parent / "NOTICES.txt").read_text()
+assert all(name in notices for name in ("{fmt}", "toml++", "GCC runtime")) and "preact" not in notices, notices[:200]
 with ipos.Plant(sys.argv[1]) as plant:
     plant.run("1s")
     print(plant["saw"]["lCount"], plant.trace_hash, (__import__("pathlib").Path(ipos.__file__).parent / "libipos_plant.so").exists())
