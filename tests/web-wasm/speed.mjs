@@ -29,7 +29,7 @@ const cases = [
     name: `64 drives, ${name}`,
     folder: join(plants, name),
     words: ["run", "plant.toml", "--engine", "fast"],
-    long: ["--for", "2s"],
+    long: ["--for", "20s"],
     small: ["--for", "0ms"],
   })),
 ];

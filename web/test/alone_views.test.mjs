@@ -169,11 +169,15 @@ test("clicks become a test that passes, and a session of the same moment", optio
     await session.getByText("Open it by the button Files").waitFor();
     await page.keyboard.press("Escape");
     await button(page, "Files").click();
+    await page.evaluate(() => (window.is_before = true));
     await button(page, "hoist/hoist.ipos").click();
+    await page.waitForFunction(() => !window.is_before && document.title.includes("hoist"));
     await until(async () => (await timer(page).textContent().catch(() => "")) === moment, `the session does not stand at ${moment}`);
     assert.equal(await page.getByRole("switch", { name: "hoist DI10" }).getAttribute("aria-checked"), "true");
     // The link has them, too.
     await button(page, "Share").click();
+    await page.getByRole("textbox", { name: "Link" }).or(page.getByRole("alert")).waitFor();
+    assert.equal(await page.getByRole("alert").count(), 0, await page.getByRole("alert").allTextContents().then(String));
     const link = await page.getByRole("textbox", { name: "Link" }).inputValue();
     await meet(async (other) => {
       await other.getByRole("switch", { name: "hoist DI10" }).waitFor();
