@@ -102,7 +102,7 @@ def make_windows(out: Path) -> None:
 
 def make_web(out: Path, seconds: int) -> None:
     run("cmake", "--preset", "web")
-    run("cmake", "--build", "--preset", "web", "--target", "ipos_site")
+    run("cmake", "--build", "--preset", "web", "--target", "ipos_site", "ipos_wasm_package")
     page = BUILD / "web/ipos.html"
     shutil.copy(page, out / f"ipos-{version()}.html")
     run("/usr/bin/python3", "packaging/site/build.py", BUILD / "web/site/docs", page)

@@ -98,7 +98,7 @@ skip() { # each processor has its share of the 5000
 }
 
 web() { # one build of it, and all that shows that it does what the native program does
-  cmake --preset web >/dev/null && cmake --build --preset web -j "$jobs" --target ipos_site || return 1
+  cmake --preset web >/dev/null && cmake --build --preset web -j "$jobs" --target ipos_site ipos_wasm_package || return 1
   configure release && cmake --build --preset release --target ipos ipos_web_wasm_tests ipos_random_plants || return 1
   build/release/tests/web-wasm/ipos_web_wasm_tests
 }

@@ -1,5 +1,5 @@
 // ipos in WebAssembly does what the native program does: every example, 300 random plants and the programs of tests/language,
-// in node and in Debian's Chromium. And the page without a server, which opens from a file, in Chromium and in Firefox. Skipped with the reason where
+// in node and in Debian's Chromium. So does the npm package. And the page without a server, which opens from a file, in Chromium and in Firefox. Skipped with the reason where
 // ./dev web has not been run on this commit: building it takes longer than all suites together.
 #include <gtest/gtest.h>
 
@@ -37,11 +37,15 @@ class InWebAssembly : public ::testing::Test {
     static const Package made = install_package("web", IPOS_PACKAGES_DIR);
     return made;
   }
+  static fs::path random_plants(const std::string& count) {
+    fs::path plants = fs::path(IPOS_PACKAGES_DIR) / "plants";
+    fs::remove_all(plants);
+    EXPECT_EQ(shell(".", IPOS_RANDOM_PLANTS " " + plants.string() + " " + count).exit_code, 0);
+    return plants;
+  }
   // Both compare the same cases.
   static void expect_equal(const std::string& where) {
-    const fs::path plants = fs::path(IPOS_PACKAGES_DIR) / "plants";
-    fs::remove_all(plants);
-    ASSERT_EQ(shell(".", IPOS_RANDOM_PLANTS " " + plants.string() + " 300").exit_code, 0);
+    const fs::path plants = random_plants("300");
     const ScriptResult result =
         shell(package().folder, "node " + project("tests/web-wasm/equal.mjs").string() + " " IPOS_PROGRAM " " +
                                     (built() / "tools").string() + " " + project(".").lexically_normal().string() + " " + plants.string() + " " + where);
@@ -63,6 +67,21 @@ class InWebAssembly : public ::testing::Test {
 
 TEST_F(InWebAssembly, RunsAsNativelyInNode) { expect_equal("node"); }
 
+// build/web/ipos-wasm, of the same commit as all of build/web.
+std::string npm_package() {
+  const fs::path folder = built() / "ipos-wasm";
+  return fs::exists(folder / "ipos-plant.js") ? folder.string() : "";
+}
+
+TEST_F(InWebAssembly, TheNpmPackageDoesTheSameInNode) {
+  if (npm_package().empty()) GTEST_SKIP() << "build/web/ipos-wasm is not there: ./dev web makes it";
+  const ScriptResult result = shell(package().folder, "node " + project("tests/web-wasm/package.mjs").string() + " " IPOS_PROGRAM " " +
+                                                          npm_package() + " " + project(".").lexically_normal().string() + " " +
+                                                          random_plants("60").string());
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  std::puts(result.output.c_str());
+}
+
 class InChromium : public InWebAssembly {
  protected:
   void SetUp() override {
@@ -76,6 +95,13 @@ TEST_F(InChromium, RunsAsNatively) { expect_equal("chromium"); }
 
 TEST_F(InChromium, OpensFromAFileWithoutANetwork) { expect_journeys("alone", 6); }
 TEST_F(InChromium, HasAllViewsWithoutAServer) { expect_journeys("alone_views", 7); }
+
+TEST_F(InChromium, TheElementRunsInAPage) {
+  if (npm_package().empty()) GTEST_SKIP() << "build/web/ipos-wasm is not there: ./dev web makes it";
+  const ScriptResult result = shell(package().folder, "node " + project("tests/web-wasm/element.mjs").string() + " " + npm_package() +
+                                                          " " + project(".").lexically_normal().string());
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+}
 
 TEST_F(InWebAssembly, OpensInFirefox) {
   if (!fs::exists("/usr/bin/firefox-esr")) GTEST_SKIP() << "/usr/bin/firefox-esr is not installed";
