@@ -28,7 +28,7 @@ NATIVE = BUILD / "release-native"  # without tests and asserts, beside the daily
 PARTS = {
     "linux-x86_64": ["linux", "page", "plot"], "windows-x86_64.exe": ["windows", "plot"], ".html": ["web", "page", "plot"],
     "site.tar.gz": ["web", "page", "plot", "site"], ".deb": ["deb", "page", "plot", "extension"], ".whl": ["library"],
-    ".vsix": ["extension"], ".tgz": ["web", "page", "plot"], "source.tar.gz": ["page", "plot"], "Containerfile": [], "NOTICES.txt": [],
+    ".vsix": ["extension"], ".tgz": ["web"], "source.tar.gz": ["page", "plot"], "Containerfile": [], "NOTICES.txt": [],
     ".zip": [], ".pack": [],  # firmware: the project's own sources alone
 }
 

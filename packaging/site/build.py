@@ -3,8 +3,9 @@
 The Markdown is laid out in a folder as the site will have it, README.md as its beginning, and Sphinx makes HTML of that. A link
 to a page leads to that page, a link to an example's folder to a page with its files, and a link to any other file of the
 sources, which the site does not have, becomes its text. With IPOS_HTML, which goes into the folder above OUT, each example runs
-beside its text."""
+beside its text, and so does an element <ipos-plant src="EXAMPLE"> where the npm package lies beside that file."""
 
+import json
 import os
 import re
 import shutil
@@ -17,6 +18,7 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 # A picture or a link; the words may have brackets in code.
 LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s]+)\)")
+ELEMENT = re.compile(r'<ipos-plant src="([^"]+)"([^>]*)></ipos-plant>')
 RUNNING = "build/web/ipos.html"  # examples and messages have links into it (docs/guide/browser.md)
 RENAMED = {"README.md": "index.md", "docs/README.md": "pages.md", "examples/README.md": "examples/index.md",
            "CHANGELOG.md": "changelog.md", "CONTRIBUTING.md": "contributing.md", "SECURITY.md": "security.md"}
@@ -64,6 +66,23 @@ def moved(text: str, page: str, places: dict[str, str], runs: bool) -> str:
     return "".join(part if part.startswith("```") else LINK.sub(link, part) for part in parts)
 
 
+def with_elements(text: str, page: str, place: str, runs: bool) -> str:
+    """A page of a folder cannot fetch: the files of an element stand in it. Without the package it is left out."""
+
+    def element(match: re.Match) -> str:
+        if not runs:
+            return ""
+        plant = ROOT / os.path.normpath(os.path.join(os.path.dirname(page), match[1]))
+        files = {file.name: file.read_text() for file in [plant, *sorted(plant.parent.glob("*.IPC"))]}
+        script = os.path.relpath("_static/ipos-plant.js", os.path.dirname(place) or ".")
+        inside = json.dumps(files).replace("<", "\\u003c")
+        return (f'<div>\n<ipos-plant{match[2]}><script type="application/json">{inside}</script></ipos-plant>\n'
+                f'<script src="{script}"></script>\n</div>')
+
+    parts = re.split(r"(^```.*?^```$|`[^`\n]*`)", text, flags=re.MULTILINE | re.DOTALL)
+    return "".join(part if part.startswith("`") else ELEMENT.sub(element, part) for part in parts)
+
+
 def example_page(folder: Path, runs: bool) -> str:
     files = sorted(file for file in folder.iterdir() if file.suffix in {".IPC", ".toml", ".h"})
     text = f"# {folder.name}\n\n`ipos serve examples/{folder.name}` shows it; `ipos new DIR --from {folder.name}` copies it.\n"
@@ -94,12 +113,12 @@ def shelves(places: dict[str, str]) -> str:
     return text
 
 
-def lay_out(folder: Path, runs: bool) -> None:
+def lay_out(folder: Path, runs: bool, elements: bool) -> None:
     places = pages()
     written: dict[str, str] = {}
     for page, place in places.items():
         if (ROOT / page).is_file():
-            written[place] = moved((ROOT / page).read_text(), page, places, runs)
+            written[place] = with_elements(moved((ROOT / page).read_text(), page, places, runs), page, place, elements)
         elif page.startswith("examples/"):
             written[place] = example_page(ROOT / page, runs)
         else:
@@ -136,16 +155,20 @@ def stand_alone(static: Path) -> None:
 def main() -> None:
     out = Path(sys.argv[1]).resolve()
     page = Path(sys.argv[2]) if len(sys.argv) > 2 else None
+    package = page.parent / "ipos-wasm/ipos-plant.js" if page else None
+    package = package if package and package.exists() else None
     with tempfile.TemporaryDirectory() as work:
         source = Path(work) / "source"
         source.mkdir()
-        lay_out(source, page is not None)
+        lay_out(source, page is not None, package is not None)
         shutil.rmtree(out, ignore_errors=True)
         # Hashes of Python's own are the order of some of its lists.
         subprocess.run([os.environ.get("SPHINX", "/usr/bin/sphinx-build"), "-q", "-W", "--keep-going", "-j", "auto", "-b", "html",
                         "-d", f"{work}/trees", str(source), str(out)], check=True, env={**os.environ, "PYTHONHASHSEED": "0"})
     (out / ".buildinfo").unlink()
     stand_alone(out / "_static")
+    if package is not None:
+        shutil.copy(package, out / "_static")
     if page is not None and page.resolve() != (out.parent / "ipos.html"):
         shutil.copy(page, out.parent / "ipos.html")
     print(f"{out}/index.html")

@@ -105,7 +105,7 @@ assert.deepEqual([own.id, own.length, ...own.data], [0x123, 3, 1, 2, 3]);
 assert.throws(() => scom.frames("none"), /no bus/);
 scom.close();
 
-const example = spawnSync(process.execPath, [join(project, "web/ipos-wasm/example.mjs")], { env: { ...process.env, IPOS_WASM: join(folder, "index.js") }, encoding: "utf8" });
+const example = spawnSync(process.execPath, [join(folder, "example.mjs"), join(examples, "hoist")], { encoding: "utf8" });
 assert.equal(example.status, 0, example.stderr);
 assert.equal(example.stdout.split("\n").filter((line) => line.includes("rpm")).length, 8);
 

@@ -1,6 +1,6 @@
 // <ipos-plant src="hoist.toml" signals="hoist.H420 hoist.torque" run>: a plant in a page, with its shafts, values and buttons to
 // run, pause and step. `src` and what it names are fetched from beside it, or stand in a child <script type="application/json">
-// as an object of texts by name.
+// as an object of texts by name; without `src` its first one is the plant.
 import { IposError, load } from "./index.js";
 
 const longest_turn_ms = 100; // a page that was away does not catch up
@@ -80,8 +80,9 @@ export class IposPlantElement extends HTMLElement {
   async restart() {
     try {
       const inside = this.querySelector('script[type="application/json"]');
-      const src = this.getAttribute("src") ?? "";
-      const { files, main } = inside ? { files: JSON.parse(inside.textContent), main: src } : await fetchFiles(src);
+      const given = inside && JSON.parse(inside.textContent);
+      const src = this.getAttribute("src") ?? (given ? Object.keys(given)[0] : "");
+      const { files, main } = given ? { files: given, main: src } : await fetchFiles(src);
       const ipos = await (instance ??= load(options));
       this.plant?.close();
       this.plant = ipos.open(files, main);

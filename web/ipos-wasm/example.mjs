@@ -1,10 +1,11 @@
-// node example.mjs: a hoist goes down to its limit switch and up; its speed each half second.
+// node example.mjs FOLDER, which is examples/hoist of the project: a hoist goes down to its limit switch and up.
 import { readFile } from "node:fs/promises";
+import { join } from "node:path";
 
-const { load } = await import(process.env.IPOS_WASM ?? "./index.js"); // "ipos-wasm" where it is installed
-const examples = new URL("../../examples/hoist/", import.meta.url);
+import { load } from "./index.js"; // "ipos-wasm" where it is installed
+
 const files = {};
-for (const name of ["hoist.toml", "HOIST.IPC"]) files[name] = await readFile(new URL(name, examples), "utf8");
+for (const name of ["hoist.toml", "HOIST.IPC"]) files[name] = await readFile(join(process.argv[2], name), "utf8");
 
 const ipos = await load();
 const plant = ipos.open(files, "hoist.toml");

@@ -1,5 +1,5 @@
 // Makes the package: node pack.mjs SOURCE CORE_FOLDER OUT VERSION LICENCE. CORE_FOLDER has core.js and core.wasm of
-// emscripten. ipos-plant.js is a classic script of all, with the WebAssembly inside, so that a page of a folder can have the
+// emscripten, and OUT already NOTICES.txt. ipos-plant.js is a classic script of all, with the WebAssembly inside, so that a page of a folder can have the
 // element without a server.
 import { copyFileSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -15,6 +15,7 @@ copyFileSync(join(core_folder, "core.wasm"), join(out, "ipos.wasm"));
 const core = readFileSync(join(core_folder, "core.js"), "utf8");
 writeFileSync(join(out, "core.js"), `${core}\nexport default ipos_core;\n`);
 
+const notices = readFileSync(join(out, "NOTICES.txt"), "utf8");
 const inlined = (name) =>
   text(name)
     .replace(/^import .* from ".*";$/gm, "")
@@ -23,7 +24,9 @@ const inlined = (name) =>
 const wasm = gzipSync(readFileSync(join(core_folder, "core.wasm")), { level: constants.Z_BEST_COMPRESSION }).toString("base64");
 writeFileSync(
   join(out, "ipos-plant.js"),
-  `// <ipos-plant> in one classic script: ipos-wasm ${version}, MIT licence.
+  `/*! <ipos-plant> in one classic script: ipos-wasm ${version}.
+${notices.replaceAll("*/", "* /")}
+*/
 (() => {
 ${core}
 const createCore = ipos_core;
