@@ -245,6 +245,9 @@ test("trace on a phone: nothing lies beside its box", { skip }, () =>
     const box = page.getByRole("group", { name: /^Trace, arrow keys/ });
     const { inner, outer } = await box.evaluate((element) => ({ inner: element.scrollWidth, outer: element.clientWidth }));
     assert.ok(inner <= outer, `${inner} in ${outer}`);
+    const counts = await page.getByRole("group", { name: "What runs on the lines" }).evaluate((element) => element.scrollWidth - element.clientWidth);
+    assert.ok(counts <= 0, `the counts are ${counts} pixels too wide`);
+    assert.ok((await page.getByRole("table", { name: "Bus" }).getByRole("row").count()) > 3);
     const meaning = table.locator("tbody tr").first().locator("td.meaning");
     await meaning.waitFor();
     const { x, width } = await meaning.evaluate((cell) => cell.getBoundingClientRect().toJSON());

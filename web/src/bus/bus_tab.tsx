@@ -49,7 +49,7 @@ function Identifiers() {
   const shown = [...rows.value.entries()].filter(([, row]) => !chosen || row.bus === chosen).sort(([a], [b]) => (a < b ? -1 : 1));
   return (
     <div class="scroll part" tabIndex={0} role="group" aria-label="What runs on the lines">
-      <table class="values" aria-label="Bus">
+      <table class="values counts" aria-label="Bus">
         <thead>
           <tr>
             <th scope="col">Line</th>
