@@ -51,8 +51,10 @@ unshare -m bash -c '
   ipos new line >/dev/null
   ipos test line
   cp /usr/share/doc/ipos/examples/scom/* .
-  ipos run scom.toml --for 1s --watch 2>/dev/null | head -n 1
-  zcat -f /usr/share/man/man1/ipos.1* | head -c 5
+  # Not into head, which may be gone before all is written.
+  ipos run scom.toml --for 1s --watch >watched 2>/dev/null
+  head -n 1 watched
+  printf "%.5s" "$(zcat -f /usr/share/man/man1/ipos.1*)"
   [ -z "$vsix" ] || [ -s /usr/share/ipos/ipos.vsix ]
   "$CC" -std=c99 "$source/examples/embedding/c/hello.c" -o hello $(pkg-config --cflags --libs ipos_compile)
   ./hello
