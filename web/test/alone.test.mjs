@@ -61,8 +61,10 @@ test("tests of the open plant run, and an archive of its files can be opened aga
   const archive = await download.path();
   const listed = spawnSync("python3", ["-m", "zipfile", "-l", archive], { encoding: "utf8" }).stdout;
   for (const name of ["HOIST.IPC", "hoist.toml", "hoist.test.toml"]) assert.ok(listed.includes(name), listed);
+  // Another plant has a page of its own.
+  const loaded = page.waitForEvent("load");
   await page.getByLabel("Open archive").setInputFiles({ name: "again.zip", mimeType: "application/zip", buffer: readFileSync(archive) });
-  await page.getByRole("dialog", { name: "Files" }).waitFor({ state: "hidden" });
+  await loaded;
   await page.getByRole("button", { name: "Files" }).click();
   await page.getByRole("button", { name: "again/hoist.toml" }).waitFor();
   assert.deepEqual(told.errors, []);
