@@ -76,12 +76,28 @@ test("files and settings are there after a reload", options, async () => {
   await moves(page);
   await page.getByRole("button", { name: "Files" }).click();
   await page.getByRole("button", { name: "hoist/hoist.toml" }).waitFor();
-  await page.waitForTimeout(1500); // until they are stored
   await page.reload();
   await page.waitForFunction(() => document.title.includes("hoist.toml"));
   await page.getByRole("button", { name: "Files" }).click();
   await page.getByRole("button", { name: "hoist/hoist.toml" }).waitFor();
   assert.equal(await page.getByRole("list", { name: "Plants" }).getByRole("listitem").count(), 1);
+  await context.close();
+});
+
+// On a slow machine the page is there long before its worker.
+test("who opens the list of files before the worker is there sees them, and what a link brings along", options, async () => {
+  const context = await browser.newContext({ offline: true });
+  await context.addInitScript(() => {
+    const post = Worker.prototype.postMessage;
+    Worker.prototype.postMessage = function (message, transfer) {
+      if (message.kind === "start") setTimeout(() => post.call(this, message, transfer), 1000);
+      else post.call(this, message, transfer);
+    };
+  });
+  const { page, told } = await opened(browser, `${address()}#example=gateway`, context);
+  await page.getByRole("button", { name: "Files" }).click();
+  await page.getByRole("dialog", { name: "Files" }).getByRole("button", { name: "gateway/gateway.toml" }).waitFor();
+  assert.deepEqual(told.errors, []);
   await context.close();
 });
 

@@ -117,7 +117,6 @@ test("README's link opens the hoist in a fresh profile, and an edit changes wher
     const position = await watched(page, "hoist.position");
     assert.ok(Math.abs(position - 40_000) < 50, String(position));
     // What was typed is there at the next visit.
-    await page.waitForTimeout(1500);
     await page.reload();
     await tab(page, "Program");
     await source(page).getByText("40000").first().waitFor();
@@ -132,7 +131,6 @@ test("a plant with mistakes can be opened and mended", options, () =>
     await type(page, hoist.replace("GROUND)", "GROND)"));
     await page.keyboard.press("Control+s");
     await status(page).getByText("It does not build").waitFor();
-    await page.waitForTimeout(1500);
     await page.reload();
     await page.getByRole("alert").getByText("hoist/hoist.toml has mistakes").waitFor();
     await source(page).getByText("GROND").first().waitFor();
@@ -151,8 +149,10 @@ test("clicks become a test that passes, and a session of the same moment", optio
   meet(async (page) => {
     await moves(page);
     await pause(page);
+    const before = await timer(page).textContent();
     await page.getByRole("switch", { name: "hoist DI10" }).click();
     await button(page, "Step").click();
+    await until(async () => (await timer(page).textContent()) !== before, "no step is done");
     const moment = await timer(page).textContent();
     await button(page, "Keep as test").click();
     const dialog = page.getByRole("dialog", { name: "Keep as test" });
@@ -231,7 +231,6 @@ test("a link never takes the place of what a person has changed", options, async
   await type(page, `// mine\n${hoist}`);
   await page.keyboard.press("Control+s");
   await status(page).getByText("Built.").waitFor();
-  await page.waitForTimeout(1500);
   const other = (await opened(browser, link, context)).page;
   await moves(other);
   await button(other, "Files").click();

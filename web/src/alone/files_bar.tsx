@@ -96,8 +96,17 @@ const toGallery = act(async () => {
   filesOpen.value = false;
 });
 
-const showFiles = act(async () => {
+async function listPlants(): Promise<void> {
   plants.value = Object.keys(await filesBelow(home)).filter(canBeOpened);
+}
+
+// What a link brings along may come after a quick hand has opened the list.
+openPlant.subscribe(() => {
+  if (filesOpen.peek()) void listPlants().catch(complain);
+});
+
+const showFiles = act(async () => {
+  await listPlants();
   report.value = null;
   filesOpen.value = true;
 });

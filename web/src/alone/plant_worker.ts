@@ -24,7 +24,12 @@ function post(message: ToWorker, transfer: Transferable[] = []): void {
   worker?.postMessage(message, transfer);
 }
 
-function ask(what: Asked): Promise<unknown> {
+// Resolved when the worker has the files of the storage: what is asked before waits until then.
+let isThere: () => void;
+const there = new Promise<void>((done) => (isThere = done));
+
+async function ask(what: Asked): Promise<unknown> {
+  await there;
   const id = next_id++;
   return new Promise((done, failed) => {
     waiting.set(id, { done, failed });
@@ -38,6 +43,12 @@ export const runVerb = (folder: string, words: string[]) => ask({ ask: "verb", f
 export const filesBelow = (folder: string) => ask({ ask: "files", folder }) as Promise<Files>;
 export const writeFiles = (files: Record<string, Uint8Array<ArrayBuffer> | null>) =>
   ask({ ask: "write", files }) as Promise<void>;
+
+// The browser itself stores one after the other; each begins at once, as the page may be left any time.
+async function both(before: Promise<boolean>, now: Promise<boolean>): Promise<boolean> {
+  await before;
+  return now;
+}
 
 // What the worker has told of so far is stored. False: this browser keeps nothing.
 export const areStored = () => storing;
@@ -54,6 +65,7 @@ export function inWorker(started: () => Promise<void>, broken: (text: string) =>
     const take = (message: FromWorker) => {
       switch (message.kind) {
         case "started":
+          isThere();
           return void started().catch((problem: unknown) => broken(String(problem)));
         case "opened":
           openPlant.value = message.path;
@@ -71,7 +83,7 @@ export function inWorker(started: () => Promise<void>, broken: (text: string) =>
         case "refused":
           return settle(message.id, (one) => one.failed(new Error(message.text)));
         case "changed":
-          storing = storing.then(() => storeFiles(message.files));
+          storing = both(storing, storeFiles(message.files));
           return;
         case "broken":
           has_host = false;

@@ -43,10 +43,12 @@ export async function storeFiles(changed: Record<string, Uint8Array<ArrayBuffer>
       if (bytes) store.put(bytes, path);
       else store.delete(path);
     }
-    return await new Promise((done) => {
+    const stored = new Promise<boolean>((done) => {
       transaction.oncomplete = () => done(true);
       transaction.onabort = () => done(false);
     });
+    transaction.commit(); // also if the page is left now
+    return await stored;
   } catch {
     return false;
   }

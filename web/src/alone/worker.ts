@@ -69,7 +69,11 @@ function newInstance(output: Output): Promise<Instance> {
       if (kind === binary) {
         const frame = bytes.slice().buffer;
         tell({ kind: "frame", frame }, [frame]);
-      } else if (kind === reply || kind === event)
+        return;
+      }
+      // The page stores what a command has written before it shows that it is done: who sees "Saved" may leave at once.
+      if (kind === reply) storeChanges();
+      if (kind === reply || kind === event)
         tell({ kind: "text", text: decoder.decode(bytes), drains: kind === event ? bytes.length : 0 });
     },
   });
@@ -106,9 +110,11 @@ function stamp(path: string): string {
 function storeChanges(): void {
   const files: Record<string, Uint8Array<ArrayBuffer> | null> = {};
   const there = filesBelow(host.FS, home);
+  const now = Date.now();
   for (const path of there)
     if (stored.get(path) !== stamp(path)) {
-      stored.set(path, stamp(path));
+      // Of this millisecond: it may be written again with the same stamp.
+      stored.set(path, host.FS.stat(path).mtime.getTime() < now ? stamp(path) : "");
       files[path] = host.FS.readFile(path);
     }
   for (const path of [...stored.keys()])
@@ -117,15 +123,6 @@ function storeChanges(): void {
       files[path] = null;
     }
   if (Object.keys(files).length !== 0) tell({ kind: "changed", files });
-}
-
-const store_after_ms = 500; // of the last message, as only messages write
-let storing: ReturnType<typeof setTimeout> | undefined;
-function storeSoon(): void {
-  storing ??= setTimeout(() => {
-    storing = undefined;
-    storeChanges();
-  }, store_after_ms);
 }
 
 // --- the host ---
@@ -264,7 +261,6 @@ self.onmessage = async ({ data }) => {
     case "host":
       if (!has_host) return;
       guarded(() => give(text_to_host, data.text));
-      storeSoon();
       return turnSoon();
     case "drained":
       if (has_host) guarded(() => give(drained, String(data.bytes)));
