@@ -97,10 +97,13 @@ std::set<std::string> targets_of(const fs::path& page) {
   return targets;
 }
 
-// The page that ./dev web makes: what stands behind # names an example or a message with an IPOS program.
+// The page that ./dev web makes: what stands behind # names an example or a message with an IPOS program, or has a plant in it;
+// what is in that one try_links.py reads.
 constexpr std::string_view kRunning = "build/web/ipos.html";
 
 bool runs(const std::string& fragment) {
+  constexpr std::string_view kPlant = "plant=";
+  if (fragment.starts_with(kPlant) && fragment.size() > kPlant.size()) return true;
   static const std::regex kNamed(R"((example|message)=([\w-]+)(\.right)?)");
   std::smatch named;
   if (!std::regex_match(fragment, named, kNamed)) return false;

@@ -93,7 +93,7 @@ class InChromium : public InWebAssembly {
 
 TEST_F(InChromium, RunsAsNatively) { expect_equal("chromium"); }
 
-TEST_F(InChromium, OpensFromAFileWithoutANetwork) { expect_journeys("alone", 7); }
+TEST_F(InChromium, OpensFromAFileWithoutANetwork) { expect_journeys("alone", 9); }
 TEST_F(InChromium, HasAllViewsWithoutAServer) { expect_journeys("alone_views", 7); }
 
 TEST_F(InChromium, TheElementRunsInAPage) {

@@ -1,8 +1,9 @@
 // The page without a server: ipos.html from a file and with the network off, its files, its links, and the site.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
-import { readFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
+import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 
@@ -101,16 +102,58 @@ test("who opens the list of files before the worker is there sees them, and what
   await context.close();
 });
 
+// By another program: tests/docs/plant_link.py.
+function linkHas(link, folder, more) {
+  const { status, stdout, stderr } = spawnSync("python3", [join(examples, "../tests/docs/plant_link.py"), folder], { input: link, encoding: "utf8" });
+  assert.equal(status, 0, stdout + stderr);
+  for (const line of more) assert.match(stdout, line);
+}
+
 test("a link has the plant in its fragment and runs in a fresh profile", options, async () => {
   const first = await opened(browser);
   await moves(first.page);
   await first.page.getByRole("button", { name: "Share" }).click();
-  const link = await first.page.getByRole("textbox", { name: "Link" }).inputValue();
+  const box = first.page.getByRole("textbox", { name: "Link" });
+  const link = await box.inputValue();
   assert.ok(link.startsWith(`${address()}#`) && link.length < 8192, `${link.length}`);
+  linkHas(link, join(examples, "hoist"), [/^name hoist, plant shared\.ipos$/m, /^besides shared\.ipos, \d{3,} bytes$/m]);
+  await first.page.getByRole("checkbox", { name: "With what was done" }).uncheck();
+  await first.page.waitForFunction((before) => document.querySelector("[aria-label=Link]").value !== before, link);
+  const plain = await box.inputValue();
+  linkHas(plain, join(examples, "hoist"), [/^name hoist, plant hoist\.toml$/m]);
+  assert.ok(plain.length < link.length);
   await first.context.close();
   const { page, told, context } = await opened(browser, link);
   await moves(page);
   assert.match(await page.title(), /hoist\.toml/);
+  assert.deepEqual(told.errors, []);
+  await context.close();
+});
+
+test("bytes that are no UTF-8, a byte order mark and ends of lines stay what they are in a link", options, async () => {
+  const folder = mkdtempSync(join(tmpdir(), "ipos-link-"));
+  writeFileSync(join(folder, "P.IPC"), Buffer.from("// Gr\xf6\xdfe\r\nlong a;\r\nmain() { while (1) a++; }\r\n", "latin1"));
+  writeFileSync(join(folder, "p.toml"), '\ufeff# \u0434\u0432\u0430\n[[station]]\nname = "a"\nunit = "mdxb"\nprogram = "P.IPC"\n');
+  writeFileSync(join(folder, "empty.toml.txt"), "");
+  const archive = join(mkdtempSync(join(tmpdir(), "ipos-zip-")), "bytes.zip");
+  assert.equal(spawnSync("python3", ["-m", "zipfile", "-c", archive, "P.IPC", "p.toml", "empty.toml.txt"], { cwd: folder }).status, 0);
+  const { page, context } = await opened(browser);
+  await moves(page);
+  await page.getByRole("button", { name: "Files" }).click();
+  await page.getByLabel("Open archive").setInputFiles(archive);
+  await page.waitForFunction(() => document.title.includes("p.toml"));
+  await page.getByRole("button", { name: "Share" }).click();
+  linkHas(await page.getByRole("textbox", { name: "Link" }).inputValue(), folder, [/^3 of 3 files equal$/m]);
+  await context.close();
+});
+
+test("links of the guides open and run", options, async () => {
+  const guide = readFileSync(join(examples, "../docs/guide/tutorial.md"), "utf8");
+  const [, fragment] = /\[Try it\]\([^)#]*(#plant=[^)]*)\)/.exec(guide);
+  const { page, told, context } = await opened(browser, address() + fragment);
+  await moves(page);
+  assert.match(await page.title(), /line\.toml/);
+  await page.getByRole("switch", { name: "leader DI10" }).waitFor();
   assert.deepEqual(told.errors, []);
   await context.close();
 });
