@@ -1,4 +1,5 @@
 # What a build for Windows takes from where.
+set(more_headers boost)  # the server of `ipos serve`
 include(cmake/header_packages.cmake)
 target_compile_definitions(fmt::fmt INTERFACE FMT_HEADER_ONLY=1)
 

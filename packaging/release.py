@@ -26,7 +26,7 @@ BUILD = ROOT / "build"
 NATIVE = BUILD / "release-native"  # without tests and asserts, beside the daily build
 # The parts of third_parties.tsv in each kind of file; cmake/install.cmake and tools/CMakeLists.txt put the same into each.
 PARTS = {
-    "linux-x86_64": ["linux", "page", "plot"], "windows-x86_64.exe": ["windows", "plot"], ".html": ["web", "page", "plot"],
+    "linux-x86_64": ["linux", "page", "plot"], "windows-x86_64.exe": ["windows", "page", "plot"], ".html": ["web", "page", "plot"],
     "site.tar.gz": ["web", "page", "plot", "site"], ".deb": ["deb", "page", "plot", "extension"], ".whl": ["library"],
     ".vsix": ["extension"], ".tgz": ["web"], "source.tar.gz": ["page", "plot"], "Containerfile": [], "NOTICES.txt": [],
     ".zip": [], ".pack": [],  # firmware: the project's own sources alone

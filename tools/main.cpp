@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <vector>
 
 #include "tools/cli/commit.hpp"
 #include "tools/cli/end_of_process.hpp"
@@ -25,7 +28,7 @@ void add_verbs(ipos::tools::cli::Verb& program, std::string_view asked) {
   const bool about_all = asked == "complete" || asked == "man";
   if (one != verbs.end() && one->add == nullptr)
     throw ipos::tools::Failure(ipos::tools::kUsage,
-                               fmt::format("'{}' is not in this build; the builds for Linux have it", asked));
+                               fmt::format("'{}' is not in this build; ipos for Linux and Windows has it", asked));
   if (one != verbs.end() && !about_all) return one->add(program);
   for (const auto& row : verbs) {
     program.begin_group(std::string(row.group));
@@ -44,9 +47,24 @@ int run(int argc, char** argv) {
   return ipos::tools::cli::run(program, version, argc, argv);
 }
 
+// A double click on the program, or on a file that it was chosen to open.
+bool is_clicked(int argc, char** argv) {
+  if (argc > 2 || !ipos::tools::has_own_window()) return false;
+  const std::span<const ipos::tools::VerbRow> verbs = ipos::tools::program_verbs();
+  std::error_code error;
+  return argc < 2 || (std::filesystem::exists(argv[1], error) &&
+                      std::none_of(verbs.begin(), verbs.end(), [&](const auto& row) { return row.name == argv[1]; }));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   ipos::tools::prepare_streams();
-  return ipos::tools::end_of_process([&] { return run(argc, argv); });
+  std::vector<char*> words(argv, argv + argc);
+  char serve[] = "serve", open[] = "--open";
+  const bool clicked = is_clicked(argc, argv);
+  if (clicked) words.insert(words.begin() + 1, {serve, open});
+  const int code = ipos::tools::end_of_process([&] { return run(static_cast<int>(words.size()), words.data()); });
+  if (clicked && code != ipos::tools::kGood && code != ipos::tools::kInterrupted) ipos::tools::wait_for_reader();
+  return code;
 }

@@ -1,5 +1,6 @@
-// Which verbs a program has. `ipos` has all of them (all_verbs.cpp). `ipos-demo`, which `./dev demo` builds, has
-// what it takes to build and run (demo_verbs.cpp), so that a first look needs a third less to be compiled.
+// Which verbs a program has: one table (program_verbs.cpp) for `ipos` on every system, for that of a browser, which has no
+// ports, sockets and terminals, and for `ipos-demo`, which builds and runs, so that a first look needs a third less to be
+// compiled.
 #pragma once
 
 #include <span>

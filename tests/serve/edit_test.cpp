@@ -9,7 +9,7 @@
 #include "tools/cli/files.hpp"
 #include "tools/input/plant_input.hpp"
 #include "tools/serve/channel.hpp"
-#include "tools/serve/forked_copies.hpp"
+#include "tools/serve/posix/forked_copies.hpp"
 #include "tools/serve/language.hpp"
 #include "tools/serve/plant_files.hpp"
 

@@ -3,7 +3,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "tools/serve/forked_copies.hpp"
+#include "tools/serve/posix/forked_copies.hpp"
 #include "tools/serve/host/scope_memory.hpp"
 #include "tools/serve/host/trace_memory.hpp"
 

@@ -3,7 +3,7 @@
 
 #include "tests/serve/page.hpp"
 #include "tools/serve/channel.hpp"
-#include "tools/serve/forked_copies.hpp"
+#include "tools/serve/posix/forked_copies.hpp"
 #include "tools/serve/plant_files.hpp"
 
 namespace ipos::tests {

@@ -1,6 +1,5 @@
 // The monitor at a log of any form, or at standard input; a log of lines also while another program writes it.
 #include <fmt/format.h>
-#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -16,6 +15,7 @@
 #include "tools/cli/failure.hpp"
 #include "tools/cli/files.hpp"
 #include "tools/cli/interrupt.hpp"
+#include "tools/cli/os_file.hpp"
 #include "tools/logs/log_forms.hpp"
 
 namespace ipos::tools {
@@ -31,8 +31,8 @@ class LogFile {
 
   // More text: false at the end of what is there now. Waits for a pipe at most kLook.
   bool read_more() {
-    pollfd polled{descriptor_.get(), POLLIN, 0};
-    if (poll(&polled, 1, static_cast<int>(kLook / runtime::kMillisecond)) == 0 || interrupted()) return true;
+    const bool there = readable(descriptor_.get(), static_cast<int>(kLook / runtime::kMillisecond));
+    if (interrupted() || !there) return true;
     std::array<char, 65536> chunk{};
     const ssize_t size = ::read(descriptor_.get(), chunk.data(), chunk.size());
     if (size < 0 && errno == EINTR) return true;

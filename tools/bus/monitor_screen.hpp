@@ -1,11 +1,11 @@
 // The table of the monitor on a terminal: drawn over itself a few times a second, with the keys of the user.
 #pragma once
 
-#include <termios.h>
-
 #include <chrono>
+#include <optional>
 
 #include "tools/bus/monitor_table.hpp"
+#include "tools/bus/screen_terminal.hpp"
 
 namespace ipos::tools {
 
@@ -31,11 +31,10 @@ class MonitorScreen {
 
   MonitorTable table_;
   bool live_;
-  bool has_keys_ = false;
   bool ended_ = false;
   bool finished_ = false;
   bool changed_ = false;  // by a key
-  termios before_{};
+  std::optional<ScreenKeys> keys_;
   Clock::time_point drawn_{};
 };
 

@@ -36,6 +36,13 @@ bool is_written(const std::string& path, int64_t process);
 // what is there. False: it did not.
 bool put_in_place(runtime::Descriptor file, const std::string& from, const std::string& to);
 
+// Whether bytes of a file, a pipe or a socket, or their end, are there within so many milliseconds.
+bool readable(int file, int milliseconds);
+
+// A file that is gone when it is closed, and a new folder of this user, whose name begins so.
+runtime::Descriptor open_without_name();
+std::optional<std::string> make_folder(const std::string& beginning);
+
 bool may_write(const std::string& path);
 bool may_make_files_in(const std::string& folder);
 

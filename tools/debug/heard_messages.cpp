@@ -4,13 +4,17 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cstdio>
+
+#include "tools/cli/os_file.hpp"
+
 namespace ipos::tools::debug {
 
-HeardMessages::HeardMessages() : file_(std::tmpfile()) {
+HeardMessages::HeardMessages() : file_(open_without_name()) {
   std::fflush(stderr);
-  if (file_ == nullptr) return;
+  if (!file_.is_open()) return;
   before_ = dup(STDERR_FILENO);
-  if (before_ >= 0) dup2(fileno(file_), STDERR_FILENO);
+  if (before_ >= 0) dup2(file_.get(), STDERR_FILENO);
 }
 
 HeardMessages::~HeardMessages() {
@@ -19,7 +23,6 @@ HeardMessages::~HeardMessages() {
     dup2(before_, STDERR_FILENO);
     close(before_);
   }
-  if (file_ != nullptr) std::fclose(file_);
   fmt::print(stderr, "{}", heard);
 }
 
@@ -27,12 +30,13 @@ std::string HeardMessages::text() const {
   std::fflush(stderr);
   std::string text;
   if (before_ < 0) return text;
+  // Both numbers have one place in the file: it is that of the end again when all is read.
+  lseek(file_.get(), 0, SEEK_SET);
   char part[4096];
-  for (off_t at = 0;;) {
-    const ssize_t count = pread(fileno(file_), part, sizeof part, at);
+  for (;;) {
+    const auto count = read(file_.get(), part, sizeof part);
     if (count <= 0) return text;
     text.append(part, static_cast<size_t>(count));
-    at += count;
   }
 }
 

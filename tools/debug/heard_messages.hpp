@@ -1,8 +1,9 @@
 // What is printed on standard error meanwhile: an editor shows its user what stands in a response, and often nothing else.
 #pragma once
 
-#include <cstdio>
 #include <string>
+
+#include "runtime/os_port/descriptor.hpp"
 
 namespace ipos::tools::debug {
 
@@ -17,7 +18,7 @@ class HeardMessages {
   std::string text() const;
 
  private:
-  std::FILE* file_;
+  runtime::Descriptor file_;
   int before_ = -1;  // standard error; -1: nothing is heard
 };
 

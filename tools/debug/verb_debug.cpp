@@ -1,49 +1,33 @@
 // ipos debug: the debugger on a terminal or a script, and ipos dap: the same for editors.
-#include <arpa/inet.h>
 #include <fmt/format.h>
-#include <poll.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <csignal>
-#include <cstdlib>
-#include <cstring>
-#ifdef IPOS_EDITLINE
-#include <editline/readline.h>
-#endif
 
 #include "compiler/diag/places.hpp"
 #include "tools/cli/end_of_process.hpp"
 #include "tools/cli/failure.hpp"
+#include "tools/cli/interrupt.hpp"
+#include "tools/cli/os_file.hpp"
 #include "tools/cli/verbs.hpp"
+#include "tools/cli/whole_bytes.hpp"
 #include "tools/cli/xml_text.hpp"
 #include "tools/debug/console.hpp"
 #include "tools/debug/dap.hpp"
+#include "tools/debug/editor_port.hpp"
 #include "tools/debug/heard_messages.hpp"
+#include "tools/debug/line_input.hpp"
 #include "tools/input/folder_plant.hpp"
 #include "tools/input/plant_input.hpp"
 #include "tools/input/plant_source.hpp"
 #include "tools/input/program.hpp"
 #include "tools/lsp_base/transport.hpp"
-#include "tools/processes/forked_snapshots.hpp"
 #include "tools/processes/replaceable_process.hpp"
 #include "tools/test_file/read_tests.hpp"
 #include "tools/testing/debugged_test.hpp"
 
 namespace ipos::tools {
 namespace {
-
-volatile std::sig_atomic_t stop_asked = 0;
-void on_stop(int) { stop_asked = 1; }
-
-// Calls of the system that a command makes go on after Ctrl-C.
-void catch_stop() {
-  struct sigaction action {};
-  action.sa_handler = on_stop;
-  action.sa_flags = SA_RESTART;
-  sigaction(SIGINT, &action, nullptr);
-}
 
 struct DebugFlags {
   std::string file;
@@ -85,143 +69,23 @@ debug::Debuggee debuggee_or_why(const DebugFlags& flags) {
   }
 }
 
-// Lines of standard input. Ctrl-C on a terminal gives a new prompt; what stood on the line is gone. A script is
-// read without a buffer of the library's: what was read ahead must go with the session to the process that goes
-// on. Ctrl-C comes through only while keys are waited for: one that comes between the prompt and the first key,
-// or between two keys, waits in the kernel and is not lost.
-class LineInput {
- public:
-  LineInput() : terminal_(isatty(STDIN_FILENO) != 0) {}
-  bool is_terminal() const { return terminal_; }
-
-  std::optional<std::string> next() {
-    if (!terminal_) return next_of(nullptr);
-    sigset_t open;
-    sigset_t interrupt;
-    sigemptyset(&interrupt);
-    sigaddset(&interrupt, SIGINT);
-    sigprocmask(SIG_BLOCK, &interrupt, &open);
-    stop_asked = 0;
-#ifdef IPOS_EDITLINE
-    std::optional<std::string> line = next_edited(open);
-#else
-    prompt();
-    std::optional<std::string> line = next_of(&open);
-#endif
-    sigprocmask(SIG_SETMASK, &open, nullptr);
-    return line;
-  }
-  debug::Json save() const { return rest_; }
-  void load(const debug::Json& state) { rest_ = state.get<std::string>(); }
-
- private:
-  // False: Ctrl-C. `open` is the mask of signals under which Ctrl-C comes through.
-  static bool wait_for_keys(const sigset_t& open) {
-    for (;;) {
-      pollfd input{STDIN_FILENO, POLLIN, 0};
-      if (ppoll(&input, 1, nullptr, &open) >= 0) return true;
-      if (std::exchange(stop_asked, 0) != 0) return false;
-    }
-  }
-
-  // `open` is null for a script, which no Ctrl-C restarts.
-  std::optional<std::string> next_of(const sigset_t* open) {
-    for (;;) {
-      if (const size_t end = rest_.find('\n'); end != std::string::npos) {
-        std::string line = rest_.substr(0, end);
-        if (line.ends_with('\r')) line.pop_back();
-        rest_.erase(0, end + 1);
-        return line;
-      }
-      if (open != nullptr && !wait_for_keys(*open)) {
-        rest_.clear();
-        fmt::print("\n");
-        prompt();
-        continue;
-      }
-      char buffer[4096];
-      const ssize_t count = read(STDIN_FILENO, buffer, sizeof buffer);
-      if (count < 0 && errno == EINTR) continue;
-      if (count <= 0) return rest_.empty() ? std::nullopt : std::optional(std::exchange(rest_, {}));
-      rest_.append(buffer, static_cast<size_t>(count));
-    }
-  }
-
-#ifdef IPOS_EDITLINE
-  std::optional<std::string> next_edited(const sigset_t& open) {
-    bool done = false;
-    edited_ = [this, &done](char* text) {
-      done = true;
-      line_ = text == nullptr ? std::nullopt : std::optional<std::string>(text);
-      std::free(text);
-    };
-    const auto take = [](char* text) { edited_(text); };
-    rl_callback_handler_install(kPrompt, take);
-    while (!done) {
-      if (wait_for_keys(open)) {
-        rl_callback_read_char();
-        continue;
-      }
-      rl_callback_handler_remove();
-      fmt::print("\n");
-      std::fflush(stdout);
-      rl_callback_handler_install(kPrompt, take);
-    }
-    rl_callback_handler_remove();
-    if (line_ && !line_->empty()) add_history(line_->c_str());
-    return std::exchange(line_, std::nullopt);
-  }
-
-  static inline std::function<void(char*)> edited_;  // the library's callback has no argument of ours
-  std::optional<std::string> line_;
-#endif
-
-  static constexpr const char* kPrompt = "(ipos) ";
-  static void prompt() {
-    fmt::print("{}", kPrompt);
-    std::fflush(stdout);
-  }
-
-  bool terminal_;
-  std::string rest_;
-};
-
-#ifdef IPOS_EDITLINE
-const debug::Console* completing = nullptr;  // the library's callback has no argument of ours
-
-char* offer(const char* part, int n) {
-  static std::vector<std::string> words;
-  if (n == 0) words = completing->complete(std::string_view(rl_line_buffer, static_cast<size_t>(rl_point)));
-  (void)part;
-  return static_cast<size_t>(n) < words.size() ? strdup(words[static_cast<size_t>(n)].c_str()) : nullptr;
-}
-char** offers(const char* part, int, int) {
-  rl_attempted_completion_over = 1;
-  return rl_completion_matches(part, offer);
-}
-#endif
-
 std::unique_ptr<debug::Snapshots> snapshots_of(const DebugFlags& flags) {
-  if (!flags.snapshots) return nullptr;
-  return std::make_unique<ForkedSnapshots>();
+  return flags.snapshots ? snapshots_of_process() : nullptr;
 }
 
 int debug_console(const DebugFlags& flags) {
   debug::Debuggee what = debuggee_of(flags);
-  LineInput lines;
+  debug::LineInput lines;
   debug::Console console([](const std::string& text) { fmt::print("{}", utf8(text)); });
-  console.save_input = [&] { return lines.save(); };
-  console.load_input = [&](const debug::Json& state) { lines.load(state); };
-  console.not_interrupted = [] { return stop_asked == 0; };
+  console.save_input = [&] { return debug::Json(lines.rest()); };
+  console.load_input = [&](const debug::Json& state) { lines.set_rest(state.get<std::string>()); };
+  console.not_interrupted = [] { return !interrupted(); };
   debug::Debugger debugger(std::move(what), console, snapshots_of(flags), runtime::parse_duration(flags.duration));
   console.attach(debugger);
-  catch_stop();
-#ifdef IPOS_EDITLINE
-  completing = &console;
-  rl_attempted_completion_function = offers;
-#endif
+  catch_ctrl_c();
+  lines.complete_with([&console](std::string_view line) { return console.complete(line); });
   while (const auto line = lines.next()) {
-    stop_asked = 0;
+    forget_interrupt();
     if (!lines.is_terminal()) fmt::print("(ipos) {}\n", compiler::printable(*line));
     if (!console.execute(*line)) break;
     std::fflush(stdout);
@@ -243,17 +107,12 @@ int serve(const DebugFlags& flags, int in, int out) {
       [out](const debug::Json& message) {
         const std::string text =
             lsp::framed(message.dump(-1, ' ', false, debug::Json::error_handler_t::replace));
-        for (size_t done = 0; done < text.size();) {
-          const ssize_t count = write(out, text.data() + done, text.size() - done);
-          if (count < 0 && errno != EINTR) throw Failure(kIoError, "the editor does not listen any more");
-          if (count > 0) done += static_cast<size_t>(count);
-        }
+        if (!write_all(out, text.data(), text.size())) throw Failure(kIoError, "the editor does not listen any more");
       },
       snapshots_of(flags));
   bool open = true;
   const auto receive = [&](bool wait) {
-    pollfd input{in, POLLIN, 0};
-    if (!open || (!wait && poll(&input, 1, 0) <= 0)) return;
+    if (!open || (!wait && !readable(in, 0))) return;
     char buffer[65536];
     const ssize_t count = read(in, buffer, sizeof buffer);
     if (count < 0 && errno == EINTR) return;
@@ -283,23 +142,9 @@ int serve(const DebugFlags& flags, int in, int out) {
 
 // One editor at a time and then the end: a session is a run of its own.
 int serve_port(const DebugFlags& flags) {
-  const int listener = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(*flags.port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  const int on = 1;
-  setsockopt(listener, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  if (listener < 0 || bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
-      listen(listener, 1) != 0)
-    throw Failure(kIoError, fmt::format("port {} cannot be listened at", *flags.port));
-  socklen_t size = sizeof address;
-  getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size);
-  fmt::print(stderr, "ipos: debug adapter at 127.0.0.1:{}\n", ntohs(address.sin_port));
-  const int editor = accept(listener, nullptr, nullptr);
-  close(listener);
-  if (editor < 0) throw Failure(kIoError, "no editor came");
-  return serve(flags, editor, editor);
+  const runtime::Descriptor editor = debug::editor_at(
+      *flags.port, [](uint16_t port) { fmt::print(stderr, "ipos: debug adapter at 127.0.0.1:{}\n", port); });
+  return serve(flags, editor.get(), editor.get());
 }
 
 // In a process of its own, which another one may take the place of.

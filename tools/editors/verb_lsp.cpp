@@ -1,6 +1,5 @@
 // ipos lsp: the language server on standard input and output.
 #include <fmt/format.h>
-#include <poll.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -8,7 +7,9 @@
 
 #include "tools/cli/failure.hpp"
 #include "tools/cli/files.hpp"
+#include "tools/cli/os_file.hpp"
 #include "tools/cli/verbs.hpp"
+#include "tools/cli/whole_bytes.hpp"
 #include "tools/lsp/server.hpp"
 #include "tools/lsp_base/transport.hpp"
 
@@ -18,16 +19,7 @@ namespace {
 void send(const lsp::Json& message) {
   // Bytes of a source that are no UTF-8 must not end the connection.
   const std::string text = lsp::framed(message.dump(-1, ' ', false, lsp::Json::error_handler_t::replace));
-  for (size_t done = 0; done < text.size();) {
-    const ssize_t count = write(STDOUT_FILENO, text.data() + done, text.size() - done);
-    if (count < 0 && errno != EINTR) throw Failure(kIoError, "the editor does not listen any more");
-    if (count > 0) done += static_cast<size_t>(count);
-  }
-}
-
-bool input_waits() {
-  pollfd input{STDIN_FILENO, POLLIN, 0};
-  return poll(&input, 1, 0) > 0;
+  if (!write_all(STDOUT_FILENO, text.data(), text.size())) throw Failure(kIoError, "the editor does not listen any more");
 }
 
 // Reads all there is before each answer, so that a cancellation overtakes what it cancels and many changes
@@ -38,7 +30,7 @@ int serve() {
   char buffer[65536];
   bool open = true;
   while (!server.ended() && (open || server.waiting())) {
-    while (open && (input_waits() || !server.run())) {
+    while (open && (readable(STDIN_FILENO, 0) || !server.run())) {
       if (server.ended()) return server.exit_code();
       const ssize_t count = read(STDIN_FILENO, buffer, sizeof buffer);
       if (count < 0 && errno == EINTR) continue;

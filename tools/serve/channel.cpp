@@ -1,12 +1,9 @@
 // Messages on a socket, whole ones only.
 #include "tools/serve/channel.hpp"
 
-#include <poll.h>
-#include <sys/ioctl.h>
-#include <sys/socket.h>
-
-#include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <thread>
 
 namespace ipos::tools::serve {
 
@@ -34,8 +31,7 @@ MessageHead head_of(const std::array<char, kMessageHead>& bytes) {
 
 bool Channel::write_all(const char* bytes, size_t size) {
   while (size != 0) {
-    const ssize_t count = ::send(socket_, bytes, size, MSG_NOSIGNAL);
-    if (count < 0 && errno == EINTR) continue;
+    const auto count = send_some(socket_, bytes, size);
     if (count <= 0) return open_ = false;
     bytes += count;
     size -= static_cast<size_t>(count);
@@ -45,8 +41,7 @@ bool Channel::write_all(const char* bytes, size_t size) {
 
 bool Channel::read_all(char* bytes, size_t size) {
   while (size != 0) {
-    const ssize_t count = ::recv(socket_, bytes, size, 0);
-    if (count < 0 && errno == EINTR) continue;
+    const auto count = receive_some(socket_, bytes, size);
     if (count <= 0) return open_ = false;
     bytes += count;
     size -= static_cast<size_t>(count);
@@ -62,18 +57,15 @@ bool Channel::send(MessageKind kind, uint16_t client, std::string_view body) {
 // Of a message that is not whole the rest may never come: its writer may have been stopped.
 bool Channel::has_message() {
   std::array<char, kMessageHead> bytes{};
-  const ssize_t count = ::recv(socket_, bytes.data(), bytes.size(), MSG_PEEK | MSG_DONTWAIT);
+  const auto count = peek(socket_, bytes.data(), bytes.size());
   if (count == 0) return open_ = false;
-  int there = 0;
-  return count == static_cast<ssize_t>(bytes.size()) && ioctl(socket_, FIONREAD, &there) == 0 &&
-         static_cast<size_t>(there) >= kMessageHead + head_of(bytes).length;
+  return count == static_cast<std::ptrdiff_t>(bytes.size()) && bytes_there(socket_) >= kMessageHead + head_of(bytes).length;
 }
 
 std::optional<Message> Channel::wait(int milliseconds) {
-  pollfd waiting{socket_, POLLIN, 0};
-  if (!open_ || poll(&waiting, 1, milliseconds) <= 0) return std::nullopt;
+  if (!open_ || !wait_readable(socket_, milliseconds)) return std::nullopt;
   if (!has_message()) {
-    if (open_ && milliseconds > 0) poll(nullptr, 0, 1);
+    if (open_ && milliseconds > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     return std::nullopt;
   }
   std::array<char, kMessageHead> bytes{};

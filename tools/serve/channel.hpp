@@ -1,4 +1,4 @@
-// What the two processes of `ipos serve` say to each other over a pair of sockets: the server, which has the browsers,
+// What the two halves of `ipos serve` say to each other over a pair of sockets: the server, which has the browsers,
 // and the host, which has the plant or the drive. A message is whole or not there, so a copy of the host that goes on
 // from a snapshot finds the next one.
 #pragma once
@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "tools/serve/host/message.hpp"
+#include "tools/serve/sockets.hpp"
 
 namespace ipos::tools::serve {
 
@@ -32,7 +33,7 @@ class Mailbox : public Outbox {
   virtual bool open() const = 0;
 };
 
-// The clock of both processes: it has one zero for all of this machine.
+// The clock of both: it has one zero for all of this machine.
 class SteadyClock final : public Clock {
  public:
   WallClock::time_point now() const override { return WallClock::now(); }
@@ -41,7 +42,7 @@ class SteadyClock final : public Clock {
 // The host's end of the pair.
 class Channel final : public Mailbox {
  public:
-  explicit Channel(int socket) : socket_(socket) {}
+  explicit Channel(Socket socket) : socket_(socket) {}
   bool send(MessageKind kind, uint16_t client, std::string_view body) override;
   std::optional<Message> wait(int milliseconds) override;
   bool open() const override { return open_; }
@@ -51,7 +52,7 @@ class Channel final : public Mailbox {
   bool read_all(char* bytes, size_t size);
   bool has_message();  // a whole one
 
-  int socket_;
+  Socket socket_;
   bool open_ = true;
 };
 

@@ -1,4 +1,4 @@
-// A page that leads to another one at once, and xdg-open.
+// A page that leads to another one at once.
 #include "tools/serve/opened_page.hpp"
 
 #include <fmt/format.h>
@@ -6,6 +6,7 @@
 
 #include <cstdio>
 
+#include "tools/serve/browser.hpp"
 #include "tools/serve/state_folder.hpp"
 
 namespace ipos::tools::serve {
@@ -20,17 +21,11 @@ OpenedPage::OpenedPage(const std::string& address) : name_(fmt::format("open-{}.
   if (!written) {  // the address stands on standard output
     fmt::print(stderr,
                "ipos: --open: the file that leads a browser to the page cannot be written in the user's "
-               "state folder "
-               "(XDG_STATE_HOME); open the address above\n");
+               "state folder ({}); open the address above\n",
+               kStateVariable);
     return;
   }
-  const std::string path = (state_folder() / name_).string();
-  const pid_t opener = fork();
-  if (opener != 0) return;
-  setsid();  // a browser outlives this process
-  if (freopen("/dev/null", "w", stdout) == nullptr || freopen("/dev/null", "w", stderr) == nullptr) _exit(1);
-  execlp("xdg-open", "xdg-open", path.c_str(), static_cast<char*>(nullptr));
-  _exit(1);
+  show_in_browser(state_folder() / name_);
 }
 
 OpenedPage::~OpenedPage() { remove_state(name_); }

@@ -5,11 +5,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 
 #include "tools/cli/failure.hpp"
 #include "tools/cli/files.hpp"
+#include "tools/cli/os_file.hpp"
 #include "tools/cli/outputs.hpp"
 #include "tools/serve/host/plant_host.hpp"
 
@@ -21,9 +21,10 @@ namespace fs = std::filesystem;
 std::string own_folder() {
   std::error_code error;
   const fs::path temporary = fs::temp_directory_path(error);
-  std::string name = ((error ? fs::path("/tmp") : temporary) / "ipos-session-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) throw Failure(kIoError, fmt::format("{}: no folder can be made there", name));
-  return name;
+  const std::string name = ((error ? fs::path("/tmp") : temporary) / "ipos-session-").string();
+  const auto folder = make_folder(name);
+  if (!folder) throw Failure(kIoError, fmt::format("{}: no folder can be made there", name));
+  return *folder;
 }
 
 }  // namespace

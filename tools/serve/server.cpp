@@ -1,8 +1,6 @@
 // Boost.Beast on one thread; the only file that includes it, as its headers take half a minute to read.
 #include "tools/serve/server.hpp"
 
-#include <sys/random.h>
-
 #include <algorithm>
 #include <deque>
 #include <list>
@@ -15,7 +13,6 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/local/stream_protocol.hpp>
 #include <boost/asio/read.hpp>
-#include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/core.hpp>
@@ -25,8 +22,10 @@
 #include <fmt/format.h>
 
 #include "tools/cli/failure.hpp"
+#include "tools/cli/interrupt.hpp"
 #include "tools/serve/arrival.hpp"
 #include "tools/serve/channel.hpp"
+#include "tools/serve/random_bytes.hpp"
 
 namespace ipos::tools::serve {
 namespace {
@@ -39,6 +38,20 @@ using asio::ip::tcp;
 using Error = beast::error_code;
 using Request = http::request<http::string_body>;
 using Response = http::response<http::string_body>;
+#ifdef BOOST_ASIO_HAS_LOCAL_SOCKETS
+using HostSocket = asio::local::stream_protocol::socket;
+const asio::local::stream_protocol kHostProtocol;
+#else
+using HostSocket = tcp::socket;
+const tcp kHostProtocol = tcp::v4();
+#endif
+// Windows lets two programs listen at one port with the option that lets POSIX listen at one that was left a moment ago,
+// and it needs another one to let nobody else listen.
+#ifdef SO_EXCLUSIVEADDRUSE
+using ListenOption = asio::detail::socket_option::boolean<SOL_SOCKET, SO_EXCLUSIVEADDRUSE>;
+#else
+using ListenOption = asio::socket_base::reuse_address;
+#endif
 
 constexpr auto kRequestTime = std::chrono::seconds(10);
 constexpr auto kFarewell = std::chrono::seconds(2);
@@ -71,7 +84,7 @@ std::string_view token_of(std::string_view target) {
 
 std::string make_token() {
   std::array<unsigned char, 16> bytes{};
-  if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
+  if (!random_bytes(bytes))
     throw Failure(kIoError, "the system gives no random numbers for the token");
   std::string text;
   for (const unsigned char byte : bytes) text += fmt::format("{:02x}", byte);
@@ -80,8 +93,8 @@ std::string make_token() {
 
 class Server::Listener {
  public:
-  Listener(ServerOptions options, int host) : options_(std::move(options)), acceptor_(io_), host_(io_) {
-    host_.assign(asio::local::stream_protocol(), host);
+  Listener(ServerOptions options, serve::Socket host) : options_(std::move(options)), acceptor_(io_), host_(io_) {
+    host_.assign(kHostProtocol, static_cast<HostSocket::native_handle_type>(host));
     Error error;
     const auto address = asio::ip::make_address(options_.bind, error);
     if (error)
@@ -105,9 +118,6 @@ class Server::Listener {
 
   void run(const std::function<void()>& ready) {
     ready_ = ready;
-    signals_.async_wait([this](Error error, int) {
-      if (!error) end();
-    });
     read_head();
     stay_awake();
     io_.run();
@@ -121,7 +131,7 @@ class Server::Listener {
     Error error, ignored;
     acceptor_.close(ignored);
     acceptor_.open(at.protocol(), error);
-    if (!error) acceptor_.set_option(asio::socket_base::reuse_address(true), error);
+    if (!error) acceptor_.set_option(ListenOption(true), error);
     if (!error) acceptor_.bind(at, error);
     if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
     return error;
@@ -184,6 +194,7 @@ class Server::Listener {
   }
   void stay_awake() {
     (void)now();
+    if (interrupted()) return end();
     heartbeat_.expires_after(Arrival::kNap / 5);
     heartbeat_.async_wait([this](Error error) {
       if (!error) stay_awake();
@@ -202,8 +213,7 @@ class Server::Listener {
   std::list<Connection*> asking_;
   asio::io_context io_{1};
   tcp::acceptor acceptor_;
-  asio::local::stream_protocol::socket host_;
-  asio::signal_set signals_{io_, SIGINT, SIGTERM};
+  HostSocket host_;
   asio::steady_timer pause_{io_};
   asio::steady_timer farewell_{io_};
   uint16_t port_ = 0;
@@ -486,7 +496,6 @@ void Server::Listener::end() {
   if (std::exchange(ending_, true)) return;
   Error ignored;
   acceptor_.close(ignored);
-  signals_.cancel(ignored);
   pause_.cancel();
   heartbeat_.cancel();
   host_.close(ignored);
@@ -498,7 +507,7 @@ void Server::Listener::end() {
   if (sockets.empty()) io_.stop();
 }
 
-Server::Server(const ServerOptions& options, int host) try
+Server::Server(const ServerOptions& options, serve::Socket host) try
     : listener_(std::make_unique<Listener>(options, host)) {
 } catch (const boost::system::system_error& error) {  // descriptors of its own, mostly
   throw Failure(kIoError, fmt::format("the system does not give what a server needs: {}", error.what()));

@@ -9,6 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include "tools/serve/sockets.hpp"
+
 namespace ipos::tools::serve {
 
 struct ServerOptions {
@@ -32,13 +34,13 @@ inline constexpr int kMostUnanswered = 32;  // messages of a client; the next is
 class Server {
  public:
   // Listens; a Failure says why it cannot. `host` is the server's end of the pair and belongs to it.
-  Server(const ServerOptions& options, int host);
+  Server(const ServerOptions& options, Socket host);
   ~Server();
 
   // "http://127.0.0.1:8080/?token=..."
   std::string address() const;
   uint16_t port() const;
-  // Until Ctrl-C or the end of the host. `ready` is called once, when the host is there.
+  // Until Ctrl-C, which somebody catches (tools/cli/interrupt.hpp), or the end of the host. `ready` is called once, when the host is there.
   void run(const std::function<void()>& ready);
 
  private:

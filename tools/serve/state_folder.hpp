@@ -1,7 +1,9 @@
 // What `ipos serve` keeps for its next start: small files in the user's state folder, which only this user can read
-// (0700, 0600). A file is the old one or the new one, whatever happens while it is written.
+// (0700, 0600; on Windows as all of that folder). A file is the old one or the new one, whatever happens while it is written.
+// posix and windows have what differs.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -9,7 +11,13 @@
 
 namespace ipos::tools::serve {
 
-// `$XDG_STATE_HOME/ipos`, else `~/.local/state/ipos`; made where it is missing. Empty: this user has no such place.
+constexpr size_t kLongestState = 512 * 1024;  // of a file: what is longer is neither written nor read
+
+// The variable of the environment that names where the folder is.
+extern const char* const kStateVariable;
+
+// `$XDG_STATE_HOME/ipos`, else `~/.local/state/ipos`; on Windows `%LOCALAPPDATA%\ipos`. It is made where it is missing. Empty:
+// this user has no such place.
 std::filesystem::path state_folder();
 
 // A name of a file there for something whose own name may have any characters, as a port or a path has: the kind in
@@ -29,7 +37,7 @@ class StateLock {
   StateLock& operator=(const StateLock&) = delete;
 
  private:
-  int file_ = -1;
+  std::intptr_t file_ = -1;
 };
 void remove_state(const std::string& name);
 

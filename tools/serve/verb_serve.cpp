@@ -1,11 +1,9 @@
-// ipos serve: a page to watch and touch a plant. Two processes: this one is the server, the other one has the plant,
-// so that no browser can keep the plant waiting, and a copy of the plant can take its place when time goes back.
+// ipos serve: a page to watch and touch a plant. Two halves: this process is the server, another one has the plant, so that no
+// browser can keep the plant waiting, and a copy of the plant can take its place when time goes back. Where processes cannot be
+// copied the other half is a thread.
 #include <fmt/format.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -13,6 +11,7 @@
 
 #include "tools/cli/end_of_process.hpp"
 #include "tools/cli/failure.hpp"
+#include "tools/cli/interrupt.hpp"
 #include "tools/cli/verbs.hpp"
 #include "tools/input/folder_plant.hpp"
 #include "tools/input/plant_input.hpp"
@@ -21,9 +20,9 @@
 #include "tools/processes/replaceable_process.hpp"
 #include "tools/serve/channel.hpp"
 #include "tools/serve/drive_host.hpp"
-#include "tools/serve/forked_copies.hpp"
 #include "tools/serve/gallery_host.hpp"
 #include "tools/serve/host/plant_host.hpp"
+#include "tools/serve/host_copies.hpp"
 #include "tools/serve/kept.hpp"
 #include "tools/serve/language.hpp"
 #include "tools/serve/opened_page.hpp"
@@ -32,6 +31,7 @@
 #include "tools/serve/plant_files.hpp"
 #include "tools/serve/plant_ports.hpp"
 #include "tools/serve/server.hpp"
+#include "tools/serve/sockets.hpp"
 #include "tools/test_file/read_tests.hpp"
 #include "tools/testing/debugged_test.hpp"
 
@@ -53,16 +53,13 @@ struct ServeFlags {
   CompileFlags compile;
 };
 
-// The host's end is closed in the server and the other way round, so that each sees when the other is gone.
-struct Pair {
-  int server = -1;
-  int host = -1;
-};
-Pair make_pair_of_sockets() {
-  std::array<int, 2> ends{};
-  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
-    throw Failure(kIoError, "the system gives no sockets");
-  return {ends[0], ends[1]};
+// A process of its own leaves the server's end of the line to the server, so that each sees when the other is gone, and
+// Ctrl-C, which goes to both, too.
+void begin_host(const serve::SocketPair& sockets) {
+  if (!ReplaceableProcess::kHasCopies) return;
+  serve::close_socket(sockets.server);
+  std::signal(SIGINT, SIG_IGN);
+  std::signal(SIGTERM, SIG_IGN);
 }
 
 // The gallery is that of a folder; a session has its own.
@@ -111,17 +108,15 @@ std::string run_gallery(const ServeFlags& flags, serve::Mailbox& mailbox, PlantI
   return gallery.opened();
 }
 
-int run_host(ServeFlags flags, PlantInput input, const Pair& sockets) {
-  close(sockets.server);
-  std::signal(SIGINT, SIG_IGN);  // Ctrl-C goes to both; the server tells
-  std::signal(SIGTERM, SIG_IGN);
+int run_host(ServeFlags flags, PlantInput input, const serve::SocketPair& sockets) {
+  begin_host(sockets);
   serve::Channel channel(sockets.host);
   const bool chosen = flags.file.empty();
   if (chosen && (flags.file = run_gallery(flags, channel, input)).empty()) return kGood;
   const bool snapshots = flags.snapshots && !serve::PlantPorts::has_ports(input.file);
   const std::string title = std::filesystem::path(flags.test ? flags.test->file : flags.file).filename().string();
   const serve::SteadyClock clock;
-  serve::ForkedCopies copies(snapshots);
+  const std::unique_ptr<serve::Copies> copies = serve::host_copies(snapshots);
   serve::PlantPorts ports;
   serve::PlantFiles files(flags.file, flags.compile,
                           flags.session && flags.session->is_unpacked() ? serve::kFilesOfSession : why_read_only(flags),
@@ -129,7 +124,7 @@ int run_host(ServeFlags flags, PlantInput input, const Pair& sockets) {
   serve::LanguageServer language(flags.compile);
   debug::Debuggee what([input = std::move(input)] { return make_plant(input, runtime::FileUse::Look); });
   if (flags.test) what = serve::debuggee_of(*flags.test, flags.compile);
-  serve::PlantHost host(std::move(what), title, IPOS_VERSION, {channel, clock, copies, ports, files, language});
+  serve::PlantHost host(std::move(what), title, IPOS_VERSION, {channel, clock, *copies, ports, files, language});
   const serve::Kept kept = kept_of(flags);
   kept.add_commands(host.router());
   if (flags.session) flags.session->resume(host);
@@ -139,11 +134,9 @@ int run_host(ServeFlags flags, PlantInput input, const Pair& sockets) {
   return kGood;
 }
 
-int run_drive_host(const ServeFlags& flags, const Pair& sockets) {
-  close(sockets.server);
+int run_drive_host(const ServeFlags& flags, const serve::SocketPair& sockets) {
   std::unique_ptr<BusLink> link = BusLink::open(flags.device);
-  std::signal(SIGINT, SIG_IGN);
-  std::signal(SIGTERM, SIG_IGN);
+  begin_host(sockets);
   serve::Channel channel(sockets.host);
   serve::DriveHost host(
       std::move(link),
@@ -181,13 +174,17 @@ int serve_page(ServeFlags flags) {
   } else if (!flags.file.empty()) {
     input = read_plant_input(flags.file, flags.compile);
   }
-  const Pair sockets = make_pair_of_sockets();
+  const serve::SocketPair sockets = serve::make_socket_pair();
   ReplaceableProcess host([&] {
-    return end_of_process(
+    const int code = end_of_process(
         [&] { return device ? run_drive_host(flags, sockets) : run_host(flags, std::move(input), sockets); });
+    serve::close_socket(sockets.host);
+    return code;
   });
   if (!host.started()) throw Failure(kIoError, "there is no room for another process");
-  close(sockets.host);
+  if (ReplaceableProcess::kHasCopies) serve::close_socket(sockets.host);
+  serve::OwnedSocket line(sockets.server);  // with its end the host ends
+  catch_interrupts();
   bool was_there = false;
   std::optional<serve::OpenedPage> page;
   {
@@ -198,7 +195,7 @@ int serve_page(ServeFlags flags) {
     if (flags.port == 0) options.rather = kept.port();
     options.token = kept.token();
     options.page = serve::embedded_files().front().text;
-    serve::Server server(options, sockets.server);
+    serve::Server server(options, line.release());
     kept.keep_port(server.port());
     server.run([&] {
       was_there = true;

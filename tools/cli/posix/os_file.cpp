@@ -2,6 +2,7 @@
 #include "tools/cli/os_file.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
@@ -10,6 +11,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <utility>
 
@@ -77,6 +79,23 @@ bool put_in_place(Descriptor file, const std::string& from, const std::string& t
   if (fsync(file.get()) != 0 || rename(from.c_str(), to.c_str()) != 0) return false;
   sync_folder_of(to);
   return true;
+}
+
+bool readable(int file, int milliseconds) {
+  pollfd waiting{file, POLLIN, 0};
+  return poll(&waiting, 1, milliseconds) > 0;
+}
+
+Descriptor open_without_name() {
+  std::string name = P_tmpdir "/ipos-XXXXXX";
+  Descriptor file(mkostemp(name.data(), O_CLOEXEC));
+  if (file.is_open()) unlink(name.c_str());
+  return file;
+}
+
+std::optional<std::string> make_folder(const std::string& beginning) {
+  std::string name = beginning + "XXXXXX";
+  return mkdtemp(name.data()) == nullptr ? std::nullopt : std::optional(name);
 }
 
 bool may_write(const std::string& path) { return access(path.c_str(), W_OK) == 0; }

@@ -11,4 +11,7 @@ void prepare_streams() {
     if (fcntl(stream, F_GETFD) < 0) static_cast<void>(open("/dev/null", O_RDONLY));
 }
 
+bool has_own_window() { return false; }
+void wait_for_reader() {}
+
 }  // namespace ipos::tools

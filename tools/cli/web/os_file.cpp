@@ -2,10 +2,12 @@
 #include "tools/cli/os_file.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <utility>
 
 namespace ipos::tools {
@@ -45,6 +47,23 @@ bool is_written(const std::string&, int64_t) { return false; }
 
 bool put_in_place(Descriptor, const std::string& from, const std::string& to) {
   return rename(from.c_str(), to.c_str()) == 0;
+}
+
+bool readable(int file, int milliseconds) {
+  pollfd waiting{file, POLLIN, 0};
+  return poll(&waiting, 1, milliseconds) > 0;
+}
+
+Descriptor open_without_name() {
+  std::string name = P_tmpdir "/ipos-XXXXXX";
+  Descriptor file(mkstemp(name.data()));
+  if (file.is_open()) unlink(name.c_str());
+  return file;
+}
+
+std::optional<std::string> make_folder(const std::string& beginning) {
+  std::string name = beginning + "XXXXXX";
+  return mkdtemp(name.data()) == nullptr ? std::nullopt : std::optional(name);
 }
 
 bool may_write(const std::string& path) { return access(path.c_str(), W_OK) == 0; }

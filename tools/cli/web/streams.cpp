@@ -5,4 +5,7 @@ namespace ipos::tools {
 
 void prepare_streams() {}
 
+bool has_own_window() { return false; }
+void wait_for_reader() {}
+
 }  // namespace ipos::tools

@@ -5,10 +5,13 @@
 #include <io.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <winsock2.h>
 #include <windows.h>
 
+#include <array>
 #include <cerrno>
 #include <filesystem>
+#include <random>
 #include <utility>
 
 namespace ipos::tools {
@@ -23,6 +26,20 @@ std::optional<FileIdentity> look_at(HANDLE file) {
   return FileIdentity{
       info.dwVolumeSerialNumber, whole(info.nFileIndexHigh, info.nFileIndexLow),
       static_cast<int64_t>(whole(info.ftCreationTime.dwHighDateTime, info.ftCreationTime.dwLowDateTime)), 0};
+}
+
+bool is_socket(HANDLE file) {
+  int kind = 0, size = sizeof kind;
+  return getsockopt(reinterpret_cast<SOCKET>(file), SOL_SOCKET, SO_TYPE, reinterpret_cast<char*>(&kind), &size) == 0;
+}
+
+// A pipe cannot be waited for: it is looked at.
+bool pipe_is_readable(HANDLE pipe, int milliseconds) {
+  for (const ULONGLONG end = GetTickCount64() + static_cast<ULONGLONG>(milliseconds);; Sleep(1)) {
+    DWORD there = 0;
+    if (PeekNamedPipe(pipe, nullptr, 0, nullptr, &there, nullptr) == 0 || there != 0) return true;
+    if (GetTickCount64() >= end) return false;
+  }
 }
 
 }  // namespace
@@ -65,6 +82,38 @@ bool put_in_place(Descriptor file, const std::string& from, const std::string& t
     return true;
   errno = GetLastError() == ERROR_ACCESS_DENIED || GetLastError() == ERROR_SHARING_VIOLATION ? EACCES : EIO;
   return false;
+}
+
+bool readable(int file, int milliseconds) {
+  const auto handle = reinterpret_cast<HANDLE>(_get_osfhandle(file));
+  switch (GetFileType(handle)) {
+    case FILE_TYPE_CHAR: return WaitForSingleObject(handle, static_cast<DWORD>(milliseconds)) == WAIT_OBJECT_0;
+    case FILE_TYPE_PIPE: break;
+    default: return true;
+  }
+  if (!is_socket(handle)) return pipe_is_readable(handle, milliseconds);
+  WSAPOLLFD waiting{reinterpret_cast<SOCKET>(handle), POLLRDNORM, 0};
+  return WSAPoll(&waiting, 1, milliseconds) > 0;
+}
+
+Descriptor open_without_name() {
+  std::array<wchar_t, MAX_PATH + 1> folder{};
+  std::array<wchar_t, MAX_PATH + 1> name{};
+  if (GetTempPathW(MAX_PATH, folder.data()) == 0 || GetTempFileNameW(folder.data(), L"ipo", 0, name.data()) == 0)
+    return Descriptor();
+  return Descriptor(_wopen(name.data(), O_RDWR | O_BINARY | O_NOINHERIT | O_TEMPORARY));
+}
+
+// In a folder that only this user can read, as that for temporary files is.
+std::optional<std::string> make_folder(const std::string& beginning) {
+  constexpr int kTries = 100;
+  std::random_device any;
+  for (int n = 0; n < kTries; ++n) {
+    const std::string name = beginning + std::to_string(any());
+    std::error_code error;
+    if (std::filesystem::create_directory(std::filesystem::path(name), error)) return name;
+  }
+  return std::nullopt;
 }
 
 bool may_write(const std::string& path) { return access(path.c_str(), W_OK) == 0; }

@@ -7,6 +7,7 @@
 #include <windows.h>
 
 #include <cstdio>
+#include <initializer_list>
 
 namespace ipos::tools {
 
@@ -18,6 +19,21 @@ void prepare_streams() {
     DWORD mode = 0;
     if (GetConsoleMode(console, &mode) != 0)
       SetConsoleMode(console, mode | ENABLE_VIRTUAL_TERMINAL_PROCESSING);
+  }
+}
+
+// Who starts a program for another one often gives it a window of its own, too, but not its streams.
+bool has_own_window() {
+  DWORD processes[2] = {}, mode = 0;
+  const auto is_console = [&mode](DWORD number) { return GetConsoleMode(GetStdHandle(number), &mode) != 0; };
+  return GetConsoleProcessList(processes, 2) == 1 && is_console(STD_INPUT_HANDLE) && is_console(STD_OUTPUT_HANDLE) &&
+         is_console(STD_ERROR_HANDLE);
+}
+
+void wait_for_reader() {
+  std::fputs("Press Enter to close this window.\n", stderr);
+  while (const int c = std::getchar()) {
+    if (c == '\n' || c == EOF) return;
   }
 }
 

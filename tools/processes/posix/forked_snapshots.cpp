@@ -1,6 +1,6 @@
 // fork(), a line to each copy, and nothing else. A copy whose line nobody can write to any more ends, so none
 // is left behind. Who goes back ends when the copy has said that it goes on, not before.
-#include "tools/processes/forked_snapshots.hpp"
+#include "tools/processes/posix/forked_snapshots.hpp"
 
 #include <fmt/format.h>
 #include <sys/socket.h>
@@ -17,7 +17,7 @@
 #include <fstream>
 #include <utility>
 
-#include "tools/processes/whole_bytes.hpp"
+#include "tools/cli/whole_bytes.hpp"
 
 namespace ipos::tools {
 namespace {

@@ -8,9 +8,16 @@
 #include <cstdint>
 #include <cstdio>
 
-#include "tools/processes/whole_bytes.hpp"
+#include "tools/cli/whole_bytes.hpp"
+#include "tools/processes/posix/forked_snapshots.hpp"
 
 namespace ipos::tools {
+
+struct ReplaceableProcess::Running {
+  int pipe;  // what it returns comes here
+};
+
+const bool ReplaceableProcess::kHasCopies = true;
 
 ReplaceableProcess::ReplaceableProcess(const std::function<int()>& body) {
   std::array<int, 2> ends{};
@@ -31,23 +38,25 @@ ReplaceableProcess::ReplaceableProcess(const std::function<int()>& body) {
   }
   close(ends[1]);
   if (worker > 0)
-    pipe_ = ends[0];
+    running_ = std::make_unique<Running>(Running{ends[0]});
   else
     close(ends[0]);
 }
 
 ReplaceableProcess::~ReplaceableProcess() {
-  if (pipe_ >= 0) close(pipe_);
+  if (running_) close(running_->pipe);
 }
 
 int ReplaceableProcess::wait() {
   int32_t code = -1;
-  return read_all(pipe_, reinterpret_cast<char*>(&code), sizeof code) ? code : -1;
+  return read_all(running_->pipe, reinterpret_cast<char*>(&code), sizeof code) ? code : -1;
 }
 
 int run_replaceable(const std::function<int()>& body) {
   ReplaceableProcess process(body);
   return process.started() ? process.wait() : body();
 }
+
+std::unique_ptr<debug::Snapshots> snapshots_of_process() { return std::make_unique<ForkedSnapshots>(); }
 
 }  // namespace ipos::tools

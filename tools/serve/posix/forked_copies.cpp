@@ -1,5 +1,5 @@
 // fork() and a pipe: a byte tells that all is done, the end of the pipe that the copy is no more. And one anonymous mapping.
-#include "tools/serve/forked_copies.hpp"
+#include "tools/serve/posix/forked_copies.hpp"
 
 #include <poll.h>
 #include <sched.h>
@@ -14,7 +14,8 @@
 #include <csignal>
 #include <cstdio>
 
-#include "tools/processes/forked_snapshots.hpp"
+#include "tools/processes/posix/forked_snapshots.hpp"
+#include "tools/serve/host_copies.hpp"
 
 namespace ipos::tools::serve {
 namespace {
@@ -104,5 +105,7 @@ void ForkedCopies::give_way() { sched_yield(); }
 std::unique_ptr<SecondRun> ForkedCopies::beside(const std::function<void()>& body) {
   return std::make_unique<ForkedRun>(body);
 }
+
+std::unique_ptr<Copies> host_copies(bool snapshots) { return std::make_unique<ForkedCopies>(snapshots); }
 
 }  // namespace ipos::tools::serve
