@@ -61,13 +61,10 @@ windows param set "$work/saw.toml" P130=2.5s >/dev/null 2>"$work/err" || fail "p
 (cd "$work" && same param get saw.toml P130)
 grep -q '2.500' "$work/windows" || fail "param get: $(cat "$work/windows")"
 
-# Every verb is there, or says that it is not.
-for verb in $("$linux" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]\+\) .*/\1/p'); do
-  windows "$verb" --help >"$work/out" 2>&1 && continue
-  grep -q "'$verb' is not in this build" "$work/out" || fail "$verb: $(cat "$work/out")"
+# Every verb is there; verbs.py in tests/windows compares what they do.
+for verb in $("$linux" --help | sed -n '/^Begin:/,$s/^  \([a-z]\+\) .*/\1/p'); do
+  windows "$verb" --help >"$work/out" 2>&1 || fail "$verb: $(cat "$work/out")"
 done
-windows bus plan x.toml --budget >"$work/out" 2>&1 && fail "bus plan"
-grep -q "'bus' is not in this build" "$work/out" || fail "bus plan: $(cat "$work/out")"
 
 # A drive at a serial port: one of the simulation at a pseudo-terminal, which wine calls COM7.
 printf '[[bus]]\nname = "line"\nkind = "rs485"\nport = "pty:%s"\n[[station]]\nname = "saw"\nunit = "md60a"\nrs485 = "line"\n[station.parameters]\nP810 = 1\n' \

@@ -1,0 +1,8 @@
+#!/usr/bin/env bash
+# ipos.exe under wine in the place of ipos, for tests that start a program: what goes in and out is the same, and so is Ctrl-C.
+# usage: IPOS_EXE=.../ipos.exe WINEPREFIX=... ipos.sh WORD...
+export WINEDEBUG=-all WINEDLLOVERRIDES='mscoree,mshtml='
+unset DISPLAY
+# Where tests want the state of a user it is there, too.
+if [ -n "${XDG_STATE_HOME:-}" ]; then LOCALAPPDATA=Z:${XDG_STATE_HOME//\//\\}; export LOCALAPPDATA; fi
+exec wine "$IPOS_EXE" "$@"
