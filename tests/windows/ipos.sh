@@ -4,5 +4,5 @@
 export WINEDEBUG=-all WINEDLLOVERRIDES='mscoree,mshtml='
 unset DISPLAY
 # Where tests want the state of a user it is there, too.
-if [ -n "${XDG_STATE_HOME:-}" ]; then LOCALAPPDATA=Z:${XDG_STATE_HOME//\//\\}; export LOCALAPPDATA; fi
+[ -z "${XDG_STATE_HOME:-}" ] || export XDG_STATE_HOME=Z:${XDG_STATE_HOME//\//\\}
 exec wine "$IPOS_EXE" "$@"

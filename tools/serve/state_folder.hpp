@@ -16,8 +16,8 @@ constexpr size_t kLongestState = 512 * 1024;  // of a file: what is longer is ne
 // The variable of the environment that names where the folder is.
 extern const char* const kStateVariable;
 
-// `$XDG_STATE_HOME/ipos`, else `~/.local/state/ipos`; on Windows `%LOCALAPPDATA%\ipos`. It is made where it is missing. Empty:
-// this user has no such place.
+// `$XDG_STATE_HOME/ipos`, else `~/.local/state/ipos`, on Windows `%LOCALAPPDATA%\ipos`; made where it is missing. Empty: this
+// user has no such place.
 std::filesystem::path state_folder();
 
 // A name of a file there for something whose own name may have any characters, as a port or a path has: the kind in

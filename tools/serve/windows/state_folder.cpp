@@ -42,8 +42,10 @@ class File {
 
 const char* const kStateVariable = "LOCALAPPDATA";
 
+// The variable of other systems is asked first, so that a test, or a user, can have another place.
 fs::path state_folder() {
-  const fs::path of_user = variable(kStateVariable);
+  fs::path of_user = variable("XDG_STATE_HOME");
+  if (!of_user.is_absolute()) of_user = variable(kStateVariable);
   if (!of_user.is_absolute()) return {};
   std::error_code error;
   fs::create_directories(of_user / "ipos", error);
