@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "tools/serve/arrival.hpp"
+#include "tools/serve/channel.hpp"
 #include "tools/serve/server.hpp"
 
 namespace ipos::tools::serve {
