@@ -2,6 +2,7 @@
 
 import configparser
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -22,7 +23,8 @@ notices = (__import__("pathlib").Path(ipos.__file__).parent / "NOTICES.txt").rea
 assert all(name in notices for name in ("{fmt}", "toml++", "GCC runtime")) and "preact" not in notices, notices[:200]
 with ipos.Plant(sys.argv[1]) as plant:
     plant.run("1s")
-    print(plant["saw"]["lCount"], plant.trace_hash, (__import__("pathlib").Path(ipos.__file__).parent / "libipos_plant.so").exists())
+    tag, = importlib.metadata.distribution("ipos").read_text("WHEEL").split("Tag: ")[1:]
+    print(plant["saw"]["lCount"], plant.trace_hash, __import__("pathlib").Path(ipos.__file__).parent / "libipos_plant.so", tag.strip())
 """
 
 
@@ -56,7 +58,13 @@ def test_pip_installs_it_without_an_index(tmp_path, line):
     run(sys.executable, "-m", "pip", "--python", python, "install", "-q", "--no-index", "--no-build-isolation", "--no-deps",
         source, env=building, cwd=tmp_path)  # fmt: skip
     alone = {name: value for name, value in os.environ.items() if name not in ("IPOS_PLANT_LIBRARY", "PYTHONPATH")}
-    count, trace_hash, has_library = run(python, "-c", SCRIPT, HERE / "line.toml", env=alone, cwd=tmp_path).split()
+    count, trace_hash, library, tag = run(python, "-c", SCRIPT, HERE / "line.toml", env=alone, cwd=tmp_path).split()
     line.run("1s")
     assert (int(count), trace_hash) == (line["saw"]["lCount"], line.trace_hash)
-    assert has_library == "True"
+    # By PEP 600: what it takes of the system is the C library, and no newer one than its name says.
+    if (objdump := shutil.which("objdump")) and sys.platform == "linux":
+        needed = [words[1] for words in map(str.split, run(objdump, "-p", library).splitlines()) if words[:1] == ["NEEDED"]]
+        own = all(re.fullmatch(r"(libc|libm|ld-linux-[\w-]+)\.so\.\d+", name) for name in needed)
+        assert own == ("-manylinux_2_" in tag), (tag, needed)  # a library with a sanitizer takes more
+        newest = max(int(minor) for minor in re.findall(r"GLIBC_2\.(\d+)", run(objdump, "-T", library)))
+        assert not own or re.fullmatch(rf"py3-none-manylinux_2_{newest}_\w+", tag), tag
