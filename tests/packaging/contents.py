@@ -126,7 +126,8 @@ def versions() -> None:
 
 
 # Sources that another package of Debian has within its own, with versions of their own.
-WITHIN = {"musl", "winpthreads", "LLVM runtime libraries (libc++, libc++abi, libunwind, compiler-rt)", "sphinx-basic-ng", "Furo"}
+WITHIN = {"musl", "winpthreads", "LLVM runtime libraries (libc++, libc++abi, libunwind, compiler-rt)", "sphinx-basic-ng", "Furo",
+          "Sizzle", "gumshoejs"}
 
 
 def main() -> None:

@@ -1,5 +1,5 @@
 """The site of docs/: Sphinx makes it without a warning, every link and picture of it leads to a file and to an id in it, it asks
-no server for anything, and its search knows its words.
+no server for anything, its search knows its words, and packaging/third_parties.tsv names what is in it.
 usage: site_links.py SOURCE [SITE]      makes the site in a folder of its own if SITE is not given"""
 
 import re
@@ -9,6 +9,8 @@ import tempfile
 from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote, urlparse
+
+from site_contents import look_into
 
 wrong: list[str] = []
 
@@ -61,6 +63,7 @@ def look_at(site: Path) -> None:
     for word in ("hoist", "movilink", "profibus"):
         if f"{word}:" not in index and f'"{word}":' not in index:
             wrong.append(f"the search does not know '{word}'")
+    wrong.extend(look_into(site))
     print(f"{len(pages)} pages, {count} links within")
 
 
