@@ -1,8 +1,11 @@
-// ipos_bench_instances: many machines of one program in one process. Prints the memory of each, the time to
-// make, save and run them, and the time of a tick of 64. The figures are those of docs/guide/embedding.md.
+// ipos_bench_instances: many machines of one program in one process, with the library that is the one file ipos.c. Prints the
+// memory of each, the processor time to make, save and run them, and that of a tick of 64, the best of several rounds each. The
+// figures are those of docs/guide/embedding.md.
 #include <ipos.h>
-#include <chrono>
+
+#include <algorithm>
 #include <cstdio>
+#include <ctime>
 #include <memory>
 #include <vector>
 
@@ -12,7 +15,8 @@
 namespace {
 
 constexpr size_t kMachines = 1000;
-constexpr uint32_t kTicks = 1000;
+constexpr uint32_t kTicks = 100;
+constexpr int kRounds = 20;
 
 // A controller with ramp and limits, as drive programs are.
 constexpr char kSource[] =
@@ -21,9 +25,8 @@ constexpr char kSource[] =
     "  if (sum > 5000) sum = 5000; output = (error * 3 + sum / 4) >> 2;\n"
     "  if (output > 200) output = 200; actual = actual + output / 3; } }\n";
 
-double seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+// Of the processor: what else runs here does not count.
+double seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 struct Fleet {
   std::vector<uint64_t> memory;
@@ -43,10 +46,14 @@ struct Fleet {
   double tick_ns(uint32_t rate) {
     const uint32_t rates[3] = {rate, 0, 0};
     for (ipos_vm* vm : machines) ipos_set_rates(vm, rates);
-    const double begin = seconds();
-    for (uint32_t tick = 0; tick < kTicks; ++tick)
-      for (ipos_vm* vm : machines) ipos_run_ticks(vm, 1, nullptr);
-    return (seconds() - begin) / kTicks * 1e9;
+    double best = 1e9;
+    for (int round = 0; round < kRounds; ++round) {
+      const double begin = seconds();
+      for (uint32_t tick = 0; tick < kTicks; ++tick)
+        for (ipos_vm* vm : machines) ipos_run_ticks(vm, 1, nullptr);
+      best = std::min(best, seconds() - begin);
+    }
+    return best / kTicks * 1e9;
   }
 };
 
