@@ -78,6 +78,8 @@ TEST_F(Browser, KeepsClicksAsATestAndASession) { expect_node_passed(run("keep.te
 
 TEST_F(Browser, OpensExamplesAndBuildsAPlant) { expect_node_passed(run("gallery.test.mjs"), 2); }
 
+TEST_F(Browser, NeedsTheKeyboardAlone) { expect_node_passed(run("keyboard.test.mjs"), 4); }
+
 TEST_F(Browser, HearsARealDrive) { expect_node_passed(run("device.test.mjs"), 3); }
 
 }  // namespace

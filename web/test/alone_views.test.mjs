@@ -6,6 +6,7 @@ import { after, before, test } from "node:test";
 
 import { address, moves, opened, options } from "./alone.mjs";
 import { launch, tab_names } from "./browser.mjs";
+import { press, tabTo } from "./keyboard.mjs";
 import { examples } from "./serve.mjs";
 
 let browser;
@@ -174,11 +175,13 @@ test("clicks become a test that passes, and a session of the same moment", optio
     await page.waitForFunction(() => !window.is_before && document.title.includes("hoist"));
     await until(async () => (await timer(page).textContent().catch(() => "")) === moment, `the session does not stand at ${moment}`);
     assert.equal(await page.getByRole("switch", { name: "hoist DI10" }).getAttribute("aria-checked"), "true");
-    // The link has them, too.
-    await button(page, "Share").click();
+    // The link has them, too. It is made by the keyboard alone as the rest is in keyboard.test.mjs.
+    await press(page, "Share");
     await page.getByRole("textbox", { name: "Link" }).or(page.getByRole("alert")).waitFor();
     assert.equal(await page.getByRole("alert").count(), 0, await page.getByRole("alert").allTextContents().then(String));
     const link = await page.getByRole("textbox", { name: "Link" }).inputValue();
+    await tabTo(page, "Link");
+    assert.equal(await page.evaluate(() => getSelection().toString() || document.activeElement.value), link);
     await meet(async (other) => {
       await other.getByRole("switch", { name: "hoist DI10" }).waitFor();
       await button(other, "Files").click();

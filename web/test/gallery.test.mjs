@@ -8,6 +8,7 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 
 import { desktop, launch, missing, openPage, phone } from "./browser.mjs";
+import { choose, press, type } from "./keyboard.mjs";
 import { program, serve } from "./serve.mjs";
 
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
@@ -60,32 +61,6 @@ test("an example is opened as a copy, never over a file", { skip }, () =>
   }),
 );
 
-// Tab until the element of that name has the focus.
-async function tabTo(page, name) {
-  for (let n = 0; n < 120; ++n) {
-    await page.keyboard.press("Tab");
-    const focused = await page.evaluate(() => {
-      const element = document.activeElement;
-      return element?.getAttribute("aria-label") ?? element?.labels?.[0]?.textContent?.trim() ?? element?.textContent?.trim();
-    });
-    if (focused === name) return;
-  }
-  assert.fail(`${name} is not reached by Tab`);
-}
-async function press(page, name, key = "Enter") {
-  await tabTo(page, name);
-  await page.keyboard.press(key);
-}
-async function type(page, name, text) {
-  await tabTo(page, name);
-  await page.keyboard.press("Control+A");
-  await page.keyboard.type(text);
-}
-async function choose(page, name, text) {
-  await tabTo(page, name);
-  await page.keyboard.type(text);
-}
-
 test("three stations exchange a telegram, by the keyboard alone", { skip }, () =>
   inEmptyFolder(async (page, folder) => {
     await press(page, "New plant");
@@ -107,8 +82,6 @@ test("three stations exchange a telegram, by the keyboard alone", { skip }, () =
     const plant = readFileSync(join(folder, "plant.toml"), "utf8");
     assert.ok(plant.startsWith("# A plant made on the page."));
     assert.deepStrictEqual(plant.match(/P881 = "?\d+/g)?.map((row) => row.replace(/\D*881 = "?/, "")), ["1", "2", "3"]);
-    await page.keyboard.press("Escape");
-    await page.evaluate(() => document.activeElement?.blur());
     await page.keyboard.press("r");
     await page.keyboard.press("5");
     await page.getByRole("table", { name: "Bus" }).getByRole("row", { name: /1100/ }).first().waitFor();

@@ -1,4 +1,5 @@
-// A dialog over the page: it takes the focus, Escape closes it, and what had the focus before has it again.
+// A dialog over the page: it takes the focus, Escape closes it, and what had the focus before has it again. And its row that
+// saves under a name, by Enter, too.
 import type { ComponentChildren } from "preact";
 import { useLayoutEffect, useRef } from "preact/hooks";
 
@@ -19,5 +20,30 @@ export function Dialog({ name, onClose, children }: { name: string; onClose: () 
       </div>
       {children}
     </dialog>
+  );
+}
+
+interface Saving {
+  file: string;
+  setFile: (file: string) => void;
+  save: (() => void) | undefined; // none: there is nothing to save yet
+  children?: ComponentChildren;
+}
+
+export function FileRow({ file, setFile, save, children }: Saving) {
+  return (
+    <form
+      class="row"
+      onSubmit={(event) => {
+        event.preventDefault();
+        save?.();
+      }}
+    >
+      <input type="text" aria-label="File" value={file} onInput={(event) => setFile(event.currentTarget.value)} />
+      <button class="primary" type="submit" disabled={!save}>
+        Save
+      </button>
+      {children}
+    </form>
   );
 }

@@ -4,7 +4,7 @@ import { useState } from "preact/hooks";
 import { standsAlone } from "../alone/packed";
 import { request } from "../server/connection";
 import { hello } from "../server/live";
-import { Dialog } from "./dialog";
+import { Dialog, FileRow } from "./dialog";
 
 export function SessionDialog({ onClose }: { onClose: () => void }) {
   const [file, setFile] = useState(`${(hello.peek()?.title ?? "plant").replace(/\.[^.]*$/, "")}.ipos`);
@@ -24,12 +24,7 @@ export function SessionDialog({ onClose }: { onClose: () => void }) {
   return (
     <Dialog name="Save session" onClose={onClose}>
       <p>The plant and its programs, what was done, this moment and this layout.</p>
-      <div class="row">
-        <input type="text" aria-label="File" value={file} onInput={(event) => setFile(event.currentTarget.value)} />
-        <button class="primary" onClick={() => void save()}>
-          Save
-        </button>
-      </div>
+      <FileRow file={file} setFile={setFile} save={() => void save()} />
       {wrong && <p role="alert">{wrong}</p>}
       <p role="status">{said}</p>
     </Dialog>

@@ -4,7 +4,7 @@ import { useEffect, useState } from "preact/hooks";
 import { request } from "../server/connection";
 import { hello } from "../server/live";
 import { pinned } from "../watch/watch_list";
-import { Dialog } from "./dialog";
+import { Dialog, FileRow } from "./dialog";
 import { TestReport, type Report } from "./test_report";
 
 function textOf(reason: unknown): string {
@@ -63,15 +63,11 @@ export function TestDialog({ onClose }: { onClose: () => void }) {
           </ul>
         </div>
       )}
-      <div class="row">
-        <input type="text" aria-label="File" value={file} onInput={(event) => setFile(event.currentTarget.value)} />
-        <button class="primary" disabled={text === ""} onClick={() => void save()}>
-          Save
-        </button>
-        <button title="All tests of this plant, beside it" onClick={() => void run()}>
+      <FileRow file={file} setFile={setFile} save={text === "" ? undefined : () => void save()}>
+        <button type="button" title="All tests of this plant, beside it" onClick={() => void run()}>
           Run tests
         </button>
-      </div>
+      </FileRow>
       {wrong && <p role="alert">{wrong}</p>}
       <p role="status">{said}</p>
       {report && <TestReport report={report} />}

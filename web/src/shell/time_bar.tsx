@@ -17,10 +17,20 @@ const telegram = () => void command({ do: "step", telegram: true });
 const back = (ms: number) => void command({ do: "back", ms });
 const restart = () => void command({ do: "restart" });
 
+// What the keys have asked for last: the next one may come before the server has said it.
+let asked: number | null = null;
+time.subscribe(({ speed }) => {
+  if (speed === asked) asked = null;
+});
+
 function changeSpeed(by: number): void {
-  const position = speeds.indexOf(time.peek().speed);
+  const position = speeds.indexOf(asked ?? time.peek().speed);
   const to = speeds[Math.max(0, Math.min(speeds.length - 1, (position < 0 ? speeds.indexOf(1) : position) + by))];
-  if (to !== undefined) void command({ do: "speed", speed: to });
+  if (to === undefined || to === (asked ?? time.peek().speed)) return;
+  asked = to;
+  void command({ do: "speed", speed: to }).then((reply) => {
+    if (!reply) asked = null;
+  });
 }
 
 export function offerTimeKeys(): void {
