@@ -62,7 +62,7 @@ TEST_F(Browser, PutsViewsSideBySide) { expect_node_passed(run("desk.test.mjs"), 
 
 TEST_F(Browser, TurnsAnAxisByAClick) { expect_node_passed(run("plant.test.mjs"), 18); }
 
-TEST_F(Browser, ShowsCurves) { expect_node_passed(run("scope.test.mjs"), 7); }
+TEST_F(Browser, ShowsCurves) { expect_node_passed(run("scope.test.mjs"), 8); }
 
 TEST_F(Browser, SeesMachinesMove) { expect_node_passed(run("machine.test.mjs"), 6); }
 
@@ -70,7 +70,7 @@ TEST_F(Browser, EditsAndRebuilds) { expect_node_passed(run("edit.test.mjs"), 7);
 
 TEST_F(Browser, GoesToAnyMoment) { expect_node_passed(run("timeline.test.mjs"), 5); }
 
-TEST_F(Browser, ReadsTelegramsAndSavesThem) { expect_node_passed(run("trace.test.mjs"), 3); }
+TEST_F(Browser, ReadsTelegramsAndSavesThem) { expect_node_passed(run("trace.test.mjs"), 4); }
 
 TEST_F(Browser, ComparesAndSetsParameters) { expect_node_passed(run("parameters.test.mjs"), 2); }
 

@@ -199,6 +199,34 @@ test("trace: columns, filter, tokens, mute, find, one telegram, files", { skip }
   }),
 );
 
+test("trace: where it stands a new filter acts at once, and so does another moment", { skip }, () =>
+  meet(gateway, desktop, async (page, server) => {
+    await tab(page, "Bus");
+    await standAt(server, page, 400);
+    const rows = page.getByRole("table", { name: "Telegrams" }).locator("tbody tr[role=row]");
+    const lines = async () => [...new Set(await rows.locator(".wire").allTextContents())].sort();
+    const filter = page.getByRole("searchbox", { name: "Filter of the trace" });
+    await until(async () => (await rows.count()) > 10, "no telegrams");
+    await button(page, "Follow").click();
+    const before = await rows.first().textContent();
+    // What comes by now is not shown, whatever the filter.
+    await standAt(server, page, 500);
+    assert.strictEqual(await rows.first().textContent(), before);
+    await filter.fill("line:sbus");
+    await until(async () => (await lines()).join() === "sbus", "the filter does nothing");
+    const times = await rows.locator(".time").allTextContents();
+    assert.ok(times.every((time) => Number.parseFloat(time) <= 0.4), "newer ones than where it stands");
+    await filter.fill("-line:sbus");
+    await until(async () => !(await lines()).includes("sbus") && (await rows.count()) > 10, "the other filter does nothing");
+    await filter.fill("line:nowhere");
+    await page.getByText("No telegram.").waitFor();
+    await filter.fill("");
+    await until(async () => (await rows.count()) > 10 && (await rows.first().textContent()) === before, "without the filter it is another trace");
+    await order(server, { do: "go", us: 200_000 });
+    await until(async () => (await rows.count()) > 10 && Number.parseFloat(await rows.first().locator(".time").textContent()) <= 0.2, "it does not show the earlier moment");
+  }),
+);
+
 test("trace and journal on a phone: nothing lies beside the box; the journal leads to moments and lines", { skip }, () =>
   meet(`${examples}/hoist/hoist.toml`, phone, async (page, server) => {
     await page.getByRole("switch", { name: "hoist DI04" }).waitFor();

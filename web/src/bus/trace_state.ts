@@ -41,6 +41,9 @@ let known = 0; // number of the last telegram that was looked at
 let begun = 0; // an answer to what was asked before a new beginning counts for nothing
 let asks = false;
 let asked_us = -1;
+// What the rows fit, and where a trace stands that does not follow: at most this number; null: the newest one of now.
+let drawn: Message | null = null;
+let stands_at: number | null = null;
 
 interface Answer {
   frames: TraceFrame[];
@@ -89,6 +92,7 @@ async function look(): Promise<void> {
       frames.value = (fresh.length === newest ? fresh : [...fresh, ...(first ? [] : frames.peek())]).slice(0, newest);
       complete.value = frames.peek().length < newest;
     }
+    drawn = wanted;
   } catch (reason) {
     if (wanted === choice.peek()) notice(reason);
   } finally {
@@ -101,7 +105,26 @@ function begin(): void {
   ++begun;
   known = 0;
   asked_us = -1;
-  void look();
+  stands_at = null;
+  if (follows.peek()) void look();
+  else void choose();
+}
+
+// Where it stands, the rows that fit by now.
+async function choose(): Promise<void> {
+  const wanted = choice.peek();
+  const began = begun;
+  try {
+    const found = await search(stands_at === null ? {} : { before: stands_at + 1 }, newest, wanted);
+    if (began !== begun || wanted !== choice.peek() || follows.peek()) return;
+    stands_at ??= known;
+    problem.value = "";
+    frames.value = found;
+    complete.value = found.length < newest;
+    drawn = wanted;
+  } catch (reason) {
+    if (wanted === choice.peek()) notice(reason);
+  }
 }
 
 // Those before the oldest one that is there.
@@ -140,6 +163,7 @@ export async function show(frame: TraceFrame): Promise<void> {
   if (frames.peek().some((one) => one.n === frame.n)) return;
   // It may lie beside the filter: an answer to what the filter takes.
   const around = await search({ before: frame.n + 20 }, newest, choice.peek());
+  stands_at = frame.n + 19;
   frames.value = around.some((one) => one.n === frame.n) ? around : [...around, frame].sort((a, b) => b.n - a.n);
   complete.value = around.length < newest;
 }
@@ -164,8 +188,11 @@ export const followTrace = shared(() => {
       begin();
     }),
     effect(() => {
-      void choice.value;
-      if (follows.value) begin();
+      const wanted = choice.value;
+      if (follows.value) return begin();
+      stands_at ??= known || null;
+      if (drawn !== wanted) void choose();
+      return undefined;
     }),
   ];
   const timer = setInterval(() => void look(), refresh_ms);
