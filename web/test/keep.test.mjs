@@ -8,7 +8,7 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 
 import { desktop, launch, missing, openPage, phone } from "./browser.mjs";
-import { examples, program, serve } from "./serve.mjs";
+import { examples, program, serve, standAt } from "./serve.mjs";
 
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const skip = missing ?? (program ? false : "IPOS_PROGRAM does not name the ipos to test");
@@ -34,6 +34,53 @@ const until = async (what, text) => {
   }
   assert.fail(text);
 };
+
+// The editor shows the file, with the cursor in that line.
+async function standsAt(page, file, line) {
+  const chosen = page.getByRole("combobox", { name: "File" }).locator("option:checked");
+  await until(async () => (await chosen.textContent()) === file, `${file} is not opened`);
+  await until(async () => {
+    const at = await page.locator(".cm-activeLine").evaluate((active) => {
+      const y = active.getBoundingClientRect().top;
+      const number = [...document.querySelectorAll(".cm-lineNumbers .cm-gutterElement")].find((one) => one.offsetHeight > 0 && Math.abs(one.getBoundingClientRect().top - y) < 3);
+      return Number(number?.textContent);
+    });
+    return at === line;
+  }, `it does not stand at line ${line}`);
+}
+
+const red_test = `plant = "hoist.toml"
+
+[[expect]]
+at = "5ms"
+variable = "lFloor"
+equals = 7
+
+[[step]]
+until = "1s"
+`;
+
+test("a check of a test that is not met is a mark that leads to its line", { skip }, async () => {
+  const folder = mkdtempSync(join(tmpdir(), "ipos-keep-"));
+  cpSync(join(examples, "hoist"), folder, { recursive: true });
+  writeFileSync(join(folder, "red.test.toml"), red_test);
+  const server = await serve("red.test.toml", ["--port", "0"], folder);
+  try {
+    const { page, errors, close } = await openPage(browser, server.address);
+    await page.getByRole("switch", { name: "hoist DI10" }).waitFor();
+    await standAt(server, page, 20);
+    const mark = page.getByRole("list", { name: "Marks" }).getByRole("listitem").filter({ hasText: "red.test.toml:3" });
+    await mark.first().waitFor();
+    await mark.first().getByRole("button", { name: "red.test.toml:3" }).click();
+    await standsAt(page, "red.test.toml", 3);
+    assert.deepStrictEqual(await findings(page), []);
+    assert.deepStrictEqual(errors, []);
+    await close();
+  } finally {
+    await server.stop();
+    rmSync(folder, { recursive: true });
+  }
+});
 
 test("clicks become a green test, a red one after a change, and a session of the same moment", { skip }, async () => {
   const folder = mkdtempSync(join(tmpdir(), "ipos-keep-"));
@@ -82,7 +129,10 @@ test("clicks become a green test, a red one after a change, and a session of the
     await dialog.getByRole("button", { name: "Run tests" }).click();
     await row.getByText("failed").waitFor();
     assert.match(await row.textContent(), /clicks\.test\.toml:\d+/);
-    await page.keyboard.press("Escape");
+    // What was wrong leads to its line in the editor.
+    const [, place_line] = /clicks\.test\.toml:(\d+)/.exec(await row.textContent());
+    await row.getByRole("button", { name: /clicks\.test\.toml:\d+/ }).first().click();
+    await standsAt(page, "clicks.test.toml", Number(place_line));
 
     await page.getByRole("button", { name: "Save session" }).click();
     const session = page.getByRole("dialog", { name: "Save session" });

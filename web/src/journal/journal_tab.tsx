@@ -1,7 +1,7 @@
 // The journal of the plant: what drives ignored, warned of and stopped for. A time leads to its moment, a place to its line.
 import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 
-import { openLine } from "../program/open_line";
+import { TextWithPlaces } from "../program/open_line";
 import { showMoment } from "../scope/window";
 import { secondsText, stationNames } from "../server/live";
 import type { JournalEntry } from "../server/protocol";
@@ -20,24 +20,6 @@ function toggle(weight: JournalEntry["weight"]): void {
   hiddenWeights.value = next;
 }
 
-// "HOIST.IPC:20:13" within a text is a way to that line.
-function Text({ entry }: { entry: JournalEntry }) {
-  const parts = entry.text.split(/([\w./-]+\.(?:ipc|h):\d+(?::\d+)?)/i);
-  return (
-    <span class="text">
-      {parts.map((part, n) => {
-        const [file, line] = n % 2 === 1 ? part.split(":") : [];
-        if (!file || !line) return part;
-        return (
-          <button key={n} class="link mono" title="Show this line in Program" onClick={() => openLine(entry.station, { file, line: Number(line) })}>
-            {part}
-          </button>
-        );
-      })}
-    </span>
-  );
-}
-
 function Entry({ entry }: { entry: JournalEntry }) {
   const at = secondsText(entry.us);
   return (
@@ -50,7 +32,9 @@ function Entry({ entry }: { entry: JournalEntry }) {
         </button>
       )}
       <strong>{entry.station}</strong>
-      <Text entry={entry} />
+      <span class="text">
+        <TextWithPlaces of={entry.station} text={entry.text} />
+      </span>
       <button
         class="small"
         aria-label={`Show ${at} in the scope`}

@@ -70,7 +70,7 @@ export function TestDialog({ onClose }: { onClose: () => void }) {
       </FileRow>
       {wrong && <p role="alert">{wrong}</p>}
       <p role="status">{said}</p>
-      {report && <TestReport report={report} />}
+      {report && <TestReport report={report} onOpen={onClose} />}
     </Dialog>
   );
 }

@@ -1,4 +1,5 @@
-// The report of tests: a row a test, and under a failed one what was wrong, at its line.
+// The report of tests: a row a test, and under a failed one what was wrong, with a way to its line.
+import { PlaceLink } from "../program/open_line";
 
 export interface Finding {
   file: string;
@@ -24,16 +25,14 @@ export interface Report {
   results: Result[];
 }
 
-function Wrong({ result }: { result: Result }) {
+function Wrong({ result, onOpen }: { result: Result; onOpen: () => void }) {
   return (
     <>
       {result.messages && <pre>{result.messages}</pre>}
       <ul>
         {result.findings.map((finding) => (
           <li key={`${finding.line} ${finding.message}`}>
-            <span class="mono">
-              {finding.file}:{finding.line}
-            </span>{" "}
+            <PlaceLink place={finding} text={`${finding.file}:${finding.line}`} onOpen={onOpen} />{" "}
             {finding.message}
             {finding.note && ` (${finding.note})`}
             {finding.values.map((value) => (
@@ -48,7 +47,7 @@ function Wrong({ result }: { result: Result }) {
   );
 }
 
-export function TestReport({ report }: { report: Report }) {
+export function TestReport({ report, onOpen }: { report: Report; onOpen: () => void }) {
   return (
     <div class="scroll" tabIndex={0}>
       <p>
@@ -69,7 +68,7 @@ export function TestReport({ report }: { report: Report }) {
                 {result.name}
               </th>
               <td class={result.outcome === "passed" ? "good" : "bad"}>{result.outcome.replace("_", " ")}</td>
-              <td>{result.outcome === "passed" ? `${result.checks} checks, ${(result.time_us / 1e6).toFixed(3)} s` : <Wrong result={result} />}</td>
+              <td>{result.outcome === "passed" ? `${result.checks} checks, ${(result.time_us / 1e6).toFixed(3)} s` : <Wrong result={result} onOpen={onOpen} />}</td>
             </tr>
           ))}
         </tbody>

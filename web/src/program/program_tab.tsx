@@ -197,6 +197,8 @@ export function Program() {
   const here = tasks.value.filter((task) => task.file === openFile.value);
   const points = breakpoints.value.filter((point) => point.station === station.value && point.file === openFile.value);
 
+  const to_mend = stations.length === 0 && document?.kind === "program";
+
   useEffect(() => {
     if (plant.value && stations.length === 0 && openFile.value === "") openFile.value = plantFiles.value.find((one) => one.kind === "program")?.name ?? names[0] ?? "";
   }, [plant.value, plantFiles.value]);
@@ -227,10 +229,11 @@ export function Program() {
   // A line that a text elsewhere on the page has named, once.
   useEffect(() => {
     const place = wantedLine.value;
-    if (!view || !compiled || !place || !isFile(openFile.value, place.file)) return;
+    if (!view || !document || view.state.doc !== document.state.doc || !place || !isFile(openFile.value, place.file)) return;
+    if (!compiled && document.kind === "program" && !to_mend) return; // its compiled text comes
     wantedLine.value = null;
-    goTo(view, Math.max(1, shownLine(view.state, place.line)), 1);
-  }, [wantedLine.value, view, compiled, openFile.value]);
+    goTo(view, Math.max(1, compiled ? shownLine(view.state, place.line) : place.line), 1);
+  }, [wantedLine.value, view, compiled, document, openFile.value]);
 
   const formatIt = (of: EditorView | null) => document && of && canFormat(document) && void format(of, document.uri);
   const go = (message: BuildMessage) => {
@@ -239,7 +242,6 @@ export function Program() {
     jump.current = message;
     if (names.includes(message.file)) openFile.value = message.file;
   };
-  const to_mend = stations.length === 0 && document?.kind === "program";
   const runs = !document || (compiled?.text == null ? !to_mend : plainText(compiled.text) === document.state.doc.toString());
   return (
     <div

@@ -2,6 +2,7 @@
 import { computed } from "@preact/signals";
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 
+import { PlaceLink, placeIn } from "../program/open_line";
 import { plant, secondsText } from "../server/live";
 import type { Mark } from "../server/protocol";
 import { setting } from "../shell/settings";
@@ -45,6 +46,12 @@ function sentence(mark: Mark): string {
   return [secondsText(mark.us), mark.station, mark.text || mark.what].filter(Boolean).join(" ");
 }
 
+// A check that is not met stands in a test, and leads to its line there.
+function CheckPlace({ mark }: { mark: Mark }) {
+  const place = mark.kind === "check" ? placeIn(mark.text) : undefined;
+  return place ? <PlaceLink place={place} text={`${place.file.slice(place.file.lastIndexOf("/") + 1)}:${place.line}`} /> : null;
+}
+
 export function MarkList() {
   const list = useRef<HTMLUListElement>(null);
   const groups = listGroups(shown.value);
@@ -68,6 +75,7 @@ export function MarkList() {
             >
               {`${secondsText(first.us)} ${first.what}${count > 1 ? ` × ${count}` : ""}`}
             </button>
+            <CheckPlace mark={first} />
           </li>
         ))}
       </ul>
