@@ -146,7 +146,7 @@ export function Trace() {
   return (
     <section aria-label="Trace" class="traces">
       <div class="bar">
-        <h2 class="part">Trace</h2>
+        <h2 class="caption">Trace</h2>
         <input
           type="search"
           aria-label="Filter of the trace"

@@ -56,7 +56,7 @@ export function Jog() {
   );
   return (
     <section class="panel row" aria-label="Manual operation" style="margin-bottom:14px">
-      <h2 class="part">Manual operation</h2>
+      <h2 class="caption">Manual operation</h2>
       {button("ccw", "⟲ Hold for CCW")}
       {button("cw", "⟳ Hold for CW")}
       <label class="field">

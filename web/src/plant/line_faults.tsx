@@ -64,7 +64,7 @@ export function LineFaults({ buses }: { buses: Line[] }) {
     });
   return (
     <section class="panel faults" aria-label="Line faults">
-      <h2 class="part">Line faults</h2>
+      <h2 class="caption">Line faults</h2>
       <div class="row">
         <label class="field">
           Line

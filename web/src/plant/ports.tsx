@@ -11,7 +11,7 @@ export function Ports() {
   if (ports.value.length === 0) return null;
   return (
     <section class="panel ports" aria-label="Ports">
-      <h2 class="part">Ports</h2>
+      <h2 class="caption">Ports</h2>
       {ports.value.map((port) => (
         <p key={port.bus}>
           {port.bus}: {port.name}, <span role="status" aria-label={`Port of ${port.bus}`}>{stateText(port)}</span>
