@@ -64,7 +64,7 @@ TEST_F(Browser, TurnsAnAxisByAClick) { expect_node_passed(run("plant.test.mjs"),
 
 TEST_F(Browser, ShowsCurves) { expect_node_passed(run("scope.test.mjs"), 8); }
 
-TEST_F(Browser, SeesMachinesMove) { expect_node_passed(run("machine.test.mjs"), 6); }
+TEST_F(Browser, SeesMachinesMove) { expect_node_passed(run("machine.test.mjs"), 7); }
 
 TEST_F(Browser, EditsAndRebuilds) { expect_node_passed(run("edit.test.mjs"), 7); }
 

@@ -220,6 +220,26 @@ test("parts ride on the conveyor and light the barrier; every kind is drawn and 
   }),
 );
 
+// A layer more a turn: between the core (6 of the picture) and the full roll (18) the radius grows with the travel of 60 m.
+test("the roll of a winder grows with its travel", { skip }, () =>
+  meet(`${examples}/winder/winder.toml`, async (page, server) => {
+    const roll = figure(page, "takeup");
+    await roll.waitFor();
+    assert.strictEqual(await roll.locator("circle.web").count(), 0, "it is not bare at first");
+    let before = 6;
+    for (const ms of [4000, 14_000]) {
+      await standAt(server, page, ms);
+      await until(async () => Math.abs(Number(await roll.locator("circle.web").first().getAttribute("r")) - 6 - (12 * (await numberOf(roll))) / 60) < 0.02, `the roll has another radius at ${ms} ms`);
+      const radius = Number(await roll.locator("circle.web").first().getAttribute("r"));
+      assert.ok(radius > before, `it does not grow: ${radius}`);
+      before = radius;
+    }
+    await standAt(server, page, 60_000);
+    await until(async () => (await roll.locator("circle.web").first().getAttribute("r")) === "18.00", "it never gets full");
+    await hasNoFindings(page, "winder");
+  }),
+);
+
 test("64 stations: compact rows, search, only what is not well, cards at a click, by keyboard too", { skip }, () =>
   meet("many.toml", async (page, server) => {
     const table = page.getByRole("table", { name: "Stations" });

@@ -1,4 +1,5 @@
 // What turns: a turntable with its marks on the rim, the reel of a winder, the blades of a fan, or the shaft itself.
+import type { FunctionComponent } from "preact";
 import { useRef } from "preact/hooks";
 
 import type { Drawn } from "./machine";
@@ -35,13 +36,27 @@ function Table() {
   );
 }
 
-function Reel() {
+// A turn adds a layer, so the radius grows with the travel: a bare core at its beginning, a full roll at its end. Without a
+// travel the roll is full.
+const core = 6;
+const full = 18;
+const layer = 4; // what is drawn as one
+
+function rollRadius({ machine, state }: Drawn): number {
+  const { from, to } = machine;
+  if (from === null || to === null) return full;
+  const part = (inUnit(machine, state.position ?? 0) - from) / (to - from);
+  return core + Math.max(0, Math.min(1, part)) * (full - core);
+}
+
+function Reel(drawn: Drawn) {
+  const radius = rollRadius(drawn);
   return (
     <>
-      <circle r="18" class="web" />
-      <circle r="14" class="web" />
-      <circle r="10" class="web" />
-      <circle r="6" class="hub" />
+      {Array.from({ length: Math.ceil((radius - core) / layer) }, (_, n) => (
+        <circle key={n} r={(radius - n * layer).toFixed(2)} class="web" />
+      ))}
+      <circle r={core} class="hub" />
       <path d="M-1.5 -2V-9H1.5V-2Z" class="key" />
     </>
   );
@@ -58,12 +73,12 @@ function Blades() {
   );
 }
 
-const bodies = { shaft: Shaft, turntable: Table, winder: Reel, fan: Blades };
+const bodies: Partial<Record<Drawn["machine"]["kind"], FunctionComponent<Drawn>>> = { shaft: Shaft, turntable: Table, winder: Reel, fan: Blades };
 
 export function Round(drawn: Drawn) {
   const { station, machine, state, marks } = drawn;
   const turning = useRef<SVGGElement>(null);
-  const Body = bodies[machine.kind as keyof typeof bodies] ?? Shaft;
+  const Body = bodies[machine.kind] ?? Shaft;
   const count = machine.kind === "turntable" ? (state.position ?? 0) : (state.machine?.shaft ?? state.position ?? 0);
   useMotion(station.name, (behind) => {
     const degrees = degreesOf(drawn, count + behind);
@@ -80,13 +95,13 @@ export function Round(drawn: Drawn) {
       width={small ? 58 : 150}
       height={small ? 58 : 150}
     >
-      {machine.kind === "winder" && <path class="strip" d="M-24 18H0" />}
+      {machine.kind === "winder" && <path class="strip" d={`M-24 ${rollRadius(drawn).toFixed(2)}H0`} />}
       <circle r="22" class="rim" />
       {Array.from({ length: 12 }, (_, hour) => (
         <line key={hour} y1="-22" y2={hour % 3 ? "-20" : "-18.5"} class="tick" transform={`rotate(${hour * 30})`} />
       ))}
       <g ref={turning}>
-        <Body />
+        <Body {...drawn} />
       </g>
       {points.map((mark, n) => (
         <g key={n} class={`mark ${mark.kind}${mark.on ? " on" : ""}`} transform={`rotate(${degreesOf(drawn, (mark.from * shaft_turn) / machine.per_turn)})`}>
