@@ -93,6 +93,15 @@ class Bus:
         self._plant._call("send", self._number, byref(row), byref(tag))
         return tag.value
 
+    def to_pandas(self) -> object:
+        """What frames() gives as a pandas.DataFrame, a row a frame or telegram."""
+        try:
+            import pandas
+        except ImportError:
+            raise ImportError("to_pandas() needs pandas; bus.frames() has the same") from None
+        columns = list((Frame if self.kind == "can" else Telegram).__slots__)
+        return pandas.DataFrame([[getattr(row, name) for name in columns] for row in self.frames()], columns=columns)
+
     def join(self) -> None:
         """Takes part in a CAN line: acknowledges frames, also before the first one is sent."""
         self._plant._call("join", self._number)

@@ -48,7 +48,7 @@ class Reader:
 
 
 class Recording:
-    """Signals over time: `times` in seconds, recording["saw.speed"] a list of numbers. plot() needs matplotlib."""
+    """Signals over time: `times` in seconds, recording["saw.speed"] a list of numbers. plot() needs matplotlib, to_pandas() pandas."""
 
     def __init__(self, plant: "Plant", names: Sequence[str], duration: int, every: int) -> None:
         read = self._begin(plant, names, every)
@@ -116,6 +116,17 @@ class Recording:
 
     def __repr__(self) -> str:
         return f"<Recording of {', '.join(self.names)}: {len(self)} samples>"
+
+    def to_pandas(self) -> object:
+        """A pandas.DataFrame: a column a signal, the times in seconds as its index, units in `attrs["units"]`."""
+        try:
+            import pandas
+        except ImportError:
+            raise ImportError("to_pandas() needs pandas; the numbers are in recording.times and recording[name]") from None
+        index = pandas.Index(self.times, name="time [s]")
+        frame = pandas.DataFrame(dict(zip(self.names, self._columns)), index=index)
+        frame.attrs["units"] = dict(zip(self.names, self.units))
+        return frame
 
     def plot(self, axes: object = None) -> object:
         """Draws one strip a unit with matplotlib and returns the axes; a notebook shows them."""

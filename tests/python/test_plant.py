@@ -3,6 +3,7 @@
 import gc
 import os
 import subprocess
+import sys
 import threading
 import weakref
 
@@ -454,6 +455,41 @@ def test_a_recording(line):
         recording["saw.H1"]
     with pytest.raises(ValueError):
         line.record(["saw.speed"], "1s", every=0)
+
+
+class Pandas:
+    """In place of pandas, which need not be installed: what it is given."""
+
+    class Index(list):
+        def __init__(self, values, name):
+            super().__init__(values)
+            self.name = name
+
+    class DataFrame:
+        def __init__(self, data, index=None, columns=None):
+            self.data, self.index, self.columns, self.attrs = data, index, columns, {}
+
+
+def test_recordings_and_frames_for_pandas(line, monkeypatch):
+    saw = line["saw"]
+    recording = line.record(["saw.speed", "saw.lCount"], "50ms", every="10ms")
+    bus = next(iter(line.buses.values()))
+    frames = bus.frames()
+    line.run("50ms")
+    monkeypatch.setitem(sys.modules, "pandas", None)  # as if it were not installed
+    for use, words in ((recording.to_pandas, "recording.times"), (bus.to_pandas, "bus.frames()")):
+        with pytest.raises(ImportError, match="needs pandas") as caught:
+            use()
+        assert words in str(caught.value)
+    monkeypatch.setitem(sys.modules, "pandas", Pandas)
+    table = recording.to_pandas()
+    assert list(table.data) == ["saw.speed", "saw.lCount"] and table.data["saw.lCount"] == recording["saw.lCount"]
+    assert list(table.index) == recording.times and table.index.name == "time [s]"
+    assert table.attrs["units"]["saw.speed"] == "rpm"
+    assert saw["lCount"] is not None and frames is not None
+    table = bus.to_pandas()
+    assert table.columns[:3] == ["time", "id", "data"] and len(table.data) == len(bus.last) - len(frames)
+    assert [row[1] for row in table.data] == [frame.id for frame in list(bus.last)[len(frames) :]]
 
 
 def test_a_replay_shows_what_nobody_has_recorded(line, tmp_path):
