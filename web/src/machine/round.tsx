@@ -95,11 +95,11 @@ export function Round(drawn: Drawn) {
       width={small ? 58 : 150}
       height={small ? 58 : 150}
     >
-      {machine.kind === "winder" && <path class="strip" d={`M-24 ${rollRadius(drawn).toFixed(2)}H0`} />}
       <circle r="22" class="rim" />
       {Array.from({ length: 12 }, (_, hour) => (
         <line key={hour} y1="-22" y2={hour % 3 ? "-20" : "-18.5"} class="tick" transform={`rotate(${hour * 30})`} />
       ))}
+      {machine.kind === "winder" && <path class="strip" d={`M-24 ${rollRadius(drawn).toFixed(2)}H0`} />}
       <g ref={turning}>
         <Body {...drawn} />
       </g>
