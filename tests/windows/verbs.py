@@ -165,7 +165,7 @@ def main() -> int:
         wrong = 0
         print(f"{'verb':<12}{'commands':>9}{'as on Linux':>13}")
         for verb in sys.argv[3:] or ["", *verbs]:
-            lines = all_commands[verb] if verb else [[["--help"]], [["--licences"]], [[]], [["no-verb"]]]
+            lines = all_commands[verb] if verb else [[["--help"]], [[]], [["no-verb"]]]
             same = 0
             for line in lines:
                 ours, theirs = linux.run(*line), windows.run(*line)
