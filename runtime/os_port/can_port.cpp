@@ -3,6 +3,7 @@
 
 #include <charconv>
 
+#include "runtime/os_port/adapters/adapter_port.hpp"
 #include "runtime/os_port/port_names.hpp"
 #include "runtime/os_port/slcan_adapter.hpp"
 #include "runtime/os_port/slcan_client.hpp"
@@ -38,6 +39,7 @@ CanPortResult open_slcan(std::string_view name, std::string_view device, uint32_
 
 CanPortResult open_can_port(std::string_view name, uint32_t baud, RealClock& clock) {
   if (name.starts_with(kSlcan)) return open_slcan(name, name.substr(kSlcan.size()), baud, clock);
+  if (is_adapter_port(name)) return open_adapter_port(name, baud, clock);
   if (name.empty() || name.size() > kLongestInterface || name.find_first_of("/: ") != std::string_view::npos)
     return tl::unexpected(port_error(PortFault::BadName, name, kPortNames));
   return SocketCan::open(std::string(name), baud, clock);

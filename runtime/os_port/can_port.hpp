@@ -1,5 +1,5 @@
-// A CAN bus of the real world: a SocketCAN interface, an slcan adapter on a serial device, or the adapter's
-// end of slcan on a pseudo-terminal, to which other programs attach.
+// A CAN bus of the real world: a SocketCAN interface, an slcan adapter on a serial device, the adapter's
+// end of slcan on a pseudo-terminal, to which other programs attach, or an adapter that its maker's library drives.
 #pragma once
 
 #include <memory>
@@ -38,7 +38,7 @@ inline constexpr size_t kCanPortQueue = 1024;  // frames waiting to be sent (our
 using CanPortResult = tl::expected<std::unique_ptr<CanPort>, PortError>;
 
 // `vcan0`, `can0`: a SocketCAN interface; `slcan:/dev/ttyACM0` or `slcan:/dev/ttyUSB0@115200`: an adapter;
-// `slcan:pty:/path`: the adapter's end, linked at that path. `baud` is the rate of the bus. The clock must
+// `slcan:pty:/path`: the adapter's end, linked at that path; `pcan:USB1`, `kvaser:0`, ...: adapters/can_adapters.def. `baud` is the rate of the bus. The clock must
 // outlive the port.
 CanPortResult open_can_port(std::string_view name, uint32_t baud, RealClock& clock);
 

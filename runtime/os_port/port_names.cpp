@@ -6,7 +6,7 @@
 namespace ipos::runtime {
 
 const std::string_view kPortNames =
-    "a CAN port is can0, vcan0, slcan:/dev/ttyACM0 or slcan:pty:/path; a serial port is /dev/ttyUSB0, "
+    "a CAN port is can0, vcan0, slcan:/dev/ttyACM0, slcan:pty:/path, pcan:USB1 or kvaser:0; a serial port is /dev/ttyUSB0, "
     "/dev/ttyUSB0@16ms, ./tty1 or pty:/path";
 
 std::string device_path(std::string_view name) { return std::string(name.substr(0, name.rfind('@'))); }
@@ -14,6 +14,11 @@ std::string device_path(std::string_view name) { return std::string(name.substr(
 bool is_path(const std::string& name) {
   struct stat status {};
   return name.find('/') != std::string::npos || (!name.empty() && stat(name.c_str(), &status) == 0);
+}
+
+bool is_device(std::string_view name) {
+  struct stat status {};
+  return stat(device_path(name).c_str(), &status) == 0;
 }
 
 PortKind kind_of_port(std::string_view name) {

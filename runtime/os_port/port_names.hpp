@@ -25,4 +25,7 @@ std::string device_path(std::string_view name);
 // A path, or a file of this name in the current folder. Anything else may be meant to be in /dev. On Windows COM1 and up.
 bool is_path(const std::string& name);
 
+// Whether a serial device of this name is there, for those who take files by the same option. On Windows any COM1 and up.
+bool is_device(std::string_view name);
+
 }  // namespace ipos::runtime

@@ -10,7 +10,7 @@ namespace ipos::runtime {
 
 // What a port waits for.
 struct PortNeeds {
-  int descriptor = -1;  // to be polled for input; -1: none
+  int descriptor = -1;  // to be polled for input, on Windows the handle of an event; -1: none
   bool output = false;  // also wait until it takes output
   Time wake = kNever;   // flush the port at this time at the latest
 };

@@ -35,9 +35,6 @@ const BaudRate* find_baud(uint32_t baud) {
   return nullptr;
 }
 
-// Of the protocols here, and of USB adapters (ours).
-constexpr uint32_t kSlowest = 9'600, kFastest = 4'000'000;
-
 // Half duplex by the driver: it switches the transmitter on for our bytes and off after the last one.
 bool switch_rs485(int descriptor) {
   serial_rs485 rs485{};
@@ -80,7 +77,7 @@ tl::expected<size_t, int> Tty::write(std::string_view bytes) { return write_some
 tl::expected<Tty, PortError> Tty::open(const std::string& path, const TtySettings& settings,
                                        PortNotes& notes) {
   const BaudRate* rate = find_baud(settings.baud);
-  if (settings.baud < kSlowest || settings.baud > kFastest)
+  if (settings.baud < kSlowestRate || settings.baud > kFastestRate)
     return tl::unexpected(port_error(PortFault::NoBaudRate, path, fmt::format("{} bit/s", settings.baud)));
   Descriptor descriptor(::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   if (!descriptor.is_open()) {
@@ -121,8 +118,7 @@ tl::expected<Tty, PortError> Tty::open(const std::string& path, const TtySetting
     if (!has || !is_close_rate(settings.baud, *has))
       return tl::unexpected(
           port_error(PortFault::NoBaudRate, path,
-                     has ? fmt::format("{} bit/s: it makes {} of it; an adapter with another clock is needed",
-                                       settings.baud, *has)
+                     has ? other_rate(settings.baud, *has)
                          : fmt::format("{} bit/s: the driver has only the rates of termios", settings.baud)));
   }
   tty.parity_ = (got.c_cflag & PARENB) != 0;

@@ -32,7 +32,7 @@ class Tty {
   tl::expected<size_t, int> read(std::span<char> into);
   tl::expected<size_t, int> write(std::string_view bytes);
 
-  int descriptor() const;  // to be polled; -1 where the clock looks at all ports
+  int descriptor() const;  // to be polled; on Windows the handle of an event
   bool has_parity() const { return parity_; }
   bool marks_errors() const { return marks_; }
 

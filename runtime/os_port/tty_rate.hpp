@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include <tl/expected.hpp>
 
@@ -11,6 +12,15 @@ namespace ipos::runtime {
 // Sets the rate in both directions, and leaves the other settings. The rate that the device has then, which a driver may
 // have rounded to what its clock can do; or errno.
 tl::expected<uint32_t, int> set_any_rate(int descriptor, uint32_t baud);
+
+// Of the protocols here, and of USB adapters (ours).
+inline constexpr uint32_t kSlowestRate = 9'600, kFastestRate = 4'000'000;
+
+// Why a device is refused that has made `got` of the rate.
+inline std::string other_rate(uint32_t wanted, uint32_t got) {
+  return std::to_string(wanted) + " bit/s: it makes " + std::to_string(got) +
+         " of it; an adapter with another clock is needed";
+}
 
 // Whether two stations at these rates understand each other: within 1 % (ours; a character of 11 bits bears less than
 // half a bit between both ends, 4.5 %, and the other end has its share).

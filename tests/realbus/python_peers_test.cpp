@@ -7,6 +7,7 @@
 #include <future>
 #include <regex>
 
+#include "runtime/os_port/adapters/adapter_port.hpp"
 #include "runtime/os_port/serial_port.hpp"
 #include "runtime/os_port/system_clock.hpp"
 #include "tests/harness/proves.hpp"
@@ -74,6 +75,45 @@ TEST(PythonPeers, SerialLineOfPythonSerial) {
   expect_all_ok(result.output, 5);
   EXPECT_EQ((*port)->counts().received, 256U + 1 + 10 + 300);
   EXPECT_EQ((*port)->counts().lost_out, 0U);
+}
+
+// python3-can at the stand-ins for the libraries of adapters' makers, and a port of ours at another channel of the same bus.
+TEST(PythonPeers, AdapterLibrariesOfPythonCan) {
+  if (!python_has("can.interfaces.pcan.pcan, can.interfaces.kvaser, can.interfaces.vector, packaging"))
+    GTEST_SKIP() << "there is no python3-can";
+  const TemporaryFolder folder;
+  setenv("IPOS_STAND_IN_BUS", (folder.path() / "bus").c_str(), 1);
+  setenv("LD_LIBRARY_PATH", IPOS_STAND_INS, 1);
+  SystemClock clock;
+  const std::array<const char*, 4> rows[] = {{"pcan", "PCAN_USBBUS2", "libpcanbasic.so", "pcan:USB1"},
+                                             {"kvaser", "1", "libcanlib.so", "kvaser:0"},
+                                             {"vector", "1", "libvxlapi64.so", "vector:0"},
+                                             {"ixxat", "1", "libvcinpl.so", "ixxat:0"}};
+  for (const auto& [interface, channel, name, ours] : rows) {
+    const std::string library = std::string(IPOS_STAND_INS "/") + name;
+    const CanPortResult port = open_adapter_port(ours, 250'000, clock, library);
+    ASSERT_TRUE(port) << port.error().text;
+    std::future<ScriptResult> peer = std::async(std::launch::async, [&, its = interface, at = channel] {
+      return run_script({kPython, "-B", script("adapter_peer.py"), its, at, library});
+    });
+    while (peer.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+      const auto got = (*port)->receive();
+      ASSERT_TRUE(got) << got.error().text;
+      if (*got && !(*got)->error) {
+        Frame answer = (*got)->frame;
+        answer.id = (answer.id + 1) % (answer.extended ? kExtendedIdLimit : kStandardIdLimit);
+        for (uint8_t& byte : answer.data) byte = static_cast<uint8_t>(~byte);
+        (*port)->send(canonical(answer));
+      }
+      ASSERT_TRUE((*port)->flush());
+      const std::array<PortNeeds, 1> needs{(*port)->needs()};
+      if (!*got) clock.wait(clock.now() + kMillisecond, needs);
+    }
+    const ScriptResult result = peer.get();
+    EXPECT_EQ(result.exit_code, 0) << interface << ": " << result.output;
+    expect_all_ok(result.output, 6);
+    EXPECT_EQ((*port)->counts().received, 5U) << interface;
+  }
 }
 
 // Some seconds of it; noise.py IPOS 600 is the long form.

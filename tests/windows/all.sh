@@ -12,6 +12,7 @@ try() {
   [ $code = 0 ] || [ $code = 77 ] || { echo "failed: $*"; status=1; }
 }
 try ../tools/windows.sh "$exe" "$linux"
+try ./ports.sh "$exe" "$linux"
 try python3 verbs.py "$exe" "$linux"
 try ./clients.sh "$exe" editor lsp.test.mjs dap.test.mjs
 try ./clients.sh "$exe" web test/timeline.test.mjs test/edit.test.mjs test/gallery.test.mjs test/keep.test.mjs

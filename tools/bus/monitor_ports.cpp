@@ -7,6 +7,7 @@
 
 #include "runtime/bus/profibus/timing.hpp"
 #include "runtime/bus/rs485/timing.hpp"
+#include "runtime/os_port/adapters/adapter_port.hpp"
 #include "runtime/os_port/can_port.hpp"
 #include "runtime/os_port/port_names.hpp"
 #include "runtime/os_port/serial_port.hpp"
@@ -124,8 +125,8 @@ MonitorSource monitor_source(const std::string& name) {
   if (is_there && !fs::is_character_file(status)) return MonitorSource::Log;
   if (name.starts_with("pty:")) return MonitorSource::Serial;
   if (runtime::kind_of_port(name) == runtime::PortKind::Serial) {
-    if (fs::exists(runtime::device_path(name), ignored)) return MonitorSource::Serial;
-  } else if (name.find('.') == std::string::npos || name.starts_with("slcan:")) {
+    if (runtime::is_device(name)) return MonitorSource::Serial;
+  } else if (name.find('.') == std::string::npos || name.starts_with("slcan:") || runtime::is_adapter_port(name)) {
     return MonitorSource::Can;
   }
   throw Failure(kNoInput, fmt::format("{}: there is no such log and no such device", name));

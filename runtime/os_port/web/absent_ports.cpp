@@ -1,4 +1,5 @@
 // A browser has no real ports: each says so.
+#include "runtime/os_port/adapters/adapter_port.hpp"
 #include "runtime/os_port/port_names.hpp"
 #include "runtime/os_port/pty_port.hpp"
 #include "runtime/os_port/slcan_adapter.hpp"
@@ -17,6 +18,8 @@ tl::unexpected<PortError> absent(std::string_view name) {
 CanPortResult SocketCan::open(std::string name, uint32_t, RealClock&) { return absent(name); }
 
 CanPortResult SlcanAdapter::open(const std::string& path, uint32_t, RealClock&) { return absent("slcan:pty:" + path); }
+
+CanPortResult open_adapter_port(std::string_view name, uint32_t, RealClock&, const std::string&) { return absent(name); }
 
 SerialPortResult open_pty_port(std::string_view name, const SerialSettings&, RealClock&) { return absent(name); }
 

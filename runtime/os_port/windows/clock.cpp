@@ -1,24 +1,47 @@
-// The performance counter, and a look at the ports every millisecond: Windows waits for no serial device and a time at once
-// without a thread for each.
+// The performance counter, and a wait for the events of the ports and a timer at once.
+#include "runtime/os_port/system_clock.hpp"
+
 #include <windows.h>
 
 #include <timeapi.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
-
-#include "runtime/os_port/system_clock.hpp"
 
 namespace ipos::runtime {
 namespace {
 
-// While it lives, Sleep() is exact to a millisecond instead of 16.
-class ExactSleep {
+// While it lives, waits are exact to a millisecond instead of 16, where there is no better timer.
+class ExactWaits {
  public:
-  ExactSleep() { timeBeginPeriod(1); }
-  ~ExactSleep() { timeEndPeriod(1); }
-  ExactSleep(const ExactSleep&) = delete;
-  ExactSleep& operator=(const ExactSleep&) = delete;
+  ExactWaits() { timeBeginPeriod(1); }
+  ~ExactWaits() { timeEndPeriod(1); }
+  ExactWaits(const ExactWaits&) = delete;
+  ExactWaits& operator=(const ExactWaits&) = delete;
+};
+
+class Timer {
+ public:
+  // Windows 10 1803 and later has timers that are exact to some tens of microseconds.
+  Timer() : handle_(make(kHighResolution)) {
+    if (handle_ == nullptr) handle_ = make(0);
+  }
+  ~Timer() { CloseHandle(handle_); }
+  Timer(const Timer&) = delete;
+  Timer& operator=(const Timer&) = delete;
+
+  HANDLE set(Time left) {
+    LARGE_INTEGER due{};
+    due.QuadPart = -std::max<Time>(1, left / 100);  // relative, in 100 ns
+    SetWaitableTimer(handle_, &due, 0, nullptr, nullptr, FALSE);
+    return handle_;
+  }
+
+ private:
+  static constexpr DWORD kHighResolution = 2;  // CREATE_WAITABLE_TIMER_HIGH_RESOLUTION
+  static HANDLE make(DWORD flags) { return CreateWaitableTimerExW(nullptr, nullptr, flags, TIMER_ALL_ACCESS); }
+  HANDLE handle_;
 };
 
 }  // namespace
@@ -34,13 +57,25 @@ Time SystemClock::wall() {
 }
 
 void SystemClock::wait(Time until, std::span<const PortNeeds> ports) {
-  static const ExactSleep exact;
-  for (const PortNeeds& port : ports) until = std::min(until, port.wake);
-  if (!ports.empty()) until = std::min(until, now() + kMillisecond);
-  const Time left = until - now();
+  static const ExactWaits exact;
+  static thread_local Timer timer;
+  constexpr Time kLongest = 100 * kMillisecond;  // then the caller looks whether it is to end: Ctrl+C wakes no thread
+  std::array<HANDLE, MAXIMUM_WAIT_OBJECTS> handles{};
+  DWORD count = 0;
+  bool has_output = false;
+  for (const PortNeeds& port : ports) {
+    until = std::min(until, port.wake);
+    has_output |= port.output;
+    // More ports than there is room for are served at `until` only. The last place is the timer's.
+    if (port.descriptor >= 0 && count + 1 < handles.size())
+      handles[count++] = reinterpret_cast<HANDLE>(static_cast<intptr_t>(port.descriptor));
+  }
+  const Time begin = now();
+  if (has_output) until = std::min(until, begin + kMillisecond);
+  const Time left = std::min(until - begin, kLongest);
   if (left <= 0) return;
-  constexpr Time kLongest = kSecond;  // then the caller asks again
-  Sleep(static_cast<DWORD>((std::min(left, kLongest) + kMillisecond - 1) / kMillisecond));
+  handles[count++] = timer.set(left);
+  WaitForMultipleObjects(count, handles.data(), FALSE, static_cast<DWORD>(left / kMillisecond + 2));
 }
 
 }  // namespace ipos::runtime
