@@ -87,7 +87,7 @@ grep -q 'pcan:USB9: there is no such channel: there is USB1, USB2, USB3, USB4' "
 # --- COM ports
 
 # Two pseudo-terminals that are one line, as links one and two.
-python3 -u - "$work/one" "$work/two" <<'PAIR' >"$work/pair" 2>&1 &
+/usr/bin/python3 -u - "$work/one" "$work/two" <<'PAIR' >"$work/pair" 2>&1 &
 import os, select, sys, tty
 ends, devices = [], []
 for link in sys.argv[1:]:
@@ -115,7 +115,7 @@ WRAPPER
 chmod +x "$work/ipos"
 # A master says what it has checked: no FAIL, and "end" (tests/realbus/checks.py). Programs of Windows know no signals.
 master() {
-  (cd tests/realbus && timeout 300 python3 -B "$@") >"$work/out" 2>&1 || fail "$1: $(cat "$work/out")"
+  (cd tests/realbus && timeout 300 /usr/bin/python3 -B "$@") >"$work/out" 2>&1 || fail "$1: $(cat "$work/out")"
   grep '^FAIL' "$work/out" | grep -qv 'ended by the signal' && fail "$1: $(cat "$work/out")"
   grep -q '^end' "$work/out" || fail "$1: $(cat "$work/out")"
   checks=$((checks + $(grep -c '^ok' "$work/out")))
@@ -123,7 +123,7 @@ master() {
 checks=0
 sed 's|kind = "rs485"|&\nport = "COM12"|' tests/realbus/movilink.toml >"$work/movilink.toml"
 sed 's|kind = "profibus"|&\nport = "COM3"|' tests/realbus/profibus_plant.toml >"$work/dp.toml"
-python3 -c 'import serial' 2>/dev/null && master movilink_peer.py "$work/ipos" "$work/movilink.toml" "$work/two"
+/usr/bin/python3 -c 'import serial' 2>/dev/null && master movilink_peer.py "$work/ipos" "$work/movilink.toml" "$work/two"
 master profibus_master.py "$work/ipos" "$work/dp.toml" "$work/two" 300 100 0
 
 # A COM port that goes away ends the run, as a device does on Linux.

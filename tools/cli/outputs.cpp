@@ -86,13 +86,8 @@ void remove_left_overs(const fs::path& folder, const std::string& name) {
     const char* const behind = file.data() + file.size();
     const auto read = std::from_chars(file.data() + begin.size(), behind, process);
     const bool ours = read.ec == std::errc() && read.ptr != behind && *read.ptr == '.';
-<<<<<<< HEAD
     std::error_code ignored;
     if (ours && !is_written(at->path().string(), process)) fs::remove(at->path(), ignored);
-=======
-    if (ours && !is_written(at->path().string(), process))
-      unlink(at->path().string().c_str());
->>>>>>> 83217ed3 (CAN adapters that their maker's library drives, and COM ports that wake the run as a byte comes)
   }
 }
 
