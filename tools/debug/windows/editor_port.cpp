@@ -39,12 +39,12 @@ runtime::Descriptor editor_at(uint16_t port, const std::function<void(uint16_t)>
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   const BOOL on = TRUE;
   setsockopt(listener.get(), SOL_SOCKET, SO_EXCLUSIVEADDRUSE, reinterpret_cast<const char*>(&on), sizeof on);
-  if (bind(listener.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 || listen(listener.get(), 1) != 0)
+  if (::bind(listener.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 || ::listen(listener.get(), 1) != 0)
     throw Failure(kIoError, fmt::format("port {} cannot be listened at", port));
   int size = sizeof address;
   getsockname(listener.get(), reinterpret_cast<sockaddr*>(&address), &size);
   listening(ntohs(address.sin_port));
-  const SOCKET editor = accept(listener.get(), nullptr, nullptr);
+  const SOCKET editor = ::accept(listener.get(), nullptr, nullptr);
   if (editor == INVALID_SOCKET) throw Failure(kIoError, "no editor came");
   return runtime::Descriptor(_open_osfhandle(static_cast<intptr_t>(editor), O_RDWR | O_BINARY));
 }

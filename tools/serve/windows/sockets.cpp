@@ -35,7 +35,7 @@ struct Winsock {
 
 int piece_of(size_t size) { return static_cast<int>(std::min<size_t>(size, INT_MAX)); }
 
-SOCKET new_socket() { return socket(AF_INET, SOCK_STREAM, IPPROTO_TCP); }
+SOCKET new_socket() { return ::socket(AF_INET, SOCK_STREAM, IPPROTO_TCP); }
 
 bool address_of(int (WSAAPI *ask)(SOCKET, sockaddr*, int*), SOCKET socket, sockaddr_in& address) {
   int size = sizeof address;
@@ -61,10 +61,10 @@ SocketPair make_socket_pair() {
   const auto* const there = reinterpret_cast<const sockaddr*>(&address);
   const BOOL on = TRUE;
   setsockopt(listener, SOL_SOCKET, SO_EXCLUSIVEADDRUSE, reinterpret_cast<const char*>(&on), sizeof on);
-  if (bind(listener, there, sizeof address) != 0 || listen(listener, 1) != 0 ||
-      !address_of(getsockname, listener, address) || connect(server, there, sizeof address) != 0)
+  if (::bind(listener, there, sizeof address) != 0 || ::listen(listener, 1) != 0 ||
+      !address_of(getsockname, listener, address) || ::connect(server, there, sizeof address) != 0)
     refuse();
-  const SOCKET host = accept(listener, nullptr, nullptr);
+  const SOCKET host = ::accept(listener, nullptr, nullptr);
   OwnedSocket host_end(static_cast<Socket>(host));
   sockaddr_in ours{}, came{};
   if (!address_of(getsockname, server, ours) || !address_of(getpeername, host, came) ||
@@ -78,16 +78,16 @@ SocketPair make_socket_pair() {
 void close_socket(Socket socket) { closesocket(system_socket(socket)); }
 
 std::ptrdiff_t send_some(Socket socket, const char* bytes, size_t size) {
-  return send(system_socket(socket), bytes, piece_of(size), 0);
+  return ::send(system_socket(socket), bytes, piece_of(size), 0);
 }
 
 std::ptrdiff_t receive_some(Socket socket, char* bytes, size_t size) {
-  return recv(system_socket(socket), bytes, piece_of(size), 0);
+  return ::recv(system_socket(socket), bytes, piece_of(size), 0);
 }
 
 std::ptrdiff_t peek(Socket socket, char* bytes, size_t size) {
   if (!wait_readable(socket, 0)) return -1;
-  const int count = recv(system_socket(socket), bytes, piece_of(size), MSG_PEEK);
+  const int count = ::recv(system_socket(socket), bytes, piece_of(size), MSG_PEEK);
   return count < 0 ? 0 : count;
 }
 
