@@ -7,6 +7,16 @@ target_compile_definitions(fmt::fmt INTERFACE FMT_HEADER_ONLY=1)
 add_compile_definitions(_FILE_OFFSET_BITS=64 __USE_MINGW_ANSI_STDIO=1 UNICODE _UNICODE NOMINMAX WIN32_LEAN_AND_MEAN
                         _WIN32_WINNT=0x0A00)
 set(ZLIB_USE_STATIC_LIBS ON)
+# Machine code: Debian has asmjit for its own processors only, so it is built of the source that cmake/asmjit_source.sh gets.
+set(asmjit ${PROJECT_BINARY_DIR}/asmjit/src)
+file(GLOB asmjit_sources ${asmjit}/asmjit/core/*.cpp ${asmjit}/asmjit/x86/*.cpp)
+if(asmjit_sources)
+  add_library(asmjit STATIC ${asmjit_sources})
+  target_include_directories(asmjit SYSTEM PUBLIC ${asmjit})
+  target_compile_definitions(asmjit PUBLIC ASMJIT_STATIC ASMJIT_NO_AARCH64 ASMJIT_NO_FOREIGN)
+  add_library(asmjit::asmjit ALIAS asmjit)
+  file(WRITE ${CMAKE_FIND_PACKAGE_REDIRECTS_DIR}/asmjit-config.cmake "")
+endif()
 # A program's manifest.
 enable_language(RC)
 # One file, without the DLLs of the compiler.

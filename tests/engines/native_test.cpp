@@ -3,6 +3,10 @@
 // Expected values are computed here.
 #include <gtest/gtest.h>
 
+#ifdef _WIN32
+#include <windows.h>
+#endif
+
 #include <algorithm>
 #include <fstream>
 #include <limits>
@@ -354,9 +358,21 @@ TEST_F(Native, NoPageIsWritableAndExecutable) {
   add(Opcode::JmpLtHK, {10, 100, again, 0});
   add(Opcode::End, {});
   run();
+#ifdef _WIN32
+  size_t executable = 0;
+  MEMORY_BASIC_INFORMATION pages;
+  for (const char* at = nullptr; VirtualQuery(at, &pages, sizeof pages) != 0;
+       at = static_cast<const char*>(pages.BaseAddress) + pages.RegionSize) {
+    if (pages.State != MEM_COMMIT || pages.Type != MEM_PRIVATE) continue;  // not those of programs and DLLs
+    EXPECT_NE(pages.Protect, DWORD{PAGE_EXECUTE_READWRITE}) << pages.BaseAddress;
+    executable += pages.Protect == PAGE_EXECUTE_READ ? 1 : 0;
+  }
+  EXPECT_GT(executable, 0U) << "where is the machine code?";
+#else
   std::ifstream maps("/proc/self/maps");
   if (!maps) GTEST_SKIP() << "no /proc";
   for (std::string line; std::getline(maps, line);) EXPECT_EQ(line.find("rwx"), std::string::npos) << line;
+#endif
 }
 
 }  // namespace

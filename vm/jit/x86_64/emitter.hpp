@@ -1,4 +1,4 @@
-// The x86-64 part of machine code, for the calling convention of System V.
+// The x86-64 part of machine code, for the calling conventions of System V and of Windows (frame.cpp).
 //
 // Registers: r15 the variables, r14d the number of flow.hpp, eax and ecx for the moment, the others for
 // variables. CALL and RET are the processor's own: the stack of return addresses is its stack.

@@ -15,7 +15,18 @@ constexpr int32_t kFrame = kBlock - 8;
 static_assert(kReturnsEnd <= kCaller && kCaller + 8 <= kFrame && kFrame + 8 <= kBlock && kCaller % 8 == 0 &&
               kFrame % 8 == 0);
 
+// What the two calling conventions differ in: where the first two arguments are, what a function leaves as it was, and the
+// room it finds for its arguments above where it returns to. Machine code has no vectors, so theirs stay. Nothing throws
+// through it (unwind_ does not), so Windows has no table of how to unwind it.
+#ifdef _WIN32
+constexpr x86::Gp kFirst = x86::rcx, kSecond = x86::rdx;
+constexpr x86::Gp kSaved[] = {x86::rbx, x86::rbp, x86::rsi, x86::rdi, x86::r12, x86::r13, x86::r14, x86::r15};
+constexpr int32_t kRoomOfArguments = 32;
+#else
+constexpr x86::Gp kFirst = x86::rdi, kSecond = x86::rsi;
 constexpr x86::Gp kSaved[] = {x86::rbx, x86::rbp, x86::r12, x86::r13, x86::r14, x86::r15};
+constexpr int32_t kRoomOfArguments = 0;
+#endif
 
 x86::Mem field(x86::Gp frame, size_t offset) { return x86::ptr(frame, static_cast<int32_t>(offset)); }
 
@@ -46,7 +57,8 @@ void EmitterX86::enter() {
   a_.sub(x86::rsp, 2 * kBlock);
   a_.and_(x86::rsp, -kBlock);
   a_.mov(x86::ptr(x86::rsp, kCaller), x86::rax);
-  a_.mov(x86::ptr(x86::rsp, kFrame), x86::rdi);
+  a_.mov(x86::ptr(x86::rsp, kFrame), kFirst);
+  if (kFirst != x86::rdi) a_.mov(x86::rdi, kFirst);
   a_.mov(x86::rcx, field(x86::rdi, offsetof(Frame, free_calls)));
   a_.lea(x86::rsi, x86::ptr(x86::rsp, x86::rcx, 3));
   a_.mov(x86::rdx, field(x86::rdi, offsetof(Frame, context)));
@@ -73,7 +85,6 @@ void EmitterX86::leave() {
   a_.mov(x86::rdi, x86::ptr(x86::rbx, kFrame));
   a_.mov(field(x86::rdi, offsetof(Frame, pc)), x86::eax);
   a_.mov(field(x86::rdi, offsetof(Frame, number)), number_);
-  a_.mov(x86::rsi, x86::rsp);
   // Where no call of machine code is open there is nothing to unwind.
   const asmjit::Label unwound = a_.newLabel();
   const auto most_calls = static_cast<int32_t>(std::min<uint32_t>(program_.limits.call_depth, kMaxCallDepth));
@@ -82,7 +93,10 @@ void EmitterX86::leave() {
   a_.lea(x86::rcx, x86::ptr(x86::rsp, x86::rcx, 3, -8 * most_calls));
   a_.cmp(x86::rcx, x86::rbx);
   a_.je(unwound);
+  if (kFirst != x86::rdi) a_.mov(kFirst, x86::rdi);
+  a_.mov(kSecond, x86::rsp);
   a_.and_(x86::rsp, -16);
+  if (kRoomOfArguments != 0) a_.sub(x86::rsp, kRoomOfArguments);
   a_.mov(x86::rax, asmjit::Imm(reinterpret_cast<uintptr_t>(unwind_)));
   a_.call(x86::rax);
   a_.bind(unwound);

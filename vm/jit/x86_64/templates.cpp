@@ -171,7 +171,7 @@ void EmitterX86::shift(asmjit::InstId id, int32_t to, const Instruction& command
 }
 
 // The divisor 0 is left to the engines; by -1 it is a negation, as the processor has no answer for the
-// smallest number. edx may be a variable's: it rests in the stack's red zone.
+// smallest number. edx may be a variable's: it rests on the stack.
 void EmitterX86::divide(uint32_t n, bool quotient) {
   const Command& command = program_.commands[n];
   const int32_t a = command.instruction.operands[0];
@@ -189,11 +189,11 @@ void EmitterX86::divide(uint32_t n, bool quotient) {
   a_.bind(usual);
   a_.emit(Id::kIdMov, x86::eax, place(a));
   const bool in_use = pinned().size() == kPins.size();
-  if (in_use) a_.mov(x86::dword_ptr(x86::rsp, -8), x86::edx);
+  if (in_use) a_.push(x86::rdx);
   a_.cdq();
   a_.idiv(x86::ecx);
   a_.mov(x86::ecx, quotient ? x86::eax : x86::edx);
-  if (in_use) a_.mov(x86::edx, x86::dword_ptr(x86::rsp, -8));
+  if (in_use) a_.pop(x86::rdx);
   a_.emit(Id::kIdMov, place(a), x86::ecx);
   a_.bind(done);
 }
