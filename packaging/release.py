@@ -27,7 +27,8 @@ NATIVE = BUILD / "release-native"  # without tests and asserts, beside the daily
 # The parts of third_parties.tsv in each kind of file; cmake/install.cmake and tools/CMakeLists.txt put the same into each.
 PARTS = {
     "linux-x86_64": ["linux", "page", "plot"], "windows-x86_64.exe": ["windows", "page", "plot"], ".html": ["web", "page", "plot"],
-    "site.tar.gz": ["web", "page", "plot", "site"], ".deb": ["deb", "page", "plot", "extension"], ".whl": ["library"],
+    "site.tar.gz": ["web", "page", "plot", "site"], ".deb": ["deb", "page", "plot", "extension"],
+    "win_amd64.whl": ["windows-library"], "windows-x86_64.zip": ["windows-library"], ".whl": ["library"],
     ".vsix": ["extension"], ".tgz": ["web"], "source.tar.gz": ["page", "plot"], "Containerfile": [], "NOTICES.txt": [],
     ".zip": [], ".pack": [],  # firmware: the project's own sources alone
 }
@@ -65,7 +66,7 @@ def pack_folder(folder: Path, name: str, out: Path, seconds: int) -> None:
 def pack_again(archive: Path, out: Path) -> None:
     """The files of a zip in order, without times and rights of the host."""
     with zipfile.ZipFile(archive) as old, zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as new:
-        for name in sorted(old.namelist()):
+        for name in sorted(name for name in old.namelist() if not name.endswith("/")):
             entry = zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0))
             entry.compress_type = zipfile.ZIP_DEFLATED
             entry.external_attr = (0o100755 if name.endswith(".so") else 0o100644) << 16
@@ -84,20 +85,30 @@ def make_native(out: Path) -> None:
     package, = (NATIVE / "pack").glob("ipos_*.deb")
     shutil.copy(package, out)
     run("lintian", "--tag-display-limit", "0", "--fail-on", "error", out / package.name)
+    make_wheel(NATIVE / "lib/libipos_plant.so", out)
+
+
+def make_wheel(library: Path, out: Path) -> None:
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder) / "python"
         shutil.copytree(ROOT / "python", copy, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info", "build"))
         run("/usr/bin/python3", "-m", "pip", "wheel", ".", "--no-build-isolation", "--no-deps", "--no-index", "-q", "-w", folder, cwd=copy,
-            env={**os.environ, "IPOS_SOURCE": str(ROOT), "IPOS_PLANT_LIBRARY": str(NATIVE / "lib/libipos_plant.so")})
+            env={**os.environ, "IPOS_SOURCE": str(ROOT), "IPOS_PLANT_LIBRARY": str(library)})
         wheel, = Path(folder).glob("*.whl")
         pack_again(wheel, out / wheel.name)
 
 
 def make_windows(out: Path) -> None:
-    run("cmake", "--preset", "windows")
-    run("cmake", "--build", "--preset", "windows", "--target", "ipos")
+    run("cmake/asmjit_source.sh", BUILD / "windows/asmjit")
+    run("cmake", "--preset", "windows", "-DIPOS_JIT=ON")
+    run("cmake", "--build", "--preset", "windows", "--target", "ipos", "ipos_plant")
     program = out / f"ipos-{version()}-windows-x86_64.exe"
     run("x86_64-w64-mingw32-strip", "-o", program, BUILD / "windows/tools/ipos.exe")
+    with tempfile.TemporaryDirectory() as folder:
+        name = f"ipos-plant-{version()}-windows-x86_64"
+        run("cmake", "--install", BUILD / "windows", "--prefix", Path(folder) / name, "--strip")
+        pack_again(Path(shutil.make_archive(str(Path(folder) / "packed"), "zip", folder, name)), out / f"{name}.zip")
+        make_wheel(Path(folder) / name / "bin/ipos_plant.dll", out)
 
 
 def make_web(out: Path, seconds: int) -> None:

@@ -1,5 +1,6 @@
 """Puts the C library into the wheel: the one that IPOS_PLANT_LIBRARY names, or that of build/release or build/dev; when
-there is none it is built with CMake."""
+there is none it is built with CMake. With a DLL for Windows (build/windows/lib/ipos_plant.dll) the wheel is one for Windows, also
+where it is made on Linux."""
 
 import os
 import re
@@ -13,6 +14,7 @@ from wheel.bdist_wheel import bdist_wheel
 
 SOURCE = Path(os.environ.get("IPOS_SOURCE", Path(__file__).resolve().parent.parent))
 LIBRARY = "libipos_plant.so"
+WINDOWS_LIBRARY = "ipos_plant.dll"
 
 
 def find_library() -> Path:
@@ -28,14 +30,21 @@ def find_library() -> Path:
     return built[0]
 
 
+def name_in_wheel(library: Path) -> str:
+    return WINDOWS_LIBRARY if library.suffix == ".dll" else LIBRARY
+
+
 class BuildWithLibrary(build_py):
     def run(self) -> None:
         super().run()
         package = Path(self.build_lib) / "ipos"
-        shutil.copy(find_library().resolve(), package / LIBRARY)
+        library = find_library()
+        name = name_in_wheel(library)
+        shutil.copy(library.resolve(), package / name)
         # The licences of what the library contains.
         notices = SOURCE / "cmake/notices.cmake"
-        subprocess.run(["cmake", "-DIN=library", f"-DOUT={(package / 'NOTICES.txt').resolve()}", "-P", notices], check=True)
+        part = "windows-library" if name == WINDOWS_LIBRARY else "library"
+        subprocess.run(["cmake", f"-DIN={part}", f"-DOUT={(package / 'NOTICES.txt').resolve()}", "-P", notices], check=True)
 
 
 # What PEP 600 lets a wheel for any Linux take from the system; the rest is in the library.
@@ -56,7 +65,9 @@ class Wheel(bdist_wheel):
     """For any Python 3 of this platform."""
 
     def get_tag(self):
-        return "py3", "none", oldest_system(find_library().resolve(), super().get_tag()[2])
+        library = find_library().resolve()
+        is_windows = name_in_wheel(library) == WINDOWS_LIBRARY
+        return "py3", "none", "win_amd64" if is_windows else oldest_system(library, super().get_tag()[2])
 
 
 class WithLibrary(Distribution):

@@ -24,7 +24,8 @@ from ctypes import (
 from pathlib import Path
 from typing import Iterator, Mapping
 
-_NAME = "libipos_plant.so"
+_WINDOWS = os.name == "nt"
+_NAME = "ipos_plant.dll" if _WINDOWS else "libipos_plant.so"
 
 
 def _places() -> Iterator[str]:
@@ -35,15 +36,15 @@ def _places() -> Iterator[str]:
         return
     here = Path(__file__).resolve().parent
     yield str(here / _NAME)
-    for build in ("release", "dev"):
+    for build in ("windows",) if _WINDOWS else ("release", "dev"):
         yield str(here.parent.parent / "build" / build / "lib" / _NAME)
-    yield _NAME + ".0"
+    yield _NAME if _WINDOWS else _NAME + ".0"
 
 
 def _load() -> ctypes.CDLL:
     tried = []
     for place in _places():
-        if os.sep in place and not os.path.exists(place):
+        if os.path.dirname(place) and not os.path.exists(place):
             tried.append(place)
             continue
         try:

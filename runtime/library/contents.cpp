@@ -22,8 +22,16 @@ namespace fs = std::filesystem;
 
 constexpr uintmax_t kFileLimit = uintmax_t{64} << 20U;  // far above any plant, program or image (ours)
 
+// Names are UTF-8 on every system; on Windows a path of plain characters would be one of its code page.
+fs::path path_of(const std::string& name) { return {std::u8string(name.begin(), name.end())}; }
+std::string name_of(const fs::path& path) {
+  const std::u8string name = path.u8string();
+  return {name.begin(), name.end()};
+}
+
 // Regular files only: a device or a pipe could have no end.
-tl::expected<std::string, std::string> read_file(const std::string& path) {
+tl::expected<std::string, std::string> read_file(const std::string& name) {
+  const fs::path path = path_of(name);
   std::error_code error;
   if (!fs::exists(path, error)) return tl::unexpected(std::string("there is no such file"));
   if (!fs::is_regular_file(path, error)) return tl::unexpected(std::string("is no file"));
@@ -40,13 +48,13 @@ std::optional<std::string> try_read_file(const std::string& path) {
 
 // In small letters, with the dot.
 std::string ending(const std::string& path) {
-  std::string text = fs::path(path).extension().string();
+  std::string text = name_of(path_of(path).extension());
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
   return text;
 }
 
 std::string beside(const std::string& folder, const std::string& name) {
-  return (fs::path(folder) / name).lexically_normal().string();
+  return name_of((path_of(folder) / path_of(name)).lexically_normal());
 }
 
 Mistakes mistakes_of(const compiler::Compilation& compiled) {
@@ -70,8 +78,8 @@ Mistakes mistakes_of(const std::string& file, const std::vector<runtime::PlantEr
 runtime::PlantFile plant_of_program(const std::string& path) {
   runtime::PlantFile plant;
   runtime::StationConfig station;
-  station.name = fs::path(path).stem().string();
-  station.program = fs::path(path).filename().string();
+  station.name = name_of(path_of(path).stem());
+  station.program = name_of(path_of(path).filename());
   plant.stations.push_back(std::move(station));
   return plant;
 }
@@ -98,7 +106,7 @@ class Fingerprint {
 tl::expected<Contents, Mistakes> Contents::read(const Source& source) {
   Contents contents;
   contents.name_ = source.path.empty() ? "plant" : source.path;
-  contents.folder_ = source.folder.value_or(fs::path(source.path).parent_path().string());
+  contents.folder_ = source.folder.value_or(name_of(path_of(source.path).parent_path()));
   const bool is_program = !source.text && (ending(source.path) == ".ipc" || ending(source.path) == ".ipx");
   std::string text;
   std::vector<runtime::PlantError> errors;

@@ -67,14 +67,16 @@ def compiled(build: Path) -> None:
     system = {"release": "linux"}.get(build.name, build.name)
     libraries = ["lib/libipos_plant.so", "lib/libipos_compile.so", "lib/libipos.so"]
     targets = {"linux": {"linux": ["static/ipos"], "library": libraries, "deb": ["tools/ipos", *libraries]},
-               "windows": {"windows": ["tools/ipos.exe"]}, "web": {"web": ["tools/ipos.js"]}}[system]
+               "windows": {"windows": ["tools/ipos.exe"], "windows-library": ["lib/ipos_plant.dll"]}, "web": {"web": ["tools/ipos.js"]}}[system]
     for artefact, made in targets.items():
         files = read_by(build, made).union(*(archives(build, target) for target in made))
         found = debian_packages(files)
         written = list((build / "compiler/generated").rglob("*.cpp"))
         if any("made by GNU Bison" in file.read_text() for file in written):
             found.add("deb:bison")
-        compare(artefact, found, SHARED if artefact in ("deb", "library") else ["deb:libc6-dev"] if system != "linux" else [])
+        if artefact == "windows" and (build / "asmjit/src").is_dir():  # built of Debian's source
+            found.add("deb:libasmjit-dev")
+        compare(artefact, found, SHARED if artefact in ("deb", "library", "windows-library") else ["deb:libc6-dev"] if system != "linux" else [])
 
 
 # Of these only names and numbers are in what uses the shared libraries.

@@ -14,7 +14,7 @@
  * Time       is virtual: nanoseconds since power-on of the plant. It passes only in ipos_plant_run() and
  *            ipos_plant_run_until(); between two calls everything stands. The same calls give the same run, on any
  *            build. No clock is read.
- * Platform   64 bits, little endian, Linux. Programs run on the fast engine of the library, with the results of every
+ * Platform   64 bits, little endian, Linux and Windows. Programs run on the fast engine of the library, with the results of every
  *            other one.
  *
  * Texts are UTF-8 and end with 0. Pointers must not be null unless "may be null" is written.
@@ -29,7 +29,7 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
-#ifdef __GNUC__ /* what is declared here is all the shared library shows */
+#if defined __GNUC__ && !defined _WIN32 /* what is declared here is all the shared library shows */
 #pragma GCC visibility push(default)
 #endif
 
@@ -375,7 +375,7 @@ ipos_plant_status ipos_plant_replay(ipos_plant* plant, ipos_plant_condition look
  * run is repeated for it in the background, each part of it once. IPOS_PLANT_NOT_RECORDED. */
 ipos_plant_status ipos_plant_trace_hash(ipos_plant* plant, uint64_t* hash);
 
-#ifdef __GNUC__
+#if defined __GNUC__ && !defined _WIN32
 #pragma GCC visibility pop
 #endif
 #ifdef __cplusplus

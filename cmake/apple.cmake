@@ -1,0 +1,13 @@
+# A build for macOS on another system (cmake/macos.cmake): the target ipos_layers is all layers that know no operating system.
+set(with_system ipos_os_port ipos_plant_port ipos_storage)
+set(layers "")
+foreach(folder stdlib vm compiler runtime)
+  get_property(targets DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} PROPERTY BUILDSYSTEM_TARGETS)
+  foreach(target ${targets})
+    get_target_property(type ${target} TYPE)
+    if(type STREQUAL STATIC_LIBRARY AND NOT target IN_LIST with_system)
+      list(APPEND layers ${target})
+    endif()
+  endforeach()
+endforeach()
+add_custom_target(ipos_layers DEPENDS ${layers})
