@@ -25,7 +25,7 @@ std::vector<std::string> programs() {
   std::vector<std::string> names;
   for (const auto& entry : fs::recursive_directory_iterator(IPOS_LANGUAGE_DIR))
     if (entry.path().extension() == ".IPC")
-      names.push_back(fs::relative(entry.path(), IPOS_LANGUAGE_DIR).string());
+      names.push_back(fs::relative(entry.path(), IPOS_LANGUAGE_DIR).generic_string());
   std::sort(names.begin(), names.end());
   return names;
 }

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
+#include <random>
 #include <string>
 
 namespace ipos::runtime {
@@ -12,8 +12,9 @@ namespace ipos::runtime {
 class FileFolder : public ::testing::Test {
  protected:
   FileFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "ipos-nv-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
+    do {
+      folder_ = std::filesystem::temp_directory_path() / ("ipos-nv-" + std::to_string(std::random_device{}()));
+    } while (!std::filesystem::create_directory(folder_));
     path_ = (folder_ / "unit1.nv").string();
   }
   ~FileFolder() override {

@@ -216,6 +216,7 @@ TEST(DefaultRun, ADifferenceIsToldByItsPlace) {
   EXPECT_EQ(difference("a\nb\n", "a\nb\n"), "equal");
 }
 
+#ifndef _WIN32  // see bounded.hpp
 // A hang is told.
 TEST(DefaultRun, WhatDoesNotEndIsAComplaint) {
   EXPECT_EQ(bounded([] { return std::string("wrong"); }), "wrong");
@@ -226,6 +227,7 @@ TEST(DefaultRun, WhatDoesNotEndIsAComplaint) {
             "it does not come to an end");
   EXPECT_EQ(bounded([]() -> std::string { _exit(3); }), "it ends with 3");
 }
+#endif
 
 }  // namespace
 }  // namespace ipos::tests
