@@ -3,7 +3,7 @@
 
 #include <charconv>
 
-#include "runtime/os_port/adapters/adapter_port.hpp"
+#include "runtime/os_port/adapter_port.hpp"
 #include "runtime/os_port/port_names.hpp"
 #include "runtime/os_port/slcan_adapter.hpp"
 #include "runtime/os_port/slcan_client.hpp"

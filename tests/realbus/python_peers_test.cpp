@@ -7,7 +7,7 @@
 #include <future>
 #include <regex>
 
-#include "runtime/os_port/adapters/adapter_port.hpp"
+#include "runtime/os_port/adapter_port.hpp"
 #include "runtime/os_port/serial_port.hpp"
 #include "runtime/os_port/system_clock.hpp"
 #include "tests/harness/proves.hpp"

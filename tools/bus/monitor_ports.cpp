@@ -7,7 +7,7 @@
 
 #include "runtime/bus/profibus/timing.hpp"
 #include "runtime/bus/rs485/timing.hpp"
-#include "runtime/os_port/adapters/adapter_port.hpp"
+#include "runtime/os_port/adapter_port.hpp"
 #include "runtime/os_port/can_port.hpp"
 #include "runtime/os_port/port_names.hpp"
 #include "runtime/os_port/serial_port.hpp"

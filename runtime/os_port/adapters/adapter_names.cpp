@@ -1,5 +1,5 @@
 // The prefixes, also where there are no adapters.
-#include "runtime/os_port/adapters/adapter_port.hpp"
+#include "runtime/os_port/adapter_port.hpp"
 
 #include <algorithm>
 

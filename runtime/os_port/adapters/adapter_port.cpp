@@ -1,5 +1,5 @@
 // Most libraries wake nobody, or each in a way of its own: the channel is looked at once a millisecond.
-#include "runtime/os_port/adapters/adapter_port.hpp"
+#include "runtime/os_port/adapter_port.hpp"
 
 #include <fmt/format.h>
 #include <linux/can/error.h>

@@ -1,5 +1,5 @@
 // A browser has no real ports: each says so.
-#include "runtime/os_port/adapters/adapter_port.hpp"
+#include "runtime/os_port/adapter_port.hpp"
 #include "runtime/os_port/port_names.hpp"
 #include "runtime/os_port/pty_port.hpp"
 #include "runtime/os_port/slcan_adapter.hpp"

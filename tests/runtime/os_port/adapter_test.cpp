@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <map>
 
-#include "runtime/os_port/adapters/adapter_port.hpp"
+#include "runtime/os_port/adapter_port.hpp"
 #include "runtime/os_port/returning_port.hpp"
 #include "tests/runtime/os_port/port_rig.hpp"
 #include "tests/runtime/os_port/stand_in/shared_bus.hpp"
