@@ -114,6 +114,43 @@ TEST_F(ScopeOfPlant, ExactPointsHaveAllDigits) {
   EXPECT_EQ(value, kNumber);
 }
 
+// After the way back the rest of the recording is there for who asks for it, until another future begins: with copies of the
+// process, and where the plant runs again from 0 s.
+class WayBack : public Serving, public ::testing::WithParamInterface<bool> {
+ protected:
+  WayBack() : Serving(the_plant(), GetParam()) {}
+  std::string points(bool later) {
+    page.ask({{"do", "scope.view"}, {"from_us", 0}, {"to_us", 2'000'000}, {"points", 4096}, {"exact", true}, {"later", later}});
+    const std::string frame = page.binary();
+    return frame.size() < kHead ? "no frame" : frame.substr(kHead);
+  }
+};
+
+TEST_P(WayBack, LaterTimesAreKnownUntilTheyAreDropped) {
+  constexpr size_t kSample = sizeof(double);
+  good({{"do", "scope"}, {"channels", {"saw.lCount"}}});
+  step(1000);
+  EXPECT_TRUE(good({{"do", "scope"}})["later_us"].is_null());
+  const std::string whole = points(false);
+  EXPECT_EQ(points(true), whole);
+  ASSERT_EQ(whole.size(), 1000 * kSample);
+  for (const int ms : {300, 700, 65, 1}) {
+    good({{"do", "go"}, {"us", ms * 1000}});
+    const Json scope = good({{"do", "scope"}});
+    EXPECT_EQ(scope["last_us"], ms * 1000);
+    EXPECT_EQ(scope["later_us"], 1'000'000);
+    EXPECT_EQ(points(false), whole.substr(0, static_cast<size_t>(ms) * kSample));
+    EXPECT_TRUE(points(true) == whole) << ms;
+  }
+  EXPECT_EQ(page.ask({{"do", "scope.csv"}})["csv"].get<std::string>().find("\n2,"), std::string::npos) << "a file ends with now";
+  good({{"do", "go"}, {"us", 300'000}});
+  good({{"do", "set"}, {"name", "saw.H300"}, {"value", "5"}});
+  step(1);
+  EXPECT_TRUE(good({{"do", "scope"}})["later_us"].is_null());
+  EXPECT_EQ(points(true).size(), 301 * kSample);
+}
+INSTANTIATE_TEST_SUITE_P(WithAndWithoutCopies, WayBack, ::testing::Bool());
+
 // One millisecond of one bit is seen at any zoom, and hides no other bit.
 TEST_F(ScopeOfPlant, ABitOfAWordThatWasOnForAMillisecondIsInItsPoint) {
   good({{"do", "scope"}, {"channels", {"lift.PO1"}}});

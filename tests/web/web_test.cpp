@@ -62,7 +62,7 @@ TEST_F(Browser, PutsViewsSideBySide) { expect_node_passed(run("desk.test.mjs"), 
 
 TEST_F(Browser, TurnsAnAxisByAClick) { expect_node_passed(run("plant.test.mjs"), 18); }
 
-TEST_F(Browser, ShowsCurves) { expect_node_passed(run("scope.test.mjs"), 7); }
+TEST_F(Browser, ShowsCurves) { expect_node_passed(run("scope.test.mjs"), 8); }
 
 TEST_F(Browser, SeesMachinesMove) { expect_node_passed(run("machine.test.mjs"), 7); }
 

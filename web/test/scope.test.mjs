@@ -12,7 +12,7 @@ import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
 
 import { desktop, launch, missing, openPage, phone } from "./browser.mjs";
-import { examples, program, serve, standAt } from "./serve.mjs";
+import { examples, order, program, serve, standAt } from "./serve.mjs";
 
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const skip = missing ?? (program ? false : "IPOS_PROGRAM names no program");
@@ -159,6 +159,38 @@ test("three stations fit, setpoints lie under speeds, status is lanes, and a cha
     assert.ok(after.slice(1).every((row) => row.split(",")[columns] !== ""), "its past is there");
     await page.getByRole("button", { name: `Remove ${stations[0]}.dc_link` }).click();
     await until(async () => (await page.getByRole("button", { name: `Remove ${stations[0]}.dc_link` }).count()) === 0, "not removed");
+  }),
+);
+
+// What was recorded beyond this moment stays visible, pale, until another future begins; and many lanes leave room for curves.
+test("curves keep their room beside many lanes; after the way back what came later is pale", { skip }, () =>
+  meet(`${examples}/isync/isync.toml`, 2000, async (page, server) => {
+    await until(async () => (await page.locator(".picture .uplot").count()) > 0, "no curves");
+    const areas = await page.locator(".picture .u-over").evaluateAll((all) => all.map((one) => one.clientHeight));
+    assert.ok(areas.every((height) => height >= 120), `curves have ${areas} pixels`);
+    assert.ok(await page.locator(".picture").evaluate((one) => one.scrollHeight <= one.clientHeight + 1), "something lies over the rest");
+    // Of the column of a moment: how many pixels of the curves are coloured, and how much lies over them.
+    const at = (us) =>
+      page.locator(".picture").evaluate((picture, time) => {
+        const dots = devicePixelRatio;
+        const area = picture.querySelector(".u-over").getBoundingClientRect();
+        const [from, to] = [Number(picture.dataset.fromUs), Number(picture.dataset.toUs)];
+        const x = area.left - picture.getBoundingClientRect().left + ((time - from) / (to - from)) * area.width;
+        const column = (canvas) => canvas.getContext("2d").getImageData(Math.round(x * dots) - 2, 0, 4, canvas.height).data;
+        const curves = column(picture.querySelector(".uplot canvas"));
+        let coloured = 0;
+        for (let n = 0; n < curves.length; n += 4) if (Math.max(curves[n], curves[n + 1], curves[n + 2]) - Math.min(curves[n], curves[n + 1], curves[n + 2]) > 60 && curves[n + 3] > 100) ++coloured;
+        const over = column(picture.querySelector(".over"));
+        return { coloured, veil: over[3 + 4 * 4 * 40] };
+      }, us);
+    await until(async () => (await at(1_500_000)).coloured > 0 && (await at(1_500_000)).veil === 0, "no curves at 1.5 s");
+    await order(server, { do: "go", us: 800_000 });
+    await until(async () => (await at(1_500_000)).veil > 100, "what comes later is not pale");
+    assert.ok((await at(1_500_000)).coloured > 0, "what comes later is gone");
+    assert.strictEqual((await at(500_000)).veil, 0, "the past is pale");
+    assert.deepStrictEqual(await findings(page), []);
+    await page.getByRole("button", { name: "Step", exact: true }).click();
+    await until(async () => (await at(1_500_000)).coloured === 0 && (await at(1_500_000)).veil === 0, "another future shows the old one");
   }),
 );
 

@@ -114,8 +114,11 @@ void Scope::renamed() {
 }
 
 void Scope::built() {
+  bool is_another = std::exchange(is_another_, false);
   if (!fills_) {
-    names_ = known(names_);
+    std::vector<std::string> names = known(names_);
+    is_another = is_another || names != names_;
+    names_ = std::move(names);
     find_trigger();
   }
   channels_ = find(names_);
@@ -123,8 +126,8 @@ void Scope::built() {
     last_ = 0;
     return;
   }
-  memory_.choose(std::vector<std::optional<size_t>>(channels_.size()), kinds_of(channels_));
-  begin_again();
+  if (is_another) memory_.choose(std::vector<std::optional<size_t>>(channels_.size()), kinds_of(channels_));
+  begin_again(is_another);
 }
 
 void Scope::passed(Time now) {
@@ -291,13 +294,15 @@ void Scope::choose(std::vector<Signal> channels) {
   ++recording_;
 }
 
-void Scope::begin_again() {
+void Scope::begin_again(bool is_another) {
   ++recording_;
   computing_.reset();
   asks_ = false;
   samples_.assign(channels_.size(), 0);
   last_ = source_.now();
-  memory_.restart(static_cast<uint64_t>(last_ / kMillisecond) + 1);
+  const uint64_t next = static_cast<uint64_t>(last_ / kMillisecond) + 1;
+  if (is_another) memory_.restart(next);
+  else memory_.go_on_from(next);
   if (state_ == State::Triggered || state_ == State::Done) state_ = State::Armed;
   triggered_at_.reset();
   seen_.reset();
@@ -419,8 +424,8 @@ void Scope::fire(Time at, const std::string& why) {
 // --- what is shown ---
 
 // The first sample at or after a time.
-uint64_t Scope::number_at(int64_t us) const {
-  return std::clamp(static_cast<uint64_t>((us + 999) / 1000), first(), end());
+uint64_t Scope::number_at(int64_t us, uint64_t end) const {
+  return std::clamp(static_cast<uint64_t>((us + 999) / 1000), first(), end);
 }
 
 Json Scope::describe() const {
@@ -438,6 +443,7 @@ Json Scope::describe() const {
             {"first_us", us_of(first())}};
   json["trigger_us"] = triggered_at_ ? Json(*triggered_at_ / runtime::kMicrosecond) : Json(nullptr);
   json["last_us"] = us_of(end() == first() ? first() : end() - 1);
+  json["later_us"] = later_end() > end() ? Json(us_of(later_end() - 1)) : Json(nullptr);
   json["computes"] = Json::array();
   if (asks_ || computing_)
     for (const size_t channel : incomplete()) json["computes"].push_back(channels_[channel].name);
@@ -479,8 +485,9 @@ std::string Scope::points(uint64_t begin, uint64_t end, uint64_t step, uint32_t 
 }
 
 Json Scope::view(const Router::Call& call) {
-  const uint64_t begin = number_at(call.arguments.whole("from_us", 0, kLastUs));
-  const uint64_t end = std::max(begin, number_at(call.arguments.whole("to_us", 0, kLastUs) + 1));
+  const uint64_t last = call.arguments.flag("later", false) ? later_end() : end();
+  const uint64_t begin = number_at(call.arguments.whole("from_us", 0, kLastUs), last);
+  const uint64_t end = std::max(begin, number_at(call.arguments.whole("to_us", 0, kLastUs) + 1, last));
   const auto most =
       static_cast<uint64_t>(call.arguments.whole("points", 1, static_cast<int64_t>(kMostPoints)));
   if (!call.id.is_number_unsigned() || call.id.get<uint64_t>() == 0 || call.id.get<uint64_t>() > UINT32_MAX)
@@ -491,9 +498,9 @@ Json Scope::view(const Router::Call& call) {
 }
 
 Json Scope::csv(const Router::Call& call) {
-  uint64_t begin = call.arguments.has("from_us") ? number_at(call.arguments.whole("from_us", 0, kLastUs)) : first();
+  uint64_t begin = call.arguments.has("from_us") ? number_at(call.arguments.whole("from_us", 0, kLastUs), this->end()) : first();
   const uint64_t end = std::max(
-      begin, call.arguments.has("to_us") ? number_at(call.arguments.whole("to_us", 0, kLastUs) + 1) : this->end());
+      begin, call.arguments.has("to_us") ? number_at(call.arguments.whole("to_us", 0, kLastUs) + 1, this->end()) : this->end());
   std::ostringstream out;
   const std::vector<FrameTrack> no_tracks;
   const auto writer = csv_trace(out, channels_, no_tracks);
@@ -537,8 +544,8 @@ Json Scope::picture(const Router::Call& call) {
   const Arguments& a = call.arguments;
   const std::string form = a.text("form");
   if (form != "svg" && form != "html") throw Mistake("'form' must be svg or html");
-  const uint64_t begin = a.has("from_us") ? number_at(a.whole("from_us", 0, kLastUs)) : first();
-  const uint64_t end = std::max(begin, a.has("to_us") ? number_at(a.whole("to_us", 0, kLastUs) + 1) : this->end());
+  const uint64_t begin = a.has("from_us") ? number_at(a.whole("from_us", 0, kLastUs), this->end()) : first();
+  const uint64_t end = std::max(begin, a.has("to_us") ? number_at(a.whole("to_us", 0, kLastUs) + 1, this->end()) : this->end());
   if ((end - begin) * channels_.size() > kMostDrawn)
     throw Mistake(fmt::format("these are {} ms of {} channels, more than a picture takes; zoom in", end - begin, channels_.size()));
   const std::string title = a.text("title", "Scope");

@@ -47,11 +47,13 @@ class Scope final {
   const std::vector<std::string>& names() const { return names_; }
   // The settings of an earlier start, as far as there still is what they name.
   void restore(const Json& settings);
-  // The signals are others: a new recording. What the plant has no more is left out.
+  // The signals are others: a new recording. What the plant has no more is left out. Where a plant without copies goes back it
+  // was built to do the same once more: what is recorded of later times stays.
   void built();
   // A program has other names by now: the recording goes on.
   void renamed();
   void restarted() {
+    is_another_ = true;
     armed_at_ = 0;
     hand_at_.reset();
   }
@@ -95,7 +97,7 @@ class Scope final {
   std::vector<std::string> known(std::vector<std::string> names);
   void find_trigger();
   void choose(std::vector<signals::Signal> channels);
-  void begin_again();
+  void begin_again(bool is_another);
   void arm(bool single);
   void fire(runtime::Time at, const std::string& why);
   void record(uint64_t number);
@@ -107,7 +109,8 @@ class Scope final {
   // What is shown of the memory: a complete recording ends where it was complete.
   uint64_t first() const { return std::min(memory_.first(), end()); }
   uint64_t end() const { return state_ == State::Done ? done_end_ : memory_.end(); }
-  uint64_t number_at(int64_t us) const;
+  uint64_t later_end() const { return state_ == State::Done ? done_end_ : memory_.later_end(); }
+  uint64_t number_at(int64_t us, uint64_t end) const;
   std::vector<size_t> incomplete() const;
   Json describe() const;
   std::string points(uint64_t begin, uint64_t end, uint64_t step, uint32_t id, bool exact = false) const;
@@ -143,6 +146,7 @@ class Scope final {
   std::optional<double> previous_;                             // of the trigger's signal
 
   // What the run up to now has of channels that were chosen later.
+  bool is_another_ = true;  // plant: it does not do what was recorded
   bool asks_ = false;  // it is to be computed
   std::unique_ptr<SecondRun> computing_;
   ScopeMemory* fills_ = nullptr;  // this scope only computes, for this memory

@@ -43,6 +43,11 @@ void ScopeMemory::restart(uint64_t next) {
   for (Column& column : columns_) column.from = column.to = next;
 }
 
+void ScopeMemory::go_on_from(uint64_t next) {
+  end_ = next;
+  use(std::move(columns_));
+}
+
 void ScopeMemory::choose(const std::vector<std::optional<size_t>>& channels, const std::vector<Kind>& kinds) {
   std::vector<Column> columns;
   std::vector<bool> taken(kMostChannels, false);
@@ -90,6 +95,12 @@ uint64_t ScopeMemory::first() const {
   uint64_t least = end_;
   for (size_t n = 0; n < columns_.size(); ++n) least = std::min(least, first(n));
   return least;
+}
+
+uint64_t ScopeMemory::later_end() const {
+  uint64_t latest = end_;
+  for (const Column& column : columns_) latest = std::max(latest, column.to);
+  return latest;
 }
 
 bool ScopeMemory::push(uint64_t number, std::span<const int64_t> samples) {
@@ -156,7 +167,7 @@ std::optional<int64_t> ScopeMemory::at(size_t channel, uint64_t number) const {
 std::optional<ScopeMemory::Extremes> ScopeMemory::extremes(size_t channel, uint64_t begin, uint64_t end) const {
   const Column& column = columns_[channel];
   begin = std::max(begin, first(channel));
-  end = std::min(end, end_);
+  end = std::min(end, column.to);
   if (begin >= end) return std::nullopt;
   Block found{sample(column.place, begin), sample(column.place, begin)};
   for (uint64_t n = begin; n < end;) {

@@ -41,6 +41,8 @@ class ScopeMemory {
 
   // Nothing is known any more; the next sample will have this number.
   void restart(uint64_t next);
+  // The same comes once more: what is known of later times stays.
+  void go_on_from(uint64_t next);
   // The channels are others: each is one that was there, by its number, or a new one, of which nothing is known yet.
   // `kinds` is of all of them; left out: plain numbers with sign.
   void choose(const std::vector<std::optional<size_t>>& channels, const std::vector<Kind>& kinds = {});
@@ -65,11 +67,14 @@ class ScopeMemory {
   uint64_t first() const;
   uint64_t first(size_t channel) const;
   uint64_t end() const { return end_; }
+  // After the way back: of any channel the number after the last one that was known of later times.
+  uint64_t later_end() const;
   size_t channels() const { return columns_.size(); }
 
   // Nothing where it is not known.
   std::optional<int64_t> at(size_t channel, uint64_t number) const;
-  // Least and greatest of those known from `begin` to before `end`; of a word the bits of all, and of any.
+  // Least and greatest of those known from `begin` to before `end`, also of later times; of a word the bits of all, and of
+  // any.
   using Extremes = std::pair<int64_t, int64_t>;
   std::optional<Extremes> extremes(size_t channel, uint64_t begin, uint64_t end) const;
 

@@ -5,12 +5,12 @@ import { lanesOf, panelsOf, type Channel, type Lane, type Place } from "./channe
 import type { Control, Mark, Track } from "./control";
 import { ticks } from "./axis";
 import { listenToHands } from "./gestures";
-import { drawLanes, font, lanesHeight, type Area, type Ink } from "./lanes";
+import { axis_height, drawLanes, font, laneHeight, lanesHeight, type Area, type Ink } from "./lanes";
 import { DrawnPanel, right_margin, scaleOf } from "./panel";
 import { emptyPoints, type Points } from "./points";
 
 const least_left = 34;
-const least_panel = 76;
+const least_panel = 160; // its curves can be read; where all of it does not fit, the picture grows
 const label_rows = 2;
 const label_height = 13;
 
@@ -21,6 +21,7 @@ export class Picture {
   private places: Place[] = [];
   private points: Points = emptyPoints(0);
   private marks: Mark[] = [];
+  private present: number | null = null;
   private tracks: Track[] = [];
   private panels: DrawnPanel[] = [];
   private lanes: Lane[] = [];
@@ -92,6 +93,13 @@ export class Picture {
     this.drawOver();
   }
 
+  // What lies behind this moment is not so yet: it is pale. null: nothing does.
+  setPresent(us: number | null): void {
+    if (us === this.present) return;
+    this.present = us;
+    this.drawOver();
+  }
+
   // The cursors have moved.
   redraw(): void {
     this.drawOver();
@@ -139,8 +147,15 @@ export class Picture {
   private room(): number {
     return Number.parseFloat(getComputedStyle(this.root).minHeight) || 0;
   }
+  private laneCount(): number {
+    return this.lanes.length + this.tracks.length;
+  }
+  // Lanes become lower before panels take less than they need.
+  private laneHeight(): number {
+    return laneHeight(this.laneCount(), this.wanted - this.labelRoom() - this.panels.length * least_panel);
+  }
   private panelHeight(): number {
-    const left = this.wanted - lanesHeight(this.lanes, this.tracks) - this.labelRoom();
+    const left = this.wanted - lanesHeight(this.laneCount(), this.laneHeight()) - this.labelRoom();
     return Math.max(least_panel, Math.floor(left / Math.max(1, this.panels.length)));
   }
   private labelRoom(): number {
@@ -187,7 +202,7 @@ export class Picture {
     this.plots.style.paddingTop = `${this.labelRoom()}px`;
     for (const { plot } of this.panels) if (plot.height !== height) plot.setSize({ width: this.width, height });
     const scales = this.panels.map(({ panel }) => scaleOf(panel, this.points, height));
-    const ctx = this.canvas(this.laneCanvas, lanesHeight(this.lanes, this.tracks));
+    const ctx = this.canvas(this.laneCanvas, lanesHeight(this.laneCount(), this.laneHeight()));
     if (!ctx) return;
     ctx.font = font;
     this.left = Math.max(least_left, ...scales.flatMap(({ texts }) => texts.map((text) => ctx.measureText(text).width + 14)));
@@ -198,7 +213,7 @@ export class Picture {
     const seconds = ticks(window.from_us / 1e6, window.to_us / 1e6, Math.max(2, Math.floor((area.right - area.left) / 90)));
     this.panels.forEach((panel, n) => panel.show(this.points, window, scales[n] as (typeof scales)[0], this.left, seconds));
     drawLanes(ctx, {
-      lanes: this.lanes, tracks: this.tracks, channels: this.channels, points: this.points, window, area,
+      lanes: this.lanes, tracks: this.tracks, lane_height: this.laneHeight(), channels: this.channels, points: this.points, window, area,
       xOf: (us) => this.xOf(us), ink: this.ink(),
     });
     this.drawOver();
@@ -223,12 +238,24 @@ export class Picture {
     return x;
   }
 
+  private drawLater(ctx: CanvasRenderingContext2D, present_us: number): void {
+    const { left, right } = this.area();
+    const x = Math.max(left, this.xOf(present_us));
+    if (x >= right) return;
+    ctx.fillStyle = this.themed("--panel");
+    ctx.globalAlpha = 0.7;
+    ctx.fillRect(x, 0, right - x, this.tall() - axis_height);
+    ctx.globalAlpha = 1;
+    this.drawLine(ctx, present_us, this.themed("--accent"), []);
+  }
+
   private drawOver(): void {
     if (this.width === 0) return;
     const ctx = this.canvas(this.over, this.tall());
     if (!ctx) return;
     ctx.font = `600 ${font}`;
     const { left, right } = this.area();
+    if (this.present !== null) this.drawLater(ctx, this.present);
     ctx.fillStyle = this.themed("--text");
     this.panels.forEach(({ panel, plot }) => ctx.fillText(panel.title, left + 4, plot.root.offsetTop + 12));
     if (this.selected[0] !== this.selected[1]) {

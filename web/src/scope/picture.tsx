@@ -1,5 +1,5 @@
 // The picture of the scope in the page: what the server has sent, and where the cursors stand.
-import { effect, signal } from "@preact/signals";
+import { computed, effect, signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 
 import type { Mark } from "../picture/control";
@@ -8,7 +8,7 @@ import { pointAt } from "../picture/points";
 import { time } from "../server/live";
 import { places, placesOf } from "./channels";
 import { pictureWidth, points } from "./recording";
-import { control, cursors, scope, triggerTime } from "./window";
+import { control, cursors, lastRecorded, scope, triggerTime } from "./window";
 
 // Where the pointer is, in us.
 export const pointer = signal<number | null>(null);
@@ -26,11 +26,12 @@ export function pictureFile(): Blob | undefined {
   return shown?.png();
 }
 
+// What was recorded later stands beyond this moment.
+const isPast = computed(() => lastRecorded.value > time.value.us);
+
 function marksNow(): Mark[] {
   const marks: Mark[] = [];
   if (triggerTime.value !== null) marks.push({ us: triggerTime.value, text: "T", colour: "--bad" });
-  // After a step back what was recorded later stands beyond this moment.
-  if (scope.value && time.value.us < scope.value.last_us) marks.push({ us: time.value.us, text: "·", colour: "--accent" });
   return marks;
 }
 
@@ -59,6 +60,7 @@ export function ScopePicture() {
         if (data && data.recording === scope.value?.recording) picture.setPoints(data);
       }),
       effect(() => picture.setMarks(marksNow())),
+      effect(() => picture.setPresent(isPast.value ? time.value.us : null)),
       effect(() => {
         void cursors.value;
         picture.redraw();

@@ -5,7 +5,7 @@ import { useEffect, useRef } from "preact/hooks";
 import { drawPlane } from "../picture/xy";
 import { channelNames } from "./channels";
 import { longest_ms, points, samples } from "./recording";
-import { scope, shownWindow } from "./window";
+import { lastRecorded, scope, shownWindow } from "./window";
 
 export interface PlaneAxes {
   x: string; // names of channels; empty: no such view
@@ -48,7 +48,7 @@ export function Plane() {
     let timer: ReturnType<typeof setTimeout> | undefined;
     const draw = async () => {
       const { from_us, to_us } = shownWindow.peek();
-      const end = Math.max(0, Math.min(to_us, scope.peek()?.last_us ?? to_us));
+      const end = Math.max(0, Math.min(to_us, lastRecorded.peek()));
       const all = await samples(Math.max(0, from_us, end - longest_ms * 1000), end);
       const channels = scope.peek()?.channels ?? [];
       const [nx, ny] = [x, y].map((name) => channels.findIndex((channel) => channel.name === name)) as [number, number];

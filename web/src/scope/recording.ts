@@ -9,7 +9,7 @@ import { generation, time } from "../server/live";
 import type { ScopeState } from "../server/protocol";
 import { complain } from "../shell/notice";
 import { readFrame, type Frame } from "./frame";
-import { cursors, recording, scope, shownWindow, type CursorName, type Window } from "./window";
+import { cursors, lastRecorded, recording, scope, shownWindow, type CursorName, type Window } from "./window";
 
 const refresh_ms = 80;
 const most_points = 4096; // of a frame
@@ -26,7 +26,7 @@ export const measures = signal<(Measures | null)[] | null>(null);
 function view(from_us: number, to_us: number, most: number): Promise<Frame> {
   const from = Math.max(0, Math.floor(from_us));
   const to = Math.max(0, Math.ceil(to_us));
-  return requestFrame({ do: "scope.view", from_us: from, to_us: to, points: most, exact: true }).then((frame) => readFrame(frame, from_us, to_us));
+  return requestFrame({ do: "scope.view", from_us: from, to_us: to, points: most, exact: true, later: true }).then((frame) => readFrame(frame, from_us, to_us));
 }
 
 async function look(): Promise<void> {
@@ -94,7 +94,7 @@ export function followScope(): () => void {
     const began = performance.now();
     const { from_us, to_us } = shownWindow.peek();
     const state = scope.peek();
-    const key = [from_us, to_us, Math.min(to_us, time.peek().us), generation.peek(), state?.recording, state?.state, pictureWidth.peek()].join(" ");
+    const key = [from_us, to_us, Math.min(to_us, time.peek().us), state?.later_us, generation.peek(), state?.recording, state?.state, pictureWidth.peek()].join(" ");
     if (key !== seen && state) {
       try {
         await look();
@@ -117,7 +117,7 @@ export function followScope(): () => void {
     }),
   );
   // What lies before the newest sample does not change; the end of it may come later.
-  const recorded = computed(() => Math.min(between.value?.to_us ?? 0, time.value.us));
+  const recorded = computed(() => Math.min(between.value?.to_us ?? 0, lastRecorded.value));
   const stopMeasures = effect(() => {
     void recorded.value;
     void between.value;

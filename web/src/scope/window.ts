@@ -13,6 +13,8 @@ export const scope = signal<ScopeState | null>(null);
 // Of it the parts that others follow, so that an event without news asks for nothing.
 export const recording = computed(() => scope.value?.recording);
 export const triggerTime = computed(() => scope.value?.trigger_us ?? null);
+// Up to where there are curves: now, or after the way back what was recorded of later times.
+export const lastRecorded = computed(() => Math.max(time.value.us, scope.value?.later_us ?? 0));
 // What a person has zoomed to; null: the newest part, or that around the trigger.
 export const zoomed = signal<Window | null>(null);
 export const cursors = signal<picture.Cursors>({ A: null, B: null });
@@ -29,7 +31,8 @@ export const shownWindow = computed<Window>(() => {
     const from_us = state.trigger_us - (length_us * state.pre) / 100;
     return { from_us, to_us: from_us + length_us };
   }
-  const last_us = Math.max(time.value.us, length_us);
+  // After the way back this moment stands in the middle, as far as what follows is known.
+  const last_us = Math.max(Math.min(lastRecorded.value, time.value.us + length_us / 2), length_us);
   return { from_us: last_us - length_us, to_us: last_us };
 });
 

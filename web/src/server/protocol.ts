@@ -238,6 +238,7 @@ export interface ScopeState {
   computes?: string[]; // channels whose past is not there yet
   first_us: number;
   last_us: number;
+  later_us?: number | null; // after the way back: the last moment of what was recorded of later times
 }
 
 export interface ParameterGroup {
