@@ -53,6 +53,21 @@ bool is_inside(const std::string& name) {
   return !name.empty() && path.is_relative() && *path.begin() != ".." && name.find('\\') == std::string::npos;
 }
 
+std::string common_folder(const std::vector<std::string>& files) {
+  fs::path folder = fs::absolute(files.front()).lexically_normal().parent_path();
+  for (const std::string& file : files) {
+    const fs::path other = fs::absolute(file).lexically_normal();
+    fs::path shared;
+    for (auto a = folder.begin(), b = other.begin(); a != folder.end() && b != other.end() && *a == *b; ++a, ++b) shared /= *a;
+    folder = shared;
+  }
+  return folder.generic_string();
+}
+
+std::string name_in(const std::string& folder, const std::string& file) {
+  return fs::absolute(file).lexically_normal().lexically_relative(folder).generic_string();
+}
+
 std::string session_text(const Session& session) {
   Json texts = Json::object();
   for (const auto& [name, text] : session.texts) texts[name] = is_utf8(text) ? Json(text) : Json{{"bytes", widened(text)}};

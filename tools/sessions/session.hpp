@@ -46,6 +46,10 @@ struct Session {
 // A name of a text: a path that stays in the folder.
 bool is_inside(const std::string& name);
 
+// The folder that has all these files, and the name of a file in it.
+std::string common_folder(const std::vector<std::string>& files);
+std::string name_in(const std::string& folder, const std::string& file);
+
 std::string session_text(const Session& session);
 // Throws Unreadable.
 Session read_session(std::string_view text);

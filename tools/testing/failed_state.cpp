@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "runtime/plant/trace_hash.hpp"
 #include "tools/cli/failure.hpp"
@@ -17,8 +16,6 @@
 
 namespace ipos::tools::testing {
 namespace {
-
-namespace fs = std::filesystem;
 
 // Nobody looks on.
 class Alone final : public debug::FrontEnd {
@@ -43,20 +40,6 @@ std::vector<std::string> files_of(const TestCase& test, const CompileFlags& comp
   return files;
 }
 
-fs::path whole(const std::string& path) { return fs::absolute(path).lexically_normal(); }
-
-// The folder that has them all.
-fs::path common_folder(const std::vector<std::string>& files) {
-  fs::path folder = whole(files.front()).parent_path();
-  for (const std::string& file : files) {
-    const fs::path other = whole(file);
-    fs::path shared;
-    for (auto a = folder.begin(), b = other.begin(); a != folder.end() && b != other.end() && *a == *b; ++a, ++b) shared /= *a;
-    folder = shared;
-  }
-  return folder;
-}
-
 std::string case_of(const TestCase& test) {
   const size_t slash = test.name.rfind('/');
   const bool is_only = read_tests(test.file).size() == 1;
@@ -68,8 +51,8 @@ std::string case_of(const TestCase& test) {
 std::string failed_state(const TestCase& test, const CompileFlags& compile, const RunOptions& options, Time moment) {
   sessions::Session session;
   const std::vector<std::string> files = files_of(test, compile);
-  const fs::path folder = common_folder(files);
-  const auto name = [&](const std::string& file) { return whole(file).lexically_relative(folder).generic_string(); };
+  const std::string folder = sessions::common_folder(files);
+  const auto name = [&](const std::string& file) { return sessions::name_in(folder, file); };
   for (const std::string& file : files) session.texts[name(file)] = read_file(file);
   session.plant = name(test.plant_path);
   session.test = {name(test.file), case_of(test), options.seed, options.speed};

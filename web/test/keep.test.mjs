@@ -1,7 +1,7 @@
 // Clicks become a test that is green at once and red when one of its values is changed, and a session that stands at the same
 // moment when it is opened.
 import assert from "node:assert";
-import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -76,6 +76,39 @@ test("a check of a test that is not met is a mark that leads to its line", { ski
     assert.deepStrictEqual(await findings(page), []);
     assert.deepStrictEqual(errors, []);
     await close();
+  } finally {
+    await server.stop();
+    rmSync(folder, { recursive: true });
+  }
+});
+
+// The test lies in a folder beside that of the plant, whose program includes a file from a third one.
+test("a session holds what lies outside of the plant's folder", { skip }, async () => {
+  const folder = mkdtempSync(join(tmpdir(), "ipos-keep-"));
+  for (const name of ["plant", "tests", "common"]) mkdirSync(join(folder, name));
+  cpSync(join(examples, "hoist", "hoist.toml"), join(folder, "plant", "hoist.toml"));
+  const source = readFileSync(join(examples, "hoist", "HOIST.IPC"), "utf8");
+  writeFileSync(join(folder, "common", "floors.h"), "#define UPPER 60000\n");
+  writeFileSync(join(folder, "plant", "HOIST.IPC"), source.replace(/#define UPPER.*/, '#include "../common/floors.h"'));
+  writeFileSync(join(folder, "tests", "red.test.toml"), red_test.replace("hoist.toml", "../plant/hoist.toml"));
+  let server = await serve(join("tests", "red.test.toml"), ["--port", "0"], folder);
+  try {
+    const { page, close } = await openPage(browser, server.address);
+    await page.getByRole("switch", { name: "hoist DI10" }).waitFor();
+    await standAt(server, page, 20);
+    await page.getByRole("button", { name: "Save session" }).click();
+    const session = page.getByRole("dialog", { name: "Save session" });
+    await session.getByRole("textbox", { name: "File" }).fill("far.ipos");
+    await session.getByRole("button", { name: "Save" }).click();
+    await session.getByText("ipos serve").waitFor();
+    const place = /ipos serve (\S+)/.exec(await session.textContent())[1];
+    await close();
+    await server.stop();
+    server = await serve(place, ["--port", "0"], folder);
+    const again = await openPage(browser, server.address);
+    await until(async () => (await time(again.page)) === "0.020 s", "the session stands at another moment");
+    await again.page.getByRole("list", { name: "Marks" }).getByText(/^0\.005 s/).first().waitFor();
+    await again.close();
   } finally {
     await server.stop();
     rmSync(folder, { recursive: true });
