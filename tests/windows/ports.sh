@@ -115,11 +115,16 @@ WRAPPER
 chmod +x "$work/ipos"
 # A master says what it has checked: no FAIL, and "end" (tests/realbus/checks.py). A program of Windows knows
 # no signals: it is ended without a word, and so without the report that says how late it was.
+# A busy machine tears telegrams, and a group telegram is said once: so a master has three tries.
 master() {
-  (cd tests/realbus && timeout 300 /usr/bin/python3 -B "$@") >"$work/out" 2>&1 || fail "$1: $(cat "$work/out")"
-  grep '^FAIL' "$work/out" | grep -qvE 'ended by the signal|every restart has its reason' && fail "$1: $(cat "$work/out")"
-  grep -q '^end' "$work/out" || fail "$1: $(cat "$work/out")"
-  checks=$((checks + $(grep -c '^ok' "$work/out")))
+  for _ in 1 2 3; do
+    (cd tests/realbus && timeout 300 /usr/bin/python3 -B "$@") >"$work/out" 2>&1 || continue
+    grep '^FAIL' "$work/out" | grep -qvE 'ended by the signal|every restart has its reason' && continue
+    grep -q '^end' "$work/out" || continue
+    checks=$((checks + $(grep -c '^ok' "$work/out")))
+    return 0
+  done
+  fail "$1: $(cat "$work/out")"
 }
 checks=0
 sed 's|kind = "rs485"|&\nport = "COM12"|' tests/realbus/movilink.toml >"$work/movilink.toml"
