@@ -130,9 +130,9 @@ def of_recording(folder):
 
 
 def of_page(folder):
-    sys.argv.insert(1, IPOS)  # as server_test.py is called
+    sys.argv.insert(1, IPOS)  # as client.py wants it
     sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "serve"))
-    from server_test import Client
+    from client import Client
     server = subprocess.Popen([IPOS, "serve", "p.toml", "--port", "0"], cwd=folder, stdout=subprocess.PIPE, text=True)
     try:
         port, token = re.search(r":(\d+)/\?token=(\S+)", server.stdout.readline()).groups()
@@ -308,7 +308,7 @@ def groups_of_python(folder):
 def groups_of_page(folder):
     sys.argv.insert(1, IPOS)
     sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "serve"))
-    from server_test import Client
+    from client import Client
     server = subprocess.Popen([IPOS, "serve", "p.toml", "--port", "0"], cwd=folder, stdout=subprocess.PIPE, text=True)
     try:
         port, token = re.search(r":(\d+)/\?token=(\S+)", server.stdout.readline()).groups()

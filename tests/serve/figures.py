@@ -81,10 +81,10 @@ class Page:
 def main():
     program = sys.argv[1]
     minutes = int(sys.argv[2]) if len(sys.argv) > 2 else 0
-    sys.argv = ["server_test.py", program]
+    sys.argv = ["client.py", program]
     import json
     sys.path.insert(0, str(pathlib.Path(__file__).parent))
-    from server_test import Client
+    from client import Client
 
     with tempfile.TemporaryDirectory() as folder:
         plant = write_plant(pathlib.Path(folder), 64)

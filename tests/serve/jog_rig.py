@@ -12,7 +12,7 @@ import tempfile
 import threading
 import time
 
-from server_test import IPOS, Client
+from client import IPOS, Client
 
 RPM = 1500
 FALLS_WITHIN = 0.7  # s: what the tests promise

@@ -11,7 +11,7 @@ import time
 import tty
 import unittest
 
-from server_test import IPOS, Client
+from client import IPOS, Client
 
 # One unit at an RS-485 line with a port.
 LINE = '''
