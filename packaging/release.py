@@ -26,7 +26,8 @@ BUILD = ROOT / "build"
 NATIVE = BUILD / "release-native"  # without tests and asserts, beside the daily build
 # The parts of third_parties.tsv in each kind of file; cmake/install.cmake and tools/CMakeLists.txt put the same into each.
 PARTS = {
-    "linux-x86_64": ["linux", "page", "plot"], "windows-x86_64.exe": ["windows", "page", "plot"], ".html": ["web", "page", "plot"],
+    "linux-x86_64": ["linux", "page", "plot"], "windows-x86_64.exe": ["windows", "page", "plot"],
+    "windows-x86_64-setup.exe": ["windows", "page", "plot", "installer"], ".html": ["web", "page", "plot"],
     "site.tar.gz": ["web", "page", "plot", "site"], ".deb": ["deb", "page", "plot", "extension"],
     "win_amd64.whl": ["windows-library"], "windows-x86_64.zip": ["windows-library"], ".whl": ["library"],
     ".vsix": ["extension"], ".tgz": ["web"], "source.tar.gz": ["page", "plot"], "Containerfile": [], "NOTICES.txt": [],
@@ -109,6 +110,15 @@ def make_windows(out: Path) -> None:
         run("cmake", "--install", BUILD / "windows", "--prefix", Path(folder) / name, "--strip")
         pack_again(Path(shutil.make_archive(str(Path(folder) / "packed"), "zip", folder, name)), out / f"{name}.zip")
         make_wheel(Path(folder) / name / "bin/ipos_plant.dll", out)
+        made = Path(folder) / "setup"
+        run("/usr/bin/python3", "packaging/windows/setup.py", program, made)
+        setup, = made.glob("*-setup.exe")
+        shutil.copy(setup, out)
+        manifests = out / f"ipos-{version()}-windows-manifests.zip"  # for winget and Chocolatey
+        with zipfile.ZipFile(made / "all.zip", "w") as archive:
+            for file in sorted(made.glob("*/**/*")):
+                archive.write(file, file.relative_to(made))
+        pack_again(made / "all.zip", manifests)
 
 
 def make_web(out: Path, seconds: int) -> None:
