@@ -21,3 +21,8 @@ endif()
 enable_language(RC)
 # One file, without the DLLs of the compiler.
 add_link_options(-static)
+
+# Names of files are UTF-8 in every program and library.
+add_library(ipos_utf8_letters STATIC ${PROJECT_SOURCE_DIR}/tools/windows/utf8_letters.cpp)
+add_link_options(-Wl,--wrap=mbrtowc -Wl,--undefined=__wrap_mbrtowc)
+link_libraries(ipos_utf8_letters)

@@ -22,21 +22,13 @@ namespace fs = std::filesystem;
 
 constexpr uintmax_t kFileLimit = uintmax_t{64} << 20U;  // far above any plant, program or image (ours)
 
-// Names are UTF-8 on every system; on Windows a path of plain characters would be one of its code page.
-fs::path path_of(const std::string& name) { return {std::u8string(name.begin(), name.end())}; }
-std::string name_of(const fs::path& path) {
-  const std::u8string name = path.u8string();
-  return {name.begin(), name.end()};
-}
-
 // Regular files only: a device or a pipe could have no end.
-tl::expected<std::string, std::string> read_file(const std::string& name) {
-  const fs::path path = path_of(name);
+tl::expected<std::string, std::string> read_file(const std::string& path) {
   std::error_code error;
   if (!fs::exists(path, error)) return tl::unexpected(std::string("there is no such file"));
   if (!fs::is_regular_file(path, error)) return tl::unexpected(std::string("is no file"));
   if (fs::file_size(path, error) > kFileLimit) return tl::unexpected(std::string("is too large"));
-  std::ifstream in(path, std::ios::binary);
+  std::ifstream in(fs::path(path), std::ios::binary);
   if (!in) return tl::unexpected(std::string("cannot be read"));
   return std::string(std::istreambuf_iterator<char>(in), {});
 }
@@ -48,13 +40,13 @@ std::optional<std::string> try_read_file(const std::string& path) {
 
 // In small letters, with the dot.
 std::string ending(const std::string& path) {
-  std::string text = name_of(path_of(path).extension());
+  std::string text = fs::path(path).extension().string();
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
   return text;
 }
 
 std::string beside(const std::string& folder, const std::string& name) {
-  return name_of((path_of(folder) / path_of(name)).lexically_normal());
+  return (fs::path(folder) / name).lexically_normal().string();
 }
 
 Mistakes mistakes_of(const compiler::Compilation& compiled) {
@@ -78,8 +70,8 @@ Mistakes mistakes_of(const std::string& file, const std::vector<runtime::PlantEr
 runtime::PlantFile plant_of_program(const std::string& path) {
   runtime::PlantFile plant;
   runtime::StationConfig station;
-  station.name = name_of(path_of(path).stem());
-  station.program = name_of(path_of(path).filename());
+  station.name = fs::path(path).stem().string();
+  station.program = fs::path(path).filename().string();
   plant.stations.push_back(std::move(station));
   return plant;
 }
@@ -106,7 +98,7 @@ class Fingerprint {
 tl::expected<Contents, Mistakes> Contents::read(const Source& source) {
   Contents contents;
   contents.name_ = source.path.empty() ? "plant" : source.path;
-  contents.folder_ = source.folder.value_or(name_of(path_of(source.path).parent_path()));
+  contents.folder_ = source.folder.value_or(fs::path(source.path).parent_path().string());
   const bool is_program = !source.text && (ending(source.path) == ".ipc" || ending(source.path) == ".ipx");
   std::string text;
   std::vector<runtime::PlantError> errors;

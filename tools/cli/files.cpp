@@ -55,7 +55,7 @@ std::optional<std::string> trouble(const struct stat& info, size_t limit) {
 tl::expected<Descriptor, std::string> open_regular(const std::string& path, size_t limit) {
   struct stat info {};
   if (!stdlib::is_plain(path)) return tl::unexpected(std::string("a file name has no control characters"));
-  if (stat(path.c_str(), &info) != 0) return tl::unexpected(missing(path));
+  if (!look_at(path, info)) return tl::unexpected(missing(path));
   if (auto why = trouble(info, limit)) return tl::unexpected(std::move(*why));
   Descriptor file = open_to_read(path);
   if (!file.is_open() || fstat(file.get(), &info) != 0)

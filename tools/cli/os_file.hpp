@@ -2,6 +2,8 @@
 // source each; where a function fails, errno says why.
 #pragma once
 
+#include <sys/stat.h>
+
 #include <compare>
 #include <cstdint>
 #include <optional>
@@ -22,6 +24,9 @@ struct FileIdentity {
 };
 std::optional<FileIdentity> identity_of(const runtime::Descriptor& file);
 std::optional<FileIdentity> identity_of(const std::string& path);
+
+// What is there, behind links.
+bool look_at(const std::string& path, struct stat& info);
 
 // None of them blocks at a pipe.
 runtime::Descriptor open_to_read(const std::string& path);

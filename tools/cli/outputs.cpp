@@ -38,7 +38,7 @@ void refuse_input(const std::string& path) {
 // Something that is there and is no regular file; folders, too.
 bool is_special(const std::string& path) {
   struct stat info {};
-  return stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode);
+  return look_at(path, info) && !S_ISREG(info.st_mode);
 }
 
 // What the links at the end of the path lead to, which need not exist yet.
@@ -107,7 +107,8 @@ class Beside {
   }
   ~Beside() {
     file_ = Descriptor();
-    if (!path_.empty()) unlink(path_.c_str());
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove(path_, ignored);
   }
   Beside(const Beside&) = delete;
   Beside& operator=(const Beside&) = delete;
@@ -127,7 +128,7 @@ class Beside {
 // Why `target` could not be replaced; 0 when it can.
 int obstacle(const std::string& target) {
   struct stat info {};
-  if (stat(target.c_str(), &info) == 0 && !may_write(target)) return errno;
+  if (look_at(target, info) && !may_write(target)) return errno;
   return may_make_files_in(folder_of(target)) ? 0 : errno;
 }
 
@@ -174,7 +175,7 @@ LogOutput::LogOutput(const std::string& path) : path_(path) {
     return;
   }
   check_output(path);
-  file_.open(path, std::ios::binary);
+  file_.open(fs::path(path), std::ios::binary);
   if (!file_) fail(path, errno);
   out_ = &file_;
 }

@@ -65,13 +65,11 @@ class WindowsMedium final : public NvMedium {
 
 }  // namespace
 
-tl::expected<std::unique_ptr<NvMedium>, std::string> open_file_medium(const std::string& name, FileUse use) {
-  // Names are UTF-8; a path of plain characters would be one of the code page.
-  const std::filesystem::path path(std::u8string(name.begin(), name.end()));
+tl::expected<std::unique_ptr<NvMedium>, std::string> open_file_medium(const std::string& path, FileUse use) {
   const bool writes = use == FileUse::Write;
   const DWORD shared = writes ? FILE_SHARE_READ : FILE_SHARE_READ | FILE_SHARE_WRITE;
   const HANDLE file =
-      CreateFileW(path.c_str(), writes ? GENERIC_READ | GENERIC_WRITE : GENERIC_READ,
+      CreateFileW(std::filesystem::path(path).c_str(), writes ? GENERIC_READ | GENERIC_WRITE : GENERIC_READ,
                   shared, nullptr, writes ? OPEN_ALWAYS : OPEN_EXISTING, FILE_ATTRIBUTE_NORMAL, nullptr);
   if (file == INVALID_HANDLE_VALUE) {
     const DWORD error = GetLastError();

@@ -44,6 +44,8 @@ std::optional<FileIdentity> identity_of(const std::string& path) {
   return look_at(AT_FDCWD, path.c_str(), 0);
 }
 
+bool look_at(const std::string& path, struct stat& info) { return stat(path.c_str(), &info) == 0; }
+
 Descriptor open_to_read(const std::string& path) {
   return Descriptor(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
 }

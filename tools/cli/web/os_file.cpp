@@ -34,6 +34,8 @@ std::optional<FileIdentity> identity_of(const std::string& path) {
   return identity(info);
 }
 
+bool look_at(const std::string& path, struct stat& info) { return stat(path.c_str(), &info) == 0; }
+
 Descriptor open_to_read(const std::string& path) { return Descriptor(open(path.c_str(), O_RDONLY)); }
 
 Descriptor open_to_write(const std::string& path) { return Descriptor(open(path.c_str(), O_WRONLY)); }

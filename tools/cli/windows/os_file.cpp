@@ -1,4 +1,5 @@
-// MoveFileEx replaces a file in one step, once nobody has the new one open.
+// MoveFileEx replaces a file in one step, once nobody has the new one open. Names are UTF-8, so all files are opened
+// by their wide names.
 #include "tools/cli/os_file.hpp"
 
 #include <fcntl.h>
@@ -41,6 +42,13 @@ bool pipe_is_readable(HANDLE pipe, int milliseconds) {
     if (GetTickCount64() >= end) return false;
   }
 }
+Descriptor open_as(const std::string& path, int how) {
+  return Descriptor(
+      _wopen(std::filesystem::path(path).c_str(), how | O_BINARY | O_NOINHERIT, S_IREAD | S_IWRITE));
+}
+
+// A virus scanner, an indexer or a backup holds a new file for a moment.
+bool is_held(DWORD error) { return error == ERROR_ACCESS_DENIED || error == ERROR_SHARING_VIOLATION; }
 
 }  // namespace
 
@@ -57,31 +65,35 @@ std::optional<FileIdentity> identity_of(const std::string& path) {
   return identity;
 }
 
-Descriptor open_to_read(const std::string& path) {
-  return Descriptor(open(path.c_str(), O_RDONLY | O_BINARY | O_NOINHERIT));
+bool look_at(const std::string& path, struct stat& info) {
+  return _wstat64(std::filesystem::path(path).c_str(), &info) == 0;
 }
 
-Descriptor open_to_write(const std::string& path) {
-  return Descriptor(open(path.c_str(), O_WRONLY | O_BINARY | O_NOINHERIT));
-}
-
-Descriptor open_new(const std::string& path) {
-  return Descriptor(
-      open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_BINARY | O_NOINHERIT, S_IREAD | S_IWRITE));
-}
+Descriptor open_to_read(const std::string& path) { return open_as(path, O_RDONLY); }
+Descriptor open_to_write(const std::string& path) { return open_as(path, O_WRONLY); }
+Descriptor open_new(const std::string& path) { return open_as(path, O_WRONLY | O_CREAT | O_EXCL); }
 
 // A file that somebody has open cannot be removed here, so who removes need not ask.
 void hold(const Descriptor&) {}
 bool is_written(const std::string&, int64_t) { return false; }
 
 bool put_in_place(Descriptor file, const std::string& from, const std::string& to) {
+  constexpr DWORD kPatience_ms = 2000, kPause_ms = 20;  // ours
   if (_commit(file.get()) != 0) return false;
   file = Descriptor();  // closes it
   const std::filesystem::path source(from), target(to);
-  if (MoveFileExW(source.c_str(), target.c_str(), MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH) != 0)
-    return true;
-  errno = GetLastError() == ERROR_ACCESS_DENIED || GetLastError() == ERROR_SHARING_VIOLATION ? EACCES : EIO;
-  return false;
+  for (DWORD waited = 0;; waited += kPause_ms) {
+    if (MoveFileExW(source.c_str(), target.c_str(), MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH) != 0)
+      return true;
+    const DWORD error = GetLastError();
+    const DWORD rights = GetFileAttributesW(target.c_str());
+    const bool may_not = rights != INVALID_FILE_ATTRIBUTES && (rights & FILE_ATTRIBUTE_READONLY) != 0;
+    if (!is_held(error) || may_not || waited >= kPatience_ms) {
+      errno = is_held(error) ? EACCES : EIO;
+      return false;
+    }
+    Sleep(kPause_ms);
+  }
 }
 
 bool readable(int file, int milliseconds) {
@@ -116,7 +128,7 @@ std::optional<std::string> make_folder(const std::string& beginning) {
   return std::nullopt;
 }
 
-bool may_write(const std::string& path) { return access(path.c_str(), W_OK) == 0; }
+bool may_write(const std::string& path) { return _waccess(std::filesystem::path(path).c_str(), W_OK) == 0; }
 
 bool may_make_files_in(const std::string& folder) {
   if (std::filesystem::is_directory(folder)) return true;

@@ -15,6 +15,7 @@ void prepare_streams() {
   for (FILE* stream : {stdin, stdout, stderr}) _setmode(_fileno(stream), _O_BINARY);
   setvbuf(stderr, nullptr, _IONBF, 0);  // a message is there when it is told, also in a file
   SetConsoleOutputCP(CP_UTF8);
+  SetConsoleCP(CP_UTF8);
   for (const DWORD number : {STD_OUTPUT_HANDLE, STD_ERROR_HANDLE}) {
     const HANDLE console = GetStdHandle(number);
     DWORD mode = 0;
