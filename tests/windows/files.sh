@@ -85,8 +85,8 @@ same run "$long/Säge.toml" --for 1s --trace-hash
 for example in scom hoist; do
   cp -r "$source_folder/examples/$example" "$work/$example"
   find "$work/$example" -type f -exec sed -i 's/$/\r/' {} +
-  "$linux" run "$source_folder/examples/$example/$example.toml" --for 1s --trace-hash >"$work/lf"
-  windows run "$work/$example/$example.toml" --for 1s --trace-hash >"$work/crlf" 2>"$work/err" || fail "CR LF: $(cat "$work/err")"
+  "$linux" run "$source_folder/examples/$example/$example.toml" --for 8s --trace-hash >"$work/lf"
+  windows run "$work/$example/$example.toml" --for 8s --trace-hash >"$work/crlf" 2>"$work/err" || fail "CR LF: $(cat "$work/err")"
   holds cmp "$work/lf" "$work/crlf"
   windows test "$work/$example" >/dev/null 2>"$work/err" || fail "CR LF: $(cat "$work/err")"
 done
