@@ -243,6 +243,33 @@ TEST(LspCompletion, ByPlace) {
   for (const char* name : {"goto", "sizeof", "int", "BusType"}) EXPECT_FALSE(has(names, name)) << name;
 }
 
+// _GoAbs takes GO_WAIT or GO_NOWAIT, then a value; _SetTask2 its mode, then a function of the program (system functions of
+// IPOSplus). What else is known stays, behind it.
+TEST(LspCompletion, InsideACallWhatFitsTheArgumentComesFirst) {
+  Client client;
+  client.open(kPath,
+              "#include <constb.h>\nlong lTarget;\nWork() { }\nmain() {\n  _GoAbs( ;\n  _GoAbs(GO_WAIT, ;\n  _SetTask2( ;\n"
+              "  _SetTask2(T2_START, ;\n  _GetSys( ;\n  \n}\n");
+  const auto first = [&](int line, int character, size_t count) {
+    auto names = completions(client, line, character);
+    EXPECT_TRUE(has(names, "lTarget") && has(names, "_Wait") && has(names, "while"));
+    names.resize(std::min(names.size(), count));
+    return names;
+  };
+  EXPECT_EQ(first(4, 10, 2), (std::vector<std::string>{"GO_NOWAIT", "GO_WAIT"}));
+  EXPECT_FALSE(has(first(5, 18, 2), "GO_WAIT"));
+  EXPECT_TRUE(has(first(6, 13, 2), "T2_START"));
+  EXPECT_TRUE(has(first(7, 22, 2), "Work"));
+  EXPECT_TRUE(has(completions(client, 8, 10), "lTarget"));
+  EXPECT_EQ(completions(client, 8, 10).front().find('_'), std::string::npos) << "a variable";
+  for (const int line : {4, 9}) EXPECT_FALSE(has(completions(client, line, 2), "CONSTB_H")) << "a guard of a header";
+  const Json items = client.request("textDocument/completion", Client::at(kPath, 4, 10));
+  EXPECT_EQ(items[0]["sortText"].get<std::string>()[0], '0');
+  EXPECT_EQ(items[2]["sortText"].get<std::string>()[0], '1');
+  const Json help = client.request("textDocument/signatureHelp", Client::at(kPath, 4, 9));
+  EXPECT_EQ(help["signatures"][0]["parameters"][0]["documentation"], "GO_NOWAIT, GO_WAIT");
+}
+
 TEST(LspRename, MacrosTheirUsesAndTheirBodies) {
   Client client;
   client.open(

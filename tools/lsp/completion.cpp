@@ -1,10 +1,15 @@
 // Completion and signature help. The text around the cursor is broken while somebody types, so both read
-// words backwards from the cursor and ask the index only for what the words mean.
+// words backwards from the cursor and ask the index only for what the words mean. Inside a call what fits the argument comes
+// first.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
 #include "stdlib/headers.hpp"
 #include "stdlib/language_tables.hpp"
 #include "tools/lsp/features.hpp"
+#include "vm/isa/isa.hpp"
 
 namespace ipos::tools::lsp {
 namespace {
@@ -80,11 +85,16 @@ Json symbol_item(const Program& program, const IndexedSymbol& symbol) {
   }
 }
 
+// A macro that only keeps a header from being read twice.
+bool is_guard(const IndexedSymbol& symbol) {
+  return symbol.kind == SymbolKind::Macro && symbol.type.empty() && symbol.name.ends_with("_H");
+}
+
 Json names(const Program& program) {
   Json items = Json::array();
   for (const IndexedSymbol& symbol : program.index.symbols)
     if (symbol.container.empty() && symbol.kind != SymbolKind::SystemFunction &&
-        symbol.kind != SymbolKind::Parameter)
+        symbol.kind != SymbolKind::Parameter && !is_guard(symbol))
       items.push_back(symbol_item(program, symbol));
   for (const stdlib::SystemFunction& row : stdlib::system_functions())
     items.push_back(item(std::string(row.name), kFunction, std::string(row.arguments),
@@ -138,6 +148,56 @@ std::optional<OpenCall> open_call(std::string_view text) {
   return std::nullopt;
 }
 
+// Of a system function, as they stand in its row: "keyword", "value", "variable", "function".
+std::vector<std::string_view> argument_kinds(const stdlib::SystemFunction& row) {
+  std::vector<std::string_view> kinds;
+  for (std::string_view rest = row.arguments; !rest.empty();) {
+    kinds.push_back(rest.substr(0, rest.find(' ')));
+    rest.remove_prefix(std::min(kinds.back().size() + 1, rest.size()));
+  }
+  return kinds;
+}
+
+// The constants that its argument may be, where that is a keyword.
+std::vector<std::string> constants_of(const stdlib::SystemFunction& function, size_t argument) {
+  std::vector<std::string> constants;
+  const auto rows = vm::opcode_table();
+  const auto command = std::find_if(rows.begin(), rows.end(), [&](const vm::OpcodeInfo& row) { return row.mnemonic() == function.mnemonic; });
+  if (command == rows.end() || argument >= command->operands.size() || command->operands[argument].keyword_set.empty()) return constants;
+  for (const vm::KeywordInfo& row : vm::keyword_table())
+    if (row.set == command->operands[argument].keyword_set) constants.emplace_back(row.constant);
+  return constants;
+}
+
+// Whether a proposal is what the argument of that kind takes.
+bool fits(const Json& proposal, std::string_view kind, const std::vector<std::string>& constants) {
+  const std::string label = proposal["label"];
+  if (kind == "keyword") return std::find(constants.begin(), constants.end(), label) != constants.end();
+  if (kind == "function") return proposal["kind"] == static_cast<int>(kFunction) && !label.starts_with('_');
+  return kind == "variable" && proposal["kind"] == static_cast<int>(kVariable);
+}
+
+// In front, and sorted there by who sorts by sortText or by label. A constant is proposed though its header is not included.
+Json fitting_first(Json items, std::string_view text) {
+  const auto call = open_call(text);
+  const stdlib::SystemFunction* row = call ? stdlib::find_system_function(call->name) : nullptr;
+  const auto kinds = row != nullptr ? argument_kinds(*row) : std::vector<std::string_view>{};
+  if (!call || call->argument >= kinds.size()) return items;
+  const std::string_view kind = kinds[call->argument];
+  const std::vector<std::string> constants = constants_of(*row, call->argument);
+  auto& all = items.get_ref<Json::array_t&>();
+  for (const std::string& constant : constants)
+    if (std::none_of(all.begin(), all.end(), [&](const Json& one) { return one["label"] == constant; }))
+      all.push_back(item(constant, kConstant, "const.h"));
+  const auto rest = std::stable_partition(all.begin(), all.end(), [&](const Json& one) { return fits(one, kind, constants); });
+  // Constants as the manual has them.
+  const auto place = [&](const Json& one) { return std::find(constants.begin(), constants.end(), one["label"].get<std::string>()); };
+  std::stable_sort(all.begin(), rest, [&](const Json& a, const Json& b) { return place(a) < place(b); });
+  for (auto one = all.begin(); one != all.end(); ++one)
+    (*one)["sortText"] = (one < rest ? "0" : "1") + (*one)["label"].get<std::string>();
+  return items;
+}
+
 }  // namespace
 
 Json completion(Workspace& workspace, const Json& params) {
@@ -175,7 +235,7 @@ Json completion(Workspace& workspace, const Json& params) {
         items.push_back(symbol_item(cursor.program, symbol));
     return items;
   }
-  return names(cursor.program);
+  return fitting_first(names(cursor.program), before);
 }
 
 Json signature_help(Workspace& workspace, const Json& params) {
@@ -187,11 +247,12 @@ Json signature_help(Workspace& workspace, const Json& params) {
   if (row == nullptr) return nullptr;
   std::string label = std::string(row->name) + "(";
   Json parameters = Json::array();
-  for (std::string_view rest = row->arguments; !rest.empty();) {
-    const std::string_view kind = rest.substr(0, rest.find(' '));
-    rest.remove_prefix(std::min(kind.size() + 1, rest.size()));
+  for (const std::string_view kind : argument_kinds(*row)) {
+    const std::vector<std::string> constants = constants_of(*row, parameters.size());
     if (!parameters.empty()) label += ", ";
-    parameters.push_back({{"label", {label.size(), label.size() + kind.size()}}});
+    Json parameter{{"label", {label.size(), label.size() + kind.size()}}};
+    if (!constants.empty()) parameter["documentation"] = fmt::format("{}", fmt::join(constants, ", "));
+    parameters.push_back(std::move(parameter));
     label += kind;
   }
   label += ")";

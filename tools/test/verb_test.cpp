@@ -201,10 +201,10 @@ int run_once(const TestFlags& flags, std::vector<TestCase>& tests) {
   }
   const std::vector<TestResult> results = run_tests(tests, flags, options);
   last_failed.update(tests, results);
-  write_report(flags.junit, junit_report(results));
+  if (!flags.artifacts.empty()) write_artifacts(flags.artifacts, tests, results, flags.suite);
+  write_report(flags.junit, junit_report(results, flags.artifacts));
   write_report(flags.tap, tap_report(results));
   write_report(flags.json, json_report(results));
-  if (!flags.artifacts.empty()) write_artifacts(flags.artifacts, tests, results, flags.suite);
   write_report(flags.html, html_report(results, link_from(flags.html, flags.artifacts)));
   coverage_reports.write(coverage.total());
   return code_of(results);

@@ -19,7 +19,8 @@ std::string durations(const std::vector<TestResult>& results, size_t most);
 // current one.
 std::string github_annotations(const TestResult& result, const std::string& root);
 
-std::string junit_report(const std::vector<TestResult>& results);
+// `artifacts`: the folder of --artifacts, which has been written, or empty.
+std::string junit_report(const std::vector<TestResult>& results, const std::string& artifacts = {});
 std::string tap_report(const std::vector<TestResult>& results);
 std::string json_report(const std::vector<TestResult>& results);
 // `artifacts`: the folder of --artifacts as a link from the report, or empty.

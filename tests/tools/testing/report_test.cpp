@@ -209,6 +209,7 @@ const std::map<std::string, Rule> kJunit = {
     {"failure", {{"type", "message"}, {}, {}}},
     {"error", {{"type", "message"}, {}, {}}},
     {"skipped", {{"type", "message"}, {}, {}}},
+    {"system-out", {{}, {}, {}}},
 };
 
 void check_element(const tinyxml2::XMLElement& element) {
@@ -235,6 +236,23 @@ void check_junit(const std::string& text) {
   ASSERT_EQ(document.Parse(text.c_str(), text.size()), tinyxml2::XML_SUCCESS) << text;
   ASSERT_STREQ(document.RootElement()->Name(), "testsuites");
   check_element(*document.RootElement());
+}
+
+// GitLab and Jenkins show what stands so in the output of a test.
+TEST_F(Forms, JunitNamesTheArtifactsOfWhatFailed) {
+  const std::string folder = (folder_.path() / "left").string();
+  run_ipos({"test", ".", "--junit", "r.xml", "--artifacts", folder}, folder_.path());
+  const std::string text = report("r.xml");
+  check_junit(text);
+  size_t found = 0;
+  for (size_t at = 0; (at = text.find("[[ATTACHMENT|", at)) != std::string::npos; ++found) {
+    at += std::string_view("[[ATTACHMENT|").size();
+    const std::string path = text.substr(at, text.find("]]\n", at) - at);
+    EXPECT_TRUE(path.starts_with(folder + "/") && std::filesystem::is_regular_file(path)) << path;
+  }
+  EXPECT_GE(found, 7U) << text;
+  for (const char* name : {"plot.html]]", "trace.csv]]", "bus.pcapng]]", "report.txt]]"}) EXPECT_TRUE(contains(text, name)) << name;
+  EXPECT_FALSE(contains(report("r.xml"), "good/")) << "what passed has none";
 }
 
 TEST_F(Forms, JunitIsAsJenkinsReadsIt) {

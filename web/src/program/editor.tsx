@@ -51,6 +51,7 @@ function completionOf(uri: string) {
       options: items.map((item) => ({
         label: item.label,
         type: kinds[item.kind] ?? "text",
+        boost: item.sortText?.startsWith("0") ? 50 : 0,
         ...(item.detail ? { detail: item.detail } : {}),
         ...(item.documentation ? { info: prose(item.documentation.value) } : {}),
       })),

@@ -13,6 +13,7 @@ export interface Proposal {
   kind: number;
   detail?: string;
   documentation?: { value: string };
+  sortText?: string; // begins with 0 where it fits the argument
 }
 
 export interface Diagnostic {
