@@ -25,4 +25,4 @@ add_link_options(-static)
 # Names of files are UTF-8 in every program and library.
 add_library(ipos_utf8_letters STATIC ${PROJECT_SOURCE_DIR}/tools/windows/utf8_letters.cpp)
 add_link_options(-Wl,--wrap=mbrtowc -Wl,--undefined=__wrap_mbrtowc)
-link_libraries(ipos_utf8_letters)
+link_libraries($<BUILD_INTERFACE:ipos_utf8_letters>)

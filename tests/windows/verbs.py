@@ -41,7 +41,10 @@ class System:
         return done.returncode, self.plain(done.stdout), self.plain(done.stderr)
 
     def plain(self, text: bytes) -> bytes:
-        return text.replace(str(self.work).encode(), b"{out}")
+        text = text.replace(str(self.work).encode(), b"{out}")
+        # DAP names a file as its system does: Z:\\ is this machine's root under wine. A message's length follows its paths.
+        text = re.sub(rb'"Z:((?:\\\\[^\\"]+)+)"', lambda path: b'"' + path[1].replace(rb"\\", b"/") + b'"', text)
+        return re.sub(rb"Content-Length: \d+", b"Content-Length: N", text)
 
     def files(self) -> dict[str, bytes]:
         return {str(p.relative_to(self.work)): p.read_bytes() for p in sorted(self.work.rglob("*")) if p.is_file()}

@@ -94,12 +94,12 @@ void write_new_files(const std::string& name, const NewFiles& files) {
     throw Failure(kIoError, fmt::format("{}: is no folder", name));
   for (const auto& [path, text] : files)
     if (fs::exists(fs::symlink_status(folder / path, error)))
-      throw Failure(kIoError, fmt::format("{}: is there already; nothing was written", (folder / path).string()));
+      throw Failure(kIoError, fmt::format("{}: is there already; nothing was written", (folder / path).generic_string()));
   for (const auto& [path, text] : files) {
     fs::create_directories((folder / path).parent_path(), error);
     if (error)
-      throw Failure(kIoError, fmt::format("{}: {}", (folder / path).parent_path().string(), error.message()));
-    replace_file((folder / path).string(), text);
+      throw Failure(kIoError, fmt::format("{}: {}", (folder / path).parent_path().generic_string(), error.message()));
+    replace_file((folder / path).generic_string(), text);
   }
 }
 

@@ -84,7 +84,7 @@ void warn_of_far_memories(const PlantInput& input) {
     if (end != folder.end())
       fmt::print(stderr, "ipos: warning: {}:{}:{}: the memory of '{}' is outside of the folder of the plant: {}\n",
                  compiler::printable(input.path), station.nvram_place.line, station.nvram_place.column,
-                 station.name, compiler::printable(memory.string()));
+                 station.name, compiler::printable(memory.generic_string()));
   }
 }
 
