@@ -37,7 +37,10 @@ const other = '#include "common.h"\nlong taken;\nmain() { taken = shared; }\n';
 // A server with a folder of two programs that share a header; `use` gets the connection and helpers.
 async function session(use, options = {}) {
   const folder = mkdtempSync(join(tmpdir(), "ipos-lsp-"));
-  const uri = (name) => pathToFileURL(join(folder, name)).toString();
+  // A server on Windows gets names with a drive, as VS Code writes them.
+  const root = process.env.IPOS_DRIVE ? `file:///${process.env.IPOS_DRIVE}%3A/` : "file:///";
+  const uri = (name) => pathToFileURL(join(folder, name)).toString().replace("file:///", root);
+  const folderUri = uri(".");
   for (const [name, text] of Object.entries({ "common.h": header, "MAIN.IPC": main, "OTHER.IPC": other }))
     writeFileSync(join(folder, name), text);
   const child = spawn(program, ["lsp"], { stdio: ["pipe", "pipe", "inherit"] });
@@ -74,7 +77,7 @@ async function session(use, options = {}) {
     const result = await connection.sendRequest(lsp.InitializeRequest.type, {
       processId: process.pid,
       rootUri: null,
-      workspaceFolders: [{ uri: pathToFileURL(folder).toString(), name: "test" }],
+      workspaceFolders: [{ uri: folderUri, name: "test" }],
       capabilities: {},
       ...options,
     });

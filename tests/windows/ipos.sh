@@ -5,4 +5,6 @@ export WINEDEBUG=-all WINEDLLOVERRIDES='mscoree,mshtml='
 unset DISPLAY
 # Where tests want the state of a user it is there, too.
 [ -z "${XDG_STATE_HOME:-}" ] || export XDG_STATE_HOME=Z:${XDG_STATE_HOME//\//\\}
+# Servers of editors look into the pipe of their input.
+case ${1:-} in dap | lsp) exec wine "$(dirname "$IPOS_EXE")/pipes.exe" "Z:${IPOS_EXE//\//\\}" "$@" ;; esac
 exec wine "$IPOS_EXE" "$@"

@@ -16,8 +16,10 @@ namespace fs = std::filesystem;
 // Editors send whole paths, people type names: either matches the path the compiler was given.
 bool same_file(std::string_view known, std::string_view asked) {
   if (known == asked) return true;
-  if (asked.find('/') == std::string_view::npos) return fs::path(known).filename() == asked;
+  if (!fs::path(asked).has_parent_path()) return fs::path(known).filename() == asked;
   std::error_code error;
+  // Editors on Windows write drives in small letters, and names there have no case.
+  if (fs::equivalent(fs::path(known), fs::path(asked), error)) return true;
   const auto whole = [&error](std::string_view path) {
     return fs::weakly_canonical(fs::absolute(path, error), error);
   };

@@ -40,9 +40,9 @@ void find_files(const std::string& folder, std::vector<std::string>& programs,
     if (at->is_directory(ignored) && (name.starts_with('.') || name == "node_modules" || name == "build"))
       at.disable_recursion_pending();
     else if (is_program(name) && at->is_regular_file(ignored))
-      programs.push_back(at->path().string());
+      programs.push_back(at->path().generic_string());
     else if (name.ends_with(".toml") && at->is_regular_file(ignored))
-      tomls.push_back(at->path().string());
+      tomls.push_back(at->path().generic_string());
   }
 }
 

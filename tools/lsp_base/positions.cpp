@@ -74,6 +74,8 @@ std::string uri_of(std::string_view path) {
                        std::string_view("-_.~/").find(c) != std::string_view::npos;
     if (plain) {
       uri += c;
+    } else if (drive && c == '\\') {
+      uri += '/';
     } else {
       constexpr std::string_view kDigits = "0123456789ABCDEF";
       uri += '%';
@@ -87,7 +89,7 @@ std::string uri_of(std::string_view path) {
 std::string tidy(const std::string& path) {
   const size_t scheme = path.find("://");
   const size_t root = scheme == std::string::npos ? 0 : std::min(path.find('/', scheme + 3), path.size());
-  return path.substr(0, root) + std::filesystem::path(path.substr(root)).lexically_normal().string();
+  return path.substr(0, root) + std::filesystem::path(path.substr(root)).lexically_normal().generic_string();
 }
 
 uint32_t offset_of(std::string_view text, const Json& position, Encoding encoding) {
