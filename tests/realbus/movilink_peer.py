@@ -1,6 +1,7 @@
 """movilink_peer.py IPOS PLANT PATH: a MOVILINK master on RS-485 that knows nothing of ipos, with python3-serial over the
 pseudo-terminal PATH of a running plant (movilink.toml). Telegrams by 1053 1610 p. 18-34: SD1 02 / SD2 1D, address, type,
 PDU, exclusive-or; parameters p. 71-83, return codes p. 46, status word p. 41."""
+import os
 import subprocess
 import sys
 import time
@@ -12,6 +13,10 @@ from checks import check
 CHARACTER = 11 / 9600
 READ, WRITE, WRITE_VOLATILE, MINIMUM, MAXIMUM, DEFAULT = 1, 2, 3, 4, 5, 6
 P000, P094, P130, P812 = 8318, 8455, 8470, 8599
+
+
+# Behind the last character; a host that is late has its answer on the simulated line for longer.
+PAUSE = float(os.environ.get("IPOS_PAUSE", "0.004"))
 
 
 def checksum(data):
@@ -26,7 +31,7 @@ class Master:
         self.line = serial.Serial(path, baudrate=9600, bytesize=8, parity=serial.PARITY_EVEN, stopbits=1, timeout=0.3)
         self.quiet = 0.0
 
-    def send(self, address, kind, pdu, pause=0.004):
+    def send(self, address, kind, pdu, pause=PAUSE):
         """At least `pause` after the last character; then the time a wire would need."""
         time.sleep(max(0.0, self.quiet + pause - time.monotonic()))
         data = bytes([0x02, address, kind]) + pdu

@@ -115,18 +115,18 @@ WRAPPER
 chmod +x "$work/ipos"
 # A master says what it has checked: no FAIL, and "end" (tests/realbus/checks.py). A program of Windows knows
 # no signals: it is ended without a word, and so without the report that says how late it was.
-# A busy machine tears telegrams, and a group telegram is said once: so a master has three tries.
+# That is one FAIL of each, which does not count, as is what is said of a pseudo-terminal.
+no_parity="says nothing of an error: ['ipos: warning: COM3: the device has no parity: neither sends it nor sees its errors'] instead"
 master() {
-  for _ in 1 2 3; do
-    (cd tests/realbus && timeout 300 /usr/bin/python3 -B "$@") >"$work/out" 2>&1 || continue
-    grep '^FAIL' "$work/out" | grep -qvE 'ended by the signal|every restart has its reason' && continue
-    grep -q '^end' "$work/out" || continue
-    checks=$((checks + $(grep -c '^ok' "$work/out")))
-    return 0
-  done
-  fail "$1: $(cat "$work/out")"
+  (cd tests/realbus && timeout 300 /usr/bin/python3 -B "$@") >"$work/out" 2>&1 || true
+  ! grep '^FAIL' "$work/out" | grep -vF "$no_parity" | grep -qvE 'ended by the signal|every restart has its reason' || fail "$1: $(cat "$work/out")"
+  grep -q '^end' "$work/out" || fail "$1: $(cat "$work/out")"
+  checks=$((checks + $(grep -c '^ok' "$work/out")))
 }
 checks=0
+# Under wine the run is up to 12 ms late, and a pseudo-terminal has no wire time: an answer that the master has heard is still on
+# the simulated line.
+export IPOS_PAUSE=0.03
 sed 's|kind = "rs485"|&\nport = "COM12"|' tests/realbus/movilink.toml >"$work/movilink.toml"
 sed 's|kind = "profibus"|&\nport = "COM3"|' tests/realbus/profibus_plant.toml >"$work/dp.toml"
 /usr/bin/python3 -c 'import serial' 2>/dev/null && master movilink_peer.py "$work/ipos" "$work/movilink.toml" "$work/two"
