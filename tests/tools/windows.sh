@@ -2,31 +2,8 @@
 # The program for Windows under wine does what the one for Linux does: the same outputs of the same examples, images equal
 # to the byte, and a drive at a serial port. `./dev windows` builds it; ctest only tries what is built.
 # usage: windows.sh IPOS.EXE IPOS      (IPOS: the program for Linux)
-set -euo pipefail
-skip() { echo "skipped: $*"; exit 77; }
-[ -f "$1" ] || skip "there is no $1: ./dev windows builds it"
-command -v wine >/dev/null || skip "wine is not installed"
-exe=$(realpath "$1") linux=$(realpath "$2")
-cd "$(dirname "$0")/../.."
-work=$(mktemp -d)
-export LC_ALL=C.UTF-8 WINEDEBUG=-all WINEDLLOVERRIDES='mscoree,mshtml=' WINEPREFIX=$(dirname "$exe")/wine
-mkdir -p "$WINEPREFIX"
-drive=
-trap 'kill $drive 2>/dev/null || true; wineserver -k 2>/dev/null || true; rm -rf "$work"' EXIT
-wine cmd /c exit >/dev/null 2>&1 || skip "wine does not start"
-
-count=0
-fail() { echo "failed: $*" >&2; exit 1; }
-windows() { wine "$exe" "$@"; }
-# Both give the same exit code, and the same on standard output.
-same() {
-  local code=0 windows_code=0
-  "$linux" "$@" >"$work/linux" 2>"$work/linux.err" || code=$?
-  windows "$@" >"$work/windows" 2>"$work/windows.err" || windows_code=$?
-  [ $code = $windows_code ] || fail "$*: exit code $windows_code in place of $code: $(cat "$work/windows.err")"
-  cmp -s "$work/linux" "$work/windows" || { diff "$work/linux" "$work/windows" | head -20; fail "$*"; }
-  count=$((count + 1))
-}
+source "$(dirname "$0")/../windows/both.sh"
+cd "$source_folder"
 
 # The demo, text for text, and where two runs are equal to the last event.
 same run examples/scom/scom.toml --for 1s --watch
@@ -70,7 +47,7 @@ done
 printf '[[bus]]\nname = "line"\nkind = "rs485"\nport = "pty:%s"\n[[station]]\nname = "saw"\nunit = "md60a"\nrs485 = "line"\n[station.parameters]\nP810 = 1\n' \
   "$work/tty" >"$work/port.toml"
 "$linux" run "$work/port.toml" --realtime --for 600s >"$work/port.out" 2>&1 &
-drive=$!
+started=$!
 for _ in $(seq 100); do [ -e "$work/tty" ] && break; sleep 0.1; done
 [ -e "$work/tty" ] || fail "the drive does not come: $(cat "$work/port.out")"
 wine reg add 'HKLM\Software\Wine\Ports' /v COM7 /d "$work/tty" /f >/dev/null
@@ -80,9 +57,9 @@ windows param get --port COM7 --address 1 P130 >"$work/out" 2>"$work/err" || fai
 grep -q 'P130' "$work/out" || fail "serial: $(cat "$work/out")"
 windows param set --port COM7 --address 1 P130=3s --volatile >"$work/out" 2>"$work/err" || fail "serial: $(cat "$work/err")"
 windows param get --port COM7 --address 1 P130 2>/dev/null | grep -q '3.000' || fail "serial: P130 was not set"
-kill $drive
-wait $drive 2>/dev/null || true
-drive=
+kill $started
+wait $started 2>/dev/null || true
+started=
 windows param get --port COM33 --address 1 P130 >"$work/out" 2>&1 && fail "a port that is not there"
 grep -q 'COM33: there is no such device' "$work/out" || fail "COM33: $(cat "$work/out")"
 windows param get --port can0 --address 1 P130 >"$work/out" 2>&1 && fail "SocketCAN"

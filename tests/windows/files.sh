@@ -3,30 +3,9 @@
 # replaced; the memory of a unit when the program is killed. Names are looked at from Linux, where a letter taken for two
 # would be seen.
 # usage: files.sh IPOS.EXE IPOS      (IPOS: the program for Linux)
-set -euo pipefail
-skip() { echo "skipped: $*"; exit 77; }
-[ -f "$1" ] || skip "there is no $1: ./dev windows builds it"
-command -v wine >/dev/null || skip "wine is not installed"
+source "$(dirname "$0")/both.sh"
 command -v x86_64-w64-mingw32-gcc >/dev/null || skip "the cross compiler is not installed"
-exe=$(realpath "$1") linux=$(realpath "$2")
-source_folder=$(realpath "$(dirname "$0")/../..")
-work=$(mktemp -d)
-export LC_ALL=C.UTF-8 WINEDEBUG=-all WINEDLLOVERRIDES='mscoree,mshtml=' WINEPREFIX=$work/prefix
-mkdir -p "$WINEPREFIX"
-trap 'wineserver -k 2>/dev/null || true; rm -rf "$work"' EXIT
-wine cmd /c exit >/dev/null 2>&1 || skip "wine does not start"
-count=0
-fail() { echo "failed: $*" >&2; exit 1; }
 holds() { count=$((count + 1)); "$@" || fail "$*"; }
-windows() { wine "$exe" "$@"; }
-same() {  # exit code and standard output as on Linux
-  local code=0 windows_code=0
-  "$linux" "$@" >"$work/linux.out" 2>"$work/linux.err" || code=$?
-  windows "$@" >"$work/windows.out" 2>"$work/windows.err" || windows_code=$?
-  [ $code = $windows_code ] || fail "$*: exit code $windows_code in place of $code: $(cat "$work/windows.err")"
-  cmp -s "$work/linux.out" "$work/windows.out" || { diff "$work/linux.out" "$work/windows.out" | head -20; fail "$*"; }
-  count=$((count + 1))
-}
 
 # Names: two bytes, three bytes, and beyond 16 bits.
 folder="$work/Größe Ω漢 𝄞"
