@@ -132,6 +132,17 @@ std::optional<Signal> find_of_gateway(const Gateway& gateway, const runtime::Sig
   return found;
 }
 
+// The first look is here: from then on a line keeps its telegrams.
+std::optional<Signal> find_of_line(const PlantParts& plant, const runtime::Signal& named, std::string& why) {
+  const auto found = find_signals(plant, fmt::format("{}.{}", named.station, named.name));
+  if (found && found->size() == 1) {
+    found->front().read();
+    return found->front();
+  }
+  why = fmt::format("line '{}' has no signal '{}'; it has load, count and its telegrams as 013.PO2", named.station, named.name);
+  return std::nullopt;
+}
+
 std::optional<Signal> find_of_station(Station& station, const runtime::Signal& named, std::string& why) {
   if (named.kind == SignalKind::Any) {
     auto found = find_station_signals(station, named.name);
@@ -154,6 +165,7 @@ std::optional<Signal> find_signal(const PlantParts& plant, const runtime::Signal
   if (const Gateway* gateway = plant.find_gateway(named.station)) return find_of_gateway(*gateway, named, why);
   for (const auto& station : plant.stations())
     if (station->config().name == named.station) return find_of_station(*station, named, why);
+  if (plant.find_bus(named.station) != nullptr) return find_of_line(plant, named, why);
   return std::nullopt;
 }
 

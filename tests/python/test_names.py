@@ -266,8 +266,7 @@ def groups_of_trace(folder):
 
 
 def groups_of_watch(folder):
-    names = [name for name in GROUP_ROWS if not name.startswith(LINES)]  # a line keeps telegrams from its first look on
-    text = run(folder, "run", "p.toml", "--for", "2s", "--watch=" + ",".join(names))
+    text = run(folder, "run", "p.toml", "--for", "2s", "--watch=" + ",".join(GROUP_ROWS))
     values, station = {}, ""
     for line in text.splitlines():
         if head := re.match(r"(\S+) \(", line):
@@ -276,18 +275,18 @@ def groups_of_watch(folder):
             station = ""
         elif row := re.match(r"(?:H\d+)?\s+(\S+)\s+(-?[0-9.]+)", line):
             values[station + row[1]] = float(row[2])
-    return {name: values[name] for name in names}
+    return {name: values[name] for name in GROUP_ROWS}
 
 
 def groups_of_expectation(folder):
-    names = [name for name in GROUP_ROWS if not name.startswith(LINES)]
-    split = [name.split(".", 1) for name in names]
+    split = [name.split(".", 1) for name in GROUP_ROWS]
+    owner = {name: "bus" if name.startswith(LINES) else "station" for name in GROUP_ROWS}
     (folder / "n.test.toml").write_text('plant = "p.toml"\n' + "".join(
-        f'[[expect]]\nat = "2s"\nstation = "{station}"\nsignal = "{name}"\nequals = 123456\n' for station, name in split))
+        f'[[expect]]\nat = "2s"\n{owner[f"{of}.{name}"]} = "{of}"\nsignal = "{name}"\nequals = 123456\n' for of, name in split))
     out = run(folder, "test", "n.test.toml")
     values = {f"{station}.{name}": float(value)
               for name, station, value in re.findall(r": (\S+) of (\S+) is (-?\d+) at ", out)}
-    return {name: values[name] for name in names}
+    return {name: values[name] for name in GROUP_ROWS}
 
 
 def groups_of_debugger(folder):

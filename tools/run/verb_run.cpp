@@ -286,6 +286,9 @@ int run(const RunFlags& flags) {
   std::optional<runtime::TraceHash> trace_hash;
   if (!flags.trace_hash.empty()) trace_hash.emplace(plant, hash_step(flags.trace_hash));
 
+  const WatchChoice watch = watch_choice(flags.watch);
+  watch_rows(plant, watch.names);  // a line keeps its telegrams from the first look on
+
   catch_interrupts();
   std::optional<RealTimeRun> real_time;
   if (flags.realtime) real_time.emplace(plant, flags.file);
@@ -315,7 +318,6 @@ int run(const RunFlags& flags) {
                                                  std::filesystem::path(flags.file).filename().string()));
   trace.finish();
 
-  const WatchChoice watch = watch_choice(flags.watch);
   for (const std::string& name : watch.names)
     if (std::none_of(plant.stations().begin(), plant.stations().end(),
                      [&](const auto& station) { return !watch_rows(*station, {name}).empty(); }) &&

@@ -32,9 +32,16 @@ std::optional<Subject> read_event(PlantReader& reader, const toml::table& table,
 std::optional<Subject> read_subject(PlantReader& reader, const toml::table& table) {
   for (const char* key : {"frame", "telegram"})
     if (table.contains(key)) return read_event(reader, table, key);
-  if (table.contains("bus")) return read_event(reader, table, nullptr);
+  const bool of_line = table.contains("bus");
+  if (of_line && !table.contains("signal")) return read_event(reader, table, nullptr);
   Subject subject;
-  subject.signal.station = read_item_station(reader, table, kExpect, table.contains("signal"));
+  if (of_line) {
+    const runtime::BusConfig* bus = read_item_bus(reader, table, kExpect);
+    if (bus == nullptr) return std::nullopt;
+    subject.signal.station = bus->name;
+  } else {
+    subject.signal.station = read_item_station(reader, table, kExpect, table.contains("signal"));
+  }
   if (const toml::node* node = table.get("process_data")) {
     const auto word = read_word(reader, *node, true);
     if (!word) return std::nullopt;
