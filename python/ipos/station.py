@@ -188,6 +188,25 @@ class Words(_Signals):
     what = "process words"
 
 
+class Shaft(_Signals):
+    """station.shaft["load_torque"] = "3.5 Nm"; a number counts in the unit it has, Nm, or rpm of "shaft_speed", which can
+    be written where [station.load] says driven = true."""
+
+    kind = lib.SHAFT
+    what = "values of the shaft"
+
+    def _read(self, signal: int, name: str) -> float:
+        return self._station._read(signal) * self._station._scale(signal).factor
+
+    def _write(self, how: str, name: str, value: object) -> None:
+        signal = self._station._find(self.kind, name)
+        if isinstance(value, str):
+            return self._station._write_text(how, signal, value)
+        if not isinstance(value, (int, float)) or isinstance(value, bool):
+            raise TypeError(f"{name} takes a text with unit such as '3.5 Nm', or a number, not {type(value).__name__}")
+        self._station._write(how, signal, _whole_number(round(value / self._station._scale(signal).factor)))
+
+
 class Station(lib.Named):
     """plant["saw"]. Variables by name: saw["lCount"], saw["TrCycl.Result"], saw["H430"]; saw["lCount"] = 5."""
 
@@ -204,6 +223,7 @@ class Station(lib.Named):
         self.outputs = Outputs(self)
         self.analog = Analog(self)
         self.words = Words(self)
+        self.shaft = Shaft(self)
 
     def __repr__(self) -> str:
         if self._plant._closed:

@@ -2,7 +2,9 @@
 #include "runtime/drive/drive.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <numbers>
 
 #include "runtime/drive/error_memory.hpp"
 #include "runtime/drive/indices.hpp"
@@ -162,6 +164,35 @@ void Drive::set_position(int32_t counter) {
 
 int32_t Drive::shaft_position() const {
   return static_cast<int32_t>(static_cast<uint32_t>(state_.axis.position()) - state_.counter_shift);
+}
+
+// --- the shaft ---
+
+void Drive::set_load_torque(int32_t torque) {
+  if (torque == state_.load_torque) return;
+  steady_left_ = 0;
+  state_.load_torque = torque;
+  order_load(order_);
+}
+
+void Drive::set_shaft_speed(int32_t speed) {
+  if (speed == state_.shaft_speed) return;
+  steady_left_ = 0;
+  state_.shaft_speed = speed;
+  order_load(order_);
+}
+
+void Drive::order_load(AxisOrder& order) const {
+  constexpr double kNewtonMetre = 1e-4, kShare = 100'000;
+  const double share = state_.load_torque * kNewtonMetre / rated_torque(state_.axis.machine()) * kShare;
+  order.load_torque = static_cast<int32_t>(std::lround(std::clamp<double>(share, -kTopTorque, kTopTorque)));
+  order.shaft_speed = state_.shaft_speed;
+}
+
+// The count of increments and what it has of the next one; like them it wraps after 2^31 increments.
+int64_t Drive::shaft_angle() const {
+  const double increments = shaft_position() + state_.axis.part_of_increment();
+  return std::llround(increments * (2 * std::numbers::pi / 4096 * 1e6));
 }
 
 // --- faults ---

@@ -46,6 +46,12 @@ class Drive final : private DriveLink {
   uint16_t inputs() const { return now_->inputs; }
   void set_analog(const AnalogInputs& analog) { now_.set(&Situation::analog, analog); }
   const AnalogInputs& analog() const { return now_->analog; }
+  // From what the motor drives: a torque that acts on the shaft beside that of the machine data, 1/10000 Nm, positive
+  // pulls counter-clockwise; and the speed of a shaft that is driven from outside, 1/1000 rpm.
+  void set_load_torque(int32_t torque);
+  int32_t load_torque() const { return state_.load_torque; }
+  void set_shaft_speed(int32_t speed);
+  bool is_driven() const { return state_.axis.machine().driven; }
 
   // PO words of a telegram; words it does not carry keep their value. They show in P094..P096 in any case and
   // act only if P876 is ON and the source is the one of P100 or P101. `cyclic` is false for acyclic RS-485
@@ -144,6 +150,7 @@ class Drive final : private DriveLink {
   // Of axis(), for who looks every millisecond.
   int32_t position() const { return state_.axis.position(); }
   int32_t speed() const { return state_.axis.speed(); }
+  int64_t shaft_angle() const;  // turned ever, 1/1000000 rad
   int32_t axis_setpoint() const { return state_.axis.setpoint(); }
   AxisPhase axis_phase() const { return state_.axis.phase(); }
   bool output_stage() const { return state_.axis.output_stage(); }
@@ -247,6 +254,7 @@ class Drive final : private DriveLink {
   OutputInputs shown() const;
   void show_anew();
 
+  void order_load(AxisOrder& order) const;
   void order_scope(bool start);
   void record();
   std::optional<int32_t> scope_value(uint16_t index) const;
@@ -336,6 +344,8 @@ class Drive final : private DriveLink {
     Setpoint setpoint;
 
     Axis axis;
+    int32_t load_torque = 0;  // as it was set; order_ has its share of the rated torque
+    int32_t shaft_speed = 0;
     Outputs outputs;
     uint32_t factory_setting_ms = 0;
     uint32_t up_ms = 0;  // since power-on, up to the end of the start-up

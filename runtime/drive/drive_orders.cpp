@@ -53,6 +53,7 @@ AxisOrder Drive::axis_order(Command command) const {
   const auto ms = [](int32_t time) { return static_cast<uint32_t>(std::max(time, 0)); };
 
   AxisOrder order;
+  order_load(order);
   order.ramp = {ms(p.ramp_up_cw), ms(p.ramp_down_cw), ms(p.ramp_up_ccw), ms(p.ramp_down_ccw), 0};
   const bool second_ramp = function_on(decisions_.terminals, InputFunction::RampSwitch) ||
                            (traits_.has(Trait::RampSets) && (control.control_word.value_or(0) & control_bits::kRampSet) != 0);

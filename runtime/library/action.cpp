@@ -105,7 +105,7 @@ tl::expected<SavedState, std::string> from_bytes(std::span<const uint8_t> bytes)
   for (uint64_t n = 0; n < count && !in.failed(); ++n) {
     saved.actions.push_back(read_deed(in));
     const Action& action = saved.actions.back();
-    if (action.at < last || action.at > saved.time || action.act > kLastAct || action.signal.kind > Kind::Word)
+    if (action.at < last || action.at > saved.time || action.act > kLastAct || action.signal.kind == Kind::Signal || action.signal.kind > kLastKind)
       return tl::unexpected(std::string("the saved state is damaged: what was done makes no sense"));
     last = action.at;
   }

@@ -49,7 +49,7 @@ ipos_plant_status act(ipos_plant* plant, uint32_t number, Act what, const char* 
   });
 }
 
-bool is_kind(ipos_plant_kind kind) { return kind >= IPOS_PLANT_ANY && kind <= IPOS_PLANT_SIGNAL; }
+bool is_kind(ipos_plant_kind kind) { return kind >= IPOS_PLANT_ANY && kind <= IPOS_PLANT_SHAFT; }
 
 ipos_plant_status no_station(ipos_plant* plant, uint32_t station) {
   return plant->fail(IPOS_PLANT_NO_STATION, fmt::format("there is no station number {}", station));

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "runtime/signals/gateways.hpp"
@@ -29,14 +30,19 @@ constexpr KindRow kKinds[] = {{"signal", {}},
                               {"analog input", Group::Analog},
                               {"state", Group::State},
                               {"process word", Group::ProcessData},
-                              {"signal", {}}};
+                              {"signal", {}},
+                              {"value of the shaft", Group::Drive}};
+constexpr std::string_view kShaft[] = {"load_torque", "shaft_speed"};
 constexpr Kind kNamed[] = {Kind::Variable, Kind::Parameter, Kind::Input, Kind::Output,
-                           Kind::Analog,   Kind::State,     Kind::Word,  Kind::Signal};
+                           Kind::Analog,   Kind::State,     Kind::Word,  Kind::Shaft, Kind::Signal};
 
 const KindRow& row_of(Kind kind) { return kKinds[static_cast<size_t>(kind)]; }
 
-// The words are those of the bus.
-bool belongs(Kind kind, const Signal& signal) { return kind != Kind::Word || signal.number != UINT32_MAX; }
+// The words are those of the bus; of the drive's values it is what acts on the shaft.
+bool belongs(Kind kind, const Signal& signal) {
+  if (kind == Kind::Shaft) return std::find(std::begin(kShaft), std::end(kShaft), signal.own_name()) != std::end(kShaft);
+  return kind != Kind::Word || signal.number != UINT32_MAX;
+}
 
 // An analog input is one terminal here.
 std::string_view name_in(Kind kind, const Signal& signal) {

@@ -19,7 +19,8 @@ using runtime::Station;
 using signals::Refusal;
 
 // As ipos_plant_kind.
-enum class Kind : uint8_t { Any, Variable, Parameter, Input, Output, Analog, State, Word, Signal };
+enum class Kind : uint8_t { Any, Variable, Parameter, Input, Output, Analog, State, Word, Signal, Shaft };
+inline constexpr Kind kLastKind = Kind::Shaft;
 
 // Which signal: plain numbers, so that a record of what was done can hold it.
 struct SignalId {

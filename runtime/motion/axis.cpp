@@ -1,6 +1,8 @@
 // The tick: sequence, setpoint, shaft, position, power section.
 #include "runtime/motion/axis.hpp"
 
+#include <algorithm>
+#include <cstdlib>
 #include <utility>
 
 namespace ipos::runtime {
@@ -10,6 +12,9 @@ namespace {
 // speed the fraction is 8 / 234375.
 constexpr int64_t kIncrementShare = 8;
 constexpr int64_t kIncrement = 234'375 * kFine;
+
+// A shaft that something outside turns is never quite at 0: the brake may fall in below this (ours).
+constexpr FineSpeed kNearlyStanding = 1'000 * kFine;
 
 FineSpeed target_of(const AxisOrder& order) {
   const bool moves = order.command == AxisCommand::Run || order.command == AxisCommand::Follow;
@@ -26,6 +31,8 @@ void Axis::set_position(int32_t position) {
   state_.position = position;
 }
 
+double Axis::part_of_increment() const { return static_cast<double>(position_rest_) / static_cast<double>(kIncrement); }
+
 // The motor is magnetized and follows the setpoint.
 inline bool Axis::has_torque(AxisPhase phase) {
   return phase == AxisPhase::Releasing || phase == AxisPhase::Moving || phase == AxisPhase::Applying;
@@ -41,7 +48,7 @@ inline void Axis::advance_sequence(const AxisOrder& order) {
   switch (order.command) {
     case AxisCommand::Inhibit: return sequence_.inhibit();
     case AxisCommand::Stop: {
-      const bool standing = speed_ == 0 && ramp_.output() == 0;
+      const bool standing = std::abs(speed_) <= (machine_.driven ? kNearlyStanding : 0) && ramp_.output() == 0;
       return sequence_.stop(times, standing, order.standstill_current > 0);
     }
     case AxisCommand::HoldZero:
@@ -69,12 +76,18 @@ inline Resistance Axis::resistance(const AxisOrder& order, bool brake_acts) cons
           machine_.friction + (brake_acts ? machine_.brake_torque : 0)};
 }
 
+inline Motion Axis::drive_to(FineSpeed setpoint, const AxisOrder& order, bool brake_acts) {
+  const int64_t torque_limit = power_.torque_limit(order.current_limit);
+  if (machine_.driven) return shaft_.controlled(fine_speed(order.shaft_speed), setpoint, torque_limit);
+  return shaft_.driven(speed_, setpoint, torque_limit, resistance(order, brake_acts));
+}
+
 inline Motion Axis::advance_shaft(const AxisOrder& order) {
-  const Resistance resistance =
-      this->resistance(order, machine_.brake && order.brake_function && !brake_open());
-  if (has_torque(sequence_.phase()))
-    return shaft_.driven(speed_, ramp_.output(), power_.torque_limit(order.current_limit), resistance);
-  return {shaft_.free(speed_, 0, resistance), 0, false};
+  const bool brake_acts = machine_.brake && order.brake_function && !brake_open();
+  if (has_torque(sequence_.phase())) return drive_to(ramp_.output(), order, brake_acts);
+  if (!machine_.driven) return {shaft_.free(speed_, 0, resistance(order, brake_acts)), 0, false};
+  shaft_.forget_control();
+  return {fine_speed(order.shaft_speed), 0, false};
 }
 
 inline void Axis::count_position(int64_t way) {
@@ -137,17 +150,25 @@ void Axis::go_through(const AxisOrder& order) {
 void Axis::go_directly(const AxisOrder& order) {
   if (order.command == AxisCommand::Torque) return turn(order);
   ramp_.set(fine_speed(order.target));
-  const int64_t torque_limit = power_.torque_limit(order.current_limit);
-  move(order, Supply::Driving, shaft_.driven(speed_, ramp_.output(), torque_limit, resistance(order, false)));
+  move(order, Supply::Driving, drive_to(ramp_.output(), order, false));
   state_.ramping = false;
   state_.setpoint = whole_speed(ramp_.output());
 }
 
 // A stop begins from the speed that there is.
 void Axis::turn(const AxisOrder& order) {
-  move(order, Supply::Driving,
-       shaft_.turned(speed_, power_.torque_of(order.current), fine_speed(order.speed_limit),
-                     power_.torque_limit(order.current_limit), resistance(order, false)));
+  const int64_t torque = power_.torque_of(order.current);
+  const int64_t torque_limit = power_.torque_limit(order.current_limit);
+  const FineSpeed most = std::max<FineSpeed>(fine_speed(order.speed_limit), 0);
+  const FineSpeed speed = fine_speed(order.shaft_speed);
+  if (!machine_.driven) {
+    move(order, Supply::Driving, shaft_.turned(speed_, torque, most, torque_limit, resistance(order, false)));
+  } else if (-most <= speed && speed <= most) {
+    shaft_.forget_control();
+    move(order, Supply::Driving, {speed, std::clamp(torque, -torque_limit, torque_limit), false});
+  } else {
+    move(order, Supply::Driving, drive_to(speed > 0 ? most : -most, order, false));
+  }
   ramp_.set(speed_);
   state_.ramping = false;
   state_.setpoint = state_.speed;

@@ -33,6 +33,7 @@ struct AxisOrder {
   uint32_t stop_ramp_ms = 0;        // of Stop and HoldZero, always linear
   int32_t current_limit = 150'000;  // P303
   int32_t load_torque = 0;          // added to MachineData::load_torque
+  int32_t shaft_speed = 0;          // of a shaft that is driven from outside, 1/1000 rpm
   int32_t standstill_current = 0;   // P710; 0: the output stage goes off at standstill
 
   bool brake_function = true;     // P730; without it the brake times are 0 and no brake acts
@@ -123,6 +124,7 @@ class Axis : private AxisParts {
   // Of state(), for who looks every millisecond: what warms and counts is computed when somebody asks for it.
   AxisPhase phase() const { return state_.phase; }
   int32_t position() const { return state_.position; }
+  double part_of_increment() const;  // beyond position(), below 1
   int32_t speed() const { return state_.speed; }
   bool standing() const { return state_.standing; }
   bool output_stage() const { return state_.output_stage; }
@@ -148,6 +150,7 @@ class Axis : private AxisParts {
   void advance_sequence(const AxisOrder& order);
   void advance_setpoint(const AxisOrder& order);
   Motion advance_shaft(const AxisOrder& order);
+  Motion drive_to(FineSpeed setpoint, const AxisOrder& order, bool brake_acts);
   Resistance resistance(const AxisOrder& order, bool brake_acts) const;
   void move(const AxisOrder& order, Supply supply, const Motion& motion);
   void count_position(int64_t way);

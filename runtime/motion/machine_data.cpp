@@ -2,6 +2,7 @@
 #include "runtime/motion/machine_data.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 #include "runtime/motion/fine_speed.hpp"
 
@@ -32,6 +33,11 @@ MachineData within_limits(MachineData m) {
   limit(m.heat_sink_rise, 0, 200);
   limit(m.heat_sink_time_ms, 1, 10'000'000);
   return m;
+}
+
+double rated_torque(const MachineData& machine) {
+  const double rpm = std::max(1, machine.rated_speed - machine.rated_slip) / 1000.0;
+  return machine.rated_power / (2 * std::numbers::pi * rpm / 60);
 }
 
 }  // namespace ipos::runtime

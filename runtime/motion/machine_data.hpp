@@ -27,6 +27,7 @@ struct MachineData {
   int32_t inertia = 400;  // of the load, % of the rotor's
   int32_t friction = 5'000;
   int32_t load_torque = 0;
+  bool driven = false;  // its speed is given from outside, and friction, torque and brake are there, too
 
   bool brake = true;  // a mechanical one is fitted
   int32_t brake_torque = 200'000;
@@ -46,6 +47,9 @@ struct MachineData {
 inline constexpr int32_t kTopTorque = 4'000'000;   // 40 x rated
 inline constexpr int32_t kTopCurrent = 1'000'000;  // 10 x IN
 inline constexpr int32_t kTopDcLink = 1'000'000;   // mV
+
+// Nm, at rated speed less slip: what 100 % torque is.
+double rated_torque(const MachineData& machine);
 
 // Every figure brought to where the model computes without overflow and without division by 0.
 MachineData within_limits(MachineData machine);

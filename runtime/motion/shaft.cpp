@@ -5,6 +5,13 @@
 #include <cstdlib>
 
 namespace ipos::runtime {
+namespace {
+
+// Of a shaft that is driven from outside (ours): the inertia told reaches the setpoint with this time constant, which
+// leaves a quarter of the gain at which a delay of a millisecond would oscillate; and the time of the integral part.
+constexpr int64_t kReachMs = 4, kHoldMs = 16;
+
+}  // namespace
 
 Shaft::Shaft(const MachineData& machine) {
   // Rated torque (100000) brings the shaft to rated speed within rotor x factor / 100 ms.
@@ -29,6 +36,14 @@ Motion Shaft::turned(FineSpeed speed, int64_t torque, FineSpeed speed_limit, int
   const FineSpeed most = std::max<FineSpeed>(speed_limit, 0);
   if (-most <= next && next <= most) return {next, given, false};
   return driven(speed, next > 0 ? most : -most, torque_limit, resistance);
+}
+
+Motion Shaft::controlled(FineSpeed speed, FineSpeed setpoint, int64_t torque_limit) {
+  const int64_t towards = (setpoint - speed) / (gain_ * kReachMs);
+  const int64_t wanted = towards + held_;
+  if (wanted < -torque_limit || torque_limit < wanted) return {speed, sign_of(wanted) * torque_limit, true};
+  held_ = std::clamp(held_ + towards / kHoldMs, -torque_limit, torque_limit);
+  return {speed, wanted, false};
 }
 
 Motion Shaft::limited(FineSpeed speed, FineSpeed setpoint, int64_t needed, int64_t torque_limit,

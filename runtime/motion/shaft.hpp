@@ -1,5 +1,5 @@
 // The mechanics: one shaft with inertia, static load and dry friction. Torques in 1/1000 % of the rated
-// torque.
+// torque. A shaft that is driven from outside has its speed from there, and the motor gives a torque.
 #pragma once
 
 #include <cstdint>
@@ -40,13 +40,19 @@ class Shaft {
   // The motor gives this torque, as far as its limit allows. Beyond the speed limit it gives what holds that.
   Motion turned(FineSpeed speed, int64_t torque, FineSpeed speed_limit, int64_t torque_limit,
                 const Resistance& resistance) const;
+
+  // Driven from outside: the torque that takes the inertia of this shaft to the setpoint, by a controller with a
+  // proportional and an integral part. It is soft enough for a partner that answers a millisecond later.
+  Motion controlled(FineSpeed speed, FineSpeed setpoint, int64_t torque_limit);
+  void forget_control() { held_ = 0; }
   bool operator==(const Shaft&) const = default;
 
  private:
   Motion limited(FineSpeed speed, FineSpeed setpoint, int64_t needed, int64_t torque_limit,
                  const Resistance& resistance) const;
 
-  int64_t gain_;  // change of speed in one millisecond by a torque of 1
+  int64_t gain_;      // change of speed in one millisecond by a torque of 1
+  int64_t held_ = 0;  // the integral part of controlled()
 };
 
 }  // namespace ipos::runtime

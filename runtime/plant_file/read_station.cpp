@@ -137,11 +137,12 @@ void read_load(PlantReader& reader, const toml::table& table, MachineData& machi
   const toml::table* settings = reader.subtable(table, "load");
   if (settings == nullptr) return;
   reader.known_keys(*settings, "[station.load]",
-                    {"inertia", "friction", "torque", "brake", "braking_resistor"});
+                    {"inertia", "friction", "torque", "brake", "braking_resistor", "driven"});
   read_percentage(reader, *settings, "inertia", 0, 100'000, 1, machine.inertia);
   read_percentage(reader, *settings, "friction", 0, 1'000, 1'000, machine.friction);
   read_percentage(reader, *settings, "torque", -1'000, 1'000, 1'000, machine.load_torque);
   machine.brake = reader.flag(*settings, "brake").value_or(machine.brake);
+  machine.driven = reader.flag(*settings, "driven").value_or(machine.driven);
   machine.braking_resistor = reader.flag(*settings, "braking_resistor").value_or(machine.braking_resistor);
 }
 

@@ -25,6 +25,9 @@ struct DriveValue {
   int decimals = 0;
   size_t bits = 0;
   int64_t (*decided)(const Drive&) = nullptr;  // Signal::decided
+  Signal::Put put = nullptr;                    // of what acts on the shaft from outside
+  bool (*can_put)(const Drive&) = nullptr;
+  uint32_t number = 0;
 };
 
 template <int32_t (Drive::*value)() const>
@@ -44,6 +47,32 @@ constexpr DriveValue decided_value(DriveValue row) {
   return row;
 }
 
+Refusal put_load_torque(Station& station, uint32_t, int32_t torque) {
+  station.drive().state().set_load_torque(torque);
+  return std::nullopt;
+}
+Refusal put_shaft_speed(Station& station, uint32_t, int32_t speed) {
+  station.drive().state().set_shaft_speed(speed);
+  return std::nullopt;
+}
+
+// Beyond all indices of parameters.
+constexpr uint32_t kFirstWritten = 0x10000;
+
+constexpr DriveValue written(uint32_t number, DriveValue row, Signal::Put put, bool (*can_put)(const Drive&)) {
+  row.number = kFirstWritten + number;
+  row.put = put;
+  row.can_put = can_put;
+  return row;
+}
+constexpr DriveValue kShaftSpeed = written(
+    1, decided_value<&Drive::speed>({"shaft_speed", "of the motor as simulated", "", -1, nullptr, "rpm", 0.001, 3}),
+    put_shaft_speed, [](const Drive& drive) { return drive.is_driven(); });
+constexpr DriveValue kLoadTorque = written(
+    0, {"load_torque", "of what the motor drives, positive pulls counter-clockwise", "", -1,
+     of_station<[](const Drive& drive) -> int64_t { return drive.load_torque(); }>, "Nm", 1e-4, 4},
+    put_load_torque, [](const Drive& drive) { return !drive.is_driven(); });
+
 int64_t status_of(const Drive& drive) { return drive.status_word_1(); }
 int64_t fault_of(const Drive& drive) { return drive.fault(); }
 
@@ -58,11 +87,13 @@ constexpr DriveValue kDriveValues[] = {
     {"temperature", "P014", "014"},
     decided_value<&Drive::axis_setpoint>(
         {"setpoint", "speed the ramp orders", "", -1, nullptr, "rpm", 0.001, 3}),
-    decided_value<&Drive::speed>(
-        {"shaft_speed", "of the motor as simulated", "", -1, nullptr, "rpm", 0.001, 3}),
+    kShaftSpeed,
+    {"shaft_angle", "turned since the start", "", -1,
+     of_station<[](const Drive& drive) { return drive.shaft_angle(); }>, "rad", 1e-6, 6},
+    kLoadTorque,
     {"torque", "of the motor as simulated", "", -1,
-     [](const Station& station) -> int64_t { return station.drive().state().axis().torque; }, "%Mn", 0.001,
-     3},
+     [](const Station& station) -> int64_t { return station.powered() ? station.drive().state().axis().torque : 0; },
+     "%Mn", 0.001, 3},
     {"position_setpoint", "H491", "", 491, nullptr, "inc"},
     {"position_target", "H492", "", 492, nullptr, "inc"},
     {"lag", "H495", "", 495, nullptr, "inc"},
@@ -117,6 +148,11 @@ void add_drive_values(Collector& out) {
     signal.bits = row.bits;
     signal.decided = row.decided;
     signal.is_status = row.name == "status";
+    if (row.put == nullptr) continue;
+    signal.number = row.number;
+    if (!row.can_put(station.drive().state())) continue;
+    signal.put = row.put;
+    signal.limits = {INT32_MIN, INT32_MAX};
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -46,6 +47,16 @@ std::optional<int64_t> number_of(std::string_view text) {
   if (error != std::errc() || end != text.data() + text.size() || text.empty() || value > INT64_MAX) return std::nullopt;
   if (hex && !negative && value > INT32_MAX && value <= UINT32_MAX) return static_cast<int32_t>(value);
   return negative ? -static_cast<int64_t>(value) : static_cast<int64_t>(value);
+}
+
+// "2.5 Nm"
+std::optional<double> amount_of(std::string_view text, std::string_view unit) {
+  if (unit.empty() || !text.ends_with(unit)) return std::nullopt;
+  text.remove_suffix(unit.size());
+  while (text.ends_with(' ')) text.remove_suffix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }
 
 }  // namespace
@@ -124,6 +135,8 @@ tl::expected<Signal::Parsed, std::string> Signal::parse(std::string_view text) c
   }
   if (group == Group::Input && (text == "on" || text == "off")) return Parsed{number, text == "on" ? 1 : 0};
   if (const auto value = number_of(text)) return Parsed{number, *value};
+  if (const auto value = group == Group::Drive ? amount_of(text, unit) : std::nullopt)
+    return Parsed{number, std::llround(std::clamp(*value / factor, -1e15, 1e15))};
   return tl::unexpected(fmt::format("'{}' is no number", text));
 }
 

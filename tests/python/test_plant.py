@@ -583,3 +583,23 @@ def test_a_profibus_line():
         assert not wrong.valid and "frame check" in wrong.text
         with pytest.raises(TypeError):
             bus.send(8, b"1")
+
+
+def test_the_shaft_takes_a_load(line):
+    saw = line["saw"]
+    assert list(saw.shaft) == ["shaft_speed", "load_torque"]
+    assert saw.shaft["load_torque"] == 0
+    saw.shaft["load_torque"] = 1.25
+    assert saw.shaft["load_torque"] == 1.25
+    saw.shaft["load_torque"] = "-0.5 Nm"
+    assert saw.shaft["load_torque"] == -0.5
+    saw.shaft.force("load_torque", 2)
+    line.run("2ms")
+    assert saw.shaft["load_torque"] == 2.0
+    saw.shaft.release("load_torque")
+    with pytest.raises(TypeError):
+        saw.shaft["load_torque"] = True
+    with pytest.raises(TypeError):
+        saw.shaft["shaft_speed"] = None
+    with pytest.raises(ipos.Error):
+        saw.shaft["shaft_speed"] = 100.0

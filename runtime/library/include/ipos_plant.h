@@ -196,7 +196,9 @@ enum {
   IPOS_PLANT_ANALOG = 5,    /* "AI1", "AI2", "frequency", "potentiometer" */
   IPOS_PLANT_STATE = 6,     /* "speed", "position", "fault", ...: docs/reference */
   IPOS_PLANT_WORD = 7,      /* "PO1".."PO3", "PI1".."PI3" */
-  IPOS_PLANT_SIGNAL = 8     /* any other name of docs/guide/recording.md, to be read: "torque", "PO1.6", "task1.line" */
+  IPOS_PLANT_SIGNAL = 8,    /* any other name of docs/guide/recording.md, to be read: "torque", "PO1.6", "task1.line" */
+  IPOS_PLANT_SHAFT = 9      /* what acts on the shaft: "load_torque"; "shaft_speed", which can be written where the plant
+                             * file says that the shaft is driven from outside */
 };
 
 enum { IPOS_PLANT_WRITABLE = 1 /* it can be written and forced */ };
@@ -235,7 +237,7 @@ ipos_plant_status ipos_plant_read_text(ipos_plant* plant, uint32_t signal, const
  * hangs on the terminal; process output words come as over the bus that P100 and P101 name.
  * IPOS_PLANT_READ_ONLY, IPOS_PLANT_BAD_VALUE, IPOS_PLANT_REFUSED (the message says why, with the unit's return code). */
 ipos_plant_status ipos_plant_write(ipos_plant* plant, uint32_t signal, int64_t value);
-/* The same by text, of parameters and analog inputs with unit: "2.5 s", "12 mA". */
+/* The same by text, of parameters, analog inputs and the shaft with unit: "2.5 s", "12 mA", "-3.5 Nm". */
 ipos_plant_status ipos_plant_write_text(ipos_plant* plant, uint32_t signal, const char* text);
 
 /* Holds a value from now on against program, wires, switches and telegrams, until it is released. */

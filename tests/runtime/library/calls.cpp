@@ -100,6 +100,8 @@ constexpr const char* kTexts[] = {"a",
                                   "P813",
                                   "potentiometer",
                                   "50 %",
+                                  "load_torque",
+                                  "-2.5 Nm",
                                   "task1.line"};
 constexpr int64_t kLongestRun = 20'000'000;  // ns
 constexpr size_t kMostSaves = 2;

@@ -43,6 +43,7 @@ TEST_F(LibraryPlaces, NamesOfEveryKind) {
   EXPECT_EQ(plant_.names(IPOS_PLANT_STATE),
             (Names{"fault", "status", "enabled", "ready", "speed", "setpoint", "position", "powered",
                    "running", "program_fault", "program_fault_line"}));
+  EXPECT_EQ(plant_.names(IPOS_PLANT_SHAFT), (Names{"shaft_speed", "load_torque"}));
   // Each once, and every number and every index that the table has is reached.
   const stdlib::ParameterTable& table = stdlib::parameter_table(*stdlib::find_unit("mdxb"));
   const Names parameters = plant_.names(IPOS_PLANT_PARAMETER);
@@ -65,7 +66,7 @@ TEST_F(LibraryPlaces, NamesOfEveryKind) {
   EXPECT_EQ(signals[0], "n") << "the program's own names come first";
   EXPECT_NE(std::find(signals.begin(), signals.end(), "speed"), signals.end());
   const char* name = nullptr;
-  for (const ipos_plant_kind kind : {IPOS_PLANT_ANY + 0, -1, 9})
+  for (const ipos_plant_kind kind : {IPOS_PLANT_ANY + 0, -1, 10})
     EXPECT_EQ(ipos_plant_name_at(plant_.plant, 0, kind, nullptr, 0, &name), IPOS_PLANT_INVALID_ARGUMENT);
   EXPECT_EQ(ipos_plant_name_at(plant_.plant, 1, IPOS_PLANT_INPUT, nullptr, 0, &name), IPOS_PLANT_NO_STATION);
 }
@@ -90,6 +91,8 @@ TEST_F(LibraryPlaces, AreFoundByKindOrByName) {
               {"speed", IPOS_PLANT_STATE, 4, 0},
               {"PO3", IPOS_PLANT_WORD, 2, IPOS_PLANT_WRITABLE},
               {"PI1", IPOS_PLANT_WORD, 3, 0},
+              {"load_torque", IPOS_PLANT_SHAFT, 0x10000, IPOS_PLANT_WRITABLE},
+              {"shaft_speed", IPOS_PLANT_SHAFT, 0x10001, 0},
               {"torque", IPOS_PLANT_SIGNAL, 0, 0},
               {"task1.line", IPOS_PLANT_SIGNAL, 0, 0}};
   for (const auto& row : rows)

@@ -224,5 +224,87 @@ TEST_F(Hoist, TooLittleCurrentLetsItSink) {
   EXPECT_TRUE(axis_.state().current_limited);
 }
 
+// What is outside: an inertia of `share` times what was told, a load, and an answer a millisecond later.
+struct Outside {
+  double share;
+  double load;  // 1/1000 %, positive pulls counter-clockwise
+  double speed = 0;
+  double torque = 0;
+
+  void tick(Axis& axis, AxisOrder order) {
+    order.shaft_speed = static_cast<int32_t>(std::lround(speed));
+    const int32_t given = axis.tick(order).torque;
+    speed += (torque - load) / 100'000 * kPerRated / share;
+    torque = given;
+  }
+};
+
+TEST(Shaft, DrivenFromOutsideIsTakenToTheSetpointAndHeldThere) {
+  MachineData machine;
+  machine.driven = true;
+  for (const double share : {0.5, 1.0, 3.0, 10.0})
+    for (const double load : {0.0, 60'000.0, -90'000.0}) {
+      Axis axis(machine);
+      Outside outside{share, load};
+      double most = 0;
+      for (int n = 0; n < 3'000; ++n) {
+        outside.tick(axis, run_to(1'200'000, 3'000));
+        most = std::max(most, outside.speed);
+      }
+      EXPECT_NEAR(outside.speed, 1'200'000, 500) << share << " " << load;
+      EXPECT_NEAR(axis.state().torque, load, 500) << "no friction of its own";
+      EXPECT_LT(most, 1'240'000) << share << " " << load;
+      EXPECT_NEAR(axis.state().speed, outside.speed, 3) << "as it was told in the last tick " << share;
+    }
+}
+
+TEST(Shaft, DrivenFromOutsideGoesWhereItIsDrivenToWithoutTorque) {
+  MachineData machine;
+  machine.driven = true;
+  Axis axis(machine);
+  AxisOrder off;
+  off.shaft_speed = -321'000;
+  for (int n = 0; n < 60'000; ++n) axis.tick(off);
+  EXPECT_EQ(axis.state().speed, -321'000);
+  EXPECT_EQ(axis.state().torque, 0);
+  EXPECT_NEAR(axis.state().position, -321.0 * 4096, 12) << "a minute, half a millisecond less of it at the start";
+}
+
+TEST(Shaft, DrivenFromOutsideGivesTheTorqueThatIsOrdered) {
+  MachineData machine;
+  machine.driven = true;
+  Axis axis(machine);
+  AxisOrder order = run_to(0, 1'000);
+  for (int n = 0; n < 10; ++n) axis.tick(order);
+  order.command = AxisCommand::Torque;
+  order.current = 40'000;  // 80 % active current is the rated torque
+  order.speed_limit = 500'000;
+  order.shaft_speed = 200'000;
+  EXPECT_EQ(axis.tick(order).torque, 50'000);
+  order.shaft_speed = 510'000;
+  for (int n = 0; n < 10; ++n) axis.tick(order);
+  EXPECT_LT(axis.state().torque, 0) << "beyond the limit it brakes";
+}
+
+TEST(Shaft, DrivenFromOutsideTheBrakeFallsInNearStandstill) {
+  MachineData machine;
+  machine.driven = true;
+  Axis axis(machine);
+  AxisOrder order = run_to(0, 1'000);
+  order.shaft_speed = 1'500;
+  for (int n = 0; n < 10; ++n) axis.tick(order);
+  order.command = AxisCommand::Stop;
+  for (int n = 0; n < 10; ++n) axis.tick(order);
+  EXPECT_TRUE(axis.state().brake_released);
+  order.shaft_speed = -900;
+  for (int n = 0; n < 10; ++n) axis.tick(order);
+  EXPECT_FALSE(axis.state().brake_released);
+  EXPECT_EQ(axis.state().phase, AxisPhase::Off);
+}
+
+TEST(Shaft, RatedTorqueIsPowerByAngularSpeed) {
+  EXPECT_NEAR(rated_torque({}), 1'500 / (2 * 3.14159265358979 * 1'400 / 60), 1e-9);
+}
+
 }  // namespace
 }  // namespace ipos::runtime

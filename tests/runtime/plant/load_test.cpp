@@ -49,5 +49,10 @@ TEST(StationLoad, WhatIsLeftOutIsTheDefault) {
   EXPECT_EQ(machine.brake, standard.brake);
 }
 
+TEST(StationLoad, TheShaftMayBeDrivenFromOutside) {
+  EXPECT_FALSE(machine_of("torque = 1\n").driven);
+  EXPECT_TRUE(machine_of("driven = true\n").driven);
+}
+
 }  // namespace
 }  // namespace ipos::runtime

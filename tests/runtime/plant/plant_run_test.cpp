@@ -239,6 +239,8 @@ TEST(PlantRun, SignalsOfAStationAreShownWithUnitAndDigits) {
     size_t bits;
   } rows[] = {{"setpoint", signals::Group::Drive, "rpm", 0.001, 3, 0},
               {"shaft_speed", signals::Group::Drive, "rpm", 0.001, 3, 0},
+              {"shaft_angle", signals::Group::Drive, "rad", 1e-6, 6, 0},
+              {"load_torque", signals::Group::Drive, "Nm", 1e-4, 4, 0},
               {"torque", signals::Group::Drive, "%Mn", 0.001, 3, 0},
               {"status", signals::Group::Drive, "", 1, 0, 16},
               {"fault", signals::Group::Drive, "", 1, 0, 0},
