@@ -5,8 +5,6 @@ set(ports os_port/port_error.cpp os_port/port_notes.cpp os_port/can_port.cpp os_
           os_port/byte_bridge.cpp os_port/serial_bridge.cpp os_port/profibus_bridge.cpp os_port/real_time.cpp)
 set(adapters os_port/adapters/adapter_channel.cpp os_port/adapters/adapter_port.cpp os_port/adapters/pcan.cpp os_port/adapters/vector.cpp
              os_port/adapters/kvaser.cpp os_port/adapters/ixxat.cpp)
-# Each has the names of its library.
-set_source_files_properties(${adapters} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 if(CMAKE_SYSTEM_NAME STREQUAL Linux)
   list(APPEND ports ${adapters} os_port/shared_library.cpp os_port/system_clock.cpp os_port/port_names.cpp os_port/can_link.cpp os_port/socket_can.cpp os_port/slcan_adapter.cpp
                     os_port/tty.cpp os_port/tty_rate.cpp os_port/pty.cpp os_port/pty_port.cpp)

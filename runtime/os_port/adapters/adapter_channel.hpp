@@ -46,10 +46,18 @@ struct ChannelWish {
 
 using ChannelResult = tl::expected<std::unique_ptr<AdapterChannel>, PortError>;
 
-ChannelResult open_pcan(const SharedLibrary& library, const ChannelWish& wish);
-ChannelResult open_vector(const SharedLibrary& library, const ChannelWish& wish);
-ChannelResult open_kvaser(const SharedLibrary& library, const ChannelWish& wish);
-ChannelResult open_ixxat(const SharedLibrary& library, const ChannelWish& wish);
+namespace pcan {
+ChannelResult open(const SharedLibrary& library, const ChannelWish& wish);
+}
+namespace vector {
+ChannelResult open(const SharedLibrary& library, const ChannelWish& wish);
+}
+namespace kvaser {
+ChannelResult open(const SharedLibrary& library, const ChannelWish& wish);
+}
+namespace ixxat {
+ChannelResult open(const SharedLibrary& library, const ChannelWish& wish);
+}
 
 // --- what they have in common
 

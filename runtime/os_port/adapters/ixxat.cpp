@@ -13,10 +13,8 @@
 #include "runtime/os_port/adapters/adapter_channel.hpp"
 #include "runtime/os_port/adapters/ixxat_api.hpp"
 
-namespace ipos::runtime {
+namespace ipos::runtime::ixxat {
 namespace {
-
-using namespace ixxat;  // NOLINT: the names of the library
 
 constexpr uint16_t kReceiveQueue = 4096, kSendQueue = 128;  // messages (ours)
 
@@ -220,7 +218,7 @@ class IxxatChannel final : public AdapterChannel {
 
 }  // namespace
 
-ChannelResult open_ixxat(const SharedLibrary& library, const ChannelWish& wish) {
+ChannelResult open(const SharedLibrary& library, const ChannelWish& wish) {
   Functions functions{};
   FunctionFinder finder(library);
   finder.take(functions.initialize_library, "vciInitialize")
@@ -263,4 +261,4 @@ ChannelResult open_ixxat(const SharedLibrary& library, const ChannelWish& wish) 
   return channel;
 }
 
-}  // namespace ipos::runtime
+}  // namespace ipos::runtime::ixxat

@@ -9,10 +9,8 @@
 #include "runtime/os_port/adapters/adapter_channel.hpp"
 #include "runtime/os_port/adapters/kvaser_api.hpp"
 
-namespace ipos::runtime {
+namespace ipos::runtime::kvaser {
 namespace {
-
-using namespace kvaser;  // NOLINT: the names of the library
 
 std::string text_of(const Functions& library, Status status) {
   std::array<char, 128> text{};
@@ -123,7 +121,7 @@ class KvaserChannel final : public AdapterChannel {
 
 }  // namespace
 
-ChannelResult open_kvaser(const SharedLibrary& library, const ChannelWish& wish) {
+ChannelResult open(const SharedLibrary& library, const ChannelWish& wish) {
   Functions functions{};
   FunctionFinder finder(library);
   finder.take(functions.initialize_library, "canInitializeLibrary")
@@ -162,4 +160,4 @@ ChannelResult open_kvaser(const SharedLibrary& library, const ChannelWish& wish)
   return channel;
 }
 
-}  // namespace ipos::runtime
+}  // namespace ipos::runtime::kvaser

@@ -11,10 +11,8 @@
 #include "runtime/os_port/adapters/adapter_channel.hpp"
 #include "runtime/os_port/adapters/pcan_api.hpp"
 
-namespace ipos::runtime {
+namespace ipos::runtime::pcan {
 namespace {
-
-using namespace pcan;  // NOLINT: the names of the library
 
 std::optional<Handle> handle_of(std::string_view channel) {
   for (const Kind& kind : kKinds) {
@@ -148,7 +146,7 @@ class PcanChannel final : public AdapterChannel {
 
 }  // namespace
 
-ChannelResult open_pcan(const SharedLibrary& library, const ChannelWish& wish) {
+ChannelResult open(const SharedLibrary& library, const ChannelWish& wish) {
   Functions functions{};
   FunctionFinder finder(library);
   finder.take(functions.initialize, "CAN_Initialize")
@@ -172,4 +170,4 @@ ChannelResult open_pcan(const SharedLibrary& library, const ChannelWish& wish) {
   return tl::unexpected(port_error(PortFault::Refused, wish.port, text_of(functions, status)));
 }
 
-}  // namespace ipos::runtime
+}  // namespace ipos::runtime::pcan

@@ -10,10 +10,8 @@
 #include "runtime/os_port/adapters/adapter_channel.hpp"
 #include "runtime/os_port/adapters/vector_api.hpp"
 
-namespace ipos::runtime {
+namespace ipos::runtime::vector {
 namespace {
-
-using namespace vector;  // NOLINT: the names of the library
 
 constexpr uint32_t kReceiveQueue = 4096;  // events; the library takes powers of 2 from 16 to 32768 (ours)
 
@@ -140,7 +138,7 @@ class VectorChannel final : public AdapterChannel {
 
 }  // namespace
 
-ChannelResult open_vector(const SharedLibrary& library, const ChannelWish& wish) {
+ChannelResult open(const SharedLibrary& library, const ChannelWish& wish) {
   Functions functions{};
   FunctionFinder finder(library);
   finder.take(functions.open_driver, "xlOpenDriver")
@@ -200,4 +198,4 @@ ChannelResult open_vector(const SharedLibrary& library, const ChannelWish& wish)
   return channel;
 }
 
-}  // namespace ipos::runtime
+}  // namespace ipos::runtime::vector
