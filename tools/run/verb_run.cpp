@@ -25,6 +25,7 @@
 #include "tools/input/plant_source.hpp"
 #include "tools/input/program.hpp"
 #include "tools/logs/log_writer.hpp"
+#include "tools/profile/profiler.hpp"
 #include "tools/recording/plot_html.hpp"
 #include "tools/recording/plot_svg.hpp"
 #include "tools/recording/recording.hpp"
@@ -53,6 +54,7 @@ struct RunFlags {
   std::vector<std::string> signals;
   std::string serial_log;
   std::vector<std::string> coverage;
+  std::string profile;
   std::string format = "text";
   bool realtime = false;
   bool why = false;
@@ -248,7 +250,7 @@ int run(const RunFlags& flags) {
   std::optional<vm::Rates> rates;
   if (flags.speed != 0) rates = vm::Rates{{flags.speed, flags.speed, flags.speed}};
   runtime::Execution execution = execution_of(flags.engine);
-  if (flags.no_skip) execution.pace = runtime::Pace::InTurn;
+  if (flags.no_skip || !flags.profile.empty()) execution.pace = runtime::Pace::InTurn;
   const std::unique_ptr<runtime::Plant> built =
       make_plant(std::move(input), runtime::FileUse::Write, rates, execution);
   runtime::Plant& plant = *built;
@@ -260,7 +262,7 @@ int run(const RunFlags& flags) {
   if (!flags.signals.empty() && flags.plot.empty() && flags.trace.empty())
     throw Failure(kUsage, "--signals needs --plot or --trace");
   // What goes to standard output stands there alone; the report gives way.
-  const auto files = {flags.log, flags.serial_log, flags.plot, flags.trace};
+  const auto files = {flags.log, flags.serial_log, flags.plot, flags.trace, flags.profile};
   const auto taking = std::count_if(files.begin(), files.end(), is_standard_output);
   if (taking > 1) throw Failure(kUsage, "only one file can go to standard output");
   const bool output_taken = taking != 0;
@@ -281,6 +283,12 @@ int run(const RunFlags& flags) {
     if (collector->empty())
       throw Failure(kBadInput, "--coverage: no station has a program that knows its source lines");
     coverage.check();
+  }
+  std::optional<profile::Profiler> profiler;
+  if (!flags.profile.empty()) {
+    if (coverage.wanted()) throw Failure(kUsage, "--profile and --coverage count the same commands: ask for one of them");
+    profiler.emplace(plant);
+    check_output(flags.profile);
   }
 
   std::optional<runtime::TraceHash> trace_hash;
@@ -326,6 +334,9 @@ int run(const RunFlags& flags) {
   fmt::print(output_taken ? stderr : stdout, "{}",
              flags.format == "json" ? json_report(plant, watch) : text_report(plant, watch));
   if (collector) coverage.write(collector->coverage());
+  if (profiler)
+    replace_file(flags.profile, flags.profile.ends_with(".json") ? profile::speedscope(profiler->tasks(), flags.file)
+                                                                 : profile::table(profiler->tasks()));
   print_journal(plant, flags.why);
   if (trace_hash) fmt::print(stderr, "trace hash {}\n", trace_hash->text());
   const size_t unmet = print_expectations(plant, flags.file);
@@ -366,6 +377,8 @@ void add_run(cli::Verb& app) {
       .one_each()
       .offers(offered_signals);
   add_coverage_option(verb, flags->coverage);
+  verb.option("--profile", flags->profile,
+              "write where the commands went: .json for speedscope, else a table of lines; - is standard output");
   verb.option("--format", flags->format, "text or json").one_of({"text", "json"});
   verb.flag("--trace-hash", flags->trace_hash,
             fmt::format("{}ms", runtime::TraceHash::kStep / runtime::kMillisecond),

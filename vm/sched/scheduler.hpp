@@ -28,6 +28,7 @@ class TickSteps {
   void begin(Machine& machine, const Rates& rates);
   // Whose command is next; 0: the millisecond is over.
   int task() const { return task_ > kTasks ? 0 : task_; }
+  const Rates& rates() const { return rates_; }  // of this millisecond
   // Executes at most `most` commands, all of that task; returns how many.
   uint32_t step(Machine& machine, uint32_t most = 1);
 
