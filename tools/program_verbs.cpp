@@ -19,6 +19,7 @@ constexpr VerbRow kVerbs[] = {
     IPOS_VERB("Begin", serve, serve),
     IPOS_VERB("Run and test", run, run),
     IPOS_VERB("Run and test", test, test),
+    IPOS_VERB("Run and test", campaign, campaign),
     IPOS_VERB("Run and test", debug, debug),
     IPOS_VERB("Write programs", build, build),
     IPOS_VERB("Write programs", fmt, build),

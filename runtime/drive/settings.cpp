@@ -1,6 +1,8 @@
 // Settings from the parameter table; what a unit lacks is taken from a neighbour.
 #include "runtime/drive/settings.hpp"
 
+#include <map>
+#include <mutex>
 #include <span>
 
 #include "runtime/drive/indices.hpp"
@@ -72,19 +74,33 @@ Settings read_m31(const ParameterStore& parameters) {
 
 }  // namespace
 
+// Which index each setting has is looked up once a list of parameters: a plant has many drives, and a campaign many plants.
 SettingsReader::SettingsReader(const ParameterStore& parameters)
     : traits_(parameters.unit().traits) {
   if (traits_.has(Trait::OwnParameterNumbers)) return;
+  struct Known {
+    std::vector<Cell> cells;
+    std::vector<SetCell> set_cells;
+  };
+  static std::mutex mutex;
+  static std::map<const stdlib::ParameterTable*, Known> all;
+  const std::lock_guard lock(mutex);
+  const auto [entry, is_new] = all.try_emplace(&parameters.table());
+  Known& known = entry->second;
   const auto index_of = [&](std::string_view number) -> uint16_t {
     const stdlib::Parameter* row = parameters.table().find(number);
     return row == nullptr ? 0 : row->index;
   };
+  if (is_new) {
 #define SETTING(name, number, absent) \
-  if (const uint16_t index = index_of(number)) cells_.push_back({&Settings::name, index});
+  if (const uint16_t index = index_of(number)) known.cells.push_back({&Settings::name, index});
 #define SET_SETTING(name, first, second, absent) \
   if (const uint16_t index = index_of(first))    \
-    set_cells_.push_back({&ParameterSet::name, {index, index_of(second)}});
+    known.set_cells.push_back({&ParameterSet::name, {index, index_of(second)}});
 #include "runtime/drive/settings.def"
+  }
+  cells_ = known.cells;
+  set_cells_ = known.set_cells;
 }
 
 Settings SettingsReader::read(const ParameterStore& parameters) const {

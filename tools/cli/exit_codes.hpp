@@ -12,6 +12,7 @@ inline constexpr int kBadInput = 65;      // the input has errors
 inline constexpr int kNoInput = 66;       // the input cannot be read
 inline constexpr int kInternal = 70;      // a defect of ipos
 inline constexpr int kIoError = 74;       // output cannot be written
+inline constexpr int kTaken = 75;         // another process is at it
 inline constexpr int kInterrupted = 130;  // Ctrl-C
 
 // What they mean, for the manual page.
@@ -27,6 +28,7 @@ inline constexpr ExitCode kExitCodes[] = {
     {kNoInput, "The input cannot be read."},
     {kInternal, "A defect of ipos."},
     {kIoError, "Output cannot be written."},
+    {kTaken, "Another runner has the shard of the campaign."},
     {kInterrupted, "Ended by Ctrl-C."},
 };
 

@@ -11,6 +11,7 @@ void add_disasm(cli::Verb& program);
 void add_verify(cli::Verb& program);
 void add_run(cli::Verb& program);
 void add_test(cli::Verb& program);
+void add_campaign(cli::Verb& program);
 void add_bus(cli::Verb& program);
 void add_canopen(cli::Verb& program);
 void add_profibus(cli::Verb& program);
