@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "runtime/plant/trace_hash.hpp"
 #include "tools/campaign/case_runner.hpp"
@@ -100,6 +101,7 @@ std::vector<runtime::PlantError> finish_campaign(Campaign& campaign, const Compi
   std::vector<runtime::PlantError> errors;
   identify_programs(campaign, compile);
   CaseRunner runner(campaign, compile);
+  std::set<std::string> told;  // what is wrong with one factor is so for every level of the others
   Levels levels;
   for (const FactorOutline& factor : campaign.outline.factors) levels.push_back(factor.middle());
   for (size_t n = 0; n < campaign.factors.size(); ++n) {
@@ -108,7 +110,7 @@ std::vector<runtime::PlantError> finish_campaign(Campaign& campaign, const Compi
     const size_t tried = any_will_do ? 1 : std::min(factor.settings.size(), kTriedLevels);
     const uint32_t middle = levels[n];
     for (levels[n] = 0; levels[n] < tried; ++levels[n])
-      if (const auto why = runner.refused(levels); !why.empty()) errors.push_back({factor.places[levels[n]], why});
+      if (const auto why = runner.refused(levels); !why.empty() && told.insert(why).second) errors.push_back({factor.places[levels[n]], why});
     levels[n] = middle;
   }
   if (!errors.empty()) return errors;

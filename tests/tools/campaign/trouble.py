@@ -88,10 +88,11 @@ def wait_for(condition, what):
 
 
 def killed_at_random_moments():
-    whole = Folder(campaign(400))
+    cases = 400 + 40 * KILLS
+    whole = Folder(campaign(cases))
     check(whole.run().returncode == 0, "an undisturbed run is good")
     wanted = whole.merge().stdout
-    folder = Folder(campaign(400))
+    folder = Folder(campaign(cases))
     chance = random.Random(7)
     kills = 0
     for _ in range(KILLS):
