@@ -9,11 +9,11 @@
 
 namespace ipos::tests {
 
-// In order of their paths; test files (.test.toml) are not plants.
+// In order of their paths; files of tests (.test.toml) and campaigns (.campaign.toml) are not plants.
 inline std::vector<std::filesystem::path> example_plants() {
   std::vector<std::filesystem::path> found;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(project("examples")))
-    if (entry.path().extension() == ".toml" && entry.path().stem().extension() != ".test")
+    if (entry.path().extension() == ".toml" && entry.path().stem().extension().empty())
       found.push_back(entry.path());
   std::sort(found.begin(), found.end());
   return found;

@@ -188,7 +188,7 @@ std::vector<fs::path> example_plants() {
   for (const auto& folder : fs::directory_iterator(project("examples")))
     if (folder.is_directory())
       for (const auto& file : fs::directory_iterator(folder.path()))
-        if (file.path().extension() == ".toml" && !file.path().string().ends_with(".test.toml")) plants.push_back(file.path());
+        if (file.path().extension() == ".toml" && file.path().stem().extension().empty()) plants.push_back(file.path());
   std::sort(plants.begin(), plants.end());
   return plants;
 }

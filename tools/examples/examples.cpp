@@ -55,7 +55,7 @@ std::vector<Example> read_all() {
     const std::string name(file.name.substr(slash + 1));
     if (all.empty() || all.back().name != folder) all.push_back({folder, "", "", "", {}});
     all.back().files[name] = file.text;
-    if (!name.ends_with(".toml") || name.ends_with(".test.toml")) continue;
+    if (!name.ends_with(".toml") || name.ends_with(".test.toml") || name.ends_with(".campaign.toml")) continue;
     all.back().plant = name;
     all.back().story = head_story(file.text, kStory);
     all.back().kind = kind_of(runtime::read_plant_file(std::string(file.text)).plant);
