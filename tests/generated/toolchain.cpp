@@ -72,6 +72,7 @@ ToolchainRun run_toolchain(const Program& program, const std::string& source) {
   machine.start();
   const vm::RunResult result = machine.run(1, kBudget);
   out.commands = result.commands;
+  out.image = read.image;
   out.outcome.ended = result.stop == vm::Stop::Ended || result.stop == vm::Stop::Faulted;
   out.outcome.fault = machine.fault().number;
   if (out.outcome.fault != 0) out.outcome.line = line_of(read.image, machine.fault().address);

@@ -4,12 +4,14 @@
 #include <string>
 
 #include "tests/generated/program.hpp"
+#include "vm/image/image.hpp"
 
 namespace ipos::tests {
 
 struct ToolchainRun {
   Outcome outcome;
   size_t commands = 0;  // executed
+  vm::Image image;      // what ran
   std::string trouble;  // a stage that failed; empty: the outcome counts
 };
 ToolchainRun run_toolchain(const Program& program, const std::string& source);

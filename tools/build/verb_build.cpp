@@ -1,12 +1,15 @@
 // ipos build: from source to image, and every stage on the way in text.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "tools/build/c_text.hpp"
+#include "tools/build/time_report.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/outputs.hpp"
 #include "tools/cli/verbs.hpp"
+#include "tools/input/plant_input.hpp"
 #include "tools/input/program.hpp"
 
 namespace ipos::tools {
@@ -16,10 +19,26 @@ struct BuildFlags {
   std::string file;
   std::string output;
   std::string emit;
+  bool time = false;
+  uint32_t speed = 0;
+  std::string format = "text";
   CompileFlags compile;
 };
 
+// Of a program or of all programs of a plant, with what its parameters give to the tasks.
+int tell_times(const BuildFlags& flags) {
+  if (!flags.output.empty() || !flags.emit.empty()) throw Failure(kUsage, "--time prints; it goes with neither -o nor --emit");
+  const auto plant = make_plant(read_plant_input(flags.file, flags.compile), runtime::FileUse::Look);
+  const auto speed = flags.speed == 0 ? std::nullopt : std::optional(flags.speed);
+  if (std::none_of(plant->stations().begin(), plant->stations().end(), [](const auto& one) { return one->image() != nullptr; }))
+    throw Failure(kBadInput, fmt::format("{}: no station has a program", flags.file));
+  fmt::print("{}", flags.format == "json" ? time_json(*plant, speed) : time_table(*plant, speed));
+  return kGood;
+}
+
 int build(const BuildFlags& flags) {
+  if (flags.time) return tell_times(flags);
+  if (flags.speed != 0 || flags.format != "text") throw Failure(kUsage, "--speed and --format go with --time");
   if (!is_source(flags.file)) throw Failure(kUsage, fmt::format("{}: sources are called *.IPC", flags.file));
   const bool as_c = flags.emit == "c";
   if (!flags.emit.empty() && flags.emit != "image" && !as_c) {
@@ -57,6 +76,10 @@ void add_build(cli::Verb& app) {
   verb.option("-o", flags->output, "image to write; default: the source's name with .ipx");
   verb.option("--emit", flags->emit, "print a stage instead: tokens, ast, asm, image, map or listing; c: the image as a C header, also to the file of -o")
       .one_of({"tokens", "ast", "asm", "image", "map", "listing", "c"});
+  verb.flag("--time", flags->time,
+            "print how many commands and ms each function and each turn of an endless loop takes at most; FILE may be a plant, *.toml");
+  verb.option("--speed", flags->speed, "with --time: commands per ms of every task, instead of P938 and P939").between(1U, 1'000'000U);
+  verb.option("--format", flags->format, "with --time: text or json").one_of({"text", "json"});
   add_compile_options(verb, flags->compile);
   verb.footer("Example:\n  ipos build SCOM1.IPC --emit=asm");
   verb.runs([flags] { return build(*flags); });

@@ -1,0 +1,46 @@
+// The commands of an image as a graph: where each leads, which functions there are, and who begins where.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "vm/image/image.hpp"
+#include "vm/isa/coding.hpp"
+
+namespace ipos::compiler::timing {
+
+inline constexpr size_t kNone = SIZE_MAX;
+
+struct Command {
+  vm::Instruction code;
+  uint32_t address = 0;
+  size_t next = kNone;   // that follows it; none where the flow never goes there
+  size_t label = kNone;  // that a jump, branch or call leads to
+  bool calls = false;    // the label is a function
+  bool ends = false;     // the function returns here, or the task ends
+};
+
+// A task or interrupt routine: code that runs beside the others.
+struct Root {
+  size_t entry = 0;
+  uint8_t task = 1;  // whose commands a millisecond it uses; of a variable interrupt the slower one, task 2
+  bool operator==(const Root&) const = default;
+};
+
+struct Graph {
+  explicit Graph(const vm::Image& image);
+
+  // Where a command goes on in its own function.
+  std::vector<size_t> successors(size_t command) const;
+  // Of the function that begins there, calls left aside; in no order.
+  std::vector<size_t> function_at(size_t entry) const;
+  // The same with all functions that it calls.
+  std::vector<size_t> reached_from(size_t entry) const;
+
+  std::vector<Command> commands;
+  std::vector<Root> roots;      // task 1 first
+  std::vector<size_t> entries;  // of functions and roots, each once
+};
+
+}  // namespace ipos::compiler::timing
