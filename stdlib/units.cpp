@@ -38,7 +38,8 @@ constexpr ConversionRow kConversions[] = {
 }  // namespace
 
 std::optional<Conversion> find_conversion(int index) {
-  if (index >= -64 && index <= 64) return Conversion{std::pow(10.0, index), 0};
+  // Of a negative power some C libraries know less than a division gives.
+  if (index >= -64 && index <= 64) return Conversion{index < 0 ? 1 / std::pow(10.0, -index) : std::pow(10.0, index), 0};
   for (const ConversionRow& row : kConversions)
     if (row.index == index) return row.conversion;
   return std::nullopt;

@@ -38,7 +38,7 @@ uint64_t count_operations(const std::string& name) {
   const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   compiler::CompileOptions options;
   options.unit = stdlib::find_unit(std::string_view("mdxb"));
-  const compiler::Compilation made = compiler::compile(path, "", text, options);
+  const compiler::Compilation made = compiler::compile(path.string(), "", text, options);
   if (!made.image) return 0;
   const auto code = std::span<const uint32_t>(made.image->code);
   const vm::Verification verified = vm::verify(code, {1024, 16384, 3, 32}, {});

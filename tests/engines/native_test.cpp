@@ -69,9 +69,9 @@ std::vector<int32_t> telling_numbers() {
   constexpr int32_t kMost = std::numeric_limits<int32_t>::max();
   std::vector<int32_t> numbers = {kLeast, kLeast + 1, kMost, kMost - 1, 0};
   for (int32_t bit = 0; bit < 31; ++bit)
-    for (int32_t near = -1; near <= 1; ++near) {
-      numbers.push_back((1 << bit) + near);
-      numbers.push_back(-(1 << bit) + near);
+    for (int32_t beside = -1; beside <= 1; ++beside) {
+      numbers.push_back((1 << bit) + beside);
+      numbers.push_back(-(1 << bit) + beside);
     }
   for (const int32_t other : {7, 10, 100, 641, 1000, 3600, 0xFFF000, 0x555555, 715827883}) {
     numbers.push_back(other);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 
 namespace ipos::tests {
 
@@ -36,7 +37,7 @@ struct ClosedForm {
   // The speed follows half a cosine in each ramp.
   double sine(double t) const {
     const auto ramp = [&](double time, double length) {
-      return peak() * (time / 2 - length / (2 * M_PI) * std::sin(M_PI * time / length));
+      return peak() * (time / 2 - length / (2 * std::numbers::pi) * std::sin(std::numbers::pi * time / length));
     };
     if (t >= duration()) return distance;
     if (t < up_time()) return ramp(t, up_time());

@@ -181,9 +181,9 @@ main() {
 }
 )";
 
-class Pair {
+class MasterAndSlave {
  public:
-  explicit Pair(const std::string& start = "100", const std::string& slave = "", const std::string& more = "",
+  explicit MasterAndSlave(const std::string& start = "100", const std::string& slave = "", const std::string& more = "",
                 const std::string& technology = "2")
       : rig(bus_text() + station("master", "P881 = 1\n") +
                 station("slave", "P881 = 2\nP077 = " + technology + "\n" + slave) +
@@ -219,7 +219,7 @@ class Pair {
 // and never with a lag error of the slave's own of that size.
 TEST(Isync, SlaveFollowsWithinOneCycle) {
   PROVES("MDB-TOC-22");
-  Pair pair;
+  MasterAndSlave pair;
   pair.run(480);
   EXPECT_EQ(pair.slave("H562"), 2);
   constexpr int kOneCycle = 512;  // 1500 rpm are 102.4 increments a millisecond
@@ -247,7 +247,7 @@ TEST(Isync, SlaveFollowsWithinOneCycle) {
 
 // Coupled to a running master: up to its speed on the ramp P911, and what was lost stays lost.
 TEST(Isync, CouplesOnTheRamp) {
-  Pair pair("1200", "P911 = 500\n");
+  MasterAndSlave pair("1200", "P911 = 500\n");
   pair.run(1'199);
   EXPECT_EQ(pair.slave("H511"), 0);
   pair.run(3);
@@ -264,7 +264,7 @@ TEST(Isync, CouplesOnTheRamp) {
 // 3000 rpm.
 TEST(Isync, CouplesUpToTwelveThousandRpm) {
   for (const char* gear : {"2147483647", "-2147483647"}) {
-    Pair pair("1200); H564 = " + std::string(gear) + "; _Wait(1", "P911 = 250\nP923 = 0\n");
+    MasterAndSlave pair("1200); H564 = " + std::string(gear) + "; _Wait(1", "P911 = 250\nP923 = 0\n");
     pair.run(1'215);
     EXPECT_EQ(pair.slave("H562"), 1);
     pair.run(975);
@@ -275,7 +275,7 @@ TEST(Isync, CouplesUpToTwelveThousandRpm) {
 }
 
 TEST(Isync, OnlyWithTheTechnologyFunction) {
-  Pair pair("100", "", "", "0");
+  MasterAndSlave pair("100", "", "", "0");
   pair.run(3'000);
   EXPECT_EQ(pair.slave("H562"), 0);
   EXPECT_EQ(pair.slave("H511"), 0);
@@ -283,7 +283,7 @@ TEST(Isync, OnlyWithTheTechnologyFunction) {
 
 // Without sync telegrams the axis stops on P912 and says why; H492 is where that ends.
 TEST(Isync, LosesTheMaster) {
-  Pair pair("100", "P912 = 800\n", fault_text("cut", "station = \"slave\"\nfrom = \"1200ms\"\n"));
+  MasterAndSlave pair("100", "P912 = 800\n", fault_text("cut", "station = \"slave\"\nfrom = \"1200ms\"\n"));
   pair.run(1'190);
   EXPECT_EQ(pair.slave("H562"), 2);
   pair.run(40);
@@ -302,7 +302,7 @@ TEST(Isync, LosesTheMaster) {
 // Whatever the program writes, the slave follows as far as it can.
 TEST(Isync, AnyGear) {
   for (const char* gear : {"2147483647", "-2147483647"}) {
-    Pair pair("100); H564 = " + std::string(gear) + "; _Wait(1", "P923 = 0\n");
+    MasterAndSlave pair("100); H564 = " + std::string(gear) + "; _Wait(1", "P923 = 0\n");
     pair.run(7'000);
     EXPECT_EQ(pair.slave("H564"), std::stoi(gear));
     EXPECT_NE(pair.slave("H562"), 0);
@@ -310,7 +310,7 @@ TEST(Isync, AnyGear) {
 }
 
 TEST(Isync, StopsAtASoftwareLimitSwitch) {
-  Pair pair("100", "P903 = 5\nP920 = 50000\nP921 = -50000\nP941 = 2\n");
+  MasterAndSlave pair("100", "P903 = 5\nP920 = 50000\nP921 = -50000\nP941 = 2\n");
   pair.run(4'000);
   EXPECT_EQ(pair.slave("H562"), 0);
   EXPECT_GT(pair.slave("H509"), 50'000);

@@ -2,6 +2,7 @@
 #include "runtime/positioning/profile.hpp"
 
 #include <gtest/gtest.h>
+#include <numbers>
 
 #include <functional>
 
@@ -416,7 +417,7 @@ TEST(RampShapes, AreSymmetric) {
                   static_cast<double>(kWholeShare), 2);
       const double x = static_cast<double>(t) / kWholeShare;
       const double speed = shape == RampShape::Linear ? x
-                           : shape == RampShape::Sine ? (1 - std::cos(M_PI * x)) / 2
+                           : shape == RampShape::Sine ? (1 - std::cos(std::numbers::pi * x)) / 2
                            : x < 0.5                  ? 2 * x * x
                                                       : 1 - 2 * (1 - x) * (1 - x);
       EXPECT_NEAR(static_cast<double>(speed_share(shape, t)) / kWholeShare, speed, 1e-8);
